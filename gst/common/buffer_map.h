@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// A mapped buffer that unmaps itself.
+#pragma once
+#include <gst/gst.h>
+
+#include "base/byte_reader.h"
+
+namespace lidar::gst {
+
+/// Maps a buffer, which it does not own, for the lifetime of this object. Test it before use.
+class BufferMap {
+ public:
+  BufferMap(GstBuffer* buffer, GstMapFlags flags)
+      : buffer_(gst_buffer_map(buffer, &info_, flags) ? buffer : nullptr) {}
+  ~BufferMap() {
+    if (buffer_ != nullptr) gst_buffer_unmap(buffer_, &info_);
+  }
+  BufferMap(const BufferMap&) = delete;
+  BufferMap& operator=(const BufferMap&) = delete;
+
+  explicit operator bool() const { return buffer_ != nullptr; }
+  guint8* data() { return info_.data; }
+  const guint8* data() const { return info_.data; }
+  gsize size() const { return info_.size; }
+  ByteView view() const { return {info_.data, info_.size}; }
+
+ private:
+  GstMapInfo info_{};
+  GstBuffer* buffer_;
+};
+
+}  // namespace lidar::gst

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// The caps of a raw cloud, parsed: what GstVideoInfo is to video.
+#pragma once
+#include <gst/gst.h>
+
+#include <optional>
+
+#include "cloud/point_fields.h"
+#include "cloud/sensor_model.h"
+#include "common/gstlidar.h"
+
+namespace lidar::gst {
+
+/// `application/x-pointcloud2`. Organised: height beams of width columns, row-major.
+struct CloudInfo {
+  guint width = 0;  // 0: not fixed by the caps (files, before pointcloudparse)
+  guint height = 1;
+  guint point_step = 0;  // bytes
+  PointFields fields;
+  bool is_dense = false;
+  gint framerate_n = 0;  // scans/s; 0/1: not known
+  gint framerate_d = 1;
+  std::optional<SensorModel> sensor_model;
+
+  /// None where the caps are of another type, big-endian, or contradict themselves (fields past
+  /// point-step, a sensor model of another height or not parseable, too large a frame).
+  GST_LIDAR_API static std::optional<CloudInfo> FromCaps(const GstCaps* caps);
+  /// transfer full
+  GST_LIDAR_API GstCaps* ToCaps() const;
+
+  gsize FrameSize() const { return gsize{width} * height * point_step; }
+  gsize Points() const { return gsize{width} * height; }
+  /// Time of one scan, or GST_CLOCK_TIME_NONE.
+  GstClockTime ScanDuration() const {
+    return framerate_n > 0 ? gst_util_uint64_scale_int(GST_SECOND, framerate_d, framerate_n)
+                           : GST_CLOCK_TIME_NONE;
+  }
+};
+
+/// A sensor model as the value of the caps field `sensor-model`; transfer full.
+GST_LIDAR_API GstBuffer* SensorModelToBuffer(const SensorModel& model);
+/// From the caps field `sensor-model` of `structure`, of whatever media type.
+GST_LIDAR_API std::optional<SensorModel> SensorModelFromStructure(const GstStructure* structure);
+
+}  // namespace lidar::gst

@@ -1,0 +1,139 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "common/gstlidar.h"
+
+namespace {
+
+// GstMeta registration is for the whole process; g_once makes it happen once.
+void RegisterMeta(const char* name) {
+  static const gchar* no_tags[] = {nullptr};
+  if (gst_meta_get_info(name) == nullptr)
+    gst_meta_register_custom(name, no_tags, nullptr, nullptr, nullptr);
+}
+
+/// The structure of `buffer`'s meta of that name, which is added where it is missing.
+GstStructure* WritableMeta(GstBuffer* buffer, const char* name) {
+  GstCustomMeta* meta = gst_buffer_get_custom_meta(buffer, name);
+  if (meta == nullptr) meta = gst_buffer_add_custom_meta(buffer, name);
+  return gst_custom_meta_get_structure(meta);
+}
+
+GstStructure* ReadMeta(GstBuffer* buffer, const char* name) {
+  GstCustomMeta* meta = gst_buffer_get_custom_meta(buffer, name);
+  return meta == nullptr ? nullptr : gst_custom_meta_get_structure(meta);
+}
+
+GstCaps* UnixTimeReference() {
+  static GstStaticCaps caps = GST_STATIC_CAPS("timestamp/x-unix");
+  return gst_static_caps_get(&caps);
+}
+
+}  // namespace
+
+void gst_lidar_init(void) {
+  static gsize done = 0;
+  if (g_once_init_enter(&done)) {
+    RegisterMeta(GST_LIDAR_SLICE_META_NAME);
+    RegisterMeta(GST_LIDAR_ECN_META_NAME);
+    g_once_init_leave(&done, 1);
+  }
+}
+
+void gst_lidar_buffer_set_slice(GstBuffer* buffer, const GstLidarSlice* slice) {
+  gst_structure_set(WritableMeta(buffer, GST_LIDAR_SLICE_META_NAME), "scan-id", G_TYPE_UINT,
+                    slice->scan_id, "slice-index", G_TYPE_UINT, slice->slice_index, "slice-count",
+                    G_TYPE_UINT, slice->slice_count, "first-column", G_TYPE_UINT,
+                    slice->first_column, nullptr);
+}
+
+gboolean gst_lidar_buffer_get_slice(GstBuffer* buffer, GstLidarSlice* slice) {
+  *slice = {0, 0, 1, 0};
+  GstStructure* s = ReadMeta(buffer, GST_LIDAR_SLICE_META_NAME);
+  GstLidarSlice read{};
+  if (s == nullptr ||
+      !gst_structure_get(s, "scan-id", G_TYPE_UINT, &read.scan_id, "slice-index", G_TYPE_UINT,
+                         &read.slice_index, "slice-count", G_TYPE_UINT, &read.slice_count,
+                         "first-column", G_TYPE_UINT, &read.first_column, nullptr)) {
+    return FALSE;
+  }
+  *slice = read;
+  return TRUE;
+}
+
+void gst_lidar_buffer_set_ecn(GstBuffer* buffer, GstLidarEcn ecn, GstClockTime arrival) {
+  gst_structure_set(WritableMeta(buffer, GST_LIDAR_ECN_META_NAME), "ecn", G_TYPE_UINT,
+                    static_cast<guint>(ecn), "arrival", G_TYPE_UINT64, arrival, nullptr);
+}
+
+gboolean gst_lidar_buffer_get_ecn(GstBuffer* buffer, GstLidarEcn* ecn, GstClockTime* arrival) {
+  GstStructure* s = ReadMeta(buffer, GST_LIDAR_ECN_META_NAME);
+  guint bits = 0;
+  if (s == nullptr || !gst_structure_get_uint(s, "ecn", &bits)) return FALSE;
+  if (ecn != nullptr) *ecn = static_cast<GstLidarEcn>(bits & 3);
+  if (arrival != nullptr && !gst_structure_get_uint64(s, "arrival", arrival))
+    *arrival = GST_CLOCK_TIME_NONE;
+  return TRUE;
+}
+
+void gst_lidar_buffer_set_capture_time(GstBuffer* buffer, GstClockTime unix_time) {
+  GstCaps* reference = UnixTimeReference();
+  if (auto* meta = gst_buffer_get_reference_timestamp_meta(buffer, reference)) {
+    meta->timestamp = unix_time;
+  } else {
+    gst_buffer_add_reference_timestamp_meta(buffer, reference, unix_time, GST_CLOCK_TIME_NONE);
+  }
+  gst_caps_unref(reference);
+}
+
+GstClockTime gst_lidar_buffer_get_capture_time(GstBuffer* buffer) {
+  GstCaps* reference = UnixTimeReference();
+  auto* meta = gst_buffer_get_reference_timestamp_meta(buffer, reference);
+  gst_caps_unref(reference);
+  return meta == nullptr ? GST_CLOCK_TIME_NONE : meta->timestamp;
+}
+
+GstEvent* gst_lidar_event_new_target_bitrate(const GstLidarTargetBitrate* target) {
+  return gst_event_new_custom(
+      GST_EVENT_CUSTOM_UPSTREAM,
+      gst_structure_new(GST_LIDAR_TARGET_BITRATE_EVENT, "bitrate", G_TYPE_UINT, target->bitrate,
+                        "ssrc", G_TYPE_UINT, target->ssrc, "min-bitrate", G_TYPE_UINT,
+                        target->min_bitrate, "max-bitrate", G_TYPE_UINT, target->max_bitrate, "rtt",
+                        G_TYPE_UINT64, target->rtt, "queue-delay", G_TYPE_UINT64,
+                        target->queue_delay, "reason", G_TYPE_STRING,
+                        target->reason != nullptr ? target->reason : "update", nullptr));
+}
+
+gboolean gst_lidar_event_parse_target_bitrate(GstEvent* event, GstLidarTargetBitrate* target) {
+  *target = {};
+  const GstStructure* s = gst_event_get_structure(event);
+  if (GST_EVENT_TYPE(event) != GST_EVENT_CUSTOM_UPSTREAM || s == nullptr ||
+      !gst_structure_has_name(s, GST_LIDAR_TARGET_BITRATE_EVENT) ||
+      !gst_structure_get_uint(s, "bitrate", &target->bitrate)) {
+    return FALSE;
+  }
+  // Foreign senders may know only the bitrate.
+  gst_structure_get_uint(s, "ssrc", &target->ssrc);
+  gst_structure_get_uint(s, "min-bitrate", &target->min_bitrate);
+  gst_structure_get_uint(s, "max-bitrate", &target->max_bitrate);
+  gst_structure_get_uint64(s, "rtt", &target->rtt);
+  gst_structure_get_uint64(s, "queue-delay", &target->queue_delay);
+  target->reason = gst_structure_get_string(s, "reason");
+  return TRUE;
+}
+
+GstEvent* gst_lidar_event_new_bitrate_bounds(const GstLidarBitrateBounds* bounds) {
+  return gst_event_new_custom(
+      GST_EVENT_CUSTOM_DOWNSTREAM_STICKY,
+      gst_structure_new(GST_LIDAR_BITRATE_BOUNDS_EVENT, "min-bitrate", G_TYPE_UINT,
+                        bounds->min_bitrate, "max-bitrate", G_TYPE_UINT, bounds->max_bitrate,
+                        "nominal-bitrate", G_TYPE_UINT, bounds->nominal_bitrate, nullptr));
+}
+
+gboolean gst_lidar_event_parse_bitrate_bounds(GstEvent* event, GstLidarBitrateBounds* bounds) {
+  *bounds = {};
+  const GstStructure* s = gst_event_get_structure(event);
+  return GST_EVENT_TYPE(event) == GST_EVENT_CUSTOM_DOWNSTREAM_STICKY && s != nullptr &&
+         gst_structure_has_name(s, GST_LIDAR_BITRATE_BOUNDS_EVENT) &&
+         gst_structure_get(s, "min-bitrate", G_TYPE_UINT, &bounds->min_bitrate, "max-bitrate",
+                           G_TYPE_UINT, &bounds->max_bitrate, "nominal-bitrate", G_TYPE_UINT,
+                           &bounds->nominal_bitrate, nullptr);
+}

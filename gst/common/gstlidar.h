@@ -1,0 +1,82 @@
+/* SPDX-License-Identifier: LGPL-2.1-or-later */
+/* The shared vocabulary of the gst-lidar plugins: metas on buffers and events between elements. */
+#pragma once
+#include <gst/gst.h>
+
+G_BEGIN_DECLS
+
+#ifdef GST_LIDAR_BUILD
+#define GST_LIDAR_API __attribute__((visibility("default")))
+#else
+#define GST_LIDAR_API
+#endif
+
+#define GST_LIDAR_CLOUD_MEDIA_TYPE "application/x-pointcloud2"
+#define GST_LIDAR_DRACO_MEDIA_TYPE "application/x-draco"
+#define GST_LIDAR_SLICE_META_NAME "LidarSliceMeta"
+#define GST_LIDAR_ECN_META_NAME "LidarEcnMeta"
+#define GST_LIDAR_TARGET_BITRATE_EVENT "target-bitrate"
+#define GST_LIDAR_BITRATE_BOUNDS_EVENT "bitrate-bounds"
+
+/** Registers the metas. Idempotent and thread-safe; every plugin of the set calls it. */
+GST_LIDAR_API void gst_lidar_init(void);
+
+/** One azimuth sector of a scan; a buffer without it is a scan of one slice. */
+typedef struct {
+  guint scan_id;     /* counts scans, wraps at 2^32 */
+  guint slice_index; /* 0 .. slice_count - 1 */
+  guint slice_count;
+  guint first_column; /* measurement id of the buffer's first column */
+} GstLidarSlice;
+
+GST_LIDAR_API void gst_lidar_buffer_set_slice(GstBuffer* buffer, const GstLidarSlice* slice);
+/** FALSE, and {0, 0, 1, 0} in @slice, where the buffer has no meta. */
+GST_LIDAR_API gboolean gst_lidar_buffer_get_slice(GstBuffer* buffer, GstLidarSlice* slice);
+
+/** The two ECN bits of the IP header (RFC 3168). */
+typedef enum {
+  GST_LIDAR_ECN_NOT_ECT = 0,
+  GST_LIDAR_ECN_ECT1 = 1,
+  GST_LIDAR_ECN_ECT0 = 2,
+  GST_LIDAR_ECN_CE = 3
+} GstLidarEcn;
+
+/** @arrival: kernel time of reception [ns since the Unix epoch], or GST_CLOCK_TIME_NONE. */
+GST_LIDAR_API void gst_lidar_buffer_set_ecn(GstBuffer* buffer, GstLidarEcn ecn,
+                                            GstClockTime arrival);
+/** FALSE where the buffer has no meta; either out pointer may be NULL. */
+GST_LIDAR_API gboolean gst_lidar_buffer_get_ecn(GstBuffer* buffer, GstLidarEcn* ecn,
+                                                GstClockTime* arrival);
+
+/** Sampling time of the buffer's first column [ns since the Unix epoch, UTC]. */
+GST_LIDAR_API void gst_lidar_buffer_set_capture_time(GstBuffer* buffer, GstClockTime unix_time);
+/** GST_CLOCK_TIME_NONE where it is not known. */
+GST_LIDAR_API GstClockTime gst_lidar_buffer_get_capture_time(GstBuffer* buffer);
+
+/** Upstream: what the element that gets it may put out [bit/s]. */
+typedef struct {
+  guint bitrate;
+  guint ssrc;
+  guint min_bitrate;
+  guint max_bitrate;
+  guint64 rtt;         /* ns */
+  guint64 queue_delay; /* ns */
+  const gchar* reason; /* "start", "update", ...; owned by the event once parsed */
+} GstLidarTargetBitrate;
+
+GST_LIDAR_API GstEvent* gst_lidar_event_new_target_bitrate(const GstLidarTargetBitrate* target);
+GST_LIDAR_API gboolean gst_lidar_event_parse_target_bitrate(GstEvent* event,
+                                                            GstLidarTargetBitrate* target);
+
+/** Downstream, sticky: what the encoder needs for its error bound and can use at most [bit/s]. */
+typedef struct {
+  guint min_bitrate;
+  guint max_bitrate;
+  guint nominal_bitrate;
+} GstLidarBitrateBounds;
+
+GST_LIDAR_API GstEvent* gst_lidar_event_new_bitrate_bounds(const GstLidarBitrateBounds* bounds);
+GST_LIDAR_API gboolean gst_lidar_event_parse_bitrate_bounds(GstEvent* event,
+                                                            GstLidarBitrateBounds* bounds);
+
+G_END_DECLS

@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Sequence numbers that wrap around (RFC 1982 serial arithmetic).
+#pragma once
+#include <cstdint>
+#include <optional>
+#include <type_traits>
+
+namespace lidar {
+
+/// Signed distance from `b` to `a`: positive where `a` is newer. Exact within half the range.
+template <class U>
+constexpr std::make_signed_t<U> SequenceDistance(U a, U b) {
+  static_assert(std::is_unsigned_v<U>);
+  return static_cast<std::make_signed_t<U>>(static_cast<U>(a - b));
+}
+template <class U>
+constexpr bool IsNewer(U a, U b) {
+  return SequenceDistance(a, b) > 0;
+}
+
+/// Extends wrapping numbers to 64 bit, each read as the nearest to the newest seen so far.
+template <class U>
+class SequenceUnwrapper {
+ public:
+  /// Extends `n` and remembers it if it is the newest.
+  std::int64_t Unwrap(U n) {
+    const std::int64_t extended = Peek(n);
+    if (!newest_ || extended > *newest_) newest_ = extended;
+    return extended;
+  }
+  /// Extends `n` without remembering it.
+  std::int64_t Peek(U n) const {
+    if (!newest_) return n;
+    return *newest_ + SequenceDistance(n, static_cast<U>(*newest_));
+  }
+  std::optional<std::int64_t> newest() const { return newest_; }
+  void Reset() { newest_.reset(); }
+
+ private:
+  std::optional<std::int64_t> newest_;
+};
+
+}  // namespace lidar

@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "cloud/point_fields.h"
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <utility>
+
+namespace lidar {
+namespace {
+
+struct TypeName {
+  FieldType type;
+  std::string_view name;
+  std::size_t size;
+};
+constexpr std::array<TypeName, 8> kTypes = {{{FieldType::kI8, "I8", 1},
+                                             {FieldType::kU8, "U8", 1},
+                                             {FieldType::kI16, "I16", 2},
+                                             {FieldType::kU16, "U16", 2},
+                                             {FieldType::kI32, "I32", 4},
+                                             {FieldType::kU32, "U32", 4},
+                                             {FieldType::kF32, "F32", 4},
+                                             {FieldType::kF64, "F64", 8}}};
+
+const TypeName& Describe(FieldType type) { return kTypes[static_cast<std::size_t>(type)]; }
+
+/// Cuts `text` at the first `separator` and returns what stood before it.
+std::string_view TakeUntil(char separator, std::string_view* text) {
+  const std::size_t end = text->find(separator);
+  const std::string_view head = text->substr(0, end);
+  text->remove_prefix(end == std::string_view::npos ? text->size() : end + 1);
+  return head;
+}
+
+std::optional<PointField> ParseField(std::string_view text) {
+  const std::string_view name = TakeUntil(':', &text);
+  const std::string_view type = TakeUntil(':', &text);
+  const auto known =
+      std::find_if(kTypes.begin(), kTypes.end(), [&](const auto& t) { return t.name == type; });
+  std::uint32_t offset = 0;
+  const auto parsed = std::from_chars(text.data(), text.data() + text.size(), offset);
+  if (name.empty() || known == kTypes.end() || parsed.ec != std::errc() ||
+      parsed.ptr != text.data() + text.size() ||
+      offset > PointFields::kMaxPointStep - known->size) {
+    return std::nullopt;
+  }
+  return PointField{std::string(name), known->type, offset};
+}
+
+}  // namespace
+
+std::size_t SizeOf(FieldType type) { return Describe(type).size; }
+
+bool operator==(const PointField& a, const PointField& b) {
+  return a.name == b.name && a.type == b.type && a.offset == b.offset;
+}
+
+PointFields& PointFields::Add(std::string name, FieldType type) {
+  fields_.push_back({std::move(name), type, MinimumStep()});
+  return *this;
+}
+
+std::optional<PointFields> PointFields::Parse(std::string_view text) {
+  PointFields fields;
+  while (!text.empty()) {
+    auto field = ParseField(TakeUntil(',', &text));
+    if (!field || fields.Find(field->name) != nullptr || fields.fields_.size() == kMaxFields)
+      return std::nullopt;
+    fields.fields_.push_back(*std::move(field));
+  }
+  if (fields.empty()) return std::nullopt;
+  return fields;
+}
+
+std::string PointFields::ToString() const {
+  std::string text;
+  for (const PointField& f : fields_) {
+    if (!text.empty()) text += ',';
+    text.append(f.name).append(":").append(Describe(f.type).name).append(":");
+    text += std::to_string(f.offset);
+  }
+  return text;
+}
+
+const PointField* PointFields::Find(std::string_view name) const {
+  const auto found = std::find_if(fields_.begin(), fields_.end(),
+                                  [&](const PointField& f) { return f.name == name; });
+  return found == fields_.end() ? nullptr : &*found;
+}
+
+bool PointFields::Has(std::string_view name, FieldType type) const {
+  const PointField* f = Find(name);
+  return f != nullptr && f->type == type;
+}
+
+bool PointFields::HasPackedXyz() const {
+  return Has("x", FieldType::kF32) && Has("y", FieldType::kF32) && Has("z", FieldType::kF32) &&
+         Find("y")->offset == Find("x")->offset + 4 && Find("z")->offset == Find("x")->offset + 8;
+}
+
+std::uint32_t PointFields::MinimumStep() const {
+  std::uint32_t end = 0;
+  for (const PointField& f : fields_)
+    end = std::max(end, f.offset + static_cast<std::uint32_t>(SizeOf(f.type)));
+  return end;
+}
+
+}  // namespace lidar

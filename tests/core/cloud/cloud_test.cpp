@@ -1,0 +1,120 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstring>
+
+#include "cloud/point_fields.h"
+#include "cloud/range_projection.h"
+#include "cloud/sensor_model.h"
+
+namespace lidar {
+namespace {
+
+SensorModel SmallSensor() {
+  SensorModel m;
+  m.columns_per_scan = 512;
+  m.range_unit_mm = 8;
+  m.beam_to_lidar_x_m = 0.015806;
+  m.beam_to_lidar_z_m = 0.002;
+  m.lidar_to_sensor = {-1, 0, 0, 0, 0, -1, 0, 0, 0, 0, 1, 0.03618, 0, 0, 0, 1};
+  m.beams = {{4.23, 21.5, 24}, {1.4, 7.1, 8}, {-1.4, -7.2, -8}, {-4.21, -21.4, -24}};
+  return m;
+}
+
+TEST(PointFields, RoundTripThroughTheCapsString) {
+  const char* text = "x:F32:0,y:F32:4,z:F32:8,intensity:F32:12,range:U32:16";
+  const auto fields = PointFields::Parse(text);
+  ASSERT_TRUE(fields);
+  EXPECT_EQ(fields->ToString(), text);
+  EXPECT_TRUE(fields->HasPackedXyz());
+  EXPECT_EQ(fields->MinimumStep(), 20U);
+  EXPECT_TRUE(fields->Has("range", FieldType::kU32));
+  EXPECT_EQ(fields->Find("ring"), nullptr);
+}
+
+class BadFields : public ::testing::TestWithParam<const char*> {};
+TEST_P(BadFields, AreRefused) { EXPECT_FALSE(PointFields::Parse(GetParam())); }
+INSTANTIATE_TEST_SUITE_P(All, BadFields,
+                         ::testing::Values("", "x", "x:F32", "x:F99:0", ":F32:0", "x:F32:-1",
+                                           "x:F32:0,x:F32:4", "x:F32:4294967295", "x:F32:0,,",
+                                           "x:F32:0z"));
+
+TEST(SensorModel, RoundTripsThroughItsBytes) {
+  const SensorModel m = SmallSensor();
+  const auto bytes = m.Serialise();
+  const auto back = SensorModel::Parse({bytes.data(), bytes.size()});
+  ASSERT_TRUE(back);
+  EXPECT_EQ(back->Serialise(), bytes);
+  EXPECT_EQ(back->columns_per_scan, 512U);
+  EXPECT_EQ(back->beams[3].pixel_shift, -24);
+  EXPECT_NEAR(back->beams[0].altitude_deg, 21.5, 1e-6);
+}
+
+TEST(SensorModel, RefusesEveryTruncationAndForeignVersions) {
+  auto bytes = SmallSensor().Serialise();
+  for (std::size_t n = 0; n < bytes.size(); ++n)
+    EXPECT_FALSE(SensorModel::Parse({bytes.data(), n}));
+  bytes[0] = 99;
+  EXPECT_FALSE(SensorModel::Parse({bytes.data(), bytes.size()}));
+}
+
+TEST(SensorModel, RefusesNumbersThatAreNotFinite) {
+  SensorModel m = SmallSensor();
+  m.beams[1].altitude_deg = std::nan("");
+  const auto bytes = m.Serialise();
+  EXPECT_FALSE(SensorModel::Parse({bytes.data(), bytes.size()}));
+}
+
+// The SDK's lookup table, written out for one pixel.
+std::array<double, 3> SdkPoint(const SensorModel& m, std::uint32_t beam, std::uint32_t column,
+                               double r) {
+  const double encoder = 2 * M_PI - 2 * M_PI * column / m.columns_per_scan;
+  const double azimuth = -m.beams[beam].azimuth_deg * M_PI / 180;
+  const double altitude = m.beams[beam].altitude_deg * M_PI / 180;
+  const double n = std::hypot(m.beam_to_lidar_x_m, m.beam_to_lidar_z_m);
+  const double x = (r - n) * std::cos(encoder + azimuth) * std::cos(altitude) +
+                   m.beam_to_lidar_x_m * std::cos(encoder);
+  const double y = (r - n) * std::sin(encoder + azimuth) * std::cos(altitude) +
+                   m.beam_to_lidar_x_m * std::sin(encoder);
+  const double z = (r - n) * std::sin(altitude) + m.beam_to_lidar_z_m;
+  const Transform& t = m.lidar_to_sensor;
+  return {t[0] * x + t[1] * y + t[2] * z + t[3], t[4] * x + t[5] * y + t[6] * z + t[7],
+          t[8] * x + t[9] * y + t[10] * z + t[11]};
+}
+
+TEST(RangeProjection, EqualsTheSdkFormulasWithinATenthOfAMillimetre) {
+  const SensorModel m = SmallSensor();
+  const RangeProjection projection(m);
+  for (std::uint32_t beam = 0; beam < 4; ++beam) {
+    for (std::uint32_t column : {0U, 1U, 100U, 511U}) {
+      for (std::uint32_t range : {500U, 12'345U, 240'000U}) {
+        const auto p = projection.Point(beam, column, range);
+        const auto q = SdkPoint(m, beam, column, range * 1e-3);
+        for (std::size_t i = 0; i < 3; ++i)
+          EXPECT_NEAR(static_cast<double>(p[i]), q[i], 1e-4) << beam << " " << column;
+        EXPECT_NEAR(projection.RangeOf(beam, column, p.data()), range, 0.1);
+      }
+    }
+  }
+}
+
+TEST(RangeProjection, FillsAWindowThatWrapsAndLeavesMissingReturnsZero) {
+  const RangeProjection projection(SmallSensor());
+  const ColumnWindow window{510, 4};
+  std::vector<std::uint32_t> ranges(16, 10'000);
+  ranges[5] = 0;
+  std::vector<std::uint8_t> out(16 * 20, 0);
+  projection.Project(ranges.data(), window, out.data(), 20);
+  for (std::uint32_t i = 0; i < 16; ++i) {
+    std::array<float, 3> p{};
+    std::memcpy(p.data(), &out[i * 20], sizeof p);
+    EXPECT_EQ(p, projection.Point(i / 4, (510 + i % 4) % 512, ranges[i]));
+  }
+  std::array<float, 3> missing{};
+  std::memcpy(missing.data(), &out[5 * 20], sizeof missing);
+  EXPECT_EQ(missing, (std::array<float, 3>{0, 0, 0}));
+}
+
+}  // namespace
+}  // namespace lidar

@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <gtest/gtest.h>
+
+#include "common/cloud_info.h"
+#include "common/gstlidar.h"
+#include "common/refs.h"
+
+namespace lidar::gst {
+namespace {
+
+CloudInfo SmallCloud() {
+  CloudInfo info;
+  info.width = 64;
+  info.height = 2;
+  info.point_step = 20;
+  info.fields = *PointFields::Parse("x:F32:0,y:F32:4,z:F32:8,intensity:F32:12,range:U32:16");
+  info.framerate_n = 10;
+  info.sensor_model.emplace();
+  info.sensor_model->columns_per_scan = 512;
+  info.sensor_model->beams = {{0, 1, 0}, {0, -1, 0}};
+  return info;
+}
+
+TEST(Metas, SurviveACopyOfTheBuffer) {
+  gst_lidar_init();
+  const BufferPtr buffer(gst_buffer_new_allocate(nullptr, 16, nullptr));
+  const GstLidarSlice slice{7, 3, 8, 384};
+  gst_lidar_buffer_set_slice(buffer.get(), &slice);
+  gst_lidar_buffer_set_ecn(buffer.get(), GST_LIDAR_ECN_CE, 123);
+  gst_lidar_buffer_set_capture_time(buffer.get(), 456);
+  gst_lidar_buffer_set_capture_time(buffer.get(), 789);
+  const BufferPtr copy(gst_buffer_copy_deep(buffer.get()));
+  GstLidarSlice read{};
+  ASSERT_TRUE(gst_lidar_buffer_get_slice(copy.get(), &read));
+  EXPECT_EQ(read.scan_id, 7U);
+  EXPECT_EQ(read.slice_index, 3U);
+  EXPECT_EQ(read.slice_count, 8U);
+  EXPECT_EQ(read.first_column, 384U);
+  GstLidarEcn ecn{};
+  GstClockTime arrival = 0;
+  ASSERT_TRUE(gst_lidar_buffer_get_ecn(copy.get(), &ecn, &arrival));
+  EXPECT_EQ(ecn, GST_LIDAR_ECN_CE);
+  EXPECT_EQ(arrival, 123U);
+  EXPECT_EQ(gst_lidar_buffer_get_capture_time(copy.get()), 789U);
+}
+
+TEST(Metas, ABufferWithoutOneIsAScanOfOneSlice) {
+  const BufferPtr buffer(gst_buffer_new());
+  GstLidarSlice slice{9, 9, 9, 9};
+  EXPECT_FALSE(gst_lidar_buffer_get_slice(buffer.get(), &slice));
+  EXPECT_EQ(slice.slice_count, 1U);
+  EXPECT_EQ(gst_lidar_buffer_get_capture_time(buffer.get()), GST_CLOCK_TIME_NONE);
+  EXPECT_FALSE(gst_lidar_buffer_get_ecn(buffer.get(), nullptr, nullptr));
+}
+
+TEST(Events, CarryTheTargetAndTheBounds) {
+  const GstLidarTargetBitrate target{5'000'000,        42,          100'000, 20'000'000,
+                                     40 * GST_MSECOND, GST_MSECOND, "update"};
+  const EventPtr up(gst_lidar_event_new_target_bitrate(&target));
+  GstLidarTargetBitrate read{};
+  ASSERT_TRUE(gst_lidar_event_parse_target_bitrate(up.get(), &read));
+  EXPECT_EQ(read.bitrate, 5'000'000U);
+  EXPECT_EQ(read.ssrc, 42U);
+  EXPECT_EQ(read.rtt, 40 * GST_MSECOND);
+  EXPECT_STREQ(read.reason, "update");
+
+  const GstLidarBitrateBounds bounds{1, 2, 3};
+  const EventPtr down(gst_lidar_event_new_bitrate_bounds(&bounds));
+  EXPECT_TRUE(GST_EVENT_IS_STICKY(down.get()));
+  GstLidarBitrateBounds got{};
+  ASSERT_TRUE(gst_lidar_event_parse_bitrate_bounds(down.get(), &got));
+  EXPECT_EQ(got.max_bitrate, 2U);
+  EXPECT_FALSE(gst_lidar_event_parse_bitrate_bounds(up.get(), &got));
+}
+
+TEST(CloudInfo, RoundTripsThroughCaps) {
+  const CapsPtr caps(SmallCloud().ToCaps());
+  const auto back = CloudInfo::FromCaps(caps.get());
+  ASSERT_TRUE(back);
+  EXPECT_EQ(back->FrameSize(), 64U * 2 * 20);
+  EXPECT_EQ(back->ScanDuration(), 100 * GST_MSECOND);
+  ASSERT_TRUE(back->sensor_model);
+  EXPECT_EQ(back->sensor_model->beams.size(), 2U);
+}
+
+class BadCaps : public ::testing::TestWithParam<const char*> {};
+TEST_P(BadCaps, AreRefused) {
+  const CapsPtr caps(gst_caps_from_string(GetParam()));
+  EXPECT_FALSE(CloudInfo::FromCaps(caps.get()));
+}
+INSTANTIATE_TEST_SUITE_P(
+    All, BadCaps,
+    ::testing::Values(
+        "video/x-raw", "application/x-pointcloud2",
+        "application/x-pointcloud2,point-step=8,fields=(string)\"x:F32:0,y:F32:4,z:F32:8\"",
+        "application/x-pointcloud2,point-step=-16,fields=(string)\"x:F32:0\"",
+        "application/x-pointcloud2,point-step=16,width=-1,fields=(string)\"x:F32:0\"",
+        "application/x-pointcloud2,point-step=16,is-bigendian=true,fields=(string)\"x:F32:0\"",
+        "application/x-pointcloud2,point-step=16,width=2147483647,height=2147483647,"
+        "fields=(string)\"x:F32:0\"",
+        "application/x-pointcloud2,point-step=16,sensor-model=(buffer)00ff,"
+        "fields=(string)\"x:F32:0\""));
+
+}  // namespace
+}  // namespace lidar::gst
