@@ -1,0 +1,116 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: LGPL-2.1-or-later
+# Installs what is missing, builds, and runs every suite; ends with the line "N passed, N failed".
+set -uo pipefail
+here=$(cd "$(dirname "$0")" && pwd)
+root=$(dirname "$here")
+
+usage() {
+  cat <<EOF
+Usage: tests/run.sh [--suite NAME] [--no-install] [--no-sanitize] [--tsan]
+
+  --suite NAME    run one suite: lint, core, elements, pipelines, fuzz, bench, or sanitize
+                  (core, elements and fuzz under AddressSanitizer and UBSan)
+  --no-install    do not install Debian packages
+  --no-sanitize   leave out the sanitizer build
+  --tsan          also run core and elements under ThreadSanitizer
+EOF
+}
+
+suites=(lint core elements pipelines fuzz bench)
+sanitize=yes
+tsan=no
+install=yes
+while [ $# -gt 0 ]; do
+  case $1 in
+    --suite)
+      [ $# -ge 2 ] || { usage >&2; exit 2; }
+      case $2 in
+        sanitize) suites=() ;;
+        lint | core | elements | pipelines | fuzz | bench) suites=("$2"); sanitize=no ;;
+        *) echo "No suite is called '$2'." >&2; usage >&2; exit 2 ;;
+      esac
+      shift ;;
+    --no-install) install=no ;;
+    --no-sanitize) sanitize=no ;;
+    --tsan) tsan=yes ;;
+    -h | --help) usage; exit 0 ;;
+    *) echo "Unknown option '$1'." >&2; usage >&2; exit 2 ;;
+  esac
+  shift
+done
+
+passed=0
+failed=0
+started=$SECONDS
+
+# build DIR [meson options]: configures once, then builds what changed.
+build() {
+  local dir=$1
+  shift
+  echo "== build $(basename "$dir") (${SECONDS}s)"
+  [ -f "$dir/build.ninja" ] || meson setup "$dir" "$root" "$@" >"$dir.log" 2>&1 ||
+    { tail -20 "$dir.log"; return 1; }
+  ninja -C "$dir" >"$dir.log" 2>&1 || { grep -A12 -E 'FAILED|error:' "$dir.log" | head -60; return 1; }
+}
+
+# run DIR SUITE [meson options]: adds the results of one suite to the totals.
+run() {
+  local dir=$1 suite=$2
+  shift 2
+  echo "== $(basename "$dir"): $suite (${SECONDS}s)"
+  rm -f "$dir/meson-logs/testlog.json"
+  meson test -C "$dir" --no-rebuild --suite "$suite" --print-errorlogs --quiet "$@" 2>&1 |
+    grep -vE '^$|^ninja|Full log|^(Ok|Expected Fail|Fail|Unexpected Pass|Skipped|Timeout):'
+  local counts
+  counts=$(jq -s -r '[(map(select(.result == "OK" or .result == "EXPECTEDFAIL")) | length),
+      (map(select(.result != "OK" and .result != "EXPECTEDFAIL" and .result != "SKIP")) | length)]
+      | @tsv' "$dir/meson-logs/testlog.json" 2>/dev/null || echo "0 0")
+  read -r ok bad <<<"$counts"
+  passed=$((passed + ok))
+  failed=$((failed + bad))
+}
+
+# The outcome of a step that is no meson test.
+count() { if [ "$1" = 0 ]; then passed=$((passed + 1)); else failed=$((failed + 1)); fi; }
+
+[ "$install" = no ] || "$here/install.sh" || exit 1
+
+if [ ${#suites[@]} -gt 0 ]; then
+  if build "$root/build"; then
+    for suite in "${suites[@]}"; do
+      # Pipelines stream in real time, so they have the machine to themselves.
+      jobs=()
+      case $suite in pipelines | bench) jobs=(--num-processes 1) ;; esac
+      run "$root/build" "$suite" "${jobs[@]}"
+    done
+  else
+    count 1
+  fi
+fi
+
+if [ "$sanitize" = yes ]; then
+  export ASAN_OPTIONS="suppressions=$here/asan.supp:detect_leaks=1:abort_on_error=0:detect_odr_violation=1"
+  export LSAN_OPTIONS="suppressions=$here/lsan.supp:print_suppressions=0"
+  export UBSAN_OPTIONS="print_stacktrace=1:halt_on_error=1"
+  if build "$root/build-asan" -Db_sanitize=address,undefined -Db_lundef=false -Doptimization=1 \
+    -Dbenchmarks=disabled; then
+    for suite in core elements fuzz; do run "$root/build-asan" "$suite" --timeout-multiplier 4; done
+  else
+    count 1
+  fi
+fi
+
+if [ "$tsan" = yes ]; then
+  export TSAN_OPTIONS="suppressions=$here/tsan.supp:halt_on_error=0:second_deadlock_stack=1"
+  if build "$root/build-tsan" -Db_sanitize=thread -Db_lundef=false -Doptimization=1 \
+    -Dbenchmarks=disabled; then
+    for suite in core elements; do run "$root/build-tsan" "$suite" --timeout-multiplier 8; done
+  else
+    count 1
+  fi
+fi
+
+echo "== $((SECONDS - started)) s"
+echo "$passed passed, $failed failed"
+[ "$failed" = 0 ] && [ "$passed" -gt 0 ]
