@@ -60,7 +60,7 @@ run() {
   shift 2
   echo "== $(basename "$dir"): $suite (${SECONDS}s)"
   rm -f "$dir/meson-logs/testlog.json"
-  meson test -C "$dir" --no-rebuild --suite "$suite" --print-errorlogs --quiet "$@" 2>&1 |
+  meson test -C "$dir" --no-rebuild --suite "$suite" --print-errorlogs "$@" 2>&1 |
     grep -vE '^$|^ninja|Full log|^(Ok|Expected Fail|Fail|Unexpected Pass|Skipped|Timeout):'
   local counts
   counts=$(jq -s -r '[(map(select(.result == "OK" or .result == "EXPECTEDFAIL")) | length),
