@@ -1,0 +1,132 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "link/bottleneck.h"
+
+#include <algorithm>
+#include <tuple>
+
+namespace lidar::link {
+namespace {
+
+std::unique_ptr<Aqm> MakeAqm(const AqmConfig& config, std::uint64_t seed) {
+  switch (config.kind) {
+    case AqmConfig::Kind::kStep:
+      return StepAqm(config.high);
+    case AqmConfig::Kind::kRamp:
+      return RampAqm(config.low, config.high, Random(seed));
+    case AqmConfig::Kind::kNone:
+      break;
+  }
+  return NoAqm();
+}
+
+/// Never past Time::max(), which stands for never.
+Time Plus(Time t, Duration d) { return d < Time::max() - t ? t + d : Time::max(); }
+
+}  // namespace
+
+bool Bottleneck::Later::operator()(const Pending& a, const Pending& b) const {
+  return std::tie(a.outcome.arrival, a.order) > std::tie(b.outcome.arrival, b.order);
+}
+
+Bottleneck::Bottleneck(const BottleneckConfig& config)
+    : config_(config),
+      loss_random_(config.seed),
+      // Sequences of their own: switching loss on must not shift the marks.
+      aqm_(MakeAqm(config.aqm, config.seed + 1)),
+      limit_(config.limit.bytes),
+      free_at_(config.origin) {}
+
+bool Bottleneck::Full(Time now, DataSize size) {
+  const DataRate rate = config_.capacity.RateAt(now - config_.origin);
+  // In a gap of the capacity the last limit stands: a real buffer does not shrink to nothing.
+  if (config_.limit.time < Duration::max() && rate > DataRate{} && rate < DataRate::Infinite())
+    limit_ = std::min(config_.limit.bytes, rate * config_.limit.time);
+  // A packet that finds the queue empty is taken, however small the limit.
+  return !queue_.empty() && size > limit_ - queued_;
+}
+
+void Bottleneck::Enqueue(Time now, const Packet& packet) {
+  Advance(now);
+  ++stats_.sent;
+  Outcome dropped{packet, Fate::kLost, now, now};
+  if (loss_random_.Chance(config_.loss)) {
+    Conclude(dropped);
+  } else if (Full(now, packet.size)) {
+    dropped.fate = Fate::kQueueFull;
+    Conclude(dropped);
+  } else {
+    queue_.push_back({packet, now});
+    queued_ += packet.size;
+    Advance(now);
+  }
+}
+
+Time Bottleneck::NextEventTime() const {
+  const Time arrival = pending_.empty() ? Time::max() : pending_.top().outcome.arrival;
+  return queue_.empty() ? arrival : std::min(arrival, free_at_);
+}
+
+std::vector<Outcome> Bottleneck::Deliver(Time now) {
+  Advance(now);
+  std::vector<Outcome> outcomes;
+  while (!pending_.empty() && pending_.top().outcome.arrival <= now) {
+    const Outcome& outcome = pending_.top().outcome;
+    if (outcome.delivered()) {
+      ++stats_.delivered;
+      stats_.delivered_size += outcome.packet.size;
+    }
+    outcomes.push_back(outcome);
+    pending_.pop();
+  }
+  return outcomes;
+}
+
+Duration Bottleneck::HeadSojourn(Time now) const {
+  return queue_.empty() ? Duration{0} : now - queue_.front().entered;
+}
+
+Time Bottleneck::At(Duration capacity_time) const {
+  return capacity_time == Duration::max() ? Time::max() : Plus(config_.origin, capacity_time);
+}
+
+void Bottleneck::Advance(Time now) {
+  while (!queue_.empty()) {
+    const Time start = std::max(free_at_, queue_.front().entered);
+    if (start > now) return;
+    if (config_.capacity.RateAt(start - config_.origin) <= DataRate{}) {
+      // Nothing leaves the queue in a gap, so the head's sojourn goes on.
+      free_at_ = At(config_.capacity.NextChange(start - config_.origin));
+      continue;
+    }
+    const Waiting head = queue_.front();
+    queue_.pop_front();
+    queued_ -= head.packet.size;
+    Transmit(head, start);
+  }
+}
+
+void Bottleneck::Transmit(const Waiting& head, Time now) {
+  Outcome outcome{head.packet, Fate::kDelivered, head.entered, now, now - head.entered};
+  const Verdict verdict = aqm_->OnDequeue(now, outcome.sojourn, head.packet);
+  if (verdict == Verdict::kDrop) {
+    outcome.fate = Fate::kAqmDropped;
+    Conclude(outcome);
+    return;
+  }
+  if (verdict == Verdict::kMark) {
+    outcome.packet.ecn = Ecn::kCe;
+    ++stats_.marked;
+  }
+  free_at_ = At(config_.capacity.Finish(now - config_.origin, head.packet.size));
+  outcome.arrival = Plus(free_at_, config_.delay);
+  Conclude(outcome);
+}
+
+void Bottleneck::Conclude(const Outcome& outcome) {
+  stats_.lost += outcome.fate == Fate::kLost;
+  stats_.queue_full += outcome.fate == Fate::kQueueFull;
+  stats_.aqm_dropped += outcome.fate == Fate::kAqmDropped;
+  pending_.push({outcome, order_++});
+}
+
+}  // namespace lidar::link

@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Random numbers that are the same on every machine, which the standard distributions are not.
+#pragma once
+#include <cstdint>
+#include <random>
+
+namespace lidar::link {
+
+class Random {
+ public:
+  explicit Random(std::uint64_t seed) : engine_(seed) {}
+
+  /// Uniform in [0, 1).
+  double Uniform() { return static_cast<double>(engine_() >> 11) * 0x1p-53; }
+  /// True with `probability`; draws nothing for 0, so that a switched-off feature leaves the
+  /// sequence of the others alone.
+  bool Chance(double probability) { return probability > 0 && Uniform() < probability; }
+
+ private:
+  std::mt19937_64 engine_;
+};
+
+}  // namespace lidar::link
