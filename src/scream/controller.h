@@ -1,0 +1,129 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// SCReAM v2, the sender's side: events with their time in, decisions out.
+#pragma once
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "scream/ccfb.h"
+#include "scream/parameters.h"
+#include "scream/statistics.h"
+
+namespace lidar::scream {
+
+/// Names a stream of one controller; never used again after RemoveStream().
+using StreamId = int;
+
+struct StreamConfig {
+  double priority = 1;  ///< weight of this stream's share, > 0
+  DataRate min_bitrate = DataRate::BitsPerSecond(100e3);
+  DataRate start_bitrate = DataRate::BitsPerSecond(1e6);
+  DataRate max_bitrate = DataRate::BitsPerSecond(50e6);
+};
+
+/// A packet as it enters the sender's queue. `size` as on the wire: RTP, UDP and IP included.
+struct QueuedPacket {
+  std::uint32_t ssrc = 0;
+  DataSize size;
+  bool marker = false;              ///< last packet of an access unit
+  std::uint32_t rtp_timestamp = 0;  ///< packets of one access unit share it
+};
+
+/// The packet at the head of a stream's queue, as it leaves.
+struct SentPacket {
+  std::uint32_t ssrc = 0;
+  std::uint16_t seq = 0;
+  DataSize size;
+  Ecn ecn = Ecn::kNotEct;  ///< as it was really sent (SendDecision::ecn, unless the caller differs)
+};
+
+struct SendDecision {
+  Time time{};  ///< not before this; in the past or now: at once
+  StreamId stream = 0;
+  Ecn ecn = Ecn::kNotEct;  ///< the codepoint to put on it
+};
+
+enum class FeedbackResult {
+  kAccepted,     ///< counted, decisions may have changed
+  kImplausible,  ///< ignored whole: acknowledges what was never sent, absurd times, a flood
+  kNotOurs,      ///< no block of our SSRCs
+  kStale,        ///< nothing new, older than what we know, or long settled
+};
+
+/// Congestion control of one 5-tuple with any number of streams, each with any number of SSRCs.
+///
+/// **The RTP queue** lives at the caller, the controller knows its sizes: each stream has one FIFO,
+/// and the controller keeps a mirror of it. OnQueued() appends to the mirror, OnSent() and
+/// OnDropped() take from its head; the caller does the same with its packets, in the same order.
+/// Only in this way packets may leave.
+///
+///     controller.OnQueued(now, stream, {ssrc, size, marker, rtp_timestamp});
+///     for (;;) {
+///       auto late = controller.LatePackets(now, stream);  // live input: whole late frames
+///       if (late) { pop `late` packets; controller.OnDropped(now, stream, late); }
+///       auto d = controller.NextSend(now);
+///       if (!d) wait for a packet, feedback or NextTimer();
+///       else if (d->time > now) wait until d->time, or one of those;
+///       else { pop the head of d->stream; now = clock(); controller.OnSent(now, stream, packet);
+///       send; }
+///     }
+///
+/// Take the time of OnSent() *before* the send call: a sender preempted within it would
+/// otherwise see negative queue delay. After OnFeedback(), OnTimer() and OnQueued() read
+/// target_bitrate() again. Times must not go backwards by more than reordering between threads
+/// does: an earlier time than one seen before counts as that one.
+///
+/// Not thread-safe, no callbacks; a caller with a lock holds it around each call.
+class Controller {
+ public:
+  explicit Controller(const Parameters& parameters);
+  ~Controller();
+  Controller(Controller&&) noexcept;
+  Controller& operator=(Controller&&) noexcept;
+
+  // Streams. All may be called at any time.
+  StreamId AddStream(const StreamConfig& config);
+  void ConfigureStream(StreamId stream, const StreamConfig& config);
+  /// Its queued packets are forgotten; what is in flight still counts.
+  void RemoveStream(StreamId stream);
+
+  // Events
+  void OnQueued(Time now, StreamId stream, const QueuedPacket& packet);
+  void OnSent(Time now, StreamId stream, const SentPacket& packet);
+  /// The first `packets` of the stream's queue were thrown away.
+  void OnDropped(Time now, StreamId stream, std::size_t packets);
+  /// Parsed feedback of the peer. The caller has checked its source address.
+  FeedbackResult OnFeedback(Time now, const CongestionFeedback& feedback);
+  /// Call at NextTimer() or later; calling more often does no harm.
+  void OnTimer(Time now);
+  /// The peer's address changed: forgets base delay and RTT, probes ECN anew, keeps the window
+  /// small.
+  void OnRouteChange(Time now);
+
+  // Decisions
+  /// Which stream may send next and when; nothing while queues are empty or the window is closed.
+  std::optional<SendDecision> NextSend(Time now) const;
+  /// Packets at the head of the queue that belong to whole access units, not yet begun to be
+  /// sent, older than `max_queue_delay` (those behind them too, if they are older as well).
+  std::size_t LatePackets(Time now, StreamId stream) const;
+  /// The next time at which OnTimer() has something to do.
+  Time NextTimer() const;
+  /// Of one stream, and of all. IP, UDP and RTP included.
+  DataRate target_bitrate(StreamId stream) const;
+  DataRate target_bitrate() const;
+  /// Stream that owns `ssrc` (it was queued or sent there), for events that travel by SSRC.
+  std::optional<StreamId> FindStream(std::uint32_t ssrc) const;
+
+  // Observation
+  Statistics statistics(Time now) const;
+  StreamStatistics stream_statistics(Time now, StreamId stream) const;
+  EcnState ecn_state() const;
+  const Parameters& parameters() const;
+
+ private:
+  class Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace lidar::scream

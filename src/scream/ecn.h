@@ -1,0 +1,11 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// The two ECN bits of the IP header.
+#pragma once
+#include <cstdint>
+
+namespace lidar::scream {
+
+/// The values are the bits on the wire, in IP and in RFC 8888.
+enum class Ecn : std::uint8_t { kNotEct = 0, kEct1 = 1, kEct0 = 2, kCe = 3 };
+
+}  // namespace lidar::scream

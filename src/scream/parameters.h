@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// The constants of SCReAM v2 under the draft's names, and a switch for each part beyond the draft.
+#pragma once
+#include "base/time.h"
+#include "base/units.h"
+#include "scream/ecn.h"
+
+namespace lidar::scream {
+using namespace std::chrono_literals;
+
+/// Parts that the draft does not have. `docs/scream.md` argues each; all off is the pure draft.
+struct Extensions {
+  /// Start-up grows the window by what was acknowledged until the first sign of congestion.
+  bool fast_start = true;
+  /// On a capacity drop the window follows the acknowledged rate within one round trip.
+  bool drop_response = true;
+  /// While packets come back marked, bytes in flight stay near the window.
+  bool bounded_flight = true;
+  /// Loss without marks, delay or a loss rate beyond random is repaired, not obeyed.
+  bool isolated_loss = true;
+  /// Pacing headroom follows the frame period, so that a slow frame rate does not build a queue.
+  bool adaptive_pacing = true;
+  /// Without feedback the window decays to its minimum, and jumps back once the path returns.
+  bool feedback_timeout = true;
+};
+
+struct Parameters {
+  /// Exactly the draft's constants, its optional parts off and no extension.
+  static Parameters Draft();
+
+  /// Codepoint of sent packets; ECT(1) also selects the L4S reaction (the draft's IS_L4S).
+  Ecn ecn = Ecn::kEct1;
+
+  // Network congestion control
+  Duration qdelay_target_lo = 60ms;
+  Duration qdelay_target_hi = 400ms;
+  DataSize min_ref_wnd = DataSize::Bytes(3000);
+  double bytes_in_flight_head_room = 1.5;
+  double beta_loss = 0.7;
+  double beta_ecn = 0.8;
+  DataSize mss = DataSize::Bytes(1000);
+  double post_congestion_delay_rtt = 100;
+  double mul_increase_factor = 0.02;
+  Duration virtual_rtt = 25ms;
+  double l4s_avg_g_up = 1.0 / 8;
+  double l4s_avg_g_down = 1.0 / 128;
+  double qdelay_avg_g = 1.0 / 4;
+
+  // Optional: jitter scale
+  bool reduce_jitter = true;
+  double qdelay_min_max_avg_g = 1.0 / 16;
+  double qdelay_dev_avg_g = 1.0 / 32;
+  Duration qdelay_dev_threshold = 10ms;
+
+  // Sender transmission control
+  double ref_wnd_overhead_min = 1.5;
+  double ref_wnd_overhead_max = 3.0;
+  DataRate rate_pace_min = DataRate::BitsPerSecond(50e3);
+  double packet_pacing_headroom = 1.5;
+  double max_relaxed_pacing_factor = 4.0;
+  double relaxed_pacing_limit_low = 0.8;
+
+  // Media rate control
+  DataSize packet_overhead = DataSize::Bytes(20);
+  double rate_adjust_gain = 1.0 / 16;
+  double frame_size_dev_alpha = 1.0 / 64;
+  /// The fixed divisor of the target bitrate.
+  double target_rate_divisor = 1.2;
+
+  // Optional: clock drift
+  bool clock_drift = true;
+  double qdelay_min_avg_alpha = 1.0 / 256;
+
+  // Optional: link-layer losses and rate policers
+  bool link_layer_loss = true;
+  double loss_rate_threshold = 0.01;
+  bool rate_policer = true;
+  double loss_rate_threshold_policer = 0.1;
+  double beta_loss_policer = 0.9;
+  double policed_ref_wnd_recovery = 0.001;
+
+  // Optional: undershoot
+  bool undershoot_remedy = true;
+  double acked_bitrate_margin = 0.8;
+  double backoff_scale_low_target_rate = 0.25;
+
+  // Optional: competing flows
+  bool competing_flows = false;
+
+  /// Packets older than this in the sender's queue are late (see Controller::LatePackets).
+  Duration max_queue_delay = 200ms;
+
+  Extensions extensions;
+};
+
+}  // namespace lidar::scream

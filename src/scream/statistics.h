@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// What a controller tells about itself.
+#pragma once
+#include <cstdint>
+
+#include "base/time.h"
+#include "base/units.h"
+#include "scream/ecn.h"
+
+namespace lidar::scream {
+
+/// How the path treats our ECN codepoint.
+enum class EcnState {
+  kOff,       ///< not asked for
+  kTesting,   ///< sent, nothing known yet
+  kCapable,   ///< arrives as sent, or CE
+  kBleached,  ///< arrives as Not-ECT: fallen back to Not-ECT
+  kSilent,    ///< nothing arrives when marked: fallen back to Not-ECT
+};
+const char* ToString(EcnState state);
+
+/// Why the target moved last, in words for the `reason` of an event.
+enum class RateReason { kStart, kIncrease, kCe, kLoss, kDelay, kTimeout, kDrift, kLimits };
+const char* ToString(RateReason reason);
+
+struct Statistics {
+  // Network congestion control
+  DataSize ref_wnd;
+  DataSize ref_wnd_i;
+  DataSize bytes_in_flight;
+  DataSize max_bytes_in_flight;
+  Duration s_rtt{};
+  Duration min_rtt{};
+  Duration qdelay{};
+  Duration qdelay_avg{};
+  Duration qdelay_target{};
+  double l4s_alpha = 0;
+  double ref_wnd_delay_scale = 1;
+  double loss_rate = 0;
+  DataSize max_policed_ref_wnd = DataSize::Infinite();
+  // Rates, IP included
+  DataRate target_bitrate;  ///< of all streams
+  DataRate pace_bitrate;
+  DataRate sent_bitrate;
+  DataRate acked_bitrate;
+  // Sender's queue
+  DataSize queued;
+  Duration media_qdelay{};
+  // Counters
+  std::uint64_t packets_sent = 0;
+  std::uint64_t packets_acked = 0;
+  std::uint64_t packets_ce = 0;
+  std::uint64_t packets_lost = 0;     ///< declared lost, whether they came later or not
+  std::uint64_t packets_late = 0;     ///< declared lost, then acknowledged
+  std::uint64_t packets_dropped = 0;  ///< by the sender's queue
+  DataSize bytes_sent;
+  DataSize bytes_acked;
+  std::uint64_t feedback_accepted = 0;
+  std::uint64_t feedback_ignored = 0;  ///< implausible, whole
+  std::uint64_t foreign_blocks = 0;    ///< of SSRCs that are not ours
+  std::uint64_t feedback_timeouts = 0;
+  std::uint64_t loss_events = 0;
+  std::uint64_t ce_events = 0;
+  std::uint64_t delay_events = 0;
+  std::uint64_t clock_resets = 0;
+  EcnState ecn_state = EcnState::kOff;
+  RateReason reason = RateReason::kStart;
+};
+
+struct StreamStatistics {
+  DataRate target_bitrate;
+  DataRate sent_bitrate;
+  DataSize queued;
+  Duration media_qdelay{};
+  double rate_adjust_factor = 0;
+  double frame_size_dev = 0;
+  Duration frame_period{};
+  std::uint64_t packets_sent = 0;
+  std::uint64_t packets_dropped = 0;
+  std::uint64_t packets_lost = 0;
+  std::uint64_t packets_ce = 0;
+  DataSize bytes_sent;
+};
+
+}  // namespace lidar::scream
