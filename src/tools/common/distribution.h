@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Percentiles of what a program measured.
+#pragma once
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <numeric>
+#include <vector>
+
+namespace lidar::tools {
+
+/// Keeps every value: four bytes each.
+class Distribution {
+ public:
+  void Add(double value) { values_.push_back(static_cast<float>(value)); }
+  void Clear() { values_.clear(); }
+  std::size_t count() const { return values_.size(); }
+
+  /// The nearest-rank percentile, `p` in 0..100; 0 where there is no value.
+  double Percentile(double p) const {
+    if (values_.empty()) return 0;
+    std::vector<float> copy = values_;
+    const double rank = std::ceil(p / 100 * static_cast<double>(copy.size()));
+    const auto index = std::min(copy.size() - 1, static_cast<std::size_t>(std::max(rank, 1.0)) - 1);
+    const auto nth = copy.begin() + static_cast<std::ptrdiff_t>(index);
+    std::nth_element(copy.begin(), nth, copy.end());
+    return static_cast<double>(*nth);
+  }
+  double Max() const { return Percentile(100); }
+  double Mean() const {
+    return values_.empty() ? 0
+                           : std::accumulate(values_.begin(), values_.end(), 0.0) /
+                                 static_cast<double>(values_.size());
+  }
+
+ private:
+  std::vector<float> values_;
+};
+
+}  // namespace lidar::tools

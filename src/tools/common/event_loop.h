@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Waits for sockets, a precise timer and the signals that end a program.
+#pragma once
+#include <functional>
+#include <map>
+
+#include "base/time.h"
+#include "common/file_descriptor.h"
+
+namespace lidar::tools {
+
+/// CLOCK_MONOTONIC as a Time.
+Time Now();
+/// What to add to a Time from Now() to get the time since the Unix epoch, as of this call.
+Duration UnixOffset();
+
+class EventLoop {
+ public:
+  /// Blocks SIGINT and SIGTERM in this thread: Run returns on either. Throws std::runtime_error.
+  EventLoop();
+
+  void Watch(int fd, std::function<void()> readable);
+  void Unwatch(int fd);
+  /// When Run next calls `before_wait` at the latest; Time::max() for never.
+  void SetWakeUp(Time when);
+  /// Calls the handlers of what is readable and then `before_wait`, which may set the next wake-up,
+  /// until a signal or Stop.
+  void Run(const std::function<void()>& before_wait);
+  void Stop() { running_ = false; }
+
+ private:
+  FileDescriptor epoll_;
+  FileDescriptor timer_;
+  FileDescriptor signals_;
+  std::map<int, std::function<void()>> handlers_;
+  bool running_ = false;
+};
+
+/// Asks for a scheduler that lets this thread run at once. False where the system does not let us.
+bool RequestRealtimePriority();
+
+}  // namespace lidar::tools

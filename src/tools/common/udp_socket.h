@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// UDP sockets that read and write the ECN bits and know when the kernel got a packet.
+#pragma once
+#include <netinet/in.h>
+#include <sys/socket.h>
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "base/byte_reader.h"
+#include "base/time.h"
+#include "common/file_descriptor.h"
+
+namespace lidar::tools {
+
+struct Address {
+  sockaddr_storage storage{};
+  socklen_t length = 0;
+
+  bool valid() const { return length > 0; }
+  /// The four-byte kind of address, also where it is mapped into IPv6.
+  bool IsIpv4() const;
+  std::string ToString() const;
+};
+bool operator==(const Address& a, const Address& b);
+
+/// "HOST:PORT", "[IPV6]:PORT" or "PORT" (then `default_host`). Throws std::runtime_error with a
+/// text for the user.
+Address ResolveAddress(const std::string& text, const std::string& default_host);
+
+struct Datagram {
+  ByteView payload;
+  const Address* from = nullptr;
+  std::uint8_t tos = 0;     // DSCP and ECN
+  Duration kernel_time{0};  // reception, since the Unix epoch
+};
+
+class UdpSocket {
+ public:
+  /// Both throw std::runtime_error.
+  static UdpSocket Bind(const Address& local);
+  static UdpSocket Connect(const Address& remote);
+
+  int fd() const { return fd_.get(); }
+  /// Hands every waiting datagram to `handler`.
+  void ReceiveAll(const std::function<void(const Datagram&)>& handler);
+  /// `to` is null on a connected socket. False where the kernel refused.
+  bool Send(ByteView payload, std::uint8_t tos, const Address* to);
+
+ private:
+  explicit UdpSocket(int family);
+  FileDescriptor fd_;
+  Address peer_;  // of a connected socket
+};
+
+}  // namespace lidar::tools

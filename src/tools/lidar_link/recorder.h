@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// What lidar-link writes down: a line a packet, live lines, the summary.
+#pragma once
+#include <array>
+#include <cstdint>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "base/byte_reader.h"
+#include "base/time.h"
+#include "common/distribution.h"
+#include "link/bottleneck.h"
+
+namespace lidar::tools {
+
+/// One packet as it left or was dropped.
+struct PacketRecord {
+  link::Outcome outcome;
+  link::Ecn ecn_in = link::Ecn::kNotEct;
+  std::size_t flow = 0;
+  ByteView payload;
+};
+
+class Recorder {
+ public:
+  /// `log`: file name or empty. Throws std::runtime_error where it cannot be written.
+  explicit Recorder(const std::string& log);
+
+  void Start(Time origin, Duration unix_offset);
+  void OnPacket(const PacketRecord& record);
+  void OnFeedback(bool delivered, std::size_t bytes);
+  /// How late a packet went out against its computed time.
+  void OnLateness(Duration late) { lateness_.Add(Milliseconds(late)); }
+  void OnRefusedSend() { ++refused_sends_; }
+
+  /// Figures since the last call; `now` at least a little later than then.
+  nlohmann::ordered_json Live(Time now, const link::Bottleneck& there,
+                              const link::Capacity& capacity);
+  nlohmann::ordered_json Summary(Time now, const link::Bottleneck* there,
+                                 const link::Capacity& capacity) const;
+
+ private:
+  struct Counts {
+    std::uint64_t packets = 0;
+    std::uint64_t bytes = 0;
+    std::uint64_t dropped = 0;
+    std::uint64_t marked = 0;
+  };
+
+  std::ofstream log_;
+  Time origin_;
+  Duration unix_offset_{0};
+  Time live_since_;
+  Counts live_;
+  Distribution live_sojourn_;
+  Distribution sojourn_;
+  Distribution lateness_;
+  std::vector<Counts> flows_;
+  std::array<std::uint64_t, 4> ecn_in_{};
+  std::array<std::uint64_t, 4> ecn_out_{};
+  std::uint64_t feedback_packets_ = 0;
+  std::uint64_t feedback_bytes_ = 0;
+  std::uint64_t feedback_lost_ = 0;
+  std::uint64_t refused_sends_ = 0;
+};
+
+}  // namespace lidar::tools
