@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Our predictor: log size against log step for each coding mode, corrected by every slice.
+#pragma once
+#include <array>
+#include <map>
+#include <string>
+
+#include "rate/size_model.h"
+#include "rate/slice_tracker.h"
+
+namespace lidar::rate {
+
+/// log2(bytes) of one coding mode, with x = log2(step / 1 cm) and n = log2(returns / 1000).
+struct ModeCoefficients {
+  std::array<double, 4> step{};  // cubic in x, lowest power first
+  double min_x = -3;             // the fit is a straight line outside of [min_x, max_x]
+  double max_x = 5;
+  double returns = 1;                 // times n
+  std::array<double, 3> intensity{};  // quadratic in the intensity bits
+  double intensity_returns = 1;       // times n
+
+  double GeometryLog2(double x, double n) const;
+  double IntensityLog2(double bits, double n) const;
+  /// True where the size falls with the step all over the range, as Choose() needs it.
+  bool Falls() const;
+};
+
+struct AdaptiveCoefficients {
+  std::map<std::string, ModeCoefficients> modes;
+  /// For a mode that the file does not have; the corrections do the rest.
+  ModeCoefficients fallback;
+};
+
+class AdaptiveModel : public SizeModel {
+ public:
+  explicit AdaptiveModel(AdaptiveCoefficients coefficients)
+      : coefficients_(std::move(coefficients)) {}
+
+  PredictedSize Predict(const SliceFeatures& slice, const Settings& settings) const override;
+  Settings Choose(const SliceFeatures& slice, double bytes,
+                  const SettingLimits& limits) const override;
+  void OnEncoded(const SliceFeatures& slice, const Settings& settings,
+                 const EncodedSlice& encoded) override;
+
+ private:
+  struct Learned {
+    SliceTracker geometry;
+    SliceTracker intensity;
+    /// How much steeper than the fit the sizes of this scene are.
+    double slope = 1;
+    double thinning = 0.8;                    // log size against log keep_fraction
+    std::optional<std::uint64_t> last_slice;  // scan and sector, to know a re-encoding
+  };
+  const ModeCoefficients& Mode(const std::string& mode) const;
+  double GeometryLog2(const SliceFeatures& slice, double step_m) const;
+  void LearnGeometry(Learned* learned, const SliceFeatures& slice, double x, double observed);
+  void LearnIntensity(Learned* learned, const SliceFeatures& slice, double bits, double observed);
+
+  AdaptiveCoefficients coefficients_;
+  std::map<std::string, Learned> learned_;
+};
+
+}  // namespace lidar::rate

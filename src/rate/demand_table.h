@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// What each slice of the current turn needs at least and can use at most.
+#pragma once
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+namespace lidar::rate {
+
+constexpr unsigned kMaxIntensityBits = 16;
+
+/// Predicted bytes.
+struct Demand {
+  double coarsest = 0;                                    // geometry at the coarsest step
+  double finest = 0;                                      // geometry at the finest useful step
+  std::array<double, kMaxIntensityBits + 1> intensity{};  // by its bits
+
+  double AtCoarsest(unsigned bits) const { return coarsest + intensity[bits]; }
+  double AtFinest(unsigned bits) const { return finest + intensity[bits]; }
+  Demand& operator+=(const Demand& o);
+  Demand& operator*=(double factor);
+};
+
+class DemandTable {
+ public:
+  void Set(std::uint32_t slice_index, std::uint32_t slice_count, const Demand& demand);
+  /// Sum over the slices from `first` to the end of the scan. A slice not seen yet counts as the
+  /// mean of the others.
+  Demand Sum(std::uint32_t first = 0) const;
+  bool empty() const { return seen_ == 0; }
+
+ private:
+  std::vector<std::optional<Demand>> slices_;
+  std::size_t seen_ = 0;
+};
+
+}  // namespace lidar::rate

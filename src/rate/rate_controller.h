@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Spends a target bitrate on slices: a budget for each, settings that fit it, one second try.
+#pragma once
+#include <cstdint>
+#include <memory>
+#include <optional>
+
+#include "base/units.h"
+#include "rate/demand_table.h"
+#include "rate/scan_plan.h"
+#include "rate/size_model.h"
+
+namespace lidar::rate {
+
+struct ControllerParameters {
+  /// `coarsest_step_m` comes from max-error (ResidualModel), so it holds whatever the target.
+  SettingLimits limits;
+  /// The controller lowers the intensity bits to this before it skips or thins.
+  unsigned min_intensity_bits = 4;
+  DegradationPreference degradation = DegradationPreference::kMaintainAccuracy;
+  /// The paper's controller is an open loop: no carry-over, no second try.
+  bool closed_loop = true;
+};
+
+/// What to do with a slice.
+struct Decision {
+  bool skip = false;  // put out nothing but a gap
+  Settings settings;
+  double keep_fraction = 1;        // below 1: code only what ThinningPattern() keeps
+  std::optional<DataSize> budget;  // none: constant quality
+};
+
+/// Bitrates of media, for the event `bitrate-bounds`.
+struct RateBounds {
+  DataRate min;      // at the coarsest step that the error allows, least intensity bits
+  DataRate nominal;  // at the coarsest step, all intensity bits
+  DataRate max;      // at the finest useful step
+};
+
+struct ControllerStats {
+  std::uint64_t slices = 0;
+  std::uint64_t slices_reencoded = 0;
+  std::uint64_t slices_skipped = 0;
+  std::uint64_t scans_skipped = 0;
+  std::uint64_t scans_thinned = 0;
+  double saved_bytes = 0;  // carried over; negative: owed
+};
+
+/// NextSlice(), encode, OnEncoded(); where that asks for it: encode once more, OnEncoded().
+/// Not thread-safe.
+class RateController {
+ public:
+  RateController(ControllerParameters parameters, std::unique_ptr<SizeModel> model);
+
+  /// Bitrate for the encoded slices alone, transport overhead already taken off. None: constant
+  /// quality at the coarsest step.
+  void SetTarget(std::optional<DataRate> target);
+  /// From the next slice on.
+  void SetParameters(const ControllerParameters& parameters) { parameters_ = parameters; }
+  const ControllerParameters& parameters() const { return parameters_; }
+
+  Decision NextSlice(const SliceFeatures& slice);
+  /// Settings to encode the slice again with, or none: put it out as it is.
+  std::optional<Settings> OnEncoded(const EncodedSlice& encoded);
+
+  /// Zero before the first slice.
+  RateBounds bounds() const;
+  /// The bounds, when one of them has moved by more than 3 % since they were last taken; at most
+  /// once a scan.
+  std::optional<RateBounds> TakeChangedBounds();
+  const ControllerStats& stats() const { return stats_; }
+
+ private:
+  void StartScan();
+  void UpdateDemand();
+  double SliceBudget() const;
+  double ScanBudget() const;
+  void Settle(double bytes);
+
+  ControllerParameters parameters_;
+  std::unique_ptr<SizeModel> model_;
+  std::optional<DataRate> target_;
+
+  SliceFeatures slice_;
+  Decision decision_;
+  bool pending_ = false;    // NextSlice() without its OnEncoded() yet
+  bool reencoded_ = false;  // this slice has had its second try
+  bool started_ = false;
+  bool measured_ = false;
+  DemandTable demand_;
+  ScanPlan plan_;
+  double saved_ = 0;   // bytes from scans before this one
+  double repay_ = 0;   // part of saved_ that this scan spends or pays back
+  double ledger_ = 0;  // of this scan: time's share of the target less bytes put out
+  bool bounds_due_ = false;
+  RateBounds bounds_taken_;
+  ControllerStats stats_;
+};
+
+}  // namespace lidar::rate

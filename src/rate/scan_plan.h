@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// What gives when the target is below what the error bound needs: intensity, then scans or points.
+#pragma once
+#include <cstdint>
+#include <vector>
+
+#include "rate/demand_table.h"
+
+namespace lidar::rate {
+
+enum class DegradationPreference {
+  kMaintainAccuracy,   // whole scans are skipped
+  kMaintainFramerate,  // points of every scan are thinned
+  kBalanced,           // both by the same factor
+};
+
+/// Holds for all slices of one scan.
+struct ScanPlan {
+  bool skip = false;
+  /// True below the bound's minimum: the step stays at the coarsest, whatever was saved up.
+  bool degraded = false;
+  double keep_fraction = 1;  // of the returns
+  unsigned intensity_bits = 0;
+};
+
+struct ScanPlanInputs {
+  Demand needed;          // of the whole scan
+  double budget = 0;      // bytes that the target gives one scan
+  double saved = 0;       // bytes left over from the scans before; negative: owed
+  bool measured = false;  // a slice has been encoded, so `needed` can be trusted
+  unsigned intensity_bits = 0;
+  unsigned min_intensity_bits = 0;
+  unsigned last_intensity_bits = 0;
+};
+
+ScanPlan PlanScan(const ScanPlanInputs& inputs, DegradationPreference preference);
+
+/// Which of `count` rows (beams, columns or points) a thinned slice keeps: `fraction` of them,
+/// evenly, the same ones every time. At least one.
+std::vector<bool> ThinningPattern(std::size_t count, double fraction);
+
+}  // namespace lidar::rate

@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// What a codec tells the rate controller about a slice, and how a predictor turns it into bytes.
+#pragma once
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include "base/units.h"
+
+namespace lidar::rate {
+
+/// All that the predictors look at. Nothing in it belongs to one codec.
+struct SliceFeatures {
+  std::uint32_t scan_id = 0;  // a change starts a scan
+  std::uint32_t slice_index = 0;
+  std::uint32_t slice_count = 1;
+  double scans_per_second = 10;
+  std::uint32_t returns = 0;  // points that would be coded if none were thinned
+  double extent_m = 0;        // longest side of the slice's box (xyz), or its longest range
+  /// The codec's name for how it will code the slice ("range", "xyz-kd6"): each has its own
+  /// coefficients and its own corrections.
+  std::string mode;
+};
+
+struct Settings {
+  double step_m = 0;            // of the uniform grid
+  unsigned intensity_bits = 0;  // 0: geometry only
+  unsigned level = 0;           // compression level; only the paper's model chooses it
+};
+
+/// What the predictor may choose from.
+struct SettingLimits {
+  double finest_step_m = 0.001;
+  double coarsest_step_m = 0.04;
+  double step_unit_m = 0;  // steps are whole multiples of it; 0: any step
+  unsigned intensity_bits = 0;
+  unsigned level = 0;
+};
+
+struct PredictedSize {
+  double geometry_bytes = 0;
+  double intensity_bytes = 0;
+  double total() const { return geometry_bytes + intensity_bytes; }
+};
+
+/// What came out of the codec.
+struct EncodedSlice {
+  DataSize size;
+  /// Where the codec cannot tell, the sum is split as the prediction would.
+  std::optional<DataSize> intensity_size;
+  double step_m = 0;         // really used
+  double keep_fraction = 1;  // of the returns, after thinning
+};
+
+/// A compression parameter predictor.
+class SizeModel {
+ public:
+  virtual ~SizeModel() = default;
+  /// Bytes of the slice with nothing thinned.
+  virtual PredictedSize Predict(const SliceFeatures& slice, const Settings& settings) const = 0;
+  /// The settings within `limits` whose prediction is nearest to `bytes`.
+  virtual Settings Choose(const SliceFeatures& slice, double bytes,
+                          const SettingLimits& limits) const = 0;
+  /// Learns from an encoded slice. A second call for the same slice is a re-encoding.
+  virtual void OnEncoded(const SliceFeatures& slice, const Settings& settings,
+                         const EncodedSlice& encoded) = 0;
+};
+
+/// The nearest step that the limits allow.
+double ClampStep(double step_m, const SettingLimits& limits);
+
+}  // namespace lidar::rate

@@ -1,0 +1,233 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "rate/rate_controller.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <functional>
+#include <numeric>
+
+#include "rate/built_in_model.h"
+#include "synthetic_codec.h"
+
+namespace lidar::rate {
+namespace {
+
+using Targets = std::function<double(std::uint32_t scan)>;  // bit/s
+
+struct Scan {
+  double budget = 0;
+  double bytes = 0;
+  bool skipped = false;
+  double keep = 1;
+  double coarsest_step = 0;
+  unsigned intensity_bits = 0;
+  double Error() const { return bytes / budget - 1; }
+};
+
+ControllerParameters Parameters() {
+  ControllerParameters p;
+  p.limits.finest_step_m = 0.001;
+  p.limits.coarsest_step_m = 0.04;
+  return p;
+}
+
+struct Stream {
+  SyntheticCodec codec;
+  RateController controller;
+  SyntheticCodec::Parameters p;
+
+  explicit Stream(SyntheticCodec::Parameters codec_parameters,
+                  ControllerParameters parameters = Parameters())
+      : codec(codec_parameters),
+        controller(parameters, MakeBuiltInModel(RateModel::kAdaptive)),
+        p(codec_parameters) {}
+
+  Scan One(std::uint32_t id, double target) {
+    Scan scan;
+    controller.SetTarget(DataRate::BitsPerSecond(target));
+    scan.budget = target / 8 / p.scans_per_second;
+    for (std::uint32_t i = 0; i < p.slices; ++i) {
+      const SliceFeatures f = codec.Features(id, i);
+      const Decision d = controller.NextSlice(f);
+      scan.skipped = d.skip;
+      scan.keep = d.keep_fraction;
+      scan.intensity_bits = d.settings.intensity_bits;
+      if (d.skip) continue;
+      Settings settings = d.settings;
+      EncodedSlice encoded = codec.Encode(f, settings, d.keep_fraction);
+      if (const auto again = controller.OnEncoded(encoded)) {
+        settings = *again;
+        encoded = codec.Encode(f, settings, d.keep_fraction);
+        EXPECT_FALSE(controller.OnEncoded(encoded)) << "only one second try";
+      }
+      scan.bytes += static_cast<double>(encoded.size.bytes());
+      scan.coarsest_step = std::max(scan.coarsest_step, settings.step_m);
+    }
+    return scan;
+  }
+
+  /// Bitrate at the coarsest step, once the controller has been there.
+  double Minimum() {
+    Many(5, [](auto) { return 4e6; });
+    for (std::uint32_t i = 5; i < 25; ++i) One(i, controller.bounds().min.bits_per_second());
+    return controller.bounds().min.bits_per_second();
+  }
+
+  std::vector<Scan> Many(std::uint32_t scans, const Targets& target) {
+    std::vector<Scan> result;
+    for (std::uint32_t i = 0; i < scans; ++i) result.push_back(One(i, target(i)));
+    return result;
+  }
+};
+
+std::vector<double> Errors(const std::vector<Scan>& scans, std::size_t from) {
+  std::vector<double> errors;
+  for (std::size_t i = from; i < scans.size(); ++i) errors.push_back(std::abs(scans[i].Error()));
+  std::sort(errors.begin(), errors.end());
+  return errors;
+}
+double Mean(const std::vector<double>& v) {
+  return std::accumulate(v.begin(), v.end(), 0.0) / static_cast<double>(v.size());
+}
+double Percentile95(const std::vector<double>& sorted) { return sorted[sorted.size() * 95 / 100]; }
+
+class Tracking : public ::testing::TestWithParam<std::uint32_t> {  // slices a scan
+ protected:
+  static SyntheticCodec::Parameters Codec() {
+    SyntheticCodec::Parameters p;
+    p.slices = GetParam();
+    return p;
+  }
+  /// A scene whose minimum bitrate stays where it is.
+  static SyntheticCodec::Parameters StandingCodec() {
+    SyntheticCodec::Parameters p = Codec();
+    p.drift = 0;
+    return p;
+  }
+};
+
+TEST_P(Tracking, HoldsASteadyTargetWithinOnePercent) {
+  Stream run(Codec());
+  const auto errors = Errors(run.Many(300, [](auto) { return 4e6; }), 5);
+  EXPECT_LE(Mean(errors), 0.01);
+  EXPECT_LE(Percentile95(errors), 0.05);
+}
+
+TEST_P(Tracking, FollowsARandomWalkOfEightPercentWithinTwo) {
+  Stream run(Codec());
+  std::mt19937 random(7);
+  std::normal_distribution<double> step(0, 0.08);
+  double target = 4e6;
+  const auto errors = Errors(run.Many(300,
+                                      [&](auto) {
+                                        target *= std::exp(step(random));
+                                        return target = std::clamp(target, 2.4e6, 8e6);
+                                      }),
+                             5);
+  EXPECT_LE(Mean(errors), 0.02);
+}
+
+TEST_P(Tracking, NoScanPassesElevenTenthsOfItsBudgetAfterAJump) {
+  Stream run(Codec());
+  const auto scans = run.Many(200, [](auto scan) { return scan / 10 % 2 == 0 ? 6e6 : 2.4e6; });
+  for (std::size_t i = 1; i < scans.size(); ++i) EXPECT_LE(scans[i].Error(), 0.10) << "scan " << i;
+  EXPECT_LE(Mean(Errors(scans, 1)), 0.03);
+}
+
+TEST_P(Tracking, NeverPassesTheErrorBoundWhateverTheTarget) {
+  Stream run(Codec());
+  std::mt19937 random(9);
+  std::uniform_real_distribution<double> exponent(0, 9.6);
+  for (const Scan& scan : run.Many(300, [&](auto) { return std::pow(10, exponent(random)); }))
+    EXPECT_LE(scan.coarsest_step, 0.04);
+}
+
+TEST_P(Tracking, SkipsWholeScansEvenlyBelowTheMinimumAndStillKeepsTheRate) {
+  Stream run(StandingCodec());
+  const double minimum = run.Minimum();
+  double sent = 0;
+  std::uint32_t skipped = 0;
+  std::uint32_t gap = 0;
+  std::uint32_t longest = 0;
+  constexpr std::uint32_t kScans = 200;
+  for (std::uint32_t i = 0; i < kScans; ++i) {
+    const Scan scan = run.One(25 + i, 0.4 * minimum);
+    sent += scan.bytes;
+    skipped += scan.skipped;
+    gap = scan.skipped ? gap + 1 : 0;
+    longest = std::max(longest, gap);
+  }
+  EXPECT_NEAR(skipped, 0.6 * kScans, 0.02 * kScans);
+  EXPECT_LE(longest, 2U);
+  EXPECT_NEAR(sent / (kScans * 0.4 * minimum / 80), 1, 0.02);
+}
+
+TEST_P(Tracking, ThinsEveryScanWhereTheFramerateIsToBeKept) {
+  ControllerParameters parameters = Parameters();
+  parameters.degradation = DegradationPreference::kMaintainFramerate;
+  Stream run(StandingCodec(), parameters);
+  const double minimum = run.Minimum();
+  double sent = 0;
+  constexpr std::uint32_t kScans = 200;
+  for (std::uint32_t i = 0; i < kScans; ++i) {
+    const Scan scan = run.One(25 + i, 0.4 * minimum);
+    EXPECT_FALSE(scan.skipped);
+    EXPECT_LT(scan.keep, 0.6);
+    EXPECT_LE(scan.coarsest_step, 0.04);
+    sent += scan.bytes;
+  }
+  EXPECT_NEAR(sent / (kScans * 0.4 * minimum / 80), 1, 0.02);
+}
+
+TEST_P(Tracking, BalancedThinsAndSkipsAlike) {
+  ControllerParameters parameters = Parameters();
+  parameters.degradation = DegradationPreference::kBalanced;
+  Stream run(StandingCodec(), parameters);
+  const double minimum = run.Minimum();
+  std::uint32_t skipped = 0;
+  double sent = 0;
+  constexpr std::uint32_t kScans = 200;
+  for (std::uint32_t i = 0; i < kScans; ++i) {
+    const Scan scan = run.One(25 + i, 0.36 * minimum);
+    skipped += scan.skipped;
+    EXPECT_NEAR(scan.keep, 0.6, 0.04);
+    sent += scan.bytes;
+  }
+  EXPECT_NEAR(skipped, 0.45 * kScans, 0.06 * kScans);
+  EXPECT_NEAR(sent / (kScans * 0.36 * minimum / 80), 1, 0.03);
+}
+
+TEST_P(Tracking, ComesBackToEveryScanAtOnceWhenTheTargetDoes) {
+  Stream run(Codec());
+  run.Many(40, [](auto scan) { return scan < 20 ? 4e6 : 3e5; });
+  for (std::uint32_t i = 40; i < 60; ++i) {
+    const Scan scan = run.One(i, 4e6);
+    EXPECT_FALSE(scan.skipped);
+    EXPECT_LE(scan.Error(), 0.10);
+  }
+}
+
+TEST_P(Tracking, LowersTheIntensityBeforeItSkips) {
+  ControllerParameters parameters = Parameters();
+  parameters.limits.intensity_bits = 8;
+  Stream run(StandingCodec(), parameters);
+  run.Many(5, [](auto) { return 8e6; });
+  const RateBounds bounds = run.controller.bounds();
+  EXPECT_LT(bounds.min, bounds.nominal);
+  EXPECT_LT(bounds.nominal, bounds.max);
+  const double between = (bounds.min.bits_per_second() + bounds.nominal.bits_per_second()) / 2;
+  unsigned bits = 0;
+  for (std::uint32_t i = 5; i < 100; ++i) {
+    const Scan scan = run.One(i, between);
+    EXPECT_FALSE(scan.skipped) << i;
+    bits = scan.intensity_bits;
+  }
+  EXPECT_LT(bits, 8U);
+  EXPECT_GE(bits, 4U);
+}
+
+INSTANTIATE_TEST_SUITE_P(Slices, Tracking, ::testing::Values(1U, 2U, 8U, 16U));
+
+}  // namespace
+}  // namespace lidar::rate
