@@ -1,0 +1,394 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+/**
+ * SECTION:element-ecnudpsink
+ *
+ * Sends each buffer as one UDP datagram whose ECN bits come from the buffer's LidarEcnMeta, or from
+ * the property `ecn` where it has none.
+ *
+ * |[
+ * gst-launch-1.0 audiotestsrc ! audioconvert ! rtpL16pay ! ecnudpsink host=127.0.0.1 port=5004
+ * ecn=ect1
+ * ]|
+ */
+#include "ecnudp/gstecnudpsink.h"
+
+#include <gst/net/gstnetaddressmeta.h>
+#include <netinet/in.h>
+
+#include <memory>
+#include <mutex>
+
+#include "common/gstlidar.h"
+#include "common/properties.h"
+#include "ecnudp/udp_batch.h"
+#include "ecnudp/udp_socket.h"
+
+GST_DEBUG_CATEGORY_STATIC(gst_lidar_ecn_udp_sink_debug);
+#define GST_CAT_DEFAULT gst_lidar_ecn_udp_sink_debug
+
+namespace {
+
+using namespace lidar::gst;
+using SocketPtr = std::unique_ptr<GSocket, GObjectUnref>;
+using SocketAddressPtr = std::unique_ptr<GSocketAddress, GObjectUnref>;
+
+constexpr guint8 kEcnMask = 0x03;
+
+GType EcnType() {
+  static gsize type = 0;
+  if (g_once_init_enter(&type)) {
+    static const GEnumValue values[] = {{GST_LIDAR_ECN_NOT_ECT, "Not ECN-capable", "not-ect"},
+                                        {GST_LIDAR_ECN_ECT1, "ECT(1): L4S", "ect1"},
+                                        {GST_LIDAR_ECN_ECT0, "ECT(0): classic ECN", "ect0"},
+                                        {GST_LIDAR_ECN_CE, "Congestion experienced", "ce"},
+                                        {0, nullptr, nullptr}};
+    g_once_init_leave(&type, g_enum_register_static("GstLidarEcnUdpSinkEcn", values));
+  }
+  return type;
+}
+
+struct Settings {
+  std::string host = "127.0.0.1";
+  guint port = 5004;
+  std::string bind_address;
+  guint bind_port = 0;
+  gint ecn = GST_LIDAR_ECN_NOT_ECT;
+  gint dscp = -1;
+  bool close_socket = true;
+  bool reply = false;
+  std::string multicast_iface;
+  gint ttl_mc = 1;
+  guint buffer_size = 0;
+};
+
+const std::array<Property<Settings>, 11> kProperties = {{
+    {"host", "Host to send to: a name or an address", &Settings::host},
+    {"port", "UDP port to send to", &Settings::port, 1, 65535},
+    {"bind-address", "Local address to send from; empty for any", &Settings::bind_address},
+    {"bind-port", "Local UDP port to send from; 0 for any", &Settings::bind_port, 0, 65535},
+    {"ecn", "ECN bits of buffers without LidarEcnMeta",
+     EnumField<Settings>{&Settings::ecn, EcnType}, 0, 0, GST_PARAM_MUTABLE_PLAYING},
+    {"dscp", "Differentiated services code point; -1 keeps the socket's", &Settings::dscp, -1, 63,
+     GST_PARAM_MUTABLE_PLAYING},
+    {"close-socket", "Close a socket given by the property socket on stop",
+     &Settings::close_socket},
+    {"reply",
+     "Send to the peer that the buffer's GstNetAddressMeta names (the last such where it has none) "
+     "instead of host and port",
+     &Settings::reply},
+    {"multicast-iface", "Network interface for multicast; empty for the kernel's choice",
+     &Settings::multicast_iface},
+    {"ttl-mc", "Time to live of multicast datagrams [hops]", &Settings::ttl_mc, 0, 255},
+    {"buffer-size", "Kernel send buffer [bytes]; 0 for its default", &Settings::buffer_size, 0,
+     G_MAXINT},
+}};
+
+enum : guint {
+  kPropSocket = kProperties.size() + 1,
+  kPropUsedSocket,
+  kPropPeerAddress,
+  kPropStats,
+};
+
+struct State {
+  std::mutex mutex;  // guards all to the next comment; never held while sending or posting
+  Settings settings;
+  SocketPtr given;
+  SocketPtr used;
+  SocketAddressPtr peer;
+  guint64 packets = 0;
+  guint64 bytes = 0;
+  guint64 errors = 0;
+  guint64 no_peer = 0;
+
+  // Of the streaming thread, between start and stop.
+  WakeFd wake;
+  UdpBatchSender batch;
+  NativeAddress to;
+  GSocketFamily family = G_SOCKET_FAMILY_INVALID;
+  guint8 socket_tos = 0;
+  int warned_errno = 0;
+};
+
+/// What one call of render needs of the settings.
+struct Marking {
+  guint8 dscp_bits;
+  guint8 ecn;
+  bool reply;
+};
+
+}  // namespace
+
+struct _GstLidarEcnUdpSink {
+  GstBaseSink parent;
+  State* state;
+};
+
+G_DEFINE_TYPE(GstLidarEcnUdpSink, gst_lidar_ecn_udp_sink, GST_TYPE_BASE_SINK)
+GST_ELEMENT_REGISTER_DEFINE(ecnudpsink, "ecnudpsink", GST_RANK_NONE, GST_TYPE_LIDAR_ECN_UDP_SINK)
+
+static State& StateOf(gpointer self) { return *GST_LIDAR_ECN_UDP_SINK(self)->state; }
+
+static guint8 SocketTos(int fd, GSocketFamily family) {
+  int tos = 0;
+  socklen_t size = sizeof tos;
+  const bool v6 = family == G_SOCKET_FAMILY_IPV6;
+  if (getsockopt(fd, v6 ? IPPROTO_IPV6 : IPPROTO_IP, v6 ? IPV6_TCLASS : IP_TOS, &tos, &size) != 0)
+    return 0;
+  return static_cast<guint8>(tos & ~kEcnMask);
+}
+
+static bool Fail(GstLidarEcnUdpSink* self, const char* what, const Settings& s, GError* error) {
+  GST_ELEMENT_ERROR(self, RESOURCE, OPEN_WRITE, ("%s: %s", what, error->message),
+                    ("host %s port %u bind-address '%s' bind-port %u", s.host.c_str(), s.port,
+                     s.bind_address.c_str(), s.bind_port));
+  g_error_free(error);
+  return false;
+}
+
+/// The socket given, or a new one of the peer's address family; NULL after an element error.
+static GSocket* AcquireSocket(GstLidarEcnUdpSink* self, const Settings& s, GSocket* given,
+                              GSocketAddress* peer) {
+  if (given != nullptr) return G_SOCKET(g_object_ref(given));
+  UdpBind bind{s.bind_address, s.bind_port, G_SOCKET_FAMILY_INVALID, false};
+  if (peer != nullptr) bind.family = g_socket_address_get_family(peer);
+  GError* error = nullptr;
+  GSocket* socket = OpenUdpSocket(bind, &error);
+  if (socket == nullptr) Fail(self, "Cannot open a UDP socket", s, error);
+  return socket;
+}
+
+static void ConfigureSocket(GSocket* socket, const Settings& s) {
+  if (s.buffer_size > 0)
+    g_socket_set_option(socket, SOL_SOCKET, SO_SNDBUF, static_cast<gint>(s.buffer_size), nullptr);
+  g_socket_set_multicast_ttl(socket, static_cast<guint>(s.ttl_mc));
+  SendMulticastFrom(socket, s.multicast_iface);
+}
+
+static gboolean Start(GstBaseSink* base) {
+  auto* self = GST_LIDAR_ECN_UDP_SINK(base);
+  State& state = StateOf(self);
+  std::unique_lock lock(state.mutex);
+  const Settings s = state.settings;
+  SocketPtr given(state.given ? G_SOCKET(g_object_ref(state.given.get())) : nullptr);
+  lock.unlock();
+
+  GError* error = nullptr;
+  SocketAddressPtr peer;
+  if (!s.reply) {
+    peer.reset(ResolveUdpAddress(s.host, s.port, &error));
+    if (!peer) return Fail(self, "Cannot resolve the host", s, error);
+  }
+  SocketPtr socket(AcquireSocket(self, s, given.get(), peer.get()));
+  if (!socket) return FALSE;
+  ConfigureSocket(socket.get(), s);
+  state.family = g_socket_get_family(socket.get());
+  state.socket_tos = SocketTos(g_socket_get_fd(socket.get()), state.family);
+  state.to = peer ? ToNative(peer.get(), state.family) : NativeAddress{};
+  state.warned_errno = 0;
+  state.wake.Clear();
+  if (peer && !state.to.valid()) {
+    GST_ELEMENT_ERROR(self, RESOURCE, SETTINGS,
+                      ("The host %s is not of the address family of the socket", s.host.c_str()),
+                      ("use an address of the other family, or another bind-address"));
+    return FALSE;
+  }
+  lock.lock();
+  state.used = std::move(socket);
+  state.peer = std::move(peer);
+  state.packets = state.bytes = state.errors = state.no_peer = 0;
+  return TRUE;
+}
+
+static gboolean Stop(GstBaseSink* base) {
+  State& state = StateOf(base);
+  std::lock_guard lock(state.mutex);
+  if (state.used && (state.used.get() != state.given.get() || state.settings.close_socket))
+    g_socket_close(state.used.get(), nullptr);
+  state.used.reset();
+  state.peer.reset();
+  return TRUE;
+}
+
+/// The destination follows the buffers of whoever validated the peer (screamrx).
+static void FollowPeer(State& state, GstBuffer* buffer) {
+  const GstNetAddressMeta* meta = gst_buffer_get_net_address_meta(buffer);
+  if (meta == nullptr || meta->addr == state.peer.get()) return;
+  state.to = ToNative(meta->addr, state.family);
+  std::lock_guard lock(state.mutex);
+  state.peer.reset(G_SOCKET_ADDRESS(g_object_ref(meta->addr)));
+}
+
+static Marking CurrentMarking(State& state) {
+  std::lock_guard lock(state.mutex);
+  const Settings& s = state.settings;
+  const guint8 dscp = s.dscp < 0 ? state.socket_tos : static_cast<guint8>(s.dscp << 2);
+  return {dscp, static_cast<guint8>(s.ecn), s.reply};
+}
+
+/// One warning for each new kind of error: a path that is down for a while must not end the stream.
+static void WarnOnce(GstLidarEcnUdpSink* self, const UdpBatchSender::Result& result) {
+  State& state = StateOf(self);
+  if (result.last_errno == 0) {
+    if (result.packets > 0) state.warned_errno = 0;
+    return;
+  }
+  if (state.warned_errno == result.last_errno) return;
+  state.warned_errno = result.last_errno;
+  GST_ELEMENT_WARNING(self, RESOURCE, WRITE, ("Sending failed: %s", g_strerror(result.last_errno)),
+                      ("to %s; datagrams are dropped and counted until it works again",
+                       AddressToString(state.peer.get()).c_str()));
+}
+
+static GstFlowReturn Flush(GstLidarEcnUdpSink* self) {
+  State& state = StateOf(self);
+  const auto result = state.batch.Flush(g_socket_get_fd(state.used.get()), state.wake);
+  {
+    std::lock_guard lock(state.mutex);
+    state.packets += result.packets;
+    state.bytes += result.bytes;
+    state.errors += result.errors;
+  }
+  WarnOnce(self, result);
+  return result.woken ? GST_FLOW_FLUSHING : GST_FLOW_OK;
+}
+
+/// Adds `buffer` to the batch, which has room.
+static bool Add(GstLidarEcnUdpSink* self, GstBuffer* buffer, const Marking& marking) {
+  State& state = StateOf(self);
+  if (marking.reply) FollowPeer(state, buffer);
+  if (!state.to.valid()) {
+    std::lock_guard lock(state.mutex);
+    ++state.no_peer;
+    return true;
+  }
+  auto ecn = static_cast<GstLidarEcn>(marking.ecn);
+  gst_lidar_buffer_get_ecn(buffer, &ecn, nullptr);
+  const auto tos = static_cast<guint8>(marking.dscp_bits | (static_cast<guint8>(ecn) & kEcnMask));
+  if (state.batch.Add(buffer, tos, state.to)) return true;
+  GST_ELEMENT_ERROR(self, RESOURCE, READ, (nullptr), ("cannot map an input buffer"));
+  return false;
+}
+
+static GstFlowReturn Render(GstBaseSink* base, GstBuffer* buffer) {
+  auto* self = GST_LIDAR_ECN_UDP_SINK(base);
+  if (!Add(self, buffer, CurrentMarking(StateOf(self)))) return GST_FLOW_ERROR;
+  return Flush(self);
+}
+
+static GstFlowReturn RenderList(GstBaseSink* base, GstBufferList* list) {
+  auto* self = GST_LIDAR_ECN_UDP_SINK(base);
+  State& state = StateOf(self);
+  const Marking marking = CurrentMarking(state);
+  const guint n = gst_buffer_list_length(list);
+  for (guint i = 0; i < n; ++i) {
+    if (!Add(self, gst_buffer_list_get(list, i), marking)) return GST_FLOW_ERROR;
+    if (!state.batch.full()) continue;
+    const GstFlowReturn flow = Flush(self);
+    if (flow != GST_FLOW_OK) return flow;
+  }
+  return Flush(self);
+}
+
+static GstStructure* Stats(State& state) {
+  std::lock_guard lock(state.mutex);
+  return gst_structure_new("application/x-ecnudpsink-stats", "packets-sent", G_TYPE_UINT64,
+                           state.packets, "bytes-sent", G_TYPE_UINT64, state.bytes, "send-errors",
+                           G_TYPE_UINT64, state.errors, "dropped-no-peer", G_TYPE_UINT64,
+                           state.no_peer, nullptr);
+}
+
+static void SetPropertyVfunc(GObject* o, guint id, const GValue* v, GParamSpec* spec) {
+  State& state = StateOf(o);
+  std::lock_guard lock(state.mutex);
+  if (id <= kProperties.size()) {
+    SetProperty(state.settings, kProperties[id - 1], v);
+  } else if (id == kPropSocket) {
+    state.given.reset(static_cast<GSocket*>(g_value_dup_object(v)));
+  } else {
+    G_OBJECT_WARN_INVALID_PROPERTY_ID(o, id, spec);
+  }
+}
+
+static void GetPropertyVfunc(GObject* o, guint id, GValue* v, GParamSpec* spec) {
+  State& state = StateOf(o);
+  if (id == kPropStats) return g_value_take_boxed(v, Stats(state));
+  std::lock_guard lock(state.mutex);
+  if (id <= kProperties.size()) {
+    GetProperty(state.settings, kProperties[id - 1], v);
+  } else if (id == kPropSocket) {
+    g_value_set_object(v, state.given.get());
+  } else if (id == kPropUsedSocket) {
+    g_value_set_object(v, state.used.get());
+  } else if (id == kPropPeerAddress) {
+    g_value_set_object(v, state.peer.get());
+  } else {
+    G_OBJECT_WARN_INVALID_PROPERTY_ID(o, id, spec);
+  }
+}
+
+static void InstallObjectProperties(GObjectClass* object) {
+  constexpr auto kRead = static_cast<GParamFlags>(G_PARAM_READABLE | G_PARAM_STATIC_STRINGS);
+  constexpr auto kReadWrite = static_cast<GParamFlags>(G_PARAM_READWRITE | G_PARAM_STATIC_STRINGS |
+                                                       GST_PARAM_MUTABLE_READY);
+  g_object_class_install_property(
+      object, kPropSocket,
+      g_param_spec_object("socket", "socket", "Socket to send from; NULL opens one", G_TYPE_SOCKET,
+                          kReadWrite));
+  g_object_class_install_property(
+      object, kPropUsedSocket,
+      g_param_spec_object("used-socket", "used-socket", "Socket in use; NULL when stopped",
+                          G_TYPE_SOCKET, kRead));
+  g_object_class_install_property(
+      object, kPropPeerAddress,
+      g_param_spec_object("peer-address", "peer-address",
+                          "Address that datagrams go to now; NULL when there is none",
+                          G_TYPE_SOCKET_ADDRESS, kRead));
+  g_object_class_install_property(
+      object, kPropStats,
+      g_param_spec_boxed("stats", "stats",
+                         "packets-sent, bytes-sent [bytes], send-errors, dropped-no-peer",
+                         GST_TYPE_STRUCTURE, kRead));
+}
+
+static void gst_lidar_ecn_udp_sink_init(GstLidarEcnUdpSink* self) {
+  self->state = new State;
+  gst_base_sink_set_sync(GST_BASE_SINK(self), TRUE);
+}
+
+static void InstallVmethods(GstBaseSinkClass* sink) {
+  sink->start = Start;
+  sink->stop = Stop;
+  sink->render = Render;
+  sink->render_list = RenderList;
+  sink->unlock = [](GstBaseSink* base) -> gboolean {
+    StateOf(base).wake.Wake();
+    return TRUE;
+  };
+  sink->unlock_stop = [](GstBaseSink* base) -> gboolean {
+    StateOf(base).wake.Clear();
+    return TRUE;
+  };
+}
+
+static void gst_lidar_ecn_udp_sink_class_init(GstLidarEcnUdpSinkClass* klass) {
+  GST_DEBUG_CATEGORY_INIT(gst_lidar_ecn_udp_sink_debug, "ecnudpsink", 0, "UDP sink with ECN");
+  auto* object = G_OBJECT_CLASS(klass);
+  object->set_property = SetPropertyVfunc;
+  object->get_property = GetPropertyVfunc;
+  object->finalize = [](GObject* o) {
+    delete GST_LIDAR_ECN_UDP_SINK(o)->state;
+    G_OBJECT_CLASS(gst_lidar_ecn_udp_sink_parent_class)->finalize(o);
+  };
+  InstallProperties(object, kProperties);
+  InstallObjectProperties(object);
+  static GstStaticPadTemplate sink =
+      GST_STATIC_PAD_TEMPLATE("sink", GST_PAD_SINK, GST_PAD_ALWAYS, GST_STATIC_CAPS_ANY);
+  auto* element = GST_ELEMENT_CLASS(klass);
+  gst_element_class_add_static_pad_template(element, &sink);
+  gst_element_class_set_static_metadata(element, "UDP sink with ECN", "Sink/Network",
+                                        "Sends datagrams with the ECN field set for each packet",
+                                        "gst-lidar");
+  gst_type_mark_as_plugin_api(EcnType(), static_cast<GstPluginAPIFlags>(0));
+  InstallVmethods(GST_BASE_SINK_CLASS(klass));
+}

@@ -1,0 +1,411 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+/**
+ * SECTION:element-ecnudpsrc
+ *
+ * Receives UDP datagrams, each with its sender's address (GstNetAddressMeta) and its ECN bits and
+ * kernel arrival time (LidarEcnMeta). Without `caps` it takes what downstream wants.
+ *
+ * |[
+ * gst-launch-1.0 ecnudpsrc port=5004 num-buffers=100 ! fakesink dump=true
+ * ]|
+ */
+#include "ecnudp/gstecnudpsrc.h"
+
+#include <gst/net/gstnetaddressmeta.h>
+#include <netinet/in.h>
+#include <poll.h>
+
+#include <cerrno>
+#include <memory>
+#include <mutex>
+
+#include "common/gstlidar.h"
+#include "common/properties.h"
+#include "common/refs.h"
+#include "ecnudp/udp_batch.h"
+#include "ecnudp/udp_socket.h"
+
+GST_DEBUG_CATEGORY_STATIC(gst_lidar_ecn_udp_src_debug);
+#define GST_CAT_DEFAULT gst_lidar_ecn_udp_src_debug
+
+namespace {
+
+using namespace lidar::gst;
+using SocketPtr = std::unique_ptr<GSocket, GObjectUnref>;
+using SocketAddressPtr = std::unique_ptr<GSocketAddress, GObjectUnref>;
+
+// What 1 s of 16 Mbit/s needs; asked for silently where the user gave no size.
+constexpr guint kDefaultBuffer = 2u << 20;
+constexpr gint kDefaultPayload = 96;
+
+struct Settings {
+  std::string address;
+  guint port = 5004;
+  guint buffer_size = 0;
+  std::string multicast_group;
+  std::string multicast_iface;
+  guint64 timeout = 0;
+  bool close_socket = true;
+};
+
+const std::array<Property<Settings>, 7> kProperties = {{
+    {"address", "Local address to receive on; empty for any, IPv6 and IPv4", &Settings::address},
+    {"port", "UDP port to receive on; 0 for any free one", &Settings::port, 0, 65535},
+    {"buffer-size",
+     "Kernel receive buffer [bytes]; 0 asks for 2 MiB and takes what the kernel grants",
+     &Settings::buffer_size, 0, G_MAXINT},
+    {"multicast-group", "Multicast group to join; empty for none", &Settings::multicast_group},
+    {"multicast-iface", "Network interface for multicast; empty for the kernel's choice",
+     &Settings::multicast_iface},
+    {"timeout", "Silence after which a message GstEcnUdpSrcTimeout is posted [ns]; 0 for never",
+     &Settings::timeout, 0, static_cast<gdouble>(G_MAXINT64)},
+    {"close-socket", "Close a socket given by the property socket on stop",
+     &Settings::close_socket},
+}};
+
+enum : guint {
+  kPropSocket = kProperties.size() + 1,
+  kPropUsedSocket,
+  kPropCaps,
+  kPropStats,
+};
+
+struct State {
+  std::mutex mutex;  // guards all to the next comment; never held while receiving or posting
+  Settings settings;
+  CapsPtr caps;
+  SocketPtr given;
+  SocketPtr used;
+  guint64 packets = 0;
+  guint64 bytes = 0;
+  guint64 ce = 0;
+  guint kernel_drops = 0;
+
+  // Of the streaming thread, between start and stop.
+  WakeFd wake;
+  UdpBatchReceiver batch;
+  NativeAddress last_from;
+  SocketAddressPtr last_address;
+  gint64 timeout_ns = -1;
+};
+
+}  // namespace
+
+struct _GstLidarEcnUdpSrc {
+  GstPushSrc parent;
+  State* state;
+};
+
+G_DEFINE_TYPE(GstLidarEcnUdpSrc, gst_lidar_ecn_udp_src, GST_TYPE_PUSH_SRC)
+GST_ELEMENT_REGISTER_DEFINE(ecnudpsrc, "ecnudpsrc", GST_RANK_NONE, GST_TYPE_LIDAR_ECN_UDP_SRC)
+
+static State& StateOf(gpointer self) { return *GST_LIDAR_ECN_UDP_SRC(self)->state; }
+
+/// The largest receive buffer up to `bytes` that the kernel grants; its size.
+static guint SetReceiveBuffer(int fd, guint bytes) {
+  const int size = static_cast<int>(bytes);
+  // The forced form needs CAP_NET_ADMIN.
+  if (setsockopt(fd, SOL_SOCKET, SO_RCVBUFFORCE, &size, sizeof size) != 0 &&
+      setsockopt(fd, SOL_SOCKET, SO_RCVBUF, &size, sizeof size) != 0) {
+    return 0;
+  }
+  int granted = 0;
+  socklen_t length = sizeof granted;
+  if (getsockopt(fd, SOL_SOCKET, SO_RCVBUF, &granted, &length) != 0) return 0;
+  return static_cast<guint>(granted / 2);  // the kernel doubles it for its own bookkeeping
+}
+
+static void ConfigureBuffer(GstLidarEcnUdpSrc* self, int fd, guint wanted) {
+  const guint granted = SetReceiveBuffer(fd, wanted > 0 ? wanted : kDefaultBuffer);
+  GST_DEBUG_OBJECT(self, "receive buffer of %u bytes", granted);
+  if (wanted == 0 || granted >= wanted) return;
+  GST_ELEMENT_WARNING(
+      self, RESOURCE, SETTINGS,
+      ("The kernel granted a receive buffer of %u bytes instead of %u", granted, wanted),
+      ("raise it with: sysctl -w net.core.rmem_max=%u", wanted));
+}
+
+static GSocket* OpenSocket(GstLidarEcnUdpSrc* self, const Settings& s, GSocket* given) {
+  if (given != nullptr) return G_SOCKET(g_object_ref(given));
+  const bool multicast = !s.multicast_group.empty();
+  UdpBind bind{s.address, s.port, G_SOCKET_FAMILY_INVALID, multicast};
+  if (multicast)
+    bind.family = s.multicast_group.find(':') != std::string::npos ? G_SOCKET_FAMILY_IPV6
+                                                                   : G_SOCKET_FAMILY_IPV4;
+  GError* error = nullptr;
+  SocketPtr socket(OpenUdpSocket(bind, &error));
+  if (socket && multicast)
+    JoinMulticast(socket.get(), s.multicast_group, s.multicast_iface, &error);
+  if (error == nullptr) return socket.release();
+  GST_ELEMENT_ERROR(self, RESOURCE, OPEN_READ,
+                    ("Cannot receive on UDP port %u: %s", s.port, error->message),
+                    ("address '%s', multicast-group '%s'; is another program using the port?",
+                     s.address.c_str(), s.multicast_group.c_str()));
+  g_error_free(error);
+  return nullptr;
+}
+
+static gboolean Start(GstBaseSrc* base) {
+  auto* self = GST_LIDAR_ECN_UDP_SRC(base);
+  State& state = StateOf(self);
+  std::unique_lock lock(state.mutex);
+  const Settings s = state.settings;
+  const SocketPtr given(state.given ? G_SOCKET(g_object_ref(state.given.get())) : nullptr);
+  lock.unlock();
+
+  SocketPtr socket(OpenSocket(self, s, given.get()));
+  if (!socket) return FALSE;
+  const int fd = g_socket_get_fd(socket.get());
+  UdpBatchReceiver::Prepare(fd);
+  ConfigureBuffer(self, fd, s.buffer_size);
+  state.wake.Clear();
+  state.timeout_ns = s.timeout > 0 ? static_cast<gint64>(s.timeout) : -1;
+  state.last_from = {};
+  state.last_address.reset();
+  lock.lock();
+  state.used = std::move(socket);
+  state.packets = state.bytes = state.ce = 0;
+  return TRUE;
+}
+
+static gboolean Stop(GstBaseSrc* base) {
+  State& state = StateOf(base);
+  std::lock_guard lock(state.mutex);
+  if (state.used && (state.used.get() != state.given.get() || state.settings.close_socket))
+    g_socket_close(state.used.get(), nullptr);
+  state.used.reset();
+  return TRUE;
+}
+
+/// Running time at which the datagram reached the kernel.
+static GstClockTime ArrivalRunningTime(GstLidarEcnUdpSrc* self, GstClockTime arrival) {
+  GstClock* clock = gst_element_get_clock(GST_ELEMENT(self));
+  if (clock == nullptr) return GST_CLOCK_TIME_NONE;
+  GstClockTime now = gst_clock_get_time(clock);
+  gst_object_unref(clock);
+  const GstClockTime base_time = gst_element_get_base_time(GST_ELEMENT(self));
+  now = now > base_time ? now - base_time : 0;
+  const auto unix_now = static_cast<GstClockTime>(g_get_real_time()) * GST_USECOND;
+  const bool plausible = GST_CLOCK_TIME_IS_VALID(arrival) && arrival < unix_now &&
+                         unix_now - arrival < GST_SECOND;  // else the system clock was set
+  const GstClockTime age = plausible ? unix_now - arrival : 0;
+  return now > age ? now - age : 0;
+}
+
+static GstBuffer* ToBuffer(GstLidarEcnUdpSrc* self, const ReceivedDatagram& d) {
+  State& state = StateOf(self);
+  GstBuffer* buffer = gst_buffer_new_allocate(nullptr, d.size, nullptr);
+  gst_buffer_fill(buffer, 0, d.data, d.size);
+  GST_BUFFER_PTS(buffer) = GST_BUFFER_DTS(buffer) = ArrivalRunningTime(self, d.arrival);
+  if (!state.last_address || state.last_from != *d.from) {
+    state.last_from = *d.from;
+    state.last_address.reset(FromNative(*d.from));
+  }
+  if (state.last_address) gst_buffer_add_net_address_meta(buffer, state.last_address.get());
+  gst_lidar_buffer_set_ecn(buffer, static_cast<GstLidarEcn>(d.tos & 3), d.arrival);
+  std::lock_guard lock(state.mutex);
+  ++state.packets;
+  state.bytes += d.size;
+  if ((d.tos & 3) == GST_LIDAR_ECN_CE) ++state.ce;
+  return buffer;
+}
+
+static void PostTimeout(GstLidarEcnUdpSrc* self) {
+  const auto timeout = static_cast<guint64>(StateOf(self).timeout_ns);
+  gst_element_post_message(
+      GST_ELEMENT(self), gst_message_new_element(
+                             GST_OBJECT(self), gst_structure_new("GstEcnUdpSrcTimeout", "timeout",
+                                                                 G_TYPE_UINT64, timeout, nullptr)));
+}
+
+/// Waits until datagrams are there and takes them all, up to the capacity of a batch.
+static GstFlowReturn ReceiveBatch(GstLidarEcnUdpSrc* self, GstBufferList* list) {
+  State& state = StateOf(self);
+  const int fd = g_socket_get_fd(state.used.get());
+  for (;;) {
+    const int n = state.batch.Receive(fd, [&](const ReceivedDatagram& d) {
+      // An empty datagram has nothing for anybody.
+      if (d.size > 0) gst_buffer_list_add(list, ToBuffer(self, d));
+    });
+    if (gst_buffer_list_length(list) > 0) return GST_FLOW_OK;
+    if (n < 0 && errno != EAGAIN && errno != EWOULDBLOCK && errno != EINTR &&
+        errno != ECONNREFUSED) {
+      GST_ELEMENT_ERROR(self, RESOURCE, READ, ("Receiving failed: %s", g_strerror(errno)),
+                        (nullptr));
+      return GST_FLOW_ERROR;
+    }
+    switch (state.wake.Wait(fd, POLLIN, state.timeout_ns)) {
+      case WakeFd::Outcome::kWoken:
+        return GST_FLOW_FLUSHING;
+      case WakeFd::Outcome::kTimeout:
+        PostTimeout(self);
+        break;
+      case WakeFd::Outcome::kReady:
+      case WakeFd::Outcome::kError:
+        break;
+    }
+  }
+}
+
+static GstFlowReturn Create(GstPushSrc* push, GstBuffer** out) {
+  auto* self = GST_LIDAR_ECN_UDP_SRC(push);
+  State& state = StateOf(self);
+  BufferListPtr list(gst_buffer_list_new());
+  const GstFlowReturn flow = ReceiveBatch(self, list.get());
+  if (flow != GST_FLOW_OK) return flow;
+  {
+    std::lock_guard lock(state.mutex);
+    state.kernel_drops = state.batch.kernel_drops();
+  }
+  if (gst_buffer_list_length(list.get()) == 1) {
+    *out = gst_buffer_ref(gst_buffer_list_get(list.get(), 0));
+  } else {
+    gst_base_src_submit_buffer_list(GST_BASE_SRC(push), list.release());
+  }
+  return GST_FLOW_OK;
+}
+
+static GstCaps* GetCaps(GstBaseSrc* base, GstCaps* filter) {
+  State& state = StateOf(base);
+  CapsPtr caps;
+  {
+    std::lock_guard lock(state.mutex);
+    caps.reset(state.caps ? gst_caps_ref(state.caps.get()) : gst_caps_new_any());
+  }
+  if (filter == nullptr) return caps.release();
+  return gst_caps_intersect_full(filter, caps.get(), GST_CAPS_INTERSECT_FIRST);
+}
+
+/// One fixed form of what downstream takes, or none where it takes anything.
+static GstCaps* FixateForPeer(const GstCaps* peer) {
+  if (gst_caps_is_any(peer) || gst_caps_is_empty(peer)) return nullptr;
+  GstCaps* caps = gst_caps_truncate(gst_caps_copy(peer));
+  GstStructure* s = gst_caps_get_structure(caps, 0);
+  if (gst_structure_has_field(s, "payload"))
+    gst_structure_fixate_field_nearest_int(s, "payload", kDefaultPayload);
+  // A stream's own numbers are not for the receiver to choose.
+  gst_structure_remove_fields(s, "ssrc", "timestamp-offset", "seqnum-offset", nullptr);
+  return gst_caps_fixate(caps);
+}
+
+static gboolean Negotiate(GstBaseSrc* base) {
+  State& state = StateOf(base);
+  CapsPtr caps;
+  {
+    std::lock_guard lock(state.mutex);
+    if (state.caps) caps.reset(gst_caps_ref(state.caps.get()));
+  }
+  if (caps) {
+    caps.reset(gst_caps_fixate(gst_caps_copy(caps.get())));
+  } else {
+    const CapsPtr peer(gst_pad_peer_query_caps(GST_BASE_SRC_PAD(base), nullptr));
+    caps.reset(FixateForPeer(peer.get()));
+  }
+  return !caps || gst_base_src_set_caps(base, caps.get());
+}
+
+static GstStructure* Stats(State& state) {
+  std::lock_guard lock(state.mutex);
+  return gst_structure_new("application/x-ecnudpsrc-stats", "packets-received", G_TYPE_UINT64,
+                           state.packets, "bytes-received", G_TYPE_UINT64, state.bytes,
+                           "packets-ce", G_TYPE_UINT64, state.ce, "dropped-by-kernel", G_TYPE_UINT,
+                           state.kernel_drops, nullptr);
+}
+
+static void SetPropertyVfunc(GObject* o, guint id, const GValue* v, GParamSpec* spec) {
+  State& state = StateOf(o);
+  std::lock_guard lock(state.mutex);
+  if (id <= kProperties.size()) {
+    SetProperty(state.settings, kProperties[id - 1], v);
+  } else if (id == kPropSocket) {
+    state.given.reset(static_cast<GSocket*>(g_value_dup_object(v)));
+  } else if (id == kPropCaps) {
+    const GstCaps* caps = gst_value_get_caps(v);
+    state.caps.reset(caps != nullptr ? gst_caps_copy(caps) : nullptr);
+  } else {
+    G_OBJECT_WARN_INVALID_PROPERTY_ID(o, id, spec);
+  }
+}
+
+static void GetPropertyVfunc(GObject* o, guint id, GValue* v, GParamSpec* spec) {
+  State& state = StateOf(o);
+  if (id == kPropStats) return g_value_take_boxed(v, Stats(state));
+  std::lock_guard lock(state.mutex);
+  if (id <= kProperties.size()) {
+    GetProperty(state.settings, kProperties[id - 1], v);
+  } else if (id == kPropSocket) {
+    g_value_set_object(v, state.given.get());
+  } else if (id == kPropUsedSocket) {
+    g_value_set_object(v, state.used.get());
+  } else if (id == kPropCaps) {
+    gst_value_set_caps(v, state.caps.get());
+  } else {
+    G_OBJECT_WARN_INVALID_PROPERTY_ID(o, id, spec);
+  }
+}
+
+static void InstallObjectProperties(GObjectClass* object) {
+  constexpr auto kRead = static_cast<GParamFlags>(G_PARAM_READABLE | G_PARAM_STATIC_STRINGS);
+  constexpr auto kReadWrite = static_cast<GParamFlags>(G_PARAM_READWRITE | G_PARAM_STATIC_STRINGS |
+                                                       GST_PARAM_MUTABLE_READY);
+  g_object_class_install_property(
+      object, kPropSocket,
+      g_param_spec_object("socket", "socket", "Socket to receive from; NULL opens one",
+                          G_TYPE_SOCKET, kReadWrite));
+  g_object_class_install_property(
+      object, kPropUsedSocket,
+      g_param_spec_object("used-socket", "used-socket", "Socket in use; NULL when stopped",
+                          G_TYPE_SOCKET, kRead));
+  g_object_class_install_property(
+      object, kPropCaps,
+      g_param_spec_boxed("caps", "caps", "Caps of the stream; NULL takes what downstream wants",
+                         GST_TYPE_CAPS, kReadWrite));
+  g_object_class_install_property(
+      object, kPropStats,
+      g_param_spec_boxed("stats", "stats",
+                         "packets-received, bytes-received [bytes], packets-ce, dropped-by-kernel",
+                         GST_TYPE_STRUCTURE, kRead));
+}
+
+static void gst_lidar_ecn_udp_src_init(GstLidarEcnUdpSrc* self) {
+  self->state = new State;
+  gst_base_src_set_live(GST_BASE_SRC(self), TRUE);
+  gst_base_src_set_format(GST_BASE_SRC(self), GST_FORMAT_TIME);
+}
+
+static void InstallVmethods(GstLidarEcnUdpSrcClass* klass) {
+  auto* src = GST_BASE_SRC_CLASS(klass);
+  src->start = Start;
+  src->stop = Stop;
+  src->get_caps = GetCaps;
+  src->negotiate = Negotiate;
+  src->unlock = [](GstBaseSrc* base) -> gboolean {
+    StateOf(base).wake.Wake();
+    return TRUE;
+  };
+  src->unlock_stop = [](GstBaseSrc* base) -> gboolean {
+    StateOf(base).wake.Clear();
+    return TRUE;
+  };
+  GST_PUSH_SRC_CLASS(klass)->create = Create;
+}
+
+static void gst_lidar_ecn_udp_src_class_init(GstLidarEcnUdpSrcClass* klass) {
+  GST_DEBUG_CATEGORY_INIT(gst_lidar_ecn_udp_src_debug, "ecnudpsrc", 0, "UDP source with ECN");
+  auto* object = G_OBJECT_CLASS(klass);
+  object->set_property = SetPropertyVfunc;
+  object->get_property = GetPropertyVfunc;
+  object->finalize = [](GObject* o) {
+    delete GST_LIDAR_ECN_UDP_SRC(o)->state;
+    G_OBJECT_CLASS(gst_lidar_ecn_udp_src_parent_class)->finalize(o);
+  };
+  InstallProperties(object, kProperties);
+  InstallObjectProperties(object);
+  static GstStaticPadTemplate src =
+      GST_STATIC_PAD_TEMPLATE("src", GST_PAD_SRC, GST_PAD_ALWAYS, GST_STATIC_CAPS_ANY);
+  auto* element = GST_ELEMENT_CLASS(klass);
+  gst_element_class_add_static_pad_template(element, &src);
+  gst_element_class_set_static_metadata(element, "UDP source with ECN", "Source/Network",
+                                        "Receives datagrams with their ECN field", "gst-lidar");
+  InstallVmethods(klass);
+}

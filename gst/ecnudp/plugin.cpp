@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Plugin ecnudp: UDP with the ECN field set and read.
+#include "common/gstlidar.h"
+#include "ecnudp/gstecnudpsink.h"
+#include "ecnudp/gstecnudpsrc.h"
+
+static gboolean plugin_init(GstPlugin* plugin) {
+  gst_lidar_init();
+  return GST_ELEMENT_REGISTER(ecnudpsink, plugin) && GST_ELEMENT_REGISTER(ecnudpsrc, plugin);
+}
+
+GST_PLUGIN_DEFINE(GST_VERSION_MAJOR, GST_VERSION_MINOR, ecnudp,
+                  "UDP sink and source with the ECN field", plugin_init, VERSION, "LGPL", PACKAGE,
+                  "https://gstreamer.freedesktop.org")

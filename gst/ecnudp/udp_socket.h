@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// UDP sockets: opening, addresses, and a file descriptor that wakes a thread that waits for one.
+#pragma once
+#include <gio/gio.h>
+#include <sys/socket.h>
+
+#include <string>
+
+namespace lidar::gst {
+
+struct GObjectUnref {
+  void operator()(gpointer p) const { g_object_unref(p); }
+};
+
+/// A socket address as the kernel takes it.
+struct NativeAddress {
+  sockaddr_storage storage{};
+  socklen_t length = 0;
+
+  const sockaddr* get() const { return reinterpret_cast<const sockaddr*>(&storage); }
+  sockaddr* get() { return reinterpret_cast<sockaddr*>(&storage); }
+  bool valid() const { return length != 0; }
+  bool operator==(const NativeAddress& o) const;
+  bool operator!=(const NativeAddress& o) const { return !(*this == o); }
+};
+
+/// For a socket of `family`: an IPv4 address becomes a mapped one on an IPv6 socket. Invalid where
+/// the address does not fit the family.
+NativeAddress ToNative(GSocketAddress* address, GSocketFamily family);
+/// Transfer full; a mapped address comes out as IPv4. NULL where it is of no known family.
+GSocketAddress* FromNative(const NativeAddress& address);
+
+/// Looks `host` (a name or a literal, brackets allowed) up; may block. Transfer full, or NULL.
+GSocketAddress* ResolveUdpAddress(const std::string& host, guint port, GError** error);
+
+struct UdpBind {
+  std::string address;  // empty: every address, of both families where the machine has them
+  guint port = 0;       // 0: any free one
+  GSocketFamily family = G_SOCKET_FAMILY_INVALID;  // with an empty address: only this one
+  bool reuse = false;                              // several sockets on one port, for multicast
+};
+/// A bound non-blocking socket; transfer full, or NULL.
+GSocket* OpenUdpSocket(const UdpBind& bind, GError** error);
+
+/// Joins `group` on the interface of that name (empty: the kernel's choice).
+bool JoinMulticast(GSocket* socket, const std::string& group, const std::string& interface,
+                   GError** error);
+/// Multicast leaves by the interface of that name; nothing happens where there is none.
+void SendMulticastFrom(GSocket* socket, const std::string& interface);
+/// "host:port" for messages and logs.
+std::string AddressToString(GSocketAddress* address);
+
+/// Wakes poll() in another thread until it is cleared.
+class WakeFd {
+ public:
+  WakeFd();
+  ~WakeFd();
+  WakeFd(const WakeFd&) = delete;
+  WakeFd& operator=(const WakeFd&) = delete;
+  void Wake();
+  void Clear();
+
+  enum class Outcome { kReady, kWoken, kTimeout, kError };
+  /// Waits for `events` (poll's) on `fd`; a negative timeout waits for ever.
+  Outcome Wait(int fd, short events, gint64 timeout_ns) const;
+
+ private:
+  int fd_;
+};
+
+}  // namespace lidar::gst

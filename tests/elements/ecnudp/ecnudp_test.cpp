@@ -1,0 +1,365 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// ecnudpsink and ecnudpsrc over real loopback sockets.
+#include <gio/gio.h>
+#include <gst/net/gstnetaddressmeta.h>
+#include <gtest/gtest.h>
+#include <netinet/in.h>
+#include <sys/socket.h>
+
+#include <string>
+#include <vector>
+
+#include "common/gstlidar.h"
+#include "common/refs.h"
+#include "support/harness.h"
+
+namespace lidar::gst {
+namespace {
+
+using test::Harness;
+
+struct ObjectFree {
+  void operator()(gpointer p) const { g_object_unref(p); }
+};
+template <class T>
+using Object = std::unique_ptr<T, ObjectFree>;
+
+template <class T>
+Object<T> GetObject(GstHarness* h, const char* property) {
+  T* value = nullptr;
+  g_object_get(h->element, property, &value, nullptr);
+  return Object<T>(value);
+}
+
+guint LocalPort(GstHarness* h) {
+  const auto socket = GetObject<GSocket>(h, "used-socket");
+  if (!socket) return 0;
+  const Object<GSocketAddress> address(g_socket_get_local_address(socket.get(), nullptr));
+  return g_inet_socket_address_get_port(G_INET_SOCKET_ADDRESS(address.get()));
+}
+
+guint64 Stat(GstHarness* h, const char* field) {
+  GstStructure* stats = nullptr;
+  g_object_get(h->element, "stats", &stats, nullptr);
+  const StructurePtr owner(stats);
+  guint64 value = 0;
+  gst_structure_get_uint64(stats, field, &value);
+  return value;
+}
+
+GstBuffer* Payload(const std::string& text) {
+  GstBuffer* buffer = gst_buffer_new_allocate(nullptr, text.size(), nullptr);
+  gst_buffer_fill(buffer, 0, text.data(), text.size());
+  return buffer;
+}
+
+std::string Text(GstBuffer* buffer) {
+  std::string text(gst_buffer_get_size(buffer), '\0');
+  gst_buffer_extract(buffer, 0, text.data(), text.size());
+  return text;
+}
+
+/// A sink that is not started yet: a harness starts it at once.
+GstElement* SinkElement() {
+  GstElement* sink = gst_element_factory_make("ecnudpsink", nullptr);
+  g_object_set(sink, "sync", FALSE, "async", FALSE, nullptr);
+  return sink;
+}
+
+Harness Wrap(GstElement* sink) {
+  Harness harness(gst_harness_new_with_element(sink, "sink", nullptr));
+  gst_object_unref(sink);
+  gst_harness_set_src_caps_str(harness.get(), "application/x-rtp");
+  return harness;
+}
+
+Harness NewSink(const char* host, guint port) {
+  GstElement* sink = SinkElement();
+  g_object_set(sink, "host", host, "port", port, nullptr);
+  return Wrap(sink);
+}
+
+Harness NewSource(const char* address = nullptr) {
+  Harness src(gst_harness_new_with_padnames("ecnudpsrc", nullptr, "src"));
+  g_object_set(src->element, "port", 0, "address", address, nullptr);
+  gst_harness_play(src.get());
+  return src;
+}
+
+struct Family {
+  const char* host;
+  const char* address;
+};
+class Loopback : public ::testing::TestWithParam<Family> {
+ protected:
+  void SetUp() override {
+    if (std::string(GetParam().host) != "::1") return;
+    GError* error = nullptr;
+    const Object<GInetAddress> v6(g_inet_address_new_from_string("::1"));
+    const Object<GSocketAddress> local(g_inet_socket_address_new(v6.get(), 0));
+    const Object<GSocket> socket(
+        g_socket_new(G_SOCKET_FAMILY_IPV6, G_SOCKET_TYPE_DATAGRAM, G_SOCKET_PROTOCOL_UDP, &error));
+    if (socket && g_socket_bind(socket.get(), local.get(), FALSE, &error)) return;
+    g_error_free(error);
+    GTEST_SKIP() << "no IPv6 here";
+  }
+};
+
+TEST_P(Loopback, EveryPacketArrivesWithItsOwnEcnCodepoint) {
+  const Harness src = NewSource(GetParam().address);
+  const Harness sink = NewSink(GetParam().host, LocalPort(src.get()));
+  gst_util_set_object_arg(G_OBJECT(sink->element), "ecn", "ect0");
+  const auto before = static_cast<GstClockTime>(g_get_real_time()) * GST_USECOND;
+  GstBufferList* list = gst_buffer_list_new();
+  for (guint i = 0; i < 4; ++i) {
+    GstBuffer* buffer = Payload("packet " + std::to_string(i));
+    gst_lidar_buffer_set_ecn(buffer, static_cast<GstLidarEcn>(i), GST_CLOCK_TIME_NONE);
+    gst_buffer_list_add(list, buffer);
+  }
+  gst_buffer_list_add(list, Payload("packet 4"));  // without meta: the property
+  ASSERT_EQ(gst_pad_push_list(sink->srcpad, list), GST_FLOW_OK);
+  for (guint i = 0; i < 5; ++i) {
+    const BufferPtr got(gst_harness_pull(src.get()));
+    ASSERT_TRUE(got) << i;
+    EXPECT_EQ(Text(got.get()), "packet " + std::to_string(i));
+    GstLidarEcn ecn{};
+    GstClockTime arrival = 0;
+    ASSERT_TRUE(gst_lidar_buffer_get_ecn(got.get(), &ecn, &arrival));
+    EXPECT_EQ(static_cast<guint>(ecn), i < 4 ? i : guint{GST_LIDAR_ECN_ECT0});
+    EXPECT_GE(arrival + GST_USECOND, before);
+    EXPECT_LT(arrival, before + 10 * GST_SECOND);
+    EXPECT_TRUE(gst_buffer_get_net_address_meta(got.get()) != nullptr);
+  }
+  EXPECT_EQ(Stat(sink.get(), "packets-sent"), 5U);
+  EXPECT_EQ(Stat(src.get(), "packets-received"), 5U);
+  EXPECT_EQ(Stat(src.get(), "packets-ce"), 1U);
+}
+
+INSTANTIATE_TEST_SUITE_P(Families, Loopback,
+                         ::testing::Values(Family{"127.0.0.1", nullptr},
+                                           Family{"127.0.0.1", "127.0.0.1"}, Family{"::1", nullptr},
+                                           Family{"[::1]", "::1"}, Family{"localhost", nullptr}));
+
+TEST(EcnUdp, BatchesLargerThanOneSystemCallArriveWholeAndInOrder) {
+  const Harness src = NewSource();
+  const Harness sink = NewSink("127.0.0.1", LocalPort(src.get()));
+  GstBufferList* list = gst_buffer_list_new();
+  for (guint i = 0; i < 150; ++i) gst_buffer_list_add(list, Payload(std::to_string(i)));
+  ASSERT_EQ(gst_pad_push_list(sink->srcpad, list), GST_FLOW_OK);
+  for (guint i = 0; i < 150; ++i) {
+    const BufferPtr got(gst_harness_pull(src.get()));
+    ASSERT_TRUE(got);
+    EXPECT_EQ(Text(got.get()), std::to_string(i));
+  }
+}
+
+TEST(EcnUdp, BuffersOfManyMemoriesAreOneDatagram) {
+  const Harness src = NewSource();
+  const Harness sink = NewSink("127.0.0.1", LocalPort(src.get()));
+  for (guint pieces : {2U, 4U, 7U}) {
+    GstBuffer* buffer = gst_buffer_new();
+    std::string whole;
+    for (guint i = 0; i < pieces; ++i) {
+      const std::string piece(i + 1, static_cast<char>('a' + i));
+      GstBuffer* one = Payload(piece);
+      gst_buffer_append_memory(buffer, gst_buffer_get_memory(one, 0));
+      gst_buffer_unref(one);
+      whole += piece;
+    }
+    ASSERT_EQ(gst_harness_push(sink.get(), buffer), GST_FLOW_OK);
+    const BufferPtr got(gst_harness_pull(src.get()));
+    ASSERT_TRUE(got);
+    EXPECT_EQ(Text(got.get()), whole);
+  }
+}
+
+TEST(EcnUdp, ReplyGoesToThePeerThatTheBufferNames) {
+  const Harness edge = NewSource();
+  const Harness robot_a = NewSource("127.0.0.1");
+  const Harness robot_b = NewSource("127.0.0.1");
+  const auto socket = GetObject<GSocket>(edge.get(), "used-socket");
+  GstElement* element = SinkElement();
+  g_object_set(element, "socket", socket.get(), "close-socket", FALSE, "reply", TRUE, nullptr);
+  const Harness reply = Wrap(element);
+  ASSERT_EQ(gst_harness_push(reply.get(), Payload("to nobody")), GST_FLOW_OK);
+  EXPECT_EQ(Stat(reply.get(), "dropped-no-peer"), 1U);
+  for (GstHarness* robot : {robot_a.get(), robot_b.get()}) {
+    GstBuffer* named = Payload("named");
+    const Object<GSocketAddress> address(
+        g_inet_socket_address_new_from_string("127.0.0.1", LocalPort(robot)));
+    gst_buffer_add_net_address_meta(named, address.get());
+    ASSERT_EQ(gst_harness_push(reply.get(), named), GST_FLOW_OK);
+    ASSERT_EQ(gst_harness_push(reply.get(), Payload("to the last")), GST_FLOW_OK);
+    for (const char* text : {"named", "to the last"}) {
+      const BufferPtr got(gst_harness_pull(robot));
+      ASSERT_TRUE(got);
+      EXPECT_EQ(Text(got.get()), text);
+    }
+  }
+}
+
+/// The TOS byte of the next datagram on `fd`, as the kernel tells it; -1 where it does not.
+int ReceiveTos(int fd) {
+  char data[16];
+  alignas(cmsghdr) char control[64];
+  iovec iov{data, sizeof data};
+  msghdr header{};
+  header.msg_iov = &iov;
+  header.msg_iovlen = 1;
+  header.msg_control = control;
+  header.msg_controllen = sizeof control;
+  if (recvmsg(fd, &header, 0) < 0) return -1;
+  for (cmsghdr* c = CMSG_FIRSTHDR(&header); c != nullptr; c = CMSG_NXTHDR(&header, c))
+    if (c->cmsg_level == IPPROTO_IP && c->cmsg_type == IP_TOS) return *CMSG_DATA(c);
+  return -1;
+}
+
+TEST(EcnUdpSink, KeepsTheDscpBesideTheEcnBits) {
+  const Object<GInetAddress> loopback(g_inet_address_new_loopback(G_SOCKET_FAMILY_IPV4));
+  const Object<GSocketAddress> local(g_inet_socket_address_new(loopback.get(), 0));
+  const Object<GSocket> socket(
+      g_socket_new(G_SOCKET_FAMILY_IPV4, G_SOCKET_TYPE_DATAGRAM, G_SOCKET_PROTOCOL_UDP, nullptr));
+  ASSERT_TRUE(g_socket_bind(socket.get(), local.get(), FALSE, nullptr));
+  ASSERT_TRUE(g_socket_set_option(socket.get(), IPPROTO_IP, IP_RECVTOS, 1, nullptr));
+  const Object<GSocketAddress> bound(g_socket_get_local_address(socket.get(), nullptr));
+  const Harness sink =
+      NewSink("127.0.0.1", g_inet_socket_address_get_port(G_INET_SOCKET_ADDRESS(bound.get())));
+  g_object_set(sink->element, "dscp", 46, nullptr);
+  gst_util_set_object_arg(G_OBJECT(sink->element), "ecn", "ect1");
+  ASSERT_EQ(gst_harness_push(sink.get(), Payload("x")), GST_FLOW_OK);
+  EXPECT_EQ(ReceiveTos(g_socket_get_fd(socket.get())), 46 << 2 | 1);
+}
+
+TEST(EcnUdpSink, AnUnknownHostIsAnElementErrorThatNamesIt) {
+  const ElementPtr sink(gst_element_factory_make("ecnudpsink", nullptr));
+  gst_object_ref_sink(sink.get());
+  g_object_set(sink.get(), "host", "no-such-host.invalid", nullptr);
+  GstBus* bus = gst_bus_new();
+  gst_element_set_bus(sink.get(), bus);
+  EXPECT_EQ(gst_element_set_state(sink.get(), GST_STATE_PAUSED), GST_STATE_CHANGE_FAILURE);
+  const MessagePtr message(gst_bus_pop_filtered(bus, GST_MESSAGE_ERROR));
+  ASSERT_TRUE(message);
+  GError* error = nullptr;
+  gchar* debug = nullptr;
+  gst_message_parse_error(message.get(), &error, &debug);
+  EXPECT_NE(std::string(debug).find("no-such-host.invalid"), std::string::npos);
+  g_error_free(error);
+  g_free(debug);
+  gst_element_set_state(sink.get(), GST_STATE_NULL);
+  gst_element_set_bus(sink.get(), nullptr);
+  gst_object_unref(bus);
+}
+
+TEST(EcnUdpSrc, APortInUseIsAnElementErrorThatSaysWhatToDo) {
+  const Harness first = NewSource("127.0.0.1");
+  const ElementPtr second(gst_element_factory_make("ecnudpsrc", nullptr));
+  gst_object_ref_sink(second.get());
+  g_object_set(second.get(), "address", "127.0.0.1", "port", LocalPort(first.get()), nullptr);
+  GstBus* bus = gst_bus_new();
+  gst_element_set_bus(second.get(), bus);
+  EXPECT_EQ(gst_element_set_state(second.get(), GST_STATE_PAUSED), GST_STATE_CHANGE_FAILURE);
+  const MessagePtr message(gst_bus_pop_filtered(bus, GST_MESSAGE_ERROR));
+  ASSERT_TRUE(message);
+  GError* error = nullptr;
+  gst_message_parse_error(message.get(), &error, nullptr);
+  EXPECT_TRUE(g_error_matches(error, GST_RESOURCE_ERROR, GST_RESOURCE_ERROR_OPEN_READ));
+  EXPECT_NE(std::string(error->message).find(std::to_string(LocalPort(first.get()))),
+            std::string::npos);
+  g_error_free(error);
+  gst_element_set_state(second.get(), GST_STATE_NULL);
+  gst_element_set_bus(second.get(), nullptr);
+  gst_object_unref(bus);
+}
+
+struct Peer {
+  const char* accepts;
+  const char* wants;  // caps that the source then sets; NULL for none
+};
+class WithoutCaps : public ::testing::TestWithParam<Peer> {};
+TEST_P(WithoutCaps, TheSourceTakesWhatDownstreamWants) {
+  Harness src(gst_harness_new_with_padnames("ecnudpsrc", nullptr, "src"));
+  g_object_set(src->element, "port", 0, "address", "127.0.0.1", nullptr);
+  gst_harness_set_sink_caps_str(src.get(), GetParam().accepts);
+  gst_harness_play(src.get());
+  const Harness sink = NewSink("127.0.0.1", LocalPort(src.get()));
+  ASSERT_EQ(gst_harness_push(sink.get(), Payload("x")), GST_FLOW_OK);
+  const BufferPtr got(gst_harness_pull(src.get()));
+  ASSERT_TRUE(got);
+  const CapsPtr caps(gst_pad_get_current_caps(src->sinkpad));
+  if (GetParam().wants == nullptr) {
+    EXPECT_FALSE(caps);
+    return;
+  }
+  const CapsPtr wanted(gst_caps_from_string(GetParam().wants));
+  ASSERT_TRUE(caps);
+  EXPECT_TRUE(gst_caps_is_equal(caps.get(), wanted.get()))
+      << StringPtr(gst_caps_to_string(caps.get())).get();
+}
+INSTANTIATE_TEST_SUITE_P(
+    Peers, WithoutCaps,
+    ::testing::Values(
+        Peer{"ANY", nullptr}, Peer{"application/x-rtcp", "application/x-rtcp"},
+        Peer{"application/x-rtp,media=application,encoding-name=X-LIDAR-DRACO,"
+             "clock-rate=90000,payload=[0,127],ssrc=[0,4294967295]",
+             "application/x-rtp,media=application,encoding-name=X-LIDAR-DRACO,"
+             "clock-rate=90000,payload=96"},
+        Peer{"application/x-rtp,media={video,audio},clock-rate=90000;application/x-other",
+             "application/x-rtp,media=video,clock-rate=90000"}));
+
+TEST(EcnUdpSrc, EosFromTheApplicationEndsTheStream) {
+  const Harness src = NewSource();
+  ASSERT_TRUE(gst_element_send_event(src->element, gst_event_new_eos()));
+  for (;;) {
+    const EventPtr event(gst_harness_pull_event(src.get()));
+    ASSERT_TRUE(event);
+    if (GST_EVENT_TYPE(event.get()) == GST_EVENT_EOS) break;
+  }
+}
+
+TEST(EcnUdpSrc, SilenceIsReportedAfterTheTimeout) {
+  Harness src(gst_harness_new_with_padnames("ecnudpsrc", nullptr, "src"));
+  g_object_set(src->element, "port", 0, "timeout", guint64{10 * GST_MSECOND}, nullptr);
+  GstBus* bus = gst_bus_new();
+  gst_element_set_bus(src->element, bus);
+  gst_harness_play(src.get());
+  const MessagePtr message(gst_bus_timed_pop_filtered(bus, 5 * GST_SECOND, GST_MESSAGE_ELEMENT));
+  ASSERT_TRUE(message);
+  EXPECT_TRUE(gst_message_has_name(message.get(), "GstEcnUdpSrcTimeout"));
+  gst_element_set_state(src->element, GST_STATE_NULL);
+  gst_element_set_bus(src->element, nullptr);
+  gst_object_unref(bus);
+}
+
+TEST(EcnUdp, WorksAgainAfterEveryStateCycle) {
+  Harness src(gst_harness_new_with_padnames("ecnudpsrc", nullptr, "src"));
+  g_object_set(src->element, "port", 0, "address", "127.0.0.1", nullptr);
+  for (int cycle = 0; cycle < 3; ++cycle) {
+    gst_harness_play(src.get());
+    const Harness sink = NewSink("127.0.0.1", LocalPort(src.get()));
+    ASSERT_EQ(gst_harness_push(sink.get(), Payload("again")), GST_FLOW_OK);
+    const BufferPtr got(gst_harness_pull(src.get()));
+    ASSERT_TRUE(got) << cycle;
+    ASSERT_EQ(gst_element_set_state(src->element, GST_STATE_NULL), GST_STATE_CHANGE_SUCCESS);
+    EXPECT_FALSE(GetObject<GSocket>(src.get(), "used-socket"));
+  }
+}
+
+TEST(EcnUdp, AGivenSocketStaysOpenWhereAsked) {
+  Harness src(gst_harness_new_with_padnames("ecnudpsrc", nullptr, "src"));
+  const Object<GSocket> socket(
+      g_socket_new(G_SOCKET_FAMILY_IPV4, G_SOCKET_TYPE_DATAGRAM, G_SOCKET_PROTOCOL_UDP, nullptr));
+  const Object<GInetAddress> any(g_inet_address_new_loopback(G_SOCKET_FAMILY_IPV4));
+  const Object<GSocketAddress> local(g_inet_socket_address_new(any.get(), 0));
+  ASSERT_TRUE(g_socket_bind(socket.get(), local.get(), FALSE, nullptr));
+  g_object_set(src->element, "socket", socket.get(), "close-socket", FALSE, nullptr);
+  gst_harness_play(src.get());
+  gst_element_set_state(src->element, GST_STATE_NULL);
+  EXPECT_FALSE(g_socket_is_closed(socket.get()));
+  g_object_set(src->element, "close-socket", TRUE, nullptr);
+  gst_harness_play(src.get());
+  gst_element_set_state(src->element, GST_STATE_NULL);
+  EXPECT_TRUE(g_socket_is_closed(socket.get()));
+}
+
+}  // namespace
+}  // namespace lidar::gst
