@@ -14,12 +14,14 @@ Usage: tests/run.sh [--suite NAME] [--no-install] [--no-sanitize] [--tsan]
   --no-install    do not install Debian packages
   --no-sanitize   leave out the sanitizer build
   --tsan          also run core and elements under ThreadSanitizer
+  --tidy          also run clang-tidy over src, gst and ext
 EOF
 }
 
 suites=(lint core elements pipelines fuzz bench)
 sanitize=yes
 tsan=no
+tidy=no
 install=yes
 while [ $# -gt 0 ]; do
   case $1 in
@@ -34,6 +36,7 @@ while [ $# -gt 0 ]; do
     --no-install) install=no ;;
     --no-sanitize) sanitize=no ;;
     --tsan) tsan=yes ;;
+    --tidy) tidy=yes ;;
     -h | --help) usage; exit 0 ;;
     *) echo "Unknown option '$1'." >&2; usage >&2; exit 2 ;;
   esac
@@ -87,6 +90,12 @@ if [ ${#suites[@]} -gt 0 ]; then
   else
     count 1
   fi
+fi
+
+if [ "$tidy" = yes ]; then
+  echo "== clang-tidy (${SECONDS}s)"
+  "$here/tidy.sh" "$root/build"
+  count $?
 fi
 
 if [ "$sanitize" = yes ]; then

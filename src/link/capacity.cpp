@@ -84,7 +84,7 @@ std::optional<Capacity> Capacity::ParseTrace(std::string_view text, bool repeat,
     } else if (line) {
       c.changes_.push_back({line->at, line->rate});
     }
-    if (!problem.empty()) problem = "line " + std::to_string(number) + ": " + problem;
+    if (!problem.empty()) problem.insert(0, "line " + std::to_string(number) + ": ");
   }
   if (problem.empty() && c.changes_.empty()) problem = "no line with a rate";
   if (!problem.empty()) {
