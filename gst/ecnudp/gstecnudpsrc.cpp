@@ -283,8 +283,6 @@ static GstCaps* FixateForPeer(const GstCaps* peer) {
   GstStructure* s = gst_caps_get_structure(caps, 0);
   if (gst_structure_has_field(s, "payload"))
     gst_structure_fixate_field_nearest_int(s, "payload", kDefaultPayload);
-  // A stream's own numbers are not for the receiver to choose.
-  gst_structure_remove_fields(s, "ssrc", "timestamp-offset", "seqnum-offset", nullptr);
   return gst_caps_fixate(caps);
 }
 

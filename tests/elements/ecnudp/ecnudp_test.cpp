@@ -300,7 +300,7 @@ INSTANTIATE_TEST_SUITE_P(
     ::testing::Values(
         Peer{"ANY", nullptr}, Peer{"application/x-rtcp", "application/x-rtcp"},
         Peer{"application/x-rtp,media=application,encoding-name=X-LIDAR-DRACO,"
-             "clock-rate=90000,payload=[0,127],ssrc=[0,4294967295]",
+             "clock-rate=90000,payload=[0,127]",
              "application/x-rtp,media=application,encoding-name=X-LIDAR-DRACO,"
              "clock-rate=90000,payload=96"},
         Peer{"application/x-rtp,media={video,audio},clock-rate=90000;application/x-other",
