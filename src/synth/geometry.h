@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Vectors, rays and poses of the synthetic world: x forward along the road, y left, z up, metres.
+#pragma once
+#include <array>
+#include <cmath>
+
+namespace lidar::synth {
+
+struct Vec3 {
+  float x = 0;
+  float y = 0;
+  float z = 0;
+};
+constexpr Vec3 operator+(Vec3 a, Vec3 b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
+constexpr Vec3 operator-(Vec3 a, Vec3 b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
+constexpr Vec3 operator*(float f, Vec3 a) { return {f * a.x, f * a.y, f * a.z}; }
+constexpr float Dot(Vec3 a, Vec3 b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
+
+/// Row-major rotation.
+struct Rotation {
+  std::array<float, 9> m{};
+  Vec3 operator*(Vec3 v) const {
+    return {m[0] * v.x + m[1] * v.y + m[2] * v.z, m[3] * v.x + m[4] * v.y + m[5] * v.z,
+            m[6] * v.x + m[7] * v.y + m[8] * v.z};
+  }
+};
+
+/// A unit direction and what every test of a ray asks for again.
+struct Ray {
+  Vec3 origin;
+  Vec3 direction;
+  Vec3 inverse;          // of the direction, per axis
+  float horizontal = 0;  // length of the direction on the ground
+  float slope = 0;       // rise over that length
+};
+
+inline Ray MakeRay(Vec3 origin, Vec3 direction) {
+  // A direction that is exactly parallel to a face has no inverse: keep it finite.
+  const auto inverse = [](float v) { return 1.0F / (std::abs(v) > 1e-9F ? v : 1e-9F); };
+  const float horizontal = std::sqrt(direction.x * direction.x + direction.y * direction.y) + 1e-9F;
+  return {origin,
+          direction,
+          {inverse(direction.x), inverse(direction.y), inverse(direction.z)},
+          horizontal,
+          direction.z / horizontal};
+}
+
+/// Position [m] and orientation [rad] of the sensor in the world; yaw, then pitch (nose down is
+/// positive), then roll.
+struct Pose {
+  double x = 0;
+  double y = 0;
+  double z = 0;
+  double yaw = 0;
+  double pitch = 0;
+  double roll = 0;
+
+  Rotation ToRotation() const;
+  /// x, y, z, w
+  std::array<double, 4> ToQuaternion() const;
+};
+
+}  // namespace lidar::synth

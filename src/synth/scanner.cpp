@@ -1,0 +1,178 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "synth/scanner.h"
+
+#include <algorithm>
+
+namespace lidar::synth {
+namespace {
+
+constexpr Duration kChunk = std::chrono::milliseconds(2);
+constexpr float kFastest = 25;  // of what moves in a scene [m/s]
+constexpr std::size_t kGaussBits = 12;
+
+/// Normal deviates by quantile, to be drawn with uniform bits.
+std::vector<float> MakeGaussTable() {
+  constexpr double kTurn = 6.28318530717958647692;
+  std::vector<float> table(std::size_t{1} << kGaussBits);
+  Random random(0x6A09E667F3BCC908ULL);
+  for (float& value : table) {
+    const double u = 1.0 - static_cast<double>(random.Uniform());
+    const double v = static_cast<double>(random.Uniform());
+    value = static_cast<float>(
+        std::clamp(std::sqrt(-2 * std::log(u)) * std::cos(kTurn * v), -4.0, 4.0));
+  }
+  return table;
+}
+
+Vec3 ToVec(const std::array<float, 3>& a) { return {a[0], a[1], a[2]}; }
+
+float BeamOrigin(const SensorModel& m) {
+  return static_cast<float>(std::hypot(m.beam_to_lidar_x_m, m.beam_to_lidar_z_m));
+}
+
+}  // namespace
+
+Scanner::Scanner(const ScannerConfig& config)
+    : config_(config),
+      projection_(config.sensor.model),
+      beam_origin_m_(BeamOrigin(config.sensor.model)),
+      reach_m_(static_cast<float>(config.sensor.max_range_m)),
+      signal_scale_(static_cast<float>(10 * config.sensor.range_of_10_percent_m *
+                                       config.sensor.range_of_10_percent_m)),
+      gauss_(MakeGaussTable()),
+      scene_(Scene::Make(config.scene, config.seed)),
+      trajectory_(scene_->Lane(config.speed_mps)),
+      chunk_columns_(std::max(
+          1U, static_cast<std::uint32_t>(projection_.columns() * kChunk / config.period))) {
+  view_.radius = reach_m_ + static_cast<float>(kAnchorStep);
+  MoveAnchor(0);
+}
+
+Duration Scanner::ColumnTime(std::uint64_t scan, std::uint32_t column) const {
+  return config_.period * static_cast<std::int64_t>(scan) +
+         config_.period * std::int64_t{column} / std::int64_t{projection_.columns()};
+}
+
+void Scanner::MoveAnchor(double x) {
+  const double anchor = std::floor(x / kAnchorStep) * kAnchorStep;
+  if (anchor == view_.anchor_x && !shapes_.empty()) return;
+  view_.anchor_x = anchor;
+  shapes_.clear();
+  scene_->AddStatic(view_, &shapes_);
+  static_shapes_ = shapes_.size();
+}
+
+Scanner::Column Scanner::MakeColumn(std::uint64_t scan, std::uint32_t column) const {
+  const Duration time = ColumnTime(scan, column);
+  const Pose pose = trajectory_.At(time);
+  Column c;
+  c.index = column;
+  c.rotation = pose.ToRotation();
+  // Where the beams of this column begin, in the sensor frame: a point less its way.
+  const Vec3 at_1m = ToVec(projection_.Point(0, column, 1000));
+  const Vec3 origin = at_1m - (1.0F - beam_origin_m_) * ToVec(projection_.Direction(0, column));
+  c.origin = Vec3{static_cast<float>(pose.x - view_.anchor_x), static_cast<float>(pose.y),
+                  static_cast<float>(pose.z)} +
+             c.rotation * origin;
+  c.age_s = static_cast<float>(Seconds(time - chunk_time_));
+  c.key = Mix(Mix(config_.seed + scan * 0x10001) + column);
+  return c;
+}
+
+SectorIndex::Arc Scanner::ArcOf(std::uint64_t scan, std::uint32_t first, std::uint32_t last) const {
+  float low = 0;
+  float high = 0;
+  float start = -1;
+  for (const std::uint32_t column : {first, last}) {
+    const Column c = MakeColumn(scan, column);
+    for (std::uint32_t beam = 0; beam < projection_.beams(); ++beam) {
+      const Vec3 d = c.rotation * ToVec(projection_.Direction(beam, column));
+      const float angle = PseudoAngle(d.x, d.y);
+      if (start < 0) start = angle;
+      float offset = angle - start;
+      if (offset > 2) offset -= 4;
+      if (offset < -2) offset += 4;
+      low = std::min(low, offset);
+      high = std::max(high, offset);
+    }
+  }
+  // Between the two columns the pose moves by a little, too.
+  constexpr float kSlack = 0.02F;
+  const float from = start + low - kSlack;
+  return {from < 0 ? from + 4 : from, high - low + 2 * kSlack};
+}
+
+void Scanner::BeginChunk(std::uint64_t scan, std::uint32_t chunk) {
+  const std::uint32_t first = chunk * chunk_columns_;
+  const std::uint32_t last = std::min(first + chunk_columns_, projection_.columns()) - 1;
+  chunk_time_ = ColumnTime(scan, first);
+  const Pose pose = trajectory_.At(chunk_time_);
+  MoveAnchor(pose.x);
+  shapes_.resize(static_shapes_);
+  scene_->AddMoving(view_, {Seconds(chunk_time_), pose.x, trajectory_.speed()}, &shapes_);
+  const float margin = 0.05F + static_cast<float>(Seconds(kChunk)) *
+                                   (static_cast<float>(trajectory_.speed()) + kFastest);
+  index_.Build(shapes_, MakeColumn(scan, first).origin, margin, ArcOf(scan, first, last));
+}
+
+Hit Scanner::Trace(const Ray& ray, float age_s, Random* noise) const {
+  Hit hit;
+  hit.distance = reach_m_;
+  scene_->IntersectGround(view_, ray, noise, &hit);
+  for (const auto& entry : index_.Find(PseudoAngle(ray.direction.x, ray.direction.y))) {
+    if (entry.nearest > hit.distance * ray.horizontal) break;
+    if (ray.slope > entry.max_slope || ray.slope < entry.min_slope) continue;
+    const Shape& shape = shapes_[entry.shape];
+    if (entry.shape < static_shapes_) {
+      Intersect(shape, ray, noise, &hit);
+    } else {
+      Ray relative = ray;
+      relative.origin = ray.origin - age_s * shape.velocity;
+      Intersect(shape, relative, noise, &hit);
+    }
+  }
+  return hit;
+}
+
+Scanner::Pixel Scanner::Measure(const Hit& hit, Random* noise) const {
+  constexpr float kDropout = 0.998F;
+  const float range = hit.distance + beam_origin_m_;
+  // Against a target of 10 % at the range where nine pulses in ten come back.
+  const float signal = hit.reflectivity * hit.cosine * signal_scale_ / (range * range);
+  const std::uint64_t bits = noise->Bits();
+  const float chance = kDropout * signal * signal / (signal * signal + 0.11F);
+  const float drawn = static_cast<float>(bits >> 40) * 0x1p-24F;
+  if (hit.distance >= reach_m_ || !(drawn < chance)) return {};
+  // Weak echoes are timed less well: three times the noise at the limit of detection.
+  const float sigma = static_cast<float>(config_.noise_m) * (1 + 2 / (1 + signal * signal));
+  const float deviate = gauss_[bits & ((1U << kGaussBits) - 1)];
+  const float measured = range + sigma * deviate;
+  if (measured < static_cast<float>(config_.sensor.min_range_m) || measured > reach_m_) return {};
+  const float speckle = 0.95F + 0.1F * static_cast<float>((bits >> 16) & 0xFFF) / 4096.0F;
+  const float reflectivity =
+      hit.reflectivity <= 1 ? 100 * hit.reflectivity : 100 + 110 * (hit.reflectivity - 1);
+  return {static_cast<std::uint32_t>(measured * 1000 + 0.5F),
+          static_cast<std::uint8_t>(std::min(255.0F, reflectivity * speckle + 0.5F))};
+}
+
+void Scanner::Cast(std::uint64_t scan, ColumnWindow window, Returns* returns) {
+  const std::uint32_t beams = projection_.beams();
+  returns->range_mm.resize(std::size_t{beams} * window.count);
+  returns->reflectivity.resize(returns->range_mm.size());
+  std::uint32_t chunk = UINT32_MAX;
+  for (std::uint32_t i = 0; i < window.count; ++i) {
+    const std::uint32_t index = window.first + i;
+    if (index / chunk_columns_ != chunk) BeginChunk(scan, chunk = index / chunk_columns_);
+    const Column column = MakeColumn(scan, index);
+    for (std::uint32_t beam = 0; beam < beams; ++beam) {
+      Random noise(column.key + beam);
+      const Vec3 direction = column.rotation * ToVec(projection_.Direction(beam, index));
+      const Hit hit = Trace(MakeRay(column.origin, direction), column.age_s, &noise);
+      const Pixel pixel = Measure(hit, &noise);
+      returns->range_mm[std::size_t{beam} * window.count + i] = pixel.range_mm;
+      returns->reflectivity[std::size_t{beam} * window.count + i] = pixel.reflectivity;
+    }
+  }
+}
+
+}  // namespace lidar::synth

@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// A spinning LiDAR on a car that drives through a synthetic scene.
+#pragma once
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "base/time.h"
+#include "cloud/range_projection.h"
+#include "synth/scene.h"
+#include "synth/sector_index.h"
+#include "synth/sensors.h"
+
+namespace lidar::synth {
+
+struct ScannerConfig {
+  Sensor sensor;
+  Duration period = std::chrono::milliseconds(100);  // of one turn
+  SceneKind scene = SceneKind::kStreet;
+  double speed_mps = 0;
+  double noise_m = 0.01;  // standard deviation of a range on a white wall nearby
+  std::uint64_t seed = 0;
+};
+
+/// What the sensor measured, beam by beam: [beam * columns + column]. Range 0: no return.
+struct Returns {
+  std::vector<std::uint32_t> range_mm;
+  std::vector<std::uint8_t> reflectivity;  // Ouster's scale: percent, retroreflectors above 100
+};
+
+/// Every ray leaves at its own time from where the sensor is then. The returns depend on the
+/// configuration, the scan and the pixel only, never on how scans are cut into calls. One thread at
+/// a time.
+class Scanner {
+ public:
+  explicit Scanner(const ScannerConfig& config);
+
+  /// Casts the columns of `window` (within a turn) of turn number `scan`.
+  void Cast(std::uint64_t scan, ColumnWindow window, Returns* returns);
+  /// When column `column` of that turn is sampled, after the start.
+  Duration ColumnTime(std::uint64_t scan, std::uint32_t column) const;
+  const Trajectory& trajectory() const { return trajectory_; }
+
+ private:
+  struct Column {
+    std::uint32_t index;
+    Vec3 origin;        // of its rays, relative to the anchor
+    Rotation rotation;  // sensor to world
+    float age_s;        // since the chunk began
+    std::uint64_t key;  // of its noise
+  };
+  struct Pixel {
+    std::uint32_t range_mm = 0;
+    std::uint8_t reflectivity = 0;
+  };
+
+  void MoveAnchor(double x);
+  void BeginChunk(std::uint64_t scan, std::uint32_t chunk);
+  Column MakeColumn(std::uint64_t scan, std::uint32_t column) const;
+  SectorIndex::Arc ArcOf(std::uint64_t scan, std::uint32_t first, std::uint32_t last) const;
+  Hit Trace(const Ray& ray, float age_s, Random* noise) const;
+  Pixel Measure(const Hit& hit, Random* noise) const;
+
+  ScannerConfig config_;
+  RangeProjection projection_;
+  float beam_origin_m_;
+  float reach_m_;
+  float signal_scale_;
+  std::vector<float> gauss_;
+  std::unique_ptr<Scene> scene_;
+  Trajectory trajectory_;
+
+  // The piece of the world around the sensor, and the shapes in it: first those that stand.
+  View view_;
+  std::size_t static_shapes_ = 0;
+  std::vector<Shape> shapes_;
+  // A chunk is a stretch of the sweep in which the world's order by distance holds.
+  std::uint32_t chunk_columns_;
+  Duration chunk_time_{};
+  SectorIndex index_;
+};
+
+}  // namespace lidar::synth

@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// A world without end along x: what stands near a place is made from the seed and the place.
+#pragma once
+#include <cmath>
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "synth/shapes.h"
+#include "synth/trajectory.h"
+
+namespace lidar::synth {
+
+enum class SceneKind { kStreet, kTunnel, kField };
+
+/// A piece of the world. Its coordinates are floats relative to the anchor, (anchor_x, 0, 0), so
+/// that a long drive does not eat their precision.
+struct View {
+  double anchor_x = 0;  // a multiple of kAnchorStep
+  float radius = 100;   // how far from the anchor things matter
+};
+/// Textures of the ground repeat by divisors of this.
+constexpr double kAnchorStep = 18;
+
+class Scene {
+ public:
+  virtual ~Scene() = default;
+  static std::unique_ptr<Scene> Make(SceneKind kind, std::uint64_t seed);
+
+  /// The lane of the sensor's car.
+  virtual TrajectorySettings Lane(double speed_mps) const = 0;
+  /// Appends what stands still.
+  virtual void AddStatic(const View& view, std::vector<Shape>* shapes) const = 0;
+  /// Appends what moves, where it is at `time_s`, when the sensor's car is at `ego_x` with `speed`.
+  struct Instant {
+    double time_s = 0;
+    double ego_x = 0;
+    double ego_speed = 0;
+  };
+  virtual void AddMoving(const View& view, const Instant& now,
+                         std::vector<Shape>* shapes) const = 0;
+  /// Ground and whatever else never ends; true where it is met nearer than hit->distance.
+  virtual bool IntersectGround(const View& view, const Ray& ray, Random* noise, Hit* hit) const = 0;
+
+ protected:
+  explicit Scene(std::uint64_t seed) : seed_(seed) {}
+
+  /// Calls place(Random, index, x relative to the anchor) for each cell of `length` metres in view;
+  /// x is the middle of the cell.
+  template <class Place>
+  void ForEachCell(const View& view, double length, std::uint64_t kind, const Place& place) const {
+    const auto radius = static_cast<double>(view.radius);
+    const auto first = static_cast<std::int64_t>(std::floor((view.anchor_x - radius) / length));
+    const auto last = static_cast<std::int64_t>(std::floor((view.anchor_x + radius) / length));
+    for (std::int64_t i = first; i <= last; ++i) {
+      const double middle = (static_cast<double>(i) + 0.5) * length;
+      place(Random(seed_, kind, i), i, static_cast<float>(middle - view.anchor_x));
+    }
+  }
+  std::uint64_t seed() const { return seed_; }
+
+ private:
+  std::uint64_t seed_;
+};
+
+}  // namespace lidar::synth

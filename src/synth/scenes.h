@@ -1,0 +1,12 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// The makers of the scenes, one a file.
+#pragma once
+#include "synth/scene.h"
+
+namespace lidar::synth {
+
+std::unique_ptr<Scene> MakeStreet(std::uint64_t seed);
+std::unique_ptr<Scene> MakeTunnel(std::uint64_t seed);
+std::unique_ptr<Scene> MakeField(std::uint64_t seed);
+
+}  // namespace lidar::synth

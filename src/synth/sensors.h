@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Spinning sensors after Ouster's data sheets and captures.
+#pragma once
+#include <cstdint>
+#include <optional>
+#include <string_view>
+
+#include "cloud/sensor_model.h"
+
+namespace lidar::synth {
+
+/// A sensor as built: its beams, and how far it sees.
+struct Sensor {
+  SensorModel model;
+  double min_range_m = 0;
+  double max_range_m = 0;
+  double range_of_10_percent_m =
+      0;  // where a target of 10 % reflectivity returns nine times in ten
+};
+
+/// "os0-32" ... "os2-128", with 512, 1024 or 2048 columns; none for any other. Every unit of a
+/// model has the same small errors of its beams.
+std::optional<Sensor> MakeSensor(std::string_view name, std::uint32_t columns);
+
+}  // namespace lidar::synth

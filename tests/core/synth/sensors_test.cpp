@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "synth/sensors.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace lidar::synth {
+namespace {
+
+struct Expected {
+  const char* name;
+  std::size_t beams;
+  double view_deg;
+};
+class Sensors : public ::testing::TestWithParam<Expected> {};
+
+TEST_P(Sensors, LookDownFromTopToBottomOverTheFieldOfViewOfTheDataSheet) {
+  const auto sensor = MakeSensor(GetParam().name, 1024);
+  ASSERT_TRUE(sensor);
+  const auto& beams = sensor->model.beams;
+  ASSERT_EQ(beams.size(), GetParam().beams);
+  for (std::size_t i = 1; i < beams.size(); ++i)
+    EXPECT_LT(beams[i].altitude_deg, beams[i - 1].altitude_deg);
+  EXPECT_NEAR(beams.front().altitude_deg - beams.back().altitude_deg, GetParam().view_deg, 0.2);
+  const auto bytes = sensor->model.Serialise();
+  EXPECT_TRUE(SensorModel::Parse({bytes.data(), bytes.size()}));
+}
+
+TEST_P(Sensors, StandInOneLineOnceDestaggered) {
+  for (const std::uint32_t columns : {512U, 1024U, 2048U}) {
+    const auto sensor = MakeSensor(GetParam().name, columns);
+    for (const Beam& b : sensor->model.beams)
+      EXPECT_NEAR(b.azimuth_deg * columns / 360, b.pixel_shift, 0.5);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    All, Sensors,
+    ::testing::Values(Expected{"os0-32", 32, 91.2}, Expected{"os0-64", 64, 91.2},
+                      Expected{"os0-128", 128, 91.2}, Expected{"os1-32", 32, 42.8},
+                      Expected{"os1-64", 64, 42.8}, Expected{"os1-128", 128, 42.8},
+                      Expected{"os2-32", 32, 21.2}, Expected{"os2-64", 64, 21.2},
+                      Expected{"os2-128", 128, 21.2}));
+
+TEST(MakeSensor, KnowsNoOthers) {
+  for (const char* name : {"", "os1", "os1-", "os1-16", "os3-64", "os1_64", "os1-64x", "OS1-64"})
+    EXPECT_FALSE(MakeSensor(name, 1024)) << name;
+  EXPECT_FALSE(MakeSensor("os1-64", 1000));
+}
+
+}  // namespace
+}  // namespace lidar::synth
