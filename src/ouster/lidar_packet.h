@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Reads a lidar packet, whose size is the only thing that has been checked.
+#pragma once
+#include <cstdint>
+#include <cstring>
+#include <optional>
+
+#include "base/byte_reader.h"
+#include "ouster/packet_format.h"
+
+namespace lidar::ouster {
+
+struct PacketHeader {
+  std::uint16_t type = 0;
+  std::uint32_t frame_id = 0;
+  std::uint32_t init_id = 0;  // 0: the packet does not say
+  std::uint64_t serial = 0;   // 0: the packet does not say
+};
+
+/// One measurement block.
+struct PacketColumn {
+  std::uint64_t timestamp = 0;  // ns of the sensor's clock
+  std::uint32_t measurement_id = 0;
+  std::uint32_t status = 0;
+  const std::uint8_t* pixels = nullptr;
+
+  bool valid() const { return (status & 1U) != 0; }
+};
+
+/// Reads one channel of a pixel.
+class ChannelReader {
+ public:
+  explicit ChannelReader(const ChannelBits& bits)
+      : word_(bits.first_bit / 32 * 4),
+        shift_(bits.first_bit % 32U),
+        scale_shift_(bits.scale_shift),
+        mask_(bits.bits >= 32 ? ~0U : (1U << bits.bits) - 1) {}
+
+  std::uint32_t Read(const std::uint8_t* pixel) const {
+    const std::uint8_t* w = pixel + word_;
+    const std::uint32_t word =
+        w[0] | std::uint32_t{w[1]} << 8 | std::uint32_t{w[2]} << 16 | std::uint32_t{w[3]} << 24;
+    return (word >> shift_ & mask_) << scale_shift_;
+  }
+
+ private:
+  std::uint32_t word_;  // byte offset
+  std::uint32_t shift_;
+  std::uint32_t scale_shift_;
+  std::uint32_t mask_;
+};
+
+/// A view; the bytes must outlive it.
+class LidarPacket {
+ public:
+  /// None unless `bytes` are exactly one packet of `format`.
+  static std::optional<LidarPacket> Parse(ByteView bytes, const PacketFormat& format);
+
+  const PacketHeader& header() const { return header_; }
+  std::uint32_t columns() const { return format_.columns_per_packet; }
+  /// `i` < columns()
+  PacketColumn Column(std::uint32_t i) const;
+
+ private:
+  LidarPacket(ByteView bytes, const PacketFormat& format) : bytes_(bytes), format_(format) {}
+
+  ByteView bytes_;
+  PacketFormat format_;
+  PacketHeader header_;
+};
+
+/// Firmware before 2.4 and FUSA packets carry a constant where newer ones have a CRC-64, so a
+/// mismatch means damage only once a packet of the same sensor matched.
+class PacketCrcCheck {
+ public:
+  explicit PacketCrcCheck(const PacketFormat& format) : carried_(!format.is_legacy()) {}
+  /// False for a damaged packet.
+  bool Accept(ByteView packet);
+
+ private:
+  bool carried_;
+  bool seen_valid_ = false;
+  std::uint32_t unseen_ = 0;
+};
+
+}  // namespace lidar::ouster

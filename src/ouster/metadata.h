@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// What a sensor says about itself: its metadata JSON, as old and new firmware write it.
+#pragma once
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "base/time.h"
+#include "cloud/range_projection.h"
+#include "cloud/sensor_model.h"
+#include "cloud/slicing.h"
+#include "ouster/packet_format.h"
+
+namespace lidar::ouster {
+
+/// `udp_profile_imu`.
+enum class ImuProfile { kLegacy, kAccel32Gyro32Nmea, kOff };
+
+/// Direction of every pixel of a sensor whose beams do not turn with an encoder: beams x columns,
+/// row-major [degrees].
+struct PixelAngles {
+  std::vector<float> azimuth_deg;
+  std::vector<float> altitude_deg;
+
+  bool empty() const { return azimuth_deg.empty(); }
+};
+
+struct Metadata {
+  std::string product_line;
+  std::string serial_text;
+  std::uint64_t serial = 0;  // 0: not known
+  std::string firmware;
+  std::uint32_t init_id = 0;  // 0: not known
+  std::string lidar_mode;
+  std::string timestamp_mode;  // empty: not known
+  double scans_per_second = 0;
+  PacketFormat format;
+  ColumnWindow window;
+  SensorModel model;  // with per-pixel angles: the beams' means, for their count and order only
+  PixelAngles pixel_angles;
+  Transform imu_to_sensor = kIdentity;  // translation in metres
+  ImuProfile imu_profile = ImuProfile::kLegacy;
+  std::uint32_t imu_measurements_per_packet = 0;
+  std::uint16_t lidar_port = 0;  // 0: not known
+  std::uint16_t imu_port = 0;
+
+  Duration scan_period() const { return FromSeconds(1 / scans_per_second); }
+  ScanShape shape() const { return {model.columns_per_scan, format.beams, scan_period()}; }
+  std::size_t imu_packet_size() const;
+
+  static constexpr std::size_t kMaxJsonSize = 32U << 20;  // bytes; per-pixel angles take megabytes
+};
+
+/// Reads both layouts: sections (`lidar_data_format`, firmware 2.0 and later) and the flat one
+/// that older clients wrote. None where a cloud could not be built; `error` then says why, in words
+/// for a user.
+std::optional<Metadata> ParseMetadata(std::string_view json, std::string* error);
+
+/// True where packets and clouds of both look alike, so that a stream may go on.
+bool SameGeometry(const Metadata& a, const Metadata& b);
+
+}  // namespace lidar::ouster

@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "ouster/pcap_reader.h"
+
+#include <pcap/pcap.h>
+
+#include <array>
+#include <utility>
+
+namespace lidar::ouster {
+namespace {
+
+/// The number of LINKTYPE_RAW differs from the DLT_ that libpcap gives for it.
+LinkType FromDlt(int dlt) { return dlt == DLT_RAW ? LinkType::kRaw : static_cast<LinkType>(dlt); }
+
+pcap* OpenFile(const std::string& path, std::string* error) {
+  std::array<char, PCAP_ERRBUF_SIZE> message{};
+  pcap* handle = pcap_open_offline_with_tstamp_precision(path.c_str(), PCAP_TSTAMP_PRECISION_NANO,
+                                                         message.data());
+  if (handle == nullptr) *error = message.data();
+  return handle;
+}
+
+}  // namespace
+
+void PcapReader::Close::operator()(pcap* p) const { pcap_close(p); }
+
+PcapReader::PcapReader(std::string path, Handle handle)
+    : path_(std::move(path)),
+      handle_(std::move(handle)),
+      link_(FromDlt(pcap_datalink(handle_.get()))) {}
+
+std::unique_ptr<PcapReader> PcapReader::Open(const std::string& path, std::string* error) {
+  Handle handle(OpenFile(path, error));
+  if (!handle) return nullptr;
+  return std::unique_ptr<PcapReader>(new PcapReader(path, std::move(handle)));
+}
+
+std::optional<PcapReader::Captured> PcapReader::Next() {
+  pcap_pkthdr* header = nullptr;
+  const std::uint8_t* frame = nullptr;
+  for (;;) {
+    const int got = pcap_next_ex(handle_.get(), &header, &frame);
+    if (got == PCAP_ERROR) error_ = pcap_geterr(handle_.get());
+    if (got != 1) return std::nullopt;
+    auto datagram = extractor_.Extract(link_, {frame, header->caplen});
+    if (!datagram) continue;
+    // With nanosecond precision, tv_usec holds nanoseconds.
+    const Duration since_epoch =
+        std::chrono::seconds(header->ts.tv_sec) + std::chrono::nanoseconds(header->ts.tv_usec);
+    return Captured{*std::move(datagram), Time(since_epoch)};
+  }
+}
+
+bool PcapReader::Rewind() {
+  Handle handle(OpenFile(path_, &error_));
+  if (!handle) return false;
+  handle_ = std::move(handle);
+  extractor_ = UdpExtractor();
+  return true;
+}
+
+}  // namespace lidar::ouster

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// The UDP datagrams of a capture file (pcap or pcapng), through libpcap.
+#pragma once
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "base/time.h"
+#include "ouster/udp_datagram.h"
+
+struct pcap;
+
+namespace lidar::ouster {
+
+class PcapReader {
+ public:
+  /// Null and `error` for a file that is missing or no capture.
+  static std::unique_ptr<PcapReader> Open(const std::string& path, std::string* error);
+
+  struct Captured {
+    UdpDatagram datagram;
+    Time time;  // of the capture, since the Unix epoch
+  };
+  /// None at the end of the file, or where it is damaged: error() then says so.
+  std::optional<Captured> Next();
+  /// Empty unless the file ended in the middle of a packet or is damaged.
+  const std::string& error() const { return error_; }
+  /// Back to the first packet; false where the file is gone.
+  bool Rewind();
+
+ private:
+  struct Close {
+    void operator()(pcap* p) const;
+  };
+  using Handle = std::unique_ptr<pcap, Close>;
+
+  PcapReader(std::string path, Handle handle);
+
+  std::string path_;
+  Handle handle_;
+  LinkType link_;
+  UdpExtractor extractor_;
+  std::string error_;
+};
+
+}  // namespace lidar::ouster

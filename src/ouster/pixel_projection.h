@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Ranges to points for both kinds of sensor: turning beams, and angles of their own for each pixel.
+#pragma once
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "cloud/range_projection.h"
+#include "ouster/metadata.h"
+
+namespace lidar::ouster {
+
+/// Immutable, so threads may share one.
+class PixelProjection {
+ public:
+  explicit PixelProjection(const Metadata& metadata);
+
+  /// x, y, z [m] of one return at `range_mm`, which is not 0.
+  std::array<float, 3> Point(std::uint32_t beam, std::uint32_t column,
+                             std::uint32_t range_mm) const {
+    if (spinning_) return spinning_->Point(beam, column, range_mm);
+    const Vector& d = directions_[std::size_t{beam} * columns_ + column];
+    const float r = static_cast<float>(range_mm) * 1e-3F - beam_origin_m_;
+    return {r * d[0] + offset_[0], r * d[1] + offset_[1], r * d[2] + offset_[2]};
+  }
+  /// Unit vector along which a range moves its point.
+  std::array<float, 3> Direction(std::uint32_t beam, std::uint32_t column) const;
+
+ private:
+  using Vector = std::array<float, 3>;
+
+  std::optional<RangeProjection> spinning_;
+  std::uint32_t columns_ = 0;
+  std::vector<Vector> directions_;  // beams x columns, row-major
+  Vector offset_{};                 // of the beams' origin, in metres
+  float beam_origin_m_ = 0;         // |beam_to_lidar|
+};
+
+}  // namespace lidar::ouster

@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Turns the columns of a packet into points, packet by packet.
+#pragma once
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "cloud/point_fields.h"
+#include "cloud/range_projection.h"
+#include "ouster/lidar_packet.h"
+#include "ouster/metadata.h"
+#include "ouster/pixel_projection.h"
+
+namespace lidar::ouster {
+
+enum class Return { kStrongest, kSecond, kBoth };
+enum class Invalid { kZero, kNan };
+
+/// A span of azimuth in the sensor frame [degrees, from x towards y, so counter-clockwise seen from
+/// above]; it wraps where the last angle is below the first.
+struct Sector {
+  double first_deg = 0;
+  double last_deg = 360;
+};
+
+/// Keeps a pixel where its byte is not zero; beams x columns_per_scan, row-major. Empty: keep all.
+using PixelMask = std::vector<std::uint8_t>;
+
+struct PointOptions {
+  Return returns = Return::kStrongest;
+  std::vector<std::string> channels;  // as ParseChannels gives them
+  double min_range_m = 0;
+  double max_range_m = 0;       // 0: no limit
+  std::vector<Sector> sectors;  // empty: all
+  PixelMask mask;
+  Invalid invalid = Invalid::kZero;
+};
+
+/// Reads "reflectivity, ring": None and `error` for a name that is no channel. Doubled names count
+/// once.
+std::optional<std::vector<std::string>> ParseChannels(std::string_view text, std::string* error);
+
+/// Reads "0-90,270-360" [degrees].
+std::optional<std::vector<Sector>> ParseSectors(std::string_view text);
+
+/// A point is x, y, z, intensity (F32, intensity being the reflectivity), range (U32, mm), then the
+/// second return and the extra channels. A pixel without a return has zeros (or NaN) for its
+/// geometry and intensity; extra channels keep what the sensor measured (ambient light has no
+/// return).
+class PointWriter {
+ public:
+  /// None and `error` where the profile lacks something that the options ask for.
+  static std::optional<PointWriter> Create(const Metadata& metadata, const PointOptions& options,
+                                           std::string* error);
+
+  const PointFields& fields() const { return fields_; }
+  std::uint32_t point_step() const { return point_step_; }
+
+  struct Target {
+    std::uint8_t* points = nullptr;  // of the slice, zeroed
+    std::uint32_t width = 0;         // columns of the slice
+    std::uint32_t first_column = 0;
+    std::uint64_t start = 0;  // time of the slice's first column [ns]
+  };
+  /// Writes one valid column that lies in the slice.
+  void WriteColumn(const PacketColumn& column, const Target& target) const;
+  /// What a pixel looks like before anything was written to it.
+  void FillMissing(std::vector<std::uint8_t>* points) const;
+
+ private:
+  struct Extra {
+    enum class Kind { kPixel, kRing, kTime } kind;
+    std::optional<ChannelReader> reader;
+    std::uint32_t offset;
+  };
+
+  PointWriter() = default;
+  bool AddExtra(const std::string& name, bool second);
+  void MaskSectors(const std::vector<Sector>& sectors);
+  bool Keeps(std::uint32_t beam, std::uint32_t column, std::uint32_t range_mm) const;
+  void WriteExtras(const PacketColumn& column, const Target& target, std::uint32_t beam,
+                   std::uint8_t* point) const;
+
+  PacketFormat format_;
+  std::uint32_t pixel_size_ = 0;
+  std::uint32_t columns_ = 0;
+  PointFields fields_;
+  std::uint32_t point_step_ = 0;
+  std::shared_ptr<const PixelProjection> projection_;
+  std::optional<ChannelReader> range_;
+  std::optional<ChannelReader> intensity_;
+  std::optional<ChannelReader> range2_;  // of the second return, where both are wanted
+  std::optional<ChannelReader> intensity2_;
+  std::vector<Extra> extras_;
+  std::uint32_t min_range_mm_ = 0;
+  std::uint32_t max_range_mm_ = 0;
+  PixelMask mask_;  // sectors included
+  Invalid invalid_ = Invalid::kZero;
+};
+
+}  // namespace lidar::ouster

@@ -1,0 +1,126 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Lidar packets in, slices of points out, as soon as a slice's columns are there.
+#pragma once
+#include <cstdint>
+#include <deque>
+#include <optional>
+#include <vector>
+
+#include "ouster/lidar_packet.h"
+#include "ouster/metadata.h"
+#include "ouster/point_writer.h"
+
+namespace lidar::ouster {
+
+/// One azimuth sector of a scan, beam by beam. Columns that are outside the sensor's window or were
+/// lost are missing returns, so the width is always the same.
+struct Slice {
+  std::uint32_t scan_id = 0;  // counts scans, across restarts of the sensor
+  std::uint32_t index = 0;
+  std::uint32_t count = 0;
+  std::uint32_t first_column = 0;
+  std::uint32_t width = 0;
+  std::uint64_t start = 0;  // ns of the sensor's clock, of the first column
+  std::uint32_t missing_columns = 0;
+  bool after_gap = false;  // a slice before this one is missing, or the sensor restarted
+  std::vector<std::uint8_t> points;
+};
+
+struct BatcherStats {
+  std::uint64_t packets = 0;
+  std::uint64_t lost_packets = 0;
+  std::uint64_t late_packets = 0;  // their slice had been given out
+  std::uint64_t duplicate_packets = 0;
+  std::uint64_t stray_packets = 0;  // of a scan far away; enough of them count as a restart
+  std::uint64_t restarts = 0;
+  std::uint64_t slices = 0;
+  std::uint64_t incomplete_slices = 0;
+};
+
+/// Survives loss, reordering, duplicates and restarts: a slice is given out when all its columns
+/// came, or when `reorder_packets` packets of later slices came first.
+class ScanBatcher {
+ public:
+  struct Options {
+    std::uint32_t slices_per_scan = 1;  // divides the columns
+    std::uint32_t reorder_packets = 4;
+  };
+
+  ScanBatcher(const Metadata& metadata, PointWriter writer, const Options& options);
+
+  void Push(const LidarPacket& packet);
+  /// The next slice that is ready.
+  std::optional<Slice> Pop();
+  /// Makes all that came so far ready. The next packet may be of any scan.
+  void Flush();
+
+  const BatcherStats& stats() const { return stats_; }
+  std::uint32_t slice_width() const { return width_; }
+  std::uint32_t slices_per_scan() const { return slices_; }
+  /// Time from one column to the next [ns].
+  double column_period() const { return column_period_; }
+
+ private:
+  using Key = std::int64_t;  // scan number x slices per scan + slice index
+
+  struct OpenSlice {
+    Key key = 0;
+    std::uint32_t seen = 0;     // columns of the window
+    std::uint32_t packets = 0;  // own ones
+    std::uint32_t later_packets = 0;
+    std::vector<bool> columns;
+    Slice slice;
+  };
+
+  struct ColumnTime {
+    std::uint32_t column = 0;
+    std::uint64_t time = 0;
+  };
+
+  std::int64_t Locate(const PacketHeader& header);
+  bool Admit(const LidarPacket& packet, std::int64_t* scan);
+  void Restart(const LidarPacket& packet);
+  void AddColumns(const LidarPacket& packet, std::int64_t scan);
+  bool AddColumn(const PacketColumn& column, OpenSlice* open);
+  OpenSlice& Open(Key key, const PacketColumn& column);
+  Slice NewSlice(Key key) const;
+  void CountLaterPacket(Key key);
+  Key NextExpected() const;
+  bool IsReady(const OpenSlice& open) const;
+  void GiveOutReady();
+  void GiveOut(OpenSlice open);
+  void GiveOutBlanks(Key first, Key last, ColumnTime reference);
+  void CountLost(Key key, const std::vector<bool>* columns);
+  bool InWindow(std::uint32_t column) const;
+  bool LeadsPacket(std::uint32_t column) const;
+
+  PointWriter writer_;
+  ColumnWindow window_;
+  std::uint32_t columns_per_scan_;
+  std::uint32_t columns_per_packet_;
+  std::uint32_t beams_;
+  std::uint64_t frame_id_modulus_;
+  std::uint32_t slices_;
+  std::uint32_t width_;
+  std::uint32_t reorder_packets_;
+  double column_period_;
+  std::vector<std::uint32_t> expected_;  // columns of the window in each slice
+
+  std::deque<OpenSlice> open_;  // in order of key
+  std::deque<Slice> ready_;
+  std::optional<std::uint32_t> frame_id_;  // of scan_
+  std::uint32_t init_id_ = 0;
+  std::int64_t scan_ = 0;  // newest so far
+  Key next_ = 0;           // the first slice not yet given out
+  std::uint32_t strays_in_a_row_ = 0;
+  bool gap_ = false;
+  // What was sent before the first packet or after the last is not lost.
+  Key joined_key_ = 0;
+  std::uint32_t joined_column_ = 0;
+  std::int64_t newest_scan_ = 0;
+  std::uint32_t newest_column_ = 0;
+  bool flushing_ = false;
+  BatcherStats stats_;
+};
+
+}  // namespace lidar::ouster

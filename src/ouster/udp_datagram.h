@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// UDP datagrams out of captured frames: Ethernet (VLAN too), Linux cooked, loopback and raw IP;
+// IPv4 and IPv6, fragments put together.
+#pragma once
+#include <array>
+#include <cstdint>
+#include <deque>
+#include <optional>
+#include <vector>
+
+#include "base/byte_reader.h"
+
+namespace lidar::ouster {
+
+/// Link-layer types of capture files (the LINKTYPE_ registry of tcpdump.org).
+enum class LinkType : std::uint32_t {
+  kNull = 0,
+  kEthernet = 1,
+  kRaw = 101,
+  kLoop = 108,
+  kLinuxSll = 113,
+  kIpv4 = 228,
+  kIpv6 = 229,
+  kLinuxSll2 = 276,
+};
+
+struct IpEndpoints {
+  bool is_ipv6 = false;
+  std::array<std::uint8_t, 16> source{};  // the first 4 bytes for IPv4
+  std::array<std::uint8_t, 16> destination{};
+  bool operator==(const IpEndpoints& o) const {
+    return is_ipv6 == o.is_ipv6 && source == o.source && destination == o.destination;
+  }
+};
+
+struct UdpDatagram {
+  IpEndpoints addresses;
+  std::uint16_t source_port = 0;
+  std::uint16_t destination_port = 0;
+  std::vector<std::uint8_t> payload;
+
+  ByteView view() const { return {payload.data(), payload.size()}; }
+};
+
+/// Puts fragments together. Holds a bounded number of datagrams; an overlap discards its datagram
+/// (RFC 5722).
+class IpReassembler {
+ public:
+  struct Fragment {
+    IpEndpoints addresses;
+    std::uint32_t id = 0;
+    std::size_t offset = 0;  // bytes, a multiple of 8
+    bool more = false;
+    ByteView payload;
+  };
+  /// The whole IP payload once its last part came.
+  std::optional<std::vector<std::uint8_t>> Add(const Fragment& fragment);
+
+ private:
+  struct Partial {
+    IpEndpoints addresses;
+    std::uint32_t id = 0;
+    std::vector<std::uint8_t> bytes;
+    std::vector<bool> blocks;  // of 8 bytes
+    std::optional<std::size_t> size;
+    std::size_t received = 0;
+  };
+  std::deque<Partial> partials_;  // oldest first
+};
+
+class UdpExtractor {
+ public:
+  /// None for a frame that is no UDP, is damaged or cut short, or is a fragment whose datagram is
+  /// not complete.
+  std::optional<UdpDatagram> Extract(LinkType link, ByteView frame);
+
+ private:
+  std::optional<UdpDatagram> FromIp(ByteView packet);
+  std::optional<UdpDatagram> FromIpv4(ByteView packet);
+  std::optional<UdpDatagram> FromIpv6(ByteView packet);
+  std::optional<UdpDatagram> FromFragment(const IpReassembler::Fragment& fragment);
+
+  IpReassembler reassembler_;
+};
+
+}  // namespace lidar::ouster

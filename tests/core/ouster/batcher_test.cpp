@@ -1,0 +1,218 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstring>
+
+#include "captures.h"
+#include "ouster/scan_batcher.h"
+
+namespace lidar::ouster {
+namespace {
+
+using Packets = std::vector<std::vector<std::uint8_t>>;
+
+/// Three consecutive scans of an OS1-128, 64 packets each.
+class Batcher : public ::testing::Test {
+ protected:
+  static constexpr std::size_t kPacketsPerScan = 64;
+
+  std::vector<Slice> Run(const Packets& packets, std::uint32_t slices = 8) {
+    std::string error;
+    ScanBatcher batcher(metadata_, *PointWriter::Create(metadata_, {}, &error), {slices, 4});
+    std::vector<Slice> out;
+    const auto drain = [&] {
+      while (auto slice = batcher.Pop()) out.push_back(*std::move(slice));
+    };
+    for (const auto& p : packets) {
+      batcher.Push(*LidarPacket::Parse({p.data(), p.size()}, metadata_.format));
+      drain();
+    }
+    batcher.Flush();
+    drain();
+    stats_ = batcher.stats();
+    return out;
+  }
+  static void SetInitId(std::vector<std::uint8_t>* packet, std::uint8_t low_byte) {
+    (*packet)[kStandardHeader.init_id] = low_byte;
+  }
+
+  Metadata metadata_ = test::LoadMetadata("OS-1-128_v2.3.0_1024x10.json");
+  const Packets packets_ = test::LoadPackets("OS-1-128_v2.3.0_1024x10_lb_n3.pcap", metadata_);
+  BatcherStats stats_;
+};
+
+void ExpectSamePoints(const std::vector<Slice>& a, const std::vector<Slice>& b) {
+  ASSERT_EQ(a.size(), b.size());
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    EXPECT_EQ(a[i].scan_id, b[i].scan_id);
+    EXPECT_EQ(a[i].index, b[i].index);
+    EXPECT_EQ(a[i].start, b[i].start);
+    EXPECT_TRUE(a[i].points == b[i].points) << "slice " << i;
+  }
+}
+
+TEST_F(Batcher, GivesEverySliceOnceAndInOrder) {
+  const auto slices = Run(packets_);
+  ASSERT_EQ(slices.size(), 24U);
+  for (std::uint32_t i = 0; i < 24; ++i) {
+    EXPECT_EQ(slices[i].scan_id, i / 8);
+    EXPECT_EQ(slices[i].index, i % 8);
+    EXPECT_EQ(slices[i].count, 8U);
+    EXPECT_EQ(slices[i].first_column, i % 8 * 128);
+    EXPECT_EQ(slices[i].width, 128U);
+    EXPECT_EQ(slices[i].missing_columns, 0U);
+    EXPECT_FALSE(slices[i].after_gap);
+    if (i > 0) {
+      EXPECT_NEAR(static_cast<double>(slices[i].start - slices[i - 1].start), 12.5e6, 0.2e6);
+    }
+  }
+  EXPECT_EQ(stats_.packets, 192U);
+  EXPECT_EQ(stats_.lost_packets, 0U);
+}
+
+TEST_F(Batcher, GivesASliceWithThePacketThatCompletesIt) {
+  std::string error;
+  ScanBatcher batcher(metadata_, *PointWriter::Create(metadata_, {}, &error), {8, 4});
+  for (std::size_t i = 0; i < packets_.size(); ++i) {
+    batcher.Push(*LidarPacket::Parse({packets_[i].data(), packets_[i].size()}, metadata_.format));
+    EXPECT_EQ(batcher.Pop().has_value(), i % 8 == 7) << "packet " << i;
+  }
+}
+
+TEST_F(Batcher, PutsReorderedAndDuplicatedPacketsRight) {
+  Packets shuffled = packets_;
+  for (std::size_t i = 0; i + 3 < shuffled.size(); i += 3) std::swap(shuffled[i], shuffled[i + 2]);
+  for (std::size_t i = 0; i < shuffled.size(); i += 10)
+    shuffled.insert(shuffled.begin() + static_cast<std::ptrdiff_t>(i), shuffled[i]);
+  const auto straight = Run(packets_);
+  ExpectSamePoints(Run(shuffled), straight);
+  EXPECT_EQ(stats_.lost_packets, 0U);
+  EXPECT_EQ(stats_.duplicate_packets + stats_.late_packets, shuffled.size() - packets_.size());
+}
+
+TEST_F(Batcher, FillsLostColumnsWithMissingReturnsAndCountsTheirPackets) {
+  Packets lossy = packets_;
+  lossy.erase(lossy.begin() + 83);  // columns 304 to 319 of the second scan: slice 2
+  const auto whole = Run(packets_);
+  const auto slices = Run(lossy);
+  ASSERT_EQ(slices.size(), 24U);
+  EXPECT_EQ(stats_.lost_packets, 1U);
+  EXPECT_EQ(stats_.incomplete_slices, 1U);
+  const Slice& hurt = slices[10];
+  EXPECT_EQ(hurt.missing_columns, 16U);
+  const std::size_t step = hurt.points.size() / (std::size_t{128} * 128);
+  for (std::size_t i = 0; i < std::size_t{128} * 128; ++i) {
+    const bool lost = i % 128 >= 48 && i % 128 < 64;
+    const auto* point = &hurt.points[i * step];
+    if (lost)
+      EXPECT_TRUE(std::all_of(point, point + step, [](std::uint8_t b) { return b == 0; }));
+    else
+      EXPECT_EQ(std::memcmp(point, &whole[10].points[i * step], step), 0);
+  }
+}
+
+TEST_F(Batcher, WaitsForALostPacketNoLongerThanFourPackets) {
+  Packets lossy = packets_;
+  lossy.erase(lossy.begin() + 2);  // of slice 0, which then ends with packet 7
+  std::string error;
+  ScanBatcher batcher(metadata_, *PointWriter::Create(metadata_, {}, &error), {8, 4});
+  for (std::size_t i = 0; i < 12; ++i) {
+    batcher.Push(*LidarPacket::Parse({lossy[i].data(), lossy[i].size()}, metadata_.format));
+    EXPECT_EQ(batcher.Pop().has_value(), i == 10) << "packet " << i;
+  }
+}
+
+TEST_F(Batcher, LeavesOutSlicesOfWhichNothingCame) {
+  Packets lossy = packets_;
+  lossy.erase(lossy.begin() + 16, lossy.begin() + 80);  // slices 2 to 9
+  const auto slices = Run(lossy);
+  ASSERT_EQ(slices.size(), 16U);
+  EXPECT_EQ(slices[1].index, 1U);
+  EXPECT_EQ(slices[2].scan_id, 1U);
+  EXPECT_EQ(slices[2].index, 2U);
+  EXPECT_TRUE(slices[2].after_gap);
+  EXPECT_EQ(stats_.lost_packets, 64U);
+}
+
+TEST_F(Batcher, JoiningOrLeavingInTheMiddleOfAScanIsNoLoss) {
+  const Packets middle(packets_.begin() + 21, packets_.end() - 5);
+  const auto slices = Run(middle);
+  EXPECT_EQ(slices.front().index, 2U);
+  EXPECT_FALSE(slices.front().after_gap);
+  EXPECT_EQ(stats_.lost_packets, 0U);
+  EXPECT_EQ(slices.size(), 22U);
+}
+
+TEST_F(Batcher, ANewInitIdEndsTheScanAndStartsAnother) {
+  Packets restarted = packets_;
+  for (std::size_t i = 70; i < restarted.size(); ++i) SetInitId(&restarted[i], 7);
+  // The restarted sensor counts its scans from zero.
+  for (std::size_t i = 70; i < restarted.size(); ++i) restarted[i][2] = restarted[i][3] = 0;
+  restarted.resize(128);
+  const auto slices = Run(restarted);
+  EXPECT_EQ(stats_.restarts, 1U);
+  EXPECT_EQ(stats_.lost_packets, 0U);
+  ASSERT_EQ(slices.size(), 8U + 1 + 8);
+  EXPECT_EQ(slices[8].scan_id, 1U);
+  EXPECT_EQ(slices[9].scan_id, 2U);
+  EXPECT_TRUE(slices[9].after_gap);
+}
+
+TEST_F(Batcher, OneDamagedFrameIdChangesNothing) {
+  Packets damaged = packets_;
+  damaged[100][3] ^= 0x40;
+  const auto slices = Run(damaged);
+  EXPECT_EQ(slices.size(), 24U);
+  EXPECT_EQ(stats_.stray_packets, 1U);
+  EXPECT_EQ(stats_.lost_packets, 1U);
+  EXPECT_EQ(stats_.restarts, 0U);
+}
+
+TEST_F(Batcher, FrameIdsThatStartOverAreARestart) {
+  Packets twice(packets_.begin() + 128, packets_.end());
+  twice.insert(twice.end(), packets_.begin(), packets_.begin() + 64);
+  const auto slices = Run(twice);
+  EXPECT_EQ(stats_.restarts, 1U);
+  EXPECT_EQ(slices.back().scan_id, 1U);
+  EXPECT_EQ(slices.back().index, 7U);
+}
+
+TEST_F(Batcher, FrameIdsWrapAround) {
+  Packets wrapping = packets_;
+  for (std::size_t i = 0; i < wrapping.size(); ++i) {
+    const auto id = static_cast<std::uint16_t>(0xffff + i / kPacketsPerScan);
+    std::memcpy(&wrapping[i][2], &id, sizeof id);
+  }
+  ExpectSamePoints(Run(wrapping), Run(packets_));
+}
+
+TEST(Window, PadsToTheFullTurnAndCompletesWithTheLastColumnOfTheWindow) {
+  const Metadata metadata = test::LoadMetadata("windowed_frame1_0.json");
+  const auto packets = test::LoadPackets("windowed_frame1.pcap", metadata);
+  ASSERT_EQ(metadata.window.first, 1U);
+  ASSERT_EQ(metadata.window.count, 256U);
+  ASSERT_EQ(packets.size(), 17U);
+  std::string error;
+  ScanBatcher batcher(metadata, *PointWriter::Create(metadata, {}, &error), {8, 4});
+  for (const auto& p : packets)
+    batcher.Push(*LidarPacket::Parse({p.data(), p.size()}, metadata.format));
+  std::vector<Slice> slices;
+  while (auto slice = batcher.Pop()) slices.push_back(*std::move(slice));
+  ASSERT_EQ(slices.size(), 8U);
+  const auto is_blank = [](const Slice& s) {
+    return std::all_of(s.points.begin(), s.points.end(), [](std::uint8_t b) { return b == 0; });
+  };
+  for (std::uint32_t i = 0; i < 8; ++i) {
+    EXPECT_EQ(slices[i].index, i);
+    EXPECT_EQ(slices[i].missing_columns, 0U);
+    EXPECT_EQ(is_blank(slices[i]), i > 4) << i;
+    if (i > 0) {
+      EXPECT_NEAR(static_cast<double>(slices[i].start - slices[i - 1].start), 12.5e6, 0.2e6);
+    }
+  }
+  EXPECT_EQ(batcher.stats().lost_packets, 0U);
+}
+
+}  // namespace
+}  // namespace lidar::ouster

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// The captures in tests/data/ouster, read.
+#pragma once
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <iterator>
+#include <string>
+#include <vector>
+
+#include "ouster/metadata.h"
+#include "ouster/pcap_reader.h"
+
+namespace lidar::test {
+
+inline std::string DataPath(const std::string& name) {
+  return std::string(LIDAR_TEST_DATA) + "/ouster/" + name;
+}
+
+inline std::string ReadFile(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
+inline ouster::Metadata LoadMetadata(const std::string& name) {
+  std::string error;
+  auto metadata = ouster::ParseMetadata(ReadFile(DataPath(name)), &error);
+  EXPECT_TRUE(metadata) << name << ": " << error;
+  return metadata.value_or(ouster::Metadata{});
+}
+
+/// The payloads that have the size of a lidar packet of `metadata`.
+inline std::vector<std::vector<std::uint8_t>> LoadPackets(const std::string& name,
+                                                          const ouster::Metadata& metadata) {
+  std::string error;
+  auto reader = ouster::PcapReader::Open(DataPath(name), &error);
+  EXPECT_TRUE(reader) << name << ": " << error;
+  std::vector<std::vector<std::uint8_t>> packets;
+  while (auto captured = reader->Next())
+    if (captured->datagram.payload.size() == metadata.format.packet_size())
+      packets.push_back(std::move(captured->datagram.payload));
+  EXPECT_EQ(reader->error(), "");
+  return packets;
+}
+
+}  // namespace lidar::test
