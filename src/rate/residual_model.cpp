@@ -18,27 +18,27 @@ constexpr double kFinestStepAtAll = 1e-6;
 
 double ResidualModel::MaxError(double step_m) const {
   if (geometry_ == Geometry::kXyz) return step_m * kHalfDiagonal;
-  return std::max(0.0, step_m - unit_m_) / 2;
+  return std::max(0.0, step_m - unit()) / 2;
 }
 
 double ResidualModel::MeanError(double step_m) const {
   if (geometry_ == Geometry::kXyz) return step_m * kMeanInCube;
-  if (unit_m_ <= 0) return step_m / 4;
   // Mean of |k - (n - 1) / 2| over the n values of a bin.
-  const double n = std::max(1.0, std::round(step_m / unit_m_));
-  return unit_m_ * (std::fmod(n, 2) > 0.5 ? (n * n - 1) / (4 * n) : n / 4);
+  const double n = std::max(1.0, std::round(step_m / unit()));
+  return unit() * (std::fmod(n, 2) > 0.5 ? (n * n - 1) / (4 * n) : n / 4);
 }
 
 double ResidualModel::CoarsestStep(double error_m) const {
   const double error = std::max(error_m, 0.0);
   if (geometry_ == Geometry::kXyz) return std::max(error / kHalfDiagonal, kFinestStepAtAll);
-  if (unit_m_ <= 0) return std::max(2 * error, kFinestStepAtAll);
-  // The little more lets 2E/u that is a whole number in decimal be one in binary.
-  return (std::floor(2 * error / unit_m_ + 1e-6) + 1) * unit_m_;
+  // The little more lets 2E that is a whole number in decimal be one in binary.
+  return unit() + std::floor(2 * error / step_unit() + 1e-6) * step_unit();
 }
 
 double ResidualModel::FinestStep() const {
-  return geometry_ == Geometry::kRange && unit_m_ > 0 ? unit_m_ : kFinestXyzStep;
+  return geometry_ == Geometry::kRange ? unit() : kFinestXyzStep;
 }
+
+double ResidualModel::step_unit() const { return unit_mm_ % 2 == 0 ? unit() : 2 * unit(); }
 
 }  // namespace lidar::rate

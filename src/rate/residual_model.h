@@ -11,27 +11,29 @@ enum class Geometry { kXyz, kRange };
 class ResidualModel {
  public:
   static ResidualModel Xyz() { return ResidualModel(Geometry::kXyz, 0); }
-  /// `unit_m`: resolution of the ranges. A bin of n units around its middle value is off by
-  /// (n - 1) / 2 units at most.
-  static ResidualModel Range(double unit_m) { return ResidualModel(Geometry::kRange, unit_m); }
+  /// `unit_mm`: resolution of the ranges, not 0. A bin of n units that comes back as its middle
+  /// value is off by (n - 1) / 2 units at most; that value is a whole number of millimetres, so n
+  /// is odd where the unit is.
+  static ResidualModel Range(unsigned unit_mm) { return ResidualModel(Geometry::kRange, unit_mm); }
 
   /// Largest distance [m] between a point and its decoded point: s sqrt(3)/2 or (s - unit)/2.
   double MaxError(double step_m) const;
   /// Expected distance [m] of points that fall evenly on the grid.
   double MeanError(double step_m) const;
-  /// The coarsest step [m] whose MaxError is not above `error_m`; in whole units for ranges.
-  /// Errors below the sensor's resolution give the finest step.
+  /// The coarsest step [m] whose MaxError is not above `error_m`. Errors below the sensor's
+  /// resolution give the finest step.
   double CoarsestStep(double error_m) const;
   /// A finer step than this [m] only codes digits that the sensor does not have.
   double FinestStep() const;
-  /// Steps are whole multiples of this; 0 for xyz.
-  double step_unit() const { return unit_m_; }
+  /// Steps are FinestStep() and any number of these [m]; 0 for xyz: any step.
+  double step_unit() const;
   Geometry geometry() const { return geometry_; }
 
  private:
-  ResidualModel(Geometry geometry, double unit_m) : geometry_(geometry), unit_m_(unit_m) {}
+  ResidualModel(Geometry geometry, unsigned unit_mm) : geometry_(geometry), unit_mm_(unit_mm) {}
+  double unit() const { return 1e-3 * unit_mm_; }
   Geometry geometry_;
-  double unit_m_;
+  unsigned unit_mm_;
 };
 
 }  // namespace lidar::rate

@@ -7,14 +7,16 @@
 namespace lidar::rate {
 
 double ClampStep(double step_m, const SettingLimits& limits) {
+  const double finest = limits.finest_step_m;
+  const double coarsest = std::max(limits.coarsest_step_m, finest);
+  const double step = std::clamp(step_m, finest, coarsest);
   const double unit = limits.step_unit_m;
-  const double coarsest = std::max(limits.coarsest_step_m, unit);
-  const double step = std::clamp(step_m, std::min(limits.finest_step_m, coarsest), coarsest);
   if (unit <= 0) return step;
+  constexpr double kRounding = 1e-9;  // 41 units of a millimetre are no exact double
+  const double below = finest + std::floor((step - finest) / unit + kRounding) * unit;
+  const double above = below + unit;
   // Nearest in the logarithm, because bytes go with the logarithm of the step.
-  const double below = std::max(1.0, std::floor(step / unit + 1e-9));
-  const double n = step * step > below * (below + 1) * unit * unit ? below + 1 : below;
-  return n * unit > coarsest * (1 + 1e-9) ? below * unit : n * unit;
+  return step * step > below * above && above <= coarsest * (1 + kRounding) ? above : below;
 }
 
 }  // namespace lidar::rate

@@ -17,8 +17,8 @@ struct SliceFeatures {
   double scans_per_second = 10;
   std::uint32_t returns = 0;  // points that would be coded if none were thinned
   double extent_m = 0;        // longest side of the slice's box (xyz), or its longest range
-  /// The codec's name for how it will code the slice ("range", "xyz-kd6"): each has its own
-  /// coefficients and its own corrections.
+  /// How the codec will code the slice: "xyz" or "range", a dash, and the codec's own name for its
+  /// coder ("range-adaptive", "xyz-kd6"). Each has its own coefficients and its own corrections.
   std::string mode;
 };
 
@@ -32,7 +32,7 @@ struct Settings {
 struct SettingLimits {
   double finest_step_m = 0.001;
   double coarsest_step_m = 0.04;
-  double step_unit_m = 0;  // steps are whole multiples of it; 0: any step
+  double step_unit_m = 0;  // steps are finest_step_m and any number of these; 0: any step
   unsigned intensity_bits = 0;
   unsigned level = 0;
 };

@@ -7,7 +7,7 @@
 #include <functional>
 #include <numeric>
 
-#include "rate/built_in_model.h"
+#include "rate/model_file.h"
 #include "synthetic_codec.h"
 
 namespace lidar::rate {

@@ -21,9 +21,9 @@ TEST_P(ErrorBound, OfXyzIsReachedAtACornerOfTheGridAndNeverPassed) {
 }
 
 TEST_P(ErrorBound, OfRangesHoldsForEveryRangeAndIsTheCoarsestThatDoes) {
-  for (const std::int64_t unit_mm : {1, 4, 8}) {
-    const double unit = static_cast<double>(unit_mm) / 1000;
-    const ResidualModel model = ResidualModel::Range(unit);
+  for (const unsigned unit_mm : {1U, 3U, 4U, 8U}) {
+    const double unit = 1e-3 * unit_mm;
+    const ResidualModel model = ResidualModel::Range(unit_mm);
     const auto n = static_cast<std::int64_t>(std::llround(model.CoarsestStep(GetParam()) / unit));
     ASSERT_GE(n, 1);
     double worst = 0;
@@ -33,16 +33,17 @@ TEST_P(ErrorBound, OfRangesHoldsForEveryRangeAndIsTheCoarsestThatDoes) {
     }
     EXPECT_LE(worst, GetParam() + 1e-12);
     EXPECT_NEAR(worst, model.MaxError(static_cast<double>(n) * unit), 1e-12);
-    EXPECT_GT(model.MaxError(static_cast<double>(n + 1) * unit), GetParam());
+    EXPECT_EQ((n - 1) * unit_mm % 2, 0) << "the middle is a whole number of millimetres";
+    EXPECT_GT(model.MaxError(static_cast<double>(n) * unit + model.step_unit()), GetParam());
   }
 }
 
 INSTANTIATE_TEST_SUITE_P(All, ErrorBound, ::testing::Values(0.001, 0.01, 0.02, 0.05, 0.3));
 
 TEST(ResidualModel, AnErrorBelowTheResolutionGivesTheSensorsOwnUnit) {
-  EXPECT_DOUBLE_EQ(ResidualModel::Range(0.008).CoarsestStep(0.003), 0.008);
-  EXPECT_DOUBLE_EQ(ResidualModel::Range(0.008).MaxError(0.008), 0);
-  EXPECT_DOUBLE_EQ(ResidualModel::Range(0.001).CoarsestStep(-1), 0.001);
+  EXPECT_DOUBLE_EQ(ResidualModel::Range(8).CoarsestStep(0.003), 0.008);
+  EXPECT_DOUBLE_EQ(ResidualModel::Range(8).MaxError(0.008), 0);
+  EXPECT_DOUBLE_EQ(ResidualModel::Range(1).CoarsestStep(-1), 0.001);
 }
 
 TEST(ResidualModel, MeanErrorIsThatOfPointsSpreadEvenly) {
@@ -55,9 +56,9 @@ TEST(ResidualModel, MeanErrorIsThatOfPointsSpreadEvenly) {
     sum += std::sqrt(x * x + y * y + z * z);
   }
   EXPECT_NEAR(ResidualModel::Xyz().MeanError(1), sum / kPoints, 1e-3);
-  // Bins of five units are off by 2, 1, 0, 1, 2; of four by 1.5, 0.5, 0.5, 1.5.
-  EXPECT_NEAR(ResidualModel::Range(0.001).MeanError(0.005), 0.0012, 1e-12);
-  EXPECT_NEAR(ResidualModel::Range(0.001).MeanError(0.004), 0.001, 1e-12);
+  // Bins of five units are off by 2, 1, 0, 1, 2; two of 2 mm by 1 mm.
+  EXPECT_NEAR(ResidualModel::Range(1).MeanError(0.005), 0.0012, 1e-12);
+  EXPECT_NEAR(ResidualModel::Range(2).MeanError(0.004), 0.001, 1e-12);
 }
 
 }  // namespace

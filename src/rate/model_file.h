@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// The file with a predictor's coefficients: JSON, documented in docs/rate-control.md.
+#pragma once
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "rate/adaptive_model.h"
+#include "rate/paper_model.h"
+
+namespace lidar::rate {
+
+enum class RateModel { kAdaptive, kPaper };
+
+struct ModelFile {
+  std::string trained_on;  // for people
+  std::optional<AdaptiveCoefficients> adaptive;
+  std::optional<PaperCoefficients> paper;
+};
+
+/// None for anything but a sound file of this or an earlier version; `error` then says, in words
+/// for a user, what is wrong.
+std::optional<ModelFile> ParseModelFile(std::string_view json, std::string* error);
+std::string WriteModelFile(const ModelFile& file);
+
+/// Null, and why in `error`, where the file has no coefficients for `kind`.
+std::unique_ptr<SizeModel> MakeModel(const ModelFile& file, RateModel kind, std::string* error);
+/// From the file that is compiled in.
+std::unique_ptr<SizeModel> MakeBuiltInModel(RateModel kind);
+/// The text of that file.
+std::string_view BuiltInModelFile();
+
+constexpr int kModelFileVersion = 1;
+constexpr std::size_t kMaxModelFileSize = 1U << 20;  // bytes
+
+}  // namespace lidar::rate

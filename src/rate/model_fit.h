@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Least squares for the predictors: samples of real encodings in, coefficients out.
+#pragma once
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "rate/adaptive_model.h"
+#include "rate/paper_model.h"
+
+namespace lidar::rate {
+
+/// One slice, encoded once.
+struct Sample {
+  SliceFeatures slice;
+  Settings settings;
+  double geometry_bytes = 0;
+  double intensity_bytes = 0;
+  unsigned source = 0;  // which capture or scene: cross-validation leaves out whole sources
+};
+
+/// One cubic for each mode. None where a mode has fewer than kMinSamples or its sizes do not fall
+/// with the step.
+std::optional<AdaptiveCoefficients> FitAdaptive(const std::vector<Sample>& samples);
+/// The paper's regression. None with fewer than kMinSamples.
+std::optional<PaperCoefficients> FitPaper(const std::vector<Sample>& samples);
+
+struct FitError {
+  double mean = 0;  // of |predicted / real - 1|
+  double percentile_95 = 0;
+};
+/// Of predictions without any correction.
+FitError ErrorOf(const SizeModel& model, const std::vector<Sample>& samples);
+
+constexpr std::size_t kMinSamples = 20;
+
+}  // namespace lidar::rate

@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "rate/model_fit.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+
+namespace lidar::rate {
+namespace {
+
+/// Samples whose bytes `size` tells, at random settings as lidar-train draws them.
+template <class Size>
+std::vector<Sample> Samples(std::size_t count, const Size& size) {
+  std::mt19937 random(5);
+  std::uniform_real_distribution<double> log_step(-9, -3.3);
+  std::uniform_real_distribution<double> log_returns(11, 17);
+  std::vector<Sample> samples(count);
+  for (Sample& s : samples) {
+    s.slice.mode = random() % 2 == 0 ? "range-adaptive" : "xyz-kd6";
+    s.slice.returns = static_cast<std::uint32_t>(std::exp2(log_returns(random)));
+    s.slice.extent_m = 80 + 40 * std::sin(static_cast<double>(s.slice.returns));
+    s.settings.step_m = std::exp2(log_step(random));
+    s.settings.level = static_cast<unsigned>(random() % 10);
+    s.settings.intensity_bits = static_cast<unsigned>(random() % 9);
+    size(&s);
+  }
+  return samples;
+}
+
+TEST(FitAdaptive, FindsTheCoefficientsThatMadeTheSamples) {
+  const auto samples = Samples(400, [](Sample* s) {
+    const double x = std::log2(s->settings.step_m / 0.01);
+    const bool kd = s->slice.mode == "xyz-kd6";
+    s->geometry_bytes = std::exp2((kd ? 11.0 : 9.0) - 0.4 * x - 0.03 * x * x +
+                                  0.9 * std::log2(s->slice.returns / 1000.0));
+    s->intensity_bytes =
+        s->settings.intensity_bits == 0
+            ? 0
+            : s->slice.returns / 1000.0 * std::exp2(6 + 0.5 * s->settings.intensity_bits);
+  });
+  const auto fit = FitAdaptive(samples);
+  ASSERT_TRUE(fit);
+  ASSERT_EQ(fit->modes.size(), 2U);
+  const ModeCoefficients& mode = fit->modes.at("range-adaptive");
+  EXPECT_NEAR(mode.step[0], 9.0, 1e-6);
+  EXPECT_NEAR(mode.step[1], -0.4, 1e-6);
+  EXPECT_NEAR(mode.step[2], -0.03, 1e-6);
+  EXPECT_NEAR(mode.step[3], 0, 1e-6);
+  EXPECT_NEAR(mode.returns, 0.9, 1e-6);
+  EXPECT_NEAR(mode.intensity[1], 0.5, 1e-6);
+  EXPECT_NEAR(fit->modes.at("xyz-kd6").step[0], 11.0, 1e-6);
+  EXPECT_LT(ErrorOf(AdaptiveModel(*fit), samples).mean, 1e-4);
+}
+
+TEST(FitAdaptive, RefusesSizesThatGrowWithTheStepAndTooFewSamples) {
+  const auto growing = [](Sample* s) { s->geometry_bytes = 1000 + 1e6 * s->settings.step_m; };
+  EXPECT_FALSE(FitAdaptive(Samples(400, growing)));
+  EXPECT_FALSE(FitAdaptive(Samples(kMinSamples - 1, growing)));
+  EXPECT_FALSE(FitAdaptive({}));
+}
+
+TEST(FitPaper, FindsThePolynomialThatMadeTheSamples) {
+  const auto samples = Samples(400, [](Sample* s) {
+    const double q = BitsOfStep(s->slice.extent_m, s->settings.step_m);
+    const double n = s->slice.returns / 1000.0;
+    s->geometry_bytes = 50000 + 30 * q * n - 20 * s->settings.level * n + 7 * q * q + n * n;
+  });
+  const auto fit = FitPaper(samples);
+  ASSERT_TRUE(fit);
+  const PaperPolynomial& p = fit->geometries.at("xyz");
+  EXPECT_NEAR(p.beta, 50000, 1);
+  EXPECT_NEAR(p.alpha[5], 30, 1e-3);
+  EXPECT_NEAR(p.alpha[7], -20, 1e-3);
+  EXPECT_LT(ErrorOf(PaperModel(*fit), samples).mean, 1e-6);
+}
+
+TEST(PaperModel, ChoosesTheGridPointNearestToTheTarget) {
+  PaperPolynomial p;
+  p.alpha[0] = 1000;  // bytes = 1000 q - 100 c
+  p.alpha[1] = -100;
+  PaperModel model({{{"xyz", p}}});
+  SliceFeatures slice;
+  slice.mode = "xyz-kd6";
+  slice.extent_m = 100;
+  slice.returns = 1000;
+  SettingLimits limits;
+  limits.finest_step_m = 1e-9;
+  limits.coarsest_step_m = 1;
+  const Settings s = model.Choose(slice, 13700, limits);
+  EXPECT_NEAR(BitsOfStep(100, s.step_m), 14, 1e-9);
+  EXPECT_EQ(s.level, 3U);
+  // Steps coarser than the error bound are no choice, however small the target.
+  limits.coarsest_step_m = StepOfBits(100, 12);
+  EXPECT_NEAR(BitsOfStep(100, model.Choose(slice, 1, limits).step_m), 12, 1e-9);
+}
+
+}  // namespace
+}  // namespace lidar::rate
