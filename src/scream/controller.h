@@ -9,34 +9,9 @@
 #include "scream/ccfb.h"
 #include "scream/parameters.h"
 #include "scream/statistics.h"
+#include "scream/stream_config.h"
 
 namespace lidar::scream {
-
-/// Names a stream of one controller; never used again after RemoveStream().
-using StreamId = int;
-
-struct StreamConfig {
-  double priority = 1;  ///< weight of this stream's share, > 0
-  DataRate min_bitrate = DataRate::BitsPerSecond(100e3);
-  DataRate start_bitrate = DataRate::BitsPerSecond(1e6);
-  DataRate max_bitrate = DataRate::BitsPerSecond(50e6);
-};
-
-/// A packet as it enters the sender's queue. `size` as on the wire: RTP, UDP and IP included.
-struct QueuedPacket {
-  std::uint32_t ssrc = 0;
-  DataSize size;
-  bool marker = false;              ///< last packet of an access unit
-  std::uint32_t rtp_timestamp = 0;  ///< packets of one access unit share it
-};
-
-/// The packet at the head of a stream's queue, as it leaves.
-struct SentPacket {
-  std::uint32_t ssrc = 0;
-  std::uint16_t seq = 0;
-  DataSize size;
-  Ecn ecn = Ecn::kNotEct;  ///< as it was really sent (SendDecision::ecn, unless the caller differs)
-};
 
 struct SendDecision {
   Time time{};  ///< not before this; in the past or now: at once

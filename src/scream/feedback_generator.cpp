@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include "scream/report_clock.h"
+
 namespace lidar::scream {
 namespace {
 
@@ -13,13 +15,6 @@ constexpr std::int64_t kIpUdp = 28;
 constexpr std::int64_t kReportWithoutBlocks = 12;
 constexpr std::int64_t kBlockWithoutMetrics = 8;
 constexpr Duration kRatePeriod = 100ms;
-
-std::uint32_t Timestamp(Time t) {
-  const auto ns = t.time_since_epoch().count();
-  const std::int64_t s = ns / 1'000'000'000;
-  const std::int64_t rest = ns % 1'000'000'000;
-  return static_cast<std::uint32_t>(s * 65536 + rest * 65536 / 1'000'000'000);
-}
 
 std::int64_t BlockSize(std::int64_t metrics) {
   return kBlockWithoutMetrics + 2 * (metrics + metrics % 2);
@@ -160,7 +155,7 @@ std::optional<CongestionFeedback> FeedbackGenerator::Take(Time now) {
   due_ = Time::max();
   CongestionFeedback report;
   report.sender_ssrc = config_.sender_ssrc;
-  report.report_timestamp = Timestamp(now);
+  report.report_timestamp = ReportClock::ToTimestamp(now);
   std::int64_t size = kReportWithoutBlocks;
   const std::int64_t allowance = Allowance();
   for (auto& [ssrc, source] : sources_)

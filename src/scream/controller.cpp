@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "scream/controller.h"
+
+#include "scream/controller_impl.h"
+
+namespace lidar::scream {
+
+Controller::Controller(const Parameters& parameters) : impl_(std::make_unique<Impl>(parameters)) {}
+Controller::~Controller() = default;
+Controller::Controller(Controller&&) noexcept = default;
+Controller& Controller::operator=(Controller&&) noexcept = default;
+
+StreamId Controller::AddStream(const StreamConfig& config) { return impl_->streams.Add(config); }
+
+void Controller::ConfigureStream(StreamId stream, const StreamConfig& config) {
+  if (Stream* s = impl_->streams.Find(stream)) s->Configure(config);
+}
+
+void Controller::RemoveStream(StreamId stream) { impl_->streams.Remove(stream); }
+
+void Controller::OnQueued(Time now, StreamId stream, const QueuedPacket& packet) {
+  impl_->OnQueued(now, stream, packet);
+}
+
+void Controller::OnSent(Time now, StreamId stream, const SentPacket& packet) {
+  impl_->OnSent(now, stream, packet);
+}
+
+void Controller::OnDropped(Time now, StreamId stream, std::size_t packets) {
+  impl_->OnDropped(now, stream, packets);
+}
+
+FeedbackResult Controller::OnFeedback(Time now, const CongestionFeedback& feedback) {
+  return impl_->OnFeedback(now, feedback);
+}
+
+void Controller::OnTimer(Time now) { impl_->OnTimer(now); }
+void Controller::OnRouteChange(Time now) { impl_->OnRouteChange(now); }
+
+std::optional<SendDecision> Controller::NextSend(Time now) const { return impl_->NextSend(now); }
+
+std::size_t Controller::LatePackets(Time now, StreamId stream) const {
+  const Stream* s = impl_->streams.Find(stream);
+  return s == nullptr ? 0 : s->LatePackets(now);
+}
+
+Time Controller::NextTimer() const { return impl_->NextTimer(); }
+
+DataRate Controller::target_bitrate(StreamId stream) const {
+  const Stream* s = impl_->streams.Find(stream);
+  return s == nullptr ? DataRate() : s->target_bitrate();
+}
+
+DataRate Controller::target_bitrate() const { return impl_->streams.target_bitrate(); }
+
+std::optional<StreamId> Controller::FindStream(std::uint32_t ssrc) const {
+  return impl_->streams.Owner(ssrc);
+}
+
+Statistics Controller::statistics(Time now) const { return impl_->GetStatistics(now); }
+
+StreamStatistics Controller::stream_statistics(Time now, StreamId stream) const {
+  Stream* s = impl_->streams.Find(stream);
+  return s == nullptr ? StreamStatistics{} : s->statistics(now);
+}
+
+EcnState Controller::ecn_state() const { return impl_->ecn.state(); }
+const Parameters& Controller::parameters() const { return impl_->p; }
+
+}  // namespace lidar::scream

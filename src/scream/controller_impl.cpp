@@ -1,0 +1,288 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "scream/controller_impl.h"
+
+namespace lidar::scream {
+namespace {
+
+constexpr Duration kHousekeeping = 50ms;
+/// Silence of the receiver, beyond what round trips explain, that is taken for an outage.
+constexpr Duration kOutage = 200ms;
+constexpr double kOutageRestart = 0.5;
+constexpr double kTimeoutBackoff = 0.5;
+constexpr double kDriftRateScale = 0.5;
+
+}  // namespace
+
+Controller::Impl::Impl(const Parameters& parameters) : p(parameters) {}
+
+void Controller::Impl::OnQueued(Time now, StreamId id, const QueuedPacket& packet) {
+  now = Advance(now);
+  Stream* stream = streams.Find(id);
+  if (stream == nullptr) return;
+  if (stream->empty()) streams.OnQueued(stream);
+  if (stream->OnQueued(now, packet)) UpdateTarget(now);
+}
+
+void Controller::Impl::OnSent(Time now, StreamId id, const SentPacket& packet) {
+  now = Advance(now);
+  if (!started_ && last_sent_ == Time{}) StartWindow();
+  if (history_.bytes_in_flight().bytes() == 0) last_feedback_ = now;  // silence starts here
+  history_.OnSent(packet.ssrc, packet.seq, {id, packet.size, now, packet.ecn});
+  max_in_flight_.Add(history_.bytes_in_flight());
+  streams.OnSent(now, id, packet.ssrc, packet.size);
+  pacer_.OnSent(now, packet.size);
+  ecn.OnSent(now, packet.ecn);
+  sent_rate_.Add(now, packet.size);
+  ++counters_.packets_sent;
+  counters_.bytes_sent += packet.size;
+  last_sent_ = now;
+}
+
+void Controller::Impl::OnDropped(Time now, StreamId id, std::size_t packets) {
+  Advance(now);
+  if (Stream* stream = streams.Find(id)) stream->OnDropped(packets);
+  counters_.packets_dropped += packets;
+}
+
+FeedbackResult Controller::Impl::OnFeedback(Time now, const CongestionFeedback& feedback) {
+  now = Advance(now);
+  if (window_before_outage_) history_.Expire(now);
+  AckSummary summary;
+  switch (history_.OnFeedback(now, feedback, &summary)) {
+    case HistoryResult::kImplausible:
+      ++counters_.feedback_ignored;
+      return FeedbackResult::kImplausible;
+    case HistoryResult::kNotOurs:
+      return FeedbackResult::kNotOurs;
+    case HistoryResult::kNothingNew:
+      return FeedbackResult::kStale;
+    case HistoryResult::kApplied:
+      break;
+  }
+  ++counters_.feedback_accepted;
+  if (!summary.acked.empty()) {
+    last_feedback_ = now;
+    if (window_before_outage_) EndOutage(now);
+  }
+  OnSummary(now, summary);
+  return FeedbackResult::kAccepted;
+}
+
+void Controller::Impl::OnSummary(Time now, const AckSummary& summary) {
+  MeasurePath(now, summary);
+  CountAcks(now, summary);
+  if (!started_ && rtt_.known()) {
+    started_ = true;
+    StartWindow();
+  }
+  React(now, Signals(summary));
+  if (max_in_flight_.Update(now, std::max(p.virtual_rtt, rtt_.smoothed()))) window_.RelaxPolicer();
+  UpdateTarget(now);
+}
+
+void Controller::Impl::MeasurePath(Time now, const AckSummary& summary) {
+  if (summary.rtt) rtt_.Add(*summary.rtt, SourceLimited());
+  history_.set_max_reordering_window(rtt_.smoothed());
+  const Duration excess = rtt_.last() - rtt_.min();
+  for (const AckedPacket& packet : summary.acked)
+    if (packet.arrival && !queue_delay_.Add(now, packet.sent, *packet.arrival, excess))
+      ++counters_.clock_resets;
+  queue_delay_.Update(now, rtt_.smoothed(), competing_flows_.qdelay_target());
+  if (queue_delay_.TakeDriftReset()) {
+    ++counters_.clock_resets;
+    half_rate_until_ = now + std::max<Duration>(5 * rtt_.smoothed(), 200ms);
+  }
+  competing_flows_.Update(now, queue_delay_.qdelay(), rtt_.smoothed(), !summary.lost.empty());
+}
+
+void Controller::Impl::CountAcks(Time now, const AckSummary& summary) {
+  int marked = summary.late_ce;
+  acked_rate_.set_window(std::max(rtt_.smoothed(), 2 * streams.frame_period()));
+  for (const AckedPacket& packet : summary.acked) {
+    if (packet.arrived_ecn == Ecn::kCe) ++marked;
+    if (packet.was_lost) ++counters_.packets_late;
+    if (Stream* stream = streams.Find(packet.stream))
+      stream->OnAcked(packet.arrived_ecn == Ecn::kCe);
+    ecn.OnAcked(packet.ecn, packet.arrived_ecn);
+    loss_rate_.Add(false, window_.ref_wnd());
+    acked_rate_.Add(now, packet.size);
+    counters_.bytes_acked += packet.size;
+  }
+  for (const LostPacket& packet : summary.lost) {
+    loss_rate_.Add(true, window_.ref_wnd());
+    if (Stream* stream = streams.Find(packet.stream)) stream->OnLost();
+  }
+  counters_.packets_acked += summary.acked.size();
+  counters_.packets_lost += summary.lost.size();
+  counters_.packets_ce += static_cast<std::uint64_t>(marked);
+  l4s_alpha_.Update(now, static_cast<int>(summary.acked.size()), marked, rtt_.smoothed());
+}
+
+CongestionSignals Controller::Impl::Signals(const AckSummary& summary) {
+  CongestionSignals s;
+  s.loss_detected = !summary.lost.empty();
+  const auto is_ce = [](const AckedPacket& a) { return a.arrived_ecn == Ecn::kCe; };
+  s.data_units_marked =
+      summary.late_ce > 0 || std::any_of(summary.acked.begin(), summary.acked.end(), is_ce);
+  s.loss_rate = loss_rate_.value();
+  s.l4s_alpha = l4s_alpha_.value();
+  s.is_l4s = p.ecn == Ecn::kEct1;
+  s.qdelay = queue_delay_.qdelay();
+  s.qdelay_avg = queue_delay_.qdelay_avg();
+  s.qdelay_target = competing_flows_.qdelay_target();
+  s.ref_wnd_delay_scale = queue_delay_.ref_wnd_delay_scale();
+  s.s_rtt = rtt_.smoothed();
+  s.max_bytes_in_flight = max_in_flight_.current();
+  s.max_bytes_in_flight_prev = max_in_flight_.previous();
+  s.bytes_newly_acked = summary.bytes_newly_acked;
+  s.bytes_newly_acked_ce = std::min(summary.bytes_newly_acked_ce, summary.bytes_newly_acked);
+  s.target_bitrate = streams.target_bitrate();
+  s.target_bitrate_max = streams.max_bitrate();
+  s.acked_bitrate = acked_rate_.Rate(now_);
+  return s;
+}
+
+/// The window whose target bitrate is the streams' start bitrate; the draft leaves the start open.
+void Controller::Impl::StartWindow() {
+  const DataRate start = streams.start_bitrate();
+  window_.Set(start * rtt_.smoothed() * p.target_rate_divisor *
+              ((p.mss + p.packet_overhead) / p.mss));
+}
+
+void Controller::Impl::React(Time now, const CongestionSignals& signals) {
+  switch (window_.Update(now, signals)) {
+    case Reaction::kLoss:
+      ++counters_.loss_events;
+      counters_.reason = RateReason::kLoss;
+      break;
+    case Reaction::kCe:
+      ++counters_.ce_events;
+      counters_.reason = RateReason::kCe;
+      break;
+    case Reaction::kVirtualCe:
+      ++counters_.delay_events;
+      counters_.reason = RateReason::kDelay;
+      break;
+    case Reaction::kNone:
+      counters_.reason = RateReason::kIncrease;
+      break;
+  }
+  LimitWindowAtMaxBitrate();
+}
+
+/// At the maximum bitrate the window must not drift away from what is in flight.
+void Controller::Impl::LimitWindowAtMaxBitrate() {
+  if (streams.target_bitrate() < streams.max_bitrate()) return;
+  const DataSize needed = streams.max_bitrate() * (rtt_.smoothed() + 1ms) *
+                          (p.target_rate_divisor + streams.queue_compensation()) *
+                          p.packet_pacing_headroom;
+  window_.Limit(std::max(max_in_flight_.longest(), needed));
+}
+
+void Controller::Impl::UpdateTarget(Time now) {
+  DataRate target = streams.start_bitrate();
+  if (started_) {
+    target = TargetBitrate(p, {window_.ref_wnd(), window_.ref_wnd_ratio(), rtt_.smoothed(),
+                               streams.queue_compensation()});
+    if (now < half_rate_until_) target = target * kDriftRateScale;
+  }
+  streams.Allocate(now, target);
+  pacer_.Update(streams.target_bitrate(), streams.max_bitrate(), p.packet_pacing_headroom);
+}
+
+bool Controller::Impl::SourceLimited() const {
+  return std::max(max_in_flight_.current(), max_in_flight_.previous()) *
+             p.bytes_in_flight_head_room <
+         window_.ref_wnd();
+}
+
+DataSize Controller::Impl::MaxInFlight() const {
+  const double overhead =
+      p.ref_wnd_overhead_min +
+      (p.ref_wnd_overhead_max - p.ref_wnd_overhead_min) * queue_delay_.ref_wnd_delay_scale();
+  return window_.ref_wnd() * overhead;
+}
+
+std::optional<SendDecision> Controller::Impl::NextSend(Time) const {
+  const auto id = streams.Next();
+  if (!id) return std::nullopt;
+  const DataSize size = streams.Find(*id)->head_size();
+  const DataSize in_flight = history_.bytes_in_flight();
+  SendDecision decision{pacer_.next(), *id, ecn.codepoint()};
+  const bool fits = in_flight.bytes() == 0 || in_flight + size <= MaxInFlight();
+  // The minimum send rate keeps a closed window from waiting for ever for lost feedback.
+  if (!fits) decision.time = std::max(decision.time, last_sent_ + size / p.rate_pace_min);
+  return decision;
+}
+
+Duration Controller::Impl::FeedbackTimeout() const {
+  return 2 * rtt_.smoothed() + std::max<Duration>(kOutage, 2 * streams.frame_period());
+}
+
+void Controller::Impl::OnTimer(Time now) {
+  now = Advance(now);
+  if (now < last_housekeeping_ + kHousekeeping) return;
+  last_housekeeping_ = now;
+  ecn.OnTimer(now);
+  const bool waiting = history_.bytes_in_flight().bytes() > 0;
+  if (p.extensions.feedback_timeout && started_ && waiting &&
+      now - std::max(last_feedback_, last_timeout_) > FeedbackTimeout())
+    OnFeedbackTimeout(now);
+  UpdateTarget(now);
+}
+
+/// Beyond the draft: without feedback the window halves again and again.
+void Controller::Impl::OnFeedbackTimeout(Time now) {
+  last_timeout_ = now;
+  ++counters_.feedback_timeouts;
+  counters_.reason = RateReason::kTimeout;
+  if (!window_before_outage_) window_before_outage_ = window_.ref_wnd();
+  window_.Set(window_.ref_wnd() * kTimeoutBackoff);
+}
+
+void Controller::Impl::EndOutage(Time) {
+  window_.Set(std::max(window_.ref_wnd(), *window_before_outage_ * kOutageRestart));
+  window_before_outage_.reset();
+}
+
+void Controller::Impl::OnRouteChange(Time now) {
+  Advance(now);
+  queue_delay_.Reset();
+  rtt_.Reset();
+  ecn.Reset();
+  started_ = false;
+  history_.Expire(now_);
+}
+
+Time Controller::Impl::NextTimer() const {
+  const bool idle = streams.empty() && history_.bytes_in_flight().bytes() == 0;
+  return idle ? Time::max() : last_housekeeping_ + kHousekeeping;
+}
+
+Statistics Controller::Impl::GetStatistics(Time now) const {
+  Statistics s = counters_;
+  s.ref_wnd = window_.ref_wnd();
+  s.ref_wnd_i = window_.ref_wnd_i();
+  s.bytes_in_flight = history_.bytes_in_flight();
+  s.max_bytes_in_flight = max_in_flight_.longest();
+  s.s_rtt = rtt_.known() ? rtt_.smoothed() : Duration{0};
+  s.min_rtt = rtt_.known() ? rtt_.min() : Duration{0};
+  s.qdelay = queue_delay_.qdelay();
+  s.qdelay_avg = queue_delay_.qdelay_avg();
+  s.qdelay_target = competing_flows_.qdelay_target();
+  s.l4s_alpha = l4s_alpha_.value();
+  s.ref_wnd_delay_scale = queue_delay_.ref_wnd_delay_scale();
+  s.loss_rate = loss_rate_.value();
+  s.max_policed_ref_wnd = window_.max_policed_ref_wnd();
+  s.target_bitrate = streams.target_bitrate();
+  s.pace_bitrate = pacer_.pace_bitrate();
+  s.sent_bitrate = sent_rate_.Rate(std::max(now, now_));
+  s.acked_bitrate = acked_rate_.Rate(std::max(now, now_));
+  s.queued = streams.queued();
+  s.media_qdelay = streams.media_qdelay(std::max(now, now_));
+  s.foreign_blocks = history_.foreign_blocks();
+  s.ecn_state = ecn.state();
+  return s;
+}
+
+}  // namespace lidar::scream

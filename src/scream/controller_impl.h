@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// The state of a controller: one object for each section of the draft, sequenced by its events.
+#pragma once
+#include <algorithm>
+
+#include "scream/competing_flows.h"
+#include "scream/controller.h"
+#include "scream/ecn_monitor.h"
+#include "scream/flight.h"
+#include "scream/l4s_alpha.h"
+#include "scream/loss_rate.h"
+#include "scream/media_rate.h"
+#include "scream/pacer.h"
+#include "scream/queue_delay.h"
+#include "scream/reference_window.h"
+#include "scream/rtt.h"
+#include "scream/sent_history.h"
+#include "scream/streams.h"
+
+namespace lidar::scream {
+
+class Controller::Impl {
+ public:
+  explicit Impl(const Parameters& parameters);
+
+  void OnQueued(Time now, StreamId id, const QueuedPacket& packet);
+  void OnSent(Time now, StreamId id, const SentPacket& packet);
+  void OnDropped(Time now, StreamId id, std::size_t packets);
+  FeedbackResult OnFeedback(Time now, const CongestionFeedback& feedback);
+  void OnTimer(Time now);
+  void OnRouteChange(Time now);
+  std::optional<SendDecision> NextSend(Time now) const;
+  Time NextTimer() const;
+  Statistics GetStatistics(Time now) const;
+  /// Also after a change of the streams' configuration.
+  void UpdateTarget(Time now);
+
+  const Parameters p;
+  Streams streams{p};
+  EcnMonitor ecn{p.ecn};
+
+ private:
+  Time Advance(Time now) { return now_ = std::max(now_, now); }
+  void OnSummary(Time now, const AckSummary& summary);
+  void MeasurePath(Time now, const AckSummary& summary);
+  void CountAcks(Time now, const AckSummary& summary);
+  CongestionSignals Signals(const AckSummary& summary);
+  void StartWindow();
+  void React(Time now, const CongestionSignals& signals);
+  void LimitWindowAtMaxBitrate();
+  void OnFeedbackTimeout(Time now);
+  void EndOutage(Time now);
+  Duration FeedbackTimeout() const;
+  bool SourceLimited() const;
+  DataSize MaxInFlight() const;
+
+  Time now_{};
+  SentHistory history_;
+  RoundTripTime rtt_;
+  QueueDelay queue_delay_{p};
+  L4sAlpha l4s_alpha_{p};
+  LossRate loss_rate_{p};
+  CompetingFlows competing_flows_{p};
+  ReferenceWindow window_{p};
+  Pacer pacer_{p};
+  MaxBytesInFlight max_in_flight_;
+  mutable RateMeter sent_rate_{1s};
+  mutable RateMeter acked_rate_{100ms};
+  bool started_ = false;  // an acknowledgement has come
+  Time last_feedback_{};
+  Time last_sent_{};
+  Time last_housekeeping_{};
+  Time last_timeout_{};
+  std::optional<DataSize> window_before_outage_;
+  Time half_rate_until_{};  // clock-drift remedy
+  Statistics counters_;
+};
+
+}  // namespace lidar::scream

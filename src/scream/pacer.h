@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Draft section "Packet Pacing".
+#pragma once
+#include <algorithm>
+
+#include "scream/parameters.h"
+
+namespace lidar::scream {
+
+class Pacer {
+ public:
+  explicit Pacer(const Parameters& parameters) : p_(parameters) {}
+
+  /// `headroom` is PACKET_PACING_HEADROOM or what an extension makes of it.
+  void Update(DataRate target_bitrate, DataRate target_bitrate_max, double headroom);
+  /// The pace goes on from when the packet was due, not from a late wake-up, up to a bound.
+  void OnSent(Time now, DataSize size);
+  /// Not before this.
+  Time next() const { return next_; }
+  DataRate pace_bitrate() const { return pace_bitrate_; }
+
+ private:
+  static constexpr Duration kMaxCatchUp = 2ms;
+  const Parameters& p_;
+  DataRate pace_bitrate_ = DataRate::BitsPerSecond(1e6);
+  Time next_{};
+};
+
+inline void Pacer::Update(DataRate target, DataRate max, double headroom) {
+  pace_bitrate_ = std::max(p_.rate_pace_min, target) * headroom;
+  const double low = p_.relaxed_pacing_limit_low;
+  const double relaxed = std::min(1.0, (target / max - low) / (1 - low));
+  pace_bitrate_ = pace_bitrate_ / std::clamp(1 - relaxed, 1 / p_.max_relaxed_pacing_factor, 1.0);
+}
+
+inline void Pacer::OnSent(Time now, DataSize size) {
+  next_ = std::max(next_, now - kMaxCatchUp) + size / pace_bitrate_;
+}
+
+}  // namespace lidar::scream

@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "scream/parameters.h"
+
+namespace lidar::scream {
+
+Parameters Parameters::Draft() {
+  Parameters p;
+  p.reduce_jitter = false;
+  p.clock_drift = false;
+  p.link_layer_loss = false;
+  p.rate_policer = false;
+  p.undershoot_remedy = false;
+  p.competing_flows = false;
+  p.extensions = {false, false, false, false, false, false};
+  return p;
+}
+
+}  // namespace lidar::scream

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Smoothed round-trip time (RFC 6298) and its minimum.
+#pragma once
+#include <algorithm>
+#include <optional>
+
+#include "base/time.h"
+
+namespace lidar::scream {
+
+class RoundTripTime {
+ public:
+  /// A source that leaves the window unused sees short round trips that say little about
+  /// the ones it would cause: such samples count for less (the draft's discussion).
+  void Add(Duration sample, bool source_limited) {
+    const Duration bounded = std::max(sample, kMin);
+    last_ = bounded;
+    min_ = min_ ? std::min(*min_, bounded) : bounded;
+    if (!smoothed_) {
+      smoothed_ = bounded;
+      return;
+    }
+    *smoothed_ += (bounded - *smoothed_) / (source_limited ? kSlow : kNormal);
+  }
+  void Reset() { *this = RoundTripTime(); }
+
+  bool known() const { return smoothed_.has_value(); }
+  Duration smoothed() const { return smoothed_.value_or(kInitial); }
+  Duration min() const { return min_.value_or(kInitial); }
+  Duration last() const { return last_; }
+
+ private:
+  static constexpr Duration kMin = std::chrono::milliseconds(1);
+  static constexpr Duration kInitial = std::chrono::milliseconds(100);
+  static constexpr int kNormal = 8;
+  static constexpr int kSlow = 32;
+  std::optional<Duration> smoothed_;
+  std::optional<Duration> min_;
+  Duration last_ = kInitial;
+};
+
+}  // namespace lidar::scream

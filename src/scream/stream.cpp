@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "scream/stream.h"
+
+#include <algorithm>
+
+namespace lidar::scream {
+namespace {
+
+constexpr double kMaxRateAdjustFactor = 0.5;
+constexpr double kMaxFrameSizeDev = 0.2;
+constexpr double kFramePeriodGain = 0.1;
+/// Longer gaps are pauses, not frame periods.
+constexpr Duration kMaxFramePeriod = 2s;
+constexpr Duration kMinFramePeriod = 1ms;
+/// A stream without packets for so long leaves its share to the others.
+constexpr Duration kInactive = 1s;
+
+}  // namespace
+
+Stream::Stream(const Parameters& parameters, const StreamConfig& config)
+    : p_(parameters), config_(config), target_bitrate_(config.start_bitrate) {}
+
+void Stream::Configure(const StreamConfig& config) {
+  config_ = config;
+  target_bitrate_ = std::clamp(target_bitrate_, config.min_bitrate,
+                               std::max(config.min_bitrate, config.max_bitrate));
+}
+
+bool Stream::OnQueued(Time now, const QueuedPacket& packet) {
+  ssrcs_.insert(packet.ssrc);
+  last_queued_ = now;
+  const bool is_media = !media_ssrc_ || *media_ssrc_ == packet.ssrc || packet.marker;
+  const bool starts_frame = is_media && frame_timestamp_ != packet.rtp_timestamp;
+  queue_.push_back({packet.size, now, starts_frame});
+  queued_ += packet.size;
+  if (!is_media) return false;
+  media_ssrc_ = packet.ssrc;
+  if (starts_frame) frame_size_ = DataSize();
+  frame_timestamp_ = packet.rtp_timestamp;
+  frame_size_ += packet.size;
+  if (!packet.marker) return false;
+  OnFrame(now);
+  frame_timestamp_.reset();
+  return true;
+}
+
+/// Draft section "Media Rate Control": rate_adjust_factor and frame_size_dev, for each frame.
+void Stream::OnFrame(Time now) {
+  if (last_frame_ && now - *last_frame_ < kMaxFramePeriod) {
+    const double seconds = Seconds(frame_period_) * (1 - kFramePeriodGain) +
+                           Seconds(now - *last_frame_) * kFramePeriodGain;
+    frame_period_ = std::max(kMinFramePeriod, FromSeconds(seconds));
+  }
+  last_frame_ = now;
+  const double error = Seconds(media_qdelay(now) - frame_period_ / 4) / Seconds(frame_period_);
+  rate_adjust_factor_ =
+      std::clamp(rate_adjust_factor_ + error * p_.rate_adjust_gain, 0.0, kMaxRateAdjustFactor);
+  const DataSize nominal = target_bitrate_ * frame_period_;
+  if (nominal.bytes() <= 0) return;
+  const double deviation = std::max(0.0, (frame_size_ - nominal) / nominal);
+  frame_size_dev_ = std::min(kMaxFrameSizeDev, (1 - p_.frame_size_dev_alpha) * frame_size_dev_ +
+                                                   p_.frame_size_dev_alpha * deviation);
+}
+
+void Stream::OnSent(Time now, std::uint32_t ssrc, DataSize size) {
+  ssrcs_.insert(ssrc);
+  sent_rate_.Add(now, size);
+  ++counters_.packets_sent;
+  counters_.bytes_sent += size;
+  if (queue_.empty()) return;
+  queued_ -= queue_.front().size;
+  queue_.pop_front();
+}
+
+void Stream::OnDropped(std::size_t packets) {
+  for (; packets > 0 && !queue_.empty(); --packets) {
+    ++counters_.packets_dropped;
+    queued_ -= queue_.front().size;
+    queue_.pop_front();
+  }
+}
+
+std::size_t Stream::LatePackets(Time now) const {
+  const auto is_start = [](const Queued& q) { return q.starts_frame; };
+  // A frame that has begun to leave goes out to its end: half a frame helps nobody.
+  if (queue_.empty() || !queue_.front().starts_frame) return 0;
+  std::size_t late = 0;
+  for (auto frame = queue_.begin(); frame != queue_.end();) {
+    if (now - frame->queued <= p_.max_queue_delay) break;
+    frame = std::find_if(std::next(frame), queue_.end(), is_start);
+    late = static_cast<std::size_t>(frame - queue_.begin());
+  }
+  return late;
+}
+
+Duration Stream::media_qdelay(Time now) const {
+  return queue_.empty() ? Duration{0} : now - queue_.front().queued;
+}
+
+bool Stream::active(Time now) const {
+  return !queue_.empty() || last_queued_ == Time{} || now - last_queued_ < kInactive;
+}
+
+StreamStatistics Stream::statistics(Time now) {
+  StreamStatistics s = counters_;
+  s.target_bitrate = target_bitrate_;
+  s.sent_bitrate = sent_rate_.Rate(now);
+  s.queued = queued_;
+  s.media_qdelay = media_qdelay(now);
+  s.rate_adjust_factor = rate_adjust_factor_;
+  s.frame_size_dev = frame_size_dev_;
+  s.frame_period = frame_period_;
+  return s;
+}
+
+}  // namespace lidar::scream

@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// One media stream: the mirror of its RTP queue, its frames, and its share of the rate.
+#pragma once
+#include <deque>
+#include <optional>
+#include <set>
+
+#include "scream/parameters.h"
+#include "scream/rate_meter.h"
+#include "scream/statistics.h"
+#include "scream/stream_config.h"
+
+namespace lidar::scream {
+
+class Stream {
+ public:
+  Stream(const Parameters& parameters, const StreamConfig& config);
+
+  void Configure(const StreamConfig& config);
+  /// Returns true where the packet ends a frame.
+  bool OnQueued(Time now, const QueuedPacket& packet);
+  /// Takes the head of the queue.
+  void OnSent(Time now, std::uint32_t ssrc, DataSize size);
+  void OnDropped(std::size_t packets);
+  std::size_t LatePackets(Time now) const;
+
+  bool empty() const { return queue_.empty(); }
+  DataSize head_size() const { return queue_.front().size; }
+  DataSize queued() const { return queued_; }
+  /// Age of the oldest packet.
+  Duration media_qdelay(Time now) const;
+  bool Owns(std::uint32_t ssrc) const { return ssrcs_.count(ssrc) > 0; }
+
+  const StreamConfig& config() const { return config_; }
+  double rate_adjust_factor() const { return rate_adjust_factor_; }
+  double frame_size_dev() const { return frame_size_dev_; }
+  Duration frame_period() const { return frame_period_; }
+  bool active(Time now) const;
+  DataRate target_bitrate() const { return target_bitrate_; }
+  void set_target_bitrate(DataRate target) { target_bitrate_ = target; }
+  DataRate sent_bitrate(Time now) { return sent_rate_.Rate(now); }
+  void OnAcked(bool ce) { counters_.packets_ce += ce ? 1 : 0; }
+  void OnLost() { ++counters_.packets_lost; }
+  StreamStatistics statistics(Time now);
+  /// For the scheduler: bytes sent by weight, see Streams.
+  double virtual_time = 0;
+
+ private:
+  struct Queued {
+    DataSize size;
+    Time queued{};
+    bool starts_frame = false;
+  };
+  void OnFrame(Time now);
+
+  const Parameters& p_;
+  StreamConfig config_;
+  std::deque<Queued> queue_;
+  DataSize queued_;
+  std::set<std::uint32_t> ssrcs_;
+  RateMeter sent_rate_{1s};
+  DataRate target_bitrate_;
+  // Frames of the media SSRC: the one that sends markers.
+  std::optional<std::uint32_t> media_ssrc_;
+  std::optional<std::uint32_t> frame_timestamp_;
+  DataSize frame_size_;
+  std::optional<Time> last_frame_;
+  Time last_queued_{};
+  Duration frame_period_ = 20ms;
+  double rate_adjust_factor_ = 0;
+  double frame_size_dev_ = 0;
+  StreamStatistics counters_;
+};
+
+}  // namespace lidar::scream

@@ -1,0 +1,154 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "scream/streams.h"
+
+#include <algorithm>
+#include <vector>
+
+namespace lidar::scream {
+
+StreamId Streams::Add(const StreamConfig& config) {
+  const StreamId id = next_id_++;
+  streams_.emplace(id, Stream(p_, config)).first->second.virtual_time = virtual_now_;
+  return id;
+}
+
+Stream* Streams::Find(StreamId id) {
+  const auto it = streams_.find(id);
+  return it == streams_.end() ? nullptr : &it->second;
+}
+
+const Stream* Streams::Find(StreamId id) const {
+  const auto it = streams_.find(id);
+  return it == streams_.end() ? nullptr : &it->second;
+}
+
+std::optional<StreamId> Streams::Owner(std::uint32_t ssrc) const {
+  for (const auto& [id, stream] : streams_)
+    if (stream.Owns(ssrc)) return id;
+  return std::nullopt;
+}
+
+std::optional<StreamId> Streams::Next() const {
+  std::optional<StreamId> next;
+  double earliest = 0;
+  for (const auto& [id, stream] : streams_) {
+    if (stream.empty() || (next && stream.virtual_time >= earliest)) continue;
+    next = id;
+    earliest = stream.virtual_time;
+  }
+  return next;
+}
+
+/// A stream that was idle gets no credit for the time it did not send.
+void Streams::OnQueued(Stream* stream) {
+  stream->virtual_time = std::max(stream->virtual_time, virtual_now_);
+}
+
+void Streams::OnSent(Time now, StreamId id, std::uint32_t ssrc, DataSize size) {
+  Stream* stream = Find(id);
+  if (stream == nullptr) return;
+  stream->OnSent(now, ssrc, size);
+  virtual_now_ = stream->virtual_time;
+  const double weight = std::max(1.0, stream->target_bitrate().bits_per_second());
+  stream->virtual_time += size.bits() / weight;
+}
+
+void Streams::Allocate(Time now, DataRate total) {
+  struct Share {
+    Stream* stream;
+    double weight;
+    DataRate rate;
+    DataRate max;
+  };
+  std::vector<Share> open;
+  DataRate left = total;
+  for (auto& [id, stream] : streams_) {
+    const StreamConfig& c = stream.config();
+    stream.set_target_bitrate(c.min_bitrate);
+    if (!stream.active(now)) continue;
+    left = left - c.min_bitrate;
+    open.push_back({&stream, std::max(1e-6, c.priority), c.min_bitrate,
+                    std::max(c.min_bitrate, c.max_bitrate)});
+  }
+  // Fill by weight; who reaches the maximum leaves the rest to the others.
+  while (left.bits_per_second() > 1 && !open.empty()) {
+    double weights = 0;
+    for (const Share& s : open) weights += s.weight;
+    double fraction = 1;  // of `left` that can be given before the first one is full
+    for (const Share& s : open)
+      fraction = std::min(fraction, (s.max - s.rate) / (left * (s.weight / weights)));
+    const DataRate given = left * fraction;
+    for (Share& s : open) {
+      s.rate = s.rate + given * (s.weight / weights);
+      s.stream->set_target_bitrate(std::min(s.rate, s.max));
+    }
+    left = left - given;
+    const auto full = [](const Share& s) { return (s.max - s.rate).bits_per_second() < 1; };
+    open.erase(std::remove_if(open.begin(), open.end(), full), open.end());
+    if (fraction >= 1) break;
+  }
+}
+
+DataRate Streams::min_bitrate() const {
+  DataRate sum;
+  for (const auto& [id, s] : streams_) sum = sum + s.config().min_bitrate;
+  return sum;
+}
+
+DataRate Streams::max_bitrate() const {
+  DataRate sum;
+  for (const auto& [id, s] : streams_)
+    sum = sum + std::max(s.config().min_bitrate, s.config().max_bitrate);
+  return sum;
+}
+
+DataRate Streams::start_bitrate() const {
+  DataRate sum;
+  for (const auto& [id, s] : streams_) sum = sum + s.config().start_bitrate;
+  return sum;
+}
+
+DataRate Streams::target_bitrate() const {
+  DataRate sum;
+  for (const auto& [id, s] : streams_) sum = sum + s.target_bitrate();
+  return sum;
+}
+
+Duration Streams::frame_period() const {
+  Duration period = 20ms;
+  DataRate highest;
+  for (const auto& [id, s] : streams_) {
+    if (s.target_bitrate() < highest) continue;
+    highest = s.target_bitrate();
+    period = s.frame_period();
+  }
+  return period;
+}
+
+double Streams::queue_compensation() const {
+  const double sum = target_bitrate().bits_per_second();
+  double weighted = 0;
+  for (const auto& [id, s] : streams_)
+    weighted +=
+        (s.rate_adjust_factor() + s.frame_size_dev()) * s.target_bitrate().bits_per_second();
+  return sum > 0 ? weighted / sum : 0;
+}
+
+DataSize Streams::queued() const {
+  DataSize sum;
+  for (const auto& [id, s] : streams_) sum += s.queued();
+  return sum;
+}
+
+Duration Streams::media_qdelay(Time now) const {
+  Duration longest{0};
+  for (const auto& [id, s] : streams_) longest = std::max(longest, s.media_qdelay(now));
+  return longest;
+}
+
+bool Streams::empty() const {
+  return std::all_of(streams_.begin(), streams_.end(),
+                     [](const auto& s) { return s.second.empty(); });
+}
+
+}  // namespace lidar::scream

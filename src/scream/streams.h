@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// All streams of a controller: who sends next, and who gets how much of the rate.
+#pragma once
+#include <map>
+#include <optional>
+
+#include "scream/stream.h"
+
+namespace lidar::scream {
+
+class Streams {
+ public:
+  explicit Streams(const Parameters& parameters) : p_(parameters) {}
+
+  StreamId Add(const StreamConfig& config);
+  void Remove(StreamId id) { streams_.erase(id); }
+  Stream* Find(StreamId id);
+  const Stream* Find(StreamId id) const;
+  std::optional<StreamId> Owner(std::uint32_t ssrc) const;
+
+  /// The stream whose turn it is: weighted fair queueing by target bitrates.
+  std::optional<StreamId> Next() const;
+  void OnSent(Time now, StreamId id, std::uint32_t ssrc, DataSize size);
+  void OnQueued(Stream* stream);
+
+  /// Minimum first, then by priority, none above its maximum; silent streams keep their minimum.
+  void Allocate(Time now, DataRate total);
+  DataRate min_bitrate() const;
+  DataRate max_bitrate() const;
+  DataRate start_bitrate() const;
+  DataRate target_bitrate() const;
+  /// Of the stream with the highest target.
+  Duration frame_period() const;
+  /// rate_adjust_factor + frame_size_dev, weighted by target.
+  double queue_compensation() const;
+  DataSize queued() const;
+  Duration media_qdelay(Time now) const;
+  bool empty() const;
+
+ private:
+  const Parameters& p_;
+  std::map<StreamId, Stream> streams_;
+  StreamId next_id_ = 0;
+  double virtual_now_ = 0;
+};
+
+}  // namespace lidar::scream

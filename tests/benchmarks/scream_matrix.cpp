@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// scream-matrix: runs the named scenarios in simulated time and prints the table.
+#include <cstdio>
+#include <cstring>
+#include <string>
+#include <vector>
+
+#include "scenarios.h"
+
+namespace {
+
+using lidar::Milliseconds;
+using lidar::Seconds;
+using lidar::scream::Parameters;
+using namespace lidar::scream::test;
+
+struct Options {
+  std::vector<std::string> scenarios;
+  bool draft = false;
+  std::string samples;
+  double seconds = 0;
+};
+
+void PrintUsage() {
+  std::puts(
+      "usage: scream-matrix [--draft] [--seconds S] [--samples CSV] [SCENARIO...]\n"
+      "Simulates SCReAM v2 over the scenarios (all by default) and prints one line each.\n"
+      "  --draft        no extension: the constants and rules of the draft alone\n"
+      "  --seconds S    shorter (or longer) runs\n"
+      "  --samples CSV  writes the controller's state every 10 ms (of one scenario)");
+}
+
+bool Parse(int argc, char** argv, Options* options) {
+  for (int i = 1; i < argc; ++i) {
+    const std::string arg = argv[i];
+    if (arg == "--draft") {
+      options->draft = true;
+    } else if (arg == "--samples" && i + 1 < argc) {
+      options->samples = argv[++i];
+    } else if (arg == "--seconds" && i + 1 < argc) {
+      options->seconds = std::atof(argv[++i]);
+    } else if (arg[0] == '-') {
+      return false;
+    } else {
+      options->scenarios.push_back(arg);
+    }
+  }
+  return true;
+}
+
+bool WriteSamples(const std::string& path, const SimulationResult& result) {
+  std::FILE* file = std::fopen(path.c_str(), "w");
+  if (file == nullptr) return false;
+  std::fputs(
+      "time_s,flow,capacity_mbps,target_mbps,sent_mbps,acked_mbps,ref_wnd,ref_wnd_i,bytes_in_"
+      "flight,"
+      "qdelay_ms,qdelay_avg_ms,s_rtt_ms,l4s_alpha,delay_scale,loss_rate,media_qdelay_ms\n",
+      file);
+  for (const Sample& s : result.samples) {
+    const auto& t = s.statistics;
+    std::fprintf(file,
+                 "%.3f,%d,%.3f,%.3f,%.3f,%.3f,%lld,%lld,%lld,%.2f,%.2f,%.2f,%.4f,%.3f,%.4f,%.2f\n",
+                 Seconds(s.time - result.config.forward.origin), s.flow, s.capacity_mbps,
+                 t.target_bitrate.bits_per_second() / 1e6, t.sent_bitrate.bits_per_second() / 1e6,
+                 t.acked_bitrate.bits_per_second() / 1e6, static_cast<long long>(t.ref_wnd.bytes()),
+                 static_cast<long long>(t.ref_wnd_i.bytes()),
+                 static_cast<long long>(t.bytes_in_flight.bytes()), Milliseconds(t.qdelay),
+                 Milliseconds(t.qdelay_avg), Milliseconds(t.s_rtt), t.l4s_alpha,
+                 t.ref_wnd_delay_scale, t.loss_rate, Milliseconds(t.media_qdelay));
+  }
+  return std::fclose(file) == 0;
+}
+
+void PrintRow(const Scenario& s, const ScenarioMetrics& m) {
+  std::printf(
+      "%-11s %5.1f  %5.1f %5.1f %6.1f %6.1f  %6.1f %6.1f %6.1f %6.1f  %5.2f  %5.3f  %5.2f %5.1f  "
+      "%4.0f %4.0f",
+      s.name.c_str(), 100 * m.utilisation, m.queue_ms.p50, m.queue_ms.p95, m.queue_ms.p99,
+      m.queue_ms.max, m.frame_ms.p50, m.frame_ms.p95, m.frame_ms.p99, m.frame_ms.max,
+      100 * m.own_loss, m.jain, m.start_s, m.start_peak_ms, m.frames_dropped, m.feedback_kbps);
+  if (s.drop_at)
+    std::printf("  drop: peak %.0f ms, <10 ms after %.2f s, rate after %.3f s",
+                m.drop.peak_queue_ms, m.drop.recovered_s, m.drop.below_rate_s);
+  std::printf("\n");
+  std::fflush(stdout);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  Options options;
+  if (!Parse(argc, argv, &options)) {
+    PrintUsage();
+    return argc > 1 && std::strcmp(argv[1], "--help") == 0 ? 0 : 2;
+  }
+  const Parameters parameters = options.draft ? Parameters::Draft() : Parameters();
+  std::printf("%-11s %5s  %-25s  %-27s  %5s  %5s  %-11s  %s\n", "scenario", "util%",
+              "queue p50/p95/p99/max ms", "frame p50/p95/p99/max ms", "loss%", "Jain",
+              "start s, ms", "dropped, feedback kbit/s");
+  for (Scenario& s : Scenarios(parameters)) {
+    bool wanted = options.scenarios.empty();
+    for (const std::string& name : options.scenarios) wanted = wanted || name == s.name;
+    if (!wanted) continue;
+    if (options.seconds > 0) s.config.duration = lidar::FromSeconds(options.seconds);
+    const SimulationResult result = Simulate(s.config);
+    PrintRow(s, Measure(s, result));
+    if (!options.samples.empty() && !WriteSamples(options.samples, result)) {
+      std::fprintf(stderr, "scream-matrix: cannot write %s\n", options.samples.c_str());
+      return 1;
+    }
+  }
+  return 0;
+}

@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Senders, a bottleneck and receivers in simulated time: the whole control loop, deterministic.
+#pragma once
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "link/bottleneck.h"
+#include "scream/controller.h"
+#include "scream/feedback_generator.h"
+
+namespace lidar::scream::test {
+
+struct FlowConfig {
+  Parameters parameters;
+  StreamConfig stream;
+  FeedbackConfig feedback;
+  double frames_per_second = 50;
+  double frame_jitter = 0;  ///< frame sizes vary evenly by up to this fraction
+  Time start{};
+  Duration stop_after = Duration::max();
+  bool drop_late = true;
+  /// Scales what the encoder puts out against its target, over time since the flow's start.
+  std::function<double(Duration)> obedience;
+  Duration wakeup_delay{0};  ///< of the pacing thread: a packet leaves so much late
+};
+
+struct SimulationConfig {
+  link::BottleneckConfig forward;  ///< its delay is the way there
+  Duration return_delay{0};
+  double return_loss = 0;
+  Duration duration = std::chrono::seconds(40);
+  std::vector<FlowConfig> flows{1};
+  Duration sample_interval = std::chrono::milliseconds(10);
+};
+
+struct Percentiles {
+  double p50 = 0, p95 = 0, p99 = 0, max = 0;
+};
+Percentiles Summarise(std::vector<double> values);
+
+struct PacketLog {
+  Time sent{}, arrival{};
+  double sojourn_ms = 0;
+  int flow = 0;
+  std::int64_t bytes = 0;
+  bool delivered = false;
+};
+
+struct Sample {
+  Time time{};
+  int flow = 0;
+  double capacity_mbps = 0;
+  Statistics statistics;
+};
+
+struct FlowResult {
+  std::vector<double> frame_latency_ms;
+  std::int64_t delivered_bytes = 0;
+  std::uint64_t frames_sent = 0, frames_dropped = 0;
+  std::uint64_t packets_sent = 0, packets_congestion_lost = 0, packets_random_lost = 0;
+  std::int64_t feedback_bytes = 0;
+  Statistics statistics;
+};
+
+struct SimulationResult {
+  std::vector<FlowResult> flows;
+  std::vector<PacketLog> packets;
+  std::vector<Sample> samples;
+  SimulationConfig config;
+
+  double Utilisation(Time from, Time until) const;
+  Percentiles QueueDelay(Time from, Time until) const;
+  std::int64_t DeliveredBytes(Time from, Time until, int flow = -1) const;
+};
+
+SimulationResult Simulate(const SimulationConfig& config);
+
+}  // namespace lidar::scream::test
