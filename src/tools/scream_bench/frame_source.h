@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// A media source that puts out exactly what it was asked for: frames of RTP packets.
+#pragma once
+#include <gst/gst.h>
+
+#include <cstdint>
+#include <random>
+
+#include "base/units.h"
+#include "common/refs.h"
+#include "scream_bench/options.h"
+
+namespace lidar::tools {
+
+/// Sizes of frames that add up to the bitrate, whatever the rounding and the jitter.
+class FrameSizes {
+ public:
+  FrameSizes(double fps, double jitter_percent)
+      : period_(FromSeconds(1 / fps)), jitter_(jitter_percent / 100) {}
+
+  /// Payload of the next frame.
+  DataSize Next(DataRate rate);
+  Duration period() const { return period_; }
+
+ private:
+  Duration period_;
+  double jitter_;
+  double carry_bytes_ = 0;
+  std::minstd_rand random_;  // the same frames in every run
+};
+
+/// Cuts frames into RTP packets of one stream: SSRC 100, payload type 96, sequence from 0.
+class FramePacketizer {
+ public:
+  static constexpr std::uint32_t kSsrc = 100;
+  static constexpr std::uint8_t kPayloadType = 96;
+  static constexpr std::uint32_t kClockRate = 90'000;
+
+  explicit FramePacketizer(std::uint32_t mtu) : mtu_(mtu) {}
+
+  /// Packets of `payload` bytes (one packet at least, an empty frame none), the last with the
+  /// marker. `created`: Unix time, from which the RTP timestamp comes.
+  gst::BufferListPtr Packetize(DataSize payload, Duration created, GstClockTime pts);
+
+ private:
+  std::uint32_t mtu_;
+  std::uint16_t next_sequence_ = 0;
+};
+
+/// RTP timestamp (90 kHz) of a Unix time.
+inline std::uint32_t RtpTimestamp(Duration unix_time) {
+  constexpr std::int64_t kBillion = 1'000'000'000;
+  const std::int64_t s = unix_time.count() / kBillion;
+  const std::int64_t ns = unix_time.count() % kBillion;
+  return static_cast<std::uint32_t>(s * FramePacketizer::kClockRate +
+                                    ns * FramePacketizer::kClockRate / kBillion);
+}
+
+}  // namespace lidar::tools

@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// scream-bench: measures a network path with SCReAM v2.
+#include <gst/gst.h>
+
+#include <exception>
+#include <iostream>
+
+#include "scream_bench/options.h"
+#include "scream_bench/receiver.h"
+#include "scream_bench/sender.h"
+
+int main(int argc, char** argv) {
+  const auto options = lidar::tools::ParseBenchOptions(argc, argv);
+  gst_init(nullptr, nullptr);
+  try {
+    return options.is_sender ? lidar::tools::RunSender(options)
+                             : lidar::tools::RunReceiver(options);
+  } catch (const std::exception& e) {
+    std::cerr << "scream-bench: " << e.what() << '\n';
+    return 1;
+  }
+}

@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "scream_bench/pipeline.h"
+
+#include <glib-unix.h>
+
+#include <iostream>
+#include <memory>
+#include <stdexcept>
+
+namespace lidar::tools {
+namespace {
+
+struct MainLoopUnref {
+  void operator()(GMainLoop* loop) const { g_main_loop_unref(loop); }
+};
+
+struct Runner {
+  GstElement* pipeline;
+  std::string program;
+  const std::function<void()>* tick;
+  std::unique_ptr<GMainLoop, MainLoopUnref> loop{g_main_loop_new(nullptr, FALSE)};
+  bool ending = false;
+  int result = 0;
+};
+
+/// EOS first, so that queues drain; a second signal stops at once.
+void End(Runner* runner) {
+  if (runner->ending) {
+    g_main_loop_quit(runner->loop.get());
+    return;
+  }
+  runner->ending = true;
+  gst_element_send_event(runner->pipeline, gst_event_new_eos());
+  constexpr guint kDrainMs = 1000;
+  g_timeout_add(
+      kDrainMs,
+      [](gpointer data) -> gboolean {
+        g_main_loop_quit(static_cast<Runner*>(data)->loop.get());
+        return G_SOURCE_REMOVE;
+      },
+      runner);
+}
+
+gboolean OnMessage(GstBus*, GstMessage* message, gpointer data) {
+  auto* runner = static_cast<Runner*>(data);
+  if (GST_MESSAGE_TYPE(message) == GST_MESSAGE_EOS) {
+    g_main_loop_quit(runner->loop.get());
+  } else if (GST_MESSAGE_TYPE(message) == GST_MESSAGE_ERROR) {
+    GError* error = nullptr;
+    gst_message_parse_error(message, &error, nullptr);
+    std::cerr << runner->program << ": " << error->message << '\n';
+    g_error_free(error);
+    runner->result = 1;
+    g_main_loop_quit(runner->loop.get());
+  }
+  return G_SOURCE_CONTINUE;
+}
+
+}  // namespace
+
+GstElement* AddElement(GstElement* bin, const char* factory, const char* name) {
+  GstElement* element = gst_element_factory_make(factory, name);
+  if (element == nullptr)
+    throw std::runtime_error(std::string("the GStreamer element ") + factory +
+                             " is not installed (is GST_PLUGIN_PATH set?)");
+  gst_bin_add(GST_BIN(bin), element);
+  return element;
+}
+
+void LinkPads(GstElement* from, const char* from_pad, GstElement* to, const char* to_pad) {
+  if (!gst_element_link_pads(from, from_pad, to, to_pad))
+    throw std::runtime_error(std::string("cannot link ") + GST_ELEMENT_NAME(from) + " to " +
+                             GST_ELEMENT_NAME(to));
+}
+
+int RunPipeline(GstElement* pipeline, const std::string& program, Duration duration,
+                const std::function<void()>& every_100_ms) {
+  Runner runner{pipeline, program, &every_100_ms};
+  GstBus* bus = gst_element_get_bus(pipeline);
+  const guint watch = gst_bus_add_watch(bus, OnMessage, &runner);
+  gst_object_unref(bus);
+  const auto on_signal = [](gpointer data) -> gboolean {
+    End(static_cast<Runner*>(data));
+    return G_SOURCE_CONTINUE;
+  };
+  const guint interrupt = g_unix_signal_add(SIGINT, on_signal, &runner);
+  const guint terminate = g_unix_signal_add(SIGTERM, on_signal, &runner);
+  constexpr guint kTickMs = 100;
+  const guint tick = g_timeout_add(
+      kTickMs,
+      [](gpointer data) -> gboolean {
+        (*static_cast<Runner*>(data)->tick)();
+        return G_SOURCE_CONTINUE;
+      },
+      &runner);
+  if (duration < Duration::max()) {
+    g_timeout_add(
+        static_cast<guint>(Milliseconds(duration)),
+        [](gpointer data) -> gboolean {
+          End(static_cast<Runner*>(data));
+          return G_SOURCE_REMOVE;
+        },
+        &runner);
+  }
+  gst_element_set_state(pipeline, GST_STATE_PLAYING);
+  g_main_loop_run(runner.loop.get());
+  gst_element_set_state(pipeline, GST_STATE_NULL);
+  for (const guint source : {watch, interrupt, terminate, tick}) g_source_remove(source);
+  return runner.result;
+}
+
+Duration UnixNow() { return std::chrono::microseconds{g_get_real_time()}; }
+
+}  // namespace lidar::tools

@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Runs a pipeline until its end, an error, SIGINT or a duration; calls back once a second.
+#pragma once
+#include <gst/gst.h>
+
+#include <functional>
+#include <string>
+
+#include "base/time.h"
+#include "common/refs.h"
+
+namespace lidar::tools {
+
+/// Makes an element of `factory` in `bin`. Throws std::runtime_error where it is not installed.
+GstElement* AddElement(GstElement* bin, const char* factory, const char* name);
+/// Throws std::runtime_error where the pads don't fit.
+void LinkPads(GstElement* from, const char* from_pad, GstElement* to, const char* to_pad);
+
+/// 0, or 1 after an error, which is printed with `program` before it.
+int RunPipeline(GstElement* pipeline, const std::string& program, Duration duration,
+                const std::function<void()>& every_100_ms);
+
+/// The Unix time now.
+Duration UnixNow();
+
+}  // namespace lidar::tools

@@ -1,0 +1,186 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "scream_bench/receiver.h"
+
+#include <gst/rtp/gstrtpbuffer.h>
+
+#include <cstdio>
+#include <fstream>
+#include <mutex>
+#include <nlohmann/json.hpp>
+#include <stdexcept>
+
+#include "common/gstlidar.h"
+#include "scream_bench/frame_meter.h"
+#include "scream_bench/frame_source.h"
+#include "scream_bench/pipeline.h"
+
+namespace lidar::tools {
+namespace {
+
+constexpr DataSize kIpUdp = DataSize::Bytes(28);
+constexpr const char* kCaps =
+    "application/x-rtp,media=application,encoding-name=X-SCREAM-BENCH,clock-rate=90000";
+
+class Receiver {
+ public:
+  explicit Receiver(const BenchOptions& options);
+  int Run();
+
+ private:
+  void Build();
+  void OnBuffer(GstBuffer* buffer);
+  void Tick();
+  void PrintLine(double seconds);
+  bool Finish();
+
+  const BenchOptions& options_;
+  gst::ElementPtr pipeline_;
+  std::ofstream log_;
+  std::mutex mutex_;  // guards the rest, which the streaming thread writes
+  FrameMeter meter_;
+  Distribution second_;  // ages [ms] in this line's second
+  DataSize line_bytes_;
+  Duration first_{0};
+  Duration last_{0};
+  Duration next_line_{0};
+};
+
+Receiver::Receiver(const BenchOptions& options) : options_(options) {
+  if (!options.rx.log.empty()) {
+    log_.open(options.rx.log);
+    if (!log_) throw std::runtime_error("cannot write " + options.rx.log);
+    log_ << "time_s,rtp_timestamp,frame_age_ms\n";
+  }
+  Build();
+}
+
+/// The short way is screamsrc; feedback to another address needs its parts.
+void Receiver::Build() {
+  pipeline_.reset(GST_ELEMENT(gst_object_ref_sink(gst_pipeline_new("scream-bench-rx"))));
+  const BenchRxOptions& o = options_.rx;
+  GstElement* bin = pipeline_.get();
+  GstElement* source = AddElement(bin, o.feedback.empty() ? "screamsrc" : "ecnudpsrc", "source");
+  g_object_set(source, "port", static_cast<gint>(o.port), nullptr);
+  if (!o.address.empty()) g_object_set(source, "address", o.address.c_str(), nullptr);
+  const gst::CapsPtr caps(gst_caps_from_string(kCaps));
+  g_object_set(source, "caps", caps.get(), nullptr);
+  GstElement* sink = AddElement(bin, "fakesink", "sink");
+  g_object_set(sink, "sync", FALSE, "async", FALSE, nullptr);
+  if (o.feedback.empty()) {
+    LinkPads(source, "src", sink, "sink");
+  } else {
+    const std::size_t colon = o.feedback.rfind(':');
+    if (colon == std::string::npos) throw std::runtime_error("--feedback wants HOST:PORT");
+    GstElement* rx = AddElement(bin, "screamrx", "screamrx");
+    GstElement* back = AddElement(bin, "ecnudpsink", "feedback");
+    g_object_set(back, "host", o.feedback.substr(0, colon).c_str(), "port",
+                 std::stoi(o.feedback.substr(colon + 1)), "sync", FALSE, "async", FALSE, nullptr);
+    LinkPads(source, "src", rx, "sink");
+    LinkPads(rx, "src", sink, "sink");
+    LinkPads(rx, "rtcp_src", back, "sink");
+  }
+  const gst::PadPtr pad(gst_element_get_static_pad(sink, "sink"));
+  gst_pad_add_probe(
+      pad.get(),
+      static_cast<GstPadProbeType>(GST_PAD_PROBE_TYPE_BUFFER | GST_PAD_PROBE_TYPE_BUFFER_LIST),
+      [](GstPad*, GstPadProbeInfo* info, gpointer data) -> GstPadProbeReturn {
+        auto* self = static_cast<Receiver*>(data);
+        if (GstBuffer* buffer = GST_PAD_PROBE_INFO_BUFFER(info);
+            (info->type & GST_PAD_PROBE_TYPE_BUFFER) != 0) {
+          self->OnBuffer(buffer);
+        } else {
+          GstBufferList* list = GST_PAD_PROBE_INFO_BUFFER_LIST(info);
+          for (guint i = 0; i < gst_buffer_list_length(list); ++i)
+            self->OnBuffer(gst_buffer_list_get(list, i));
+        }
+        return GST_PAD_PROBE_OK;
+      },
+      this, nullptr);
+}
+
+void Receiver::OnBuffer(GstBuffer* buffer) {
+  GstRTPBuffer rtp = GST_RTP_BUFFER_INIT;
+  if (!gst_rtp_buffer_map(buffer, GST_MAP_READ, &rtp)) return;
+  ReceivedPacket packet;
+  packet.sequence = gst_rtp_buffer_get_seq(&rtp);
+  packet.timestamp = gst_rtp_buffer_get_timestamp(&rtp);
+  packet.marker = gst_rtp_buffer_get_marker(&rtp) != FALSE;
+  gst_rtp_buffer_unmap(&rtp);
+  packet.size = DataSize::Bytes(static_cast<std::int64_t>(gst_buffer_get_size(buffer))) + kIpUdp;
+  GstLidarEcn ecn = GST_LIDAR_ECN_NOT_ECT;
+  GstClockTime arrival = GST_CLOCK_TIME_NONE;
+  gst_lidar_buffer_get_ecn(buffer, &ecn, &arrival);
+  packet.is_ce = ecn == GST_LIDAR_ECN_CE;
+  packet.unix_time =
+      GST_CLOCK_TIME_IS_VALID(arrival) ? Duration{static_cast<std::int64_t>(arrival)} : UnixNow();
+  const std::lock_guard lock(mutex_);
+  if (meter_.packets() == 0) {
+    first_ = packet.unix_time;
+    next_line_ = first_ + std::chrono::seconds{1};
+  }
+  last_ = packet.unix_time;
+  line_bytes_ += packet.size;
+  if (const auto age = meter_.OnPacket(packet)) {
+    second_.Add(Milliseconds(*age));
+    if (log_.is_open())
+      log_ << Seconds(packet.unix_time - first_) << ',' << packet.timestamp << ','
+           << Milliseconds(*age) << '\n';
+  }
+}
+
+void Receiver::Tick() {
+  const Duration now = UnixNow();
+  const std::lock_guard lock(mutex_);
+  if (meter_.packets() == 0 || now < next_line_) return;
+  PrintLine(Seconds(now - first_));
+  next_line_ = now + std::chrono::seconds{1};
+}
+
+void Receiver::PrintLine(double seconds) {
+  std::printf(
+      "%7.1f s  received %8.3f Mbit/s  frame age p50 %6.1f p95 %6.1f ms%s  CE %llu  lost %llu\n",
+      seconds, line_bytes_.bits() / 1e6, second_.Percentile(50), second_.Percentile(95),
+      meter_.is_relative() ? " (over the youngest)" : "",
+      static_cast<unsigned long long>(meter_.ce_packets()),
+      static_cast<unsigned long long>(meter_.lost()));
+  std::fflush(stdout);
+  line_bytes_ = {};
+  second_.Clear();
+}
+
+bool Receiver::Finish() {
+  const std::lock_guard lock(mutex_);
+  const double seconds = Seconds(last_ - first_);
+  const Distribution& ages = meter_.ages_ms();
+  const nlohmann::ordered_json summary = {
+      {"seconds", seconds},
+      {"packets", meter_.packets()},
+      {"lost", meter_.lost()},
+      {"ce", meter_.ce_packets()},
+      {"frames", meter_.frames()},
+      {"mean_rate_bps", seconds > 0 ? meter_.received().bits() / seconds : 0},
+      {"frame_age_is_relative", meter_.is_relative()},
+      {"frame_age_ms",
+       {{"p50", ages.Percentile(50)},
+        {"p95", ages.Percentile(95)},
+        {"p99", ages.Percentile(99)},
+        {"max", ages.Max()}}}};
+  std::puts(summary.dump(2).c_str());
+  if (options_.summary.empty()) return true;
+  std::ofstream file(options_.summary);
+  file << summary.dump(2) << '\n';
+  return static_cast<bool>(file.flush());
+}
+
+int Receiver::Run() {
+  const int result =
+      RunPipeline(pipeline_.get(), "scream-bench rx", options_.duration, [this] { Tick(); });
+  if (!Finish()) throw std::runtime_error("cannot write " + options_.summary);
+  return result;
+}
+
+}  // namespace
+
+int RunReceiver(const BenchOptions& options) { return Receiver(options).Run(); }
+
+}  // namespace lidar::tools

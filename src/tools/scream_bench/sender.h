@@ -1,0 +1,11 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// scream-bench tx.
+#pragma once
+#include "scream_bench/options.h"
+
+namespace lidar::tools {
+
+/// Returns the program's exit code. Throws std::runtime_error with a text for the user.
+int RunSender(const BenchOptions& options);
+
+}  // namespace lidar::tools
