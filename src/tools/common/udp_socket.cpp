@@ -125,6 +125,15 @@ UdpSocket UdpSocket::Connect(const Address& remote) {
   return s;
 }
 
+int UdpSocket::LocalPort() const {
+  sockaddr_storage local{};
+  socklen_t length = sizeof local;
+  getsockname(fd(), reinterpret_cast<sockaddr*>(&local), &length);
+  const auto* v4 = reinterpret_cast<const sockaddr_in*>(&local);
+  const auto* v6 = reinterpret_cast<const sockaddr_in6*>(&local);
+  return ntohs(local.ss_family == AF_INET6 ? v6->sin6_port : v4->sin_port);
+}
+
 void UdpSocket::ReceiveAll(const std::function<void(const Datagram&)>& handler) {
   std::uint8_t payload[kMaxDatagram];
   alignas(cmsghdr) char control[kControlSize];

@@ -45,6 +45,7 @@ class UdpSocket {
   static UdpSocket Connect(const Address& remote);
 
   int fd() const { return fd_.get(); }
+  int LocalPort() const;
   /// Hands every waiting datagram to `handler`.
   void ReceiveAll(const std::function<void(const Datagram&)>& handler);
   /// `to` is null on a connected socket. False where the kernel refused.

@@ -43,6 +43,8 @@ int Run(const LinkOptions& options) {
   Recorder recorder(options.log);
   Relay relay(options, &loop, &recorder);
   RequestRealtimePriority();
+  if (options.json_lines)
+    std::cout << nlohmann::json{{"listening", relay.ListeningPorts()}}.dump() << std::endl;
   Time next_line = Time::max();
   loop.Run([&] {
     Time wake_up = relay.Pump();

@@ -112,6 +112,7 @@ nlohmann::ordered_json Recorder::Live(Time now, const link::Bottleneck& there,
   const double seconds = Seconds(now - live_since_);
   nlohmann::ordered_json line{
       {"time_s", Seconds(now - origin_)},
+      {"origin_unix_ns", (origin_.time_since_epoch() + unix_offset_).count()},
       {"capacity_bps", capacity.Between(live_since_ - origin_, now - origin_).bits() / seconds},
       {"delivered_bps", Bps(live_.bytes, seconds)},
       {"packets", live_.packets},

@@ -33,6 +33,12 @@ Relay::Relay(const LinkOptions& options, EventLoop* loop, Recorder* recorder)
   if (options_.origin_at_start) Start(Now());
 }
 
+std::vector<int> Relay::ListeningPorts() const {
+  std::vector<int> ports;
+  for (const Listener& l : listeners_) ports.push_back(l.socket.LocalPort());
+  return ports;
+}
+
 void Relay::Start(Time origin) {
   options_.there.origin = origin;
   there_.emplace(options_.there);

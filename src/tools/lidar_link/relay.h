@@ -22,6 +22,7 @@ class Relay {
   /// Sends what is due. Returns when to come back at the latest.
   Time Pump();
 
+  std::vector<int> ListeningPorts() const;
   /// Null before the first packet.
   const link::Bottleneck* there() const { return there_ ? &*there_ : nullptr; }
   Time origin() const { return options_.there.origin; }

@@ -1,0 +1,57 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: LGPL-2.1-or-later
+# The demo: installs, builds, and streams LiDAR through a changing L4S bottleneck, measured at both ends.
+set -euo pipefail
+root=$(cd "$(dirname "$0")/.." && pwd)
+build=${BUILD_DIR:-$root/build}
+
+# say TEXT: progress, apart from the results on standard output.
+say() { echo "demo: $*" >&2; }
+
+build_all() {
+  local log=$build.log
+  [ -f "$build/build.ninja" ] || { say "configuring (log: $log)"; meson setup "$build" "$root" >"$log" 2>&1; } ||
+    { tail -20 "$log" >&2; exit 1; }
+  say "building"
+  ninja -C "$build" >"$log" 2>&1 || { grep -A8 -E 'FAILED|error:' "$log" | head -40 >&2; exit 1; }
+}
+
+usage() {
+  cat <<'EOF'
+Usage: pipelines/demo.sh [--no-install] [--no-build] [options of the stream]
+
+Streams LiDAR: sender -> lidar-link -> receiver, three processes over UDP sockets, through a link whose capacity
+changes, and compares what arrives with what was sent. Exit code 0: every guarantee held.
+
+  --no-install   do not install Debian packages
+  --no-build     take build/ as it is
+
+EOF
+}
+
+install=yes
+compile=yes
+help=no
+arguments=()
+for argument in "$@"; do
+  case $argument in
+    --no-install) install=no ;;
+    --no-build) compile=no ;;
+    -h | --help) help=yes ;;
+    *) arguments+=("$argument") ;;
+  esac
+done
+
+if [ "$help" = yes ]; then
+  usage
+  [ ! -x "$build/src/tools/lidar-demo" ] || "$build/src/tools/lidar-demo" run --help | sed -n '/^Options/,$p' | grep -v -- --help
+  exit 0
+fi
+[ "$install" = no ] || "$root/tests/install.sh" >&2
+[ "$compile" = no ] || build_all
+
+# The plugins of the build tree first, and a registry of their own.
+plugins=$(find "$build/gst" "$build/ext" -name 'libgst*.so' -printf '%h\n' | sort -u | paste -sd:)
+export GST_PLUGIN_PATH_1_0=$plugins${GST_PLUGIN_PATH_1_0:+:$GST_PLUGIN_PATH_1_0}
+export GST_REGISTRY=$build/demo-registry.bin
+exec "$build/src/tools/lidar-demo" run "${arguments[@]}"

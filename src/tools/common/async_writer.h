@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Writes to a pipe from a thread of its own, so that a slow reader never holds up a measurement.
+#pragma once
+#include <condition_variable>
+#include <cstddef>
+#include <cstdint>
+#include <deque>
+#include <mutex>
+#include <string>
+#include <thread>
+
+namespace lidar::tools {
+
+/// Thread-safe. What does not fit in `capacity` bytes of backlog is dropped whole and counted.
+class AsyncWriter {
+ public:
+  /// Does not own `fd`.
+  AsyncWriter(int fd, std::size_t capacity);
+  /// Writes what is left.
+  ~AsyncWriter();
+  AsyncWriter(const AsyncWriter&) = delete;
+  AsyncWriter& operator=(const AsyncWriter&) = delete;
+
+  bool Write(std::string bytes);
+  std::uint64_t dropped() const;
+
+ private:
+  void Run();
+  bool WriteAll(const std::string& bytes);
+
+  const int fd_;
+  const std::size_t capacity_;
+  mutable std::mutex mutex_;
+  std::condition_variable changed_;
+  std::deque<std::string> backlog_;
+  std::size_t backlog_bytes_ = 0;
+  std::uint64_t dropped_ = 0;
+  bool stopping_ = false;
+  std::thread thread_;
+};
+
+}  // namespace lidar::tools

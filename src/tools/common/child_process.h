@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Starts a program of ours, reads its lines, stops it.
+#pragma once
+#include <sys/types.h>
+
+#include <functional>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "common/file_descriptor.h"
+
+namespace lidar::tools {
+
+class ChildProcess {
+ public:
+  struct Config {
+    std::vector<std::string> command;
+    std::string error_log;     // where its standard error goes; empty: to ours
+    bool clouds_pipe = false;  // gives it a second pipe, as descriptor 3
+  };
+
+  /// Throws std::runtime_error. The child dies with this process.
+  explicit ChildProcess(const Config& config);
+  ~ChildProcess();
+  ChildProcess(const ChildProcess&) = delete;
+  ChildProcess& operator=(const ChildProcess&) = delete;
+
+  int output_fd() const { return output_.get(); }
+  int clouds_fd() const { return clouds_.get(); }
+  /// Hands every complete line that is there to `handler`. False at the end of the output.
+  bool ReadLines(const std::function<void(const std::string&)>& handler);
+
+  void Signal(int signal) const;
+  /// True once it has ended; does not wait.
+  bool Ended();
+  /// Its exit code, or 128 + the signal that ended it. Waits.
+  int Wait();
+
+ private:
+  pid_t pid_ = -1;
+  FileDescriptor output_;
+  FileDescriptor clouds_;
+  std::string partial_;
+  int status_ = -1;
+};
+
+/// The folder of the running program.
+std::string OwnFolder();
+
+}  // namespace lidar::tools

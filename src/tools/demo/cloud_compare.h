@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// How far a received cloud is from the one that was sent.
+#pragma once
+#include <cstdint>
+
+#include "demo/cloud_frame.h"
+
+namespace lidar::demo {
+
+struct Comparison {
+  std::uint64_t points = 0;   // returns compared
+  std::uint64_t missing = 0;  // returns that did not arrive
+  std::uint64_t added = 0;    // points where none was
+  double max_error_m = 0;
+  double sum_error_m = 0;
+
+  Comparison& operator+=(const Comparison& o);
+};
+
+/// Clouds of one shape are compared place by place; else every point with the nearest one of the
+/// other cloud, within `reach_m`, and back. All-zero points are missing returns.
+Comparison Compare(const Cloud& sent, const Cloud& received, double reach_m);
+
+}  // namespace lidar::demo

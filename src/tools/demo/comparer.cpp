@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "demo/comparer.h"
+
+#include <chrono>
+
+namespace lidar::demo {
+namespace {
+
+/// A decoded slice may overtake the original, which waits in another process for its writer.
+constexpr auto kPatience = std::chrono::seconds{2};
+
+}  // namespace
+
+Comparer::Comparer(int sent_fd, int received_fd, double reach_m)
+    : sent_fd_(sent_fd),
+      received_fd_(received_fd),
+      reach_m_(reach_m),
+      sent_thread_([this] { ReadSent(); }),
+      received_thread_([this] { ReadReceived(); }) {}
+
+Comparer::~Comparer() { Finish(); }
+
+void Comparer::Finish() {
+  if (sent_thread_.joinable()) sent_thread_.join();
+  if (received_thread_.joinable()) received_thread_.join();
+}
+
+std::vector<Comparer::Result> Comparer::Take() {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  return std::exchange(results_, {});
+}
+
+void Comparer::ReadSent() {
+  while (auto cloud = ReadFrame(sent_fd_)) {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    const SliceKey key = cloud->key;
+    pending_.insert_or_assign(key, *std::move(cloud));
+    if (pending_.size() > kMaxPending) pending_.erase(pending_.begin());
+    arrived_.notify_one();
+  }
+  const std::lock_guard<std::mutex> lock(mutex_);
+  sent_ended_ = true;
+  arrived_.notify_one();
+}
+
+bool Comparer::TakeSent(SliceKey key, Cloud* cloud) {
+  std::unique_lock<std::mutex> lock(mutex_);
+  arrived_.wait_for(lock, kPatience, [&] { return pending_.count(key) > 0 || sent_ended_; });
+  const auto found = pending_.find(key);
+  if (found == pending_.end()) return false;
+  *cloud = std::move(found->second);
+  pending_.erase(found);
+  return true;
+}
+
+void Comparer::ReadReceived() {
+  while (const auto received = ReadFrame(received_fd_)) {
+    Cloud sent;
+    if (!TakeSent(received->key, &sent)) continue;
+    const Comparison comparison = Compare(sent, *received, reach_m_);
+    const std::lock_guard<std::mutex> lock(mutex_);
+    results_.emplace_back(received->key, comparison);
+  }
+}
+
+}  // namespace lidar::demo

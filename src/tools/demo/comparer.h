@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Compares the clouds of both ends while they stream.
+#pragma once
+#include <condition_variable>
+#include <cstdint>
+#include <map>
+#include <mutex>
+#include <thread>
+#include <utility>
+#include <vector>
+
+#include "demo/cloud_compare.h"
+#include "demo/cloud_frame.h"
+
+namespace lidar::demo {
+
+/// Reads both pipes in threads of its own. Keeps at most kMaxPending sent slices: older ones were
+/// skipped or lost.
+class Comparer {
+ public:
+  Comparer(int sent_fd, int received_fd, double reach_m);
+  /// Waits for the ends of both pipes.
+  ~Comparer();
+  Comparer(const Comparer&) = delete;
+  Comparer& operator=(const Comparer&) = delete;
+
+  using Result = std::pair<SliceKey, Comparison>;
+  /// Results since the last call.
+  std::vector<Result> Take();
+  /// Returns when both pipes have ended and everything is compared.
+  void Finish();
+
+  static constexpr std::size_t kMaxPending = 512;
+
+ private:
+  void ReadSent();
+  void ReadReceived();
+  bool TakeSent(SliceKey key, Cloud* cloud);
+
+  const int sent_fd_;
+  const int received_fd_;
+  const double reach_m_;
+  std::mutex mutex_;
+  std::condition_variable arrived_;
+  std::map<SliceKey, Cloud> pending_;
+  bool sent_ended_ = false;
+  std::vector<Result> results_;
+  std::thread sent_thread_;
+  std::thread received_thread_;
+};
+
+}  // namespace lidar::demo

@@ -1,0 +1,287 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "demo/coordinator.h"
+
+#include <sys/stat.h>
+
+#include <cinttypes>
+#include <csignal>
+#include <cstdio>
+#include <fstream>
+#include <iostream>
+#include <memory>
+#include <stdexcept>
+
+#include "common/child_process.h"
+#include "common/event_loop.h"
+#include "common/udp_socket.h"
+#include "demo/comparer.h"
+#include "demo/measurements.h"
+#include "demo/report.h"
+#include "demo/summary.h"
+
+namespace lidar::demo {
+namespace {
+using namespace std::chrono_literals;
+using tools::ChildProcess;
+using tools::Now;
+
+constexpr auto kStartLimit = 15s;
+constexpr auto kStopLimit = 8s;
+constexpr auto kTick = 100ms;
+
+class Coordinator {
+ public:
+  explicit Coordinator(const RunOptions& options);
+  int Run();
+
+ private:
+  enum class Phase { kReceiver, kLink, kSender, kStreaming, kDraining, kReceiverStops, kLinkStops };
+
+  std::unique_ptr<ChildProcess> Start(const std::vector<std::string>& command, const char* name,
+                                      bool clouds);
+  void Watch(ChildProcess* child, void (Coordinator::*handler)(const nlohmann::json&));
+  void OnSender(const nlohmann::json& record);
+  void OnReceiver(const nlohmann::json& record);
+  void OnLink(const nlohmann::json& record);
+  void PrintLive(const nlohmann::json& link);
+  void Tick();
+  void Enter(Phase phase);
+  void CheckLimit();
+  void TakeComparisons();
+  int Report();
+
+  Measurements m_;
+  tools::EventLoop loop_;
+  Ports ports_;
+  std::unique_ptr<ChildProcess> receiver_;
+  std::unique_ptr<ChildProcess> link_;
+  std::unique_ptr<ChildProcess> sender_;
+  std::unique_ptr<Comparer> comparer_;
+  Phase phase_ = Phase::kReceiver;
+  Time phase_since_;
+  Time streaming_since_;
+  SenderSample last_;
+  double last_error_m_ = 0;
+  std::uint64_t marked_ = 0;
+  std::uint64_t dropped_ = 0;
+  std::string failure_;
+};
+
+/// A port that is free now.
+int FreePort() {
+  const auto socket = tools::UdpSocket::Bind(tools::ResolveAddress("127.0.0.1:0", ""));
+  return socket.LocalPort();
+}
+
+std::string Tail(const std::string& file) {
+  std::ifstream in(file);
+  std::vector<std::string> lines;
+  for (std::string line; std::getline(in, line);) lines.push_back(line);
+  std::string text;
+  constexpr std::size_t kLines = 8;
+  for (std::size_t i = lines.size() > kLines ? lines.size() - kLines : 0; i < lines.size(); ++i)
+    text += "  " + lines[i] + '\n';
+  return text;
+}
+
+Coordinator::Coordinator(const RunOptions& options) {
+  m_.options = options;
+  if (mkdir(options.output.c_str(), 0777) != 0 && errno != EEXIST)
+    throw std::runtime_error("cannot make the folder " + options.output);
+  ports_ = {FreePort(), FreePort()};
+}
+
+std::unique_ptr<ChildProcess> Coordinator::Start(const std::vector<std::string>& command,
+                                                 const char* name, bool clouds) {
+  const std::string log = m_.options.output + "/" + name + ".log";
+  return std::make_unique<ChildProcess>(ChildProcess::Config{command, log, clouds});
+}
+
+void Coordinator::Watch(ChildProcess* child, void (Coordinator::*handler)(const nlohmann::json&)) {
+  loop_.Watch(child->output_fd(), [this, child, handler] {
+    const bool open = child->ReadLines([&](const std::string& line) {
+      const auto record = nlohmann::json::parse(line, nullptr, false);
+      if (record.is_object()) (this->*handler)(record);
+    });
+    if (!open) loop_.Unwatch(child->output_fd());
+  });
+}
+
+void Coordinator::OnReceiver(const nlohmann::json& record) {
+  const std::string type = record.value("type", "");
+  if (type == "playing" && phase_ == Phase::kReceiver) Enter(Phase::kLink);
+  if (type == "stats") m_.receiver_stats = record;
+  m_.ledger.Add(record);
+}
+
+void Coordinator::OnSender(const nlohmann::json& record) {
+  const std::string type = record.value("type", "");
+  if (type == "bounds") m_.encoder_max_bps = record.value("max", 0.0);
+  m_.ledger.Add(record);
+  if (type != "stats") return;
+  m_.sender_stats = record;
+  last_ = ReadSample(record, m_.origin_unix_ns);
+  if (m_.origin_unix_ns > 0) m_.samples.push_back(last_);
+}
+
+void Coordinator::OnLink(const nlohmann::json& record) {
+  if (record.contains("listening") && phase_ == Phase::kLink) Enter(Phase::kSender);
+  if (!record.contains("origin_unix_ns")) return;
+  if (phase_ == Phase::kSender) Enter(Phase::kStreaming);
+  m_.origin_unix_ns = record.value("origin_unix_ns", std::int64_t{0});
+  if (record.contains("time_s")) PrintLive(record);
+}
+
+void Coordinator::PrintLive(const nlohmann::json& link) {
+  TakeComparisons();
+  marked_ += link.value("marked", std::uint64_t{0});
+  dropped_ += link.value("dropped", std::uint64_t{0});
+  const ScanCounts n = m_.ledger.Count();
+  std::printf(
+      "%4.0f s  cap %5.2f  target %5.2f  sent %5.2f Mbit/s  queue %5.1f  rtt %5.1f ms  "
+      "step %5.1f  error %5.1f mm  scans %" PRIu64 "/%" PRIu64 "/%" PRIu64 "/%" PRIu64
+      "  CE %" PRIu64 "  lost %" PRIu64 "\n",
+      link["time_s"].get<double>(), link["capacity_bps"].get<double>() / 1e6,
+      last_.target_bps / 1e6, link["delivered_bps"].get<double>() / 1e6,
+      link["sojourn_ms"]["p95"].get<double>(), last_.rtt_ms, last_.step_m * 1e3,
+      last_error_m_ * 1e3, n.captured, n.skipped, n.sent, n.complete, marked_, dropped_);
+  std::fflush(stdout);
+  last_error_m_ = 0;
+}
+
+void Coordinator::TakeComparisons() {
+  if (!comparer_) return;
+  for (const auto& [key, comparison] : comparer_->Take()) {
+    last_error_m_ = std::max(last_error_m_, comparison.max_error_m);
+    m_.ledger.Add(key, comparison);
+  }
+}
+
+void Coordinator::Enter(Phase phase) {
+  phase_ = phase;
+  phase_since_ = Now();
+  const RunOptions& o = m_.options;
+  const std::string folder = tools::OwnFolder();
+  switch (phase) {
+    case Phase::kReceiver:
+      receiver_ =
+          Start({folder + "/lidar-demo", "receive", ReceiverPipeline(o, ports_)}, "receiver", true);
+      Watch(receiver_.get(), &Coordinator::OnReceiver);
+      break;
+    case Phase::kLink: {
+      auto command = LinkArguments(o, ports_);
+      command.insert(command.begin(), folder + "/lidar-link");
+      link_ = Start(command, "link", false);
+      Watch(link_.get(), &Coordinator::OnLink);
+      break;
+    }
+    case Phase::kSender:
+      sender_ = Start({folder + "/lidar-demo", "send", SenderPipeline(o, ports_)}, "sender", true);
+      Watch(sender_.get(), &Coordinator::OnSender);
+      // Two returns of one place may both lie at the bound's edge.
+      comparer_ = std::make_unique<Comparer>(sender_->clouds_fd(), receiver_->clouds_fd(),
+                                             2 * ErrorBoundOf(o) + 0.01);
+      break;
+    case Phase::kStreaming:
+      streaming_since_ = Now();
+      break;
+    case Phase::kDraining:
+      m_.ran_s = Seconds(Now() - streaming_since_);
+      sender_->Signal(SIGINT);
+      break;
+    case Phase::kReceiverStops:
+      receiver_->Signal(SIGINT);
+      break;
+    case Phase::kLinkStops:
+      link_->Signal(SIGINT);
+      break;
+  }
+}
+
+void Coordinator::CheckLimit() {
+  const Duration limit = phase_ < Phase::kStreaming ? kStartLimit : kStopLimit;
+  if (phase_ == Phase::kStreaming || Now() - phase_since_ < limit) return;
+  static constexpr const char* kWaitingFor[] = {
+      "the receiver to play", "the link to listen",     "the first packet",  "",
+      "the sender to drain",  "the receiver to finish", "the link to finish"};
+  failure_ = std::string("gave up waiting for ") + kWaitingFor[static_cast<int>(phase_)];
+}
+
+void Coordinator::Tick() {
+  const bool streaming = phase_ == Phase::kStreaming;
+  struct {
+    ChildProcess* child;
+    const char* name;
+    Phase may_end;  // from this phase on
+  } const children[] = {{receiver_.get(), "receiver", Phase::kDraining},
+                        {link_.get(), "link", Phase::kLinkStops},
+                        {sender_.get(), "sender", Phase::kDraining}};
+  for (const auto& c : children)
+    if (c.child != nullptr && phase_ < c.may_end && c.child->Ended())
+      failure_ = std::string("the ") + c.name + " ended early, code " +
+                 std::to_string(c.child->Wait()) + ":\n" +
+                 Tail(m_.options.output + "/" + c.name + ".log");
+  CheckLimit();
+  if (!failure_.empty()) {
+    loop_.Stop();
+  } else if (streaming && Now() - streaming_since_ >= FromSeconds(m_.options.duration_s)) {
+    Enter(Phase::kDraining);
+  } else if (phase_ == Phase::kDraining && sender_->Ended()) {
+    Enter(Phase::kReceiverStops);
+  } else if (phase_ == Phase::kReceiverStops && receiver_->Ended()) {
+    Enter(Phase::kLinkStops);
+  } else if (phase_ == Phase::kLinkStops && link_->Ended()) {
+    loop_.Stop();
+  }
+}
+
+int Coordinator::Run() {
+  Enter(Phase::kReceiver);
+  Time next = Now();
+  loop_.Run([&] {
+    if (Now() >= next) {
+      Tick();
+      next = Now() + kTick;
+    }
+    loop_.SetWakeUp(next);
+  });
+  if (failure_.empty() && phase_ != Phase::kLinkStops) failure_ = "interrupted";
+  if (!failure_.empty()) {
+    // Both pipes must end before the comparer can.
+    sender_.reset();
+    receiver_.reset();
+    throw std::runtime_error(failure_);
+  }
+  return Report();
+}
+
+int Coordinator::Report() {
+  const std::string& folder = m_.options.output;
+  comparer_->Finish();
+  TakeComparisons();
+  m_.packets = ReadLinkLog(folder + "/packets.csv");
+  WriteTables(m_, folder);
+  auto summary = Summarise(m_);
+  const auto guarantees = CheckGuarantees(m_);
+  bool all = true;
+  for (const Guarantee& g : guarantees) {
+    summary["guarantees"].push_back({{"text", g.text}, {"holds", g.holds}});
+    all = all && g.holds;
+  }
+  std::ofstream(folder + "/summary.json") << summary.dump(2) << '\n';
+  std::ofstream(folder + "/stats.json")
+      << nlohmann::json{{"sender", m_.sender_stats}, {"receiver", m_.receiver_stats}}.dump(2)
+      << '\n';
+  PrintTable(summary);
+  for (const Guarantee& g : guarantees)
+    std::printf("  %s  %s\n", g.holds ? "holds " : "BROKEN", g.text.c_str());
+  const bool drawn = !m_.options.plots || DrawPlots(m_, folder);
+  std::printf("\nReport in %s\n", folder.c_str());
+  return all && drawn ? 0 : 1;
+}
+
+}  // namespace
+
+int RunDemo(const RunOptions& options) { return Coordinator(options).Run(); }
+
+}  // namespace lidar::demo

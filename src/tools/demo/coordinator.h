@@ -1,0 +1,12 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Runs sender, link and receiver, shows a line each second, writes the report.
+#pragma once
+#include "demo/run_options.h"
+
+namespace lidar::demo {
+
+/// The program's exit code: 0, 1 where something failed or a guarantee broke. Throws
+/// std::runtime_error with a text for the user.
+int RunDemo(const RunOptions& options);
+
+}  // namespace lidar::demo

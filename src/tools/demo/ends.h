@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// The two ends of the demo, each a program of its own.
+#pragma once
+#include <string>
+
+namespace lidar::demo {
+
+/// Plays a pipeline whose elements `source`, `encoder` and `sender` are watched. Records: captured,
+/// encoded, bounds, stats. With clouds: every captured slice on descriptor 3.
+int Send(const std::string& description, bool with_clouds);
+
+/// Watches `receiver`, `depayloader` and `decoder`. Records: decoded, stats. With clouds: every
+/// decoded slice on descriptor 3.
+int Receive(const std::string& description, bool with_clouds);
+
+}  // namespace lidar::demo

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// lidar-demo: a LiDAR stream across a bottleneck link, measured at both ends.
+#include <gst/gst.h>
+
+#include <CLI/CLI.hpp>
+#include <iostream>
+
+#include "demo/coordinator.h"
+#include "demo/ends.h"
+
+int main(int argc, char** argv) {
+  CLI::App app{"lidar-demo: streams LiDAR through a bottleneck link and measures both ends.",
+               "lidar-demo"};
+  app.require_subcommand(1);
+  lidar::demo::RunOptions options;
+  auto* run = app.add_subcommand("run", "Start sender, link and receiver; write a report");
+  lidar::demo::AddRunOptions(run, &options);
+  std::string pipeline;
+  auto* send = app.add_subcommand("send", "The sending end (started by run)");
+  auto* receive = app.add_subcommand("receive", "The receiving end (started by run)");
+  for (auto* end : {send, receive})
+    end->add_option("pipeline", pipeline, "As for gst-launch-1.0")->required();
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& e) {
+    return app.exit(e) == 0 ? 0 : 2;
+  }
+  try {
+    if (run->parsed()) {
+      lidar::demo::CheckRunOptions(options);
+      return lidar::demo::RunDemo(options);
+    }
+    gst_init(nullptr, nullptr);
+    return send->parsed() ? lidar::demo::Send(pipeline, true)
+                          : lidar::demo::Receive(pipeline, true);
+  } catch (const std::exception& e) {
+    std::cerr << "lidar-demo: " << e.what() << '\n';
+    return 1;
+  }
+}

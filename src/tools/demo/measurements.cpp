@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "demo/measurements.h"
+
+#include <cstdio>
+#include <cstring>
+#include <fstream>
+
+namespace lidar::demo {
+namespace {
+
+constexpr double kStart_s = 3;
+constexpr double kAfterChange_s = 1;
+
+/// The number in `object` under the first of `names` that is one; 0 without any.
+double Pick(const nlohmann::json& object, std::initializer_list<const char*> names) {
+  if (!object.is_object()) return 0;
+  for (const char* name : names) {
+    const auto found = object.find(name);
+    if (found != object.end() && found->is_number()) return found->get<double>();
+  }
+  return 0;
+}
+
+}  // namespace
+
+SenderSample ReadSample(const nlohmann::json& record, std::int64_t origin_unix_ns) {
+  const auto& sender = record.contains("sender") ? record["sender"] : nlohmann::json();
+  const auto& encoder = record.contains("encoder") ? record["encoder"] : nlohmann::json();
+  SenderSample s;
+  s.time_s = static_cast<double>(record.value("unix_ns", std::int64_t{0}) - origin_unix_ns) / 1e9;
+  s.target_bps = Pick(sender, {"target-bitrate"});
+  s.rtt_ms = Pick(sender, {"rtt", "s-rtt"}) / 1e6;
+  s.queue_delay_ms = Pick(sender, {"queue-delay", "qdelay"}) / 1e6;
+  s.ref_wnd_bytes = Pick(sender, {"ref-wnd"});
+  s.bytes_in_flight = Pick(sender, {"bytes-in-flight"});
+  s.sender_queue_ms = Pick(sender, {"sender-queue-delay", "media-qdelay"}) / 1e6;
+  s.packets_dropped = static_cast<std::uint64_t>(Pick(sender, {"packets-dropped"}));
+  s.step_m = Pick(encoder, {"quantization-step", "step"});
+  s.error_bound_m = Pick(encoder, {"error-bound", "max-error"});
+  return s;
+}
+
+std::vector<LinkPacket> ReadLinkLog(const std::string& file) {
+  std::vector<LinkPacket> packets;
+  std::ifstream in(file);
+  std::string line;
+  std::getline(in, line);  // names of the columns
+  while (std::getline(in, line)) {
+    LinkPacket p;
+    char fate[16] = "";
+    int ecn_in = 0;
+    int ecn_out = 0;
+    const int fields = std::sscanf(line.c_str(), "%lf,%*d,%*d,%ld,%*d,%*d,%*d,%d,%d,%15[^,],%lf",
+                                   &p.time_s, &p.size, &ecn_in, &ecn_out, fate, &p.sojourn_ms);
+    if (fields != 6) continue;
+    p.delivered = std::strcmp(fate, "delivered") == 0;
+    p.marked = ecn_in != ecn_out;
+    packets.push_back(p);
+  }
+  return packets;
+}
+
+bool Measurements::IsSteady(double time_s) const {
+  if (time_s < kStart_s) return false;
+  for (const Duration change : ChangesOf(options))
+    if (time_s >= Seconds(change) && time_s < Seconds(change) + kAfterChange_s) return false;
+  return true;
+}
+
+}  // namespace lidar::demo

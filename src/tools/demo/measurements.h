@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Everything a run of the demo measured.
+#pragma once
+#include <cstdint>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "base/time.h"
+#include "demo/ledger.h"
+#include "demo/run_options.h"
+#include "link/capacity.h"
+
+namespace lidar::demo {
+
+/// A line of the link's log.
+struct LinkPacket {
+  double time_s = 0;  // arrival at the link
+  std::int64_t size = 0;
+  bool delivered = false;
+  bool marked = false;
+  double sojourn_ms = 0;
+};
+
+/// What sender and encoder said about themselves at one time.
+struct SenderSample {
+  double time_s = 0;
+  double target_bps = 0;
+  double rtt_ms = 0;
+  double queue_delay_ms = 0;
+  double ref_wnd_bytes = 0;
+  double bytes_in_flight = 0;
+  double sender_queue_ms = 0;
+  double step_m = 0;
+  double error_bound_m = 0;
+  std::uint64_t packets_dropped = 0;  // by the sender's own queue
+};
+
+/// Of a `stats` record of the sender; fields that an element does not have stay 0.
+SenderSample ReadSample(const nlohmann::json& record, std::int64_t origin_unix_ns);
+
+/// Reads the link's log. Lines that are cut off or malformed are left out.
+std::vector<LinkPacket> ReadLinkLog(const std::string& file);
+
+struct Measurements {
+  RunOptions options;
+  std::int64_t origin_unix_ns = 0;  // the link's first packet: time 0 of every plot
+  double ran_s = 0;
+  Ledger ledger;
+  std::vector<LinkPacket> packets;
+  std::vector<SenderSample> samples;
+  double encoder_max_bps = 0;   // from its bitrate-bounds; 0: not known
+  nlohmann::json sender_stats;  // the last of each
+  nlohmann::json receiver_stats;
+  nlohmann::json link_summary;
+
+  double Since(std::int64_t unix_ns) const {
+    return static_cast<double>(unix_ns - origin_unix_ns) / 1e9;
+  }
+  /// Not in the first 3 s, nor in the second after a step of the capacity.
+  bool IsSteady(double time_s) const;
+};
+
+}  // namespace lidar::demo

@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// One end of the demo: a pipeline that measures itself and writes JSON lines.
+#pragma once
+#include <gst/gst.h>
+
+#include <functional>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+
+#include "common/async_writer.h"
+#include "common/refs.h"
+#include "demo/cloud_frame.h"
+
+namespace lidar::demo {
+
+/// CLOCK_REALTIME [ns], the time of every record.
+std::int64_t UnixNow();
+
+class MediaProcess {
+ public:
+  /// Parses the description; throws std::runtime_error with GStreamer's words.
+  explicit MediaProcess(const std::string& description, bool with_clouds);
+  ~MediaProcess();
+  MediaProcess(const MediaProcess&) = delete;
+  MediaProcess& operator=(const MediaProcess&) = delete;
+
+  /// Null where the pipeline has no element of that name.
+  gst::ElementPtr Find(const char* name) const;
+  /// Calls `handler` for each buffer (or downstream event) that passes the pad, in the streaming
+  /// thread.
+  using BufferHandler = std::function<void(GstPad*, GstBuffer*)>;
+  using EventHandler = std::function<void(GstEvent*)>;
+  void OnBuffer(const char* element, const char* pad, BufferHandler handler);
+  void OnEvent(const char* element, const char* pad, EventHandler handler);
+  /// Calls `handler` at this interval, in the main loop.
+  void Every(guint interval_ms, std::function<void()> handler);
+
+  /// One record on standard output.
+  void Write(const nlohmann::json& record);
+  void Write(const Cloud& cloud);
+  /// When the pipeline's clock shows, or showed, the running time of `pts`, in UnixNow's time.
+  std::int64_t UnixTimeOf(GstPad* pad, GstClockTime pts) const;
+
+  /// Plays until EOS, an error, or a signal that asks for EOS. The program's exit code.
+  int Run();
+
+ private:
+  struct Timer {
+    std::function<void()> handler;
+  };
+  static gboolean OnMessage(GstBus* bus, GstMessage* message, gpointer self);
+  static gboolean OnSignal(gpointer self);
+  void HandleError(GstMessage* message);
+
+  gst::ElementPtr pipeline_;
+  GMainLoop* loop_;
+  tools::AsyncWriter records_;
+  std::unique_ptr<tools::AsyncWriter> clouds_;
+  int exit_code_ = 0;
+  bool asked_to_stop_ = false;
+};
+
+/// The organised cloud of a buffer with caps as of `pad`; none where they are no cloud's.
+std::optional<Cloud> ReadCloud(GstPad* pad, GstBuffer* buffer);
+
+}  // namespace lidar::demo

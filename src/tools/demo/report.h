@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// What a run leaves behind: tables, CSV files, plots.
+#pragma once
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "demo/measurements.h"
+
+namespace lidar::demo {
+
+/// slices.csv: the life of every slice. timeline.csv: tenths of a second.
+void WriteTables(const Measurements& m, const std::string& folder);
+/// Runs gnuplot over the tables. False, with a message on standard error, where that fails.
+bool DrawPlots(const Measurements& m, const std::string& folder);
+void PrintTable(const nlohmann::ordered_json& summary);
+
+}  // namespace lidar::demo

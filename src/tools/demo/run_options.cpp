@@ -1,0 +1,213 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "demo/run_options.h"
+
+#include <CLI/CLI.hpp>
+#include <cmath>
+#include <fstream>
+#include <sstream>
+#include <stdexcept>
+
+namespace lidar::demo {
+namespace {
+
+/// The cube that --fixed-bits divides: what a sensor of 100 m range can see.
+constexpr double kFixedBitsExtentM = 200;
+
+std::string Number(double value) {
+  std::ostringstream out;
+  out.precision(12);
+  out << value;
+  return out.str();
+}
+
+std::string Quoted(const std::string& text) {
+  std::string out = "\"";
+  for (const char c : text) {
+    if (c == '"' || c == '\\') out += '\\';
+    out += c;
+  }
+  return out + '"';
+}
+
+std::string Bps(double mbps) { return std::to_string(std::llround(mbps * 1e6)); }
+
+double StepTime(const RunOptions& o) {
+  return o.duration_s / static_cast<double>(o.steps_mbps.size());
+}
+
+std::string SourceOf(const RunOptions& o) {
+  const std::string common =
+      " name=source is-live=true slices-per-scan=" + std::to_string(o.slices);
+  if (!o.pcap.empty())
+    return "ouster_src location=" + Quoted(o.pcap) + " metadata=" + Quoted(o.metadata) +
+           " loop=true" + common;
+  return "lidartestsrc model=" + o.model + " mode=" + o.mode + " scene=" + o.scene +
+         " speed=" + Number(o.speed_mps) + " seed=" + std::to_string(o.seed) + common;
+}
+
+void AddSourceOptions(CLI::App* app, RunOptions* o) {
+  app->add_option("--model", o->model, "Synthetic sensor: os0-32 ... os2-128")
+      ->capture_default_str();
+  app->add_option("--mode", o->mode, "Columns x scans/s: 512x10, 1024x10, 1024x20, 2048x10")
+      ->capture_default_str();
+  app->add_option("--scene", o->scene, "Synthetic world: street, tunnel, field")
+      ->capture_default_str();
+  app->add_option("--speed", o->speed_mps, "Of the vehicle [m/s]")->capture_default_str();
+  app->add_option("--seed", o->seed, "Of the synthetic world and the link")->capture_default_str();
+  app->add_option("--slices", o->slices, "Slices a scan; 0: automatic, 1: whole scans")
+      ->capture_default_str();
+  auto* pcap = app->add_option("--pcap", o->pcap, "Stream an Ouster capture, over and over")
+                   ->check(CLI::ExistingFile);
+  auto* metadata = app->add_option("--metadata", o->metadata, "Sensor metadata of --pcap (JSON)")
+                       ->check(CLI::ExistingFile);
+  pcap->needs(metadata);
+  metadata->needs(pcap);
+}
+
+void AddCodecOptions(CLI::App* app, RunOptions* o) {
+  app->add_option("--max-error", o->max_error_m, "Largest error of any point [m]")
+      ->check(CLI::Range(0.001, 10.0))
+      ->capture_default_str();
+  app->add_option("--geometry", o->geometry, "auto, range or xyz")
+      ->check(CLI::IsMember({"auto", "range", "xyz"}))
+      ->capture_default_str();
+  auto* step =
+      app->add_option("--fixed-step", o->fixed_step_m, "No adaptation: this quantisation step [m]")
+          ->check(CLI::Range(0.0001, 10.0));
+  app->add_option("--fixed-bits", o->fixed_bits,
+                  "No adaptation: the step that this many bits make of a cube of 200 m")
+      ->check(CLI::Range(1, 20))
+      ->excludes(step);
+  app->add_option("--max-bitrate", o->max_bitrate_mbps, "The sender's upper limit [Mbit/s]")
+      ->check(CLI::Range(0.01, 4000.0))
+      ->capture_default_str();
+  app->add_option("--start-bitrate", o->start_bitrate_mbps, "The sender's first target [Mbit/s]")
+      ->check(CLI::Range(0.01, 4000.0))
+      ->capture_default_str();
+}
+
+void AddPathOptions(CLI::App* app, RunOptions* o) {
+  auto* steps =
+      app->add_option("--steps", o->steps_mbps, "Capacities in equal parts of the run [Mbit/s]")
+          ->delimiter(',')
+          ->check(CLI::Range(0.0, link::Capacity::kMaxMbps))
+          ->capture_default_str();
+  auto* rate = app->add_option("--rate", o->rate_mbps, "Constant capacity [Mbit/s]")
+                   ->check(CLI::Range(0.01, link::Capacity::kMaxMbps))
+                   ->excludes(steps);
+  app->add_option("--trace", o->trace, "Capacity from a file of 'time_s rate_mbps' lines")
+      ->check(CLI::ExistingFile)
+      ->excludes(steps)
+      ->excludes(rate);
+  app->add_option("--rtt", o->rtt_ms, "Propagation there and back [ms]")
+      ->check(CLI::Range(0.0, 10000.0))
+      ->capture_default_str();
+  app->add_option("--loss", o->loss_percent, "Random loss [%]")->check(CLI::Range(0.0, 100.0));
+  app->add_flag("--no-l4s", o->no_l4s, "A queue of 100 ms that marks nothing, and no ECN");
+}
+
+}  // namespace
+
+void AddRunOptions(CLI::App* app, RunOptions* o) {
+  app->add_option("--duration", o->duration_s, "Of the stream [s]")
+      ->check(CLI::Range(1.0, 1e6))
+      ->capture_default_str();
+  app->add_option("--output", o->output, "Folder for the report")->capture_default_str();
+  app->add_flag("!--no-plots", o->plots, "Do not draw plots");
+  AddSourceOptions(app, o);
+  AddCodecOptions(app, o);
+  AddPathOptions(app, o);
+}
+
+void CheckRunOptions(const RunOptions& o) {
+  CapacityOf(o);
+  if (o.steps_mbps.empty()) throw std::runtime_error("--steps needs at least one rate");
+  if (o.start_bitrate_mbps > o.max_bitrate_mbps)
+    throw std::runtime_error("--start-bitrate must not be above --max-bitrate");
+}
+
+double FixedStepOf(const RunOptions& o) {
+  if (o.fixed_bits > 0) return kFixedBitsExtentM / (std::exp2(o.fixed_bits) - 1);
+  return o.fixed_step_m;
+}
+
+double ErrorBoundOf(const RunOptions& o) {
+  const double step = FixedStepOf(o);
+  // A uniform grid: half a step along the beam, or half the diagonal of a cube.
+  if (step > 0) return o.geometry == "xyz" ? step * std::sqrt(3) / 2 : step / 2;
+  return o.max_error_m;
+}
+
+link::Capacity CapacityOf(const RunOptions& o) {
+  const auto mbps = [](double m) { return DataRate::BitsPerSecond(m * 1e6); };
+  if (!o.trace.empty()) {
+    std::stringstream text;
+    text << std::ifstream(o.trace).rdbuf();
+    std::string error;
+    auto capacity = link::Capacity::ParseTrace(text.str(), true, &error);
+    if (!capacity) throw std::runtime_error("--trace " + o.trace + ": " + error);
+    return *capacity;
+  }
+  if (o.rate_mbps > 0) return link::Capacity::Constant(mbps(o.rate_mbps));
+  std::vector<DataRate> rates;
+  for (const double m : o.steps_mbps) rates.push_back(mbps(m));
+  return link::Capacity::Steps(rates, FromSeconds(StepTime(o)));
+}
+
+std::vector<Duration> ChangesOf(const RunOptions& o) {
+  std::vector<Duration> changes;
+  if (!o.trace.empty() || o.rate_mbps > 0) return changes;
+  for (std::size_t i = 1; i < o.steps_mbps.size(); ++i)
+    changes.push_back(FromSeconds(StepTime(o) * static_cast<double>(i)));
+  return changes;
+}
+
+std::string SenderPipeline(const RunOptions& o, Ports ports) {
+  const double step = FixedStepOf(o);
+  // The queue lets the source keep its time while a slice is encoded.
+  std::string text = SourceOf(o) + " ! queue ! dracoenc name=encoder geometry=" + o.geometry +
+                     " max-error=" + Number(step > 0 ? std::max(step, 0.001) : o.max_error_m);
+  if (step > 0) text += " quantization-step=" + Number(step);
+  text += " ! rtplidarpay name=payloader ! screamsink name=sender host=127.0.0.1 port=" +
+          std::to_string(ports.link) + " max-bitrate=" + Bps(o.max_bitrate_mbps) +
+          " start-bitrate=" + Bps(o.start_bitrate_mbps) +
+          " ecn-mode=" + (o.no_l4s ? "off" : "ect1");
+  return text;
+}
+
+std::string ReceiverPipeline(const RunOptions&, Ports ports) {
+  return "screamsrc name=receiver address=127.0.0.1 port=" + std::to_string(ports.receiver) +
+         " ! rtplidardepay name=depayloader ! dracodec name=decoder"
+         " ! scanassembler name=assembler ! fakesink sync=false async=false";
+}
+
+std::vector<std::string> LinkArguments(const RunOptions& o, Ports ports) {
+  std::vector<std::string> arguments{"--listen",    "127.0.0.1:" + std::to_string(ports.link),
+                                     "--forward",   "127.0.0.1:" + std::to_string(ports.receiver),
+                                     "--rtt",       Number(o.rtt_ms),
+                                     "--loss",      Number(o.loss_percent),
+                                     "--seed",      std::to_string(o.seed),
+                                     "--log",       o.output + "/packets.csv",
+                                     "--summary",   o.output + "/link.json",
+                                     "--json-lines"};
+  const auto add = [&](std::initializer_list<std::string> more) {
+    arguments.insert(arguments.end(), more);
+  };
+  if (!o.trace.empty()) {
+    add({"--trace", o.trace});
+  } else if (o.rate_mbps > 0) {
+    add({"--rate", Number(o.rate_mbps)});
+  } else {
+    std::string list;
+    for (const double m : o.steps_mbps) list += (list.empty() ? "" : ",") + Number(m);
+    add({"--steps", list, "--step-time", Number(StepTime(o)), "--once"});
+  }
+  if (o.no_l4s) {
+    add({"--aqm", "none", "--queue", "100"});
+  } else {
+    add({"--aqm", "ramp", "--aqm-low", "2", "--aqm-high", "10"});
+  }
+  return arguments;
+}
+
+}  // namespace lidar::demo

@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// The command line of `lidar-demo run`, and what it means.
+#pragma once
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "base/time.h"
+#include "link/capacity.h"
+
+namespace CLI {
+class App;
+}
+
+namespace lidar::demo {
+
+struct RunOptions {
+  double duration_s = 40;
+  std::string output = "demo-output";
+  bool plots = true;
+  // Source
+  std::string model = "os1-64";
+  std::string mode = "1024x10";
+  std::string scene = "street";
+  double speed_mps = 12;
+  std::uint32_t seed = 1;
+  std::uint32_t slices = 0;
+  std::string pcap;
+  std::string metadata;
+  // Encoder
+  double max_error_m = 0.05;
+  std::string geometry = "auto";
+  double fixed_step_m = 0;
+  int fixed_bits = 0;
+  double max_bitrate_mbps = 100;
+  double start_bitrate_mbps = 4;
+  // Link
+  std::vector<double> steps_mbps{12, 6, 9, 5, 15, 7};
+  double rate_mbps = 0;
+  std::string trace;
+  double rtt_ms = 40;
+  double loss_percent = 0;
+  bool no_l4s = false;
+};
+
+void AddRunOptions(CLI::App* app, RunOptions* options);
+/// Throws std::runtime_error with a text for the user where options contradict each other.
+void CheckRunOptions(const RunOptions& options);
+
+/// Zero where the encoder adapts.
+double FixedStepOf(const RunOptions& options);
+/// The largest distance between a point that was sent and the one that arrived.
+double ErrorBoundOf(const RunOptions& options);
+link::Capacity CapacityOf(const RunOptions& options);
+/// When the capacity changes in steps, within the run; empty for a trace.
+std::vector<Duration> ChangesOf(const RunOptions& options);
+
+struct Ports {
+  int link = 0;
+  int receiver = 0;
+};
+std::string SenderPipeline(const RunOptions& options, Ports ports);
+std::string ReceiverPipeline(const RunOptions& options, Ports ports);
+std::vector<std::string> LinkArguments(const RunOptions& options, Ports ports);
+
+}  // namespace lidar::demo

@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// The figures of a run, and whether its guarantees held.
+#pragma once
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "demo/measurements.h"
+
+namespace lidar::demo {
+
+/// How the queue came down after one step of the capacity.
+struct Transient {
+  double at_s = 0;
+  double from_bps = 0;
+  double to_bps = 0;
+  double peak_ms = 0;
+  double settled_after_s = 0;  // until the queue stays below 10 ms
+};
+std::vector<Transient> FindTransients(const Measurements& m);
+
+struct Guarantee {
+  std::string text;
+  bool holds = false;
+};
+/// What must hold on every path; the exit code tells.
+std::vector<Guarantee> CheckGuarantees(const Measurements& m);
+
+nlohmann::ordered_json Summarise(const Measurements& m);
+
+}  // namespace lidar::demo

@@ -1,0 +1,162 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <gtest/gtest.h>
+
+#include "demo/measurements.h"
+#include "demo/summary.h"
+
+namespace lidar::demo {
+namespace {
+
+constexpr std::int64_t kSecond = 1000000000;
+constexpr std::int64_t kMs = 1000000;
+constexpr std::int64_t kOrigin = 1700000000 * kSecond;
+
+/// 8 Mbit/s, then 4; 10 s in two parts.
+Measurements TwoSteps() {
+  Measurements m;
+  m.options.duration_s = 10;
+  m.options.steps_mbps = {8, 4};
+  m.origin_unix_ns = kOrigin;
+  m.ran_s = 10;
+  return m;
+}
+
+nlohmann::json Record(const char* type, std::uint32_t scan, std::uint32_t slice,
+                      std::int64_t unix_ns) {
+  return {{"type", type},   {"scan", scan},       {"slice", slice},
+          {"count", 2},     {"unix_ns", unix_ns}, {"due_ns", unix_ns - kMs},
+          {"took_ns", kMs}, {"bytes", 1000},      {"returns", 500}};
+}
+
+void Live(Ledger* ledger, std::uint32_t scan, std::uint32_t slice, std::int64_t at) {
+  ledger->Add(Record("captured", scan, slice, at));
+  ledger->Add(Record("encoded", scan, slice, at + 2 * kMs));
+  ledger->Add(Record("decoded", scan, slice, at + 30 * kMs));
+  ledger->Add(SliceKey{scan, slice}, Comparison{500, 0, 0, 0.04, 5});
+}
+
+TEST(DemoLedger, CountsScansByWhatBecameOfTheirSlices) {
+  Ledger ledger;
+  for (std::uint32_t slice = 0; slice < 2; ++slice) {
+    Live(&ledger, 1, slice, kOrigin);
+    ledger.Add(Record("captured", 2, slice, kOrigin + kSecond));  // skipped by the encoder
+    ledger.Add(Record("captured", 3, slice, kOrigin + 2 * kSecond));
+    ledger.Add(Record("encoded", 3, slice, kOrigin + 2 * kSecond));
+  }
+  ledger.Add(Record("decoded", 3, 1, kOrigin + 2 * kSecond));   // its slice 0 was lost
+  ledger.Add(Record("captured", 4, 0, kOrigin + 3 * kSecond));  // cut off by the end
+  const ScanCounts n = ledger.Count();
+  EXPECT_EQ(n.captured, 3U);
+  EXPECT_EQ(n.skipped, 1U);
+  EXPECT_EQ(n.sent, 2U);
+  EXPECT_EQ(n.complete, 1U);
+  EXPECT_EQ(n.slices_sent, 4U);
+  EXPECT_EQ(n.slices_lost, 1U);
+  EXPECT_EQ(ledger.Count(kOrigin + kSecond / 2).slices_lost, 0U) << "it may still be on its way";
+}
+
+TEST(DemoLedger, IgnoresRecordsThatMakeNoSense) {
+  Ledger ledger;
+  ledger.Add(nlohmann::json{{"type", "captured"}});
+  ledger.Add(Record("captured", 1, 7, kOrigin));
+  ledger.Add(Record("decoded", 9, 0, kOrigin));
+  EXPECT_TRUE(ledger.scans().empty());
+}
+
+TEST(DemoSummary, SteadyLeavesOutTheStartAndTheSecondAfterAStep) {
+  const auto m = TwoSteps();
+  EXPECT_FALSE(m.IsSteady(2.9));
+  EXPECT_TRUE(m.IsSteady(3));
+  EXPECT_TRUE(m.IsSteady(4.9));
+  EXPECT_FALSE(m.IsSteady(5));
+  EXPECT_FALSE(m.IsSteady(5.9));
+  EXPECT_TRUE(m.IsSteady(6));
+}
+
+TEST(DemoSummary, CaptureToCloudRunsFromTheLastColumnToTheDecodedSlice) {
+  auto m = TwoSteps();
+  Live(&m.ledger, 1, 0, kOrigin + 4 * kSecond);
+  Live(&m.ledger, 1, 1, kOrigin + 4 * kSecond + 50 * kMs);
+  const auto s = Summarise(m);
+  EXPECT_NEAR(s["capture_to_cloud_steady_ms"]["p50"].get<double>(), 31, 1e-4);
+  EXPECT_NEAR(s["stages_ms"]["network"]["p50"].get<double>(), 27, 1e-4);
+  EXPECT_EQ(s["bits_per_return"], 16);
+  EXPECT_EQ(s["encode_ms_p50"], 2);
+  EXPECT_EQ(s["scans_complete"], 1);
+}
+
+TEST(DemoSummary, UtilisationIsOfSteadyTimeAndOfWhatTheEncoderCanUse) {
+  auto m = TwoSteps();
+  // 3 Mbit/s all the time, and an encoder that can use up to 6.
+  for (int i = 0; i < 1000; ++i) m.packets.push_back({i * 0.01, 3750, true, false, 1});
+  m.encoder_max_bps = 6e6;
+  const auto s = Summarise(m);
+  EXPECT_NEAR(s["mean_rate_bps"].get<double>(), 3e6, 1);
+  // Steady: 2 s of 8 and 4 s of 4 Mbit/s.
+  EXPECT_NEAR(s["utilisation"].get<double>(), 18.0 / 32, 0.005);
+  EXPECT_NEAR(s["utilisation_where_usable"].get<double>(), 0.75, 0.005);
+}
+
+TEST(DemoSummary, ATransientLastsUntilTheQueueStaysShort) {
+  auto m = TwoSteps();
+  m.packets = {{1, 1000, true, false, 50},
+               {5.1, 1000, true, false, 40},
+               {5.2, 1000, true, false, 60},
+               {5.4, 1000, true, false, 3}};
+  const auto transients = FindTransients(m);
+  ASSERT_EQ(transients.size(), 1U);
+  EXPECT_EQ(transients[0].to_bps, 4e6);
+  EXPECT_EQ(transients[0].peak_ms, 60);
+  EXPECT_NEAR(transients[0].settled_after_s, 0.26, 1e-9);
+}
+
+bool AllHold(const Measurements& m) {
+  for (const Guarantee& g : CheckGuarantees(m))
+    if (!g.holds) return false;
+  return true;
+}
+
+TEST(DemoSummary, TheGuaranteesHoldForARunInWhichAllArrivedWithinTheBound) {
+  auto m = TwoSteps();
+  for (std::uint32_t slice = 0; slice < 2; ++slice) Live(&m.ledger, 1, slice, kOrigin);
+  EXPECT_TRUE(AllHold(m));
+  EXPECT_FALSE(AllHold(TwoSteps())) << "nothing arrived";
+}
+
+TEST(DemoSummary, AnErrorAboveTheBoundBreaksAGuarantee) {
+  auto m = TwoSteps();
+  Live(&m.ledger, 1, 0, kOrigin);
+  m.options.max_error_m = 0.039;
+  EXPECT_FALSE(AllHold(m));
+}
+
+TEST(DemoSummary, ASliceThatIsLostWithoutADropBreaksAGuarantee) {
+  auto m = TwoSteps();
+  Live(&m.ledger, 1, 0, kOrigin);
+  m.ledger.Add(Record("captured", 1, 1, kOrigin));
+  m.ledger.Add(Record("encoded", 1, 1, kOrigin));
+  EXPECT_FALSE(AllHold(m));
+  m.packets.push_back({0, 1000, false, false, 0});
+  EXPECT_TRUE(AllHold(m)) << "the link dropped it";
+}
+
+TEST(DemoSummary, APointThatAppearedFromNowhereBreaksAGuarantee) {
+  auto m = TwoSteps();
+  Live(&m.ledger, 1, 0, kOrigin);
+  m.ledger.Add(SliceKey{1, 0}, Comparison{500, 0, 1, 0, 0});
+  EXPECT_FALSE(AllHold(m));
+}
+
+TEST(DemoOptions, FixedBitsDivideACubeOf200Metres) {
+  RunOptions o;
+  EXPECT_EQ(FixedStepOf(o), 0);
+  EXPECT_EQ(ErrorBoundOf(o), 0.05);
+  o.fixed_bits = 10;
+  EXPECT_NEAR(FixedStepOf(o), 0.1955, 1e-4);
+  EXPECT_NEAR(ErrorBoundOf(o), 0.0978, 1e-4);
+  o.geometry = "xyz";
+  EXPECT_NEAR(ErrorBoundOf(o), 0.1693, 1e-4);
+}
+
+}  // namespace
+}  // namespace lidar::demo
