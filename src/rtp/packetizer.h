@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Cuts slices and stream configs into RTP payloads, or puts small slices together into one.
+#pragma once
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "rtp/payload_header.h"
+
+namespace lidar::rtp {
+
+/// One RTP payload: `header`, then `body_size` bytes of the unit from `body_offset`, so that the
+/// caller need not copy the unit.
+struct Packet {
+  std::vector<std::uint8_t> header;
+  std::size_t body_offset = 0;
+  std::size_t body_size = 0;
+  bool marker = false;  // the last packet of a slice
+};
+
+/// Packets of at most `max_payload` (kMinPayload at least) bytes for `unit`, whose type, length,
+/// CRC and body are set here. None for an empty unit or one past kMaxUnitBytes.
+std::vector<Packet> Packetize(Unit unit, ByteView bytes, std::size_t max_payload);
+
+/// Collects small slices into one aggregation packet.
+class Aggregator {
+ public:
+  /// False, and nothing done, where the unit does not fit beside those already in, or is further
+  /// than 16 bits of `rtp_ticks` (running time in 90 kHz) from the first.
+  bool Add(Unit unit, ByteView bytes, std::size_t max_payload, std::uint64_t rtp_ticks);
+  /// The packet so far, whose RTP timestamp is the first unit's; a single unit packet if only one
+  /// is in. None when empty.
+  std::optional<Packet> Take();
+  bool empty() const { return units_ == 0; }
+
+ private:
+  std::vector<std::uint8_t> payload_;
+  std::size_t units_ = 0;
+  std::uint64_t first_ticks_ = 0;
+};
+
+/// Numbers the scans that are sent: a receiver sees a gap only where something was lost.
+class ScanCounter {
+ public:
+  explicit ScanCounter(std::uint32_t first) : number_(first) {}
+  std::uint32_t Next(std::uint32_t scan_id, std::uint16_t index);
+
+ private:
+  struct Last {
+    std::uint32_t scan_id;
+    std::uint16_t index;
+  };
+  std::optional<Last> last_;
+  std::uint32_t number_;
+};
+
+}  // namespace lidar::rtp

@@ -1,0 +1,122 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Puts the packets of one stream back together into slices; a lost packet costs its slice only.
+#pragma once
+#include <cstdint>
+#include <deque>
+#include <map>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "base/time.h"
+#include "rtp/fragment_buffer.h"
+#include "rtp/payload_header.h"
+#include "rtp/slice_ledger.h"
+#include "rtp/stream_config.h"
+
+namespace lidar::rtp {
+
+/// An RTP packet as it came in.
+struct RtpPacket {
+  std::uint32_t ssrc = 0;
+  std::uint16_t sequence = 0;
+  Time arrival;             // of any clock that does not go back
+  std::optional<Time> pts;  // handed through to the slice
+  ByteView payload;
+};
+
+/// A whole slice, equal to the one that was sent.
+struct ReceivedSlice {
+  SliceId id;
+  SliceInfo info;
+  std::optional<Time> pts;  // of the packet of the slice that came first
+  std::shared_ptr<const StreamConfig> config;
+  std::vector<std::uint8_t> bytes;
+  bool discont = false;  // the first one, or something was lost since the one before
+};
+
+struct PacketAccounts {
+  std::uint64_t invalid = 0;    // malformed, or contradicts packets before it
+  std::uint64_t duplicate = 0;  // of a packet or slice already there
+  std::uint64_t late = 0;       // of a slice already booked as lost, or from before the join
+  std::uint64_t config_damaged = 0;
+};
+
+/// Memory is bounded: kMaxPendingBytes and kMaxPendingSlices, oldest slices out first.
+class Reassembler {
+ public:
+  explicit Reassembler(Duration max_reorder_time) : ledger_(max_reorder_time) {}
+  /// For packets that may be of the same stream as `before`, at another place.
+  Reassembler(Duration max_reorder_time, const Reassembler& before)
+      : ledger_(max_reorder_time), newest_scan_(before.newest_scan_) {}
+
+  /// Do the packet's scan numbers go on where this stream is? One damaged header must not move the
+  /// stream to another place.
+  bool Continues(const std::vector<Unit>& units) const;
+  /// Takes the units of `packet` and appends the slices that are now whole to `out`, in the order
+  /// of their completion: no slice waits for another.
+  void Push(const RtpPacket& packet, const std::vector<Unit>& units,
+            std::vector<ReceivedSlice>* out);
+  /// Has a slice begun here, and behind all that `previous` saw?
+  bool IsAfter(const Reassembler& previous) const;
+  /// Has a slice begun here?
+  bool started() const { return ledger_.started(); }
+  /// Takes over the configs of `previous`, the same stream before an outage, books what the outage
+  /// took, and appends the slices that had waited for their config.
+  void TakeOver(const Reassembler& previous, std::vector<ReceivedSlice>* out);
+  /// End of stream: what is not whole now is lost.
+  void Finish();
+
+  void set_max_reorder_time(Duration t) { ledger_.set_max_reorder_time(t); }
+  const SliceAccounts& slices() const { return ledger_.accounts(); }
+  const PacketAccounts& packets() const { return packets_; }
+  std::uint64_t configs() const { return config_count_; }
+  /// Memory that incomplete slices hold [bytes].
+  std::size_t pending_bytes() const { return pending_bytes_; }
+
+  static constexpr std::size_t kMaxPendingBytes = std::size_t{16} << 20;
+  static constexpr std::size_t kMaxPendingSlices = 1024;
+  static constexpr int kMaxScanJump = 2;
+  static constexpr int kMaxScanBack = 64;
+
+ private:
+  struct Pending {
+    FragmentBuffer fragments;
+    std::optional<Time> pts;
+    std::vector<std::uint8_t> bytes;  // once whole: waits for its config
+  };
+  struct KnownConfig {
+    std::uint8_t id;
+    std::shared_ptr<const StreamConfig> config;
+  };
+  using PendingMap = std::map<SlicePosition, Pending>;
+
+  std::int64_t Extend(std::uint32_t scan_number) const;
+  void PushSlice(const RtpPacket& packet, const Unit& unit, std::vector<ReceivedSlice>* out);
+  bool Admit(SlicePosition p, const RtpPacket& packet, const Unit& unit);
+  void PushConfig(const RtpPacket& packet, const Unit& unit, std::vector<ReceivedSlice>* out);
+  void Learn(std::uint8_t id, std::shared_ptr<const StreamConfig> config,
+             std::vector<ReceivedSlice>* out);
+  void Complete(PendingMap::iterator it, std::vector<ReceivedSlice>* out);
+  void Emit(PendingMap::iterator it, std::shared_ptr<const StreamConfig> config,
+            std::vector<ReceivedSlice>* out);
+  void Expire(Time now);
+  void DropBefore(SlicePosition limit);
+  PendingMap::iterator Remove(PendingMap::iterator it);
+  void Bound();
+  std::shared_ptr<const StreamConfig> FindConfig(std::uint8_t id) const;
+  std::uint64_t Missing() const;
+
+  SliceLedger ledger_;
+  std::int64_t newest_scan_ = 0;  // unwrapped
+  bool any_slice_ = false;
+  PendingMap pending_;
+  std::size_t pending_bytes_ = 0;
+  FragmentBuffer config_fragments_;
+  std::deque<KnownConfig> configs_;  // newest first
+  std::uint64_t config_count_ = 0;
+  std::optional<std::uint64_t> missing_at_last_slice_;
+  PacketAccounts packets_;
+};
+
+}  // namespace lidar::rtp

@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "rtp/receiver.h"
+
+#include <cstdlib>
+#include <utility>
+
+#include "base/sequence.h"
+
+namespace lidar::rtp {
+namespace {
+
+constexpr int kMaxSequenceStep = 64;  // between two packets of a candidate
+
+void Add(const SliceAccounts& a, SliceAccounts* sum) {
+  sum->slices_received += a.slices_received;
+  sum->slices_lost += a.slices_lost;
+  sum->slices_damaged += a.slices_damaged;
+  sum->slices_config_mismatch += a.slices_config_mismatch;
+  sum->scans_complete += a.scans_complete;
+  sum->scans_incomplete += a.scans_incomplete;
+  sum->scans_lost += a.scans_lost;
+}
+
+void Add(const Reassembler& r, ReceiverAccounts* sum) {
+  Add(r.slices(), &sum->slices);
+  sum->packets.invalid += r.packets().invalid;
+  sum->packets.duplicate += r.packets().duplicate;
+  sum->packets.late += r.packets().late;
+  sum->packets.config_damaged += r.packets().config_damaged;
+  sum->configs_received += r.configs();
+}
+
+}  // namespace
+
+std::vector<ReceivedSlice> Receiver::Push(const RtpPacket& packet) {
+  ++booked_.packets_received;
+  const auto units = ParsePayload(packet.payload);
+  if (units.empty()) {
+    ++booked_.packets.invalid;
+    return {};
+  }
+  if (!active_) active_.emplace(packet.ssrc, Reassembler(max_reorder_time_));
+  if (packet.ssrc == active_->ssrc && active_->reassembler.Continues(units)) {
+    active_arrival_ = packet.arrival;
+    if (candidate_) candidate_->streak = 0;
+    std::vector<ReceivedSlice> out;
+    active_->reassembler.Push(packet, units, &out);
+    return out;
+  }
+  PushToCandidate(packet, units);
+  return CandidateHasWon(packet.arrival) ? Promote(packet.arrival) : std::vector<ReceivedSlice>{};
+}
+
+void Receiver::PushToCandidate(const RtpPacket& packet, const std::vector<Unit>& units) {
+  const bool goes_on =
+      candidate_ && candidate_->ssrc == packet.ssrc && candidate_->reassembler.Continues(units) &&
+      std::abs(SequenceDistance(packet.sequence, candidate_->last_sequence)) <= kMaxSequenceStep;
+  if (!goes_on) {
+    if (candidate_) booked_.packets.invalid += candidate_->streak;
+    candidate_.emplace(packet.ssrc, packet.ssrc == active_->ssrc
+                                        ? Reassembler(max_reorder_time_, active_->reassembler)
+                                        : Reassembler(max_reorder_time_));
+  }
+  candidate_->last_sequence = packet.sequence;
+  ++candidate_->streak;
+  candidate_->reassembler.Push(packet, units, &candidate_->held);
+}
+
+bool Receiver::CandidateHasWon(Time now) const {
+  if (candidate_->streak < kProbation || !candidate_->reassembler.started()) return false;
+  return candidate_->ssrc == active_->ssrc || now - active_arrival_ >= kSilence ||
+         candidate_->streak >= kProbationNoClock;
+}
+
+std::vector<ReceivedSlice> Receiver::Promote(Time now) {
+  active_->reassembler.Finish();
+  std::vector<ReceivedSlice> out = std::move(candidate_->held);
+  const bool same = candidate_->ssrc == active_->ssrc;
+  if (same && candidate_->reassembler.IsAfter(active_->reassembler)) {
+    ++booked_.outages;
+    candidate_->reassembler.TakeOver(active_->reassembler, &out);
+  } else {
+    ++booked_.restarts;
+  }
+  Add(active_->reassembler, &booked_);
+  active_ = std::move(candidate_);
+  active_->held.clear();
+  active_arrival_ = now;
+  candidate_.reset();
+  return out;
+}
+
+void Receiver::Finish() {
+  if (active_) {
+    active_->reassembler.Finish();
+    Add(active_->reassembler, &booked_);
+  }
+  active_.reset();
+  candidate_.reset();
+}
+
+void Receiver::set_max_reorder_time(Duration t) {
+  max_reorder_time_ = t;
+  if (active_) active_->reassembler.set_max_reorder_time(t);
+  if (candidate_) candidate_->reassembler.set_max_reorder_time(t);
+}
+
+ReceiverAccounts Receiver::accounts() const {
+  ReceiverAccounts sum = booked_;
+  if (active_) Add(active_->reassembler, &sum);
+  return sum;
+}
+
+std::optional<std::uint32_t> Receiver::ssrc() const {
+  if (!active_) return std::nullopt;
+  return active_->ssrc;
+}
+
+}  // namespace lidar::rtp

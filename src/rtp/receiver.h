@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Follows one stream through outages and restarts of its sender, whatever else arrives.
+#pragma once
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "rtp/reassembler.h"
+
+namespace lidar::rtp {
+
+struct ReceiverAccounts {
+  SliceAccounts slices;
+  PacketAccounts packets;
+  std::uint64_t packets_received = 0;
+  std::uint64_t configs_received = 0;
+  std::uint64_t restarts = 0;  // of the sender: a new SSRC, or scan numbers that start again
+  std::uint64_t outages = 0;   // the same stream went on after a gap of several scans
+};
+
+/// The stream moves to another SSRC, or to other scan numbers, once several packets in sequence
+/// came from there and the old one fell silent. Nothing is lost by that wait.
+class Receiver {
+ public:
+  explicit Receiver(Duration max_reorder_time) : max_reorder_time_(max_reorder_time) {}
+
+  std::vector<ReceivedSlice> Push(const RtpPacket& packet);
+  /// End of stream: books what is not whole, and starts anew with the next packet.
+  void Finish();
+  void set_max_reorder_time(Duration t);
+  ReceiverAccounts accounts() const;
+  std::optional<std::uint32_t> ssrc() const;
+
+  static constexpr unsigned kProbation = 3;          // packets
+  static constexpr unsigned kProbationNoClock = 64;  // packets, where arrival times stand still
+  static constexpr Duration kSilence = std::chrono::milliseconds(100);
+
+ private:
+  struct Stream {
+    Stream(std::uint32_t s, Reassembler r) : ssrc(s), reassembler(std::move(r)) {}
+    std::uint32_t ssrc;
+    Reassembler reassembler;
+    std::vector<ReceivedSlice> held;  // of a candidate
+    std::uint16_t last_sequence = 0;
+    unsigned streak = 0;  // packets since the active stream's last
+  };
+
+  void PushToCandidate(const RtpPacket& packet, const std::vector<Unit>& units);
+  bool CandidateHasWon(Time now) const;
+  std::vector<ReceivedSlice> Promote(Time now);
+
+  Duration max_reorder_time_;
+  std::optional<Stream> active_;
+  std::optional<Stream> candidate_;
+  Time active_arrival_;
+  ReceiverAccounts booked_;  // of streams that ended
+};
+
+}  // namespace lidar::rtp

@@ -1,0 +1,168 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "rtp/slice_ledger.h"
+
+#include <algorithm>
+
+namespace lidar::rtp {
+namespace {
+
+// Bounds memory; the reassembler takes no jump as long as this (kMaxScanJump).
+constexpr std::size_t kMaxOpenScans = 64;
+
+}  // namespace
+
+Admission SliceLedger::Admit(SlicePosition p, std::uint32_t count, Time now) {
+  if (!started()) {
+    Start(p, count);
+    return Admission::kOpen;
+  }
+  if (p < origin_ || p.scan < first_scan_) return Admission::kTooOld;
+  if (Contradicts(p.scan, count)) return Admission::kContradiction;
+  if (*frontier_ < p) {
+    AppendScans(p.scan, count);
+    frontier_ = p;
+    cutoffs_.push_back({now + max_reorder_time_, p});
+    while (scans_.size() > kMaxOpenScans) CloseBefore({first_scan_ + 1, 0});
+  }
+  Scan* scan = Find(p.scan);
+  if (scan == nullptr) return Admission::kTooOld;
+  if (!scan->count_known) {
+    scan->slices.assign(count, SliceOutcome::kOpen);
+    scan->open = count;
+    scan->count_known = true;
+  }
+  switch (scan->slices[p.index]) {
+    case SliceOutcome::kOpen:
+      return Admission::kOpen;
+    case SliceOutcome::kLost:
+      return Admission::kTooOld;
+    default:
+      return Admission::kSettled;
+  }
+}
+
+bool SliceLedger::Contradicts(std::int64_t number, std::uint32_t count) {
+  const Scan* scan = Find(number);
+  if (scan == nullptr || scan->slices.size() == count) return false;
+  // A guessed count may change as long as nothing was booked by it.
+  return scan->count_known || scan->open != scan->slices.size();
+}
+
+void SliceLedger::Start(SlicePosition p, std::uint32_t count) {
+  origin_ = p;
+  frontier_ = p;
+  first_scan_ = p.scan;
+  scans_.clear();
+  AppendScans(p.scan, count);
+  Scan& scan = scans_.front();
+  scan.count_known = true;
+  scan.joined_late = p.index > 0;
+  std::fill_n(scan.slices.begin(), p.index, SliceOutcome::kLost);  // before us, so in no account
+  scan.open = count - p.index;
+}
+
+void SliceLedger::AppendScans(std::int64_t up_to, std::uint32_t count) {
+  while (first_scan_ + static_cast<std::int64_t>(scans_.size()) <= up_to) {
+    Scan scan;
+    scan.slices.assign(count, SliceOutcome::kOpen);
+    scan.open = count;
+    scans_.push_back(std::move(scan));
+  }
+}
+
+void SliceLedger::Settle(SlicePosition p, SliceOutcome outcome) {
+  Scan* scan = Find(p.scan);
+  if (scan != nullptr) Close(scan, p.index, outcome);
+}
+
+void SliceLedger::Close(Scan* scan, std::uint32_t index, SliceOutcome outcome) {
+  if (index >= scan->slices.size() || scan->slices[index] != SliceOutcome::kOpen) return;
+  scan->slices[index] = outcome;
+  --scan->open;
+  switch (outcome) {
+    case SliceOutcome::kReceived:
+      ++accounts_.slices_received;
+      ++scan->received;
+      break;
+    case SliceOutcome::kDamaged:
+      ++accounts_.slices_damaged;
+      break;
+    case SliceOutcome::kConfigMismatch:
+      ++accounts_.slices_config_mismatch;
+      break;
+    default:
+      ++accounts_.slices_lost;
+      break;
+  }
+  if (scan->open == 0) BookScan(*scan);
+}
+
+void SliceLedger::BookScan(const Scan& scan) {
+  if (scan.joined_late) return;
+  if (scan.received == scan.slices.size()) {
+    ++accounts_.scans_complete;
+  } else if (scan.received > 0) {
+    ++accounts_.scans_incomplete;
+  } else {
+    ++accounts_.scans_lost;
+  }
+}
+
+std::optional<SlicePosition> SliceLedger::Overdue(Time now) const {
+  std::optional<SlicePosition> limit;
+  for (const Cutoff& c : cutoffs_) {
+    if (c.time > now) break;
+    limit = c.position;
+  }
+  return limit;
+}
+
+void SliceLedger::CloseFirst(Scan* scan, std::uint32_t limit) {
+  const auto n = std::min(limit, static_cast<std::uint32_t>(scan->slices.size()));
+  for (std::uint32_t i = 0; i < n; ++i) Close(scan, i, SliceOutcome::kLost);
+}
+
+void SliceLedger::CloseBefore(SlicePosition limit) {
+  while (!scans_.empty() && first_scan_ < limit.scan) {
+    CloseFirst(&scans_.front(), static_cast<std::uint32_t>(scans_.front().slices.size()));
+    scans_.pop_front();
+    ++first_scan_;
+  }
+  if (!scans_.empty() && first_scan_ == limit.scan) CloseFirst(&scans_.front(), limit.index);
+  while (!cutoffs_.empty() && !(limit < cutoffs_.front().position)) cutoffs_.pop_front();
+}
+
+void SliceLedger::Finish() {
+  if (!started()) return;
+  CloseBefore({frontier_->scan, frontier_->index + 1});
+  // What was not sent of the last scan is not lost, but the scan did end here.
+  Scan* scan = Find(frontier_->scan);
+  if (scan != nullptr && scan->open > 0) {
+    BookScan(*scan);
+    scan->joined_late = true;  // booked
+  }
+}
+
+void SliceLedger::Continue(const SliceLedger& previous) {
+  if (!started() || !previous.started() || !(*previous.frontier_ < origin_)) return;
+  const auto count = static_cast<std::uint64_t>(scans_.front().slices.size());
+  const SlicePosition last = *previous.frontier_;
+  if (last.scan < origin_.scan) {
+    const auto between = static_cast<std::uint64_t>(origin_.scan - last.scan - 1);
+    accounts_.scans_lost += between;
+    accounts_.slices_lost += between * count + origin_.index;
+    // Finish keeps the frontier's scan.
+    accounts_.slices_lost += previous.scans_.back().slices.size() - last.index - 1;
+    scans_.front().joined_late = false;
+  } else {
+    accounts_.slices_lost += origin_.index - last.index - 1;
+  }
+}
+
+SliceLedger::Scan* SliceLedger::Find(std::int64_t number) {
+  const std::int64_t i = number - first_scan_;
+  if (i < 0 || i >= static_cast<std::int64_t>(scans_.size())) return nullptr;
+  return &scans_[static_cast<std::size_t>(i)];
+}
+
+}  // namespace lidar::rtp

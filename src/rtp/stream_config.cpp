@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "rtp/stream_config.h"
+
+#include <tuple>
+
+#include "base/byte_writer.h"
+#include "base/crc.h"
+#include "cloud/point_fields.h"
+#include "cloud/sensor_model.h"
+
+namespace lidar::rtp {
+namespace {
+
+constexpr std::uint8_t kVersion = 1;
+// A fraction of GStreamer's caps is two gint.
+constexpr std::uint32_t kMaxFraction = 0x7FFF'FFFF;
+
+}  // namespace
+
+std::vector<std::uint8_t> StreamConfig::Serialise() const {
+  std::vector<std::uint8_t> bytes;
+  ByteWriter w(&bytes);
+  w.U8(kVersion);
+  w.U8(static_cast<std::uint8_t>(geometry));
+  w.Be32(framerate_n);
+  w.Be32(framerate_d);
+  w.Be16(static_cast<std::uint16_t>(fields.size()));
+  w.Be16(static_cast<std::uint16_t>(sensor_model.size()));
+  w.Bytes({reinterpret_cast<const std::uint8_t*>(fields.data()), fields.size()});
+  w.Bytes({sensor_model.data(), sensor_model.size()});
+  return bytes;
+}
+
+std::optional<StreamConfig> StreamConfig::Parse(ByteView bytes) {
+  ByteReader r(bytes);
+  StreamConfig c;
+  const std::uint8_t version = r.U8();
+  c.geometry = static_cast<Geometry>(r.U8());
+  c.framerate_n = r.Be32();
+  c.framerate_d = r.Be32();
+  const std::uint16_t fields_size = r.Be16();
+  const std::uint16_t model_size = r.Be16();
+  const ByteView fields = r.Bytes(fields_size);
+  const ByteView model = r.Bytes(model_size);
+  if (!r.ok() || r.remaining() != 0 || version != kVersion || c.geometry > Geometry::kRange ||
+      c.framerate_n > kMaxFraction || c.framerate_d == 0 || c.framerate_d > kMaxFraction) {
+    return std::nullopt;
+  }
+  c.fields.assign(fields.begin(), fields.end());
+  c.sensor_model.assign(model.begin(), model.end());
+  if (!PointFields::Parse(c.fields)) return std::nullopt;
+  if (!model.empty() && !SensorModel::Parse(model)) return std::nullopt;
+  if (c.geometry == Geometry::kRange && model.empty()) return std::nullopt;
+  return c;
+}
+
+bool StreamConfig::operator==(const StreamConfig& o) const {
+  return std::tie(geometry, framerate_n, framerate_d, fields, sensor_model) ==
+         std::tie(o.geometry, o.framerate_n, o.framerate_d, o.fields, o.sensor_model);
+}
+
+std::uint8_t ConfigId(const std::vector<std::uint8_t>& config,
+                      std::optional<std::uint8_t> previous) {
+  const auto id = static_cast<std::uint8_t>(Crc32({config.data(), config.size()}));
+  return previous == id ? static_cast<std::uint8_t>(id + 1) : id;
+}
+
+}  // namespace lidar::rtp

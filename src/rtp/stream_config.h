@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// What a receiver must know before it can decode a slice: the stream-config unit.
+#pragma once
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "base/byte_reader.h"
+
+namespace lidar::rtp {
+
+enum class Geometry : std::uint8_t { kXyz = 0, kRange = 1 };
+
+struct StreamConfig {
+  Geometry geometry = Geometry::kXyz;
+  std::uint32_t framerate_n = 0;  // scans/s; 0/1: not known
+  std::uint32_t framerate_d = 1;
+  std::string fields;                      // as in the caps, checked
+  std::vector<std::uint8_t> sensor_model;  // serialised and checked; empty: none
+
+  std::vector<std::uint8_t> Serialise() const;
+  /// None for another version, a wrong length, or fields or a sensor model that do not parse.
+  static std::optional<StreamConfig> Parse(ByteView bytes);
+  bool operator==(const StreamConfig& o) const;
+  bool operator!=(const StreamConfig& o) const { return !(*this == o); }
+};
+
+/// The id of a config that follows one with the id `previous`. It comes from the content, so that a
+/// restarted sender keeps its id, and differs from `previous`.
+std::uint8_t ConfigId(const std::vector<std::uint8_t>& config,
+                      std::optional<std::uint8_t> previous);
+
+}  // namespace lidar::rtp

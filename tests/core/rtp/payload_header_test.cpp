@@ -1,0 +1,158 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "rtp/payload_header.h"
+
+#include <gtest/gtest.h>
+
+#include "rtp/ntp_time.h"
+#include "rtp/stream_config.h"
+#include "stream.h"
+
+namespace lidar::rtp {
+namespace {
+
+Unit FirstOfASlice() {
+  Unit u;
+  u.type = PacketType::kFirstFragment;
+  u.config_id = 0xC1;
+  u.slice = {0x01020304, 5, 8};
+  u.info = {0x0A0B0C0D, 640, 12'500'000, 0x1122334455667788};
+  u.length = 5'000;
+  u.crc = 0xDEADBEEF;
+  return u;
+}
+
+TEST(PayloadHeader, StandsOnTheWireAsDocumented) {
+  std::vector<std::uint8_t> bytes;
+  WriteHeader(FirstOfASlice(), &bytes);
+  const std::vector<std::uint8_t> expected = {
+      0x42, 0xC1,                                      // first fragment of a slice, config
+      0x00, 0x00, 0x13, 0x88, 0xDE, 0xAD, 0xBE, 0xEF,  // length, CRC
+      0x01, 0x02, 0x03, 0x04, 0x00, 0x05, 0x00, 0x08,  // scan number, index, count
+      0x0A, 0x0B, 0x0C, 0x0D, 0x02, 0x80,              // scan id, first column
+      0x00, 0xBE, 0xBC, 0x20,                          // duration
+      0x11, 0x22, 0x33, 0x44, 0x55, 0x66, 0x77, 0x88,  // capture time
+  };
+  EXPECT_EQ(bytes, expected);
+  EXPECT_EQ(bytes.size(), HeaderSize(PacketType::kFirstFragment, UnitType::kSlice));
+  bytes.clear();
+  Unit middle = FirstOfASlice();
+  middle.type = PacketType::kMiddleFragment;
+  WriteHeader(middle, &bytes);
+  EXPECT_EQ(bytes, (std::vector<std::uint8_t>{0x62, 0xC1, 1, 2, 3, 4, 0, 5, 0, 8}));
+}
+
+TEST(PayloadHeader, IsReadBackAsWritten) {
+  std::vector<std::uint8_t> bytes;
+  WriteHeader(FirstOfASlice(), &bytes);
+  bytes.push_back(0xAA);
+  const auto units = ParsePayload({bytes.data(), bytes.size()});
+  ASSERT_EQ(units.size(), 1U);
+  const Unit& u = units[0];
+  EXPECT_EQ(u.type, PacketType::kFirstFragment);
+  EXPECT_EQ(u.config_id, 0xC1);
+  EXPECT_EQ(u.slice.scan_number, 0x01020304U);
+  EXPECT_EQ(u.info.first_column, 640);
+  EXPECT_EQ(u.info.capture_ntp, 0x1122334455667788U);
+  EXPECT_EQ(u.crc, 0xDEADBEEFU);
+  ASSERT_EQ(u.body.size, 1U);
+  EXPECT_EQ(u.body.data[0], 0xAA);
+}
+
+TEST(PayloadHeader, OfEveryKindIsRefusedWhenTruncated) {
+  for (const UnitType unit : {UnitType::kSlice, UnitType::kStreamConfig}) {
+    for (const PacketType type : {PacketType::kSingle, PacketType::kFirstFragment,
+                                  PacketType::kMiddleFragment, PacketType::kLastFragment}) {
+      Unit u = FirstOfASlice();
+      u.type = type;
+      u.unit = unit;
+      u.length = type == PacketType::kSingle ? 1 : 2;
+      std::vector<std::uint8_t> bytes;
+      WriteHeader(u, &bytes);
+      EXPECT_EQ(bytes.size(), HeaderSize(type, unit));
+      bytes.push_back(1);
+      EXPECT_EQ(ParsePayload({bytes.data(), bytes.size()}).size(), 1U);
+      for (std::size_t n = 0; n < bytes.size(); ++n)
+        EXPECT_TRUE(ParsePayload({bytes.data(), n}).empty()) << n;
+    }
+  }
+}
+
+struct Hostile {
+  const char* what;
+  std::vector<std::uint8_t> bytes;
+};
+class HostilePayload : public ::testing::TestWithParam<Hostile> {};
+TEST_P(HostilePayload, IsRefused) {
+  const auto& bytes = GetParam().bytes;
+  EXPECT_TRUE(ParsePayload({bytes.data(), bytes.size()}).empty()) << GetParam().what;
+}
+INSTANTIATE_TEST_SUITE_P(
+    All, HostilePayload,
+    ::testing::Values(
+        Hostile{"empty", {}}, Hostile{"reserved packet type", {0xA2, 0, 0, 0, 0, 0, 0, 0, 0, 1, 7}},
+        Hostile{"unknown unit type", {0x63, 0, 0, 0, 0, 0, 0, 0, 0, 1, 7}},
+        Hostile{"index equals count", {0x62, 0, 0, 0, 0, 0, 0, 4, 0, 4, 7}},
+        Hostile{"no slices", {0x62, 0, 0, 0, 0, 0, 0, 0, 0, 0, 7}},
+        Hostile{"too many slices", {0x62, 0, 0, 0, 0, 0, 0, 0, 0x10, 1, 7}},
+        Hostile{"a unit of 4 GB", {0x40, 0, 0xFF, 0xFF, 0xFF, 0xFF, 0, 0, 0, 0, 7}},
+        Hostile{"a single unit of another length", {0x00, 0, 0, 0, 0, 2, 0, 0, 0, 0, 7}},
+        Hostile{"a first fragment that is all", {0x40, 0, 0, 0, 0, 1, 0, 0, 0, 0, 7}},
+        Hostile{"an aggregate with a unit type", {0x22, 0, 0, 0, 1, 0}},
+        Hostile{"an aggregate of a fragment", {0x20, 0, 0, 0, 3, 0x60, 0, 7}},
+        Hostile{"an aggregate in an aggregate", {0x20, 0, 0, 0, 3, 0x20, 0, 7}},
+        Hostile{"an aggregate whose unit is longer than it", {0x20, 0, 0, 0, 99, 0, 0, 7}},
+        Hostile{"an aggregate with a byte too many",
+                {0x20, 0, 0, 0, 11, 0, 0, 0, 0, 0, 1, 0, 0, 0, 0, 7, 0}}));
+
+TEST(NtpTime, KeepsEveryNanosecondAndCrossesTheEra) {
+  for (const std::uint64_t ns :
+       {std::uint64_t{1}, std::uint64_t{1'764'000'000'123'456'789}, std::uint64_t{999'999'999},
+        std::uint64_t{2'085'978'496'000'000'001}, std::uint64_t{4'000'000'000'000'000'007}}) {
+    EXPECT_EQ(FromNtp(ToNtp(ns)), ns);
+  }
+  EXPECT_EQ(ToNtp(0) >> 32, 2'208'988'800U);
+}
+
+TEST(StreamConfig, RoundTrips) {
+  const StreamConfig config = test::SmallConfig();
+  const auto bytes = config.Serialise();
+  const auto back = StreamConfig::Parse({bytes.data(), bytes.size()});
+  ASSERT_TRUE(back);
+  EXPECT_EQ(*back, config);
+}
+
+TEST(StreamConfig, IsRefusedWhenTruncatedOrExtended) {
+  auto bytes = test::SmallConfig().Serialise();
+  for (std::size_t n = 0; n < bytes.size(); ++n)
+    EXPECT_FALSE(StreamConfig::Parse({bytes.data(), n})) << n;
+  bytes.push_back(0);
+  EXPECT_FALSE(StreamConfig::Parse({bytes.data(), bytes.size()}));
+}
+
+TEST(StreamConfig, IsRefusedWhenAnyPartIsUnusable) {
+  const auto refused = [](void (*spoil)(StreamConfig*)) {
+    StreamConfig c = test::SmallConfig();
+    spoil(&c);
+    const auto bytes = c.Serialise();
+    return !StreamConfig::Parse({bytes.data(), bytes.size()});
+  };
+  EXPECT_TRUE(refused([](StreamConfig* c) { c->fields = "x:F99:0"; }));
+  EXPECT_TRUE(refused([](StreamConfig* c) { c->sensor_model[0] = 77; }));
+  EXPECT_TRUE(refused([](StreamConfig* c) { c->sensor_model.clear(); }));  // range needs one
+  EXPECT_TRUE(refused([](StreamConfig* c) { c->framerate_d = 0; }));
+  EXPECT_TRUE(refused([](StreamConfig* c) { c->framerate_n = 0x8000'0000; }));
+  EXPECT_TRUE(refused([](StreamConfig* c) { c->geometry = static_cast<Geometry>(2); }));
+  auto bytes = test::SmallConfig().Serialise();
+  bytes[0] = 2;
+  EXPECT_FALSE(StreamConfig::Parse({bytes.data(), bytes.size()}));
+}
+
+TEST(ConfigId, ComesFromTheContentAndNeverRepeatsForAnother) {
+  const auto a = test::SmallConfig().Serialise();
+  const std::uint8_t id = ConfigId(a, std::nullopt);
+  EXPECT_EQ(ConfigId(a, std::nullopt), id);
+  EXPECT_NE(ConfigId(a, id), id);
+}
+
+}  // namespace
+}  // namespace lidar::rtp

@@ -1,0 +1,316 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "rtp/reassembler.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "stream.h"
+
+namespace lidar::rtp {
+namespace {
+
+using std::chrono::milliseconds;
+using test::AllSlices;
+using test::DeliverAll;
+using test::Sender;
+using test::SenderOptions;
+using test::Wire;
+using Names = std::vector<std::string>;
+
+constexpr milliseconds kReorder{100};
+
+/// Equality of what the stream has become, in one line.
+std::string Accounts(const Receiver& r) {
+  const SliceAccounts a = r.accounts().slices;
+  return "received " + std::to_string(a.slices_received) + " lost " +
+         std::to_string(a.slices_lost) + " damaged " + std::to_string(a.slices_damaged) +
+         " mismatch " + std::to_string(a.slices_config_mismatch) + "; scans " +
+         std::to_string(a.scans_complete) + " " + std::to_string(a.scans_incomplete) + " " +
+         std::to_string(a.scans_lost);
+}
+
+Names Without(Names all, const Names& missing) {
+  for (const auto& m : missing) all.erase(std::find(all.begin(), all.end(), m));
+  return all;
+}
+
+TEST(Stream, ArrivesWholeAcrossTheWrapOfSequenceAndScanNumbers) {
+  Receiver receiver(kReorder);
+  Sender sender;
+  EXPECT_EQ(DeliverAll(&receiver, sender.Scans(0, 100)), AllSlices(0, 100));
+  receiver.Finish();
+  EXPECT_EQ(Accounts(receiver), "received 400 lost 0 damaged 0 mismatch 0; scans 100 0 0");
+  EXPECT_EQ(receiver.accounts().packets.invalid, 0U);
+}
+
+TEST(Stream, GivesBackAllThatWasSaidOfASlice) {
+  Receiver receiver(kReorder);
+  Sender sender;
+  std::vector<ReceivedSlice> got;
+  for (const Wire& w : sender.Scans(0, 1))
+    for (auto& s : test::Deliver(&receiver, w)) got.push_back(std::move(s));
+  ASSERT_EQ(got.size(), 4U);
+  EXPECT_EQ(got[3].id.index, 3);
+  EXPECT_EQ(got[3].id.count, 4);
+  EXPECT_EQ(got[3].info.first_column, 300);
+  EXPECT_EQ(got[3].info.duration_ns, 25'000'000U);
+  EXPECT_EQ(got[3].info.capture_ntp, 7U);
+  EXPECT_EQ(got[3].pts, Time{milliseconds(75)});
+  EXPECT_EQ(*got[3].config, test::SmallConfig());
+  EXPECT_TRUE(got[0].discont);
+  EXPECT_FALSE(got[1].discont);
+}
+
+// Every single packet of three scans is dropped in turn; a drop of a packet of slice S may cost S.
+TEST(Loss, OfAnyOnePacketCostsItsSliceOnly) {
+  const auto packets = Sender().Scans(0, 3);
+  for (std::size_t drop = 0; drop < packets.size(); ++drop) {
+    if (packets[drop].config) continue;
+    auto left = packets;
+    left.erase(left.begin() + static_cast<std::ptrdiff_t>(drop));
+    Receiver receiver(kReorder);
+    const std::string lost =
+        std::to_string(packets[drop].scan) + "." + std::to_string(packets[drop].index);
+    ASSERT_EQ(DeliverAll(&receiver, left), Without(AllSlices(0, 3), {lost})) << drop;
+    receiver.Finish();
+    // Without its first packet the very first slice is where the receiver joins.
+    if (lost == "0.0") continue;
+    ASSERT_EQ(Accounts(receiver), "received 11 lost 1 damaged 0 mismatch 0; scans 2 1 0") << drop;
+  }
+}
+
+TEST(Loss, OfOneSliceMarksTheNextOneDiscontinuousOnce) {
+  auto packets = Sender().Scans(0, 4);
+  packets.erase(std::remove_if(packets.begin(), packets.end(),
+                               [](const Wire& w) { return w.scan == 1 && w.index == 2; }),
+                packets.end());
+  Receiver receiver(milliseconds(0));
+  Names discont;
+  for (const Wire& w : packets)
+    for (const auto& s : test::Deliver(&receiver, w))
+      if (s.discont)
+        discont.push_back(std::to_string(s.info.scan_id) + "." + std::to_string(s.id.index));
+  EXPECT_EQ(discont, (Names{"0.0", "1.3"}));
+}
+
+TEST(Loss, OfWholeScansCountsEachSliceAndScanOnce) {
+  auto packets = Sender().Scans(0, 10);
+  packets.erase(std::remove_if(packets.begin(), packets.end(),
+                               [](const Wire& w) {
+                                 return (w.scan == 3 || w.scan == 6) ||
+                                        (w.scan == 4 && w.index < 2);
+                               }),
+                packets.end());
+  Receiver receiver(kReorder);
+  DeliverAll(&receiver, packets);
+  receiver.Finish();
+  EXPECT_EQ(Accounts(receiver), "received 30 lost 10 damaged 0 mismatch 0; scans 7 1 2");
+}
+
+TEST(Loss, OfTheLastPacketIsCountedAtTheEnd) {
+  auto packets = Sender().Scans(0, 2);
+  packets.pop_back();
+  Receiver receiver(kReorder);
+  DeliverAll(&receiver, packets);
+  EXPECT_EQ(Accounts(receiver), "received 7 lost 0 damaged 0 mismatch 0; scans 1 0 0");
+  receiver.Finish();
+  EXPECT_EQ(Accounts(receiver), "received 7 lost 1 damaged 0 mismatch 0; scans 1 1 0");
+}
+
+TEST(Loss, AgreesWithTheLinkAtEveryRate) {
+  for (const unsigned percent : {5U, 20U, 50U, 90U}) {
+    const auto packets = Sender().Scans(0, 300);
+    std::uint32_t random = percent;
+    std::vector<Wire> through;
+    std::vector<std::vector<unsigned>> dropped(300, std::vector<unsigned>(4));
+    for (const Wire& w : packets) {
+      random = random * 1664525U + 1013904223U;
+      // The first slice arrives, so that the receiver joins where the link's count begins; so does
+      // the last, so that what was lost before it can be known.
+      const bool edge =
+          w.config || (w.scan == 0 && w.index == 0) || (w.scan == 299 && w.index == 3);
+      if ((random >> 8) % 100 < percent && !edge) {
+        ++dropped[w.scan][w.index];
+      } else {
+        through.push_back(w);
+      }
+    }
+    Receiver receiver(kReorder);
+    const auto got = DeliverAll(&receiver, through);
+    receiver.Finish();
+    SliceAccounts expected;
+    for (const auto& scan : dropped) {
+      const auto lost = static_cast<unsigned>(
+          std::count_if(scan.begin(), scan.end(), [](unsigned d) { return d > 0; }));
+      expected.slices_lost += lost;
+      expected.slices_received += 4 - lost;
+      ++(lost == 0   ? expected.scans_complete
+         : lost == 4 ? expected.scans_lost
+                     : expected.scans_incomplete);
+    }
+    const SliceAccounts a = receiver.accounts().slices;
+    EXPECT_EQ(a.slices_lost, expected.slices_lost) << percent;
+    EXPECT_EQ(a.slices_received, expected.slices_received) << percent;
+    EXPECT_EQ(a.scans_complete, expected.scans_complete) << percent;
+    EXPECT_EQ(a.scans_incomplete, expected.scans_incomplete) << percent;
+    EXPECT_EQ(a.scans_lost, expected.scans_lost) << percent;
+    EXPECT_EQ(got.size(), expected.slices_received);
+  }
+}
+
+TEST(Reordering, ByTwentyPacketsLosesNothing) {
+  auto packets = Sender().Scans(0, 20);
+  for (std::size_t i = 0; i + 20 < packets.size(); i += 21) {
+    // The packet comes twenty places later, at that time.
+    Wire late = packets[i];
+    late.sent = packets[i + 20].sent;
+    packets.erase(packets.begin() + static_cast<std::ptrdiff_t>(i));
+    packets.insert(packets.begin() + static_cast<std::ptrdiff_t>(i + 20), late);
+  }
+  Receiver receiver(milliseconds(200));
+  auto names = DeliverAll(&receiver, packets);
+  EXPECT_NE(names, AllSlices(0, 20));  // no slice waited for another
+  auto all = AllSlices(0, 20);
+  std::sort(names.begin(), names.end());
+  std::sort(all.begin(), all.end());
+  receiver.Finish();
+  // The config was moved behind the first slices, which waited for it.
+  EXPECT_EQ(names, all);
+  EXPECT_EQ(Accounts(receiver), "received 80 lost 0 damaged 0 mismatch 0; scans 20 0 0");
+}
+
+TEST(Reordering, PastTheLimitIsALossThatIsNotTakenBack) {
+  auto packets = Sender().Scans(0, 10);
+  const auto it = std::find_if(packets.begin(), packets.end(),
+                               [](const Wire& w) { return w.scan == 2 && w.index == 1; });
+  Wire late = *it;
+  packets.erase(it);
+  late.sent = packets.back().sent;
+  packets.push_back(late);
+  Receiver receiver(kReorder);
+  EXPECT_EQ(DeliverAll(&receiver, packets), Without(AllSlices(0, 10), {"2.1"}));
+  EXPECT_EQ(receiver.accounts().packets.late, 1U);
+  receiver.Finish();
+  EXPECT_EQ(Accounts(receiver), "received 39 lost 1 damaged 0 mismatch 0; scans 9 1 0");
+}
+
+TEST(Duplicates, OfEveryPacketChangeNothing) {
+  std::vector<Wire> twice;
+  for (const Wire& w : Sender().Scans(0, 5)) {
+    twice.push_back(w);
+    twice.push_back(w);
+  }
+  Receiver receiver(kReorder);
+  EXPECT_EQ(DeliverAll(&receiver, twice), AllSlices(0, 5));
+  receiver.Finish();
+  EXPECT_EQ(Accounts(receiver), "received 20 lost 0 damaged 0 mismatch 0; scans 5 0 0");
+  EXPECT_EQ(receiver.accounts().packets.duplicate, 60U);
+}
+
+TEST(Damage, OfAnyByteOfASliceIsNeverShown) {
+  const auto packets = Sender().Scans(0, 2);
+  const auto victim = static_cast<std::size_t>(
+      std::find_if(packets.begin(), packets.end(),
+                   [](const Wire& w) { return w.scan == 1 && w.index == 1; }) -
+      packets.begin());
+  // The first packet's header as well: a slice at another time is as wrong as another slice.
+  for (std::size_t byte = 0; byte < packets[victim].payload.size(); ++byte) {
+    auto damaged = packets;
+    damaged[victim].payload[byte] ^= 0x10;
+    Receiver receiver(milliseconds(0));
+    for (const auto& name : DeliverAll(&receiver, damaged)) {
+      ASSERT_EQ(name.find("differs"), std::string::npos) << byte;
+      ASSERT_NE(name, "1.1") << byte;
+    }
+  }
+}
+
+TEST(Damage, IsCountedOnce) {
+  auto packets = Sender().Scans(0, 2);
+  packets.back().payload.back() ^= 1;
+  Receiver receiver(kReorder);
+  DeliverAll(&receiver, packets);
+  receiver.Finish();
+  EXPECT_EQ(Accounts(receiver), "received 7 lost 0 damaged 1 mismatch 0; scans 1 1 0");
+}
+
+TEST(Join, InMidStreamStartsWithTheFirstSliceThatIsWholeAfterAConfig) {
+  Sender sender;
+  auto packets = sender.Scans(0, 3);
+  sender.Config(&packets);
+  for (std::uint16_t i = 0; i < 4; ++i) sender.Slice(3, i, &packets);
+  for (std::uint16_t i = 0; i < 4; ++i) sender.Slice(4, i, &packets);
+  // From the second packet of slice 1.2 on.
+  const auto from = std::find_if(packets.begin(), packets.end(),
+                                 [](const Wire& w) { return w.scan == 1 && w.index == 2; });
+  packets.erase(packets.begin(), from + 1);
+  Receiver receiver(milliseconds(20));
+  // 2.2 and 2.3 had not been given up when the config came.
+  EXPECT_EQ(DeliverAll(&receiver, packets),
+            (Names{"2.2", "2.3", "3.0", "3.1", "3.2", "3.3", "4.0", "4.1", "4.2", "4.3"}));
+  receiver.Finish();
+  // Scan 1 began before us: it is in no account.
+  EXPECT_EQ(Accounts(receiver), "received 10 lost 0 damaged 0 mismatch 3; scans 2 1 0");
+}
+
+TEST(Config, OfAnotherIdIsAMismatchUntilItComes) {
+  Sender sender;
+  auto packets = sender.Scans(0, 2);
+  SenderOptions changed;
+  changed.config_id = 10;
+  changed.sequence = static_cast<std::uint16_t>(packets.back().sequence + 1);
+  Sender after(changed);
+  for (std::uint16_t i = 0; i < 4; ++i) after.Slice(2, i, &packets);
+  for (std::uint16_t i = 0; i < 4; ++i) after.Slice(3, i, &packets);
+  after.Config(&packets);
+  for (std::uint16_t i = 0; i < 4; ++i) after.Slice(4, i, &packets);
+  Receiver receiver(milliseconds(0));
+  auto expected = AllSlices(0, 2);
+  for (const char* n : {"3.3", "4.0", "4.1", "4.2", "4.3"}) expected.emplace_back(n);
+  EXPECT_EQ(DeliverAll(&receiver, packets), expected);
+  receiver.Finish();
+  EXPECT_EQ(Accounts(receiver), "received 13 lost 0 damaged 0 mismatch 7; scans 3 1 1");
+}
+
+TEST(Config, InFragmentsSurvivesReorderingAndDoesNotMixRepetitions) {
+  SenderOptions o;
+  o.max_payload = kMinPayload;
+  o.slice_size = 20;
+  Sender sender(o);
+  std::vector<Wire> packets;
+  sender.Config(&packets);
+  ASSERT_GE(packets.size(), 3U);
+  packets.pop_back();
+  sender.Config(&packets);
+  std::swap(packets[packets.size() - 1], packets[packets.size() - 2]);
+  sender.Slice(0, 0, &packets);
+  Receiver receiver(kReorder);
+  EXPECT_EQ(DeliverAll(&receiver, packets, 20), Names{"0.0"});
+  EXPECT_EQ(receiver.accounts().packets.config_damaged, 0U);
+  EXPECT_EQ(receiver.accounts().configs_received, 1U);
+}
+
+TEST(Memory, IsBoundedAgainstSlicesThatNeverEnd) {
+  // Middle fragments only, of more slices than may be pending, each 1 kB.
+  Sender sender;
+  auto packets = sender.Scans(0, 1);
+  Reassembler reassembler(std::chrono::hours(1));
+  std::vector<ReceivedSlice> out;
+  std::uint16_t sequence = 0;
+  const std::vector<std::uint8_t> body(60'000, 7);
+  for (std::uint32_t i = 0; i < 3'000; ++i) {
+    Unit unit;
+    unit.type = PacketType::kMiddleFragment;
+    unit.slice = {i / 4'096, static_cast<std::uint16_t>(i % 4'096), 4'096};
+    unit.body = {body.data(), body.size()};
+    RtpPacket packet;
+    packet.sequence = ++sequence;
+    reassembler.Push(packet, {unit}, &out);
+    ASSERT_LE(reassembler.pending_bytes(), Reassembler::kMaxPendingBytes);
+  }
+  EXPECT_GT(reassembler.pending_bytes(), Reassembler::kMaxPendingBytes / 2);
+}
+
+}  // namespace
+}  // namespace lidar::rtp

@@ -1,0 +1,152 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "rtp/receiver.h"
+
+#include <gtest/gtest.h>
+
+#include <random>
+
+#include "stream.h"
+
+namespace lidar::rtp {
+namespace {
+
+using std::chrono::milliseconds;
+using test::AllSlices;
+using test::DeliverAll;
+using test::Sender;
+using test::SenderOptions;
+using test::Wire;
+using Names = std::vector<std::string>;
+
+Names operator+(Names a, const Names& b) {
+  a.insert(a.end(), b.begin(), b.end());
+  return a;
+}
+
+TEST(Receiver, FollowsASenderThatRestartsWithANewSsrcAndLosesNothingOfIt) {
+  SenderOptions second;
+  second.ssrc = 0x99;
+  second.sequence = 5;
+  second.scan_number = 77;
+  Receiver receiver(milliseconds(100));
+  auto packets = Sender().Scans(0, 3);
+  for (const Wire& w : Sender(second).Scans(10, 3)) packets.push_back(w);
+  EXPECT_EQ(DeliverAll(&receiver, packets), AllSlices(0, 3) + AllSlices(10, 3));
+  receiver.Finish();
+  EXPECT_EQ(receiver.ssrc(), std::nullopt);
+  EXPECT_EQ(receiver.accounts().restarts, 1U);
+  EXPECT_EQ(receiver.accounts().slices.slices_lost, 0U);
+  EXPECT_EQ(receiver.accounts().slices.scans_complete, 6U);
+}
+
+TEST(Receiver, FollowsASenderThatRestartsWithTheSameSsrc) {
+  SenderOptions second;
+  second.sequence = 5;
+  second.scan_number = 1'000'000;
+  second.slices = 2;
+  Receiver receiver(milliseconds(100));
+  auto packets = Sender().Scans(0, 3);
+  for (const Wire& w : Sender(second).Scans(10, 3)) packets.push_back(w);
+  // It cannot be told from an outage of a million scans, but all that came is there.
+  EXPECT_EQ(DeliverAll(&receiver, packets), AllSlices(0, 3) + AllSlices(10, 3, 2));
+  second.scan_number = 500;
+  for (const Wire& w : Sender(second).Scans(20, 3)) DeliverAll(&receiver, {w});
+  EXPECT_EQ(receiver.accounts().restarts, 1U);
+}
+
+class Outage : public ::testing::TestWithParam<std::uint32_t> {};
+TEST_P(Outage, CountsEveryScanOfItOnceWhereverItBeginsAndEnds) {
+  const std::uint32_t scans = GetParam();
+  for (std::uint32_t cut = 0; cut < 4; ++cut) {
+    const auto all = Sender().Scans(0, scans + 10);
+    std::vector<Wire> through;
+    for (const Wire& w : all) {
+      // Down from slice 5.cut to slice (5 + scans).cut.
+      const std::uint32_t at = w.scan * 4 + w.index;
+      if (w.config || at < 5 * 4 + cut || at >= (5 + scans) * 4 + cut) through.push_back(w);
+    }
+    Receiver receiver(milliseconds(100));
+    DeliverAll(&receiver, through);
+    receiver.Finish();
+    const auto a = receiver.accounts();
+    EXPECT_EQ(a.slices.slices_lost, scans * 4) << cut;
+    EXPECT_EQ(a.slices.slices_received, 40U) << cut;
+    // Where the cut is within a scan, two scans are incomplete and one less is lost.
+    EXPECT_EQ(a.slices.scans_incomplete, cut == 0 ? 0U : 2U) << cut;
+    EXPECT_EQ(a.slices.scans_lost, cut == 0 ? scans : scans - 1) << cut;
+    EXPECT_EQ(a.slices.scans_complete, cut == 0 ? 10U : 9U) << cut;
+    // Jumps of up to two scans are within the stream.
+    EXPECT_EQ(a.outages, scans + (cut == 0 ? 1 : 0) > 2 ? 1U : 0U);
+    EXPECT_EQ(a.restarts, 0U);
+  }
+}
+INSTANTIATE_TEST_SUITE_P(Scans, Outage, ::testing::Values(1, 2, 3, 10, 100, 600, 6'000));
+
+TEST(Receiver, IsNotMovedByOnePacketThatClaimsAnotherPlaceOrSsrc) {
+  Sender sender;
+  SenderOptions far;
+  far.scan_number = 123'456;
+  SenderOptions foreign;
+  foreign.ssrc = 1;
+  Sender a(far);
+  Sender b(foreign);
+  std::vector<Wire> packets;
+  for (const Wire& w : sender.Scans(0, 30)) {
+    packets.push_back(w);
+    if (w.scan == 0) continue;
+    Wire wild = (packets.size() % 2 != 0 ? a : b).Scans(w.scan, 1).back();
+    wild.sent = w.sent;
+    packets.push_back(wild);
+  }
+  Receiver receiver(milliseconds(100));
+  EXPECT_EQ(DeliverAll(&receiver, packets), AllSlices(0, 30));
+  EXPECT_EQ(receiver.ssrc(), SenderOptions{}.ssrc);
+  EXPECT_EQ(receiver.accounts().restarts + receiver.accounts().outages, 0U);
+}
+
+TEST(Receiver, KeepsTheStreamAmongAHundredTimesAsMuchGarbage) {
+  std::mt19937 random(1);
+  Receiver receiver(milliseconds(100));
+  Names names;
+  for (const Wire& w : Sender().Scans(0, 5)) {
+    for (const auto& n : DeliverAll(&receiver, {w})) names.push_back(n);
+    for (int i = 0; i < 100; ++i) {
+      Wire garbage = w;
+      garbage.ssrc = static_cast<std::uint32_t>(random());
+      garbage.sequence = static_cast<std::uint16_t>(random());
+      garbage.payload.resize(1 + random() % 1'400);
+      for (auto& b : garbage.payload) b = static_cast<std::uint8_t>(random());
+      for (const auto& n : DeliverAll(&receiver, {garbage})) names.push_back(n + " from garbage");
+    }
+  }
+  EXPECT_EQ(names, AllSlices(0, 5));
+  EXPECT_GT(receiver.accounts().packets.invalid, 6'000U);
+}
+
+TEST(Receiver, SurvivesMutationsOfEveryPacket) {
+  std::mt19937 random(2);
+  const auto packets = Sender().Scans(0, 20);
+  for (int round = 0; round < 50; ++round) {
+    Receiver receiver(milliseconds(20));
+    for (Wire w : packets) {
+      for (int i = 0; i < 3; ++i) {
+        auto& byte = w.payload[random() % std::min<std::size_t>(w.payload.size(), 48)];
+        if (random() % 4 == 0) byte = static_cast<std::uint8_t>(random());
+      }
+      for (const auto& n : DeliverAll(&receiver, {w}))
+        ASSERT_EQ(n.find("differs"), std::string::npos);
+    }
+    receiver.Finish();
+  }
+}
+
+TEST(Receiver, StartsAnewAfterTheEnd) {
+  Receiver receiver(milliseconds(100));
+  EXPECT_EQ(DeliverAll(&receiver, Sender().Scans(0, 1)), AllSlices(0, 1));
+  receiver.Finish();
+  EXPECT_EQ(DeliverAll(&receiver, Sender().Scans(0, 1)), AllSlices(0, 1));
+  EXPECT_EQ(receiver.accounts().slices.slices_received, 8U);
+}
+
+}  // namespace
+}  // namespace lidar::rtp
