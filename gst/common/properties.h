@@ -38,6 +38,13 @@ struct Property {
   gint mutability = GST_PARAM_MUTABLE_READY;
 };
 
+// Where gcc 12 sees the table's values and no row is a string, it warns of reading one past Settings.
+#if defined(__GNUC__) && !defined(__clang__)
+#pragma GCC diagnostic push
+#pragma GCC diagnostic ignored "-Warray-bounds"
+#pragma GCC diagnostic ignored "-Wmaybe-uninitialized"
+#endif
+
 /// Installs the rows of `table` under the ids first_id, first_id + 1, ...
 template <class Settings, std::size_t N>
 void InstallProperties(GObjectClass* klass, const std::array<Property<Settings>, N>& table,
@@ -83,6 +90,10 @@ void InstallProperties(GObjectClass* klass, const std::array<Property<Settings>,
     g_object_class_install_property(klass, first_id++, spec);
   }
 }
+
+#if defined(__GNUC__) && !defined(__clang__)
+#pragma GCC diagnostic pop
+#endif
 
 template <class Settings>
 void SetProperty(Settings& s, const Property<Settings>& p, const GValue* v) {
