@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "rtplidar/config_caps.h"
+
+#include <cstring>
+
+#include "common/buffer_map.h"
+#include "common/gstlidar.h"
+#include "common/refs.h"
+
+namespace lidar::gst {
+namespace {
+
+constexpr gsize kMaxModelSize = 0xFFFF;  // its length field on the wire
+
+bool ReadModel(const GstStructure* s, rtp::StreamConfig* config) {
+  const GValue* value = gst_structure_get_value(s, "sensor-model");
+  if (value == nullptr) return true;
+  GstBuffer* buffer = GST_VALUE_HOLDS_BUFFER(value) ? gst_value_get_buffer(value) : nullptr;
+  if (buffer == nullptr) return false;
+  const BufferMap map(buffer, GST_MAP_READ);
+  if (!map || map.size() > kMaxModelSize) return false;
+  config->sensor_model.assign(map.view().begin(), map.view().end());
+  return true;
+}
+
+}  // namespace
+
+std::optional<rtp::StreamConfig> StreamConfigFromCaps(const GstCaps* caps) {
+  const GstStructure* s = gst_caps_get_structure(caps, 0);
+  const gchar* fields = gst_structure_get_string(s, "fields");
+  const gchar* geometry = gst_structure_get_string(s, "geometry");
+  rtp::StreamConfig config;
+  if (fields == nullptr || std::strlen(fields) > 0xFFFF || !ReadModel(s, &config))
+    return std::nullopt;
+  config.fields = fields;
+  config.geometry = g_strcmp0(geometry, "range") == 0 ? rtp::Geometry::kRange : rtp::Geometry::kXyz;
+  gint n = 0;
+  gint d = 1;
+  if (gst_structure_get_fraction(s, "framerate", &n, &d) && n >= 0 && d > 0) {
+    config.framerate_n = static_cast<std::uint32_t>(n);
+    config.framerate_d = static_cast<std::uint32_t>(d);
+  }
+  // What goes out must be what a receiver takes.
+  const auto bytes = config.Serialise();
+  return rtp::StreamConfig::Parse({bytes.data(), bytes.size()});
+}
+
+GstCaps* StreamConfigToCaps(const rtp::StreamConfig& config) {
+  const bool range = config.geometry == rtp::Geometry::kRange;
+  GstCaps* caps = gst_caps_new_simple(GST_LIDAR_DRACO_MEDIA_TYPE, "geometry", G_TYPE_STRING,
+                                      range ? "range" : "xyz", "alignment", G_TYPE_STRING, "slice",
+                                      "fields", G_TYPE_STRING, config.fields.c_str(), "framerate",
+                                      GST_TYPE_FRACTION, static_cast<gint>(config.framerate_n),
+                                      static_cast<gint>(config.framerate_d), nullptr);
+  if (!config.sensor_model.empty()) {
+    const BufferPtr model(
+        gst_buffer_new_memdup(config.sensor_model.data(), config.sensor_model.size()));
+    gst_caps_set_simple(caps, "sensor-model", GST_TYPE_BUFFER, model.get(), nullptr);
+  }
+  return caps;
+}
+
+}  // namespace lidar::gst

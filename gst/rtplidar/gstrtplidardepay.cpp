@@ -1,0 +1,317 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+/**
+ * SECTION:element-rtplidardepay
+ *
+ * Puts RTP packets back together into slices of encoded clouds. A lost packet costs its slice
+ * only; damaged slices are dropped, and everything that is missing is counted in `stats`.
+ *
+ * |[
+ * gst-launch-1.0 udpsrc port=5004
+ * caps="application/x-rtp,media=application,clock-rate=90000,encoding-name=X-LIDAR-DRACO,payload=96"
+ * ! rtplidardepay ! dracodec ! fakesink
+ * ]|
+ */
+#include "rtplidar/gstrtplidardepay.h"
+
+#include <gst/rtp/gstrtpbuffer.h>
+
+#include <mutex>
+#include <optional>
+
+#include "common/gstlidar.h"
+#include "common/properties.h"
+#include "common/refs.h"
+#include "rtp/ntp_time.h"
+#include "rtp/receiver.h"
+#include "rtplidar/base_stats.h"
+#include "rtplidar/config_caps.h"
+
+GST_DEBUG_CATEGORY_STATIC(gst_lidar_rtp_depay_debug);
+#define GST_CAT_DEFAULT gst_lidar_rtp_depay_debug
+
+using lidar::gst::BufferListPtr;
+using lidar::gst::CapsPtr;
+using lidar::rtp::ReceivedSlice;
+using lidar::rtp::Receiver;
+
+namespace {
+
+struct Settings {
+  guint64 max_reorder_time = 100 * GST_MSECOND;
+};
+
+const std::array<lidar::gst::Property<Settings>, 1> kProperties = {{
+    {"max-reorder-time",
+     "How long a slice may wait for missing packets once a later slice began; no other slice waits "
+     "with it [ns]",
+     &Settings::max_reorder_time, 0, 10.0 * GST_SECOND, GST_PARAM_MUTABLE_PLAYING},
+}};
+constexpr guint kStatsId = kProperties.size() + 1;
+
+lidar::Duration ReorderTime(const Settings& s) {
+  return lidar::Duration{static_cast<gint64>(s.max_reorder_time)};
+}
+
+struct State {
+  std::mutex mutex;  // guards all above the line; never held while pushing
+  Settings settings;
+  Receiver receiver{ReorderTime(Settings{})};
+  guint64 not_rtp = 0;
+  guint64 wrong_payload_type = 0;
+
+  // The rest belongs to the streaming thread.
+  std::optional<gint> payload_type;                        // of the caps
+  std::shared_ptr<const lidar::rtp::StreamConfig> config;  // of the caps on the src pad
+  lidar::Time now;
+  GstPadChainFunction base_chain = nullptr;
+};
+
+}  // namespace
+
+struct _GstLidarRtpDepay {
+  GstRTPBaseDepayload parent;
+  State* state;
+};
+
+G_DEFINE_TYPE(GstLidarRtpDepay, gst_lidar_rtp_depay, GST_TYPE_RTP_BASE_DEPAYLOAD)
+GST_ELEMENT_REGISTER_DEFINE(rtplidardepay, "rtplidardepay", GST_RANK_SECONDARY,
+                            GST_TYPE_LIDAR_RTP_DEPAY)
+
+static GstStaticPadTemplate sink_template = GST_STATIC_PAD_TEMPLATE(
+    "sink", GST_PAD_SINK, GST_PAD_ALWAYS,
+    GST_STATIC_CAPS("application/x-rtp, media = (string) application, payload = (int) [ 96, 127 ], "
+                    "clock-rate = (int) 90000, encoding-name = (string) X-LIDAR-DRACO"));
+static GstStaticPadTemplate src_template = GST_STATIC_PAD_TEMPLATE(
+    "src", GST_PAD_SRC, GST_PAD_ALWAYS,
+    GST_STATIC_CAPS(GST_LIDAR_DRACO_MEDIA_TYPE ", alignment = (string) slice, "
+                                               "geometry = (string) { xyz, range }"));
+
+namespace {
+
+GstBuffer* ToBuffer(ReceivedSlice* slice) {
+  auto* bytes = new std::vector<std::uint8_t>(std::move(slice->bytes));
+  GstBuffer* buffer = gst_buffer_new_wrapped_full(
+      static_cast<GstMemoryFlags>(0), bytes->data(), bytes->size(), 0, bytes->size(), bytes,
+      [](gpointer p) { delete static_cast<std::vector<std::uint8_t>*>(p); });
+  if (slice->pts) {
+    GST_BUFFER_PTS(buffer) = static_cast<GstClockTime>(slice->pts->time_since_epoch().count());
+  }
+  if (slice->info.duration_ns != lidar::rtp::SliceInfo::kUnknownDuration)
+    GST_BUFFER_DURATION(buffer) = slice->info.duration_ns;
+  const GstLidarSlice meta{slice->info.scan_id, slice->id.index, slice->id.count,
+                           slice->info.first_column};
+  gst_lidar_buffer_set_slice(buffer, &meta);
+  if (slice->info.capture_ntp != 0)
+    gst_lidar_buffer_set_capture_time(buffer, lidar::rtp::FromNtp(slice->info.capture_ntp));
+  if (slice->discont) GST_BUFFER_FLAG_SET(buffer, GST_BUFFER_FLAG_DISCONT);
+  if (slice->id.index + 1 == slice->id.count) GST_BUFFER_FLAG_SET(buffer, GST_BUFFER_FLAG_MARKER);
+  return buffer;
+}
+
+/// Pushes the slices, those of one config as one list.
+void PushSlices(GstRTPBaseDepayload* base, std::vector<ReceivedSlice> slices) {
+  State& state = *GST_LIDAR_RTP_DEPAY(base)->state;
+  BufferListPtr list;
+  const auto flush = [&] {
+    if (list) gst_rtp_base_depayload_push_list(base, list.release());
+  };
+  for (ReceivedSlice& slice : slices) {
+    if (state.config != slice.config) {
+      flush();
+      state.config = slice.config;
+      const CapsPtr caps(lidar::gst::StreamConfigToCaps(*slice.config));
+      gst_pad_set_caps(base->srcpad, caps.get());
+    }
+    if (!list) list.reset(gst_buffer_list_new());
+    gst_buffer_list_add(list.get(), ToBuffer(&slice));
+  }
+  flush();
+}
+
+/// False, and counted, for what is not RTP or of another payload type. The base class would post a
+/// warning for each, and a flood of garbage must not become a flood of messages.
+bool IsOurs(GstLidarRtpDepay* self, GstBuffer* buffer) {
+  State& state = *self->state;
+  GstRTPBuffer rtp = GST_RTP_BUFFER_INIT;
+  if (!gst_rtp_buffer_map(buffer, GST_MAP_READ, &rtp)) {
+    std::lock_guard lock(state.mutex);
+    ++state.not_rtp;
+    return false;
+  }
+  const gint type = gst_rtp_buffer_get_payload_type(&rtp);
+  gst_rtp_buffer_unmap(&rtp);
+  if (!state.payload_type || *state.payload_type == type) return true;
+  std::lock_guard lock(state.mutex);
+  ++state.wrong_payload_type;
+  return false;
+}
+
+}  // namespace
+
+static GstFlowReturn gst_lidar_rtp_depay_chain(GstPad* pad, GstObject* parent, GstBuffer* buffer) {
+  auto* self = GST_LIDAR_RTP_DEPAY(parent);
+  if (self->state->payload_type && !IsOurs(self, buffer)) {
+    gst_buffer_unref(buffer);
+    return GST_FLOW_OK;
+  }
+  return self->state->base_chain(pad, parent, buffer);
+}
+
+static GstFlowReturn gst_lidar_rtp_depay_chain_list(GstPad* pad, GstObject* parent,
+                                                    GstBufferList* list) {
+  const BufferListPtr owner(list);
+  GstFlowReturn flow = GST_FLOW_OK;
+  for (guint i = 0; i < gst_buffer_list_length(list) && flow == GST_FLOW_OK; ++i)
+    flow = gst_lidar_rtp_depay_chain(pad, parent, gst_buffer_ref(gst_buffer_list_get(list, i)));
+  return flow;
+}
+
+static GstBuffer* gst_lidar_rtp_depay_process(GstRTPBaseDepayload* base, GstRTPBuffer* rtp) {
+  State& state = *GST_LIDAR_RTP_DEPAY(base)->state;
+  const GstClockTime pts = GST_BUFFER_PTS(rtp->buffer);
+  lidar::rtp::RtpPacket packet;
+  packet.ssrc = gst_rtp_buffer_get_ssrc(rtp);
+  packet.sequence = gst_rtp_buffer_get_seq(rtp);
+  packet.payload = {static_cast<const std::uint8_t*>(gst_rtp_buffer_get_payload(rtp)),
+                    gst_rtp_buffer_get_payload_len(rtp)};
+  if (GST_CLOCK_TIME_IS_VALID(pts)) {
+    packet.pts = lidar::Time{lidar::Duration{static_cast<gint64>(pts)}};
+    state.now = std::max(state.now, *packet.pts);
+  }
+  packet.arrival = state.now;
+  std::vector<ReceivedSlice> slices;
+  {
+    std::lock_guard lock(state.mutex);
+    slices = state.receiver.Push(packet);
+  }
+  PushSlices(base, std::move(slices));
+  return nullptr;
+}
+
+static gboolean gst_lidar_rtp_depay_set_caps(GstRTPBaseDepayload* base, GstCaps* caps) {
+  State& state = *GST_LIDAR_RTP_DEPAY(base)->state;
+  gint type = 0;
+  state.payload_type.reset();
+  if (gst_structure_get_int(gst_caps_get_structure(caps, 0), "payload", &type))
+    state.payload_type = type;
+  base->clock_rate = 90'000;
+  return TRUE;
+}
+
+static gboolean gst_lidar_rtp_depay_handle_event(GstRTPBaseDepayload* base, GstEvent* event) {
+  State& state = *GST_LIDAR_RTP_DEPAY(base)->state;
+  if (GST_EVENT_TYPE(event) == GST_EVENT_EOS || GST_EVENT_TYPE(event) == GST_EVENT_FLUSH_STOP) {
+    std::lock_guard lock(state.mutex);
+    state.receiver.Finish();
+    state.now = {};
+  }
+  return GST_RTP_BASE_DEPAYLOAD_CLASS(gst_lidar_rtp_depay_parent_class)->handle_event(base, event);
+}
+
+/// A jitterbuffer tells of lost packets; what is lost for us are slices, and those we know.
+static gboolean gst_lidar_rtp_depay_packet_lost(GstRTPBaseDepayload*, GstEvent*) { return TRUE; }
+
+static GstStateChangeReturn gst_lidar_rtp_depay_change_state(GstElement* element,
+                                                             GstStateChange transition) {
+  State& state = *GST_LIDAR_RTP_DEPAY(element)->state;
+  if (transition == GST_STATE_CHANGE_READY_TO_PAUSED) {
+    std::lock_guard lock(state.mutex);
+    state.receiver = Receiver(ReorderTime(state.settings));
+    state.not_rtp = state.wrong_payload_type = 0;
+    state.payload_type.reset();
+    state.config.reset();
+    state.now = {};
+  }
+  const auto result =
+      GST_ELEMENT_CLASS(gst_lidar_rtp_depay_parent_class)->change_state(element, transition);
+  if (transition == GST_STATE_CHANGE_PAUSED_TO_READY) {
+    std::lock_guard lock(state.mutex);
+    state.receiver.Finish();
+  }
+  return result;
+}
+
+static GstStructure* Stats(GObject* object) {
+  State& state = *GST_LIDAR_RTP_DEPAY(object)->state;
+  GstStructure* s = lidar::gst::BaseClassStats(object, gst_lidar_rtp_depay_parent_class);
+  std::lock_guard lock(state.mutex);
+  const auto a = state.receiver.accounts();
+  const auto set = [s](const char* name, guint64 value) {
+    gst_structure_set(s, name, G_TYPE_UINT64, value, nullptr);
+  };
+  set("slices-received", a.slices.slices_received);
+  set("slices-lost", a.slices.slices_lost);
+  set("slices-damaged", a.slices.slices_damaged);
+  set("slices-config-mismatch", a.slices.slices_config_mismatch);
+  set("scans-complete", a.slices.scans_complete);
+  set("scans-incomplete", a.slices.scans_incomplete);
+  set("scans-lost", a.slices.scans_lost);
+  set("packets-received", a.packets_received);
+  set("packets-invalid", a.packets.invalid + state.not_rtp);
+  set("packets-wrong-payload-type", state.wrong_payload_type);
+  set("packets-duplicate", a.packets.duplicate);
+  set("packets-late", a.packets.late);
+  set("configs-received", a.configs_received);
+  set("configs-damaged", a.packets.config_damaged);
+  set("sender-restarts", a.restarts);
+  set("outages", a.outages);
+  return s;
+}
+
+static void gst_lidar_rtp_depay_init(GstLidarRtpDepay* self) {
+  self->state = new State;
+  GstPad* sink = GST_RTP_BASE_DEPAYLOAD_SINKPAD(self);
+  self->state->base_chain = GST_PAD_CHAINFUNC(sink);
+  gst_pad_set_chain_function(sink, gst_lidar_rtp_depay_chain);
+  gst_pad_set_chain_list_function(sink, gst_lidar_rtp_depay_chain_list);
+  // We reorder by slice; the base class must hand over whatever comes.
+  g_object_set(self, "max-reorder", 0, nullptr);
+}
+
+static void InstallGObject(GObjectClass* object) {
+  object->set_property = [](GObject* o, guint id, const GValue* v, GParamSpec*) {
+    State& s = *GST_LIDAR_RTP_DEPAY(o)->state;
+    std::lock_guard lock(s.mutex);
+    lidar::gst::SetProperty(s.settings, kProperties[id - 1], v);
+    s.receiver.set_max_reorder_time(ReorderTime(s.settings));
+  };
+  object->get_property = [](GObject* o, guint id, GValue* v, GParamSpec*) {
+    if (id == kStatsId) {
+      g_value_take_boxed(v, Stats(o));
+      return;
+    }
+    State& s = *GST_LIDAR_RTP_DEPAY(o)->state;
+    std::lock_guard lock(s.mutex);
+    lidar::gst::GetProperty(s.settings, kProperties[id - 1], v);
+  };
+  object->finalize = [](GObject* o) {
+    delete GST_LIDAR_RTP_DEPAY(o)->state;
+    G_OBJECT_CLASS(gst_lidar_rtp_depay_parent_class)->finalize(o);
+  };
+  lidar::gst::InstallProperties(object, kProperties);
+  g_object_class_install_property(
+      object, kStatsId,
+      g_param_spec_boxed("stats", "stats",
+                         "Slices and scans received and missing, each counted once, beside the "
+                         "fields that every RTP depayloader has",
+                         GST_TYPE_STRUCTURE,
+                         static_cast<GParamFlags>(G_PARAM_READABLE | G_PARAM_STATIC_STRINGS)));
+}
+
+static void gst_lidar_rtp_depay_class_init(GstLidarRtpDepayClass* klass) {
+  GST_DEBUG_CATEGORY_INIT(gst_lidar_rtp_depay_debug, "rtplidardepay", 0,
+                          "RTP depayloader for clouds");
+  InstallGObject(G_OBJECT_CLASS(klass));
+  auto* element = GST_ELEMENT_CLASS(klass);
+  gst_element_class_add_static_pad_template(element, &sink_template);
+  gst_element_class_add_static_pad_template(element, &src_template);
+  gst_element_class_set_static_metadata(element, "RTP depayloader for point clouds",
+                                        "Codec/Depayloader/Network/RTP",
+                                        "Gets slices of encoded clouds out of RTP", "gst-lidar");
+  element->change_state = gst_lidar_rtp_depay_change_state;
+  auto* depay = GST_RTP_BASE_DEPAYLOAD_CLASS(klass);
+  depay->set_caps = gst_lidar_rtp_depay_set_caps;
+  depay->process_rtp_packet = gst_lidar_rtp_depay_process;
+  depay->handle_event = gst_lidar_rtp_depay_handle_event;
+  depay->packet_lost = gst_lidar_rtp_depay_packet_lost;
+}

@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// The plugin rtplidar: clouds over RTP.
+#include "common/gstlidar.h"
+#include "rtplidar/gstrtplidardepay.h"
+#include "rtplidar/gstrtplidarpay.h"
+
+static gboolean plugin_init(GstPlugin* plugin) {
+  gst_lidar_init();
+  return GST_ELEMENT_REGISTER(rtplidarpay, plugin) && GST_ELEMENT_REGISTER(rtplidardepay, plugin);
+}
+
+GST_PLUGIN_DEFINE(GST_VERSION_MAJOR, GST_VERSION_MINOR, rtplidar,
+                  "RTP payload format of encoded point clouds", plugin_init, VERSION, "LGPL",
+                  PACKAGE, "https://gstreamer.freedesktop.org/")

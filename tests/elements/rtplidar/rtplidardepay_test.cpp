@@ -1,0 +1,204 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "slices.h"
+
+namespace lidar::test {
+namespace {
+
+constexpr const char* kRtpCaps =
+    "application/x-rtp,media=application,clock-rate=90000,encoding-name=X-LIDAR-DRACO,payload=96";
+
+/// The packets of `scans` scans.
+std::vector<gst::BufferPtr> Packets(guint scans, gsize size = 3'000, bool aggregate = false) {
+  Harness h(gst_harness_new("rtplidarpay"));
+  g_object_set(h->element, "aggregate", aggregate, nullptr);
+  gst_harness_set_src_caps_str(h.get(), EncodedCaps().c_str());
+  for (guint s = 0; s < scans; ++s)
+    for (guint i = 0; i < kSlices; ++i) gst_harness_push(h.get(), EncodedSlice(s, i, size));
+  std::vector<gst::BufferPtr> packets;
+  while (GstBuffer* b = gst_harness_try_pull(h.get())) packets.emplace_back(b);
+  return packets;
+}
+
+Harness Depay() {
+  Harness h(gst_harness_new("rtplidardepay"));
+  gst_harness_set_src_caps_str(h.get(), kRtpCaps);
+  return h;
+}
+
+void Push(GstHarness* h, const std::vector<gst::BufferPtr>& packets) {
+  for (const auto& p : packets)
+    ASSERT_EQ(gst_harness_push(h, gst_buffer_copy_deep(p.get())), GST_FLOW_OK);
+}
+
+std::vector<gst::BufferPtr> Pull(GstHarness* h) {
+  std::vector<gst::BufferPtr> out;
+  while (GstBuffer* b = gst_harness_try_pull(h)) out.emplace_back(b);
+  return out;
+}
+
+TEST(RtpLidarDepay, RestoresSlicesMetasTimesAndCaps) {
+  for (const bool aggregate : {false, true}) {
+    const gsize size = aggregate ? 300 : 3'000;
+    const Harness h = Depay();
+    Push(h.get(), Packets(3, size, aggregate));
+    const auto slices = Pull(h.get());
+    ASSERT_EQ(slices.size(), 12U);
+    for (guint n = 0; n < slices.size(); ++n) {
+      const gst::BufferPtr sent(EncodedSlice(n / 4, n % 4, size));
+      GstLidarSlice meta{};
+      ASSERT_TRUE(gst_lidar_buffer_get_slice(slices[n].get(), &meta));
+      EXPECT_EQ(meta.scan_id, n / 4);
+      EXPECT_EQ(meta.slice_index, n % 4);
+      EXPECT_EQ(meta.slice_count, kSlices);
+      EXPECT_EQ(meta.first_column, n % 4 * 128);
+      EXPECT_EQ(gst_lidar_buffer_get_capture_time(slices[n].get()),
+                gst_lidar_buffer_get_capture_time(sent.get()));
+      EXPECT_EQ(GST_BUFFER_PTS(slices[n].get()), GST_BUFFER_PTS(sent.get()));
+      EXPECT_EQ(GST_BUFFER_DURATION(slices[n].get()), 25 * GST_MSECOND);
+      const gst::BufferMap a(slices[n].get(), GST_MAP_READ);
+      const gst::BufferMap b(sent.get(), GST_MAP_READ);
+      EXPECT_TRUE(std::equal(a.view().begin(), a.view().end(), b.view().begin(), b.view().end()));
+      EXPECT_EQ(GST_BUFFER_FLAG_IS_SET(slices[n].get(), GST_BUFFER_FLAG_DISCONT), n == 0);
+      EXPECT_EQ(GST_BUFFER_FLAG_IS_SET(slices[n].get(), GST_BUFFER_FLAG_MARKER), n % 4 == 3);
+    }
+    const gst::CapsPtr caps(gst_pad_get_current_caps(h->sinkpad));
+    const gst::CapsPtr expected(gst_caps_from_string(EncodedCaps().c_str()));
+    EXPECT_TRUE(gst_caps_is_equal(caps.get(), expected.get()));
+    EXPECT_EQ(Stat(h.get(), "scans-complete"), 3U);
+  }
+}
+
+TEST(RtpLidarDepay, LosesOnlyTheSliceOfALostPacketAndCountsIt) {
+  auto packets = Packets(5);
+  packets.erase(packets.begin() + 9);
+  const Harness h = Depay();
+  Push(h.get(), packets);
+  const auto slices = Pull(h.get());
+  EXPECT_EQ(slices.size(), 19U);
+  EXPECT_EQ(Stat(h.get(), "slices-lost"), 1U);
+  EXPECT_EQ(Stat(h.get(), "scans-complete"), 4U);
+  EXPECT_EQ(Stat(h.get(), "scans-incomplete"), 1U);
+}
+
+TEST(RtpLidarDepay, TakesBufferListsAndReorderedPackets) {
+  auto packets = Packets(4);
+  for (std::size_t i = 4; i + 7 < packets.size(); i += 8)
+    std::reverse(packets.begin() + static_cast<std::ptrdiff_t>(i),
+                 packets.begin() + static_cast<std::ptrdiff_t>(i + 7));
+  GstBufferList* list = gst_buffer_list_new();
+  for (const auto& p : packets) gst_buffer_list_add(list, gst_buffer_copy_deep(p.get()));
+  const Harness h = Depay();
+  ASSERT_EQ(gst_pad_push_list(h->srcpad, list), GST_FLOW_OK);
+  EXPECT_EQ(Pull(h.get()).size(), 16U);
+}
+
+TEST(RtpLidarDepay, DropsWhatIsNotItsPayloadTypeOrNotRtpWithoutAMessage) {
+  const Harness h = Depay();
+  const gst::ElementPtr bus_owner(GST_ELEMENT(gst_object_ref(h->element)));
+  GstBus* bus = gst_bus_new();
+  gst_element_set_bus(h->element, bus);
+  for (const auto& p : Packets(1)) {
+    GstBuffer* foreign = gst_buffer_copy_deep(p.get());
+    GstRTPBuffer rtp = GST_RTP_BUFFER_INIT;
+    gst_rtp_buffer_map(foreign, GST_MAP_WRITE, &rtp);
+    gst_rtp_buffer_set_payload_type(&rtp, 97);
+    gst_rtp_buffer_unmap(&rtp);
+    ASSERT_EQ(gst_harness_push(h.get(), foreign), GST_FLOW_OK);
+    const guint8 garbage[] = {1, 2, 3, 4, 5};
+    ASSERT_EQ(gst_harness_push(h.get(), gst_buffer_new_memdup(garbage, 5)), GST_FLOW_OK);
+    ASSERT_EQ(gst_harness_push(h.get(), gst_buffer_new()), GST_FLOW_OK);
+  }
+  EXPECT_EQ(Pull(h.get()).size(), 0U);
+  EXPECT_EQ(Stat(h.get(), "packets-wrong-payload-type"), 13U);
+  EXPECT_EQ(Stat(h.get(), "packets-invalid"), 26U);
+  EXPECT_EQ(gst_bus_pop_filtered(
+                bus, static_cast<GstMessageType>(GST_MESSAGE_WARNING | GST_MESSAGE_ERROR)),
+            nullptr);
+  gst_element_set_bus(h->element, nullptr);
+  gst_object_unref(bus);
+  Push(h.get(), Packets(1));
+  EXPECT_EQ(Pull(h.get()).size(), 4U);
+}
+
+TEST(RtpLidarDepay, FollowsASenderThatRestarts) {
+  const Harness h = Depay();
+  Push(h.get(), Packets(3));
+  auto again = Packets(3);  // another SSRC, other numbers, later
+  for (auto& p : again) {
+    p.reset(gst_buffer_make_writable(p.release()));
+    GST_BUFFER_PTS(p.get()) += 5 * GST_SECOND;
+  }
+  Push(h.get(), again);
+  EXPECT_EQ(Pull(h.get()).size(), 24U);
+  EXPECT_EQ(Stat(h.get(), "sender-restarts"), 1U);
+  EXPECT_EQ(Stat(h.get(), "slices-lost"), 0U);
+}
+
+TEST(RtpLidarDepay, FollowsNewCapsInMidStream) {
+  Harness pay(gst_harness_new("rtplidarpay"));
+  const Harness h = Depay();
+  guint scan = 0;
+  for (const int rate : {10, 20, 10}) {
+    gst_harness_set_src_caps_str(pay.get(), EncodedCaps("range", rate).c_str());
+    for (guint i = 0; i < kSlices; ++i) gst_harness_push(pay.get(), EncodedSlice(scan, i));
+    ++scan;
+    while (GstBuffer* b = gst_harness_try_pull(pay.get())) gst_harness_push(h.get(), b);
+    EXPECT_EQ(Pull(h.get()).size(), kSlices);
+    const gst::CapsPtr caps(gst_pad_get_current_caps(h->sinkpad));
+    gint n = 0;
+    gint d = 0;
+    gst_structure_get_fraction(gst_caps_get_structure(caps.get(), 0), "framerate", &n, &d);
+    EXPECT_EQ(n, rate);
+  }
+}
+
+TEST(RtpLidarDepay, CountsWhatTheEndCutsOffAndRunsAgain) {
+  const Harness h = Depay();
+  for (int i = 0; i < 3; ++i) {
+    auto packets = Packets(1);
+    packets.pop_back();
+    Push(h.get(), packets);
+    EXPECT_EQ(Pull(h.get()).size(), 3U);
+    EXPECT_EQ(Stat(h.get(), "slices-lost"), 0U);
+    gst_harness_push_event(h.get(), gst_event_new_eos());
+    EXPECT_EQ(Stat(h.get(), "slices-lost"), 1U);
+    EXPECT_EQ(Stat(h.get(), "scans-incomplete"), 1U);
+    gst_element_set_state(h->element, GST_STATE_NULL);
+    gst_element_set_state(h->element, GST_STATE_PLAYING);
+    gst_harness_push_event(h.get(), gst_event_new_stream_start("again"));
+    gst_harness_set_src_caps_str(h.get(), kRtpCaps);
+  }
+}
+
+TEST(RtpLidarDepay, StartsAnewAfterAFlush) {
+  const Harness h = Depay();
+  auto packets = Packets(1);
+  packets.pop_back();
+  Push(h.get(), packets);
+  EXPECT_EQ(Pull(h.get()).size(), 3U);
+  gst_harness_push_event(h.get(), gst_event_new_flush_start());
+  gst_harness_push_event(h.get(), gst_event_new_flush_stop(TRUE));
+  GstSegment segment;
+  gst_segment_init(&segment, GST_FORMAT_TIME);
+  gst_harness_push_event(h.get(), gst_event_new_segment(&segment));
+  Push(h.get(), Packets(2));
+  EXPECT_EQ(Pull(h.get()).size(), 8U);
+}
+
+TEST(RtpLidarDepay, KeepsTheBaseClassStatistics) {
+  const Harness h = Depay();
+  Push(h.get(), Packets(1));
+  GstStructure* stats = nullptr;
+  g_object_get(h->element, "stats", &stats, nullptr);
+  const gst::StructurePtr owner(stats);
+  guint clock_rate = 0;
+  EXPECT_TRUE(gst_structure_get_uint(stats, "clock_rate", &clock_rate));
+  EXPECT_EQ(clock_rate, 90'000U);
+}
+
+}  // namespace
+}  // namespace lidar::test

@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Encoded slices without an encoder, and RTP buffers taken apart.
+#pragma once
+#include <gst/check/gstharness.h>
+#include <gst/rtp/gstrtpbuffer.h>
+
+#include <string>
+#include <vector>
+
+#include "cloud/sensor_model.h"
+#include "common/buffer_map.h"
+#include "common/cloud_info.h"
+#include "common/gstlidar.h"
+#include "support/harness.h"
+
+namespace lidar::test {
+
+constexpr guint64 kCaptureStart = guint64{1'764'000'000} * 1'000'000'000;
+constexpr guint kSlices = 4;
+
+inline std::string EncodedCaps(const char* geometry = "range", int framerate = 10) {
+  SensorModel model;
+  model.columns_per_scan = 512;
+  model.beams = {{1, 10, 0}, {-1, -10, 4}};
+  gst::CapsPtr caps(gst_caps_new_simple(GST_LIDAR_DRACO_MEDIA_TYPE, "geometry", G_TYPE_STRING,
+                                        geometry, "alignment", G_TYPE_STRING, "slice", "fields",
+                                        G_TYPE_STRING, "x:F32:0,y:F32:4,z:F32:8,range:U32:12",
+                                        "framerate", GST_TYPE_FRACTION, framerate, 1, nullptr));
+  const gst::BufferPtr bytes(gst::SensorModelToBuffer(model));
+  gst_caps_set_simple(caps.get(), "sensor-model", GST_TYPE_BUFFER, bytes.get(), nullptr);
+  const gst::StringPtr text(gst_caps_to_string(caps.get()));
+  return text.get();
+}
+
+/// Slice `index` of scan `scan` as an encoder puts it out.
+inline GstBuffer* EncodedSlice(guint scan, guint index, gsize size = 3'000) {
+  GstBuffer* buffer = gst_buffer_new_allocate(nullptr, size, nullptr);
+  gst_buffer_memset(buffer, 0, static_cast<guint8>(scan * 16 + index), size);
+  const auto at = static_cast<GstClockTime>((scan * 100 + index * 25) * GST_MSECOND);
+  GST_BUFFER_PTS(buffer) = at;
+  GST_BUFFER_DURATION(buffer) = 25 * GST_MSECOND;
+  const GstLidarSlice meta{scan, index, kSlices, index * 128};
+  gst_lidar_buffer_set_slice(buffer, &meta);
+  gst_lidar_buffer_set_capture_time(buffer, kCaptureStart + at + 123);
+  return buffer;
+}
+
+struct Rtp {
+  explicit Rtp(GstBuffer* b) : buffer(b) {
+    GstRTPBuffer rtp = GST_RTP_BUFFER_INIT;
+    gst_rtp_buffer_map(b, GST_MAP_READ, &rtp);
+    marker = gst_rtp_buffer_get_marker(&rtp) != FALSE;
+    sequence = gst_rtp_buffer_get_seq(&rtp);
+    timestamp = gst_rtp_buffer_get_timestamp(&rtp);
+    const auto* data = static_cast<const guint8*>(gst_rtp_buffer_get_payload(&rtp));
+    payload.assign(data, data + gst_rtp_buffer_get_payload_len(&rtp));
+    gst_rtp_buffer_unmap(&rtp);
+  }
+  gst::BufferPtr buffer;
+  bool marker = false;
+  guint16 sequence = 0;
+  guint32 timestamp = 0;
+  std::vector<guint8> payload;
+  /// First byte of the payload: packet type and unit type.
+  bool IsConfig() const { return (payload.at(0) & 31) == 0 && payload.at(0) >> 5 != 1; }
+};
+
+inline std::vector<Rtp> PullAll(GstHarness* h) {
+  std::vector<Rtp> packets;
+  while (GstBuffer* b = gst_harness_try_pull(h)) packets.emplace_back(b);
+  return packets;
+}
+
+inline guint64 Stat(GstHarness* h, const char* name) {
+  GstStructure* stats = nullptr;
+  g_object_get(h->element, "stats", &stats, nullptr);
+  const gst::StructurePtr owner(stats);
+  guint64 value = G_MAXUINT64;
+  gst_structure_get_uint64(stats, name, &value);
+  return value;
+}
+
+}  // namespace lidar::test
