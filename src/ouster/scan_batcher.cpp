@@ -86,16 +86,16 @@ bool ScanBatcher::Admit(const LidarPacket& packet, std::int64_t* scan) {
   return true;
 }
 
-void ScanBatcher::Push(const LidarPacket& packet) {
+void ScanBatcher::Push(const LidarPacket& packet, Time arrival) {
   std::int64_t scan = 0;
   const bool admitted = Admit(packet, &scan);
   ++stats_.packets;
   if (!admitted) return;
-  AddColumns(packet, scan);
+  AddColumns(packet, scan, arrival);
   GiveOutReady();
 }
 
-void ScanBatcher::AddColumns(const LidarPacket& packet, std::int64_t scan) {
+void ScanBatcher::AddColumns(const LidarPacket& packet, std::int64_t scan, Time arrival) {
   bool late = false;
   bool duplicate = false;
   Key newest = -1;
@@ -107,7 +107,7 @@ void ScanBatcher::AddColumns(const LidarPacket& packet, std::int64_t scan) {
       late = true;
       continue;
     }
-    OpenSlice& open = Open(key, column);
+    OpenSlice& open = Open(key, column, arrival);
     if (key != newest) ++open.packets;
     newest = std::max(newest, key);
     duplicate = !AddColumn(column, &open) || duplicate;
@@ -132,7 +132,7 @@ bool ScanBatcher::AddColumn(const PacketColumn& column, OpenSlice* open) {
   return true;
 }
 
-ScanBatcher::OpenSlice& ScanBatcher::Open(Key key, const PacketColumn& column) {
+ScanBatcher::OpenSlice& ScanBatcher::Open(Key key, const PacketColumn& column, Time arrival) {
   const auto at = std::lower_bound(open_.begin(), open_.end(), key,
                                    [](const OpenSlice& o, Key k) { return o.key < k; });
   if (at != open_.end() && at->key == key) return *at;
@@ -140,6 +140,7 @@ ScanBatcher::OpenSlice& ScanBatcher::Open(Key key, const PacketColumn& column) {
   open.key = key;
   open.columns.resize(width_);
   open.slice = NewSlice(key);
+  open.slice.first_arrival = arrival;
   const auto sweep = static_cast<std::uint64_t>(
       column_period_ * static_cast<double>(column.measurement_id - open.slice.first_column));
   open.slice.start = column.timestamp - std::min(column.timestamp, sweep);
@@ -192,7 +193,7 @@ void ScanBatcher::GiveOut(OpenSlice open) {
     CountLost(k, nullptr);
     gap_ = gap_ || (k >= joined_key_ && expected_[static_cast<std::size_t>(k % slices_)] > 0);
   }
-  const ColumnTime reference{open.slice.first_column, open.slice.start};
+  const ColumnTime reference{open.slice.first_column, open.slice.start, open.slice.first_arrival};
   GiveOutBlanks(std::max(next_, scan_start), key, reference);
   const auto index = static_cast<std::size_t>(key % slices_);
   open.slice.missing_columns = expected_[index] - open.seen;
@@ -222,6 +223,7 @@ void ScanBatcher::GiveOutBlanks(Key first, Key last, ColumnTime reference) {
     const auto shift = static_cast<std::int64_t>(columns * column_period_);
     slice.start = static_cast<std::uint64_t>(
         std::max<std::int64_t>(0, static_cast<std::int64_t>(reference.time) + shift));
+    slice.first_arrival = reference.arrival;
     ready_.push_back(std::move(slice));
     ++stats_.slices;
   }

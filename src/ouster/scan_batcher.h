@@ -6,6 +6,7 @@
 #include <optional>
 #include <vector>
 
+#include "base/time.h"
 #include "ouster/lidar_packet.h"
 #include "ouster/metadata.h"
 #include "ouster/point_writer.h"
@@ -21,6 +22,7 @@ struct Slice {
   std::uint32_t first_column = 0;
   std::uint32_t width = 0;
   std::uint64_t start = 0;  // ns of the sensor's clock, of the first column
+  Time first_arrival{};     // of its first packet
   std::uint32_t missing_columns = 0;
   bool after_gap = false;  // a slice before this one is missing, or the sensor restarted
   std::vector<std::uint8_t> points;
@@ -48,7 +50,7 @@ class ScanBatcher {
 
   ScanBatcher(const Metadata& metadata, PointWriter writer, const Options& options);
 
-  void Push(const LidarPacket& packet);
+  void Push(const LidarPacket& packet, Time arrival = {});
   /// The next slice that is ready.
   std::optional<Slice> Pop();
   /// Makes all that came so far ready. The next packet may be of any scan.
@@ -75,14 +77,15 @@ class ScanBatcher {
   struct ColumnTime {
     std::uint32_t column = 0;
     std::uint64_t time = 0;
+    Time arrival{};
   };
 
   std::int64_t Locate(const PacketHeader& header);
   bool Admit(const LidarPacket& packet, std::int64_t* scan);
   void Restart(const LidarPacket& packet);
-  void AddColumns(const LidarPacket& packet, std::int64_t scan);
+  void AddColumns(const LidarPacket& packet, std::int64_t scan, Time arrival);
   bool AddColumn(const PacketColumn& column, OpenSlice* open);
-  OpenSlice& Open(Key key, const PacketColumn& column);
+  OpenSlice& Open(Key key, const PacketColumn& column, Time arrival);
   Slice NewSlice(Key key) const;
   void CountLaterPacket(Key key);
   Key NextExpected() const;

@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "pcap_feed.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace lidar::gst {
+
+std::unique_ptr<PcapFeed> PcapFeed::Open(const std::string& path, const ouster::Metadata& metadata,
+                                         bool loop, std::string* error) {
+  auto reader = ouster::PcapReader::Open(path, error);
+  if (!reader) return nullptr;
+  std::unique_ptr<PcapFeed> feed(new PcapFeed);
+  feed->reader_ = std::move(reader);
+  feed->packet_size_ = metadata.format.packet_size();
+  feed->packet_interval_ =
+      metadata.scan_period() * metadata.format.columns_per_packet / metadata.model.columns_per_scan;
+  feed->loop_ = loop;
+  return feed;
+}
+
+bool PcapFeed::StartOver() {
+  if (!loop_ || !found_ || !reader_->Rewind()) return false;
+  round_start_ += last_ - *first_ + packet_interval_;
+  first_.reset();
+  starts_over_ = true;
+  return true;
+}
+
+std::optional<PcapFeed::Packet> PcapFeed::Next() {
+  constexpr std::size_t kMaxSizes = 64;  // to remember
+  auto captured = reader_->Next();
+  if (!captured) {
+    error_ = reader_->error();
+    if (!error_.empty() || !StartOver()) return std::nullopt;
+    captured = reader_->Next();
+    if (!captured) return std::nullopt;
+  }
+  Packet packet;
+  packet.payload = std::move(captured->datagram.payload);
+  packet.captured = captured->time;
+  if (!first_) first_ = captured->time;
+  last_ = std::max(captured->time, last_);
+  packet.due = round_start_ + std::max(Duration{0}, captured->time - *first_);
+  packet.starts_over = std::exchange(starts_over_, false);
+  found_ = found_ || packet.payload.size() == packet_size_;
+  if (!found_ && sizes_.size() < kMaxSizes) ++sizes_[packet.payload.size()];
+  return packet;
+}
+
+std::string PcapFeed::DescribeContents() const {
+  if (sizes_.empty()) return "it holds no UDP datagrams at all";
+  const auto most = std::max_element(
+      sizes_.begin(), sizes_.end(),
+      [](const auto& a, const auto& b) { return a.second * a.first < b.second * b.first; });
+  return "it holds " + std::to_string(most->second) + " datagrams of " +
+         std::to_string(most->first) + " bytes where the metadata asks for packets of " +
+         std::to_string(packet_size_) + " bytes";
+}
+
+}  // namespace lidar::gst

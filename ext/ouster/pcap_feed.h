@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// The packets of a capture file, looped on request, with the time each is due.
+#pragma once
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "ouster/metadata.h"
+#include "ouster/pcap_reader.h"
+
+namespace lidar::gst {
+
+class PcapFeed {
+ public:
+  /// Null and `error` for a file that is missing or no capture.
+  static std::unique_ptr<PcapFeed> Open(const std::string& path, const ouster::Metadata& metadata,
+                                        bool loop, std::string* error);
+
+  struct Packet {
+    std::vector<std::uint8_t> payload;
+    Duration due{};            // since the first packet, loops laid end to end
+    Time captured;             // since the Unix epoch
+    bool starts_over = false;  // the first one of another round
+  };
+  /// None at the end, or where the file is damaged: error() then says so.
+  std::optional<Packet> Next();
+  const std::string& error() const { return error_; }
+  bool found_lidar_packets() const { return found_; }
+  /// What the file holds instead of packets of this sensor, in words for a user.
+  std::string DescribeContents() const;
+
+ private:
+  PcapFeed() = default;
+  bool StartOver();
+
+  std::unique_ptr<ouster::PcapReader> reader_;
+  std::size_t packet_size_ = 0;
+  Duration packet_interval_{};
+  bool loop_ = false;
+  std::optional<Time> first_;  // of this round
+  Time last_{};
+  Duration round_start_{};
+  bool starts_over_ = false;
+  bool found_ = false;
+  std::map<std::size_t, std::uint64_t> sizes_;  // bytes of a payload -> how many
+  std::string error_;
+};
+
+}  // namespace lidar::gst

@@ -1,0 +1,12 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Registers the elements of the plugin.
+#include "common/gstlidar.h"
+#include "gstoustersrc.h"
+
+static gboolean plugin_init(GstPlugin* plugin) {
+  gst_lidar_init();
+  return GST_ELEMENT_REGISTER(ouster_src, plugin);
+}
+
+GST_PLUGIN_DEFINE(GST_VERSION_MAJOR, GST_VERSION_MINOR, ouster, "Ouster LiDAR sensors", plugin_init,
+                  VERSION, "LGPL", PACKAGE, "https://gstreamer.freedesktop.org")

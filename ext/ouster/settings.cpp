@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "settings.h"
+
+namespace lidar::gst {
+namespace {
+
+using S = OusterSettings;
+
+/// Registers an enumeration once; GType names are process-wide.
+GType RegisterEnum(const char* name, const GEnumValue* values) {
+  const GType known = g_type_from_name(name);
+  return known != G_TYPE_INVALID ? known : g_enum_register_static(name, values);
+}
+
+}  // namespace
+
+GType OusterReturnType() {
+  static const GEnumValue values[] = {{kReturnStrongest, "The strongest return", "strongest"},
+                                      {kReturnSecond, "The second strongest return", "second"},
+                                      {kReturnBoth, "Both: adds range2, intensity2", "both"},
+                                      {0, nullptr, nullptr}};
+  static const GType type = RegisterEnum("GstLidarOusterReturn", values);
+  return type;
+}
+
+GType OusterPtsFromType() {
+  static const GEnumValue values[] = {
+      {kPtsFromSensor, "The sensor's sampling times, without the network's jitter", "sensor"},
+      {kPtsFromArrival, "The arrival of the slice's first packet", "arrival"},
+      {0, nullptr, nullptr}};
+  static const GType type = RegisterEnum("GstLidarOusterPtsFrom", values);
+  return type;
+}
+
+GType OusterInvalidType() {
+  static const GEnumValue values[] = {{kInvalidZero, "x, y and z are zero", "zero"},
+                                      {kInvalidNan, "x, y and z are not a number", "nan"},
+                                      {0, nullptr, nullptr}};
+  static const GType type = RegisterEnum("GstLidarOusterInvalid", values);
+  return type;
+}
+
+const std::array<Property<S>, 18> kOusterProperties = {{
+    {"location", "Capture file (pcap, pcapng) to read instead of receiving", &S::location},
+    {"metadata", "Metadata JSON of the sensor; empty: with location, the .json beside it",
+     &S::metadata},
+    {"is-live", "With location: give packets out at the pace of their capture", &S::is_live},
+    {"loop", "With location: start over at the end of the file", &S::loop},
+    {"lidar-port", "UDP port of the lidar packets; 0: the one in the metadata", &S::lidar_port, 0,
+     65535},
+    {"address", "Local address to receive on; empty for any, IPv6 and IPv4", &S::address},
+    {"multicast-group", "Multicast group that the sensor sends to; empty for none",
+     &S::multicast_group},
+    {"multicast-iface", "Network interface for multicast; empty for the kernel's choice",
+     &S::multicast_iface},
+    {"buffer-size", "Receive buffer to ask the kernel for [bytes]; 0: the kernel's default",
+     &S::buffer_size, 0, G_MAXINT},
+    {"slices-per-scan",
+     "Buffers a scan; 0: automatic, a sweep of about 12.5 ms; rounded down to a divisor of the "
+     "columns",
+     &S::slices_per_scan, 0, 4096},
+    {"channels",
+     "Extra fields of a point, comma-separated: reflectivity, signal, near-ir, flags, window, "
+     "ring, t (ns since the slice's first column)",
+     &S::channels},
+    {"return", "Which return of a dual-return profile",
+     EnumField<S>{&S::returns, OusterReturnType}},
+    {"pts-from", "What timestamps follow", EnumField<S>{&S::pts_from, OusterPtsFromType}},
+    {"ptp-utc-tai-offset",
+     "What turns the time of a sensor on PTP into UTC [s]; 0 where the PTP master gives UTC",
+     &S::ptp_utc_tai_offset, -100, 100},
+    {"min-range", "Nearer returns count as missing [m]", &S::min_range, 0, 1000},
+    {"max-range", "Farther returns count as missing [m]; 0 for no limit", &S::max_range, 0, 1000},
+    {"azimuth-sectors",
+     "Sectors to keep [degrees in the sensor frame, from x towards y], as 0-90,270-360; empty: all",
+     &S::azimuth_sectors},
+    {"invalid", "What missing returns look like", EnumField<S>{&S::invalid, OusterInvalidType}},
+}};
+
+std::string OusterSettings::MetadataPath() const {
+  if (!metadata.empty() || location.empty()) return metadata;
+  const std::size_t dot = location.find_last_of("./");
+  const bool has_extension = dot != std::string::npos && location[dot] == '.';
+  return (has_extension ? location.substr(0, dot) : location) + ".json";
+}
+
+std::optional<ouster::StreamOptions> ToStreamOptions(const OusterSettings& s, std::string* error) {
+  ouster::StreamOptions options;
+  auto channels = ouster::ParseChannels(s.channels, error);
+  if (!channels) return std::nullopt;
+  options.points.channels = *std::move(channels);
+  auto sectors = ouster::ParseSectors(s.azimuth_sectors);
+  if (!sectors) {
+    *error = "azimuth-sectors is not like \"0-90,270-360\" [degrees]";
+    return std::nullopt;
+  }
+  options.points.sectors = *std::move(sectors);
+  if (s.max_range > 0 && s.max_range <= s.min_range) {
+    *error = "max-range is not above min-range";
+    return std::nullopt;
+  }
+  options.points.returns = static_cast<ouster::Return>(s.returns);
+  options.points.min_range_m = s.min_range;
+  options.points.max_range_m = s.max_range;
+  options.points.invalid = static_cast<ouster::Invalid>(s.invalid);
+  options.slices_per_scan = s.slices_per_scan;
+  options.times =
+      s.pts_from == kPtsFromArrival ? ouster::TimeSource::kArrival : ouster::TimeSource::kSensor;
+  options.clock = s.live() ? ouster::ClockMapper::Mode::kFollow : ouster::ClockMapper::Mode::kHold;
+  options.ptp_utc_offset = FromSeconds(s.ptp_utc_tai_offset);
+  return options;
+}
+
+}  // namespace lidar::gst

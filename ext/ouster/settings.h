@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// The properties of ouster_src.
+#pragma once
+#include <gst/gst.h>
+
+#include <optional>
+#include <string>
+
+#include "common/properties.h"
+#include "ouster/sensor_stream.h"
+
+namespace lidar::gst {
+
+enum GstLidarOusterReturn { kReturnStrongest, kReturnSecond, kReturnBoth };
+enum GstLidarOusterPtsFrom { kPtsFromSensor, kPtsFromArrival };
+enum GstLidarOusterInvalid { kInvalidZero, kInvalidNan };
+
+GType OusterReturnType();
+GType OusterPtsFromType();
+GType OusterInvalidType();
+
+struct OusterSettings {
+  std::string location;
+  std::string metadata;
+  bool is_live = false;
+  bool loop = false;
+  guint lidar_port = 7502;
+  std::string address;
+  std::string multicast_group;
+  std::string multicast_iface;
+  guint buffer_size = 8U << 20;
+  guint slices_per_scan = 0;
+  std::string channels;
+  gint returns = kReturnStrongest;
+  gint pts_from = kPtsFromSensor;
+  gdouble ptp_utc_tai_offset = -37;
+  gdouble min_range = 0;
+  gdouble max_range = 0;
+  std::string azimuth_sectors;
+  gint invalid = kInvalidZero;
+
+  /// UDP is always live; a file is when the user says so.
+  bool live() const { return location.empty() || is_live; }
+  bool from_file() const { return !location.empty(); }
+  /// Where the metadata is: beside the capture, unless the user says otherwise. Empty: not known.
+  std::string MetadataPath() const;
+};
+
+extern const std::array<Property<OusterSettings>, 18> kOusterProperties;
+
+/// None and `error`, in words for a user, where a property makes no sense.
+std::optional<ouster::StreamOptions> ToStreamOptions(const OusterSettings& settings,
+                                                     std::string* error);
+
+}  // namespace lidar::gst

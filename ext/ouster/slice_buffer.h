@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Slices as GStreamer carries them.
+#pragma once
+#include <gst/gst.h>
+
+#include "ouster/sensor_stream.h"
+
+namespace lidar::gst {
+
+/// transfer full
+GstCaps* CapsOf(const ouster::SensorStream& stream);
+/// Takes the points without a copy. PTS is slice.local since the Unix epoch of that clock;
+/// transfer full.
+GstBuffer* ToBuffer(ouster::TimedSlice slice, Duration duration);
+
+}  // namespace lidar::gst

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// The sensor's clock in terms of the receiver's, out of when packets arrived.
+#pragma once
+#include <cstdint>
+#include <optional>
+
+#include "base/time.h"
+
+namespace lidar::ouster {
+
+/// The packet that travelled fastest tells the offset between the two clocks best, so the offset
+/// follows the minimum of (arrival - sampling) over the last seconds: jitter stays out, drift is
+/// followed. A jump of either clock starts over.
+class ClockMapper {
+ public:
+  enum class Mode {
+    kFollow,  // live: see above
+    kHold,    // files: the first packet sets the offset, so that times step as the sensor's do
+  };
+  explicit ClockMapper(Mode mode) : mode_(mode) {}
+
+  /// A packet whose last column was sampled at `sensor_ns` arrived at `arrival`.
+  void Observe(std::uint64_t sensor_ns, Time arrival);
+  /// True where Observe() would find that a clock jumped: what was sampled before the jump must be
+  /// mapped before it.
+  bool WouldJump(std::uint64_t sensor_ns, Time arrival) const;
+  /// The next packet sets the offset anew.
+  void Reset() { offset_.reset(); }
+  /// Call only after Observe().
+  Time Map(std::uint64_t sensor_ns) const;
+
+ private:
+  static constexpr Duration kJump = std::chrono::seconds(1);
+  static constexpr Duration kWindow = std::chrono::seconds(4);
+  static constexpr std::int64_t kMaxSlewPpm = 500;
+
+  Mode mode_;
+  std::optional<Duration> offset_;  // to add to the sensor's time
+  Duration minimum_{};              // of this window
+  Duration last_minimum_{};         // of the one before
+  Time window_start_{};
+  Time last_arrival_{};
+};
+
+}  // namespace lidar::ouster

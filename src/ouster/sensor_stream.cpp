@@ -1,0 +1,132 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "ouster/sensor_stream.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace lidar::ouster {
+namespace {
+
+// A clock that claims to be synchronised but is further off than this is not.
+constexpr Duration kMaxSyncError = std::chrono::seconds(1);
+
+/// What to add to the sensor's time to have UTC; none where its clock is its own.
+std::optional<Duration> SensorToUtc(const Metadata& metadata, const StreamOptions& options) {
+  if (metadata.timestamp_mode == "TIME_FROM_PTP_1588") return options.ptp_utc_offset;
+  // The NMEA messages that come with the pulse give UTC.
+  if (metadata.timestamp_mode == "TIME_FROM_SYNC_PULSE_IN") return Duration{0};
+  return std::nullopt;
+}
+
+}  // namespace
+
+std::unique_ptr<SensorStream> SensorStream::Create(Metadata metadata, const StreamOptions& options,
+                                                   std::string* error) {
+  auto writer = PointWriter::Create(metadata, options.points, error);
+  if (!writer) return nullptr;
+  const std::uint32_t slices = SlicesPerScan(options.slices_per_scan, metadata.shape());
+  return std::unique_ptr<SensorStream>(
+      new SensorStream(std::move(metadata), *std::move(writer), options, slices));
+}
+
+SensorStream::SensorStream(Metadata metadata, PointWriter writer, const StreamOptions& options,
+                           std::uint32_t slices_per_scan)
+    : metadata_(std::move(metadata)),
+      options_(options),
+      writer_(std::move(writer)),
+      batcher_(metadata_, writer_, {slices_per_scan, 4}),
+      crc_(metadata_.format),
+      local_(options.clock),
+      utc_(options.clock),
+      sensor_to_utc_(SensorToUtc(metadata_, options)) {}
+
+void SensorStream::Flush() {
+  batcher_.Flush();
+  CollectSlices();
+}
+
+void SensorStream::Restart() {
+  Flush();
+  local_.Reset();
+  utc_.Reset();
+}
+
+Duration SensorStream::slice_duration() const {
+  return metadata_.scan_period() / batcher_.slices_per_scan();
+}
+
+void SensorStream::ObserveClocks(const LidarPacket& packet, const Arrival& arrival) {
+  const bool hold = options_.clock == ClockMapper::Mode::kHold;
+  for (std::uint32_t i = 0; i < packet.columns(); ++i) {
+    // A held offset is set by the first column, so that the first slice of a file starts at zero.
+    const PacketColumn column = packet.Column(hold ? i : packet.columns() - 1 - i);
+    if (!column.valid()) continue;
+    if (local_.WouldJump(column.timestamp, arrival.local)) Restart();
+    local_.Observe(column.timestamp, arrival.local);
+    utc_.Observe(column.timestamp, arrival.utc);
+    if (sensor_to_utc_) {
+      const Time claimed(Duration(static_cast<std::int64_t>(column.timestamp)) + *sensor_to_utc_);
+      synchronised_ =
+          claimed < arrival.utc + kMaxSyncError && claimed > arrival.utc - kMaxSyncError;
+    }
+    return;
+  }
+}
+
+PacketVerdict SensorStream::Push(ByteView payload, const Arrival& arrival) {
+  const auto packet = LidarPacket::Parse(payload, metadata_.format);
+  if (!packet) {
+    if (payload.size == metadata_.imu_packet_size()) {
+      ++stats_.imu_packets;
+      return PacketVerdict::kImu;
+    }
+    ++stats_.wrong_size;
+    return PacketVerdict::kWrongSize;
+  }
+  if (!crc_.Accept(payload)) {
+    ++stats_.damaged;
+    return PacketVerdict::kDamaged;
+  }
+  const PacketHeader& header = packet->header();
+  if (metadata_.serial != 0 && header.serial != 0 && header.serial != metadata_.serial) {
+    ++stats_.foreign;
+    return PacketVerdict::kForeign;
+  }
+  if (!any_init_id_ && metadata_.init_id != 0 && header.init_id != 0 &&
+      header.init_id != metadata_.init_id)
+    return PacketVerdict::kNewInitId;
+  ObserveClocks(*packet, arrival);
+  batcher_.Push(*packet, arrival.local);
+  CollectSlices();
+  return PacketVerdict::kLidar;
+}
+
+Time SensorStream::UtcOf(std::uint64_t sensor_ns) const {
+  if (synchronised_) return Time(Duration(static_cast<std::int64_t>(sensor_ns)) + *sensor_to_utc_);
+  return utc_.Map(sensor_ns);
+}
+
+/// Gives slices their times while the clocks are as they were when their columns came.
+void SensorStream::CollectSlices() {
+  while (auto slice = batcher_.Pop()) {
+    TimedSlice timed;
+    timed.local =
+        options_.times == TimeSource::kSensor ? local_.Map(slice->start) : slice->first_arrival;
+    if (last_local_) timed.local = std::max(timed.local, *last_local_);
+    last_local_ = timed.local;
+    timed.utc = UtcOf(slice->start);
+    slice->scan_id += first_scan_id_;
+    next_scan_id_ = slice->scan_id + 1;
+    timed.slice = *std::move(slice);
+    ready_.push_back(std::move(timed));
+  }
+}
+
+std::optional<TimedSlice> SensorStream::Pop() {
+  if (ready_.empty()) return std::nullopt;
+  TimedSlice timed = std::move(ready_.front());
+  ready_.pop_front();
+  return timed;
+}
+
+}  // namespace lidar::ouster

@@ -1,0 +1,121 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// What the tests of ouster_src share: captures, pipelines that end, and a UDP sender.
+#pragma once
+#include <gio/gio.h>
+#include <gst/gst.h>
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <iterator>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "common/buffer_map.h"
+#include "common/cloud_info.h"
+#include "common/gstlidar.h"
+#include "common/refs.h"
+#include "ouster/metadata.h"
+#include "ouster/pcap_reader.h"
+#include "support/harness.h"
+
+namespace lidar::test {
+
+inline std::string DataPath(const std::string& name) {
+  return std::string(LIDAR_TEST_DATA) + "/ouster/" + name;
+}
+
+inline ouster::Metadata LoadMetadata(const std::string& name) {
+  std::ifstream file(DataPath(name), std::ios::binary);
+  const std::string text{std::istreambuf_iterator<char>(file), {}};
+  std::string error;
+  auto metadata = ouster::ParseMetadata(text, &error);
+  EXPECT_TRUE(metadata) << name << ": " << error;
+  return metadata.value_or(ouster::Metadata{});
+}
+
+inline std::vector<std::vector<std::uint8_t>> LoadPackets(const std::string& name,
+                                                          const ouster::Metadata& metadata) {
+  std::string error;
+  auto reader = ouster::PcapReader::Open(DataPath(name), &error);
+  EXPECT_TRUE(reader) << error;
+  std::vector<std::vector<std::uint8_t>> packets;
+  while (auto captured = reader->Next())
+    if (captured->datagram.payload.size() == metadata.format.packet_size())
+      packets.push_back(std::move(captured->datagram.payload));
+  return packets;
+}
+
+/// Sends to a port of this machine.
+class UdpSender {
+ public:
+  explicit UdpSender(guint16 port)
+      : socket_(g_socket_new(G_SOCKET_FAMILY_IPV4, G_SOCKET_TYPE_DATAGRAM, G_SOCKET_PROTOCOL_UDP,
+                             nullptr)),
+        to_(g_inet_socket_address_new_from_string("127.0.0.1", port)) {}
+  ~UdpSender() {
+    g_object_unref(socket_);
+    g_object_unref(to_);
+  }
+  UdpSender(const UdpSender&) = delete;
+  UdpSender& operator=(const UdpSender&) = delete;
+
+  void Send(const std::vector<std::uint8_t>& payload) {
+    ASSERT_EQ(g_socket_send_to(socket_, to_, reinterpret_cast<const gchar*>(payload.data()),
+                               payload.size(), nullptr, nullptr),
+              static_cast<gssize>(payload.size()));
+  }
+
+ private:
+  GSocket* socket_;
+  GSocketAddress* to_;
+};
+
+/// A port that was free a moment ago.
+inline guint16 FreePort() {
+  GSocket* socket =
+      g_socket_new(G_SOCKET_FAMILY_IPV4, G_SOCKET_TYPE_DATAGRAM, G_SOCKET_PROTOCOL_UDP, nullptr);
+  GInetAddress* any = g_inet_address_new_any(G_SOCKET_FAMILY_IPV4);
+  GSocketAddress* address = g_inet_socket_address_new(any, 0);
+  EXPECT_TRUE(g_socket_bind(socket, address, FALSE, nullptr));
+  g_object_unref(address);
+  g_object_unref(any);
+  address = g_socket_get_local_address(socket, nullptr);
+  const guint16 port = g_inet_socket_address_get_port(G_INET_SOCKET_ADDRESS(address));
+  g_object_unref(address);
+  g_object_unref(socket);
+  return port;
+}
+
+inline guint64 Stat(GstElement* element, const char* name) {
+  GstStructure* stats = nullptr;
+  g_object_get(element, "stats", &stats, nullptr);
+  guint64 value = 0;
+  EXPECT_TRUE(gst_structure_get_uint64(stats, name, &value)) << name;
+  gst_structure_free(stats);
+  return value;
+}
+
+/// Runs a pipeline to its end; the text of its error, or "" after EOS.
+inline std::string RunToEnd(const std::string& description) {
+  GError* raw = nullptr;
+  const gst::ElementPtr pipeline(gst_parse_launch(description.c_str(), &raw));
+  const gst::ErrorPtr parse_error(raw);
+  if (parse_error) return parse_error->message;
+  gst_element_set_state(pipeline.get(), GST_STATE_PLAYING);
+  GstBus* bus = gst_element_get_bus(pipeline.get());
+  const gst::MessagePtr message(gst_bus_timed_pop_filtered(
+      bus, 20 * GST_SECOND, static_cast<GstMessageType>(GST_MESSAGE_ERROR | GST_MESSAGE_EOS)));
+  gst_object_unref(bus);
+  std::string text = "no end within 20 s";
+  if (message && GST_MESSAGE_TYPE(message.get()) == GST_MESSAGE_EOS) text.clear();
+  if (message && GST_MESSAGE_TYPE(message.get()) == GST_MESSAGE_ERROR) {
+    gst_message_parse_error(message.get(), &raw, nullptr);
+    const gst::ErrorPtr error(raw);
+    text = error->message;
+  }
+  gst_element_set_state(pipeline.get(), GST_STATE_NULL);
+  return text;
+}
+
+}  // namespace lidar::test

@@ -1,0 +1,259 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// ouster_src on captures.
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <cstring>
+#include <fstream>
+
+#include "ouster_support.h"
+
+namespace lidar::test {
+namespace {
+
+using gst::BufferMap;
+using gst::BufferPtr;
+using gst::CapsPtr;
+using gst::CloudInfo;
+
+const char* const kThreeScans = "OS-1-128_v2.3.0_1024x10_lb_n3.pcap";
+const char* const kThreeScansMetadata = "OS-1-128_v2.3.0_1024x10.json";
+
+Harness FromFile(const std::string& pcap, const std::string& json, const char* more = "") {
+  const std::string launch =
+      "ouster_src location=" + DataPath(pcap) + " metadata=" + DataPath(json) + " " + more;
+  Harness h(gst_harness_new_parse(launch.c_str()));
+  gst_harness_play(h.get());
+  return h;
+}
+
+TEST(OusterFile, GivesOrganisedSlicesWithTimesAndTheSensorModel) {
+  const Harness h = FromFile(kThreeScans, kThreeScansMetadata);
+  const ouster::Metadata metadata = LoadMetadata(kThreeScansMetadata);
+  GstClockTime last = 0;
+  GstClockTime last_capture = 0;
+  for (guint i = 0; i < 24; ++i) {
+    const BufferPtr buffer(gst_harness_pull(h.get()));
+    ASSERT_TRUE(buffer) << i;
+    if (i == 0) {
+      const CapsPtr caps(gst_pad_get_current_caps(h->sinkpad));
+      const auto info = CloudInfo::FromCaps(caps.get());
+      ASSERT_TRUE(info);
+      EXPECT_EQ(info->width, 128U);
+      EXPECT_EQ(info->height, 128U);
+      EXPECT_EQ(info->point_step, 20U);
+      EXPECT_EQ(info->fields.ToString(), "x:F32:0,y:F32:4,z:F32:8,intensity:F32:12,range:U32:16");
+      EXPECT_EQ(info->ScanDuration(), 100 * GST_MSECOND);
+      ASSERT_TRUE(info->sensor_model);
+      EXPECT_EQ(info->sensor_model->range_unit_mm, 8U);
+      EXPECT_EQ(info->sensor_model->Serialise(), metadata.model.Serialise());
+    }
+    EXPECT_EQ(gst_buffer_get_size(buffer.get()), 128U * 128 * 20);
+    GstLidarSlice slice{};
+    ASSERT_TRUE(gst_lidar_buffer_get_slice(buffer.get(), &slice));
+    EXPECT_EQ(slice.scan_id, i / 8);
+    EXPECT_EQ(slice.slice_index, i % 8);
+    EXPECT_EQ(slice.slice_count, 8U);
+    EXPECT_EQ(slice.first_column, i % 8 * 128);
+    EXPECT_EQ(GST_BUFFER_DURATION(buffer.get()), 12500 * GST_USECOND);
+    const GstClockTime capture = gst_lidar_buffer_get_capture_time(buffer.get());
+    if (i == 0) {
+      EXPECT_EQ(GST_BUFFER_PTS(buffer.get()), 0U);
+    } else {
+      EXPECT_NEAR(static_cast<double>(GST_BUFFER_PTS(buffer.get()) - last), 12.5e6, 2e5);
+      EXPECT_EQ(capture - last_capture, GST_BUFFER_PTS(buffer.get()) - last);
+    }
+    last = GST_BUFFER_PTS(buffer.get());
+    last_capture = capture;
+  }
+  const gst::EventPtr stream_start(gst_harness_pull_event(h.get()));
+}
+
+TEST(OusterFile, PointsAgreeWithTheSensorModelInTheCaps) {
+  const Harness h = FromFile(kThreeScans, kThreeScansMetadata);
+  const BufferPtr buffer(gst_harness_pull(h.get()));
+  const CapsPtr caps(gst_pad_get_current_caps(h->sinkpad));
+  const auto info = CloudInfo::FromCaps(caps.get());
+  const RangeProjection projection(*info->sensor_model);
+  const BufferMap map(buffer.get(), GST_MAP_READ);
+  guint returns = 0;
+  for (guint i = 0; i < info->Points(); ++i) {
+    std::array<float, 3> xyz{};
+    std::uint32_t range = 0;
+    std::memcpy(xyz.data(), map.data() + i * 20, sizeof xyz);
+    std::memcpy(&range, map.data() + i * 20 + 16, sizeof range);
+    const auto expected = projection.Point(i / info->width, i % info->width, range);
+    for (std::size_t axis = 0; axis < 3; ++axis) ASSERT_NEAR(xyz[axis], expected[axis], 1e-3);
+    returns += range != 0 ? 1 : 0;
+  }
+  EXPECT_GT(returns, 5000U);
+}
+
+TEST(OusterFile, LoopsWithTimesThatGoOn) {
+  const Harness h = FromFile("crc_test.pcap", "crc_test.json", "loop=true");
+  GstClockTime last = 0;
+  for (int i = 0; i < 40; ++i) {
+    const BufferPtr buffer(gst_harness_pull(h.get()));
+    ASSERT_TRUE(buffer);
+    if (i > 0) {
+      EXPECT_GE(GST_BUFFER_PTS(buffer.get()), last);
+      EXPECT_LT(GST_BUFFER_PTS(buffer.get()), last + 60 * GST_MSECOND);
+    }
+    last = GST_BUFFER_PTS(buffer.get());
+  }
+  EXPECT_GT(last, 300 * GST_MSECOND);
+}
+
+TEST(OusterFile, RunsAgainAfterReady) {
+  const std::string launch = "ouster_src location=" + DataPath("crc_test.pcap") + " ! fakesink";
+  EXPECT_EQ(RunToEnd(launch), "");
+  EXPECT_EQ(RunToEnd(launch), "");
+  const Harness h = FromFile(kThreeScans, kThreeScansMetadata);
+  for (int round = 0; round < 3; ++round) {
+    const BufferPtr buffer(gst_harness_pull(h.get()));
+    GstLidarSlice slice{};
+    ASSERT_TRUE(gst_lidar_buffer_get_slice(buffer.get(), &slice));
+    EXPECT_EQ(slice.slice_index, 0U);
+    EXPECT_EQ(GST_BUFFER_PTS(buffer.get()), 0U);
+    gst_element_set_state(h->element, GST_STATE_READY);
+    while (gst_harness_buffers_in_queue(h.get()) > 0)
+      const BufferPtr drop(gst_harness_pull(h.get()));
+    gst_element_set_state(h->element, GST_STATE_PLAYING);
+  }
+}
+
+TEST(OusterFile, LivePlaybackWaitsForTheTimeOfEachPacket) {
+  Harness h(gst_harness_new_parse(("ouster_src is-live=true location=" + DataPath(kThreeScans) +
+                                   " metadata=" + DataPath(kThreeScansMetadata))
+                                      .c_str()));
+  gst_harness_use_testclock(h.get());
+  gst_harness_play(h.get());
+  // The capture's packets are about 1.6 ms apart; a slice has 8 of them.
+  for (int i = 0; i < 7; ++i) {
+    EXPECT_EQ(gst_harness_buffers_received(h.get()), 0U) << i;
+    ASSERT_TRUE(gst_harness_crank_single_clock_wait(h.get()));
+  }
+  while (gst_harness_buffers_received(h.get()) == 0)
+    ASSERT_TRUE(gst_harness_crank_single_clock_wait(h.get()));
+  const BufferPtr buffer(gst_harness_pull(h.get()));
+  const GstClockTime now = gst_clock_get_time(GST_CLOCK(gst_harness_get_testclock(h.get())));
+  EXPECT_LT(now, 20 * GST_MSECOND);
+  EXPECT_LE(GST_BUFFER_PTS(buffer.get()), now);
+  EXPECT_EQ(gst_harness_query_latency(h.get()), 12500 * GST_USECOND);
+}
+
+TEST(OusterFile, StopsWhileItWaits) {
+  Harness h(gst_harness_new_parse(("ouster_src is-live=true location=" + DataPath(kThreeScans) +
+                                   " metadata=" + DataPath(kThreeScansMetadata))
+                                      .c_str()));
+  gst_harness_use_testclock(h.get());
+  gst_harness_play(h.get());
+  ASSERT_TRUE(gst_harness_crank_single_clock_wait(h.get()));
+  EXPECT_EQ(gst_element_set_state(h->element, GST_STATE_NULL), GST_STATE_CHANGE_SUCCESS);
+}
+
+TEST(OusterFile, AddsTheFieldsThatAreAskedFor) {
+  const Harness h = FromFile("OS-0-32-U1_v2.2.0_1024x10.pcap", "OS-0-32-U1_v2.2.0_1024x10.json",
+                             "slices-per-scan=1 channels=ring,signal,t,near-ir return=both");
+  const BufferPtr buffer(gst_harness_pull(h.get()));
+  const CapsPtr caps(gst_pad_get_current_caps(h->sinkpad));
+  const auto info = CloudInfo::FromCaps(caps.get());
+  ASSERT_TRUE(info);
+  EXPECT_EQ(info->width, 1024U);
+  EXPECT_EQ(info->fields.ToString(),
+            "x:F32:0,y:F32:4,z:F32:8,intensity:F32:12,range:U32:16,range2:U32:20,"
+            "intensity2:F32:24,ring:U16:28,signal:U16:30,t:U32:32,near-ir:U16:36");
+  EXPECT_EQ(info->point_step, 40U);
+  const BufferMap map(buffer.get(), GST_MAP_READ);
+  std::uint32_t t = 0;
+  std::uint16_t ring = 0;
+  const std::size_t at = (std::size_t{3} * 1024 + 512) * 40;
+  std::memcpy(&ring, map.data() + at + 28, sizeof ring);
+  std::memcpy(&t, map.data() + at + 32, sizeof t);
+  EXPECT_EQ(ring, 3U);
+  EXPECT_NEAR(t, 50e6, 1e5);
+}
+
+TEST(OusterFile, FiltersByRangeAndAzimuth) {
+  const Harness h = FromFile(kThreeScans, kThreeScansMetadata,
+                             "min-range=2 max-range=10 azimuth-sectors=0-90 invalid=nan "
+                             "slices-per-scan=1");
+  const BufferPtr buffer(gst_harness_pull(h.get()));
+  const BufferMap map(buffer.get(), GST_MAP_READ);
+  guint kept = 0;
+  for (gsize at = 0; at < map.size(); at += 20) {
+    std::array<float, 3> xyz{};
+    std::uint32_t range = 0;
+    std::memcpy(xyz.data(), map.data() + at, sizeof xyz);
+    std::memcpy(&range, map.data() + at + 16, sizeof range);
+    ASSERT_EQ(std::isnan(xyz[0]), range == 0);
+    if (range == 0) continue;
+    ++kept;
+    ASSERT_GE(range, 2000U);
+    ASSERT_LE(range, 10000U);
+    ASSERT_GT(xyz[0], -0.1F);
+    ASSERT_GT(xyz[1], -0.1F);
+  }
+  EXPECT_GT(kept, 1000U);
+}
+
+struct BadInput {
+  const char* properties;  // @ stands for the folder of the data
+  const char* error;       // part of the message
+};
+class OusterBadInput : public ::testing::TestWithParam<BadInput> {};
+TEST_P(OusterBadInput, IsAClearError) {
+  std::string properties = GetParam().properties;
+  for (std::size_t at; (at = properties.find('@')) != std::string::npos;)
+    properties.replace(at, 1, DataPath(""));
+  const std::string error = RunToEnd("ouster_src " + properties + " ! fakesink");
+  EXPECT_NE(error.find(GetParam().error), std::string::npos) << error;
+}
+INSTANTIATE_TEST_SUITE_P(
+    All, OusterBadInput,
+    ::testing::Values(
+        BadInput{"", "metadata is not set"},
+        BadInput{"location=/nowhere.pcap metadata=@crc_test.json", "No such file"},
+        BadInput{"location=@crc_test.pcap metadata=/nowhere.json", "Cannot read the metadata"},
+        BadInput{"location=@README.md metadata=@crc_test.json", "unknown file format"},
+        BadInput{"location=@crc_test.pcap metadata=@README.md", "not a JSON object"},
+        BadInput{"location=@crc_test.pcap metadata=@OS-0-32-U1_v2.2.0_1024x10_digest.json",
+                 "no metadata of an Ouster sensor"},
+        BadInput{"location=@crc_test.pcap metadata=@OS-1-32-G_v2.1.1_1024x10.json",
+                 "34 datagrams of 8448 bytes where the metadata asks for packets of 6464 bytes"},
+        BadInput{"location=@crc_test.pcap metadata=@OS-1-128_v2.3.0_1024x10.json",
+                 "packets of another sensor"},
+        BadInput{"location=@crc_test.pcap return=second", "has no second return"},
+        BadInput{"location=@crc_test.pcap channels=signal", "has no channel signal"},
+        BadInput{"location=@crc_test.pcap channels=colour", "there is no channel"},
+        BadInput{"location=@crc_test.pcap azimuth-sectors=left", "azimuth-sectors"},
+        BadInput{"location=@crc_test.pcap min-range=9 max-range=3", "max-range"}));
+
+TEST(OusterBadCapture, ATruncatedFileGivesWhatItHasAndWarns) {
+  const std::string path = ::testing::TempDir() + "ouster_truncated.pcap";
+  std::ifstream in(DataPath("crc_test.pcap"), std::ios::binary);
+  std::string bytes{std::istreambuf_iterator<char>(in), {}};
+  bytes.resize(bytes.size() - 5000);
+  std::ofstream(path, std::ios::binary) << bytes;
+  const gst::ElementPtr pipeline(gst_parse_launch(
+      ("ouster_src location=" + path + " metadata=" + DataPath("crc_test.json") + " ! fakesink")
+          .c_str(),
+      nullptr));
+  gst_element_set_state(pipeline.get(), GST_STATE_PLAYING);
+  GstBus* bus = gst_element_get_bus(pipeline.get());
+  const gst::MessagePtr message(gst_bus_timed_pop_filtered(
+      bus, 20 * GST_SECOND,
+      static_cast<GstMessageType>(GST_MESSAGE_WARNING | GST_MESSAGE_ERROR | GST_MESSAGE_EOS)));
+  ASSERT_TRUE(message);
+  EXPECT_EQ(GST_MESSAGE_TYPE(message.get()), GST_MESSAGE_WARNING);
+  const gst::MessagePtr end(gst_bus_timed_pop_filtered(
+      bus, 20 * GST_SECOND, static_cast<GstMessageType>(GST_MESSAGE_ERROR | GST_MESSAGE_EOS)));
+  ASSERT_TRUE(end);
+  EXPECT_EQ(GST_MESSAGE_TYPE(end.get()), GST_MESSAGE_EOS);
+  gst_object_unref(bus);
+  gst_element_set_state(pipeline.get(), GST_STATE_NULL);
+  std::remove(path.c_str());
+}
+
+}  // namespace
+}  // namespace lidar::test

@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// ouster_src on sockets.
+#include <algorithm>
+
+#include "ouster_support.h"
+
+namespace lidar::test {
+namespace {
+
+using gst::BufferMap;
+using gst::BufferPtr;
+
+const char* const kPcap = "OS-1-128_v2.3.0_1024x10_lb_n3.pcap";
+const char* const kJson = "OS-1-128_v2.3.0_1024x10.json";
+
+class OusterUdp : public ::testing::Test {
+ protected:
+  Harness Play(const char* json, const char* more = "") {
+    port_ = FreePort();
+    const std::string launch = "ouster_src name=src lidar-port=" + std::to_string(port_) +
+                               " metadata=" + DataPath(json) + " " + more;
+    Harness h(gst_harness_new_parse(launch.c_str()));
+    gst_harness_play(h.get());
+    sender_ = std::make_unique<UdpSender>(port_);
+    return h;
+  }
+  guint16 port_ = 0;
+  std::unique_ptr<UdpSender> sender_;
+  const ouster::Metadata metadata_ = LoadMetadata(kJson);
+  const std::vector<std::vector<std::uint8_t>> packets_ = LoadPackets(kPcap, metadata_);
+};
+
+TEST_F(OusterUdp, GivesASliceOnceItsLastPacketCame) {
+  const Harness h = Play(kJson);
+  for (std::size_t i = 0; i < 16; ++i) {
+    sender_->Send(packets_[i]);
+    if (i % 8 != 7) continue;
+    const BufferPtr buffer(gst_harness_pull(h.get()));
+    ASSERT_TRUE(buffer);
+    GstLidarSlice slice{};
+    ASSERT_TRUE(gst_lidar_buffer_get_slice(buffer.get(), &slice));
+    EXPECT_EQ(slice.slice_index, i / 8);
+    // Without PTP, the capture time follows the arrival.
+    const auto now = static_cast<gint64>(g_get_real_time()) * 1000;
+    const auto age = now - static_cast<gint64>(gst_lidar_buffer_get_capture_time(buffer.get()));
+    EXPECT_GT(age, 0);
+    EXPECT_LT(age, 5 * static_cast<gint64>(GST_SECOND));
+  }
+  EXPECT_EQ(gst_harness_query_latency(h.get()), 12500 * GST_USECOND);
+  EXPECT_EQ(gst_harness_buffers_received(h.get()), 2U);
+}
+
+TEST_F(OusterUdp, CountsWhatDoesNotFitAndGoesOn) {
+  const Harness h = Play(kJson);
+  const gst::ElementPtr found(gst_bin_get_by_name(GST_BIN(h->element), "src"));
+  GstElement* source = found.get();
+  auto foreign = packets_[0];
+  foreign[ouster::kStandardHeader.serial] ^= 0xff;
+  sender_->Send(foreign);
+  sender_->Send(std::vector<std::uint8_t>(100));
+  sender_->Send(std::vector<std::uint8_t>(1));
+  for (std::size_t i = 0; i < 8; ++i) sender_->Send(packets_[i]);
+  const BufferPtr buffer(gst_harness_pull(h.get()));
+  ASSERT_TRUE(buffer);
+  for (std::size_t i = 8; i < 16; ++i) sender_->Send(packets_[i]);
+  const BufferPtr next(gst_harness_pull(h.get()));
+  EXPECT_EQ(Stat(source, "packets-foreign"), 1U);
+  EXPECT_EQ(Stat(source, "packets-wrong-size"), 2U);
+  EXPECT_GE(Stat(source, "packets"), 8U);
+  EXPECT_EQ(Stat(source, "packets-lost"), 0U);
+}
+
+TEST_F(OusterUdp, GoesOnWithASensorThatRestarted) {
+  const Harness h = Play(kJson);
+  for (std::size_t i = 0; i < 8; ++i) sender_->Send(packets_[i]);
+  const BufferPtr before(gst_harness_pull(h.get()));
+  for (std::size_t i = 0; i < 8; ++i) {
+    auto packet = packets_[i];
+    packet[ouster::kStandardHeader.init_id] ^= 0x55;
+    packet[ouster::kStandardHeader.frame_id] = 0;
+    sender_->Send(packet);
+  }
+  const BufferPtr after(gst_harness_pull(h.get()));
+  ASSERT_TRUE(after);
+  GstLidarSlice slice{};
+  gst_lidar_buffer_get_slice(after.get(), &slice);
+  EXPECT_EQ(slice.scan_id, 1U);
+  EXPECT_TRUE(GST_BUFFER_FLAG_IS_SET(after.get(), GST_BUFFER_FLAG_DISCONT));
+  EXPECT_GE(GST_BUFFER_PTS(after.get()), GST_BUFFER_PTS(before.get()));
+}
+
+TEST_F(OusterUdp, StopsWhileItWaitsForPackets) {
+  const Harness h = Play(kJson);
+  EXPECT_EQ(gst_element_set_state(h->element, GST_STATE_NULL), GST_STATE_CHANGE_SUCCESS);
+}
+
+TEST_F(OusterUdp, APortInUseIsAClearError) {
+  const Harness h = Play(kJson);
+  const std::string error = RunToEnd("ouster_src lidar-port=" + std::to_string(port_) +
+                                     " metadata=" + DataPath(kJson) + " ! fakesink");
+  EXPECT_NE(error.find(std::to_string(port_)), std::string::npos) << error;
+  EXPECT_NE(error.find("another program"), std::string::npos) << error;
+}
+
+}  // namespace
+}  // namespace lidar::test
