@@ -72,7 +72,11 @@ std::optional<Sensor> MakeSensor(std::string_view name, std::uint32_t columns) {
     const auto parsed = std::from_chars(digits.data(), digits.data() + digits.size(), beams);
     if (parsed.ptr == digits.data() + digits.size() &&
         (beams == 32 || beams == 64 || beams == 128)) {
-      return Build(family, beams, columns);
+      Sensor sensor = Build(family, beams, columns);
+      // As it reads in the caps, so that both ends turn ranges into the same points.
+      const auto bytes = sensor.model.Serialise();
+      sensor.model = *SensorModel::Parse({bytes.data(), bytes.size()});
+      return sensor;
     }
   }
   return std::nullopt;

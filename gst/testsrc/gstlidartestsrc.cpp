@@ -1,0 +1,321 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+/**
+ * SECTION:element-lidartestsrc
+ *
+ * A spinning LiDAR that drives through a synthetic world: the videotestsrc of point clouds.
+ *
+ * |[
+ * gst-launch-1.0 lidartestsrc is-live=true model=os1-64 ! fakesink dump=false
+ * ]|
+ */
+#include "testsrc/gstlidartestsrc.h"
+
+#include <memory>
+#include <mutex>
+#include <optional>
+
+#include "common/properties.h"
+#include "testsrc/live_pacer.h"
+#include "testsrc/slice_maker.h"
+#include "testsrc/trajectory_log.h"
+
+GST_DEBUG_CATEGORY_STATIC(gst_lidar_test_src_debug);
+#define GST_CAT_DEFAULT gst_lidar_test_src_debug
+
+namespace {
+
+using lidar::Duration;
+using lidar::gst::BufferPtr;
+using lidar::gst::SliceMaker;
+
+const GEnumValue kModels[] = {{0, "OS0, 32 beams over 90 degrees", "os0-32"},
+                              {1, "OS0, 64 beams over 90 degrees", "os0-64"},
+                              {2, "OS0, 128 beams over 90 degrees", "os0-128"},
+                              {3, "OS1, 32 beams over 42 degrees", "os1-32"},
+                              {4, "OS1, 64 beams over 42 degrees", "os1-64"},
+                              {5, "OS1, 128 beams over 42 degrees", "os1-128"},
+                              {6, "OS2, 32 beams over 21 degrees", "os2-32"},
+                              {7, "OS2, 64 beams over 21 degrees", "os2-64"},
+                              {8, "OS2, 128 beams over 21 degrees", "os2-128"},
+                              {0, nullptr, nullptr}};
+const GEnumValue kModes[] = {
+    {0, "512 columns, 10 scans/s", "512x10"},   {1, "512 columns, 20 scans/s", "512x20"},
+    {2, "1024 columns, 10 scans/s", "1024x10"}, {3, "1024 columns, 20 scans/s", "1024x20"},
+    {4, "2048 columns, 10 scans/s", "2048x10"}, {0, nullptr, nullptr}};
+struct Mode {
+  std::uint32_t columns;
+  int scans_per_second;
+};
+constexpr std::array<Mode, 5> kModeValues = {
+    {{512, 10}, {512, 20}, {1024, 10}, {1024, 20}, {2048, 10}}};
+const GEnumValue kScenes[] = {{0, "A street in a town, with traffic", "street"},
+                              {1, "A road tunnel", "tunnel"},
+                              {2, "Open country", "field"},
+                              {0, nullptr, nullptr}};
+
+GType RegisterEnum(gsize* type, const char* name, const GEnumValue* values) {
+  if (g_once_init_enter(type)) g_once_init_leave(type, g_enum_register_static(name, values));
+  return *type;
+}
+GType ModelType() {
+  static gsize type = 0;
+  return RegisterEnum(&type, "GstLidarTestSrcModel", kModels);
+}
+GType ModeType() {
+  static gsize type = 0;
+  return RegisterEnum(&type, "GstLidarTestSrcMode", kModes);
+}
+GType SceneType() {
+  static gsize type = 0;
+  return RegisterEnum(&type, "GstLidarTestSrcScene", kScenes);
+}
+
+struct Settings {
+  gint model = 4;
+  gint mode = 2;
+  gint scene = 0;
+  gdouble speed_mps = 12;
+  gdouble noise_m = 0.01;
+  guint seed = 0;
+  guint slices_per_scan = 0;
+  std::string trajectory_location;
+};
+
+using Row = lidar::gst::Property<Settings>;
+const std::array<Row, 8> kProperties = {{
+    {"model", "Sensor to simulate", lidar::gst::EnumField<Settings>{&Settings::model, ModelType}},
+    {"mode", "Columns of a scan x scans per second",
+     lidar::gst::EnumField<Settings>{&Settings::mode, ModeType}},
+    {"scene", "World to drive through",
+     lidar::gst::EnumField<Settings>{&Settings::scene, SceneType}},
+    {"speed", "Speed of the sensor [m/s]", &Settings::speed_mps, 0, 100},
+    {"noise", "Standard deviation of ranges on a bright target nearby [m]", &Settings::noise_m, 0,
+     10},
+    {"seed", "Chooses the world and the noise: the same seed gives the same clouds",
+     &Settings::seed, 0, G_MAXUINT},
+    {"slices-per-scan",
+     "Buffers a scan is cut into, rounded down to a divisor of the columns (1 = whole scans, 0 = "
+     "automatic: a sweep of about 12.5 ms)",
+     &Settings::slices_per_scan, 0, 4096},
+    {"trajectory-location",
+     "File for the exact trajectory: one pose a buffer in TUM format, at its capture time",
+     &Settings::trajectory_location},
+}};
+constexpr guint kPropIsLive = kProperties.size() + 1;
+
+// Where the capture times of a source begin that is not live, so that its output is repeatable:
+// 2024-01-01T00:00:00Z.
+constexpr GstClockTime kEpoch = G_GUINT64_CONSTANT(1'704'067'200) * GST_SECOND;
+
+struct State {
+  explicit State(GstBaseSrc* source) : pacer(source) {}
+
+  std::mutex mutex;  // guards settings and latency
+  Settings settings;
+  GstClockTime latency = GST_CLOCK_TIME_NONE;  // of one slice, while started
+  // Of the streaming thread, between start and stop.
+  std::optional<SliceMaker> maker;
+  std::unique_ptr<lidar::gst::TrajectoryLog> log;
+  lidar::gst::LivePacer pacer;
+};
+
+lidar::synth::ScannerConfig ConfigFrom(const Settings& s) {
+  const Mode mode = kModeValues[static_cast<std::size_t>(s.mode)];
+  lidar::synth::ScannerConfig config;
+  config.sensor = *lidar::synth::MakeSensor(kModels[s.model].value_nick, mode.columns);
+  config.period = Duration(std::chrono::seconds(1)) / mode.scans_per_second;
+  config.scene = static_cast<lidar::synth::SceneKind>(s.scene);
+  config.speed_mps = s.speed_mps;
+  config.noise_m = s.noise_m;
+  config.seed = s.seed;
+  return config;
+}
+
+}  // namespace
+
+struct _GstLidarTestSrc {
+  GstPushSrc parent;
+  State* state;
+};
+
+G_DEFINE_TYPE(GstLidarTestSrc, gst_lidar_test_src, GST_TYPE_PUSH_SRC)
+GST_ELEMENT_REGISTER_DEFINE(lidartestsrc, "lidartestsrc", GST_RANK_NONE, GST_TYPE_LIDAR_TEST_SRC)
+
+namespace {
+
+State& StateOf(gpointer self) { return *GST_LIDAR_TEST_SRC(self)->state; }
+
+gboolean Start(GstBaseSrc* base) {
+  State& state = StateOf(base);
+  std::lock_guard lock(state.mutex);
+  const Settings& settings = state.settings;
+  if (!settings.trajectory_location.empty()) {
+    state.log = std::make_unique<lidar::gst::TrajectoryLog>(settings.trajectory_location);
+    if (!state.log->ok()) {
+      GST_ELEMENT_ERROR(
+          base, RESOURCE, OPEN_WRITE,
+          ("Cannot write the trajectory to \"%s\".", settings.trajectory_location.c_str()),
+          GST_ERROR_SYSTEM);
+      state.log.reset();
+      return FALSE;
+    }
+  }
+  state.maker.emplace(ConfigFrom(settings), settings.slices_per_scan);
+  state.latency = static_cast<GstClockTime>(state.maker->LongestSlice().count());
+  return TRUE;
+}
+
+gboolean Stop(GstBaseSrc* base) {
+  State& state = StateOf(base);
+  std::lock_guard lock(state.mutex);
+  state.latency = GST_CLOCK_TIME_NONE;
+  state.maker.reset();
+  state.log.reset();
+  state.pacer.Stop();
+  return TRUE;
+}
+
+GstCaps* GetCaps(GstBaseSrc* base, GstCaps* filter) {
+  State& state = StateOf(base);
+  Settings settings;
+  {
+    std::lock_guard lock(state.mutex);
+    settings = state.settings;
+  }
+  GstCaps* caps = SliceMaker::InfoFor(ConfigFrom(settings), settings.slices_per_scan).ToCaps();
+  if (filter != nullptr) {
+    GstCaps* both = gst_caps_intersect_full(filter, caps, GST_CAPS_INTERSECT_FIRST);
+    gst_caps_unref(caps);
+    caps = both;
+  }
+  return caps;
+}
+
+gboolean Query(GstBaseSrc* base, GstQuery* query) {
+  State& state = StateOf(base);
+  if (GST_QUERY_TYPE(query) == GST_QUERY_LATENCY && gst_base_src_is_live(base)) {
+    std::lock_guard lock(state.mutex);
+    if (!GST_CLOCK_TIME_IS_VALID(state.latency)) return FALSE;
+    gst_query_set_latency(query, TRUE, state.latency, GST_CLOCK_TIME_NONE);
+    return TRUE;
+  }
+  return GST_BASE_SRC_CLASS(gst_lidar_test_src_parent_class)->query(base, query);
+}
+
+/// A sensor does not wait for who is late: past one scan it is elsewhere.
+bool SkipWhatIsLate(GstElement* element, State* state) {
+  const Duration due = state->maker->NextEnd() + state->maker->period();
+  const auto now = state->pacer.Now();
+  if (!now || *now < due) return false;
+  GST_WARNING_OBJECT(element, "more than a scan late: skipping %" GST_TIME_FORMAT,
+                     GST_TIME_ARGS((*now - due).count()));
+  state->maker->SkipTo(*now);
+  return true;
+}
+
+GstFlowReturn CreateLive(GstLidarTestSrc* self, GstBuffer** out) {
+  State& state = *self->state;
+  if (!state.pacer.started()) state.pacer.Start();
+  const bool skipped = SkipWhatIsLate(GST_ELEMENT(self), &state);
+  const Duration begin = state.maker->NextTime();
+  const Duration end = state.maker->NextEnd();
+  const lidar::synth::Pose pose = state.maker->NextPose();
+  // Cast beforehand, so that the slice leaves when its last column is sampled and not later.
+  BufferPtr buffer = state.maker->Make();
+  const GstFlowReturn flow = state.pacer.WaitUntil(end);
+  if (flow != GST_FLOW_OK) return flow;
+  GST_BUFFER_PTS(buffer.get()) = state.pacer.ToRunningTime(begin);
+  gst_lidar_buffer_set_capture_time(buffer.get(), state.pacer.ToUnixTime(begin));
+  if (skipped) GST_BUFFER_FLAG_SET(buffer.get(), GST_BUFFER_FLAG_DISCONT);
+  if (state.log) state.log->Write(state.pacer.ToUnixTime(begin), pose);
+  *out = buffer.release();
+  return GST_FLOW_OK;
+}
+
+GstFlowReturn Create(GstPushSrc* push, GstBuffer** out) {
+  auto* self = GST_LIDAR_TEST_SRC(push);
+  if (gst_base_src_is_live(GST_BASE_SRC(push))) return CreateLive(self, out);
+  State& state = *self->state;
+  const lidar::synth::Pose pose = state.maker->NextPose();
+  BufferPtr buffer = state.maker->Make();
+  const GstClockTime capture = kEpoch + GST_BUFFER_PTS(buffer.get());
+  gst_lidar_buffer_set_capture_time(buffer.get(), capture);
+  if (state.log) state.log->Write(capture, pose);
+  *out = buffer.release();
+  return GST_FLOW_OK;
+}
+
+gboolean Unlock(GstBaseSrc* base) {
+  StateOf(base).pacer.SetFlushing(true);
+  return TRUE;
+}
+
+gboolean UnlockStop(GstBaseSrc* base) {
+  StateOf(base).pacer.SetFlushing(false);
+  return TRUE;
+}
+
+void SetObjectProperty(GObject* object, guint id, const GValue* value, GParamSpec*) {
+  if (id == kPropIsLive) {
+    gst_base_src_set_live(GST_BASE_SRC(object), g_value_get_boolean(value));
+    return;
+  }
+  State& state = StateOf(object);
+  std::lock_guard lock(state.mutex);
+  lidar::gst::SetProperty(state.settings, kProperties[id - 1], value);
+}
+
+void GetObjectProperty(GObject* object, guint id, GValue* value, GParamSpec*) {
+  if (id == kPropIsLive) {
+    g_value_set_boolean(value, gst_base_src_is_live(GST_BASE_SRC(object)));
+    return;
+  }
+  State& state = StateOf(object);
+  std::lock_guard lock(state.mutex);
+  lidar::gst::GetProperty(state.settings, kProperties[id - 1], value);
+}
+
+void Finalize(GObject* object) {
+  delete GST_LIDAR_TEST_SRC(object)->state;
+  G_OBJECT_CLASS(gst_lidar_test_src_parent_class)->finalize(object);
+}
+
+}  // namespace
+
+static void gst_lidar_test_src_init(GstLidarTestSrc* self) {
+  self->state = new State(GST_BASE_SRC(self));
+  gst_base_src_set_format(GST_BASE_SRC(self), GST_FORMAT_TIME);
+}
+
+static void gst_lidar_test_src_class_init(GstLidarTestSrcClass* klass) {
+  GST_DEBUG_CATEGORY_INIT(gst_lidar_test_src_debug, "lidartestsrc", 0, "Synthetic LiDAR");
+  auto* object = G_OBJECT_CLASS(klass);
+  object->set_property = SetObjectProperty;
+  object->get_property = GetObjectProperty;
+  object->finalize = Finalize;
+  lidar::gst::InstallProperties(object, kProperties);
+  g_object_class_install_property(
+      object, kPropIsLive,
+      g_param_spec_boolean("is-live", "is-live",
+                           "Scan in the time of the clock, else as fast as possible", FALSE,
+                           static_cast<GParamFlags>(G_PARAM_READWRITE | G_PARAM_STATIC_STRINGS |
+                                                    GST_PARAM_MUTABLE_READY)));
+  gst_type_mark_as_plugin_api(ModelType(), static_cast<GstPluginAPIFlags>(0));
+  gst_type_mark_as_plugin_api(ModeType(), static_cast<GstPluginAPIFlags>(0));
+  gst_type_mark_as_plugin_api(SceneType(), static_cast<GstPluginAPIFlags>(0));
+  static GstStaticPadTemplate src = GST_STATIC_PAD_TEMPLATE(
+      "src", GST_PAD_SRC, GST_PAD_ALWAYS, GST_STATIC_CAPS(GST_LIDAR_CLOUD_MEDIA_TYPE));
+  auto* element = GST_ELEMENT_CLASS(klass);
+  gst_element_class_add_static_pad_template(element, &src);
+  gst_element_class_set_static_metadata(element, "LiDAR test source", "Source/PointCloud",
+                                        "A synthetic LiDAR that drives through a synthetic world",
+                                        "gst-lidar");
+  auto* base = GST_BASE_SRC_CLASS(klass);
+  base->start = Start;
+  base->stop = Stop;
+  base->get_caps = GetCaps;
+  base->query = Query;
+  base->unlock = Unlock;
+  base->unlock_stop = UnlockStop;
+  GST_PUSH_SRC_CLASS(klass)->create = Create;
+}

@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Ties the stamps of a live source to the pipeline's clock and to UTC.
+#pragma once
+#include <gst/base/gstbasesrc.h>
+
+#include <mutex>
+#include <optional>
+
+#include "base/time.h"
+
+namespace lidar::gst {
+
+/// One a source; it must not outlive it. All but SetFlushing belong to the streaming thread.
+class LivePacer {
+ public:
+  explicit LivePacer(GstBaseSrc* source) : source_(source) {}
+
+  /// Stream time zero is now. To be called once the pipeline plays.
+  void Start();
+  void Stop() { started_ = false; }
+  bool started() const { return started_; }
+  /// Waits until stream time `t`, through pauses of the pipeline; FLUSHING when it stops.
+  GstFlowReturn WaitUntil(Duration t);
+  /// Present stream time; none without a clock.
+  std::optional<Duration> Now() const;
+  GstClockTime ToRunningTime(Duration t) const;
+  GstClockTime ToUnixTime(Duration t) const;
+  /// From unlock and unlock_stop, in any thread.
+  void SetFlushing(bool flushing);
+
+ private:
+  void MeasureUnixOffset();
+  GstClockReturn Wait(GstClockTime running_time);
+
+  GstBaseSrc* source_;
+  bool started_ = false;
+  GstClockTime start_ = 0;            // running time of stream time zero
+  GstClockTimeDiff unix_offset_ = 0;  // UTC less running time
+  std::mutex mutex_;                  // guards what follows; not held while waiting
+  bool flushing_ = false;
+  GstClockID wait_ = nullptr;
+};
+
+}  // namespace lidar::gst

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Slices of a synthetic scan as buffers of the cloud caps.
+#pragma once
+#include <cstdint>
+#include <vector>
+
+#include "common/cloud_info.h"
+#include "common/refs.h"
+#include "synth/scanner.h"
+
+namespace lidar::gst {
+
+/// Scans one slice after the other. Stamps count from the start of the first scan.
+class SliceMaker {
+ public:
+  SliceMaker(const synth::ScannerConfig& config, std::uint32_t slices_per_scan);
+
+  /// Caps of the slices of such a source.
+  static CloudInfo InfoFor(const synth::ScannerConfig& config, std::uint32_t slices_per_scan);
+
+  /// When the first column of the next slice is sampled.
+  Duration NextTime() const { return scanner_.ColumnTime(scan_, FirstColumn()); }
+  /// When its last column is.
+  Duration NextEnd() const { return scanner_.ColumnTime(scan_, FirstColumn() + width_); }
+  synth::Pose NextPose() const { return scanner_.trajectory().At(NextTime()); }
+  Duration LongestSlice() const;
+  Duration period() const { return period_; }
+  /// Casts the next slice into a buffer with PTS, duration and slice meta.
+  BufferPtr Make();
+  /// Goes on with the first slice of the scan that is being swept at `time`.
+  void SkipTo(Duration time);
+
+ private:
+  std::uint32_t FirstColumn() const { return slice_ * width_; }
+
+  Duration period_;
+  synth::Scanner scanner_;
+  RangeProjection projection_;
+  std::uint32_t slices_;
+  std::uint32_t width_;  // columns of a slice
+  std::uint64_t scan_ = 0;
+  std::uint32_t slice_ = 0;
+  synth::Returns returns_;
+};
+
+}  // namespace lidar::gst

@@ -1,0 +1,265 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+
+#include "cloud/range_projection.h"
+#include "common/buffer_map.h"
+#include "common/cloud_info.h"
+#include "support/harness.h"
+
+namespace lidar::gst {
+namespace {
+
+using test::Harness;
+
+Harness Launch(const std::string& properties) {
+  Harness h(gst_harness_new_parse(("lidartestsrc " + properties).c_str()));
+  return h;
+}
+
+BufferPtr Pull(const Harness& h) { return BufferPtr(gst_harness_pull(h.get())); }
+
+GstLidarSlice SliceOf(const BufferPtr& buffer) {
+  GstLidarSlice slice{};
+  EXPECT_TRUE(gst_lidar_buffer_get_slice(buffer.get(), &slice));
+  return slice;
+}
+
+std::vector<guint8> BytesOf(const BufferPtr& buffer) {
+  const BufferMap map(buffer.get(), GST_MAP_READ);
+  return {map.data(), map.data() + map.size()};
+}
+
+struct Point {
+  float x, y, z, intensity;
+  std::uint32_t range;
+};
+static_assert(sizeof(Point) == 20);
+
+std::vector<Point> PointsOf(const BufferPtr& buffer) {
+  const auto bytes = BytesOf(buffer);
+  std::vector<Point> points(bytes.size() / sizeof(Point));
+  std::memcpy(points.data(), bytes.data(), points.size() * sizeof(Point));
+  return points;
+}
+
+CloudInfo InfoOf(const Harness& h) {
+  const CapsPtr caps(gst_pad_get_current_caps(h->sinkpad));
+  auto info = CloudInfo::FromCaps(caps.get());
+  EXPECT_TRUE(info);
+  return *info;
+}
+
+TEST(LidarTestSrc, CapsDescribeTheSlicesOfTheSensor) {
+  const Harness h = Launch("model=os1-128 mode=2048x10");
+  gst_harness_play(h.get());
+  const BufferPtr buffer = Pull(h);
+  const CloudInfo info = InfoOf(h);
+  EXPECT_EQ(info.width, 256U);
+  EXPECT_EQ(info.height, 128U);
+  EXPECT_EQ(info.framerate_n, 10);
+  EXPECT_EQ(info.fields.ToString(), "x:F32:0,y:F32:4,z:F32:8,intensity:F32:12,range:U32:16");
+  ASSERT_TRUE(info.sensor_model);
+  EXPECT_EQ(info.sensor_model->columns_per_scan, 2048U);
+  EXPECT_EQ(gst_buffer_get_size(buffer.get()), info.FrameSize());
+}
+
+TEST(LidarTestSrc, StampsAreTheSweepOfEachSlice) {
+  const Harness h = Launch("model=os1-32 mode=512x20");
+  gst_harness_play(h.get());
+  for (guint i = 0; i < 12; ++i) {
+    const BufferPtr buffer = Pull(h);
+    const GstLidarSlice slice = SliceOf(buffer);
+    EXPECT_EQ(slice.scan_id, i / 4);
+    EXPECT_EQ(slice.slice_index, i % 4);
+    EXPECT_EQ(slice.slice_count, 4U);
+    EXPECT_EQ(slice.first_column, i % 4 * 128);
+    EXPECT_EQ(GST_BUFFER_PTS(buffer.get()), i * 12'500'000);
+    EXPECT_EQ(GST_BUFFER_DURATION(buffer.get()), 12'500'000U);
+    // Not live: repeatable times from 2024-01-01.
+    EXPECT_EQ(gst_lidar_buffer_get_capture_time(buffer.get()),
+              1'704'067'200 * GST_SECOND + GST_BUFFER_PTS(buffer.get()));
+  }
+}
+
+TEST(LidarTestSrc, PointsAreWhatTheRangesAndTheSensorModelSay) {
+  const Harness h = Launch("model=os0-32 mode=512x10 slices-per-scan=4");
+  gst_harness_play(h.get());
+  const BufferPtr first = Pull(h);
+  const BufferPtr second = Pull(h);
+  const RangeProjection projection(*InfoOf(h).sensor_model);
+  const auto points = PointsOf(second);
+  ASSERT_EQ(points.size(), 32U * 128);
+  int missing = 0;
+  for (std::uint32_t i = 0; i < points.size(); ++i) {
+    const auto p = projection.Point(i / 128, 128 + i % 128, points[i].range);
+    EXPECT_EQ(points[i].x, p[0]);
+    EXPECT_EQ(points[i].z, p[2]);
+    if (points[i].range != 0) continue;
+    ++missing;
+    EXPECT_EQ(points[i].intensity, 0);
+  }
+  EXPECT_GT(missing, 50);
+  EXPECT_LT(missing, 2500);
+}
+
+TEST(LidarTestSrc, TheSameSeedGivesTheSameCloudsOverRestarts) {
+  const auto sweep = [](const std::string& properties) {
+    const Harness h = Launch("model=os1-32 mode=512x10 num-buffers=2 " + properties);
+    std::vector<std::vector<guint8>> runs;
+    for (int run = 0; run < 2; ++run) {
+      gst_harness_play(h.get());
+      BytesOf(Pull(h));
+      runs.push_back(BytesOf(Pull(h)));
+      gst_element_set_state(h->element, GST_STATE_NULL);
+    }
+    EXPECT_EQ(runs[0], runs[1]);
+    return runs[0];
+  };
+  const auto one = sweep("seed=1");
+  EXPECT_EQ(one, sweep("seed=1"));
+  EXPECT_NE(one, sweep("seed=2"));
+  EXPECT_NE(one, sweep("seed=1 scene=field"));
+}
+
+TEST(LidarTestSrc, SlicesThatDoNotDivideTheColumnsAreRoundedDown) {
+  const Harness h = Launch("model=os1-32 mode=512x10 slices-per-scan=15");
+  gst_harness_play(h.get());
+  EXPECT_EQ(SliceOf(Pull(h)).slice_count, 8U);
+}
+
+TEST(LidarTestSrc, EndsAfterNumBuffersAndStartsAgainWithTheFirstScan) {
+  const Harness h = Launch("model=os1-32 mode=512x10 slices-per-scan=1 num-buffers=3");
+  for (int run = 0; run < 3; ++run) {
+    gst_harness_play(h.get());
+    for (guint i = 0; i < 3; ++i) EXPECT_EQ(SliceOf(Pull(h)).scan_id, i);
+    bool eos = false;
+    while (!eos) {
+      const EventPtr event(gst_harness_pull_event(h.get()));
+      ASSERT_TRUE(event);
+      eos = GST_EVENT_TYPE(event.get()) == GST_EVENT_EOS;
+    }
+    gst_element_set_state(h->element, GST_STATE_NULL);
+  }
+}
+
+TEST(LidarTestSrc, ALiveSliceLeavesWhenItsLastColumnIsSampled) {
+  const Harness h = Launch("is-live=true model=os1-32 mode=512x10");
+  gst_harness_use_testclock(h.get());
+  gst_harness_play(h.get());
+  for (guint i = 1; i <= 10; ++i) {
+    ASSERT_TRUE(gst_harness_wait_for_clock_id_waits(h.get(), 1, 10));
+    EXPECT_EQ(gst_test_clock_get_next_entry_time(GST_TEST_CLOCK(GST_ELEMENT_CLOCK(h->element))),
+              i * 12'500'000);
+    EXPECT_EQ(gst_harness_buffers_in_queue(h.get()), 0U);
+    ASSERT_TRUE(gst_harness_crank_single_clock_wait(h.get()));
+    const BufferPtr buffer = Pull(h);
+    EXPECT_EQ(GST_BUFFER_PTS(buffer.get()), (i - 1) * 12'500'000);
+  }
+}
+
+TEST(LidarTestSrc, ALiveSourceSaysItIsLateByOneSlice) {
+  const Harness h = Launch("is-live=true model=os1-32 mode=1024x10");
+  gst_harness_use_testclock(h.get());
+  gst_harness_play(h.get());
+  const QueryPtr query(gst_query_new_latency());
+  ASSERT_TRUE(gst_pad_peer_query(h->sinkpad, query.get()));
+  gboolean live = FALSE;
+  GstClockTime min = 0;
+  GstClockTime max = 0;
+  gst_query_parse_latency(query.get(), &live, &min, &max);
+  EXPECT_TRUE(live);
+  EXPECT_NEAR(static_cast<double>(min), 12.5e6, 2);
+  EXPECT_EQ(max, GST_CLOCK_TIME_NONE);
+}
+
+TEST(LidarTestSrc, ALiveSourceThatIsScansLateSkipsToThePresent) {
+  const Harness h = Launch("is-live=true model=os1-32 mode=512x10");
+  gst_harness_use_testclock(h.get());
+  gst_harness_play(h.get());
+  ASSERT_TRUE(gst_harness_wait_for_clock_id_waits(h.get(), 1, 10));
+  gst_harness_set_time(h.get(), 1'030 * GST_MSECOND);
+  // The test clock keeps who waits for a time that has passed until it is told.
+  const auto release = [&] {
+    ASSERT_TRUE(gst_harness_wait_for_clock_id_waits(h.get(), 1, 10));
+    gst_clock_id_unref(
+        gst_test_clock_process_next_clock_id(GST_TEST_CLOCK(GST_ELEMENT_CLOCK(h->element))));
+  };
+  release();
+  EXPECT_EQ(SliceOf(Pull(h)).scan_id, 0U);  // was on its way
+  release();
+  const BufferPtr next = Pull(h);
+  EXPECT_EQ(SliceOf(next).scan_id, 10U);
+  EXPECT_EQ(SliceOf(next).slice_index, 0U);
+  EXPECT_TRUE(GST_BUFFER_IS_DISCONT(next.get()));
+  EXPECT_EQ(GST_BUFFER_PTS(next.get()), GST_SECOND);
+}
+
+TEST(LidarTestSrc, ALiveSourceStopsWhileItWaits) {
+  for (int run = 0; run < 3; ++run) {
+    const Harness h = Launch("is-live=true model=os1-32 mode=512x10");
+    gst_harness_use_testclock(h.get());
+    gst_harness_play(h.get());
+    ASSERT_TRUE(gst_harness_wait_for_clock_id_waits(h.get(), 1, 10));
+  }
+}
+
+TEST(LidarTestSrc, WritesTheTrajectoryAtTheCaptureTimes) {
+  const std::string path = ::testing::TempDir() + "trajectory.tum";
+  {
+    const Harness h =
+        Launch("model=os1-32 mode=512x10 speed=10 num-buffers=16 trajectory-location=" + path);
+    gst_harness_play(h.get());
+    for (int i = 0; i < 16; ++i) Pull(h);
+  }
+  std::ifstream file(path);
+  std::string line;
+  ASSERT_TRUE(std::getline(file, line));
+  EXPECT_EQ(line, "# timestamp tx ty tz qx qy qz qw");
+  int i = 0;
+  for (; std::getline(file, line); ++i) {
+    std::istringstream fields(line);
+    double t = 0, x = 0, y = 0, z = 0, qx = 0, qy = 0, qz = 0, qw = 0;
+    ASSERT_TRUE(fields >> t >> x >> y >> z >> qx >> qy >> qz >> qw) << line;
+    EXPECT_NEAR(t, 1'704'067'200 + i * 0.0125, 1e-6);
+    EXPECT_NEAR(x, i * 0.125, 1e-5);
+    EXPECT_NEAR(qx * qx + qy * qy + qz * qz + qw * qw, 1, 1e-6);
+  }
+  EXPECT_EQ(i, 16);
+  std::filesystem::remove(path);
+}
+
+TEST(LidarTestSrc, SaysWhichTrajectoryItCannotWrite) {
+  const ElementPtr pipeline(
+      gst_parse_launch("lidartestsrc trajectory-location=/nonexistent/t.tum ! fakesink", nullptr));
+  EXPECT_EQ(gst_element_set_state(pipeline.get(), GST_STATE_PAUSED), GST_STATE_CHANGE_FAILURE);
+  GstBus* bus = gst_element_get_bus(pipeline.get());
+  const MessagePtr message(gst_bus_pop_filtered(bus, GST_MESSAGE_ERROR));
+  gst_object_unref(bus);
+  ASSERT_TRUE(message);
+  GError* raw = nullptr;
+  gst_message_parse_error(message.get(), &raw, nullptr);
+  const ErrorPtr error(raw);
+  EXPECT_TRUE(g_error_matches(error.get(), GST_RESOURCE_ERROR, GST_RESOURCE_ERROR_OPEN_WRITE));
+  EXPECT_NE(std::string(error->message).find("/nonexistent/t.tum"), std::string::npos);
+  gst_element_set_state(pipeline.get(), GST_STATE_NULL);
+}
+
+TEST(LidarTestSrc, RefusesCapsThatAreNotItsOwn) {
+  const ElementPtr pipeline(
+      gst_parse_launch("lidartestsrc ! application/x-pointcloud2,height=7 ! fakesink", nullptr));
+  gst_element_set_state(pipeline.get(), GST_STATE_PAUSED);
+  GstBus* bus = gst_element_get_bus(pipeline.get());
+  const MessagePtr message(gst_bus_timed_pop_filtered(bus, 10 * GST_SECOND, GST_MESSAGE_ERROR));
+  gst_object_unref(bus);
+  EXPECT_TRUE(message);
+  gst_element_set_state(pipeline.get(), GST_STATE_NULL);
+}
+
+}  // namespace
+}  // namespace lidar::gst
