@@ -10,39 +10,26 @@
  */
 #include "rtplidar/gstrtplidarpay.h"
 
-#include <gst/rtp/gstrtpbuffer.h>
-
 #include <mutex>
-#include <optional>
 
-#include "common/buffer_map.h"
 #include "common/gstlidar.h"
 #include "common/properties.h"
 #include "common/refs.h"
-#include "rtp/ntp_time.h"
-#include "rtp/packetizer.h"
 #include "rtplidar/base_stats.h"
 #include "rtplidar/config_caps.h"
+#include "rtplidar/pay_slices.h"
 
 GST_DEBUG_CATEGORY_STATIC(gst_lidar_rtp_pay_debug);
 #define GST_CAT_DEFAULT gst_lidar_rtp_pay_debug
 
-using lidar::gst::BufferListPtr;
-using lidar::gst::BufferMap;
 using lidar::gst::BufferPtr;
 using lidar::gst::CapsPtr;
-using lidar::gst::EventPtr;
 
 namespace {
 
-constexpr guint kClockRate = 90'000;
-// Of the bytes behind `stats`, so that the share of the headers follows the last second or so.
-constexpr gdouble kShareMemory = 0.98;
+using Settings = lidar::gst::PaySettings;
 
-struct Settings {
-  guint config_interval_s = 1;
-  bool aggregate = false;
-};
+constexpr guint kClockRate = 90'000;
 
 const std::array<lidar::gst::Property<Settings>, 2> kProperties = {{
     {"config-interval",
@@ -56,43 +43,7 @@ const std::array<lidar::gst::Property<Settings>, 2> kProperties = {{
 }};
 constexpr guint kStatsId = kProperties.size() + 1;
 
-struct Counters {
-  guint64 scans = 0;
-  guint64 slices = 0;
-  guint64 packets = 0;
-  guint64 configs = 0;
-  guint64 slice_bytes = 0;
-  guint64 payload_bytes = 0;  // with our headers
-  guint64 empty = 0;          // buffers without a byte, not sent
-};
-
-/// What one buffer brings: its unit and what GStreamer knows of it.
-struct Slice {
-  lidar::rtp::Unit unit;
-  GstLidarSlice meta{};
-  GstClockTime pts = GST_CLOCK_TIME_NONE;
-  GstClockTime duration = GST_CLOCK_TIME_NONE;
-};
-
-struct State {
-  std::mutex mutex;  // guards settings, counters, share and config_due; never held while pushing
-  Settings settings;
-  Counters counters;
-  gdouble recent_slice_bytes = 0;
-  gdouble recent_payload_bytes = 0;
-  bool config_due = true;
-
-  // The rest belongs to the streaming thread.
-  std::optional<lidar::rtp::StreamConfig> config;
-  std::vector<std::uint8_t> config_bytes;
-  std::uint8_t config_id = 0;
-  GstClockTime config_sent_at = GST_CLOCK_TIME_NONE;
-  lidar::rtp::ScanCounter scans{g_random_int()};
-  std::optional<std::uint32_t> last_scan;
-  guint unnamed_scans = 0;  // ids of buffers without a meta
-  lidar::rtp::Aggregator aggregator;
-  Slice first_aggregated;
-
+struct State : lidar::gst::PayState {
   GstPadQueryFunction base_src_query = nullptr;
 };
 
@@ -115,192 +66,9 @@ static GstStaticPadTemplate src_template = GST_STATIC_PAD_TEMPLATE(
     GST_STATIC_CAPS("application/x-rtp, media = (string) application, payload = (int) [ 96, 127 ], "
                     "clock-rate = (int) 90000, encoding-name = (string) X-LIDAR-DRACO"));
 
-namespace {
-
-std::size_t MaxPayload(GstRTPBasePayload* base) {
-  return gst_rtp_buffer_calc_payload_len(GST_RTP_BASE_PAYLOAD_MTU(base), 0, 0);
-}
-
-/// An RTP buffer of `packet`, whose body is a part of `slice_buffer` that is not copied.
-GstBuffer* MakeBuffer(GstRTPBasePayload* base, const lidar::rtp::Packet& packet,
-                      GstBuffer* slice_buffer) {
-  GstBuffer* out = gst_rtp_base_payload_allocate_output_buffer(
-      base, static_cast<guint>(packet.header.size()), 0, 0);
-  GstRTPBuffer rtp = GST_RTP_BUFFER_INIT;
-  gst_rtp_buffer_map(out, GST_MAP_WRITE, &rtp);
-  memcpy(gst_rtp_buffer_get_payload(&rtp), packet.header.data(), packet.header.size());
-  gst_rtp_buffer_set_marker(&rtp, packet.marker);
-  gst_rtp_buffer_unmap(&rtp);
-  if (packet.marker) GST_BUFFER_FLAG_SET(out, GST_BUFFER_FLAG_MARKER);
-  if (packet.body_size > 0) {
-    out = gst_buffer_append(out, gst_buffer_copy_region(slice_buffer, GST_BUFFER_COPY_MEMORY,
-                                                        packet.body_offset, packet.body_size));
-  }
-  return out;
-}
-
-/// Appends `packets`; every one says which slice it is of, so that a sender can drop whole scans.
-void Append(GstRTPBasePayload* base, const std::vector<lidar::rtp::Packet>& packets,
-            const Slice& slice, GstBuffer* body, GstBufferList* list) {
-  State& state = *GST_LIDAR_RTP_PAY(base)->state;
-  for (const auto& packet : packets) {
-    GstBuffer* out = MakeBuffer(base, packet, body);
-    GST_BUFFER_PTS(out) = slice.pts;
-    GST_BUFFER_DURATION(out) = slice.duration;
-    gst_lidar_buffer_set_slice(out, &slice.meta);
-    gst_buffer_list_add(list, out);
-    std::lock_guard lock(state.mutex);
-    ++state.counters.packets;
-    const auto bytes = packet.header.size() + packet.body_size;
-    state.counters.payload_bytes += bytes;
-    state.recent_payload_bytes += static_cast<gdouble>(bytes);
-  }
-}
-
-bool ConfigIsDue(State& state, GstClockTime pts) {
-  std::lock_guard lock(state.mutex);
-  const GstClockTime interval = state.settings.config_interval_s * GST_SECOND;
-  const GstClockTime last = state.config_sent_at;
-  const bool repeat =
-      interval > 0 && (!GST_CLOCK_TIME_IS_VALID(pts) || !GST_CLOCK_TIME_IS_VALID(last) ||
-                       pts < last || pts - last >= interval);
-  if (!state.config_due && !repeat) return false;
-  state.config_due = false;
-  state.config_sent_at = pts;
-  ++state.counters.configs;
-  return true;
-}
-
-void AppendConfig(GstRTPBasePayload* base, const Slice& slice, GstBufferList* list) {
-  State& state = *GST_LIDAR_RTP_PAY(base)->state;
-  lidar::rtp::Unit unit;
-  unit.unit = lidar::rtp::UnitType::kStreamConfig;
-  unit.config_id = state.config_id;
-  const lidar::ByteView bytes{state.config_bytes.data(), state.config_bytes.size()};
-  const BufferPtr body(gst_buffer_new_memdup(bytes.data, bytes.size));
-  Append(base, lidar::rtp::Packetize(unit, bytes, MaxPayload(base)), slice, body.get(), list);
-}
-
-GstFlowReturn PushList(GstRTPBasePayload* base, BufferListPtr list) {
-  if (gst_buffer_list_length(list.get()) == 0) return GST_FLOW_OK;
-  return gst_rtp_base_payload_push_list(base, list.release());
-}
-
-GstFlowReturn PushAggregate(GstRTPBasePayload* base) {
-  State& state = *GST_LIDAR_RTP_PAY(base)->state;
-  const auto packet = state.aggregator.Take();
-  if (!packet) return GST_FLOW_OK;
-  BufferListPtr list(gst_buffer_list_new());
-  if (ConfigIsDue(state, state.first_aggregated.pts))
-    AppendConfig(base, state.first_aggregated, list.get());
-  Append(base, {*packet}, state.first_aggregated, nullptr, list.get());
-  return PushList(base, std::move(list));
-}
-
-/// None, and an error posted, where the buffer's meta cannot be sent.
-std::optional<Slice> DescribeSlice(GstRTPBasePayload* base, GstBuffer* buffer) {
-  State& state = *GST_LIDAR_RTP_PAY(base)->state;
-  Slice slice;
-  if (!gst_lidar_buffer_get_slice(buffer, &slice.meta)) slice.meta.scan_id = state.unnamed_scans++;
-  if (slice.meta.slice_count > lidar::rtp::kMaxSlicesPerScan ||
-      slice.meta.slice_index >= slice.meta.slice_count || slice.meta.first_column > G_MAXUINT16) {
-    GST_ELEMENT_ERROR(base, STREAM, FORMAT,
-                      ("The LidarSliceMeta of a buffer is out of range: slice %u of %u, column %u.",
-                       slice.meta.slice_index, slice.meta.slice_count, slice.meta.first_column),
-                      ("at most %u slices a scan", lidar::rtp::kMaxSlicesPerScan));
-    return std::nullopt;
-  }
-  slice.pts = GST_BUFFER_PTS(buffer);
-  slice.duration = GST_BUFFER_DURATION(buffer);
-  slice.unit.config_id = state.config_id;
-  slice.unit.slice.index = static_cast<std::uint16_t>(slice.meta.slice_index);
-  slice.unit.slice.count = static_cast<std::uint16_t>(slice.meta.slice_count);
-  slice.unit.slice.scan_number = state.scans.Next(slice.meta.scan_id, slice.unit.slice.index);
-  slice.unit.info.scan_id = slice.meta.scan_id;
-  slice.unit.info.first_column = static_cast<std::uint16_t>(slice.meta.first_column);
-  if (slice.duration < lidar::rtp::SliceInfo::kUnknownDuration)
-    slice.unit.info.duration_ns = static_cast<std::uint32_t>(slice.duration);
-  const GstClockTime capture = gst_lidar_buffer_get_capture_time(buffer);
-  if (GST_CLOCK_TIME_IS_VALID(capture)) slice.unit.info.capture_ntp = lidar::rtp::ToNtp(capture);
-  return slice;
-}
-
-void CountSlice(State& state, const Slice& slice, gsize size) {
-  std::lock_guard lock(state.mutex);
-  ++state.counters.slices;
-  if (state.last_scan != slice.unit.slice.scan_number) ++state.counters.scans;
-  state.last_scan = slice.unit.slice.scan_number;
-  state.counters.slice_bytes += size;
-  state.recent_slice_bytes = state.recent_slice_bytes * kShareMemory + static_cast<gdouble>(size);
-  state.recent_payload_bytes *= kShareMemory;
-}
-
-/// Takes the slice into the packet that is being collected; false where it must go out alone.
-bool Aggregate(GstRTPBasePayload* base, const Slice& slice, lidar::ByteView bytes,
-               GstFlowReturn* flow) {
-  State& state = *GST_LIDAR_RTP_PAY(base)->state;
-  const auto ticks = GST_CLOCK_TIME_IS_VALID(slice.pts)
-                         ? gst_util_uint64_scale(slice.pts, kClockRate, GST_SECOND)
-                         : 0;
-  for (int attempt = 0; attempt < 2; ++attempt) {
-    const bool starts = state.aggregator.empty();
-    if (state.aggregator.Add(slice.unit, bytes, MaxPayload(base), ticks)) {
-      if (starts) state.first_aggregated = slice;
-      const GstClockTime held = slice.pts + slice.duration - state.first_aggregated.pts;
-      const bool scan_ends = slice.unit.slice.index + 1 == slice.unit.slice.count;
-      if (scan_ends || gst_rtp_base_payload_is_filled(base, 0, held)) *flow = PushAggregate(base);
-      return true;
-    }
-    *flow = PushAggregate(base);
-    if (*flow != GST_FLOW_OK) return true;
-  }
-  return false;
-}
-
-bool MtuSuffices(GstRTPBasePayload* base) {
-  if (MaxPayload(base) >= lidar::rtp::kMinPayload) return true;
-  GST_ELEMENT_ERROR(base, RESOURCE, SETTINGS,
-                    ("mtu is too small; set it to %u or more.",
-                     gst_rtp_buffer_calc_packet_len(lidar::rtp::kMinPayload, 0, 0)),
-                    (nullptr));
-  return false;
-}
-
-}  // namespace
-
 static GstFlowReturn gst_lidar_rtp_pay_handle_buffer(GstRTPBasePayload* base, GstBuffer* buffer) {
   const BufferPtr owner(buffer);
-  State& state = *GST_LIDAR_RTP_PAY(base)->state;
-  const BufferMap map(buffer, GST_MAP_READ);
-  if (!map || map.size() > lidar::rtp::kMaxUnitBytes) {
-    GST_ELEMENT_ERROR(base, STREAM, FORMAT,
-                      ("A slice of %" G_GSIZE_FORMAT " bytes cannot be sent.", map.size()),
-                      ("at most %" G_GSIZE_FORMAT " bytes", lidar::rtp::kMaxUnitBytes));
-    return GST_FLOW_ERROR;
-  }
-  if (map.size() == 0) {
-    std::lock_guard lock(state.mutex);
-    ++state.counters.empty;
-    return GST_FLOW_OK;
-  }
-  if (!MtuSuffices(base)) return GST_FLOW_ERROR;
-  const auto slice = DescribeSlice(base, buffer);
-  if (!slice) return GST_FLOW_ERROR;
-  CountSlice(state, *slice, map.size());
-  bool aggregate = false;
-  {
-    std::lock_guard lock(state.mutex);
-    aggregate = state.settings.aggregate;
-  }
-  GstFlowReturn flow = GST_FLOW_OK;
-  if (aggregate && Aggregate(base, *slice, map.view(), &flow)) return flow;
-  flow = PushAggregate(base);  // left over from before `aggregate` was turned off
-  if (flow != GST_FLOW_OK) return flow;
-  BufferListPtr list(gst_buffer_list_new());
-  if (ConfigIsDue(state, slice->pts)) AppendConfig(base, *slice, list.get());
-  Append(base, lidar::rtp::Packetize(slice->unit, map.view(), MaxPayload(base)), *slice, buffer,
-         list.get());
-  return PushList(base, std::move(list));
+  return lidar::gst::PaySliceBuffer(base, *GST_LIDAR_RTP_PAY(base)->state, buffer);
 }
 
 static gboolean gst_lidar_rtp_pay_set_caps(GstRTPBasePayload* base, GstCaps* caps) {
@@ -313,7 +81,7 @@ static gboolean gst_lidar_rtp_pay_set_caps(GstRTPBasePayload* base, GstCaps* cap
                        static_cast<void*>(caps)));
     return FALSE;
   }
-  PushAggregate(base);
+  lidar::gst::PushAggregate(base, state);
   if (state.config != config) {
     const bool first = !state.config.has_value();
     state.config = std::move(config);
@@ -332,7 +100,7 @@ static gboolean gst_lidar_rtp_pay_sink_event(GstRTPBasePayload* base, GstEvent* 
   switch (GST_EVENT_TYPE(event)) {
     case GST_EVENT_EOS:
     case GST_EVENT_SEGMENT:
-      PushAggregate(base);
+      lidar::gst::PushAggregate(base, state);
       break;
     case GST_EVENT_FLUSH_STOP: {
       state.aggregator.Take();
@@ -347,18 +115,6 @@ static gboolean gst_lidar_rtp_pay_sink_event(GstRTPBasePayload* base, GstEvent* 
 }
 
 namespace {
-
-/// The part of the RTP payload that is the encoder's.
-gdouble SliceShare(GstRTPBasePayload* base) {
-  State& state = *GST_LIDAR_RTP_PAY(base)->state;
-  std::lock_guard lock(state.mutex);
-  if (state.recent_slice_bytes > 0 && state.recent_payload_bytes > 0)
-    return MIN(1.0, state.recent_slice_bytes / state.recent_payload_bytes);
-  const auto payload = static_cast<gdouble>(MaxPayload(base));
-  const auto header = static_cast<gdouble>(lidar::rtp::HeaderSize(
-      lidar::rtp::PacketType::kMiddleFragment, lidar::rtp::UnitType::kSlice));
-  return MAX(0.5, 1 - header / payload);
-}
 
 /// The event as the encoder should see it: without what our headers take. Foreign fields stay.
 GstEvent* WithoutHeaders(GstEvent* event, gdouble share) {
@@ -386,7 +142,7 @@ static gboolean gst_lidar_rtp_pay_src_event(GstRTPBasePayload* base, GstEvent* e
   State& state = *GST_LIDAR_RTP_PAY(base)->state;
   GstLidarTargetBitrate target{};
   if (gst_lidar_event_parse_target_bitrate(event, &target)) {
-    GstEvent* out = WithoutHeaders(event, SliceShare(base));
+    GstEvent* out = WithoutHeaders(event, lidar::gst::SliceShare(base, state));
     gst_event_unref(event);
     event = out;
   } else if (WantsConfig(event)) {
@@ -447,7 +203,7 @@ static GstStructure* Stats(GObject* object) {
   State& state = *GST_LIDAR_RTP_PAY(object)->state;
   GstStructure* s = lidar::gst::BaseClassStats(object, gst_lidar_rtp_pay_parent_class);
   std::lock_guard lock(state.mutex);
-  const Counters& c = state.counters;
+  const lidar::gst::PayCounters& c = state.counters;
   gst_structure_set(s, "scans-sent", G_TYPE_UINT64, c.scans, "slices-sent", G_TYPE_UINT64, c.slices,
                     "packets-sent", G_TYPE_UINT64, c.packets, "configs-sent", G_TYPE_UINT64,
                     c.configs, "slice-bytes", G_TYPE_UINT64, c.slice_bytes, "payload-bytes",

@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// The streaming side of rtplidarpay: slices in, lists of RTP buffers out.
+#pragma once
+#include <gst/rtp/gstrtpbasepayload.h>
+
+#include <mutex>
+#include <optional>
+#include <vector>
+
+#include "common/gstlidar.h"
+#include "rtp/packetizer.h"
+#include "rtp/stream_config.h"
+
+namespace lidar::gst {
+
+struct PaySettings {
+  guint config_interval_s = 1;
+  bool aggregate = false;
+};
+
+struct PayCounters {
+  guint64 scans = 0;
+  guint64 slices = 0;
+  guint64 packets = 0;
+  guint64 configs = 0;
+  guint64 slice_bytes = 0;
+  guint64 payload_bytes = 0;  // with our headers
+  guint64 empty = 0;          // buffers without a byte, not sent
+};
+
+/// What one buffer brings: its unit and what GStreamer knows of it.
+struct PaySlice {
+  rtp::Unit unit;
+  GstLidarSlice meta{};
+  GstClockTime pts = GST_CLOCK_TIME_NONE;
+  GstClockTime duration = GST_CLOCK_TIME_NONE;
+};
+
+struct PayState {
+  std::mutex mutex;  // guards settings, counters, share and config_due; never held while pushing
+  PaySettings settings;
+  PayCounters counters;
+  gdouble recent_slice_bytes = 0;
+  gdouble recent_payload_bytes = 0;
+  bool config_due = true;
+
+  // The rest belongs to the streaming thread.
+  std::optional<rtp::StreamConfig> config;
+  std::vector<std::uint8_t> config_bytes;
+  std::uint8_t config_id = 0;
+  GstClockTime config_sent_at = GST_CLOCK_TIME_NONE;
+  rtp::ScanCounter scans{g_random_int()};
+  std::optional<std::uint32_t> last_scan;
+  guint unnamed_scans = 0;  // ids of buffers without a meta
+  rtp::Aggregator aggregator;
+  PaySlice first_aggregated;
+};
+
+/// Room for payload in one RTP packet [bytes].
+std::size_t MaxPayload(GstRTPBasePayload* base);
+/// Payloads and pushes one encoded slice; posts what is wrong with it.
+GstFlowReturn PaySliceBuffer(GstRTPBasePayload* base, PayState& state, GstBuffer* buffer);
+/// Pushes the slices that wait to be put together.
+GstFlowReturn PushAggregate(GstRTPBasePayload* base, PayState& state);
+/// The part of the RTP payload that is the encoder's, lately; a guess before anything was sent.
+gdouble SliceShare(GstRTPBasePayload* base, PayState& state);
+
+}  // namespace lidar::gst
