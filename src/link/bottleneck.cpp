@@ -7,16 +7,24 @@
 namespace lidar::link {
 namespace {
 
-std::unique_ptr<Aqm> MakeAqm(const AqmConfig& config, std::uint64_t seed) {
+std::unique_ptr<Aqm> MakeAqm(const AqmConfig& config, Random random) {
   switch (config.kind) {
     case AqmConfig::Kind::kStep:
       return StepAqm(config.high);
     case AqmConfig::Kind::kRamp:
-      return RampAqm(config.low, config.high, Random(seed));
+      return RampAqm(config.low, config.high, random);
+    case AqmConfig::Kind::kPi2:
+      return Pi2Aqm(config.pi2, random);
     case AqmConfig::Kind::kNone:
+    case AqmConfig::Kind::kDualPi2:
       break;
   }
   return NoAqm();
+}
+
+std::unique_ptr<Queue> MakeQueue(const AqmConfig& config, Random random) {
+  if (config.kind == AqmConfig::Kind::kDualPi2) return DualPi2Queue(config.pi2, random);
+  return std::make_unique<FifoQueue>(MakeAqm(config, random));
 }
 
 /// Never past Time::max(), which stands for never.
@@ -32,7 +40,8 @@ Bottleneck::Bottleneck(const BottleneckConfig& config)
     : config_(config),
       loss_random_(config.seed),
       // Sequences of their own: switching loss on must not shift the marks.
-      aqm_(MakeAqm(config.aqm, config.seed + 1)),
+      queue_(MakeQueue(config.aqm, Random(config.seed + 1))),
+      path_(config.path, config.seed + 2),
       limit_(config.limit.bytes),
       free_at_(config.origin) {}
 
@@ -42,7 +51,7 @@ bool Bottleneck::Full(Time now, DataSize size) {
   if (config_.limit.time < Duration::max() && rate > DataRate{} && rate < DataRate::Infinite())
     limit_ = std::min(config_.limit.bytes, rate * config_.limit.time);
   // A packet that finds the queue empty is taken, however small the limit.
-  return !queue_.empty() && size > limit_ - queued_;
+  return !queue_->empty() && size > limit_ - queue_->size();
 }
 
 void Bottleneck::Enqueue(Time now, const Packet& packet) {
@@ -55,15 +64,14 @@ void Bottleneck::Enqueue(Time now, const Packet& packet) {
     dropped.fate = Fate::kQueueFull;
     Conclude(dropped);
   } else {
-    queue_.push_back({packet, now});
-    queued_ += packet.size;
+    queue_->Push({packet, now});
     Advance(now);
   }
 }
 
 Time Bottleneck::NextEventTime() const {
   const Time arrival = pending_.empty() ? Time::max() : pending_.top().outcome.arrival;
-  return queue_.empty() ? arrival : std::min(arrival, free_at_);
+  return queue_->empty() ? arrival : std::min(arrival, free_at_);
 }
 
 std::vector<Outcome> Bottleneck::Deliver(Time now) {
@@ -71,7 +79,8 @@ std::vector<Outcome> Bottleneck::Deliver(Time now) {
   std::vector<Outcome> outcomes;
   while (!pending_.empty() && pending_.top().outcome.arrival <= now) {
     const Outcome& outcome = pending_.top().outcome;
-    if (outcome.delivered()) {
+    stats_.duplicated += outcome.duplicate;
+    if (outcome.delivered() && !outcome.duplicate) {
       ++stats_.delivered;
       stats_.delivered_size += outcome.packet.size;
     }
@@ -82,7 +91,7 @@ std::vector<Outcome> Bottleneck::Deliver(Time now) {
 }
 
 Duration Bottleneck::HeadSojourn(Time now) const {
-  return queue_.empty() ? Duration{0} : now - queue_.front().entered;
+  return queue_->empty() ? Duration{0} : now - queue_->Oldest();
 }
 
 Time Bottleneck::At(Duration capacity_time) const {
@@ -90,35 +99,36 @@ Time Bottleneck::At(Duration capacity_time) const {
 }
 
 void Bottleneck::Advance(Time now) {
-  while (!queue_.empty()) {
-    const Time start = std::max(free_at_, queue_.front().entered);
+  while (!queue_->empty()) {
+    const Time start = std::max(free_at_, queue_->Oldest());
     if (start > now) return;
     if (config_.capacity.RateAt(start - config_.origin) <= DataRate{}) {
       // Nothing leaves the queue in a gap, so the head's sojourn goes on.
       free_at_ = At(config_.capacity.NextChange(start - config_.origin));
       continue;
     }
-    const Waiting head = queue_.front();
-    queue_.pop_front();
-    queued_ -= head.packet.size;
-    Transmit(head, start);
+    Transmit(queue_->Pop(start), start);
   }
 }
 
-void Bottleneck::Transmit(const Waiting& head, Time now) {
+void Bottleneck::Transmit(const Leaving& leaving, Time now) {
+  const Waiting& head = leaving.waiting;
   Outcome outcome{head.packet, Fate::kDelivered, head.entered, now, now - head.entered};
-  const Verdict verdict = aqm_->OnDequeue(now, outcome.sojourn, head.packet);
-  if (verdict == Verdict::kDrop) {
+  if (leaving.verdict == Verdict::kDrop) {
     outcome.fate = Fate::kAqmDropped;
     Conclude(outcome);
     return;
   }
-  if (verdict == Verdict::kMark) {
+  if (leaving.verdict == Verdict::kMark && head.packet.ecn != Ecn::kCe) {
     outcome.packet.ecn = Ecn::kCe;
     ++stats_.marked;
   }
   free_at_ = At(config_.capacity.Finish(now - config_.origin, head.packet.size));
-  outcome.arrival = Plus(free_at_, config_.delay);
+  const Time ideal = Plus(free_at_, config_.delay);
+  outcome.arrival = ideal < Time::max() ? path_.Arrival(ideal) : ideal;
+  Conclude(outcome);
+  if (!path_.Duplicates()) return;
+  outcome.duplicate = true;
   Conclude(outcome);
 }
 

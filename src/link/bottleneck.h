@@ -3,7 +3,6 @@
 #pragma once
 #include <cstddef>
 #include <cstdint>
-#include <deque>
 #include <memory>
 #include <queue>
 #include <vector>
@@ -13,15 +12,19 @@
 #include "link/aqm.h"
 #include "link/capacity.h"
 #include "link/packet.h"
+#include "link/path.h"
+#include "link/pi2.h"
+#include "link/queue.h"
 #include "link/random.h"
 
 namespace lidar::link {
 
 struct AqmConfig {
-  enum class Kind { kNone, kStep, kRamp };
+  enum class Kind { kNone, kStep, kRamp, kPi2, kDualPi2 };
   Kind kind = Kind::kNone;
   Duration low = std::chrono::milliseconds{2};    // ramp: no mark below
   Duration high = std::chrono::milliseconds{10};  // ramp: every packet above; step: the threshold
+  Pi2Config pi2;  // of kPi2 and kDualPi2, which do not use the fields above
 };
 
 /// Either limit, or both; the time is turned into bytes at the capacity of the moment.
@@ -37,6 +40,7 @@ struct BottleneckConfig {
   AqmConfig aqm;
   double loss = 0;    // probability, drawn as a packet enters
   Duration delay{0};  // propagation
+  PathConfig path;
   std::uint64_t seed = 1;
 };
 
@@ -47,7 +51,8 @@ struct BottleneckStats {
   std::uint64_t queue_full = 0;
   std::uint64_t aqm_dropped = 0;
   std::uint64_t marked = 0;
-  DataSize delivered_size;
+  std::uint64_t duplicated = 0;
+  DataSize delivered_size;  // duplicates not counted
 };
 
 /// The times that calls are given must not decrease.
@@ -61,18 +66,14 @@ class Bottleneck {
   /// What has arrived or has been dropped up to `now`, in that order of time.
   std::vector<Outcome> Deliver(Time now);
 
-  DataSize queued() const { return queued_; }
-  std::size_t queued_packets() const { return queue_.size(); }
-  /// How long the packet now at the head has waited; 0 where the queue is empty.
+  DataSize queued() const { return queue_->size(); }
+  std::size_t queued_packets() const { return queue_->packets(); }
+  /// How long the oldest packet has waited; 0 where the queue is empty.
   Duration HeadSojourn(Time now) const;
   /// Counted as it happens in Deliver.
   const BottleneckStats& stats() const { return stats_; }
 
  private:
-  struct Waiting {
-    Packet packet;
-    Time entered;
-  };
   struct Pending {
     Outcome outcome;
     std::uint64_t order;  // breaks ties of time
@@ -84,14 +85,13 @@ class Bottleneck {
   bool Full(Time now, DataSize size);
   Time At(Duration capacity_time) const;
   void Advance(Time now);
-  void Transmit(const Waiting& head, Time now);
+  void Transmit(const Leaving& leaving, Time now);
   void Conclude(const Outcome& outcome);
 
   BottleneckConfig config_;
   Random loss_random_;
-  std::unique_ptr<Aqm> aqm_;
-  std::deque<Waiting> queue_;
-  DataSize queued_;
+  std::unique_ptr<Queue> queue_;
+  Path path_;
   DataSize limit_ = DataSize::Infinite();
   Time free_at_;  // the transmitter's
   std::priority_queue<Pending, std::vector<Pending>, Later> pending_;

@@ -32,7 +32,7 @@ struct Outcome {
   Time sent;     // entered the link
   Time arrival;  // left it; of a dropped packet, the time of the drop
   Duration sojourn{0};
-  bool duplicate = false;
+  bool duplicate = false;  // a second copy, right behind the first
 
   bool delivered() const { return fate == Fate::kDelivered; }
 };

@@ -25,8 +25,18 @@ struct Text {
   Kind aqm = Kind::kRamp;
   double aqm_low_ms = 2;
   double aqm_high_ms = 10;
-  double loss_percent = 0;
-  double back_loss_percent = 0;
+  double aqm_target_ms = 15;
+  struct Way {
+    double loss_percent = 0;
+    double extra_delay_ms = 0;
+    double jitter_ms = 0;
+    double burst_ms = 0;
+    double reorder_percent = 0;
+    double reorder_delay_ms = 5;
+    double duplicate_percent = 0;
+  };
+  Way there;
+  Way back;
   std::uint64_t seed = 1;
   double duration_s = 0;
   double interval_s = 1;
@@ -34,6 +44,21 @@ struct Text {
 
 DataRate Mbps(double m) { return DataRate::BitsPerSecond(m * 1e6); }
 Duration Ms(double ms) { return FromSeconds(ms / 1e3); }
+
+void AddWayOptions(CLI::App* app, const std::string& prefix, const std::string& way, Text::Way* w) {
+  const auto percent = CLI::Range(0.0, 100.0);
+  const auto ms = CLI::Range(0.0, 3600e3);
+  const auto add = [&](const char* name, double* value, const char* what, const CLI::Validator& v) {
+    app->add_option(prefix + name, *value, std::string(what) + ", " + way)->check(v);
+  };
+  add("loss", &w->loss_percent, "Random loss [%]", percent);
+  add("delay", &w->extra_delay_ms, "Delay besides half of --rtt [ms]", ms);
+  add("jitter", &w->jitter_ms, "Delay drawn anew for each packet, up to [ms]; keeps the order", ms);
+  add("burst", &w->burst_ms, "Packets come out only every so often [ms]", ms);
+  add("reorder", &w->reorder_percent, "Packets held back by --reorder-delay [%]", percent);
+  add("reorder-delay", &w->reorder_delay_ms, "How long these are held back [ms]", ms);
+  add("duplicate", &w->duplicate_percent, "Packets that arrive twice [%]", percent);
+}
 
 void AddLinkOptions(CLI::App* app, Text* t) {
   const auto rate = CLI::Range(0.0, link::Capacity::kMaxMbps);
@@ -57,18 +82,23 @@ void AddLinkOptions(CLI::App* app, Text* t) {
       ->check(ms);
   app->add_option("--queue-bytes", t->queue_bytes, "Queue limit [bytes]; 0: 16 MiB")
       ->check(CLI::Range(std::int64_t{0}, std::int64_t{1} << 30));
-  const std::map<std::string, Kind> kinds{
-      {"none", Kind::kNone}, {"step", Kind::kStep}, {"ramp", Kind::kRamp}};
+  const std::map<std::string, Kind> kinds{{"none", Kind::kNone},
+                                          {"step", Kind::kStep},
+                                          {"ramp", Kind::kRamp},
+                                          {"pi2", Kind::kPi2},
+                                          {"dualpi2", Kind::kDualPi2}};
   app->add_option("--aqm", t->aqm,
-                  "Marking of ECT(1) by sojourn time: none, step (at --aqm-high), ramp")
-      ->transform(CLI::CheckedTransformer(kinds, CLI::ignore_case).description("none|step|ramp"));
+                  "Marking of ECT(1) by sojourn time: none, step (at --aqm-high), ramp; pi2 and\n"
+                  "dualpi2 (RFC 9332) also signal classic packets")
+      ->transform(CLI::CheckedTransformer(kinds, CLI::ignore_case)
+                      .description("none|step|ramp|pi2|dualpi2"));
   app->add_option("--aqm-low", t->aqm_low_ms, "No mark below this sojourn [ms]")->check(ms);
   app->add_option("--aqm-high", t->aqm_high_ms, "Every packet marked above this sojourn [ms]")
       ->check(ms);
-  const auto percent = CLI::Range(0.0, 100.0);
-  app->add_option("--loss", t->loss_percent, "Random loss on the way there [%]")->check(percent);
-  app->add_option("--back-loss", t->back_loss_percent, "Random loss on the way back [%]")
-      ->check(percent);
+  app->add_option("--aqm-target", t->aqm_target_ms, "pi2, dualpi2: classic queue delay [ms]")
+      ->check(ms);
+  AddWayOptions(app, "--", "on the way there", &t->there);
+  AddWayOptions(app, "--back-", "on the way back", &t->back);
   app->add_option("--seed", t->seed, "Seed of everything random");
 }
 
@@ -101,19 +131,25 @@ void AddOutages(const Text& t, link::Capacity* capacity) {
   }
 }
 
+void ApplyWay(const Text::Way& w, double propagation_ms, link::BottleneckConfig* config) {
+  config->loss = w.loss_percent / 100;
+  config->delay = Ms(propagation_ms + w.extra_delay_ms);
+  config->path = {Ms(w.jitter_ms), Ms(w.burst_ms), w.reorder_percent / 100, Ms(w.reorder_delay_ms),
+                  w.duplicate_percent / 100};
+}
+
 void Apply(const Text& t, LinkOptions* o) {
   o->there.capacity = ReadCapacity(t);
   AddOutages(t, &o->there.capacity);
   o->there.limit.bytes = DataSize::Bytes(t.queue_bytes > 0 ? t.queue_bytes : 16 << 20);
   if (t.queue_ms > 0) o->there.limit.time = Ms(t.queue_ms);
-  o->there.aqm = {t.aqm, Ms(t.aqm_low_ms), Ms(t.aqm_high_ms)};
+  o->there.aqm = {t.aqm, Ms(t.aqm_low_ms), Ms(t.aqm_high_ms), {}};
   if (t.aqm_low_ms > t.aqm_high_ms)
     throw CLI::ValidationError("--aqm-low", "must not be above --aqm-high");
-  o->there.loss = t.loss_percent / 100;
-  o->there.delay = Ms(t.rtt_ms / 2);
+  o->there.aqm.pi2.target = Ms(t.aqm_target_ms);
+  ApplyWay(t.there, t.rtt_ms / 2, &o->there);
+  ApplyWay(t.back, t.rtt_ms / 2, &o->back);
   o->there.seed = t.seed;
-  o->back.loss = t.back_loss_percent / 100;
-  o->back.delay = Ms(t.rtt_ms / 2);
   o->back.seed = t.seed + 1000;
   if (t.duration_s > 0) o->duration = FromSeconds(t.duration_s);
   o->interval = FromSeconds(t.interval_s);

@@ -72,6 +72,7 @@ void Recorder::Start(Time origin, Duration unix_offset) {
 
 void Recorder::OnPacket(const PacketRecord& record) {
   const link::Outcome& o = record.outcome;
+  if (o.duplicate) return;
   if (flows_.size() <= record.flow) flows_.resize(record.flow + 1);
   Counts& flow = flows_[record.flow];
   const auto bytes = static_cast<std::uint64_t>(o.packet.size.bytes());
@@ -142,6 +143,7 @@ nlohmann::ordered_json Recorder::Summary(Time now, const link::Bottleneck* there
   summary["queue_full"] = stats.queue_full;
   summary["aqm_dropped"] = stats.aqm_dropped;
   summary["marked"] = stats.marked;
+  summary["duplicated"] = stats.duplicated;
   summary["mean_rate_bps"] = ran > Duration{0} ? stats.delivered_size.bits() / Seconds(ran) : 0;
   summary["mean_capacity_bps"] = ran > Duration{0} ? offered / Seconds(ran) : 0;
   summary["utilisation"] = offered > 0 ? stats.delivered_size.bits() / offered : 0;

@@ -108,7 +108,7 @@ void Relay::Forward(const link::Outcome& outcome, Time now) {
     recorder_->OnLateness(now - outcome.arrival);
   }
   recorder_->OnPacket({outcome, EcnOf(slot.tos), slot.flow, payload});
-  free_slots_.push_back(outcome.packet.id);
+  Release(outcome);
 }
 
 void Relay::Return(const link::Outcome& outcome) {
@@ -120,7 +120,12 @@ void Relay::Return(const link::Outcome& outcome) {
       recorder_->OnRefusedSend();
   }
   recorder_->OnFeedback(outcome.delivered(), slot.payload.size());
-  free_slots_.push_back(outcome.packet.id);
+  Release(outcome);
+}
+
+void Relay::Release(const link::Outcome& outcome) {
+  // A duplicate comes right behind the first copy, before any slot is taken again.
+  if (!outcome.duplicate) free_slots_.push_back(outcome.packet.id);
 }
 
 Time Relay::Pump() {

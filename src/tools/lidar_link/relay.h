@@ -53,6 +53,7 @@ class Relay {
   Time ArrivalOf(const Datagram& datagram);
   void Forward(const link::Outcome& outcome, Time now);
   void Return(const link::Outcome& outcome);
+  void Release(const link::Outcome& outcome);
 
   LinkOptions options_;
   EventLoop* loop_;

@@ -144,7 +144,7 @@ TEST(Bottleneck, TheStepMarksEct1AboveItsThresholdAndNothingElse) {
 TEST(Bottleneck, TheRampMarksInProportionToTheSojourn) {
   auto config = Simple();
   config.capacity = Capacity::Constant(Mbps(800));
-  config.aqm = {AqmConfig::Kind::kRamp, 2ms, 10ms};
+  config.aqm = {AqmConfig::Kind::kRamp, 2ms, 10ms, {}};
   // A standing queue of 5 ms: 37.5 % of the packets.
   Bottleneck link(config);
   int marked = 0;

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// What happens to packets behind the bottleneck: jitter, bursts, reordering, duplication.
+#pragma once
+#include <algorithm>
+
+#include "base/time.h"
+#include "link/random.h"
+
+namespace lidar::link {
+
+struct PathConfig {
+  Duration jitter{0};          // extra delay, uniform between 0 and this; keeps the order
+  Duration burst_interval{0};  // packets come out only at multiples of this; 0: at once
+  double reorder = 0;          // probability to be held back by reorder_delay, past later ones
+  Duration reorder_delay = std::chrono::milliseconds{5};
+  double duplicate = 0;  // probability to arrive twice
+};
+
+class Path {
+ public:
+  Path(const PathConfig& config, std::uint64_t seed) : config_(config), random_(seed) {}
+
+  /// Arrival of a packet that would arrive at `t` on an ideal path; `t` not decreasing.
+  Time Arrival(Time t) {
+    if (config_.jitter > Duration{0}) t += FromSeconds(Seconds(config_.jitter) * random_.Uniform());
+    if (config_.burst_interval > Duration{0}) {
+      const auto phase = t.time_since_epoch() % config_.burst_interval;
+      if (phase > Duration{0}) t += config_.burst_interval - phase;
+    }
+    if (random_.Chance(config_.reorder)) return t + config_.reorder_delay;
+    latest_ = std::max(latest_, t);
+    return latest_;
+  }
+  bool Duplicates() { return random_.Chance(config_.duplicate); }
+
+ private:
+  PathConfig config_;
+  Random random_;
+  Time latest_{};
+};
+
+}  // namespace lidar::link

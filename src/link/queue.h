@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// What waits before a link, and which packet goes next.
+#pragma once
+#include <cstddef>
+#include <deque>
+#include <memory>
+
+#include "base/time.h"
+#include "base/units.h"
+#include "link/aqm.h"
+#include "link/packet.h"
+
+namespace lidar::link {
+
+struct Waiting {
+  Packet packet;
+  Time entered;
+};
+
+struct Leaving {
+  Waiting waiting;
+  Verdict verdict = Verdict::kPass;
+};
+
+class Queue {
+ public:
+  virtual ~Queue() = default;
+  virtual void Push(const Waiting& waiting) = 0;
+  /// The next packet for a transmitter that is free at `now`. Not to be called when empty.
+  virtual Leaving Pop(Time now) = 0;
+  /// When the first of what waits arrived; Time::max() where nothing does.
+  virtual Time Oldest() const = 0;
+  virtual std::size_t packets() const = 0;
+  virtual DataSize size() const = 0;
+
+  bool empty() const { return packets() == 0; }
+};
+
+/// First in, first out.
+class FifoQueue final : public Queue {
+ public:
+  explicit FifoQueue(std::unique_ptr<Aqm> aqm) : aqm_(std::move(aqm)) {}
+  void Push(const Waiting& waiting) override;
+  Leaving Pop(Time now) override;
+  Time Oldest() const override { return waiting_.empty() ? Time::max() : waiting_.front().entered; }
+  std::size_t packets() const override { return waiting_.size(); }
+  DataSize size() const override { return size_; }
+
+ private:
+  std::unique_ptr<Aqm> aqm_;
+  std::deque<Waiting> waiting_;
+  DataSize size_;
+};
+
+}  // namespace lidar::link
