@@ -144,6 +144,13 @@ class Builder {
     return true;
   }
 
+  /// `missing` where the key is missing, 0 where it is wrong.
+  std::uint32_t CountOr(const char* key, std::size_t missing, std::uint32_t max) const {
+    if (document_.Find(kFormat, key) != nullptr)
+      return document_.Count(kFormat, key, max).value_or(0);
+    return missing <= max ? static_cast<std::uint32_t>(missing) : 0;
+  }
+
   bool ReadFormat() {
     const std::string profile = document_.Text(kFormat, "udp_profile_lidar");
     if (!profile.empty()) {
@@ -157,11 +164,8 @@ class Builder {
     m_.format.header = fusa ? HeaderType::kFusa : HeaderType::kStandard;
     const json* angles = document_.Find(kBeams, "beam_altitude_angles");
     const std::size_t listed = angles != nullptr && angles->is_array() ? angles->size() : 0;
-    m_.format.beams = document_.Count(kFormat, "pixels_per_column", SensorModel::kMaxBeams)
-                          .value_or(static_cast<std::uint32_t>(
-                              std::min<std::size_t>(listed, SensorModel::kMaxBeams)));
-    m_.format.columns_per_packet =
-        document_.Count(kFormat, "columns_per_packet", 65535).value_or(16);
+    m_.format.beams = CountOr("pixels_per_column", listed, SensorModel::kMaxBeams);
+    m_.format.columns_per_packet = CountOr("columns_per_packet", 16, 65535);
     if (m_.format.beams == 0 || m_.format.columns_per_packet == 0)
       return Fail("lidar_data_format has no pixels_per_column or columns_per_packet");
     if (m_.format.packet_size() > PacketFormat::kMaxPacketSize)

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "ouster/imu_packet.h"
+
+namespace lidar::ouster {
+namespace {
+
+constexpr std::size_t kHeaderSize = 32;
+constexpr std::size_t kNmeaSize = 100;
+constexpr float kGravity = 9.80665F;  // LEGACY counts in g and degrees
+constexpr float kRadiansPerDegree = 3.14159265F / 180;
+
+std::array<float, 3> ReadVector(ByteReader* r, float scale) {
+  std::array<float, 3> v{};
+  for (float& component : v) component = r->LeF32() * scale;
+  return v;
+}
+
+std::vector<ImuSample> ReadLegacy(ByteView bytes) {
+  ByteReader r(bytes);
+  ImuSample sample;
+  r.Skip(16);                   // when the packet was made, and the accelerometer read
+  sample.timestamp = r.Le64();  // when the gyroscope was read
+  sample.acceleration = ReadVector(&r, kGravity);
+  sample.angular_velocity = ReadVector(&r, kRadiansPerDegree);
+  return {sample};
+}
+
+std::vector<ImuSample> ReadAccelGyro(ByteView bytes, std::uint32_t measurements) {
+  std::vector<ImuSample> samples;
+  ByteReader r(bytes);
+  r.Skip(kHeaderSize + kNmeaSize);
+  for (std::uint32_t i = 0; i < measurements; ++i) {
+    ImuSample sample;
+    sample.timestamp = r.Le64();
+    r.Skip(2);  // measurement id
+    const bool valid = (r.Le16() & 1U) != 0;
+    sample.acceleration = ReadVector(&r, 1);
+    sample.angular_velocity = ReadVector(&r, 1);
+    if (valid) samples.push_back(sample);
+  }
+  return samples;
+}
+
+}  // namespace
+
+std::optional<std::vector<ImuSample>> ParseImuPacket(ByteView bytes, const Metadata& metadata) {
+  if (bytes.empty() || bytes.size != metadata.imu_packet_size()) return std::nullopt;
+  if (metadata.imu_profile == ImuProfile::kLegacy) return ReadLegacy(bytes);
+  return ReadAccelGyro(bytes, metadata.imu_measurements_per_packet);
+}
+
+}  // namespace lidar::ouster

@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Reads the packets of a sensor's inertial measurement unit.
+#pragma once
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "base/byte_reader.h"
+#include "ouster/metadata.h"
+
+namespace lidar::ouster {
+
+/// In the IMU's frame; Metadata::imu_to_sensor leads to the sensor's.
+struct ImuSample {
+  std::uint64_t timestamp = 0;              // ns of the sensor's clock
+  std::array<float, 3> acceleration{};      // m/s^2
+  std::array<float, 3> angular_velocity{};  // rad/s
+};
+
+/// None unless `bytes` are exactly one IMU packet. Samples that the sensor marks as invalid are
+/// left out.
+std::optional<std::vector<ImuSample>> ParseImuPacket(ByteView bytes, const Metadata& metadata);
+
+}  // namespace lidar::ouster

@@ -1,0 +1,201 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "base/byte_writer.h"
+#include "ouster/udp_datagram.h"
+
+namespace lidar::ouster {
+namespace {
+
+using Bytes = std::vector<std::uint8_t>;
+
+Bytes Payload(std::size_t n) {
+  Bytes payload(n);
+  for (std::size_t i = 0; i < n; ++i) payload[i] = static_cast<std::uint8_t>(i * 7);
+  return payload;
+}
+
+Bytes Udp(const Bytes& payload) {
+  Bytes out;
+  ByteWriter w(&out);
+  w.Be16(1234);
+  w.Be16(7502);
+  w.Be16(static_cast<std::uint16_t>(payload.size() + 8));
+  w.Be16(0);
+  w.Bytes({payload.data(), payload.size()});
+  return out;
+}
+
+struct Part {
+  std::size_t offset = 0;
+  bool more = false;
+  std::uint16_t id = 1;
+  std::uint8_t host = 2;  // last byte of the source
+};
+
+Bytes Ipv4(const Bytes& body, Part part = {}) {
+  Bytes out;
+  ByteWriter w(&out);
+  w.U8(0x45);
+  w.U8(0);
+  w.Be16(static_cast<std::uint16_t>(body.size() + 20));
+  w.Be16(part.id);
+  w.Be16(static_cast<std::uint16_t>(part.offset / 8 | (part.more ? 0x2000U : 0U)));
+  w.U8(64);
+  w.U8(17);
+  w.Be16(0);
+  w.Be32(0x0a000000U | part.host);
+  w.Be32(0x0a000001);
+  w.Bytes({body.data(), body.size()});
+  return out;
+}
+
+Bytes Ipv6(const Bytes& body, std::optional<Part> part = {}) {
+  Bytes out;
+  ByteWriter w(&out);
+  w.Be32(0x60000000);
+  w.Be16(static_cast<std::uint16_t>(body.size() + (part ? 8 : 0)));
+  w.U8(part ? 44 : 17);
+  w.U8(64);
+  w.Zeros(15);
+  w.U8(2);
+  w.Zeros(15);
+  w.U8(1);
+  if (part) {
+    w.U8(17);
+    w.U8(0);
+    w.Be16(static_cast<std::uint16_t>(part->offset | (part->more ? 1U : 0U)));
+    w.Be32(part->id);
+  }
+  w.Bytes({body.data(), body.size()});
+  return out;
+}
+
+Bytes Ethernet(const Bytes& ip, std::uint16_t type, int vlan_tags = 0) {
+  Bytes out(12, 0xaa);
+  ByteWriter w(&out);
+  for (int i = 0; i < vlan_tags; ++i) {
+    w.Be16(i == 0 ? 0x88a8 : 0x8100);
+    w.Be16(42);
+  }
+  w.Be16(type);
+  w.Bytes({ip.data(), ip.size()});
+  return out;
+}
+
+ByteView View(const Bytes& b) { return {b.data(), b.size()}; }
+
+TEST(Datagrams, ComeOutOfEveryKindOfFrame) {
+  const Bytes payload = Payload(100);
+  const Bytes v4 = Ipv4(Udp(payload));
+  const Bytes v6 = Ipv6(Udp(payload));
+  Bytes padded = Ethernet(v4, 0x0800);
+  padded.resize(padded.size() + 10);
+  Bytes sll(16);
+  sll.insert(sll.end(), v4.begin(), v4.end());
+  Bytes sll2(20);
+  sll2.insert(sll2.end(), v6.begin(), v6.end());
+  Bytes loopback(4);
+  loopback.insert(loopback.end(), v4.begin(), v4.end());
+  const std::vector<std::pair<LinkType, Bytes>> frames = {
+      {LinkType::kEthernet, Ethernet(v4, 0x0800)},
+      {LinkType::kEthernet, Ethernet(v6, 0x86dd)},
+      {LinkType::kEthernet, Ethernet(v4, 0x0800, 2)},
+      {LinkType::kEthernet, padded},
+      {LinkType::kLinuxSll, sll},
+      {LinkType::kLinuxSll2, sll2},
+      {LinkType::kNull, loopback},
+      {LinkType::kRaw, v6},
+      {LinkType::kIpv4, v4}};
+  for (const auto& [link, frame] : frames) {
+    UdpExtractor extractor;
+    const auto datagram = extractor.Extract(link, View(frame));
+    ASSERT_TRUE(datagram) << static_cast<int>(link);
+    EXPECT_EQ(datagram->payload, payload);
+    EXPECT_EQ(datagram->destination_port, 7502U);
+    EXPECT_EQ(datagram->source_port, 1234U);
+  }
+}
+
+class Fragments : public ::testing::TestWithParam<bool> {
+ protected:
+  /// Cuts a datagram into IP packets of up to `size` bytes of payload each.
+  std::vector<Bytes> Cut(const Bytes& udp, std::size_t size, Part part = {}) const {
+    std::vector<Bytes> packets;
+    for (std::size_t at = 0; at < udp.size(); at += size) {
+      part.offset = at;
+      part.more = at + size < udp.size();
+      const Bytes body(udp.begin() + static_cast<std::ptrdiff_t>(at),
+                       udp.begin() + static_cast<std::ptrdiff_t>(std::min(udp.size(), at + size)));
+      packets.push_back(GetParam() ? Ipv6(body, part) : Ipv4(body, part));
+    }
+    return packets;
+  }
+};
+
+TEST_P(Fragments, ArePutTogetherInAnyOrder) {
+  const Bytes payload = Payload(24'832);
+  auto packets = Cut(Udp(payload), 1480);
+  for (int round = 0; round < 2; ++round) {
+    UdpExtractor extractor;
+    int complete = 0;
+    for (const Bytes& packet : packets) {
+      const auto datagram = extractor.Extract(LinkType::kRaw, View(packet));
+      if (!datagram) continue;
+      ++complete;
+      EXPECT_EQ(datagram->payload, payload);
+    }
+    EXPECT_EQ(complete, 1);
+    std::reverse(packets.begin(), packets.end());
+  }
+}
+
+TEST_P(Fragments, OfTwoDatagramsDoNotMix) {
+  const Bytes a = Payload(4000);
+  Bytes b = Payload(4000);
+  std::reverse(b.begin(), b.end());
+  const auto of_a = Cut(Udp(a), 1480);
+  const auto of_b = Cut(Udp(b), 1480, {0, false, 9});
+  UdpExtractor extractor;
+  std::vector<Bytes> out;
+  for (std::size_t i = 0; i < of_a.size(); ++i)
+    for (const Bytes* packet : {&of_a[i], &of_b[i]})
+      if (auto datagram = extractor.Extract(LinkType::kRaw, View(*packet)))
+        out.push_back(datagram->payload);
+  ASSERT_EQ(out.size(), 2U);
+  EXPECT_EQ(out[0], a);
+  EXPECT_EQ(out[1], b);
+}
+
+TEST_P(Fragments, ThatOverlapDiscardTheirDatagram) {
+  const auto packets = Cut(Udp(Payload(4000)), 1480);
+  UdpExtractor extractor;
+  EXPECT_FALSE(extractor.Extract(LinkType::kRaw, View(packets[0])));
+  EXPECT_FALSE(extractor.Extract(LinkType::kRaw, View(packets[1])));
+  EXPECT_FALSE(extractor.Extract(LinkType::kRaw, View(packets[1])));
+  EXPECT_FALSE(extractor.Extract(LinkType::kRaw, View(packets[2])));
+}
+
+TEST_P(Fragments, WithoutEndHoldNoMoreThanSomeMemory) {
+  UdpExtractor extractor;
+  for (std::uint32_t i = 0; i < 5000; ++i) {
+    const auto packets = Cut(Udp(Payload(4000)), 1480, {0, false, static_cast<std::uint16_t>(i)});
+    EXPECT_FALSE(extractor.Extract(LinkType::kRaw, View(packets[0])));
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(BothVersions, Fragments, ::testing::Bool());
+
+TEST(Datagrams, ACutFrameGivesNone) {
+  const Bytes whole = Ethernet(Ipv4(Udp(Payload(100))), 0x0800);
+  for (std::size_t n = 0; n < whole.size(); ++n) {
+    UdpExtractor extractor;
+    const Bytes cut(whole.begin(), whole.begin() + static_cast<std::ptrdiff_t>(n));
+    EXPECT_FALSE(extractor.Extract(LinkType::kEthernet, View(cut))) << n;
+  }
+}
+
+}  // namespace
+}  // namespace lidar::ouster

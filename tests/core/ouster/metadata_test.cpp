@@ -1,0 +1,154 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "captures.h"
+#include "ouster/metadata_writer.h"
+#include "ouster/pixel_projection.h"
+#include "ouster/point_writer.h"
+
+namespace lidar::ouster {
+namespace {
+
+using nlohmann::json;
+
+std::optional<Metadata> Parse(const json& root, std::string* error) {
+  return ParseMetadata(root.dump(), error);
+}
+json Load(const std::string& name) { return json::parse(test::ReadFile(test::DataPath(name))); }
+
+TEST(Metadata, ReadsTheFlatLayoutOfOldClients) {
+  const Metadata m = test::LoadMetadata("OS-1-32-G_v2.1.1_1024x10.json");
+  EXPECT_EQ(m.product_line, "OS-1-32-G");
+  EXPECT_EQ(m.serial, 992101000280ULL);
+  EXPECT_EQ(m.init_id, 0U);
+  EXPECT_EQ(m.format.profile, Profile::kLegacy);
+  EXPECT_EQ(m.format.packet_size(), 6464U);
+  EXPECT_EQ(m.format.beams, 32U);
+  EXPECT_DOUBLE_EQ(m.scans_per_second, 10);
+  EXPECT_EQ(m.model.columns_per_scan, 1024U);
+  EXPECT_NEAR(m.model.beam_to_lidar_x_m, 0.015806, 1e-9);
+  EXPECT_NEAR(m.model.lidar_to_sensor[11], 0.03618, 1e-9);
+  EXPECT_EQ(m.model.beams[5].pixel_shift, 16);
+  EXPECT_NEAR(m.model.beams[0].altitude_deg, 12.75, 1e-5);
+}
+
+TEST(Metadata, ReadsTheSectionsOfNewFirmware) {
+  const Metadata m = test::LoadMetadata("windowed_frame1_0.json");
+  EXPECT_EQ(m.format.profile, Profile::kRng15Rfl8Nir8);
+  EXPECT_EQ(m.format.packet_size(), 8448U);
+  EXPECT_EQ(m.init_id, 7109746U);
+  EXPECT_EQ(m.timestamp_mode, "TIME_FROM_PTP_1588");
+  EXPECT_EQ(m.lidar_port, 53750U);
+  EXPECT_EQ(m.window.first, 1U);
+  EXPECT_EQ(m.window.count, 256U);
+  EXPECT_EQ(m.model.range_unit_mm, 8U);
+  EXPECT_NEAR(m.model.beam_to_lidar_x_m, 0.02767, 1e-9);
+}
+
+TEST(Metadata, AWindowMayWrap) {
+  json root = Load("windowed_frame1_0.json");
+  root["lidar_data_format"]["column_window"] = {500, 11};
+  std::string error;
+  const auto m = Parse(root, &error);
+  ASSERT_TRUE(m) << error;
+  EXPECT_EQ(m->window.first, 500U);
+  EXPECT_EQ(m->window.count, 24U);
+}
+
+TEST(Metadata, AStreamThatIsSentNowhereIsOff) {
+  json root = Load("windowed_frame1_0.json");
+  root["config_params"]["udp_dest"] = "";
+  std::string error;
+  const auto m = Parse(root, &error);
+  ASSERT_TRUE(m) << error;
+  EXPECT_EQ(m->format.profile, Profile::kOff);
+  EXPECT_FALSE(PointWriter::Create(*m, {}, &error));
+  EXPECT_NE(error.find("switched off"), std::string::npos);
+}
+
+TEST(Metadata, PixelsMayHaveAnglesOfTheirOwn) {
+  Metadata m = test::LoadMetadata("OS-1-32-G_v2.1.1_1024x10.json");
+  const std::size_t pixels = std::size_t{32} * 1024;
+  for (std::size_t i = 0; i < pixels; ++i) {
+    m.pixel_angles.azimuth_deg.push_back(60.0F - static_cast<float>(i % 1024) * 0.125F);
+    m.pixel_angles.altitude_deg.push_back(16.0F - static_cast<float>(i / 1024));
+  }
+  std::string error;
+  const auto back = ParseMetadata(WriteMetadata(m), &error);
+  ASSERT_TRUE(back) << error;
+  EXPECT_EQ(back->pixel_angles.azimuth_deg, m.pixel_angles.azimuth_deg);
+  EXPECT_EQ(back->pixel_angles.altitude_deg, m.pixel_angles.altitude_deg);
+  const PixelProjection projection(*back);
+  // Beam 16 lies flat; column 480 looks along x, which lidar_to_sensor turns around.
+  const auto p = projection.Point(16, 480, 10'000);
+  EXPECT_NEAR(static_cast<double>(p[0]), -10.0, 1e-5);
+  EXPECT_NEAR(static_cast<double>(p[1]), 0.0, 1e-5);
+  EXPECT_NEAR(static_cast<double>(p[2]), 0.03618, 1e-5);
+  const auto left = projection.Direction(0, 0);
+  EXPECT_NEAR(static_cast<double>(left[1]), -std::sin(60 * M_PI / 180) * std::cos(16 * M_PI / 180),
+              1e-6);
+}
+
+struct Damage {
+  const char* pointer;
+  const char* value;  // JSON; "" takes the key away
+};
+class BadMetadata : public ::testing::TestWithParam<Damage> {};
+TEST_P(BadMetadata, IsRefusedWithAReason) {
+  json root = Load("windowed_frame1_0.json");
+  const json::json_pointer at(GetParam().pointer);
+  root["config_params"].erase("lidar_mode");
+  if (*GetParam().value == '\0')
+    root[at.parent_pointer()].erase(at.back());
+  else
+    root[at] = json::parse(GetParam().value);
+  std::string error;
+  EXPECT_FALSE(Parse(root, &error));
+  EXPECT_NE(error, "");
+}
+INSTANTIATE_TEST_SUITE_P(
+    All, BadMetadata,
+    ::testing::Values(Damage{"/lidar_data_format/columns_per_frame", "0"},
+                      Damage{"/lidar_data_format/columns_per_frame", "-512"},
+                      Damage{"/lidar_data_format/columns_per_frame", "1e300"},
+                      Damage{"/lidar_data_format/columns_per_frame", "\"512\""},
+                      Damage{"/lidar_data_format/columns_per_frame", ""},
+                      Damage{"/lidar_data_format/fps", "0"},
+                      Damage{"/lidar_data_format/fps", "-10"},
+                      Damage{"/lidar_data_format/pixels_per_column", "4000000000"},
+                      Damage{"/lidar_data_format/pixels_per_column", "64"},
+                      Damage{"/lidar_data_format/columns_per_packet", "0"},
+                      Damage{"/lidar_data_format/columns_per_packet", "60000"},
+                      Damage{"/lidar_data_format/column_window", "[0, 512]"},
+                      Damage{"/lidar_data_format/column_window", "[0]"},
+                      Damage{"/lidar_data_format/column_window", "\"all\""},
+                      Damage{"/lidar_data_format/udp_profile_lidar", "\"RNG99\""},
+                      Damage{"/lidar_data_format/pixel_shift_by_row/3", "1e9"},
+                      Damage{"/lidar_data_format/pixel_shift_by_row/3", "513"},
+                      Damage{"/beam_intrinsics/beam_altitude_angles", "[]"},
+                      Damage{"/beam_intrinsics/beam_altitude_angles/7", "\"up\""},
+                      Damage{"/beam_intrinsics/beam_altitude_angles/7", "1e9"},
+                      Damage{"/beam_intrinsics/beam_altitude_angles/7", "[1, 2]"},
+                      Damage{"/beam_intrinsics/beam_azimuth_angles", ""},
+                      Damage{"/beam_intrinsics/beam_azimuth_angles", "null"},
+                      Damage{"/lidar_intrinsics/lidar_to_sensor_transform", "[1, 2, 3]"},
+                      Damage{"/lidar_intrinsics/lidar_to_sensor_transform/3", "null"}));
+
+TEST(Metadata, WhatIsNoJsonObjectIsRefused) {
+  std::string error;
+  EXPECT_FALSE(ParseMetadata("", &error));
+  EXPECT_FALSE(ParseMetadata("[]", &error));
+  EXPECT_FALSE(ParseMetadata("{", &error));
+  EXPECT_FALSE(ParseMetadata("<html>", &error));
+  EXPECT_FALSE(ParseMetadata(std::string(100'000, '['), &error));
+  std::string nested;
+  for (int i = 0; i < 10'000; ++i) nested += "{\"a\":";
+  EXPECT_FALSE(ParseMetadata(nested, &error));
+  EXPECT_FALSE(ParseMetadata(std::string(Metadata::kMaxJsonSize + 1, ' '), &error));
+}
+
+}  // namespace
+}  // namespace lidar::ouster

@@ -1,0 +1,201 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Times, foreign packets and IMU: what the stream adds to parser and batcher.
+#include <gtest/gtest.h>
+
+#include <cstring>
+
+#include "base/byte_writer.h"
+#include "captures.h"
+#include "ouster/imu_packet.h"
+#include "ouster/sensor_stream.h"
+
+namespace lidar::ouster {
+namespace {
+
+using namespace std::chrono_literals;
+
+TEST(ClockMapper, FollowsTheFastestPacketAndNotTheJitter) {
+  ClockMapper mapper(ClockMapper::Mode::kFollow);
+  std::uint64_t sensor = 5'000'000'000;
+  Time arrival{100s};
+  const Duration jitter[] = {3ms, 0ms, 7ms, 1ms, 20ms};
+  for (int i = 0; i < 1000; ++i, sensor += 1'600'000, arrival += 1600us) {
+    mapper.Observe(sensor, arrival + jitter[i % 5]);
+    if (i < 2) continue;
+    const Duration error = mapper.Map(sensor) - arrival;
+    EXPECT_GE(error, -1us) << i;
+    EXPECT_LE(error, 10us) << i;
+  }
+}
+
+TEST(ClockMapper, FollowsAClockThatDrifts) {
+  ClockMapper mapper(ClockMapper::Mode::kFollow);
+  // 100 ppm fast and then 100 ppm slow, a minute each.
+  double sensor = 1e9;
+  Time arrival{10s};
+  for (int i = 0; i < 120'000; ++i) {
+    sensor += i < 60'000 ? 1'000'100 : 999'900;
+    arrival += 1ms;
+    mapper.Observe(static_cast<std::uint64_t>(sensor), arrival);
+    const Duration error = mapper.Map(static_cast<std::uint64_t>(sensor)) - arrival;
+    ASSERT_LE(error, 1us) << i;
+    ASSERT_GE(error, -1ms) << i;
+  }
+}
+
+TEST(ClockMapper, StartsOverWhenAClockJumps) {
+  ClockMapper mapper(ClockMapper::Mode::kFollow);
+  mapper.Observe(1'000'000'000, Time{50s});
+  EXPECT_FALSE(mapper.WouldJump(1'001'000'000, Time{50s + 900ms}));
+  EXPECT_TRUE(mapper.WouldJump(77, Time{50s + 1ms}));
+  mapper.Observe(77, Time{50s + 1ms});
+  EXPECT_EQ(mapper.Map(77), Time{50s + 1ms});
+}
+
+class Stream : public ::testing::Test {
+ protected:
+  std::vector<TimedSlice> Run(SensorStream* stream, Duration shift = 0ms,
+                              std::uint64_t sensor_shift_ns = 0) {
+    std::vector<TimedSlice> out;
+    for (std::size_t i = 0; i < packets_.size(); ++i) {
+      auto packet = packets_[i];
+      for (std::uint32_t c = 0; c < 16; ++c) {
+        std::uint8_t* at = &packet[32 + c * metadata_.format.column_size()];
+        std::uint64_t t = 0;
+        std::memcpy(&t, at, sizeof t);
+        t += sensor_shift_ns;
+        std::memcpy(at, &t, sizeof t);
+      }
+      const Duration due = 1562500ns * static_cast<std::int64_t>(i + 1) + shift;
+      stream->Push({packet.data(), packet.size()}, {Time(due), Time(kUtcStart + due)});
+      while (auto slice = stream->Pop()) out.push_back(*std::move(slice));
+    }
+    return out;
+  }
+  std::unique_ptr<SensorStream> Make(const StreamOptions& options = {}) {
+    std::string error;
+    auto stream = SensorStream::Create(metadata_, options, &error);
+    EXPECT_TRUE(stream) << error;
+    return stream;
+  }
+  std::uint64_t FirstTimestamp() const {
+    return LidarPacket::Parse({packets_[0].data(), packets_[0].size()}, metadata_.format)
+        ->Column(0)
+        .timestamp;
+  }
+
+  static constexpr Duration kUtcStart = std::chrono::hours(24 * 365 * 55);
+  Metadata metadata_ = test::LoadMetadata("OS-1-128_v2.3.0_1024x10.json");
+  std::vector<std::vector<std::uint8_t>> packets_ =
+      test::LoadPackets("OS-1-128_v2.3.0_1024x10_lb_n3.pcap", metadata_);
+};
+
+TEST_F(Stream, SlicesHaveTheTimeOfTheirFirstColumn) {
+  auto stream = Make();
+  const auto slices = Run(stream.get());
+  ASSERT_EQ(slices.size(), 24U);
+  for (std::size_t i = 0; i < slices.size(); ++i) {
+    const Duration expected = 12500us * static_cast<std::int64_t>(i);
+    EXPECT_NEAR(Seconds(slices[i].local.time_since_epoch() - expected), 0, 5e-4) << i;
+    EXPECT_EQ(slices[i].utc - Time(kUtcStart), slices[i].local.time_since_epoch());
+  }
+  EXPECT_FALSE(stream->has_synchronised_clock());
+}
+
+TEST_F(Stream, ArrivalTimesAreThoseOfTheFirstPacket) {
+  StreamOptions options;
+  options.times = TimeSource::kArrival;
+  auto stream = Make(options);
+  const auto slices = Run(stream.get());
+  for (std::size_t i = 0; i < slices.size(); ++i)
+    EXPECT_EQ(slices[i].local, Time(1562500ns * static_cast<std::int64_t>(8 * i + 1)));
+}
+
+TEST_F(Stream, ASensorOnPtpGivesTrueUtc) {
+  metadata_.timestamp_mode = "TIME_FROM_PTP_1588";
+  auto stream = Make();
+  // PTP is TAI: 37 s ahead of UTC. The packets take 3 ms to arrive.
+  const Duration start = kUtcStart + 37s - Duration(static_cast<std::int64_t>(FirstTimestamp()));
+  const auto slices = Run(stream.get(), 3ms, static_cast<std::uint64_t>(start.count()));
+  EXPECT_TRUE(stream->has_synchronised_clock());
+  EXPECT_EQ(slices[0].utc, Time(kUtcStart));
+}
+
+TEST_F(Stream, AClockThatOnlyClaimsToBeSynchronisedIsNotBelieved) {
+  metadata_.timestamp_mode = "TIME_FROM_PTP_1588";
+  auto stream = Make();
+  const auto slices = Run(stream.get());
+  EXPECT_FALSE(stream->has_synchronised_clock());
+  EXPECT_NEAR(Seconds(slices[0].utc - Time(kUtcStart)), 0, 5e-4);
+}
+
+TEST_F(Stream, TimesNeverGoBackWhenTheSensorsClockDoes) {
+  auto stream = Make();
+  auto slices = Run(stream.get(), 0ms, 3'600'000'000'000);
+  const auto again = Run(stream.get(), 300ms);
+  slices.insert(slices.end(), again.begin(), again.end());
+  for (std::size_t i = 1; i < slices.size(); ++i) {
+    EXPECT_GE(slices[i].local, slices[i - 1].local) << i;
+    EXPECT_LE(slices[i].local - slices[i - 1].local, 40ms) << i;
+  }
+}
+
+TEST_F(Stream, PacketsThatDoNotFitAreCountedAndLeftOut) {
+  auto stream = Make();
+  const Arrival now{Time{1s}, Time{1s}};
+  auto packet = packets_[0];
+  EXPECT_EQ(stream->Push({packet.data(), packet.size() - 1}, now), PacketVerdict::kWrongSize);
+  EXPECT_EQ(stream->Push({packet.data(), 48}, now), PacketVerdict::kImu);
+  packet[kStandardHeader.init_id] ^= 1;
+  EXPECT_EQ(stream->Push({packet.data(), packet.size()}, now), PacketVerdict::kNewInitId);
+  stream->AcceptAnyInitId();
+  EXPECT_EQ(stream->Push({packet.data(), packet.size()}, now), PacketVerdict::kLidar);
+  packet[kStandardHeader.serial] ^= 1;
+  EXPECT_EQ(stream->Push({packet.data(), packet.size()}, now), PacketVerdict::kForeign);
+  EXPECT_EQ(stream->batcher().stats().packets, 1U);
+  EXPECT_EQ(stream->stats().wrong_size, 1U);
+  EXPECT_EQ(stream->stats().foreign, 1U);
+}
+
+TEST(Imu, ReadsLegacyPacketsInSiUnits) {
+  const Metadata m = test::LoadMetadata("crc_test.json");
+  std::vector<std::uint8_t> bytes;
+  ByteWriter w(&bytes);
+  w.Le64(1);
+  w.Le64(2);
+  w.Le64(3);
+  for (const float v : {0.0F, 0.0F, 1.0F, 180.0F, 0.0F, -90.0F}) w.LeF32(v);
+  const auto samples = ParseImuPacket({bytes.data(), bytes.size()}, m);
+  ASSERT_TRUE(samples);
+  ASSERT_EQ(samples->size(), 1U);
+  EXPECT_EQ((*samples)[0].timestamp, 3U);
+  EXPECT_FLOAT_EQ((*samples)[0].acceleration[2], 9.80665F);
+  EXPECT_FLOAT_EQ((*samples)[0].angular_velocity[0], 3.14159265F);
+  EXPECT_FLOAT_EQ((*samples)[0].angular_velocity[2], -1.57079633F);
+  EXPECT_FALSE(ParseImuPacket({bytes.data(), 47}, m));
+}
+
+TEST(Imu, ReadsAccelGyroPacketsAndLeavesOutInvalidSamples) {
+  Metadata m = test::LoadMetadata("crc_test.json");
+  m.imu_profile = ImuProfile::kAccel32Gyro32Nmea;
+  m.imu_measurements_per_packet = 3;
+  ASSERT_EQ(m.imu_packet_size(), 32U + 100 + 3 * 36 + 32);
+  std::vector<std::uint8_t> bytes(132);
+  ByteWriter w(&bytes);
+  for (std::uint16_t i = 0; i < 3; ++i) {
+    w.Le64(1000U + i);
+    w.Le16(i);
+    w.Le16(i == 1 ? 0 : 1);
+    for (int axis = 0; axis < 6; ++axis) w.LeF32(static_cast<float>(i * 10 + axis));
+  }
+  w.Zeros(32);
+  const auto samples = ParseImuPacket({bytes.data(), bytes.size()}, m);
+  ASSERT_TRUE(samples);
+  ASSERT_EQ(samples->size(), 2U);
+  EXPECT_EQ((*samples)[1].timestamp, 1002U);
+  EXPECT_EQ((*samples)[1].acceleration, (std::array<float, 3>{20, 21, 22}));
+  EXPECT_EQ((*samples)[1].angular_velocity, (std::array<float, 3>{23, 24, 25}));
+}
+
+}  // namespace
+}  // namespace lidar::ouster
