@@ -88,7 +88,14 @@ Settings AdaptiveModel::Choose(const SliceFeatures& slice, double bytes,
     }
     settings.step_m = kUnitStep * std::exp2((low + high) / 2);
   }
-  settings.step_m = ClampStep(settings.step_m, limits);
+  // Where steps are few, the nearest in bytes; but a little less is better than too much.
+  constexpr double kMostOver = 1.06;
+  const AllowedSteps steps = StepsAround(settings.step_m, limits);
+  settings.step_m = steps.coarser_m;
+  const double less = Predict(slice, settings).total();
+  settings.step_m = steps.finer_m;
+  const double more = Predict(slice, settings).total();
+  if (more > kMostOver * bytes || more - bytes > bytes - less) settings.step_m = steps.coarser_m;
   return settings;
 }
 

@@ -6,17 +6,23 @@
 
 namespace lidar::rate {
 
-double ClampStep(double step_m, const SettingLimits& limits) {
+AllowedSteps StepsAround(double step_m, const SettingLimits& limits) {
   const double finest = limits.finest_step_m;
   const double coarsest = std::max(limits.coarsest_step_m, finest);
   const double step = std::clamp(step_m, finest, coarsest);
   const double unit = limits.step_unit_m;
-  if (unit <= 0) return step;
+  if (unit <= 0) return {step, step};
   constexpr double kRounding = 1e-9;  // 41 units of a millimetre are no exact double
-  const double below = finest + std::floor((step - finest) / unit + kRounding) * unit;
-  const double above = below + unit;
+  const double finer = finest + std::floor((step - finest) / unit + kRounding) * unit;
+  const double coarser = finer + unit;
+  const bool exact = step - finer < kRounding;
+  return {finer, exact || coarser > coarsest * (1 + kRounding) ? finer : coarser};
+}
+
+double ClampStep(double step_m, const SettingLimits& limits) {
+  const AllowedSteps steps = StepsAround(step_m, limits);
   // Nearest in the logarithm, because bytes go with the logarithm of the step.
-  return step * step > below * above && above <= coarsest * (1 + kRounding) ? above : below;
+  return step_m * step_m > steps.finer_m * steps.coarser_m ? steps.coarser_m : steps.finer_m;
 }
 
 }  // namespace lidar::rate

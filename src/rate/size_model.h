@@ -66,7 +66,14 @@ class SizeModel {
                          const EncodedSlice& encoded) = 0;
 };
 
-/// The nearest step that the limits allow.
+/// The allowed steps on both sides of a step; the same one twice at the ends, or where any step is
+/// allowed.
+struct AllowedSteps {
+  double finer_m = 0;
+  double coarser_m = 0;
+};
+AllowedSteps StepsAround(double step_m, const SettingLimits& limits);
+/// The nearest allowed step.
 double ClampStep(double step_m, const SettingLimits& limits);
 
 }  // namespace lidar::rate

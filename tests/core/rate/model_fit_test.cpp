@@ -75,6 +75,25 @@ TEST(FitPaper, FindsThePolynomialThatMadeTheSamples) {
   EXPECT_LT(ErrorOf(PaperModel(*fit), samples).mean, 1e-6);
 }
 
+TEST(AdaptiveModel, TakesTheStepOfTheGridWhoseSizeIsNearestButNotFarAbove) {
+  AdaptiveCoefficients c;
+  c.fallback.step = {10, -0.5, 0, 0};  // bytes = 1024 sqrt(10 mm / step)
+  AdaptiveModel model(c);
+  SliceFeatures slice;
+  slice.returns = 1000;
+  SettingLimits limits;
+  limits.finest_step_m = 0.001;
+  limits.step_unit_m = 0.002;
+  limits.coarsest_step_m = 0.041;
+  // 1, 3 and 5 mm are 3238, 1870 and 1448 bytes.
+  EXPECT_NEAR(model.Choose(slice, 1900, limits).step_m, 0.003, 1e-12);
+  EXPECT_NEAR(model.Choose(slice, 1800, limits).step_m, 0.003, 1e-12);
+  EXPECT_NEAR(model.Choose(slice, 2700, limits).step_m, 0.003, 1e-12) << "1 mm is 20 % over";
+  EXPECT_NEAR(model.Choose(slice, 3200, limits).step_m, 0.001, 1e-12);
+  EXPECT_NEAR(model.Choose(slice, 1, limits).step_m, 0.041, 1e-12);
+  EXPECT_NEAR(model.Choose(slice, 1e9, limits).step_m, 0.001, 1e-12);
+}
+
 TEST(PaperModel, ChoosesTheGridPointNearestToTheTarget) {
   PaperPolynomial p;
   p.alpha[0] = 1000;  // bytes = 1000 q - 100 c
