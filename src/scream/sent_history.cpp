@@ -115,7 +115,9 @@ void SentHistory::Acknowledge(Time now, const PacketMetric& metric, Time report,
   static_cast<SentRecord&>(acked) = packet->record;
   acked.ssrc = ssrc;
   acked.arrived_ecn = metric.ecn;
-  if (metric.arrival_offset) acked.arrival = report - *metric.arrival_offset;
+  // What the path held back through an outage says nothing about its delay now.
+  const bool timed = metric.arrival_offset && packet->state != State::kExpired;
+  if (timed) acked.arrival = report - *metric.arrival_offset;
   acked.was_lost = packet->state == State::kLost;
   if (packet->state == State::kMissing || acked.was_lost)
     reordering_window_ =
@@ -123,7 +125,7 @@ void SentHistory::Acknowledge(Time now, const PacketMetric& metric, Time report,
   packet->state = State::kAcked;
   packet->ce = ce;
   if (ce) summary->bytes_newly_acked_ce += packet->record.size;
-  if (metric.arrival_offset) {
+  if (timed) {
     const bool last = summary->acked.empty() || packet->record.sent >= summary->acked.back().sent;
     if (last || !summary->rtt)
       summary->rtt = std::max(Duration{0}, now - packet->record.sent - *metric.arrival_offset);

@@ -25,7 +25,8 @@ struct SentRecord {
 
 struct AckedPacket : SentRecord {
   std::uint32_t ssrc = 0;
-  /// On the receiver's clock, unwrapped; absent where the report does not tell.
+  /// On the receiver's clock, unwrapped; absent where the report does not tell,
+  /// and after Expire().
   std::optional<Time> arrival;
   Ecn arrived_ecn = Ecn::kNotEct;
   bool was_lost = false;

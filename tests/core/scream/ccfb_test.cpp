@@ -1,0 +1,133 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// RFC 8888 on the wire.
+#include "scream/ccfb.h"
+
+#include <gtest/gtest.h>
+
+namespace lidar::scream {
+namespace {
+
+using namespace std::chrono_literals;
+using Bytes = std::vector<std::uint8_t>;
+
+ByteView View(const Bytes& b) { return {b.data(), b.size()}; }
+
+/// One SSRC, `count` packets from 100; all received where `last_received`, else all but the last.
+CongestionFeedback Report(std::size_t count, bool last_received = true) {
+  CongestionFeedback f;
+  f.sender_ssrc = 7;
+  f.report_timestamp = 0x01020304;
+  f.blocks.push_back({0xAABBCCDD, 100, {}});
+  for (std::size_t i = 0; i < count; ++i)
+    f.blocks[0].metrics.push_back({i + 1 < count || last_received, Ecn::kEct1, 0ms});
+  return f;
+}
+
+TEST(Ccfb, BytesAreThoseOfRfc8888) {
+  CongestionFeedback f = Report(0);
+  f.blocks[0].metrics = {{true, Ecn::kCe, 125ms}, {}, {true, Ecn::kEct0, std::nullopt}};
+  const Bytes expected = {0x8B, 205, 0,    6,   0, 0, 0,    7,    0xAA, 0xBB, 0xCC, 0xDD, 0, 100,
+                          0,    3,   0xE0, 128, 0, 0, 0xDF, 0xFF, 0,    0,    1,    2,    3, 4};
+  EXPECT_EQ(BuildCcfb(f), expected);
+}
+
+TEST(Ccfb, OffsetsSaturateAndSayWhenTheyAreMissing) {
+  CongestionFeedback f = Report(0);
+  f.blocks[0].metrics = {{true, Ecn::kEct1, 7996ms}, {true, Ecn::kEct1, 10s}};
+  const auto parsed = CcfbParser().Parse(View(BuildCcfb(f)));
+  ASSERT_TRUE(parsed);
+  ASSERT_TRUE(parsed->blocks[0].metrics[0].arrival_offset);
+  EXPECT_NEAR(Milliseconds(*parsed->blocks[0].metrics[0].arrival_offset), 7996, 0.5);
+  EXPECT_FALSE(parsed->blocks[0].metrics[1].arrival_offset);
+}
+
+struct Reading {
+  NumReports reading;
+  std::size_t count;
+};
+class CcfbReading : public ::testing::TestWithParam<Reading> {};
+
+TEST_P(CcfbReading, IsDetectedFromOnePacket) {
+  const auto [reading, count] = GetParam();
+  CcfbParser parser;
+  const auto parsed = parser.Parse(View(BuildCcfb(Report(count), reading)));
+  ASSERT_TRUE(parsed);
+  EXPECT_EQ(parsed->sender_ssrc, 7U);
+  EXPECT_EQ(parsed->report_timestamp, 0x01020304U);
+  ASSERT_EQ(parsed->blocks.size(), 1U);
+  EXPECT_EQ(parsed->blocks[0].begin_seq, 100);
+  EXPECT_EQ(parsed->blocks[0].metrics.size(), count);
+  EXPECT_EQ(parser.num_reports(), reading);
+}
+INSTANTIATE_TEST_SUITE_P(Counts, CcfbReading,
+                         ::testing::Values(Reading{NumReports::kCount, 1},
+                                           Reading{NumReports::kCount, 2},
+                                           Reading{NumReports::kCount, 31},
+                                           Reading{NumReports::kCount, 64},
+                                           Reading{NumReports::kCountMinusOne, 1},
+                                           Reading{NumReports::kCountMinusOne, 2},
+                                           Reading{NumReports::kCountMinusOne, 31},
+                                           Reading{NumReports::kCountMinusOne, 64}));
+
+TEST(Ccfb, AnAmbiguousPacketIsReadAsThePeersEarlierOnes) {
+  CcfbParser parser;
+  const Bytes ambiguous = BuildCcfb(Report(4, false), NumReports::kCountMinusOne);
+  EXPECT_EQ(parser.Parse(View(ambiguous))->blocks[0].metrics.size(), 3U);
+  parser.Parse(View(BuildCcfb(Report(4), NumReports::kCountMinusOne)));
+  EXPECT_EQ(parser.Parse(View(ambiguous))->blocks[0].metrics.size(), 4U);
+}
+
+TEST(Ccfb, SeveralSourcesShareAPacket) {
+  CongestionFeedback f = Report(3);
+  f.blocks.push_back({42, 65535, {{true, Ecn::kCe, 1ms}, {}}});
+  const auto parsed = CcfbParser().Parse(View(BuildCcfb(f)));
+  ASSERT_TRUE(parsed);
+  ASSERT_EQ(parsed->blocks.size(), 2U);
+  EXPECT_EQ(parsed->blocks[1].ssrc, 42U);
+  EXPECT_EQ(parsed->blocks[1].begin_seq, 65535);
+  EXPECT_EQ(parsed->blocks[1].metrics[0].ecn, Ecn::kCe);
+  EXPECT_FALSE(parsed->blocks[1].metrics[1].received);
+}
+
+TEST(Ccfb, EveryTruncationAndEveryWrongHeaderIsRefused) {
+  const Bytes good = BuildCcfb(Report(6));
+  for (std::size_t n = 0; n < good.size(); ++n) {
+    Bytes cut(good.begin(), good.begin() + static_cast<std::ptrdiff_t>(n));
+    EXPECT_FALSE(CcfbParser().Parse(View(cut))) << n;
+    if (n < 4 || n % 4 != 0) continue;
+    cut[3] = static_cast<std::uint8_t>(n / 4 - 1);  // a length that agrees
+    EXPECT_FALSE(CcfbParser().Parse(View(cut)) && n != 12) << n;
+  }
+  for (const std::size_t byte : {0U, 1U, 3U}) {
+    Bytes bad = good;
+    bad[byte] ^= 1;
+    EXPECT_FALSE(CcfbParser().Parse(View(bad))) << byte;
+  }
+}
+
+TEST(Ccfb, ACompoundIsSplitAndForeignPacketsAreLeftAlone) {
+  const Bytes receiver_report = {0x80, 201, 0, 1, 0, 0, 0, 9};
+  Bytes compound = receiver_report;
+  const Bytes ccfb = BuildCcfb(Report(2));
+  compound.insert(compound.end(), ccfb.begin(), ccfb.end());
+  const auto packets = SplitRtcp(View(compound));
+  ASSERT_EQ(packets.size(), 2U);
+  EXPECT_FALSE(IsCcfb(packets[0]));
+  EXPECT_TRUE(IsCcfb(packets[1]));
+  EXPECT_TRUE(CcfbParser().Parse(packets[1]));
+  compound.pop_back();
+  EXPECT_TRUE(SplitRtcp(View(compound)).empty());
+}
+
+TEST(Ccfb, RtcpPaddingIsTakenOff) {
+  Bytes bytes = BuildCcfb(Report(2));
+  bytes[0] |= 0x20;
+  bytes[3] = static_cast<std::uint8_t>(bytes[3] + 1);
+  bytes.insert(bytes.end(), {0, 0, 0, 4});
+  ASSERT_TRUE(CcfbParser().Parse(View(bytes)));
+  bytes.back() = 200;
+  EXPECT_FALSE(CcfbParser().Parse(View(bytes)));
+}
+
+}  // namespace
+}  // namespace lidar::scream

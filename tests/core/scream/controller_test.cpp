@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// The whole controller, by its events and over a simulated path.
+#include "scream/controller.h"
+
+#include <gtest/gtest.h>
+
+#include "scenarios.h"
+
+namespace lidar::scream::test {
+namespace {
+
+constexpr Time kStart{100s};
+DataRate Mbps(double r) { return DataRate::BitsPerSecond(r * 1e6); }
+
+SimulationResult RunScenario(const std::string& name, const Parameters& parameters = {}) {
+  return Simulate(FindScenario(name, parameters)->config);
+}
+
+TEST(Controller, StartsAtTheStartBitrate) {
+  Controller c{Parameters()};
+  const StreamId id = c.AddStream({1, Mbps(0.1), Mbps(3), Mbps(10)});
+  EXPECT_NEAR(c.target_bitrate(id).bits_per_second(), 3e6, 1);
+  EXPECT_FALSE(c.NextSend(kStart));
+  EXPECT_EQ(c.NextTimer(), Time::max());
+}
+
+TEST(Controller, ClosesTheWindowWithoutFeedbackButKeepsAMinimumRate) {
+  Controller c{Parameters()};
+  const StreamId id = c.AddStream({1, Mbps(0.1), Mbps(1), Mbps(10)});
+  Time now = kStart;
+  const auto queue = [&] { c.OnQueued(now, id, {1, DataSize::Bytes(1000), true, 0}); };
+  for (int i = 0; i < 200; ++i) queue();
+  Duration longest{0};
+  for (std::uint16_t seq = 0; seq < 100; ++seq) {
+    const auto d = c.NextSend(now);
+    ASSERT_TRUE(d);
+    longest = std::max(longest, d->time - now);
+    now = std::max(now, d->time);
+    c.OnSent(now, id, {1, seq, DataSize::Bytes(1000), d->ecn});
+  }
+  EXPECT_EQ(longest, Duration(160ms));  // 1000 bytes at RATE_PACE_MIN
+}
+
+TEST(Controller, FindsTheStreamOfASource) {
+  Controller c{Parameters()};
+  const StreamId a = c.AddStream({}), b = c.AddStream({});
+  c.OnQueued(kStart, a, {11, DataSize::Bytes(1000), true, 0});
+  c.OnQueued(kStart, b, {22, DataSize::Bytes(1000), true, 0});
+  EXPECT_EQ(c.FindStream(22), b);
+  EXPECT_EQ(c.FindStream(11), a);
+  EXPECT_FALSE(c.FindStream(33));
+}
+
+TEST(Controller, ImplausibleFeedbackChangesNothingAndIsCounted) {
+  Controller c{Parameters()};
+  const StreamId id = c.AddStream({});
+  c.OnQueued(kStart, id, {1, DataSize::Bytes(1000), true, 0});
+  c.OnSent(kStart, id, {1, 5, DataSize::Bytes(1000), Ecn::kEct1});
+  CongestionFeedback f;
+  f.blocks.push_back({1, 6, {{true, Ecn::kCe, 0ms}}});
+  EXPECT_EQ(c.OnFeedback(kStart + 10ms, f), FeedbackResult::kImplausible);
+  f.blocks[0].ssrc = 2;
+  EXPECT_EQ(c.OnFeedback(kStart + 10ms, f), FeedbackResult::kNotOurs);
+  const Statistics s = c.statistics(kStart + 10ms);
+  EXPECT_EQ(s.feedback_ignored, 1U);
+  EXPECT_EQ(s.foreign_blocks, 1U);
+  EXPECT_EQ(s.packets_ce, 0U);
+  EXPECT_EQ(s.bytes_in_flight.bytes(), 1000);
+}
+
+TEST(Simulation, IsDeterministic) {
+  const SimulationResult a = RunScenario("C"), b = RunScenario("C");
+  EXPECT_EQ(a.flows[0].delivered_bytes, b.flows[0].delivered_bytes);
+  EXPECT_EQ(a.packets.size(), b.packets.size());
+}
+
+TEST(Simulation, ThePureDraftHoldsTheL4sQueue) {
+  const Scenario s = *FindScenario("A", Parameters::Draft());
+  const ScenarioMetrics m = Measure(s, Simulate(s.config));
+  EXPECT_GT(m.utilisation, 0.6);
+  EXPECT_LT(m.queue_ms.p99, 5);
+  EXPECT_EQ(m.own_loss, 0);
+}
+
+TEST(Simulation, ThePureDraftFillsALinkWithoutEcn) {
+  const Scenario s = *FindScenario("D", Parameters::Draft());
+  const ScenarioMetrics m = Measure(s, Simulate(s.config));
+  EXPECT_GT(m.utilisation, 0.95);
+  EXPECT_LT(m.queue_ms.p95, 40);
+}
+
+TEST(Simulation, SurvivesAnOutageOfThirtySecondsAndRecoversWithinASecond) {
+  Scenario s = *FindScenario("C", Parameters());
+  s.config.forward.capacity.AddOutage(10s, 40s);
+  s.config.forward.limit.bytes = DataSize::Bytes(100000);
+  s.config.duration = 50s;
+  const SimulationResult result = Simulate(s.config);
+  const Time back = s.config.forward.origin + 40s;
+  const double mbps =
+      static_cast<double>(result.DeliveredBytes(back + 1s, back + 3s)) * 8 / 2 / 1e6;
+  EXPECT_GT(mbps, 8 * 0.7);
+  EXPECT_GT(result.flows[0].statistics.feedback_timeouts, 3U);
+}
+
+TEST(Simulation, SurvivesLostFeedback) {
+  Scenario s = *FindScenario("C", Parameters());
+  const double clean = Measure(s, Simulate(s.config)).utilisation;
+  s.config.return_loss = 0.2;
+  const SimulationResult result = Simulate(s.config);
+  EXPECT_GT(Measure(s, result).utilisation, clean - 0.03);
+  EXPECT_EQ(result.flows[0].statistics.packets_lost, 0U);
+}
+
+}  // namespace
+}  // namespace lidar::scream::test

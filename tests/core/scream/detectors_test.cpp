@@ -1,0 +1,240 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// The draft's constants, and the small detectors: alpha, queue delay, ECN, loss rate, pacing.
+#include <gtest/gtest.h>
+
+#include "scream/competing_flows.h"
+#include "scream/ecn_monitor.h"
+#include "scream/l4s_alpha.h"
+#include "scream/loss_rate.h"
+#include "scream/media_rate.h"
+#include "scream/pacer.h"
+#include "scream/queue_delay.h"
+#include "scream/rtt.h"
+
+namespace lidar::scream {
+namespace {
+
+constexpr Time kStart{100s};
+DataRate Mbps(double r) { return DataRate::BitsPerSecond(r * 1e6); }
+
+TEST(Parameters, TheDraftColumnIsTheDrafts) {
+  const Parameters p = Parameters::Draft();
+  EXPECT_EQ(p.qdelay_target_lo, Duration(60ms));
+  EXPECT_EQ(p.qdelay_target_hi, Duration(400ms));
+  EXPECT_EQ(p.min_ref_wnd.bytes(), 3000);
+  EXPECT_DOUBLE_EQ(p.bytes_in_flight_head_room, 1.5);
+  EXPECT_DOUBLE_EQ(p.beta_loss, 0.7);
+  EXPECT_DOUBLE_EQ(p.beta_ecn, 0.8);
+  EXPECT_EQ(p.mss.bytes(), 1000);
+  EXPECT_DOUBLE_EQ(p.post_congestion_delay_rtt, 100);
+  EXPECT_DOUBLE_EQ(p.mul_increase_factor, 0.02);
+  EXPECT_EQ(p.virtual_rtt, Duration(25ms));
+  EXPECT_DOUBLE_EQ(p.l4s_avg_g_up, 1.0 / 8);
+  EXPECT_DOUBLE_EQ(p.l4s_avg_g_down, 1.0 / 128);
+  EXPECT_DOUBLE_EQ(p.qdelay_avg_g, 1.0 / 4);
+  EXPECT_DOUBLE_EQ(p.qdelay_min_max_avg_g, 1.0 / 16);
+  EXPECT_DOUBLE_EQ(p.qdelay_dev_avg_g, 1.0 / 32);
+  EXPECT_EQ(p.qdelay_dev_threshold, Duration(10ms));
+  EXPECT_DOUBLE_EQ(p.ref_wnd_overhead_min, 1.5);
+  EXPECT_DOUBLE_EQ(p.ref_wnd_overhead_max, 3.0);
+  EXPECT_DOUBLE_EQ(p.rate_pace_min.bits_per_second(), 50e3);
+  EXPECT_DOUBLE_EQ(p.packet_pacing_headroom, 1.5);
+  EXPECT_DOUBLE_EQ(p.max_relaxed_pacing_factor, 4);
+  EXPECT_DOUBLE_EQ(p.relaxed_pacing_limit_low, 0.8);
+  EXPECT_EQ(p.packet_overhead.bytes(), 20);
+  EXPECT_DOUBLE_EQ(p.rate_adjust_gain, 1.0 / 16);
+  EXPECT_DOUBLE_EQ(p.frame_size_dev_alpha, 1.0 / 64);
+  EXPECT_DOUBLE_EQ(p.target_rate_divisor, 1.2);
+  EXPECT_DOUBLE_EQ(p.qdelay_min_avg_alpha, 1.0 / 256);
+  EXPECT_DOUBLE_EQ(p.loss_rate_threshold, 0.01);
+  EXPECT_DOUBLE_EQ(p.loss_rate_threshold_policer, 0.1);
+  EXPECT_DOUBLE_EQ(p.beta_loss_policer, 0.9);
+  EXPECT_DOUBLE_EQ(p.policed_ref_wnd_recovery, 0.001);
+  EXPECT_DOUBLE_EQ(p.acked_bitrate_margin, 0.8);
+  EXPECT_DOUBLE_EQ(p.backoff_scale_low_target_rate, 0.25);
+}
+
+TEST(Parameters, ThePureDraftHasNoOptionalPartAndNoExtension) {
+  const Parameters p = Parameters::Draft();
+  EXPECT_FALSE(p.reduce_jitter || p.clock_drift || p.link_layer_loss || p.rate_policer ||
+               p.undershoot_remedy || p.competing_flows);
+  const Extensions& e = p.extensions;
+  EXPECT_FALSE(e.fast_start || e.drop_response || e.bounded_flight || e.isolated_loss ||
+               e.adaptive_pacing || e.feedback_timeout);
+}
+
+TEST(L4sAlpha, AttacksWithAnEighthAndDecaysWithA128th) {
+  L4sAlpha alpha{Parameters::Draft()};
+  alpha.Update(kStart, 10, 5, 40ms);
+  EXPECT_DOUBLE_EQ(alpha.value(), 0.5 / 8);
+  alpha.Update(kStart + 10ms, 10, 0, 40ms);
+  EXPECT_DOUBLE_EQ(alpha.value(), 0.5 / 8 * 127 / 128);
+  EXPECT_DOUBLE_EQ(alpha.last_fraction_marked(), 0);
+}
+
+TEST(L4sAlpha, GathersPacketsForTenMilliseconds) {
+  L4sAlpha alpha{Parameters::Draft()};
+  alpha.Update(kStart, 1, 0, 40ms);
+  alpha.Update(kStart + 5ms, 10, 10, 40ms);
+  EXPECT_DOUBLE_EQ(alpha.value(), 0);
+  alpha.Update(kStart + 10ms, 10, 0, 40ms);
+  EXPECT_DOUBLE_EQ(alpha.value(), 0.5 / 8);
+}
+
+class QueueDelayTest : public ::testing::Test {
+ protected:
+  /// A packet a millisecond that takes `owd`, on clocks an hour apart.
+  void Run(int packets, Duration owd, Duration rtt_excess) {
+    for (int i = 0; i < packets; ++i, now_ += 1ms) {
+      ok_ = delay_.Add(now_, now_ - 20ms, now_ - 20ms + owd + 1h, rtt_excess) && ok_;
+      delay_.Update(now_, 40ms, 60ms);
+    }
+  }
+  Parameters parameters_;
+  QueueDelay delay_{parameters_};
+  Time now_ = kStart;
+  bool ok_ = true;
+};
+
+TEST_F(QueueDelayTest, IsTheDelayAboveTheLowestSeen) {
+  Run(10, 20ms, 0ms);
+  EXPECT_EQ(delay_.qdelay(), Duration(0));
+  Run(1, 27ms, 7ms);
+  EXPECT_EQ(delay_.qdelay(), Duration(7ms));
+}
+
+TEST_F(QueueDelayTest, TheAverageRisesSlowlyAndFallsAtOnce) {
+  Run(30, 20ms, 0ms);
+  Run(26, 60ms, 40ms);
+  EXPECT_NEAR(Milliseconds(delay_.qdelay_avg()), 10, 0.01);
+  Run(26, 20ms, 0ms);
+  EXPECT_EQ(delay_.qdelay_avg(), Duration(0));
+}
+
+TEST_F(QueueDelayTest, AJumpThatTheRoundTripDoesNotShowIsAClockAndNotAQueue) {
+  Run(30, 20ms, 0ms);
+  Run(1, 3020ms, 0ms);
+  EXPECT_FALSE(ok_);
+  EXPECT_EQ(delay_.qdelay(), Duration(0));
+  ok_ = true;
+  Run(1, -3000ms, 0ms);
+  EXPECT_FALSE(ok_);
+  EXPECT_EQ(delay_.qdelay(), Duration(0));
+}
+
+TEST_F(QueueDelayTest, ARealQueueOfASecondIsAQueue) {
+  Run(30, 20ms, 0ms);
+  Run(1, 1020ms, 1000ms);
+  EXPECT_TRUE(ok_);
+  EXPECT_EQ(delay_.qdelay(), Duration(1s));
+}
+
+TEST_F(QueueDelayTest, JitterLowersTheScale) {
+  Run(30, 20ms, 0ms);
+  for (int i = 0; i < 40; ++i) {
+    Run(26, 20ms, 0ms);
+    Run(26, 50ms, 30ms);
+  }
+  EXPECT_LT(delay_.ref_wnd_delay_scale(), 0.1);
+}
+
+TEST_F(QueueDelayTest, ADriftingClockIsGivenANewBase) {
+  bool reset = false;
+  for (int i = 0; i < 1000 && !reset; ++i) {
+    Run(41, 20ms + i * 100us, 100ms);
+    reset = delay_.TakeDriftReset();
+  }
+  EXPECT_TRUE(reset);
+  EXPECT_EQ(delay_.qdelay(), Duration(0));
+}
+
+TEST(EcnMonitor, StaysCapableWhileTheCodepointArrives) {
+  EcnMonitor ecn(Ecn::kEct1);
+  EXPECT_EQ(ecn.state(), EcnState::kTesting);
+  ecn.OnAcked(Ecn::kEct1, Ecn::kEct1);
+  EXPECT_EQ(ecn.state(), EcnState::kCapable);
+  EXPECT_EQ(ecn.codepoint(), Ecn::kEct1);
+}
+
+TEST(EcnMonitor, FallsBackWhenTheCodepointIsBleachedAndProbesANewRoute) {
+  EcnMonitor ecn(Ecn::kEct1);
+  for (int i = 0; i < 20; ++i) ecn.OnAcked(Ecn::kEct1, Ecn::kNotEct);
+  EXPECT_EQ(ecn.state(), EcnState::kBleached);
+  EXPECT_EQ(ecn.codepoint(), Ecn::kNotEct);
+  ecn.Reset();
+  EXPECT_EQ(ecn.codepoint(), Ecn::kEct1);
+}
+
+TEST(EcnMonitor, FallsBackWhenNothingMarkedComesThrough) {
+  EcnMonitor ecn(Ecn::kEct1);
+  for (int i = 0; i < 10; ++i) ecn.OnSent(kStart, Ecn::kEct1);
+  ecn.OnTimer(kStart + 1900ms);
+  EXPECT_EQ(ecn.state(), EcnState::kTesting);
+  ecn.OnTimer(kStart + 2s);
+  EXPECT_EQ(ecn.state(), EcnState::kSilent);
+  EXPECT_EQ(ecn.codepoint(), Ecn::kNotEct);
+}
+
+TEST(LossRate, FollowsTheDraftsFilter) {
+  const Parameters p = Parameters::Draft();
+  LossRate rate(p);
+  rate.Add(true, DataSize::Bytes(10000));
+  EXPECT_DOUBLE_EQ(rate.value(), 0.0025);
+  rate.Add(false, DataSize::Bytes(1000000));
+  EXPECT_DOUBLE_EQ(rate.value(), 0.0025 * (1 - 0.0005));
+}
+
+TEST(Pacer, RelaxesNearTheMaximumBitrate) {
+  const Parameters p = Parameters::Draft();
+  Pacer pacer(p);
+  pacer.Update(Mbps(4), Mbps(10), 1.5);
+  EXPECT_NEAR(pacer.pace_bitrate().bits_per_second(), 6e6, 1);
+  pacer.Update(Mbps(9), Mbps(10), 1.5);
+  EXPECT_NEAR(pacer.pace_bitrate().bits_per_second(), 27e6, 1);
+  pacer.Update(Mbps(10), Mbps(10), 1.5);
+  EXPECT_NEAR(pacer.pace_bitrate().bits_per_second(), 60e6, 1);
+  pacer.Update(Mbps(0.01), Mbps(10), 1.5);
+  EXPECT_NEAR(pacer.pace_bitrate().bits_per_second(), 75e3, 1);
+}
+
+TEST(Pacer, CatchesUpAfterALateWakeUpButOnlyALittle) {
+  const Parameters p = Parameters::Draft();
+  Pacer pacer(p);
+  pacer.Update(Mbps(8), Mbps(100), 1);
+  pacer.OnSent(kStart, DataSize::Bytes(1000));
+  EXPECT_EQ(pacer.next(), kStart - 2ms + 1ms);
+  pacer.OnSent(kStart, DataSize::Bytes(1000));
+  pacer.OnSent(kStart, DataSize::Bytes(1000));
+  EXPECT_EQ(pacer.next(), kStart + 1ms);
+}
+
+TEST(MediaRate, IsTheWindowOverTheRoundTripWithTheDraftsReserves) {
+  const Parameters p = Parameters::Draft();
+  const DataRate rate = TargetBitrate(p, {DataSize::Bytes(50000), 0.02, 40ms, 0});
+  EXPECT_NEAR(rate.bits_per_second(), 1e7 * (1000.0 / 1020) / 1.2, 1);
+  const DataRate small = TargetBitrate(p, {DataSize::Bytes(3000), 1.0 / 3, 40ms, 0.3});
+  EXPECT_NEAR(small.bits_per_second(), 6e5 * 0.8 * (1000.0 / 1020) / 1.5, 1);
+}
+
+TEST(CompetingFlows, TheTargetGivesWayToASteadyQueueAndComesBack) {
+  Parameters p;
+  p.competing_flows = true;
+  CompetingFlows flows(p);
+  Time now = kStart;
+  for (int i = 0; i < 300; ++i, now += 50ms) flows.Update(now, 150ms, 40ms, false);
+  EXPECT_NEAR(Milliseconds(flows.qdelay_target()), 150, 1);
+  for (int i = 0; i < 300; ++i, now += 50ms) flows.Update(now, 5ms, 40ms, false);
+  EXPECT_EQ(flows.qdelay_target(), p.qdelay_target_lo);
+}
+
+TEST(RoundTripTime, SmoothsByAnEighth) {
+  RoundTripTime rtt;
+  EXPECT_FALSE(rtt.known());
+  rtt.Add(40ms, false);
+  rtt.Add(80ms, false);
+  EXPECT_EQ(rtt.smoothed(), Duration(45ms));
+  EXPECT_EQ(rtt.min(), Duration(40ms));
+}
+
+}  // namespace
+}  // namespace lidar::scream

@@ -1,0 +1,163 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// The reference window against the draft's pseudo code.
+#include "scream/reference_window.h"
+
+#include <gtest/gtest.h>
+
+namespace lidar::scream {
+namespace {
+
+constexpr Time kStart{100s};
+DataRate Mbps(double r) { return DataRate::BitsPerSecond(r * 1e6); }
+
+class ReferenceWindowTest : public ::testing::Test {
+ protected:
+  ReferenceWindowTest() {
+    signals_.s_rtt = 25ms;
+    signals_.qdelay_target = 60ms;
+    signals_.target_bitrate = Mbps(5);
+    signals_.target_bitrate_max = Mbps(100);
+    signals_.max_bytes_in_flight_prev = DataSize::Bytes(1000000);
+    window_.Set(DataSize::Bytes(100000));
+  }
+  /// Nothing acknowledged: only reductions move the window.
+  double Factor(Duration after = 1s) {
+    const auto before = static_cast<double>(window_.ref_wnd().bytes());
+    now_ += after;
+    reaction_ = window_.Update(now_, signals_);
+    return static_cast<double>(window_.ref_wnd().bytes()) / before;
+  }
+
+  Parameters parameters_ = Parameters::Draft();
+  CongestionSignals signals_;
+  ReferenceWindow window_{parameters_};
+  Time now_ = kStart;
+  Reaction reaction_ = Reaction::kNone;
+};
+
+TEST_F(ReferenceWindowTest, LossScalesByBetaLoss) {
+  signals_.loss_detected = true;
+  EXPECT_NEAR(Factor(), 0.7, 1e-4);
+  EXPECT_EQ(reaction_, Reaction::kLoss);
+}
+
+TEST_F(ReferenceWindowTest, ClassicEcnScalesByBetaEcn) {
+  signals_.data_units_marked = true;
+  signals_.is_l4s = false;
+  EXPECT_NEAR(Factor(), 0.8, 1e-4);
+}
+
+TEST_F(ReferenceWindowTest, L4sScalesByHalfOfAlpha) {
+  signals_.data_units_marked = true;
+  signals_.l4s_alpha = 0.4;
+  EXPECT_NEAR(Factor(), 0.8, 1e-4);
+  EXPECT_EQ(reaction_, Reaction::kCe);
+}
+
+TEST_F(ReferenceWindowTest, L4sIsGentlerCloseToTheInflectionPointUnlessTheQueueIsLong) {
+  signals_.data_units_marked = true;
+  signals_.l4s_alpha = 0.1;
+  Factor();  // sets the inflection point, 5 % above where the window is now
+  EXPECT_NEAR(Factor(), 1 - 0.05 * 0.25, 1e-4);
+  signals_.qdelay = 16ms;
+  EXPECT_NEAR(Factor(), 1 - 0.05, 1e-4);
+}
+
+TEST_F(ReferenceWindowTest, LongRoundTripsReactInPartsEveryVirtualRtt) {
+  signals_.data_units_marked = true;
+  signals_.l4s_alpha = 0.4;
+  signals_.s_rtt = 100ms;
+  EXPECT_NEAR(Factor(), 1 - 0.2 / 4, 1e-4);
+  EXPECT_DOUBLE_EQ(Factor(24ms), 1);
+  EXPECT_EQ(reaction_, Reaction::kNone);
+  EXPECT_LT(Factor(1ms), 1);
+}
+
+TEST_F(ReferenceWindowTest, QueueDelayActsAsVirtualMarks) {
+  signals_.qdelay = signals_.qdelay_avg = 45ms;
+  EXPECT_NEAR(Factor(), 0.75, 1e-4);
+  EXPECT_EQ(reaction_, Reaction::kVirtualCe);
+  signals_.qdelay_avg = 30ms;
+  EXPECT_DOUBLE_EQ(Factor(), 1);
+}
+
+TEST_F(ReferenceWindowTest, AfterALongTimeWithoutCongestionItComesBackToWhatIsInFlight) {
+  signals_.data_units_marked = true;
+  signals_.max_bytes_in_flight_prev = DataSize::Bytes(40000);
+  EXPECT_NEAR(Factor(10s), 0.4, 1e-4);
+}
+
+TEST_F(ReferenceWindowTest, NeverFallsBelowItsMinimum) {
+  signals_.loss_detected = true;
+  for (int i = 0; i < 50; ++i) Factor();
+  EXPECT_EQ(window_.ref_wnd().bytes(), 3000);
+}
+
+TEST_F(ReferenceWindowTest, GrowsByOneMssARoundTripRightAfterCongestion) {
+  signals_.data_units_marked = true;
+  signals_.l4s_alpha = 1;
+  Factor();
+  const auto before = window_.ref_wnd().bytes();
+  signals_ = {};
+  signals_.s_rtt = 25ms;
+  signals_.qdelay_target = 60ms;
+  signals_.target_bitrate_max = Mbps(100);
+  signals_.max_bytes_in_flight = DataSize::Bytes(100000);
+  signals_.bytes_newly_acked = window_.ref_wnd();
+  window_.Update(now_, signals_);
+  EXPECT_NEAR(static_cast<double>(window_.ref_wnd().bytes() - before), 1000, 2);
+}
+
+TEST_F(ReferenceWindowTest, GrowsByTwoPercentMoreLongAfterCongestion) {
+  signals_.max_bytes_in_flight = DataSize::Bytes(100000);
+  signals_.bytes_newly_acked = DataSize::Bytes(100000);
+  EXPECT_NEAR(Factor(), 1.03, 1e-4);  // MSS / window and MUL_INCREASE_FACTOR
+}
+
+TEST_F(ReferenceWindowTest, DoesNotGrowFarAboveWhatIsInFlightNorAtTheMaximumBitrate) {
+  signals_.bytes_newly_acked = DataSize::Bytes(100000);
+  signals_.max_bytes_in_flight_prev = DataSize::Bytes(60000);
+  EXPECT_DOUBLE_EQ(Factor(), 1);
+  signals_.max_bytes_in_flight = DataSize::Bytes(100000);
+  signals_.target_bitrate = signals_.target_bitrate_max;
+  EXPECT_DOUBLE_EQ(Factor(), 1);
+}
+
+TEST_F(ReferenceWindowTest, MarkedBytesDoNotMakeItGrow) {
+  signals_.max_bytes_in_flight = DataSize::Bytes(100000);
+  signals_.bytes_newly_acked = signals_.bytes_newly_acked_ce = DataSize::Bytes(50000);
+  EXPECT_DOUBLE_EQ(Factor(), 1);
+}
+
+TEST_F(ReferenceWindowTest, LinkLayerLossIsSparedUntilTheRateOrTheQueueGrows) {
+  parameters_.link_layer_loss = true;
+  signals_.loss_detected = true;
+  signals_.loss_rate = 0.009;
+  EXPECT_DOUBLE_EQ(Factor(), 1);
+  signals_.qdelay_avg = 16ms;
+  EXPECT_NEAR(Factor(), 0.7, 1e-4);
+  signals_.qdelay_avg = 0ms;
+  signals_.loss_rate = 0.011;
+  EXPECT_NEAR(Factor(), 0.7, 1e-4);
+}
+
+TEST_F(ReferenceWindowTest, APolicerLimitsTheWindowAndLetsItGoSlowly) {
+  parameters_.rate_policer = true;
+  signals_.loss_detected = true;
+  signals_.loss_rate = 0.2;
+  Factor();
+  EXPECT_EQ(window_.max_policed_ref_wnd().bytes(), 90000);
+  window_.RelaxPolicer();
+  EXPECT_NEAR(static_cast<double>(window_.max_policed_ref_wnd().bytes()), 90090, 1);
+}
+
+TEST_F(ReferenceWindowTest, ReactsLessWhereTheTargetHasFallenAlready) {
+  parameters_.undershoot_remedy = true;
+  signals_.data_units_marked = true;
+  signals_.l4s_alpha = 0.4;
+  signals_.acked_bitrate = Mbps(7);
+  EXPECT_NEAR(Factor(), 1 - 0.2 / 4, 1e-4);
+}
+
+}  // namespace
+}  // namespace lidar::scream

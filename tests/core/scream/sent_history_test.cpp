@@ -1,0 +1,158 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// What the sender believes of its feedback.
+#include "scream/sent_history.h"
+
+#include <gtest/gtest.h>
+
+#include "scream/report_clock.h"
+
+namespace lidar::scream {
+namespace {
+
+using namespace std::chrono_literals;
+constexpr Time kStart{100s};
+constexpr Duration kRtt = 40ms;
+
+class SentHistoryTest : public ::testing::Test {
+ protected:
+  /// Packets [from, until), one a millisecond.
+  void Send(int from, int until) {
+    for (int seq = from; seq < until; ++seq, now_ += 1ms)
+      history_.OnSent(1, static_cast<std::uint16_t>(seq),
+                      {0, DataSize::Bytes(1000), now_, Ecn::kEct1});
+  }
+  CongestionFeedback Report(int begin, const std::string& metrics, std::uint32_t ssrc = 1) const {
+    CongestionFeedback f;
+    f.report_timestamp = ReportClock::ToTimestamp(now_);
+    f.blocks.push_back({ssrc, static_cast<std::uint16_t>(begin), {}});
+    for (const char c : metrics)
+      f.blocks[0].metrics.push_back({c != '-', c == 'C' ? Ecn::kCe : Ecn::kEct1, 0ms});
+    return f;
+  }
+  HistoryResult Apply(const CongestionFeedback& f) {
+    summary_ = {};
+    return history_.OnFeedback(now_, f, &summary_);
+  }
+
+  SentHistory history_;
+  AckSummary summary_;
+  Time now_ = kStart;
+};
+
+TEST_F(SentHistoryTest, BytesInFlightRunFromTheHighestAcknowledgedToTheLastSent) {
+  Send(0, 10);
+  EXPECT_EQ(history_.bytes_in_flight().bytes(), 10000);
+  EXPECT_EQ(Apply(Report(0, "r-r")), HistoryResult::kApplied);
+  EXPECT_EQ(history_.bytes_in_flight().bytes(), 7000);
+  EXPECT_EQ(summary_.bytes_newly_acked.bytes(), 3000);
+  EXPECT_EQ(summary_.acked.size(), 2U);
+}
+
+TEST_F(SentHistoryTest, APacketCountsOnceHoweverOftenItIsReported) {
+  Send(0, 4);
+  Apply(Report(0, "rC"));
+  EXPECT_EQ(summary_.bytes_newly_acked_ce.bytes(), 1000);
+  EXPECT_EQ(Apply(Report(0, "rC")), HistoryResult::kNothingNew);
+  EXPECT_EQ(Apply(Report(0, "rCr")), HistoryResult::kApplied);
+  EXPECT_EQ(summary_.acked.size(), 1U);
+}
+
+TEST_F(SentHistoryTest, CeOfALaterReportIsNotLost) {
+  Send(0, 2);
+  Apply(Report(0, "r"));
+  EXPECT_EQ(Apply(Report(0, "C")), HistoryResult::kApplied);
+  EXPECT_EQ(summary_.late_ce, 1);
+  EXPECT_EQ(Apply(Report(0, "C")), HistoryResult::kNothingNew);
+}
+
+TEST_F(SentHistoryTest, RoundTripsLeaveOutTheReceiversHoldingTime) {
+  Send(0, 1);
+  now_ = kStart + 50ms;
+  CongestionFeedback f = Report(0, "r");
+  f.blocks[0].metrics[0].arrival_offset = 20ms;
+  Apply(f);
+  ASSERT_TRUE(summary_.rtt);
+  EXPECT_EQ(*summary_.rtt, Duration(30ms));
+}
+
+TEST_F(SentHistoryTest, AMissingPacketIsLostAtOnceWhileNothingWasReordered) {
+  Send(0, 5);
+  Apply(Report(0, "r-r"));
+  ASSERT_EQ(summary_.lost.size(), 1U);
+  EXPECT_EQ(Apply(Report(0, "r-r")), HistoryResult::kNothingNew);
+}
+
+TEST_F(SentHistoryTest, TheReorderingWindowGrowsWithWhatCameLate) {
+  Send(0, 20);
+  Apply(Report(0, "r-r"));
+  now_ += 7ms;
+  Apply(Report(0, "rrr"));
+  ASSERT_EQ(summary_.acked.size(), 1U);
+  EXPECT_TRUE(summary_.acked[0].was_lost);
+  EXPECT_EQ(history_.reordering_window(), Duration(7ms));
+  Apply(Report(3, "-r"));
+  EXPECT_TRUE(summary_.lost.empty());
+  now_ += 7ms;
+  std::vector<LostPacket> lost;
+  history_.DetectLoss(now_, &lost);
+  EXPECT_EQ(lost.size(), 1U);
+}
+
+TEST_F(SentHistoryTest, AReportOfAPacketNeverSentIsIgnoredWhole) {
+  Send(0, 5);
+  EXPECT_EQ(Apply(Report(0, "rrrrrr")), HistoryResult::kImplausible);
+  EXPECT_EQ(history_.bytes_in_flight().bytes(), 5000);
+  history_.OnSent(1, 8,
+                  {0, DataSize::Bytes(1000), now_, Ecn::kEct1});  // 5 to 7 were dropped unsent
+  EXPECT_EQ(Apply(Report(4, "r-r-r")), HistoryResult::kImplausible);
+  EXPECT_EQ(Apply(Report(4, "r---r")), HistoryResult::kApplied);
+  EXPECT_TRUE(summary_.lost.empty());
+}
+
+TEST_F(SentHistoryTest, AnArrivalBeforeTheSendingIsIgnoredWhole) {
+  Send(0, 2);
+  now_ = kStart + kRtt;
+  CongestionFeedback f = Report(0, "rr");
+  f.blocks[0].metrics[1].arrival_offset = 60ms;
+  EXPECT_EQ(Apply(f), HistoryResult::kImplausible);
+}
+
+TEST_F(SentHistoryTest, ForeignSourcesAreCountedAndOursStillTaken) {
+  Send(0, 2);
+  EXPECT_EQ(Apply(Report(0, "r", 99)), HistoryResult::kNotOurs);
+  CongestionFeedback f = Report(0, "r", 99);
+  f.blocks.push_back(Report(0, "r").blocks[0]);
+  EXPECT_EQ(Apply(f), HistoryResult::kApplied);
+  EXPECT_EQ(history_.foreign_blocks(), 2U);
+}
+
+TEST_F(SentHistoryTest, PacketsFromBeforeThisSenderAreNobodysLie) {
+  Send(1000, 1002);
+  EXPECT_EQ(Apply(Report(990, "rrrrrrrrrrr")), HistoryResult::kApplied);
+  EXPECT_EQ(summary_.acked.size(), 1U);
+}
+
+TEST_F(SentHistoryTest, SequenceNumbersWrapAround) {
+  Send(65530, 65540);
+  EXPECT_EQ(Apply(Report(65530, "rrrrrrrr")), HistoryResult::kApplied);
+  EXPECT_EQ(history_.bytes_in_flight().bytes(), 2000);
+}
+
+TEST_F(SentHistoryTest, ExpiredPacketsAreNeitherInFlightNorLost) {
+  Send(0, 10);
+  history_.Expire(now_);
+  EXPECT_EQ(history_.bytes_in_flight().bytes(), 0);
+  Send(10, 12);
+  EXPECT_EQ(Apply(Report(0, "----------r")), HistoryResult::kApplied);
+  EXPECT_TRUE(summary_.lost.empty());
+  EXPECT_EQ(history_.bytes_in_flight().bytes(), 1000);
+}
+
+TEST_F(SentHistoryTest, MemoryStaysBoundedWithoutFeedback) {
+  for (int i = 0; i < 100000; ++i)
+    history_.OnSent(1, static_cast<std::uint16_t>(i), {0, DataSize::Bytes(1000), now_, Ecn::kEct1});
+  EXPECT_EQ(history_.bytes_in_flight().bytes(), 16384 * 1000);
+}
+
+}  // namespace
+}  // namespace lidar::scream

@@ -1,0 +1,132 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Several streams: shares, turns, frames and late packets.
+#include "scream/streams.h"
+
+#include <gtest/gtest.h>
+
+#include "scream/target_notifier.h"
+
+namespace lidar::scream {
+namespace {
+
+constexpr Time kStart{100s};
+DataRate Mbps(double r) { return DataRate::BitsPerSecond(r * 1e6); }
+
+class StreamsTest : public ::testing::Test {
+ protected:
+  StreamId Add(double priority, double min, double max) {
+    return streams_.Add({priority, Mbps(min), Mbps(1), Mbps(max)});
+  }
+  double Target(StreamId id) { return streams_.Find(id)->target_bitrate().bits_per_second() / 1e6; }
+
+  Parameters parameters_;
+  Streams streams_{parameters_};
+};
+
+TEST_F(StreamsTest, ShareByPriorityAboveTheirMinimum) {
+  const StreamId a = Add(3, 1, 100), b = Add(1, 1, 100);
+  streams_.Allocate(kStart, Mbps(10));
+  EXPECT_NEAR(Target(a), 7, 1e-3);
+  EXPECT_NEAR(Target(b), 3, 1e-3);
+}
+
+TEST_F(StreamsTest, WhatAFullStreamLeavesGoesToTheOthers) {
+  const StreamId a = Add(3, 0, 2), b = Add(1, 0, 100), c = Add(1, 0, 100);
+  streams_.Allocate(kStart, Mbps(10));
+  EXPECT_NEAR(Target(a), 2, 1e-3);
+  EXPECT_NEAR(Target(b), 4, 1e-3);
+  EXPECT_NEAR(Target(c), 4, 1e-3);
+}
+
+TEST_F(StreamsTest, AStarvedStreamKeepsItsMinimum) {
+  const StreamId a = Add(1, 2, 100), b = Add(100, 1, 100);
+  streams_.Allocate(kStart, Mbps(1));
+  EXPECT_NEAR(Target(a), 2, 1e-9);
+  EXPECT_NEAR(Target(b), 1, 1e-9);
+}
+
+TEST_F(StreamsTest, TakeTurnsByTheirTargets) {
+  const StreamId a = Add(3, 0, 100), b = Add(1, 0, 100);
+  streams_.Allocate(kStart, Mbps(8));
+  for (int i = 0; i < 400; ++i)
+    for (const StreamId id : {a, b})
+      streams_.Find(id)->OnQueued(kStart, {1, DataSize::Bytes(1000), false, 0});
+  int turns[2] = {0, 0};
+  for (int i = 0; i < 100; ++i) {
+    const StreamId id = *streams_.Next();
+    ++turns[id];
+    streams_.OnSent(kStart, id, 1, DataSize::Bytes(1000));
+  }
+  EXPECT_NEAR(turns[a], 75, 1);
+  EXPECT_NEAR(turns[b], 25, 1);
+}
+
+class StreamTest : public ::testing::Test {
+ protected:
+  /// A frame of `packets` packets of 1000 bytes.
+  void Frame(Time now, int packets, std::uint32_t timestamp) {
+    for (int i = 0; i < packets; ++i)
+      stream_.OnQueued(now, {1, DataSize::Bytes(1000), i + 1 == packets, timestamp});
+  }
+  Parameters parameters_;
+  Stream stream_{parameters_, {1, Mbps(0), Mbps(4), Mbps(50)}};
+};
+
+TEST_F(StreamTest, LateFramesAreDroppedWhole) {
+  Frame(kStart, 3, 1);
+  Frame(kStart + 100ms, 2, 2);
+  EXPECT_EQ(stream_.LatePackets(kStart + 200ms), 0U);
+  EXPECT_EQ(stream_.LatePackets(kStart + 201ms), 3U);
+  EXPECT_EQ(stream_.LatePackets(kStart + 301ms), 5U);
+}
+
+TEST_F(StreamTest, AFrameThatHasBegunGoesOutToItsEnd) {
+  Frame(kStart, 3, 1);
+  Frame(kStart + 100ms, 2, 2);
+  stream_.OnSent(kStart, 1, DataSize::Bytes(1000));
+  EXPECT_EQ(stream_.LatePackets(kStart + 301ms), 0U);
+  stream_.OnSent(kStart, 1, DataSize::Bytes(1000));
+  stream_.OnSent(kStart, 1, DataSize::Bytes(1000));
+  EXPECT_EQ(stream_.LatePackets(kStart + 301ms), 2U);
+}
+
+TEST_F(StreamTest, TheFramePeriodIsMeasured) {
+  for (int i = 0; i < 100; ++i) {
+    Frame(kStart + i * 100ms, 1, static_cast<std::uint32_t>(i));
+    stream_.OnDropped(1);
+  }
+  EXPECT_NEAR(Milliseconds(stream_.frame_period()), 100, 1);
+}
+
+TEST_F(StreamTest, AQueueThatOutlastsTheFramePeriodLowersTheRate) {
+  for (int i = 0; i < 20; ++i) Frame(kStart + i * 20ms, 1, static_cast<std::uint32_t>(i));
+  EXPECT_DOUBLE_EQ(stream_.rate_adjust_factor(), 0.5);
+}
+
+TEST_F(StreamTest, FramesAboveTheNominalSizeAreCompensated) {
+  for (int i = 0; i < 500; ++i) {
+    Frame(kStart + i * 20ms, 11, static_cast<std::uint32_t>(i));  // nominal: 10
+    stream_.OnDropped(11);
+  }
+  EXPECT_NEAR(stream_.frame_size_dev(), 0.1, 1e-3);
+}
+
+TEST_F(StreamTest, RepairPacketsOfAnotherSourceAreNoFrames) {
+  Frame(kStart, 3, 1);
+  stream_.OnQueued(kStart, {2, DataSize::Bytes(500), false, 77});
+  EXPECT_TRUE(stream_.Owns(2));
+  Frame(kStart + 100ms, 2, 2);
+  EXPECT_EQ(stream_.LatePackets(kStart + 201ms), 4U);
+}
+
+TEST(TargetNotifier, TellsMovesOfTwoPercentAtOnceAndAllElseEvery200Milliseconds) {
+  TargetNotifier notifier;
+  EXPECT_TRUE(notifier.ShouldNotify(kStart, Mbps(10)));
+  EXPECT_FALSE(notifier.ShouldNotify(kStart + 1ms, Mbps(10.19)));
+  EXPECT_TRUE(notifier.ShouldNotify(kStart + 1ms, Mbps(10.21)));
+  EXPECT_FALSE(notifier.ShouldNotify(kStart + 200ms, Mbps(10.21)));
+  EXPECT_TRUE(notifier.ShouldNotify(kStart + 201ms, Mbps(10.21)));
+}
+
+}  // namespace
+}  // namespace lidar::scream
