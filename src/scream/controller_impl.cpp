@@ -10,6 +10,8 @@ constexpr Duration kOutage = 200ms;
 constexpr double kOutageRestart = 0.5;
 constexpr double kTimeoutBackoff = 0.5;
 constexpr double kDriftRateScale = 0.5;
+/// Packets in a row behind a queue that are no accident.
+constexpr int kQueueingPackets = 3;
 
 }  // namespace
 
@@ -75,7 +77,10 @@ void Controller::Impl::OnSummary(Time now, const AckSummary& summary) {
     started_ = true;
     StartWindow();
   }
-  React(now, Signals(summary));
+  ObserveCapacity(summary);
+  const CongestionSignals signals = Signals(summary);
+  if (streams.media_qdelay(now) <= streams.frame_period()) fast_increase_.Update(now, Round());
+  if (!RespondToDrop(now, signals)) React(now, signals);
   if (max_in_flight_.Update(now, std::max(p.virtual_rtt, rtt_.smoothed()))) window_.RelaxPolicer();
   UpdateTarget(now);
 }
@@ -99,7 +104,7 @@ void Controller::Impl::CountAcks(Time now, const AckSummary& summary) {
   int marked = summary.late_ce;
   acked_rate_.set_window(std::max(rtt_.smoothed(), 2 * streams.frame_period()));
   for (const AckedPacket& packet : summary.acked) {
-    if (packet.arrived_ecn == Ecn::kCe) ++marked;
+    if (packet.arrived_ecn == Ecn::kCe && packet.sent >= marks_answered_) ++marked;
     if (packet.was_lost) ++counters_.packets_late;
     if (Stream* stream = streams.Find(packet.stream))
       stream->OnAcked(packet.arrived_ecn == Ecn::kCe);
@@ -120,11 +125,23 @@ void Controller::Impl::CountAcks(Time now, const AckSummary& summary) {
 
 CongestionSignals Controller::Impl::Signals(const AckSummary& summary) {
   CongestionSignals s;
-  s.loss_detected = !summary.lost.empty();
-  const auto is_ce = [](const AckedPacket& a) { return a.arrived_ecn == Ecn::kCe; };
+  s.loss_detected =
+      std::any_of(summary.lost.begin(), summary.lost.end(),
+                  [this](const LostPacket& lost) { return lost.sent >= loss_answered_; });
+  const auto is_ce = [this](const AckedPacket& a) {
+    return a.arrived_ecn == Ecn::kCe && a.sent >= marks_answered_;
+  };
   s.data_units_marked =
       summary.late_ce > 0 || std::any_of(summary.acked.begin(), summary.acked.end(), is_ce);
   s.loss_rate = loss_rate_.value();
+  s.loss_rate_threshold = p.loss_rate_threshold;
+  if (p.extensions.isolated_loss) {
+    s.queue_at_loss = queue_delay_.qdelay() > p.isolated_loss_qdelay;
+    if (L4sWorks())
+      s.loss_rate_threshold = std::max(p.loss_rate_threshold, p.isolated_loss_threshold);
+  }
+  if (p.extensions.fast_start)
+    s.fast_growth = fast_increase_.growth(queue_delay_.qdelay(), L4sWorks());
   s.l4s_alpha = l4s_alpha_.value();
   s.is_l4s = p.ecn == Ecn::kEct1;
   s.qdelay = queue_delay_.qdelay();
@@ -152,6 +169,7 @@ void Controller::Impl::StartWindow() {
 void Controller::Impl::React(Time now, const CongestionSignals& signals) {
   switch (window_.Update(now, signals)) {
     case Reaction::kLoss:
+      if (p.extensions.answered_signals) loss_answered_ = now;
       ++counters_.loss_events;
       counters_.reason = RateReason::kLoss;
       break;
@@ -165,8 +183,10 @@ void Controller::Impl::React(Time now, const CongestionSignals& signals) {
       break;
     case Reaction::kNone:
       counters_.reason = RateReason::kIncrease;
-      break;
+      LimitWindowAtMaxBitrate();
+      return;
   }
+  fast_increase_.OnCongestion(now);
   LimitWindowAtMaxBitrate();
 }
 
@@ -187,7 +207,9 @@ void Controller::Impl::UpdateTarget(Time now) {
     if (now < half_rate_until_) target = target * kDriftRateScale;
   }
   streams.Allocate(now, target);
-  pacer_.Update(streams.target_bitrate(), streams.max_bitrate(), p.packet_pacing_headroom);
+  pacer_.Update(streams.target_bitrate(), streams.max_bitrate(), PacingHeadroom());
+  if (p.extensions.quick_drain && streams.media_qdelay(now) > streams.frame_period())
+    pacer_.RaiseTo(window_.ref_wnd() / rtt_.min() / p.target_rate_divisor);
 }
 
 bool Controller::Impl::SourceLimited() const {
@@ -197,10 +219,73 @@ bool Controller::Impl::SourceLimited() const {
 }
 
 DataSize Controller::Impl::MaxInFlight() const {
-  const double overhead =
-      p.ref_wnd_overhead_min +
-      (p.ref_wnd_overhead_max - p.ref_wnd_overhead_min) * queue_delay_.ref_wnd_delay_scale();
+  double overhead = p.ref_wnd_overhead_min + (p.ref_wnd_overhead_max - p.ref_wnd_overhead_min) *
+                                                 queue_delay_.ref_wnd_delay_scale();
+  if (p.extensions.bounded_flight) {
+    if (L4sWorks()) overhead = std::min(overhead, p.open_overhead);
+    const bool queueing = busy_run_.packets() >= kQueueingPackets;
+    if (queueing && queue_delay_.qdelay() > 2 * BusyQdelay()) overhead = p.bounded_overhead;
+  }
   return window_.ref_wnd() * overhead;
+}
+
+bool Controller::Impl::L4sWorks() const {
+  return p.ecn == Ecn::kEct1 && ecn.state() == EcnState::kCapable;
+}
+
+/// Without marks a queue is no sign of congestion before the draft takes it for one.
+Duration Controller::Impl::BusyQdelay() const {
+  return L4sWorks()
+             ? p.busy_qdelay
+             : FromSeconds(Seconds(competing_flows_.qdelay_target()) * p.busy_qdelay_unmarked);
+}
+
+/// The queue is long and packets keep coming back out of it.
+bool Controller::Impl::Congested() const {
+  return busy_run_.capacity() && queue_delay_.qdelay() > BusyQdelay();
+}
+
+void Controller::Impl::ObserveCapacity(const AckSummary& summary) {
+  for (const AckedPacket& packet : summary.acked) {
+    if (!packet.arrival) continue;
+    const bool marked = packet.arrived_ecn == Ecn::kCe;
+    const Duration qdelay = *packet.arrival - packet.sent - queue_delay_.base();
+    busy_run_.Add({*packet.arrival, packet.size, marked || qdelay >= BusyQdelay(), marked});
+  }
+}
+
+/// Beyond the draft: a link that turns out to carry much less than the target gets no more than
+/// that from the next packet on.
+bool Controller::Impl::RespondToDrop(Time now, const CongestionSignals& signals) {
+  const auto capacity = busy_run_.capacity();
+  if (!p.extensions.drop_response || !capacity || !Congested()) return false;
+  if (now - window_.last_reaction_to_congestion_time() < std::min(p.virtual_rtt, signals.s_rtt))
+    return false;
+  const DataRate affordable = *capacity * p.drop_threshold;
+  if (affordable > streams.target_bitrate()) return false;
+  const DataSize window = *capacity * rtt_.min() * p.target_rate_divisor;
+  if (window > window_.ref_wnd()) return false;
+  window_.SetInflection(window);
+  window_.Set(window * p.drop_beta);
+  window_.NoteReaction(now);
+  if (p.extensions.answered_signals) marks_answered_ = loss_answered_ = now;
+  fast_increase_.OnCongestion(now);
+  ++counters_.capacity_drops;
+  counters_.reason = RateReason::kDrop;
+  return true;
+}
+
+/// Marks of a frame source come once a frame.
+Duration Controller::Impl::Round() const {
+  return std::max({rtt_.smoothed(), p.virtual_rtt, streams.frame_period()});
+}
+
+double Controller::Impl::PacingHeadroom() const {
+  if (!p.extensions.adaptive_pacing) return p.packet_pacing_headroom;
+  const double reserve =
+      std::clamp(Seconds(streams.frame_period()) / Seconds(p.pacing_reserve_period),
+                 p.min_pacing_reserve, p.max_pacing_reserve);
+  return 1 / (1 - reserve);
 }
 
 std::optional<SendDecision> Controller::Impl::NextSend(Time) const {
@@ -243,6 +328,7 @@ void Controller::Impl::OnFeedbackTimeout(Time now) {
 void Controller::Impl::EndOutage(Time) {
   window_.Set(std::max(window_.ref_wnd(), *window_before_outage_ * kOutageRestart));
   window_before_outage_.reset();
+  fast_increase_.Restart();
 }
 
 void Controller::Impl::OnRouteChange(Time now) {

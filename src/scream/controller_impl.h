@@ -3,9 +3,11 @@
 #pragma once
 #include <algorithm>
 
+#include "scream/busy_run.h"
 #include "scream/competing_flows.h"
 #include "scream/controller.h"
 #include "scream/ecn_monitor.h"
+#include "scream/fast_increase.h"
 #include "scream/flight.h"
 #include "scream/l4s_alpha.h"
 #include "scream/loss_rate.h"
@@ -48,6 +50,13 @@ class Controller::Impl {
   void StartWindow();
   void React(Time now, const CongestionSignals& signals);
   void LimitWindowAtMaxBitrate();
+  void ObserveCapacity(const AckSummary& summary);
+  bool RespondToDrop(Time now, const CongestionSignals& signals);
+  bool L4sWorks() const;
+  Duration BusyQdelay() const;
+  bool Congested() const;
+  double PacingHeadroom() const;
+  Duration Round() const;
   void OnFeedbackTimeout(Time now);
   void EndOutage(Time now);
   Duration FeedbackTimeout() const;
@@ -62,6 +71,8 @@ class Controller::Impl {
   LossRate loss_rate_{p};
   CompetingFlows competing_flows_{p};
   ReferenceWindow window_{p};
+  FastIncrease fast_increase_{p};
+  BusyRun busy_run_;
   Pacer pacer_{p};
   MaxBytesInFlight max_in_flight_;
   mutable RateMeter sent_rate_{1s};
@@ -72,6 +83,8 @@ class Controller::Impl {
   Time last_housekeeping_{};
   Time last_timeout_{};
   std::optional<DataSize> window_before_outage_;
+  Time loss_answered_{};    // losses of packets sent before it have had their reaction
+  Time marks_answered_{};   // as have such marks
   Time half_rate_until_{};  // clock-drift remedy
   Statistics counters_;
 };

@@ -40,6 +40,8 @@ const char* ToString(RateReason reason) {
       return "loss";
     case RateReason::kDelay:
       return "delay";
+    case RateReason::kDrop:
+      return "capacity-drop";
     case RateReason::kTimeout:
       return "no-feedback";
     case RateReason::kDrift:

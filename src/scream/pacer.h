@@ -13,6 +13,7 @@ class Pacer {
 
   /// `headroom` is PACKET_PACING_HEADROOM or what an extension makes of it.
   void Update(DataRate target_bitrate, DataRate target_bitrate_max, double headroom);
+  void RaiseTo(DataRate rate) { pace_bitrate_ = std::max(pace_bitrate_, rate); }
   /// The pace goes on from when the packet was due, not from a late wake-up, up to a bound.
   void OnSent(Time now, DataSize size);
   /// Not before this.

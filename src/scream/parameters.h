@@ -18,6 +18,12 @@ struct Extensions {
   bool bounded_flight = true;
   /// Loss without marks, delay or a loss rate beyond random is repaired, not obeyed.
   bool isolated_loss = true;
+  /// A backlog in the sender's queue leaves at the window's rate, and stops to hold the target down
+  /// as soon as it is gone.
+  bool quick_drain = true;
+  /// Losses (and, after a capacity drop, marks) of packets that were on the way when the window
+  /// was reduced for them are no new congestion.
+  bool answered_signals = true;
   /// Pacing headroom follows the frame period, so that a slow frame rate does not build a queue.
   bool adaptive_pacing = true;
   /// Without feedback the window decays to its minimum, and jumps back once the path returns.
@@ -86,6 +92,38 @@ struct Parameters {
 
   // Optional: competing flows
   bool competing_flows = false;
+
+  // Extensions
+  /// fast_start: growth by this fraction of the acknowledged bytes at most...
+  double fast_increase_max = 0.5;
+  /// ...reached by steps of this, one for each round without congestion...
+  double fast_increase_step = 0.03;
+  /// ...where marks give an early warning, else of this...
+  double fast_increase_step_unmarked = 0.02;
+  /// ...after so many rounds; a queue of this length stops it.
+  int fast_increase_rounds = 3;
+  Duration fast_increase_qdelay = 5ms;
+  /// drop_response: a measured capacity below this fraction of the target is a drop...
+  double drop_threshold = 0.9;
+  /// ...after which the target is this fraction of it.
+  double drop_beta = 0.95;
+  /// A packet behind this much queue shows that the link is busy; without marks, this fraction of
+  /// qdelay_target.
+  Duration busy_qdelay = 5ms;
+  double busy_qdelay_unmarked = 0.45;
+  /// bounded_flight: bytes in flight over ref_wnd while most packets come back marked.
+  double bounded_overhead = 1.0;
+  /// ...and while they do not.
+  double open_overhead = 1.2;
+  /// isolated_loss: tolerated loss rate where the path carries ECT(1)...
+  double isolated_loss_threshold = 0.05;
+  /// ...unless the packets around the loss waited as long as this.
+  Duration isolated_loss_qdelay = 6ms;
+  /// adaptive_pacing: this fraction of a frame period is left free by pacing: the period over
+  /// pacing_reserve_period, within bounds.
+  Duration pacing_reserve_period = 600ms;
+  double min_pacing_reserve = 0.1;
+  double max_pacing_reserve = 1.0 / 6;
 
   /// Packets older than this in the sender's queue are late (see Controller::LatePackets).
   Duration max_queue_delay = 200ms;

@@ -22,6 +22,7 @@ class QueueDelay {
   /// Forgets base delay and averages.
   void Reset();
 
+  Duration base() const { return base_.value_or(Duration{0}); }
   Duration qdelay() const { return qdelay_; }
   Duration qdelay_avg() const { return qdelay_avg_; }
   /// 1: no jitter, 0: much. Always 1 without REDUCE_JITTER.

@@ -55,21 +55,34 @@ Reaction ReferenceWindow::Update(Time now, const CongestionSignals& signals) {
 }
 
 Reaction ReferenceWindow::Detect(Time now, const CongestionSignals& s) {
-  if (loss_detected_ || data_units_marked_) last_congestion_detected_time_ = now;
+  const bool isolated = p_.extensions.isolated_loss && !LossCounts(s);
+  if (data_units_marked_ || (loss_detected_ && !isolated)) last_congestion_detected_time_ = now;
   if (now - last_reaction_to_congestion_time_ < std::min(p_.virtual_rtt, s.s_rtt))
     return Reaction::kNone;
-  if (std::exchange(loss_detected_, false) && LossCounts(s)) return Reaction::kLoss;
+  if (std::exchange(loss_detected_, false)) {
+    DetectPolicer(s);
+    if (LossCounts(s)) return Reaction::kLoss;
+  }
   if (data_units_marked_) return Reaction::kCe;
   if (s.qdelay_avg > s.qdelay_target / 2) return Reaction::kVirtualCe;
   return Reaction::kNone;
 }
 
 /// Draft section "Link layer losses and rate policers".
-bool ReferenceWindow::LossCounts(const CongestionSignals& s) {
-  const bool queue = s.qdelay_avg > s.qdelay_target / 4;
-  if (p_.rate_policer && s.loss_rate > p_.loss_rate_threshold_policer && !queue)
+bool ReferenceWindow::LossCounts(const CongestionSignals& s) const {
+  return !p_.link_layer_loss || s.loss_rate > s.loss_rate_threshold || s.queue_at_loss ||
+         s.qdelay_avg > s.qdelay_target / 4;
+}
+
+void ReferenceWindow::DetectPolicer(const CongestionSignals& s) {
+  if (p_.rate_policer && s.loss_rate > p_.loss_rate_threshold_policer &&
+      s.qdelay_avg < s.qdelay_target / 4)
     max_policed_ref_wnd_ = ref_wnd_ * p_.beta_loss_policer;
-  return !p_.link_layer_loss || s.loss_rate > p_.loss_rate_threshold || queue;
+}
+
+void ReferenceWindow::NoteReaction(Time now) {
+  last_reaction_to_congestion_time_ = last_congestion_detected_time_ = now;
+  loss_detected_ = data_units_marked_ = false;
 }
 
 void ReferenceWindow::RelaxPolicer() { max_policed_ref_wnd_ *= 1 + p_.policed_ref_wnd_recovery; }
@@ -131,6 +144,8 @@ void ReferenceWindow::Increase(Time now, const CongestionSignals& s, double scl)
   const double multiplicative =
       p_.mul_increase_factor * ref_wnd_ / static_cast<double>(p_.mss.bytes());
   increment *= 1 + multiplicative * post_congestion_scale * scl;
+  increment =
+      std::max(increment, s.fast_growth * scl * static_cast<double>(s.bytes_newly_acked.bytes()));
 
   const DataSize max_allowed =
       p_.mss +

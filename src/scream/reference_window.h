@@ -13,6 +13,8 @@ struct CongestionSignals {
   bool loss_detected = false;
   bool data_units_marked = false;
   double loss_rate = 0;
+  double loss_rate_threshold = 0;  ///< LOSS_RATE_THRESHOLD, or what isolated_loss makes of it
+  bool queue_at_loss = false;      ///< isolated_loss: packets around the loss had waited
   double l4s_alpha = 0;
   bool is_l4s = true;  ///< marks are L4S marks, not classic ECN
   Duration qdelay{0};
@@ -27,6 +29,7 @@ struct CongestionSignals {
   DataRate target_bitrate;
   DataRate target_bitrate_max;
   DataRate acked_bitrate;
+  double fast_growth = 0;  ///< fast_start: fraction of the acknowledged bytes to grow by
 };
 
 enum class Reaction { kNone, kLoss, kCe, kVirtualCe };
@@ -37,10 +40,12 @@ class ReferenceWindow {
 
   /// One report: reduces at most once every min(VIRTUAL_RTT, s_rtt), then increases.
   Reaction Update(Time now, const CongestionSignals& signals);
+  /// Counts a reaction that was made outside: the draft's own waits its turn.
+  void NoteReaction(Time now);
   /// Moves the window outside the draft's rules; never below MIN_REF_WND.
   void Set(DataSize window);
-  /// Forgets what is known about the last congestion's window.
-  void ForgetInflection() { ref_wnd_i_ = 1; }
+  /// Where congestion is to be expected.
+  void SetInflection(DataSize window) { ref_wnd_i_ = static_cast<double>(window.bytes()); }
   void Limit(DataSize max) { Set(std::min(max, ref_wnd())); }
   /// Once an RTT: lifts the policer's limit a little.
   void RelaxPolicer();
@@ -55,7 +60,8 @@ class ReferenceWindow {
  private:
   double InflectionScale() const;
   Reaction Detect(Time now, const CongestionSignals& s);
-  bool LossCounts(const CongestionSignals& s);
+  bool LossCounts(const CongestionSignals& s) const;
+  void DetectPolicer(const CongestionSignals& s);
   void Reduce(Time now, Reaction reaction, const CongestionSignals& s, double scl);
   double L4sBackoff(Time now, const CongestionSignals& s, double scl);
   double VirtualBackoff(const CongestionSignals& s) const;

@@ -20,7 +20,7 @@ enum class EcnState {
 const char* ToString(EcnState state);
 
 /// Why the target moved last, in words for the `reason` of an event.
-enum class RateReason { kStart, kIncrease, kCe, kLoss, kDelay, kTimeout, kDrift, kLimits };
+enum class RateReason { kStart, kIncrease, kCe, kLoss, kDelay, kDrop, kTimeout, kDrift, kLimits };
 const char* ToString(RateReason reason);
 
 struct Statistics {
@@ -62,6 +62,7 @@ struct Statistics {
   std::uint64_t loss_events = 0;
   std::uint64_t ce_events = 0;
   std::uint64_t delay_events = 0;
+  std::uint64_t capacity_drops = 0;
   std::uint64_t clock_resets = 0;
   EcnState ecn_state = EcnState::kOff;
   RateReason reason = RateReason::kStart;

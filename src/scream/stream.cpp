@@ -7,6 +7,8 @@ namespace lidar::scream {
 namespace {
 
 constexpr double kMaxRateAdjustFactor = 0.5;
+/// quick_drain: a frame without a queue takes back this much of what the queue cost.
+constexpr double kRateAdjustDecay = 0.75;
 constexpr double kMaxFrameSizeDev = 0.2;
 constexpr double kFramePeriodGain = 0.1;
 /// Longer gaps are pauses, not frame periods.

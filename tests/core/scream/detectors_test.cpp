@@ -60,7 +60,7 @@ TEST(Parameters, ThePureDraftHasNoOptionalPartAndNoExtension) {
                p.undershoot_remedy || p.competing_flows);
   const Extensions& e = p.extensions;
   EXPECT_FALSE(e.fast_start || e.drop_response || e.bounded_flight || e.isolated_loss ||
-               e.adaptive_pacing || e.feedback_timeout);
+               e.answered_signals || e.quick_drain || e.adaptive_pacing || e.feedback_timeout);
 }
 
 TEST(L4sAlpha, AttacksWithAnEighthAndDecaysWithA128th) {

@@ -14,6 +14,7 @@ class ReferenceWindowTest : public ::testing::Test {
  protected:
   ReferenceWindowTest() {
     signals_.s_rtt = 25ms;
+    signals_.loss_rate_threshold = parameters_.loss_rate_threshold;
     signals_.qdelay_target = 60ms;
     signals_.target_bitrate = Mbps(5);
     signals_.target_bitrate_max = Mbps(100);

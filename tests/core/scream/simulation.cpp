@@ -35,11 +35,14 @@ class Flow {
     stream_ = controller_.AddStream(config.stream);
   }
 
-  Time NextEvent(Time now) const {
+  Time NextEvent(Time now) {
     Time next = std::min({next_frame_, controller_.NextTimer(), generator_.NextDue()});
-    if (const auto d = controller_.NextSend(now))
-      next = std::min(
-          next, std::max(d->time, now) + (d->time > now ? config_.wakeup_delay : Duration{0}));
+    if (const auto d = controller_.NextSend(now)) {
+      const Duration late = d->time > now
+                                ? FromSeconds(Seconds(config_.wakeup_delay) * random_.Uniform())
+                                : Duration{0};
+      next = std::min(next, std::max(d->time, now) + late);
+    }
     if (!reports_.empty()) next = std::min(next, reports_.begin()->first);
     return next;
   }

@@ -22,7 +22,7 @@ struct FlowConfig {
   bool drop_late = true;
   /// Scales what the encoder puts out against its target, over time since the flow's start.
   std::function<double(Duration)> obedience;
-  Duration wakeup_delay{0};  ///< of the pacing thread: a packet leaves so much late
+  Duration wakeup_delay{0};  ///< the pacing thread wakes up late by up to this
 };
 
 struct SimulationConfig {
