@@ -144,7 +144,7 @@ void Apply(const Text& t, LinkOptions* o) {
   o->there.limit.bytes = DataSize::Bytes(t.queue_bytes > 0 ? t.queue_bytes : 16 << 20);
   if (t.queue_ms > 0) o->there.limit.time = Ms(t.queue_ms);
   o->there.aqm = {t.aqm, Ms(t.aqm_low_ms), Ms(t.aqm_high_ms), {}};
-  if (t.aqm_low_ms > t.aqm_high_ms)
+  if (t.aqm == Kind::kRamp && t.aqm_low_ms > t.aqm_high_ms)
     throw CLI::ValidationError("--aqm-low", "must not be above --aqm-high");
   o->there.aqm.pi2.target = Ms(t.aqm_target_ms);
   ApplyWay(t.there, t.rtt_ms / 2, &o->there);

@@ -1,0 +1,238 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// lidar-link as its users meet it: a process between two sockets.
+#include <gtest/gtest.h>
+#include <poll.h>
+
+#include <algorithm>
+#include <csignal>
+#include <cstdlib>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <thread>
+
+#include "common/child_process.h"
+#include "common/event_loop.h"
+#include "common/udp_socket.h"
+
+namespace lidar::tools {
+namespace {
+using namespace std::chrono_literals;
+
+constexpr std::uint8_t kEct1 = 1;
+constexpr std::uint8_t kCe = 3;
+constexpr std::uint8_t kDscp = 46 << 2;
+
+std::string Program() {
+  const char* path = std::getenv("LIDAR_LINK");
+  return path != nullptr ? path : "lidar-link";
+}
+
+struct Got {
+  std::vector<std::uint8_t> payload;
+  std::uint8_t tos = 0;
+  Address from;
+  Time at;
+};
+
+/// What arrives until `count` datagrams are there or `patience` is over.
+std::vector<Got> Receive(UdpSocket* socket, std::size_t count, Duration patience = 2s) {
+  std::vector<Got> all;
+  const Time end = Now() + patience;
+  while (all.size() < count && Now() < end) {
+    pollfd p{socket->fd(), POLLIN, 0};
+    poll(&p, 1, 20);
+    socket->ReceiveAll([&](const Datagram& d) {
+      all.push_back({{d.payload.begin(), d.payload.end()}, d.tos, *d.from, Now()});
+    });
+  }
+  return all;
+}
+
+class LidarLink : public testing::Test {
+ protected:
+  LidarLink() : receiver_(UdpSocket::Bind(ResolveAddress("127.0.0.1:0", ""))) {}
+
+  void Start(std::vector<std::string> options) {
+    std::vector<std::string> command{Program(),
+                                     "--listen",
+                                     "127.0.0.1:0",
+                                     "--forward",
+                                     "127.0.0.1:" + std::to_string(receiver_.LocalPort()),
+                                     "--json-lines",
+                                     "--summary",
+                                     summary_};
+    command.insert(command.end(), options.begin(), options.end());
+    link_ = std::make_unique<ChildProcess>(ChildProcess::Config{command, "", false});
+    const Time end = Now() + 5s;
+    while (port_ == 0 && Now() < end) {
+      std::this_thread::sleep_for(5ms);
+      link_->ReadLines([&](const std::string& line) {
+        const auto record = nlohmann::json::parse(line, nullptr, false);
+        if (record.contains("listening")) port_ = record["listening"][0];
+      });
+    }
+    ASSERT_NE(port_, 0) << "lidar-link does not listen";
+  }
+
+  UdpSocket Sender() const {
+    return UdpSocket::Connect(ResolveAddress("127.0.0.1:" + std::to_string(port_), ""));
+  }
+
+  nlohmann::json Stop() {
+    link_->Signal(SIGINT);
+    EXPECT_EQ(link_->Wait(), 0);
+    return nlohmann::json::parse(std::ifstream(summary_), nullptr, false);
+  }
+
+  static void Send(UdpSocket* socket, std::uint8_t first_byte, std::size_t size, std::uint8_t tos) {
+    std::vector<std::uint8_t> payload(size);
+    payload[0] = first_byte;
+    EXPECT_TRUE(socket->Send({payload.data(), payload.size()}, tos, nullptr));
+  }
+
+  UdpSocket receiver_;
+  const std::string summary_ = testing::TempDir() + "lidar_link_summary.json";
+  std::unique_ptr<ChildProcess> link_;
+  int port_ = 0;
+};
+
+TEST_F(LidarLink, CarriesPayloadEcnAndDscpThereAndTheAnswerBackAfterOneRtt) {
+  Start({"--rate", "100", "--rtt", "40"});
+  auto sender = Sender();
+  Duration best = 10s;
+  for (std::uint8_t i = 0; i < 10; ++i) {
+    const Time sent = Now();
+    Send(&sender, i, 500, kDscp | kEct1);
+    const auto there = Receive(&receiver_, 1);
+    ASSERT_EQ(there.size(), 1U);
+    EXPECT_EQ(there[0].payload.size(), 500U);
+    EXPECT_EQ(there[0].payload[0], i);
+    EXPECT_EQ(there[0].tos, kDscp | kEct1);
+    EXPECT_TRUE(receiver_.Send({&i, 1}, 0, &there[0].from));
+    const auto back = Receive(&sender, 1);
+    ASSERT_EQ(back.size(), 1U);
+    EXPECT_EQ(back[0].payload, std::vector<std::uint8_t>{i});
+    EXPECT_GE(back[0].at - sent, 40ms);
+    best = std::min(best, back[0].at - sent);
+  }
+  EXPECT_LT(Milliseconds(best), 44);
+  const auto summary = Stop();
+  EXPECT_EQ(summary["delivered"], 10);
+  EXPECT_EQ(summary["feedback"]["packets"], 10);
+}
+
+TEST_F(LidarLink, SerialisesABurstAtItsRateAndMarksWhatWaitsTooLong) {
+  // 972 + 28 bytes at 8 Mbit/s: a millisecond each.
+  Start({"--rate", "8", "--rtt", "0", "--aqm", "step", "--aqm-high", "9.5"});
+  auto sender = Sender();
+  for (std::uint8_t i = 0; i < 50; ++i) Send(&sender, i, 972, kEct1);
+  const auto got = Receive(&receiver_, 50);
+  ASSERT_EQ(got.size(), 50U);
+  EXPECT_NEAR(Milliseconds(got.back().at - got.front().at), 49, 5);
+  const auto marked =
+      std::count_if(got.begin(), got.end(), [](const Got& g) { return g.tos == kCe; });
+  EXPECT_NEAR(static_cast<double>(marked), 40, 2);
+  const auto summary = Stop();
+  EXPECT_EQ(summary["marked"], marked);
+  EXPECT_EQ(summary["ecn_out"]["ce"], marked);
+  EXPECT_NEAR(summary["sojourn_ms"]["max"].get<double>(), 49, 2);
+}
+
+TEST_F(LidarLink, LeavesPacketsWithoutEcnUnmarkedAndDropsTheTail) {
+  Start({"--rate", "8", "--rtt", "0", "--aqm", "step", "--aqm-high", "1", "--queue", "10"});
+  auto sender = Sender();
+  for (std::uint8_t i = 0; i < 50; ++i) Send(&sender, i, 972, 0);
+  const auto got = Receive(&receiver_, 50, 300ms);
+  EXPECT_NEAR(static_cast<double>(got.size()), 11, 2);
+  for (const Got& g : got) EXPECT_EQ(g.tos, 0);
+  const auto summary = Stop();
+  EXPECT_EQ(summary["queue_full"].get<std::size_t>() + got.size(), 50U);
+}
+
+TEST_F(LidarLink, ClearsTheEcnBitsWhereItBleaches) {
+  Start({"--rtt", "0", "--bleach"});
+  auto sender = Sender();
+  Send(&sender, 0, 100, kDscp | kEct1);
+  const auto got = Receive(&receiver_, 1);
+  ASSERT_EQ(got.size(), 1U);
+  EXPECT_EQ(got[0].tos, kDscp);
+}
+
+TEST_F(LidarLink, AnOutageHoldsPacketsUntilTheLinkIsBack) {
+  Start({"--rtt", "0", "--outage", "0:0.3"});
+  auto sender = Sender();
+  const Time sent = Now();
+  Send(&sender, 0, 100, kEct1);
+  const auto got = Receive(&receiver_, 1);
+  ASSERT_EQ(got.size(), 1U);
+  EXPECT_NEAR(Milliseconds(got[0].at - sent), 300, 15);
+}
+
+TEST_F(LidarLink, KeepsTwoSendersApartAndGivesEachItsAnswers) {
+  Start({"--rtt", "0"});
+  auto first = Sender();
+  auto second = Sender();
+  Send(&first, 1, 100, kEct1);
+  Send(&second, 2, 100, kEct1);
+  const auto got = Receive(&receiver_, 2);
+  ASSERT_EQ(got.size(), 2U);
+  EXPECT_FALSE(got[0].from == got[1].from);
+  for (const Got& g : got) receiver_.Send({g.payload.data(), 1}, 0, &g.from);
+  EXPECT_EQ(Receive(&first, 1).at(0).payload[0], 1);
+  EXPECT_EQ(Receive(&second, 1).at(0).payload[0], 2);
+  EXPECT_EQ(Stop()["flows"].size(), 2U);
+}
+
+TEST_F(LidarLink, DuplicatesAndLosesOnRequest) {
+  Start({"--rtt", "0", "--rate", "1000", "--duplicate", "100", "--loss", "50"});
+  auto sender = Sender();
+  for (int i = 0; i < 200; ++i) Send(&sender, static_cast<std::uint8_t>(i), 100, kEct1);
+  const auto got = Receive(&receiver_, 400, 300ms);
+  EXPECT_NEAR(static_cast<double>(got.size()), 200, 60);
+  const auto summary = Stop();
+  EXPECT_EQ(summary["delivered"].get<std::size_t>() * 2, got.size());
+  EXPECT_EQ(summary["duplicated"], summary["delivered"]);
+}
+
+TEST_F(LidarLink, WritesALineAPacketAndStopsAfterItsDuration) {
+  const std::string log = testing::TempDir() + "lidar_link_packets.csv";
+  Start({"--rtt", "0", "--log", log, "--duration", "0.2"});
+  auto sender = Sender();
+  // RTP version 2, sequence 0x0102, with the marker.
+  const std::uint8_t rtp[20] = {0x80, 0xE0, 1, 2, 0, 0, 3, 4};
+  EXPECT_TRUE(sender.Send({rtp, sizeof rtp}, kEct1, nullptr));
+  EXPECT_EQ(link_->Wait(), 0);
+  std::ifstream in(log);
+  std::string line;
+  std::getline(in, line);
+  EXPECT_EQ(line.substr(0, 20), "time_s,unix_ns,flow,");
+  std::getline(in, line);
+  EXPECT_NE(line.find(",0,48,258,772,1,1,1,delivered,0.0000,"), std::string::npos) << line;
+  EXPECT_FALSE(std::getline(in, line));
+}
+
+int ExitCode(std::vector<std::string> options) {
+  options.insert(options.begin(), Program());
+  ChildProcess process({options, "/dev/null", false});
+  return process.Wait();
+}
+
+TEST(LidarLinkUsage, WrongOptionsEndWithCode2) {
+  EXPECT_EQ(ExitCode({"--help"}), 0);
+  EXPECT_EQ(ExitCode({"--no-such-option"}), 2);
+  EXPECT_EQ(ExitCode({"--rate", "-1"}), 2);
+  EXPECT_EQ(ExitCode({"--rate", "1", "--steps", "1,2"}), 2);
+  EXPECT_EQ(ExitCode({"--aqm", "best"}), 2);
+  EXPECT_EQ(ExitCode({"--aqm-low", "20"}), 2);
+  EXPECT_EQ(ExitCode({"--outage", "3:2"}), 2);
+  EXPECT_EQ(ExitCode({"--trace", "/dev/null"}), 2);
+  EXPECT_EQ(ExitCode({"--listen", "1", "2", "--forward", "3"}), 2);
+}
+
+TEST(LidarLinkUsage, APortInUseEndsWithCode1) {
+  const auto taken = UdpSocket::Bind(ResolveAddress("127.0.0.1:0", ""));
+  EXPECT_EQ(ExitCode({"--listen", "127.0.0.1:" + std::to_string(taken.LocalPort())}), 1);
+}
+
+}  // namespace
+}  // namespace lidar::tools
