@@ -1,0 +1,311 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+/**
+ * SECTION:element-pointcloudparse
+ *
+ * Makes clouds of files: the width from the size, a TIME segment, stamps from the frame rate.
+ *
+ * |[
+ * gst-launch-1.0 multifilesrc location=%06d.bin caps='application/x-pointcloud2,height=1,
+ * point-step=16,fields=(string)"x:F32:0,y:F32:4,z:F32:8,intensity:F32:12",framerate=10/1'
+ * ! pointcloudparse ! fakesink
+ * ]|
+ */
+#include "pointcloud/gstpointcloudparse.h"
+
+#include <gst/base/gstadapter.h>
+
+#include <memory>
+#include <mutex>
+#include <optional>
+
+#include "common/cloud_info.h"
+#include "common/refs.h"
+
+GST_DEBUG_CATEGORY_STATIC(gst_lidar_point_cloud_parse_debug);
+#define GST_CAT_DEFAULT gst_lidar_point_cloud_parse_debug
+
+namespace {
+
+using lidar::gst::BufferPtr;
+using lidar::gst::CapsPtr;
+using lidar::gst::CloudInfo;
+
+constexpr guint kPropFramerate = 1;
+constexpr gint kDefaultRate = 10;  // scans/s where neither caps nor property say
+
+struct Rate {
+  gint n = 0;
+  gint d = 1;
+};
+
+using AdapterPtr = std::unique_ptr<GstAdapter, lidar::gst::Unref>;
+
+struct State {
+  std::mutex mutex;  // guards the property
+  Rate wanted;       // 0: from the caps
+  // Of the streaming thread.
+  std::optional<CloudInfo> info;  // of the file; width 0: not known
+  CapsPtr caps;
+  Rate rate;
+  guint out_width = 0;
+  bool times_given = false;        // upstream stamps its buffers
+  lidar::gst::EventPtr segment;    // waits for the caps
+  std::optional<gsize> file_size;  // of a file that comes in pieces; 0: pieces are clouds
+  guint64 count = 0;
+  AdapterPtr adapter{gst_adapter_new()};
+};
+
+}  // namespace
+
+struct _GstLidarPointCloudParse {
+  GstElement parent;
+  GstPad* sinkpad;
+  GstPad* srcpad;
+  State* state;
+};
+
+G_DEFINE_TYPE(GstLidarPointCloudParse, gst_lidar_point_cloud_parse, GST_TYPE_ELEMENT)
+GST_ELEMENT_REGISTER_DEFINE(pointcloudparse, "pointcloudparse", GST_RANK_NONE,
+                            GST_TYPE_LIDAR_POINT_CLOUD_PARSE)
+
+namespace {
+
+State& StateOf(gpointer self) { return *GST_LIDAR_POINT_CLOUD_PARSE(self)->state; }
+
+/// Bytes of one cloud in a stream that is cut anywhere; 0 where every buffer is a cloud.
+gsize CloudSize(GstLidarPointCloudParse* self) {
+  State& state = *self->state;
+  if (state.info->width > 0) return state.info->FrameSize();
+  if (!state.file_size) {
+    // filesrc knows the size of its file and reads it in blocks; multifilesrc gives whole files.
+    gint64 size = 0;
+    const bool known = gst_pad_peer_query_duration(self->sinkpad, GST_FORMAT_BYTES, &size);
+    state.file_size = known && size > 0 ? static_cast<gsize>(size) : 0;
+  }
+  return *state.file_size;
+}
+
+void PushCaps(GstLidarPointCloudParse* self, guint width) {
+  State& state = *self->state;
+  if (state.out_width == width) return;
+  state.out_width = width;
+  CapsPtr caps(gst_caps_copy(state.caps.get()));
+  gst_caps_set_simple(caps.get(), "width", G_TYPE_INT, static_cast<gint>(width), "height",
+                      G_TYPE_INT, static_cast<gint>(state.info->height), "is-dense", G_TYPE_BOOLEAN,
+                      state.info->is_dense, "is-bigendian", G_TYPE_BOOLEAN, FALSE, "framerate",
+                      GST_TYPE_FRACTION, state.rate.n, state.rate.d, nullptr);
+  gst_pad_push_event(self->srcpad, gst_event_new_caps(caps.get()));
+}
+
+void PushSegment(GstLidarPointCloudParse* self) {
+  if (self->state->segment) gst_pad_push_event(self->srcpad, self->state->segment.release());
+}
+
+/// Upstream's where it counts time, else one of our own.
+void HandleSegment(State* state, GstEvent* event) {
+  const GstSegment* given = nullptr;
+  gst_event_parse_segment(event, &given);
+  state->segment.reset(event);
+  state->times_given = given->format == GST_FORMAT_TIME;
+  if (state->times_given) return;
+  GstSegment segment;
+  gst_segment_init(&segment, GST_FORMAT_TIME);
+  state->segment.reset(gst_event_new_segment(&segment));
+}
+
+void Stamp(State* state, GstBuffer* buffer) {
+  const auto time_of = [&](guint64 n) {
+    return gst_util_uint64_scale(n, static_cast<guint64>(state->rate.d) * GST_SECOND,
+                                 static_cast<guint64>(state->rate.n));
+  };
+  if (!state->times_given || !GST_BUFFER_PTS_IS_VALID(buffer)) {
+    GST_BUFFER_PTS(buffer) = time_of(state->count);
+    GST_BUFFER_DTS(buffer) = GST_CLOCK_TIME_NONE;
+  }
+  GST_BUFFER_DURATION(buffer) = time_of(state->count + 1) - time_of(state->count);
+  GST_BUFFER_OFFSET(buffer) = state->count++;
+  GST_BUFFER_OFFSET_END(buffer) = state->count;
+}
+
+GstFlowReturn PushCloud(GstLidarPointCloudParse* self, BufferPtr buffer) {
+  State& state = *self->state;
+  const gsize column = gsize{state.info->height} * state.info->point_step;
+  const gsize size = gst_buffer_get_size(buffer.get());
+  if (size == 0 || size % column != 0 || size / column > G_MAXINT) {
+    GST_ELEMENT_ERROR(
+        self, STREAM, FORMAT,
+        ("A cloud of %" G_GSIZE_FORMAT " bytes is not made of points of %u bytes in %u rows.", size,
+         state.info->point_step, state.info->height),
+        ("Check point-step and height in the caps of the source, and that the file is no "
+         "other format."));
+    return GST_FLOW_ERROR;
+  }
+  PushCaps(self, static_cast<guint>(size / column));
+  PushSegment(self);
+  GstBuffer* out = gst_buffer_make_writable(buffer.release());
+  Stamp(&state, out);
+  return gst_pad_push(self->srcpad, out);
+}
+
+GstFlowReturn Chain(GstPad*, GstObject* parent, GstBuffer* raw) {
+  auto* self = GST_LIDAR_POINT_CLOUD_PARSE(parent);
+  State& state = *self->state;
+  BufferPtr buffer(raw);
+  if (!state.info) {
+    GST_ELEMENT_ERROR(self, CORE, NEGOTIATION, ("The caps of the cloud are missing."),
+                      ("Give application/x-pointcloud2 with point-step and fields to the source "
+                       "(caps property of multifilesrc, or a caps filter)."));
+    return GST_FLOW_NOT_NEGOTIATED;
+  }
+  const gsize cloud = CloudSize(self);
+  if (cloud == 0) return PushCloud(self, std::move(buffer));
+  if (GST_BUFFER_IS_DISCONT(buffer.get())) gst_adapter_clear(state.adapter.get());
+  if (gst_adapter_available(state.adapter.get()) == 0 && gst_buffer_get_size(raw) == cloud)
+    return PushCloud(self, std::move(buffer));
+  gst_adapter_push(state.adapter.get(), buffer.release());
+  GstFlowReturn flow = GST_FLOW_OK;
+  while (flow == GST_FLOW_OK && gst_adapter_available(state.adapter.get()) >= cloud)
+    flow = PushCloud(self, BufferPtr(gst_adapter_take_buffer(state.adapter.get(), cloud)));
+  return flow;
+}
+
+gboolean HandleCaps(GstLidarPointCloudParse* self, GstEvent* event) {
+  State& state = *self->state;
+  const lidar::gst::EventPtr owner(event);
+  GstCaps* caps = nullptr;
+  gst_event_parse_caps(event, &caps);
+  auto info = CloudInfo::FromCaps(caps);
+  if (!info) {
+    GST_ELEMENT_ERROR(self, STREAM, FORMAT,
+                      ("The caps do not describe a cloud: point-step and fields are needed, and "
+                       "the fields must fit the step."),
+                      ("%" GST_PTR_FORMAT, static_cast<gpointer>(caps)));
+    return FALSE;
+  }
+  state.rate = {info->framerate_n, info->framerate_d};
+  {
+    std::lock_guard lock(state.mutex);
+    if (state.wanted.n > 0) state.rate = state.wanted;
+  }
+  if (state.rate.n <= 0) state.rate = {kDefaultRate, 1};
+  state.info = std::move(info);
+  state.caps.reset(gst_caps_ref(caps));
+  state.out_width = 0;
+  return TRUE;
+}
+
+/// What was left in the adapter is no whole cloud.
+void Drain(GstLidarPointCloudParse* self) {
+  State& state = *self->state;
+  const gsize left = gst_adapter_available(state.adapter.get());
+  if (left > 0) {
+    GST_ELEMENT_WARNING(
+        self, STREAM, FORMAT,
+        ("The stream ends within a cloud: %" G_GSIZE_FORMAT " bytes are left over.", left),
+        ("A file whose size is no multiple of width x height x point-step?"));
+  }
+  gst_adapter_clear(state.adapter.get());
+}
+
+void Reset(State* state) {
+  gst_adapter_clear(state->adapter.get());
+  state->count = 0;
+  state->segment.reset();
+  state->file_size.reset();
+}
+
+gboolean SinkEvent(GstPad* pad, GstObject* parent, GstEvent* event) {
+  auto* self = GST_LIDAR_POINT_CLOUD_PARSE(parent);
+  State& state = *self->state;
+  switch (GST_EVENT_TYPE(event)) {
+    case GST_EVENT_CAPS:
+      return HandleCaps(self, event);
+    case GST_EVENT_SEGMENT:
+      HandleSegment(&state, event);
+      return TRUE;
+    case GST_EVENT_EOS:
+      Drain(self);
+      PushSegment(self);
+      break;
+    case GST_EVENT_FLUSH_STOP:
+      Reset(&state);
+      break;
+    default:
+      break;
+  }
+  return gst_pad_event_default(pad, parent, event);
+}
+
+GstStateChangeReturn ChangeState(GstElement* element, GstStateChange transition) {
+  const auto result = GST_ELEMENT_CLASS(gst_lidar_point_cloud_parse_parent_class)
+                          ->change_state(element, transition);
+  if (transition == GST_STATE_CHANGE_PAUSED_TO_READY) {
+    State& state = StateOf(element);
+    Reset(&state);
+    state.info.reset();
+    state.caps.reset();
+    state.out_width = 0;
+    state.times_given = false;
+  }
+  return result;
+}
+
+void SetObjectProperty(GObject* object, guint, const GValue* value, GParamSpec*) {
+  State& state = StateOf(object);
+  std::lock_guard lock(state.mutex);
+  state.wanted = {gst_value_get_fraction_numerator(value),
+                  gst_value_get_fraction_denominator(value)};
+}
+
+void GetObjectProperty(GObject* object, guint, GValue* value, GParamSpec*) {
+  State& state = StateOf(object);
+  std::lock_guard lock(state.mutex);
+  gst_value_set_fraction(value, state.wanted.n, state.wanted.d);
+}
+
+void Finalize(GObject* object) {
+  delete GST_LIDAR_POINT_CLOUD_PARSE(object)->state;
+  G_OBJECT_CLASS(gst_lidar_point_cloud_parse_parent_class)->finalize(object);
+}
+
+}  // namespace
+
+static GstStaticPadTemplate sink_template = GST_STATIC_PAD_TEMPLATE(
+    "sink", GST_PAD_SINK, GST_PAD_ALWAYS, GST_STATIC_CAPS(GST_LIDAR_CLOUD_MEDIA_TYPE));
+static GstStaticPadTemplate src_template = GST_STATIC_PAD_TEMPLATE(
+    "src", GST_PAD_SRC, GST_PAD_ALWAYS, GST_STATIC_CAPS(GST_LIDAR_CLOUD_MEDIA_TYPE));
+
+static void gst_lidar_point_cloud_parse_init(GstLidarPointCloudParse* self) {
+  self->state = new State;
+  self->sinkpad = gst_pad_new_from_static_template(&sink_template, "sink");
+  gst_pad_set_chain_function(self->sinkpad, Chain);
+  gst_pad_set_event_function(self->sinkpad, SinkEvent);
+  gst_element_add_pad(GST_ELEMENT(self), self->sinkpad);
+  self->srcpad = gst_pad_new_from_static_template(&src_template, "src");
+  gst_pad_use_fixed_caps(self->srcpad);
+  gst_element_add_pad(GST_ELEMENT(self), self->srcpad);
+}
+
+static void gst_lidar_point_cloud_parse_class_init(GstLidarPointCloudParseClass* klass) {
+  GST_DEBUG_CATEGORY_INIT(gst_lidar_point_cloud_parse_debug, "pointcloudparse", 0,
+                          "Clouds from files");
+  auto* object = G_OBJECT_CLASS(klass);
+  object->set_property = SetObjectProperty;
+  object->get_property = GetObjectProperty;
+  object->finalize = Finalize;
+  g_object_class_install_property(
+      object, kPropFramerate,
+      gst_param_spec_fraction("framerate", "framerate",
+                              "Clouds per second [1/s]; 0/1: from the caps, 10/1 where they are "
+                              "silent",
+                              0, 1, G_MAXINT, 1, 0, 1,
+                              static_cast<GParamFlags>(G_PARAM_READWRITE | G_PARAM_STATIC_STRINGS |
+                                                       GST_PARAM_MUTABLE_READY)));
+  auto* element = GST_ELEMENT_CLASS(klass);
+  element->change_state = ChangeState;
+  gst_element_class_add_static_pad_template(element, &sink_template);
+  gst_element_class_add_static_pad_template(element, &src_template);
+  gst_element_class_set_static_metadata(element, "Point cloud parser", "Codec/Parser/PointCloud",
+                                        "Makes clouds of files: width, TIME segment, timestamps",
+                                        "gst-lidar");
+}

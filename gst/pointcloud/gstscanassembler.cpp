@@ -1,0 +1,478 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+/**
+ * SECTION:element-scanassembler
+ *
+ * Puts the slices of a scan together again; what did not come is zero and the scan is flagged.
+ *
+ * |[
+ * gst-launch-1.0 lidartestsrc num-buffers=80 ! scanassembler ! fakesink silent=false -v
+ * ]|
+ */
+#include "pointcloud/gstscanassembler.h"
+
+#include <condition_variable>
+#include <mutex>
+
+#include "common/cloud_info.h"
+#include "common/properties.h"
+#include "pointcloud/scan_queue.h"
+
+GST_DEBUG_CATEGORY_STATIC(gst_lidar_scan_assembler_debug);
+#define GST_CAT_DEFAULT gst_lidar_scan_assembler_debug
+
+namespace {
+
+using lidar::gst::CapsPtr;
+using lidar::gst::CloudInfo;
+using lidar::gst::ScanQueue;
+
+struct Settings {
+  guint64 max_wait = 20 * GST_MSECOND;
+};
+
+constexpr std::array<lidar::gst::Property<Settings>, 1> kProperties = {{
+    {"max-wait",
+     "How long a scan waits for slices that are late, in a live pipeline [ns]; added to the "
+     "latency",
+     &Settings::max_wait, 0, static_cast<gdouble>(10 * GST_SECOND), GST_PARAM_MUTABLE_PLAYING},
+}};
+constexpr guint kPropStats = kProperties.size() + 1;
+
+struct State {
+  // Guards all below. The streaming lock of the sink pad orders what is pushed: the chain function
+  // holds it, and the timer takes it; it is taken before this one.
+  std::mutex mutex;
+  std::condition_variable changed;
+  Settings settings;
+  ScanQueue queue;
+  std::optional<CloudInfo> info;  // of the slices
+  CapsPtr in_caps;
+  guint out_width = 0;  // in the caps sent last; 0: to be sent again
+  bool caps_sent = false;
+  lidar::gst::EventPtr early_segment;  // waits for the caps
+  bool knows_upstream = false;         // of the streaming thread
+  bool live = false;
+  GstClockTime upstream_latency = 0;
+  GstClockTime scan_latency = 0;  // what the latency query adds for a scan, without max-wait
+  GstSegment segment;
+  bool flushing = true;
+  GstClockID wait = nullptr;
+  GstClockTime wait_deadline = 0;
+};
+
+}  // namespace
+
+struct _GstLidarScanAssembler {
+  GstElement parent;
+  GstPad* sinkpad;
+  GstPad* srcpad;
+  State* state;
+};
+
+G_DEFINE_TYPE(GstLidarScanAssembler, gst_lidar_scan_assembler, GST_TYPE_ELEMENT)
+GST_ELEMENT_REGISTER_DEFINE(scanassembler, "scanassembler", GST_RANK_NONE,
+                            GST_TYPE_LIDAR_SCAN_ASSEMBLER)
+
+namespace {
+
+State& StateOf(gpointer self) { return *GST_LIDAR_SCAN_ASSEMBLER(self)->state; }
+
+/// Caps of a scan: those of its slices but for the width.
+void PushCaps(GstLidarScanAssembler* self, guint width) {
+  State& state = *self->state;
+  CapsPtr caps;
+  lidar::gst::EventPtr segment;
+  bool padded = false;
+  {
+    std::lock_guard lock(state.mutex);
+    if (state.out_width == width || !state.in_caps) return;
+    state.out_width = width;
+    state.caps_sent = true;
+    segment = std::move(state.early_segment);
+    caps.reset(gst_caps_copy(state.in_caps.get()));
+    padded = lidar::gst::ScanBuilder::IsOrganised(*state.info) && width != state.info->width;
+  }
+  gst_caps_set_simple(caps.get(), "width", G_TYPE_INT, static_cast<gint>(width), nullptr);
+  // Dense slices do not make a dense scan when one is lost.
+  if (padded) gst_caps_set_simple(caps.get(), "is-dense", G_TYPE_BOOLEAN, FALSE, nullptr);
+  gst_pad_push_event(self->srcpad, gst_event_new_caps(caps.get()));
+  if (segment) gst_pad_push_event(self->srcpad, segment.release());
+}
+
+/// With the streaming lock held, the mutex not.
+GstFlowReturn PushScans(GstLidarScanAssembler* self, ScanQueue::Finished* finished) {
+  GstFlowReturn flow = GST_FLOW_OK;
+  for (auto& scan : *finished) {
+    if (flow != GST_FLOW_OK) break;
+    if (!scan.complete) GST_DEBUG_OBJECT(self, "scan leaves incomplete");
+    PushCaps(self, scan.width);
+    flow = gst_pad_push(self->srcpad, scan.buffer.release());
+  }
+  finished->clear();
+  return flow;
+}
+
+GstFlowReturn PushAll(GstLidarScanAssembler* self) {
+  ScanQueue::Finished finished;
+  {
+    std::lock_guard lock(self->state->mutex);
+    self->state->queue.FinishAll(&finished);
+  }
+  return PushScans(self, &finished);
+}
+
+/// Until when a scan may wait that begins with this slice, as running time.
+GstClockTime DeadlineOf(const State& state, const lidar::gst::SliceView& slice) {
+  const GstClockTime scan = slice.info->ScanDuration();
+  GstClockTime pts = GST_BUFFER_PTS(slice.buffer);
+  if (!state.live || !GST_CLOCK_TIME_IS_VALID(pts) || !GST_CLOCK_TIME_IS_VALID(scan))
+    return GST_CLOCK_TIME_NONE;
+  const GstClockTime before = scan / slice.meta.slice_count * slice.meta.slice_index;
+  const GstClockTime running =
+      gst_segment_to_running_time(&state.segment, GST_FORMAT_TIME, pts > before ? pts - before : 0);
+  if (!GST_CLOCK_TIME_IS_VALID(running)) return GST_CLOCK_TIME_NONE;
+  return running + scan + state.upstream_latency + state.settings.max_wait;
+}
+
+/// The latency that slices of such a scan cause; posts it when it is news.
+void UpdateLatency(GstLidarScanAssembler* self, const CloudInfo& info, guint slices) {
+  State& state = *self->state;
+  const GstClockTime scan = info.ScanDuration();
+  const GstClockTime latency = slices > 1 && GST_CLOCK_TIME_IS_VALID(scan) ? scan : 0;
+  {
+    std::lock_guard lock(state.mutex);
+    if (state.scan_latency == latency) return;
+    state.scan_latency = latency;
+  }
+  gst_element_post_message(GST_ELEMENT(self), gst_message_new_latency(GST_OBJECT(self)));
+}
+
+void LearnUpstreamLatency(GstLidarScanAssembler* self) {
+  const lidar::gst::QueryPtr query(gst_query_new_latency());
+  gboolean live = FALSE;
+  GstClockTime min = 0;
+  if (gst_pad_peer_query(self->sinkpad, query.get()))
+    gst_query_parse_latency(query.get(), &live, &min, nullptr);
+  std::lock_guard lock(self->state->mutex);
+  self->state->knows_upstream = true;
+  self->state->live = live != FALSE;
+  self->state->upstream_latency = min;
+}
+
+/// A buffer that is a scan by itself.
+GstFlowReturn PassThrough(GstLidarScanAssembler* self, GstBuffer* buffer, guint width) {
+  GstFlowReturn flow = PushAll(self);
+  if (flow != GST_FLOW_OK) {
+    gst_buffer_unref(buffer);
+    return flow;
+  }
+  PushCaps(self, width);
+  return gst_pad_push(self->srcpad, buffer);
+}
+
+GstFlowReturn Chain(GstPad*, GstObject* parent, GstBuffer* buffer) {
+  auto* self = GST_LIDAR_SCAN_ASSEMBLER(parent);
+  State& state = *self->state;
+  std::optional<CloudInfo> info;
+  {
+    std::lock_guard lock(state.mutex);
+    info = state.info;
+  }
+  if (!info) {
+    gst_buffer_unref(buffer);
+    GST_ELEMENT_ERROR(self, CORE, NEGOTIATION, ("No point cloud caps before the first buffer."),
+                      (nullptr));
+    return GST_FLOW_NOT_NEGOTIATED;
+  }
+  lidar::gst::SliceView slice{buffer, &*info, {}};
+  gst_lidar_buffer_get_slice(buffer, &slice.meta);
+  UpdateLatency(self, *info, slice.meta.slice_count);
+  if (slice.meta.slice_count == 1) return PassThrough(self, buffer, info->width);
+  const lidar::gst::BufferPtr owner(buffer);
+  if (slice.meta.slice_index == 0 || !state.knows_upstream) LearnUpstreamLatency(self);
+  ScanQueue::Finished finished;
+  {
+    std::lock_guard lock(state.mutex);
+    const guint64 invalid = state.queue.counters().invalid;
+    state.queue.Add(slice, DeadlineOf(state, slice), &finished);
+    if (state.queue.counters().invalid != invalid)
+      GST_WARNING_OBJECT(self, "slice %u of %u of scan %u does not fit: dropped",
+                         slice.meta.slice_index, slice.meta.slice_count, slice.meta.scan_id);
+    // The timer may wait for a scan of before the stamps began anew.
+    if (state.wait != nullptr && state.queue.NextDeadline() < state.wait_deadline)
+      gst_clock_id_unschedule(state.wait);
+    state.changed.notify_all();
+  }
+  return PushScans(self, &finished);
+}
+
+/// Waits for the earliest deadline. True when it has passed.
+bool WaitForDeadline(GstLidarScanAssembler* self) {
+  State& state = *self->state;
+  std::unique_lock lock(state.mutex);
+  state.changed.wait(
+      lock, [&] { return state.flushing || GST_CLOCK_TIME_IS_VALID(state.queue.NextDeadline()); });
+  if (state.flushing) return false;
+  const GstClockTime deadline = state.queue.NextDeadline();
+  GstClock* clock = gst_element_get_clock(GST_ELEMENT(self));
+  if (clock == nullptr) {  // Not playing yet; nothing is late before.
+    state.changed.wait(lock);
+    return false;
+  }
+  GstClockID id =
+      gst_clock_new_single_shot_id(clock, gst_element_get_base_time(GST_ELEMENT(self)) + deadline);
+  gst_object_unref(clock);
+  state.wait = id;
+  state.wait_deadline = deadline;
+  lock.unlock();
+  const GstClockReturn result = gst_clock_id_wait(id, nullptr);
+  lock.lock();
+  state.wait = nullptr;
+  gst_clock_id_unref(id);
+  return result != GST_CLOCK_UNSCHEDULED && !state.flushing;
+}
+
+/// The task of the source pad: lets scans go whose time is over.
+void TimerLoop(gpointer data) {
+  auto* self = GST_LIDAR_SCAN_ASSEMBLER(data);
+  State& state = *self->state;
+  if (WaitForDeadline(self)) {
+    GST_PAD_STREAM_LOCK(self->sinkpad);
+    ScanQueue::Finished finished;
+    {
+      std::lock_guard lock(state.mutex);
+      GstClock* clock = gst_element_get_clock(GST_ELEMENT(self));
+      if (clock != nullptr && !state.flushing) {
+        const GstClockTime base = gst_element_get_base_time(GST_ELEMENT(self));
+        state.queue.FinishDue(gst_clock_get_time(clock) - base, &finished);
+      }
+      if (clock != nullptr) gst_object_unref(clock);
+    }
+    // The chain function reports errors of downstream; here they would go nowhere.
+    PushScans(self, &finished);
+    GST_PAD_STREAM_UNLOCK(self->sinkpad);
+  }
+  std::lock_guard lock(state.mutex);
+  if (state.flushing) gst_pad_pause_task(self->srcpad);
+}
+
+void SetFlushing(GstLidarScanAssembler* self, bool flushing) {
+  State& state = *self->state;
+  std::lock_guard lock(state.mutex);
+  state.flushing = flushing;
+  if (flushing && state.wait != nullptr) gst_clock_id_unschedule(state.wait);
+  state.changed.notify_all();
+}
+
+void TakeCaps(GstLidarScanAssembler* self, GstCaps* caps, CloudInfo&& info) {
+  State& state = *self->state;
+  std::lock_guard lock(state.mutex);
+  const auto same = [&] {
+    CapsPtr a(gst_caps_copy(caps));
+    CapsPtr b(gst_caps_copy(state.in_caps.get()));
+    gst_caps_set_simple(a.get(), "width", G_TYPE_INT, 1, nullptr);
+    gst_caps_set_simple(b.get(), "width", G_TYPE_INT, 1, nullptr);
+    return gst_caps_is_equal(a.get(), b.get()) != FALSE;
+  };
+  // Slices of unorganised clouds differ in width; that is no change for the scan.
+  if (!state.in_caps || !same()) state.out_width = 0;
+  state.in_caps.reset(gst_caps_ref(caps));
+  state.info = std::move(info);
+}
+
+gboolean HandleCaps(GstLidarScanAssembler* self, GstEvent* event) {
+  const lidar::gst::EventPtr owner(event);
+  GstCaps* caps = nullptr;
+  gst_event_parse_caps(event, &caps);
+  auto info = CloudInfo::FromCaps(caps);
+  if (!info || info->width == 0) {
+    GST_ELEMENT_ERROR(self, STREAM, FORMAT, ("Not the caps of a point cloud of known width."),
+                      ("%" GST_PTR_FORMAT, static_cast<gpointer>(caps)));
+    return FALSE;
+  }
+  State& state = *self->state;
+  bool scan_changes = false;
+  {
+    std::lock_guard lock(state.mutex);
+    scan_changes =
+        state.info &&
+        (state.info->height != info->height || state.info->point_step != info->point_step ||
+         !(state.info->fields == info->fields) ||
+         (lidar::gst::ScanBuilder::IsOrganised(*info) && state.info->width != info->width));
+  }
+  // What is open was made of the old slices, and leaves with the old caps.
+  if (scan_changes) PushAll(self);
+  TakeCaps(self, caps, *std::move(info));
+  return TRUE;
+}
+
+gboolean SinkEvent(GstPad* pad, GstObject* parent, GstEvent* event) {
+  auto* self = GST_LIDAR_SCAN_ASSEMBLER(parent);
+  State& state = *self->state;
+  switch (GST_EVENT_TYPE(event)) {
+    case GST_EVENT_CAPS:
+      return HandleCaps(self, event);
+    case GST_EVENT_SEGMENT: {
+      const GstSegment* segment = nullptr;
+      gst_event_parse_segment(event, &segment);
+      // Open scans belong to the segment that they began in.
+      if (!gst_segment_is_equal(segment, &state.segment)) PushAll(self);
+      std::lock_guard lock(state.mutex);
+      gst_segment_copy_into(segment, &state.segment);
+      if (state.caps_sent) break;
+      state.early_segment.reset(event);
+      return TRUE;
+    }
+    case GST_EVENT_EOS:
+      PushAll(self);
+      break;
+    case GST_EVENT_GAP: {
+      // While a scan is open its own flag tells of the gap.
+      std::unique_lock lock(state.mutex);
+      if (state.queue.empty()) break;
+      lock.unlock();
+      gst_event_unref(event);
+      return TRUE;
+    }
+    case GST_EVENT_FLUSH_START: {
+      const gboolean result = gst_pad_event_default(pad, parent, event);
+      SetFlushing(self, true);
+      gst_pad_pause_task(self->srcpad);
+      return result;
+    }
+    case GST_EVENT_FLUSH_STOP: {
+      {
+        std::lock_guard lock(state.mutex);
+        state.queue.Clear();
+        state.early_segment.reset();
+        gst_segment_init(&state.segment, GST_FORMAT_TIME);
+      }
+      SetFlushing(self, false);
+      const gboolean result = gst_pad_event_default(pad, parent, event);
+      gst_pad_start_task(self->srcpad, TimerLoop, self, nullptr);
+      return result;
+    }
+    default:
+      break;
+  }
+  return gst_pad_event_default(pad, parent, event);
+}
+
+gboolean SrcQuery(GstPad* pad, GstObject* parent, GstQuery* query) {
+  if (!gst_pad_query_default(pad, parent, query)) return FALSE;
+  if (GST_QUERY_TYPE(query) != GST_QUERY_LATENCY) return TRUE;
+  State& state = StateOf(parent);
+  gboolean live = FALSE;
+  GstClockTime min = 0;
+  GstClockTime max = 0;
+  gst_query_parse_latency(query, &live, &min, &max);
+  std::lock_guard lock(state.mutex);
+  if (live && state.scan_latency > 0) {
+    const GstClockTime own = state.scan_latency + state.settings.max_wait;
+    gst_query_set_latency(query, live, min + own,
+                          GST_CLOCK_TIME_IS_VALID(max) ? max + own : GST_CLOCK_TIME_NONE);
+  }
+  return TRUE;
+}
+
+gboolean ActivateSource(GstPad* pad, GstObject* parent, GstPadMode, gboolean active) {
+  auto* self = GST_LIDAR_SCAN_ASSEMBLER(parent);
+  SetFlushing(self, active == FALSE);
+  return active ? gst_pad_start_task(pad, TimerLoop, self, nullptr) : gst_pad_stop_task(pad);
+}
+
+GstStateChangeReturn ChangeState(GstElement* element, GstStateChange transition) {
+  State& state = StateOf(element);
+  const auto result =
+      GST_ELEMENT_CLASS(gst_lidar_scan_assembler_parent_class)->change_state(element, transition);
+  std::lock_guard lock(state.mutex);
+  if (transition == GST_STATE_CHANGE_PAUSED_TO_PLAYING) state.changed.notify_all();
+  if (transition == GST_STATE_CHANGE_PAUSED_TO_READY) {
+    state.knows_upstream = false;
+    state.queue = ScanQueue();
+    state.info.reset();
+    state.in_caps.reset();
+    state.out_width = 0;
+    state.caps_sent = false;
+    state.early_segment.reset();
+    state.scan_latency = 0;
+    gst_segment_init(&state.segment, GST_FORMAT_TIME);
+  }
+  return result;
+}
+
+GstStructure* MakeStats(State* state) {
+  std::lock_guard lock(state->mutex);
+  const auto& c = state->queue.counters();
+  return gst_structure_new("application/x-scanassembler-stats", "scans", G_TYPE_UINT64, c.scans,
+                           "incomplete", G_TYPE_UINT64, c.incomplete, "late-slices", G_TYPE_UINT64,
+                           c.late, "duplicate-slices", G_TYPE_UINT64, c.duplicates,
+                           "invalid-slices", G_TYPE_UINT64, c.invalid, nullptr);
+}
+
+void SetObjectProperty(GObject* object, guint id, const GValue* value, GParamSpec*) {
+  State& state = StateOf(object);
+  {
+    std::lock_guard lock(state.mutex);
+    lidar::gst::SetProperty(state.settings, kProperties[id - 1], value);
+  }
+  gst_element_post_message(GST_ELEMENT(object), gst_message_new_latency(GST_OBJECT(object)));
+}
+
+void GetObjectProperty(GObject* object, guint id, GValue* value, GParamSpec*) {
+  State& state = StateOf(object);
+  if (id == kPropStats) {
+    g_value_take_boxed(value, MakeStats(&state));
+    return;
+  }
+  std::lock_guard lock(state.mutex);
+  lidar::gst::GetProperty(state.settings, kProperties[id - 1], value);
+}
+
+void Finalize(GObject* object) {
+  delete GST_LIDAR_SCAN_ASSEMBLER(object)->state;
+  G_OBJECT_CLASS(gst_lidar_scan_assembler_parent_class)->finalize(object);
+}
+
+}  // namespace
+
+static GstStaticPadTemplate sink_template = GST_STATIC_PAD_TEMPLATE(
+    "sink", GST_PAD_SINK, GST_PAD_ALWAYS, GST_STATIC_CAPS(GST_LIDAR_CLOUD_MEDIA_TYPE));
+static GstStaticPadTemplate src_template = GST_STATIC_PAD_TEMPLATE(
+    "src", GST_PAD_SRC, GST_PAD_ALWAYS, GST_STATIC_CAPS(GST_LIDAR_CLOUD_MEDIA_TYPE));
+
+static void gst_lidar_scan_assembler_init(GstLidarScanAssembler* self) {
+  self->state = new State;
+  gst_segment_init(&self->state->segment, GST_FORMAT_TIME);
+  self->sinkpad = gst_pad_new_from_static_template(&sink_template, "sink");
+  gst_pad_set_chain_function(self->sinkpad, Chain);
+  gst_pad_set_event_function(self->sinkpad, SinkEvent);
+  gst_element_add_pad(GST_ELEMENT(self), self->sinkpad);
+  self->srcpad = gst_pad_new_from_static_template(&src_template, "src");
+  gst_pad_set_query_function(self->srcpad, SrcQuery);
+  gst_pad_set_activatemode_function(self->srcpad, ActivateSource);
+  gst_element_add_pad(GST_ELEMENT(self), self->srcpad);
+}
+
+static void gst_lidar_scan_assembler_class_init(GstLidarScanAssemblerClass* klass) {
+  GST_DEBUG_CATEGORY_INIT(gst_lidar_scan_assembler_debug, "scanassembler", 0, "Scan assembler");
+  auto* object = G_OBJECT_CLASS(klass);
+  object->set_property = SetObjectProperty;
+  object->get_property = GetObjectProperty;
+  object->finalize = Finalize;
+  lidar::gst::InstallProperties(object, kProperties);
+  g_object_class_install_property(
+      object, kPropStats,
+      g_param_spec_boxed("stats", "stats",
+                         "Counters: scans, incomplete, late-slices, duplicate-slices, "
+                         "invalid-slices",
+                         GST_TYPE_STRUCTURE,
+                         static_cast<GParamFlags>(G_PARAM_READABLE | G_PARAM_STATIC_STRINGS)));
+  auto* element = GST_ELEMENT_CLASS(klass);
+  element->change_state = ChangeState;
+  gst_element_class_add_static_pad_template(element, &sink_template);
+  gst_element_class_add_static_pad_template(element, &src_template);
+  gst_element_class_set_static_metadata(element, "Scan assembler", "Filter/PointCloud",
+                                        "Puts the slices of a LiDAR scan together again",
+                                        "gst-lidar");
+}

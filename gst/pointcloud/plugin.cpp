@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "common/gstlidar.h"
+#include "pointcloud/gstpointcloudparse.h"
+#include "pointcloud/gstscanassembler.h"
+
+static gboolean plugin_init(GstPlugin* plugin) {
+  gst_lidar_init();
+  return GST_ELEMENT_REGISTER(pointcloudparse, plugin) &&
+         GST_ELEMENT_REGISTER(scanassembler, plugin);
+}
+
+GST_PLUGIN_DEFINE(GST_VERSION_MAJOR, GST_VERSION_MINOR, lidarpointcloud,
+                  "Raw point clouds: from files, from slices, to files", plugin_init, VERSION,
+                  "LGPL", PACKAGE, "https://gstreamer.freedesktop.org")

@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// One scan in the making: slices go in, in any order, a whole cloud comes out.
+#pragma once
+#include <vector>
+
+#include "common/cloud_info.h"
+#include "common/refs.h"
+
+namespace lidar::gst {
+
+/// A slice with its caps.
+struct SliceView {
+  GstBuffer* buffer = nullptr;  // not owned
+  const CloudInfo* info = nullptr;
+  GstLidarSlice meta{};
+};
+
+/// A cloud as it leaves.
+struct FinishedScan {
+  BufferPtr buffer;
+  guint width = 0;  // columns, or points of an unorganised cloud
+  bool complete = false;
+};
+
+class ScanBuilder {
+ public:
+  /// False for slices that no scan is made of: an index past the count, a size that does not fit
+  /// the caps, more columns than a sensor has.
+  static bool IsSane(const SliceView& slice);
+  /// Clouds whose points stand in columns keep their place; of the others the points are strung
+  /// together.
+  static bool IsOrganised(const CloudInfo& info) { return info.height > 1 || info.sensor_model; }
+
+  /// `slice` must be sane. It is not added by this.
+  explicit ScanBuilder(const SliceView& slice);
+
+  guint scan_id() const { return scan_id_; }
+  /// True where the slice is of this scan and cut as the others were.
+  bool Fits(const SliceView& slice) const;
+  /// False for a duplicate, or where memory cannot be mapped.
+  bool Add(const SliceView& slice);
+  bool complete() const { return present_count_ == present_.size(); }
+  /// PTS of the scan's first column, known or counted back; NONE where no slice had one.
+  GstClockTime pts() const { return pts_; }
+  GstClockTime duration() const { return duration_; }
+  /// Missing columns are zero. The builder is spent.
+  FinishedScan Finish();
+
+ private:
+  void TakeTimes(const SliceView& slice);
+  bool CopyColumns(const SliceView& slice);
+  void ZeroColumns(guint index);
+  BufferPtr Concatenate(guint* points) const;
+
+  guint scan_id_;
+  CloudInfo info_;      // of one slice
+  guint first_column_;  // of the scan
+  std::vector<bool> present_;
+  std::size_t present_count_ = 0;
+  GstClockTime pts_ = GST_CLOCK_TIME_NONE;
+  GstClockTime capture_ = GST_CLOCK_TIME_NONE;
+  GstClockTime duration_ = GST_CLOCK_TIME_NONE;
+  BufferPtr scan_;                // of an organised cloud
+  std::vector<BufferPtr> parts_;  // of an unorganised one
+};
+
+}  // namespace lidar::gst

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Which scans are in the making, and when each has to leave.
+#pragma once
+#include <deque>
+#include <optional>
+#include <vector>
+
+#include "pointcloud/scan_builder.h"
+
+namespace lidar::gst {
+
+struct ScanCounters {
+  guint64 scans = 0;       // that left
+  guint64 incomplete = 0;  // of these
+  guint64 late = 0;        // slices that came after their scan had left
+  guint64 duplicates = 0;
+  guint64 invalid = 0;
+};
+
+/// At most two scans are open: the one that is swept, and the one before, whose last slices may
+/// still be under way. Scans leave in order. Knows no clock: times are the caller's running time.
+class ScanQueue {
+ public:
+  using Finished = std::vector<FinishedScan>;
+
+  /// Takes a slice; appends the scans that it completes or pushes out. `deadline` is until when a
+  /// scan that begins with this slice may stay; NONE: until a slice of the next scan comes.
+  void Add(const SliceView& slice, GstClockTime deadline, Finished* finished);
+  /// Appends the scans whose deadline is not after `now`.
+  void FinishDue(GstClockTime now, Finished* finished);
+  void FinishAll(Finished* finished);
+  /// Forgets everything, as after a flush.
+  void Clear();
+
+  /// Earliest deadline, NONE where there is none.
+  GstClockTime NextDeadline() const;
+  bool empty() const { return open_.empty(); }
+  const ScanCounters& counters() const { return counters_; }
+
+ private:
+  struct Open {
+    ScanBuilder builder;
+    GstClockTime deadline;
+  };
+
+  enum class Age { kNew, kLate, kRecut };
+  Open* Find(const SliceView& slice);
+  Age AgeOf(guint scan_id, Finished* finished);
+  Open* MakeRoomAndOpen(const SliceView& slice, GstClockTime deadline, Finished* finished);
+  void FinishFront(Finished* finished);
+
+  std::deque<Open> open_;
+  std::optional<guint> newest_left_;  // id of the newest scan that left
+  ScanCounters counters_;
+};
+
+}  // namespace lidar::gst

@@ -1,0 +1,352 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <numeric>
+
+#include "common/buffer_map.h"
+#include "common/cloud_info.h"
+#include "support/harness.h"
+
+namespace lidar::gst {
+namespace {
+
+using test::Harness;
+
+constexpr guint kBeams = 2;
+constexpr guint kColumns = 32;  // of a turn
+constexpr guint kSlices = 4;
+constexpr guint kWidth = kColumns / kSlices;
+constexpr GstClockTime kSweep = 25 * GST_MSECOND;
+
+/// 2 beams, 32 columns, 10 scans a second, one byte of intensity a point.
+CloudInfo SliceInfo(guint width = kWidth) {
+  CloudInfo info;
+  info.width = width;
+  info.height = kBeams;
+  info.point_step = 13;
+  info.fields = *PointFields::Parse("x:F32:0,y:F32:4,z:F32:8,intensity:U8:12");
+  info.framerate_n = 10;
+  info.sensor_model.emplace();
+  info.sensor_model->columns_per_scan = kColumns;
+  info.sensor_model->beams = {{0, 1, 0}, {0, -1, 0}};
+  return info;
+}
+
+struct SliceSpec {
+  guint scan = 0;
+  guint index = 0;
+  guint count = kSlices;
+  guint first_column = 0;
+};
+
+/// Every byte of a slice is 1 + its index, so that zeros are missing columns.
+BufferPtr MakeSlice(const SliceSpec& spec, gsize size = SliceInfo().FrameSize()) {
+  BufferPtr buffer(gst_buffer_new_allocate(nullptr, size, nullptr));
+  gst_buffer_memset(buffer.get(), 0, static_cast<guint8>(1 + spec.index), size);
+  const GstLidarSlice meta{spec.scan, spec.index, spec.count, spec.first_column};
+  gst_lidar_buffer_set_slice(buffer.get(), &meta);
+  GST_BUFFER_PTS(buffer.get()) = (spec.scan * kSlices + spec.index) * kSweep;
+  GST_BUFFER_DURATION(buffer.get()) = kSweep;
+  gst_lidar_buffer_set_capture_time(buffer.get(), GST_SECOND + GST_BUFFER_PTS(buffer.get()));
+  return buffer;
+}
+
+BufferPtr Slice(guint scan, guint index) {
+  return MakeSlice({scan, index, kSlices, index * kWidth});
+}
+
+class Assembler : public ::testing::Test {
+ protected:
+  Assembler() : h_(gst_harness_new("scanassembler")) {
+    gst_harness_set_live(h_.get(), FALSE);
+    SetCaps(SliceInfo());
+  }
+
+  void SetCaps(const CloudInfo& info) { gst_harness_set_src_caps(h_.get(), info.ToCaps()); }
+  void Push(BufferPtr buffer) {
+    EXPECT_EQ(gst_harness_push(h_.get(), buffer.release()), GST_FLOW_OK);
+  }
+  guint Waiting() { return gst_harness_buffers_in_queue(h_.get()); }
+  BufferPtr Pull() { return BufferPtr(gst_harness_pull(h_.get())); }
+  guint64 Stat(const char* name) {
+    GstStructure* stats = nullptr;
+    GstElement* element = gst_harness_find_element(h_.get(), "scanassembler");
+    g_object_get(element, "stats", &stats, nullptr);
+    gst_object_unref(element);
+    const StructurePtr owner(stats);
+    guint64 value = G_MAXUINT64;
+    gst_structure_get_uint64(stats, name, &value);
+    return value;
+  }
+  CloudInfo OutInfo() {
+    const CapsPtr caps(gst_pad_get_current_caps(h_->sinkpad));
+    return *CloudInfo::FromCaps(caps.get());
+  }
+
+  Harness h_;
+};
+
+/// First byte of each column, beam by beam: which slice it came from, plus one.
+std::vector<int> ColumnsOf(const BufferPtr& scan, gsize step = 13) {
+  const BufferMap map(scan.get(), GST_MAP_READ);
+  std::vector<int> columns;
+  for (gsize at = 0; at < map.size(); at += step) columns.push_back(map.data()[at]);
+  return columns;
+}
+std::vector<int> Columns(std::initializer_list<int> slices) {
+  std::vector<int> columns;
+  for (guint beam = 0; beam < kBeams; ++beam)
+    for (const int slice : slices) columns.insert(columns.end(), kWidth, slice);
+  return columns;
+}
+GstLidarSlice MetaOf(const BufferPtr& buffer) {
+  GstLidarSlice meta{};
+  EXPECT_TRUE(gst_lidar_buffer_get_slice(buffer.get(), &meta));
+  return meta;
+}
+bool IsCorrupted(const BufferPtr& buffer) {
+  return GST_BUFFER_FLAG_IS_SET(buffer.get(), GST_BUFFER_FLAG_CORRUPTED);
+}
+
+TEST_F(Assembler, PutsSlicesSideBySide) {
+  for (guint i = 0; i < kSlices; ++i) {
+    EXPECT_EQ(Waiting(), 0U);
+    Push(Slice(5, i));
+  }
+  const BufferPtr scan = Pull();
+  EXPECT_EQ(ColumnsOf(scan), Columns({1, 2, 3, 4}));
+  EXPECT_FALSE(IsCorrupted(scan));
+  EXPECT_EQ(OutInfo().width, kColumns);
+  EXPECT_EQ(MetaOf(scan).scan_id, 5U);
+  EXPECT_EQ(MetaOf(scan).slice_count, 1U);
+  EXPECT_EQ(GST_BUFFER_PTS(scan.get()), 500 * GST_MSECOND);
+  EXPECT_EQ(GST_BUFFER_DURATION(scan.get()), 100 * GST_MSECOND);
+  EXPECT_EQ(gst_lidar_buffer_get_capture_time(scan.get()), 1'500 * GST_MSECOND);
+}
+
+TEST_F(Assembler, TakesSlicesInAnyOrder) {
+  for (const guint i : {3U, 1U, 0U, 2U}) Push(Slice(0, i));
+  const BufferPtr scan = Pull();
+  EXPECT_EQ(ColumnsOf(scan), Columns({1, 2, 3, 4}));
+  EXPECT_EQ(GST_BUFFER_PTS(scan.get()), 0U);
+}
+
+TEST_F(Assembler, FlagsALostSliceAndLeavesItsColumnsZero) {
+  for (const guint i : {0U, 1U, 3U}) Push(Slice(0, i));
+  EXPECT_EQ(Waiting(), 0U);
+  Push(Slice(1, 0));  // not live: the next scan says that nothing more will come
+  const BufferPtr scan = Pull();
+  EXPECT_EQ(ColumnsOf(scan), Columns({1, 2, 0, 4}));
+  EXPECT_TRUE(IsCorrupted(scan));
+  for (guint i = 1; i < kSlices; ++i) Push(Slice(1, i));
+  EXPECT_FALSE(IsCorrupted(Pull()));
+  EXPECT_EQ(Stat("scans"), 2U);
+  EXPECT_EQ(Stat("incomplete"), 1U);
+}
+
+TEST_F(Assembler, KnowsWhenAScanBeganWhoseFirstSliceWasLost) {
+  for (guint i = 1; i < kSlices; ++i) Push(Slice(2, i));
+  Push(Slice(3, 0));
+  const BufferPtr scan = Pull();
+  EXPECT_EQ(ColumnsOf(scan), Columns({0, 2, 3, 4}));
+  EXPECT_EQ(GST_BUFFER_PTS(scan.get()), 200 * GST_MSECOND);
+  EXPECT_EQ(gst_lidar_buffer_get_capture_time(scan.get()), 1'200 * GST_MSECOND);
+  EXPECT_EQ(MetaOf(scan).first_column, 0U);
+}
+
+TEST_F(Assembler, AWindowMayPassTheEndOfTheTurn) {
+  // A window of 16 columns from column 24: slices at 24 and 0. The first one is lost.
+  Push(MakeSlice({0, 1, 2, 0}));
+  Push(MakeSlice({1, 0, 2, 24}));
+  Push(MakeSlice({1, 1, 2, 0}));
+  const BufferPtr partial = Pull();
+  EXPECT_EQ(MetaOf(partial).first_column, 24U);
+  EXPECT_EQ(ColumnsOf(partial), Columns({0, 2}));
+  const BufferPtr whole = Pull();
+  EXPECT_EQ(MetaOf(whole).first_column, 24U);
+  EXPECT_EQ(ColumnsOf(whole), Columns({1, 2}));
+}
+
+TEST_F(Assembler, CountsDuplicatesAndLateSlices) {
+  Push(Slice(0, 0));
+  Push(Slice(0, 0));
+  Push(Slice(1, 0));
+  Push(Slice(0, 2));
+  EXPECT_EQ(ColumnsOf(Pull()), Columns({1, 0, 0, 0}));
+  EXPECT_EQ(Stat("duplicate-slices"), 1U);
+  EXPECT_EQ(Stat("late-slices"), 1U);
+}
+
+TEST_F(Assembler, FollowsASenderThatStartsAgain) {
+  for (guint i = 0; i < kSlices; ++i) Push(Slice(1000, i));
+  Pull();
+  for (guint i = 0; i < kSlices; ++i) Push(Slice(0, i));
+  EXPECT_EQ(MetaOf(Pull()).scan_id, 0U);
+  EXPECT_EQ(Stat("late-slices"), 0U);
+}
+
+TEST_F(Assembler, DropsSlicesThatNoScanIsMadeOf) {
+  Push(MakeSlice({0, 4, 4, 0}));               // index past the count
+  Push(MakeSlice({0, 0, 4'000'000'000U, 0}));  // more slices than a turn has columns
+  Push(MakeSlice({0, 0, 0, 0}));               // no slices
+  Push(MakeSlice({0, 0, 6, 0}));               // more columns than the sensor
+  Push(MakeSlice({0, 0, 4, 0}, 5));            // less than a slice
+  Push(MakeSlice({0, 0, 4, 4'294'967'295U}));  // a column that no turn has
+  EXPECT_EQ(Stat("invalid-slices"), 5U);
+  for (guint i = 1; i < kSlices; ++i) Push(MakeSlice({0, i, kSlices, i * kWidth}));
+  EXPECT_EQ(ColumnsOf(Pull()), Columns({1, 2, 3, 4}));
+}
+
+TEST_F(Assembler, RefusesAnotherCutOfAScanThatIsOpen) {
+  Push(Slice(0, 0));
+  Push(MakeSlice({0, 1, 2, 8}));
+  EXPECT_EQ(Stat("invalid-slices"), 1U);
+  for (guint i = 1; i < kSlices; ++i) Push(Slice(0, i));
+  EXPECT_FALSE(IsCorrupted(Pull()));
+}
+
+TEST_F(Assembler, LetsThePartialScanGoAtTheEnd) {
+  Push(Slice(0, 0));
+  EXPECT_TRUE(gst_harness_push_event(h_.get(), gst_event_new_eos()));
+  EXPECT_EQ(ColumnsOf(Pull()), Columns({1, 0, 0, 0}));
+  GstEventType last = GST_EVENT_UNKNOWN;
+  while (gst_harness_events_in_queue(h_.get()) > 0) {
+    const EventPtr event(gst_harness_pull_event(h_.get()));
+    last = GST_EVENT_TYPE(event.get());
+  }
+  EXPECT_EQ(last, GST_EVENT_EOS);
+}
+
+TEST_F(Assembler, ForgetsOnFlush) {
+  Push(Slice(7, 0));
+  gst_harness_push_event(h_.get(), gst_event_new_flush_start());
+  gst_harness_push_event(h_.get(), gst_event_new_flush_stop(TRUE));
+  GstSegment segment;
+  gst_segment_init(&segment, GST_FORMAT_TIME);
+  gst_harness_push_event(h_.get(), gst_event_new_segment(&segment));
+  for (guint i = 0; i < kSlices; ++i) Push(Slice(0, i));
+  EXPECT_EQ(MetaOf(Pull()).scan_id, 0U);
+  EXPECT_EQ(Waiting(), 0U);
+}
+
+TEST_F(Assembler, PassesWholeScansAsTheyAre) {
+  BufferPtr plain(gst_buffer_new_allocate(nullptr, SliceInfo().FrameSize(), nullptr));
+  GstBuffer* const address = plain.get();
+  Push(std::move(plain));
+  EXPECT_EQ(Pull().get(), address);
+  EXPECT_EQ(OutInfo().width, kWidth);
+}
+
+TEST_F(Assembler, StringsUnorganisedPointsTogether) {
+  CloudInfo info = SliceInfo();
+  info.height = 1;
+  info.sensor_model.reset();
+  for (guint i = 0; i < kSlices; ++i) {
+    info.width = 10 + i;  // as many points as the slice happened to have
+    SetCaps(info);
+    Push(MakeSlice({0, i, kSlices, 0}, info.FrameSize()));
+  }
+  const BufferPtr scan = Pull();
+  EXPECT_EQ(OutInfo().width, 10U + 11 + 12 + 13);
+  const auto columns = ColumnsOf(scan);
+  EXPECT_EQ(std::count(columns.begin(), columns.end(), 3), 12);
+  EXPECT_FALSE(IsCorrupted(scan));
+}
+
+TEST_F(Assembler, OpenScansLeaveWithTheirCapsBeforeNewOnes) {
+  Push(Slice(0, 0));
+  SetCaps(SliceInfo(16));
+  EXPECT_EQ(ColumnsOf(Pull()), Columns({1, 0, 0, 0}));
+  EXPECT_EQ(OutInfo().width, kColumns);
+  for (guint i = 0; i < 2; ++i) Push(MakeSlice({1, i, 2, i * 16}, SliceInfo(16).FrameSize()));
+  EXPECT_FALSE(IsCorrupted(Pull()));
+}
+
+TEST_F(Assembler, StartsAfreshAfterAStateCycle) {
+  for (int cycle = 0; cycle < 3; ++cycle) {
+    Push(Slice(9, 0));
+    gst_element_set_state(h_->element, GST_STATE_NULL);
+    gst_harness_play(h_.get());
+    SetCaps(SliceInfo());
+    for (guint i = 0; i < kSlices; ++i) Push(Slice(3, i));
+    EXPECT_EQ(MetaOf(Pull()).scan_id, 3U);
+  }
+}
+
+TEST_F(Assembler, RefusesCapsThatAreNoCloud) {
+  const CapsPtr caps(gst_caps_from_string("application/x-pointcloud2,point-step=4"));
+  gst_pad_push_event(h_->srcpad, gst_event_new_caps(caps.get()));
+  EXPECT_EQ(gst_harness_push(h_.get(), Slice(0, 0).release()), GST_FLOW_NOT_NEGOTIATED);
+}
+
+class LiveAssembler : public Assembler {
+ protected:
+  LiveAssembler() {
+    // The harness answers the latency query of the element for upstream: live, one slice.
+    gst_harness_set_live(h_.get(), TRUE);
+    gst_harness_set_upstream_latency(h_.get(), kSweep);
+    gst_harness_use_testclock(h_.get());
+  }
+};
+
+TEST_F(LiveAssembler, AScanLeavesAtItsDeadlineWithoutItsLastSlice) {
+  for (guint i = 0; i < 3; ++i) Push(Slice(0, i));
+  ASSERT_TRUE(gst_harness_wait_for_clock_id_waits(h_.get(), 1, 10));
+  // One scan, the latency of the source and max-wait after its first column.
+  EXPECT_EQ(gst_test_clock_get_next_entry_time(GST_TEST_CLOCK(GST_ELEMENT_CLOCK(h_->element))),
+            (100 + 25 + 20) * GST_MSECOND);
+  EXPECT_EQ(Waiting(), 0U);
+  ASSERT_TRUE(gst_harness_crank_single_clock_wait(h_.get()));
+  const BufferPtr scan = Pull();
+  EXPECT_EQ(ColumnsOf(scan), Columns({1, 2, 3, 0}));
+  EXPECT_TRUE(IsCorrupted(scan));
+  Push(Slice(0, 3));
+  EXPECT_EQ(Stat("late-slices"), 1U);
+}
+
+TEST_F(LiveAssembler, ALateSliceStillFindsItsScanWhileTheNextBegins) {
+  for (guint i = 0; i < 3; ++i) Push(Slice(0, i));
+  Push(Slice(1, 0));
+  EXPECT_EQ(Waiting(), 0U);
+  Push(Slice(0, 3));
+  EXPECT_FALSE(IsCorrupted(Pull()));
+}
+
+TEST_F(LiveAssembler, AWholeScanDoesNotWaitForTheOneBefore) {
+  Push(Slice(0, 0));
+  for (guint i = 0; i < kSlices; ++i) Push(Slice(1, i));
+  EXPECT_TRUE(IsCorrupted(Pull()));
+  EXPECT_FALSE(IsCorrupted(Pull()));
+}
+
+TEST_F(LiveAssembler, SaysItIsLateByAScanAndTheWait) {
+  for (guint i = 0; i < kSlices; ++i) Push(Slice(0, i));
+  EXPECT_EQ(gst_harness_query_latency(h_.get()), (25 + 100 + 20) * GST_MSECOND);
+}
+
+TEST_F(LiveAssembler, StopsWhileAScanWaits) {
+  Push(Slice(0, 0));
+  ASSERT_TRUE(gst_harness_wait_for_clock_id_waits(h_.get(), 1, 10));
+  gst_element_set_state(h_->element, GST_STATE_NULL);
+  EXPECT_EQ(Waiting(), 0U);
+}
+
+TEST(AssemblerOfTheTestSource, GivesTheScansThatTheSourceWouldHaveGiven) {
+  const auto scans = [](const char* pipeline) {
+    const Harness h(gst_harness_new_parse(pipeline));
+    gst_harness_play(h.get());
+    std::vector<std::vector<guint8>> all;
+    for (int i = 0; i < 2; ++i) {
+      const BufferPtr scan(gst_harness_pull(h.get()));
+      const BufferMap map(scan.get(), GST_MAP_READ);
+      all.emplace_back(map.data(), map.data() + map.size());
+    }
+    return all;
+  };
+  EXPECT_EQ(scans("lidartestsrc model=os1-32 mode=512x10 num-buffers=16 ! scanassembler"),
+            scans("lidartestsrc model=os1-32 mode=512x10 num-buffers=2 slices-per-scan=1"));
+}
+
+}  // namespace
+}  // namespace lidar::gst

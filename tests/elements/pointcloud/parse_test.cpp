@@ -1,0 +1,206 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <gtest/gtest.h>
+
+#include <fstream>
+
+#include "common/buffer_map.h"
+#include "common/cloud_info.h"
+#include "support/harness.h"
+
+namespace lidar::gst {
+namespace {
+
+using test::Harness;
+
+const char* const kKitti =
+    "application/x-pointcloud2,height=1,point-step=16,"
+    "fields=(string)\"x:F32:0,y:F32:4,z:F32:8,intensity:F32:12\",framerate=10/1";
+
+BufferPtr Bytes(gsize size, guint8 value = 7) {
+  BufferPtr buffer(gst_buffer_new_allocate(nullptr, size, nullptr));
+  gst_buffer_memset(buffer.get(), 0, value, size);
+  return buffer;
+}
+
+class Parse : public ::testing::Test {
+ protected:
+  /// A source of bytes, as files are.
+  void Start(const std::string& caps, const char* element = "pointcloudparse") {
+    h_.reset(gst_harness_new_parse(element));
+    gst_harness_play(h_.get());
+    gst_pad_push_event(h_->srcpad, gst_event_new_stream_start("test"));
+    const CapsPtr parsed(gst_caps_from_string(caps.c_str()));
+    gst_pad_push_event(h_->srcpad, gst_event_new_caps(parsed.get()));
+    PushSegment(GST_FORMAT_BYTES);
+  }
+  void PushSegment(GstFormat format) {
+    GstSegment segment;
+    gst_segment_init(&segment, format);
+    gst_pad_push_event(h_->srcpad, gst_event_new_segment(&segment));
+  }
+  GstFlowReturn Push(BufferPtr buffer) { return gst_pad_push(h_->srcpad, buffer.release()); }
+  BufferPtr Pull() { return BufferPtr(gst_harness_pull(h_.get())); }
+  guint Width() {
+    const CapsPtr caps(gst_pad_get_current_caps(h_->sinkpad));
+    return CloudInfo::FromCaps(caps.get())->width;
+  }
+  std::string ErrorText(GstMessageType type) {
+    GstBus* bus = gst_element_get_bus(h_->element);
+    const MessagePtr message(bus == nullptr ? nullptr : gst_bus_pop_filtered(bus, type));
+    if (bus != nullptr) gst_object_unref(bus);
+    if (!message) return "";
+    GError* raw = nullptr;
+    if (type == GST_MESSAGE_ERROR)
+      gst_message_parse_error(message.get(), &raw, nullptr);
+    else
+      gst_message_parse_warning(message.get(), &raw, nullptr);
+    const ErrorPtr error(raw);
+    return error->message;
+  }
+  void WatchMessages() {
+    GstBus* bus = gst_bus_new();
+    gst_element_set_bus(h_->element, bus);
+    gst_object_unref(bus);
+  }
+
+  Harness h_;
+};
+
+TEST_F(Parse, TakesTheWidthFromTheSizeOfEachFile) {
+  Start(kKitti);
+  ASSERT_EQ(Push(Bytes(16 * 100)), GST_FLOW_OK);
+  EXPECT_EQ(gst_buffer_get_size(Pull().get()), 1600U);
+  EXPECT_EQ(Width(), 100U);
+  ASSERT_EQ(Push(Bytes(16 * 90)), GST_FLOW_OK);
+  Pull();
+  EXPECT_EQ(Width(), 90U);
+}
+
+TEST_F(Parse, StampsByTheFrameRateOfTheCapsInATimeSegment) {
+  Start(kKitti);
+  for (guint i = 0; i < 3; ++i) {
+    Push(Bytes(160));
+    const BufferPtr cloud = Pull();
+    EXPECT_EQ(GST_BUFFER_PTS(cloud.get()), i * 100 * GST_MSECOND);
+    EXPECT_EQ(GST_BUFFER_DURATION(cloud.get()), 100 * GST_MSECOND);
+  }
+  const EventPtr event(gst_pad_get_sticky_event(h_->sinkpad, GST_EVENT_SEGMENT, 0));
+  ASSERT_TRUE(event);
+  const GstSegment* segment = nullptr;
+  gst_event_parse_segment(event.get(), &segment);
+  EXPECT_EQ(segment->format, GST_FORMAT_TIME);
+}
+
+TEST_F(Parse, ThePropertyGoesBeforeTheFrameRateOfTheCaps) {
+  Start(kKitti, "pointcloudparse framerate=20/1");
+  Push(Bytes(160));
+  Pull();
+  Push(Bytes(160));
+  EXPECT_EQ(GST_BUFFER_PTS(Pull().get()), 50 * GST_MSECOND);
+  const CapsPtr caps(gst_pad_get_current_caps(h_->sinkpad));
+  EXPECT_EQ(CloudInfo::FromCaps(caps.get())->framerate_n, 20);
+}
+
+TEST_F(Parse, KeepsTimesThatAreGiven) {
+  Start(kKitti);
+  PushSegment(GST_FORMAT_TIME);
+  BufferPtr buffer = Bytes(160);
+  GST_BUFFER_PTS(buffer.get()) = 42;
+  Push(std::move(buffer));
+  EXPECT_EQ(GST_BUFFER_PTS(Pull().get()), 42U);
+}
+
+TEST_F(Parse, CutsAStreamOfAnySplitWhereTheCapsGiveTheWidth) {
+  Start("application/x-pointcloud2,width=5,height=2,point-step=16,fields=(string)\"x:F32:0\"");
+  for (int i = 0; i < 10; ++i) ASSERT_EQ(Push(Bytes(48, static_cast<guint8>(i))), GST_FLOW_OK);
+  EXPECT_EQ(gst_harness_buffers_in_queue(h_.get()), 3U);
+  const BufferPtr first = Pull();
+  const BufferPtr second = Pull();
+  EXPECT_EQ(gst_buffer_get_size(first.get()), 160U);
+  const BufferMap map(second.get(), GST_MAP_READ);
+  EXPECT_EQ(map.data()[0], 3);  // byte 160 of the stream
+}
+
+TEST_F(Parse, WarnsOfWhatIsLeftOverAtTheEnd) {
+  Start("application/x-pointcloud2,width=5,height=2,point-step=16,fields=(string)\"x:F32:0\"");
+  WatchMessages();
+  Push(Bytes(150));
+  gst_pad_push_event(h_->srcpad, gst_event_new_eos());
+  EXPECT_NE(ErrorText(GST_MESSAGE_WARNING).find("150 bytes are left over"), std::string::npos);
+  EXPECT_EQ(gst_harness_buffers_in_queue(h_.get()), 0U);
+}
+
+TEST_F(Parse, ForgetsTheStartOfACloudOnFlush) {
+  Start("application/x-pointcloud2,width=5,height=2,point-step=16,fields=(string)\"x:F32:0\"");
+  Push(Bytes(100, 1));
+  gst_pad_push_event(h_->srcpad, gst_event_new_flush_start());
+  gst_pad_push_event(h_->srcpad, gst_event_new_flush_stop(TRUE));
+  PushSegment(GST_FORMAT_BYTES);
+  Push(Bytes(100, 2));
+  EXPECT_EQ(gst_harness_buffers_in_queue(h_.get()), 0U);
+  Push(Bytes(60, 2));
+  const BufferPtr cloud = Pull();
+  const BufferMap map(cloud.get(), GST_MAP_READ);
+  EXPECT_EQ(map.data()[0], 2);
+  EXPECT_EQ(GST_BUFFER_PTS(cloud.get()), 0U);
+}
+
+TEST_F(Parse, SaysWhenAFileIsNotMadeOfPoints) {
+  Start(kKitti);
+  WatchMessages();
+  EXPECT_EQ(Push(Bytes(1601)), GST_FLOW_ERROR);
+  EXPECT_NE(ErrorText(GST_MESSAGE_ERROR).find("1601 bytes"), std::string::npos);
+}
+
+TEST_F(Parse, SaysWhenTheCapsDoNotDescribeACloud) {
+  Start("application/x-pointcloud2,point-step=8,fields=(string)\"x:F32:0,y:F32:4,z:F32:8\"");
+  EXPECT_EQ(Push(Bytes(160)), GST_FLOW_NOT_NEGOTIATED);
+}
+
+TEST_F(Parse, StartsAfreshAfterAStateCycle) {
+  Start(kKitti);
+  for (int cycle = 0; cycle < 3; ++cycle) {
+    Push(Bytes(160));
+    EXPECT_EQ(GST_BUFFER_PTS(Pull().get()), 0U);
+    gst_element_set_state(h_->element, GST_STATE_NULL);
+    gst_harness_play(h_.get());
+    gst_pad_push_event(h_->srcpad, gst_event_new_stream_start("again"));
+    const CapsPtr caps(gst_caps_from_string(kKitti));
+    gst_pad_push_event(h_->srcpad, gst_event_new_caps(caps.get()));
+    PushSegment(GST_FORMAT_BYTES);
+  }
+}
+
+TEST(ParseFile, AFileWithoutAWidthIsOneCloud) {
+  const std::string path = ::testing::TempDir() + "one.bin";
+  std::ofstream(path, std::ios::binary) << std::string(16 * 3000, 'a');
+  const Harness h(gst_harness_new_parse(
+      ("filesrc location=" + path + " ! " + kKitti + " ! pointcloudparse").c_str()));
+  gst_harness_play(h.get());
+  const BufferPtr cloud(gst_harness_pull(h.get()));
+  EXPECT_EQ(gst_buffer_get_size(cloud.get()), 48'000U);
+  std::remove(path.c_str());
+}
+
+TEST(ParseFile, EachFileOfASeriesIsACloud) {
+  const std::string folder = ::testing::TempDir();
+  for (int i = 0; i < 3; ++i)
+    std::ofstream(folder + "series" + std::to_string(i) + ".bin", std::ios::binary)
+        << std::string(static_cast<std::size_t>(16 * (300 + i)), 'a');
+  const Harness h(gst_harness_new_parse(
+      ("multifilesrc location=" + folder + "series%d.bin ! pointcloudparse").c_str()));
+  GstElement* source = gst_harness_find_element(h.get(), "multifilesrc");
+  const CapsPtr caps(gst_caps_from_string(kKitti));
+  g_object_set(source, "caps", caps.get(), nullptr);
+  gst_object_unref(source);
+  gst_harness_play(h.get());
+  for (guint i = 0; i < 3; ++i) {
+    const BufferPtr cloud(gst_harness_pull(h.get()));
+    EXPECT_EQ(gst_buffer_get_size(cloud.get()), 16U * (300 + i));
+    EXPECT_EQ(GST_BUFFER_PTS(cloud.get()), i * 100 * GST_MSECOND);
+    std::remove((folder + "series" + std::to_string(i) + ".bin").c_str());
+  }
+}
+
+}  // namespace
+}  // namespace lidar::gst
