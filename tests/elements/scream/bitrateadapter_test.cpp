@@ -1,0 +1,240 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// bitrateadapter behind real encoders, and behind stand-ins for those that need their hardware.
+#include <gst/base/gstbasetransform.h>
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "common/gstlidar.h"
+#include "support/harness.h"
+
+namespace {
+
+using lidar::gst::CapsPtr;
+using lidar::gst::ElementPtr;
+using lidar::gst::EventPtr;
+using lidar::gst::PadPtr;
+using lidar::gst::StructurePtr;
+
+// A stand-in: passes everything, and has the bitrate properties of all encoders at once.
+struct StandIn {
+  GstBaseTransform parent;
+  guint bitrate;
+  gint target_bitrate;
+  guint bps;
+  GstStructure* controls;
+};
+struct StandInClass {
+  GstBaseTransformClass parent;
+};
+G_DEFINE_TYPE(StandIn, stand_in, GST_TYPE_BASE_TRANSFORM)
+
+void stand_in_init(StandIn* self) {
+  self->controls = gst_structure_new("controls", "h264_profile", G_TYPE_INT, 4, nullptr);
+  gst_base_transform_set_passthrough(&self->parent, TRUE);
+}
+
+void SetStandIn(GObject* o, guint id, const GValue* v, GParamSpec*) {
+  auto* self = reinterpret_cast<StandIn*>(o);
+  if (id == 1) self->bitrate = g_value_get_uint(v);
+  if (id == 2) self->target_bitrate = g_value_get_int(v);
+  if (id == 3) self->bps = g_value_get_uint(v);
+  if (id != 4) return;
+  gst_structure_free(self->controls);
+  self->controls = gst_structure_copy(gst_value_get_structure(v));
+}
+
+void GetStandIn(GObject* o, guint id, GValue* v, GParamSpec*) {
+  auto* self = reinterpret_cast<StandIn*>(o);
+  if (id == 1) g_value_set_uint(v, self->bitrate);
+  if (id == 2) g_value_set_int(v, self->target_bitrate);
+  if (id == 3) g_value_set_uint(v, self->bps);
+  if (id == 4) gst_value_set_structure(v, self->controls);
+}
+
+void stand_in_class_init(StandInClass* klass) {
+  auto* object = G_OBJECT_CLASS(klass);
+  object->set_property = SetStandIn;
+  object->get_property = GetStandIn;
+  object->finalize = [](GObject* o) {
+    gst_structure_free(reinterpret_cast<StandIn*>(o)->controls);
+    G_OBJECT_CLASS(stand_in_parent_class)->finalize(o);
+  };
+  constexpr auto flags = static_cast<GParamFlags>(G_PARAM_READWRITE | G_PARAM_STATIC_STRINGS);
+  g_object_class_install_property(object, 1,
+                                  g_param_spec_uint("bitrate", "", "", 1, 2'048'000'000, 1, flags));
+  g_object_class_install_property(
+      object, 2, g_param_spec_int("target-bitrate", "", "", 0, G_MAXINT, 0, flags));
+  g_object_class_install_property(object, 3,
+                                  g_param_spec_uint("bps", "", "", 0, G_MAXUINT, 0, flags));
+  g_object_class_install_property(
+      object, 4, g_param_spec_boxed("extra-controls", "", "", GST_TYPE_STRUCTURE, flags));
+  auto* element = GST_ELEMENT_CLASS(klass);
+  static GstStaticPadTemplate sink =
+      GST_STATIC_PAD_TEMPLATE("sink", GST_PAD_SINK, GST_PAD_ALWAYS, GST_STATIC_CAPS_ANY);
+  static GstStaticPadTemplate src =
+      GST_STATIC_PAD_TEMPLATE("src", GST_PAD_SRC, GST_PAD_ALWAYS, GST_STATIC_CAPS_ANY);
+  gst_element_class_add_static_pad_template(element, &sink);
+  gst_element_class_add_static_pad_template(element, &src);
+  gst_element_class_set_static_metadata(element, "Stand-in", "Codec/Encoder/Video", "For tests",
+                                        "The gst-lidar developers");
+}
+
+/// A factory has a type of its own: GStreamer finds the factory by it.
+void RegisterStandIn(const std::string& factory) {
+  if (GstElementFactory* known = gst_element_factory_find(factory.c_str()); known != nullptr) {
+    gst_object_unref(known);
+    return;
+  }
+  GTypeQuery query;
+  g_type_query(stand_in_get_type(), &query);
+  const GType type = g_type_register_static_simple(
+      stand_in_get_type(), ("StandIn-" + factory).c_str(), static_cast<guint16>(query.class_size),
+      nullptr, static_cast<guint16>(query.instance_size), nullptr, static_cast<GTypeFlags>(0));
+  gst_element_register(nullptr, factory.c_str(), GST_RANK_NONE, type);
+}
+
+/// `description` ends in a bitrateadapter of the name a, the only element that runs: hardware
+/// encoders need none of their devices to be told a bitrate.
+class Chain {
+ public:
+  explicit Chain(const std::string& description)
+      : bin_(GST_ELEMENT(gst_object_ref_sink(
+            gst_parse_launch((description + " ! fakesink name=end").c_str(), nullptr)))) {
+    gst_element_set_state(Find("a").get(), GST_STATE_PAUSED);
+    const PadPtr pad(gst_element_get_static_pad(Find("end").get(), "sink"));
+    gst_pad_set_active(pad.get(), TRUE);
+  }
+  ~Chain() { gst_element_set_state(bin_.get(), GST_STATE_NULL); }
+
+  /// A target that comes from downstream.
+  bool Send(guint bps) {
+    const GstLidarTargetBitrate target{bps, 1, 0, 0, 0, 0, "update"};
+    const ElementPtr end(Find("end"));
+    const PadPtr pad(gst_element_get_static_pad(end.get(), "sink"));
+    return gst_pad_push_event(pad.get(), gst_lidar_event_new_target_bitrate(&target)) != FALSE;
+  }
+  ElementPtr Find(const char* name) const {
+    return ElementPtr(gst_bin_get_by_name(GST_BIN(bin_.get()), name));
+  }
+  GstElement* get() { return bin_.get(); }
+
+ private:
+  ElementPtr bin_;
+};
+
+guint Uint(const ElementPtr& element, const char* property) {
+  guint value = 0;
+  g_object_get(element.get(), property, &value, nullptr);
+  return value;
+}
+
+struct Known {
+  const char* factory;
+  const char* property;
+  gint64 at_2_mbps;
+};
+
+class KnownEncoders : public ::testing::TestWithParam<Known> {};
+
+TEST_P(KnownEncoders, GetTheTargetInTheirOwnUnit) {
+  const Known known = GetParam();
+  RegisterStandIn(known.factory);
+  Chain chain(std::string(known.factory) + " name=e ! identity ! bitrateadapter name=a");
+  EXPECT_TRUE(chain.Send(2'000'000));
+  const ElementPtr encoder = chain.Find("e");
+  GValue value = G_VALUE_INIT;
+  g_value_init(&value, G_TYPE_INT64);
+  g_object_get_property(G_OBJECT(encoder.get()), known.property, &value);
+  EXPECT_EQ(g_value_get_int64(&value), known.at_2_mbps);
+  EXPECT_EQ(Uint(chain.Find("a"), "bitrate"), 2'000'000U);
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    All, KnownEncoders,
+    ::testing::Values(Known{"x264enc", "bitrate", 2000}, Known{"openh264enc", "bitrate", 2000000},
+                      Known{"vp8enc", "target-bitrate", 2000000},
+                      Known{"av1enc", "target-bitrate", 2000}, Known{"nvh264enc", "bitrate", 2000},
+                      Known{"nvv4l2h264enc", "bitrate", 2000000},
+                      Known{"omxh264enc", "target-bitrate", 2000000},
+                      Known{"vah264enc", "bitrate", 2000}, Known{"vaapih265enc", "bitrate", 2000},
+                      Known{"qsvh264enc", "bitrate", 2000}, Known{"msdkh264enc", "bitrate", 2000},
+                      Known{"amfh264enc", "bitrate", 2000}, Known{"mpph264enc", "bps", 2000000}),
+    [](const auto& known) { return std::string(known.param.factory); });
+
+TEST(BitrateAdapter, ChangesOneOfTheControlsOfAV4l2EncoderAndLeavesTheOthers) {
+  RegisterStandIn("v4l2h264enc");
+  Chain chain("v4l2h264enc name=e ! bitrateadapter name=a");
+  EXPECT_TRUE(chain.Send(1'500'000));
+  GstStructure* controls = nullptr;
+  g_object_get(chain.Find("e").get(), "extra-controls", &controls, nullptr);
+  const StructurePtr owner(controls);
+  gint bitrate = 0;
+  gint profile = 0;
+  EXPECT_TRUE(gst_structure_get_int(controls, "video_bitrate", &bitrate));
+  EXPECT_TRUE(gst_structure_get_int(controls, "h264_profile", &profile));
+  EXPECT_EQ(bitrate, 1'500'000);
+  EXPECT_EQ(profile, 4);
+}
+
+TEST(BitrateAdapter, KeepsToItsLimitsAndItsFraction) {
+  Chain chain("vp8enc name=e ! bitrateadapter name=a min=300000 max=3000000 fraction=0.5");
+  const auto target = [&] {
+    gint value = 0;
+    g_object_get(chain.Find("e").get(), "target-bitrate", &value, nullptr);
+    return value;
+  };
+  chain.Send(2'000'000);
+  EXPECT_EQ(target(), 1'000'000);
+  chain.Send(40'000'000);
+  EXPECT_EQ(target(), 3'000'000);
+  chain.Send(1);
+  EXPECT_EQ(target(), 300'000);
+}
+
+TEST(BitrateAdapter, TellsItsLimitsDownstreamBehindTheCaps) {
+  gst_lidar_init();
+  const lidar::test::Harness h(gst_harness_new_parse("bitrateadapter min=500000 max=2000000"));
+  gst_harness_set_src_caps_str(h.get(), "video/x-h264");
+  for (;;) {
+    const EventPtr event(gst_harness_try_pull_event(h.get()));
+    ASSERT_TRUE(event) << "no bounds came";
+    GstLidarBitrateBounds bounds{};
+    if (!gst_lidar_event_parse_bitrate_bounds(event.get(), &bounds)) continue;
+    EXPECT_EQ(bounds.min_bitrate, 500'000U);
+    EXPECT_EQ(bounds.max_bitrate, 2'000'000U);
+    return;
+  }
+}
+
+TEST(BitrateAdapter, FindsTheEncoderWithinABinAndPastParsers) {
+  Chain chain("( vp8enc name=e ! identity ) ! queue ! capsfilter ! bitrateadapter name=a");
+  EXPECT_TRUE(chain.Send(700'000));
+  gint value = 0;
+  g_object_get(chain.Find("e").get(), "target-bitrate", &value, nullptr);
+  EXPECT_EQ(value, 700'000);
+}
+
+TEST(BitrateAdapter, ObeysWhatTheUserSaysOfAnUnknownEncoder) {
+  RegisterStandIn("foreignenc");
+  Chain chain("foreignenc name=e ! bitrateadapter name=a encoder=e property=bps scale=0.01");
+  EXPECT_TRUE(chain.Send(1'000'000));
+  EXPECT_EQ(Uint(chain.Find("e"), "bps"), 10'000U);
+}
+
+TEST(BitrateAdapter, LetsTheEventPassAndWarnsOnceWhereThereIsNoEncoder) {
+  Chain chain("identity ! bitrateadapter name=a");
+  GstBus* bus = gst_bus_new();
+  gst_element_set_bus(chain.get(), bus);
+  chain.Send(1'000'000);
+  chain.Send(2'000'000);
+  const lidar::gst::MessagePtr first(gst_bus_pop_filtered(bus, GST_MESSAGE_WARNING));
+  const lidar::gst::MessagePtr second(gst_bus_pop_filtered(bus, GST_MESSAGE_WARNING));
+  EXPECT_TRUE(first);
+  EXPECT_FALSE(second);
+  EXPECT_EQ(Uint(chain.Find("a"), "bitrate"), 0U);
+  gst_element_set_bus(chain.get(), nullptr);
+  gst_object_unref(bus);
+}
+
+}  // namespace
