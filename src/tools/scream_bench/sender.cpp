@@ -164,7 +164,7 @@ void Sender::Tick() {
   if (log_.is_open()) {
     log_ << seconds << ',' << get("target-bitrate") << ',' << get("sent-bitrate") << ','
          << get("queue-delay") / 1e6 << ',' << get("rtt") / 1e6 << ',' << get("ref-wnd") << ','
-         << get("bytes-in-flight") << ',' << get("media-queue-delay") / 1e6 << ','
+         << get("bytes-in-flight") << ',' << get("sender-queue-delay") / 1e6 << ','
          << get("packets-lost") << ',' << get("packets-ce") << '\n';
   }
   if (now < next_line_) return;
