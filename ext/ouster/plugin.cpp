@@ -1,10 +1,14 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Registers the elements of the plugin.
+#include <curl/curl.h>
+
 #include "common/gstlidar.h"
 #include "gstoustersrc.h"
 
 static gboolean plugin_init(GstPlugin* plugin) {
   gst_lidar_init();
+  // Counts its callers; the library stays, as this plugin does.
+  if (curl_global_init(CURL_GLOBAL_DEFAULT) != CURLE_OK) return FALSE;
   return GST_ELEMENT_REGISTER(ouster_src, plugin);
 }
 

@@ -40,14 +40,41 @@ GType OusterInvalidType() {
   return type;
 }
 
-const std::array<Property<S>, 18> kOusterProperties = {{
+const std::array<Property<S>, 30> kOusterProperties = {{
     {"location", "Capture file (pcap, pcapng) to read instead of receiving", &S::location},
     {"metadata", "Metadata JSON of the sensor; empty: with location, the .json beside it",
      &S::metadata},
     {"is-live", "With location: give packets out at the pace of their capture", &S::is_live},
     {"loop", "With location: start over at the end of the file", &S::loop},
-    {"lidar-port", "UDP port of the lidar packets; 0: the one in the metadata", &S::lidar_port, 0,
-     65535},
+    {"hostname",
+     "Sensor to ask for its metadata, as os1.local, 192.0.2.7 or fe80::1%eth0; empty: ask none",
+     &S::hostname},
+    {"reconnect", "Wait for a sensor that is not there or went away; false: that is an error",
+     &S::reconnect},
+    {"lidar-port",
+     "UDP port of the lidar packets; 0: as in the metadata. With hostname, the sensor is told",
+     &S::lidar_port, 0, 65535},
+    {"imu-port",
+     "UDP port of the IMU packets; 0: as in the metadata. With hostname, the sensor is told",
+     &S::imu_port, 0, 65535},
+    {"imu", "Receive IMU packets, for the pad imu", &S::imu},
+    {"udp-dest",
+     "Address that the sensor is told to send to; @auto: this machine's; empty: as it is",
+     &S::udp_dest},
+    {"lidar-mode", "Mode that the sensor is told to take, as 1024x10; empty: as it is",
+     &S::lidar_mode},
+    {"udp-profile-lidar",
+     "Packet profile that the sensor is told to take, as RNG19_RFL8_SIG16_NIR16; empty: as it is",
+     &S::udp_profile_lidar},
+    {"sensor-timestamp-mode",
+     "Clock that the sensor is told to use, as TIME_FROM_PTP_1588; empty: as it is",
+     &S::sensor_timestamp_mode},
+    {"azimuth-window",
+     "Window that the sensor is told to scan [millidegrees], as 180000,360000; empty: as it is",
+     &S::azimuth_window},
+    {"signal-multiplier",
+     "Signal multiplier that the sensor is told to use: 0.25, 0.5, 1, 2 or 3; 0: as it is",
+     &S::signal_multiplier, 0, 3},
     {"address", "Local address to receive on; empty for any, IPv6 and IPv4", &S::address},
     {"multicast-group", "Multicast group that the sensor sends to; empty for none",
      &S::multicast_group},
@@ -74,7 +101,13 @@ const std::array<Property<S>, 18> kOusterProperties = {{
     {"azimuth-sectors",
      "Sectors to keep [degrees in the sensor frame, from x towards y], as 0-90,270-360; empty: all",
      &S::azimuth_sectors},
+    {"mask-location",
+     "Image (PGM, beams x columns as seen, that is destaggered) of the pixels to keep: not black",
+     &S::mask_location},
     {"invalid", "What missing returns look like", EnumField<S>{&S::invalid, OusterInvalidType}},
+    {"destagger",
+     "Shift beams so that columns of the buffer are directions; whole scans, and no sensor model",
+     &S::destagger},
 }};
 
 std::string OusterSettings::MetadataPath() const {
@@ -102,6 +135,7 @@ std::optional<ouster::StreamOptions> ToStreamOptions(const OusterSettings& s, st
   options.points.returns = static_cast<ouster::Return>(s.returns);
   options.points.min_range_m = s.min_range;
   options.points.max_range_m = s.max_range;
+  options.points.destagger = s.destagger;
   options.points.invalid = static_cast<ouster::Invalid>(s.invalid);
   options.slices_per_scan = s.slices_per_scan;
   options.times =

@@ -24,7 +24,17 @@ struct OusterSettings {
   std::string metadata;
   bool is_live = false;
   bool loop = false;
-  guint lidar_port = 7502;
+  std::string hostname;
+  bool reconnect = true;
+  guint lidar_port = 0;
+  guint imu_port = 0;
+  bool imu = true;
+  std::string udp_dest;
+  std::string lidar_mode;
+  std::string udp_profile_lidar;
+  std::string sensor_timestamp_mode;
+  std::string azimuth_window;
+  gdouble signal_multiplier = 0;
   std::string address;
   std::string multicast_group;
   std::string multicast_iface;
@@ -37,7 +47,9 @@ struct OusterSettings {
   gdouble min_range = 0;
   gdouble max_range = 0;
   std::string azimuth_sectors;
+  std::string mask_location;
   gint invalid = kInvalidZero;
+  bool destagger = false;
 
   /// UDP is always live; a file is when the user says so.
   bool live() const { return location.empty() || is_live; }
@@ -46,7 +58,7 @@ struct OusterSettings {
   std::string MetadataPath() const;
 };
 
-extern const std::array<Property<OusterSettings>, 18> kOusterProperties;
+extern const std::array<Property<OusterSettings>, 30> kOusterProperties;
 
 /// None and `error`, in words for a user, where a property makes no sense.
 std::optional<ouster::StreamOptions> ToStreamOptions(const OusterSettings& settings,

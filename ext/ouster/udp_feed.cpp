@@ -2,7 +2,9 @@
 #include "udp_feed.h"
 
 #include <poll.h>
+#include <sys/epoll.h>
 #include <sys/socket.h>
+#include <unistd.h>
 
 #include <cerrno>
 
@@ -35,10 +37,15 @@ std::string Explain(const GError& error, guint port) {
 
 }  // namespace
 
-UdpFeed::UdpFeed() = default;
-UdpFeed::~UdpFeed() { Close(); }
+UdpFeed::UdpFeed() : epoll_(epoll_create1(EPOLL_CLOEXEC)) {}
 
-UdpFeed::Opened UdpFeed::Open(const OusterSettings& settings, guint port) {
+UdpFeed::~UdpFeed() {
+  Close();
+  if (epoll_ >= 0) close(epoll_);
+}
+
+UdpFeed::SocketPtr UdpFeed::OpenOne(const OusterSettings& settings, guint port,
+                                    std::string* error) {
   const std::string& group = settings.multicast_group;
   UdpBind bind{settings.address, port, G_SOCKET_FAMILY_INVALID, !group.empty()};
   if (!group.empty())
@@ -48,28 +55,48 @@ UdpFeed::Opened UdpFeed::Open(const OusterSettings& settings, guint port) {
   SocketPtr socket(OpenUdpSocket(bind, &raw_error));
   if (socket && !group.empty())
     JoinMulticast(socket.get(), group, settings.multicast_iface, &raw_error);
-  const ErrorPtr error(raw_error);
-  if (error) return {false, 0, Explain(*error, port)};
-  const int fd = g_socket_get_fd(socket.get());
-  UdpBatchReceiver::Prepare(fd);
-  const guint granted = SetReceiveBuffer(fd, settings.buffer_size);
-  lidar_ = std::move(socket);
-  return {true, granted, {}};
+  const ErrorPtr problem(raw_error);
+  if (problem) {
+    *error = Explain(*problem, port);
+    return nullptr;
+  }
+  UdpBatchReceiver::Prepare(g_socket_get_fd(socket.get()));
+  return socket;
 }
 
-void UdpFeed::Close() { lidar_.reset(); }
+UdpFeed::Opened UdpFeed::Open(const OusterSettings& settings, const Ports& ports) {
+  Close();
+  Opened opened;
+  ports_ = ports;
+  lidar_ = OpenOne(settings, ports.lidar, &opened.error);
+  if (!lidar_) return opened;
+  if (ports.imu != 0 && ports.imu != ports.lidar)
+    imu_ = OpenOne(settings, ports.imu, &opened.imu_error);
+  opened.granted_buffer = SetReceiveBuffer(g_socket_get_fd(lidar_.get()), settings.buffer_size);
+  for (const SocketPtr* socket : {&lidar_, &imu_}) {
+    if (!*socket) continue;
+    epoll_event event{};
+    event.events = EPOLLIN;
+    event.data.fd = g_socket_get_fd(socket->get());
+    if (epoll_ctl(epoll_, EPOLL_CTL_ADD, event.data.fd, &event) != 0)
+      opened.error = std::string("Cannot wait for packets: ") + g_strerror(errno);
+  }
+  return opened;
+}
 
-guint UdpFeed::port() const {
-  if (!lidar_) return 0;
-  const std::unique_ptr<GSocketAddress, GObjectUnref> local(
-      g_socket_get_local_address(lidar_.get(), nullptr));
-  return local ? g_inet_socket_address_get_port(G_INET_SOCKET_ADDRESS(local.get())) : 0;
+bool UdpFeed::IsOpen(const Ports& ports) const {
+  return lidar_ && ports.lidar == ports_.lidar && ports.imu == ports_.imu;
+}
+
+void UdpFeed::Close() {
+  // Closing takes a socket out of the epoll set.
+  lidar_.reset();
+  imu_.reset();
 }
 
 UdpFeed::Outcome UdpFeed::Receive(gint64 timeout_ns,
                                   const std::function<void(const ReceivedDatagram&)>& consume) {
-  const int fd = g_socket_get_fd(lidar_.get());
-  switch (wake_.Wait(fd, POLLIN, timeout_ns)) {
+  switch (wake_.Wait(lidar_ ? epoll_ : -1, POLLIN, timeout_ns)) {
     case WakeFd::Outcome::kWoken:
       return Outcome::kWoken;
     case WakeFd::Outcome::kTimeout:
@@ -79,10 +106,13 @@ UdpFeed::Outcome UdpFeed::Receive(gint64 timeout_ns,
     case WakeFd::Outcome::kReady:
       break;
   }
-  const int n = batch_.Receive(fd, consume);
+  if (!lidar_) return Outcome::kTimeout;
+  const int n = batch_.Receive(g_socket_get_fd(lidar_.get()), consume);
   const bool transient =
       n < 0 && (errno == EAGAIN || errno == EWOULDBLOCK || errno == EINTR || errno == ECONNREFUSED);
-  return n >= 0 || transient ? Outcome::kPackets : Outcome::kError;
+  if (n < 0 && !transient) return Outcome::kError;
+  if (imu_) imu_batch_.Receive(g_socket_get_fd(imu_.get()), consume);
+  return Outcome::kPackets;
 }
 
 }  // namespace lidar::gst

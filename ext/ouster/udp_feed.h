@@ -21,19 +21,25 @@ class UdpFeed {
   UdpFeed(const UdpFeed&) = delete;
   UdpFeed& operator=(const UdpFeed&) = delete;
 
-  struct Opened {
-    bool ok = false;
-    guint granted_buffer = 0;  // bytes
-    std::string error;         // what to do about it, for a user
+  struct Ports {
+    guint lidar = 0;
+    guint imu = 0;  // 0: none
   };
-  /// Binds and joins; a port of 0 takes any free one.
-  Opened Open(const OusterSettings& settings, guint port);
+  struct Opened {
+    guint granted_buffer = 0;  // bytes
+    std::string error;         // for a user; empty: all is well
+    std::string imu_error;     // the lidar's socket alone is open
+  };
+  /// Binds and joins, in place of what was open before.
+  Opened Open(const OusterSettings& settings, const Ports& ports);
+  bool IsOpen(const Ports& ports) const;
   void Close();
   /// 0 while closed.
-  guint port() const;
+  guint port() const { return lidar_ ? ports_.lidar : 0; }
 
   enum class Outcome { kPackets, kTimeout, kWoken, kError };
-  /// Waits for datagrams and hands over what is there; their bytes are valid during the call.
+  /// Waits for datagrams, or for Wake() alone while closed, and hands over what is there; their
+  /// bytes are valid during the call.
   Outcome Receive(gint64 timeout_ns, const std::function<void(const ReceivedDatagram&)>& consume);
   /// Makes Receive() return kWoken until ClearWake().
   void Wake() { wake_.Wake(); }
@@ -44,8 +50,14 @@ class UdpFeed {
  private:
   using SocketPtr = std::unique_ptr<GSocket, GObjectUnref>;
 
+  static SocketPtr OpenOne(const OusterSettings& settings, guint port, std::string* error);
+
+  Ports ports_;
   SocketPtr lidar_;
+  SocketPtr imu_;
+  int epoll_;  // of both
   UdpBatchReceiver batch_;
+  UdpBatchReceiver imu_batch_;
   WakeFd wake_;
 };
 

@@ -148,7 +148,16 @@ std::optional<PointWriter> PointWriter::Create(const Metadata& metadata,
   w.max_range_mm_ = options.max_range_m > 0 ? ToMillimetres(options.max_range_m)
                                             : std::numeric_limits<std::uint32_t>::max();
   w.invalid_ = options.invalid;
-  w.mask_ = options.mask;
+  if (!options.mask_image.empty()) {
+    auto mask =
+        ParseMaskImage({options.mask_image.data(), options.mask_image.size()}, metadata, error);
+    if (!mask) return std::nullopt;
+    w.mask_ = *std::move(mask);
+  }
+  if (options.destagger)
+    for (const Beam& beam : metadata.model.beams)
+      w.shifts_.push_back(
+          static_cast<std::uint32_t>(beam.pixel_shift + static_cast<int>(w.columns_)));
   if (!options.sectors.empty()) w.MaskSectors(options.sectors);
   return w;
 }
@@ -218,25 +227,32 @@ void PointWriter::WriteExtras(const PacketColumn& column, const Target& target, 
 void PointWriter::WriteColumn(const PacketColumn& column, const Target& target) const {
   const std::uint32_t m = column.measurement_id;
   const std::size_t row = std::size_t{target.width} * point_step_;
-  std::uint8_t* point = target.points + std::size_t{m - target.first_column} * point_step_;
-  const std::uint8_t* pixel = column.pixels;
-  for (std::uint32_t beam = 0; beam < format_.beams; ++beam, point += row, pixel += pixel_size_) {
-    const std::uint32_t range = range_->Read(pixel);
-    if (Keeps(beam, m, range)) {
-      const std::array<float, 3> xyz = projection_->Point(beam, m, range);
-      std::memcpy(point, xyz.data(), sizeof xyz);
-      Store(point + kIntensityOffset, static_cast<float>(intensity_->Read(pixel)));
-      Store(point + kRangeOffset, range);
-    }
-    if (range2_) {
-      const std::uint32_t second = range2_->Read(pixel);
-      if (Keeps(beam, m, second)) {
-        Store(point + kRange2Offset, second);
-        Store(point + kIntensity2Offset, static_cast<float>(intensity2_->Read(pixel)));
-      }
-    }
-    if (!extras_.empty()) WriteExtras(column, target, beam, point);
+  const std::uint32_t at = m - target.first_column;
+  for (std::uint32_t beam = 0; beam < format_.beams; ++beam) {
+    const std::uint32_t to = shifts_.empty() ? at : (at + shifts_[beam]) % target.width;
+    WritePixel(column, target, beam, target.points + beam * row + std::size_t{to} * point_step_);
   }
+}
+
+void PointWriter::WritePixel(const PacketColumn& column, const Target& target, std::uint32_t beam,
+                             std::uint8_t* point) const {
+  const std::uint32_t m = column.measurement_id;
+  const std::uint8_t* pixel = column.pixels + std::size_t{beam} * pixel_size_;
+  const std::uint32_t range = range_->Read(pixel);
+  if (Keeps(beam, m, range)) {
+    const std::array<float, 3> xyz = projection_->Point(beam, m, range);
+    std::memcpy(point, xyz.data(), sizeof xyz);
+    Store(point + kIntensityOffset, static_cast<float>(intensity_->Read(pixel)));
+    Store(point + kRangeOffset, range);
+  }
+  if (range2_) {
+    const std::uint32_t second = range2_->Read(pixel);
+    if (Keeps(beam, m, second)) {
+      Store(point + kRange2Offset, second);
+      Store(point + kIntensity2Offset, static_cast<float>(intensity2_->Read(pixel)));
+    }
+  }
+  if (!extras_.empty()) WriteExtras(column, target, beam, point);
 }
 
 void PointWriter::FillMissing(std::vector<std::uint8_t>* points) const {

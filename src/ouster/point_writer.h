@@ -11,6 +11,7 @@
 #include "cloud/point_fields.h"
 #include "cloud/range_projection.h"
 #include "ouster/lidar_packet.h"
+#include "ouster/mask_image.h"
 #include "ouster/metadata.h"
 #include "ouster/pixel_projection.h"
 
@@ -26,17 +27,15 @@ struct Sector {
   double last_deg = 360;
 };
 
-/// Keeps a pixel where its byte is not zero; beams x columns_per_scan, row-major. Empty: keep all.
-using PixelMask = std::vector<std::uint8_t>;
-
 struct PointOptions {
   Return returns = Return::kStrongest;
   std::vector<std::string> channels;  // as ParseChannels gives them
   double min_range_m = 0;
-  double max_range_m = 0;       // 0: no limit
-  std::vector<Sector> sectors;  // empty: all
-  PixelMask mask;
+  double max_range_m = 0;                // 0: no limit
+  std::vector<Sector> sectors;           // empty: all
+  std::vector<std::uint8_t> mask_image;  // a file for ParseMaskImage; empty: keep all
   Invalid invalid = Invalid::kZero;
+  bool destagger = false;  // only for slices of a whole scan
 };
 
 /// Reads "reflectivity, ring": None and `error` for a name that is no channel. Doubled names count
@@ -81,6 +80,8 @@ class PointWriter {
   bool AddExtra(const std::string& name, bool second);
   void MaskSectors(const std::vector<Sector>& sectors);
   bool Keeps(std::uint32_t beam, std::uint32_t column, std::uint32_t range_mm) const;
+  void WritePixel(const PacketColumn& column, const Target& target, std::uint32_t beam,
+                  std::uint8_t* point) const;
   void WriteExtras(const PacketColumn& column, const Target& target, std::uint32_t beam,
                    std::uint8_t* point) const;
 
@@ -97,7 +98,8 @@ class PointWriter {
   std::vector<Extra> extras_;
   std::uint32_t min_range_mm_ = 0;
   std::uint32_t max_range_mm_ = 0;
-  PixelMask mask_;  // sectors included
+  PixelMask mask_;                     // sectors included; empty: keep all
+  std::vector<std::uint32_t> shifts_;  // columns to the right, a beam; empty: none
   Invalid invalid_ = Invalid::kZero;
 };
 

@@ -24,7 +24,9 @@ std::unique_ptr<SensorStream> SensorStream::Create(Metadata metadata, const Stre
                                                    std::string* error) {
   auto writer = PointWriter::Create(metadata, options.points, error);
   if (!writer) return nullptr;
-  const std::uint32_t slices = SlicesPerScan(options.slices_per_scan, metadata.shape());
+  // Destaggering moves points across the edges of slices.
+  const std::uint32_t slices =
+      options.points.destagger ? 1 : SlicesPerScan(options.slices_per_scan, metadata.shape());
   return std::unique_ptr<SensorStream>(
       new SensorStream(std::move(metadata), *std::move(writer), options, slices));
 }
@@ -92,14 +94,17 @@ PacketVerdict SensorStream::Push(ByteView payload, const Arrival& arrival) {
     ++stats_.foreign;
     return PacketVerdict::kForeign;
   }
-  if (!any_init_id_ && metadata_.init_id != 0 && header.init_id != 0 &&
-      header.init_id != metadata_.init_id)
+  if (metadata_.init_id != 0 && header.init_id != 0 && header.init_id != metadata_.init_id) {
+    refused_init_id_ = header.init_id;
     return PacketVerdict::kNewInitId;
+  }
   ObserveClocks(*packet, arrival);
   batcher_.Push(*packet, arrival.local);
   CollectSlices();
   return PacketVerdict::kLidar;
 }
+
+Time SensorStream::LocalOf(std::uint64_t sensor_ns) const { return local_.Map(sensor_ns); }
 
 Time SensorStream::UtcOf(std::uint64_t sensor_ns) const {
   if (synchronised_) return Time(Duration(static_cast<std::int64_t>(sensor_ns)) + *sensor_to_utc_);

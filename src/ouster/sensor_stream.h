@@ -61,18 +61,25 @@ class SensorStream {
                                               std::string* error);
 
   /// The first three verdicts that are no error need no action; on kNewInitId the packet was left
-  /// out: refresh the metadata, or Accept() what the sensor now sends.
+  /// out: refresh the metadata, or AcceptNewInitId() and push it again.
   PacketVerdict Push(ByteView payload, const Arrival& arrival);
-  /// From now on packets of any init id are taken, each new one as a restart.
-  void AcceptAnyInitId() { any_init_id_ = true; }
+  /// After kNewInitId: packets like that one are taken from now on, as of a sensor that restarted.
+  void AcceptNewInitId() { metadata_.init_id = refused_init_id_; }
   std::optional<TimedSlice> Pop();
   /// Makes the slices that are not complete ready. The next packet may be of any scan.
   void Flush();
   /// Flush(), and the next packet may be of any time.
   void Restart();
-  /// Where this scan counter goes on from: for the stream that follows a reconfiguration.
-  void StartScansAt(std::uint32_t scan_id) { first_scan_id_ = scan_id; }
-  std::uint32_t next_scan_id() const { return next_scan_id_; }
+  /// Goes on where the stream before a reconfiguration ended.
+  void Continue(const SensorStream& before) {
+    first_scan_id_ = before.next_scan_id_;
+    last_local_ = before.last_local_;
+  }
+  /// True once there are clocks to map by.
+  bool knows_time() const { return batcher_.stats().packets > 0; }
+  Time LocalOf(std::uint64_t sensor_ns) const;
+  Time UtcOf(std::uint64_t sensor_ns) const;
+  const StreamOptions& options() const { return options_; }
 
   const Metadata& metadata() const { return metadata_; }
   const PointWriter& writer() const { return writer_; }
@@ -86,7 +93,6 @@ class SensorStream {
   SensorStream(Metadata metadata, PointWriter writer, const StreamOptions& options,
                std::uint32_t slices_per_scan);
   void ObserveClocks(const LidarPacket& packet, const Arrival& arrival);
-  Time UtcOf(std::uint64_t sensor_ns) const;
   void CollectSlices();
 
   Metadata metadata_;
@@ -98,7 +104,7 @@ class SensorStream {
   ClockMapper utc_;
   std::optional<Duration> sensor_to_utc_;  // where the sensor claims to be synchronised
   bool synchronised_ = false;
-  bool any_init_id_ = false;
+  std::uint32_t refused_init_id_ = 0;
   std::optional<Time> last_local_;
   std::deque<TimedSlice> ready_;
   std::uint32_t first_scan_id_ = 0;

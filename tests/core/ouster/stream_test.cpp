@@ -148,7 +148,7 @@ TEST_F(Stream, PacketsThatDoNotFitAreCountedAndLeftOut) {
   EXPECT_EQ(stream->Push({packet.data(), 48}, now), PacketVerdict::kImu);
   packet[kStandardHeader.init_id] ^= 1;
   EXPECT_EQ(stream->Push({packet.data(), packet.size()}, now), PacketVerdict::kNewInitId);
-  stream->AcceptAnyInitId();
+  stream->AcceptNewInitId();
   EXPECT_EQ(stream->Push({packet.data(), packet.size()}, now), PacketVerdict::kLidar);
   packet[kStandardHeader.serial] ^= 1;
   EXPECT_EQ(stream->Push({packet.data(), packet.size()}, now), PacketVerdict::kForeign);

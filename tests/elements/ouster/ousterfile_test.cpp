@@ -197,6 +197,83 @@ TEST(OusterFile, FiltersByRangeAndAzimuth) {
   EXPECT_GT(kept, 1000U);
 }
 
+TEST(OusterFile, DestaggersWholeScans) {
+  const std::string scan = "slices-per-scan=1 channels=ring,t ";
+  const Harness plain = FromFile(kThreeScans, kThreeScansMetadata, scan.c_str());
+  const Harness shifted =
+      FromFile(kThreeScans, kThreeScansMetadata, "channels=ring,t destagger=true");
+  const BufferPtr a(gst_harness_pull(plain.get()));
+  const BufferPtr b(gst_harness_pull(shifted.get()));
+  const CapsPtr caps(gst_pad_get_current_caps(shifted->sinkpad));
+  const auto info = CloudInfo::FromCaps(caps.get());
+  ASSERT_TRUE(info);
+  EXPECT_EQ(info->width, 1024U);
+  EXPECT_FALSE(info->sensor_model);
+  const ouster::Metadata metadata = LoadMetadata(kThreeScansMetadata);
+  const BufferMap from(a.get(), GST_MAP_READ);
+  const BufferMap to(b.get(), GST_MAP_READ);
+  ASSERT_EQ(from.size(), to.size());
+  const std::size_t step = info->point_step;
+  for (std::size_t beam = 0; beam < 128; ++beam) {
+    const auto shift = static_cast<std::size_t>(metadata.model.beams[beam].pixel_shift + 1024);
+    for (std::size_t column = 0; column < 1024; ++column)
+      ASSERT_EQ(std::memcmp(from.data() + (beam * 1024 + column) * step,
+                            to.data() + (beam * 1024 + (column + shift) % 1024) * step, step),
+                0);
+  }
+}
+
+TEST(OusterFile, KeepsThePixelsThatAMaskKeeps) {
+  const std::string path = ::testing::TempDir() + "ouster_mask.pgm";
+  {
+    std::ofstream mask(path, std::ios::binary);
+    mask << "P5\n# the upper half\n1024 128\n255\n";
+    mask << std::string(std::size_t{64} * 1024, '\xff')
+         << std::string(std::size_t{64} * 1024, '\0');
+  }
+  const Harness h = FromFile(kThreeScans, kThreeScansMetadata,
+                             ("slices-per-scan=1 mask-location=" + path).c_str());
+  const BufferPtr buffer(gst_harness_pull(h.get()));
+  const BufferMap map(buffer.get(), GST_MAP_READ);
+  std::array<guint, 2> returns{};
+  for (gsize i = 0; i < map.size() / 20; ++i) {
+    std::uint32_t range = 0;
+    std::memcpy(&range, map.data() + i * 20 + 16, sizeof range);
+    if (range != 0) ++returns[i / (64 * 1024)];
+  }
+  EXPECT_GT(returns[0], 1000U);
+  EXPECT_EQ(returns[1], 0U);
+  std::remove(path.c_str());
+}
+
+TEST(OusterFile, GivesImuSamplesOnAPadOfTheirOwn) {
+  const std::string path = ::testing::TempDir() + "ouster_imu.bin";
+  EXPECT_EQ(RunToEnd("ouster_src name=s location=" + DataPath(kThreeScans) +
+                     " metadata=" + DataPath(kThreeScansMetadata) +
+                     " ! fakesink sync=false async=false  s.imu ! application/x-imu ! filesink "
+                     "async=false location=" +
+                     path),
+            "");
+  std::ifstream in(path, std::ios::binary);
+  const std::string bytes{std::istreambuf_iterator<char>(in), {}};
+  ASSERT_EQ(bytes.size() % 32, 0U);
+  ASSERT_GE(bytes.size() / 32, 28U);
+  std::uint64_t last = 0;
+  for (std::size_t at = 0; at < bytes.size(); at += 32) {
+    std::uint64_t t = 0;
+    std::array<float, 6> v{};
+    std::memcpy(&t, bytes.data() + at, sizeof t);
+    std::memcpy(v.data(), bytes.data() + at + 8, sizeof v);
+    if (last != 0) {
+      EXPECT_NEAR(static_cast<double>(t - last), 10e6, 1e6);
+    }
+    last = t;
+    // Gravity, and what the car adds to it.
+    EXPECT_NEAR(std::sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]), 9.81F, 4.0F);
+  }
+  std::remove(path.c_str());
+}
+
 struct BadInput {
   const char* properties;  // @ stands for the folder of the data
   const char* error;       // part of the message
@@ -212,7 +289,7 @@ TEST_P(OusterBadInput, IsAClearError) {
 INSTANTIATE_TEST_SUITE_P(
     All, OusterBadInput,
     ::testing::Values(
-        BadInput{"", "metadata is not set"},
+        BadInput{"", "None of hostname"},
         BadInput{"location=/nowhere.pcap metadata=@crc_test.json", "No such file"},
         BadInput{"location=@crc_test.pcap metadata=/nowhere.json", "Cannot read the metadata"},
         BadInput{"location=@README.md metadata=@crc_test.json", "unknown file format"},
@@ -227,6 +304,9 @@ INSTANTIATE_TEST_SUITE_P(
         BadInput{"location=@crc_test.pcap channels=signal", "has no channel signal"},
         BadInput{"location=@crc_test.pcap channels=colour", "there is no channel"},
         BadInput{"location=@crc_test.pcap azimuth-sectors=left", "azimuth-sectors"},
+        BadInput{"location=@crc_test.pcap mask-location=@README.md", "no binary PGM"},
+        BadInput{"location=@crc_test.pcap mask-location=/nowhere.pgm", "Cannot read the mask"},
+        BadInput{"hostname=\"bad host/x?y\"", "is no name or address"},
         BadInput{"location=@crc_test.pcap min-range=9 max-range=3", "max-range"}));
 
 TEST(OusterBadCapture, ATruncatedFileGivesWhatItHasAndWarns) {

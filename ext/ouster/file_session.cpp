@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "file_session.h"
+
+#include "common/refs.h"
+
+namespace lidar::gst {
+
+bool FileSession::Open() {
+  auto metadata = LoadMetadata();
+  if (!metadata || !SetMetadata(*std::move(metadata))) return false;
+  std::string why;
+  const std::string& path = settings().location;
+  pcap_ = PcapFeed::Open(path, stream()->metadata(), settings().loop, &why);
+  if (pcap_) return true;
+  GST_ELEMENT_ERROR(element(), RESOURCE, OPEN_READ,
+                    ("Cannot read the capture %s: %s", path.c_str(), why.c_str()), (nullptr));
+  return false;
+}
+
+void FileSession::Unlock() {
+  std::lock_guard lock(wait_mutex_);
+  flushing_ = true;
+  if (wait_ != nullptr) gst_clock_id_unschedule(wait_);
+}
+
+void FileSession::UnlockStop() {
+  std::lock_guard lock(wait_mutex_);
+  flushing_ = false;
+}
+
+/// Waits for the pipeline's clock; false when it was woken to stop.
+bool FileSession::WaitUntil(GstClockTime running_time) {
+  const std::unique_ptr<GstClock, Unref> clock(gst_element_get_clock(gst_element()));
+  if (!clock) return true;
+  const GstClockTime base_time = gst_element_get_base_time(gst_element());
+  std::unique_lock lock(wait_mutex_);
+  if (flushing_) return false;
+  GstClockID id = gst_clock_new_single_shot_id(clock.get(), base_time + running_time);
+  wait_ = id;
+  lock.unlock();
+  const GstClockReturn outcome = gst_clock_id_wait(id, nullptr);
+  lock.lock();
+  wait_ = nullptr;
+  gst_clock_id_unref(id);
+  return outcome != GST_CLOCK_UNSCHEDULED;
+}
+
+GstFlowReturn FileSession::EndOfCapture() {
+  const char* path = settings().location.c_str();
+  constexpr const char* kRemedy =
+      "set the property metadata to the file that was saved with the capture";
+  if (!pcap_->found_lidar_packets()) {
+    GST_ELEMENT_ERROR(element(), STREAM, WRONG_TYPE,
+                      ("%s is no capture of the sensor in the metadata: %s", path,
+                       pcap_->DescribeContents().c_str()),
+                      ("%s", kRemedy));
+    return GST_FLOW_ERROR;
+  }
+  if (stream()->batcher().stats().packets == 0) {
+    GST_ELEMENT_ERROR(element(), STREAM, WRONG_TYPE,
+                      ("%s holds packets of another sensor than the metadata's (serial number %s)",
+                       path, stream()->metadata().serial_text.c_str()),
+                      ("%s", kRemedy));
+    return GST_FLOW_ERROR;
+  }
+  if (!pcap_->error().empty())
+    GST_ELEMENT_WARNING(element(), STREAM, DECODE, ("%s is cut short", path),
+                        ("%s", pcap_->error().c_str()));
+  stream()->Flush();
+  End();
+  UpdateCounters();
+  return GST_FLOW_OK;
+}
+
+GstFlowReturn FileSession::Poll() {
+  const auto packet = pcap_->Next();
+  if (!packet) return EndOfCapture();
+  ouster::Arrival arrival{Time(packet->due), packet->captured};
+  if (settings().is_live) {
+    if (!GST_CLOCK_TIME_IS_VALID(pace_start_)) {
+      pace_start_ = RunningTime();
+      pace_start_utc_ = UtcNow();
+    }
+    const auto due = static_cast<GstClockTime>(packet->due.count());
+    if (!WaitUntil(pace_start_ + due)) return GST_FLOW_FLUSHING;
+    arrival = {ToTime(pace_start_) + packet->due, pace_start_utc_ + packet->due};
+  }
+  if (packet->starts_over) stream()->Restart();
+  const ByteView payload{packet->payload.data(), packet->payload.size()};
+  if (Push(payload, arrival) != ouster::PacketVerdict::kNewInitId) return GST_FLOW_OK;
+  if (!restart_reported_)
+    GST_ELEMENT_WARNING(element(), STREAM, WRONG_TYPE,
+                        ("The sensor was restarted or reconfigured between its metadata and its "
+                         "packets"),
+                        ("points are right as long as its mode and profile are the same"));
+  restart_reported_ = true;
+  stream()->AcceptNewInitId();
+  Push(payload, arrival);
+  return GST_FLOW_OK;
+}
+
+}  // namespace lidar::gst

@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// A session on a capture file, as fast as it goes or at the pace of the capture.
+#pragma once
+#include <memory>
+#include <mutex>
+
+#include "pcap_feed.h"
+#include "session.h"
+
+namespace lidar::gst {
+
+class FileSession : public Session {
+ public:
+  FileSession(GstBaseSrc* element, const OusterSettings& settings) : Session(element, settings) {}
+
+  bool Open() override;
+  void Unlock() override;
+  void UnlockStop() override;
+
+ protected:
+  GstFlowReturn Poll() override;
+
+ private:
+  bool WaitUntil(GstClockTime running_time);
+  GstFlowReturn EndOfCapture();
+
+  std::unique_ptr<PcapFeed> pcap_;
+  bool restart_reported_ = false;
+  GstClockTime pace_start_ = GST_CLOCK_TIME_NONE;  // running time of the capture's first packet
+  Time pace_start_utc_{};
+
+  std::mutex wait_mutex_;  // guards all below
+  GstClockID wait_ = nullptr;
+  bool flushing_ = false;
+};
+
+}  // namespace lidar::gst

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Asks one sensor things over HTTP, within bounds.
+#pragma once
+#include <atomic>
+#include <memory>
+#include <optional>
+#include <string>
+
+namespace lidar::gst {
+
+struct HttpResponse {
+  bool ok = false;  // a 2xx answer came whole
+  long status = 0;  // 0: no answer
+  std::string body;
+  std::string error;  // for a user, where not ok
+};
+
+/// Talks to its sensor only: no redirects, no proxies, http and https alone; answers are bounded in
+/// size and time. Used by one thread, except Cancel().
+class HttpClient {
+ public:
+  /// None and `error` unless `host` is a name or address, with an optional port and scheme:
+  /// "os1.local", "[fe80::1%25eth0]", "192.0.2.7:8080", "https://os1.local".
+  static std::unique_ptr<HttpClient> Create(const std::string& host, std::string* error);
+  ~HttpClient();
+  HttpClient(const HttpClient&) = delete;
+  HttpClient& operator=(const HttpClient&) = delete;
+
+  /// `path` follows "/api/v1/".
+  HttpResponse Get(const std::string& path) { return Perform(path, nullptr); }
+  HttpResponse Post(const std::string& path, const std::string& json) {
+    return Perform(path, &json);
+  }
+  std::string Escape(const std::string& text);
+  /// Ends the request under way, and every later one at once.
+  void Cancel() { cancelled_ = true; }
+
+ private:
+  explicit HttpClient(std::string base_url);
+  HttpResponse Perform(const std::string& path, const std::string* json);
+
+  std::string base_url_;
+  void* curl_;  // CURL*
+  std::atomic<bool> cancelled_{false};
+};
+
+}  // namespace lidar::gst

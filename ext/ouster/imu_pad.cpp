@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "imu_pad.h"
+
+#include <algorithm>
+
+#include "base/byte_writer.h"
+#include "common/gstlidar.h"
+#include "common/refs.h"
+#include "ouster/imu_packet.h"
+
+namespace lidar::gst {
+namespace {
+
+constexpr gint kSampleSize = 32;
+constexpr const char* kFields =
+    "t:U64:0,ax:F32:8,ay:F32:12,az:F32:16,gx:F32:20,gy:F32:24,gz:F32:28";
+
+GstClockTime ToClockTime(Time time) {
+  const auto ns = time.time_since_epoch().count();
+  return ns > 0 ? static_cast<GstClockTime>(ns) : 0;
+}
+
+GstCaps* MakeCaps(const ouster::Metadata& metadata) {
+  GstCaps* caps = gst_caps_new_simple(GST_LIDAR_IMU_MEDIA_TYPE, "sample-size", G_TYPE_INT,
+                                      kSampleSize, "fields", G_TYPE_STRING, kFields, nullptr);
+  GValue list = G_VALUE_INIT;
+  gst_value_array_init(&list, 16);
+  for (const double v : metadata.imu_to_sensor) {
+    GValue value = G_VALUE_INIT;
+    g_value_init(&value, G_TYPE_DOUBLE);
+    g_value_set_double(&value, v);
+    gst_value_array_append_and_take_value(&list, &value);
+  }
+  gst_caps_set_value(caps, "imu-to-sensor", &list);
+  g_value_unset(&list);
+  return caps;
+}
+
+}  // namespace
+
+ImuPad::~ImuPad() {
+  if (pad_ == nullptr) return;
+  gst_pad_set_active(pad_, FALSE);
+  gst_element_remove_pad(element_, pad_);
+}
+
+void ImuPad::AddPad(const ouster::Metadata& metadata) {
+  GstPadTemplate* pad_template =
+      gst_element_class_get_pad_template(GST_ELEMENT_GET_CLASS(element_), "imu");
+  pad_ = gst_pad_new_from_template(pad_template, "imu");
+  gst_pad_use_fixed_caps(pad_);
+  gst_pad_set_active(pad_, TRUE);
+  const StringPtr id(gst_pad_create_stream_id(pad_, element_, "imu"));
+  gst_pad_push_event(pad_, gst_event_new_stream_start(id.get()));
+  const CapsPtr caps(MakeCaps(metadata));
+  gst_pad_push_event(pad_, gst_event_new_caps(caps.get()));
+  GstSegment segment;
+  gst_segment_init(&segment, GST_FORMAT_TIME);
+  gst_pad_push_event(pad_, gst_event_new_segment(&segment));
+  gst_element_add_pad(element_, pad_);
+}
+
+void ImuPad::Push(ByteView packet, const ouster::SensorStream& stream) {
+  const auto samples = ouster::ParseImuPacket(packet, stream.metadata());
+  if (!samples || samples->empty()) return;
+  if (pad_ == nullptr) AddPad(stream.metadata());
+  std::vector<std::uint8_t> bytes;
+  bytes.reserve(samples->size() * kSampleSize);
+  ByteWriter w(&bytes);
+  for (const ouster::ImuSample& s : *samples) {
+    w.Le64(ToClockTime(stream.UtcOf(s.timestamp)));
+    for (const float v : s.acceleration) w.LeF32(v);
+    for (const float v : s.angular_velocity) w.LeF32(v);
+  }
+  GstBuffer* buffer = gst_buffer_new_memdup(bytes.data(), bytes.size());
+  last_pts_ = std::max(last_pts_, ToClockTime(stream.LocalOf(samples->front().timestamp)));
+  GST_BUFFER_PTS(buffer) = last_pts_;
+  gst_lidar_buffer_set_capture_time(buffer, ToClockTime(stream.UtcOf(samples->front().timestamp)));
+  const GstFlowReturn flow = gst_pad_push(pad_, buffer);
+  if (flow != GST_FLOW_OK)
+    GST_LOG_OBJECT(pad_, "a packet was not taken: %s", gst_flow_get_name(flow));
+}
+
+void ImuPad::End() {
+  if (pad_ != nullptr) gst_pad_push_event(pad_, gst_event_new_eos());
+}
+
+}  // namespace lidar::gst

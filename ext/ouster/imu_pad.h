@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// The sometimes pad `imu`: what a sensor's inertial measurement unit says.
+#pragma once
+#include <gst/gst.h>
+
+#include "ouster/sensor_stream.h"
+
+namespace lidar::gst {
+
+#define GST_LIDAR_IMU_MEDIA_TYPE "application/x-imu"
+
+/// A buffer holds one packet's samples, each the capture time [ns since the Unix epoch, U64],
+/// acceleration [m/s^2, 3 x F32] and angular velocity [rad/s, 3 x F32] in the IMU's frame,
+/// little-endian.
+class ImuPad {
+ public:
+  explicit ImuPad(GstElement* element) : element_(element) {}
+  ~ImuPad();
+  ImuPad(const ImuPad&) = delete;
+  ImuPad& operator=(const ImuPad&) = delete;
+
+  /// Adds the pad with the first packet. An unlinked or flushing pad is no error.
+  void Push(ByteView packet, const ouster::SensorStream& stream);
+  void End();
+
+ private:
+  void AddPad(const ouster::Metadata& metadata);
+
+  GstElement* element_;
+  GstPad* pad_ = nullptr;  // owned by the element
+  GstClockTime last_pts_ = 0;
+};
+
+}  // namespace lidar::gst

@@ -1,0 +1,259 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "live_session.h"
+
+#include <cerrno>
+#include <utility>
+
+namespace lidar::gst {
+namespace {
+
+constexpr guint kDefaultLidarPort = 7502;
+constexpr guint kDefaultImuPort = 7503;
+constexpr gint64 kSilenceUs = 1'000'000;        // a sensor that says nothing that long is away
+constexpr gint64 kFirstSilenceUs = 3'000'000;   // before its first packet
+constexpr gint64 kCheckNs = 250 * GST_MSECOND;  // how often the silence is looked at
+constexpr gint64 kQuestionIntervalUs = 1'000'000;
+constexpr gint64 kWaitForMetadataUs = 5'000'000;  // of a sensor with a new init id
+constexpr guint kWrongSizesForQuestion = 4;
+
+}  // namespace
+
+LiveSession::LiveSession(GstBaseSrc* element, const OusterSettings& settings)
+    : Session(element, settings) {}
+
+LiveSession::~LiveSession() = default;
+
+bool LiveSession::Open() {
+  if (settings().hostname.empty() || !settings().metadata.empty()) {
+    auto metadata = LoadMetadata();
+    if (!metadata || !SetMetadata(*std::move(metadata)) || !OpenSockets(stream()->metadata()))
+      return false;
+    // Metadata from a file has no doubt of its own: the first packets tell.
+    last_packet_us_ = g_get_monotonic_time();
+  }
+  if (settings().hostname.empty()) return true;
+  std::string why;
+  link_ = SensorLink::Create(
+      settings(), [this] { udp_.Wake(); }, &why);
+  if (!link_) {
+    GST_ELEMENT_ERROR(element(), RESOURCE, SETTINGS, ("%s", why.c_str()), (nullptr));
+    return false;
+  }
+  link_->Request();
+  return true;
+}
+
+bool LiveSession::OpenSockets(const ouster::Metadata& metadata) {
+  const OusterSettings& s = settings();
+  const auto choose = [](guint wanted, guint has, guint otherwise) {
+    return wanted != 0 ? wanted : has != 0 ? has : otherwise;
+  };
+  const UdpFeed::Ports ports{choose(s.lidar_port, metadata.lidar_port, kDefaultLidarPort),
+                             s.imu && metadata.imu_profile != ouster::ImuProfile::kOff
+                                 ? choose(s.imu_port, metadata.imu_port, kDefaultImuPort)
+                                 : 0};
+  if (udp_.IsOpen(ports)) return true;
+  const auto opened = udp_.Open(s, ports);
+  if (!opened.error.empty()) {
+    GST_ELEMENT_ERROR(element(), RESOURCE, OPEN_READ, ("%s", opened.error.c_str()), (nullptr));
+    return false;
+  }
+  if (!opened.imu_error.empty())
+    GST_ELEMENT_WARNING(element(), RESOURCE, OPEN_READ, ("%s", opened.imu_error.c_str()),
+                        ("going on without IMU; imu=false turns this off"));
+  receive_buffer_ = opened.granted_buffer;
+  if (opened.granted_buffer < s.buffer_size)
+    GST_ELEMENT_WARNING(
+        element(), RESOURCE, SETTINGS,
+        ("The kernel granted a receive buffer of %u bytes instead of %u: packets may be lost",
+         opened.granted_buffer, s.buffer_size),
+        ("raise it with: sysctl -w net.core.rmem_max=%u", s.buffer_size));
+  return true;
+}
+
+void LiveSession::Unlock() {
+  flushing_ = true;
+  udp_.Wake();
+}
+
+void LiveSession::UnlockStop() {
+  flushing_ = false;
+  udp_.ClearWake();
+}
+
+void LiveSession::AddCounters(Counters* counters) const {
+  counters->kernel_drops = udp_.kernel_drops();
+  counters->receive_buffer = receive_buffer_;
+  counters->reconnects = reconnects_;
+}
+
+void LiveSession::SetConnected(bool connected, const std::string& reason) {
+  if (connected == connected_ && (connected || lost_once_)) return;
+  connected_ = connected;
+  if (connected && lost_once_) ++reconnects_;
+  lost_once_ = lost_once_ || !connected;
+  if (connected) silence_reported_ = false;
+  gst_element_post_message(
+      gst_element(),
+      gst_message_new_element(
+          GST_OBJECT(element()),
+          gst_structure_new("ouster-connection-changed", "connected", G_TYPE_BOOLEAN, connected,
+                            "reason", G_TYPE_STRING, reason.c_str(), nullptr)));
+}
+
+void LiveSession::Ask() {
+  const gint64 now = g_get_monotonic_time();
+  if (!link_ || link_->busy() || now - last_question_us_ < kQuestionIntervalUs) return;
+  last_question_us_ = now;
+  link_->Request();
+}
+
+/// False after an error was posted.
+bool LiveSession::HandleAnswer(SensorLink::Result result) {
+  if (result.metadata) {
+    destination_ = result.destination;
+    return TakeMetadata(*std::move(result.metadata));
+  }
+  const std::string& why = result.error.text;
+  if (result.error.permanent || !settings().reconnect) {
+    GST_ELEMENT_ERROR(
+        element(), RESOURCE, OPEN_READ,
+        ("Cannot talk to the sensor %s: %s", settings().hostname.c_str(), why.c_str()),
+        ("is it powered, and is its name or address right?"));
+    return false;
+  }
+  // Packets count for more than the API: they may well go on while that is down.
+  if (!connected_) SetConnected(false, why);
+  return true;
+}
+
+bool LiveSession::TakeMetadata(ouster::Metadata metadata) {
+  const bool first = stream() == nullptr;
+  const bool new_geometry = first || !SameGeometry(stream()->metadata(), metadata);
+  const bool new_start = first || metadata.init_id != stream()->metadata().init_id;
+  if (!first && !new_geometry && !new_start) return true;
+  const guint init_id = metadata.init_id;
+  const std::string serial = metadata.serial_text;
+  if (!OpenSockets(metadata) || !SetMetadata(std::move(metadata))) return false;
+  new_init_id_us_ = 0;
+  wrong_sizes_in_a_row_ = 0;
+  size_reported_ = false;
+  if (first) last_packet_us_ = g_get_monotonic_time();
+  gst_element_post_message(
+      gst_element(),
+      gst_message_new_element(
+          GST_OBJECT(element()),
+          gst_structure_new("ouster-metadata-changed", "geometry-changed", G_TYPE_BOOLEAN,
+                            new_geometry, "init-id", G_TYPE_UINT, init_id, "serial", G_TYPE_STRING,
+                            serial.c_str(), nullptr)));
+  return true;
+}
+
+/// The sensor restarted or was reconfigured. Its packets wait for its metadata, where that can be
+/// had; otherwise they are taken as they are.
+void LiveSession::HandleNewInitId(ByteView payload, const ouster::Arrival& arrival) {
+  const gint64 now = g_get_monotonic_time();
+  if (new_init_id_us_ == 0) new_init_id_us_ = now;
+  if (link_ && now - new_init_id_us_ < kWaitForMetadataUs) return Ask();
+  new_init_id_us_ = 0;
+  GST_ELEMENT_WARNING(element(), STREAM, WRONG_TYPE,
+                      ("The sensor restarted or was reconfigured since its metadata was read"),
+                      ("points are right as long as its mode and profile are the same"));
+  stream()->AcceptNewInitId();
+  Push(payload, arrival);
+}
+
+void LiveSession::HandleWrongSize(gsize size) {
+  if (++wrong_sizes_in_a_row_ < kWrongSizesForQuestion) return;
+  Ask();
+  if (size_reported_ || link_) return;
+  size_reported_ = true;
+  const ouster::Metadata& m = stream()->metadata();
+  GST_ELEMENT_WARNING(
+      element(), STREAM, WRONG_TYPE,
+      ("Packets of %" G_GSIZE_FORMAT " bytes come where the metadata asks for %" G_GSIZE_FORMAT,
+       size, m.format.packet_size()),
+      ("is it the metadata of this sensor (%s, %s), and of the profile and mode it is in now?",
+       m.serial_text.c_str(), std::string(ToString(m.format.profile)).c_str()));
+}
+
+void LiveSession::HandlePacket(const ReceivedDatagram& d, Time now, Time utc_now) {
+  if (stream() == nullptr) return;
+  const Time utc = GST_CLOCK_TIME_IS_VALID(d.arrival) ? ToTime(d.arrival) : utc_now;
+  const ouster::Arrival arrival{now + (utc - utc_now), utc};
+  // What came before the pipeline ran has no time in it.
+  if (arrival.local < Time{}) return;
+  const ByteView payload{d.data, d.size};
+  switch (Push(payload, arrival)) {
+    case ouster::PacketVerdict::kLidar:
+      last_packet_us_ = g_get_monotonic_time();
+      wrong_sizes_in_a_row_ = 0;
+      if (!connected_) SetConnected(true, "packets arrive");
+      break;
+    case ouster::PacketVerdict::kNewInitId:
+      last_packet_us_ = g_get_monotonic_time();
+      HandleNewInitId(payload, arrival);
+      break;
+    case ouster::PacketVerdict::kWrongSize:
+      HandleWrongSize(d.size);
+      break;
+    case ouster::PacketVerdict::kImu:
+    case ouster::PacketVerdict::kForeign:
+    case ouster::PacketVerdict::kDamaged:
+      break;
+  }
+}
+
+/// False after an error was posted.
+bool LiveSession::CheckSilence() {
+  if (stream() == nullptr) return true;
+  const bool never = stream()->batcher().stats().packets == 0 && !lost_once_;
+  const gint64 silence = g_get_monotonic_time() - last_packet_us_;
+  if (silence < (never ? kFirstSilenceUs : kSilenceUs)) return true;
+  const std::string where =
+      destination_.empty() ? std::string() : "; the sensor sends to " + destination_;
+  if (!settings().reconnect) {
+    GST_ELEMENT_ERROR(element(), RESOURCE, READ,
+                      ("No packets from the sensor on UDP port %u for %" G_GINT64_FORMAT " ms%s",
+                       udp_.port(), silence / 1000, where.c_str()),
+                      ("is it powered, and does it send here? udp-dest=@auto tells it to"));
+    return false;
+  }
+  if (connected_) stream()->Flush();
+  SetConnected(false, "no packets" + where);
+  if (!silence_reported_) {
+    silence_reported_ = true;
+    GST_ELEMENT_WARNING(element(), RESOURCE, READ,
+                        ("No packets from the sensor on UDP port %u%s", udp_.port(), where.c_str()),
+                        ("is it powered, and does it send here? udp-dest=@auto tells it to"));
+  }
+  Ask();
+  return true;
+}
+
+GstFlowReturn LiveSession::Poll() {
+  if (link_) {
+    auto answer = link_->Take();
+    if (answer && !HandleAnswer(*std::move(answer))) return GST_FLOW_ERROR;
+  }
+  const Time now = ToTime(RunningTime());
+  const Time utc_now = UtcNow();
+  const auto outcome =
+      udp_.Receive(kCheckNs, [&](const ReceivedDatagram& d) { HandlePacket(d, now, utc_now); });
+  switch (outcome) {
+    case UdpFeed::Outcome::kWoken:
+      udp_.ClearWake();
+      if (flushing_) return GST_FLOW_FLUSHING;
+      break;
+    case UdpFeed::Outcome::kError:
+      GST_ELEMENT_ERROR(element(), RESOURCE, READ, ("Receiving failed: %s", g_strerror(errno)),
+                        (nullptr));
+      return GST_FLOW_ERROR;
+    case UdpFeed::Outcome::kPackets:
+    case UdpFeed::Outcome::kTimeout:
+      break;
+  }
+  return CheckSilence() ? GST_FLOW_OK : GST_FLOW_ERROR;
+}
+
+}  // namespace lidar::gst

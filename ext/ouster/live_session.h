@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// A session with a sensor on the network: finds it, follows it, and waits for it when it is away.
+#pragma once
+#include <atomic>
+#include <memory>
+#include <string>
+
+#include "sensor_link.h"
+#include "session.h"
+#include "udp_feed.h"
+
+namespace lidar::gst {
+
+class LiveSession : public Session {
+ public:
+  LiveSession(GstBaseSrc* element, const OusterSettings& settings);
+  ~LiveSession() override;
+
+  bool Open() override;
+  void Unlock() override;
+  void UnlockStop() override;
+
+ protected:
+  GstFlowReturn Poll() override;
+  void AddCounters(Counters* counters) const override;
+
+ private:
+  bool OpenSockets(const ouster::Metadata& metadata);
+  bool HandleAnswer(SensorLink::Result result);
+  bool TakeMetadata(ouster::Metadata metadata);
+  void HandlePacket(const ReceivedDatagram& datagram, Time now, Time utc_now);
+  void HandleNewInitId(ByteView payload, const ouster::Arrival& arrival);
+  void HandleWrongSize(gsize size);
+  bool CheckSilence();
+  void SetConnected(bool connected, const std::string& reason);
+  void Ask();
+
+  std::unique_ptr<SensorLink> link_;  // null without hostname
+  UdpFeed udp_;
+  std::atomic<bool> flushing_{false};
+  guint receive_buffer_ = 0;
+  bool connected_ = false;
+  bool lost_once_ = false;
+  guint reconnects_ = 0;
+  std::string destination_;    // of the sensor's packets, as it says
+  gint64 last_packet_us_ = 0;  // g_get_monotonic_time()
+  gint64 new_init_id_us_ = 0;  // when the first packet came that the metadata does not know
+  gint64 last_question_us_ = 0;
+  guint wrong_sizes_in_a_row_ = 0;
+  bool size_reported_ = false;
+  bool silence_reported_ = false;
+};
+
+}  // namespace lidar::gst

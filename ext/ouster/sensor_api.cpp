@@ -1,0 +1,174 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "sensor_api.h"
+
+#include <nlohmann/json.hpp>
+
+namespace lidar::gst {
+namespace {
+
+using nlohmann::json;
+
+constexpr long kNotFound = 404;
+constexpr const char* kAuto = "@auto";
+
+/// Empty where the text is no object.
+json ParseObject(const std::string& text) {
+  json root = json::parse(text, nullptr, /*allow_exceptions=*/false);
+  return root.is_object() ? root : json::object();
+}
+
+/// "180000,360000" [millidegrees]
+std::optional<json> ParseWindow(const std::string& text) {
+  const json window = json::parse("[" + text + "]", nullptr, false);
+  if (!window.is_array() || window.size() != 2 || !window[0].is_number_unsigned() ||
+      !window[1].is_number_unsigned())
+    return std::nullopt;
+  return window;
+}
+
+/// The parameters that the user wants, by the names of the API.
+std::optional<json> Wanted(const OusterSettings& s, ApiError* error) {
+  json wanted = json::object();
+  if (!s.udp_dest.empty()) wanted["udp_dest"] = s.udp_dest;
+  if (s.lidar_port != 0) wanted["udp_port_lidar"] = s.lidar_port;
+  if (s.imu_port != 0) wanted["udp_port_imu"] = s.imu_port;
+  if (!s.lidar_mode.empty()) wanted["lidar_mode"] = s.lidar_mode;
+  if (!s.udp_profile_lidar.empty()) wanted["udp_profile_lidar"] = s.udp_profile_lidar;
+  if (!s.sensor_timestamp_mode.empty()) wanted["timestamp_mode"] = s.sensor_timestamp_mode;
+  if (!s.azimuth_window.empty()) {
+    const auto window = ParseWindow(s.azimuth_window);
+    if (!window) {
+      *error = {"azimuth-window is not like \"180000,360000\" [millidegrees]", true};
+      return std::nullopt;
+    }
+    wanted["azimuth_window"] = *window;
+  }
+  if (s.signal_multiplier >= 1)
+    wanted["signal_multiplier"] = static_cast<int>(s.signal_multiplier);
+  else if (s.signal_multiplier > 0)
+    wanted["signal_multiplier"] = s.signal_multiplier;
+  return wanted;
+}
+
+/// What of `wanted` the configuration `has` not.
+json Missing(const json& wanted, const json& has) {
+  json missing = json::object();
+  for (const auto& [key, value] : wanted.items())
+    if (!has.contains(key) || has[key] != value) missing[key] = value;
+  return missing;
+}
+
+}  // namespace
+
+std::optional<ouster::Metadata> SensorApi::FetchMetadata(ApiError* error) {
+  const HttpResponse response = client_.Get("sensor/metadata");
+  if (!response.ok) {
+    const bool too_old = response.status == kNotFound;
+    *error = {response.error + (too_old ? "; is its firmware older than 2.1?" : ""), too_old};
+    return std::nullopt;
+  }
+  std::string why;
+  auto metadata = ouster::ParseMetadata(response.body, &why);
+  // A sensor that is starting up answers, but with parts missing.
+  if (!metadata) *error = {"the sensor's metadata cannot be used: " + why, false};
+  return metadata;
+}
+
+std::optional<std::string> SensorApi::ReadConfig(bool staged, ApiError* error) {
+  HttpResponse response =
+      client_.Get(staged ? "sensor/config?staging=true" : "sensor/config?staging=false");
+  if (response.status == kNotFound)  // firmware before 2.4
+    response = client_.Get(std::string("sensor/cmd/get_config_param?args=") +
+                           (staged ? "staged" : "active"));
+  if (response.ok) return response.body;
+  *error = {response.error, false};
+  return std::nullopt;
+}
+
+/// The address of ours that the sensor sees. It is staged to be read back, not made active.
+std::optional<std::string> SensorApi::ResolveAuto(ApiError* error) {
+  HttpResponse response = client_.Post("sensor/config?staging=true&reinit=false&persist=false",
+                                       R"({"udp_dest":"@auto"})");
+  if (response.status == kNotFound)  // firmware before 2.4
+    response = client_.Get("sensor/cmd/set_udp_dest_auto");
+  if (!response.ok) {
+    *error = {response.error, false};
+    return std::nullopt;
+  }
+  const auto text = ReadConfig(/*staged=*/true, error);
+  if (!text) return std::nullopt;
+  const json staged = ParseObject(*text);
+  if (staged.contains("udp_dest") && staged["udp_dest"].is_string())
+    return staged["udp_dest"].get<std::string>();
+  *error = {"the sensor does not say which udp_dest it found", false};
+  return std::nullopt;
+}
+
+bool SensorApi::WriteConfig(const std::string& text, ApiError* error) {
+  HttpResponse response = client_.Post("sensor/config?reinit=true&persist=false", text);
+  if (response.status == kNotFound) {  // firmware before 2.4
+    const json parameters = ParseObject(text);
+    for (const auto& [key, value] : parameters.items())
+      response =
+          client_.Get("sensor/cmd/set_config_param?args=" + key + "+" +
+                      client_.Escape(value.is_string() ? value.get<std::string>() : value.dump()));
+    if (response.ok) response = client_.Get("sensor/cmd/reinitialize");
+  }
+  if (response.ok) return true;
+  const bool refused = response.status >= 400 && response.status < 500;
+  *error = {"the sensor does not take the configuration " + text + ": " + response.error +
+                (refused ? " " + response.body.substr(0, 200) : ""),
+            refused};
+  return false;
+}
+
+bool SensorApi::WaitUntilRunning(const std::function<bool()>& sleep, ApiError* error) {
+  constexpr int kAttempts = 90;  // a motor takes its time to spin up
+  for (int i = 0; i < kAttempts; ++i) {
+    const HttpResponse response = client_.Get("sensor/metadata");
+    const json root = ParseObject(response.body);
+    const json info = root.value("sensor_info", root);
+    if (response.ok && info.is_object()) {
+      const auto status = info.find("status");
+      if (status == info.end() || *status == "RUNNING") return true;
+    }
+    if (!sleep()) break;
+  }
+  *error = {"the sensor is not running again after its configuration was changed", false};
+  return false;
+}
+
+bool SensorApi::Configure(const OusterSettings& settings, const std::function<bool()>& sleep,
+                          ApiError* error) {
+  auto wanted = Wanted(settings, error);
+  if (!wanted) return false;
+  if (wanted->empty()) return true;
+  if (settings.udp_dest == kAuto) {
+    const auto ours = ResolveAuto(error);
+    if (!ours) return false;
+    (*wanted)["udp_dest"] = *ours;
+  }
+  auto text = ReadConfig(/*staged=*/false, error);
+  if (!text) return false;
+  const json change = Missing(*wanted, ParseObject(*text));
+  if (change.empty()) return true;
+  if (!WriteConfig(change.dump(), error) || !WaitUntilRunning(sleep, error)) return false;
+  text = ReadConfig(/*staged=*/false, error);
+  if (!text) return false;
+  const json refused = Missing(*wanted, ParseObject(*text));
+  if (refused.empty()) return true;
+  *error = {"the sensor did not take " + refused.dump(), true};
+  return false;
+}
+
+std::string SensorApi::Destination() {
+  ApiError ignored;
+  const auto text = ReadConfig(/*staged=*/false, &ignored);
+  const json config = text ? ParseObject(*text) : json::object();
+  if (!config.contains("udp_dest") || !config["udp_dest"].is_string()) return {};
+  const json port = config.value("udp_port_lidar", json());
+  return config["udp_dest"].get<std::string>() +
+         (port.is_number_unsigned() ? ":" + port.dump() : "");
+}
+
+}  // namespace lidar::gst

@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// The sensor's HTTP API: its metadata, and its configuration made what the user asked for.
+#pragma once
+#include <functional>
+#include <optional>
+#include <string>
+
+#include "http_client.h"
+#include "ouster/metadata.h"
+#include "settings.h"
+
+namespace lidar::gst {
+
+/// What a request came to. `permanent`: asking again will not help.
+struct ApiError {
+  std::string text;
+  bool permanent = false;
+};
+
+class SensorApi {
+ public:
+  /// `client` must outlive this.
+  explicit SensorApi(HttpClient* client) : client_(*client) {}
+
+  std::optional<ouster::Metadata> FetchMetadata(ApiError* error);
+
+  /// Sets what differs from what `settings` ask for, has the sensor take it and checks that it did.
+  /// True where nothing (more) has to change. `sleep` waits about a second; false: stop.
+  bool Configure(const OusterSettings& settings, const std::function<bool()>& sleep,
+                 ApiError* error);
+  /// Where the sensor sends its packets, "192.0.2.1:7502"; empty where it does not say.
+  std::string Destination();
+
+ private:
+  std::optional<std::string> ReadConfig(bool staged, ApiError* error);
+  std::optional<std::string> ResolveAuto(ApiError* error);
+  bool WriteConfig(const std::string& json, ApiError* error);
+  bool WaitUntilRunning(const std::function<bool()>& sleep, ApiError* error);
+
+  HttpClient& client_;
+};
+
+}  // namespace lidar::gst

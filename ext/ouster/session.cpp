@@ -1,0 +1,190 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "session.h"
+
+#include <fstream>
+#include <iterator>
+#include <utility>
+
+#include "common/refs.h"
+#include "file_session.h"
+#include "live_session.h"
+#include "slice_buffer.h"
+
+namespace lidar::gst {
+namespace {
+
+std::optional<std::string> ReadFile(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  if (!file) return std::nullopt;
+  return std::string{std::istreambuf_iterator<char>(file), {}};
+}
+
+void Add(const ouster::BatcherStats& a, ouster::BatcherStats* to) {
+  to->packets += a.packets;
+  to->lost_packets += a.lost_packets;
+  to->late_packets += a.late_packets;
+  to->duplicate_packets += a.duplicate_packets;
+  to->stray_packets += a.stray_packets;
+  to->restarts += a.restarts;
+  to->slices += a.slices;
+  to->incomplete_slices += a.incomplete_slices;
+}
+
+void Add(const ouster::StreamStats& a, ouster::StreamStats* to) {
+  to->wrong_size += a.wrong_size;
+  to->foreign += a.foreign;
+  to->damaged += a.damaged;
+  to->imu_packets += a.imu_packets;
+}
+
+}  // namespace
+
+std::shared_ptr<Session> Session::Create(GstBaseSrc* element, const OusterSettings& settings) {
+  if (settings.from_file()) return std::make_shared<FileSession>(element, settings);
+  return std::make_shared<LiveSession>(element, settings);
+}
+
+Session::Session(GstBaseSrc* element, OusterSettings settings)
+    : element_(element), settings_(std::move(settings)), imu_(GST_ELEMENT(element)) {}
+
+std::optional<ouster::Metadata> Session::LoadMetadata() {
+  const std::string path = settings_.MetadataPath();
+  if (path.empty()) {
+    GST_ELEMENT_ERROR(element_, RESOURCE, SETTINGS,
+                      ("None of hostname, metadata and location is set"),
+                      ("set hostname to the sensor, or metadata to what "
+                       "'curl http://SENSOR/api/v1/sensor/metadata' prints"));
+    return std::nullopt;
+  }
+  const auto text = ReadFile(path);
+  if (!text) {
+    GST_ELEMENT_ERROR(element_, RESOURCE, NOT_FOUND, ("Cannot read the metadata %s", path.c_str()),
+                      ("set the property metadata to the sensor's JSON file"));
+    return std::nullopt;
+  }
+  std::string why;
+  auto metadata = ouster::ParseMetadata(*text, &why);
+  if (!metadata)
+    GST_ELEMENT_ERROR(element_, STREAM, WRONG_TYPE,
+                      ("%s is no metadata of an Ouster sensor: %s", path.c_str(), why.c_str()),
+                      (nullptr));
+  return metadata;
+}
+
+bool Session::SetMetadata(ouster::Metadata metadata) {
+  std::string why;
+  auto options = ToStreamOptions(settings_, &why);
+  if (options && !settings_.mask_location.empty()) {
+    const auto image = ReadFile(settings_.mask_location);
+    if (image) {
+      options->points.mask_image.assign(image->begin(), image->end());
+    } else {
+      why = "Cannot read the mask " + settings_.mask_location;
+      options.reset();
+    }
+  }
+  auto next = options ? ouster::SensorStream::Create(std::move(metadata), *options, &why) : nullptr;
+  if (!next) {
+    GST_ELEMENT_ERROR(element_, RESOURCE, SETTINGS, ("%s", why.c_str()), (nullptr));
+    return false;
+  }
+  if (stream_) {
+    Add(stream_->batcher().stats(), &base_.batcher);
+    Add(stream_->stats(), &base_.stream);
+    next->Continue(*stream_);
+    discont_ = true;
+  }
+  stream_ = std::move(next);
+  caps_pending_ = true;
+  const auto duration = static_cast<GstClockTime>(stream_->slice_duration().count());
+  std::unique_lock lock(mutex_);
+  const bool changed = std::exchange(slice_duration_, duration) != duration;
+  lock.unlock();
+  if (changed)
+    gst_element_post_message(gst_element(), gst_message_new_latency(GST_OBJECT(element_)));
+  return true;
+}
+
+ouster::PacketVerdict Session::Push(ByteView payload, const ouster::Arrival& arrival) {
+  const auto verdict = stream_->Push(payload, arrival);
+  if (verdict == ouster::PacketVerdict::kImu && settings_.imu && stream_->knows_time())
+    imu_.Push(payload, *stream_);
+  return verdict;
+}
+
+bool Session::SendCaps() {
+  const CapsPtr caps(CapsOf(*stream_));
+  caps_pending_ = false;
+  const CapsPtr current(gst_pad_get_current_caps(GST_BASE_SRC_PAD(element_)));
+  return (current && gst_caps_is_equal(current.get(), caps.get())) ||
+         gst_base_src_set_caps(element_, caps.get());
+}
+
+GstFlowReturn Session::Next(GstBuffer** out) {
+  for (;;) {
+    if (auto slice = stream_ ? stream_->Pop() : std::nullopt) {
+      if (caps_pending_ && !SendCaps()) return GST_FLOW_NOT_NEGOTIATED;
+      if (std::exchange(discont_, false)) slice->slice.after_gap = true;
+      *out = ToBuffer(*std::move(slice), stream_->slice_duration());
+      return GST_FLOW_OK;
+    }
+    if (ended_) {
+      imu_.End();
+      return GST_FLOW_EOS;
+    }
+    const GstFlowReturn flow = Poll();
+    if (flow != GST_FLOW_OK) return flow;
+    UpdateCounters();
+  }
+}
+
+GstClockTime Session::RunningTime() const {
+  const std::unique_ptr<GstClock, Unref> clock(gst_element_get_clock(gst_element()));
+  if (!clock) return 0;
+  const GstClockTime now = gst_clock_get_time(clock.get());
+  const GstClockTime base_time = gst_element_get_base_time(gst_element());
+  return now > base_time ? now - base_time : 0;
+}
+
+void Session::UpdateCounters() {
+  if (!stream_) return;
+  Counters now = base_;
+  Add(stream_->batcher().stats(), &now.batcher);
+  Add(stream_->stats(), &now.stream);
+  now.synchronised = stream_->has_synchronised_clock();
+  AddCounters(&now);
+  {
+    std::lock_guard lock(mutex_);
+    counters_ = now;
+  }
+  PostLoss(now);
+}
+
+/// Says that packets were lost, once a second at most.
+void Session::PostLoss(const Counters& now) {
+  const guint64 lost = now.batcher.lost_packets;
+  if (lost == posted_losses_) return;
+  const auto time = static_cast<GstClockTime>(g_get_monotonic_time()) * GST_USECOND;
+  if (GST_CLOCK_TIME_IS_VALID(last_loss_post_) && time - last_loss_post_ < GST_SECOND) return;
+  last_loss_post_ = time;
+  gst_element_post_message(
+      gst_element(),
+      gst_message_new_element(
+          GST_OBJECT(element_),
+          gst_structure_new("ouster-packet-loss", "lost", G_TYPE_UINT64, lost - posted_losses_,
+                            "total", G_TYPE_UINT64, lost, "dropped-by-kernel", G_TYPE_UINT64,
+                            now.kernel_drops, nullptr)));
+  posted_losses_ = lost;
+}
+
+Counters Session::counters() const {
+  std::lock_guard lock(mutex_);
+  return counters_;
+}
+
+GstClockTime Session::slice_duration() const {
+  std::lock_guard lock(mutex_);
+  return slice_duration_;
+}
+
+}  // namespace lidar::gst

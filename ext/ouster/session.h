@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// What ouster_src does between start and stop: packets in from somewhere, buffers out.
+#pragma once
+#include <gst/base/gstbasesrc.h>
+
+#include <memory>
+#include <mutex>
+#include <string>
+
+#include "imu_pad.h"
+#include "ouster/sensor_stream.h"
+#include "settings.h"
+
+namespace lidar::gst {
+
+struct Counters {
+  ouster::BatcherStats batcher;
+  ouster::StreamStats stream;
+  guint64 kernel_drops = 0;
+  guint reconnects = 0;
+  guint receive_buffer = 0;  // bytes
+  bool synchronised = false;
+};
+
+/// Runs in the streaming thread, except where it says otherwise. Posts its own errors.
+class Session {
+ public:
+  static std::shared_ptr<Session> Create(GstBaseSrc* element, const OusterSettings& settings);
+  virtual ~Session() = default;
+  Session(const Session&) = delete;
+  Session& operator=(const Session&) = delete;
+
+  /// Of the thread that starts the element. False after an error was posted.
+  virtual bool Open() = 0;
+  GstFlowReturn Next(GstBuffer** out);
+  /// Of any thread: Next() returns FLUSHING until UnlockStop().
+  virtual void Unlock() = 0;
+  virtual void UnlockStop() = 0;
+
+  /// Of any thread.
+  Counters counters() const;
+  GstClockTime slice_duration() const;
+
+ protected:
+  Session(GstBaseSrc* element, OusterSettings settings);
+
+  /// Takes packets in, waiting for them; OK where Next() shall look for slices and come again.
+  virtual GstFlowReturn Poll() = 0;
+  virtual void AddCounters(Counters*) const {}
+
+  /// None after an error was posted.
+  std::optional<ouster::Metadata> LoadMetadata();
+  /// Takes the sensor as described from now on; false after an error was posted.
+  bool SetMetadata(ouster::Metadata metadata);
+  ouster::PacketVerdict Push(ByteView payload, const ouster::Arrival& arrival);
+  void UpdateCounters();
+  void End() { ended_ = true; }
+
+  GstBaseSrc* element() const { return element_; }
+  GstElement* gst_element() const { return GST_ELEMENT(element_); }
+  const OusterSettings& settings() const { return settings_; }
+  ouster::SensorStream* stream() const { return stream_.get(); }
+  ImuPad& imu() { return imu_; }
+  /// 0 before the pipeline runs.
+  GstClockTime RunningTime() const;
+
+ private:
+  bool SendCaps();
+  void PostLoss(const Counters& now);
+
+  GstBaseSrc* const element_;
+  const OusterSettings settings_;
+  std::unique_ptr<ouster::SensorStream> stream_;
+  ImuPad imu_;
+  bool caps_pending_ = false;
+  bool discont_ = false;
+  bool ended_ = false;
+  Counters base_;  // of the streams before this one
+  guint64 posted_losses_ = 0;
+  GstClockTime last_loss_post_ = GST_CLOCK_TIME_NONE;
+
+  mutable std::mutex mutex_;  // guards all below; never held while waiting, pushing or posting
+  Counters counters_;
+  GstClockTime slice_duration_ = GST_CLOCK_TIME_NONE;
+};
+
+inline Time ToTime(GstClockTime time) { return Time(Duration(static_cast<gint64>(time))); }
+inline Time UtcNow() { return Time(std::chrono::microseconds(g_get_real_time())); }
+
+}  // namespace lidar::gst

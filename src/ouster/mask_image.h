@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// An image that says which pixels of a sensor to keep.
+#pragma once
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "base/byte_reader.h"
+#include "ouster/metadata.h"
+
+namespace lidar::ouster {
+
+/// Keeps a pixel where its byte is not zero; beams x columns_per_scan, row-major, as packets have
+/// them.
+using PixelMask = std::vector<std::uint8_t>;
+
+/// Reads a binary PGM (P5, 8 bit) of one pixel a beam and column, as pictures of a scan show them:
+/// destaggered. None and `error` for anything else.
+std::optional<PixelMask> ParseMaskImage(ByteView pgm, const Metadata& metadata, std::string* error);
+
+}  // namespace lidar::ouster
