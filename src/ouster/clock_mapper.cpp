@@ -4,13 +4,6 @@
 #include <algorithm>
 
 namespace lidar::ouster {
-namespace {
-
-Duration SinceSensorEpoch(std::uint64_t sensor_ns) {
-  return Duration(static_cast<std::int64_t>(sensor_ns));
-}
-
-}  // namespace
 
 bool ClockMapper::WouldJump(std::uint64_t sensor_ns, Time arrival) const {
   if (!offset_) return false;

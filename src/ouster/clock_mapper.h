@@ -8,6 +8,14 @@
 
 namespace lidar::ouster {
 
+/// Times past the year 2096 are of damaged packets; so bounded, times can be added and subtracted.
+constexpr Duration kLatestTime{4'000'000'000'000'000'000};
+
+constexpr Duration SinceSensorEpoch(std::uint64_t sensor_ns) {
+  const auto latest = static_cast<std::uint64_t>(kLatestTime.count());
+  return Duration(static_cast<std::int64_t>(sensor_ns < latest ? sensor_ns : latest));
+}
+
 /// The packet that travelled fastest tells the offset between the two clocks best, so the offset
 /// follows the minimum of (arrival - sampling) over the last seconds: jitter stays out, drift is
 /// followed. A jump of either clock starts over.

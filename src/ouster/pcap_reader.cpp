@@ -3,8 +3,11 @@
 
 #include <pcap/pcap.h>
 
+#include <algorithm>
 #include <array>
 #include <utility>
+
+#include "ouster/clock_mapper.h"
 
 namespace lidar::ouster {
 namespace {
@@ -45,8 +48,11 @@ std::optional<PcapReader::Captured> PcapReader::Next() {
     auto datagram = extractor_.Extract(link_, {frame, header->caplen});
     if (!datagram) continue;
     // With nanosecond precision, tv_usec holds nanoseconds.
+    // pcapng carries 64 bits of time, in units of its choice.
+    const auto latest = std::chrono::duration_cast<std::chrono::seconds>(kLatestTime).count();
+    const auto seconds = std::clamp<std::int64_t>(header->ts.tv_sec, 0, latest);
     const Duration since_epoch =
-        std::chrono::seconds(header->ts.tv_sec) + std::chrono::nanoseconds(header->ts.tv_usec);
+        std::chrono::seconds(seconds) + std::chrono::nanoseconds(header->ts.tv_usec);
     return Captured{*std::move(datagram), Time(since_epoch)};
   }
 }

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "ouster/clock_mapper.h"
+
 namespace lidar::ouster {
 namespace {
 
@@ -222,7 +224,7 @@ void ScanBatcher::GiveOutBlanks(Key first, Key last, ColumnTime reference) {
     const double columns = static_cast<double>(slice.first_column) - reference.column;
     const auto shift = static_cast<std::int64_t>(columns * column_period_);
     slice.start = static_cast<std::uint64_t>(
-        std::max<std::int64_t>(0, static_cast<std::int64_t>(reference.time) + shift));
+        std::max<std::int64_t>(0, SinceSensorEpoch(reference.time).count() + shift));
     slice.first_arrival = reference.arrival;
     ready_.push_back(std::move(slice));
     ++stats_.slices;

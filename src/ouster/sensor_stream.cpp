@@ -67,7 +67,7 @@ void SensorStream::ObserveClocks(const LidarPacket& packet, const Arrival& arriv
     local_.Observe(column.timestamp, arrival.local);
     utc_.Observe(column.timestamp, arrival.utc);
     if (sensor_to_utc_) {
-      const Time claimed(Duration(static_cast<std::int64_t>(column.timestamp)) + *sensor_to_utc_);
+      const Time claimed(SinceSensorEpoch(column.timestamp) + *sensor_to_utc_);
       synchronised_ =
           claimed < arrival.utc + kMaxSyncError && claimed > arrival.utc - kMaxSyncError;
     }
@@ -107,7 +107,7 @@ PacketVerdict SensorStream::Push(ByteView payload, const Arrival& arrival) {
 Time SensorStream::LocalOf(std::uint64_t sensor_ns) const { return local_.Map(sensor_ns); }
 
 Time SensorStream::UtcOf(std::uint64_t sensor_ns) const {
-  if (synchronised_) return Time(Duration(static_cast<std::int64_t>(sensor_ns)) + *sensor_to_utc_);
+  if (synchronised_) return Time(SinceSensorEpoch(sensor_ns) + *sensor_to_utc_);
   return utc_.Map(sensor_ns);
 }
 
