@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// RFC 8888 feedback, alone and in compound RTCP.
+#include "fuzz.h"
+#include "scream/ccfb.h"
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  lidar::scream::CcfbParser parser;
+  std::size_t total = 0;
+  for (const auto& packet : lidar::scream::SplitRtcp({data, size})) {
+    total += packet.size;
+    const bool claims = lidar::scream::IsCcfb(packet);
+    const auto feedback = parser.Parse(packet);
+    FUZZ_CHECK(claims || !feedback);
+    if (!feedback) continue;
+    for (const auto reading :
+         {lidar::scream::NumReports::kCount, lidar::scream::NumReports::kCountMinusOne}) {
+      // What was understood can be said again, and in no more bytes.
+      const auto again = lidar::scream::BuildCcfb(*feedback, reading);
+      FUZZ_CHECK(again.size() <= packet.size + 4);
+    }
+  }
+  FUZZ_CHECK(total == 0 || total == size);
+  parser.Parse({data, size});
+  return 0;
+}
