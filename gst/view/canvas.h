@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Pixels with depth: what is nearer hides what is behind.
+#pragma once
+#include <cstdint>
+#include <vector>
+
+namespace lidar::gst {
+
+struct Color {
+  std::uint8_t r = 0;
+  std::uint8_t g = 0;
+  std::uint8_t b = 0;
+};
+
+class Canvas {
+ public:
+  static constexpr float kFar = 1e9F;
+
+  Canvas(int width, int height);
+
+  int width() const { return width_; }
+  int height() const { return height_; }
+  const Color* Row(int y) const { return &pixels_[Index(0, y)]; }
+
+  void Clear();
+  /// A square of `size` pixels about (x, y); what lies outside is cut.
+  void Splat(int x, int y, int size, float depth, Color color);
+  /// The rectangle [x0, x1) x [y0, y1).
+  void Fill(int x0, int y0, int x1, int y1, Color color);
+  /// A line of half-transparent pixels, under what is drawn already.
+  void Line(float x0, float y0, float x1, float y1, Color color);
+  /// Eye-dome lighting: darkens pixels that lie behind their neighbours, so that edges show.
+  void ShadeEdges(float strength);
+
+ private:
+  std::size_t Index(int x, int y) const {
+    return static_cast<std::size_t>(y) * static_cast<std::size_t>(width_) +
+           static_cast<std::size_t>(x);
+  }
+
+  int width_;
+  int height_;
+  std::vector<Color> pixels_;
+  std::vector<float> depth_;
+  std::vector<float> log_depth_;
+};
+
+}  // namespace lidar::gst

@@ -1,0 +1,369 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+/**
+ * SECTION:element-pointcloudview
+ *
+ * Point clouds as video, for any video sink, encoder or pngenc.
+ *
+ * |[
+ * gst-launch-1.0 lidartestsrc is-live=true ! pointcloudview ! videoconvert ! autovideosink
+ * ]|
+ */
+#include "view/gstpointcloudview.h"
+
+#include <gst/video/video.h>
+
+#include <memory>
+#include <mutex>
+
+#include "common/buffer_map.h"
+#include "common/properties.h"
+#include "common/refs.h"
+#include "view/renderer.h"
+
+GST_DEBUG_CATEGORY_STATIC(gst_lidar_point_cloud_view_debug);
+#define GST_CAT_DEFAULT gst_lidar_point_cloud_view_debug
+
+#define VIDEO_FORMATS "{ RGBx, BGRx, RGB, BGR, RGBA, BGRA }"
+
+namespace {
+
+using lidar::gst::CapsPtr;
+using lidar::gst::CloudInfo;
+using lidar::gst::Renderer;
+
+const GEnumValue kViews[] = {{0, "From above, x to the right", "top"},
+                             {1, "As from behind the sensor", "perspective"},
+                             {2, "The range image of the sensor, forward in the middle", "range"},
+                             {0, nullptr, nullptr}};
+const GEnumValue kColors[] = {{0, "z", "height"},
+                              {1, "Intensity, reflectivity or signal", "intensity"},
+                              {2, "Distance", "range"},
+                              {3, "Number of the beam", "ring"},
+                              {0, nullptr, nullptr}};
+
+GType RegisterEnum(gsize* type, const char* name, const GEnumValue* values) {
+  if (g_once_init_enter(type)) g_once_init_leave(type, g_enum_register_static(name, values));
+  return *type;
+}
+GType ViewType() {
+  static gsize type = 0;
+  return RegisterEnum(&type, "GstLidarPointCloudViewView", kViews);
+}
+GType ColorType() {
+  static gsize type = 0;
+  return RegisterEnum(&type, "GstLidarPointCloudViewColor", kColors);
+}
+
+struct Settings {
+  gint view = 1;
+  gint color_by = 0;
+  guint width = 1280;
+  guint height = 720;
+  gdouble extent_m = 100;
+  gdouble eye_x = -16;
+  gdouble eye_y = 0;
+  gdouble eye_z = 9;
+  gdouble target_x = 12;
+  gdouble target_y = 0;
+  gdouble target_z = -2;
+  gdouble field_of_view = 70;
+  guint point_size = 0;
+  gdouble color_min = 0;
+  gdouble color_max = 0;
+};
+
+using Row = lidar::gst::Property<Settings>;
+constexpr gdouble kFar = 10'000;
+constexpr gint kAnytime = GST_PARAM_MUTABLE_PLAYING;
+const std::array<Row, 15> kProperties = {{
+    {"view", "How the cloud is seen", lidar::gst::EnumField<Settings>{&Settings::view, ViewType}, 0,
+     0, kAnytime},
+    {"color-by", "What the colours tell",
+     lidar::gst::EnumField<Settings>{&Settings::color_by, ColorType}, 0, 0, kAnytime},
+    {"width", "Width of the video where downstream leaves it open [pixels]", &Settings::width, 16,
+     8192},
+    {"height", "Height of the video where downstream leaves it open [pixels]", &Settings::height,
+     16, 8192},
+    {"extent", "Width of the picture from above [m]", &Settings::extent_m, 1, kFar, kAnytime},
+    {"eye-x", "Position of the camera in the sensor frame, forward [m]", &Settings::eye_x, -kFar,
+     kFar, kAnytime},
+    {"eye-y", "Position of the camera in the sensor frame, left [m]", &Settings::eye_y, -kFar, kFar,
+     kAnytime},
+    {"eye-z", "Position of the camera in the sensor frame, up [m]", &Settings::eye_z, -kFar, kFar,
+     kAnytime},
+    {"target-x", "Point that the camera looks at, forward [m]", &Settings::target_x, -kFar, kFar,
+     kAnytime},
+    {"target-y", "Point that the camera looks at, left [m]", &Settings::target_y, -kFar, kFar,
+     kAnytime},
+    {"target-z", "Point that the camera looks at, up [m]", &Settings::target_z, -kFar, kFar,
+     kAnytime},
+    {"field-of-view", "Horizontal field of view of the camera [degrees]", &Settings::field_of_view,
+     5, 150, kAnytime},
+    {"point-size", "Size of a point [pixels]; 0: by its distance", &Settings::point_size, 0, 64,
+     kAnytime},
+    {"color-min", "Where the colours begin [m, or the unit of the field]", &Settings::color_min,
+     -kFar, kFar, kAnytime},
+    {"color-max", "Where they end; not above color-min: automatic", &Settings::color_max, -kFar,
+     kFar, kAnytime},
+}};
+
+struct State {
+  std::mutex mutex;  // guards the settings and `changed`
+  Settings settings;
+  bool changed = true;
+  // Of the streaming thread.
+  std::optional<CloudInfo> info;
+  GstVideoInfo video;
+  std::unique_ptr<Renderer> renderer;
+  bool drawing = false;  // a picture is begun
+  guint scan_id = 0;
+  GstClockTime pts = GST_CLOCK_TIME_NONE;  // of that scan
+};
+
+lidar::gst::ViewSettings ToView(const Settings& s) {
+  const auto f = [](gdouble v) { return static_cast<float>(v); };
+  lidar::gst::ViewSettings view;
+  view.view = static_cast<lidar::gst::ViewKind>(s.view);
+  view.color_by = static_cast<lidar::gst::ColorBy>(s.color_by);
+  view.extent_m = f(s.extent_m);
+  view.eye_m = {f(s.eye_x), f(s.eye_y), f(s.eye_z)};
+  view.target_m = {f(s.target_x), f(s.target_y), f(s.target_z)};
+  view.field_of_view_deg = f(s.field_of_view);
+  view.point_size = static_cast<int>(s.point_size);
+  view.color_min = f(s.color_min);
+  view.color_max = f(s.color_max);
+  return view;
+}
+
+}  // namespace
+
+struct _GstLidarPointCloudView {
+  GstBaseTransform parent;
+  State* state;
+};
+
+G_DEFINE_TYPE(GstLidarPointCloudView, gst_lidar_point_cloud_view, GST_TYPE_BASE_TRANSFORM)
+GST_ELEMENT_REGISTER_DEFINE(pointcloudview, "pointcloudview", GST_RANK_NONE,
+                            GST_TYPE_LIDAR_POINT_CLOUD_VIEW)
+
+namespace {
+
+State& StateOf(gpointer self) { return *GST_LIDAR_POINT_CLOUD_VIEW(self)->state; }
+
+/// The other side, with the frame rate of this one.
+GstCaps* TransformCaps(GstBaseTransform* base, GstPadDirection direction, GstCaps* caps,
+                       GstCaps* filter) {
+  GstPad* other = direction == GST_PAD_SINK ? base->srcpad : base->sinkpad;
+  CapsPtr pattern(gst_pad_get_pad_template_caps(other));
+  CapsPtr out(gst_caps_new_empty());
+  for (guint i = 0; i < gst_caps_get_size(caps); ++i) {
+    const GValue* rate = gst_structure_get_value(gst_caps_get_structure(caps, i), "framerate");
+    GstCaps* one = gst_caps_copy(pattern.get());
+    if (rate != nullptr) gst_caps_set_value(one, "framerate", rate);
+    out.reset(gst_caps_merge(out.release(), one));
+  }
+  if (filter == nullptr) return out.release();
+  return gst_caps_intersect_full(filter, out.get(), GST_CAPS_INTERSECT_FIRST);
+}
+
+GstCaps* FixateCaps(GstBaseTransform* base, GstPadDirection direction, GstCaps*, GstCaps* other) {
+  other = gst_caps_make_writable(gst_caps_truncate(other));
+  if (direction == GST_PAD_SINK) {
+    State& state = StateOf(base);
+    std::lock_guard lock(state.mutex);
+    GstStructure* s = gst_caps_get_structure(other, 0);
+    gst_structure_fixate_field_nearest_int(s, "width", static_cast<gint>(state.settings.width));
+    gst_structure_fixate_field_nearest_int(s, "height", static_cast<gint>(state.settings.height));
+    if (gst_structure_has_field(s, "pixel-aspect-ratio"))
+      gst_structure_fixate_field_nearest_fraction(s, "pixel-aspect-ratio", 1, 1);
+  }
+  return gst_caps_fixate(other);
+}
+
+gboolean SetCaps(GstBaseTransform* base, GstCaps* in, GstCaps* out) {
+  State& state = StateOf(base);
+  state.info = CloudInfo::FromCaps(in);
+  if (!state.info || state.info->width == 0 || !state.info->fields.HasPackedXyz()) {
+    GST_ELEMENT_ERROR(base, STREAM, FORMAT,
+                      ("The view needs a cloud of known width with x, y, z as F32 side by side."),
+                      ("%" GST_PTR_FORMAT, static_cast<gpointer>(in)));
+    return FALSE;
+  }
+  GstVideoInfo video;
+  if (!gst_video_info_from_caps(&video, out)) return FALSE;
+  // Unorganised slices change their caps within a scan; the picture goes on.
+  if (state.renderer && gst_video_info_is_equal(&video, &state.video)) return TRUE;
+  state.video = video;
+  std::lock_guard lock(state.mutex);
+  state.changed = true;
+  state.renderer.reset();
+  return TRUE;
+}
+
+gboolean GetUnitSize(GstBaseTransform*, GstCaps* caps, gsize* size) {
+  GstVideoInfo video;
+  if (gst_video_info_from_caps(&video, caps)) {
+    *size = GST_VIDEO_INFO_SIZE(&video);
+    return TRUE;
+  }
+  const auto info = CloudInfo::FromCaps(caps);
+  if (!info) return FALSE;
+  *size = info->FrameSize();
+  return TRUE;
+}
+
+gboolean TransformSize(GstBaseTransform* base, GstPadDirection direction, GstCaps*, gsize,
+                       GstCaps* other_caps, gsize* other_size) {
+  return direction == GST_PAD_SINK ? GetUnitSize(base, other_caps, other_size) : FALSE;
+}
+
+void Paint(const lidar::gst::Canvas& canvas, GstVideoFrame* frame) {
+  const auto step = static_cast<int>(GST_VIDEO_FRAME_COMP_PSTRIDE(frame, 0));
+  const auto r = static_cast<int>(GST_VIDEO_FRAME_COMP_POFFSET(frame, 0));
+  const auto g = static_cast<int>(GST_VIDEO_FRAME_COMP_POFFSET(frame, 1));
+  const auto b = static_cast<int>(GST_VIDEO_FRAME_COMP_POFFSET(frame, 2));
+  const int unused = step == 4 ? 6 - r - g - b : r;  // alpha or x
+  auto* data = static_cast<guint8*>(GST_VIDEO_FRAME_PLANE_DATA(frame, 0));
+  for (int y = 0; y < canvas.height(); ++y) {
+    const lidar::gst::Color* from = canvas.Row(y);
+    guint8* to = data + y * GST_VIDEO_FRAME_PLANE_STRIDE(frame, 0);
+    for (int x = 0; x < canvas.width(); ++x, to += step) {
+      to[unused] = 255;
+      to[r] = from[x].r;
+      to[g] = from[x].g;
+      to[b] = from[x].b;
+    }
+  }
+}
+
+/// Settings that changed while a picture was drawn show in the next one.
+void BeginPicture(State* state, const GstLidarSlice& slice, GstBuffer* in) {
+  {
+    std::lock_guard lock(state->mutex);
+    if (state->changed || !state->renderer)
+      state->renderer =
+          std::make_unique<Renderer>(ToView(state->settings), GST_VIDEO_INFO_WIDTH(&state->video),
+                                     GST_VIDEO_INFO_HEIGHT(&state->video));
+    state->changed = false;
+  }
+  state->renderer->Begin();
+  state->drawing = true;
+  state->scan_id = slice.scan_id;
+  state->pts = GST_BUFFER_PTS(in);
+}
+
+GstFlowReturn FinishPicture(GstBaseTransform* base, GstBuffer* out) {
+  State& state = StateOf(base);
+  GstVideoFrame frame;
+  if (!gst_video_frame_map(&frame, &state.video, out, GST_MAP_WRITE)) {
+    GST_ELEMENT_ERROR(base, RESOURCE, WRITE, (nullptr), ("cannot map the output buffer"));
+    return GST_FLOW_ERROR;
+  }
+  Paint(state.renderer->Finish(), &frame);
+  gst_video_frame_unmap(&frame);
+  GST_BUFFER_PTS(out) = state.pts;
+  GST_BUFFER_DURATION(out) = state.info->ScanDuration();
+  state.drawing = false;
+  return GST_FLOW_OK;
+}
+
+/// A scan is a picture: slices are drawn as they come, and the last one lets it go.
+GstFlowReturn Transform(GstBaseTransform* base, GstBuffer* in, GstBuffer* out) {
+  State& state = StateOf(base);
+  const lidar::gst::BufferMap map(in, GST_MAP_READ);
+  if (!map || map.size() != state.info->FrameSize()) {
+    GST_ELEMENT_ERROR(base, STREAM, FORMAT, ("A cloud of another size than its caps say."),
+                      (nullptr));
+    return GST_FLOW_ERROR;
+  }
+  GstLidarSlice slice{};
+  gst_lidar_buffer_get_slice(in, &slice);
+  GstFlowReturn flow = GST_BASE_TRANSFORM_FLOW_DROPPED;
+  if (state.drawing && slice.scan_id != state.scan_id)
+    flow = FinishPicture(base, out);  // its last slice was lost
+  const bool done = flow == GST_FLOW_OK;
+  if (!state.drawing) BeginPicture(&state, slice, in);
+  state.renderer->Draw(*state.info, slice, map.data());
+  // One picture a buffer: after a loss the scan of a single slice waits for the next.
+  if (slice.slice_index + 1 < slice.slice_count || done) return flow;
+  return FinishPicture(base, out);
+}
+
+gboolean TransformMeta(GstBaseTransform* base, GstBuffer* out, GstMeta* meta, GstBuffer* in) {
+  // A picture is no slice.
+  if (meta->info == gst_meta_get_info(GST_LIDAR_SLICE_META_NAME)) return FALSE;
+  return GST_BASE_TRANSFORM_CLASS(gst_lidar_point_cloud_view_parent_class)
+      ->transform_meta(base, out, meta, in);
+}
+
+gboolean SinkEvent(GstBaseTransform* base, GstEvent* event) {
+  if (GST_EVENT_TYPE(event) == GST_EVENT_FLUSH_STOP) StateOf(base).drawing = false;
+  return GST_BASE_TRANSFORM_CLASS(gst_lidar_point_cloud_view_parent_class)->sink_event(base, event);
+}
+
+gboolean Stop(GstBaseTransform* base) {
+  State& state = StateOf(base);
+  state.drawing = false;
+  state.renderer.reset();
+  state.info.reset();
+  return TRUE;
+}
+
+void SetObjectProperty(GObject* object, guint id, const GValue* value, GParamSpec*) {
+  State& state = StateOf(object);
+  std::lock_guard lock(state.mutex);
+  lidar::gst::SetProperty(state.settings, kProperties[id - 1], value);
+  state.changed = true;
+}
+
+void GetObjectProperty(GObject* object, guint id, GValue* value, GParamSpec*) {
+  State& state = StateOf(object);
+  std::lock_guard lock(state.mutex);
+  lidar::gst::GetProperty(state.settings, kProperties[id - 1], value);
+}
+
+void Finalize(GObject* object) {
+  delete GST_LIDAR_POINT_CLOUD_VIEW(object)->state;
+  G_OBJECT_CLASS(gst_lidar_point_cloud_view_parent_class)->finalize(object);
+}
+
+}  // namespace
+
+static void gst_lidar_point_cloud_view_init(GstLidarPointCloudView* self) {
+  self->state = new State;
+  gst_video_info_init(&self->state->video);
+}
+
+static void gst_lidar_point_cloud_view_class_init(GstLidarPointCloudViewClass* klass) {
+  GST_DEBUG_CATEGORY_INIT(gst_lidar_point_cloud_view_debug, "pointcloudview", 0,
+                          "Point clouds as video");
+  auto* object = G_OBJECT_CLASS(klass);
+  object->set_property = SetObjectProperty;
+  object->get_property = GetObjectProperty;
+  object->finalize = Finalize;
+  lidar::gst::InstallProperties(object, kProperties);
+  gst_type_mark_as_plugin_api(ViewType(), static_cast<GstPluginAPIFlags>(0));
+  gst_type_mark_as_plugin_api(ColorType(), static_cast<GstPluginAPIFlags>(0));
+  static GstStaticPadTemplate sink = GST_STATIC_PAD_TEMPLATE(
+      "sink", GST_PAD_SINK, GST_PAD_ALWAYS, GST_STATIC_CAPS(GST_LIDAR_CLOUD_MEDIA_TYPE));
+  static GstStaticPadTemplate src =
+      GST_STATIC_PAD_TEMPLATE("src", GST_PAD_SRC, GST_PAD_ALWAYS,
+                              GST_STATIC_CAPS("video/x-raw, format = (string) " VIDEO_FORMATS
+                                              ", width = [ 16, 8192 ], height = [ 16, 8192 ], "
+                                              "framerate = (fraction) [ 0, max ]"));
+  auto* element = GST_ELEMENT_CLASS(klass);
+  gst_element_class_add_static_pad_template(element, &sink);
+  gst_element_class_add_static_pad_template(element, &src);
+  gst_element_class_set_static_metadata(element, "Point cloud view", "Converter/Video/PointCloud",
+                                        "Draws point clouds as video", "gst-lidar");
+  auto* transform = GST_BASE_TRANSFORM_CLASS(klass);
+  transform->transform_caps = TransformCaps;
+  transform->fixate_caps = FixateCaps;
+  transform->set_caps = SetCaps;
+  transform->get_unit_size = GetUnitSize;
+  transform->transform_size = TransformSize;
+  transform->transform = Transform;
+  transform->transform_meta = TransformMeta;
+  transform->sink_event = SinkEvent;
+  transform->stop = Stop;
+}

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "view/palette.h"
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+
+namespace lidar::gst {
+namespace {
+
+struct Stop {
+  float r, g, b;
+};
+
+template <std::size_t N>
+Color Blend(const std::array<Stop, N>& stops, float t) {
+  // A comparison that a NaN fails, too.
+  const float at = (t > 0 ? std::min(t, 1.0F) : 0.0F) * static_cast<float>(N - 1);
+  const auto i = std::min(static_cast<std::size_t>(at), N - 2);
+  const float f = at - static_cast<float>(i);
+  const auto mix = [f](float a, float b) { return static_cast<std::uint8_t>(a + f * (b - a)); };
+  return {mix(stops[i].r, stops[i + 1].r), mix(stops[i].g, stops[i + 1].g),
+          mix(stops[i].b, stops[i + 1].b)};
+}
+
+}  // namespace
+
+Color Spectrum(float t) {
+  constexpr std::array<Stop, 8> kStops = {{{58, 62, 150},
+                                           {52, 110, 214},
+                                           {38, 170, 222},
+                                           {56, 204, 164},
+                                           {140, 220, 104},
+                                           {240, 212, 80},
+                                           {246, 142, 62},
+                                           {226, 70, 62}}};
+  return Blend(kStops, t);
+}
+
+Color Glow(float t) {
+  constexpr std::array<Stop, 5> kStops = {
+      {{34, 40, 62}, {70, 88, 128}, {134, 150, 172}, {228, 206, 168}, {255, 246, 222}}};
+  return Blend(kStops, t);
+}
+
+}  // namespace lidar::gst

@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Numbers to colours.
+#pragma once
+#include "view/canvas.h"
+
+namespace lidar::gst {
+
+/// From cold to warm for 0 .. 1; what lies outside gets the colour of the end.
+Color Spectrum(float t);
+/// From slate to warm white, for brightness.
+Color Glow(float t);
+
+}  // namespace lidar::gst

@@ -1,0 +1,233 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <gst/video/video.h>
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <cstring>
+#include <limits>
+
+#include "common/buffer_map.h"
+#include "common/cloud_info.h"
+#include "support/harness.h"
+
+namespace lidar::gst {
+namespace {
+
+using test::Harness;
+
+struct Point {
+  float x, y, z, intensity;
+};
+
+CloudInfo Info(guint width, guint height = 1) {
+  CloudInfo info;
+  info.width = width;
+  info.height = height;
+  info.point_step = sizeof(Point);
+  info.fields = *PointFields::Parse("x:F32:0,y:F32:4,z:F32:8,intensity:F32:12");
+  info.framerate_n = 10;
+  return info;
+}
+
+BufferPtr Cloud(const std::vector<Point>& points) {
+  return BufferPtr(gst_buffer_new_memdup(points.data(), points.size() * sizeof(Point)));
+}
+
+/// A view of 200 x 100 pixels.
+class View : public ::testing::Test {
+ protected:
+  void Start(const std::string& properties, const CloudInfo& info, const char* format = "RGB") {
+    h_.reset(gst_harness_new_parse(("pointcloudview width=200 height=100 " + properties).c_str()));
+    gst_harness_set_sink_caps_str(h_.get(), (std::string("video/x-raw,format=") + format).c_str());
+    gst_harness_set_src_caps(h_.get(), info.ToCaps());
+  }
+  GstFlowReturn Push(BufferPtr buffer, GstClockTime pts = 0) {
+    GST_BUFFER_PTS(buffer.get()) = pts;
+    return gst_harness_push(h_.get(), buffer.release());
+  }
+  GstFlowReturn PushSlice(const std::vector<Point>& points, GstLidarSlice slice) {
+    BufferPtr buffer = Cloud(points);
+    gst_lidar_buffer_set_slice(buffer.get(), &slice);
+    return Push(std::move(buffer), slice.scan_id * 100 * GST_MSECOND);
+  }
+  void Pull() {
+    frame_.reset(gst_harness_pull(h_.get()));
+    ASSERT_TRUE(frame_);
+    const CapsPtr caps(gst_pad_get_current_caps(h_->sinkpad));
+    ASSERT_TRUE(gst_video_info_from_caps(&video_, caps.get()));
+  }
+  guint Waiting() { return gst_harness_buffers_in_queue(h_.get()); }
+  std::array<int, 3> Pixel(int x, int y) {
+    GstVideoFrame frame;
+    EXPECT_TRUE(gst_video_frame_map(&frame, &video_, frame_.get(), GST_MAP_READ));
+    std::array<int, 3> rgb{};
+    for (guint c = 0; c < 3; ++c) {
+      const auto* data = static_cast<const guint8*>(GST_VIDEO_FRAME_COMP_DATA(&frame, c));
+      rgb[c] = data[y * GST_VIDEO_FRAME_COMP_STRIDE(&frame, c) +
+                    x * GST_VIDEO_FRAME_COMP_PSTRIDE(&frame, c)];
+    }
+    gst_video_frame_unmap(&frame);
+    return rgb;
+  }
+  /// Points are bright, the background is dark, the rings between.
+  bool IsPoint(int x, int y) {
+    const auto p = Pixel(x, y);
+    return std::max({p[0], p[1], p[2]}) > 130;
+  }
+
+  Harness h_;
+  BufferPtr frame_;
+  GstVideoInfo video_;
+};
+
+TEST_F(View, FromAboveAPointLiesWhereItIs) {
+  Start("view=top extent=100 point-size=1", Info(2));
+  ASSERT_EQ(Push(Cloud({{25, 0, 0, 1}, {0, 15, 0, 1}}), 7), GST_FLOW_OK);
+  Pull();
+  EXPECT_EQ(GST_VIDEO_INFO_WIDTH(&video_), 200);
+  EXPECT_EQ(GST_BUFFER_PTS(frame_.get()), 7U);
+  EXPECT_EQ(GST_BUFFER_DURATION(frame_.get()), 100 * GST_MSECOND);
+  EXPECT_TRUE(IsPoint(150, 50));  // forward is to the right
+  EXPECT_TRUE(IsPoint(100, 20));  // left is up
+  EXPECT_FALSE(IsPoint(50, 50));
+}
+
+TEST_F(View, WhatIsHighHidesWhatIsLowFromAbove) {
+  Start("view=top point-size=3 color-by=height color-min=0 color-max=10", Info(2));
+  Push(Cloud({{25, 0, 10, 1}, {25, 0, 0, 1}}));
+  Pull();
+  const auto p = Pixel(150, 50);
+  EXPECT_GT(p[0], p[2]);  // the warm end
+}
+
+TEST_F(View, InPerspectiveTheTargetIsInTheMiddle) {
+  Start("eye-x=-10 eye-y=3 eye-z=5 target-x=20 target-y=-2 target-z=1 point-size=3", Info(2));
+  Push(Cloud({{20, -2, 1, 1}, {-20, 0, 0, 1}}));
+  Pull();
+  EXPECT_TRUE(IsPoint(100, 50));
+}
+
+TEST_F(View, TheRangeImageHasForwardInTheMiddleAndNothingWhereNothingReturned) {
+  CloudInfo info = Info(4, 2);
+  info.sensor_model.emplace();
+  info.sensor_model->columns_per_scan = 4;
+  info.sensor_model->beams = {{0, 5, 1}, {0, -5, 0}};
+  Start("view=range color-by=range", info);
+  const Point hit{20, 0, 0, 1};
+  const Point none{0, 0, 0, 0};
+  Push(Cloud({none, hit, none, none, none, none, hit, none}));
+  Pull();
+  // Column 1 of the upper beam is destaggered by one to column 2, where the lower one is.
+  for (const int x : {25, 75, 175}) EXPECT_FALSE(IsPoint(x, 25) || IsPoint(x, 75)) << x;
+  EXPECT_TRUE(IsPoint(125, 25));
+  EXPECT_TRUE(IsPoint(125, 75));
+}
+
+TEST_F(View, AScanIsOnePictureHoweverItIsCut) {
+  Start("view=top point-size=1", Info(1));
+  for (guint scan = 0; scan < 3; ++scan) {
+    ASSERT_EQ(PushSlice({{25, 0, 0, 1}}, {scan, 0, 2, 0}), GST_FLOW_OK);
+    EXPECT_EQ(Waiting(), 0U);
+    ASSERT_EQ(PushSlice({{0, 15, 0, 1}}, {scan, 1, 2, 1}), GST_FLOW_OK);
+    Pull();
+    EXPECT_EQ(GST_BUFFER_PTS(frame_.get()), scan * 100 * GST_MSECOND);
+    EXPECT_TRUE(IsPoint(150, 50) && IsPoint(100, 20));
+    GstLidarSlice slice{};
+    EXPECT_FALSE(gst_lidar_buffer_get_slice(frame_.get(), &slice));
+  }
+}
+
+TEST_F(View, AScanWhoseLastSliceIsLostShowsWhenTheNextBegins) {
+  Start("view=top point-size=1", Info(1));
+  PushSlice({{25, 0, 0, 1}}, {0, 0, 2, 0});
+  PushSlice({{0, 15, 0, 1}}, {1, 0, 2, 0});
+  Pull();
+  EXPECT_EQ(GST_BUFFER_PTS(frame_.get()), 0U);
+  EXPECT_TRUE(IsPoint(150, 50));
+  EXPECT_FALSE(IsPoint(100, 20));
+}
+
+TEST_F(View, EveryFormatShowsTheSameColours) {
+  std::array<int, 3> expected{};
+  for (const char* format : {"RGB", "BGR", "RGBx", "BGRx", "RGBA", "BGRA"}) {
+    Start("view=top point-size=1", Info(1), format);
+    Push(Cloud({{25, 0, 0, 1}}));
+    Pull();
+    if (expected[0] == 0) expected = Pixel(150, 50);
+    EXPECT_EQ(Pixel(150, 50), expected) << format;
+  }
+}
+
+TEST_F(View, SettingsMayChangeWhileItPlays) {
+  Start("view=top point-size=1", Info(1));
+  Push(Cloud({{25, 0, 0, 1}}));
+  Pull();
+  GstElement* element = gst_harness_find_element(h_.get(), "pointcloudview");
+  g_object_set(element, "extent", 50.0, nullptr);
+  gst_object_unref(element);
+  Push(Cloud({{12.5F, 0, 0, 1}}));
+  Pull();
+  EXPECT_TRUE(IsPoint(150, 50));
+}
+
+TEST_F(View, DrawsNoNonsense) {
+  constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
+  constexpr float kInf = std::numeric_limits<float>::infinity();
+  for (const char* view : {"top", "perspective", "range"}) {
+    for (const char* color : {"height", "intensity", "range", "ring"}) {
+      Start(std::string("view=") + view + " color-by=" + color, Info(6));
+      EXPECT_EQ(Push(Cloud({{kNan, 0, 0, kNan},
+                            {kInf, 1, 1, kInf},
+                            {3e38F, 3e38F, 3e38F, 1},
+                            {-16, 0, 9, 0},
+                            {1e-30F, 0, 0, 0},
+                            {0, 0, 0, 0}})),
+                GST_FLOW_OK);
+      Pull();
+    }
+  }
+}
+
+TEST_F(View, RefusesCloudsWithoutCoordinates) {
+  CloudInfo info = Info(1);
+  info.fields = *PointFields::Parse("range:U32:0");
+  Start("", info);
+  EXPECT_EQ(Push(Cloud({{1, 1, 1, 1}})), GST_FLOW_NOT_NEGOTIATED);
+}
+
+TEST_F(View, RefusesACloudOfAnotherSizeThanItsCaps) {
+  Start("", Info(4));
+  EXPECT_EQ(Push(Cloud({{1, 1, 1, 1}})), GST_FLOW_ERROR);
+}
+
+TEST_F(View, AFlushForgetsThePictureThatWasBegun) {
+  Start("view=top point-size=1", Info(1));
+  PushSlice({{25, 0, 0, 1}}, {0, 0, 2, 0});
+  gst_harness_push_event(h_.get(), gst_event_new_flush_start());
+  gst_harness_push_event(h_.get(), gst_event_new_flush_stop(TRUE));
+  GstSegment segment;
+  gst_segment_init(&segment, GST_FORMAT_TIME);
+  gst_harness_push_event(h_.get(), gst_event_new_segment(&segment));
+  PushSlice({{0, 15, 0, 1}}, {1, 0, 1, 0});
+  Pull();
+  EXPECT_FALSE(IsPoint(150, 50));
+  EXPECT_TRUE(IsPoint(100, 20));
+  EXPECT_EQ(Waiting(), 0U);
+}
+
+TEST_F(View, StartsAfreshAfterAStateCycle) {
+  Start("view=top point-size=1", Info(1));
+  for (int cycle = 0; cycle < 3; ++cycle) {
+    PushSlice({{25, 0, 0, 1}}, {0, 0, 2, 0});
+    gst_element_set_state(h_->element, GST_STATE_NULL);
+    gst_harness_play(h_.get());
+    gst_harness_set_src_caps(h_.get(), Info(1).ToCaps());
+    PushSlice({{0, 15, 0, 1}}, {5, 0, 1, 0});
+    Pull();
+    EXPECT_FALSE(IsPoint(150, 50));
+  }
+}
+
+}  // namespace
+}  // namespace lidar::gst
