@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Intensities as a few levels, and back.
+#pragma once
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+
+namespace lidar::codec {
+
+/// The largest intensity that a slice's levels stand for: 0 .. 1 as in KITTI, or integers of 8 or
+/// 16 bits as sensors give them. What is larger is cut off.
+enum class FullScale : std::uint8_t { kOne = 0, kByte = 1, kWord = 2 };
+
+class IntensityScale {
+ public:
+  static constexpr unsigned kMaxBits = 8;
+
+  constexpr IntensityScale() = default;
+  constexpr IntensityScale(FullScale full, unsigned bits) : full_(full), bits_(bits) {
+    if (full == FullScale::kOne) {
+      step_ = 1.0F / static_cast<float>((1U << bits) - 1);
+    } else {
+      // Each level stands for as many integers; their mean comes back. 8 bits of 8 are exact.
+      const float integers = full == FullScale::kByte ? 256.0F : 65536.0F;
+      step_ = integers / static_cast<float>(1U << bits);
+      offset_ = (step_ - 1) / 2;
+    }
+  }
+  static FullScale Fitting(float largest) {
+    if (largest <= 1.0F) return FullScale::kOne;
+    return largest <= 255.0F ? FullScale::kByte : FullScale::kWord;
+  }
+
+  unsigned bits() const { return bits_; }
+  FullScale full() const { return full_; }
+  /// NaN becomes level 0.
+  std::uint8_t LevelOf(float intensity) const {
+    const float level = (intensity - offset_) / step_ + 0.5F;
+    const float top = static_cast<float>((1U << bits_) - 1);
+    return static_cast<std::uint8_t>(level > 0 ? std::min(level, top) : 0.0F);
+  }
+  /// This scale's level for a level of the 8-bit scale of the same size.
+  std::uint8_t Coarsen(std::uint8_t fine) const {
+    if (full_ != FullScale::kOne) return static_cast<std::uint8_t>(fine >> (kMaxBits - bits_));
+    return static_cast<std::uint8_t>((fine * ((1U << bits_) - 1) + 127) / 255);
+  }
+  float ValueOf(std::uint8_t level) const { return static_cast<float>(level) * step_ + offset_; }
+
+ private:
+  FullScale full_ = FullScale::kByte;
+  unsigned bits_ = 0;
+  float step_ = 1;
+  float offset_ = 0;
+};
+
+}  // namespace lidar::codec

@@ -1,0 +1,125 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "draco/codec/range_codec.h"
+
+#include <algorithm>
+
+namespace lidar::codec {
+namespace {
+
+// Ranges stay below 2^31 mm, so that sums and differences of bins fit an int32.
+constexpr std::uint32_t kMaxRangeMm = 0x7FFFFFFF;
+
+}  // namespace
+
+bool RangeEncoder::Encode(const RangeImage& image, const RangeSettings& settings,
+                          std::vector<std::uint8_t>* out) {
+  const bool with_levels = settings.intensity.bits() > 0;
+  lists_.values.clear();
+  if (image.beams != alignment_.beams() || image.columns == 0 ||
+      image.columns > alignment_.columns_per_scan() ||
+      image.first_column >= alignment_.columns_per_scan() || image.ranges.size() != image.size() ||
+      (with_levels && image.intensity.size() != image.size())) {
+    return false;
+  }
+  CollectReturns(image, settings);
+  EncodeMask(image.columns);
+  if (!EncodePayload(settings)) return false;
+  RangeHeader header;
+  header.coder = settings.coder;
+  header.beams = image.beams;
+  header.first_column = image.first_column;
+  header.columns = image.columns;
+  header.grid = settings.grid;
+  header.intensity = settings.intensity;
+  header.mask_size = static_cast<std::uint32_t>(mask_bytes_.size());
+  header.payload_size = static_cast<std::uint32_t>(payload_.size());
+  header.Write(out);
+  out->insert(out->end(), mask_bytes_.begin(), mask_bytes_.end());
+  out->insert(out->end(), payload_.begin(), payload_.end());
+  return true;
+}
+
+void RangeEncoder::CollectReturns(const RangeImage& image, const RangeSettings& settings) {
+  const bool with_levels = settings.intensity.bits() > 0;
+  lists_.levels.clear();
+  mask_.resize(image.size());
+  for (std::size_t i = 0; i < image.size(); ++i) {
+    const std::uint32_t range = std::min(image.ranges[i], kMaxRangeMm);
+    mask_[i] = range != 0 ? 1 : 0;
+    if (range == 0) continue;
+    lists_.values.push_back(static_cast<std::int32_t>(settings.grid.BinOf(range)));
+    if (with_levels) lists_.levels.push_back(settings.intensity.Coarsen(image.intensity[i]));
+  }
+}
+
+/// No bytes at all stand for a mask without a gap.
+void RangeEncoder::EncodeMask(std::uint32_t columns) {
+  mask_bytes_.clear();
+  if (returns() == mask_.size()) return;
+  rans_.Clear();
+  mask_coder_.Encode(mask_, alignment_, columns, &rans_);
+  rans_.Finish(&mask_bytes_);
+}
+
+bool RangeEncoder::EncodePayload(const RangeSettings& settings) {
+  payload_.clear();
+  if (returns() == 0) return true;
+  return EncodeIntegers(lists_, settings.coder == RangeCoder::kDraco, &payload_);
+}
+
+bool RangeDecoder::Decode(ByteReader* reader, std::size_t max_points, RangeImage* image,
+                          IntensityScale* scale) {
+  const auto header = RangeHeader::Read(reader);
+  if (!header || header->beams != alignment_.beams() ||
+      header->columns > alignment_.columns_per_scan() ||
+      header->first_column >= alignment_.columns_per_scan() ||
+      std::size_t{header->beams} * header->columns > max_points) {
+    return false;
+  }
+  image->beams = header->beams;
+  image->columns = header->columns;
+  image->first_column = header->first_column;
+  *scale = header->intensity;
+  const ByteView mask = reader->Bytes(header->mask_size);
+  const ByteView payload = reader->Bytes(header->payload_size);
+  const bool has_levels = header->intensity.bits() > 0;
+  std::size_t returns = 0;
+  mask_.assign(image->size(), 1);
+  if (!DecodeMask(mask, header->columns, &returns)) return false;
+  lists_.values.clear();
+  lists_.levels.clear();
+  if (returns == 0
+          ? !payload.empty()
+          : !DecodeIntegers(payload, static_cast<std::uint32_t>(returns), has_levels, &lists_)) {
+    return false;
+  }
+  image->intensity.assign(has_levels ? image->size() : 0, 0);
+  return Scatter(header->grid, image);
+}
+
+bool RangeDecoder::DecodeMask(ByteView bytes, std::uint32_t columns, std::size_t* returns) {
+  if (!bytes.empty()) {
+    RansDecoder rans(bytes);
+    mask_coder_.Decode(alignment_, columns, &rans, &mask_);
+    if (!rans.AtEnd()) return false;
+  }
+  *returns = static_cast<std::size_t>(std::count(mask_.begin(), mask_.end(), 1));
+  return true;
+}
+
+bool RangeDecoder::Scatter(const RangeGrid& grid, RangeImage* image) const {
+  const std::uint32_t last_bin = grid.BinOf(kMaxRangeMm);
+  image->ranges.assign(image->size(), 0);
+  std::size_t next = 0;
+  for (std::size_t i = 0; i < image->size(); ++i) {
+    if (mask_[i] == 0) continue;
+    const auto bin = static_cast<std::uint32_t>(lists_.values[next]);
+    if (bin > last_bin) return false;
+    image->ranges[i] = grid.RangeOf(bin);
+    if (!image->intensity.empty()) image->intensity[i] = lists_.levels[next];
+    ++next;
+  }
+  return true;
+}
+
+}  // namespace lidar::codec

@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Range geometry: slices of an organised scan, coded as range integers.
+#pragma once
+#include <cstdint>
+#include <vector>
+
+#include "base/byte_reader.h"
+#include "cloud/sensor_model.h"
+#include "draco/codec/azimuth_alignment.h"
+#include "draco/codec/draco_integers.h"
+#include "draco/codec/mask_coder.h"
+#include "draco/codec/range_header.h"
+#include "draco/codec/range_image.h"
+
+namespace lidar::codec {
+
+struct RangeSettings {
+  RangeCoder coder = RangeCoder::kDraco;
+  RangeGrid grid;
+  IntensityScale intensity;  // 0 bits: geometry only
+};
+
+/// Encodes slices of one sensor. Keeps its buffers between slices; not for several threads at once.
+class RangeEncoder {
+ public:
+  explicit RangeEncoder(const SensorModel& model) : alignment_(model) {}
+
+  /// Appends one block to `out` and returns true; false where the image does not fit the sensor.
+  /// The image's levels are of 8 bits and become those of settings.intensity. An image without any
+  /// return gives a block that decodes to such an image.
+  bool Encode(const RangeImage& image, const RangeSettings& settings,
+              std::vector<std::uint8_t>* out);
+  /// Returns in the image encoded last.
+  std::size_t returns() const { return lists_.values.size(); }
+
+ private:
+  void CollectReturns(const RangeImage& image, const RangeSettings& settings);
+  void EncodeMask(std::uint32_t columns);
+  bool EncodePayload(const RangeSettings& settings);
+
+  AzimuthAlignment alignment_;
+  MaskCoder mask_coder_;
+  RansEncoder rans_;
+  Mask mask_;
+  IntegerLists lists_;
+  std::vector<std::uint8_t> mask_bytes_;
+  std::vector<std::uint8_t> payload_;
+};
+
+/// Decodes blocks of one sensor; any bytes give an image or false.
+class RangeDecoder {
+ public:
+  explicit RangeDecoder(const SensorModel& model) : alignment_(model) {}
+
+  /// The next block of `reader`; `scale` says what the levels stand for. False, with `image`
+  /// undefined, for a block that is damaged, of another sensor, or of more than `max_points`.
+  bool Decode(ByteReader* reader, std::size_t max_points, RangeImage* image, IntensityScale* scale);
+
+ private:
+  bool DecodeMask(ByteView bytes, std::uint32_t columns, std::size_t* returns);
+  bool Scatter(const RangeGrid& grid, RangeImage* image) const;
+
+  AzimuthAlignment alignment_;
+  MaskCoder mask_coder_;
+  Mask mask_;
+  IntegerLists lists_;
+};
+
+}  // namespace lidar::codec

@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "draco/codec/range_header.h"
+
+#include "base/byte_writer.h"
+
+namespace lidar::codec {
+namespace {
+
+/// LEB128: seven bits a byte, the lowest first.
+void WriteVarint(std::uint32_t value, ByteWriter* writer) {
+  for (; value >= 0x80; value >>= 7) writer->U8(static_cast<std::uint8_t>(value | 0x80));
+  writer->U8(static_cast<std::uint8_t>(value));
+}
+
+/// At most four bytes, so values below 2^28; longer ones make `*ok` false.
+std::uint32_t ReadVarint(ByteReader* reader, bool* ok) {
+  std::uint32_t value = 0;
+  for (unsigned shift = 0; shift < 28; shift += 7) {
+    const std::uint8_t byte = reader->U8();
+    value |= (byte & 0x7FU) << shift;
+    if (byte < 0x80) return value;
+  }
+  *ok = false;
+  return 0;
+}
+
+bool IsKnown(std::uint8_t coder) {
+  return coder >= static_cast<std::uint8_t>(RangeCoder::kDraco) &&
+         coder <= static_cast<std::uint8_t>(RangeCoder::kAdaptive);
+}
+
+}  // namespace
+
+void RangeHeader::Write(std::vector<std::uint8_t>* out) const {
+  ByteWriter writer(out);
+  writer.U8(static_cast<std::uint8_t>(kVersion << 4 | static_cast<std::uint8_t>(coder)));
+  writer.U8(
+      static_cast<std::uint8_t>(intensity.bits() | static_cast<unsigned>(intensity.full()) << 4));
+  for (const std::uint32_t v :
+       {beams, first_column, columns, grid.unit_mm(), grid.cells(), mask_size, payload_size}) {
+    WriteVarint(v, &writer);
+  }
+}
+
+std::optional<RangeHeader> RangeHeader::Read(ByteReader* reader) {
+  const std::uint8_t first = reader->U8();
+  const std::uint8_t second = reader->U8();
+  const unsigned bits = second & 15;
+  const unsigned full = second >> 4;
+  bool ok = true;
+  RangeHeader h;
+  h.beams = ReadVarint(reader, &ok);
+  h.first_column = ReadVarint(reader, &ok);
+  h.columns = ReadVarint(reader, &ok);
+  const std::uint32_t unit_mm = ReadVarint(reader, &ok);
+  const std::uint32_t cells = ReadVarint(reader, &ok);
+  h.mask_size = ReadVarint(reader, &ok);
+  h.payload_size = ReadVarint(reader, &ok);
+  if (!ok || !reader->ok() || first >> 4 != kVersion || !IsKnown(first & 15) ||
+      bits > IntensityScale::kMaxBits || full > static_cast<unsigned>(FullScale::kWord) ||
+      h.beams == 0 || h.beams > kMaxBeams || h.columns == 0 || h.columns > kMaxColumns ||
+      h.first_column >= kMaxColumns || unit_mm > RangeGrid::kMaxUnitMm ||
+      cells > RangeGrid::kMaxCells) {
+    return std::nullopt;
+  }
+  h.coder = static_cast<RangeCoder>(first & 15);
+  h.intensity = IntensityScale(static_cast<FullScale>(full), bits);
+  h.grid = RangeGrid(unit_mm, cells);
+  if (!h.grid.IsValid() || h.grid.cells() != cells ||
+      std::uint64_t{h.mask_size} + h.payload_size > reader->remaining()) {
+    return std::nullopt;
+  }
+  return h;
+}
+
+}  // namespace lidar::codec

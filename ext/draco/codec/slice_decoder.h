@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Decodes the slices of one stream; any bytes give a cloud or nothing.
+#pragma once
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "cloud/range_projection.h"
+#include "draco/codec/slice_encoder.h"
+
+namespace lidar::codec {
+
+/// For one thread at a time.
+class SliceDecoder {
+ public:
+  /// `geometry` is not kAuto; kRange needs a sensor model.
+  SliceDecoder(const CloudFormat& format, Geometry geometry, std::uint32_t max_points);
+
+  struct Shape {
+    std::uint32_t width = 0;
+    std::uint32_t height = 1;
+    std::uint32_t first_column = 0;
+    bool is_dense = true;  // no point is missing
+  };
+  /// Decodes a slice and keeps it for Write(). None for a stream that is damaged, of another
+  /// sensor, or larger than max_points.
+  std::optional<Shape> Decode(ByteView stream);
+  /// Writes width * height points of the format.
+  void Write(std::uint8_t* raw) const;
+
+ private:
+  std::optional<Shape> DecodeRange(ByteView stream);
+
+  CloudLayout layout_;
+  std::uint32_t max_points_;
+  std::optional<RangeDecoder> range_decoder_;
+  std::optional<RangeProjection> projection_;
+  RangeImage image_;
+  IntensityScale scale_;
+  XyzCloud cloud_;
+};
+
+}  // namespace lidar::codec

@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "draco/codec/slice_encoder.h"
+
+#include <algorithm>
+
+namespace lidar::codec {
+
+std::optional<SliceEncoder> SliceEncoder::Create(const CloudFormat& format, Geometry geometry,
+                                                 RangeCoder coder) {
+  const PointFields& fields = format.layout.fields;
+  const bool can_range = format.sensor_model &&
+                         format.sensor_model->beams.size() == format.height &&
+                         fields.Has("range", FieldType::kU32);
+  if (geometry == Geometry::kAuto) geometry = can_range ? Geometry::kRange : Geometry::kXyz;
+  if (geometry == Geometry::kRange ? !can_range : !fields.HasPackedXyz()) return std::nullopt;
+  SliceEncoder encoder;
+  encoder.format_ = format;
+  encoder.coder_ = coder;
+  if (geometry == Geometry::kRange) encoder.range_encoder_.emplace(*format.sensor_model);
+  return encoder;
+}
+
+std::string SliceEncoder::Mode(unsigned level) const {
+  if (!range_encoder_) return level == 0 ? "xyz-sequential" : "xyz-kd" + std::to_string(level);
+  switch (coder_) {
+    case RangeCoder::kDraco:
+      return "range-draco";
+    case RangeCoder::kResidual:
+      return "range-residual";
+    case RangeCoder::kAdaptive:
+      break;
+  }
+  return "range-adaptive";
+}
+
+void SliceEncoder::Load(ByteView raw, std::uint32_t first_column, bool with_intensity) {
+  has_intensity_ = with_intensity && HasIntensity(format_.layout.fields);
+  if (!range_encoder_) {
+    ReadXyz(raw, format_.layout, has_intensity_, &cloud_);
+    returns_ = cloud_.size();
+    extent_m_ = LongestSide(cloud_);
+    return;
+  }
+  image_.beams = format_.height;
+  image_.columns =
+      static_cast<std::uint32_t>(raw.size / format_.layout.point_step / format_.height);
+  image_.first_column = first_column % format_.sensor_model->columns_per_scan;
+  full_scale_ = ReadRangeImage(raw, format_.layout, has_intensity_, &image_);
+  const auto& ranges = image_.ranges;
+  returns_ = ranges.size() - static_cast<std::size_t>(std::count(ranges.begin(), ranges.end(), 0U));
+  extent_m_ = ranges.empty() ? 0 : 1e-3 * *std::max_element(ranges.begin(), ranges.end());
+  // A cloud that was filtered or moved may have ranges between the sensor's own.
+  unit_mm_ = format_.sensor_model->range_unit_mm;
+  if (!AreMultiples(ranges, unit_mm_)) unit_mm_ = 1;
+}
+
+void SliceEncoder::Thin(const std::vector<bool>& kept) {
+  if (range_encoder_) {
+    for (std::uint32_t beam = 0; beam < image_.beams; ++beam) {
+      const auto row = image_.ranges.begin() + beam * std::ptrdiff_t{image_.columns};
+      if (!kept[beam]) std::fill_n(row, image_.columns, 0);
+    }
+    return;
+  }
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < cloud_.size(); ++i) {
+    if (!kept[i]) continue;
+    std::copy_n(&cloud_.xyz[3 * i], 3, &cloud_.xyz[3 * count]);
+    if (!cloud_.intensity.empty()) cloud_.intensity[count] = cloud_.intensity[i];
+    ++count;
+  }
+  cloud_.xyz.resize(3 * count);
+  if (!cloud_.intensity.empty()) cloud_.intensity.resize(count);
+}
+
+SliceResult SliceEncoder::Encode(const SliceSettings& settings, EncodedSlice* slice) {
+  slice->bytes.clear();
+  return range_encoder_ ? EncodeRange(settings, slice) : EncodeXyz(settings, slice);
+}
+
+SliceResult SliceEncoder::EncodeRange(const SliceSettings& settings, EncodedSlice* slice) {
+  RangeSettings range;
+  range.coder = coder_;
+  range.intensity =
+      IntensityScale(full_scale_, image_.intensity.empty() ? 0 : settings.intensity_bits);
+  range.grid = RangeGrid::ForError(settings.max_error_m, unit_mm_);
+  if (settings.step_m > 0) {
+    const auto asked = RangeGrid::ForStep(settings.step_m, unit_mm_);
+    if (asked.cells() < range.grid.cells()) range.grid = asked;
+  }
+  if (!range_encoder_->Encode(image_, range, &slice->bytes)) return SliceResult::kEmpty;
+  slice->returns = range_encoder_->returns();
+  slice->step_m = range.grid.step_m();
+  slice->error_m = range.grid.error_m();
+  return SliceResult::kEncoded;
+}
+
+SliceResult SliceEncoder::EncodeXyz(const SliceSettings& settings, EncodedSlice* slice) {
+  if (cloud_.size() == 0) return SliceResult::kEmpty;
+  XyzSettings xyz;
+  xyz.max_error_m = settings.max_error_m;
+  xyz.step_m = settings.step_m;
+  xyz.level = static_cast<int>(settings.level);
+  xyz.method = settings.level == 0 ? XyzMethod::kSequential : XyzMethod::kKdTree;
+  xyz.intensity_bits = settings.intensity_bits;
+  XyzResult result;
+  if (!codec::EncodeXyz(cloud_, xyz, &slice->bytes, &result)) return SliceResult::kOutOfReach;
+  slice->returns = cloud_.size();
+  slice->step_m = result.step_m;
+  slice->error_m = result.error_m;
+  return SliceResult::kEncoded;
+}
+
+}  // namespace lidar::codec

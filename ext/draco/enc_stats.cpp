@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "draco/enc_stats.h"
+
+namespace lidar::gst {
+
+void EncStats::OnScan(double scans_per_second) {
+  if (scans_in_ > 0) CloseScan();
+  scans_per_second_ = scans_per_second;
+  ++scans_in_;
+}
+
+void EncStats::CloseScan() {
+  constexpr double kGain = 0.1;
+  const double rate = 8 * static_cast<double>(scan_bytes_) * scans_per_second_;
+  bitrate_ += (scans_in_ == 1 ? 1 : kGain) * (rate - bitrate_);
+  scan_bytes_ = 0;
+  scan_has_slices_ = false;
+  scan_was_skipped_ = false;
+}
+
+void EncStats::OnSlice(const LoopResult& result, const codec::EncodedSlice& slice,
+                       GstClockTime encode_time) {
+  if (result.skipped) {
+    ++slices_skipped_;
+    if (!scan_was_skipped_) ++scans_skipped_;
+    scan_was_skipped_ = true;
+    return;
+  }
+  if (result.result == codec::SliceResult::kEmpty) ++slices_empty_;
+  if (result.result == codec::SliceResult::kOutOfReach) ++out_of_reach_;
+  if (result.result != codec::SliceResult::kEncoded) return;
+  if (!scan_has_slices_) ++scans_encoded_;
+  scan_has_slices_ = true;
+  ++slices_;
+  bytes_ += slice.bytes.size();
+  scan_bytes_ += slice.bytes.size();
+  returns_ += slice.returns;
+  encode_time_ += encode_time;
+  last_encode_time_ = encode_time;
+  last_.step_m = slice.step_m;
+  last_.error_m = slice.error_m;
+  last_result_ = result;
+}
+
+GstStructure* EncStats::ToStructure(guint target_bps) const {
+  const double bits = 8 * static_cast<double>(bytes_);
+  return gst_structure_new(
+      "dracoenc-stats", "scans-in", G_TYPE_UINT64, scans_in_, "scans-encoded", G_TYPE_UINT64,
+      scans_encoded_, "scans-skipped", G_TYPE_UINT64, scans_skipped_, "slices", G_TYPE_UINT64,
+      slices_, "slices-skipped", G_TYPE_UINT64, slices_skipped_, "slices-empty", G_TYPE_UINT64,
+      slices_empty_, "slices-out-of-reach", G_TYPE_UINT64, out_of_reach_, "bytes", G_TYPE_UINT64,
+      bytes_, "returns", G_TYPE_UINT64, returns_, "bits-per-return", G_TYPE_DOUBLE,
+      returns_ > 0 ? bits / static_cast<double>(returns_) : 0.0, "step", G_TYPE_DOUBLE,
+      last_.step_m, "error-bound", G_TYPE_DOUBLE, last_.error_m, "intensity-bits", G_TYPE_UINT,
+      last_result_.intensity_bits, "keep-fraction", G_TYPE_DOUBLE, last_result_.keep_fraction,
+      "target-bitrate", G_TYPE_UINT, target_bps, "bitrate", G_TYPE_UINT,
+      static_cast<guint>(bitrate_), "encode-time", G_TYPE_UINT64, last_encode_time_,
+      "mean-encode-time", G_TYPE_UINT64, slices_ > 0 ? encode_time_ / slices_ : 0, nullptr);
+}
+
+}  // namespace lidar::gst

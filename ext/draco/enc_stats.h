@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// What dracoenc counts.
+#pragma once
+#include <gst/gst.h>
+
+#include <cstdint>
+
+#include "draco/codec/slice_encoder.h"
+#include "draco/rate_loop.h"
+
+namespace lidar::gst {
+
+class EncStats {
+ public:
+  void OnScan(double scans_per_second);
+  void OnSlice(const LoopResult& result, const codec::EncodedSlice& slice,
+               GstClockTime encode_time);
+  /// transfer full
+  GstStructure* ToStructure(guint target_bps) const;
+  guint64 slices_out_of_reach() const { return out_of_reach_; }
+
+ private:
+  void CloseScan();
+
+  guint64 scans_in_ = 0;
+  guint64 scans_encoded_ = 0;
+  guint64 scans_skipped_ = 0;
+  guint64 slices_ = 0;
+  guint64 slices_skipped_ = 0;
+  guint64 slices_empty_ = 0;
+  guint64 out_of_reach_ = 0;
+  guint64 bytes_ = 0;
+  guint64 returns_ = 0;
+  GstClockTime encode_time_ = 0;
+  GstClockTime last_encode_time_ = 0;
+  codec::EncodedSlice last_;  // without its bytes
+  LoopResult last_result_;
+  bool scan_has_slices_ = false;
+  bool scan_was_skipped_ = false;
+  guint64 scan_bytes_ = 0;
+  double bitrate_ = 0;  // smoothed over about ten scans
+  double scans_per_second_ = 10;
+};
+
+}  // namespace lidar::gst

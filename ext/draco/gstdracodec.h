@@ -1,0 +1,10 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// dracodec: Draco slices to clouds.
+#pragma once
+#include <gst/gst.h>
+
+G_BEGIN_DECLS
+#define GST_TYPE_LIDAR_DRACO_DEC (gst_lidar_draco_dec_get_type())
+G_DECLARE_FINAL_TYPE(GstLidarDracoDec, gst_lidar_draco_dec, GST, LIDAR_DRACO_DEC, GstElement)
+GST_ELEMENT_REGISTER_DECLARE(dracodec)
+G_END_DECLS

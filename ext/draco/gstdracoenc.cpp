@@ -1,0 +1,478 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+/**
+ * SECTION:element-dracoenc
+ *
+ * Encodes point clouds slice by slice, to a bitrate and within an error.
+ *
+ * |[
+ * gst-launch-1.0 lidartestsrc num-buffers=80 ! dracoenc max-error=0.02 ! dracodec ! fakesink
+ * ]|
+ */
+#include "draco/gstdracoenc.h"
+
+#include <memory>
+#include <mutex>
+#include <optional>
+
+#include "common/buffer_map.h"
+#include "common/cloud_info.h"
+#include "common/properties.h"
+#include "common/refs.h"
+#include "draco/enc_stats.h"
+#include "draco/encoded_caps.h"
+#include "draco/rate_loop.h"
+#include "rate/model_file.h"
+
+GST_DEBUG_CATEGORY_STATIC(gst_lidar_draco_enc_debug);
+#define GST_CAT_DEFAULT gst_lidar_draco_enc_debug
+
+namespace {
+
+using lidar::DataRate;
+using lidar::codec::Geometry;
+using lidar::codec::RangeCoder;
+using lidar::codec::SliceResult;
+using lidar::gst::EnumField;
+using lidar::rate::DegradationPreference;
+using lidar::rate::RateModel;
+
+template <class E>
+constexpr gint Int(E value) {
+  return static_cast<gint>(value);
+}
+
+const GEnumValue kGeometries[] = {
+    {Int(Geometry::kAuto), "range where the caps carry ranges and a sensor model", "auto"},
+    {Int(Geometry::kXyz), "Plain Draco files", "xyz"},
+    {Int(Geometry::kRange), "Ranges of an organised scan", "range"},
+    {0, nullptr, nullptr}};
+const GEnumValue kCoders[] = {
+    {Int(RangeCoder::kDraco), "Draco, with its own delta prediction", "draco"},
+    {Int(RangeCoder::kResidual), "Prediction from neighbouring beams, then Draco", "residual"},
+    {Int(RangeCoder::kAdaptive), "Prediction from neighbouring beams, then adaptive rANS",
+     "adaptive"},
+    {0, nullptr, nullptr}};
+const GEnumValue kRateModels[] = {
+    {Int(RateModel::kAdaptive), "Log size against log step, corrected by every slice", "adaptive"},
+    {Int(RateModel::kPaper), "Second-order polynomial of the paper, fixed", "paper"},
+    {0, nullptr, nullptr}};
+const GEnumValue kPreferences[] = {
+    {Int(DegradationPreference::kMaintainAccuracy), "Skip whole scans, evenly",
+     "maintain-accuracy"},
+    {Int(DegradationPreference::kMaintainFramerate), "Thin the points of every scan, evenly",
+     "maintain-framerate"},
+    {Int(DegradationPreference::kBalanced), "Both by the same factor", "balanced"},
+    {0, nullptr, nullptr}};
+
+GType RegisterEnum(gsize* type, const char* name, const GEnumValue* values) {
+  if (g_once_init_enter(type)) {
+    const GType registered = g_enum_register_static(name, values);
+    gst_type_mark_as_plugin_api(registered, static_cast<GstPluginAPIFlags>(0));
+    g_once_init_leave(type, registered);
+  }
+  return *type;
+}
+GType GeometryType() {
+  static gsize type = 0;
+  return RegisterEnum(&type, "GstLidarDracoEncGeometry", kGeometries);
+}
+GType CoderType() {
+  static gsize type = 0;
+  return RegisterEnum(&type, "GstLidarDracoEncRangeCoder", kCoders);
+}
+GType RateModelType() {
+  static gsize type = 0;
+  return RegisterEnum(&type, "GstLidarDracoEncRateModel", kRateModels);
+}
+GType PreferenceType() {
+  static gsize type = 0;
+  return RegisterEnum(&type, "GstLidarDracoEncDegradationPreference", kPreferences);
+}
+
+struct Settings {
+  guint bitrate_bps = 0;
+  gdouble max_error_m = 0.02;
+  gint geometry = Int(Geometry::kAuto);
+  gint range_coder = Int(lidar::codec::SliceEncoder::kDefaultRangeCoder);
+  gdouble step_m = 0;
+  guint level = 7;
+  guint intensity_bits = 5;
+  gint rate_model = Int(RateModel::kAdaptive);
+  std::string model_location;
+  gint degradation = Int(DegradationPreference::kMaintainAccuracy);
+};
+
+using Row = lidar::gst::Property<Settings>;
+const std::array<Row, 10> kProperties = {{
+    {"bitrate",
+     "Bitrate of the encoded slices [bit/s]; 0: constant quality at the coarsest step that "
+     "max-error allows. An event target-bitrate goes before it",
+     &Settings::bitrate_bps, 0, G_MAXUINT, GST_PARAM_MUTABLE_PLAYING},
+    {"max-error", "Largest distance between a point and its decoded point [m]",
+     &Settings::max_error_m, 1e-4, 100, GST_PARAM_MUTABLE_PLAYING},
+    {"geometry", "What is coded: ranges or coordinates",
+     EnumField<Settings>{&Settings::geometry, GeometryType}},
+    {"range-coder", "How ranges are coded", EnumField<Settings>{&Settings::range_coder, CoderType}},
+    {"quantization-step",
+     "Fixes the step of the grid [m], whatever the bitrate; max-error still holds. 0: automatic",
+     &Settings::step_m, 0, 1000, GST_PARAM_MUTABLE_PLAYING},
+    {"compression-level",
+     "Draco's compression level for xyz geometry: 0 is its sequential coder, 1-10 its kd-tree",
+     &Settings::level, 0, 10, GST_PARAM_MUTABLE_PLAYING},
+    {"intensity-bits", "Resolution of intensities [bit]; 0: geometry only",
+     &Settings::intensity_bits, 0, 8},
+    {"rate-model", "Predicts the size of a slice",
+     EnumField<Settings>{&Settings::rate_model, RateModelType}},
+    {"model-location", "File with the coefficients of the rate model; none: built-in",
+     &Settings::model_location},
+    {"degradation-preference", "What gives when the bitrate is below what max-error needs",
+     EnumField<Settings>{&Settings::degradation, PreferenceType}, 0, 0, GST_PARAM_MUTABLE_PLAYING},
+}};
+constexpr guint kPropMinBitrate = kProperties.size() + 1;
+constexpr guint kPropStats = kProperties.size() + 2;
+
+/// Of the streaming thread.
+struct Stream {
+  lidar::gst::CloudInfo info;
+  std::optional<lidar::codec::SliceEncoder> encoder;
+  std::unique_ptr<lidar::gst::RateLoop> loop;
+  lidar::codec::EncodedSlice slice;
+  std::optional<guint> scan_id;  // of the last slice
+  guint scans_without_meta = 0;
+  bool discont = false;
+  bool warned = false;
+};
+
+struct State {
+  std::mutex mutex;  // guards settings to stats; never held while pushing, posting or notifying
+  Settings settings;
+  std::optional<guint> event_bps;  // from the event target-bitrate
+  guint min_bitrate_bps = 0;
+  lidar::gst::EncStats stats;
+  Stream stream;
+};
+
+}  // namespace
+
+struct _GstLidarDracoEnc {
+  GstElement parent;
+  GstPad* sink;
+  GstPad* src;
+  State* state;
+};
+
+G_DEFINE_TYPE(GstLidarDracoEnc, gst_lidar_draco_enc, GST_TYPE_ELEMENT)
+GST_ELEMENT_REGISTER_DEFINE(dracoenc, "dracoenc", GST_RANK_NONE, GST_TYPE_LIDAR_DRACO_ENC)
+
+namespace {
+
+Settings Snapshot(State* state) {
+  std::lock_guard lock(state->mutex);
+  return state->settings;
+}
+
+/// The bitrate to keep to; 0: none.
+guint EffectiveBitrate(const State& state) {
+  return state.event_bps.value_or(state.settings.bitrate_bps);
+}
+
+std::unique_ptr<lidar::rate::SizeModel> LoadModel(GstLidarDracoEnc* self, const Settings& s) {
+  const auto kind = static_cast<RateModel>(s.rate_model);
+  if (s.model_location.empty()) return lidar::rate::MakeBuiltInModel(kind);
+  gchar* text = nullptr;
+  gsize size = 0;
+  GError* failure = nullptr;
+  if (!g_file_get_contents(s.model_location.c_str(), &text, &size, &failure)) {
+    const lidar::gst::ErrorPtr owned(failure);
+    GST_ELEMENT_ERROR(self, RESOURCE, OPEN_READ,
+                      ("Cannot read the rate model \"%s\".", s.model_location.c_str()),
+                      ("%s", failure->message));
+    return nullptr;
+  }
+  const lidar::gst::StringPtr owned(text);
+  std::string error;
+  std::unique_ptr<lidar::rate::SizeModel> model;
+  if (const auto file = lidar::rate::ParseModelFile({text, size}, &error))
+    model = lidar::rate::MakeModel(*file, kind, &error);
+  if (!model) {
+    GST_ELEMENT_ERROR(self, RESOURCE, READ,
+                      ("The rate model \"%s\" cannot be used.", s.model_location.c_str()),
+                      ("%s", error.c_str()));
+  }
+  return model;
+}
+
+GstCaps* EncodedCaps(const Stream& stream, const Settings& settings) {
+  lidar::gst::EncodedInfo encoded;
+  encoded.geometry = stream.encoder->geometry();
+  encoded.fields = lidar::codec::KeptFields(stream.info.fields, settings.intensity_bits > 0,
+                                            encoded.geometry == Geometry::kRange);
+  encoded.framerate_n = stream.info.framerate_n;
+  encoded.framerate_d = stream.info.framerate_d;
+  encoded.sensor_model = stream.info.sensor_model;
+  return encoded.ToCaps();
+}
+
+gboolean SetCaps(GstLidarDracoEnc* self, GstCaps* caps) {
+  Stream& stream = self->state->stream;
+  const Settings settings = Snapshot(self->state);
+  const auto info = lidar::gst::CloudInfo::FromCaps(caps);
+  stream.encoder.reset();
+  if (info) {
+    stream.encoder = lidar::codec::SliceEncoder::Create(
+        {{info->fields, info->point_step}, info->height, info->sensor_model},
+        static_cast<Geometry>(settings.geometry), static_cast<RangeCoder>(settings.range_coder));
+  }
+  if (!stream.encoder) {
+    GST_ELEMENT_ERROR(
+        self, STREAM, FORMAT,
+        ("This cloud cannot be encoded with geometry=%s.",
+         kGeometries[settings.geometry].value_nick),
+        ("range needs a field range:U32 and a sensor-model, xyz the fields x, y and z as F32 side "
+         "by side; caps are %" GST_PTR_FORMAT,
+         static_cast<gpointer>(caps)));
+    return FALSE;
+  }
+  stream.info = *info;
+  if (!stream.loop) {
+    auto model = LoadModel(self, settings);
+    if (!model) return FALSE;
+    stream.loop = std::make_unique<lidar::gst::RateLoop>(std::move(model));
+  }
+  const lidar::gst::CapsPtr encoded(EncodedCaps(stream, settings));
+  const lidar::gst::CapsPtr current(gst_pad_get_current_caps(self->src));
+  if (current && gst_caps_is_equal(current.get(), encoded.get())) return TRUE;
+  return gst_pad_push_event(self->src, gst_event_new_caps(encoded.get()));
+}
+
+gboolean SinkEvent(GstPad* pad, GstObject* parent, GstEvent* event) {
+  auto* self = GST_LIDAR_DRACO_ENC(parent);
+  if (GST_EVENT_TYPE(event) == GST_EVENT_CAPS) {
+    GstCaps* caps = nullptr;
+    gst_event_parse_caps(event, &caps);
+    const gboolean accepted = SetCaps(self, caps);
+    gst_event_unref(event);
+    return accepted;
+  }
+  if (GST_EVENT_TYPE(event) == GST_EVENT_FLUSH_STOP) {
+    self->state->stream.scan_id.reset();
+    self->state->stream.discont = true;
+  }
+  return gst_pad_event_default(pad, parent, event);
+}
+
+gboolean SrcEvent(GstPad* pad, GstObject* parent, GstEvent* event) {
+  auto* self = GST_LIDAR_DRACO_ENC(parent);
+  GstLidarTargetBitrate target;
+  if (!gst_lidar_event_parse_target_bitrate(event, &target))
+    return gst_pad_event_default(pad, parent, event);
+  GST_LOG_OBJECT(self, "target %u bit/s (%s)", target.bitrate, GST_STR_NULL(target.reason));
+  {
+    std::lock_guard lock(self->state->mutex);
+    // 0 would mean no target at all.
+    self->state->event_bps = MAX(target.bitrate, 1);
+  }
+  gst_event_unref(event);
+  return TRUE;
+}
+
+/// The place of `buffer` in its stream; counts the scan that it starts.
+lidar::gst::SlicePlace PlaceOf(GstLidarDracoEnc* self, GstBuffer* buffer, GstLidarSlice* slice) {
+  Stream& stream = self->state->stream;
+  if (!gst_lidar_buffer_get_slice(buffer, slice)) slice->scan_id = stream.scans_without_meta++;
+  lidar::gst::SlicePlace place{slice->scan_id, slice->slice_index, slice->slice_count, 10};
+  if (stream.info.framerate_n > 0) {
+    place.scans_per_second = static_cast<double>(stream.info.framerate_n) / stream.info.framerate_d;
+  }
+  if (stream.scan_id != slice->scan_id) {
+    std::lock_guard lock(self->state->mutex);
+    self->state->stats.OnScan(place.scans_per_second);
+  }
+  stream.scan_id = slice->scan_id;
+  return place;
+}
+
+/// Sends the bounds where they have moved.
+void PushBounds(GstLidarDracoEnc* self) {
+  const auto bounds = self->state->stream.loop->controller().TakeChangedBounds();
+  if (!bounds) return;
+  const auto to_bps = [](DataRate r) {
+    return static_cast<guint>(CLAMP(r.bits_per_second(), 1.0, 4e9));
+  };
+  const GstLidarBitrateBounds event{to_bps(bounds->min), to_bps(bounds->max),
+                                    to_bps(bounds->nominal)};
+  {
+    std::lock_guard lock(self->state->mutex);
+    self->state->min_bitrate_bps = event.min_bitrate;
+  }
+  g_object_notify(G_OBJECT(self), "min-bitrate");
+  gst_pad_push_event(self->src, gst_lidar_event_new_bitrate_bounds(&event));
+}
+
+lidar::gst::LoopResult EncodeLoaded(GstLidarDracoEnc* self, const lidar::gst::SlicePlace& place) {
+  State& state = *self->state;
+  lidar::gst::LoopSettings loop;
+  std::optional<DataRate> target;
+  {
+    std::lock_guard lock(state.mutex);
+    const Settings& s = state.settings;
+    loop = {s.max_error_m, s.step_m, s.level, s.intensity_bits,
+            static_cast<DegradationPreference>(s.degradation)};
+    if (const guint bps = EffectiveBitrate(state); bps > 0) target = DataRate::BitsPerSecond(bps);
+  }
+  const gint64 start_us = g_get_monotonic_time();
+  Stream& stream = state.stream;
+  const auto result = stream.loop->Encode(place, loop, target, &*stream.encoder, &stream.slice);
+  const auto time = static_cast<GstClockTime>(g_get_monotonic_time() - start_us) * GST_USECOND;
+  std::lock_guard lock(state.mutex);
+  state.stats.OnSlice(result, stream.slice, time);
+  return result;
+}
+
+/// Where a slice was left out: downstream should not wait for it.
+GstFlowReturn PushGap(GstLidarDracoEnc* self, GstBuffer* buffer) {
+  if (GST_BUFFER_PTS_IS_VALID(buffer)) {
+    gst_pad_push_event(self->src,
+                       gst_event_new_gap(GST_BUFFER_PTS(buffer), GST_BUFFER_DURATION(buffer)));
+  }
+  self->state->stream.discont = true;
+  return GST_FLOW_OK;
+}
+
+GstFlowReturn PushSlice(GstLidarDracoEnc* self, GstBuffer* input) {
+  Stream& stream = self->state->stream;
+  const auto& bytes = stream.slice.bytes;
+  GstBuffer* output = gst_buffer_new_memdup(bytes.data(), bytes.size());
+  gst_buffer_copy_into(
+      output, input,
+      static_cast<GstBufferCopyFlags>(GST_BUFFER_COPY_FLAGS | GST_BUFFER_COPY_TIMESTAMPS |
+                                      GST_BUFFER_COPY_META),
+      0, static_cast<gsize>(-1));
+  if (stream.discont) GST_BUFFER_FLAG_SET(output, GST_BUFFER_FLAG_DISCONT);
+  stream.discont = false;
+  PushBounds(self);
+  return gst_pad_push(self->src, output);
+}
+
+/// Loads the points of `buffer` into the encoder; false after an error message.
+bool LoadBuffer(GstLidarDracoEnc* self, GstBuffer* buffer, guint first_column) {
+  Stream& stream = self->state->stream;
+  const lidar::gst::CloudInfo& info = stream.info;
+  const lidar::gst::BufferMap map(buffer, GST_MAP_READ);
+  if (!map) {
+    GST_ELEMENT_ERROR(self, RESOURCE, READ, (nullptr), ("cannot map a buffer"));
+    return false;
+  }
+  const gsize row = gsize{info.point_step} * info.height;
+  if (map.size() % row != 0 || (info.width > 0 && map.size() != info.FrameSize())) {
+    GST_ELEMENT_ERROR(self, STREAM, ENCODE, ("A buffer does not hold the cloud of its caps."),
+                      ("%" G_GSIZE_FORMAT " bytes for %u x %u points of %u bytes", map.size(),
+                       info.width, info.height, info.point_step));
+    return false;
+  }
+  stream.encoder->Load(map.view(), first_column, Snapshot(self->state).intensity_bits > 0);
+  return true;
+}
+
+GstFlowReturn Chain(GstPad*, GstObject* parent, GstBuffer* buffer) {
+  auto* self = GST_LIDAR_DRACO_ENC(parent);
+  const lidar::gst::BufferPtr input(buffer);
+  Stream& stream = self->state->stream;
+  if (!stream.encoder || !stream.loop) return GST_FLOW_NOT_NEGOTIATED;
+  GstLidarSlice slice;
+  const auto place = PlaceOf(self, buffer, &slice);
+  if (!LoadBuffer(self, buffer, slice.first_column)) return GST_FLOW_ERROR;
+  const auto result = EncodeLoaded(self, place);
+  if (!result.skipped && result.result == SliceResult::kOutOfReach && !stream.warned) {
+    stream.warned = true;
+    GST_ELEMENT_WARNING(self, STREAM, ENCODE,
+                        ("A cloud is too large for max-error and was left out."),
+                        ("the longest side of its box is %f m", stream.encoder->extent_m()));
+  }
+  if (result.skipped || result.result != SliceResult::kEncoded) return PushGap(self, buffer);
+  return PushSlice(self, buffer);
+}
+
+GstStateChangeReturn ChangeState(GstElement* element, GstStateChange transition) {
+  State& state = *GST_LIDAR_DRACO_ENC(element)->state;
+  if (transition == GST_STATE_CHANGE_READY_TO_PAUSED) {
+    std::lock_guard lock(state.mutex);
+    state.stats = {};
+    state.event_bps.reset();
+    state.min_bitrate_bps = 0;
+  }
+  const auto result =
+      GST_ELEMENT_CLASS(gst_lidar_draco_enc_parent_class)->change_state(element, transition);
+  if (transition == GST_STATE_CHANGE_PAUSED_TO_READY) state.stream = {};
+  return result;
+}
+
+void SetObjectProperty(GObject* object, guint id, const GValue* value, GParamSpec*) {
+  State& state = *GST_LIDAR_DRACO_ENC(object)->state;
+  std::lock_guard lock(state.mutex);
+  lidar::gst::SetProperty(state.settings, kProperties[id - 1], value);
+}
+
+void GetObjectProperty(GObject* object, guint id, GValue* value, GParamSpec*) {
+  State& state = *GST_LIDAR_DRACO_ENC(object)->state;
+  std::lock_guard lock(state.mutex);
+  if (id == kPropStats) {
+    g_value_take_boxed(value, state.stats.ToStructure(EffectiveBitrate(state)));
+  } else if (id == kPropMinBitrate) {
+    g_value_set_uint(value, state.min_bitrate_bps);
+  } else {
+    lidar::gst::GetProperty(state.settings, kProperties[id - 1], value);
+  }
+}
+
+void Finalize(GObject* object) {
+  delete GST_LIDAR_DRACO_ENC(object)->state;
+  G_OBJECT_CLASS(gst_lidar_draco_enc_parent_class)->finalize(object);
+}
+
+GstStaticPadTemplate sink_template = GST_STATIC_PAD_TEMPLATE(
+    "sink", GST_PAD_SINK, GST_PAD_ALWAYS, GST_STATIC_CAPS(GST_LIDAR_CLOUD_MEDIA_TYPE));
+GstStaticPadTemplate src_template = GST_STATIC_PAD_TEMPLATE(
+    "src", GST_PAD_SRC, GST_PAD_ALWAYS,
+    GST_STATIC_CAPS(GST_LIDAR_DRACO_MEDIA_TYPE
+                    ", geometry = (string) { xyz, range }, alignment = (string) slice"));
+
+}  // namespace
+
+static void gst_lidar_draco_enc_init(GstLidarDracoEnc* self) {
+  self->state = new State;
+  self->sink = gst_pad_new_from_static_template(&sink_template, "sink");
+  gst_pad_set_chain_function(self->sink, Chain);
+  gst_pad_set_event_function(self->sink, SinkEvent);
+  gst_element_add_pad(GST_ELEMENT(self), self->sink);
+  self->src = gst_pad_new_from_static_template(&src_template, "src");
+  gst_pad_set_event_function(self->src, SrcEvent);
+  gst_pad_use_fixed_caps(self->src);
+  gst_element_add_pad(GST_ELEMENT(self), self->src);
+}
+
+static void gst_lidar_draco_enc_class_init(GstLidarDracoEncClass* klass) {
+  GST_DEBUG_CATEGORY_INIT(gst_lidar_draco_enc_debug, "dracoenc", 0, "Point-cloud encoder");
+  auto* object = G_OBJECT_CLASS(klass);
+  object->set_property = SetObjectProperty;
+  object->get_property = GetObjectProperty;
+  object->finalize = Finalize;
+  lidar::gst::InstallProperties(object, kProperties);
+  constexpr auto kReadable = static_cast<GParamFlags>(G_PARAM_READABLE | G_PARAM_STATIC_STRINGS);
+  g_object_class_install_property(
+      object, kPropMinBitrate,
+      g_param_spec_uint("min-bitrate", "min-bitrate",
+                        "What max-error needs, measured [bit/s]; 0 before the first scan", 0,
+                        G_MAXUINT, 0, kReadable));
+  g_object_class_install_property(
+      object, kPropStats,
+      g_param_spec_boxed("stats", "stats", "Counters and the latest settings", GST_TYPE_STRUCTURE,
+                         kReadable));
+  auto* element = GST_ELEMENT_CLASS(klass);
+  gst_element_class_add_static_pad_template(element, &sink_template);
+  gst_element_class_add_static_pad_template(element, &src_template);
+  gst_element_class_set_static_metadata(element, "Point-cloud encoder", "Codec/Encoder/PointCloud",
+                                        "Compresses point clouds to a bitrate and within an error",
+                                        "gst-lidar");
+  element->change_state = ChangeState;
+}

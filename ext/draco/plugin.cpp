@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "common/gstlidar.h"
+#include "draco/gstdracodec.h"
+#include "draco/gstdracoenc.h"
+
+static gboolean plugin_init(GstPlugin* plugin) {
+  gst_lidar_init();
+  return GST_ELEMENT_REGISTER(dracoenc, plugin) && GST_ELEMENT_REGISTER(dracodec, plugin);
+}
+
+GST_PLUGIN_DEFINE(GST_VERSION_MAJOR, GST_VERSION_MINOR, lidardraco,
+                  "Point clouds compressed by Draco, within an error bound", plugin_init, VERSION,
+                  "LGPL", PACKAGE, "https://gstreamer.freedesktop.org")
