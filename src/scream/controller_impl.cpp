@@ -10,6 +10,8 @@ constexpr Duration kOutage = 200ms;
 constexpr double kOutageRestart = 0.5;
 constexpr double kTimeoutBackoff = 0.5;
 constexpr double kDriftRateScale = 0.5;
+/// So long after a mark the next sign of congestion is expected to be one too.
+constexpr Duration kMarksExpected = 30s;
 /// Packets in a row behind a queue that are no accident.
 constexpr int kQueueingPackets = 3;
 
@@ -21,6 +23,7 @@ void Controller::Impl::OnQueued(Time now, StreamId id, const QueuedPacket& packe
   now = Advance(now);
   Stream* stream = streams.Find(id);
   if (stream == nullptr) return;
+  if (streams.empty()) pacer_.OnIdleEnd(now);
   if (stream->empty()) streams.OnQueued(stream);
   if (stream->OnQueued(now, packet)) UpdateTarget(now);
 }
@@ -86,7 +89,7 @@ void Controller::Impl::OnSummary(Time now, const AckSummary& summary) {
 }
 
 void Controller::Impl::MeasurePath(Time now, const AckSummary& summary) {
-  if (summary.rtt) rtt_.Add(*summary.rtt, SourceLimited());
+  if (summary.rtt) rtt_.Add(now, *summary.rtt, SourceLimited());
   history_.set_max_reordering_window(rtt_.smoothed());
   const Duration excess = rtt_.last() - rtt_.min();
   for (const AckedPacket& packet : summary.acked)
@@ -102,9 +105,10 @@ void Controller::Impl::MeasurePath(Time now, const AckSummary& summary) {
 
 void Controller::Impl::CountAcks(Time now, const AckSummary& summary) {
   int marked = summary.late_ce;
+  int answered = 0;
   acked_rate_.set_window(std::max(rtt_.smoothed(), 2 * streams.frame_period()));
   for (const AckedPacket& packet : summary.acked) {
-    if (packet.arrived_ecn == Ecn::kCe && packet.sent >= marks_answered_) ++marked;
+    if (packet.arrived_ecn == Ecn::kCe) ++(packet.sent >= marks_answered_ ? marked : answered);
     if (packet.was_lost) ++counters_.packets_late;
     if (Stream* stream = streams.Find(packet.stream))
       stream->OnAcked(packet.arrived_ecn == Ecn::kCe);
@@ -119,8 +123,9 @@ void Controller::Impl::CountAcks(Time now, const AckSummary& summary) {
   }
   counters_.packets_acked += summary.acked.size();
   counters_.packets_lost += summary.lost.size();
-  counters_.packets_ce += static_cast<std::uint64_t>(marked);
-  l4s_alpha_.Update(now, static_cast<int>(summary.acked.size()), marked, rtt_.smoothed());
+  counters_.packets_ce += static_cast<std::uint64_t>(marked + answered);
+  if (marked + answered > 0) last_mark_ = now;
+  l4s_alpha_.Update(now, static_cast<int>(summary.acked.size()), marked, rtt_.smoothed(), Round());
 }
 
 CongestionSignals Controller::Impl::Signals(const AckSummary& summary) {
@@ -137,7 +142,7 @@ CongestionSignals Controller::Impl::Signals(const AckSummary& summary) {
   s.loss_rate_threshold = p.loss_rate_threshold;
   if (p.extensions.isolated_loss) {
     s.queue_at_loss = queue_delay_.qdelay() > p.isolated_loss_qdelay;
-    if (L4sWorks())
+    if (p.ecn == Ecn::kEct1 && ecn.state() == EcnState::kCapable)
       s.loss_rate_threshold = std::max(p.loss_rate_threshold, p.isolated_loss_threshold);
   }
   if (p.extensions.fast_start)
@@ -229,8 +234,10 @@ DataSize Controller::Impl::MaxInFlight() const {
   return window_.ref_wnd() * overhead;
 }
 
+/// The path carries ECT(1), and its bottleneck has lately been one that marks it.
 bool Controller::Impl::L4sWorks() const {
-  return p.ecn == Ecn::kEct1 && ecn.state() == EcnState::kCapable;
+  return p.ecn == Ecn::kEct1 && ecn.state() == EcnState::kCapable && last_mark_ &&
+         now_ - *last_mark_ < kMarksExpected;
 }
 
 /// Without marks a queue is no sign of congestion before the draft takes it for one.
@@ -282,9 +289,8 @@ Duration Controller::Impl::Round() const {
 
 double Controller::Impl::PacingHeadroom() const {
   if (!p.extensions.adaptive_pacing) return p.packet_pacing_headroom;
-  const double reserve =
-      std::clamp(Seconds(streams.frame_period()) / Seconds(p.pacing_reserve_period),
-                 p.min_pacing_reserve, p.max_pacing_reserve);
+  const double reserve = std::clamp(Seconds(p.pacing_reserve) / Seconds(streams.frame_period()),
+                                    p.min_pacing_reserve, p.max_pacing_reserve);
   return 1 / (1 - reserve);
 }
 
@@ -336,6 +342,7 @@ void Controller::Impl::OnRouteChange(Time now) {
   queue_delay_.Reset();
   rtt_.Reset();
   ecn.Reset();
+  last_mark_.reset();
   started_ = false;
   history_.Expire(now_);
 }

@@ -83,6 +83,7 @@ class Controller::Impl {
   Time last_housekeeping_{};
   Time last_timeout_{};
   std::optional<DataSize> window_before_outage_;
+  std::optional<Time> last_mark_;
   Time loss_answered_{};    // losses of packets sent before it have had their reaction
   Time marks_answered_{};   // as have such marks
   Time half_rate_until_{};  // clock-drift remedy

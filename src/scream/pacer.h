@@ -14,6 +14,8 @@ class Pacer {
   /// `headroom` is PACKET_PACING_HEADROOM or what an extension makes of it.
   void Update(DataRate target_bitrate, DataRate target_bitrate_max, double headroom);
   void RaiseTo(DataRate rate) { pace_bitrate_ = std::max(pace_bitrate_, rate); }
+  /// A packet comes into an empty queue: the time before it gives no credit.
+  void OnIdleEnd(Time now) { next_ = std::max(next_, now); }
   /// The pace goes on from when the packet was due, not from a late wake-up, up to a bound.
   void OnSent(Time now, DataSize size);
   /// Not before this.

@@ -24,6 +24,8 @@ struct Extensions {
   /// Losses (and, after a capacity drop, marks) of packets that were on the way when the window
   /// was reduced for them are no new congestion.
   bool answered_signals = true;
+  /// The fraction of marked packets is taken over a whole round and averaged evenly.
+  bool even_alpha = true;
   /// Pacing headroom follows the frame period, so that a slow frame rate does not build a queue.
   bool adaptive_pacing = true;
   /// Without feedback the window decays to its minimum, and jumps back once the path returns.
@@ -103,10 +105,12 @@ struct Parameters {
   /// ...after so many rounds; a queue of this length stops it.
   int fast_increase_rounds = 3;
   Duration fast_increase_qdelay = 5ms;
+  /// Slope of the growth above the inflection point (the draft's is 8).
+  double fast_increase_slope = 3;
   /// drop_response: a measured capacity below this fraction of the target is a drop...
   double drop_threshold = 0.9;
   /// ...after which the target is this fraction of it.
-  double drop_beta = 0.95;
+  double drop_beta = 0.9;
   /// A packet behind this much queue shows that the link is busy; without marks, this fraction of
   /// qdelay_target.
   Duration busy_qdelay = 5ms;
@@ -119,11 +123,14 @@ struct Parameters {
   double isolated_loss_threshold = 0.05;
   /// ...unless the packets around the loss waited as long as this.
   Duration isolated_loss_qdelay = 6ms;
-  /// adaptive_pacing: this fraction of a frame period is left free by pacing: the period over
-  /// pacing_reserve_period, within bounds.
-  Duration pacing_reserve_period = 600ms;
-  double min_pacing_reserve = 0.1;
-  double max_pacing_reserve = 1.0 / 6;
+  /// even_alpha: the filter's factor, and the fraction from which on it attacks as the draft's.
+  double even_alpha_g = 1.0 / 32;
+  double even_alpha_max = 0.5;
+  /// adaptive_pacing: a frame leaves so much sooner than its period ends, but within these
+  /// fractions of it. As much queue comes and goes with each frame where the link is full.
+  Duration pacing_reserve = 4ms;
+  double min_pacing_reserve = 0.2;
+  double max_pacing_reserve = 0.35;
 
   /// Packets older than this in the sender's queue are late (see Controller::LatePackets).
   Duration max_queue_delay = 200ms;

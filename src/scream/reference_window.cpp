@@ -39,15 +39,15 @@ DataSize ReferenceWindow::max_policed_ref_wnd() const {
              : DataSize::Bytes(static_cast<std::int64_t>(max_policed_ref_wnd_));
 }
 
-double ReferenceWindow::InflectionScale() const {
-  const double scl = (ref_wnd_ - ref_wnd_i_) / ref_wnd_i_ * kInflectionSlope;
+double ReferenceWindow::InflectionScale(double slope) const {
+  const double scl = (ref_wnd_ - ref_wnd_i_) / ref_wnd_i_ * slope;
   return std::clamp(scl * scl, kInflectionMin, 1.0);
 }
 
 Reaction ReferenceWindow::Update(Time now, const CongestionSignals& signals) {
   loss_detected_ = loss_detected_ || signals.loss_detected;
   data_units_marked_ = data_units_marked_ || signals.data_units_marked;
-  const double scl = InflectionScale();
+  const double scl = InflectionScale(kInflectionSlope);
   const Reaction reaction = Detect(now, signals);
   if (reaction != Reaction::kNone) Reduce(now, reaction, signals, scl);
   Increase(now, signals, scl);
@@ -132,6 +132,13 @@ double ReferenceWindow::UndershootScale(const CongestionSignals& s) const {
   return low ? p_.backoff_scale_low_target_rate : 1;
 }
 
+/// Beyond the draft: what lies above the last known maximum is unknown ground.
+double ReferenceWindow::FastIncrement(const CongestionSignals& s, double scl) const {
+  const bool above = ref_wnd_ > ref_wnd_i_;
+  const double scale = above ? InflectionScale(p_.fast_increase_slope) : scl;
+  return s.fast_growth * scale * static_cast<double>(s.bytes_newly_acked.bytes());
+}
+
 void ReferenceWindow::Increase(Time now, const CongestionSignals& s, double scl) {
   const Duration rtt = std::max(p_.virtual_rtt, s.s_rtt);
   const double post_congestion_scale = std::clamp(
@@ -144,8 +151,7 @@ void ReferenceWindow::Increase(Time now, const CongestionSignals& s, double scl)
   const double multiplicative =
       p_.mul_increase_factor * ref_wnd_ / static_cast<double>(p_.mss.bytes());
   increment *= 1 + multiplicative * post_congestion_scale * scl;
-  increment =
-      std::max(increment, s.fast_growth * scl * static_cast<double>(s.bytes_newly_acked.bytes()));
+  increment = std::max(increment, FastIncrement(s, scl));
 
   const DataSize max_allowed =
       p_.mss +

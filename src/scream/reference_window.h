@@ -58,7 +58,8 @@ class ReferenceWindow {
   Time last_congestion_detected_time() const { return last_congestion_detected_time_; }
 
  private:
-  double InflectionScale() const;
+  double InflectionScale(double slope) const;
+  double FastIncrement(const CongestionSignals& s, double scl) const;
   Reaction Detect(Time now, const CongestionSignals& s);
   bool LossCounts(const CongestionSignals& s) const;
   void DetectPolicer(const CongestionSignals& s);

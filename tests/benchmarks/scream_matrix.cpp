@@ -62,6 +62,9 @@ const std::map<std::string, double Parameters::*> kConstants = {
     {"fast_increase_step", &Parameters::fast_increase_step},
     {"fast_increase_step_unmarked", &Parameters::fast_increase_step_unmarked},
     {"busy_qdelay_unmarked", &Parameters::busy_qdelay_unmarked},
+    {"even_alpha_g", &Parameters::even_alpha_g},
+    {"even_alpha_max", &Parameters::even_alpha_max},
+    {"fast_increase_slope", &Parameters::fast_increase_slope},
     {"drop_threshold", &Parameters::drop_threshold},
     {"drop_beta", &Parameters::drop_beta},
     {"bounded_overhead", &Parameters::bounded_overhead},
@@ -75,6 +78,7 @@ const std::map<std::string, bool Extensions::*> kExtensions = {
     {"isolated_loss", &Extensions::isolated_loss},
     {"adaptive_pacing", &Extensions::adaptive_pacing},
     {"answered_signals", &Extensions::answered_signals},
+    {"even_alpha", &Extensions::even_alpha},
     {"quick_drain", &Extensions::quick_drain},
     {"feedback_timeout", &Extensions::feedback_timeout},
 };

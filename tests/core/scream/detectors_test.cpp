@@ -60,25 +60,39 @@ TEST(Parameters, ThePureDraftHasNoOptionalPartAndNoExtension) {
                p.undershoot_remedy || p.competing_flows);
   const Extensions& e = p.extensions;
   EXPECT_FALSE(e.fast_start || e.drop_response || e.bounded_flight || e.isolated_loss ||
-               e.answered_signals || e.quick_drain || e.adaptive_pacing || e.feedback_timeout);
+               e.answered_signals || e.even_alpha || e.quick_drain || e.adaptive_pacing ||
+               e.feedback_timeout);
 }
 
 TEST(L4sAlpha, AttacksWithAnEighthAndDecaysWithA128th) {
-  L4sAlpha alpha{Parameters::Draft()};
-  alpha.Update(kStart, 10, 5, 40ms);
+  const Parameters p = Parameters::Draft();
+  L4sAlpha alpha(p);
+  alpha.Update(kStart, 10, 5, 40ms, 40ms);
   EXPECT_DOUBLE_EQ(alpha.value(), 0.5 / 8);
-  alpha.Update(kStart + 10ms, 10, 0, 40ms);
+  alpha.Update(kStart + 10ms, 10, 0, 40ms, 40ms);
   EXPECT_DOUBLE_EQ(alpha.value(), 0.5 / 8 * 127 / 128);
   EXPECT_DOUBLE_EQ(alpha.last_fraction_marked(), 0);
 }
 
 TEST(L4sAlpha, GathersPacketsForTenMilliseconds) {
-  L4sAlpha alpha{Parameters::Draft()};
-  alpha.Update(kStart, 1, 0, 40ms);
-  alpha.Update(kStart + 5ms, 10, 10, 40ms);
+  const Parameters p = Parameters::Draft();
+  L4sAlpha alpha(p);
+  alpha.Update(kStart, 1, 0, 40ms, 40ms);
+  alpha.Update(kStart + 5ms, 10, 10, 40ms, 40ms);
   EXPECT_DOUBLE_EQ(alpha.value(), 0);
-  alpha.Update(kStart + 10ms, 10, 0, 40ms);
+  alpha.Update(kStart + 10ms, 10, 0, 40ms, 40ms);
   EXPECT_DOUBLE_EQ(alpha.value(), 0.5 / 8);
+}
+
+TEST(L4sAlpha, TheEvenOneAveragesARoundWithoutBiasAndStillAttacksWhenMostIsMarked) {
+  const Parameters p;
+  L4sAlpha alpha(p);
+  for (int i = 0; i < 1000; ++i) alpha.Update(kStart + i * 10ms, 10, i % 8 == 0, 20ms, 40ms);
+  EXPECT_NEAR(alpha.value(), 0.1 / 8, 0.005);
+  const double before = alpha.value();
+  alpha.Update(kStart + 11s, 0, 0, 20ms, 40ms);  // what was still to be counted
+  alpha.Update(kStart + 12s, 10, 10, 20ms, 40ms);
+  EXPECT_NEAR(alpha.value(), before + (1 - before) / 8, 0.01);
 }
 
 class QueueDelayTest : public ::testing::Test {
@@ -206,6 +220,9 @@ TEST(Pacer, CatchesUpAfterALateWakeUpButOnlyALittle) {
   pacer.OnSent(kStart, DataSize::Bytes(1000));
   pacer.OnSent(kStart, DataSize::Bytes(1000));
   EXPECT_EQ(pacer.next(), kStart + 1ms);
+  pacer.OnIdleEnd(kStart + 5ms);
+  pacer.OnSent(kStart + 5ms, DataSize::Bytes(1000));
+  EXPECT_EQ(pacer.next(), kStart + 6ms);
 }
 
 TEST(MediaRate, IsTheWindowOverTheRoundTripWithTheDraftsReserves) {
@@ -230,10 +247,12 @@ TEST(CompetingFlows, TheTargetGivesWayToASteadyQueueAndComesBack) {
 TEST(RoundTripTime, SmoothsByAnEighth) {
   RoundTripTime rtt;
   EXPECT_FALSE(rtt.known());
-  rtt.Add(40ms, false);
-  rtt.Add(80ms, false);
+  rtt.Add(kStart, 40ms, false);
+  rtt.Add(kStart, 80ms, false);
   EXPECT_EQ(rtt.smoothed(), Duration(45ms));
   EXPECT_EQ(rtt.min(), Duration(40ms));
+  for (int i = 0; i < 61; ++i) rtt.Add(kStart + i * 1s, 80ms, false);
+  EXPECT_EQ(rtt.min(), Duration(80ms));
 }
 
 }  // namespace

@@ -119,6 +119,13 @@ std::vector<Scenario> Scenarios(const Parameters& p) {
   all.push_back(j);
   all.push_back(Make("K", "8 Mbit/s, RTT 40, Not-ECT, FIFO 10 ms", k, 50, p));
   all.push_back(WithSlices(all.back()));
+  d.ecn = k.ecn = Ecn::kEct1;
+  all.push_back(Make("D-ect1", "D with ECT(1), which nobody marks", d, 50, p));
+  all.push_back(Make("K-ect1", "K with ECT(1), which nobody marks", k, 50, p));
+  Path step = c;
+  step.aqm = AqmConfig::Kind::kStep;
+  all.push_back(Make("S", "C with a step at 1 ms", step, 50, p));
+  all.back().config.forward.aqm.high = 1ms;
   for (Scenario& s : all) {
     if (s.name[0] == 'H') s.drop_at = 20s;
     if (s.name[0] == 'E') s.settle = 0s;
