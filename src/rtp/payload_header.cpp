@@ -62,6 +62,11 @@ std::optional<Unit> ParseUnit(ByteView bytes) {
   return unit;
 }
 
+bool OfOneScan(const Unit& a, const Unit& b) {
+  return a.unit == UnitType::kSlice && b.unit == UnitType::kSlice &&
+         a.slice.scan_number == b.slice.scan_number && a.slice.count == b.slice.count;
+}
+
 std::vector<Unit> ParseAggregate(ByteView bytes) {
   ByteReader r(bytes);
   r.Skip(1);
@@ -72,6 +77,7 @@ std::vector<Unit> ParseAggregate(ByteView bytes) {
     auto unit = ParseUnit(r.Bytes(size));
     if (!r.ok() || !unit || unit->type != PacketType::kSingle) return {};
     unit->timestamp_ticks = ticks;
+    if (!units.empty() && !OfOneScan(units.front(), *unit)) return {};
     units.push_back(*unit);
   }
   return units;

@@ -6,8 +6,8 @@
 namespace lidar::rtp {
 namespace {
 
-// Bounds memory; the reassembler takes no jump as long as this (kMaxScanJump).
-constexpr std::size_t kMaxOpenScans = 64;
+// Bounds memory and time; the reassembler takes no jump as long as this (kMaxScanJump).
+constexpr std::int64_t kMaxOpenScans = 64;
 
 }  // namespace
 
@@ -17,12 +17,13 @@ Admission SliceLedger::Admit(SlicePosition p, std::uint32_t count, Time now) {
     return Admission::kOpen;
   }
   if (p < origin_ || p.scan < first_scan_) return Admission::kTooOld;
+  if (p.scan - frontier_->scan > kMaxOpenScans) return Admission::kContradiction;
   if (Contradicts(p.scan, count)) return Admission::kContradiction;
   if (*frontier_ < p) {
     AppendScans(p.scan, count);
     frontier_ = p;
     cutoffs_.push_back({now + max_reorder_time_, p});
-    while (scans_.size() > kMaxOpenScans) CloseBefore({first_scan_ + 1, 0});
+    while (p.scan - first_scan_ >= kMaxOpenScans) CloseBefore({first_scan_ + 1, 0});
   }
   Scan* scan = Find(p.scan);
   if (scan == nullptr) return Admission::kTooOld;

@@ -104,6 +104,22 @@ INSTANTIATE_TEST_SUITE_P(
         Hostile{"an aggregate with a byte too many",
                 {0x20, 0, 0, 0, 11, 0, 0, 0, 0, 0, 1, 0, 0, 0, 0, 7, 0}}));
 
+TEST(PayloadHeader, OfAnAggregateIsRefusedWhereItsSlicesAreOfSeveralScans) {
+  for (const std::uint32_t second : {7U, 8U}) {
+    std::vector<std::uint8_t> bytes = {0x20};
+    for (const std::uint32_t scan : {7U, second}) {
+      Unit u = FirstOfASlice();
+      u.type = PacketType::kSingle;
+      u.slice.scan_number = scan;
+      u.length = 1;
+      bytes.insert(bytes.end(), {0, 0, 0, 37});
+      WriteHeader(u, &bytes);
+      bytes.push_back(9);
+    }
+    EXPECT_EQ(ParsePayload({bytes.data(), bytes.size()}).size(), second == 7 ? 2U : 0U);
+  }
+}
+
 TEST(NtpTime, KeepsEveryNanosecondAndCrossesTheEra) {
   for (const std::uint64_t ns :
        {std::uint64_t{1}, std::uint64_t{1'764'000'000'123'456'789}, std::uint64_t{999'999'999},
