@@ -76,11 +76,10 @@ void CollectPackets(TxState& state, Time now, Batch* batch) {
   }
 }
 
-GstEvent* GenericStart(GstLidarScreamTx* self) {
-  gchar* id = gst_pad_create_stream_id(self->src, GST_ELEMENT(self), "merged");
-  GstEvent* event = gst_event_new_stream_start(id);
-  g_free(id);
-  return event;
+/// Of the merged stream, which has an identity of its own.
+GstEvent* GenericStart() {
+  const StringPtr id(g_strdup_printf("screamtx/%08x%08x", g_random_int(), g_random_int()));
+  return gst_event_new_stream_start(id.get());
 }
 
 /// With several streams the src pad has events of its own, which suit all of them.
@@ -130,7 +129,7 @@ bool CollectEvent(GstLidarScreamTx* self, Batch* batch) {
       }
       if (GST_EVENT_TYPE(event.get()) != GST_EVENT_STREAM_START && !state.sent_stream_start) {
         stream->queue.front().event = std::move(event);
-        event.reset(GenericStart(self));
+        event.reset(GenericStart());
       } else {
         stream->queue.pop_front();
       }

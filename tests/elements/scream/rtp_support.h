@@ -1,0 +1,149 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// RTP and RTCP buffers, a test clock in place of the system's, and elements' statistics.
+#pragma once
+#include <gio/gio.h>
+#include <gst/check/gsttestclock.h>
+#include <gst/net/gstnetaddressmeta.h>
+#include <gst/rtp/gstrtpbuffer.h>
+#include <gtest/gtest.h>
+
+#include <string>
+#include <vector>
+
+#include "common/gstlidar.h"
+#include "common/refs.h"
+#include "scream/ccfb.h"
+#include "support/harness.h"
+
+namespace lidar::test {
+
+using gst::BufferPtr;
+using gst::EventPtr;
+using gst::StructurePtr;
+
+constexpr const char* kRtpCaps =
+    "application/x-rtp,media=(string)application,clock-rate=90000,encoding-name=(string)TEST,"
+    "payload=96";
+constexpr const char* kVideoCaps =
+    "application/x-rtp,media=(string)video,clock-rate=90000,encoding-name=(string)H264,payload=96";
+
+struct Rtp {
+  guint16 seq = 0;
+  guint32 timestamp = 0;
+  bool marker = false;
+  guint32 ssrc = 0x1234;
+  guint8 payload_type = 96;
+  guint size = 1188;  // of the payload
+};
+
+inline GstBuffer* NewRtp(const Rtp& r) {
+  GstBuffer* buffer = gst_rtp_buffer_new_allocate(r.size, 0, 0);
+  GstRTPBuffer rtp = GST_RTP_BUFFER_INIT;
+  gst_rtp_buffer_map(buffer, GST_MAP_WRITE, &rtp);
+  gst_rtp_buffer_set_seq(&rtp, r.seq);
+  gst_rtp_buffer_set_timestamp(&rtp, r.timestamp);
+  gst_rtp_buffer_set_marker(&rtp, r.marker);
+  gst_rtp_buffer_set_ssrc(&rtp, r.ssrc);
+  gst_rtp_buffer_set_payload_type(&rtp, r.payload_type);
+  gst_rtp_buffer_unmap(&rtp);
+  return buffer;
+}
+
+inline GstBuffer* FromBytes(const std::vector<std::uint8_t>& bytes) {
+  GstBuffer* buffer = gst_buffer_new_allocate(nullptr, bytes.size(), nullptr);
+  gst_buffer_fill(buffer, 0, bytes.data(), bytes.size());
+  return buffer;
+}
+
+inline std::vector<std::uint8_t> ToBytes(GstBuffer* buffer) {
+  std::vector<std::uint8_t> bytes(gst_buffer_get_size(buffer));
+  gst_buffer_extract(buffer, 0, bytes.data(), bytes.size());
+  return bytes;
+}
+
+inline Rtp ReadRtp(GstBuffer* buffer) {
+  GstRTPBuffer rtp = GST_RTP_BUFFER_INIT;
+  Rtp r;
+  if (!gst_rtp_buffer_map(buffer, GST_MAP_READ, &rtp)) return r;
+  r.seq = gst_rtp_buffer_get_seq(&rtp);
+  r.timestamp = gst_rtp_buffer_get_timestamp(&rtp);
+  r.marker = gst_rtp_buffer_get_marker(&rtp) != FALSE;
+  r.ssrc = gst_rtp_buffer_get_ssrc(&rtp);
+  r.payload_type = gst_rtp_buffer_get_payload_type(&rtp);
+  r.size = gst_rtp_buffer_get_payload_len(&rtp);
+  gst_rtp_buffer_unmap(&rtp);
+  return r;
+}
+
+inline GSocketAddress* Address(const char* host, guint port) {
+  return g_inet_socket_address_new_from_string(host, port);
+}
+
+inline void SetSource(GstBuffer* buffer, const char* host, guint port) {
+  GSocketAddress* address = Address(host, port);
+  gst_buffer_add_net_address_meta(buffer, address);
+  g_object_unref(address);
+}
+
+/// The property `stats` of an element.
+class Stats {
+ public:
+  explicit Stats(GstElement* element) {
+    GstStructure* s = nullptr;
+    g_object_get(element, "stats", &s, nullptr);
+    stats_.reset(s);
+  }
+  guint64 operator[](const char* field) const {
+    guint64 wide = 0;
+    guint narrow = 0;
+    if (gst_structure_get_uint64(stats_.get(), field, &wide)) return wide;
+    if (gst_structure_get_uint(stats_.get(), field, &narrow)) return narrow;
+    ADD_FAILURE() << "no field " << field;
+    return 0;
+  }
+  std::string Text(const char* field) const {
+    const gchar* text = gst_structure_get_string(stats_.get(), field);
+    return text != nullptr ? text : "";
+  }
+
+ private:
+  StructurePtr stats_;
+};
+
+/// A clock that only the test moves, in the place of the system clock.
+class FakeTime {
+ public:
+  FakeTime() : clock_(gst_test_clock_new_with_start_time(1000 * GST_SECOND)) {
+    gst_system_clock_set_default(clock_);
+  }
+  ~FakeTime() {
+    gst_system_clock_set_default(nullptr);
+    gst_object_unref(clock_);
+  }
+  FakeTime(const FakeTime&) = delete;
+  FakeTime& operator=(const FakeTime&) = delete;
+
+  GstTestClock* clock() const { return GST_TEST_CLOCK(clock_); }
+  GstClockTime now() const { return gst_clock_get_time(clock_); }
+  /// Moves to `goal`, and lets whoever waits until then go on at its time.
+  void AdvanceTo(GstClockTime goal) {
+    for (;;) {
+      GstClockID id = nullptr;
+      gst_test_clock_wait_for_next_pending_id(clock(), &id);
+      const GstClockTime due = gst_clock_id_get_time(id);
+      gst_clock_id_unref(id);
+      if (due > goal) break;
+      if (due > now()) gst_test_clock_set_time(clock(), due);
+      if (GstClockID done = gst_test_clock_process_next_clock_id(clock())) gst_clock_id_unref(done);
+    }
+    if (goal > now()) gst_test_clock_set_time(clock(), goal);
+  }
+  /// Returns once the element's thread has done what there was to do, and waits.
+  void Settle() const { gst_test_clock_wait_for_next_pending_id(clock(), nullptr); }
+  void Advance(GstClockTime time) { AdvanceTo(now() + time); }
+
+ private:
+  GstClock* clock_;
+};
+
+}  // namespace lidar::test

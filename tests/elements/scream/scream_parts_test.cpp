@@ -1,0 +1,125 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// The parts of the SCReAM elements that need no pad: RTP headers, goodbyes, the receiver's latch.
+#include <gtest/gtest.h>
+
+#include "scream/peer_latch.h"
+#include "scream/rtp_packet.h"
+#include "rtp_support.h"
+
+namespace lidar::gst {
+namespace {
+
+using namespace std::chrono_literals;
+using test::Rtp;
+
+TEST(RtpHeader, IsReadWithItsExtensionAndSources) {
+  test::Rtp r;
+  r.seq = 65535;
+  r.timestamp = 0xfffffff0;
+  r.marker = true;
+  const BufferPtr buffer(test::NewRtp(r));
+  const auto plain = ReadRtpHeader(buffer.get());
+  ASSERT_TRUE(plain);
+  EXPECT_EQ(plain->seq, 65535);
+  EXPECT_EQ(plain->timestamp, 0xfffffff0);
+  EXPECT_EQ(plain->ssrc, 0x1234U);
+  EXPECT_TRUE(plain->marker);
+  EXPECT_EQ(plain->payload_type, 96);
+  EXPECT_EQ(plain->header_size, 12U);
+
+  std::vector<std::uint8_t> bytes{0x92, 96, 0, 1, 0, 0, 0, 0, 0, 0, 0, 7};
+  bytes.insert(bytes.end(), 8, 0);             // two CSRCs
+  bytes.insert(bytes.end(), {0xbe, 0xde, 0, 1, 0, 0, 0, 0, 9});  // an extension of one word
+  const BufferPtr extended(test::FromBytes(bytes));
+  const auto header = ReadRtpHeader(extended.get());
+  ASSERT_TRUE(header);
+  EXPECT_EQ(header->header_size, 28U);
+}
+
+class NotRtp : public ::testing::TestWithParam<std::vector<std::uint8_t>> {};
+TEST_P(NotRtp, IsRefused) {
+  const BufferPtr buffer(test::FromBytes(GetParam()));
+  EXPECT_FALSE(ReadRtpHeader(buffer.get()));
+}
+INSTANTIATE_TEST_SUITE_P(
+    All, NotRtp,
+    ::testing::Values(std::vector<std::uint8_t>{}, std::vector<std::uint8_t>{0x80},
+                      std::vector<std::uint8_t>(11, 0x80),   // too short
+                      std::vector<std::uint8_t>(40, 0x00),   // version 0
+                      std::vector<std::uint8_t>{0x8f, 96, 0, 1, 0, 0, 0, 0, 0, 0, 0, 7},  // 15 CSRCs
+                      std::vector<std::uint8_t>{0x90, 96, 0, 1, 0, 0, 0, 0, 0, 0, 0, 7},
+                      std::vector<std::uint8_t>{0x90, 96, 0, 1, 0, 0, 0, 0, 0, 0, 0, 7, 0, 0, 0xff,
+                                                0xff}));  // extensions past the end
+
+TEST(Bye, RoundTripsThroughACompound) {
+  const auto bye = BuildBye({1, 0xfffffffe});
+  EXPECT_TRUE(IsRtcp({bye.data(), bye.size()}));
+  EXPECT_EQ(bye[1], 201);  // a compound begins with a report
+  EXPECT_EQ(ParseBye({bye.data(), bye.size()}), (std::vector<guint32>{1, 0xfffffffe}));
+  EXPECT_TRUE(BuildBye({}).empty());
+}
+
+TEST(Bye, CutOffAnywhereGivesNoFalseGoodbye) {
+  const auto bye = BuildBye({1, 2, 3});
+  for (std::size_t n = 0; n < bye.size(); ++n) EXPECT_TRUE(ParseBye({bye.data(), n}).empty()) << n;
+}
+
+TEST(Bye, NamesNoMoreSourcesThanItsCountCanSay) {
+  const auto bye = BuildBye(std::vector<guint32>(100, 7));
+  EXPECT_EQ(ParseBye({bye.data(), bye.size()}).size(), 31U);
+}
+
+using AddressPtr = std::unique_ptr<GSocketAddress, GObjectUnref>;
+constexpr auto kAccepted = PeerLatch::Verdict::kAccepted;
+constexpr auto kMoved = PeerLatch::Verdict::kMoved;
+constexpr auto kForeign = PeerLatch::Verdict::kForeign;
+
+struct Latch : ::testing::Test {
+  AddressPtr robot{test::Address("10.0.0.1", 5000)};
+  AddressPtr thief{test::Address("10.0.0.2", 5000)};
+  PeerLatch latch;
+  Time now{1s};
+};
+
+TEST_F(Latch, FirstPeerIsBelievedAtOnceAndByAnyObjectOfItsAddress) {
+  EXPECT_EQ(latch.OnPacket(now, robot.get(), 1, 0), kAccepted);
+  const AddressPtr same(test::Address("10.0.0.1", 5000));
+  EXPECT_EQ(latch.OnPacket(now, same.get(), 1, 1), kAccepted);
+  EXPECT_TRUE(latch.IsPeer(robot.get()));
+  EXPECT_FALSE(latch.IsPeer(thief.get()));
+}
+
+TEST_F(Latch, CannotBeStolenWhileThePeerSends) {
+  latch.OnPacket(now, robot.get(), 1, 0);
+  for (std::uint16_t seq = 0; seq < 1000; ++seq, now += 10ms) {
+    EXPECT_EQ(latch.OnPacket(now, thief.get(), 1, seq), kForeign);
+    EXPECT_EQ(latch.OnPacket(now, robot.get(), 1, seq), kAccepted);
+  }
+}
+
+TEST_F(Latch, OnePacketAfterSilenceDoesNotMoveItButAStreamDoes) {
+  latch.OnPacket(now, robot.get(), 1, 0);
+  now += 10s;
+  for (std::uint16_t seq = 0; seq + 1 < PeerLatch::kProbation; ++seq)
+    EXPECT_EQ(latch.OnPacket(now, thief.get(), 1, seq), kForeign);
+  EXPECT_EQ(latch.OnPacket(now, thief.get(), 1, PeerLatch::kProbation - 1), kMoved);
+  EXPECT_FALSE(latch.IsPeer(robot.get()));
+}
+
+TEST_F(Latch, ScatteredSequenceNumbersAreNoStream) {
+  latch.OnPacket(now, robot.get(), 1, 0);
+  now += 10s;
+  for (std::uint16_t seq = 0; seq < 100; ++seq)
+    EXPECT_EQ(latch.OnPacket(now, thief.get(), 1, static_cast<std::uint16_t>(seq * 7)), kForeign);
+}
+
+TEST_F(Latch, PacketsWithoutAddressBelongToAnyPeer) {
+  EXPECT_EQ(latch.OnPacket(now, nullptr, 1, 0), kAccepted);
+  EXPECT_EQ(latch.peer(), nullptr);
+  EXPECT_EQ(latch.OnPacket(now, robot.get(), 1, 1), kAccepted);
+  EXPECT_EQ(latch.peer(), robot.get());
+  EXPECT_EQ(latch.OnPacket(now, thief.get(), 1, 2), kForeign);
+}
+
+}  // namespace
+}  // namespace lidar::gst
