@@ -93,7 +93,7 @@ void Controller::Impl::MeasurePath(Time now, const AckSummary& summary) {
   history_.set_max_reordering_window(rtt_.smoothed());
   const Duration excess = rtt_.last() - rtt_.min();
   for (const AckedPacket& packet : summary.acked)
-    if (packet.arrival && !queue_delay_.Add(now, packet.sent, *packet.arrival, excess))
+    if (packet.arrival && !queue_delay_.Add(now, packet.sent, *packet.arrival, excess, L4sWorks()))
       ++counters_.clock_resets;
   queue_delay_.Update(now, rtt_.smoothed(), competing_flows_.qdelay_target());
   if (queue_delay_.TakeDriftReset()) {
@@ -228,8 +228,7 @@ DataSize Controller::Impl::MaxInFlight() const {
                                                  queue_delay_.ref_wnd_delay_scale();
   if (p.extensions.bounded_flight) {
     if (L4sWorks()) overhead = std::min(overhead, p.open_overhead);
-    const bool queueing = busy_run_.packets() >= kQueueingPackets;
-    if (queueing && queue_delay_.qdelay() > 2 * BusyQdelay()) overhead = p.bounded_overhead;
+    if (Queueing(2 * BusyQdelay())) overhead = p.bounded_overhead;
   }
   return window_.ref_wnd() * overhead;
 }
@@ -247,9 +246,11 @@ Duration Controller::Impl::BusyQdelay() const {
              : FromSeconds(Seconds(competing_flows_.qdelay_target()) * p.busy_qdelay_unmarked);
 }
 
-/// The queue is long and packets keep coming back out of it.
-bool Controller::Impl::Congested() const {
-  return busy_run_.capacity() && queue_delay_.qdelay() > BusyQdelay();
+/// The queue is long and packets keep coming back out of it; where marks work, marked: delay alone
+/// may be a longer path.
+bool Controller::Impl::Queueing(Duration qdelay) const {
+  const bool believed = !L4sWorks() || 2 * busy_run_.marked() >= busy_run_.packets();
+  return busy_run_.packets() >= kQueueingPackets && believed && queue_delay_.qdelay() > qdelay;
 }
 
 void Controller::Impl::ObserveCapacity(const AckSummary& summary) {
@@ -265,7 +266,7 @@ void Controller::Impl::ObserveCapacity(const AckSummary& summary) {
 /// that from the next packet on.
 bool Controller::Impl::RespondToDrop(Time now, const CongestionSignals& signals) {
   const auto capacity = busy_run_.capacity();
-  if (!p.extensions.drop_response || !capacity || !Congested()) return false;
+  if (!p.extensions.drop_response || !capacity || !Queueing(BusyQdelay())) return false;
   if (now - window_.last_reaction_to_congestion_time() < std::min(p.virtual_rtt, signals.s_rtt))
     return false;
   const DataRate affordable = *capacity * p.drop_threshold;

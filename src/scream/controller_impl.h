@@ -54,7 +54,7 @@ class Controller::Impl {
   bool RespondToDrop(Time now, const CongestionSignals& signals);
   bool L4sWorks() const;
   Duration BusyQdelay() const;
-  bool Congested() const;
+  bool Queueing(Duration qdelay) const;
   double PacingHeadroom() const;
   Duration Round() const;
   void OnFeedbackTimeout(Time now);

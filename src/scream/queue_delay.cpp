@@ -7,9 +7,11 @@
 namespace lidar::scream {
 namespace {
 
-/// RFC 6817's BASE_HISTORY of one-minute minima.
-constexpr Duration kBaseInterval = 60s;
-constexpr std::size_t kBaseHistory = 10;
+/// RFC 6817's ten minutes of base history...
+constexpr Duration kBaseInterval = 10s;
+constexpr std::size_t kBaseHistory = 60;
+/// ...and a short one where marks keep the queue from standing for so long.
+constexpr std::size_t kBaseHistoryMarked = 3;
 /// Queue delay that the round trip does not show, beyond jitter of the way back: a clock jumped.
 constexpr Duration kJump = 100ms;
 
@@ -30,21 +32,22 @@ void QueueDelay::Reset() {
   drift_reset_ = drift_reset;
 }
 
-void QueueDelay::AddToBase(Time now, Duration owd) {
+void QueueDelay::AddToBase(Time now, Duration owd, bool short_history) {
   if (history_.empty() || now - history_.back().since >= kBaseInterval) {
     history_.push_back({now, owd});
-    if (history_.size() > kBaseHistory) history_.pop_front();
+    while (history_.size() > (short_history ? kBaseHistoryMarked : kBaseHistory))
+      history_.pop_front();
   }
   history_.back().min = std::min(history_.back().min, owd);
   base_ = history_.front().min;
   for (const Base& b : history_) base_ = std::min(*base_, b.min);
 }
 
-bool QueueDelay::Add(Time now, Time sent, Time arrival, Duration rtt_excess) {
+bool QueueDelay::Add(Time now, Time sent, Time arrival, Duration rtt_excess, bool short_history) {
   const Duration owd = arrival - sent;
   const bool jumped = base_ && (owd - *base_ > rtt_excess + kJump || owd < *base_ - kJump);
   if (jumped) Reset();
-  AddToBase(now, owd);
+  AddToBase(now, owd, short_history);
   qdelay_ = owd - *base_;
   min_this_rtt_ = std::min(min_this_rtt_, qdelay_);
   return !jumped;

@@ -16,7 +16,8 @@ class QueueDelay {
   /// For each acknowledged packet; `arrival` on the receiver's clock. Returns false where the
   /// clocks jumped against each other: the base has been taken anew. `rtt_excess` is how much
   /// the round trip is above its minimum: a queue cannot delay more than that.
-  bool Add(Time now, Time sent, Time arrival, Duration rtt_excess);
+  /// `short_history`: the base is that of the last half minute.
+  bool Add(Time now, Time sent, Time arrival, Duration rtt_excess, bool short_history = false);
   /// After the packets of a report: averages, at most once every min(VIRTUAL_RTT, s_rtt).
   void Update(Time now, Duration s_rtt, Duration qdelay_target);
   /// Forgets base delay and averages.
@@ -35,7 +36,7 @@ class QueueDelay {
     Time since;
     Duration min;
   };
-  void AddToBase(Time now, Duration owd);
+  void AddToBase(Time now, Duration owd, bool short_history);
   void CalculateRefWndDelayScale();
   void UpdateDrift(Time now, Duration s_rtt, Duration qdelay_target);
 

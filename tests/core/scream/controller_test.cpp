@@ -102,6 +102,71 @@ TEST(Simulation, SurvivesAnOutageOfThirtySecondsAndRecoversWithinASecond) {
   EXPECT_GT(result.flows[0].statistics.feedback_timeouts, 3U);
 }
 
+TEST(Simulation, ARestartOfTheReceiverIsForgottenWithinTwoSeconds) {
+  Scenario s = *FindScenario("A", Parameters());
+  s.config.flows[0].receiver_restart = 10s;
+  const SimulationResult result = Simulate(s.config);
+  const Time restart = s.config.forward.origin + 10s;
+  EXPECT_GT(result.Utilisation(restart, restart + 2s), 0.8);
+  EXPECT_GT(result.Utilisation(restart + 2s, restart + 10s), 0.9);
+  EXPECT_EQ(result.flows[0].statistics.feedback_ignored, 0U);
+}
+
+TEST(Simulation, ALongerRouteIsNoCongestion) {
+  const Scenario s = *FindScenario("A-longer", Parameters());
+  const SimulationResult result = Simulate(s.config);
+  const Time change = s.config.forward.origin + s.config.longer_from;
+  EXPECT_GT(result.Utilisation(change, change + 20s), 0.85);
+}
+
+TEST(Simulation, AnObstinateEncoderDoesNotFillTheNetworkQueue) {
+  Scenario s = *FindScenario("C", Parameters());
+  s.config.flows[0].obedience = [](Duration t) { return t > 10s ? 2.0 : 1.0; };
+  const ScenarioMetrics m = Measure(s, Simulate(s.config));
+  EXPECT_LT(m.queue_ms.p99, 15);
+  EXPECT_GT(m.utilisation, 0.9);
+  EXPECT_GT(m.frames_dropped, 100);
+}
+
+TEST(Simulation, AStepMarkerAndAPairOfQueuesAreUsedToo) {
+  for (const char* name : {"S", "A-dualpi2"}) {
+    const Scenario s = *FindScenario(name, Parameters());
+    const ScenarioMetrics m = Measure(s, Simulate(s.config));
+    EXPECT_GT(m.utilisation, 0.8) << name;
+    EXPECT_LT(m.queue_ms.p99, 2) << name;
+  }
+}
+
+TEST(Simulation, JitterBurstsAndReorderingCostNothing) {
+  for (const char* name : {"A-jitter", "A-bursts", "A-reorder"}) {
+    const Scenario s = *FindScenario(name, Parameters());
+    const SimulationResult result = Simulate(s.config);
+    const ScenarioMetrics m = Measure(s, result);
+    EXPECT_GT(m.utilisation, 0.93) << name;
+    EXPECT_LT(m.queue_ms.p99, 5) << name;
+    EXPECT_EQ(result.flows[0].statistics.loss_events, 0U) << name;
+  }
+}
+
+TEST(Simulation, BleachedPacketsAreSentAsNotEct) {
+  Controller c{Parameters()};
+  const StreamId id = c.AddStream({});
+  Time now = kStart;
+  CongestionFeedback f;
+  f.blocks.push_back({1, 0, {}});
+  for (std::uint16_t seq = 0; seq < 25; ++seq, now += 5ms) {
+    c.OnQueued(now, id, {1, DataSize::Bytes(1000), true, seq});
+    c.OnSent(now, id, {1, seq, DataSize::Bytes(1000), c.NextSend(now)->ecn});
+    f.blocks[0].metrics.push_back({true, Ecn::kNotEct, 0ms});
+  }
+  f.report_timestamp = 77;
+  EXPECT_EQ(c.ecn_state(), EcnState::kTesting);
+  EXPECT_EQ(c.OnFeedback(now, f), FeedbackResult::kAccepted);
+  EXPECT_EQ(c.ecn_state(), EcnState::kBleached);
+  c.OnQueued(now, id, {1, DataSize::Bytes(1000), true, 99});
+  EXPECT_EQ(c.NextSend(now)->ecn, Ecn::kNotEct);
+}
+
 TEST(Simulation, SurvivesLostFeedback) {
   Scenario s = *FindScenario("C", Parameters());
   const double clean = Measure(s, Simulate(s.config)).utilisation;

@@ -126,6 +126,17 @@ std::vector<Scenario> Scenarios(const Parameters& p) {
   step.aqm = AqmConfig::Kind::kStep;
   all.push_back(Make("S", "C with a step at 1 ms", step, 50, p));
   all.back().config.forward.aqm.high = 1ms;
+  all.push_back(Make("A-jitter", "A with 4 ms of jitter", a, 50, p));
+  all.back().config.forward.path.jitter = 4ms;
+  all.push_back(Make("A-bursts", "A, packets come out every 5 ms", a, 50, p));
+  all.back().config.forward.path.burst_interval = 5ms;
+  all.push_back(Make("A-reorder", "A, 1 % of the packets 5 ms late", a, 50, p));
+  all.back().config.forward.path.reorder = 0.01;
+  all.push_back(Make("A-dualpi2", "A with DualPI2", a, 50, p));
+  all.back().config.forward.aqm.kind = AqmConfig::Kind::kDualPi2;
+  all.push_back(Make("A-longer", "A, 15 ms longer from 15 s on", a, 50, p));
+  all.back().config.longer_by = 15ms;
+  all.back().config.longer_from = 15s;
   for (Scenario& s : all) {
     if (s.name[0] == 'H') s.drop_at = 20s;
     if (s.name[0] == 'E') s.settle = 0s;

@@ -11,6 +11,7 @@ namespace {
 
 constexpr std::int64_t kMaxPacket = 1240;  // 1200 bytes of RTP payload
 constexpr std::int64_t kMinPacket = 60;
+constexpr std::uint32_t kEpochOfRestart = 0x89ABCDEF;
 
 struct WirePacket {
   int flow = 0;
@@ -55,7 +56,13 @@ class Flow {
     if (controller_.NextTimer() <= now) controller_.OnTimer(now);
     DropLate(now);
     Send(now, wire, link);
+    if (now - config_.start > config_.receiver_restart) {
+      config_.receiver_restart = Duration::max();
+      generator_.Reset();
+      epoch_ += kEpochOfRestart;
+    }
     while (auto report = generator_.Take(now)) {
+      report->report_timestamp += epoch_;
       result_.feedback_bytes += static_cast<std::int64_t>(BuildCcfb(*report).size()) + 28;
       if (!loss->Chance(sim.return_loss)) reports_.emplace(now + sim.return_delay, *report);
     }
@@ -137,6 +144,7 @@ class Flow {
   std::uint32_t ssrc_;
   Time next_frame_;
   StreamId stream_ = 0;
+  std::uint32_t epoch_ = 0;
   std::uint16_t seq_ = 65000;  // wraps around early in each run
   std::deque<WirePacket> queue_;
   std::vector<Time> created_;
@@ -161,6 +169,7 @@ SimulationResult Simulate(const SimulationConfig& config) {
   link::Bottleneck link(config.forward);
   link::Random loss(config.forward.seed + 77);
   std::vector<WirePacket> wire;
+  std::multimap<Time, link::Outcome> behind;  // the bottleneck, on the longer way
   std::vector<std::unique_ptr<Flow>> flows;
   for (std::size_t i = 0; i < config.flows.size(); ++i)
     flows.push_back(std::make_unique<Flow>(config.flows[i], static_cast<int>(i),
@@ -168,7 +177,12 @@ SimulationResult Simulate(const SimulationConfig& config) {
   const Time end = config.forward.origin + config.duration;
   Time next_sample = config.forward.origin;
   for (Time now = config.forward.origin; now <= end;) {
-    for (const link::Outcome& o : link.Deliver(now)) {
+    for (link::Outcome& o : link.Deliver(now)) {
+      if (o.arrival - config.forward.origin > config.longer_from) o.arrival += config.longer_by;
+      behind.emplace(o.arrival, o);
+    }
+    for (; !behind.empty() && behind.begin()->first <= now; behind.erase(behind.begin())) {
+      const link::Outcome& o = behind.begin()->second;
       const WirePacket& p = wire[o.packet.id];
       flows[static_cast<std::size_t>(p.flow)]->OnArrival(p, o);
       result.packets.push_back(
@@ -184,6 +198,7 @@ SimulationResult Simulate(const SimulationConfig& config) {
       next_sample += config.sample_interval;
     }
     Time next = std::min(link.NextEventTime(), next_sample);
+    if (!behind.empty()) next = std::min(next, behind.begin()->first);
     for (auto& flow : flows) next = std::min(next, flow->NextEvent(now));
     now = std::max(next, now + Duration{1});
   }

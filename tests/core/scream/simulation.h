@@ -22,6 +22,8 @@ struct FlowConfig {
   bool drop_late = true;
   /// Scales what the encoder puts out against its target, over time since the flow's start.
   std::function<double(Duration)> obedience;
+  /// The receiver forgets everything, and its clock has another epoch.
+  Duration receiver_restart = Duration::max();
   Duration wakeup_delay{0};  ///< the pacing thread wakes up late by up to this
 };
 
@@ -29,6 +31,9 @@ struct SimulationConfig {
   link::BottleneckConfig forward;  ///< its delay is the way there
   Duration return_delay{0};
   double return_loss = 0;
+  /// A change of route: the way there is longer from then on.
+  Duration longer_by{0};
+  Duration longer_from = Duration::max();
   Duration duration = std::chrono::seconds(40);
   std::vector<FlowConfig> flows{1};
   Duration sample_interval = std::chrono::milliseconds(10);
