@@ -65,6 +65,7 @@ ChildProcess::ChildProcess(const Config& config) {
   }
   std::vector<std::string> command = config.command;
   std::vector<char*> argv;
+  argv.reserve(command.size() + 1);
   for (std::string& word : command) argv.push_back(word.data());
   argv.push_back(nullptr);
   pid_ = fork();

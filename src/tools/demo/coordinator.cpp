@@ -120,15 +120,15 @@ void Coordinator::OnSender(const nlohmann::json& record) {
   m_.ledger.Add(record);
   if (type != "stats") return;
   m_.sender_stats = record;
-  last_ = ReadSample(record, m_.origin_unix_ns);
-  if (m_.origin_unix_ns > 0) m_.samples.push_back(last_);
+  last_ = ReadSample(record);
+  m_.samples.push_back(last_);
 }
 
 void Coordinator::OnLink(const nlohmann::json& record) {
   if (record.contains("listening") && phase_ == Phase::kLink) Enter(Phase::kSender);
   if (!record.contains("origin_unix_ns")) return;
-  if (phase_ == Phase::kSender) Enter(Phase::kStreaming);
   m_.origin_unix_ns = record.value("origin_unix_ns", std::int64_t{0});
+  if (phase_ == Phase::kSender) Enter(Phase::kStreaming);
   if (record.contains("time_s")) PrintLive(record);
 }
 
@@ -183,7 +183,7 @@ void Coordinator::Enter(Phase phase) {
                                              2 * ErrorBoundOf(o) + 0.01);
       break;
     case Phase::kStreaming:
-      streaming_since_ = Now();
+      streaming_since_ = Time{Duration{m_.origin_unix_ns} - tools::UnixOffset()};
       break;
     case Phase::kDraining:
       m_.ran_s = Seconds(Now() - streaming_since_);
@@ -222,7 +222,7 @@ void Coordinator::Tick() {
                  std::to_string(c.child->Wait()) + ":\n" +
                  Tail(m_.options.output + "/" + c.name + ".log");
   CheckLimit();
-  if (!failure_.empty()) {
+  if (!failure_.empty() || (phase_ == Phase::kLinkStops && link_->Ended())) {
     loop_.Stop();
   } else if (streaming && Now() - streaming_since_ >= FromSeconds(m_.options.duration_s)) {
     Enter(Phase::kDraining);
@@ -230,8 +230,6 @@ void Coordinator::Tick() {
     Enter(Phase::kReceiverStops);
   } else if (phase_ == Phase::kReceiverStops && receiver_->Ended()) {
     Enter(Phase::kLinkStops);
-  } else if (phase_ == Phase::kLinkStops && link_->Ended()) {
-    loop_.Stop();
   }
 }
 

@@ -73,8 +73,8 @@ void ReportStats(MediaProcess* process, std::initializer_list<const char*> names
 
 }  // namespace
 
-int Send(const std::string& description, bool with_clouds) {
-  MediaProcess process(description, with_clouds);
+int Send(const std::string& description) {
+  MediaProcess process(description);
   WatchSource(&process);
   WatchCodec(&process, "encoder", "encoded");
   process.OnEvent("encoder", "src", [&process](GstEvent* event) {
@@ -90,8 +90,8 @@ int Send(const std::string& description, bool with_clouds) {
   return process.Run();
 }
 
-int Receive(const std::string& description, bool with_clouds) {
-  MediaProcess process(description, with_clouds);
+int Receive(const std::string& description) {
+  MediaProcess process(description);
   WatchCodec(&process, "decoder", "decoded");
   ReportStats(&process, {"receiver", "depayloader", "decoder"});
   return process.Run();

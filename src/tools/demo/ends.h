@@ -6,11 +6,11 @@
 namespace lidar::demo {
 
 /// Plays a pipeline whose elements `source`, `encoder` and `sender` are watched. Records: captured,
-/// encoded, bounds, stats. With clouds: every captured slice on descriptor 3.
-int Send(const std::string& description, bool with_clouds);
+/// encoded, bounds, stats; every captured slice on descriptor 3.
+int Send(const std::string& description);
 
-/// Watches `receiver`, `depayloader` and `decoder`. Records: decoded, stats. With clouds: every
-/// decoded slice on descriptor 3.
-int Receive(const std::string& description, bool with_clouds);
+/// Watches `receiver`, `depayloader` and `decoder`. Records: decoded, stats; every decoded
+/// slice on descriptor 3.
+int Receive(const std::string& description);
 
 }  // namespace lidar::demo

@@ -3,12 +3,14 @@
 #include <gst/gst.h>
 
 #include <CLI/CLI.hpp>
-#include <iostream>
+#include <cstdio>
 
 #include "demo/coordinator.h"
 #include "demo/ends.h"
 
-int main(int argc, char** argv) {
+namespace {
+
+int Run(int argc, char** argv) {
   CLI::App app{"lidar-demo: streams LiDAR through a bottleneck link and measures both ends.",
                "lidar-demo"};
   app.require_subcommand(1);
@@ -25,16 +27,21 @@ int main(int argc, char** argv) {
   } catch (const CLI::ParseError& e) {
     return app.exit(e) == 0 ? 0 : 2;
   }
+  if (run->parsed()) {
+    lidar::demo::CheckRunOptions(options);
+    return lidar::demo::RunDemo(options);
+  }
+  gst_init(nullptr, nullptr);
+  return send->parsed() ? lidar::demo::Send(pipeline) : lidar::demo::Receive(pipeline);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
   try {
-    if (run->parsed()) {
-      lidar::demo::CheckRunOptions(options);
-      return lidar::demo::RunDemo(options);
-    }
-    gst_init(nullptr, nullptr);
-    return send->parsed() ? lidar::demo::Send(pipeline, true)
-                          : lidar::demo::Receive(pipeline, true);
+    return Run(argc, argv);
   } catch (const std::exception& e) {
-    std::cerr << "lidar-demo: " << e.what() << '\n';
+    std::fprintf(stderr, "lidar-demo: %s\n", e.what());
     return 1;
   }
 }

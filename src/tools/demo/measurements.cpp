@@ -23,11 +23,11 @@ double Pick(const nlohmann::json& object, std::initializer_list<const char*> nam
 
 }  // namespace
 
-SenderSample ReadSample(const nlohmann::json& record, std::int64_t origin_unix_ns) {
+SenderSample ReadSample(const nlohmann::json& record) {
   const auto& sender = record.contains("sender") ? record["sender"] : nlohmann::json();
   const auto& encoder = record.contains("encoder") ? record["encoder"] : nlohmann::json();
   SenderSample s;
-  s.time_s = static_cast<double>(record.value("unix_ns", std::int64_t{0}) - origin_unix_ns) / 1e9;
+  s.unix_ns = record.value("unix_ns", std::int64_t{0});
   s.target_bps = Pick(sender, {"target-bitrate"});
   s.rtt_ms = Pick(sender, {"rtt", "s-rtt"}) / 1e6;
   s.queue_delay_ms = Pick(sender, {"queue-delay", "qdelay"}) / 1e6;

@@ -24,7 +24,7 @@ struct LinkPacket {
 
 /// What sender and encoder said about themselves at one time.
 struct SenderSample {
-  double time_s = 0;
+  std::int64_t unix_ns = 0;
   double target_bps = 0;
   double rtt_ms = 0;
   double queue_delay_ms = 0;
@@ -37,7 +37,7 @@ struct SenderSample {
 };
 
 /// Of a `stats` record of the sender; fields that an element does not have stay 0.
-SenderSample ReadSample(const nlohmann::json& record, std::int64_t origin_unix_ns);
+SenderSample ReadSample(const nlohmann::json& record);
 
 /// Reads the link's log. Lines that are cut off or malformed are left out.
 std::vector<LinkPacket> ReadLinkLog(const std::string& file);

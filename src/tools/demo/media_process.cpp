@@ -38,14 +38,15 @@ std::int64_t UnixNow() {
   return std::int64_t{t.tv_sec} * 1000000000 + t.tv_nsec;
 }
 
-MediaProcess::MediaProcess(const std::string& description, bool with_clouds)
-    : loop_(g_main_loop_new(nullptr, FALSE)), records_(STDOUT_FILENO, kRecordBacklog) {
+MediaProcess::MediaProcess(const std::string& description)
+    : loop_(g_main_loop_new(nullptr, FALSE)),
+      records_(STDOUT_FILENO, kRecordBacklog),
+      clouds_(kCloudsFd, kCloudBacklog) {
   GError* error = nullptr;
   pipeline_.reset(
       gst_parse_launch_full(description.c_str(), nullptr, GST_PARSE_FLAG_FATAL_ERRORS, &error));
   const gst::ErrorPtr owner(error);
   if (!pipeline_) throw std::runtime_error(error->message);
-  if (with_clouds) clouds_ = std::make_unique<tools::AsyncWriter>(kCloudsFd, kCloudBacklog);
 }
 
 MediaProcess::~MediaProcess() {
@@ -91,9 +92,7 @@ void MediaProcess::Every(guint interval_ms, std::function<void()> handler) {
 
 void MediaProcess::Write(const nlohmann::json& record) { records_.Write(record.dump() + '\n'); }
 
-void MediaProcess::Write(const Cloud& cloud) {
-  if (clouds_) clouds_->Write(WriteFrame(cloud));
-}
+void MediaProcess::Write(const Cloud& cloud) { clouds_.Write(WriteFrame(cloud)); }
 
 std::int64_t MediaProcess::UnixTimeOf(GstPad* pad, GstClockTime pts) const {
   const gst::EventPtr event(gst_pad_get_sticky_event(pad, GST_EVENT_SEGMENT, 0));

@@ -21,7 +21,7 @@ std::int64_t UnixNow();
 class MediaProcess {
  public:
   /// Parses the description; throws std::runtime_error with GStreamer's words.
-  explicit MediaProcess(const std::string& description, bool with_clouds);
+  explicit MediaProcess(const std::string& description);
   ~MediaProcess();
   MediaProcess(const MediaProcess&) = delete;
   MediaProcess& operator=(const MediaProcess&) = delete;
@@ -57,7 +57,7 @@ class MediaProcess {
   gst::ElementPtr pipeline_;
   GMainLoop* loop_;
   tools::AsyncWriter records_;
-  std::unique_ptr<tools::AsyncWriter> clouds_;
+  tools::AsyncWriter clouds_;
   int exit_code_ = 0;
   bool asked_to_stop_ = false;
 };

@@ -45,7 +45,7 @@ std::vector<Bin> Collect(const Measurements& m) {
     }
   }
   for (const SenderSample& s : m.samples)
-    if (Bin* bin = BinAt(&bins, s.time_s)) bin->sender = s;
+    if (Bin* bin = BinAt(&bins, m.Since(s.unix_ns))) bin->sender = s;
   return bins;
 }
 
