@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include "common/gstlidar.h"
+#include "pointcloud/gstcloudfileenc.h"
 #include "pointcloud/gstpointcloudparse.h"
 #include "pointcloud/gstscanassembler.h"
 
 static gboolean plugin_init(GstPlugin* plugin) {
   gst_lidar_init();
-  return GST_ELEMENT_REGISTER(pointcloudparse, plugin) &&
+  return GST_ELEMENT_REGISTER(pcdenc, plugin) && GST_ELEMENT_REGISTER(plyenc, plugin) &&
+         GST_ELEMENT_REGISTER(pointcloudparse, plugin) &&
          GST_ELEMENT_REGISTER(scanassembler, plugin);
 }
 

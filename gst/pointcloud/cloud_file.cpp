@@ -1,0 +1,193 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "pointcloud/cloud_file.h"
+
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <cstring>
+#include <limits>
+
+namespace lidar::gst {
+namespace {
+
+struct TypeText {
+  char pcd;
+  const char* ply;
+};
+
+TypeText TextOf(FieldType type) {
+  switch (type) {
+    case FieldType::kI8:
+      return {'I', "char"};
+    case FieldType::kU8:
+      return {'U', "uchar"};
+    case FieldType::kI16:
+      return {'I', "short"};
+    case FieldType::kU16:
+      return {'U', "ushort"};
+    case FieldType::kI32:
+      return {'I', "int"};
+    case FieldType::kU32:
+      return {'U', "uint"};
+    case FieldType::kF32:
+      return {'F', "float"};
+    case FieldType::kF64:
+      break;
+  }
+  return {'F', "double"};
+}
+
+/// Names come from caps, so they may hold what would break a header.
+std::string SafeName(const std::string& name) {
+  std::string safe = name;
+  for (char& c : safe)
+    if (g_ascii_isalnum(c) == FALSE) c = '_';
+  return safe;
+}
+
+bool IsCoordinate(const PointField& field) {
+  return field.type == FieldType::kF32 &&
+         (field.name == "x" || field.name == "y" || field.name == "z");
+}
+
+template <class T>
+void AppendNumber(const std::uint8_t* at, std::string* out) {
+  T value;
+  std::memcpy(&value, at, sizeof value);
+  std::array<char, 40> text{};
+  if constexpr (std::is_floating_point_v<T>) {
+    if (std::isnan(value)) {
+      *out += "nan";
+      return;
+    }
+  }
+  // The shortest text that reads back as the same number, whatever the locale.
+  const auto end = std::to_chars(text.data(), text.data() + text.size(), value);
+  out->append(text.data(), end.ptr);
+}
+
+void AppendText(FieldType type, const std::uint8_t* at, std::string* out) {
+  switch (type) {
+    case FieldType::kI8:
+      return AppendNumber<std::int8_t>(at, out);
+    case FieldType::kU8:
+      return AppendNumber<std::uint8_t>(at, out);
+    case FieldType::kI16:
+      return AppendNumber<std::int16_t>(at, out);
+    case FieldType::kU16:
+      return AppendNumber<std::uint16_t>(at, out);
+    case FieldType::kI32:
+      return AppendNumber<std::int32_t>(at, out);
+    case FieldType::kU32:
+      return AppendNumber<std::uint32_t>(at, out);
+    case FieldType::kF32:
+      return AppendNumber<float>(at, out);
+    case FieldType::kF64:
+      return AppendNumber<double>(at, out);
+  }
+}
+
+/// Walks over the points; all fields are packed without gaps.
+class PointWriter {
+ public:
+  explicit PointWriter(const CloudFileInput& cloud)
+      : cloud_(cloud), fields_(cloud.info->fields.all()) {
+    for (const PointField& f : fields_)
+      if (IsCoordinate(f)) coordinates_.push_back(&f);
+  }
+
+  bool HasReturn(const std::uint8_t* point) const {
+    if (coordinates_.size() < 3) return true;
+    bool zero = true;
+    for (const PointField* f : coordinates_) {
+      float v = 0;
+      std::memcpy(&v, point + f->offset, sizeof v);
+      if (!std::isfinite(v)) return false;
+      zero = zero && v == 0.0F;
+    }
+    return !zero;
+  }
+  gsize CountReturns() const {
+    gsize count = 0;
+    for (gsize i = 0; i < cloud_.info->Points(); ++i) count += HasReturn(At(i)) ? 1U : 0U;
+    return count;
+  }
+  /// Appends the points; those without a return as NaN, or not at all.
+  void AppendAll(bool keep_missing, std::string* out) const {
+    for (gsize i = 0; i < cloud_.info->Points(); ++i) {
+      const bool missing = !HasReturn(At(i));
+      if (!missing || keep_missing) Append(At(i), missing, out);
+    }
+  }
+
+ private:
+  const std::uint8_t* At(gsize i) const { return cloud_.points + i * cloud_.info->point_step; }
+  void Append(const std::uint8_t* point, bool missing, std::string* out) const {
+    static constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
+    std::array<std::uint8_t, sizeof kNan> nan{};
+    std::memcpy(nan.data(), &kNan, sizeof kNan);
+    for (std::size_t i = 0; i < fields_.size(); ++i) {
+      const PointField& f = fields_[i];
+      const std::uint8_t* at = missing && IsCoordinate(f) ? nan.data() : point + f.offset;
+      if (cloud_.binary) {
+        out->append(reinterpret_cast<const char*>(at), SizeOf(f.type));
+      } else {
+        if (i > 0) *out += ' ';
+        AppendText(f.type, at, out);
+      }
+    }
+    if (!cloud_.binary) *out += '\n';
+  }
+
+  const CloudFileInput& cloud_;
+  const std::vector<PointField>& fields_;
+  std::vector<const PointField*> coordinates_;
+};
+
+std::string CaptureComment(const CloudFileInput& cloud, const char* mark) {
+  if (!cloud.capture_time) return "";
+  std::string nanoseconds = std::to_string(*cloud.capture_time % GST_SECOND);
+  nanoseconds.insert(0, 9 - nanoseconds.size(), '0');
+  return std::string(mark) + " capture time [s since 1970-01-01T00:00:00Z]: " +
+         std::to_string(*cloud.capture_time / GST_SECOND) + "." + nanoseconds + "\n";
+}
+
+}  // namespace
+
+std::string WritePcd(const CloudFileInput& cloud) {
+  const CloudInfo& info = *cloud.info;
+  const PointWriter points(cloud);
+  const bool organised = info.height > 1;
+  const gsize count = organised ? info.Points() : points.CountReturns();
+  std::string names, sizes, types, counts;
+  for (const PointField& f : info.fields.all()) {
+    names += " " + SafeName(f.name);
+    sizes += " " + std::to_string(SizeOf(f.type));
+    types += std::string(" ") + TextOf(f.type).pcd;
+    counts += " 1";
+  }
+  std::string out = "# .PCD v0.7 - Point Cloud Data file format\n";
+  out += CaptureComment(cloud, "#");
+  out += "VERSION 0.7\nFIELDS" + names + "\nSIZE" + sizes + "\nTYPE" + types + "\nCOUNT" + counts;
+  out += "\nWIDTH " + std::to_string(organised ? info.width : count);
+  out += "\nHEIGHT " + std::to_string(info.height);
+  out += "\nVIEWPOINT 0 0 0 1 0 0 0\nPOINTS " + std::to_string(count);
+  out += cloud.binary ? "\nDATA binary\n" : "\nDATA ascii\n";
+  points.AppendAll(organised, &out);
+  return out;
+}
+
+std::string WritePly(const CloudFileInput& cloud) {
+  const PointWriter points(cloud);
+  std::string out = "ply\nformat ";
+  out += cloud.binary ? "binary_little_endian 1.0\n" : "ascii 1.0\n";
+  out += CaptureComment(cloud, "comment");
+  out += "element vertex " + std::to_string(points.CountReturns()) + "\n";
+  for (const PointField& f : cloud.info->fields.all())
+    out += std::string("property ") + TextOf(f.type).ply + " " + SafeName(f.name) + "\n";
+  out += "end_header\n";
+  points.AppendAll(false, &out);
+  return out;
+}
+
+}  // namespace lidar::gst

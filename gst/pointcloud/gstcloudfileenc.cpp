@@ -1,0 +1,197 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+/**
+ * SECTION:element-pcdenc
+ * SECTION:element-plyenc
+ *
+ * Every cloud as a PCD or PLY file, to be written by multifilesink.
+ *
+ * |[
+ * gst-launch-1.0 lidartestsrc slices-per-scan=1 num-buffers=3 ! pcdenc
+ *   ! multifilesink location=scan%06d.pcd
+ * ]|
+ */
+#include "pointcloud/gstcloudfileenc.h"
+
+#include <mutex>
+#include <optional>
+
+#include "common/buffer_map.h"
+#include "common/properties.h"
+#include "common/refs.h"
+#include "pointcloud/cloud_file.h"
+
+GST_DEBUG_CATEGORY_STATIC(gst_lidar_cloud_file_enc_debug);
+#define GST_CAT_DEFAULT gst_lidar_cloud_file_enc_debug
+
+namespace {
+
+using lidar::gst::CapsPtr;
+using lidar::gst::CloudInfo;
+
+struct Settings {
+  bool binary = true;
+};
+
+constexpr std::array<lidar::gst::Property<Settings>, 1> kProperties = {{
+    {"binary", "Numbers as little-endian binary, else as text", &Settings::binary, 0, 0,
+     GST_PARAM_MUTABLE_PLAYING},
+}};
+
+struct State {
+  std::mutex mutex;  // guards the settings
+  Settings settings;
+  std::optional<CloudInfo> info;  // of the streaming thread
+};
+
+}  // namespace
+
+struct GstLidarCloudFileEncPrivate {
+  State* state;
+};
+
+struct _GstLidarPcdEnc {
+  GstLidarCloudFileEnc parent;
+};
+struct _GstLidarPlyEnc {
+  GstLidarCloudFileEnc parent;
+};
+
+G_DEFINE_ABSTRACT_TYPE_WITH_PRIVATE(GstLidarCloudFileEnc, gst_lidar_cloud_file_enc,
+                                    GST_TYPE_BASE_TRANSFORM)
+G_DEFINE_TYPE(GstLidarPcdEnc, gst_lidar_pcd_enc, GST_TYPE_LIDAR_CLOUD_FILE_ENC)
+G_DEFINE_TYPE(GstLidarPlyEnc, gst_lidar_ply_enc, GST_TYPE_LIDAR_CLOUD_FILE_ENC)
+GST_ELEMENT_REGISTER_DEFINE(pcdenc, "pcdenc", GST_RANK_NONE, GST_TYPE_LIDAR_PCD_ENC)
+GST_ELEMENT_REGISTER_DEFINE(plyenc, "plyenc", GST_RANK_NONE, GST_TYPE_LIDAR_PLY_ENC)
+
+namespace {
+
+State& StateOf(gpointer self) {
+  auto* priv = static_cast<GstLidarCloudFileEncPrivate*>(
+      gst_lidar_cloud_file_enc_get_instance_private(GST_LIDAR_CLOUD_FILE_ENC(self)));
+  return *priv->state;
+}
+
+GstCaps* TransformCaps(GstBaseTransform* base, GstPadDirection direction, GstCaps*,
+                       GstCaps* filter) {
+  GstPad* other = direction == GST_PAD_SINK ? base->srcpad : base->sinkpad;
+  const CapsPtr caps(gst_pad_get_pad_template_caps(other));
+  if (filter == nullptr) return gst_caps_ref(caps.get());
+  return gst_caps_intersect_full(filter, caps.get(), GST_CAPS_INTERSECT_FIRST);
+}
+
+gboolean SetCaps(GstBaseTransform* base, GstCaps* in, GstCaps*) {
+  State& state = StateOf(base);
+  state.info = CloudInfo::FromCaps(in);
+  if (state.info && state.info->width > 0) return TRUE;
+  GST_ELEMENT_ERROR(base, STREAM, FORMAT, ("Not the caps of a point cloud of known width."),
+                    ("%" GST_PTR_FORMAT, static_cast<gpointer>(in)));
+  return FALSE;
+}
+
+std::string Write(GstBaseTransform* base, GstBuffer* in) {
+  State& state = StateOf(base);
+  const lidar::gst::BufferMap map(in, GST_MAP_READ);
+  if (!map || map.size() != state.info->FrameSize()) return "";
+  lidar::gst::CloudFileInput cloud{&*state.info, map.data(), std::nullopt, true};
+  const GstClockTime capture = gst_lidar_buffer_get_capture_time(in);
+  if (GST_CLOCK_TIME_IS_VALID(capture)) cloud.capture_time = capture;
+  {
+    std::lock_guard lock(state.mutex);
+    cloud.binary = state.settings.binary;
+  }
+  return GST_LIDAR_CLOUD_FILE_ENC_GET_CLASS(base)->write(cloud);
+}
+
+/// The size of a file is known once it is written, so this makes the whole output.
+GstFlowReturn PrepareOutput(GstBaseTransform* base, GstBuffer* in, GstBuffer** out) {
+  auto text = std::make_unique<std::string>(Write(base, in));
+  if (text->empty()) {
+    GST_ELEMENT_ERROR(base, STREAM, FORMAT, ("A cloud of another size than its caps say."),
+                      (nullptr));
+    return GST_FLOW_ERROR;
+  }
+  std::string* owned = text.release();
+  *out = gst_buffer_new_wrapped_full(GST_MEMORY_FLAG_READONLY, owned->data(), owned->size(), 0,
+                                     owned->size(), owned,
+                                     [](gpointer p) { delete static_cast<std::string*>(p); });
+  const auto what = static_cast<GstBufferCopyFlags>(
+      GST_BUFFER_COPY_FLAGS | GST_BUFFER_COPY_TIMESTAMPS | GST_BUFFER_COPY_META);
+  gst_buffer_copy_into(*out, in, what, 0, static_cast<gsize>(-1));
+  return GST_FLOW_OK;
+}
+
+gboolean Stop(GstBaseTransform* base) {
+  StateOf(base).info.reset();
+  return TRUE;
+}
+
+void SetObjectProperty(GObject* object, guint id, const GValue* value, GParamSpec*) {
+  State& state = StateOf(object);
+  std::lock_guard lock(state.mutex);
+  lidar::gst::SetProperty(state.settings, kProperties[id - 1], value);
+}
+
+void GetObjectProperty(GObject* object, guint id, GValue* value, GParamSpec*) {
+  State& state = StateOf(object);
+  std::lock_guard lock(state.mutex);
+  lidar::gst::GetProperty(state.settings, kProperties[id - 1], value);
+}
+
+void Finalize(GObject* object) {
+  delete &StateOf(object);
+  G_OBJECT_CLASS(gst_lidar_cloud_file_enc_parent_class)->finalize(object);
+}
+
+}  // namespace
+
+static GstStaticPadTemplate sink_template = GST_STATIC_PAD_TEMPLATE(
+    "sink", GST_PAD_SINK, GST_PAD_ALWAYS, GST_STATIC_CAPS(GST_LIDAR_CLOUD_MEDIA_TYPE));
+static GstStaticPadTemplate pcd_template = GST_STATIC_PAD_TEMPLATE(
+    "src", GST_PAD_SRC, GST_PAD_ALWAYS, GST_STATIC_CAPS("application/x-pcd"));
+static GstStaticPadTemplate ply_template = GST_STATIC_PAD_TEMPLATE(
+    "src", GST_PAD_SRC, GST_PAD_ALWAYS, GST_STATIC_CAPS("application/x-ply"));
+
+static void gst_lidar_cloud_file_enc_init(GstLidarCloudFileEnc* self) {
+  auto* priv = static_cast<GstLidarCloudFileEncPrivate*>(
+      gst_lidar_cloud_file_enc_get_instance_private(self));
+  priv->state = new State;
+}
+
+static void gst_lidar_cloud_file_enc_class_init(GstLidarCloudFileEncClass* klass) {
+  GST_DEBUG_CATEGORY_INIT(gst_lidar_cloud_file_enc_debug, "cloudfileenc", 0,
+                          "Point clouds as files");
+  auto* object = G_OBJECT_CLASS(klass);
+  object->set_property = SetObjectProperty;
+  object->get_property = GetObjectProperty;
+  object->finalize = Finalize;
+  lidar::gst::InstallProperties(object, kProperties);
+  gst_type_mark_as_plugin_api(GST_TYPE_LIDAR_CLOUD_FILE_ENC, static_cast<GstPluginAPIFlags>(0));
+  gst_element_class_add_static_pad_template(GST_ELEMENT_CLASS(klass), &sink_template);
+  auto* transform = GST_BASE_TRANSFORM_CLASS(klass);
+  transform->transform_caps = TransformCaps;
+  transform->set_caps = SetCaps;
+  transform->prepare_output_buffer = PrepareOutput;
+  transform->transform = [](GstBaseTransform*, GstBuffer*, GstBuffer*) { return GST_FLOW_OK; };
+  transform->stop = Stop;
+}
+
+static void gst_lidar_pcd_enc_init(GstLidarPcdEnc*) {}
+
+static void gst_lidar_pcd_enc_class_init(GstLidarPcdEncClass* klass) {
+  GST_LIDAR_CLOUD_FILE_ENC_CLASS(klass)->write = lidar::gst::WritePcd;
+  auto* element = GST_ELEMENT_CLASS(klass);
+  gst_element_class_add_static_pad_template(element, &pcd_template);
+  gst_element_class_set_static_metadata(element, "PCD encoder", "Encoder/PointCloud",
+                                        "Writes each cloud as a file of the Point Cloud Library",
+                                        "gst-lidar");
+}
+
+static void gst_lidar_ply_enc_init(GstLidarPlyEnc*) {}
+
+static void gst_lidar_ply_enc_class_init(GstLidarPlyEncClass* klass) {
+  GST_LIDAR_CLOUD_FILE_ENC_CLASS(klass)->write = lidar::gst::WritePly;
+  auto* element = GST_ELEMENT_CLASS(klass);
+  gst_element_class_add_static_pad_template(element, &ply_template);
+  gst_element_class_set_static_metadata(element, "PLY encoder", "Encoder/PointCloud",
+                                        "Writes each cloud as a PLY file", "gst-lidar");
+}

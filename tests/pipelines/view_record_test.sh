@@ -1,0 +1,45 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: LGPL-2.1-or-later
+# pipelines/view.sh and pipelines/record.sh leave the files that their help promises.
+set -euo pipefail
+root=$(cd "$(dirname "$0")/../.." && pwd)
+folder=$(mktemp -d)
+trap 'rm -rf "$folder"' EXIT
+passed=0
+failed=0
+
+# check NAME COMMAND...: counts whether the command succeeds.
+check() {
+  local name=$1
+  shift
+  if "$@" >"$folder/log" 2>&1; then
+    passed=$((passed + 1))
+  else
+    failed=$((failed + 1))
+    echo "FAILED: $name"
+    cat "$folder/log"
+  fi
+}
+starts_with() { [ "$(head -c "${#2}" "$1")" = "$2" ]; }
+is_png() { [ "$(head -c 4 "$1" | tail -c 3)" = PNG ] && [ "$(stat -c %s "$1")" -gt 5000 ]; }
+counts() { [ "$(find "$1" -name "$2" | wc -l)" = "$3" ]; }
+
+small="lidartestsrc model=os1-32 mode=512x10"
+check "view.sh runs" "$root/pipelines/view.sh" --scan 2 --output "$folder/view" "$small"
+for view in top perspective range; do
+  check "$view.png is a picture" is_png "$folder/view/$view.png"
+done
+for format in pcd pcd-text ply ply-text bin; do
+  check "record.sh writes $format" "$root/pipelines/record.sh" --scans 3 --format $format \
+    --output "$folder/$format" "$small"
+  check "$format has three scans" counts "$folder/$format" "scan*" 3
+  check "$format has a pose for each slice" counts "$folder/$format" trajectory.tum 1
+done
+check "a PCD file begins as one" starts_with "$folder/pcd/scan000002.pcd" "# .PCD v0.7"
+check "a PLY file begins as one" starts_with "$folder/ply/scan000002.ply" ply
+check "a raw scan has 32 x 512 points of 20 bytes" \
+  [ "$(stat -c %s "$folder/bin/scan000000.bin")" = $((32 * 512 * 20)) ]
+check "help is printed" "$root/pipelines/view.sh" --help
+check "unknown options are refused" bash -c "! '$root/pipelines/record.sh' --nonsense"
+echo "$passed passed, $failed failed"
+[ "$failed" = 0 ]
