@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// The subcommands of lidar-eval: each adds itself to the program with its options.
+#pragma once
+#include <CLI/CLI.hpp>
+
+namespace lidar::tools {
+
+void AddBoundsCommand(CLI::App* app);
+void AddRateDistortionCommand(CLI::App* app);
+void AddTrackCommand(CLI::App* app);
+void AddPredictCommand(CLI::App* app);
+
+}  // namespace lidar::tools

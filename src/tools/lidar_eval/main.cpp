@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// lidar-eval: what an error bound costs, and how well a bitrate is hit.
+#include <iostream>
+
+#include "lidar_eval/commands.h"
+
+int main(int argc, char** argv) {
+  CLI::App app("Measures the codec and the rate control on captures, clouds and synthetic drives.");
+  app.require_subcommand(1);
+  lidar::tools::AddBoundsCommand(&app);
+  lidar::tools::AddRateDistortionCommand(&app);
+  lidar::tools::AddPredictCommand(&app);
+  lidar::tools::AddTrackCommand(&app);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& e) {
+    return app.exit(e);
+  } catch (const std::exception& e) {
+    std::cerr << "lidar-eval: " << e.what() << '\n';
+    return 1;
+  }
+}

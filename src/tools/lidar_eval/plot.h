@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// CSV files and the plots of them, drawn by gnuplot.
+#pragma once
+#include <fstream>
+#include <string>
+
+namespace lidar::tools {
+
+/// Throws std::runtime_error where the file cannot be written.
+class CsvFile {
+ public:
+  /// An empty path writes nothing.
+  CsvFile(const std::string& path, const std::string& header);
+  void Row(const std::string& row);
+  /// To be called at the end: a full disk shows up here.
+  void Close();
+
+ private:
+  std::string path_;
+  std::ofstream file_;
+};
+
+/// Runs `commands` after the settings for a PNG at `png`. Throws where gnuplot is missing or fails.
+void Plot(const std::string& png, const std::string& commands);
+
+/// printf into a string.
+std::string Format(const char* format, ...) __attribute__((format(printf, 1, 2)));
+
+}  // namespace lidar::tools

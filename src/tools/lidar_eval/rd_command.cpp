@@ -1,0 +1,123 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// lidar-eval rd: rate against distortion, ours and the paper's setting.
+#include <cstdio>
+#include <memory>
+
+#include "lidar_eval/commands.h"
+#include "lidar_eval/measure.h"
+#include "lidar_eval/plot.h"
+#include "lidar_eval/scan_source.h"
+
+namespace lidar::tools {
+namespace {
+
+struct Options {
+  std::vector<std::string> sources;
+  SourceOptions source;
+  std::vector<std::string> modes = {"range-adaptive"};
+  std::vector<std::uint32_t> slices = {1, 8};
+  std::vector<double> errors = {0.002, 0.003, 0.005, 0.007, 0.01, 0.015,
+                                0.02,  0.03,  0.05,  0.07,  0.1,  0.2};
+  std::string csv;
+  std::string plot;
+};
+
+struct Curve {
+  std::string name;
+  std::vector<Measurement> points;
+};
+
+/// Automatic quantisation of the bounding cube, as the paper has it.
+Curve PaperCurve(const ScanSet& set, const std::string& mode, const char* name) {
+  constexpr unsigned kFewestBits = 8;
+  constexpr unsigned kMostBits = 18;  // beyond, Draco codes the sensor's noise
+  Curve curve{name, {}};
+  for (unsigned q = kFewestBits; q <= kMostBits; ++q)
+    if (const auto m = Measure(set, ModeNamed(mode), {0, q, 0, 1})) curve.points.push_back(*m);
+  return curve;
+}
+
+Curve OurCurve(const ScanSet& set, const std::string& name, std::uint32_t slices,
+               const std::vector<double>& errors) {
+  const CodingMode& mode = ModeNamed(name);
+  Curve curve{name + (slices == 1 ? ", whole scans" : Format(", %u slices", slices)), {}};
+  SliceCodec codec;
+  codec.Load(set.scans.front(), {});
+  for (const double error : errors) {
+    const double step = codec.Residual(mode).CoarsestStep(error);
+    if (!curve.points.empty() && curve.points.back().step_m >= step) continue;
+    if (const auto m = Measure(set, mode, {step, 0, 0, slices})) curve.points.push_back(*m);
+  }
+  return curve;
+}
+
+void Evaluate(const ScanSet& set, const Options& o, CsvFile* csv) {
+  std::vector<Curve> curves = {PaperCurve(set, "xyz-sequential", "paper: automatic bits, level 0"),
+                               PaperCurve(set, "xyz-kd6", "paper: automatic bits, level 7")};
+  for (const std::string& mode : o.modes) {
+    if (ModeNamed(mode).geometry == rate::Geometry::kRange && !set.organised()) continue;
+    for (const std::uint32_t slices : o.slices)
+      curves.push_back(OurCurve(set, mode, slices, o.errors));
+  }
+  std::printf("%s: %zu scans, geometry only\n", set.name.c_str(), set.scans.size());
+  std::printf("  %-32s %9s %9s %9s %9s %9s %9s\n", "", "step", "q", "mean", "max", "bits per",
+              "Mbit/s");
+  std::printf("  %-32s %9s %9s %9s %9s %9s\n", "", "[mm]", "", "[mm]", "[mm]", "return");
+  for (const Curve& curve : curves) {
+    for (const Measurement& m : curve.points) {
+      std::printf("  %-32s %9.2f %9.2f %9.2f %9.2f %9.3f %9.3f\n", curve.name.c_str(),
+                  1e3 * m.step_m, m.quantization_bits, 1e3 * m.errors.mean_m, 1e3 * m.errors.max_m,
+                  m.bits_per_return, 1e-6 * m.bitrate);
+      csv->Row(Format("%s,\"%s\",%g,%.3f,%g,%g,%.4f,%.0f", set.name.c_str(), curve.name.c_str(),
+                      m.step_m, m.quantization_bits, m.errors.mean_m, m.errors.max_m,
+                      m.bits_per_return, m.bitrate));
+    }
+  }
+  if (o.plot.empty()) return;
+  std::string data;
+  std::string lines;
+  for (std::size_t i = 0; i < curves.size(); ++i) {
+    data += Format("$c%zu << EOD\n", i);
+    for (const Measurement& m : curves[i].points)
+      data += Format("%g,%g\n", 1e3 * m.errors.max_m, m.bits_per_return);
+    data += "EOD\n";
+    lines += Format("%s$c%zu using 1:2 with linespoints pt 7 ps 0.6 lw 2 title '%s'",
+                    i == 0 ? "plot " : ", ", i, curves[i].name.c_str());
+  }
+  Plot(o.plot,
+       data +
+           "set logscale x\nset xrange [1:300]\nset yrange [0:30]\n"
+           "set xlabel 'largest point error [mm]'\nset ylabel 'bits per return'\nset title '" +
+           set.name + "' noenhanced\n" + lines);
+}
+
+void Run(const Options& o) {
+  if (!o.plot.empty() && o.sources.size() > 1) throw std::runtime_error("--plot draws one source");
+  CsvFile csv(o.csv,
+              "source,coding,step_m,quantization_bits,mean_error_m,max_error_m,bits_per_return,"
+              "bitrate_bps");
+  for (const std::string& source : o.sources) Evaluate(LoadScans(source, o.source), o, &csv);
+  csv.Close();
+}
+
+}  // namespace
+
+void AddRateDistortionCommand(CLI::App* app) {
+  auto o = std::make_shared<Options>();
+  CLI::App* command = app->add_subcommand(
+      "rd", "Rate against distortion: our coding modes, and Draco set up as in the paper");
+  command->option_defaults()->always_capture_default();
+  command->add_option("SOURCE", o->sources, kSourceHelp)->required();
+  command->add_option("--modes", o->modes, "Coding modes, comma-separated")->delimiter(',');
+  command->add_option("--slices", o->slices, "Slices per scan, comma-separated")
+      ->delimiter(',')
+      ->check(CLI::Range(1U, 64U));
+  command->add_option("--errors", o->errors, "Error bounds [m], comma-separated")->delimiter(',');
+  command->add_option("--scans", o->source.max_scans, "Scans to read of each source");
+  command->add_option("--speed", o->source.speed_mps, "Of synthetic drives [m/s]");
+  command->add_option("--csv", o->csv, "Write the table to this file as well");
+  command->add_option("--plot", o->plot, "Draw it as this PNG (one source)");
+  command->callback([o] { Run(*o); });
+}
+
+}  // namespace lidar::tools

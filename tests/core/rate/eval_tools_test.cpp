@@ -1,0 +1,177 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// What lidar-train and lidar-eval are made of: sources, targets, measurements.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdlib>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <limits>
+#include <stdexcept>
+
+#include "lidar_eval/cloud_file.h"
+#include "lidar_eval/measure.h"
+#include "lidar_eval/model_option.h"
+#include "lidar_eval/scan_source.h"
+#include "lidar_eval/tracking.h"
+
+namespace lidar::tools {
+namespace {
+
+class Files : public ::testing::Test {
+ protected:
+  Files() {
+    std::string pattern = (std::filesystem::temp_directory_path() / "lidar-eval-XXXXXX").string();
+    folder_ = mkdtemp(pattern.data());
+  }
+  ~Files() override { std::filesystem::remove_all(folder_); }
+
+  std::string Write(const std::string& name, const std::string& content) const {
+    std::ofstream(folder_ + "/" + name, std::ios::binary) << content;
+    return folder_ + "/" + name;
+  }
+  template <class T>
+  static std::string Bytes(const std::vector<T>& values) {
+    std::string bytes(values.size() * sizeof(T), '\0');
+    std::memcpy(bytes.data(), values.data(), bytes.size());
+    return bytes;
+  }
+  std::string folder_;
+};
+
+constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
+
+TEST_F(Files, KittiCloudsLoseTheirMissingPoints) {
+  const auto path = Write(
+      "a.bin", Bytes<float>({1, 2, 3, 0.5F, 0, 0, 0, 0.1F, kNan, 1, 1, 0.2F, -4, 5, -6, 0.7F}));
+  const Scan scan = ReadBin(path);
+  EXPECT_EQ(scan.xyz, (std::vector<float>{1, 2, 3, -4, 5, -6}));
+  EXPECT_EQ(scan.intensity, (std::vector<float>{0.5F, 0.7F}));
+  EXPECT_FALSE(scan.organised());
+}
+
+TEST_F(Files, KittiCloudsOfOddLengthAreRefused) {
+  EXPECT_THROW(ReadBin(Write("a.bin", "123")), std::runtime_error);
+  EXPECT_THROW(ReadBin(Write("b.bin", "")), std::runtime_error);
+  EXPECT_THROW(ReadBin(folder_ + "/none.bin"), std::runtime_error);
+}
+
+const char* const kPcdHeader =
+    "# .PCD v0.7\nVERSION 0.7\nFIELDS ring x y z intensity\nSIZE 2 4 4 4 4\nTYPE U F F F F\n"
+    "COUNT 1 1 1 1 1\nWIDTH 2\nHEIGHT 1\nVIEWPOINT 0 0 0 1 0 0 0\nPOINTS 2\n";
+
+TEST_F(Files, PcdInAsciiAndBinaryGivesTheSameCloud) {
+  const auto ascii =
+      ReadPcd(Write("a.pcd", std::string(kPcdHeader) + "DATA ascii\n7 1 2 3 0.5\n9 4 5 6 0.25\n"));
+  const auto point = [](std::uint16_t ring, const std::vector<float>& rest) {
+    return Bytes<std::uint16_t>({ring}) + Bytes(rest);
+  };
+  const auto binary =
+      ReadPcd(Write("b.pcd", std::string(kPcdHeader) + "DATA binary\n" + point(7, {1, 2, 3, 0.5F}) +
+                                 point(9, {4, 5, 6, 0.25F})));
+  EXPECT_EQ(ascii.xyz, (std::vector<float>{1, 2, 3, 4, 5, 6}));
+  EXPECT_EQ(ascii.intensity, (std::vector<float>{0.5F, 0.25F}));
+  EXPECT_EQ(binary.xyz, ascii.xyz);
+  EXPECT_EQ(binary.intensity, ascii.intensity);
+}
+
+TEST_F(Files, PcdThatIsCutOffOrOfAnotherKindIsRefused) {
+  const std::string header = kPcdHeader;
+  for (const std::string& bad :
+       {header + "DATA binary\n123", header + "DATA ascii\n7 1 2\n",
+        header + "DATA binary_compressed\n", std::string("FIELDS x y\nDATA ascii\n"),
+        std::string("FIELDS x y z\nSIZE 8 8 8\nPOINTS 1\nDATA ascii\n1 2 3\n"),
+        std::string("FIELDS x y z\nPOINTS 99999999999\nDATA ascii\n"), std::string()}) {
+    EXPECT_THROW(ReadPcd(Write("bad.pcd", bad)), std::runtime_error) << bad;
+  }
+}
+
+TEST_F(Files, AFolderIsReadInTheOrderOfItsNames) {
+  Write("2.bin", Bytes<float>({2, 0, 0, 0}));
+  Write("1.bin", Bytes<float>({1, 0, 0, 0}));
+  Write("notes.txt", "not a cloud");
+  const ScanSet set = LoadScans(folder_, {});
+  ASSERT_EQ(set.scans.size(), 2U);
+  EXPECT_EQ(set.scans[0].xyz[0], 1);
+  EXPECT_EQ(set.scans[1].xyz[0], 2);
+}
+
+TEST_F(Files, RecordedTargetsHoldUntilTheNextLine) {
+  const auto path = Write("t.txt", "# time rate\n0 4\n0.25 2\n\n0.5 8 # more\n");
+  EXPECT_EQ(ReadTargets(path, 10), (std::vector<double>{4e6, 4e6, 4e6, 2e6, 2e6, 8e6}));
+  EXPECT_THROW(ReadTargets(Write("bad.txt", "0 4\n1 x\n"), 10), std::runtime_error);
+  EXPECT_THROW(ReadTargets(Write("empty.txt", "# nothing\n"), 10), std::runtime_error);
+}
+
+TEST_F(Files, AModelFileThatIsNoneIsRefusedByName) {
+  const auto path = Write("model.json", "{\"format\":");
+  try {
+    LoadModelFile(path);
+    FAIL() << "was read";
+  } catch (const std::runtime_error& e) {
+    EXPECT_NE(std::string(e.what()).find(path), std::string::npos) << e.what();
+    EXPECT_NE(std::string(e.what()).find("cut off"), std::string::npos) << e.what();
+  }
+}
+
+class BadSource : public ::testing::TestWithParam<const char*> {};
+TEST_P(BadSource, IsRefused) { EXPECT_THROW(LoadScans(GetParam(), {}), std::runtime_error); }
+INSTANTIATE_TEST_SUITE_P(All, BadSource,
+                         ::testing::Values("", "cloud.las", "none.pcap",
+                                           "synth:", "synth:os9-64:street", "synth:os1-64:moon",
+                                           "synth:os1-64:street:7", "synth:os1-64:street:x",
+                                           "synth:os1-64:street:512:1"));
+
+TEST(MakeTargets, StaysInItsRangeAndMovesAsItsNameSays) {
+  ProfileOptions options;
+  options.steady_bps = 5;
+  options.min_bps = 1e6;
+  options.max_bps = 8e6;
+  for (const double t : MakeTargets(TargetProfile::kSteady, 50, options)) EXPECT_EQ(t, 5);
+  const auto walk = MakeTargets(TargetProfile::kWalk, 2000, options);
+  double square = 0;
+  for (std::size_t i = 0; i < walk.size(); ++i) {
+    EXPECT_GE(walk[i], 1e6);
+    EXPECT_LE(walk[i], 8e6);
+    if (i > 0) square += std::pow(std::log(walk[i] / walk[i - 1]), 2) / 2000;
+  }
+  EXPECT_NEAR(std::sqrt(square), 0.08, 0.01);
+  const auto jump = MakeTargets(TargetProfile::kJump, 100, options);
+  for (std::size_t i = 1; i < jump.size(); ++i) EXPECT_EQ(jump[i] == jump[i - 1], i % 10 != 0) << i;
+}
+
+TEST(Measure, FindsErrorsBelowTheBoundAndCloseToIt) {
+  SourceOptions one;
+  one.max_scans = 1;
+  const ScanSet set = LoadScans("synth:os0-32:street:512", one);
+  SliceCodec codec;
+  codec.Load(set.scans.front(), {});
+  for (const char* name : {"range-adaptive", "range-draco", "xyz-kd6", "xyz-sequential"}) {
+    const CodingMode& mode = ModeNamed(name);
+    const double step = codec.Residual(mode).CoarsestStep(0.02);
+    const auto m = Measure(set, mode, {step, 0, 0, 4});
+    ASSERT_TRUE(m) << name;
+    // Positions are floats: a hundredth of a millimetre at a hundred metres.
+    EXPECT_LE(m->errors.max_m, 0.02 + 2e-5) << name;
+    EXPECT_GT(m->errors.max_m, 0.018) << name;
+    EXPECT_NEAR(m->errors.mean_m, codec.Residual(mode).MeanError(step), 0.0005) << name;
+    EXPECT_NEAR(m->step_m, step, 1e-9) << name;
+  }
+}
+
+TEST(MeasureBounds, GrowsFromTheBoundToTheSensorsResolution) {
+  SourceOptions one;
+  one.max_scans = 1;
+  const ScanSet set = LoadScans("synth:os0-32:street:512", one);
+  TrackOptions options;
+  options.mode = &DefaultMode(set);
+  options.intensity_bits = 8;
+  const rate::RateBounds bounds = MeasureBounds(set, options);
+  EXPECT_GT(bounds.min.bits_per_second(), 1e4);
+  EXPECT_LT(bounds.min, bounds.nominal);
+  EXPECT_LT(bounds.nominal, bounds.max);
+}
+
+}  // namespace
+}  // namespace lidar::tools
