@@ -281,8 +281,11 @@ static GstCaps* FixateForPeer(const GstCaps* peer) {
   if (gst_caps_is_any(peer) || gst_caps_is_empty(peer)) return nullptr;
   GstCaps* caps = gst_caps_truncate(gst_caps_copy(peer));
   GstStructure* s = gst_caps_get_structure(caps, 0);
-  if (gst_structure_has_field(s, "payload"))
+  if (gst_structure_has_field(s, "payload")) {
     gst_structure_fixate_field_nearest_int(s, "payload", kDefaultPayload);
+  } else if (gst_structure_has_field(s, "encoding-name")) {
+    gst_structure_set(s, "payload", G_TYPE_INT, kDefaultPayload, nullptr);
+  }
   return gst_caps_fixate(caps);
 }
 

@@ -287,8 +287,13 @@ static GstStateChangeReturn ChangeState(GstElement* element, GstStateChange chan
     StartControl(self);
   } else if (change == GST_STATE_CHANGE_PAUSED_TO_READY) {
     Unblock(state);
+  } else if (change == GST_STATE_CHANGE_PAUSED_TO_PLAYING) {
+    TxLock lock(state.mutex);
+    state.playing = true;
+    state.room.notify_all();
   } else if (change == GST_STATE_CHANGE_PLAYING_TO_PAUSED) {
     TxLock lock(state.mutex);
+    state.playing = false;
     for (auto& stream : state.streams)
       if (stream->entry_wait != nullptr) gst_clock_id_unschedule(stream->entry_wait);
   }

@@ -52,17 +52,28 @@ GstPad* NewPad(GstLidarScreamRx* self, guint32 ssrc, GstCaps* caps) {
   return pad;
 }
 
+/// Gives `src` its caps, and then what has to come behind them.
+void StartSrc(GstLidarScreamRx* self, const CapsPtr& caps) {
+  gst_pad_push_event(self->src, gst_event_new_caps(caps.get()));
+  if (!self->state->src_started)
+    gst_pad_sticky_events_foreach(self->sink, CopyExceptCaps, self->src);
+  self->state->src_started = true;
+}
+
 /// `src` takes the first stream that its peer can take; payload types outside of pt-map too
 /// (retransmission, FEC), which belong to whatever is there.
 GstPad* Route(GstLidarScreamRx* self, const RtpHeader& header) {
   RxState& state = *self->state;
   const CapsPtr caps(CapsOf(self, header));
-  if (!caps) return self->src;
+  if (!caps) {
+    if (!state.src_started) StartSrc(self, CapsPtr(gst_caps_new_empty_simple("application/x-rtp")));
+    return self->src;
+  }
   const bool fits = gst_pad_is_linked(self->src) &&
                     gst_pad_peer_query_accept_caps(self->src, caps.get()) != FALSE;
   if (state.src_taken || !fits) return NewPad(self, header.ssrc, caps.get());
   state.src_taken = true;
-  gst_pad_push_event(self->src, gst_event_new_caps(caps.get()));
+  StartSrc(self, caps);
   return self->src;
 }
 
@@ -85,6 +96,11 @@ GstFlowReturn Demux(GstLidarScreamRx* self, const RtpHeader& header, GstBuffer* 
 gboolean ForwardToAll(GstLidarScreamRx* self, GstEvent* event) {
   for (const auto& [ssrc, pad] : self->state->routes)
     if (pad != self->src) gst_pad_push_event(pad, gst_event_ref(event));
+  if (HasPtMap(self) && !self->state->src_started && GST_EVENT_IS_STICKY(event) &&
+      GST_EVENT_TYPE(event) != GST_EVENT_EOS) {
+    gst_event_unref(event);  // it follows the caps, which the first packet brings
+    return TRUE;
+  }
   return gst_pad_push_event(self->src, event);
 }
 
@@ -97,7 +113,7 @@ void RemoveRoutes(GstLidarScreamRx* self) {
     gst_element_remove_pad(GST_ELEMENT(self), pad);
   }
   state.routes.clear();
-  state.src_taken = false;
+  state.src_taken = state.src_started = false;
 }
 
 }  // namespace lidar::gst

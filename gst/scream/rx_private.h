@@ -64,7 +64,8 @@ struct RxState {
   // Of the streaming thread
   bool eos = false;
   std::map<guint32, GstPad*> routes;  // SSRC to the pad it leaves by, where there is a pt-map
-  bool src_taken = false;
+  bool src_taken = false;             // by a stream of pt-map
+  bool src_started = false;           // it has had its caps
   GstFlowCombiner* combiner = nullptr;
 };
 

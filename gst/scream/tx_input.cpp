@@ -32,13 +32,10 @@ void WaitForEntry(GstLidarScreamTx* self, TxStream& stream, GstBuffer* buffer) {
   TxState& state = *self->state;
   const GstClockTime entry = EntryTime(self, stream, buffer);
   GstClock* clock = gst_element_get_clock(GST_ELEMENT(self));
-  GST_OBJECT_LOCK(self);
-  const bool playing = GST_STATE(self) == GST_STATE_PLAYING;
-  GST_OBJECT_UNLOCK(self);
-  if (clock != nullptr && playing && GST_CLOCK_TIME_IS_VALID(entry)) {
+  if (clock != nullptr && GST_CLOCK_TIME_IS_VALID(entry)) {
     GstClockID id = gst_clock_new_single_shot_id(clock, entry);
     TxLock lock(state.mutex);
-    const bool wait = state.running && !stream.flushing;
+    const bool wait = state.running && state.playing && !stream.flushing;
     stream.entry_wait = id;
     lock.unlock();
     if (wait) gst_clock_id_wait(id, nullptr);
@@ -71,12 +68,15 @@ void Enqueue(TxState& state, TxStream& stream, BufferPtr buffer, Time now) {
   ++stream.packets_queued;
 }
 
-/// Waits until there is room for input that is not live; with the lock held.
-void WaitForRoom(TxState& state, TxStream& stream, TxLock& lock) {
+/// Waits until there is room for input that is not live. Before we play there is room for what a
+/// sink needs to preroll.
+void WaitForRoom(TxState& state, TxStream& stream) {
+  TxLock lock(state.mutex);
   const Duration limit{static_cast<std::int64_t>(state.settings.max_queue_delay)};
   state.room.wait(lock, [&] {
-    return !state.running || stream.flushing || state.flow != GST_FLOW_OK ||
-           stream.HeadAge(TxNow(state)) < limit;
+    if (!state.running || stream.flushing || state.flow != GST_FLOW_OK) return true;
+    if (!state.playing) return stream.queue.empty();
+    return stream.HeadAge(TxNow(state)) < limit;
   });
 }
 
@@ -92,9 +92,11 @@ GstFlowReturn Queue(GstLidarScreamTx* self, GstPad* pad, GstBuffer* first, Take 
   TxState& state = *self->state;
   TxStream& stream = *PadStream(pad);
   if (!stream.live) stream.live = IsLive(pad);
-  if (!*stream.live) WaitForEntry(self, stream, first);
+  if (!*stream.live) {
+    WaitForRoom(state, stream);
+    WaitForEntry(self, stream, first);
+  }
   TxLock lock(state.mutex);
-  if (!*stream.live && state.running) WaitForRoom(state, stream, lock);
   const GstFlowReturn flow = Gate(state, stream);
   if (flow != GST_FLOW_OK) return flow;
   take(state, stream, TxNow(state));

@@ -40,7 +40,8 @@ struct TxState {
   GstClockID timer = nullptr;  // what the task waits for, not owned
   bool waits_for_pace = false;
   bool settings_changed = false;
-  bool running = false;
+  bool running = false;  // the src pad is active
+  bool playing = false;
   GstFlowReturn flow = GST_FLOW_OK;
   std::optional<Time> eos_deadline;
   bool eos_sent = false;

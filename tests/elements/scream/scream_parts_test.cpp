@@ -2,9 +2,9 @@
 // The parts of the SCReAM elements that need no pad: RTP headers, goodbyes, the receiver's latch.
 #include <gtest/gtest.h>
 
+#include "rtp_support.h"
 #include "scream/peer_latch.h"
 #include "scream/rtp_packet.h"
-#include "rtp_support.h"
 
 namespace lidar::gst {
 namespace {
@@ -28,7 +28,7 @@ TEST(RtpHeader, IsReadWithItsExtensionAndSources) {
   EXPECT_EQ(plain->header_size, 12U);
 
   std::vector<std::uint8_t> bytes{0x92, 96, 0, 1, 0, 0, 0, 0, 0, 0, 0, 7};
-  bytes.insert(bytes.end(), 8, 0);             // two CSRCs
+  bytes.insert(bytes.end(), 8, 0);                               // two CSRCs
   bytes.insert(bytes.end(), {0xbe, 0xde, 0, 1, 0, 0, 0, 0, 9});  // an extension of one word
   const BufferPtr extended(test::FromBytes(bytes));
   const auto header = ReadRtpHeader(extended.get());
@@ -44,9 +44,10 @@ TEST_P(NotRtp, IsRefused) {
 INSTANTIATE_TEST_SUITE_P(
     All, NotRtp,
     ::testing::Values(std::vector<std::uint8_t>{}, std::vector<std::uint8_t>{0x80},
-                      std::vector<std::uint8_t>(11, 0x80),   // too short
-                      std::vector<std::uint8_t>(40, 0x00),   // version 0
-                      std::vector<std::uint8_t>{0x8f, 96, 0, 1, 0, 0, 0, 0, 0, 0, 0, 7},  // 15 CSRCs
+                      std::vector<std::uint8_t>(11, 0x80),  // too short
+                      std::vector<std::uint8_t>(40, 0x00),  // version 0
+                      std::vector<std::uint8_t>{0x8f, 96, 0, 1, 0, 0, 0, 0, 0, 0, 0,
+                                                7},  // 15 CSRCs
                       std::vector<std::uint8_t>{0x90, 96, 0, 1, 0, 0, 0, 0, 0, 0, 0, 7},
                       std::vector<std::uint8_t>{0x90, 96, 0, 1, 0, 0, 0, 0, 0, 0, 0, 7, 0, 0, 0xff,
                                                 0xff}));  // extensions past the end

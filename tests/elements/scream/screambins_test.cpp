@@ -1,0 +1,306 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// screamsink and screamsrc over real loopback sockets.
+#include <gtest/gtest.h>
+
+#include <memory>
+
+#include "rtp_support.h"
+
+namespace lidar::test {
+namespace {
+
+using gst::ElementPtr;
+using gst::ErrorPtr;
+using gst::MessagePtr;
+using gst::PadPtr;
+using gst::StringPtr;
+
+constexpr GstClockTime kPatience = 20 * GST_SECOND;
+
+class Pipeline {
+ public:
+  explicit Pipeline(const std::string& text) {
+    GError* error = nullptr;
+    element_.reset(gst_parse_launch(text.c_str(), &error));
+    if (error == nullptr) return;
+    ADD_FAILURE() << error->message;
+    g_error_free(error);
+  }
+  ~Pipeline() {
+    if (element_) gst_element_set_state(element_.get(), GST_STATE_NULL);
+  }
+  Pipeline(Pipeline&&) = default;
+  void Play() { gst_element_set_state(element_.get(), GST_STATE_PLAYING); }
+  ElementPtr Get(const char* name) {
+    return ElementPtr(gst_bin_get_by_name(GST_BIN(element_.get()), name));
+  }
+  void SendEos() { gst_element_send_event(element_.get(), gst_event_new_eos()); }
+  MessagePtr Wait(GstMessageType types) {
+    GstBus* bus = gst_element_get_bus(element_.get());
+    MessagePtr message(gst_bus_timed_pop_filtered(bus, kPatience, types));
+    gst_object_unref(bus);
+    return message;
+  }
+  ::testing::AssertionResult Ends() {
+    const MessagePtr message =
+        Wait(static_cast<GstMessageType>(GST_MESSAGE_EOS | GST_MESSAGE_ERROR));
+    if (!message) return ::testing::AssertionFailure() << "no EOS";
+    if (GST_MESSAGE_TYPE(message.get()) == GST_MESSAGE_EOS) return ::testing::AssertionSuccess();
+    GError* error = nullptr;
+    gst_message_parse_error(message.get(), &error, nullptr);
+    const ErrorPtr owner(error);
+    return ::testing::AssertionFailure() << error->message;
+  }
+
+ private:
+  std::unique_ptr<GstElement, gst::Unref> element_;
+};
+
+guint PortOf(GstElement* source) {
+  GSocket* socket = nullptr;
+  g_object_get(source, "used-socket", &socket, nullptr);
+  if (socket == nullptr) return 0;
+  GSocketAddress* address = g_socket_get_local_address(socket, nullptr);
+  const guint port = g_inet_socket_address_get_port(G_INET_SOCKET_ADDRESS(address));
+  g_object_unref(address);
+  g_object_unref(socket);
+  return port;
+}
+
+/// A receiver of raw audio that plays, and its port.
+struct Receiver {
+  explicit Receiver(const std::string& properties = "", const std::string& rest = "rtpL16depay")
+      : pipeline("screamsrc name=in port=0 " + properties + " ! " + rest +
+                 " ! fakesink name=out sync=false") {
+    pipeline.Play();
+    in = pipeline.Get("in");
+    port = PortOf(in.get());
+  }
+  Pipeline pipeline;
+  ElementPtr in;
+  guint port = 0;
+};
+
+constexpr const char* kAudioCaps =
+    "caps=\"application/"
+    "x-rtp,media=audio,encoding-name=L16,clock-rate=44100,channels=1,payload=96\"";
+const std::string kAudio =
+    "audiotestsrc name=src samplesperbuffer=441 is-live=true ! "
+    "audio/x-raw,rate=44100,channels=1,format=S16BE ! rtpL16pay name=pay ! ";
+
+std::string Sink(guint port, const std::string& more = "") {
+  return "screamsink name=out host=127.0.0.1 port=" + std::to_string(port) + " " + more;
+}
+
+TEST(ScreamBins, CarryAStreamAndEndBothEnds) {
+  Receiver receiver(kAudioCaps);
+  Pipeline sender(kAudio + Sink(receiver.port));
+  g_object_set(sender.Get("src").get(), "num-buffers", 100, nullptr);
+  sender.Play();
+  EXPECT_TRUE(sender.Ends());
+  EXPECT_TRUE(receiver.pipeline.Ends());
+  const Stats tx(sender.Get("out").get());
+  const Stats rx(receiver.in.get());
+  EXPECT_EQ(tx["packets-sent"], 100U);
+  EXPECT_EQ(rx["packets-received"], 100U);
+  EXPECT_EQ(rx["packets-lost"], 0U);
+  EXPECT_GT(tx["feedback-accepted"], 10U);
+  EXPECT_EQ(tx["feedback-foreign-address"], 0U);
+  EXPECT_EQ(tx.Text("ecn-state"), "capable");
+  EXPECT_GT(tx["rtt"], 0U);
+}
+
+TEST(ScreamBins, EndBothEndsWhenTheApplicationEndsTheSender) {
+  Receiver receiver(kAudioCaps);
+  Pipeline sender(kAudio + Sink(receiver.port));
+  sender.Play();
+  ASSERT_TRUE(sender.Wait(GST_MESSAGE_STREAM_START));
+  while (Stats(receiver.in.get())["packets-received"] == 0) g_usleep(1000);
+  sender.SendEos();
+  EXPECT_TRUE(sender.Ends());
+  EXPECT_TRUE(receiver.pipeline.Ends());
+}
+
+TEST(ScreamBins, TheReceiverEndsWhenItsApplicationSaysSo) {
+  Receiver receiver(kAudioCaps);
+  receiver.pipeline.SendEos();
+  EXPECT_TRUE(receiver.pipeline.Ends());
+}
+
+TEST(ScreamBins, NegotiateWithoutCapsWhereDownstreamSaysEnough) {
+  Receiver receiver("", "rtpgstdepay");
+  Pipeline sender("audiotestsrc num-buffers=20 is-live=true ! rtpgstpay ! " + Sink(receiver.port));
+  sender.Play();
+  EXPECT_TRUE(sender.Ends());
+  EXPECT_TRUE(receiver.pipeline.Ends());
+  const PadPtr pad(gst_element_get_static_pad(receiver.in.get(), "src"));
+  const gst::CapsPtr caps(gst_pad_get_current_caps(pad.get()));
+  ASSERT_TRUE(caps);
+  gint payload = 0;
+  gst_structure_get_int(gst_caps_get_structure(caps.get(), 0), "payload", &payload);
+  EXPECT_EQ(payload, 96);
+}
+
+TEST(ScreamBins, InputThatIsNotLiveTakesItsTimeAndLosesNothing) {
+  Receiver receiver(kAudioCaps);
+  Pipeline sender(
+      "audiotestsrc name=src samplesperbuffer=441 num-buffers=60 ! "
+      "audio/x-raw,rate=44100,channels=1,format=S16BE ! rtpL16pay ! " +
+      Sink(receiver.port));
+  const gint64 start = g_get_monotonic_time();
+  sender.Play();
+  EXPECT_TRUE(sender.Ends());
+  const double seconds = static_cast<double>(g_get_monotonic_time() - start) / 1e6;
+  EXPECT_GE(seconds, 0.55);  // 60 buffers of 10 ms
+  EXPECT_TRUE(receiver.pipeline.Ends());
+  EXPECT_EQ(Stats(receiver.in.get())["packets-received"], 60U);
+  EXPECT_EQ(Stats(sender.Get("out").get())["packets-dropped"], 0U);
+}
+
+TEST(ScreamBins, MoreThanTheNetworkTakesIsHeldBackNotDroppedWhereInputIsNotLive) {
+  Receiver receiver(kAudioCaps);
+  Pipeline sender(
+      "audiotestsrc samplesperbuffer=441 num-buffers=150 ! "
+      "audio/x-raw,rate=44100,channels=1,format=S16BE ! rtpL16pay ! " +
+      Sink(receiver.port, "max-bitrate=400000 start-bitrate=300000"));
+  sender.Play();
+  EXPECT_TRUE(sender.Ends());
+  EXPECT_EQ(Stats(sender.Get("out").get())["frames-dropped"], 0U);
+}
+
+TEST(ScreamBins, FeedbackFromAnotherAddressIsIgnoredAndCounted) {
+  Receiver receiver(kAudioCaps);
+  Pipeline sender(kAudio + Sink(receiver.port, "bind-address=127.0.0.1"));
+  sender.Play();
+  ASSERT_TRUE(sender.Wait(GST_MESSAGE_STREAM_START));
+  while (Stats(receiver.in.get())["packets-received"] == 0) g_usleep(1000);
+  const ElementPtr udp = sender.Get("ecnudpsink");
+  const guint port = PortOf(udp.get());
+  Pipeline liar(
+      "videotestsrc num-buffers=5 ! video/x-raw,width=8,height=8 ! ecnudpsink "
+      "sync=false host=127.0.0.1 port=" +
+      std::to_string(port));
+  liar.Play();
+  EXPECT_TRUE(liar.Ends());
+  while (Stats(sender.Get("out").get())["feedback-foreign-address"] < 5) g_usleep(1000);
+  EXPECT_EQ(Stats(sender.Get("out").get())["rtcp-malformed"], 0U);
+}
+
+TEST(ScreamBins, ASenderThatComesBackWithAnotherSsrcIsTakenUp) {
+  Receiver receiver(std::string(kAudioCaps) + " eos-on-bye=false");
+  for (guint64 run = 1; run <= 2; ++run) {
+    Pipeline sender(kAudio + Sink(receiver.port));
+    g_object_set(sender.Get("src").get(), "num-buffers", 80, nullptr);
+    sender.Play();
+    EXPECT_TRUE(sender.Ends());
+    EXPECT_GT(Stats(sender.Get("out").get())["feedback-accepted"], 0U) << run;
+  }
+  EXPECT_EQ(Stats(receiver.in.get())["peer-moves"], 1U);
+}
+
+TEST(ScreamBins, AReceiverThatRestartsIsFoundAgain) {
+  auto receiver = std::make_unique<Receiver>(kAudioCaps);
+  const guint port = receiver->port;
+  Pipeline sender(kAudio + Sink(port));
+  sender.Play();
+  const auto received = [&] { return Stats(receiver->in.get())["packets-received"]; };
+  while (received() < 10) g_usleep(1000);
+  receiver.reset();
+  receiver = std::make_unique<Receiver>(std::string(kAudioCaps) + " port=" + std::to_string(port));
+  ASSERT_EQ(receiver->port, port);
+  const guint64 accepted = Stats(sender.Get("out").get())["feedback-accepted"];
+  const gint64 deadline = g_get_monotonic_time() + 5 * G_USEC_PER_SEC;
+  while (received() < 50 && g_get_monotonic_time() < deadline) g_usleep(1000);
+  EXPECT_GE(received(), 50U);
+  EXPECT_GT(Stats(sender.Get("out").get())["feedback-accepted"], accepted);
+}
+
+TEST(ScreamBins, SeveralStreamsShareOnePath) {
+  Receiver receiver(
+      "pt-map=\"application/x-rtp-pt-map,"
+      "96=(string)\\\"application/x-rtp,media=audio,encoding-name=L16,clock-rate=44100\\\","
+      "97=(string)\\\"application/x-rtp,media=audio,encoding-name=L8,clock-rate=44100\\\"\"",
+      "application/x-rtp,encoding-name=L16 ! rtpL16depay");
+  struct Linked {
+    GstElement* bin;
+    int pads = 0;
+  } linked{receiver.in.get()};
+  g_signal_connect(receiver.in.get(), "pad-added",
+                   G_CALLBACK(+[](GstElement* e, GstPad* pad, Linked* l) {
+                     GstElement* parent = GST_ELEMENT(gst_element_get_parent(e));
+                     GstElement* sink = gst_element_factory_make("fakesink", nullptr);
+                     g_object_set(sink, "sync", FALSE, "async", FALSE, nullptr);
+                     gst_bin_add(GST_BIN(parent), sink);
+                     gst_element_sync_state_with_parent(sink);
+                     GstPad* to = gst_element_get_static_pad(sink, "sink");
+                     l->pads += gst_pad_link(pad, to) == GST_PAD_LINK_OK ? 1 : 0;
+                     gst_object_unref(to);
+                     gst_object_unref(parent);
+                   }),
+                   &linked);
+  Pipeline sender("screamsink name=out host=127.0.0.1 port=" + std::to_string(receiver.port) +
+                  " audiotestsrc num-buffers=50 samplesperbuffer=441 is-live=true ! rtpL16pay "
+                  "pt=96 ! out.sink_0"
+                  " audiotestsrc num-buffers=50 samplesperbuffer=441 is-live=true ! rtpL8pay pt=97 "
+                  "! out.sink_1");
+  sender.Play();
+  EXPECT_TRUE(sender.Ends());
+  EXPECT_TRUE(receiver.pipeline.Ends());
+  EXPECT_EQ(linked.pads, 1);
+  EXPECT_EQ(Stats(receiver.in.get())["packets-lost"], 0U);
+}
+
+TEST(ScreamBins, APortInUseIsAnErrorThatNamesIt) {
+  Receiver receiver(kAudioCaps);
+  Pipeline second("screamsrc address=0.0.0.0 port=" + std::to_string(receiver.port) +
+                  " ! fakesink");
+  second.Play();
+  const MessagePtr message = second.Wait(GST_MESSAGE_ERROR);
+  ASSERT_TRUE(message);
+  GError* error = nullptr;
+  gst_message_parse_error(message.get(), &error, nullptr);
+  const ErrorPtr owner(error);
+  EXPECT_NE(std::string(error->message).find(std::to_string(receiver.port)), std::string::npos);
+}
+
+TEST(ScreamBins, AnUnknownHostIsAnErrorThatNamesIt) {
+  Pipeline sender(kAudio + "screamsink host=no-such-host.invalid");
+  sender.Play();
+  const MessagePtr message = sender.Wait(GST_MESSAGE_ERROR);
+  ASSERT_TRUE(message);
+  gchar* debug = nullptr;
+  gst_message_parse_error(message.get(), nullptr, &debug);
+  const StringPtr owner(debug);
+  EXPECT_NE(std::string(debug).find("no-such-host.invalid"), std::string::npos);
+}
+
+TEST(ScreamBins, AreNeitherSinkNorSourceWithTheirBackChannel) {
+  const ElementPtr sink(gst_element_factory_make("screamsink", nullptr));
+  const ElementPtr source(gst_element_factory_make("screamsrc", nullptr));
+  gst_object_ref_sink(sink.get());
+  gst_object_ref_sink(source.get());
+  EXPECT_TRUE(GST_OBJECT_FLAG_IS_SET(sink.get(), GST_ELEMENT_FLAG_SINK));
+  EXPECT_FALSE(GST_OBJECT_FLAG_IS_SET(sink.get(), GST_ELEMENT_FLAG_SOURCE));
+  EXPECT_TRUE(GST_OBJECT_FLAG_IS_SET(source.get(), GST_ELEMENT_FLAG_SOURCE));
+  EXPECT_FALSE(GST_OBJECT_FLAG_IS_SET(source.get(), GST_ELEMENT_FLAG_SINK));
+}
+
+TEST(ScreamBins, ForwardPadPropertiesToTheController) {
+  const ElementPtr sink(gst_element_factory_make("screamsink", nullptr));
+  gst_object_ref_sink(sink.get());
+  const PadPtr pad(gst_element_request_pad_simple(sink.get(), "sink_%u"));
+  ASSERT_TRUE(pad);
+  g_object_set(pad.get(), "priority", 0.5, "max-bitrate", 123456, nullptr);
+  const ElementPtr tx(gst_bin_get_by_name(GST_BIN(sink.get()), "screamtx"));
+  const PadPtr inner(gst_element_get_static_pad(tx.get(), "sink_0"));
+  gdouble priority = 0;
+  guint max = 0;
+  g_object_get(inner.get(), "priority", &priority, "max-bitrate", &max, nullptr);
+  EXPECT_EQ(priority, 0.5);
+  EXPECT_EQ(max, 123456U);
+  gst_element_release_request_pad(sink.get(), pad.get());
+  EXPECT_FALSE(PadPtr(gst_element_get_static_pad(tx.get(), "sink_0")));
+}
+
+}  // namespace
+}  // namespace lidar::test
