@@ -13,7 +13,7 @@ constexpr gint64 kSilenceUs = 1'000'000;        // a sensor that says nothing th
 constexpr gint64 kFirstSilenceUs = 3'000'000;   // before its first packet
 constexpr gint64 kCheckNs = 250 * GST_MSECOND;  // how often the silence is looked at
 constexpr gint64 kQuestionIntervalUs = 1'000'000;
-constexpr gint64 kWaitForMetadataUs = 5'000'000;  // of a sensor with a new init id
+constexpr gint64 kWaitForMetadataUs = 2'000'000;  // of a sensor with a new init id
 constexpr guint kWrongSizesForQuestion = 4;
 
 }  // namespace

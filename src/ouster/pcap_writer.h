@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Writes UDP datagrams to a capture file, through libpcap.
+#pragma once
+#include <cstdint>
+#include <memory>
+#include <string>
+
+#include "base/byte_reader.h"
+#include "base/time.h"
+
+struct pcap;
+struct pcap_dumper;
+
+namespace lidar::ouster {
+
+class PcapWriter {
+ public:
+  /// Null and `error` where the file cannot be written.
+  static std::unique_ptr<PcapWriter> Open(const std::string& path, std::string* error);
+  ~PcapWriter();
+  PcapWriter(const PcapWriter&) = delete;
+  PcapWriter& operator=(const PcapWriter&) = delete;
+
+  /// An Ethernet frame with IPv4, however large. False where the disk is full, or the payload is
+  /// larger than UDP can carry.
+  bool Write(Time captured, std::uint16_t port, ByteView payload);
+
+ private:
+  PcapWriter(pcap* handle, pcap_dumper* dumper) : handle_(handle), dumper_(dumper) {}
+
+  pcap* handle_;
+  pcap_dumper* dumper_;
+};
+
+}  // namespace lidar::ouster

@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// What goes wrong on the way from a sensor, on request and counted.
+#pragma once
+#include <cstdint>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "ouster_replay/packet_stream.h"
+
+namespace lidar::tools {
+
+struct Faults {
+  double loss = 0;  // shares of the lidar packets, 0 to 1
+  double reorder = 0;
+  double duplicate = 0;
+  double corrupt = 0;
+  bool silent = false;      // nothing is sent
+  bool wrong_size = false;  // packets are cut
+  int http_status = 0;      // every request is answered with this; 0: properly
+  int http_delay_ms = 0;
+
+  /// Changes what the object names; the error, or "".
+  std::string Merge(const nlohmann::json& change);
+};
+
+struct FaultCounts {
+  std::uint64_t sent = 0;  // lidar packets, duplicates included
+  std::uint64_t lost = 0;
+  std::uint64_t reordered = 0;
+  std::uint64_t duplicated = 0;
+  std::uint64_t corrupted = 0;
+  std::uint64_t silenced = 0;
+  std::uint64_t imu_sent = 0;
+
+  nlohmann::ordered_json ToJson() const;
+};
+
+class FaultInjector {
+ public:
+  explicit FaultInjector(std::uint64_t seed) : random_(seed) {}
+  /// What goes out in place of `packet`.
+  std::vector<OutPacket> Apply(const Faults& faults, OutPacket packet);
+  const FaultCounts& counts() const { return counts_; }
+
+ private:
+  bool Chance(double probability);
+
+  std::mt19937_64 random_;
+  std::optional<OutPacket> held_;  // goes out behind the next packet
+  FaultCounts counts_;
+};
+
+}  // namespace lidar::tools

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// The sensor's HTTP API, as far as drivers use it, and a few paths of our own for faults.
+#pragma once
+#include <functional>
+#include <memory>
+#include <string>
+
+#include "ouster_replay/sensor.h"
+
+namespace lidar::tools {
+
+/// Serves from threads of its own.
+///   GET  /api/v1/sensor/metadata              GET  /replay/stats
+///   GET  /api/v1/sensor/config?staging=       POST /replay/faults  (faults.h; merged)
+///   POST /api/v1/sensor/config?staging=&reinit=&persist=
+///   POST /replay/restart
+/// and what firmware before 2.4 has instead of .../config, with `old_firmware` only that.
+class HttpApi {
+ public:
+  struct Options {
+    std::string address = "127.0.0.1";
+    int port = 0;  // 0: any free one
+    bool old_firmware = false;
+  };
+  /// Throws std::runtime_error. `stats` is called from those threads.
+  HttpApi(const Options& options, Sensor* sensor, std::function<std::string()> stats);
+  ~HttpApi();
+  HttpApi(const HttpApi&) = delete;
+  HttpApi& operator=(const HttpApi&) = delete;
+
+  int port() const;
+
+ private:
+  class Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace lidar::tools

@@ -1,0 +1,151 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// ouster-replay: an Ouster sensor in software.
+#include <cmath>
+#include <fstream>
+#include <iostream>
+#include <iterator>
+#include <memory>
+
+#include "common/event_loop.h"
+#include "ouster/metadata_writer.h"
+#include "ouster/pcap_writer.h"
+#include "ouster_replay/http_api.h"
+#include "ouster_replay/options.h"
+#include "ouster_replay/pcap_stream.h"
+#include "ouster_replay/player.h"
+#include "ouster_replay/sensor.h"
+#include "ouster_replay/synth_stream.h"
+
+namespace lidar::tools {
+namespace {
+
+using nlohmann::json;
+
+ouster::Metadata LoadMetadata(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  const std::string text{std::istreambuf_iterator<char>(file), {}};
+  std::string error;
+  auto metadata = ouster::ParseMetadata(text, &error);
+  if (!metadata) throw std::runtime_error(path + ": " + error);
+  return *std::move(metadata);
+}
+
+ouster::Metadata FirstMetadata(const ReplayOptions& o) {
+  ouster::Metadata m =
+      o.pcap.empty() ? MakeSynthMetadata(o.synth, o.format) : LoadMetadata(o.metadata);
+  if (o.lidar_port != 0) m.lidar_port = static_cast<std::uint16_t>(o.lidar_port);
+  if (o.imu_port != 0) m.imu_port = static_cast<std::uint16_t>(o.imu_port);
+  if (m.lidar_port == 0) m.lidar_port = 7502;
+  if (m.imu_port == 0) m.imu_port = 7503;
+  if (m.init_id == 0) m.init_id = 1;
+  if (!o.timestamp_mode.empty()) m.timestamp_mode = o.timestamp_mode;
+  return m;
+}
+
+/// The window of columns that an azimuth window [millidegrees] leaves: columns count against it.
+ColumnWindow ToColumns(const json& window, std::uint32_t columns) {
+  const auto start = window[0].get<double>() / 360e3;
+  const auto end = window[1].get<double>() / 360e3;
+  if (end - start >= 1) return {0, columns};
+  const auto first = static_cast<std::uint32_t>(std::lround((1 - end) * columns)) + 1;
+  const auto last = static_cast<std::uint32_t>(std::lround((1 - start) * columns));
+  return {first % columns, (last + columns - first) % columns + 1};
+}
+
+/// What a synthetic sensor becomes with a new configuration; a recorded one stays what it is.
+ouster::Metadata Rebuild(const ReplayOptions& options, const ouster::Metadata& first,
+                         const json& config) {
+  ouster::Metadata m = first;
+  const auto profile = ouster::ProfileFromString(config["udp_profile_lidar"].get<std::string>());
+  if (!profile) throw std::runtime_error("unknown udp_profile_lidar");
+  const bool same = config["lidar_mode"] == first.lidar_mode && *profile == first.format.profile;
+  if (!same && !options.pcap.empty())
+    throw std::runtime_error("a capture has one lidar_mode and one udp_profile_lidar");
+  if (options.pcap.empty()) {
+    m = MakeSynthMetadata(options.synth,
+                          {config["lidar_mode"].get<std::string>(), *profile, first.format.header});
+    m.window = ToColumns(config["azimuth_window"], m.model.columns_per_scan);
+  }
+  m.lidar_port = config["udp_port_lidar"].get<std::uint16_t>();
+  m.imu_port = config["udp_port_imu"].get<std::uint16_t>();
+  m.timestamp_mode = config["timestamp_mode"].get<std::string>();
+  return m;
+}
+
+std::unique_ptr<PacketStream> MakeStream(const ReplayOptions& o, const ouster::Metadata& m) {
+  if (o.pcap.empty()) return std::make_unique<SynthStream>(o.synth, m);
+  return std::make_unique<PcapStream>(o.pcap, m, PcapStream::Options{!o.once, o.speed});
+}
+
+int WriteFiles(const ReplayOptions& options, const ouster::Metadata& metadata) {
+  const auto stream = MakeStream(options, metadata);
+  stream->Restart({metadata.init_id, 3'000'000'000});
+  std::string error;
+  const auto writer = ouster::PcapWriter::Open(options.write_pcap, &error);
+  if (!writer) throw std::runtime_error("cannot write " + options.write_pcap + ": " + error);
+  const Duration end = metadata.scan_period() * options.scans;
+  const Duration start = Now().time_since_epoch() + UnixOffset();
+  for (auto packet = stream->Next(); packet && packet->due <= end; packet = stream->Next()) {
+    const std::uint16_t port = packet->imu ? metadata.imu_port : metadata.lidar_port;
+    if (!writer->Write(Time(start + packet->due), port,
+                       {packet->bytes.data(), packet->bytes.size()}))
+      throw std::runtime_error("cannot write " + options.write_pcap);
+  }
+  return 0;
+}
+
+int Serve(const ReplayOptions& options, const ouster::Metadata& metadata) {
+  Sensor sensor(metadata, options.destination,
+                [&](const json& config) { return Rebuild(options, metadata, config); });
+  sensor.MergeFaults(options.faults);
+  EventLoop loop;
+  Player player(options, metadata, &sensor,
+                [&](const ouster::Metadata& m) { return MakeStream(options, m); });
+  const auto stats = [&player] { return player.counts().ToJson().dump(); };
+  std::unique_ptr<HttpApi> http;
+  if (options.http)
+    http = std::make_unique<HttpApi>(
+        HttpApi::Options{options.http_address, options.http_port, options.old_firmware}, &sensor,
+        stats);
+  std::cout << json{{"http", http ? http->port() : 0},
+                    {"dest", options.destination},
+                    {"lidar_port", metadata.lidar_port},
+                    {"imu_port", metadata.imu_port}}
+                   .dump()
+            << std::endl;
+  RequestRealtimePriority();
+  const Time end = options.duration_s > 0 ? Now() + FromSeconds(options.duration_s) : Time::max();
+  loop.Run([&] {
+    const Time now = Now();
+    const auto wake_up = player.Pump(now);
+    if (!wake_up || now >= end) return loop.Stop();
+    loop.SetWakeUp(std::min(*wake_up, end));
+  });
+  http.reset();
+  std::cout << stats() << std::endl;
+  return 0;
+}
+
+int Run(const ReplayOptions& options) {
+  const ouster::Metadata metadata = FirstMetadata(options);
+  if (!options.write_metadata.empty()) {
+    std::ofstream file(options.write_metadata);
+    file << ouster::WriteMetadata(metadata);
+    if (!file.flush()) throw std::runtime_error("cannot write " + options.write_metadata);
+  }
+  if (!options.write_pcap.empty()) return WriteFiles(options, metadata);
+  return Serve(options, metadata);
+}
+
+}  // namespace
+}  // namespace lidar::tools
+
+int main(int argc, char** argv) {
+  const auto options = lidar::tools::ParseReplayOptions(argc, argv);
+  try {
+    return lidar::tools::Run(options);
+  } catch (const std::exception& e) {
+    std::cerr << "ouster-replay: " << e.what() << '\n';
+    return 1;
+  }
+}

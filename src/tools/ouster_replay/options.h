@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// The command line of ouster-replay.
+#pragma once
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "ouster_replay/synth_stream.h"
+
+namespace lidar::tools {
+
+struct ReplayOptions {
+  std::string pcap;  // empty: synthesise
+  std::string metadata;
+  bool once = false;
+  double speed = 1;
+  SynthOptions synth;
+  SynthFormat format;
+  std::string destination = "127.0.0.1";
+  int lidar_port = 0;  // 0: as in the metadata
+  int imu_port = 0;
+  std::string timestamp_mode;  // empty: as in the metadata
+  bool http = true;
+  std::string http_address = "127.0.0.1";
+  int http_port = 8080;
+  bool old_firmware = false;
+  double boot_s = 0.5;
+  double duration_s = 0;  // 0: until a signal
+  std::uint64_t seed = 1;
+  nlohmann::json faults = nlohmann::json::object();
+  struct Event {
+    double at_s = 0;
+    nlohmann::json faults;  // "restart": true besides those of faults.h
+  };
+  std::vector<Event> events;  // in order of time
+  std::string write_pcap;     // write a file instead of sending
+  std::string write_metadata;
+  int scans = 10;  // in that file
+};
+
+/// Exits the program with a message where the command line is wrong.
+ReplayOptions ParseReplayOptions(int argc, char** argv);
+
+}  // namespace lidar::tools

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// The packets of a sensor that is not there.
+#pragma once
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "base/time.h"
+#include "ouster/metadata.h"
+
+namespace lidar::tools {
+
+struct OutPacket {
+  Duration due{};  // since the stream started
+  bool imu = false;
+  std::vector<std::uint8_t> bytes;
+};
+
+class PacketStream {
+ public:
+  virtual ~PacketStream() = default;
+
+  struct Start {
+    std::uint32_t init_id = 0;
+    std::uint64_t sensor_time_ns = 0;  // of the first column
+  };
+  /// From the first packet again, as after a boot.
+  virtual void Restart(const Start& start) = 0;
+  /// In order of `due`; none at the end.
+  virtual std::optional<OutPacket> Next() = 0;
+};
+
+}  // namespace lidar::tools

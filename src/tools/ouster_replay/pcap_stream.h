@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// A capture as an endless, or ending, stream of packets.
+#pragma once
+#include <string>
+
+#include "ouster_replay/packet_stream.h"
+
+namespace lidar::tools {
+
+class PcapStream : public PacketStream {
+ public:
+  struct Options {
+    bool loop = true;
+    double speed = 1;
+  };
+  /// Holds the whole capture in memory, so that no disk is in the way. Throws std::runtime_error.
+  PcapStream(const std::string& path, const ouster::Metadata& metadata, const Options& options);
+
+  void Restart(const Start& start) override;
+  std::optional<OutPacket> Next() override;
+
+ private:
+  std::vector<OutPacket> packets_;
+  ouster::PacketFormat format_;
+  Options options_;
+  Duration round_{};  // how long the capture is
+  std::uint32_t scans_ = 0;
+  std::uint64_t first_time_ns_ = 0;
+  Start start_;
+  std::size_t next_ = 0;
+  std::uint32_t rounds_ = 0;
+};
+
+}  // namespace lidar::tools

@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "ouster_replay/player.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "common/event_loop.h"
+
+namespace lidar::tools {
+namespace {
+
+constexpr Duration kTaiMinusUtc = std::chrono::seconds(37);
+constexpr Duration kIdle = std::chrono::milliseconds(5);  // to look for requests
+
+/// What the sensor's clock shows when it starts to scan.
+std::uint64_t ClockAtStart(const std::string& timestamp_mode, Time now) {
+  const Duration since_boot = std::chrono::seconds(3);
+  const Duration utc = now.time_since_epoch() + UnixOffset();
+  if (timestamp_mode == "TIME_FROM_PTP_1588")
+    return static_cast<std::uint64_t>((utc + kTaiMinusUtc).count());
+  if (timestamp_mode == "TIME_FROM_SYNC_PULSE_IN") return static_cast<std::uint64_t>(utc.count());
+  return static_cast<std::uint64_t>(since_boot.count());
+}
+
+}  // namespace
+
+Player::Player(const ReplayOptions& options, const ouster::Metadata& metadata, Sensor* sensor,
+               MakeStream make_stream)
+    : options_(options),
+      sensor_(*sensor),
+      make_stream_(std::move(make_stream)),
+      socket_(UdpSocket::Bind(ResolveAddress("0", "0.0.0.0"))),
+      began_(Now()),
+      injector_(options.seed) {
+  Start(metadata, began_);
+}
+
+void Player::Start(const ouster::Metadata& metadata, Time now) {
+  stream_ = make_stream_(metadata);
+  stream_->Restart({metadata.init_id, ClockAtStart(metadata.timestamp_mode, now)});
+  origin_ = now;
+  next_ = stream_->Next();
+}
+
+void Player::RunEvents(Time now) {
+  for (; next_event_ < options_.events.size(); ++next_event_) {
+    ReplayOptions::Event event = options_.events[next_event_];
+    if (began_ + FromSeconds(event.at_s) > now) return;
+    if (event.faults.contains("restart")) {
+      event.faults.erase("restart");
+      sensor_.Restart();
+    }
+    sensor_.MergeFaults(event.faults);
+  }
+}
+
+void Player::Send(const OutPacket& packet) {
+  const Sensor::Destination to = sensor_.destination();
+  if (to.host.empty()) return;
+  if (to.host != destination_.host || to.lidar_port != destination_.lidar_port ||
+      to.imu_port != destination_.imu_port) {
+    destination_ = to;
+    lidar_address_ = ResolveAddress(to.host + ":" + std::to_string(to.lidar_port), to.host);
+    imu_address_ = ResolveAddress(to.host + ":" + std::to_string(to.imu_port), to.host);
+  }
+  socket_.Send({packet.bytes.data(), packet.bytes.size()}, 0,
+               packet.imu ? &imu_address_ : &lidar_address_);
+}
+
+std::optional<Time> Player::Pump(Time now) {
+  RunEvents(now);
+  if (auto metadata = sensor_.TakeRestart()) {
+    boots_until_ = now + FromSeconds(options_.boot_s);
+    Start(*metadata, boots_until_);
+  }
+  if (now < boots_until_) return std::min(boots_until_, now + kIdle);
+  sensor_.SetRunning(true);
+  const Faults faults = sensor_.faults();
+  while (next_ && origin_ + next_->due <= now) {
+    for (const OutPacket& packet : injector_.Apply(faults, *std::move(next_))) Send(packet);
+    next_ = stream_->Next();
+  }
+  {
+    std::lock_guard lock(mutex_);
+    counts_ = injector_.counts();
+  }
+  if (!next_) return std::nullopt;
+  return std::min(origin_ + next_->due, now + kIdle);
+}
+
+FaultCounts Player::counts() const {
+  std::lock_guard lock(mutex_);
+  return counts_;
+}
+
+}  // namespace lidar::tools

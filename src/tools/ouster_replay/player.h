@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Sends a sensor's packets when they are due.
+#pragma once
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+
+#include "base/time.h"
+#include "common/udp_socket.h"
+#include "ouster_replay/faults.h"
+#include "ouster_replay/options.h"
+#include "ouster_replay/packet_stream.h"
+#include "ouster_replay/sensor.h"
+
+namespace lidar::tools {
+
+class Player {
+ public:
+  using MakeStream = std::function<std::unique_ptr<PacketStream>(const ouster::Metadata&)>;
+
+  /// Throws std::runtime_error.
+  Player(const ReplayOptions& options, const ouster::Metadata& metadata, Sensor* sensor,
+         MakeStream make_stream);
+
+  /// Sends what is due; when to call again, or none at the end.
+  std::optional<Time> Pump(Time now);
+  /// Of any thread.
+  FaultCounts counts() const;
+
+ private:
+  void Start(const ouster::Metadata& metadata, Time now);
+  void RunEvents(Time now);
+  void Send(const OutPacket& packet);
+
+  const ReplayOptions options_;
+  Sensor& sensor_;
+  MakeStream make_stream_;
+  std::unique_ptr<PacketStream> stream_;
+  UdpSocket socket_;
+  Sensor::Destination destination_;
+  Address lidar_address_;
+  Address imu_address_;
+  Time began_{};   // of the program
+  Time origin_{};  // of the stream
+  Time boots_until_{};
+  std::optional<OutPacket> next_;
+  std::size_t next_event_ = 0;
+  FaultInjector injector_;
+  mutable std::mutex mutex_;  // guards counts_
+  FaultCounts counts_;
+};
+
+}  // namespace lidar::tools

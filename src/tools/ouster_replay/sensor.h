@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// What a sensor knows about itself: configuration, metadata and state. Any thread may ask.
+#pragma once
+#include <functional>
+#include <mutex>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+
+#include "ouster/metadata.h"
+#include "ouster_replay/faults.h"
+
+namespace lidar::tools {
+
+class Sensor {
+ public:
+  /// What the sensor is after its configuration changed; throws std::runtime_error for one that it
+  /// refuses.
+  using Rebuild = std::function<ouster::Metadata(const nlohmann::json& config)>;
+
+  Sensor(const ouster::Metadata& metadata, const std::string& destination, Rebuild rebuild);
+
+  std::string MetadataJson() const;
+  std::string ConfigJson(bool staged) const;
+  struct Change {
+    bool staging = false;  // into what the next restart makes active
+    bool restart = false;
+  };
+  /// The error, or "". `@auto` becomes `peer`.
+  std::string SetConfig(const nlohmann::json& config, const Change& change,
+                        const std::string& peer);
+  void Restart();
+
+  std::string MergeFaults(const nlohmann::json& change);
+  Faults faults() const;
+
+  struct Destination {
+    std::string host;  // empty: nowhere
+    int lidar_port = 0;
+    int imu_port = 0;
+  };
+  Destination destination() const;
+
+  /// Of the thread that sends. After a restart was asked for: the metadata from then on, once.
+  std::optional<ouster::Metadata> TakeRestart();
+  void SetRunning(bool running);
+
+ private:
+  mutable std::mutex mutex_;  // guards all below
+  ouster::Metadata metadata_;
+  nlohmann::json active_;
+  nlohmann::json staged_;
+  Rebuild rebuild_;
+  bool restart_ = false;
+  bool running_ = true;
+  Faults faults_;
+};
+
+}  // namespace lidar::tools
