@@ -108,9 +108,9 @@ plot "timeline.csv" skip 1 using 1:2 with steps lw 2 lc rgb "#999999" title "cap
 
 set output "delay.png"
 set ylabel "ms"
-plot "packets.csv" skip 1 using 1:11 with dots lc rgb "#d95f02" title "queue, each packet", \
+plot "packets.csv" skip 1 using 1:11 with points pt 7 ps 0.15 lc rgb "#d95f02" title "queue, each packet", \
      "timeline.csv" skip 1 using 1:7 with lines lw 2 lc rgb "#7570b3" title "RTT, smoothed", \
-     "slices.csv" skip 1 using 3:($7 > 0 ? ($7 - $3) * 1000 : NaN) with dots lc rgb "#1b9e77" \
+     "slices.csv" skip 1 using 3:($7 > 0 ? ($7 - $3) * 1000 : NaN) with points pt 7 ps 0.2 lc rgb "#1b9e77" \
        title "capture to cloud, each slice"
 
 set output "window.png"

@@ -158,7 +158,7 @@ std::vector<Duration> ChangesOf(const RunOptions& o) {
   std::vector<Duration> changes;
   if (!o.trace.empty() || o.rate_mbps > 0) return changes;
   for (std::size_t i = 1; i < o.steps_mbps.size(); ++i)
-    changes.push_back(FromSeconds(StepTime(o) * static_cast<double>(i)));
+    changes.push_back(FromSeconds(StepTime(o)) * static_cast<std::int64_t>(i));
   return changes;
 }
 

@@ -110,6 +110,17 @@ TEST(DemoSummary, ATransientLastsUntilTheQueueStaysShort) {
   EXPECT_NEAR(transients[0].settled_after_s, 0.26, 1e-9);
 }
 
+TEST(DemoSummary, ATransientKnowsItsStepWhereThePartsAreNoRoundNumber) {
+  auto m = TwoSteps();
+  m.options.duration_s = 20;
+  m.options.steps_mbps = {8, 4, 6};
+  m.ran_s = 20;
+  const auto transients = FindTransients(m);
+  ASSERT_EQ(transients.size(), 2U);
+  EXPECT_EQ(transients[1].from_bps, 4e6);
+  EXPECT_EQ(transients[1].to_bps, 6e6);
+}
+
 bool AllHold(const Measurements& m) {
   for (const Guarantee& g : CheckGuarantees(m))
     if (!g.holds) return false;
