@@ -6,8 +6,8 @@
 namespace lidar::codec {
 namespace {
 
-// Ranges stay below 2^31 mm, so that sums and differences of bins fit an int32.
-constexpr std::uint32_t kMaxRangeMm = 0x7FFFFFFF;
+// So that sums and differences of bins fit an int32.
+constexpr std::uint32_t kMaxRangeMm = AdaptiveCoder::kMaxBins - 1;
 
 }  // namespace
 
@@ -23,7 +23,7 @@ bool RangeEncoder::Encode(const RangeImage& image, const RangeSettings& settings
   }
   CollectReturns(image, settings);
   EncodeMask(image.columns);
-  if (!EncodePayload(settings)) return false;
+  if (!EncodePayload(settings, image.columns)) return false;
   RangeHeader header;
   header.coder = settings.coder;
   header.beams = image.beams;
@@ -61,9 +61,17 @@ void RangeEncoder::EncodeMask(std::uint32_t columns) {
   rans_.Finish(&mask_bytes_);
 }
 
-bool RangeEncoder::EncodePayload(const RangeSettings& settings) {
+bool RangeEncoder::EncodePayload(const RangeSettings& settings, std::uint32_t columns) {
   payload_.clear();
   if (returns() == 0) return true;
+  const BlockShape shape{alignment_, mask_, columns};
+  if (settings.coder == RangeCoder::kAdaptive) {
+    rans_.Clear();
+    coder_.Encode(shape, lists_, &rans_);
+    rans_.Finish(&payload_);
+    return true;
+  }
+  if (settings.coder == RangeCoder::kResidual) coder_.ToResiduals(shape, &lists_);
   return EncodeIntegers(lists_, settings.coder == RangeCoder::kDraco, &payload_);
 }
 
@@ -82,29 +90,33 @@ bool RangeDecoder::Decode(ByteReader* reader, std::size_t max_points, RangeImage
   *scale = header->intensity;
   const ByteView mask = reader->Bytes(header->mask_size);
   const ByteView payload = reader->Bytes(header->payload_size);
-  const bool has_levels = header->intensity.bits() > 0;
-  std::size_t returns = 0;
   mask_.assign(image->size(), 1);
-  if (!DecodeMask(mask, header->columns, &returns)) return false;
-  lists_.values.clear();
-  lists_.levels.clear();
-  if (returns == 0
-          ? !payload.empty()
-          : !DecodeIntegers(payload, static_cast<std::uint32_t>(returns), has_levels, &lists_)) {
-    return false;
-  }
-  image->intensity.assign(has_levels ? image->size() : 0, 0);
+  if (!DecodeMask(mask, header->columns) || !DecodePayload(*header, payload)) return false;
+  image->intensity.assign(header->intensity.bits() > 0 ? image->size() : 0, 0);
   return Scatter(header->grid, image);
 }
 
-bool RangeDecoder::DecodeMask(ByteView bytes, std::uint32_t columns, std::size_t* returns) {
-  if (!bytes.empty()) {
+bool RangeDecoder::DecodeMask(ByteView bytes, std::uint32_t columns) {
+  if (bytes.empty()) return true;
+  RansDecoder rans(bytes);
+  mask_coder_.Decode(alignment_, columns, &rans, &mask_);
+  return rans.AtEnd();
+}
+
+bool RangeDecoder::DecodePayload(const RangeHeader& header, ByteView bytes) {
+  const auto returns = static_cast<std::size_t>(std::count(mask_.begin(), mask_.end(), 1));
+  const bool has_levels = header.intensity.bits() > 0;
+  lists_.values.resize(returns);
+  lists_.levels.resize(has_levels ? returns : 0);
+  if (returns == 0) return bytes.empty();
+  const BlockShape shape{alignment_, mask_, header.columns};
+  if (header.coder == RangeCoder::kAdaptive) {
     RansDecoder rans(bytes);
-    mask_coder_.Decode(alignment_, columns, &rans, &mask_);
-    if (!rans.AtEnd()) return false;
+    return coder_.Decode(shape, has_levels, &rans, &lists_) && rans.AtEnd();
   }
-  *returns = static_cast<std::size_t>(std::count(mask_.begin(), mask_.end(), 1));
-  return true;
+  if (!DecodeIntegers(bytes, static_cast<std::uint32_t>(returns), has_levels, &lists_))
+    return false;
+  return header.coder == RangeCoder::kDraco || coder_.FromResiduals(shape, &lists_);
 }
 
 bool RangeDecoder::Scatter(const RangeGrid& grid, RangeImage* image) const {

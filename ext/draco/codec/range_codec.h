@@ -6,6 +6,7 @@
 
 #include "base/byte_reader.h"
 #include "cloud/sensor_model.h"
+#include "draco/codec/adaptive_coder.h"
 #include "draco/codec/azimuth_alignment.h"
 #include "draco/codec/draco_integers.h"
 #include "draco/codec/mask_coder.h"
@@ -36,10 +37,11 @@ class RangeEncoder {
  private:
   void CollectReturns(const RangeImage& image, const RangeSettings& settings);
   void EncodeMask(std::uint32_t columns);
-  bool EncodePayload(const RangeSettings& settings);
+  bool EncodePayload(const RangeSettings& settings, std::uint32_t columns);
 
   AzimuthAlignment alignment_;
   MaskCoder mask_coder_;
+  AdaptiveCoder coder_;
   RansEncoder rans_;
   Mask mask_;
   IntegerLists lists_;
@@ -57,11 +59,13 @@ class RangeDecoder {
   bool Decode(ByteReader* reader, std::size_t max_points, RangeImage* image, IntensityScale* scale);
 
  private:
-  bool DecodeMask(ByteView bytes, std::uint32_t columns, std::size_t* returns);
+  bool DecodeMask(ByteView bytes, std::uint32_t columns);
+  bool DecodePayload(const RangeHeader& header, ByteView bytes);
   bool Scatter(const RangeGrid& grid, RangeImage* image) const;
 
   AzimuthAlignment alignment_;
   MaskCoder mask_coder_;
+  AdaptiveCoder coder_;
   Mask mask_;
   IntegerLists lists_;
 };

@@ -29,6 +29,7 @@ class RansEncoder {
   /// The low `bits` <= kMaxRawBits of `value`, all values being equally likely.
   void PutRaw(std::uint32_t value, unsigned bits) {
     const unsigned shift = kProbabilityBits - bits;
+    value &= (1U << bits) - 1;
     Put({static_cast<std::uint16_t>(value << shift), static_cast<std::uint16_t>(1U << shift)});
   }
   std::size_t symbols() const { return intervals_.size(); }

@@ -72,7 +72,7 @@ class SliceEncoder {
   /// Encodes what is loaded, as often as wanted.
   SliceResult Encode(const SliceSettings& settings, EncodedSlice* slice);
 
-  static constexpr RangeCoder kDefaultRangeCoder = RangeCoder::kDraco;
+  static constexpr RangeCoder kDefaultRangeCoder = RangeCoder::kAdaptive;
 
  private:
   SliceResult EncodeRange(const SliceSettings& settings, EncodedSlice* slice);

@@ -115,10 +115,12 @@ TEST_P(OrganisedScans, ComeBackWithinTheErrorSliceBySlice) {
   EXPECT_EQ(info->fields, test::OrganisedLayout().fields);
   EXPECT_TRUE(info->sensor_model);
 }
-INSTANTIATE_TEST_SUITE_P(All, OrganisedScans,
-                         ::testing::Values(ErrorCase{"draco", 1, 0.02}, ErrorCase{"draco", 8, 0.02},
-                                           ErrorCase{"draco", 1, 0.0015},
-                                           ErrorCase{"draco", 8, 0.001}));
+INSTANTIATE_TEST_SUITE_P(
+    All, OrganisedScans,
+    ::testing::Values(ErrorCase{"draco", 1, 0.02}, ErrorCase{"draco", 8, 0.02},
+                      ErrorCase{"residual", 8, 0.05}, ErrorCase{"adaptive", 1, 0.02},
+                      ErrorCase{"adaptive", 8, 0.02}, ErrorCase{"adaptive", 1, 0.0003},
+                      ErrorCase{"draco", 1, 0.0015}, ErrorCase{"draco", 8, 0.001}));
 
 TEST(DracoElements, GiveGapsBackAsZeros) {
   const SensorModel model = test::RoomSensor();

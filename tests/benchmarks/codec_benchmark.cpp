@@ -1,0 +1,135 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Size and speed of the range and xyz codecs on real scans, one thread.
+#include <benchmark/benchmark.h>
+
+#include <cstdlib>
+#include <map>
+
+#include "capture_scans.h"
+#include "draco/codec/slice_decoder.h"
+
+namespace lidar::bench {
+namespace {
+
+struct Source {
+  const char* pcap;
+  const char* metadata;
+};
+constexpr Source kSources[] = {
+    {"OS-0-32-U1_v2.2.0_1024x10.pcap", "OS-0-32-U1_v2.2.0_1024x10.json"},
+    {"OS-1-128_v2.3.0_1024x10_lb_n3.pcap", "OS-1-128_v2.3.0_1024x10.json"},
+    {"OS-0-128-U1_v2.3.0_1024x10.pcap", "OS-0-128-U1_v2.3.0_1024x10.json"},
+    {"OS-1-32-G_v2.1.1_1024x10.pcap", "OS-1-32-G_v2.1.1_1024x10.json"}};
+constexpr const char* kNames[] = {"OS0-32", "OS1-128-lb_n3", "OS0-128", "OS1-32"};
+
+const Capture& CaptureOf(std::int64_t source, std::int64_t slices) {
+  static std::map<std::pair<std::int64_t, std::int64_t>, Capture> captures;
+  const auto found = captures.find({source, slices});
+  if (found != captures.end()) return found->second;
+  const std::string folder = std::string(LIDAR_TEST_DATA) + "/ouster/";
+  auto capture = ReadCapture(folder + kSources[source].pcap, folder + kSources[source].metadata,
+                             static_cast<std::uint32_t>(slices));
+  if (!capture || capture->slices.empty()) std::abort();
+  return captures[{source, slices}] = *std::move(capture);
+}
+
+/// Range arguments: source, slices a scan, coder, error [mm], intensity bits.
+struct Setup {
+  explicit Setup(const benchmark::State& state, codec::Geometry geometry)
+      : capture(CaptureOf(state.range(0), state.range(1))),
+        encoder(*codec::SliceEncoder::Create(capture.format, geometry,
+                                             static_cast<codec::RangeCoder>(state.range(2)))) {
+    settings.level = static_cast<unsigned>(state.range(2));
+    settings.max_error_m = 1e-3 * static_cast<double>(state.range(3));
+    settings.intensity_bits = static_cast<unsigned>(state.range(4));
+  }
+  codec::EncodedSlice EncodeSlice(const CapturedSlice& slice) {
+    codec::EncodedSlice encoded;
+    encoder.Load({slice.points.data(), slice.points.size()}, slice.first_column,
+                 settings.intensity_bits > 0);
+    encoder.Encode(settings, &encoded);
+    return encoded;
+  }
+  const Capture& capture;
+  codec::SliceEncoder encoder;
+  codec::SliceSettings settings;
+};
+
+void Report(benchmark::State& state, double returns, double bytes) {
+  state.SetLabel(kNames[state.range(0)]);
+  state.counters["returns/s"] =
+      benchmark::Counter(returns, benchmark::Counter::kIsIterationInvariantRate);
+  state.counters["bits/return"] = 8 * bytes / returns;
+}
+
+void Encode(benchmark::State& state, codec::Geometry geometry) {
+  Setup setup(state, geometry);
+  double returns = 0;
+  double bytes = 0;
+  for (auto _ : state) {
+    returns = bytes = 0;
+    for (const CapturedSlice& slice : setup.capture.slices) {
+      const auto encoded = setup.EncodeSlice(slice);
+      returns += static_cast<double>(encoded.returns);
+      bytes += static_cast<double>(encoded.bytes.size());
+    }
+  }
+  Report(state, returns, bytes);
+}
+
+void Decode(benchmark::State& state, codec::Geometry geometry) {
+  Setup setup(state, geometry);
+  std::vector<codec::EncodedSlice> slices;
+  double returns = 0;
+  double bytes = 0;
+  for (const CapturedSlice& slice : setup.capture.slices) {
+    slices.push_back(setup.EncodeSlice(slice));
+    returns += static_cast<double>(slices.back().returns);
+    bytes += static_cast<double>(slices.back().bytes.size());
+  }
+  codec::CloudFormat format = setup.capture.format;
+  format.layout.fields = codec::KeptFields(format.layout.fields, setup.settings.intensity_bits > 0,
+                                           geometry == codec::Geometry::kRange);
+  format.layout.point_step = format.layout.fields.MinimumStep();
+  codec::SliceDecoder decoder(format, geometry, 1U << 20);
+  std::vector<std::uint8_t> raw;
+  for (auto _ : state) {
+    for (const auto& slice : slices) {
+      const auto shape = decoder.Decode({slice.bytes.data(), slice.bytes.size()});
+      if (!shape) std::abort();
+      raw.resize(std::size_t{shape->width} * shape->height * format.layout.point_step);
+      decoder.Write(raw.data());
+    }
+  }
+  Report(state, returns, bytes);
+}
+
+void RangeCases(benchmark::internal::Benchmark* b) {
+  b->ArgNames({"source", "slices", "coder", "error_mm", "intensity"});
+  for (const int coder : {1, 2, 3})
+    for (const int source : {0, 1})
+      for (const int slices : {1, 8}) b->Args({source, slices, coder, 20, 0});
+  for (const int source : {0, 1})
+    for (const int slices : {1, 8})
+      for (const int bits : {5, 8}) b->Args({source, slices, 3, 20, bits});
+  for (const int error : {1, 5, 10, 50}) b->Args({1, 8, 3, error, 0});
+  for (const int source : {2, 3}) b->Args({source, 8, 3, 20, 0});
+  b->Unit(benchmark::kMillisecond);
+}
+
+void XyzCases(benchmark::internal::Benchmark* b) {
+  b->ArgNames({"source", "slices", "level", "error_mm", "intensity"});
+  for (const int level : {0, 1, 7})
+    for (const int source : {0, 1}) b->Args({source, 1, level, 20, 0});
+  b->Args({1, 8, 7, 20, 0})->Args({1, 1, 7, 20, 5})->Unit(benchmark::kMillisecond);
+}
+
+BENCHMARK_CAPTURE(Encode, range, codec::Geometry::kRange)->Apply(RangeCases);
+BENCHMARK_CAPTURE(Decode, range, codec::Geometry::kRange)->Apply(RangeCases);
+BENCHMARK_CAPTURE(Encode, xyz, codec::Geometry::kXyz)->Apply(XyzCases);
+BENCHMARK_CAPTURE(Decode, xyz, codec::Geometry::kXyz)->Apply(XyzCases);
+
+}  // namespace
+}  // namespace lidar::bench
+
+BENCHMARK_MAIN();
