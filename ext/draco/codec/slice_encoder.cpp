@@ -21,7 +21,9 @@ std::optional<SliceEncoder> SliceEncoder::Create(const CloudFormat& format, Geom
 }
 
 std::string SliceEncoder::Mode(unsigned level) const {
-  if (!range_encoder_) return level == 0 ? "xyz-sequential" : "xyz-kd" + std::to_string(level);
+  // Draco's kd-tree has four modes, whatever the level is called.
+  if (!range_encoder_)
+    return level == 0 ? "xyz-sequential" : "xyz-kd" + std::to_string(std::min(level / 2 * 2, 6U));
   switch (coder_) {
     case RangeCoder::kDraco:
       return "range-draco";

@@ -18,7 +18,7 @@ struct Options {
   SourceOptions source;
   std::vector<double> errors = {0.002, 0.005, 0.01, 0.02, 0.05, 0.1, 0.2};
   std::vector<double> max_errors = {0.02, 0.05};
-  std::string range_mode = "range-adaptive";
+  std::string range_mode;  // empty: the default
   std::string xyz_mode = "xyz-kd6";
   std::uint32_t slices = 1;
   unsigned intensity_bits = 0;
@@ -75,11 +75,11 @@ void PrintPaperMinimum(const ScanSet& set, double error, const Options& o) {
 }
 
 void Evaluate(const ScanSet& set, const Options& o, CsvFile* csv) {
-  const CodingMode& range = ModeNamed(o.range_mode);
+  const CodingMode& range = o.range_mode.empty() ? DefaultRangeMode() : ModeNamed(o.range_mode);
   const CodingMode& xyz = ModeNamed(o.xyz_mode);
   std::printf("%s: %zu scans at %g Hz, %u slice(s) a scan, %u intensity bits\n", set.name.c_str(),
               set.scans.size(), set.scans_per_second, o.slices, o.intensity_bits);
-  std::printf("%8s | %-53s | %-53s\n", "", o.xyz_mode.c_str(), o.range_mode.c_str());
+  std::printf("%8s | %-53s | %-53s\n", "", xyz.name.c_str(), range.name.c_str());
   const char* columns = "    step     q    mean     max bits/ret.    Mbit/s";
   std::printf("%8s | %-53s | %-53s\n", "error", columns, columns);
   std::printf("%8s | %-53s | %-53s\n", "[mm]", "    [mm]          [mm]    [mm]",
@@ -122,7 +122,8 @@ void AddBoundsCommand(CLI::App* app) {
   command->add_option("--errors", o->errors, "Error bounds [m], comma-separated")->delimiter(',');
   command->add_option("--max-error", o->max_errors, "Bounds whose r_min is wanted [m]")
       ->delimiter(',');
-  command->add_option("--range-mode", o->range_mode, "Coding mode of range geometry");
+  command->add_option("--range-mode", o->range_mode,
+                      "Coding mode of range geometry; empty: dracoenc's default");
   command->add_option("--xyz-mode", o->xyz_mode, "Coding mode of xyz geometry");
   command->add_option("--slices", o->slices, "Slices per scan")->check(CLI::Range(1U, 64U));
   command->add_option("--intensity-bits", o->intensity_bits, "0: geometry only")

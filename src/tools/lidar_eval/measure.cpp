@@ -2,13 +2,22 @@
 #include "lidar_eval/measure.h"
 
 #include <algorithm>
+#include <stdexcept>
 
 #include "rate/paper_model.h"
 
 namespace lidar::tools {
 
+const CodingMode& DefaultRangeMode() {
+  for (const CodingMode& mode : AllModes())
+    if (mode.geometry == rate::Geometry::kRange &&
+        mode.coder == codec::SliceEncoder::kDefaultRangeCoder)
+      return mode;
+  throw std::logic_error("the codec's default has no name");
+}
+
 const CodingMode& DefaultMode(const ScanSet& set) {
-  return ModeNamed(set.organised() ? "range-adaptive" : "xyz-kd6");
+  return set.organised() ? DefaultRangeMode() : ModeNamed("xyz-kd6");
 }
 
 std::optional<Measurement> Measure(const ScanSet& set, const CodingMode& mode,

@@ -27,7 +27,8 @@ struct MeasuredSetting {
 std::optional<Measurement> Measure(const ScanSet& set, const CodingMode& mode,
                                    const MeasuredSetting& setting);
 
-/// Picks a default: the range coder for organised sources, else xyz.
+const CodingMode& DefaultRangeMode();
+/// What dracoenc takes by default: range geometry for organised sources, else xyz.
 const CodingMode& DefaultMode(const ScanSet& set);
 
 }  // namespace lidar::tools

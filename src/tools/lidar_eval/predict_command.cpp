@@ -7,6 +7,7 @@
 #include <random>
 
 #include "lidar_eval/commands.h"
+#include "lidar_eval/measure.h"
 #include "lidar_eval/model_option.h"
 #include "lidar_eval/plot.h"
 #include "lidar_eval/scan_source.h"
@@ -93,7 +94,7 @@ void Run(const Options& o) {
 
 void AddPredictCommand(CLI::App* app) {
   auto o = std::make_shared<Options>();
-  o->sampling.modes = {"range-adaptive", "xyz-sequential", "xyz-kd0", "xyz-kd6"};
+  o->sampling.modes = {DefaultRangeMode().name, "xyz-sequential", "xyz-kd0", "xyz-kd6"};
   o->sampling.intensity_bits = 0;
   o->sampling.seed = 2;
   CLI::App* command = app->add_subcommand(

@@ -14,7 +14,7 @@ namespace {
 struct Options {
   std::vector<std::string> sources;
   SourceOptions source;
-  std::vector<std::string> modes = {"range-adaptive"};
+  std::vector<std::string> modes = {DefaultRangeMode().name};
   std::vector<std::uint32_t> slices = {1, 8};
   std::vector<double> errors = {0.002, 0.003, 0.005, 0.007, 0.01, 0.015,
                                 0.02,  0.03,  0.05,  0.07,  0.1,  0.2};

@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "lidar_eval/measure.h"
 #include "lidar_eval/scan_source.h"
 #include "lidar_eval/tracking.h"
 #include "lidar_train/training.h"
@@ -34,7 +35,7 @@ class TrainedInTheTunnel : public ::testing::Test {
     sampling.slices = {1, 2, 4};
     return sampling;
   }
-  static std::unique_ptr<rate::SizeModel> Adaptive(const char* mode) {
+  static std::unique_ptr<rate::SizeModel> Adaptive(const std::string& mode) {
     const auto fit = rate::FitAdaptive(TakeSamples({sets_->tunnel}, Sampling({mode}), Quiet));
     return std::make_unique<rate::AdaptiveModel>(fit.value());
   }
@@ -56,11 +57,11 @@ double MiddleRate(const ScanSet& set, const TrackOptions& options) {
 
 TEST_F(TrainedInTheTunnel, AdaptiveHoldsASteadyTargetInTheStreet) {
   TrackOptions options;
-  options.mode = &ModeNamed("range-adaptive");
+  options.mode = &DefaultRangeMode();
   options.slices = 4;
   const double rate = MiddleRate(sets_->street, options);
-  const auto scans =
-      Track(sets_->street, std::vector<double>(kLength, rate), options, Adaptive("range-adaptive"));
+  const auto scans = Track(sets_->street, std::vector<double>(kLength, rate), options,
+                           Adaptive(DefaultRangeMode().name));
   const TrackSummary summary = Summarise(scans, 1, options.slices);
   EXPECT_LE(summary.mean, 0.01);
   EXPECT_LE(summary.percentile_95, 0.05);
@@ -70,14 +71,14 @@ TEST_F(TrainedInTheTunnel, AdaptiveHoldsASteadyTargetInTheStreet) {
 
 TEST_F(TrainedInTheTunnel, AdaptiveKeepsJumpsInTheStreetBelowElevenTenths) {
   TrackOptions options;
-  options.mode = &ModeNamed("range-adaptive");
+  options.mode = &DefaultRangeMode();
   options.slices = 4;
   const rate::RateBounds bounds = MeasureBounds(sets_->street, options);
   ProfileOptions profile;
   profile.min_bps = 1.2 * bounds.min.bits_per_second();
   profile.max_bps = bounds.max.bits_per_second() / 1.2;
   const auto scans = Track(sets_->street, MakeTargets(TargetProfile::kJump, kLength, profile),
-                           options, Adaptive("range-adaptive"));
+                           options, Adaptive(DefaultRangeMode().name));
   EXPECT_LE(Summarise(scans, 1, options.slices).largest_over, 0.10);
 }
 

@@ -17,7 +17,7 @@ refused() {  # a message on standard error, and an exit code that is not zero
 
 "$train" --help | grep -q SOURCE
 "$eval" --help | grep -q bounds
-"$train" $scene --scans 4 --samples 30 --modes range-adaptive,xyz-sequential,xyz-kd0,xyz-kd2,xyz-kd4,xyz-kd6 \
+"$train" $scene --scans 4 --samples 30 --modes range-draco,xyz-sequential,xyz-kd0,xyz-kd2,xyz-kd4,xyz-kd6 \
   -o model.json | grep -q 'paper, xyz' || fail "no report of the fit"
 grep -q '"gst-lidar-rate-model"' model.json || fail "no model file"
 
@@ -25,7 +25,7 @@ grep -q '"gst-lidar-rate-model"' model.json || fail "no model file"
 test "$(wc -l <bounds.csv)" -eq 5 || fail "bounds.csv has $(wc -l <bounds.csv) lines"
 "$eval" rd $scene --scans 1 --errors 0.02,0.05 --slices 1 --csv rd.csv --plot rd.png >/dev/null
 head -c 4 rd.png | grep -q PNG || fail "no plot"
-"$eval" predict $scene --scans 2 --samples 5 --model model.json | grep -q range-adaptive || fail predict
+"$eval" predict $scene --scans 2 --samples 5 --model model.json | grep -q range- || fail predict
 "$eval" track $scene --scans 3 --length 20 --model model.json --csv t.csv --plot t.png >/dev/null
 for profile in steady walk jump; do
   test "$(wc -l <t-$profile.csv)" -eq 21 || fail "t-$profile.csv"
