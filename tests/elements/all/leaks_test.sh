@@ -1,0 +1,52 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: LGPL-2.1-or-later
+# GStreamer's leaks tracer over typical pipelines: no object, buffer, event or caps outlives its pipeline.
+set -uo pipefail
+passed=0
+failed=0
+
+# alive LOG: the lines of objects that were left.
+alive() { grep -o 'object-alive, type-name=.*' <<<"$1" | grep -v '%s'; }
+
+# run NAME PIPELINE...: counts whether it ends by itself and leaves nothing behind.
+run() {
+  local name=$1
+  shift
+  # An element that is not built has no pipeline to leak.
+  for word in "$@"; do
+    case $word in
+      dracoenc | dracodec | pointcloudview)
+        gst-inspect-1.0 "$word" >/dev/null 2>&1 || { echo "skipped $name: no $word"; return; } ;;
+    esac
+  done
+  local log
+  log=$(GST_TRACERS=leaks GST_DEBUG=GST_TRACER:7 GST_DEBUG_NO_COLOR=1 timeout 60 gst-launch-1.0 -q "$@" 2>&1)
+  local status=$?
+  if [ $status = 0 ] && ! alive "$log" | grep -q .; then
+    passed=$((passed + 1))
+  else
+    failed=$((failed + 1))
+    echo "FAILED: $name (status $status)"
+    { alive "$log"; grep -E "ERROR|CRITICAL" <<<"$log"; } | cut -c1-300 | head -10
+  fi
+}
+
+source=(lidartestsrc model=os1-32 mode=512x10 num-buffers=24)
+live=(lidartestsrc model=os1-32 mode=512x10 num-buffers=24 is-live=true)
+folder=$(mktemp -d)
+trap 'rm -rf "$folder"' EXIT
+
+run assembler "${source[@]}" ! scanassembler ! fakesink
+run "live assembler" "${live[@]}" ! scanassembler ! fakesink sync=true
+run "PCD files" "${source[@]}" ! scanassembler ! pcdenc ! multifilesink "location=$folder/%d.pcd"
+run "PLY files" "${source[@]}" ! scanassembler ! plyenc ! multifilesink "location=$folder/%d.ply"
+run "raw files" "${source[@]}" slices-per-scan=1 ! multifilesink "location=$folder/%d.bin"
+run parser multifilesrc "location=$folder/%d.bin" stop-index=2 \
+  'caps=application/x-pointcloud2,height=32,point-step=20,fields=(string)"x:F32:0,y:F32:4,z:F32:8"' \
+  ! pointcloudparse ! fakesink
+run view "${source[@]}" ! pointcloudview width=320 height=180 ! fakesink
+run codec "${source[@]}" ! dracoenc ! dracodec ! scanassembler ! fakesink
+run RTP "${source[@]}" ! dracoenc ! rtplidarpay ! rtplidardepay ! dracodec ! scanassembler ! fakesink
+run SCReAM "${live[@]}" ! dracoenc ! rtplidarpay ! screamtx ! screamrx ! fakesink
+echo "$passed passed, $failed failed"
+[ "$failed" = 0 ]
