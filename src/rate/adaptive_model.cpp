@@ -31,7 +31,7 @@ double ModeCoefficients::GeometryLog2(double x, double n) const {
 }
 
 double ModeCoefficients::IntensityLog2(double bits, double n) const {
-  return intensity[0] + bits * (intensity[1] + bits * intensity[2]) + intensity_returns * n;
+  return intensity[0] + intensity[1] * std::log2(std::max(bits, 1.0)) + intensity_returns * n;
 }
 
 bool ModeCoefficients::Falls() const {

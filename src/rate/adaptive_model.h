@@ -16,7 +16,7 @@ struct ModeCoefficients {
   double min_x = -3;             // the fit is a straight line outside of [min_x, max_x]
   double max_x = 5;
   double returns = 1;                 // times n
-  std::array<double, 3> intensity{};  // quadratic in the intensity bits
+  std::array<double, 2> intensity{};  // line in log2(intensity bits)
   double intensity_returns = 1;       // times n
 
   double GeometryLog2(double x, double n) const;

@@ -64,9 +64,10 @@ ModeCoefficients ReadMode(const Json& json, const std::string& path, Reader* rea
   mode.min_x = range[0];
   mode.max_x = range[1];
   mode.returns = reader->Number(json, path, "returns");
-  mode.intensity = reader->Numbers<3>(json, path, "intensity");
+  mode.intensity = reader->Numbers<2>(json, path, "intensity");
   mode.intensity_returns = reader->Number(json, path, "intensity-returns");
   if (!(mode.min_x < mode.max_x)) reader->Fail(path + "log2-step-range is empty");
+  if (mode.intensity[1] < 0) reader->Fail(path + "intensity: sizes fall with the bits");
   if (!mode.Falls()) reader->Fail(path + "step: sizes do not fall with the step");
   return mode;
 }

@@ -53,21 +53,20 @@ void FitIntensity(const Samples& all, ModeCoefficients* mode) {
   std::copy_if(all.begin(), all.end(), std::back_inserter(samples), [](const Sample* s) {
     return s->settings.intensity_bits > 0 && s->intensity_bytes > 1;
   });
-  // Without a sample: half a byte a return and bit, to be corrected by the first slice.
-  mode->intensity = {std::log2(1000 / 8.0), 0.35, 0};
+  // Without a sample: half a bit a return and bit, to be corrected by the first slice.
+  mode->intensity = {std::log2(1000 / 16.0), 1};
   mode->intensity_returns = 1;
   if (samples.size() < kMinSamples) return;
   const auto rows = static_cast<Eigen::Index>(samples.size());
-  Eigen::MatrixXd a(rows, 3);
+  Eigen::MatrixXd a(rows, 2);
   Eigen::VectorXd b(rows);
   for (Eigen::Index i = 0; i < rows; ++i) {
     const Sample& s = *samples[static_cast<std::size_t>(i)];
-    const double bits = s.settings.intensity_bits;
-    a.row(i) << 1, bits, bits * bits;
+    a.row(i) << 1, std::log2(static_cast<double>(s.settings.intensity_bits));
     b(i) = std::log2(s.intensity_bytes) - N(s);
   }
   const Eigen::VectorXd c = LeastSquares(a, b);
-  mode->intensity = {c(0), c(1), c(2)};
+  if (c(1) >= 0) mode->intensity = {c(0), c(1)};
 }
 
 std::optional<ModeCoefficients> FitMode(const Samples& samples) {

@@ -14,7 +14,7 @@ ModelFile Example() {
   mode.min_x = -2.5;
   mode.max_x = 4;
   mode.returns = 0.93;
-  mode.intensity = {6, 0.5, -0.01};
+  mode.intensity = {6, 1.5};
   ModelFile file;
   file.trained_on = "a \"street\"";
   file.adaptive = AdaptiveCoefficients{{{"range-adaptive", mode}}, mode};
@@ -70,7 +70,7 @@ TEST_P(BadModelFile, IsRefusedWithTheReason) {
 #define HEADER R"("format": "gst-lidar-rate-model", "version": 1)"
 #define MODE(step, range)                                                    \
   R"({"step": )" step R"(, "log2-step-range": )" range R"(, "returns": 1, )" \
-  R"("intensity": [1, 2, 3], "intensity-returns": 1})"
+  R"("intensity": [1, 2], "intensity-returns": 1})"
 INSTANTIATE_TEST_SUITE_P(
     All, BadModelFile,
     ::testing::Values(
@@ -100,6 +100,11 @@ INSTANTIATE_TEST_SUITE_P(
         BadFile{"{" HEADER
                 R"(, "adaptive": {"modes": {}, "fallback": )" MODE("[1, -1, 0, 0]", "[1, 1]") "}}",
                 "range is empty"},
+        BadFile{"{" HEADER R"(, "adaptive": {"modes": {}, "fallback": {"step": [1, -1, 0, 0],
+                )"
+                R"("log2-step-range": [0, 1], "returns": 1, "intensity": [1, -2],
+                "intensity-returns": 1}}})",
+                "fall with the bits"},
         BadFile{"{" HEADER R"(, "paper": {"geometries": {}}})", "empty"},
         BadFile{"{" HEADER R"(, "paper": {"geometries": {"xyz": {"alpha": [1], "beta": 2}}}})",
                 "list of 9"},

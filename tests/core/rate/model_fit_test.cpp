@@ -37,7 +37,7 @@ TEST(FitAdaptive, FindsTheCoefficientsThatMadeTheSamples) {
     s->intensity_bytes =
         s->settings.intensity_bits == 0
             ? 0
-            : s->slice.returns / 1000.0 * std::exp2(6 + 0.5 * s->settings.intensity_bits);
+            : s->slice.returns / 1000.0 * std::pow(s->settings.intensity_bits, 1.5) * 60;
   });
   const auto fit = FitAdaptive(samples);
   ASSERT_TRUE(fit);
@@ -48,7 +48,7 @@ TEST(FitAdaptive, FindsTheCoefficientsThatMadeTheSamples) {
   EXPECT_NEAR(mode.step[2], -0.03, 1e-6);
   EXPECT_NEAR(mode.step[3], 0, 1e-6);
   EXPECT_NEAR(mode.returns, 0.9, 1e-6);
-  EXPECT_NEAR(mode.intensity[1], 0.5, 1e-6);
+  EXPECT_NEAR(mode.intensity[1], 1.5, 1e-6);
   EXPECT_NEAR(fit->modes.at("xyz-kd6").step[0], 11.0, 1e-6);
   EXPECT_LT(ErrorOf(AdaptiveModel(*fit), samples).mean, 1e-4);
 }
