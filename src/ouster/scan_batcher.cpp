@@ -13,6 +13,7 @@ namespace {
 // damaged frame id must not throw away a scan.
 constexpr std::int64_t kMaxScansAhead = 8;
 constexpr std::uint32_t kStraysForRestart = 4;
+constexpr std::size_t kRememberedLosses = 256;
 
 }  // namespace
 
@@ -98,7 +99,6 @@ void ScanBatcher::Push(const LidarPacket& packet, Time arrival) {
 }
 
 void ScanBatcher::AddColumns(const LidarPacket& packet, std::int64_t scan, Time arrival) {
-  bool late = false;
   bool duplicate = false;
   Key newest = -1;
   for (std::uint32_t i = 0; i < packet.columns(); ++i) {
@@ -106,7 +106,7 @@ void ScanBatcher::AddColumns(const LidarPacket& packet, std::int64_t scan, Time 
     if (column.measurement_id >= columns_per_scan_ || !InWindow(column.measurement_id)) continue;
     const Key key = scan * slices_ + column.measurement_id / width_;
     if (key < next_) {
-      late = true;
+      if (LeadsPacket(column.measurement_id)) CountTooLate(scan, column.measurement_id);
       continue;
     }
     OpenSlice& open = Open(key, column, arrival);
@@ -117,7 +117,6 @@ void ScanBatcher::AddColumns(const LidarPacket& packet, std::int64_t scan, Time 
     newest_scan_ = std::max(newest_scan_, scan);
     if (scan == newest_scan_) newest_column_ = std::max(newest_column_, column.measurement_id);
   }
-  stats_.late_packets += late ? 1 : 0;
   stats_.duplicate_packets += duplicate ? 1 : 0;
   if (newest >= 0 && !duplicate) CountLaterPacket(newest);
 }
@@ -241,8 +240,23 @@ void ScanBatcher::CountLost(Key key, const std::vector<bool>* columns) {
         scan == joined_key_ / slices_ && (key < joined_key_ || m < joined_column_);
     const bool not_yet_sent = flushing_ && scan == newest_scan_ && m > newest_column_;
     if ((columns != nullptr && (*columns)[i]) || not_yet_joined || not_yet_sent) continue;
-    if (InWindow(m) && LeadsPacket(m)) ++stats_.lost_packets;
+    if (!InWindow(m) || !LeadsPacket(m)) continue;
+    ++stats_.lost_packets;
+    lost_.push_back(scan * columns_per_scan_ + m);
+    if (lost_.size() > kRememberedLosses) lost_.pop_front();
   }
+}
+
+/// A packet that came after its slice was given out: it was taken for lost, or it is a duplicate.
+void ScanBatcher::CountTooLate(std::int64_t scan, std::uint32_t column) {
+  const auto found = std::find(lost_.begin(), lost_.end(), scan * columns_per_scan_ + column);
+  if (found == lost_.end()) {
+    ++stats_.duplicate_packets;
+    return;
+  }
+  lost_.erase(found);
+  --stats_.lost_packets;
+  ++stats_.late_packets;
 }
 
 std::optional<Slice> ScanBatcher::Pop() {

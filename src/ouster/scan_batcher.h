@@ -30,8 +30,8 @@ struct Slice {
 
 struct BatcherStats {
   std::uint64_t packets = 0;
-  std::uint64_t lost_packets = 0;
-  std::uint64_t late_packets = 0;  // their slice had been given out
+  std::uint64_t lost_packets = 0;  // and never came
+  std::uint64_t late_packets = 0;  // came when their slice had been given out without them
   std::uint64_t duplicate_packets = 0;
   std::uint64_t stray_packets = 0;  // of a scan far away; enough of them count as a restart
   std::uint64_t restarts = 0;
@@ -94,6 +94,7 @@ class ScanBatcher {
   void GiveOut(OpenSlice open);
   void GiveOutBlanks(Key first, Key last, ColumnTime reference);
   void CountLost(Key key, const std::vector<bool>* columns);
+  void CountTooLate(std::int64_t scan, std::uint32_t column);
   bool InWindow(std::uint32_t column) const;
   bool LeadsPacket(std::uint32_t column) const;
 
@@ -123,6 +124,7 @@ class ScanBatcher {
   std::int64_t newest_scan_ = 0;
   std::uint32_t newest_column_ = 0;
   bool flushing_ = false;
+  std::deque<std::int64_t> lost_;  // first columns, scan x columns + column, of the newest losses
   BatcherStats stats_;
 };
 

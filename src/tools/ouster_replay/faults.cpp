@@ -19,7 +19,7 @@ bool TakeFlag(const nlohmann::json& value, bool* flag) {
 }
 
 bool TakeCount(const nlohmann::json& value, int* count) {
-  if (!value.is_number_unsigned() || value.get<std::uint64_t>() > 100'000) return false;
+  if (!value.is_number_integer() || value < 0 || value > 100'000) return false;
   *count = value.get<int>();
   return true;
 }

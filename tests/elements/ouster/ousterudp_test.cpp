@@ -20,6 +20,7 @@ class OusterUdp : public ::testing::Test {
     const std::string launch = "ouster_src name=src lidar-port=" + std::to_string(port_) +
                                " metadata=" + DataPath(json) + " " + more;
     Harness h(gst_harness_new_parse(launch.c_str()));
+    gst_harness_use_systemclock(h.get());
     gst_harness_play(h.get());
     sender_ = std::make_unique<UdpSender>(port_);
     return h;

@@ -1,0 +1,378 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// ouster_src and a sensor in software, over real sockets: finding, configuring, losing and finding
+// it again.
+#include <httplib.h>
+
+#include <functional>
+
+#include "ouster/scan_batcher.h"
+#include "ouster_support.h"
+#include "software_sensor.h"
+
+namespace lidar::test {
+namespace {
+
+using gst::BufferPtr;
+using gst::CapsPtr;
+using gst::CloudInfo;
+using gst::MessagePtr;
+
+/// A pipeline of ouster_src and an appsink-like harness, with its bus.
+class Receiver {
+ public:
+  Receiver(const std::string& host, const std::string& properties) : port_(FreePort()) {
+    const std::string launch = "ouster_src name=src hostname=" + host +
+                               " imu-port=" + std::to_string(FreePort()) +
+                               " lidar-port=" + std::to_string(port_) + " " + properties;
+    harness_.reset(gst_harness_new_parse(launch.c_str()));
+    source_.reset(gst_bin_get_by_name(GST_BIN(harness_->element), "src"));
+    bus_ = gst_bus_new();
+    gst_element_set_bus(harness_->element, bus_);
+    gst_harness_use_systemclock(harness_.get());
+    gst_harness_play(harness_.get());
+  }
+  ~Receiver() {
+    gst_element_set_bus(harness_->element, nullptr);
+    harness_.reset();
+    gst_object_unref(bus_);
+  }
+  Receiver(const Receiver&) = delete;
+  Receiver& operator=(const Receiver&) = delete;
+
+  BufferPtr Pull() { return BufferPtr(gst_harness_pull(harness_.get())); }
+  void Drain() {
+    while (gst_harness_buffers_in_queue(harness_.get()) > 0) Pull();
+  }
+  /// Takes buffers until one is as wanted; false where none is within ten seconds.
+  bool PullUntil(const std::function<bool(GstBuffer*)>& wanted) {
+    const gint64 end = g_get_monotonic_time() + 10 * G_USEC_PER_SEC;
+    while (g_get_monotonic_time() < end) {
+      const BufferPtr buffer = Pull();
+      if (buffer && wanted(buffer.get())) return true;
+    }
+    return false;
+  }
+  CloudInfo Info() {
+    const CapsPtr caps(gst_pad_get_current_caps(harness_->sinkpad));
+    const auto info = CloudInfo::FromCaps(caps.get());
+    EXPECT_TRUE(info);
+    return info.value_or(CloudInfo{});
+  }
+  /// The next element message of that name, within ten seconds.
+  MessagePtr Await(const char* name) {
+    for (;;) {
+      MessagePtr message(gst_bus_timed_pop_filtered(
+          bus_, 10 * GST_SECOND,
+          static_cast<GstMessageType>(GST_MESSAGE_ELEMENT | GST_MESSAGE_ERROR)));
+      if (!message || GST_MESSAGE_TYPE(message.get()) == GST_MESSAGE_ERROR) return nullptr;
+      if (gst_message_has_name(message.get(), name)) return message;
+    }
+  }
+  bool AwaitConnected(bool connected) {
+    gboolean is = FALSE;
+    do {
+      const MessagePtr message = Await("ouster-connection-changed");
+      if (!message) return false;
+      gst_structure_get_boolean(gst_message_get_structure(message.get()), "connected", &is);
+    } while ((is != FALSE) != connected);
+    return true;
+  }
+  std::string AwaitError() {
+    const MessagePtr message(gst_bus_timed_pop_filtered(bus_, 10 * GST_SECOND, GST_MESSAGE_ERROR));
+    if (!message) return "no error";
+    GError* raw = nullptr;
+    gst_message_parse_error(message.get(), &raw, nullptr);
+    const gst::ErrorPtr error(raw);
+    return error->message;
+  }
+  GstElement* source() { return source_.get(); }
+  guint16 port() const { return port_; }
+
+ private:
+  guint16 port_;
+  Harness harness_;
+  gst::ElementPtr source_;
+  GstBus* bus_ = nullptr;
+};
+
+TEST(OusterLive, FindsItsSensorAndHasItDoWhatIsAsked) {
+  SoftwareSensor sensor({});
+  Receiver receiver(sensor.host(),
+                    "udp-dest=@auto lidar-mode=1024x10 udp-profile-lidar=RNG15_RFL8_NIR8 "
+                    "sensor-timestamp-mode=TIME_FROM_PTP_1588 signal-multiplier=2 "
+                    "azimuth-window=90000,270000");
+  const BufferPtr buffer = receiver.Pull();
+  ASSERT_TRUE(buffer);
+  const CloudInfo info = receiver.Info();
+  EXPECT_EQ(info.height, 32U);
+  EXPECT_EQ(info.ScanDuration(), 100 * GST_MSECOND);
+  EXPECT_EQ(info.sensor_model->columns_per_scan, 1024U);
+  EXPECT_EQ(info.sensor_model->range_unit_mm, 8U);
+  const auto config = sensor.config();
+  EXPECT_EQ(config["udp_dest"], "127.0.0.1");
+  EXPECT_EQ(config["udp_port_lidar"], receiver.port());
+  EXPECT_EQ(config["signal_multiplier"], 2);
+  EXPECT_EQ(config["azimuth_window"], nlohmann::json({90000, 270000}));
+  EXPECT_EQ(config["timestamp_mode"], "TIME_FROM_PTP_1588");
+}
+
+TEST(OusterLive, ASensorThatIsAsAskedIsNotRestarted) {
+  SoftwareSensor sensor({});
+  {
+    Receiver receiver(sensor.host(), "udp-dest=@auto");
+    ASSERT_TRUE(receiver.Pull());
+  }
+  const auto port = sensor.config()["udp_port_lidar"].get<int>();
+  const auto before = nlohmann::json::parse(sensor.state().MetadataJson());
+  const auto imu_port = sensor.config()["udp_port_imu"].get<int>();
+  EXPECT_EQ(RunToEnd("ouster_src num-buffers=3 udp-dest=@auto hostname=" + sensor.host() +
+                     " lidar-port=" + std::to_string(port) +
+                     " imu-port=" + std::to_string(imu_port) + " ! fakesink"),
+            "");
+  const auto after = nlohmann::json::parse(sensor.state().MetadataJson());
+  EXPECT_EQ(before["sensor_info"]["initialization_id"], after["sensor_info"]["initialization_id"]);
+}
+
+TEST(OusterLive, ConfiguresFirmwareThatHasTheOldApi) {
+  SoftwareSensor::Options options;
+  options.old_firmware = true;
+  SoftwareSensor sensor(options);
+  Receiver receiver(sensor.host(), "udp-dest=@auto lidar-mode=512x10");
+  ASSERT_TRUE(receiver.Pull());
+  EXPECT_EQ(sensor.config()["lidar_mode"], "512x10");
+  EXPECT_EQ(receiver.Info().ScanDuration(), 100 * GST_MSECOND);
+}
+
+TEST(OusterLive, ASettingThatTheSensorRefusesIsAnError) {
+  SoftwareSensor sensor({});
+  Receiver receiver(sensor.host(), "signal-multiplier=0.7");
+  const std::string error = receiver.AwaitError();
+  EXPECT_NE(error.find("signal_multiplier"), std::string::npos) << error;
+}
+
+TEST(OusterLoss, IsCountedExactlyAsItWasInjected) {
+  tools::SynthOptions options;
+  options.model = "os0-32";
+  const ouster::Metadata metadata = tools::MakeSynthMetadata(options, {"512x20"});
+  tools::SynthStream stream(options, metadata);
+  tools::FaultInjector injector(7);
+  std::string error;
+  ouster::ScanBatcher batcher(metadata, *ouster::PointWriter::Create(metadata, {}, &error), {4, 4});
+  tools::Faults faults;
+  const auto send = [&](int packets) {
+    for (int i = 0; i < packets; ++i) {
+      for (const tools::OutPacket& p : injector.Apply(faults, *stream.Next())) {
+        if (p.imu) continue;
+        batcher.Push(
+            *ouster::LidarPacket::Parse({p.bytes.data(), p.bytes.size()}, metadata.format));
+        while (batcher.Pop()) continue;
+      }
+    }
+  };
+  // Only what is lost between packets that came can be known.
+  send(10);
+  faults.loss = faults.reorder = faults.duplicate = 0.05;
+  send(6000);
+  faults = {};
+  send(100);
+  EXPECT_GT(injector.counts().lost, 150U);
+  EXPECT_EQ(batcher.stats().lost_packets, injector.counts().lost);
+  EXPECT_EQ(batcher.stats().duplicate_packets, injector.counts().duplicated);
+}
+
+TEST(OusterLive, CountsWhatIsLostOnTheWay) {
+  SoftwareSensor sensor({});
+  Receiver receiver(sensor.host(), "udp-dest=@auto");
+  ASSERT_TRUE(receiver.AwaitConnected(true));
+  const auto before = Stat(receiver.source(), "packets-lost");
+  sensor.Fault({{"loss", 0.1}});
+  ASSERT_TRUE(receiver.PullUntil([&](GstBuffer*) { return sensor.counts().lost >= 30; }));
+  sensor.Fault({{"loss", 0.0}});
+  const auto counts = sensor.counts();
+  ASSERT_TRUE(
+      receiver.PullUntil([&](GstBuffer*) { return sensor.counts().sent > counts.sent + 100; }));
+  EXPECT_EQ(Stat(receiver.source(), "packets-lost") - before, sensor.counts().lost);
+}
+
+TEST(OusterLive, DamagedPacketsAreToldByTheirCrc) {
+  SoftwareSensor sensor({});
+  Receiver receiver(sensor.host(), "udp-dest=@auto");
+  ASSERT_TRUE(receiver.Pull());
+  sensor.Fault({{"corrupt", 1.0}});
+  const auto sent = sensor.counts().sent;
+  while (sensor.counts().sent < sent + 50) g_usleep(1000);
+  sensor.Fault({{"corrupt", 0.0}});
+  const auto corrupted = sensor.counts().corrupted;
+  receiver.Drain();
+  ASSERT_TRUE(receiver.Pull());
+  EXPECT_GE(corrupted, 50U);
+  EXPECT_NEAR(static_cast<double>(Stat(receiver.source(), "packets-damaged")),
+              static_cast<double>(corrupted), 2);
+}
+
+TEST(OusterLive, ASensorThatFellSilentIsWaitedFor) {
+  SoftwareSensor sensor({});
+  Receiver receiver(sensor.host(), "udp-dest=@auto");
+  ASSERT_TRUE(receiver.AwaitConnected(true));
+  sensor.Fault({{"silent", true}});
+  ASSERT_TRUE(receiver.AwaitConnected(false));
+  receiver.Drain();
+  sensor.Fault({{"silent", false}});
+  ASSERT_TRUE(receiver.AwaitConnected(true));
+  EXPECT_TRUE(receiver.Pull());
+}
+
+TEST(OusterLive, WithoutReconnectASilentSensorIsAnError) {
+  SoftwareSensor sensor({});
+  Receiver receiver(sensor.host(), "udp-dest=@auto reconnect=false");
+  ASSERT_TRUE(receiver.Pull());
+  sensor.Fault({{"silent", true}});
+  const std::string error = receiver.AwaitError();
+  EXPECT_NE(error.find("No packets from the sensor"), std::string::npos) << error;
+}
+
+TEST(OusterLive, GoesOnAfterARestartWithScansAndTimesThatGoOn) {
+  SoftwareSensor sensor({});
+  Receiver receiver(sensor.host(), "udp-dest=@auto");
+  GstLidarSlice last{};
+  GstClockTime last_pts = 0;
+  const auto note = [&](GstBuffer* buffer) {
+    GstLidarSlice slice{};
+    gst_lidar_buffer_get_slice(buffer, &slice);
+    EXPECT_GE(slice.scan_id, last.scan_id);
+    EXPECT_GE(GST_BUFFER_PTS(buffer), last_pts);
+    last = slice;
+    last_pts = GST_BUFFER_PTS(buffer);
+    return slice.scan_id > 3;
+  };
+  ASSERT_TRUE(receiver.PullUntil(note));
+  sensor.state().Restart();
+  const MessagePtr changed = receiver.Await("ouster-metadata-changed");
+  ASSERT_TRUE(changed);
+  const guint before = last.scan_id;
+  ASSERT_TRUE(receiver.PullUntil([&](GstBuffer* buffer) {
+    note(buffer);
+    return last.scan_id > before + 3;
+  }));
+}
+
+TEST(OusterLive, TakesANewGeometryWhenSomeoneElseReconfigures) {
+  SoftwareSensor sensor({});
+  Receiver receiver(sensor.host(), "udp-dest=@auto");
+  ASSERT_TRUE(receiver.Pull());
+  EXPECT_EQ(receiver.Info().sensor_model->columns_per_scan, 512U);
+  ASSERT_EQ(sensor.state().SetConfig(
+                {{"lidar_mode", "1024x10"}, {"udp_profile_lidar", "RNG19_RFL8_SIG16_NIR16_DUAL"}},
+                {false, true}, "127.0.0.1"),
+            "");
+  ASSERT_TRUE(receiver.PullUntil(
+      [&](GstBuffer*) { return receiver.Info().sensor_model->columns_per_scan == 1024; }));
+  EXPECT_EQ(receiver.Info().ScanDuration(), 100 * GST_MSECOND);
+}
+
+TEST(OusterLive, WaitsForASensorWhoseApiFails) {
+  SoftwareSensor sensor({});
+  sensor.Fault({{"http_status", 500}});
+  Receiver receiver(sensor.host(), "udp-dest=@auto");
+  ASSERT_TRUE(receiver.AwaitConnected(false));
+  sensor.Fault({{"http_status", 0}});
+  EXPECT_TRUE(receiver.AwaitConnected(true));
+}
+
+TEST(OusterLive, WithoutReconnectAnApiThatFailsIsAnError) {
+  SoftwareSensor sensor({});
+  sensor.Fault({{"http_status", 503}});
+  Receiver receiver(sensor.host(), "reconnect=false");
+  const std::string error = receiver.AwaitError();
+  EXPECT_NE(error.find("503"), std::string::npos) << error;
+}
+
+TEST(OusterLive, PacketsOfARestartedSensorAreTakenWhereItsApiIsDown) {
+  SoftwareSensor sensor({});
+  Receiver receiver(sensor.host(), "udp-dest=@auto");
+  ASSERT_TRUE(receiver.Pull());
+  sensor.Fault({{"http_status", 500}});
+  sensor.state().Restart();
+  ASSERT_TRUE(receiver.PullUntil([](GstBuffer* buffer) {
+    return GST_BUFFER_FLAG_IS_SET(buffer, GST_BUFFER_FLAG_DISCONT) != FALSE;
+  }));
+}
+
+TEST(OusterLive, StopsAtOnceWhileTheApiIsSlow) {
+  SoftwareSensor sensor({});
+  sensor.Fault({{"http_delay_ms", 4000}});
+  const gint64 start = g_get_monotonic_time();
+  { Receiver receiver(sensor.host(), "udp-dest=@auto"); }
+  EXPECT_LT(g_get_monotonic_time() - start, 3 * G_USEC_PER_SEC);
+}
+
+TEST(OusterLive, TheCaptureTimeOfASensorOnPtpIsTrueUtc) {
+  SoftwareSensor::Options options;
+  options.timestamp_mode = "TIME_FROM_PTP_1588";
+  SoftwareSensor sensor(options);
+  Receiver receiver(sensor.host(), "udp-dest=@auto");
+  ASSERT_TRUE(receiver.Pull());
+  receiver.Drain();
+  const BufferPtr buffer = receiver.Pull();
+  const auto age = static_cast<gint64>(g_get_real_time()) * 1000 -
+                   static_cast<gint64>(gst_lidar_buffer_get_capture_time(buffer.get()));
+  // A slice is 12.5 ms long, and the machine may be busy.
+  EXPECT_GT(age, 12 * static_cast<gint64>(GST_MSECOND));
+  EXPECT_LT(age, 500 * static_cast<gint64>(GST_MSECOND));
+  GstStructure* stats = nullptr;
+  g_object_get(receiver.source(), "stats", &stats, nullptr);
+  gboolean synchronised = FALSE;
+  gst_structure_get_boolean(stats, "clock-synchronised", &synchronised);
+  EXPECT_TRUE(synchronised);
+  gst_structure_free(stats);
+}
+
+/// A server that is no sensor.
+class Impostor {
+ public:
+  explicit Impostor(httplib::Server::Handler handler) {
+    server_.Get(".*", std::move(handler));
+    port_ = server_.bind_to_any_port("127.0.0.1");
+    thread_ = std::thread([this] { server_.listen_after_bind(); });
+    while (!server_.is_running()) g_usleep(1000);
+  }
+  ~Impostor() {
+    server_.stop();
+    thread_.join();
+  }
+  Impostor(const Impostor&) = delete;
+  Impostor& operator=(const Impostor&) = delete;
+  std::string host() const { return "127.0.0.1:" + std::to_string(port_); }
+
+ private:
+  httplib::Server server_;
+  int port_ = 0;
+  std::thread thread_;
+};
+
+TEST(OusterLive, FollowsNoRedirect) {
+  std::atomic<int> visits{0};
+  const Impostor target([&](const httplib::Request&, httplib::Response&) { ++visits; });
+  const Impostor impostor([&](const httplib::Request&, httplib::Response& response) {
+    response.set_redirect("http://" + target.host() + "/");
+  });
+  Receiver receiver(impostor.host(), "reconnect=false");
+  const std::string error = receiver.AwaitError();
+  EXPECT_NE(error.find("302"), std::string::npos) << error;
+  EXPECT_EQ(visits, 0);
+}
+
+TEST(OusterLive, AnAnswerWithoutEndIsCutOff) {
+  const Impostor impostor([](const httplib::Request&, httplib::Response& response) {
+    response.set_content_provider("application/json", [](std::size_t, httplib::DataSink& sink) {
+      const std::string blanks(1 << 20, ' ');
+      return sink.write(blanks.data(), blanks.size());
+    });
+  });
+  Receiver receiver(impostor.host(), "reconnect=false");
+  const std::string error = receiver.AwaitError();
+  EXPECT_NE(error.find("Cannot talk to the sensor"), std::string::npos) << error;
+}
+
+}  // namespace
+}  // namespace lidar::test
