@@ -10,10 +10,10 @@ Controller::~Controller() = default;
 Controller::Controller(Controller&&) noexcept = default;
 Controller& Controller::operator=(Controller&&) noexcept = default;
 
-StreamId Controller::AddStream(const StreamConfig& config) { return impl_->streams.Add(config); }
+StreamId Controller::AddStream(const StreamConfig& config) { return impl_->AddStream(config); }
 
 void Controller::ConfigureStream(StreamId stream, const StreamConfig& config) {
-  if (Stream* s = impl_->streams.Find(stream)) s->Configure(config);
+  impl_->ConfigureStream(stream, config);
 }
 
 void Controller::RemoveStream(StreamId stream) { impl_->streams.Remove(stream); }

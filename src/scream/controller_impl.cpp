@@ -12,12 +12,27 @@ constexpr double kTimeoutBackoff = 0.5;
 constexpr double kDriftRateScale = 0.5;
 /// So long after a mark the next sign of congestion is expected to be one too.
 constexpr Duration kMarksExpected = 30s;
+/// quick_drain: how much faster than packets arrive a backlog may leave.
+constexpr double kDrainMargin = 1.25;
 /// Packets in a row behind a queue that are no accident.
 constexpr int kQueueingPackets = 3;
 
 }  // namespace
 
 Controller::Impl::Impl(const Parameters& parameters) : p(parameters) {}
+
+StreamId Controller::Impl::AddStream(const StreamConfig& config) {
+  const StreamId id = streams.Add(config);
+  UpdateTarget(now_);
+  return id;
+}
+
+void Controller::Impl::ConfigureStream(StreamId id, const StreamConfig& config) {
+  Stream* stream = streams.Find(id);
+  if (stream == nullptr) return;
+  stream->Configure(config);
+  UpdateTarget(now_);
+}
 
 void Controller::Impl::OnQueued(Time now, StreamId id, const QueuedPacket& packet) {
   now = Advance(now);
@@ -214,7 +229,8 @@ void Controller::Impl::UpdateTarget(Time now) {
   streams.Allocate(now, target);
   pacer_.Update(streams.target_bitrate(), streams.max_bitrate(), PacingHeadroom());
   if (p.extensions.quick_drain && streams.media_qdelay(now) > streams.frame_period())
-    pacer_.RaiseTo(window_.ref_wnd() / rtt_.min() / p.target_rate_divisor);
+    pacer_.RaiseTo(std::min(window_.ref_wnd() / rtt_.last() / p.target_rate_divisor,
+                            acked_rate_.Rate(now) * kDrainMargin));
 }
 
 bool Controller::Impl::SourceLimited() const {

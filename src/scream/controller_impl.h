@@ -25,6 +25,8 @@ class Controller::Impl {
  public:
   explicit Impl(const Parameters& parameters);
 
+  StreamId AddStream(const StreamConfig& config);
+  void ConfigureStream(StreamId id, const StreamConfig& config);
   void OnQueued(Time now, StreamId id, const QueuedPacket& packet);
   void OnSent(Time now, StreamId id, const SentPacket& packet);
   void OnDropped(Time now, StreamId id, std::size_t packets);
@@ -34,14 +36,13 @@ class Controller::Impl {
   std::optional<SendDecision> NextSend(Time now) const;
   Time NextTimer() const;
   Statistics GetStatistics(Time now) const;
-  /// Also after a change of the streams' configuration.
-  void UpdateTarget(Time now);
 
   const Parameters p;
   Streams streams{p};
   EcnMonitor ecn{p.ecn};
 
  private:
+  void UpdateTarget(Time now);
   Time Advance(Time now) { return now_ = std::max(now_, now); }
   void OnSummary(Time now, const AckSummary& summary);
   void MeasurePath(Time now, const AckSummary& summary);

@@ -37,10 +37,11 @@ void QueueDelay::AddToBase(Time now, Duration owd, bool short_history) {
     history_.push_back({now, owd});
     while (history_.size() > (short_history ? kBaseHistoryMarked : kBaseHistory))
       history_.pop_front();
+    base_ = owd;
+    for (const Base& b : history_) base_ = std::min(*base_, b.min);
   }
   history_.back().min = std::min(history_.back().min, owd);
-  base_ = history_.front().min;
-  for (const Base& b : history_) base_ = std::min(*base_, b.min);
+  base_ = std::min(*base_, owd);
 }
 
 bool QueueDelay::Add(Time now, Time sent, Time arrival, Duration rtt_excess, bool short_history) {

@@ -12,6 +12,8 @@ using namespace std::chrono_literals;
 constexpr std::size_t kMaxPackets = 16384;
 /// Settled packets kept, so that repeated reports find them.
 constexpr std::size_t kMaxSettled = 1024;
+/// SSRCs come and go with restarts; the one silent for longest is forgotten.
+constexpr std::size_t kMaxSources = 64;
 /// The report's fields are coarse: arrival offsets of 1/1024 s.
 constexpr Duration kTimeTolerance = 2ms;
 
@@ -19,6 +21,7 @@ constexpr Duration kTimeTolerance = 2ms;
 
 void SentHistory::OnSent(std::uint32_t ssrc, std::uint16_t seq, const SentRecord& record) {
   const bool is_new = sources_.find(ssrc) == sources_.end();
+  if (is_new && sources_.size() >= kMaxSources) ForgetSilentSource();
   Source& source = sources_[ssrc];
   Packet packet;
   packet.seq = source.unwrapper.Unwrap(seq);
@@ -33,6 +36,15 @@ void SentHistory::OnSent(std::uint32_t ssrc, std::uint16_t seq, const SentRecord
     Trim(&source, &in_flight_);
   }
   // A number sent before (a repeated packet) is accounted once: feedback cannot tell the copies.
+}
+
+void SentHistory::ForgetSilentSource() {
+  const auto silent = std::min_element(sources_.begin(), sources_.end(), [](auto& a, auto& b) {
+    return a.second.packets.back().record.sent < b.second.packets.back().record.sent;
+  });
+  for (const Packet& packet : silent->second.packets)
+    if (packet.seq > silent->second.highest_acked) in_flight_ -= packet.record.size;
+  sources_.erase(silent);
 }
 
 SentHistory::Packet* SentHistory::Find(Source* source, std::int64_t seq) {

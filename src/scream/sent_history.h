@@ -86,6 +86,7 @@ class SentHistory {
     std::vector<std::int64_t> missing;
   };
 
+  void ForgetSilentSource();
   static Packet* Find(Source* source, std::int64_t seq);
   bool Plausible(Time now, Source* source, const SsrcReport& block) const;
   void Apply(Time now, const SsrcReport& block, Source* source, Time report, AckSummary* summary);

@@ -22,15 +22,9 @@ constexpr Duration kInactive = 1s;
 Stream::Stream(const Parameters& parameters, const StreamConfig& config)
     : p_(parameters), config_(config), target_bitrate_(config.start_bitrate) {}
 
-void Stream::Configure(const StreamConfig& config) {
-  config_ = config;
-  target_bitrate_ = std::clamp(target_bitrate_, config.min_bitrate,
-                               std::max(config.min_bitrate, config.max_bitrate));
-}
-
 bool Stream::OnQueued(Time now, const QueuedPacket& packet) {
   ssrcs_.insert(packet.ssrc);
-  last_queued_ = now;
+  last_active_ = now;
   const bool is_media = !media_ssrc_ || *media_ssrc_ == packet.ssrc || packet.marker;
   const bool starts_frame = is_media && frame_timestamp_ != packet.rtp_timestamp;
   queue_.push_back({packet.size, now, starts_frame});
@@ -99,8 +93,10 @@ Duration Stream::media_qdelay(Time now) const {
   return queue_.empty() ? Duration{0} : now - queue_.front().queued;
 }
 
-bool Stream::active(Time now) const {
-  return !queue_.empty() || last_queued_ == Time{} || now - last_queued_ < kInactive;
+bool Stream::active(Time now) {
+  if (now == Time{}) return true;  // no event yet
+  if (!last_active_ || !queue_.empty()) last_active_ = now;
+  return now - *last_active_ < kInactive;
 }
 
 StreamStatistics Stream::statistics(Time now) {

@@ -16,7 +16,7 @@ class Stream {
  public:
   Stream(const Parameters& parameters, const StreamConfig& config);
 
-  void Configure(const StreamConfig& config);
+  void Configure(const StreamConfig& config) { config_ = config; }
   /// Returns true where the packet ends a frame.
   bool OnQueued(Time now, const QueuedPacket& packet);
   /// Takes the head of the queue.
@@ -35,7 +35,8 @@ class Stream {
   double rate_adjust_factor() const { return rate_adjust_factor_; }
   double frame_size_dev() const { return frame_size_dev_; }
   Duration frame_period() const { return frame_period_; }
-  bool active(Time now) const;
+  /// Has packets, or had lately. One that never had any counts for a while after the first call.
+  bool active(Time now);
   DataRate target_bitrate() const { return target_bitrate_; }
   void set_target_bitrate(DataRate target) { target_bitrate_ = target; }
   DataRate sent_bitrate(Time now) { return sent_rate_.Rate(now); }
@@ -65,7 +66,7 @@ class Stream {
   std::optional<std::uint32_t> frame_timestamp_;
   DataSize frame_size_;
   std::optional<Time> last_frame_;
-  Time last_queued_{};
+  std::optional<Time> last_active_;
   Duration frame_period_ = 20ms;
   double rate_adjust_factor_ = 0;
   double frame_size_dev_ = 0;

@@ -62,10 +62,12 @@ void Streams::Allocate(Time now, DataRate total) {
   };
   std::vector<Share> open;
   DataRate left = total;
+  bool any_active = false;
+  for (auto& [id, stream] : streams_) any_active = stream.active(now) || any_active;
   for (auto& [id, stream] : streams_) {
     const StreamConfig& c = stream.config();
     stream.set_target_bitrate(c.min_bitrate);
-    if (!stream.active(now)) continue;
+    if (any_active && !stream.active(now)) continue;
     left = left - c.min_bitrate;
     open.push_back({&stream, std::max(1e-6, c.priority), c.min_bitrate,
                     std::max(c.min_bitrate, c.max_bitrate)});

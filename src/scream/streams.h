@@ -23,7 +23,8 @@ class Streams {
   void OnSent(Time now, StreamId id, std::uint32_t ssrc, DataSize size);
   void OnQueued(Stream* stream);
 
-  /// Minimum first, then by priority, none above its maximum; silent streams keep their minimum.
+  /// Minimum first, then by priority, none above its maximum; silent streams keep their minimum
+  /// (unless all are silent).
   void Allocate(Time now, DataRate total);
   DataRate min_bitrate() const;
   DataRate max_bitrate() const;

@@ -24,6 +24,7 @@ struct Options {
   double seconds = 0;
   double frame_jitter = -1;
   double wakeup_ms = 0;
+  double stall_ms = 0;
 };
 
 void PrintUsage() {
@@ -37,6 +38,7 @@ void PrintUsage() {
       "  --seconds S    shorter (or longer) runs\n"
       "  --frame-jitter PERCENT  frame sizes vary evenly by so much\n"
       "  --wakeup-ms MS pacing wakes up late by up to so much\n"
+      "  --stall-ms MS  sender and receiver stop for up to so much, once a second\n"
       "  --samples CSV  writes the controller's state every 10 ms (of one scenario)");
 }
 
@@ -119,6 +121,8 @@ bool Parse(int argc, char** argv, Options* options) {
       options->samples = argv[++i];
     } else if (arg == "--frame-jitter" && i + 1 < argc) {
       options->frame_jitter = std::atof(argv[++i]) / 100;
+    } else if (arg == "--stall-ms" && i + 1 < argc) {
+      options->stall_ms = std::atof(argv[++i]);
     } else if (arg == "--wakeup-ms" && i + 1 < argc) {
       options->wakeup_ms = std::atof(argv[++i]);
     } else if (arg == "--seconds" && i + 1 < argc) {
@@ -191,6 +195,7 @@ int main(int argc, char** argv) {
     if (options.seconds > 0) s.config.duration = lidar::FromSeconds(options.seconds);
     for (FlowConfig& flow : s.config.flows) {
       if (options.frame_jitter >= 0) flow.frame_jitter = options.frame_jitter;
+      flow.stall = lidar::FromSeconds(options.stall_ms / 1e3);
       flow.wakeup_delay = lidar::FromSeconds(options.wakeup_ms / 1e3);
     }
     const SimulationResult result = Simulate(s.config);

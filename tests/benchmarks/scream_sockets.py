@@ -39,7 +39,7 @@ SCENARIOS = {
     "K": ("8 Mbit/s, Not-ECT, FIFO 10 ms", ["--rate", "8", "--rtt", "40", "--queue", "10"], "off", 50, 40),
 }
 SETTLE_S = 5.0
-LINK_PORT, RX_PORT = 45004, 45104
+LINK_PORT, RX_PORT = 45004, 45104  # of the first flow, with --port-offset 0
 
 
 def percentile(values, p):
@@ -80,8 +80,9 @@ class SenderHost:
 class Peers:
     """Command lines of senders and receivers, ours and the reference's."""
 
-    def __init__(self, build, reference, host):
+    def __init__(self, build, reference, host, port_offset=0):
         self.host = host
+        self.link_port, self.rx_port = LINK_PORT + port_offset, RX_PORT + port_offset
         self.address = host.LINK_ADDRESS if host else "127.0.0.1"
         self.bench = str(build / "src/tools/scream-bench")
         self.link = str(build / "src/tools/lidar-link")
@@ -124,12 +125,12 @@ class Run:
         link = [self.peers.link, "--quiet", "--log", str(self.folder / "link.csv"), "--summary",
                 str(self.folder / "link.json")] + self.options
         for i in flows:
-            link += ["--listen", f"{self.peers.address}:{LINK_PORT + i}", "--forward", f"127.0.0.1:{RX_PORT + i}"]
-            start(self.peers.receiver(self.receiver, RX_PORT + i, str(self.folder / f"rx{i}.json")), f"rx{i}.txt")
+            link += ["--listen", f"{self.peers.address}:{self.peers.link_port + i}", "--forward", f"127.0.0.1:{self.peers.rx_port + i}"]
+            start(self.peers.receiver(self.receiver, self.peers.rx_port + i, str(self.folder / f"rx{i}.json")), f"rx{i}.txt")
         start(link, "link.txt")
         time.sleep(0.5)
         for i in flows:
-            start(self.peers.sender(self.senders[i], LINK_PORT + i, self.ecn, self.fps,
+            start(self.peers.sender(self.senders[i], self.peers.link_port + i, self.ecn, self.fps,
                                     str(self.folder / f"tx{i}.json")), f"tx{i}.txt")
         time.sleep(self.seconds)
         # Senders first, then receivers, then the link, which writes its summary.
@@ -216,6 +217,7 @@ def main():
                         help="comma-separated pairs sender-receiver of 'ours' and 'reference'")
     parser.add_argument("--mixed-flows", action="store_true", help="J: the second sender is the reference's")
     parser.add_argument("--seconds", type=float, help="of each run, instead of the scenario's own")
+    parser.add_argument("--port-offset", type=int, default=0, help="to run two of these side by side")
     parser.add_argument("--json", help="write the figures there")
     parser.add_argument("--keep", type=pathlib.Path, help="keep the logs in this folder")
     args = parser.parse_args()
@@ -230,7 +232,7 @@ def main():
     with contextlib.ExitStack() as stack:
         needs_host = args.mixed_flows or any(p[0] == "reference" for p in pairs)
         host = stack.enter_context(SenderHost()) if needs_host else None
-        results = run_all(args, pairs, Peers(args.build, args.reference, host))
+        results = run_all(args, pairs, Peers(args.build, args.reference, host, args.port_offset))
     if args.json:
         with open(args.json, "w") as out:
             json.dump(results, out, indent=2)

@@ -216,9 +216,8 @@ TEST(Pacer, CatchesUpAfterALateWakeUpButOnlyALittle) {
   Pacer pacer(p);
   pacer.Update(Mbps(8), Mbps(100), 1);
   pacer.OnSent(kStart, DataSize::Bytes(1000));
-  EXPECT_EQ(pacer.next(), kStart - 2ms + 1ms);
-  pacer.OnSent(kStart, DataSize::Bytes(1000));
-  pacer.OnSent(kStart, DataSize::Bytes(1000));
+  EXPECT_EQ(pacer.next(), kStart - 10ms + 1ms);
+  for (int i = 0; i < 10; ++i) pacer.OnSent(kStart, DataSize::Bytes(1000));
   EXPECT_EQ(pacer.next(), kStart + 1ms);
   pacer.OnIdleEnd(kStart + 5ms);
   pacer.OnSent(kStart + 5ms, DataSize::Bytes(1000));

@@ -148,6 +148,14 @@ TEST_F(SentHistoryTest, ExpiredPacketsAreNeitherInFlightNorLost) {
   EXPECT_EQ(history_.bytes_in_flight().bytes(), 1000);
 }
 
+TEST_F(SentHistoryTest, OnlyTheLastSourcesAreRemembered) {
+  for (std::uint32_t ssrc = 100; ssrc < 200; ++ssrc, now_ += 1ms)
+    history_.OnSent(ssrc, 7, {0, DataSize::Bytes(1000), now_, Ecn::kEct1});
+  EXPECT_EQ(history_.bytes_in_flight().bytes(), 64 * 1000);
+  EXPECT_EQ(Apply(Report(7, "r", 100)), HistoryResult::kNotOurs);
+  EXPECT_EQ(Apply(Report(7, "r", 199)), HistoryResult::kApplied);
+}
+
 TEST_F(SentHistoryTest, MemoryStaysBoundedWithoutFeedback) {
   for (int i = 0; i < 100000; ++i)
     history_.OnSent(1, static_cast<std::uint16_t>(i), {0, DataSize::Bytes(1000), now_, Ecn::kEct1});

@@ -38,18 +38,14 @@ class Flow {
 
   Time NextEvent(Time now) {
     Time next = std::min({next_frame_, controller_.NextTimer(), generator_.NextDue()});
-    if (const auto d = controller_.NextSend(now)) {
-      const Duration late = d->time > now
-                                ? FromSeconds(Seconds(config_.wakeup_delay) * random_.Uniform())
-                                : Duration{0};
-      next = std::min(next, std::max(d->time, now) + late);
-    }
+    if (const auto wake = Wake(now)) next = std::min(next, *wake);
     if (!reports_.empty()) next = std::min(next, reports_.begin()->first);
-    return next;
+    return std::max(next, stalled_until_);
   }
 
   void Step(Time now, const SimulationConfig& sim, link::Random* loss,
             std::vector<WirePacket>* wire, link::Bottleneck* link) {
+    if (Stalled(now)) return;
     while (next_frame_ <= now) MakeFrame(now);
     for (; !reports_.empty() && reports_.begin()->first <= now; reports_.erase(reports_.begin()))
       controller_.OnFeedback(now, reports_.begin()->second);
@@ -90,6 +86,27 @@ class Flow {
   Statistics statistics(Time now) const { return controller_.statistics(now); }
 
  private:
+  /// When the pacing thread, asked to wake at the next packet's time, really does.
+  std::optional<Time> Wake(Time now) {
+    const auto d = controller_.NextSend(now);
+    if (!d) return std::nullopt;
+    if (d->time != asked_) {
+      asked_ = d->time;
+      const bool sleeps = d->time > now && config_.wakeup_delay > Duration{0};
+      const double late = sleeps ? Seconds(config_.wakeup_delay) * random_.Uniform() : 0;
+      wake_ = std::max(d->time, now) + FromSeconds(late);
+    }
+    return wake_;
+  }
+
+  bool Stalled(Time now) {
+    if (config_.stall > Duration{0} && now >= next_stall_) {
+      stalled_until_ = now + FromSeconds(Seconds(config_.stall) * random_.Uniform());
+      next_stall_ = now + FromSeconds(2 * Seconds(config_.stall_every) * random_.Uniform());
+    }
+    return now < stalled_until_;
+  }
+
   void MakeFrame(Time now) {
     const Duration since_start = now - config_.start;
     const Duration period = FromSeconds(1 / config_.frames_per_second);
@@ -127,7 +144,8 @@ class Flow {
   }
 
   void Send(Time now, std::vector<WirePacket>* wire, link::Bottleneck* link) {
-    for (auto d = controller_.NextSend(now); d && d->time <= now; d = controller_.NextSend(now)) {
+    for (auto wake = Wake(now); wake && *wake <= now; wake = Wake(now)) {
+      const auto d = controller_.NextSend(now);
       const WirePacket packet = queue_.front();
       queue_.pop_front();
       controller_.OnSent(now, stream_, {packet.ssrc, packet.seq, packet.size, d->ecn});
@@ -144,6 +162,10 @@ class Flow {
   std::uint32_t ssrc_;
   Time next_frame_;
   StreamId stream_ = 0;
+  Time asked_{};
+  Time wake_{};
+  Time stalled_until_{};
+  Time next_stall_{};
   std::uint32_t epoch_ = 0;
   std::uint16_t seq_ = 65000;  // wraps around early in each run
   std::deque<WirePacket> queue_;

@@ -24,6 +24,9 @@ struct FlowConfig {
   std::function<double(Duration)> obedience;
   /// The receiver forgets everything, and its clock has another epoch.
   Duration receiver_restart = Duration::max();
+  /// The machine stops for up to this, on average so often; packets still arrive.
+  Duration stall{0};
+  Duration stall_every = std::chrono::seconds(1);
   Duration wakeup_delay{0};  ///< the pacing thread wakes up late by up to this
 };
 

@@ -45,6 +45,18 @@ TEST_F(StreamsTest, AStarvedStreamKeepsItsMinimum) {
   EXPECT_NEAR(Target(b), 1, 1e-9);
 }
 
+TEST_F(StreamsTest, ASilentStreamLeavesItsShareToTheOthers) {
+  const StreamId a = Add(1, 1, 100), b = Add(1, 1, 100);
+  streams_.Allocate(kStart, Mbps(10));
+  EXPECT_NEAR(Target(b), 5, 1e-3);
+  streams_.Allocate(kStart + 2s, Mbps(10));  // nobody sends yet: all may start
+  EXPECT_NEAR(Target(a), 5, 1e-3);
+  streams_.Find(a)->OnQueued(kStart + 2s, {1, DataSize::Bytes(1000), true, 0});
+  streams_.Allocate(kStart + 2s, Mbps(10));
+  EXPECT_NEAR(Target(a), 10, 1e-3);
+  EXPECT_NEAR(Target(b), 1, 1e-3);
+}
+
 TEST_F(StreamsTest, TakeTurnsByTheirTargets) {
   const StreamId a = Add(3, 0, 100), b = Add(1, 0, 100);
   streams_.Allocate(kStart, Mbps(8));
