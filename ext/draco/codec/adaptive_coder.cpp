@@ -38,8 +38,8 @@ std::array<NibbleModel, kContexts> MakeInitialModels() {
 
 void AdaptiveCoder::ResetModels() {
   static const auto initial = MakeInitialModels();
-  value_model_.Reset(initial);
-  level_model_.Reset(initial);
+  value_model_.Reset(initial, NibbleModel());
+  level_model_.Reset(initial, NibbleModel());
 }
 
 /// Calls code_value(prediction), which gives the value, for every return in order, and code_level

@@ -2,6 +2,7 @@
 #include "draco/codec/range_codec.h"
 
 #include <algorithm>
+#include <array>
 
 namespace lidar::codec {
 namespace {
@@ -14,7 +15,7 @@ constexpr std::uint32_t kMaxRangeMm = AdaptiveCoder::kMaxBins - 1;
 bool RangeEncoder::Encode(const RangeImage& image, const RangeSettings& settings,
                           std::vector<std::uint8_t>* out) {
   const bool with_levels = settings.intensity.bits() > 0;
-  lists_.values.clear();
+  lists_.values.clear();  // for returns()
   if (image.beams != alignment_.beams() || image.columns == 0 ||
       image.columns > alignment_.columns_per_scan() ||
       image.first_column >= alignment_.columns_per_scan() || image.ranges.size() != image.size() ||
@@ -40,23 +41,34 @@ bool RangeEncoder::Encode(const RangeImage& image, const RangeSettings& settings
 }
 
 void RangeEncoder::CollectReturns(const RangeImage& image, const RangeSettings& settings) {
-  const bool with_levels = settings.intensity.bits() > 0;
-  lists_.levels.clear();
   mask_.resize(image.size());
+  lists_.values.resize(image.size());
+  // Exact below 2^28: the quotient is off by less than half a unit is away from the next integer.
+  const double per_step = 1.0 / settings.grid.step_mm();
+  std::size_t count = 0;
   for (std::size_t i = 0; i < image.size(); ++i) {
     const std::uint32_t range = std::min(image.ranges[i], kMaxRangeMm);
     mask_[i] = range != 0 ? 1 : 0;
-    if (range == 0) continue;
-    lists_.values.push_back(static_cast<std::int32_t>(settings.grid.BinOf(range)));
-    if (with_levels) lists_.levels.push_back(settings.intensity.Coarsen(image.intensity[i]));
+    lists_.values[count] =
+        static_cast<std::int32_t>((static_cast<std::int32_t>(range) + 0.5) * per_step);
+    count += mask_[i];
   }
+  lists_.values.resize(count);
+  lists_.levels.resize(settings.intensity.bits() > 0 ? count : 0);
+  if (lists_.levels.empty()) return;
+  std::array<std::uint8_t, 256> coarse{};
+  for (unsigned i = 0; i < coarse.size(); ++i)
+    coarse[i] = settings.intensity.Coarsen(static_cast<std::uint8_t>(i));
+  std::size_t next = 0;
+  for (std::size_t i = 0; i < image.size(); ++i)
+    if (mask_[i] != 0) lists_.levels[next++] = coarse[image.intensity[i]];
 }
 
 /// No bytes at all stand for a mask without a gap.
 void RangeEncoder::EncodeMask(std::uint32_t columns) {
   mask_bytes_.clear();
   if (returns() == mask_.size()) return;
-  rans_.Clear();
+  rans_.Start(mask_.size());
   mask_coder_.Encode(mask_, alignment_, columns, &rans_);
   rans_.Finish(&mask_bytes_);
 }
@@ -66,7 +78,8 @@ bool RangeEncoder::EncodePayload(const RangeSettings& settings, std::uint32_t co
   if (returns() == 0) return true;
   const BlockShape shape{alignment_, mask_, columns};
   if (settings.coder == RangeCoder::kAdaptive) {
-    rans_.Clear();
+    // A residual is two symbols at most.
+    rans_.Start(2 * (lists_.values.size() + lists_.levels.size()));
     coder_.Encode(shape, lists_, &rans_);
     rans_.Finish(&payload_);
     return true;

@@ -96,10 +96,11 @@ TEST(Rans, GivesBackEverySymbolWhateverTheModelSaw) {
     symbols.push_back(i < 10'000 ? 7U : r % (1U << (r >> 8) % 5));
   }
   RansEncoder encoder;
+  encoder.Start(symbols.size());
   NibbleModel model;
   for (std::size_t i = 0; i < symbols.size(); ++i) {
     encoder.Put(symbols[i], &model);
-    encoder.PutRaw(static_cast<std::uint32_t>(i), static_cast<unsigned>(i % 13));
+    encoder.PutBits(static_cast<std::uint32_t>(i), static_cast<unsigned>(i % 13));
   }
   std::vector<std::uint8_t> bytes;
   encoder.Finish(&bytes);
@@ -107,7 +108,7 @@ TEST(Rans, GivesBackEverySymbolWhateverTheModelSaw) {
   NibbleModel again;
   for (std::size_t i = 0; i < symbols.size(); ++i) {
     ASSERT_EQ(decoder.Get(&again), symbols[i]);
-    ASSERT_EQ(decoder.GetRaw(static_cast<unsigned>(i % 13)), i & ((1U << i % 13) - 1));
+    ASSERT_EQ(decoder.GetBits(static_cast<unsigned>(i % 13)), i & ((1U << i % 13) - 1));
   }
   EXPECT_TRUE(decoder.AtEnd());
 }
