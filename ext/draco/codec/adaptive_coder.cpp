@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include "draco/codec/adaptive_coder.h"
 
-#include <cmath>
+#include "draco/codec/initial_models.h"
 
 namespace lidar::codec {
 namespace {
@@ -10,36 +10,11 @@ std::int32_t Mirror(std::int32_t residual, const Prediction& p) {
   return p.mirrored ? -residual : residual;
 }
 
-/// Two-sided geometric distributions whose scale grows with the context.
-std::array<NibbleModel, kContexts> MakeInitialModels() {
-  std::array<NibbleModel, kContexts> models;
-  for (unsigned context = 0; context < kContexts; ++context) {
-    const double scale = 0.35 * std::exp2(0.5 * (context < kContexts - 1 ? context : 8));
-    const auto mass = [&](double from, double to) {
-      return std::exp(-from / scale) - std::exp(-to / scale);
-    };
-    std::array<std::uint16_t, kNibbles> counts{};
-    const double zero = mass(0, 0.5);
-    counts[0] = static_cast<std::uint16_t>(1 + 4000 * zero);
-    double from = 0.5;
-    for (unsigned length = 0; length < 7; ++length) {
-      const double to = length == 6 ? 1e9 : std::exp2(length) + 0.5;
-      const double part = mass(from, to) / 2;
-      counts[1 + 2 * length] = static_cast<std::uint16_t>(2 + 4000 * part);
-      counts[2 + 2 * length] = counts[1 + 2 * length];
-      from = to;
-    }
-    models[context] = NibbleModel(counts);
-  }
-  return models;
-}
-
 }  // namespace
 
 void AdaptiveCoder::ResetModels() {
-  static const auto initial = MakeInitialModels();
-  value_model_.Reset(initial, NibbleModel());
-  level_model_.Reset(initial, NibbleModel());
+  value_model_.Reset(InitialModelsOfValues());
+  level_model_.Reset(InitialModelsOfLevels());
 }
 
 /// Calls code_value(prediction), which gives the value, for every return in order, and code_level

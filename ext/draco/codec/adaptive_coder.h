@@ -38,8 +38,8 @@ class AdaptiveCoder {
 
   Neighbourhood values_;
   Neighbourhood levels_;
-  ResidualModel<kContexts> value_model_;
-  ResidualModel<kContexts> level_model_;
+  ResidualModel value_model_;
+  ResidualModel level_model_;
 };
 
 }  // namespace lidar::codec

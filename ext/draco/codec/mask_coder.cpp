@@ -6,9 +6,9 @@
 namespace lidar::codec {
 namespace {
 
-// Chance of a return in 1/64, where the pixel above (low bit) and the one to the left have one.
-// Only a start: the models learn from there.
-constexpr std::array<std::uint32_t, 4> kChance = {2, 30, 26, 63};
+// Chance of a return in 1/64, where the pixels above (1), to the left (2) and above right (4) have
+// one. Only a start: the models learn from there. Part of the format.
+constexpr std::array<std::uint32_t, 8> kChance = {2, 24, 36, 55, 15, 32, 47, 63};
 
 /// The models before the first pixel. A context is, from bit 0: the four pixels above, the one
 /// right and the one left of those, and the two to the left.
@@ -21,7 +21,8 @@ std::array<NibbleModel, 256> MakeInitialModels() {
       unsigned left = context >> 6 & 1;
       for (unsigned i = 0; i < 4; ++i) {
         const unsigned bit = four >> i & 1;
-        const std::uint32_t p = kChance[(context >> i & 1) | left << 1];
+        const std::uint32_t p =
+            kChance[(context >> i & 1) | left << 1 | (context >> (i + 1) & 1) << 2];
         chance =
             i == 3 ? chance / 64 * (bit != 0 ? p : 64 - p) / 64 : chance * (bit != 0 ? p : 64 - p);
         left = bit;

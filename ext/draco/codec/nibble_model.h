@@ -86,8 +86,9 @@ class NibbleModel {
   }
 
   void Update(unsigned symbol) {
-    const std::int16_t rate = kRates[static_cast<std::size_t>(start_[kAge])];
-    start_[kAge] = static_cast<std::int16_t>(start_[kAge] + (start_[kAge] < kOldest ? 1 : 0));
+    const int age = start_[kAge];
+    const int rate = kFast + (age >= kMiddleAge ? 1 : 0) + (age >= kOldest ? 1 : 0);
+    start_[kAge] = static_cast<std::int16_t>(age + (age < kOldest ? 1 : 0));
     // The table is a step at `symbol`; the slope keeps intervals from vanishing.
     const std::int16_t* step = &detail::kSteps.values[kNibbles - 1 - symbol];
     for (unsigned i = 0; i < kNibbles; i += 8) {
@@ -97,7 +98,7 @@ class NibbleModel {
       std::memcpy(&target, step + i, sizeof target);
       std::memcpy(&slope, &detail::kSlope.values[i], sizeof slope);
       std::memcpy(&start, &start_[i], sizeof start);
-      start += (target + slope - start) >> rate;
+      start += (target + slope - start) >> static_cast<std::int16_t>(rate);
       std::memcpy(&start_[i], &start, sizeof start);
     }
   }
@@ -105,11 +106,11 @@ class NibbleModel {
  private:
   using Vector = std::int16_t __attribute__((vector_size(16)));
   static constexpr unsigned kAge = kNibbles + 1;
-  static constexpr std::int16_t kOldest = 23;
+  static constexpr std::int16_t kOldest = 400;
   static constexpr std::uint32_t kFloor = 8;
   // Fast at first, then slower: few samples teach a context most of what there is to know.
-  static constexpr std::array<std::int16_t, kOldest + 1> kRates = {
-      3, 3, 4, 4, 4, 4, 5, 5, 5, 5, 5, 5, 5, 5, 6, 6, 6, 6, 6, 6, 6, 6, 6, 6};
+  static constexpr int kFast = 5;
+  static constexpr int kMiddleAge = 24;
   static std::array<std::uint16_t, kNibbles> UniformCounts() {
     std::array<std::uint16_t, kNibbles> counts;
     counts.fill(1);

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <cstdlib>
 
+#include "draco/codec/initial_models.h"
 #include "draco/codec/rans.h"
 
 namespace lidar::codec {
@@ -39,12 +40,11 @@ constexpr std::array<ResidualClass, kNibbles> kResidualClasses = {{{0, 0, false}
 
 /// Encoder and decoder do the same with every residual: one symbol, and bits, if only none; nothing
 /// to be mispredicted but the rare long ones.
-template <unsigned kContextCount>
 class ResidualModel {
  public:
-  void Reset(const std::array<NibbleModel, kContextCount>& start, const NibbleModel& long_start) {
-    models_ = start;
-    long_model_ = long_start;
+  void Reset(const InitialModels& start) {
+    models_ = start.residuals;
+    long_model_ = start.longs;
   }
 
   void Encode(std::int32_t residual, unsigned context, RansEncoder* encoder) {
@@ -89,7 +89,7 @@ class ResidualModel {
     return length > 0 ? length - 1 : 0;
   }
 
-  std::array<NibbleModel, kContextCount> models_;
+  std::array<NibbleModel, kContexts> models_;
   NibbleModel long_model_;
 };
 
