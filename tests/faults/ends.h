@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// The two ends of a stream as pipelines, with what was sent and shown kept to be compared.
+#pragma once
+#include <gst/gst.h>
+
+#include <atomic>
+#include <chrono>
+#include <cstdint>
+#include <deque>
+#include <memory>
+#include <mutex>
+#include <set>
+#include <string>
+
+#include "common/refs.h"
+
+namespace lidar::test {
+
+/// The last slices that any sender of a test put out, by their content.
+class SentSlices {
+ public:
+  void Add(std::uint32_t hash);
+  bool Has(std::uint32_t hash) const;
+
+ private:
+  mutable std::mutex mutex_;
+  std::multiset<std::uint32_t> hashes_;
+  std::deque<std::uint32_t> order_;
+};
+
+std::uint32_t Hash(GstBuffer* buffer);
+
+/// A pipeline that is stopped when it goes.
+class Pipeline {
+ public:
+  explicit Pipeline(const std::string& description);
+  ~Pipeline();
+  Pipeline(const Pipeline&) = delete;
+  Pipeline& operator=(const Pipeline&) = delete;
+
+  void SetState(GstState state);
+  /// Sends EOS and waits for it; false if it does not come in time.
+  bool Finish(std::chrono::milliseconds limit);
+  /// A number of the property `stats` of an element; all bits set where it has none.
+  std::uint64_t Stat(const char* element, const char* name) const;
+  gst::ElementPtr Child(const char* name) const;
+  /// The first error on the bus, or empty.
+  std::string Error() const;
+  unsigned Messages(GstMessageType type) const;
+  GstElement* get() const { return pipeline_.get(); }
+
+ private:
+  gst::ElementPtr pipeline_;
+};
+
+/// lidartestsrc ! dracoenc ! rtplidarpay ! screamsink
+class SendingEnd {
+ public:
+  SendingEnd(SentSlices* sent, std::uint16_t port, const std::string& sink_options = "");
+  Pipeline& pipeline() { return pipeline_; }
+  std::uint64_t slices_sent() const { return pipeline_.Stat("pay", "slices-sent"); }
+
+ private:
+  Pipeline pipeline_;
+};
+
+struct Accounts {
+  std::uint64_t received = 0, lost = 0, damaged = 0, mismatch = 0;
+  std::uint64_t complete = 0, incomplete = 0, scans_lost = 0;
+  std::uint64_t restarts = 0, outages = 0;
+  std::uint64_t slices() const { return received + lost + damaged + mismatch; }
+};
+
+/// screamsrc ! rtplidardepay ! dracodec ! fakesink
+class ReceivingEnd {
+ public:
+  ReceivingEnd(const SentSlices* sent, std::uint16_t port, const std::string& source_options = "");
+  Pipeline& pipeline() { return pipeline_; }
+  Accounts accounts() const;
+  /// Decoded clouds so far, and slices that nobody sent.
+  std::uint64_t clouds() const { return clouds_; }
+  std::uint64_t foreign() const { return foreign_; }
+  /// Time until the next cloud; none if none comes within `limit`.
+  std::chrono::milliseconds NextCloud(std::chrono::milliseconds limit) const;
+
+ private:
+  const SentSlices* sent_;
+  std::atomic<std::uint64_t> clouds_{0};
+  std::atomic<std::uint64_t> foreign_{0};
+  Pipeline pipeline_;
+};
+
+/// Resident memory of this process [bytes] and its CPU time.
+std::uint64_t ResidentBytes();
+std::chrono::milliseconds CpuTime();
+
+}  // namespace lidar::test

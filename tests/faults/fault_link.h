@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// A UDP relay that breaks what it carries on request, and knows slice by slice what it dropped.
+#pragma once
+#include <netinet/in.h>
+
+#include <atomic>
+#include <cstdint>
+#include <map>
+#include <mutex>
+#include <optional>
+#include <random>
+#include <set>
+#include <thread>
+#include <tuple>
+#include <vector>
+
+#include "rtp/payload_header.h"
+
+namespace lidar::test {
+
+/// What is wrong with the link now.
+struct Fault {
+  double loss = 0;             // part of the media packets
+  double duplicate = 0;        // part of the media packets
+  double feedback_loss = 0;    // part of the packets back
+  unsigned reorder_by = 0;     // every 50th packet comes this many packets late
+  std::size_t mtu = 65'535;    // larger datagrams are dropped [bytes of UDP payload]
+  double damage = 0;           // part of the media packets that get a wrong bit
+  unsigned garbage_ratio = 0;  // packets of garbage for each media packet
+  bool valid_garbage = false;  // garbage that looks like RTP of our payload type
+  bool down = false;           // nothing passes either way
+};
+
+/// A scan of one sender: its SSRC and scan number.
+struct SliceKey {
+  std::uint32_t ssrc;
+  std::uint32_t scan_number;
+  std::uint16_t index;
+  bool operator<(const SliceKey& o) const {
+    return std::tie(ssrc, scan_number, index) < std::tie(o.ssrc, o.scan_number, o.index);
+  }
+};
+
+struct LinkCounts {
+  std::uint64_t packets = 0;  // of media, that came in
+  std::uint64_t dropped = 0;
+  std::uint64_t garbage = 0;
+  std::uint64_t slices = 0;
+  std::uint64_t slices_hit = 0;  // that lost a packet, or got a wrong bit
+};
+
+/// Relays 127.0.0.1:port() to 127.0.0.1:`receiver_port`, ECN bits included, and feedback back to
+/// whoever sent last. A thread of its own.
+class FaultLink {
+ public:
+  explicit FaultLink(std::uint16_t receiver_port, unsigned seed = 1);
+  ~FaultLink();
+  FaultLink(const FaultLink&) = delete;
+  FaultLink& operator=(const FaultLink&) = delete;
+
+  std::uint16_t port() const { return port_; }
+  void Set(const Fault& fault);
+  /// Media goes on from another source port, as after NAT rebinding.
+  void Rebind();
+  LinkCounts counts() const;
+
+ private:
+  struct Datagram {
+    std::vector<std::uint8_t> bytes;
+    int tos = 0;
+  };
+  void Run();
+  std::optional<Datagram> Receive(int socket, sockaddr_in* from);
+  void Send(int socket, const Datagram& datagram, std::uint16_t port);
+  void OnMedia(Datagram datagram);
+  void Forward(const Datagram& datagram);
+  void SendGarbage(const Fault& fault, const Datagram& model);
+  void Note(const Datagram& datagram, bool hit);
+  bool Chance(double probability);
+
+  mutable std::mutex mutex_;  // guards fault_, slices_, hit_, counts_ and rebind_
+  Fault fault_;
+  std::set<SliceKey> slices_;
+  std::set<SliceKey> hit_;
+  LinkCounts counts_;
+  bool rebind_ = false;
+
+  std::uint16_t receiver_port_;
+  std::uint16_t port_ = 0;
+  int in_ = -1;
+  int out_ = -1;
+  std::uint16_t sender_port_ = 0;
+  std::optional<std::pair<Datagram, unsigned>> held_;  // and after how many packets it goes
+  unsigned until_hold_ = 50;
+  std::mt19937 random_;
+  std::atomic<bool> stop_{false};
+  std::thread thread_;
+};
+
+/// A UDP port of 127.0.0.1 that was free a moment ago.
+std::uint16_t FreePort();
+
+}  // namespace lidar::test

@@ -1,0 +1,171 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Streams for hours through a link with random faults and checks each minute what must always hold.
+#include <chrono>
+#include <cinttypes>
+#include <cstdio>
+#include <cstdlib>
+#include <memory>
+#include <random>
+#include <string>
+#include <thread>
+
+#include "ends.h"
+#include "fault_link.h"
+
+namespace {
+
+using namespace lidar::test;  // NOLINT
+using std::chrono::milliseconds;
+using std::chrono::seconds;
+
+constexpr std::uint64_t kMaxGrowth = std::uint64_t{48} << 20;  // bytes, since the third minute
+
+struct Fall {
+  const char* name;
+  Fault fault;
+  seconds length;
+};
+
+Fall RandomFall(std::mt19937* random) {
+  Fault f;
+  switch ((*random)() % 10) {
+    case 0:
+      f.down = true;
+      return {"down 1 s", f, seconds(1)};
+    case 1:
+      f.down = true;
+      return {"down 10 s", f, seconds(10)};
+    case 2:
+      f.loss = 0.05;
+      return {"loss 5 %", f, seconds(10)};
+    case 3:
+      f.loss = 0.5;
+      return {"loss 50 %", f, seconds(5)};
+    case 4:
+      f.reorder_by = 20;
+      return {"reordering", f, seconds(10)};
+    case 5:
+      f.duplicate = 0.3;
+      return {"duplicates", f, seconds(10)};
+    case 6:
+      f.damage = 0.02;
+      return {"damage 2 %", f, seconds(10)};
+    case 7:
+      f.feedback_loss = 1;
+      return {"feedback dead", f, seconds(5)};
+    case 8:
+      f.garbage_ratio = 20;
+      return {"garbage x20", f, seconds(5)};
+    default:
+      f.mtu = 700;
+      return {"MTU 700", f, seconds(3)};
+  }
+}
+
+class Soak {
+ public:
+  explicit Soak(unsigned seed) : random_(seed), port_(FreePort()), link_(port_, seed) {
+    StartReceiver();
+    StartSender();
+  }
+
+  /// One minute of faults and peace; false where something that must hold did not.
+  bool Minute(unsigned minute) {
+    const auto end = std::chrono::steady_clock::now() + seconds(60);
+    std::string story;
+    while (std::chrono::steady_clock::now() + seconds(16) < end) {
+      std::this_thread::sleep_for(milliseconds(1'000 + random_() % 4'000));
+      story += std::string(story.empty() ? "" : ", ") + Disturb();
+    }
+    link_.Set({});
+    std::this_thread::sleep_until(end);
+    return Check(minute, story);
+  }
+
+ private:
+  void StartSender() {
+    sender_ = std::make_unique<SendingEnd>(&sent_, link_.port());
+    sender_->pipeline().SetState(GST_STATE_PLAYING);
+  }
+  void StartReceiver() {
+    receiver_ = std::make_unique<ReceivingEnd>(&sent_, port_);
+    receiver_->pipeline().SetState(GST_STATE_PLAYING);
+  }
+
+  std::string Disturb() {
+    const auto what = random_() % 20;
+    if (what == 0) {
+      sender_.reset();
+      StartSender();
+      return "sender restarts";
+    }
+    if (what == 1) {
+      foreign_ += receiver_->foreign();
+      receiver_.reset();
+      StartReceiver();
+      return "receiver restarts";
+    }
+    if (what == 2) {
+      link_.Rebind();
+      return "address changes";
+    }
+    const Fall fall = RandomFall(&random_);
+    link_.Set(fall.fault);
+    std::this_thread::sleep_for(fall.length);
+    link_.Set({});
+    return fall.name;
+  }
+
+  bool Check(unsigned minute, const std::string& story) {
+    const auto recovery = receiver_->NextCloud(seconds(5));
+    const Accounts a = receiver_->accounts();
+    const std::string error = sender_->pipeline().Error() + receiver_->pipeline().Error();
+    const std::uint64_t memory = ResidentBytes();
+    if (minute == 3) base_memory_ = memory;
+    const bool grows = minute > 3 && memory > base_memory_ + kMaxGrowth;
+    const std::uint64_t foreign = foreign_ + receiver_->foreign();
+    std::printf("%4u min  received %7" PRIu64 " lost %6" PRIu64 " damaged %5" PRIu64
+                " mismatch %4" PRIu64 "  scans %6" PRIu64 " whole  %4.0f MB  [%s]\n",
+                minute, a.received, a.lost, a.damaged, a.mismatch, a.complete,
+                static_cast<double>(memory) / 1e6, story.c_str());
+    const auto demand = [](bool holds, const char* what) {
+      if (!holds) std::printf("FAILED: %s\n", what);
+      return holds;
+    };
+    const bool good = demand(error.empty(), ("no errors: " + error).c_str()) &
+                      demand(recovery != milliseconds::max(), "clouds come once the link is well") &
+                      demand(foreign == 0, "nothing is shown that was not sent") &
+                      demand(a.slices() >= last_.slices() || a.received < last_.received,
+                             "accounts do not shrink") &
+                      demand(!grows, "memory does not grow");
+    last_ = a;
+    std::fflush(stdout);
+    return good;
+  }
+
+  std::mt19937 random_;
+  std::uint16_t port_;
+  SentSlices sent_;
+  FaultLink link_;
+  std::unique_ptr<SendingEnd> sender_;
+  std::unique_ptr<ReceivingEnd> receiver_;
+  std::uint64_t foreign_ = 0;
+  std::uint64_t base_memory_ = 0;
+  Accounts last_;
+};
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  if (argc != 3) {
+    std::fprintf(stderr, "usage: %s MINUTES SEED\n", argv[0]);
+    return 2;
+  }
+  gst_init(nullptr, nullptr);
+  const auto minutes = static_cast<unsigned>(std::atoi(argv[1]));
+  bool good = true;
+  Soak soak(static_cast<unsigned>(std::atoi(argv[2])));
+  for (unsigned minute = 1; minute <= minutes; ++minute) good &= soak.Minute(minute);
+  std::printf("%s after %u minutes, seed %s\n", good ? "passed" : "FAILED", minutes, argv[2]);
+  return good ? 0 : 1;
+}

@@ -1,0 +1,26 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: LGPL-2.1-or-later
+# Streams for hours through a link with random faults; each minute a line, and what must hold is checked.
+set -euo pipefail
+root=$(cd "$(dirname "$0")/../.." && pwd)
+build=${BUILD_DIR:-$root/build}
+
+minutes=0
+seed=1
+while [ $# -gt 0 ]; do
+  case $1 in
+    --hours) minutes=$(awk "BEGIN { print int($2 * 60) }"); shift ;;
+    --minutes) minutes=$2; shift ;;
+    --seed) seed=$2; shift ;;
+    *) echo "Usage: tests/soak/run.sh --hours N | --minutes N [--seed S]" >&2
+       [ "$1" = --help ] && exit 0 || exit 2 ;;
+  esac
+  shift
+done
+[ "$minutes" -gt 0 ] || { echo "Say how long: --hours N or --minutes N." >&2; exit 2; }
+
+[ -f "$build/build.ninja" ] || meson setup "$build" "$root" >"$build.log" 2>&1
+ninja -C "$build" >"$build.log" 2>&1 || { tail -20 "$build.log" >&2; exit 1; }
+plugins=$(find "$build/gst" "$build/ext" -name 'libgst*.so' -printf '%h\n' | sort -u | paste -sd:)
+export GST_PLUGIN_PATH_1_0=$plugins GST_REGISTRY=$build/soak-registry.bin
+exec "$build/tests/faults/soak" "$minutes" "$seed"
