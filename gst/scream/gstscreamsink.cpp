@@ -95,7 +95,10 @@ struct _GstLidarScreamSink {
   State* state;
 };
 
-G_DEFINE_TYPE(GstLidarScreamSink, gst_lidar_scream_sink, GST_TYPE_BIN)
+static void ChildProxyInit(gpointer iface, gpointer);
+
+G_DEFINE_TYPE_WITH_CODE(GstLidarScreamSink, gst_lidar_scream_sink, GST_TYPE_BIN,
+                        G_IMPLEMENT_INTERFACE(GST_TYPE_CHILD_PROXY, ChildProxyInit))
 GST_ELEMENT_REGISTER_DEFINE(screamsink, "screamsink", GST_RANK_NONE, GST_TYPE_LIDAR_SCREAM_SINK)
 
 static GstStaticPadTemplate sink_template = GST_STATIC_PAD_TEMPLATE(
@@ -219,6 +222,7 @@ static GstPad* RequestPad(GstElement* element, GstPadTemplate* templ, const gcha
   if (GST_STATE(element) > GST_STATE_READY || GST_STATE_NEXT(element) > GST_STATE_READY)
     gst_pad_set_active(ghost, TRUE);
   gst_element_add_pad(element, ghost);
+  gst_child_proxy_child_added(GST_CHILD_PROXY(element), G_OBJECT(ghost), pad_name.get());
   return ghost;
 }
 
@@ -227,7 +231,40 @@ static void ReleasePad(GstElement* element, GstPad* pad) {
   const PadPtr target(gst_ghost_pad_get_target(GST_GHOST_PAD(pad)));
   gst_ghost_pad_set_target(GST_GHOST_PAD(pad), nullptr);
   if (target) gst_element_release_request_pad(self->tx, target.get());
+  const StringPtr name(gst_pad_get_name(pad));
+  gst_child_proxy_child_removed(GST_CHILD_PROXY(element), G_OBJECT(pad), name.get());
   gst_element_remove_pad(element, pad);
+}
+
+/// The pads are children behind the elements of the bin, so that sink_0::priority can be set.
+static GstChildProxyInterface* BinChildProxy() {
+  return static_cast<GstChildProxyInterface*>(
+      g_type_interface_peek(gst_lidar_scream_sink_parent_class, GST_TYPE_CHILD_PROXY));
+}
+
+static void ChildProxyInit(gpointer iface, gpointer) {
+  auto* proxy = static_cast<GstChildProxyInterface*>(iface);
+  proxy->get_children_count = [](GstChildProxy* p) -> guint {
+    const guint elements = BinChildProxy()->get_children_count(p);
+    GST_OBJECT_LOCK(p);
+    const guint pads = GST_ELEMENT(p)->numsinkpads;
+    GST_OBJECT_UNLOCK(p);
+    return elements + pads;
+  };
+  proxy->get_child_by_index = [](GstChildProxy* p, guint index) -> GObject* {
+    const guint elements = BinChildProxy()->get_children_count(p);
+    if (index < elements) return BinChildProxy()->get_child_by_index(p, index);
+    GST_OBJECT_LOCK(p);
+    gpointer pad = g_list_nth_data(GST_ELEMENT(p)->sinkpads, index - elements);
+    if (pad != nullptr) gst_object_ref(pad);
+    GST_OBJECT_UNLOCK(p);
+    return static_cast<GObject*>(pad);
+  };
+  // GstBin's own looks at its elements only.
+  proxy->get_child_by_name = [](GstChildProxy* p, const gchar* name) -> GObject* {
+    if (GstPad* pad = gst_element_get_static_pad(GST_ELEMENT(p), name)) return G_OBJECT(pad);
+    return BinChildProxy()->get_child_by_name(p, name);
+  };
 }
 
 static void SetPropertyVfunc(GObject* o, guint id, const GValue* v, GParamSpec* spec) {

@@ -285,6 +285,17 @@ TEST(ScreamBins, AreNeitherSinkNorSourceWithTheirBackChannel) {
   EXPECT_FALSE(GST_OBJECT_FLAG_IS_SET(source.get(), GST_ELEMENT_FLAG_SINK));
 }
 
+TEST(ScreamBins, TakePadPropertiesFromALaunchLine) {
+  for (const char* name : {"screamsink", "screamtx"}) {
+    Pipeline pipeline("audiotestsrc ! rtpL16pay ! " + std::string(name) +
+                      " name=out sink_0::priority=3 ");
+    gdouble priority = 0;
+    gst_child_proxy_get(GST_CHILD_PROXY(pipeline.Get("out").get()), "sink_0::priority", &priority,
+                        nullptr);
+    EXPECT_EQ(priority, 3) << name;
+  }
+}
+
 TEST(ScreamBins, ForwardPadPropertiesToTheController) {
   const ElementPtr sink(gst_element_factory_make("screamsink", nullptr));
   gst_object_ref_sink(sink.get());

@@ -1,0 +1,88 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: LGPL-2.1-or-later
+# A LiDAR and a camera share one congestion-controlled path, over an L4S bottleneck on loopback.
+set -euo pipefail
+
+usage() {
+  cat <<'EOF'
+Usage: pipelines/lidar-and-video.sh [options]
+
+Synthetic LiDAR (dracoenc) and camera (openh264enc, through bitrateadapter) -> screamsink -> lidar-link ->
+screamsrc -> both depayloaded. One controller, shares by priority. Prints the bitrates each second.
+
+  --rate MBITS       capacity of the link [Mbit/s] (default 8)
+  --rtt MS           round trip of the link [ms] (default 40)
+  --lidar-share N    priority of the LiDAR; the camera has 1 (default 2)
+  --duration S       how long [s] (default 20)
+  --port P           first of two UDP ports to use (default 5204)
+EOF
+}
+
+rate=8 rtt=40 share=2 duration=20 port=5204
+while [ $# -gt 0 ]; do
+  case $1 in
+    --rate) rate=$2; shift ;;
+    --rtt) rtt=$2; shift ;;
+    --lidar-share) share=$2; shift ;;
+    --duration) duration=$2; shift ;;
+    --port) port=$2; shift ;;
+    -h | --help) usage; exit 0 ;;
+    *) usage >&2; exit 2 ;;
+  esac
+  shift
+done
+source "$(dirname "$0")/environment.sh"
+for element in openh264enc dracoenc screamsink; do
+  gst-inspect-1.0 "$element" >/dev/null 2>&1 || { echo "The element $element is missing." >&2; exit 1; }
+done
+
+work=$(mktemp -d)
+trap 'kill "${link:-}" "${receiver:-}" 2>/dev/null || true; wait 2>/dev/null || true; rm -rf "$work"' EXIT
+
+"$build/src/tools/lidar-link" --listen "127.0.0.1:$port" --forward "127.0.0.1:$((port + 1))" \
+  --rate "$rate" --rtt "$rtt" --aqm ramp --quiet &
+link=$!
+
+lidar_caps='application/x-rtp,media=application,clock-rate=90000,encoding-name=X-LIDAR-DRACO'
+video_caps='application/x-rtp,media=video,clock-rate=90000,encoding-name=H264'
+gst-launch-1.0 -q \
+  screamsrc name=in address=127.0.0.1 port=$((port + 1)) \
+  pt-map="application/x-rtp-pt-map,96=(string)\"$lidar_caps\",97=(string)\"$video_caps\"" \
+  in. ! application/x-rtp,media=application ! rtplidardepay ! dracodec ! scanassembler ! \
+  filesink location="$work/scans" sync=false async=false \
+  in. ! application/x-rtp,media=video ! rtph264depay ! h264parse ! \
+  filesink location="$work/video.h264" sync=false async=false &
+receiver=$!
+sleep 1
+
+# One line for each of the sender's statistics; quotes within the array of streams are escaped.
+show() {
+  sed -nu 's/\\//g; s/^.*x-screamtx-stats, \(.*\)$/\1/p' | awk '
+    function value(line, name) {
+      if (!match(line, name "=\\([a-z0-9]*\\)[0-9]+")) return 0
+      line = substr(line, RSTART, RLENGTH); sub(/.*\)/, "", line); return line
+    }
+    { n = split($0, stream, "stream, pad")
+      printf "%3d s  target %6.2f  sent %6.2f Mbit/s  queue delay %5.1f ms", NR - 1,
+        value($0, "target-bitrate") / 1e6, value($0, "sent-bitrate") / 1e6, value($0, "queue-delay") / 1e6
+      for (i = 2; i <= n; ++i)
+        printf "  %s %6.2f", i == 2 ? "LiDAR" : "camera", value(stream[i], "sent-bitrate") / 1e6
+      printf "\n"; fflush() }'
+}
+
+timeout -s INT "$duration" gst-launch-1.0 -e -m \
+  screamsink name=out host=127.0.0.1 port="$port" stats-interval=1000000000 sink_0::priority="$share" \
+  lidartestsrc is-live=true model=os1-64 mode=1024x10 ! queue ! dracoenc max-error=0.05 ! \
+  rtplidarpay pt=96 ! out.sink_0 \
+  videotestsrc is-live=true pattern=zone-plate kx2=30 ky2=20 kt=3 ! video/x-raw,width=640,height=480,framerate=30/1 ! \
+  queue ! openh264enc complexity=low rate-control=bitrate gop-size=300 ! bitrateadapter min=300000 max=4000000 ! \
+  h264parse ! rtph264pay pt=97 config-interval=-1 ! out.sink_1 \
+  2>"$work/sender.err" | show || true
+[ ! -s "$work/sender.err" ] || grep -E 'ERROR|WARN' "$work/sender.err" >&2 || true
+
+# The sender's goodbye ends the receiver.
+wait "$receiver"
+for file in scans video.h264; do
+  [ -s "$work/$file" ] || { echo "Nothing of $file arrived." >&2; exit 1; }
+done
+echo "received: $(stat -c %s "$work/scans") bytes of scans, $(stat -c %s "$work/video.h264") bytes of video"
