@@ -3,6 +3,8 @@
 
 #include "common/refs.h"
 
+#include "debug.h"
+
 namespace lidar::gst {
 
 bool FileSession::Open() {

@@ -20,7 +20,7 @@
 #include "session.h"
 #include "settings.h"
 
-GST_DEBUG_CATEGORY_STATIC(gst_lidar_ouster_src_debug);
+GST_DEBUG_CATEGORY(gst_lidar_ouster_src_debug);
 #define GST_CAT_DEFAULT gst_lidar_ouster_src_debug
 
 namespace {

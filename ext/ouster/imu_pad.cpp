@@ -8,6 +8,8 @@
 #include "common/refs.h"
 #include "ouster/imu_packet.h"
 
+#include "debug.h"
+
 namespace lidar::gst {
 namespace {
 

@@ -4,6 +4,8 @@
 #include <cerrno>
 #include <utility>
 
+#include "debug.h"
+
 namespace lidar::gst {
 namespace {
 

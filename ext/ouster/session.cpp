@@ -10,6 +10,8 @@
 #include "live_session.h"
 #include "slice_buffer.h"
 
+#include "debug.h"
+
 namespace lidar::gst {
 namespace {
 
@@ -125,6 +127,11 @@ GstFlowReturn Session::Next(GstBuffer** out) {
     if (auto slice = stream_ ? stream_->Pop() : std::nullopt) {
       if (caps_pending_ && !SendCaps()) return GST_FLOW_NOT_NEGOTIATED;
       if (std::exchange(discont_, false)) slice->slice.after_gap = true;
+      GST_LOG_OBJECT(element_,
+                     "slice %u of scan %u leaves %" G_GINT64_FORMAT
+                     " us after the packet that completed it",
+                     slice->slice.index, slice->slice.scan_id,
+                     static_cast<gint64>((UtcNow() - slice->completed).count() / 1000));
       *out = ToBuffer(*std::move(slice), stream_->slice_duration());
       return GST_FLOW_OK;
     }

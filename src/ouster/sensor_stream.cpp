@@ -99,6 +99,7 @@ PacketVerdict SensorStream::Push(ByteView payload, const Arrival& arrival) {
     return PacketVerdict::kNewInitId;
   }
   ObserveClocks(*packet, arrival);
+  last_arrival_utc_ = arrival.utc;
   batcher_.Push(*packet, arrival.local);
   CollectSlices();
   return PacketVerdict::kLidar;
@@ -120,6 +121,7 @@ void SensorStream::CollectSlices() {
     if (last_local_) timed.local = std::max(timed.local, *last_local_);
     last_local_ = timed.local;
     timed.utc = UtcOf(slice->start);
+    timed.completed = last_arrival_utc_;
     slice->scan_id += first_scan_id_;
     next_scan_id_ = slice->scan_id + 1;
     timed.slice = *std::move(slice);

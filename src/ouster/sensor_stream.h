@@ -36,6 +36,7 @@ struct TimedSlice {
   Slice slice;
   Time local{};  // of the first column; never before that of the slice before
   Time utc{};
+  Time completed{};  // when the packet came that made it ready, in UTC
 };
 
 enum class PacketVerdict {
@@ -106,6 +107,7 @@ class SensorStream {
   bool synchronised_ = false;
   std::uint32_t refused_init_id_ = 0;
   std::optional<Time> last_local_;
+  Time last_arrival_utc_{};
   std::deque<TimedSlice> ready_;
   std::uint32_t first_scan_id_ = 0;
   std::uint32_t next_scan_id_ = 0;
