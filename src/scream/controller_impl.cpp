@@ -5,17 +5,9 @@ namespace lidar::scream {
 namespace {
 
 constexpr Duration kHousekeeping = 50ms;
-/// Silence of the receiver, beyond what round trips explain, that is taken for an outage.
-constexpr Duration kOutage = 200ms;
-constexpr double kOutageRestart = 0.5;
-constexpr double kTimeoutBackoff = 0.5;
 constexpr double kDriftRateScale = 0.5;
-/// So long after a mark the next sign of congestion is expected to be one too.
-constexpr Duration kMarksExpected = 30s;
 /// quick_drain: how much faster than packets arrive a backlog may leave.
 constexpr double kDrainMargin = 1.25;
-/// Packets in a row behind a queue that are no accident.
-constexpr int kQueueingPackets = 3;
 
 }  // namespace
 
@@ -239,78 +231,6 @@ bool Controller::Impl::SourceLimited() const {
          window_.ref_wnd();
 }
 
-DataSize Controller::Impl::MaxInFlight() const {
-  double overhead = p.ref_wnd_overhead_min + (p.ref_wnd_overhead_max - p.ref_wnd_overhead_min) *
-                                                 queue_delay_.ref_wnd_delay_scale();
-  if (p.extensions.bounded_flight) {
-    if (L4sWorks()) overhead = std::min(overhead, p.open_overhead);
-    if (Queueing(2 * BusyQdelay())) overhead = p.bounded_overhead;
-  }
-  return window_.ref_wnd() * overhead;
-}
-
-/// The path carries ECT(1), and its bottleneck has lately been one that marks it.
-bool Controller::Impl::L4sWorks() const {
-  return p.ecn == Ecn::kEct1 && ecn.state() == EcnState::kCapable && last_mark_ &&
-         now_ - *last_mark_ < kMarksExpected;
-}
-
-/// Without marks a queue is no sign of congestion before the draft takes it for one.
-Duration Controller::Impl::BusyQdelay() const {
-  return L4sWorks()
-             ? p.busy_qdelay
-             : FromSeconds(Seconds(competing_flows_.qdelay_target()) * p.busy_qdelay_unmarked);
-}
-
-/// The queue is long and packets keep coming back out of it; where marks work, marked: delay alone
-/// may be a longer path.
-bool Controller::Impl::Queueing(Duration qdelay) const {
-  const bool believed = !L4sWorks() || 2 * busy_run_.marked() >= busy_run_.packets();
-  return busy_run_.packets() >= kQueueingPackets && believed && queue_delay_.qdelay() > qdelay;
-}
-
-void Controller::Impl::ObserveCapacity(const AckSummary& summary) {
-  for (const AckedPacket& packet : summary.acked) {
-    if (!packet.arrival) continue;
-    const bool marked = packet.arrived_ecn == Ecn::kCe;
-    const Duration qdelay = *packet.arrival - packet.sent - queue_delay_.base();
-    busy_run_.Add({*packet.arrival, packet.size, marked || qdelay >= BusyQdelay(), marked});
-  }
-}
-
-/// Beyond the draft: a link that turns out to carry much less than the target gets no more than
-/// that from the next packet on.
-bool Controller::Impl::RespondToDrop(Time now, const CongestionSignals& signals) {
-  const auto capacity = busy_run_.capacity();
-  if (!p.extensions.drop_response || !capacity || !Queueing(BusyQdelay())) return false;
-  if (now - window_.last_reaction_to_congestion_time() < std::min(p.virtual_rtt, signals.s_rtt))
-    return false;
-  const DataRate affordable = *capacity * p.drop_threshold;
-  if (affordable > streams.target_bitrate()) return false;
-  const DataSize window = *capacity * rtt_.min() * p.target_rate_divisor;
-  if (window > window_.ref_wnd()) return false;
-  window_.SetInflection(window);
-  window_.Set(window * p.drop_beta);
-  window_.NoteReaction(now);
-  if (p.extensions.answered_signals) marks_answered_ = loss_answered_ = now;
-  fast_increase_.OnCongestion(now);
-  ++counters_.capacity_drops;
-  counters_.reason = RateReason::kDrop;
-  return true;
-}
-
-/// Marks of a frame source come once a frame.
-Duration Controller::Impl::Round() const {
-  return std::max({rtt_.smoothed(), p.virtual_rtt, streams.frame_period()});
-}
-
-double Controller::Impl::PacingHeadroom() const {
-  if (!p.extensions.adaptive_pacing) return p.packet_pacing_headroom;
-  const double reserve = std::clamp(Seconds(p.pacing_reserve) / Seconds(streams.frame_period()),
-                                    p.min_pacing_reserve, p.max_pacing_reserve);
-  return 1 / (1 - reserve);
-}
-
 std::optional<SendDecision> Controller::Impl::NextSend(Time) const {
   const auto id = streams.Next();
   if (!id) return std::nullopt;
@@ -323,10 +243,6 @@ std::optional<SendDecision> Controller::Impl::NextSend(Time) const {
   return decision;
 }
 
-Duration Controller::Impl::FeedbackTimeout() const {
-  return 2 * rtt_.smoothed() + std::max<Duration>(kOutage, 2 * streams.frame_period());
-}
-
 void Controller::Impl::OnTimer(Time now) {
   now = Advance(now);
   if (now < last_housekeeping_ + kHousekeeping) return;
@@ -337,21 +253,6 @@ void Controller::Impl::OnTimer(Time now) {
       now - std::max(last_feedback_, last_timeout_) > FeedbackTimeout())
     OnFeedbackTimeout(now);
   UpdateTarget(now);
-}
-
-/// Beyond the draft: without feedback the window halves again and again.
-void Controller::Impl::OnFeedbackTimeout(Time now) {
-  last_timeout_ = now;
-  ++counters_.feedback_timeouts;
-  counters_.reason = RateReason::kTimeout;
-  if (!window_before_outage_) window_before_outage_ = window_.ref_wnd();
-  window_.Set(window_.ref_wnd() * kTimeoutBackoff);
-}
-
-void Controller::Impl::EndOutage(Time) {
-  window_.Set(std::max(window_.ref_wnd(), *window_before_outage_ * kOutageRestart));
-  window_before_outage_.reset();
-  fast_increase_.Restart();
 }
 
 void Controller::Impl::OnRouteChange(Time now) {

@@ -80,19 +80,41 @@ DropMetrics MeasureDrop(Time drop, double capacity_mbps, const SimulationResult&
   return m;
 }
 
+Capacity Constant(double mbps) { return Capacity::Constant(Mbps(mbps)); }
+
+/// What paths beyond the usual ones do.
+std::vector<Scenario> PathScenarios(const Path& a, const Path& c, const Parameters& p) {
+  std::vector<Scenario> all;
+  Path step = c;
+  step.aqm = AqmConfig::Kind::kStep;
+  all.push_back(Make("S", "C with a step at 1 ms", step, 50, p));
+  all.back().config.forward.aqm.high = 1ms;
+  all.push_back(Make("A-jitter", "A with 4 ms of jitter", a, 50, p));
+  all.back().config.forward.path.jitter = 4ms;
+  all.push_back(Make("A-bursts", "A, packets come out every 5 ms", a, 50, p));
+  all.back().config.forward.path.burst_interval = 5ms;
+  all.push_back(Make("A-reorder", "A, 1 % of the packets 5 ms late", a, 50, p));
+  all.back().config.forward.path.reorder = 0.01;
+  all.push_back(Make("A-dualpi2", "A with DualPI2", a, 50, p));
+  all.back().config.forward.aqm.kind = AqmConfig::Kind::kDualPi2;
+  all.push_back(Make("A-longer", "A, 15 ms longer from 15 s on", a, 50, p));
+  all.back().config.longer_by = 15ms;
+  all.back().config.longer_from = 15s;
+  return all;
+}
+
 }  // namespace
 
 std::vector<Scenario> Scenarios(const Parameters& p) {
-  const auto constant = [](double mbps) { return Capacity::Constant(Mbps(mbps)); };
   const auto steps = Capacity::Steps(
       {Mbps(12), Mbps(4), Mbps(8), Mbps(3), Mbps(15), Mbps(6), Mbps(10)}, std::chrono::seconds(8));
-  Path a{constant(20), 25ms};
-  Path c{constant(8), 40ms};
-  Path d{constant(8), 40ms, AqmConfig::Kind::kNone, 100ms, 0, Ecn::kNotEct};
+  Path a{Constant(20), 25ms};
+  Path c{Constant(8), 40ms};
+  Path d{Constant(8), 40ms, AqmConfig::Kind::kNone, 100ms, 0, Ecn::kNotEct};
   Path e{steps, 40ms};
   e.duration = 56s;
   Path h{Capacity::Steps({Mbps(10), Mbps(3)}, std::chrono::seconds(20)), 40ms};
-  Path k{constant(8), 40ms, AqmConfig::Kind::kNone, 10ms, 0, Ecn::kNotEct};
+  Path k{Constant(8), 40ms, AqmConfig::Kind::kNone, 10ms, 0, Ecn::kNotEct};
   std::vector<Scenario> all;
   all.push_back(Make("A", "20 Mbit/s, RTT 25, ramp 2-10 ms", a, 50, p));
   all.push_back(WithSlices(all.back()));
@@ -122,21 +144,7 @@ std::vector<Scenario> Scenarios(const Parameters& p) {
   d.ecn = k.ecn = Ecn::kEct1;
   all.push_back(Make("D-ect1", "D with ECT(1), which nobody marks", d, 50, p));
   all.push_back(Make("K-ect1", "K with ECT(1), which nobody marks", k, 50, p));
-  Path step = c;
-  step.aqm = AqmConfig::Kind::kStep;
-  all.push_back(Make("S", "C with a step at 1 ms", step, 50, p));
-  all.back().config.forward.aqm.high = 1ms;
-  all.push_back(Make("A-jitter", "A with 4 ms of jitter", a, 50, p));
-  all.back().config.forward.path.jitter = 4ms;
-  all.push_back(Make("A-bursts", "A, packets come out every 5 ms", a, 50, p));
-  all.back().config.forward.path.burst_interval = 5ms;
-  all.push_back(Make("A-reorder", "A, 1 % of the packets 5 ms late", a, 50, p));
-  all.back().config.forward.path.reorder = 0.01;
-  all.push_back(Make("A-dualpi2", "A with DualPI2", a, 50, p));
-  all.back().config.forward.aqm.kind = AqmConfig::Kind::kDualPi2;
-  all.push_back(Make("A-longer", "A, 15 ms longer from 15 s on", a, 50, p));
-  all.back().config.longer_by = 15ms;
-  all.back().config.longer_from = 15s;
+  for (const Scenario& s : PathScenarios(a, c, p)) all.push_back(s);
   for (Scenario& s : all) {
     if (s.name[0] == 'H') s.drop_at = 20s;
     if (s.name[0] == 'E') s.settle = 0s;
