@@ -38,8 +38,10 @@ void Ledger::Add(const nlohmann::json& record) {
   const SliceKey key{record.value("scan", 0U), record.value("slice", 0U)};
   const auto count = record.value("count", 0U);
   if (count > kMaxSlices || key.slice >= count) return;
-  if (type == "captured" && scans_[key.scan].size() < count) scans_[key.scan].resize(count);
-  if (SliceLife* life = Find(key)) Apply(record, type, life);
+  // The records of the two ends may overtake each other.
+  ScanLife& scan = scans_[key.scan];
+  if (scan.size() < count) scan.resize(count);
+  Apply(record, type, &scan[key.slice]);
 }
 
 void Ledger::Add(SliceKey key, const Comparison& comparison) {

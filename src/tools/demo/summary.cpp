@@ -12,6 +12,8 @@ namespace {
 using tools::Distribution;
 
 constexpr double kShortQueue_ms = 10;
+/// A queue that has been short for so long has settled.
+constexpr double kSettled_s = 0.5;
 /// Coordinates are floats: half a unit in the last place at 200 m, in three dimensions.
 constexpr double kRounding_m = 5e-5;
 /// Below this share of the encoder's ceiling the capacity is what limits.
@@ -172,6 +174,8 @@ std::vector<Transient> FindTransients(const Measurements& m) {
       // A packet is seen where it leaves the queue, so that a long wait counts in full.
       const double left = p.time_s + p.sojourn_ms / 1e3;
       if (!p.delivered || left < t.at_s || left >= end) continue;
+      const bool settled = left - t.at_s - t.settled_after_s > kSettled_s;
+      if (settled) break;  // what comes later is no matter of this step
       t.peak_ms = std::max(t.peak_ms, p.sojourn_ms);
       if (p.sojourn_ms >= kShortQueue_ms)
         t.settled_after_s = std::max(t.settled_after_s, left - t.at_s);

@@ -15,7 +15,7 @@ struct Transient {
   double from_bps = 0;
   double to_bps = 0;
   double peak_ms = 0;
-  double settled_after_s = 0;  // until the queue stays below 10 ms
+  double settled_after_s = 0;  // until the queue is below 10 ms for half a second
 };
 std::vector<Transient> FindTransients(const Measurements& m);
 

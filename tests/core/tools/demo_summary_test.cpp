@@ -55,11 +55,21 @@ TEST(DemoLedger, CountsScansByWhatBecameOfTheirSlices) {
   EXPECT_EQ(ledger.Count(kOrigin + kSecond / 2).slices_lost, 0U) << "it may still be on its way";
 }
 
+TEST(DemoLedger, TakesTheRecordsOfBothEndsInAnyOrder) {
+  Ledger ledger;
+  for (std::uint32_t slice = 0; slice < 2; ++slice) {
+    ledger.Add(Record("decoded", 1, slice, kOrigin + 30 * kMs));
+    ledger.Add(Record("encoded", 1, slice, kOrigin + 2 * kMs));
+    ledger.Add(Record("captured", 1, slice, kOrigin));
+  }
+  EXPECT_EQ(ledger.Count().complete, 1U);
+  EXPECT_EQ(ledger.Count().slices_lost, 0U);
+}
+
 TEST(DemoLedger, IgnoresRecordsThatMakeNoSense) {
   Ledger ledger;
   ledger.Add(nlohmann::json{{"type", "captured"}});
   ledger.Add(Record("captured", 1, 7, kOrigin));
-  ledger.Add(Record("decoded", 9, 0, kOrigin));
   EXPECT_TRUE(ledger.scans().empty());
 }
 
