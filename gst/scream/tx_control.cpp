@@ -117,7 +117,7 @@ GstEvent* TargetEvent(const TxState& state, const TxStream& stream, Time now, co
   GstLidarTargetBitrate target{};
   target.bitrate = ToEncoder(stream, state.controller->target_bitrate(stream.id));
   target.ssrc = stream.ssrc.value_or(0);
-  target.min_bitrate = ToEncoder(stream, stream.config.min_bitrate);
+  target.min_bitrate = ToEncoder(stream, stream.config.needed_bitrate);
   target.max_bitrate = ToEncoder(stream, stream.config.max_bitrate);
   target.rtt = static_cast<guint64>(std::max<std::int64_t>(s.s_rtt.count(), 0));
   target.queue_delay = static_cast<guint64>(std::max<std::int64_t>(s.qdelay.count(), 0));

@@ -23,7 +23,7 @@ GstStructure* StreamStats(TxState& state, const TxStream& stream, Time now) {
       "stream", "pad", G_TYPE_STRING, name, "ssrc", G_TYPE_UINT, stream.ssrc.value_or(0),
       "target-bitrate", G_TYPE_UINT, Bps(s.target_bitrate), "encoder-bitrate", G_TYPE_UINT,
       ToEncoder(stream, s.target_bitrate), "min-bitrate", G_TYPE_UINT,
-      Bps(stream.config.min_bitrate), "max-bitrate", G_TYPE_UINT, Bps(stream.config.max_bitrate),
+      Bps(stream.config.needed_bitrate), "max-bitrate", G_TYPE_UINT, Bps(stream.config.max_bitrate),
       "sent-bitrate", G_TYPE_UINT, Bps(s.sent_bitrate), "queued-bytes", G_TYPE_UINT64,
       Bytes(s.queued), "sender-queue-delay", G_TYPE_UINT64, Ns(s.media_qdelay), "packets-queued",
       G_TYPE_UINT64, stream.packets_queued, "packets-sent", G_TYPE_UINT64, U64(s.packets_sent),

@@ -22,18 +22,23 @@ scream::StreamConfig MakeConfig(const TxStream& stream, const TxPadSettings& pad
   double min = pad.min_bps != 0 ? pad.min_bps : element.min_bps;
   double start = pad.start_bps != 0 ? pad.start_bps : element.start_bps;
   double max = pad.max_bps != 0 ? pad.max_bps : element.max_bps;
+  double needed = 0;
   if (stream.bounds) {
     const double wire = 1 / stream.overhead.payload_share();
-    min = std::max(min, stream.bounds->min_bitrate * wire);
+    needed = stream.bounds->min_bitrate * wire;
     if (stream.bounds->max_bitrate > 0) max = std::min(max, stream.bounds->max_bitrate * wire);
   }
   // The user's maximum is a promise to the network and wins over what the encoder would need.
   min = std::min(min, max);
+  needed = std::clamp(needed, min, max);
   scream::StreamConfig config;
   config.priority = pad.priority;
   config.min_bitrate = Bps(min);
-  config.start_bitrate = Bps(std::clamp(start, min, max));
+  config.start_bitrate = Bps(std::clamp(start, needed, max));
   config.max_bitrate = Bps(max);
+  // Not a minimum: where the path cannot carry what the error bound needs, the encoder must know,
+  // for it can leave out whole scans, and a queue here would only grow old.
+  config.needed_bitrate = Bps(needed);
   return config;
 }
 

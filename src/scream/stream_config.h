@@ -17,6 +17,9 @@ struct StreamConfig {
   DataRate min_bitrate = DataRate::BitsPerSecond(100e3);
   DataRate start_bitrate = DataRate::BitsPerSecond(1e6);
   DataRate max_bitrate = DataRate::BitsPerSecond(50e6);
+  /// What the stream should not be asked to go below while the path can carry it; between
+  /// min_bitrate, which holds always, and max_bitrate. 0: none.
+  DataRate needed_bitrate{};
 };
 
 /// A packet as it enters the sender's queue. `size` as on the wire: RTP, UDP and IP included.

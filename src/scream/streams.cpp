@@ -53,6 +53,19 @@ void Streams::OnSent(Time now, StreamId id, std::uint32_t ssrc, DataSize size) {
   stream->virtual_time += size.bits() / weight;
 }
 
+double Streams::NeedShare(Time now, DataRate total) {
+  DataRate extra;  // of what is needed, above the minima
+  bool any_active = false;
+  for (auto& [id, stream] : streams_) any_active = stream.active(now) || any_active;
+  for (auto& [id, stream] : streams_) {
+    if (any_active && !stream.active(now)) continue;
+    const StreamConfig& c = stream.config();
+    total = total - c.min_bitrate;
+    if (c.needed_bitrate > c.min_bitrate) extra = extra + (c.needed_bitrate - c.min_bitrate);
+  }
+  return extra > DataRate{} ? std::clamp(total / extra, 0.0, 1.0) : 0;
+}
+
 void Streams::Allocate(Time now, DataRate total) {
   struct Share {
     Stream* stream;
@@ -64,13 +77,19 @@ void Streams::Allocate(Time now, DataRate total) {
   DataRate left = total;
   bool any_active = false;
   for (auto& [id, stream] : streams_) any_active = stream.active(now) || any_active;
+  const double need_share = NeedShare(now, total);
   for (auto& [id, stream] : streams_) {
     const StreamConfig& c = stream.config();
-    stream.set_target_bitrate(c.min_bitrate);
-    if (any_active && !stream.active(now)) continue;
-    left = left - c.min_bitrate;
-    open.push_back({&stream, std::max(1e-6, c.priority), c.min_bitrate,
-                    std::max(c.min_bitrate, c.max_bitrate)});
+    if (any_active && !stream.active(now)) {
+      stream.set_target_bitrate(std::max(c.min_bitrate, c.needed_bitrate));
+      continue;
+    }
+    DataRate floor = c.min_bitrate;
+    if (c.needed_bitrate > floor) floor = floor + (c.needed_bitrate - floor) * need_share;
+    stream.set_target_bitrate(floor);
+    left = left - floor;
+    open.push_back(
+        {&stream, std::max(1e-6, c.priority), floor, std::max(c.min_bitrate, c.max_bitrate)});
   }
   // Fill by weight; who reaches the maximum leaves the rest to the others.
   while (left.bits_per_second() > 1 && !open.empty()) {

@@ -39,6 +39,8 @@ class Streams {
   bool empty() const;
 
  private:
+  /// How much of what streams need above their minima the path can carry, 0..1.
+  double NeedShare(Time now, DataRate total);
   const Parameters& p_;
   std::map<StreamId, Stream> streams_;
   StreamId next_id_ = 0;

@@ -57,6 +57,26 @@ TEST_F(StreamsTest, ASilentStreamLeavesItsShareToTheOthers) {
   EXPECT_NEAR(Target(b), 1, 1e-3);
 }
 
+TEST_F(StreamsTest, WhatStreamsNeedComesBeforeTheirShares) {
+  const StreamId a = Add(1, 0, 100), b = Add(1, 0, 100);
+  streams_.Find(a)->Configure({1, Mbps(0), Mbps(1), Mbps(100), Mbps(6)});
+  streams_.Allocate(kStart, Mbps(10));
+  EXPECT_NEAR(Target(a), 8, 1e-3);
+  EXPECT_NEAR(Target(b), 2, 1e-3);
+}
+
+TEST_F(StreamsTest, APathThatCannotCarryWhatStreamsNeedSharesItDownToTheMinima) {
+  const StreamId a = Add(1, 1, 100), b = Add(1, 0, 100);
+  streams_.Find(a)->Configure({1, Mbps(1), Mbps(1), Mbps(100), Mbps(5)});
+  streams_.Find(b)->Configure({1, Mbps(0), Mbps(1), Mbps(100), Mbps(4)});
+  streams_.Allocate(kStart, Mbps(5));
+  EXPECT_NEAR(Target(a), 3, 1e-3);
+  EXPECT_NEAR(Target(b), 2, 1e-3);
+  streams_.Allocate(kStart, Mbps(0.5));
+  EXPECT_NEAR(Target(a), 1, 1e-3);
+  EXPECT_NEAR(Target(b), 0, 1e-3);
+}
+
 TEST_F(StreamsTest, TakeTurnsByTheirTargets) {
   const StreamId a = Add(3, 0, 100), b = Add(1, 0, 100);
   streams_.Allocate(kStart, Mbps(8));

@@ -334,16 +334,18 @@ TEST_F(ScreamTx, CountsWhatIsNoRtp) {
   EXPECT_EQ(ReadRtp(out.get()).ssrc, 0x1234U);
 }
 
-TEST_F(ScreamTx, KeepsTheEncodersMinimumUnderCongestion) {
+TEST_F(ScreamTx, TellsTheEncoderItsOwnBoundsAndStartsWithinThem) {
   Start();
+  Targets(rtp.get());
   const GstLidarBitrateBounds bounds{3'000'000, 8'000'000, 5'000'000};
   ASSERT_TRUE(gst_harness_push_event(rtp.get(), gst_lidar_event_new_bitrate_bounds(&bounds)));
   time.Advance(GST_SECOND);
-  const auto targets = Targets(rtp.get());
-  ASSERT_FALSE(targets.empty());
-  EXPECT_NEAR(targets.back().min_bitrate, 3'000'000, 10'000);
-  EXPECT_NEAR(targets.back().max_bitrate, 8'000'000, 10'000);
-  EXPECT_GE(targets.back().bitrate, 2'990'000U);
+  const EventPtr event(WaitForUpstream(rtp.get(), "target-bitrate"));
+  GstLidarTargetBitrate target{};
+  ASSERT_TRUE(gst_lidar_event_parse_target_bitrate(event.get(), &target));
+  EXPECT_NEAR(target.min_bitrate, 3'000'000, 10'000);
+  EXPECT_NEAR(target.max_bitrate, 8'000'000, 10'000);
+  EXPECT_GE(target.bitrate, 2'990'000U);
 }
 
 TEST_F(ScreamTx, AFlushForgetsTheQueueAndItGoesOn) {
