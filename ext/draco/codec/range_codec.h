@@ -54,6 +54,8 @@ class RangeDecoder {
  public:
   explicit RangeDecoder(const SensorModel& model) : alignment_(model) {}
 
+  std::uint32_t columns_per_scan() const { return alignment_.columns_per_scan(); }
+
   /// The next block of `reader`; `scale` says what the levels stand for. False, with `image`
   /// undefined, for a block that is damaged, of another sensor, or of more than `max_points`.
   bool Decode(ByteReader* reader, std::size_t max_points, RangeImage* image, IntensityScale* scale);

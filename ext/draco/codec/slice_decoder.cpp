@@ -2,6 +2,7 @@
 #include "draco/codec/slice_decoder.h"
 
 #include <algorithm>
+#include <utility>
 
 namespace lidar::codec {
 
@@ -20,11 +21,44 @@ std::optional<SliceDecoder::Shape> SliceDecoder::Decode(ByteView stream) {
 
 std::optional<SliceDecoder::Shape> SliceDecoder::DecodeRange(ByteView stream) {
   ByteReader reader(stream);
-  if (!range_decoder_->Decode(&reader, max_points_, &image_, &scale_) || reader.remaining() != 0)
-    return std::nullopt;
+  if (!range_decoder_->Decode(&reader, max_points_, &image_, &scale_)) return std::nullopt;
+  if (reader.remaining() > 0 && !AppendBlocks(&reader)) return std::nullopt;
   const bool is_dense =
       std::find(image_.ranges.begin(), image_.ranges.end(), 0U) == image_.ranges.end();
   return Shape{image_.columns, image_.beams, image_.first_column, is_dense};
+}
+
+/// Decodes the blocks behind the first one and puts them to its right.
+bool SliceDecoder::AppendBlocks(ByteReader* reader) {
+  const std::uint32_t turn = range_decoder_->columns_per_scan();
+  std::uint32_t columns = image_.columns;
+  blocks_.clear();
+  blocks_.push_back(std::move(image_));
+  while (reader->remaining() > 0) {
+    RangeImage block;
+    IntensityScale scale;
+    const std::size_t room = max_points_ - std::size_t{columns} * blocks_[0].beams;
+    if (!range_decoder_->Decode(reader, room, &block, &scale) ||
+        block.first_column != (blocks_[0].first_column + columns) % turn ||
+        block.columns > turn - columns || scale.bits() != scale_.bits() ||
+        scale.full() != scale_.full()) {
+      return false;
+    }
+    columns += block.columns;
+    blocks_.push_back(std::move(block));
+  }
+  image_ = {blocks_[0].beams, columns, blocks_[0].first_column, {}, {}};
+  for (std::uint32_t beam = 0; beam < image_.beams; ++beam) {
+    for (const RangeImage& block : blocks_) {
+      const auto row = static_cast<std::ptrdiff_t>(std::size_t{beam} * block.columns);
+      const auto ranges = block.ranges.begin() + row;
+      image_.ranges.insert(image_.ranges.end(), ranges, ranges + block.columns);
+      if (block.intensity.empty()) continue;
+      const auto levels = block.intensity.begin() + row;
+      image_.intensity.insert(image_.intensity.end(), levels, levels + block.columns);
+    }
+  }
+  return true;
 }
 
 void SliceDecoder::Write(std::uint8_t* raw) const {

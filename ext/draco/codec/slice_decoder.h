@@ -35,7 +35,10 @@ class SliceDecoder {
   std::uint32_t max_points_;
   std::optional<RangeDecoder> range_decoder_;
   std::optional<RangeProjection> projection_;
+  bool AppendBlocks(ByteReader* reader);
+
   RangeImage image_;
+  std::vector<RangeImage> blocks_;
   IntensityScale scale_;
   XyzCloud cloud_;
 };

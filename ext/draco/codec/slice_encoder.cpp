@@ -2,8 +2,32 @@
 #include "draco/codec/slice_encoder.h"
 
 #include <algorithm>
+#include <thread>
+#include <utility>
 
 namespace lidar::codec {
+namespace {
+
+constexpr unsigned kTryBothEvery = 64;  // slices
+
+/// Columns [first, first + count) of `image`.
+RangeImage Sector(const RangeImage& image, std::uint32_t first, std::uint32_t count,
+                  std::uint32_t columns_per_scan) {
+  RangeImage sector;
+  sector.beams = image.beams;
+  sector.columns = count;
+  sector.first_column = (image.first_column + first) % columns_per_scan;
+  for (std::size_t row = first; row < image.size(); row += image.columns) {
+    const auto ranges = image.ranges.begin() + static_cast<std::ptrdiff_t>(row);
+    sector.ranges.insert(sector.ranges.end(), ranges, ranges + count);
+    if (image.intensity.empty()) continue;
+    const auto levels = image.intensity.begin() + static_cast<std::ptrdiff_t>(row);
+    sector.intensity.insert(sector.intensity.end(), levels, levels + count);
+  }
+  return sector;
+}
+
+}  // namespace
 
 std::optional<SliceEncoder> SliceEncoder::Create(const CloudFormat& format, Geometry geometry,
                                                  RangeCoder coder) {
@@ -90,11 +114,53 @@ SliceResult SliceEncoder::EncodeRange(const SliceSettings& settings, EncodedSlic
     const auto asked = RangeGrid::ForStep(settings.step_m, unit_mm_);
     if (asked.cells() < range.grid.cells()) range.grid = asked;
   }
-  if (!range_encoder_->Encode(image_, range, &slice->bytes)) return SliceResult::kEmpty;
-  slice->returns = range_encoder_->returns();
+  const std::size_t most = std::min<std::size_t>(returns_ / kMinBlockReturns, image_.columns);
+  const auto blocks = static_cast<std::uint32_t>(std::min<std::size_t>(threads_, most));
+  const bool encoded = blocks > 1 ? EncodeBlocks(range, blocks, &slice->bytes)
+                                  : range_encoder_->Encode(image_, range, &slice->bytes);
+  if (!encoded) return SliceResult::kEmpty;
+  slice->returns = returns_;
   slice->step_m = range.grid.step_m();
   slice->error_m = range.grid.error_m();
   return SliceResult::kEncoded;
+}
+
+bool SliceEncoder::EncodeBlocks(const RangeSettings& settings, std::uint32_t blocks,
+                                std::vector<std::uint8_t>* out) {
+  std::vector<std::vector<std::uint8_t>> parts(blocks);
+  const auto encode = [&](std::uint32_t i) {
+    const std::uint32_t first = image_.columns * i / blocks;
+    const std::uint32_t end = image_.columns * (i + 1) / blocks;
+    RangeEncoder encoder(*format_.sensor_model);
+    encoder.Encode(Sector(image_, first, end - first, format_.sensor_model->columns_per_scan),
+                   settings, &parts[i]);
+  };
+  std::vector<std::thread> workers;
+  for (std::uint32_t i = 1; i < blocks; ++i) workers.emplace_back(encode, i);
+  encode(0);
+  for (std::thread& worker : workers) worker.join();
+  for (const auto& part : parts) {
+    if (part.empty()) return false;
+    out->insert(out->end(), part.begin(), part.end());
+  }
+  return true;
+}
+
+/// Which of Draco's coders is smaller depends on the order of the points: that of a sensor suits
+/// the sequential one.
+bool SliceEncoder::TryBothMethods(const XyzSettings& settings, EncodedSlice* slice,
+                                  XyzResult* result) {
+  XyzSettings other = settings;
+  other.method = XyzMethod::kSequential;
+  std::vector<std::uint8_t> sequential;
+  if (!codec::EncodeXyz(cloud_, settings, &slice->bytes, result) ||
+      !codec::EncodeXyz(cloud_, other, &sequential, result)) {
+    return false;
+  }
+  const bool smaller = sequential.size() < slice->bytes.size();
+  xyz_method_ = smaller ? XyzMethod::kSequential : XyzMethod::kKdTree;
+  if (smaller) slice->bytes = std::move(sequential);
+  return true;
 }
 
 SliceResult SliceEncoder::EncodeXyz(const SliceSettings& settings, EncodedSlice* slice) {
@@ -103,10 +169,15 @@ SliceResult SliceEncoder::EncodeXyz(const SliceSettings& settings, EncodedSlice*
   xyz.max_error_m = settings.max_error_m;
   xyz.step_m = settings.step_m;
   xyz.level = static_cast<int>(settings.level);
-  xyz.method = settings.level == 0 ? XyzMethod::kSequential : XyzMethod::kKdTree;
+  xyz.method = settings.level == 0 ? XyzMethod::kSequential : xyz_method_;
   xyz.intensity_bits = settings.intensity_bits;
   XyzResult result;
-  if (!codec::EncodeXyz(cloud_, xyz, &slice->bytes, &result)) return SliceResult::kOutOfReach;
+  const bool try_both = settings.level > 0 && xyz_slices_++ % kTryBothEvery == 0;
+  if (try_both) xyz.method = XyzMethod::kKdTree;
+  if (try_both ? !TryBothMethods(xyz, slice, &result)
+               : !codec::EncodeXyz(cloud_, xyz, &slice->bytes, &result)) {
+    return SliceResult::kOutOfReach;
+  }
   slice->returns = cloud_.size();
   slice->step_m = result.step_m;
   slice->error_m = result.error_m;

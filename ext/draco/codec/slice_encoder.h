@@ -69,14 +69,22 @@ class SliceEncoder {
   /// How many beams or points Thin() chooses from.
   std::size_t rows() const { return range_encoder_ ? image_.beams : cloud_.size(); }
 
+  /// Whole scans in range geometry are cut into as many blocks, each with a thread of its own, as
+  /// long as a block has kMinBlockReturns.
+  void set_threads(unsigned threads) { threads_ = threads; }
+
   /// Encodes what is loaded, as often as wanted.
   SliceResult Encode(const SliceSettings& settings, EncodedSlice* slice);
 
   static constexpr RangeCoder kDefaultRangeCoder = RangeCoder::kAdaptive;
+  static constexpr std::size_t kMinBlockReturns = 8'000;
 
  private:
   SliceResult EncodeRange(const SliceSettings& settings, EncodedSlice* slice);
+  bool EncodeBlocks(const RangeSettings& settings, std::uint32_t blocks,
+                    std::vector<std::uint8_t>* out);
   SliceResult EncodeXyz(const SliceSettings& settings, EncodedSlice* slice);
+  bool TryBothMethods(const XyzSettings& settings, EncodedSlice* slice, XyzResult* result);
 
   CloudFormat format_;
   RangeCoder coder_ = kDefaultRangeCoder;
@@ -85,6 +93,9 @@ class SliceEncoder {
   bool has_intensity_ = false;
   FullScale full_scale_ = FullScale::kByte;
   XyzCloud cloud_;
+  XyzMethod xyz_method_ = XyzMethod::kKdTree;
+  unsigned xyz_slices_ = 0;  // since both methods were tried
+  unsigned threads_ = 1;
   std::size_t returns_ = 0;
   double extent_m_ = 0;
   std::uint32_t unit_mm_ = 1;

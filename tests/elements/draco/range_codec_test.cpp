@@ -5,6 +5,7 @@
 
 #include <random>
 
+#include "draco/codec/slice_decoder.h"
 #include "test_clouds.h"
 
 namespace lidar::codec {
@@ -111,6 +112,98 @@ TEST(Rans, GivesBackEverySymbolWhateverTheModelSaw) {
     ASSERT_EQ(decoder.GetBits(static_cast<unsigned>(i % 13)), i & ((1U << i % 13) - 1));
   }
   EXPECT_TRUE(decoder.AtEnd());
+}
+
+struct StreamCase {
+  const char* name;
+  Geometry geometry;
+  RangeCoder coder;
+  unsigned level;
+  double most_undetected;  // of the mutations
+};
+class HostileStreams : public ::testing::TestWithParam<StreamCase> {
+ protected:
+  CloudFormat Format() const {
+    CloudFormat format{test::OrganisedLayout(), 32, test::RoomSensor()};
+    return format;
+  }
+  std::vector<std::uint8_t> Stream() const {
+    const StreamCase& c = GetParam();
+    const SensorModel model = test::RoomSensor();
+    const auto raw = test::RawCloud(model, test::RoomScan(model, 0, 64));
+    auto encoder = *SliceEncoder::Create(Format(), c.geometry, c.coder);
+    encoder.Load({raw.data(), raw.size()}, 0, true);
+    EncodedSlice slice;
+    SliceSettings settings;
+    settings.level = c.level;
+    settings.intensity_bits = 5;
+    EXPECT_EQ(encoder.Encode(settings, &slice), SliceResult::kEncoded);
+    return slice.bytes;
+  }
+};
+
+TEST_P(HostileStreams, OfAnyMutationGiveACloudWithinLimitsOrNone) {
+  const auto stream = Stream();
+  SliceDecoder decoder(Format(), GetParam().geometry, 4096);
+  std::mt19937 random(42);
+  constexpr int kMutations = 2000;
+  int decoded = 0;
+  for (int i = 0; i < kMutations; ++i) {
+    auto bytes = stream;
+    const std::size_t damage = 1 + random() % 4;
+    // Half of the hits go where the headers are.
+    for (std::size_t k = 0; k < damage; ++k) {
+      const std::size_t reach =
+          random() % 2 == 0 ? std::min<std::size_t>(64, bytes.size()) : bytes.size();
+      bytes[random() % reach] ^= static_cast<std::uint8_t>(1U << random() % 8);
+    }
+    const auto shape = decoder.Decode({bytes.data(), bytes.size()});
+    if (!shape) continue;
+    ++decoded;
+    const std::size_t points = std::size_t{shape->width} * shape->height;
+    ASSERT_LE(points, 4096U);
+    std::vector<std::uint8_t> raw(points * 20);
+    decoder.Write(raw.data());
+  }
+  EXPECT_LE(decoded, GetParam().most_undetected * kMutations);
+}
+
+TEST_P(HostileStreams, ThatAreCutOffGiveNothing) {
+  const auto stream = Stream();
+  SliceDecoder decoder(Format(), GetParam().geometry, 4096);
+  for (std::size_t n = 0; n < std::min<std::size_t>(stream.size(), 200); ++n)
+    EXPECT_FALSE(decoder.Decode({stream.data(), n})) << n;
+  if (GetParam().geometry == Geometry::kRange) {
+    EXPECT_FALSE(decoder.Decode({stream.data(), stream.size() - 1}));
+  }
+  EXPECT_TRUE(decoder.Decode({stream.data(), stream.size()}));
+}
+// Draco finds hardly any damage by itself: that is what the CRC of the payload format is for. Of
+// the adaptive coder's, what passes hit the header: a grid of another step, another first column.
+INSTANTIATE_TEST_SUITE_P(
+    All, HostileStreams,
+    ::testing::Values(StreamCase{"sequential", Geometry::kXyz, RangeCoder::kDraco, 0, 1.0},
+                      StreamCase{"kd", Geometry::kXyz, RangeCoder::kDraco, 7, 1.0},
+                      StreamCase{"draco", Geometry::kRange, RangeCoder::kDraco, 7, 1.0},
+                      StreamCase{"residual", Geometry::kRange, RangeCoder::kResidual, 7, 1.0},
+                      StreamCase{"adaptive", Geometry::kRange, RangeCoder::kAdaptive, 7, 0.03}),
+    [](const auto& c) { return c.param.name; });
+
+TEST(RangeGrids, AreExactInTheSensorsUnit) {
+  EXPECT_EQ(RangeGrid::ForError(0.02, 1).cells(), 41U);
+  EXPECT_EQ(RangeGrid::ForError(0.02, 8).cells(), 6U);
+  EXPECT_EQ(RangeGrid::ForError(0.0001, 8).cells(), 1U);
+  EXPECT_EQ(RangeGrid::ForStep(0.04, 1).cells(), 39U);
+  for (const std::uint32_t unit : {1U, 3U, 8U}) {
+    for (const double error : {0.0005, 0.0015, 0.02, 0.05, 1.0}) {
+      const auto grid = RangeGrid::ForError(error, unit);
+      ASSERT_TRUE(grid.IsValid());
+      for (std::uint32_t r = 0; r < 3 * grid.step_mm(); r += unit) {
+        const auto back = static_cast<double>(grid.RangeOf(grid.BinOf(r)));
+        ASSERT_LE(std::abs(back - r), 1e3 * error + 1e-6) << unit << " " << error;
+      }
+    }
+  }
 }
 
 }  // namespace
