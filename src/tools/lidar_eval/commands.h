@@ -9,5 +9,6 @@ void AddBoundsCommand(CLI::App* app);
 void AddRateDistortionCommand(CLI::App* app);
 void AddTrackCommand(CLI::App* app);
 void AddPredictCommand(CLI::App* app);
+void AddToPcapCommand(CLI::App* app);
 
 }  // namespace lidar::tools

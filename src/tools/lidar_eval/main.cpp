@@ -11,6 +11,7 @@ int main(int argc, char** argv) {
   lidar::tools::AddRateDistortionCommand(&app);
   lidar::tools::AddPredictCommand(&app);
   lidar::tools::AddTrackCommand(&app);
+  lidar::tools::AddToPcapCommand(&app);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& e) {
