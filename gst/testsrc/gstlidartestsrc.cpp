@@ -78,11 +78,12 @@ struct Settings {
   gdouble noise_m = 0.01;
   guint seed = 0;
   guint slices_per_scan = 0;
+  std::string channels;
   std::string trajectory_location;
 };
 
 using Row = lidar::gst::Property<Settings>;
-const std::array<Row, 8> kProperties = {{
+const std::array<Row, 9> kProperties = {{
     {"model", "Sensor to simulate", lidar::gst::EnumField<Settings>{&Settings::model, ModelType}},
     {"mode", "Columns of a scan x scans per second",
      lidar::gst::EnumField<Settings>{&Settings::mode, ModeType}},
@@ -97,6 +98,10 @@ const std::array<Row, 8> kProperties = {{
      "Buffers a scan is cut into, rounded down to a divisor of the columns (1 = whole scans, 0 = "
      "automatic: a sweep of about 12.5 ms)",
      &Settings::slices_per_scan, 0, 4096},
+    {"channels",
+     "Extra fields of a point, comma-separated: reflectivity, signal, ring, t (ns since "
+     "the slice's first column)",
+     &Settings::channels},
     {"trajectory-location",
      "File for the exact trajectory: one pose a buffer in TUM format, at its capture time",
      &Settings::trajectory_location},
@@ -131,6 +136,15 @@ lidar::synth::ScannerConfig ConfigFrom(const Settings& s) {
   return config;
 }
 
+/// Unknown channels are left out; Start refuses them.
+lidar::gst::SliceOptions OptionsFrom(const Settings& s) {
+  std::string unknown;
+  lidar::gst::SliceOptions options;
+  options.slices_per_scan = s.slices_per_scan;
+  options.channels = lidar::gst::ParseChannels(s.channels, &unknown).value_or(options.channels);
+  return options;
+}
+
 }  // namespace
 
 struct _GstLidarTestSrc {
@@ -149,6 +163,14 @@ gboolean Start(GstBaseSrc* base) {
   State& state = StateOf(base);
   std::lock_guard lock(state.mutex);
   const Settings& settings = state.settings;
+  std::string unknown;
+  if (!lidar::gst::ParseChannels(settings.channels, &unknown)) {
+    GST_ELEMENT_ERROR(base, RESOURCE, SETTINGS,
+                      ("There is no channel \"%s\"; there are reflectivity, signal, ring and t.",
+                       unknown.c_str()),
+                      (nullptr));
+    return FALSE;
+  }
   if (!settings.trajectory_location.empty()) {
     state.log = std::make_unique<lidar::gst::TrajectoryLog>(settings.trajectory_location);
     if (!state.log->ok()) {
@@ -160,7 +182,7 @@ gboolean Start(GstBaseSrc* base) {
       return FALSE;
     }
   }
-  state.maker.emplace(ConfigFrom(settings), settings.slices_per_scan);
+  state.maker.emplace(ConfigFrom(settings), OptionsFrom(settings));
   state.latency = static_cast<GstClockTime>(state.maker->LongestSlice().count());
   return TRUE;
 }
@@ -182,7 +204,7 @@ GstCaps* GetCaps(GstBaseSrc* base, GstCaps* filter) {
     std::lock_guard lock(state.mutex);
     settings = state.settings;
   }
-  GstCaps* caps = SliceMaker::InfoFor(ConfigFrom(settings), settings.slices_per_scan).ToCaps();
+  GstCaps* caps = SliceMaker::InfoFor(ConfigFrom(settings), OptionsFrom(settings)).ToCaps();
   if (filter != nullptr) {
     GstCaps* both = gst_caps_intersect_full(filter, caps, GST_CAPS_INTERSECT_FIRST);
     gst_caps_unref(caps);

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include "testsrc/slice_maker.h"
 
+#include <algorithm>
+#include <array>
 #include <cstring>
 
 #include "cloud/slicing.h"
@@ -11,7 +13,17 @@ namespace {
 
 constexpr std::size_t kIntensityOffset = 12;
 constexpr std::size_t kRangeOffset = 16;
-constexpr std::size_t kPointStep = 20;
+constexpr std::size_t kPointAlignment = 4;
+
+struct ChannelName {
+  std::string_view name;
+  FieldType type;
+};
+// In the order of Channel; names and types are those of ouster_src.
+constexpr std::array<ChannelName, 4> kChannels = {{{"reflectivity", FieldType::kU16},
+                                                   {"signal", FieldType::kU16},
+                                                   {"ring", FieldType::kU16},
+                                                   {"t", FieldType::kU32}}};
 
 std::uint32_t SlicesOf(const synth::ScannerConfig& config, std::uint32_t requested) {
   const SensorModel& model = config.sensor.model;
@@ -23,24 +35,57 @@ GstClockTime ToGst(Duration d) { return static_cast<GstClockTime>(d.count()); }
 
 }  // namespace
 
-SliceMaker::SliceMaker(const synth::ScannerConfig& config, std::uint32_t slices_per_scan)
+std::optional<std::vector<Channel>> ParseChannels(std::string_view text, std::string* unknown) {
+  std::vector<Channel> channels;
+  while (!text.empty()) {
+    const std::size_t comma = text.find(',');
+    std::string_view name = text.substr(0, comma);
+    text.remove_prefix(comma == std::string_view::npos ? text.size() : comma + 1);
+    while (!name.empty() && name.front() == ' ') name.remove_prefix(1);
+    while (!name.empty() && name.back() == ' ') name.remove_suffix(1);
+    const auto* known = std::find_if(kChannels.begin(), kChannels.end(),
+                                     [&](const ChannelName& c) { return c.name == name; });
+    if (known == kChannels.end()) {
+      *unknown = name;
+      return std::nullopt;
+    }
+    const auto channel = static_cast<Channel>(known - kChannels.begin());
+    if (std::find(channels.begin(), channels.end(), channel) == channels.end())
+      channels.push_back(channel);
+  }
+  return channels;
+}
+
+SliceMaker::SliceMaker(const synth::ScannerConfig& config, const SliceOptions& options)
     : period_(config.period),
       scanner_(config),
       projection_(config.sensor.model),
-      slices_(SlicesOf(config, slices_per_scan)),
-      width_(config.sensor.model.columns_per_scan / slices_) {}
+      slices_(SlicesOf(config, options.slices_per_scan)),
+      width_(config.sensor.model.columns_per_scan / slices_) {
+  const CloudInfo info = InfoFor(config, options);
+  point_step_ = info.point_step;
+  for (const Channel channel : options.channels) {
+    const std::string name(kChannels[static_cast<std::size_t>(channel)].name);
+    extras_.push_back({channel, info.fields.Find(name)->offset});
+  }
+}
 
-CloudInfo SliceMaker::InfoFor(const synth::ScannerConfig& config, std::uint32_t slices_per_scan) {
+CloudInfo SliceMaker::InfoFor(const synth::ScannerConfig& config, const SliceOptions& options) {
   const SensorModel& model = config.sensor.model;
   CloudInfo info;
-  info.width = model.columns_per_scan / SlicesOf(config, slices_per_scan);
+  info.width = model.columns_per_scan / SlicesOf(config, options.slices_per_scan);
   info.height = static_cast<guint>(model.beams.size());
-  info.point_step = kPointStep;
   info.fields.Add("x", FieldType::kF32)
       .Add("y", FieldType::kF32)
       .Add("z", FieldType::kF32)
       .Add("intensity", FieldType::kF32)
       .Add("range", FieldType::kU32);
+  for (const Channel channel : options.channels) {
+    const ChannelName& c = kChannels[static_cast<std::size_t>(channel)];
+    info.fields.Add(std::string(c.name), c.type);
+  }
+  info.point_step = static_cast<guint>((info.fields.MinimumStep() + kPointAlignment - 1) /
+                                       kPointAlignment * kPointAlignment);
   info.framerate_n = static_cast<gint>(std::chrono::seconds(1) / config.period);
   info.sensor_model = model;
   return info;
@@ -51,22 +96,57 @@ Duration SliceMaker::LongestSlice() const {
   return period_ / std::int64_t{slices_} + Duration{1};
 }
 
+void SliceMaker::WritePoints(guint8* points) const {
+  projection_.Project(returns_.range_mm.data(), {FirstColumn(), width_}, points, point_step_);
+  guint8* point = points;
+  for (std::size_t i = 0; i < returns_.range_mm.size(); ++i, point += point_step_) {
+    const auto intensity = static_cast<float>(returns_.reflectivity[i]);
+    std::memcpy(point + kIntensityOffset, &intensity, sizeof intensity);
+    std::memcpy(point + kRangeOffset, &returns_.range_mm[i], sizeof returns_.range_mm[i]);
+  }
+  for (const Extra& extra : extras_) WriteExtra(extra, points);
+}
+
+void SliceMaker::WriteExtra(const Extra& extra, guint8* points) const {
+  guint8* at = points + extra.offset;
+  const auto store16 = [&at](std::size_t value) {
+    const auto v = static_cast<std::uint16_t>(value);
+    std::memcpy(at, &v, sizeof v);
+  };
+  for (std::size_t i = 0; i < returns_.range_mm.size(); ++i, at += point_step_) {
+    switch (extra.channel) {
+      case Channel::kReflectivity:
+        store16(returns_.reflectivity[i]);
+        break;
+      case Channel::kSignal:
+        store16(returns_.signal[i]);
+        break;
+      case Channel::kRing:
+        store16(i / width_);
+        break;
+      case Channel::kTime: {
+        const auto column = FirstColumn() + static_cast<std::uint32_t>(i % width_);
+        const Duration since = scanner_.ColumnTime(scan_, column) - NextTime();
+        const auto t = static_cast<std::uint32_t>(since.count());
+        std::memcpy(at, &t, sizeof t);
+        break;
+      }
+    }
+  }
+}
+
 BufferPtr SliceMaker::Make() {
   const ColumnWindow window{FirstColumn(), width_};
   const Duration begin = NextTime();
   const Duration end = NextEnd();
   scanner_.Cast(scan_, window, &returns_);
   BufferPtr buffer(
-      gst_buffer_new_allocate(nullptr, returns_.range_mm.size() * kPointStep, nullptr));
+      gst_buffer_new_allocate(nullptr, returns_.range_mm.size() * point_step_, nullptr));
   {
     BufferMap map(buffer.get(), GST_MAP_WRITE);
-    guint8* point = map.data();
-    projection_.Project(returns_.range_mm.data(), window, point, kPointStep);
-    for (std::size_t i = 0; i < returns_.range_mm.size(); ++i, point += kPointStep) {
-      const auto intensity = static_cast<float>(returns_.reflectivity[i]);
-      std::memcpy(point + kIntensityOffset, &intensity, sizeof intensity);
-      std::memcpy(point + kRangeOffset, &returns_.range_mm[i], sizeof returns_.range_mm[i]);
-    }
+    // The steps between the fields hold nothing, but the same nothing each time.
+    if (!extras_.empty()) std::memset(map.data(), 0, map.size());
+    WritePoints(map.data());
   }
   const GstLidarSlice slice{static_cast<guint>(scan_), slice_, slices_, window.first};
   gst_lidar_buffer_set_slice(buffer.get(), &slice);

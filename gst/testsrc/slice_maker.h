@@ -2,6 +2,8 @@
 // Slices of a synthetic scan as buffers of the cloud caps.
 #pragma once
 #include <cstdint>
+#include <optional>
+#include <string_view>
 #include <vector>
 
 #include "common/cloud_info.h"
@@ -10,13 +12,24 @@
 
 namespace lidar::gst {
 
+/// Fields of a point beyond x, y, z, intensity and range.
+enum class Channel { kReflectivity, kSignal, kRing, kTime };
+
+/// "reflectivity,ring": none where a name is not known, which `unknown` then is.
+std::optional<std::vector<Channel>> ParseChannels(std::string_view text, std::string* unknown);
+
+struct SliceOptions {
+  std::uint32_t slices_per_scan = 0;
+  std::vector<Channel> channels;
+};
+
 /// Scans one slice after the other. Stamps count from the start of the first scan.
 class SliceMaker {
  public:
-  SliceMaker(const synth::ScannerConfig& config, std::uint32_t slices_per_scan);
+  SliceMaker(const synth::ScannerConfig& config, const SliceOptions& options);
 
   /// Caps of the slices of such a source.
-  static CloudInfo InfoFor(const synth::ScannerConfig& config, std::uint32_t slices_per_scan);
+  static CloudInfo InfoFor(const synth::ScannerConfig& config, const SliceOptions& options);
 
   /// When the first column of the next slice is sampled.
   Duration NextTime() const { return scanner_.ColumnTime(scan_, FirstColumn()); }
@@ -31,6 +44,13 @@ class SliceMaker {
   void SkipTo(Duration time);
 
  private:
+  struct Extra {
+    Channel channel;
+    std::size_t offset;
+  };
+
+  void WritePoints(guint8* points) const;
+  void WriteExtra(const Extra& extra, guint8* points) const;
   std::uint32_t FirstColumn() const { return slice_ * width_; }
 
   Duration period_;
@@ -38,6 +58,8 @@ class SliceMaker {
   RangeProjection projection_;
   std::uint32_t slices_;
   std::uint32_t width_;  // columns of a slice
+  std::size_t point_step_;
+  std::vector<Extra> extras_;
   std::uint64_t scan_ = 0;
   std::uint32_t slice_ = 0;
   synth::Returns returns_;

@@ -136,6 +136,7 @@ Hit Scanner::Trace(const Ray& ray, float age_s, Random* noise) const {
 
 Scanner::Pixel Scanner::Measure(const Hit& hit, Random* noise) const {
   constexpr float kDropout = 0.998F;
+  constexpr float kPhotons = 40;  // of an echo at the limit of detection
   const float range = hit.distance + beam_origin_m_;
   // Against a target of 10 % at the range where nine pulses in ten come back.
   const float signal = hit.reflectivity * hit.cosine * signal_scale_ / (range * range);
@@ -152,13 +153,15 @@ Scanner::Pixel Scanner::Measure(const Hit& hit, Random* noise) const {
   const float reflectivity =
       hit.reflectivity <= 1 ? 100 * hit.reflectivity : 100 + 110 * (hit.reflectivity - 1);
   return {static_cast<std::uint32_t>(measured * 1000 + 0.5F),
-          static_cast<std::uint8_t>(std::min(255.0F, reflectivity * speckle + 0.5F))};
+          static_cast<std::uint8_t>(std::min(255.0F, reflectivity * speckle + 0.5F)),
+          static_cast<std::uint16_t>(std::min(65535.0F, kPhotons * signal * speckle + 0.5F))};
 }
 
 void Scanner::Cast(std::uint64_t scan, ColumnWindow window, Returns* returns) {
   const std::uint32_t beams = projection_.beams();
   returns->range_mm.resize(std::size_t{beams} * window.count);
   returns->reflectivity.resize(returns->range_mm.size());
+  returns->signal.resize(returns->range_mm.size());
   std::uint32_t chunk = UINT32_MAX;
   for (std::uint32_t i = 0; i < window.count; ++i) {
     const std::uint32_t index = window.first + i;
@@ -169,8 +172,10 @@ void Scanner::Cast(std::uint64_t scan, ColumnWindow window, Returns* returns) {
       const Vec3 direction = column.rotation * ToVec(projection_.Direction(beam, index));
       const Hit hit = Trace(MakeRay(column.origin, direction), column.age_s, &noise);
       const Pixel pixel = Measure(hit, &noise);
-      returns->range_mm[std::size_t{beam} * window.count + i] = pixel.range_mm;
-      returns->reflectivity[std::size_t{beam} * window.count + i] = pixel.reflectivity;
+      const std::size_t at = std::size_t{beam} * window.count + i;
+      returns->range_mm[at] = pixel.range_mm;
+      returns->reflectivity[at] = pixel.reflectivity;
+      returns->signal[at] = pixel.signal;
     }
   }
 }

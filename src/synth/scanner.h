@@ -26,6 +26,7 @@ struct ScannerConfig {
 struct Returns {
   std::vector<std::uint32_t> range_mm;
   std::vector<std::uint8_t> reflectivity;  // Ouster's scale: percent, retroreflectors above 100
+  std::vector<std::uint16_t> signal;       // photons, in a unit of the sensor's own
 };
 
 /// Every ray leaves at its own time from where the sensor is then. The returns depend on the
@@ -52,6 +53,7 @@ class Scanner {
   struct Pixel {
     std::uint32_t range_mm = 0;
     std::uint8_t reflectivity = 0;
+    std::uint16_t signal = 0;
   };
 
   void MoveAnchor(double x);

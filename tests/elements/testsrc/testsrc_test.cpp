@@ -234,6 +234,43 @@ TEST(LidarTestSrc, WritesTheTrajectoryAtTheCaptureTimes) {
   std::filesystem::remove(path);
 }
 
+TEST(LidarTestSrc, ChannelsAreFieldsBehindTheOthers) {
+  const Harness h = Launch("model=os1-32 mode=512x10 channels=ring,t,signal");
+  gst_harness_play(h.get());
+  const BufferPtr buffer = Pull(h);
+  EXPECT_EQ(InfoOf(h).fields.ToString(),
+            "x:F32:0,y:F32:4,z:F32:8,intensity:F32:12,range:U32:16,ring:U16:20,t:U32:22,"
+            "signal:U16:26");
+  const auto bytes = BytesOf(buffer);
+  ASSERT_EQ(bytes.size(), 32U * 64 * 28);
+  for (std::uint32_t i = 0; i < 32 * 64; ++i) {
+    std::uint16_t ring = 0, signal = 0;
+    std::uint32_t t = 0, range = 0;
+    std::memcpy(&range, &bytes[i * 28 + 16], sizeof range);
+    std::memcpy(&ring, &bytes[i * 28 + 20], sizeof ring);
+    std::memcpy(&t, &bytes[i * 28 + 22], sizeof t);
+    std::memcpy(&signal, &bytes[i * 28 + 26], sizeof signal);
+    EXPECT_EQ(ring, i / 64);
+    EXPECT_EQ(t, i % 64 * 100'000'000ULL / 512);
+    EXPECT_EQ(signal > 0, range > 0);
+  }
+}
+
+TEST(LidarTestSrc, SaysWhichChannelItDoesNotHave) {
+  const ElementPtr pipeline(
+      gst_parse_launch("lidartestsrc channels=ring,nonsense ! fakesink", nullptr));
+  EXPECT_EQ(gst_element_set_state(pipeline.get(), GST_STATE_PAUSED), GST_STATE_CHANGE_FAILURE);
+  GstBus* bus = gst_element_get_bus(pipeline.get());
+  const MessagePtr message(gst_bus_pop_filtered(bus, GST_MESSAGE_ERROR));
+  gst_object_unref(bus);
+  ASSERT_TRUE(message);
+  GError* raw = nullptr;
+  gst_message_parse_error(message.get(), &raw, nullptr);
+  const ErrorPtr error(raw);
+  EXPECT_NE(std::string(error->message).find("\"nonsense\""), std::string::npos);
+  gst_element_set_state(pipeline.get(), GST_STATE_NULL);
+}
+
 TEST(LidarTestSrc, SaysWhichTrajectoryItCannotWrite) {
   const ElementPtr pipeline(
       gst_parse_launch("lidartestsrc trajectory-location=/nonexistent/t.tum ! fakesink", nullptr));
