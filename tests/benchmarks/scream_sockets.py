@@ -98,9 +98,10 @@ class Peers:
                 "-minrate", "100", "-maxrate", "60000", "-nosummary", self.address,
                 str(port)]
 
-    def receiver(self, kind, port, summary):
+    def receiver(self, kind, port, summary, sender):
         if kind == "ours":
-            return [self.bench, "rx", "--port", str(port), "--summary", summary]
+            num_reports = "ericsson" if sender == "reference" else "count"
+            return [self.bench, "rx", "--port", str(port), "--num-reports", num_reports, "--summary", summary]
         return [str(self.reference / "scream_bw_test_rx"), str(port)]
 
 
@@ -126,7 +127,8 @@ class Run:
                 str(self.folder / "link.json")] + self.options
         for i in flows:
             link += ["--listen", f"{self.peers.address}:{self.peers.link_port + i}", "--forward", f"127.0.0.1:{self.peers.rx_port + i}"]
-            start(self.peers.receiver(self.receiver, self.peers.rx_port + i, str(self.folder / f"rx{i}.json")), f"rx{i}.txt")
+            start(self.peers.receiver(self.receiver, self.peers.rx_port + i, str(self.folder / f"rx{i}.json"),
+                                      self.senders[i]), f"rx{i}.txt")
         start(link, "link.txt")
         time.sleep(0.5)
         for i in flows:

@@ -45,6 +45,11 @@ void AddRxOptions(CLI::App* app, BenchRxOptions* o) {
   app->add_option("--address", o->address, "Local address to receive on");
   app->add_option("--feedback", o->feedback,
                   "Send feedback to HOST:PORT, not to the media's source");
+  app->add_option(
+         "--num-reports", o->num_reports,
+         "num_reports of RFC 8888: count, or ericsson for a sender made of Ericsson's code")
+      ->check(CLI::IsMember({"count", "ericsson"}))
+      ->capture_default_str();
   app->add_option("--log", o->log, "CSV file, one line a frame");
 }
 

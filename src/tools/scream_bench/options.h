@@ -28,6 +28,7 @@ struct BenchRxOptions {
   std::uint16_t port = 0;
   std::string address;
   std::string feedback;  // HOST:PORT; empty: where the media comes from
+  std::string num_reports = "count";
   std::string log;
 };
 

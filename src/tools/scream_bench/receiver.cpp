@@ -67,11 +67,13 @@ void Receiver::Build() {
   GstElement* sink = AddElement(bin, "fakesink", "sink");
   g_object_set(sink, "sync", FALSE, "async", FALSE, nullptr);
   if (o.feedback.empty()) {
+    gst_util_set_object_arg(G_OBJECT(source), "num-reports", o.num_reports.c_str());
     LinkPads(source, "src", sink, "sink");
   } else {
     const std::size_t colon = o.feedback.rfind(':');
     if (colon == std::string::npos) throw std::runtime_error("--feedback wants HOST:PORT");
     GstElement* rx = AddElement(bin, "screamrx", "screamrx");
+    gst_util_set_object_arg(G_OBJECT(rx), "num-reports", o.num_reports.c_str());
     GstElement* back = AddElement(bin, "ecnudpsink", "feedback");
     g_object_set(back, "host", o.feedback.substr(0, colon).c_str(), "port",
                  std::stoi(o.feedback.substr(colon + 1)), "sync", FALSE, "async", FALSE, nullptr);
