@@ -30,7 +30,7 @@ struct Curve {
 /// Automatic quantisation of the bounding cube, as the paper has it.
 Curve PaperCurve(const ScanSet& set, const std::string& mode, const char* name) {
   constexpr unsigned kFewestBits = 8;
-  constexpr unsigned kMostBits = 18;  // beyond, Draco codes the sensor's noise
+  constexpr unsigned kMostBits = 17;  // beyond, Draco codes the sensor's noise
   Curve curve{name, {}};
   for (unsigned q = kFewestBits; q <= kMostBits; ++q)
     if (const auto m = Measure(set, ModeNamed(mode), {0, q, 0, 1})) curve.points.push_back(*m);

@@ -6,6 +6,7 @@
 #include <cstring>
 #include <stdexcept>
 
+#include "draco/codec/draco_check.h"
 #include "draco/codec/slice_decoder.h"
 #include "rate/scan_plan.h"
 
@@ -172,9 +173,12 @@ std::optional<PointErrors> SliceCodec::Errors(const CodingMode& mode,
   if (!EncodeBytes(xyz ? ModeNamed("xyz-sequential") : mode, {settings.step_m, 0, 0}, 1))
     return std::nullopt;
   constexpr std::uint32_t kMaxPoints = 1U << 26;
+  // Past a number of bits the codec takes the kd-tree all the same.
+  const ByteView bytes{encoded_.bytes.data(), encoded_.bytes.size()};
+  if (xyz && codec::CheckDraco(bytes, kMaxPoints).value().is_kd_tree) return std::nullopt;
   codec::SliceDecoder decoder(format_, xyz ? codec::Geometry::kXyz : codec::Geometry::kRange,
                               kMaxPoints);
-  const auto shape = decoder.Decode({encoded_.bytes.data(), encoded_.bytes.size()});
+  const auto shape = decoder.Decode(bytes);
   if (!shape) throw std::runtime_error("a slice does not decode");
   std::vector<std::uint8_t> raw(std::size_t{shape->width} * shape->height *
                                 format_.layout.point_step);

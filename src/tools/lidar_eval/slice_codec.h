@@ -47,7 +47,8 @@ class SliceCodec {
   /// points of a cloud without order.
   std::optional<rate::EncodedSlice> Encode(const CodingMode& mode, const rate::Settings& settings,
                                            double keep_fraction = 1);
-  /// Distances between the points and their decoded points.
+  /// Distances between the points and their decoded points. None where Encode() would be, and for
+  /// xyz steps so fine that no coder keeps the order of the points.
   std::optional<PointErrors> Errors(const CodingMode& mode, const rate::Settings& settings);
 
  private:
