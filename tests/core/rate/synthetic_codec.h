@@ -48,7 +48,8 @@ class SyntheticCodec {
     const double returns = f.returns * std::pow(keep, 0.85);
     const double geometry =
         20 + returns * std::exp2(log2) * sector * std::exp(log_complexity_) * slice_noise_ / 8;
-    const double intensity = s.intensity_bits == 0 ? 0 : returns * 0.5 * s.intensity_bits / 8;
+    // Four bits a return for 8-bit intensities, 1.2 for 5-bit ones, as on real captures.
+    const double intensity = returns * 4 * std::pow(s.intensity_bits / 8.0, 2.5) / 8;
     const auto bytes = [](double b) { return DataSize::Bytes(static_cast<std::int64_t>(b)); };
     return {bytes(geometry + intensity), bytes(intensity), s.step_m, keep};
   }
