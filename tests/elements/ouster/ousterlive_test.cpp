@@ -203,8 +203,9 @@ TEST(OusterLive, DamagedPacketsAreToldByTheirCrc) {
   while (sensor.counts().sent < sent + 50) g_usleep(1000);
   sensor.Fault({{"corrupt", 0.0}});
   const auto corrupted = sensor.counts().corrupted;
-  receiver.Drain();
-  ASSERT_TRUE(receiver.Pull());
+  ASSERT_TRUE(receiver.PullUntil([&](GstBuffer*) {
+    return Stat(receiver.source(), "packets-damaged") + 2 >= corrupted;
+  }));
   EXPECT_GE(corrupted, 50U);
   EXPECT_NEAR(static_cast<double>(Stat(receiver.source(), "packets-damaged")),
               static_cast<double>(corrupted), 2);
@@ -316,9 +317,9 @@ TEST(OusterLive, TheCaptureTimeOfASensorOnPtpIsTrueUtc) {
   const BufferPtr buffer = receiver.Pull();
   const auto age = static_cast<gint64>(g_get_real_time()) * 1000 -
                    static_cast<gint64>(gst_lidar_buffer_get_capture_time(buffer.get()));
-  // A slice is 12.5 ms long, and the machine may be busy.
+  // A slice is 12.5 ms long, and the machine may be busy. Without the offset it would be 37 s.
   EXPECT_GT(age, 12 * static_cast<gint64>(GST_MSECOND));
-  EXPECT_LT(age, 500 * static_cast<gint64>(GST_MSECOND));
+  EXPECT_LT(age, 2 * static_cast<gint64>(GST_SECOND));
   GstStructure* stats = nullptr;
   g_object_get(receiver.source(), "stats", &stats, nullptr);
   gboolean synchronised = FALSE;
