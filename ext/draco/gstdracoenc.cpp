@@ -16,8 +16,8 @@
 
 #include "common/buffer_map.h"
 #include "common/cloud_info.h"
-#include "common/properties.h"
 #include "common/refs.h"
+#include "draco/enc_settings.h"
 #include "draco/enc_stats.h"
 #include "draco/encoded_caps.h"
 #include "draco/rate_loop.h"
@@ -32,109 +32,12 @@ using lidar::DataRate;
 using lidar::codec::Geometry;
 using lidar::codec::RangeCoder;
 using lidar::codec::SliceResult;
-using lidar::gst::EnumField;
+using Settings = lidar::gst::EncSettings;
 using lidar::rate::DegradationPreference;
 using lidar::rate::RateModel;
 
-template <class E>
-constexpr gint Int(E value) {
-  return static_cast<gint>(value);
-}
-
-const GEnumValue kGeometries[] = {
-    {Int(Geometry::kAuto), "range where the caps carry ranges and a sensor model", "auto"},
-    {Int(Geometry::kXyz), "Plain Draco files", "xyz"},
-    {Int(Geometry::kRange), "Ranges of an organised scan", "range"},
-    {0, nullptr, nullptr}};
-const GEnumValue kCoders[] = {
-    {Int(RangeCoder::kDraco), "Draco, with its own delta prediction", "draco"},
-    {Int(RangeCoder::kResidual), "Prediction from neighbouring beams, then Draco", "residual"},
-    {Int(RangeCoder::kAdaptive), "Prediction from neighbouring beams, then adaptive rANS",
-     "adaptive"},
-    {0, nullptr, nullptr}};
-const GEnumValue kRateModels[] = {
-    {Int(RateModel::kAdaptive), "Log size against log step, corrected by every slice", "adaptive"},
-    {Int(RateModel::kPaper), "Second-order polynomial of the paper, fixed", "paper"},
-    {0, nullptr, nullptr}};
-const GEnumValue kPreferences[] = {
-    {Int(DegradationPreference::kMaintainAccuracy), "Skip whole scans, evenly",
-     "maintain-accuracy"},
-    {Int(DegradationPreference::kMaintainFramerate), "Thin the points of every scan, evenly",
-     "maintain-framerate"},
-    {Int(DegradationPreference::kBalanced), "Both by the same factor", "balanced"},
-    {0, nullptr, nullptr}};
-
-GType RegisterEnum(gsize* type, const char* name, const GEnumValue* values) {
-  if (g_once_init_enter(type)) {
-    const GType registered = g_enum_register_static(name, values);
-    gst_type_mark_as_plugin_api(registered, static_cast<GstPluginAPIFlags>(0));
-    g_once_init_leave(type, registered);
-  }
-  return *type;
-}
-GType GeometryType() {
-  static gsize type = 0;
-  return RegisterEnum(&type, "GstLidarDracoEncGeometry", kGeometries);
-}
-GType CoderType() {
-  static gsize type = 0;
-  return RegisterEnum(&type, "GstLidarDracoEncRangeCoder", kCoders);
-}
-GType RateModelType() {
-  static gsize type = 0;
-  return RegisterEnum(&type, "GstLidarDracoEncRateModel", kRateModels);
-}
-GType PreferenceType() {
-  static gsize type = 0;
-  return RegisterEnum(&type, "GstLidarDracoEncDegradationPreference", kPreferences);
-}
-
-struct Settings {
-  guint bitrate_bps = 0;
-  gdouble max_error_m = 0.02;
-  gint geometry = Int(Geometry::kAuto);
-  gint range_coder = Int(lidar::codec::SliceEncoder::kDefaultRangeCoder);
-  gdouble step_m = 0;
-  guint level = 7;
-  guint intensity_bits = 5;
-  gint rate_model = Int(RateModel::kAdaptive);
-  std::string model_location;
-  gint degradation = Int(DegradationPreference::kMaintainAccuracy);
-  guint threads = 1;
-};
-
-using Row = lidar::gst::Property<Settings>;
-const std::array<Row, 11> kProperties = {{
-    {"bitrate",
-     "Bitrate of the encoded slices [bit/s]; 0: constant quality at the coarsest step that "
-     "max-error allows. An event target-bitrate goes before it",
-     &Settings::bitrate_bps, 0, G_MAXUINT, GST_PARAM_MUTABLE_PLAYING},
-    {"max-error", "Largest distance between a point and its decoded point [m]",
-     &Settings::max_error_m, 1e-4, 100, GST_PARAM_MUTABLE_PLAYING},
-    {"geometry", "What is coded: ranges or coordinates",
-     EnumField<Settings>{&Settings::geometry, GeometryType}},
-    {"range-coder", "How ranges are coded", EnumField<Settings>{&Settings::range_coder, CoderType}},
-    {"quantization-step",
-     "Fixes the step of the grid [m], whatever the bitrate; max-error still holds. 0: automatic",
-     &Settings::step_m, 0, 1000, GST_PARAM_MUTABLE_PLAYING},
-    {"compression-level",
-     "Draco's compression level for xyz geometry: 0 is its sequential coder, 1-10 its kd-tree",
-     &Settings::level, 0, 10, GST_PARAM_MUTABLE_PLAYING},
-    {"intensity-bits", "Resolution of intensities [bit]; 0: geometry only",
-     &Settings::intensity_bits, 0, 8},
-    {"rate-model", "Predicts the size of a slice",
-     EnumField<Settings>{&Settings::rate_model, RateModelType}},
-    {"model-location", "File with the coefficients of the rate model; none: built-in",
-     &Settings::model_location},
-    {"degradation-preference", "What gives when the bitrate is below what max-error needs",
-     EnumField<Settings>{&Settings::degradation, PreferenceType}, 0, 0, GST_PARAM_MUTABLE_PLAYING},
-    {"threads",
-     "Threads for one buffer in range geometry, while each has 8,000 returns to code: more are "
-     "faster, and a little larger",
-     &Settings::threads, 1, 64},
-}};
-constexpr guint kPropMinBitrate = kProperties.size() + 1;
-constexpr guint kPropStats = kProperties.size() + 2;
+constexpr guint kPropMinBitrate = lidar::gst::kEncPropertyCount + 1;
+constexpr guint kPropStats = kPropMinBitrate + 1;
 
 /// Of the streaming thread.
 struct Stream {
@@ -232,7 +135,7 @@ gboolean SetCaps(GstLidarDracoEnc* self, GstCaps* caps) {
     GST_ELEMENT_ERROR(
         self, STREAM, FORMAT,
         ("This cloud cannot be encoded with geometry=%s.",
-         kGeometries[settings.geometry].value_nick),
+         lidar::gst::GeometryName(settings.geometry)),
         ("range needs a field range:U32 and a sensor-model, xyz the fields x, y and z as F32 side "
          "by side; caps are %" GST_PTR_FORMAT,
          static_cast<gpointer>(caps)));
@@ -416,7 +319,7 @@ GstStateChangeReturn ChangeState(GstElement* element, GstStateChange transition)
 void SetObjectProperty(GObject* object, guint id, const GValue* value, GParamSpec*) {
   State& state = *GST_LIDAR_DRACO_ENC(object)->state;
   std::lock_guard lock(state.mutex);
-  lidar::gst::SetProperty(state.settings, kProperties[id - 1], value);
+  lidar::gst::SetProperty(state.settings, lidar::gst::EncProperties()[id - 1], value);
 }
 
 void GetObjectProperty(GObject* object, guint id, GValue* value, GParamSpec*) {
@@ -427,7 +330,7 @@ void GetObjectProperty(GObject* object, guint id, GValue* value, GParamSpec*) {
   } else if (id == kPropMinBitrate) {
     g_value_set_uint(value, state.min_bitrate_bps);
   } else {
-    lidar::gst::GetProperty(state.settings, kProperties[id - 1], value);
+    lidar::gst::GetProperty(state.settings, lidar::gst::EncProperties()[id - 1], value);
   }
 }
 
@@ -463,7 +366,7 @@ static void gst_lidar_draco_enc_class_init(GstLidarDracoEncClass* klass) {
   object->set_property = SetObjectProperty;
   object->get_property = GetObjectProperty;
   object->finalize = Finalize;
-  lidar::gst::InstallProperties(object, kProperties);
+  lidar::gst::InstallProperties(object, lidar::gst::EncProperties());
   constexpr auto kReadable = static_cast<GParamFlags>(G_PARAM_READABLE | G_PARAM_STATIC_STRINGS);
   g_object_class_install_property(
       object, kPropMinBitrate,

@@ -1,89 +1,16 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <glib/gstdio.h>
 #include <gtest/gtest.h>
 
-#include <glib/gstdio.h>
-
-#include <algorithm>
-#include <cstring>
 #include <fstream>
 #include <limits>
 #include <random>
 #include <tuple>
 
-#include "common/buffer_map.h"
-#include "common/cloud_info.h"
-#include "support/harness.h"
-#include "test_clouds.h"
+#include "draco_harness.h"
 
 namespace lidar::gst {
 namespace {
-
-using test::Harness;
-
-std::vector<float> PointsOf(GstBuffer* buffer, gsize step) {
-  const BufferMap map(buffer, GST_MAP_READ);
-  std::vector<float> points;
-  for (gsize at = 0; at + step <= map.size(); at += step) {
-    float p[3];
-    std::memcpy(p, map.data() + at, sizeof p);
-    points.insert(points.end(), p, p + 3);
-  }
-  return points;
-}
-
-GstStructure* StatsOf(GstElement* element) {
-  GstStructure* stats = nullptr;
-  g_object_get(element, "stats", &stats, nullptr);
-  return stats;
-}
-
-guint64 Counter(GstElement* element, const char* name) {
-  const StructurePtr stats(StatsOf(element));
-  guint64 value = G_MAXUINT64;
-  EXPECT_TRUE(gst_structure_get_uint64(stats.get(), name, &value)) << name;
-  return value;
-}
-
-CloudInfo OrganisedInfo(const SensorModel& model, guint columns) {
-  CloudInfo info;
-  info.width = columns;
-  info.height = static_cast<guint>(model.beams.size());
-  info.point_step = 20;
-  info.fields = test::OrganisedLayout().fields;
-  info.framerate_n = 10;
-  info.sensor_model = model;
-  return info;
-}
-
-GstBuffer* OrganisedBuffer(const SensorModel& model, guint columns, const GstLidarSlice& slice) {
-  const auto raw = test::RawCloud(model, test::RoomScan(model, slice.first_column, columns));
-  GstBuffer* buffer = gst_buffer_new_memdup(raw.data(), raw.size());
-  gst_lidar_buffer_set_slice(buffer, &slice);
-  const GstClockTime time = (slice.scan_id * 8 + slice.slice_index) * 12'500 * GST_USECOND;
-  gst_lidar_buffer_set_capture_time(buffer, 1'700'000'000 * GST_SECOND + time);
-  GST_BUFFER_PTS(buffer) = time;
-  GST_BUFFER_DURATION(buffer) = 12'500 * GST_USECOND;
-  return buffer;
-}
-
-Harness Codec(const std::string& enc_properties) {
-  Harness h(gst_harness_new_parse(
-      ("dracoenc name=enc " + enc_properties + " ! dracodec name=dec").c_str()));
-  return h;
-}
-
-double LargestDistance(const std::vector<float>& a, const std::vector<float>& b) {
-  double largest = 0;
-  for (std::size_t i = 0; i + 2 < a.size(); i += 3) {
-    double sum = 0;
-    for (std::size_t k = 0; k < 3; ++k) {
-      const double d = static_cast<double>(a[i + k]) - static_cast<double>(b[i + k]);
-      sum += d * d;
-    }
-    largest = std::max(largest, std::sqrt(sum));
-  }
-  return largest;
-}
 
 struct ErrorCase {
   const char* coder;
@@ -290,86 +217,6 @@ TEST(DracoElements, GiveStockDracoFilesInXyzGeometry) {
   g_remove(file.c_str());
   g_remove(text.c_str());
   g_rmdir(folder.get());
-}
-
-/// Bytes of each scan that `scans` scans of 8 slices give, 0 for one that was skipped. Checks that
-/// scans are whole.
-std::vector<gsize> ScanSizes(GstHarness* h, const SensorModel& model, guint scans) {
-  std::vector<gsize> sizes;
-  for (guint scan = 0; scan < scans; ++scan) {
-    gsize bytes = 0;
-    guint slices = 0;
-    for (guint i = 0; i < 8; ++i) {
-      EXPECT_EQ(gst_harness_push(h, OrganisedBuffer(model, 64, {scan, i, 8, 64 * i})), GST_FLOW_OK);
-      while (const BufferPtr out{gst_harness_try_pull(h)}) {
-        bytes += gst_buffer_get_size(out.get());
-        ++slices;
-      }
-    }
-    EXPECT_TRUE(slices == 0 || slices == 8) << scan;
-    sizes.push_back(bytes);
-  }
-  return sizes;
-}
-
-guint CountGaps(GstHarness* h) {
-  guint gaps = 0;
-  while (const EventPtr event{gst_harness_try_pull_event(h)})
-    gaps += GST_EVENT_TYPE(event.get()) == GST_EVENT_GAP ? 1U : 0U;
-  return gaps;
-}
-
-TEST(DracoEnc, KeepsToATargetBitrateThatComesFromDownstream) {
-  const SensorModel model = test::RoomSensor();
-  const Harness h(gst_harness_new_parse("dracoenc max-error=0.2 intensity-bits=0 bitrate=1"));
-  const CapsPtr caps(OrganisedInfo(model, 64).ToCaps());
-  gst_harness_set_src_caps(h.get(), gst_caps_ref(caps.get()));
-  // About 4 bits a return.
-  const GstLidarTargetBitrate target{640'000, 0, 0, 0, 0, 0, "update"};
-  gst_harness_push_upstream_event(h.get(), gst_lidar_event_new_target_bitrate(&target));
-  const auto sizes = ScanSizes(h.get(), model, 30);
-  double bits = 0;
-  for (std::size_t i = 10; i < sizes.size(); ++i) bits += 8 * static_cast<double>(sizes[i]);
-  EXPECT_NEAR(bits / 20 * 10, 640'000, 0.03 * 640'000);
-  EXPECT_EQ(CountGaps(h.get()), 0U);
-}
-
-TEST(DracoEnc, TellsDownstreamWhatItsErrorBoundNeeds) {
-  const SensorModel model = test::RoomSensor();
-  const Harness h(gst_harness_new("dracoenc"));
-  const CapsPtr caps(OrganisedInfo(model, 64).ToCaps());
-  gst_harness_set_src_caps(h.get(), gst_caps_ref(caps.get()));
-  const auto sizes = ScanSizes(h.get(), model, 10);
-  GstLidarBitrateBounds bounds{};
-  while (const EventPtr event{gst_harness_try_pull_event(h.get())})
-    gst_lidar_event_parse_bitrate_bounds(event.get(), &bounds);
-  // Constant quality is what the bound needs, with all intensity bits.
-  EXPECT_NEAR(bounds.nominal_bitrate, 80.0 * static_cast<double>(sizes[9]),
-              0.1 * 80 * static_cast<double>(sizes[9]));
-  EXPECT_LE(bounds.min_bitrate, bounds.nominal_bitrate);
-  EXPECT_LT(bounds.nominal_bitrate, bounds.max_bitrate);
-}
-
-TEST(DracoEnc, SkipsWholeScansEvenlyBelowTheMinimum) {
-  const SensorModel model = test::RoomSensor();
-  const Harness free(gst_harness_new_parse("dracoenc intensity-bits=0"));
-  const Harness tight(gst_harness_new_parse("dracoenc intensity-bits=0"));
-  const CapsPtr caps(OrganisedInfo(model, 64).ToCaps());
-  gst_harness_set_src_caps(free.get(), gst_caps_ref(caps.get()));
-  gst_harness_set_src_caps(tight.get(), gst_caps_ref(caps.get()));
-  const gsize needed = ScanSizes(free.get(), model, 2)[1];
-  const GstLidarTargetBitrate target{static_cast<guint>(needed) * 40, 0, 0, 0, 0, 0, "update"};
-  gst_harness_push_upstream_event(tight.get(), gst_lidar_event_new_target_bitrate(&target));
-  const auto sizes = ScanSizes(tight.get(), model, 40);
-  // Half of what is needed: every second scan, and no two in a row are lost.
-  guint sent = 0;
-  for (std::size_t i = 10; i < 40; ++i) {
-    sent += sizes[i] > 0 ? 1U : 0U;
-    EXPECT_TRUE(sizes[i] > 0 || sizes[i - 1] > 0) << i;
-  }
-  EXPECT_NEAR(sent, 15, 2);
-  const auto skipped = static_cast<guint>(std::count(sizes.begin(), sizes.end(), gsize{0}));
-  EXPECT_EQ(CountGaps(tight.get()), 8 * skipped);
 }
 
 class ExtremeSettings : public ::testing::TestWithParam<const char*> {};

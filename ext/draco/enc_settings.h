@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// The settable properties of dracoenc.
+#pragma once
+#include <gst/gst.h>
+
+#include <array>
+#include <string>
+
+#include "common/properties.h"
+#include "draco/codec/slice_encoder.h"
+#include "rate/model_file.h"
+#include "rate/scan_plan.h"
+
+namespace lidar::gst {
+
+/// Enumerations are kept as GObject wants them: by their number.
+template <class E>
+constexpr gint Int(E value) {
+  return static_cast<gint>(value);
+}
+
+struct EncSettings {
+  guint bitrate_bps = 0;
+  gdouble max_error_m = 0.02;
+  gint geometry = Int(codec::Geometry::kAuto);
+  gint range_coder = Int(codec::SliceEncoder::kDefaultRangeCoder);
+  gdouble step_m = 0;
+  guint level = 7;
+  guint intensity_bits = 5;
+  gint rate_model = Int(rate::RateModel::kAdaptive);
+  std::string model_location;
+  gint degradation = Int(rate::DegradationPreference::kMaintainAccuracy);
+  guint threads = 1;
+};
+
+constexpr std::size_t kEncPropertyCount = 11;
+const std::array<Property<EncSettings>, kEncPropertyCount>& EncProperties();
+
+/// The value's name in the property `geometry`.
+const char* GeometryName(gint geometry);
+
+}  // namespace lidar::gst

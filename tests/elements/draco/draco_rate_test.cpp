@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <gtest/gtest.h>
+
+#include "draco_harness.h"
+
+namespace lidar::gst {
+namespace {
+
+/// Bytes of each scan that `scans` scans of 8 slices give, 0 for one that was skipped. Checks that
+/// scans are whole.
+std::vector<gsize> ScanSizes(GstHarness* h, const SensorModel& model, guint scans) {
+  std::vector<gsize> sizes;
+  for (guint scan = 0; scan < scans; ++scan) {
+    gsize bytes = 0;
+    guint slices = 0;
+    for (guint i = 0; i < 8; ++i) {
+      EXPECT_EQ(gst_harness_push(h, OrganisedBuffer(model, 64, {scan, i, 8, 64 * i})), GST_FLOW_OK);
+      while (const BufferPtr out{gst_harness_try_pull(h)}) {
+        bytes += gst_buffer_get_size(out.get());
+        ++slices;
+      }
+    }
+    EXPECT_TRUE(slices == 0 || slices == 8) << scan;
+    sizes.push_back(bytes);
+  }
+  return sizes;
+}
+
+guint CountGaps(GstHarness* h) {
+  guint gaps = 0;
+  while (const EventPtr event{gst_harness_try_pull_event(h)})
+    gaps += GST_EVENT_TYPE(event.get()) == GST_EVENT_GAP ? 1U : 0U;
+  return gaps;
+}
+
+TEST(DracoEnc, KeepsToATargetBitrateThatComesFromDownstream) {
+  const SensorModel model = test::RoomSensor();
+  const Harness h(gst_harness_new_parse("dracoenc max-error=0.2 intensity-bits=0 bitrate=1"));
+  const CapsPtr caps(OrganisedInfo(model, 64).ToCaps());
+  gst_harness_set_src_caps(h.get(), gst_caps_ref(caps.get()));
+  // About 4 bits a return.
+  const GstLidarTargetBitrate target{640'000, 0, 0, 0, 0, 0, "update"};
+  gst_harness_push_upstream_event(h.get(), gst_lidar_event_new_target_bitrate(&target));
+  const auto sizes = ScanSizes(h.get(), model, 30);
+  double bits = 0;
+  for (std::size_t i = 10; i < sizes.size(); ++i) bits += 8 * static_cast<double>(sizes[i]);
+  EXPECT_NEAR(bits / 20 * 10, 640'000, 0.03 * 640'000);
+  EXPECT_EQ(CountGaps(h.get()), 0U);
+}
+
+TEST(DracoEnc, TellsDownstreamWhatItsErrorBoundNeeds) {
+  const SensorModel model = test::RoomSensor();
+  const Harness h(gst_harness_new("dracoenc"));
+  const CapsPtr caps(OrganisedInfo(model, 64).ToCaps());
+  gst_harness_set_src_caps(h.get(), gst_caps_ref(caps.get()));
+  const auto sizes = ScanSizes(h.get(), model, 10);
+  GstLidarBitrateBounds bounds{};
+  while (const EventPtr event{gst_harness_try_pull_event(h.get())})
+    gst_lidar_event_parse_bitrate_bounds(event.get(), &bounds);
+  // Constant quality is what the bound needs, with all intensity bits.
+  EXPECT_NEAR(bounds.nominal_bitrate, 80.0 * static_cast<double>(sizes[9]),
+              0.1 * 80 * static_cast<double>(sizes[9]));
+  EXPECT_LE(bounds.min_bitrate, bounds.nominal_bitrate);
+  EXPECT_LT(bounds.nominal_bitrate, bounds.max_bitrate);
+}
+
+TEST(DracoEnc, SkipsWholeScansEvenlyBelowTheMinimum) {
+  const SensorModel model = test::RoomSensor();
+  const Harness free(gst_harness_new_parse("dracoenc intensity-bits=0"));
+  const Harness tight(gst_harness_new_parse("dracoenc intensity-bits=0"));
+  const CapsPtr caps(OrganisedInfo(model, 64).ToCaps());
+  gst_harness_set_src_caps(free.get(), gst_caps_ref(caps.get()));
+  gst_harness_set_src_caps(tight.get(), gst_caps_ref(caps.get()));
+  const gsize needed = ScanSizes(free.get(), model, 2)[1];
+  const GstLidarTargetBitrate target{static_cast<guint>(needed) * 40, 0, 0, 0, 0, 0, "update"};
+  gst_harness_push_upstream_event(tight.get(), gst_lidar_event_new_target_bitrate(&target));
+  const auto sizes = ScanSizes(tight.get(), model, 40);
+  // Half of what is needed: every second scan, and no two in a row are lost.
+  guint sent = 0;
+  for (std::size_t i = 10; i < 40; ++i) {
+    sent += sizes[i] > 0 ? 1U : 0U;
+    EXPECT_TRUE(sizes[i] > 0 || sizes[i - 1] > 0) << i;
+  }
+  EXPECT_NEAR(sent, 15, 2);
+  const auto skipped = static_cast<guint>(std::count(sizes.begin(), sizes.end(), gsize{0}));
+  EXPECT_EQ(CountGaps(tight.get()), 8 * skipped);
+}
+
+}  // namespace
+}  // namespace lidar::gst
