@@ -61,7 +61,9 @@ void Enqueue(TxState& state, TxStream& stream, BufferPtr buffer, Time now) {
   item.queued = now;
   item.buffer = std::move(buffer);
   if (!stream.ssrc) stream.ssrc = header->ssrc;
-  stream.overhead.Add(*stream.ssrc == header->ssrc ? size - header->header_size : 0, item.size);
+  if (!stream.payload_type) stream.payload_type = header->payload_type;
+  const bool media = *stream.ssrc == header->ssrc && *stream.payload_type == header->payload_type;
+  stream.overhead.Add(media ? size - header->header_size : 0, item.size);
   state.controller->OnQueued(now, stream.id,
                              {header->ssrc, item.size, header->marker, header->timestamp});
   stream.queue.push_back(std::move(item));
@@ -118,10 +120,13 @@ void OnCaps(GstLidarScreamTx* self, GstPad* pad, TxStream& stream, GstEvent* eve
   gst_event_parse_caps(event, &caps);
   const GstStructure* s = gst_caps_get_structure(caps, 0);
   guint ssrc = 0;
+  gint payload = 0;
   EventPtr start;
   {
     TxLock lock(state.mutex);
     if (gst_structure_get_uint(s, "ssrc", &ssrc)) stream.ssrc = ssrc;
+    if (gst_structure_get_int(s, "payload", &payload))
+      stream.payload_type = static_cast<guint8>(payload);
     stream.is_video = g_strcmp0(gst_structure_get_string(s, "media"), "video") == 0;
     if (!stream.has_caps && state.controller) {
       stream.has_caps = true;

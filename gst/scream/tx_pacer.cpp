@@ -23,9 +23,24 @@ Duration MaxQueueDelay(const TxState& state) {
   return Duration{static_cast<std::int64_t>(state.settings.max_queue_delay)};
 }
 
+/// The rest of a frame that has begun to leave, where it waited so long that nobody can use it.
+std::size_t StuckPackets(const TxState& state, const TxStream& stream, Time now) {
+  if (stream.HeadAge(now) < 2 * MaxQueueDelay(state)) return 0;
+  std::optional<guint32> frame;
+  std::size_t packets = 0;
+  for (const TxItem& item : stream.queue) {
+    if (!item.buffer) continue;
+    if (frame && *frame != item.header.timestamp) break;
+    frame = item.header.timestamp;
+    ++packets;
+  }
+  return packets;
+}
+
 /// Live input that waited too long is of no use any more, and in the way of what comes next.
 void DropLate(TxState& state, TxStream& stream, Time now) {
   std::size_t late = state.controller->LatePackets(now, stream.id);
+  if (late == 0) late = StuckPackets(state, stream, now);
   if (late == 0) return;
   state.controller->OnDropped(now, stream.id, late);
   std::optional<guint32> frame;

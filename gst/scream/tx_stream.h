@@ -24,7 +24,7 @@ struct TxItem {
   Time queued{};
 };
 
-/// The share of the wire's bytes that are payload of the main SSRC: the rest is RTP, UDP and IP
+/// The share of the wire's bytes that are payload of the media itself: the rest is RTP, UDP and IP
 /// headers, retransmission and FEC, which the encoder knows nothing of.
 class OverheadMeter {
  public:
@@ -48,12 +48,13 @@ struct TxStream {
   OverheadMeter overhead;
   scream::TargetNotifier notifier;
   std::optional<GstLidarBitrateBounds> bounds;
-  std::optional<guint32> ssrc;      // of the media: from caps, or the first seen
-  scream::StreamConfig config;      // as the controller has it
-  double configured_share = 1;      // payload share that `config` was made with
-  GstSegment segment{};             // of the pad, for the entry and for a merged output
-  GstClockID entry_wait = nullptr;  // not owned
-  std::optional<bool> live;         // not known before the first buffer
+  std::optional<guint32> ssrc;         // of the media: from caps, or the first seen
+  std::optional<guint8> payload_type;  // likewise
+  scream::StreamConfig config;         // as the controller has it
+  double configured_share = 1;         // payload share that `config` was made with
+  GstSegment segment{};                // of the pad, for the entry and for a merged output
+  GstClockID entry_wait = nullptr;     // not owned
+  std::optional<bool> live;            // not known before the first buffer
   bool has_caps = false;
   bool is_video = false;
   bool eos = false;

@@ -99,6 +99,16 @@ class ScreamTx : public ::testing::Test {
       gst_event_unref(event);
     }
   }
+  /// The target that the pulse brings, long after everything before.
+  GstLidarTargetBitrate NextTarget(GstHarness* h) {
+    g_usleep(20'000);  // the control thread runs on real time; what is left over comes now
+    Targets(h);
+    time.Advance(250 * GST_MSECOND);
+    GstLidarTargetBitrate target{};
+    const EventPtr event(WaitForUpstream(h, "target-bitrate"));
+    if (event) gst_lidar_event_parse_target_bitrate(event.get(), &target);
+    return target;
+  }
   bool HasEos() {
     bool eos = false;
     while (EventPtr event{gst_harness_try_pull_event(rtp.get())})
@@ -217,7 +227,7 @@ TEST_F(ScreamTx, DropsLateFramesOfLiveInputWhole) {
     PushFrame(frame * 900, 30);
     time.Advance(10 * GST_MSECOND);
   }
-  time.Advance(300 * GST_MSECOND);
+  time.Advance(110 * GST_MSECOND);
   PushFrame(99999, 2);
   for (int i = 0; i < 50; ++i) {
     time.Advance(10 * GST_MSECOND);
@@ -232,6 +242,17 @@ TEST_F(ScreamTx, DropsLateFramesOfLiveInputWhole) {
   const Stats stats(element);
   EXPECT_EQ(stats["frames-dropped"], 4U);
   EXPECT_EQ(stats["packets-dropped"], 120U);
+}
+
+TEST_F(ScreamTx, GivesUpTheRestOfAFrameThatStuckOnItsWay) {
+  g_object_set(element, "max-queue-delay", guint64{100 * GST_MSECOND}, nullptr);
+  Start();
+  PushFrame(0, 100);
+  time.Advance(190 * GST_MSECOND);
+  EXPECT_EQ(Stats(element)["frames-dropped"], 0U);
+  time.Advance(15 * GST_MSECOND);
+  EXPECT_EQ(Stats(element)["frames-dropped"], 1U);
+  EXPECT_EQ(Stats(element)["queued-bytes"], 0U);
 }
 
 TEST_F(ScreamTx, AsksAVideoEncoderForAKeyFrameAfterADrop) {
@@ -339,13 +360,16 @@ TEST_F(ScreamTx, TellsTheEncoderItsOwnBoundsAndStartsWithinThem) {
   Targets(rtp.get());
   const GstLidarBitrateBounds bounds{3'000'000, 8'000'000, 5'000'000};
   ASSERT_TRUE(gst_harness_push_event(rtp.get(), gst_lidar_event_new_bitrate_bounds(&bounds)));
-  time.Advance(GST_SECOND);
-  const EventPtr event(WaitForUpstream(rtp.get(), "target-bitrate"));
-  GstLidarTargetBitrate target{};
-  ASSERT_TRUE(gst_lidar_event_parse_target_bitrate(event.get(), &target));
-  EXPECT_NEAR(target.min_bitrate, 3'000'000, 10'000);
-  EXPECT_NEAR(target.max_bitrate, 8'000'000, 10'000);
-  EXPECT_GE(target.bitrate, 2'990'000U);
+  GstLidarTargetBitrate told{};
+  do {
+    time.Advance(201 * GST_MSECOND);
+    const EventPtr event(WaitForUpstream(rtp.get(), "target-bitrate"));
+    ASSERT_TRUE(event);
+    ASSERT_TRUE(gst_lidar_event_parse_target_bitrate(event.get(), &told));
+  } while (told.min_bitrate < 2'000'000);
+  EXPECT_NEAR(told.min_bitrate, 3'000'000, 10'000);
+  EXPECT_NEAR(told.max_bitrate, 8'000'000, 10'000);
+  EXPECT_GE(told.bitrate, 2'990'000U);
 }
 
 TEST_F(ScreamTx, AFlushForgetsTheQueueAndItGoesOn) {
@@ -403,14 +427,92 @@ TEST_F(ScreamTx, SharesTheTargetByPriority) {
       Acknowledge(i % 4 == 0 ? scream::Ecn::kCe : scream::Ecn::kEct1);
     }
   }
-  time.Advance(250 * GST_MSECOND);
-  const auto first = Targets(rtp.get());
-  const auto other = Targets(second.get());
-  ASSERT_FALSE(first.empty());
-  ASSERT_FALSE(other.empty());
-  EXPECT_EQ(first.back().ssrc, 0x1234U);
-  EXPECT_EQ(other.back().ssrc, 0x5678U);
-  EXPECT_NEAR(static_cast<double>(first.back().bitrate) / other.back().bitrate, 4, 0.5);
+  const GstLidarTargetBitrate first = NextTarget(rtp.get());
+  const GstLidarTargetBitrate other = NextTarget(second.get());
+  EXPECT_EQ(first.ssrc, 0x1234U);
+  EXPECT_EQ(other.ssrc, 0x5678U);
+  EXPECT_NEAR(static_cast<double>(first.bitrate) / other.bitrate, 4, 0.5);
+}
+
+struct Companion {
+  const char* name;
+  guint32 ssrc;
+  guint8 payload_type;
+};
+class ScreamTxWith : public ScreamTx, public ::testing::WithParamInterface<Companion> {};
+TEST_P(ScreamTxWith, LeavesTheEncoderWhatItsCompanionDoesNotTake) {
+  g_object_set(element, "start-bitrate", 4'000'000, "min-bitrate", 4'000'000, "max-bitrate",
+               4'000'000, nullptr);
+  Start();
+  for (guint16 i = 0; i < 400; ++i) {
+    PushFrame(i * 900U, 1);
+    Rtp repair;
+    repair.ssrc = GetParam().ssrc;
+    repair.payload_type = GetParam().payload_type;
+    repair.seq = GetParam().ssrc == 0x1234 ? next_seq_++ : i;
+    repair.timestamp = i * 900U;
+    ASSERT_EQ(Push(repair), GST_FLOW_OK);
+    time.Advance(10 * GST_MSECOND);
+    Acknowledge();
+  }
+  const GstLidarTargetBitrate target = NextTarget(rtp.get());
+  EXPECT_EQ(target.ssrc, 0x1234U);
+  EXPECT_NEAR(target.bitrate, 4'000'000 * 1188.0 / 1228 / 2, 40'000);
+  EXPECT_EQ(Stats(element)["packets-lost"], 0U);
+}
+INSTANTIATE_TEST_SUITE_P(Companions, ScreamTxWith,
+                         ::testing::Values(Companion{"rtx", 0x5678, 97},
+                                           Companion{"ulpfec", 0x1234, 122}),
+                         [](const auto& i) { return i.param.name; });
+
+TEST_F(ScreamTx, HoldsNoMoreThanItsDelayThroughAnOutageAndRecoversWithinASecond) {
+  g_object_set(element, "start-bitrate", 4'000'000, "min-bitrate", 200'000, nullptr);
+  Start();
+  guint32 frame = 0;
+  const auto run = [&](guint64 duration, bool path) {
+    for (guint64 t = 0; t < duration; t += 20 * GST_MSECOND) {
+      PushFrame(frame++ * 1800, 4);
+      for (int k = 0; k < 2; ++k) {
+        time.Advance(10 * GST_MSECOND);
+        if (path) {
+          Acknowledge();
+        } else {
+          Collect();
+          acknowledged_ = sent.size();  // lost
+        }
+      }
+    }
+  };
+  run(4 * GST_SECOND, true);
+  const guint64 before = Stats(element)["target-bitrate"];
+  run(30 * GST_SECOND, false);
+  const Stats down(element);
+  EXPECT_LT(down["target-bitrate"], before / 2);
+  EXPECT_LT(down["sent-bitrate"], 400'000U);
+  EXPECT_GT(down["feedback-timeouts"], 0U);
+  EXPECT_GT(down["frames-dropped"], 1000U);
+  // 4 packets each 20 ms for at most twice the 200 ms: a frame that has begun is in no hurry to go.
+  EXPECT_LE(down["queued-bytes"], 21U * 4 * 1228);
+  EXPECT_GT(down["packets-sent"], 0U);
+  run(GST_SECOND, true);
+  EXPECT_GT(Stats(element)["target-bitrate"], before / 2);
+}
+
+TEST_F(ScreamTx, IsNotMovedByAFloodOfTheSameReport) {
+  Start();
+  for (guint32 i = 0; i < 20; ++i) {
+    PushFrame(i * 900, 2);
+    time.Advance(10 * GST_MSECOND);
+    Acknowledge();
+  }
+  const Stats before(element);
+  CongestionFeedback old;
+  old.blocks.push_back({0x1234, 0, {{true, scream::Ecn::kEct1, Duration{0}}}});
+  for (int i = 0; i < 2000; ++i) Feed(old);
+  const Stats after(element);
+  EXPECT_EQ(after["packets-ce"], before["packets-ce"]);
+  EXPECT_EQ(after["packets-acked"], before["packets-acked"]);
+  EXPECT_GE(after["target-bitrate"], before["target-bitrate"]);
 }
 
 TEST_F(ScreamTx, SendsKeyUnitRequestsToTheStreamThatTheyName) {
