@@ -89,12 +89,23 @@ GstFlowReturn Gate(const TxState& state, const TxStream& stream) {
   return state.flow;
 }
 
+/// Asks upstream once a stream.
+bool KnownLive(TxState& state, TxStream& stream, GstPad* pad) {
+  {
+    TxLock lock(state.mutex);
+    if (stream.live) return *stream.live;
+  }
+  const bool live = IsLive(pad);
+  TxLock lock(state.mutex);
+  stream.live = live;
+  return live;
+}
+
 template <class Take>
 GstFlowReturn Queue(GstLidarScreamTx* self, GstPad* pad, GstBuffer* first, Take take) {
   TxState& state = *self->state;
   TxStream& stream = *PadStream(pad);
-  if (!stream.live) stream.live = IsLive(pad);
-  if (!*stream.live) {
+  if (!KnownLive(state, stream, pad)) {
     WaitForRoom(state, stream);
     WaitForEntry(self, stream, first);
   }
