@@ -131,13 +131,17 @@ gboolean SetCaps(GstLidarDracoEnc* self, GstCaps* caps) {
         {{info->fields, info->point_step}, info->height, info->sensor_model},
         static_cast<Geometry>(settings.geometry), static_cast<RangeCoder>(settings.range_coder));
   }
+  if (stream.encoder && stream.encoder->geometry() == Geometry::kRange &&
+      info->width > info->sensor_model->columns_per_scan) {
+    stream.encoder.reset();
+  }
   if (!stream.encoder) {
     GST_ELEMENT_ERROR(
         self, STREAM, FORMAT,
         ("This cloud cannot be encoded with geometry=%s.",
          lidar::gst::GeometryName(settings.geometry)),
-        ("range needs a field range:U32 and a sensor-model, xyz the fields x, y and z as F32 side "
-         "by side; caps are %" GST_PTR_FORMAT,
+        ("range needs a field range:U32 and a sensor-model with at least as many columns, xyz the "
+         "fields x, y and z as F32 side by side; caps are %" GST_PTR_FORMAT,
          static_cast<gpointer>(caps)));
     return FALSE;
   }

@@ -20,6 +20,11 @@ void Store(T value, std::uint8_t* bytes) {
   std::memcpy(bytes, &value, sizeof value);
 }
 
+/// Null also where the field has another type: caps may come from a network.
+const PointField* FindTyped(const PointFields& fields, const char* name, FieldType type) {
+  return fields.Has(name, type) ? fields.Find(name) : nullptr;
+}
+
 }  // namespace
 
 PointFields KeptFields(const PointFields& input, bool with_intensity, bool with_range) {
@@ -87,24 +92,26 @@ void ReadXyz(ByteView raw, const CloudLayout& layout, bool with_intensity, XyzCl
 void WriteRangeImage(const RangeImage& image, const IntensityScale& scale,
                      const RangeProjection& projection, const CloudLayout& layout,
                      std::uint8_t* raw) {
-  std::memset(raw, 0, image.size() * layout.point_step);
+  const PointField* range = FindTyped(layout.fields, "range", FieldType::kU32);
+  const PointField* intensity =
+      image.intensity.empty() ? nullptr : FindTyped(layout.fields, "intensity", FieldType::kF32);
+  // Where these are all there is, every byte is written below.
+  const PointFields kept = KeptFields(layout.fields, intensity != nullptr, range != nullptr);
+  if (kept != layout.fields || layout.point_step != kept.MinimumStep())
+    std::memset(raw, 0, image.size() * layout.point_step);
   projection.Project(image.ranges.data(), {image.first_column, image.columns},
                      raw + layout.fields.Find("x")->offset, layout.point_step);
-  if (const PointField* range = layout.fields.Find("range")) {
-    std::uint8_t* point = raw + range->offset;
-    for (std::size_t i = 0; i < image.size(); ++i, point += layout.point_step)
-      Store(image.ranges[i], point);
+  for (std::size_t i = 0; i < image.size(); ++i, raw += layout.point_step) {
+    if (range != nullptr) Store(image.ranges[i], raw + range->offset);
+    if (intensity == nullptr) continue;
+    const bool missing = image.ranges[i] == 0;
+    Store(missing ? 0.0F : scale.ValueOf(image.intensity[i]), raw + intensity->offset);
   }
-  const PointField* intensity = layout.fields.Find("intensity");
-  if (intensity == nullptr || image.intensity.empty()) return;
-  std::uint8_t* point = raw + intensity->offset;
-  for (std::size_t i = 0; i < image.size(); ++i, point += layout.point_step)
-    if (image.ranges[i] != 0) Store(scale.ValueOf(image.intensity[i]), point);
 }
 
 void WriteXyz(const XyzCloud& cloud, const CloudLayout& layout, std::uint8_t* raw) {
   const std::uint32_t xyz_offset = layout.fields.Find("x")->offset;
-  const PointField* intensity = layout.fields.Find("intensity");
+  const PointField* intensity = FindTyped(layout.fields, "intensity", FieldType::kF32);
   const bool has_intensity = intensity != nullptr && cloud.intensity.size() == cloud.size();
   std::memset(raw, 0, cloud.size() * layout.point_step);
   for (std::size_t i = 0; i < cloud.size(); ++i, raw += layout.point_step) {

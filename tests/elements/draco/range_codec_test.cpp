@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <random>
 
 #include "draco/codec/slice_decoder.h"
@@ -188,6 +189,22 @@ INSTANTIATE_TEST_SUITE_P(
                       StreamCase{"residual", Geometry::kRange, RangeCoder::kResidual, 7, 1.0},
                       StreamCase{"adaptive", Geometry::kRange, RangeCoder::kAdaptive, 7, 0.03}),
     [](const auto& c) { return c.param.name; });
+
+TEST_P(HostileStreams, OfFieldsWithOddTypesStayInsideTheirBuffer) {
+  const auto stream = Stream();
+  CloudFormat format = Format();
+  format.layout.fields = *PointFields::Parse("x:F32:0,y:F32:4,z:F32:8,intensity:U8:12,range:U8:13");
+  format.layout.point_step = 14;
+  SliceDecoder decoder(format, GetParam().geometry, 4096);
+  const auto shape = decoder.Decode({stream.data(), stream.size()});
+  ASSERT_TRUE(shape);
+  const std::size_t size = std::size_t{shape->width} * shape->height * 14;
+  std::vector<std::uint8_t> raw(size + 16, 0xAA);
+  decoder.Write(raw.data());
+  EXPECT_EQ(std::count(raw.begin() + static_cast<std::ptrdiff_t>(size), raw.end(), 0xAA), 16);
+  EXPECT_EQ(raw[12], 0);
+  EXPECT_EQ(raw[13], 0);
+}
 
 TEST(RangeGrids, AreExactInTheSensorsUnit) {
   EXPECT_EQ(RangeGrid::ForError(0.02, 1).cells(), 41U);
