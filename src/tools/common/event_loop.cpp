@@ -58,7 +58,10 @@ EventLoop::EventLoop()
     std::uint64_t expirations = 0;
     [[maybe_unused]] const ssize_t n = read(timer_.get(), &expirations, sizeof expirations);
   });
-  Watch(signals_.get(), [this] { Stop(); });
+  Watch(signals_.get(), [this] {
+    signalfd_siginfo info{};
+    while (read(signals_.get(), &info, sizeof info) > 0) Stop();
+  });
 }
 
 void EventLoop::Watch(int fd, std::function<void()> readable) {

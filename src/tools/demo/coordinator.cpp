@@ -236,18 +236,27 @@ void Coordinator::Tick() {
 int Coordinator::Run() {
   Enter(Phase::kReceiver);
   Time next = Now();
-  loop_.Run([&] {
+  const auto before_wait = [&] {
     if (Now() >= next) {
       Tick();
       next = Now() + kTick;
     }
     loop_.SetWakeUp(next);
-  });
+  };
+  loop_.Run(before_wait);
+  if (failure_.empty() && phase_ == Phase::kStreaming) {
+    // Ctrl-C: what has been streamed is worth a report.
+    Enter(Phase::kDraining);
+    loop_.Run(before_wait);
+  }
   if (failure_.empty() && phase_ != Phase::kLinkStops) failure_ = "interrupted";
   if (!failure_.empty()) {
     // Both pipes must end before the comparer can.
-    sender_.reset();
-    receiver_.reset();
+    for (ChildProcess* child : {sender_.get(), receiver_.get()}) {
+      if (child == nullptr) continue;
+      child->Signal(SIGKILL);
+      child->Wait();
+    }
     throw std::runtime_error(failure_);
   }
   return Report();
