@@ -38,7 +38,8 @@ struct Property {
   gint mutability = GST_PARAM_MUTABLE_READY;
 };
 
-// Where gcc 12 sees the table's values and no row is a string, it warns of reading one past Settings.
+// Where gcc 12 sees the table's values and no row is a string, it warns of reading one past
+// Settings.
 #if defined(__GNUC__) && !defined(__clang__)
 #pragma GCC diagnostic push
 #pragma GCC diagnostic ignored "-Warray-bounds"

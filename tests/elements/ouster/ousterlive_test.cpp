@@ -203,9 +203,8 @@ TEST(OusterLive, DamagedPacketsAreToldByTheirCrc) {
   while (sensor.counts().sent < sent + 50) g_usleep(1000);
   sensor.Fault({{"corrupt", 0.0}});
   const auto corrupted = sensor.counts().corrupted;
-  ASSERT_TRUE(receiver.PullUntil([&](GstBuffer*) {
-    return Stat(receiver.source(), "packets-damaged") + 2 >= corrupted;
-  }));
+  ASSERT_TRUE(receiver.PullUntil(
+      [&](GstBuffer*) { return Stat(receiver.source(), "packets-damaged") + 2 >= corrupted; }));
   EXPECT_GE(corrupted, 50U);
   EXPECT_NEAR(static_cast<double>(Stat(receiver.source(), "packets-damaged")),
               static_cast<double>(corrupted), 2);
