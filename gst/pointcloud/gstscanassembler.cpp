@@ -15,6 +15,7 @@
 
 #include "common/cloud_info.h"
 #include "common/properties.h"
+#include "pointcloud/scan_caps.h"
 #include "pointcloud/scan_queue.h"
 
 GST_DEBUG_CATEGORY_STATIC(gst_lidar_scan_assembler_debug);
@@ -82,19 +83,14 @@ void PushCaps(GstLidarScanAssembler* self, guint width) {
   State& state = *self->state;
   CapsPtr caps;
   lidar::gst::EventPtr segment;
-  bool padded = false;
   {
     std::lock_guard lock(state.mutex);
     if (state.out_width == width || !state.in_caps) return;
     state.out_width = width;
     state.caps_sent = true;
     segment = std::move(state.early_segment);
-    caps.reset(gst_caps_copy(state.in_caps.get()));
-    padded = lidar::gst::ScanBuilder::IsOrganised(*state.info) && width != state.info->width;
+    caps = lidar::gst::ScanCaps(state.in_caps.get(), *state.info, width);
   }
-  gst_caps_set_simple(caps.get(), "width", G_TYPE_INT, static_cast<gint>(width), nullptr);
-  // Dense slices do not make a dense scan when one is lost.
-  if (padded) gst_caps_set_simple(caps.get(), "is-dense", G_TYPE_BOOLEAN, FALSE, nullptr);
   gst_pad_push_event(self->srcpad, gst_event_new_caps(caps.get()));
   if (segment) gst_pad_push_event(self->srcpad, segment.release());
 }
@@ -119,19 +115,6 @@ GstFlowReturn PushAll(GstLidarScanAssembler* self) {
     self->state->queue.FinishAll(&finished);
   }
   return PushScans(self, &finished);
-}
-
-/// Until when a scan may wait that begins with this slice, as running time.
-GstClockTime DeadlineOf(const State& state, const lidar::gst::SliceView& slice) {
-  const GstClockTime scan = slice.info->ScanDuration();
-  GstClockTime pts = GST_BUFFER_PTS(slice.buffer);
-  if (!state.live || !GST_CLOCK_TIME_IS_VALID(pts) || !GST_CLOCK_TIME_IS_VALID(scan))
-    return GST_CLOCK_TIME_NONE;
-  const GstClockTime before = scan / slice.meta.slice_count * slice.meta.slice_index;
-  const GstClockTime running =
-      gst_segment_to_running_time(&state.segment, GST_FORMAT_TIME, pts > before ? pts - before : 0);
-  if (!GST_CLOCK_TIME_IS_VALID(running)) return GST_CLOCK_TIME_NONE;
-  return running + scan + state.upstream_latency + state.settings.max_wait;
 }
 
 /// The latency that slices of such a scan cause; posts it when it is news.
@@ -194,7 +177,11 @@ GstFlowReturn Chain(GstPad*, GstObject* parent, GstBuffer* buffer) {
   {
     std::lock_guard lock(state.mutex);
     const guint64 invalid = state.queue.counters().invalid;
-    state.queue.Add(slice, DeadlineOf(state, slice), &finished);
+    const GstClockTime deadline =
+        state.live ? lidar::gst::DeadlineOf(
+                         slice, {&state.segment, state.upstream_latency, state.settings.max_wait})
+                   : GST_CLOCK_TIME_NONE;
+    state.queue.Add(slice, deadline, &finished);
     if (state.queue.counters().invalid != invalid)
       GST_WARNING_OBJECT(self, "slice %u of %u of scan %u does not fit: dropped",
                          slice.meta.slice_index, slice.meta.slice_count, slice.meta.scan_id);
@@ -267,15 +254,9 @@ void SetFlushing(GstLidarScanAssembler* self, bool flushing) {
 void TakeCaps(GstLidarScanAssembler* self, GstCaps* caps, CloudInfo&& info) {
   State& state = *self->state;
   std::lock_guard lock(state.mutex);
-  const auto same = [&] {
-    CapsPtr a(gst_caps_copy(caps));
-    CapsPtr b(gst_caps_copy(state.in_caps.get()));
-    gst_caps_set_simple(a.get(), "width", G_TYPE_INT, 1, nullptr);
-    gst_caps_set_simple(b.get(), "width", G_TYPE_INT, 1, nullptr);
-    return gst_caps_is_equal(a.get(), b.get()) != FALSE;
-  };
   // Slices of unorganised clouds differ in width; that is no change for the scan.
-  if (!state.in_caps || !same()) state.out_width = 0;
+  if (!state.in_caps || !lidar::gst::SameButForWidth(caps, state.in_caps.get()))
+    state.out_width = 0;
   state.in_caps.reset(gst_caps_ref(caps));
   state.info = std::move(info);
 }
@@ -294,16 +275,36 @@ gboolean HandleCaps(GstLidarScanAssembler* self, GstEvent* event) {
   bool scan_changes = false;
   {
     std::lock_guard lock(state.mutex);
-    scan_changes =
-        state.info &&
-        (state.info->height != info->height || state.info->point_step != info->point_step ||
-         !(state.info->fields == info->fields) ||
-         (lidar::gst::ScanBuilder::IsOrganised(*info) && state.info->width != info->width));
+    scan_changes = state.info && lidar::gst::CannotMix(*state.info, *info);
   }
   // What is open was made of the old slices, and leaves with the old caps.
   if (scan_changes) PushAll(self);
   TakeCaps(self, caps, *std::move(info));
   return TRUE;
+}
+
+/// True where the event waits for the caps, which go first; it is then taken.
+bool HoldSegment(GstLidarScanAssembler* self, GstEvent* event) {
+  State& state = *self->state;
+  const GstSegment* segment = nullptr;
+  gst_event_parse_segment(event, &segment);
+  // Open scans belong to the segment that they began in.
+  if (!gst_segment_is_equal(segment, &state.segment)) PushAll(self);
+  std::lock_guard lock(state.mutex);
+  gst_segment_copy_into(segment, &state.segment);
+  if (!state.caps_sent) state.early_segment.reset(event);
+  return !state.caps_sent;
+}
+
+void ForgetAll(GstLidarScanAssembler* self) {
+  State& state = *self->state;
+  {
+    std::lock_guard lock(state.mutex);
+    state.queue.Clear();
+    state.early_segment.reset();
+    gst_segment_init(&state.segment, GST_FORMAT_TIME);
+  }
+  SetFlushing(self, false);
 }
 
 gboolean SinkEvent(GstPad* pad, GstObject* parent, GstEvent* event) {
@@ -312,17 +313,9 @@ gboolean SinkEvent(GstPad* pad, GstObject* parent, GstEvent* event) {
   switch (GST_EVENT_TYPE(event)) {
     case GST_EVENT_CAPS:
       return HandleCaps(self, event);
-    case GST_EVENT_SEGMENT: {
-      const GstSegment* segment = nullptr;
-      gst_event_parse_segment(event, &segment);
-      // Open scans belong to the segment that they began in.
-      if (!gst_segment_is_equal(segment, &state.segment)) PushAll(self);
-      std::lock_guard lock(state.mutex);
-      gst_segment_copy_into(segment, &state.segment);
-      if (state.caps_sent) break;
-      state.early_segment.reset(event);
-      return TRUE;
-    }
+    case GST_EVENT_SEGMENT:
+      if (HoldSegment(self, event)) return TRUE;
+      break;
     case GST_EVENT_EOS:
       PushAll(self);
       break;
@@ -341,13 +334,7 @@ gboolean SinkEvent(GstPad* pad, GstObject* parent, GstEvent* event) {
       return result;
     }
     case GST_EVENT_FLUSH_STOP: {
-      {
-        std::lock_guard lock(state.mutex);
-        state.queue.Clear();
-        state.early_segment.reset();
-        gst_segment_init(&state.segment, GST_FORMAT_TIME);
-      }
-      SetFlushing(self, false);
+      ForgetAll(self);
       const gboolean result = gst_pad_event_default(pad, parent, event);
       gst_pad_start_task(self->srcpad, TimerLoop, self, nullptr);
       return result;

@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// From the caps of slices to those of the scans made of them.
+#pragma once
+#include "common/cloud_info.h"
+#include "common/refs.h"
+#include "pointcloud/scan_builder.h"
+
+namespace lidar::gst {
+
+/// Caps of a scan of `width` columns whose slices have the caps `slice`.
+CapsPtr ScanCaps(const GstCaps* slice, const CloudInfo& slice_info, guint width);
+/// True where the caps say the same but for the width.
+bool SameButForWidth(const GstCaps* a, const GstCaps* b);
+/// True where slices of the one kind and of the other cannot be of one scan.
+bool CannotMix(const CloudInfo& a, const CloudInfo& b);
+
+struct DeadlineRules {
+  const GstSegment* segment;
+  GstClockTime upstream_latency;
+  GstClockTime max_wait;
+};
+/// Running time until which the scan of a slice may wait; NONE where its times are not known.
+GstClockTime DeadlineOf(const SliceView& slice, const DeadlineRules& rules);
+
+}  // namespace lidar::gst
