@@ -127,39 +127,48 @@ std::optional<PointWriter> PointWriter::Create(const Metadata& metadata,
   w.pixel_size_ = static_cast<std::uint32_t>(metadata.format.pixel_size());
   w.columns_ = metadata.model.columns_per_scan;
   w.projection_ = std::make_shared<PixelProjection>(metadata);
+  if (!w.ChooseFields(options, error) || !w.SetFilters(options, metadata, error))
+    return std::nullopt;
+  return w;
+}
+
+bool PointWriter::ChooseFields(const PointOptions& options, std::string* error) {
   const bool second = options.returns == Return::kSecond;
-  w.range_ = ReaderFor(w.format_, second ? Channel::kRange2 : Channel::kRange);
-  w.intensity_ = ReaderFor(w.format_, second ? Channel::kReflectivity2 : Channel::kReflectivity);
-  w.fields_.Add("x", FieldType::kF32).Add("y", FieldType::kF32).Add("z", FieldType::kF32);
-  w.fields_.Add("intensity", FieldType::kF32).Add("range", FieldType::kU32);
+  range_ = ReaderFor(format_, second ? Channel::kRange2 : Channel::kRange);
+  intensity_ = ReaderFor(format_, second ? Channel::kReflectivity2 : Channel::kReflectivity);
+  fields_.Add("x", FieldType::kF32).Add("y", FieldType::kF32).Add("z", FieldType::kF32);
+  fields_.Add("intensity", FieldType::kF32).Add("range", FieldType::kU32);
   if (options.returns == Return::kBoth) {
-    w.fields_.Add("range2", FieldType::kU32).Add("intensity2", FieldType::kF32);
-    w.range2_ = ReaderFor(w.format_, Channel::kRange2);
-    w.intensity2_ = ReaderFor(w.format_, Channel::kReflectivity2);
+    fields_.Add("range2", FieldType::kU32).Add("intensity2", FieldType::kF32);
+    range2_ = ReaderFor(format_, Channel::kRange2);
+    intensity2_ = ReaderFor(format_, Channel::kReflectivity2);
   }
   for (const std::string& name : options.channels) {
-    if (w.AddExtra(name, second)) continue;
-    *error = "profile " + profile + " has no channel " + name;
-    return std::nullopt;
+    if (AddExtra(name, second)) continue;
+    *error = "profile " + std::string(ToString(format_.profile)) + " has no channel " + name;
+    return false;
   }
-  w.point_step_ =
-      (w.fields_.MinimumStep() + kPointAlignment - 1) / kPointAlignment * kPointAlignment;
-  w.min_range_mm_ = ToMillimetres(options.min_range_m);
-  w.max_range_mm_ = options.max_range_m > 0 ? ToMillimetres(options.max_range_m)
-                                            : std::numeric_limits<std::uint32_t>::max();
-  w.invalid_ = options.invalid;
+  point_step_ = (fields_.MinimumStep() + kPointAlignment - 1) / kPointAlignment * kPointAlignment;
+  return true;
+}
+
+bool PointWriter::SetFilters(const PointOptions& options, const Metadata& metadata,
+                             std::string* error) {
+  min_range_mm_ = ToMillimetres(options.min_range_m);
+  max_range_mm_ = options.max_range_m > 0 ? ToMillimetres(options.max_range_m)
+                                          : std::numeric_limits<std::uint32_t>::max();
+  invalid_ = options.invalid;
   if (!options.mask_image.empty()) {
     auto mask =
         ParseMaskImage({options.mask_image.data(), options.mask_image.size()}, metadata, error);
-    if (!mask) return std::nullopt;
-    w.mask_ = *std::move(mask);
+    if (!mask) return false;
+    mask_ = *std::move(mask);
   }
   if (options.destagger)
     for (const Beam& beam : metadata.model.beams)
-      w.shifts_.push_back(
-          static_cast<std::uint32_t>(beam.pixel_shift + static_cast<int>(w.columns_)));
-  if (!options.sectors.empty()) w.MaskSectors(options.sectors);
-  return w;
+      shifts_.push_back(static_cast<std::uint32_t>(beam.pixel_shift + static_cast<int>(columns_)));
+  if (!options.sectors.empty()) MaskSectors(options.sectors);
+  return true;
 }
 
 bool PointWriter::AddExtra(const std::string& name, bool second) {

@@ -77,6 +77,8 @@ class PointWriter {
   };
 
   PointWriter() = default;
+  bool ChooseFields(const PointOptions& options, std::string* error);
+  bool SetFilters(const PointOptions& options, const Metadata& metadata, std::string* error);
   bool AddExtra(const std::string& name, bool second);
   void MaskSectors(const std::vector<Sector>& sectors);
   bool Keeps(std::uint32_t beam, std::uint32_t column, std::uint32_t range_mm) const;
