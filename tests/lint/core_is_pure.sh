@@ -10,7 +10,7 @@ if grep -rnE '#include <(gst|glib|gio|draco|sys/socket)|steady_clock|system_cloc
   echo "src/ (src/tools excepted) must not use the above." >&2
   status=1
 fi
-if grep -rln '#include [<"]draco/' gst ext src tests --include='*.cpp' --include='*.h' |
+if grep -rln '#include <draco/' gst ext src tests --include='*.cpp' --include='*.h' |
   grep -vE '^(ext/draco|tests)/'; then
   echo "Only ext/draco may include Draco's headers." >&2
   status=1
