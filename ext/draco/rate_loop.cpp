@@ -48,7 +48,7 @@ LoopResult RateLoop::Encode(const SlicePlace& place, const LoopSettings& setting
   result.skipped = decision.skip;
   result.keep_fraction = decision.keep_fraction;
   if (decision.skip) return result;
-  if (decision.keep_fraction < 1)
+  if (decision.keep_fraction < 1 && encoder->rows() > 0)
     encoder->Thin(rate::ThinningPattern(encoder->rows(), decision.keep_fraction));
   for (std::optional<rate::Settings> next = decision.settings; next;) {
     result.intensity_bits = next->intensity_bits;

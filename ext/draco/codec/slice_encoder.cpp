@@ -84,7 +84,10 @@ void SliceEncoder::Thin(const std::vector<bool>& kept) {
   if (range_encoder_) {
     for (std::uint32_t beam = 0; beam < image_.beams; ++beam) {
       const auto row = image_.ranges.begin() + beam * std::ptrdiff_t{image_.columns};
-      if (!kept[beam]) std::fill_n(row, image_.columns, 0);
+      if (kept[beam]) continue;
+      returns_ -=
+          image_.columns - static_cast<std::size_t>(std::count(row, row + image_.columns, 0U));
+      std::fill_n(row, image_.columns, 0);
     }
     return;
   }
@@ -95,6 +98,7 @@ void SliceEncoder::Thin(const std::vector<bool>& kept) {
     if (!cloud_.intensity.empty()) cloud_.intensity[count] = cloud_.intensity[i];
     ++count;
   }
+  returns_ = count;
   cloud_.xyz.resize(3 * count);
   if (!cloud_.intensity.empty()) cloud_.intensity.resize(count);
 }

@@ -86,5 +86,28 @@ TEST(DracoEnc, SkipsWholeScansEvenlyBelowTheMinimum) {
   EXPECT_EQ(CountGaps(tight.get()), 8 * skipped);
 }
 
+TEST(DracoEnc, ThinsScansInsteadWhereTheFrameRateMattersMore) {
+  const SensorModel model = test::RoomSensor();
+  const Harness free(gst_harness_new_parse("dracoenc intensity-bits=0"));
+  const Harness tight(gst_harness_new_parse(
+      "dracoenc name=enc intensity-bits=0 degradation-preference=maintain-framerate"));
+  const CapsPtr caps(OrganisedInfo(model, 64).ToCaps());
+  gst_harness_set_src_caps(free.get(), gst_caps_ref(caps.get()));
+  gst_harness_set_src_caps(tight.get(), gst_caps_ref(caps.get()));
+  const gsize needed = ScanSizes(free.get(), model, 2)[1];
+  const GstLidarTargetBitrate target{static_cast<guint>(needed) * 40, 0, 0, 0, 0, 0, "update"};
+  gst_harness_push_upstream_event(tight.get(), gst_lidar_event_new_target_bitrate(&target));
+  const auto sizes = ScanSizes(tight.get(), model, 30);
+  double late = 0;
+  for (std::size_t i = 10; i < sizes.size(); ++i) {
+    EXPECT_GT(sizes[i], 0U) << i;
+    late += static_cast<double>(sizes[i]) / 20;
+  }
+  EXPECT_NEAR(late, static_cast<double>(needed) / 2, 0.1 * static_cast<double>(needed));
+  // All returns of the room, less those of the beams that were left out.
+  const ElementPtr enc(gst_bin_get_by_name(GST_BIN(tight->element), "enc"));
+  EXPECT_LT(Counter(enc.get(), "returns"), 30 * 32 * 512 * 3 / 4);
+}
+
 }  // namespace
 }  // namespace lidar::gst
