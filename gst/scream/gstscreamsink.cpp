@@ -20,6 +20,7 @@
 #include "common/refs.h"
 #include "scream/bin_common.h"
 #include "scream/gstscreamsinkpad.h"
+#include "scream/srtp_layer.h"
 #include "scream/tx_settings.h"
 
 GST_DEBUG_CATEGORY_STATIC(gst_lidar_scream_sink_debug);
@@ -45,6 +46,7 @@ struct Settings {
   guint64 stats_interval = TxSettings{}.stats_interval;
   bool send_bye = true;
   bool key_unit_on_loss = TxSettings{}.key_unit_on_loss;
+  SrtpSettings srtp;
 };
 
 constexpr gint kLive = GST_PARAM_MUTABLE_PLAYING;
@@ -75,7 +77,7 @@ const std::array<Property<Settings>, 14> kProperties = {{
     {"key-unit-on-loss", "Ask a video encoder for a key frame when the network lost packets",
      &Settings::key_unit_on_loss, 0, 0, kLive},
 }};
-enum : guint { kPropEstimatedBitrate = kProperties.size() + 1, kPropStats };
+enum : guint { kPropEstimatedBitrate = kProperties.size() + 1, kPropStats, kPropSrtp };
 
 struct State {
   std::mutex mutex;  // guards settings, socket and peer
@@ -83,6 +85,7 @@ struct State {
   SocketPtr socket;
   SocketAddressPtr peer;
   std::atomic<guint64> foreign{0};
+  std::shared_ptr<SrtpLayer> srtp;
 };
 
 }  // namespace
@@ -176,7 +179,15 @@ static bool Open(GstLidarScreamSink* self) {
   g_object_set(self->tx, "packet-overhead", OverheadOf(peer.get()), nullptr);
   GiveSocket(self->sink, socket.get());
   GiveSocket(self->src, socket.get());
+  std::shared_ptr<SrtpLayer> srtp;
+  if (!StartSrtp(s.srtp,
+                 {GST_ELEMENT(self), self->tx, "src", "rtcp_sink", self->sink, self->src, true},
+                 &srtp))
+    return false;
+  if (srtp)
+    g_object_set(self->tx, "packet-overhead", OverheadOf(peer.get()) + srtp->overhead(), nullptr);
   lock.lock();
+  state.srtp = std::move(srtp);
   state.socket = std::move(socket);
   state.peer = std::move(peer);
   state.foreign = 0;
@@ -185,6 +196,9 @@ static bool Open(GstLidarScreamSink* self) {
 
 static void Close(GstLidarScreamSink* self) {
   State& state = *self->state;
+  std::unique_lock srtp_lock(state.mutex);
+  const std::shared_ptr<SrtpLayer> srtp = std::move(state.srtp);
+  srtp_lock.unlock();
   for (GstElement* child : {self->sink, self->src})
     if (child != nullptr) GiveSocket(child, nullptr);
   std::lock_guard lock(state.mutex);
@@ -269,6 +283,11 @@ static void ChildProxyInit(gpointer iface, gpointer) {
 
 static void SetPropertyVfunc(GObject* o, guint id, const GValue* v, GParamSpec* spec) {
   auto* self = GST_LIDAR_SCREAM_SINK(o);
+  if (id >= kPropSrtp) {
+    std::lock_guard lock(self->state->mutex);
+    SetSrtpProperty(&self->state->settings.srtp, id - kPropSrtp, v);
+    return;
+  }
   {
     std::lock_guard lock(self->state->mutex);
     SetProperty(self->state->settings, kProperties[id - 1], v);
@@ -280,6 +299,10 @@ static void SetPropertyVfunc(GObject* o, guint id, const GValue* v, GParamSpec* 
 static void AddUdpStats(GstLidarScreamSink* self, GstStructure* stats) {
   gst_structure_set(stats, "feedback-foreign-address", G_TYPE_UINT64, self->state->foreign.load(),
                     nullptr);
+  {
+    std::lock_guard lock(self->state->mutex);
+    AddSrtpStats(self->state->srtp.get(), stats);
+  }
   GstStructure* udp = nullptr;
   if (self->sink != nullptr) g_object_get(self->sink, "stats", &udp, nullptr);
   if (udp == nullptr) return;
@@ -298,7 +321,11 @@ static void GetPropertyVfunc(GObject* o, guint id, GValue* v, GParamSpec* spec) 
     return;
   }
   std::lock_guard lock(self->state->mutex);
-  GetProperty(self->state->settings, kProperties[id - 1], v);
+  if (id >= kPropSrtp) {
+    GetSrtpProperty(self->state->settings.srtp, id - kPropSrtp, v);
+  } else {
+    GetProperty(self->state->settings, kProperties[id - 1], v);
+  }
 }
 
 static void InstallOwnProperties(GObjectClass* object) {
@@ -312,6 +339,7 @@ static void InstallOwnProperties(GObjectClass* object) {
       object, kPropStats,
       g_param_spec_boxed("stats", "stats", "Statistics; bitrates in bit/s, times in ns",
                          GST_TYPE_STRUCTURE, kRead));
+  InstallSrtpProperties(object, kPropSrtp);
 }
 
 static void gst_lidar_scream_sink_init(GstLidarScreamSink* self) {

@@ -16,6 +16,7 @@
 #include "common/refs.h"
 #include "scream/bin_common.h"
 #include "scream/rx_private.h"
+#include "scream/srtp_layer.h"
 
 GST_DEBUG_CATEGORY_STATIC(gst_lidar_scream_src_debug);
 #define GST_CAT_DEFAULT gst_lidar_scream_src_debug
@@ -36,6 +37,7 @@ struct Settings {
   guint packets_per_feedback = RxSettings{}.packets_per_feedback;
   gint num_reports = RxSettings{}.num_reports;
   bool eos_on_bye = RxSettings{}.eos_on_bye;
+  SrtpSettings srtp;
 };
 
 constexpr gint kLive = GST_PARAM_MUTABLE_PLAYING;
@@ -64,12 +66,15 @@ enum : guint {
   kPropPtMap,
   kPropUsedSocket,
   kPropStats,
+  kPropSrtp,
 };
 
 struct State {
   std::mutex mutex;  // guards all
   Settings settings;
   SocketPtr socket;
+  std::shared_ptr<SrtpLayer> srtp;
+  CapsPtr caps;  // as the user set them
 };
 
 }  // namespace
@@ -127,13 +132,24 @@ static bool Open(GstLidarScreamSrc* self) {
   }
   GiveSocket(self->src, socket.get());
   GiveSocket(self->sink, socket.get());
+  std::shared_ptr<SrtpLayer> srtp;
+  if (!StartSrtp(s.srtp,
+                 {GST_ELEMENT(self), self->rx, "rtcp_src", "sink", self->sink, self->src, false},
+                 &srtp))
+    return false;
   lock.lock();
+  state.srtp = std::move(srtp);
   state.socket = std::move(socket);
   return true;
 }
 
 static void Close(GstLidarScreamSrc* self) {
   State& state = *self->state;
+  std::unique_lock srtp_lock(state.mutex);
+  const std::shared_ptr<SrtpLayer> srtp = std::move(state.srtp);
+  const CapsPtr caps(state.caps ? gst_caps_ref(state.caps.get()) : nullptr);
+  srtp_lock.unlock();
+  if (srtp) g_object_set(self->src, "caps", caps.get(), nullptr);
   for (GstElement* child : {self->sink, self->src})
     if (child != nullptr) GiveSocket(child, nullptr);
   std::lock_guard lock(state.mutex);
@@ -141,9 +157,33 @@ static void Close(GstLidarScreamSrc* self) {
   state.socket.reset();
 }
 
+/// What the socket gives is SRTP, of which only the bin knows what RTP it becomes.
+static void SetSrtpCaps(GstLidarScreamSrc* self) {
+  State& state = *self->state;
+  std::unique_lock lock(state.mutex);
+  if (!state.srtp) return;
+  CapsPtr caps(state.caps ? gst_caps_copy(state.caps.get()) : nullptr);
+  lock.unlock();
+  if (!caps) {
+    const PadPtr src(gst_element_get_static_pad(GST_ELEMENT(self), "src"));
+    caps.reset(gst_pad_peer_query_caps(src.get(), nullptr));
+    if (!caps || gst_caps_is_any(caps.get()) || gst_caps_is_empty(caps.get())) {
+      caps.reset(gst_caps_new_empty_simple("application/x-rtp"));
+    } else {
+      caps.reset(gst_caps_truncate(gst_caps_make_writable(caps.release())));
+      gst_structure_fixate_field_nearest_int(gst_caps_get_structure(caps.get(), 0), "payload", 96);
+      caps.reset(gst_caps_fixate(caps.release()));
+    }
+  }
+  caps.reset(gst_caps_make_writable(caps.release()));
+  gst_structure_set_name(gst_caps_get_structure(caps.get(), 0), "application/x-srtp");
+  g_object_set(self->src, "caps", caps.get(), nullptr);
+}
+
 static GstStateChangeReturn ChangeState(GstElement* element, GstStateChange change) {
   auto* self = GST_LIDAR_SCREAM_SRC(element);
   if (change == GST_STATE_CHANGE_NULL_TO_READY && !Open(self)) return GST_STATE_CHANGE_FAILURE;
+  if (change == GST_STATE_CHANGE_READY_TO_PAUSED) SetSrtpCaps(self);
   const GstStateChangeReturn result =
       GST_ELEMENT_CLASS(gst_lidar_scream_src_parent_class)->change_state(element, change);
   if (change == GST_STATE_CHANGE_READY_TO_NULL) Close(self);
@@ -178,6 +218,15 @@ static void OnPadRemoved(GstElement*, GstPad* pad, GstElement* bin) {
 
 static void SetPropertyVfunc(GObject* o, guint id, const GValue* v, GParamSpec* spec) {
   auto* self = GST_LIDAR_SCREAM_SRC(o);
+  if (id >= kPropSrtp) {
+    std::lock_guard lock(self->state->mutex);
+    SetSrtpProperty(&self->state->settings.srtp, id - kPropSrtp, v);
+    return;
+  }
+  if (id == kPropCaps) {
+    std::lock_guard lock(self->state->mutex);
+    self->state->caps.reset(static_cast<GstCaps*>(g_value_dup_boxed(v)));
+  }
   if (id <= kProperties.size()) {
     std::lock_guard lock(self->state->mutex);
     SetProperty(self->state->settings, kProperties[id - 1], v);
@@ -187,6 +236,10 @@ static void SetPropertyVfunc(GObject* o, guint id, const GValue* v, GParamSpec* 
 }
 
 static void AddUdpStats(GstLidarScreamSrc* self, GstStructure* stats) {
+  {
+    std::lock_guard lock(self->state->mutex);
+    AddSrtpStats(self->state->srtp.get(), stats);
+  }
   GstStructure* udp = nullptr;
   if (self->src != nullptr) g_object_get(self->src, "stats", &udp, nullptr);
   if (udp == nullptr) return;
@@ -201,8 +254,12 @@ static void GetPropertyVfunc(GObject* o, guint id, GValue* v, GParamSpec* spec) 
   if (id == kPropUsedSocket) {
     std::lock_guard lock(self->state->mutex);
     g_value_set_object(v, self->state->socket.get());
-  } else if (id == kPropCaps && self->src != nullptr) {
-    g_object_get_property(G_OBJECT(self->src), spec->name, v);
+  } else if (id >= kPropSrtp) {
+    std::lock_guard lock(self->state->mutex);
+    GetSrtpProperty(self->state->settings.srtp, id - kPropSrtp, v);
+  } else if (id == kPropCaps) {
+    std::lock_guard lock(self->state->mutex);
+    gst_value_set_caps(v, self->state->caps.get());
   } else if (id > kProperties.size() && self->rx != nullptr) {
     g_object_get_property(G_OBJECT(self->rx), spec->name, v);
     if (id == kPropStats) AddUdpStats(self, static_cast<GstStructure*>(g_value_get_boxed(v)));
@@ -234,6 +291,7 @@ static void InstallOwnProperties(GObjectClass* object) {
       object, kPropStats,
       g_param_spec_boxed("stats", "stats", "Counters of packets, bytes and reports",
                          GST_TYPE_STRUCTURE, kRead));
+  InstallSrtpProperties(object, kPropSrtp);
 }
 
 static void gst_lidar_scream_src_init(GstLidarScreamSrc* self) {

@@ -13,7 +13,7 @@ namespace lidar::test {
 namespace {
 
 constexpr std::size_t kRtpHeader = 12;
-constexpr std::size_t kMaxSlices = 100'000;  // an hour's worth may be forgotten, but not a test's
+constexpr std::size_t kMaxSlices = 100'000;  // of an hour they may be forgotten, not of a test
 
 sockaddr_in Loopback(std::uint16_t port) {
   sockaddr_in a{};
@@ -82,8 +82,8 @@ void FaultLink::Rebind() {
 LinkCounts FaultLink::counts() const {
   std::lock_guard lock(mutex_);
   LinkCounts c = counts_;
-  c.slices += slices_.size();
-  c.slices_hit += hit_.size();
+  c.slices = slices_.size();
+  for (const auto& [key, seen] : slices_) c.slices_whole += seen.IsWhole() ? 1U : 0U;
   return c;
 }
 
@@ -126,14 +126,20 @@ void FaultLink::Note(const Datagram& datagram, bool hit) {
   for (const auto& unit : rtp::ParsePayload({b.data() + kRtpHeader, b.size() - kRtpHeader})) {
     if (unit.unit != rtp::UnitType::kSlice) continue;
     const SliceKey key{Ssrc(b), unit.slice.scan_number, unit.slice.index};
-    slices_.insert(key);
-    if (hit) hit_.insert(key);
+    Seen& seen = slices_[key];
+    seen.sequences.insert(lidar::ByteReader(b.data() + 2, 2).Be16());
+    seen.starts |= rtp::StartsUnit(unit.type);
+    seen.ends |= rtp::EndsUnit(unit.type);
+    seen.hit |= hit;
   }
-  if (slices_.size() < kMaxSlices) return;
-  counts_.slices += slices_.size();
-  counts_.slices_hit += hit_.size();
-  slices_.clear();
-  hit_.clear();
+  if (slices_.size() >= kMaxSlices) slices_.clear();
+}
+
+/// A sender may give up a slice half sent.
+bool FaultLink::Seen::IsWhole() const {
+  // Sequence numbers that wrap within a slice give two runs instead of one.
+  const std::size_t span = std::size_t{*sequences.rbegin()} - *sequences.begin() + 1;
+  return starts && ends && !hit && (span == sequences.size() || span > 60'000);
 }
 
 void FaultLink::Forward(const Datagram& datagram) { Send(out_, datagram, receiver_port_); }

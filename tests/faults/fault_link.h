@@ -46,7 +46,7 @@ struct LinkCounts {
   std::uint64_t dropped = 0;
   std::uint64_t garbage = 0;
   std::uint64_t slices = 0;
-  std::uint64_t slices_hit = 0;  // that lost a packet, or got a wrong bit
+  std::uint64_t slices_whole = 0;  // that went through, and as they came
 };
 
 /// Relays 127.0.0.1:port() to 127.0.0.1:`receiver_port`, ECN bits included, and feedback back to
@@ -78,10 +78,16 @@ class FaultLink {
   void Note(const Datagram& datagram, bool hit);
   bool Chance(double probability);
 
-  mutable std::mutex mutex_;  // guards fault_, slices_, hit_, counts_ and rebind_
+  mutable std::mutex mutex_;  // guards fault_, slices_, counts_ and rebind_
   Fault fault_;
-  std::set<SliceKey> slices_;
-  std::set<SliceKey> hit_;
+  struct Seen {
+    std::set<std::uint16_t> sequences;
+    bool starts = false;
+    bool ends = false;
+    bool hit = false;
+    bool IsWhole() const;
+  };
+  std::map<SliceKey, Seen> slices_;
   LinkCounts counts_;
   bool rebind_ = false;
 

@@ -1,0 +1,281 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Everything that can go wrong between and around the two ends, and what a user then sees.
+#include <gtest/gtest.h>
+
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <csignal>
+#include <functional>
+#include <optional>
+#include <thread>
+
+#include "ends.h"
+#include "fault_link.h"
+
+namespace lidar::test {
+namespace {
+
+using std::chrono::milliseconds;
+using std::chrono::seconds;
+
+class Faults : public ::testing::Test {
+ protected:
+  Faults() : port_(FreePort()), link_(port_) {}
+
+  void StartSender() {
+    sender_.emplace(&sent_, link_.port());
+    sender_->pipeline().SetState(GST_STATE_PLAYING);
+  }
+  void StartReceiver() {
+    receiver_.emplace(&sent_, port_);
+    receiver_->pipeline().SetState(GST_STATE_PLAYING);
+  }
+  /// Both ends play, and clouds come.
+  void Start() {
+    StartReceiver();
+    StartSender();
+    ASSERT_NE(receiver_->NextCloud(seconds(10)), milliseconds::max());
+    std::this_thread::sleep_for(milliseconds(500));
+  }
+  void Suffer(const Fault& fault, milliseconds length) {
+    link_.Set(fault);
+    std::this_thread::sleep_for(length);
+    link_.Set({});
+  }
+  /// Clouds come again within `limit`; the time goes to the table.
+  void ExpectRecovery(const char* what, milliseconds limit) {
+    const auto time = receiver_->NextCloud(limit);
+    EXPECT_LE(time, limit) << what;
+    std::printf("recovery: %-44s %5lld ms\n", what, static_cast<long long>(time.count()));
+  }
+  /// Lets the sender end well and holds both sides' books against each other: what the payloader
+  /// sent is what the depayloader received or misses, each slice once; what it received is what
+  /// the link let through.
+  void ExpectBooksAgree() {
+    std::this_thread::sleep_for(milliseconds(500));
+    EXPECT_TRUE(sender_->pipeline().Finish(seconds(10)));
+    std::this_thread::sleep_for(milliseconds(300));
+    const std::uint64_t sent = sender_->slices_sent();
+    receiver_->pipeline().SetState(GST_STATE_PAUSED);
+    const Accounts a = receiver_->accounts();
+    const LinkCounts link = link_.counts();
+    EXPECT_EQ(a.slices(), sent);
+    EXPECT_EQ(a.received + a.mismatch, link.slices_whole);
+    EXPECT_EQ(a.lost + a.damaged, sent - link.slices_whole);
+    EXPECT_EQ(receiver_->foreign(), 0U);
+    EXPECT_EQ(receiver_->clouds(), a.received);
+    EXPECT_EQ(sender_->pipeline().Error() + receiver_->pipeline().Error(), "");
+  }
+
+  std::uint16_t port_;
+  SentSlices sent_;
+  FaultLink link_;
+  std::optional<ReceivingEnd> receiver_;
+  std::optional<SendingEnd> sender_;
+};
+
+TEST_F(Faults, NoneLosesNothing) {
+  Start();
+  std::this_thread::sleep_for(seconds(2));
+  ExpectBooksAgree();
+  EXPECT_EQ(receiver_->accounts().lost, 0U);
+}
+
+class LinkDown : public Faults, public ::testing::WithParamInterface<int> {};
+TEST_P(LinkDown, CostsWhatItTookAndNoMore) {
+  Start();
+  Fault fault;
+  fault.down = true;
+  Suffer(fault, seconds(GetParam()));
+  ExpectRecovery(("link down " + std::to_string(GetParam()) + " s").c_str(), seconds(3));
+  ExpectBooksAgree();
+}
+INSTANTIATE_TEST_SUITE_P(Seconds, LinkDown, ::testing::Values(1, 10, 60));
+
+class Loss : public Faults, public ::testing::WithParamInterface<int> {};
+TEST_P(Loss, IsBookedSliceBySlice) {
+  Start();
+  Fault fault;
+  fault.loss = GetParam() / 100.0;
+  Suffer(fault, seconds(6));
+  ExpectRecovery(("loss of " + std::to_string(GetParam()) + " %").c_str(), seconds(2));
+  ExpectBooksAgree();
+}
+INSTANTIATE_TEST_SUITE_P(Percent, Loss, ::testing::Values(5, 20, 50));
+
+TEST_F(Faults, ReorderingByTwentyPacketsLosesNothing) {
+  Start();
+  g_object_set(receiver_->pipeline().Child("depay").get(), "max-reorder-time", guint64{GST_SECOND},
+               nullptr);
+  Fault fault;
+  fault.reorder_by = 20;
+  Suffer(fault, seconds(5));
+  ExpectRecovery("reordering by 20 packets", seconds(1));
+  ExpectBooksAgree();
+}
+
+TEST_F(Faults, DuplicationShowsNothingTwice) {
+  Start();
+  Fault fault;
+  fault.duplicate = 1;
+  Suffer(fault, seconds(5));
+  ExpectRecovery("every packet twice", seconds(1));
+  ExpectBooksAgree();
+  EXPECT_EQ(receiver_->accounts().lost, 0U);
+}
+
+TEST_F(Faults, ADroppedMtuIsLossUntilItIsBack) {
+  Start();
+  Fault fault;
+  fault.mtu = 800;
+  Suffer(fault, seconds(3));
+  ExpectRecovery("datagrams past 800 bytes dropped for 3 s", seconds(2));
+  ExpectBooksAgree();
+}
+
+TEST_F(Faults, DamageIsNeverShown) {
+  Start();
+  Fault fault;
+  fault.damage = 0.1;
+  Suffer(fault, seconds(5));
+  ExpectRecovery("a wrong bit in 10 % of the packets", seconds(1));
+  ExpectBooksAgree();
+  EXPECT_GT(receiver_->accounts().damaged, 0U);
+}
+
+TEST_F(Faults, ADeadFeedbackPathSlowsTheSenderDownAndNothingElse) {
+  Start();
+  Fault fault;
+  fault.feedback_loss = 1;
+  Suffer(fault, seconds(5));
+  ExpectRecovery("no feedback for 5 s", seconds(2));
+  EXPECT_GT(sender_->pipeline().Stat("net", "feedback-timeouts"), 0U);
+  ExpectBooksAgree();
+}
+
+TEST_F(Faults, ARestartedSenderIsFollowed) {
+  Start();
+  sender_.reset();
+  StartSender();
+  ExpectRecovery("sender killed and restarted", seconds(3));
+  std::this_thread::sleep_for(seconds(1));
+  EXPECT_EQ(receiver_->accounts().restarts, 1U);
+  EXPECT_EQ(receiver_->foreign(), 0U);
+  EXPECT_EQ(receiver_->pipeline().Error(), "");
+}
+
+TEST_F(Faults, ARestartedReceiverJoinsAgain) {
+  Start();
+  receiver_.reset();
+  std::this_thread::sleep_for(milliseconds(500));
+  StartReceiver();
+  ExpectRecovery("receiver killed and restarted", seconds(3));
+  EXPECT_EQ(sender_->pipeline().Error(), "");
+}
+
+TEST_F(Faults, BothMayRestart) {
+  Start();
+  sender_.reset();
+  receiver_.reset();
+  StartReceiver();
+  StartSender();
+  ExpectRecovery("both killed and restarted", seconds(3));
+  EXPECT_EQ(receiver_->foreign(), 0U);
+}
+
+TEST_F(Faults, AnotherAddressOfTheSenderIsFollowed) {
+  Start();
+  link_.Rebind();
+  ExpectRecovery("the sender's address changes (NAT)", seconds(3));
+  const auto before = sender_->pipeline().Stat("net", "feedback-accepted");
+  std::this_thread::sleep_for(seconds(1));
+  EXPECT_GT(sender_->pipeline().Stat("net", "feedback-accepted"), before);
+}
+
+TEST_F(Faults, GarbageAtAHundredTimesTheRateHidesNothing) {
+  Start();
+  Fault fault;
+  fault.garbage_ratio = 100;
+  const auto memory = ResidentBytes();
+  const auto cpu = CpuTime();
+  Suffer(fault, seconds(5));
+  const auto used = CpuTime() - cpu;
+  const auto grown = ResidentBytes() - memory;
+  std::printf(
+      "garbage x100: %llu packets in 5 s, %lld ms CPU of both ends and the link, %+.1f MB\n",
+      static_cast<unsigned long long>(link_.counts().garbage), static_cast<long long>(used.count()),
+      static_cast<double>(grown) / 1e6);
+  ExpectRecovery("garbage, 100 packets for each", seconds(1));
+  EXPECT_LT(ResidentBytes(), 100U << 20);
+  EXPECT_EQ(receiver_->foreign(), 0U);
+  // The kernel may drop what a single core cannot read, but most of the stream is shown.
+  const Accounts a = receiver_->accounts();
+  EXPECT_GT(a.received, a.lost + a.damaged + a.mismatch);
+}
+
+TEST_F(Faults, ASecondPairInTheSameProcessDisturbsNothing) {
+  Start();
+  const std::uint16_t port = FreePort();
+  FaultLink link(port, 2);
+  SentSlices sent;
+  ReceivingEnd receiver(&sent, port);
+  SendingEnd sender(&sent, link.port());
+  receiver.pipeline().SetState(GST_STATE_PLAYING);
+  sender.pipeline().SetState(GST_STATE_PLAYING);
+  EXPECT_NE(receiver.NextCloud(seconds(5)), milliseconds::max());
+  std::this_thread::sleep_for(seconds(1));
+  EXPECT_EQ(receiver.foreign(), 0U);
+  sender.pipeline().SetState(GST_STATE_NULL);
+  receiver.pipeline().SetState(GST_STATE_NULL);
+  ExpectBooksAgree();
+}
+
+TEST_F(Faults, AStarvedSenderRecovers) {
+  Start();
+  std::vector<pid_t> hogs;
+  const long cores = sysconf(_SC_NPROCESSORS_ONLN);
+  for (long i = 0; i < 4 * cores; ++i) {
+    const pid_t child = fork();
+    if (child == 0)
+      for (volatile unsigned n = 0;; n = n + 1) continue;
+    hogs.push_back(child);
+  }
+  std::this_thread::sleep_for(seconds(5));
+  for (const pid_t hog : hogs) {
+    kill(hog, SIGKILL);
+    waitpid(hog, nullptr, 0);
+  }
+  ExpectRecovery("CPU starved to a fifth for 5 s", seconds(3));
+  ExpectBooksAgree();
+}
+
+TEST_F(Faults, AThousandCyclesOfTheSenderLeaveNothingBehind) {
+  StartReceiver();
+  sender_.emplace(&sent_, link_.port());
+  std::uint64_t base = 0;
+  for (int i = 0; i < 1'000; ++i) {
+    sender_->pipeline().SetState(GST_STATE_PLAYING);
+    sender_->pipeline().SetState(GST_STATE_NULL);
+    if (i == 100) base = ResidentBytes();
+  }
+  EXPECT_LT(ResidentBytes(), base + (20U << 20));
+  sender_->pipeline().SetState(GST_STATE_PLAYING);
+  ExpectRecovery("1000 state cycles of the sender", seconds(5));
+}
+
+TEST(FaultsOfFiles, AFullDiskIsAnErrorThatSaysSo) {
+  Pipeline pipeline(
+      "lidartestsrc num-buffers=80 model=os0-32 mode=512x10 ! dracoenc ! filesink "
+      "location=/dev/full");
+  pipeline.SetState(GST_STATE_PLAYING);
+  std::string error;
+  for (int i = 0; i < 100 && error.empty(); ++i) {
+    std::this_thread::sleep_for(milliseconds(50));
+    error = pipeline.Error();
+  }
+  EXPECT_NE(error.find("No space left"), std::string::npos) << error;
+}
+
+}  // namespace
+}  // namespace lidar::test
