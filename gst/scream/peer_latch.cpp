@@ -1,8 +1,13 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include "scream/peer_latch.h"
 
+#include "base/sequence.h"
+
 namespace lidar::gst {
 namespace {
+
+// A sender that gets no feedback any more drops most of what it has: few packets come, with gaps.
+constexpr int kMaxGap = 500;
 
 bool SameAddress(GSocketAddress* a, GSocketAddress* b) {
   if (a == b) return true;
@@ -39,7 +44,8 @@ PeerLatch::Verdict PeerLatch::OnPacket(Time now, GSocketAddress* from, std::uint
   }
   Candidate& c = candidate_;
   const bool goes_on = c.in_sequence > 0 && SameAddress(from, c.address.get()) && c.ssrc == ssrc &&
-                       c.next_seq == seq;
+                       SequenceDistance(seq, c.next_seq) >= 0 &&
+                       SequenceDistance(seq, c.next_seq) < kMaxGap;
   if (!goes_on) {
     c.address.reset(G_SOCKET_ADDRESS(g_object_ref(from)));
     c.ssrc = ssrc;

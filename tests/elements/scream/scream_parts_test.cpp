@@ -111,7 +111,17 @@ TEST_F(Latch, ScatteredSequenceNumbersAreNoStream) {
   latch.OnPacket(now, robot.get(), 1, 0);
   now += 10s;
   for (std::uint16_t seq = 0; seq < 100; ++seq)
-    EXPECT_EQ(latch.OnPacket(now, thief.get(), 1, static_cast<std::uint16_t>(seq * 7)), kForeign);
+    EXPECT_EQ(latch.OnPacket(now, thief.get(), 1, static_cast<std::uint16_t>(seq * 1103)),
+              kForeign);
+}
+
+TEST_F(Latch, AStreamWithGapsIsAStream) {
+  latch.OnPacket(now, robot.get(), 1, 0);
+  now += 10s;
+  bool moved = false;
+  for (std::uint16_t seq = 0; seq < 10; ++seq)
+    moved |= latch.OnPacket(now, thief.get(), 1, static_cast<std::uint16_t>(seq * 90)) == kMoved;
+  EXPECT_TRUE(moved);
 }
 
 TEST_F(Latch, PacketsWithoutAddressBelongToAnyPeer) {

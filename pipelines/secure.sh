@@ -1,0 +1,29 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: LGPL-2.1-or-later
+# A LiDAR stream over SRTP on loopback: both ends, the key in the environment, feedback protected too.
+set -euo pipefail
+root=$(cd "$(dirname "$0")/.." && pwd)
+build=${BUILD_DIR:-$root/build}
+seconds=${1:-5}
+port=${PORT:-5044}
+
+plugins=$(find "$build/gst" "$build/ext" -name 'libgst*.so' -printf '%h\n' 2>/dev/null | sort -u | paste -sd:)
+export GST_PLUGIN_PATH_1_0=$plugins${GST_PLUGIN_PATH_1_0:+:$GST_PLUGIN_PATH_1_0}
+gst-inspect-1.0 --exists srtpenc || { echo "Install gstreamer1.0-plugins-bad: it has the srtp plugin." >&2; exit 1; }
+
+# 16 bytes of key and 14 of salt; in the environment, so that the list of processes does not show them.
+LIDAR_SRTP_KEY=$(od -An -tx1 -N30 /dev/urandom | tr -d ' \n')
+export LIDAR_SRTP_KEY
+
+log=$(mktemp)
+trap 'kill $receiver 2>/dev/null || true; rm -f "$log"' EXIT
+gst-launch-1.0 screamsrc port="$port" srtp-key=env:LIDAR_SRTP_KEY ! rtplidardepay ! dracodec ! \
+  identity silent=false ! fakesink sync=false -v >"$log" 2>&1 &
+receiver=$!
+sleep 1
+gst-launch-1.0 -q lidartestsrc is-live=true num-buffers=$((seconds * 80)) ! dracoenc max-error=0.05 ! rtplidarpay ! \
+  screamsink host=127.0.0.1 port="$port" srtp-key=env:LIDAR_SRTP_KEY
+sleep 1
+clouds=$(grep -c 'chain.*identity' "$log" || true)
+echo "sent $((seconds * 80)) slices over SRTP, $clouds came out"
+[ "$clouds" -gt $((seconds * 40)) ]
