@@ -2,8 +2,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 # lidar-train and lidar-eval as a user calls them: output, files, exit codes.
 set -eu
-train=$1
-eval=$2
+train=$(realpath "$1")
+eval=$(realpath "$2")
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
 cd "$folder"
