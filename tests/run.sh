@@ -9,8 +9,9 @@ usage() {
   cat <<EOF
 Usage: tests/run.sh [--suite NAME] [--no-install] [--no-sanitize] [--tsan]
 
-  --suite NAME    run one suite: lint, core, elements, pipelines, fuzz, bench, or sanitize
-                  (core, elements and fuzz under AddressSanitizer and UBSan)
+  --suite NAME    run one suite: lint, core, elements, pipelines, fuzz, bench, faults (three
+                  minutes of broken networks; only by name), or sanitize (core, elements and
+                  fuzz under AddressSanitizer and UBSan)
   --no-install    do not install Debian packages
   --no-sanitize   leave out the sanitizer build
   --tsan          also run core and elements under ThreadSanitizer
@@ -29,7 +30,7 @@ while [ $# -gt 0 ]; do
       [ $# -ge 2 ] || { usage >&2; exit 2; }
       case $2 in
         sanitize) suites=() ;;
-        lint | core | elements | pipelines | fuzz | bench) suites=("$2"); sanitize=no ;;
+        lint | core | elements | pipelines | fuzz | bench | faults) suites=("$2"); sanitize=no ;;
         *) echo "No suite is called '$2'." >&2; usage >&2; exit 2 ;;
       esac
       shift ;;
@@ -84,7 +85,7 @@ if [ ${#suites[@]} -gt 0 ]; then
     for suite in "${suites[@]}"; do
       # Pipelines stream in real time, so they have the machine to themselves.
       jobs=()
-      case $suite in pipelines | bench) jobs=(--num-processes 1) ;; esac
+      case $suite in pipelines | bench | faults) jobs=(--num-processes 1) ;; esac
       run "$root/build" "$suite" "${jobs[@]}"
     done
   else
