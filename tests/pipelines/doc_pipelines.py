@@ -53,10 +53,12 @@ def run(command, folder):
 
 
 def main():
-    root = pathlib.Path(sys.argv[1])
+    root = pathlib.Path(sys.argv[1]).resolve()
     pages = [root / "README.md", *sorted((root / "docs").rglob("*.md"))]
     ran, failed = 0, 0
     with tempfile.TemporaryDirectory() as folder:
+        # Pages name the committed captures from the project's folder; what commands write goes elsewhere.
+        (pathlib.Path(folder) / "tests").symlink_to(root / "tests")
         for page in pages:
             for command in commands(page):
                 if "hostname=" in command:
