@@ -50,8 +50,5 @@ fi
 [ "$install" = no ] || "$root/tests/install.sh" >&2
 [ "$compile" = no ] || build_all
 
-# The plugins of the build tree first, and a registry of their own.
-plugins=$(find "$build/gst" "$build/ext" -name 'libgst*.so' -printf '%h\n' | sort -u | paste -sd:)
-export GST_PLUGIN_PATH_1_0=$plugins${GST_PLUGIN_PATH_1_0:+:$GST_PLUGIN_PATH_1_0}
-export GST_REGISTRY=$build/demo-registry.bin
+source "$root/pipelines/environment.sh"
 exec "$build/src/tools/lidar-demo" run "${arguments[@]}"

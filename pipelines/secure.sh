@@ -2,13 +2,10 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 # A LiDAR stream over SRTP on loopback: both ends, the key in the environment, feedback protected too.
 set -euo pipefail
-root=$(cd "$(dirname "$0")/.." && pwd)
-build=${BUILD_DIR:-$root/build}
+source "$(dirname "$0")/environment.sh"
 seconds=${1:-5}
 port=${PORT:-5044}
 
-plugins=$(find "$build/gst" "$build/ext" -name 'libgst*.so' -printf '%h\n' 2>/dev/null | sort -u | paste -sd:)
-export GST_PLUGIN_PATH_1_0=$plugins${GST_PLUGIN_PATH_1_0:+:$GST_PLUGIN_PATH_1_0}
 gst-inspect-1.0 --exists srtpenc || { echo "Install gstreamer1.0-plugins-bad: it has the srtp plugin." >&2; exit 1; }
 
 # 16 bytes of key and 14 of salt; in the environment, so that the list of processes does not show them.
