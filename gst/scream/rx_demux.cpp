@@ -60,6 +60,15 @@ void StartSrc(GstLidarScreamRx* self, const CapsPtr& caps) {
   self->state->src_started = true;
 }
 
+/// Whether somebody takes what `pad` gives; a ghost pad that nobody linked does not.
+bool LeadsToSomebody(GstPad* pad) {
+  const PadPtr peer(gst_pad_get_peer(pad));
+  if (!peer || !GST_IS_PROXY_PAD(peer.get())) return peer != nullptr;
+  GstProxyPad* ghost = gst_proxy_pad_get_internal(GST_PROXY_PAD(peer.get()));
+  const PadPtr owner(GST_PAD(ghost));
+  return ghost != nullptr && LeadsToSomebody(GST_PAD(ghost));
+}
+
 /// `src` takes the first stream that its peer can take; payload types outside of pt-map too
 /// (retransmission, FEC), which belong to whatever is there.
 GstPad* Route(GstLidarScreamRx* self, const RtpHeader& header) {
@@ -69,8 +78,8 @@ GstPad* Route(GstLidarScreamRx* self, const RtpHeader& header) {
     if (!state.src_started) StartSrc(self, CapsPtr(gst_caps_new_empty_simple("application/x-rtp")));
     return self->src;
   }
-  const bool fits = gst_pad_is_linked(self->src) &&
-                    gst_pad_peer_query_accept_caps(self->src, caps.get()) != FALSE;
+  const bool fits =
+      LeadsToSomebody(self->src) && gst_pad_peer_query_accept_caps(self->src, caps.get()) != FALSE;
   if (state.src_taken || !fits) return NewPad(self, header.ssrc, caps.get());
   state.src_taken = true;
   StartSrc(self, caps);
