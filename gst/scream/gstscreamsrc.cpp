@@ -147,9 +147,7 @@ static void Close(GstLidarScreamSrc* self) {
   State& state = *self->state;
   std::unique_lock srtp_lock(state.mutex);
   const std::shared_ptr<SrtpLayer> srtp = std::move(state.srtp);
-  const CapsPtr caps(state.caps ? gst_caps_ref(state.caps.get()) : nullptr);
   srtp_lock.unlock();
-  if (srtp) g_object_set(self->src, "caps", caps.get(), nullptr);
   for (GstElement* child : {self->sink, self->src})
     if (child != nullptr) GiveSocket(child, nullptr);
   std::lock_guard lock(state.mutex);
@@ -157,33 +155,9 @@ static void Close(GstLidarScreamSrc* self) {
   state.socket.reset();
 }
 
-/// What the socket gives is SRTP, of which only the bin knows what RTP it becomes.
-static void SetSrtpCaps(GstLidarScreamSrc* self) {
-  State& state = *self->state;
-  std::unique_lock lock(state.mutex);
-  if (!state.srtp) return;
-  CapsPtr caps(state.caps ? gst_caps_copy(state.caps.get()) : nullptr);
-  lock.unlock();
-  if (!caps) {
-    const PadPtr src(gst_element_get_static_pad(GST_ELEMENT(self), "src"));
-    caps.reset(gst_pad_peer_query_caps(src.get(), nullptr));
-    if (!caps || gst_caps_is_any(caps.get()) || gst_caps_is_empty(caps.get())) {
-      caps.reset(gst_caps_new_empty_simple("application/x-rtp"));
-    } else {
-      caps.reset(gst_caps_truncate(gst_caps_make_writable(caps.release())));
-      gst_structure_fixate_field_nearest_int(gst_caps_get_structure(caps.get(), 0), "payload", 96);
-      caps.reset(gst_caps_fixate(caps.release()));
-    }
-  }
-  caps.reset(gst_caps_make_writable(caps.release()));
-  gst_structure_set_name(gst_caps_get_structure(caps.get(), 0), "application/x-srtp");
-  g_object_set(self->src, "caps", caps.get(), nullptr);
-}
-
 static GstStateChangeReturn ChangeState(GstElement* element, GstStateChange change) {
   auto* self = GST_LIDAR_SCREAM_SRC(element);
   if (change == GST_STATE_CHANGE_NULL_TO_READY && !Open(self)) return GST_STATE_CHANGE_FAILURE;
-  if (change == GST_STATE_CHANGE_READY_TO_PAUSED) SetSrtpCaps(self);
   const GstStateChangeReturn result =
       GST_ELEMENT_CLASS(gst_lidar_scream_src_parent_class)->change_state(element, change);
   if (change == GST_STATE_CHANGE_READY_TO_NULL) Close(self);
@@ -219,8 +193,13 @@ static void OnPadRemoved(GstElement*, GstPad* pad, GstElement* bin) {
 static void SetPropertyVfunc(GObject* o, guint id, const GValue* v, GParamSpec* spec) {
   auto* self = GST_LIDAR_SCREAM_SRC(o);
   if (id >= kPropSrtp) {
-    std::lock_guard lock(self->state->mutex);
-    SetSrtpProperty(&self->state->settings.srtp, id - kPropSrtp, v);
+    std::unique_lock lock(self->state->mutex);
+    const bool key = SetSrtpProperty(&self->state->settings.srtp, id - kPropSrtp, v);
+    if (!key || !self->state->socket) return;
+    const SrtpSettings settings = self->state->settings.srtp;
+    const std::shared_ptr<SrtpLayer> layer = self->state->srtp;
+    lock.unlock();
+    ChangeSrtpKey(GST_ELEMENT(self), layer.get(), settings);
     return;
   }
   if (id == kPropCaps) {

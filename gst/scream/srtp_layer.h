@@ -3,27 +3,16 @@
 #pragma once
 #include <gst/gst.h>
 
-#include <cstdint>
-#include <map>
+#include <deque>
 #include <memory>
 #include <mutex>
-#include <optional>
 #include <string>
-#include <vector>
 
 #include "common/refs.h"
+#include "scream/srtp_input.h"
+#include "scream/srtp_key.h"
 
 namespace lidar::gst {
-
-struct SrtpSettings {
-  std::string key;  // hex, "file:PATH" or "env:NAME"; empty: no SRTP
-  std::string cipher = "aes-128-icm";
-  std::string auth = "hmac-sha1-80";
-};
-
-/// The master key and salt, or none and what to do in `error`.
-std::optional<std::vector<std::uint8_t>> ReadSrtpKey(const SrtpSettings& settings,
-                                                     std::string* error);
 
 /// Where the layer goes: pads of the bin's children, linked plainly.
 struct SrtpLinks {
@@ -36,13 +25,7 @@ struct SrtpLinks {
   bool sends_media;           // out is RTP and in RTCP; else the other way round
 };
 
-struct SrtpCounts {
-  std::uint64_t received = 0;  // datagrams
-  std::uint64_t refused = 0;   // wrong key, replayed, damaged or not protected
-};
-
-/// Lives from READY to NULL of its bin. Every SSRC has the one key; a stream that is joined after
-/// its sequence numbers wrapped has its rollover counter searched, one guess a packet.
+/// Lives from READY to NULL of its bin. Every SSRC has the one key.
 class SrtpLayer {
  public:
   /// Null and `error` where the key, the cipher or the srtp plugin is not usable.
@@ -52,52 +35,43 @@ class SrtpLayer {
   SrtpLayer(const SrtpLayer&) = delete;
   SrtpLayer& operator=(const SrtpLayer&) = delete;
 
-  SrtpCounts counts() const;
+  SrtpCounts counts() const { return input_->counts(); }
   /// Bytes that it adds to each RTP packet.
-  unsigned overhead() const;
+  unsigned overhead() const { return policy_.overhead; }
+  /// Takes the key that `source` names beside the one in use. Who sends media uses it at once, who
+  /// answers does once the media does. False and `error` where it is no key or was used before.
+  bool ChangeKey(const std::string& source, std::string* error);
 
  private:
-  struct Stream {
-    std::uint32_t rollover = 0;  // the guess in use
-    bool known = false;          // a packet passed with it
-    unsigned failures = 0;       // since the last that passed
-  };
+  SrtpLayer(const SrtpPolicy& policy, const SrtpLinks& links);
+  bool MakeEncoder(const SrtpKey& key);
+  bool Link();
+  bool LinkMedia(GstPad* source, GstPad* socket);
+  void EncodeWith(const SrtpKey& key);
 
-  SrtpLayer(const SrtpSettings& settings, const SrtpLinks& links, std::vector<std::uint8_t> key);
-  bool MakeElements(std::string* error);
-  bool LinkOut();
-  bool LinkIn();
-  GstCaps* KeyFor(std::uint32_t ssrc);
-  void OnDatagram(GstBuffer* buffer);
-  void OnPassed();
-  void OnRefused(std::unique_lock<std::mutex>* lock);
-
-  SrtpSettings settings_;
+  SrtpPolicy policy_;
   SrtpLinks links_;
-  std::vector<std::uint8_t> key_;
   GstElement* enc_ = nullptr;  // of the bin
-  GstElement* dec_ = nullptr;
-  PadPtr out_rtcp_;  // takes RTCP out of what screamtx sends, to the encoder
+  PadPtr out_rtcp_;            // takes RTCP out of what screamtx sends, to the encoder
   gulong out_probe_ = 0;
   PadPtr out_relay_;  // from the encoder to the socket
-  PadPtr in_entry_;   // from the socket to the decoder
-  PadPtr in_relay_;   // RTCP from the decoder into the stream of RTP
+  std::unique_ptr<SrtpInput> input_;
 
-  mutable std::mutex mutex_;  // guards all below; never held while pushing or posting
-  std::map<std::uint32_t, Stream> streams_;
-  SrtpCounts counts_;
-  std::optional<std::uint32_t> undecided_;  // SSRC of the datagram in the decoder
-  bool warned_ = false;
+  std::mutex mutex_;                 // guards digests_
+  std::deque<std::string> digests_;  // of the keys so far
 };
 
 /// Makes the layer where `settings` ask for one; false, and an error on the bus, where it cannot.
 bool StartSrtp(const SrtpSettings& settings, const SrtpLinks& links,
                std::shared_ptr<SrtpLayer>* layer);
+/// Gives a bin that runs its new key; a warning on the bus, and the old key, where it cannot.
+void ChangeSrtpKey(GstElement* bin, SrtpLayer* layer, const SrtpSettings& settings);
 /// The properties srtp-key (write-only), srtp-cipher and srtp-auth, as ids from `first_id` on.
 void InstallSrtpProperties(GObjectClass* object, guint first_id);
-void SetSrtpProperty(SrtpSettings* settings, guint index, const GValue* value);
+/// True where it is the key.
+bool SetSrtpProperty(SrtpSettings* settings, guint index, const GValue* value);
 void GetSrtpProperty(const SrtpSettings& settings, guint index, GValue* value);
-/// srtp-received and srtp-refused; nothing where there is no layer.
+/// srtp-received, srtp-refused and srtp-key-changes; nothing where there is no layer.
 void AddSrtpStats(const SrtpLayer* layer, GstStructure* stats);
 
 }  // namespace lidar::gst

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// What the user says of SRTP, and the master key and ciphers that it stands for.
+#pragma once
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace lidar::gst {
+
+struct SrtpSettings {
+  std::string key;  // hex, "file:PATH" or "env:NAME"; empty: no SRTP
+  std::string cipher = "aes-128-icm";
+  std::string auth = "hmac-sha1-80";
+};
+
+/// Master key and salt.
+using SrtpKey = std::vector<std::uint8_t>;
+
+/// The algorithms, by the names that srtpenc and srtpdec have for them.
+struct SrtpPolicy {
+  std::string cipher;
+  std::string auth;
+  std::string rtcp_auth;
+  std::size_t key_size;  // of an SrtpKey
+  unsigned overhead;     // bytes that each RTP packet grows by
+};
+
+/// None, and what is wrong in `error`, where there are no such algorithms.
+std::optional<SrtpPolicy> SrtpPolicyOf(const SrtpSettings& settings, std::string* error);
+/// Reads `source` as SrtpSettings::key says; none, and what to do in `error`. Neither the error nor
+/// anything else shows the key.
+std::optional<SrtpKey> ReadSrtpKey(const std::string& source, const SrtpPolicy& policy,
+                                   std::string* error);
+
+}  // namespace lidar::gst
