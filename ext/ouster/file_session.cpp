@@ -77,7 +77,7 @@ GstFlowReturn FileSession::EndOfCapture() {
 GstFlowReturn FileSession::Poll() {
   const auto packet = pcap_->Next();
   if (!packet) return EndOfCapture();
-  ouster::Arrival arrival{Time(packet->due), packet->captured};
+  ouster::Arrival arrival{Time(packet->due), packet->captured, packet->sender};
   if (settings().is_live) {
     if (!GST_CLOCK_TIME_IS_VALID(pace_start_)) {
       pace_start_ = RunningTime();
@@ -85,7 +85,8 @@ GstFlowReturn FileSession::Poll() {
     }
     const auto due = static_cast<GstClockTime>(packet->due.count());
     if (!WaitUntil(pace_start_ + due)) return GST_FLOW_FLUSHING;
-    arrival = {ToTime(pace_start_) + packet->due, pace_start_utc_ + packet->due};
+    arrival.local = ToTime(pace_start_) + packet->due;
+    arrival.utc = pace_start_utc_ + packet->due;
   }
   if (packet->starts_over) stream()->Restart();
   const ByteView payload{packet->payload.data(), packet->payload.size()};

@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include "live_session.h"
 
+#include <netinet/in.h>
+
 #include <cerrno>
+#include <cstring>
 #include <utility>
 
 #include "debug.h"
@@ -18,12 +21,29 @@ constexpr gint64 kQuestionIntervalUs = 1'000'000;
 constexpr gint64 kWaitForMetadataUs = 2'000'000;  // of a sensor with a new init id
 constexpr guint kWrongSizesForQuestion = 4;
 
+/// An IPv4 address as a mapped one, so that it is the same on every socket.
+ouster::Sender SenderOf(const NativeAddress& from) {
+  ouster::Sender sender{};
+  if (from.storage.ss_family == AF_INET6) {
+    sockaddr_in6 v6{};
+    std::memcpy(&v6, &from.storage, sizeof v6);
+    std::memcpy(sender.data(), &v6.sin6_addr, sender.size());
+  } else if (from.storage.ss_family == AF_INET) {
+    sockaddr_in v4{};
+    std::memcpy(&v4, &from.storage, sizeof v4);
+    sender[10] = sender[11] = 0xff;
+    std::memcpy(&sender[12], &v4.sin_addr, 4);
+  }
+  return sender;
+}
+
 }  // namespace
 
 LiveSession::LiveSession(GstBaseSrc* element, const OusterSettings& settings)
     : Session(element, settings) {}
 
-LiveSession::~LiveSession() = default;
+// The link's thread wakes the sockets.
+LiveSession::~LiveSession() { link_.reset(); }
 
 bool LiveSession::Open() {
   if (settings().hostname.empty() || !settings().metadata.empty()) {
@@ -84,7 +104,7 @@ void LiveSession::UnlockStop() {
 }
 
 void LiveSession::AddCounters(Counters* counters) const {
-  counters->kernel_drops = udp_.kernel_drops();
+  counters->kernel_drops = udp_.drops();
   counters->receive_buffer = receive_buffer_;
   counters->reconnects = reconnects_;
 }
@@ -156,7 +176,9 @@ bool LiveSession::TakeMetadata(ouster::Metadata metadata) {
 void LiveSession::HandleNewInitId(ByteView payload, const ouster::Arrival& arrival) {
   const gint64 now = g_get_monotonic_time();
   if (new_init_id_us_ == 0) new_init_id_us_ = now;
-  if (link_ && now - new_init_id_us_ < kWaitForMetadataUs) return Ask();
+  // Without a serial number it may be another sensor on this port, while ours goes on.
+  const bool may_be_another = stream()->metadata().serial == 0;
+  if ((link_ || may_be_another) && now - new_init_id_us_ < kWaitForMetadataUs) return Ask();
   new_init_id_us_ = 0;
   GST_ELEMENT_WARNING(element(), STREAM, WRONG_TYPE,
                       ("The sensor restarted or was reconfigured since its metadata was read"),
@@ -182,7 +204,7 @@ void LiveSession::HandleWrongSize(gsize size) {
 void LiveSession::HandlePacket(const ReceivedDatagram& d, Time now, Time utc_now) {
   if (stream() == nullptr) return;
   const Time utc = GST_CLOCK_TIME_IS_VALID(d.arrival) ? ToTime(d.arrival) : utc_now;
-  const ouster::Arrival arrival{now + (utc - utc_now), utc};
+  const ouster::Arrival arrival{now + (utc - utc_now), utc, SenderOf(*d.from)};
   // What came before the pipeline ran has no time in it.
   if (arrival.local < Time{}) return;
   const ByteView payload{d.data, d.size};
@@ -190,6 +212,7 @@ void LiveSession::HandlePacket(const ReceivedDatagram& d, Time now, Time utc_now
     case ouster::PacketVerdict::kLidar:
       last_packet_us_ = g_get_monotonic_time();
       wrong_sizes_in_a_row_ = 0;
+      new_init_id_us_ = 0;
       if (!connected_) SetConnected(true, "packets arrive");
       break;
     case ouster::PacketVerdict::kNewInitId:

@@ -39,6 +39,7 @@ std::optional<PcapFeed::Packet> PcapFeed::Next() {
   Packet packet;
   packet.payload = std::move(captured->datagram.payload);
   packet.captured = captured->time;
+  packet.sender = captured->datagram.addresses.source;
   if (!first_) first_ = captured->time;
   last_ = std::max(captured->time, last_);
   packet.due = round_start_ + std::max(Duration{0}, captured->time - *first_);

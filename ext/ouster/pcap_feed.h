@@ -8,6 +8,7 @@
 
 #include "ouster/metadata.h"
 #include "ouster/pcap_reader.h"
+#include "ouster/sensor_stream.h"
 
 namespace lidar::gst {
 
@@ -19,8 +20,9 @@ class PcapFeed {
 
   struct Packet {
     std::vector<std::uint8_t> payload;
-    Duration due{};            // since the first packet, loops laid end to end
-    Time captured;             // since the Unix epoch
+    Duration due{};  // since the first packet, loops laid end to end
+    Time captured;   // since the Unix epoch
+    ouster::Sender sender{};
     bool starts_over = false;  // the first one of another round
   };
   /// None at the end, or where the file is damaged: error() then says so.

@@ -3,7 +3,6 @@
 
 #include <poll.h>
 #include <sys/epoll.h>
-#include <sys/socket.h>
 #include <unistd.h>
 
 #include <cerrno>
@@ -13,26 +12,25 @@
 namespace lidar::gst {
 namespace {
 
-/// The largest receive buffer up to `bytes` that the kernel grants.
-guint SetReceiveBuffer(int fd, guint bytes) {
-  const int size = static_cast<int>(bytes);
-  // The forced form needs CAP_NET_ADMIN.
-  if (bytes > 0 && setsockopt(fd, SOL_SOCKET, SO_RCVBUFFORCE, &size, sizeof size) != 0 &&
-      setsockopt(fd, SOL_SOCKET, SO_RCVBUF, &size, sizeof size) != 0)
-    return 0;
-  int granted = 0;
-  socklen_t length = sizeof granted;
-  if (getsockopt(fd, SOL_SOCKET, SO_RCVBUF, &granted, &length) != 0) return 0;
-  return static_cast<guint>(granted / 2);  // the kernel doubles it for its own bookkeeping
-}
-
 std::string Explain(const GError& error, guint port) {
   std::string text = "Cannot receive on UDP port " + std::to_string(port) + ": " + error.message;
   if (g_error_matches(&error, G_IO_ERROR, G_IO_ERROR_ADDRESS_IN_USE))
     text +=
-        "; another program (or another ouster_src) receives there: stop it, or give each its "
-        "own lidar-port and point the sensor's udp_port_lidar at it";
+        "; another program receives there: stop it, set another lidar-port (with hostname, the "
+        "sensor is told), or have the sensor send to a multicast-group";
   return text;
+}
+
+/// The socket of that port as the settings ask; null and `why`, for a user.
+std::unique_ptr<SocketReader> OpenReader(const OusterSettings& settings, guint port,
+                                         std::string* why) {
+  GError* raw_error = nullptr;
+  auto reader = SocketReader::Open(
+      {settings.address, port, settings.multicast_group, settings.multicast_iface},
+      settings.buffer_size, &raw_error);
+  const ErrorPtr error(raw_error);
+  if (!reader) *why = Explain(*error, port);
+  return reader;
 }
 
 }  // namespace
@@ -44,43 +42,27 @@ UdpFeed::~UdpFeed() {
   if (epoll_ >= 0) close(epoll_);
 }
 
-UdpFeed::SocketPtr UdpFeed::OpenOne(const OusterSettings& settings, guint port,
-                                    std::string* error) {
-  const std::string& group = settings.multicast_group;
-  UdpBind bind{settings.address, port, G_SOCKET_FAMILY_INVALID, !group.empty()};
-  if (!group.empty())
-    bind.family =
-        group.find(':') != std::string::npos ? G_SOCKET_FAMILY_IPV6 : G_SOCKET_FAMILY_IPV4;
-  GError* raw_error = nullptr;
-  SocketPtr socket(OpenUdpSocket(bind, &raw_error));
-  if (socket && !group.empty())
-    JoinMulticast(socket.get(), group, settings.multicast_iface, &raw_error);
-  const ErrorPtr problem(raw_error);
-  if (problem) {
-    *error = Explain(*problem, port);
-    return nullptr;
+bool UdpFeed::WaitFor(const SocketReader& reader) const {
+  for (const int fd : {reader.socket_fd(), reader.queue_fd()}) {
+    epoll_event event{};
+    event.events = EPOLLIN;
+    event.data.fd = fd;
+    if (epoll_ctl(epoll_, EPOLL_CTL_ADD, fd, &event) != 0) return false;
   }
-  UdpBatchReceiver::Prepare(g_socket_get_fd(socket.get()));
-  return socket;
+  return true;
 }
 
 UdpFeed::Opened UdpFeed::Open(const OusterSettings& settings, const Ports& ports) {
   Close();
   Opened opened;
   ports_ = ports;
-  lidar_ = OpenOne(settings, ports.lidar, &opened.error);
+  lidar_ = OpenReader(settings, ports.lidar, &opened.error);
   if (!lidar_) return opened;
   if (ports.imu != 0 && ports.imu != ports.lidar)
-    imu_ = OpenOne(settings, ports.imu, &opened.imu_error);
-  opened.granted_buffer = SetReceiveBuffer(g_socket_get_fd(lidar_.get()), settings.buffer_size);
-  for (const SocketPtr* socket : {&lidar_, &imu_}) {
-    if (!*socket) continue;
-    epoll_event event{};
-    event.events = EPOLLIN;
-    event.data.fd = g_socket_get_fd(socket->get());
-    if (epoll_ctl(epoll_, EPOLL_CTL_ADD, event.data.fd, &event) != 0)
-      opened.error = std::string("Cannot wait for packets: ") + g_strerror(errno);
-  }
+    imu_ = OpenReader(settings, ports.imu, &opened.imu_error);
+  opened.granted_buffer = lidar_->granted_buffer();
+  if (!WaitFor(*lidar_) || (imu_ && !WaitFor(*imu_)))
+    opened.error = std::string("Cannot wait for packets: ") + g_strerror(errno);
   return opened;
 }
 
@@ -89,7 +71,12 @@ bool UdpFeed::IsOpen(const Ports& ports) const {
 }
 
 void UdpFeed::Close() {
-  // Closing takes a socket out of the epoll set.
+  // A socket that others go on to use stays in the epoll set unless it is taken out.
+  for (const ReaderPtr* reader : {&lidar_, &imu_})
+    if (*reader)
+      for (const int fd : {(*reader)->socket_fd(), (*reader)->queue_fd()})
+        if (epoll_ctl(epoll_, EPOLL_CTL_DEL, fd, nullptr) != 0) continue;
+  drops_before_ = drops();
   lidar_.reset();
   imu_.reset();
 }
@@ -107,11 +94,10 @@ UdpFeed::Outcome UdpFeed::Receive(gint64 timeout_ns,
       break;
   }
   if (!lidar_) return Outcome::kTimeout;
-  const int n = batch_.Receive(g_socket_get_fd(lidar_.get()), consume);
-  const bool transient =
-      n < 0 && (errno == EAGAIN || errno == EWOULDBLOCK || errno == EINTR || errno == ECONNREFUSED);
-  if (n < 0 && !transient) return Outcome::kError;
-  if (imu_) imu_batch_.Receive(g_socket_get_fd(imu_.get()), consume);
+  const bool transient = lidar_->Receive(consume) || errno == EAGAIN || errno == EWOULDBLOCK ||
+                         errno == EINTR || errno == ECONNREFUSED;
+  if (!transient) return Outcome::kError;
+  if (imu_) imu_->Receive(consume);
   return Outcome::kPackets;
 }
 

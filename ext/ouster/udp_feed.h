@@ -1,15 +1,14 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // The sockets on which a sensor's packets arrive.
 #pragma once
-#include <gio/gio.h>
+#include <gst/gst.h>
 
 #include <functional>
 #include <memory>
 #include <string>
 
-#include "ecnudp/udp_batch.h"
-#include "ecnudp/udp_socket.h"
 #include "settings.h"
+#include "shared_socket.h"
 
 namespace lidar::gst {
 
@@ -45,19 +44,19 @@ class UdpFeed {
   void Wake() { wake_.Wake(); }
   void ClearWake() { wake_.Clear(); }
 
-  guint kernel_drops() const { return batch_.kernel_drops(); }
+  /// Of the lidar's socket and of those before it.
+  guint64 drops() const { return drops_before_ + (lidar_ ? lidar_->drops() : 0); }
 
  private:
-  using SocketPtr = std::unique_ptr<GSocket, GObjectUnref>;
+  using ReaderPtr = std::unique_ptr<SocketReader>;
 
-  static SocketPtr OpenOne(const OusterSettings& settings, guint port, std::string* error);
+  bool WaitFor(const SocketReader& reader) const;
 
   Ports ports_;
-  SocketPtr lidar_;
-  SocketPtr imu_;
+  ReaderPtr lidar_;
+  ReaderPtr imu_;
+  guint64 drops_before_ = 0;
   int epoll_;  // of both
-  UdpBatchReceiver batch_;
-  UdpBatchReceiver imu_batch_;
   WakeFd wake_;
 };
 

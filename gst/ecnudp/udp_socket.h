@@ -59,6 +59,8 @@ class WakeFd {
   WakeFd& operator=(const WakeFd&) = delete;
   void Wake();
   void Clear();
+  /// Readable until Clear(): for those who wait for more than one.
+  int fd() const { return fd_; }
 
   enum class Outcome { kReady, kWoken, kTimeout, kError };
   /// Waits for `events` (poll's) on `fd`; a negative timeout waits for ever.

@@ -50,6 +50,11 @@ std::optional<LidarPacket> LidarPacket::Parse(ByteView bytes, const PacketFormat
   return packet;
 }
 
+std::optional<PacketHeader> PeekHeader(ByteView bytes, const PacketFormat& format) {
+  if (format.is_legacy() || bytes.size < format.packet_header_size()) return std::nullopt;
+  return ReadHeader(bytes, format);
+}
+
 PacketColumn LidarPacket::Column(std::uint32_t i) const {
   const ByteView block =
       bytes_.Sub(format_.packet_header_size() + i * format_.column_size(), format_.column_size());

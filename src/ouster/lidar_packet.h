@@ -69,6 +69,10 @@ class LidarPacket {
   PacketHeader header_;
 };
 
+/// The header of what may be a packet of another size, as of a sensor in another mode; none for
+/// LEGACY, which has no header, and for what is too short to have one.
+std::optional<PacketHeader> PeekHeader(ByteView bytes, const PacketFormat& format);
+
 /// Firmware before 2.4 and FUSA packets carry a constant where newer ones have a CRC-64, so a
 /// mismatch means damage only once a packet of the same sensor matched.
 class PacketCrcCheck {

@@ -9,6 +9,8 @@ namespace {
 
 // A clock that claims to be synchronised but is further off than this is not.
 constexpr Duration kMaxSyncError = std::chrono::seconds(1);
+// A sensor whose packets carry no serial number may have another address after such a silence.
+constexpr Duration kSenderKept = std::chrono::seconds(1);
 
 /// What to add to the sensor's time to have UTC; none where its clock is its own.
 std::optional<Duration> SensorToUtc(const Metadata& metadata, const StreamOptions& options) {
@@ -75,22 +77,40 @@ void SensorStream::ObserveClocks(const LidarPacket& packet, const Arrival& arriv
   }
 }
 
-PacketVerdict SensorStream::Push(ByteView payload, const Arrival& arrival) {
-  const auto packet = LidarPacket::Parse(payload, metadata_.format);
-  if (!packet) {
-    if (payload.size == metadata_.imu_packet_size()) {
+/// What is no lidar packet of this sensor's format.
+PacketVerdict SensorStream::Refuse(ByteView payload, const Arrival& arrival) {
+  if (payload.size == metadata_.imu_packet_size()) {
+    const bool first = batcher_.stats().packets == 0;
+    if (first || arrival.sender == sender_) {
       ++stats_.imu_packets;
       return PacketVerdict::kImu;
     }
-    ++stats_.wrong_size;
-    return PacketVerdict::kWrongSize;
+    ++stats_.foreign;
+    return PacketVerdict::kForeign;
   }
+  const auto header = PeekHeader(payload, metadata_.format);
+  const bool foreign = header && header->type == kLidarPacketType && metadata_.serial != 0 &&
+                       header->serial != 0 && header->serial != metadata_.serial;
+  ++(foreign ? stats_.foreign : stats_.wrong_size);
+  return foreign ? PacketVerdict::kForeign : PacketVerdict::kWrongSize;
+}
+
+bool SensorStream::IsForeign(const PacketHeader& header, const Arrival& arrival) const {
+  if (metadata_.serial != 0 && header.serial != 0) return header.serial != metadata_.serial;
+  const bool first = batcher_.stats().packets == 0;
+  return header.serial == 0 && !first && arrival.sender != sender_ &&
+         arrival.utc < last_arrival_utc_ + kSenderKept;
+}
+
+PacketVerdict SensorStream::Push(ByteView payload, const Arrival& arrival) {
+  const auto packet = LidarPacket::Parse(payload, metadata_.format);
+  if (!packet) return Refuse(payload, arrival);
   if (!crc_.Accept(payload)) {
     ++stats_.damaged;
     return PacketVerdict::kDamaged;
   }
   const PacketHeader& header = packet->header();
-  if (metadata_.serial != 0 && header.serial != 0 && header.serial != metadata_.serial) {
+  if (IsForeign(header, arrival)) {
     ++stats_.foreign;
     return PacketVerdict::kForeign;
   }
@@ -98,8 +118,12 @@ PacketVerdict SensorStream::Push(ByteView payload, const Arrival& arrival) {
     refused_init_id_ = header.init_id;
     return PacketVerdict::kNewInitId;
   }
+  // Old metadata has no serial number; the init id says that this packet is of its sensor.
+  if (metadata_.serial == 0 && metadata_.init_id != 0 && header.init_id == metadata_.init_id)
+    metadata_.serial = header.serial;
   ObserveClocks(*packet, arrival);
   last_arrival_utc_ = arrival.utc;
+  sender_ = arrival.sender;
   batcher_.Push(*packet, arrival.local);
   CollectSlices();
   return PacketVerdict::kLidar;

@@ -2,6 +2,7 @@
 // All that one sensor sends, from UDP payloads to slices with times: what a driver is without
 // sockets and clocks.
 #pragma once
+#include <array>
 #include <cstdint>
 #include <deque>
 #include <memory>
@@ -16,10 +17,14 @@
 
 namespace lidar::ouster {
 
-/// When a packet came.
+/// An IP address; zeros: not known.
+using Sender = std::array<std::uint8_t, 16>;
+
+/// When a packet came, and from where.
 struct Arrival {
   Time local{};  // of the clock that the slices' times are wanted in
   Time utc{};    // since the Unix epoch
+  Sender sender{};
 };
 
 enum class TimeSource { kSensor, kArrival };
@@ -43,7 +48,7 @@ enum class PacketVerdict {
   kLidar,
   kImu,
   kWrongSize,  // of another profile, mode or sensor
-  kForeign,    // of another sensor, by its serial number
+  kForeign,    // of another sensor, by its serial number; where it has none, by its sender
   kDamaged,    // by its CRC
   kNewInitId,  // the sensor restarted or was reconfigured: its metadata may be out of date
 };
@@ -93,6 +98,8 @@ class SensorStream {
  private:
   SensorStream(Metadata metadata, PointWriter writer, const StreamOptions& options,
                std::uint32_t slices_per_scan);
+  PacketVerdict Refuse(ByteView payload, const Arrival& arrival);
+  bool IsForeign(const PacketHeader& header, const Arrival& arrival) const;
   void ObserveClocks(const LidarPacket& packet, const Arrival& arrival);
   void CollectSlices();
 
@@ -108,6 +115,7 @@ class SensorStream {
   std::uint32_t refused_init_id_ = 0;
   std::optional<Time> last_local_;
   Time last_arrival_utc_{};
+  Sender sender_{};  // of the last lidar packet
   std::deque<TimedSlice> ready_;
   std::uint32_t first_scan_id_ = 0;
   std::uint32_t next_scan_id_ = 0;

@@ -2,6 +2,7 @@
 #include "common/udp_socket.h"
 
 #include <arpa/inet.h>
+#include <net/if.h>
 #include <netdb.h>
 
 #include <cerrno>
@@ -123,6 +124,17 @@ UdpSocket UdpSocket::Connect(const Address& remote) {
     Fail("cannot reach " + remote.ToString());
   s.peer_ = remote;
   return s;
+}
+
+void UdpSocket::SendMulticastFrom(const std::string& interface) {
+  const int index = static_cast<int>(if_nametoindex(interface.c_str()));
+  if (index == 0) Fail("there is no interface " + interface);
+  ip_mreqn v4{};
+  v4.imr_ifindex = index;
+  // The option of the other address family fails, and is not needed then.
+  if (setsockopt(fd(), IPPROTO_IP, IP_MULTICAST_IF, &v4, sizeof v4) != 0 &&
+      setsockopt(fd(), IPPROTO_IPV6, IPV6_MULTICAST_IF, &index, sizeof index) != 0)
+    Fail("cannot send multicast from " + interface);
 }
 
 int UdpSocket::LocalPort() const {

@@ -44,6 +44,9 @@ class UdpSocket {
   static UdpSocket Bind(const Address& local);
   static UdpSocket Connect(const Address& remote);
 
+  /// Multicast leaves by the interface of that name; throws std::runtime_error where there is none.
+  void SendMulticastFrom(const std::string& interface);
+
   int fd() const { return fd_.get(); }
   int LocalPort() const;
   /// Hands every waiting datagram to `handler`.

@@ -30,6 +30,13 @@ ouster::Metadata LoadMetadata(const std::string& path) {
   return *std::move(metadata);
 }
 
+/// Nothing for 0.
+void SetSerial(std::uint64_t serial, ouster::Metadata* metadata) {
+  if (serial == 0) return;
+  metadata->serial = serial;
+  metadata->serial_text = std::to_string(serial);
+}
+
 ouster::Metadata FirstMetadata(const ReplayOptions& o) {
   ouster::Metadata m =
       o.pcap.empty() ? MakeSynthMetadata(o.synth, o.format) : LoadMetadata(o.metadata);
@@ -38,6 +45,7 @@ ouster::Metadata FirstMetadata(const ReplayOptions& o) {
   if (m.lidar_port == 0) m.lidar_port = 7502;
   if (m.imu_port == 0) m.imu_port = 7503;
   if (m.init_id == 0) m.init_id = 1;
+  SetSerial(o.serial, &m);
   if (!o.timestamp_mode.empty()) m.timestamp_mode = o.timestamp_mode;
   return m;
 }
@@ -66,6 +74,7 @@ ouster::Metadata Rebuild(const ReplayOptions& options, const ouster::Metadata& f
                           {config["lidar_mode"].get<std::string>(), *profile, first.format.header});
     m.window = ToColumns(config["azimuth_window"], m.model.columns_per_scan);
   }
+  SetSerial(options.serial, &m);
   m.lidar_port = config["udp_port_lidar"].get<std::uint16_t>();
   m.imu_port = config["udp_port_imu"].get<std::uint16_t>();
   m.timestamp_mode = config["timestamp_mode"].get<std::string>();
@@ -74,7 +83,7 @@ ouster::Metadata Rebuild(const ReplayOptions& options, const ouster::Metadata& f
 
 std::unique_ptr<PacketStream> MakeStream(const ReplayOptions& o, const ouster::Metadata& m) {
   if (o.pcap.empty()) return std::make_unique<SynthStream>(o.synth, m);
-  return std::make_unique<PcapStream>(o.pcap, m, PcapStream::Options{!o.once, o.speed});
+  return std::make_unique<PcapStream>(o.pcap, m, PcapStream::Options{!o.once, o.speed, o.serial});
 }
 
 int WriteFiles(const ReplayOptions& options, const ouster::Metadata& metadata) {

@@ -47,6 +47,11 @@ void AddSending(CLI::App* app, ReplayOptions* o) {
   const auto port = CLI::Range(0, 65535);
   app->add_option("--dest", o->destination,
                   "Where packets go until udp_dest is set; \"\": nowhere");
+  app->add_option("--source", o->source, "Address of this machine to send from");
+  app->add_option("--multicast-iface", o->multicast_iface,
+                  "Interface to send from where udp_dest is a multicast group");
+  app->add_option("--serial", o->serial, "Serial number to have; 0: as in the metadata")
+      ->check(CLI::Range(std::uint64_t{0}, (std::uint64_t{1} << 40) - 1));
   app->add_option("--lidar-port", o->lidar_port, "0: as in the metadata")->check(port);
   app->add_option("--imu-port", o->imu_port, "0: as in the metadata")->check(port);
   app->add_option("--timestamp-mode", o->timestamp_mode,

@@ -17,7 +17,10 @@ struct ReplayOptions {
   SynthOptions synth;
   SynthFormat format;
   std::string destination = "127.0.0.1";
-  int lidar_port = 0;  // 0: as in the metadata
+  std::string source;           // address to send from; empty: any
+  std::string multicast_iface;  // empty: the kernel's choice
+  std::uint64_t serial = 0;     // 0: as in the metadata
+  int lidar_port = 0;           // 0: as in the metadata
   int imu_port = 0;
   std::string timestamp_mode;  // empty: as in the metadata
   bool http = true;

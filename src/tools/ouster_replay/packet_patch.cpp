@@ -29,6 +29,7 @@ void ApplyPatch(const PacketPatch& patch, const ouster::PacketFormat& format,
   if (!format.is_legacy()) {
     const auto& at = format.is_fusa() ? ouster::kFusaHeader : ouster::kStandardHeader;
     if (patch.init_id != 0) Put(bytes + at.init_id, patch.init_id, 3);
+    if (patch.serial != 0) Put(bytes + at.serial, patch.serial, 5);
     const std::uint64_t frame = Get(bytes + at.frame_id, at.frame_id_bytes) + patch.add_frames;
     Put(bytes + at.frame_id, frame, at.frame_id_bytes);
   }

@@ -10,6 +10,7 @@ namespace lidar::tools {
 
 struct PacketPatch {
   std::uint32_t init_id = 0;  // 0: as it is
+  std::uint64_t serial = 0;   // 0: as it is
   std::uint32_t add_frames = 0;
   std::uint64_t first_time_ns = 0;  // the recording's first column ...
   std::uint64_t new_time_ns = 0;    // ... becomes this, and the others keep their distance

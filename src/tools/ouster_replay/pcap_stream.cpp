@@ -61,6 +61,7 @@ std::optional<OutPacket> PcapStream::Next() {
   if (packet.imu) return packet;
   PacketPatch patch;
   patch.init_id = start_.init_id;
+  patch.serial = options_.serial;
   patch.add_frames = scans_ * rounds_;
   patch.first_time_ns = first_time_ns_;
   patch.new_time_ns = start_.sensor_time_ns + static_cast<std::uint64_t>(at_speed(offset).count());

@@ -12,6 +12,7 @@ class PcapStream : public PacketStream {
   struct Options {
     bool loop = true;
     double speed = 1;
+    std::uint64_t serial = 0;  // 0: as it is in the packets
   };
   /// Holds the whole capture in memory, so that no disk is in the way. Throws std::runtime_error.
   PcapStream(const std::string& path, const ouster::Metadata& metadata, const Options& options);

@@ -29,7 +29,6 @@ Player::Player(const ReplayOptions& options, const ouster::Metadata& metadata, S
     : options_(options),
       sensor_(*sensor),
       make_stream_(std::move(make_stream)),
-      socket_(UdpSocket::Bind(ResolveAddress("0", "0.0.0.0"))),
       began_(Now()),
       injector_(options.seed) {
   Start(metadata, began_);
@@ -54,17 +53,23 @@ void Player::RunEvents(Time now) {
   }
 }
 
+/// From an address of the destination's family.
+void Player::SetDestination(const Sensor::Destination& to) {
+  lidar_address_ = ResolveAddress(to.host + ":" + std::to_string(to.lidar_port), to.host);
+  imu_address_ = ResolveAddress(to.host + ":" + std::to_string(to.imu_port), to.host);
+  const std::string any = lidar_address_.storage.ss_family == AF_INET6 ? "::" : "0.0.0.0";
+  socket_.reset();
+  socket_ = UdpSocket::Bind(ResolveAddress("0", options_.source.empty() ? any : options_.source));
+  if (!options_.multicast_iface.empty()) socket_->SendMulticastFrom(options_.multicast_iface);
+  destination_ = to;
+}
+
 void Player::Send(const OutPacket& packet) {
   const Sensor::Destination to = sensor_.destination();
   if (to.host.empty()) return;
-  if (to.host != destination_.host || to.lidar_port != destination_.lidar_port ||
-      to.imu_port != destination_.imu_port) {
-    destination_ = to;
-    lidar_address_ = ResolveAddress(to.host + ":" + std::to_string(to.lidar_port), to.host);
-    imu_address_ = ResolveAddress(to.host + ":" + std::to_string(to.imu_port), to.host);
-  }
-  socket_.Send({packet.bytes.data(), packet.bytes.size()}, 0,
-               packet.imu ? &imu_address_ : &lidar_address_);
+  if (to != destination_) SetDestination(to);
+  socket_->Send({packet.bytes.data(), packet.bytes.size()}, 0,
+                packet.imu ? &imu_address_ : &lidar_address_);
 }
 
 std::optional<Time> Player::Pump(Time now) {

@@ -33,12 +33,13 @@ class Player {
   void Start(const ouster::Metadata& metadata, Time now);
   void RunEvents(Time now);
   void Send(const OutPacket& packet);
+  void SetDestination(const Sensor::Destination& to);
 
   const ReplayOptions options_;
   Sensor& sensor_;
   MakeStream make_stream_;
   std::unique_ptr<PacketStream> stream_;
-  UdpSocket socket_;
+  std::optional<UdpSocket> socket_;  // once there is a destination
   Sensor::Destination destination_;
   Address lidar_address_;
   Address imu_address_;

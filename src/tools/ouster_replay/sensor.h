@@ -38,6 +38,9 @@ class Sensor {
     std::string host;  // empty: nowhere
     int lidar_port = 0;
     int imu_port = 0;
+    bool operator!=(const Destination& o) const {
+      return host != o.host || lidar_port != o.lidar_port || imu_port != o.imu_port;
+    }
   };
   Destination destination() const;
 

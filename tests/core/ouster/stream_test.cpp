@@ -157,6 +157,58 @@ TEST_F(Stream, PacketsThatDoNotFitAreCountedAndLeftOut) {
   EXPECT_EQ(stream->stats().foreign, 1U);
 }
 
+TEST_F(Stream, PacketsWithoutASerialNumberGoByTheirSender) {
+  auto stream = Make();
+  const Sender ours{1};
+  const Sender theirs{2};
+  const std::vector<std::uint8_t> imu(metadata_.imu_packet_size());
+  const auto push = [&](const std::vector<std::uint8_t>& bytes, const Sender& sender) {
+    return stream->Push({bytes.data(), bytes.size()}, {Time{1s}, Time{1s}, sender});
+  };
+  EXPECT_EQ(push(packets_[0], ours), PacketVerdict::kLidar);
+  EXPECT_EQ(push(imu, ours), PacketVerdict::kImu);
+  EXPECT_EQ(push(imu, theirs), PacketVerdict::kForeign);
+  // With a serial number, the sensor may have moved to another address.
+  EXPECT_EQ(push(packets_[1], theirs), PacketVerdict::kLidar);
+  EXPECT_EQ(push(imu, theirs), PacketVerdict::kImu);
+}
+
+TEST_F(Stream, APacketOfAnotherSizeIsForeignWhereItSaysSo) {
+  auto stream = Make();
+  auto packet = packets_[0];
+  packet.resize(packet.size() / 2);
+  const Arrival now{Time{1s}, Time{1s}};
+  EXPECT_EQ(stream->Push({packet.data(), packet.size()}, now), PacketVerdict::kWrongSize);
+  packet[kStandardHeader.serial] ^= 1;
+  EXPECT_EQ(stream->Push({packet.data(), packet.size()}, now), PacketVerdict::kForeign);
+}
+
+TEST_F(Stream, TheInitIdTellsTheSerialNumberThatOldMetadataLacks) {
+  metadata_.serial = 0;
+  auto stream = Make();
+  const Arrival now{Time{1s}, Time{1s}};
+  auto packet = packets_[0];
+  packet[kStandardHeader.init_id] ^= 1;
+  EXPECT_EQ(stream->Push({packet.data(), packet.size()}, now), PacketVerdict::kNewInitId);
+  EXPECT_EQ(stream->Push({packets_[0].data(), packets_[0].size()}, now), PacketVerdict::kLidar);
+  packet[kStandardHeader.serial] ^= 1;
+  EXPECT_EQ(stream->Push({packet.data(), packet.size()}, now), PacketVerdict::kForeign);
+}
+
+TEST(Legacy, TheFirstSenderHeardIsTheSensorUntilItFallsSilent) {
+  const Metadata m = test::LoadMetadata("OS-1-32-G_v2.1.1_1024x10.json");
+  const auto packets = test::LoadPackets("OS-1-32-G_v2.1.1_1024x10.pcap", m);
+  std::string error;
+  const auto stream = SensorStream::Create(m, {}, &error);
+  const auto push = [&](std::size_t i, Time time, const Sender& sender) {
+    return stream->Push({packets[i].data(), packets[i].size()}, {time, time, sender});
+  };
+  EXPECT_EQ(push(0, Time{1s}, {1}), PacketVerdict::kLidar);
+  EXPECT_EQ(push(1, Time{1001ms}, {2}), PacketVerdict::kForeign);
+  EXPECT_EQ(push(1, Time{1002ms}, {1}), PacketVerdict::kLidar);
+  EXPECT_EQ(push(2, Time{2500ms}, {2}), PacketVerdict::kLidar);
+}
+
 TEST(Imu, ReadsLegacyPacketsInSiUnits) {
   const Metadata m = test::LoadMetadata("crc_test.json");
   std::vector<std::uint8_t> bytes;

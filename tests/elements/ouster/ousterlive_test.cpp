@@ -3,97 +3,16 @@
 // it again.
 #include <httplib.h>
 
-#include <functional>
-
+#include "live_receiver.h"
 #include "ouster/scan_batcher.h"
-#include "ouster_support.h"
 #include "software_sensor.h"
 
 namespace lidar::test {
 namespace {
 
 using gst::BufferPtr;
-using gst::CapsPtr;
 using gst::CloudInfo;
 using gst::MessagePtr;
-
-/// A pipeline of ouster_src and an appsink-like harness, with its bus.
-class Receiver {
- public:
-  Receiver(const std::string& host, const std::string& properties) : port_(FreePort()) {
-    const std::string launch = "ouster_src name=src hostname=" + host +
-                               " imu-port=" + std::to_string(FreePort()) +
-                               " lidar-port=" + std::to_string(port_) + " " + properties;
-    harness_.reset(gst_harness_new_parse(launch.c_str()));
-    source_.reset(gst_bin_get_by_name(GST_BIN(harness_->element), "src"));
-    bus_ = gst_bus_new();
-    gst_element_set_bus(harness_->element, bus_);
-    gst_harness_use_systemclock(harness_.get());
-    gst_harness_play(harness_.get());
-  }
-  ~Receiver() {
-    gst_element_set_bus(harness_->element, nullptr);
-    harness_.reset();
-    gst_object_unref(bus_);
-  }
-  Receiver(const Receiver&) = delete;
-  Receiver& operator=(const Receiver&) = delete;
-
-  BufferPtr Pull() { return BufferPtr(gst_harness_pull(harness_.get())); }
-  void Drain() {
-    while (gst_harness_buffers_in_queue(harness_.get()) > 0) Pull();
-  }
-  /// Takes buffers until one is as wanted; false where none is within ten seconds.
-  bool PullUntil(const std::function<bool(GstBuffer*)>& wanted) {
-    const gint64 end = g_get_monotonic_time() + 10 * G_USEC_PER_SEC;
-    while (g_get_monotonic_time() < end) {
-      const BufferPtr buffer = Pull();
-      if (buffer && wanted(buffer.get())) return true;
-    }
-    return false;
-  }
-  CloudInfo Info() {
-    const CapsPtr caps(gst_pad_get_current_caps(harness_->sinkpad));
-    const auto info = CloudInfo::FromCaps(caps.get());
-    EXPECT_TRUE(info);
-    return info.value_or(CloudInfo{});
-  }
-  /// The next element message of that name, within ten seconds.
-  MessagePtr Await(const char* name) {
-    for (;;) {
-      MessagePtr message(gst_bus_timed_pop_filtered(
-          bus_, 10 * GST_SECOND,
-          static_cast<GstMessageType>(GST_MESSAGE_ELEMENT | GST_MESSAGE_ERROR)));
-      if (!message || GST_MESSAGE_TYPE(message.get()) == GST_MESSAGE_ERROR) return nullptr;
-      if (gst_message_has_name(message.get(), name)) return message;
-    }
-  }
-  bool AwaitConnected(bool connected) {
-    gboolean is = FALSE;
-    do {
-      const MessagePtr message = Await("ouster-connection-changed");
-      if (!message) return false;
-      gst_structure_get_boolean(gst_message_get_structure(message.get()), "connected", &is);
-    } while ((is != FALSE) != connected);
-    return true;
-  }
-  std::string AwaitError() {
-    const MessagePtr message(gst_bus_timed_pop_filtered(bus_, 10 * GST_SECOND, GST_MESSAGE_ERROR));
-    if (!message) return "no error";
-    GError* raw = nullptr;
-    gst_message_parse_error(message.get(), &raw, nullptr);
-    const gst::ErrorPtr error(raw);
-    return error->message;
-  }
-  GstElement* source() { return source_.get(); }
-  guint16 port() const { return port_; }
-
- private:
-  guint16 port_;
-  Harness harness_;
-  gst::ElementPtr source_;
-  GstBus* bus_ = nullptr;
-};
 
 TEST(OusterLive, FindsItsSensorAndHasItDoWhatIsAsked) {
   SoftwareSensor sensor({});

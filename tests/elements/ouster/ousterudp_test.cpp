@@ -96,10 +96,18 @@ TEST_F(OusterUdp, StopsWhileItWaitsForPackets) {
 }
 
 TEST_F(OusterUdp, APortInUseIsAClearError) {
-  const Harness h = Play(kJson);
-  const std::string error = RunToEnd("ouster_src lidar-port=" + std::to_string(port_) +
-                                     " metadata=" + DataPath(kJson) + " ! fakesink");
-  EXPECT_NE(error.find(std::to_string(port_)), std::string::npos) << error;
+  GSocket* other =
+      g_socket_new(G_SOCKET_FAMILY_IPV4, G_SOCKET_TYPE_DATAGRAM, G_SOCKET_PROTOCOL_UDP, nullptr);
+  GSocketAddress* any = g_inet_socket_address_new_from_string("0.0.0.0", 0);
+  ASSERT_TRUE(g_socket_bind(other, any, FALSE, nullptr));
+  GSocketAddress* bound = g_socket_get_local_address(other, nullptr);
+  const auto port = std::to_string(g_inet_socket_address_get_port(G_INET_SOCKET_ADDRESS(bound)));
+  const std::string error =
+      RunToEnd("ouster_src lidar-port=" + port + " metadata=" + DataPath(kJson) + " ! fakesink");
+  for (gpointer object :
+       {static_cast<gpointer>(bound), static_cast<gpointer>(any), static_cast<gpointer>(other)})
+    g_object_unref(object);
+  EXPECT_NE(error.find(port), std::string::npos) << error;
   EXPECT_NE(error.find("another program"), std::string::npos) << error;
 }
 

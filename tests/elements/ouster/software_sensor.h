@@ -21,9 +21,15 @@ class SoftwareSensor {
     std::string timestamp_mode = "TIME_FROM_INTERNAL_OSC";
     bool old_firmware = false;
     std::string destination;  // nowhere, until it is told
+    std::string http_address = "127.0.0.1";
+    std::string source;           // address to send from; empty: any
+    std::string multicast_iface;  // empty: the kernel's choice
+    std::uint64_t seed = 1;       // of the world and of the serial number
   };
   explicit SoftwareSensor(const Options& options) : metadata_(Make(options)) {
     replay_.boot_s = 0.1;
+    replay_.source = options.source;
+    replay_.multicast_iface = options.multicast_iface;
     sensor_ = std::make_unique<tools::Sensor>(
         metadata_, options.destination, [this](const nlohmann::json& config) {
           ouster::Metadata m = tools::MakeSynthMetadata(
@@ -41,7 +47,7 @@ class SoftwareSensor {
           return std::make_unique<tools::SynthStream>(replay_.synth, m);
         });
     http_ = std::make_unique<tools::HttpApi>(
-        tools::HttpApi::Options{"127.0.0.1", 0, options.old_firmware}, sensor_.get(),
+        tools::HttpApi::Options{options.http_address, 0, options.old_firmware}, sensor_.get(),
         [] { return std::string("{}"); });
     thread_ = std::thread([this] { Run(); });
   }
@@ -52,7 +58,9 @@ class SoftwareSensor {
   SoftwareSensor(const SoftwareSensor&) = delete;
   SoftwareSensor& operator=(const SoftwareSensor&) = delete;
 
-  std::string host() const { return "127.0.0.1:" + std::to_string(http_->port()); }
+  std::string host() const { return "127.0.0.1:" + port(); }
+  std::string port() const { return std::to_string(http_->port()); }
+  const std::string& serial() const { return metadata_.serial_text; }
   tools::Sensor& state() { return *sensor_; }
   tools::FaultCounts counts() const { return player_->counts(); }
   void Fault(const nlohmann::json& change) { ASSERT_EQ(sensor_->MergeFaults(change), ""); }
@@ -61,6 +69,7 @@ class SoftwareSensor {
  private:
   ouster::Metadata Make(const Options& options) {
     replay_.synth.model = "os0-32";
+    replay_.synth.seed = options.seed;
     ouster::Metadata m = tools::MakeSynthMetadata(
         replay_.synth,
         {options.mode, ouster::Profile::kRng19Rfl8Sig16Nir16, ouster::HeaderType::kStandard});

@@ -1,0 +1,175 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "shared_socket.h"
+
+#include <netinet/in.h>
+#include <sys/socket.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <map>
+#include <mutex>
+#include <utility>
+
+#include "common/refs.h"
+
+namespace lidar::gst {
+namespace {
+
+constexpr gsize kSmallestQueue = 1U << 20;  // bytes
+
+/// The largest receive buffer up to `bytes` that the kernel grants, or what it is.
+guint SetReceiveBuffer(int fd, guint bytes) {
+  const int size = static_cast<int>(bytes);
+  // The forced form needs CAP_NET_ADMIN.
+  if (bytes > 0 && setsockopt(fd, SOL_SOCKET, SO_RCVBUFFORCE, &size, sizeof size) != 0 &&
+      setsockopt(fd, SOL_SOCKET, SO_RCVBUF, &size, sizeof size) != 0)
+    return 0;
+  int granted = 0;
+  socklen_t length = sizeof granted;
+  if (getsockopt(fd, SOL_SOCKET, SO_RCVBUF, &granted, &length) != 0) return 0;
+  return static_cast<guint>(granted / 2);  // the kernel doubles it for its own bookkeeping
+}
+
+/// Without this, a socket gets the groups that others on the machine joined, too.
+void OnlyJoinedGroups(GSocket* socket) {
+  const int off = 0;
+  const int fd = g_socket_get_fd(socket);
+  const bool v6 = g_socket_get_family(socket) == G_SOCKET_FAMILY_IPV6;
+  const int failed = v6 ? setsockopt(fd, IPPROTO_IPV6, IPV6_MULTICAST_ALL, &off, sizeof off)
+                        : setsockopt(fd, IPPROTO_IP, IP_MULTICAST_ALL, &off, sizeof off);
+  // An old kernel; packets of other sensors are told by their serial number.
+  if (failed != 0) return;
+}
+
+GSocket* OpenSocket(const SocketPlace& place, GError** error) {
+  UdpBind bind{place.address, place.port, G_SOCKET_FAMILY_INVALID, !place.group.empty()};
+  if (!place.group.empty())
+    bind.family =
+        place.group.find(':') != std::string::npos ? G_SOCKET_FAMILY_IPV6 : G_SOCKET_FAMILY_IPV4;
+  std::unique_ptr<GSocket, GObjectUnref> socket(OpenUdpSocket(bind, error));
+  if (!socket) return nullptr;
+  if (!place.group.empty()) {
+    if (!JoinMulticast(socket.get(), place.group, place.interface, error)) return nullptr;
+    OnlyJoinedGroups(socket.get());
+  }
+  UdpBatchReceiver::Prepare(g_socket_get_fd(socket.get()));
+  return socket.release();
+}
+
+}  // namespace
+
+/// The sockets of the process: a port belongs to the process as a whole, whatever elements it has.
+class SharedSocket {
+ public:
+  /// Opens the reader's place, or joins those who have it.
+  static bool Attach(SocketReader* reader, GError** error) {
+    std::lock_guard lock(RegistryMutex());
+    auto& slot = Registry()[reader->place_];
+    if (!slot) {
+      GSocket* socket = OpenSocket(reader->place_, error);
+      if (socket != nullptr) slot.reset(new SharedSocket(socket));
+    }
+    if (!slot) {
+      Registry().erase(reader->place_);
+      return false;
+    }
+    SharedSocket& shared = *slot;
+    std::lock_guard lock_socket(shared.mutex_);
+    if (shared.readers_.empty() || reader->queue_bytes_ > shared.granted_buffer_)
+      shared.granted_buffer_ = SetReceiveBuffer(shared.fd(), reader->queue_bytes_);
+    shared.readers_.push_back(reader);
+    reader->granted_buffer_ = shared.granted_buffer_;
+    reader->drops_before_ = shared.kernel_drops_;
+    reader->socket_ = slot.get();
+    return true;
+  }
+
+  static void Detach(SocketReader* reader) {
+    std::lock_guard lock(RegistryMutex());
+    SharedSocket& shared = *reader->socket_;
+    std::unique_lock lock_socket(shared.mutex_);
+    auto& readers = shared.readers_;
+    readers.erase(std::find(readers.begin(), readers.end(), reader));
+    const bool last = readers.empty();
+    lock_socket.unlock();
+    if (last) Registry().erase(reader->place_);
+  }
+
+  int fd() const { return g_socket_get_fd(socket_.get()); }
+
+  /// Fills the reader's taken_ and arrived_: what others left for it, then what is on the socket.
+  bool TakeFor(SocketReader* reader) {
+    std::lock_guard lock(mutex_);
+    reader->taken_.swap(reader->queue_);
+    reader->queued_bytes_ = 0;
+    reader->queued_.Clear();
+    const int n = reader->batch_.Receive(fd(), [&](const ReceivedDatagram& datagram) {
+      reader->arrived_.push_back(datagram);
+      for (SocketReader* other : readers_)
+        if (other != reader) other->Enqueue(datagram);
+    });
+    kernel_drops_ = std::max<guint64>(kernel_drops_, reader->batch_.kernel_drops());
+    reader->kernel_drops_ = kernel_drops_ - reader->drops_before_;
+    reader->queue_drops_ = reader->queue_overflows_;
+    return n >= 0;
+  }
+
+ private:
+  explicit SharedSocket(GSocket* socket) : socket_(socket) {}
+
+  using Sockets = std::map<SocketPlace, std::unique_ptr<SharedSocket>>;
+  static Sockets& Registry() {
+    static Sockets sockets;
+    return sockets;
+  }
+  static std::mutex& RegistryMutex() {
+    static std::mutex mutex;
+    return mutex;
+  }
+
+  const std::unique_ptr<GSocket, GObjectUnref> socket_;
+  std::mutex mutex_;  // guards all below, the readers' queues, and the order of what is read
+  std::vector<SocketReader*> readers_;
+  guint granted_buffer_ = 0;
+  guint64 kernel_drops_ = 0;
+};
+
+std::unique_ptr<SocketReader> SocketReader::Open(const SocketPlace& place, guint queue_bytes,
+                                                 GError** error) {
+  std::unique_ptr<SocketReader> reader(new SocketReader(place, queue_bytes));
+  if (!SharedSocket::Attach(reader.get(), error)) return nullptr;
+  return reader;
+}
+
+SocketReader::~SocketReader() {
+  if (socket_ != nullptr) SharedSocket::Detach(this);
+}
+
+int SocketReader::socket_fd() const { return socket_->fd(); }
+
+void SocketReader::Enqueue(const ReceivedDatagram& datagram) {
+  if (queued_bytes_ + datagram.size > std::max<gsize>(queue_bytes_, kSmallestQueue)) {
+    ++queue_overflows_;
+    return;
+  }
+  if (queue_.empty()) queued_.Wake();
+  queued_bytes_ += datagram.size;
+  queue_.push_back({{datagram.data, datagram.data + datagram.size}, *datagram.from, datagram});
+}
+
+bool SocketReader::Receive(const std::function<void(const ReceivedDatagram&)>& consume) {
+  taken_.clear();
+  arrived_.clear();
+  const bool ok = socket_->TakeFor(this);
+  const int problem = errno;
+  for (Copy& copy : taken_) {
+    copy.datagram.data = copy.bytes.data();
+    copy.datagram.from = &copy.from;
+    consume(copy.datagram);
+  }
+  for (const ReceivedDatagram& datagram : arrived_) consume(datagram);
+  errno = problem;
+  return ok;
+}
+
+}  // namespace lidar::gst

@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// UDP sockets that the sources of one process share, since the kernel gives a unicast datagram to
+// one socket only: several sensors may send to one port.
+#pragma once
+#include <gst/gst.h>
+
+#include <functional>
+#include <memory>
+#include <string>
+#include <tuple>
+#include <vector>
+
+#include "ecnudp/udp_batch.h"
+#include "ecnudp/udp_socket.h"
+
+namespace lidar::gst {
+
+/// Readers that ask for the same place share its socket.
+struct SocketPlace {
+  std::string address;  // local; empty: any
+  guint port = 0;
+  std::string group;      // multicast; empty: none
+  std::string interface;  // of the group; empty: the kernel's choice
+
+  bool operator<(const SocketPlace& o) const {
+    return std::tie(address, port, group, interface) <
+           std::tie(o.address, o.port, o.group, o.interface);
+  }
+};
+
+class SharedSocket;
+
+/// One of a socket's readers; every reader gets every datagram, in the order of their arrival.
+/// Whoever comes first takes them off the socket, for itself in place and for the others as copies,
+/// so that there is no thread in between and a reader alone pays nothing. One thread uses it.
+class SocketReader {
+ public:
+  /// `queue_bytes` bounds what waits here while another reader empties the socket, and is asked of
+  /// the kernel for the socket; 0: the kernel's default. Null and `error` where the place cannot be
+  /// had.
+  static std::unique_ptr<SocketReader> Open(const SocketPlace& place, guint queue_bytes,
+                                            GError** error);
+  ~SocketReader();
+  SocketReader(const SocketReader&) = delete;
+  SocketReader& operator=(const SocketReader&) = delete;
+
+  /// To wait for: readable while something may be there for Receive().
+  int socket_fd() const;
+  int queue_fd() const { return queued_.fd(); }
+  /// Hands over what is there; false with errno where the socket failed.
+  bool Receive(const std::function<void(const ReceivedDatagram&)>& consume);
+
+  guint granted_buffer() const { return granted_buffer_; }  // bytes
+  /// Datagrams that found the socket's buffer, or the queue here, full.
+  guint64 drops() const { return kernel_drops_ + queue_drops_; }
+
+ private:
+  friend class SharedSocket;
+  struct Copy {
+    std::vector<guint8> bytes;
+    NativeAddress from;
+    ReceivedDatagram datagram;
+  };
+  SocketReader(SocketPlace place, guint queue_bytes)
+      : place_(std::move(place)), queue_bytes_(queue_bytes) {}
+  void Enqueue(const ReceivedDatagram& datagram);
+
+  const SocketPlace place_;
+  const guint queue_bytes_;
+  SharedSocket* socket_ = nullptr;
+  guint granted_buffer_ = 0;
+  UdpBatchReceiver batch_;
+  std::vector<Copy> taken_;
+  std::vector<ReceivedDatagram> arrived_;
+  guint64 drops_before_ = 0;  // of the kernel, when this reader came
+  guint64 kernel_drops_ = 0;
+  guint64 queue_drops_ = 0;
+
+  // Guarded by the socket's mutex.
+  std::vector<Copy> queue_;
+  gsize queued_bytes_ = 0;
+  guint64 queue_overflows_ = 0;
+  WakeFd queued_;
+};
+
+}  // namespace lidar::gst

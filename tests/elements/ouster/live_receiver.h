@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// ouster_src on a sensor of this machine, with what it gives and says.
+#pragma once
+#include <functional>
+#include <string>
+
+#include "ouster_support.h"
+
+namespace lidar::test {
+
+/// A pipeline of ouster_src and an appsink-like harness, with its bus.
+class Receiver {
+ public:
+  Receiver(const std::string& host, const std::string& properties)
+      : Receiver(host, properties, {FreePort(), FreePort()}) {}
+  struct Ports {
+    guint16 lidar;
+    guint16 imu;
+  };
+  Receiver(const std::string& host, const std::string& properties, Ports ports)
+      : port_(ports.lidar) {
+    const std::string launch = "ouster_src name=src hostname=" + host +
+                               " imu-port=" + std::to_string(ports.imu) +
+                               " lidar-port=" + std::to_string(port_) + " " + properties;
+    harness_.reset(gst_harness_new_parse(launch.c_str()));
+    source_.reset(gst_bin_get_by_name(GST_BIN(harness_->element), "src"));
+    bus_ = gst_bus_new();
+    gst_element_set_bus(harness_->element, bus_);
+    gst_harness_use_systemclock(harness_.get());
+    gst_harness_play(harness_.get());
+  }
+  ~Receiver() {
+    gst_element_set_bus(harness_->element, nullptr);
+    harness_.reset();
+    gst_object_unref(bus_);
+  }
+  Receiver(const Receiver&) = delete;
+  Receiver& operator=(const Receiver&) = delete;
+
+  gst::BufferPtr Pull() { return gst::BufferPtr(gst_harness_pull(harness_.get())); }
+  void Drain() {
+    while (gst_harness_buffers_in_queue(harness_.get()) > 0) Pull();
+  }
+  /// Takes buffers until one is as wanted; false where none is within ten seconds.
+  bool PullUntil(const std::function<bool(GstBuffer*)>& wanted) {
+    const gint64 end = g_get_monotonic_time() + 10 * G_USEC_PER_SEC;
+    while (g_get_monotonic_time() < end) {
+      const gst::BufferPtr buffer = Pull();
+      if (buffer && wanted(buffer.get())) return true;
+    }
+    return false;
+  }
+  gst::CloudInfo Info() {
+    const gst::CapsPtr caps(gst_pad_get_current_caps(harness_->sinkpad));
+    const auto info = gst::CloudInfo::FromCaps(caps.get());
+    EXPECT_TRUE(info);
+    return info.value_or(gst::CloudInfo{});
+  }
+  /// The next element message of that name, within ten seconds.
+  gst::MessagePtr Await(const char* name) {
+    for (;;) {
+      gst::MessagePtr message(gst_bus_timed_pop_filtered(
+          bus_, 10 * GST_SECOND,
+          static_cast<GstMessageType>(GST_MESSAGE_ELEMENT | GST_MESSAGE_ERROR)));
+      if (!message || GST_MESSAGE_TYPE(message.get()) == GST_MESSAGE_ERROR) return nullptr;
+      if (gst_message_has_name(message.get(), name)) return message;
+    }
+  }
+  bool AwaitConnected(bool connected) {
+    gboolean is = FALSE;
+    do {
+      const gst::MessagePtr message = Await("ouster-connection-changed");
+      if (!message) return false;
+      gst_structure_get_boolean(gst_message_get_structure(message.get()), "connected", &is);
+    } while ((is != FALSE) != connected);
+    return true;
+  }
+  std::string AwaitError() {
+    const gst::MessagePtr message(
+        gst_bus_timed_pop_filtered(bus_, 10 * GST_SECOND, GST_MESSAGE_ERROR));
+    if (!message) return "no error";
+    GError* raw = nullptr;
+    gst_message_parse_error(message.get(), &raw, nullptr);
+    const gst::ErrorPtr error(raw);
+    return error->message;
+  }
+  GstElement* source() { return source_.get(); }
+  guint16 port() const { return port_; }
+
+ private:
+  guint16 port_;
+  Harness harness_;
+  gst::ElementPtr source_;
+  GstBus* bus_ = nullptr;
+};
+
+}  // namespace lidar::test

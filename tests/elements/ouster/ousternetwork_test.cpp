@@ -1,0 +1,194 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// ouster_src on all kinds of addresses, and several of them on one port. Multicast wants a network
+// namespace of the test's own, hence root.
+#include <net/if.h>
+#include <sched.h>
+#include <sys/ioctl.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include <cstring>
+
+#include "ecnudp/udp_socket.h"
+#include "live_receiver.h"
+#include "software_sensor.h"
+
+namespace lidar::test {
+namespace {
+
+using gst::BufferPtr;
+
+/// A network of loopback only, which carries multicast; false where the user may not make one.
+bool EnterOwnNetwork() {
+  if (unshare(CLONE_NEWNET) != 0) return false;
+  const int fd = socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0);
+  ifreq request{};
+  std::strcpy(request.ifr_name, "lo");
+  bool ok = fd >= 0 && ioctl(fd, SIOCGIFFLAGS, &request) == 0;
+  request.ifr_flags = static_cast<short>(request.ifr_flags | IFF_UP | IFF_MULTICAST);
+  ok = ok && ioctl(fd, SIOCSIFFLAGS, &request) == 0;
+  if (fd >= 0) close(fd);
+  return ok;
+}
+
+// Before main, as GLib's threads inherit the namespace of the one that starts them.
+const bool kOwnNetwork = EnterOwnNetwork();
+
+bool HasIpv6() {
+  GSocket* socket =
+      g_socket_new(G_SOCKET_FAMILY_IPV6, G_SOCKET_TYPE_DATAGRAM, G_SOCKET_PROTOCOL_UDP, nullptr);
+  if (socket == nullptr) return false;
+  GSocketAddress* address = g_inet_socket_address_new_from_string("::1", 0);
+  const bool bound = g_socket_bind(socket, address, FALSE, nullptr) != FALSE;
+  g_object_unref(address);
+  g_object_unref(socket);
+  return bound;
+}
+
+std::string SerialOf(const gst::MessagePtr& message) {
+  const char* serial = gst_structure_get_string(gst_message_get_structure(message.get()), "serial");
+  return serial != nullptr ? serial : "";
+}
+
+TEST(OusterNetwork, AHostNameGoesThroughTheResolver) {
+  SoftwareSensor sensor({});
+  Receiver receiver("localhost:" + sensor.port(), "udp-dest=localhost");
+  EXPECT_TRUE(receiver.Pull());
+  EXPECT_EQ(sensor.config()["udp_dest"], "localhost");
+}
+
+TEST(OusterNetwork, AHostNameThatNobodyHasIsAClearError) {
+  Receiver receiver("os-1.invalid", "reconnect=false");
+  const std::string error = receiver.AwaitError();
+  EXPECT_NE(error.find("os-1.invalid"), std::string::npos) << error;
+  EXPECT_NE(error.find("resolve"), std::string::npos) << error;
+}
+
+TEST(OusterNetwork, ASensorMayHaveAnIpv6Address) {
+  if (!HasIpv6()) GTEST_SKIP() << "this machine has no IPv6";
+  SoftwareSensor::Options options;
+  options.http_address = "::1";
+  SoftwareSensor sensor(options);
+  Receiver receiver("[::1]:" + sensor.port(), "udp-dest=@auto");
+  EXPECT_TRUE(receiver.Pull());
+  EXPECT_EQ(sensor.config()["udp_dest"], "::1");
+}
+
+TEST(OusterNetwork, AnAddressToReceiveOnKeepsOthersOut) {
+  SoftwareSensor sensor({});
+  Receiver receiver(sensor.host(), "udp-dest=127.0.0.1 address=127.0.0.2");
+  const gst::MessagePtr message = receiver.Await("ouster-connection-changed");
+  ASSERT_TRUE(message);
+  const char* reason = gst_structure_get_string(gst_message_get_structure(message.get()), "reason");
+  EXPECT_NE(std::string(reason).find("sends to 127.0.0.1:" + std::to_string(receiver.port())),
+            std::string::npos)
+      << reason;
+}
+
+TEST(OusterMulticast, ReachesEveryReceiverOfTheGroup) {
+  if (!kOwnNetwork) GTEST_SKIP() << "only root can make a network namespace for multicast";
+  const std::string group = "239.201.7.1";
+  SoftwareSensor::Options options;
+  options.multicast_iface = "lo";
+  SoftwareSensor sensor(options);
+  const std::string properties =
+      "multicast-iface=lo multicast-group=" + group + " udp-dest=" + group;
+  const Receiver::Ports ports{FreePort(), FreePort()};
+  Receiver first(sensor.host(), properties, ports);
+  ASSERT_TRUE(first.Pull());
+  // As another program does, which cannot share the socket.
+  GError* raw = nullptr;
+  const gst::UdpBind bind{"", ports.lidar, G_SOCKET_FAMILY_IPV4, true};
+  const std::unique_ptr<GSocket, gst::GObjectUnref> other(gst::OpenUdpSocket(bind, &raw));
+  ASSERT_TRUE(other) << raw->message;
+  ASSERT_TRUE(gst::JoinMulticast(other.get(), group, "lo", &raw)) << raw->message;
+  g_socket_set_blocking(other.get(), TRUE);
+  g_socket_set_timeout(other.get(), 5);
+  std::vector<gchar> packet(65536);
+  const gssize size = g_socket_receive(other.get(), packet.data(), packet.size(), nullptr, nullptr);
+  EXPECT_EQ(size, static_cast<gssize>(32 + 16 * (12 + 32 * 12) + 32));
+  EXPECT_TRUE(first.Pull());
+  EXPECT_EQ(Stat(first.source(), "packets-lost"), 0U);
+}
+
+/// Two sensors that send to one port of this machine.
+class OusterOnePort : public ::testing::Test {
+ protected:
+  static SoftwareSensor::Options Second(const char* mode = "512x20") {
+    SoftwareSensor::Options options;
+    options.seed = 2;
+    options.mode = mode;
+    options.source = "127.0.0.2";
+    return options;
+  }
+  const Receiver::Ports ports_{FreePort(), FreePort()};
+};
+
+/// Buffers of some slices, all without a gap; the width of their scans.
+void ExpectWholeScans(Receiver* receiver, int buffers) {
+  for (int i = 0; i < buffers; ++i) {
+    const BufferPtr buffer = receiver->Pull();
+    ASSERT_TRUE(buffer) << i;
+    EXPECT_TRUE(i == 0 || !GST_BUFFER_FLAG_IS_SET(buffer.get(), GST_BUFFER_FLAG_DISCONT)) << i;
+  }
+  EXPECT_EQ(Stat(receiver->source(), "packets-lost"), 0U);
+}
+
+TEST_F(OusterOnePort, EachSourceTakesItsOwnSensor) {
+  SoftwareSensor a({});
+  SoftwareSensor b(Second());
+  ASSERT_NE(a.serial(), b.serial());
+  Receiver of_a(a.host(), "udp-dest=@auto", ports_);
+  Receiver of_b(b.host(), "udp-dest=@auto", ports_);
+  EXPECT_EQ(SerialOf(of_a.Await("ouster-metadata-changed")), a.serial());
+  EXPECT_EQ(SerialOf(of_b.Await("ouster-metadata-changed")), b.serial());
+  ExpectWholeScans(&of_a, 40);
+  ExpectWholeScans(&of_b, 40);
+  EXPECT_GT(Stat(of_a.source(), "packets-foreign"), 20U);
+  EXPECT_GT(Stat(of_b.source(), "packets-foreign"), 20U);
+  EXPECT_EQ(Stat(of_a.source(), "restarts"), 0U);
+}
+
+TEST_F(OusterOnePort, SensorsMayDifferInModeAndOneMayLeave) {
+  SoftwareSensor a({});
+  SoftwareSensor b(Second("1024x10"));
+  Receiver of_a(a.host(), "udp-dest=@auto", ports_);
+  {
+    Receiver of_b(b.host(), "udp-dest=@auto", ports_);
+    ExpectWholeScans(&of_b, 20);
+    EXPECT_EQ(of_b.Info().sensor_model->columns_per_scan, 1024U);
+  }
+  ExpectWholeScans(&of_a, 40);
+  EXPECT_EQ(of_a.Info().sensor_model->columns_per_scan, 512U);
+  EXPECT_EQ(Stat(of_a.source(), "packets-wrong-size"), 0U);
+}
+
+TEST_F(OusterOnePort, TwoSourcesMayHaveTheSameSensor) {
+  SoftwareSensor sensor({});
+  Receiver first(sensor.host(), "udp-dest=@auto", ports_);
+  ASSERT_TRUE(first.Pull());
+  Receiver second(sensor.host(), "udp-dest=@auto", ports_);
+  ExpectWholeScans(&second, 40);
+  ExpectWholeScans(&first, 40);
+  EXPECT_EQ(Stat(first.source(), "packets-foreign"), 0U);
+}
+
+TEST_F(OusterOnePort, TheRestartOfOneDoesNotDisturbTheOther) {
+  SoftwareSensor a({});
+  SoftwareSensor b(Second());
+  Receiver of_a(a.host(), "udp-dest=@auto", ports_);
+  Receiver of_b(b.host(), "udp-dest=@auto", ports_);
+  ASSERT_TRUE(of_a.Pull());
+  ASSERT_TRUE(of_b.Pull());
+  const auto init_id = [&] {
+    return nlohmann::json::parse(b.state().MetadataJson())["sensor_info"]["initialization_id"];
+  };
+  const auto before = init_id();
+  b.state().Restart();
+  ASSERT_TRUE(of_b.PullUntil(
+      [&](GstBuffer*) { return init_id() != before && Stat(of_b.source(), "packets") > 50; }));
+  ExpectWholeScans(&of_a, 40);
+}
+
+}  // namespace
+}  // namespace lidar::test
