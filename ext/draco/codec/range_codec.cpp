@@ -43,14 +43,17 @@ bool RangeEncoder::Encode(const RangeImage& image, const RangeSettings& settings
 void RangeEncoder::CollectReturns(const RangeImage& image, const RangeSettings& settings) {
   mask_.resize(image.size());
   lists_.values.resize(image.size());
-  // Exact below 2^28: the quotient is off by less than half a unit is away from the next integer.
-  const double per_step = 1.0 / settings.grid.step_mm();
+  // BinOf(), exact below 2^28: half a part keeps the quotient from the next integer, by more than
+  // it is rounded.
+  const RangeGrid& grid = settings.grid;
+  const double per_mm = RangeGrid::kParts / (1.0 * grid.parts() * grid.unit_mm());
+  const double half_part = 0.5 / grid.parts();
   std::size_t count = 0;
   for (std::size_t i = 0; i < image.size(); ++i) {
     const std::uint32_t range = std::min(image.ranges[i], kMaxRangeMm);
     mask_[i] = range != 0 ? 1 : 0;
     lists_.values[count] =
-        static_cast<std::int32_t>((static_cast<std::int32_t>(range) + 0.5) * per_step);
+        static_cast<std::int32_t>(static_cast<std::int32_t>(range) * per_mm + half_part);
     count += mask_[i];
   }
   lists_.values.resize(count);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The grid on which ranges are rounded, exact in the sensor's own unit.
+// The grid on which ranges are rounded: any step, and an error that is exact in the sensor's unit.
 #pragma once
 #include <algorithm>
 #include <cmath>
@@ -7,52 +7,72 @@
 
 namespace lidar::codec {
 
-/// Ranges are multiples of `unit_mm`; `cells` neighbouring values share a bin, and all of them come
-/// back as the middle one. The error is at most (cells - 1) / 2 units, with no rounding on top.
+/// Ranges are multiples of `unit_mm`, here called cells. Neighbouring cells share a bin and come
+/// back as its middle, rounded up to a whole millimetre. A step that is no whole number of cells
+/// makes bins of two sizes, evenly mixed: so sizes of slices change as smoothly as steps do, and
+/// the error is that of the larger bins.
 class RangeGrid {
  public:
   static constexpr std::uint32_t kMaxCells = 65'535;
   static constexpr std::uint32_t kMaxUnitMm = 1'000;
+  /// Steps are multiples of a cell by this.
+  static constexpr std::uint32_t kParts = 256;
 
   constexpr RangeGrid() = default;
   constexpr RangeGrid(std::uint32_t unit_mm, std::uint32_t cells)
-      : unit_mm_(unit_mm), cells_(Whole(unit_mm, cells)) {}
+      : unit_mm_(unit_mm), parts_(cells * kParts) {}
+  static constexpr RangeGrid OfParts(std::uint32_t unit_mm, std::uint32_t parts) {
+    RangeGrid grid;
+    grid.unit_mm_ = unit_mm;
+    grid.parts_ = parts;
+    return grid;
+  }
 
   /// The coarsest grid whose error stays within `error_m`; lossless where none else does.
   static RangeGrid ForError(double error_m, std::uint32_t unit_mm) {
-    // The small term lets a bound such as 0.02 m, which is no exact double, hold 40 units of 1 mm.
-    const double units = std::floor(2e3 * error_m / unit_mm + 1e-9) + 1;
-    return {unit_mm, static_cast<std::uint32_t>(std::clamp(units, 1.0, double{kMaxCells}))};
+    // The small term lets a bound such as 0.02 m, which is no exact double, hold 20 mm. Fractions
+    // of a millimetre are no use: errors are whole ones.
+    const double whole_mm = std::floor(1e3 * error_m + 1e-9);
+    const double cells = std::floor(2 * whole_mm / unit_mm) + 1;
+    return {unit_mm, static_cast<std::uint32_t>(std::clamp(cells, 1.0, double{kMaxCells}))};
   }
-  /// The coarsest grid whose step is at most `step_m`.
+  /// The coarsest grid whose step is at most `step_m`; lossless where none is.
   static RangeGrid ForStep(double step_m, std::uint32_t unit_mm) {
-    const double units = std::floor(1e3 * step_m / unit_mm + 1e-9);
-    return {unit_mm, static_cast<std::uint32_t>(std::clamp(units, 1.0, double{kMaxCells}))};
+    const double parts = std::floor(1e3 * kParts * step_m / unit_mm + 1e-6);
+    constexpr double kMost = double{kMaxCells} * kParts;
+    return OfParts(unit_mm, static_cast<std::uint32_t>(std::clamp(parts, double{kParts}, kMost)));
   }
 
   bool IsValid() const {
-    return unit_mm_ >= 1 && unit_mm_ <= kMaxUnitMm && cells_ >= 1 && cells_ <= kMaxCells &&
-           cells_ == Whole(unit_mm_, cells_);
+    return unit_mm_ >= 1 && unit_mm_ <= kMaxUnitMm && parts_ >= kParts &&
+           parts_ <= kMaxCells * kParts;
   }
   std::uint32_t unit_mm() const { return unit_mm_; }
-  std::uint32_t cells() const { return cells_; }
-  std::uint32_t step_mm() const { return unit_mm_ * cells_; }
-  double step_m() const { return 1e-3 * step_mm(); }
-  double error_m() const { return 0.5e-3 * (cells_ - 1) * unit_mm_; }
+  /// The step in cells / kParts.
+  std::uint32_t parts() const { return parts_; }
+  double step_m() const { return 1e-3 / kParts * parts_ * unit_mm_; }
+  /// The largest distance between a range and RangeOf(BinOf(range)).
+  double error_m() const {
+    const std::uint32_t cells = (parts_ + kParts - 1) / kParts;  // of the larger bins
+    const std::uint32_t error_mm = ((cells - 1) * unit_mm_ + 1) / 2;
+    return 1e-3 * error_mm;
+  }
 
-  std::uint32_t BinOf(std::uint32_t range_mm) const { return range_mm / step_mm(); }
+  std::uint32_t BinOf(std::uint32_t range_mm) const {
+    return static_cast<std::uint32_t>(std::uint64_t{range_mm / unit_mm_} * kParts / parts_);
+  }
   std::uint32_t RangeOf(std::uint32_t bin) const {
-    return bin * step_mm() + (cells_ - 1) * unit_mm_ / 2;
+    const std::uint64_t sum = FirstCell(bin) + FirstCell(std::uint64_t{bin} + 1) - 1;
+    return static_cast<std::uint32_t>((sum * unit_mm_ + 1) / 2);
   }
 
  private:
-  /// Ranges are whole millimetres, so the middle of a bin has to be one as well.
-  static constexpr std::uint32_t Whole(std::uint32_t unit_mm, std::uint32_t cells) {
-    return (cells - 1) * unit_mm % 2 == 0 ? cells : cells - 1;
+  std::uint64_t FirstCell(std::uint64_t bin) const {
+    return (bin * parts_ + (kParts - 1)) / kParts;
   }
 
   std::uint32_t unit_mm_ = 1;
-  std::uint32_t cells_ = 1;
+  std::uint32_t parts_ = kParts;
 };
 
 }  // namespace lidar::codec

@@ -37,7 +37,7 @@ void RangeHeader::Write(std::vector<std::uint8_t>* out) const {
   writer.U8(
       static_cast<std::uint8_t>(intensity.bits() | static_cast<unsigned>(intensity.full()) << 4));
   for (const std::uint32_t v :
-       {beams, first_column, columns, grid.unit_mm(), grid.cells(), mask_size, payload_size}) {
+       {beams, first_column, columns, grid.unit_mm(), grid.parts(), mask_size, payload_size}) {
     WriteVarint(v, &writer);
   }
 }
@@ -53,21 +53,19 @@ std::optional<RangeHeader> RangeHeader::Read(ByteReader* reader) {
   h.first_column = ReadVarint(reader, &ok);
   h.columns = ReadVarint(reader, &ok);
   const std::uint32_t unit_mm = ReadVarint(reader, &ok);
-  const std::uint32_t cells = ReadVarint(reader, &ok);
+  const std::uint32_t parts = ReadVarint(reader, &ok);
   h.mask_size = ReadVarint(reader, &ok);
   h.payload_size = ReadVarint(reader, &ok);
   if (!ok || !reader->ok() || first >> 4 != kVersion || !IsKnown(first & 15) ||
       bits > IntensityScale::kMaxBits || full > static_cast<unsigned>(FullScale::kWord) ||
       h.beams == 0 || h.beams > kMaxBeams || h.columns == 0 || h.columns > kMaxColumns ||
-      h.first_column >= kMaxColumns || unit_mm > RangeGrid::kMaxUnitMm ||
-      cells > RangeGrid::kMaxCells) {
+      h.first_column >= kMaxColumns) {
     return std::nullopt;
   }
   h.coder = static_cast<RangeCoder>(first & 15);
   h.intensity = IntensityScale(static_cast<FullScale>(full), bits);
-  h.grid = RangeGrid(unit_mm, cells);
-  if (!h.grid.IsValid() || h.grid.cells() != cells ||
-      std::uint64_t{h.mask_size} + h.payload_size > reader->remaining()) {
+  h.grid = RangeGrid::OfParts(unit_mm, parts);
+  if (!h.grid.IsValid() || std::uint64_t{h.mask_size} + h.payload_size > reader->remaining()) {
     return std::nullopt;
   }
   return h;

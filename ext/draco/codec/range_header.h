@@ -34,7 +34,7 @@ struct RangeHeader {
   /// numbers outside of their limits, or lengths past the end.
   static std::optional<RangeHeader> Read(ByteReader* reader);
 
-  static constexpr std::uint8_t kVersion = 1;
+  static constexpr std::uint8_t kVersion = 2;
   static constexpr std::uint32_t kMaxBeams = 1'024;
   static constexpr std::uint32_t kMaxColumns = 16'384;
 };

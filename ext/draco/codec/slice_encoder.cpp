@@ -116,7 +116,7 @@ SliceResult SliceEncoder::EncodeRange(const SliceSettings& settings, EncodedSlic
   range.grid = RangeGrid::ForError(settings.max_error_m, unit_mm_);
   if (settings.step_m > 0) {
     const auto asked = RangeGrid::ForStep(settings.step_m, unit_mm_);
-    if (asked.cells() < range.grid.cells()) range.grid = asked;
+    if (asked.parts() < range.grid.parts()) range.grid = asked;
   }
   const std::size_t most = std::min<std::size_t>(returns_ / kMinBlockReturns, image_.columns);
   const auto blocks = static_cast<std::uint32_t>(std::min<std::size_t>(threads_, most));

@@ -16,8 +16,9 @@ constexpr std::size_t kAnyPoints = 1U << 20;
 
 struct CodingCase {
   RangeCoder coder;
-  std::uint32_t cells;
+  double cells;  // a bin
   unsigned intensity_bits;
+  RangeGrid grid() const { return RangeGrid::ForStep(1e-3 * cells, 1); }
 };
 class RangeCoders : public ::testing::TestWithParam<CodingCase> {};
 
@@ -52,7 +53,7 @@ void ExpectRoundTrip(const RangeImage& image, const RangeSettings& settings, Cod
 TEST_P(RangeCoders, GiveBackTheBinsTheyWereGiven) {
   const CodingCase& c = GetParam();
   const SensorModel model = test::RoomSensor();
-  const RangeSettings settings{c.coder, RangeGrid(1, c.cells),
+  const RangeSettings settings{c.coder, c.grid(),
                                IntensityScale(FullScale::kByte, c.intensity_bits)};
   Codec codec(model);
   ExpectRoundTrip(test::RoomScan(model), settings, &codec);
@@ -73,22 +74,20 @@ TEST_P(RangeCoders, GiveBackNoise) {
           random() % 100 < lost ? 0 : 1 + static_cast<std::uint32_t>(random() % 250'000);
       image.intensity[i] = static_cast<std::uint8_t>(random());
     }
-    ExpectRoundTrip(
-        image, {c.coder, RangeGrid(1, c.cells), IntensityScale(FullScale::kByte, c.intensity_bits)},
-        &codec);
+    ExpectRoundTrip(image, {c.coder, c.grid(), IntensityScale(FullScale::kByte, c.intensity_bits)},
+                    &codec);
     codec.decoder = RangeDecoder(model);
   }
 }
-INSTANTIATE_TEST_SUITE_P(All, RangeCoders,
-                         ::testing::Values(CodingCase{RangeCoder::kDraco, 41, 0},
-                                           CodingCase{RangeCoder::kDraco, 41, 5},
-                                           CodingCase{RangeCoder::kResidual, 41, 0},
-                                           CodingCase{RangeCoder::kResidual, 1, 8},
-                                           CodingCase{RangeCoder::kAdaptive, 41, 0},
-                                           CodingCase{RangeCoder::kAdaptive, 41, 5},
-                                           CodingCase{RangeCoder::kAdaptive, 41, 8},
-                                           CodingCase{RangeCoder::kAdaptive, 1, 1},
-                                           CodingCase{RangeCoder::kAdaptive, 65'535, 8}));
+INSTANTIATE_TEST_SUITE_P(
+    All, RangeCoders,
+    ::testing::Values(
+        CodingCase{RangeCoder::kDraco, 41, 0}, CodingCase{RangeCoder::kDraco, 41, 5},
+        CodingCase{RangeCoder::kResidual, 41, 0}, CodingCase{RangeCoder::kResidual, 1, 8},
+        CodingCase{RangeCoder::kAdaptive, 41, 0}, CodingCase{RangeCoder::kAdaptive, 41, 5},
+        CodingCase{RangeCoder::kDraco, 2.75, 0}, CodingCase{RangeCoder::kAdaptive, 1.01, 0},
+        CodingCase{RangeCoder::kAdaptive, 40.5, 0}, CodingCase{RangeCoder::kAdaptive, 41, 8},
+        CodingCase{RangeCoder::kAdaptive, 1, 1}, CodingCase{RangeCoder::kAdaptive, 65'535, 8}));
 
 TEST(Rans, GivesBackEverySymbolWhateverTheModelSaw) {
   std::mt19937 random(3);
@@ -206,21 +205,111 @@ TEST_P(HostileStreams, OfFieldsWithOddTypesStayInsideTheirBuffer) {
   EXPECT_EQ(raw[13], 0);
 }
 
-TEST(RangeGrids, AreExactInTheSensorsUnit) {
-  EXPECT_EQ(RangeGrid::ForError(0.02, 1).cells(), 41U);
-  EXPECT_EQ(RangeGrid::ForError(0.02, 8).cells(), 6U);
-  EXPECT_EQ(RangeGrid::ForError(0.0001, 8).cells(), 1U);
-  EXPECT_EQ(RangeGrid::ForStep(0.04, 1).cells(), 39U);
-  for (const std::uint32_t unit : {1U, 3U, 8U}) {
-    for (const double error : {0.0005, 0.0015, 0.02, 0.05, 1.0}) {
-      const auto grid = RangeGrid::ForError(error, unit);
-      ASSERT_TRUE(grid.IsValid());
-      for (std::uint32_t r = 0; r < 3 * grid.step_mm(); r += unit) {
-        const auto back = static_cast<double>(grid.RangeOf(grid.BinOf(r)));
-        ASSERT_LE(std::abs(back - r), 1e3 * error + 1e-6) << unit << " " << error;
-      }
+TEST(RangeGrids, AreTheCoarsestThatKeepToAnError) {
+  EXPECT_EQ(RangeGrid::ForError(0.02, 1).parts(), RangeGrid(1, 41).parts());
+  EXPECT_EQ(RangeGrid::ForError(0.0195, 1).parts(), RangeGrid(1, 39).parts());
+  EXPECT_EQ(RangeGrid::ForError(0.02, 8).parts(), RangeGrid(8, 6).parts());
+  EXPECT_EQ(RangeGrid::ForError(0.0001, 8).parts(), RangeGrid(8, 1).parts());
+  EXPECT_EQ(RangeGrid::ForError(-1, 3).parts(), RangeGrid(3, 1).parts());
+}
+
+TEST(RangeGrids, TakeAnyStepDownToTheSensorsUnit) {
+  EXPECT_EQ(RangeGrid::ForStep(0.04, 1).parts(), RangeGrid(1, 40).parts());
+  EXPECT_EQ(RangeGrid::ForStep(0.012, 8).parts(), 3 * RangeGrid::kParts / 2);
+  EXPECT_DOUBLE_EQ(RangeGrid::ForStep(0.012, 8).step_m(), 0.012);
+  EXPECT_EQ(RangeGrid::ForStep(0.001, 8).parts(), RangeGrid::kParts);
+  EXPECT_EQ(RangeGrid::ForStep(1e9, 8).parts(), RangeGrid(8, RangeGrid::kMaxCells).parts());
+}
+
+class GridErrors : public ::testing::TestWithParam<std::uint32_t> {};
+
+TEST_P(GridErrors, AreReachedAndNeverPassed) {
+  const std::uint32_t unit = GetParam();
+  for (std::uint32_t parts = 1; parts <= 44; ++parts) {
+    const auto grid = RangeGrid::OfParts(unit, RangeGrid::kParts + parts * 139);
+    ASSERT_TRUE(grid.IsValid());
+    std::uint32_t worst = 0;
+    // The bins of all fractions of a cell repeat after so many.
+    for (std::uint32_t r = unit; r < 26 * RangeGrid::kParts * unit; r += unit) {
+      const std::uint32_t back = grid.RangeOf(grid.BinOf(r));
+      ASSERT_GT(back, 0U) << "a return became a missing one";
+      ASSERT_EQ(grid.BinOf(back / unit * unit), grid.BinOf(r)) << "not in the bin it stands for";
+      worst = std::max(worst, back > r ? back - r : r - back);
     }
+    EXPECT_DOUBLE_EQ(1e-3 * worst, grid.error_m()) << parts;
   }
+}
+
+TEST_P(GridErrors, StayWithinTheErrorAskedFor) {
+  const std::uint32_t unit = GetParam();
+  for (const double error : {0.0005, 0.0015, 0.0195, 0.02, 0.05, 1.0}) {
+    const auto grid = RangeGrid::ForError(error, unit);
+    EXPECT_LE(grid.error_m(), error);
+    EXPECT_GT(RangeGrid::OfParts(unit, grid.parts() + RangeGrid::kParts).error_m(), error);
+    // Any finer step keeps to it as well.
+    for (std::uint32_t parts = RangeGrid::kParts; parts < grid.parts(); parts += 97)
+      ASSERT_LE(RangeGrid::OfParts(unit, parts).error_m(), error + 1e-12) << parts;
+  }
+}
+INSTANTIATE_TEST_SUITE_P(All, GridErrors, ::testing::Values(1U, 3U, 8U));
+
+TEST(RangeGrids, MakeSizesThatFallAsTheStepGrows) {
+  const SensorModel model = test::RoomSensor();
+  RangeEncoder encoder(model);
+  const RangeImage image = test::RoomScan(model);
+  double last = 0;
+  for (std::uint32_t parts = 8 * RangeGrid::kParts; parts < 12 * RangeGrid::kParts; parts += 32) {
+    std::vector<std::uint8_t> bytes;
+    ASSERT_TRUE(
+        encoder.Encode(image, {RangeCoder::kAdaptive, RangeGrid::OfParts(1, parts), {}}, &bytes));
+    const auto size = static_cast<double>(bytes.size());
+    if (last > 0) {
+      EXPECT_LT(size, 1.005 * last) << parts;
+      EXPECT_GT(size, 0.98 * last) << parts;
+    }
+    last = size;
+  }
+}
+
+class HostileHeaders : public ::testing::Test {
+ protected:
+  /// The header of a good block with one of its first bytes replaced.
+  static bool Reads(std::vector<std::uint8_t> bytes) {
+    ByteReader reader(bytes.data(), bytes.size());
+    return RangeHeader::Read(&reader).has_value();
+  }
+  static std::vector<std::uint8_t> Header(const RangeGrid& grid) {
+    RangeHeader header;
+    header.beams = 32;
+    header.columns = 64;
+    header.grid = grid;
+    std::vector<std::uint8_t> bytes;
+    header.Write(&bytes);
+    return bytes;
+  }
+};
+
+TEST_F(HostileHeaders, OfOtherVersionsAreRefused) {
+  auto bytes = Header(RangeGrid(1, 41));
+  ASSERT_TRUE(Reads(bytes));
+  for (const unsigned version : {0U, 1U, RangeHeader::kVersion + 1U, 15U}) {
+    bytes[0] = static_cast<std::uint8_t>(version << 4 | (bytes[0] & 15U));
+    EXPECT_FALSE(Reads(bytes)) << version;
+  }
+}
+
+TEST_F(HostileHeaders, WithStepsOutOfTheirLimitsAreRefused) {
+  const auto of_parts = [](std::uint32_t unit, std::uint32_t parts) {
+    return Reads(Header(RangeGrid::OfParts(unit, parts)));
+  };
+  constexpr std::uint32_t kMost = RangeGrid::kMaxCells * RangeGrid::kParts;
+  EXPECT_TRUE(of_parts(1, RangeGrid::kParts));
+  EXPECT_TRUE(of_parts(RangeGrid::kMaxUnitMm, kMost));
+  EXPECT_FALSE(of_parts(1, 0));
+  EXPECT_FALSE(of_parts(1, RangeGrid::kParts - 1));
+  EXPECT_FALSE(of_parts(1, kMost + 1));
+  EXPECT_FALSE(of_parts(0, RangeGrid::kParts));
+  EXPECT_FALSE(of_parts(RangeGrid::kMaxUnitMm + 1, RangeGrid::kParts));
 }
 
 }  // namespace
