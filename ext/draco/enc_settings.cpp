@@ -91,6 +91,10 @@ const std::array<Property<EncSettings>, kEncPropertyCount>& EncProperties() {
        "Threads for one buffer in range geometry, while each has 8,000 returns to code: more are "
        "faster, and a little larger",
        &Settings::threads, 1, 64},
+      {"error-check",
+       "Decodes every n-th slice again and posts its real point errors as the element message "
+       "dracoenc-error-check; 0: none",
+       &Settings::error_check, 0, G_MAXUINT, GST_PARAM_MUTABLE_PLAYING},
   }};
   return table;
 }

@@ -31,9 +31,10 @@ struct EncSettings {
   std::string model_location;
   gint degradation = Int(rate::DegradationPreference::kMaintainAccuracy);
   guint threads = 1;
+  guint error_check = 0;
 };
 
-constexpr std::size_t kEncPropertyCount = 11;
+constexpr std::size_t kEncPropertyCount = 12;
 const std::array<Property<EncSettings>, kEncPropertyCount>& EncProperties();
 
 /// The value's name in the property `geometry`.

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include "draco/enc_stats.h"
 
+#include <algorithm>
+
 namespace lidar::gst {
 
 void EncStats::OnScan(double scans_per_second) {
@@ -42,6 +44,14 @@ void EncStats::OnSlice(const LoopResult& result, const codec::EncodedSlice& slic
   last_result_ = result;
 }
 
+void EncStats::OnErrorCheck(const PointErrors& errors, bool holds) {
+  ++error_checks_;
+  if (!holds) ++error_checks_failed_;
+  points_checked_ += errors.points;
+  largest_error_m_ = std::max(largest_error_m_, errors.max_m);
+  sum_of_errors_m_ += errors.mean_m * static_cast<double>(errors.points);
+}
+
 GstStructure* EncStats::ToStructure(guint target_bps) const {
   const double bits = 8 * static_cast<double>(bytes_);
   return gst_structure_new(
@@ -55,7 +65,10 @@ GstStructure* EncStats::ToStructure(guint target_bps) const {
       last_result_.intensity_bits, "keep-fraction", G_TYPE_DOUBLE, last_result_.keep_fraction,
       "target-bitrate", G_TYPE_UINT, target_bps, "bitrate", G_TYPE_UINT,
       static_cast<guint>(bitrate_), "encode-time", G_TYPE_UINT64, last_encode_time_,
-      "mean-encode-time", G_TYPE_UINT64, slices_ > 0 ? encode_time_ / slices_ : 0, nullptr);
+      "mean-encode-time", G_TYPE_UINT64, slices_ > 0 ? encode_time_ / slices_ : 0, "error-checks",
+      G_TYPE_UINT64, error_checks_, "error-checks-failed", G_TYPE_UINT64, error_checks_failed_,
+      "largest-error", G_TYPE_DOUBLE, largest_error_m_, "mean-error", G_TYPE_DOUBLE,
+      points_checked_ > 0 ? sum_of_errors_m_ / static_cast<double>(points_checked_) : 0.0, nullptr);
 }
 
 }  // namespace lidar::gst

@@ -6,6 +6,7 @@
 #include <cstdint>
 
 #include "draco/codec/slice_encoder.h"
+#include "draco/enc_error_check.h"
 #include "draco/rate_loop.h"
 
 namespace lidar::gst {
@@ -15,6 +16,8 @@ class EncStats {
   void OnScan(double scans_per_second);
   void OnSlice(const LoopResult& result, const codec::EncodedSlice& slice,
                GstClockTime encode_time);
+  /// `holds`: the errors are within max-error.
+  void OnErrorCheck(const PointErrors& errors, bool holds);
   /// transfer full
   GstStructure* ToStructure(guint target_bps) const;
   guint64 slices_out_of_reach() const { return out_of_reach_; }
@@ -38,6 +41,11 @@ class EncStats {
   bool scan_has_slices_ = false;
   bool scan_was_skipped_ = false;
   guint64 scan_bytes_ = 0;
+  guint64 error_checks_ = 0;
+  guint64 error_checks_failed_ = 0;
+  guint64 points_checked_ = 0;
+  double largest_error_m_ = 0;
+  double sum_of_errors_m_ = 0;
   double bitrate_ = 0;  // smoothed over about ten scans
   double scans_per_second_ = 10;
 };

@@ -17,11 +17,14 @@
 #include "common/buffer_map.h"
 #include "common/cloud_info.h"
 #include "common/refs.h"
+#include "draco/enc_error_check.h"
+#include "draco/enc_error_report.h"
+#include "draco/enc_model.h"
+#include "draco/enc_range_check.h"
 #include "draco/enc_settings.h"
 #include "draco/enc_stats.h"
 #include "draco/encoded_caps.h"
 #include "draco/rate_loop.h"
-#include "rate/model_file.h"
 
 GST_DEBUG_CATEGORY_STATIC(gst_lidar_draco_enc_debug);
 #define GST_CAT_DEFAULT gst_lidar_draco_enc_debug
@@ -34,7 +37,6 @@ using lidar::codec::RangeCoder;
 using lidar::codec::SliceResult;
 using Settings = lidar::gst::EncSettings;
 using lidar::rate::DegradationPreference;
-using lidar::rate::RateModel;
 
 constexpr guint kPropMinBitrate = lidar::gst::kEncPropertyCount + 1;
 constexpr guint kPropStats = kPropMinBitrate + 1;
@@ -45,10 +47,15 @@ struct Stream {
   std::optional<lidar::codec::SliceEncoder> encoder;
   std::unique_ptr<lidar::gst::RateLoop> loop;
   lidar::codec::EncodedSlice slice;
+  std::optional<lidar::gst::RangeCheck> range_check;
+  std::optional<lidar::gst::ErrorCheck> error_check;
+  guint slices_to_check = 0;     // until the next error check
   std::optional<guint> scan_id;  // of the last slice
   guint scans_without_meta = 0;
   bool discont = false;
-  bool warned = false;
+  bool warned_of_reach = false;
+  bool warned_of_ranges = false;
+  bool warned_of_errors = false;
 };
 
 struct State {
@@ -84,32 +91,6 @@ guint EffectiveBitrate(const State& state) {
   return state.event_bps.value_or(state.settings.bitrate_bps);
 }
 
-std::unique_ptr<lidar::rate::SizeModel> LoadModel(GstLidarDracoEnc* self, const Settings& s) {
-  const auto kind = static_cast<RateModel>(s.rate_model);
-  if (s.model_location.empty()) return lidar::rate::MakeBuiltInModel(kind);
-  gchar* text = nullptr;
-  gsize size = 0;
-  GError* failure = nullptr;
-  if (!g_file_get_contents(s.model_location.c_str(), &text, &size, &failure)) {
-    const lidar::gst::ErrorPtr owned(failure);
-    GST_ELEMENT_ERROR(self, RESOURCE, OPEN_READ,
-                      ("Cannot read the rate model \"%s\".", s.model_location.c_str()),
-                      ("%s", failure->message));
-    return nullptr;
-  }
-  const lidar::gst::StringPtr owned(text);
-  std::string error;
-  std::unique_ptr<lidar::rate::SizeModel> model;
-  if (const auto file = lidar::rate::ParseModelFile({text, size}, &error))
-    model = lidar::rate::MakeModel(*file, kind, &error);
-  if (!model) {
-    GST_ELEMENT_ERROR(self, RESOURCE, READ,
-                      ("The rate model \"%s\" cannot be used.", s.model_location.c_str()),
-                      ("%s", error.c_str()));
-  }
-  return model;
-}
-
 GstCaps* EncodedCaps(const Stream& stream, const Settings& settings) {
   lidar::gst::EncodedInfo encoded;
   encoded.geometry = stream.encoder->geometry();
@@ -126,10 +107,12 @@ gboolean SetCaps(GstLidarDracoEnc* self, GstCaps* caps) {
   const Settings settings = Snapshot(self->state);
   const auto info = lidar::gst::CloudInfo::FromCaps(caps);
   stream.encoder.reset();
+  lidar::codec::CloudFormat format;
   if (info) {
-    stream.encoder = lidar::codec::SliceEncoder::Create(
-        {{info->fields, info->point_step}, info->height, info->sensor_model},
-        static_cast<Geometry>(settings.geometry), static_cast<RangeCoder>(settings.range_coder));
+    format = {{info->fields, info->point_step}, info->height, info->sensor_model};
+    stream.encoder =
+        lidar::codec::SliceEncoder::Create(format, static_cast<Geometry>(settings.geometry),
+                                           static_cast<RangeCoder>(settings.range_coder));
   }
   if (stream.encoder && stream.encoder->geometry() == Geometry::kRange &&
       info->width > info->sensor_model->columns_per_scan) {
@@ -146,9 +129,13 @@ gboolean SetCaps(GstLidarDracoEnc* self, GstCaps* caps) {
     return FALSE;
   }
   stream.encoder->set_threads(settings.threads);
+  stream.range_check.reset();
+  if (stream.encoder->geometry() == Geometry::kRange)
+    stream.range_check = lidar::gst::RangeCheck::Create(format);
+  stream.error_check.emplace(format, stream.encoder->geometry());
   stream.info = *info;
   if (!stream.loop) {
-    auto model = LoadModel(self, settings);
+    auto model = lidar::gst::LoadModel(GST_ELEMENT(self), settings);
     if (!model) return FALSE;
     stream.loop = std::make_unique<lidar::gst::RateLoop>(std::move(model));
   }
@@ -267,6 +254,43 @@ GstFlowReturn PushSlice(GstLidarDracoEnc* self, GstBuffer* input) {
   return gst_pad_push(self->src, output);
 }
 
+/// Warns once where the cloud was moved after the sensor: what range geometry sends is not moved.
+void CheckRanges(GstLidarDracoEnc* self, lidar::ByteView raw, guint first_column) {
+  Stream& stream = self->state->stream;
+  const auto found = stream.range_check->Find(raw, first_column);
+  if (!found) return;
+  stream.warned_of_ranges = true;
+  GST_ELEMENT_WARNING(self, STREAM, ENCODE,
+                      ("The points of this cloud are not where its ranges and its sensor-model put "
+                       "them; geometry=range sends the ranges. Use geometry=xyz."),
+                      ("the point of beam %u, column %u is %f m away", found->beam, found->column,
+                       found->distance_m));
+}
+
+/// Decodes every n-th slice again and says what its real errors are.
+void CheckErrors(GstLidarDracoEnc* self, GstBuffer* input, const GstLidarSlice& place,
+                 const lidar::gst::LoopResult& result) {
+  State& state = *self->state;
+  Stream& stream = state.stream;
+  const Settings settings = Snapshot(&state);
+  if (settings.error_check == 0) return;
+  if (stream.slices_to_check > 0) {
+    stream.slices_to_check = MIN(stream.slices_to_check, settings.error_check) - 1;
+    return;
+  }
+  stream.slices_to_check = settings.error_check - 1;
+  const lidar::gst::BufferMap map(input, GST_MAP_READ);
+  if (!map) return;
+  const auto errors = stream.error_check->Measure(map.view(), stream.slice.bytes);
+  const lidar::gst::CheckedSlice checked{place.scan_id, place.slice_index, result.max_error_m,
+                                         stream.slice.error_m, result.keep_fraction < 1};
+  const bool holds =
+      lidar::gst::PostErrors(GST_ELEMENT(self), checked, errors, !stream.warned_of_errors);
+  stream.warned_of_errors = !holds;
+  std::lock_guard lock(state.mutex);
+  state.stats.OnErrorCheck(errors.value_or(lidar::gst::PointErrors{}), holds);
+}
+
 /// Loads the points of `buffer` into the encoder; false after an error message.
 bool LoadBuffer(GstLidarDracoEnc* self, GstBuffer* buffer, guint first_column) {
   Stream& stream = self->state->stream;
@@ -284,6 +308,7 @@ bool LoadBuffer(GstLidarDracoEnc* self, GstBuffer* buffer, guint first_column) {
     return false;
   }
   stream.encoder->Load(map.view(), first_column, Snapshot(self->state).intensity_bits > 0);
+  if (stream.range_check && !stream.warned_of_ranges) CheckRanges(self, map.view(), first_column);
   return true;
 }
 
@@ -296,13 +321,14 @@ GstFlowReturn Chain(GstPad*, GstObject* parent, GstBuffer* buffer) {
   const auto place = PlaceOf(self, buffer, &slice);
   if (!LoadBuffer(self, buffer, slice.first_column)) return GST_FLOW_ERROR;
   const auto result = EncodeLoaded(self, place);
-  if (!result.skipped && result.result == SliceResult::kOutOfReach && !stream.warned) {
-    stream.warned = true;
+  if (!result.skipped && result.result == SliceResult::kOutOfReach && !stream.warned_of_reach) {
+    stream.warned_of_reach = true;
     GST_ELEMENT_WARNING(self, STREAM, ENCODE,
                         ("A cloud is too large for max-error and was left out."),
                         ("the longest side of its box is %f m", stream.encoder->extent_m()));
   }
   if (result.skipped || result.result != SliceResult::kEncoded) return PushGap(self, buffer);
+  CheckErrors(self, buffer, slice, result);
   return PushSlice(self, buffer);
 }
 

@@ -47,6 +47,7 @@ LoopResult RateLoop::Encode(const SlicePlace& place, const LoopSettings& setting
   LoopResult result;
   result.skipped = decision.skip;
   result.keep_fraction = decision.keep_fraction;
+  result.max_error_m = settings.max_error_m;
   if (decision.skip) return result;
   if (decision.keep_fraction < 1 && encoder->rows() > 0)
     encoder->Thin(rate::ThinningPattern(encoder->rows(), decision.keep_fraction));

@@ -31,6 +31,7 @@ struct LoopResult {
   codec::SliceResult result = codec::SliceResult::kEmpty;
   unsigned intensity_bits = 0;
   double keep_fraction = 1;
+  double max_error_m = 0;  // that was to be kept
 };
 
 /// For one thread at a time.

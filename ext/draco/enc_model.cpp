@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "draco/enc_model.h"
+
+#include <string>
+
+#include "common/refs.h"
+#include "rate/model_file.h"
+
+namespace lidar::gst {
+
+std::unique_ptr<rate::SizeModel> LoadModel(GstElement* element, const EncSettings& s) {
+  const auto kind = static_cast<rate::RateModel>(s.rate_model);
+  if (s.model_location.empty()) return rate::MakeBuiltInModel(kind);
+  gchar* text = nullptr;
+  gsize size = 0;
+  GError* failure = nullptr;
+  if (!g_file_get_contents(s.model_location.c_str(), &text, &size, &failure)) {
+    const ErrorPtr owned(failure);
+    GST_ELEMENT_ERROR(element, RESOURCE, OPEN_READ,
+                      ("Cannot read the rate model \"%s\".", s.model_location.c_str()),
+                      ("%s", failure->message));
+    return nullptr;
+  }
+  const StringPtr owned(text);
+  std::string error;
+  std::unique_ptr<rate::SizeModel> model;
+  if (const auto file = rate::ParseModelFile({text, size}, &error))
+    model = rate::MakeModel(*file, kind, &error);
+  if (!model) {
+    GST_ELEMENT_ERROR(element, RESOURCE, READ,
+                      ("The rate model \"%s\" cannot be used.", s.model_location.c_str()),
+                      ("%s", error.c_str()));
+  }
+  return model;
+}
+
+}  // namespace lidar::gst

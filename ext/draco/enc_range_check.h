@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Do points stand where their ranges and the sensor model put them?
+#pragma once
+#include <cstdint>
+#include <optional>
+
+#include "base/byte_reader.h"
+#include "cloud/range_projection.h"
+#include "draco/codec/slice_encoder.h"
+
+namespace lidar::gst {
+
+/// Range geometry codes ranges alone, so points that were moved after the sensor come back unmoved.
+class RangeCheck {
+ public:
+  /// None where there is nothing to compare: no x, y and z beside the range.
+  static std::optional<RangeCheck> Create(const codec::CloudFormat& format);
+
+  struct Contradiction {
+    std::uint32_t beam = 0;
+    std::uint32_t column = 0;  // measurement id
+    double distance_m = 0;     // between the point and its range's
+  };
+  /// Looks at kSamples returns of `raw`, which holds whole beams.
+  std::optional<Contradiction> Find(ByteView raw, std::uint32_t first_column) const;
+
+  static constexpr std::size_t kSamples = 4;
+
+ private:
+  explicit RangeCheck(const codec::CloudFormat& format);
+
+  codec::CloudLayout layout_;
+  std::uint32_t unit_mm_;
+  RangeProjection projection_;
+};
+
+}  // namespace lidar::gst

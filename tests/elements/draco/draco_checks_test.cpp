@@ -1,0 +1,306 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// What dracoenc says about its own errors, and about clouds that contradict themselves.
+#include <gtest/gtest.h>
+
+#include <deque>
+#include <numeric>
+
+#include "draco/enc_error_check.h"
+#include "draco_harness.h"
+
+namespace lidar::gst {
+namespace {
+
+constexpr const char* kMessage = "dracoenc-error-check";
+
+/// dracoenc and dracodec with a bus.
+class CheckedCodec {
+ public:
+  explicit CheckedCodec(const std::string& properties) : harness_(Codec(properties)) {
+    gst_element_set_bus(harness_->element, bus_.get());
+  }
+  ~CheckedCodec() { gst_element_set_bus(harness_->element, nullptr); }
+  CheckedCodec(const CheckedCodec&) = delete;
+  CheckedCodec& operator=(const CheckedCodec&) = delete;
+
+  void SetCaps(const CloudInfo& info) {
+    const CapsPtr caps(info.ToCaps());
+    gst_harness_set_src_caps(harness_.get(), gst_caps_ref(caps.get()));
+  }
+  /// Takes `buffer`, gives the decoded cloud.
+  BufferPtr Push(GstBuffer* buffer) {
+    EXPECT_EQ(gst_harness_push(harness_.get(), buffer), GST_FLOW_OK);
+    return BufferPtr(gst_harness_try_pull(harness_.get()));
+  }
+  /// The oldest check that was posted and not popped; null where there is none.
+  StructurePtr PopCheck() {
+    Drain();
+    if (checks_.empty()) return nullptr;
+    StructurePtr check = std::move(checks_.front());
+    checks_.pop_front();
+    return check;
+  }
+  /// So far.
+  unsigned Warnings() {
+    Drain();
+    return warnings_;
+  }
+  StructurePtr Stats() const {
+    const ElementPtr enc(gst_bin_get_by_name(GST_BIN(harness_->element), "enc"));
+    return StructurePtr(StatsOf(enc.get()));
+  }
+
+ private:
+  void Drain() {
+    while (const MessagePtr message{gst_bus_pop(bus_.get())}) {
+      const GstStructure* s = gst_message_get_structure(message.get());
+      if (GST_MESSAGE_TYPE(message.get()) == GST_MESSAGE_WARNING) ++warnings_;
+      if (s != nullptr && gst_structure_has_name(s, kMessage))
+        checks_.emplace_back(gst_structure_copy(s));
+    }
+  }
+
+  struct UnrefBus {
+    void operator()(GstBus* bus) const { gst_object_unref(bus); }
+  };
+  std::unique_ptr<GstBus, UnrefBus> bus_{gst_bus_new()};
+  Harness harness_;
+  std::deque<StructurePtr> checks_;
+  unsigned warnings_ = 0;
+};
+
+double Number(const GstStructure* s, const char* name) {
+  double value = -1;
+  EXPECT_TRUE(gst_structure_get_double(s, name, &value)) << name;
+  return value;
+}
+
+bool Holds(const GstStructure* s) {
+  gboolean holds = FALSE;
+  EXPECT_TRUE(gst_structure_get_boolean(s, "holds", &holds));
+  return holds != FALSE;
+}
+
+/// Distances between points at the same place, of those that are not all zero.
+std::vector<double> Distances(const std::vector<float>& a, const std::vector<float>& b) {
+  std::vector<double> distances;
+  for (std::size_t i = 0; i + 2 < a.size(); i += 3) {
+    if (a[i] == 0 && a[i + 1] == 0 && a[i + 2] == 0) continue;
+    distances.push_back(LargestDistance({a[i], a[i + 1], a[i + 2]}, {b[i], b[i + 1], b[i + 2]}));
+  }
+  return distances;
+}
+
+void ExpectErrors(const GstStructure* check, const std::vector<double>& distances) {
+  guint64 points = 0;
+  ASSERT_TRUE(gst_structure_get_uint64(check, "points", &points));
+  EXPECT_EQ(points, distances.size());
+  EXPECT_NEAR(Number(check, "largest-error"), *std::max_element(distances.begin(), distances.end()),
+              1e-9);
+  EXPECT_NEAR(Number(check, "mean-error"),
+              std::accumulate(distances.begin(), distances.end(), 0.0) /
+                  static_cast<double>(distances.size()),
+              1e-9);
+}
+
+TEST(ErrorCheckOfDracoEnc, ReportsTheDistancesThatATestMeasuresInRangeGeometry) {
+  const SensorModel model = test::RoomSensor();
+  CheckedCodec codec("error-check=1");
+  codec.SetCaps(OrganisedInfo(model, 64));
+  double largest = 0;
+  for (guint i = 0; i < 8; ++i) {
+    GstBuffer* input = OrganisedBuffer(model, 64, {3, i, 8, 64 * i});
+    const auto before = PointsOf(input, 20);
+    const BufferPtr output = codec.Push(input);
+    const StructurePtr check = codec.PopCheck();
+    ASSERT_TRUE(check);
+    ExpectErrors(check.get(), Distances(before, PointsOf(output.get(), 20)));
+    EXPECT_TRUE(Holds(check.get()));
+    EXPECT_NEAR(Number(check.get(), "error-bound"), 0.02, 1e-9);
+    guint slice = 99;
+    EXPECT_TRUE(gst_structure_get_uint(check.get(), "slice-index", &slice));
+    EXPECT_EQ(slice, i);
+    largest = std::max(largest, Number(check.get(), "largest-error"));
+  }
+  EXPECT_EQ(Number(codec.Stats().get(), "largest-error"), largest);
+  EXPECT_GT(largest, 0.019);
+  EXPECT_EQ(codec.Warnings(), 0U);
+}
+
+CloudInfo PlainInfo(guint points) {
+  CloudInfo info;
+  info.width = points;
+  info.point_step = 12;
+  info.fields = *PointFields::Parse("x:F32:0,y:F32:4,z:F32:8");
+  info.framerate_n = 10;
+  return info;
+}
+
+/// Points two metres apart, so that the nearest one is the one that it was.
+std::vector<float> Lattice() {
+  std::vector<float> xyz;
+  for (unsigned i = 0; i < 500; ++i) {
+    const float wobble = 0.37F * static_cast<float>(i % 13) / 13;
+    xyz.insert(xyz.end(), {2 * static_cast<float>(i % 10) + 1 + wobble,
+                           2 * static_cast<float>(i / 10 % 10) - wobble,
+                           2 * static_cast<float>(i / 100) + 0.5F * wobble});
+  }
+  return xyz;
+}
+
+class XyzLevels : public ::testing::TestWithParam<const char*> {};
+TEST_P(XyzLevels, ReportTheDistancesThatATestMeasures) {
+  const auto before = Lattice();
+  CheckedCodec codec(std::string("error-check=1 geometry=xyz max-error=0.05 ") + GetParam());
+  codec.SetCaps(PlainInfo(500));
+  const BufferPtr output =
+      codec.Push(gst_buffer_new_memdup(before.data(), before.size() * sizeof(float)));
+  const auto after = PointsOf(output.get(), 12);
+  std::vector<double> distances;
+  for (std::size_t i = 0; i < before.size(); i += 3) {
+    double nearest = 1e9;
+    for (std::size_t k = 0; k < after.size(); k += 3) {
+      nearest = std::min(nearest, LargestDistance({before[i], before[i + 1], before[i + 2]},
+                                                  {after[k], after[k + 1], after[k + 2]}));
+    }
+    distances.push_back(nearest);
+  }
+  const StructurePtr check = codec.PopCheck();
+  ASSERT_TRUE(check);
+  ExpectErrors(check.get(), distances);
+  EXPECT_TRUE(Holds(check.get()));
+  EXPECT_GT(Number(check.get(), "largest-error"), 0.02);
+}
+INSTANTIATE_TEST_SUITE_P(All, XyzLevels,
+                         ::testing::Values("compression-level=0", "compression-level=7"));
+
+TEST(ErrorCheckOfDracoEnc, LooksAtEveryNthSliceOnly) {
+  const SensorModel model = test::RoomSensor();
+  CheckedCodec codec("error-check=3");
+  codec.SetCaps(OrganisedInfo(model, 64));
+  std::vector<guint> checked;
+  for (guint i = 0; i < 8; ++i) {
+    codec.Push(OrganisedBuffer(model, 64, {0, i, 8, 64 * i}));
+    if (codec.PopCheck()) checked.push_back(i);
+  }
+  EXPECT_EQ(checked, (std::vector<guint>{0, 3, 6}));
+}
+
+/// OrganisedBuffer, with all points a metre to the side of where their ranges put them.
+GstBuffer* MovedBuffer(const SensorModel& model, const GstLidarSlice& slice) {
+  GstBuffer* buffer = OrganisedBuffer(model, 64, slice);
+  BufferMap map(buffer, GST_MAP_READWRITE);
+  for (gsize at = 0; at < map.size(); at += 20) {
+    float x = 0;
+    std::memcpy(&x, map.data() + at, sizeof x);
+    if (x == 0) continue;
+    x += 1;
+    std::memcpy(map.data() + at, &x, sizeof x);
+  }
+  return buffer;
+}
+
+TEST(ErrorCheckOfDracoEnc, WarnsWhenTheErrorIsLargerThanItMayBe) {
+  const SensorModel model = test::RoomSensor();
+  CheckedCodec codec("error-check=1");
+  codec.SetCaps(OrganisedInfo(model, 64));
+  codec.Push(OrganisedBuffer(model, 64, {0, 0, 8, 0}));
+  codec.PopCheck();
+  EXPECT_EQ(codec.Warnings(), 0U);
+  for (guint i = 1; i < 3; ++i) {
+    codec.Push(MovedBuffer(model, {0, i, 8, 64 * i}));
+    const StructurePtr check = codec.PopCheck();
+    ASSERT_TRUE(check);
+    EXPECT_FALSE(Holds(check.get()));
+    EXPECT_NEAR(Number(check.get(), "largest-error"), 1, 0.021);
+  }
+  // One for the errors and one for the ranges, each told once.
+  EXPECT_EQ(codec.Warnings(), 2U);
+  const StructurePtr stats = codec.Stats();
+  guint64 failed = 0;
+  EXPECT_TRUE(gst_structure_get_uint64(stats.get(), "error-checks-failed", &failed));
+  EXPECT_EQ(failed, 2U);
+}
+
+TEST(ErrorCheckOfDracoEnc, KnowsBeamsThatWereThinnedFromBeamsThatAreGone) {
+  const SensorModel model = test::RoomSensor();
+  CheckedCodec codec(
+      "error-check=1 intensity-bits=0 degradation-preference=maintain-framerate bitrate=60000");
+  codec.SetCaps(OrganisedInfo(model, 64));
+  guint64 missing = 0;
+  for (guint i = 0; i < 80; ++i) {
+    codec.Push(OrganisedBuffer(model, 64, {i / 8, i % 8, 8, 64 * (i % 8)}));
+    const StructurePtr check = codec.PopCheck();
+    if (!check) continue;
+    EXPECT_TRUE(Holds(check.get()));
+    guint64 here = 0;
+    EXPECT_TRUE(gst_structure_get_uint64(check.get(), "points-missing", &here));
+    missing += here;
+  }
+  EXPECT_GT(missing, 1000U);
+  EXPECT_EQ(codec.Warnings(), 0U);
+}
+
+/// An encoded cloud, to be compared with others than the one that it came from.
+std::vector<std::uint8_t> Encoded(const std::vector<float>& xyz, const codec::CloudFormat& format,
+                                  unsigned level) {
+  auto encoder = codec::SliceEncoder::Create(format, codec::Geometry::kXyz);
+  const ByteView raw{reinterpret_cast<const std::uint8_t*>(xyz.data()), xyz.size() * sizeof(float)};
+  encoder->Load(raw, 0, false);
+  codec::EncodedSlice slice;
+  EXPECT_EQ(encoder->Encode({0.05, 0, 0, level}, &slice), codec::SliceResult::kEncoded);
+  return slice.bytes;
+}
+
+TEST(ErrorCheck, SeesOneStrayPointInEitherCloud) {
+  const codec::CloudFormat format{
+      {*PointFields::Parse("x:F32:0,y:F32:4,z:F32:8"), 12}, 1, std::nullopt};
+  ErrorCheck check(format, codec::Geometry::kXyz);
+  const auto cloud = Lattice();
+  for (const unsigned level : {0U, 7U}) {
+    auto stray = cloud;
+    stray[3 * 250 + 2] += 0.75F;
+    const auto measure = [&](const std::vector<float>& before, const std::vector<float>& after) {
+      return *check.Measure(
+          {reinterpret_cast<const std::uint8_t*>(before.data()), before.size() * sizeof(float)},
+          Encoded(after, format, level));
+    };
+    EXPECT_NEAR(measure(cloud, stray).max_m, 0.75, 0.05) << level;
+    EXPECT_NEAR(measure(stray, cloud).max_m, 0.75, 0.05) << level;
+    EXPECT_LT(measure(cloud, cloud).max_m, 0.05) << level;
+    EXPECT_EQ(measure(cloud, {stray.begin(), stray.end() - 6}).missing, 2U) << level;
+  }
+}
+
+TEST(ErrorCheck, SaysSoWhereASliceCannotBeDecoded) {
+  const codec::CloudFormat format{
+      {*PointFields::Parse("x:F32:0,y:F32:4,z:F32:8"), 12}, 1, std::nullopt};
+  ErrorCheck check(format, codec::Geometry::kXyz);
+  const auto cloud = Lattice();
+  auto bytes = Encoded(cloud, format, 7);
+  bytes.resize(bytes.size() / 2);
+  EXPECT_FALSE(check.Measure(
+      {reinterpret_cast<const std::uint8_t*>(cloud.data()), cloud.size() * sizeof(float)}, bytes));
+}
+
+TEST(DracoEnc, WarnsOnceWhereACloudWasMovedAfterTheSensor) {
+  const SensorModel model = test::RoomSensor();
+  CheckedCodec codec("");
+  codec.SetCaps(OrganisedInfo(model, 64));
+  for (guint i = 0; i < 8; ++i) codec.Push(OrganisedBuffer(model, 64, {0, i, 8, 64 * i}));
+  EXPECT_EQ(codec.Warnings(), 0U);
+  for (guint i = 0; i < 8; ++i) codec.Push(MovedBuffer(model, {1, i, 8, 64 * i}));
+  EXPECT_EQ(codec.Warnings(), 1U);
+}
+
+TEST(DracoEnc, SaysNothingOfMovedCloudsInXyzGeometry) {
+  const SensorModel model = test::RoomSensor();
+  CheckedCodec codec("geometry=xyz error-check=1");
+  codec.SetCaps(OrganisedInfo(model, 64));
+  codec.Push(MovedBuffer(model, {0, 0, 8, 0}));
+  EXPECT_TRUE(Holds(codec.PopCheck().get()));
+  EXPECT_EQ(codec.Warnings(), 0U);
+}
+
+}  // namespace
+}  // namespace lidar::gst
