@@ -243,6 +243,7 @@ static GstStructure* Stats(GObject* object) {
   set("slices-lost", a.slices.slices_lost);
   set("slices-damaged", a.slices.slices_damaged);
   set("slices-config-mismatch", a.slices.slices_config_mismatch);
+  set("slices-skipped", a.slices.slices_skipped);
   set("scans-complete", a.slices.scans_complete);
   set("scans-incomplete", a.slices.scans_incomplete);
   set("scans-lost", a.slices.scans_lost);

@@ -96,8 +96,8 @@ std::optional<PaySlice> DescribeSlice(GstRTPBasePayload* base, PayState& state, 
   slice.unit.config_id = state.config_id;
   slice.unit.slice.index = static_cast<std::uint16_t>(slice.meta.slice_index);
   slice.unit.slice.count = static_cast<std::uint16_t>(slice.meta.slice_count);
-  slice.unit.slice.scan_number = state.scans.Next(slice.meta.scan_id, slice.unit.slice.index);
   slice.unit.info.scan_id = slice.meta.scan_id;
+  state.scans.Place(&slice.unit);
   slice.unit.info.first_column = static_cast<std::uint16_t>(slice.meta.first_column);
   if (slice.duration < rtp::SliceInfo::kUnknownDuration)
     slice.unit.info.duration_ns = static_cast<std::uint32_t>(slice.duration);

@@ -16,7 +16,7 @@ Packet MakePacket(Unit* unit, PacketType type, std::size_t offset, std::size_t s
   WriteHeader(*unit, &p.header);
   p.body_offset = offset;
   p.body_size = size;
-  p.marker = unit->unit == UnitType::kSlice && EndsUnit(type);
+  p.marker = IsSlice(unit->unit) && EndsUnit(type);
   return p;
 }
 
@@ -79,10 +79,28 @@ std::optional<Packet> Aggregator::Take() {
   return p;
 }
 
-std::uint32_t ScanCounter::Next(std::uint32_t scan_id, std::uint16_t index) {
-  if (last_ && (last_->scan_id != scan_id || index <= last_->index)) ++number_;
-  last_ = Last{scan_id, index};
-  return number_;
+void ScanCounter::Place(Unit* unit) {
+  const SliceId& id = unit->slice;
+  const bool same_scan = last_ && last_->scan_id == unit->info.scan_id && last_->index < id.index;
+  if (same_scan) {
+    Skip(id.index - last_->index - 1U);
+  } else if (last_) {
+    ++number_;
+    Skip(last_->count - last_->index - 1U);
+    Skip(id.index);
+  }
+  last_ = Last{unit->info.scan_id, id.index, id.count};
+  unit->unit = skipped_ == 0 ? UnitType::kSlice : UnitType::kSliceAfterSkip;
+  unit->slice.scan_number = number_;
+  unit->info.skipped = skipped_;
+  skipped_ <<= 1;
+}
+
+void ScanCounter::Skip(unsigned slices) {
+  constexpr unsigned kBits = 64;
+  skipped_ = slices < kBits ? skipped_ << slices : 0;
+  const unsigned set = std::min(slices, kBits);
+  if (set > 0) skipped_ |= ~std::uint64_t{0} >> (kBits - set);
 }
 
 }  // namespace lidar::rtp

@@ -39,19 +39,26 @@ class Aggregator {
   std::uint64_t first_ticks_ = 0;
 };
 
-/// Numbers the scans that are sent: a receiver sees a gap only where something was lost.
+/// Numbers the scans that are sent, and tells of the slices that are missing in them: a receiver
+/// counts as lost only what was.
 class ScanCounter {
  public:
   explicit ScanCounter(std::uint32_t first) : number_(first) {}
-  std::uint32_t Next(std::uint32_t scan_id, std::uint16_t index);
+  /// Sets what `unit`, the next slice to be sent, says of its place: unit type, scan number and
+  /// skipped slices. The rest of its slice id and its scan id are set already.
+  void Place(Unit* unit);
 
  private:
   struct Last {
     std::uint32_t scan_id;
     std::uint16_t index;
+    std::uint16_t count;
   };
+  void Skip(unsigned slices);
+
   std::optional<Last> last_;
   std::uint32_t number_;
+  std::uint64_t skipped_ = 0;  // as in SliceInfo
 };
 
 }  // namespace lidar::rtp

@@ -24,6 +24,11 @@ void WriteSliceInfo(const SliceInfo& info, ByteWriter* w) {
   w->Be64(info.capture_ntp);
 }
 
+void WriteInfo(const Unit& unit, ByteWriter* w) {
+  WriteSliceInfo(unit.info, w);
+  if (unit.unit == UnitType::kSliceAfterSkip) w->Be64(unit.info.skipped);
+}
+
 bool ReadSlice(bool starts, ByteReader* r, Unit* unit) {
   unit->slice.scan_number = r->Be32();
   unit->slice.index = r->Be16();
@@ -33,6 +38,7 @@ bool ReadSlice(bool starts, ByteReader* r, Unit* unit) {
     unit->info.first_column = r->Be16();
     unit->info.duration_ns = r->Be32();
     unit->info.capture_ntp = r->Be64();
+    if (unit->unit == UnitType::kSliceAfterSkip) unit->info.skipped = r->Be64();
   }
   return unit->slice.index < unit->slice.count && unit->slice.count <= kMaxSlicesPerScan;
 }
@@ -46,7 +52,7 @@ std::optional<Unit> ParseUnit(ByteView bytes) {
   unit.unit = static_cast<UnitType>(first & 31);
   unit.config_id = r.U8();
   if (unit.type == PacketType::kAggregation || unit.type > PacketType::kLastFragment ||
-      (unit.unit != UnitType::kStreamConfig && unit.unit != UnitType::kSlice)) {
+      (unit.unit != UnitType::kStreamConfig && !IsSlice(unit.unit))) {
     return std::nullopt;
   }
   const bool starts = StartsUnit(unit.type);
@@ -54,7 +60,7 @@ std::optional<Unit> ParseUnit(ByteView bytes) {
     unit.length = r.Be32();
     unit.crc = r.Be32();
   }
-  if (unit.unit == UnitType::kSlice && !ReadSlice(starts, &r, &unit)) return std::nullopt;
+  if (IsSlice(unit.unit) && !ReadSlice(starts, &r, &unit)) return std::nullopt;
   unit.body = r.Rest();
   if (!r.ok() || unit.body.empty() || unit.length > kMaxUnitBytes) return std::nullopt;
   if (unit.type == PacketType::kSingle && unit.length != unit.body.size) return std::nullopt;
@@ -63,8 +69,8 @@ std::optional<Unit> ParseUnit(ByteView bytes) {
 }
 
 bool OfOneScan(const Unit& a, const Unit& b) {
-  return a.unit == UnitType::kSlice && b.unit == UnitType::kSlice &&
-         a.slice.scan_number == b.slice.scan_number && a.slice.count == b.slice.count;
+  return IsSlice(a.unit) && IsSlice(b.unit) && a.slice.scan_number == b.slice.scan_number &&
+         a.slice.count == b.slice.count;
 }
 
 std::vector<Unit> ParseAggregate(ByteView bytes) {
@@ -86,9 +92,10 @@ std::vector<Unit> ParseAggregate(ByteView bytes) {
 }  // namespace
 
 std::size_t HeaderSize(PacketType type, UnitType unit) {
-  const bool slice = unit == UnitType::kSlice;
+  const bool slice = IsSlice(unit);
   std::size_t size = kCommonHeaderSize + (slice ? kSliceIdSize : 0);
   if (StartsUnit(type)) size += kStartHeaderSize + (slice ? kSliceInfoSize : 0);
+  if (StartsUnit(type) && unit == UnitType::kSliceAfterSkip) size += kSkippedSize;
   return size;
 }
 
@@ -100,9 +107,9 @@ void WriteHeader(const Unit& unit, std::vector<std::uint8_t>* out) {
     w.Be32(unit.length);
     w.Be32(unit.crc);
   }
-  if (unit.unit != UnitType::kSlice) return;
+  if (!IsSlice(unit.unit)) return;
   WriteSliceId(unit.slice, &w);
-  if (StartsUnit(unit.type)) WriteSliceInfo(unit.info, &w);
+  if (StartsUnit(unit.type)) WriteInfo(unit, &w);
 }
 
 std::uint32_t UnitCrc(const Unit& unit, ByteView bytes) {
@@ -110,9 +117,9 @@ std::uint32_t UnitCrc(const Unit& unit, ByteView bytes) {
   ByteWriter w(&said);
   w.U8(static_cast<std::uint8_t>(unit.unit));
   w.U8(unit.config_id);
-  if (unit.unit == UnitType::kSlice) {
+  if (IsSlice(unit.unit)) {
     WriteSliceId(unit.slice, &w);
-    WriteSliceInfo(unit.info, &w);
+    WriteInfo(unit, &w);
   }
   return Crc32(bytes, Crc32({said.data(), said.size()}));
 }

@@ -18,7 +18,15 @@ enum class PacketType : std::uint8_t {
   kLastFragment = 4,
 };
 /// The draft's sequence parameter set and geometry data unit are our config and our slice.
-enum class UnitType : std::uint8_t { kStreamConfig = 0, kSlice = 2 };
+enum class UnitType : std::uint8_t {
+  kStreamConfig = 0,
+  kSlice = 2,
+  kSliceAfterSkip = 3,  // a slice that tells of others that the sender left out
+};
+
+constexpr bool IsSlice(UnitType t) {
+  return t == UnitType::kSlice || t == UnitType::kSliceAfterSkip;
+}
 
 constexpr bool StartsUnit(PacketType t) {
   return t == PacketType::kSingle || t == PacketType::kFirstFragment;
@@ -40,6 +48,9 @@ struct SliceInfo {
   std::uint16_t first_column = 0;
   std::uint32_t duration_ns = kUnknownDuration;
   std::uint64_t capture_ntp = 0;  // 0: not known
+  // The sender left out slice n + 1 before this one where bit n is set; kSliceAfterSkip only. Slice
+  // 0 comes after the last one of the scan before.
+  std::uint64_t skipped = 0;
 
   static constexpr std::uint32_t kUnknownDuration = 0xFFFF'FFFF;
 };
@@ -61,6 +72,7 @@ constexpr std::size_t kCommonHeaderSize = 2;
 constexpr std::size_t kStartHeaderSize = 8;  // length and CRC
 constexpr std::size_t kSliceIdSize = 8;
 constexpr std::size_t kSliceInfoSize = 18;
+constexpr std::size_t kSkippedSize = 8;
 constexpr std::size_t kAggregateUnitSize = 4;  // ticks and size in front of each unit
 constexpr std::size_t kMaxUnitBytes = std::size_t{4} << 20;
 constexpr std::uint16_t kMaxSlicesPerScan = 4096;

@@ -25,7 +25,7 @@ bool Reassembler::Continues(const std::vector<Unit>& units) const {
   if (!any_slice_) return true;
   return std::all_of(units.begin(), units.end(), [&](const Unit& u) {
     const std::int64_t ahead = Extend(u.slice.scan_number) - newest_scan_;
-    return u.unit != UnitType::kSlice || (ahead >= -kMaxScanBack && ahead <= kMaxScanJump);
+    return !IsSlice(u.unit) || (ahead >= -kMaxScanBack && ahead <= kMaxScanJump);
   });
 }
 
@@ -33,7 +33,7 @@ void Reassembler::Push(const RtpPacket& packet, const std::vector<Unit>& units,
                        std::vector<ReceivedSlice>* out) {
   Expire(packet.arrival);
   for (const Unit& unit : units) {
-    if (unit.unit == UnitType::kSlice) {
+    if (IsSlice(unit.unit)) {
       PushSlice(packet, unit, out);
     } else {
       PushConfig(packet, unit, out);
@@ -93,8 +93,15 @@ void Reassembler::Complete(PendingMap::iterator it, std::vector<ReceivedSlice>* 
     return;
   }
   slice.bytes = *std::move(bytes);
+  BookSkipped(it->first, slice.fragments.start()->info.skipped);
   if (auto config = FindConfig(slice.fragments.start()->config_id))
     Emit(it, std::move(config), out);
+}
+
+/// `skipped` is as in SliceInfo. Of a slice of which a packet is here, whoever says so is wrong.
+void Reassembler::BookSkipped(SlicePosition p, std::uint64_t skipped) {
+  for (auto at = ledger_.Before(p); at && skipped != 0; at = ledger_.Before(*at), skipped >>= 1)
+    if ((skipped & 1) != 0 && pending_.count(*at) == 0) ledger_.Settle(*at, SliceOutcome::kSkipped);
 }
 
 void Reassembler::Emit(PendingMap::iterator it, std::shared_ptr<const StreamConfig> config,

@@ -100,6 +100,7 @@ class Reassembler {
   void Complete(PendingMap::iterator it, std::vector<ReceivedSlice>* out);
   void Emit(PendingMap::iterator it, std::shared_ptr<const StreamConfig> config,
             std::vector<ReceivedSlice>* out);
+  void BookSkipped(SlicePosition p, std::uint64_t skipped);
   void Expire(Time now);
   void DropBefore(SlicePosition limit);
   PendingMap::iterator Remove(PendingMap::iterator it);

@@ -16,6 +16,7 @@ void Add(const SliceAccounts& a, SliceAccounts* sum) {
   sum->slices_lost += a.slices_lost;
   sum->slices_damaged += a.slices_damaged;
   sum->slices_config_mismatch += a.slices_config_mismatch;
+  sum->slices_skipped += a.slices_skipped;
   sum->scans_complete += a.scans_complete;
   sum->scans_incomplete += a.scans_incomplete;
   sum->scans_lost += a.scans_lost;

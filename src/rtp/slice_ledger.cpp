@@ -2,6 +2,7 @@
 #include "rtp/slice_ledger.h"
 
 #include <algorithm>
+#include <utility>
 
 namespace lidar::rtp {
 namespace {
@@ -91,6 +92,10 @@ void SliceLedger::Close(Scan* scan, std::uint32_t index, SliceOutcome outcome) {
     case SliceOutcome::kConfigMismatch:
       ++accounts_.slices_config_mismatch;
       break;
+    case SliceOutcome::kSkipped:
+      ++accounts_.slices_skipped;
+      ++scan->skipped;
+      break;
     default:
       ++accounts_.slices_lost;
       break;
@@ -100,7 +105,7 @@ void SliceLedger::Close(Scan* scan, std::uint32_t index, SliceOutcome outcome) {
 
 void SliceLedger::BookScan(const Scan& scan) {
   if (scan.joined_late) return;
-  if (scan.received == scan.slices.size()) {
+  if (scan.received + scan.skipped == scan.slices.size()) {
     ++accounts_.scans_complete;
   } else if (scan.received > 0) {
     ++accounts_.scans_incomplete;
@@ -160,7 +165,18 @@ void SliceLedger::Continue(const SliceLedger& previous) {
   }
 }
 
+std::optional<SlicePosition> SliceLedger::Before(SlicePosition p) const {
+  if (p.index > 0) return SlicePosition{p.scan, p.index - 1};
+  const Scan* scan = Find(p.scan - 1);
+  if (scan == nullptr) return std::nullopt;
+  return SlicePosition{p.scan - 1, static_cast<std::uint32_t>(scan->slices.size()) - 1};
+}
+
 SliceLedger::Scan* SliceLedger::Find(std::int64_t number) {
+  return const_cast<Scan*>(std::as_const(*this).Find(number));
+}
+
+const SliceLedger::Scan* SliceLedger::Find(std::int64_t number) const {
   const std::int64_t i = number - first_scan_;
   if (i < 0 || i >= static_cast<std::int64_t>(scans_.size())) return nullptr;
   return &scans_[static_cast<std::size_t>(i)];

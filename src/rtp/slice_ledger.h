@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Books every slice that was sent exactly once: received, damaged, without a config, or lost.
+// Books every slice exactly once: received, damaged, without a config, skipped by the sender, or
+// lost.
 #pragma once
 #include <cstdint>
 #include <deque>
@@ -30,12 +31,20 @@ struct SliceAccounts {
   std::uint64_t slices_lost = 0;
   std::uint64_t slices_damaged = 0;          // all packets there, but not the bytes that were sent
   std::uint64_t slices_config_mismatch = 0;  // whole, but no config with their id came
-  std::uint64_t scans_complete = 0;
+  std::uint64_t slices_skipped = 0;          // never sent
+  std::uint64_t scans_complete = 0;          // but for slices that were skipped
   std::uint64_t scans_incomplete = 0;
   std::uint64_t scans_lost = 0;  // no slice received
 };
 
-enum class SliceOutcome : std::uint8_t { kOpen, kReceived, kDamaged, kConfigMismatch, kLost };
+enum class SliceOutcome : std::uint8_t {
+  kOpen,
+  kReceived,
+  kDamaged,
+  kConfigMismatch,
+  kSkipped,
+  kLost
+};
 enum class Admission { kOpen, kSettled, kTooOld, kContradiction };
 
 /// A slice is lost once one behind it was seen `max_reorder_time` ago. The first slice admitted is
@@ -49,6 +58,8 @@ class SliceLedger {
   Admission Admit(SlicePosition p, std::uint32_t count, Time now);
   /// The slice, which must be open, has come to its end.
   void Settle(SlicePosition p, SliceOutcome outcome);
+  /// The slice before `p`; none where that is before the first one that the ledger still has.
+  std::optional<SlicePosition> Before(SlicePosition p) const;
 
   /// Slices before this position are late at `now`; CloseBefore books them.
   std::optional<SlicePosition> Overdue(Time now) const;
@@ -72,6 +83,7 @@ class SliceLedger {
     std::vector<SliceOutcome> slices;
     std::uint32_t open = 0;
     std::uint32_t received = 0;
+    std::uint32_t skipped = 0;
     bool count_known = false;  // else taken from its neighbour: no packet of it came
     bool joined_late = false;  // its beginning was sent before the receiver joined
   };
@@ -87,6 +99,7 @@ class SliceLedger {
   void CloseFirst(Scan* scan, std::uint32_t limit);
   void BookScan(const Scan& scan);
   Scan* Find(std::int64_t number);
+  const Scan* Find(std::int64_t number) const;
 
   Duration max_reorder_time_;
   std::deque<Scan> scans_;       // without gaps, from first_scan_

@@ -124,7 +124,7 @@ void FaultLink::Note(const Datagram& datagram, bool hit) {
   if (hit) ++counts_.dropped;
   const auto& b = datagram.bytes;
   for (const auto& unit : rtp::ParsePayload({b.data() + kRtpHeader, b.size() - kRtpHeader})) {
-    if (unit.unit != rtp::UnitType::kSlice) continue;
+    if (!rtp::IsSlice(unit.unit)) continue;
     const SliceKey key{Ssrc(b), unit.slice.scan_number, unit.slice.index};
     Seen& seen = slices_[key];
     seen.sequences.insert(lidar::ByteReader(b.data() + 2, 2).Be16());

@@ -105,12 +105,44 @@ TEST(Aggregator, RefusesSlicesFurtherApartThanItCanSay) {
   EXPECT_TRUE(aggregator.Add({}, {a.data(), a.size()}, 600, 100'000 + 65'535));
 }
 
+Unit Placed(ScanCounter* scans, std::uint32_t scan_id, std::uint16_t index, std::uint16_t count) {
+  Unit unit;
+  unit.slice.index = index;
+  unit.slice.count = count;
+  unit.info.scan_id = scan_id;
+  scans->Place(&unit);
+  return unit;
+}
+
 TEST(ScanCounter, HasNoGapsWhereTheSourceSkipsScansOrRepeatsItsIds) {
   ScanCounter scans(0xFFFF'FFFF);
-  EXPECT_EQ(scans.Next(10, 0), 0xFFFF'FFFFU);
-  EXPECT_EQ(scans.Next(10, 1), 0xFFFF'FFFFU);
-  EXPECT_EQ(scans.Next(15, 0), 0U);
-  EXPECT_EQ(scans.Next(15, 0), 1U);  // a source without scan ids
+  EXPECT_EQ(Placed(&scans, 10, 0, 2).slice.scan_number, 0xFFFF'FFFFU);
+  EXPECT_EQ(Placed(&scans, 10, 1, 2).slice.scan_number, 0xFFFF'FFFFU);
+  EXPECT_EQ(Placed(&scans, 15, 0, 2).slice.scan_number, 0U);
+  EXPECT_EQ(Placed(&scans, 15, 1, 2).slice.scan_number, 0U);
+  EXPECT_EQ(Placed(&scans, 15, 0, 2).slice.scan_number, 1U);  // a source without scan ids
+}
+
+TEST(ScanCounter, TellsWhichOfTheSlicesBeforeWereLeftOut) {
+  ScanCounter scans(0);
+  EXPECT_EQ(Placed(&scans, 1, 1, 4).unit, UnitType::kSlice);  // what came before is unknown
+  EXPECT_EQ(Placed(&scans, 1, 2, 4).unit, UnitType::kSlice);
+  const Unit over_the_end = Placed(&scans, 2, 1, 4);  // without slice 3 and slice 0
+  EXPECT_EQ(over_the_end.unit, UnitType::kSliceAfterSkip);
+  EXPECT_EQ(over_the_end.info.skipped, 0b11U);
+  EXPECT_EQ(Placed(&scans, 2, 2, 4).info.skipped, 0b110U);
+  EXPECT_EQ(Placed(&scans, 2, 3, 4).info.skipped, 0b1100U);
+  EXPECT_EQ(Placed(&scans, 9, 0, 4).info.skipped, 0b11000U);  // whole scans have no number
+  EXPECT_EQ(Placed(&scans, 9, 3, 4).info.skipped, 0b1100'0011U);
+}
+
+TEST(ScanCounter, RemembersSixtyFourSlices) {
+  ScanCounter scans(0);
+  Placed(&scans, 1, 0, 200);
+  EXPECT_EQ(Placed(&scans, 1, 70, 200).info.skipped, ~std::uint64_t{0});
+  for (std::uint16_t i = 71; i < 134; ++i)
+    EXPECT_EQ(Placed(&scans, 1, i, 200).unit, UnitType::kSliceAfterSkip) << i;
+  EXPECT_EQ(Placed(&scans, 1, 134, 200).unit, UnitType::kSlice);
 }
 
 }  // namespace

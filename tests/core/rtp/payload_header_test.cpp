@@ -59,7 +59,8 @@ TEST(PayloadHeader, IsReadBackAsWritten) {
 }
 
 TEST(PayloadHeader, OfEveryKindIsRefusedWhenTruncated) {
-  for (const UnitType unit : {UnitType::kSlice, UnitType::kStreamConfig}) {
+  for (const UnitType unit :
+       {UnitType::kSlice, UnitType::kSliceAfterSkip, UnitType::kStreamConfig}) {
     for (const PacketType type : {PacketType::kSingle, PacketType::kFirstFragment,
                                   PacketType::kMiddleFragment, PacketType::kLastFragment}) {
       Unit u = FirstOfASlice();
@@ -90,7 +91,7 @@ INSTANTIATE_TEST_SUITE_P(
     All, HostilePayload,
     ::testing::Values(
         Hostile{"empty", {}}, Hostile{"reserved packet type", {0xA2, 0, 0, 0, 0, 0, 0, 0, 0, 1, 7}},
-        Hostile{"unknown unit type", {0x63, 0, 0, 0, 0, 0, 0, 0, 0, 1, 7}},
+        Hostile{"unknown unit type", {0x64, 0, 0, 0, 0, 0, 0, 0, 0, 1, 7}},
         Hostile{"index equals count", {0x62, 0, 0, 0, 0, 0, 0, 4, 0, 4, 7}},
         Hostile{"no slices", {0x62, 0, 0, 0, 0, 0, 0, 0, 0, 0, 7}},
         Hostile{"too many slices", {0x62, 0, 0, 0, 0, 0, 0, 0, 0x10, 1, 7}},

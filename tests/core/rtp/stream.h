@@ -70,11 +70,14 @@ class Sender {
     unit.config_id = o_.config_id;
     Emit(unit, o_.config.Serialise(), out);
   }
-  void Slice(std::uint32_t scan, std::uint16_t index, std::vector<Wire>* out) {
+  /// With `counter`, the slice says which ones before it were left out.
+  void Slice(std::uint32_t scan, std::uint16_t index, std::vector<Wire>* out,
+             ScanCounter* counter = nullptr) {
     Unit unit;
     unit.config_id = o_.config_id;
     unit.slice = {o_.scan_number + scan, index, o_.slices};
-    unit.info = {scan, static_cast<std::uint16_t>(index * 100), 25'000'000, 7};
+    unit.info = {scan, static_cast<std::uint16_t>(index * 100), 25'000'000, 7, 0};
+    if (counter != nullptr) counter->Place(&unit);
     time_ = Time{milliseconds(100 * scan) + milliseconds(100) * index / o_.slices};
     Emit(unit, SliceBytes(scan, index, o_.slice_size), out);
   }
@@ -85,6 +88,17 @@ class Sender {
     Config(&out);
     for (std::uint32_t s = first; s < first + scans; ++s)
       for (std::uint16_t i = 0; i < o_.slices; ++i) Slice(s, i, &out);
+    return out;
+  }
+  /// The config, then `scans` scans of which `left_out` says which slices to leave out.
+  template <class LeftOut>
+  std::vector<Wire> ScansWithout(std::uint32_t scans, LeftOut&& left_out) {
+    std::vector<Wire> out;
+    ScanCounter counter(o_.scan_number);
+    Config(&out);
+    for (std::uint32_t s = 0; s < scans; ++s)
+      for (std::uint16_t i = 0; i < o_.slices; ++i)
+        if (!left_out(s, i)) Slice(s, i, &out, &counter);
     return out;
   }
 

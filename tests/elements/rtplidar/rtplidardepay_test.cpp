@@ -40,6 +40,30 @@ std::vector<gst::BufferPtr> Pull(GstHarness* h) {
   return out;
 }
 
+TEST(RtpLidarDepay, TellsSlicesThatWereNeverSentFromLostOnes) {
+  for (const bool aggregate : {false, true}) {
+    Harness pay(gst_harness_new("rtplidarpay"));
+    g_object_set(pay->element, "aggregate", aggregate, nullptr);
+    gst_harness_set_src_caps_str(pay.get(), EncodedCaps().c_str());
+    // Of each scan slice 1 is left out, and scan 3 altogether.
+    for (guint s = 0; s < 6; ++s)
+      for (guint i = 0; i < kSlices; ++i)
+        if (s != 3 && i != 1) gst_harness_push(pay.get(), EncodedSlice(s, i, 200));
+    const auto packets = Pull(pay.get());
+    const Harness h = Depay();
+    for (std::size_t n = 0; n < packets.size(); ++n)
+      if (n != 5) gst_harness_push(h.get(), gst_buffer_copy_deep(packets[n].get()));
+    gst_harness_push_event(h.get(), gst_event_new_eos());
+    const auto slices = Pull(h.get());
+    // Packet 0 is the config. Packet 5 is slice 2 of scan 1, or all of the last scan.
+    EXPECT_EQ(Stat(h.get(), "slices-received"), slices.size());
+    EXPECT_EQ(Stat(h.get(), "slices-lost"), aggregate ? 0U : 1U);
+    EXPECT_EQ(Stat(h.get(), "slices-skipped"), aggregate ? 4U : 5U);
+    EXPECT_EQ(Stat(h.get(), "scans-complete"), 4U);
+    EXPECT_EQ(Stat(h.get(), "scans-incomplete"), aggregate ? 0U : 1U);
+  }
+}
+
 TEST(RtpLidarDepay, RestoresSlicesMetasTimesAndCaps) {
   for (const bool aggregate : {false, true}) {
     const gsize size = aggregate ? 300 : 3'000;
