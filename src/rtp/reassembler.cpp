@@ -93,6 +93,7 @@ void Reassembler::Complete(PendingMap::iterator it, std::vector<ReceivedSlice>* 
     return;
   }
   slice.bytes = *std::move(bytes);
+  has_whole_slice_ = true;
   BookSkipped(it->first, slice.fragments.start()->info.skipped);
   if (auto config = FindConfig(slice.fragments.start()->config_id))
     Emit(it, std::move(config), out);

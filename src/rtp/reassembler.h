@@ -59,6 +59,8 @@ class Reassembler {
             std::vector<ReceivedSlice>* out);
   /// Has a slice begun here, and behind all that `previous` saw?
   bool IsAfter(const Reassembler& previous) const;
+  /// Did a slice come here whole and undamaged, whether or not its config is known?
+  bool has_whole_slice() const { return has_whole_slice_; }
   /// Has a slice begun here?
   bool started() const { return ledger_.started(); }
   /// Takes over the configs of `previous`, the same stream before an outage, books what the outage
@@ -111,6 +113,7 @@ class Reassembler {
   SliceLedger ledger_;
   std::int64_t newest_scan_ = 0;  // unwrapped
   bool any_slice_ = false;
+  bool has_whole_slice_ = false;
   PendingMap pending_;
   std::size_t pending_bytes_ = 0;
   FragmentBuffer config_fragments_;

@@ -82,6 +82,23 @@ TEST_P(Outage, CountsEveryScanOfItOnceWhereverItBeginsAndEnds) {
 }
 INSTANTIATE_TEST_SUITE_P(Scans, Outage, ::testing::Values(1, 2, 3, 10, 100, 600, 6'000));
 
+TEST(Receiver, GivesOutSlicesThatComeAloneAndFarApart) {
+  SenderOptions options;
+  options.slice_size = 1'500;  // two packets
+  std::vector<Wire> through;
+  for (const Wire& w : Sender(options).Scans(0, 60))
+    if (w.config || (w.scan % 10 == 5 && w.index == 2)) through.push_back(w);
+  Receiver receiver(milliseconds(100));
+  EXPECT_EQ(DeliverAll(&receiver, through, 1'500),
+            (Names{"5.2", "15.2", "25.2", "35.2", "45.2", "55.2"}));
+  receiver.Finish();
+  const auto a = receiver.accounts();
+  EXPECT_EQ(a.slices.slices_lost, 5 * 39U);  // between the first and the last
+  EXPECT_EQ(a.packets.invalid, 0U);
+  EXPECT_EQ(a.outages, 5U);
+  EXPECT_EQ(a.restarts, 0U);
+}
+
 TEST(Receiver, IsNotMovedByOnePacketThatClaimsAnotherPlaceOrSsrc) {
   Sender sender;
   SenderOptions far;
