@@ -10,11 +10,12 @@
  */
 #include "pointcloud/gstscanassembler.h"
 
-#include <condition_variable>
 #include <mutex>
 
 #include "common/cloud_info.h"
+#include "common/latency.h"
 #include "common/properties.h"
+#include "pointcloud/deadline_timer.h"
 #include "pointcloud/scan_caps.h"
 #include "pointcloud/scan_queue.h"
 
@@ -43,22 +44,17 @@ struct State {
   // Guards all below. The streaming lock of the sink pad orders what is pushed: the chain function
   // holds it, and the timer takes it; it is taken before this one.
   std::mutex mutex;
-  std::condition_variable changed;
   Settings settings;
   ScanQueue queue;
   std::optional<CloudInfo> info;  // of the slices
   CapsPtr in_caps;
   guint out_width = 0;  // in the caps sent last; 0: to be sent again
   bool caps_sent = false;
-  lidar::gst::EventPtr early_segment;  // waits for the caps
-  bool knows_upstream = false;         // of the streaming thread
-  bool live = false;
-  GstClockTime upstream_latency = 0;
+  lidar::gst::EventPtr early_segment;           // waits for the caps
+  std::optional<lidar::gst::Latency> upstream;  // once it was asked
   GstClockTime scan_latency = 0;  // what the latency query adds for a scan, without max-wait
   GstSegment segment;
-  bool flushing = true;
-  GstClockID wait = nullptr;
-  GstClockTime wait_deadline = 0;
+  lidar::gst::DeadlineTimer timer;
 };
 
 }  // namespace
@@ -132,14 +128,9 @@ void UpdateLatency(GstLidarScanAssembler* self, const CloudInfo& info, guint sli
 
 void LearnUpstreamLatency(GstLidarScanAssembler* self) {
   const lidar::gst::QueryPtr query(gst_query_new_latency());
-  gboolean live = FALSE;
-  GstClockTime min = 0;
-  if (gst_pad_peer_query(self->sinkpad, query.get()))
-    gst_query_parse_latency(query.get(), &live, &min, nullptr);
+  const bool answered = gst_pad_peer_query(self->sinkpad, query.get());
   std::lock_guard lock(self->state->mutex);
-  self->state->knows_upstream = true;
-  self->state->live = live != FALSE;
-  self->state->upstream_latency = min;
+  self->state->upstream = answered ? lidar::gst::ReadLatency(query.get()) : lidar::gst::Latency();
 }
 
 /// A buffer that is a scan by itself.
@@ -172,83 +163,59 @@ GstFlowReturn Chain(GstPad*, GstObject* parent, GstBuffer* buffer) {
   UpdateLatency(self, *info, slice.meta.slice_count);
   if (slice.meta.slice_count == 1) return PassThrough(self, buffer, info->width);
   const lidar::gst::BufferPtr owner(buffer);
-  if (slice.meta.slice_index == 0 || !state.knows_upstream) LearnUpstreamLatency(self);
+  if (slice.meta.slice_index == 0 || !state.upstream) LearnUpstreamLatency(self);
   ScanQueue::Finished finished;
   {
     std::lock_guard lock(state.mutex);
     const guint64 invalid = state.queue.counters().invalid;
     const GstClockTime deadline =
-        state.live ? lidar::gst::DeadlineOf(
-                         slice, {&state.segment, state.upstream_latency, state.settings.max_wait})
-                   : GST_CLOCK_TIME_NONE;
+        state.upstream->live ? lidar::gst::DeadlineOf(slice, {&state.segment, state.upstream->min,
+                                                              state.settings.max_wait})
+                             : GST_CLOCK_TIME_NONE;
     state.queue.Add(slice, deadline, &finished);
     if (state.queue.counters().invalid != invalid)
       GST_WARNING_OBJECT(self, "slice %u of %u of scan %u does not fit: dropped",
                          slice.meta.slice_index, slice.meta.slice_count, slice.meta.scan_id);
     // The timer may wait for a scan of before the stamps began anew.
-    if (state.wait != nullptr && state.queue.NextDeadline() < state.wait_deadline)
-      gst_clock_id_unschedule(state.wait);
-    state.changed.notify_all();
+    state.timer.Update(state.queue.NextDeadline());
   }
   return PushScans(self, &finished);
 }
 
-/// Waits for the earliest deadline. True when it has passed.
-bool WaitForDeadline(GstLidarScanAssembler* self) {
+void FinishDue(GstLidarScanAssembler* self, ScanQueue::Finished* finished) {
   State& state = *self->state;
-  std::unique_lock lock(state.mutex);
-  state.changed.wait(
-      lock, [&] { return state.flushing || GST_CLOCK_TIME_IS_VALID(state.queue.NextDeadline()); });
-  if (state.flushing) return false;
-  const GstClockTime deadline = state.queue.NextDeadline();
+  std::lock_guard lock(state.mutex);
   GstClock* clock = gst_element_get_clock(GST_ELEMENT(self));
-  if (clock == nullptr) {  // Not playing yet; nothing is late before.
-    state.changed.wait(lock);
-    return false;
-  }
-  GstClockID id =
-      gst_clock_new_single_shot_id(clock, gst_element_get_base_time(GST_ELEMENT(self)) + deadline);
+  if (clock == nullptr) return;
+  const GstClockTime base = gst_element_get_base_time(GST_ELEMENT(self));
+  if (!state.timer.flushing()) state.queue.FinishDue(gst_clock_get_time(clock) - base, finished);
   gst_object_unref(clock);
-  state.wait = id;
-  state.wait_deadline = deadline;
-  lock.unlock();
-  const GstClockReturn result = gst_clock_id_wait(id, nullptr);
-  lock.lock();
-  state.wait = nullptr;
-  gst_clock_id_unref(id);
-  return result != GST_CLOCK_UNSCHEDULED && !state.flushing;
 }
 
 /// The task of the source pad: lets scans go whose time is over.
 void TimerLoop(gpointer data) {
   auto* self = GST_LIDAR_SCAN_ASSEMBLER(data);
   State& state = *self->state;
-  if (WaitForDeadline(self)) {
+  std::unique_lock lock(state.mutex);
+  const bool passed =
+      state.timer.Wait(&lock, GST_ELEMENT(self), [&] { return state.queue.NextDeadline(); });
+  lock.unlock();
+  if (passed) {
     GST_PAD_STREAM_LOCK(self->sinkpad);
     ScanQueue::Finished finished;
-    {
-      std::lock_guard lock(state.mutex);
-      GstClock* clock = gst_element_get_clock(GST_ELEMENT(self));
-      if (clock != nullptr && !state.flushing) {
-        const GstClockTime base = gst_element_get_base_time(GST_ELEMENT(self));
-        state.queue.FinishDue(gst_clock_get_time(clock) - base, &finished);
-      }
-      if (clock != nullptr) gst_object_unref(clock);
-    }
+    FinishDue(self, &finished);
     // The chain function reports errors of downstream; here they would go nowhere.
     PushScans(self, &finished);
     GST_PAD_STREAM_UNLOCK(self->sinkpad);
   }
-  std::lock_guard lock(state.mutex);
-  if (state.flushing) gst_pad_pause_task(self->srcpad);
+  lock.lock();
+  if (state.timer.flushing()) gst_pad_pause_task(self->srcpad);
 }
 
 void SetFlushing(GstLidarScanAssembler* self, bool flushing) {
   State& state = *self->state;
   std::lock_guard lock(state.mutex);
-  state.flushing = flushing;
-  if (flushing && state.wait != nullptr) gst_clock_id_unschedule(state.wait);
-  state.changed.notify_all();
+  state.timer.SetFlushing(flushing);
 }
 
 void TakeCaps(GstLidarScanAssembler* self, GstCaps* caps, CloudInfo&& info) {
@@ -349,16 +316,9 @@ gboolean SrcQuery(GstPad* pad, GstObject* parent, GstQuery* query) {
   if (!gst_pad_query_default(pad, parent, query)) return FALSE;
   if (GST_QUERY_TYPE(query) != GST_QUERY_LATENCY) return TRUE;
   State& state = StateOf(parent);
-  gboolean live = FALSE;
-  GstClockTime min = 0;
-  GstClockTime max = 0;
-  gst_query_parse_latency(query, &live, &min, &max);
   std::lock_guard lock(state.mutex);
-  if (live && state.scan_latency > 0) {
-    const GstClockTime own = state.scan_latency + state.settings.max_wait;
-    gst_query_set_latency(query, live, min + own,
-                          GST_CLOCK_TIME_IS_VALID(max) ? max + own : GST_CLOCK_TIME_NONE);
-  }
+  if (lidar::gst::ReadLatency(query).live && state.scan_latency > 0)
+    lidar::gst::AddLatency(query, state.scan_latency + state.settings.max_wait);
   return TRUE;
 }
 
@@ -373,9 +333,10 @@ GstStateChangeReturn ChangeState(GstElement* element, GstStateChange transition)
   const auto result =
       GST_ELEMENT_CLASS(gst_lidar_scan_assembler_parent_class)->change_state(element, transition);
   std::lock_guard lock(state.mutex);
-  if (transition == GST_STATE_CHANGE_PAUSED_TO_PLAYING) state.changed.notify_all();
+  if (transition == GST_STATE_CHANGE_PAUSED_TO_PLAYING)
+    state.timer.Update(state.queue.NextDeadline());
   if (transition == GST_STATE_CHANGE_PAUSED_TO_READY) {
-    state.knows_upstream = false;
+    state.upstream.reset();
     state.queue = ScanQueue();
     state.info.reset();
     state.in_caps.reset();

@@ -13,6 +13,7 @@
 #include <mutex>
 
 #include "common/gstlidar.h"
+#include "common/latency.h"
 #include "common/properties.h"
 #include "common/refs.h"
 #include "rtplidar/base_stats.h"
@@ -171,13 +172,7 @@ static GstClockTime HoldTime(GstRTPBasePayload* base) {
 static gboolean gst_lidar_rtp_pay_src_query(GstPad* pad, GstObject* parent, GstQuery* query) {
   if (!GST_LIDAR_RTP_PAY(parent)->state->base_src_query(pad, parent, query)) return FALSE;
   if (GST_QUERY_TYPE(query) != GST_QUERY_LATENCY) return TRUE;
-  gboolean live = FALSE;
-  GstClockTime min = 0;
-  GstClockTime max = 0;
-  gst_query_parse_latency(query, &live, &min, &max);
-  const GstClockTime held = HoldTime(GST_RTP_BASE_PAYLOAD(parent));
-  gst_query_set_latency(query, live, min + held,
-                        GST_CLOCK_TIME_IS_VALID(max) ? max + held : GST_CLOCK_TIME_NONE);
+  lidar::gst::AddLatency(query, HoldTime(GST_RTP_BASE_PAYLOAD(parent)));
   return TRUE;
 }
 

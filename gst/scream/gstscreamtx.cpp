@@ -14,6 +14,7 @@
 
 #include <algorithm>
 
+#include "common/latency.h"
 #include "scream/tx_private.h"
 
 GST_DEBUG_CATEGORY(gst_lidar_scream_tx_debug);
@@ -132,18 +133,10 @@ static gboolean SrcEvent(GstPad* pad, GstObject* parent, GstEvent* event) {
 /// Adds the longest stay in the queue to what the streams have upstream.
 static gboolean AnswerLatency(GstPad* pad, GstObject* parent, GstQuery* query) {
   if (!gst_pad_query_default(pad, parent, query)) return FALSE;
-  gboolean live = FALSE;
-  GstClockTime min = 0;
-  GstClockTime max = 0;
-  gst_query_parse_latency(query, &live, &min, &max);
-  GstClockTime own = 0;
-  {
-    TxState& state = StateOf(parent);
-    TxLock lock(state.mutex);
-    own = state.settings.max_queue_delay;
-  }
-  if (!live) own = 0;
-  gst_query_set_latency(query, live, min + own, GST_CLOCK_TIME_IS_VALID(max) ? max + own : max);
+  if (!lidar::gst::ReadLatency(query).live) return TRUE;
+  TxState& state = StateOf(parent);
+  TxLock lock(state.mutex);
+  lidar::gst::AddLatency(query, state.settings.max_queue_delay);
   return TRUE;
 }
 

@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// A thread's wait for the earliest of some deadlines, on the clock of an element.
+#pragma once
+#include <gst/gst.h>
+
+#include <condition_variable>
+#include <functional>
+#include <mutex>
+
+namespace lidar::gst {
+
+/// Every call is made with the same mutex held, which guards the deadlines too.
+class DeadlineTimer {
+ public:
+  /// Waits, with the mutex let go, until the earliest deadline, given by `next` in the element's
+  /// running time (NONE: there is none). True when it has passed; false where something else woke
+  /// the thread, which then looks at flushing() and waits anew.
+  bool Wait(std::unique_lock<std::mutex>* lock, GstElement* element,
+            const std::function<GstClockTime()>& next);
+  /// The deadlines have changed, or the element has a clock now; `next` is the earliest.
+  void Update(GstClockTime next);
+  /// While flushing, nobody waits.
+  void SetFlushing(bool flushing);
+  bool flushing() const { return flushing_; }
+
+ private:
+  std::condition_variable changed_;
+  bool flushing_ = true;
+  GstClockID wait_ = nullptr;
+  GstClockTime deadline_ = GST_CLOCK_TIME_NONE;  // of the wait
+};
+
+}  // namespace lidar::gst
