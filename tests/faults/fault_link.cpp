@@ -13,7 +13,8 @@ namespace lidar::test {
 namespace {
 
 constexpr std::size_t kRtpHeader = 12;
-constexpr std::size_t kMaxSlices = 100'000;  // of an hour they may be forgotten, not of a test
+constexpr std::size_t kMaxSlices = 10'000;
+constexpr std::uint32_t kOpenScans = 8;  // whose slices may still get packets
 
 sockaddr_in Loopback(std::uint16_t port) {
   sockaddr_in a{};
@@ -82,7 +83,7 @@ void FaultLink::Rebind() {
 LinkCounts FaultLink::counts() const {
   std::lock_guard lock(mutex_);
   LinkCounts c = counts_;
-  c.slices = slices_.size();
+  c.slices += slices_.size();
   for (const auto& [key, seen] : slices_) c.slices_whole += seen.IsWhole() ? 1U : 0U;
   return c;
 }
@@ -126,13 +127,28 @@ void FaultLink::Note(const Datagram& datagram, bool hit) {
   for (const auto& unit : rtp::ParsePayload({b.data() + kRtpHeader, b.size() - kRtpHeader})) {
     if (!rtp::IsSlice(unit.unit)) continue;
     const SliceKey key{Ssrc(b), unit.slice.scan_number, unit.slice.index};
+    if (slices_.size() >= kMaxSlices) Fold(key);
     Seen& seen = slices_[key];
     seen.sequences.insert(lidar::ByteReader(b.data() + 2, 2).Be16());
     seen.starts |= rtp::StartsUnit(unit.type);
     seen.ends |= rtp::EndsUnit(unit.type);
     seen.hit |= hit;
   }
-  if (slices_.size() >= kMaxSlices) slices_.clear();
+}
+
+/// Counts the slices that get no more packets, and forgets them.
+void FaultLink::Fold(const SliceKey& newest) {
+  for (auto it = slices_.begin(); it != slices_.end();) {
+    const bool open =
+        it->first.ssrc == newest.ssrc && it->first.scan_number + kOpenScans > newest.scan_number;
+    if (open) {
+      ++it;
+      continue;
+    }
+    ++counts_.slices;
+    counts_.slices_whole += it->second.IsWhole() ? 1U : 0U;
+    it = slices_.erase(it);
+  }
 }
 
 /// A sender may give up a slice half sent.

@@ -62,6 +62,8 @@ class FaultLink {
   void Set(const Fault& fault);
   /// Media goes on from another source port, as after NAT rebinding.
   void Rebind();
+  /// Media goes on to another port of 127.0.0.1, as after a change of routes.
+  void MoveReceiver(std::uint16_t port) { receiver_port_ = port; }
   LinkCounts counts() const;
 
  private:
@@ -76,6 +78,7 @@ class FaultLink {
   void Forward(const Datagram& datagram);
   void SendGarbage(const Fault& fault, const Datagram& model);
   void Note(const Datagram& datagram, bool hit);
+  void Fold(const SliceKey& newest);
   bool Chance(double probability);
 
   mutable std::mutex mutex_;  // guards fault_, slices_, counts_ and rebind_
@@ -91,7 +94,7 @@ class FaultLink {
   LinkCounts counts_;
   bool rebind_ = false;
 
-  std::uint16_t receiver_port_;
+  std::atomic<std::uint16_t> receiver_port_;
   std::uint16_t port_ = 0;
   int in_ = -1;
   int out_ = -1;
