@@ -35,6 +35,7 @@ static GstStaticPadTemplate rtcp_template = GST_STATIC_PAD_TEMPLATE(
     "rtcp_src", GST_PAD_SRC, GST_PAD_ALWAYS, GST_STATIC_CAPS("application/x-rtcp"));
 
 // A kernel time older than this, or in the future, means that somebody set the system clock.
+static constexpr std::size_t kMaxSsrcs = 64;
 static constexpr lidar::Duration kMaxAge = std::chrono::seconds(1);
 
 static const std::array<Property<RxSettings>, 7> kProperties = {{
@@ -132,6 +133,8 @@ static bool Account(RxState& state, const Clocks& clocks, GstBuffer* buffer,
   packet.size = lidar::DataSize::Bytes(static_cast<std::int64_t>(gst_buffer_get_size(buffer)) +
                                        state.settings.packet_overhead);
   state.generator.OnPacket(ArrivalTime(clocks, arrival), packet);
+  // One that is alive comes back with its next packet.
+  if (state.ssrcs.size() >= kMaxSsrcs) state.ssrcs.erase(state.ssrcs.begin());
   state.ssrcs.insert(header.ssrc);
   return true;
 }

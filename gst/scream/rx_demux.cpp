@@ -7,6 +7,9 @@
 namespace lidar::gst {
 namespace {
 
+// Whoever forges SSRCs makes a pad with each; a sender that restarts makes one each time.
+constexpr std::size_t kMaxRoutes = 1'024;
+
 /// The caps of a payload type with the SSRC put in; NULL where pt-map has none.
 GstCaps* CapsOf(GstLidarScreamRx* self, const RtpHeader& header) {
   RxState& state = *self->state;
@@ -96,6 +99,12 @@ bool HasPtMap(GstLidarScreamRx* self) {
 GstFlowReturn Demux(GstLidarScreamRx* self, const RtpHeader& header, GstBuffer* buffer) {
   RxState& state = *self->state;
   auto found = state.routes.find(header.ssrc);
+  if (found == state.routes.end() && state.routes.size() >= kMaxRoutes) {
+    gst_buffer_unref(buffer);
+    RxLock lock(state.mutex);
+    ++state.foreign;
+    return GST_FLOW_OK;
+  }
   if (found == state.routes.end())
     found = state.routes.emplace(header.ssrc, Route(self, header)).first;
   GstPad* pad = found->second;

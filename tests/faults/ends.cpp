@@ -135,7 +135,7 @@ ReceivingEnd::ReceivingEnd(const SentSlices* sent, std::uint16_t port,
                 " ! rtplidardepay name=depay ! dracodec ! "
                 "fakesink name=out sync=false async=false") {
   Watch(pipeline_.Child("depay").get(), "src", new auto([this](GstBuffer* b) {
-          if (!sent_->Has(Hash(b))) ++foreign_;
+          if (sent_ != nullptr && !sent_->Has(Hash(b))) ++foreign_;
         }));
   Watch(pipeline_.Child("out").get(), "sink", new auto([this](GstBuffer*) { ++clouds_; }));
 }

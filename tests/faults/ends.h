@@ -74,6 +74,7 @@ struct Accounts {
 /// screamsrc ! rtplidardepay ! dracodec ! fakesink
 class ReceivingEnd {
  public:
+  /// Without `sent` nothing counts as foreign.
   ReceivingEnd(const SentSlices* sent, std::uint16_t port, const std::string& source_options = "");
   Pipeline& pipeline() { return pipeline_; }
   Accounts accounts() const;
