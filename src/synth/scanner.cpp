@@ -2,6 +2,7 @@
 #include "synth/scanner.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace lidar::synth {
 namespace {
@@ -22,6 +23,16 @@ std::vector<float> MakeGaussTable() {
         std::clamp(std::sqrt(-2 * std::log(u)) * std::cos(kTurn * v), -4.0, 4.0));
   }
   return table;
+}
+
+/// A direction on the rim of the beam around `axis`; `turn` says where on it [rad].
+Vec3 OnTheRim(Vec3 axis, float turn) {
+  constexpr float kHalfDivergence = 0.0015F;  // [rad]
+  const float horizontal = std::sqrt(axis.x * axis.x + axis.y * axis.y) + 1e-9F;
+  const Vec3 left{-axis.y / horizontal, axis.x / horizontal, 0};
+  const Vec3 up{-axis.x * axis.z / horizontal, -axis.y * axis.z / horizontal, horizontal};
+  const Vec3 rim = axis + kHalfDivergence * (std::cos(turn) * left + std::sin(turn) * up);
+  return (1 / std::sqrt(Dot(rim, rim))) * rim;
 }
 
 Vec3 ToVec(const std::array<float, 3>& a) { return {a[0], a[1], a[2]}; }
@@ -157,11 +168,37 @@ Scanner::Pixel Scanner::Measure(const Hit& hit, Random* noise) const {
           static_cast<std::uint16_t>(std::min(65535.0F, kPhotons * signal * speckle + 0.5F))};
 }
 
+/// A beam has a width: at an edge, or in leaves, a part of it goes on to something farther away.
+/// Two things a sensor tells apart only where their echoes do not overlap.
+Scanner::Echoes Scanner::MeasureBoth(const Column& column, Vec3 direction, const Hit& center,
+                                     Random* noise) const {
+  constexpr float kSeparation = 0.5F;  // [m]
+  constexpr float kCenterShare = 0.6F;
+  constexpr float kTurn = 6.2831853F;
+  Random edge(noise->Bits());
+  const Vec3 rim = OnTheRim(direction, kTurn * edge.Uniform());
+  const Hit beside = Trace(MakeRay(column.origin, rim), column.age_s, &edge);
+  if (std::abs(beside.distance - center.distance) < kSeparation)
+    return {Measure(center, noise), {}};
+  const auto share = [](Hit hit, float part) {
+    hit.reflectivity *= part;
+    return hit;
+  };
+  const Pixel a = Measure(share(center, kCenterShare), noise);
+  const Pixel b = Measure(share(beside, 1 - kCenterShare), &edge);
+  const bool a_leads = b.range_mm == 0 || (a.range_mm != 0 && a.signal >= b.signal);
+  return a_leads ? Echoes{a, b} : Echoes{b, a};
+}
+
 void Scanner::Cast(std::uint64_t scan, ColumnWindow window, Returns* returns) {
   const std::uint32_t beams = projection_.beams();
   returns->range_mm.resize(std::size_t{beams} * window.count);
   returns->reflectivity.resize(returns->range_mm.size());
   returns->signal.resize(returns->range_mm.size());
+  const std::size_t seconds = config_.second_returns ? returns->range_mm.size() : 0;
+  returns->range2_mm.resize(seconds);
+  returns->reflectivity2.resize(seconds);
+  returns->signal2.resize(seconds);
   std::uint32_t chunk = UINT32_MAX;
   for (std::uint32_t i = 0; i < window.count; ++i) {
     const std::uint32_t index = window.first + i;
@@ -171,11 +208,16 @@ void Scanner::Cast(std::uint64_t scan, ColumnWindow window, Returns* returns) {
       Random noise(column.key + beam);
       const Vec3 direction = column.rotation * ToVec(projection_.Direction(beam, index));
       const Hit hit = Trace(MakeRay(column.origin, direction), column.age_s, &noise);
-      const Pixel pixel = Measure(hit, &noise);
+      const Echoes echoes = config_.second_returns ? MeasureBoth(column, direction, hit, &noise)
+                                                   : Echoes{Measure(hit, &noise), {}};
       const std::size_t at = std::size_t{beam} * window.count + i;
-      returns->range_mm[at] = pixel.range_mm;
-      returns->reflectivity[at] = pixel.reflectivity;
-      returns->signal[at] = pixel.signal;
+      returns->range_mm[at] = echoes.strongest.range_mm;
+      returns->reflectivity[at] = echoes.strongest.reflectivity;
+      returns->signal[at] = echoes.strongest.signal;
+      if (!config_.second_returns) continue;
+      returns->range2_mm[at] = echoes.second.range_mm;
+      returns->reflectivity2[at] = echoes.second.reflectivity;
+      returns->signal2[at] = echoes.second.signal;
     }
   }
 }

@@ -20,6 +20,7 @@ struct ScannerConfig {
   double speed_mps = 0;
   double noise_m = 0.01;  // standard deviation of a range on a white wall nearby
   std::uint64_t seed = 0;
+  bool second_returns = false;  // two echoes where a beam meets two things; costs a second ray
 };
 
 /// What the sensor measured, beam by beam: [beam * columns + column]. Range 0: no return.
@@ -27,6 +28,10 @@ struct Returns {
   std::vector<std::uint32_t> range_mm;
   std::vector<std::uint8_t> reflectivity;  // Ouster's scale: percent, retroreflectors above 100
   std::vector<std::uint16_t> signal;       // photons, in a unit of the sensor's own
+  // The weaker echo; empty unless asked for.
+  std::vector<std::uint32_t> range2_mm;
+  std::vector<std::uint8_t> reflectivity2;
+  std::vector<std::uint16_t> signal2;
 };
 
 /// Every ray leaves at its own time from where the sensor is then. The returns depend on the
@@ -62,6 +67,11 @@ class Scanner {
   SectorIndex::Arc ArcOf(std::uint64_t scan, std::uint32_t first, std::uint32_t last) const;
   Hit Trace(const Ray& ray, float age_s, Random* noise) const;
   Pixel Measure(const Hit& hit, Random* noise) const;
+  struct Echoes {
+    Pixel strongest;
+    Pixel second;
+  };
+  Echoes MeasureBoth(const Column& column, Vec3 direction, const Hit& center, Random* noise) const;
 
   ScannerConfig config_;
   RangeProjection projection_;

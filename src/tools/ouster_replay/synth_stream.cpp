@@ -44,6 +44,7 @@ synth::ScannerConfig MakeScanner(const SynthOptions& options, const ouster::Meta
   config.scene = options.scene;
   config.speed_mps = options.speed_mps;
   config.seed = options.seed;
+  config.second_returns = m.format.has_second_return();
   return config;
 }
 
@@ -114,13 +115,16 @@ std::optional<OutPacket> SynthStream::Next() {
 void SynthStream::WritePixel(ouster::PacketWriter* writer, std::uint32_t column, std::uint32_t beam,
                              std::size_t at) const {
   const std::uint32_t unit = metadata_.model.range_unit_mm;
-  const std::uint32_t range = returns_.range_mm[at] / unit * unit;
+  const ouster::PacketWriter::Pixel pixel{column, beam};
   const std::uint32_t reflectivity = returns_.reflectivity[at];
-  writer->SetPixel({column, beam}, Channel::kRange, range);
-  writer->SetPixel({column, beam}, Channel::kReflectivity, reflectivity);
-  writer->SetPixel({column, beam}, Channel::kSignal,
-                   range == 0 ? 0 : reflectivity * 20'000'000U / (range + 10'000U));
-  writer->SetPixel({column, beam}, Channel::kNearIr, 200 + reflectivity * 4);
+  writer->SetPixel(pixel, Channel::kRange, returns_.range_mm[at] / unit * unit);
+  writer->SetPixel(pixel, Channel::kReflectivity, reflectivity);
+  writer->SetPixel(pixel, Channel::kSignal, returns_.signal[at]);
+  writer->SetPixel(pixel, Channel::kNearIr, 200 + reflectivity * 4);
+  if (returns_.range2_mm.empty()) return;
+  writer->SetPixel(pixel, Channel::kRange2, returns_.range2_mm[at] / unit * unit);
+  writer->SetPixel(pixel, Channel::kReflectivity2, returns_.reflectivity2[at]);
+  writer->SetPixel(pixel, Channel::kSignal2, returns_.signal2[at]);
 }
 
 std::optional<OutPacket> SynthStream::LidarPacket() {

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 
 namespace lidar::synth {
@@ -65,6 +66,26 @@ TEST_P(EveryScene, StaysWithinTheReachOfTheSensor) {
 // With no noise, a ground point put where the sensor was when its column was sampled lies on the
 // ground within the millimetre that ranges are rounded to. One pose a scan would be off by
 // 1.2 m along the road and, with the pitch, by centimetres of height.
+TEST_P(EveryScene, GivesTwoEchoesWhereABeamMeetsTwoThings) {
+  ScannerConfig config = Config(GetParam());
+  config.second_returns = true;
+  Scanner scanner(config);
+  Returns r;
+  scanner.Cast(2, {0, 512}, &r);
+  std::size_t both = 0;
+  for (std::size_t i = 0; i < r.range_mm.size(); ++i) {
+    if (r.range2_mm[i] == 0) continue;
+    ++both;
+    ASSERT_GE(r.signal[i], r.signal2[i]);
+    ASSERT_GE(std::abs(static_cast<double>(r.range_mm[i]) - r.range2_mm[i]), 400);
+  }
+  const double share = static_cast<double>(both) / static_cast<double>(r.range_mm.size());
+  EXPECT_GT(share, 0.001);
+  EXPECT_LT(share, 0.2);
+  // What a beam meets only once is no weaker for it.
+  EXPECT_NEAR(ShareOfReturns(r.range_mm), ShareOfReturns(Ranges(Config(GetParam()), 2)), 0.02);
+}
+
 TEST(Scanner, EveryColumnIsSampledFromItsOwnPose) {
   ScannerConfig config = Config();
   config.noise_m = 0;

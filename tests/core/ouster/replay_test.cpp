@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// What `ouster-replay --synthesize` sends in every profile is what its scanner saw.
+#include <gtest/gtest.h>
+
+#include <cstring>
+#include <map>
+
+#include "ouster/sensor_stream.h"
+#include "ouster_replay/synth_stream.h"
+
+namespace lidar::tools {
+namespace {
+
+using ouster::Channel;
+using ouster::Profile;
+
+constexpr const char* kModel = "os1-32";
+constexpr std::uint32_t kColumns = 512;
+
+synth::Returns Scan(bool second_returns) {
+  synth::ScannerConfig config;
+  config.sensor = *synth::MakeSensor(kModel, kColumns);
+  config.speed_mps = 12;
+  config.seed = 1;
+  config.second_returns = second_returns;
+  synth::Scanner scanner(config);
+  synth::Returns returns;
+  scanner.Cast(0, {0, kColumns}, &returns);
+  return returns;
+}
+
+/// The points of the first scan, and where a field stands in them.
+struct Points {
+  std::vector<std::uint8_t> bytes;
+  PointFields fields;
+  std::uint32_t step = 0;
+
+  template <class T>
+  T Get(std::size_t point, const char* field) const {
+    T value{};
+    std::memcpy(&value, &bytes[point * step + fields.Find(field)->offset], sizeof value);
+    return value;
+  }
+};
+
+Points ReadBack(const ouster::Metadata& metadata, const SynthOptions& options) {
+  ouster::StreamOptions read;
+  read.slices_per_scan = 1;
+  if (metadata.format.has_second_return()) read.points.returns = ouster::Return::kBoth;
+  for (const auto& [channel, name] :
+       std::map<Channel, const char*>{{Channel::kSignal, "signal"}, {Channel::kNearIr, "near-ir"}})
+    if (ouster::LayoutOf(metadata.format.profile).Find(channel) != nullptr)
+      read.points.channels.emplace_back(name);
+  std::string error;
+  const auto stream = ouster::SensorStream::Create(metadata, read, &error);
+  EXPECT_TRUE(stream) << error;
+  SynthStream sensor(options, metadata);
+  for (;;) {
+    const auto packet = sensor.Next();
+    stream->Push({packet->bytes.data(), packet->bytes.size()}, {Time{packet->due}, {}});
+    if (auto slice = stream->Pop()) {
+      EXPECT_EQ(slice->slice.missing_columns, 0U);
+      return {std::move(slice->slice.points), stream->writer().fields(),
+              stream->writer().point_step()};
+    }
+  }
+}
+
+struct Case {
+  Profile profile;
+  ouster::HeaderType header = ouster::HeaderType::kStandard;
+};
+class SynthProfiles : public ::testing::TestWithParam<Case> {};
+
+TEST_P(SynthProfiles, CarryWhatTheScannerSaw) {
+  SynthOptions options;
+  options.model = kModel;
+  const ouster::Metadata m =
+      MakeSynthMetadata(options, {"512x10", GetParam().profile, GetParam().header});
+  const Points points = ReadBack(m, options);
+  const bool dual = m.format.has_second_return();
+  const synth::Returns truth = Scan(dual);
+  const std::uint32_t unit = m.format.range_unit_mm();
+  const bool has_signal = points.fields.Find("signal") != nullptr;
+  std::size_t first = 0;
+  std::size_t second = 0;
+  for (std::size_t i = 0; i < truth.range_mm.size(); ++i) {
+    const std::uint32_t range = truth.range_mm[i] / unit * unit;
+    ASSERT_EQ(points.Get<std::uint32_t>(i, "range"), range) << i;
+    ASSERT_EQ(points.Get<float>(i, "intensity"), range == 0 ? 0 : truth.reflectivity[i]) << i;
+    if (has_signal) {
+      ASSERT_EQ(points.Get<std::uint16_t>(i, "signal"), truth.signal[i]) << i;
+    }
+    first += range != 0 ? 1 : 0;
+    if (!dual) continue;
+    const std::uint32_t range2 = truth.range2_mm[i] / unit * unit;
+    ASSERT_EQ(points.Get<std::uint32_t>(i, "range2"), range2) << i;
+    ASSERT_EQ(points.Get<float>(i, "intensity2"), range2 == 0 ? 0 : truth.reflectivity2[i]) << i;
+    second += range2 != 0 ? 1 : 0;
+  }
+  EXPECT_GT(first, 5000U);
+  EXPECT_EQ(second > 50U, dual);
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    All, SynthProfiles,
+    ::testing::Values(Case{Profile::kLegacy}, Case{Profile::kRng19Rfl8Sig16Nir16},
+                      Case{Profile::kRng19Rfl8Sig16Nir16Dual}, Case{Profile::kRng15Rfl8Nir8},
+                      Case{Profile::kRng15Rfl8Nir8Dual},
+                      Case{Profile::kFusaRng15Rfl8Nir8Dual, ouster::HeaderType::kFusa},
+                      Case{Profile::kRng15Rfl8Win8}, Case{Profile::kRng15Rfl8Nir8Zone16},
+                      Case{Profile::kRng19Rfl8Sig16Nir16Zone16},
+                      Case{Profile::kRng19Rfl8Sig16Zone16Dual},
+                      Case{Profile::kRng19Rfl8Sig16Nir16Rgb16},
+                      Case{Profile::kRng19Rfl8Sig16Nir16Rgb16Dual}, Case{Profile::kFiveWordPixel},
+                      Case{Profile::kRng19Rfl8Sig16Nir16, ouster::HeaderType::kFusa}));
+
+}  // namespace
+}  // namespace lidar::tools
