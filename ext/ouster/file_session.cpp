@@ -15,7 +15,9 @@ bool FileSession::Open() {
   pcap_ = PcapFeed::Open(path, stream()->metadata(), settings().loop, &why);
   if (pcap_) return true;
   GST_ELEMENT_ERROR(element(), RESOURCE, OPEN_READ,
-                    ("Cannot read the capture %s: %s", path.c_str(), why.c_str()), (nullptr));
+                    ("Cannot read the capture %s: %s", path.c_str(), why.c_str()),
+                    ("it must be a pcap or pcapng file, as 'tcpdump -i eth0 -s 0 -w FILE udp' "
+                     "writes where the sensor's packets arrive"));
   return false;
 }
 

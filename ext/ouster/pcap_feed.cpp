@@ -50,7 +50,7 @@ std::optional<PcapFeed::Packet> PcapFeed::Next() {
 }
 
 std::string PcapFeed::DescribeContents() const {
-  if (sizes_.empty()) return "it holds no UDP datagrams at all";
+  if (sizes_.empty()) return "it holds no whole UDP datagrams (tcpdump -s 0 leaves them whole)";
   const auto most = std::max_element(
       sizes_.begin(), sizes_.end(),
       [](const auto& a, const auto& b) { return a.second * a.first < b.second * b.first; });

@@ -69,7 +69,7 @@ std::optional<ouster::Metadata> Session::LoadMetadata() {
   if (!metadata)
     GST_ELEMENT_ERROR(element_, STREAM, WRONG_TYPE,
                       ("%s is no metadata of an Ouster sensor: %s", path.c_str(), why.c_str()),
-                      (nullptr));
+                      ("'curl http://SENSOR/api/v1/sensor/metadata' gives a sensor's own"));
   return metadata;
 }
 

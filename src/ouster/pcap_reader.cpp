@@ -35,6 +35,14 @@ PcapReader::PcapReader(std::string path, Handle handle)
 std::unique_ptr<PcapReader> PcapReader::Open(const std::string& path, std::string* error) {
   Handle handle(OpenFile(path, error));
   if (!handle) return nullptr;
+  const int dlt = pcap_datalink(handle.get());
+  if (!IsKnown(FromDlt(dlt))) {
+    const char* name = pcap_datalink_val_to_description(dlt);
+    *error = "its frames are of link type " +
+             (name != nullptr ? std::string(name) : std::to_string(dlt)) +
+             ", not of Ethernet, Linux cooked, loopback or raw IP";
+    return nullptr;
+  }
   return std::unique_ptr<PcapReader>(new PcapReader(path, std::move(handle)));
 }
 

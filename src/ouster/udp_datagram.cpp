@@ -66,6 +66,21 @@ std::optional<UdpDatagram> ParseUdp(const IpEndpoints& addresses, ByteView bytes
 
 }  // namespace
 
+bool IsKnown(LinkType link) {
+  switch (link) {
+    case LinkType::kNull:
+    case LinkType::kEthernet:
+    case LinkType::kRaw:
+    case LinkType::kLoop:
+    case LinkType::kLinuxSll:
+    case LinkType::kIpv4:
+    case LinkType::kIpv6:
+    case LinkType::kLinuxSll2:
+      return true;
+  }
+  return false;
+}
+
 std::optional<std::vector<std::uint8_t>> IpReassembler::Add(const Fragment& f) {
   const std::size_t end = f.offset + f.payload.size;
   if (f.payload.empty() || end > kMaxIpPayload || (f.more && f.payload.size % kFragmentUnit != 0))

@@ -24,6 +24,9 @@ enum class LinkType : std::uint32_t {
   kLinuxSll2 = 276,
 };
 
+/// False for one that Extract() finds nothing in.
+bool IsKnown(LinkType link);
+
 struct IpEndpoints {
   bool is_ipv6 = false;
   std::array<std::uint8_t, 16> source{};  // the first 4 bytes for IPv4

@@ -96,26 +96,52 @@ inline guint64 Stat(GstElement* element, const char* name) {
   return value;
 }
 
-/// Runs a pipeline to its end; the text of its error, or "" after EOS.
-inline std::string RunToEnd(const std::string& description) {
+struct Ending {
+  std::string error;     // with its details; "" after EOS
+  std::string warnings;  // all in one
+};
+
+/// Text and details of an error or a warning.
+inline std::string TextOf(GstMessage* message) {
+  GError* raw = nullptr;
+  gchar* debug = nullptr;
+  if (GST_MESSAGE_TYPE(message) == GST_MESSAGE_ERROR)
+    gst_message_parse_error(message, &raw, &debug);
+  else
+    gst_message_parse_warning(message, &raw, &debug);
+  const gst::ErrorPtr problem(raw);
+  const std::string text = std::string(problem->message) + "\n" + (debug != nullptr ? debug : "");
+  g_free(debug);
+  return text;
+}
+
+/// Runs a pipeline to its end.
+inline Ending Run(const std::string& description) {
   GError* raw = nullptr;
   const gst::ElementPtr pipeline(gst_parse_launch(description.c_str(), &raw));
   const gst::ErrorPtr parse_error(raw);
-  if (parse_error) return parse_error->message;
+  if (parse_error) return {parse_error->message, {}};
   gst_element_set_state(pipeline.get(), GST_STATE_PLAYING);
   GstBus* bus = gst_element_get_bus(pipeline.get());
-  const gst::MessagePtr message(gst_bus_timed_pop_filtered(
-      bus, 20 * GST_SECOND, static_cast<GstMessageType>(GST_MESSAGE_ERROR | GST_MESSAGE_EOS)));
-  gst_object_unref(bus);
-  std::string text = "no end within 20 s";
-  if (message && GST_MESSAGE_TYPE(message.get()) == GST_MESSAGE_EOS) text.clear();
-  if (message && GST_MESSAGE_TYPE(message.get()) == GST_MESSAGE_ERROR) {
-    gst_message_parse_error(message.get(), &raw, nullptr);
-    const gst::ErrorPtr error(raw);
-    text = error->message;
+  Ending ending{"no end within 20 s", {}};
+  for (bool ended = false; !ended;) {
+    const gst::MessagePtr message(gst_bus_timed_pop_filtered(
+        bus, 20 * GST_SECOND,
+        static_cast<GstMessageType>(GST_MESSAGE_ERROR | GST_MESSAGE_WARNING | GST_MESSAGE_EOS)));
+    ended = !message || GST_MESSAGE_TYPE(message.get()) != GST_MESSAGE_WARNING;
+    if (!message) break;
+    if (!ended)
+      ending.warnings += TextOf(message.get());
+    else
+      ending.error =
+          GST_MESSAGE_TYPE(message.get()) == GST_MESSAGE_ERROR ? TextOf(message.get()) : "";
   }
+  gst_object_unref(bus);
   gst_element_set_state(pipeline.get(), GST_STATE_NULL);
-  return text;
+  return ending;
 }
+
+/// The text of its error, or "" after EOS.
+inline std::string RunToEnd(const std::string& description) { return Run(description).error; }
 
 }  // namespace lidar::test

@@ -268,6 +268,15 @@ class Impostor {
   std::thread thread_;
 };
 
+TEST(OusterLive, MetadataThatMakesNoSenseIsAClearError) {
+  const Impostor impostor([](const httplib::Request&, httplib::Response& response) {
+    response.set_content(R"({"lidar_data_format": {"columns_per_packet": 0}})", "application/json");
+  });
+  const std::string error =
+      RunToEnd("ouster_src reconnect=false hostname=" + impostor.host() + " ! fakesink");
+  EXPECT_NE(error.find("the sensor's metadata cannot be used"), std::string::npos) << error;
+}
+
 TEST(OusterLive, FollowsNoRedirect) {
   std::atomic<int> visits{0};
   const Impostor target([&](const httplib::Request&, httplib::Response&) { ++visits; });

@@ -90,6 +90,27 @@ TEST_F(OusterUdp, GoesOnWithASensorThatRestarted) {
   EXPECT_GE(GST_BUFFER_PTS(after.get()), GST_BUFFER_PTS(before.get()));
 }
 
+TEST_F(OusterUdp, PacketsOfAnotherSizeAreCountedAndWarnedOf) {
+  const Harness h = Play(kJson);
+  const gst::ElementPtr source(gst_bin_get_by_name(GST_BIN(h->element), "src"));
+  GstBus* bus = gst_bus_new();
+  gst_element_set_bus(h->element, bus);
+  for (int i = 0; i < 6; ++i) sender_->Send(std::vector<std::uint8_t>(6464));
+  const gst::MessagePtr warning(
+      gst_bus_timed_pop_filtered(bus, 10 * GST_SECOND, GST_MESSAGE_WARNING));
+  ASSERT_TRUE(warning);
+  const std::string text = TextOf(warning.get());
+  EXPECT_NE(text.find("Packets of 6464 bytes come where the metadata asks for"), std::string::npos)
+      << text;
+  EXPECT_NE(text.find("is it the metadata of this sensor"), std::string::npos) << text;
+  for (std::size_t i = 0; i < 8; ++i) sender_->Send(packets_[i]);
+  const BufferPtr buffer(gst_harness_pull(h.get()));
+  EXPECT_TRUE(buffer);
+  EXPECT_EQ(Stat(source.get(), "packets-wrong-size"), 6U);
+  gst_element_set_bus(h->element, nullptr);
+  gst_object_unref(bus);
+}
+
 TEST_F(OusterUdp, StopsWhileItWaitsForPackets) {
   const Harness h = Play(kJson);
   EXPECT_EQ(gst_element_set_state(h->element, GST_STATE_NULL), GST_STATE_CHANGE_SUCCESS);
