@@ -13,32 +13,44 @@ constexpr double kMeanInCube = 0.480296;
 // The finest grid of a sensor whose resolution nobody told: 1 mm of error, as good as any LiDAR.
 constexpr double kFinestXyzStep = 0.001;
 constexpr double kFinestStepAtAll = 1e-6;
+// Steps of ranges are multiples of a unit by this.
+constexpr double kStepsPerUnit = 256;
+
+/// Sum of |k - (n - 1) / 2| over the n values of a bin.
+double SumInBin(double n) { return std::fmod(n, 2) > 0.5 ? (n * n - 1) / 4 : n * n / 4; }
 
 }  // namespace
 
 double ResidualModel::MaxError(double step_m) const {
   if (geometry_ == Geometry::kXyz) return step_m * kHalfDiagonal;
-  return std::max(0.0, step_m - unit()) / 2;
+  // Twice the error in millimetres is a whole number, and a half is rounded up.
+  return 1e-3 * std::ceil((LargerBins(step_m) - 1) * unit_mm_ / 2 - 1e-6);
+}
+
+double ResidualModel::LargerBins(double step_m) const {
+  return std::max(1.0, std::ceil(step_m / unit() - 1e-6));
 }
 
 double ResidualModel::MeanError(double step_m) const {
   if (geometry_ == Geometry::kXyz) return step_m * kMeanInCube;
-  // Mean of |k - (n - 1) / 2| over the n values of a bin.
-  const double n = std::max(1.0, std::round(step_m / unit()));
-  return unit() * (std::fmod(n, 2) > 0.5 ? (n * n - 1) / (4 * n) : n / 4);
+  const double n = LargerBins(step_m);
+  const double units = std::max(1.0, step_m / unit());  // a bin on average
+  const double larger = units - (n - 1);                // part of the bins
+  return unit() * (larger * SumInBin(n) + (1 - larger) * SumInBin(n - 1)) / units;
 }
 
 double ResidualModel::CoarsestStep(double error_m) const {
   const double error = std::max(error_m, 0.0);
   if (geometry_ == Geometry::kXyz) return std::max(error / kHalfDiagonal, kFinestStepAtAll);
-  // The little more lets 2E that is a whole number in decimal be one in binary.
-  return unit() + std::floor(2 * error / step_unit() + 1e-6) * step_unit();
+  // Errors are whole millimetres. The little more lets 20 mm, which is no exact double, be that.
+  const double whole_mm = std::floor(1e3 * error + 1e-9);
+  return unit() * (std::floor(2 * whole_mm / unit_mm_) + 1);
 }
 
 double ResidualModel::FinestStep() const {
   return geometry_ == Geometry::kRange ? unit() : kFinestXyzStep;
 }
 
-double ResidualModel::step_unit() const { return unit_mm_ % 2 == 0 ? unit() : 2 * unit(); }
+double ResidualModel::step_unit() const { return unit() / kStepsPerUnit; }
 
 }  // namespace lidar::rate

@@ -12,11 +12,12 @@ class ResidualModel {
  public:
   static ResidualModel Xyz() { return ResidualModel(Geometry::kXyz, 0); }
   /// `unit_mm`: resolution of the ranges, not 0. A bin of n units that comes back as its middle
-  /// value is off by (n - 1) / 2 units at most; that value is a whole number of millimetres, so n
-  /// is odd where the unit is.
+  /// value, rounded up to a whole number of millimetres, is off by (n - 1) / 2 units at most. A
+  /// step between n - 1 and n units mixes bins of both sizes.
   static ResidualModel Range(unsigned unit_mm) { return ResidualModel(Geometry::kRange, unit_mm); }
 
-  /// Largest distance [m] between a point and its decoded point: s sqrt(3)/2 or (s - unit)/2.
+  /// Largest distance [m] between a point and its decoded point: s sqrt(3)/2, or that of
+  /// the larger bins.
   double MaxError(double step_m) const;
   /// Expected distance [m] of points that fall evenly on the grid.
   double MeanError(double step_m) const;
@@ -25,13 +26,16 @@ class ResidualModel {
   double CoarsestStep(double error_m) const;
   /// A finer step than this [m] only codes digits that the sensor does not have.
   double FinestStep() const;
-  /// Steps are FinestStep() and any number of these [m]; 0 for xyz: any step.
+  /// Steps are FinestStep() and any number of these [m]; 0 for xyz: any step. Those of ranges are
+  /// so small that sizes are as good as continuous.
   double step_unit() const;
   Geometry geometry() const { return geometry_; }
 
  private:
   ResidualModel(Geometry geometry, unsigned unit_mm) : geometry_(geometry), unit_mm_(unit_mm) {}
   double unit() const { return 1e-3 * unit_mm_; }
+  /// Units in the larger bins of a step.
+  double LargerBins(double step_m) const;
   Geometry geometry_;
   unsigned unit_mm_;
 };

@@ -20,21 +20,51 @@ TEST_P(ErrorBound, OfXyzIsReachedAtACornerOfTheGridAndNeverPassed) {
   EXPECT_NEAR(std::sqrt(3 * half * half), error, 1e-12);
 }
 
+struct RangeErrors {
+  double largest = 0;
+  double mean = 0;
+};
+
+/// Of `units` neighbouring ranges on a grid of steps of `parts` / 256 units: those that share a bin
+/// come back as the middle of the first and the last of them, rounded up to a millimetre.
+RangeErrors ErrorsOfRanges(std::int64_t parts, unsigned unit_mm, std::int64_t units) {
+  RangeErrors errors;
+  for (std::int64_t first = 0; first < units;) {
+    std::int64_t end = first;
+    while (end * 256 / parts == first * 256 / parts) ++end;
+    const auto middle = std::ceil(static_cast<double>((first + end - 1) * unit_mm) / 2);
+    for (; first < end; ++first) {
+      const double error = 1e-3 * std::abs(static_cast<double>(first * unit_mm) - middle);
+      errors.largest = std::max(errors.largest, error);
+      errors.mean += error / static_cast<double>(units);
+    }
+  }
+  return errors;
+}
+
 TEST_P(ErrorBound, OfRangesHoldsForEveryRangeAndIsTheCoarsestThatDoes) {
   for (const unsigned unit_mm : {1U, 3U, 4U, 8U}) {
-    const double unit = 1e-3 * unit_mm;
     const ResidualModel model = ResidualModel::Range(unit_mm);
-    const auto n = static_cast<std::int64_t>(std::llround(model.CoarsestStep(GetParam()) / unit));
-    ASSERT_GE(n, 1);
-    double worst = 0;
-    for (std::int64_t r = 0; r < 1000; ++r) {
-      const double middle = static_cast<double>(r / n * n) + static_cast<double>(n - 1) / 2;
-      worst = std::max(worst, std::abs(static_cast<double>(r) - middle) * unit);
-    }
+    const double step = model.CoarsestStep(GetParam());
+    const auto parts = static_cast<std::int64_t>(std::llround(step / model.step_unit()));
+    ASSERT_GE(parts, 256);
+    const double worst = ErrorsOfRanges(parts, unit_mm, 20'000).largest;
     EXPECT_LE(worst, GetParam() + 1e-12);
-    EXPECT_NEAR(worst, model.MaxError(static_cast<double>(n) * unit), 1e-12);
-    EXPECT_EQ((n - 1) * unit_mm % 2, 0) << "the middle is a whole number of millimetres";
-    EXPECT_GT(model.MaxError(static_cast<double>(n) * unit + model.step_unit()), GetParam());
+    EXPECT_NEAR(worst, model.MaxError(step), 1e-12);
+    EXPECT_GT(model.MaxError(step + model.step_unit()), GetParam());
+    EXPECT_GT(ErrorsOfRanges(parts + 1, unit_mm, 200'000).largest, GetParam());
+  }
+}
+
+TEST(ResidualModel, KnowsTheErrorsOfStepsBetweenWholeUnits) {
+  for (const unsigned unit_mm : {1U, 2U, 3U, 8U}) {
+    const ResidualModel model = ResidualModel::Range(unit_mm);
+    for (const std::int64_t parts : {256, 300, 384, 511, 640, 1000, 1281, 5000}) {
+      const RangeErrors errors = ErrorsOfRanges(parts, unit_mm, 400'000);
+      const double step = static_cast<double>(parts) * model.step_unit();
+      EXPECT_NEAR(model.MaxError(step), errors.largest, 1e-12) << unit_mm << " mm, " << parts;
+      EXPECT_NEAR(model.MeanError(step), errors.mean, 0.01e-3) << unit_mm << " mm, " << parts;
+    }
   }
 }
 
