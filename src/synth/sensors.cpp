@@ -64,7 +64,7 @@ Sensor Build(const Family& family, std::uint32_t beams, std::uint32_t columns) {
 }  // namespace
 
 std::optional<Sensor> MakeSensor(std::string_view name, std::uint32_t columns) {
-  if (columns != 512 && columns != 1024 && columns != 2048) return std::nullopt;
+  if (columns != 512 && columns != 1024 && columns != 2048 && columns != 4096) return std::nullopt;
   for (const Family& family : kFamilies) {
     if (name.substr(0, 3) != family.name || name.substr(3, 1) != "-") continue;
     const std::string_view digits = name.substr(4);

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Latency, load, loss and recovery of ouster_src against ouster-replay, over loopback sockets.
 
-Run in `meson devenv -C build`; prints Markdown tables.
+Run in `meson devenv -C build`; prints Markdown tables. Fails where losses are not counted exactly.
 """
 import argparse
 import json
@@ -15,14 +15,15 @@ import threading
 import time
 import urllib.request
 
-PORTS = ["--lidar-port", "17502", "--imu-port", "17503"]
+PORT = 17502  # of the lidar packets; the IMU's is the next
 
 
 class Sensor:
     """ouster-replay as a child process."""
 
     def __init__(self, tool, *arguments):
-        self.process = subprocess.Popen([tool, "--http-port", "0", *PORTS, *arguments],
+        ports = ["--lidar-port", str(PORT), "--imu-port", str(PORT + 1)]
+        self.process = subprocess.Popen([tool, "--http-port", "0", *ports, *arguments],
                                         stdout=subprocess.PIPE, text=True)
         self.http = json.loads(self.process.stdout.readline())["http"]
         self.host = f"127.0.0.1:{self.http}"
@@ -48,7 +49,7 @@ class Receiver:
         flags = ["-m"] if debug else ["-m", "-v"]
         self.process = subprocess.Popen(
             ["gst-launch-1.0", *flags, "ouster_src", "name=s", f"hostname={host}", "udp-dest=@auto",
-             "lidar-port=17502", "imu-port=17503", "!", *sink],
+             f"lidar-port={PORT}", f"imu-port={PORT + 1}", "!", *sink],
             stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, env=environment)
         self.latencies = []
         self.buffers = []
@@ -85,6 +86,8 @@ def percentile(values, share):
 
 
 def load(tool, seconds, model, mode, speeds, loss):
+    """True where every loss was counted, no more and no less."""
+    exact = True
     with tempfile.TemporaryDirectory() as folder:
         pcap, metadata = f"{folder}/drive.pcap", f"{folder}/drive.json"
         subprocess.run([tool, "--synthesize", model, "--mode", mode, "--scans", "10",
@@ -107,10 +110,13 @@ def load(tool, seconds, model, mode, speeds, loss):
             after = sensor.request("/replay/stats")
             receiver.stop()
             sensor.stop()
+            dropped = after["lost"] - before["lost"] + receiver.kernel_drops
+            exact = exact and receiver.lost - lost_before == dropped
             print(f"| {model} {mode} | {speed:g} x | {sent / elapsed:.0f} | {100 * cpu / elapsed:.0f} % "
                   f"| {percentile(receiver.latencies, 0.5)} "
                   f"| {percentile(receiver.latencies, 0.99)} | {after['lost'] - before['lost']} "
                   f"| {receiver.kernel_drops} | {receiver.lost - lost_before} |", flush=True)
+    return exact
 
 
 def wait_for_buffer(receiver, since, limit=20):
@@ -168,8 +174,10 @@ def main():
     parser.add_argument("--loss", type=float, default=0.001, help="share of packets dropped")
     parser.add_argument("--model", default="os1-128")
     parser.add_argument("--modes", nargs="+", default=["2048x10", "1024x20"])
+    parser.add_argument("--port", type=int, default=PORT, help="of the lidar packets; the IMU's is the next")
     parser.add_argument("what", choices=["load", "recovery"])
     arguments = parser.parse_args()
+    globals()["PORT"] = arguments.port
     if arguments.what == "recovery":
         print("| fault | time counts from when | to the next slice |\n|---|---|---|")
         recovery(arguments.tool)
@@ -177,9 +185,10 @@ def main():
         print("| sensor | rate | packets/s | CPU of a core | latency p50 [us] | p99 [us] "
               "| packets dropped on request | by the kernel | counted as lost |\n"
               "|---|---|---|---|---|---|---|---|---|")
-        for mode in arguments.modes:
-            load(arguments.tool, arguments.seconds, arguments.model, mode, arguments.speeds,
-                 arguments.loss)
+        results = [load(arguments.tool, arguments.seconds, arguments.model, mode, arguments.speeds,
+                        arguments.loss) for mode in arguments.modes]
+        if not all(results):
+            sys.exit("losses were not counted exactly")
 
 
 if __name__ == "__main__":

@@ -14,18 +14,19 @@ namespace {
 using ouster::Channel;
 using ouster::Profile;
 
+constexpr auto kStandard = ouster::HeaderType::kStandard;
 constexpr const char* kModel = "os1-32";
-constexpr std::uint32_t kColumns = 512;
-
-synth::Returns Scan(bool second_returns) {
+synth::Returns Scan(const ouster::Metadata& metadata) {
+  const std::uint32_t columns = metadata.model.columns_per_scan;
   synth::ScannerConfig config;
-  config.sensor = *synth::MakeSensor(kModel, kColumns);
+  config.sensor = *synth::MakeSensor(kModel, columns);
+  config.period = metadata.scan_period();
   config.speed_mps = 12;
   config.seed = 1;
-  config.second_returns = second_returns;
+  config.second_returns = metadata.format.has_second_return();
   synth::Scanner scanner(config);
   synth::Returns returns;
-  scanner.Cast(0, {0, kColumns}, &returns);
+  scanner.Cast(0, {0, columns}, &returns);
   return returns;
 }
 
@@ -69,6 +70,7 @@ Points ReadBack(const ouster::Metadata& metadata, const SynthOptions& options) {
 struct Case {
   Profile profile;
   ouster::HeaderType header = ouster::HeaderType::kStandard;
+  const char* mode = "512x10";
 };
 class SynthProfiles : public ::testing::TestWithParam<Case> {};
 
@@ -76,10 +78,10 @@ TEST_P(SynthProfiles, CarryWhatTheScannerSaw) {
   SynthOptions options;
   options.model = kModel;
   const ouster::Metadata m =
-      MakeSynthMetadata(options, {"512x10", GetParam().profile, GetParam().header});
+      MakeSynthMetadata(options, {GetParam().mode, GetParam().profile, GetParam().header});
   const Points points = ReadBack(m, options);
   const bool dual = m.format.has_second_return();
-  const synth::Returns truth = Scan(dual);
+  const synth::Returns truth = Scan(m);
   const std::uint32_t unit = m.format.range_unit_mm();
   const bool has_signal = points.fields.Find("signal") != nullptr;
   std::size_t first = 0;
@@ -113,7 +115,10 @@ INSTANTIATE_TEST_SUITE_P(
                       Case{Profile::kRng19Rfl8Sig16Zone16Dual},
                       Case{Profile::kRng19Rfl8Sig16Nir16Rgb16},
                       Case{Profile::kRng19Rfl8Sig16Nir16Rgb16Dual}, Case{Profile::kFiveWordPixel},
-                      Case{Profile::kRng19Rfl8Sig16Nir16, ouster::HeaderType::kFusa}));
+                      Case{Profile::kRng19Rfl8Sig16Nir16, ouster::HeaderType::kFusa},
+                      Case{Profile::kRng15Rfl8Nir8, kStandard, "1024x20"},
+                      Case{Profile::kLegacy, kStandard, "2048x10"},
+                      Case{Profile::kRng19Rfl8Sig16Nir16Dual, kStandard, "4096x5"}));
 
 }  // namespace
 }  // namespace lidar::tools

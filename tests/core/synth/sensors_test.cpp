@@ -28,7 +28,7 @@ TEST_P(Sensors, LookDownFromTopToBottomOverTheFieldOfViewOfTheDataSheet) {
 }
 
 TEST_P(Sensors, StandInOneLineOnceDestaggered) {
-  for (const std::uint32_t columns : {512U, 1024U, 2048U}) {
+  for (const std::uint32_t columns : {512U, 1024U, 2048U, 4096U}) {
     const auto sensor = MakeSensor(GetParam().name, columns);
     for (const Beam& b : sensor->model.beams)
       EXPECT_NEAR(b.azimuth_deg * columns / 360, b.pixel_shift, 0.5);
