@@ -193,6 +193,7 @@ void FaultLink::OnMedia(Datagram datagram) {
     held_.reset();
   }
   if (lost) return;
+  if ((datagram.tos & 3) != 0 && fault.mark > 0 && Chance(fault.mark)) datagram.tos |= 3;
   if (fault.reorder_by > 0 && !held_ && --until_hold_ == 0) {
     until_hold_ = 50;
     held_.emplace(std::move(datagram), fault.reorder_by - 1);

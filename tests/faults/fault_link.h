@@ -28,6 +28,7 @@ struct Fault {
   double damage = 0;           // part of the media packets that get a wrong bit
   unsigned garbage_ratio = 0;  // packets of garbage for each media packet
   bool valid_garbage = false;  // garbage that looks like RTP of our payload type
+  double mark = 0;             // part of the media packets that get CE, where they have ECT
   bool down = false;           // nothing passes either way
 };
 

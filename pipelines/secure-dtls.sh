@@ -1,0 +1,67 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: LGPL-2.1-or-later
+# A LiDAR stream over DTLS-SRTP on loopback: both ends show a certificate, and trust one of the other only.
+set -euo pipefail
+source "$(dirname "$0")/environment.sh"
+seconds=${1:-5}
+port=${PORT:-5064}
+back=$((port + 2))
+launch=$build/src/tools/lidar-dtls-launch
+
+for element in dtlssrtpenc srtpenc; do
+  gst-inspect-1.0 --exists $element || { echo "Install gstreamer1.0-plugins-bad: it has $element." >&2; exit 1; }
+done
+folder=$(mktemp -d)
+trap 'kill $receiver 2>/dev/null || true; rm -rf "$folder"' EXIT
+
+# certificate NAME: a key and a certificate that signs itself. Each end gets only the certificate of the other.
+certificate() {
+  openssl req -x509 -newkey rsa:2048 -nodes -days 365 -subj "/CN=$1" -keyout "$folder/key" -out "$folder/$1.crt" 2>/dev/null
+  (umask 077; cat "$folder/$1.crt" "$folder/key" >"$folder/$1.pem")
+}
+for name in robot edge stranger; do certificate $name; done
+
+media=media=application,clock-rate=90000,encoding-name=X-LIDAR-DRACO,payload=96
+# The first capssetter gives dtlssrtpdec buffers of its own, as srtpdec works in place; the second says what the RTP holds.
+receive() {
+  exec "$launch" --certificate "$folder/edge.pem" --peer-certificate "$folder/robot.crt" --stats rx,depay \
+    ecnudpsrc port="$port" caps=application/x-srtp ! capssetter caps=application/x-srtp ! dtlssrtpdec name=dec connection-id=edge \
+    dec.rtp_src ! capssetter caps=application/x-rtp,$media ! screamrx name=rx ! rtplidardepay name=depay ! dracodec ! \
+    fakesink sync=false async=false \
+    rx.rtcp_src ! enc.rtcp_sink_0 dtlssrtpenc name=enc connection-id=edge ! ecnudpsink host=127.0.0.1 port="$back" sync=false async=false
+}
+# send CERTIFICATE SECONDS. packet-overhead: 28 bytes of UDP and IP, 10 of SRTP.
+send() {
+  timeout --signal=INT "$2" "$launch" --certificate "$folder/$1.pem" --peer-certificate "$folder/edge.crt" --stats tx \
+    lidartestsrc is-live=true model=os0-32 mode=512x10 ! dracoenc max-error=0.05 ! rtplidarpay ! \
+    screamtx name=tx packet-overhead=38 ! \
+    enc.rtp_sink_0 dtlssrtpenc name=enc connection-id=robot is-client=true ! ecnudpsink host=127.0.0.1 port="$port" sync=false async=false \
+    ecnudpsrc port="$back" caps=application/x-srtcp ! capssetter caps=application/x-srtcp ! \
+    dtlssrtpdec name=dec connection-id=robot dec.rtcp_src ! tx.rtcp_sink
+}
+# count FILE NAME: a number of the statistics in it
+count() { grep -oE "[ ,]$2=\(guint64\)[0-9]+" "$1" | grep -oE '[0-9]+$'; }
+
+receive >"$folder/received" & receiver=$!
+sleep 1
+send robot "$seconds" >"$folder/sent" || [ $? = 124 ]
+sleep 0.5
+kill -INT $receiver
+wait $receiver
+slices=$(count "$folder/received" slices-received)
+lost=$(count "$folder/received" slices-lost)
+reports=$(count "$folder/sent" feedback-accepted)
+echo "over DTLS-SRTP: $slices slices, $lost lost, $reports reports of feedback; $(grep -o 'ecn-state=(string)[a-z-]*' "$folder/sent")"
+# The handshake takes a second.
+[ "$slices" -gt $((seconds * 60 - 60)) ]
+[ "$lost" = 0 ]
+[ "$reports" -gt $((seconds * 20)) ]
+grep -q 'ecn-state=(string)capable' "$folder/sent"
+
+receive >"$folder/refused" 2>&1 & receiver=$!
+sleep 1
+send stranger 2 >/dev/null 2>&1 || true
+status=0
+wait $receiver || status=$?
+echo "a stranger's certificate: $(cat "$folder/refused")"
+[ $status = 3 ]

@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// The stock DTLS-SRTP elements around screamtx and screamrx, as in pipelines/secure-dtls.sh.
+#include <gtest/gtest.h>
+
+#include <thread>
+
+#include "ends.h"
+#include "fault_link.h"
+
+namespace lidar::test {
+namespace {
+
+using std::chrono::milliseconds;
+using std::chrono::seconds;
+
+/// Each end makes a certificate for itself; here nobody looks at that of the other.
+struct DtlsPath {
+  DtlsPath()
+      : port(FreePort()),
+        back(FreePort()),
+        link(port),
+        receiver("ecnudpsrc caps=application/x-srtp port=" + std::to_string(port) +
+                 " ! capssetter caps=application/x-srtp ! dtlssrtpdec name=dec connection-id=edge "
+                 "dec.rtp_src ! capssetter caps=application/x-rtp,media=application,"
+                 "clock-rate=90000,encoding-name=X-LIDAR-DRACO,payload=96 ! screamrx name=rx ! "
+                 "rtplidardepay name=depay ! dracodec ! fakesink sync=false async=false "
+                 "rx.rtcp_src ! enc.rtcp_sink_0 dtlssrtpenc name=enc connection-id=edge ! "
+                 "ecnudpsink host=127.0.0.1 sync=false async=false port=" +
+                 std::to_string(back)),
+        sender(
+            "lidartestsrc is-live=true model=os0-32 mode=512x10 ! dracoenc max-error=0.05 ! "
+            "rtplidarpay ! screamtx name=tx packet-overhead=38 ! enc.rtp_sink_0 "
+            "dtlssrtpenc name=enc connection-id=robot is-client=true ! ecnudpsink "
+            "host=127.0.0.1 sync=false async=false port=" +
+            std::to_string(link.port()) +
+            " ecnudpsrc caps=application/x-srtcp port=" + std::to_string(back) +
+            " ! capssetter caps=application/x-srtcp ! dtlssrtpdec name=dec connection-id=robot "
+            "dec.rtcp_src ! tx.rtcp_sink") {
+    receiver.SetState(GST_STATE_PLAYING);
+    sender.SetState(GST_STATE_PLAYING);
+  }
+  std::uint16_t port;
+  std::uint16_t back;
+  FaultLink link;
+  Pipeline receiver;
+  Pipeline sender;
+};
+
+TEST(Dtls, ShowsTheMarksOfTheNetworkToTheCongestionControl) {
+  DtlsPath path;
+  std::this_thread::sleep_for(seconds(2));
+  EXPECT_EQ(path.receiver.Stat("rx", "packets-ce"), 0U);
+  Fault marks;
+  marks.mark = 0.5;
+  path.link.Set(marks);
+  std::this_thread::sleep_for(seconds(3));
+  path.link.Set({});
+  std::this_thread::sleep_for(milliseconds(500));
+  const auto marked = path.receiver.Stat("rx", "packets-ce");
+  EXPECT_GT(marked, 100U);
+  // The reports come back protected, and tell the sender of every mark.
+  EXPECT_GT(path.sender.Stat("tx", "feedback-accepted"), 100U);
+  EXPECT_EQ(path.sender.Stat("tx", "packets-ce"), marked);
+  // The link sees packets, but no slices in them; none is missing.
+  EXPECT_LT(path.link.counts().slices, 3U);
+  EXPECT_GT(path.receiver.Stat("depay", "slices-received"), 200U);
+  EXPECT_EQ(path.receiver.Stat("depay", "slices-damaged"), 0U);
+  EXPECT_EQ(path.sender.Error() + path.receiver.Error(), "");
+}
+
+TEST(Dtls, ShowsNothingThatIsNotOfThePeerOrWasThereBefore) {
+  DtlsPath path;
+  std::this_thread::sleep_for(seconds(2));
+  const auto before = path.receiver.Stat("depay", "slices-received");
+  Fault garbage;
+  garbage.garbage_ratio = 5;
+  garbage.valid_garbage = true;
+  garbage.duplicate = 0.5;
+  path.link.Set(garbage);
+  std::this_thread::sleep_for(seconds(2));
+  path.link.Set({});
+  std::this_thread::sleep_for(milliseconds(300));
+  EXPECT_GT(path.receiver.Stat("depay", "slices-received"), before + 100);
+  EXPECT_EQ(path.receiver.Stat("depay", "slices-lost"), 0U);
+  EXPECT_EQ(path.receiver.Stat("depay", "packets-invalid"), 0U);
+  EXPECT_EQ(path.receiver.Stat("depay", "packets-duplicate"), 0U);
+  EXPECT_EQ(path.receiver.Error(), "");
+}
+
+}  // namespace
+}  // namespace lidar::test
