@@ -13,7 +13,8 @@ build_all() {
   [ -f "$build/build.ninja" ] || { say "configuring (log: $log)"; meson setup "$build" "$root" >"$log" 2>&1; } ||
     { tail -20 "$log" >&2; exit 1; }
   say "building"
-  ninja -C "$build" >"$log" 2>&1 || { grep -A8 -E 'FAILED|error:' "$log" | head -40 >&2; exit 1; }
+  if [ -t 2 ]; then ninja -C "$build" demo >&2; return; fi  # a terminal shows ninja's progress
+  ninja -C "$build" demo >"$log" 2>&1 || { grep -A8 -E 'FAILED|error:' "$log" | head -40 >&2; exit 1; }
 }
 
 usage() {
