@@ -20,7 +20,7 @@ done
 [ "$minutes" -gt 0 ] || { echo "Say how long: --hours N or --minutes N." >&2; exit 2; }
 
 [ -f "$build/build.ninja" ] || meson setup "$build" "$root" >"$build.log" 2>&1
-ninja -C "$build" >"$build.log" 2>&1 || { tail -20 "$build.log" >&2; exit 1; }
+ninja -C "$build" endurance >"$build.log" 2>&1 || { tail -20 "$build.log" >&2; exit 1; }
 plugins=$(find "$build/gst" "$build/ext" -name 'libgst*.so' -printf '%h\n' | sort -u | paste -sd:)
 export GST_PLUGIN_PATH_1_0=$plugins GST_REGISTRY=$build/soak-registry.bin
 exec "$build/tests/faults/soak" "$minutes" "$seed"
