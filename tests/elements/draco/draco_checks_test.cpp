@@ -2,83 +2,18 @@
 // What dracoenc says about its own errors, and about clouds that contradict themselves.
 #include <gtest/gtest.h>
 
-#include <deque>
 #include <numeric>
 
+#include "checked_codec.h"
 #include "draco/enc_error_check.h"
-#include "draco_harness.h"
 
 namespace lidar::gst {
 namespace {
-
-constexpr const char* kMessage = "dracoenc-error-check";
-
-/// dracoenc and dracodec with a bus.
-class CheckedCodec {
- public:
-  explicit CheckedCodec(const std::string& properties) : harness_(Codec(properties)) {
-    gst_element_set_bus(harness_->element, bus_.get());
-  }
-  ~CheckedCodec() { gst_element_set_bus(harness_->element, nullptr); }
-  CheckedCodec(const CheckedCodec&) = delete;
-  CheckedCodec& operator=(const CheckedCodec&) = delete;
-
-  void SetCaps(const CloudInfo& info) {
-    const CapsPtr caps(info.ToCaps());
-    gst_harness_set_src_caps(harness_.get(), gst_caps_ref(caps.get()));
-  }
-  /// Takes `buffer`, gives the decoded cloud.
-  BufferPtr Push(GstBuffer* buffer) {
-    EXPECT_EQ(gst_harness_push(harness_.get(), buffer), GST_FLOW_OK);
-    return BufferPtr(gst_harness_try_pull(harness_.get()));
-  }
-  /// The oldest check that was posted and not popped; null where there is none.
-  StructurePtr PopCheck() {
-    Drain();
-    if (checks_.empty()) return nullptr;
-    StructurePtr check = std::move(checks_.front());
-    checks_.pop_front();
-    return check;
-  }
-  /// So far.
-  unsigned Warnings() {
-    Drain();
-    return warnings_;
-  }
-  StructurePtr Stats() const {
-    const ElementPtr enc(gst_bin_get_by_name(GST_BIN(harness_->element), "enc"));
-    return StructurePtr(StatsOf(enc.get()));
-  }
-
- private:
-  void Drain() {
-    while (const MessagePtr message{gst_bus_pop(bus_.get())}) {
-      const GstStructure* s = gst_message_get_structure(message.get());
-      if (GST_MESSAGE_TYPE(message.get()) == GST_MESSAGE_WARNING) ++warnings_;
-      if (s != nullptr && gst_structure_has_name(s, kMessage))
-        checks_.emplace_back(gst_structure_copy(s));
-    }
-  }
-
-  struct UnrefBus {
-    void operator()(GstBus* bus) const { gst_object_unref(bus); }
-  };
-  std::unique_ptr<GstBus, UnrefBus> bus_{gst_bus_new()};
-  Harness harness_;
-  std::deque<StructurePtr> checks_;
-  unsigned warnings_ = 0;
-};
 
 double Number(const GstStructure* s, const char* name) {
   double value = -1;
   EXPECT_TRUE(gst_structure_get_double(s, name, &value)) << name;
   return value;
-}
-
-bool Holds(const GstStructure* s) {
-  gboolean holds = FALSE;
-  EXPECT_TRUE(gst_structure_get_boolean(s, "holds", &holds));
-  return holds != FALSE;
 }
 
 /// Distances between points at the same place, of those that are not all zero.

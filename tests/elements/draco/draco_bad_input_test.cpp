@@ -1,0 +1,187 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// The table "Odd input" of docs/elements/dracoenc.md, in both geometries.
+#include <glib/gstdio.h>
+#include <gtest/gtest.h>
+
+#include <functional>
+#include <limits>
+#include <tuple>
+
+#include "checked_codec.h"
+#include "rate/model_file.h"
+
+namespace lidar::gst {
+namespace {
+
+constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
+constexpr float kInfinity = std::numeric_limits<float>::infinity();
+constexpr guint kColumns = 64;
+constexpr std::size_t kStep = 20;  // bytes a point: x, y, z, intensity, range
+
+struct CloudCase {
+  const char* name;
+  std::function<void(codec::RangeImage*)> ranges;         // before they become points
+  std::function<void(std::vector<std::uint8_t>*)> spoil;  // the points
+  bool some_in_xyz = true;                                // else the slice is a gap there
+};
+void PrintTo(const CloudCase& c, std::ostream* out) { *out << c.name; }
+
+void SetFloat(std::vector<std::uint8_t>* raw, std::size_t point, std::size_t offset, float value) {
+  std::memcpy(raw->data() + point * kStep + offset, &value, sizeof value);
+}
+
+const CloudCase kClouds[] = {
+    {"Nan", [](auto*) {},
+     [](auto* raw) {
+       for (std::size_t i = 0; i < 300; i += 3) SetFloat(raw, i, 4 * (i / 3 % 3), kNan);
+     }},
+    {"Infinity", [](auto*) {},
+     [](auto* raw) {
+       for (std::size_t i = 0; i < 300; i += 3)
+         SetFloat(raw, i, 4 * (i / 3 % 3), i % 2 == 0 ? kInfinity : -kInfinity);
+     }},
+    {"NanIntensity", [](auto*) {},
+     [](auto* raw) {
+       for (std::size_t i = 0; i < 300; i += 3)
+         SetFloat(raw, i, 12, i % 2 == 0 ? kNan : -kInfinity);
+     }},
+    {"NothingButZeros",
+     [](auto* image) { std::fill(image->ranges.begin(), image->ranges.end(), 0U); }, [](auto*) {},
+     false},
+    {"ASingleReturn",
+     [](auto* image) {
+       std::fill(image->ranges.begin(), image->ranges.end(), 0U);
+       image->ranges[777] = 5'000;
+     },
+     [](auto*) {}},
+    {"AReturnAtTenKilometres", [](auto* image) { image->ranges[777] = 10'000'000; }, [](auto*) {}},
+    {"Duplicates",
+     [](auto* image) { std::fill(image->ranges.begin(), image->ranges.end(), 5'000U); },
+     [](auto* raw) {
+       // In xyz all points are one.
+       for (std::size_t i = 1; i < raw->size() / kStep; ++i)
+         std::memcpy(raw->data() + i * kStep, raw->data(), 12);
+     }},
+};
+
+class BadClouds : public ::testing::TestWithParam<std::tuple<CloudCase, const char*>> {};
+
+TEST_P(BadClouds, GiveFinitePointsWithinTheErrorAndNeverStopTheStream) {
+  const auto& [bad, geometry] = GetParam();
+  const bool xyz = std::string(geometry) == "xyz";
+  const SensorModel model = test::RoomSensor();
+  CheckedCodec codec(std::string("error-check=1 geometry=") + geometry);
+  codec.SetCaps(OrganisedInfo(model, kColumns));
+  auto image = test::RoomScan(model, 0, kColumns);
+  bad.ranges(&image);
+  auto raw = test::RawCloud(model, image);
+  bad.spoil(&raw);
+  const BufferPtr output = codec.Push(gst_buffer_new_memdup(raw.data(), raw.size()));
+  ASSERT_EQ(output != nullptr, !xyz || bad.some_in_xyz);
+  if (output) {
+    const StructurePtr check = codec.PopCheck();
+    ASSERT_TRUE(check);
+    const bool moved =
+        std::string(bad.name) == "Duplicates" && !xyz;  // points without their ranges
+    EXPECT_EQ(Holds(check.get()), !moved);
+    for (const float v : PointsOf(output.get(), kStep - (xyz ? 4 : 0)))
+      ASSERT_TRUE(std::isfinite(v));
+  }
+  // The next slice is as good as ever.
+  EXPECT_TRUE(codec.Push(OrganisedBuffer(model, kColumns, {9, 1, 8, 64})));
+  EXPECT_TRUE(Holds(codec.PopCheck().get()));
+  EXPECT_EQ(codec.Errors(), 0U);
+}
+INSTANTIATE_TEST_SUITE_P(All, BadClouds,
+                         ::testing::Combine(::testing::ValuesIn(kClouds),
+                                            ::testing::Values("range", "xyz")),
+                         [](const auto& c) {
+                           return std::string(std::get<0>(c.param).name) + "_" +
+                                  std::get<1>(c.param);
+                         });
+
+class EitherGeometry : public ::testing::TestWithParam<const char*> {
+ protected:
+  static std::string Geometry() { return std::string(" geometry=") + GetParam(); }
+};
+INSTANTIATE_TEST_SUITE_P(All, EitherGeometry, ::testing::Values("range", "xyz"));
+
+TEST_P(EitherGeometry, PassesOverABufferWithoutAnyPoint) {
+  const SensorModel model = test::RoomSensor();
+  CloudInfo info = OrganisedInfo(model, 0);  // of any width
+  CheckedCodec codec(Geometry());
+  codec.SetCaps(info);
+  GstBuffer* empty = gst_buffer_new();
+  GST_BUFFER_PTS(empty) = 0;
+  EXPECT_FALSE(codec.Push(empty));
+  EXPECT_TRUE(codec.Push(OrganisedBuffer(model, kColumns, {9, 1, 8, 64})));
+  EXPECT_EQ(codec.Errors(), 0U);
+}
+
+TEST_P(EitherGeometry, KeepsTheErrorWhateverTheStepAndTheBitrate) {
+  const SensorModel model = test::RoomSensor();
+  for (const char* settings :
+       {"quantization-step=0", "quantization-step=1e-7", "quantization-step=1000", "bitrate=1",
+        "bitrate=4000000000", "rate-model=paper bitrate=500000", "intensity-bits=0",
+        "degradation-preference=maintain-framerate bitrate=1"}) {
+    CheckedCodec codec("error-check=1 " + std::string(settings) + Geometry());
+    codec.SetCaps(OrganisedInfo(model, kColumns));
+    unsigned checked = 0;
+    for (guint i = 0; i < 24; ++i) {
+      codec.Push(OrganisedBuffer(model, kColumns, {i / 8, i % 8, 8, 64 * (i % 8)}));
+      while (const StructurePtr check = codec.PopCheck()) {
+        EXPECT_TRUE(Holds(check.get())) << settings;
+        ++checked;
+      }
+    }
+    EXPECT_GE(checked, 8U) << settings;  // the first scan is always sent
+    EXPECT_EQ(codec.Warnings() + codec.Errors(), 0U) << settings;
+  }
+}
+
+/// The error on the bus when dracoenc gets caps with `text` as its model file.
+std::string ErrorWithModelFile(const std::string& text, const std::string& options) {
+  gchar* name = nullptr;
+  g_close(g_file_open_tmp("model-XXXXXX.json", &name, nullptr), nullptr);
+  const StringPtr owned(name);
+  g_file_set_contents(name, text.c_str(), static_cast<gssize>(text.size()), nullptr);
+  const Harness h(
+      gst_harness_new_parse(("dracoenc model-location=" + std::string(name) + options).c_str()));
+  GstBus* bus = gst_bus_new();
+  gst_element_set_bus(h->element, bus);
+  gst_harness_play(h.get());
+  gst_harness_push_event(h.get(), gst_event_new_stream_start("model"));
+  const CapsPtr caps(OrganisedInfo(test::RoomSensor(), kColumns).ToCaps());
+  gst_harness_push_event(h.get(), gst_event_new_caps(caps.get()));
+  std::string result;
+  if (const MessagePtr message{gst_bus_pop_filtered(bus, GST_MESSAGE_ERROR)}) {
+    GError* error = nullptr;
+    gchar* debug = nullptr;
+    gst_message_parse_error(message.get(), &error, &debug);
+    const ErrorPtr owned_error(error);
+    const StringPtr owned_debug(debug);
+    result = std::string(error->message) + " " + (debug != nullptr ? debug : "");
+  }
+  gst_element_set_bus(h->element, nullptr);
+  gst_object_unref(bus);
+  g_remove(name);
+  return result;
+}
+
+TEST_P(EitherGeometry, RefusesAModelFileThatIsTruncatedForeignOrFromTheFuture) {
+  const std::string good =
+      R"({"format": "gst-lidar-rate-model", "version": 1, "adaptive": {"modes": {},
+    "fallback": {"step": [9, -0.5, 0, 0], "log2-step-range": [-3, 5], "returns": 1,
+                 "intensity": [6, 1.5], "intensity-returns": 1}}})";
+  const auto error = [&](const std::string& text) { return ErrorWithModelFile(text, Geometry()); };
+  EXPECT_EQ(error(good), "");
+  EXPECT_NE(error(good.substr(0, good.size() / 2)).find("cut off"), std::string::npos);
+  EXPECT_NE(error(R"({"format": "recipe", "version": 1})").find("format"), std::string::npos);
+  std::string future = good;
+  future.replace(future.find("\"version\": 1"), 12, "\"version\": 9");
+  EXPECT_NE(error(future).find("version"), std::string::npos) << error(future);
+  EXPECT_NE(ErrorWithModelFile("", Geometry()), "");
+}
+
+}  // namespace
+}  // namespace lidar::gst
