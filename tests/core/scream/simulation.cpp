@@ -113,7 +113,9 @@ class Flow {
     next_frame_ = since_start + period > config_.stop_after ? Time::max() : next_frame_ + period;
     double scale = 1 + config_.frame_jitter * (2 * random_.Uniform() - 1);
     if (config_.obedience) scale *= config_.obedience(since_start);
-    std::int64_t left = (controller_.target_bitrate(stream_) * scale * period).bytes();
+    const DataRate target = controller_.target_bitrate(stream_);
+    std::int64_t left =
+        config_.encoder ? config_.encoder(target).bytes() : (target * scale * period).bytes();
     const auto frame = static_cast<std::int64_t>(created_.size());
     created_.push_back(now);
     ++result_.frames_sent;

@@ -22,6 +22,8 @@ struct FlowConfig {
   bool drop_late = true;
   /// Scales what the encoder puts out against its target, over time since the flow's start.
   std::function<double(Duration)> obedience;
+  /// In place of both: the size of the next frame for a target.
+  std::function<DataSize(DataRate)> encoder;
   /// The receiver forgets everything, and its clock has another epoch.
   Duration receiver_restart = Duration::max();
   /// The machine stops for up to this, on average so often; packets still arrive.
