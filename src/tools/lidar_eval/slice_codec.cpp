@@ -13,6 +13,9 @@
 namespace lidar::tools {
 namespace {
 
+// The step is what counts; the bound leaves room for the rounding of floats far out.
+constexpr double kRoomForRounding = 1e-3;
+
 double Distance(const float* a, const float* b) {
   double sum = 0;
   for (int k = 0; k < 3; ++k) {
@@ -137,14 +140,41 @@ rate::ResidualModel SliceCodec::Residual(const CodingMode& mode) const {
   return rate::ResidualModel::Range(geometry_->model.range_unit_mm);
 }
 
+/// With the coder that the mode names, where dracoenc would take the smaller one.
+bool SliceCodec::EncodeXyz(const CodingMode& mode, const rate::Settings& settings,
+                           double keep_fraction) {
+  codec::XyzCloud all;
+  codec::ReadXyz({raw_.data(), raw_.size()}, format_.layout, true, &all);
+  codec::XyzCloud cloud;
+  const auto kept = rate::ThinningPattern(all.size(), keep_fraction);
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    if (!kept[i]) continue;
+    cloud.xyz.insert(cloud.xyz.end(), &all.xyz[3 * i], &all.xyz[3 * i] + 3);
+    cloud.intensity.push_back(all.intensity[i]);
+  }
+  codec::XyzSettings xyz;
+  xyz.max_error_m = settings.step_m + kRoomForRounding;
+  xyz.step_m = settings.step_m;
+  xyz.level = static_cast<int>(mode.level);
+  xyz.method = mode.level == 0 ? codec::XyzMethod::kSequential : codec::XyzMethod::kKdTree;
+  xyz.intensity_bits = settings.intensity_bits;
+  codec::XyzResult result;
+  encoded_ = {};
+  if (!codec::EncodeXyz(cloud, xyz, &encoded_.bytes, &result)) return false;
+  encoded_.returns = cloud.size();
+  encoded_.step_m = result.step_m;
+  encoded_.error_m = result.error_m;
+  return true;
+}
+
 bool SliceCodec::EncodeBytes(const CodingMode& mode, const rate::Settings& settings,
                              double keep_fraction) {
   if (returns_ == 0) return false;
+  if (mode.geometry == rate::Geometry::kXyz) return EncodeXyz(mode, settings, keep_fraction);
   codec::SliceEncoder& encoder = EncoderFor(mode);
   codec::SliceSettings slice;
   slice.step_m = settings.step_m;
-  // The step is what counts; the bound leaves room for the rounding of floats far out.
-  slice.max_error_m = settings.step_m + 1e-3;
+  slice.max_error_m = settings.step_m + kRoomForRounding;
   slice.intensity_bits = settings.intensity_bits;
   slice.level = mode.level;
   if (keep_fraction < 1) {

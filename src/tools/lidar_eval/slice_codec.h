@@ -59,6 +59,7 @@ class SliceCodec {
   void SetFormat(const Scan& scan);
   void AppendPoint(const float* xyz, float intensity, std::uint32_t range_mm);
   codec::SliceEncoder& EncoderFor(const CodingMode& mode);
+  bool EncodeXyz(const CodingMode& mode, const rate::Settings& settings, double keep_fraction);
   bool EncodeBytes(const CodingMode& mode, const rate::Settings& settings, double keep_fraction);
 
   std::shared_ptr<const ScanGeometry> geometry_;
