@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include "rate/demand_table.h"
 
+#include <algorithm>
+#include <limits>
+
 namespace lidar::rate {
 
 Demand& Demand::operator+=(const Demand& o) {
@@ -44,6 +47,22 @@ Demand DemandTable::Sum(std::uint32_t first) const {
     sum += all;
   }
   return sum;
+}
+
+double DemandTable::EvenShare(std::uint32_t first, double surplus) const {
+  std::vector<double> rooms;
+  for (std::size_t i = first; i < slices_.size(); ++i) {
+    constexpr double kUnknown = std::numeric_limits<double>::infinity();
+    rooms.push_back(slices_[i] ? slices_[i]->finest - slices_[i]->coarsest : kUnknown);
+  }
+  std::sort(rooms.begin(), rooms.end());
+  for (auto room = rooms.begin(); room != rooms.end(); ++room) {
+    const double share = surplus / static_cast<double>(rooms.end() - room);
+    if (*room >= share) return share;
+    surplus -= *room;
+  }
+  // More than all can take.
+  return rooms.empty() ? surplus : rooms.back() + surplus / static_cast<double>(rooms.size());
 }
 
 }  // namespace lidar::rate

@@ -28,6 +28,10 @@ class DemandTable {
   /// Sum over the slices from `first` to the end of the scan. A slice not seen yet counts as the
   /// mean of the others.
   Demand Sum(std::uint32_t first = 0) const;
+  /// Divides `surplus` bytes among the slices from `first` to the end of the scan: each gets the
+  /// same, but no more than lies between its coarsest and its finest step. One not seen yet takes
+  /// anything.
+  double EvenShare(std::uint32_t first, double surplus) const;
   bool empty() const { return seen_ == 0; }
 
  private:

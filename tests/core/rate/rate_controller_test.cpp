@@ -227,6 +227,32 @@ TEST_P(Tracking, LowersTheIntensityBeforeItSkips) {
   EXPECT_GE(bits, 4U);
 }
 
+TEST(RateController, SpendsWhatSlicesWithoutReturnsLeave) {
+  SyntheticCodec::Parameters p;
+  p.noise = 0;
+  p.drift = 0;
+  Stream run(p);
+  for (std::uint32_t scan = 0; scan < 20; ++scan) {
+    run.controller.SetTarget(DataRate::BitsPerSecond(2e6));
+    double bytes = 0;
+    for (std::uint32_t i = 0; i < 8; ++i) {
+      SliceFeatures f = run.codec.Features(scan, i);
+      const bool in_window = i >= 2 && i < 5;
+      if (!in_window) f.returns = 0;
+      const Decision d = run.controller.NextSlice(f);
+      if (!in_window) continue;
+      EncodedSlice encoded = run.codec.Encode(f, d.settings);
+      if (const auto again = run.controller.OnEncoded(encoded)) {
+        encoded = run.codec.Encode(f, *again);
+        run.controller.OnEncoded(encoded);
+      }
+      bytes += static_cast<double>(encoded.size.bytes());
+    }
+    if (scan < 3) continue;
+    EXPECT_NEAR(bytes / 25'000, 1, 0.02) << scan;
+  }
+}
+
 INSTANTIATE_TEST_SUITE_P(Slices, Tracking, ::testing::Values(1U, 2U, 8U, 16U));
 
 }  // namespace

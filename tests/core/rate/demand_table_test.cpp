@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "rate/demand_table.h"
+
+#include <gtest/gtest.h>
+
+namespace lidar::rate {
+namespace {
+
+/// A scan of slices that can take 10, 20 and 60 bytes more than they need.
+DemandTable Table() {
+  DemandTable table;
+  std::uint32_t i = 0;
+  for (const double room : {10.0, 20.0, 60.0}) table.Set(i++, 3, {5, 5 + room, {}});
+  return table;
+}
+
+TEST(DemandTable, SharesASurplusEvenly) {
+  EXPECT_DOUBLE_EQ(Table().EvenShare(0, 24), 8);
+  EXPECT_DOUBLE_EQ(Table().EvenShare(1, 24), 12);
+  EXPECT_DOUBLE_EQ(Table().EvenShare(0, -30), -10);
+}
+
+TEST(DemandTable, GivesOthersWhatASliceCannotUse) {
+  EXPECT_DOUBLE_EQ(Table().EvenShare(0, 40), 15);  // 10, 15, 15
+  EXPECT_DOUBLE_EQ(Table().EvenShare(0, 70), 40);  // 10, 20, 40
+  EXPECT_DOUBLE_EQ(Table().EvenShare(1, 70), 50);  // 20, 50
+}
+
+TEST(DemandTable, GivesAllThatItCanTakeToEverySliceWhereThereIsMore) {
+  EXPECT_GE(Table().EvenShare(0, 91), 60);
+  EXPECT_GE(Table().EvenShare(1, 1e9), 60);
+}
+
+TEST(DemandTable, LetsASliceThatItDoesNotKnowTakeAnything) {
+  DemandTable table;
+  table.Set(0, 2, {5, 15, {}});
+  EXPECT_DOUBLE_EQ(table.EvenShare(0, 1000), 990);
+}
+
+}  // namespace
+}  // namespace lidar::rate
