@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include "imu_pad.h"
 
+#include <gst/base/gstbasesrc.h>
+
 #include <algorithm>
 
 #include "base/byte_writer.h"
@@ -38,24 +40,56 @@ GstCaps* MakeCaps(const ouster::Metadata& metadata) {
   return caps;
 }
 
+/// The base class ends the clouds for reasons of its own (num-buffers, EOS sent to the element).
+GstPadProbeReturn EndWithClouds(GstPad*, GstPadProbeInfo* info, gpointer imu) {
+  if (GST_EVENT_TYPE(GST_PAD_PROBE_INFO_EVENT(info)) == GST_EVENT_EOS)
+    gst_pad_push_event(GST_PAD(imu), gst_event_new_eos());
+  return GST_PAD_PROBE_OK;
+}
+
+/// Of the group of streams that the clouds are in.
+GstEvent* StreamStart(GstPad* imu, GstElement* element, GstPad* clouds) {
+  const StringPtr id(gst_pad_create_stream_id(imu, element, "imu"));
+  GstEvent* event = gst_event_new_stream_start(id.get());
+  const EventPtr start(gst_pad_get_sticky_event(clouds, GST_EVENT_STREAM_START, 0));
+  guint group = 0;
+  if (start && gst_event_parse_group_id(start.get(), &group)) gst_event_set_group_id(event, group);
+  return event;
+}
+
 }  // namespace
 
 ImuPad::~ImuPad() {
   if (pad_ == nullptr) return;
+  gst_pad_remove_probe(GST_BASE_SRC_PAD(element_), end_of_clouds_);
   gst_pad_set_active(pad_, FALSE);
   gst_element_remove_pad(element_, pad_);
 }
 
-void ImuPad::AddPad(const ouster::Metadata& metadata) {
+void ImuPad::AddPad() {
   GstPadTemplate* pad_template =
       gst_element_class_get_pad_template(GST_ELEMENT_GET_CLASS(element_), "imu");
+  GstPad* clouds = GST_BASE_SRC_PAD(element_);
   pad_ = gst_pad_new_from_template(pad_template, "imu");
   gst_pad_use_fixed_caps(pad_);
   gst_pad_set_active(pad_, TRUE);
-  const StringPtr id(gst_pad_create_stream_id(pad_, element_, "imu"));
-  gst_pad_push_event(pad_, gst_event_new_stream_start(id.get()));
+  gst_pad_push_event(pad_, StreamStart(pad_, element_, clouds));
+  end_of_clouds_ = gst_pad_add_probe(clouds, GST_PAD_PROBE_TYPE_EVENT_DOWNSTREAM, EndWithClouds,
+                                     gst_object_ref(pad_), gst_object_unref);
+}
+
+void ImuPad::SetCaps(const ouster::Metadata& metadata) {
+  imu_to_sensor_ = metadata.imu_to_sensor;
   const CapsPtr caps(MakeCaps(metadata));
   gst_pad_push_event(pad_, gst_event_new_caps(caps.get()));
+}
+
+/// Events first, then the pad: whoever links it in its signal finds them there.
+void ImuPad::Prepare(const ouster::Metadata& metadata) {
+  const bool first = pad_ == nullptr;
+  if (first) AddPad();
+  if (first || imu_to_sensor_ != metadata.imu_to_sensor) SetCaps(metadata);
+  if (!first) return;
   GstSegment segment;
   gst_segment_init(&segment, GST_FORMAT_TIME);
   gst_pad_push_event(pad_, gst_event_new_segment(&segment));
@@ -65,7 +99,7 @@ void ImuPad::AddPad(const ouster::Metadata& metadata) {
 void ImuPad::Push(ByteView packet, const ouster::SensorStream& stream) {
   const auto samples = ouster::ParseImuPacket(packet, stream.metadata());
   if (!samples || samples->empty()) return;
-  if (pad_ == nullptr) AddPad(stream.metadata());
+  Prepare(stream.metadata());
   std::vector<std::uint8_t> bytes;
   bytes.reserve(samples->size() * kSampleSize);
   ByteWriter w(&bytes);
@@ -81,10 +115,6 @@ void ImuPad::Push(ByteView packet, const ouster::SensorStream& stream) {
   const GstFlowReturn flow = gst_pad_push(pad_, buffer);
   if (flow != GST_FLOW_OK)
     GST_LOG_OBJECT(pad_, "a packet was not taken: %s", gst_flow_get_name(flow));
-}
-
-void ImuPad::End() {
-  if (pad_ != nullptr) gst_pad_push_event(pad_, gst_event_new_eos());
 }
 
 }  // namespace lidar::gst

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The sometimes pad `imu`: what a sensor's inertial measurement unit says.
+// The sometimes pad `imu`: what a sensor's inertial measurement unit says. It ends with the pad
+// src.
 #pragma once
 #include <gst/gst.h>
 
@@ -21,13 +22,16 @@ class ImuPad {
 
   /// Adds the pad with the first packet. An unlinked or flushing pad is no error.
   void Push(ByteView packet, const ouster::SensorStream& stream);
-  void End();
 
  private:
-  void AddPad(const ouster::Metadata& metadata);
+  void Prepare(const ouster::Metadata& metadata);
+  void AddPad();
+  void SetCaps(const ouster::Metadata& metadata);
 
   GstElement* element_;
-  GstPad* pad_ = nullptr;  // owned by the element
+  GstPad* pad_ = nullptr;      // owned by the element
+  gulong end_of_clouds_ = 0;   // probe on the pad src, where pad_ is there
+  Transform imu_to_sensor_{};  // of the caps
   GstClockTime last_pts_ = 0;
 };
 

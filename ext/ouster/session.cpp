@@ -135,10 +135,7 @@ GstFlowReturn Session::Next(GstBuffer** out) {
       *out = ToBuffer(*std::move(slice), stream_->slice_duration());
       return GST_FLOW_OK;
     }
-    if (ended_) {
-      imu_.End();
-      return GST_FLOW_EOS;
-    }
+    if (ended_) return GST_FLOW_EOS;
     const GstFlowReturn flow = Poll();
     if (flow != GST_FLOW_OK) return flow;
     UpdateCounters();

@@ -274,5 +274,12 @@ TEST(OusterFile, GivesImuSamplesOnAPadOfTheirOwn) {
   std::remove(path.c_str());
 }
 
+TEST(OusterFile, TheImuEndsWithTheCloudsWhateverEndsThem) {
+  EXPECT_EQ(RunToEnd("ouster_src name=s num-buffers=12 loop=true location=" +
+                     DataPath(kThreeScans) + " metadata=" + DataPath(kThreeScansMetadata) +
+                     " ! fakesink sync=false async=false  s.imu ! fakesink async=false"),
+            "");
+}
+
 }  // namespace
 }  // namespace lidar::test
