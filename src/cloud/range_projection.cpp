@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include "cloud/range_projection.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 
@@ -17,7 +18,45 @@ std::array<float, 3> Apply(const std::array<float, 9>& m, const std::array<float
           m[6] * v[0] + m[7] * v[1] + m[8] * v[2]};
 }
 
+// Four columns, in whatever vector registers the processor has.
+using Floats = float __attribute__((vector_size(16)));
+using Ints = std::int32_t __attribute__((vector_size(16)));
+
+template <class V, class T>
+V Load(const T* from) {
+  V v;
+  std::memcpy(&v, from, sizeof v);
+  return v;
+}
+
+/// Puts points side by side: from x of four points, y, z and what is behind, all of each point.
+void StorePoints(Floats x, Floats y, Floats z, Floats behind, std::size_t bytes, std::uint8_t* to,
+                 std::size_t point_step) {
+  const Floats xy_low = __builtin_shufflevector(x, y, 0, 4, 1, 5);
+  const Floats xy_high = __builtin_shufflevector(x, y, 2, 6, 3, 7);
+  const Floats z_low = __builtin_shufflevector(z, behind, 0, 4, 1, 5);
+  const Floats z_high = __builtin_shufflevector(z, behind, 2, 6, 3, 7);
+  const Floats points[] = {__builtin_shufflevector(xy_low, z_low, 0, 1, 4, 5),
+                           __builtin_shufflevector(xy_low, z_low, 2, 3, 6, 7),
+                           __builtin_shufflevector(xy_high, z_high, 0, 1, 4, 5),
+                           __builtin_shufflevector(xy_high, z_high, 2, 3, 6, 7)};
+  for (const Floats& point : points) {
+    std::memcpy(to, &point, bytes);
+    to += point_step;
+  }
+}
+
 }  // namespace
+
+/// Columns of one beam that do not wrap.
+struct RangeProjection::Run {
+  std::uint32_t beam;
+  std::uint32_t first;
+  std::uint32_t count;
+  const std::uint32_t* ranges;
+  std::uint8_t* xyz;
+  std::size_t point_step;
+};
 
 RangeProjection::RangeProjection(const SensorModel& model) {
   beam_origin_m_ =
@@ -47,6 +86,12 @@ RangeProjection::RangeProjection(const SensorModel& model) {
                                               model.beam_to_lidar_z_m * in[2] + in[3]);
     }
   }
+  for (const Column& column : columns_) {
+    for (std::size_t i = 0; i < column.rotation.size(); ++i)
+      numbers_[i].push_back(column.rotation[i]);
+    for (std::size_t i = 0; i < column.offset.size(); ++i)
+      numbers_[column.rotation.size() + i].push_back(column.offset[i]);
+  }
 }
 
 std::array<float, 3> RangeProjection::Direction(std::uint32_t beam, std::uint32_t column) const {
@@ -69,16 +114,60 @@ double RangeProjection::RangeOf(std::uint32_t beam, std::uint32_t column, const 
   return 1e3 * static_cast<double>(along + beam_origin_m_);
 }
 
+/// As Point() does it, four columns at a time.
+template <bool kBehind>
+void RangeProjection::ProjectRun(const Run& run, const std::uint32_t* behind) const {
+  constexpr std::uint32_t kAtOnce = 4;
+  constexpr std::size_t kBytes = kBehind ? sizeof(Floats) : sizeof(Vector);
+  const Vector& b = beams_[run.beam];
+  std::uint8_t* xyz = run.xyz;
+  std::uint32_t i = 0;
+  for (; i + kAtOnce <= run.count; i += kAtOnce, xyz += kAtOnce * run.point_step) {
+    const auto number = [&](std::size_t k) { return Load<Floats>(&numbers_[k][run.first + i]); };
+    const Ints range = Load<Ints>(run.ranges + i);
+    const Floats r = __builtin_convertvector(range, Floats) * kMetresPerMm - beam_origin_m_;
+    const Ints is_return = range != 0;
+    Floats p[3];
+    for (std::size_t row = 0; row < 3; ++row) {
+      const Floats direction =
+          number(row * 3) * b[0] + number(row * 3 + 1) * b[1] + number(row * 3 + 2) * b[2];
+      p[row] = r * direction + number(9 + row);
+      const Ints kept = Load<Ints>(&p[row]) & is_return;
+      std::memcpy(&p[row], &kept, sizeof kept);
+    }
+    const Floats last = kBehind ? Load<Floats>(behind + i) : Floats{};
+    StorePoints(p[0], p[1], p[2], last, kBytes, xyz, run.point_step);
+  }
+  for (; i < run.count; ++i, xyz += run.point_step) {
+    const Vector p = Point(run.beam, run.first + i, run.ranges[i]);
+    std::memcpy(xyz, p.data(), sizeof p);
+    if (kBehind) std::memcpy(xyz + sizeof p, behind + i, sizeof *behind);
+  }
+}
+
+void RangeProjection::ProjectBeam(std::uint32_t beam, const std::uint32_t* ranges,
+                                  ColumnWindow window, const std::uint32_t* behind,
+                                  std::uint8_t* xyz, std::size_t point_step) const {
+  std::uint32_t first = window.first % columns();
+  for (std::uint32_t done = 0; done < window.count;) {
+    const std::uint32_t count = std::min(window.count - done, columns() - first);
+    const Run run{beam, first, count, ranges + done, xyz + point_step * done, point_step};
+    if (behind != nullptr) {
+      ProjectRun<true>(run, behind + done);
+    } else {
+      ProjectRun<false>(run, nullptr);
+    }
+    done += count;
+    first = 0;
+  }
+}
+
 void RangeProjection::Project(const std::uint32_t* ranges, ColumnWindow window, std::uint8_t* xyz,
                               std::size_t point_step) const {
   for (std::uint32_t beam = 0; beam < beams(); ++beam) {
-    std::uint32_t column = window.first % columns();
-    for (std::uint32_t i = 0; i < window.count; ++i) {
-      const Vector p = Point(beam, column, *ranges++);
-      std::memcpy(xyz, p.data(), sizeof p);
-      xyz += point_step;
-      if (++column == columns()) column = 0;
-    }
+    ProjectBeam(beam, ranges, window, nullptr, xyz, point_step);
+    ranges += window.count;
+    xyz += window.count * point_step;
   }
 }
 

@@ -29,9 +29,13 @@ class RangeProjection {
   /// Range [mm, not rounded] whose point is nearest to `xyz` [m].
   double RangeOf(std::uint32_t beam, std::uint32_t column, const float* xyz) const;
   /// Writes the three F32 of x, y, z at `xyz + point_step * (beam * window.count + i)` for the
-  /// ranges [mm] `ranges[beam * window.count + i]` of every beam.
+  /// ranges [mm], below 2^31, `ranges[beam * window.count + i]` of every beam.
   void Project(const std::uint32_t* ranges, ColumnWindow window, std::uint8_t* xyz,
                std::size_t point_step) const;
+  /// The same for one beam. `behind`, where it is not null, holds the four bytes that stand behind
+  /// z in each point: so points of 16 bytes are written whole.
+  void ProjectBeam(std::uint32_t beam, const std::uint32_t* ranges, ColumnWindow window,
+                   const std::uint32_t* behind, std::uint8_t* xyz, std::size_t point_step) const;
 
   std::uint32_t beams() const { return static_cast<std::uint32_t>(beams_.size()); }
   std::uint32_t columns() const { return static_cast<std::uint32_t>(columns_.size()); }
@@ -43,8 +47,15 @@ class RangeProjection {
     Vector offset;                  // of the beams' origin, in metres
   };
 
+  struct Run;
+  template <bool kBehind>
+  void ProjectRun(const Run& run, const std::uint32_t* behind) const;
+
   std::vector<Vector> beams_;  // directions at encoder angle 0
   std::vector<Column> columns_;
+  /// columns_ once more, number by number (first the rotation's nine, then the offset's three), so
+  /// that neighbouring columns are computed at once.
+  std::array<std::vector<float>, 12> numbers_;
   float beam_origin_m_ = 0;  // |beam_to_lidar|
 };
 

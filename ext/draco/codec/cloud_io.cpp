@@ -2,6 +2,7 @@
 #include "draco/codec/cloud_io.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstring>
 
@@ -99,13 +100,27 @@ void WriteRangeImage(const RangeImage& image, const IntensityScale& scale,
   const PointFields kept = KeptFields(layout.fields, intensity != nullptr, range != nullptr);
   if (kept != layout.fields || layout.point_step != kept.MinimumStep())
     std::memset(raw, 0, image.size() * layout.point_step);
-  projection.Project(image.ranges.data(), {image.first_column, image.columns},
-                     raw + layout.fields.Find("x")->offset, layout.point_step);
-  for (std::size_t i = 0; i < image.size(); ++i, raw += layout.point_step) {
-    if (range != nullptr) Store(image.ranges[i], raw + range->offset);
-    if (intensity == nullptr) continue;
-    const bool missing = image.ranges[i] == 0;
-    Store(missing ? 0.0F : scale.ValueOf(image.intensity[i]), raw + intensity->offset);
+  std::array<float, 256> values{};
+  for (unsigned level = 0; intensity != nullptr && level < values.size(); ++level)
+    values[level] = scale.ValueOf(static_cast<std::uint8_t>(level));
+  const std::uint32_t xyz = layout.fields.Find("x")->offset;
+  const bool range_is_behind = range != nullptr && range->offset == xyz + 3 * sizeof(float);
+  for (std::uint32_t beam = 0; beam < image.beams; ++beam) {
+    const std::size_t first = std::size_t{beam} * image.columns;
+    const std::uint32_t* ranges = &image.ranges[first];
+    projection.ProjectBeam(beam, ranges, {image.first_column, image.columns},
+                           range_is_behind ? ranges : nullptr, raw + xyz, layout.point_step);
+    std::uint8_t* point = raw;
+    for (std::uint32_t i = 0; range != nullptr && !range_is_behind && i < image.columns; ++i) {
+      Store(ranges[i], point + range->offset);
+      point += layout.point_step;
+    }
+    point = raw;
+    for (std::uint32_t i = 0; intensity != nullptr && i < image.columns; ++i) {
+      Store(ranges[i] == 0 ? 0.0F : values[image.intensity[first + i]], point + intensity->offset);
+      point += layout.point_step;
+    }
+    raw += image.columns * layout.point_step;
   }
 }
 

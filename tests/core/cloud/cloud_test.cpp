@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <numeric>
+#include <vector>
 
 #include "cloud/point_fields.h"
 #include "cloud/range_projection.h"
@@ -99,22 +102,56 @@ TEST(RangeProjection, EqualsTheSdkFormulasWithinATenthOfAMillimetre) {
   }
 }
 
-TEST(RangeProjection, FillsAWindowThatWrapsAndLeavesMissingReturnsZero) {
-  const RangeProjection projection(SmallSensor());
-  const ColumnWindow window{510, 4};
-  std::vector<std::uint32_t> ranges(16, 10'000);
-  ranges[5] = 0;
-  std::vector<std::uint8_t> out(16 * 20, 0);
-  projection.Project(ranges.data(), window, out.data(), 20);
-  for (std::uint32_t i = 0; i < 16; ++i) {
-    std::array<float, 3> p{};
-    std::memcpy(p.data(), &out[i * 20], sizeof p);
-    EXPECT_EQ(p, projection.Point(i / 4, (510 + i % 4) % 512, ranges[i]));
+using Xyz = std::array<float, 3>;
+
+class ProjectionWindows : public ::testing::TestWithParam<ColumnWindow> {
+ protected:
+  /// The point of step 20 at `index`.
+  static Xyz PointAt(const std::vector<std::uint8_t>& points, std::size_t index) {
+    Xyz p{};
+    std::memcpy(p.data(), &points[index * 20], sizeof p);
+    return p;
   }
-  std::array<float, 3> missing{};
-  std::memcpy(missing.data(), &out[5 * 20], sizeof missing);
-  EXPECT_EQ(missing, (std::array<float, 3>{0, 0, 0}));
+};
+
+TEST_P(ProjectionWindows, HoldThePointOfEveryRangeAndZerosForMissingOnes) {
+  const RangeProjection projection(SmallSensor());
+  const ColumnWindow window = GetParam();
+  const std::size_t count = window.count;
+  std::vector<std::uint32_t> ranges(4 * count);
+  for (std::size_t i = 0; i < ranges.size(); ++i)
+    ranges[i] = i % 5 == 0 ? 0 : static_cast<std::uint32_t>(700 + 777 * i);
+  std::vector<std::uint8_t> points(ranges.size() * 20, 0xAA);
+  projection.Project(ranges.data(), window, points.data(), 20);
+  for (std::size_t i = 0; i < ranges.size(); ++i) {
+    const auto column = static_cast<std::uint32_t>((window.first + i % count) % 512);
+    const auto beam = static_cast<std::uint32_t>(i / count);
+    const Xyz p = PointAt(points, i);
+    EXPECT_EQ(p, ranges[i] == 0 ? Xyz{} : projection.Point(beam, column, ranges[i])) << i;
+    EXPECT_EQ(std::count(&points[i * 20 + 12], &points[i * 20 + 12] + 8, 0xAA), 8) << i;
+  }
 }
+
+TEST_P(ProjectionWindows, TakeWhatStandsBehindThePoints) {
+  const RangeProjection projection(SmallSensor());
+  const ColumnWindow window = GetParam();
+  std::vector<std::uint32_t> ranges(window.count, 5'000);
+  std::vector<std::uint32_t> behind(window.count);
+  std::iota(behind.begin(), behind.end(), 100U);
+  std::vector<std::uint8_t> points(ranges.size() * 20, 0xAA);
+  projection.ProjectBeam(2, ranges.data(), window, behind.data(), points.data(), 20);
+  for (std::uint32_t i = 0; i < window.count; ++i) {
+    EXPECT_EQ(PointAt(points, i), projection.Point(2, (window.first + i) % 512, 5'000));
+    std::uint32_t word = 0;
+    std::memcpy(&word, &points[i * 20 + 12], sizeof word);
+    EXPECT_EQ(word, 100 + i);
+    EXPECT_EQ(std::count(&points[i * 20 + 16], &points[i * 20 + 16] + 4, 0xAA), 4) << i;
+  }
+}
+INSTANTIATE_TEST_SUITE_P(All, ProjectionWindows,
+                         ::testing::Values(ColumnWindow{0, 512}, ColumnWindow{3, 1},
+                                           ColumnWindow{510, 4}, ColumnWindow{489, 27},
+                                           ColumnWindow{511, 22}));
 
 }  // namespace
 }  // namespace lidar
