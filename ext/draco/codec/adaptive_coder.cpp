@@ -1,117 +1,148 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include "draco/codec/adaptive_coder.h"
 
+#include <algorithm>
+#include <cstring>
+
 #include "draco/codec/initial_models.h"
 
 namespace lidar::codec {
 namespace {
 
-std::int32_t Mirror(std::int32_t residual, const Prediction& p) {
-  return p.mirrored ? -residual : residual;
+/// The residual of `value`, its sign changed where the prediction says so.
+Residual ResidualOf(std::int32_t value, const Prediction& p) {
+  const std::int32_t difference = value - p.value;
+  const std::int32_t sign = difference >> 31;
+  return {(difference ^ sign) - sign, sign ^ p.mirror};
+}
+
+Coded ValueOf(const Residual& residual, const Prediction& p) {
+  const std::int32_t sign = residual.sign ^ p.mirror;
+  return {Sum(p.value, Difference(residual.magnitude ^ sign, sign)), residual.magnitude};
+}
+
+/// The columns of the `count` bytes of `mask` that are 1; gives their number. `columns` has room
+/// for eight more.
+std::size_t ListReturns(const std::uint8_t* mask, std::uint32_t count, std::uint16_t* columns) {
+  constexpr std::uint32_t kAtOnce = 8;
+  std::uint16_t* next = columns;
+  for (std::uint32_t first = 0; first < count; first += kAtOnce) {
+    std::uint64_t eight = 0;
+    const std::uint32_t here = std::min(kAtOnce, count - first);
+    if (here == kAtOnce) std::memcpy(&eight, mask + first, sizeof eight);
+    if (eight == 0x0101010101010101U) {
+      for (std::uint32_t i = 0; i < kAtOnce; ++i) next[i] = static_cast<std::uint16_t>(first + i);
+      next += kAtOnce;
+    } else {
+      for (std::uint32_t i = 0; i < here; ++i) {
+        *next = static_cast<std::uint16_t>(first + i);
+        next += mask[first + i];
+      }
+    }
+  }
+  return static_cast<std::size_t>(next - columns);
 }
 
 }  // namespace
 
-void AdaptiveCoder::ResetModels() {
-  value_model_.Reset(InitialModelsOfValues());
-  level_model_.Reset(InitialModelsOfLevels());
+void AdaptiveCoder::Reset(const BlockShape& shape) {
+  values_.predictor.Reset(shape.alignment, shape.columns);
+  levels_.predictor.Reset(shape.alignment, shape.columns);
+  values_.model.Reset(InitialModelsOfValues());
+  levels_.model.Reset(InitialModelsOfLevels());
 }
 
-/// Calls code_value(prediction), which gives the value, for every return in order, and code_level
-/// likewise. False where a value leaves its limits.
-template <bool kLevels, class CodeValue, class CodeLevel>
-bool AdaptiveCoder::ForEachReturn(const BlockShape& shape, CodeValue&& code_value,
-                                  CodeLevel&& code_level) {
-  values_.Reset(shape.alignment, shape.columns);
-  if (kLevels) levels_.Reset(shape.alignment, shape.columns);
+/// Calls code_row(beam, row, first), with the index of the row's first return, for each row that
+/// has any; false where one of the calls gives that.
+template <class CodeRow>
+bool AdaptiveCoder::ForEachRow(const BlockShape& shape, CodeRow&& code_row) {
+  Reset(shape);
+  columns_.resize(shape.columns + 8);
   const std::uint8_t* mask = shape.mask.data();
-  for (std::uint32_t beam = 0; beam < shape.alignment.beams(); ++beam) {
-    values_.StartBeam(beam);
-    if (kLevels) levels_.StartBeam(beam);
-    for (std::uint32_t column = 0; column < shape.columns; ++column) {
-      if (mask[column] == 0) continue;
-      const Prediction p = values_.Predict(column);
-      const std::int32_t value = code_value(p);
-      if (static_cast<std::uint32_t>(value) >= kMaxBins) return false;
-      values_.Set(column, value, p.value);
-      if (kLevels) {
-        const Prediction q = levels_.Predict(column);
-        const std::int32_t level = code_level(q);
-        if (static_cast<std::uint32_t>(level) > 255) return false;
-        levels_.Set(column, level, q.value);
-      }
-    }
-    values_.EndBeam(beam);
-    if (kLevels) levels_.EndBeam(beam);
-    mask += shape.columns;
+  std::size_t first = 0;
+  for (std::uint32_t beam = 0; beam < shape.alignment.beams(); ++beam, mask += shape.columns) {
+    const std::size_t count = ListReturns(mask, shape.columns, columns_.data());
+    if (count == 0) continue;
+    if (!code_row(beam, RowReturns{columns_.data(), RowLanes(count)}, first)) return false;
+    first += count;
   }
   return true;
 }
 
 void AdaptiveCoder::Encode(const BlockShape& shape, const IntegerLists& lists,
                            RansEncoder* encoder) {
-  ResetModels();
-  const std::int32_t* value = lists.values.data();
-  const std::uint8_t* level = lists.levels.data();
-  const auto code_value = [&](const Prediction& p) {
-    value_model_.Encode(Mirror(*value - p.value, p), p.context, encoder);
-    return *value++;
-  };
-  const auto code_level = [&](const Prediction& p) {
-    const std::int32_t l = *level++;
-    level_model_.Encode(Mirror(l - p.value, p), p.context, encoder);
-    return l;
-  };
-  if (lists.levels.empty()) {
-    ForEachReturn<false>(shape, code_value, code_level);
-  } else {
-    ForEachReturn<true>(shape, code_value, code_level);
-  }
+  ForEachRow(shape, [&](std::uint32_t beam, const RowReturns& row, std::size_t first) {
+    const auto encode = [&](const auto* values, Channel* channel) {
+      RansEncoder::Writer writer(encoder);
+      channel->predictor.CodeRow(beam, row, kMaxBins,
+                                 [&](unsigned lane, std::size_t i, const Prediction& p) {
+                                   const std::int32_t value = values[i];
+                                   const Residual residual = ResidualOf(value, p);
+                                   channel->model.Encode(residual, p.context, lane, &writer);
+                                   return Coded{value, residual.magnitude};
+                                 });
+    };
+    encode(&lists.values[first], &values_);
+    if (!lists.levels.empty()) encode(&lists.levels[first], &levels_);
+    return true;
+  });
 }
 
-bool AdaptiveCoder::Decode(const BlockShape& shape, bool has_levels, RansDecoder* decoder,
-                           IntegerLists* lists) {
-  ResetModels();
-  std::int32_t* value = lists->values.data();
-  std::uint8_t* level = lists->levels.data();
-  const auto code_value = [&](const Prediction& p) {
-    *value = p.value + Mirror(value_model_.Decode(p.context, decoder), p);
-    return *value++;
-  };
-  const auto code_level = [&](const Prediction& p) {
-    const std::int32_t l = p.value + Mirror(level_model_.Decode(p.context, decoder), p);
-    *level++ = static_cast<std::uint8_t>(l);
-    return l;
-  };
-  if (!has_levels) return ForEachReturn<false>(shape, code_value, code_level);
-  return ForEachReturn<true>(shape, code_value, code_level);
+bool AdaptiveCoder::DecodeRow(std::uint32_t beam, const RowReturns& row, RansDecoder* decoder,
+                              Channel* channel) {
+  RansDecoder local = *decoder;
+  const bool within = channel->predictor.CodeRow(
+      beam, row, channel->limit, [&](unsigned lane, std::size_t, const Prediction& p) {
+        return ValueOf(channel->model.Decode(p.context, lane, &local), p);
+      });
+  *decoder = local;
+  return within && !local.overran();
+}
+
+bool AdaptiveCoder::Decode(const BlockShape& shape, const RangeGrid& grid, RansDecoder* decoder,
+                           RangeImage* image) {
+  image->ranges.assign(image->size(), 0);
+  return ForEachRow(shape, [&](std::uint32_t beam, const RowReturns& row, std::size_t) {
+    if (!DecodeRow(beam, row, decoder, &values_)) return false;
+    const std::size_t first = std::size_t{beam} * shape.columns;
+    const std::size_t count = row.lanes.all;
+    ranges_.assign(values_.predictor.values(), values_.predictor.values() + count);
+    if (!grid.ToRanges(&ranges_)) return false;
+    for (std::size_t i = 0; i < count; ++i)
+      image->ranges[first + row.columns[i]] = static_cast<std::uint32_t>(ranges_[i]);
+    if (image->intensity.empty()) return true;
+    if (!DecodeRow(beam, row, decoder, &levels_)) return false;
+    const std::int32_t* levels = levels_.predictor.values();
+    for (std::size_t i = 0; i < count; ++i)
+      image->intensity[first + row.columns[i]] = static_cast<std::uint8_t>(levels[i]);
+    return true;
+  });
 }
 
 void AdaptiveCoder::ToResiduals(const BlockShape& shape, IntegerLists* lists) {
-  std::int32_t* value = lists->values.data();
-  ForEachReturn<false>(
-      shape,
-      [&](const Prediction& p) {
-        const std::int32_t v = *value;
-        *value++ = Mirror(v - p.value, p);
-        return v;
-      },
-      [](const Prediction&) { return 0; });
+  ForEachRow(shape, [&](std::uint32_t beam, const RowReturns& row, std::size_t first) {
+    std::int32_t* values = &lists->values[first];
+    return values_.predictor.CodeRow(
+        beam, row, kMaxBins, [&](unsigned, std::size_t i, const Prediction& p) {
+          const std::int32_t value = values[i];
+          const Residual residual = ResidualOf(value, p);
+          values[i] = (residual.magnitude ^ residual.sign) - residual.sign;
+          return Coded{value, residual.magnitude};
+        });
+  });
 }
 
 bool AdaptiveCoder::FromResiduals(const BlockShape& shape, IntegerLists* lists) {
-  std::int32_t* value = lists->values.data();
-  return ForEachReturn<false>(
-      shape,
-      [&](const Prediction& p) {
-        // Damaged residuals may be anything: unsigned, so that they wrap.
-        const auto residual = static_cast<std::uint32_t>(*value);
-        const auto predicted = static_cast<std::uint32_t>(p.value);
-        *value =
-            static_cast<std::int32_t>(p.mirrored ? predicted - residual : predicted + residual);
-        return *value++;
-      },
-      [](const Prediction&) { return 0; });
+  return ForEachRow(shape, [&](std::uint32_t beam, const RowReturns& row, std::size_t first) {
+    std::int32_t* values = &lists->values[first];
+    return values_.predictor.CodeRow(
+        beam, row, kMaxBins, [&](unsigned, std::size_t i, const Prediction& p) {
+          const std::int32_t sign = values[i] >> 31;
+          const Coded coded = ValueOf({Difference(values[i] ^ sign, sign), sign}, p);
+          values[i] = coded.value;
+          return coded;
+        });
+  });
 }
 
 }  // namespace lidar::codec

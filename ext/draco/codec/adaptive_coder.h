@@ -5,7 +5,10 @@
 #include <vector>
 
 #include "draco/codec/draco_integers.h"
+#include "draco/codec/mask_coder.h"
 #include "draco/codec/predictor.h"
+#include "draco/codec/range_grid.h"
+#include "draco/codec/range_image.h"
 #include "draco/codec/residual_model.h"
 
 namespace lidar::codec {
@@ -21,9 +24,10 @@ class AdaptiveCoder {
  public:
   /// Values are below kMaxBins.
   void Encode(const BlockShape& shape, const IntegerLists& lists, RansEncoder* encoder);
-  /// Fills `lists` with a value, and a level where `has_levels`, for each return. False where the
-  /// stream cannot be one of Encode().
-  bool Decode(const BlockShape& shape, bool has_levels, RansDecoder* decoder, IntegerLists* lists);
+  /// Fills the ranges of `image`, and its intensity where it has room for one. False where the
+  /// stream cannot be one of Encode(), or the ranges are not below kMaxBins.
+  bool Decode(const BlockShape& shape, const RangeGrid& grid, RansDecoder* decoder,
+              RangeImage* image);
 
   /// Residuals of values and levels in place of them, and back.
   void ToResiduals(const BlockShape& shape, IntegerLists* lists);
@@ -32,14 +36,21 @@ class AdaptiveCoder {
   static constexpr std::uint32_t kMaxBins = 1U << 28;
 
  private:
-  template <bool kLevels, class CodeValue, class CodeLevel>
-  bool ForEachReturn(const BlockShape& shape, CodeValue&& code_value, CodeLevel&& code_level);
-  void ResetModels();
+  void Reset(const BlockShape& shape);
+  template <class CodeRow>
+  bool ForEachRow(const BlockShape& shape, CodeRow&& code_row);
+  /// Ranges or intensities.
+  struct Channel {
+    std::uint32_t limit;  // values are below
+    RowPredictor predictor = {};
+    ResidualModel model = {};
+  };
+  bool DecodeRow(std::uint32_t beam, const RowReturns& row, RansDecoder* decoder, Channel* channel);
 
-  Neighbourhood values_;
-  Neighbourhood levels_;
-  ResidualModel value_model_;
-  ResidualModel level_model_;
+  Channel values_{kMaxBins};
+  Channel levels_{256};
+  std::vector<std::uint16_t> columns_;
+  std::vector<std::int32_t> ranges_;
 };
 
 }  // namespace lidar::codec

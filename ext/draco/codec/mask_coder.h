@@ -19,18 +19,26 @@ class MaskCoder {
   /// `mask` has alignment.beams() rows of `columns`.
   void Encode(const Mask& mask, const AzimuthAlignment& alignment, std::uint32_t columns,
               RansEncoder* encoder);
-  /// Fills `mask`, which has that size already. Any stream gives some mask.
-  void Decode(const AzimuthAlignment& alignment, std::uint32_t columns, RansDecoder* decoder,
+  /// Fills `mask`, which has that size already; false where the stream ends before.
+  bool Decode(const AzimuthAlignment& alignment, std::uint32_t columns, RansDecoder* decoder,
               Mask* mask);
+  /// Pieces of RansEncoder that a mask takes.
+  static std::size_t Pieces(std::uint32_t beams, std::uint32_t columns) {
+    return std::size_t{beams} * Groups(columns);
+  }
 
  private:
+  static constexpr std::uint32_t kGroup = 4;  // pixels a symbol
+  static std::uint32_t Groups(std::uint32_t columns) { return (columns + kGroup - 1) / kGroup; }
+
   template <class CodeFour>
-  void ForEachFour(const AzimuthAlignment& alignment, std::uint32_t columns, CodeFour&& code);
+  void CodeRow(std::uint32_t beam, std::uint32_t columns, CodeFour&& code);
   void Reset(const AzimuthAlignment& alignment, std::uint32_t columns);
 
   static constexpr unsigned kContexts = 256;
   std::array<NibbleModel, kContexts> models_;
   AlignedRow<std::uint8_t> above_;
+  std::vector<std::uint8_t> row_;  // the one that is coded, and room to its next multiple of four
 };
 
 }  // namespace lidar::codec

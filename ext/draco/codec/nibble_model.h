@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // An adaptive probability distribution over 16 symbols, updated with vector instructions.
 #pragma once
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <cstring>
@@ -22,22 +23,31 @@ struct Interval {
 
 namespace detail {
 
-/// Zeros, then the largest start that leaves room for all symbols behind it.
-struct Steps {
-  constexpr Steps() {
-    for (unsigned i = kNibbles; i < 2 * kNibbles; ++i)
-      values[i] = static_cast<std::int16_t>(kProbabilityOne - kNibbles);
+/// For each symbol the starts that Update() moves towards: a step behind the symbol, on a slope
+/// that keeps intervals from vanishing.
+struct Targets {
+  constexpr Targets() {
+    for (unsigned symbol = 0; symbol < kNibbles; ++symbol)
+      for (unsigned i = 0; i < kNibbles; ++i)
+        starts[symbol][i] =
+            static_cast<std::int16_t>(i + (i > symbol ? kProbabilityOne - kNibbles : 0));
   }
-  std::int16_t values[2 * kNibbles] = {};
+  alignas(16) std::int16_t starts[kNibbles][kNibbles] = {};
 };
-struct Slope {
-  constexpr Slope() {
-    for (unsigned i = 0; i < kNibbles; ++i) values[i] = static_cast<std::int16_t>(i);
+inline constexpr Targets kTargets;
+
+/// By number of updates. Fast at first, then slower: few samples teach a context most of what there
+/// is to know.
+struct Rates {
+  static constexpr unsigned kMiddleAge = 24;
+  static constexpr unsigned kOldest = 400;
+  constexpr Rates() {
+    for (unsigned age = 0; age <= kOldest; ++age)
+      rates[age] = static_cast<std::int8_t>(age < kMiddleAge ? 5 : age < kOldest ? 6 : 7);
   }
-  std::int16_t values[kNibbles] = {};
+  std::int8_t rates[kOldest + 1] = {};
 };
-inline constexpr Steps kSteps;
-inline constexpr Slope kSlope;
+inline constexpr Rates kRates;
 
 }  // namespace detail
 
@@ -75,7 +85,7 @@ class NibbleModel {
     const __m128i high = _mm_load_si128(reinterpret_cast<const __m128i*>(start_.data() + 8));
     const int above =
         _mm_movemask_epi8(_mm_packs_epi16(_mm_cmpgt_epi16(low, v), _mm_cmpgt_epi16(high, v)));
-    return static_cast<unsigned>(__builtin_ctz(static_cast<unsigned>(above) | 0x10000U)) - 1;
+    return static_cast<unsigned>(__builtin_ctz(static_cast<unsigned>(above) | 0x10000U)) - 1U;
 #else
     unsigned s = start_[8] <= static_cast<int>(slot) ? 8 : 0;
     s += start_[s + 4] <= static_cast<int>(slot) ? 4 : 0;
@@ -87,18 +97,14 @@ class NibbleModel {
 
   void Update(unsigned symbol) {
     const int age = start_[kAge];
-    const int rate = kFast + (age >= kMiddleAge ? 1 : 0) + (age >= kOldest ? 1 : 0);
-    start_[kAge] = static_cast<std::int16_t>(age + (age < kOldest ? 1 : 0));
-    // The table is a step at `symbol`; the slope keeps intervals from vanishing.
-    const std::int16_t* step = &detail::kSteps.values[kNibbles - 1 - symbol];
+    const std::int16_t rate = detail::kRates.rates[age];
+    start_[kAge] = static_cast<std::int16_t>(std::min(age + 1, int{detail::Rates::kOldest}));
     for (unsigned i = 0; i < kNibbles; i += 8) {
       Vector target;
-      Vector slope;
       Vector start;
-      std::memcpy(&target, step + i, sizeof target);
-      std::memcpy(&slope, &detail::kSlope.values[i], sizeof slope);
+      std::memcpy(&target, &detail::kTargets.starts[symbol][i], sizeof target);
       std::memcpy(&start, &start_[i], sizeof start);
-      start += (target + slope - start) >> static_cast<std::int16_t>(rate);
+      start += (target - start) >> rate;
       std::memcpy(&start_[i], &start, sizeof start);
     }
   }
@@ -106,11 +112,7 @@ class NibbleModel {
  private:
   using Vector = std::int16_t __attribute__((vector_size(16)));
   static constexpr unsigned kAge = kNibbles + 1;
-  static constexpr std::int16_t kOldest = 400;
   static constexpr std::uint32_t kFloor = 8;
-  // Fast at first, then slower: few samples teach a context most of what there is to know.
-  static constexpr int kFast = 5;
-  static constexpr int kMiddleAge = 24;
   static std::array<std::uint16_t, kNibbles> UniformCounts() {
     std::array<std::uint16_t, kNibbles> counts;
     counts.fill(1);
@@ -118,7 +120,7 @@ class NibbleModel {
   }
 
   // [0] is 0 for ever, [16] is kProbabilityOne (read unsigned), [17] the number of updates so far.
-  alignas(16) std::array<std::int16_t, 24> start_{};
+  alignas(64) std::array<std::int16_t, 32> start_{};
 };
 
 }  // namespace lidar::codec

@@ -1,100 +1,155 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Predicts each return from those around it that the decoder knows already.
+// Predicts the returns of a row from those around them that the decoder knows already.
 #pragma once
 #include <algorithm>
+#include <array>
 #include <cstdint>
 #include <cstdlib>
 #include <vector>
 
 #include "draco/codec/azimuth_alignment.h"
-#include "draco/codec/mask_coder.h"
+#include "draco/codec/rans.h"
 
 namespace lidar::codec {
 
 /// What is known before a value.
 struct Prediction {
   std::int32_t value = 0;
-  unsigned context = 0;   // how uneven the neighbourhood is, 0 .. kContexts - 1
-  bool mirrored = false;  // residuals are coded with their sign changed: see Neighbourhood
+  unsigned context = 0;     // how uneven the neighbourhood is, 0 .. kContexts - 1
+  std::int32_t mirror = 0;  // -1: residuals are coded with their sign changed
 };
 
-constexpr unsigned kContexts = 16;
+constexpr unsigned kContexts = 15;
 
-/// One channel (ranges or intensities) of a slice, beam by beam. The neighbours of a return are the
-/// one to its left, W, and N, NE and NW in the nearest beam above that has a return at the same
-/// azimuth; NW is the one above W. The prediction is the median of W, N and W + N - NW (the MED
+namespace detail {
+
+/// Contexts by sums of absolute differences: half-octaves, and from the last one on alike.
+struct ContextTable {
+  static constexpr unsigned kMost = 128;
+  constexpr ContextTable() {
+    for (unsigned a = 0; a <= kMost; ++a) {
+      unsigned log2 = 0;
+      while (a >> (log2 + 1) != 0) ++log2;
+      const unsigned context = a < 2 ? a : 2 * log2 + (a >> (log2 - 1) & 1);
+      contexts[a] = static_cast<std::uint8_t>(context < kContexts ? context : kContexts - 1);
+    }
+  }
+  std::uint8_t contexts[kMost + 1] = {};
+};
+inline constexpr ContextTable kContextTable;
+
+}  // namespace detail
+
+/// Differences and sums that wrap: values of damaged streams may be anything.
+inline std::int32_t Sum(std::int32_t a, std::int32_t b) {
+  return static_cast<std::int32_t>(static_cast<std::uint32_t>(a) + static_cast<std::uint32_t>(b));
+}
+inline std::int32_t Difference(std::int32_t a, std::int32_t b) {
+  return static_cast<std::int32_t>(static_cast<std::uint32_t>(a) - static_cast<std::uint32_t>(b));
+}
+
+/// What has come of a prediction.
+struct Coded {
+  std::int32_t value;
+  std::int32_t magnitude;  // of the residual
+};
+
+/// Columns of the returns of one row, in order.
+struct RowReturns {
+  const std::uint16_t* columns;
+  RowLanes lanes;
+};
+
+/// One channel (ranges or intensities) of a slice, row by row. The neighbours of a return are the
+/// one to its left in its lane, W, and N and NE in the nearest beams above that have a return at
+/// their azimuths; NW is the N of W. The prediction is the median of W, N and W + N - NW (the MED
 /// predictor of LOCO-I), which follows planes and keeps to one side of an edge.
-class Neighbourhood {
+///
+/// All but W is known before the row is coded, so that it is prepared at once, and lanes of the row
+/// do not wait for each other.
+class RowPredictor {
  public:
-  void Reset(const AzimuthAlignment& alignment, std::uint32_t columns) {
-    values_.Reset(alignment, columns, kUnknown);
-    errors_.Reset(alignment, columns, 0);
-    start_ = 0;
-  }
-  void StartBeam(std::uint32_t beam) {
-    above_ = values_.At(beam);
-    errors_above_ = errors_.At(beam);
-    west_ = kUnknown;
-    north_west_ = kUnknown;
-    error_ = 0;
-  }
-  void EndBeam(std::uint32_t beam) {
-    values_.CloseTurn(beam);
-    errors_.CloseTurn(beam);
-  }
+  void Reset(const AzimuthAlignment& alignment, std::uint32_t columns);
 
-  Prediction Predict(std::uint32_t column) const {
-    std::int32_t n = above_[column];
-    std::int32_t w = west_;
-    n = n == kUnknown ? w : n;
-    w = w == kUnknown ? n : w;
-    if (n == kUnknown) return {start_, kContexts - 1, false};
-    std::int32_t nw = north_west_ == kUnknown ? n : north_west_;
-    std::int32_t ne = above_[column + 1];
-    ne = ne == kUnknown ? n : ne;
-    const std::int32_t low = std::min(w, n);
-    const std::int32_t high = std::max(w, n);
-    Prediction p;
-    p.value = std::clamp(w + n - nw, low, high);
-    const std::int32_t unevenness =
-        std::min(high - low, kMost) + std::min(std::abs(n - nw), kMost) +
-        std::min(std::abs(ne - n), kMost) + 2 * std::min(error_, kMost) +
-        2 * std::min(errors_above_[column], kMost);
-    p.context = ContextOf(static_cast<std::uint32_t>(unevenness));
-    // Where it is off, the value tends towards the other neighbour; so the sign has a meaning.
-    p.mirrored = n > w;
-    return p;
+  /// Calls code(lane, index, prediction) for all returns of a row in the order of coding. False
+  /// where a value is not below `limit`, a power of two; there is nothing to go on with then.
+  template <class Code>
+  [[gnu::always_inline]] bool CodeRow(std::uint32_t beam, const RowReturns& row,
+                                      std::uint32_t limit, Code&& code) {
+    if (Prepare(beam, row)) {
+      Walk<false>(row.lanes, code);
+    } else {
+      Walk<true>(row.lanes, code);
+    }
+    return Keep(beam, row, limit);
   }
-  void Set(std::uint32_t column, std::int32_t value, std::int32_t predicted) {
-    error_ = std::abs(value - predicted);
-    north_west_ = above_[column];
-    west_ = value;
-    above_[column] = value;
-    errors_above_[column] = error_;
-    start_ = value;
-  }
+  /// Of the row that was coded last.
+  const std::int32_t* values() const { return values_.data(); }
 
  private:
   static constexpr std::int32_t kUnknown = -1;
-  static constexpr std::int32_t kMost = 1 << 20;
-  static unsigned ContextOf(std::uint32_t unevenness);
+  /// Neighbours above the row; false where it has none at all.
+  bool Prepare(std::uint32_t beam, const RowReturns& row);
+  bool Keep(std::uint32_t beam, const RowReturns& row, std::uint32_t limit);
 
-  AlignedRow<std::int32_t> values_;
-  AlignedRow<std::int32_t> errors_;
-  std::int32_t* above_ = nullptr;
-  std::int32_t* errors_above_ = nullptr;
-  std::int32_t west_ = kUnknown;
-  std::int32_t north_west_ = kUnknown;
-  std::int32_t error_ = 0;
-  std::int32_t start_ = 0;  // the latest value, for beams without any neighbour
+  template <bool kBlind, class Code>
+  [[gnu::always_inline]] void Walk(const RowLanes& lanes, Code&& code) {
+    Return* const row = row_.data();
+    std::int32_t west[kRansLanes];
+    std::int32_t error[kRansLanes];
+    for (unsigned lane = 0; lane < kRansLanes; ++lane) {
+      const std::size_t start = lane < lanes.lanes ? lanes.Start(lane) : 0;
+      west[lane] = kBlind ? latest_ : row[start].north;
+      // Where nothing is known, anything may come.
+      error[lane] = kBlind ? std::int32_t{detail::ContextTable::kMost} : 0;
+    }
+    ForEachInTurns(
+        lanes, [&](unsigned lane, std::size_t i) __attribute__((always_inline)) {
+          Return& at = row[i];
+          const std::int32_t w = west[lane];
+          // No comparison that a compiler could make a jump of: nobody could predict it.
+          const std::int32_t to_north = kBlind ? 0 : Difference(at.north, w);
+          const std::int32_t below = to_north & to_north >> 31;
+          const std::int32_t above = to_north & ~(to_north >> 31);
+          const std::int32_t step = kBlind ? 0 : at.gradient;
+          Prediction p;
+          p.value = Sum(w, std::min(std::max(step, below), above));
+          const std::uint32_t uneven = static_cast<std::uint32_t>(above) -
+                                       static_cast<std::uint32_t>(below) +
+                                       static_cast<std::uint32_t>(kBlind ? 0 : at.uneven) +
+                                       2 * static_cast<std::uint32_t>(error[lane]);
+          p.context =
+              detail::kContextTable.contexts[std::min(uneven, detail::ContextTable::kMost + 0U)];
+          // Where it is off, the value tends towards the other neighbour; so the sign has a
+          // meaning.
+          p.mirror = -above >> 31;
+          const Coded coded = code(lane, i, p);
+          error[lane] = at.error = coded.magnitude;
+          west[lane] = at.value = coded.value;
+        });
+  }
+
+  struct Known {
+    std::int32_t value = kUnknown;
+    std::int32_t error = 0;  // size of its residual
+  };
+  /// Before and after it is coded.
+  struct Return {
+    union {
+      std::int32_t north;
+      std::int32_t value;
+    };
+    union {
+      std::int32_t uneven;  // |N - NW| + |NE - N|, and twice the error of N
+      std::int32_t error;
+    };
+    std::int32_t gradient;  // N - NW
+  };
+
+  AlignedRow<Known> above_;
+  std::int32_t latest_ = 0;  // value, for rows without any neighbour
+  std::vector<Return> row_;
+  std::vector<std::int32_t> values_;
 };
-
-/// Half-octaves of a sum of absolute differences.
-inline unsigned Neighbourhood::ContextOf(std::uint32_t unevenness) {
-  if (unevenness < 2) return unevenness;
-  const unsigned log2 = 31 - static_cast<unsigned>(__builtin_clz(unevenness));
-  const unsigned half = unevenness >> (log2 - 1) & 1;
-  return std::min(2 * log2 + half, kContexts - 2);
-}
 
 }  // namespace lidar::codec

@@ -5,12 +5,6 @@
 #include <array>
 
 namespace lidar::codec {
-namespace {
-
-// So that sums and differences of bins fit an int32.
-constexpr std::uint32_t kMaxRangeMm = AdaptiveCoder::kMaxBins - 1;
-
-}  // namespace
 
 bool RangeEncoder::Encode(const RangeImage& image, const RangeSettings& settings,
                           std::vector<std::uint8_t>* out) {
@@ -23,8 +17,13 @@ bool RangeEncoder::Encode(const RangeImage& image, const RangeSettings& settings
     return false;
   }
   CollectReturns(image, settings);
-  EncodeMask(image.columns);
-  if (!EncodePayload(settings, image.columns)) return false;
+  mask_bytes_.clear();
+  payload_.clear();
+  if (settings.coder == RangeCoder::kAdaptive) {
+    EncodeAdaptively(image.columns);
+  } else if (!EncodeWithDraco(settings, image.columns)) {
+    return false;
+  }
   RangeHeader header;
   header.coder = settings.coder;
   header.beams = image.beams;
@@ -32,6 +31,7 @@ bool RangeEncoder::Encode(const RangeImage& image, const RangeSettings& settings
   header.columns = image.columns;
   header.grid = settings.grid;
   header.intensity = settings.intensity;
+  header.has_gaps = has_gaps();
   header.mask_size = static_cast<std::uint32_t>(mask_bytes_.size());
   header.payload_size = static_cast<std::uint32_t>(payload_.size());
   header.Write(out);
@@ -50,7 +50,7 @@ void RangeEncoder::CollectReturns(const RangeImage& image, const RangeSettings& 
   const double half_part = 0.5 / grid.parts();
   std::size_t count = 0;
   for (std::size_t i = 0; i < image.size(); ++i) {
-    const std::uint32_t range = std::min(image.ranges[i], kMaxRangeMm);
+    const std::uint32_t range = std::min(image.ranges[i], RangeGrid::kMaxRangeMm);
     mask_[i] = range != 0 ? 1 : 0;
     lists_.values[count] =
         static_cast<std::int32_t>(static_cast<std::int32_t>(range) * per_mm + half_part);
@@ -67,27 +67,23 @@ void RangeEncoder::CollectReturns(const RangeImage& image, const RangeSettings& 
     if (mask_[i] != 0) lists_.levels[next++] = coarse[image.intensity[i]];
 }
 
-/// No bytes at all stand for a mask without a gap.
-void RangeEncoder::EncodeMask(std::uint32_t columns) {
-  mask_bytes_.clear();
-  if (returns() == mask_.size()) return;
-  rans_.Start(mask_.size());
-  mask_coder_.Encode(mask_, alignment_, columns, &rans_);
-  rans_.Finish(&mask_bytes_);
+void RangeEncoder::EncodeAdaptively(std::uint32_t columns) {
+  rans_.Start(MaskCoder::Pieces(alignment_.beams(), columns) +
+              ResidualModel::kMostPieces * (lists_.values.size() + lists_.levels.size()));
+  if (has_gaps()) mask_coder_.Encode(mask_, alignment_, columns, &rans_);
+  coder_.Encode({alignment_, mask_, columns}, lists_, &rans_);
+  rans_.Finish(&payload_);
 }
 
-bool RangeEncoder::EncodePayload(const RangeSettings& settings, std::uint32_t columns) {
-  payload_.clear();
-  if (returns() == 0) return true;
-  const BlockShape shape{alignment_, mask_, columns};
-  if (settings.coder == RangeCoder::kAdaptive) {
-    // A residual is two symbols at most.
-    rans_.Start(2 * (lists_.values.size() + lists_.levels.size()));
-    coder_.Encode(shape, lists_, &rans_);
-    rans_.Finish(&payload_);
-    return true;
+bool RangeEncoder::EncodeWithDraco(const RangeSettings& settings, std::uint32_t columns) {
+  if (has_gaps()) {
+    rans_.Start(MaskCoder::Pieces(alignment_.beams(), columns));
+    mask_coder_.Encode(mask_, alignment_, columns, &rans_);
+    rans_.Finish(&mask_bytes_);
   }
-  if (settings.coder == RangeCoder::kResidual) coder_.ToResiduals(shape, &lists_);
+  if (returns() == 0) return true;
+  if (settings.coder == RangeCoder::kResidual)
+    coder_.ToResiduals({alignment_, mask_, columns}, &lists_);
   return EncodeIntegers(lists_, settings.coder == RangeCoder::kDraco, &payload_);
 }
 
@@ -106,48 +102,61 @@ bool RangeDecoder::Decode(ByteReader* reader, std::size_t max_points, RangeImage
   *scale = header->intensity;
   const ByteView mask = reader->Bytes(header->mask_size);
   const ByteView payload = reader->Bytes(header->payload_size);
-  mask_.assign(image->size(), 1);
-  if (!DecodeMask(mask, header->columns) || !DecodePayload(*header, payload)) return false;
   image->intensity.assign(header->intensity.bits() > 0 ? image->size() : 0, 0);
-  return Scatter(header->grid, image);
+  mask_.assign(image->size(), 1);
+  return header->coder == RangeCoder::kAdaptive ? DecodeAdaptively(*header, payload, image)
+                                                : DecodeWithDraco(*header, mask, payload, image);
 }
 
-bool RangeDecoder::DecodeMask(ByteView bytes, std::uint32_t columns) {
-  if (bytes.empty()) return true;
-  RansDecoder rans(bytes);
-  mask_coder_.Decode(alignment_, columns, &rans, &mask_);
-  return rans.AtEnd();
-}
-
-bool RangeDecoder::DecodePayload(const RangeHeader& header, ByteView bytes) {
-  const auto returns = static_cast<std::size_t>(std::count(mask_.begin(), mask_.end(), 1));
-  const bool has_levels = header.intensity.bits() > 0;
-  lists_.values.resize(returns);
-  lists_.levels.resize(has_levels ? returns : 0);
-  if (returns == 0) return bytes.empty();
-  const BlockShape shape{alignment_, mask_, header.columns};
-  if (header.coder == RangeCoder::kAdaptive) {
-    RansDecoder rans(bytes);
-    return coder_.Decode(shape, has_levels, &rans, &lists_) && rans.AtEnd();
-  }
-  if (!DecodeIntegers(bytes, static_cast<std::uint32_t>(returns), has_levels, &lists_))
+bool RangeDecoder::DecodeAdaptively(const RangeHeader& header, ByteView payload,
+                                    RangeImage* image) {
+  RansDecoder rans(payload, ResidualModel::kMostPieces * header.columns, &padded_);
+  if (header.has_gaps && !mask_coder_.Decode(alignment_, header.columns, &rans, &mask_))
     return false;
-  return header.coder == RangeCoder::kDraco || coder_.FromResiduals(shape, &lists_);
+  const BlockShape shape{alignment_, mask_, header.columns};
+  return coder_.Decode(shape, header.grid, &rans, image) && rans.AtEnd();
 }
 
-bool RangeDecoder::Scatter(const RangeGrid& grid, RangeImage* image) const {
-  const std::uint32_t last_bin = grid.BinOf(kMaxRangeMm);
-  image->ranges.assign(image->size(), 0);
+bool RangeDecoder::DecodeWithDraco(const RangeHeader& header, ByteView mask, ByteView payload,
+                                   RangeImage* image) {
+  if (header.has_gaps) {
+    RansDecoder rans(mask, header.columns, &padded_);
+    if (!mask_coder_.Decode(alignment_, header.columns, &rans, &mask_) || !rans.AtEnd())
+      return false;
+  }
+  const auto returns =
+      static_cast<std::uint32_t>(std::count(mask_.begin(), mask_.end(), std::uint8_t{1}));
+  lists_.values.resize(returns);
+  lists_.levels.resize(image->intensity.empty() ? 0 : returns);
+  if (returns == 0) {
+    image->ranges.assign(image->size(), 0);
+    return payload.empty();
+  }
+  if (!DecodeIntegers(payload, returns, !lists_.levels.empty(), &lists_)) return false;
+  if (header.coder == RangeCoder::kResidual &&
+      !coder_.FromResiduals({alignment_, mask_, header.columns}, &lists_)) {
+    return false;
+  }
+  if (!header.grid.ToRanges(&lists_.values)) return false;
+  Scatter(image);
+  return true;
+}
+
+void RangeDecoder::Scatter(RangeImage* image) {
+  image->ranges.resize(image->size());
+  // One more, which is read but not used where the last pixels have no return.
+  lists_.values.push_back(0);
+  lists_.levels.push_back(0);
   std::size_t next = 0;
   for (std::size_t i = 0; i < image->size(); ++i) {
-    if (mask_[i] == 0) continue;
-    const auto bin = static_cast<std::uint32_t>(lists_.values[next]);
-    if (bin > last_bin) return false;
-    image->ranges[i] = grid.RangeOf(bin);
-    if (!image->intensity.empty()) image->intensity[i] = lists_.levels[next];
-    ++next;
+    image->ranges[i] = static_cast<std::uint32_t>(lists_.values[next]) & (0U - mask_[i]);
+    next += mask_[i];
   }
-  return true;
+  next = 0;
+  for (std::size_t i = 0; i < image->intensity.size(); ++i) {
+    image->intensity[i] = static_cast<std::uint8_t>(lists_.levels[next] & (0U - mask_[i]));
+    next += mask_[i];
+  }
 }
 
 }  // namespace lidar::codec

@@ -27,8 +27,8 @@ class RangeEncoder {
   explicit RangeEncoder(const SensorModel& model) : alignment_(model) {}
 
   /// Appends one block to `out` and returns true; false where the image does not fit the sensor.
-  /// The image's levels are of 8 bits and become those of settings.intensity. An image without any
-  /// return gives a block that decodes to such an image.
+  /// Ranges are multiples of the grid's unit. The image's levels are of 8 bits and become those of
+  /// settings.intensity. An image without any return gives a block that decodes to such an image.
   bool Encode(const RangeImage& image, const RangeSettings& settings,
               std::vector<std::uint8_t>* out);
   /// Returns in the image encoded last.
@@ -36,8 +36,9 @@ class RangeEncoder {
 
  private:
   void CollectReturns(const RangeImage& image, const RangeSettings& settings);
-  void EncodeMask(std::uint32_t columns);
-  bool EncodePayload(const RangeSettings& settings, std::uint32_t columns);
+  bool has_gaps() const { return returns() < mask_.size(); }
+  void EncodeAdaptively(std::uint32_t columns);
+  bool EncodeWithDraco(const RangeSettings& settings, std::uint32_t columns);
 
   AzimuthAlignment alignment_;
   MaskCoder mask_coder_;
@@ -61,15 +62,18 @@ class RangeDecoder {
   bool Decode(ByteReader* reader, std::size_t max_points, RangeImage* image, IntensityScale* scale);
 
  private:
-  bool DecodeMask(ByteView bytes, std::uint32_t columns);
-  bool DecodePayload(const RangeHeader& header, ByteView bytes);
-  bool Scatter(const RangeGrid& grid, RangeImage* image) const;
+  bool DecodeAdaptively(const RangeHeader& header, ByteView payload, RangeImage* image);
+  bool DecodeWithDraco(const RangeHeader& header, ByteView mask, ByteView payload,
+                       RangeImage* image);
+  /// The lists, which are ranges by now, to where the mask has returns.
+  void Scatter(RangeImage* image);
 
   AzimuthAlignment alignment_;
   MaskCoder mask_coder_;
   AdaptiveCoder coder_;
   Mask mask_;
   IntegerLists lists_;
+  std::vector<std::uint8_t> padded_;  // of RansDecoder
 };
 
 }  // namespace lidar::codec

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <vector>
 
 namespace lidar::codec {
 
@@ -15,6 +16,8 @@ class RangeGrid {
  public:
   static constexpr std::uint32_t kMaxCells = 65'535;
   static constexpr std::uint32_t kMaxUnitMm = 1'000;
+  /// So that sums and differences of bins fit an int32.
+  static constexpr std::uint32_t kMaxRangeMm = (1U << 28) - 1;
   /// Steps are multiples of a cell by this.
   static constexpr std::uint32_t kParts = 256;
 
@@ -62,13 +65,35 @@ class RangeGrid {
     return static_cast<std::uint32_t>(std::uint64_t{range_mm / unit_mm_} * kParts / parts_);
   }
   std::uint32_t RangeOf(std::uint32_t bin) const {
-    const std::uint64_t sum = FirstCell(bin) + FirstCell(std::uint64_t{bin} + 1) - 1;
-    return static_cast<std::uint32_t>((sum * unit_mm_ + 1) / 2);
+    return static_cast<std::uint32_t>(Middle<std::uint64_t>(bin));
+  }
+  /// RangeOf() for all of a list of bins; false where a range is above kMaxRangeMm.
+  bool ToRanges(std::vector<std::int32_t>* bins) const {
+    std::uint32_t last = 0;
+    for (const std::int32_t bin : *bins) last |= static_cast<std::uint32_t>(bin);
+    // `last` is at least the largest bin, and less than twice as much.
+    const std::uint64_t parts = (last + std::uint64_t{1}) * parts_ + kParts;
+    // As a rule 32 bits are enough, and then a processor computes several at once.
+    if (parts <= UINT32_MAX && 2 * unit_mm_ * (parts / kParts + 1) <= kMaxRangeMm) {
+      for (std::int32_t& bin : *bins)
+        bin = static_cast<std::int32_t>(Middle<std::uint32_t>(static_cast<std::uint32_t>(bin)));
+      return true;
+    }
+    const std::uint32_t last_bin = BinOf(kMaxRangeMm);
+    for (std::int32_t& bin : *bins) {
+      if (static_cast<std::uint32_t>(bin) > last_bin) return false;
+      bin = static_cast<std::int32_t>(RangeOf(static_cast<std::uint32_t>(bin)));
+    }
+    return true;
   }
 
  private:
-  std::uint64_t FirstCell(std::uint64_t bin) const {
-    return (bin * parts_ + (kParts - 1)) / kParts;
+  /// Of the cells of a bin, the first of which is the next whole one from its start on.
+  template <class Wide>
+  Wide Middle(Wide bin) const {
+    const Wide first = (bin * parts_ + (kParts - 1)) / kParts;
+    const Wide next = ((bin + 1) * parts_ + (kParts - 1)) / kParts;
+    return ((first + next - 1) * unit_mm_ + 1) / 2;
   }
 
   std::uint32_t unit_mm_ = 1;

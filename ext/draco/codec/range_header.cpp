@@ -24,6 +24,8 @@ std::uint32_t ReadVarint(ByteReader* reader, bool* ok) {
   return 0;
 }
 
+constexpr unsigned kGapsFlag = 0x80;  // of the second byte
+
 bool IsKnown(std::uint8_t coder) {
   return coder >= static_cast<std::uint8_t>(RangeCoder::kDraco) &&
          coder <= static_cast<std::uint8_t>(RangeCoder::kAdaptive);
@@ -34,40 +36,41 @@ bool IsKnown(std::uint8_t coder) {
 void RangeHeader::Write(std::vector<std::uint8_t>* out) const {
   ByteWriter writer(out);
   writer.U8(static_cast<std::uint8_t>(kVersion << 4 | static_cast<std::uint8_t>(coder)));
-  writer.U8(
-      static_cast<std::uint8_t>(intensity.bits() | static_cast<unsigned>(intensity.full()) << 4));
-  for (const std::uint32_t v :
-       {beams, first_column, columns, grid.unit_mm(), grid.parts(), mask_size, payload_size}) {
+  writer.U8(static_cast<std::uint8_t>(intensity.bits() |
+                                      static_cast<unsigned>(intensity.full()) << 4 |
+                                      (has_gaps ? kGapsFlag : 0)));
+  for (const std::uint32_t v : {beams, first_column, columns, grid.unit_mm(), grid.parts()})
     WriteVarint(v, &writer);
-  }
+  if (has_mask_stream()) WriteVarint(mask_size, &writer);
+  WriteVarint(payload_size, &writer);
 }
 
 std::optional<RangeHeader> RangeHeader::Read(ByteReader* reader) {
   const std::uint8_t first = reader->U8();
   const std::uint8_t second = reader->U8();
   const unsigned bits = second & 15;
-  const unsigned full = second >> 4;
+  const unsigned full = second >> 4 & 7;
+  if (first >> 4 != kVersion || !IsKnown(first & 15)) return std::nullopt;
   bool ok = true;
   RangeHeader h;
+  h.coder = static_cast<RangeCoder>(first & 15);
+  h.has_gaps = (second & kGapsFlag) != 0;
   h.beams = ReadVarint(reader, &ok);
   h.first_column = ReadVarint(reader, &ok);
   h.columns = ReadVarint(reader, &ok);
   const std::uint32_t unit_mm = ReadVarint(reader, &ok);
   const std::uint32_t parts = ReadVarint(reader, &ok);
-  h.mask_size = ReadVarint(reader, &ok);
+  if (h.has_mask_stream()) h.mask_size = ReadVarint(reader, &ok);
   h.payload_size = ReadVarint(reader, &ok);
-  if (!ok || !reader->ok() || first >> 4 != kVersion || !IsKnown(first & 15) ||
-      bits > IntensityScale::kMaxBits || full > static_cast<unsigned>(FullScale::kWord) ||
-      h.beams == 0 || h.beams > kMaxBeams || h.columns == 0 || h.columns > kMaxColumns ||
-      h.first_column >= kMaxColumns) {
-    return std::nullopt;
-  }
-  h.coder = static_cast<RangeCoder>(first & 15);
-  h.intensity = IntensityScale(static_cast<FullScale>(full), bits);
   h.grid = RangeGrid::OfParts(unit_mm, parts);
-  if (!h.grid.IsValid() || std::uint64_t{h.mask_size} + h.payload_size > reader->remaining()) {
+  if (!ok || !reader->ok() || bits > IntensityScale::kMaxBits ||
+      full > static_cast<unsigned>(FullScale::kWord) || h.beams == 0 || h.beams > kMaxBeams ||
+      h.columns == 0 || h.columns > kMaxColumns || h.first_column >= kMaxColumns ||
+      !h.grid.IsValid() || (h.has_mask_stream() && h.mask_size == 0) ||
+      std::uint64_t{h.mask_size} + h.payload_size > reader->remaining()) {
     return std::nullopt;
   }
+  h.intensity = IntensityScale(static_cast<FullScale>(full), bits);
   return h;
 }
 

@@ -26,13 +26,17 @@ struct RangeHeader {
   std::uint32_t columns = 0;
   RangeGrid grid;
   IntensityScale intensity;        // 0 bits: geometry only
-  std::uint32_t mask_size = 0;     // bytes of the mask, which comes first
-  std::uint32_t payload_size = 0;  // bytes of the integers behind it
+  bool has_gaps = false;           // some pixels have no return, and a mask says which
+  std::uint32_t mask_size = 0;     // bytes of the mask where it is a stream of its own
+  std::uint32_t payload_size = 0;  // bytes behind it
 
   void Write(std::vector<std::uint8_t>* out) const;
   /// Reads a header and leaves `reader` behind it. None for a version or coder that is not known,
   /// numbers outside of their limits, or lengths past the end.
   static std::optional<RangeHeader> Read(ByteReader* reader);
+
+  /// With kAdaptive the mask is at the head of the payload's stream.
+  bool has_mask_stream() const { return has_gaps && coder != RangeCoder::kAdaptive; }
 
   static constexpr std::uint8_t kVersion = 2;
   static constexpr std::uint32_t kMaxBeams = 1'024;

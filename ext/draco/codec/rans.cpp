@@ -8,65 +8,56 @@
 namespace lidar::codec {
 
 void RansEncoder::Finish(std::vector<std::uint8_t>* out) {
-  const auto symbols = static_cast<std::size_t>(next_interval_ - intervals_.data());
-  std::array<std::uint32_t, 2> states = {kRansLow, kRansLow};
-  if (words_.size() < symbols) words_.resize(symbols);
-  // At most one word a symbol. They are decoded in the opposite order, so they grow downwards.
-  std::uint16_t* const words_end = words_.data() + words_.size();
-  std::uint16_t* word = words_end;
-  for (std::size_t i = symbols; i-- > 0;) {
-    const std::uint32_t size = intervals_[i].size;
-    std::uint32_t& x = states[i & 1];
-    // The largest state that still fits 32 bits after this symbol.
-    if (x >= std::uint64_t{size} << (32 - kProbabilityBits)) {
-      *--word = static_cast<std::uint16_t>(x);
-      x >>= 16;
-    }
-    x = (x / size << kProbabilityBits) + x % size + intervals_[i].start;
+  const auto pieces = static_cast<std::size_t>(next_ - pieces_.data());
+  std::array<std::uint64_t, kRansLanes> states;
+  states.fill(kRansLow);
+  // At most one word a piece, and one that is written but not kept. They are decoded in the
+  // opposite order, so they grow downwards.
+  if (words_.size() < pieces + 1) words_.resize(pieces + 1);
+  std::uint32_t* const words_end = words_.data() + words_.size();
+  std::uint32_t* word = words_end;
+  for (std::size_t i = pieces; i-- > 0;) {
+    const Piece& piece = pieces_[i];
+    const std::uint64_t size = piece.interval.size;
+    const unsigned count = piece.bits >> 2 & 63;
+    std::uint64_t& state = states[piece.bits & 3];
+    std::uint64_t x = state;
+    // Whether the state would outgrow its bits with this piece.
+    const bool full = x >= size << (kRansLowBits + kRansWordBits - kProbabilityBits - count);
+    word[-1] = static_cast<std::uint32_t>(x);
+    word -= full ? 1 : 0;
+    x >>= full ? kRansWordBits : 0;
+    x = x << count | piece.bits >> 8;
+    const std::uint64_t quotient = x / size;
+    state = (quotient << kProbabilityBits) + (x - quotient * size) + piece.interval.start;
   }
-  const unsigned tail = (held_count_ + 7) / 8;
-  const auto bit_bytes = static_cast<std::size_t>(next_bits_ - bits_.data());
-  out->reserve(out->size() + 8 + 2 * symbols + bit_bytes + tail);
+  const auto words = static_cast<std::size_t>(words_end - word);
+  out->reserve(out->size() + kRansLanes * kRansStateBytes + sizeof(std::uint32_t) * words);
   ByteWriter writer(out);
-  writer.Le32(states[0]);
-  writer.Le32(states[1]);
-  for (; word != words_end; ++word) writer.Le16(*word);
-  for (unsigned i = tail; i-- > 0;) writer.U8(static_cast<std::uint8_t>(held_ >> (8 * i)));
-  out->insert(out->end(), std::make_reverse_iterator(next_bits_),
-              std::make_reverse_iterator(bits_.data()));
+  for (const std::uint64_t state : states)
+    for (unsigned i = 0; i < kRansStateBytes; ++i)
+      writer.U8(static_cast<std::uint8_t>(state >> (8 * i)));
+  for (; word != words_end; ++word) writer.Le32(*word);
 }
 
-RansDecoder::RansDecoder(ByteView bytes) {
-  ByteReader reader(bytes);
-  states_[0] = reader.Le32();
-  states_[1] = reader.Le32();
-  overrun_ = !reader.ok();
-  const ByteView rest = reader.Rest();
-  begin_ = position_ = rest.begin();
-  end_ = back_ = rest.end();
-}
-
-/// Zeros past the end, which AtEnd() finds.
-void RansDecoder::RefillLastBits() {
-  while (held_count_ < kMaxPlainBits) {
-    std::uint64_t byte = 0;
-    if (back_ != begin_) {
-      byte = *--back_;
-    } else {
-      --missing_;
-    }
-    held_ |= byte << held_count_;
-    held_count_ += 8;
-  }
+RansDecoder::RansDecoder(ByteView bytes, std::size_t ahead, std::vector<std::uint8_t>* padded) {
+  constexpr std::size_t kStates = kRansLanes * kRansStateBytes;
+  constexpr std::size_t kWord = sizeof(std::uint32_t);
+  const std::size_t size = std::max(bytes.size, kStates);
+  padded->assign(size + (ahead + 2) * kWord, 0);
+  if (bytes.size > 0) std::memcpy(padded->data(), bytes.data, bytes.size);
+  for (unsigned lane = 0; lane < kRansLanes; ++lane)
+    for (unsigned i = 0; i < kRansStateBytes; ++i)
+      states_[lane] |= std::uint64_t{(*padded)[lane * kRansStateBytes + i]} << (8 * i);
+  position_ = padded->data() + kStates;
+  end_ = padded->data() + size;
+  if (bytes.size < kStates) ++position_;  // overran() for good
 }
 
 bool RansDecoder::AtEnd() const {
-  // Whole bytes that were taken but not used are given back; zeros from past the end are among
-  // them, or they were used and the stream is damaged.
-  const auto unused = static_cast<std::ptrdiff_t>(held_count_ / 8);
-  const auto partial = held_ & ((1U << held_count_ % 8) - 1);
-  return !overrun_ && position_ - begin_ == back_ - begin_ + unused + missing_ && partial == 0 &&
-         states_[0] == kRansLow && states_[1] == kRansLow;
+  bool home = position_ == end_;
+  for (const std::uint64_t state : states_) home = home && state == kRansLow;
+  return home;
 }
 
 }  // namespace lidar::codec

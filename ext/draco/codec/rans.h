@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// An entropy coder: two interleaved 32-bit rANS states for symbols, and plain bits beside them.
+// An entropy coder: four interleaved rANS states for symbols and the plain bits behind them.
 #pragma once
 #include <array>
 #include <cstddef>
@@ -12,117 +12,151 @@
 
 namespace lidar::codec {
 
-/// J. Duda, "Asymmetric numeral systems" (2013), in the form of F. Giesen's "rans_word": a state
-/// in kRansLow .. 2^32 - 1, refilled by 16 bits at a time. Symbols alternate between two states,
-/// which lets a processor work on two at once. Words are read from the front of the stream, plain
-/// bits from its back, and an undamaged stream ends where they meet.
-constexpr std::uint32_t kRansLow = 1U << 16;
-constexpr unsigned kMaxPlainBits = 28;
+/// J. Duda, "Asymmetric numeral systems" (2013), with states of 56 bits, refilled by 32 bits at a
+/// time. Four chains of symbols, the lanes, have a state each: a processor works on all of them at
+/// once, because none waits for another.
+constexpr unsigned kRansLanes = 4;
+constexpr unsigned kRansLowBits = 24;
+constexpr std::uint64_t kRansLow = std::uint64_t{1} << kRansLowBits;
+constexpr unsigned kRansWordBits = 32;
+constexpr unsigned kRansStateBytes = (kRansLowBits + kRansWordBits) / 8;
+/// Bits that may follow a symbol, and bits on their own: a state of kRansLow can give no more.
+constexpr unsigned kMaxJointBits = kRansLowBits - kProbabilityBits;
+constexpr unsigned kMaxPlainBits = kRansLowBits;
 
-/// Collects symbols and bits in the order in which they will be decoded; Finish() codes the
-/// symbols backwards.
+/// Collects symbols and bits in the order in which they will be decoded; Finish() codes them
+/// backwards.
 class RansEncoder {
+ private:
+  struct Piece {
+    Interval interval;
+    std::uint32_t bits;  // 24 bits, their count in 6, the lane in 2
+  };
+
  public:
-  /// Starts a stream of at most `symbols` symbols and as many pieces of bits.
-  void Start(std::size_t symbols) {
-    if (intervals_.size() < symbols) intervals_.resize(symbols);
-    if (bits_.size() < 4 * symbols + 8) bits_.resize(4 * symbols + 8);
-    next_interval_ = intervals_.data();
-    next_bits_ = bits_.data();
-    held_ = 0;
-    held_count_ = 0;
-  }
-  void Put(unsigned symbol, NibbleModel* model) {
-    *next_interval_++ = model->IntervalOf(symbol);
-    model->Update(symbol);
-  }
-  /// The low `count` <= kMaxPlainBits of `value`.
-  void PutBits(std::uint32_t value, unsigned count) {
-    held_ |= std::uint64_t{value & ((1U << count) - 1)} << held_count_;
-    held_count_ += count;
-    if (held_count_ < 32) return;
-    const auto low = static_cast<std::uint32_t>(held_);
-    std::memcpy(next_bits_, &low, sizeof low);
-    next_bits_ += sizeof low;
-    held_ >>= 32;
-    held_count_ -= 32;
+  /// Starts a stream of at most `pieces` calls of Put() and PutBits().
+  void Start(std::size_t pieces) {
+    if (pieces_.size() < pieces) pieces_.resize(pieces);
+    next_ = pieces_.data();
   }
   /// Appends the stream to `out`.
   void Finish(std::vector<std::uint8_t>* out);
 
+  /// Writes to an encoder until it goes out of scope; only one at a time.
+  class Writer {
+   public:
+    explicit Writer(RansEncoder* encoder) : encoder_(encoder), next_(encoder->next_) {}
+    Writer(const Writer&) = delete;
+    Writer& operator=(const Writer&) = delete;
+    ~Writer() { encoder_->next_ = next_; }
+
+    /// A symbol, and the low `count` <= kMaxJointBits of `bits`, the others of which are 0.
+    [[gnu::always_inline]] void Put(unsigned lane, unsigned symbol, NibbleModel* model,
+                                    std::uint32_t bits = 0, unsigned count = 0) {
+      *next_++ = {model->IntervalOf(symbol), bits << 8 | count << 2 | lane};
+      model->Update(symbol);
+    }
+    /// The low `count` <= kMaxPlainBits of `bits`, the others of which are 0.
+    void PutBits(unsigned lane, std::uint32_t bits, unsigned count) {
+      *next_++ = {{0, kProbabilityOne}, bits << 8 | count << 2 | lane};
+    }
+
+   private:
+    RansEncoder* encoder_;
+    Piece* next_;
+  };
+
  private:
-  std::vector<Interval> intervals_;
-  std::vector<std::uint8_t> bits_;
-  std::vector<std::uint16_t> words_;
-  Interval* next_interval_ = nullptr;
-  std::uint8_t* next_bits_ = nullptr;
-  std::uint64_t held_ = 0;
-  unsigned held_count_ = 0;
+  std::vector<Piece> pieces_;
+  std::vector<std::uint32_t> words_;
+  Piece* next_ = nullptr;
 };
 
+/// Copies are cheap: a loop works on one of its own, which can live in registers.
 class RansDecoder {
  public:
-  explicit RansDecoder(ByteView bytes);
+  /// `padded` is where the words are kept, with room for `ahead` calls of GetBits() past the end:
+  /// whoever calls it asks overran() at least as often as that.
+  RansDecoder(ByteView bytes, std::size_t ahead, std::vector<std::uint8_t>* padded);
 
-  unsigned Get(NibbleModel* model) {
-    const std::uint32_t slot = states_[0] & (kProbabilityOne - 1);
+  /// More was read than there is: the stream is damaged, and not to be read any further.
+  bool overran() const { return position_ > end_; }
+
+  /// To be followed by GetBits() of the same lane, with 0 where there are none.
+  unsigned Get(unsigned lane, NibbleModel* model) {
+    const std::uint64_t x = states_[lane];
+    const auto slot = static_cast<std::uint32_t>(x & (kProbabilityOne - 1));
     const unsigned symbol = model->Find(slot);
     const Interval i = model->IntervalOf(symbol);
-    std::uint32_t x = i.size * (states_[0] >> kProbabilityBits) + slot - i.start;
-    if (x < kRansLow) x = x << 16 | NextWord();
-    states_[0] = states_[1];
-    states_[1] = x;
+    states_[lane] = i.size * (x >> kProbabilityBits) + slot - i.start;
     model->Update(symbol);
     return symbol;
   }
-  std::uint32_t GetBits(unsigned count) {
-    if (held_count_ < kMaxPlainBits) RefillBits();
-    const auto value = static_cast<std::uint32_t>(held_) & ((1U << count) - 1);
-    held_ >>= count;
-    held_count_ -= count;
-    return value;
+  std::uint32_t GetBits(unsigned lane, unsigned count) {
+    return GetBits(lane, count, (1U << count) - 1);
+  }
+  /// `mask`: that many ones.
+  std::uint32_t GetBits(unsigned lane, unsigned count, std::uint32_t mask) {
+    std::uint64_t x = states_[lane];
+    const auto bits = static_cast<std::uint32_t>(x) & mask;
+    x >>= count;
+    // Every tenth time or so, so a jump would be mispredicted: states are below 2^63.
+    const std::uint64_t refill = (x - kRansLow) >> 63;
+    states_[lane] = x << (kRansWordBits * refill) | (LoadWord() & (0 - refill));
+    position_ += sizeof(std::uint32_t) * refill;
+    return bits;
   }
   /// True where all symbols were read and the stream was one of RansEncoder: the states are back
-  /// where the encoder began and every byte was used. A damaged stream hardly ever passes.
+  /// where the encoder began and every word was used. A damaged stream hardly ever passes.
   bool AtEnd() const;
 
  private:
-  /// Zero past the end, and AtEnd() is false for good.
-  std::uint32_t NextWord() {
-    if (end_ - position_ < 2) {
-      overrun_ = true;
-      return 0;
-    }
-    const std::uint32_t word =
-        static_cast<std::uint32_t>(position_[0]) | static_cast<std::uint32_t>(position_[1]) << 8;
-    position_ += 2;
-    return word;
+  std::uint64_t LoadWord() const {
+    return std::uint64_t{position_[0]} | std::uint64_t{position_[1]} << 8 |
+           std::uint64_t{position_[2]} << 16 | std::uint64_t{position_[3]} << 24;
   }
-  /// May take words for bits where the bits end; AtEnd() knows.
-  void RefillBits() {
-    if (back_ - begin_ < 4) {
-      RefillLastBits();
-      return;
-    }
-    back_ -= 4;
-    held_ |= std::uint64_t{static_cast<std::uint32_t>(back_[3]) |
-                           static_cast<std::uint32_t>(back_[2]) << 8 |
-                           static_cast<std::uint32_t>(back_[1]) << 16 |
-                           static_cast<std::uint32_t>(back_[0]) << 24}
-             << held_count_;
-    held_count_ += 32;
-  }
-  void RefillLastBits();
 
-  std::array<std::uint32_t, 2> states_{};
-  std::uint64_t held_ = 0;
-  unsigned held_count_ = 0;
-  const std::uint8_t* begin_ = nullptr;     // of the words
+  std::array<std::uint64_t, kRansLanes> states_{};
   const std::uint8_t* position_ = nullptr;  // of the next word
   const std::uint8_t* end_ = nullptr;
-  const std::uint8_t* back_ = nullptr;  // behind the next bits
-  std::ptrdiff_t missing_ = 0;          // minus the zero bytes made up past the end
-  bool overrun_ = false;
 };
+
+/// A row of pieces is cut into lanes of nearly the same length, coded in turns: the first piece of
+/// each lane, the second of each, and so on. A short row is one lane.
+struct RowLanes {
+  explicit RowLanes(std::size_t count) : all(count) {
+    lanes = count >= kShortestLane * kRansLanes ? kRansLanes : 1;
+    turns = count / lanes;
+    rest = count % lanes;
+  }
+  /// Lanes before `rest` have one piece more than `turns`.
+  std::size_t Start(std::size_t lane) const { return lane * turns + (lane < rest ? lane : rest); }
+
+  static constexpr std::size_t kShortestLane = 64;
+  std::size_t all;
+  std::size_t lanes;
+  std::size_t turns;
+  std::size_t rest;
+};
+
+/// Calls code(lane, index) for all pieces of a row, in the order of coding.
+template <class Code>
+[[gnu::always_inline]] inline void ForEachInTurns(const RowLanes& row, Code&& code) {
+  if (row.lanes == 1) {
+    for (std::size_t i = 0; i < row.all; ++i) code(0, i);
+    return;
+  }
+  static_assert(kRansLanes == 4);
+  const std::size_t start[] = {0, row.Start(1), row.Start(2), row.Start(3)};
+  for (std::size_t i = 0; i < row.turns; ++i) {
+    code(0, i);
+    code(1, start[1] + i);
+    code(2, start[2] + i);
+    code(3, start[3] + i);
+  }
+  if (row.rest > 0) code(0, row.turns);
+  if (row.rest > 1) code(1, start[1] + row.turns);
+  if (row.rest > 2) code(2, start[2] + row.turns);
+}
 
 }  // namespace lidar::codec

@@ -58,6 +58,8 @@ TEST_P(RangeCoders, GiveBackTheBinsTheyWereGiven) {
   Codec codec(model);
   ExpectRoundTrip(test::RoomScan(model), settings, &codec);
   ExpectRoundTrip(test::RoomScan(model, 448, 64), settings, &codec);
+  ExpectRoundTrip(test::RoomScan(model, 0, 259), settings, &codec);
+  ExpectRoundTrip(test::RoomScan(model, 0, 1), settings, &codec);
   codec.decoder = RangeDecoder(model);
   ExpectRoundTrip(test::RoomScan(model, 500, 37), settings, &codec);
 }
@@ -68,7 +70,7 @@ TEST_P(RangeCoders, GiveBackNoise) {
   std::mt19937 random(5);
   Codec codec(model);
   for (const unsigned lost : {0U, 3U, 90U, 100U}) {
-    RangeImage image = test::RoomScan(model, 0, 128);
+    RangeImage image = test::RoomScan(model, 0, lost % 2 == 0 ? 128 : 511);
     for (std::size_t i = 0; i < image.size(); ++i) {
       image.ranges[i] =
           random() % 100 < lost ? 0 : 1 + static_cast<std::uint32_t>(random() % 250'000);
@@ -89,30 +91,93 @@ INSTANTIATE_TEST_SUITE_P(
         CodingCase{RangeCoder::kAdaptive, 40.5, 0}, CodingCase{RangeCoder::kAdaptive, 41, 8},
         CodingCase{RangeCoder::kAdaptive, 1, 1}, CodingCase{RangeCoder::kAdaptive, 65'535, 8}));
 
-TEST(Rans, GivesBackEverySymbolWhateverTheModelSaw) {
+struct Piece {
+  unsigned lane;
+  unsigned symbol;
+  std::uint32_t bits;
+  unsigned count;
+  std::uint32_t more;  // without a symbol
+};
+
+std::vector<Piece> RandomPieces(std::size_t count) {
   std::mt19937 random(3);
-  std::vector<unsigned> symbols;
-  for (int i = 0; i < 20'000; ++i) {
+  std::vector<Piece> pieces(count);
+  for (std::size_t i = 0; i < count; ++i) {
     const auto r = static_cast<unsigned>(random());
-    symbols.push_back(i < 10'000 ? 7U : r % (1U << (r >> 8) % 5));
+    Piece& piece = pieces[i];
+    piece.lane = r >> 30;
+    piece.symbol = i < count / 2 ? 7U : r % (1U << (r >> 8) % 5);
+    piece.count = (r >> 12) % (kMaxJointBits + 1);
+    piece.bits = static_cast<std::uint32_t>(random()) & ((1U << piece.count) - 1);
+    piece.more = static_cast<std::uint32_t>(random()) & ((1U << kMaxPlainBits) - 1);
   }
+  return pieces;
+}
+
+std::vector<std::uint8_t> Coded(const std::vector<Piece>& pieces) {
   RansEncoder encoder;
-  encoder.Start(symbols.size());
+  encoder.Start(2 * pieces.size());
   NibbleModel model;
-  for (std::size_t i = 0; i < symbols.size(); ++i) {
-    encoder.Put(symbols[i], &model);
-    encoder.PutBits(static_cast<std::uint32_t>(i), static_cast<unsigned>(i % 13));
+  {
+    RansEncoder::Writer writer(&encoder);
+    for (const Piece& piece : pieces) {
+      writer.Put(piece.lane, piece.symbol, &model, piece.bits, piece.count);
+      if (piece.symbol == 3) writer.PutBits(piece.lane, piece.more, kMaxPlainBits);
+    }
   }
   std::vector<std::uint8_t> bytes;
   encoder.Finish(&bytes);
-  RansDecoder decoder({bytes.data(), bytes.size()});
-  NibbleModel again;
-  for (std::size_t i = 0; i < symbols.size(); ++i) {
-    ASSERT_EQ(decoder.Get(&again), symbols[i]);
-    ASSERT_EQ(decoder.GetBits(static_cast<unsigned>(i % 13)), i & ((1U << i % 13) - 1));
+  return bytes;
+}
+
+TEST(Rans, GivesBackEverySymbolWhateverTheModelSaw) {
+  const auto pieces = RandomPieces(20'000);
+  const auto bytes = Coded(pieces);
+  std::vector<std::uint8_t> padded;
+  RansDecoder decoder({bytes.data(), bytes.size()}, 2 * pieces.size(), &padded);
+  NibbleModel model;
+  for (const Piece& piece : pieces) {
+    ASSERT_EQ(decoder.Get(piece.lane, &model), piece.symbol);
+    ASSERT_EQ(decoder.GetBits(piece.lane, piece.count), piece.bits);
+    if (piece.symbol == 3) {
+      ASSERT_EQ(decoder.GetBits(piece.lane, kMaxPlainBits), piece.more);
+    }
   }
   EXPECT_TRUE(decoder.AtEnd());
+  EXPECT_FALSE(decoder.overran());
 }
+
+TEST(Rans, NoticesAStreamThatEndsTooEarly) {
+  const auto pieces = RandomPieces(2'000);
+  const auto bytes = Coded(pieces);
+  for (const std::size_t missing :
+       {bytes.size(), bytes.size() - 27, bytes.size() / 2, std::size_t{4}, std::size_t{1}}) {
+    std::vector<std::uint8_t> padded;
+    RansDecoder decoder({bytes.data(), bytes.size() - missing}, 2 * pieces.size(), &padded);
+    NibbleModel model;
+    for (const Piece& piece : pieces) {
+      const unsigned symbol = decoder.Get(piece.lane, &model);
+      decoder.GetBits(piece.lane, piece.count);
+      if (symbol == 3) decoder.GetBits(piece.lane, kMaxPlainBits);
+    }
+    EXPECT_FALSE(decoder.AtEnd()) << missing;
+  }
+}
+
+class Rows : public ::testing::TestWithParam<std::size_t> {};
+
+TEST_P(Rows, AreCodedWholeAndEveryLaneInOrder) {
+  const RowLanes row(GetParam());
+  std::vector<int> seen(GetParam());
+  std::size_t next[kRansLanes];
+  for (std::size_t lane = 0; lane < kRansLanes; ++lane) next[lane] = row.Start(lane);
+  ForEachInTurns(row, [&](unsigned lane, std::size_t i) {
+    ASSERT_EQ(i, next[lane]++);
+    ++seen[i];
+  });
+  EXPECT_EQ(seen, std::vector<int>(GetParam(), 1));
+}
+INSTANTIATE_TEST_SUITE_P(All, Rows, ::testing::Values(1, 4, 255, 256, 257, 258, 259, 1024, 16'384));
 
 struct StreamCase {
   const char* name;
@@ -283,6 +348,7 @@ class HostileHeaders : public ::testing::Test {
     header.beams = 32;
     header.columns = 64;
     header.grid = grid;
+    header.coder = RangeCoder::kAdaptive;
     std::vector<std::uint8_t> bytes;
     header.Write(&bytes);
     return bytes;
@@ -295,6 +361,22 @@ TEST_F(HostileHeaders, OfOtherVersionsAreRefused) {
   for (const unsigned version : {0U, 1U, RangeHeader::kVersion + 1U, 15U}) {
     bytes[0] = static_cast<std::uint8_t>(version << 4 | (bytes[0] & 15U));
     EXPECT_FALSE(Reads(bytes)) << version;
+  }
+}
+
+TEST_F(HostileHeaders, WithAMaskThatTheyDoNotNeedOrLackAreRefused) {
+  RangeHeader header;
+  header.beams = 32;
+  header.columns = 64;
+  header.coder = RangeCoder::kDraco;
+  header.has_gaps = true;
+  for (const std::uint32_t mask_size : {0U, 1U}) {
+    header.mask_size = mask_size;
+    std::vector<std::uint8_t> bytes;
+    header.Write(&bytes);
+    EXPECT_FALSE(Reads(bytes)) << "of " << mask_size << " bytes, of which there is none";
+    bytes.push_back(0);
+    EXPECT_EQ(Reads(bytes), mask_size == 1);
   }
 }
 
