@@ -13,9 +13,10 @@ using lidar::codec::SliceDecoder;
 
 constexpr std::uint32_t kMaxPoints = 1U << 16;
 
-lidar::SensorModel Sensor(std::uint32_t beams) {
+/// Rows of 512 are coded in lanes, those of 64 are not.
+lidar::SensorModel Sensor(std::uint32_t beams, std::uint32_t columns) {
   lidar::SensorModel model;
-  model.columns_per_scan = 64;
+  model.columns_per_scan = columns;
   for (std::uint32_t i = 0; i < beams; ++i)
     model.beams.push_back({0.5, 10.0 - i, static_cast<int>(i % 3)});
   return model;
@@ -28,7 +29,7 @@ lidar::codec::CloudFormat Format(std::uint8_t choice) {
                         : "x:F32:0,y:F32:4,z:F32:8");
   format.layout.point_step = format.layout.fields.MinimumStep();
   format.height = (choice & 4) != 0 ? 16 : 4;
-  format.sensor_model = Sensor(format.height);
+  format.sensor_model = Sensor(format.height, (choice & 8) != 0 ? 512 : 64);
   return format;
 }
 
