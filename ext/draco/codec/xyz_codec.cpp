@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include "draco/codec/xyz_codec.h"
 
+#include <draco/attributes/attribute_quantization_transform.h>
 #include <draco/compression/decode.h>
 #include <draco/compression/encode.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstring>
 #include <new>
 #include <optional>
 #include <stdexcept>
@@ -104,18 +106,54 @@ bool Encode(const ::draco::PointCloud& points, const Box& box, const Grid& grid,
   return encoder.EncodePointCloudToBuffer(points, buffer).ok();
 }
 
-/// Draco's attribute of that type as floats, `components` a point.
-bool GetAttribute(const ::draco::PointCloud& cloud, GeometryAttribute::Type type,
-                  std::int8_t components, std::vector<float>* values) {
-  const ::draco::PointAttribute* attribute = cloud.GetNamedAttribute(type);
-  if (attribute == nullptr || attribute->data_type() != ::draco::DT_FLOAT32 ||
-      attribute->num_components() != components || !attribute->is_mapping_identity() ||
-      attribute->byte_stride() != static_cast<std::int64_t>(sizeof(float)) * components ||
-      attribute->size() < cloud.num_points()) {
+/// Attributes come as the integers of their grid, with it. Draco would write the floats value by
+/// value, which is a fifth of its time.
+void LeaveQuantized(::draco::Decoder* decoder) {
+  decoder->SetSkipAttributeTransform(GeometryAttribute::POSITION);
+  decoder->SetSkipAttributeTransform(GeometryAttribute::GENERIC);
+}
+
+/// `bytes` hold `values` as integers of the attribute's grid. In floats, as Draco does it itself.
+template <std::size_t kComponents>
+bool FromGrid(const ::draco::PointAttribute& attribute, const std::uint8_t* bytes,
+              std::vector<float>* values) {
+  ::draco::AttributeQuantizationTransform grid;
+  if (!grid.InitFromAttribute(attribute) || grid.quantization_bits() < 1 ||
+      grid.quantization_bits() > kMaxBits) {
     return false;
   }
-  values->resize(std::size_t{cloud.num_points()} * static_cast<std::size_t>(components));
-  attribute->buffer()->Read(0, values->data(), values->size() * sizeof(float));
+  std::array<float, kComponents> low;
+  std::copy_n(grid.min_values().begin(), kComponents, low.begin());
+  const float step = grid.range() / static_cast<float>((1U << grid.quantization_bits()) - 1);
+  for (std::size_t i = 0; i < values->size(); i += kComponents) {
+    for (std::size_t axis = 0; axis < kComponents; ++axis) {
+      std::int32_t cell = 0;
+      std::memcpy(&cell, bytes + (i + axis) * sizeof cell, sizeof cell);
+      (*values)[i + axis] = static_cast<float>(cell) * step + low[axis];
+    }
+  }
+  return true;
+}
+
+/// Draco's attribute of that type as floats, so many a point.
+template <std::size_t kComponents>
+bool GetAttribute(const ::draco::PointCloud& cloud, GeometryAttribute::Type type,
+                  std::vector<float>* values) {
+  const ::draco::PointAttribute* attribute = cloud.GetNamedAttribute(type);
+  const std::size_t count = std::size_t{cloud.num_points()} * kComponents;
+  if (attribute == nullptr || attribute->num_components() != kComponents ||
+      !attribute->is_mapping_identity() || attribute->size() < cloud.num_points() ||
+      attribute->byte_stride() != static_cast<std::int64_t>(sizeof(float) * kComponents) ||
+      attribute->buffer()->data_size() < count * sizeof(float)) {
+    return false;
+  }
+  values->resize(count);
+  const std::uint8_t* bytes = attribute->buffer()->data();
+  if (attribute->data_type() == ::draco::DT_FLOAT32) {
+    std::memcpy(values->data(), bytes, count * sizeof(float));
+  } else if (!FromGrid<kComponents>(*attribute, bytes, values)) {
+    return false;
+  }
   return std::all_of(values->begin(), values->end(), [](float v) { return std::isfinite(v); });
 }
 
@@ -153,13 +191,14 @@ bool DecodeXyz(ByteView stream, std::uint32_t max_points, XyzCloud* cloud) {
     ::draco::DecoderBuffer buffer;
     buffer.Init(reinterpret_cast<const char*>(stream.data), stream.size);
     ::draco::Decoder decoder;
+    LeaveQuantized(&decoder);
     auto decoded = decoder.DecodePointCloudFromBuffer(&buffer);
     if (!decoded.ok()) return false;
     const ::draco::PointCloud& points = *decoded.value();
     return points.num_points() == summary->points &&
-           GetAttribute(points, GeometryAttribute::POSITION, 3, &cloud->xyz) &&
+           GetAttribute<3>(points, GeometryAttribute::POSITION, &cloud->xyz) &&
            (points.GetNamedAttribute(GeometryAttribute::GENERIC) == nullptr ||
-            GetAttribute(points, GeometryAttribute::GENERIC, 1, &cloud->intensity));
+            GetAttribute<1>(points, GeometryAttribute::GENERIC, &cloud->intensity));
   } catch (const std::bad_alloc&) {
     return false;
   } catch (const std::length_error&) {
