@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Size and speed of the range and xyz codecs on real scans, one thread.
+// Size and speed of the range and xyz codecs on real scans; one thread where nothing else is said.
 #include <benchmark/benchmark.h>
 
 #include <cstdlib>
@@ -62,19 +62,30 @@ void Report(benchmark::State& state, double returns, double bytes) {
   state.counters["bits/return"] = 8 * bytes / returns;
 }
 
-void Encode(benchmark::State& state, codec::Geometry geometry) {
-  Setup setup(state, geometry);
+void EncodeAll(Setup* setup, benchmark::State& state) {
   double returns = 0;
   double bytes = 0;
   for (auto _ : state) {
     returns = bytes = 0;
-    for (const CapturedSlice& slice : setup.capture.slices) {
-      const auto encoded = setup.EncodeSlice(slice);
+    for (const CapturedSlice& slice : setup->capture.slices) {
+      const auto encoded = setup->EncodeSlice(slice);
       returns += static_cast<double>(encoded.returns);
       bytes += static_cast<double>(encoded.bytes.size());
     }
   }
   Report(state, returns, bytes);
+}
+
+void Encode(benchmark::State& state, codec::Geometry geometry) {
+  Setup setup(state, geometry);
+  EncodeAll(&setup, state);
+}
+
+/// Whole scans; by the clock, because the threads share it.
+void EncodeWithThreads(benchmark::State& state) {
+  Setup setup(state, codec::Geometry::kRange);
+  setup.encoder.set_threads(static_cast<unsigned>(state.range(5)));
+  EncodeAll(&setup, state);
 }
 
 void Decode(benchmark::State& state, codec::Geometry geometry) {
@@ -119,11 +130,21 @@ void RangeCases(benchmark::internal::Benchmark* b) {
 
 void XyzCases(benchmark::internal::Benchmark* b) {
   b->ArgNames({"source", "slices", "level", "error_mm", "intensity"});
-  for (const int level : {0, 1, 7})
-    for (const int source : {0, 1}) b->Args({source, 1, level, 20, 0});
-  b->Args({1, 8, 7, 20, 0})->Args({1, 1, 7, 20, 5})->Unit(benchmark::kMillisecond);
+  // Draco's coders: sequential, and the four modes of its kd-tree.
+  for (const int level : {0, 1, 3, 5, 7})
+    for (const int slices : {1, 8}) b->Args({1, slices, level, 20, 0});
+  for (const int level : {0, 7}) b->Args({0, 1, level, 20, 0})->Args({1, 1, level, 20, 5});
+  b->Unit(benchmark::kMillisecond);
 }
 
+void ThreadCases(benchmark::internal::Benchmark* b) {
+  b->ArgNames({"source", "slices", "coder", "error_mm", "intensity", "threads"});
+  for (const int bits : {0, 5})
+    for (const int threads : {1, 2, 4}) b->Args({1, 1, 3, 20, bits, threads});
+  b->Unit(benchmark::kMillisecond)->UseRealTime()->MeasureProcessCPUTime();
+}
+
+BENCHMARK(EncodeWithThreads)->Apply(ThreadCases);
 BENCHMARK_CAPTURE(Encode, range, codec::Geometry::kRange)->Apply(RangeCases);
 BENCHMARK_CAPTURE(Decode, range, codec::Geometry::kRange)->Apply(RangeCases);
 BENCHMARK_CAPTURE(Encode, xyz, codec::Geometry::kXyz)->Apply(XyzCases);

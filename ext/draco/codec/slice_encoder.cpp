@@ -2,6 +2,8 @@
 #include "draco/codec/slice_encoder.h"
 
 #include <algorithm>
+#include <functional>
+#include <system_error>
 #include <thread>
 #include <utility>
 
@@ -10,21 +12,34 @@ namespace {
 
 constexpr unsigned kTryBothEvery = 64;  // slices
 
-/// Columns [first, first + count) of `image`.
-RangeImage Sector(const RangeImage& image, std::uint32_t first, std::uint32_t count,
-                  std::uint32_t columns_per_scan) {
-  RangeImage sector;
-  sector.beams = image.beams;
-  sector.columns = count;
-  sector.first_column = (image.first_column + first) % columns_per_scan;
-  for (std::size_t row = first; row < image.size(); row += image.columns) {
-    const auto ranges = image.ranges.begin() + static_cast<std::ptrdiff_t>(row);
-    sector.ranges.insert(sector.ranges.end(), ranges, ranges + count);
+/// Columns [first, first + sector->columns) of `image`.
+void CopySector(const RangeImage& image, std::uint32_t first, RangeImage* sector) {
+  sector->beams = image.beams;
+  sector->ranges.resize(sector->size());
+  sector->intensity.resize(image.intensity.empty() ? 0 : sector->size());
+  for (std::size_t beam = 0; beam < image.beams; ++beam) {
+    const std::size_t from = beam * image.columns + first;
+    const std::size_t to = beam * sector->columns;
+    std::copy_n(&image.ranges[from], sector->columns, &sector->ranges[to]);
     if (image.intensity.empty()) continue;
-    const auto levels = image.intensity.begin() + static_cast<std::ptrdiff_t>(row);
-    sector.intensity.insert(sector.intensity.end(), levels, levels + count);
+    std::copy_n(&image.intensity[from], sector->columns, &sector->intensity[to]);
   }
-  return sector;
+}
+
+/// Calls task(0 .. count - 1), each in a thread of its own, as long as the system has any to give.
+template <class Task>
+void CallInThreads(std::uint32_t count, const Task& task) {
+  std::vector<std::thread> workers;
+  workers.reserve(count);
+  std::uint32_t next = 1;
+  try {
+    for (; next < count; ++next) workers.emplace_back(std::cref(task), next);
+  } catch (const std::system_error&) {
+    // The rest is for this thread.
+  }
+  task(0);
+  for (; next < count; ++next) task(next);
+  for (std::thread& worker : workers) worker.join();
 }
 
 }  // namespace
@@ -129,23 +144,23 @@ SliceResult SliceEncoder::EncodeRange(const SliceSettings& settings, EncodedSlic
   return SliceResult::kEncoded;
 }
 
-bool SliceEncoder::EncodeBlocks(const RangeSettings& settings, std::uint32_t blocks,
+bool SliceEncoder::EncodeBlocks(const RangeSettings& settings, std::uint32_t count,
                                 std::vector<std::uint8_t>* out) {
-  std::vector<std::vector<std::uint8_t>> parts(blocks);
+  while (blocks_.size() < count) blocks_.emplace_back(*format_.sensor_model);
   const auto encode = [&](std::uint32_t i) {
-    const std::uint32_t first = image_.columns * i / blocks;
-    const std::uint32_t end = image_.columns * (i + 1) / blocks;
-    RangeEncoder encoder(*format_.sensor_model);
-    encoder.Encode(Sector(image_, first, end - first, format_.sensor_model->columns_per_scan),
-                   settings, &parts[i]);
+    Block& block = blocks_[i];
+    const std::uint32_t first = image_.columns * i / count;
+    block.image.columns = image_.columns * (i + 1) / count - first;
+    block.image.first_column =
+        (image_.first_column + first) % format_.sensor_model->columns_per_scan;
+    CopySector(image_, first, &block.image);
+    block.bytes.clear();
+    block.encoder.Encode(block.image, settings, &block.bytes);
   };
-  std::vector<std::thread> workers;
-  for (std::uint32_t i = 1; i < blocks; ++i) workers.emplace_back(encode, i);
-  encode(0);
-  for (std::thread& worker : workers) worker.join();
-  for (const auto& part : parts) {
-    if (part.empty()) return false;
-    out->insert(out->end(), part.begin(), part.end());
+  CallInThreads(count, encode);
+  for (std::uint32_t i = 0; i < count; ++i) {
+    if (blocks_[i].bytes.empty()) return false;
+    out->insert(out->end(), blocks_[i].bytes.begin(), blocks_[i].bytes.end());
   }
   return true;
 }

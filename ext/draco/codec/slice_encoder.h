@@ -80,8 +80,15 @@ class SliceEncoder {
   static constexpr std::size_t kMinBlockReturns = 8'000;
 
  private:
+  /// A sector that a thread of its own encodes.
+  struct Block {
+    explicit Block(const SensorModel& model) : encoder(model) {}
+    RangeEncoder encoder;
+    RangeImage image;
+    std::vector<std::uint8_t> bytes;
+  };
   SliceResult EncodeRange(const SliceSettings& settings, EncodedSlice* slice);
-  bool EncodeBlocks(const RangeSettings& settings, std::uint32_t blocks,
+  bool EncodeBlocks(const RangeSettings& settings, std::uint32_t count,
                     std::vector<std::uint8_t>* out);
   SliceResult EncodeXyz(const SliceSettings& settings, EncodedSlice* slice);
   bool TryBothMethods(const XyzSettings& settings, EncodedSlice* slice, XyzResult* result);
@@ -89,6 +96,7 @@ class SliceEncoder {
   CloudFormat format_;
   RangeCoder coder_ = kDefaultRangeCoder;
   std::optional<RangeEncoder> range_encoder_;
+  std::vector<Block> blocks_;
   RangeImage image_;
   bool has_intensity_ = false;
   FullScale full_scale_ = FullScale::kByte;
