@@ -30,6 +30,11 @@ gst::PadPtr PadOf(GstElement* pipeline, const char* element, const char* pad) {
   return p;
 }
 
+gboolean CallHandler(gpointer handler) {
+  (*static_cast<std::function<void()>*>(handler))();
+  return G_SOURCE_CONTINUE;
+}
+
 }  // namespace
 
 std::int64_t UnixNow() {
@@ -81,13 +86,7 @@ void MediaProcess::OnEvent(const char* element, const char* pad, EventHandler ha
 }
 
 void MediaProcess::Every(guint interval_ms, std::function<void()> handler) {
-  g_timeout_add_full(
-      G_PRIORITY_DEFAULT, interval_ms,
-      [](gpointer data) -> gboolean {
-        static_cast<Timer*>(data)->handler();
-        return G_SOURCE_CONTINUE;
-      },
-      new Timer{std::move(handler)}, [](gpointer data) { delete static_cast<Timer*>(data); });
+  periodic_.push_back({interval_ms, std::move(handler)});
 }
 
 void MediaProcess::Write(const nlohmann::json& record) { records_.Write(record.dump() + '\n'); }
@@ -161,15 +160,17 @@ int MediaProcess::Run() {
   GstBus* bus = gst_element_get_bus(pipeline_.get());
   const guint watch = gst_bus_add_watch(bus, OnMessage, this);
   gst_object_unref(bus);
-  const guint signals[] = {g_unix_signal_add(SIGINT, OnSignal, this),
-                           g_unix_signal_add(SIGTERM, OnSignal, this)};
+  std::vector<guint> sources = {watch, g_unix_signal_add(SIGINT, OnSignal, this),
+                                g_unix_signal_add(SIGTERM, OnSignal, this)};
+  for (Periodic& periodic : periodic_)
+    sources.push_back(g_timeout_add(periodic.interval_ms, CallHandler, &periodic.handler));
   // A reader that has gone must not kill us before EOS.
   std::signal(SIGPIPE, SIG_IGN);
   gst_element_set_state(pipeline_.get(), GST_STATE_PLAYING);
   Write(nlohmann::json{{"type", "playing"}, {"unix_ns", UnixNow()}});
   g_main_loop_run(loop_);
-  for (const guint id : signals) g_source_remove(id);
-  g_source_remove(watch);
+  for (const Periodic& periodic : periodic_) periodic.handler();
+  for (const guint id : sources) g_source_remove(id);
   gst_element_set_state(pipeline_.get(), GST_STATE_NULL);
   return exit_code_;
 }

@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "common/async_writer.h"
 #include "common/refs.h"
@@ -34,7 +35,7 @@ class MediaProcess {
   using EventHandler = std::function<void(GstEvent*)>;
   void OnBuffer(const char* element, const char* pad, BufferHandler handler);
   void OnEvent(const char* element, const char* pad, EventHandler handler);
-  /// Calls `handler` at this interval, in the main loop.
+  /// Calls `handler` at this interval, in the main loop, and once more before the pipeline stops.
   void Every(guint interval_ms, std::function<void()> handler);
 
   /// One record on standard output.
@@ -47,7 +48,8 @@ class MediaProcess {
   int Run();
 
  private:
-  struct Timer {
+  struct Periodic {
+    guint interval_ms;
     std::function<void()> handler;
   };
   static gboolean OnMessage(GstBus* bus, GstMessage* message, gpointer self);
@@ -56,6 +58,7 @@ class MediaProcess {
 
   gst::ElementPtr pipeline_;
   GMainLoop* loop_;
+  std::vector<Periodic> periodic_;
   tools::AsyncWriter records_;
   tools::AsyncWriter clouds_;
   int exit_code_ = 0;
