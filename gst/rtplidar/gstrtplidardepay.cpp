@@ -247,6 +247,7 @@ static GstStructure* Stats(GObject* object) {
   set("scans-complete", a.slices.scans_complete);
   set("scans-incomplete", a.slices.scans_incomplete);
   set("scans-lost", a.slices.scans_lost);
+  set("scans-skipped", a.slices.scans_skipped);
   set("packets-received", a.packets_received);
   set("packets-invalid", a.packets.invalid + state.not_rtp);
   set("packets-wrong-payload-type", state.wrong_payload_type);

@@ -94,6 +94,7 @@ void Reassembler::Complete(PendingMap::iterator it, std::vector<ReceivedSlice>* 
   }
   slice.bytes = *std::move(bytes);
   has_whole_slice_ = true;
+  ledger_.BookScanId(it->first.scan, slice.fragments.start()->info.scan_id);
   BookSkipped(it->first, slice.fragments.start()->info.skipped);
   if (auto config = FindConfig(slice.fragments.start()->config_id))
     Emit(it, std::move(config), out);

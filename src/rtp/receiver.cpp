@@ -20,6 +20,7 @@ void Add(const SliceAccounts& a, SliceAccounts* sum) {
   sum->scans_complete += a.scans_complete;
   sum->scans_incomplete += a.scans_incomplete;
   sum->scans_lost += a.scans_lost;
+  sum->scans_skipped += a.scans_skipped;
 }
 
 void Add(const Reassembler& r, ReceiverAccounts* sum) {

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "base/sequence.h"
+
 namespace lidar::rtp {
 namespace {
 
@@ -114,6 +116,20 @@ void SliceLedger::BookScan(const Scan& scan) {
   }
 }
 
+/// A source that starts its numbers anew has left out nothing.
+std::uint64_t SliceLedger::SkippedBetween(ScanId before, ScanId after) {
+  const std::int64_t skipped =
+      std::int64_t{SequenceDistance(after.id, before.id)} - (after.scan - before.scan);
+  return static_cast<std::uint64_t>(std::max<std::int64_t>(skipped, 0));
+}
+
+void SliceLedger::BookScanId(std::int64_t scan, std::uint32_t id) {
+  if (latest_id_ && scan <= latest_id_->scan) return;
+  const ScanId now{scan, id};
+  if (latest_id_) accounts_.scans_skipped += SkippedBetween(*latest_id_, now);
+  latest_id_ = now;
+}
+
 std::optional<SlicePosition> SliceLedger::Overdue(Time now) const {
   std::optional<SlicePosition> limit;
   for (const Cutoff& c : cutoffs_) {
@@ -151,6 +167,9 @@ void SliceLedger::Finish() {
 
 void SliceLedger::Continue(const SliceLedger& previous) {
   if (!started() || !previous.started() || !(*previous.frontier_ < origin_)) return;
+  // All since then, this ledger's own included.
+  if (latest_id_ && previous.latest_id_)
+    accounts_.scans_skipped = SkippedBetween(*previous.latest_id_, *latest_id_);
   const auto count = static_cast<std::uint64_t>(scans_.front().slices.size());
   const SlicePosition last = *previous.frontier_;
   if (last.scan < origin_.scan) {

@@ -34,7 +34,8 @@ struct SliceAccounts {
   std::uint64_t slices_skipped = 0;          // never sent
   std::uint64_t scans_complete = 0;          // but for slices that were skipped
   std::uint64_t scans_incomplete = 0;
-  std::uint64_t scans_lost = 0;  // no slice received
+  std::uint64_t scans_lost = 0;     // no slice received
+  std::uint64_t scans_skipped = 0;  // never sent: of scans that the source numbered
 };
 
 enum class SliceOutcome : std::uint8_t {
@@ -58,6 +59,9 @@ class SliceLedger {
   Admission Admit(SlicePosition p, std::uint32_t count, Time now);
   /// The slice, which must be open, has come to its end.
   void Settle(SlicePosition p, SliceOutcome outcome);
+  /// A slice of this scan says which one the source had it as: between two scans that were sent
+  /// the source's numbers have gaps where scans were left out.
+  void BookScanId(std::int64_t scan, std::uint32_t id);
   /// The slice before `p`; none where that is before the first one that the ledger still has.
   std::optional<SlicePosition> Before(SlicePosition p) const;
 
@@ -87,6 +91,10 @@ class SliceLedger {
     bool count_known = false;  // else taken from its neighbour: no packet of it came
     bool joined_late = false;  // its beginning was sent before the receiver joined
   };
+  struct ScanId {
+    std::int64_t scan;
+    std::uint32_t id;
+  };
   struct Cutoff {
     Time time;
     SlicePosition position;
@@ -98,6 +106,7 @@ class SliceLedger {
   void Close(Scan* scan, std::uint32_t index, SliceOutcome outcome);
   void CloseFirst(Scan* scan, std::uint32_t limit);
   void BookScan(const Scan& scan);
+  static std::uint64_t SkippedBetween(ScanId before, ScanId after);
   Scan* Find(std::int64_t number);
   const Scan* Find(std::int64_t number) const;
 
@@ -106,6 +115,7 @@ class SliceLedger {
   std::int64_t first_scan_ = 0;  // number of scans_.front()
   SlicePosition origin_;         // the first slice
   std::optional<SlicePosition> frontier_;
+  std::optional<ScanId> latest_id_;
   std::deque<Cutoff> cutoffs_;  // both times and positions ascend
   SliceAccounts accounts_;
 };

@@ -359,6 +359,35 @@ TEST(SkippedSlices, DoNotInterruptTheStream) {
   EXPECT_EQ(disconts, 1U);  // the first
 }
 
+TEST(SkippedScans, AreCountedWhateverIsLostBesides) {
+  for (const bool outage : {false, true}) {
+    Receiver receiver(kReorder);
+    Sender sender;
+    auto packets = sender.ScansWithout(
+        40, [](std::uint32_t s, std::uint16_t) { return s % 4 == 1 || s % 4 == 2; });
+    packets.erase(std::remove_if(packets.begin(), packets.end(),
+                                 [&](const Wire& w) {
+                                   const bool cut = outage && w.scan > 5 && w.scan < 30;
+                                   return !w.config && (cut || w.scan == 4 || w.index == 2);
+                                 }),
+                  packets.end());
+    DeliverAll(&receiver, packets);
+    receiver.Finish();
+    EXPECT_EQ(receiver.accounts().slices.scans_skipped, 20U);
+    EXPECT_EQ(receiver.accounts().outages, outage ? 1U : 0U);
+  }
+}
+
+TEST(SkippedScans, AreNoneWhereTheSourceStartsItsNumbersAnew) {
+  Receiver receiver(kReorder);
+  Sender sender;
+  DeliverAll(&receiver, sender.Scans(50, 3));
+  SenderOptions again;
+  again.scan_number += 53;  // scans 0, 1, 2 of the source
+  DeliverAll(&receiver, Sender(again).Scans(0, 3));
+  EXPECT_EQ(receiver.accounts().slices.scans_skipped, 0U);
+}
+
 /// A slice that says that all slices before it were left out, whatever was.
 std::vector<Wire> Liar(Sender* sender, std::uint32_t scan, std::uint16_t index) {
   ScanCounter counter(SenderOptions{}.scan_number + scan - 1);

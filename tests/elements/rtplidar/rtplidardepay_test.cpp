@@ -61,6 +61,7 @@ TEST(RtpLidarDepay, TellsSlicesThatWereNeverSentFromLostOnes) {
     EXPECT_EQ(Stat(h.get(), "slices-skipped"), aggregate ? 4U : 5U);
     EXPECT_EQ(Stat(h.get(), "scans-complete"), 4U);
     EXPECT_EQ(Stat(h.get(), "scans-incomplete"), aggregate ? 0U : 1U);
+    EXPECT_EQ(Stat(h.get(), "scans-skipped"), 1U);
   }
 }
 
