@@ -76,17 +76,18 @@ void Run(Options o) {
       set.name.c_str(), o.track.mode->name.c_str(), o.track.slices, o.track.intensity_bits,
       o.track.max_error_m, 1e-6 * bounds.min.bits_per_second(),
       1e-6 * bounds.nominal.bits_per_second(), 1e-6 * bounds.max.bits_per_second());
-  std::printf("%-9s %6s %9s %9s %12s %11s %8s %12s\n", "target", "scans", "mean |e|", "p95 |e|",
-              "furthest over", "re-encoded", "skipped", "error bound");
+  std::printf("%-9s %6s %9s %9s %12s %11s %8s %12s %10s\n", "target", "scans", "mean |e|",
+              "p95 |e|", "furthest over", "re-encoded", "skipped", "error bound", "r_min off");
   if (!o.targets.empty()) o.profiles = {"recorded"};
   const bool several = o.profiles.size() > 1;
   for (const std::string& name : o.profiles) {
     const auto scans = Track(set, Targets(name, o, set.scans_per_second), o.track,
                              MakeModelOrThrow(LoadModelFile(o.model), o.rate_model));
     const TrackSummary s = Summarise(scans, o.settle, o.track.slices);
-    std::printf("%-9s %6zu %7.2f %% %7.2f %% %10.2f %% %9.1f %% %8zu %9.1f mm\n", name.c_str(),
-                scans.size(), 100 * s.mean, 100 * s.percentile_95, 100 * s.largest_over,
-                100 * s.reencoded, s.skipped, 1e3 * s.largest_bound_m);
+    std::printf("%-9s %6zu %7.2f %% %7.2f %% %10.2f %% %9.1f %% %8zu %9.1f mm %8.1f %%\n",
+                name.c_str(), scans.size(), 100 * s.mean, 100 * s.percentile_95,
+                100 * s.largest_over, 100 * s.reencoded, s.skipped, 1e3 * s.largest_bound_m,
+                100 * MinimumError(set, o.track, scans, o.settle));
     CsvFile csv(PathFor(o.csv, name, several),
                 "scan,target_bps,sent_bps,coarsest_step_m,error_bound_m,intensity_bits,"
                 "keep_fraction,skipped,slices_reencoded");

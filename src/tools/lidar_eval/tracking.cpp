@@ -115,14 +115,14 @@ std::vector<double> ReadTargets(const std::string& path, double scans_per_second
   return targets;
 }
 
-rate::RateBounds MeasureBounds(const ScanSet& set, const TrackOptions& o) {
+rate::RateBounds MeasureBounds(const ScanSet& set, const TrackOptions& o, std::size_t scan) {
   SliceCodec codec;
-  codec.Load(set.scans.front(), {});
+  codec.Load(set.scans[scan], {});
   const rate::SettingLimits limits = Parameters(codec, o).limits;
   const auto bitrate = [&](double step_m, unsigned bits) {
     double sum = 0;
     for (std::uint32_t i = 0; i < o.slices; ++i) {
-      codec.Load(set.scans.front(), {i, o.slices});
+      codec.Load(set.scans[scan], {i, o.slices});
       const auto encoded = codec.Encode(*o.mode, {step_m, bits, limits.level});
       if (encoded) sum += encoded->size.bits();
     }
@@ -132,6 +132,21 @@ rate::RateBounds MeasureBounds(const ScanSet& set, const TrackOptions& o) {
       std::min(o.intensity_bits, rate::ControllerParameters().min_intensity_bits);
   return {bitrate(limits.coarsest_step_m, least), bitrate(limits.coarsest_step_m, o.intensity_bits),
           bitrate(limits.finest_step_m, o.intensity_bits)};
+}
+
+double MinimumError(const ScanSet& set, const TrackOptions& o,
+                    const std::vector<TrackedScan>& scans, std::size_t settle) {
+  std::vector<double> minima;
+  for (std::size_t i = 0; i < set.scans.size(); ++i)
+    minima.push_back(MeasureBounds(set, o, i).min.bits_per_second());
+  double sum = 0;
+  std::size_t sent = 0;
+  for (std::size_t i = settle; i < scans.size(); ++i) {
+    if (scans[i].skipped) continue;
+    sum += std::abs(scans[i].min_bps / minima[ThereAndBack(i, minima.size())] - 1);
+    ++sent;
+  }
+  return sent > 0 ? sum / static_cast<double>(sent) : 0;
 }
 
 std::vector<TrackedScan> Track(const ScanSet& set, const std::vector<double>& targets,
@@ -149,6 +164,7 @@ std::vector<TrackedScan> Track(const ScanSet& set, const std::vector<double>& ta
       player.codec.Load(scan, {k, o.slices});
       player.Slice(static_cast<std::uint32_t>(i), k, &tracked[i]);
     }
+    tracked[i].min_bps = controller.bounds().min.bits_per_second();
   }
   return tracked;
 }

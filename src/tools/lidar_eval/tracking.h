@@ -41,6 +41,7 @@ struct TrackedScan {
   double sent_bps = 0;
   double coarsest_step_m = 0;
   double largest_bound_m = 0;  // of the error
+  double min_bps = 0;          // what the controller takes for r_min after this scan
   unsigned intensity_bits = 0;
   double keep_fraction = 1;
   bool skipped = false;
@@ -55,8 +56,12 @@ std::size_t ThereAndBack(std::size_t i, std::size_t count);
 std::vector<TrackedScan> Track(const ScanSet& set, const std::vector<double>& targets,
                                const TrackOptions& options, std::unique_ptr<rate::SizeModel> model);
 
-/// Bitrates that the error bound and the sensor's resolution allow for the source's first scan.
-rate::RateBounds MeasureBounds(const ScanSet& set, const TrackOptions& options);
+/// Bitrates that the error bound and the sensor's resolution allow for a scan of the source.
+rate::RateBounds MeasureBounds(const ScanSet& set, const TrackOptions& options,
+                               std::size_t scan = 0);
+/// Mean of |min_bps / real r_min - 1| where a scan was sent, without the first `settle`.
+double MinimumError(const ScanSet& set, const TrackOptions& options,
+                    const std::vector<TrackedScan>& scans, std::size_t settle);
 
 struct TrackSummary {
   double mean = 0;           // of |error|

@@ -208,6 +208,59 @@ TEST_P(Tracking, ComesBackToEveryScanAtOnceWhenTheTargetDoes) {
   }
 }
 
+class Ramps : public ::testing::TestWithParam<std::tuple<DegradationPreference, std::uint32_t>> {};
+
+/// Down to an eighth of the minimum and up again, 3 % a scan.
+TEST_P(Ramps, GoBelowTheMinimumAndComeBackWithoutAJolt) {
+  const auto [preference, slices] = GetParam();
+  ControllerParameters parameters = Parameters();
+  parameters.degradation = preference;
+  SyntheticCodec::Parameters codec;
+  codec.slices = slices;
+  Stream run(codec, parameters);
+  const double minimum = run.Minimum();
+  double lead = 0;  // bytes sent before their time
+  double keep = 1;
+  std::uint32_t gap = 0;
+  for (std::uint32_t i = 0; i < 200; ++i) {
+    const double share = 1.5 * std::pow(0.97, std::min(i, 199 - i));
+    const Scan scan = run.One(25 + i, share * minimum);
+    EXPECT_LE(scan.coarsest_step, 0.04);
+    if (!scan.skipped) {
+      EXPECT_NEAR(scan.keep, keep, 0.1) << i;
+      keep = scan.keep;
+    }
+    gap = scan.skipped ? gap + 1 : 0;
+    EXPECT_LE(gap, std::ceil(1.2 / std::min(1.0, share))) << i;
+    EXPECT_FALSE(share > 1.1 && (scan.keep < 1 || scan.skipped)) << i;
+    lead += scan.bytes - scan.budget;
+    EXPECT_LE(lead, 1.1 * minimum / 80) << i;
+    EXPECT_GE(lead, -1.1 * minimum / 80) << i;
+  }
+  EXPECT_EQ(keep, 1);
+}
+INSTANTIATE_TEST_SUITE_P(
+    All, Ramps,
+    ::testing::Combine(::testing::Values(DegradationPreference::kMaintainAccuracy,
+                                         DegradationPreference::kMaintainFramerate,
+                                         DegradationPreference::kBalanced),
+                       ::testing::Values(1U, 8U)));
+
+/// From four times finer steps, of a codec whose curve is not the model's.
+TEST_P(Tracking, KnowsTheMinimumWithoutEverHavingBeenThere) {
+  Stream run(Codec());
+  for (std::uint32_t i = 0; i < 100; ++i) {
+    run.One(i, 4e6);
+    double real = 0;
+    for (std::uint32_t k = 0; k < run.p.slices; ++k) {
+      const SliceFeatures f = run.codec.Features(i, k);
+      real += run.codec.Encode(f, {0.04, 0, 0}).size.bits() * run.p.scans_per_second;
+    }
+    if (i < 3) continue;
+    EXPECT_NEAR(run.controller.bounds().min.bits_per_second() / real, 1, 0.12) << i;
+  }
+}
+
 TEST_P(Tracking, LowersTheIntensityBeforeItSkips) {
   ControllerParameters parameters = Parameters();
   parameters.limits.intensity_bits = 8;
