@@ -1,0 +1,207 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Tells ThreadSanitizer what GLib and GStreamer order: their locks are futexes of their own and
+// their reference counts inline atomics, which it cannot see. Preloaded by tests/run.sh --tsan.
+#include <dlfcn.h>
+#include <glib.h>
+#include <gst/gst.h>
+
+// Macros of these names would hide the functions.
+#undef g_once_init_enter
+#undef g_once_init_leave
+
+extern "C" {
+void __tsan_acquire(void*) __attribute__((weak));
+void __tsan_release(void*) __attribute__((weak));
+}
+
+namespace {
+
+// Programs that a test starts have it preloaded too, but not ThreadSanitizer.
+void Acquire(void* p) {
+  if (__tsan_acquire != nullptr) __tsan_acquire(p);
+}
+void Release(void* p) {
+  if (__tsan_release != nullptr) __tsan_release(p);
+}
+
+template <class Function>
+Function Next(const char* name) {
+  return reinterpret_cast<Function>(dlsym(RTLD_NEXT, name));
+}
+
+}  // namespace
+
+// NAME of GLib: what is before it in other threads is seen after it.
+#define LOCKS(name, type)                                   \
+  extern "C" void name(type* m) {                           \
+    static auto* const next = Next<decltype(&name)>(#name); \
+    next(m);                                                \
+    Acquire(m);                                             \
+  }
+#define TRIES(name, type)                                   \
+  extern "C" gboolean name(type* m) {                       \
+    static auto* const next = Next<decltype(&name)>(#name); \
+    const gboolean got = next(m);                           \
+    if (got) Acquire(m);                                    \
+    return got;                                             \
+  }
+#define UNLOCKS(name, type)                                 \
+  extern "C" void name(type* m) {                           \
+    static auto* const next = Next<decltype(&name)>(#name); \
+    Release(m);                                             \
+    next(m);                                                \
+  }
+// A reference that is dropped: whoever frees has seen all that the others did.
+#define UNREFS(name, type)                                  \
+  extern "C" void name(type o) {                            \
+    static auto* const next = Next<decltype(&name)>(#name); \
+    Release(o);                                             \
+    Acquire(o);                                             \
+    next(o);                                                \
+  }
+
+LOCKS(g_mutex_lock, GMutex)
+TRIES(g_mutex_trylock, GMutex)
+UNLOCKS(g_mutex_unlock, GMutex)
+LOCKS(g_rec_mutex_lock, GRecMutex)
+TRIES(g_rec_mutex_trylock, GRecMutex)
+UNLOCKS(g_rec_mutex_unlock, GRecMutex)
+LOCKS(g_rw_lock_writer_lock, GRWLock)
+UNLOCKS(g_rw_lock_writer_unlock, GRWLock)
+LOCKS(g_rw_lock_reader_lock, GRWLock)
+UNLOCKS(g_rw_lock_reader_unlock, GRWLock)
+UNREFS(gst_mini_object_unref, GstMiniObject*)
+UNREFS(g_object_unref, gpointer)
+UNREFS(gst_object_unref, gpointer)
+
+extern "C" {
+
+void g_cond_wait(GCond* cond, GMutex* mutex) {
+  static auto* const next = Next<decltype(&g_cond_wait)>("g_cond_wait");
+  Release(mutex);
+  next(cond, mutex);
+  Acquire(mutex);
+}
+
+gboolean g_cond_wait_until(GCond* cond, GMutex* mutex, gint64 end) {
+  static auto* const next = Next<decltype(&g_cond_wait_until)>("g_cond_wait_until");
+  Release(mutex);
+  const gboolean signalled = next(cond, mutex, end);
+  Acquire(mutex);
+  return signalled;
+}
+
+// A buffer is handed on by whoever holds it, and written to by whoever holds it alone.
+gboolean gst_mini_object_is_writable(const GstMiniObject* o) {
+  static auto* const next =
+      Next<decltype(&gst_mini_object_is_writable)>("gst_mini_object_is_writable");
+  const gboolean writable = next(o);
+  if (writable) Acquire(const_cast<GstMiniObject*>(o));
+  return writable;
+}
+
+GstMiniObject* gst_mini_object_make_writable(GstMiniObject* o) {
+  static auto* const next =
+      Next<decltype(&gst_mini_object_make_writable)>("gst_mini_object_make_writable");
+  Acquire(o);
+  return next(o);
+}
+
+GstMiniObject* gst_mini_object_ref(GstMiniObject* o) {
+  static auto* const next = Next<decltype(&gst_mini_object_ref)>("gst_mini_object_ref");
+  Acquire(o);
+  return next(o);
+}
+
+// Queues: what a thread did before it put something in is seen by whoever takes it out.
+void g_async_queue_push(GAsyncQueue* queue, gpointer data) {
+  g_async_queue_lock(queue);
+  Acquire(queue);
+  g_async_queue_push_unlocked(queue, data);
+  Release(queue);
+  g_async_queue_unlock(queue);
+}
+
+gpointer g_async_queue_try_pop(GAsyncQueue* queue) {
+  g_async_queue_lock(queue);
+  Acquire(queue);
+  gpointer const data = g_async_queue_try_pop_unlocked(queue);
+  Release(queue);
+  g_async_queue_unlock(queue);
+  return data;
+}
+
+gpointer g_async_queue_timeout_pop(GAsyncQueue* queue, guint64 timeout) {
+  const gint64 end = g_get_monotonic_time() + static_cast<gint64>(MIN(timeout, G_MAXINT32));
+  for (;;) {
+    gpointer const data = g_async_queue_try_pop(queue);
+    if (data != nullptr || g_get_monotonic_time() >= end) return data;
+    g_usleep(500);
+  }
+}
+
+gpointer g_async_queue_pop(GAsyncQueue* queue) {
+  for (;;)
+    if (gpointer const data = g_async_queue_timeout_pop(queue, G_USEC_PER_SEC)) return data;
+}
+
+// The thread of a pool sees what was done before it got its work.
+struct PoolWork {
+  GFunc function;
+  gpointer user_data;
+};
+
+GThreadPool* g_thread_pool_new(GFunc function, gpointer user_data, gint threads, gboolean exclusive,
+                               GError** error) {
+  static auto* const next = Next<decltype(&g_thread_pool_new)>("g_thread_pool_new");
+  const auto run = [](gpointer data, gpointer work) {
+    Acquire(data);
+    static_cast<PoolWork*>(work)->function(data, static_cast<PoolWork*>(work)->user_data);
+  };
+  return next(run, new PoolWork{function, user_data}, threads, exclusive, error);
+}
+
+gboolean g_thread_pool_push(GThreadPool* pool, gpointer data, GError** error) {
+  static auto* const next = Next<decltype(&g_thread_pool_push)>("g_thread_pool_push");
+  Release(data);
+  return next(pool, data, error);
+}
+
+gboolean gst_bus_post(GstBus* bus, GstMessage* message) {
+  static auto* const next = Next<decltype(&gst_bus_post)>("gst_bus_post");
+  Release(bus);
+  return next(bus, message);
+}
+
+gboolean gst_element_post_message(GstElement* element, GstMessage* message) {
+  static auto* const next = Next<decltype(&gst_element_post_message)>("gst_element_post_message");
+  Release(message);
+  return next(element, message);
+}
+
+GstMessage* gst_bus_timed_pop_filtered(GstBus* bus, GstClockTime timeout, GstMessageType types) {
+  static auto* const next =
+      Next<decltype(&gst_bus_timed_pop_filtered)>("gst_bus_timed_pop_filtered");
+  GstMessage* const message = next(bus, timeout, types);
+  Acquire(bus);
+  if (message != nullptr) Acquire(message);
+  return message;
+}
+
+GstMessage* gst_bus_pop_filtered(GstBus* bus, GstMessageType types) {
+  return gst_bus_timed_pop_filtered(bus, 0, types);
+}
+
+gboolean g_once_init_enter(volatile void* location) {
+  static auto* const next = Next<gboolean (*)(volatile void*)>("g_once_init_enter");
+  const gboolean first = next(location);
+  Acquire(const_cast<void*>(location));
+  return first;
+}
+
+void g_once_init_leave(volatile void* location, gsize result) {
+  static auto* const next = Next<void (*)(volatile void*, gsize)>("g_once_init_leave");
+  Release(const_cast<void*>(location));
+  next(location, result);
+}
+}
