@@ -32,7 +32,9 @@ int Run(int argc, char** argv) {
     return lidar::demo::RunDemo(options);
   }
   gst_init(nullptr, nullptr);
-  return send->parsed() ? lidar::demo::Send(pipeline) : lidar::demo::Receive(pipeline);
+  const int code = send->parsed() ? lidar::demo::Send(pipeline) : lidar::demo::Receive(pipeline);
+  gst_deinit();
+  return code;
 }
 
 }  // namespace

@@ -205,5 +205,8 @@ int main(int argc, char** argv) {
   context.peer = CertificateIn(peer);
   gst_init(nullptr, nullptr);
   if (!MakePipeline(options.pipeline, &context)) return kUsage;
-  return Play(context.pipeline.get(), options.stats);
+  const int result = Play(context.pipeline.get(), options.stats);
+  context.pipeline.reset();
+  gst_deinit();
+  return result;
 }
