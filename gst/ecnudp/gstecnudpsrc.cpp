@@ -16,6 +16,7 @@
 #include <poll.h>
 
 #include <cerrno>
+#include <deque>
 #include <memory>
 #include <mutex>
 
@@ -84,6 +85,7 @@ struct State {
   // Of the streaming thread, between start and stop.
   WakeFd wake;
   UdpBatchReceiver batch;
+  std::deque<BufferPtr> received;  // of the last batch, to be given out
   NativeAddress last_from;
   SocketAddressPtr last_address;
   gint64 timeout_ns = -1;
@@ -174,6 +176,7 @@ static gboolean Stop(GstBaseSrc* base) {
   if (state.used && (state.used.get() != state.given.get() || state.settings.close_socket))
     g_socket_close(state.used.get(), nullptr);
   state.used.reset();
+  state.received.clear();
   return TRUE;
 }
 
@@ -219,15 +222,15 @@ static void PostTimeout(GstLidarEcnUdpSrc* self) {
 }
 
 /// Waits until datagrams are there and takes them all, up to the capacity of a batch.
-static GstFlowReturn ReceiveBatch(GstLidarEcnUdpSrc* self, GstBufferList* list) {
+static GstFlowReturn ReceiveBatch(GstLidarEcnUdpSrc* self) {
   State& state = StateOf(self);
   const int fd = g_socket_get_fd(state.used.get());
   for (;;) {
     const int n = state.batch.Receive(fd, [&](const ReceivedDatagram& d) {
       // An empty datagram has nothing for anybody.
-      if (d.size > 0) gst_buffer_list_add(list, ToBuffer(self, d));
+      if (d.size > 0) state.received.emplace_back(ToBuffer(self, d));
     });
-    if (gst_buffer_list_length(list) > 0) return GST_FLOW_OK;
+    if (!state.received.empty()) return GST_FLOW_OK;
     if (n < 0 && errno != EAGAIN && errno != EWOULDBLOCK && errno != EINTR &&
         errno != ECONNREFUSED) {
       GST_ELEMENT_ERROR(self, RESOURCE, READ, ("Receiving failed: %s", g_strerror(errno)),
@@ -247,21 +250,19 @@ static GstFlowReturn ReceiveBatch(GstLidarEcnUdpSrc* self, GstBufferList* list) 
   }
 }
 
+/// One buffer at a time: GstBaseSrc 1.22 takes lists, but where it is stopped or ended while it
+/// holds one, it releases a buffer that is not there.
 static GstFlowReturn Create(GstPushSrc* push, GstBuffer** out) {
   auto* self = GST_LIDAR_ECN_UDP_SRC(push);
   State& state = StateOf(self);
-  BufferListPtr list(gst_buffer_list_new());
-  const GstFlowReturn flow = ReceiveBatch(self, list.get());
-  if (flow != GST_FLOW_OK) return flow;
-  {
+  if (state.received.empty()) {
+    const GstFlowReturn flow = ReceiveBatch(self);
+    if (flow != GST_FLOW_OK) return flow;
     std::lock_guard lock(state.mutex);
     state.kernel_drops = state.batch.kernel_drops();
   }
-  if (gst_buffer_list_length(list.get()) == 1) {
-    *out = gst_buffer_ref(gst_buffer_list_get(list.get(), 0));
-  } else {
-    gst_base_src_submit_buffer_list(GST_BASE_SRC(push), list.release());
-  }
+  *out = state.received.front().release();
+  state.received.pop_front();
   return GST_FLOW_OK;
 }
 

@@ -6,7 +6,9 @@
 #include <netinet/in.h>
 #include <sys/socket.h>
 
+#include <atomic>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include "common/gstlidar.h"
@@ -359,6 +361,47 @@ TEST(EcnUdp, AGivenSocketStaysOpenWhereAsked) {
   gst_harness_play(src.get());
   gst_element_set_state(src->element, GST_STATE_NULL);
   EXPECT_TRUE(g_socket_is_closed(socket.get()));
+}
+
+/// Sends datagrams to a port of this machine as fast as it can, until it goes out of scope.
+class Flood {
+ public:
+  explicit Flood(guint port)
+      : socket_(g_socket_new(G_SOCKET_FAMILY_IPV4, G_SOCKET_TYPE_DATAGRAM, G_SOCKET_PROTOCOL_UDP,
+                             nullptr)) {
+    const Object<GInetAddress> host(g_inet_address_new_loopback(G_SOCKET_FAMILY_IPV4));
+    to_.reset(g_inet_socket_address_new(host.get(), static_cast<guint16>(port)));
+    thread_ = std::thread([this] {
+      while (!done_) g_socket_send_to(socket_.get(), to_.get(), "flood", 5, nullptr, nullptr);
+    });
+  }
+  ~Flood() {
+    done_ = true;
+    thread_.join();
+  }
+
+ private:
+  Object<GSocket> socket_;
+  Object<GSocketAddress> to_;
+  std::atomic<bool> done_ = false;
+  std::thread thread_;
+};
+
+TEST(EcnUdp, StopsAndEndsInAFloodWithoutComplaints) {
+  Harness src(gst_harness_new_with_padnames("ecnudpsrc", nullptr, "src"));
+  g_object_set(src->element, "port", 0, "address", "127.0.0.1", nullptr);
+  for (int cycle = 0; cycle < 40; ++cycle) {
+    gst_harness_play(src.get());
+    const Flood flood(LocalPort(src.get()));
+    ASSERT_TRUE(BufferPtr(gst_harness_pull(src.get()))) << cycle;
+    if (cycle % 2 == 0) {
+      ASSERT_TRUE(gst_element_send_event(src->element, gst_event_new_eos()));
+      while (const EventPtr event{gst_harness_pull_event(src.get())})
+        if (GST_EVENT_TYPE(event.get()) == GST_EVENT_EOS) break;
+    }
+    ASSERT_NE(gst_element_set_state(src->element, GST_STATE_READY), GST_STATE_CHANGE_FAILURE);
+    while (gst_harness_buffers_in_queue(src.get()) > 0) BufferPtr(gst_harness_pull(src.get()));
+  }
 }
 
 }  // namespace
