@@ -17,19 +17,6 @@ namespace {
 
 constexpr gsize kSmallestQueue = 1U << 20;  // bytes
 
-/// The largest receive buffer up to `bytes` that the kernel grants, or what it is.
-guint SetReceiveBuffer(int fd, guint bytes) {
-  const int size = static_cast<int>(bytes);
-  // The forced form needs CAP_NET_ADMIN.
-  if (bytes > 0 && setsockopt(fd, SOL_SOCKET, SO_RCVBUFFORCE, &size, sizeof size) != 0 &&
-      setsockopt(fd, SOL_SOCKET, SO_RCVBUF, &size, sizeof size) != 0)
-    return 0;
-  int granted = 0;
-  socklen_t length = sizeof granted;
-  if (getsockopt(fd, SOL_SOCKET, SO_RCVBUF, &granted, &length) != 0) return 0;
-  return static_cast<guint>(granted / 2);  // the kernel doubles it for its own bookkeeping
-}
-
 /// Without this, a socket gets the groups that others on the machine joined, too.
 void OnlyJoinedGroups(GSocket* socket) {
   const int off = 0;

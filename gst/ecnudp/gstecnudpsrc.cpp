@@ -103,20 +103,6 @@ GST_ELEMENT_REGISTER_DEFINE(ecnudpsrc, "ecnudpsrc", GST_RANK_NONE, GST_TYPE_LIDA
 
 static State& StateOf(gpointer self) { return *GST_LIDAR_ECN_UDP_SRC(self)->state; }
 
-/// The largest receive buffer up to `bytes` that the kernel grants; its size.
-static guint SetReceiveBuffer(int fd, guint bytes) {
-  const int size = static_cast<int>(bytes);
-  // The forced form needs CAP_NET_ADMIN.
-  if (setsockopt(fd, SOL_SOCKET, SO_RCVBUFFORCE, &size, sizeof size) != 0 &&
-      setsockopt(fd, SOL_SOCKET, SO_RCVBUF, &size, sizeof size) != 0) {
-    return 0;
-  }
-  int granted = 0;
-  socklen_t length = sizeof granted;
-  if (getsockopt(fd, SOL_SOCKET, SO_RCVBUF, &granted, &length) != 0) return 0;
-  return static_cast<guint>(granted / 2);  // the kernel doubles it for its own bookkeeping
-}
-
 static void ConfigureBuffer(GstLidarEcnUdpSrc* self, int fd, guint wanted) {
   const guint granted = SetReceiveBuffer(fd, wanted > 0 ? wanted : kDefaultBuffer);
   GST_DEBUG_OBJECT(self, "receive buffer of %u bytes", granted);

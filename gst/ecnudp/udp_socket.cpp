@@ -165,4 +165,17 @@ WakeFd::Outcome WakeFd::Wait(int fd, short events, gint64 timeout_ns) const {
   return ready == 0 ? Outcome::kTimeout : Outcome::kReady;
 }
 
+guint SetReceiveBuffer(int fd, guint bytes) {
+  const int size = static_cast<int>(bytes);
+  // The forced form needs CAP_NET_ADMIN.
+  if (bytes > 0 && setsockopt(fd, SOL_SOCKET, SO_RCVBUFFORCE, &size, sizeof size) != 0 &&
+      setsockopt(fd, SOL_SOCKET, SO_RCVBUF, &size, sizeof size) != 0) {
+    return 0;
+  }
+  int granted = 0;
+  socklen_t length = sizeof granted;
+  if (getsockopt(fd, SOL_SOCKET, SO_RCVBUF, &granted, &length) != 0) return 0;
+  return static_cast<guint>(granted / 2);  // the kernel doubles it for its own bookkeeping
+}
+
 }  // namespace lidar::gst

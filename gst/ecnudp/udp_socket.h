@@ -50,6 +50,10 @@ void SendMulticastFrom(GSocket* socket, const std::string& interface);
 /// "host:port" for messages and logs.
 std::string AddressToString(GSocketAddress* address);
 
+/// The largest receive buffer up to `bytes` that the kernel grants (0: what it is); its size, or 0
+/// where it fails.
+guint SetReceiveBuffer(int fd, guint bytes);
+
 /// Wakes poll() in another thread until it is cleared.
 class WakeFd {
  public:
