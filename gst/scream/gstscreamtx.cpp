@@ -14,7 +14,6 @@
 
 #include <algorithm>
 
-#include "common/latency.h"
 #include "scream/tx_private.h"
 
 GST_DEBUG_CATEGORY(gst_lidar_scream_tx_debug);
@@ -85,95 +84,6 @@ void ClearQueue(TxState& state, TxStream& stream, Time now) {
 
 static TxState& StateOf(gpointer self) { return *GST_LIDAR_SCREAM_TX(self)->state; }
 
-static gint IsNot(gconstpointer item, gconstpointer excluded) {
-  const bool same = g_value_get_object(static_cast<const GValue*>(item)) ==
-                    g_value_get_object(static_cast<const GValue*>(excluded));
-  return same ? 1 : 0;
-}
-
-/// RTP and RTCP do not mix: src belongs to the sink pads, rtcp_src to rtcp_sink.
-static GstIterator* LinksOf(GstPad* pad, GstObject* parent) {
-  auto* self = GST_LIDAR_SCREAM_TX(parent);
-  GValue value = G_VALUE_INIT;
-  g_value_init(&value, GST_TYPE_PAD);
-  GstIterator* links = nullptr;
-  if (pad == self->src) {
-    g_value_set_object(&value, self->rtcp_sink);
-    links = gst_iterator_filter(gst_element_iterate_sink_pads(GST_ELEMENT(self)), IsNot, &value);
-  } else {
-    g_value_set_object(&value, pad == self->rtcp_sink  ? self->rtcp_src
-                               : pad == self->rtcp_src ? self->rtcp_sink
-                                                       : self->src);
-    links = gst_iterator_new_single(GST_TYPE_PAD, &value);
-  }
-  g_value_unset(&value);
-  return links;
-}
-
-/// The pad of the stream that the event names by SSRC; transfer full, or NULL.
-static GstPad* PadOfSsrc(TxState& state, GstEvent* event) {
-  guint ssrc = 0;
-  const GstStructure* s = gst_event_get_structure(event);
-  if (s == nullptr || !gst_structure_get_uint(s, "ssrc", &ssrc)) return nullptr;
-  TxLock lock(state.mutex);
-  if (!state.controller) return nullptr;
-  const auto id = state.controller->FindStream(ssrc);
-  const TxStream* stream = id ? FindStream(state, *id) : nullptr;
-  return stream == nullptr ? nullptr : GST_PAD(gst_object_ref(stream->pad));
-}
-
-static gboolean SrcEvent(GstPad* pad, GstObject* parent, GstEvent* event) {
-  if (GST_EVENT_TYPE(event) == GST_EVENT_CUSTOM_UPSTREAM) {
-    const PadPtr target(PadOfSsrc(StateOf(parent), event));
-    if (target) return gst_pad_push_event(target.get(), event);
-  }
-  return gst_pad_event_default(pad, parent, event);
-}
-
-/// Adds the longest stay in the queue to what the streams have upstream.
-static gboolean AnswerLatency(GstPad* pad, GstObject* parent, GstQuery* query) {
-  if (!gst_pad_query_default(pad, parent, query)) return FALSE;
-  if (!lidar::gst::ReadLatency(query).live) return TRUE;
-  TxState& state = StateOf(parent);
-  TxLock lock(state.mutex);
-  lidar::gst::AddLatency(query, state.settings.max_queue_delay);
-  return TRUE;
-}
-
-static gboolean AnswerSrcCaps(GstPad* pad, GstObject* parent, GstQuery* query) {
-  TxState& state = StateOf(parent);
-  std::size_t streams = 0;
-  {
-    TxLock lock(state.mutex);
-    streams = state.streams.size();
-  }
-  if (streams == 1) return gst_pad_query_default(pad, parent, query);
-  GstCaps* filter = nullptr;
-  gst_query_parse_caps(query, &filter);
-  CapsPtr caps(gst_pad_get_pad_template_caps(pad));
-  if (filter != nullptr)
-    caps.reset(gst_caps_intersect_full(filter, caps.get(), GST_CAPS_INTERSECT_FIRST));
-  gst_query_set_caps_result(query, caps.get());
-  return TRUE;
-}
-
-static gboolean SrcQuery(GstPad* pad, GstObject* parent, GstQuery* query) {
-  switch (GST_QUERY_TYPE(query)) {
-    case GST_QUERY_LATENCY:
-      return AnswerLatency(pad, parent, query);
-    case GST_QUERY_CAPS:
-      return AnswerSrcCaps(pad, parent, query);
-    default:
-      return gst_pad_query_default(pad, parent, query);
-  }
-}
-
-static gboolean SinkQuery(GstPad* pad, GstObject* parent, GstQuery* query) {
-  // A serialized query would overtake the packets in the queue.
-  if (GST_QUERY_IS_SERIALIZED(query)) return FALSE;
-  return gst_pad_query_default(pad, parent, query);
-}
-
 static void AddStream(TxState& state, GstPad* pad) {
   auto stream = std::make_unique<TxStream>();
   stream->pad = pad;
@@ -200,8 +110,8 @@ static GstPad* RequestPad(GstElement* element, GstPadTemplate* templ, const gcha
   gst_pad_set_chain_function(pad, TxChain);
   gst_pad_set_chain_list_function(pad, TxChainList);
   gst_pad_set_event_function(pad, TxSinkEvent);
-  gst_pad_set_query_function(pad, SinkQuery);
-  gst_pad_set_iterate_internal_links_function(pad, LinksOf);
+  gst_pad_set_query_function(pad, TxSinkQuery);
+  gst_pad_set_iterate_internal_links_function(pad, TxLinksOf);
   GST_PAD_SET_PROXY_CAPS(pad);
   lock.lock();
   AddStream(state, pad);
@@ -360,7 +270,7 @@ static void InstallOwnProperties(GObjectClass* object) {
 
 static GstPad* AddStaticPad(GstLidarScreamTx* self, GstStaticPadTemplate* templ) {
   GstPad* pad = gst_pad_new_from_static_template(templ, templ->name_template);
-  gst_pad_set_iterate_internal_links_function(pad, LinksOf);
+  gst_pad_set_iterate_internal_links_function(pad, TxLinksOf);
   gst_element_add_pad(GST_ELEMENT(self), pad);
   return pad;
 }
@@ -369,8 +279,8 @@ static void gst_lidar_scream_tx_init(GstLidarScreamTx* self) {
   self->state = new TxState;
   gst_segment_init(&self->state->out_segment, GST_FORMAT_UNDEFINED);
   self->src = AddStaticPad(self, &src_template);
-  gst_pad_set_event_function(self->src, SrcEvent);
-  gst_pad_set_query_function(self->src, SrcQuery);
+  gst_pad_set_event_function(self->src, TxSrcEvent);
+  gst_pad_set_query_function(self->src, TxSrcQuery);
   gst_pad_set_activatemode_function(self->src, TxActivateSrc);
   self->rtcp_sink = AddStaticPad(self, &rtcp_sink_template);
   gst_pad_set_chain_function(self->rtcp_sink, TxRtcpChain);

@@ -86,6 +86,10 @@ using RxLock = std::unique_lock<std::mutex>;
 Time RxNow(const RxState& state);
 scream::FeedbackConfig ToConfig(const RxSettings& settings, guint32 own_ssrc);
 
+// rx_input.cpp: the sink pad
+GstFlowReturn RxChain(GstPad* pad, GstObject* parent, GstBuffer* buffer);
+GstFlowReturn RxChainList(GstPad* pad, GstObject* parent, GstBufferList* list);
+
 // rx_feedback.cpp
 gboolean RxActivateRtcp(GstPad* pad, GstObject* parent, GstPadMode mode, gboolean active);
 /// Makes the task look again where the next report is due sooner; with the lock held.

@@ -99,6 +99,13 @@ GstFlowReturn TxChainList(GstPad* pad, GstObject* parent, GstBufferList* list);
 gboolean TxSinkEvent(GstPad* pad, GstObject* parent, GstEvent* event);
 GstFlowReturn TxRtcpChain(GstPad* pad, GstObject* parent, GstBuffer* buffer);
 
+// tx_pads.cpp: what pads answer
+/// RTP and RTCP do not mix: src belongs to the sink pads, rtcp_src to rtcp_sink.
+GstIterator* TxLinksOf(GstPad* pad, GstObject* parent);
+gboolean TxSrcEvent(GstPad* pad, GstObject* parent, GstEvent* event);
+gboolean TxSrcQuery(GstPad* pad, GstObject* parent, GstQuery* query);
+gboolean TxSinkQuery(GstPad* pad, GstObject* parent, GstQuery* query);
+
 // tx_pacer.cpp: the src pad's task
 void TxPace(gpointer self);
 gboolean TxActivateSrc(GstPad* pad, GstObject* parent, GstPadMode mode, gboolean active);
