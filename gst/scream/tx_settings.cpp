@@ -114,6 +114,13 @@ const TxProperties& TxPropertyTable() {
        &S::bounded_flight},
       {"isolated-loss", "Beyond the draft: do not obey loss without other signs of congestion",
        &S::isolated_loss},
+      {"quick-drain", "Beyond the draft: a backlog leaves at the window's rate after a drop",
+       &S::quick_drain},
+      {"answered-signals",
+       "Beyond the draft: signs of congestion from before a reduction are not obeyed again",
+       &S::answered_signals},
+      {"even-alpha", "Beyond the draft: the marked fraction is averaged evenly over rounds",
+       &S::even_alpha},
       {"adaptive-pacing", "Beyond the draft: pacing headroom follows the frame period",
        &S::adaptive_pacing},
       {"feedback-timeout", "Beyond the draft: the window decays without feedback",
@@ -153,8 +160,15 @@ scream::Parameters ToParameters(const TxSettings& s) {
   p.rate_policer = s.rate_policer;
   p.undershoot_remedy = s.undershoot_remedy;
   p.competing_flows = s.competing_flows;
-  p.extensions = {s.fast_start,    s.drop_response,   s.bounded_flight,
-                  s.isolated_loss, s.adaptive_pacing, s.feedback_timeout};
+  p.extensions.fast_start = s.fast_start;
+  p.extensions.drop_response = s.drop_response;
+  p.extensions.bounded_flight = s.bounded_flight;
+  p.extensions.isolated_loss = s.isolated_loss;
+  p.extensions.quick_drain = s.quick_drain;
+  p.extensions.answered_signals = s.answered_signals;
+  p.extensions.even_alpha = s.even_alpha;
+  p.extensions.adaptive_pacing = s.adaptive_pacing;
+  p.extensions.feedback_timeout = s.feedback_timeout;
   return p;
 }
 

@@ -70,10 +70,13 @@ struct TxSettings {
   bool drop_response = kDefault.extensions.drop_response;
   bool bounded_flight = kDefault.extensions.bounded_flight;
   bool isolated_loss = kDefault.extensions.isolated_loss;
+  bool quick_drain = kDefault.extensions.quick_drain;
+  bool answered_signals = kDefault.extensions.answered_signals;
+  bool even_alpha = kDefault.extensions.even_alpha;
   bool adaptive_pacing = kDefault.extensions.adaptive_pacing;
   bool feedback_timeout = kDefault.extensions.feedback_timeout;
 };
-using TxProperties = std::array<Property<TxSettings>, 42>;
+using TxProperties = std::array<Property<TxSettings>, 45>;
 const TxProperties& TxPropertyTable();
 
 scream::Parameters ToParameters(const TxSettings& settings);

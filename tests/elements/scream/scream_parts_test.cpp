@@ -5,6 +5,7 @@
 #include "rtp_support.h"
 #include "scream/peer_latch.h"
 #include "scream/rtp_packet.h"
+#include "scream/tx_settings.h"
 
 namespace lidar::gst {
 namespace {
@@ -131,6 +132,39 @@ TEST_F(Latch, PacketsWithoutAddressBelongToAnyPeer) {
   EXPECT_EQ(latch.peer(), robot.get());
   EXPECT_EQ(latch.OnPacket(now, thief.get(), 1, 2), kForeign);
 }
+
+struct Switch {
+  const char* property;
+  bool scream::Extensions::*extension;
+};
+class ExtensionSwitch : public ::testing::TestWithParam<Switch> {};
+TEST_P(ExtensionSwitch, TurnsItsExtensionOffAndNoOther) {
+  TxSettings settings;
+  int found = 0;
+  for (const auto& row : TxPropertyTable()) {
+    if (std::string(row.name) != GetParam().property) continue;
+    settings.*std::get<bool TxSettings::*>(row.field) = false;
+    ++found;
+  }
+  ASSERT_EQ(found, 1);
+  scream::Extensions e = ToParameters(settings).extensions;
+  EXPECT_FALSE(e.*GetParam().extension);
+  e.*GetParam().extension = true;
+  EXPECT_TRUE(e.fast_start && e.drop_response && e.bounded_flight && e.isolated_loss &&
+              e.quick_drain && e.answered_signals && e.even_alpha && e.adaptive_pacing &&
+              e.feedback_timeout);
+}
+INSTANTIATE_TEST_SUITE_P(
+    All, ExtensionSwitch,
+    ::testing::Values(Switch{"fast-start", &scream::Extensions::fast_start},
+                      Switch{"drop-response", &scream::Extensions::drop_response},
+                      Switch{"bounded-flight", &scream::Extensions::bounded_flight},
+                      Switch{"isolated-loss", &scream::Extensions::isolated_loss},
+                      Switch{"quick-drain", &scream::Extensions::quick_drain},
+                      Switch{"answered-signals", &scream::Extensions::answered_signals},
+                      Switch{"even-alpha", &scream::Extensions::even_alpha},
+                      Switch{"adaptive-pacing", &scream::Extensions::adaptive_pacing},
+                      Switch{"feedback-timeout", &scream::Extensions::feedback_timeout}));
 
 }  // namespace
 }  // namespace lidar::gst
