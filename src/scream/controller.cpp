@@ -19,32 +19,36 @@ void Controller::ConfigureStream(StreamId stream, const StreamConfig& config) {
 void Controller::RemoveStream(StreamId stream) { impl_->streams.Remove(stream); }
 
 void Controller::OnQueued(Time now, StreamId stream, const QueuedPacket& packet) {
-  impl_->OnQueued(now, stream, packet);
+  impl_->OnQueued(impl_->clock.From(now), stream, packet);
 }
 
 void Controller::OnSent(Time now, StreamId stream, const SentPacket& packet) {
-  impl_->OnSent(now, stream, packet);
+  impl_->OnSent(impl_->clock.From(now), stream, packet);
 }
 
 void Controller::OnDropped(Time now, StreamId stream, std::size_t packets) {
-  impl_->OnDropped(now, stream, packets);
+  impl_->OnDropped(impl_->clock.From(now), stream, packets);
 }
 
 FeedbackResult Controller::OnFeedback(Time now, const CongestionFeedback& feedback) {
-  return impl_->OnFeedback(now, feedback);
+  return impl_->OnFeedback(impl_->clock.From(now), feedback);
 }
 
-void Controller::OnTimer(Time now) { impl_->OnTimer(now); }
-void Controller::OnRouteChange(Time now) { impl_->OnRouteChange(now); }
+void Controller::OnTimer(Time now) { impl_->OnTimer(impl_->clock.From(now)); }
+void Controller::OnRouteChange(Time now) { impl_->OnRouteChange(impl_->clock.From(now)); }
 
-std::optional<SendDecision> Controller::NextSend(Time now) const { return impl_->NextSend(now); }
+std::optional<SendDecision> Controller::NextSend(Time now) const {
+  auto decision = impl_->NextSend(impl_->clock.Peek(now));
+  if (decision) decision->time = impl_->clock.ToCaller(decision->time);
+  return decision;
+}
 
 std::size_t Controller::LatePackets(Time now, StreamId stream) const {
   const Stream* s = impl_->streams.Find(stream);
-  return s == nullptr ? 0 : s->LatePackets(now);
+  return s == nullptr ? 0 : s->LatePackets(impl_->clock.Peek(now));
 }
 
-Time Controller::NextTimer() const { return impl_->NextTimer(); }
+Time Controller::NextTimer() const { return impl_->clock.ToCaller(impl_->NextTimer()); }
 
 DataRate Controller::target_bitrate(StreamId stream) const {
   const Stream* s = impl_->streams.Find(stream);
@@ -57,11 +61,13 @@ std::optional<StreamId> Controller::FindStream(std::uint32_t ssrc) const {
   return impl_->streams.Owner(ssrc);
 }
 
-Statistics Controller::statistics(Time now) const { return impl_->GetStatistics(now); }
+Statistics Controller::statistics(Time now) const {
+  return impl_->GetStatistics(impl_->clock.Peek(now));
+}
 
 StreamStatistics Controller::stream_statistics(Time now, StreamId stream) const {
   Stream* s = impl_->streams.Find(stream);
-  return s == nullptr ? StreamStatistics{} : s->statistics(now);
+  return s == nullptr ? StreamStatistics{} : s->statistics(impl_->clock.Peek(now));
 }
 
 EcnState Controller::ecn_state() const { return impl_->ecn.state(); }

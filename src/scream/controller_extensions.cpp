@@ -48,7 +48,10 @@ bool Controller::Impl::Queueing(Duration qdelay) const {
 
 void Controller::Impl::ObserveCapacity(const AckSummary& summary) {
   for (const AckedPacket& packet : summary.acked) {
-    if (!packet.arrival) continue;
+    if (!packet.arrival) {  // a hole in what is known of the link
+      busy_run_.Reset();
+      continue;
+    }
     const bool marked = packet.arrived_ecn == Ecn::kCe;
     const Duration qdelay = *packet.arrival - packet.sent - queue_delay_.base();
     busy_run_.Add({*packet.arrival, packet.size, marked || qdelay >= BusyQdelay(), marked});
@@ -62,7 +65,9 @@ bool Controller::Impl::RespondToDrop(Time now, const CongestionSignals& signals)
   if (!p.extensions.drop_response || !capacity || !Queueing(BusyQdelay())) return false;
   if (now - window_.last_reaction_to_congestion_time() < std::min(p.virtual_rtt, signals.s_rtt))
     return false;
-  const DataRate affordable = *capacity * p.drop_threshold;
+  // While a frame of another flow takes turns with ours, we see but our share.
+  const bool brief = busy_run_.span() < std::min(streams.frame_period(), p.virtual_rtt);
+  const DataRate affordable = *capacity * (brief ? p.drop_threshold_brief : p.drop_threshold);
   if (affordable > streams.target_bitrate()) return false;
   const DataSize window = *capacity * rtt_.min() * p.target_rate_divisor;
   if (window > window_.ref_wnd()) return false;
@@ -101,8 +106,10 @@ void Controller::Impl::OnFeedbackTimeout(Time now) {
   window_.Set(window_.ref_wnd() * kTimeoutBackoff);
 }
 
-void Controller::Impl::EndOutage(Time) {
+void Controller::Impl::EndOutage(Time now) {
   window_.Set(std::max(window_.ref_wnd(), *window_before_outage_ * kOutageRestart));
+  // What the path held back comes first: marks behind it are answered with the restart.
+  marks_answered_ = loss_answered_ = now + rtt_.smoothed();
   window_before_outage_.reset();
   fast_increase_.Restart();
 }

@@ -5,6 +5,8 @@ namespace lidar::scream {
 namespace {
 
 constexpr Duration kHousekeeping = 50ms;
+/// A caller that comes so much too late stood still, or its clock was set.
+constexpr Duration kStandstill = 500ms;
 constexpr double kDriftRateScale = 0.5;
 /// quick_drain: how much faster than packets arrive a backlog may leave.
 constexpr double kDrainMargin = 1.25;
@@ -12,6 +14,16 @@ constexpr double kDrainMargin = 1.25;
 }  // namespace
 
 Controller::Impl::Impl(const Parameters& parameters) : p(parameters) {}
+
+/// What was on the way while the caller stood still tells nothing about the path.
+Time Controller::Impl::Advance(Time now) {
+  now_ = std::max(now_, now);
+  if (now_ - last_housekeeping_ > kHousekeeping + kStandstill) {
+    history_.Expire(now_);
+    last_feedback_ = last_housekeeping_ = now_;
+  }
+  return now_;
+}
 
 StreamId Controller::Impl::AddStream(const StreamConfig& config) {
   const StreamId id = streams.Add(config);
@@ -100,8 +112,11 @@ void Controller::Impl::MeasurePath(Time now, const AckSummary& summary) {
   history_.set_max_reordering_window(rtt_.smoothed());
   const Duration excess = rtt_.last() - rtt_.min();
   for (const AckedPacket& packet : summary.acked)
-    if (packet.arrival && !queue_delay_.Add(now, packet.sent, *packet.arrival, excess, L4sWorks()))
+    if (packet.arrival &&
+        !queue_delay_.Add(now, packet.sent, *packet.arrival, excess, L4sWorks())) {
       ++counters_.clock_resets;
+      busy_run_.Reset();
+    }
   queue_delay_.Update(now, rtt_.smoothed(), competing_flows_.qdelay_target());
   if (queue_delay_.TakeDriftReset()) {
     ++counters_.clock_resets;
@@ -211,14 +226,18 @@ void Controller::Impl::LimitWindowAtMaxBitrate() {
   window_.Limit(std::max(max_in_flight_.longest(), needed));
 }
 
+DataRate Controller::Impl::TargetOf(Time now) const {
+  if (!started_) return streams.start_bitrate();
+  // Through an outage the round trip is as long as nothing has come back.
+  const Duration silence = window_before_outage_ ? now - last_feedback_ : Duration{0};
+  const DataRate target =
+      TargetBitrate(p, {window_.ref_wnd(), window_.ref_wnd_ratio(),
+                        std::max(rtt_.smoothed(), silence), streams.queue_compensation()});
+  return now < half_rate_until_ ? target * kDriftRateScale : target;
+}
+
 void Controller::Impl::UpdateTarget(Time now) {
-  DataRate target = streams.start_bitrate();
-  if (started_) {
-    target = TargetBitrate(p, {window_.ref_wnd(), window_.ref_wnd_ratio(), rtt_.smoothed(),
-                               streams.queue_compensation()});
-    if (now < half_rate_until_) target = target * kDriftRateScale;
-  }
-  streams.Allocate(now, target);
+  streams.Allocate(now, TargetOf(now));
   pacer_.Update(streams.target_bitrate(), streams.max_bitrate(), PacingHeadroom());
   if (p.extensions.quick_drain && streams.media_qdelay(now) > streams.frame_period())
     pacer_.RaiseTo(std::min(window_.ref_wnd() / rtt_.last() / p.target_rate_divisor,
@@ -262,6 +281,7 @@ void Controller::Impl::OnRouteChange(Time now) {
   ecn.Reset();
   last_mark_.reset();
   started_ = false;
+  fast_increase_.Restart();
   history_.Expire(now_);
 }
 

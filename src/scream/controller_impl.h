@@ -17,6 +17,7 @@
 #include "scream/reference_window.h"
 #include "scream/rtt.h"
 #include "scream/sent_history.h"
+#include "scream/steady_time.h"
 #include "scream/streams.h"
 
 namespace lidar::scream {
@@ -40,10 +41,11 @@ class Controller::Impl {
   const Parameters p;
   Streams streams{p};
   EcnMonitor ecn{p.ecn};
+  SteadyTime clock;  // of the caller; all times within are its steady ones
 
  private:
   void UpdateTarget(Time now);
-  Time Advance(Time now) { return now_ = std::max(now_, now); }
+  Time Advance(Time now);
   void OnSummary(Time now, const AckSummary& summary);
   void MeasurePath(Time now, const AckSummary& summary);
   void CountAcks(Time now, const AckSummary& summary);
@@ -62,6 +64,7 @@ class Controller::Impl {
   void EndOutage(Time now);
   Duration FeedbackTimeout() const;
   bool SourceLimited() const;
+  DataRate TargetOf(Time now) const;
   DataSize MaxInFlight() const;
 
   Time now_{};

@@ -26,7 +26,8 @@ FeedbackGenerator::FeedbackGenerator(const FeedbackConfig& config) : config_(con
 
 void FeedbackGenerator::Reset() { *this = FeedbackGenerator(config_); }
 
-void FeedbackGenerator::OnPacket(Time arrival, const ReceivedPacket& packet) {
+void FeedbackGenerator::OnPacket(Time at, const ReceivedPacket& packet) {
+  const Time arrival = clock_.From(at);
   ++stats_.packets;
   stats_.received += packet.size;
   if (packet.ecn == Ecn::kCe) ++stats_.ce_packets;
@@ -150,7 +151,8 @@ std::int64_t FeedbackGenerator::Allowance() const {
   return std::min(config_.max_report.bytes(), (stats_.received - stats_.sent).bytes() - kIpUdp);
 }
 
-std::optional<CongestionFeedback> FeedbackGenerator::Take(Time now) {
+std::optional<CongestionFeedback> FeedbackGenerator::Take(Time at) {
+  const Time now = clock_.From(at);
   if (due_ > now) return std::nullopt;
   due_ = Time::max();
   CongestionFeedback report;

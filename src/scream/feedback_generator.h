@@ -10,6 +10,7 @@
 #include "base/time.h"
 #include "base/units.h"
 #include "scream/ccfb.h"
+#include "scream/steady_time.h"
 
 namespace lidar::scream {
 using namespace std::chrono_literals;
@@ -57,12 +58,12 @@ class FeedbackGenerator {
  public:
   explicit FeedbackGenerator(const FeedbackConfig& config = {});
 
-  /// `arrival` is the kernel's time where known; it should not lie after the `now` of Take().
-  void OnPacket(Time arrival, const ReceivedPacket& packet);
+  /// `at` is the kernel's time where known; it should not lie after the `now` of Take().
+  void OnPacket(Time at, const ReceivedPacket& packet);
   /// When the next report is due (maybe in the past), Time::max() where nothing waits.
-  Time NextDue() const { return due_; }
+  Time NextDue() const { return clock_.ToCaller(due_); }
   /// The report, if one is due.
-  std::optional<CongestionFeedback> Take(Time now);
+  std::optional<CongestionFeedback> Take(Time at);
   /// Forgets everything, for a new peer.
   void Reset();
   void set_config(const FeedbackConfig& config) { config_ = config; }
@@ -116,6 +117,7 @@ class FeedbackGenerator {
   FeedbackConfig config_;
   std::map<std::uint32_t, Source> sources_;
   Stats stats_;
+  SteadyTime clock_;  // of the caller; all times here are its steady ones
   Time due_ = Time::max();
   std::optional<Time> last_report_;
   std::optional<bool> last_was_ce_;

@@ -107,8 +107,10 @@ struct Parameters {
   Duration fast_increase_qdelay = 5ms;
   /// Slope of the growth above the inflection point (the draft's is 8).
   double fast_increase_slope = 3;
-  /// drop_response: a measured capacity below this fraction of the target is a drop...
+  /// drop_response: a target above this part of the measured capacity shows a drop...
   double drop_threshold = 0.9;
+  /// ...or above this, where it was measured over less than a frame period and VIRTUAL_RTT...
+  double drop_threshold_brief = 1.5;
   /// ...after which the target is this fraction of it.
   double drop_beta = 0.9;
   /// A packet behind this much queue shows that the link is busy; without marks, this fraction of

@@ -47,7 +47,11 @@ void QueueDelay::AddToBase(Time now, Duration owd, bool short_history) {
 bool QueueDelay::Add(Time now, Time sent, Time arrival, Duration rtt_excess, bool short_history) {
   const Duration owd = arrival - sent;
   const bool jumped = base_ && (owd - *base_ > rtt_excess + kJump || owd < *base_ - kJump);
-  if (jumped) Reset();
+  if (jumped) {
+    Reset();
+    // A queue that stands across the jump shows in the round trip still.
+    AddToBase(now, owd - rtt_excess, short_history);
+  }
   AddToBase(now, owd, short_history);
   qdelay_ = owd - *base_;
   min_this_rtt_ = std::min(min_this_rtt_, qdelay_);

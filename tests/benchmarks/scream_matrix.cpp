@@ -194,7 +194,7 @@ int main(int argc, char** argv) {
     if (!wanted) continue;
     if (options.seconds > 0) s.config.duration = lidar::FromSeconds(options.seconds);
     for (FlowConfig& flow : s.config.flows) {
-      if (options.frame_jitter >= 0) flow.frame_jitter = options.frame_jitter;
+      if (options.frame_jitter >= 0) flow.sources[0].frame_jitter = options.frame_jitter;
       flow.stall = lidar::FromSeconds(options.stall_ms / 1e3);
       flow.wakeup_delay = lidar::FromSeconds(options.wakeup_ms / 1e3);
     }

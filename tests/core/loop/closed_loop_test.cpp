@@ -82,11 +82,12 @@ scream::test::SimulationConfig Path(link::Capacity capacity, std::uint32_t slice
   config.duration = seconds(70);
   config.sample_interval = milliseconds(100);
   scream::test::FlowConfig& flow = config.flows.front();
-  flow.frames_per_second = kScansPerSecond * slices;
   flow.start = kOrigin;
-  flow.stream.max_bitrate = DataRate::BitsPerSecond(20e6);
+  scream::test::SourceConfig& source = flow.sources.front();
+  source.frames_per_second = kScansPerSecond * slices;
+  source.stream.max_bitrate = DataRate::BitsPerSecond(20e6);
   if (encoder) {
-    flow.encoder = [e = std::make_shared<Encoder>(slices)](DataRate target) {
+    source.encoder = [e = std::make_shared<Encoder>(slices)](DataRate target) {
       return e->Next(target);
     };
   }

@@ -63,7 +63,7 @@ TEST(Goals, NinetyPercentAreReachedWithinASecondAndAHalfWithoutALongQueue) {
 TEST(Goals, LateWakeUpsAndVaryingFramesCostLittle) {
   Scenario s = *FindScenario("A", Parameters());
   s.config.flows[0].wakeup_delay = 2ms;
-  s.config.flows[0].frame_jitter = 0.2;
+  s.config.flows[0].sources[0].frame_jitter = 0.2;
   const ScenarioMetrics m = Measure(s, Simulate(s.config));
   EXPECT_GE(m.utilisation, 0.87);
   EXPECT_LE(m.queue_ms.p99, 8);

@@ -42,9 +42,9 @@ Scenario Make(const std::string& name, const std::string& description, const Pat
   FlowConfig& flow = s.config.flows.front();
   flow.parameters = parameters;
   flow.parameters.ecn = path.ecn;
-  flow.frames_per_second = frames_per_second;
+  flow.sources[0].frames_per_second = frames_per_second;
   flow.start = kOrigin;
-  flow.stream.max_bitrate = Mbps(60);
+  flow.sources[0].stream.max_bitrate = Mbps(60);
   return s;
 }
 
@@ -52,8 +52,8 @@ Scenario WithSlices(Scenario s) {
   s.name += "-slices";
   s.source = Source::kSlices;
   for (FlowConfig& flow : s.config.flows) {
-    flow.frames_per_second = 10 * kSlicesPerScan;
-    flow.frame_jitter = kSliceJitter;
+    flow.sources[0].frames_per_second = 10 * kSlicesPerScan;
+    flow.sources[0].frame_jitter = kSliceJitter;
   }
   return s;
 }

@@ -11,21 +11,36 @@
 
 namespace lidar::scream::test {
 
-struct FlowConfig {
-  Parameters parameters;
+/// An encoder that obeys its target, and the stream that it feeds.
+struct SourceConfig {
   StreamConfig stream;
-  FeedbackConfig feedback;
   double frames_per_second = 50;
   double frame_jitter = 0;  ///< frame sizes vary evenly by up to this fraction
-  Time start{};
-  Duration stop_after = Duration::max();
-  bool drop_late = true;
   /// Scales what the encoder puts out against its target, over time since the flow's start.
   std::function<double(Duration)> obedience;
   /// In place of both: the size of the next frame for a target.
   std::function<DataSize(DataRate)> encoder;
+};
+
+constexpr Duration kNever = Duration::max();
+
+/// Times are since the flow's start.
+struct FlowConfig {
+  Parameters parameters;
+  std::vector<SourceConfig> sources{1};
+  FeedbackConfig feedback;
+  Time start{};
+  Duration stop_after = kNever;
+  bool drop_late = true;
   /// The receiver forgets everything, and its clock has another epoch.
-  Duration receiver_restart = Duration::max();
+  Duration receiver_restart = kNever;
+  /// A new sender with other SSRCs takes over.
+  Duration sender_restart = kNever;
+  /// The sender is told that the route is another one.
+  Duration route_change = kNever;
+  /// Clocks are set by so much.
+  Duration clock_jump = kNever;
+  Duration sender_jump{0}, receiver_jump{0};
   /// The machine stops for up to this, on average so often; packets still arrive.
   Duration stall{0};
   Duration stall_every = std::chrono::seconds(1);
@@ -36,9 +51,11 @@ struct SimulationConfig {
   link::BottleneckConfig forward;  ///< its delay is the way there
   Duration return_delay{0};
   double return_loss = 0;
+  /// Nothing comes back within this time of the run.
+  Duration return_outage_from = kNever, return_outage_until = kNever;
   /// A change of route: the way there is longer from then on.
   Duration longer_by{0};
-  Duration longer_from = Duration::max();
+  Duration longer_from = kNever;
   Duration duration = std::chrono::seconds(40);
   std::vector<FlowConfig> flows{1};
   Duration sample_interval = std::chrono::milliseconds(10);
@@ -53,6 +70,7 @@ struct PacketLog {
   Time sent{}, arrival{};
   double sojourn_ms = 0;
   int flow = 0;
+  int source = 0;
   std::int64_t bytes = 0;
   bool delivered = false;
 };
@@ -62,6 +80,7 @@ struct Sample {
   int flow = 0;
   double capacity_mbps = 0;
   Statistics statistics;
+  std::vector<DataRate> targets;  ///< of the sources
 };
 
 struct FlowResult {
@@ -81,7 +100,7 @@ struct SimulationResult {
 
   double Utilisation(Time from, Time until) const;
   Percentiles QueueDelay(Time from, Time until) const;
-  std::int64_t DeliveredBytes(Time from, Time until, int flow = -1) const;
+  std::int64_t DeliveredBytes(Time from, Time until, int flow = -1, int source = -1) const;
 };
 
 SimulationResult Simulate(const SimulationConfig& config);

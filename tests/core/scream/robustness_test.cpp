@@ -1,0 +1,175 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// What breaks on the way of a running flow, and how soon it is forgotten.
+#include <gtest/gtest.h>
+
+#include "scenarios.h"
+
+namespace lidar::scream::test {
+namespace {
+
+DataRate Mbps(double r) { return DataRate::BitsPerSecond(r * 1e6); }
+
+/// A run, and figures of parts of it by seconds since its start.
+class Trial {
+ public:
+  explicit Trial(const Scenario& s)
+      : origin_(s.config.forward.origin), result_(Simulate(s.config)) {}
+
+  double Mbps(Duration from, Duration until) const {
+    return static_cast<double>(result_.DeliveredBytes(origin_ + from, origin_ + until)) * 8 /
+           Seconds(until - from) / 1e6;
+  }
+  double Utilisation(Duration from, Duration until) const {
+    return result_.Utilisation(origin_ + from, origin_ + until);
+  }
+  double MaxQueueMs(Duration from, Duration until) const {
+    return result_.QueueDelay(origin_ + from, origin_ + until).max;
+  }
+  /// The statistics as they were at `t`.
+  Statistics At(Duration t) const {
+    for (const Sample& s : result_.samples)
+      if (s.time >= origin_ + t) return s.statistics;
+    return result_.flows[0].statistics;
+  }
+  Statistics End() const { return result_.flows[0].statistics; }
+
+ private:
+  Time origin_;
+  SimulationResult result_;
+};
+
+Scenario Named(const char* name) { return *FindScenario(name, Parameters()); }
+
+/// The path is dead from 10 s to 40 s; what it held is lost but for a buffer.
+Scenario WithOutage(Scenario s) {
+  s.config.forward.capacity.AddOutage(10s, 40s);
+  s.config.forward.limit.bytes = DataSize::Bytes(100000);
+  s.config.duration = 50s;
+  return s;
+}
+
+TEST(Outage, TheTargetFallsToItsMinimumAndTheSenderToItsMinimumRate) {
+  for (const Duration rtt : {10ms, 40ms, 200ms}) {
+    Scenario s = WithOutage(Named("C"));
+    s.config.forward.delay = s.config.return_delay = rtt / 2;
+    const Trial run(s);
+    EXPECT_NEAR(run.At(20s).target_bitrate.bits_per_second(), 100e3, 1) << Milliseconds(rtt);
+    EXPECT_LE(run.At(30s).sent_bitrate.bits_per_second(), 60e3) << Milliseconds(rtt);
+    EXPECT_GT(run.At(30s).sent_bitrate.bits_per_second(), 0) << Milliseconds(rtt);
+    EXPECT_GT(run.End().feedback_timeouts, 3U);
+  }
+}
+
+TEST(Outage, IsForgottenASecondAfterThePathReturns) {
+  for (const char* name : {"A", "C", "C10", "C10-slices", "D"}) {
+    const Trial run(WithOutage(Named(name)));
+    // Rounds of 10 frames/s are long.
+    EXPECT_GT(run.Utilisation(41s, 43s), std::string(name) == "C10" ? 0.6 : 0.7) << name;
+    EXPECT_LT(run.MaxQueueMs(42s, 43s), 60) << name;
+  }
+}
+
+TEST(Outage, OfTheWayBackAloneIsForgottenAsSoon) {
+  Scenario s = Named("C");
+  s.config.return_outage_from = 10s;
+  s.config.return_outage_until = 20s;
+  const Trial run(s);
+  EXPECT_NEAR(run.At(19s).target_bitrate.bits_per_second(), 100e3, 1);
+  EXPECT_GT(run.Utilisation(21s, 23s), 0.7);
+}
+
+struct Jump {
+  const char* name;
+  Duration sender, receiver;
+};
+class ClockJump : public ::testing::TestWithParam<Jump> {};
+TEST_P(ClockJump, IsForgottenWithinASecond) {
+  for (const char* name : {"C", "C10-slices", "D"}) {
+    Scenario s = Named(name);
+    const Trial calm(s);
+    FlowConfig& flow = s.config.flows[0];
+    flow.clock_jump = 15s;
+    flow.sender_jump = GetParam().sender;
+    flow.receiver_jump = GetParam().receiver;
+    const Trial run(s);
+    EXPECT_GT(run.Utilisation(15s, 17s), 0.7) << name;
+    EXPECT_GT(run.Utilisation(17s, 30s), calm.Utilisation(17s, 30s) - 0.1) << name;
+    EXPECT_LT(run.MaxQueueMs(15s, 30s), calm.MaxQueueMs(3s, 30s) + 20) << name;
+    EXPECT_LT(Milliseconds(run.End().s_rtt), 100) << name;
+    EXPECT_EQ(run.End().packets_lost, calm.End().packets_lost) << name;
+  }
+}
+INSTANTIATE_TEST_SUITE_P(OfAnHour, ClockJump,
+                         ::testing::Values(Jump{"SenderAhead", 1h, 0h}, Jump{"SenderBack", -1h, 0h},
+                                           Jump{"ReceiverAhead", 0h, 1h},
+                                           Jump{"ReceiverBack", 0h, -1h},
+                                           Jump{"ReceiverAheadASecond", 0h, 1s},
+                                           Jump{"BothAhead", 1h, 1h}),
+                         [](const auto& i) { return i.param.name; });
+
+TEST(Restart, OfTheSenderStartsANewFlowAtOnce) {
+  Scenario s = Named("C");
+  s.config.flows[0].sender_restart = 15s;
+  const Trial run(s);
+  EXPECT_GT(run.Utilisation(16500ms, 18s), 0.85);
+  EXPECT_LT(run.MaxQueueMs(15s, 18s), 30);
+  EXPECT_EQ(run.End().feedback_ignored, 0U);
+}
+
+TEST(Restart, OfTheReceiverIsForgottenWithinTwoSeconds) {
+  Scenario s = Named("A");
+  s.config.flows[0].receiver_restart = 10s;
+  const Trial run(s);
+  EXPECT_GT(run.Utilisation(10s, 12s), 0.8);
+  EXPECT_GT(run.Utilisation(12s, 20s), 0.9);
+  EXPECT_EQ(run.End().feedback_ignored, 0U);
+}
+
+TEST(RouteChange, KeepsTheFlowGoingAndTestsEcnAnew) {
+  Scenario s = Named("C");
+  s.config.flows[0].route_change = 15s;
+  s.config.longer_by = 30ms;
+  s.config.longer_from = 15s;
+  const Trial run(s);
+  EXPECT_GT(run.Utilisation(16500ms, 18s), 0.75);
+  EXPECT_LT(run.MaxQueueMs(15s, 18s), 30);
+  EXPECT_EQ(run.End().ecn_state, EcnState::kCapable);
+}
+
+TEST(Feedback, ThatIsSlowCostsLittle) {
+  Scenario s = Named("C");
+  s.config.return_delay += 150ms;
+  const Trial run(s);
+  EXPECT_GT(run.Utilisation(10s, 40s), 0.75);
+  EXPECT_LT(run.MaxQueueMs(10s, 40s), 30);
+}
+
+TEST(Feedback, ThatIsLostInPartCostsLittleAndAddsNoQueue) {
+  for (const char* name : {"C", "C10-slices", "D"}) {
+    Scenario s = Named(name);
+    const Trial clean(s);
+    s.config.return_loss = 0.2;
+    EXPECT_GT(Trial(s).Utilisation(5s, 40s), clean.Utilisation(5s, 40s) - 0.05) << name;
+    s.config.return_loss = 0.5;
+    const Trial run(s);
+    EXPECT_GT(run.Utilisation(5s, 40s), 0.5) << name;
+    EXPECT_LT(run.MaxQueueMs(5s, 40s), 60) << name;
+    EXPECT_EQ(run.End().packets_lost, 0U) << name;
+  }
+}
+
+/// MIN_REF_WND over the round trip is more than this link carries.
+TEST(MinimumWindow, IsHeldOnALinkThatIsSlowerThanIt) {
+  Scenario s = Named("C");
+  s.config.forward.capacity = link::Capacity::Constant(Mbps(0.5));
+  s.config.forward.delay = s.config.return_delay = 5ms;
+  s.config.flows[0].sources[0].stream.start_bitrate = Mbps(0.3);
+  const Trial run(s);
+  EXPECT_GT(run.Utilisation(5s, 40s), 0.8);
+  EXPECT_LT(run.MaxQueueMs(5s, 40s), 100);
+  EXPECT_GE(run.End().ref_wnd.bytes(), 3000);
+  EXPECT_EQ(run.End().packets_lost, 0U);
+}
+
+}  // namespace
+}  // namespace lidar::scream::test

@@ -1,0 +1,213 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "sim_flow.h"
+
+#include <algorithm>
+
+namespace lidar::scream::test {
+namespace {
+
+constexpr std::int64_t kMaxPacket = 1240;  // 1200 bytes of RTP payload
+constexpr std::int64_t kMinPacket = 60;
+constexpr std::int64_t kIpUdp = 28;
+constexpr std::uint32_t kEpochOfRestart = 0x89ABCDEF;
+
+/// True once, from `at` on.
+bool Due(Duration since_start, Duration* at) {
+  if (since_start <= *at) return false;
+  *at = kNever;
+  return true;
+}
+
+}  // namespace
+
+Flow::Flow(const FlowConfig& config, int index, std::uint64_t seed)
+    : config_(config),
+      generator_(config.feedback),
+      random_(seed + static_cast<std::uint64_t>(index)),
+      index_(index) {
+  for (std::size_t i = 0; i < config.sources.size(); ++i) {
+    sources_.emplace_back();
+    sources_.back().next_frame = config.start;
+  }
+  StartSender();
+}
+
+void Flow::StartSender() {
+  controller_ = std::make_unique<Controller>(config_.parameters);
+  for (std::size_t i = 0; i < sources_.size(); ++i) {
+    SourceState& source = sources_[i];
+    source.queue.clear();
+    source.seq = 65000;
+    source.ssrc = 1000U * (1 + static_cast<std::uint32_t>(i)) + static_cast<std::uint32_t>(index_) +
+                  100 * generation_;
+    source.stream = controller_->AddStream(config_.sources[i].stream);
+  }
+}
+
+Flow::SourceState* Flow::Owner(StreamId stream) {
+  const auto it = std::find_if(sources_.begin(), sources_.end(),
+                               [&](const SourceState& s) { return s.stream == stream; });
+  return &*it;
+}
+
+Time Flow::NextEvent(Time now) {
+  Time next = std::min(Back(controller_->NextTimer(), sender_offset_),
+                       Back(generator_.NextDue(), receiver_offset_));
+  for (const SourceState& source : sources_) next = std::min(next, source.next_frame);
+  if (const auto wake = Wake(now)) next = std::min(next, *wake);
+  if (!reports_.empty()) next = std::min(next, reports_.begin()->first);
+  return std::max(next, stalled_until_);
+}
+
+/// What the configuration lets happen in the course of a run.
+void Flow::Happen(Time now) {
+  const Duration t = now - config_.start;
+  if (Due(t, &config_.receiver_restart)) {
+    generator_.Reset();
+    epoch_ += kEpochOfRestart;
+  }
+  if (Due(t, &config_.sender_restart)) {
+    ++generation_;
+    StartSender();
+  }
+  if (Due(t, &config_.route_change)) controller_->OnRouteChange(ToSender(now));
+  if (Due(t, &config_.clock_jump)) {
+    sender_offset_ += config_.sender_jump;
+    receiver_offset_ += config_.receiver_jump;
+  }
+}
+
+void Flow::Step(Time now, const SimulationConfig& sim, link::Random* loss,
+                std::vector<WirePacket>* wire, link::Bottleneck* link) {
+  if (Stalled(now)) return;
+  Happen(now);
+  for (std::size_t i = 0; i < sources_.size(); ++i)
+    while (sources_[i].next_frame <= now) MakeFrame(now, i);
+  for (; !reports_.empty() && reports_.begin()->first <= now; reports_.erase(reports_.begin())) {
+    const auto& bytes = reports_.begin()->second;
+    if (const auto report = parser_.Parse({bytes.data(), bytes.size()}))
+      controller_->OnFeedback(ToSender(now), *report);
+  }
+  if (controller_->NextTimer() <= ToSender(now)) controller_->OnTimer(ToSender(now));
+  DropLate(now);
+  Send(now, wire, link);
+  Report(now, sim, loss);
+}
+
+void Flow::Report(Time now, const SimulationConfig& sim, link::Random* loss) {
+  const Duration t = now - config_.start;
+  const bool outage = t >= sim.return_outage_from && t < sim.return_outage_until;
+  while (auto report = generator_.Take(ToReceiver(now))) {
+    report->report_timestamp += epoch_;
+    auto bytes = BuildCcfb(*report);
+    result_.feedback_bytes += static_cast<std::int64_t>(bytes.size()) + kIpUdp;
+    if (!loss->Chance(sim.return_loss) && !outage)
+      reports_.emplace(now + sim.return_delay, std::move(bytes));
+  }
+}
+
+void Flow::OnArrival(const WirePacket& packet, const link::Outcome& outcome) {
+  ++result_.packets_sent;
+  if (outcome.fate == link::Fate::kLost) ++result_.packets_random_lost;
+  if (!outcome.delivered() && outcome.fate != link::Fate::kLost) ++result_.packets_congestion_lost;
+  if (!outcome.delivered()) return;
+  result_.delivered_bytes += packet.size.bytes();
+  generator_.OnPacket(
+      ToReceiver(outcome.arrival),
+      {packet.ssrc, packet.seq, static_cast<Ecn>(outcome.packet.ecn), packet.marker, packet.size});
+  if (packet.marker)
+    result_.frame_latency_ms.push_back(Milliseconds(outcome.arrival - created_[packet.frame]));
+}
+
+FlowResult Flow::Finish(Time now) {
+  result_.statistics = statistics(now);
+  return std::move(result_);
+}
+
+std::vector<DataRate> Flow::targets() const {
+  std::vector<DataRate> targets;
+  for (const SourceState& source : sources_)
+    targets.push_back(controller_->target_bitrate(source.stream));
+  return targets;
+}
+
+/// When the pacing thread, asked to wake at the next packet's time, really does.
+std::optional<Time> Flow::Wake(Time now) {
+  const auto d = controller_->NextSend(ToSender(now));
+  if (!d) return std::nullopt;
+  const Time due = Back(d->time, sender_offset_);
+  if (due != asked_) {
+    asked_ = due;
+    const bool sleeps = due > now && config_.wakeup_delay > Duration{0};
+    const double late = sleeps ? Seconds(config_.wakeup_delay) * random_.Uniform() : 0;
+    wake_ = std::max(due, now) + FromSeconds(late);
+  }
+  return wake_;
+}
+
+bool Flow::Stalled(Time now) {
+  if (config_.stall > Duration{0} && now >= next_stall_) {
+    stalled_until_ = now + FromSeconds(Seconds(config_.stall) * random_.Uniform());
+    next_stall_ = now + FromSeconds(2 * Seconds(config_.stall_every) * random_.Uniform());
+  }
+  return now < stalled_until_;
+}
+
+void Flow::MakeFrame(Time now, std::size_t index) {
+  const SourceConfig& config = config_.sources[index];
+  SourceState& source = sources_[index];
+  const Duration since_start = now - config_.start;
+  const Duration period = FromSeconds(1 / config.frames_per_second);
+  source.next_frame =
+      since_start + period > config_.stop_after ? Time::max() : source.next_frame + period;
+  double scale = 1 + config.frame_jitter * (2 * random_.Uniform() - 1);
+  if (config.obedience) scale *= config.obedience(since_start);
+  const DataRate target = controller_->target_bitrate(source.stream);
+  std::int64_t left =
+      config.encoder ? config.encoder(target).bytes() : (target * scale * period).bytes();
+  const std::size_t frame = created_.size();
+  created_.push_back(now);
+  ++result_.frames_sent;
+  do {
+    WirePacket packet;
+    packet.flow = index_;
+    packet.source = static_cast<int>(index);
+    packet.ssrc = source.ssrc;
+    packet.seq = source.seq++;
+    packet.frame = frame;
+    packet.size = DataSize::Bytes(std::clamp(left, kMinPacket, kMaxPacket));
+    left -= kMaxPacket;
+    packet.marker = left <= 0;
+    source.queue.push_back(packet);
+    controller_->OnQueued(
+        ToSender(now), source.stream,
+        {source.ssrc, packet.size, packet.marker, static_cast<std::uint32_t>(frame)});
+  } while (left > 0);
+}
+
+void Flow::DropLate(Time now) {
+  if (!config_.drop_late) return;
+  for (SourceState& source : sources_) {
+    const std::size_t late = controller_->LatePackets(ToSender(now), source.stream);
+    if (late == 0) continue;
+    for (std::size_t i = 0; i < late; ++i) {
+      if (source.queue.front().marker) ++result_.frames_dropped;
+      source.queue.pop_front();
+    }
+    controller_->OnDropped(ToSender(now), source.stream, late);
+  }
+}
+
+void Flow::Send(Time now, std::vector<WirePacket>* wire, link::Bottleneck* link) {
+  for (auto wake = Wake(now); wake && *wake <= now; wake = Wake(now)) {
+    const auto d = controller_->NextSend(ToSender(now));
+    SourceState* source = Owner(d->stream);
+    const WirePacket packet = source->queue.front();
+    source->queue.pop_front();
+    controller_->OnSent(ToSender(now), d->stream, {packet.ssrc, packet.seq, packet.size, d->ecn});
+    link->Enqueue(now, {packet.size, static_cast<link::Ecn>(d->ecn), wire->size()});
+    wire->push_back(packet);
+  }
+}
+
+}  // namespace lidar::scream::test

@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// One sender with its sources, and its receiver, in simulated time.
+#pragma once
+#include <deque>
+#include <map>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "link/bottleneck.h"
+#include "simulation.h"
+
+namespace lidar::scream::test {
+
+struct WirePacket {
+  int flow = 0;
+  int source = 0;
+  std::uint32_t ssrc = 0;
+  std::uint16_t seq = 0;
+  std::size_t frame = 0;  // of the flow
+  bool marker = false;
+  DataSize size;
+};
+
+class Flow {
+ public:
+  Flow(const FlowConfig& config, int index, std::uint64_t seed);
+
+  Time NextEvent(Time now);
+  void Step(Time now, const SimulationConfig& sim, link::Random* loss,
+            std::vector<WirePacket>* wire, link::Bottleneck* link);
+  void OnArrival(const WirePacket& packet, const link::Outcome& outcome);
+  FlowResult Finish(Time now);
+  Statistics statistics(Time now) const { return controller_->statistics(ToSender(now)); }
+  std::vector<DataRate> targets() const;
+
+ private:
+  /// One encoder, its stream and its queue.
+  struct SourceState {
+    StreamId stream = 0;
+    std::uint32_t ssrc = 0;
+    std::uint16_t seq = 65000;  // wraps around early in each run
+    Time next_frame{};
+    std::deque<WirePacket> queue;
+  };
+
+  void StartSender();
+  void Happen(Time now);
+  /// Clocks of the two ends, which may be set in the course of the run.
+  Time ToSender(Time t) const { return t + sender_offset_; }
+  Time ToReceiver(Time t) const { return t + receiver_offset_; }
+  static Time Back(Time t, Duration offset) { return t == Time::max() ? t : t - offset; }
+  std::optional<Time> Wake(Time now);
+  bool Stalled(Time now);
+  void MakeFrame(Time now, std::size_t index);
+  void DropLate(Time now);
+  void Send(Time now, std::vector<WirePacket>* wire, link::Bottleneck* link);
+  void Report(Time now, const SimulationConfig& sim, link::Random* loss);
+  SourceState* Owner(StreamId stream);
+
+  FlowConfig config_;
+  std::unique_ptr<Controller> controller_;
+  FeedbackGenerator generator_;
+  CcfbParser parser_;
+  link::Random random_;
+  int index_;
+  std::uint32_t generation_ = 0;  // of the sender
+  std::vector<SourceState> sources_;
+  Time asked_{};
+  Time wake_{};
+  Time stalled_until_{};
+  Time next_stall_{};
+  std::uint32_t epoch_ = 0;
+  Duration sender_offset_{0}, receiver_offset_{0};
+  std::vector<Time> created_;  // the frames
+  std::multimap<Time, std::vector<std::uint8_t>> reports_;
+  FlowResult result_;
+};
+
+}  // namespace lidar::scream::test
