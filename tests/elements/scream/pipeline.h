@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// A pipeline from its launch line, with an owner and patience.
+#pragma once
+#include <gst/gst.h>
+#include <gtest/gtest.h>
+
+#include <memory>
+#include <string>
+
+#include "common/refs.h"
+
+namespace lidar::test {
+
+using gst::ElementPtr;
+using gst::ErrorPtr;
+using gst::MessagePtr;
+
+constexpr GstClockTime kPatience = 20 * GST_SECOND;
+
+class Pipeline {
+ public:
+  explicit Pipeline(const std::string& text) {
+    GError* error = nullptr;
+    element_.reset(gst_parse_launch(text.c_str(), &error));
+    if (error == nullptr) return;
+    ADD_FAILURE() << error->message;
+    g_error_free(error);
+  }
+  ~Pipeline() {
+    if (element_) gst_element_set_state(element_.get(), GST_STATE_NULL);
+  }
+  Pipeline(Pipeline&&) = default;
+  void Play() { gst_element_set_state(element_.get(), GST_STATE_PLAYING); }
+  ElementPtr Get(const char* name) {
+    return ElementPtr(gst_bin_get_by_name(GST_BIN(element_.get()), name));
+  }
+  void SendEos() { gst_element_send_event(element_.get(), gst_event_new_eos()); }
+  MessagePtr Wait(GstMessageType types) {
+    GstBus* bus = gst_element_get_bus(element_.get());
+    MessagePtr message(gst_bus_timed_pop_filtered(bus, kPatience, types));
+    gst_object_unref(bus);
+    return message;
+  }
+  ::testing::AssertionResult Ends() {
+    const MessagePtr message =
+        Wait(static_cast<GstMessageType>(GST_MESSAGE_EOS | GST_MESSAGE_ERROR));
+    if (!message) return ::testing::AssertionFailure() << "no EOS";
+    if (GST_MESSAGE_TYPE(message.get()) == GST_MESSAGE_EOS) return ::testing::AssertionSuccess();
+    GError* error = nullptr;
+    gst_message_parse_error(message.get(), &error, nullptr);
+    const ErrorPtr owner(error);
+    return ::testing::AssertionFailure() << error->message;
+  }
+
+ private:
+  std::unique_ptr<GstElement, gst::Unref> element_;
+};
+
+}  // namespace lidar::test

@@ -1,0 +1,123 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Stock retransmission and FEC around screamtx and screamrx, over a wire that loses packets.
+#include <gtest/gtest.h>
+
+#include "pipeline.h"
+#include "rtp_support.h"
+
+namespace lidar::test {
+namespace {
+
+using gst::ElementPtr;
+using gst::PadPtr;
+
+constexpr int kPackets = 250;
+constexpr guint8 kMediaType = 96;
+constexpr int kLossEvery = 25;
+
+struct Repair {
+  const char* name;
+  std::string sender, receiver;
+  const char* repairer;
+  const char* counter;  // of what the repairer brought back
+  guint ssrcs;
+};
+void PrintTo(const Repair& r, std::ostream* out) { *out << r.name; }
+
+const Repair kRtx{"Rtx",
+                  "rtprtxsend payload-type-map=\"application/x-rtp-pt-map,96=(uint)97\"",
+                  "rtprtxreceive name=repairer "
+                  "payload-type-map=\"application/x-rtp-pt-map,96=(uint)97\" ! "
+                  "rtpssrcdemux ! rtpjitterbuffer do-retransmission=true latency=300",
+                  "repairer",
+                  "num-rtx-assoc-packets",
+                  2};
+const Repair kFec{
+    "Fec",
+    "rtpulpfecenc percentage=100 pt=122",
+    "rtpstorage size-time=500000000 ! rtpssrcdemux ! "
+    "application/x-rtp,payload=96,clock-rate=90000,media=application,encoding-name=X-GST ! "
+    "rtpjitterbuffer do-lost=true latency=300 ! rtpulpfecdec name=repairer pt=122",
+    "repairer",
+    "recovered",
+    1};
+
+struct Wire {
+  int media = 0;
+  int lost = 0;
+};
+/// Loses media packets evenly, but at both ends of the stream: nothing is repaired behind its end.
+GstPadProbeReturn Lose(GstPad*, GstPadProbeInfo* info, gpointer data) {
+  Wire& wire = *static_cast<Wire*>(data);
+  if (ReadRtp(GST_PAD_PROBE_INFO_BUFFER(info)).payload_type != kMediaType) return GST_PAD_PROBE_OK;
+  const int n = wire.media++;
+  if (n % kLossEvery != 15 || n < 30 || n > 200) return GST_PAD_PROBE_OK;
+  ++wire.lost;
+  return GST_PAD_PROBE_DROP;
+}
+
+void Count(GstElement*, GstBuffer*, GstPad*, int* arrived) { ++*arrived; }
+
+/// The way back: a link would close a loop in the graph.
+GstPadProbeReturn Back(GstPad*, GstPadProbeInfo* info, gpointer rtcp_sink) {
+  gst_pad_chain(GST_PAD(rtcp_sink), gst_buffer_ref(GST_PAD_PROBE_INFO_BUFFER(info)));
+  return GST_PAD_PROBE_DROP;
+}
+
+void Open(GstPad* rtcp_sink) {
+  gst_pad_send_event(rtcp_sink, gst_event_new_stream_start("feedback"));
+  GstSegment segment;
+  gst_segment_init(&segment, GST_FORMAT_TIME);
+  gst_pad_send_event(rtcp_sink, gst_event_new_segment(&segment));
+}
+
+class RepairTest : public ::testing::TestWithParam<std::tuple<Repair, bool>> {};
+
+TEST_P(RepairTest, BringsBackWhatTheWireLostAndCongestionControlSeesItAll) {
+  const auto& [repair, pt_map] = GetParam();
+  const std::string map =
+      "pt-map=\"application/x-rtp-pt-map,96=(string)\\\"application/x-rtp,media=application,"
+      "encoding-name=X-GST,clock-rate=90000\\\"\"";
+  Pipeline pipeline(
+      "audiotestsrc is-live=true samplesperbuffer=441 num-buffers=" + std::to_string(kPackets) +
+      " ! audio/x-raw,rate=44100,channels=1,format=S16BE ! rtpgstpay pt=96 seqnum-offset=100 ! " +
+      repair.sender + " ! screamtx name=tx start-bitrate=3000000 ! identity name=wire ! " +
+      "screamrx name=rx " + (pt_map ? map : "") + " ! " + repair.receiver +
+      " ! rtpgstdepay ! fakesink name=out sync=false signal-handoffs=true");
+  Wire wire;
+  int arrived = 0;
+  const ElementPtr tx = pipeline.Get("tx");
+  const PadPtr wire_pad(gst_element_get_static_pad(pipeline.Get("wire").get(), "src"));
+  const PadPtr rtcp_sink(gst_element_get_static_pad(tx.get(), "rtcp_sink"));
+  gst_pad_add_probe(wire_pad.get(), GST_PAD_PROBE_TYPE_BUFFER, Lose, &wire, nullptr);
+  g_signal_connect(pipeline.Get("out").get(), "handoff", G_CALLBACK(Count), &arrived);
+  const PadPtr reports(gst_element_get_static_pad(pipeline.Get("rx").get(), "rtcp_src"));
+  pipeline.Play();
+  Open(rtcp_sink.get());
+  gst_pad_add_probe(reports.get(), GST_PAD_PROBE_TYPE_BUFFER, Back, rtcp_sink.get(), nullptr);
+  ASSERT_TRUE(pipeline.Ends());
+  const int lost = wire.lost;
+  EXPECT_EQ(lost, 7);
+  EXPECT_EQ(arrived, kPackets);
+  guint repaired = 0;
+  g_object_get(pipeline.Get(repair.repairer).get(), repair.counter, &repaired, nullptr);
+  EXPECT_EQ(repaired, static_cast<guint>(lost));
+  const Stats sent(tx.get());
+  const Stats received(pipeline.Get("rx").get());
+  EXPECT_GE(sent["packets-sent"], static_cast<guint64>(kPackets + lost));
+  EXPECT_EQ(received["packets-received"], sent["packets-sent"] - static_cast<guint64>(lost));
+  EXPECT_EQ(received["ssrcs"], repair.ssrcs);
+  EXPECT_EQ(sent["feedback-foreign-blocks"], 0U);
+  // The last packets may end the stream before their report.
+  EXPECT_NEAR(static_cast<double>(sent["packets-lost"]), lost, 1);
+  EXPECT_GE(sent["packets-acked"] + 40, received["packets-received"]);
+}
+INSTANTIATE_TEST_SUITE_P(Stock, RepairTest,
+                         ::testing::Combine(::testing::Values(kRtx, kFec), ::testing::Bool()),
+                         [](const auto& i) {
+                           return std::string(std::get<0>(i.param).name) +
+                                  (std::get<1>(i.param) ? "WithPtMap" : "");
+                         });
+
+}  // namespace
+}  // namespace lidar::test

@@ -1,0 +1,147 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// What screamtx makes of RTCP: reports, lies, and what is not for it.
+#include <gtest/gtest.h>
+
+#include "screamtx_fixture.h"
+
+namespace lidar::test {
+namespace {
+
+using scream::CongestionFeedback;
+
+TEST_F(ScreamTx, GoesOnWithFeedbackInOrderAndWithoutLoss) {
+  Start();
+  for (guint32 frame = 0; frame < 20; ++frame) {
+    PushFrame(frame * 9000, 8);
+    for (int i = 0; i < 10; ++i) {
+      time.Advance(10 * GST_MSECOND);
+      Acknowledge();
+    }
+  }
+  Collect();
+  ASSERT_EQ(sent.size(), 160U);
+  for (std::size_t i = 0; i < sent.size(); ++i) EXPECT_EQ(sent[i].seq, i);
+  EXPECT_EQ(Stats(element)["frames-dropped"], 0U);
+  EXPECT_EQ(Stats(element).Text("ecn-state"), "capable");
+}
+
+TEST_F(ScreamTx, RaisesTheTargetOnAFreePathAndLowersItUnderMarks) {
+  g_object_set(element, "start-bitrate", 1'000'000, nullptr);
+  Start();
+  const auto run = [&](int frames, scream::Ecn ecn) {
+    for (int i = 0; i < frames; ++i) {
+      PushFrame(static_cast<guint32>(sent.size()) * 900, 8);
+      for (int k = 0; k < 5; ++k) {
+        time.Advance(5 * GST_MSECOND);
+        Acknowledge(ecn);
+      }
+    }
+  };
+  run(40, scream::Ecn::kEct1);
+  const guint64 free = Stats(element)["target-bitrate"];
+  EXPECT_GT(free, 1'200'000U);
+  Targets(rtp.get());
+  run(40, scream::Ecn::kCe);
+  EXPECT_LT(Stats(element)["target-bitrate"], free / 2);
+  EXPECT_GT(Stats(element)["packets-ce"], 0U);
+  GstLidarTargetBitrate told{};
+  do {
+    const EventPtr event(WaitForUpstream(rtp.get(), "target-bitrate"));
+    ASSERT_TRUE(event);
+    ASSERT_TRUE(gst_lidar_event_parse_target_bitrate(event.get(), &told));
+  } while (told.bitrate >= free / 2);
+  EXPECT_GT(told.rtt, 0U);
+}
+
+TEST_F(ScreamTx, PassesForeignRtcpAndKeepsItsOwn) {
+  Start();
+  PushFrame(0, 1);
+  Collect();
+  std::vector<std::uint8_t> receiver_report{0x80, 201, 0, 1, 0, 0, 0, 5};
+  CongestionFeedback ours;
+  ours.blocks.push_back({0x1234, 0, {{true, scream::Ecn::kEct1, Duration{0}}}});
+  const auto ccfb = scream::BuildCcfb(ours);
+  auto compound = receiver_report;
+  compound.insert(compound.end(), ccfb.begin(), ccfb.end());
+  ASSERT_EQ(gst_harness_push(rtcp.get(), FromBytes(compound)), GST_FLOW_OK);
+  const BufferPtr out(gst_harness_pull(rtcp.get()));
+  EXPECT_EQ(ToBytes(out.get()), receiver_report);
+
+  ours.blocks[0].ssrc = 0x9999;  // of another sender behind us
+  const auto theirs = scream::BuildCcfb(ours);
+  ASSERT_EQ(gst_harness_push(rtcp.get(), FromBytes(theirs)), GST_FLOW_OK);
+  const BufferPtr passed(gst_harness_pull(rtcp.get()));
+  EXPECT_EQ(ToBytes(passed.get()), theirs);
+}
+
+TEST_F(ScreamTx, PassesRtcpGarbageUnread) {
+  Start();
+  for (const auto& bytes :
+       {std::vector<std::uint8_t>{1, 2, 3}, std::vector<std::uint8_t>{0x8b, 205, 0, 99, 0, 0, 0, 1},
+        std::vector<std::uint8_t>{0x8b, 205, 0, 1, 0, 0, 0, 1}}) {
+    ASSERT_EQ(gst_harness_push(rtcp.get(), FromBytes(bytes)), GST_FLOW_OK);
+    const BufferPtr out(gst_harness_pull(rtcp.get()));
+    EXPECT_EQ(ToBytes(out.get()), bytes);
+  }
+}
+
+TEST_F(ScreamTx, IgnoresFeedbackOfPacketsThatItNeverSent) {
+  Start();
+  for (guint32 i = 0; i < 10; ++i) {
+    PushFrame(i * 900, 2);
+    time.Advance(10 * GST_MSECOND);
+    Acknowledge();
+  }
+  const guint64 before = Stats(element)["target-bitrate"];
+  CongestionFeedback lie;
+  scream::SsrcReport block{0x1234, 30000, {}};
+  for (int i = 0; i < 50; ++i) block.metrics.push_back({true, scream::Ecn::kCe, Duration{0}});
+  lie.blocks.push_back(block);
+  for (int i = 0; i < 20; ++i) Feed(lie);
+  const Stats after(element);
+  EXPECT_EQ(after["target-bitrate"], before);
+  EXPECT_EQ(after["packets-ce"], 0U);
+  EXPECT_EQ(after["feedback-ignored"], 20U);
+}
+
+TEST_F(ScreamTx, IsNotMovedByAFloodOfTheSameReport) {
+  Start();
+  for (guint32 i = 0; i < 20; ++i) {
+    PushFrame(i * 900, 2);
+    time.Advance(10 * GST_MSECOND);
+    Acknowledge();
+  }
+  const Stats before(element);
+  CongestionFeedback old;
+  old.blocks.push_back({0x1234, 0, {{true, scream::Ecn::kEct1, Duration{0}}}});
+  for (int i = 0; i < 2000; ++i) Feed(old);
+  const Stats after(element);
+  EXPECT_EQ(after["packets-ce"], before["packets-ce"]);
+  EXPECT_EQ(after["packets-acked"], before["packets-acked"]);
+  EXPECT_GE(after["target-bitrate"], before["target-bitrate"]);
+}
+
+TEST_F(ScreamTx, FallsBackAndSaysSoWhereThePathBleachesEcn) {
+  GstBus* bus = gst_bus_new();
+  gst_element_set_bus(element, bus);
+  Start();
+  for (guint32 i = 0; i < 100; ++i) {
+    PushFrame(i * 900, 2);
+    time.Advance(20 * GST_MSECOND);
+    Acknowledge(scream::Ecn::kNotEct);
+  }
+  Collect();
+  EXPECT_EQ(ecns.front(), GST_LIDAR_ECN_ECT1);
+  EXPECT_EQ(ecns.back(), GST_LIDAR_ECN_NOT_ECT);
+  EXPECT_EQ(Stats(element).Text("ecn-state"), "bleached");
+  const gst::MessagePtr message(
+      gst_bus_timed_pop_filtered(bus, 10 * GST_SECOND, GST_MESSAGE_ELEMENT));
+  ASSERT_TRUE(message);
+  EXPECT_TRUE(gst_message_has_name(message.get(), "scream-ecn-state-changed"));
+  gst_element_set_state(element, GST_STATE_NULL);
+  gst_element_set_bus(element, nullptr);
+  gst_object_unref(bus);
+}
+
+}  // namespace
+}  // namespace lidar::test

@@ -1,0 +1,123 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// A screamtx between harnesses, under a test clock.
+#pragma once
+#include <gtest/gtest.h>
+
+#include <map>
+#include <vector>
+
+#include "rtp_support.h"
+#include "scream/rtp_packet.h"
+
+namespace lidar::test {
+
+class ScreamTx : public ::testing::Test {
+ protected:
+  FakeTime time;
+  GstElement* element = gst_element_factory_make("screamtx", nullptr);
+  Harness rtp;
+  Harness rtcp;
+  std::vector<Rtp> sent;
+
+  void Start(const char* caps = kRtpCaps) {
+    rtp.reset(gst_harness_new_with_element(element, "sink_0", "src"));
+    rtcp.reset(gst_harness_new_with_element(element, "rtcp_sink", "rtcp_src"));
+    gst_harness_set_src_caps_str(rtp.get(), caps);
+    gst_harness_set_src_caps_str(rtcp.get(), "application/x-rtcp");
+  }
+  void TearDown() override {
+    rtcp.reset();
+    rtp.reset();
+    gst_object_unref(element);
+  }
+  GstFlowReturn Push(const Rtp& r) { return gst_harness_push(rtp.get(), NewRtp(r)); }
+  /// A frame of `packets`, with the next sequence numbers.
+  void PushFrame(guint32 timestamp, int packets) {
+    for (int i = 0; i < packets; ++i) {
+      Rtp r;
+      r.seq = next_seq_++;
+      r.timestamp = timestamp;
+      r.marker = i + 1 == packets;
+      ASSERT_EQ(Push(r), GST_FLOW_OK);
+    }
+  }
+  /// Takes what has left so far.
+  void Collect() {
+    time.Settle();
+    while (BufferPtr buffer{gst_harness_try_pull(rtp.get())}) {
+      const auto bytes = ToBytes(buffer.get());
+      if (gst::IsRtcp({bytes.data(), bytes.size()})) {
+        byes.push_back(bytes);
+        continue;
+      }
+      sent.push_back(ReadRtp(buffer.get()));
+      GstLidarEcn ecn{};
+      ecns.push_back(gst_lidar_buffer_get_ecn(buffer.get(), &ecn, nullptr) ? static_cast<int>(ecn)
+                                                                           : -1);
+    }
+  }
+  /// A report of all packets sent and not yet reported.
+  void Acknowledge(scream::Ecn ecn = scream::Ecn::kEct1) {
+    Collect();
+    if (acknowledged_ == sent.size()) return;
+    scream::CongestionFeedback report;
+    report.sender_ssrc = 9;
+    report.report_timestamp = static_cast<std::uint32_t>(
+        gst_util_uint64_scale(time.now(), 65536, GST_SECOND) & 0xffffffff);
+    std::map<guint32, scream::SsrcReport> blocks;
+    for (; acknowledged_ < sent.size(); ++acknowledged_) {
+      const Rtp& r = sent[acknowledged_];
+      auto& block = blocks[r.ssrc];
+      if (block.metrics.empty()) block.begin_seq = r.seq;
+      block.ssrc = r.ssrc;
+      block.metrics.push_back({true, ecn, Duration{0}});
+    }
+    for (auto& [ssrc, block] : blocks) report.blocks.push_back(block);
+    Feed(report);
+  }
+  void Feed(const scream::CongestionFeedback& report) {
+    ASSERT_EQ(gst_harness_push(rtcp.get(), FromBytes(scream::BuildCcfb(report))), GST_FLOW_OK);
+  }
+  /// The target-bitrate events that reached upstream so far.
+  static std::vector<GstLidarTargetBitrate> Targets(GstHarness* h) {
+    std::vector<GstLidarTargetBitrate> targets;
+    while (EventPtr event{gst_harness_try_pull_upstream_event(h)}) {
+      GstLidarTargetBitrate target{};
+      if (gst_lidar_event_parse_target_bitrate(event.get(), &target)) {
+        target.reason = g_intern_string(target.reason);
+        targets.push_back(target);
+      }
+    }
+    return targets;
+  }
+  static GstEvent* WaitForUpstream(GstHarness* h, const char* name) {
+    for (;;) {
+      GstEvent* event = gst_harness_pull_upstream_event(h);
+      if (event == nullptr || gst_event_has_name(event, name)) return event;
+      gst_event_unref(event);
+    }
+  }
+  /// The target that the pulse brings, long after everything before.
+  GstLidarTargetBitrate NextTarget(GstHarness* h) {
+    g_usleep(20'000);  // the control thread runs on real time; what is left over comes now
+    Targets(h);
+    time.Advance(250 * GST_MSECOND);
+    GstLidarTargetBitrate target{};
+    const EventPtr event(WaitForUpstream(h, "target-bitrate"));
+    if (event) gst_lidar_event_parse_target_bitrate(event.get(), &target);
+    return target;
+  }
+  bool HasEos() {
+    bool eos = false;
+    while (EventPtr event{gst_harness_try_pull_event(rtp.get())})
+      eos = eos || GST_EVENT_TYPE(event.get()) == GST_EVENT_EOS;
+    return eos;
+  }
+
+  std::vector<int> ecns;
+  std::vector<std::vector<std::uint8_t>> byes;
+  guint16 next_seq_ = 0;
+  std::size_t acknowledged_ = 0;
+};
+
+}  // namespace lidar::test

@@ -1,0 +1,158 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// The queue of screamtx under a test clock: what waits, what is dropped, how it ends.
+#include <gtest/gtest.h>
+
+#include <map>
+
+#include "screamtx_fixture.h"
+
+namespace lidar::test {
+namespace {
+
+TEST_F(ScreamTx, SendsNoMoreThanTheWindowWithoutFeedback) {
+  Start();
+  PushFrame(0, 100);
+  time.Advance(100 * GST_MSECOND);
+  Collect();
+  EXPECT_GE(sent.size(), 1U);
+  EXPECT_LE(sent.size(), 20U);
+  EXPECT_EQ(Stats(element)["packets-sent"], sent.size());
+}
+
+TEST_F(ScreamTx, DropsLateFramesOfLiveInputWhole) {
+  g_object_set(element, "max-queue-delay", guint64{100 * GST_MSECOND}, nullptr);
+  Start();
+  for (guint32 frame = 0; frame < 5; ++frame) {
+    PushFrame(frame * 900, 30);
+    time.Advance(10 * GST_MSECOND);
+  }
+  time.Advance(110 * GST_MSECOND);
+  PushFrame(99999, 2);
+  for (int i = 0; i < 50; ++i) {
+    time.Advance(10 * GST_MSECOND);
+    Acknowledge();
+  }
+  Collect();
+  std::map<guint32, int> packets;
+  for (const Rtp& r : sent) ++packets[r.timestamp];
+  EXPECT_EQ(packets[0], 30);  // it had begun to leave
+  EXPECT_EQ(packets[99999], 2);
+  EXPECT_EQ(packets.size(), 2U);
+  const Stats stats(element);
+  EXPECT_EQ(stats["frames-dropped"], 4U);
+  EXPECT_EQ(stats["packets-dropped"], 120U);
+}
+
+TEST_F(ScreamTx, GivesUpTheRestOfAFrameThatStuckOnItsWay) {
+  g_object_set(element, "max-queue-delay", guint64{100 * GST_MSECOND}, nullptr);
+  Start();
+  PushFrame(0, 100);
+  time.Advance(190 * GST_MSECOND);
+  EXPECT_EQ(Stats(element)["frames-dropped"], 0U);
+  time.Advance(15 * GST_MSECOND);
+  EXPECT_EQ(Stats(element)["frames-dropped"], 1U);
+  EXPECT_EQ(Stats(element)["queued-bytes"], 0U);
+}
+
+TEST_F(ScreamTx, AsksAVideoEncoderForAKeyFrameAfterADrop) {
+  g_object_set(element, "max-queue-delay", guint64{100 * GST_MSECOND}, nullptr);
+  Start(kVideoCaps);
+  PushFrame(0, 30);
+  PushFrame(900, 30);
+  time.Advance(300 * GST_MSECOND);
+  const EventPtr event(WaitForUpstream(rtp.get(), "GstForceKeyUnit"));
+  EXPECT_TRUE(event);
+}
+
+TEST_F(ScreamTx, EosDrainsTheQueue) {
+  g_object_set(element, "send-bye", TRUE, nullptr);
+  Start();
+  PushFrame(0, 20);
+  gst_harness_push_event(rtp.get(), gst_event_new_eos());
+  for (int i = 0; i < 15; ++i) {
+    time.Advance(10 * GST_MSECOND);
+    Acknowledge();
+  }
+  Collect();
+  EXPECT_EQ(sent.size(), 20U);
+  EXPECT_TRUE(HasEos());
+  ASSERT_GE(byes.size(), 2U);  // one may be lost
+  EXPECT_EQ(gst::ParseBye({byes[0].data(), byes[0].size()}), std::vector<guint32>{0x1234});
+}
+
+TEST_F(ScreamTx, EosDoesNotWaitForAPathThatIsGone) {
+  g_object_set(element, "max-queue-delay", guint64{150 * GST_MSECOND}, nullptr);
+  Start();
+  PushFrame(0, 200);
+  gst_harness_push_event(rtp.get(), gst_event_new_eos());
+  time.Advance(140 * GST_MSECOND);
+  EXPECT_FALSE(HasEos());
+  time.Advance(20 * GST_MSECOND);
+  EXPECT_TRUE(HasEos());
+  Collect();
+  EXPECT_LT(sent.size(), 200U);
+  EXPECT_TRUE(byes.empty());
+}
+
+TEST_F(ScreamTx, AFlushForgetsTheQueueAndItGoesOn) {
+  Start();
+  PushFrame(0, 100);
+  gst_harness_push_event(rtp.get(), gst_event_new_flush_start());
+  EXPECT_EQ(Push({}), GST_FLOW_FLUSHING);
+  gst_harness_push_event(rtp.get(), gst_event_new_flush_stop(TRUE));
+  Collect();
+  sent.clear();
+  GstSegment segment;
+  gst_segment_init(&segment, GST_FORMAT_TIME);
+  gst_harness_push_event(rtp.get(), gst_event_new_segment(&segment));
+  EXPECT_EQ(Stats(element)["queued-bytes"], 0U);
+  acknowledged_ = 0;
+  time.Advance(5 * GST_SECOND);
+  PushFrame(77, 1);
+  const BufferPtr out(gst_harness_pull(rtp.get()));
+  ASSERT_TRUE(out);
+  EXPECT_EQ(ReadRtp(out.get()).timestamp, 77U);
+}
+
+TEST_F(ScreamTx, AddsItsLongestDelayToTheLatency) {
+  g_object_set(element, "max-queue-delay", guint64{70 * GST_MSECOND}, nullptr);
+  Start();
+  gst_harness_set_upstream_latency(rtp.get(), 30 * GST_MSECOND);
+  EXPECT_EQ(gst_harness_query_latency(rtp.get()), 100 * GST_MSECOND);
+}
+
+TEST_F(ScreamTx, HoldsNoMoreThanItsDelayThroughAnOutageAndRecoversWithinASecond) {
+  g_object_set(element, "start-bitrate", 4'000'000, "min-bitrate", 200'000, nullptr);
+  Start();
+  guint32 frame = 0;
+  const auto run = [&](guint64 duration, bool path) {
+    for (guint64 t = 0; t < duration; t += 20 * GST_MSECOND) {
+      PushFrame(frame++ * 1800, 4);
+      for (int k = 0; k < 2; ++k) {
+        time.Advance(10 * GST_MSECOND);
+        if (path) {
+          Acknowledge();
+        } else {
+          Collect();
+          acknowledged_ = sent.size();  // lost
+        }
+      }
+    }
+  };
+  run(4 * GST_SECOND, true);
+  const guint64 before = Stats(element)["target-bitrate"];
+  run(30 * GST_SECOND, false);
+  const Stats down(element);
+  EXPECT_LT(down["target-bitrate"], before / 2);
+  EXPECT_LT(down["sent-bitrate"], 400'000U);
+  EXPECT_GT(down["feedback-timeouts"], 0U);
+  EXPECT_GT(down["frames-dropped"], 1000U);
+  // 4 packets each 20 ms for at most twice the 200 ms: a frame that has begun is in no hurry to go.
+  EXPECT_LE(down["queued-bytes"], 21U * 4 * 1228);
+  EXPECT_GT(down["packets-sent"], 0U);
+  run(GST_SECOND, true);
+  EXPECT_GT(Stats(element)["target-bitrate"], before / 2);
+}
+
+}  // namespace
+}  // namespace lidar::test

@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Several streams of one screamtx: shares, companions, pads that come and go.
+#include <gtest/gtest.h>
+
+#include "screamtx_fixture.h"
+
+namespace lidar::test {
+namespace {
+
+TEST_F(ScreamTx, SharesTheTargetByPriority) {
+  g_object_set(element, "start-bitrate", 4'000'000, "min-bitrate", 10'000, nullptr);
+  Start();
+  Harness second(gst_harness_new_with_element(element, "sink_1", nullptr));
+  gst_harness_set_src_caps_str(second.get(), kVideoCaps);
+  const gst::PadPtr pad(gst_element_get_static_pad(element, "sink_1"));
+  g_object_set(pad.get(), "priority", 0.25, nullptr);
+  for (int i = 0; i < 200; ++i) {
+    PushFrame(static_cast<guint32>(i) * 900, 4);
+    Rtp r;
+    r.ssrc = 0x5678;
+    r.seq = static_cast<guint16>(i);
+    r.timestamp = static_cast<guint32>(i);
+    r.marker = true;
+    ASSERT_EQ(gst_harness_push(second.get(), NewRtp(r)), GST_FLOW_OK);
+    for (int k = 0; k < 2; ++k) {
+      time.Advance(5 * GST_MSECOND);
+      Acknowledge(i % 4 == 0 ? scream::Ecn::kCe : scream::Ecn::kEct1);
+    }
+  }
+  const GstLidarTargetBitrate first = NextTarget(rtp.get());
+  const GstLidarTargetBitrate other = NextTarget(second.get());
+  EXPECT_EQ(first.ssrc, 0x1234U);
+  EXPECT_EQ(other.ssrc, 0x5678U);
+  EXPECT_NEAR(static_cast<double>(first.bitrate) / other.bitrate, 4, 0.5);
+}
+
+struct Companion {
+  const char* name;
+  guint32 ssrc;
+  guint8 payload_type;
+};
+class ScreamTxWith : public ScreamTx, public ::testing::WithParamInterface<Companion> {};
+TEST_P(ScreamTxWith, LeavesTheEncoderWhatItsCompanionDoesNotTake) {
+  g_object_set(element, "start-bitrate", 4'000'000, "min-bitrate", 4'000'000, "max-bitrate",
+               4'000'000, nullptr);
+  Start();
+  for (guint16 i = 0; i < 400; ++i) {
+    PushFrame(i * 900U, 1);
+    Rtp repair;
+    repair.ssrc = GetParam().ssrc;
+    repair.payload_type = GetParam().payload_type;
+    repair.seq = GetParam().ssrc == 0x1234 ? next_seq_++ : i;
+    repair.timestamp = i * 900U;
+    ASSERT_EQ(Push(repair), GST_FLOW_OK);
+    time.Advance(10 * GST_MSECOND);
+    Acknowledge();
+  }
+  const GstLidarTargetBitrate target = NextTarget(rtp.get());
+  EXPECT_EQ(target.ssrc, 0x1234U);
+  EXPECT_NEAR(target.bitrate, 4'000'000 * 1188.0 / 1228 / 2, 40'000);
+  EXPECT_EQ(Stats(element)["packets-lost"], 0U);
+}
+INSTANTIATE_TEST_SUITE_P(Companions, ScreamTxWith,
+                         ::testing::Values(Companion{"rtx", 0x5678, 97},
+                                           Companion{"ulpfec", 0x1234, 122}),
+                         [](const auto& i) { return i.param.name; });
+
+TEST_F(ScreamTx, SendsKeyUnitRequestsToTheStreamThatTheyName) {
+  Start();
+  Harness second(gst_harness_new_with_element(element, "sink_1", nullptr));
+  gst_harness_set_src_caps_str(second.get(), kVideoCaps);
+  Rtp r;
+  r.ssrc = 0x5678;
+  ASSERT_EQ(gst_harness_push(second.get(), NewRtp(r)), GST_FLOW_OK);
+  GstStructure* s = gst_structure_new("GstForceKeyUnit", "ssrc", G_TYPE_UINT, 0x5678, nullptr);
+  ASSERT_TRUE(gst_harness_push_upstream_event(rtp.get(),
+                                              gst_event_new_custom(GST_EVENT_CUSTOM_UPSTREAM, s)));
+  const EventPtr event(WaitForUpstream(second.get(), "GstForceKeyUnit"));
+  EXPECT_TRUE(event);
+  while (EventPtr other{gst_harness_try_pull_upstream_event(rtp.get())})
+    EXPECT_FALSE(gst_event_has_name(other.get(), "GstForceKeyUnit"));
+}
+
+TEST_F(ScreamTx, APadThatComesAndGoesWhilePlayingTakesItsShareAndLeavesIt) {
+  g_object_set(element, "start-bitrate", 4'000'000, "min-bitrate", 10'000, "max-bitrate", 4'000'000,
+               nullptr);
+  Start();
+  PushFrame(0, 1);
+  Acknowledge();
+  EXPECT_NEAR(static_cast<double>(Stats(element)["target-bitrate"]), 4e6, 1);
+  for (int round = 0; round < 3; ++round) {
+    Harness second(gst_harness_new_with_element(element, "sink_1", nullptr));
+    gst_harness_set_src_caps_str(second.get(), kVideoCaps);
+    Rtp r;
+    r.ssrc = 0x5678;
+    r.marker = true;
+    for (guint16 i = 0; i < 30; ++i) {  // more than the window lets go: some are in the queue
+      r.seq = i;
+      ASSERT_EQ(gst_harness_push(second.get(), NewRtp(r)), GST_FLOW_OK);
+    }
+    Collect();
+    EXPECT_GT(Stats(element)["queued-bytes"], 0U);
+    second.reset();  // releases the pad
+    EXPECT_FALSE(gst::PadPtr(gst_element_get_static_pad(element, "sink_1")));
+    EXPECT_EQ(Stats(element)["queued-bytes"], 0U);
+    time.Advance(500 * GST_MSECOND);
+    Acknowledge();
+    PushFrame(static_cast<guint32>(1 + round) * 900, 1);
+    time.Advance(500 * GST_MSECOND);
+    Acknowledge();
+    EXPECT_EQ(sent.back().ssrc, 0x1234U);
+    EXPECT_NEAR(static_cast<double>(Stats(element)["target-bitrate"]), 4e6, 4e6 / 2);
+  }
+}
+
+}  // namespace
+}  // namespace lidar::test
