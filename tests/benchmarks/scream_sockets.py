@@ -25,11 +25,9 @@ SCENARIOS = {
     "A": ("20 Mbit/s, RTT 25, ramp 2-10 ms", ["--rate", "20", "--rtt", "25"] + RAMP, "ect1", 50, 40),
     "C": ("8 Mbit/s, RTT 40, ramp", ["--rate", "8", "--rtt", "40"] + RAMP, "ect1", 50, 40),
     "C10": ("C at 10 frames/s", ["--rate", "8", "--rtt", "40"] + RAMP, "ect1", 10, 40),
-    "C80": ("C at 80 slices/s", ["--rate", "8", "--rtt", "40"] + RAMP, "ect1", 80, 40),
     "D": ("8 Mbit/s, no ECN, FIFO 100 ms", ["--rate", "8", "--rtt", "40", "--queue", "100"], "off", 50, 40),
     "E": ("steps 12,4,8,3,15,6,10 every 8 s, ramp", STEPS, "ect1", 50, 56),
     "E10": ("E at 10 frames/s", STEPS, "ect1", 10, 56),
-    "E80": ("E at 80 slices/s", STEPS, "ect1", 80, 56),
     "G0.5": ("A with 0.5 % random loss", ["--rate", "20", "--rtt", "25", "--loss", "0.5"] + RAMP, "ect1", 50, 40),
     "G1": ("A with 1 % random loss", ["--rate", "20", "--rtt", "25", "--loss", "1"] + RAMP, "ect1", 50, 40),
     "G2": ("A with 2 % random loss", ["--rate", "20", "--rtt", "25", "--loss", "2"] + RAMP, "ect1", 50, 40),
@@ -38,6 +36,11 @@ SCENARIOS = {
     "J": ("two flows on 20 Mbit/s, ramp", ["--rate", "20", "--rtt", "25"] + RAMP, "ect1", 50, 40),
     "K": ("8 Mbit/s, Not-ECT, FIFO 10 ms", ["--rate", "8", "--rtt", "40", "--queue", "10"], "off", 50, 40),
 }
+# The slices of a LiDAR instead of frames: 80 a second, of sizes that vary by 10 %.
+SLICES_FPS, SLICES_JITTER = 80, 10
+for _name in ["A", "C", "D", "E", "G1", "H", "J", "K"]:
+    _text, _link, _ecn, _, _seconds = SCENARIOS[_name]
+    SCENARIOS[_name + "-slices"] = (_text + ", slices", _link, _ecn, SLICES_FPS, _seconds)
 SETTLE_S = 5.0
 LINK_PORT, RX_PORT = 45004, 45104  # of the first flow, with --port-offset 0
 
@@ -92,7 +95,7 @@ class Peers:
         prefix = self.host.prefix() if self.host else []
         if kind == "ours":
             return prefix + [self.bench, "tx", "--host", self.address, "--port", str(port), "--ecn", ecn,
-                    "--fps", str(fps), "--max-bitrate", "60M", "--summary", summary]
+                    "--fps", str(fps), "--frame-jitter", str(SLICES_JITTER if fps == SLICES_FPS else 0), "--max-bitrate", "60M", "--summary", summary]
         ect = {"ect1": "1", "ect0": "0", "off": "-1"}[ecn]
         return prefix + [str(self.reference / "scream_bw_test_tx"), "-ect", ect, "-fps", str(fps), "-initrate", "1000",
                 "-minrate", "100", "-maxrate", "60000", "-nosummary", self.address,
