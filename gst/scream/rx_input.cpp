@@ -13,15 +13,23 @@ namespace {
 constexpr std::size_t kMaxSsrcs = 64;
 // A kernel time older than this, or in the future, means that somebody set the system clock.
 constexpr Duration kMaxAge = std::chrono::seconds(1);
+constexpr Duration kMaxApart = std::chrono::milliseconds(1);
 
 /// Now on the clock of the reports, and on that of kernel arrival times.
 struct Clocks {
-  Time now;
-  GstClockTime unix_now;
+  Time now{};
+  GstClockTime unix_now = 0;
 };
 
+/// Again where the thread was stopped between the two: all arrivals would seem so much earlier.
 Clocks ReadClocks(const RxState& state) {
-  return {RxNow(state), static_cast<GstClockTime>(g_get_real_time()) * GST_USECOND};
+  Clocks clocks;
+  for (int tries = 0; tries < 3; ++tries) {
+    clocks.now = RxNow(state);
+    clocks.unix_now = static_cast<GstClockTime>(g_get_real_time()) * GST_USECOND;
+    if (RxNow(state) - clocks.now < kMaxApart) break;
+  }
+  return clocks;
 }
 
 /// The kernel's arrival time on the reports' clock, which nobody sets.

@@ -46,8 +46,8 @@ void AddCounters(GstStructure* out, const scream::Statistics& s) {
       U64(s.feedback_ignored), "feedback-foreign-blocks", G_TYPE_UINT64, U64(s.foreign_blocks),
       "feedback-timeouts", G_TYPE_UINT64, U64(s.feedback_timeouts), "loss-events", G_TYPE_UINT64,
       U64(s.loss_events), "ce-events", G_TYPE_UINT64, U64(s.ce_events), "delay-events",
-      G_TYPE_UINT64, U64(s.delay_events), "clock-resets", G_TYPE_UINT64, U64(s.clock_resets),
-      nullptr);
+      G_TYPE_UINT64, U64(s.delay_events), "capacity-drops", G_TYPE_UINT64, U64(s.capacity_drops),
+      "clock-resets", G_TYPE_UINT64, U64(s.clock_resets), nullptr);
 }
 
 }  // namespace

@@ -26,10 +26,15 @@ class BusyRun {
     }
     ++packets_;
     marked_ += a.marked ? 1 : 0;
-    if (!start_)
+    if (!start_) {
       start_ = a.time;
-    else
+    } else {
       bytes_ += a.size;
+      if (a.time - last_ > pause_) {
+        pause_ = a.time - last_;
+        after_pause_ = a.size;
+      }
+    }
     last_ = a.time;
   }
   void Reset() { *this = BusyRun(); }
@@ -37,10 +42,12 @@ class BusyRun {
   int packets() const { return packets_; }
   int marked() const { return marked_; }
   Duration span() const { return start_ ? last_ - *start_ : Duration{0}; }
-  /// None for a run too short against the coarse arrival times of reports.
+  /// Without the longest pause: a link that stood still for a moment has not become slower. None
+  /// for a run too short against the coarse arrival times of reports.
   std::optional<DataRate> capacity() const {
-    if (packets_ < kMinPackets || span() < kMinSpan) return std::nullopt;
-    return bytes_ / span();
+    const Duration busy = span() - pause_;
+    if (packets_ < kMinPackets || busy < kMinSpan) return std::nullopt;
+    return (bytes_ - after_pause_) / busy;
   }
 
  private:
@@ -49,6 +56,8 @@ class BusyRun {
   std::optional<Time> start_;
   Time last_{};
   DataSize bytes_;
+  Duration pause_{0};
+  DataSize after_pause_;
   int packets_ = 0;
   int marked_ = 0;
 };

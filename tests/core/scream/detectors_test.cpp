@@ -2,6 +2,7 @@
 // The draft's constants, and the small detectors: alpha, queue delay, ECN, loss rate, pacing.
 #include <gtest/gtest.h>
 
+#include "scream/busy_run.h"
 #include "scream/competing_flows.h"
 #include "scream/ecn_monitor.h"
 #include "scream/l4s_alpha.h"
@@ -252,6 +253,38 @@ TEST(RoundTripTime, SmoothsByAnEighth) {
   EXPECT_EQ(rtt.min(), Duration(40ms));
   for (int i = 0; i < 61; ++i) rtt.Add(kStart + i * 1s, 80ms, false);
   EXPECT_EQ(rtt.min(), Duration(80ms));
+}
+
+/// Packets of 1000 bytes that came out of a queue `spacing` apart.
+Time Arrive(BusyRun* run, Time now, Duration spacing, int packets) {
+  for (int i = 0; i < packets; ++i, now += spacing)
+    run->Add({now, DataSize::Bytes(1000), true, true});
+  return now;
+}
+
+TEST(BusyRun, MeasuresTheLinkByTheSpacingOfWhatItHeldBack) {
+  BusyRun run;
+  Arrive(&run, kStart, 1ms, 11);
+  EXPECT_FALSE(run.capacity());  // 10 ms, but one pause is not believed
+  Arrive(&run, kStart + 11ms, 1ms, 1);
+  ASSERT_TRUE(run.capacity());
+  EXPECT_NEAR(run.capacity()->bits_per_second(), 8e6, 1);
+}
+
+TEST(BusyRun, AMomentInWhichNothingMovedIsNoSlowness) {
+  BusyRun run;
+  const Time stop = Arrive(&run, kStart, 1ms, 10);
+  Arrive(&run, stop + 80ms, 1ms, 10);
+  ASSERT_TRUE(run.capacity());
+  EXPECT_NEAR(run.capacity()->bits_per_second(), 8e6, 1);
+}
+
+TEST(BusyRun, EndsWithAPacketThatDidNotWait) {
+  BusyRun run;
+  const Time now = Arrive(&run, kStart, 1ms, 20);
+  run.Add({now, DataSize::Bytes(1000), false, false});
+  EXPECT_FALSE(run.capacity());
+  EXPECT_EQ(run.packets(), 0);
 }
 
 }  // namespace

@@ -78,6 +78,23 @@ TEST(Outage, OfTheWayBackAloneIsForgottenAsSoon) {
   EXPECT_GT(run.Utilisation(21s, 23s), 0.7);
 }
 
+/// As in a handover: nothing is lost, and afterwards the link carries what it did before.
+TEST(Freeze, OfTheLinkIsNoDropOfItsCapacity) {
+  for (const char* name : {"A", "C", "C10", "C10-slices"}) {
+    for (const Duration length : {30ms, 100ms}) {
+      Scenario s = Named(name);
+      for (Duration at = 10s; at < 26s; at += 2013ms)
+        s.config.forward.capacity.AddOutage(at, at + length);
+      const Trial run(s);
+      EXPECT_GT(run.Utilisation(10s, 26s), 0.78) << name << " " << Milliseconds(length);
+      const double before = static_cast<double>(run.At(9900ms).ref_wnd.bytes());
+      for (Duration t = 10s; t < 26s; t += 10ms)
+        ASSERT_GT(static_cast<double>(run.At(t).ref_wnd.bytes()), 0.5 * before)
+            << name << " " << Milliseconds(length) << " at " << Milliseconds(t);
+    }
+  }
+}
+
 struct Jump {
   const char* name;
   Duration sender, receiver;
