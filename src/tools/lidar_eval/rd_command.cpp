@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // lidar-eval rd: rate against distortion, ours and the paper's setting.
+#include <algorithm>
 #include <cstdio>
 #include <memory>
 
@@ -51,7 +52,7 @@ Curve OurCurve(const ScanSet& set, const std::string& name, std::uint32_t slices
   return curve;
 }
 
-void Evaluate(const ScanSet& set, const Options& o, CsvFile* csv) {
+std::vector<Curve> Evaluate(const ScanSet& set, const Options& o, CsvFile* csv) {
   std::vector<Curve> curves = {PaperCurve(set, "xyz-sequential", "paper: automatic bits, level 0"),
                                PaperCurve(set, "xyz-kd6", "paper: automatic bits, level 7")};
   for (const std::string& mode : o.modes) {
@@ -73,7 +74,11 @@ void Evaluate(const ScanSet& set, const Options& o, CsvFile* csv) {
                       m.bits_per_return, m.bitrate));
     }
   }
-  if (o.plot.empty()) return;
+  return curves;
+}
+
+/// Commands that draw the curves of one source.
+std::string Draw(const std::string& title, const std::vector<Curve>& curves) {
   std::string data;
   std::string lines;
   for (std::size_t i = 0; i < curves.size(); ++i) {
@@ -84,20 +89,28 @@ void Evaluate(const ScanSet& set, const Options& o, CsvFile* csv) {
     lines += Format("%s$c%zu using 1:2 with linespoints pt 7 ps 0.6 lw 2 title '%s'",
                     i == 0 ? "plot " : ", ", i, curves[i].name.c_str());
   }
-  Plot(o.plot,
-       data +
-           "set logscale x\nset xrange [1:300]\nset yrange [0:30]\n"
-           "set xlabel 'largest point error [mm]'\nset ylabel 'bits per return'\nset title '" +
-           set.name + "' noenhanced\n" + lines);
+  return data + "set title '" + title + "' noenhanced\n" + lines + "\n";
 }
 
 void Run(const Options& o) {
-  if (!o.plot.empty() && o.sources.size() > 1) throw std::runtime_error("--plot draws one source");
   CsvFile csv(o.csv,
               "source,coding,step_m,quantization_bits,mean_error_m,max_error_m,bits_per_return,"
               "bitrate_bps");
-  for (const std::string& source : o.sources) Evaluate(LoadScans(source, o.source), o, &csv);
+  std::string plots;
+  for (const std::string& source : o.sources) {
+    const ScanSet set = LoadScans(source, o.source);
+    plots += Draw(set.name, Evaluate(set, o, &csv));
+  }
   csv.Close();
+  if (o.plot.empty()) return;
+  const std::size_t columns = std::min<std::size_t>(o.sources.size(), 2);
+  const std::size_t rows = (o.sources.size() + columns - 1) / columns;
+  Plot(o.plot, Format("set terminal png size %zu,%zu font ',11'\nset output '%s'\n", 900 * columns,
+                      500 * rows, o.plot.c_str()) +
+                   Format("set multiplot layout %zu,%zu\n", rows, columns) +
+                   "set logscale x\nset xrange [1:300]\nset yrange [0:30]\n"
+                   "set xlabel 'largest point error [mm]'\nset ylabel 'bits per return'\n" +
+                   plots + "unset multiplot\n");
 }
 
 }  // namespace
@@ -116,7 +129,7 @@ void AddRateDistortionCommand(CLI::App* app) {
   command->add_option("--scans", o->source.max_scans, "Scans to read of each source");
   command->add_option("--speed", o->source.speed_mps, "Of synthetic drives [m/s]");
   command->add_option("--csv", o->csv, "Write the table to this file as well");
-  command->add_option("--plot", o->plot, "Draw it as this PNG (one source)");
+  command->add_option("--plot", o->plot, "Draw all sources into this PNG");
   command->callback([o] { Run(*o); });
 }
 
