@@ -155,6 +155,7 @@ static void Prepare(TxState& state) {
   if (state.clock == nullptr) state.clock = gst_system_clock_obtain();
   state.controller.emplace(ToParameters(state.settings));
   state.parser = {};
+  state.feedback_peer = {};
   for (auto& stream : state.streams) {
     auto fresh = TxStream{};
     fresh.pad = stream->pad;

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include "scream/rtp_packet.h"
 
+#include <gst/net/gstnetaddressmeta.h>
+
 #include <algorithm>
 
 #include "base/byte_writer.h"
@@ -80,6 +82,11 @@ std::vector<guint32> ParseBye(ByteView datagram) {
     }
   }
   return ssrcs;
+}
+
+GSocketAddress* SourceOf(GstBuffer* buffer) {
+  const GstNetAddressMeta* meta = gst_buffer_get_net_address_meta(buffer);
+  return meta == nullptr ? nullptr : meta->addr;
 }
 
 }  // namespace lidar::gst

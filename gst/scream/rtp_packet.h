@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // The few fields of RTP and RTCP that congestion control needs, and the RTCP BYE.
 #pragma once
+#include <gio/gio.h>
 #include <gst/gst.h>
 
 #include <cstdint>
@@ -30,5 +31,8 @@ bool IsRtcp(ByteView datagram);
 std::vector<std::uint8_t> BuildBye(const std::vector<guint32>& ssrcs);
 /// The SSRCs that say goodbye in a compound RTCP datagram.
 std::vector<guint32> ParseBye(ByteView datagram);
+
+/// Where the buffer came from, or NULL; the buffer's.
+GSocketAddress* SourceOf(GstBuffer* buffer);
 
 }  // namespace lidar::gst

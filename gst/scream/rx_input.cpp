@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // What enters screamrx: media, which is counted and passed on, and goodbyes.
-#include <gst/net/gstnetaddressmeta.h>
-
 #include "common/buffer_map.h"
 #include "scream/rx_private.h"
 
@@ -37,11 +35,6 @@ Time ArrivalTime(const Clocks& clocks, GstClockTime arrival) {
   if (!GST_CLOCK_TIME_IS_VALID(arrival)) return clocks.now;
   const auto age = Duration{static_cast<std::int64_t>(clocks.unix_now - arrival)};
   return age > Duration{0} && age < kMaxAge ? clocks.now - age : clocks.now;
-}
-
-GSocketAddress* SourceOf(GstBuffer* buffer) {
-  const GstNetAddressMeta* meta = gst_buffer_get_net_address_meta(buffer);
-  return meta == nullptr ? nullptr : meta->addr;
 }
 
 /// Counts one packet of media; false where it is to be dropped. With the lock held.

@@ -227,7 +227,7 @@ void Remember(TxState& state, TxStream& stream, GstEvent* event) {
 }
 
 /// Hands one CCFB packet to the controller; false where it is not for us.
-bool Feed(GstLidarScreamTx* self, ByteView packet) {
+bool Feed(GstLidarScreamTx* self, ByteView packet, GSocketAddress* from) {
   TxState& state = *self->state;
   TxLock lock(state.mutex);
   if (!state.controller || !state.running) return true;
@@ -236,8 +236,13 @@ bool Feed(GstLidarScreamTx* self, ByteView packet) {
     ++state.malformed_rtcp;
     return false;
   }
-  const auto result = state.controller->OnFeedback(TxNow(state), *feedback);
+  const Time now = TxNow(state);
+  const auto result = state.controller->OnFeedback(now, *feedback);
   if (result == scream::FeedbackResult::kNotOurs) return false;
+  if (result == scream::FeedbackResult::kAccepted && state.feedback_peer.OnFeedback(now, from)) {
+    GST_INFO_OBJECT(self, "feedback comes from a new address: a new path");
+    state.controller->OnRouteChange(now);
+  }
   WakePacer(state);
   return true;
 }
@@ -298,7 +303,7 @@ GstFlowReturn TxRtcpChain(GstPad*, GstObject* parent, GstBuffer* buffer) {
     const auto packets = scream::SplitRtcp(map.view());
     if (packets.empty()) rest.assign(map.view().begin(), map.view().end());
     for (const ByteView packet : packets)
-      if (!scream::IsCcfb(packet) || !Feed(self, packet))
+      if (!scream::IsCcfb(packet) || !Feed(self, packet, SourceOf(buffer)))
         rest.insert(rest.end(), packet.begin(), packet.end());
   }
   if (rest.empty() || !gst_pad_is_linked(self->rtcp_src)) return GST_FLOW_OK;

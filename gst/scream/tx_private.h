@@ -17,6 +17,7 @@
 
 #include "scream/ccfb.h"
 #include "scream/controller.h"
+#include "scream/feedback_peer.h"
 #include "scream/gstscreamtx.h"
 #include "scream/tx_settings.h"
 #include "scream/tx_stream.h"
@@ -32,6 +33,7 @@ struct TxState {
   TxSettings settings;
   std::optional<scream::Controller> controller;  // between READY and PAUSED
   scream::CcfbParser parser;
+  FeedbackPeer feedback_peer;
   std::vector<std::unique_ptr<TxStream>> streams;
   guint next_pad = 0;
 

@@ -143,5 +143,38 @@ TEST_F(ScreamTx, FallsBackAndSaysSoWhereThePathBleachesEcn) {
   gst_object_unref(bus);
 }
 
+TEST_F(ScreamTx, TestsThePathAnewWhenTheReceiverHasMoved) {
+  Start();
+  const auto run = [&](const char* host, scream::Ecn ecn) {
+    from.reset(g_inet_socket_address_new_from_string(host, 5004));
+    for (guint32 i = 0; i < 60; ++i) {
+      PushFrame(static_cast<guint32>(sent.size()) * 900, 2);
+      time.Advance(20 * GST_MSECOND);
+      Acknowledge(ecn);
+    }
+    Collect();
+  };
+  run("192.0.2.1", scream::Ecn::kNotEct);
+  EXPECT_EQ(Stats(element).Text("ecn-state"), "bleached");
+  time.Advance(600 * GST_MSECOND);
+  run("192.0.2.2", scream::Ecn::kEct1);
+  EXPECT_EQ(Stats(element).Text("ecn-state"), "capable");
+  EXPECT_EQ(ecns.back(), GST_LIDAR_ECN_ECT1);
+}
+
+TEST_F(ScreamTx, KeepsThePathWhileItsReceiverIsThere) {
+  Start();
+  std::unique_ptr<GSocketAddress, gst::GObjectUnref> other(
+      g_inet_socket_address_new_from_string("192.0.2.2", 5004));
+  from.reset(g_inet_socket_address_new_from_string("192.0.2.1", 5004));
+  for (guint32 i = 0; i < 60; ++i) {
+    PushFrame(i * 1800, 2);
+    time.Advance(20 * GST_MSECOND);
+    Acknowledge(scream::Ecn::kNotEct);
+    if (i % 5 == 0) from.swap(other);
+  }
+  EXPECT_EQ(Stats(element).Text("ecn-state"), "bleached");
+}
+
 }  // namespace
 }  // namespace lidar::test

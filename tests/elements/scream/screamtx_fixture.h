@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // A screamtx between harnesses, under a test clock.
 #pragma once
+#include <gst/net/gstnetaddressmeta.h>
 #include <gtest/gtest.h>
 
 #include <map>
+#include <memory>
 #include <vector>
 
+#include "ecnudp/udp_socket.h"
 #include "rtp_support.h"
 #include "scream/rtp_packet.h"
 
@@ -76,7 +79,9 @@ class ScreamTx : public ::testing::Test {
     Feed(report);
   }
   void Feed(const scream::CongestionFeedback& report) {
-    ASSERT_EQ(gst_harness_push(rtcp.get(), FromBytes(scream::BuildCcfb(report))), GST_FLOW_OK);
+    GstBuffer* buffer = FromBytes(scream::BuildCcfb(report));
+    if (from) gst_buffer_add_net_address_meta(buffer, from.get());
+    ASSERT_EQ(gst_harness_push(rtcp.get(), buffer), GST_FLOW_OK);
   }
   /// The target-bitrate events that reached upstream so far.
   static std::vector<GstLidarTargetBitrate> Targets(GstHarness* h) {
@@ -114,6 +119,7 @@ class ScreamTx : public ::testing::Test {
     return eos;
   }
 
+  std::unique_ptr<GSocketAddress, gst::GObjectUnref> from;  // of feedback; none by default
   std::vector<int> ecns;
   std::vector<std::vector<std::uint8_t>> byes;
   guint16 next_seq_ = 0;

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Where the sender's feedback comes from; a new place means a new path.
+#pragma once
+#include <gio/gio.h>
+
+#include <memory>
+
+#include "base/time.h"
+#include "ecnudp/udp_socket.h"
+
+namespace lidar::gst {
+
+class FeedbackPeer {
+ public:
+  /// After this silence of the old address another one is the peer's.
+  static constexpr Duration kSilence = std::chrono::milliseconds(500);
+
+  /// Of feedback that was accepted; `from` may be NULL. True where the peer has moved.
+  bool OnFeedback(Time now, GSocketAddress* from) {
+    if (from == nullptr) return false;
+    if (peer_ && Same(from)) {
+      last_ = now;
+      return false;
+    }
+    const bool known = peer_ != nullptr;
+    if (known && now - last_ < kSilence) return false;
+    peer_.reset(G_SOCKET_ADDRESS(g_object_ref(from)));
+    last_ = now;
+    return known;
+  }
+
+ private:
+  bool Same(GSocketAddress* from) const {
+    return ToNative(from, G_SOCKET_FAMILY_IPV6) == ToNative(peer_.get(), G_SOCKET_FAMILY_IPV6);
+  }
+  std::unique_ptr<GSocketAddress, GObjectUnref> peer_;
+  Time last_{};
+};
+
+}  // namespace lidar::gst
