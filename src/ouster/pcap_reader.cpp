@@ -53,15 +53,13 @@ std::optional<PcapReader::Captured> PcapReader::Next() {
     const int got = pcap_next_ex(handle_.get(), &header, &frame);
     if (got == PCAP_ERROR) error_ = pcap_geterr(handle_.get());
     if (got != 1) return std::nullopt;
-    auto datagram = extractor_.Extract(link_, {frame, header->caplen});
-    if (!datagram) continue;
-    // With nanosecond precision, tv_usec holds nanoseconds.
     // pcapng carries 64 bits of time, in units of its choice.
     const auto latest = std::chrono::duration_cast<std::chrono::seconds>(kLatestTime).count();
     const auto seconds = std::clamp<std::int64_t>(header->ts.tv_sec, 0, latest);
-    const Duration since_epoch =
-        std::chrono::seconds(seconds) + std::chrono::nanoseconds(header->ts.tv_usec);
-    return Captured{*std::move(datagram), Time(since_epoch)};
+    // With nanosecond precision, tv_usec holds nanoseconds.
+    const Time time(std::chrono::seconds(seconds) + std::chrono::nanoseconds(header->ts.tv_usec));
+    auto datagram = extractor_.Extract(link_, {frame, header->caplen}, time);
+    if (datagram) return Captured{*std::move(datagram), time};
   }
 }
 

@@ -9,6 +9,8 @@ namespace {
 constexpr std::size_t kMaxPartials = 32;
 constexpr std::size_t kMaxIpPayload = 65535;
 constexpr std::size_t kFragmentUnit = 8;
+// Identifiers come round within minutes: what is left of a datagram must not meet a later one.
+constexpr Duration kMaxAge = std::chrono::seconds(5);
 constexpr std::uint8_t kUdp = 17;
 constexpr std::uint16_t kEtherIpv4 = 0x0800;
 constexpr std::uint16_t kEtherIpv6 = 0x86dd;
@@ -81,20 +83,29 @@ bool IsKnown(LinkType link) {
   return false;
 }
 
-std::optional<std::vector<std::uint8_t>> IpReassembler::Add(const Fragment& f) {
-  const std::size_t end = f.offset + f.payload.size;
-  if (f.payload.empty() || end > kMaxIpPayload || (f.more && f.payload.size % kFragmentUnit != 0))
-    return std::nullopt;
+/// The datagram that `f` is a part of.
+std::deque<IpReassembler::Partial>::iterator IpReassembler::Find(const Fragment& f, Time time) {
   auto at = std::find_if(partials_.begin(), partials_.end(), [&](const Partial& p) {
     return p.id == f.id && p.addresses == f.addresses;
   });
-  if (at == partials_.end()) {
-    if (partials_.size() == kMaxPartials) partials_.pop_front();
-    partials_.emplace_back();
-    at = partials_.end() - 1;
-    at->addresses = f.addresses;
-    at->id = f.id;
+  if (at != partials_.end() && (time > at->begun + kMaxAge || time + kMaxAge < at->begun)) {
+    partials_.erase(at);
+    at = partials_.end();
   }
+  if (at != partials_.end()) return at;
+  if (partials_.size() == kMaxPartials) partials_.pop_front();
+  partials_.emplace_back();
+  partials_.back().addresses = f.addresses;
+  partials_.back().id = f.id;
+  partials_.back().begun = time;
+  return partials_.end() - 1;
+}
+
+std::optional<std::vector<std::uint8_t>> IpReassembler::Add(const Fragment& f, Time time) {
+  const std::size_t end = f.offset + f.payload.size;
+  if (f.payload.empty() || end > kMaxIpPayload || (f.more && f.payload.size % kFragmentUnit != 0))
+    return std::nullopt;
+  const auto at = Find(f, time);
   Partial& p = *at;
   const std::size_t first_block = f.offset / kFragmentUnit;
   const std::size_t last_block = (end - 1) / kFragmentUnit;
@@ -103,6 +114,10 @@ std::optional<std::vector<std::uint8_t>> IpReassembler::Add(const Fragment& f) {
   const auto first = p.blocks.begin() + static_cast<std::ptrdiff_t>(first_block);
   const auto last = p.blocks.begin() + static_cast<std::ptrdiff_t>(last_block) + 1;
   const bool overlaps = std::find(first, last, true) != last;
+  const bool repeats = overlaps && std::find(first, last, false) == last &&
+                       std::equal(f.payload.begin(), f.payload.end(),
+                                  p.bytes.begin() + static_cast<std::ptrdiff_t>(f.offset));
+  if (repeats) return std::nullopt;
   if (!f.more && !p.size) p.size = end;
   if (overlaps || (p.size && p.bytes.size() > *p.size)) {
     partials_.erase(at);
@@ -118,7 +133,8 @@ std::optional<std::vector<std::uint8_t>> IpReassembler::Add(const Fragment& f) {
   return whole;
 }
 
-std::optional<UdpDatagram> UdpExtractor::Extract(LinkType link, ByteView frame) {
+std::optional<UdpDatagram> UdpExtractor::Extract(LinkType link, ByteView frame, Time time) {
+  time_ = time;
   return FromIp(AfterLinkHeader(link, frame));
 }
 
@@ -197,7 +213,7 @@ std::optional<UdpDatagram> UdpExtractor::FromIpv6(ByteView packet) {
 
 std::optional<UdpDatagram> UdpExtractor::FromFragment(const IpReassembler::Fragment& f) {
   if (f.offset == 0 && !f.more) return ParseUdp(f.addresses, f.payload);
-  const auto whole = reassembler_.Add(f);
+  const auto whole = reassembler_.Add(f, time_);
   if (!whole) return std::nullopt;
   return ParseUdp(f.addresses, {whole->data(), whole->size()});
 }

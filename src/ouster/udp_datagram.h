@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "base/byte_reader.h"
+#include "base/time.h"
 
 namespace lidar::ouster {
 
@@ -45,8 +46,8 @@ struct UdpDatagram {
   ByteView view() const { return {payload.data(), payload.size()}; }
 };
 
-/// Puts fragments together. Holds a bounded number of datagrams; an overlap discards its datagram
-/// (RFC 5722).
+/// Puts fragments together. Holds a bounded number of datagrams, none for long; fragments that
+/// contradict each other discard their datagram (RFC 5722).
 class IpReassembler {
  public:
   struct Fragment {
@@ -57,25 +58,28 @@ class IpReassembler {
     ByteView payload;
   };
   /// The whole IP payload once its last part came.
-  std::optional<std::vector<std::uint8_t>> Add(const Fragment& fragment);
+  std::optional<std::vector<std::uint8_t>> Add(const Fragment& fragment, Time time);
 
  private:
   struct Partial {
     IpEndpoints addresses;
     std::uint32_t id = 0;
+    Time begun{};
     std::vector<std::uint8_t> bytes;
     std::vector<bool> blocks;  // of 8 bytes
     std::optional<std::size_t> size;
     std::size_t received = 0;
   };
+  std::deque<Partial>::iterator Find(const Fragment& fragment, Time time);
+
   std::deque<Partial> partials_;  // oldest first
 };
 
 class UdpExtractor {
  public:
   /// None for a frame that is no UDP, is damaged or cut short, or is a fragment whose datagram is
-  /// not complete.
-  std::optional<UdpDatagram> Extract(LinkType link, ByteView frame);
+  /// not complete. `time`: of the capture.
+  std::optional<UdpDatagram> Extract(LinkType link, ByteView frame, Time time = {});
 
  private:
   std::optional<UdpDatagram> FromIp(ByteView packet);
@@ -84,6 +88,7 @@ class UdpExtractor {
   std::optional<UdpDatagram> FromFragment(const IpReassembler::Fragment& fragment);
 
   IpReassembler reassembler_;
+  Time time_{};  // of the frame at hand
 };
 
 }  // namespace lidar::ouster

@@ -169,13 +169,45 @@ TEST_P(Fragments, OfTwoDatagramsDoNotMix) {
   EXPECT_EQ(out[1], b);
 }
 
-TEST_P(Fragments, ThatOverlapDiscardTheirDatagram) {
-  const auto packets = Cut(Udp(Payload(4000)), 1480);
+TEST_P(Fragments, ThatComeTwiceCountOnce) {
+  const Bytes payload = Payload(4000);
+  const auto packets = Cut(Udp(payload), 1480);
   UdpExtractor extractor;
   EXPECT_FALSE(extractor.Extract(LinkType::kRaw, View(packets[0])));
   EXPECT_FALSE(extractor.Extract(LinkType::kRaw, View(packets[1])));
   EXPECT_FALSE(extractor.Extract(LinkType::kRaw, View(packets[1])));
-  EXPECT_FALSE(extractor.Extract(LinkType::kRaw, View(packets[2])));
+  const auto datagram = extractor.Extract(LinkType::kRaw, View(packets[2]));
+  ASSERT_TRUE(datagram);
+  EXPECT_EQ(datagram->payload, payload);
+}
+
+TEST_P(Fragments, ThatContradictEachOtherDiscardTheirDatagram) {
+  Bytes other = Payload(4000);
+  std::reverse(other.begin(), other.end());
+  const auto of_one = Cut(Udp(Payload(4000)), 1480);
+  const auto of_other = Cut(Udp(other), 1480);
+  UdpExtractor extractor;
+  EXPECT_FALSE(extractor.Extract(LinkType::kRaw, View(of_one[0])));
+  EXPECT_FALSE(extractor.Extract(LinkType::kRaw, View(of_one[1])));
+  EXPECT_FALSE(extractor.Extract(LinkType::kRaw, View(of_other[1])));
+  EXPECT_FALSE(extractor.Extract(LinkType::kRaw, View(of_one[2])));
+}
+
+// At 640 packets/s the identifiers of IPv4 come round every 102 s.
+TEST_P(Fragments, OfAnIncompleteDatagramAreForgottenBeforeTheirIdentifierComesRound) {
+  Bytes next = Payload(4000);
+  std::reverse(next.begin(), next.end());
+  const auto lost = Cut(Udp(Payload(4000)), 1480);
+  const auto whole = Cut(Udp(next), 1480);
+  for (const Bytes& left : lost) {
+    UdpExtractor extractor;
+    EXPECT_FALSE(extractor.Extract(LinkType::kRaw, View(left), Time(std::chrono::seconds(1000))));
+    std::optional<UdpDatagram> datagram;
+    for (const Bytes& packet : whole)
+      datagram = extractor.Extract(LinkType::kRaw, View(packet), Time(std::chrono::seconds(1088)));
+    ASSERT_TRUE(datagram);
+    EXPECT_EQ(datagram->payload, next);
+  }
 }
 
 TEST_P(Fragments, WithoutEndHoldNoMoreThanSomeMemory) {
