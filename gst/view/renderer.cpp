@@ -154,7 +154,11 @@ void Renderer::PlotPerspective(const Point& point) {
 void Renderer::DrawRangeImage(const CloudInfo& info, const GstLidarSlice& slice,
                               const std::uint8_t* points) {
   const auto* model = info.sensor_model ? &*info.sensor_model : nullptr;
-  const guint turn = model != nullptr ? model->columns_per_scan : info.width * slice.slice_count;
+  // The meta says what it likes.
+  constexpr guint64 kMost = SensorModel::kMaxColumns * guint64{4096};
+  const guint64 all = guint64{info.width} * slice.slice_count;
+  const guint turn = model != nullptr ? model->columns_per_scan
+                                      : static_cast<guint>(std::clamp<guint64>(all, 1, kMost));
   ForEachPoint(info, points, [&](const Point& p) {
     const int shift = model != nullptr ? model->beams[p.beam].pixel_shift : 0;
     const auto column =

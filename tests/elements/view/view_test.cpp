@@ -189,6 +189,16 @@ TEST_F(View, DrawsNoNonsense) {
   }
 }
 
+TEST_F(View, TakesMetasThatMakeNoSense) {
+  for (const GstLidarSlice& slice :
+       {GstLidarSlice{0, 0, 0, 0}, GstLidarSlice{1, 7, 1, 4'000'000'000},
+        GstLidarSlice{2, 0, 1U << 31, 5}}) {
+    Start("view=range", Info(2, 2));
+    const Point hit{20, 0, 0, 1};
+    EXPECT_EQ(PushSlice({hit, hit, hit, hit}, slice), GST_FLOW_OK);
+  }
+}
+
 TEST_F(View, RefusesCloudsWithoutCoordinates) {
   CloudInfo info = Info(1);
   info.fields = *PointFields::Parse("range:U32:0");
