@@ -70,8 +70,8 @@ ouster::Metadata Rebuild(const ReplayOptions& options, const ouster::Metadata& f
   if (!same && !options.pcap.empty())
     throw std::runtime_error("a capture has one lidar_mode and one udp_profile_lidar");
   if (options.pcap.empty()) {
-    m = MakeSynthMetadata(options.synth,
-                          {config["lidar_mode"].get<std::string>(), *profile, first.format.header});
+    m = MakeSynthMetadata(options.synth, {config["lidar_mode"].get<std::string>(), *profile,
+                                          first.format.header, first.format.columns_per_packet});
     m.window = ToColumns(config["azimuth_window"], m.model.columns_per_scan);
   }
   SetSerial(options.serial, &m);

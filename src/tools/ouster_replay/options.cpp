@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <map>
 
+#include "ouster_replay/faults.h"
+
 namespace lidar::tools {
 namespace {
 
@@ -33,6 +35,8 @@ void AddSource(CLI::App* app, ReplayOptions* o, Text* t) {
   app->add_option("--profile", t->profile, "Packet profile, as RNG19_RFL8_SIG16_NIR16_DUAL");
   app->add_option("--header", t->header, "Packet header")
       ->check(CLI::IsMember({"STANDARD", "FUSA"}));
+  app->add_option("--columns-per-packet", o->format.columns_per_packet, "16 on most sensors")
+      ->check(CLI::Range(1, 512));
   const std::map<std::string, synth::SceneKind> scenes = {{"street", synth::SceneKind::kStreet},
                                                           {"tunnel", synth::SceneKind::kTunnel},
                                                           {"field", synth::SceneKind::kField}};
@@ -88,6 +92,10 @@ ReplayOptions::Event ParseEvent(const std::string& text) {
   event.faults = json::parse(end, nullptr, false);
   if (end == text.c_str() || !event.faults.is_object() || !(event.at_s >= 0))
     throw CLI::ValidationError("--at", "\"" + text + "\" is not like 5 {\"silent\":true}");
+  json faults = event.faults;
+  faults.erase("restart");
+  const std::string error = Faults{}.Merge(faults);
+  if (!error.empty()) throw CLI::ValidationError("--at", error);
   return event;
 }
 

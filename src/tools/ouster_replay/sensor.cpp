@@ -4,6 +4,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "common/udp_socket.h"
 #include "ouster/metadata_writer.h"
 
 namespace lidar::tools {
@@ -40,6 +41,19 @@ bool IsValid(const std::string& key, const json& value) {
   return value.is_string();
 }
 
+/// Empty is nowhere. May ask a name server.
+bool IsDestination(const json& value) {
+  if (!value.is_string()) return false;
+  const auto host = value.get<std::string>();
+  if (host.empty() || host == "@auto") return true;
+  try {
+    ResolveAddress("0", host);
+  } catch (const std::runtime_error&) {
+    return false;
+  }
+  return true;
+}
+
 std::uint32_t NextInitId(std::uint32_t id) {
   const std::uint32_t next = (id * 1'103'515'245U + 12'345U) & 0xffffffU;
   return next == 0 ? 1 : next;
@@ -68,6 +82,8 @@ std::string Sensor::ConfigJson(bool staged) const {
 
 std::string Sensor::SetConfig(const json& config, const Change& change, const std::string& peer) {
   if (!config.is_object()) return "a configuration is a JSON object";
+  if (config.contains("udp_dest") && !IsDestination(config["udp_dest"]))
+    return "cannot send to udp_dest " + config["udp_dest"].dump();
   std::lock_guard lock(mutex_);
   json next = staged_;
   for (const auto& [key, value] : config.items()) {

@@ -26,7 +26,8 @@ Mode ParseMode(const std::string& text) {
   for (const std::uint32_t columns : {512U, 1024U, 2048U, 4096U})
     for (const std::uint32_t rate : {5U, 10U, 20U})
       if (text == std::to_string(columns) + "x" + std::to_string(rate)) return {columns, rate};
-  throw std::runtime_error("mode \"" + text + "\" is not like 1024x10");
+  throw std::runtime_error("there is no mode \"" + text +
+                           "\": there are 512, 1024, 2048 and 4096 columns x 5, 10 and 20");
 }
 
 synth::Sensor MakeSensor(const std::string& model, std::uint32_t columns) {
@@ -65,15 +66,19 @@ ouster::Metadata MakeSynthMetadata(const SynthOptions& options, const SynthForma
   m.lidar_mode = format.mode;
   m.timestamp_mode = "TIME_FROM_INTERNAL_OSC";
   m.scans_per_second = mode.rate;
-  constexpr std::uint32_t kColumnsPerPacket = 16;
   m.format = {format.profile, format.header, static_cast<std::uint32_t>(m.model.beams.size()),
-              kColumnsPerPacket};
+              format.columns_per_packet};
   m.model.range_unit_mm = m.format.range_unit_mm();
   m.window = {0, mode.columns};
   m.imu_to_sensor = {1, 0, 0, 0.006253, 0, 1, 0, -0.011775, 0, 0, 1, 0.007645, 0, 0, 0, 1};
   m.lidar_port = 7502;
   m.imu_port = 7503;
   if (m.format.packet_size() == 0) throw std::runtime_error("profile OFF sends no packets");
+  if (format.columns_per_packet == 0 || mode.columns % format.columns_per_packet != 0)
+    throw std::runtime_error("the columns of a packet must divide those of a scan");
+  if (m.format.packet_size() > ouster::PacketFormat::kMaxPacketSize)
+    throw std::runtime_error("packets of " + std::to_string(m.format.packet_size()) +
+                             " bytes are larger than UDP carries: take fewer columns a packet");
   return m;
 }
 

@@ -23,6 +23,7 @@ struct SynthFormat {
   std::string mode = "1024x10";
   ouster::Profile profile = ouster::Profile::kRng19Rfl8Sig16Nir16;
   ouster::HeaderType header = ouster::HeaderType::kStandard;
+  std::uint32_t columns_per_packet = 16;
 };
 ouster::Metadata MakeSynthMetadata(const SynthOptions& options, const SynthFormat& format);
 

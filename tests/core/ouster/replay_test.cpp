@@ -71,14 +71,16 @@ struct Case {
   Profile profile;
   ouster::HeaderType header = ouster::HeaderType::kStandard;
   const char* mode = "512x10";
+  std::uint32_t columns_per_packet = 16;
 };
 class SynthProfiles : public ::testing::TestWithParam<Case> {};
 
 TEST_P(SynthProfiles, CarryWhatTheScannerSaw) {
   SynthOptions options;
   options.model = kModel;
-  const ouster::Metadata m =
-      MakeSynthMetadata(options, {GetParam().mode, GetParam().profile, GetParam().header});
+  const ouster::Metadata m = MakeSynthMetadata(
+      options,
+      {GetParam().mode, GetParam().profile, GetParam().header, GetParam().columns_per_packet});
   const Points points = ReadBack(m, options);
   const bool dual = m.format.has_second_return();
   const synth::Returns truth = Scan(m);
@@ -118,7 +120,9 @@ INSTANTIATE_TEST_SUITE_P(
                       Case{Profile::kRng19Rfl8Sig16Nir16, ouster::HeaderType::kFusa},
                       Case{Profile::kRng15Rfl8Nir8, kStandard, "1024x20"},
                       Case{Profile::kLegacy, kStandard, "2048x10"},
-                      Case{Profile::kRng19Rfl8Sig16Nir16Dual, kStandard, "4096x5"}));
+                      Case{Profile::kRng19Rfl8Sig16Nir16Dual, kStandard, "4096x5"},
+                      Case{Profile::kRng19Rfl8Sig16Nir16, kStandard, "512x20", 8},
+                      Case{Profile::kRng15Rfl8Nir8Dual, kStandard, "1024x5", 64}));
 
 }  // namespace
 }  // namespace lidar::tools
