@@ -15,6 +15,9 @@ constexpr int kMaxDepth = 16;
 constexpr std::size_t kTransformSize = 16;
 constexpr double kMaxAngleDeg = 720;
 constexpr double kMaxTranslationMm = 100'000;
+constexpr double kSlowestScans = 0.1;  // a second
+constexpr double kFastestScans = 100;
+constexpr std::size_t kMaxPixels = std::size_t{1} << 22;  // a scan; bounds what it takes in memory
 
 /// Finds a key in its section, or at the top level, where the flat layout has it.
 class Document {
@@ -136,9 +139,9 @@ class Builder {
     if (!columns || *columns == 0 || *columns > SensorModel::kMaxColumns)
       return Fail("lidar_data_format.columns_per_frame and lidar_mode are missing or wrong");
     m_.model.columns_per_scan = *columns;
-    auto rate = document_.Number(kFormat, "fps", 100);
+    auto rate = document_.Number(kFormat, "fps", kFastestScans);
     if ((!rate || *rate <= 0) && mode) rate = mode->scans_per_second;
-    if (!rate || !(*rate > 0 && *rate <= 100))
+    if (!rate || !(*rate >= kSlowestScans && *rate <= kFastestScans))
       return Fail("lidar_data_format.fps and lidar_mode are missing or wrong");
     m_.scans_per_second = *rate;
     return true;
@@ -168,16 +171,18 @@ class Builder {
     m_.format.columns_per_packet = CountOr("columns_per_packet", 16, 65535);
     if (m_.format.beams == 0 || m_.format.columns_per_packet == 0)
       return Fail("lidar_data_format has no pixels_per_column or columns_per_packet");
+    if (std::size_t{m_.format.beams} * m_.model.columns_per_scan > kMaxPixels)
+      return Fail("lidar_data_format gives scans larger than any sensor's");
     if (m_.format.packet_size() > PacketFormat::kMaxPacketSize)
       return Fail("lidar_data_format gives packets larger than UDP can carry");
-    if (IsSwitchedOff()) m_.format.profile = Profile::kOff;
+    m_.switched_off = m_.format.profile == Profile::kOff || GoesNowhere();
     m_.model.range_unit_mm = m_.format.range_unit_mm();
     ReadImuFormat();
     return true;
   }
 
   /// A sensor told to send its lidar packets nowhere.
-  bool IsSwitchedOff() const {
+  bool GoesNowhere() const {
     const json* destination = document_.Find(kConfig, "udp_dest");
     const json* port = document_.Find(kConfig, "udp_port_lidar");
     return (destination != nullptr && destination->is_string() &&

@@ -43,6 +43,7 @@ struct Metadata {
   Transform imu_to_sensor = kIdentity;  // translation in metres
   ImuProfile imu_profile = ImuProfile::kLegacy;
   std::uint32_t imu_measurements_per_packet = 0;
+  bool switched_off = false;     // it sends no lidar packets: no profile, destination or port
   std::uint16_t lidar_port = 0;  // 0: not known
   std::uint16_t imu_port = 0;
 

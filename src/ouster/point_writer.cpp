@@ -113,9 +113,7 @@ std::optional<PointWriter> PointWriter::Create(const Metadata& metadata,
                                                const PointOptions& options, std::string* error) {
   const std::string profile(ToString(metadata.format.profile));
   if (metadata.format.profile == Profile::kOff) {
-    *error =
-        "the sensor's lidar stream is switched off (udp_profile_lidar OFF, no udp_dest, or "
-        "udp_port_lidar 0)";
+    *error = "the sensor's lidar stream is switched off (udp_profile_lidar OFF)";
     return std::nullopt;
   }
   if (options.returns != Return::kStrongest && !metadata.format.has_second_return()) {

@@ -58,13 +58,20 @@ TEST(Metadata, AWindowMayWrap) {
   EXPECT_EQ(m->window.count, 24U);
 }
 
-TEST(Metadata, AStreamThatIsSentNowhereIsOff) {
+TEST(Metadata, TellsThatTheStreamIsSentNowhere) {
   json root = Load("windowed_frame1_0.json");
-  root["config_params"]["udp_dest"] = "";
   std::string error;
-  const auto m = Parse(root, &error);
+  EXPECT_FALSE(Parse(root, &error)->switched_off);
+  root["config_params"]["udp_dest"] = "";
+  auto m = Parse(root, &error);
   ASSERT_TRUE(m) << error;
-  EXPECT_EQ(m->format.profile, Profile::kOff);
+  EXPECT_TRUE(m->switched_off);
+  // A capture may have been recorded later.
+  EXPECT_TRUE(PointWriter::Create(*m, {}, &error)) << error;
+  root["lidar_data_format"]["udp_profile_lidar"] = "OFF";
+  m = Parse(root, &error);
+  ASSERT_TRUE(m) << error;
+  EXPECT_TRUE(m->switched_off);
   EXPECT_FALSE(PointWriter::Create(*m, {}, &error));
   EXPECT_NE(error.find("switched off"), std::string::npos);
 }
@@ -118,6 +125,7 @@ INSTANTIATE_TEST_SUITE_P(
                       Damage{"/lidar_data_format/columns_per_frame", ""},
                       Damage{"/lidar_data_format/fps", "0"},
                       Damage{"/lidar_data_format/fps", "-10"},
+                      Damage{"/lidar_data_format/fps", "1e-300"},
                       Damage{"/lidar_data_format/pixels_per_column", "4000000000"},
                       Damage{"/lidar_data_format/pixels_per_column", "64"},
                       Damage{"/lidar_data_format/columns_per_packet", "0"},
