@@ -49,6 +49,13 @@ bool FileSession::WaitUntil(GstClockTime running_time) {
   return outcome != GST_CLOCK_UNSCHEDULED;
 }
 
+void FileSession::WarnIfCutShort() {
+  if (pcap_->error().empty() || cut_reported_) return;
+  cut_reported_ = true;
+  GST_ELEMENT_WARNING(element(), STREAM, DECODE, ("%s is cut short", settings().location.c_str()),
+                      ("%s", pcap_->error().c_str()));
+}
+
 GstFlowReturn FileSession::EndOfCapture() {
   const char* path = settings().location.c_str();
   constexpr const char* kRemedy =
@@ -67,9 +74,7 @@ GstFlowReturn FileSession::EndOfCapture() {
                       ("%s", kRemedy));
     return GST_FLOW_ERROR;
   }
-  if (!pcap_->error().empty())
-    GST_ELEMENT_WARNING(element(), STREAM, DECODE, ("%s is cut short", path),
-                        ("%s", pcap_->error().c_str()));
+  WarnIfCutShort();
   stream()->Flush();
   End();
   UpdateCounters();
@@ -90,7 +95,10 @@ GstFlowReturn FileSession::Poll() {
     arrival.local = ToTime(pace_start_) + packet->due;
     arrival.utc = pace_start_utc_ + packet->due;
   }
-  if (packet->starts_over) stream()->Restart();
+  if (packet->starts_over) {
+    WarnIfCutShort();
+    stream()->Restart();
+  }
   const ByteView payload{packet->payload.data(), packet->payload.size()};
   if (Push(payload, arrival) != ouster::PacketVerdict::kNewInitId) return GST_FLOW_OK;
   if (!restart_reported_)

@@ -23,9 +23,11 @@ class FileSession : public Session {
  private:
   bool WaitUntil(GstClockTime running_time);
   GstFlowReturn EndOfCapture();
+  void WarnIfCutShort();
 
   std::unique_ptr<PcapFeed> pcap_;
   bool restart_reported_ = false;
+  bool cut_reported_ = false;
   GstClockTime pace_start_ = GST_CLOCK_TIME_NONE;  // running time of the capture's first packet
   Time pace_start_utc_{};
 

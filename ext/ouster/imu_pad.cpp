@@ -47,6 +47,13 @@ GstPadProbeReturn EndWithClouds(GstPad*, GstPadProbeInfo* info, gpointer imu) {
   return GST_PAD_PROBE_OK;
 }
 
+/// Packets leave as they come.
+gboolean Query(GstPad* pad, GstObject* parent, GstQuery* query) {
+  if (GST_QUERY_TYPE(query) != GST_QUERY_LATENCY) return gst_pad_query_default(pad, parent, query);
+  gst_query_set_latency(query, gst_base_src_is_live(GST_BASE_SRC(parent)), 0, GST_CLOCK_TIME_NONE);
+  return TRUE;
+}
+
 /// Of the group of streams that the clouds are in.
 GstEvent* StreamStart(GstPad* imu, GstElement* element, GstPad* clouds) {
   const StringPtr id(gst_pad_create_stream_id(imu, element, "imu"));
@@ -72,6 +79,7 @@ void ImuPad::AddPad() {
   GstPad* clouds = GST_BASE_SRC_PAD(element_);
   pad_ = gst_pad_new_from_template(pad_template, "imu");
   gst_pad_use_fixed_caps(pad_);
+  gst_pad_set_query_function(pad_, Query);
   gst_pad_set_active(pad_, TRUE);
   gst_pad_push_event(pad_, StreamStart(pad_, element_, clouds));
   end_of_clouds_ = gst_pad_add_probe(clouds, GST_PAD_PROBE_TYPE_EVENT_DOWNSTREAM, EndWithClouds,

@@ -100,7 +100,18 @@ void LiveSession::Unlock() {
 
 void LiveSession::UnlockStop() {
   flushing_ = false;
+  resumed_ = true;
   udp_.ClearWake();
+}
+
+/// The pipeline plays, for the first time or again after a pause: what waits then is of before.
+void LiveSession::StartOver() {
+  constexpr int kMostBatches = 4096;
+  last_packet_us_ = g_get_monotonic_time();
+  if (!std::exchange(polled_, true)) return;
+  for (int i = 0; i < kMostBatches; ++i)
+    if (udp_.Receive(0, [](const ReceivedDatagram&) {}) != UdpFeed::Outcome::kPackets) break;
+  if (stream() != nullptr) stream()->Restart();
 }
 
 void LiveSession::AddCounters(Counters* counters) const {
@@ -133,6 +144,7 @@ void LiveSession::Ask() {
 /// False after an error was posted.
 bool LiveSession::HandleAnswer(SensorLink::Result result) {
   if (result.metadata) {
+    api_reported_ = false;
     destination_ = result.destination;
     return TakeMetadata(*std::move(result.metadata));
   }
@@ -145,11 +157,31 @@ bool LiveSession::HandleAnswer(SensorLink::Result result) {
     return false;
   }
   // Packets count for more than the API: they may well go on while that is down.
-  if (!connected_) SetConnected(false, why);
+  if (connected_) return true;
+  SetConnected(false, why);
+  if (!std::exchange(api_reported_, true))
+    GST_ELEMENT_WARNING(
+        element(), RESOURCE, OPEN_READ,
+        ("Cannot talk to the sensor %s: %s", settings().hostname.c_str(), why.c_str()),
+        ("asking again until it answers; is it powered, and is its name right?"));
   return true;
 }
 
+/// False, after an error was posted, where nothing ever came: then it is a setting to be mended.
+bool LiveSession::WaitWhileSwitchedOff() {
+  constexpr const char* kOff = "the sensor's lidar stream is switched off";
+  if (stream() != nullptr && settings().reconnect) {
+    SetConnected(false, kOff);
+    return true;
+  }
+  GST_ELEMENT_ERROR(element(), RESOURCE, SETTINGS, ("%s", kOff),
+                    ("it has no udp_dest, port 0 or udp_profile_lidar OFF; udp-dest=@auto, "
+                     "lidar-port and udp-profile-lidar turn it on"));
+  return false;
+}
+
 bool LiveSession::TakeMetadata(ouster::Metadata metadata) {
+  if (metadata.switched_off) return WaitWhileSwitchedOff();
   const bool first = stream() == nullptr;
   const bool new_geometry = first || !SameGeometry(stream()->metadata(), metadata);
   const bool new_start = first || metadata.init_id != stream()->metadata().init_id;
@@ -257,6 +289,7 @@ bool LiveSession::CheckSilence() {
 }
 
 GstFlowReturn LiveSession::Poll() {
+  if (resumed_.exchange(false)) StartOver();
   if (link_) {
     auto answer = link_->Take();
     if (answer && !HandleAnswer(*std::move(answer))) return GST_FLOW_ERROR;

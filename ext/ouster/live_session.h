@@ -32,12 +32,16 @@ class LiveSession : public Session {
   void HandleNewInitId(ByteView payload, const ouster::Arrival& arrival);
   void HandleWrongSize(gsize size);
   bool CheckSilence();
+  bool WaitWhileSwitchedOff();
+  void StartOver();
   void SetConnected(bool connected, const std::string& reason);
   void Ask();
 
   std::unique_ptr<SensorLink> link_;  // null without hostname
   UdpFeed udp_;
   std::atomic<bool> flushing_{false};
+  std::atomic<bool> resumed_{false};  // since the last Poll()
+  bool polled_ = false;
   guint receive_buffer_ = 0;
   bool connected_ = false;
   bool lost_once_ = false;
@@ -49,6 +53,7 @@ class LiveSession : public Session {
   guint wrong_sizes_in_a_row_ = 0;
   bool size_reported_ = false;
   bool silence_reported_ = false;
+  bool api_reported_ = false;
 };
 
 }  // namespace lidar::gst

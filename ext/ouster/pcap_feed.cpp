@@ -32,7 +32,7 @@ std::optional<PcapFeed::Packet> PcapFeed::Next() {
   auto captured = reader_->Next();
   if (!captured) {
     error_ = reader_->error();
-    if (!error_.empty() || !StartOver()) return std::nullopt;
+    if (!StartOver()) return std::nullopt;
     captured = reader_->Next();
     if (!captured) return std::nullopt;
   }

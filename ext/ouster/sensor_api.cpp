@@ -43,8 +43,9 @@ std::optional<json> Wanted(const OusterSettings& s, ApiError* error) {
     }
     wanted["azimuth_window"] = *window;
   }
-  if (s.signal_multiplier >= 1)
-    wanted["signal_multiplier"] = static_cast<int>(s.signal_multiplier);
+  const auto whole = static_cast<int>(s.signal_multiplier);
+  if (s.signal_multiplier > 0 && s.signal_multiplier == whole)
+    wanted["signal_multiplier"] = whole;
   else if (s.signal_multiplier > 0)
     wanted["signal_multiplier"] = s.signal_multiplier;
   return wanted;
@@ -124,6 +125,7 @@ bool SensorApi::WriteConfig(const std::string& text, ApiError* error) {
 
 bool SensorApi::WaitUntilRunning(const std::function<bool()>& sleep, ApiError* error) {
   constexpr int kAttempts = 90;  // a motor takes its time to spin up
+  std::string last = "silent";
   for (int i = 0; i < kAttempts; ++i) {
     const HttpResponse response = client_.Get("sensor/metadata");
     const json root = ParseObject(response.body);
@@ -131,10 +133,12 @@ bool SensorApi::WaitUntilRunning(const std::function<bool()>& sleep, ApiError* e
     if (response.ok && info.is_object()) {
       const auto status = info.find("status");
       if (status == info.end() || *status == "RUNNING") return true;
+      last = status->dump();
     }
     if (!sleep()) break;
   }
-  *error = {"the sensor is not running again after its configuration was changed", false};
+  *error = {"the sensor is not running again after its configuration was changed, but " + last,
+            false};
   return false;
 }
 

@@ -2,7 +2,6 @@
 #include "session.h"
 
 #include <fstream>
-#include <iterator>
 #include <utility>
 
 #include "common/refs.h"
@@ -15,10 +14,21 @@
 namespace lidar::gst {
 namespace {
 
+/// None for what cannot be read; the start of what is larger than any file of ours.
 std::optional<std::string> ReadFile(const std::string& path) {
+  constexpr std::size_t kMaxSize = ouster::Metadata::kMaxJsonSize + 1;
+  constexpr std::size_t kPiece = 1U << 16;
   std::ifstream file(path, std::ios::binary);
-  if (!file) return std::nullopt;
-  return std::string{std::istreambuf_iterator<char>(file), {}};
+  std::string text;
+  while (file && text.size() < kMaxSize) {
+    const std::size_t size = text.size();
+    text.resize(size + kPiece);
+    file.read(&text[size], kPiece);
+    text.resize(size + static_cast<std::size_t>(file.gcount()));
+  }
+  // Reading a folder fails otherwise than at its end.
+  if (!file.is_open() || file.bad()) return std::nullopt;
+  return text;
 }
 
 void Add(const ouster::BatcherStats& a, ouster::BatcherStats* to) {

@@ -37,6 +37,7 @@ class Receiver {
   Receiver(const Receiver&) = delete;
   Receiver& operator=(const Receiver&) = delete;
 
+  void SetState(GstState state) { gst_element_set_state(harness_->element, state); }
   gst::BufferPtr Pull() { return gst::BufferPtr(gst_harness_pull(harness_.get())); }
   void Drain() {
     while (gst_harness_buffers_in_queue(harness_.get()) > 0) Pull();

@@ -58,6 +58,8 @@ INSTANTIATE_TEST_SUITE_P(
         BadInput{"location=@README.md metadata=@crc_test.json", "unknown file format"},
         BadInput{"location=@ metadata=@crc_test.json", "s a directory"},
         BadInput{"location=@crc_test.pcap metadata=@README.md", "not a JSON object"},
+        BadInput{"location=@crc_test.pcap metadata=@", "Cannot read the metadata"},
+        BadInput{"location=@crc_test.pcap metadata=/dev/zero", "larger than any"},
         BadInput{"location=@crc_test.pcap metadata=@OS-0-32-U1_v2.2.0_1024x10_digest.json",
                  "no metadata of an Ouster sensor"},
         BadInput{"location=@crc_test.pcap metadata=@OS-1-32-G_v2.1.1_1024x10.json",
@@ -135,6 +137,16 @@ TEST(OusterCapture, OfWhichTheEndIsMissingGivesWhatItHasAndWarns) {
     EXPECT_EQ(ending.error, "");
     EXPECT_NE(ending.warnings.find("is cut short"), std::string::npos) << ending.warnings;
   }
+}
+
+TEST(OusterCapture, OfWhichTheEndIsMissingMayLoop) {
+  const std::string pcap = ReadFile(DataPath("crc_test.pcap"));
+  const TempFile file("short.pcap", pcap.substr(0, pcap.size() - 5000));
+  const Ending ending = test::Run("ouster_src loop=true num-buffers=40 location=" + file.path() +
+                                  " metadata=" + DataPath("crc_test.json") + " ! fakesink");
+  EXPECT_EQ(ending.error, "");
+  EXPECT_EQ(ending.warnings.find("is cut short"), ending.warnings.rfind("is cut short"));
+  EXPECT_NE(ending.warnings.find("is cut short"), std::string::npos);
 }
 
 TEST(OusterCapture, OfAnotherLinkTypeIsAClearError) {

@@ -188,6 +188,47 @@ TEST(OusterLive, TakesANewGeometryWhenSomeoneElseReconfigures) {
   EXPECT_EQ(receiver.Info().ScanDuration(), 100 * GST_MSECOND);
 }
 
+TEST(OusterLive, APauseIsNoLossAndLeavesNothingOldBehind) {
+  SoftwareSensor sensor({});
+  Receiver receiver(sensor.host(), "udp-dest=@auto");
+  ASSERT_TRUE(receiver.Pull());
+  const auto lost = Stat(receiver.source(), "packets-lost");
+  receiver.SetState(GST_STATE_PAUSED);
+  receiver.Drain();
+  g_usleep(1'500'000);
+  receiver.SetState(GST_STATE_PLAYING);
+  GstClockTime last = 0;
+  for (int i = 0; i < 20; ++i) {
+    const BufferPtr buffer = receiver.Pull();
+    ASSERT_TRUE(buffer);
+    if (i > 1) {
+      EXPECT_GT(GST_BUFFER_PTS(buffer.get()), last + 6 * GST_MSECOND) << i;
+    }
+    last = GST_BUFFER_PTS(buffer.get());
+  }
+  EXPECT_EQ(Stat(receiver.source(), "packets-lost"), lost);
+  GstStructure* stats = nullptr;
+  g_object_get(receiver.source(), "stats", &stats, nullptr);
+  guint reconnects = 1;
+  gst_structure_get_uint(stats, "reconnects", &reconnects);
+  gst_structure_free(stats);
+  EXPECT_EQ(reconnects, 0U);
+}
+
+TEST(OusterLive, WaitsForASensorThatIsSwitchedOffForAWhile) {
+  SoftwareSensor sensor({});
+  Receiver receiver(sensor.host(), "");
+  const auto send_to = [&](const char* destination) {
+    EXPECT_EQ(sensor.state().SetConfig({{"udp_dest", destination}}, {false, true}, ""), "");
+  };
+  EXPECT_NE(receiver.AwaitError().find("switched off"), std::string::npos);
+  Receiver second(sensor.host(), "udp-dest=@auto");
+  ASSERT_TRUE(second.AwaitConnected(true));
+  send_to("");
+  ASSERT_TRUE(second.AwaitConnected(false));
+  ASSERT_TRUE(second.AwaitConnected(true));
+}
+
 TEST(OusterLive, WaitsForASensorWhoseApiFails) {
   SoftwareSensor sensor({});
   sensor.Fault({{"http_status", 500}});

@@ -7,6 +7,7 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
+#include <cstdlib>
 #include <cstring>
 
 #include "ecnudp/udp_socket.h"
@@ -31,8 +32,17 @@ bool EnterOwnNetwork() {
   return ok;
 }
 
+/// An Ethernet of two ends, since loopback carries no multicast over IPv6; false without iproute2.
+bool AddEthernet() {
+  return std::system(
+             "ip link add lidar0 type veth peer name lidar1 2>/dev/null && ip link set lidar0 up "
+             "&& "
+             "ip link set lidar1 up && ip addr add fd00:6c69::1/64 dev lidar0 nodad") == 0;
+}
+
 // Before main, as GLib's threads inherit the namespace of the one that starts them.
 const bool kOwnNetwork = EnterOwnNetwork();
+const bool kEthernet = kOwnNetwork && AddEthernet();
 
 bool HasIpv6() {
   GSocket* socket =
@@ -108,6 +118,18 @@ TEST(OusterMulticast, ReachesEveryReceiverOfTheGroup) {
   const gssize size = g_socket_receive(other.get(), packet.data(), packet.size(), nullptr, nullptr);
   EXPECT_EQ(size, static_cast<gssize>(32 + 16 * (12 + 32 * 12) + 32));
   EXPECT_TRUE(first.Pull());
+}
+
+TEST(OusterMulticast, WorksOverIpv6) {
+  if (!kEthernet) GTEST_SKIP() << "needs root, iproute2 and a kernel with veth";
+  const std::string group = "ff15::6c69:1";
+  SoftwareSensor::Options options;
+  options.multicast_iface = "lidar0";
+  SoftwareSensor sensor(options);
+  Receiver receiver(sensor.host(),
+                    "multicast-iface=lidar0 multicast-group=" + group + " udp-dest=" + group);
+  EXPECT_TRUE(receiver.Pull());
+  EXPECT_EQ(sensor.config()["udp_dest"], group);
 }
 
 /// Two sensors that send to one port of this machine.

@@ -111,6 +111,24 @@ TEST_F(OusterUdp, PacketsOfAnotherSizeAreCountedAndWarnedOf) {
   gst_object_unref(bus);
 }
 
+TEST_F(OusterUdp, ASmallReceiveBufferIsWarnedOfWithTheRemedy) {
+  // More than the kernel grants even to root.
+  const std::string launch =
+      "ouster_src buffer-size=2147483647 lidar-port=" + std::to_string(FreePort()) +
+      " imu=false metadata=" + DataPath(kJson) + " ! fakesink";
+  const gst::ElementPtr pipeline(gst_parse_launch(launch.c_str(), nullptr));
+  gst_element_set_state(pipeline.get(), GST_STATE_PLAYING);
+  GstBus* bus = gst_element_get_bus(pipeline.get());
+  const gst::MessagePtr warning(
+      gst_bus_timed_pop_filtered(bus, 10 * GST_SECOND, GST_MESSAGE_WARNING));
+  gst_object_unref(bus);
+  gst_element_set_state(pipeline.get(), GST_STATE_NULL);
+  ASSERT_TRUE(warning);
+  const std::string text = TextOf(warning.get());
+  EXPECT_NE(text.find("granted a receive buffer of"), std::string::npos) << text;
+  EXPECT_NE(text.find("sysctl -w net.core.rmem_max=2147483647"), std::string::npos) << text;
+}
+
 TEST_F(OusterUdp, StopsWhileItWaitsForPackets) {
   const Harness h = Play(kJson);
   EXPECT_EQ(gst_element_set_state(h->element, GST_STATE_NULL), GST_STATE_CHANGE_SUCCESS);
