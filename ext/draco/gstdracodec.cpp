@@ -45,10 +45,12 @@ constexpr guint kPropStats = kProperties.size() + 1;
 struct Stats {
   guint64 slices = 0;
   guint64 slices_dropped = 0;
+  guint64 slices_thinned = 0;
   guint64 points = 0;  // missing returns included
   guint64 bytes = 0;
   GstClockTime decode_time = 0;
   GstClockTime last_decode_time = 0;
+  SliceDecoder::Quality last;
 };
 
 /// Of the streaming thread.
@@ -194,6 +196,8 @@ GstBuffer* DecodeBuffer(GstLidarDracoDec* self, GstBuffer* input, SliceDecoder::
   stats.bytes += in.size();
   stats.decode_time += time;
   stats.last_decode_time = time;
+  stats.last = stream.decoder->quality();
+  if (stats.last.keep_fraction < 1) ++stats.slices_thinned;
   return output;
 }
 
@@ -245,11 +249,14 @@ GstStateChangeReturn ChangeState(GstElement* element, GstStateChange transition)
 }
 
 GstStructure* ToStructure(const Stats& s) {
-  return gst_structure_new("dracodec-stats", "slices", G_TYPE_UINT64, s.slices, "slices-dropped",
-                           G_TYPE_UINT64, s.slices_dropped, "points", G_TYPE_UINT64, s.points,
-                           "bytes", G_TYPE_UINT64, s.bytes, "decode-time", G_TYPE_UINT64,
-                           s.last_decode_time, "mean-decode-time", G_TYPE_UINT64,
-                           s.slices > 0 ? s.decode_time / s.slices : 0, nullptr);
+  return gst_structure_new(
+      "dracodec-stats", "slices", G_TYPE_UINT64, s.slices, "slices-dropped", G_TYPE_UINT64,
+      s.slices_dropped, "slices-thinned", G_TYPE_UINT64, s.slices_thinned, "points", G_TYPE_UINT64,
+      s.points, "bytes", G_TYPE_UINT64, s.bytes, "step", G_TYPE_DOUBLE, s.last.step_m,
+      "error-bound", G_TYPE_DOUBLE, s.last.error_m, "intensity-bits", G_TYPE_UINT,
+      s.last.intensity_bits, "keep-fraction", G_TYPE_DOUBLE, s.last.keep_fraction, "decode-time",
+      G_TYPE_UINT64, s.last_decode_time, "mean-decode-time", G_TYPE_UINT64,
+      s.slices > 0 ? s.decode_time / s.slices : 0, nullptr);
 }
 
 void SetObjectProperty(GObject* object, guint id, const GValue* value, GParamSpec*) {

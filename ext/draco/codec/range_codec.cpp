@@ -31,6 +31,7 @@ bool RangeEncoder::Encode(const RangeImage& image, const RangeSettings& settings
   header.columns = image.columns;
   header.grid = settings.grid;
   header.intensity = settings.intensity;
+  header.kept_beams = settings.kept_beams;
   header.has_gaps = has_gaps();
   header.mask_size = static_cast<std::uint32_t>(mask_bytes_.size());
   header.payload_size = static_cast<std::uint32_t>(payload_.size());
@@ -96,6 +97,7 @@ bool RangeDecoder::Decode(ByteReader* reader, std::size_t max_points, RangeImage
       std::size_t{header->beams} * header->columns > max_points) {
     return false;
   }
+  header_ = *header;
   image->beams = header->beams;
   image->columns = header->columns;
   image->first_column = header->first_column;

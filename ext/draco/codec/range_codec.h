@@ -18,7 +18,8 @@ namespace lidar::codec {
 struct RangeSettings {
   RangeCoder coder = RangeCoder::kDraco;
   RangeGrid grid;
-  IntensityScale intensity;  // 0 bits: geometry only
+  IntensityScale intensity;      // 0 bits: geometry only
+  std::uint32_t kept_beams = 0;  // of those of the image, where the others were left out; 0: all
 };
 
 /// Encodes slices of one sensor. Keeps its buffers between slices; not for several threads at once.
@@ -60,6 +61,8 @@ class RangeDecoder {
   /// The next block of `reader`; `scale` says what the levels stand for. False, with `image`
   /// undefined, for a block that is damaged, of another sensor, or of more than `max_points`.
   bool Decode(ByteReader* reader, std::size_t max_points, RangeImage* image, IntensityScale* scale);
+  /// Of the block decoded last.
+  const RangeHeader& header() const { return header_; }
 
  private:
   bool DecodeAdaptively(const RangeHeader& header, ByteView payload, RangeImage* image);
@@ -69,6 +72,7 @@ class RangeDecoder {
   void Scatter(RangeImage* image);
 
   AzimuthAlignment alignment_;
+  RangeHeader header_;
   MaskCoder mask_coder_;
   AdaptiveCoder coder_;
   Mask mask_;

@@ -24,7 +24,9 @@ std::uint32_t ReadVarint(ByteReader* reader, bool* ok) {
   return 0;
 }
 
-constexpr unsigned kGapsFlag = 0x80;  // of the second byte
+// Of the second byte.
+constexpr unsigned kGapsFlag = 0x80;
+constexpr unsigned kThinnedFlag = 0x40;
 
 bool IsKnown(std::uint8_t coder) {
   return coder >= static_cast<std::uint8_t>(RangeCoder::kDraco) &&
@@ -36,11 +38,12 @@ bool IsKnown(std::uint8_t coder) {
 void RangeHeader::Write(std::vector<std::uint8_t>* out) const {
   ByteWriter writer(out);
   writer.U8(static_cast<std::uint8_t>(kVersion << 4 | static_cast<std::uint8_t>(coder)));
-  writer.U8(static_cast<std::uint8_t>(intensity.bits() |
-                                      static_cast<unsigned>(intensity.full()) << 4 |
-                                      (has_gaps ? kGapsFlag : 0)));
+  writer.U8(
+      static_cast<std::uint8_t>(intensity.bits() | static_cast<unsigned>(intensity.full()) << 4 |
+                                (has_gaps ? kGapsFlag : 0) | (kept_beams > 0 ? kThinnedFlag : 0)));
   for (const std::uint32_t v : {beams, first_column, columns, grid.unit_mm(), grid.parts()})
     WriteVarint(v, &writer);
+  if (kept_beams > 0) WriteVarint(kept_beams, &writer);
   if (has_mask_stream()) WriteVarint(mask_size, &writer);
   WriteVarint(payload_size, &writer);
 }
@@ -49,7 +52,7 @@ std::optional<RangeHeader> RangeHeader::Read(ByteReader* reader) {
   const std::uint8_t first = reader->U8();
   const std::uint8_t second = reader->U8();
   const unsigned bits = second & 15;
-  const unsigned full = second >> 4 & 7;
+  const unsigned full = second >> 4 & 3;
   if (first >> 4 != kVersion || !IsKnown(first & 15)) return std::nullopt;
   bool ok = true;
   RangeHeader h;
@@ -60,13 +63,16 @@ std::optional<RangeHeader> RangeHeader::Read(ByteReader* reader) {
   h.columns = ReadVarint(reader, &ok);
   const std::uint32_t unit_mm = ReadVarint(reader, &ok);
   const std::uint32_t parts = ReadVarint(reader, &ok);
+  const bool is_thinned = (second & kThinnedFlag) != 0;
+  if (is_thinned) h.kept_beams = ReadVarint(reader, &ok);
   if (h.has_mask_stream()) h.mask_size = ReadVarint(reader, &ok);
   h.payload_size = ReadVarint(reader, &ok);
   h.grid = RangeGrid::OfParts(unit_mm, parts);
   if (!ok || !reader->ok() || bits > IntensityScale::kMaxBits ||
       full > static_cast<unsigned>(FullScale::kWord) || h.beams == 0 || h.beams > kMaxBeams ||
       h.columns == 0 || h.columns > kMaxColumns || h.first_column >= kMaxColumns ||
-      !h.grid.IsValid() || (h.has_mask_stream() && h.mask_size == 0) ||
+      !h.grid.IsValid() || (is_thinned && (h.kept_beams == 0 || h.kept_beams >= h.beams)) ||
+      (h.has_mask_stream() && h.mask_size == 0) ||
       std::uint64_t{h.mask_size} + h.payload_size > reader->remaining()) {
     return std::nullopt;
   }

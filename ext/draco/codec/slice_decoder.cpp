@@ -22,6 +22,9 @@ std::optional<SliceDecoder::Shape> SliceDecoder::Decode(ByteView stream) {
 std::optional<SliceDecoder::Shape> SliceDecoder::DecodeRange(ByteView stream) {
   ByteReader reader(stream);
   if (!range_decoder_->Decode(&reader, max_points_, &image_, &scale_)) return std::nullopt;
+  const RangeHeader& h = range_decoder_->header();
+  quality_ = {h.grid.step_m(), h.grid.error_m(), h.intensity.bits(),
+              h.kept_beams > 0 ? static_cast<double>(h.kept_beams) / h.beams : 1};
   if (reader.remaining() > 0 && !AppendBlocks(&reader)) return std::nullopt;
   const bool is_dense =
       std::find(image_.ranges.begin(), image_.ranges.end(), 0U) == image_.ranges.end();

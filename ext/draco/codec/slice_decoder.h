@@ -25,6 +25,15 @@ class SliceDecoder {
   /// Decodes a slice and keeps it for Write(). None for a stream that is damaged, of another
   /// sensor, or larger than max_points.
   std::optional<Shape> Decode(ByteView stream);
+  /// What the slice says of itself; an xyz slice, which is a plain Draco file, nothing.
+  struct Quality {
+    double step_m = 0;
+    double error_m = 0;  // bound that holds with this step
+    unsigned intensity_bits = 0;
+    double keep_fraction = 1;  // of the beams; the others were left out to save bits
+  };
+  /// Of the slice decoded last, in range geometry.
+  const Quality& quality() const { return quality_; }
   /// Writes width * height points of the format.
   void Write(std::uint8_t* raw) const;
 
@@ -40,6 +49,7 @@ class SliceDecoder {
   RangeImage image_;
   std::vector<RangeImage> blocks_;
   IntensityScale scale_;
+  Quality quality_;
   XyzCloud cloud_;
 };
 

@@ -82,6 +82,7 @@ void SliceEncoder::Load(ByteView raw, std::uint32_t first_column, bool with_inte
     extent_m_ = LongestSide(cloud_);
     return;
   }
+  kept_beams_ = 0;
   image_.beams = format_.height;
   image_.columns =
       static_cast<std::uint32_t>(raw.size / format_.layout.point_step / format_.height);
@@ -97,6 +98,8 @@ void SliceEncoder::Load(ByteView raw, std::uint32_t first_column, bool with_inte
 
 void SliceEncoder::Thin(const std::vector<bool>& kept) {
   if (range_encoder_) {
+    const auto count = static_cast<std::uint32_t>(std::count(kept.begin(), kept.end(), true));
+    if (count < image_.beams) kept_beams_ = count;
     for (std::uint32_t beam = 0; beam < image_.beams; ++beam) {
       const auto row = image_.ranges.begin() + beam * std::ptrdiff_t{image_.columns};
       if (kept[beam]) continue;
@@ -128,6 +131,7 @@ SliceResult SliceEncoder::EncodeRange(const SliceSettings& settings, EncodedSlic
   range.coder = coder_;
   range.intensity =
       IntensityScale(full_scale_, image_.intensity.empty() ? 0 : settings.intensity_bits);
+  range.kept_beams = kept_beams_;
   range.grid = RangeGrid::ForError(settings.max_error_m, unit_mm_);
   if (settings.step_m > 0) {
     const auto asked = RangeGrid::ForStep(settings.step_m, unit_mm_);

@@ -98,6 +98,7 @@ class SliceEncoder {
   std::optional<RangeEncoder> range_encoder_;
   std::vector<Block> blocks_;
   RangeImage image_;
+  std::uint32_t kept_beams_ = 0;  // by Thin(); 0: all
   bool has_intensity_ = false;
   FullScale full_scale_ = FullScale::kByte;
   XyzCloud cloud_;

@@ -157,6 +157,25 @@ TEST(ErrorCheckOfDracoEnc, WarnsWhenTheErrorIsLargerThanItMayBe) {
   EXPECT_EQ(failed, 2U);
 }
 
+TEST(DracoDec, TellsHowGoodASliceIs) {
+  const SensorModel model = test::RoomSensor();
+  CheckedCodec codec("max-error=0.05 degradation-preference=maintain-framerate bitrate=100000");
+  codec.SetCaps(OrganisedInfo(model, 64));
+  const auto decoder = [&](const char* name) {
+    const ElementPtr dec(gst_bin_get_by_name(GST_BIN(codec.harness()->element), "dec"));
+    return Number(StructurePtr(StatsOf(dec.get())).get(), name);
+  };
+  for (guint i = 0; i < 80; ++i) {
+    codec.Push(OrganisedBuffer(model, 64, {i / 8, i % 8, 8, 64 * (i % 8)}));
+    EXPECT_FALSE(i == 0 && decoder("keep-fraction") < 1);
+  }
+  EXPECT_EQ(decoder("step"), Number(codec.Stats().get(), "step"));
+  EXPECT_NEAR(decoder("error-bound"), 0.05, 1e-9);
+  const double keep = Number(codec.Stats().get(), "keep-fraction");
+  EXPECT_LT(keep, 0.9);
+  EXPECT_NEAR(decoder("keep-fraction"), keep, 1.0 / 32);
+}
+
 TEST(ErrorCheckOfDracoEnc, KnowsBeamsThatWereThinnedFromBeamsThatAreGone) {
   const SensorModel model = test::RoomSensor();
   CheckedCodec codec(

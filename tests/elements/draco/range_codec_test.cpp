@@ -380,6 +380,24 @@ TEST_F(HostileHeaders, WithAMaskThatTheyDoNotNeedOrLackAreRefused) {
   }
 }
 
+TEST_F(HostileHeaders, ThatKeptNoBeamOrMoreThanThereAreAreRefused) {
+  RangeHeader header;
+  header.beams = 32;
+  header.columns = 64;
+  header.kept_beams = 31;
+  std::vector<std::uint8_t> bytes;
+  header.Write(&bytes);
+  ByteReader reader(bytes.data(), bytes.size());
+  const auto read = RangeHeader::Read(&reader);
+  ASSERT_TRUE(read);
+  EXPECT_EQ(read->kept_beams, 31U);
+  EXPECT_EQ(reader.remaining(), 0U);
+  for (const std::uint8_t kept : std::initializer_list<std::uint8_t>{0, 32, 33}) {
+    bytes[bytes.size() - 2] = kept;  // before the payload's length
+    EXPECT_FALSE(Reads(bytes)) << unsigned{kept};
+  }
+}
+
 TEST_F(HostileHeaders, WithStepsOutOfTheirLimitsAreRefused) {
   const auto of_parts = [](std::uint32_t unit, std::uint32_t parts) {
     return Reads(Header(RangeGrid::OfParts(unit, parts)));
