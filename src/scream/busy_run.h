@@ -46,13 +46,13 @@ class BusyRun {
   /// for a run too short against the coarse arrival times of reports.
   std::optional<DataRate> capacity() const {
     const Duration busy = span() - pause_;
-    if (packets_ < kMinPackets || busy < kMinSpan) return std::nullopt;
+    if (packets_ < kMinPackets || busy < kMinBusy) return std::nullopt;
     return (bytes_ - after_pause_) / busy;
   }
 
  private:
   static constexpr int kMinPackets = 5;
-  static constexpr Duration kMinSpan = std::chrono::milliseconds(10);
+  static constexpr Duration kMinBusy = std::chrono::milliseconds(7);
   std::optional<Time> start_;
   Time last_{};
   DataSize bytes_;

@@ -42,7 +42,7 @@ Duration Controller::Impl::BusyQdelay() const {
 /// The queue is long and packets keep coming back out of it; where marks work, marked: delay alone
 /// may be a longer path.
 bool Controller::Impl::Queueing(Duration qdelay) const {
-  const bool believed = !L4sWorks() || 2 * busy_run_.marked() >= busy_run_.packets();
+  const bool believed = !L4sWorks() || 3 * busy_run_.marked() >= busy_run_.packets();
   return busy_run_.packets() >= kQueueingPackets && believed && queue_delay_.qdelay() > qdelay;
 }
 
@@ -63,17 +63,21 @@ void Controller::Impl::ObserveCapacity(const AckSummary& summary) {
 bool Controller::Impl::RespondToDrop(Time now, const CongestionSignals& signals) {
   const auto capacity = busy_run_.capacity();
   if (!p.extensions.drop_response || !capacity || !Queueing(BusyQdelay())) return false;
-  if (now - window_.last_reaction_to_congestion_time() < std::min(p.virtual_rtt, signals.s_rtt))
-    return false;
-  // While a frame of another flow takes turns with ours, we see but our share.
-  const bool brief = busy_run_.span() < std::min(streams.frame_period(), p.virtual_rtt);
-  const DataRate affordable = *capacity * (brief ? p.drop_threshold_brief : p.drop_threshold);
+  const Duration round = std::min(p.virtual_rtt, signals.s_rtt);
+  if (now - last_drop_ < round) return false;
+  // While a frame of another flow takes turns with ours, we see but our share; few marks may be
+  // those of a link that is well used; and what was just answered may be enough.
+  const bool sure = busy_run_.span() >= std::min(streams.frame_period(), p.virtual_rtt) &&
+                    (!L4sWorks() || 2 * busy_run_.marked() >= busy_run_.packets()) &&
+                    now - window_.last_reaction_to_congestion_time() >= round;
+  const DataRate affordable = *capacity * (sure ? p.drop_threshold : p.drop_threshold_unsure);
   if (affordable > streams.target_bitrate()) return false;
   const DataSize window = *capacity * rtt_.min() * p.target_rate_divisor;
   if (window > window_.ref_wnd()) return false;
   window_.SetInflection(window);
   window_.Set(window * p.drop_beta);
   window_.NoteReaction(now);
+  last_drop_ = now;
   if (p.extensions.answered_signals) marks_answered_ = loss_answered_ = now;
   fast_increase_.OnCongestion(now);
   ++counters_.capacity_drops;

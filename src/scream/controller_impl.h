@@ -85,6 +85,7 @@ class Controller::Impl {
   Time last_feedback_{};
   Time last_sent_{};
   Time last_housekeeping_{};
+  Time last_drop_{};
   Time last_timeout_{};
   std::optional<DataSize> window_before_outage_;
   std::optional<Time> last_mark_;

@@ -23,7 +23,7 @@ class Pacer {
   DataRate pace_bitrate() const { return pace_bitrate_; }
 
  private:
-  static constexpr Duration kMaxCatchUp = 10ms;
+  static constexpr Duration kMaxCatchUp = 4ms;
   const Parameters& p_;
   DataRate pace_bitrate_ = DataRate::BitsPerSecond(1e6);
   Time next_{};

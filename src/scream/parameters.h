@@ -109,8 +109,9 @@ struct Parameters {
   double fast_increase_slope = 3;
   /// drop_response: a target above this part of the measured capacity shows a drop...
   double drop_threshold = 0.9;
-  /// ...or above this, where it was measured over less than a frame period and VIRTUAL_RTT...
-  double drop_threshold_brief = 1.5;
+  /// ...or above this, where it was measured over less than a frame period and VIRTUAL_RTT, with
+  /// fewer than half of the packets marked, or just after another reaction...
+  double drop_threshold_unsure = 1.5;
   /// ...after which the target is this fraction of it.
   double drop_beta = 0.9;
   /// A packet behind this much queue shows that the link is busy; without marks, this fraction of

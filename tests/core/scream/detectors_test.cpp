@@ -217,8 +217,8 @@ TEST(Pacer, CatchesUpAfterALateWakeUpButOnlyALittle) {
   Pacer pacer(p);
   pacer.Update(Mbps(8), Mbps(100), 1);
   pacer.OnSent(kStart, DataSize::Bytes(1000));
-  EXPECT_EQ(pacer.next(), kStart - 10ms + 1ms);
-  for (int i = 0; i < 10; ++i) pacer.OnSent(kStart, DataSize::Bytes(1000));
+  EXPECT_EQ(pacer.next(), kStart - 4ms + 1ms);
+  for (int i = 0; i < 4; ++i) pacer.OnSent(kStart, DataSize::Bytes(1000));
   EXPECT_EQ(pacer.next(), kStart + 1ms);
   pacer.OnIdleEnd(kStart + 5ms);
   pacer.OnSent(kStart + 5ms, DataSize::Bytes(1000));
@@ -264,9 +264,9 @@ Time Arrive(BusyRun* run, Time now, Duration spacing, int packets) {
 
 TEST(BusyRun, MeasuresTheLinkByTheSpacingOfWhatItHeldBack) {
   BusyRun run;
-  Arrive(&run, kStart, 1ms, 11);
-  EXPECT_FALSE(run.capacity());  // 10 ms, but one pause is not believed
-  Arrive(&run, kStart + 11ms, 1ms, 1);
+  Arrive(&run, kStart, 1ms, 8);
+  EXPECT_FALSE(run.capacity());  // 7 ms, of which one does not count
+  Arrive(&run, kStart + 8ms, 1ms, 1);
   ASSERT_TRUE(run.capacity());
   EXPECT_NEAR(run.capacity()->bits_per_second(), 8e6, 1);
 }
