@@ -23,9 +23,12 @@ Duration MaxQueueDelay(const TxState& state) {
   return Duration{static_cast<std::int64_t>(state.settings.max_queue_delay)};
 }
 
+/// How long a frame that has begun to leave may take for the rest of it.
+Duration LongestStay(const TxState& state) { return 2 * MaxQueueDelay(state); }
+
 /// The rest of a frame that has begun to leave, where it waited so long that nobody can use it.
 std::size_t StuckPackets(const TxState& state, const TxStream& stream, Time now) {
-  if (stream.HeadAge(now) < 2 * MaxQueueDelay(state)) return 0;
+  if (stream.HeadAge(now) < LongestStay(state)) return 0;
   std::optional<guint32> frame;
   std::size_t packets = 0;
   for (const TxItem& item : stream.queue) {
@@ -167,10 +170,10 @@ bool AllSent(const TxState& state) {
                      [](const auto& s) { return s->queue.empty(); });
 }
 
-/// True once everything has left, or max-queue-delay after the last stream ended.
+/// True once everything has left, or after as long as a frame that has begun to leave may take.
 bool Drained(TxState& state, Time now) {
   if (!AllEnded(state) || state.eos_sent) return false;
-  if (!state.eos_deadline) state.eos_deadline = now + MaxQueueDelay(state);
+  if (!state.eos_deadline) state.eos_deadline = now + LongestStay(state);
   if (!AllSent(state) && now < *state.eos_deadline) return false;
   for (auto& stream : state.streams) ClearQueue(state, *stream, now);
   state.eos_sent = true;

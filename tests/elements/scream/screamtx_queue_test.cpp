@@ -85,7 +85,7 @@ TEST_F(ScreamTx, EosDoesNotWaitForAPathThatIsGone) {
   Start();
   PushFrame(0, 200);
   gst_harness_push_event(rtp.get(), gst_event_new_eos());
-  time.Advance(140 * GST_MSECOND);
+  time.Advance(290 * GST_MSECOND);
   EXPECT_FALSE(HasEos());
   time.Advance(20 * GST_MSECOND);
   EXPECT_TRUE(HasEos());
