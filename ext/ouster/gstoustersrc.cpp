@@ -110,6 +110,8 @@ static GstStateChangeReturn ChangeState(GstElement* element, GstStateChange tran
     lock.unlock();
     gst_base_src_set_live(GST_BASE_SRC(element), live);
   }
+  if (transition == GST_STATE_CHANGE_PAUSED_TO_PLAYING)
+    if (const auto session = SessionOf(element)) session->Resume();
   return GST_ELEMENT_CLASS(gst_lidar_ouster_src_parent_class)->change_state(element, transition);
 }
 

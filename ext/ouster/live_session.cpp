@@ -100,12 +100,11 @@ void LiveSession::Unlock() {
 
 void LiveSession::UnlockStop() {
   flushing_ = false;
-  resumed_ = true;
   udp_.ClearWake();
 }
 
-/// The pipeline plays, for the first time or again after a pause: what waits then is of before.
-void LiveSession::StartOver() {
+/// What waits in the sockets came before the pipeline played again.
+void LiveSession::LeavePauseBehind() {
   constexpr int kMostBatches = 4096;
   last_packet_us_ = g_get_monotonic_time();
   if (!std::exchange(polled_, true)) return;
@@ -289,7 +288,7 @@ bool LiveSession::CheckSilence() {
 }
 
 GstFlowReturn LiveSession::Poll() {
-  if (resumed_.exchange(false)) StartOver();
+  if (resumed_.exchange(false)) LeavePauseBehind();
   if (link_) {
     auto answer = link_->Take();
     if (answer && !HandleAnswer(*std::move(answer))) return GST_FLOW_ERROR;

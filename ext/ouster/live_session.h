@@ -19,6 +19,7 @@ class LiveSession : public Session {
   bool Open() override;
   void Unlock() override;
   void UnlockStop() override;
+  void Resume() override { resumed_ = true; }
 
  protected:
   GstFlowReturn Poll() override;
@@ -33,7 +34,7 @@ class LiveSession : public Session {
   void HandleWrongSize(gsize size);
   bool CheckSilence();
   bool WaitWhileSwitchedOff();
-  void StartOver();
+  void LeavePauseBehind();
   void SetConnected(bool connected, const std::string& reason);
   void Ask();
 

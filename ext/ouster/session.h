@@ -36,6 +36,8 @@ class Session {
   /// Of any thread: Next() returns FLUSHING until UnlockStop().
   virtual void Unlock() = 0;
   virtual void UnlockStop() = 0;
+  /// Of any thread: the pipeline plays, for the first time or again after a pause.
+  virtual void Resume() {}
 
   /// Of any thread.
   Counters counters() const;
