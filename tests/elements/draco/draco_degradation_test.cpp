@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Below min-bitrate: what gives, and that sender and receiver say the same about it.
+#include <gtest/gtest.h>
+
+#include "draco_harness.h"
+
+namespace lidar::gst {
+namespace {
+
+constexpr guint kScans = 60;
+
+struct PreferenceCase {
+  const char* name;
+  bool skips;
+  bool thins;
+};
+void PrintTo(const PreferenceCase& c, std::ostream* out) { *out << c.name; }
+
+class BelowTheMinimum : public ::testing::TestWithParam<PreferenceCase> {
+ protected:
+  static Harness Pipeline(const std::string& properties) {
+    Harness h(
+        gst_harness_new_parse(("dracoenc name=enc intensity-bits=0 " + properties +
+                               " ! rtplidarpay ! rtplidardepay name=depay ! dracodec name=dec")
+                                  .c_str()));
+    const CapsPtr caps(OrganisedInfo(Sensor(), 64).ToCaps());
+    gst_harness_set_src_caps(h.get(), gst_caps_ref(caps.get()));
+    return h;
+  }
+  static const SensorModel& Sensor() {
+    static const SensorModel model = test::RoomSensor();
+    return model;
+  }
+  /// The number of decoded slices.
+  static guint Play(GstHarness* h, guint first, guint scans) {
+    guint slices = 0;
+    for (guint i = 8 * first; i < 8 * (first + scans); ++i) {
+      EXPECT_EQ(gst_harness_push(h, OrganisedBuffer(Sensor(), 64, {i / 8, i % 8, 8, 64 * (i % 8)})),
+                GST_FLOW_OK);
+      while (const BufferPtr out{gst_harness_try_pull(h)}) ++slices;
+    }
+    return slices;
+  }
+  static ElementPtr Find(GstHarness* h, const char* name) {
+    return ElementPtr(gst_bin_get_by_name(GST_BIN(h->element), name));
+  }
+  static void SetTarget(GstHarness* h, guint bps) {
+    const GstLidarTargetBitrate target{bps, 0, 0, 0, 0, 0, "update"};
+    gst_harness_push_upstream_event(h, gst_lidar_event_new_target_bitrate(&target));
+  }
+  static guint Needed() {
+    const Harness h = Pipeline("");
+    Play(h.get(), 0, 3);
+    guint bps = 0;
+    g_object_get(Find(h.get(), "enc").get(), "min-bitrate", &bps, nullptr);
+    return bps;
+  }
+};
+
+TEST_P(BelowTheMinimum, TheReceiverKnowsWhatWasLeftOut) {
+  const PreferenceCase& preference = GetParam();
+  const Harness h = Pipeline("degradation-preference=" + std::string(preference.name));
+  const guint needed = Needed();
+  SetTarget(h.get(), needed / 2);
+  Play(h.get(), 0, kScans);
+  const ElementPtr enc = Find(h.get(), "enc");
+  const ElementPtr depay = Find(h.get(), "depay");
+  const ElementPtr dec = Find(h.get(), "dec");
+  const guint64 skipped = Counter(enc.get(), "scans-skipped");
+  EXPECT_EQ(skipped > kScans / 10, preference.skips);
+  // Of those after the last scan that came nobody has heard.
+  EXPECT_NEAR(static_cast<double>(Counter(depay.get(), "scans-skipped")),
+              static_cast<double>(skipped), preference.skips ? 3 : 0);
+  EXPECT_EQ(Counter(depay.get(), "slices-lost"), 0U);
+  EXPECT_EQ(Counter(dec.get(), "slices"), 8 * (kScans - skipped));
+  EXPECT_EQ(Counter(dec.get(), "slices-thinned") > Counter(dec.get(), "slices") / 2,
+            preference.thins);
+  // Back above the minimum all is whole at once.
+  SetTarget(h.get(), 2 * needed);
+  const guint64 thinned = Counter(dec.get(), "slices-thinned");
+  EXPECT_EQ(Play(h.get(), kScans, 20), 160U);
+  EXPECT_EQ(Counter(dec.get(), "slices-thinned"), thinned);
+}
+INSTANTIATE_TEST_SUITE_P(All, BelowTheMinimum,
+                         ::testing::Values(PreferenceCase{"maintain-accuracy", true, false},
+                                           PreferenceCase{"maintain-framerate", false, true},
+                                           PreferenceCase{"balanced", true, true}));
+
+}  // namespace
+}  // namespace lidar::gst
