@@ -66,6 +66,19 @@ INSTANTIATE_TEST_SUITE_P(Ciphers, Srtp,
                                            Suite{"srtp-cipher=aes-128-gcm", 28},
                                            Suite{"srtp-cipher=aes-256-gcm", 44}));
 
+TEST(Srtp, TellsTheSenderOfMarks) {
+  Path path(Key(30), Key(30));
+  path.Play();
+  ASSERT_NE(path.receiver.NextCloud(seconds(5)), milliseconds::max());
+  EXPECT_EQ(path.sender.pipeline().Stat("net", "packets-ce"), 0U);
+  Fault marking;
+  marking.mark = 0.2;
+  path.link.Set(marking);
+  std::this_thread::sleep_for(seconds(2));
+  EXPECT_GT(path.sender.pipeline().Stat("net", "packets-ce"), 20U);
+  EXPECT_EQ(path.receiver.accounts().lost, 0U);
+}
+
 TEST(Srtp, RefusesAnotherKeyWithOneMessage) {
   Path path(Key(30, '5'), Key(30, '6'));
   path.Play();
