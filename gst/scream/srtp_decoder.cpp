@@ -38,7 +38,8 @@ PadPtr SrtpDecoder::NewRelay(const char* source) {
   gst_pad_set_chain_function(pad.get(), [](GstPad* p, GstObject*, GstBuffer* buffer) {
     auto* self = static_cast<SrtpDecoder*>(gst_pad_get_element_private(p));
     self->passed_ = true;
-    return self->flow_ = gst_pad_push(self->exit_, buffer);
+    if (self->exit_ == nullptr) gst_buffer_unref(buffer);
+    return self->flow_ = self->exit_ == nullptr ? GST_FLOW_OK : gst_pad_push(self->exit_, buffer);
   });
   gst_pad_set_event_function(pad.get(), [](GstPad*, GstObject*, GstEvent* event) -> gboolean {
     gst_event_unref(event);
@@ -72,6 +73,11 @@ void SrtpDecoder::Restart(std::uint32_t ssrc, std::uint32_t rollover) {
   rollovers_.erase(ssrc);
   if (rollover != 0) rollovers_[ssrc] = rollover;
   g_signal_emit_by_name(element_, "remove-key", ssrc);
+}
+
+void SrtpDecoder::Clear() {
+  rollovers_.clear();
+  g_signal_emit_by_name(element_, "clear-keys");
 }
 
 GstCaps* SrtpDecoder::CapsFor(std::uint32_t ssrc) const {

@@ -16,7 +16,8 @@ namespace lidar::gst {
 /// thread that gives it datagrams.
 class SrtpDecoder {
  public:
-  /// Null where the srtp plugin is missing. What it decodes is pushed from `exit`.
+  /// Null where the srtp plugin is missing. What it decodes is pushed from `exit`; without one it
+  /// only says whether the key fits.
   static std::unique_ptr<SrtpDecoder> Create(GstElement* bin, const SrtpPolicy& policy, SrtpKey key,
                                              GstPad* exit);
   ~SrtpDecoder();
@@ -24,13 +25,16 @@ class SrtpDecoder {
   SrtpDecoder& operator=(const SrtpDecoder&) = delete;
 
   const SrtpKey& key() const { return key_; }
-  /// Whether `datagram` is RTP or RTCP by this key and no replay. If so it has been pushed,
+  /// Whether `datagram` is RTP or RTCP by this key and no replay. If so it has been pushed
   /// decoded, and `flow` is what came of that. Leaves `datagram` alone.
   bool Decode(GstBuffer* datagram, GstFlowReturn* flow);
   /// Forgets all of `ssrc` but this guess of its rollover counter.
   void Restart(std::uint32_t ssrc, std::uint32_t rollover);
   /// Forgets all guesses; the element has forgotten its streams itself when it stopped.
   void Reset() { rollovers_.clear(); }
+  /// Forgets every stream. The only way to get memory back from srtpdec while it runs: in
+  /// GStreamer 1.22 what Restart removes stays in its session.
+  void Clear();
 
  private:
   SrtpDecoder(GstElement* bin, GstElement* element, const SrtpPolicy& policy, SrtpKey key,

@@ -12,8 +12,12 @@ constexpr gint64 kStragglersUs = 10 * G_USEC_PER_SEC;
 constexpr std::size_t kMaxStreams = 1'024;
 // Losses long enough to lose count of a rollover look like this.
 constexpr unsigned kFailuresUntilLost = 500;
+constexpr gint64 kSilenceUntilLostUs = 2 * G_USEC_PER_SEC;
 constexpr std::uint32_t kMaxRollover = 100'000;  // months
 constexpr unsigned kFailuresUntilWarning = 20;
+// Each costs the derivation of its keys, 50 us or so.
+constexpr double kTrialsPerSecond = 500;
+constexpr unsigned kTriedUntilCleared = 64;
 
 SrtpInput* InputOf(GstPad* pad) {
   return static_cast<SrtpInput*>(gst_pad_get_element_private(pad));
@@ -83,10 +87,11 @@ bool SrtpInput::Link(GstPad* socket, GstPad* target) {
 }
 
 bool SrtpInput::AddKey(const SrtpKey& key) {
-  auto decoder = SrtpDecoder::Create(bin_, policy_, key, exit_.get());
-  if (!decoder) return false;
+  Key added{SrtpDecoder::Create(bin_, policy_, key, exit_.get()),
+            SrtpDecoder::Create(bin_, policy_, key, nullptr)};
+  if (!added.decoder || !added.trial) return false;
   std::lock_guard lock(mutex_);
-  added_.push_back(std::move(decoder));
+  added_.push_back(std::move(added));
   return true;
 }
 
@@ -94,40 +99,78 @@ SrtpCounts SrtpInput::counts() const { return {received_, refused_, key_changes_
 
 void SrtpInput::Reset() {
   streams_.clear();
-  for (const auto& decoder : decoders_) decoder->Reset();
+  for (const Key& key : keys_) {
+    key.decoder->Reset();
+    key.trial->Reset();
+  }
 }
 
 GstFlowReturn SrtpInput::OnDatagram(GstBuffer* datagram) {
   UpdateKeys();
   ++received_;
   const std::uint32_t ssrc = SsrcOf(datagram);
-  for (std::size_t i = 0; i < decoders_.size(); ++i) {
-    // The key that the last packet had comes first; the others fail once for each packet.
-    const std::size_t n = (in_use_ + i) % decoders_.size();
-    GstFlowReturn flow = GST_FLOW_OK;
-    if (decoders_[n]->Decode(datagram, &flow)) {
-      OnPassed(ssrc, n);
-      return flow;
-    }
-    if (flow == GST_FLOW_FLUSHING) return flow;
-  }
-  OnRefused(ssrc);
+  const auto found = streams_.find(ssrc);
+  const bool known = found != streams_.end() && found->second.known;
+  GstFlowReturn flow = GST_FLOW_OK;
+  if (known ? DecodeKnown(datagram, ssrc, &flow) : TryStranger(datagram, ssrc, &flow)) return flow;
+  if (flow == GST_FLOW_FLUSHING) return flow;
+  ++refused_;
+  if (known) OnRefused(&found->second);
+  if (!known && refused_ >= kFailuresUntilWarning) Warn();
   return GST_FLOW_OK;
+}
+
+bool SrtpInput::DecodeKnown(GstBuffer* datagram, std::uint32_t ssrc, GstFlowReturn* flow) {
+  for (std::size_t i = 0; i < keys_.size(); ++i) {
+    // The key that the last packet had comes first; the others fail once for each packet.
+    const std::size_t n = (in_use_ + i) % keys_.size();
+    if (keys_[n].decoder->Decode(datagram, flow)) {
+      OnPassed(ssrc, n);
+      return true;
+    }
+    if (*flow == GST_FLOW_FLUSHING) return false;
+  }
+  return false;
+}
+
+/// RTP does not carry its rollover counter: each packet of a stranger is tried with the next one.
+bool SrtpInput::TryStranger(GstBuffer* datagram, std::uint32_t ssrc, GstFlowReturn* flow) {
+  if (!allowance_.Take(g_get_monotonic_time())) return false;
+  if (++tried_ >= kTriedUntilCleared) {
+    for (const Key& key : keys_) key.trial->Clear();
+    tried_ = 0;
+  }
+  Stream& stream = StreamOf(ssrc);
+  for (std::size_t i = 0; i < keys_.size(); ++i) {
+    const std::size_t n = (in_use_ + i) % keys_.size();
+    GstFlowReturn trial = GST_FLOW_OK;
+    keys_[n].trial->Restart(ssrc, stream.rollover);
+    if (!keys_[n].trial->Decode(datagram, &trial)) continue;
+    // Decoded again where its streams are, so that it is no replay once and never again.
+    for (const Key& key : keys_) key.decoder->Restart(ssrc, 0);
+    keys_[n].decoder->Restart(ssrc, stream.rollover);
+    if (!keys_[n].decoder->Decode(datagram, flow)) return false;
+    OnPassed(ssrc, n);
+    return true;
+  }
+  ++stream.failures;
+  stream.rollover = (stream.rollover + 1) % kMaxRollover;
+  return false;
 }
 
 void SrtpInput::UpdateKeys() {
   std::size_t drop = 0;
   {
     std::lock_guard lock(mutex_);
-    for (auto& decoder : added_) decoders_.push_back(std::move(decoder));
+    for (Key& key : added_) keys_.push_back(std::move(key));
     added_.clear();
   }
-  if (decoders_.size() > kMaxKeys) drop = decoders_.size() - kMaxKeys;
+  if (keys_.size() > kMaxKeys) drop = keys_.size() - kMaxKeys;
   if (forget_old_at_ != 0 && g_get_monotonic_time() > forget_old_at_) {
     drop = std::max(drop, newest_used_);
     forget_old_at_ = 0;
   }
-  decoders_.erase(decoders_.begin(), decoders_.begin() + static_cast<std::ptrdiff_t>(drop));
+  keys_.erase(keys_.begin(), keys_.begin() + static_cast<std::ptrdiff_t>(drop));
   in_use_ -= std::min(in_use_, drop);
   newest_used_ -= std::min(newest_used_, drop);
 }
@@ -144,37 +187,44 @@ SrtpInput::Stream& SrtpInput::StreamOf(std::uint32_t ssrc) {
   return streams_[ssrc];
 }
 
-void SrtpInput::OnPassed(std::uint32_t ssrc, std::size_t decoder) {
-  in_use_ = decoder;
+void SrtpInput::OnPassed(std::uint32_t ssrc, std::size_t key) {
+  in_use_ = key;
   Stream& stream = StreamOf(ssrc);
   stream.known = true;
   stream.failures = 0;
-  if (decoder <= newest_used_) return;
-  newest_used_ = decoder;
+  stream.passed_at = g_get_monotonic_time();
+  if (key <= newest_used_) return;
+  newest_used_ = key;
   forget_old_at_ = g_get_monotonic_time() + kStragglersUs;
   ++key_changes_;
-  on_new_key_(decoders_[decoder]->key());
+  on_new_key_(keys_[key].decoder->key());
 }
 
-/// RTP does not carry its rollover counter. A stream that nobody knows is tried with the next one
-/// for each of its packets; one that is known begins at 0 with a new key, as its sender does.
-void SrtpInput::OnRefused(std::uint32_t ssrc) {
-  ++refused_;
-  Stream& stream = StreamOf(ssrc);
-  ++stream.failures;
-  const bool warn = !warned_ && !stream.known && refused_ >= kFailuresUntilWarning;
-  const bool lost = stream.known && stream.failures >= kFailuresUntilLost;
-  if (!stream.known || lost) {
-    stream.rollover = lost ? 0 : (stream.rollover + 1) % kMaxRollover;
-    stream.known = false;
-    for (const auto& decoder : decoders_) decoder->Restart(ssrc, stream.rollover);
-  }
-  if (!warn) return;
+/// A stream of which nothing passed for long may have rolled over meanwhile. Not one that still
+/// passes: who forges its packets must not make us forget what came.
+void SrtpInput::OnRefused(Stream* stream) {
+  if (++stream->failures < kFailuresUntilLost ||
+      g_get_monotonic_time() - stream->passed_at < kSilenceUntilLostUs)
+    return;
+  *stream = {};
+}
+
+void SrtpInput::Warn() {
+  if (warned_) return;
   warned_ = true;
   GST_ELEMENT_WARNING(bin_, STREAM, DECRYPT,
                       ("Packets arrive that do not fit the SRTP key, and are dropped."),
                       ("check that both ends have the same srtp-key, srtp-cipher and srtp-auth; "
                        "this is said once, the property stats counts them"));
+}
+
+bool SrtpInput::Allowance::Take(gint64 now_us) {
+  const double refill = static_cast<double>(now_us - filled_at_) * kTrialsPerSecond / 1e6;
+  left_ = std::min(left_ + refill, kTrialsPerSecond);
+  filled_at_ = now_us;
+  if (left_ < 1) return false;
+  --left_;
+  return true;
 }
 
 }  // namespace lidar::gst

@@ -12,12 +12,12 @@ namespace lidar::test {
 
 using std::chrono::milliseconds;
 
-ChildEnd::ChildEnd(const char* role, std::uint16_t port) {
+ChildEnd::ChildEnd(const char* role, std::uint16_t port, const std::string& options) {
   const gchar* program = g_getenv("FAULT_END");
   if (program == nullptr) throw std::runtime_error("FAULT_END does not name the program fault-end");
   process_ = g_subprocess_new(
       static_cast<GSubprocessFlags>(G_SUBPROCESS_FLAGS_STDIN_PIPE | G_SUBPROCESS_FLAGS_STDOUT_PIPE),
-      nullptr, program, role, std::to_string(port).c_str(), nullptr);
+      nullptr, program, role, std::to_string(port).c_str(), options.c_str(), nullptr);
   if (process_ == nullptr) throw std::runtime_error("fault-end cannot be started");
   answers_ = g_data_input_stream_new(g_subprocess_get_stdout_pipe(process_));
   Report();  // it answers once it plays

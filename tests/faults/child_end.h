@@ -18,8 +18,8 @@ struct ChildReport {
 /// The program fault-end, which the environment variable FAULT_END names.
 class ChildEnd {
  public:
-  /// `role` is "send" or "receive".
-  ChildEnd(const char* role, std::uint16_t port);
+  /// `role` is "send" or "receive"; `options` are those of screamsink or screamsrc.
+  ChildEnd(const char* role, std::uint16_t port, const std::string& options = "");
   ~ChildEnd();
   ChildEnd(const ChildEnd&) = delete;
   ChildEnd& operator=(const ChildEnd&) = delete;

@@ -18,11 +18,11 @@ namespace {
 using namespace lidar::test;  // NOLINT
 
 struct End {
-  End(bool sends, std::uint16_t port) {
+  End(bool sends, std::uint16_t port, const std::string& options) {
     if (sends) {
-      sender.emplace(&sent, port);
+      sender.emplace(&sent, port, options);
     } else {
-      receiver.emplace(nullptr, port);
+      receiver.emplace(nullptr, port, options);
     }
     pipeline().SetState(GST_STATE_PLAYING);
   }
@@ -48,12 +48,12 @@ struct End {
 }  // namespace
 
 int main(int argc, char** argv) {
-  if (argc != 3) {
-    std::fprintf(stderr, "usage: %s send|receive PORT\n", argv[0]);
+  if (argc != 4) {
+    std::fprintf(stderr, "usage: %s send|receive PORT OPTIONS\n", argv[0]);
     return 2;
   }
   gst_init(nullptr, nullptr);
-  End end(std::string(argv[1]) == "send", static_cast<std::uint16_t>(std::atoi(argv[2])));
+  End end(std::string(argv[1]) == "send", static_cast<std::uint16_t>(std::atoi(argv[2])), argv[3]);
   for (std::string line; std::getline(std::cin, line);) {
     std::istringstream words(line);
     std::string command;

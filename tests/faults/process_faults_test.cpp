@@ -58,19 +58,25 @@ INSTANTIATE_TEST_SUITE_P(EitherSide, ClockStep,
                          ::testing::Values(Step{"receiver", 3'600}, Step{"receiver", -3'600},
                                            Step{"sender", 3'600}, Step{"sender", -3'600}));
 
-class Garbage : public ::testing::TestWithParam<bool> {};
+struct Flood {
+  const char* name;
+  bool is_rtp;
+  bool srtp;
+};
+class Garbage : public ::testing::TestWithParam<Flood> {};
 TEST_P(Garbage, AtAHundredTimesTheRateCostsLessThanACoreAndHidesNothing) {
   const std::uint16_t port = FreePort();
   FaultLink link(port);
-  ChildEnd receiver("receive", port);
+  const std::string options = GetParam().srtp ? "srtp-key=" + std::string(60, '5') : "";
+  ChildEnd receiver("receive", port, options);
   SentSlices sent;
-  SendingEnd sender(&sent, link.port());
+  SendingEnd sender(&sent, link.port(), options);
   sender.pipeline().SetState(GST_STATE_PLAYING);
   ASSERT_NE(receiver.NextCloud(seconds(10)), milliseconds::max());
   std::this_thread::sleep_for(seconds(1));
   Fault fault;
   fault.garbage_ratio = 100;
-  fault.valid_garbage = GetParam();
+  fault.valid_garbage = GetParam().is_rtp;
   const std::uint64_t packets = link.counts().packets;
   const auto cpu = receiver.CpuTime();
   const auto start = std::chrono::steady_clock::now();
@@ -81,8 +87,7 @@ TEST_P(Garbage, AtAHundredTimesTheRateCostsLessThanACoreAndHidesNothing) {
   const double load = std::chrono::duration<double>(receiver.CpuTime() - cpu) / time;
   const auto memory = static_cast<double>(receiver.PeakMemory());
   std::printf("garbage x100 (%s): %.0f real and %.0f other packets/s, %.0f %% of a core, %.0f MB\n",
-              GetParam() ? "RTP of random streams" : "random bytes",
-              static_cast<double>(link.counts().packets - packets) / time.count(),
+              GetParam().name, static_cast<double>(link.counts().packets - packets) / time.count(),
               static_cast<double>(link.counts().garbage) / time.count(), 100 * load, memory / 1e6);
   EXPECT_GT(link.counts().garbage, 50 * (link.counts().packets - packets));
   EXPECT_LT(load, 1);
@@ -103,7 +108,11 @@ TEST_P(Garbage, AtAHundredTimesTheRateCostsLessThanACoreAndHidesNothing) {
   EXPECT_EQ(r.clouds, r.received);
   EXPECT_TRUE(receiver.Close());
 }
-INSTANTIATE_TEST_SUITE_P(BytesOrRtp, Garbage, ::testing::Bool());
+INSTANTIATE_TEST_SUITE_P(Floods, Garbage,
+                         ::testing::Values(Flood{"random bytes", false, false},
+                                           Flood{"RTP of random streams", true, false},
+                                           Flood{"random bytes, SRTP", false, true},
+                                           Flood{"RTP of random streams, SRTP", true, true}));
 
 /// A second LiDAR for a sink that plays: its elements, and the pad that it got.
 struct Branch {

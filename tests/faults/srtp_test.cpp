@@ -119,6 +119,21 @@ TEST(Srtp, RefusesReplayedPacketsAndCountsThem) {
   EXPECT_EQ(path.receiver.pipeline().Stat("depay", "packets-duplicate"), 0U);
 }
 
+TEST(Srtp, IsJoinedAmongAFloodOfStrangers) {
+  Path path(Key(30), Key(30));
+  Fault flood;
+  flood.garbage_ratio = 100;
+  flood.valid_garbage = true;
+  path.link.Set(flood);
+  path.Play();
+  EXPECT_LT(path.receiver.NextCloud(seconds(8)), seconds(3));
+  std::this_thread::sleep_for(seconds(1));
+  const auto clouds = path.receiver.clouds();
+  std::this_thread::sleep_for(seconds(1));
+  EXPECT_GT(path.receiver.clouds(), clouds + 70);  // of 80
+  EXPECT_EQ(path.receiver.pipeline().Messages(GST_MESSAGE_WARNING), 1U);
+}
+
 TEST(Srtp, IsJoinedAfterTheSequenceNumbersWrapped) {
   Path path(Key(30), Key(30));
   g_object_set(path.sender.pipeline().Child("pay").get(), "seqnum-offset", 65'450, nullptr);
