@@ -112,6 +112,12 @@ bool JoinMulticast(GSocket* socket, const std::string& group, const std::string&
                    GError** error) {
   const InetAddressPtr address(Resolve(WithoutBrackets(group), error));
   if (!address) return false;
+  // GLib would let the kernel choose.
+  if (!interface.empty() && if_nametoindex(interface.c_str()) == 0) {
+    g_set_error(error, G_IO_ERROR, G_IO_ERROR_NOT_FOUND, "there is no network interface \"%s\"",
+                interface.c_str());
+    return false;
+  }
   return g_socket_join_multicast_group(socket, address.get(), FALSE,
                                        interface.empty() ? nullptr : interface.c_str(),
                                        error) != FALSE;
