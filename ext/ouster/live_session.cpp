@@ -148,7 +148,12 @@ bool LiveSession::HandleAnswer(SensorLink::Result result) {
     return TakeMetadata(*std::move(result.metadata));
   }
   const std::string& why = result.error.text;
-  if (result.error.permanent || !settings().reconnect) {
+  if (result.error.permanent) {
+    GST_ELEMENT_ERROR(element(), RESOURCE, SETTINGS, ("%s", why.c_str()),
+                      ("of the sensor %s", settings().hostname.c_str()));
+    return false;
+  }
+  if (!settings().reconnect) {
     GST_ELEMENT_ERROR(
         element(), RESOURCE, OPEN_READ,
         ("Cannot talk to the sensor %s: %s", settings().hostname.c_str(), why.c_str()),
