@@ -69,7 +69,10 @@ static GstStaticPadTemplate src_template = GST_STATIC_PAD_TEMPLATE(
 
 static GstFlowReturn gst_lidar_rtp_pay_handle_buffer(GstRTPBasePayload* base, GstBuffer* buffer) {
   const BufferPtr owner(buffer);
-  return lidar::gst::PaySliceBuffer(base, *GST_LIDAR_RTP_PAY(base)->state, buffer);
+  State& state = *GST_LIDAR_RTP_PAY(base)->state;
+  const GstFlowReturn flow = lidar::gst::PaySliceBuffer(base, state, buffer);
+  if (flow == GST_FLOW_OK) lidar::gst::UpdateBounds(base, state);
+  return flow;
 }
 
 static gboolean gst_lidar_rtp_pay_set_caps(GstRTPBasePayload* base, GstCaps* caps) {
@@ -98,6 +101,12 @@ static gboolean gst_lidar_rtp_pay_set_caps(GstRTPBasePayload* base, GstCaps* cap
 
 static gboolean gst_lidar_rtp_pay_sink_event(GstRTPBasePayload* base, GstEvent* event) {
   State& state = *GST_LIDAR_RTP_PAY(base)->state;
+  GstLidarBitrateBounds bounds{};
+  if (gst_lidar_event_parse_bitrate_bounds(event, &bounds)) {
+    state.bounds = bounds;
+    gst_event_unref(event);
+    event = lidar::gst::BoundsWithHeaders(base, state);
+  }
   switch (GST_EVENT_TYPE(event)) {
     case GST_EVENT_EOS:
     case GST_EVENT_SEGMENT:
@@ -190,6 +199,7 @@ static GstStateChangeReturn gst_lidar_rtp_pay_change_state(GstElement* element,
     state.last_scan.reset();
     state.unnamed_scans = 0;
     state.aggregator = {};
+    state.bounds.reset();
   }
   return GST_ELEMENT_CLASS(gst_lidar_rtp_pay_parent_class)->change_state(element, transition);
 }

@@ -3,6 +3,7 @@
 
 #include <gst/rtp/gstrtpbuffer.h>
 
+#include <cmath>
 #include <cstring>
 
 #include "common/buffer_map.h"
@@ -204,6 +205,23 @@ gdouble SliceShare(GstRTPBasePayload* base, PayState& state) {
   const auto header = static_cast<gdouble>(
       rtp::HeaderSize(rtp::PacketType::kMiddleFragment, rtp::UnitType::kSlice));
   return MAX(0.5, 1 - header / payload);
+}
+
+GstEvent* BoundsWithHeaders(GstRTPBasePayload* base, PayState& state) {
+  state.bounds_share = SliceShare(base, state);
+  const auto scaled = [&](guint bps) {
+    return static_cast<guint>(MIN(bps / state.bounds_share, gdouble{G_MAXUINT}));
+  };
+  const GstLidarBitrateBounds bounds{scaled(state.bounds->min_bitrate),
+                                     scaled(state.bounds->max_bitrate),
+                                     scaled(state.bounds->nominal_bitrate)};
+  return gst_lidar_event_new_bitrate_bounds(&bounds);
+}
+
+void UpdateBounds(GstRTPBasePayload* base, PayState& state) {
+  constexpr gdouble kMoved = 0.02;
+  if (!state.bounds || std::abs(SliceShare(base, state) / state.bounds_share - 1) <= kMoved) return;
+  gst_pad_push_event(GST_RTP_BASE_PAYLOAD_SRCPAD(base), BoundsWithHeaders(base, state));
 }
 
 }  // namespace lidar::gst

@@ -54,6 +54,8 @@ struct PayState {
   guint unnamed_scans = 0;  // ids of buffers without a meta
   rtp::Aggregator aggregator;
   PaySlice first_aggregated;
+  std::optional<GstLidarBitrateBounds> bounds;  // the encoder's, without our headers
+  gdouble bounds_share = 1;                     // by which they were last scaled
 };
 
 /// Room for payload in one RTP packet [bytes].
@@ -64,5 +66,9 @@ GstFlowReturn PaySliceBuffer(GstRTPBasePayload* base, PayState& state, GstBuffer
 GstFlowReturn PushAggregate(GstRTPBasePayload* base, PayState& state);
 /// The part of the RTP payload that is the encoder's, lately; a guess before anything was sent.
 gdouble SliceShare(GstRTPBasePayload* base, PayState& state);
+/// The encoder's bounds with what our headers take on top.
+GstEvent* BoundsWithHeaders(GstRTPBasePayload* base, PayState& state);
+/// Sends the bounds again where the headers' share has moved by more than 2 %.
+void UpdateBounds(GstRTPBasePayload* base, PayState& state);
 
 }  // namespace lidar::gst

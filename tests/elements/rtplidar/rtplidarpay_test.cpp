@@ -157,6 +157,28 @@ TEST(RtpLidarPay, TakesItsHeadersOffTheTargetBitrate) {
   EXPECT_EQ(seen[1].rtt, 7U);
 }
 
+TEST(RtpLidarPay, AddsItsHeadersToTheBoundsOfTheEncoder) {
+  const Harness h = Pay();
+  const GstLidarBitrateBounds needed{1'000'000, 8'000'000, 2'000'000};
+  gst_harness_push_event(h.get(), gst_lidar_event_new_bitrate_bounds(&needed));
+  for (guint scan = 0; scan < 50; ++scan)
+    for (guint i = 0; i < kSlices; ++i) gst_harness_push(h.get(), EncodedSlice(scan, i, 400));
+  std::vector<GstLidarBitrateBounds> seen;
+  while (const gst::EventPtr event{gst_harness_try_pull_event(h.get())}) {
+    GstLidarBitrateBounds bounds{};
+    if (gst_lidar_event_parse_bitrate_bounds(event.get(), &bounds)) seen.push_back(bounds);
+  }
+  // A guess at first, then as measured, and no more often than that.
+  ASSERT_GE(seen.size(), 2U);
+  EXPECT_LE(seen.size(), 8U);
+  const double share = static_cast<double>(Stat(h.get(), "slice-bytes")) /
+                       static_cast<double>(Stat(h.get(), "payload-bytes"));
+  EXPECT_LT(share, 0.93);
+  EXPECT_NEAR(seen.back().min_bitrate * share, 1e6, 0.03e6);
+  EXPECT_NEAR(seen.back().max_bitrate * share, 8e6, 0.24e6);
+  EXPECT_NEAR(seen.back().nominal_bitrate * share, 2e6, 0.06e6);
+}
+
 TEST(RtpLidarPay, RefusesCapsThatNoReceiverCouldUse) {
   const Harness h(gst_harness_new("rtplidarpay"));
   gst_harness_push_event(h.get(), gst_event_new_stream_start("test"));
