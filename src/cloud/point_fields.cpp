@@ -33,6 +33,12 @@ std::string_view TakeUntil(char separator, std::string_view* text) {
   return head;
 }
 
+/// Names come from networks and go into caps, which want valid UTF-8, and into logs.
+bool IsName(std::string_view text) {
+  return !text.empty() &&
+         std::all_of(text.begin(), text.end(), [](char c) { return c >= ' ' && c <= '~'; });
+}
+
 std::optional<PointField> ParseField(std::string_view text) {
   const std::string_view name = TakeUntil(':', &text);
   const std::string_view type = TakeUntil(':', &text);
@@ -40,7 +46,7 @@ std::optional<PointField> ParseField(std::string_view text) {
       std::find_if(kTypes.begin(), kTypes.end(), [&](const auto& t) { return t.name == type; });
   std::uint32_t offset = 0;
   const auto parsed = std::from_chars(text.data(), text.data() + text.size(), offset);
-  if (name.empty() || known == kTypes.end() || parsed.ec != std::errc() ||
+  if (!IsName(name) || known == kTypes.end() || parsed.ec != std::errc() ||
       parsed.ptr != text.data() + text.size() ||
       offset > PointFields::kMaxPointStep - known->size) {
     return std::nullopt;

@@ -41,7 +41,10 @@ TEST_P(BadFields, AreRefused) { EXPECT_FALSE(PointFields::Parse(GetParam())); }
 INSTANTIATE_TEST_SUITE_P(All, BadFields,
                          ::testing::Values("", "x", "x:F32", "x:F99:0", ":F32:0", "x:F32:-1",
                                            "x:F32:0,x:F32:4", "x:F32:4294967295", "x:F32:0,,",
-                                           "x:F32:0z"));
+                                           "x:F32:0z", "x\xff:F32:0", "x\n:F32:0"));
+TEST(PointFields, ANameHoldsNoZero) {
+  EXPECT_FALSE(PointFields::Parse(std::string_view("x\0y:F32:0", 9)));
+}
 
 TEST(SensorModel, RoundTripsThroughItsBytes) {
   const SensorModel m = SmallSensor();

@@ -124,7 +124,7 @@ TEST(CloudFiles, AScanWithoutReturnsIsAFileWithoutPoints) {
 
 TEST(CloudFiles, NamesOfFieldsCannotBreakTheHeader) {
   CloudInfo info = Info(3, 1);
-  info.fields = *PointFields::Parse("x:F32:0,y:F32:4,z:F32:8,a b\nc:U8:20");
+  info.fields = *PointFields::Parse("x:F32:0,y:F32:4,z:F32:8,a b\"c:U8:20");
   EXPECT_NE(Encode("plyenc", info).find("property uchar a_b_c\n"), std::string::npos);
 }
 
