@@ -31,7 +31,8 @@ using lidar::gst::CapsPtr;
 using lidar::gst::CloudInfo;
 
 constexpr guint kPropFramerate = 1;
-constexpr gint kDefaultRate = 10;  // scans/s where neither caps nor property say
+constexpr gint kDefaultRate = 10;            // scans/s where neither caps nor property say
+constexpr gsize kMaxCloud = gsize{1} << 30;  // bytes
 
 struct Rate {
   gint n = 0;
@@ -158,6 +159,12 @@ GstFlowReturn Chain(GstPad*, GstObject* parent, GstBuffer* raw) {
     return GST_FLOW_NOT_NEGOTIATED;
   }
   const gsize cloud = CloudSize(self);
+  if (cloud > kMaxCloud) {
+    GST_ELEMENT_ERROR(self, STREAM, FORMAT,
+                      ("A file of %" G_GSIZE_FORMAT " bytes is too large for one cloud.", cloud),
+                      ("Give the caps a width where the file holds many clouds."));
+    return GST_FLOW_ERROR;
+  }
   if (cloud == 0) return PushCloud(self, std::move(buffer));
   if (GST_BUFFER_IS_DISCONT(buffer.get())) gst_adapter_clear(state.adapter.get());
   if (gst_adapter_available(state.adapter.get()) == 0 && gst_buffer_get_size(raw) == cloud)

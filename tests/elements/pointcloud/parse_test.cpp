@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <gtest/gtest.h>
 
+#include <filesystem>
 #include <fstream>
 
 #include "common/buffer_map.h"
@@ -180,6 +181,28 @@ TEST(ParseFile, AFileWithoutAWidthIsOneCloud) {
   const BufferPtr cloud(gst_harness_pull(h.get()));
   EXPECT_EQ(gst_buffer_get_size(cloud.get()), 48'000U);
   std::remove(path.c_str());
+}
+
+TEST(ParseFile, AFileThatIsTooLargeForOneCloudIsAnErrorAtOnce) {
+  const std::string path = ::testing::TempDir() + "large.bin";
+  std::ofstream(path, std::ios::binary) << "a";
+  std::filesystem::resize_file(path, std::uintmax_t{1} << 31);  // sparse
+  const gst::ElementPtr pipeline(gst_parse_launch(
+      ("filesrc location=" + path + " ! " + kKitti + " ! pointcloudparse ! fakesink").c_str(),
+      nullptr));
+  gst_element_set_state(pipeline.get(), GST_STATE_PLAYING);
+  GstBus* bus = gst_element_get_bus(pipeline.get());
+  const gst::MessagePtr message(
+      gst_bus_timed_pop_filtered(bus, 20 * GST_SECOND, GST_MESSAGE_ERROR));
+  gst_object_unref(bus);
+  gst_element_set_state(pipeline.get(), GST_STATE_NULL);
+  std::remove(path.c_str());
+  ASSERT_TRUE(message);
+  GError* raw = nullptr;
+  gst_message_parse_error(message.get(), &raw, nullptr);
+  const gst::ErrorPtr error(raw);
+  EXPECT_NE(std::string(error->message).find("too large for one cloud"), std::string::npos)
+      << error->message;
 }
 
 TEST(ParseFile, EachFileOfASeriesIsACloud) {
