@@ -11,6 +11,9 @@ constexpr double kOutageRestart = 0.5;
 constexpr double kTimeoutBackoff = 0.5;
 /// So long after a mark the next sign of congestion is expected to be one too.
 constexpr Duration kMarksExpected = 30s;
+/// Reports that are no further apart than this need no allowance; others one of this at most.
+constexpr Duration kCloseReports = 8ms;
+constexpr Duration kLongestGap = 100ms;
 /// Packets in a row behind a queue that are no accident.
 constexpr int kQueueingPackets = 3;
 
@@ -20,10 +23,23 @@ DataSize Controller::Impl::MaxInFlight() const {
   double overhead = p.ref_wnd_overhead_min + (p.ref_wnd_overhead_max - p.ref_wnd_overhead_min) *
                                                  queue_delay_.ref_wnd_delay_scale();
   if (p.extensions.bounded_flight) {
-    if (L4sWorks()) overhead = std::min(overhead, p.open_overhead);
-    if (Queueing(2 * BusyQdelay())) overhead = p.bounded_overhead;
+    const double unreported = 1 + Seconds(UnreportedTime()) / Seconds(rtt_.smoothed());
+    if (L4sWorks()) overhead = std::min(overhead, p.open_overhead * unreported);
+    if (Queueing(2 * BusyQdelay())) overhead = p.bounded_overhead * unreported;
   }
   return window_.ref_wnd() * overhead;
+}
+
+/// What arrived between reports that are far apart is still counted as in flight.
+Duration Controller::Impl::UnreportedTime() const {
+  return std::max(Duration{0}, report_gap_ - kCloseReports);
+}
+
+/// Weighted by what the report acknowledges: a pause of the source is no gap.
+void Controller::Impl::MeasureReports(Time now, const AckSummary& summary) {
+  const Duration gap = std::min<Duration>(now - std::exchange(last_summary_, now), kLongestGap);
+  const double weight = std::min(1.0, summary.bytes_newly_acked / window_.ref_wnd());
+  report_gap_ += FromSeconds(Seconds(gap - report_gap_) * weight);
 }
 
 /// The path carries ECT(1), and its bottleneck has lately been one that marks it.

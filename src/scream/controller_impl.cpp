@@ -100,6 +100,7 @@ void Controller::Impl::OnSummary(Time now, const AckSummary& summary) {
     StartWindow();
   }
   ObserveCapacity(summary);
+  MeasureReports(now, summary);
   const CongestionSignals signals = Signals(summary);
   if (streams.media_qdelay(now) <= streams.frame_period()) fast_increase_.Update(now, Round());
   if (!RespondToDrop(now, signals)) React(now, signals);
@@ -169,6 +170,7 @@ CongestionSignals Controller::Impl::Signals(const AckSummary& summary) {
   }
   if (p.extensions.fast_start)
     s.fast_growth = fast_increase_.growth(queue_delay_.qdelay(), L4sWorks());
+  if (p.extensions.even_alpha) s.earliness = UnreportedTime() / 2;
   s.l4s_alpha = l4s_alpha_.value();
   s.is_l4s = p.ecn == Ecn::kEct1;
   s.qdelay = queue_delay_.qdelay();

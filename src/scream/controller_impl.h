@@ -66,6 +66,8 @@ class Controller::Impl {
   bool SourceLimited() const;
   DataRate TargetOf(Time now) const;
   DataSize MaxInFlight() const;
+  void MeasureReports(Time now, const AckSummary& summary);
+  Duration UnreportedTime() const;
 
   Time now_{};
   SentHistory history_;
@@ -86,6 +88,8 @@ class Controller::Impl {
   Time last_sent_{};
   Time last_housekeeping_{};
   Time last_drop_{};
+  Time last_summary_{};
+  Duration report_gap_{0};
   Time last_timeout_{};
   std::optional<DataSize> window_before_outage_;
   std::optional<Time> last_mark_;

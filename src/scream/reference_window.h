@@ -21,6 +21,8 @@ struct CongestionSignals {
   Duration qdelay_avg{0};
   Duration qdelay_target{0};
   double ref_wnd_delay_scale = 1;
+  /// Beyond the draft: so much sooner than due a reaction may come, as the next report is far.
+  Duration earliness{0};
   Duration s_rtt{0};
   DataSize max_bytes_in_flight;
   DataSize max_bytes_in_flight_prev;

@@ -161,6 +161,24 @@ TEST(Feedback, ThatIsSlowCostsLittle) {
   EXPECT_LT(run.MaxQueueMs(10s, 40s), 30);
 }
 
+/// As receivers made of the reference's code report.
+TEST(Feedback, OnceAFrameIsEnough) {
+  for (const char* name : {"A", "C", "C10", "J"}) {
+    Scenario s = Named(name);
+    const ScenarioMetrics close = Measure(s, Simulate(s.config));
+    for (FlowConfig& flow : s.config.flows) {
+      flow.feedback.report_on_ce_change = false;
+      flow.feedback.packets_per_feedback = 32;
+      flow.feedback.feedback_fraction = 0;
+    }
+    const ScenarioMetrics far = Measure(s, Simulate(s.config));
+    EXPECT_GT(far.utilisation, close.utilisation - 0.02) << name;
+    EXPECT_LT(far.queue_ms.p50, close.queue_ms.p50 + 1) << name;
+    EXPECT_LT(far.queue_ms.p99, 6) << name;
+    EXPECT_GT(far.jain, 0.99) << name;
+  }
+}
+
 TEST(Feedback, ThatIsLostInPartCostsLittleAndAddsNoQueue) {
   for (const char* name : {"C", "C10-slices", "D"}) {
     Scenario s = Named(name);
