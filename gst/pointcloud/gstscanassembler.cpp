@@ -12,12 +12,9 @@
 
 #include <mutex>
 
-#include "common/cloud_info.h"
-#include "common/latency.h"
 #include "common/properties.h"
-#include "pointcloud/deadline_timer.h"
+#include "pointcloud/assembler_state.h"
 #include "pointcloud/scan_caps.h"
-#include "pointcloud/scan_queue.h"
 
 GST_DEBUG_CATEGORY_STATIC(gst_lidar_scan_assembler_debug);
 #define GST_CAT_DEFAULT gst_lidar_scan_assembler_debug
@@ -28,9 +25,7 @@ using lidar::gst::CapsPtr;
 using lidar::gst::CloudInfo;
 using lidar::gst::ScanQueue;
 
-struct Settings {
-  guint64 max_wait = 20 * GST_MSECOND;
-};
+using Settings = lidar::gst::AssemblerSettings;
 
 constexpr std::array<lidar::gst::Property<Settings>, 1> kProperties = {{
     {"max-wait",
@@ -40,22 +35,7 @@ constexpr std::array<lidar::gst::Property<Settings>, 1> kProperties = {{
 }};
 constexpr guint kPropStats = kProperties.size() + 1;
 
-struct State {
-  // Guards all below. The streaming lock of the sink pad orders what is pushed: the chain function
-  // holds it, and the timer takes it; it is taken before this one.
-  std::mutex mutex;
-  Settings settings;
-  ScanQueue queue;
-  std::optional<CloudInfo> info;  // of the slices
-  CapsPtr in_caps;
-  guint out_width = 0;  // in the caps sent last; 0: to be sent again
-  bool caps_sent = false;
-  lidar::gst::EventPtr early_segment;           // waits for the caps
-  std::optional<lidar::gst::Latency> upstream;  // once it was asked
-  GstClockTime scan_latency = 0;  // what the latency query adds for a scan, without max-wait
-  GstSegment segment;
-  lidar::gst::DeadlineTimer timer;
-};
+using State = lidar::gst::AssemblerState;
 
 }  // namespace
 
@@ -336,26 +316,9 @@ GstStateChangeReturn ChangeState(GstElement* element, GstStateChange transition)
   if (transition == GST_STATE_CHANGE_PAUSED_TO_PLAYING)
     state.timer.Update(state.queue.NextDeadline());
   if (transition == GST_STATE_CHANGE_PAUSED_TO_READY) {
-    state.upstream.reset();
-    state.queue = ScanQueue();
-    state.info.reset();
-    state.in_caps.reset();
-    state.out_width = 0;
-    state.caps_sent = false;
-    state.early_segment.reset();
-    state.scan_latency = 0;
-    gst_segment_init(&state.segment, GST_FORMAT_TIME);
+    state.Reset();
   }
   return result;
-}
-
-GstStructure* MakeStats(State* state) {
-  std::lock_guard lock(state->mutex);
-  const auto& c = state->queue.counters();
-  return gst_structure_new("application/x-scanassembler-stats", "scans", G_TYPE_UINT64, c.scans,
-                           "incomplete", G_TYPE_UINT64, c.incomplete, "late-slices", G_TYPE_UINT64,
-                           c.late, "duplicate-slices", G_TYPE_UINT64, c.duplicates,
-                           "invalid-slices", G_TYPE_UINT64, c.invalid, nullptr);
 }
 
 void SetObjectProperty(GObject* object, guint id, const GValue* value, GParamSpec*) {
@@ -370,7 +333,7 @@ void SetObjectProperty(GObject* object, guint id, const GValue* value, GParamSpe
 void GetObjectProperty(GObject* object, guint id, GValue* value, GParamSpec*) {
   State& state = StateOf(object);
   if (id == kPropStats) {
-    g_value_take_boxed(value, MakeStats(&state));
+    g_value_take_boxed(value, state.Stats());
     return;
   }
   std::lock_guard lock(state.mutex);
@@ -391,7 +354,6 @@ static GstStaticPadTemplate src_template = GST_STATIC_PAD_TEMPLATE(
 
 static void gst_lidar_scan_assembler_init(GstLidarScanAssembler* self) {
   self->state = new State;
-  gst_segment_init(&self->state->segment, GST_FORMAT_TIME);
   self->sinkpad = gst_pad_new_from_static_template(&sink_template, "sink");
   gst_pad_set_chain_function(self->sinkpad, Chain);
   gst_pad_set_event_function(self->sinkpad, SinkEvent);

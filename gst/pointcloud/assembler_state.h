@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// What scanassembler remembers.
+#pragma once
+#include <gst/gst.h>
+
+#include <mutex>
+#include <optional>
+
+#include "common/cloud_info.h"
+#include "common/latency.h"
+#include "common/refs.h"
+#include "pointcloud/deadline_timer.h"
+#include "pointcloud/scan_queue.h"
+
+namespace lidar::gst {
+
+struct AssemblerSettings {
+  guint64 max_wait = 20 * GST_MSECOND;
+};
+
+struct AssemblerState {
+  AssemblerState() { gst_segment_init(&segment, GST_FORMAT_TIME); }
+  /// As it was before the first buffer, but for the settings and the timer; with the mutex held.
+  void Reset();
+  /// The property `stats`; takes the mutex.
+  GstStructure* Stats();
+
+  // Guards all below. The streaming lock of the sink pad orders what is pushed: the chain function
+  // holds it, and the timer takes it; it is taken before this one.
+  std::mutex mutex;
+  AssemblerSettings settings;
+  ScanQueue queue;
+  std::optional<CloudInfo> info;  // of the slices
+  CapsPtr in_caps;
+  guint out_width = 0;  // in the caps sent last; 0: to be sent again
+  bool caps_sent = false;
+  EventPtr early_segment;           // waits for the caps
+  std::optional<Latency> upstream;  // once it was asked
+  GstClockTime scan_latency = 0;    // what the latency query adds for a scan, without max-wait
+  GstSegment segment;
+  DeadlineTimer timer;
+};
+
+}  // namespace lidar::gst
