@@ -131,10 +131,14 @@ void UdpSocket::SendMulticastFrom(const std::string& interface) {
   if (index == 0) Fail("there is no interface " + interface);
   ip_mreqn v4{};
   v4.imr_ifindex = index;
-  // The option of the other address family fails, and is not needed then.
-  if (setsockopt(fd(), IPPROTO_IP, IP_MULTICAST_IF, &v4, sizeof v4) != 0 &&
-      setsockopt(fd(), IPPROTO_IPV6, IPV6_MULTICAST_IF, &index, sizeof index) != 0)
-    Fail("cannot send multicast from " + interface);
+  sockaddr_storage local{};
+  socklen_t length = sizeof local;
+  getsockname(fd(), reinterpret_cast<sockaddr*>(&local), &length);
+  // The option for IPv4 is accepted on a socket of IPv6, where it does nothing.
+  const int failed = local.ss_family == AF_INET6
+                         ? setsockopt(fd(), IPPROTO_IPV6, IPV6_MULTICAST_IF, &index, sizeof index)
+                         : setsockopt(fd(), IPPROTO_IP, IP_MULTICAST_IF, &v4, sizeof v4);
+  if (failed != 0) Fail("cannot send multicast from " + interface);
 }
 
 int UdpSocket::LocalPort() const {

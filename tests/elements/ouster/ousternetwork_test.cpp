@@ -32,17 +32,18 @@ bool EnterOwnNetwork() {
   return ok;
 }
 
-/// An Ethernet of two ends, since loopback carries no multicast over IPv6; false without iproute2.
-bool AddEthernet() {
+/// Two Ethernets, since loopback carries no multicast over IPv6; false without iproute2. Unless it
+/// is told, the kernel takes the first for multicast.
+bool AddEthernets() {
   return std::system(
-             "ip link add lidar0 type veth peer name lidar1 2>/dev/null && ip link set lidar0 up "
-             "&& "
-             "ip link set lidar1 up && ip addr add fd00:6c69::1/64 dev lidar0 nodad") == 0;
+             "for i in 0 2; do ip link add lidar$i type veth peer name lidar$((i + 1)) && "
+             "ip link set lidar$i up && ip link set lidar$((i + 1)) up && "
+             "ip addr add fd00:6c69:$i::1/64 dev lidar$i nodad || exit 1; done 2>/dev/null") == 0;
 }
 
 // Before main, as GLib's threads inherit the namespace of the one that starts them.
 const bool kOwnNetwork = EnterOwnNetwork();
-const bool kEthernet = kOwnNetwork && AddEthernet();
+const bool kEthernet = kOwnNetwork && AddEthernets();
 
 bool HasIpv6() {
   GSocket* socket =
@@ -124,10 +125,10 @@ TEST(OusterMulticast, WorksOverIpv6) {
   if (!kEthernet) GTEST_SKIP() << "needs root, iproute2 and a kernel with veth";
   const std::string group = "ff15::6c69:1";
   SoftwareSensor::Options options;
-  options.multicast_iface = "lidar0";
+  options.multicast_iface = "lidar2";
   SoftwareSensor sensor(options);
   Receiver receiver(sensor.host(),
-                    "multicast-iface=lidar0 multicast-group=" + group + " udp-dest=" + group);
+                    "multicast-iface=lidar2 multicast-group=" + group + " udp-dest=" + group);
   EXPECT_TRUE(receiver.Pull());
   EXPECT_EQ(sensor.config()["udp_dest"], group);
 }
