@@ -122,6 +122,7 @@ void LiveSession::AddCounters(Counters* counters) const {
 void LiveSession::SetConnected(bool connected, const std::string& reason) {
   if (connected == connected_ && (connected || lost_once_)) return;
   connected_ = connected;
+  heard_ = heard_ || connected;
   if (connected && lost_once_) ++reconnects_;
   lost_once_ = lost_once_ || !connected;
   if (connected) silence_reported_ = false;
@@ -174,7 +175,7 @@ bool LiveSession::HandleAnswer(SensorLink::Result result) {
 /// False, after an error was posted, where nothing ever came: then it is a setting to be mended.
 bool LiveSession::WaitWhileSwitchedOff() {
   constexpr const char* kOff = "the sensor's lidar stream is switched off";
-  if (stream() != nullptr && settings().reconnect) {
+  if (heard_ && settings().reconnect) {
     SetConnected(false, kOff);
     return true;
   }

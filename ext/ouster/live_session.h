@@ -46,6 +46,7 @@ class LiveSession : public Session {
   guint receive_buffer_ = 0;
   bool connected_ = false;
   bool lost_once_ = false;
+  bool heard_ = false;  // a packet of the sensor, ever
   guint reconnects_ = 0;
   std::string destination_;    // of the sensor's packets, as it says
   gint64 last_packet_us_ = 0;  // g_get_monotonic_time()

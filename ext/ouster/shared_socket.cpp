@@ -135,12 +135,15 @@ SocketReader::~SocketReader() {
 int SocketReader::socket_fd() const { return socket_->fd(); }
 
 void SocketReader::Enqueue(const ReceivedDatagram& datagram) {
-  if (queued_bytes_ + datagram.size > std::max<gsize>(queue_bytes_, kSmallestQueue)) {
+  if (datagram.size == 0) return;
+  // What a small datagram takes is mostly the note of it.
+  const gsize cost = sizeof(Copy) + datagram.size;
+  if (queued_bytes_ + cost > std::max<gsize>(queue_bytes_, kSmallestQueue)) {
     ++queue_overflows_;
     return;
   }
   if (queue_.empty()) queued_.Wake();
-  queued_bytes_ += datagram.size;
+  queued_bytes_ += cost;
   queue_.push_back({{datagram.data, datagram.data + datagram.size}, *datagram.from, datagram});
 }
 

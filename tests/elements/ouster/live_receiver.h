@@ -38,17 +38,16 @@ class Receiver {
   Receiver& operator=(const Receiver&) = delete;
 
   void SetState(GstState state) { gst_element_set_state(harness_->element, state); }
-  gst::BufferPtr Pull() { return gst::BufferPtr(gst_harness_pull(harness_.get())); }
+  /// The next buffer, or none within half a minute.
+  gst::BufferPtr Pull() { return Pull(g_get_monotonic_time() + kPatience); }
   void Drain() {
     while (gst_harness_buffers_in_queue(harness_.get()) > 0) Pull();
   }
-  /// Takes buffers until one is as wanted; false where none is within ten seconds.
+  /// Takes buffers until one is as wanted; false where none is within half a minute.
   bool PullUntil(const std::function<bool(GstBuffer*)>& wanted) {
-    const gint64 end = g_get_monotonic_time() + 10 * G_USEC_PER_SEC;
-    while (g_get_monotonic_time() < end) {
-      const gst::BufferPtr buffer = Pull();
-      if (buffer && wanted(buffer.get())) return true;
-    }
+    const gint64 end = g_get_monotonic_time() + kPatience;
+    while (const gst::BufferPtr buffer = Pull(end))
+      if (wanted(buffer.get())) return true;
     return false;
   }
   gst::CloudInfo Info() {
@@ -57,11 +56,11 @@ class Receiver {
     EXPECT_TRUE(info);
     return info.value_or(gst::CloudInfo{});
   }
-  /// The next element message of that name, within ten seconds.
+  /// The next element message of that name, within half a minute.
   gst::MessagePtr Await(const char* name) {
     for (;;) {
       gst::MessagePtr message(gst_bus_timed_pop_filtered(
-          bus_, 10 * GST_SECOND,
+          bus_, 30 * GST_SECOND,
           static_cast<GstMessageType>(GST_MESSAGE_ELEMENT | GST_MESSAGE_ERROR)));
       if (!message || GST_MESSAGE_TYPE(message.get()) == GST_MESSAGE_ERROR) return nullptr;
       if (gst_message_has_name(message.get(), name)) return message;
@@ -78,7 +77,7 @@ class Receiver {
   }
   std::string AwaitError() {
     const gst::MessagePtr message(
-        gst_bus_timed_pop_filtered(bus_, 10 * GST_SECOND, GST_MESSAGE_ERROR));
+        gst_bus_timed_pop_filtered(bus_, 30 * GST_SECOND, GST_MESSAGE_ERROR));
     if (!message) return "no error";
     GError* raw = nullptr;
     gst_message_parse_error(message.get(), &raw, nullptr);
@@ -89,6 +88,16 @@ class Receiver {
   guint16 port() const { return port_; }
 
  private:
+  static constexpr gint64 kPatience = 30 * G_USEC_PER_SEC;  // the machine may be busy
+
+  gst::BufferPtr Pull(gint64 end) {
+    for (;;) {
+      gst::BufferPtr buffer(gst_harness_try_pull(harness_.get()));
+      if (buffer || g_get_monotonic_time() >= end) return buffer;
+      g_usleep(500);
+    }
+  }
+
   guint16 port_;
   Harness harness_;
   gst::ElementPtr source_;

@@ -3,6 +3,9 @@
 // it again.
 #include <httplib.h>
 
+#include <cstdio>
+#include <fstream>
+
 #include "live_receiver.h"
 #include "ouster/scan_batcher.h"
 #include "software_sensor.h"
@@ -118,7 +121,8 @@ TEST(OusterLive, DamagedPacketsAreToldByTheirCrc) {
   Receiver receiver(sensor.host(), "udp-dest=@auto");
   ASSERT_TRUE(receiver.Pull());
   sensor.Fault({{"corrupt", 1.0}});
-  while (sensor.counts().corrupted < 50) g_usleep(1000);
+  const gint64 end = g_get_monotonic_time() + 30 * G_USEC_PER_SEC;
+  while (sensor.counts().corrupted < 50 && g_get_monotonic_time() < end) g_usleep(1000);
   sensor.Fault({{"corrupt", 0.0}});
   const auto corrupted = sensor.counts().corrupted;
   ASSERT_TRUE(receiver.PullUntil(
@@ -226,6 +230,15 @@ TEST(OusterLive, WaitsForASensorThatIsSwitchedOffForAWhile) {
   send_to("");
   ASSERT_TRUE(second.AwaitConnected(false));
   ASSERT_TRUE(second.AwaitConnected(true));
+}
+
+TEST(OusterLive, ASensorThatWasNeverOnIsAnErrorAlsoWithAMetadataFile) {
+  SoftwareSensor sensor({});
+  const std::string path = ::testing::TempDir() + "ouster_off.json";
+  std::ofstream(path) << sensor.state().MetadataJson();
+  Receiver receiver(sensor.host(), "metadata=" + path);
+  EXPECT_NE(receiver.AwaitError().find("switched off"), std::string::npos);
+  std::remove(path.c_str());
 }
 
 TEST(OusterLive, WaitsForASensorWhoseApiFails) {
