@@ -11,8 +11,9 @@ constexpr double kOutageRestart = 0.5;
 constexpr double kTimeoutBackoff = 0.5;
 /// So long after a mark the next sign of congestion is expected to be one too.
 constexpr Duration kMarksExpected = 30s;
-/// Reports that are no further apart than this need no allowance; others one of this at most.
-constexpr Duration kCloseReports = 8ms;
+/// Reports that are no further apart than this part of a round trip need no allowance; others one
+/// of this at most.
+constexpr int kCloseReports = 5;
 constexpr Duration kLongestGap = 100ms;
 /// Packets in a row behind a queue that are no accident.
 constexpr int kQueueingPackets = 3;
@@ -23,16 +24,16 @@ DataSize Controller::Impl::MaxInFlight() const {
   double overhead = p.ref_wnd_overhead_min + (p.ref_wnd_overhead_max - p.ref_wnd_overhead_min) *
                                                  queue_delay_.ref_wnd_delay_scale();
   if (p.extensions.bounded_flight) {
-    const double unreported = 1 + Seconds(UnreportedTime()) / Seconds(rtt_.smoothed());
-    if (L4sWorks()) overhead = std::min(overhead, p.open_overhead * unreported);
-    if (Queueing(2 * BusyQdelay())) overhead = p.bounded_overhead * unreported;
+    if (L4sWorks()) overhead = std::min(overhead, p.open_overhead);
+    if (Queueing(2 * BusyQdelay())) overhead = p.bounded_overhead;
+    overhead *= 1 + Seconds(UnreportedTime()) / Seconds(rtt_.smoothed());
   }
   return window_.ref_wnd() * overhead;
 }
 
-/// What arrived between reports that are far apart is still counted as in flight.
+/// What arrived between reports that are far apart, as round trips go, still counts as in flight.
 Duration Controller::Impl::UnreportedTime() const {
-  return std::max(Duration{0}, report_gap_ - kCloseReports);
+  return std::max(Duration{0}, report_gap_ - rtt_.smoothed() / kCloseReports);
 }
 
 /// Weighted by what the report acknowledges: a pause of the source is no gap.

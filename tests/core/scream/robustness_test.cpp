@@ -193,6 +193,23 @@ TEST(Feedback, ThatIsLostInPartCostsLittleAndAddsNoQueue) {
   }
 }
 
+/// A local network: the window of one round trip is less than what arrives between two reports.
+TEST(ShortPath, IsUsedFromTheStartByAStreamThatNeedsLittle) {
+  for (const char* name : {"C", "D"}) {
+    for (const Duration rtt : {Duration(200us), Duration(1ms), Duration(3ms)}) {
+      Scenario s = Named(name);
+      s.config.forward.capacity = link::Capacity::Constant(Mbps(100));
+      s.config.forward.delay = s.config.return_delay = rtt / 2;
+      s.config.flows[0].sources[0].stream.max_bitrate = Mbps(5);
+      s.config.duration = 10s;
+      const Trial run(s);
+      EXPECT_GT(run.Mbps(0s, 1s), 4.5) << name << " " << Milliseconds(rtt);
+      EXPECT_NEAR(run.Mbps(1s, 10s), 5, 0.1) << name << " " << Milliseconds(rtt);
+      EXPECT_EQ(run.End().packets_dropped, 0U) << name << " " << Milliseconds(rtt);
+    }
+  }
+}
+
 /// MIN_REF_WND over the round trip is more than this link carries.
 TEST(MinimumWindow, IsHeldOnALinkThatIsSlowerThanIt) {
   Scenario s = Named("C");
