@@ -23,7 +23,7 @@ grep -q '"gst-lidar-rate-model"' model.json || fail "no model file"
 
 "$eval" bounds $scene --scans 1 --errors 0.02,0.05 --csv bounds.csv | grep -q r_min || fail bounds
 test "$(wc -l <bounds.csv)" -eq 5 || fail "bounds.csv has $(wc -l <bounds.csv) lines"
-"$eval" rd $scene --scans 1 --errors 0.02,0.05 --slices 1 --csv rd.csv --plot rd.png >/dev/null
+"$eval" rd $scene $scene --scans 1 --errors 0.02,0.05 --slices 1 --csv rd.csv --plot rd.png >/dev/null
 head -c 4 rd.png | grep -q PNG || fail "no plot"
 "$eval" predict $scene --scans 2 --samples 5 --model model.json | grep -q range- || fail predict
 "$eval" track $scene --scans 3 --length 20 --model model.json --csv t.csv --plot t.png >/dev/null
@@ -43,5 +43,5 @@ refused "$eval"
 refused "$eval" bounds synth:os1-64:moon
 refused "$eval" track $scene --model targets.txt
 refused "$eval" track $scene --profiles dance
-refused "$eval" rd $scene $scene --plot x.png
+refused "$eval" rd $scene --scans 1 --errors 0.02 --slices 1 --plot /no/such/folder/x.png
 echo OK
