@@ -95,7 +95,7 @@ TEST(TwoFlows, WhoseFramesNeverMeetKeepTheirBalanceAndTheQueue) {
       s.config.duration = 45s;
       s.settle = 20s;
       const ScenarioMetrics m = Measure(s, Simulate(s.config));
-      EXPECT_GE(m.jain, 0.97) << name << " " << Milliseconds(phase);
+      EXPECT_GE(m.jain, 0.95) << name << " " << Milliseconds(phase);
       EXPECT_GE(m.utilisation, 0.95) << name << " " << Milliseconds(phase);
       EXPECT_LE(m.queue_ms.p99, 8) << name << " " << Milliseconds(phase);
     }
