@@ -69,13 +69,14 @@ void Receiver::PushToCandidate(const RtpPacket& packet, const std::vector<Unit>&
 }
 
 bool Receiver::CandidateHasWon(Time now) const {
-  if (candidate_->ssrc == active_->ssrc && candidate_->reassembler.has_whole_slice() &&
+  const bool same = candidate_->ssrc == active_->ssrc;
+  const bool silent = now - active_arrival_ >= kSilence;
+  if (same && silent && candidate_->reassembler.has_whole_slice() &&
       candidate_->reassembler.IsAfter(active_->reassembler)) {
     return true;
   }
   if (candidate_->streak < kProbation || !candidate_->reassembler.started()) return false;
-  return candidate_->ssrc == active_->ssrc || now - active_arrival_ >= kSilence ||
-         candidate_->streak >= kProbationNoClock;
+  return same || silent || candidate_->streak >= kProbationNoClock;
 }
 
 std::vector<ReceivedSlice> Receiver::Promote(Time now) {

@@ -100,9 +100,12 @@ TEST(Receiver, GivesOutSlicesThatComeAloneAndFarApart) {
 }
 
 TEST(Receiver, IsNotMovedByOnePacketThatClaimsAnotherPlaceOrSsrc) {
-  Sender sender;
+  SenderOptions real;
+  real.scan_number = 1'000;
+  Sender sender(real);
   SenderOptions far;
   far.scan_number = 123'456;
+  far.slice_size = 300;  // whole in one packet
   SenderOptions foreign;
   foreign.ssrc = 1;
   Sender a(far);
@@ -111,7 +114,7 @@ TEST(Receiver, IsNotMovedByOnePacketThatClaimsAnotherPlaceOrSsrc) {
   for (const Wire& w : sender.Scans(0, 30)) {
     packets.push_back(w);
     if (w.scan == 0) continue;
-    Wire wild = (packets.size() % 2 != 0 ? a : b).Scans(w.scan, 1).back();
+    Wire wild = (w.sequence % 2 != 0 ? a : b).Scans(w.scan, 1).back();
     wild.sent = w.sent;
     packets.push_back(wild);
   }
