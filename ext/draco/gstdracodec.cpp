@@ -11,6 +11,7 @@
  */
 #include "draco/gstdracodec.h"
 
+#include <algorithm>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -138,12 +139,21 @@ bool PushCaps(GstLidarDracoDec* self, const SliceDecoder::Shape& shape) {
 
 /// Sticky events have their order: caps, segment, and then the others. True where `event` has to
 /// wait for caps, which come with the first slice.
-bool HoldBack(GstLidarDracoDec* self, GstEvent* event) {
-  if (gst_pad_has_current_caps(self->src)) return false;
-  return GST_EVENT_IS_SERIALIZED(event) &&
-         (GST_EVENT_TYPE(event) == GST_EVENT_GAP ||
-          (GST_EVENT_IS_STICKY(event) && GST_EVENT_TYPE(event) > GST_EVENT_CAPS &&
-           GST_EVENT_TYPE(event) != GST_EVENT_EOS));
+bool WaitsForCaps(GstEvent* event) {
+  return GST_EVENT_IS_SERIALIZED(event) && GST_EVENT_IS_STICKY(event) &&
+         GST_EVENT_TYPE(event) > GST_EVENT_CAPS && GST_EVENT_TYPE(event) != GST_EVENT_EOS;
+}
+
+/// As on a pad: a later event takes the place of one of its kind.
+void HoldBack(Stream* stream, GstEvent* event) {
+  const GstStructure* what = gst_event_get_structure(event);
+  const auto same = [&](const lidar::gst::EventPtr& held) {
+    return GST_EVENT_TYPE(held.get()) == GST_EVENT_TYPE(event) &&
+           (what == nullptr || gst_event_has_name(held.get(), gst_structure_get_name(what)));
+  };
+  auto& pending = stream->pending;
+  pending.erase(std::remove_if(pending.begin(), pending.end(), same), pending.end());
+  pending.emplace_back(event);
 }
 
 gboolean SinkEvent(GstPad* pad, GstObject* parent, GstEvent* event) {
@@ -158,10 +168,19 @@ gboolean SinkEvent(GstPad* pad, GstObject* parent, GstEvent* event) {
   Stream& stream = self->state->stream;
   if (GST_EVENT_TYPE(event) == GST_EVENT_FLUSH_STOP) {
     stream.discont = true;
-    stream.pending.clear();
+    const auto is_segment = [](const auto& e) {
+      return GST_EVENT_TYPE(e.get()) == GST_EVENT_SEGMENT;
+    };
+    stream.pending.erase(std::remove_if(stream.pending.begin(), stream.pending.end(), is_segment),
+                         stream.pending.end());
   }
-  if (HoldBack(self, event)) {
-    stream.pending.emplace_back(event);
+  const bool has_caps = gst_pad_has_current_caps(self->src);
+  if (!has_caps && WaitsForCaps(event)) {
+    HoldBack(&stream, event);
+    return TRUE;
+  }
+  if (!has_caps && GST_EVENT_TYPE(event) == GST_EVENT_GAP) {
+    gst_event_unref(event);  // nobody downstream knows yet what the gap is in
     return TRUE;
   }
   if (GST_EVENT_TYPE(event) == GST_EVENT_EOS) PushPending(self);

@@ -2,6 +2,8 @@
 #include <glib/gstdio.h>
 #include <gtest/gtest.h>
 
+#include <map>
+
 #include <fstream>
 #include <limits>
 #include <random>
@@ -324,6 +326,30 @@ TEST(DracoDec, RefusesASliceOfMorePointsThanItMayHave) {
   EXPECT_EQ(gst_harness_buffers_received(h.get()), 0U);
   const ElementPtr dec(gst_bin_get_by_name(GST_BIN(h->element), "dec"));
   EXPECT_EQ(Counter(dec.get(), "slices-dropped"), 1U);
+}
+
+TEST(DracoDec, HoldsTagsBackThroughAFlushUntilTheFirstSliceButNoGaps) {
+  const SensorModel model = test::RoomSensor();
+  const Harness h = Codec("");
+  const CapsPtr caps(OrganisedInfo(model, 64).ToCaps());
+  gst_harness_set_src_caps(h.get(), gst_caps_ref(caps.get()));
+  for (guint64 i = 0; i < 100; ++i)
+    gst_harness_push_event(h.get(), gst_event_new_gap(i * GST_MSECOND, GST_MSECOND));
+  for (const char* title : {"first", "second"})
+    gst_harness_push_event(h.get(), gst_event_new_tag(gst_tag_list_new(
+                                        GST_TAG_TITLE, title, static_cast<void*>(nullptr))));
+  gst_harness_push_event(h.get(), gst_event_new_flush_start());
+  gst_harness_push_event(h.get(), gst_event_new_flush_stop(TRUE));
+  GstSegment segment;
+  gst_segment_init(&segment, GST_FORMAT_TIME);
+  gst_harness_push_event(h.get(), gst_event_new_segment(&segment));
+  ASSERT_EQ(gst_harness_push(h.get(), OrganisedBuffer(model, 64, {0, 0, 8, 0})), GST_FLOW_OK);
+  std::map<GstEventType, int> events;
+  while (const EventPtr event{gst_harness_try_pull_event(h.get())})
+    ++events[GST_EVENT_TYPE(event.get())];
+  EXPECT_EQ(events[GST_EVENT_GAP], 0);
+  EXPECT_EQ(events[GST_EVENT_TAG], 1);
+  EXPECT_EQ(events[GST_EVENT_SEGMENT], 1);
 }
 
 }  // namespace
