@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "draco/codec/draco_check.h"
+#include "draco/codec/point_math.h"
 #include "draco/enc_nearest.h"
 
 namespace lidar::gst {
@@ -27,24 +28,11 @@ Point PointAt(const std::uint8_t* bytes) {
   return p;
 }
 
-std::uint32_t RangeAt(const std::uint8_t* bytes) {
-  std::uint32_t range = 0;
-  std::memcpy(&range, bytes, sizeof range);
-  return range;
-}
-
 bool IsFinite(const Point& p) {
   return std::isfinite(p[0]) && std::isfinite(p[1]) && std::isfinite(p[2]);
 }
 
-double Distance(const float* a, const float* b) {
-  double sum = 0;
-  for (unsigned k = 0; k < 3; ++k) {
-    const double d = static_cast<double>(a[k]) - static_cast<double>(b[k]);
-    sum += d * d;
-  }
-  return std::sqrt(sum);
-}
+double Distance(const float* a, const float* b) { return std::sqrt(codec::SquaredDistance(a, b)); }
 
 /// Collects distances.
 class Distances {
@@ -104,8 +92,8 @@ PointErrors ErrorCheck::ComparePixels(ByteView raw) const {
   Distances distances;
   for (std::size_t at = 0; at < decoded_.size();
        at += kDecodedStep, before += input_.layout.point_step) {
-    const std::uint32_t range = RangeAt(before + range_offset);
-    const std::uint32_t decoded_range = RangeAt(&decoded_[at + 12]);
+    const std::uint32_t range = codec::RangeAt(before + range_offset);
+    const std::uint32_t decoded_range = codec::RangeAt(&decoded_[at + 12]);
     if ((range > 0) != (decoded_range > 0)) distances.AddMissing(1);
     if (range == 0 || decoded_range == 0) continue;
     const double decoded_m = 1e-3 * decoded_range;

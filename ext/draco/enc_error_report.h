@@ -4,7 +4,9 @@
 #include <gst/gst.h>
 
 #include <optional>
+#include <vector>
 
+#include "draco/codec/slice_encoder.h"
 #include "draco/enc_error_check.h"
 
 namespace lidar::gst {
@@ -17,9 +19,25 @@ struct CheckedSlice {
   bool thinned = false;    // points were left out on purpose
 };
 
-/// Posts `errors` (none: the slice cannot be decoded) as dracoenc-error-check. Where they break
-/// max_error_m the result is false, and with `warn` a warning tells as well.
-bool PostErrors(GstElement* element, const CheckedSlice& slice,
-                const std::optional<PointErrors>& errors, bool warn);
+/// Decodes every n-th slice again, and posts its real errors as dracoenc-error-check. A warning
+/// tells of the first of several that break max_error_m.
+class ErrorReport {
+ public:
+  struct Outcome {
+    PointErrors errors;
+    bool holds = false;
+  };
+
+  ErrorReport(const codec::CloudFormat& format, codec::Geometry geometry)
+      : check_(format, geometry) {}
+  /// `input` became `bytes`. None where this slice is not one of every `every` (0: of none).
+  std::optional<Outcome> OnSlice(GstElement* element, guint every, GstBuffer* input,
+                                 const std::vector<std::uint8_t>& bytes, const CheckedSlice& slice);
+
+ private:
+  ErrorCheck check_;
+  guint left_out_ = 0;  // slices until the next check
+  bool warned_ = false;
+};
 
 }  // namespace lidar::gst

@@ -6,19 +6,9 @@
 #include <limits>
 #include <numeric>
 
+#include "draco/codec/point_math.h"
+
 namespace lidar::gst {
-namespace {
-
-double SquaredDistance(const float* a, const float* b) {
-  double sum = 0;
-  for (unsigned k = 0; k < 3; ++k) {
-    const double d = static_cast<double>(a[k]) - static_cast<double>(b[k]);
-    sum += d * d;
-  }
-  return sum;
-}
-
-}  // namespace
 
 NearestPoint::NearestPoint(const std::vector<float>& xyz)
     : xyz_(xyz.data()), order_(xyz.size() / 3) {
@@ -47,7 +37,7 @@ void NearestPoint::Search(const float* point, std::size_t begin, std::size_t end
                           double* best) const {
   if (begin >= end) return;
   const std::size_t middle = begin + (end - begin) / 2;
-  *best = std::min(*best, SquaredDistance(point, At(middle)));
+  *best = std::min(*best, codec::SquaredDistance(point, At(middle)));
   const double side = static_cast<double>(point[axis]) - static_cast<double>(At(middle)[axis]);
   const unsigned next = (axis + 1) % 3;
   if (side < 0) {

@@ -5,17 +5,13 @@
 #include <cmath>
 #include <cstring>
 
+#include "draco/codec/point_math.h"
+
 namespace lidar::gst {
 namespace {
 
 constexpr double kFloatRounding = 1e-5;  // of the range
 constexpr std::size_t kLookAhead = 256;  // points, for a return
-
-std::uint32_t RangeAt(const std::uint8_t* bytes) {
-  std::uint32_t range = 0;
-  std::memcpy(&range, bytes, sizeof range);
-  return range;
-}
 
 }  // namespace
 
@@ -37,9 +33,9 @@ std::optional<RangeCheck::Contradiction> RangeCheck::Find(ByteView raw,
   for (std::size_t k = 0; k < kSamples; ++k) {
     std::size_t i = points * (2 * k + 1) / (2 * kSamples);
     const std::size_t end = std::min(points, i + kLookAhead);
-    while (i < end && RangeAt(ranges + i * layout_.point_step) == 0) ++i;
+    while (i < end && codec::RangeAt(ranges + i * layout_.point_step) == 0) ++i;
     if (i == end) continue;
-    const std::uint32_t range_mm = RangeAt(ranges + i * layout_.point_step);
+    const std::uint32_t range_mm = codec::RangeAt(ranges + i * layout_.point_step);
     const auto beam = static_cast<std::uint32_t>(i / columns);
     const auto column =
         static_cast<std::uint32_t>((first_column + i % columns) % projection_.columns());

@@ -17,7 +17,6 @@
 #include "common/buffer_map.h"
 #include "common/cloud_info.h"
 #include "common/refs.h"
-#include "draco/enc_error_check.h"
 #include "draco/enc_error_report.h"
 #include "draco/enc_model.h"
 #include "draco/enc_range_check.h"
@@ -48,14 +47,12 @@ struct Stream {
   std::unique_ptr<lidar::gst::RateLoop> loop;
   lidar::codec::EncodedSlice slice;
   std::optional<lidar::gst::RangeCheck> range_check;
-  std::optional<lidar::gst::ErrorCheck> error_check;
-  guint slices_to_check = 0;     // until the next error check
+  std::optional<lidar::gst::ErrorReport> error_report;
   std::optional<guint> scan_id;  // of the last slice
   guint scans_without_meta = 0;
   bool discont = false;
   bool warned_of_reach = false;
   bool warned_of_ranges = false;
-  bool warned_of_errors = false;
 };
 
 struct State {
@@ -132,7 +129,7 @@ gboolean SetCaps(GstLidarDracoEnc* self, GstCaps* caps) {
   stream.range_check.reset();
   if (stream.encoder->geometry() == Geometry::kRange)
     stream.range_check = lidar::gst::RangeCheck::Create(format);
-  stream.error_check.emplace(format, stream.encoder->geometry());
+  stream.error_report.emplace(format, stream.encoder->geometry());
   stream.info = *info;
   if (!stream.loop) {
     auto model = lidar::gst::LoadModel(GST_ELEMENT(self), settings);
@@ -267,28 +264,17 @@ void CheckRanges(GstLidarDracoEnc* self, lidar::ByteView raw, guint first_column
                        found->distance_m));
 }
 
-/// Decodes every n-th slice again and says what its real errors are.
 void CheckErrors(GstLidarDracoEnc* self, GstBuffer* input, const GstLidarSlice& place,
                  const lidar::gst::LoopResult& result) {
   State& state = *self->state;
   Stream& stream = state.stream;
-  const Settings settings = Snapshot(&state);
-  if (settings.error_check == 0) return;
-  if (stream.slices_to_check > 0) {
-    stream.slices_to_check = MIN(stream.slices_to_check, settings.error_check) - 1;
-    return;
-  }
-  stream.slices_to_check = settings.error_check - 1;
-  const lidar::gst::BufferMap map(input, GST_MAP_READ);
-  if (!map) return;
-  const auto errors = stream.error_check->Measure(map.view(), stream.slice.bytes);
   const lidar::gst::CheckedSlice checked{place.scan_id, place.slice_index, result.max_error_m,
                                          stream.slice.error_m, result.keep_fraction < 1};
-  const bool holds =
-      lidar::gst::PostErrors(GST_ELEMENT(self), checked, errors, !stream.warned_of_errors);
-  stream.warned_of_errors = !holds;
+  const auto found = stream.error_report->OnSlice(GST_ELEMENT(self), Snapshot(&state).error_check,
+                                                  input, stream.slice.bytes, checked);
+  if (!found) return;
   std::lock_guard lock(state.mutex);
-  state.stats.OnErrorCheck(errors.value_or(lidar::gst::PointErrors{}), holds);
+  state.stats.OnErrorCheck(found->errors, found->holds);
 }
 
 /// Loads the points of `buffer` into the encoder; false after an error message.
@@ -323,9 +309,11 @@ GstFlowReturn Chain(GstPad*, GstObject* parent, GstBuffer* buffer) {
   const auto result = EncodeLoaded(self, place);
   if (!result.skipped && result.result == SliceResult::kOutOfReach && !stream.warned_of_reach) {
     stream.warned_of_reach = true;
-    GST_ELEMENT_WARNING(self, STREAM, ENCODE,
-                        ("A cloud is too large for max-error and was left out."),
-                        ("the longest side of its box is %f m", stream.encoder->extent_m()));
+    GST_ELEMENT_WARNING(
+        self, STREAM, ENCODE,
+        ("A cloud is too large for max-error and was left out. Raise max-error, or crop "
+         "the cloud."),
+        ("the longest side of its box is %f m", stream.encoder->extent_m()));
   }
   if (result.skipped || result.result != SliceResult::kEncoded) return PushGap(self, buffer);
   CheckErrors(self, buffer, slice, result);

@@ -7,6 +7,7 @@
 #include <stdexcept>
 
 #include "draco/codec/draco_check.h"
+#include "draco/codec/point_math.h"
 #include "draco/codec/slice_decoder.h"
 #include "rate/scan_plan.h"
 
@@ -16,14 +17,7 @@ namespace {
 // The step is what counts; the bound leaves room for the rounding of floats far out.
 constexpr double kRoomForRounding = 1e-3;
 
-double Distance(const float* a, const float* b) {
-  double sum = 0;
-  for (int k = 0; k < 3; ++k) {
-    const double d = static_cast<double>(a[k]) - static_cast<double>(b[k]);
-    sum += d * d;
-  }
-  return std::sqrt(sum);
-}
+double Distance(const float* a, const float* b) { return std::sqrt(codec::SquaredDistance(a, b)); }
 
 }  // namespace
 
