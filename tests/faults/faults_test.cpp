@@ -276,18 +276,31 @@ TEST_F(Faults, AStarvedSenderRecovers) {
   ExpectBooksAgree();
 }
 
-TEST_F(Faults, AThousandCyclesOfTheSenderLeaveNothingBehind) {
-  StartReceiver();
-  sender_.emplace(&sent_, link_.port());
+/// A thousand times from NULL to PLAYING and back.
+void ExpectCyclesToLeaveNothing(Pipeline& pipeline) {
   std::uint64_t base = 0;
   for (int i = 0; i < 1'000; ++i) {
-    sender_->pipeline().SetState(GST_STATE_PLAYING);
-    sender_->pipeline().SetState(GST_STATE_NULL);
+    pipeline.SetState(GST_STATE_PLAYING);
+    pipeline.SetState(GST_STATE_NULL);
     if (i == 100) base = ResidentBytes();
   }
   EXPECT_LT(ResidentBytes(), base + (20U << 20));
-  sender_->pipeline().SetState(GST_STATE_PLAYING);
+  pipeline.SetState(GST_STATE_PLAYING);
+}
+
+TEST_F(Faults, AThousandCyclesOfTheSenderLeaveNothingBehind) {
+  StartReceiver();
+  sender_.emplace(&sent_, link_.port());
+  ExpectCyclesToLeaveNothing(sender_->pipeline());
   ExpectRecovery("1000 state cycles of the sender", seconds(5));
+}
+
+TEST_F(Faults, AThousandCyclesOfTheReceiverLeaveNothingBehind) {
+  Start();
+  ExpectCyclesToLeaveNothing(receiver_->pipeline());
+  ExpectRecovery("1000 state cycles of the receiver", seconds(5));
+  EXPECT_EQ(receiver_->foreign(), 0U);
+  EXPECT_EQ(sender_->pipeline().Error() + receiver_->pipeline().Error(), "");
 }
 
 TEST(FaultsOfFiles, AFullDiskIsAnErrorThatSaysSo) {
