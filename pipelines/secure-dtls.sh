@@ -21,6 +21,8 @@ certificate() {
 }
 for name in robot edge stranger; do certificate $name; done
 
+fail() { echo "FAILED: $*" >&2; exit 1; }
+
 media=media=application,clock-rate=90000,encoding-name=X-LIDAR-DRACO,payload=96
 # The first capssetter gives dtlssrtpdec buffers of its own, as srtpdec works in place; the second says what the RTP holds.
 receive() {
@@ -53,10 +55,10 @@ lost=$(count "$folder/received" slices-lost)
 reports=$(count "$folder/sent" feedback-accepted)
 echo "over DTLS-SRTP: $slices slices, $lost lost, $reports reports of feedback; $(grep -o 'ecn-state=(string)[a-z-]*' "$folder/sent")"
 # The handshake takes a second.
-[ "$slices" -gt $((seconds * 60 - 60)) ]
-[ "$lost" = 0 ]
-[ "$reports" -gt $((seconds * 20)) ]
-grep -q 'ecn-state=(string)capable' "$folder/sent"
+[ "$slices" -gt $((seconds * 60 - 60)) ] || fail "too few slices came"
+[ "$lost" = 0 ] || fail "slices were lost"
+[ "$reports" -gt $((seconds * 20)) ] || fail "too few reports came back"
+grep -q 'ecn-state=(string)capable' "$folder/sent" || fail "ECN marks do not come through"
 
 receive >"$folder/refused" 2>&1 & receiver=$!
 sleep 1
@@ -64,4 +66,4 @@ send stranger 2 >/dev/null 2>&1 || true
 status=0
 wait $receiver || status=$?
 echo "a stranger's certificate: $(cat "$folder/refused")"
-[ $status = 3 ]
+[ $status = 3 ] || fail "a stranger was not refused"

@@ -23,4 +23,4 @@ gst-launch-1.0 -q lidartestsrc is-live=true num-buffers=$((seconds * 80)) ! drac
 sleep 1
 clouds=$(grep -c 'chain.*identity' "$log" || true)
 echo "sent $((seconds * 80)) slices over SRTP, $clouds came out"
-[ "$clouds" -gt $((seconds * 40)) ]
+[ "$clouds" -gt $((seconds * 40)) ] || { echo "FAILED: too few clouds came out" >&2; exit 1; }

@@ -284,13 +284,7 @@ static void ChildProxyInit(gpointer iface, gpointer) {
 static void SetPropertyVfunc(GObject* o, guint id, const GValue* v, GParamSpec* spec) {
   auto* self = GST_LIDAR_SCREAM_SINK(o);
   if (id >= kPropSrtp) {
-    std::unique_lock lock(self->state->mutex);
-    const bool key = SetSrtpProperty(&self->state->settings.srtp, id - kPropSrtp, v);
-    if (!key || !self->state->socket) return;
-    const SrtpSettings settings = self->state->settings.srtp;
-    const std::shared_ptr<SrtpLayer> layer = self->state->srtp;
-    lock.unlock();
-    ChangeSrtpKey(GST_ELEMENT(self), layer.get(), settings);
+    SetSrtpProperty(GST_ELEMENT(self), *self->state, id - kPropSrtp, v);
     return;
   }
   {

@@ -10,8 +10,8 @@ namespace {
 constexpr std::size_t kMaxKeys = 3;
 constexpr gint64 kStragglersUs = 10 * G_USEC_PER_SEC;
 constexpr std::size_t kMaxStreams = 1'024;
-// Losses long enough to lose count of a rollover look like this.
-constexpr unsigned kFailuresUntilLost = 500;
+// Losses long enough to lose count of a rollover look like this; a sender without feedback is slow.
+constexpr unsigned kFailuresUntilLost = 20;
 constexpr gint64 kSilenceUntilLostUs = 2 * G_USEC_PER_SEC;
 constexpr std::uint32_t kMaxRollover = 100'000;  // months
 constexpr unsigned kFailuresUntilWarning = 20;
@@ -21,15 +21,6 @@ constexpr unsigned kTriedUntilCleared = 64;
 
 SrtpInput* InputOf(GstPad* pad) {
   return static_cast<SrtpInput*>(gst_pad_get_element_private(pad));
-}
-
-/// Where RTP and RTCP have the SSRC of the sender; 0 where there is none.
-std::uint32_t SsrcOf(GstBuffer* datagram) {
-  guint8 head[12] = {};
-  const gsize size = gst_buffer_extract(datagram, 0, head, sizeof head);
-  const bool rtcp = head[1] >= 192 && head[1] <= 223;
-  const gsize at = rtcp ? 4 : 8;
-  return size >= at + 4 ? GST_READ_UINT32_BE(head + at) : 0;
 }
 
 }  // namespace
@@ -87,10 +78,12 @@ bool SrtpInput::Link(GstPad* socket, GstPad* target) {
 }
 
 bool SrtpInput::AddKey(const SrtpKey& key) {
-  Key added{SrtpDecoder::Create(bin_, policy_, key, exit_.get()),
+  Key added{0, SrtpDecoder::Create(bin_, policy_, key, exit_.get()),
             SrtpDecoder::Create(bin_, policy_, key, nullptr)};
   if (!added.decoder || !added.trial) return false;
   std::lock_guard lock(mutex_);
+  added.serial = ++serial_;
+  if (serial_ > 1) ++waiting_;
   added_.push_back(std::move(added));
   return true;
 }
@@ -105,27 +98,41 @@ void SrtpInput::Reset() {
   }
 }
 
+SrtpInput::Head SrtpInput::HeadOf(GstBuffer* datagram) {
+  guint8 bytes[12] = {};
+  const gsize size = gst_buffer_extract(datagram, 0, bytes, sizeof bytes);
+  Head head;
+  head.rtcp = bytes[1] >= 192 && bytes[1] <= 223;
+  head.sequence = GST_READ_UINT16_BE(bytes + 2);
+  const gsize at = head.rtcp ? 4 : 8;
+  if (size >= at + 4) head.ssrc = GST_READ_UINT32_BE(bytes + at);
+  return head;
+}
+
 GstFlowReturn SrtpInput::OnDatagram(GstBuffer* datagram) {
   UpdateKeys();
   ++received_;
-  const std::uint32_t ssrc = SsrcOf(datagram);
-  const auto found = streams_.find(ssrc);
-  const bool known = found != streams_.end() && found->second.known;
+  const Head head = HeadOf(datagram);
+  const auto found = streams_.find(head.ssrc);
+  Stream* known = found != streams_.end() && found->second.known ? &found->second : nullptr;
   GstFlowReturn flow = GST_FLOW_OK;
-  if (known ? DecodeKnown(datagram, ssrc, &flow) : TryStranger(datagram, ssrc, &flow)) return flow;
-  if (flow == GST_FLOW_FLUSHING) return flow;
+  if (known != nullptr) {
+    if (DecodeKnown(datagram, head, &flow) || flow == GST_FLOW_FLUSHING) return flow;
+    ++known->failures;
+  }
+  if (known == nullptr || IsLost(*known))
+    if (TryStranger(datagram, head, &flow) || flow == GST_FLOW_FLUSHING) return flow;
   ++refused_;
-  if (known) OnRefused(&found->second);
-  if (!known && refused_ >= kFailuresUntilWarning) Warn();
+  if (known == nullptr && refused_ >= kFailuresUntilWarning) Warn();
   return GST_FLOW_OK;
 }
 
-bool SrtpInput::DecodeKnown(GstBuffer* datagram, std::uint32_t ssrc, GstFlowReturn* flow) {
+bool SrtpInput::DecodeKnown(GstBuffer* datagram, const Head& head, GstFlowReturn* flow) {
   for (std::size_t i = 0; i < keys_.size(); ++i) {
     // The key that the last packet had comes first; the others fail once for each packet.
     const std::size_t n = (in_use_ + i) % keys_.size();
     if (keys_[n].decoder->Decode(datagram, flow)) {
-      OnPassed(ssrc, n);
+      OnPassed(head, n, 0);
       return true;
     }
     if (*flow == GST_FLOW_FLUSHING) return false;
@@ -133,35 +140,48 @@ bool SrtpInput::DecodeKnown(GstBuffer* datagram, std::uint32_t ssrc, GstFlowRetu
   return false;
 }
 
-/// RTP does not carry its rollover counter: each packet of a stranger is tried with the next one.
-bool SrtpInput::TryStranger(GstBuffer* datagram, std::uint32_t ssrc, GstFlowReturn* flow) {
+/// RTP does not carry its rollover counter, so it is tried. One that is lost is ahead of where it
+/// was: what came before is a recording.
+bool SrtpInput::TryStranger(GstBuffer* datagram, const Head& head, GstFlowReturn* flow) {
   if (!allowance_.Take(g_get_monotonic_time())) return false;
-  if (++tried_ >= kTriedUntilCleared) {
-    for (const Key& key : keys_) key.trial->Clear();
-    tried_ = 0;
-  }
-  Stream& stream = StreamOf(ssrc);
+  Stream& stream = StreamOf(head.ssrc);
+  const std::uint32_t guess = stream.search.Next();
   for (std::size_t i = 0; i < keys_.size(); ++i) {
     const std::size_t n = (in_use_ + i) % keys_.size();
-    GstFlowReturn trial = GST_FLOW_OK;
-    keys_[n].trial->Restart(ssrc, stream.rollover);
-    if (!keys_[n].trial->Decode(datagram, &trial)) continue;
-    // Decoded again where its streams are, so that it is no replay once and never again.
-    for (const Key& key : keys_) key.decoder->Restart(ssrc, 0);
-    keys_[n].decoder->Restart(ssrc, stream.rollover);
-    if (!keys_[n].decoder->Decode(datagram, flow)) return false;
-    OnPassed(ssrc, n);
-    return true;
+    const bool behind = stream.known && keys_[n].serial <= stream.key;
+    if (stream.known && keys_[n].serial < stream.key) continue;
+    const std::uint32_t base = behind ? stream.rollover + 1 : 0;
+    for (const std::uint32_t rollover : {base, base + guess}) {
+      if (!Fits(keys_[n], datagram, head.ssrc, rollover)) continue;
+      // Decoded again where its streams are, so that it is no replay once and never again.
+      keys_[n].decoder->Restart(head.ssrc, rollover);
+      if (!keys_[n].decoder->Decode(datagram, flow)) return false;
+      OnPassed(head, n, rollover);
+      return true;
+    }
   }
-  ++stream.failures;
-  stream.rollover = (stream.rollover + 1) % kMaxRollover;
+  if (!stream.known) ++stream.failures;
   return false;
+}
+
+bool SrtpInput::Fits(const Key& key, GstBuffer* datagram, std::uint32_t ssrc,
+                     std::uint32_t rollover) {
+  if (++tried_ >= kTriedUntilCleared) {
+    for (const Key& k : keys_) k.trial->Clear();
+    tried_ = 0;
+  }
+  GstFlowReturn flow = GST_FLOW_OK;
+  key.trial->Restart(ssrc, rollover);
+  return key.trial->Decode(datagram, &flow);
 }
 
 void SrtpInput::UpdateKeys() {
   std::size_t drop = 0;
   {
     std::lock_guard lock(mutex_);
+    // Whose key we lacked may be anywhere with it.
+    if (!added_.empty())
+      for (auto& [ssrc, stream] : streams_) stream.search = {};
     for (Key& key : added_) keys_.push_back(std::move(key));
     added_.clear();
   }
@@ -187,26 +207,47 @@ SrtpInput::Stream& SrtpInput::StreamOf(std::uint32_t ssrc) {
   return streams_[ssrc];
 }
 
-void SrtpInput::OnPassed(std::uint32_t ssrc, std::size_t key) {
+/// `rollover` is that of a stream or a key that was not known before.
+void SrtpInput::OnPassed(const Head& head, std::size_t key, std::uint32_t rollover) {
   in_use_ = key;
-  Stream& stream = StreamOf(ssrc);
+  Stream& stream = StreamOf(head.ssrc);
+  const std::uint64_t serial = keys_[key].serial;
+  if (!stream.known || serial > stream.key || rollover > stream.rollover) {
+    stream.rollover = rollover;
+    stream.sequence = head.sequence;
+    stream.key = serial;
+  } else if (serial == stream.key && !head.rtcp &&
+             static_cast<std::int16_t>(head.sequence - stream.sequence) > 0) {
+    if (head.sequence < stream.sequence) ++stream.rollover;
+    stream.sequence = head.sequence;
+  }
   stream.known = true;
   stream.failures = 0;
   stream.passed_at = g_get_monotonic_time();
+  stream.search = {};
   if (key <= newest_used_) return;
+  waiting_ -= std::min<std::size_t>(waiting_, key - newest_used_);
   newest_used_ = key;
   forget_old_at_ = g_get_monotonic_time() + kStragglersUs;
   ++key_changes_;
   on_new_key_(keys_[key].decoder->key());
 }
 
-/// A stream of which nothing passed for long may have rolled over meanwhile. Not one that still
-/// passes: who forges its packets must not make us forget what came.
-void SrtpInput::OnRefused(Stream* stream) {
-  if (++stream->failures < kFailuresUntilLost ||
-      g_get_monotonic_time() - stream->passed_at < kSilenceUntilLostUs)
-    return;
-  *stream = {};
+/// Nothing of it passed for so long that it may have rolled over meanwhile. Not one that still
+/// passes, whatever a forger adds.
+bool SrtpInput::IsLost(const Stream& stream) {
+  return stream.failures >= kFailuresUntilLost &&
+         g_get_monotonic_time() - stream.passed_at >= kSilenceUntilLostUs;
+}
+
+std::uint32_t SrtpInput::Search::Next() {
+  if (left_ == 0) {
+    round_ = std::min(4 * round_, kMaxRollover);
+    left_ = round_;
+    at_ = g_random_int() % round_;
+  }
+  --left_;
+  return 1 + at_++ % round_;
 }
 
 void SrtpInput::Warn() {

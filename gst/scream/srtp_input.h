@@ -39,18 +39,41 @@ class SrtpInput {
 
   /// Takes the two pads, that are not linked. False where they do not fit.
   bool Link(GstPad* socket, GstPad* target);
-  /// From any thread. False where the srtp plugin is missing.
+  /// From any thread. False where the srtp plugin is missing. Of four keys the oldest goes.
   bool AddKey(const SrtpKey& key);
+  /// Keys that no packet has fitted yet, newer than the one in use.
+  std::size_t waiting_keys() const { return waiting_; }
   SrtpCounts counts() const;
 
  private:
+  /// What a datagram says of itself.
+  struct Head {
+    bool rtcp = false;
+    std::uint16_t sequence = 0;  // of RTP
+    std::uint32_t ssrc = 0;
+  };
+  /// Numbers from 1 on, to be tried: small ones again and again, in rounds of growing length that
+  /// begin anywhere, so that nobody who spends some of them can keep one from coming up.
+  class Search {
+   public:
+    std::uint32_t Next();
+
+   private:
+    std::uint32_t round_ = 1;
+    std::uint32_t left_ = 0;
+    std::uint32_t at_ = 0;
+  };
   struct Stream {
-    bool known = false;          // a packet of it passed
-    std::uint32_t rollover = 0;  // the guess in use while not known
-    unsigned failures = 0;       // since the last packet that passed
-    gint64 passed_at = 0;        // monotonic time [us]
+    bool known = false;     // a packet of it passed; then:
+    std::uint64_t key = 0;  // serial number of the newest key that fitted
+    std::uint32_t rollover = 0;
+    std::uint16_t sequence = 0;
+    unsigned failures = 0;  // since the last packet that passed
+    gint64 passed_at = 0;   // monotonic time [us]
+    Search search;
   };
   struct Key {
+    std::uint64_t serial = 0;
     std::unique_ptr<SrtpDecoder> decoder;  // of streams that are known
     std::unique_ptr<SrtpDecoder> trial;    // of others
   };
@@ -67,11 +90,13 @@ class SrtpInput {
   void InstallEntry();
   void InstallExit();
   GstFlowReturn OnDatagram(GstBuffer* datagram);
-  bool DecodeKnown(GstBuffer* datagram, std::uint32_t ssrc, GstFlowReturn* flow);
-  bool TryStranger(GstBuffer* datagram, std::uint32_t ssrc, GstFlowReturn* flow);
+  static Head HeadOf(GstBuffer* datagram);
+  bool DecodeKnown(GstBuffer* datagram, const Head& head, GstFlowReturn* flow);
+  bool TryStranger(GstBuffer* datagram, const Head& head, GstFlowReturn* flow);
+  bool Fits(const Key& key, GstBuffer* datagram, std::uint32_t ssrc, std::uint32_t rollover);
   void UpdateKeys();
-  void OnPassed(std::uint32_t ssrc, std::size_t key);
-  void OnRefused(Stream* stream);
+  void OnPassed(const Head& head, std::size_t key, std::uint32_t rollover);
+  static bool IsLost(const Stream& stream);
   void Warn();
   Stream& StreamOf(std::uint32_t ssrc);
   void Reset();
@@ -82,8 +107,9 @@ class SrtpInput {
   PadPtr entry_;
   PadPtr exit_;
 
-  std::mutex mutex_;  // guards added_
+  std::mutex mutex_;  // guards added_ and serial_
   std::vector<Key> added_;
+  std::uint64_t serial_ = 0;
 
   // Of the streaming thread.
   std::vector<Key> keys_;   // oldest first
@@ -95,6 +121,7 @@ class SrtpInput {
   unsigned tried_ = 0;  // strangers, since the trial decoders were cleared
   bool warned_ = false;
 
+  std::atomic<std::size_t> waiting_{0};
   std::atomic<std::uint64_t> received_{0};
   std::atomic<std::uint64_t> refused_{0};
   std::atomic<std::uint64_t> key_changes_{0};

@@ -7,6 +7,7 @@ namespace lidar::gst {
 namespace {
 
 constexpr std::size_t kRememberedKeys = 1'024;
+constexpr std::size_t kMaxWaitingKeys = 2;
 
 PadPtr PadOf(GstElement* element, const char* name) {
   return PadPtr(gst_element_get_static_pad(element, name));
@@ -72,6 +73,10 @@ bool SrtpLayer::ChangeKey(const std::string& source, std::string* error) {
     // The packet index begins at 0 with every key: one that comes back would encrypt twice alike.
     if (std::find(digests_.begin(), digests_.end(), digest) != digests_.end()) {
       *error = "this key was in use before; a key must be new";
+      return false;
+    }
+    if (!links_.sends_media && input_->waiting_keys() >= kMaxWaitingKeys) {
+      *error = "two new keys wait already for the sender to use them";
       return false;
     }
     digests_.push_back(digest);

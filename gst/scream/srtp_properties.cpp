@@ -28,11 +28,13 @@ bool StartSrtp(const SrtpSettings& settings, const SrtpLinks& links,
   return false;
 }
 
-void ChangeSrtpKey(GstElement* bin, SrtpLayer* layer, const SrtpSettings& settings) {
+bool ChangeSrtpKey(GstElement* bin, SrtpLayer* layer, const SrtpSettings& settings) {
   std::string error = "SRTP begins and ends with a start from NULL";
-  if (layer != nullptr && !settings.key.empty() && layer->ChangeKey(settings.key, &error)) return;
+  if (layer != nullptr && !settings.key.empty() && layer->ChangeKey(settings.key, &error))
+    return true;
   GST_ELEMENT_WARNING(bin, RESOURCE, SETTINGS, ("The SRTP key stays as it is: %s.", error.c_str()),
                       (nullptr));
+  return false;
 }
 
 void InstallSrtpProperties(GObjectClass* object, guint first_id) {
@@ -52,7 +54,7 @@ void InstallSrtpProperties(GObjectClass* object, guint first_id) {
               G_PARAM_READWRITE | GST_PARAM_MUTABLE_READY);
 }
 
-bool SetSrtpProperty(SrtpSettings* settings, guint index, const GValue* value) {
+bool SetSrtpField(SrtpSettings* settings, guint index, const GValue* value) {
   const gchar* text = g_value_get_string(value);
   std::string* fields[] = {&settings->key, &settings->cipher, &settings->auth};
   *fields[index] = text != nullptr ? text : "";

@@ -74,6 +74,10 @@ void Pipeline::SetState(GstState state) {
 
 bool Pipeline::Finish(milliseconds limit) {
   gst_element_send_event(get(), gst_event_new_eos());
+  return AwaitEnd(limit);
+}
+
+bool Pipeline::AwaitEnd(milliseconds limit) {
   GstBus* bus = gst_element_get_bus(get());
   const gst::MessagePtr message(gst_bus_timed_pop_filtered(
       bus, static_cast<GstClockTime>(limit.count()) * GST_MSECOND, GST_MESSAGE_EOS));

@@ -41,6 +41,7 @@ class Pipeline {
   void SetState(GstState state);
   /// Sends EOS and waits for it; false if it does not come in time.
   bool Finish(std::chrono::milliseconds limit);
+  bool AwaitEnd(std::chrono::milliseconds limit);
   /// A number of the property `stats` of an element; all bits set where it has none.
   std::uint64_t Stat(const char* element, const char* name) const;
   gst::ElementPtr Child(const char* name) const;

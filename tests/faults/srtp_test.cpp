@@ -161,6 +161,15 @@ void SetKey(Pipeline& pipeline, const std::string& key) {
   g_object_set(pipeline.Child("net").get(), "srtp-key", key.c_str(), nullptr);
 }
 
+/// Until the receiver has refused so many packets.
+void WaitForRefused(Path& path, std::uint64_t packets) {
+  for (int i = 0; i < 3'000; ++i) {
+    if (path.receiver.pipeline().Stat("net", "srtp-refused") >= packets) return;
+    std::this_thread::sleep_for(milliseconds(10));
+  }
+  ADD_FAILURE() << "fewer than " << packets << " packets were refused within 30 s";
+}
+
 TEST(Srtp, RollsOverWithoutALoss) {
   Path path(Key(30), Key(30));
   g_object_set(path.sender.pipeline().Child("pay").get(), "seqnum-offset", 65'450, nullptr);
@@ -243,6 +252,70 @@ TEST(Srtp, AKeyThatIsNoneOrWasUsedBeforeChangesNothing) {
   ExpectNothingLost(&path);
 }
 
+TEST(Srtp, FindsAStreamWhoseKeyItGetsLate) {
+  Path path(Key(30), Key(30));
+  g_object_set(path.sender.pipeline().Child("pay").get(), "seqnum-offset", 65'436, nullptr);
+  path.Play();
+  ASSERT_NE(path.receiver.NextCloud(seconds(5)), milliseconds::max());
+  SetKey(path.sender.pipeline(), std::string(60, '6'));
+  WaitForRefused(path, 150);  // behind the wrap: the rollover counter of the new key stands at 1
+  SetKey(path.receiver.pipeline(), std::string(60, '6'));
+  EXPECT_LT(path.receiver.NextCloud(seconds(8)), seconds(3));
+}
+
+TEST(Srtp, IsNotDelayedByForgedPacketsBeforeTheFirst) {
+  Path path(Key(30), Key(30));
+  Fault forged;
+  forged.damage = 1;
+  path.link.Set(forged);
+  path.Play();
+  WaitForRefused(path, 200);
+  path.link.Set({});
+  EXPECT_LT(path.receiver.NextCloud(seconds(8)), seconds(1));
+}
+
+TEST(Srtp, ForgetsNothingForForgedPackets) {
+  Path path(Key(30), Key(30));
+  g_object_set(path.sender.pipeline().Child("pay").get(), "seqnum-offset", 65'450, nullptr);
+  path.Play();
+  ASSERT_NE(path.receiver.NextCloud(seconds(5)), milliseconds::max());
+  std::this_thread::sleep_for(seconds(1));
+  Fault forged;
+  forged.damage = 1;
+  path.link.Set(forged);
+  WaitForRefused(path, 100);
+  std::this_thread::sleep_for(seconds(2));
+  path.link.Set({});
+  EXPECT_LT(path.receiver.NextCloud(seconds(8)), seconds(1));
+  // What was received is still known.
+  const auto before = path.receiver.pipeline().Stat("net", "srtp-refused");
+  Fault twice;
+  twice.duplicate = 1;
+  path.link.Set(twice);
+  WaitForRefused(path, before + 50);
+  EXPECT_EQ(path.receiver.pipeline().Stat("depay", "packets-duplicate"), 0U);
+}
+
+TEST(Srtp, KeepsItsKeyWhereOneIsRefused) {
+  Path path(Key(30), Key(30));
+  path.Play();
+  ASSERT_NE(path.receiver.NextCloud(seconds(5)), milliseconds::max());
+  SetKey(path.sender.pipeline(), "c0ffee");
+  path.sender.pipeline().SetState(GST_STATE_NULL);
+  path.sender.pipeline().SetState(GST_STATE_PLAYING);
+  EXPECT_NE(path.receiver.NextCloud(seconds(5)), milliseconds::max());
+  // Two keys may wait for the sender; with a third the one in use would have to go.
+  for (const char digit : {'6', '7'}) SetKey(path.receiver.pipeline(), std::string(60, digit));
+  EXPECT_EQ(path.receiver.pipeline().Messages(GST_MESSAGE_WARNING), 0U);
+  SetKey(path.receiver.pipeline(), std::string(60, '8'));
+  EXPECT_EQ(path.receiver.pipeline().Messages(GST_MESSAGE_WARNING), 1U);
+  EXPECT_NE(path.receiver.NextCloud(seconds(5)), milliseconds::max());
+  SetKey(path.sender.pipeline(), std::string(60, '7'));
+  std::this_thread::sleep_for(milliseconds(300));
+  EXPECT_NE(path.receiver.NextCloud(seconds(5)), milliseconds::max());
+  EXPECT_EQ(path.receiver.pipeline().Stat("net", "srtp-refused"), 0U);
+}
+
 TEST(Srtp, ForgetsTheOldKeyAfterTheStragglers) {
   Path path(Key(30), Key(30));
   path.Play();
@@ -295,7 +368,8 @@ TEST(Srtp, CarriesSeveralStreamsThroughAChangeOfKey) {
   std::this_thread::sleep_for(seconds(1));
   SetKey(receiver, std::string(60, '6'));
   SetKey(sender, std::string(60, '6'));
-  std::this_thread::sleep_for(milliseconds(2'800));
+  EXPECT_TRUE(sender.AwaitEnd(seconds(30)));  // after 240 buffers
+  std::this_thread::sleep_for(milliseconds(300));
   for (const std::string n : {"1", "2"}) {
     EXPECT_EQ(sender.Stat(("pay" + n).c_str(), "slices-sent"), 240U);
     EXPECT_EQ(receiver.Stat(("depay" + n).c_str(), "slices-received"), 240U);
