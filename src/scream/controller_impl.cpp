@@ -17,8 +17,9 @@ Controller::Impl::Impl(const Parameters& parameters) : p(parameters) {}
 
 /// What was on the way while the caller stood still tells nothing about the path.
 Time Controller::Impl::Advance(Time now) {
+  const Duration silence = now - now_;  // of the caller: with data in flight it has to come often
   now_ = std::max(now_, now);
-  if (now_ - last_housekeeping_ > kHousekeeping + kStandstill) {
+  if (silence > kHousekeeping + kStandstill && history_.bytes_in_flight().bytes() > 0) {
     history_.Expire(now_);
     last_feedback_ = last_housekeeping_ = now_;
   }

@@ -41,6 +41,19 @@ TEST(Controller, ClosesTheWindowWithoutFeedbackButKeepsAMinimumRate) {
   EXPECT_EQ(longest, Duration(160ms));  // 1000 bytes at RATE_PACE_MIN
 }
 
+TEST(Controller, TakesOnlyItsCallersSilenceForAStandstill) {
+  Controller c{Parameters()};
+  const StreamId id = c.AddStream({1, Mbps(0.1), Mbps(1), Mbps(10)});
+  c.OnQueued(kStart, id, {1, DataSize::Bytes(1000), true, 0});
+  c.OnSent(kStart, id, {1, 0, DataSize::Bytes(1000), Ecn::kEct1});
+  // The thread that would call OnTimer() is stuck; others go on.
+  Time now = kStart;
+  for (int i = 0; i < 100; ++i) c.OnQueued(now += 12ms, id, {1, DataSize::Bytes(1000), true, 0});
+  EXPECT_EQ(c.statistics(now).bytes_in_flight.bytes(), 1000);
+  c.OnQueued(now += 1s, id, {1, DataSize::Bytes(1000), true, 0});
+  EXPECT_EQ(c.statistics(now).bytes_in_flight.bytes(), 0);
+}
+
 TEST(Controller, FindsTheStreamOfASource) {
   Controller c{Parameters()};
   const StreamId a = c.AddStream({}), b = c.AddStream({});
