@@ -23,7 +23,8 @@ class FeedbackPeer {
       return false;
     }
     const bool known = peer_ != nullptr;
-    if (known && now - last_ < kSilence) return false;
+    const Duration silence = now - last_;  // negative where the clock was set back
+    if (known && silence >= Duration{0} && silence < kSilence) return false;
     peer_.reset(G_SOCKET_ADDRESS(g_object_ref(from)));
     last_ = now;
     return known;

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Several streams behind screamrx: each SSRC leaves by a pad of its own, with caps from pt-map.
+#include <utility>
+
 #include "scream/rx_private.h"
 
 #define GST_CAT_DEFAULT gst_lidar_scream_rx_debug
@@ -96,14 +98,24 @@ bool HasPtMap(GstLidarScreamRx* self) {
   return self->state->pt_map != nullptr;
 }
 
+/// Of an SSRC for which there is no pad left.
+static GstFlowReturn Refuse(GstLidarScreamRx* self, GstBuffer* buffer) {
+  RxState& state = *self->state;
+  gst_buffer_unref(buffer);
+  if (!std::exchange(state.routes_full, true)) {
+    GST_ELEMENT_WARNING(self, STREAM, DEMUX, ("More than %zu streams.", kMaxRoutes),
+                        ("Further SSRCs are dropped until the element is started anew."));
+  }
+  RxLock lock(state.mutex);
+  ++state.foreign;
+  return GST_FLOW_OK;
+}
+
 GstFlowReturn Demux(GstLidarScreamRx* self, const RtpHeader& header, GstBuffer* buffer) {
   RxState& state = *self->state;
   auto found = state.routes.find(header.ssrc);
   if (found == state.routes.end() && state.routes.size() >= kMaxRoutes) {
-    gst_buffer_unref(buffer);
-    RxLock lock(state.mutex);
-    ++state.foreign;
-    return GST_FLOW_OK;
+    return Refuse(self, buffer);
   }
   if (found == state.routes.end())
     found = state.routes.emplace(header.ssrc, Route(self, header)).first;
@@ -131,7 +143,7 @@ void RemoveRoutes(GstLidarScreamRx* self) {
     gst_element_remove_pad(GST_ELEMENT(self), pad);
   }
   state.routes.clear();
-  state.src_taken = state.src_started = false;
+  state.src_taken = state.src_started = state.routes_full = false;
 }
 
 }  // namespace lidar::gst

@@ -66,6 +66,7 @@ struct RxState {
   std::map<guint32, GstPad*> routes;  // SSRC to the pad it leaves by, where there is a pt-map
   bool src_taken = false;             // by a stream of pt-map
   bool src_started = false;           // it has had its caps
+  bool routes_full = false;           // and a warning said so
   GstFlowCombiner* combiner = nullptr;
 };
 

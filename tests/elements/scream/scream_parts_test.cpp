@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "rtp_support.h"
+#include "scream/feedback_peer.h"
 #include "scream/peer_latch.h"
 #include "scream/rtp_packet.h"
 #include "scream/tx_settings.h"
@@ -131,6 +132,16 @@ TEST_F(Latch, PacketsWithoutAddressBelongToAnyPeer) {
   EXPECT_EQ(latch.OnPacket(now, robot.get(), 1, 1), kAccepted);
   EXPECT_EQ(latch.peer(), robot.get());
   EXPECT_EQ(latch.OnPacket(now, thief.get(), 1, 2), kForeign);
+}
+
+TEST_F(Latch, FeedbackFromAnotherAddressIsANewPathOnceTheOldOneIsSilent) {
+  FeedbackPeer peer;
+  EXPECT_FALSE(peer.OnFeedback(now, robot.get()));
+  EXPECT_FALSE(peer.OnFeedback(now + 400ms, thief.get()));
+  EXPECT_FALSE(peer.OnFeedback(now + 400ms, robot.get()));
+  EXPECT_TRUE(peer.OnFeedback(now + 1s, thief.get()));
+  EXPECT_FALSE(peer.OnFeedback(now + 1s, nullptr));
+  EXPECT_TRUE(peer.OnFeedback(now - 1h, robot.get()));  // the clock was set back
 }
 
 struct Switch {
