@@ -77,6 +77,7 @@ void Receiver::Build() {
     GstElement* back = AddElement(bin, "ecnudpsink", "feedback");
     g_object_set(back, "host", o.feedback.substr(0, colon).c_str(), "port",
                  std::stoi(o.feedback.substr(colon + 1)), "sync", FALSE, "async", FALSE, nullptr);
+    GST_OBJECT_FLAGS(back) &= ~guint32{GST_ELEMENT_FLAG_SINK};  // the run ends with the media
     LinkPads(source, "src", rx, "sink");
     LinkPads(rx, "src", sink, "sink");
     LinkPads(rx, "rtcp_src", back, "sink");

@@ -91,7 +91,7 @@ void Sender::Build() {
   sink_ = AddElement(pipeline_.get(), "screamsink", "sink");
   const BenchTxOptions& o = options_.tx;
   g_object_set(sink_, "host", o.host.c_str(), "port", static_cast<gint>(o.port), "bind-port",
-               static_cast<gint>(o.bind_port), nullptr);
+               static_cast<gint>(o.bind_port), "strict-feedback", FALSE, nullptr);
   if (!o.bind_address.empty()) g_object_set(sink_, "bind-address", o.bind_address.c_str(), nullptr);
   gst_util_set_object_arg(G_OBJECT(sink_), "ecn-mode", o.ecn.c_str());
   const gst::PadPtr to(AddSinkPad(sink_));

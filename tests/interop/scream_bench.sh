@@ -1,0 +1,39 @@
+#!/bin/bash
+# SPDX-License-Identifier: LGPL-2.1-or-later
+# Runs scream-bench against itself: IPv4 and IPv6, feedback to the media's source and to a port that is named; either end
+# stops on SIGINT with its summary.
+#
+#   tests/interop/scream_bench.sh BUILD PORT
+set -euo pipefail
+build=$1 port=$2
+folder=$(mktemp -d)
+trap 'kill $(jobs -p) 2>/dev/null || true; rm -rf "$folder"' EXIT
+
+check() {  # name, address, options of tx, options of rx, who gets the first SIGINT
+  local bench=$build/src/tools/scream-bench
+  "$bench" rx --address "$2" --port "$port" --summary "$folder/rx.json" --log "$folder/rx.csv" $4 >"$folder/rx.txt" &
+  local rx=$!
+  sleep 1
+  "$bench" tx --host "$2" --port "$port" --init-bitrate 1M --max-bitrate 3M --summary "$folder/tx.json" --log "$folder/tx.csv" $3 >"$folder/tx.txt" &
+  local tx=$!
+  sleep 4
+  if [ "$5" = receiver ]; then kill -INT $rx; wait $rx; fi
+  kill -INT $tx; wait $tx
+  if [ "$5" = sender ]; then wait $rx; fi  # ends with the sender
+  python3 - "$1" "$folder" <<'PYTHON'
+import csv, json, sys
+name, folder = sys.argv[1:]
+tx, rx = (json.load(open(f"{folder}/{end}.json")) for end in ("tx", "rx"))
+lines = [len(open(f"{folder}/{end}.txt").read().splitlines()) for end in ("tx", "rx")]
+rows = list(csv.DictReader(open(f"{folder}/tx.csv")))
+print(name, tx["mean_rate_bps"], rx["frames"], lines, len(rows))
+assert rx["frames"] >= 50 and rx["packets"] >= 0.9 * tx["packets_sent"], (tx, rx)
+assert tx["packets_lost"] <= 0.1 * tx["packets_sent"], tx
+assert min(lines) >= 2 and len(rows) >= 10
+assert float(rows[-1]["rtt_ms"]) > 0, "no feedback"
+PYTHON
+}
+
+check "IPv4" 127.0.0.1 "" "" sender
+check "IPv6" ::1 "--frame-jitter 20 --fps 30" "" receiver
+check "feedback to a port that is named" 127.0.0.1 "--bind-address 127.0.0.1 --bind-port $((port + 1)) --ecn off" "--feedback 127.0.0.1:$((port + 1))" sender
