@@ -13,7 +13,10 @@ check() {  # name, address, options of tx, options of rx, who gets the first SIG
   local bench=$build/src/tools/scream-bench
   "$bench" rx --address "$2" --port "$port" --summary "$folder/rx.json" --log "$folder/rx.csv" $4 >"$folder/rx.txt" &
   local rx=$!
-  sleep 1
+  for _ in $(seq 100); do
+    grep -q ":$(printf %04X "$port") " /proc/net/udp /proc/net/udp6 && break
+    sleep 0.1
+  done
   "$bench" tx --host "$2" --port "$port" --init-bitrate 1M --max-bitrate 3M --summary "$folder/tx.json" --log "$folder/tx.csv" $3 >"$folder/tx.txt" &
   local tx=$!
   sleep 4

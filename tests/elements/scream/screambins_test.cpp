@@ -16,6 +16,17 @@ using gst::MessagePtr;
 using gst::PadPtr;
 using gst::StringPtr;
 
+/// Waits for what has to happen soon.
+template <typename Condition>
+bool Comes(const Condition& condition) {
+  const gint64 deadline = g_get_monotonic_time() + 20 * G_USEC_PER_SEC;
+  while (!condition()) {
+    if (g_get_monotonic_time() > deadline) return false;
+    g_usleep(1000);
+  }
+  return true;
+}
+
 guint PortOf(GstElement* source) {
   GSocket* socket = nullptr;
   g_object_get(source, "used-socket", &socket, nullptr);
@@ -75,7 +86,7 @@ TEST(ScreamBins, EndBothEndsWhenTheApplicationEndsTheSender) {
   Pipeline sender(kAudio + Sink(receiver.port));
   sender.Play();
   ASSERT_TRUE(sender.Wait(GST_MESSAGE_STREAM_START));
-  while (Stats(receiver.in.get())["packets-received"] == 0) g_usleep(1000);
+  ASSERT_TRUE(Comes([&] { return Stats(receiver.in.get())["packets-received"] > 0; }));
   sender.SendEos();
   EXPECT_TRUE(sender.Ends());
   EXPECT_TRUE(receiver.pipeline.Ends());
@@ -133,7 +144,7 @@ TEST(ScreamBins, FeedbackFromAnotherAddressIsIgnoredAndCounted) {
   Pipeline sender(kAudio + Sink(receiver.port, "bind-address=127.0.0.1"));
   sender.Play();
   ASSERT_TRUE(sender.Wait(GST_MESSAGE_STREAM_START));
-  while (Stats(receiver.in.get())["packets-received"] == 0) g_usleep(1000);
+  ASSERT_TRUE(Comes([&] { return Stats(receiver.in.get())["packets-received"] > 0; }));
   const ElementPtr udp = sender.Get("ecnudpsink");
   const guint port = PortOf(udp.get());
   Pipeline liar(
@@ -142,7 +153,8 @@ TEST(ScreamBins, FeedbackFromAnotherAddressIsIgnoredAndCounted) {
       std::to_string(port));
   liar.Play();
   EXPECT_TRUE(liar.Ends());
-  while (Stats(sender.Get("out").get())["feedback-foreign-address"] < 5) g_usleep(1000);
+  ASSERT_TRUE(
+      Comes([&] { return Stats(sender.Get("out").get())["feedback-foreign-address"] >= 5; }));
   EXPECT_EQ(Stats(sender.Get("out").get())["rtcp-malformed"], 0U);
 }
 
@@ -164,14 +176,12 @@ TEST(ScreamBins, AReceiverThatRestartsIsFoundAgain) {
   Pipeline sender(kAudio + Sink(port));
   sender.Play();
   const auto received = [&] { return Stats(receiver->in.get())["packets-received"]; };
-  while (received() < 10) g_usleep(1000);
+  ASSERT_TRUE(Comes([&] { return received() >= 10; }));
   receiver.reset();
   receiver = std::make_unique<Receiver>(std::string(kAudioCaps) + " port=" + std::to_string(port));
   ASSERT_EQ(receiver->port, port);
   const guint64 accepted = Stats(sender.Get("out").get())["feedback-accepted"];
-  const gint64 deadline = g_get_monotonic_time() + 5 * G_USEC_PER_SEC;
-  while (received() < 50 && g_get_monotonic_time() < deadline) g_usleep(1000);
-  EXPECT_GE(received(), 50U);
+  EXPECT_TRUE(Comes([&] { return received() >= 50; }));
   EXPECT_GT(Stats(sender.Get("out").get())["feedback-accepted"], accepted);
 }
 
