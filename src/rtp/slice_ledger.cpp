@@ -107,12 +107,14 @@ void SliceLedger::Close(Scan* scan, std::uint32_t index, SliceOutcome outcome) {
 
 void SliceLedger::BookScan(const Scan& scan) {
   if (scan.joined_late) return;
-  if (scan.received + scan.skipped == scan.slices.size()) {
-    ++accounts_.scans_complete;
-  } else if (scan.received > 0) {
-    ++accounts_.scans_incomplete;
-  } else {
+  if (scan.skipped == scan.slices.size()) {
+    ++accounts_.scans_skipped;
+  } else if (scan.received == 0) {
     ++accounts_.scans_lost;
+  } else if (scan.received + scan.skipped == scan.slices.size()) {
+    ++accounts_.scans_complete;
+  } else {
+    ++accounts_.scans_incomplete;
   }
 }
 

@@ -423,6 +423,16 @@ TEST(SkippedSlices, AreNotThoseThatArrivedOrArriveNow) {
   EXPECT_EQ(receiver.accounts().slices.slices_received, 11U);
 }
 
+TEST(SkippedSlices, OfAWholeScanMakeNoCompleteScan) {
+  Receiver receiver(kReorder);
+  Sender sender;
+  DeliverAll(&receiver, sender.Scans(0, 2));
+  DeliverAll(&receiver, Liar(&sender, 3, 0));  // of all of scan 2, too
+  receiver.Finish();
+  EXPECT_EQ(SkipAccounts(receiver), "skipped 4 lost 0; scans 2 1 0");
+  EXPECT_EQ(receiver.accounts().slices.scans_skipped, 1U);
+}
+
 TEST(SkippedSlices, AreNotBelievedOfADamagedSlice) {
   Receiver receiver(kReorder);
   Sender sender;
