@@ -60,12 +60,13 @@ targets() {
     | $all[0][] | select(.id | IN($needed[])) | .filename[] | ltrimstr($dir)'
 }
 
-# build DIR SUITES [meson options]: configures once, then builds what changed of what the suites need.
+# build DIR SUITES [meson options]: configures once, then builds what changed of what the suites need. Line numbers are all that
+# reports need of the debug information, the rest of which is a third of the compiler's time.
 build() {
   local dir=$1 needed_by=$2
   shift 2
   echo "== build $(basename "$dir") (${SECONDS}s)"
-  [ -f "$dir/build.ninja" ] || meson setup "$dir" "$root" "$@" >"$dir.log" 2>&1 ||
+  [ -f "$dir/build.ninja" ] || meson setup "$dir" "$root" -Dcpp_args=-g1 "$@" >"$dir.log" 2>&1 ||
     { tail -20 "$dir.log"; return 1; }
   local wanted=()
   # shellcheck disable=SC2086
@@ -76,7 +77,7 @@ build() {
 
 build_sanitized() {
   build "$root/build-asan" "$sanitized" -Db_sanitize=address,undefined -Db_lundef=false -Doptimization=1 \
-    -Dcpp_args=-g1 -Dbenchmarks=disabled
+    -Dbenchmarks=disabled
 }
 sanitized_ready() { if [ -n "$sanitized_job" ]; then wait "$sanitized_job"; else build_sanitized; fi; }
 
