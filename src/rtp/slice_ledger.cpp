@@ -128,7 +128,11 @@ std::uint64_t SliceLedger::SkippedBetween(ScanId before, ScanId after) {
 void SliceLedger::BookScanId(std::int64_t scan, std::uint32_t id) {
   if (latest_id_ && scan <= latest_id_->scan) return;
   const ScanId now{scan, id};
-  if (latest_id_) accounts_.scans_skipped += SkippedBetween(*latest_id_, now);
+  if (latest_id_) {
+    accounts_.scans_skipped += SkippedBetween(*latest_id_, now);
+  } else {
+    first_id_ = now;
+  }
   latest_id_ = now;
 }
 
@@ -169,9 +173,8 @@ void SliceLedger::Finish() {
 
 void SliceLedger::Continue(const SliceLedger& previous) {
   if (!started() || !previous.started() || !(*previous.frontier_ < origin_)) return;
-  // All since then, this ledger's own included.
   if (latest_id_ && previous.latest_id_)
-    accounts_.scans_skipped = SkippedBetween(*previous.latest_id_, *latest_id_);
+    accounts_.scans_skipped += SkippedBetween(*previous.latest_id_, first_id_);
   const auto count = static_cast<std::uint64_t>(scans_.front().slices.size());
   const SlicePosition last = *previous.frontier_;
   if (last.scan < origin_.scan) {

@@ -92,8 +92,8 @@ class SliceLedger {
     bool joined_late = false;  // its beginning was sent before the receiver joined
   };
   struct ScanId {
-    std::int64_t scan;
-    std::uint32_t id;
+    std::int64_t scan = 0;
+    std::uint32_t id = 0;
   };
   struct Cutoff {
     Time time;
@@ -115,6 +115,7 @@ class SliceLedger {
   std::int64_t first_scan_ = 0;  // number of scans_.front()
   SlicePosition origin_;         // the first slice
   std::optional<SlicePosition> frontier_;
+  ScanId first_id_{};  // where there is a latest one
   std::optional<ScanId> latest_id_;
   std::deque<Cutoff> cutoffs_;  // both times and positions ascend
   SliceAccounts accounts_;
