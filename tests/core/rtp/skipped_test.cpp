@@ -1,0 +1,158 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Slices and scans that the sender left out: told from lost ones, whatever else happens.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "rtp/receiver.h"
+#include "stream.h"
+
+namespace lidar::rtp {
+namespace {
+
+using std::chrono::milliseconds;
+using test::DeliverAll;
+using test::Sender;
+using test::SenderOptions;
+using test::Wire;
+using Names = std::vector<std::string>;
+
+constexpr milliseconds kReorder{100};
+
+/// "skipped n lost n; scans complete incomplete lost"
+std::string SkipAccounts(const Receiver& r) {
+  const SliceAccounts a = r.accounts().slices;
+  return "skipped " + std::to_string(a.slices_skipped) + " lost " + std::to_string(a.slices_lost) +
+         "; scans " + std::to_string(a.scans_complete) + " " + std::to_string(a.scans_incomplete) +
+         " " + std::to_string(a.scans_lost);
+}
+
+TEST(SkippedSlices, AreNotLost) {
+  Receiver receiver(kReorder);
+  Sender sender;
+  // Slice 2 of each scan, and those around the end of each second one.
+  DeliverAll(&receiver, sender.ScansWithout(20, [](std::uint32_t s, std::uint16_t i) {
+    return i == 2 || (s % 2 == 0 && i == 3) || (s % 2 == 1 && i == 0);
+  }));
+  receiver.Finish();
+  // The last scan ends with the stream. The first slice is where the receiver joins.
+  EXPECT_EQ(SkipAccounts(receiver), "skipped 40 lost 0; scans 20 0 0");
+  EXPECT_EQ(receiver.accounts().slices.slices_received, 40U);
+}
+
+TEST(SkippedSlices, AreToldFromLostOnesEvenWhereTheNextSliceIsLostToo) {
+  Receiver receiver(kReorder);
+  Sender sender;
+  auto packets = sender.ScansWithout(
+      10, [](std::uint32_t s, std::uint16_t i) { return s == 4 && (i == 1 || i == 2); });
+  // 4.3 would have been the first to tell.
+  packets.erase(std::remove_if(packets.begin(), packets.end(),
+                               [](const Wire& w) { return w.scan == 4 && w.index == 3; }),
+                packets.end());
+  DeliverAll(&receiver, packets);
+  receiver.Finish();
+  EXPECT_EQ(SkipAccounts(receiver), "skipped 2 lost 1; scans 9 1 0");
+  EXPECT_EQ(receiver.accounts().slices.slices_received, 37U);
+}
+
+TEST(SkippedSlices, DoNotInterruptTheStream) {
+  Receiver receiver(kReorder);
+  Sender sender;
+  unsigned disconts = 0;
+  for (const Wire& w :
+       sender.ScansWithout(20, [](std::uint32_t, std::uint16_t i) { return i == 1; })) {
+    for (const ReceivedSlice& s : test::Deliver(&receiver, w)) disconts += s.discont ? 1U : 0U;
+  }
+  EXPECT_EQ(disconts, 1U);  // the first
+}
+
+TEST(SkippedScans, AreCountedWhateverIsLostBesides) {
+  for (const bool outage : {false, true}) {
+    Receiver receiver(kReorder);
+    Sender sender;
+    auto packets = sender.ScansWithout(
+        40, [](std::uint32_t s, std::uint16_t) { return s % 4 == 1 || s % 4 == 2; });
+    packets.erase(std::remove_if(packets.begin(), packets.end(),
+                                 [&](const Wire& w) {
+                                   const bool cut = outage && w.scan > 5 && w.scan < 30;
+                                   return !w.config && (cut || w.scan == 4 || w.index == 2);
+                                 }),
+                  packets.end());
+    DeliverAll(&receiver, packets);
+    receiver.Finish();
+    EXPECT_EQ(receiver.accounts().slices.scans_skipped, 20U);
+    EXPECT_EQ(receiver.accounts().outages, outage ? 1U : 0U);
+  }
+}
+
+TEST(SkippedScans, AreNoneWhereTheSourceStartsItsNumbersAnew) {
+  Receiver receiver(kReorder);
+  Sender sender;
+  DeliverAll(&receiver, sender.Scans(50, 3));
+  SenderOptions again;
+  again.scan_number += 53;  // scans 0, 1, 2 of the source
+  DeliverAll(&receiver, Sender(again).Scans(0, 3));
+  EXPECT_EQ(receiver.accounts().slices.scans_skipped, 0U);
+}
+
+/// A slice that says that all slices before it were left out, whatever was.
+std::vector<Wire> Liar(Sender* sender, std::uint32_t scan, std::uint16_t index) {
+  ScanCounter counter(SenderOptions{}.scan_number + scan - 1);
+  Unit before;
+  before.slice = {0, 0, 200};
+  before.info.scan_id = scan - 1;
+  counter.Place(&before);
+  std::vector<Wire> out;
+  sender->Slice(scan, index, &out, &counter);
+  return out;
+}
+
+TEST(SkippedSlices, AreNotThoseThatArrivedOrArriveNow) {
+  Receiver receiver(kReorder);
+  Sender sender;
+  DeliverAll(&receiver, sender.Scans(0, 2));
+  std::vector<Wire> begun;
+  sender.Slice(2, 0, &begun);
+  std::vector<Wire> next;
+  sender.Slice(2, 1, &next);
+  ASSERT_GT(begun.size(), 1U);
+  Names names = DeliverAll(&receiver, {begun.begin(), begun.end() - 1});
+  EXPECT_EQ(names, Names{});
+  EXPECT_EQ(DeliverAll(&receiver, Liar(&sender, 2, 2)), Names{"2.2"});
+  EXPECT_EQ(DeliverAll(&receiver, {begun.back()}), Names{"2.0"});
+  // 2.1 was not there yet, so the lie about it is believed; all others stand.
+  EXPECT_EQ(DeliverAll(&receiver, next), Names{});
+  std::vector<Wire> last;
+  sender.Slice(2, 3, &last);
+  DeliverAll(&receiver, last);
+  receiver.Finish();
+  EXPECT_EQ(SkipAccounts(receiver), "skipped 1 lost 0; scans 3 0 0");
+  EXPECT_EQ(receiver.accounts().slices.slices_received, 11U);
+}
+
+TEST(SkippedSlices, OfAWholeScanMakeNoCompleteScan) {
+  Receiver receiver(kReorder);
+  Sender sender;
+  DeliverAll(&receiver, sender.Scans(0, 2));
+  DeliverAll(&receiver, Liar(&sender, 3, 0));  // of all of scan 2, too
+  receiver.Finish();
+  EXPECT_EQ(SkipAccounts(receiver), "skipped 4 lost 0; scans 2 1 0");
+  EXPECT_EQ(receiver.accounts().slices.scans_skipped, 1U);
+}
+
+TEST(SkippedSlices, AreNotBelievedOfADamagedSlice) {
+  Receiver receiver(kReorder);
+  Sender sender;
+  DeliverAll(&receiver, sender.Scans(0, 2));
+  auto liar = Liar(&sender, 2, 2);
+  liar.back().payload.back() ^= 1;
+  DeliverAll(&receiver, liar);
+  DeliverAll(&receiver, sender.Scans(3, 3));
+  receiver.Finish();
+  EXPECT_EQ(receiver.accounts().slices.slices_skipped, 0U);
+  EXPECT_EQ(receiver.accounts().slices.slices_damaged, 1U);
+  EXPECT_EQ(receiver.accounts().slices.slices_lost, 3U);
+}
+
+}  // namespace
+}  // namespace lidar::rtp
