@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "draco/enc_error_check.h"
+#include "ext/draco/enc_error_check.h"
 
 #include <algorithm>
 #include <array>
@@ -7,9 +7,9 @@
 #include <cstring>
 #include <limits>
 
-#include "draco/codec/draco_check.h"
-#include "draco/codec/point_math.h"
-#include "draco/enc_nearest.h"
+#include "ext/draco/draco_check.h"
+#include "ext/draco/enc_nearest.h"
+#include "src/codec/point_math.h"
 
 namespace lidar::gst {
 namespace {

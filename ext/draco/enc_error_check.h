@@ -5,9 +5,9 @@
 #include <optional>
 #include <vector>
 
-#include "base/byte_reader.h"
-#include "draco/codec/slice_decoder.h"
-#include "draco/codec/slice_encoder.h"
+#include "src/base/byte_reader.h"
+#include "src/codec/slice_decoder.h"
+#include "src/codec/slice_encoder.h"
 
 namespace lidar::gst {
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "draco/enc_error_report.h"
+#include "ext/draco/enc_error_report.h"
 
-#include "common/buffer_map.h"
+#include "gst/common/buffer_map.h"
 
 namespace lidar::gst {
 namespace {

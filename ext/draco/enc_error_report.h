@@ -6,8 +6,8 @@
 #include <optional>
 #include <vector>
 
-#include "draco/codec/slice_encoder.h"
-#include "draco/enc_error_check.h"
+#include "ext/draco/enc_error_check.h"
+#include "src/codec/slice_encoder.h"
 
 namespace lidar::gst {
 

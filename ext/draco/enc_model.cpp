@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "draco/enc_model.h"
+#include "ext/draco/enc_model.h"
 
 #include <string>
 
-#include "common/refs.h"
-#include "rate/model_file.h"
+#include "gst/common/refs.h"
+#include "src/rate/model_file.h"
 
 namespace lidar::gst {
 

@@ -5,8 +5,8 @@
 
 #include <memory>
 
-#include "draco/enc_settings.h"
-#include "rate/size_model.h"
+#include "ext/draco/enc_settings.h"
+#include "src/rate/size_model.h"
 
 namespace lidar::gst {
 

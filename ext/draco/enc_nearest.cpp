@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "draco/enc_nearest.h"
+#include "ext/draco/enc_nearest.h"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numeric>
 
-#include "draco/codec/point_math.h"
+#include "src/codec/point_math.h"
 
 namespace lidar::gst {
 

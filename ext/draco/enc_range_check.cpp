@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "draco/enc_range_check.h"
+#include "ext/draco/enc_range_check.h"
 
 #include <algorithm>
 #include <cmath>
 #include <cstring>
 
-#include "draco/codec/point_math.h"
+#include "src/codec/point_math.h"
 
 namespace lidar::gst {
 namespace {

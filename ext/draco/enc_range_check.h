@@ -4,9 +4,9 @@
 #include <cstdint>
 #include <optional>
 
-#include "base/byte_reader.h"
-#include "cloud/range_projection.h"
-#include "draco/codec/slice_encoder.h"
+#include "src/base/byte_reader.h"
+#include "src/cloud/range_projection.h"
+#include "src/codec/slice_encoder.h"
 
 namespace lidar::gst {
 

@@ -6,10 +6,10 @@
 #include <array>
 #include <string>
 
-#include "common/properties.h"
-#include "draco/codec/slice_encoder.h"
-#include "rate/model_file.h"
-#include "rate/scan_plan.h"
+#include "gst/common/properties.h"
+#include "src/codec/slice_encoder.h"
+#include "src/rate/model_file.h"
+#include "src/rate/scan_plan.h"
 
 namespace lidar::gst {
 

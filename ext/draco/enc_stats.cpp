@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "draco/enc_stats.h"
+#include "ext/draco/enc_stats.h"
 
 #include <algorithm>
 

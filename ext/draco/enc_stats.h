@@ -5,9 +5,9 @@
 
 #include <cstdint>
 
-#include "draco/codec/slice_encoder.h"
-#include "draco/enc_error_check.h"
-#include "draco/rate_loop.h"
+#include "ext/draco/enc_error_check.h"
+#include "ext/draco/rate_loop.h"
+#include "src/codec/slice_encoder.h"
 
 namespace lidar::gst {
 

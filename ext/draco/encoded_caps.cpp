@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "draco/encoded_caps.h"
+#include "ext/draco/encoded_caps.h"
 
-#include "common/cloud_info.h"
-#include "common/gstlidar.h"
-#include "common/refs.h"
+#include "gst/common/cloud_info.h"
+#include "gst/common/gstlidar.h"
+#include "gst/common/refs.h"
 
 namespace lidar::gst {
 

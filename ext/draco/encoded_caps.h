@@ -5,9 +5,9 @@
 
 #include <optional>
 
-#include "cloud/point_fields.h"
-#include "cloud/sensor_model.h"
-#include "draco/codec/slice_encoder.h"
+#include "src/cloud/point_fields.h"
+#include "src/cloud/sensor_model.h"
+#include "src/codec/slice_encoder.h"
 
 namespace lidar::gst {
 

@@ -9,7 +9,7 @@
  * gst-launch-1.0 lidartestsrc num-buffers=80 ! dracoenc ! dracodec ! fakesink
  * ]|
  */
-#include "draco/gstdracodec.h"
+#include "ext/draco/gstdracodec.h"
 
 #include <algorithm>
 #include <memory>
@@ -18,12 +18,12 @@
 #include <utility>
 #include <vector>
 
-#include "common/buffer_map.h"
-#include "common/cloud_info.h"
-#include "common/properties.h"
-#include "common/refs.h"
-#include "draco/codec/slice_decoder.h"
-#include "draco/encoded_caps.h"
+#include "ext/draco/encoded_caps.h"
+#include "gst/common/buffer_map.h"
+#include "gst/common/cloud_info.h"
+#include "gst/common/properties.h"
+#include "gst/common/refs.h"
+#include "src/codec/slice_decoder.h"
 
 GST_DEBUG_CATEGORY_STATIC(gst_lidar_draco_dec_debug);
 #define GST_CAT_DEFAULT gst_lidar_draco_dec_debug

@@ -8,22 +8,22 @@
  * gst-launch-1.0 lidartestsrc num-buffers=80 ! dracoenc max-error=0.02 ! dracodec ! fakesink
  * ]|
  */
-#include "draco/gstdracoenc.h"
+#include "ext/draco/gstdracoenc.h"
 
 #include <memory>
 #include <mutex>
 #include <optional>
 
-#include "common/buffer_map.h"
-#include "common/cloud_info.h"
-#include "common/refs.h"
-#include "draco/enc_error_report.h"
-#include "draco/enc_model.h"
-#include "draco/enc_range_check.h"
-#include "draco/enc_settings.h"
-#include "draco/enc_stats.h"
-#include "draco/encoded_caps.h"
-#include "draco/rate_loop.h"
+#include "ext/draco/enc_error_report.h"
+#include "ext/draco/enc_model.h"
+#include "ext/draco/enc_range_check.h"
+#include "ext/draco/enc_settings.h"
+#include "ext/draco/enc_stats.h"
+#include "ext/draco/encoded_caps.h"
+#include "ext/draco/rate_loop.h"
+#include "gst/common/buffer_map.h"
+#include "gst/common/cloud_info.h"
+#include "gst/common/refs.h"
 
 GST_DEBUG_CATEGORY_STATIC(gst_lidar_draco_enc_debug);
 #define GST_CAT_DEFAULT gst_lidar_draco_enc_debug

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "common/gstlidar.h"
-#include "draco/gstdracodec.h"
-#include "draco/gstdracoenc.h"
+#include "ext/draco/gstdracodec.h"
+#include "ext/draco/gstdracoenc.h"
+#include "gst/common/gstlidar.h"
 
 static gboolean plugin_init(GstPlugin* plugin) {
   gst_lidar_init();

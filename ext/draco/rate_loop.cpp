@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "draco/rate_loop.h"
+#include "ext/draco/rate_loop.h"
 
 #include <algorithm>
 
-#include "rate/residual_model.h"
+#include "src/rate/residual_model.h"
 
 namespace lidar::gst {
 namespace {

@@ -5,8 +5,8 @@
 #include <memory>
 #include <optional>
 
-#include "draco/codec/slice_encoder.h"
-#include "rate/rate_controller.h"
+#include "src/codec/slice_encoder.h"
+#include "src/rate/rate_controller.h"
 
 namespace lidar::gst {
 

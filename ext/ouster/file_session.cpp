@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "file_session.h"
+#include "ext/ouster/file_session.h"
 
-#include "common/refs.h"
+#include "gst/common/refs.h"
 
-#include "debug.h"
+#include "ext/ouster/debug.h"
 
 namespace lidar::gst {
 

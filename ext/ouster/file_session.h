@@ -4,8 +4,8 @@
 #include <memory>
 #include <mutex>
 
-#include "pcap_feed.h"
-#include "session.h"
+#include "ext/ouster/pcap_feed.h"
+#include "ext/ouster/session.h"
 
 namespace lidar::gst {
 

@@ -10,15 +10,15 @@
  * gst-launch-1.0 ouster_src hostname=os1.local udp-dest=@auto ! fakesink silent=false -v
  * ]|
  */
-#include "gstoustersrc.h"
+#include "ext/ouster/gstoustersrc.h"
 
 #include <memory>
 #include <mutex>
 
-#include "common/gstlidar.h"
-#include "imu_pad.h"
-#include "session.h"
-#include "settings.h"
+#include "ext/ouster/imu_pad.h"
+#include "ext/ouster/session.h"
+#include "ext/ouster/settings.h"
+#include "gst/common/gstlidar.h"
 
 GST_DEBUG_CATEGORY(gst_lidar_ouster_src_debug);
 #define GST_CAT_DEFAULT gst_lidar_ouster_src_debug

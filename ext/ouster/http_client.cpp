@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "http_client.h"
+#include "ext/ouster/http_client.h"
 
 #include <curl/curl.h>
 
@@ -8,7 +8,7 @@
 #include <cctype>
 #include <utility>
 
-#include "ouster/metadata.h"
+#include "src/ouster/metadata.h"
 
 namespace lidar::gst {
 namespace {

@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "imu_pad.h"
+#include "ext/ouster/imu_pad.h"
 
 #include <gst/base/gstbasesrc.h>
 
 #include <algorithm>
 
-#include "base/byte_writer.h"
-#include "common/gstlidar.h"
-#include "common/refs.h"
-#include "ouster/imu_packet.h"
+#include "gst/common/gstlidar.h"
+#include "gst/common/refs.h"
+#include "src/base/byte_writer.h"
+#include "src/ouster/imu_packet.h"
 
-#include "debug.h"
+#include "ext/ouster/debug.h"
 
 namespace lidar::gst {
 namespace {

@@ -4,7 +4,7 @@
 #pragma once
 #include <gst/gst.h>
 
-#include "ouster/sensor_stream.h"
+#include "src/ouster/sensor_stream.h"
 
 namespace lidar::gst {
 

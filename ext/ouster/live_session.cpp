@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "live_session.h"
+#include "ext/ouster/live_session.h"
 
 #include <netinet/in.h>
 
@@ -7,7 +7,7 @@
 #include <cstring>
 #include <utility>
 
-#include "debug.h"
+#include "ext/ouster/debug.h"
 
 namespace lidar::gst {
 namespace {

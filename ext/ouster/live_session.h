@@ -5,9 +5,9 @@
 #include <memory>
 #include <string>
 
-#include "sensor_link.h"
-#include "session.h"
-#include "udp_feed.h"
+#include "ext/ouster/sensor_link.h"
+#include "ext/ouster/session.h"
+#include "ext/ouster/udp_feed.h"
 
 namespace lidar::gst {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "pcap_feed.h"
+#include "ext/ouster/pcap_feed.h"
 
 #include <algorithm>
 #include <utility>

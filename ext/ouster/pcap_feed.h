@@ -6,9 +6,9 @@
 #include <optional>
 #include <string>
 
-#include "ouster/metadata.h"
-#include "ouster/pcap_reader.h"
-#include "ouster/sensor_stream.h"
+#include "src/ouster/metadata.h"
+#include "src/ouster/pcap_reader.h"
+#include "src/ouster/sensor_stream.h"
 
 namespace lidar::gst {
 

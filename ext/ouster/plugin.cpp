@@ -2,8 +2,8 @@
 // Registers the elements of the plugin.
 #include <curl/curl.h>
 
-#include "common/gstlidar.h"
-#include "gstoustersrc.h"
+#include "ext/ouster/gstoustersrc.h"
+#include "gst/common/gstlidar.h"
 
 static gboolean plugin_init(GstPlugin* plugin) {
   gst_lidar_init();

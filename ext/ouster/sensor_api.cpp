@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "sensor_api.h"
+#include "ext/ouster/sensor_api.h"
 
 #include <nlohmann/json.hpp>
 

@@ -5,9 +5,9 @@
 #include <optional>
 #include <string>
 
-#include "http_client.h"
-#include "ouster/metadata.h"
-#include "settings.h"
+#include "ext/ouster/http_client.h"
+#include "ext/ouster/settings.h"
+#include "src/ouster/metadata.h"
 
 namespace lidar::gst {
 

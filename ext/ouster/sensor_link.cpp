@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "sensor_link.h"
+#include "ext/ouster/sensor_link.h"
 
 #include <algorithm>
 #include <utility>

@@ -9,7 +9,7 @@
 #include <string>
 #include <thread>
 
-#include "sensor_api.h"
+#include "ext/ouster/sensor_api.h"
 
 namespace lidar::gst {
 

@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "session.h"
+#include "ext/ouster/session.h"
 
 #include <fstream>
 #include <utility>
 
-#include "common/refs.h"
-#include "file_session.h"
-#include "live_session.h"
-#include "slice_buffer.h"
+#include "ext/ouster/file_session.h"
+#include "ext/ouster/live_session.h"
+#include "ext/ouster/slice_buffer.h"
+#include "gst/common/refs.h"
 
-#include "debug.h"
+#include "ext/ouster/debug.h"
 
 namespace lidar::gst {
 namespace {

@@ -7,9 +7,9 @@
 #include <mutex>
 #include <string>
 
-#include "imu_pad.h"
-#include "ouster/sensor_stream.h"
-#include "settings.h"
+#include "ext/ouster/imu_pad.h"
+#include "ext/ouster/settings.h"
+#include "src/ouster/sensor_stream.h"
 
 namespace lidar::gst {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "settings.h"
+#include "ext/ouster/settings.h"
 
 namespace lidar::gst {
 namespace {

@@ -6,8 +6,8 @@
 #include <optional>
 #include <string>
 
-#include "common/properties.h"
-#include "ouster/sensor_stream.h"
+#include "gst/common/properties.h"
+#include "src/ouster/sensor_stream.h"
 
 namespace lidar::gst {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "shared_socket.h"
+#include "ext/ouster/shared_socket.h"
 
 #include <netinet/in.h>
 #include <sys/socket.h>
@@ -10,7 +10,7 @@
 #include <mutex>
 #include <utility>
 
-#include "common/refs.h"
+#include "gst/common/refs.h"
 
 namespace lidar::gst {
 namespace {

@@ -10,8 +10,8 @@
 #include <tuple>
 #include <vector>
 
-#include "ecnudp/udp_batch.h"
-#include "ecnudp/udp_socket.h"
+#include "gst/net/udp_batch.h"
+#include "gst/net/udp_socket.h"
 
 namespace lidar::gst {
 

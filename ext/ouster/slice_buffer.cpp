@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "slice_buffer.h"
+#include "ext/ouster/slice_buffer.h"
 
 #include <utility>
 #include <vector>
 
-#include "common/cloud_info.h"
-#include "common/gstlidar.h"
+#include "gst/common/cloud_info.h"
+#include "gst/common/gstlidar.h"
 
 namespace lidar::gst {
 namespace {

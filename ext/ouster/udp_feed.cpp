@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "udp_feed.h"
+#include "ext/ouster/udp_feed.h"
 
 #include <poll.h>
 #include <sys/epoll.h>
@@ -7,7 +7,7 @@
 
 #include <cerrno>
 
-#include "common/refs.h"
+#include "gst/common/refs.h"
 
 namespace lidar::gst {
 namespace {

@@ -7,8 +7,8 @@
 #include <memory>
 #include <string>
 
-#include "settings.h"
-#include "shared_socket.h"
+#include "ext/ouster/settings.h"
+#include "ext/ouster/shared_socket.h"
 
 namespace lidar::gst {
 

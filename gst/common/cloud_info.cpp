@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "common/cloud_info.h"
+#include "gst/common/cloud_info.h"
 
-#include "common/buffer_map.h"
-#include "common/refs.h"
+#include "gst/common/buffer_map.h"
+#include "gst/common/refs.h"
 
 namespace lidar::gst {
 namespace {

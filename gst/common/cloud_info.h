@@ -5,9 +5,9 @@
 
 #include <optional>
 
-#include "cloud/point_fields.h"
-#include "cloud/sensor_model.h"
-#include "common/gstlidar.h"
+#include "gst/common/gstlidar.h"
+#include "src/cloud/point_fields.h"
+#include "src/cloud/sensor_model.h"
 
 namespace lidar::gst {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "common/gstlidar.h"
+#include "gst/common/gstlidar.h"
 
 namespace {
 

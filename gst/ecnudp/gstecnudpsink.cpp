@@ -10,7 +10,7 @@
  * ecn=ect1
  * ]|
  */
-#include "ecnudp/gstecnudpsink.h"
+#include "gst/ecnudp/gstecnudpsink.h"
 
 #include <gst/net/gstnetaddressmeta.h>
 #include <netinet/in.h>
@@ -18,10 +18,10 @@
 #include <memory>
 #include <mutex>
 
-#include "common/gstlidar.h"
-#include "common/properties.h"
-#include "ecnudp/udp_batch.h"
-#include "ecnudp/udp_socket.h"
+#include "gst/common/gstlidar.h"
+#include "gst/common/properties.h"
+#include "gst/net/udp_batch.h"
+#include "gst/net/udp_socket.h"
 
 GST_DEBUG_CATEGORY_STATIC(gst_lidar_ecn_udp_sink_debug);
 #define GST_CAT_DEFAULT gst_lidar_ecn_udp_sink_debug

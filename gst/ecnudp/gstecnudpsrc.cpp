@@ -9,7 +9,7 @@
  * gst-launch-1.0 ecnudpsrc port=5004 num-buffers=100 ! fakesink dump=true
  * ]|
  */
-#include "ecnudp/gstecnudpsrc.h"
+#include "gst/ecnudp/gstecnudpsrc.h"
 
 #include <gst/net/gstnetaddressmeta.h>
 #include <netinet/in.h>
@@ -20,11 +20,11 @@
 #include <memory>
 #include <mutex>
 
-#include "common/gstlidar.h"
-#include "common/properties.h"
-#include "common/refs.h"
-#include "ecnudp/udp_batch.h"
-#include "ecnudp/udp_socket.h"
+#include "gst/common/gstlidar.h"
+#include "gst/common/properties.h"
+#include "gst/common/refs.h"
+#include "gst/net/udp_batch.h"
+#include "gst/net/udp_socket.h"
 
 GST_DEBUG_CATEGORY_STATIC(gst_lidar_ecn_udp_src_debug);
 #define GST_CAT_DEFAULT gst_lidar_ecn_udp_src_debug

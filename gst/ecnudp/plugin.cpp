@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Plugin ecnudp: UDP with the ECN field set and read.
-#include "common/gstlidar.h"
-#include "ecnudp/gstecnudpsink.h"
-#include "ecnudp/gstecnudpsrc.h"
+#include "gst/common/gstlidar.h"
+#include "gst/ecnudp/gstecnudpsink.h"
+#include "gst/ecnudp/gstecnudpsrc.h"
 
 static gboolean plugin_init(GstPlugin* plugin) {
   gst_lidar_init();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "pointcloud/assembler_state.h"
+#include "gst/pointcloud/assembler_state.h"
 
 namespace lidar::gst {
 

@@ -6,11 +6,11 @@
 #include <mutex>
 #include <optional>
 
-#include "common/cloud_info.h"
-#include "common/latency.h"
-#include "common/refs.h"
-#include "pointcloud/deadline_timer.h"
-#include "pointcloud/scan_queue.h"
+#include "gst/common/cloud_info.h"
+#include "gst/common/latency.h"
+#include "gst/common/refs.h"
+#include "gst/pointcloud/deadline_timer.h"
+#include "gst/pointcloud/scan_queue.h"
 
 namespace lidar::gst {
 

@@ -10,15 +10,15 @@
  *   ! multifilesink location=scan%06d.pcd
  * ]|
  */
-#include "pointcloud/gstcloudfileenc.h"
+#include "gst/pointcloud/gstcloudfileenc.h"
 
 #include <mutex>
 #include <optional>
 
-#include "common/buffer_map.h"
-#include "common/properties.h"
-#include "common/refs.h"
-#include "pointcloud/cloud_file.h"
+#include "gst/common/buffer_map.h"
+#include "gst/common/properties.h"
+#include "gst/common/refs.h"
+#include "gst/pointcloud/cloud_file.h"
 
 GST_DEBUG_CATEGORY_STATIC(gst_lidar_cloud_file_enc_debug);
 #define GST_CAT_DEFAULT gst_lidar_cloud_file_enc_debug

@@ -4,7 +4,7 @@
 
 #include <string>
 
-#include "pointcloud/cloud_file.h"
+#include "gst/pointcloud/cloud_file.h"
 
 G_BEGIN_DECLS
 #define GST_TYPE_LIDAR_CLOUD_FILE_ENC (gst_lidar_cloud_file_enc_get_type())

@@ -10,7 +10,7 @@
  * ! pointcloudparse ! fakesink
  * ]|
  */
-#include "pointcloud/gstpointcloudparse.h"
+#include "gst/pointcloud/gstpointcloudparse.h"
 
 #include <gst/base/gstadapter.h>
 
@@ -18,8 +18,8 @@
 #include <mutex>
 #include <optional>
 
-#include "common/cloud_info.h"
-#include "common/refs.h"
+#include "gst/common/cloud_info.h"
+#include "gst/common/refs.h"
 
 GST_DEBUG_CATEGORY_STATIC(gst_lidar_point_cloud_parse_debug);
 #define GST_CAT_DEFAULT gst_lidar_point_cloud_parse_debug

@@ -8,13 +8,13 @@
  * gst-launch-1.0 lidartestsrc num-buffers=80 ! scanassembler ! fakesink silent=false -v
  * ]|
  */
-#include "pointcloud/gstscanassembler.h"
+#include "gst/pointcloud/gstscanassembler.h"
 
 #include <mutex>
 
-#include "common/properties.h"
-#include "pointcloud/assembler_state.h"
-#include "pointcloud/scan_caps.h"
+#include "gst/common/properties.h"
+#include "gst/pointcloud/assembler_state.h"
+#include "gst/pointcloud/scan_caps.h"
 
 GST_DEBUG_CATEGORY_STATIC(gst_lidar_scan_assembler_debug);
 #define GST_CAT_DEFAULT gst_lidar_scan_assembler_debug

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "common/gstlidar.h"
-#include "pointcloud/gstcloudfileenc.h"
-#include "pointcloud/gstpointcloudparse.h"
-#include "pointcloud/gstscanassembler.h"
+#include "gst/common/gstlidar.h"
+#include "gst/pointcloud/gstcloudfileenc.h"
+#include "gst/pointcloud/gstpointcloudparse.h"
+#include "gst/pointcloud/gstscanassembler.h"
 
 static gboolean plugin_init(GstPlugin* plugin) {
   gst_lidar_init();

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "pointcloud/scan_builder.h"
+#include "gst/pointcloud/scan_builder.h"
 
 #include <cstring>
 
-#include "common/buffer_map.h"
+#include "gst/common/buffer_map.h"
 
 namespace lidar::gst {
 namespace {

@@ -3,8 +3,8 @@
 #pragma once
 #include <vector>
 
-#include "common/cloud_info.h"
-#include "common/refs.h"
+#include "gst/common/cloud_info.h"
+#include "gst/common/refs.h"
 
 namespace lidar::gst {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "pointcloud/scan_caps.h"
+#include "gst/pointcloud/scan_caps.h"
 
 namespace lidar::gst {
 

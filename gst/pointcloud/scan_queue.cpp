@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "pointcloud/scan_queue.h"
+#include "gst/pointcloud/scan_queue.h"
 
-#include "base/sequence.h"
+#include "src/base/sequence.h"
 
 namespace lidar::gst {
 namespace {

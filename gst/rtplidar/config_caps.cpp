@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "rtplidar/config_caps.h"
+#include "gst/rtplidar/config_caps.h"
 
 #include <cstring>
 
-#include "common/buffer_map.h"
-#include "common/gstlidar.h"
-#include "common/refs.h"
+#include "gst/common/buffer_map.h"
+#include "gst/common/gstlidar.h"
+#include "gst/common/refs.h"
 
 namespace lidar::gst {
 namespace {

@@ -5,7 +5,7 @@
 
 #include <optional>
 
-#include "rtp/stream_config.h"
+#include "src/rtp/stream_config.h"
 
 namespace lidar::gst {
 

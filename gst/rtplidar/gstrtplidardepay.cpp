@@ -11,20 +11,20 @@
  * ! rtplidardepay ! dracodec ! fakesink
  * ]|
  */
-#include "rtplidar/gstrtplidardepay.h"
+#include "gst/rtplidar/gstrtplidardepay.h"
 
 #include <gst/rtp/gstrtpbuffer.h>
 
 #include <mutex>
 #include <optional>
 
-#include "common/gstlidar.h"
-#include "common/properties.h"
-#include "common/refs.h"
-#include "rtp/ntp_time.h"
-#include "rtp/receiver.h"
-#include "rtplidar/base_stats.h"
-#include "rtplidar/config_caps.h"
+#include "gst/common/gstlidar.h"
+#include "gst/common/properties.h"
+#include "gst/common/refs.h"
+#include "gst/rtplidar/base_stats.h"
+#include "gst/rtplidar/config_caps.h"
+#include "src/rtp/ntp_time.h"
+#include "src/rtp/receiver.h"
 
 GST_DEBUG_CATEGORY_STATIC(gst_lidar_rtp_depay_debug);
 #define GST_CAT_DEFAULT gst_lidar_rtp_depay_debug

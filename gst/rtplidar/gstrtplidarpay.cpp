@@ -8,17 +8,17 @@
  * gst-launch-1.0 lidartestsrc ! dracoenc ! rtplidarpay ! udpsink host=127.0.0.1 port=5004
  * ]|
  */
-#include "rtplidar/gstrtplidarpay.h"
+#include "gst/rtplidar/gstrtplidarpay.h"
 
 #include <mutex>
 
-#include "common/gstlidar.h"
-#include "common/latency.h"
-#include "common/properties.h"
-#include "common/refs.h"
-#include "rtplidar/base_stats.h"
-#include "rtplidar/config_caps.h"
-#include "rtplidar/pay_slices.h"
+#include "gst/common/gstlidar.h"
+#include "gst/common/latency.h"
+#include "gst/common/properties.h"
+#include "gst/common/refs.h"
+#include "gst/rtplidar/base_stats.h"
+#include "gst/rtplidar/config_caps.h"
+#include "gst/rtplidar/pay_slices.h"
 
 GST_DEBUG_CATEGORY_STATIC(gst_lidar_rtp_pay_debug);
 #define GST_CAT_DEFAULT gst_lidar_rtp_pay_debug

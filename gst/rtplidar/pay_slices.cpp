@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "rtplidar/pay_slices.h"
+#include "gst/rtplidar/pay_slices.h"
 
 #include <gst/rtp/gstrtpbuffer.h>
 
 #include <cmath>
 #include <cstring>
 
-#include "common/buffer_map.h"
-#include "common/refs.h"
-#include "rtp/ntp_time.h"
+#include "gst/common/buffer_map.h"
+#include "gst/common/refs.h"
+#include "src/rtp/ntp_time.h"
 
 namespace lidar::gst {
 namespace {

@@ -7,9 +7,9 @@
 #include <optional>
 #include <vector>
 
-#include "common/gstlidar.h"
-#include "rtp/packetizer.h"
-#include "rtp/stream_config.h"
+#include "gst/common/gstlidar.h"
+#include "src/rtp/packetizer.h"
+#include "src/rtp/stream_config.h"
 
 namespace lidar::gst {
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // The plugin rtplidar: clouds over RTP.
-#include "common/gstlidar.h"
-#include "rtplidar/gstrtplidardepay.h"
-#include "rtplidar/gstrtplidarpay.h"
+#include "gst/common/gstlidar.h"
+#include "gst/rtplidar/gstrtplidardepay.h"
+#include "gst/rtplidar/gstrtplidarpay.h"
 
 static gboolean plugin_init(GstPlugin* plugin) {
   gst_lidar_init();

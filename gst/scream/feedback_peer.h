@@ -5,8 +5,8 @@
 
 #include <memory>
 
-#include "base/time.h"
-#include "ecnudp/udp_socket.h"
+#include "gst/net/udp_socket.h"
+#include "src/base/time.h"
 
 namespace lidar::gst {
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "scream/peer_latch.h"
+#include "gst/scream/peer_latch.h"
 
-#include "base/sequence.h"
+#include "src/base/sequence.h"
 
 namespace lidar::gst {
 namespace {

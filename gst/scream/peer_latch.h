@@ -10,8 +10,8 @@
 #include <optional>
 #include <set>
 
-#include "base/time.h"
-#include "ecnudp/udp_socket.h"
+#include "gst/net/udp_socket.h"
+#include "src/base/time.h"
 
 namespace lidar::gst {
 using namespace std::chrono_literals;

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Plugin lidarscream: SCReAM v2 congestion control.
-#include "common/gstlidar.h"
-#include "scream/gstbitrateadapter.h"
-#include "scream/gstscreamrx.h"
-#include "scream/gstscreamsink.h"
-#include "scream/gstscreamsrc.h"
-#include "scream/gstscreamtx.h"
+#include "gst/bitrateadapter/gstbitrateadapter.h"
+#include "gst/common/gstlidar.h"
+#include "gst/scream/bin/gstscreamsink.h"
+#include "gst/scream/bin/gstscreamsrc.h"
+#include "gst/scream/rx/gstscreamrx.h"
+#include "gst/scream/tx/gstscreamtx.h"
 
 static gboolean plugin_init(GstPlugin* plugin) {
   gst_lidar_init();

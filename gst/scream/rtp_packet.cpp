@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "scream/rtp_packet.h"
+#include "gst/scream/rtp_packet.h"
 
 #include <gst/net/gstnetaddressmeta.h>
 
 #include <algorithm>
 
-#include "base/byte_writer.h"
-#include "scream/ccfb.h"
+#include "src/base/byte_writer.h"
+#include "src/scream/feedback/ccfb.h"
 
 namespace lidar::gst {
 namespace {

@@ -8,16 +8,16 @@
  * gst-launch-1.0 lidartestsrc is-live=true model=os1-64 ! fakesink dump=false
  * ]|
  */
-#include "testsrc/gstlidartestsrc.h"
+#include "gst/testsrc/gstlidartestsrc.h"
 
 #include <memory>
 #include <mutex>
 #include <optional>
 
-#include "common/properties.h"
-#include "testsrc/live_pacer.h"
-#include "testsrc/slice_maker.h"
-#include "testsrc/trajectory_log.h"
+#include "gst/common/properties.h"
+#include "gst/testsrc/live_pacer.h"
+#include "gst/testsrc/slice_maker.h"
+#include "gst/testsrc/trajectory_log.h"
 
 GST_DEBUG_CATEGORY_STATIC(gst_lidar_test_src_debug);
 #define GST_CAT_DEFAULT gst_lidar_test_src_debug

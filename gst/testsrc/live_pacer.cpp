@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "testsrc/live_pacer.h"
+#include "gst/testsrc/live_pacer.h"
 
-#include "common/refs.h"
+#include "gst/common/refs.h"
 
 namespace lidar::gst {
 namespace {

@@ -6,7 +6,7 @@
 #include <mutex>
 #include <optional>
 
-#include "base/time.h"
+#include "src/base/time.h"
 
 namespace lidar::gst {
 

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "testsrc/slice_maker.h"
+#include "gst/testsrc/slice_maker.h"
 
 #include <algorithm>
 #include <array>
 #include <cstring>
 
-#include "cloud/slicing.h"
-#include "common/buffer_map.h"
+#include "gst/common/buffer_map.h"
+#include "src/cloud/slicing.h"
 
 namespace lidar::gst {
 namespace {

@@ -6,9 +6,9 @@
 #include <string_view>
 #include <vector>
 
-#include "common/cloud_info.h"
-#include "common/refs.h"
-#include "synth/scanner.h"
+#include "gst/common/cloud_info.h"
+#include "gst/common/refs.h"
+#include "src/synth/scanner.h"
 
 namespace lidar::gst {
 

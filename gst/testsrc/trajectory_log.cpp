@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "testsrc/trajectory_log.h"
+#include "gst/testsrc/trajectory_log.h"
 
 #include <iomanip>
 #include <locale>

@@ -6,7 +6,7 @@
 #include <fstream>
 #include <string>
 
-#include "synth/geometry.h"
+#include "src/synth/geometry.h"
 
 namespace lidar::gst {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "view/canvas.h"
+#include "gst/view/canvas.h"
 
 #include <algorithm>
 #include <cmath>

@@ -5,7 +5,7 @@
 #include <optional>
 #include <string_view>
 
-#include "cloud/point_fields.h"
+#include "src/cloud/point_fields.h"
 
 namespace lidar::gst {
 

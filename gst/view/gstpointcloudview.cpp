@@ -8,17 +8,17 @@
  * gst-launch-1.0 lidartestsrc is-live=true ! pointcloudview ! videoconvert ! autovideosink
  * ]|
  */
-#include "view/gstpointcloudview.h"
+#include "gst/view/gstpointcloudview.h"
 
 #include <gst/video/video.h>
 
 #include <memory>
 #include <mutex>
 
-#include "common/buffer_map.h"
-#include "common/properties.h"
-#include "common/refs.h"
-#include "view/renderer.h"
+#include "gst/common/buffer_map.h"
+#include "gst/common/properties.h"
+#include "gst/common/refs.h"
+#include "gst/view/renderer.h"
 
 GST_DEBUG_CATEGORY_STATIC(gst_lidar_point_cloud_view_debug);
 #define GST_CAT_DEFAULT gst_lidar_point_cloud_view_debug

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "view/palette.h"
+#include "gst/view/palette.h"
 
 #include <algorithm>
 #include <array>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Numbers to colours.
 #pragma once
-#include "view/canvas.h"
+#include "gst/view/canvas.h"
 
 namespace lidar::gst {
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "common/gstlidar.h"
-#include "view/gstpointcloudview.h"
+#include "gst/common/gstlidar.h"
+#include "gst/view/gstpointcloudview.h"
 
 static gboolean plugin_init(GstPlugin* plugin) {
   gst_lidar_init();

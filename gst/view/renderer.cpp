@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "view/renderer.h"
+#include "gst/view/renderer.h"
 
 #include <algorithm>
 #include <cmath>
 
-#include "view/palette.h"
+#include "gst/view/palette.h"
 
 namespace lidar::gst {
 namespace {

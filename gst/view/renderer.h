@@ -4,9 +4,9 @@
 #include <array>
 #include <optional>
 
-#include "common/cloud_info.h"
-#include "view/canvas.h"
-#include "view/cloud_reader.h"
+#include "gst/common/cloud_info.h"
+#include "gst/view/canvas.h"
+#include "gst/view/cloud_reader.h"
 
 namespace lidar::gst {
 

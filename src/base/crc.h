@@ -3,7 +3,7 @@
 #pragma once
 #include <cstdint>
 
-#include "base/byte_reader.h"
+#include "src/base/byte_reader.h"
 
 namespace lidar {
 

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <limits>
 
-#include "base/time.h"
+#include "src/base/time.h"
 
 namespace lidar {
 

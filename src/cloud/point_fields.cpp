@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "cloud/point_fields.h"
+#include "src/cloud/point_fields.h"
 
 #include <algorithm>
 #include <array>

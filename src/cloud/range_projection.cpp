@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "cloud/range_projection.h"
+#include "src/cloud/range_projection.h"
 
 #include <algorithm>
 #include <cmath>

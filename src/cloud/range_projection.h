@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "cloud/sensor_model.h"
+#include "src/cloud/sensor_model.h"
 
 namespace lidar {
 

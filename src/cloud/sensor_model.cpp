@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "cloud/sensor_model.h"
+#include "src/cloud/sensor_model.h"
 
 #include <cmath>
 
-#include "base/byte_writer.h"
+#include "src/base/byte_writer.h"
 
 namespace lidar {
 namespace {

@@ -3,7 +3,7 @@
 #pragma once
 #include <cstdint>
 
-#include "base/time.h"
+#include "src/base/time.h"
 
 namespace lidar {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "link/aqm.h"
+#include "src/link/aqm.h"
 
 namespace lidar::link {
 namespace {

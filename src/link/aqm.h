@@ -3,9 +3,9 @@
 #pragma once
 #include <memory>
 
-#include "base/time.h"
-#include "link/packet.h"
-#include "link/random.h"
+#include "src/base/time.h"
+#include "src/link/packet.h"
+#include "src/link/random.h"
 
 namespace lidar::link {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "link/bottleneck.h"
+#include "src/link/bottleneck.h"
 
 #include <algorithm>
 #include <tuple>

@@ -7,15 +7,15 @@
 #include <queue>
 #include <vector>
 
-#include "base/time.h"
-#include "base/units.h"
-#include "link/aqm.h"
-#include "link/capacity.h"
-#include "link/packet.h"
-#include "link/path.h"
-#include "link/pi2.h"
-#include "link/queue.h"
-#include "link/random.h"
+#include "src/base/time.h"
+#include "src/base/units.h"
+#include "src/link/aqm.h"
+#include "src/link/capacity.h"
+#include "src/link/packet.h"
+#include "src/link/path.h"
+#include "src/link/pi2.h"
+#include "src/link/queue.h"
+#include "src/link/random.h"
 
 namespace lidar::link {
 

@@ -7,8 +7,8 @@
 #include <string_view>
 #include <vector>
 
-#include "base/time.h"
-#include "base/units.h"
+#include "src/base/time.h"
+#include "src/base/units.h"
 
 namespace lidar::link {
 

@@ -3,8 +3,8 @@
 #pragma once
 #include <cstdint>
 
-#include "base/time.h"
-#include "base/units.h"
+#include "src/base/time.h"
+#include "src/base/units.h"
 
 namespace lidar::link {
 

@@ -3,8 +3,8 @@
 #pragma once
 #include <algorithm>
 
-#include "base/time.h"
-#include "link/random.h"
+#include "src/base/time.h"
+#include "src/link/random.h"
 
 namespace lidar::link {
 

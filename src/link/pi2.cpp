@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "link/pi2.h"
+#include "src/link/pi2.h"
 
 #include <algorithm>
 

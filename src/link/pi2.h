@@ -3,10 +3,10 @@
 #pragma once
 #include <memory>
 
-#include "base/time.h"
-#include "link/aqm.h"
-#include "link/queue.h"
-#include "link/random.h"
+#include "src/base/time.h"
+#include "src/link/aqm.h"
+#include "src/link/queue.h"
+#include "src/link/random.h"
 
 namespace lidar::link {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "link/queue.h"
+#include "src/link/queue.h"
 
 namespace lidar::link {
 

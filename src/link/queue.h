@@ -5,10 +5,10 @@
 #include <deque>
 #include <memory>
 
-#include "base/time.h"
-#include "base/units.h"
-#include "link/aqm.h"
-#include "link/packet.h"
+#include "src/base/time.h"
+#include "src/base/units.h"
+#include "src/link/aqm.h"
+#include "src/link/packet.h"
 
 namespace lidar::link {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "ouster/clock_mapper.h"
+#include "src/ouster/clock_mapper.h"
 
 #include <algorithm>
 

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <optional>
 
-#include "base/time.h"
+#include "src/base/time.h"
 
 namespace lidar::ouster {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "ouster/imu_packet.h"
+#include "src/ouster/imu_packet.h"
 
 namespace lidar::ouster {
 namespace {

@@ -6,8 +6,8 @@
 #include <optional>
 #include <vector>
 
-#include "base/byte_reader.h"
-#include "ouster/metadata.h"
+#include "src/base/byte_reader.h"
+#include "src/ouster/metadata.h"
 
 namespace lidar::ouster {
 

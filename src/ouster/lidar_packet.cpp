@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "ouster/lidar_packet.h"
+#include "src/ouster/lidar_packet.h"
 
-#include "base/crc.h"
+#include "src/base/crc.h"
 
 namespace lidar::ouster {
 namespace {

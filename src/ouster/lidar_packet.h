@@ -5,8 +5,8 @@
 #include <cstring>
 #include <optional>
 
-#include "base/byte_reader.h"
-#include "ouster/packet_format.h"
+#include "src/base/byte_reader.h"
+#include "src/ouster/packet_format.h"
 
 namespace lidar::ouster {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "ouster/mask_image.h"
+#include "src/ouster/mask_image.h"
 
 #include <array>
 #include <cctype>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "ouster/metadata.h"
+#include "src/ouster/metadata.h"
 
 #include <algorithm>
 #include <charconv>

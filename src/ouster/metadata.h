@@ -7,11 +7,11 @@
 #include <string_view>
 #include <vector>
 
-#include "base/time.h"
-#include "cloud/range_projection.h"
-#include "cloud/sensor_model.h"
-#include "cloud/slicing.h"
-#include "ouster/packet_format.h"
+#include "src/base/time.h"
+#include "src/cloud/range_projection.h"
+#include "src/cloud/sensor_model.h"
+#include "src/cloud/slicing.h"
+#include "src/ouster/packet_format.h"
 
 namespace lidar::ouster {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "ouster/metadata_writer.h"
+#include "src/ouster/metadata_writer.h"
 
 #include <nlohmann/json.hpp>
 #include <vector>

@@ -3,7 +3,7 @@
 #pragma once
 #include <string>
 
-#include "ouster/metadata.h"
+#include "src/ouster/metadata.h"
 
 namespace lidar::ouster {
 

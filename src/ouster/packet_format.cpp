@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "ouster/packet_format.h"
+#include "src/ouster/packet_format.h"
 
 #include <algorithm>
 

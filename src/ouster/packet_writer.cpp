@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "ouster/packet_writer.h"
+#include "src/ouster/packet_writer.h"
 
 #include <algorithm>
 
-#include "base/crc.h"
+#include "src/base/crc.h"
 
 namespace lidar::ouster {
 namespace {

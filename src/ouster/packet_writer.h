@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "ouster/packet_format.h"
+#include "src/ouster/packet_format.h"
 
 namespace lidar::ouster {
 

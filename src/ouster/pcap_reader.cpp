@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "ouster/pcap_reader.h"
+#include "src/ouster/pcap_reader.h"
 
 #include <pcap/pcap.h>
 
@@ -7,7 +7,7 @@
 #include <array>
 #include <utility>
 
-#include "ouster/clock_mapper.h"
+#include "src/ouster/clock_mapper.h"
 
 namespace lidar::ouster {
 namespace {

@@ -5,8 +5,8 @@
 #include <optional>
 #include <string>
 
-#include "base/time.h"
-#include "ouster/udp_datagram.h"
+#include "src/base/time.h"
+#include "src/ouster/udp_datagram.h"
 
 struct pcap;
 

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "ouster/pcap_writer.h"
+#include "src/ouster/pcap_writer.h"
 
 #include <pcap/pcap.h>
 
 #include <cstdio>
 #include <vector>
 
-#include "base/byte_writer.h"
+#include "src/base/byte_writer.h"
 
 namespace lidar::ouster {
 namespace {

@@ -5,8 +5,8 @@
 #include <memory>
 #include <string>
 
-#include "base/byte_reader.h"
-#include "base/time.h"
+#include "src/base/byte_reader.h"
+#include "src/base/time.h"
 
 struct pcap;
 struct pcap_dumper;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "ouster/pixel_projection.h"
+#include "src/ouster/pixel_projection.h"
 
 #include <cmath>
 

@@ -6,8 +6,8 @@
 #include <optional>
 #include <vector>
 
-#include "cloud/range_projection.h"
-#include "ouster/metadata.h"
+#include "src/cloud/range_projection.h"
+#include "src/ouster/metadata.h"
 
 namespace lidar::ouster {
 

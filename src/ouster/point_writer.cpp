@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "ouster/point_writer.h"
+#include "src/ouster/point_writer.h"
 
 #include <algorithm>
 #include <array>

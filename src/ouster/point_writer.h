@@ -8,12 +8,12 @@
 #include <utility>
 #include <vector>
 
-#include "cloud/point_fields.h"
-#include "cloud/range_projection.h"
-#include "ouster/lidar_packet.h"
-#include "ouster/mask_image.h"
-#include "ouster/metadata.h"
-#include "ouster/pixel_projection.h"
+#include "src/cloud/point_fields.h"
+#include "src/cloud/range_projection.h"
+#include "src/ouster/lidar_packet.h"
+#include "src/ouster/mask_image.h"
+#include "src/ouster/metadata.h"
+#include "src/ouster/pixel_projection.h"
 
 namespace lidar::ouster {
 

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "ouster/scan_batcher.h"
+#include "src/ouster/scan_batcher.h"
 
 #include <algorithm>
 #include <utility>
 
-#include "ouster/clock_mapper.h"
+#include "src/ouster/clock_mapper.h"
 
 namespace lidar::ouster {
 namespace {

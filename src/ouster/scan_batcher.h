@@ -6,10 +6,10 @@
 #include <optional>
 #include <vector>
 
-#include "base/time.h"
-#include "ouster/lidar_packet.h"
-#include "ouster/metadata.h"
-#include "ouster/point_writer.h"
+#include "src/base/time.h"
+#include "src/ouster/lidar_packet.h"
+#include "src/ouster/metadata.h"
+#include "src/ouster/point_writer.h"
 
 namespace lidar::ouster {
 

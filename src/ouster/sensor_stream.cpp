@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "ouster/sensor_stream.h"
+#include "src/ouster/sensor_stream.h"
 
 #include <algorithm>
 #include <utility>

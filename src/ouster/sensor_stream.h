@@ -9,11 +9,11 @@
 #include <optional>
 #include <string>
 
-#include "base/time.h"
-#include "ouster/clock_mapper.h"
-#include "ouster/metadata.h"
-#include "ouster/point_writer.h"
-#include "ouster/scan_batcher.h"
+#include "src/base/time.h"
+#include "src/ouster/clock_mapper.h"
+#include "src/ouster/metadata.h"
+#include "src/ouster/point_writer.h"
+#include "src/ouster/scan_batcher.h"
 
 namespace lidar::ouster {
 

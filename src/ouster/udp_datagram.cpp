@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "ouster/udp_datagram.h"
+#include "src/ouster/udp_datagram.h"
 
 #include <algorithm>
 

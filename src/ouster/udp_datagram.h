@@ -8,8 +8,8 @@
 #include <optional>
 #include <vector>
 
-#include "base/byte_reader.h"
-#include "base/time.h"
+#include "src/base/byte_reader.h"
+#include "src/base/time.h"
 
 namespace lidar::ouster {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "rate/adaptive_model.h"
+#include "src/rate/adaptive_model.h"
 
 #include <algorithm>
 #include <cmath>

@@ -5,8 +5,8 @@
 #include <map>
 #include <string>
 
-#include "rate/size_model.h"
-#include "rate/slice_tracker.h"
+#include "src/rate/size_model.h"
+#include "src/rate/slice_tracker.h"
 
 namespace lidar::rate {
 

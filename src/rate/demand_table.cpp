@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "rate/demand_table.h"
+#include "src/rate/demand_table.h"
 
 #include <algorithm>
 #include <limits>

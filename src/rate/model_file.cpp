@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "rate/model_file.h"
+#include "src/rate/model_file.h"
 
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "rate/default_model.h"
+#include "src/rate/default_model.h"
 
 namespace lidar::rate {
 namespace {

@@ -6,8 +6,8 @@
 #include <string>
 #include <string_view>
 
-#include "rate/adaptive_model.h"
-#include "rate/paper_model.h"
+#include "src/rate/adaptive_model.h"
+#include "src/rate/paper_model.h"
 
 namespace lidar::rate {
 

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "rate/adaptive_model.h"
-#include "rate/paper_model.h"
+#include "src/rate/adaptive_model.h"
+#include "src/rate/paper_model.h"
 
 namespace lidar::rate {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "rate/paper_model.h"
+#include "src/rate/paper_model.h"
 
 #include <algorithm>
 #include <cmath>

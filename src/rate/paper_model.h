@@ -5,7 +5,7 @@
 #include <map>
 #include <string>
 
-#include "rate/size_model.h"
+#include "src/rate/size_model.h"
 
 namespace lidar::rate {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "rate/rate_controller.h"
+#include "src/rate/rate_controller.h"
 
 #include <algorithm>
 #include <cmath>

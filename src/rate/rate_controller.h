@@ -5,10 +5,10 @@
 #include <memory>
 #include <optional>
 
-#include "base/units.h"
-#include "rate/demand_table.h"
-#include "rate/scan_plan.h"
-#include "rate/size_model.h"
+#include "src/base/units.h"
+#include "src/rate/demand_table.h"
+#include "src/rate/scan_plan.h"
+#include "src/rate/size_model.h"
 
 namespace lidar::rate {
 

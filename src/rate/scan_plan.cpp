@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "rate/scan_plan.h"
+#include "src/rate/scan_plan.h"
 
 #include <algorithm>
 #include <cmath>

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "rate/demand_table.h"
+#include "src/rate/demand_table.h"
 
 namespace lidar::rate {
 

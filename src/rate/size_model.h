@@ -5,7 +5,7 @@
 #include <optional>
 #include <string>
 
-#include "base/units.h"
+#include "src/base/units.h"
 
 namespace lidar::rate {
 

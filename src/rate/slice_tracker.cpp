@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "rate/slice_tracker.h"
+#include "src/rate/slice_tracker.h"
 
 namespace lidar::rate {
 namespace {

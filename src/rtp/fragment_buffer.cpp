@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "rtp/fragment_buffer.h"
+#include "src/rtp/fragment_buffer.h"
 
-#include "base/sequence.h"
+#include "src/base/sequence.h"
 
 namespace lidar::rtp {
 namespace {

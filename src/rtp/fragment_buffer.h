@@ -6,7 +6,7 @@
 #include <optional>
 #include <vector>
 
-#include "rtp/payload_header.h"
+#include "src/rtp/payload_header.h"
 
 namespace lidar::rtp {
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "rtp/packetizer.h"
+#include "src/rtp/packetizer.h"
 
 #include <algorithm>
 
-#include "base/byte_writer.h"
+#include "src/base/byte_writer.h"
 
 namespace lidar::rtp {
 namespace {

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "rtp/payload_header.h"
+#include "src/rtp/payload_header.h"
 
-#include "base/byte_writer.h"
-#include "base/crc.h"
+#include "src/base/byte_writer.h"
+#include "src/base/crc.h"
 
 namespace lidar::rtp {
 namespace {

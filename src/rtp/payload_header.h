@@ -5,7 +5,7 @@
 #include <optional>
 #include <vector>
 
-#include "base/byte_reader.h"
+#include "src/base/byte_reader.h"
 
 namespace lidar::rtp {
 

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "rtp/reassembler.h"
+#include "src/rtp/reassembler.h"
 
 #include <algorithm>
 #include <utility>
 
-#include "base/sequence.h"
+#include "src/base/sequence.h"
 
 namespace lidar::rtp {
 namespace {

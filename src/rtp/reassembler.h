@@ -8,11 +8,11 @@
 #include <optional>
 #include <vector>
 
-#include "base/time.h"
-#include "rtp/fragment_buffer.h"
-#include "rtp/payload_header.h"
-#include "rtp/slice_ledger.h"
-#include "rtp/stream_config.h"
+#include "src/base/time.h"
+#include "src/rtp/fragment_buffer.h"
+#include "src/rtp/payload_header.h"
+#include "src/rtp/slice_ledger.h"
+#include "src/rtp/stream_config.h"
 
 namespace lidar::rtp {
 

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "rtp/receiver.h"
+#include "src/rtp/receiver.h"
 
 #include <cstdlib>
 #include <utility>
 
-#include "base/sequence.h"
+#include "src/base/sequence.h"
 
 namespace lidar::rtp {
 namespace {

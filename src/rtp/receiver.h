@@ -5,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-#include "rtp/reassembler.h"
+#include "src/rtp/reassembler.h"
 
 namespace lidar::rtp {
 

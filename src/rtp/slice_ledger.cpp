@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "rtp/slice_ledger.h"
+#include "src/rtp/slice_ledger.h"
 
 #include <algorithm>
 #include <utility>
 
-#include "base/sequence.h"
+#include "src/base/sequence.h"
 
 namespace lidar::rtp {
 namespace {

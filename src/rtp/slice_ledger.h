@@ -8,7 +8,7 @@
 #include <tuple>
 #include <vector>
 
-#include "base/time.h"
+#include "src/base/time.h"
 
 namespace lidar::rtp {
 

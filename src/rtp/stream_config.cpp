@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "rtp/stream_config.h"
+#include "src/rtp/stream_config.h"
 
 #include <tuple>
 
-#include "base/byte_writer.h"
-#include "base/crc.h"
-#include "cloud/point_fields.h"
-#include "cloud/sensor_model.h"
+#include "src/base/byte_writer.h"
+#include "src/base/crc.h"
+#include "src/cloud/point_fields.h"
+#include "src/cloud/sensor_model.h"
 
 namespace lidar::rtp {
 namespace {

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "base/byte_reader.h"
+#include "src/base/byte_reader.h"
 
 namespace lidar::rtp {
 

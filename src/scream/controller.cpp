@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "scream/controller.h"
+#include "src/scream/controller.h"
 
-#include "scream/controller_impl.h"
+#include "src/scream/controller_impl.h"
 
 namespace lidar::scream {
 

@@ -6,10 +6,10 @@
 #include <optional>
 #include <vector>
 
-#include "scream/ccfb.h"
-#include "scream/parameters.h"
-#include "scream/statistics.h"
-#include "scream/stream_config.h"
+#include "src/scream/feedback/ccfb.h"
+#include "src/scream/parameters.h"
+#include "src/scream/statistics.h"
+#include "src/scream/stream_config.h"
 
 namespace lidar::scream {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "scream/controller_impl.h"
+#include "src/scream/controller_impl.h"
 
 namespace lidar::scream {
 namespace {

@@ -3,22 +3,22 @@
 #pragma once
 #include <algorithm>
 
-#include "scream/busy_run.h"
-#include "scream/competing_flows.h"
-#include "scream/controller.h"
-#include "scream/ecn_monitor.h"
-#include "scream/fast_increase.h"
-#include "scream/flight.h"
-#include "scream/l4s_alpha.h"
-#include "scream/loss_rate.h"
-#include "scream/media_rate.h"
-#include "scream/pacer.h"
-#include "scream/queue_delay.h"
-#include "scream/reference_window.h"
-#include "scream/rtt.h"
-#include "scream/sent_history.h"
-#include "scream/steady_time.h"
-#include "scream/streams.h"
+#include "src/scream/controller.h"
+#include "src/scream/media_rate.h"
+#include "src/scream/model/busy_run.h"
+#include "src/scream/model/ecn_monitor.h"
+#include "src/scream/model/flight.h"
+#include "src/scream/model/l4s_alpha.h"
+#include "src/scream/model/loss_rate.h"
+#include "src/scream/model/queue_delay.h"
+#include "src/scream/model/rtt.h"
+#include "src/scream/model/sent_history.h"
+#include "src/scream/pacer.h"
+#include "src/scream/response/competing_flows.h"
+#include "src/scream/response/fast_increase.h"
+#include "src/scream/response/reference_window.h"
+#include "src/scream/steady_time.h"
+#include "src/scream/streams.h"
 
 namespace lidar::scream {
 

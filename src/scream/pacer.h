@@ -3,7 +3,7 @@
 #pragma once
 #include <algorithm>
 
-#include "scream/parameters.h"
+#include "src/scream/parameters.h"
 
 namespace lidar::scream {
 

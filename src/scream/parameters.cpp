@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "scream/parameters.h"
+#include "src/scream/parameters.h"
 
 namespace lidar::scream {
 

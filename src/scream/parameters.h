@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // The constants of SCReAM v2 under the draft's names, and a switch for each part beyond the draft.
 #pragma once
-#include "base/time.h"
-#include "base/units.h"
-#include "scream/ecn.h"
+#include "src/base/time.h"
+#include "src/base/units.h"
+#include "src/scream/ecn.h"
 
 namespace lidar::scream {
 using namespace std::chrono_literals;

@@ -3,9 +3,9 @@
 #pragma once
 #include <cstdint>
 
-#include "base/time.h"
-#include "base/units.h"
-#include "scream/ecn.h"
+#include "src/base/time.h"
+#include "src/base/units.h"
+#include "src/scream/ecn.h"
 
 namespace lidar::scream {
 

@@ -3,7 +3,7 @@
 #pragma once
 #include <algorithm>
 
-#include "base/time.h"
+#include "src/base/time.h"
 
 namespace lidar::scream {
 

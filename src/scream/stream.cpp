@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "scream/stream.h"
+#include "src/scream/stream.h"
 
 #include <algorithm>
 

@@ -5,10 +5,10 @@
 #include <optional>
 #include <set>
 
-#include "scream/parameters.h"
-#include "scream/rate_meter.h"
-#include "scream/statistics.h"
-#include "scream/stream_config.h"
+#include "src/scream/model/rate_meter.h"
+#include "src/scream/parameters.h"
+#include "src/scream/statistics.h"
+#include "src/scream/stream_config.h"
 
 namespace lidar::scream {
 

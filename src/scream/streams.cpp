@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "scream/streams.h"
+#include "src/scream/streams.h"
 
 #include <algorithm>
 #include <vector>

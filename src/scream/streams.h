@@ -4,7 +4,7 @@
 #include <map>
 #include <optional>
 
-#include "scream/stream.h"
+#include "src/scream/stream.h"
 
 namespace lidar::scream {
 

@@ -5,8 +5,8 @@
 #include <cmath>
 #include <optional>
 
-#include "base/time.h"
-#include "base/units.h"
+#include "src/base/time.h"
+#include "src/base/units.h"
 
 namespace lidar::scream {
 using namespace std::chrono_literals;

@@ -2,8 +2,8 @@
 // Open country: a lane between ditches, grass, hedges, trees, bales, a barn, and much sky.
 #include <algorithm>
 
-#include "synth/props.h"
-#include "synth/scenes.h"
+#include "src/synth/props.h"
+#include "src/synth/scenes.h"
 
 namespace lidar::synth {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "synth/geometry.h"
+#include "src/synth/geometry.h"
 
 namespace lidar::synth {
 

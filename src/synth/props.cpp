@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "synth/props.h"
+#include "src/synth/props.h"
 
 #include <cmath>
 

@@ -3,7 +3,7 @@
 #pragma once
 #include <vector>
 
-#include "synth/shapes.h"
+#include "src/synth/shapes.h"
 
 namespace lidar::synth {
 

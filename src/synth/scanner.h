@@ -5,11 +5,11 @@
 #include <memory>
 #include <vector>
 
-#include "base/time.h"
-#include "cloud/range_projection.h"
-#include "synth/scene.h"
-#include "synth/sector_index.h"
-#include "synth/sensors.h"
+#include "src/base/time.h"
+#include "src/cloud/range_projection.h"
+#include "src/synth/scene.h"
+#include "src/synth/sector_index.h"
+#include "src/synth/sensors.h"
 
 namespace lidar::synth {
 

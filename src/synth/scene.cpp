@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "synth/scene.h"
+#include "src/synth/scene.h"
 
-#include "synth/scenes.h"
+#include "src/synth/scenes.h"
 
 namespace lidar::synth {
 

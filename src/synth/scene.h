@@ -6,8 +6,8 @@
 #include <memory>
 #include <vector>
 
-#include "synth/shapes.h"
-#include "synth/trajectory.h"
+#include "src/synth/shapes.h"
+#include "src/synth/trajectory.h"
 
 namespace lidar::synth {
 

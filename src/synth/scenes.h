@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // The makers of the scenes, one a file.
 #pragma once
-#include "synth/scene.h"
+#include "src/synth/scene.h"
 
 namespace lidar::synth {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "synth/sector_index.h"
+#include "src/synth/sector_index.h"
 
 #include <algorithm>
 #include <array>

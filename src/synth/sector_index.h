@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "synth/shapes.h"
+#include "src/synth/shapes.h"
 
 namespace lidar::synth {
 

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "synth/sensors.h"
+#include "src/synth/sensors.h"
 
 #include <array>
 #include <charconv>
 #include <cmath>
 
-#include "synth/random.h"
+#include "src/synth/random.h"
 
 namespace lidar::synth {
 namespace {

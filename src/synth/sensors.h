@@ -5,7 +5,7 @@
 #include <optional>
 #include <string_view>
 
-#include "cloud/sensor_model.h"
+#include "src/cloud/sensor_model.h"
 
 namespace lidar::synth {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "synth/shapes.h"
+#include "src/synth/shapes.h"
 
 #include <algorithm>
 #include <utility>

@@ -3,8 +3,8 @@
 #pragma once
 #include <cstdint>
 
-#include "synth/geometry.h"
-#include "synth/random.h"
+#include "src/synth/geometry.h"
+#include "src/synth/random.h"
 
 namespace lidar::synth {
 

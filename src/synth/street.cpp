@@ -2,8 +2,8 @@
 // A street in a town: façades, pavements, parked and moving cars, trees, lamps, people, crossings.
 #include <algorithm>
 
-#include "synth/props.h"
-#include "synth/scenes.h"
+#include "src/synth/props.h"
+#include "src/synth/scenes.h"
 
 namespace lidar::synth {
 namespace {

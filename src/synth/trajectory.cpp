@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "synth/trajectory.h"
+#include "src/synth/trajectory.h"
 
 namespace lidar::synth {
 namespace {

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // The exact motion of the sensor: a car that follows its lane.
 #pragma once
-#include "base/time.h"
-#include "synth/geometry.h"
+#include "src/base/time.h"
+#include "src/synth/geometry.h"
 
 namespace lidar::synth {
 

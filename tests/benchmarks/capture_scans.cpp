@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "capture_scans.h"
+#include "tests/benchmarks/capture_scans.h"
 
 #include <fstream>
 #include <sstream>
 
-#include "ouster/pcap_reader.h"
-#include "ouster/sensor_stream.h"
+#include "src/ouster/pcap_reader.h"
+#include "src/ouster/sensor_stream.h"
 
 namespace lidar::bench {
 

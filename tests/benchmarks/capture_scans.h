@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "draco/codec/slice_encoder.h"
+#include "src/codec/slice_encoder.h"
 
 namespace lidar::bench {
 

@@ -5,8 +5,8 @@
 #include <cstdlib>
 #include <map>
 
-#include "capture_scans.h"
-#include "draco/codec/slice_decoder.h"
+#include "src/codec/slice_decoder.h"
+#include "tests/benchmarks/capture_scans.h"
 
 namespace lidar::bench {
 namespace {

@@ -5,9 +5,9 @@
 
 #include <cstdlib>
 
-#include "capture_scans.h"
-#include "common/cloud_info.h"
-#include "common/refs.h"
+#include "gst/common/cloud_info.h"
+#include "gst/common/refs.h"
+#include "tests/benchmarks/capture_scans.h"
 
 namespace lidar::bench {
 namespace {

@@ -7,10 +7,10 @@
 #include <memory>
 #include <vector>
 
-#include "base/byte_writer.h"
-#include "common/gstlidar.h"
-#include "common/refs.h"
-#include "scream/ccfb.h"
+#include "gst/common/gstlidar.h"
+#include "gst/common/refs.h"
+#include "src/base/byte_writer.h"
+#include "src/scream/feedback/ccfb.h"
 
 namespace lidar {
 namespace {

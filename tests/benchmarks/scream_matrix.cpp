@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "scenarios.h"
+#include "tests/core/scream/scenarios.h"
 
 namespace {
 

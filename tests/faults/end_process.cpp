@@ -10,8 +10,8 @@
 #include <sstream>
 #include <string>
 
-#include "ends.h"
-#include "stepped_clock.h"
+#include "tests/faults/ends.h"
+#include "tests/faults/stepped_clock.h"
 
 namespace {
 

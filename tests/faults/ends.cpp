@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "ends.h"
+#include "tests/faults/ends.h"
 
 #include <sys/resource.h>
 #include <unistd.h>
@@ -8,8 +8,8 @@
 #include <stdexcept>
 #include <thread>
 
-#include "base/crc.h"
-#include "common/buffer_map.h"
+#include "gst/common/buffer_map.h"
+#include "src/base/crc.h"
 
 namespace lidar::test {
 namespace {

@@ -12,7 +12,7 @@
 #include <set>
 #include <string>
 
-#include "common/refs.h"
+#include "gst/common/refs.h"
 
 namespace lidar::test {
 

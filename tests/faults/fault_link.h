@@ -14,7 +14,7 @@
 #include <tuple>
 #include <vector>
 
-#include "rtp/payload_header.h"
+#include "src/rtp/payload_header.h"
 
 namespace lidar::test {
 

@@ -10,8 +10,8 @@
 #include <optional>
 #include <thread>
 
-#include "ends.h"
-#include "fault_link.h"
+#include "tests/faults/ends.h"
+#include "tests/faults/fault_link.h"
 
 namespace lidar::test {
 namespace {

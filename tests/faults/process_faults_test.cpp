@@ -4,9 +4,9 @@
 
 #include <thread>
 
-#include "child_end.h"
-#include "ends.h"
-#include "fault_link.h"
+#include "tests/faults/child_end.h"
+#include "tests/faults/ends.h"
+#include "tests/faults/fault_link.h"
 
 namespace lidar::test {
 namespace {

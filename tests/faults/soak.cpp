@@ -9,8 +9,8 @@
 #include <string>
 #include <thread>
 
-#include "ends.h"
-#include "fault_link.h"
+#include "tests/faults/ends.h"
+#include "tests/faults/fault_link.h"
 
 namespace {
 

@@ -4,8 +4,8 @@
 
 #include <thread>
 
-#include "ends.h"
-#include "fault_link.h"
+#include "tests/faults/ends.h"
+#include "tests/faults/fault_link.h"
 
 namespace lidar::test {
 namespace {

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <string>
 
-#include "fuzz.h"
-#include "link/capacity.h"
+#include "src/link/capacity.h"
+#include "tests/fuzz/fuzz.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   for (const bool repeat : {false, true}) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // RFC 8888 feedback, alone and in compound RTCP.
-#include "fuzz.h"
-#include "scream/ccfb.h"
+#include "src/scream/feedback/ccfb.h"
+#include "tests/fuzz/fuzz.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   lidar::scream::CcfbParser parser;

@@ -3,8 +3,8 @@
 // byte chooses the geometry and the sensor.
 #include <vector>
 
-#include "draco/codec/slice_decoder.h"
-#include "fuzz.h"
+#include "src/codec/slice_decoder.h"
+#include "tests/fuzz/fuzz.h"
 
 namespace {
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Frames of a capture down to UDP, IP fragments put together. The first byte chooses the link
 // type; then frames, each behind 2 bytes of size.
-#include "fuzz.h"
-#include "ouster/udp_datagram.h"
+#include "src/ouster/udp_datagram.h"
+#include "tests/fuzz/fuzz.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using lidar::ouster::LinkType;

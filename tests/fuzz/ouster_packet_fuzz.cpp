@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "fuzz.h"
-#include "ouster/sensor_stream.h"
+#include "src/ouster/sensor_stream.h"
+#include "tests/fuzz/fuzz.h"
 
 namespace {
 

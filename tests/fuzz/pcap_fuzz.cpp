@@ -5,8 +5,8 @@
 
 #include <string>
 
-#include "fuzz.h"
-#include "ouster/pcap_reader.h"
+#include "src/ouster/pcap_reader.h"
+#include "tests/fuzz/fuzz.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const int fd = memfd_create("capture", MFD_CLOEXEC);

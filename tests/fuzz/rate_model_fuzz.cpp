@@ -2,8 +2,8 @@
 #include <cmath>
 #include <string>
 
-#include "fuzz.h"
-#include "rate/model_file.h"
+#include "src/rate/model_file.h"
+#include "tests/fuzz/fuzz.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   std::string error;

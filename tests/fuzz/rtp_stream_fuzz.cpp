@@ -3,8 +3,8 @@
 // Input: for each packet a byte of flags, sequence step, time step in ms, 2 bytes of size, payload.
 #include <vector>
 
-#include "fuzz.h"
-#include "rtp/receiver.h"
+#include "src/rtp/receiver.h"
+#include "tests/fuzz/fuzz.h"
 
 namespace {
 

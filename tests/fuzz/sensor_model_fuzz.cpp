@@ -2,9 +2,9 @@
 #include <cmath>
 #include <vector>
 
-#include "cloud/range_projection.h"
-#include "cloud/sensor_model.h"
-#include "fuzz.h"
+#include "src/cloud/range_projection.h"
+#include "src/cloud/sensor_model.h"
+#include "tests/fuzz/fuzz.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const auto model = lidar::SensorModel::Parse({data, size});

@@ -8,7 +8,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "common/refs.h"
+#include "gst/common/refs.h"
 
 namespace {
 

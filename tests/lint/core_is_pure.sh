@@ -18,7 +18,7 @@ fi
 for folder in ouster rate rtp scream link synth; do
   others="ouster|rate|rtp|scream|link|synth"
   case $folder in ouster | rate | rtp | synth) ;; *) others="$others|cloud" ;; esac
-  if grep -rnE "#include \"($others)/" "src/$folder" | grep -v "#include \"$folder/"; then
+  if grep -rnE "#include \"src/($others)/" "src/$folder" | grep -v "#include \"src/$folder/"; then
     echo "src/$folder must not include its siblings." >&2
     status=1
   fi

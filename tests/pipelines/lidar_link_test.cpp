@@ -10,9 +10,9 @@
 #include <nlohmann/json.hpp>
 #include <thread>
 
-#include "common/child_process.h"
-#include "common/event_loop.h"
-#include "common/udp_socket.h"
+#include "src/tools/common/child_process.h"
+#include "src/tools/common/event_loop.h"
+#include "src/tools/common/udp_socket.h"
 
 namespace lidar::tools {
 namespace {

@@ -5,7 +5,7 @@
 
 #include <memory>
 
-#include "common/refs.h"
+#include "gst/common/refs.h"
 
 namespace lidar::test {
 

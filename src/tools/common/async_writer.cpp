@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "common/async_writer.h"
+#include "src/tools/common/async_writer.h"
 
 #include <unistd.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "common/child_process.h"
+#include "src/tools/common/child_process.h"
 
 #include <fcntl.h>
 #include <limits.h>

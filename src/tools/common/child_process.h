@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "common/file_descriptor.h"
+#include "src/tools/common/file_descriptor.h"
 
 namespace lidar::tools {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "common/event_loop.h"
+#include "src/tools/common/event_loop.h"
 
 #include <sched.h>
 #include <sys/epoll.h>

@@ -4,8 +4,8 @@
 #include <functional>
 #include <map>
 
-#include "base/time.h"
-#include "common/file_descriptor.h"
+#include "src/base/time.h"
+#include "src/tools/common/file_descriptor.h"
 
 namespace lidar::tools {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "common/udp_socket.h"
+#include "src/tools/common/udp_socket.h"
 
 #include <arpa/inet.h>
 #include <net/if.h>

@@ -10,9 +10,9 @@
 #include <string>
 #include <vector>
 
-#include "base/byte_reader.h"
-#include "base/time.h"
-#include "common/file_descriptor.h"
+#include "src/base/byte_reader.h"
+#include "src/base/time.h"
+#include "src/tools/common/file_descriptor.h"
 
 namespace lidar::tools {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "demo/cloud_compare.h"
+#include "src/tools/demo/cloud_compare.h"
 
 #include <algorithm>
 #include <array>

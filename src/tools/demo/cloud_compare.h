@@ -3,7 +3,7 @@
 #pragma once
 #include <cstdint>
 
-#include "demo/cloud_frame.h"
+#include "src/tools/demo/cloud_frame.h"
 
 namespace lidar::demo {
 

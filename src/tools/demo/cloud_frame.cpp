@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "demo/cloud_frame.h"
+#include "src/tools/demo/cloud_frame.h"
 
 #include <unistd.h>
 

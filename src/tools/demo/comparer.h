@@ -9,8 +9,8 @@
 #include <utility>
 #include <vector>
 
-#include "demo/cloud_compare.h"
-#include "demo/cloud_frame.h"
+#include "src/tools/demo/cloud_compare.h"
+#include "src/tools/demo/cloud_frame.h"
 
 namespace lidar::demo {
 

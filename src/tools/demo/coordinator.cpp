@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "demo/coordinator.h"
+#include "src/tools/demo/coordinator.h"
 
 #include <sys/stat.h>
 
@@ -11,13 +11,13 @@
 #include <memory>
 #include <stdexcept>
 
-#include "common/child_process.h"
-#include "common/event_loop.h"
-#include "common/udp_socket.h"
-#include "demo/comparer.h"
-#include "demo/measurements.h"
-#include "demo/report.h"
-#include "demo/summary.h"
+#include "src/tools/common/child_process.h"
+#include "src/tools/common/event_loop.h"
+#include "src/tools/common/udp_socket.h"
+#include "src/tools/demo/comparer.h"
+#include "src/tools/demo/measurements.h"
+#include "src/tools/demo/report.h"
+#include "src/tools/demo/summary.h"
 
 namespace lidar::demo {
 namespace {

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "demo/ends.h"
+#include "src/tools/demo/ends.h"
 
 #include <cmath>
 #include <initializer_list>
 #include <memory>
 #include <vector>
 
-#include "common/gstlidar.h"
-#include "demo/media_process.h"
-#include "demo/structure_json.h"
+#include "gst/common/gstlidar.h"
+#include "src/tools/demo/media_process.h"
+#include "src/tools/demo/structure_json.h"
 
 namespace lidar::demo {
 namespace {

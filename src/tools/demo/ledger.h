@@ -7,8 +7,8 @@
 #include <optional>
 #include <vector>
 
-#include "demo/cloud_compare.h"
-#include "demo/cloud_frame.h"
+#include "src/tools/demo/cloud_compare.h"
+#include "src/tools/demo/cloud_frame.h"
 
 namespace lidar::demo {
 

@@ -5,8 +5,8 @@
 #include <CLI/CLI.hpp>
 #include <cstdio>
 
-#include "demo/coordinator.h"
-#include "demo/ends.h"
+#include "src/tools/demo/coordinator.h"
+#include "src/tools/demo/ends.h"
 
 namespace {
 

@@ -6,10 +6,10 @@
 #include <string>
 #include <vector>
 
-#include "base/time.h"
-#include "demo/ledger.h"
-#include "demo/run_options.h"
-#include "link/capacity.h"
+#include "src/base/time.h"
+#include "src/link/capacity.h"
+#include "src/tools/demo/ledger.h"
+#include "src/tools/demo/run_options.h"
 
 namespace lidar::demo {
 

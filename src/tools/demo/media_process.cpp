@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "demo/media_process.h"
+#include "src/tools/demo/media_process.h"
 
 #include <glib-unix.h>
 #include <unistd.h>
@@ -12,8 +12,8 @@
 #include <stdexcept>
 #include <utility>
 
-#include "common/buffer_map.h"
-#include "common/cloud_info.h"
+#include "gst/common/buffer_map.h"
+#include "gst/common/cloud_info.h"
 
 namespace lidar::demo {
 namespace {

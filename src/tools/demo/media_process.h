@@ -10,9 +10,9 @@
 #include <string>
 #include <vector>
 
-#include "common/async_writer.h"
-#include "common/refs.h"
-#include "demo/cloud_frame.h"
+#include "gst/common/refs.h"
+#include "src/tools/common/async_writer.h"
+#include "src/tools/demo/cloud_frame.h"
 
 namespace lidar::demo {
 

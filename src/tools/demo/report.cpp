@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "demo/report.h"
+#include "src/tools/demo/report.h"
 
 #include <algorithm>
 #include <cmath>

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "base/time.h"
-#include "link/capacity.h"
+#include "src/base/time.h"
+#include "src/link/capacity.h"
 
 namespace CLI {
 class App;

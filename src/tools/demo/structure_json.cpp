@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "demo/structure_json.h"
+#include "src/tools/demo/structure_json.h"
 
-#include "common/refs.h"
+#include "gst/common/refs.h"
 
 namespace lidar::demo {
 namespace {

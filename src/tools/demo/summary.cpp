@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "demo/summary.h"
+#include "src/tools/demo/summary.h"
 
 #include <algorithm>
 #include <cstdio>
 
-#include "common/distribution.h"
+#include "src/tools/common/distribution.h"
 
 namespace lidar::demo {
 namespace {

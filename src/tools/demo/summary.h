@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "demo/measurements.h"
+#include "src/tools/demo/measurements.h"
 
 namespace lidar::demo {
 

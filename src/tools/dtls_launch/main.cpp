@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-#include "common/refs.h"
+#include "gst/common/refs.h"
 
 namespace {
 

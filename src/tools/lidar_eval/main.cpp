@@ -2,7 +2,7 @@
 // lidar-eval: what an error bound costs, and how well a bitrate is hit.
 #include <iostream>
 
-#include "lidar_eval/commands.h"
+#include "src/tools/lidar_eval/commands.h"
 
 int main(int argc, char** argv) {
   CLI::App app("Measures the codec and the rate control on captures, clouds and synthetic drives.");

@@ -4,10 +4,10 @@
 #include <cstdio>
 #include <memory>
 
-#include "lidar_eval/commands.h"
-#include "lidar_eval/measure.h"
-#include "lidar_eval/plot.h"
-#include "lidar_eval/scan_source.h"
+#include "src/tools/codec_lab/measure.h"
+#include "src/tools/codec_lab/plot.h"
+#include "src/tools/codec_lab/scan_source.h"
+#include "src/tools/lidar_eval/commands.h"
 
 namespace lidar::tools {
 namespace {

@@ -5,10 +5,10 @@
 #include <memory>
 #include <stdexcept>
 
-#include "lidar_eval/commands.h"
-#include "lidar_eval/packet_recording.h"
-#include "lidar_eval/scan_source.h"
-#include "ouster/metadata_writer.h"
+#include "src/ouster/metadata_writer.h"
+#include "src/tools/codec_lab/packet_recording.h"
+#include "src/tools/codec_lab/scan_source.h"
+#include "src/tools/lidar_eval/commands.h"
 
 namespace lidar::tools {
 namespace {

@@ -4,12 +4,12 @@
 #include <map>
 #include <memory>
 
-#include "lidar_eval/commands.h"
-#include "lidar_eval/measure.h"
-#include "lidar_eval/model_option.h"
-#include "lidar_eval/plot.h"
-#include "lidar_eval/scan_source.h"
-#include "lidar_eval/tracking.h"
+#include "src/tools/codec_lab/measure.h"
+#include "src/tools/codec_lab/model_option.h"
+#include "src/tools/codec_lab/plot.h"
+#include "src/tools/codec_lab/scan_source.h"
+#include "src/tools/codec_lab/tracking.h"
+#include "src/tools/lidar_eval/commands.h"
 
 namespace lidar::tools {
 namespace {

@@ -4,10 +4,10 @@
 #include <fstream>
 #include <iostream>
 
-#include "common/event_loop.h"
-#include "lidar_link/options.h"
-#include "lidar_link/recorder.h"
-#include "lidar_link/relay.h"
+#include "src/tools/common/event_loop.h"
+#include "src/tools/lidar_link/options.h"
+#include "src/tools/lidar_link/recorder.h"
+#include "src/tools/lidar_link/relay.h"
 
 namespace lidar::tools {
 namespace {

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "base/time.h"
-#include "link/bottleneck.h"
+#include "src/base/time.h"
+#include "src/link/bottleneck.h"
 
 namespace lidar::tools {
 

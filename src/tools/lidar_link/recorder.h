@@ -8,10 +8,10 @@
 #include <string>
 #include <vector>
 
-#include "base/byte_reader.h"
-#include "base/time.h"
-#include "common/distribution.h"
-#include "link/bottleneck.h"
+#include "src/base/byte_reader.h"
+#include "src/base/time.h"
+#include "src/link/bottleneck.h"
+#include "src/tools/common/distribution.h"
 
 namespace lidar::tools {
 

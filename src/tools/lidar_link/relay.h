@@ -6,11 +6,11 @@
 #include <optional>
 #include <vector>
 
-#include "common/event_loop.h"
-#include "common/udp_socket.h"
-#include "lidar_link/options.h"
-#include "lidar_link/recorder.h"
-#include "link/bottleneck.h"
+#include "src/link/bottleneck.h"
+#include "src/tools/common/event_loop.h"
+#include "src/tools/common/udp_socket.h"
+#include "src/tools/lidar_link/options.h"
+#include "src/tools/lidar_link/recorder.h"
 
 namespace lidar::tools {
 

@@ -6,11 +6,11 @@
 #include <iostream>
 #include <map>
 
-#include "lidar_eval/progress.h"
-#include "lidar_eval/scan_source.h"
-#include "lidar_eval/slice_codec.h"
-#include "lidar_train/training.h"
-#include "rate/model_file.h"
+#include "src/rate/model_file.h"
+#include "src/tools/codec_lab/progress.h"
+#include "src/tools/codec_lab/scan_source.h"
+#include "src/tools/codec_lab/slice_codec.h"
+#include "src/tools/codec_lab/training.h"
 
 namespace lidar::tools {
 namespace {

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "ouster_replay/packet_stream.h"
+#include "src/tools/ouster_replay/packet_stream.h"
 
 namespace lidar::tools {
 

@@ -6,15 +6,15 @@
 #include <iterator>
 #include <memory>
 
-#include "common/event_loop.h"
-#include "ouster/metadata_writer.h"
-#include "ouster/pcap_writer.h"
-#include "ouster_replay/http_api.h"
-#include "ouster_replay/options.h"
-#include "ouster_replay/pcap_stream.h"
-#include "ouster_replay/player.h"
-#include "ouster_replay/sensor.h"
-#include "ouster_replay/synth_stream.h"
+#include "src/ouster/metadata_writer.h"
+#include "src/ouster/pcap_writer.h"
+#include "src/tools/common/event_loop.h"
+#include "src/tools/ouster_replay/http_api.h"
+#include "src/tools/ouster_replay/options.h"
+#include "src/tools/ouster_replay/pcap_stream.h"
+#include "src/tools/ouster_replay/player.h"
+#include "src/tools/ouster_replay/sensor.h"
+#include "src/tools/ouster_replay/synth_stream.h"
 
 namespace lidar::tools {
 namespace {

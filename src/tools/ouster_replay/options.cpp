@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "ouster_replay/options.h"
+#include "src/tools/ouster_replay/options.h"
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <map>
 
-#include "ouster_replay/faults.h"
+#include "src/tools/ouster_replay/faults.h"
 
 namespace lidar::tools {
 namespace {

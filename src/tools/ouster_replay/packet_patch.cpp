@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "ouster_replay/packet_patch.h"
+#include "src/tools/ouster_replay/packet_patch.h"
 
-#include "base/crc.h"
+#include "src/base/crc.h"
 
 namespace lidar::tools {
 namespace {

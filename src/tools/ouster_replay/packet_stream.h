@@ -6,8 +6,8 @@
 #include <optional>
 #include <vector>
 
-#include "base/time.h"
-#include "ouster/metadata.h"
+#include "src/base/time.h"
+#include "src/ouster/metadata.h"
 
 namespace lidar::tools {
 

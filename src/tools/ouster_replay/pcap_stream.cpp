@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "ouster_replay/pcap_stream.h"
+#include "src/tools/ouster_replay/pcap_stream.h"
 
 #include <stdexcept>
 
-#include "ouster/lidar_packet.h"
-#include "ouster/pcap_reader.h"
-#include "ouster_replay/packet_patch.h"
+#include "src/ouster/lidar_packet.h"
+#include "src/ouster/pcap_reader.h"
+#include "src/tools/ouster_replay/packet_patch.h"
 
 namespace lidar::tools {
 

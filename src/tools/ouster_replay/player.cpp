@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "ouster_replay/player.h"
+#include "src/tools/ouster_replay/player.h"
 
 #include <algorithm>
 #include <utility>
 
-#include "common/event_loop.h"
+#include "src/tools/common/event_loop.h"
 
 namespace lidar::tools {
 namespace {

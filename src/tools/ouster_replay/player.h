@@ -7,12 +7,12 @@
 #include <optional>
 #include <string>
 
-#include "base/time.h"
-#include "common/udp_socket.h"
-#include "ouster_replay/faults.h"
-#include "ouster_replay/options.h"
-#include "ouster_replay/packet_stream.h"
-#include "ouster_replay/sensor.h"
+#include "src/base/time.h"
+#include "src/tools/common/udp_socket.h"
+#include "src/tools/ouster_replay/faults.h"
+#include "src/tools/ouster_replay/options.h"
+#include "src/tools/ouster_replay/packet_stream.h"
+#include "src/tools/ouster_replay/sensor.h"
 
 namespace lidar::tools {
 

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "ouster_replay/sensor.h"
+#include "src/tools/ouster_replay/sensor.h"
 
 #include <stdexcept>
 #include <utility>
 
-#include "common/udp_socket.h"
-#include "ouster/metadata_writer.h"
+#include "src/ouster/metadata_writer.h"
+#include "src/tools/common/udp_socket.h"
 
 namespace lidar::tools {
 namespace {

@@ -7,8 +7,8 @@
 #include <optional>
 #include <string>
 
-#include "ouster/metadata.h"
-#include "ouster_replay/faults.h"
+#include "src/ouster/metadata.h"
+#include "src/tools/ouster_replay/faults.h"
 
 namespace lidar::tools {
 

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "ouster_replay/synth_stream.h"
+#include "src/tools/ouster_replay/synth_stream.h"
 
 #include <algorithm>
 #include <array>
 #include <cctype>
 #include <stdexcept>
 
-#include "base/byte_writer.h"
+#include "src/base/byte_writer.h"
 
 namespace lidar::tools {
 namespace {

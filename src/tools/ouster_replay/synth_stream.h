@@ -4,9 +4,9 @@
 #include <memory>
 #include <string>
 
-#include "ouster/packet_writer.h"
-#include "ouster_replay/packet_stream.h"
-#include "synth/scanner.h"
+#include "src/ouster/packet_writer.h"
+#include "src/synth/scanner.h"
+#include "src/tools/ouster_replay/packet_stream.h"
 
 namespace lidar::tools {
 

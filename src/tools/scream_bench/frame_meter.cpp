@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "scream_bench/frame_meter.h"
+#include "src/tools/scream_bench/frame_meter.h"
 
 #include <algorithm>
 
-#include "scream_bench/frame_source.h"
+#include "src/tools/scream_bench/frame_source.h"
 
 namespace lidar::tools {
 namespace {

@@ -4,10 +4,10 @@
 #include <cstdint>
 #include <optional>
 
-#include "base/sequence.h"
-#include "base/time.h"
-#include "base/units.h"
-#include "common/distribution.h"
+#include "src/base/sequence.h"
+#include "src/base/time.h"
+#include "src/base/units.h"
+#include "src/tools/common/distribution.h"
 
 namespace lidar::tools {
 

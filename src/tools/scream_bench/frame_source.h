@@ -6,9 +6,9 @@
 #include <cstdint>
 #include <random>
 
-#include "base/units.h"
-#include "common/refs.h"
-#include "scream_bench/options.h"
+#include "gst/common/refs.h"
+#include "src/base/units.h"
+#include "src/tools/scream_bench/options.h"
 
 namespace lidar::tools {
 

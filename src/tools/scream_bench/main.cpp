@@ -5,9 +5,9 @@
 #include <exception>
 #include <iostream>
 
-#include "scream_bench/options.h"
-#include "scream_bench/receiver.h"
-#include "scream_bench/sender.h"
+#include "src/tools/scream_bench/options.h"
+#include "src/tools/scream_bench/receiver.h"
+#include "src/tools/scream_bench/sender.h"
 
 int main(int argc, char** argv) {
   const auto options = lidar::tools::ParseBenchOptions(argc, argv);

@@ -4,8 +4,8 @@
 #include <cstdint>
 #include <string>
 
-#include "base/time.h"
-#include "base/units.h"
+#include "src/base/time.h"
+#include "src/base/units.h"
 
 namespace lidar::tools {
 

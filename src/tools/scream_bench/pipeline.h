@@ -6,8 +6,8 @@
 #include <functional>
 #include <string>
 
-#include "base/time.h"
-#include "common/refs.h"
+#include "gst/common/refs.h"
+#include "src/base/time.h"
 
 namespace lidar::tools {
 

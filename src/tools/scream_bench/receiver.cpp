@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "scream_bench/receiver.h"
+#include "src/tools/scream_bench/receiver.h"
 
 #include <gst/rtp/gstrtpbuffer.h>
 
@@ -9,10 +9,10 @@
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 
-#include "common/gstlidar.h"
-#include "scream_bench/frame_meter.h"
-#include "scream_bench/frame_source.h"
-#include "scream_bench/pipeline.h"
+#include "gst/common/gstlidar.h"
+#include "src/tools/scream_bench/frame_meter.h"
+#include "src/tools/scream_bench/frame_source.h"
+#include "src/tools/scream_bench/pipeline.h"
 
 namespace lidar::tools {
 namespace {

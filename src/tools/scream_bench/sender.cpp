@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "scream_bench/sender.h"
+#include "src/tools/scream_bench/sender.h"
 
 #include <gst/app/gstappsrc.h>
 
@@ -11,9 +11,9 @@
 #include <stdexcept>
 #include <thread>
 
-#include "common/gstlidar.h"
-#include "scream_bench/frame_source.h"
-#include "scream_bench/pipeline.h"
+#include "gst/common/gstlidar.h"
+#include "src/tools/scream_bench/frame_source.h"
+#include "src/tools/scream_bench/pipeline.h"
 
 namespace lidar::tools {
 namespace {

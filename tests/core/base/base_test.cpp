@@ -4,11 +4,11 @@
 #include <cstring>
 #include <vector>
 
-#include "base/byte_reader.h"
-#include "base/byte_writer.h"
-#include "base/crc.h"
-#include "base/sequence.h"
-#include "base/units.h"
+#include "src/base/byte_reader.h"
+#include "src/base/byte_writer.h"
+#include "src/base/crc.h"
+#include "src/base/sequence.h"
+#include "src/base/units.h"
 
 namespace lidar {
 namespace {

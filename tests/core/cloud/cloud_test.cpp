@@ -7,9 +7,9 @@
 #include <numeric>
 #include <vector>
 
-#include "cloud/point_fields.h"
-#include "cloud/range_projection.h"
-#include "cloud/sensor_model.h"
+#include "src/cloud/point_fields.h"
+#include "src/cloud/range_projection.h"
+#include "src/cloud/sensor_model.h"
 
 namespace lidar {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "cloud/slicing.h"
+#include "src/cloud/slicing.h"
 
 #include <gtest/gtest.h>
 

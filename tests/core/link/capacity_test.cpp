@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "link/capacity.h"
+#include "src/link/capacity.h"
 
 #include <gtest/gtest.h>
 

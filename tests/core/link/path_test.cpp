@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "link/path.h"
+#include "src/link/path.h"
 
 #include <gtest/gtest.h>
 
-#include "link/bottleneck.h"
+#include "src/link/bottleneck.h"
 
 namespace lidar::link {
 namespace {

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "link/pi2.h"
+#include "src/link/pi2.h"
 
 #include <gtest/gtest.h>
 
 #include <array>
 #include <cmath>
 
-#include "link/bottleneck.h"
+#include "src/link/bottleneck.h"
 
 namespace lidar::link {
 namespace {

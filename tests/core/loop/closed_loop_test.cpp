@@ -9,10 +9,10 @@
 #include <numeric>
 #include <vector>
 
-#include "rate/model_file.h"
-#include "rate/rate_controller.h"
-#include "simulation.h"
-#include "synthetic_codec.h"
+#include "src/rate/model_file.h"
+#include "src/rate/rate_controller.h"
+#include "tests/core/rate/synthetic_codec.h"
+#include "tests/core/scream/simulation.h"
 
 namespace lidar {
 namespace {

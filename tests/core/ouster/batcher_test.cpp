@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cstring>
 
-#include "captures.h"
-#include "ouster/scan_batcher.h"
+#include "src/ouster/scan_batcher.h"
+#include "tests/core/ouster/captures.h"
 
 namespace lidar::ouster {
 namespace {

@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "ouster/metadata.h"
-#include "ouster/pcap_reader.h"
+#include "src/ouster/metadata.h"
+#include "src/ouster/pcap_reader.h"
 
 namespace lidar::test {
 

@@ -3,8 +3,8 @@
 
 #include <algorithm>
 
-#include "base/byte_writer.h"
-#include "ouster/udp_datagram.h"
+#include "src/base/byte_writer.h"
+#include "src/ouster/udp_datagram.h"
 
 namespace lidar::ouster {
 namespace {

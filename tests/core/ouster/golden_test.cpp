@@ -11,11 +11,11 @@
 #include <string>
 #include <vector>
 
-#include "captures.h"
-#include "md5.h"
-#include "ouster/lidar_packet.h"
-#include "ouster/point_writer.h"
-#include "ouster/scan_batcher.h"
+#include "src/ouster/lidar_packet.h"
+#include "src/ouster/point_writer.h"
+#include "src/ouster/scan_batcher.h"
+#include "tests/core/ouster/captures.h"
+#include "tests/core/ouster/md5.h"
 
 namespace lidar::ouster {
 namespace {

@@ -4,10 +4,10 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "captures.h"
-#include "ouster/metadata_writer.h"
-#include "ouster/pixel_projection.h"
-#include "ouster/point_writer.h"
+#include "src/ouster/metadata_writer.h"
+#include "src/ouster/pixel_projection.h"
+#include "src/ouster/point_writer.h"
+#include "tests/core/ouster/captures.h"
 
 namespace lidar::ouster {
 namespace {

@@ -5,11 +5,11 @@
 #include <cstring>
 #include <random>
 
-#include "captures.h"
-#include "ouster/lidar_packet.h"
-#include "ouster/metadata_writer.h"
-#include "ouster/packet_writer.h"
-#include "ouster/scan_batcher.h"
+#include "src/ouster/lidar_packet.h"
+#include "src/ouster/metadata_writer.h"
+#include "src/ouster/packet_writer.h"
+#include "src/ouster/scan_batcher.h"
+#include "tests/core/ouster/captures.h"
 
 namespace lidar::ouster {
 namespace {

@@ -5,8 +5,8 @@
 #include <cstring>
 #include <map>
 
-#include "ouster/sensor_stream.h"
-#include "ouster_replay/synth_stream.h"
+#include "src/ouster/sensor_stream.h"
+#include "src/tools/ouster_replay/synth_stream.h"
 
 namespace lidar::tools {
 namespace {

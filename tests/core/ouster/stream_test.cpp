@@ -4,10 +4,10 @@
 
 #include <cstring>
 
-#include "base/byte_writer.h"
-#include "captures.h"
-#include "ouster/imu_packet.h"
-#include "ouster/sensor_stream.h"
+#include "src/base/byte_writer.h"
+#include "src/ouster/imu_packet.h"
+#include "src/ouster/sensor_stream.h"
+#include "tests/core/ouster/captures.h"
 
 namespace lidar::ouster {
 namespace {

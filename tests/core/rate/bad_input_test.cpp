@@ -5,9 +5,9 @@
 #include <cmath>
 #include <limits>
 
-#include "rate/model_file.h"
-#include "rate/rate_controller.h"
-#include "synthetic_codec.h"
+#include "src/rate/model_file.h"
+#include "src/rate/rate_controller.h"
+#include "tests/core/rate/synthetic_codec.h"
 
 namespace lidar::rate {
 namespace {

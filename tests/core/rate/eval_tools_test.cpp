@@ -10,11 +10,11 @@
 #include <limits>
 #include <stdexcept>
 
-#include "lidar_eval/cloud_file.h"
-#include "lidar_eval/measure.h"
-#include "lidar_eval/model_option.h"
-#include "lidar_eval/scan_source.h"
-#include "lidar_eval/tracking.h"
+#include "src/tools/codec_lab/cloud_file.h"
+#include "src/tools/codec_lab/measure.h"
+#include "src/tools/codec_lab/model_option.h"
+#include "src/tools/codec_lab/scan_source.h"
+#include "src/tools/codec_lab/tracking.h"
 
 namespace lidar::tools {
 namespace {

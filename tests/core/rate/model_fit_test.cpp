@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "rate/model_fit.h"
+#include "src/rate/model_fit.h"
 
 #include <gtest/gtest.h>
 

@@ -4,11 +4,11 @@
 
 #include <cmath>
 
-#include "lidar_eval/measure.h"
-#include "lidar_eval/scan_source.h"
-#include "lidar_eval/tracking.h"
-#include "lidar_train/training.h"
-#include "rate/model_fit.h"
+#include "src/rate/model_fit.h"
+#include "src/tools/codec_lab/measure.h"
+#include "src/tools/codec_lab/scan_source.h"
+#include "src/tools/codec_lab/tracking.h"
+#include "src/tools/codec_lab/training.h"
 
 namespace lidar::tools {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "rate/rate_controller.h"
+#include "src/rate/rate_controller.h"
 
 #include <gtest/gtest.h>
 
@@ -7,8 +7,8 @@
 #include <functional>
 #include <numeric>
 
-#include "rate/model_file.h"
-#include "synthetic_codec.h"
+#include "src/rate/model_file.h"
+#include "tests/core/rate/synthetic_codec.h"
 
 namespace lidar::rate {
 namespace {

@@ -7,7 +7,7 @@
 #include <random>
 #include <vector>
 
-#include "rate/rate_controller.h"
+#include "src/rate/rate_controller.h"
 
 namespace lidar::rate {
 

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "rtp/packetizer.h"
+#include "src/rtp/packetizer.h"
 
 #include <gtest/gtest.h>
 
-#include "rtp/fragment_buffer.h"
-#include "stream.h"
+#include "src/rtp/fragment_buffer.h"
+#include "tests/core/rtp/stream.h"
 
 namespace lidar::rtp {
 namespace {

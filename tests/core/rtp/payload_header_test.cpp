@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "rtp/payload_header.h"
+#include "src/rtp/payload_header.h"
 
 #include <gtest/gtest.h>
 
-#include "rtp/ntp_time.h"
-#include "rtp/stream_config.h"
-#include "stream.h"
+#include "src/rtp/ntp_time.h"
+#include "src/rtp/stream_config.h"
+#include "tests/core/rtp/stream.h"
 
 namespace lidar::rtp {
 namespace {

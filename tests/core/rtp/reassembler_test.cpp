@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "rtp/reassembler.h"
+#include "src/rtp/reassembler.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 
-#include "stream.h"
+#include "tests/core/rtp/stream.h"
 
 namespace lidar::rtp {
 namespace {

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "rtp/receiver.h"
+#include "src/rtp/receiver.h"
 
 #include <gtest/gtest.h>
 
 #include <random>
 
-#include "stream.h"
+#include "tests/core/rtp/stream.h"
 
 namespace lidar::rtp {
 namespace {

@@ -4,8 +4,8 @@
 
 #include <algorithm>
 
-#include "rtp/receiver.h"
-#include "stream.h"
+#include "src/rtp/receiver.h"
+#include "tests/core/rtp/stream.h"
 
 namespace lidar::rtp {
 namespace {

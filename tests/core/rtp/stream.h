@@ -5,10 +5,10 @@
 #include <string>
 #include <vector>
 
-#include "base/time.h"
-#include "cloud/sensor_model.h"
-#include "rtp/packetizer.h"
-#include "rtp/receiver.h"
+#include "src/base/time.h"
+#include "src/cloud/sensor_model.h"
+#include "src/rtp/packetizer.h"
+#include "src/rtp/receiver.h"
 
 namespace lidar::rtp::test {
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // RFC 8888 on the wire.
-#include "scream/ccfb.h"
+#include "src/scream/feedback/ccfb.h"
 
 #include <gtest/gtest.h>
 

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // The whole controller, by its events and over a simulated path.
-#include "scream/controller.h"
+#include "src/scream/controller.h"
 
 #include <gtest/gtest.h>
 
-#include "scenarios.h"
+#include "tests/core/scream/scenarios.h"
 
 namespace lidar::scream::test {
 namespace {

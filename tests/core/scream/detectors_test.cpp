@@ -2,15 +2,15 @@
 // The draft's constants, and the small detectors: alpha, queue delay, ECN, loss rate, pacing.
 #include <gtest/gtest.h>
 
-#include "scream/busy_run.h"
-#include "scream/competing_flows.h"
-#include "scream/ecn_monitor.h"
-#include "scream/l4s_alpha.h"
-#include "scream/loss_rate.h"
-#include "scream/media_rate.h"
-#include "scream/pacer.h"
-#include "scream/queue_delay.h"
-#include "scream/rtt.h"
+#include "src/scream/media_rate.h"
+#include "src/scream/model/busy_run.h"
+#include "src/scream/model/ecn_monitor.h"
+#include "src/scream/model/l4s_alpha.h"
+#include "src/scream/model/loss_rate.h"
+#include "src/scream/model/queue_delay.h"
+#include "src/scream/model/rtt.h"
+#include "src/scream/pacer.h"
+#include "src/scream/response/competing_flows.h"
 
 namespace lidar::scream {
 namespace {

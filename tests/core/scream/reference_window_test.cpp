@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // The reference window against the draft's pseudo code.
-#include "scream/reference_window.h"
+#include "src/scream/response/reference_window.h"
 
 #include <gtest/gtest.h>
 

@@ -2,7 +2,7 @@
 // What breaks on the way of a running flow, and how soon it is forgotten.
 #include <gtest/gtest.h>
 
-#include "scenarios.h"
+#include "tests/core/scream/scenarios.h"
 
 namespace lidar::scream::test {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "scenarios.h"
+#include "tests/core/scream/scenarios.h"
 
 #include <algorithm>
 

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "simulation.h"
+#include "tests/core/scream/simulation.h"
 
 namespace lidar::scream::test {
 

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // What the sender believes of its feedback.
-#include "scream/sent_history.h"
+#include "src/scream/model/sent_history.h"
 
 #include <gtest/gtest.h>
 
-#include "scream/report_clock.h"
+#include "src/scream/feedback/report_clock.h"
 
 namespace lidar::scream {
 namespace {

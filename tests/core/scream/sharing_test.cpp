@@ -2,7 +2,7 @@
 // Several streams of one controller, and several controllers, on one link.
 #include <gtest/gtest.h>
 
-#include "scenarios.h"
+#include "tests/core/scream/scenarios.h"
 
 namespace lidar::scream::test {
 namespace {

@@ -7,8 +7,8 @@
 #include <optional>
 #include <vector>
 
-#include "link/bottleneck.h"
-#include "simulation.h"
+#include "src/link/bottleneck.h"
+#include "tests/core/scream/simulation.h"
 
 namespace lidar::scream::test {
 

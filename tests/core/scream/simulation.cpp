@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "simulation.h"
+#include "tests/core/scream/simulation.h"
 
 #include <algorithm>
 #include <map>
 #include <memory>
 
-#include "sim_flow.h"
+#include "tests/core/scream/sim_flow.h"
 
 namespace lidar::scream::test {
 

@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "link/bottleneck.h"
-#include "scream/controller.h"
-#include "scream/feedback_generator.h"
+#include "src/link/bottleneck.h"
+#include "src/scream/controller.h"
+#include "src/scream/feedback/feedback_generator.h"
 
 namespace lidar::scream::test {
 

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Several streams: shares, turns, frames and late packets.
-#include "scream/streams.h"
+#include "src/scream/streams.h"
 
 #include <gtest/gtest.h>
 
-#include "scream/target_notifier.h"
+#include "src/scream/target_notifier.h"
 
 namespace lidar::scream {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "synth/scanner.h"
+#include "src/synth/scanner.h"
 
 #include <gtest/gtest.h>
 

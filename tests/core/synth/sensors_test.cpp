@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "synth/sensors.h"
+#include "src/synth/sensors.h"
 
 #include <gtest/gtest.h>
 

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "synth/shapes.h"
+#include "src/synth/shapes.h"
 
 #include <gtest/gtest.h>
 
-#include "synth/props.h"
-#include "synth/sector_index.h"
+#include "src/synth/props.h"
+#include "src/synth/sector_index.h"
 
 namespace lidar::synth {
 namespace {

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "demo/cloud_compare.h"
+#include "src/tools/demo/cloud_compare.h"
 
 #include <gtest/gtest.h>
 #include <unistd.h>
 
-#include "demo/comparer.h"
+#include "src/tools/demo/comparer.h"
 
 namespace lidar::demo {
 namespace {

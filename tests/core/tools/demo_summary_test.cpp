@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <gtest/gtest.h>
 
-#include "demo/measurements.h"
-#include "demo/summary.h"
+#include "src/tools/demo/measurements.h"
+#include "src/tools/demo/summary.h"
 
 namespace lidar::demo {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "common/distribution.h"
+#include "src/tools/common/distribution.h"
 
 #include <gtest/gtest.h>
 

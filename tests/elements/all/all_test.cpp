@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "common/refs.h"
+#include "gst/common/refs.h"
 
 namespace lidar::gst {
 namespace {

@@ -5,7 +5,7 @@
 #include <memory>
 #include <string>
 
-#include "draco_harness.h"
+#include "tests/elements/draco/draco_harness.h"
 
 namespace lidar::gst {
 

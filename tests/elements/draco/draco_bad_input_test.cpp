@@ -7,8 +7,8 @@
 #include <limits>
 #include <tuple>
 
-#include "checked_codec.h"
-#include "rate/model_file.h"
+#include "src/rate/model_file.h"
+#include "tests/elements/draco/checked_codec.h"
 
 namespace lidar::gst {
 namespace {

@@ -4,8 +4,8 @@
 
 #include <numeric>
 
-#include "checked_codec.h"
-#include "draco/enc_error_check.h"
+#include "ext/draco/enc_error_check.h"
+#include "tests/elements/draco/checked_codec.h"
 
 namespace lidar::gst {
 namespace {

@@ -2,7 +2,7 @@
 // Below min-bitrate: what gives, and that sender and receiver say the same about it.
 #include <gtest/gtest.h>
 
-#include "draco_harness.h"
+#include "tests/elements/draco/draco_harness.h"
 
 namespace lidar::gst {
 namespace {

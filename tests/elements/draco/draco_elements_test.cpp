@@ -9,7 +9,7 @@
 #include <random>
 #include <tuple>
 
-#include "draco_harness.h"
+#include "tests/elements/draco/draco_harness.h"
 
 namespace lidar::gst {
 namespace {

@@ -9,10 +9,10 @@
 #include <string>
 #include <vector>
 
-#include "common/buffer_map.h"
-#include "common/cloud_info.h"
-#include "support/harness.h"
-#include "test_clouds.h"
+#include "gst/common/buffer_map.h"
+#include "gst/common/cloud_info.h"
+#include "tests/elements/draco/test_clouds.h"
+#include "tests/support/harness.h"
 
 namespace lidar::gst {
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <gtest/gtest.h>
 
-#include "draco_harness.h"
+#include "tests/elements/draco/draco_harness.h"
 
 namespace lidar::gst {
 namespace {

@@ -5,9 +5,9 @@
 #include <cstdint>
 #include <random>
 
-#include "cloud/range_projection.h"
-#include "cloud/sensor_model.h"
-#include "draco/codec/slice_encoder.h"
+#include "src/cloud/range_projection.h"
+#include "src/cloud/sensor_model.h"
+#include "src/codec/slice_encoder.h"
 
 namespace lidar::test {
 

@@ -11,9 +11,9 @@
 #include <thread>
 #include <vector>
 
-#include "common/gstlidar.h"
-#include "common/refs.h"
-#include "support/harness.h"
+#include "gst/common/gstlidar.h"
+#include "gst/common/refs.h"
+#include "tests/support/harness.h"
 
 namespace lidar::gst {
 namespace {

@@ -4,7 +4,7 @@
 #include <functional>
 #include <string>
 
-#include "ouster_support.h"
+#include "tests/elements/ouster/ouster_support.h"
 
 namespace lidar::test {
 

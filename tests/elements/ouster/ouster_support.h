@@ -11,13 +11,13 @@
 #include <string>
 #include <vector>
 
-#include "common/buffer_map.h"
-#include "common/cloud_info.h"
-#include "common/gstlidar.h"
-#include "common/refs.h"
-#include "ouster/metadata.h"
-#include "ouster/pcap_reader.h"
-#include "support/harness.h"
+#include "gst/common/buffer_map.h"
+#include "gst/common/cloud_info.h"
+#include "gst/common/gstlidar.h"
+#include "gst/common/refs.h"
+#include "src/ouster/metadata.h"
+#include "src/ouster/pcap_reader.h"
+#include "tests/support/harness.h"
 
 namespace lidar::test {
 

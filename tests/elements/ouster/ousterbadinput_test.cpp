@@ -4,8 +4,8 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
-#include "base/byte_writer.h"
-#include "ouster_support.h"
+#include "src/base/byte_writer.h"
+#include "tests/elements/ouster/ouster_support.h"
 
 namespace lidar::test {
 namespace {

@@ -6,7 +6,7 @@
 #include <cstring>
 #include <fstream>
 
-#include "ouster_support.h"
+#include "tests/elements/ouster/ouster_support.h"
 
 namespace lidar::test {
 namespace {

@@ -6,9 +6,9 @@
 #include <cstdio>
 #include <fstream>
 
-#include "live_receiver.h"
-#include "ouster/scan_batcher.h"
-#include "software_sensor.h"
+#include "src/ouster/scan_batcher.h"
+#include "tests/elements/ouster/live_receiver.h"
+#include "tests/elements/ouster/software_sensor.h"
 
 namespace lidar::test {
 namespace {

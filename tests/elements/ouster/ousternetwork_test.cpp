@@ -10,9 +10,9 @@
 #include <cstdlib>
 #include <cstring>
 
-#include "ecnudp/udp_socket.h"
-#include "live_receiver.h"
-#include "software_sensor.h"
+#include "gst/net/udp_socket.h"
+#include "tests/elements/ouster/live_receiver.h"
+#include "tests/elements/ouster/software_sensor.h"
 
 namespace lidar::test {
 namespace {

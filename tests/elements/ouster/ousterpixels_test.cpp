@@ -6,8 +6,8 @@
 #include <cstring>
 #include <fstream>
 
-#include "ouster/metadata_writer.h"
-#include "ouster_support.h"
+#include "src/ouster/metadata_writer.h"
+#include "tests/elements/ouster/ouster_support.h"
 
 namespace lidar::test {
 namespace {

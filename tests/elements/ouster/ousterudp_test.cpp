@@ -2,7 +2,7 @@
 // ouster_src on sockets.
 #include <algorithm>
 
-#include "ouster_support.h"
+#include "tests/elements/ouster/ouster_support.h"
 
 namespace lidar::test {
 namespace {

@@ -6,11 +6,11 @@
 #include <string>
 #include <thread>
 
-#include "common/event_loop.h"
-#include "ouster_replay/http_api.h"
-#include "ouster_replay/options.h"
-#include "ouster_replay/player.h"
-#include "ouster_replay/sensor.h"
+#include "src/tools/common/event_loop.h"
+#include "src/tools/ouster_replay/http_api.h"
+#include "src/tools/ouster_replay/options.h"
+#include "src/tools/ouster_replay/player.h"
+#include "src/tools/ouster_replay/sensor.h"
 
 namespace lidar::test {
 

@@ -5,9 +5,9 @@
 #include <cstring>
 #include <sstream>
 
-#include "common/buffer_map.h"
-#include "common/cloud_info.h"
-#include "support/harness.h"
+#include "gst/common/buffer_map.h"
+#include "gst/common/cloud_info.h"
+#include "tests/support/harness.h"
 
 namespace lidar::gst {
 namespace {

@@ -4,9 +4,9 @@
 #include <filesystem>
 #include <fstream>
 
-#include "common/buffer_map.h"
-#include "common/cloud_info.h"
-#include "support/harness.h"
+#include "gst/common/buffer_map.h"
+#include "gst/common/cloud_info.h"
+#include "tests/support/harness.h"
 
 namespace lidar::gst {
 namespace {

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "slices.h"
+#include "tests/elements/rtplidar/slices.h"
 
 namespace lidar::test {
 namespace {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <gtest/gtest.h>
 
-#include "slices.h"
+#include "tests/elements/rtplidar/slices.h"
 
 namespace lidar::test {
 namespace {

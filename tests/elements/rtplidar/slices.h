@@ -7,11 +7,11 @@
 #include <string>
 #include <vector>
 
-#include "cloud/sensor_model.h"
-#include "common/buffer_map.h"
-#include "common/cloud_info.h"
-#include "common/gstlidar.h"
-#include "support/harness.h"
+#include "gst/common/buffer_map.h"
+#include "gst/common/cloud_info.h"
+#include "gst/common/gstlidar.h"
+#include "src/cloud/sensor_model.h"
+#include "tests/support/harness.h"
 
 namespace lidar::test {
 

@@ -5,8 +5,8 @@
 
 #include <string>
 
-#include "common/gstlidar.h"
-#include "support/harness.h"
+#include "gst/common/gstlidar.h"
+#include "tests/support/harness.h"
 
 namespace {
 

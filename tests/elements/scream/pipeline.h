@@ -7,7 +7,7 @@
 #include <memory>
 #include <string>
 
-#include "common/refs.h"
+#include "gst/common/refs.h"
 
 namespace lidar::test {
 

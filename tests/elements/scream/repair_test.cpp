@@ -2,8 +2,8 @@
 // Stock retransmission and FEC around screamtx and screamrx, over a wire that loses packets.
 #include <gtest/gtest.h>
 
-#include "pipeline.h"
-#include "rtp_support.h"
+#include "tests/elements/scream/pipeline.h"
+#include "tests/elements/scream/rtp_support.h"
 
 namespace lidar::test {
 namespace {

@@ -10,10 +10,10 @@
 #include <string>
 #include <vector>
 
-#include "common/gstlidar.h"
-#include "common/refs.h"
-#include "scream/ccfb.h"
-#include "support/harness.h"
+#include "gst/common/gstlidar.h"
+#include "gst/common/refs.h"
+#include "src/scream/feedback/ccfb.h"
+#include "tests/support/harness.h"
 
 namespace lidar::test {
 

@@ -2,11 +2,11 @@
 // The parts of the SCReAM elements that need no pad: RTP headers, goodbyes, the receiver's latch.
 #include <gtest/gtest.h>
 
-#include "rtp_support.h"
-#include "scream/feedback_peer.h"
-#include "scream/peer_latch.h"
-#include "scream/rtp_packet.h"
-#include "scream/tx_settings.h"
+#include "gst/scream/feedback_peer.h"
+#include "gst/scream/peer_latch.h"
+#include "gst/scream/rtp_packet.h"
+#include "gst/scream/tx/settings.h"
+#include "tests/elements/scream/rtp_support.h"
 
 namespace lidar::gst {
 namespace {

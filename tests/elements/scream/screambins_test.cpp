@@ -4,8 +4,8 @@
 
 #include <memory>
 
-#include "pipeline.h"
-#include "rtp_support.h"
+#include "tests/elements/scream/pipeline.h"
+#include "tests/elements/scream/rtp_support.h"
 
 namespace lidar::test {
 namespace {

@@ -2,8 +2,8 @@
 // screamrx under a test clock: what it reports, to whom, and whom it believes.
 #include <gtest/gtest.h>
 
-#include "rtp_support.h"
-#include "scream/rtp_packet.h"
+#include "gst/scream/rtp_packet.h"
+#include "tests/elements/scream/rtp_support.h"
 
 namespace lidar::test {
 namespace {

@@ -2,7 +2,7 @@
 // What screamtx makes of RTCP: reports, lies, and what is not for it.
 #include <gtest/gtest.h>
 
-#include "screamtx_fixture.h"
+#include "tests/elements/scream/screamtx_fixture.h"
 
 namespace lidar::test {
 namespace {

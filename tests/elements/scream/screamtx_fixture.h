@@ -8,9 +8,9 @@
 #include <memory>
 #include <vector>
 
-#include "ecnudp/udp_socket.h"
-#include "rtp_support.h"
-#include "scream/rtp_packet.h"
+#include "gst/net/udp_socket.h"
+#include "gst/scream/rtp_packet.h"
+#include "tests/elements/scream/rtp_support.h"
 
 namespace lidar::test {
 

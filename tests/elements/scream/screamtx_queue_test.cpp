@@ -4,7 +4,7 @@
 
 #include <map>
 
-#include "screamtx_fixture.h"
+#include "tests/elements/scream/screamtx_fixture.h"
 
 namespace lidar::test {
 namespace {

@@ -2,7 +2,7 @@
 // Several streams of one screamtx: shares, companions, pads that come and go.
 #include <gtest/gtest.h>
 
-#include "screamtx_fixture.h"
+#include "tests/elements/scream/screamtx_fixture.h"
 
 namespace lidar::test {
 namespace {

@@ -2,7 +2,7 @@
 // screamtx under a test clock: what goes upstream, what leaves, what it says of itself.
 #include <gtest/gtest.h>
 
-#include "screamtx_fixture.h"
+#include "tests/elements/scream/screamtx_fixture.h"
 
 namespace lidar::test {
 namespace {

@@ -7,10 +7,10 @@
 #include <fstream>
 #include <sstream>
 
-#include "cloud/range_projection.h"
-#include "common/buffer_map.h"
-#include "common/cloud_info.h"
-#include "support/harness.h"
+#include "gst/common/buffer_map.h"
+#include "gst/common/cloud_info.h"
+#include "src/cloud/range_projection.h"
+#include "tests/support/harness.h"
 
 namespace lidar::gst {
 namespace {

@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "ext/draco/draco_check.h"
+
+#include <cstring>
+
+namespace lidar::codec {
+namespace {
+
+constexpr char kMagic[] = {'D', 'R', 'A', 'C', 'O'};
+constexpr std::uint8_t kMajor = 2;
+constexpr std::uint8_t kMinor = 3;
+constexpr std::uint8_t kPointCloud = 0;
+constexpr std::uint8_t kKdTree = 1;
+constexpr std::uint8_t kMaxAttributes = 8;
+constexpr std::uint8_t kMaxComponents = 4;
+constexpr std::uint8_t kMaxDataType = 11;
+constexpr std::uint8_t kMaxKdLevel = 6;
+constexpr std::uint32_t kMaxBitLength = 32;
+
+bool CheckAttributes(ByteReader* reader) {
+  const std::uint8_t count = reader->U8();
+  if (count == 0 || count > kMaxAttributes) return false;
+  for (std::uint8_t i = 0; i < count; ++i) {
+    reader->Skip(1);  // what the attribute means
+    const std::uint8_t data_type = reader->U8();
+    const std::uint8_t components = reader->U8();
+    reader->Skip(1);  // normalised
+    const std::uint8_t id = reader->U8();
+    if (data_type == 0 || data_type > kMaxDataType || components == 0 ||
+        components > kMaxComponents || id >= 0x80) {
+      return false;
+    }
+  }
+  return true;
+}
+
+/// The kd-tree repeats the count inside, and a large one there costs seconds without any memory.
+bool CheckKdTree(ByteReader* reader, std::uint32_t points) {
+  const std::uint8_t level = reader->U8();
+  const std::uint32_t bit_length = reader->Le32();
+  const std::uint32_t inner = reader->Le32();
+  return level <= kMaxKdLevel && bit_length >= 1 && bit_length <= kMaxBitLength && inner == points;
+}
+
+}  // namespace
+
+std::optional<DracoSummary> CheckDraco(ByteView stream, std::uint32_t max_points) {
+  ByteReader reader(stream);
+  const ByteView magic = reader.Bytes(sizeof kMagic);
+  if (!reader.ok() || std::memcmp(magic.data, kMagic, sizeof kMagic) != 0) return std::nullopt;
+  const std::uint8_t major = reader.U8();
+  const std::uint8_t minor = reader.U8();
+  const std::uint8_t type = reader.U8();
+  const std::uint8_t method = reader.U8();
+  const std::uint16_t flags = reader.Le16();
+  DracoSummary summary;
+  summary.points = reader.Le32();
+  summary.is_kd_tree = method == kKdTree;
+  const std::uint8_t decoders = reader.U8();
+  // Flags would announce metadata, which we never write.
+  if (major != kMajor || minor != kMinor || type != kPointCloud || method > kKdTree || flags != 0 ||
+      summary.points == 0 || summary.points > max_points || decoders != 1 ||
+      !CheckAttributes(&reader) || (summary.is_kd_tree && !CheckKdTree(&reader, summary.points)) ||
+      !reader.ok()) {
+    return std::nullopt;
+  }
+  return summary;
+}
+
+}  // namespace lidar::codec

@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Looks at a Draco stream before libdraco does, which trusts the counts in it.
+#pragma once
+#include <cstdint>
+#include <optional>
+
+#include "src/base/byte_reader.h"
+
+namespace lidar::codec {
+
+struct DracoSummary {
+  std::uint32_t points = 0;
+  bool is_kd_tree = false;
+};
+
+/// What the stream says of itself, where it is a point cloud that libdraco decodes in bounded time
+/// and memory; none otherwise. Passing does not mean that the stream is undamaged.
+std::optional<DracoSummary> CheckDraco(ByteView stream, std::uint32_t max_points);
+
+}  // namespace lidar::codec

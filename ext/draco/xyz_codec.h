@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// xyz geometry: clouds of any kind as plain Draco files.
+#pragma once
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "src/base/byte_reader.h"
+
+namespace lidar::codec {
+
+/// Points without order; intensities are as many, or none.
+struct XyzCloud {
+  std::vector<float> xyz;  // metres, three a point
+  std::vector<float> intensity;
+
+  std::size_t size() const { return xyz.size() / 3; }
+  void Clear() {
+    xyz.clear();
+    intensity.clear();
+  }
+};
+
+/// Of the points' box [m].
+double LongestSide(const XyzCloud& cloud);
+
+enum class XyzMethod { kSequential, kKdTree };
+
+struct XyzSettings {
+  double max_error_m = 0.02;  // bound of the 3D error of every point
+  double step_m = 0;          // of the grid; 0: the coarsest that max_error_m allows
+  int level = 7;              // Draco's compression level
+  XyzMethod method = XyzMethod::kKdTree;
+  unsigned intensity_bits = 0;
+};
+
+struct XyzResult {
+  double step_m = 0;
+  double error_m = 0;  // bound that holds with this step, float rounding included
+};
+
+/// Appends a Draco file to `out`. The points must be finite. False where there are none, or where
+/// no grid that Draco can write meets the bound: it counts 2^30 cells, and a float at 10 km has
+/// steps of a millimetre itself.
+bool EncodeXyz(const XyzCloud& cloud, const XyzSettings& settings, std::vector<std::uint8_t>* out,
+               XyzResult* result);
+
+/// False for a stream that is not a cloud of 1 .. max_points points as EncodeXyz writes them.
+bool DecodeXyz(ByteView stream, std::uint32_t max_points, XyzCloud* cloud);
+
+}  // namespace lidar::codec

@@ -1,0 +1,244 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+/**
+ * SECTION:element-bitrateadapter
+ * @title: bitrateadapter
+ *
+ * Passes everything on, and turns the upstream event `target-bitrate` into the bitrate property of
+ * the encoder before it, in that encoder's unit.
+ *
+ * |[
+ * gst-launch-1.0 videotestsrc is-live=true ! openh264enc ! bitrateadapter max=4000000 ! \
+ *   rtph264pay ! screamsink host=127.0.0.1 port=5004
+ * ]|
+ */
+#include "gst/bitrateadapter/gstbitrateadapter.h"
+
+#include <algorithm>
+#include <limits>
+#include <mutex>
+
+#include "gst/bitrateadapter/encoder_bitrate.h"
+#include "gst/common/gstlidar.h"
+#include "gst/common/properties.h"
+
+GST_DEBUG_CATEGORY_STATIC(gst_lidar_bitrate_adapter_debug);
+#define GST_CAT_DEFAULT gst_lidar_bitrate_adapter_debug
+
+namespace {
+
+using lidar::gst::BitrateControl;
+using lidar::gst::ElementPtr;
+using lidar::gst::Property;
+
+constexpr gdouble kMaxBps = std::numeric_limits<guint>::max();
+
+struct Settings {
+  std::string encoder;
+  std::string property;
+  gdouble scale = 0;
+  guint min_bps = 0;
+  guint max_bps = std::numeric_limits<guint>::max();
+  gdouble fraction = 1;
+};
+
+const std::array<Property<Settings>, 6> kProperties = {{
+    {"encoder", "Name of the encoder; empty: the first element of klass Encoder upstream",
+     &Settings::encoder, 0, 0, GST_PARAM_MUTABLE_PLAYING},
+    {"property", "The encoder's bitrate property; empty: known by the encoder's factory",
+     &Settings::property, 0, 0, GST_PARAM_MUTABLE_PLAYING},
+    {"scale",
+     "Units of the encoder's property in one bit/s [unit/(bit/s)], 0.001 for kbit/s; "
+     "0: known by the encoder's factory",
+     &Settings::scale, 0, 1e6, GST_PARAM_MUTABLE_PLAYING},
+    {"min", "Never set less than this [bit/s]", &Settings::min_bps, 0, kMaxBps,
+     GST_PARAM_MUTABLE_PLAYING},
+    {"max", "Never set more than this [bit/s]", &Settings::max_bps, 1, kMaxBps,
+     GST_PARAM_MUTABLE_PLAYING},
+    {"fraction", "Share of the target that this encoder gets", &Settings::fraction, 0.001, 1,
+     GST_PARAM_MUTABLE_PLAYING},
+}};
+
+enum : guint { kPropBitrate = kProperties.size() + 1 };
+
+struct State {
+  std::mutex mutex;  // guards all below; never held while setting, pushing or posting
+  Settings settings;
+  guint bitrate = 0;
+  bool warned = false;
+};
+
+}  // namespace
+
+struct _GstLidarBitrateAdapter {
+  GstBaseTransform parent;
+  State* state;
+};
+
+G_DEFINE_TYPE(GstLidarBitrateAdapter, gst_lidar_bitrate_adapter, GST_TYPE_BASE_TRANSFORM)
+GST_ELEMENT_REGISTER_DEFINE(bitrateadapter, "bitrateadapter", GST_RANK_NONE,
+                            GST_TYPE_LIDAR_BITRATE_ADAPTER)
+
+static ElementPtr FindEncoder(GstBaseTransform* base, const Settings& settings) {
+  if (settings.encoder.empty())
+    return lidar::gst::FindEncoderUpstream(GST_BASE_TRANSFORM_SINK_PAD(base));
+  const ElementPtr parent(GST_ELEMENT(gst_object_get_parent(GST_OBJECT(base))));
+  if (!parent || !GST_IS_BIN(parent.get())) return nullptr;
+  return ElementPtr(
+      gst_bin_get_by_name_recurse_up(GST_BIN(parent.get()), settings.encoder.c_str()));
+}
+
+/// What the user said, over what is known of the encoder.
+static std::optional<BitrateControl> ControlOf(GstElement* encoder, const Settings& settings) {
+  GstElementFactory* factory = gst_element_get_factory(encoder);
+  auto control =
+      factory == nullptr ? std::nullopt : lidar::gst::FindBitrateControl(GST_OBJECT_NAME(factory));
+  if (!settings.property.empty()) {
+    if (!control || control->property != settings.property)
+      control = BitrateControl{settings.property, 1, ""};
+  }
+  if (control && settings.scale > 0) control->bps_per_unit = 1 / settings.scale;
+  return control;
+}
+
+static void WarnOnce(GstLidarBitrateAdapter* self, const char* text, const char* what) {
+  State& state = *self->state;
+  {
+    const std::lock_guard lock(state.mutex);
+    if (state.warned) return;
+    state.warned = true;
+  }
+  GST_ELEMENT_WARNING(self, STREAM, ENCODE, ("%s", text), ("%s", what));
+}
+
+/// False where there is nobody to tell, so that the event goes on upstream.
+static bool Apply(GstLidarBitrateAdapter* self, guint target_bps) {
+  State& state = *self->state;
+  Settings settings;
+  {
+    const std::lock_guard lock(state.mutex);
+    settings = state.settings;
+  }
+  const ElementPtr encoder = FindEncoder(GST_BASE_TRANSFORM(self), settings);
+  if (!encoder) {
+    WarnOnce(self, "There is no encoder upstream whose bitrate could follow the network.",
+             "Put bitrateadapter behind the encoder, or name it with the property encoder.");
+    return false;
+  }
+  const auto control = ControlOf(encoder.get(), settings);
+  const auto wanted = static_cast<guint>(target_bps * settings.fraction);
+  const guint bps = std::max(std::min(wanted, settings.max_bps), settings.min_bps);
+  const auto set =
+      control ? lidar::gst::SetEncoderBitrate(encoder.get(), *control, bps) : std::nullopt;
+  if (!set) {
+    WarnOnce(self, "The bitrate of this encoder cannot be set.",
+             "Say how with the properties property and scale.");
+    return false;
+  }
+  GST_LOG_OBJECT(self, "%s: %u bit/s of %u", GST_OBJECT_NAME(encoder.get()), *set, target_bps);
+  bool changed = false;
+  {
+    const std::lock_guard lock(state.mutex);
+    changed = state.bitrate != *set;
+    state.bitrate = *set;
+  }
+  if (changed) g_object_notify(G_OBJECT(self), "bitrate");
+  return true;
+}
+
+static gboolean SrcEvent(GstBaseTransform* base, GstEvent* event) {
+  GstLidarTargetBitrate target{};
+  if (gst_lidar_event_parse_target_bitrate(event, &target) &&
+      Apply(GST_LIDAR_BITRATE_ADAPTER(base), target.bitrate)) {
+    gst_event_unref(event);
+    return TRUE;
+  }
+  return GST_BASE_TRANSFORM_CLASS(gst_lidar_bitrate_adapter_parent_class)->src_event(base, event);
+}
+
+/// The limits as those of the whole target, of which the encoder gets its fraction.
+static GstLidarBitrateBounds BoundsOf(const Settings& settings) {
+  const auto whole = [&](guint bps) {
+    return static_cast<guint>(std::min(bps / settings.fraction, kMaxBps));
+  };
+  return {whole(settings.min_bps), whole(settings.max_bps), whole(settings.max_bps)};
+}
+
+/// Behind the caps go the user's limits, so that the sender asks for nothing else.
+static gboolean SinkEvent(GstBaseTransform* base, GstEvent* event) {
+  const bool is_caps = GST_EVENT_TYPE(event) == GST_EVENT_CAPS;
+  const gboolean result =
+      GST_BASE_TRANSFORM_CLASS(gst_lidar_bitrate_adapter_parent_class)->sink_event(base, event);
+  if (!is_caps || !result) return result;
+  State& state = *GST_LIDAR_BITRATE_ADAPTER(base)->state;
+  GstLidarBitrateBounds bounds{};
+  {
+    const std::lock_guard lock(state.mutex);
+    bounds = BoundsOf(state.settings);
+  }
+  if (bounds.min_bitrate > 0 || bounds.max_bitrate < std::numeric_limits<guint>::max())
+    gst_pad_push_event(GST_BASE_TRANSFORM_SRC_PAD(base),
+                       gst_lidar_event_new_bitrate_bounds(&bounds));
+  return result;
+}
+
+static gboolean Start(GstBaseTransform* base) {
+  State& state = *GST_LIDAR_BITRATE_ADAPTER(base)->state;
+  const std::lock_guard lock(state.mutex);
+  state.bitrate = 0;
+  state.warned = false;
+  return TRUE;
+}
+
+static void gst_lidar_bitrate_adapter_init(GstLidarBitrateAdapter* self) {
+  self->state = new State;
+  gst_base_transform_set_passthrough(GST_BASE_TRANSFORM(self), TRUE);
+}
+
+static void SetupProperties(GObjectClass* object) {
+  object->set_property = [](GObject* o, guint id, const GValue* v, GParamSpec*) {
+    State& s = *GST_LIDAR_BITRATE_ADAPTER(o)->state;
+    const std::lock_guard lock(s.mutex);
+    lidar::gst::SetProperty(s.settings, kProperties[id - 1], v);
+  };
+  object->get_property = [](GObject* o, guint id, GValue* v, GParamSpec*) {
+    State& s = *GST_LIDAR_BITRATE_ADAPTER(o)->state;
+    const std::lock_guard lock(s.mutex);
+    if (id == kPropBitrate) {
+      g_value_set_uint(v, s.bitrate);
+    } else {
+      lidar::gst::GetProperty(s.settings, kProperties[id - 1], v);
+    }
+  };
+  object->finalize = [](GObject* o) {
+    delete GST_LIDAR_BITRATE_ADAPTER(o)->state;
+    G_OBJECT_CLASS(gst_lidar_bitrate_adapter_parent_class)->finalize(o);
+  };
+  lidar::gst::InstallProperties(object, kProperties);
+  g_object_class_install_property(
+      object, kPropBitrate,
+      g_param_spec_uint("bitrate", "bitrate",
+                        "What the encoder was told last [bit/s]; 0: nothing yet", 0, G_MAXUINT, 0,
+                        static_cast<GParamFlags>(G_PARAM_READABLE | G_PARAM_STATIC_STRINGS)));
+}
+
+static void gst_lidar_bitrate_adapter_class_init(GstLidarBitrateAdapterClass* klass) {
+  GST_DEBUG_CATEGORY_INIT(gst_lidar_bitrate_adapter_debug, "bitrateadapter", 0,
+                          "Encoder bitrate adapter");
+  SetupProperties(G_OBJECT_CLASS(klass));
+  static GstStaticPadTemplate sink =
+      GST_STATIC_PAD_TEMPLATE("sink", GST_PAD_SINK, GST_PAD_ALWAYS, GST_STATIC_CAPS_ANY);
+  static GstStaticPadTemplate src =
+      GST_STATIC_PAD_TEMPLATE("src", GST_PAD_SRC, GST_PAD_ALWAYS, GST_STATIC_CAPS_ANY);
+  auto* element = GST_ELEMENT_CLASS(klass);
+  gst_element_class_add_static_pad_template(element, &sink);
+  gst_element_class_add_static_pad_template(element, &src);
+  gst_element_class_set_static_metadata(
+      element, "Encoder bitrate adapter", "Filter/Network",
+      "Sets the bitrate of the encoder before it from target-bitrate events",
+      "The gst-lidar developers");
+  auto* transform = GST_BASE_TRANSFORM_CLASS(klass);
+  transform->start = Start;
+  transform->src_event = SrcEvent;
+  transform->sink_event = SinkEvent;
+  transform->passthrough_on_same_caps = TRUE;
+}

@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Many datagrams a system call, each with its own ECN codepoint (sendmmsg, recvmmsg and cmsg).
+#pragma once
+#include <gst/gst.h>
+#include <netinet/in.h>
+#include <sys/uio.h>
+
+#include <array>
+#include <functional>
+#include <vector>
+
+#include "gst/net/udp_socket.h"
+
+namespace lidar::gst {
+
+/// Collects datagrams and sends them. Keeps the buffers mapped from Add() to Flush(); does not own
+/// them.
+class UdpBatchSender {
+ public:
+  static constexpr std::size_t kCapacity = 64;
+
+  struct Result {
+    guint packets = 0;
+    guint64 bytes = 0;
+    guint errors = 0;    // datagrams given up
+    int last_errno = 0;  // of the last error
+    bool woken = false;  // the rest was given up because of WakeFd
+  };
+
+  UdpBatchSender();
+  ~UdpBatchSender() { Clear(); }
+  UdpBatchSender(const UdpBatchSender&) = delete;
+  UdpBatchSender& operator=(const UdpBatchSender&) = delete;
+
+  bool full() const { return count_ == kCapacity; }
+  /// `tos`: the DSCP and ECN bits of the IP header. False where the buffer cannot be mapped.
+  bool Add(GstBuffer* buffer, guint8 tos, const NativeAddress& to);
+  /// Sends all, waiting for the socket where it must, and forgets them.
+  Result Flush(int fd, const WakeFd& wake);
+
+ private:
+  static constexpr std::size_t kMaxMemories = 4;
+  struct Message {
+    std::array<iovec, kMaxMemories> iov;
+    std::array<GstMapInfo, kMaxMemories> maps;
+    guint memories = 0;
+    GstBuffer* merged = nullptr;  // mapped as a whole: more than kMaxMemories pieces
+    NativeAddress to;
+    alignas(cmsghdr) std::array<char, CMSG_SPACE(sizeof(int))> control;
+  };
+
+  bool Map(Message& m, GstBuffer* buffer);
+  void Clear();
+
+  std::vector<Message> messages_;
+  std::vector<mmsghdr> headers_;
+  std::size_t count_ = 0;
+};
+
+/// What came with a datagram.
+struct ReceivedDatagram {
+  const guint8* data = nullptr;  // valid during the call
+  gsize size = 0;
+  guint8 tos = 0;
+  GstClockTime arrival = GST_CLOCK_TIME_NONE;  // kernel time [ns since the Unix epoch]
+  const NativeAddress* from = nullptr;
+};
+
+class UdpBatchReceiver {
+ public:
+  static constexpr std::size_t kCapacity = 32;
+  static constexpr std::size_t kMaxDatagram = 65536;
+
+  UdpBatchReceiver();
+  /// Asks the kernel for ECN, arrival time and overflow count of each datagram.
+  static void Prepare(int fd);
+  /// Hands what is there to `consume`, without waiting; the number, or -1 with errno set.
+  int Receive(int fd, const std::function<void(const ReceivedDatagram&)>& consume);
+  /// Datagrams the kernel dropped because the socket's buffer was full, since it was opened.
+  guint kernel_drops() const { return kernel_drops_; }
+
+ private:
+  struct Slot {
+    iovec iov{};
+    NativeAddress from;
+    alignas(cmsghdr) std::array<char, 256> control;
+  };
+  ReceivedDatagram Read(std::size_t i);
+
+  std::vector<guint8> arena_;
+  std::vector<Slot> slots_;
+  std::vector<mmsghdr> headers_;
+  guint kernel_drops_ = 0;
+};
+
+}  // namespace lidar::gst

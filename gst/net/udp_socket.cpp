@@ -1,0 +1,187 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "gst/net/udp_socket.h"
+
+#include <net/if.h>
+#include <netinet/in.h>
+#include <poll.h>
+#include <sys/eventfd.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+#include <ctime>
+#include <memory>
+
+namespace lidar::gst {
+namespace {
+
+using InetAddressPtr = std::unique_ptr<GInetAddress, GObjectUnref>;
+using SocketAddressPtr = std::unique_ptr<GSocketAddress, GObjectUnref>;
+using SocketPtr = std::unique_ptr<GSocket, GObjectUnref>;
+
+std::string WithoutBrackets(const std::string& host) {
+  if (host.size() > 2 && host.front() == '[' && host.back() == ']')
+    return host.substr(1, host.size() - 2);
+  return host;
+}
+
+GInetAddress* Resolve(const std::string& host, GError** error) {
+  if (GInetAddress* literal = g_inet_address_new_from_string(host.c_str())) return literal;
+  std::unique_ptr<GResolver, GObjectUnref> resolver(g_resolver_get_default());
+  GList* found = g_resolver_lookup_by_name(resolver.get(), host.c_str(), nullptr, error);
+  if (found == nullptr) return nullptr;
+  auto* first = G_INET_ADDRESS(g_object_ref(found->data));
+  g_resolver_free_addresses(found);
+  return first;
+}
+
+GSocket* BoundSocket(GInetAddress* address, const UdpBind& bind, GError** error) {
+  SocketPtr socket(g_socket_new(g_inet_address_get_family(address), G_SOCKET_TYPE_DATAGRAM,
+                                G_SOCKET_PROTOCOL_UDP, error));
+  if (!socket) return nullptr;
+  g_socket_set_blocking(socket.get(), FALSE);
+  const SocketAddressPtr local(g_inet_socket_address_new(address, static_cast<guint16>(bind.port)));
+  if (!g_socket_bind(socket.get(), local.get(), bind.reuse, error)) return nullptr;
+  return socket.release();
+}
+
+}  // namespace
+
+bool NativeAddress::operator==(const NativeAddress& o) const {
+  return length == o.length && std::memcmp(&storage, &o.storage, length) == 0;
+}
+
+NativeAddress ToNative(GSocketAddress* address, GSocketFamily family) {
+  NativeAddress native;
+  const GSocketFamily own = g_socket_address_get_family(address);
+  const gssize size = g_socket_address_get_native_size(address);
+  if (size <= 0 || static_cast<gsize>(size) > sizeof native.storage) return native;
+  if (!g_socket_address_to_native(address, &native.storage, sizeof native.storage, nullptr))
+    return native;
+  if (own == family) {
+    native.length = static_cast<socklen_t>(size);
+  } else if (own == G_SOCKET_FAMILY_IPV4 && family == G_SOCKET_FAMILY_IPV6) {
+    sockaddr_in v4{};
+    std::memcpy(&v4, &native.storage, sizeof v4);
+    sockaddr_in6 v6{};
+    v6.sin6_family = AF_INET6;
+    v6.sin6_port = v4.sin_port;
+    v6.sin6_addr.s6_addr[10] = v6.sin6_addr.s6_addr[11] = 0xff;
+    std::memcpy(&v6.sin6_addr.s6_addr[12], &v4.sin_addr, 4);
+    native.storage = {};
+    std::memcpy(&native.storage, &v6, sizeof v6);
+    native.length = sizeof v6;
+  }
+  return native;
+}
+
+GSocketAddress* FromNative(const NativeAddress& address) {
+  // GLib wants a pointer to non-const and only reads.
+  sockaddr_storage copy = address.storage;
+  return g_socket_address_new_from_native(&copy, address.length);
+}
+
+GSocketAddress* ResolveUdpAddress(const std::string& host, guint port, GError** error) {
+  const InetAddressPtr address(Resolve(WithoutBrackets(host), error));
+  if (!address) return nullptr;
+  return g_inet_socket_address_new(address.get(), static_cast<guint16>(port));
+}
+
+GSocket* OpenUdpSocket(const UdpBind& bind, GError** error) {
+  if (!bind.address.empty()) {
+    const InetAddressPtr address(Resolve(WithoutBrackets(bind.address), error));
+    return address ? BoundSocket(address.get(), bind, error) : nullptr;
+  }
+  if (bind.family != G_SOCKET_FAMILY_IPV4) {
+    const InetAddressPtr any(g_inet_address_new_any(G_SOCKET_FAMILY_IPV6));
+    const bool may_fall_back = bind.family == G_SOCKET_FAMILY_INVALID;
+    GError* v6_error = nullptr;
+    if (GSocket* socket = BoundSocket(any.get(), bind, &v6_error)) return socket;
+    const bool taken = g_error_matches(v6_error, G_IO_ERROR, G_IO_ERROR_ADDRESS_IN_USE);
+    if (!may_fall_back || taken) {
+      g_propagate_error(error, v6_error);
+      return nullptr;
+    }
+    g_error_free(v6_error);  // a machine without IPv6
+  }
+  const InetAddressPtr any(g_inet_address_new_any(G_SOCKET_FAMILY_IPV4));
+  return BoundSocket(any.get(), bind, error);
+}
+
+bool JoinMulticast(GSocket* socket, const std::string& group, const std::string& interface,
+                   GError** error) {
+  const InetAddressPtr address(Resolve(WithoutBrackets(group), error));
+  if (!address) return false;
+  // GLib would let the kernel choose.
+  if (!interface.empty() && if_nametoindex(interface.c_str()) == 0) {
+    g_set_error(error, G_IO_ERROR, G_IO_ERROR_NOT_FOUND, "there is no network interface \"%s\"",
+                interface.c_str());
+    return false;
+  }
+  return g_socket_join_multicast_group(socket, address.get(), FALSE,
+                                       interface.empty() ? nullptr : interface.c_str(),
+                                       error) != FALSE;
+}
+
+void SendMulticastFrom(GSocket* socket, const std::string& interface) {
+  const unsigned index = interface.empty() ? 0 : if_nametoindex(interface.c_str());
+  if (index == 0) return;
+  const int v6_index = static_cast<int>(index);
+  ip_mreqn v4{};
+  v4.imr_ifindex = v6_index;
+  const int fd = g_socket_get_fd(socket);
+  const bool v6 = g_socket_get_family(socket) == G_SOCKET_FAMILY_IPV6;
+  const int failed =
+      v6 ? setsockopt(fd, IPPROTO_IPV6, IPV6_MULTICAST_IF, &v6_index, sizeof v6_index)
+         : setsockopt(fd, IPPROTO_IP, IP_MULTICAST_IF, &v4, sizeof v4);
+  if (failed != 0) g_warning("cannot send multicast from %s", interface.c_str());
+}
+
+std::string AddressToString(GSocketAddress* address) {
+  if (address == nullptr) return "(none)";
+  gchar* text = g_socket_connectable_to_string(G_SOCKET_CONNECTABLE(address));
+  std::string result(text);
+  g_free(text);
+  return result;
+}
+
+WakeFd::WakeFd() : fd_(eventfd(0, EFD_NONBLOCK | EFD_CLOEXEC)) {}
+
+WakeFd::~WakeFd() {
+  if (fd_ >= 0) close(fd_);
+}
+
+void WakeFd::Wake() {
+  // Fails only when the counter is full, and then it wakes already.
+  if (eventfd_write(fd_, 1) != 0) return;
+}
+
+void WakeFd::Clear() {
+  eventfd_t ignored = 0;
+  if (eventfd_read(fd_, &ignored) != 0) return;  // was not woken
+}
+
+WakeFd::Outcome WakeFd::Wait(int fd, short events, gint64 timeout_ns) const {
+  pollfd fds[2] = {{fd_, POLLIN, 0}, {fd, events, 0}};
+  timespec timeout{static_cast<time_t>(timeout_ns / 1'000'000'000),
+                   static_cast<long>(timeout_ns % 1'000'000'000)};
+  const int ready = ppoll(fds, 2, timeout_ns < 0 ? nullptr : &timeout, nullptr);
+  if (ready < 0) return errno == EINTR ? Outcome::kReady : Outcome::kError;
+  if (fds[0].revents != 0) return Outcome::kWoken;
+  return ready == 0 ? Outcome::kTimeout : Outcome::kReady;
+}
+
+guint SetReceiveBuffer(int fd, guint bytes) {
+  const int size = static_cast<int>(bytes);
+  // The forced form needs CAP_NET_ADMIN.
+  if (bytes > 0 && setsockopt(fd, SOL_SOCKET, SO_RCVBUFFORCE, &size, sizeof size) != 0 &&
+      setsockopt(fd, SOL_SOCKET, SO_RCVBUF, &size, sizeof size) != 0) {
+    return 0;
+  }
+  int granted = 0;
+  socklen_t length = sizeof granted;
+  if (getsockopt(fd, SOL_SOCKET, SO_RCVBUF, &granted, &length) != 0) return 0;
+  return static_cast<guint>(granted / 2);  // the kernel doubles it for its own bookkeeping
+}
+
+}  // namespace lidar::gst

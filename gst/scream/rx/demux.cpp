@@ -1,0 +1,149 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Several streams behind screamrx: each SSRC leaves by a pad of its own, with caps from pt-map.
+#include <utility>
+
+#include "gst/scream/rx/private.h"
+
+#define GST_CAT_DEFAULT gst_lidar_scream_rx_debug
+
+namespace lidar::gst {
+namespace {
+
+// Whoever forges SSRCs makes a pad with each; a sender that restarts makes one each time.
+constexpr std::size_t kMaxRoutes = 1'024;
+
+/// The caps of a payload type with the SSRC put in; NULL where pt-map has none.
+GstCaps* CapsOf(GstLidarScreamRx* self, const RtpHeader& header) {
+  RxState& state = *self->state;
+  const StringPtr field(g_strdup_printf("%u", header.payload_type));
+  CapsPtr caps;
+  {
+    RxLock lock(state.mutex);
+    if (!state.pt_map) return nullptr;
+    const GValue* value = gst_structure_get_value(state.pt_map.get(), field.get());
+    if (value == nullptr) return nullptr;
+    if (GST_VALUE_HOLDS_CAPS(value)) {
+      caps.reset(gst_caps_copy(gst_value_get_caps(value)));
+    } else if (G_VALUE_HOLDS_STRING(value)) {
+      caps.reset(gst_caps_from_string(g_value_get_string(value)));
+    }
+  }
+  if (!caps || !gst_caps_is_fixed(caps.get())) return nullptr;
+  gst_caps_set_simple(caps.get(), "payload", G_TYPE_INT, static_cast<gint>(header.payload_type),
+                      "ssrc", G_TYPE_UINT, header.ssrc, nullptr);
+  return caps.release();
+}
+
+gboolean CopyExceptCaps(GstPad*, GstEvent** event, gpointer to) {
+  const GstEventType type = GST_EVENT_TYPE(*event);
+  if (type != GST_EVENT_CAPS && type != GST_EVENT_STREAM_START && type != GST_EVENT_EOS)
+    gst_pad_push_event(GST_PAD(to), gst_event_ref(*event));
+  return TRUE;
+}
+
+GstPad* NewPad(GstLidarScreamRx* self, guint32 ssrc, GstCaps* caps) {
+  GstPadTemplate* templ = gst_element_class_get_pad_template(GST_ELEMENT_GET_CLASS(self), "src_%u");
+  const StringPtr name(g_strdup_printf("src_%u", ssrc));
+  GstPad* pad = gst_pad_new_from_template(templ, name.get());
+  gst_pad_use_fixed_caps(pad);
+  gst_pad_set_active(pad, TRUE);
+  gchar* id = gst_pad_create_stream_id(pad, GST_ELEMENT(self), name.get());
+  gst_pad_push_event(pad, gst_event_new_stream_start(id));
+  g_free(id);
+  gst_pad_push_event(pad, gst_event_new_caps(caps));
+  gst_pad_sticky_events_foreach(self->sink, CopyExceptCaps, pad);
+  gst_flow_combiner_add_pad(self->state->combiner, pad);
+  gst_element_add_pad(GST_ELEMENT(self), pad);
+  return pad;
+}
+
+/// Gives `src` its caps, and then what has to come behind them.
+void StartSrc(GstLidarScreamRx* self, const CapsPtr& caps) {
+  gst_pad_push_event(self->src, gst_event_new_caps(caps.get()));
+  if (!self->state->src_started)
+    gst_pad_sticky_events_foreach(self->sink, CopyExceptCaps, self->src);
+  self->state->src_started = true;
+}
+
+/// Whether somebody takes what `pad` gives; a ghost pad that nobody linked does not.
+bool LeadsToSomebody(GstPad* pad) {
+  const PadPtr peer(gst_pad_get_peer(pad));
+  if (!peer || !GST_IS_PROXY_PAD(peer.get())) return peer != nullptr;
+  GstProxyPad* ghost = gst_proxy_pad_get_internal(GST_PROXY_PAD(peer.get()));
+  const PadPtr owner(GST_PAD(ghost));
+  return ghost != nullptr && LeadsToSomebody(GST_PAD(ghost));
+}
+
+/// `src` takes the first stream that its peer can take; payload types outside of pt-map too
+/// (retransmission, FEC), which belong to whatever is there.
+GstPad* Route(GstLidarScreamRx* self, const RtpHeader& header) {
+  RxState& state = *self->state;
+  const CapsPtr caps(CapsOf(self, header));
+  if (!caps) {
+    if (!state.src_started) StartSrc(self, CapsPtr(gst_caps_new_empty_simple("application/x-rtp")));
+    return self->src;
+  }
+  const bool fits =
+      LeadsToSomebody(self->src) && gst_pad_peer_query_accept_caps(self->src, caps.get()) != FALSE;
+  if (state.src_taken || !fits) return NewPad(self, header.ssrc, caps.get());
+  state.src_taken = true;
+  StartSrc(self, caps);
+  return self->src;
+}
+
+}  // namespace
+
+bool HasPtMap(GstLidarScreamRx* self) {
+  RxLock lock(self->state->mutex);
+  return self->state->pt_map != nullptr;
+}
+
+/// Of an SSRC for which there is no pad left.
+static GstFlowReturn Refuse(GstLidarScreamRx* self, GstBuffer* buffer) {
+  RxState& state = *self->state;
+  gst_buffer_unref(buffer);
+  if (!std::exchange(state.routes_full, true)) {
+    GST_ELEMENT_WARNING(self, STREAM, DEMUX, ("More than %zu streams.", kMaxRoutes),
+                        ("Further SSRCs are dropped until the element is started anew."));
+  }
+  RxLock lock(state.mutex);
+  ++state.foreign;
+  return GST_FLOW_OK;
+}
+
+GstFlowReturn Demux(GstLidarScreamRx* self, const RtpHeader& header, GstBuffer* buffer) {
+  RxState& state = *self->state;
+  auto found = state.routes.find(header.ssrc);
+  if (found == state.routes.end() && state.routes.size() >= kMaxRoutes) {
+    return Refuse(self, buffer);
+  }
+  if (found == state.routes.end())
+    found = state.routes.emplace(header.ssrc, Route(self, header)).first;
+  GstPad* pad = found->second;
+  return gst_flow_combiner_update_pad_flow(state.combiner, pad, gst_pad_push(pad, buffer));
+}
+
+gboolean ForwardToAll(GstLidarScreamRx* self, GstEvent* event) {
+  for (const auto& [ssrc, pad] : self->state->routes)
+    if (pad != self->src) gst_pad_push_event(pad, gst_event_ref(event));
+  if (HasPtMap(self) && !self->state->src_started && GST_EVENT_IS_STICKY(event) &&
+      GST_EVENT_TYPE(event) != GST_EVENT_EOS) {
+    gst_event_unref(event);  // it follows the caps, which the first packet brings
+    return TRUE;
+  }
+  return gst_pad_push_event(self->src, event);
+}
+
+void RemoveRoutes(GstLidarScreamRx* self) {
+  RxState& state = *self->state;
+  for (const auto& [ssrc, pad] : state.routes) {
+    if (pad == self->src) continue;
+    gst_flow_combiner_remove_pad(state.combiner, pad);
+    gst_pad_set_active(pad, FALSE);
+    gst_element_remove_pad(GST_ELEMENT(self), pad);
+  }
+  state.routes.clear();
+  state.src_taken = state.src_started = state.routes_full = false;
+}
+
+}  // namespace lidar::gst

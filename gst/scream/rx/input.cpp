@@ -1,0 +1,160 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// What enters screamrx: media, which is counted and passed on, and goodbyes.
+#include "gst/common/buffer_map.h"
+#include "gst/scream/rx/private.h"
+
+#define GST_CAT_DEFAULT gst_lidar_scream_rx_debug
+
+namespace lidar::gst {
+namespace {
+
+constexpr std::size_t kMaxSsrcs = 64;
+// A kernel time older than this, or in the future, means that somebody set the system clock.
+constexpr Duration kMaxAge = std::chrono::seconds(1);
+constexpr Duration kMaxApart = std::chrono::milliseconds(1);
+
+/// Now on the clock of the reports, and on that of kernel arrival times.
+struct Clocks {
+  Time now{};
+  GstClockTime unix_now = 0;
+};
+
+/// Again where the thread was stopped between the two: all arrivals would seem so much earlier.
+Clocks ReadClocks(const RxState& state) {
+  Clocks clocks;
+  for (int tries = 0; tries < 3; ++tries) {
+    clocks.now = RxNow(state);
+    clocks.unix_now = static_cast<GstClockTime>(g_get_real_time()) * GST_USECOND;
+    if (RxNow(state) - clocks.now < kMaxApart) break;
+  }
+  return clocks;
+}
+
+/// The kernel's arrival time on the reports' clock, which nobody sets.
+Time ArrivalTime(const Clocks& clocks, GstClockTime arrival) {
+  if (!GST_CLOCK_TIME_IS_VALID(arrival)) return clocks.now;
+  const auto age = Duration{static_cast<std::int64_t>(clocks.unix_now - arrival)};
+  return age > Duration{0} && age < kMaxAge ? clocks.now - age : clocks.now;
+}
+
+/// Counts one packet of media; false where it is to be dropped. With the lock held.
+bool Account(RxState& state, const Clocks& clocks, GstBuffer* buffer, const RtpHeader& header) {
+  const auto verdict = state.latch.OnPacket(clocks.now, SourceOf(buffer), header.ssrc, header.seq);
+  if (verdict == PeerLatch::Verdict::kForeign) {
+    ++state.foreign;
+    return false;
+  }
+  if (verdict == PeerLatch::Verdict::kMoved) {
+    ++state.moves;
+    state.generator.Reset();
+    state.ssrcs.clear();
+  }
+  GstLidarEcn ecn = GST_LIDAR_ECN_NOT_ECT;
+  GstClockTime arrival = GST_CLOCK_TIME_NONE;
+  gst_lidar_buffer_get_ecn(buffer, &ecn, &arrival);
+  scream::ReceivedPacket packet;
+  packet.ssrc = header.ssrc;
+  packet.seq = header.seq;
+  packet.ecn = static_cast<scream::Ecn>(ecn);
+  packet.marker = header.marker;
+  packet.size = DataSize::Bytes(static_cast<std::int64_t>(gst_buffer_get_size(buffer)) +
+                                state.settings.packet_overhead);
+  state.generator.OnPacket(ArrivalTime(clocks, arrival), packet);
+  // One that is alive comes back with its next packet.
+  if (state.ssrcs.size() >= kMaxSsrcs) state.ssrcs.erase(state.ssrcs.begin());
+  state.ssrcs.insert(header.ssrc);
+  return true;
+}
+
+enum class Fate { kPass, kDrop, kEnd };
+
+/// A goodbye on the media's port ends streams; other RTCP there goes on unread. Lock held.
+Fate LookAtRtcp(RxState& state, GstBuffer* buffer, const BufferMap& map) {
+  const auto goodbyes = ParseBye(map.view());
+  if (goodbyes.empty()) return Fate::kPass;
+  if (!state.latch.IsPeer(SourceOf(buffer))) {
+    ++state.foreign;
+    return Fate::kDrop;
+  }
+  bool known = false;
+  for (const guint32 ssrc : goodbyes) known = state.ssrcs.erase(ssrc) > 0 || known;
+  if (known) ++state.goodbyes;
+  return known && state.ssrcs.empty() && state.settings.eos_on_bye ? Fate::kEnd : Fate::kDrop;
+}
+
+Fate Look(GstLidarScreamRx* self, const Clocks& clocks, GstBuffer* buffer, RtpHeader* header) {
+  RxState& state = *self->state;
+  guint8 type = 0;
+  gst_buffer_extract(buffer, 1, &type, 1);
+  if (type >= 192 && type <= 223) {
+    const BufferMap map(buffer, GST_MAP_READ);
+    RxLock lock(state.mutex);
+    if (map && IsRtcp(map.view())) return LookAtRtcp(state, buffer, map);
+  }
+  const auto read = ReadRtpHeader(buffer);
+  RxLock lock(state.mutex);
+  if (!read) {
+    ++state.malformed;
+    return Fate::kDrop;
+  }
+  *header = *read;
+  if (!Account(state, clocks, buffer, *read)) return Fate::kDrop;
+  WakeFeedback(state);
+  return Fate::kPass;
+}
+
+GstFlowReturn End(GstLidarScreamRx* self) {
+  GST_INFO_OBJECT(self, "every stream has said goodbye");
+  self->state->eos = true;
+  ForwardToAll(self, gst_event_new_eos());
+  return GST_FLOW_EOS;
+}
+
+}  // namespace
+
+GstFlowReturn RxChain(GstPad*, GstObject* parent, GstBuffer* buffer) {
+  auto* self = GST_LIDAR_SCREAM_RX(parent);
+  BufferPtr owner(buffer);
+  if (self->state->eos) return GST_FLOW_EOS;
+  RtpHeader header;
+  switch (Look(self, ReadClocks(*self->state), buffer, &header)) {
+    case Fate::kDrop:
+      return GST_FLOW_OK;
+    case Fate::kEnd:
+      return End(self);
+    case Fate::kPass:
+      break;
+  }
+  if (HasPtMap(self)) return Demux(self, header, owner.release());
+  return gst_pad_push(self->src, owner.release());
+}
+
+GstFlowReturn RxChainList(GstPad* pad, GstObject* parent, GstBufferList* list) {
+  auto* self = GST_LIDAR_SCREAM_RX(parent);
+  const BufferListPtr owner(list);
+  const bool demux = HasPtMap(self);
+  const guint n = gst_buffer_list_length(list);
+  if (demux) {
+    GstFlowReturn flow = GST_FLOW_OK;
+    for (guint i = 0; i < n && flow == GST_FLOW_OK; ++i)
+      flow = RxChain(pad, parent, gst_buffer_ref(gst_buffer_list_get(list, i)));
+    return flow;
+  }
+  if (self->state->eos) return GST_FLOW_EOS;
+  const Clocks clocks = ReadClocks(*self->state);
+  BufferListPtr passed(gst_buffer_list_new_sized(n));
+  bool end = false;
+  for (guint i = 0; i < n && !end; ++i) {
+    RtpHeader header;
+    GstBuffer* buffer = gst_buffer_list_get(list, i);
+    const Fate fate = Look(self, clocks, buffer, &header);
+    if (fate == Fate::kPass) gst_buffer_list_add(passed.get(), gst_buffer_ref(buffer));
+    end = fate == Fate::kEnd;
+  }
+  GstFlowReturn flow = GST_FLOW_OK;
+  if (gst_buffer_list_length(passed.get()) > 0)
+    flow = gst_pad_push_list(self->src, passed.release());
+  return end && flow == GST_FLOW_OK ? End(self) : flow;
+}
+
+}  // namespace lidar::gst

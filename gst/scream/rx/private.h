@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// The inside of screamrx: its state, and the functions its files share.
+//
+// Threads: the sink pad's streaming thread looks at packets and passes them; the task on rtcp_src
+// sends reports when the generator says. One mutex guards the state; nobody holds it while pushing
+// or waiting.
+#pragma once
+#include <gst/base/gstflowcombiner.h>
+#include <gst/gst.h>
+
+#include <map>
+#include <mutex>
+#include <optional>
+#include <set>
+
+#include "gst/common/gstlidar.h"
+#include "gst/common/properties.h"
+#include "gst/common/refs.h"
+#include "gst/scream/peer_latch.h"
+#include "gst/scream/rtp_packet.h"
+#include "gst/scream/rx/gstscreamrx.h"
+#include "src/scream/feedback/feedback_generator.h"
+
+GST_DEBUG_CATEGORY_EXTERN(gst_lidar_scream_rx_debug);
+
+namespace lidar::gst {
+
+enum NumReportsMode { kNumReportsCount, kNumReportsEricsson };
+GType NumReportsType();
+
+struct RxSettings {
+  static inline const scream::FeedbackConfig kDefault{};
+
+  guint64 feedback_interval = static_cast<guint64>(kDefault.feedback_interval.count());
+  guint packets_per_feedback = static_cast<guint>(kDefault.packets_per_feedback);
+  guint ssrc = 0;
+  gint num_reports = kNumReportsCount;
+  bool feedback_on_marker = kDefault.report_on_marker;
+  bool eos_on_bye = true;
+  guint packet_overhead = 28;
+};
+
+struct RxState {
+  std::mutex mutex;
+  RxSettings settings;
+  StructurePtr pt_map;
+  scream::FeedbackGenerator generator;
+  PeerLatch latch;
+  std::set<guint32> ssrcs;  // of the peer, alive
+  bool running = false;
+  guint64 foreign = 0;
+  guint64 malformed = 0;
+  guint64 moves = 0;
+  guint64 goodbyes = 0;
+  bool settings_changed = false;
+  guint32 own_ssrc = 1;
+
+  // The task on rtcp_src
+  GstClock* clock = nullptr;
+  GstClockID timer = nullptr;  // not owned
+  Time waits_until{};
+  bool rtcp_started = false;
+
+  // Of the streaming thread
+  bool eos = false;
+  std::map<guint32, GstPad*> routes;  // SSRC to the pad it leaves by, where there is a pt-map
+  bool src_taken = false;             // by a stream of pt-map
+  bool src_started = false;           // it has had its caps
+  bool routes_full = false;           // and a warning said so
+  GstFlowCombiner* combiner = nullptr;
+};
+
+}  // namespace lidar::gst
+
+struct _GstLidarScreamRx {
+  GstElement parent;
+  GstPad* sink;
+  GstPad* src;
+  GstPad* rtcp_src;
+  lidar::gst::RxState* state;
+};
+
+namespace lidar::gst {
+
+using RxLock = std::unique_lock<std::mutex>;
+
+Time RxNow(const RxState& state);
+scream::FeedbackConfig ToConfig(const RxSettings& settings, guint32 own_ssrc);
+
+// rx_input.cpp: the sink pad
+GstFlowReturn RxChain(GstPad* pad, GstObject* parent, GstBuffer* buffer);
+GstFlowReturn RxChainList(GstPad* pad, GstObject* parent, GstBufferList* list);
+
+// rx_feedback.cpp
+gboolean RxActivateRtcp(GstPad* pad, GstObject* parent, GstPadMode mode, gboolean active);
+/// Makes the task look again where the next report is due sooner; with the lock held.
+void WakeFeedback(RxState& state);
+
+// rx_demux.cpp: streams by SSRC, with pt-map
+bool HasPtMap(GstLidarScreamRx* self);
+/// Pushes on the pad of the packet's stream, which may be new. Takes the buffer.
+GstFlowReturn Demux(GstLidarScreamRx* self, const RtpHeader& header, GstBuffer* buffer);
+/// Sends a sink event to every pad of media; takes the event.
+gboolean ForwardToAll(GstLidarScreamRx* self, GstEvent* event);
+void RemoveRoutes(GstLidarScreamRx* self);
+
+}  // namespace lidar::gst

@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "gst/scream/srtp/decoder.h"
+
+namespace lidar::gst {
+
+std::unique_ptr<SrtpDecoder> SrtpDecoder::Create(GstElement* bin, const SrtpPolicy& policy,
+                                                 SrtpKey key, GstPad* exit) {
+  GstElement* element = gst_element_factory_make("srtpdec", nullptr);
+  if (element == nullptr) return nullptr;
+  gst_bin_add(GST_BIN(bin), element);
+  return std::unique_ptr<SrtpDecoder>(new SrtpDecoder(bin, element, policy, std::move(key), exit));
+}
+
+SrtpDecoder::SrtpDecoder(GstElement* bin, GstElement* element, const SrtpPolicy& policy,
+                         SrtpKey key, GstPad* exit)
+    : bin_(bin), element_(element), exit_(exit), policy_(policy), key_(std::move(key)) {
+  g_signal_connect(element_, "request-key",
+                   G_CALLBACK(+[](GstElement*, guint ssrc, gpointer self) -> GstCaps* {
+                     return static_cast<SrtpDecoder*>(self)->CapsFor(ssrc);
+                   }),
+                   this);
+  sink_.reset(gst_element_get_static_pad(element_, "rtp_sink"));
+  rtp_ = NewRelay("rtp_src");
+  rtcp_ = NewRelay("rtcp_src");
+  gst_element_sync_state_with_parent(element_);
+}
+
+SrtpDecoder::~SrtpDecoder() {
+  gst_element_set_state(element_, GST_STATE_NULL);
+  gst_bin_remove(GST_BIN(bin_), element_);  // unlinks its pads
+  for (GstPad* pad : {rtp_.get(), rtcp_.get()}) gst_pad_set_active(pad, FALSE);
+}
+
+/// Takes what the pad `source` gives. It ends the events there: the stream has its own.
+PadPtr SrtpDecoder::NewRelay(const char* source) {
+  PadPtr pad(GST_PAD(gst_object_ref_sink(gst_pad_new("relay", GST_PAD_SINK))));
+  gst_pad_set_element_private(pad.get(), this);
+  gst_pad_set_chain_function(pad.get(), [](GstPad* p, GstObject*, GstBuffer* buffer) {
+    auto* self = static_cast<SrtpDecoder*>(gst_pad_get_element_private(p));
+    self->passed_ = true;
+    if (self->exit_ == nullptr) gst_buffer_unref(buffer);
+    return self->flow_ = self->exit_ == nullptr ? GST_FLOW_OK : gst_pad_push(self->exit_, buffer);
+  });
+  gst_pad_set_event_function(pad.get(), [](GstPad*, GstObject*, GstEvent* event) -> gboolean {
+    gst_event_unref(event);
+    return TRUE;
+  });
+  gst_pad_set_active(pad.get(), TRUE);
+  const PadPtr from(gst_element_get_static_pad(element_, source));
+  gst_pad_link(from.get(), pad.get());
+  return pad;
+}
+
+void SrtpDecoder::Start() {
+  GstSegment segment;
+  gst_segment_init(&segment, GST_FORMAT_TIME);
+  const CapsPtr caps(gst_caps_new_empty_simple("application/x-srtp"));
+  gst_pad_send_event(sink_.get(), gst_event_new_stream_start("srtp"));
+  gst_pad_send_event(sink_.get(), gst_event_new_caps(caps.get()));
+  gst_pad_send_event(sink_.get(), gst_event_new_segment(&segment));
+}
+
+bool SrtpDecoder::Decode(GstBuffer* datagram, GstFlowReturn* flow) {
+  if (!gst_pad_has_current_caps(sink_.get())) Start();
+  passed_ = false;
+  // It decodes in place, and frees a buffer that others hold too.
+  const GstFlowReturn result = gst_pad_chain(sink_.get(), gst_buffer_copy_deep(datagram));
+  *flow = passed_ ? flow_ : result;
+  return passed_;
+}
+
+void SrtpDecoder::Restart(std::uint32_t ssrc, std::uint32_t rollover) {
+  rollovers_.erase(ssrc);
+  if (rollover != 0) rollovers_[ssrc] = rollover;
+  g_signal_emit_by_name(element_, "remove-key", ssrc);
+}
+
+void SrtpDecoder::Clear() {
+  rollovers_.clear();
+  g_signal_emit_by_name(element_, "clear-keys");
+}
+
+GstCaps* SrtpDecoder::CapsFor(std::uint32_t ssrc) const {
+  const BufferPtr key(gst_buffer_new_memdup(key_.data(), key_.size()));
+  const auto guess = rollovers_.find(ssrc);
+  return gst_caps_new_simple(
+      "application/x-srtp", "srtp-key", GST_TYPE_BUFFER, key.get(), "srtp-cipher", G_TYPE_STRING,
+      policy_.cipher.c_str(), "srtp-auth", G_TYPE_STRING, policy_.auth.c_str(), "srtcp-cipher",
+      G_TYPE_STRING, policy_.cipher.c_str(), "srtcp-auth", G_TYPE_STRING, policy_.rtcp_auth.c_str(),
+      "roc", G_TYPE_UINT, guess == rollovers_.end() ? 0 : guess->second, nullptr);
+}
+
+}  // namespace lidar::gst

@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// The stock srtpdec with one key: says of each datagram whether the key fits.
+#pragma once
+#include <gst/gst.h>
+
+#include <cstdint>
+#include <map>
+#include <memory>
+
+#include "gst/common/refs.h"
+#include "gst/scream/srtp/key.h"
+
+namespace lidar::gst {
+
+/// A child of the bin while it lives. Everything but the making of it belongs to the one streaming
+/// thread that gives it datagrams.
+class SrtpDecoder {
+ public:
+  /// Null where the srtp plugin is missing. What it decodes is pushed from `exit`; without one it
+  /// only says whether the key fits.
+  static std::unique_ptr<SrtpDecoder> Create(GstElement* bin, const SrtpPolicy& policy, SrtpKey key,
+                                             GstPad* exit);
+  ~SrtpDecoder();
+  SrtpDecoder(const SrtpDecoder&) = delete;
+  SrtpDecoder& operator=(const SrtpDecoder&) = delete;
+
+  const SrtpKey& key() const { return key_; }
+  /// Whether `datagram` is RTP or RTCP by this key and no replay. If so it has been pushed
+  /// decoded, and `flow` is what came of that. Leaves `datagram` alone.
+  bool Decode(GstBuffer* datagram, GstFlowReturn* flow);
+  /// Forgets all of `ssrc` but this guess of its rollover counter.
+  void Restart(std::uint32_t ssrc, std::uint32_t rollover);
+  /// Forgets all guesses; the element has forgotten its streams itself when it stopped.
+  void Reset() { rollovers_.clear(); }
+  /// Forgets every stream. The only way to get memory back from srtpdec while it runs: in
+  /// GStreamer 1.22 what Restart removes stays in its session.
+  void Clear();
+
+ private:
+  SrtpDecoder(GstElement* bin, GstElement* element, const SrtpPolicy& policy, SrtpKey key,
+              GstPad* exit);
+  PadPtr NewRelay(const char* source);
+  void Start();
+  GstCaps* CapsFor(std::uint32_t ssrc) const;
+
+  GstElement* bin_;
+  GstElement* element_;  // of the bin
+  GstPad* exit_;
+  SrtpPolicy policy_;
+  SrtpKey key_;
+  PadPtr sink_;
+  PadPtr rtp_;  // take what comes out
+  PadPtr rtcp_;
+  std::map<std::uint32_t, std::uint32_t> rollovers_;  // guesses past 0
+  bool passed_ = false;                               // the datagram in work came out
+  GstFlowReturn flow_ = GST_FLOW_OK;
+};
+
+}  // namespace lidar::gst

@@ -1,0 +1,271 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "gst/scream/srtp/input.h"
+
+#include <algorithm>
+
+namespace lidar::gst {
+namespace {
+
+// The one in use, the one before and the one to come.
+constexpr std::size_t kMaxKeys = 3;
+constexpr gint64 kStragglersUs = 10 * G_USEC_PER_SEC;
+constexpr std::size_t kMaxStreams = 1'024;
+// Losses long enough to lose count of a rollover look like this; a sender without feedback is slow.
+constexpr unsigned kFailuresUntilLost = 20;
+constexpr gint64 kSilenceUntilLostUs = 2 * G_USEC_PER_SEC;
+constexpr std::uint32_t kMaxRollover = 100'000;  // months
+constexpr unsigned kFailuresUntilWarning = 20;
+// Each costs the derivation of its keys, 50 us or so.
+constexpr double kTrialsPerSecond = 500;
+constexpr unsigned kTriedUntilCleared = 64;
+
+SrtpInput* InputOf(GstPad* pad) {
+  return static_cast<SrtpInput*>(gst_pad_get_element_private(pad));
+}
+
+}  // namespace
+
+SrtpInput::SrtpInput(GstElement* bin, const SrtpPolicy& policy, OnNewKey on_new_key)
+    : bin_(bin), policy_(policy), on_new_key_(std::move(on_new_key)) {
+  InstallEntry();
+  InstallExit();
+}
+
+void SrtpInput::InstallEntry() {
+  entry_.reset(GST_PAD(gst_object_ref_sink(gst_pad_new("entry", GST_PAD_SINK))));
+  GstPad* pad = entry_.get();
+  gst_pad_set_element_private(pad, this);
+  gst_pad_set_chain_function(pad, [](GstPad* p, GstObject*, GstBuffer* datagram) {
+    const BufferPtr owner(datagram);
+    return InputOf(p)->OnDatagram(datagram);
+  });
+  gst_pad_set_event_function(pad, [](GstPad* p, GstObject*, GstEvent* event) -> gboolean {
+    SrtpInput* self = InputOf(p);
+    if (GST_EVENT_TYPE(event) == GST_EVENT_STREAM_START) self->Reset();
+    return gst_pad_push_event(self->exit_.get(), event);
+  });
+  gst_pad_set_query_function(pad, [](GstPad* p, GstObject*, GstQuery* query) {
+    return gst_pad_peer_query(InputOf(p)->exit_.get(), query);
+  });
+  gst_pad_set_active(pad, TRUE);
+}
+
+void SrtpInput::InstallExit() {
+  exit_.reset(GST_PAD(gst_object_ref_sink(gst_pad_new("exit", GST_PAD_SRC))));
+  GstPad* pad = exit_.get();
+  gst_pad_set_element_private(pad, this);
+  gst_pad_set_event_function(pad, [](GstPad* p, GstObject*, GstEvent* event) -> gboolean {
+    return gst_pad_push_event(InputOf(p)->entry_.get(), event);
+  });
+  gst_pad_set_query_function(pad, [](GstPad* p, GstObject*, GstQuery* query) {
+    return gst_pad_peer_query(InputOf(p)->entry_.get(), query);
+  });
+  gst_pad_set_active(pad, TRUE);
+}
+
+SrtpInput::~SrtpInput() {
+  for (GstPad* pad : {entry_.get(), exit_.get()}) {
+    const PadPtr peer(gst_pad_get_peer(pad));
+    if (peer && pad == entry_.get()) gst_pad_unlink(peer.get(), pad);
+    if (peer && pad == exit_.get()) gst_pad_unlink(pad, peer.get());
+    gst_pad_set_active(pad, FALSE);
+  }
+}
+
+bool SrtpInput::Link(GstPad* socket, GstPad* target) {
+  return gst_pad_link(exit_.get(), target) == GST_PAD_LINK_OK &&
+         gst_pad_link(socket, entry_.get()) == GST_PAD_LINK_OK;
+}
+
+bool SrtpInput::AddKey(const SrtpKey& key) {
+  Key added{0, SrtpDecoder::Create(bin_, policy_, key, exit_.get()),
+            SrtpDecoder::Create(bin_, policy_, key, nullptr)};
+  if (!added.decoder || !added.trial) return false;
+  std::lock_guard lock(mutex_);
+  added.serial = ++serial_;
+  if (serial_ > 1) ++waiting_;
+  added_.push_back(std::move(added));
+  return true;
+}
+
+SrtpCounts SrtpInput::counts() const { return {received_, refused_, key_changes_}; }
+
+void SrtpInput::Reset() {
+  streams_.clear();
+  for (const Key& key : keys_) {
+    key.decoder->Reset();
+    key.trial->Reset();
+  }
+}
+
+SrtpInput::Head SrtpInput::HeadOf(GstBuffer* datagram) {
+  guint8 bytes[12] = {};
+  const gsize size = gst_buffer_extract(datagram, 0, bytes, sizeof bytes);
+  Head head;
+  head.rtcp = bytes[1] >= 192 && bytes[1] <= 223;
+  head.sequence = GST_READ_UINT16_BE(bytes + 2);
+  const gsize at = head.rtcp ? 4 : 8;
+  if (size >= at + 4) head.ssrc = GST_READ_UINT32_BE(bytes + at);
+  return head;
+}
+
+GstFlowReturn SrtpInput::OnDatagram(GstBuffer* datagram) {
+  UpdateKeys();
+  ++received_;
+  const Head head = HeadOf(datagram);
+  const auto found = streams_.find(head.ssrc);
+  Stream* known = found != streams_.end() && found->second.known ? &found->second : nullptr;
+  GstFlowReturn flow = GST_FLOW_OK;
+  if (known != nullptr) {
+    if (DecodeKnown(datagram, head, &flow) || flow == GST_FLOW_FLUSHING) return flow;
+    ++known->failures;
+  }
+  if (known == nullptr || IsLost(*known))
+    if (TryStranger(datagram, head, &flow) || flow == GST_FLOW_FLUSHING) return flow;
+  ++refused_;
+  if (known == nullptr && refused_ >= kFailuresUntilWarning) Warn();
+  return GST_FLOW_OK;
+}
+
+bool SrtpInput::DecodeKnown(GstBuffer* datagram, const Head& head, GstFlowReturn* flow) {
+  for (std::size_t i = 0; i < keys_.size(); ++i) {
+    // The key that the last packet had comes first; the others fail once for each packet.
+    const std::size_t n = (in_use_ + i) % keys_.size();
+    if (keys_[n].decoder->Decode(datagram, flow)) {
+      OnPassed(head, n, 0);
+      return true;
+    }
+    if (*flow == GST_FLOW_FLUSHING) return false;
+  }
+  return false;
+}
+
+/// RTP does not carry its rollover counter, so it is tried. One that is lost is ahead of where it
+/// was: what came before is a recording.
+bool SrtpInput::TryStranger(GstBuffer* datagram, const Head& head, GstFlowReturn* flow) {
+  if (!allowance_.Take(g_get_monotonic_time())) return false;
+  Stream& stream = StreamOf(head.ssrc);
+  const std::uint32_t guess = stream.search.Next();
+  for (std::size_t i = 0; i < keys_.size(); ++i) {
+    const std::size_t n = (in_use_ + i) % keys_.size();
+    const bool behind = stream.known && keys_[n].serial <= stream.key;
+    if (stream.known && keys_[n].serial < stream.key) continue;
+    const std::uint32_t base = behind ? stream.rollover + 1 : 0;
+    for (const std::uint32_t rollover : {base, base + guess}) {
+      if (!Fits(keys_[n], datagram, head.ssrc, rollover)) continue;
+      // Decoded again where its streams are, so that it is no replay once and never again.
+      keys_[n].decoder->Restart(head.ssrc, rollover);
+      if (!keys_[n].decoder->Decode(datagram, flow)) return false;
+      OnPassed(head, n, rollover);
+      return true;
+    }
+  }
+  if (!stream.known) ++stream.failures;
+  return false;
+}
+
+bool SrtpInput::Fits(const Key& key, GstBuffer* datagram, std::uint32_t ssrc,
+                     std::uint32_t rollover) {
+  if (++tried_ >= kTriedUntilCleared) {
+    for (const Key& k : keys_) k.trial->Clear();
+    tried_ = 0;
+  }
+  GstFlowReturn flow = GST_FLOW_OK;
+  key.trial->Restart(ssrc, rollover);
+  return key.trial->Decode(datagram, &flow);
+}
+
+void SrtpInput::UpdateKeys() {
+  std::size_t drop = 0;
+  {
+    std::lock_guard lock(mutex_);
+    // Whose key we lacked may be anywhere with it.
+    if (!added_.empty())
+      for (auto& [ssrc, stream] : streams_) stream.search = {};
+    for (Key& key : added_) keys_.push_back(std::move(key));
+    added_.clear();
+  }
+  if (keys_.size() > kMaxKeys) drop = keys_.size() - kMaxKeys;
+  if (forget_old_at_ != 0 && g_get_monotonic_time() > forget_old_at_) {
+    drop = std::max(drop, newest_used_);
+    forget_old_at_ = 0;
+  }
+  keys_.erase(keys_.begin(), keys_.begin() + static_cast<std::ptrdiff_t>(drop));
+  in_use_ -= std::min(in_use_, drop);
+  newest_used_ -= std::min(newest_used_, drop);
+}
+
+SrtpInput::Stream& SrtpInput::StreamOf(std::uint32_t ssrc) {
+  const auto forget = [this](unsigned failures) {
+    for (auto it = streams_.begin(); it != streams_.end();)
+      it = it->second.known || it->second.failures > failures ? std::next(it) : streams_.erase(it);
+  };
+  // Garbage must not fill the memory with streams that do not exist, nor hide one that does.
+  if (streams_.size() >= kMaxStreams) forget(1);
+  if (streams_.size() >= kMaxStreams) forget(UINT_MAX);
+  if (streams_.size() >= kMaxStreams) streams_.clear();
+  return streams_[ssrc];
+}
+
+/// `rollover` is that of a stream or a key that was not known before.
+void SrtpInput::OnPassed(const Head& head, std::size_t key, std::uint32_t rollover) {
+  in_use_ = key;
+  Stream& stream = StreamOf(head.ssrc);
+  const std::uint64_t serial = keys_[key].serial;
+  if (!stream.known || serial > stream.key || rollover > stream.rollover) {
+    stream.rollover = rollover;
+    stream.sequence = head.sequence;
+    stream.key = serial;
+  } else if (serial == stream.key && !head.rtcp &&
+             static_cast<std::int16_t>(head.sequence - stream.sequence) > 0) {
+    if (head.sequence < stream.sequence) ++stream.rollover;
+    stream.sequence = head.sequence;
+  }
+  stream.known = true;
+  stream.failures = 0;
+  stream.passed_at = g_get_monotonic_time();
+  stream.search = {};
+  if (key <= newest_used_) return;
+  waiting_ -= std::min<std::size_t>(waiting_, key - newest_used_);
+  newest_used_ = key;
+  forget_old_at_ = g_get_monotonic_time() + kStragglersUs;
+  ++key_changes_;
+  on_new_key_(keys_[key].decoder->key());
+}
+
+/// Nothing of it passed for so long that it may have rolled over meanwhile. Not one that still
+/// passes, whatever a forger adds.
+bool SrtpInput::IsLost(const Stream& stream) {
+  return stream.failures >= kFailuresUntilLost &&
+         g_get_monotonic_time() - stream.passed_at >= kSilenceUntilLostUs;
+}
+
+std::uint32_t SrtpInput::Search::Next() {
+  if (left_ == 0) {
+    round_ = std::min(4 * round_, kMaxRollover);
+    left_ = round_;
+    at_ = g_random_int() % round_;
+  }
+  --left_;
+  return 1 + at_++ % round_;
+}
+
+void SrtpInput::Warn() {
+  if (warned_) return;
+  warned_ = true;
+  GST_ELEMENT_WARNING(bin_, STREAM, DECRYPT,
+                      ("Packets arrive that do not fit the SRTP key, and are dropped."),
+                      ("check that both ends have the same srtp-key, srtp-cipher and srtp-auth; "
+                       "this is said once, the property stats counts them"));
+}
+
+bool SrtpInput::Allowance::Take(gint64 now_us) {
+  const double refill = static_cast<double>(now_us - filled_at_) * kTrialsPerSecond / 1e6;
+  left_ = std::min(left_ + refill, kTrialsPerSecond);
+  filled_at_ = now_us;
+  if (left_ < 1) return false;
+  --left_;
+  return true;
+}
+
+}  // namespace lidar::gst

@@ -1,0 +1,130 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// The way in from a socket: every datagram is tried with the keys that are valid now.
+#pragma once
+#include <gst/gst.h>
+
+#include <atomic>
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <vector>
+
+#include "gst/common/refs.h"
+#include "gst/scream/srtp/decoder.h"
+#include "gst/scream/srtp/key.h"
+
+namespace lidar::gst {
+
+struct SrtpCounts {
+  std::uint64_t received = 0;  // datagrams
+  std::uint64_t refused = 0;   // wrong key, replayed, damaged or not protected
+  std::uint64_t key_changes = 0;
+};
+
+/// Takes the place of the link between `socket` and `target`: events and queries pass, datagrams
+/// pass decoded or not at all. A new key is valid beside the old one; once a packet fits it the
+/// old one is kept for stragglers and then forgotten. A stream that nobody knows is first tried
+/// apart, only so often in a second, so that a flood of strangers costs neither time nor memory.
+class SrtpInput {
+ public:
+  using OnNewKey = std::function<void(const SrtpKey&)>;
+
+  /// `on_new_key` is called in the streaming thread once the other end uses a newer key.
+  SrtpInput(GstElement* bin, const SrtpPolicy& policy, OnNewKey on_new_key);
+  ~SrtpInput();
+  SrtpInput(const SrtpInput&) = delete;
+  SrtpInput& operator=(const SrtpInput&) = delete;
+
+  /// Takes the two pads, that are not linked. False where they do not fit.
+  bool Link(GstPad* socket, GstPad* target);
+  /// From any thread. False where the srtp plugin is missing. Of four keys the oldest goes.
+  bool AddKey(const SrtpKey& key);
+  /// Keys that no packet has fitted yet, newer than the one in use.
+  std::size_t waiting_keys() const { return waiting_; }
+  SrtpCounts counts() const;
+
+ private:
+  /// What a datagram says of itself.
+  struct Head {
+    bool rtcp = false;
+    std::uint16_t sequence = 0;  // of RTP
+    std::uint32_t ssrc = 0;
+  };
+  /// Numbers from 1 on, to be tried: small ones again and again, in rounds of growing length that
+  /// begin anywhere, so that nobody who spends some of them can keep one from coming up.
+  class Search {
+   public:
+    std::uint32_t Next();
+
+   private:
+    std::uint32_t round_ = 1;
+    std::uint32_t left_ = 0;
+    std::uint32_t at_ = 0;
+  };
+  struct Stream {
+    bool known = false;     // a packet of it passed; then:
+    std::uint64_t key = 0;  // serial number of the newest key that fitted
+    std::uint32_t rollover = 0;
+    std::uint16_t sequence = 0;
+    unsigned failures = 0;  // since the last packet that passed
+    gint64 passed_at = 0;   // monotonic time [us]
+    Search search;
+  };
+  struct Key {
+    std::uint64_t serial = 0;
+    std::unique_ptr<SrtpDecoder> decoder;  // of streams that are known
+    std::unique_ptr<SrtpDecoder> trial;    // of others
+  };
+  /// What may be tried on strangers now.
+  class Allowance {
+   public:
+    bool Take(gint64 now_us);
+
+   private:
+    gint64 filled_at_ = 0;
+    double left_ = 0;
+  };
+
+  void InstallEntry();
+  void InstallExit();
+  GstFlowReturn OnDatagram(GstBuffer* datagram);
+  static Head HeadOf(GstBuffer* datagram);
+  bool DecodeKnown(GstBuffer* datagram, const Head& head, GstFlowReturn* flow);
+  bool TryStranger(GstBuffer* datagram, const Head& head, GstFlowReturn* flow);
+  bool Fits(const Key& key, GstBuffer* datagram, std::uint32_t ssrc, std::uint32_t rollover);
+  void UpdateKeys();
+  void OnPassed(const Head& head, std::size_t key, std::uint32_t rollover);
+  static bool IsLost(const Stream& stream);
+  void Warn();
+  Stream& StreamOf(std::uint32_t ssrc);
+  void Reset();
+
+  GstElement* bin_;
+  SrtpPolicy policy_;
+  OnNewKey on_new_key_;
+  PadPtr entry_;
+  PadPtr exit_;
+
+  std::mutex mutex_;  // guards added_ and serial_
+  std::vector<Key> added_;
+  std::uint64_t serial_ = 0;
+
+  // Of the streaming thread.
+  std::vector<Key> keys_;   // oldest first
+  std::size_t in_use_ = 0;  // of the packet that passed last
+  std::size_t newest_used_ = 0;
+  gint64 forget_old_at_ = 0;  // monotonic time [us]
+  std::map<std::uint32_t, Stream> streams_;
+  Allowance allowance_;
+  unsigned tried_ = 0;  // strangers, since the trial decoders were cleared
+  bool warned_ = false;
+
+  std::atomic<std::size_t> waiting_{0};
+  std::atomic<std::uint64_t> received_{0};
+  std::atomic<std::uint64_t> refused_{0};
+  std::atomic<std::uint64_t> key_changes_{0};
+};
+
+}  // namespace lidar::gst

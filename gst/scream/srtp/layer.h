@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// SRTP and SRTCP between the SCReAM elements and the socket of a bin, by the stock srtp plugin.
+#pragma once
+#include <gst/gst.h>
+
+#include <deque>
+#include <memory>
+#include <mutex>
+#include <string>
+
+#include "gst/common/refs.h"
+#include "gst/scream/srtp/input.h"
+#include "gst/scream/srtp/key.h"
+
+namespace lidar::gst {
+
+/// Where the layer goes: pads of the bin's children, linked plainly.
+struct SrtpLinks {
+  GstElement* bin;
+  GstElement* sender;         // screamtx or screamrx
+  const char* out;            // its pad towards the socket
+  const char* in;             // its pad from the socket
+  GstElement* socket_sink;    // ecnudpsink
+  GstElement* socket_source;  // ecnudpsrc
+  bool sends_media;           // out is RTP and in RTCP; else the other way round
+};
+
+/// Lives from READY to NULL of its bin. Every SSRC has the one key.
+class SrtpLayer {
+ public:
+  /// Null and `error` where the key, the cipher or the srtp plugin is not usable.
+  static std::unique_ptr<SrtpLayer> Create(const SrtpSettings& settings, const SrtpLinks& links,
+                                           std::string* error);
+  ~SrtpLayer();
+  SrtpLayer(const SrtpLayer&) = delete;
+  SrtpLayer& operator=(const SrtpLayer&) = delete;
+
+  SrtpCounts counts() const { return input_->counts(); }
+  /// Bytes that it adds to each RTP packet.
+  unsigned overhead() const { return policy_.overhead; }
+  /// Takes the key that `source` names beside the one in use. Who sends media uses it at once, who
+  /// answers does once the media does. False and `error` where it is no key or was used before.
+  bool ChangeKey(const std::string& source, std::string* error);
+
+ private:
+  SrtpLayer(const SrtpPolicy& policy, const SrtpLinks& links);
+  bool MakeEncoder(const SrtpKey& key);
+  bool Link();
+  bool LinkMedia(GstPad* source, GstPad* socket);
+  void EncodeWith(const SrtpKey& key);
+
+  SrtpPolicy policy_;
+  SrtpLinks links_;
+  GstElement* enc_ = nullptr;  // of the bin
+  PadPtr out_rtcp_;            // takes RTCP out of what screamtx sends, to the encoder
+  gulong out_probe_ = 0;
+  PadPtr out_relay_;  // from the encoder to the socket
+  std::unique_ptr<SrtpInput> input_;
+
+  std::mutex mutex_;                 // guards digests_
+  std::deque<std::string> digests_;  // of the keys so far
+};
+
+/// Makes the layer where `settings` ask for one; false, and an error on the bus, where it cannot.
+bool StartSrtp(const SrtpSettings& settings, const SrtpLinks& links,
+               std::shared_ptr<SrtpLayer>* layer);
+/// Gives a bin that runs its new key; a warning on the bus, the old key and false where it cannot.
+bool ChangeSrtpKey(GstElement* bin, SrtpLayer* layer, const SrtpSettings& settings);
+/// The properties srtp-key (write-only), srtp-cipher and srtp-auth, as ids from `first_id` on.
+void InstallSrtpProperties(GObjectClass* object, guint first_id);
+/// True where it is the key.
+bool SetSrtpField(SrtpSettings* settings, guint index, const GValue* value);
+/// Of the state of a bin. A key that is refused while it runs changes nothing.
+template <class State>
+void SetSrtpProperty(GstElement* bin, State& state, guint index, const GValue* value) {
+  SrtpSettings next;
+  std::shared_ptr<SrtpLayer> layer;
+  {
+    std::lock_guard lock(state.mutex);
+    next = state.settings.srtp;
+    const bool is_key = SetSrtpField(&next, index, value);
+    const bool runs = state.socket != nullptr;
+    if (!is_key || !runs) {
+      state.settings.srtp = next;
+      return;
+    }
+    layer = state.srtp;
+  }
+  if (!ChangeSrtpKey(bin, layer.get(), next)) return;
+  std::lock_guard lock(state.mutex);
+  state.settings.srtp.key = next.key;
+}
+void GetSrtpProperty(const SrtpSettings& settings, guint index, GValue* value);
+/// srtp-received, srtp-refused and srtp-key-changes; nothing where there is no layer.
+void AddSrtpStats(const SrtpLayer* layer, GstStructure* stats);
+
+}  // namespace lidar::gst

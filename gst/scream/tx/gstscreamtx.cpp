@@ -1,0 +1,322 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+/**
+ * SECTION:element-screamtx
+ *
+ * Sends RTP no faster than the network carries it (SCReAM v2) and tells the encoders upstream what
+ * they may put out. RFC 8888 feedback goes to rtcp_sink.
+ *
+ * |[
+ * gst-launch-1.0 videotestsrc is-live=true ! openh264enc ! rtph264pay ! screamsink host=127.0.0.1
+ * port=5004
+ * ]|
+ */
+#include "gst/scream/tx/gstscreamtx.h"
+
+#include <algorithm>
+
+#include "gst/scream/tx/private.h"
+
+GST_DEBUG_CATEGORY(gst_lidar_scream_tx_debug);
+#define GST_CAT_DEFAULT gst_lidar_scream_tx_debug
+
+using namespace lidar::gst;
+
+static void ChildProxyInit(gpointer iface, gpointer);
+
+G_DEFINE_TYPE_WITH_CODE(GstLidarScreamTx, gst_lidar_scream_tx, GST_TYPE_ELEMENT,
+                        G_IMPLEMENT_INTERFACE(GST_TYPE_CHILD_PROXY, ChildProxyInit))
+GST_ELEMENT_REGISTER_DEFINE(screamtx, "screamtx", GST_RANK_NONE, GST_TYPE_LIDAR_SCREAM_TX)
+
+static GstStaticPadTemplate sink_template = GST_STATIC_PAD_TEMPLATE(
+    "sink_%u", GST_PAD_SINK, GST_PAD_REQUEST, GST_STATIC_CAPS("application/x-rtp"));
+static GstStaticPadTemplate src_template = GST_STATIC_PAD_TEMPLATE(
+    "src", GST_PAD_SRC, GST_PAD_ALWAYS, GST_STATIC_CAPS("application/x-rtp"));
+static GstStaticPadTemplate rtcp_sink_template = GST_STATIC_PAD_TEMPLATE(
+    "rtcp_sink", GST_PAD_SINK, GST_PAD_ALWAYS, GST_STATIC_CAPS("application/x-rtcp"));
+static GstStaticPadTemplate rtcp_src_template = GST_STATIC_PAD_TEMPLATE(
+    "rtcp_src", GST_PAD_SRC, GST_PAD_ALWAYS, GST_STATIC_CAPS("application/x-rtcp"));
+
+enum : guint {
+  kPropEstimatedBitrate = std::tuple_size_v<TxProperties> + 1,
+  kPropStats,
+};
+enum : guint { kSignalRouteChanged, kSignals };
+static guint signals[kSignals];
+
+namespace lidar::gst {
+
+Time TxNow(const TxState& state) {
+  return Time{Duration{static_cast<std::int64_t>(gst_clock_get_time(state.clock))}};
+}
+
+void WakePacer(TxState& state) {
+  if (state.timer != nullptr) gst_clock_id_unschedule(state.timer);
+}
+
+void SettingsChanged(GstLidarScreamTx* self) {
+  TxState& state = *self->state;
+  TxLock lock(state.mutex);
+  state.settings_changed = true;
+  WakePacer(state);
+}
+
+TxStream* FindStream(TxState& state, scream::StreamId id) {
+  for (auto& stream : state.streams)
+    if (stream->id == id) return stream.get();
+  return nullptr;
+}
+
+void Configure(TxState& state, TxStream& stream) {
+  stream.config = MakeConfig(stream, PadSettings(stream.pad), state.settings);
+  stream.configured_share = stream.overhead.payload_share();
+  state.controller->ConfigureStream(stream.id, stream.config);
+}
+
+void ClearQueue(TxState& state, TxStream& stream, Time now) {
+  const auto packets = static_cast<std::size_t>(
+      std::count_if(stream.queue.begin(), stream.queue.end(),
+                    [](const TxItem& item) { return item.buffer != nullptr; }));
+  if (packets > 0) state.controller->OnDropped(now, stream.id, packets);
+  stream.queue.clear();
+}
+
+}  // namespace lidar::gst
+
+static TxState& StateOf(gpointer self) { return *GST_LIDAR_SCREAM_TX(self)->state; }
+
+static void AddStream(TxState& state, GstPad* pad) {
+  auto stream = std::make_unique<TxStream>();
+  stream->pad = pad;
+  gst_segment_init(&stream->segment, GST_FORMAT_UNDEFINED);
+  SetPadStream(pad, stream.get());
+  if (state.controller) {
+    stream->config = MakeConfig(*stream, PadSettings(pad), state.settings);
+    stream->id = state.controller->AddStream(stream->config);
+  }
+  state.streams.push_back(std::move(stream));
+}
+
+static GstPad* RequestPad(GstElement* element, GstPadTemplate* templ, const gchar* name,
+                          const GstCaps*) {
+  TxState& state = StateOf(element);
+  guint index = 0;
+  TxLock lock(state.mutex);
+  if (name == nullptr || sscanf(name, "sink_%u", &index) != 1) index = state.next_pad;
+  state.next_pad = std::max(state.next_pad, index + 1);
+  lock.unlock();
+  const StringPtr pad_name(g_strdup_printf("sink_%u", index));
+  auto* pad = GST_PAD(g_object_new(GST_TYPE_LIDAR_SCREAM_TX_PAD, "name", pad_name.get(),
+                                   "direction", GST_PAD_SINK, "template", templ, nullptr));
+  gst_pad_set_chain_function(pad, TxChain);
+  gst_pad_set_chain_list_function(pad, TxChainList);
+  gst_pad_set_event_function(pad, TxSinkEvent);
+  gst_pad_set_query_function(pad, TxSinkQuery);
+  gst_pad_set_iterate_internal_links_function(pad, TxLinksOf);
+  GST_PAD_SET_PROXY_CAPS(pad);
+  lock.lock();
+  AddStream(state, pad);
+  lock.unlock();
+  if (!gst_element_add_pad(element, pad)) {  // the name is taken
+    lock.lock();
+    state.streams.pop_back();
+    return nullptr;
+  }
+  gst_child_proxy_child_added(GST_CHILD_PROXY(element), G_OBJECT(pad), pad_name.get());
+  return pad;
+}
+
+static void ReleasePad(GstElement* element, GstPad* pad) {
+  TxState& state = StateOf(element);
+  const StringPtr name(gst_pad_get_name(pad));
+  {
+    TxLock lock(state.mutex);
+    TxStream* stream = PadStream(pad);
+    stream->flushing = true;
+    if (stream->entry_wait != nullptr) gst_clock_id_unschedule(stream->entry_wait);
+    state.room.notify_all();
+  }
+  gst_pad_set_active(pad, FALSE);  // returns once the pad's thread has left
+  {
+    TxLock lock(state.mutex);
+    TxStream* stream = PadStream(pad);
+    if (state.controller) state.controller->RemoveStream(stream->id);
+    state.streams.erase(std::find_if(state.streams.begin(), state.streams.end(),
+                                     [&](const auto& s) { return s.get() == stream; }));
+    SetPadStream(pad, nullptr);
+    WakePacer(state);
+  }
+  gst_child_proxy_child_removed(GST_CHILD_PROXY(element), G_OBJECT(pad), name.get());
+  gst_element_remove_pad(element, pad);
+}
+
+/// A new controller, and streams that have seen nothing.
+static void Prepare(TxState& state) {
+  TxLock lock(state.mutex);
+  if (state.clock == nullptr) state.clock = gst_system_clock_obtain();
+  state.controller.emplace(ToParameters(state.settings));
+  state.parser = {};
+  state.feedback_peer = {};
+  for (auto& stream : state.streams) {
+    auto fresh = TxStream{};
+    fresh.pad = stream->pad;
+    *stream = std::move(fresh);
+    gst_segment_init(&stream->segment, GST_FORMAT_UNDEFINED);
+    stream->config = MakeConfig(*stream, PadSettings(stream->pad), state.settings);
+    stream->id = state.controller->AddStream(stream->config);
+  }
+  state.sent_stream_start = state.sent_caps = state.merged_caps = state.eos_sent = false;
+  gst_segment_init(&state.out_segment, GST_FORMAT_UNDEFINED);
+  state.eos_deadline.reset();
+  state.notifier.Reset();
+  state.ecn_announced = state.ecn_state = state.controller->ecn_state();
+  state.next_stats = TxNow(state);
+  state.malformed_rtcp = 0;
+}
+
+/// Lets every thread that waits inside go.
+static void Unblock(TxState& state) {
+  TxLock lock(state.mutex);
+  state.running = false;
+  for (auto& stream : state.streams)
+    if (stream->entry_wait != nullptr) gst_clock_id_unschedule(stream->entry_wait);
+  state.room.notify_all();
+  WakePacer(state);
+}
+
+static GstStateChangeReturn ChangeState(GstElement* element, GstStateChange change) {
+  auto* self = GST_LIDAR_SCREAM_TX(element);
+  TxState& state = *self->state;
+  if (change == GST_STATE_CHANGE_READY_TO_PAUSED) {
+    Prepare(state);
+    StartControl(self);
+  } else if (change == GST_STATE_CHANGE_PAUSED_TO_READY) {
+    Unblock(state);
+  } else if (change == GST_STATE_CHANGE_PAUSED_TO_PLAYING) {
+    TxLock lock(state.mutex);
+    state.playing = true;
+    state.room.notify_all();
+  } else if (change == GST_STATE_CHANGE_PLAYING_TO_PAUSED) {
+    TxLock lock(state.mutex);
+    state.playing = false;
+    for (auto& stream : state.streams)
+      if (stream->entry_wait != nullptr) gst_clock_id_unschedule(stream->entry_wait);
+  }
+  const GstStateChangeReturn result =
+      GST_ELEMENT_CLASS(gst_lidar_scream_tx_parent_class)->change_state(element, change);
+  const bool failed_up =
+      result == GST_STATE_CHANGE_FAILURE && change == GST_STATE_CHANGE_READY_TO_PAUSED;
+  if (change == GST_STATE_CHANGE_PAUSED_TO_READY || failed_up) StopControl(self);
+  return result;
+}
+
+static void SetPropertyVfunc(GObject* o, guint id, const GValue* v, GParamSpec*) {
+  auto* self = GST_LIDAR_SCREAM_TX(o);
+  {
+    TxLock lock(self->state->mutex);
+    SetProperty(self->state->settings, TxPropertyTable()[id - 1], v);
+  }
+  SettingsChanged(self);
+}
+
+static void GetPropertyVfunc(GObject* o, guint id, GValue* v, GParamSpec*) {
+  TxState& state = StateOf(o);
+  TxLock lock(state.mutex);
+  if (id == kPropStats) {
+    g_value_take_boxed(v, TxStats(state));
+  } else if (id == kPropEstimatedBitrate) {
+    g_value_set_uint(v, state.estimated_bps);
+  } else {
+    GetProperty(state.settings, TxPropertyTable()[id - 1], v);
+  }
+}
+
+static void RouteChanged(GstLidarScreamTx* self) {
+  TxState& state = *self->state;
+  TxLock lock(state.mutex);
+  if (state.controller) state.controller->OnRouteChange(TxNow(state));
+  WakePacer(state);
+}
+
+static void ChildProxyInit(gpointer iface, gpointer) {
+  auto* proxy = static_cast<GstChildProxyInterface*>(iface);
+  proxy->get_children_count = [](GstChildProxy* p) -> guint {
+    TxState& state = StateOf(p);
+    TxLock lock(state.mutex);
+    return static_cast<guint>(state.streams.size());
+  };
+  proxy->get_child_by_index = [](GstChildProxy* p, guint index) -> GObject* {
+    TxState& state = StateOf(p);
+    TxLock lock(state.mutex);
+    if (index >= state.streams.size()) return nullptr;
+    return G_OBJECT(g_object_ref(state.streams[index]->pad));
+  };
+}
+
+static void InstallOwnProperties(GObjectClass* object) {
+  constexpr auto kRead = static_cast<GParamFlags>(G_PARAM_READABLE | G_PARAM_STATIC_STRINGS);
+  g_object_class_install_property(
+      object, kPropEstimatedBitrate,
+      g_param_spec_uint("estimated-bitrate", "estimated-bitrate",
+                        "Target of all streams together, IP included; notifies [bit/s]", 0,
+                        G_MAXUINT, 0, kRead));
+  g_object_class_install_property(
+      object, kPropStats,
+      g_param_spec_boxed("stats", "stats", "Statistics; bitrates in bit/s, times in ns",
+                         GST_TYPE_STRUCTURE, kRead));
+  signals[kSignalRouteChanged] = g_signal_new_class_handler(
+      "route-changed", GST_TYPE_LIDAR_SCREAM_TX,
+      static_cast<GSignalFlags>(G_SIGNAL_RUN_LAST | G_SIGNAL_ACTION), G_CALLBACK(RouteChanged),
+      nullptr, nullptr, nullptr, G_TYPE_NONE, 0);
+}
+
+static GstPad* AddStaticPad(GstLidarScreamTx* self, GstStaticPadTemplate* templ) {
+  GstPad* pad = gst_pad_new_from_static_template(templ, templ->name_template);
+  gst_pad_set_iterate_internal_links_function(pad, TxLinksOf);
+  gst_element_add_pad(GST_ELEMENT(self), pad);
+  return pad;
+}
+
+static void gst_lidar_scream_tx_init(GstLidarScreamTx* self) {
+  self->state = new TxState;
+  gst_segment_init(&self->state->out_segment, GST_FORMAT_UNDEFINED);
+  self->src = AddStaticPad(self, &src_template);
+  gst_pad_set_event_function(self->src, TxSrcEvent);
+  gst_pad_set_query_function(self->src, TxSrcQuery);
+  gst_pad_set_activatemode_function(self->src, TxActivateSrc);
+  self->rtcp_sink = AddStaticPad(self, &rtcp_sink_template);
+  gst_pad_set_chain_function(self->rtcp_sink, TxRtcpChain);
+  self->rtcp_src = AddStaticPad(self, &rtcp_src_template);
+}
+
+static void InstallPads(GstElementClass* element) {
+  gst_element_class_add_static_pad_template_with_gtype(element, &sink_template,
+                                                       GST_TYPE_LIDAR_SCREAM_TX_PAD);
+  gst_element_class_add_static_pad_template(element, &src_template);
+  gst_element_class_add_static_pad_template(element, &rtcp_sink_template);
+  gst_element_class_add_static_pad_template(element, &rtcp_src_template);
+  gst_element_class_set_static_metadata(element, "SCReAM sender", "Filter/Network/RTP",
+                                        "Congestion control for RTP with SCReAM v2 and L4S",
+                                        "gst-lidar");
+  gst_type_mark_as_plugin_api(EcnModeType(), static_cast<GstPluginAPIFlags>(0));
+  gst_type_mark_as_plugin_api(GST_TYPE_LIDAR_SCREAM_TX_PAD, static_cast<GstPluginAPIFlags>(0));
+}
+
+static void gst_lidar_scream_tx_class_init(GstLidarScreamTxClass* klass) {
+  GST_DEBUG_CATEGORY_INIT(gst_lidar_scream_tx_debug, "screamtx", 0, "SCReAM v2 sender");
+  auto* object = G_OBJECT_CLASS(klass);
+  object->set_property = SetPropertyVfunc;
+  object->get_property = GetPropertyVfunc;
+  object->finalize = [](GObject* o) {
+    TxState* state = GST_LIDAR_SCREAM_TX(o)->state;
+    if (state->clock != nullptr) gst_object_unref(state->clock);
+    delete state;
+    G_OBJECT_CLASS(gst_lidar_scream_tx_parent_class)->finalize(o);
+  };
+  InstallProperties(object, TxPropertyTable());
+  InstallOwnProperties(object);
+  auto* element = GST_ELEMENT_CLASS(klass);
+  element->change_state = ChangeState;
+  element->request_new_pad = RequestPad;
+  element->release_pad = ReleasePad;
+  InstallPads(element);
+}

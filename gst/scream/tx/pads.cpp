@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// What the pads of screamtx answer: queries, links, events on their way upstream.
+#include "gst/common/latency.h"
+#include "gst/scream/tx/private.h"
+
+namespace lidar::gst {
+namespace {
+
+TxState& StateOf(gpointer self) { return *GST_LIDAR_SCREAM_TX(self)->state; }
+
+gint IsNot(gconstpointer item, gconstpointer excluded) {
+  const bool same = g_value_get_object(static_cast<const GValue*>(item)) ==
+                    g_value_get_object(static_cast<const GValue*>(excluded));
+  return same ? 1 : 0;
+}
+
+/// The pad of the stream that the event names by SSRC; transfer full, or NULL.
+GstPad* PadOfSsrc(TxState& state, GstEvent* event) {
+  guint ssrc = 0;
+  const GstStructure* s = gst_event_get_structure(event);
+  if (s == nullptr || !gst_structure_get_uint(s, "ssrc", &ssrc)) return nullptr;
+  TxLock lock(state.mutex);
+  if (!state.controller) return nullptr;
+  const auto id = state.controller->FindStream(ssrc);
+  const TxStream* stream = id ? FindStream(state, *id) : nullptr;
+  return stream == nullptr ? nullptr : GST_PAD(gst_object_ref(stream->pad));
+}
+
+/// Adds the longest stay in the queue to what the streams have upstream.
+gboolean AnswerLatency(GstPad* pad, GstObject* parent, GstQuery* query) {
+  if (!gst_pad_query_default(pad, parent, query)) return FALSE;
+  if (!ReadLatency(query).live) return TRUE;
+  TxState& state = StateOf(parent);
+  TxLock lock(state.mutex);
+  AddLatency(query, state.settings.max_queue_delay);
+  return TRUE;
+}
+
+gboolean AnswerSrcCaps(GstPad* pad, GstObject* parent, GstQuery* query) {
+  TxState& state = StateOf(parent);
+  std::size_t streams = 0;
+  {
+    TxLock lock(state.mutex);
+    streams = state.streams.size();
+  }
+  if (streams == 1) return gst_pad_query_default(pad, parent, query);
+  GstCaps* filter = nullptr;
+  gst_query_parse_caps(query, &filter);
+  CapsPtr caps(gst_pad_get_pad_template_caps(pad));
+  if (filter != nullptr)
+    caps.reset(gst_caps_intersect_full(filter, caps.get(), GST_CAPS_INTERSECT_FIRST));
+  gst_query_set_caps_result(query, caps.get());
+  return TRUE;
+}
+
+}  // namespace
+
+/// RTP and RTCP do not mix: src belongs to the sink pads, rtcp_src to rtcp_sink.
+GstIterator* TxLinksOf(GstPad* pad, GstObject* parent) {
+  auto* self = GST_LIDAR_SCREAM_TX(parent);
+  GValue value = G_VALUE_INIT;
+  g_value_init(&value, GST_TYPE_PAD);
+  GstIterator* links = nullptr;
+  if (pad == self->src) {
+    g_value_set_object(&value, self->rtcp_sink);
+    links = gst_iterator_filter(gst_element_iterate_sink_pads(GST_ELEMENT(self)), IsNot, &value);
+  } else {
+    g_value_set_object(&value, pad == self->rtcp_sink  ? self->rtcp_src
+                               : pad == self->rtcp_src ? self->rtcp_sink
+                                                       : self->src);
+    links = gst_iterator_new_single(GST_TYPE_PAD, &value);
+  }
+  g_value_unset(&value);
+  return links;
+}
+
+gboolean TxSrcEvent(GstPad* pad, GstObject* parent, GstEvent* event) {
+  if (GST_EVENT_TYPE(event) == GST_EVENT_CUSTOM_UPSTREAM) {
+    const PadPtr target(PadOfSsrc(StateOf(parent), event));
+    if (target) return gst_pad_push_event(target.get(), event);
+  }
+  return gst_pad_event_default(pad, parent, event);
+}
+
+gboolean TxSrcQuery(GstPad* pad, GstObject* parent, GstQuery* query) {
+  switch (GST_QUERY_TYPE(query)) {
+    case GST_QUERY_LATENCY:
+      return AnswerLatency(pad, parent, query);
+    case GST_QUERY_CAPS:
+      return AnswerSrcCaps(pad, parent, query);
+    default:
+      return gst_pad_query_default(pad, parent, query);
+  }
+}
+
+gboolean TxSinkQuery(GstPad* pad, GstObject* parent, GstQuery* query) {
+  // A serialized query would overtake the packets in the queue.
+  if (GST_QUERY_IS_SERIALIZED(query)) return FALSE;
+  return gst_pad_query_default(pad, parent, query);
+}
+
+}  // namespace lidar::gst

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "gst/scream/tx/stream.h"
+
+#include <algorithm>
+
+namespace lidar::gst {
+namespace {
+
+DataRate Bps(double v) { return DataRate::BitsPerSecond(v); }
+guint Clamp(double bps) { return static_cast<guint>(std::clamp(bps, 0.0, 4294967295.0)); }
+
+}  // namespace
+
+Duration TxStream::HeadAge(Time now) const {
+  for (const TxItem& item : queue)
+    if (item.buffer) return now - item.queued;
+  return Duration{0};
+}
+
+scream::StreamConfig MakeConfig(const TxStream& stream, const TxPadSettings& pad,
+                                const TxSettings& element) {
+  double min = pad.min_bps != 0 ? pad.min_bps : element.min_bps;
+  double start = pad.start_bps != 0 ? pad.start_bps : element.start_bps;
+  double max = pad.max_bps != 0 ? pad.max_bps : element.max_bps;
+  double needed = 0;
+  if (stream.bounds) {
+    const double wire = 1 / stream.overhead.payload_share();
+    needed = stream.bounds->min_bitrate * wire;
+    if (stream.bounds->max_bitrate > 0) max = std::min(max, stream.bounds->max_bitrate * wire);
+  }
+  // The user's maximum is a promise to the network and wins over what the encoder would need.
+  min = std::min(min, max);
+  needed = std::clamp(needed, min, max);
+  scream::StreamConfig config;
+  config.priority = pad.priority;
+  config.min_bitrate = Bps(min);
+  config.start_bitrate = Bps(std::clamp(start, needed, max));
+  config.max_bitrate = Bps(max);
+  // Not a minimum: where the path cannot carry what the error bound needs, the encoder must know,
+  // for it can leave out whole scans, and a queue here would only grow old.
+  config.needed_bitrate = Bps(needed);
+  return config;
+}
+
+guint ToEncoder(const TxStream& stream, DataRate wire) {
+  return Clamp(wire.bits_per_second() * stream.overhead.payload_share());
+}
+
+}  // namespace lidar::gst

@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// What screamtx keeps for one sink pad: its queue and what it has learnt about the stream.
+#pragma once
+#include <gst/gst.h>
+
+#include <deque>
+#include <optional>
+
+#include "gst/common/gstlidar.h"
+#include "gst/common/refs.h"
+#include "gst/scream/rtp_packet.h"
+#include "gst/scream/tx/gstscreamtxpad.h"
+#include "src/scream/controller.h"
+#include "src/scream/target_notifier.h"
+
+namespace lidar::gst {
+
+/// A packet, or an event that keeps its place among the packets.
+struct TxItem {
+  BufferPtr buffer;
+  EventPtr event;
+  RtpHeader header;
+  DataSize size;  // on the wire
+  Time queued{};
+};
+
+/// The share of the wire's bytes that are payload of the media itself: the rest is RTP, UDP and IP
+/// headers, retransmission and FEC, which the encoder knows nothing of.
+class OverheadMeter {
+ public:
+  void Add(gsize payload, DataSize wire) {
+    payload_ = payload_ * kMemory + static_cast<double>(payload);
+    wire_ = wire_ * kMemory + static_cast<double>(wire.bytes());
+  }
+  double payload_share() const { return payload_ / wire_; }
+
+ private:
+  static constexpr double kMemory = 1 - 1.0 / 128;  // packets
+  // Starts as packets of 1200 bytes are.
+  double payload_ = 1188;
+  double wire_ = 1228;
+};
+
+struct TxStream {
+  GstPad* pad = nullptr;
+  scream::StreamId id = -1;
+  std::deque<TxItem> queue;
+  OverheadMeter overhead;
+  scream::TargetNotifier notifier;
+  std::optional<GstLidarBitrateBounds> bounds;
+  std::optional<guint32> ssrc;         // of the media: from caps, or the first seen
+  std::optional<guint8> payload_type;  // likewise
+  scream::StreamConfig config;         // as the controller has it
+  double configured_share = 1;         // payload share that `config` was made with
+  GstSegment segment{};                // of the pad, for the entry and for a merged output
+  GstClockID entry_wait = nullptr;     // not owned
+  std::optional<bool> live;            // not known before the first buffer
+  bool has_caps = false;
+  bool is_video = false;
+  bool eos = false;
+  bool flushing = false;
+  // Work for the control thread
+  bool target_due = false;
+  bool key_unit_due = false;
+  const char* reason = nullptr;  // instead of the controller's
+  std::optional<Time> last_key_unit;
+  guint key_units = 0;
+  // Counters
+  guint64 packets_queued = 0;
+  guint64 frames_dropped = 0;
+  guint64 malformed = 0;
+  guint64 lost_seen = 0;
+
+  /// Age of the first packet in the queue.
+  Duration HeadAge(Time now) const;
+};
+
+/// What the controller gets for a stream: the pad's settings, else the element's, within the
+/// encoder's bounds, which are without overhead.
+scream::StreamConfig MakeConfig(const TxStream& stream, const TxPadSettings& pad,
+                                const TxSettings& element);
+/// What the encoder may put out [bit/s], of `wire`.
+guint ToEncoder(const TxStream& stream, DataRate wire);
+
+}  // namespace lidar::gst

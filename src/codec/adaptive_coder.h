@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Our own coders of a block's integers: prediction, then adaptive rANS or a list for Draco.
+#pragma once
+#include <cstdint>
+#include <vector>
+
+#include "ext/draco/draco_integers.h"
+#include "src/codec/mask_coder.h"
+#include "src/codec/predictor.h"
+#include "src/codec/range_grid.h"
+#include "src/codec/range_image.h"
+#include "src/codec/residual_model.h"
+
+namespace lidar::codec {
+
+/// Where the returns of a block are.
+struct BlockShape {
+  const AzimuthAlignment& alignment;
+  const Mask& mask;
+  std::uint32_t columns;
+};
+
+class AdaptiveCoder {
+ public:
+  /// Values are below kMaxBins.
+  void Encode(const BlockShape& shape, const IntegerLists& lists, RansEncoder* encoder);
+  /// Fills the ranges of `image`, and its intensity where it has room for one. False where the
+  /// stream cannot be one of Encode(), or the ranges are not below kMaxBins.
+  bool Decode(const BlockShape& shape, const RangeGrid& grid, RansDecoder* decoder,
+              RangeImage* image);
+
+  /// Residuals of values and levels in place of them, and back.
+  void ToResiduals(const BlockShape& shape, IntegerLists* lists);
+  bool FromResiduals(const BlockShape& shape, IntegerLists* lists);
+
+  static constexpr std::uint32_t kMaxBins = 1U << 28;
+
+ private:
+  void Reset(const BlockShape& shape);
+  template <class CodeRow>
+  bool ForEachRow(const BlockShape& shape, CodeRow&& code_row);
+  /// Ranges or intensities.
+  struct Channel {
+    std::uint32_t limit;  // values are below
+    RowPredictor predictor = {};
+    ResidualModel model = {};
+  };
+  bool DecodeRow(std::uint32_t beam, const RowReturns& row, RansDecoder* decoder, Channel* channel);
+
+  Channel values_{kMaxBins};
+  Channel levels_{256};
+  std::vector<std::uint16_t> columns_;
+  std::vector<std::int32_t> ranges_;
+};
+
+}  // namespace lidar::codec

@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Which pixels of neighbouring beams look into the same direction.
+#pragma once
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "src/cloud/sensor_model.h"
+
+namespace lidar::codec {
+
+/// The beams of a spinning sensor do not point at the same azimuth when they fire together, so a
+/// column of the slice is skewed. Coding beam by beam, one value an azimuth is remembered from the
+/// beams above; pixel i of beam b finds its neighbours at AlignedRow::At(b)[i - 1 .. i + 1].
+class AzimuthAlignment {
+ public:
+  AzimuthAlignment() = default;
+  explicit AzimuthAlignment(const SensorModel& model);
+
+  std::uint32_t columns_per_scan() const { return columns_per_scan_; }
+  std::uint32_t beams() const { return static_cast<std::uint32_t>(offsets_.size()); }
+  std::uint32_t offset(std::uint32_t beam) const { return offsets_[beam]; }
+  std::uint32_t span() const { return span_; }
+
+ private:
+  std::vector<std::uint32_t> offsets_;  // pixel shifts, the smallest of them being 0
+  std::uint32_t span_ = 0;
+  std::uint32_t columns_per_scan_ = 0;
+};
+
+/// The last known value of every azimuth of a slice.
+template <class T>
+class AlignedRow {
+ public:
+  /// Forgets all; `initial` stands where no beam has been yet.
+  void Reset(const AzimuthAlignment& alignment, std::uint32_t columns, T initial) {
+    alignment_ = &alignment;
+    columns_ = columns;
+    size_ = std::size_t{columns} + alignment.span() + 2 * kMargin;
+    closed_ = columns == alignment.columns_per_scan() && alignment.span() + 2 * kMargin <= columns;
+    values_.assign(size_, initial);
+  }
+  /// Valid for [-kMargin .. columns + kMargin).
+  T* At(std::uint32_t beam) { return &values_[kMargin + alignment_->offset(beam)]; }
+  /// To be called when At(beam)[0 .. columns) has been written: in a full turn the last column is
+  /// the neighbour of the first.
+  void CloseTurn(std::uint32_t beam) {
+    if (!closed_) return;
+    const std::size_t begin = kMargin + alignment_->offset(beam);
+    for (std::size_t i = begin; i-- > 0;) values_[i] = values_[i + columns_];
+    for (std::size_t i = begin + columns_; i < size_; ++i) values_[i] = values_[i - columns_];
+  }
+
+  static constexpr std::size_t kMargin = 8;
+
+ private:
+  const AzimuthAlignment* alignment_ = nullptr;
+  std::vector<T> values_;
+  std::size_t size_ = 0;
+  std::uint32_t columns_ = 0;
+  bool closed_ = false;
+};
+
+}  // namespace lidar::codec

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Raw clouds, as they lie in buffers, to and from what the codecs work on.
+#pragma once
+#include <cstdint>
+
+#include "ext/draco/xyz_codec.h"
+#include "src/base/byte_reader.h"
+#include "src/cloud/point_fields.h"
+#include "src/cloud/range_projection.h"
+#include "src/codec/intensity_scale.h"
+#include "src/codec/range_image.h"
+
+namespace lidar::codec {
+
+struct CloudLayout {
+  PointFields fields;
+  std::uint32_t point_step = 0;  // bytes
+};
+
+constexpr unsigned kFineIntensityBits = IntensityScale::kMaxBits;
+
+/// The fields of `input` that an encoded slice keeps, packed: x, y, z, and where they are wanted
+/// and there, intensity and range.
+PointFields KeptFields(const PointFields& input, bool with_intensity, bool with_range);
+
+/// True where there is an intensity that the codecs take: F32.
+bool HasIntensity(const PointFields& fields);
+
+/// Fills `image`, whose beams, columns and first_column are set, from `raw` of as many points.
+/// Intensities, where they are wanted and there, become levels of kFineIntensityBits; the result
+/// is what they are levels of.
+FullScale ReadRangeImage(ByteView raw, const CloudLayout& layout, bool with_intensity,
+                         RangeImage* image);
+/// True where all ranges are multiples of `unit_mm`.
+bool AreMultiples(const std::vector<std::uint32_t>& ranges, std::uint32_t unit_mm);
+
+/// Fills `cloud` with the points of `raw` that are finite and not all zero. What is no intensity
+/// (negative, not finite) becomes 0.
+void ReadXyz(ByteView raw, const CloudLayout& layout, bool with_intensity, XyzCloud* cloud);
+
+/// Writes `image` as points, missing ones as zeros; `raw` has image.size() * point_step bytes.
+void WriteRangeImage(const RangeImage& image, const IntensityScale& scale,
+                     const RangeProjection& projection, const CloudLayout& layout,
+                     std::uint8_t* raw);
+/// Writes `cloud` as points; other fields are zero.
+void WriteXyz(const XyzCloud& cloud, const CloudLayout& layout, std::uint8_t* raw);
+
+}  // namespace lidar::codec

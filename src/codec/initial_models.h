@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// What the adaptive models know before the first return of a block.
+#pragma once
+#include <array>
+
+#include "src/codec/nibble_model.h"
+#include "src/codec/predictor.h"
+
+namespace lidar::codec {
+
+struct InitialModels {
+  std::array<NibbleModel, kContexts> residuals;
+  NibbleModel longs;
+};
+
+const InitialModels& InitialModelsOfValues();
+const InitialModels& InitialModelsOfLevels();
+
+}  // namespace lidar::codec

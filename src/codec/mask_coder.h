@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Which pixels have a return: four at a time, in the context of their neighbours.
+#pragma once
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "src/codec/azimuth_alignment.h"
+#include "src/codec/nibble_model.h"
+#include "src/codec/rans.h"
+
+namespace lidar::codec {
+
+/// Bytes of 0 or 1, beam by beam.
+using Mask = std::vector<std::uint8_t>;
+
+class MaskCoder {
+ public:
+  /// `mask` has alignment.beams() rows of `columns`.
+  void Encode(const Mask& mask, const AzimuthAlignment& alignment, std::uint32_t columns,
+              RansEncoder* encoder);
+  /// Fills `mask`, which has that size already; false where the stream ends before.
+  bool Decode(const AzimuthAlignment& alignment, std::uint32_t columns, RansDecoder* decoder,
+              Mask* mask);
+  /// Pieces of RansEncoder that a mask takes.
+  static std::size_t Pieces(std::uint32_t beams, std::uint32_t columns) {
+    return std::size_t{beams} * Groups(columns);
+  }
+
+ private:
+  static constexpr std::uint32_t kGroup = 4;  // pixels a symbol
+  static std::uint32_t Groups(std::uint32_t columns) { return (columns + kGroup - 1) / kGroup; }
+
+  template <class CodeFour>
+  void CodeRow(std::uint32_t beam, std::uint32_t columns, CodeFour&& code);
+  void Reset(const AzimuthAlignment& alignment, std::uint32_t columns);
+
+  static constexpr unsigned kContexts = 256;
+  std::array<NibbleModel, kContexts> models_;
+  AlignedRow<std::uint8_t> above_;
+  std::vector<std::uint8_t> row_;  // the one that is coded, and room to its next multiple of four
+};
+
+}  // namespace lidar::codec

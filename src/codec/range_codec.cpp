@@ -1,0 +1,164 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "src/codec/range_codec.h"
+
+#include <algorithm>
+#include <array>
+
+namespace lidar::codec {
+
+bool RangeEncoder::Encode(const RangeImage& image, const RangeSettings& settings,
+                          std::vector<std::uint8_t>* out) {
+  const bool with_levels = settings.intensity.bits() > 0;
+  lists_.values.clear();  // for returns()
+  if (image.beams != alignment_.beams() || image.columns == 0 ||
+      image.columns > alignment_.columns_per_scan() ||
+      image.first_column >= alignment_.columns_per_scan() || image.ranges.size() != image.size() ||
+      (with_levels && image.intensity.size() != image.size())) {
+    return false;
+  }
+  CollectReturns(image, settings);
+  mask_bytes_.clear();
+  payload_.clear();
+  if (settings.coder == RangeCoder::kAdaptive) {
+    EncodeAdaptively(image.columns);
+  } else if (!EncodeWithDraco(settings, image.columns)) {
+    return false;
+  }
+  RangeHeader header;
+  header.coder = settings.coder;
+  header.beams = image.beams;
+  header.first_column = image.first_column;
+  header.columns = image.columns;
+  header.grid = settings.grid;
+  header.intensity = settings.intensity;
+  header.kept_beams = settings.kept_beams;
+  header.has_gaps = has_gaps();
+  header.mask_size = static_cast<std::uint32_t>(mask_bytes_.size());
+  header.payload_size = static_cast<std::uint32_t>(payload_.size());
+  header.Write(out);
+  out->insert(out->end(), mask_bytes_.begin(), mask_bytes_.end());
+  out->insert(out->end(), payload_.begin(), payload_.end());
+  return true;
+}
+
+void RangeEncoder::CollectReturns(const RangeImage& image, const RangeSettings& settings) {
+  mask_.resize(image.size());
+  lists_.values.resize(image.size());
+  // BinOf(), exact below 2^28: half a part keeps the quotient from the next integer, by more than
+  // it is rounded.
+  const RangeGrid& grid = settings.grid;
+  const double per_mm = RangeGrid::kParts / (1.0 * grid.parts() * grid.unit_mm());
+  const double half_part = 0.5 / grid.parts();
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < image.size(); ++i) {
+    const std::uint32_t range = std::min(image.ranges[i], RangeGrid::kMaxRangeMm);
+    mask_[i] = range != 0 ? 1 : 0;
+    lists_.values[count] =
+        static_cast<std::int32_t>(static_cast<std::int32_t>(range) * per_mm + half_part);
+    count += mask_[i];
+  }
+  lists_.values.resize(count);
+  lists_.levels.resize(settings.intensity.bits() > 0 ? count : 0);
+  if (lists_.levels.empty()) return;
+  std::array<std::uint8_t, 256> coarse{};
+  for (unsigned i = 0; i < coarse.size(); ++i)
+    coarse[i] = settings.intensity.Coarsen(static_cast<std::uint8_t>(i));
+  std::size_t next = 0;
+  for (std::size_t i = 0; i < image.size(); ++i)
+    if (mask_[i] != 0) lists_.levels[next++] = coarse[image.intensity[i]];
+}
+
+void RangeEncoder::EncodeAdaptively(std::uint32_t columns) {
+  rans_.Start(MaskCoder::Pieces(alignment_.beams(), columns) +
+              ResidualModel::kMostPieces * (lists_.values.size() + lists_.levels.size()));
+  if (has_gaps()) mask_coder_.Encode(mask_, alignment_, columns, &rans_);
+  coder_.Encode({alignment_, mask_, columns}, lists_, &rans_);
+  rans_.Finish(&payload_);
+}
+
+bool RangeEncoder::EncodeWithDraco(const RangeSettings& settings, std::uint32_t columns) {
+  if (has_gaps()) {
+    rans_.Start(MaskCoder::Pieces(alignment_.beams(), columns));
+    mask_coder_.Encode(mask_, alignment_, columns, &rans_);
+    rans_.Finish(&mask_bytes_);
+  }
+  if (returns() == 0) return true;
+  if (settings.coder == RangeCoder::kResidual)
+    coder_.ToResiduals({alignment_, mask_, columns}, &lists_);
+  return EncodeIntegers(lists_, settings.coder == RangeCoder::kDraco, &payload_);
+}
+
+bool RangeDecoder::Decode(ByteReader* reader, std::size_t max_points, RangeImage* image,
+                          IntensityScale* scale) {
+  const auto header = RangeHeader::Read(reader);
+  if (!header || header->beams != alignment_.beams() ||
+      header->columns > alignment_.columns_per_scan() ||
+      header->first_column >= alignment_.columns_per_scan() ||
+      std::size_t{header->beams} * header->columns > max_points) {
+    return false;
+  }
+  header_ = *header;
+  image->beams = header->beams;
+  image->columns = header->columns;
+  image->first_column = header->first_column;
+  *scale = header->intensity;
+  const ByteView mask = reader->Bytes(header->mask_size);
+  const ByteView payload = reader->Bytes(header->payload_size);
+  image->intensity.assign(header->intensity.bits() > 0 ? image->size() : 0, 0);
+  mask_.assign(image->size(), 1);
+  return header->coder == RangeCoder::kAdaptive ? DecodeAdaptively(*header, payload, image)
+                                                : DecodeWithDraco(*header, mask, payload, image);
+}
+
+bool RangeDecoder::DecodeAdaptively(const RangeHeader& header, ByteView payload,
+                                    RangeImage* image) {
+  RansDecoder rans(payload, ResidualModel::kMostPieces * header.columns, &padded_);
+  if (header.has_gaps && !mask_coder_.Decode(alignment_, header.columns, &rans, &mask_))
+    return false;
+  const BlockShape shape{alignment_, mask_, header.columns};
+  return coder_.Decode(shape, header.grid, &rans, image) && rans.AtEnd();
+}
+
+bool RangeDecoder::DecodeWithDraco(const RangeHeader& header, ByteView mask, ByteView payload,
+                                   RangeImage* image) {
+  if (header.has_gaps) {
+    RansDecoder rans(mask, header.columns, &padded_);
+    if (!mask_coder_.Decode(alignment_, header.columns, &rans, &mask_) || !rans.AtEnd())
+      return false;
+  }
+  const auto returns =
+      static_cast<std::uint32_t>(std::count(mask_.begin(), mask_.end(), std::uint8_t{1}));
+  lists_.values.resize(returns);
+  lists_.levels.resize(image->intensity.empty() ? 0 : returns);
+  if (returns == 0) {
+    image->ranges.assign(image->size(), 0);
+    return payload.empty();
+  }
+  if (!DecodeIntegers(payload, returns, !lists_.levels.empty(), &lists_)) return false;
+  if (header.coder == RangeCoder::kResidual &&
+      !coder_.FromResiduals({alignment_, mask_, header.columns}, &lists_)) {
+    return false;
+  }
+  if (!header.grid.ToRanges(&lists_.values)) return false;
+  Scatter(image);
+  return true;
+}
+
+void RangeDecoder::Scatter(RangeImage* image) {
+  image->ranges.resize(image->size());
+  // One more, which is read but not used where the last pixels have no return.
+  lists_.values.push_back(0);
+  lists_.levels.push_back(0);
+  std::size_t next = 0;
+  for (std::size_t i = 0; i < image->size(); ++i) {
+    image->ranges[i] = static_cast<std::uint32_t>(lists_.values[next]) & (0U - mask_[i]);
+    next += mask_[i];
+  }
+  next = 0;
+  for (std::size_t i = 0; i < image->intensity.size(); ++i) {
+    image->intensity[i] = static_cast<std::uint8_t>(lists_.levels[next] & (0U - mask_[i]));
+    next += mask_[i];
+  }
+}
+
+}  // namespace lidar::codec

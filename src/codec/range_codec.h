@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Range geometry: slices of an organised scan, coded as range integers.
+#pragma once
+#include <cstdint>
+#include <vector>
+
+#include "ext/draco/draco_integers.h"
+#include "src/base/byte_reader.h"
+#include "src/cloud/sensor_model.h"
+#include "src/codec/adaptive_coder.h"
+#include "src/codec/azimuth_alignment.h"
+#include "src/codec/mask_coder.h"
+#include "src/codec/range_header.h"
+#include "src/codec/range_image.h"
+
+namespace lidar::codec {
+
+struct RangeSettings {
+  RangeCoder coder = RangeCoder::kDraco;
+  RangeGrid grid;
+  IntensityScale intensity;      // 0 bits: geometry only
+  std::uint32_t kept_beams = 0;  // of those of the image, where the others were left out; 0: all
+};
+
+/// Encodes slices of one sensor. Keeps its buffers between slices; not for several threads at once.
+class RangeEncoder {
+ public:
+  explicit RangeEncoder(const SensorModel& model) : alignment_(model) {}
+
+  /// Appends one block to `out` and returns true; false where the image does not fit the sensor.
+  /// Ranges are multiples of the grid's unit. The image's levels are of 8 bits and become those of
+  /// settings.intensity. An image without any return gives a block that decodes to such an image.
+  bool Encode(const RangeImage& image, const RangeSettings& settings,
+              std::vector<std::uint8_t>* out);
+  /// Returns in the image encoded last.
+  std::size_t returns() const { return lists_.values.size(); }
+
+ private:
+  void CollectReturns(const RangeImage& image, const RangeSettings& settings);
+  bool has_gaps() const { return returns() < mask_.size(); }
+  void EncodeAdaptively(std::uint32_t columns);
+  bool EncodeWithDraco(const RangeSettings& settings, std::uint32_t columns);
+
+  AzimuthAlignment alignment_;
+  MaskCoder mask_coder_;
+  AdaptiveCoder coder_;
+  RansEncoder rans_;
+  Mask mask_;
+  IntegerLists lists_;
+  std::vector<std::uint8_t> mask_bytes_;
+  std::vector<std::uint8_t> payload_;
+};
+
+/// Decodes blocks of one sensor; any bytes give an image or false.
+class RangeDecoder {
+ public:
+  explicit RangeDecoder(const SensorModel& model) : alignment_(model) {}
+
+  std::uint32_t columns_per_scan() const { return alignment_.columns_per_scan(); }
+
+  /// The next block of `reader`; `scale` says what the levels stand for. False, with `image`
+  /// undefined, for a block that is damaged, of another sensor, or of more than `max_points`.
+  bool Decode(ByteReader* reader, std::size_t max_points, RangeImage* image, IntensityScale* scale);
+  /// Of the block decoded last.
+  const RangeHeader& header() const { return header_; }
+
+ private:
+  bool DecodeAdaptively(const RangeHeader& header, ByteView payload, RangeImage* image);
+  bool DecodeWithDraco(const RangeHeader& header, ByteView mask, ByteView payload,
+                       RangeImage* image);
+  /// The lists, which are ranges by now, to where the mask has returns.
+  void Scatter(RangeImage* image);
+
+  AzimuthAlignment alignment_;
+  RangeHeader header_;
+  MaskCoder mask_coder_;
+  AdaptiveCoder coder_;
+  Mask mask_;
+  IntegerLists lists_;
+  std::vector<std::uint8_t> padded_;  // of RansDecoder
+};
+
+}  // namespace lidar::codec

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// The header of one block of a slice in range geometry (docs/wire-format.md, "Encoded slices").
+#pragma once
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "src/base/byte_reader.h"
+#include "src/codec/intensity_scale.h"
+#include "src/codec/range_grid.h"
+
+namespace lidar::codec {
+
+/// How the integers of a block are coded. The numbers are part of the format.
+enum class RangeCoder : std::uint8_t {
+  kDraco = 1,     // Draco's sequential coder with its own delta prediction
+  kResidual = 2,  // what our prediction leaves, by Draco's sequential coder
+  kAdaptive = 3,  // what our prediction leaves, by adaptive rANS
+};
+
+struct RangeHeader {
+  RangeCoder coder = RangeCoder::kDraco;
+  std::uint32_t beams = 0;
+  std::uint32_t first_column = 0;
+  std::uint32_t columns = 0;
+  RangeGrid grid;
+  IntensityScale intensity;        // 0 bits: geometry only
+  std::uint32_t kept_beams = 0;    // of beams: the others were left out to save bits; 0: none was
+  bool has_gaps = false;           // some pixels have no return, and a mask says which
+  std::uint32_t mask_size = 0;     // bytes of the mask where it is a stream of its own
+  std::uint32_t payload_size = 0;  // bytes behind it
+
+  void Write(std::vector<std::uint8_t>* out) const;
+  /// Reads a header and leaves `reader` behind it. None for a version or coder that is not known,
+  /// numbers outside of their limits, or lengths past the end.
+  static std::optional<RangeHeader> Read(ByteReader* reader);
+
+  /// With kAdaptive the mask is at the head of the payload's stream.
+  bool has_mask_stream() const { return has_gaps && coder != RangeCoder::kAdaptive; }
+
+  static constexpr std::uint8_t kVersion = 2;
+  static constexpr std::uint32_t kMaxBeams = 1'024;
+  static constexpr std::uint32_t kMaxColumns = 16'384;
+};
+
+}  // namespace lidar::codec

@@ -1,0 +1,162 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// An entropy coder: four interleaved rANS states for symbols and the plain bits behind them.
+#pragma once
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <vector>
+
+#include "src/base/byte_reader.h"
+#include "src/codec/nibble_model.h"
+
+namespace lidar::codec {
+
+/// J. Duda, "Asymmetric numeral systems" (2013), with states of 56 bits, refilled by 32 bits at a
+/// time. Four chains of symbols, the lanes, have a state each: a processor works on all of them at
+/// once, because none waits for another.
+constexpr unsigned kRansLanes = 4;
+constexpr unsigned kRansLowBits = 24;
+constexpr std::uint64_t kRansLow = std::uint64_t{1} << kRansLowBits;
+constexpr unsigned kRansWordBits = 32;
+constexpr unsigned kRansStateBytes = (kRansLowBits + kRansWordBits) / 8;
+/// Bits that may follow a symbol, and bits on their own: a state of kRansLow can give no more.
+constexpr unsigned kMaxJointBits = kRansLowBits - kProbabilityBits;
+constexpr unsigned kMaxPlainBits = kRansLowBits;
+
+/// Collects symbols and bits in the order in which they will be decoded; Finish() codes them
+/// backwards.
+class RansEncoder {
+ private:
+  struct Piece {
+    Interval interval;
+    std::uint32_t bits;  // 24 bits, their count in 6, the lane in 2
+  };
+
+ public:
+  /// Starts a stream of at most `pieces` calls of Put() and PutBits().
+  void Start(std::size_t pieces) {
+    if (pieces_.size() < pieces) pieces_.resize(pieces);
+    next_ = pieces_.data();
+  }
+  /// Appends the stream to `out`.
+  void Finish(std::vector<std::uint8_t>* out);
+
+  /// Writes to an encoder until it goes out of scope; only one at a time.
+  class Writer {
+   public:
+    explicit Writer(RansEncoder* encoder) : encoder_(encoder), next_(encoder->next_) {}
+    Writer(const Writer&) = delete;
+    Writer& operator=(const Writer&) = delete;
+    ~Writer() { encoder_->next_ = next_; }
+
+    /// A symbol, and the low `count` <= kMaxJointBits of `bits`, the others of which are 0.
+    [[gnu::always_inline]] void Put(unsigned lane, unsigned symbol, NibbleModel* model,
+                                    std::uint32_t bits = 0, unsigned count = 0) {
+      *next_++ = {model->IntervalOf(symbol), bits << 8 | count << 2 | lane};
+      model->Update(symbol);
+    }
+    /// The low `count` <= kMaxPlainBits of `bits`, the others of which are 0.
+    void PutBits(unsigned lane, std::uint32_t bits, unsigned count) {
+      *next_++ = {{0, kProbabilityOne}, bits << 8 | count << 2 | lane};
+    }
+
+   private:
+    RansEncoder* encoder_;
+    Piece* next_;
+  };
+
+ private:
+  std::vector<Piece> pieces_;
+  std::vector<std::uint32_t> words_;
+  Piece* next_ = nullptr;
+};
+
+/// Copies are cheap: a loop works on one of its own, which can live in registers.
+class RansDecoder {
+ public:
+  /// `padded` is where the words are kept, with room for `ahead` calls of GetBits() past the end:
+  /// whoever calls it asks overran() at least as often as that.
+  RansDecoder(ByteView bytes, std::size_t ahead, std::vector<std::uint8_t>* padded);
+
+  /// More was read than there is: the stream is damaged, and not to be read any further.
+  bool overran() const { return position_ > end_; }
+
+  /// To be followed by GetBits() of the same lane, with 0 where there are none.
+  unsigned Get(unsigned lane, NibbleModel* model) {
+    const std::uint64_t x = states_[lane];
+    const auto slot = static_cast<std::uint32_t>(x & (kProbabilityOne - 1));
+    const unsigned symbol = model->Find(slot);
+    const Interval i = model->IntervalOf(symbol);
+    states_[lane] = i.size * (x >> kProbabilityBits) + slot - i.start;
+    model->Update(symbol);
+    return symbol;
+  }
+  std::uint32_t GetBits(unsigned lane, unsigned count) {
+    return GetBits(lane, count, (1U << count) - 1);
+  }
+  /// `mask`: that many ones.
+  std::uint32_t GetBits(unsigned lane, unsigned count, std::uint32_t mask) {
+    std::uint64_t x = states_[lane];
+    const auto bits = static_cast<std::uint32_t>(x) & mask;
+    x >>= count;
+    // Every tenth time or so, so a jump would be mispredicted: states are below 2^63.
+    const std::uint64_t refill = (x - kRansLow) >> 63;
+    states_[lane] = x << (kRansWordBits * refill) | (LoadWord() & (0 - refill));
+    position_ += sizeof(std::uint32_t) * refill;
+    return bits;
+  }
+  /// True where all symbols were read and the stream was one of RansEncoder: the states are back
+  /// where the encoder began and every word was used. A damaged stream hardly ever passes.
+  bool AtEnd() const;
+
+ private:
+  std::uint64_t LoadWord() const {
+    return std::uint64_t{position_[0]} | std::uint64_t{position_[1]} << 8 |
+           std::uint64_t{position_[2]} << 16 | std::uint64_t{position_[3]} << 24;
+  }
+
+  std::array<std::uint64_t, kRansLanes> states_{};
+  const std::uint8_t* position_ = nullptr;  // of the next word
+  const std::uint8_t* end_ = nullptr;
+};
+
+/// A row of pieces is cut into lanes of nearly the same length, coded in turns: the first piece of
+/// each lane, the second of each, and so on. A short row is one lane.
+struct RowLanes {
+  explicit RowLanes(std::size_t count) : all(count) {
+    lanes = count >= kShortestLane * kRansLanes ? kRansLanes : 1;
+    turns = count / lanes;
+    rest = count % lanes;
+  }
+  /// Lanes before `rest` have one piece more than `turns`.
+  std::size_t Start(std::size_t lane) const { return lane * turns + (lane < rest ? lane : rest); }
+
+  static constexpr std::size_t kShortestLane = 64;
+  std::size_t all;
+  std::size_t lanes;
+  std::size_t turns;
+  std::size_t rest;
+};
+
+/// Calls code(lane, index) for all pieces of a row, in the order of coding.
+template <class Code>
+[[gnu::always_inline]] inline void ForEachInTurns(const RowLanes& row, Code&& code) {
+  if (row.lanes == 1) {
+    for (std::size_t i = 0; i < row.all; ++i) code(0, i);
+    return;
+  }
+  static_assert(kRansLanes == 4);
+  const std::size_t start[] = {0, row.Start(1), row.Start(2), row.Start(3)};
+  for (std::size_t i = 0; i < row.turns; ++i) {
+    code(0, i);
+    code(1, start[1] + i);
+    code(2, start[2] + i);
+    code(3, start[3] + i);
+  }
+  if (row.rest > 0) code(0, row.turns);
+  if (row.rest > 1) code(1, start[1] + row.turns);
+  if (row.rest > 2) code(2, start[2] + row.turns);
+}
+
+}  // namespace lidar::codec

@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Signed integers as symbols of 16 classes and raw bits, adaptively for each context.
+#pragma once
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <cstdlib>
+
+#include "src/codec/initial_models.h"
+#include "src/codec/rans.h"
+
+namespace lidar::codec {
+
+/// What a symbol stands for: a sign (0 or -1), and magnitudes from `base` on, one of 2^bits.
+struct ResidualClass {
+  std::int16_t base;
+  std::int8_t bits;
+  std::int8_t sign;
+  std::uint32_t mask;  // as many ones as bits
+};
+struct Residual {
+  std::int32_t magnitude;
+  std::int32_t sign;  // 0 or -1
+};
+
+/// 0; then for each magnitude 1, 2, 3-4, 5-8, 9-16, 17-32, and from 33 on, one a sign. From 33 on,
+/// the length of the rest is a symbol of its own.
+constexpr std::uint32_t kLongMagnitude = 33;
+constexpr unsigned kFirstLongSymbol = 13;
+constexpr std::array<ResidualClass, kNibbles> kResidualClasses = {{{0, 0, 0, 0},
+                                                                   {1, 0, 0, 0},
+                                                                   {1, 0, -1, 0},
+                                                                   {2, 0, 0, 0},
+                                                                   {2, 0, -1, 0},
+                                                                   {3, 1, 0, 1},
+                                                                   {3, 1, -1, 1},
+                                                                   {5, 2, 0, 3},
+                                                                   {5, 2, -1, 3},
+                                                                   {9, 3, 0, 7},
+                                                                   {9, 3, -1, 7},
+                                                                   {17, 4, 0, 15},
+                                                                   {17, 4, -1, 15},
+                                                                   {33, 0, 0, 0},
+                                                                   {33, 0, -1, 0},
+                                                                   {0, 0, 0, 0}}};
+
+/// The positive class of every magnitude up to kLongMagnitude.
+struct ClassOfMagnitude {
+  constexpr ClassOfMagnitude() {
+    for (unsigned m = 0; m <= kLongMagnitude; ++m)
+      for (unsigned s = 0; s < kNibbles - 1; ++s)
+        if (kResidualClasses[s].sign == 0 && static_cast<unsigned>(kResidualClasses[s].base) <= m)
+          symbol[m] = static_cast<std::uint8_t>(s);
+  }
+  std::uint8_t symbol[kLongMagnitude + 1] = {};
+};
+inline constexpr ClassOfMagnitude kClassOfMagnitude;
+
+/// Encoder and decoder do the same with every residual: one symbol, and bits, if only none; nothing
+/// to be mispredicted but the rare long ones.
+class ResidualModel {
+ public:
+  /// Pieces of RansEncoder that a residual may take.
+  static constexpr std::size_t kMostPieces = 3;
+
+  void Reset(const InitialModels& start) {
+    models_.fill(start.residuals);
+    long_model_ = start.longs;
+  }
+
+  [[gnu::always_inline]] void Encode(const Residual& residual, unsigned context, unsigned lane,
+                                     RansEncoder::Writer* writer) {
+    const auto magnitude = static_cast<std::uint32_t>(residual.magnitude);
+    const unsigned positive = kClassOfMagnitude.symbol[std::min(magnitude, kLongMagnitude)];
+    const ResidualClass& c = kResidualClasses[positive];
+    const bool is_long = magnitude >= kLongMagnitude;
+    const std::uint32_t low = is_long ? 0 : magnitude - static_cast<std::uint32_t>(c.base);
+    writer->Put(lane, positive + (magnitude != 0 ? static_cast<unsigned>(-residual.sign) : 0U),
+                &models_[lane][context], low, static_cast<unsigned>(c.bits));
+    if (is_long) EncodeLong(magnitude - kLongMagnitude, lane, writer);
+  }
+
+  [[gnu::always_inline]] Residual Decode(unsigned context, unsigned lane, RansDecoder* decoder) {
+    const unsigned symbol = decoder->Get(lane, &models_[lane][context]);
+    const ResidualClass& c = kResidualClasses[symbol];
+    const std::uint32_t low = decoder->GetBits(lane, static_cast<unsigned>(c.bits), c.mask);
+    std::int32_t magnitude = static_cast<std::int32_t>(low) + c.base;
+    if (__builtin_expect(symbol >= kFirstLongSymbol, 0)) magnitude += DecodeLong(lane, decoder);
+    return {magnitude, c.sign};
+  }
+
+ private:
+  static constexpr unsigned kLongest = 15;
+  static constexpr unsigned kLongestBits = 28;
+
+  static unsigned BitLength(std::uint32_t v) {
+    return v == 0 ? 0 : 32 - static_cast<unsigned>(__builtin_clz(v));
+  }
+  /// The bits that fit go with the length, the higher ones by themselves.
+  void EncodeLong(std::uint32_t rest, unsigned lane, RansEncoder::Writer* writer) {
+    const unsigned length = std::min(BitLength(rest), kLongest);
+    const unsigned bits = PlainBits(length);
+    const unsigned low = std::min(bits, kMaxJointBits);
+    rest &= (1U << bits) - 1;
+    writer->Put(lane, length, &long_model_, rest & ((1U << low) - 1), low);
+    if (bits > low) writer->PutBits(lane, rest >> low, bits - low);
+  }
+  std::int32_t DecodeLong(unsigned lane, RansDecoder* decoder) {
+    const unsigned length = decoder->Get(lane, &long_model_);
+    const unsigned bits = PlainBits(length);
+    const unsigned low = std::min(bits, kMaxJointBits);
+    std::uint32_t rest = decoder->GetBits(lane, low);
+    if (bits > low) rest |= decoder->GetBits(lane, bits - low) << low;
+    if (length > 0 && length < kLongest) rest |= 1U << (length - 1);
+    return static_cast<std::int32_t>(rest);
+  }
+  /// Of a rest of that length: all but the highest one, which is known to be 1.
+  static unsigned PlainBits(unsigned length) {
+    if (length == kLongest) return kLongestBits;
+    return length > 0 ? length - 1 : 0;
+  }
+
+  std::array<std::array<NibbleModel, kContexts>, kRansLanes> models_;
+  NibbleModel long_model_;
+};
+
+}  // namespace lidar::codec

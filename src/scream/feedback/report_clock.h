@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// The receiver's clock as seen in report timestamps: 32 bits of 1/65536 s that wrap.
+#pragma once
+#include <cstdint>
+
+#include "src/base/sequence.h"
+#include "src/base/time.h"
+
+namespace lidar::scream {
+
+/// Exact conversions, so that a wrap-around after 18 hours goes unnoticed.
+class ReportClock {
+ public:
+  static std::uint32_t ToTimestamp(Time t) {
+    const std::int64_t ns = t.time_since_epoch().count();
+    const std::int64_t s = ns / kSecond;
+    return static_cast<std::uint32_t>(s * 65536 + ns % kSecond * 65536 / kSecond);
+  }
+  /// The epoch is the first timestamp's.
+  Time Unwrap(std::uint32_t timestamp) {
+    const std::int64_t units = unwrapper_.Unwrap(timestamp);
+    const std::int64_t s = units / 65536;
+    return Time{Duration{s * kSecond + units % 65536 * kSecond / 65536}};
+  }
+  void Reset() { unwrapper_.Reset(); }
+
+ private:
+  static constexpr std::int64_t kSecond = 1'000'000'000;
+  SequenceUnwrapper<std::uint32_t> unwrapper_;
+};
+
+}  // namespace lidar::scream

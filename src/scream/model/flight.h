@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// max_bytes_in_flight of this round trip, of the one before, and of the last few.
+#pragma once
+#include <algorithm>
+#include <deque>
+
+#include "src/base/time.h"
+#include "src/base/units.h"
+
+namespace lidar::scream {
+
+class MaxBytesInFlight {
+ public:
+  void Add(DataSize bytes_in_flight) { current_ = std::max(current_, bytes_in_flight); }
+  /// Returns true at the end of a round trip.
+  bool Update(Time now, Duration round_trip) {
+    if (now - start_ < round_trip) return false;
+    start_ = now;
+    history_.push_front(current_);
+    if (history_.size() > kHistory) history_.pop_back();
+    current_ = DataSize();
+    return true;
+  }
+  DataSize current() const { return current_; }
+  DataSize previous() const { return history_.empty() ? DataSize() : history_.front(); }
+  DataSize longest() const {
+    DataSize max = current_;
+    for (const DataSize s : history_) max = std::max(max, s);
+    return max;
+  }
+
+ private:
+  static constexpr std::size_t kHistory = 10;
+  Time start_{};
+  DataSize current_;
+  std::deque<DataSize> history_;
+};
+
+}  // namespace lidar::scream

@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Draft section "Receiving ECN-CE for L4S": the averaged fraction of marked packets.
+#pragma once
+#include <algorithm>
+
+#include "src/scream/parameters.h"
+
+namespace lidar::scream {
+
+/// Fast attack, slow decay.
+class L4sAlpha {
+ public:
+  explicit L4sAlpha(const Parameters& p) : p_(p) {}
+
+  /// `round` is a round trip, or longer where frames come more seldom. With the extension
+  /// even_alpha the fraction is one of a whole round and the average even: from few packets the
+  /// fraction scatters, and fast attack with slow decay makes of that a bias against the smaller of
+  /// two flows.
+  void Update(Time now, int data_units_acked, int data_units_acked_ce, Duration s_rtt,
+              Duration round) {
+    delivered_ += data_units_acked;
+    marked_ += data_units_acked_ce;
+    const bool even = p_.extensions.even_alpha;
+    if (delivered_ == 0 || now - last_update_ < (even ? round : std::min(kUpdateInterval, s_rtt)))
+      return;
+    last_fraction_marked_ =
+        std::min(1.0, static_cast<double>(marked_) / static_cast<double>(delivered_));
+    const double down = even ? p_.even_alpha_g : p_.l4s_avg_g_down;
+    const double up = even && last_fraction_marked_ < p_.even_alpha_max ? down : p_.l4s_avg_g_up;
+    if (last_fraction_marked_ >= alpha_)
+      alpha_ = up * last_fraction_marked_ + (1 - up) * alpha_;
+    else if (even)
+      alpha_ = down * last_fraction_marked_ + (1 - down) * alpha_;
+    else
+      alpha_ *= 1 - down;
+    last_update_ = now;
+    delivered_ = marked_ = 0;
+  }
+
+  double value() const { return alpha_; }
+  double last_fraction_marked() const { return last_fraction_marked_; }
+
+ private:
+  static constexpr Duration kUpdateInterval = 10ms;
+  const Parameters& p_;
+  double alpha_ = 0;
+  double last_fraction_marked_ = 0;
+  Time last_update_{};
+  int delivered_ = 0;
+  int marked_ = 0;
+};
+
+}  // namespace lidar::scream

@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "src/scream/model/queue_delay.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace lidar::scream {
+namespace {
+
+/// RFC 6817's ten minutes of base history...
+constexpr Duration kBaseInterval = 10s;
+constexpr std::size_t kBaseHistory = 60;
+/// ...and a short one where marks keep the queue from standing for so long.
+constexpr std::size_t kBaseHistoryMarked = 3;
+/// Queue delay that the round trip does not show, beyond jitter of the way back: a clock jumped.
+constexpr Duration kJump = 100ms;
+
+Duration Scale(Duration d, double f) { return FromSeconds(Seconds(d) * f); }
+
+}  // namespace
+
+QueueDelay::QueueDelay(const Parameters& parameters)
+    : p_(parameters), qdelay_max_avg_(parameters.qdelay_target_lo) {}
+
+void QueueDelay::Reset() {
+  const bool drift_reset = drift_reset_;
+  history_.clear();
+  base_.reset();
+  qdelay_ = qdelay_avg_ = Duration{0};
+  slow_min_avg_ = Duration{0};
+  min_this_rtt_ = Duration::max();
+  drift_reset_ = drift_reset;
+}
+
+void QueueDelay::AddToBase(Time now, Duration owd, bool short_history) {
+  if (history_.empty() || now - history_.back().since >= kBaseInterval) {
+    history_.push_back({now, owd});
+    while (history_.size() > (short_history ? kBaseHistoryMarked : kBaseHistory))
+      history_.pop_front();
+    base_ = owd;
+    for (const Base& b : history_) base_ = std::min(*base_, b.min);
+  }
+  history_.back().min = std::min(history_.back().min, owd);
+  base_ = std::min(*base_, owd);
+}
+
+bool QueueDelay::Add(Time now, Time sent, Time arrival, Duration rtt_excess, bool short_history) {
+  const Duration owd = arrival - sent;
+  const bool jumped = base_ && (owd - *base_ > rtt_excess + kJump || owd < *base_ - kJump);
+  if (jumped) {
+    Reset();
+    // A queue that stands across the jump shows in the round trip still.
+    AddToBase(now, owd - rtt_excess, short_history);
+  }
+  AddToBase(now, owd, short_history);
+  qdelay_ = owd - *base_;
+  min_this_rtt_ = std::min(min_this_rtt_, qdelay_);
+  return !jumped;
+}
+
+void QueueDelay::Update(Time now, Duration s_rtt, Duration qdelay_target) {
+  if (p_.reduce_jitter) {
+    qdelay_max_avg_ = std::min(qdelay_target, std::max(qdelay_, qdelay_max_avg_));
+    qdelay_min_avg_ = std::min(qdelay_, qdelay_min_avg_);
+  }
+  if (p_.clock_drift) UpdateDrift(now, s_rtt, qdelay_target);
+  if (now - last_update_qdelay_avg_time_ < std::min(p_.virtual_rtt, s_rtt)) return;
+  last_update_qdelay_avg_time_ = now;
+  qdelay_avg_ = qdelay_ < qdelay_avg_
+                    ? qdelay_
+                    : Scale(qdelay_, p_.qdelay_avg_g) + Scale(qdelay_avg_, 1 - p_.qdelay_avg_g);
+  if (p_.reduce_jitter) CalculateRefWndDelayScale();
+}
+
+void QueueDelay::CalculateRefWndDelayScale() {
+  const double g = p_.qdelay_min_max_avg_g;
+  qdelay_max_avg_ = Scale(qdelay_max_avg_, 1 - g);
+  qdelay_min_avg_ = Scale(qdelay_min_avg_, 1 - g) + Scale(qdelay_max_avg_, g);
+  qdelay_dev_avg_ = Scale(qdelay_dev_avg_, 1 - p_.qdelay_dev_avg_g) +
+                    Scale(qdelay_max_avg_ - qdelay_min_avg_, p_.qdelay_dev_avg_g);
+  const double relative = Seconds(qdelay_dev_avg_) / Seconds(p_.qdelay_dev_threshold);
+  ref_wnd_delay_scale_ = std::clamp(1 - relative, 0.0, 1.0);
+}
+
+void QueueDelay::UpdateDrift(Time now, Duration s_rtt, Duration qdelay_target) {
+  if (now - rtt_start_ < s_rtt || min_this_rtt_ == Duration::max()) return;
+  const double g = p_.qdelay_min_avg_alpha;
+  slow_min_avg_ = Scale(slow_min_avg_, 1 - g) + Scale(min_this_rtt_, g);
+  min_this_rtt_ = Duration::max();
+  rtt_start_ = now;
+  if (slow_min_avg_ <= qdelay_target / 4) return;
+  Reset();
+  drift_reset_ = true;
+}
+
+bool QueueDelay::TakeDriftReset() { return std::exchange(drift_reset_, false); }
+
+}  // namespace lidar::scream

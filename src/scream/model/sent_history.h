@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Status update when sending and on feedback: which packets are in flight, acknowledged, marked,
+// lost.
+#pragma once
+#include <cstdint>
+#include <deque>
+#include <map>
+#include <optional>
+#include <vector>
+
+#include "src/base/sequence.h"
+#include "src/base/time.h"
+#include "src/base/units.h"
+#include "src/scream/feedback/ccfb.h"
+#include "src/scream/feedback/report_clock.h"
+
+namespace lidar::scream {
+
+struct SentRecord {
+  int stream = 0;
+  DataSize size;
+  Time sent{};
+  Ecn ecn = Ecn::kNotEct;
+};
+
+struct AckedPacket : SentRecord {
+  std::uint32_t ssrc = 0;
+  /// On the receiver's clock, unwrapped; absent where the report does not tell,
+  /// and after Expire().
+  std::optional<Time> arrival;
+  Ecn arrived_ecn = Ecn::kNotEct;
+  bool was_lost = false;
+};
+
+struct LostPacket : SentRecord {
+  std::uint32_t ssrc = 0;
+};
+
+/// What one report brought that no earlier one had.
+struct AckSummary {
+  std::vector<AckedPacket> acked;
+  std::vector<LostPacket> lost;
+  /// CE marks on packets that an earlier report had acknowledged without.
+  int late_ce = 0;
+  /// The draft's: by how much the highest acknowledged sequence numbers moved on, lost ones
+  /// included.
+  DataSize bytes_newly_acked;
+  DataSize bytes_newly_acked_ce;
+  /// Of the packet sent last of those newly acknowledged, without the receiver's holding time.
+  std::optional<Duration> rtt;
+};
+
+enum class HistoryResult { kApplied, kNothingNew, kImplausible, kNotOurs };
+
+/// Validates a report whole before it believes any of it.
+class SentHistory {
+ public:
+  void OnSent(std::uint32_t ssrc, std::uint16_t seq, const SentRecord& record);
+  HistoryResult OnFeedback(Time now, const CongestionFeedback& feedback, AckSummary* summary);
+  /// Declares lost what is overdue; also to be called without feedback.
+  void DetectLoss(Time now, std::vector<LostPacket>* lost);
+  /// What was sent before `before` and is still unsettled no longer counts as in flight, nor ever
+  /// as lost; it may still be acknowledged.
+  void Expire(Time before);
+
+  DataSize bytes_in_flight() const { return in_flight_; }
+  std::optional<Time> oldest_in_flight() const;
+  Duration reordering_window() const { return reordering_window_; }
+  void set_max_reordering_window(Duration d) { max_reordering_window_ = d; }
+  std::uint64_t foreign_blocks() const { return foreign_blocks_; }
+
+ private:
+  enum class State : std::uint8_t { kOutstanding, kMissing, kLost, kExpired, kAcked };
+  struct Packet {
+    std::int64_t seq = 0;
+    SentRecord record;
+    State state = State::kOutstanding;
+    bool ce = false;
+    Time missing_since{};
+  };
+  struct Source {
+    SequenceUnwrapper<std::uint16_t> unwrapper;
+    std::int64_t first_ever = 0;
+    std::int64_t highest_acked = -1;
+    std::deque<Packet> packets;  // by seq
+    std::vector<std::int64_t> missing;
+  };
+
+  void ForgetSilentSource();
+  static Packet* Find(Source* source, std::int64_t seq);
+  bool Plausible(Time now, Source* source, const SsrcReport& block) const;
+  void Apply(Time now, const SsrcReport& block, Source* source, Time report, AckSummary* summary);
+  void Acknowledge(Time now, const PacketMetric& metric, Time report, std::uint32_t ssrc,
+                   Packet* packet, AckSummary* summary);
+  void AdvanceHighest(Source* source, std::int64_t seq, AckSummary* summary);
+  static void MarkMissing(Time now, Source* source, Packet* packet);
+  static void Trim(Source* source, DataSize* in_flight);
+
+  std::map<std::uint32_t, Source> sources_;
+  ReportClock clock_;
+  DataSize in_flight_;
+  Duration reordering_window_{0};
+  Duration max_reordering_window_ = std::chrono::milliseconds(100);
+  std::uint64_t foreign_blocks_ = 0;
+};
+
+}  // namespace lidar::scream

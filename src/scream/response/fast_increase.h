@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Beyond the draft: multiplicative growth from the start, and again after rounds without
+// congestion.
+#pragma once
+#include <algorithm>
+
+#include "src/scream/parameters.h"
+
+namespace lidar::scream {
+
+/// A round is a round trip or a frame period, whichever is longer: marks of a frame source come
+/// once a frame. The growth sets in after a few rounds without congestion and gets bolder with
+/// each.
+class FastIncrease {
+ public:
+  explicit FastIncrease(const Parameters& p) : p_(p) {}
+
+  void OnCongestion(Time now) {
+    rounds_ = 0;
+    round_start_ = now;
+    starting_ = false;
+  }
+  void Update(Time now, Duration round) {
+    if (now - round_start_ < round) return;
+    round_start_ = now;
+    ++rounds_;
+  }
+  /// As at the start of a flow.
+  void Restart() { starting_ = true; }
+  bool starting() const { return starting_; }
+  /// Fraction of the acknowledged bytes by which the window may grow; the less, the longer the
+  /// queue.
+  double growth(Duration qdelay, bool l4s_works) const {
+    const int bold = std::max(0, rounds_ - p_.fast_increase_rounds);
+    const double step = l4s_works ? p_.fast_increase_step : p_.fast_increase_step_unmarked;
+    const double growth =
+        starting_ ? p_.fast_increase_max : std::min(p_.fast_increase_max, step * bold);
+    return growth * std::clamp(1 - Seconds(qdelay) / Seconds(p_.fast_increase_qdelay), 0.0, 1.0);
+  }
+
+ private:
+  const Parameters& p_;
+  bool starting_ = true;
+  int rounds_ = 0;
+  Time round_start_{};
+};
+
+}  // namespace lidar::scream

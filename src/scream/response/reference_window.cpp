@@ -1,0 +1,169 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "src/scream/response/reference_window.h"
+
+#include <cmath>
+#include <limits>
+
+namespace lidar::scream {
+namespace {
+
+/// How steeply the reaction grows with the distance to the inflection point, and its floors.
+constexpr double kInflectionSlope = 8;
+constexpr double kInflectionMin = 0.1;
+constexpr double kScaleMin = 0.25;
+constexpr double kJitterIncreaseMin = 0.1;
+/// Round trips without congestion after which the window may have lost touch with what is in
+/// flight.
+constexpr double kLongUncongestedRtts = 100;
+
+double Ratio(Duration a, Duration b) { return Seconds(a) / Seconds(b); }
+
+}  // namespace
+
+ReferenceWindow::ReferenceWindow(const Parameters& parameters)
+    : p_(parameters),
+      ref_wnd_(static_cast<double>(parameters.min_ref_wnd.bytes())),
+      max_policed_ref_wnd_(std::numeric_limits<double>::infinity()) {}
+
+void ReferenceWindow::Set(DataSize window) {
+  ref_wnd_ = static_cast<double>(std::max(window, p_.min_ref_wnd).bytes());
+}
+
+double ReferenceWindow::ref_wnd_ratio() const {
+  return std::min(1.0, static_cast<double>(p_.mss.bytes()) / ref_wnd_);
+}
+
+DataSize ReferenceWindow::max_policed_ref_wnd() const {
+  return std::isinf(max_policed_ref_wnd_)
+             ? DataSize::Infinite()
+             : DataSize::Bytes(static_cast<std::int64_t>(max_policed_ref_wnd_));
+}
+
+double ReferenceWindow::InflectionScale(double slope) const {
+  const double scl = (ref_wnd_ - ref_wnd_i_) / ref_wnd_i_ * slope;
+  return std::clamp(scl * scl, kInflectionMin, 1.0);
+}
+
+Reaction ReferenceWindow::Update(Time now, const CongestionSignals& signals) {
+  loss_detected_ = loss_detected_ || signals.loss_detected;
+  data_units_marked_ = data_units_marked_ || signals.data_units_marked;
+  const double scl = InflectionScale(kInflectionSlope);
+  const Reaction reaction = Detect(now, signals);
+  if (reaction != Reaction::kNone) Reduce(now, reaction, signals, scl);
+  Increase(now, signals, scl);
+  return reaction;
+}
+
+Reaction ReferenceWindow::Detect(Time now, const CongestionSignals& s) {
+  const bool isolated = p_.extensions.isolated_loss && !LossCounts(s);
+  if (data_units_marked_ || (loss_detected_ && !isolated)) last_congestion_detected_time_ = now;
+  if (now - last_reaction_to_congestion_time_ + s.earliness < std::min(p_.virtual_rtt, s.s_rtt))
+    return Reaction::kNone;
+  if (std::exchange(loss_detected_, false)) {
+    DetectPolicer(s);
+    if (LossCounts(s)) return Reaction::kLoss;
+  }
+  if (data_units_marked_) return Reaction::kCe;
+  if (s.qdelay_avg > s.qdelay_target / 2) return Reaction::kVirtualCe;
+  return Reaction::kNone;
+}
+
+/// Draft section "Link layer losses and rate policers".
+bool ReferenceWindow::LossCounts(const CongestionSignals& s) const {
+  return !p_.link_layer_loss || s.loss_rate > s.loss_rate_threshold || s.queue_at_loss ||
+         s.qdelay_avg > s.qdelay_target / 4;
+}
+
+void ReferenceWindow::DetectPolicer(const CongestionSignals& s) {
+  if (p_.rate_policer && s.loss_rate > p_.loss_rate_threshold_policer &&
+      s.qdelay_avg < s.qdelay_target / 4)
+    max_policed_ref_wnd_ = ref_wnd_ * p_.beta_loss_policer;
+}
+
+void ReferenceWindow::NoteReaction(Time now) {
+  last_reaction_to_congestion_time_ = last_congestion_detected_time_ = now;
+  loss_detected_ = data_units_marked_ = false;
+}
+
+void ReferenceWindow::RelaxPolicer() { max_policed_ref_wnd_ *= 1 + p_.policed_ref_wnd_recovery; }
+
+void ReferenceWindow::Reduce(Time now, Reaction reaction, const CongestionSignals& s, double scl) {
+  if (ref_wnd_i_update_allowed_) {
+    ref_wnd_i_ = ref_wnd_;
+    ref_wnd_i_update_allowed_ = false;
+  }
+  if (reaction == Reaction::kLoss)
+    ref_wnd_ *= p_.beta_loss;
+  else if (reaction == Reaction::kVirtualCe)
+    ref_wnd_ *= 1 - VirtualBackoff(s);
+  else if (s.is_l4s)
+    ref_wnd_ *= 1 - L4sBackoff(now, s, scl);
+  else
+    ref_wnd_ *= p_.beta_ecn;
+  ref_wnd_ = std::max(ref_wnd_, static_cast<double>(p_.min_ref_wnd.bytes()));
+  last_reaction_to_congestion_time_ = now;
+  loss_detected_ = data_units_marked_ = false;
+}
+
+double ReferenceWindow::L4sBackoff(Time now, const CongestionSignals& s, double scl) {
+  double backoff = s.l4s_alpha / 2 * UndershootScale(s);
+  backoff /= std::max(1.0, Ratio(s.s_rtt, p_.virtual_rtt));
+  if (s.qdelay < s.qdelay_target / 4) {
+    backoff *= std::max(kScaleMin, scl);
+    backoff *= std::max(kScaleMin, s.ref_wnd_delay_scale);
+  }
+  const double rtts =
+      Ratio(now - last_reaction_to_congestion_time_, std::max(p_.virtual_rtt, s.s_rtt));
+  if (rtts > kLongUncongestedRtts)
+    ref_wnd_ = std::min(ref_wnd_, static_cast<double>(s.max_bytes_in_flight_prev.bytes()));
+  return backoff;
+}
+
+double ReferenceWindow::VirtualBackoff(const CongestionSignals& s) const {
+  const double half = Seconds(s.qdelay_target) / 2;
+  const double alpha = std::clamp((Seconds(s.qdelay_avg) - half) / half, 0.0, 1.0);
+  return alpha / 2 / std::max(1.0, Ratio(s.s_rtt, p_.virtual_rtt)) * UndershootScale(s);
+}
+
+/// Draft section "Reference window undershoot at congestion".
+double ReferenceWindow::UndershootScale(const CongestionSignals& s) const {
+  if (!p_.undershoot_remedy) return 1;
+  const bool low = s.target_bitrate < s.acked_bitrate * p_.acked_bitrate_margin;
+  return low ? p_.backoff_scale_low_target_rate : 1;
+}
+
+/// Beyond the draft: what lies above the last known maximum is unknown ground.
+double ReferenceWindow::FastIncrement(const CongestionSignals& s, double scl) const {
+  const bool above = ref_wnd_ > ref_wnd_i_;
+  const double scale = above ? InflectionScale(p_.fast_increase_slope) : scl;
+  return s.fast_growth * scale * static_cast<double>(s.bytes_newly_acked.bytes());
+}
+
+void ReferenceWindow::Increase(Time now, const CongestionSignals& s, double scl) {
+  const Duration rtt = std::max(p_.virtual_rtt, s.s_rtt);
+  const double post_congestion_scale = std::clamp(
+      Ratio(now - last_congestion_detected_time_, rtt) / p_.post_congestion_delay_rtt, 0.0, 1.0);
+  double increment =
+      static_cast<double>((s.bytes_newly_acked - s.bytes_newly_acked_ce).bytes()) * ref_wnd_ratio();
+  increment *= std::min(1.0, Ratio(s.s_rtt, p_.virtual_rtt));
+  increment *= std::max(kScaleMin, scl);
+  increment *= std::max(kJitterIncreaseMin, s.ref_wnd_delay_scale);
+  const double multiplicative =
+      p_.mul_increase_factor * ref_wnd_ / static_cast<double>(p_.mss.bytes());
+  increment *= 1 + multiplicative * post_congestion_scale * scl;
+  increment = std::max(increment, FastIncrement(s, scl));
+
+  const DataSize max_allowed =
+      p_.mss +
+      std::max(s.max_bytes_in_flight, s.max_bytes_in_flight_prev) * p_.bytes_in_flight_head_room;
+  const double next = ref_wnd_ + increment;
+  if (increment > 0 && next <= static_cast<double>(max_allowed.bytes()) &&
+      s.target_bitrate < s.target_bitrate_max) {
+    ref_wnd_ = next;
+    ref_wnd_i_update_allowed_ = true;
+  }
+  if (p_.rate_policer) ref_wnd_ = std::min(ref_wnd_, max_policed_ref_wnd_);
+  ref_wnd_ = std::max(ref_wnd_, static_cast<double>(p_.min_ref_wnd.bytes()));
+}
+
+}  // namespace lidar::scream

@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Draft section "Reference Window Update": reduction, increase, and its limits.
+#pragma once
+#include <algorithm>
+#include <utility>
+
+#include "src/scream/parameters.h"
+
+namespace lidar::scream {
+
+/// What the detectors found in one report.
+struct CongestionSignals {
+  bool loss_detected = false;
+  bool data_units_marked = false;
+  double loss_rate = 0;
+  double loss_rate_threshold = 0;  ///< LOSS_RATE_THRESHOLD, or what isolated_loss makes of it
+  bool queue_at_loss = false;      ///< isolated_loss: packets around the loss had waited
+  double l4s_alpha = 0;
+  bool is_l4s = true;  ///< marks are L4S marks, not classic ECN
+  Duration qdelay{0};
+  Duration qdelay_avg{0};
+  Duration qdelay_target{0};
+  double ref_wnd_delay_scale = 1;
+  /// Beyond the draft: so much sooner than due a reaction may come, as the next report is far.
+  Duration earliness{0};
+  Duration s_rtt{0};
+  DataSize max_bytes_in_flight;
+  DataSize max_bytes_in_flight_prev;
+  DataSize bytes_newly_acked;
+  DataSize bytes_newly_acked_ce;
+  DataRate target_bitrate;
+  DataRate target_bitrate_max;
+  DataRate acked_bitrate;
+  double fast_growth = 0;  ///< fast_start: fraction of the acknowledged bytes to grow by
+};
+
+enum class Reaction { kNone, kLoss, kCe, kVirtualCe };
+
+class ReferenceWindow {
+ public:
+  explicit ReferenceWindow(const Parameters& parameters);
+
+  /// One report: reduces at most once every min(VIRTUAL_RTT, s_rtt), then increases.
+  Reaction Update(Time now, const CongestionSignals& signals);
+  /// Counts a reaction that was made outside: the draft's own waits its turn.
+  void NoteReaction(Time now);
+  /// Moves the window outside the draft's rules; never below MIN_REF_WND.
+  void Set(DataSize window);
+  /// Where congestion is to be expected.
+  void SetInflection(DataSize window) { ref_wnd_i_ = static_cast<double>(window.bytes()); }
+  void Limit(DataSize max) { Set(std::min(max, ref_wnd())); }
+  /// Once an RTT: lifts the policer's limit a little.
+  void RelaxPolicer();
+
+  DataSize ref_wnd() const { return DataSize::Bytes(static_cast<std::int64_t>(ref_wnd_)); }
+  DataSize ref_wnd_i() const { return DataSize::Bytes(static_cast<std::int64_t>(ref_wnd_i_)); }
+  double ref_wnd_ratio() const;
+  DataSize max_policed_ref_wnd() const;
+  Time last_reaction_to_congestion_time() const { return last_reaction_to_congestion_time_; }
+  Time last_congestion_detected_time() const { return last_congestion_detected_time_; }
+
+ private:
+  double InflectionScale(double slope) const;
+  double FastIncrement(const CongestionSignals& s, double scl) const;
+  Reaction Detect(Time now, const CongestionSignals& s);
+  bool LossCounts(const CongestionSignals& s) const;
+  void DetectPolicer(const CongestionSignals& s);
+  void Reduce(Time now, Reaction reaction, const CongestionSignals& s, double scl);
+  double L4sBackoff(Time now, const CongestionSignals& s, double scl);
+  double VirtualBackoff(const CongestionSignals& s) const;
+  double UndershootScale(const CongestionSignals& s) const;
+  void Increase(Time now, const CongestionSignals& s, double scl);
+
+  const Parameters& p_;
+  double ref_wnd_;
+  double ref_wnd_i_ = 1;
+  bool ref_wnd_i_update_allowed_ = true;
+  double max_policed_ref_wnd_;
+  bool loss_detected_ = false;      // since the last reaction
+  bool data_units_marked_ = false;  // since the last reaction
+  Time last_congestion_detected_time_{};
+  Time last_reaction_to_congestion_time_{};
+};
+
+}  // namespace lidar::scream

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Size and error of whole sources at one setting.
+#pragma once
+#include <optional>
+
+#include "src/tools/codec_lab/slice_codec.h"
+
+namespace lidar::tools {
+
+struct Measurement {
+  double step_m = 0;  // mean, where it depends on the slice
+  double quantization_bits = 0;
+  double bits_per_return = 0;
+  double bitrate = 0;  // bit/s
+  PointErrors errors;
+};
+
+/// A setting by its step, or as the paper has it: bits of the slice's bounding cube.
+struct MeasuredSetting {
+  double step_m = 0;
+  unsigned quantization_bits = 0;  // not 0: goes before the step
+  unsigned intensity_bits = 0;
+  std::uint32_t slices = 1;
+};
+
+/// None where the codec refuses the setting.
+std::optional<Measurement> Measure(const ScanSet& set, const CodingMode& mode,
+                                   const MeasuredSetting& setting);
+
+const CodingMode& DefaultRangeMode();
+/// What dracoenc takes by default: range geometry for organised sources, else xyz.
+const CodingMode& DefaultMode(const ScanSet& set);
+
+}  // namespace lidar::tools

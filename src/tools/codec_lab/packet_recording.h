@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Scans of any sensor as the packets of an Ouster sensor, in a capture.
+#pragma once
+#include <string>
+#include <vector>
+
+#include "src/ouster/metadata.h"
+#include "src/tools/codec_lab/scan.h"
+
+namespace lidar::tools {
+
+/// "hdl64" (Velodyne HDL-64E, as KITTI drove it) or "N:TOP:BOTTOM", N beams from TOP to BOTTOM
+/// degrees above the horizon. Throws std::runtime_error.
+std::vector<Beam> ParseBeams(const std::string& text);
+
+/// A sensor whose frame is that of the cloud, with the origin of the beams at its origin. `columns`
+/// is a multiple of 16.
+SensorModel ModelOfCloud(const std::vector<Beam>& beams, std::uint32_t columns);
+
+/// Puts a cloud into the pixels of `geometry`, the nearest point of each; an organised scan stays
+/// as it is. A point moves by up to half a pixel across its ray, and not along it.
+Scan ToRangeImage(const Scan& scan, const std::shared_ptr<const ScanGeometry>& geometry);
+
+/// What the capture of `set` says about its sensor: profile RNG19_RFL8_SIG16_NIR16.
+ouster::Metadata MetadataOf(const ScanSet& set);
+
+/// Throws std::runtime_error. The scans are organised, all alike.
+void WriteCapture(const ScanSet& set, const ouster::Metadata& metadata, const std::string& path);
+
+}  // namespace lidar::tools

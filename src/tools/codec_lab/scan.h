@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// One scan in memory, whatever it came from, and its slices.
+#pragma once
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "src/cloud/range_projection.h"
+#include "src/cloud/sensor_model.h"
+
+namespace lidar::tools {
+
+/// Beams of a sensor, with what is needed to turn ranges into points.
+struct ScanGeometry {
+  explicit ScanGeometry(SensorModel m) : model(std::move(m)), projection(model) {}
+  SensorModel model;
+  RangeProjection projection;
+};
+
+struct Scan {
+  std::shared_ptr<const ScanGeometry> geometry;  // null: a cloud without order
+  std::vector<std::uint32_t> ranges;             // mm, beam by beam; only with geometry
+  std::vector<float> xyz;                        // m; only without geometry
+  std::vector<float> intensity;                  // of every range or point; may be empty
+  bool organised() const { return geometry != nullptr; }
+};
+
+/// Consecutive scans of one capture, folder of files or synthetic drive.
+struct ScanSet {
+  std::string name;
+  double scans_per_second = 10;
+  std::vector<Scan> scans;
+  bool organised() const { return !scans.empty() && scans.front().organised(); }
+};
+
+struct SliceOf {
+  std::uint32_t index = 0;
+  std::uint32_t count = 1;
+};
+
+/// Columns of a slice; `count` must divide the columns of a scan.
+ColumnWindow WindowOf(const Scan& scan, SliceOf slice);
+
+}  // namespace lidar::tools

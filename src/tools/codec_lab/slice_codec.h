@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Slices of scans through the codec, as dracoenc codes them, with sizes and real errors.
+#pragma once
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "src/codec/slice_encoder.h"
+#include "src/rate/residual_model.h"
+#include "src/rate/size_model.h"
+#include "src/tools/codec_lab/scan.h"
+
+namespace lidar::tools {
+
+/// A way of coding, by the name that the rate models know.
+struct CodingMode {
+  std::string name;
+  rate::Geometry geometry = rate::Geometry::kRange;
+  codec::RangeCoder coder = codec::RangeCoder::kDraco;  // of range geometry
+  unsigned level = 7;                                   // Draco's, of xyz geometry
+};
+const std::vector<CodingMode>& AllModes();
+/// Throws std::runtime_error for a name that is none.
+const CodingMode& ModeNamed(const std::string& name);
+/// What Draco makes of xyz geometry at a compression level.
+const CodingMode& XyzModeOfLevel(unsigned level);
+
+struct PointErrors {
+  double mean_m = 0;
+  double max_m = 0;
+};
+
+/// Holds one slice and encodes it as often as wanted.
+class SliceCodec {
+ public:
+  void Load(const Scan& scan, SliceOf slice);
+
+  std::size_t returns() const { return returns_; }
+  /// Only the parts that the slice itself knows: returns, extent, mode.
+  rate::SliceFeatures Features(const CodingMode& mode);
+  rate::ResidualModel Residual(const CodingMode& mode) const;
+
+  /// None where the slice is empty or the codec refuses the step. `keep_fraction` thins beams, or
+  /// points of a cloud without order.
+  std::optional<rate::EncodedSlice> Encode(const CodingMode& mode, const rate::Settings& settings,
+                                           double keep_fraction = 1);
+  /// Distances between the points and their decoded points. None where Encode() would be, and for
+  /// xyz steps so fine that no coder keeps the order of the points.
+  std::optional<PointErrors> Errors(const CodingMode& mode, const rate::Settings& settings);
+
+ private:
+  struct Coder {
+    codec::SliceEncoder encoder;
+    bool loaded = false;
+  };
+  void SetFormat(const Scan& scan);
+  void AppendPoint(const float* xyz, float intensity, std::uint32_t range_mm);
+  codec::SliceEncoder& EncoderFor(const CodingMode& mode);
+  bool EncodeXyz(const CodingMode& mode, const rate::Settings& settings, double keep_fraction);
+  bool EncodeBytes(const CodingMode& mode, const rate::Settings& settings, double keep_fraction);
+
+  std::shared_ptr<const ScanGeometry> geometry_;
+  codec::CloudFormat format_;
+  std::map<std::string, Coder> coders_;  // by mode
+  std::uint32_t first_column_ = 0;
+  std::vector<std::uint8_t> raw_;
+  std::vector<float> points_;  // x y z of every return
+  std::size_t returns_ = 0;
+  codec::EncodedSlice encoded_;
+};
+
+}  // namespace lidar::tools

@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// A rate controller on real slices and a moving target.
+#pragma once
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "src/rate/rate_controller.h"
+#include "src/tools/codec_lab/slice_codec.h"
+
+namespace lidar::tools {
+
+enum class TargetProfile { kSteady, kWalk, kJump };
+
+struct ProfileOptions {
+  double steady_bps = 0;
+  double min_bps = 0;  // walks and jumps stay within these
+  double max_bps = 0;
+  std::uint64_t seed = 1;
+};
+
+/// bit/s for each scan: one rate; a random walk of 8 % a scan; jumps to anywhere in the range, even
+/// in the logarithm, every 10 scans.
+std::vector<double> MakeTargets(TargetProfile profile, std::size_t scans,
+                                const ProfileOptions& options);
+/// From lines of `time_s rate_mbps`; a scan takes the rate that holds at its start. Throws.
+std::vector<double> ReadTargets(const std::string& path, double scans_per_second);
+
+struct TrackOptions {
+  const CodingMode* mode = nullptr;
+  double max_error_m = 0.02;
+  unsigned intensity_bits = 0;
+  std::uint32_t slices = 8;
+  rate::DegradationPreference degradation = rate::DegradationPreference::kMaintainAccuracy;
+  bool open_loop = false;
+};
+
+/// One scan, as it went.
+struct TrackedScan {
+  double target_bps = 0;
+  double sent_bps = 0;
+  double coarsest_step_m = 0;
+  double largest_bound_m = 0;  // of the error
+  double min_bps = 0;          // what the controller takes for r_min after this scan
+  unsigned intensity_bits = 0;
+  double keep_fraction = 1;
+  bool skipped = false;
+  unsigned reencoded = 0;
+  double Error() const { return sent_bps / target_bps - 1; }
+};
+
+/// 0 1 2 1 0 1 2 ... for a count of 3.
+std::size_t ThereAndBack(std::size_t i, std::size_t count);
+
+/// Plays `set` there and back, so that no scan follows one it never followed.
+std::vector<TrackedScan> Track(const ScanSet& set, const std::vector<double>& targets,
+                               const TrackOptions& options, std::unique_ptr<rate::SizeModel> model);
+
+/// Bitrates that the error bound and the sensor's resolution allow for a scan of the source.
+rate::RateBounds MeasureBounds(const ScanSet& set, const TrackOptions& options,
+                               std::size_t scan = 0);
+/// Mean of |min_bps / real r_min - 1| where a scan was sent, without the first `settle`.
+double MinimumError(const ScanSet& set, const TrackOptions& options,
+                    const std::vector<TrackedScan>& scans, std::size_t settle);
+
+struct TrackSummary {
+  double mean = 0;           // of |error|
+  double percentile_95 = 0;  // of |error|
+  double largest_over = 0;   // error of the scan furthest above its target
+  double reencoded = 0;      // part of the slices
+  std::size_t skipped = 0;
+  double largest_bound_m = 0;
+};
+/// Leaves out the first `settle` scans.
+TrackSummary Summarise(const std::vector<TrackedScan>& scans, std::size_t settle,
+                       std::uint32_t slices);
+
+}  // namespace lidar::tools

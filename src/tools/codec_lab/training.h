@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Samples of real encodings at random settings, and how well models fitted to them predict.
+#pragma once
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "src/rate/model_fit.h"
+#include "src/tools/codec_lab/scan.h"
+
+namespace lidar::tools {
+
+struct SamplingOptions {
+  std::size_t samples = 200;  // of each source, and for the adaptive model of each mode
+  std::vector<std::string> modes;
+  double min_step_m = 0.001;
+  double max_step_m = 0.5;
+  std::vector<std::uint32_t> slices = {1, 8};
+  unsigned intensity_bits = 5;  // at most for the adaptive model, always for the paper's
+  std::uint64_t seed = 1;
+};
+
+/// Gets the part of the work that is done, 0 to 1.
+using Progress = std::function<void(double)>;
+
+/// Random slices at random steps (even in the logarithm), slice counts and intensity bits. Range
+/// modes skip clouds without order.
+std::vector<rate::Sample> TakeSamples(const std::vector<ScanSet>& sets,
+                                      const SamplingOptions& options, const Progress& progress);
+/// The paper's way: random quantisation bits 8..24 and compression levels 0..9 of xyz geometry, and
+/// such bits of the longest range for range geometry, where it is among `modes`. Slices let the
+/// number of points vary, without which its terms mean nothing elsewhere.
+std::vector<rate::Sample> TakePaperSamples(const std::vector<ScanSet>& sets,
+                                           const SamplingOptions& options,
+                                           const Progress& progress);
+
+struct FitReport {
+  std::string name;
+  std::size_t samples = 0;
+  rate::FitError fit;
+  rate::FitError cross_validation;
+};
+
+/// Leaves out one source after the other, or fifths of the samples where there is one source.
+FitReport Report(
+    const std::string& name, const std::vector<rate::Sample>& samples,
+    const std::function<std::unique_ptr<rate::SizeModel>(const std::vector<rate::Sample>&)>& fit);
+
+}  // namespace lidar::tools

@@ -1,0 +1,287 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Slices in both geometries, from raw points to raw points, the odd ones above all.
+#include <draco/compression/decode.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstring>
+#include <limits>
+#include <random>
+
+#include "src/codec/slice_decoder.h"
+#include "tests/elements/draco/test_clouds.h"
+
+namespace lidar::codec {
+namespace {
+
+constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
+constexpr float kInfinity = std::numeric_limits<float>::infinity();
+constexpr std::uint32_t kMaxPoints = 1U << 20;
+
+/// x, y, z, intensity.
+using Point = std::array<float, 4>;
+using Points = std::vector<Point>;
+
+CloudFormat PlainFormat() {
+  CloudFormat format;
+  format.layout = {*PointFields::Parse("x:F32:0,y:F32:4,z:F32:8,intensity:F32:12"), 16};
+  return format;
+}
+
+double Distance(const Point& a, const Point& b) {
+  double squares = 0;
+  for (std::size_t i = 0; i < 3; ++i) squares += std::pow(double{a[i]} - double{b[i]}, 2);
+  return std::sqrt(squares);
+}
+
+struct Result {
+  SliceResult result = SliceResult::kEmpty;
+  EncodedSlice slice = {};
+  Points points = {};
+};
+
+/// There and back through xyz geometry.
+Result Coded(const Points& points, const SliceSettings& settings) {
+  auto encoder = *SliceEncoder::Create(PlainFormat(), Geometry::kXyz);
+  const auto* raw = reinterpret_cast<const std::uint8_t*>(points.data());
+  encoder.Load({raw, points.size() * sizeof(Point)}, 0, settings.intensity_bits > 0);
+  Result coded;
+  coded.result = encoder.Encode(settings, &coded.slice);
+  if (coded.result != SliceResult::kEncoded) return coded;
+  SliceDecoder decoder(PlainFormat(), Geometry::kXyz, kMaxPoints);
+  const auto shape = decoder.Decode({coded.slice.bytes.data(), coded.slice.bytes.size()});
+  EXPECT_TRUE(shape);
+  if (!shape) return coded;
+  coded.points.resize(shape->width);
+  decoder.Write(reinterpret_cast<std::uint8_t*>(coded.points.data()));
+  return coded;
+}
+
+/// The largest distance from a point to the nearest of others.
+double LargestGap(const Points& points, const Points& others) {
+  double largest = 0;
+  for (const Point& point : points) {
+    double nearest = std::numeric_limits<double>::infinity();
+    for (const Point& other : others) nearest = std::min(nearest, Distance(point, other));
+    largest = std::max(largest, nearest);
+  }
+  return largest;
+}
+
+/// In the order of a sensor: ring by ring.
+Points Rings(std::size_t count) {
+  Points points(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    const auto angle = static_cast<float>(i % 100) * 0.0628F;
+    const float radius = 5 + static_cast<float>(i / 100);
+    points[i] = {radius * std::cos(angle), radius * std::sin(angle), -1.5F,
+                 static_cast<float>(i % 256)};
+  }
+  return points;
+}
+
+struct OddCloud {
+  const char* name;
+  Points odd;  // among 500 usual points
+  std::size_t kept;
+};
+void PrintTo(const OddCloud& c, std::ostream* out) { *out << c.name; }
+
+class OddClouds : public ::testing::TestWithParam<std::tuple<OddCloud, unsigned>> {};
+
+TEST_P(OddClouds, ComeBackWithinTheErrorWithoutWhatIsNoPoint) {
+  const auto& [odd, level] = GetParam();
+  Points points = Rings(500);
+  points.insert(points.begin() + 250, odd.odd.begin(), odd.odd.end());
+  SliceSettings settings;
+  settings.level = level;
+  settings.intensity_bits = 5;
+  const Result coded = Coded(points, settings);
+  ASSERT_EQ(coded.result, SliceResult::kEncoded);
+  EXPECT_EQ(coded.points.size(), 500 + odd.kept);
+  EXPECT_EQ(coded.slice.returns, 500 + odd.kept);
+  EXPECT_LE(coded.slice.error_m, settings.max_error_m);
+  Points real;
+  for (const Point& p : points) {
+    const bool zeros = p[0] == 0 && p[1] == 0 && p[2] == 0;
+    if (!zeros && std::isfinite(p[0]) && std::isfinite(p[1]) && std::isfinite(p[2]))
+      real.push_back(p);
+  }
+  EXPECT_LE(LargestGap(real, coded.points), coded.slice.error_m);
+  EXPECT_LE(LargestGap(coded.points, real), coded.slice.error_m);
+  for (const Point& p : coded.points) EXPECT_TRUE(p[3] >= 0 && p[3] <= 255 * 1.001F) << p[3];
+}
+INSTANTIATE_TEST_SUITE_P(
+    All, OddClouds,
+    ::testing::Combine(
+        ::testing::Values(
+            OddCloud{"Nan", {{kNan, 1, 1, 1}, {1, kNan, 1, 1}, {1, 1, kNan, 1}}, 0},
+            OddCloud{"Infinity", {{kInfinity, 1, 1, 1}, {1, -kInfinity, 1, 1}}, 0},
+            OddCloud{"Zeros", Points(100, Point{}), 0},
+            OddCloud{"MinusZeros", Points(3, Point{-0.0F, 0, -0.0F, 9}), 0},
+            OddCloud{"Duplicates", Points(300, Point{7, 7, 7, 7}), 300},
+            OddCloud{"OddIntensity", {{9, 9, 9, kNan}, {8, 8, 8, -5}, {7, 7, 7, -kInfinity}}, 3},
+            OddCloud{"TenKilometres", {{10'000, 0, 0, 1}}, 1}),
+        ::testing::Values(0U, 7U)),
+    [](const auto& c) {
+      return std::string(std::get<0>(c.param).name) + std::to_string(std::get<1>(c.param));
+    });
+
+TEST(XyzSlices, OfASinglePointComeBack) {
+  for (const unsigned level : {0U, 1U, 7U, 10U}) {
+    SliceSettings settings;
+    settings.level = level;
+    const Result coded = Coded({{3, -4, 5, 6}}, settings);
+    ASSERT_EQ(coded.points.size(), 1U) << level;
+    EXPECT_LE(Distance(coded.points[0], {3, -4, 5}), 0.02) << level;
+  }
+}
+
+TEST(XyzSlices, WithoutAnyPointGiveNoStream) {
+  EXPECT_EQ(Coded({}, {}).result, SliceResult::kEmpty);
+  EXPECT_EQ(Coded(Points(50, Point{}), {}).result, SliceResult::kEmpty);
+  EXPECT_EQ(Coded({{kNan, kNan, kNan, 0}}, {}).result, SliceResult::kEmpty);
+}
+
+TEST(XyzSlices, KeepTheErrorWhateverTheStep) {
+  const Points points = Rings(700);
+  for (const double step : {1e-12, 1e-7, 1e-4, 0.03, 1'000.0, 1e30}) {
+    SliceSettings settings;
+    settings.step_m = step;
+    const Result coded = Coded(points, settings);
+    if (coded.result == SliceResult::kOutOfReach) {
+      EXPECT_LT(step, 1e-6) << "what Draco cannot count";
+      continue;
+    }
+    EXPECT_LE(LargestGap(points, coded.points), settings.max_error_m) << step;
+    EXPECT_LE(coded.slice.step_m, step);
+  }
+}
+
+TEST(XyzSlices, ThatNoGridCanHoldAreSaidToBeOutOfReach) {
+  Points points = Rings(10);
+  points.push_back({10'000, 0, 0, 0});
+  SliceSettings settings;
+  settings.max_error_m = 0.0005;  // a float there has steps of a millimetre
+  EXPECT_EQ(Coded(points, settings).result, SliceResult::kOutOfReach);
+  points.back()[0] = 3e38F;
+  EXPECT_EQ(Coded(points, {}).result, SliceResult::kOutOfReach);
+}
+
+TEST(XyzSlices, TakeTheSmallerOfDracosCodersForTheOrderGiven) {
+  Points points(5'000);  // along a line, a cell or two from each to the next
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const auto t = static_cast<float>(i) * 0.02F;
+    points[i] = {t, 3 * std::sin(t), std::cos(t), 0};
+  }
+  std::mt19937 random(1);
+  for (const bool in_order : {true, false}) {
+    if (!in_order) std::shuffle(points.begin(), points.end(), random);
+    const auto size = [&](unsigned level) {
+      SliceSettings settings;
+      settings.level = level;
+      return Coded(points, settings).slice.bytes.size();
+    };
+    EXPECT_EQ(size(7) == size(0), in_order);
+    EXPECT_LE(size(7), size(0));
+  }
+}
+
+template <class T>
+void ExpectAttribute(const ::draco::PointCloud& cloud, ::draco::GeometryAttribute::Type type,
+                     const T& expected) {
+  const auto* attribute = cloud.GetNamedAttribute(type);
+  ASSERT_NE(attribute, nullptr);
+  std::vector<float> values(expected.size());
+  attribute->buffer()->Read(0, values.data(), values.size() * sizeof(float));
+  EXPECT_EQ(values, expected);
+}
+
+TEST(XyzSlices, AreTheFloatsThatDracoItselfDecodes) {
+  Points points = Rings(3'000);
+  std::mt19937 random(2);
+  for (Point& p : points) p[2] += static_cast<float>(random() % 1'000) * 0.01F;
+  for (const unsigned level : {0U, 1U, 4U, 7U}) {
+    SliceSettings settings;
+    settings.level = level;
+    settings.intensity_bits = 5;
+    const auto stream = Coded(points, settings).slice.bytes;
+    XyzCloud cloud;
+    ASSERT_TRUE(DecodeXyz({stream.data(), stream.size()}, kMaxPoints, &cloud));
+    ::draco::DecoderBuffer buffer;
+    buffer.Init(reinterpret_cast<const char*>(stream.data()), stream.size());
+    ::draco::Decoder decoder;
+    const auto draco = decoder.DecodePointCloudFromBuffer(&buffer);
+    ASSERT_TRUE(draco.ok());
+    ExpectAttribute(*draco.value(), ::draco::GeometryAttribute::POSITION, cloud.xyz);
+    ExpectAttribute(*draco.value(), ::draco::GeometryAttribute::GENERIC, cloud.intensity);
+  }
+}
+
+/// There and back through range geometry; the ranges of the result.
+std::vector<std::uint32_t> CodedRanges(const RangeImage& image, unsigned threads) {
+  const SensorModel model = test::RoomSensor(image.beams);
+  const CloudFormat format{test::OrganisedLayout(), image.beams, model};
+  const auto raw = test::RawCloud(model, image);
+  auto encoder = *SliceEncoder::Create(format, Geometry::kRange);
+  encoder.set_threads(threads);
+  encoder.Load({raw.data(), raw.size()}, image.first_column, true);
+  EncodedSlice slice;
+  SliceSettings settings;
+  settings.intensity_bits = 5;
+  std::vector<std::uint32_t> ranges;
+  SliceDecoder decoder(format, Geometry::kRange, kMaxPoints);
+  // Twice: what a slice leaves behind in the encoder must not reach into the next.
+  for (int i = 0; i < 2; ++i) {
+    EXPECT_EQ(encoder.Encode(settings, &slice), SliceResult::kEncoded);
+    const auto shape = decoder.Decode({slice.bytes.data(), slice.bytes.size()});
+    EXPECT_TRUE(shape && shape->width == image.columns && shape->height == image.beams);
+    if (!shape) return {};
+    std::vector<std::uint8_t> back(image.size() * 20);
+    decoder.Write(back.data());
+    ranges.resize(image.size());
+    for (std::size_t k = 0; k < ranges.size(); ++k)
+      std::memcpy(&ranges[k], &back[20 * k + 16], sizeof ranges[k]);
+  }
+  return ranges;
+}
+
+TEST(RangeSlices, WithoutAnyReturnComeBackAsSuch) {
+  RangeImage image = test::RoomScan(test::RoomSensor(), 64, 64);
+  std::fill(image.ranges.begin(), image.ranges.end(), 0U);
+  EXPECT_EQ(CodedRanges(image, 1), image.ranges);
+}
+
+TEST(RangeSlices, KeepTheErrorOfASingleReturnAtAnyDistanceUpTo268Kilometres) {
+  for (const std::uint32_t range : {1U, 19U, 5'000U, 10'000'000U, RangeGrid::kMaxRangeMm}) {
+    RangeImage image = test::RoomScan(test::RoomSensor(), 64, 64);
+    std::fill(image.ranges.begin(), image.ranges.end(), 0U);
+    image.ranges[777] = range;
+    const auto back = CodedRanges(image, 1);
+    ASSERT_EQ(back.size(), image.size());
+    EXPECT_NEAR(back[777], range, 20);
+    EXPECT_EQ(std::count(back.begin(), back.end(), 0U), 64 * 32 - 1);
+  }
+}
+
+TEST(RangeSlices, KeepTheErrorNextToAReturnAtTenKilometres) {
+  RangeImage image = test::RoomScan(test::RoomSensor(), 64, 64);
+  image.ranges[777] = 10'000'000;
+  const auto back = CodedRanges(image, 1);
+  ASSERT_EQ(back.size(), image.size());
+  for (std::size_t i = 0; i < back.size(); ++i) {
+    ASSERT_NEAR(back[i], image.ranges[i], 20) << i;
+    ASSERT_EQ(back[i] == 0, image.ranges[i] == 0) << i;
+  }
+}
+
+TEST(RangeSlices, AreTheSameCloudFromAnyNumberOfThreads) {
+  const RangeImage image = test::RoomScan(test::RoomSensor(128), 100);
+  const auto one = CodedRanges(image, 1);
+  for (const unsigned threads : {2U, 3U, 64U}) EXPECT_EQ(CodedRanges(image, threads), one);
+}
+
+}  // namespace
+}  // namespace lidar::codec
