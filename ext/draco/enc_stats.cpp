@@ -20,7 +20,7 @@ void EncStats::CloseScan() {
   scan_was_skipped_ = false;
 }
 
-void EncStats::OnSlice(const LoopResult& result, const codec::EncodedSlice& slice,
+void EncStats::OnSlice(const rate::LoopResult& result, const codec::EncodedSlice& slice,
                        GstClockTime encode_time) {
   if (result.skipped) {
     ++slices_skipped_;
@@ -28,9 +28,9 @@ void EncStats::OnSlice(const LoopResult& result, const codec::EncodedSlice& slic
     scan_was_skipped_ = true;
     return;
   }
-  if (result.result == codec::SliceResult::kEmpty) ++slices_empty_;
-  if (result.result == codec::SliceResult::kOutOfReach) ++out_of_reach_;
-  if (result.result != codec::SliceResult::kEncoded) return;
+  if (result.result == rate::CodingResult::kEmpty) ++slices_empty_;
+  if (result.result == rate::CodingResult::kOutOfReach) ++out_of_reach_;
+  if (result.result != rate::CodingResult::kEncoded) return;
   if (!scan_has_slices_) ++scans_encoded_;
   scan_has_slices_ = true;
   ++slices_;

@@ -6,15 +6,15 @@
 #include <cstdint>
 
 #include "ext/draco/enc_error_check.h"
-#include "ext/draco/rate_loop.h"
 #include "src/codec/slice_encoder.h"
+#include "src/rate/rate_loop.h"
 
 namespace lidar::gst {
 
 class EncStats {
  public:
   void OnScan(double scans_per_second);
-  void OnSlice(const LoopResult& result, const codec::EncodedSlice& slice,
+  void OnSlice(const rate::LoopResult& result, const codec::EncodedSlice& slice,
                GstClockTime encode_time);
   /// `holds`: the errors are within max-error.
   void OnErrorCheck(const PointErrors& errors, bool holds);
@@ -37,7 +37,7 @@ class EncStats {
   GstClockTime encode_time_ = 0;
   GstClockTime last_encode_time_ = 0;
   codec::EncodedSlice last_;  // without its bytes
-  LoopResult last_result_;
+  rate::LoopResult last_result_;
   bool scan_has_slices_ = false;
   bool scan_was_skipped_ = false;
   guint64 scan_bytes_ = 0;

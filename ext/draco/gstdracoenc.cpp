@@ -14,16 +14,17 @@
 #include <mutex>
 #include <optional>
 
+#include "ext/draco/enc_coder.h"
 #include "ext/draco/enc_error_report.h"
 #include "ext/draco/enc_model.h"
 #include "ext/draco/enc_range_check.h"
 #include "ext/draco/enc_settings.h"
 #include "ext/draco/enc_stats.h"
 #include "ext/draco/encoded_caps.h"
-#include "ext/draco/rate_loop.h"
 #include "gst/common/buffer_map.h"
 #include "gst/common/cloud_info.h"
 #include "gst/common/refs.h"
+#include "src/rate/rate_loop.h"
 
 GST_DEBUG_CATEGORY_STATIC(gst_lidar_draco_enc_debug);
 #define GST_CAT_DEFAULT gst_lidar_draco_enc_debug
@@ -33,7 +34,7 @@ namespace {
 using lidar::DataRate;
 using lidar::codec::Geometry;
 using lidar::codec::RangeCoder;
-using lidar::codec::SliceResult;
+using lidar::rate::CodingResult;
 using Settings = lidar::gst::EncSettings;
 using lidar::rate::DegradationPreference;
 
@@ -44,7 +45,7 @@ constexpr guint kPropStats = kPropMinBitrate + 1;
 struct Stream {
   lidar::gst::CloudInfo info;
   std::optional<lidar::codec::SliceEncoder> encoder;
-  std::unique_ptr<lidar::gst::RateLoop> loop;
+  std::unique_ptr<lidar::rate::RateLoop> loop;
   lidar::codec::EncodedSlice slice;
   std::optional<lidar::gst::RangeCheck> range_check;
   std::optional<lidar::gst::ErrorReport> error_report;
@@ -134,7 +135,7 @@ gboolean SetCaps(GstLidarDracoEnc* self, GstCaps* caps) {
   if (!stream.loop) {
     auto model = lidar::gst::LoadModel(GST_ELEMENT(self), settings);
     if (!model) return FALSE;
-    stream.loop = std::make_unique<lidar::gst::RateLoop>(std::move(model));
+    stream.loop = std::make_unique<lidar::rate::RateLoop>(std::move(model));
   }
   const lidar::gst::CapsPtr encoded(EncodedCaps(stream, settings));
   const lidar::gst::CapsPtr current(gst_pad_get_current_caps(self->src));
@@ -174,10 +175,10 @@ gboolean SrcEvent(GstPad* pad, GstObject* parent, GstEvent* event) {
 }
 
 /// The place of `buffer` in its stream; counts the scan that it starts.
-lidar::gst::SlicePlace PlaceOf(GstLidarDracoEnc* self, GstBuffer* buffer, GstLidarSlice* slice) {
+lidar::rate::SlicePlace PlaceOf(GstLidarDracoEnc* self, GstBuffer* buffer, GstLidarSlice* slice) {
   Stream& stream = self->state->stream;
   if (!gst_lidar_buffer_get_slice(buffer, slice)) slice->scan_id = stream.scans_without_meta++;
-  lidar::gst::SlicePlace place{slice->scan_id, slice->slice_index, slice->slice_count, 10};
+  lidar::rate::SlicePlace place{slice->scan_id, slice->slice_index, slice->slice_count, 10};
   if (stream.info.framerate_n > 0) {
     place.scans_per_second = static_cast<double>(stream.info.framerate_n) / stream.info.framerate_d;
   }
@@ -206,20 +207,23 @@ void PushBounds(GstLidarDracoEnc* self) {
   gst_pad_push_event(self->src, gst_lidar_event_new_bitrate_bounds(&event));
 }
 
-lidar::gst::LoopResult EncodeLoaded(GstLidarDracoEnc* self, const lidar::gst::SlicePlace& place) {
+lidar::rate::LoopResult EncodeLoaded(GstLidarDracoEnc* self, const lidar::rate::SlicePlace& place) {
   State& state = *self->state;
-  lidar::gst::LoopSettings loop;
+  lidar::rate::LoopSettings loop;
   std::optional<DataRate> target;
+  unsigned level = 0;
   {
     std::lock_guard lock(state.mutex);
     const Settings& s = state.settings;
-    loop = {s.max_error_m, s.step_m, s.level, s.intensity_bits,
+    level = s.level;
+    loop = {s.max_error_m, s.step_m, s.intensity_bits,
             static_cast<DegradationPreference>(s.degradation)};
     if (const guint bps = EffectiveBitrate(state); bps > 0) target = DataRate::BitsPerSecond(bps);
   }
   const gint64 start_us = g_get_monotonic_time();
   Stream& stream = state.stream;
-  const auto result = stream.loop->Encode(place, loop, target, &*stream.encoder, &stream.slice);
+  lidar::gst::EncCoder coder(&*stream.encoder, level, &stream.slice);
+  const auto result = stream.loop->Encode(place, loop, target, &coder);
   const auto time = static_cast<GstClockTime>(g_get_monotonic_time() - start_us) * GST_USECOND;
   std::lock_guard lock(state.mutex);
   state.stats.OnSlice(result, stream.slice, time);
@@ -265,7 +269,7 @@ void CheckRanges(GstLidarDracoEnc* self, lidar::ByteView raw, guint first_column
 }
 
 void CheckErrors(GstLidarDracoEnc* self, GstBuffer* input, const GstLidarSlice& place,
-                 const lidar::gst::LoopResult& result) {
+                 const lidar::rate::LoopResult& result) {
   State& state = *self->state;
   Stream& stream = state.stream;
   const lidar::gst::CheckedSlice checked{place.scan_id, place.slice_index, result.max_error_m,
@@ -307,7 +311,7 @@ GstFlowReturn Chain(GstPad*, GstObject* parent, GstBuffer* buffer) {
   const auto place = PlaceOf(self, buffer, &slice);
   if (!LoadBuffer(self, buffer, slice.first_column)) return GST_FLOW_ERROR;
   const auto result = EncodeLoaded(self, place);
-  if (!result.skipped && result.result == SliceResult::kOutOfReach && !stream.warned_of_reach) {
+  if (!result.skipped && result.result == CodingResult::kOutOfReach && !stream.warned_of_reach) {
     stream.warned_of_reach = true;
     GST_ELEMENT_WARNING(
         self, STREAM, ENCODE,
@@ -315,7 +319,7 @@ GstFlowReturn Chain(GstPad*, GstObject* parent, GstBuffer* buffer) {
          "the cloud."),
         ("the longest side of its box is %f m", stream.encoder->extent_m()));
   }
-  if (result.skipped || result.result != SliceResult::kEncoded) return PushGap(self, buffer);
+  if (result.skipped || result.result != CodingResult::kEncoded) return PushGap(self, buffer);
   CheckErrors(self, buffer, slice, result);
   return PushSlice(self, buffer);
 }

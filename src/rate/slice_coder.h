@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// What the rate loop asks of a coder: one loaded slice, coded at one step, as often as wanted.
+#pragma once
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "src/rate/size_model.h"
+
+namespace lidar::rate {
+
+/// What a coder has loaded.
+struct LoadedSlice {
+  std::size_t returns = 0;     // points that would be coded if none were thinned
+  double extent_m = 0;         // longest side of the points' box, or the longest range
+  std::size_t rows = 0;        // beams or points that Thin() chooses from; 0: it cannot thin
+  bool has_intensity = false;  // intensities are there, and wanted
+  unsigned level = 0;          // highest compression level; only some rate models lower it
+  std::string mode;            // SliceFeatures::mode
+};
+
+/// The grids that keep to an error.
+struct StepRange {
+  double finest_step_m = 0.001;   // a finer one codes digits that nobody has
+  double coarsest_step_m = 0.04;  // no point moves farther than the error that was asked for
+  double step_unit_m = 0;         // steps are finest_step_m and any number of these; 0: any step
+};
+
+struct CodedSlice {
+  std::size_t bytes = 0;
+  std::size_t returns = 0;
+  double step_m = 0;   // really used
+  double error_m = 0;  // bound that holds with this step
+};
+
+enum class CodingResult {
+  kEncoded,
+  kEmpty,       // there is nothing that this coder could encode
+  kOutOfReach,  // no grid of this coder keeps to the error
+};
+
+/// One stream. The coder keeps the bytes; the loop wants to know only how many they are.
+class SliceCoder {
+ public:
+  virtual ~SliceCoder() = default;
+
+  virtual LoadedSlice loaded() const = 0;
+  /// For what is loaded. The coarsest step may be below the finest where the error is.
+  virtual StepRange Steps(double max_error_m) const = 0;
+  /// Forgets all rows but those whose element of `kept`, which has loaded().rows, is true.
+  virtual void Thin(const std::vector<bool>& kept) = 0;
+  /// Encodes what is loaded, in place of an encoding before. The step is a wish; the bound
+  /// `max_error_m` holds whatever the step.
+  virtual CodingResult Encode(double max_error_m, const Settings& settings, CodedSlice* slice) = 0;
+};
+
+}  // namespace lidar::rate
