@@ -1,0 +1,141 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Every path and program that the docs or a comment name is there; every element has its page."""
+import json
+import pathlib
+import re
+import subprocess
+import sys
+
+TOPS = r"(?:\.ci|src|gst|ext|tests|docs|pipelines)"
+PATH = re.compile(r"(?<![\w/.<>{}*$-])(" + TOPS + r"/[\w./*<>{},@$-]*)")
+BUILT = re.compile(r"(?<![\w/.-])build(?:-asan|-tsan|-fuzz)?/(" + TOPS + r"/[\w./-]+)")
+FILE = re.compile(r"[\w-]+\.(?:md|h|cpp|sh|py)")
+PROGRAM = re.compile(r"(?:lidar|ouster|scream)-[a-z][a-z-]*(?![\w.=-])")
+OPEN = re.compile(r"[<>{}*$]")  # a pattern, not a name
+INSTALLED = "gst/lidar/"  # where gst/common's headers are after installation
+SOURCES = (".h", ".cpp", ".sh", ".py", ".build")
+
+
+def tree(root):
+    """The files that belong to the tree: those of git, or of the folder where there is no git."""
+    listed = subprocess.run(
+        ["git", "-C", root, "ls-files", "-co", "--exclude-standard"], capture_output=True, text=True
+    )
+    if listed.returncode == 0:
+        return [f for f in listed.stdout.splitlines() if (root / f).exists()]
+    return [f.relative_to(root).as_posix() for f in root.rglob("*") if f.is_file()]
+
+
+def programs(root, files):
+    """Patterns of the names of what meson builds to be run; what a loop fills in is open."""
+    found = []
+    for file in files:
+        if file.endswith("meson.build"):
+            for call in re.findall(
+                r"(?:executable|library|shared_module)\(([^,]+),", (root / file).read_text()
+            ):
+                parts = re.findall(r"'([^']*)'|(\+ *\w+)", call)
+                name = "".join(re.escape(text) if text else ".*" for text, _ in parts)
+                found.append(re.compile(re.sub(r"@\\?\d\\?@", ".*", name) + "$"))
+    return found
+
+
+def code_of(page):
+    """(line number, text) of everything that is set as code."""
+    fenced = False
+    text = page.splitlines()
+    for number, line in enumerate(text, 1):
+        if line.lstrip().startswith("```"):
+            fenced = not fenced
+        elif fenced or line.startswith("    "):
+            yield number, line, False
+        else:
+            for span in re.findall(r"`([^`]+)`", line):
+                yield number, span, True
+
+
+class Checker:
+    def __init__(self, root):
+        self.root = root
+        self.files = tree(root)
+        self.names = {pathlib.PurePath(f).name for f in self.files}
+        self.programs = programs(root, self.files)
+        # Properties and messages, which look like programs.
+        self.strings = {
+            s
+            for f in self.files
+            if f.endswith((".h", ".cpp"))
+            for s in re.findall(r'"([a-z-]+)"', (root / f).read_text())
+        }
+        self.problems = []
+
+    def path(self, where, path):
+        path = path.rstrip(".,")
+        if OPEN.search(path) or path.startswith(INSTALLED):
+            return
+        if not (self.root / path).exists() and not self.is_built(path):
+            self.problems.append(f"{where}: there is no {path}")
+
+    def is_built(self, path):
+        folder, _, name = path.rpartition("/")
+        while folder and not (self.root / folder / "meson.build").exists():
+            folder = folder.rpartition("/")[0]
+        return bool(folder) and self.is_program(name)
+
+    def is_program(self, name):
+        return any(program.match(name) for program in self.programs)
+
+    def code(self, where, code, inline):
+        for match in BUILT.finditer(code):
+            if not self.is_built(match.group(1)):
+                self.problems.append(f"{where}: nothing builds {match.group(1)}")
+        for match in PATH.finditer(BUILT.sub("", code)):
+            self.path(where, match.group(1))
+        word = code.split()[0] if code.split() else ""
+        if inline and FILE.fullmatch(word) and word not in self.names:
+            self.problems.append(f"{where}: no file is called {word}")
+        if PROGRAM.fullmatch(word) and not self.is_program(word) and word not in self.strings:
+            self.problems.append(f"{where}: no program is called {word}")
+
+    def pages(self):
+        for file in self.files:
+            if file.endswith(".md"):
+                for number, code, inline in code_of((self.root / file).read_text()):
+                    self.code(f"{file}:{number}", code, inline)
+
+    def comments(self):
+        for file in self.files:
+            if not file.endswith(SOURCES) or file.startswith("tests/lint/"):
+                continue
+            for number, line in enumerate((self.root / file).read_text().splitlines(), 1):
+                comment = re.search(r"(?://|#(?!include)|\*)\s(.*)", line)
+                for path in re.findall(
+                    TOPS + r"/[\w./-]+\.(?:md|sh|py|json|h|cpp)\b",
+                    comment.group(1) if comment else "",
+                ):
+                    self.path(f"{file}:{number}", path)
+
+    def elements(self):
+        cache = json.loads((self.root / "docs/plugins_cache.json").read_text())
+        elements = {name for plugin in cache.values() for name in plugin.get("elements", {})}
+        pages = {page.stem for page in (self.root / "docs/elements").glob("*.md")}
+        self.problems += [
+            f"docs/elements/{e}.md: element {e} has no page" for e in sorted(elements - pages)
+        ]
+        self.problems += [
+            f"docs/elements/{p}.md: there is no element {p}" for p in sorted(pages - elements)
+        ]
+
+
+def check(root):
+    checker = Checker(root)
+    checker.pages()
+    checker.comments()
+    checker.elements()
+    return checker.problems
+
+
+if __name__ == "__main__":
+    found = check(pathlib.Path(sys.argv[1]).resolve())
+    sys.exit("\n".join(found) or 0)

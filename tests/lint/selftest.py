@@ -1,0 +1,191 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Each rule of this folder finds what is planted in a small tree, and nothing in a sound one."""
+import pathlib
+import subprocess
+import sys
+import tempfile
+
+HERE = pathlib.Path(__file__).resolve().parent
+RULES = {
+    "dependencies": [sys.executable, HERE / "dependencies.py"],
+    "paths": [sys.executable, HERE / "paths.py"],
+    "links": [HERE / "links.sh"],
+    "widths": [HERE / "widths.sh"],
+}
+
+SOUND = {
+    "docs/architecture.md": """
+| folder | what | may use | libraries |
+|---|---|---|---|
+| `src/base` | units | – | liblzma |
+| `src/cloud` | clouds | base | – |
+| `src/tools/*` | programs | src, `gst/common`, `src/tools/common` | all |
+| `gst/common` | metas | base | GStreamer |
+| `gst/net` | sockets | – | GStreamer, POSIX |
+| `gst/*` | plugins | src, `gst/common`, `gst/net` | GStreamer |
+| `ext/draco` | Draco | src, `gst/common` | GStreamer, Draco |
+| `tests` | tests | all | all |
+
+See `src/base/units.h`, `units.h`, `gst/*`, `gst<name>.cpp`, `lidar-eval --help` and `lidar-port`.
+
+    build/src/tools/eval/lidar-eval > out.csv
+""",
+    "docs/elements/alpha.md": "# alpha\n",
+    "docs/plugins_cache.json": '{"one": {"elements": {"alpha": {}}}}',
+    "README.md": "See [the layout](docs/architecture.md).\n",
+    "src/base/units.h": "#include <lzma.h>\n#include <vector>\n",
+    "src/cloud/cloud.h": '#include "src/base/units.h"\n#include "src/cloud/cloud.h"\n',
+    "src/tools/common/loop.cpp": "#include <sys/epoll.h>\nauto now = steady_clock::now();\n",
+    "src/tools/eval/meson.build": "executable('lidar-eval', 'main.cpp')\n",
+    "src/tools/eval/main.cpp": '#include "src/cloud/cloud.h"\n#include "src/tools/common/loop.h"\n',
+    "gst/common/meta.h": '#include <gst/gst.h>\n#include "src/base/units.h"\n',
+    "gst/net/socket.h": "#include <sys/socket.h>\n",
+    "gst/alpha/alpha.cpp": """
+#include "gst/common/meta.h"
+#include "gst/net/socket.h"
+const char* kPort = "lidar-port";
+""",
+    "ext/draco/draco.cpp": '#include <draco/draco.h>\n#include "gst/common/meta.h"\n',
+    "tests/core/test.cpp": '#include "ext/draco/draco.h"\n#include "src/tools/eval/main.h"\n',
+}
+
+# Rule, file, what it then has, what the rule must say of it.
+PLANTED = [
+    (
+        "dependencies",
+        "src/base/a.h",
+        '#include "src/cloud/cloud.h"',
+        "src/base must not use src/cloud/cloud.h",
+    ),
+    (
+        "dependencies",
+        "src/cloud/a.h",
+        '#include "gst/common/meta.h"',
+        "src/cloud must not use gst/common",
+    ),
+    (
+        "dependencies",
+        "src/cloud/a.h",
+        '#include "src/tools/common/loop.h"',
+        "src/cloud must not use src/tools",
+    ),
+    ("dependencies", "src/cloud/a.h", "#include <gst/gst.h>", "must not use GStreamer"),
+    ("dependencies", "src/cloud/a.h", "#include <glib.h>", "must not use GStreamer"),
+    ("dependencies", "src/cloud/a.h", "#include <sys/socket.h>", "must not use POSIX"),
+    ("dependencies", "src/cloud/a.h", "#include <mutex>", "must not use threads"),
+    ("dependencies", "src/cloud/a.h", "#include <nlohmann/json.hpp>", "must not use nlohmann_json"),
+    (
+        "dependencies",
+        "src/cloud/a.h",
+        "#include <boost/asio.hpp>",
+        "must not use a library that the table does not name",
+    ),
+    (
+        "dependencies",
+        "src/cloud/a.h",
+        "auto t = std::chrono::steady_clock::now();",
+        "must not use steady_clock",
+    ),
+    ("dependencies", "src/cloud/a.h", 'std::cerr << "x";', "must not use cerr"),
+    ("dependencies", "src/cloud/a.h", '#include "cloud.h"', "from the root of the tree"),
+    ("dependencies", "src/stray/a.h", "", "no row of docs/architecture.md"),
+    (
+        "dependencies",
+        "src/tools/eval/a.h",
+        '#include "src/tools/bench/b.h"',
+        "src/tools/* must not use src/tools/bench",
+    ),
+    (
+        "dependencies",
+        "gst/common/a.h",
+        '#include "src/cloud/cloud.h"',
+        "gst/common must not use src/cloud",
+    ),
+    (
+        "dependencies",
+        "gst/common/a.h",
+        '#include "gst/net/socket.h"',
+        "gst/common must not use gst/net",
+    ),
+    ("dependencies", "gst/alpha/a.h", '#include "gst/beta/b.h"', "gst/* must not use gst/beta"),
+    ("dependencies", "gst/alpha/a.h", '#include "ext/draco/d.h"', "gst/* must not use ext/draco"),
+    (
+        "dependencies",
+        "gst/alpha/a.h",
+        '#include "src/tools/common/loop.h"',
+        "gst/* must not use src/tools",
+    ),
+    ("dependencies", "gst/alpha/a.h", '#include "tests/core/a.h"', "gst/* must not use tests"),
+    ("dependencies", "gst/alpha/a.h", "#include <draco/draco.h>", "must not use Draco"),
+    (
+        "dependencies",
+        "ext/draco/a.h",
+        '#include "ext/ouster/o.h"',
+        "ext/draco must not use ext/ouster",
+    ),
+    ("dependencies", "ext/draco/a.h", "#include <curl/curl.h>", "must not use libcurl"),
+    (
+        "dependencies",
+        "src/cloud/cloud.h",
+        "",
+        "src/cloud does not use src/base: take it out",
+    ),
+    ("paths", "docs/a.md", "`src/cloud/gone.h`", "there is no src/cloud/gone.h"),
+    ("paths", "docs/a.md", "See `src/gone`.", "there is no src/gone"),
+    ("paths", "docs/a.md", "`gone.cpp`", "no file is called gone.cpp"),
+    ("paths", "docs/a.md", "    pipelines/gone.sh --help", "there is no pipelines/gone.sh"),
+    ("paths", "docs/a.md", "```\nlidar-gone --help\n```", "no program is called lidar-gone"),
+    ("paths", "docs/a.md", "`lidar-gone`", "no program is called lidar-gone"),
+    (
+        "paths",
+        "docs/a.md",
+        "    build/src/tools/eval/lidar-gone",
+        "nothing builds src/tools/eval/lidar-gone",
+    ),
+    ("paths", "src/base/a.h", "// See docs/gone.md.", "there is no docs/gone.md"),
+    ("paths", "docs/elements/beta.md", "# beta", "there is no element beta"),
+    (
+        "paths",
+        "docs/plugins_cache.json",
+        '{"one": {"elements": {"alpha": {}, "beta": {}}}}',
+        "element beta has no page",
+    ),
+    ("links", "README.md", "[gone](docs/gone.md)", "no such file: docs/gone.md"),
+    ("widths", "docs/a.md", "word " * 21, "docs/a.md:1: wider"),
+    ("widths", "tests/data/a.md", "word " * 21, "tests/data/a.md:1: wider"),
+]
+
+
+def run(rule, tree):
+    result = subprocess.run([*RULES[rule], tree], capture_output=True, text=True)
+    return result.returncode, result.stdout + result.stderr
+
+
+def plant(tree, files):
+    for name, text in files.items():
+        path = pathlib.Path(tree) / name
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_text(text + "\n")
+
+
+def main():
+    failed = []
+    with tempfile.TemporaryDirectory() as tree:
+        plant(tree, SOUND)
+        for rule in RULES:
+            code, said = run(rule, tree)
+            if code:
+                failed.append(f"{rule} finds fault with a sound tree:\n{said}")
+    for rule, name, text, expected in PLANTED:
+        with tempfile.TemporaryDirectory() as tree:
+            plant(tree, {**SOUND, name: text})
+            code, said = run(rule, tree)
+            if code == 0 or expected not in said:
+                failed.append(f"{rule} does not see {text!r} in {name}: {said}")
+    print("\n".join(failed) or f"{len(PLANTED)} planted violations were found")
+    return 1 if failed else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
