@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "src/link/oracle.h"
+
+#include <algorithm>
+#include <cmath>
+#include <deque>
+
+namespace lidar::link {
+namespace {
+
+constexpr Duration kStep = std::chrono::microseconds{500};
+
+class Sender {
+ public:
+  explicit Sender(const OracleConfig& config)
+      : config_(config),
+        period_(1 / (config.scans_per_second * config.slices_per_scan)),
+        bits_(config.rate.bits_per_second() * period_),
+        scans_(static_cast<std::size_t>(
+            std::ceil(Seconds(config.duration) * config.scans_per_second) + 1)) {}
+
+  void Step(double now, double bits) {
+    if (now >= static_cast<double>(made_) * period_) {
+      queue_.push_back({made_ / config_.slices_per_scan, made_ % config_.slices_per_scan == 0,
+                        static_cast<double>(made_) * period_, bits_});
+      ++made_;
+    }
+    while (!queue_.empty() && bits > 0) {
+      Slice& head = queue_.front();
+      if (!IsWanted(head, now)) {
+        queue_.pop_front();
+        continue;
+      }
+      const double sent = std::min(bits, head.bits_left);
+      head.bits_left -= sent;
+      bits -= sent;
+      if (head.bits_left <= kRounding) Arrive(now);
+    }
+  }
+
+  OracleResult Finish() {
+    result_.scans =
+        static_cast<std::uint64_t>(Seconds(config_.duration) * config_.scans_per_second);
+    for (const Scan& scan : scans_) result_.complete += scan.arrived == config_.slices_per_scan;
+    std::sort(result_.latency_ms.begin(), result_.latency_ms.end());
+    return std::move(result_);
+  }
+
+ private:
+  static constexpr double kRounding = 1e-6;  // bits
+  struct Slice {
+    std::uint64_t scan = 0;
+    bool first = false;
+    double captured = 0;
+    double bits_left = 0;
+  };
+  struct Scan {
+    std::uint32_t arrived = 0;
+    bool dropped = false;
+  };
+
+  /// Decided as a scan's first bit would leave; what has begun to leave is finished.
+  bool IsWanted(const Slice& slice, double now) {
+    Scan& scan = scans_[slice.scan];
+    const bool begins = slice.first && slice.bits_left >= bits_;
+    if (begins && now - slice.captured > Seconds(config_.max_age) &&
+        queue_.size() > config_.slices_per_scan)
+      scan.dropped = true;
+    return !scan.dropped;
+  }
+
+  void Arrive(double now) {
+    const Slice& head = queue_.front();
+    ++scans_[head.scan].arrived;
+    result_.latency_ms.push_back((now - head.captured) * 1e3 + Milliseconds(config_.rtt) / 2);
+    queue_.pop_front();
+  }
+
+  OracleConfig config_;
+  double period_;  // of the slices [s]
+  double bits_;    // of a slice
+  std::vector<Scan> scans_;
+  std::deque<Slice> queue_;
+  std::uint64_t made_ = 0;
+  OracleResult result_;
+};
+
+}  // namespace
+
+double OracleResult::Latency(double percent) const {
+  if (latency_ms.empty()) return 0;
+  const auto index =
+      static_cast<std::size_t>(percent / 100 * static_cast<double>(latency_ms.size()));
+  return latency_ms[std::min(index, latency_ms.size() - 1)];
+}
+
+OracleResult AskOracle(const Capacity& capacity, const OracleConfig& config) {
+  if (!(config.rate > DataRate{}) || !(config.scans_per_second > 0) || config.slices_per_scan == 0)
+    return {};
+  Sender sender(config);
+  for (Duration t{0}; t < config.duration; t += kStep)
+    sender.Step(Seconds(t), capacity.RateAt(t).bits_per_second() * config.share * Seconds(kStep));
+  return sender.Finish();
+}
+
+}  // namespace lidar::link

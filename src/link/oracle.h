@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// What a sender that knew a link in advance could deliver over it: the bound for every real one.
+#pragma once
+#include <cstdint>
+#include <vector>
+
+#include "src/base/time.h"
+#include "src/base/units.h"
+#include "src/link/capacity.h"
+
+namespace lidar::link {
+
+/// Scans of equal slices at an even pace.
+struct OracleConfig {
+  DataRate rate;  // of all slices, headers included
+  Duration duration = std::chrono::seconds{60};
+  double share = 1;  // of the capacity
+  /// A scan whose first slice has waited longer is dropped whole, but for the newest one.
+  Duration max_age = std::chrono::milliseconds{200};
+  Duration rtt = std::chrono::milliseconds{40};
+  std::uint32_t slices_per_scan = 8;
+  double scans_per_second = 10;
+};
+
+struct OracleResult {
+  std::uint64_t scans = 0;
+  std::uint64_t complete = 0;
+  std::vector<double> latency_ms;  // of the slices that arrive, sorted; propagation included
+
+  double Latency(double percent) const;
+};
+
+OracleResult AskOracle(const Capacity& capacity, const OracleConfig& config);
+
+}  // namespace lidar::link

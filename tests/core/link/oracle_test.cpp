@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "src/link/oracle.h"
+
+#include <gtest/gtest.h>
+
+#include "src/link/trace_maker.h"
+
+namespace lidar::link {
+namespace {
+using namespace std::chrono_literals;
+
+DataRate Mbps(double m) { return DataRate::BitsPerSecond(m * 1e6); }
+
+OracleResult Ask(const std::string& trace, double mbps) {
+  std::string error;
+  OracleConfig config;
+  config.rate = Mbps(mbps);
+  return AskOracle(*Capacity::ParseTrace(trace, true, &error), config);
+}
+
+TEST(Oracle, DeliversEveryScanOverALinkThatCarriesThem) {
+  const OracleResult r = Ask("0 8\n1 8\n", 1.4);
+  EXPECT_EQ(r.scans, 600U);
+  EXPECT_EQ(r.complete, 600U);
+  EXPECT_NEAR(r.Latency(50), 20 + 2.2, 0.5) << "half the round trip and 17.5 kbit at 8 Mbit/s";
+}
+
+TEST(Oracle, DeliversTheShareThatFits) {
+  const OracleResult r = Ask("0 1\n1 1\n", 2);
+  EXPECT_NEAR(static_cast<double>(r.complete), 300, 5);
+  EXPECT_LE(r.latency_ms.back(), 500);
+}
+
+TEST(Oracle, LosesTheScansOfAGapThatIsLongerThanTheyKeep) {
+  GapTraceConfig gaps;
+  gaps.gap = 1s;
+  gaps.every = 10s;
+  const OracleResult r = Ask(MakeGapTrace(gaps), 1.4);
+  EXPECT_NEAR(static_cast<double>(r.complete), 556, 6);
+  EXPECT_NEAR(r.Latency(50), 22, 0.5);
+  gaps.gap = 100ms;
+  gaps.every = 2s;
+  EXPECT_NEAR(static_cast<double>(Ask(MakeGapTrace(gaps), 1.4).complete), 599, 1);
+}
+
+TEST(Oracle, AskedForNothingDeliversNothing) {
+  EXPECT_EQ(AskOracle(Capacity::Constant(Mbps(8)), {}).complete, 0U);
+  OracleConfig config;
+  config.rate = Mbps(1);
+  EXPECT_EQ(AskOracle(Capacity::Constant(Mbps(0)), config).complete, 0U);
+  EXPECT_EQ(AskOracle(Capacity::Constant(DataRate::Infinite()), config).complete, 600U);
+}
+
+}  // namespace
+}  // namespace lidar::link
