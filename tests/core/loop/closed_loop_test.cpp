@@ -32,8 +32,8 @@ class Encoder {
         codec_(CodecOf(slices)),
         controller_(Limits(), rate::MakeBuiltInModel(rate::RateModel::kAdaptive)) {}
 
-  /// Bytes on the wire of the next slice.
-  DataSize Next(DataRate wire) {
+  /// The next slice.
+  scream::test::EncodedFrame Next(DataRate wire) {
     controller_.SetTarget(wire * kPayloadShare);
     const auto features = codec_.Features(scan_, slice_);
     const rate::Decision decision = controller_.NextSlice(features);
@@ -47,8 +47,8 @@ class Encoder {
     }
     slice_ = (slice_ + 1) % slices_;
     if (slice_ == 0) ++scan_;
-    return DataSize::Bytes(
-        static_cast<std::int64_t>(static_cast<double>(encoded.size.bytes()) / kPayloadShare));
+    const double bytes = static_cast<double>(encoded.size.bytes()) / kPayloadShare;
+    return {DataSize::Bytes(static_cast<std::int64_t>(bytes)), std::nullopt};
   }
 
  private:

@@ -11,6 +11,16 @@ constexpr std::int64_t kMinPacket = 60;
 constexpr std::int64_t kIpUdp = 28;
 constexpr std::uint32_t kEpochOfRestart = 0x89ABCDEF;
 
+/// The stream as screamtx configures it for an encoder's bounds.
+StreamConfig WithBounds(StreamConfig stream, const EncoderBounds& bounds) {
+  if (bounds.max > DataRate{}) stream.max_bitrate = std::min(stream.max_bitrate, bounds.max);
+  stream.min_bitrate = std::min(stream.min_bitrate, stream.max_bitrate);
+  stream.needed_bitrate = std::clamp(bounds.min, stream.min_bitrate, stream.max_bitrate);
+  stream.start_bitrate =
+      std::clamp(stream.start_bitrate, stream.needed_bitrate, stream.max_bitrate);
+  return stream;
+}
+
 /// True once, from `at` on.
 bool Due(Duration since_start, Duration* at) {
   if (since_start <= *at) return false;
@@ -37,10 +47,13 @@ void Flow::StartSender() {
   for (std::size_t i = 0; i < sources_.size(); ++i) {
     SourceState& source = sources_[i];
     source.queue.clear();
+    source.queued.clear();
     source.seq = 65000;
     source.ssrc = 1000U * (1 + static_cast<std::uint32_t>(i)) + static_cast<std::uint32_t>(index_) +
                   100 * generation_;
     source.stream = controller_->AddStream(config_.sources[i].stream);
+    source.told = controller_->target_bitrate(source.stream);
+    source.notifier.Reset();
   }
 }
 
@@ -81,6 +94,7 @@ void Flow::Step(Time now, const SimulationConfig& sim, link::Random* loss,
                 std::vector<WirePacket>* wire, link::Bottleneck* link) {
   if (Stalled(now)) return;
   Happen(now);
+  TellEncoders(now);
   for (std::size_t i = 0; i < sources_.size(); ++i)
     while (sources_[i].next_frame <= now) MakeFrame(now, i);
   for (; !reports_.empty() && reports_.begin()->first <= now; reports_.erase(reports_.begin())) {
@@ -89,6 +103,7 @@ void Flow::Step(Time now, const SimulationConfig& sim, link::Random* loss,
       controller_->OnFeedback(ToSender(now), *report);
   }
   if (controller_->NextTimer() <= ToSender(now)) controller_->OnTimer(ToSender(now));
+  TellEncoders(now);
   DropLate(now);
   Send(now, wire, link);
   Report(now, sim, loss);
@@ -115,8 +130,11 @@ void Flow::OnArrival(const WirePacket& packet, const link::Outcome& outcome) {
   generator_.OnPacket(
       ToReceiver(outcome.arrival),
       {packet.ssrc, packet.seq, static_cast<Ecn>(outcome.packet.ecn), packet.marker, packet.size});
+  FrameLog& frame = result_.frames[packet.frame];
+  if (!outcome.duplicate) ++frame.delivered;
+  frame.arrival = std::max(frame.arrival, outcome.arrival);
   if (packet.marker)
-    result_.frame_latency_ms.push_back(Milliseconds(outcome.arrival - created_[packet.frame]));
+    result_.frame_latency_ms.push_back(Milliseconds(outcome.arrival - frame.created));
 }
 
 FlowResult Flow::Finish(Time now) {
@@ -160,39 +178,81 @@ void Flow::MakeFrame(Time now, std::size_t index) {
   const Duration period = FromSeconds(1 / config.frames_per_second);
   source.next_frame =
       since_start + period > config_.stop_after ? Time::max() : source.next_frame + period;
+  const DataSize size = Encode(now, index);
+  FrameLog frame;
+  frame.created = now;
+  frame.source = static_cast<int>(index);
+  frame.bytes = size.bytes();
+  if (size > DataSize()) {
+    ++result_.frames_sent;
+    Packetize(now, &source, size, &frame);
+  }
+  result_.frames.push_back(frame);
+}
+
+/// What the next frame of a source has on the wire; 0: it is left out.
+DataSize Flow::Encode(Time now, std::size_t index) {
+  SourceConfig& config = config_.sources[index];
+  SourceState& source = sources_[index];
+  if (config.encoder) {
+    const EncodedFrame frame = config.encoder(source.told);
+    if (frame.bounds)
+      controller_->ConfigureStream(source.stream, WithBounds(config.stream, *frame.bounds));
+    return frame.size;
+  }
   double scale = 1 + config.frame_jitter * (2 * random_.Uniform() - 1);
-  if (config.obedience) scale *= config.obedience(since_start);
-  const DataRate target = controller_->target_bitrate(source.stream);
-  std::int64_t left =
-      config.encoder ? config.encoder(target).bytes() : (target * scale * period).bytes();
-  const std::size_t frame = created_.size();
-  created_.push_back(now);
-  ++result_.frames_sent;
-  do {
+  if (config.obedience) scale *= config.obedience(now - config_.start);
+  const Duration period = FromSeconds(1 / config.frames_per_second);
+  return std::max(controller_->target_bitrate(source.stream) * scale * period,
+                  DataSize::Bytes(kMinPacket));
+}
+
+void Flow::Packetize(Time now, SourceState* source, DataSize size, FrameLog* frame) {
+  for (std::int64_t left = size.bytes(); left > 0; left -= kMaxPacket) {
     WirePacket packet;
     packet.flow = index_;
-    packet.source = static_cast<int>(index);
-    packet.ssrc = source.ssrc;
-    packet.seq = source.seq++;
-    packet.frame = frame;
+    packet.source = frame->source;
+    packet.ssrc = source->ssrc;
+    packet.seq = source->seq++;
+    packet.frame = result_.frames.size();
     packet.size = DataSize::Bytes(std::clamp(left, kMinPacket, kMaxPacket));
-    left -= kMaxPacket;
-    packet.marker = left <= 0;
-    source.queue.push_back(packet);
+    packet.marker = left <= kMaxPacket;
+    source->queue.push_back(packet);
+    source->queued.push_back(now);
+    ++frame->packets;
     controller_->OnQueued(
-        ToSender(now), source.stream,
-        {source.ssrc, packet.size, packet.marker, static_cast<std::uint32_t>(frame)});
-  } while (left > 0);
+        ToSender(now), source->stream,
+        {source->ssrc, packet.size, packet.marker, static_cast<std::uint32_t>(packet.frame)});
+  }
+}
+
+/// Encoders hear of a target as often as the element tells them.
+void Flow::TellEncoders(Time now) {
+  for (SourceState& source : sources_) {
+    const DataRate target = controller_->target_bitrate(source.stream);
+    if (source.notifier.ShouldNotify(ToSender(now), target)) source.told = target;
+  }
+}
+
+/// The rest of a frame that has begun to leave, where it waited too long.
+std::size_t Flow::StuckPackets(const SourceState& source, Time now) const {
+  if (source.queue.empty() || now - source.queued.front() < config_.longest_stay) return 0;
+  const std::size_t frame = source.queue.front().frame;
+  std::size_t packets = 0;
+  while (packets < source.queue.size() && source.queue[packets].frame == frame) ++packets;
+  return packets;
 }
 
 void Flow::DropLate(Time now) {
   if (!config_.drop_late) return;
   for (SourceState& source : sources_) {
-    const std::size_t late = controller_->LatePackets(ToSender(now), source.stream);
+    std::size_t late = controller_->LatePackets(ToSender(now), source.stream);
+    if (late == 0) late = StuckPackets(source, now);
     if (late == 0) continue;
     for (std::size_t i = 0; i < late; ++i) {
       if (source.queue.front().marker) ++result_.frames_dropped;
       source.queue.pop_front();
+      source.queued.pop_front();
     }
     controller_->OnDropped(ToSender(now), source.stream, late);
   }
@@ -204,6 +264,7 @@ void Flow::Send(Time now, std::vector<WirePacket>* wire, link::Bottleneck* link)
     SourceState* source = Owner(d->stream);
     const WirePacket packet = source->queue.front();
     source->queue.pop_front();
+    source->queued.pop_front();
     controller_->OnSent(ToSender(now), d->stream, {packet.ssrc, packet.seq, packet.size, d->ecn});
     link->Enqueue(now, {packet.size, static_cast<link::Ecn>(d->ecn), wire->size()});
     wire->push_back(packet);

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "src/link/bottleneck.h"
+#include "src/scream/target_notifier.h"
 #include "tests/core/scream/simulation.h"
 
 namespace lidar::scream::test {
@@ -42,6 +43,9 @@ class Flow {
     std::uint16_t seq = 65000;  // wraps around early in each run
     Time next_frame{};
     std::deque<WirePacket> queue;
+    std::deque<Time> queued;  // when each packet of `queue` came
+    TargetNotifier notifier;
+    DataRate told;  // the target that the encoder knows
   };
 
   void StartSender();
@@ -53,7 +57,11 @@ class Flow {
   std::optional<Time> Wake(Time now);
   bool Stalled(Time now);
   void MakeFrame(Time now, std::size_t index);
+  DataSize Encode(Time now, std::size_t index);
+  void Packetize(Time now, SourceState* source, DataSize size, FrameLog* frame);
+  void TellEncoders(Time now);
   void DropLate(Time now);
+  std::size_t StuckPackets(const SourceState& source, Time now) const;
   void Send(Time now, std::vector<WirePacket>* wire, link::Bottleneck* link);
   void Report(Time now, const SimulationConfig& sim, link::Random* loss);
   SourceState* Owner(StreamId stream);
@@ -72,7 +80,6 @@ class Flow {
   Time next_stall_{};
   std::uint32_t epoch_ = 0;
   Duration sender_offset_{0}, receiver_offset_{0};
-  std::vector<Time> created_;  // the frames
   std::multimap<Time, std::vector<std::uint8_t>> reports_;
   FlowResult result_;
 };

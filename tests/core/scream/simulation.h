@@ -2,6 +2,7 @@
 // Senders, a bottleneck and receivers in simulated time: the whole control loop, deterministic.
 #pragma once
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -11,6 +12,17 @@
 
 namespace lidar::scream::test {
 
+/// Bitrates that an encoder says it needs and can use, on the wire.
+struct EncoderBounds {
+  DataRate min;
+  DataRate max;
+};
+
+struct EncodedFrame {
+  DataSize size;                        ///< on the wire; 0: left out
+  std::optional<EncoderBounds> bounds;  ///< where they have changed
+};
+
 /// An encoder that obeys its target, and the stream that it feeds.
 struct SourceConfig {
   StreamConfig stream;
@@ -18,8 +30,8 @@ struct SourceConfig {
   double frame_jitter = 0;  ///< frame sizes vary evenly by up to this fraction
   /// Scales what the encoder puts out against its target, over time since the flow's start.
   std::function<double(Duration)> obedience;
-  /// In place of both: the size of the next frame for a target.
-  std::function<DataSize(DataRate)> encoder;
+  /// In place of both: makes the next frame for the target that it was told last.
+  std::function<EncodedFrame(DataRate)> encoder;
 };
 
 constexpr Duration kNever = Duration::max();
@@ -32,6 +44,8 @@ struct FlowConfig {
   Time start{};
   Duration stop_after = kNever;
   bool drop_late = true;
+  /// The rest of a frame that began to leave is dropped once its head has waited for so long.
+  Duration longest_stay = std::chrono::milliseconds(400);
   /// The receiver forgets everything, and its clock has another epoch.
   Duration receiver_restart = kNever;
   /// A new sender with other SSRCs takes over.
@@ -83,7 +97,20 @@ struct Sample {
   std::vector<DataRate> targets;  ///< of the sources
 };
 
+/// The life of one frame.
+struct FrameLog {
+  Time created{};
+  int source = 0;
+  std::int64_t bytes = 0;  ///< 0: the encoder left it out
+  int packets = 0;
+  int delivered = 0;  ///< of these
+  Time arrival{};     ///< of the last one delivered
+
+  bool complete() const { return packets > 0 && delivered == packets; }
+};
+
 struct FlowResult {
+  std::vector<FrameLog> frames;
   std::vector<double> frame_latency_ms;
   std::int64_t delivered_bytes = 0;
   std::uint64_t frames_sent = 0, frames_dropped = 0;

@@ -1,0 +1,172 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// loop-matrix: runs encoder, sender and link in simulated time over traces with gaps; prints the
+// figures beside those of a sender that knew the link.
+#include <cstdio>
+#include <cstdlib>
+#include <string>
+#include <vector>
+
+#include "tests/core/loop/loop_goals.h"
+
+namespace {
+
+using lidar::Seconds;
+using lidar::rate::DegradationPreference;
+using namespace lidar::loop;
+
+struct Variant {
+  const char* name;
+  void (*apply)(LoopCase*);
+};
+const std::vector<Variant> kVariants = {
+    {"slices", [](LoopCase*) {}},
+    {"scans", [](LoopCase* c) { c->source.slices = 1; }},
+    {"framerate",
+     [](LoopCase* c) { c->source.degradation = DegradationPreference::kMaintainFramerate; }},
+    {"balanced", [](LoopCase* c) { c->source.degradation = DegradationPreference::kBalanced; }},
+    {"intensity", [](LoopCase* c) { c->source.intensity_bits = 8; }},
+    {"fixed", [](LoopCase* c) { c->source.adapts = false; }},
+    {"frames", [](LoopCase* c) { c->frames = true; }},
+};
+
+struct Options {
+  std::vector<NamedTrace> traces;
+  std::vector<std::string> variants;
+  lidar::scream::Parameters parameters;
+  double seconds = 60;
+  double rtt_ms = 40;
+  std::string samples;
+};
+
+void PrintUsage() {
+  std::puts(
+      "usage: loop-matrix [--trace FILE]... [--variant NAME]... [--draft] [--seconds S] [--rtt "
+      "MS]\n"
+      "                   [--samples CSV] [TRACE...]\n"
+      "Simulates a LiDAR stream (1.4 to 10 Mbit/s) over traces with gaps, one line a run.\n"
+      "  TRACE          a built-in trace (all by default; a drive_N is generated)\n"
+      "  --trace FILE   lines of 'time_s rate_mbps'\n"
+      "  --variant NAME slices, scans (whole ones), framerate and balanced (what gives below the\n"
+      "                 minimum), intensity, fixed (no adaptation), frames (50/s, obeys exactly)\n"
+      "  --draft        SCReAM without extensions\n"
+      "  --samples CSV  writes the sender's state every 10 ms (of one run)\n"
+      "Columns: scans captured, left out by the encoder, complete; complete over the oracle's;\n"
+      "capture to cloud p50/p95/p99 and the oracle's p95 [ms]; utilisation of what link and "
+      "source\n"
+      "can do [%]; queue p50/p95/p99/max [ms]; back at 80 % after a gap, p50/p95/max [s].\n"
+      "Goals that a run does not reach stand below its line.");
+}
+
+bool Parse(int argc, char** argv, Options* options) {
+  std::vector<std::string> names;
+  for (int i = 1; i < argc; ++i) {
+    const std::string arg = argv[i];
+    if (arg == "--draft") {
+      options->parameters = lidar::scream::Parameters::Draft();
+    } else if (arg[0] != '-') {
+      names.push_back(arg);
+    } else if (i + 1 >= argc) {
+      return false;
+    } else if (arg == "--trace") {
+      std::string error;
+      const auto trace = ReadTrace(argv[++i], &error);
+      if (!trace) std::fprintf(stderr, "loop-matrix: %s\n", error.c_str());
+      if (!trace) return false;
+      options->traces.push_back(*trace);
+    } else if (arg == "--variant") {
+      options->variants.push_back(argv[++i]);
+    } else if (arg == "--seconds") {
+      options->seconds = std::atof(argv[++i]);
+    } else if (arg == "--rtt") {
+      options->rtt_ms = std::atof(argv[++i]);
+    } else if (arg == "--samples") {
+      options->samples = argv[++i];
+    } else {
+      return false;
+    }
+  }
+  const bool all = names.empty() && options->traces.empty();
+  for (const NamedTrace& trace : BuiltInTraces()) {
+    bool wanted = all;
+    for (const std::string& name : names) wanted = wanted || name == trace.name;
+    if (wanted) options->traces.push_back(trace);
+  }
+  return options->seconds > 0 && !options->traces.empty();
+}
+
+bool WriteSamples(const std::string& path, const lidar::scream::test::SimulationResult& result) {
+  std::FILE* file = std::fopen(path.c_str(), "w");
+  if (file == nullptr) return false;
+  std::fputs(
+      "time_s,capacity_mbps,target_mbps,sent_mbps,acked_mbps,ref_wnd,bytes_in_flight,qdelay_ms,"
+      "s_rtt_ms,media_qdelay_ms,reason\n",
+      file);
+  for (const auto& s : result.samples) {
+    const auto& t = s.statistics;
+    std::fprintf(file, "%.3f,%.3f,%.3f,%.3f,%.3f,%lld,%lld,%.2f,%.2f,%.2f,%s\n",
+                 Seconds(s.time - result.config.forward.origin), s.capacity_mbps,
+                 t.target_bitrate.bits_per_second() / 1e6, t.sent_bitrate.bits_per_second() / 1e6,
+                 t.acked_bitrate.bits_per_second() / 1e6, static_cast<long long>(t.ref_wnd.bytes()),
+                 static_cast<long long>(t.bytes_in_flight.bytes()), lidar::Milliseconds(t.qdelay),
+                 lidar::Milliseconds(t.s_rtt), lidar::Milliseconds(t.media_qdelay),
+                 ToString(t.reason));
+  }
+  return std::fclose(file) == 0;
+}
+
+void PrintHeader() {
+  std::printf("%-34s %5s %5s %5s  %6s  %22s %6s  %5s  %27s  %16s\n", "trace/variant", "scans",
+              "out", "whole", "oracle", "capture to cloud [ms]", "oracle", "util", "queue [ms]",
+              "back [s]");
+}
+
+void PrintRow(const LoopCase& c, const LoopReport& r) {
+  std::printf(
+      "%-34s %5llu %5llu %5llu ", c.name.c_str(), static_cast<unsigned long long>(r.captured),
+      static_cast<unsigned long long>(r.skipped), static_cast<unsigned long long>(r.complete));
+  if (c.frames)
+    std::printf(" %6s ", "-");
+  else
+    std::printf(" %5.1f%% ", 100 * r.OfOracle());
+  std::printf(" %6.1f %7.1f %7.1f %6.1f  %5.1f  %5.1f %6.1f %7.1f %6.1f  %4.2f %5.2f %5.2f\n",
+              r.capture_to_cloud_ms.p50, r.capture_to_cloud_ms.p95, r.capture_to_cloud_ms.p99,
+              r.oracle_at_mean.Latency(95), 100 * r.utilisation, r.queue_ms.p50, r.queue_ms.p95,
+              r.queue_ms.p99, r.queue_ms.max, r.recovery_s.p50, r.recovery_s.p95, r.recovery_s.max);
+  for (const GoalResult& goal : CheckGoals(c, r))
+    if (!goal.holds) std::printf("    short: %s\n", goal.text.c_str());
+  std::fflush(stdout);
+}
+
+bool Wanted(const Options& options, const Variant& variant) {
+  if (options.variants.empty()) return true;
+  for (const std::string& name : options.variants)
+    if (name == variant.name) return true;
+  return false;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  Options options;
+  if (!Parse(argc, argv, &options)) {
+    PrintUsage();
+    return 2;
+  }
+  PrintHeader();
+  for (const NamedTrace& trace : options.traces) {
+    for (const Variant& variant : kVariants) {
+      if (!Wanted(options, variant)) continue;
+      LoopCase loop_case;
+      loop_case.name = trace.name + "/" + variant.name;
+      loop_case.capacity = trace.capacity;
+      loop_case.duration = lidar::FromSeconds(options.seconds);
+      loop_case.rtt = lidar::FromSeconds(options.rtt_ms / 1e3);
+      loop_case.parameters = options.parameters;
+      variant.apply(&loop_case);
+      const LoopRun run = RunLoop(loop_case);
+      PrintRow(loop_case, run.report);
+      if (!options.samples.empty() && !WriteSamples(options.samples, run.simulation)) return 1;
+    }
+  }
+  return 0;
+}

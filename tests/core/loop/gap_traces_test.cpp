@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// The whole loop over links with gaps, against a sender that knew the link.
+#include <gtest/gtest.h>
+
+#include "tests/core/loop/loop_goals.h"
+
+namespace lidar::loop {
+namespace {
+
+using namespace std::chrono_literals;
+using rate::DegradationPreference;
+
+LoopCase Case(const std::string& trace) {
+  LoopCase c;
+  c.name = trace;
+  for (const NamedTrace& t : BuiltInTraces())
+    if (t.name == trace) c.capacity = t.capacity;
+  return c;
+}
+
+TEST(Loop, DeliversEveryScanOverAConstantLink) {
+  for (const std::uint32_t slices : {1U, 8U}) {
+    LoopCase c = Case("constant");
+    c.source.slices = slices;
+    const LoopReport r = RunLoop(c).report;
+    EXPECT_GE(r.captured, 600U);
+    EXPECT_EQ(r.skipped, 0U);
+    EXPECT_GE(r.complete + 2, r.captured) << "but for those on their way at the end";
+    EXPECT_EQ(r.oracle_at_min.complete, 600U);
+    EXPECT_NEAR(r.min_mbps, 1.4, 0.2);
+    EXPECT_NEAR(r.max_mbps, 10, 2);
+    EXPECT_GE(r.utilisation, slices > 1 ? 0.9 : 0.8);
+    EXPECT_LE(r.queue_ms.p99, 6);
+    EXPECT_EQ(r.gaps, 0U);
+  }
+}
+
+TEST(Loop, AnEncoderThatDoesNotAdaptPutsOutTheCoarsestStep) {
+  LoopCase c = Case("constant");
+  c.source.adapts = false;
+  const LoopReport r = RunLoop(c).report;
+  EXPECT_NEAR(r.encoded_mbps, r.min_mbps, 0.05);
+  EXPECT_GE(r.complete + 1, r.captured);
+}
+
+TEST(Loop, FindsTheEndsOfGaps) {
+  const LoopCase c = Case("gap_1s_every_10s");
+  EXPECT_EQ(EndsOfGaps(c.capacity, 35s), (std::vector<Duration>{10s, 20s, 30s}));
+}
+
+TEST(Loop, TheSameRunGivesTheSameFigures) {
+  LoopCase c = Case("drive_1");
+  c.duration = 10s;
+  const LoopReport a = RunLoop(c).report;
+  const LoopReport b = RunLoop(c).report;
+  EXPECT_EQ(a.complete, b.complete);
+  EXPECT_EQ(a.queue_ms.max, b.queue_ms.max);
+  EXPECT_EQ(a.capture_to_cloud_ms.p95, b.capture_to_cloud_ms.p95);
+}
+
+/// A run whose goals are held. What falls short is printed by loop-matrix.
+struct Held {
+  const char* name;
+  const char* trace;
+  DegradationPreference degradation = DegradationPreference::kMaintainAccuracy;
+  double of_oracle = 0.98;
+};
+std::ostream& operator<<(std::ostream& out, const Held& h) { return out << h.name; }
+
+class GapTrace : public ::testing::TestWithParam<Held> {};
+
+TEST_P(GapTrace, ScansArriveAsFromASenderThatKnewTheLink) {
+  LoopCase c = Case(GetParam().trace);
+  c.source.degradation = GetParam().degradation;
+  EXPECT_GE(RunLoop(c).report.OfOracle(), GetParam().of_oracle);
+}
+INSTANTIATE_TEST_SUITE_P(Held, GapTrace,
+                         ::testing::Values(Held{"every_2s_framerate", "gap_100ms_every_2s",
+                                                DegradationPreference::kMaintainFramerate}));
+
+}  // namespace
+}  // namespace lidar::loop

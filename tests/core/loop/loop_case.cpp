@@ -1,0 +1,219 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "tests/core/loop/loop_case.h"
+
+#include <algorithm>
+#include <fstream>
+#include <memory>
+#include <sstream>
+
+#include "src/link/trace_maker.h"
+
+namespace lidar::loop {
+namespace {
+
+using namespace std::chrono_literals;
+using scream::test::FrameLog;
+using scream::test::PacketLog;
+using scream::test::SimulationResult;
+
+constexpr Time kOrigin{std::chrono::seconds(100)};
+constexpr Duration kSettle = 3s;
+constexpr Duration kBin = 100ms;
+constexpr DataRate kGapRate = DataRate::BitsPerSecond(5e5);
+constexpr double kBackShare = 0.8;
+constexpr Duration kLongestRecovery = 5s;
+constexpr double kFramesPerSecond = 50;
+
+scream::test::SimulationConfig ConfigOf(const LoopCase& c, LoopSource* source) {
+  scream::test::SimulationConfig config;
+  config.forward.origin = kOrigin;
+  config.forward.capacity = c.capacity;
+  config.forward.delay = c.rtt / 2;
+  config.forward.aqm.kind = c.aqm;
+  config.forward.limit = c.limit;
+  config.return_delay = c.rtt / 2;
+  config.duration = c.duration;
+  scream::test::FlowConfig& flow = config.flows.front();
+  flow.parameters = c.parameters;
+  flow.start = kOrigin;
+  scream::test::SourceConfig& media = flow.sources.front();
+  media.stream.start_bitrate = DataRate::BitsPerSecond(4e6);
+  media.stream.max_bitrate = DataRate::BitsPerSecond(100e6);
+  media.frames_per_second = kFramesPerSecond;
+  if (c.frames) return config;
+  media.frames_per_second = c.source.scans_per_second * c.source.slices;
+  media.encoder = [source](DataRate target) { return source->Next(target); };
+  return config;
+}
+
+/// What the link can carry and the source can use [bit] in a time of the run.
+double Usable(const LoopCase& c, const LoopReport& report, Duration from, Duration length) {
+  const double link = c.capacity.Between(from, from + length).bits();
+  return c.frames ? link : std::min(link, report.max_mbps * 1e6 * Seconds(length));
+}
+
+void CountScans(const LoopCase& c, const SimulationResult& result, LoopReport* report) {
+  const std::vector<FrameLog>& frames = result.flows.front().frames;
+  const std::size_t slices = c.frames ? 1 : c.source.slices;
+  std::vector<double> latency_ms;
+  std::int64_t bytes = 0;
+  for (std::size_t i = 0; i + slices <= frames.size(); i += slices) {
+    std::size_t complete = 0;
+    std::size_t left_out = 0;
+    for (std::size_t k = i; k < i + slices; ++k) {
+      const FrameLog& f = frames[k];
+      bytes += f.bytes;
+      left_out += f.bytes == 0;
+      complete += f.complete();
+      if (f.complete()) latency_ms.push_back(Milliseconds(f.arrival - f.created));
+    }
+    ++report->captured;
+    report->skipped += left_out > 0;
+    report->complete += complete == slices;
+  }
+  report->encoded_mbps = static_cast<double>(bytes) * 8 / 1e6 / Seconds(c.duration);
+  report->capture_to_cloud_ms = scream::test::Summarise(std::move(latency_ms));
+}
+
+void AskOracles(const LoopCase& c, LoopReport* report) {
+  link::OracleConfig oracle;
+  oracle.duration = c.duration;
+  oracle.rtt = c.rtt;
+  oracle.slices_per_scan = c.source.slices;
+  oracle.scans_per_second = c.source.scans_per_second;
+  oracle.rate = DataRate::BitsPerSecond(report->min_mbps * 1e6);
+  report->oracle_at_min = AskOracle(c.capacity, oracle);
+  oracle.rate = DataRate::BitsPerSecond(report->encoded_mbps * 1e6);
+  report->oracle_at_mean = AskOracle(c.capacity, oracle);
+}
+
+/// Delivered bits over the usable ones, in tenths of a second.
+double Utilisation(const LoopCase& c, const SimulationResult& result, const LoopReport& report) {
+  double used = 0, usable = 0;
+  for (Duration t = kSettle; t + kBin <= c.duration; t += kBin)
+    usable += Usable(c, report, t, kBin);
+  const Duration delay = c.rtt / 2;
+  used = static_cast<double>(
+      result.DeliveredBytes(kOrigin + kSettle + delay, kOrigin + c.duration + delay) * 8);
+  return used / usable;
+}
+
+/// Bytes that enter the link, in steps of 10 ms.
+class SentBins {
+ public:
+  static constexpr Duration kStep = 10ms;
+  SentBins(const SimulationResult& result, Duration duration)
+      : bins_(static_cast<std::size_t>(duration / kStep) + 1) {
+    for (const PacketLog& p : result.packets) {
+      const auto i = static_cast<std::size_t>((p.sent - kOrigin) / kStep);
+      if (i < bins_.size()) bins_[i] += static_cast<double>(p.bytes) * 8;
+    }
+  }
+  double Bits(Duration from, Duration length) const {
+    double bits = 0;
+    for (Duration t = from; t < from + length; t += kStep) {
+      const auto i = static_cast<std::size_t>(t / kStep);
+      if (i < bins_.size()) bits += bins_[i];
+    }
+    return bits;
+  }
+
+ private:
+  std::vector<double> bins_;
+};
+
+void MeasureRecovery(const LoopCase& c, const SimulationResult& result, LoopReport* report) {
+  const SentBins sent(result, c.duration);
+  std::vector<double> times;
+  for (const Duration end : EndsOfGaps(c.capacity, c.duration)) {
+    Duration until = std::min(c.duration, end + kLongestRecovery);
+    for (Duration t = end; t < until; t += SentBins::kStep)
+      if (c.capacity.RateAt(t) <= kGapRate) until = t;
+    if (until - end < 2 * kBin) continue;  // the next gap is too near to tell
+    Duration t = end;
+    while (t + kBin < until && sent.Bits(t, kBin) < kBackShare * Usable(c, *report, t, kBin))
+      t += SentBins::kStep;
+    times.push_back(Seconds(t - end));
+  }
+  report->gaps = times.size();
+  report->recovery_s = scream::test::Summarise(std::move(times));
+}
+
+void MeasureNetwork(const LoopCase& c, const SimulationResult& result, LoopReport* report) {
+  report->queue_ms = result.QueueDelay(kOrigin + kSettle, kOrigin + c.duration);
+  const auto& flow = result.flows.front();
+  report->own_loss = static_cast<double>(flow.packets_congestion_lost) /
+                     static_cast<double>(std::max<std::uint64_t>(1, flow.packets_sent));
+  report->utilisation = Utilisation(c, result, *report);
+  MeasureRecovery(c, result, report);
+}
+
+link::Capacity Parse(const std::string& text) {
+  std::string error;
+  return *link::Capacity::ParseTrace(text, true, &error);
+}
+
+NamedTrace Gaps(const char* name, Duration gap, Duration every) {
+  link::GapTraceConfig config;
+  config.gap = gap;
+  config.every = every;
+  return {name, Parse(MakeGapTrace(config))};
+}
+
+NamedTrace Drive(std::uint64_t seed, double mbps) {
+  link::DriveTraceConfig config;
+  config.seed = seed;
+  config.mean = DataRate::BitsPerSecond(mbps * 1e6);
+  return {"drive_" + std::to_string(seed), Parse(MakeDriveTrace(config))};
+}
+
+}  // namespace
+
+std::vector<Duration> EndsOfGaps(const link::Capacity& capacity, Duration duration) {
+  std::vector<Duration> ends;
+  bool gap = false;
+  for (Duration t{0}; t < duration; t = capacity.NextChange(t)) {
+    const bool now = capacity.RateAt(t) <= kGapRate;
+    if (gap && !now) ends.push_back(t);
+    gap = now;
+  }
+  return ends;
+}
+
+LoopRun RunLoop(const LoopCase& c) {
+  LoopSource source(c.source);
+  LoopRun run;
+  run.simulation = Simulate(ConfigOf(c, &source));
+  run.report.min_mbps = source.min().bits_per_second() / 1e6;
+  run.report.max_mbps = source.max().bits_per_second() / 1e6;
+  CountScans(c, run.simulation, &run.report);
+  if (!c.frames) AskOracles(c, &run.report);
+  MeasureNetwork(c, run.simulation, &run.report);
+  return run;
+}
+
+std::vector<NamedTrace> BuiltInTraces() {
+  return {Gaps("gap_100ms_every_0.6s", 100ms, 600ms),
+          Gaps("gap_100ms_every_2s", 100ms, 2s),
+          Gaps("gap_1s_every_10s", 1s, 10s),
+          Drive(1, 8),
+          Drive(2, 5),
+          Drive(3, 12)};
+}
+
+std::optional<NamedTrace> ReadTrace(const std::string& path, std::string* error) {
+  std::stringstream text;
+  std::ifstream file(path);
+  if (!file) {
+    *error = "cannot read " + path;
+    return std::nullopt;
+  }
+  text << file.rdbuf();
+  const auto capacity = link::Capacity::ParseTrace(text.str(), true, error);
+  if (!capacity) return std::nullopt;
+  const std::size_t slash = path.find_last_of('/');
+  const std::string name = slash == std::string::npos ? path : path.substr(slash + 1);
+  return NamedTrace{name.substr(0, name.rfind('.')), *capacity};
+}
+
+}  // namespace lidar::loop

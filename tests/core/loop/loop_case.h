@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Runs of the whole loop of encoder, sender and link over a changing capacity, and their figures.
+#pragma once
+#include <algorithm>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "src/link/capacity.h"
+#include "src/link/oracle.h"
+#include "src/scream/parameters.h"
+#include "tests/core/loop/loop_source.h"
+#include "tests/core/scream/simulation.h"
+
+namespace lidar::loop {
+
+struct LoopCase {
+  std::string name;
+  link::Capacity capacity = link::Capacity::Constant(DataRate::BitsPerSecond(8e6));
+  SourceOptions source;
+  /// Instead: frames that obey the target exactly and can use any rate, 50 a second.
+  bool frames = false;
+  Duration duration = std::chrono::seconds(60);
+  Duration rtt = std::chrono::milliseconds(40);
+  link::AqmConfig::Kind aqm = link::AqmConfig::Kind::kRamp;
+  link::QueueLimit limit;
+  scream::Parameters parameters;
+};
+
+struct LoopReport {
+  // Scans
+  std::uint64_t captured = 0;
+  std::uint64_t skipped = 0;  // by the encoder
+  std::uint64_t complete = 0;
+  link::OracleResult oracle_at_min;   // for scans of the lowest bitrate that keeps the bound
+  link::OracleResult oracle_at_mean;  // for scans of the bitrate that the encoder put out
+  // Slices
+  scream::test::Percentiles capture_to_cloud_ms;
+  // Rates, on the wire
+  double min_mbps = 0, max_mbps = 0;  // of the source
+  double encoded_mbps = 0;
+  double utilisation = 0;  // of what the link can carry and the source can use
+  // The network
+  scream::test::Percentiles queue_ms;
+  double own_loss = 0;
+  /// After each gap: until the sender first fills 80 % of what is usable for 100 ms [s].
+  scream::test::Percentiles recovery_s;
+  std::size_t gaps = 0;
+
+  double OfOracle() const {
+    return static_cast<double>(complete) /
+           static_cast<double>(std::max<std::uint64_t>(1, oracle_at_min.complete));
+  }
+};
+
+struct LoopRun {
+  LoopReport report;
+  scream::test::SimulationResult simulation;
+};
+
+LoopRun RunLoop(const LoopCase& loop_case);
+
+/// Times of the run at which a gap ends: the capacity had been nearly nothing.
+std::vector<Duration> EndsOfGaps(const link::Capacity& capacity, Duration duration);
+
+struct NamedTrace {
+  std::string name;
+  link::Capacity capacity;
+};
+/// Regular gaps, and drives that are generated.
+std::vector<NamedTrace> BuiltInTraces();
+/// Reads a file of `time_s rate_mbps`; none and why in `error` where it is anything else.
+std::optional<NamedTrace> ReadTrace(const std::string& path, std::string* error);
+
+}  // namespace lidar::loop

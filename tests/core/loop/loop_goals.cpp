@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "tests/core/loop/loop_goals.h"
+
+#include <cstdio>
+
+namespace lidar::loop {
+namespace {
+
+constexpr double kCompleteOverDrives = 0.97;  // of the oracle's count
+constexpr double kCompleteOverGaps = 0.98;
+constexpr double kLatencyOverOracle_ms = 40;
+constexpr double kUtilisation = 0.70;
+constexpr double kRecovery_s = 0.3;
+constexpr double kFramesUtilisation = 0.80;
+// A sender that knows a link of such gaps one round trip late has a queue of 94 ms.
+constexpr double kFramesQueueFrequentGaps_ms = 99;
+constexpr double kFramesQueueLongGaps_ms = 15;
+constexpr double kFramesQueue_ms = 6;
+
+GoalResult AtLeast(const char* what, double value, double wanted) {
+  char text[120];
+  std::snprintf(text, sizeof text, what, value, wanted);
+  return {text, value >= wanted};
+}
+
+GoalResult AtMost(const char* what, double value, double wanted) {
+  char text[120];
+  std::snprintf(text, sizeof text, what, value, wanted);
+  return {text, value <= wanted};
+}
+
+bool Contains(const std::string& text, const char* part) {
+  return text.find(part) != std::string::npos;
+}
+
+double FramesQueueGoal(const std::string& name) {
+  if (Contains(name, "every_0.6s")) return kFramesQueueFrequentGaps_ms;
+  return Contains(name, "gaps_2") ? kFramesQueueLongGaps_ms : kFramesQueue_ms;
+}
+
+}  // namespace
+
+std::vector<GoalResult> CheckGoals(const LoopCase& c, const LoopReport& r) {
+  std::vector<GoalResult> goals;
+  if (c.frames) {
+    goals.push_back(
+        AtLeast("utilisation %.1f %%, %.0f wanted", 100 * r.utilisation, 100 * kFramesUtilisation));
+    goals.push_back(
+        AtMost("queue p95 %.1f ms, %.0f wanted", r.queue_ms.p95, FramesQueueGoal(c.name)));
+    return goals;
+  }
+  if (!c.source.adapts) return goals;
+  const bool regular = Contains(c.name, "gap_");
+  goals.push_back(AtLeast("complete %.1f %% of the oracle's, %.0f wanted", 100 * r.OfOracle(),
+                          100 * (regular ? kCompleteOverGaps : kCompleteOverDrives)));
+  if (regular) {
+    goals.push_back(AtMost("back %.2f s after a gap, %.1f wanted", r.recovery_s.max, kRecovery_s));
+    return goals;
+  }
+  goals.push_back(AtMost("capture to cloud p95 %.1f ms, %.1f wanted", r.capture_to_cloud_ms.p95,
+                         r.oracle_at_mean.Latency(95) + kLatencyOverOracle_ms));
+  goals.push_back(
+      AtLeast("utilisation %.1f %%, %.0f wanted", 100 * r.utilisation, 100 * kUtilisation));
+  return goals;
+}
+
+}  // namespace lidar::loop

@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// What the loop is to reach over links with gaps.
+#pragma once
+#include <string>
+#include <vector>
+
+#include "tests/core/loop/loop_case.h"
+
+namespace lidar::loop {
+
+/// One goal of a run, and what came of it.
+struct GoalResult {
+  std::string text;  // "complete 98.1 % of the oracle's, 97 % wanted"
+  bool holds = false;
+};
+
+/// The goals of this kind of run; those of a trace with gaps where it has any.
+std::vector<GoalResult> CheckGoals(const LoopCase& loop_case, const LoopReport& report);
+
+}  // namespace lidar::loop

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// An encoder in simulation: the real rate controller over slices whose sizes follow a law.
+#pragma once
+#include <cstdint>
+#include <optional>
+
+#include "src/rate/rate_controller.h"
+#include "tests/core/rate/synthetic_codec.h"
+#include "tests/core/scream/simulation.h"
+
+namespace lidar::loop {
+
+struct SourceOptions {
+  std::uint32_t slices = 8;  // 1: whole scans
+  double scans_per_second = 10;
+  double max_error_m = 0.05;
+  unsigned intensity_bits = 0;
+  double bits_per_return = 7.1;  // geometry at 1 cm; r_min is 1.4 Mbit/s at max_error_m
+  rate::DegradationPreference degradation = rate::DegradationPreference::kMaintainAccuracy;
+  bool adapts = true;  // false: always the coarsest step, whatever the target
+  unsigned seed = 1;
+};
+
+/// Codes slices to a target as dracoenc does; sizes and bounds are those on the wire.
+class LoopSource {
+ public:
+  explicit LoopSource(const SourceOptions& options);
+
+  scream::test::EncodedFrame Next(DataRate target);
+  DataRate min() const { return Wire(controller_.bounds().min); }
+  DataRate max() const { return Wire(controller_.bounds().max); }
+  const rate::ControllerStats& stats() const { return controller_.stats(); }
+
+ private:
+  static DataRate Wire(DataRate media) { return media / kPayloadShare; }
+  static constexpr double kPayloadShare = 0.96;  // of a packet; the rest is headers
+
+  rate::EncodedSlice Encode(const rate::SliceFeatures& features, const rate::Decision& decision);
+
+  SourceOptions options_;
+  rate::SyntheticCodec codec_;
+  rate::RateController controller_;
+  std::uint32_t scan_ = 0;
+  std::uint32_t slice_ = 0;
+};
+
+}  // namespace lidar::loop
