@@ -26,7 +26,7 @@ class Pi2 final : public Aqm {
   Verdict OnDequeue(Time now, Duration sojourn, const Packet& packet) override {
     controller_.Update(now, sojourn);
     const double p = controller_.p();
-    if (!IsL4s(packet.ecn)) return Classic(packet.ecn, p, &random_);
+    if (!config_.knows_l4s || !IsL4s(packet.ecn)) return Classic(packet.ecn, p, &random_);
     return random_.Chance(std::min(1.0, config_.k * p)) ? Verdict::kMark : Verdict::kPass;
   }
 

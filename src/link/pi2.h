@@ -19,6 +19,7 @@ struct Pi2Config {
   Duration t_shift = std::chrono::milliseconds{50};  // how far L4S goes ahead in a pair of queues
   Duration low = std::chrono::microseconds{475};     // L4S's own ramp
   Duration high = std::chrono::microseconds{1000};
+  bool knows_l4s = true;  // false, in one queue: ECT(1) is marked as rarely as ECT(0)
 };
 
 /// The base probability p', in steps of t_update however seldom it is asked.
@@ -38,7 +39,7 @@ class PiController {
 };
 
 /// One queue for all: classic packets are marked (ECT(0)) or dropped with p'^2, ECT(1) marked
-/// with k p'.
+/// with k p', or where the queue does not know L4S, with p'^2 as well.
 std::unique_ptr<Aqm> Pi2Aqm(const Pi2Config& config, Random random);
 
 /// Two queues: L4S (ECT(1), CE) with its own ramp and the coupled signal, and classic. The one

@@ -7,11 +7,13 @@
 #include <vector>
 
 #include "tests/core/loop/loop_goals.h"
+#include "tests/core/scream/parameter_options.h"
 
 namespace {
 
 using lidar::Seconds;
 using lidar::rate::DegradationPreference;
+using lidar::scream::test::TakeParameterOption;
 using namespace lidar::loop;
 
 struct Variant {
@@ -40,7 +42,7 @@ struct Options {
 
 void PrintUsage() {
   std::puts(
-      "usage: loop-matrix [--trace FILE]... [--variant NAME]... [--draft] [--seconds S] [--rtt "
+      "usage: loop-matrix [--trace FILE]... [--variant NAME]... [--seconds S] [--rtt "
       "MS]\n"
       "                   [--samples CSV] [TRACE...]\n"
       "Simulates a LiDAR stream (1.4 to 10 Mbit/s) over traces with gaps, one line a run.\n"
@@ -48,21 +50,22 @@ void PrintUsage() {
       "  --trace FILE   lines of 'time_s rate_mbps'\n"
       "  --variant NAME slices, scans (whole ones), framerate and balanced (what gives below the\n"
       "                 minimum), intensity, fixed (no adaptation), frames (50/s, obeys exactly)\n"
-      "  --draft        SCReAM without extensions\n"
       "  --samples CSV  writes the sender's state every 10 ms (of one run)\n"
       "Columns: scans captured, left out by the encoder, complete; complete over the oracle's;\n"
       "capture to cloud p50/p95/p99 and the oracle's p95 [ms]; utilisation of what link and "
       "source\n"
       "can do [%]; queue p50/p95/p99/max [ms]; back at 80 % after a gap, p50/p95/max [s].\n"
       "Goals that a run does not reach stand below its line.");
+  std::puts(lidar::scream::test::kParameterUsage);
 }
 
 bool Parse(int argc, char** argv, Options* options) {
   std::vector<std::string> names;
   for (int i = 1; i < argc; ++i) {
     const std::string arg = argv[i];
-    if (arg == "--draft") {
-      options->parameters = lidar::scream::Parameters::Draft();
+    if (const int taken = TakeParameterOption(argc, argv, i, &options->parameters)) {
+      if (taken < 0) return false;
+      i += taken - 1;
     } else if (arg[0] != '-') {
       names.push_back(arg);
     } else if (i + 1 >= argc) {

@@ -3,17 +3,16 @@
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
-#include <map>
 #include <string>
 #include <vector>
 
+#include "tests/core/scream/parameter_options.h"
 #include "tests/core/scream/scenarios.h"
 
 namespace {
 
 using lidar::Milliseconds;
 using lidar::Seconds;
-using lidar::scream::Extensions;
 using lidar::scream::Parameters;
 using namespace lidar::scream::test;
 
@@ -31,92 +30,20 @@ void PrintUsage() {
   std::puts(
       "usage: scream-matrix [--draft] [--seconds S] [--samples CSV] [SCENARIO...]\n"
       "Simulates SCReAM v2 over the scenarios (all by default) and prints one line each.\n"
-      "  --draft        no extension: the constants and rules of the draft alone\n"
-      "  --set NAME=V   turns a constant (after --draft)\n"
-      "  --with PART, --without PART\n"
-      "                 switches an optional part of the draft or an extension\n"
       "  --seconds S    shorter (or longer) runs\n"
       "  --frame-jitter PERCENT  frame sizes vary evenly by so much\n"
       "  --wakeup-ms MS pacing wakes up late by up to so much\n"
       "  --stall-ms MS  sender and receiver stop for up to so much, once a second\n"
       "  --samples CSV  writes the controller's state every 10 ms (of one scenario)");
-}
-
-/// Constants that --set turns, by the draft's (or the extension's) name.
-const std::map<std::string, double Parameters::*> kConstants = {
-    {"min_pacing_reserve", &Parameters::min_pacing_reserve},
-    {"max_pacing_reserve", &Parameters::max_pacing_reserve},
-    {"open_overhead", &Parameters::open_overhead},
-    {"packet_pacing_headroom", &Parameters::packet_pacing_headroom},
-    {"target_rate_divisor", &Parameters::target_rate_divisor},
-    {"mul_increase_factor", &Parameters::mul_increase_factor},
-    {"post_congestion_delay_rtt", &Parameters::post_congestion_delay_rtt},
-    {"l4s_avg_g_up", &Parameters::l4s_avg_g_up},
-    {"l4s_avg_g_down", &Parameters::l4s_avg_g_down},
-    {"beta_loss", &Parameters::beta_loss},
-    {"bytes_in_flight_head_room", &Parameters::bytes_in_flight_head_room},
-    {"ref_wnd_overhead_min", &Parameters::ref_wnd_overhead_min},
-    {"ref_wnd_overhead_max", &Parameters::ref_wnd_overhead_max},
-    {"rate_adjust_gain", &Parameters::rate_adjust_gain},
-    {"frame_size_dev_alpha", &Parameters::frame_size_dev_alpha},
-    {"loss_rate_threshold", &Parameters::loss_rate_threshold},
-    {"fast_increase_max", &Parameters::fast_increase_max},
-    {"fast_increase_step", &Parameters::fast_increase_step},
-    {"fast_increase_step_unmarked", &Parameters::fast_increase_step_unmarked},
-    {"busy_qdelay_unmarked", &Parameters::busy_qdelay_unmarked},
-    {"even_alpha_g", &Parameters::even_alpha_g},
-    {"even_alpha_max", &Parameters::even_alpha_max},
-    {"fast_increase_slope", &Parameters::fast_increase_slope},
-    {"drop_threshold", &Parameters::drop_threshold},
-    {"drop_beta", &Parameters::drop_beta},
-    {"bounded_overhead", &Parameters::bounded_overhead},
-    {"isolated_loss_threshold", &Parameters::isolated_loss_threshold},
-};
-
-const std::map<std::string, bool Extensions::*> kExtensions = {
-    {"fast_start", &Extensions::fast_start},
-    {"drop_response", &Extensions::drop_response},
-    {"bounded_flight", &Extensions::bounded_flight},
-    {"isolated_loss", &Extensions::isolated_loss},
-    {"adaptive_pacing", &Extensions::adaptive_pacing},
-    {"answered_signals", &Extensions::answered_signals},
-    {"even_alpha", &Extensions::even_alpha},
-    {"quick_drain", &Extensions::quick_drain},
-    {"feedback_timeout", &Extensions::feedback_timeout},
-};
-const std::map<std::string, bool Parameters::*> kOptionalParts = {
-    {"reduce_jitter", &Parameters::reduce_jitter},
-    {"clock_drift", &Parameters::clock_drift},
-    {"link_layer_loss", &Parameters::link_layer_loss},
-    {"rate_policer", &Parameters::rate_policer},
-    {"undershoot_remedy", &Parameters::undershoot_remedy},
-    {"competing_flows", &Parameters::competing_flows},
-};
-
-bool Switch(const std::string& name, bool on, Parameters* parameters) {
-  if (const auto it = kExtensions.find(name); it != kExtensions.end())
-    parameters->extensions.*it->second = on;
-  else if (const auto part = kOptionalParts.find(name); part != kOptionalParts.end())
-    parameters->*part->second = on;
-  else
-    return false;
-  return true;
-}
-
-/// NAME=VALUE
-bool Set(const std::string& text, Parameters* parameters) {
-  const std::size_t equals = text.find('=');
-  const auto it = kConstants.find(text.substr(0, equals));
-  if (equals == std::string::npos || it == kConstants.end()) return false;
-  parameters->*it->second = std::atof(text.c_str() + equals + 1);
-  return true;
+  std::puts(kParameterUsage);
 }
 
 bool Parse(int argc, char** argv, Options* options) {
   for (int i = 1; i < argc; ++i) {
     const std::string arg = argv[i];
-    if (arg == "--draft") {
-      options->parameters = Parameters::Draft();
+    if (const int taken = TakeParameterOption(argc, argv, i, &options->parameters)) {
+      if (taken < 0) return false;
+      i += taken - 1;
     } else if (arg == "--samples" && i + 1 < argc) {
       options->samples = argv[++i];
     } else if (arg == "--frame-jitter" && i + 1 < argc) {
@@ -127,10 +54,6 @@ bool Parse(int argc, char** argv, Options* options) {
       options->wakeup_ms = std::atof(argv[++i]);
     } else if (arg == "--seconds" && i + 1 < argc) {
       options->seconds = std::atof(argv[++i]);
-    } else if ((arg == "--with" || arg == "--without") && i + 1 < argc) {
-      if (!Switch(argv[++i], arg == "--with", &options->parameters)) return false;
-    } else if (arg == "--set" && i + 1 < argc) {
-      if (!Set(argv[++i], &options->parameters)) return false;
     } else if (arg[0] == '-') {
       return false;
     } else {
@@ -165,7 +88,7 @@ bool WriteSamples(const std::string& path, const SimulationResult& result) {
 
 void PrintRow(const Scenario& s, const ScenarioMetrics& m) {
   std::printf(
-      "%-11s %5.1f  %5.1f %5.1f %6.1f %6.1f  %6.1f %6.1f %6.1f %6.1f  %5.2f  %5.3f  %5.2f %5.1f  "
+      "%-20s %5.1f  %5.1f %5.1f %6.1f %6.1f  %6.1f %6.1f %6.1f %6.1f  %5.2f  %5.3f  %5.2f %5.1f  "
       "%4.0f %4.0f",
       s.name.c_str(), 100 * m.utilisation, m.queue_ms.p50, m.queue_ms.p95, m.queue_ms.p99,
       m.queue_ms.max, m.frame_ms.p50, m.frame_ms.p95, m.frame_ms.p99, m.frame_ms.max,
@@ -173,6 +96,9 @@ void PrintRow(const Scenario& s, const ScenarioMetrics& m) {
   if (s.drop_at)
     std::printf("  drop: peak %.0f ms, <10 ms after %.2f s, rate after %.3f s",
                 m.drop.peak_queue_ms, m.drop.recovered_s, m.drop.below_rate_s);
+  if (m.beside)
+    std::printf("  ours %.1f, theirs %.1f Mbit/s, loss %.2f and %.2f %%", m.beside->ours_mbps,
+                m.beside->theirs_mbps, 100 * m.own_loss, 100 * m.beside->their_loss);
   std::printf("\n");
   std::fflush(stdout);
 }
@@ -185,7 +111,7 @@ int main(int argc, char** argv) {
     PrintUsage();
     return argc > 1 && std::strcmp(argv[1], "--help") == 0 ? 0 : 2;
   }
-  std::printf("%-11s %5s  %-25s  %-27s  %5s  %5s  %-11s  %s\n", "scenario", "util%",
+  std::printf("%-20s %5s  %-25s  %-27s  %5s  %5s  %-11s  %s\n", "scenario", "util%",
               "queue p50/p95/p99/max ms", "frame p50/p95/p99/max ms", "loss%", "Jain",
               "start s, ms", "dropped, feedback kbit/s");
   for (Scenario& s : Scenarios(options.parameters)) {

@@ -80,6 +80,26 @@ DropMetrics MeasureDrop(Time drop, double capacity_mbps, const SimulationResult&
   return m;
 }
 
+BesideMetrics MeasureBeside(const Scenario& s, const SimulationResult& result) {
+  BesideMetrics m;
+  const Time from = s.config.forward.origin + s.settle;
+  const Time until = s.config.forward.origin + s.config.duration;
+  const auto mbps = [&](std::size_t flow) {
+    return static_cast<double>(result.DeliveredBytes(from, until, static_cast<int>(flow))) * 8 /
+           1e6 / Seconds(until - from);
+  };
+  const std::size_t ours = result.flows.size(), theirs = result.others.size();
+  for (std::size_t i = 0; i < ours; ++i) m.ours_mbps += mbps(i) / static_cast<double>(ours);
+  for (std::size_t i = 0; i < theirs; ++i) {
+    const TcpResult& t = result.others[i];
+    m.theirs_mbps += mbps(ours + i) / static_cast<double>(theirs);
+    m.their_loss += static_cast<double>(t.packets_lost) /
+                    static_cast<double>(std::max<std::uint64_t>(1, t.packets_sent)) /
+                    static_cast<double>(theirs);
+  }
+  return m;
+}
+
 Capacity Constant(double mbps) { return Capacity::Constant(Mbps(mbps)); }
 
 /// What paths beyond the usual ones do.
@@ -145,6 +165,7 @@ std::vector<Scenario> Scenarios(const Parameters& p) {
   all.push_back(Make("D-ect1", "D with ECT(1), which nobody marks", d, 50, p));
   all.push_back(Make("K-ect1", "K with ECT(1), which nobody marks", k, 50, p));
   for (const Scenario& s : PathScenarios(a, c, p)) all.push_back(s);
+  for (const Scenario& s : BesideScenarios(p)) all.push_back(s);
   for (Scenario& s : all) {
     if (s.name[0] == 'H') s.drop_at = 20s;
     if (s.name[0] == 'E') s.settle = 0s;
@@ -179,7 +200,14 @@ ScenarioMetrics Measure(const Scenario& s, const SimulationResult& result) {
     m.feedback_kbps +=
         static_cast<double>(flow.feedback_bytes) * 8 / 1e3 / Seconds(s.config.duration);
   }
-  m.jain = sum * sum / (squares * static_cast<double>(result.flows.size()));
+  for (std::size_t i = 0; i < result.others.size(); ++i) {
+    const auto x = static_cast<double>(
+        result.DeliveredBytes(origin + s.settle, end, static_cast<int>(result.flows.size() + i)));
+    sum += x;
+    squares += x * x;
+  }
+  m.jain = sum * sum / (squares * static_cast<double>(result.flows.size() + result.others.size()));
+  if (!result.others.empty()) m.beside = MeasureBeside(s, result);
   m.frame_ms = Summarise(std::move(latencies));
   const double capacity = s.config.forward.capacity.RateAt(Duration{0}).bits_per_second();
   const Duration window = 100ms;

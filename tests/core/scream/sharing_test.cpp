@@ -74,6 +74,19 @@ TEST_F(TwoStreams, AnEncoderThatIgnoresItsTargetDoesNotTakeTheOthersShare) {
   EXPECT_LT(metrics.queue_ms.p99, 10);
 }
 
+/// Cases whose goal is held; scream-matrix shows the others.
+class BesideCubic : public ::testing::TestWithParam<const char*> {};
+
+TEST_P(BesideCubic, NeitherGetsMuchMoreNorLosesMuchMore) {
+  const Scenario s = *FindScenario(GetParam(), Parameters());
+  const ScenarioMetrics m = Measure(s, Simulate(s.config));
+  EXPECT_LE(m.beside->ratio(), 2.2) << m.beside->ours_mbps << " and " << m.beside->theirs_mbps;
+  EXPECT_LE(m.own_loss, m.beside->their_loss + 0.01);
+}
+INSTANTIATE_TEST_SUITE_P(Held, BesideCubic,
+                         ::testing::Values("cubic_fifo_10ms_20M", "cubic_fifo_10ms_50M",
+                                           "cubic_fifo_20ms_20M", "cubic_dualpi2_20M"));
+
 TEST(TwoFlows, WhoseFramesMeetShareALinkEvenly) {
   for (const char* name : {"J", "C"}) {
     Scenario s = *FindScenario(name, Parameters());

@@ -6,6 +6,7 @@
 #include <memory>
 
 #include "tests/core/scream/sim_flow.h"
+#include "tests/core/scream/tcp_flow.h"
 
 namespace lidar::scream::test {
 
@@ -18,48 +19,89 @@ Percentiles Summarise(std::vector<double> values) {
   return {at(0.5), at(0.95), at(0.99), values.back()};
 }
 
-SimulationResult Simulate(const SimulationConfig& config) {
-  SimulationResult result;
-  result.config = config;
-  link::Bottleneck link(config.forward);
-  link::Random loss(config.forward.seed + 77);
-  std::vector<WirePacket> wire;
-  std::multimap<Time, link::Outcome> behind;  // the bottleneck, on the longer way
-  std::vector<std::unique_ptr<Flow>> flows;
-  for (std::size_t i = 0; i < config.flows.size(); ++i)
-    flows.push_back(
-        std::make_unique<Flow>(config.flows[i], static_cast<int>(i), config.forward.seed));
-  const Time end = config.forward.origin + config.duration;
-  Time next_sample = config.forward.origin;
-  for (Time now = config.forward.origin; now <= end;) {
-    for (link::Outcome& o : link.Deliver(now)) {
-      if (o.arrival - config.forward.origin > config.longer_from) o.arrival += config.longer_by;
-      behind.emplace(o.arrival, o);
-    }
-    for (; !behind.empty() && behind.begin()->first <= now; behind.erase(behind.begin())) {
-      const link::Outcome& o = behind.begin()->second;
-      const WirePacket& p = wire[o.packet.id];
-      flows[static_cast<std::size_t>(p.flow)]->OnArrival(p, o);
-      result.packets.push_back({o.sent, o.arrival, Milliseconds(o.sojourn), p.flow, p.source,
-                                p.size.bytes(), o.delivered()});
-    }
-    for (auto& flow : flows) flow->Step(now, config, &loss, &wire, &link);
-    if (now >= next_sample) {
-      for (std::size_t i = 0; i < flows.size(); ++i)
-        result.samples.push_back(
-            {now, static_cast<int>(i),
-             config.forward.capacity.RateAt(now - config.forward.origin).bits_per_second() / 1e6,
-             flows[i]->statistics(now), flows[i]->targets()});
-      next_sample += config.sample_interval;
-    }
-    Time next = std::min(link.NextEventTime(), next_sample);
-    if (!behind.empty()) next = std::min(next, behind.begin()->first);
-    for (auto& flow : flows) next = std::min(next, flow->NextEvent(now));
-    now = std::max(next, now + Duration{1});
+namespace {
+
+class Simulation {
+ public:
+  explicit Simulation(const SimulationConfig& config)
+      : config_(config),
+        origin_(config.forward.origin),
+        link_(config.forward),
+        report_loss_(config.forward.seed + 77),
+        next_sample_(origin_) {
+    int index = 0;
+    for (const FlowConfig& flow : config.flows)
+      flows_.push_back(std::make_unique<Flow>(flow, index++, config.forward.seed));
+    for (const TcpConfig& other : config.others)
+      others_.push_back(std::make_unique<TcpFlow>(other, index++, origin_));
+    result_.config = config;
   }
-  for (auto& flow : flows) result.flows.push_back(flow->Finish(end));
-  return result;
-}
+
+  SimulationResult Run() {
+    const Time end = origin_ + config_.duration;
+    for (Time now = origin_; now <= end; now = std::max(NextEvent(now), now + Duration{1})) {
+      Deliver(now);
+      for (auto& flow : flows_) flow->Step(now, config_, &report_loss_, &wire_, &link_);
+      for (auto& other : others_) other->Step(now, &wire_, &link_);
+      if (now >= next_sample_) TakeSamples(now);
+    }
+    for (auto& flow : flows_) result_.flows.push_back(flow->Finish(end));
+    for (auto& other : others_) result_.others.push_back(other->Finish(end));
+    return std::move(result_);
+  }
+
+ private:
+  void Deliver(Time now) {
+    for (link::Outcome& o : link_.Deliver(now)) {
+      if (o.arrival - origin_ > config_.longer_from) o.arrival += config_.longer_by;
+      behind_.emplace(o.arrival, o);
+    }
+    for (; !behind_.empty() && behind_.begin()->first <= now; behind_.erase(behind_.begin()))
+      Arrive(behind_.begin()->second);
+  }
+
+  void Arrive(const link::Outcome& o) {
+    const WirePacket& p = wire_[o.packet.id];
+    const auto flow = static_cast<std::size_t>(p.flow);
+    if (flow < flows_.size())
+      flows_[flow]->OnArrival(p, o);
+    else
+      others_[flow - flows_.size()]->OnArrival(p, o, config_.return_delay);
+    result_.packets.push_back({o.sent, o.arrival, Milliseconds(o.sojourn), p.flow, p.source,
+                               p.size.bytes(), o.delivered()});
+  }
+
+  void TakeSamples(Time now) {
+    const double mbps = config_.forward.capacity.RateAt(now - origin_).bits_per_second() / 1e6;
+    for (std::size_t i = 0; i < flows_.size(); ++i)
+      result_.samples.push_back(
+          {now, static_cast<int>(i), mbps, flows_[i]->statistics(now), flows_[i]->targets()});
+    next_sample_ += config_.sample_interval;
+  }
+
+  Time NextEvent(Time now) {
+    Time next = std::min(link_.NextEventTime(), next_sample_);
+    if (!behind_.empty()) next = std::min(next, behind_.begin()->first);
+    for (auto& flow : flows_) next = std::min(next, flow->NextEvent(now));
+    for (auto& other : others_) next = std::min(next, other->NextEvent(now));
+    return next;
+  }
+
+  const SimulationConfig& config_;
+  Time origin_;
+  link::Bottleneck link_;
+  link::Random report_loss_;
+  Time next_sample_;
+  std::vector<WirePacket> wire_;
+  std::multimap<Time, link::Outcome> behind_;  // the bottleneck, on the longer way
+  std::vector<std::unique_ptr<Flow>> flows_;
+  std::vector<std::unique_ptr<TcpFlow>> others_;
+  SimulationResult result_;
+};
+
+}  // namespace
+
+SimulationResult Simulate(const SimulationConfig& config) { return Simulation(config).Run(); }
 
 std::int64_t SimulationResult::DeliveredBytes(Time from, Time until, int flow, int source) const {
   std::int64_t bytes = 0;

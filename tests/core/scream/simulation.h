@@ -9,6 +9,7 @@
 #include "src/link/bottleneck.h"
 #include "src/scream/controller.h"
 #include "src/scream/feedback/feedback_generator.h"
+#include "tests/core/scream/tcp_window.h"
 
 namespace lidar::scream::test {
 
@@ -61,6 +62,14 @@ struct FlowConfig {
   Duration wakeup_delay{0};  ///< the pacing thread wakes up late by up to this
 };
 
+/// A greedy flow of somebody else, from `start` of the run on.
+struct TcpConfig {
+  TcpKind kind = TcpKind::kCubic;
+  Duration start{0};
+  link::Ecn ecn = link::Ecn::kNotEct;  ///< of Reno and Cubic; Prague sends ECT(1)
+  double slow_start_threshold = 1e9;   ///< [packets]
+};
+
 struct SimulationConfig {
   link::BottleneckConfig forward;  ///< its delay is the way there
   Duration return_delay{0};
@@ -72,6 +81,7 @@ struct SimulationConfig {
   Duration longer_from = kNever;
   Duration duration = std::chrono::seconds(40);
   std::vector<FlowConfig> flows{1};
+  std::vector<TcpConfig> others;  ///< in the packets' log their flows come after ours
   Duration sample_interval = std::chrono::milliseconds(10);
 };
 
@@ -119,8 +129,15 @@ struct FlowResult {
   Statistics statistics;
 };
 
+struct TcpResult {
+  std::int64_t delivered_bytes = 0;
+  std::uint64_t packets_sent = 0, packets_lost = 0;
+  double mean_window = 0;  ///< [packets]
+};
+
 struct SimulationResult {
   std::vector<FlowResult> flows;
+  std::vector<TcpResult> others;
   std::vector<PacketLog> packets;
   std::vector<Sample> samples;
   SimulationConfig config;

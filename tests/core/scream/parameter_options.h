@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Options of the matrix programs that turn the sender's parameters.
+#pragma once
+#include "src/scream/parameters.h"
+
+namespace lidar::scream::test {
+
+/// What PrintUsage() of a program says about them.
+constexpr const char* kParameterUsage =
+    "  --draft        no extension: the constants and rules of the draft alone\n"
+    "  --set NAME=V   turns a constant (after --draft)\n"
+    "  --with PART, --without PART\n"
+    "                 switches an optional part of the draft or an extension";
+
+/// How many arguments from argv[i] on it took: 0 where they are no such option, -1 where they are
+/// wrong.
+int TakeParameterOption(int argc, char** argv, int i, Parameters* parameters);
+
+}  // namespace lidar::scream::test

@@ -1,0 +1,141 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// The flows of others are what they claim to be: alone on a link, and against their published
+// response functions.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "tests/core/scream/simulation.h"
+
+namespace lidar::scream::test {
+namespace {
+
+constexpr Time kOrigin{100s};
+
+DataRate Mbps(double r) { return DataRate::BitsPerSecond(r * 1e6); }
+
+SimulationConfig Path(TcpKind kind, DataRate capacity, Duration rtt) {
+  SimulationConfig config;
+  config.flows.clear();
+  config.others = {{kind}};
+  config.forward.origin = kOrigin;
+  config.forward.capacity = link::Capacity::Constant(capacity);
+  config.forward.delay = config.return_delay = rtt / 2;
+  config.duration = 60s;
+  return config;
+}
+
+double Utilisation(const SimulationResult& result) {
+  return result.Utilisation(kOrigin + 10s, kOrigin + 59s);
+}
+
+double RateOf(const SimulationResult& result, int flow, Duration from, Duration until) {
+  return static_cast<double>(result.DeliveredBytes(kOrigin + from, kOrigin + until, flow)) * 8 /
+         1e6 / Seconds(until - from);
+}
+
+class Greedy : public ::testing::TestWithParam<TcpKind> {};
+
+TEST_P(Greedy, FillsALinkWhoseBufferIsItsBandwidthDelayProduct) {
+  SimulationConfig config = Path(GetParam(), Mbps(20), 40ms);
+  config.forward.limit.bytes = Mbps(20) * 40ms;
+  const SimulationResult r = Simulate(config);
+  EXPECT_GE(Utilisation(r), 0.97);
+  EXPECT_LE(static_cast<double>(r.others[0].packets_lost),
+            0.01 * static_cast<double>(r.others[0].packets_sent));
+}
+
+TEST_P(Greedy, GivesWayToASecondOne) {
+  SimulationConfig config = Path(GetParam(), Mbps(20), 40ms);
+  config.forward.limit.bytes = Mbps(20) * 40ms;
+  config.others.push_back({GetParam(), 10s});
+  config.duration = 180s;
+  const SimulationResult r = Simulate(config);
+  const double first = RateOf(r, 0, 60s, 179s), second = RateOf(r, 1, 60s, 179s);
+  EXPECT_NEAR(first / second, 1, 0.35) << first << " and " << second;
+}
+
+TEST_P(Greedy, SurvivesAnOutage) {
+  SimulationConfig config = Path(GetParam(), Mbps(20), 40ms);
+  config.forward.limit.bytes = Mbps(20) * 40ms;
+  config.forward.capacity.AddOutage(20s, 25s);
+  const SimulationResult r = Simulate(config);
+  EXPECT_GE(r.Utilisation(kOrigin + 35s, kOrigin + 59s), 0.9);
+}
+
+INSTANTIATE_TEST_SUITE_P(Kinds, Greedy,
+                         ::testing::Values(TcpKind::kReno, TcpKind::kCubic, TcpKind::kPrague));
+
+/// A path that nothing but random loss limits.
+double MeanWindowUnderLoss(TcpKind kind, double loss, Duration rtt) {
+  double sum = 0;
+  constexpr int kRuns = 4;
+  for (int seed = 1; seed <= kRuns; ++seed) {
+    SimulationConfig config = Path(kind, Mbps(10000), rtt);
+    config.forward.loss = loss;
+    config.forward.seed = static_cast<std::uint64_t>(seed);
+    config.duration = 300s;
+    config.others[0].slow_start_threshold = 100;
+    sum += Simulate(config).others[0].mean_window / kRuns;
+  }
+  return sum;
+}
+
+/// Between the response to periodic losses, sqrt(3/2p), and to independent ones, 1.31/sqrt(p).
+TEST(Response, OfRenoFallsWithTheSquareRootOfTheLoss) {
+  for (const double p : {0.0005, 0.002, 0.01}) {
+    const double window = MeanWindowUnderLoss(TcpKind::kReno, p, 50ms) * std::sqrt(p);
+    EXPECT_GE(window, 0.92 * 1.22) << p;
+    EXPECT_LE(window, 1.08 * 1.31) << p;
+  }
+}
+
+/// RFC 9438, section 5.1: 1.054 RTT^0.75 / p^0.75 where that is more than Reno's.
+TEST(Response, OfCubicFallsWithItsThreeQuarterPower) {
+  for (const double p : {0.00003, 0.0001}) {
+    const double published = 1.054 * std::pow(0.1, 0.75) / std::pow(p, 0.75);
+    EXPECT_NEAR(MeanWindowUnderLoss(TcpKind::kCubic, p, 100ms) / published, 1, 0.15) << p;
+  }
+}
+
+TEST(Response, OfCubicIsRenosWhereThatIsMore) {
+  for (const double p : {0.001, 0.005}) {
+    const double ratio = MeanWindowUnderLoss(TcpKind::kCubic, p, 20ms) /
+                         MeanWindowUnderLoss(TcpKind::kReno, p, 20ms);
+    EXPECT_NEAR(ratio, 1, 0.15) << p;
+  }
+}
+
+TEST(Prague, KeepsTheQueueAtAStepAndTheLinkFull) {
+  SimulationConfig config = Path(TcpKind::kPrague, Mbps(20), 40ms);
+  config.forward.aqm.kind = link::AqmConfig::Kind::kStep;
+  config.forward.aqm.high = 2ms;
+  const SimulationResult r = Simulate(config);
+  EXPECT_GE(Utilisation(r), 0.95);
+  EXPECT_LE(r.QueueDelay(kOrigin + 10s, kOrigin + 60s).p99, 6);
+  EXPECT_EQ(r.others[0].packets_lost, 0U);
+}
+
+/// What RFC 9332 promises: a classic and an L4S flow get about the same.
+TEST(Prague, SharesADualQueueWithCubic) {
+  SimulationConfig config = Path(TcpKind::kPrague, Mbps(40), 20ms);
+  config.others.push_back({TcpKind::kCubic});
+  config.forward.aqm.kind = link::AqmConfig::Kind::kDualPi2;
+  const SimulationResult r = Simulate(config);
+  const double prague = RateOf(r, 0, 15s, 59s), cubic = RateOf(r, 1, 15s, 59s);
+  EXPECT_GE(Utilisation(r), 0.95);
+  EXPECT_LE(std::max(prague, cubic) / std::min(prague, cubic), 2) << prague << " and " << cubic;
+}
+
+TEST(Classic, AnEcnMarkCountsAsALoss) {
+  SimulationConfig config = Path(TcpKind::kCubic, Mbps(20), 40ms);
+  config.others[0].ecn = link::Ecn::kEct0;
+  config.forward.aqm.kind = link::AqmConfig::Kind::kPi2;
+  const SimulationResult r = Simulate(config);
+  EXPECT_GE(Utilisation(r), 0.93);
+  EXPECT_NEAR(r.QueueDelay(kOrigin + 10s, kOrigin + 60s).p50, 15, 10);
+  EXPECT_EQ(r.others[0].packets_lost, 0U);
+}
+
+}  // namespace
+}  // namespace lidar::scream::test

@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// How the congestion windows of others move: Reno, Cubic and Prague.
+#pragma once
+#include <memory>
+
+#include "src/base/time.h"
+
+namespace lidar::scream::test {
+
+enum class TcpKind {
+  kReno,   ///< RFC 5681
+  kCubic,  ///< RFC 9438
+  kPrague  ///< draft-briscoe-iccrg-prague-congestion-control
+};
+
+/// A congestion window in packets. Slow start is the same for all and stands in TcpFlow.
+class TcpWindow {
+ public:
+  virtual ~TcpWindow() = default;
+  /// One packet was acknowledged in congestion avoidance.
+  virtual void OnAck(Time now, Duration rtt, bool ce) = 0;
+  /// Packets were lost; once a round trip.
+  virtual void OnLoss() = 0;
+  /// Nothing came back for long.
+  virtual void OnTimeout() = 0;
+  /// A packet was marked in slow start, which ends.
+  virtual void OnFirstMark() { OnLoss(); }
+  double window = 10;  ///< RFC 6928
+};
+
+std::unique_ptr<TcpWindow> MakeTcpWindow(TcpKind kind);
+
+}  // namespace lidar::scream::test
