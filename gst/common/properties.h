@@ -1,50 +1,59 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// GObject properties from one table: each row binds a property to a field of Settings.
+// GObject properties from one table: each row binds a property to a field of Settings, or to a
+// function that reads the element.
+//
+//     const std::array<Property<Settings>, 3> kProperties = {{
+//         {"port", "UDP port", &Settings::port, 1, 65535},
+//         {"mss", "Largest packet [bytes]", At<&Settings::scream, &Parameters::mss>, 100, 65535},
+//         {"stats", "packets, bytes [bytes]", Stats},  // StructurePtr Stats(GObject*)
+//     }};
+//     ServeProperties<GstLidarThing, kProperties>(object_class);
 #pragma once
-#include <gst/gst.h>
-
 #include <array>
-#include <limits>
-#include <string>
-#include <variant>
+#include <string_view>
+
+#include "gst/common/fields.h"
 
 namespace lidar::gst {
 
-template <class... F>
-struct Overload : F... {
-  using F::operator()...;
-};
-template <class... F>
-Overload(F...) -> Overload<F...>;
-
-/// An enumeration is kept as gint; `type` gives its GType.
-template <class Settings>
-struct EnumField {
-  gint Settings::*field;
-  GType (*type)();
-};
-
-/// One property bound to one field of Settings; the default is the field's initialiser.
+/// One property; the default is the field's initialiser. A function of the object makes it
+/// read-only.
 template <class Settings>
 struct Property {
+  using Struct = Settings;
+
   const char* name;
   const char* blurb;  // names its unit in brackets
-  std::variant<guint Settings::*, gint Settings::*, guint64 Settings::*, gdouble Settings::*,
-               bool Settings::*, std::string Settings::*, EnumField<Settings>>
-      field;
-  gdouble min = 0;
+  Field<Settings> field;
+  gdouble min = 0;  // both 0: all that the type holds
   gdouble max = 0;
-  // GST_PARAM_MUTABLE_PLAYING where a change takes effect at once
+  // GST_PARAM_MUTABLE_PLAYING where a change takes effect at once; with G_PARAM_WRITABLE alone it
+  // cannot be read.
   gint mutability = GST_PARAM_MUTABLE_READY;
+
+  GParamFlags flags() const {
+    if (field.read_only())
+      return static_cast<GParamFlags>(G_PARAM_READABLE | G_PARAM_STATIC_STRINGS);
+    const gint access = mutability & G_PARAM_WRITABLE ? 0 : G_PARAM_READWRITE;
+    return static_cast<GParamFlags>(access | G_PARAM_STATIC_STRINGS | mutability);
+  }
 };
 
-// Where gcc 12 sees the table's values and no row is a string, it warns of reading one past
-// Settings.
-#if defined(__GNUC__) && !defined(__clang__)
-#pragma GCC diagnostic push
-#pragma GCC diagnostic ignored "-Warray-bounds"
-#pragma GCC diagnostic ignored "-Wmaybe-uninitialized"
-#endif
+/// The row called `name` of the table of a child, as a row of its bin: `child` finds it, NULL for
+/// nobody. Without a default of the bin's own it has the child's.
+template <class Settings, class ChildSettings, std::size_t N>
+Property<Settings> Proxy(const std::array<Property<ChildSettings>, N>& table, std::string_view name,
+                         GObject* (*child)(GObject*), const ChildSettings* defaults = nullptr) {
+  static const ChildSettings kDefaults{};
+  const auto* row = std::find_if(table.data(), table.data() + N - 1,
+                                 [&](const auto& r) { return r.name == name; });
+  return {row->name,
+          row->blurb,
+          Field<Settings>(row, defaults != nullptr ? defaults : &kDefaults, child),
+          row->min,
+          row->max,
+          row->mutability};
+}
 
 /// Installs the rows of `table` under the ids first_id, first_id + 1, ...
 template <class Settings, std::size_t N>
@@ -52,77 +61,73 @@ void InstallProperties(GObjectClass* klass, const std::array<Property<Settings>,
                        guint first_id = 1) {
   const Settings defaults{};
   for (const auto& p : table) {
-    const auto flags =
-        static_cast<GParamFlags>(G_PARAM_READWRITE | G_PARAM_STATIC_STRINGS | p.mutability);
-    GParamSpec* spec = std::visit(
-        Overload{
-            [&](guint Settings::*f) {
-              return g_param_spec_uint(p.name, p.name, p.blurb, static_cast<guint>(p.min),
-                                       static_cast<guint>(p.max), defaults.*f, flags);
-            },
-            [&](gint Settings::*f) {
-              return g_param_spec_int(p.name, p.name, p.blurb, static_cast<gint>(p.min),
-                                      static_cast<gint>(p.max), defaults.*f, flags);
-            },
-            [&](guint64 Settings::*f) {
-              const bool unlimited =
-                  p.max >= static_cast<gdouble>(std::numeric_limits<guint64>::max());
-              return g_param_spec_uint64(
-                  p.name, p.name, p.blurb, static_cast<guint64>(p.min),
-                  unlimited ? std::numeric_limits<guint64>::max() : static_cast<guint64>(p.max),
-                  defaults.*f, flags);
-            },
-            [&](gdouble Settings::*f) {
-              return g_param_spec_double(p.name, p.name, p.blurb, p.min, p.max, defaults.*f, flags);
-            },
-            [&](bool Settings::*f) {
-              return g_param_spec_boolean(p.name, p.name, p.blurb, defaults.*f, flags);
-            },
-            [&](std::string Settings::*f) {
-              // An empty default reads as NULL, as GStreamer's own elements show it.
-              const std::string& text = defaults.*f;
-              return g_param_spec_string(p.name, p.name, p.blurb,
-                                         text.empty() ? nullptr : text.c_str(), flags);
-            },
-            [&](const EnumField<Settings>& f) {
-              return g_param_spec_enum(p.name, p.name, p.blurb, f.type(), defaults.*f.field, flags);
-            }},
-        p.field);
-    g_object_class_install_property(klass, first_id++, spec);
+    const SpecArgs args{p.name, p.blurb, p.flags(), p.min, p.max};
+    g_object_class_install_property(klass, first_id++, p.field.Spec(args, defaults));
   }
 }
 
-#if defined(__GNUC__) && !defined(__clang__)
-#pragma GCC diagnostic pop
-#endif
-
 template <class Settings>
 void SetProperty(Settings& s, const Property<Settings>& p, const GValue* v) {
-  std::visit(Overload{[&](guint Settings::*f) { s.*f = g_value_get_uint(v); },
-                      [&](gint Settings::*f) { s.*f = g_value_get_int(v); },
-                      [&](guint64 Settings::*f) { s.*f = g_value_get_uint64(v); },
-                      [&](gdouble Settings::*f) { s.*f = g_value_get_double(v); },
-                      [&](bool Settings::*f) { s.*f = g_value_get_boolean(v) != FALSE; },
-                      [&](std::string Settings::*f) {
-                        const gchar* text = g_value_get_string(v);
-                        s.*f = text != nullptr ? text : "";
-                      },
-                      [&](const EnumField<Settings>& f) { s.*f.field = g_value_get_enum(v); }},
-             p.field);
+  p.field.Set(&s, nullptr, v);
 }
 
+/// `object` is needed by rows that are functions of it, which take the locks they need.
 template <class Settings>
-void GetProperty(const Settings& s, const Property<Settings>& p, GValue* v) {
-  std::visit(Overload{[&](guint Settings::*f) { g_value_set_uint(v, s.*f); },
-                      [&](gint Settings::*f) { g_value_set_int(v, s.*f); },
-                      [&](guint64 Settings::*f) { g_value_set_uint64(v, s.*f); },
-                      [&](gdouble Settings::*f) { g_value_set_double(v, s.*f); },
-                      [&](bool Settings::*f) { g_value_set_boolean(v, s.*f); },
-                      [&](std::string Settings::*f) {
-                        g_value_set_string(v, (s.*f).empty() ? nullptr : (s.*f).c_str());
-                      },
-                      [&](const EnumField<Settings>& f) { g_value_set_enum(v, s.*f.field); }},
-             p.field);
+void GetProperty(const Settings& s, const Property<Settings>& p, GValue* v,
+                 GObject* object = nullptr) {
+  p.field.Get(&s, object, v);
+}
+
+/// What ServeProperties() does after a change where nothing is to be done.
+inline void NothingMore(GObject*, GParamSpec*) {}
+
+/// A table that others share may be a function that returns it.
+template <class Table>
+const auto& RowsOf(const Table& table) {
+  if constexpr (std::is_function_v<Table>) {
+    return table();
+  } else {
+    return table;
+  }
+}
+
+/// Holds a mutex, where it is to.
+template <class Mutex>
+class LockIf {
+ public:
+  LockIf(bool wanted, Mutex& mutex) : mutex_(wanted ? &mutex : nullptr) {
+    if (mutex_ != nullptr) mutex_->lock();
+  }
+  ~LockIf() {
+    if (mutex_ != nullptr) mutex_->unlock();
+  }
+  LockIf(const LockIf&) = delete;
+  LockIf& operator=(const LockIf&) = delete;
+
+ private:
+  Mutex* mutex_;
+};
+
+/// Installs `table` and both property methods of an element `Self` whose `state` has `settings`
+/// and a `mutex` that guards them. `changed` runs after each change, without the lock.
+template <class Self, auto& table, void (*changed)(GObject*, GParamSpec*) = NothingMore>
+void ServeProperties(GObjectClass* klass) {
+  klass->set_property = [](GObject* object, guint id, const GValue* v, GParamSpec* spec) {
+    auto& state = *reinterpret_cast<Self*>(object)->state;
+    const auto& field = RowsOf(table)[id - 1].field;
+    {
+      const LockIf lock(!field.of_object(), state.mutex);
+      field.Set(&state.settings, object, v);
+    }
+    changed(object, spec);
+  };
+  klass->get_property = [](GObject* object, guint id, GValue* v, GParamSpec*) {
+    auto& state = *reinterpret_cast<Self*>(object)->state;
+    const auto& field = RowsOf(table)[id - 1].field;
+    const LockIf lock(!field.of_object(), state.mutex);
+    field.Get(&state.settings, object, v);
+  };
+  InstallProperties(klass, RowsOf(table));
 }
 
 }  // namespace lidar::gst

@@ -32,7 +32,7 @@ struct Settings {
   bool binary = true;
 };
 
-constexpr std::array<lidar::gst::Property<Settings>, 1> kProperties = {{
+const std::array<lidar::gst::Property<Settings>, 1> kProperties = {{
     {"binary", "Numbers as little-endian binary, else as text", &Settings::binary, 0, 0,
      GST_PARAM_MUTABLE_PLAYING},
 }};

@@ -27,7 +27,7 @@ using lidar::gst::ScanQueue;
 
 using Settings = lidar::gst::AssemblerSettings;
 
-constexpr std::array<lidar::gst::Property<Settings>, 1> kProperties = {{
+const std::array<lidar::gst::Property<Settings>, 1> kProperties = {{
     {"max-wait",
      "How long a scan waits for slices that are late, in a live pipeline [ns]; added to the "
      "latency",

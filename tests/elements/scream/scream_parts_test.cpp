@@ -151,10 +151,12 @@ struct Switch {
 class ExtensionSwitch : public ::testing::TestWithParam<Switch> {};
 TEST_P(ExtensionSwitch, TurnsItsExtensionOffAndNoOther) {
   TxSettings settings;
+  GValue off = G_VALUE_INIT;
+  g_value_init(&off, G_TYPE_BOOLEAN);
   int found = 0;
   for (const auto& row : TxPropertyTable()) {
     if (std::string(row.name) != GetParam().property) continue;
-    settings.*std::get<bool TxSettings::*>(row.field) = false;
+    SetProperty(settings, row, &off);
     ++found;
   }
   ASSERT_EQ(found, 1);
