@@ -7,9 +7,9 @@
 #include "ext/draco/draco_integers.h"
 #include "src/codec/mask_coder.h"
 #include "src/codec/predictor.h"
-#include "src/codec/range_grid.h"
+#include "src/cloud/range_grid.h"
 #include "src/codec/range_image.h"
-#include "src/codec/residual_model.h"
+#include "src/codec/symbol_model.h"
 
 namespace lidar::codec {
 

@@ -8,7 +8,7 @@
 
 #include "src/base/byte_reader.h"
 #include "src/codec/intensity_scale.h"
-#include "src/codec/range_grid.h"
+#include "src/cloud/range_grid.h"
 
 namespace lidar::codec {
 

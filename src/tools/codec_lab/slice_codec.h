@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "src/codec/slice_encoder.h"
-#include "src/rate/residual_model.h"
+#include "src/rate/error_bound.h"
 #include "src/rate/size_model.h"
 #include "src/tools/codec_lab/scan.h"
 

@@ -7,7 +7,7 @@
 #include <random>
 
 #include "src/codec/slice_decoder.h"
-#include "tests/elements/draco/test_clouds.h"
+#include "tests/core/codec/test_clouds.h"
 
 namespace lidar::codec {
 namespace {

@@ -11,7 +11,7 @@
 
 #include "gst/common/buffer_map.h"
 #include "gst/common/cloud_info.h"
-#include "tests/elements/draco/test_clouds.h"
+#include "tests/core/codec/test_clouds.h"
 #include "tests/support/harness.h"
 
 namespace lidar::gst {

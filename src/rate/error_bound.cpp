@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "src/rate/residual_model.h"
+#include "src/rate/error_bound.h"
 
 #include <algorithm>
 #include <cmath>
