@@ -3,7 +3,7 @@
 
 #include <cstring>
 
-namespace lidar::codec {
+namespace lidar::draco {
 namespace {
 
 constexpr char kMagic[] = {'D', 'R', 'A', 'C', 'O'};
@@ -67,4 +67,4 @@ std::optional<DracoSummary> CheckDraco(ByteView stream, std::uint32_t max_points
   return summary;
 }
 
-}  // namespace lidar::codec
+}  // namespace lidar::draco

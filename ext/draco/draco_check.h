@@ -6,7 +6,7 @@
 
 #include "src/base/byte_reader.h"
 
-namespace lidar::codec {
+namespace lidar::draco {
 
 struct DracoSummary {
   std::uint32_t points = 0;
@@ -17,4 +17,4 @@ struct DracoSummary {
 /// and memory; none otherwise. Passing does not mean that the stream is undamaged.
 std::optional<DracoSummary> CheckDraco(ByteView stream, std::uint32_t max_points);
 
-}  // namespace lidar::codec
+}  // namespace lidar::draco

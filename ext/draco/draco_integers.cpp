@@ -8,7 +8,7 @@
 
 #include "ext/draco/draco_check.h"
 
-namespace lidar::codec {
+namespace lidar::draco {
 namespace {
 
 constexpr auto kGeneric = ::draco::GeometryAttribute::GENERIC;
@@ -40,7 +40,13 @@ bool GetList(const ::draco::PointCloud& cloud, int index, std::vector<T>* list) 
 
 }  // namespace
 
-bool EncodeIntegers(const IntegerLists& lists, bool delta, std::vector<std::uint8_t>* out) {
+const DracoIntegers* DracoIntegers::Shared() {
+  static const DracoIntegers integers;
+  return &integers;
+}
+
+bool DracoIntegers::Encode(const codec::IntegerLists& lists, bool delta,
+                           std::vector<std::uint8_t>* out) const {
   if (lists.values.empty()) return false;
   ::draco::PointCloud cloud;
   cloud.set_num_points(static_cast<std::uint32_t>(lists.values.size()));
@@ -57,7 +63,8 @@ bool EncodeIntegers(const IntegerLists& lists, bool delta, std::vector<std::uint
   return true;
 }
 
-bool DecodeIntegers(ByteView stream, std::uint32_t count, bool has_levels, IntegerLists* lists) {
+bool DracoIntegers::Decode(ByteView stream, std::uint32_t count, bool has_levels,
+                           codec::IntegerLists* lists) const {
   const auto summary = CheckDraco(stream, count);
   if (!summary || summary->points != count || summary->is_kd_tree) return false;
   try {
@@ -77,4 +84,4 @@ bool DecodeIntegers(ByteView stream, std::uint32_t count, bool has_levels, Integ
   }
 }
 
-}  // namespace lidar::codec
+}  // namespace lidar::draco

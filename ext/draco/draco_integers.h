@@ -1,24 +1,18 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Lists of integers as a Draco point cloud: one attribute a list.
 #pragma once
-#include <cstdint>
-#include <vector>
+#include "src/codec/integer_coder.h"
 
-#include "src/base/byte_reader.h"
+namespace lidar::draco {
 
-namespace lidar::codec {
-
-struct IntegerLists {
-  std::vector<std::int32_t> values;
-  std::vector<std::uint8_t> levels;  // as many as values, or none
+class DracoIntegers : public codec::IntegerCoder {
+ public:
+  bool Encode(const codec::IntegerLists& lists, bool delta,
+              std::vector<std::uint8_t>* out) const override;
+  bool Decode(ByteView stream, std::uint32_t count, bool has_levels,
+              codec::IntegerLists* lists) const override;
+  /// It has no state, so one is enough.
+  static const DracoIntegers* Shared();
 };
 
-/// Appends the stream to `out`. With `delta`, Draco predicts each integer as the one before it.
-/// False where there is nothing to encode or Draco fails.
-bool EncodeIntegers(const IntegerLists& lists, bool delta, std::vector<std::uint8_t>* out);
-
-/// Fills `lists` from a stream of exactly `count` points, with levels or without; false where the
-/// stream is another.
-bool DecodeIntegers(ByteView stream, std::uint32_t count, bool has_levels, IntegerLists* lists);
-
-}  // namespace lidar::codec
+}  // namespace lidar::draco

@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // The slice encoder as the rate loop sees a coder.
 #pragma once
-#include "src/codec/slice_encoder.h"
-#include "src/rate/residual_model.h"
+#include "ext/draco/slice_coder.h"
+#include "src/rate/error_bound.h"
 #include "src/rate/slice_coder.h"
 
 namespace lidar::gst {
 
 class EncCoder : public rate::SliceCoder {
  public:
-  EncCoder(codec::SliceEncoder* encoder, unsigned level, codec::EncodedSlice* slice)
+  EncCoder(draco::SliceEncoder* encoder, unsigned level, codec::EncodedSlice* slice)
       : encoder_(encoder), level_(level), slice_(slice) {}
 
   rate::LoadedSlice loaded() const override {
@@ -21,22 +21,22 @@ class EncCoder : public rate::SliceCoder {
             encoder_->Mode(level_)};
   }
   rate::StepRange Steps(double max_error_m) const override {
-    const auto residual = encoder_->geometry() == codec::Geometry::kRange
-                              ? rate::ResidualModel::Range(encoder_->range_unit_mm())
-                              : rate::ResidualModel::Xyz();
-    return {residual.FinestStep(), residual.CoarsestStep(max_error_m), residual.step_unit()};
+    const auto bound = encoder_->geometry() == Geometry::kRange
+                           ? rate::ErrorBound::Range(encoder_->range_unit_mm())
+                           : rate::ErrorBound::Xyz();
+    return {bound.FinestStep(), bound.CoarsestStep(max_error_m), bound.step_unit()};
   }
   void Thin(const std::vector<bool>& kept) override { encoder_->Thin(kept); }
   rate::CodingResult Encode(double max_error_m, const rate::Settings& settings,
                             rate::CodedSlice* slice) override {
     const auto result = encoder_->Encode(
-        {max_error_m, settings.step_m, settings.intensity_bits, settings.level}, slice_);
+        {{max_error_m, settings.step_m, settings.intensity_bits}, settings.level}, slice_);
     *slice = {slice_->bytes.size(), slice_->returns, slice_->step_m, slice_->error_m};
     return static_cast<rate::CodingResult>(result);
   }
 
  private:
-  codec::SliceEncoder* encoder_;
+  draco::SliceEncoder* encoder_;
   unsigned level_;
   codec::EncodedSlice* slice_;
 };

@@ -61,7 +61,7 @@ class Distances {
 
 }  // namespace
 
-ErrorCheck::ErrorCheck(const codec::CloudFormat& format, codec::Geometry geometry)
+ErrorCheck::ErrorCheck(const codec::CloudFormat& format, Geometry geometry)
     : input_(format), geometry_(geometry) {}
 
 std::optional<PointErrors> ErrorCheck::Measure(ByteView raw,
@@ -71,16 +71,16 @@ std::optional<PointErrors> ErrorCheck::Measure(ByteView raw,
   codec::CloudFormat format = input_;
   format.layout = DecodedLayout();
   const auto max_points = static_cast<std::uint32_t>(most);
-  codec::SliceDecoder decoder(format, geometry_, max_points);
+  draco::SliceDecoder decoder(format, geometry_, max_points);
   const ByteView bytes{slice.data(), slice.size()};
   const auto shape = decoder.Decode(bytes);
   if (!shape) return std::nullopt;
   const std::size_t points = std::size_t{shape->width} * shape->height;
   decoded_.resize(points * kDecodedStep);
   decoder.Write(decoded_.data());
-  if (geometry_ == codec::Geometry::kRange)
+  if (geometry_ == Geometry::kRange)
     return points == most ? std::optional(ComparePixels(raw)) : std::nullopt;
-  const auto summary = codec::CheckDraco(bytes, max_points);
+  const auto summary = draco::CheckDraco(bytes, max_points);
   return CompareClouds(raw, summary && !summary->is_kd_tree);
 }
 

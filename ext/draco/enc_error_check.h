@@ -5,9 +5,8 @@
 #include <optional>
 #include <vector>
 
+#include "ext/draco/slice_coder.h"
 #include "src/base/byte_reader.h"
-#include "src/codec/slice_decoder.h"
-#include "src/codec/slice_encoder.h"
 
 namespace lidar::gst {
 
@@ -22,7 +21,7 @@ struct PointErrors {
 /// One stream, so one format. For one thread at a time.
 class ErrorCheck {
  public:
-  ErrorCheck(const codec::CloudFormat& format, codec::Geometry geometry);
+  ErrorCheck(const codec::CloudFormat& format, Geometry geometry);
 
   /// The distances between the points of `raw` and those that `slice`, which was encoded from it,
   /// decodes to. Pixels are compared with themselves. So are the points of clouds in xyz geometry
@@ -35,7 +34,7 @@ class ErrorCheck {
   PointErrors CompareClouds(ByteView raw, bool in_order) const;
 
   codec::CloudFormat input_;
-  codec::Geometry geometry_;
+  Geometry geometry_;
   std::vector<std::uint8_t> decoded_;
 };
 

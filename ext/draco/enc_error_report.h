@@ -28,8 +28,7 @@ class ErrorReport {
     bool holds = false;
   };
 
-  ErrorReport(const codec::CloudFormat& format, codec::Geometry geometry)
-      : check_(format, geometry) {}
+  ErrorReport(const codec::CloudFormat& format, Geometry geometry) : check_(format, geometry) {}
   /// `input` became `bytes`. None where this slice is not one of every `every` (0: of none).
   std::optional<Outcome> OnSlice(GstElement* element, guint every, GstBuffer* input,
                                  const std::vector<std::uint8_t>& bytes, const CheckedSlice& slice);

@@ -6,7 +6,7 @@
 
 #include "src/base/byte_reader.h"
 #include "src/cloud/range_projection.h"
-#include "src/codec/slice_encoder.h"
+#include "src/codec/cloud_io.h"
 
 namespace lidar::gst {
 

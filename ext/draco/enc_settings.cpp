@@ -4,16 +4,15 @@
 namespace lidar::gst {
 namespace {
 
-using codec::Geometry;
 using codec::RangeCoder;
 using rate::DegradationPreference;
 using rate::RateModel;
 using Settings = EncSettings;
 
 const GEnumValue kGeometries[] = {
-    {Int(Geometry::kAuto), "range where the caps carry ranges and a sensor model", "auto"},
-    {Int(Geometry::kXyz), "Plain Draco files", "xyz"},
-    {Int(Geometry::kRange), "Ranges of an organised scan", "range"},
+    {Int(GeometryChoice::kAuto), "range where the caps carry ranges and a sensor model", "auto"},
+    {Int(GeometryChoice::kXyz), "Plain Draco files", "xyz"},
+    {Int(GeometryChoice::kRange), "Ranges of an organised scan", "range"},
     {0, nullptr, nullptr}};
 const GEnumValue kCoders[] = {
     {Int(RangeCoder::kDraco), "Draco, with its own delta prediction", "draco"},
@@ -97,6 +96,11 @@ const std::array<Property<EncSettings>, kEncPropertyCount>& EncProperties() {
        &Settings::error_check, 0, G_MAXUINT, GST_PARAM_MUTABLE_PLAYING},
   }};
   return table;
+}
+
+std::optional<Geometry> GeometryOf(gint choice) {
+  if (choice == Int(GeometryChoice::kAuto)) return std::nullopt;
+  return choice == Int(GeometryChoice::kXyz) ? Geometry::kXyz : Geometry::kRange;
 }
 
 const char* GeometryName(gint geometry) { return kGeometries[geometry].value_nick; }

@@ -4,10 +4,12 @@
 #include <gst/gst.h>
 
 #include <array>
+#include <optional>
 #include <string>
 
 #include "gst/common/properties.h"
-#include "src/codec/slice_encoder.h"
+#include "src/cloud/geometry.h"
+#include "src/codec/range_header.h"
 #include "src/rate/model_file.h"
 #include "src/rate/scan_plan.h"
 
@@ -19,11 +21,13 @@ constexpr gint Int(E value) {
   return static_cast<gint>(value);
 }
 
+enum class GeometryChoice { kAuto, kXyz, kRange };
+
 struct EncSettings {
   guint bitrate_bps = 0;
   gdouble max_error_m = 0.02;
-  gint geometry = Int(codec::Geometry::kAuto);
-  gint range_coder = Int(codec::SliceEncoder::kDefaultRangeCoder);
+  gint geometry = Int(GeometryChoice::kAuto);
+  gint range_coder = Int(codec::RangeCoder::kAdaptive);
   gdouble step_m = 0;
   guint level = 7;
   guint intensity_bits = 5;
@@ -37,6 +41,8 @@ struct EncSettings {
 constexpr std::size_t kEncPropertyCount = 12;
 const std::array<Property<EncSettings>, kEncPropertyCount>& EncProperties();
 
+/// None for kAuto.
+std::optional<Geometry> GeometryOf(gint choice);
 /// The value's name in the property `geometry`.
 const char* GeometryName(gint geometry);
 

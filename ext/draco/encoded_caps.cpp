@@ -7,8 +7,6 @@
 
 namespace lidar::gst {
 
-using codec::Geometry;
-
 std::optional<EncodedInfo> EncodedInfo::FromCaps(const GstCaps* caps) {
   if (caps == nullptr || gst_caps_is_empty(caps) || gst_caps_is_any(caps)) return std::nullopt;
   const GstStructure* s = gst_caps_get_structure(caps, 0);

@@ -5,17 +5,17 @@
 
 #include <optional>
 
+#include "src/cloud/geometry.h"
 #include "src/cloud/point_fields.h"
 #include "src/cloud/sensor_model.h"
-#include "src/codec/slice_encoder.h"
 
 namespace lidar::gst {
 
 /// `application/x-draco`, one slice a buffer.
 struct EncodedInfo {
-  codec::Geometry geometry = codec::Geometry::kXyz;  // never kAuto
-  PointFields fields;                                // of the decoded cloud
-  gint framerate_n = 0;                              // scans/s; 0/1: not known
+  Geometry geometry = Geometry::kXyz;
+  PointFields fields;    // of the decoded cloud
+  gint framerate_n = 0;  // scans/s; 0/1: not known
   gint framerate_d = 1;
   std::optional<SensorModel> sensor_model;  // always there in range geometry
 

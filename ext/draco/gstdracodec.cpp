@@ -19,19 +19,19 @@
 #include <vector>
 
 #include "ext/draco/encoded_caps.h"
+#include "ext/draco/slice_coder.h"
 #include "gst/common/buffer_map.h"
 #include "gst/common/cloud_info.h"
 #include "gst/common/properties.h"
 #include "gst/common/refs.h"
-#include "src/codec/slice_decoder.h"
 
 GST_DEBUG_CATEGORY_STATIC(gst_lidar_draco_dec_debug);
 #define GST_CAT_DEFAULT gst_lidar_draco_dec_debug
 
 namespace {
 
-using lidar::codec::Geometry;
-using lidar::codec::SliceDecoder;
+using lidar::Geometry;
+using lidar::draco::SliceDecoder;
 
 struct Settings {
   guint max_points = 1U << 20;

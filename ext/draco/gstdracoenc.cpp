@@ -32,7 +32,7 @@ GST_DEBUG_CATEGORY_STATIC(gst_lidar_draco_enc_debug);
 namespace {
 
 using lidar::DataRate;
-using lidar::codec::Geometry;
+using lidar::Geometry;
 using lidar::codec::RangeCoder;
 using lidar::rate::CodingResult;
 using Settings = lidar::gst::EncSettings;
@@ -44,7 +44,7 @@ constexpr guint kPropStats = kPropMinBitrate + 1;
 /// Of the streaming thread.
 struct Stream {
   lidar::gst::CloudInfo info;
-  std::optional<lidar::codec::SliceEncoder> encoder;
+  std::optional<lidar::draco::SliceEncoder> encoder;
   std::unique_ptr<lidar::rate::RateLoop> loop;
   lidar::codec::EncodedSlice slice;
   std::optional<lidar::gst::RangeCheck> range_check;
@@ -109,7 +109,7 @@ gboolean SetCaps(GstLidarDracoEnc* self, GstCaps* caps) {
   if (info) {
     format = {{info->fields, info->point_step}, info->height, info->sensor_model};
     stream.encoder =
-        lidar::codec::SliceEncoder::Create(format, static_cast<Geometry>(settings.geometry),
+        lidar::draco::SliceEncoder::Create(format, lidar::gst::GeometryOf(settings.geometry),
                                            static_cast<RangeCoder>(settings.range_coder));
   }
   if (stream.encoder && stream.encoder->geometry() == Geometry::kRange &&

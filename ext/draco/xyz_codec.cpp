@@ -14,13 +14,13 @@
 #include <stdexcept>
 
 #include "ext/draco/draco_check.h"
+#include "src/cloud/xyz_grid.h"
 
-namespace lidar::codec {
+namespace lidar::draco {
 namespace {
 
 using ::draco::GeometryAttribute;
 
-constexpr double kSqrt3 = 1.7320508075688772;
 constexpr int kMaxBits = 30;
 // Draco's sequential coder sorts symbols in a table of 2^bits entries.
 constexpr int kMaxSequentialBits = 18;
@@ -66,14 +66,13 @@ double RoundingOf(const Box& box) { return kRounding * (8 * box.extent + 2 * box
 /// The grid that keeps to the settings; none where there is none.
 std::optional<Grid> GridOf(const Box& box, const XyzSettings& settings) {
   const double rounding = RoundingOf(box);
-  const double per_axis = settings.max_error_m / kSqrt3 - rounding;
-  if (!(per_axis > 0)) return std::nullopt;
-  double step = 2 * per_axis;
+  double step = settings.max_error_m / kXyzErrorPerStep - 2 * rounding;
+  if (!(step > 0)) return std::nullopt;
   if (settings.step_m > 0) step = std::min(step, settings.step_m);
   const double cells = box.extent / step + 1;
   if (!(cells <= static_cast<double>(1U << kMaxBits) - 1)) return std::nullopt;
   const int bits = std::max(1, static_cast<int>(std::ceil(std::log2(cells + 1))));
-  return Grid{step, (step / 2 + rounding) * kSqrt3, std::min(bits, kMaxBits)};
+  return Grid{step, (step + 2 * rounding) * kXyzErrorPerStep, std::min(bits, kMaxBits)};
 }
 
 void AddAttribute(GeometryAttribute::Type type, std::int8_t components,
@@ -206,4 +205,4 @@ bool DecodeXyz(ByteView stream, std::uint32_t max_points, XyzCloud* cloud) {
   }
 }
 
-}  // namespace lidar::codec
+}  // namespace lidar::draco

@@ -6,22 +6,13 @@
 #include <vector>
 
 #include "src/base/byte_reader.h"
+#include "src/codec/cloud_io.h"
 
-namespace lidar::codec {
+namespace lidar::draco {
 
-/// Points without order; intensities are as many, or none.
-struct XyzCloud {
-  std::vector<float> xyz;  // metres, three a point
-  std::vector<float> intensity;
+using codec::XyzCloud;
 
-  std::size_t size() const { return xyz.size() / 3; }
-  void Clear() {
-    xyz.clear();
-    intensity.clear();
-  }
-};
-
-/// Of the points' box [m].
+/// Longest side of the points' box [m].
 double LongestSide(const XyzCloud& cloud);
 
 enum class XyzMethod { kSequential, kKdTree };
@@ -48,4 +39,4 @@ bool EncodeXyz(const XyzCloud& cloud, const XyzSettings& settings, std::vector<s
 /// False for a stream that is not a cloud of 1 .. max_points points as EncodeXyz writes them.
 bool DecodeXyz(ByteView stream, std::uint32_t max_points, XyzCloud* cloud);
 
-}  // namespace lidar::codec
+}  // namespace lidar::draco

@@ -33,7 +33,7 @@ std::optional<rtp::StreamConfig> StreamConfigFromCaps(const GstCaps* caps) {
   if (fields == nullptr || std::strlen(fields) > 0xFFFF || !ReadModel(s, &config))
     return std::nullopt;
   config.fields = fields;
-  config.geometry = g_strcmp0(geometry, "range") == 0 ? rtp::Geometry::kRange : rtp::Geometry::kXyz;
+  config.geometry = g_strcmp0(geometry, "range") == 0 ? Geometry::kRange : Geometry::kXyz;
   gint n = 0;
   gint d = 1;
   if (gst_structure_get_fraction(s, "framerate", &n, &d) && n >= 0 && d > 0) {
@@ -46,7 +46,7 @@ std::optional<rtp::StreamConfig> StreamConfigFromCaps(const GstCaps* caps) {
 }
 
 GstCaps* StreamConfigToCaps(const rtp::StreamConfig& config) {
-  const bool range = config.geometry == rtp::Geometry::kRange;
+  const bool range = config.geometry == Geometry::kRange;
   GstCaps* caps = gst_caps_new_simple(GST_LIDAR_DRACO_MEDIA_TYPE, "geometry", G_TYPE_STRING,
                                       range ? "range" : "xyz", "alignment", G_TYPE_STRING, "slice",
                                       "fields", G_TYPE_STRING, config.fields.c_str(), "framerate",

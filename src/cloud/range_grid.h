@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <vector>
 
-namespace lidar::codec {
+namespace lidar {
 
 /// Ranges are multiples of `unit_mm`, here called cells. Neighbouring cells share a bin and come
 /// back as its middle, rounded up to a whole millimetre. A step that is no whole number of cells
@@ -54,10 +54,11 @@ class RangeGrid {
   /// The step in cells / kParts.
   std::uint32_t parts() const { return parts_; }
   double step_m() const { return 1e-3 / kParts * parts_ * unit_mm_; }
+  /// Cells of the larger bins.
+  std::uint32_t largest_bin() const { return (parts_ + kParts - 1) / kParts; }
   /// The largest distance between a range and RangeOf(BinOf(range)).
   double error_m() const {
-    const std::uint32_t cells = (parts_ + kParts - 1) / kParts;  // of the larger bins
-    const std::uint32_t error_mm = ((cells - 1) * unit_mm_ + 1) / 2;
+    const std::uint32_t error_mm = ((largest_bin() - 1) * unit_mm_ + 1) / 2;
     return 1e-3 * error_mm;
   }
 
@@ -100,4 +101,4 @@ class RangeGrid {
   std::uint32_t parts_ = kParts;
 };
 
-}  // namespace lidar::codec
+}  // namespace lidar

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Our own coders of a block's integers: prediction, then adaptive rANS or a list for Draco.
+// Prediction of a block's integers, and the adaptive rANS coder of what it leaves.
 #pragma once
 #include <cstdint>
 #include <vector>
 
-#include "ext/draco/draco_integers.h"
+#include "src/cloud/range_grid.h"
+#include "src/codec/integer_coder.h"
 #include "src/codec/mask_coder.h"
 #include "src/codec/predictor.h"
-#include "src/cloud/range_grid.h"
 #include "src/codec/range_image.h"
 #include "src/codec/symbol_model.h"
 
@@ -43,7 +43,7 @@ class AdaptiveCoder {
   struct Channel {
     std::uint32_t limit;  // values are below
     RowPredictor predictor = {};
-    ResidualModel model = {};
+    SymbolModel model = {};
   };
   bool DecodeRow(std::uint32_t beam, const RowReturns& row, RansDecoder* decoder, Channel* channel);
 

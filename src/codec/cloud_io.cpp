@@ -28,6 +28,11 @@ const PointField* FindTyped(const PointFields& fields, const char* name, FieldTy
 
 }  // namespace
 
+bool CloudFormat::HasRanges() const {
+  return sensor_model && sensor_model->beams.size() == height &&
+         layout.fields.Has("range", FieldType::kU32);
+}
+
 PointFields KeptFields(const PointFields& input, bool with_intensity, bool with_range) {
   PointFields kept;
   kept.Add("x", FieldType::kF32).Add("y", FieldType::kF32).Add("z", FieldType::kF32);

@@ -2,8 +2,9 @@
 // Raw clouds, as they lie in buffers, to and from what the codecs work on.
 #pragma once
 #include <cstdint>
+#include <optional>
+#include <vector>
 
-#include "ext/draco/xyz_codec.h"
 #include "src/base/byte_reader.h"
 #include "src/cloud/point_fields.h"
 #include "src/cloud/range_projection.h"
@@ -12,9 +13,31 @@
 
 namespace lidar::codec {
 
+/// Points without order; intensities are as many, or none.
+struct XyzCloud {
+  std::vector<float> xyz;  // metres, three a point
+  std::vector<float> intensity;
+
+  std::size_t size() const { return xyz.size() / 3; }
+  void Clear() {
+    xyz.clear();
+    intensity.clear();
+  }
+};
+
 struct CloudLayout {
   PointFields fields;
   std::uint32_t point_step = 0;  // bytes
+};
+
+/// What the caps say of every raw slice of a stream.
+struct CloudFormat {
+  CloudLayout layout;
+  std::uint32_t height = 1;  // beams, where the cloud is organised
+  std::optional<SensorModel> sensor_model;
+
+  /// Whether it can be coded in range geometry.
+  bool HasRanges() const;
 };
 
 constexpr unsigned kFineIntensityBits = IntensityScale::kMaxBits;

@@ -21,7 +21,7 @@ bool RangeEncoder::Encode(const RangeImage& image, const RangeSettings& settings
   payload_.clear();
   if (settings.coder == RangeCoder::kAdaptive) {
     EncodeAdaptively(image.columns);
-  } else if (!EncodeWithDraco(settings, image.columns)) {
+  } else if (!EncodeIntegers(settings, image.columns)) {
     return false;
   }
   RangeHeader header;
@@ -70,13 +70,14 @@ void RangeEncoder::CollectReturns(const RangeImage& image, const RangeSettings& 
 
 void RangeEncoder::EncodeAdaptively(std::uint32_t columns) {
   rans_.Start(MaskCoder::Pieces(alignment_.beams(), columns) +
-              ResidualModel::kMostPieces * (lists_.values.size() + lists_.levels.size()));
+              SymbolModel::kMostPieces * (lists_.values.size() + lists_.levels.size()));
   if (has_gaps()) mask_coder_.Encode(mask_, alignment_, columns, &rans_);
   coder_.Encode({alignment_, mask_, columns}, lists_, &rans_);
   rans_.Finish(&payload_);
 }
 
-bool RangeEncoder::EncodeWithDraco(const RangeSettings& settings, std::uint32_t columns) {
+bool RangeEncoder::EncodeIntegers(const RangeSettings& settings, std::uint32_t columns) {
+  if (integers_ == nullptr) return false;
   if (has_gaps()) {
     rans_.Start(MaskCoder::Pieces(alignment_.beams(), columns));
     mask_coder_.Encode(mask_, alignment_, columns, &rans_);
@@ -85,7 +86,7 @@ bool RangeEncoder::EncodeWithDraco(const RangeSettings& settings, std::uint32_t 
   if (returns() == 0) return true;
   if (settings.coder == RangeCoder::kResidual)
     coder_.ToResiduals({alignment_, mask_, columns}, &lists_);
-  return EncodeIntegers(lists_, settings.coder == RangeCoder::kDraco, &payload_);
+  return integers_->Encode(lists_, settings.coder == RangeCoder::kDraco, &payload_);
 }
 
 bool RangeDecoder::Decode(ByteReader* reader, std::size_t max_points, RangeImage* image,
@@ -107,20 +108,21 @@ bool RangeDecoder::Decode(ByteReader* reader, std::size_t max_points, RangeImage
   image->intensity.assign(header->intensity.bits() > 0 ? image->size() : 0, 0);
   mask_.assign(image->size(), 1);
   return header->coder == RangeCoder::kAdaptive ? DecodeAdaptively(*header, payload, image)
-                                                : DecodeWithDraco(*header, mask, payload, image);
+                                                : DecodeIntegers(*header, mask, payload, image);
 }
 
 bool RangeDecoder::DecodeAdaptively(const RangeHeader& header, ByteView payload,
                                     RangeImage* image) {
-  RansDecoder rans(payload, ResidualModel::kMostPieces * header.columns, &padded_);
+  RansDecoder rans(payload, SymbolModel::kMostPieces * header.columns, &padded_);
   if (header.has_gaps && !mask_coder_.Decode(alignment_, header.columns, &rans, &mask_))
     return false;
   const BlockShape shape{alignment_, mask_, header.columns};
   return coder_.Decode(shape, header.grid, &rans, image) && rans.AtEnd();
 }
 
-bool RangeDecoder::DecodeWithDraco(const RangeHeader& header, ByteView mask, ByteView payload,
-                                   RangeImage* image) {
+bool RangeDecoder::DecodeIntegers(const RangeHeader& header, ByteView mask, ByteView payload,
+                                  RangeImage* image) {
+  if (integers_ == nullptr) return false;
   if (header.has_gaps) {
     RansDecoder rans(mask, header.columns, &padded_);
     if (!mask_coder_.Decode(alignment_, header.columns, &rans, &mask_) || !rans.AtEnd())
@@ -134,7 +136,7 @@ bool RangeDecoder::DecodeWithDraco(const RangeHeader& header, ByteView mask, Byt
     image->ranges.assign(image->size(), 0);
     return payload.empty();
   }
-  if (!DecodeIntegers(payload, returns, !lists_.levels.empty(), &lists_)) return false;
+  if (!integers_->Decode(payload, returns, !lists_.levels.empty(), &lists_)) return false;
   if (header.coder == RangeCoder::kResidual &&
       !coder_.FromResiduals({alignment_, mask_, header.columns}, &lists_)) {
     return false;

@@ -4,11 +4,11 @@
 #include <cstdint>
 #include <vector>
 
-#include "ext/draco/draco_integers.h"
 #include "src/base/byte_reader.h"
 #include "src/cloud/sensor_model.h"
 #include "src/codec/adaptive_coder.h"
 #include "src/codec/azimuth_alignment.h"
+#include "src/codec/integer_coder.h"
 #include "src/codec/mask_coder.h"
 #include "src/codec/range_header.h"
 #include "src/codec/range_image.h"
@@ -16,7 +16,7 @@
 namespace lidar::codec {
 
 struct RangeSettings {
-  RangeCoder coder = RangeCoder::kDraco;
+  RangeCoder coder = RangeCoder::kAdaptive;
   RangeGrid grid;
   IntensityScale intensity;      // 0 bits: geometry only
   std::uint32_t kept_beams = 0;  // of those of the image, where the others were left out; 0: all
@@ -25,9 +25,12 @@ struct RangeSettings {
 /// Encodes slices of one sensor. Keeps its buffers between slices; not for several threads at once.
 class RangeEncoder {
  public:
-  explicit RangeEncoder(const SensorModel& model) : alignment_(model) {}
+  /// `integers` codes the payloads that are not our own; it may be null, and must outlive this.
+  explicit RangeEncoder(const SensorModel& model, const IntegerCoder* integers = nullptr)
+      : alignment_(model), integers_(integers) {}
 
-  /// Appends one block to `out` and returns true; false where the image does not fit the sensor.
+  /// Appends one block to `out` and returns true; false where the image does not fit the sensor or
+  /// the coder is not there.
   /// Ranges are multiples of the grid's unit. The image's levels are of 8 bits and become those of
   /// settings.intensity. An image without any return gives a block that decodes to such an image.
   bool Encode(const RangeImage& image, const RangeSettings& settings,
@@ -39,9 +42,10 @@ class RangeEncoder {
   void CollectReturns(const RangeImage& image, const RangeSettings& settings);
   bool has_gaps() const { return returns() < mask_.size(); }
   void EncodeAdaptively(std::uint32_t columns);
-  bool EncodeWithDraco(const RangeSettings& settings, std::uint32_t columns);
+  bool EncodeIntegers(const RangeSettings& settings, std::uint32_t columns);
 
   AzimuthAlignment alignment_;
+  const IntegerCoder* integers_;
   MaskCoder mask_coder_;
   AdaptiveCoder coder_;
   RansEncoder rans_;
@@ -54,7 +58,9 @@ class RangeEncoder {
 /// Decodes blocks of one sensor; any bytes give an image or false.
 class RangeDecoder {
  public:
-  explicit RangeDecoder(const SensorModel& model) : alignment_(model) {}
+  /// Without `integers`, blocks of coders that are not our own are refused.
+  explicit RangeDecoder(const SensorModel& model, const IntegerCoder* integers = nullptr)
+      : alignment_(model), integers_(integers) {}
 
   std::uint32_t columns_per_scan() const { return alignment_.columns_per_scan(); }
 
@@ -66,12 +72,13 @@ class RangeDecoder {
 
  private:
   bool DecodeAdaptively(const RangeHeader& header, ByteView payload, RangeImage* image);
-  bool DecodeWithDraco(const RangeHeader& header, ByteView mask, ByteView payload,
-                       RangeImage* image);
+  bool DecodeIntegers(const RangeHeader& header, ByteView mask, ByteView payload,
+                      RangeImage* image);
   /// The lists, which are ranges by now, to where the mask has returns.
   void Scatter(RangeImage* image);
 
   AzimuthAlignment alignment_;
+  const IntegerCoder* integers_;
   RangeHeader header_;
   MaskCoder mask_coder_;
   AdaptiveCoder coder_;

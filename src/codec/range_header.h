@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "src/base/byte_reader.h"
-#include "src/codec/intensity_scale.h"
 #include "src/cloud/range_grid.h"
+#include "src/codec/intensity_scale.h"
 
 namespace lidar::codec {
 
@@ -20,7 +20,7 @@ enum class RangeCoder : std::uint8_t {
 };
 
 struct RangeHeader {
-  RangeCoder coder = RangeCoder::kDraco;
+  RangeCoder coder = RangeCoder::kAdaptive;
   std::uint32_t beams = 0;
   std::uint32_t first_column = 0;
   std::uint32_t columns = 0;

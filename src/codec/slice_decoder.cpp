@@ -6,23 +6,17 @@
 
 namespace lidar::codec {
 
-SliceDecoder::SliceDecoder(const CloudFormat& format, Geometry geometry, std::uint32_t max_points)
-    : layout_(format.layout), max_points_(max_points) {
-  if (geometry != Geometry::kRange) return;
-  range_decoder_.emplace(*format.sensor_model);
-  projection_.emplace(*format.sensor_model);
-}
+SliceDecoder::SliceDecoder(const CloudFormat& format, std::uint32_t max_points,
+                           const IntegerCoder* integers)
+    : layout_(format.layout),
+      max_points_(max_points),
+      decoder_(*format.sensor_model, integers),
+      projection_(*format.sensor_model) {}
 
 std::optional<SliceDecoder::Shape> SliceDecoder::Decode(ByteView stream) {
-  if (range_decoder_) return DecodeRange(stream);
-  if (!DecodeXyz(stream, max_points_, &cloud_)) return std::nullopt;
-  return Shape{static_cast<std::uint32_t>(cloud_.size()), 1, 0, true};
-}
-
-std::optional<SliceDecoder::Shape> SliceDecoder::DecodeRange(ByteView stream) {
   ByteReader reader(stream);
-  if (!range_decoder_->Decode(&reader, max_points_, &image_, &scale_)) return std::nullopt;
-  const RangeHeader& h = range_decoder_->header();
+  if (!decoder_.Decode(&reader, max_points_, &image_, &scale_)) return std::nullopt;
+  const RangeHeader& h = decoder_.header();
   quality_ = {h.grid.step_m(), h.grid.error_m(), h.intensity.bits(),
               h.kept_beams > 0 ? static_cast<double>(h.kept_beams) / h.beams : 1};
   if (reader.remaining() > 0 && !AppendBlocks(&reader)) return std::nullopt;
@@ -33,7 +27,7 @@ std::optional<SliceDecoder::Shape> SliceDecoder::DecodeRange(ByteView stream) {
 
 /// Decodes the blocks behind the first one and puts them to its right.
 bool SliceDecoder::AppendBlocks(ByteReader* reader) {
-  const std::uint32_t turn = range_decoder_->columns_per_scan();
+  const std::uint32_t turn = decoder_.columns_per_scan();
   std::uint32_t columns = image_.columns;
   blocks_.clear();
   blocks_.push_back(std::move(image_));
@@ -41,7 +35,7 @@ bool SliceDecoder::AppendBlocks(ByteReader* reader) {
     RangeImage block;
     IntensityScale scale;
     const std::size_t room = max_points_ - std::size_t{columns} * blocks_[0].beams;
-    if (!range_decoder_->Decode(reader, room, &block, &scale) ||
+    if (!decoder_.Decode(reader, room, &block, &scale) ||
         block.first_column != (blocks_[0].first_column + columns) % turn ||
         block.columns > turn - columns || scale.bits() != scale_.bits() ||
         scale.full() != scale_.full()) {
@@ -65,11 +59,7 @@ bool SliceDecoder::AppendBlocks(ByteReader* reader) {
 }
 
 void SliceDecoder::Write(std::uint8_t* raw) const {
-  if (range_decoder_) {
-    WriteRangeImage(image_, scale_, *projection_, layout_, raw);
-  } else {
-    WriteXyz(cloud_, layout_, raw);
-  }
+  WriteRangeImage(image_, scale_, projection_, layout_, raw);
 }
 
 }  // namespace lidar::codec

@@ -1,20 +1,23 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Decodes the slices of one stream; any bytes give a cloud or nothing.
+// Decodes the slices of one stream in range geometry; any bytes give a cloud or nothing.
 #pragma once
 #include <cstdint>
 #include <optional>
 #include <vector>
 
 #include "src/cloud/range_projection.h"
-#include "src/codec/slice_encoder.h"
+#include "src/codec/cloud_io.h"
+#include "src/codec/range_codec.h"
 
 namespace lidar::codec {
 
 /// For one thread at a time.
 class SliceDecoder {
  public:
-  /// `geometry` is not kAuto; kRange needs a sensor model.
-  SliceDecoder(const CloudFormat& format, Geometry geometry, std::uint32_t max_points);
+  /// `format` has a sensor model. Without `integers`, slices of coders that are not our own are
+  /// refused; it must outlive the decoder.
+  SliceDecoder(const CloudFormat& format, std::uint32_t max_points,
+               const IntegerCoder* integers = nullptr);
 
   struct Shape {
     std::uint32_t width = 0;
@@ -25,32 +28,29 @@ class SliceDecoder {
   /// Decodes a slice and keeps it for Write(). None for a stream that is damaged, of another
   /// sensor, or larger than max_points.
   std::optional<Shape> Decode(ByteView stream);
-  /// What the slice says of itself; an xyz slice, which is a plain Draco file, nothing.
+  /// What the slice says of itself.
   struct Quality {
     double step_m = 0;
     double error_m = 0;  // bound that holds with this step
     unsigned intensity_bits = 0;
     double keep_fraction = 1;  // of the beams; the others were left out to save bits
   };
-  /// Of the slice decoded last, in range geometry.
+  /// That of the slice decoded last.
   const Quality& quality() const { return quality_; }
   /// Writes width * height points of the format.
   void Write(std::uint8_t* raw) const;
 
  private:
-  std::optional<Shape> DecodeRange(ByteView stream);
+  bool AppendBlocks(ByteReader* reader);
 
   CloudLayout layout_;
   std::uint32_t max_points_;
-  std::optional<RangeDecoder> range_decoder_;
-  std::optional<RangeProjection> projection_;
-  bool AppendBlocks(ByteReader* reader);
-
+  RangeDecoder decoder_;
+  RangeProjection projection_;
   RangeImage image_;
   std::vector<RangeImage> blocks_;
   IntensityScale scale_;
   Quality quality_;
-  XyzCloud cloud_;
 };
 
 }  // namespace lidar::codec

@@ -58,7 +58,7 @@ inline constexpr ClassOfMagnitude kClassOfMagnitude;
 
 /// Encoder and decoder do the same with every residual: one symbol, and bits, if only none; nothing
 /// to be mispredicted but the rare long ones.
-class ResidualModel {
+class SymbolModel {
  public:
   /// Pieces of RansEncoder that a residual may take.
   static constexpr std::size_t kMostPieces = 3;

@@ -130,7 +130,7 @@ void AdaptiveModel::LearnIntensity(Learned* learned, const SliceFeatures& slice,
 }
 
 void AdaptiveModel::OnEncoded(const SliceFeatures& slice, const Settings& settings,
-                              const EncodedSlice& encoded) {
+                              const EncodedSize& encoded) {
   const double bytes = static_cast<double>(encoded.size.bytes());
   if (slice.returns < kFewReturns || bytes < 2 || !(encoded.step_m > 0)) return;
   const PredictedSize predicted = Predict(slice, {encoded.step_m, settings.intensity_bits, 0});

@@ -40,7 +40,7 @@ class AdaptiveModel : public SizeModel {
   Settings Choose(const SliceFeatures& slice, double bytes,
                   const SettingLimits& limits) const override;
   void OnEncoded(const SliceFeatures& slice, const Settings& settings,
-                 const EncodedSlice& encoded) override;
+                 const EncodedSize& encoded) override;
 
  private:
   struct Learned {

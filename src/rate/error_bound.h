@@ -2,22 +2,19 @@
 // The residual error optimizer: how far a uniform grid can move a point, and the coarsest grid
 // that keeps to an error.
 #pragma once
+#include "src/cloud/geometry.h"
+#include "src/cloud/range_grid.h"
 
 namespace lidar::rate {
 
-enum class Geometry { kXyz, kRange };
-
 /// Bounds by construction, not by measurement (docs/rate-control.md).
-class ResidualModel {
+class ErrorBound {
  public:
-  static ResidualModel Xyz() { return ResidualModel(Geometry::kXyz, 0); }
-  /// `unit_mm`: resolution of the ranges, not 0. A bin of n units that comes back as its middle
-  /// value, rounded up to a whole number of millimetres, is off by (n - 1) / 2 units at most. A
-  /// step between n - 1 and n units mixes bins of both sizes.
-  static ResidualModel Range(unsigned unit_mm) { return ResidualModel(Geometry::kRange, unit_mm); }
+  static ErrorBound Xyz() { return ErrorBound(Geometry::kXyz, 0); }
+  /// `unit_mm`: resolution of the ranges, not 0. The grid is a RangeGrid.
+  static ErrorBound Range(unsigned unit_mm) { return ErrorBound(Geometry::kRange, unit_mm); }
 
-  /// Largest distance [m] between a point and its decoded point: s sqrt(3)/2, or that of
-  /// the larger bins.
+  /// Largest distance [m] between a point and its decoded point.
   double MaxError(double step_m) const;
   /// Expected distance [m] of points that fall evenly on the grid.
   double MeanError(double step_m) const;
@@ -32,10 +29,8 @@ class ResidualModel {
   Geometry geometry() const { return geometry_; }
 
  private:
-  ResidualModel(Geometry geometry, unsigned unit_mm) : geometry_(geometry), unit_mm_(unit_mm) {}
+  ErrorBound(Geometry geometry, unsigned unit_mm) : geometry_(geometry), unit_mm_(unit_mm) {}
   double unit() const { return 1e-3 * unit_mm_; }
-  /// Units in the larger bins of a step.
-  double LargerBins(double step_m) const;
   Geometry geometry_;
   unsigned unit_mm_;
 };

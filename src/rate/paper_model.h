@@ -40,7 +40,7 @@ class PaperModel : public SizeModel {
   /// argmin |r - bytes| over q = 8..24 and, for xyz, c = 0..9, within the limits of the step.
   Settings Choose(const SliceFeatures& slice, double bytes,
                   const SettingLimits& limits) const override;
-  void OnEncoded(const SliceFeatures&, const Settings&, const EncodedSlice&) override {}
+  void OnEncoded(const SliceFeatures&, const Settings&, const EncodedSize&) override {}
 
   static constexpr int kMinBits = 8;
   static constexpr int kMaxBits = 24;

@@ -149,7 +149,7 @@ void RateController::Settle(double bytes) {
   stats_.saved_bytes = saved_ + repay_ + ledger_;
 }
 
-std::optional<Settings> RateController::OnEncoded(const EncodedSlice& encoded) {
+std::optional<Settings> RateController::OnEncoded(const EncodedSize& encoded) {
   if (!pending_) return std::nullopt;
   const double bytes = static_cast<double>(encoded.size.bytes());
   model_->OnEncoded(slice_, decision_.settings, encoded);

@@ -13,7 +13,7 @@
 namespace lidar::rate {
 
 struct ControllerParameters {
-  /// `coarsest_step_m` comes from max-error (ResidualModel), so it holds whatever the target.
+  /// `coarsest_step_m` comes from max-error (ErrorBound), so it holds whatever the target.
   SettingLimits limits;
   /// The controller lowers the intensity bits to this before it skips or thins.
   unsigned min_intensity_bits = 4;
@@ -61,7 +61,7 @@ class RateController {
 
   Decision NextSlice(const SliceFeatures& slice);
   /// Settings to encode the slice again with, or none: put it out as it is.
-  std::optional<Settings> OnEncoded(const EncodedSlice& encoded);
+  std::optional<Settings> OnEncoded(const EncodedSize& encoded);
 
   /// Zero before the first slice.
   RateBounds bounds() const;

@@ -53,7 +53,7 @@ LoopResult RateLoop::Encode(const SlicePlace& place, const LoopSettings& setting
     result.intensity_bits = next->intensity_bits;
     result.result = coder->Encode(settings.max_error_m, *next, &result.slice);
     if (result.result != CodingResult::kEncoded || result.slice.returns == 0) break;
-    EncodedSlice encoded;
+    EncodedSize encoded;
     encoded.size = DataSize::Bytes(static_cast<std::int64_t>(result.slice.bytes));
     encoded.step_m = result.slice.step_m;
     encoded.keep_fraction = decision.keep_fraction;

@@ -44,7 +44,7 @@ struct PredictedSize {
 };
 
 /// What came out of the codec.
-struct EncodedSlice {
+struct EncodedSize {
   DataSize size;
   /// Where the codec cannot tell, the sum is split as the prediction would.
   std::optional<DataSize> intensity_size;
@@ -63,7 +63,7 @@ class SizeModel {
                           const SettingLimits& limits) const = 0;
   /// Learns from an encoded slice. A second call for the same slice is a re-encoding.
   virtual void OnEncoded(const SliceFeatures& slice, const Settings& settings,
-                         const EncodedSlice& encoded) = 0;
+                         const EncodedSize& encoded) = 0;
 };
 
 /// The allowed steps on both sides of a step; the same one twice at the ends, or where any step is

@@ -7,10 +7,9 @@
 #include <vector>
 
 #include "src/base/byte_reader.h"
+#include "src/cloud/geometry.h"
 
 namespace lidar::rtp {
-
-enum class Geometry : std::uint8_t { kXyz = 0, kRange = 1 };
 
 struct StreamConfig {
   Geometry geometry = Geometry::kXyz;

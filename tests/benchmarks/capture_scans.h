@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "src/codec/slice_encoder.h"
+#include "src/codec/cloud_io.h"
 
 namespace lidar::bench {
 

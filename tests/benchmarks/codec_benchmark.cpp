@@ -5,7 +5,7 @@
 #include <cstdlib>
 #include <map>
 
-#include "src/codec/slice_decoder.h"
+#include "ext/draco/slice_coder.h"
 #include "tests/benchmarks/capture_scans.h"
 
 namespace lidar::bench {
@@ -35,9 +35,9 @@ const Capture& CaptureOf(std::int64_t source, std::int64_t slices) {
 
 /// Range arguments: source, slices a scan, coder, error [mm], intensity bits.
 struct Setup {
-  explicit Setup(const benchmark::State& state, codec::Geometry geometry)
+  explicit Setup(const benchmark::State& state, Geometry geometry)
       : capture(CaptureOf(state.range(0), state.range(1))),
-        encoder(*codec::SliceEncoder::Create(capture.format, geometry,
+        encoder(*draco::SliceEncoder::Create(capture.format, geometry,
                                              static_cast<codec::RangeCoder>(state.range(2)))) {
     settings.level = static_cast<unsigned>(state.range(2));
     settings.max_error_m = 1e-3 * static_cast<double>(state.range(3));
@@ -51,8 +51,8 @@ struct Setup {
     return encoded;
   }
   const Capture& capture;
-  codec::SliceEncoder encoder;
-  codec::SliceSettings settings;
+  draco::SliceEncoder encoder;
+  draco::SliceSettings settings;
 };
 
 void Report(benchmark::State& state, double returns, double bytes) {
@@ -76,19 +76,19 @@ void EncodeAll(Setup* setup, benchmark::State& state) {
   Report(state, returns, bytes);
 }
 
-void Encode(benchmark::State& state, codec::Geometry geometry) {
+void Encode(benchmark::State& state, Geometry geometry) {
   Setup setup(state, geometry);
   EncodeAll(&setup, state);
 }
 
 /// Whole scans; by the clock, because the threads share it.
 void EncodeWithThreads(benchmark::State& state) {
-  Setup setup(state, codec::Geometry::kRange);
+  Setup setup(state, Geometry::kRange);
   setup.encoder.set_threads(static_cast<unsigned>(state.range(5)));
   EncodeAll(&setup, state);
 }
 
-void Decode(benchmark::State& state, codec::Geometry geometry) {
+void Decode(benchmark::State& state, Geometry geometry) {
   Setup setup(state, geometry);
   std::vector<codec::EncodedSlice> slices;
   double returns = 0;
@@ -100,9 +100,9 @@ void Decode(benchmark::State& state, codec::Geometry geometry) {
   }
   codec::CloudFormat format = setup.capture.format;
   format.layout.fields = codec::KeptFields(format.layout.fields, setup.settings.intensity_bits > 0,
-                                           geometry == codec::Geometry::kRange);
+                                           geometry == Geometry::kRange);
   format.layout.point_step = format.layout.fields.MinimumStep();
-  codec::SliceDecoder decoder(format, geometry, 1U << 20);
+  draco::SliceDecoder decoder(format, geometry, 1U << 20);
   std::vector<std::uint8_t> raw;
   for (auto _ : state) {
     for (const auto& slice : slices) {
@@ -146,10 +146,10 @@ void ThreadCases(benchmark::internal::Benchmark* b) {
 }
 
 BENCHMARK(EncodeWithThreads)->Apply(ThreadCases);
-BENCHMARK_CAPTURE(Encode, range, codec::Geometry::kRange)->Apply(RangeCases);
-BENCHMARK_CAPTURE(Decode, range, codec::Geometry::kRange)->Apply(RangeCases);
-BENCHMARK_CAPTURE(Encode, xyz, codec::Geometry::kXyz)->Apply(XyzCases);
-BENCHMARK_CAPTURE(Decode, xyz, codec::Geometry::kXyz)->Apply(XyzCases);
+BENCHMARK_CAPTURE(Encode, range, Geometry::kRange)->Apply(RangeCases);
+BENCHMARK_CAPTURE(Decode, range, Geometry::kRange)->Apply(RangeCases);
+BENCHMARK_CAPTURE(Encode, xyz, Geometry::kXyz)->Apply(XyzCases);
+BENCHMARK_CAPTURE(Decode, xyz, Geometry::kXyz)->Apply(XyzCases);
 
 }  // namespace
 }  // namespace lidar::bench

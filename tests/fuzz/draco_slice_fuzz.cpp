@@ -3,13 +3,13 @@
 // byte chooses the geometry and the sensor.
 #include <vector>
 
-#include "src/codec/slice_decoder.h"
+#include "ext/draco/slice_coder.h"
 #include "tests/fuzz/fuzz.h"
 
 namespace {
 
-using lidar::codec::Geometry;
-using lidar::codec::SliceDecoder;
+using lidar::Geometry;
+using lidar::draco::SliceDecoder;
 
 constexpr std::uint32_t kMaxPoints = 1U << 16;
 

@@ -10,8 +10,7 @@ namespace lidar::tools {
 
 const CodingMode& DefaultRangeMode() {
   for (const CodingMode& mode : AllModes())
-    if (mode.geometry == rate::Geometry::kRange &&
-        mode.coder == codec::SliceEncoder::kDefaultRangeCoder)
+    if (mode.geometry == Geometry::kRange && mode.coder == codec::RangeCoder::kAdaptive)
       return mode;
   throw std::logic_error("the codec's default has no name");
 }

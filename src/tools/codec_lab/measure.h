@@ -12,7 +12,7 @@ struct Measurement {
   double quantization_bits = 0;
   double bits_per_return = 0;
   double bitrate = 0;  // bit/s
-  PointErrors errors;
+  Distortion errors;
 };
 
 /// A setting by its step, or as the paper has it: bits of the slice's bounding cube.

@@ -8,7 +8,6 @@
 
 #include "ext/draco/draco_check.h"
 #include "src/codec/point_math.h"
-#include "src/codec/slice_decoder.h"
 #include "src/rate/scan_plan.h"
 
 namespace lidar::tools {
@@ -22,7 +21,6 @@ double Distance(const float* a, const float* b) { return std::sqrt(codec::Square
 }  // namespace
 
 const std::vector<CodingMode>& AllModes() {
-  using rate::Geometry;
   static const std::vector<CodingMode> kModes = {
       {"range-adaptive", Geometry::kRange, codec::RangeCoder::kAdaptive, 7},
       {"range-residual", Geometry::kRange, codec::RangeCoder::kResidual, 7},
@@ -104,13 +102,10 @@ void SliceCodec::Load(const Scan& scan, SliceOf slice) {
   }
 }
 
-codec::SliceEncoder& SliceCodec::EncoderFor(const CodingMode& mode) {
+draco::SliceEncoder& SliceCodec::EncoderFor(const CodingMode& mode) {
   auto found = coders_.find(mode.name);
   if (found == coders_.end()) {
-    auto encoder = codec::SliceEncoder::Create(
-        format_,
-        mode.geometry == rate::Geometry::kXyz ? codec::Geometry::kXyz : codec::Geometry::kRange,
-        mode.coder);
+    auto encoder = draco::SliceEncoder::Create(format_, mode.geometry, mode.coder);
     if (!encoder) throw std::runtime_error(mode.name + " needs a sensor's ranges");
     found = coders_.emplace(mode.name, Coder{*std::move(encoder)}).first;
   }
@@ -128,10 +123,10 @@ rate::SliceFeatures SliceCodec::Features(const CodingMode& mode) {
   return features;
 }
 
-rate::ResidualModel SliceCodec::Residual(const CodingMode& mode) const {
-  if (mode.geometry == rate::Geometry::kXyz) return rate::ResidualModel::Xyz();
+rate::ErrorBound SliceCodec::Bound(const CodingMode& mode) const {
+  if (mode.geometry == Geometry::kXyz) return rate::ErrorBound::Xyz();
   if (!geometry_) throw std::runtime_error(mode.name + " needs a sensor's ranges");
-  return rate::ResidualModel::Range(geometry_->model.range_unit_mm);
+  return rate::ErrorBound::Range(geometry_->model.range_unit_mm);
 }
 
 /// With the coder that the mode names, where dracoenc would take the smaller one.
@@ -146,15 +141,15 @@ bool SliceCodec::EncodeXyz(const CodingMode& mode, const rate::Settings& setting
     cloud.xyz.insert(cloud.xyz.end(), &all.xyz[3 * i], &all.xyz[3 * i] + 3);
     cloud.intensity.push_back(all.intensity[i]);
   }
-  codec::XyzSettings xyz;
+  draco::XyzSettings xyz;
   xyz.max_error_m = settings.step_m + kRoomForRounding;
   xyz.step_m = settings.step_m;
   xyz.level = static_cast<int>(mode.level);
-  xyz.method = mode.level == 0 ? codec::XyzMethod::kSequential : codec::XyzMethod::kKdTree;
+  xyz.method = mode.level == 0 ? draco::XyzMethod::kSequential : draco::XyzMethod::kKdTree;
   xyz.intensity_bits = settings.intensity_bits;
-  codec::XyzResult result;
+  draco::XyzResult result;
   encoded_ = {};
-  if (!codec::EncodeXyz(cloud, xyz, &encoded_.bytes, &result)) return false;
+  if (!draco::EncodeXyz(cloud, xyz, &encoded_.bytes, &result)) return false;
   encoded_.returns = cloud.size();
   encoded_.step_m = result.step_m;
   encoded_.error_m = result.error_m;
@@ -164,9 +159,9 @@ bool SliceCodec::EncodeXyz(const CodingMode& mode, const rate::Settings& setting
 bool SliceCodec::EncodeBytes(const CodingMode& mode, const rate::Settings& settings,
                              double keep_fraction) {
   if (returns_ == 0) return false;
-  if (mode.geometry == rate::Geometry::kXyz) return EncodeXyz(mode, settings, keep_fraction);
-  codec::SliceEncoder& encoder = EncoderFor(mode);
-  codec::SliceSettings slice;
+  if (mode.geometry == Geometry::kXyz) return EncodeXyz(mode, settings, keep_fraction);
+  draco::SliceEncoder& encoder = EncoderFor(mode);
+  draco::SliceSettings slice;
   slice.step_m = settings.step_m;
   slice.max_error_m = settings.step_m + kRoomForRounding;
   slice.intensity_bits = settings.intensity_bits;
@@ -178,20 +173,20 @@ bool SliceCodec::EncodeBytes(const CodingMode& mode, const rate::Settings& setti
   return encoder.Encode(slice, &encoded_) == codec::SliceResult::kEncoded;
 }
 
-std::optional<rate::EncodedSlice> SliceCodec::Encode(const CodingMode& mode,
-                                                     const rate::Settings& settings,
-                                                     double keep_fraction) {
+std::optional<rate::EncodedSize> SliceCodec::Encode(const CodingMode& mode,
+                                                    const rate::Settings& settings,
+                                                    double keep_fraction) {
   if (!EncodeBytes(mode, settings, keep_fraction)) return std::nullopt;
-  rate::EncodedSlice encoded;
+  rate::EncodedSize encoded;
   encoded.size = DataSize::Bytes(static_cast<std::int64_t>(encoded_.bytes.size()));
   encoded.step_m = encoded_.step_m;
   encoded.keep_fraction = keep_fraction;
   return encoded;
 }
 
-std::optional<PointErrors> SliceCodec::Errors(const CodingMode& mode,
-                                              const rate::Settings& settings) {
-  const bool xyz = mode.geometry == rate::Geometry::kXyz;
+std::optional<Distortion> SliceCodec::Errors(const CodingMode& mode,
+                                             const rate::Settings& settings) {
+  const bool xyz = mode.geometry == Geometry::kXyz;
   // The kd-tree changes the order of the points, so they are compared through the sequential
   // coder, which rounds to the very same grid and keeps the order.
   if (!EncodeBytes(xyz ? ModeNamed("xyz-sequential") : mode, {settings.step_m, 0, 0}, 1))
@@ -199,15 +194,14 @@ std::optional<PointErrors> SliceCodec::Errors(const CodingMode& mode,
   constexpr std::uint32_t kMaxPoints = 1U << 26;
   // Past a number of bits the codec takes the kd-tree all the same.
   const ByteView bytes{encoded_.bytes.data(), encoded_.bytes.size()};
-  if (xyz && codec::CheckDraco(bytes, kMaxPoints).value().is_kd_tree) return std::nullopt;
-  codec::SliceDecoder decoder(format_, xyz ? codec::Geometry::kXyz : codec::Geometry::kRange,
-                              kMaxPoints);
+  if (xyz && draco::CheckDraco(bytes, kMaxPoints).value().is_kd_tree) return std::nullopt;
+  draco::SliceDecoder decoder(format_, mode.geometry, kMaxPoints);
   const auto shape = decoder.Decode(bytes);
   if (!shape) throw std::runtime_error("a slice does not decode");
   std::vector<std::uint8_t> raw(std::size_t{shape->width} * shape->height *
                                 format_.layout.point_step);
   decoder.Write(raw.data());
-  PointErrors errors;
+  Distortion errors;
   std::size_t point = 0;
   for (std::size_t at = 0; at < raw.size(); at += format_.layout.point_step) {
     float decoded[3];

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "src/codec/slice_encoder.h"
+#include "ext/draco/slice_coder.h"
 #include "src/rate/error_bound.h"
 #include "src/rate/size_model.h"
 #include "src/tools/codec_lab/scan.h"
@@ -18,9 +18,9 @@ namespace lidar::tools {
 /// A way of coding, by the name that the rate models know.
 struct CodingMode {
   std::string name;
-  rate::Geometry geometry = rate::Geometry::kRange;
-  codec::RangeCoder coder = codec::RangeCoder::kDraco;  // of range geometry
-  unsigned level = 7;                                   // Draco's, of xyz geometry
+  Geometry geometry = Geometry::kRange;
+  codec::RangeCoder coder = codec::RangeCoder::kAdaptive;  // of range geometry
+  unsigned level = 7;                                      // Draco's, of xyz geometry
 };
 const std::vector<CodingMode>& AllModes();
 /// Throws std::runtime_error for a name that is none.
@@ -28,7 +28,7 @@ const CodingMode& ModeNamed(const std::string& name);
 /// What Draco makes of xyz geometry at a compression level.
 const CodingMode& XyzModeOfLevel(unsigned level);
 
-struct PointErrors {
+struct Distortion {
   double mean_m = 0;
   double max_m = 0;
 };
@@ -41,24 +41,24 @@ class SliceCodec {
   std::size_t returns() const { return returns_; }
   /// Only the parts that the slice itself knows: returns, extent, mode.
   rate::SliceFeatures Features(const CodingMode& mode);
-  rate::ResidualModel Residual(const CodingMode& mode) const;
+  rate::ErrorBound Bound(const CodingMode& mode) const;
 
   /// None where the slice is empty or the codec refuses the step. `keep_fraction` thins beams, or
   /// points of a cloud without order.
-  std::optional<rate::EncodedSlice> Encode(const CodingMode& mode, const rate::Settings& settings,
-                                           double keep_fraction = 1);
+  std::optional<rate::EncodedSize> Encode(const CodingMode& mode, const rate::Settings& settings,
+                                          double keep_fraction = 1);
   /// Distances between the points and their decoded points. None where Encode() would be, and for
   /// xyz steps so fine that no coder keeps the order of the points.
-  std::optional<PointErrors> Errors(const CodingMode& mode, const rate::Settings& settings);
+  std::optional<Distortion> Errors(const CodingMode& mode, const rate::Settings& settings);
 
  private:
   struct Coder {
-    codec::SliceEncoder encoder;
+    draco::SliceEncoder encoder;
     bool loaded = false;
   };
   void SetFormat(const Scan& scan);
   void AppendPoint(const float* xyz, float intensity, std::uint32_t range_mm);
-  codec::SliceEncoder& EncoderFor(const CodingMode& mode);
+  draco::SliceEncoder& EncoderFor(const CodingMode& mode);
   bool EncodeXyz(const CodingMode& mode, const rate::Settings& settings, double keep_fraction);
   bool EncodeBytes(const CodingMode& mode, const rate::Settings& settings, double keep_fraction);
 

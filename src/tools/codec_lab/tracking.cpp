@@ -12,11 +12,11 @@ namespace lidar::tools {
 namespace {
 
 rate::ControllerParameters Parameters(const SliceCodec& codec, const TrackOptions& o) {
-  const rate::ResidualModel residual = codec.Residual(*o.mode);
+  const rate::ErrorBound bound = codec.Bound(*o.mode);
   rate::ControllerParameters parameters;
-  parameters.limits.finest_step_m = residual.FinestStep();
-  parameters.limits.coarsest_step_m = residual.CoarsestStep(o.max_error_m);
-  parameters.limits.step_unit_m = residual.step_unit();
+  parameters.limits.finest_step_m = bound.FinestStep();
+  parameters.limits.coarsest_step_m = bound.CoarsestStep(o.max_error_m);
+  parameters.limits.step_unit_m = bound.step_unit();
   parameters.limits.intensity_bits = o.intensity_bits;
   parameters.limits.level = o.mode->level;
   parameters.degradation = o.degradation;
@@ -52,14 +52,13 @@ struct Player {
     tracked->sent_bps += encoded.size.bits() * set.scans_per_second;
     tracked->coarsest_step_m = std::max(tracked->coarsest_step_m, encoded.step_m);
     tracked->largest_bound_m =
-        std::max(tracked->largest_bound_m, codec.Residual(*options.mode).MaxError(encoded.step_m));
+        std::max(tracked->largest_bound_m, codec.Bound(*options.mode).MaxError(encoded.step_m));
   }
 
-  rate::EncodedSlice Encode(const rate::Settings& settings, double keep) {
+  rate::EncodedSize Encode(const rate::Settings& settings, double keep) {
     // The paper's model chooses the level, and with it Draco's coder.
-    const CodingMode& mode = options.mode->geometry == rate::Geometry::kXyz
-                                 ? XyzModeOfLevel(settings.level)
-                                 : *options.mode;
+    const CodingMode& mode =
+        options.mode->geometry == Geometry::kXyz ? XyzModeOfLevel(settings.level) : *options.mode;
     const auto encoded = codec.Encode(mode, settings, keep);
     if (!encoded) throw std::runtime_error("the codec refused a slice");
     return *encoded;

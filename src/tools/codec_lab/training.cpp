@@ -46,21 +46,21 @@ std::optional<rate::Sample> Encode(const CodingMode& mode, const rate::Settings&
 }
 
 bool Suits(const CodingMode& mode, const ScanSet& set) {
-  return mode.geometry == rate::Geometry::kXyz || set.organised();
+  return mode.geometry == Geometry::kXyz || set.organised();
 }
 
 rate::Settings PaperSettings(const CodingMode& mode, SliceCodec* codec, Random* random) {
-  const rate::ResidualModel residual = codec->Residual(mode);
+  const rate::ErrorBound bound = codec->Bound(mode);
   const double extent = codec->Features(mode).extent_m;
-  const int top = mode.geometry == rate::Geometry::kXyz
+  const int top = mode.geometry == Geometry::kXyz
                       ? rate::PaperModel::kMaxBits
-                      : static_cast<int>(rate::BitsOfStep(extent, residual.FinestStep()));
+                      : static_cast<int>(rate::BitsOfStep(extent, bound.FinestStep()));
   std::uniform_int_distribution<int> bits(rate::PaperModel::kMinBits,
                                           std::max(top, rate::PaperModel::kMinBits));
   rate::SettingLimits limits;
-  limits.finest_step_m = mode.geometry == rate::Geometry::kXyz ? 1e-9 : residual.FinestStep();
+  limits.finest_step_m = mode.geometry == Geometry::kXyz ? 1e-9 : bound.FinestStep();
   limits.coarsest_step_m = 1e3;
-  limits.step_unit_m = residual.step_unit();
+  limits.step_unit_m = bound.step_unit();
   rate::Settings settings;
   settings.step_m = rate::ClampStep(rate::StepOfBits(extent, bits(*random)), limits);
   return settings;
@@ -103,8 +103,7 @@ std::vector<rate::Sample> TakePaperSamples(const std::vector<ScanSet>& sets,
   Random random(options.seed);
   const CodingMode* range = nullptr;
   for (const std::string& name : options.modes)
-    if (ModeNamed(name).geometry == rate::Geometry::kRange && range == nullptr)
-      range = &ModeNamed(name);
+    if (ModeNamed(name).geometry == Geometry::kRange && range == nullptr) range = &ModeNamed(name);
   std::vector<rate::Sample> samples;
   SliceCodec codec;
   const std::size_t all = sets.size() * options.samples;

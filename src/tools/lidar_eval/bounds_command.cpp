@@ -42,11 +42,10 @@ void WriteRow(const ScanSet& set, const CodingMode& mode, double error,
 
 std::optional<Measurement> AtError(const ScanSet& set, const CodingMode& mode, double error,
                                    const Options& o) {
-  if (mode.geometry == rate::Geometry::kRange && !set.organised()) return std::nullopt;
+  if (mode.geometry == Geometry::kRange && !set.organised()) return std::nullopt;
   SliceCodec codec;
   codec.Load(set.scans.front(), {});
-  return Measure(set, mode,
-                 {codec.Residual(mode).CoarsestStep(error), 0, o.intensity_bits, o.slices});
+  return Measure(set, mode, {codec.Bound(mode).CoarsestStep(error), 0, o.intensity_bits, o.slices});
 }
 
 /// The paper's way: the fewest bits of the bounding cube that keep the bound in every scan, at
@@ -59,7 +58,7 @@ void PrintPaperMinimum(const ScanSet& set, double error, const Options& o) {
     extent = std::max(extent, codec.Features(ModeNamed("xyz-kd6")).extent_m);
   }
   const double bits =
-      std::ceil(rate::BitsOfStep(extent, rate::ResidualModel::Xyz().CoarsestStep(error)));
+      std::ceil(rate::BitsOfStep(extent, rate::ErrorBound::Xyz().CoarsestStep(error)));
   double least = 0;
   const char* of = "";
   for (const char* name : {"xyz-sequential", "xyz-kd0", "xyz-kd2", "xyz-kd4", "xyz-kd6"}) {

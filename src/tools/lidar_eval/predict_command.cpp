@@ -69,7 +69,7 @@ void Evaluate(const ScanSet& set, const rate::ModelFile& file, const Options& o)
               "ours: mean     p95", "corrected: mean p95");
   for (const std::string& name : o.sampling.modes) {
     const CodingMode& mode = ModeNamed(name);
-    if (mode.geometry == rate::Geometry::kRange && !set.organised()) continue;
+    if (mode.geometry == Geometry::kRange && !set.organised()) continue;
     sampling.modes = {name};
     const auto samples = TakeSamples(one, sampling, [](double) {});
     std::string no_paper;

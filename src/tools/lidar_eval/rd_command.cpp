@@ -45,7 +45,7 @@ Curve OurCurve(const ScanSet& set, const std::string& name, std::uint32_t slices
   SliceCodec codec;
   codec.Load(set.scans.front(), {});
   for (const double error : errors) {
-    const double step = codec.Residual(mode).CoarsestStep(error);
+    const double step = codec.Bound(mode).CoarsestStep(error);
     if (!curve.points.empty() && curve.points.back().step_m >= step) continue;
     if (const auto m = Measure(set, mode, {step, 0, 0, slices})) curve.points.push_back(*m);
   }
@@ -56,7 +56,7 @@ std::vector<Curve> Evaluate(const ScanSet& set, const Options& o, CsvFile* csv) 
   std::vector<Curve> curves = {PaperCurve(set, "xyz-sequential", "paper: automatic bits, level 0"),
                                PaperCurve(set, "xyz-kd6", "paper: automatic bits, level 7")};
   for (const std::string& mode : o.modes) {
-    if (ModeNamed(mode).geometry == rate::Geometry::kRange && !set.organised()) continue;
+    if (ModeNamed(mode).geometry == Geometry::kRange && !set.organised()) continue;
     for (const std::uint32_t slices : o.slices)
       curves.push_back(OurCurve(set, mode, slices, o.errors));
   }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// A small sensor and scans of a room by it, for the tests of the Draco codec and elements.
+// A small sensor and scans of a room by it, for tests of codecs and of their elements.
 #pragma once
 #include <cmath>
 #include <cstdint>
@@ -7,7 +7,7 @@
 
 #include "src/cloud/range_projection.h"
 #include "src/cloud/sensor_model.h"
-#include "src/codec/slice_encoder.h"
+#include "src/codec/cloud_io.h"
 
 namespace lidar::test {
 

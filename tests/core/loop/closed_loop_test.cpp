@@ -37,7 +37,7 @@ class Encoder {
     controller_.SetTarget(wire * kPayloadShare);
     const auto features = codec_.Features(scan_, slice_);
     const rate::Decision decision = controller_.NextSlice(features);
-    rate::EncodedSlice encoded;
+    rate::EncodedSize encoded;
     if (!decision.skip) {
       encoded = codec_.Encode(features, decision.settings, decision.keep_fraction);
       if (const auto again = controller_.OnEncoded(encoded)) {

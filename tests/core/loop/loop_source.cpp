@@ -46,9 +46,9 @@ scream::test::EncodedFrame LoopSource::Next(DataRate target) {
   return frame;
 }
 
-rate::EncodedSlice LoopSource::Encode(const rate::SliceFeatures& features,
-                                      const rate::Decision& decision) {
-  rate::EncodedSlice encoded = codec_.Encode(features, decision.settings, decision.keep_fraction);
+rate::EncodedSize LoopSource::Encode(const rate::SliceFeatures& features,
+                                     const rate::Decision& decision) {
+  rate::EncodedSize encoded = codec_.Encode(features, decision.settings, decision.keep_fraction);
   if (const auto again = controller_.OnEncoded(encoded)) {
     encoded = codec_.Encode(features, *again, decision.keep_fraction);
     controller_.OnEncoded(encoded);

@@ -35,7 +35,7 @@ class LoopSource {
   static DataRate Wire(DataRate media) { return media / kPayloadShare; }
   static constexpr double kPayloadShare = 0.96;  // of a packet; the rest is headers
 
-  rate::EncodedSlice Encode(const rate::SliceFeatures& features, const rate::Decision& decision);
+  rate::EncodedSize Encode(const rate::SliceFeatures& features, const rate::Decision& decision);
 
   SourceOptions options_;
   rate::SyntheticCodec codec_;

@@ -115,7 +115,7 @@ TEST_F(BadInput, OfAbsurdSizesDoesNotPoisonTheModel) {
     for (const double step : {0.0, -1.0, kNan, 0.01}) {
       const SliceFeatures f = codec_.Features(static_cast<std::uint32_t>(bytes % 1000) + 5, 0);
       controller_.NextSlice(f);
-      EncodedSlice encoded{DataSize::Bytes(bytes), DataSize::Bytes(2 * bytes), step, 1};
+      EncodedSize encoded{DataSize::Bytes(bytes), DataSize::Bytes(2 * bytes), step, 1};
       controller_.OnEncoded(encoded);
       controller_.OnEncoded(encoded);
     }
@@ -128,7 +128,7 @@ TEST_F(BadInput, OfAbsurdSizesDoesNotPoisonTheModel) {
       const SliceFeatures f = codec_.Features(scan, i);
       Decision d = controller_.NextSlice(f);
       if (d.skip) continue;
-      EncodedSlice encoded = codec_.Encode(f, d.settings);
+      EncodedSize encoded = codec_.Encode(f, d.settings);
       if (const auto again = controller_.OnEncoded(encoded)) {
         encoded = codec_.Encode(f, *again);
         controller_.OnEncoded(encoded);

@@ -10,12 +10,12 @@
 namespace lidar::rate {
 namespace {
 
-class ErrorBound : public ::testing::TestWithParam<double> {};
+class ErrorBounds : public ::testing::TestWithParam<double> {};
 
-TEST_P(ErrorBound, OfXyzIsReachedAtACornerOfTheGridAndNeverPassed) {
+TEST_P(ErrorBounds, OfXyzIsReachedAtACornerOfTheGridAndNeverPassed) {
   const double error = GetParam();
-  const double step = ResidualModel::Xyz().CoarsestStep(error);
-  EXPECT_NEAR(ResidualModel::Xyz().MaxError(step), error, 1e-12);
+  const double step = ErrorBound::Xyz().CoarsestStep(error);
+  EXPECT_NEAR(ErrorBound::Xyz().MaxError(step), error, 1e-12);
   const double half = step / 2;
   EXPECT_NEAR(std::sqrt(3 * half * half), error, 1e-12);
 }
@@ -42,9 +42,9 @@ RangeErrors ErrorsOfRanges(std::int64_t parts, unsigned unit_mm, std::int64_t un
   return errors;
 }
 
-TEST_P(ErrorBound, OfRangesHoldsForEveryRangeAndIsTheCoarsestThatDoes) {
+TEST_P(ErrorBounds, OfRangesHoldsForEveryRangeAndIsTheCoarsestThatDoes) {
   for (const unsigned unit_mm : {1U, 3U, 4U, 8U}) {
-    const ResidualModel model = ResidualModel::Range(unit_mm);
+    const ErrorBound model = ErrorBound::Range(unit_mm);
     const double step = model.CoarsestStep(GetParam());
     const auto parts = static_cast<std::int64_t>(std::llround(step / model.step_unit()));
     ASSERT_GE(parts, 256);
@@ -56,9 +56,9 @@ TEST_P(ErrorBound, OfRangesHoldsForEveryRangeAndIsTheCoarsestThatDoes) {
   }
 }
 
-TEST(ResidualModel, KnowsTheErrorsOfStepsBetweenWholeUnits) {
+TEST(ErrorBound, KnowsTheErrorsOfStepsBetweenWholeUnits) {
   for (const unsigned unit_mm : {1U, 2U, 3U, 8U}) {
-    const ResidualModel model = ResidualModel::Range(unit_mm);
+    const ErrorBound model = ErrorBound::Range(unit_mm);
     for (const std::int64_t parts : {256, 300, 384, 511, 640, 1000, 1281, 5000}) {
       const RangeErrors errors = ErrorsOfRanges(parts, unit_mm, 400'000);
       const double step = static_cast<double>(parts) * model.step_unit();
@@ -68,15 +68,15 @@ TEST(ResidualModel, KnowsTheErrorsOfStepsBetweenWholeUnits) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(All, ErrorBound, ::testing::Values(0.001, 0.01, 0.02, 0.05, 0.3));
+INSTANTIATE_TEST_SUITE_P(All, ErrorBounds, ::testing::Values(0.001, 0.01, 0.02, 0.05, 0.3));
 
-TEST(ResidualModel, AnErrorBelowTheResolutionGivesTheSensorsOwnUnit) {
-  EXPECT_DOUBLE_EQ(ResidualModel::Range(8).CoarsestStep(0.003), 0.008);
-  EXPECT_DOUBLE_EQ(ResidualModel::Range(8).MaxError(0.008), 0);
-  EXPECT_DOUBLE_EQ(ResidualModel::Range(1).CoarsestStep(-1), 0.001);
+TEST(ErrorBound, AnErrorBelowTheResolutionGivesTheSensorsOwnUnit) {
+  EXPECT_DOUBLE_EQ(ErrorBound::Range(8).CoarsestStep(0.003), 0.008);
+  EXPECT_DOUBLE_EQ(ErrorBound::Range(8).MaxError(0.008), 0);
+  EXPECT_DOUBLE_EQ(ErrorBound::Range(1).CoarsestStep(-1), 0.001);
 }
 
-TEST(ResidualModel, MeanErrorIsThatOfPointsSpreadEvenly) {
+TEST(ErrorBound, MeanErrorIsThatOfPointsSpreadEvenly) {
   std::mt19937 random(3);
   std::uniform_real_distribution<double> at(-0.5, 0.5);
   double sum = 0;
@@ -85,10 +85,10 @@ TEST(ResidualModel, MeanErrorIsThatOfPointsSpreadEvenly) {
     const double x = at(random), y = at(random), z = at(random);
     sum += std::sqrt(x * x + y * y + z * z);
   }
-  EXPECT_NEAR(ResidualModel::Xyz().MeanError(1), sum / kPoints, 1e-3);
+  EXPECT_NEAR(ErrorBound::Xyz().MeanError(1), sum / kPoints, 1e-3);
   // Bins of five units are off by 2, 1, 0, 1, 2; two of 2 mm by 1 mm.
-  EXPECT_NEAR(ResidualModel::Range(1).MeanError(0.005), 0.0012, 1e-12);
-  EXPECT_NEAR(ResidualModel::Range(2).MeanError(0.004), 0.001, 1e-12);
+  EXPECT_NEAR(ErrorBound::Range(1).MeanError(0.005), 0.0012, 1e-12);
+  EXPECT_NEAR(ErrorBound::Range(2).MeanError(0.004), 0.001, 1e-12);
 }
 
 }  // namespace

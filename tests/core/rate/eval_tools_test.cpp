@@ -149,13 +149,13 @@ TEST(Measure, FindsErrorsBelowTheBoundAndCloseToIt) {
   codec.Load(set.scans.front(), {});
   for (const char* name : {"range-adaptive", "range-draco", "xyz-kd6", "xyz-sequential"}) {
     const CodingMode& mode = ModeNamed(name);
-    const double step = codec.Residual(mode).CoarsestStep(0.02);
+    const double step = codec.Bound(mode).CoarsestStep(0.02);
     const auto m = Measure(set, mode, {step, 0, 0, 4});
     ASSERT_TRUE(m) << name;
     // Positions are floats: a hundredth of a millimetre at a hundred metres.
     EXPECT_LE(m->errors.max_m, 0.02 + 2e-5) << name;
     EXPECT_GT(m->errors.max_m, 0.018) << name;
-    EXPECT_NEAR(m->errors.mean_m, codec.Residual(mode).MeanError(step), 0.0005) << name;
+    EXPECT_NEAR(m->errors.mean_m, codec.Bound(mode).MeanError(step), 0.0005) << name;
     EXPECT_NEAR(m->step_m, step, 1e-9) << name;
   }
 }

@@ -55,7 +55,7 @@ struct Stream {
       scan.intensity_bits = d.settings.intensity_bits;
       if (d.skip) continue;
       Settings settings = d.settings;
-      EncodedSlice encoded = codec.Encode(f, settings, d.keep_fraction);
+      EncodedSize encoded = codec.Encode(f, settings, d.keep_fraction);
       if (const auto again = controller.OnEncoded(encoded)) {
         settings = *again;
         encoded = codec.Encode(f, settings, d.keep_fraction);
@@ -294,7 +294,7 @@ TEST(RateController, SpendsWhatSlicesWithoutReturnsLeave) {
       if (!in_window) f.returns = 0;
       const Decision d = run.controller.NextSlice(f);
       if (!in_window) continue;
-      EncodedSlice encoded = run.codec.Encode(f, d.settings);
+      EncodedSize encoded = run.codec.Encode(f, d.settings);
       if (const auto again = run.controller.OnEncoded(encoded)) {
         encoded = run.codec.Encode(f, *again);
         run.controller.OnEncoded(encoded);

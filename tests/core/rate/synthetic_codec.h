@@ -41,7 +41,7 @@ class SyntheticCodec {
     return f;
   }
 
-  EncodedSlice Encode(const SliceFeatures& f, const Settings& s, double keep = 1) const {
+  EncodedSize Encode(const SliceFeatures& f, const Settings& s, double keep = 1) const {
     const double x = std::log2(s.step_m / 0.01);
     const double sector = 1 + 0.2 * std::cos(4 * M_PI * f.slice_index / f.slice_count);
     const double log2 = std::log2(p_.bits_per_return) - 0.42 * x - 0.02 * x * x;

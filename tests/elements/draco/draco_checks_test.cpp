@@ -198,18 +198,18 @@ TEST(ErrorCheckOfDracoEnc, KnowsBeamsThatWereThinnedFromBeamsThatAreGone) {
 /// An encoded cloud, to be compared with others than the one that it came from.
 std::vector<std::uint8_t> Encoded(const std::vector<float>& xyz, const codec::CloudFormat& format,
                                   unsigned level) {
-  auto encoder = codec::SliceEncoder::Create(format, codec::Geometry::kXyz);
+  auto encoder = draco::SliceEncoder::Create(format, Geometry::kXyz);
   const ByteView raw{reinterpret_cast<const std::uint8_t*>(xyz.data()), xyz.size() * sizeof(float)};
   encoder->Load(raw, 0, false);
   codec::EncodedSlice slice;
-  EXPECT_EQ(encoder->Encode({0.05, 0, 0, level}, &slice), codec::SliceResult::kEncoded);
+  EXPECT_EQ(encoder->Encode({{0.05, 0, 0}, level}, &slice), codec::SliceResult::kEncoded);
   return slice.bytes;
 }
 
 TEST(ErrorCheck, SeesOneStrayPointInEitherCloud) {
   const codec::CloudFormat format{
       {*PointFields::Parse("x:F32:0,y:F32:4,z:F32:8"), 12}, 1, std::nullopt};
-  ErrorCheck check(format, codec::Geometry::kXyz);
+  ErrorCheck check(format, Geometry::kXyz);
   const auto cloud = Lattice();
   for (const unsigned level : {0U, 7U}) {
     auto stray = cloud;
@@ -229,7 +229,7 @@ TEST(ErrorCheck, SeesOneStrayPointInEitherCloud) {
 TEST(ErrorCheck, SaysSoWhereASliceCannotBeDecoded) {
   const codec::CloudFormat format{
       {*PointFields::Parse("x:F32:0,y:F32:4,z:F32:8"), 12}, 1, std::nullopt};
-  ErrorCheck check(format, codec::Geometry::kXyz);
+  ErrorCheck check(format, Geometry::kXyz);
   const auto cloud = Lattice();
   auto bytes = Encoded(cloud, format, 7);
   bytes.resize(bytes.size() / 2);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Slices in both geometries, from raw points to raw points, the odd ones above all.
+// Slices in xyz geometry, from raw points to raw points, the odd ones above all.
 #include <draco/compression/decode.h>
 #include <gtest/gtest.h>
 
@@ -10,11 +10,13 @@
 #include <limits>
 #include <random>
 
-#include "src/codec/slice_decoder.h"
-#include "tests/core/codec/test_clouds.h"
+#include "ext/draco/slice_coder.h"
 
-namespace lidar::codec {
+namespace lidar::draco {
 namespace {
+
+using codec::EncodedSlice;
+using codec::SliceResult;
 
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
@@ -24,8 +26,8 @@ constexpr std::uint32_t kMaxPoints = 1U << 20;
 using Point = std::array<float, 4>;
 using Points = std::vector<Point>;
 
-CloudFormat PlainFormat() {
-  CloudFormat format;
+codec::CloudFormat PlainFormat() {
+  codec::CloudFormat format;
   format.layout = {*PointFields::Parse("x:F32:0,y:F32:4,z:F32:8,intensity:F32:12"), 16};
   return format;
 }
@@ -220,68 +222,5 @@ TEST(XyzSlices, AreTheFloatsThatDracoItselfDecodes) {
   }
 }
 
-/// There and back through range geometry; the ranges of the result.
-std::vector<std::uint32_t> CodedRanges(const RangeImage& image, unsigned threads) {
-  const SensorModel model = test::RoomSensor(image.beams);
-  const CloudFormat format{test::OrganisedLayout(), image.beams, model};
-  const auto raw = test::RawCloud(model, image);
-  auto encoder = *SliceEncoder::Create(format, Geometry::kRange);
-  encoder.set_threads(threads);
-  encoder.Load({raw.data(), raw.size()}, image.first_column, true);
-  EncodedSlice slice;
-  SliceSettings settings;
-  settings.intensity_bits = 5;
-  std::vector<std::uint32_t> ranges;
-  SliceDecoder decoder(format, Geometry::kRange, kMaxPoints);
-  // Twice: what a slice leaves behind in the encoder must not reach into the next.
-  for (int i = 0; i < 2; ++i) {
-    EXPECT_EQ(encoder.Encode(settings, &slice), SliceResult::kEncoded);
-    const auto shape = decoder.Decode({slice.bytes.data(), slice.bytes.size()});
-    EXPECT_TRUE(shape && shape->width == image.columns && shape->height == image.beams);
-    if (!shape) return {};
-    std::vector<std::uint8_t> back(image.size() * 20);
-    decoder.Write(back.data());
-    ranges.resize(image.size());
-    for (std::size_t k = 0; k < ranges.size(); ++k)
-      std::memcpy(&ranges[k], &back[20 * k + 16], sizeof ranges[k]);
-  }
-  return ranges;
-}
-
-TEST(RangeSlices, WithoutAnyReturnComeBackAsSuch) {
-  RangeImage image = test::RoomScan(test::RoomSensor(), 64, 64);
-  std::fill(image.ranges.begin(), image.ranges.end(), 0U);
-  EXPECT_EQ(CodedRanges(image, 1), image.ranges);
-}
-
-TEST(RangeSlices, KeepTheErrorOfASingleReturnAtAnyDistanceUpTo268Kilometres) {
-  for (const std::uint32_t range : {1U, 19U, 5'000U, 10'000'000U, RangeGrid::kMaxRangeMm}) {
-    RangeImage image = test::RoomScan(test::RoomSensor(), 64, 64);
-    std::fill(image.ranges.begin(), image.ranges.end(), 0U);
-    image.ranges[777] = range;
-    const auto back = CodedRanges(image, 1);
-    ASSERT_EQ(back.size(), image.size());
-    EXPECT_NEAR(back[777], range, 20);
-    EXPECT_EQ(std::count(back.begin(), back.end(), 0U), 64 * 32 - 1);
-  }
-}
-
-TEST(RangeSlices, KeepTheErrorNextToAReturnAtTenKilometres) {
-  RangeImage image = test::RoomScan(test::RoomSensor(), 64, 64);
-  image.ranges[777] = 10'000'000;
-  const auto back = CodedRanges(image, 1);
-  ASSERT_EQ(back.size(), image.size());
-  for (std::size_t i = 0; i < back.size(); ++i) {
-    ASSERT_NEAR(back[i], image.ranges[i], 20) << i;
-    ASSERT_EQ(back[i] == 0, image.ranges[i] == 0) << i;
-  }
-}
-
-TEST(RangeSlices, AreTheSameCloudFromAnyNumberOfThreads) {
-  const RangeImage image = test::RoomScan(test::RoomSensor(128), 100);
-  const auto one = CodedRanges(image, 1);
-  for (const unsigned threads : {2U, 3U, 64U}) EXPECT_EQ(CodedRanges(image, threads), one);
-}
-
 }  // namespace
-}  // namespace lidar::codec
+}  // namespace lidar::draco

@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// What a slice is coded as, and the numbers that say so in a stream.
+#pragma once
+#include <cstdint>
+
+namespace lidar {
+
+enum class Geometry : std::uint8_t {
+  kXyz = 0,    // coordinates of single points
+  kRange = 1,  // ranges along the beams of a sensor
+};
+
+}  // namespace lidar

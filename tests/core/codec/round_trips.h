@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Blocks through a range coder and back, for every coder that there is.
+#pragma once
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <random>
+
+#include "src/codec/range_codec.h"
+#include "tests/core/codec/test_clouds.h"
+
+namespace lidar::test {
+
+struct CodingCase {
+  codec::RangeCoder coder;
+  double cells;  // a bin
+  unsigned intensity_bits;
+  RangeGrid grid() const { return RangeGrid::ForStep(1e-3 * cells, 1); }
+};
+
+/// A pair that goes through all slices of a test: nothing of a slice may reach into the next.
+struct Codec {
+  explicit Codec(const SensorModel& model, const codec::IntegerCoder* integers = nullptr)
+      : encoder(model, integers), decoder(model, integers) {}
+  codec::RangeEncoder encoder;
+  codec::RangeDecoder decoder;
+};
+
+inline void ExpectRoundTrip(const codec::RangeImage& image, const codec::RangeSettings& settings,
+                            Codec* codec) {
+  codec::RangeEncoder& encoder = codec->encoder;
+  codec::RangeDecoder& decoder = codec->decoder;
+  std::vector<std::uint8_t> bytes;
+  ASSERT_TRUE(encoder.Encode(image, settings, &bytes));
+  ByteReader reader(bytes.data(), bytes.size());
+  codec::RangeImage back;
+  codec::IntensityScale scale;
+  ASSERT_TRUE(decoder.Decode(&reader, 1U << 20, &back, &scale));
+  EXPECT_EQ(reader.remaining(), 0U);
+  EXPECT_EQ(back.first_column, image.first_column);
+  ASSERT_EQ(back.ranges.size(), image.ranges.size());
+  for (std::size_t i = 0; i < image.size(); ++i) {
+    const std::uint32_t range = image.ranges[i];
+    ASSERT_EQ(back.ranges[i], range == 0 ? 0 : settings.grid.RangeOf(settings.grid.BinOf(range)));
+    if (settings.intensity.bits() > 0 && range != 0) {
+      ASSERT_EQ(back.intensity[i], settings.intensity.Coarsen(image.intensity[i]));
+    }
+  }
+}
+
+/// Blocks of a room, of all widths.
+inline void ExpectBinsOfRooms(const CodingCase& c, const codec::IntegerCoder* integers) {
+  const SensorModel model = RoomSensor();
+  const codec::RangeSettings settings{
+      c.coder, c.grid(), codec::IntensityScale(codec::FullScale::kByte, c.intensity_bits)};
+  Codec codec(model, integers);
+  ExpectRoundTrip(RoomScan(model), settings, &codec);
+  ExpectRoundTrip(RoomScan(model, 448, 64), settings, &codec);
+  ExpectRoundTrip(RoomScan(model, 0, 259), settings, &codec);
+  ExpectRoundTrip(RoomScan(model, 0, 1), settings, &codec);
+  codec.decoder = codec::RangeDecoder(model, integers);
+  ExpectRoundTrip(RoomScan(model, 500, 37), settings, &codec);
+}
+
+/// Blocks that no predictor helps with.
+inline void ExpectBinsOfNoise(const CodingCase& c, const codec::IntegerCoder* integers) {
+  const SensorModel model = RoomSensor();
+  std::mt19937 random(5);
+  Codec codec(model, integers);
+  for (const unsigned lost : {0U, 3U, 90U, 100U}) {
+    codec::RangeImage image = RoomScan(model, 0, lost % 2 == 0 ? 128 : 511);
+    for (std::size_t i = 0; i < image.size(); ++i) {
+      image.ranges[i] =
+          random() % 100 < lost ? 0 : 1 + static_cast<std::uint32_t>(random() % 250'000);
+      image.intensity[i] = static_cast<std::uint8_t>(random());
+    }
+    ExpectRoundTrip(
+        image,
+        {c.coder, c.grid(), codec::IntensityScale(codec::FullScale::kByte, c.intensity_bits)},
+        &codec);
+    codec.decoder = codec::RangeDecoder(model, integers);
+  }
+}
+
+}  // namespace lidar::test

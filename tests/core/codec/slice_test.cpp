@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Slices in range geometry, from raw points to raw points, the odd ones above all.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstring>
+
+#include "src/codec/slice_decoder.h"
+#include "src/codec/slice_encoder.h"
+#include "tests/core/codec/hostile_streams.h"
+
+namespace lidar::codec {
+namespace {
+
+constexpr std::uint32_t kMaxPoints = 1U << 20;
+
+/// There and back; the ranges of the result.
+std::vector<std::uint32_t> CodedRanges(const RangeImage& image, unsigned threads) {
+  const SensorModel model = test::RoomSensor(image.beams);
+  const CloudFormat format{test::OrganisedLayout(), image.beams, model};
+  const auto raw = test::RawCloud(model, image);
+  auto encoder = *SliceEncoder::Create(format);
+  encoder.set_threads(threads);
+  encoder.Load({raw.data(), raw.size()}, image.first_column, true);
+  EncodedSlice slice;
+  SliceSettings settings;
+  settings.intensity_bits = 5;
+  std::vector<std::uint32_t> ranges;
+  SliceDecoder decoder(format, kMaxPoints);
+  // Twice: what a slice leaves behind in the encoder must not reach into the next.
+  for (int i = 0; i < 2; ++i) {
+    EXPECT_EQ(encoder.Encode(settings, &slice), SliceResult::kEncoded);
+    const auto shape = decoder.Decode({slice.bytes.data(), slice.bytes.size()});
+    EXPECT_TRUE(shape && shape->width == image.columns && shape->height == image.beams);
+    if (!shape) return {};
+    std::vector<std::uint8_t> back(image.size() * 20);
+    decoder.Write(back.data());
+    ranges.resize(image.size());
+    for (std::size_t k = 0; k < ranges.size(); ++k)
+      std::memcpy(&ranges[k], &back[20 * k + 16], sizeof ranges[k]);
+  }
+  return ranges;
+}
+
+TEST(RangeSlices, WithoutAnyReturnComeBackAsSuch) {
+  RangeImage image = test::RoomScan(test::RoomSensor(), 64, 64);
+  std::fill(image.ranges.begin(), image.ranges.end(), 0U);
+  EXPECT_EQ(CodedRanges(image, 1), image.ranges);
+}
+
+TEST(RangeSlices, KeepTheErrorOfASingleReturnAtAnyDistanceUpTo268Kilometres) {
+  for (const std::uint32_t range : {1U, 19U, 5'000U, 10'000'000U, RangeGrid::kMaxRangeMm}) {
+    RangeImage image = test::RoomScan(test::RoomSensor(), 64, 64);
+    std::fill(image.ranges.begin(), image.ranges.end(), 0U);
+    image.ranges[777] = range;
+    const auto back = CodedRanges(image, 1);
+    ASSERT_EQ(back.size(), image.size());
+    EXPECT_NEAR(back[777], range, 20);
+    EXPECT_EQ(std::count(back.begin(), back.end(), 0U), 64 * 32 - 1);
+  }
+}
+
+TEST(RangeSlices, KeepTheErrorNextToAReturnAtTenKilometres) {
+  RangeImage image = test::RoomScan(test::RoomSensor(), 64, 64);
+  image.ranges[777] = 10'000'000;
+  const auto back = CodedRanges(image, 1);
+  ASSERT_EQ(back.size(), image.size());
+  for (std::size_t i = 0; i < back.size(); ++i) {
+    ASSERT_NEAR(back[i], image.ranges[i], 20) << i;
+    ASSERT_EQ(back[i] == 0, image.ranges[i] == 0) << i;
+  }
+}
+
+TEST(RangeSlices, AreTheSameCloudFromAnyNumberOfThreads) {
+  const RangeImage image = test::RoomScan(test::RoomSensor(128), 100);
+  const auto one = CodedRanges(image, 1);
+  for (const unsigned threads : {2U, 3U, 64U}) EXPECT_EQ(CodedRanges(image, threads), one);
+}
+
+class HostileSlices : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    const auto raw = test::SmallSlice();
+    auto encoder = *SliceEncoder::Create(test::RoomFormat());
+    encoder.Load({raw.data(), raw.size()}, 0, true);
+    SliceSettings settings;
+    settings.intensity_bits = 5;
+    EncodedSlice slice;
+    ASSERT_EQ(encoder.Encode(settings, &slice), SliceResult::kEncoded);
+    stream_ = slice.bytes;
+  }
+  std::vector<std::uint8_t> stream_;
+};
+
+// Those that pass were hit in the header: a grid of another step, another first column.
+TEST_F(HostileSlices, AreNoticed) {
+  SliceDecoder decoder(test::RoomFormat(), test::kHostileMaxPoints);
+  EXPECT_LE(test::CountDecodedMutations(stream_, &decoder), 0.03 * test::kMutations);
+}
+
+TEST_F(HostileSlices, ThatAreCutOffGiveNothing) {
+  SliceDecoder decoder(test::RoomFormat(), test::kHostileMaxPoints);
+  test::ExpectNothingOfCutStreams(stream_, true, &decoder);
+}
+
+TEST_F(HostileSlices, OfFieldsWithOddTypesStayInsideTheirBuffer) {
+  SliceDecoder decoder(test::OddFormat(), test::kHostileMaxPoints);
+  test::ExpectOddFieldsToStayZero(stream_, &decoder);
+}
+
+}  // namespace
+}  // namespace lidar::codec
