@@ -1,76 +1,320 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include "src/scream/controller.h"
 
-#include "src/scream/controller_impl.h"
+#include <algorithm>
+
+#include "src/scream/media_rate.h"
+#include "src/scream/response/adaptive_pacing.h"
+#include "src/scream/response/isolated_loss.h"
+#include "src/scream/response/quick_drain.h"
 
 namespace lidar::scream {
+namespace {
 
-Controller::Controller(const Parameters& parameters) : impl_(std::make_unique<Impl>(parameters)) {}
-Controller::~Controller() = default;
-Controller::Controller(Controller&&) noexcept = default;
-Controller& Controller::operator=(Controller&&) noexcept = default;
+constexpr Duration kHousekeeping = 50ms;
+/// A caller that comes so much too late stood still, or its clock was set.
+constexpr Duration kStandstill = 500ms;
+constexpr double kDriftRateScale = 0.5;
 
-StreamId Controller::AddStream(const StreamConfig& config) { return impl_->AddStream(config); }
+}  // namespace
 
-void Controller::ConfigureStream(StreamId stream, const StreamConfig& config) {
-  impl_->ConfigureStream(stream, config);
+/// What was on the way while the caller stood still tells nothing about the path.
+Time Controller::Advance(Time caller_now) {
+  const Time now = clock_.From(caller_now);
+  const Duration silence = now - now_;  // of the caller: with data in flight it has to come often
+  now_ = std::max(now_, now);
+  if (silence > kHousekeeping + kStandstill && history_.bytes_in_flight().bytes() > 0) {
+    history_.Expire(now_);
+    outage_.Restart(now_);
+    last_housekeeping_ = now_;
+  }
+  return now_;
 }
 
-void Controller::RemoveStream(StreamId stream) { impl_->streams.Remove(stream); }
-
-void Controller::OnQueued(Time now, StreamId stream, const QueuedPacket& packet) {
-  impl_->OnQueued(impl_->clock.From(now), stream, packet);
+StreamId Controller::AddStream(const StreamConfig& config) {
+  const StreamId id = streams_.Add(config);
+  UpdateTarget(now_);
+  return id;
 }
 
-void Controller::OnSent(Time now, StreamId stream, const SentPacket& packet) {
-  impl_->OnSent(impl_->clock.From(now), stream, packet);
+void Controller::ConfigureStream(StreamId id, const StreamConfig& config) {
+  Stream* stream = streams_.Find(id);
+  if (stream == nullptr) return;
+  stream->Configure(config);
+  UpdateTarget(now_);
 }
 
-void Controller::OnDropped(Time now, StreamId stream, std::size_t packets) {
-  impl_->OnDropped(impl_->clock.From(now), stream, packets);
+void Controller::OnQueued(Time now, StreamId id, const QueuedPacket& packet) {
+  now = Advance(now);
+  Stream* stream = streams_.Find(id);
+  if (stream == nullptr) return;
+  if (streams_.empty()) pacer_.OnIdleEnd(now);
+  if (stream->empty()) streams_.OnQueued(stream);
+  if (stream->OnQueued(now, packet)) UpdateTarget(now);
+}
+
+void Controller::OnSent(Time now, StreamId id, const SentPacket& packet) {
+  now = Advance(now);
+  if (!started_ && send_window_.unused()) StartWindow();
+  if (history_.bytes_in_flight().bytes() == 0) outage_.Restart(now);
+  history_.OnSent(packet.ssrc, packet.seq, {id, packet.size, now, packet.ecn});
+  path_.OnSent(now, packet.size, packet.ecn, history_.bytes_in_flight());
+  streams_.OnSent(now, id, packet.ssrc, packet.size);
+  pacer_.OnSent(now, packet.size);
+  send_window_.OnSent(now);
+  ++counters_.packets_sent;
+  counters_.bytes_sent += packet.size;
+}
+
+void Controller::OnDropped(Time now, StreamId id, std::size_t packets) {
+  now = Advance(now);
+  if (Stream* stream = streams_.Find(id)) stream->OnDropped(now, packets);
+  counters_.packets_dropped += packets;
 }
 
 FeedbackResult Controller::OnFeedback(Time now, const CongestionFeedback& feedback) {
-  return impl_->OnFeedback(impl_->clock.From(now), feedback);
+  now = Advance(now);
+  if (outage_.active()) history_.Expire(now);
+  AckSummary acks;
+  switch (history_.OnFeedback(now, feedback, &acks)) {
+    case HistoryResult::kImplausible:
+      ++counters_.feedback_ignored;
+      return FeedbackResult::kImplausible;
+    case HistoryResult::kNotOurs:
+      return FeedbackResult::kNotOurs;
+    case HistoryResult::kNothingNew:
+      return FeedbackResult::kStale;
+    case HistoryResult::kApplied:
+      break;
+  }
+  ++counters_.feedback_accepted;
+  if (!acks.acked.empty()) TakeOutageRestart(now);
+  MeasurePath(now, acks);
+  CountAcks(acks);
+  Respond(now, acks);
+  UpdateTarget(now);
+  return FeedbackResult::kAccepted;
 }
 
-void Controller::OnTimer(Time now) { impl_->OnTimer(impl_->clock.From(now)); }
-void Controller::OnRouteChange(Time now) { impl_->OnRouteChange(impl_->clock.From(now)); }
-
-std::optional<SendDecision> Controller::NextSend(Time now) const {
-  auto decision = impl_->NextSend(impl_->clock.Peek(now));
-  if (decision) decision->time = impl_->clock.ToCaller(decision->time);
-  return decision;
+void Controller::TakeOutageRestart(Time now) {
+  const auto restart = outage_.OnFeedback(now);
+  if (!restart) return;
+  window_.Set(std::max(window_.ref_wnd(), *restart));
+  answered_.OnOutageEnd(now, path_.rtt().smoothed());
+  fast_increase_.Restart();
 }
 
-std::size_t Controller::LatePackets(Time now, StreamId stream) const {
-  const Stream* s = impl_->streams.Find(stream);
-  return s == nullptr ? 0 : s->LatePackets(impl_->clock.Peek(now));
+void Controller::MeasurePath(Time now, const AckSummary& acks) {
+  if (acks.rtt) path_.OnRoundTrip(now, *acks.rtt, window_.ref_wnd());
+  history_.set_max_reordering_window(path_.rtt().smoothed());
+  if (!started_ && path_.rtt().known()) {
+    started_ = true;
+    StartWindow();
+  }
+  path_.OnReport(now, acks,
+                 {window_.ref_wnd(), streams_.frame_period(), competing_flows_.qdelay_target(),
+                  answered_.marks()});
+  competing_flows_.Update(now, path_.queue_delay().qdelay(), path_.rtt().smoothed(),
+                          !acks.lost.empty());
 }
 
-Time Controller::NextTimer() const { return impl_->clock.ToCaller(impl_->NextTimer()); }
-
-DataRate Controller::target_bitrate(StreamId stream) const {
-  const Stream* s = impl_->streams.Find(stream);
-  return s == nullptr ? DataRate() : s->target_bitrate();
+void Controller::CountAcks(const AckSummary& acks) {
+  for (const AckedPacket& packet : acks.acked) {
+    if (packet.was_lost) ++counters_.packets_late;
+    if (Stream* stream = streams_.Find(packet.stream))
+      stream->OnAcked(packet.arrived_ecn == Ecn::kCe);
+    counters_.bytes_acked += packet.size;
+  }
+  for (const LostPacket& packet : acks.lost)
+    if (Stream* stream = streams_.Find(packet.stream)) stream->OnLost();
+  counters_.packets_acked += acks.acked.size();
+  counters_.packets_lost += acks.lost.size();
 }
 
-DataRate Controller::target_bitrate() const { return impl_->streams.target_bitrate(); }
+void Controller::Respond(Time now, const AckSummary& acks) {
+  if (!RespondToDrop(now)) RespondToSignals(now, acks);
+  if (path_.EndRoundTrip(now)) window_.RelaxPolicer();
+}
 
-std::optional<StreamId> Controller::FindStream(std::uint32_t ssrc) const {
-  return impl_->streams.Owner(ssrc);
+bool Controller::RespondToDrop(Time now) {
+  const auto window = capacity_drop_.Update(
+      now, path_,
+      {streams_.target_bitrate(), window_.ref_wnd(), streams_.frame_period(),
+       competing_flows_.qdelay_target(), window_.last_reaction_to_congestion_time()});
+  if (!window) return false;
+  window_.SetInflection(*window);
+  window_.Set(*window * p_.drop_beta);
+  window_.NoteReaction(now);
+  answered_.OnCapacityDrop(now);
+  fast_increase_.OnCongestion(now);
+  ++counters_.capacity_drops;
+  counters_.reason = RateReason::kDrop;
+  return true;
+}
+
+void Controller::RespondToSignals(Time now, const AckSummary& acks) {
+  const CongestionSignals signals = Signals(now, acks);
+  if (streams_.media_qdelay(now) <= streams_.frame_period()) fast_increase_.Update(now, Round());
+  const Reaction reaction = window_.Update(now, signals);
+  if (reaction == Reaction::kLoss) answered_.OnLossReaction(now);
+  if (reaction != Reaction::kNone) fast_increase_.OnCongestion(now);
+  Count(reaction);
+  LimitWindowAtMaxBitrate();
+}
+
+CongestionSignals Controller::Signals(Time now, const AckSummary& acks) const {
+  const LossTolerance tolerance = TolerateLoss(p_, path_);
+  CongestionSignals s;
+  s.loss_detected = answered_.NewLoss(acks);
+  s.data_units_marked = answered_.NewMark(acks);
+  s.loss_rate = path_.loss_rate().value();
+  s.loss_rate_threshold = tolerance.loss_rate_threshold;
+  s.queue_at_loss = tolerance.queue_at_loss;
+  if (p_.extensions.fast_start)
+    s.fast_growth = fast_increase_.growth(path_.queue_delay().qdelay(), path_.L4sWorks(now));
+  if (p_.extensions.even_alpha) s.earliness = path_.UnreportedTime() / 2;
+  s.l4s_alpha = path_.l4s_alpha().value();
+  s.is_l4s = p_.ecn == Ecn::kEct1;
+  s.qdelay = path_.queue_delay().qdelay();
+  s.qdelay_avg = path_.queue_delay().qdelay_avg();
+  s.qdelay_target = competing_flows_.qdelay_target();
+  s.ref_wnd_delay_scale = path_.queue_delay().ref_wnd_delay_scale();
+  s.s_rtt = path_.rtt().smoothed();
+  s.max_bytes_in_flight = path_.max_in_flight().current();
+  s.max_bytes_in_flight_prev = path_.max_in_flight().previous();
+  s.bytes_newly_acked = acks.bytes_newly_acked;
+  s.bytes_newly_acked_ce = std::min(acks.bytes_newly_acked_ce, acks.bytes_newly_acked);
+  s.target_bitrate = streams_.target_bitrate();
+  s.target_bitrate_max = streams_.max_bitrate();
+  s.acked_bitrate = path_.acked_rate(now);
+  return s;
+}
+
+void Controller::Count(Reaction reaction) {
+  switch (reaction) {
+    case Reaction::kLoss:
+      ++counters_.loss_events;
+      counters_.reason = RateReason::kLoss;
+      break;
+    case Reaction::kCe:
+      ++counters_.ce_events;
+      counters_.reason = RateReason::kCe;
+      break;
+    case Reaction::kVirtualCe:
+      ++counters_.delay_events;
+      counters_.reason = RateReason::kDelay;
+      break;
+    case Reaction::kNone:
+      counters_.reason = RateReason::kIncrease;
+      break;
+  }
+}
+
+void Controller::StartWindow() {
+  window_.Set(WindowFor(p_, streams_.start_bitrate(), path_.rtt().smoothed()));
+}
+
+/// At the maximum bitrate the window must not drift away from what is in flight.
+void Controller::LimitWindowAtMaxBitrate() {
+  if (streams_.target_bitrate() < streams_.max_bitrate()) return;
+  const DataSize needed = streams_.max_bitrate() * (path_.rtt().smoothed() + 1ms) *
+                          (p_.target_rate_divisor + streams_.queue_compensation()) *
+                          p_.packet_pacing_headroom;
+  window_.Limit(std::max(path_.max_in_flight().longest(), needed));
+}
+
+void Controller::UpdateTarget(Time now) {
+  streams_.Allocate(now, TotalTarget(now));
+  pacer_.Update(streams_.target_bitrate(), streams_.max_bitrate(),
+                PacingHeadroom(p_, streams_.frame_period()));
+  if (p_.extensions.quick_drain && streams_.media_qdelay(now) > streams_.frame_period())
+    pacer_.RaiseTo(DrainRate(p_, now, window_.ref_wnd(), path_));
+}
+
+DataRate Controller::TotalTarget(Time now) const {
+  if (!started_) return streams_.start_bitrate();
+  // Through an outage the round trip is as long as nothing has come back.
+  const Duration s_rtt = std::max(path_.rtt().smoothed(), outage_.Silence(now));
+  const DataRate target = TargetBitrate(
+      p_, {window_.ref_wnd(), window_.ref_wnd_ratio(), s_rtt, streams_.queue_compensation()});
+  return now < path_.half_rate_until() ? target * kDriftRateScale : target;
+}
+
+/// Marks of a frame source come once a frame.
+Duration Controller::Round() const {
+  return std::max({path_.rtt().smoothed(), p_.virtual_rtt, streams_.frame_period()});
+}
+
+std::optional<SendDecision> Controller::NextSend(Time) const {
+  const auto id = streams_.Next();
+  if (!id) return std::nullopt;
+  const DataSize max =
+      send_window_.Max(now_, window_.ref_wnd(), path_, competing_flows_.qdelay_target());
+  const Time opens =
+      send_window_.Opens(streams_.Find(*id)->head_size(), history_.bytes_in_flight(), max);
+  return SendDecision{clock_.ToCaller(std::max(pacer_.next(), opens)), *id,
+                      path_.ecn().codepoint()};
+}
+
+std::size_t Controller::LatePackets(Time now, StreamId id) const {
+  const Stream* stream = streams_.Find(id);
+  return stream == nullptr ? 0 : stream->LatePackets(clock_.Peek(now));
+}
+
+void Controller::OnTimer(Time now) {
+  now = Advance(now);
+  if (now < last_housekeeping_ + kHousekeeping) return;
+  last_housekeeping_ = now;
+  path_.OnTimer(now);
+  if (started_ && history_.bytes_in_flight().bytes() > 0) {
+    if (const auto window = outage_.OnTimer(now, window_.ref_wnd(), path_.rtt().smoothed(),
+                                            streams_.frame_period())) {
+      window_.Set(*window);
+      ++counters_.feedback_timeouts;
+      counters_.reason = RateReason::kTimeout;
+    }
+  }
+  UpdateTarget(now);
+}
+
+void Controller::OnRouteChange(Time now) {
+  Advance(now);
+  path_.Reset();
+  started_ = false;
+  fast_increase_.Restart();
+  history_.Expire(now_);
+}
+
+Time Controller::NextTimer() const {
+  const bool idle = streams_.empty() && history_.bytes_in_flight().bytes() == 0;
+  return idle ? Time::max() : clock_.ToCaller(last_housekeeping_ + kHousekeeping);
+}
+
+DataRate Controller::target_bitrate(StreamId id) const {
+  const Stream* stream = streams_.Find(id);
+  return stream == nullptr ? DataRate() : stream->target_bitrate();
 }
 
 Statistics Controller::statistics(Time now) const {
-  return impl_->GetStatistics(impl_->clock.Peek(now));
+  const Time latest = std::max(clock_.Peek(now), now_);
+  Statistics s = counters_;
+  path_.Describe(latest, &s);
+  s.ref_wnd = window_.ref_wnd();
+  s.ref_wnd_i = window_.ref_wnd_i();
+  s.max_policed_ref_wnd = window_.max_policed_ref_wnd();
+  s.bytes_in_flight = history_.bytes_in_flight();
+  s.foreign_blocks = history_.foreign_blocks();
+  s.qdelay_target = competing_flows_.qdelay_target();
+  s.target_bitrate = streams_.target_bitrate();
+  s.pace_bitrate = pacer_.pace_bitrate();
+  s.queued = streams_.queued();
+  s.media_qdelay = streams_.media_qdelay(latest);
+  return s;
 }
 
-StreamStatistics Controller::stream_statistics(Time now, StreamId stream) const {
-  Stream* s = impl_->streams.Find(stream);
-  return s == nullptr ? StreamStatistics{} : s->statistics(impl_->clock.Peek(now));
+StreamStatistics Controller::stream_statistics(Time now, StreamId id) const {
+  const Stream* stream = streams_.Find(id);
+  return stream == nullptr ? StreamStatistics{} : stream->statistics(clock_.Peek(now));
 }
-
-EcnState Controller::ecn_state() const { return impl_->ecn.state(); }
-const Parameters& Controller::parameters() const { return impl_->p; }
 
 }  // namespace lidar::scream

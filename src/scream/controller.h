@@ -2,14 +2,24 @@
 // SCReAM v2, the sender's side: events with their time in, decisions out.
 #pragma once
 #include <cstdint>
-#include <memory>
 #include <optional>
-#include <vector>
 
 #include "src/scream/feedback/ccfb.h"
+#include "src/scream/model/path_model.h"
+#include "src/scream/model/sent_history.h"
+#include "src/scream/pacer.h"
 #include "src/scream/parameters.h"
+#include "src/scream/response/answered_signals.h"
+#include "src/scream/response/capacity_drop.h"
+#include "src/scream/response/competing_flows.h"
+#include "src/scream/response/fast_increase.h"
+#include "src/scream/response/outage.h"
+#include "src/scream/response/reference_window.h"
+#include "src/scream/response/send_window.h"
 #include "src/scream/statistics.h"
+#include "src/scream/steady_time.h"
 #include "src/scream/stream_config.h"
+#include "src/scream/streams.h"
 
 namespace lidar::scream {
 
@@ -50,18 +60,20 @@ enum class FeedbackResult {
 /// does: an earlier time than one seen before counts as that one.
 ///
 /// Not thread-safe, no callbacks; a caller with a lock holds it around each call.
+///
+/// It only sequences: `model/` measures the path, `response/` decides what follows from it, and
+/// `streams` shares the result.
 class Controller {
  public:
-  explicit Controller(const Parameters& parameters);
-  ~Controller();
-  Controller(Controller&&) noexcept;
-  Controller& operator=(Controller&&) noexcept;
+  explicit Controller(const Parameters& parameters) : p_(parameters) {}
+  Controller(const Controller&) = delete;
+  Controller& operator=(const Controller&) = delete;
 
   // Streams. All may be called at any time.
   StreamId AddStream(const StreamConfig& config);
   void ConfigureStream(StreamId stream, const StreamConfig& config);
   /// Its queued packets are forgotten; what is in flight still counts.
-  void RemoveStream(StreamId stream);
+  void RemoveStream(StreamId stream) { streams_.Remove(stream); }
 
   // Events
   void OnQueued(Time now, StreamId stream, const QueuedPacket& packet);
@@ -86,19 +98,49 @@ class Controller {
   Time NextTimer() const;
   /// Of one stream, and of all. IP, UDP and RTP included.
   DataRate target_bitrate(StreamId stream) const;
-  DataRate target_bitrate() const;
+  DataRate target_bitrate() const { return streams_.target_bitrate(); }
   /// Stream that owns `ssrc` (it was queued or sent there), for events that travel by SSRC.
-  std::optional<StreamId> FindStream(std::uint32_t ssrc) const;
+  std::optional<StreamId> FindStream(std::uint32_t ssrc) const { return streams_.Owner(ssrc); }
 
   // Observation
   Statistics statistics(Time now) const;
   StreamStatistics stream_statistics(Time now, StreamId stream) const;
-  EcnState ecn_state() const;
-  const Parameters& parameters() const;
+  EcnState ecn_state() const { return path_.ecn().state(); }
+  const Parameters& parameters() const { return p_; }
 
  private:
-  class Impl;
-  std::unique_ptr<Impl> impl_;
+  Time Advance(Time caller_now);
+  void TakeOutageRestart(Time now);
+  void MeasurePath(Time now, const AckSummary& acks);
+  void CountAcks(const AckSummary& acks);
+  void Respond(Time now, const AckSummary& acks);
+  bool RespondToDrop(Time now);
+  void RespondToSignals(Time now, const AckSummary& acks);
+  CongestionSignals Signals(Time now, const AckSummary& acks) const;
+  void Count(Reaction reaction);
+  void StartWindow();
+  void LimitWindowAtMaxBitrate();
+  void UpdateTarget(Time now);
+  DataRate TotalTarget(Time now) const;
+  Duration Round() const;
+
+  const Parameters p_;
+  SteadyTime clock_;  // of the caller; all times within are its steady ones
+  Time now_{};
+  Streams streams_{p_};
+  SentHistory history_;
+  PathModel path_{p_};
+  CompetingFlows competing_flows_{p_};
+  ReferenceWindow window_{p_};
+  FastIncrease fast_increase_{p_};
+  CapacityDrop capacity_drop_{p_};
+  AnsweredSignals answered_{p_};
+  Outage outage_{p_};
+  SendWindow send_window_{p_};
+  Pacer pacer_{p_};
+  bool started_ = false;  // a round trip is known
+  Time last_housekeeping_{};
+  Statistics counters_;
 };
 
 }  // namespace lidar::scream

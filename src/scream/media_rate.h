@@ -23,4 +23,9 @@ inline DataRate TargetBitrate(const Parameters& p, const MediaRateInput& in) {
   return in.ref_wnd / in.s_rtt * scale;
 }
 
+/// The window whose target is `rate`: the draft leaves the start open.
+inline DataSize WindowFor(const Parameters& p, DataRate rate, Duration s_rtt) {
+  return rate * s_rtt * p.target_rate_divisor * ((p.mss + p.packet_overhead) / p.mss);
+}
+
 }  // namespace lidar::scream

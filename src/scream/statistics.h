@@ -20,7 +20,7 @@ enum class EcnState {
 const char* ToString(EcnState state);
 
 /// Why the target moved last, in words for the `reason` of an event.
-enum class RateReason { kStart, kIncrease, kCe, kLoss, kDelay, kDrop, kTimeout, kDrift, kLimits };
+enum class RateReason { kStart, kIncrease, kCe, kLoss, kDelay, kDrop, kTimeout };
 const char* ToString(RateReason reason);
 
 struct Statistics {

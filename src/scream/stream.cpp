@@ -7,8 +7,6 @@ namespace lidar::scream {
 namespace {
 
 constexpr double kMaxRateAdjustFactor = 0.5;
-/// quick_drain: a frame without a queue takes back this much of what the queue cost.
-constexpr double kRateAdjustDecay = 0.75;
 constexpr double kMaxFrameSizeDev = 0.2;
 constexpr double kFramePeriodGain = 0.1;
 /// Longer gaps are pauses, not frame periods.
@@ -66,9 +64,11 @@ void Stream::OnSent(Time now, std::uint32_t ssrc, DataSize size) {
   if (queue_.empty()) return;
   queued_ -= queue_.front().size;
   queue_.pop_front();
+  last_active_ = now;
 }
 
-void Stream::OnDropped(std::size_t packets) {
+void Stream::OnDropped(Time now, std::size_t packets) {
+  if (packets > 0) last_active_ = now;
   for (; packets > 0 && !queue_.empty(); --packets) {
     ++counters_.packets_dropped;
     queued_ -= queue_.front().size;
@@ -93,13 +93,11 @@ Duration Stream::media_qdelay(Time now) const {
   return queue_.empty() ? Duration{0} : now - queue_.front().queued;
 }
 
-bool Stream::active(Time now) {
-  if (now == Time{}) return true;  // no event yet
-  if (!last_active_ || !queue_.empty()) last_active_ = now;
-  return now - *last_active_ < kInactive;
+bool Stream::active(Time now) const {
+  return !queue_.empty() || !last_active_ || now - *last_active_ < kInactive;
 }
 
-StreamStatistics Stream::statistics(Time now) {
+StreamStatistics Stream::statistics(Time now) const {
   StreamStatistics s = counters_;
   s.target_bitrate = target_bitrate_;
   s.sent_bitrate = sent_rate_.Rate(now);

@@ -21,7 +21,7 @@ class Stream {
   bool OnQueued(Time now, const QueuedPacket& packet);
   /// Takes the head of the queue.
   void OnSent(Time now, std::uint32_t ssrc, DataSize size);
-  void OnDropped(std::size_t packets);
+  void OnDropped(Time now, std::size_t packets);
   std::size_t LatePackets(Time now) const;
 
   bool empty() const { return queue_.empty(); }
@@ -35,14 +35,16 @@ class Stream {
   double rate_adjust_factor() const { return rate_adjust_factor_; }
   double frame_size_dev() const { return frame_size_dev_; }
   Duration frame_period() const { return frame_period_; }
-  /// Has packets, or had lately. One that never had any counts for a while after the first call.
-  bool active(Time now);
+  /// Silence counts from here on, at the latest.
+  void NoteTime(Time now) { last_active_ = last_active_.value_or(now); }
+  /// Has packets, or had lately.
+  bool active(Time now) const;
   DataRate target_bitrate() const { return target_bitrate_; }
   void set_target_bitrate(DataRate target) { target_bitrate_ = target; }
-  DataRate sent_bitrate(Time now) { return sent_rate_.Rate(now); }
+  DataRate sent_bitrate(Time now) const { return sent_rate_.Rate(now); }
   void OnAcked(bool ce) { counters_.packets_ce += ce ? 1 : 0; }
   void OnLost() { ++counters_.packets_lost; }
-  StreamStatistics statistics(Time now);
+  StreamStatistics statistics(Time now) const;
   /// For the scheduler: bytes sent by weight, see Streams.
   double virtual_time = 0;
 
@@ -59,7 +61,7 @@ class Stream {
   std::deque<Queued> queue_;
   DataSize queued_;
   std::set<std::uint32_t> ssrcs_;
-  RateMeter sent_rate_{1s};
+  mutable RateMeter sent_rate_{1s};
   DataRate target_bitrate_;
   // Frames of the media SSRC: the one that sends markers.
   std::optional<std::uint32_t> media_ssrc_;

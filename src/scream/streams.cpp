@@ -53,11 +53,15 @@ void Streams::OnSent(Time now, StreamId id, std::uint32_t ssrc, DataSize size) {
   stream->virtual_time += size.bits() / weight;
 }
 
-double Streams::NeedShare(Time now, DataRate total) {
+bool Streams::AnyActive(Time now) const {
+  return std::any_of(streams_.begin(), streams_.end(),
+                     [now](const auto& s) { return s.second.active(now); });
+}
+
+double Streams::NeedShare(Time now, DataRate total) const {
   DataRate extra;  // of what is needed, above the minima
-  bool any_active = false;
-  for (auto& [id, stream] : streams_) any_active = stream.active(now) || any_active;
-  for (auto& [id, stream] : streams_) {
+  const bool any_active = AnyActive(now);
+  for (const auto& [id, stream] : streams_) {
     if (any_active && !stream.active(now)) continue;
     const StreamConfig& c = stream.config();
     total = total - c.min_bitrate;
@@ -75,8 +79,9 @@ void Streams::Allocate(Time now, DataRate total) {
   };
   std::vector<Share> open;
   DataRate left = total;
-  bool any_active = false;
-  for (auto& [id, stream] : streams_) any_active = stream.active(now) || any_active;
+  if (now != Time{})  // else there was no event yet
+    for (auto& [id, stream] : streams_) stream.NoteTime(now);
+  const bool any_active = AnyActive(now);
   const double need_share = NeedShare(now, total);
   for (auto& [id, stream] : streams_) {
     const StreamConfig& c = stream.config();

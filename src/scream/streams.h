@@ -40,7 +40,8 @@ class Streams {
 
  private:
   /// How much of what streams need above their minima the path can carry, 0..1.
-  double NeedShare(Time now, DataRate total);
+  double NeedShare(Time now, DataRate total) const;
+  bool AnyActive(Time now) const;
   const Parameters& p_;
   std::map<StreamId, Stream> streams_;
   StreamId next_id_ = 0;

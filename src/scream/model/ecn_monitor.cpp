@@ -12,46 +12,6 @@ constexpr Duration kSilence = 2s;
 
 }  // namespace
 
-const char* ToString(EcnState state) {
-  switch (state) {
-    case EcnState::kOff:
-      return "off";
-    case EcnState::kTesting:
-      return "testing";
-    case EcnState::kCapable:
-      return "capable";
-    case EcnState::kBleached:
-      return "bleached";
-    case EcnState::kSilent:
-      return "silent";
-  }
-  return "";
-}
-
-const char* ToString(RateReason reason) {
-  switch (reason) {
-    case RateReason::kStart:
-      return "start";
-    case RateReason::kIncrease:
-      return "increase";
-    case RateReason::kCe:
-      return "ce";
-    case RateReason::kLoss:
-      return "loss";
-    case RateReason::kDelay:
-      return "delay";
-    case RateReason::kDrop:
-      return "capacity-drop";
-    case RateReason::kTimeout:
-      return "no-feedback";
-    case RateReason::kDrift:
-      return "clock-drift";
-    case RateReason::kLimits:
-      return "limits";
-  }
-  return "";
-}
-
 void EcnMonitor::Reset() {
   state_ = wanted_ == Ecn::kNotEct ? EcnState::kOff : EcnState::kTesting;
   sent_ = bleached_ = 0;

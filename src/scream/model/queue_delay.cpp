@@ -23,13 +23,11 @@ QueueDelay::QueueDelay(const Parameters& parameters)
     : p_(parameters), qdelay_max_avg_(parameters.qdelay_target_lo) {}
 
 void QueueDelay::Reset() {
-  const bool drift_reset = drift_reset_;
   history_.clear();
   base_.reset();
   qdelay_ = qdelay_avg_ = Duration{0};
   slow_min_avg_ = Duration{0};
   min_this_rtt_ = Duration::max();
-  drift_reset_ = drift_reset;
 }
 
 void QueueDelay::AddToBase(Time now, Duration owd, bool short_history) {
@@ -44,13 +42,14 @@ void QueueDelay::AddToBase(Time now, Duration owd, bool short_history) {
   base_ = std::min(*base_, owd);
 }
 
-bool QueueDelay::Add(Time now, Time sent, Time arrival, Duration rtt_excess, bool short_history) {
-  const Duration owd = arrival - sent;
-  const bool jumped = base_ && (owd - *base_ > rtt_excess + kJump || owd < *base_ - kJump);
+bool QueueDelay::Add(Time now, const DelaySample& sample, bool short_history) {
+  const Duration owd = sample.arrival - sample.sent;
+  const bool jumped =
+      base_ && (owd - *base_ > sample.rtt_excess + kJump || owd < *base_ - kJump);
   if (jumped) {
     Reset();
     // A queue that stands across the jump shows in the round trip still.
-    AddToBase(now, owd - rtt_excess, short_history);
+    AddToBase(now, owd - sample.rtt_excess, short_history);
   }
   AddToBase(now, owd, short_history);
   qdelay_ = owd - *base_;

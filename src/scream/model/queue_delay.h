@@ -8,16 +8,22 @@
 
 namespace lidar::scream {
 
+/// A packet that was acknowledged.
+struct DelaySample {
+  Time sent{};
+  Time arrival{};  ///< on the receiver's clock
+  /// How much the round trip is above its minimum: a queue cannot delay more than that.
+  Duration rtt_excess{0};
+};
+
 /// One-way delay above its base (RFC 6817). The two clocks share no epoch: only differences count.
 class QueueDelay {
  public:
   explicit QueueDelay(const Parameters& parameters);
 
-  /// For each acknowledged packet; `arrival` on the receiver's clock. Returns false where the
-  /// clocks jumped against each other: the base has been taken anew. `rtt_excess` is how much
-  /// the round trip is above its minimum: a queue cannot delay more than that.
+  /// Returns false where the clocks jumped against each other: the base has been taken anew.
   /// `short_history`: the base is that of the last half minute.
-  bool Add(Time now, Time sent, Time arrival, Duration rtt_excess, bool short_history = false);
+  bool Add(Time now, const DelaySample& sample, bool short_history = false);
   /// After the packets of a report: averages, at most once every min(VIRTUAL_RTT, s_rtt).
   void Update(Time now, Duration s_rtt, Duration qdelay_target);
   /// Forgets base delay and averages.

@@ -26,10 +26,7 @@ void SentHistory::OnSent(std::uint32_t ssrc, std::uint16_t seq, const SentRecord
   Packet packet;
   packet.seq = source.unwrapper.Unwrap(seq);
   packet.record = record;
-  if (is_new) {
-    source.first_ever = packet.seq;
-    source.highest_acked = packet.seq - 1;
-  }
+  if (is_new) source.highest_acked = packet.seq - 1;
   if (source.packets.empty() || source.packets.back().seq < packet.seq) {
     source.packets.push_back(packet);
     in_flight_ += record.size;
@@ -207,18 +204,6 @@ void SentHistory::Expire(Time before) {
       source.highest_acked = packet.seq;
     }
   }
-}
-
-std::optional<Time> SentHistory::oldest_in_flight() const {
-  std::optional<Time> oldest;
-  for (const auto& [ssrc, source] : sources_) {
-    const auto it =
-        std::upper_bound(source.packets.begin(), source.packets.end(), source.highest_acked,
-                         [](std::int64_t s, const Packet& p) { return s < p.seq; });
-    if (it != source.packets.end() && (!oldest || it->record.sent < *oldest))
-      oldest = it->record.sent;
-  }
-  return oldest;
 }
 
 }  // namespace lidar::scream

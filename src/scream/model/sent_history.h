@@ -64,7 +64,6 @@ class SentHistory {
   void Expire(Time before);
 
   DataSize bytes_in_flight() const { return in_flight_; }
-  std::optional<Time> oldest_in_flight() const;
   Duration reordering_window() const { return reordering_window_; }
   void set_max_reordering_window(Duration d) { max_reordering_window_ = d; }
   std::uint64_t foreign_blocks() const { return foreign_blocks_; }
@@ -80,7 +79,6 @@ class SentHistory {
   };
   struct Source {
     SequenceUnwrapper<std::uint16_t> unwrapper;
-    std::int64_t first_ever = 0;
     std::int64_t highest_acked = -1;
     std::deque<Packet> packets;  // by seq
     std::vector<std::int64_t> missing;

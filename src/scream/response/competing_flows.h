@@ -15,7 +15,6 @@ class CompetingFlows {
   /// At each report; samples once every 50 ms.
   void Update(Time now, Duration qdelay, Duration s_rtt, bool loss);
   Duration qdelay_target() const { return qdelay_target_; }
-  double loss_event_rate() const { return loss_event_rate_; }
 
  private:
   void CountLossEvents(Time now, Duration s_rtt, bool loss);

@@ -27,7 +27,6 @@ class FastIncrease {
   }
   /// As at the start of a flow.
   void Restart() { starting_ = true; }
-  bool starting() const { return starting_; }
   /// Fraction of the acknowledged bytes by which the window may grow; the less, the longer the
   /// queue.
   double growth(Duration qdelay, bool l4s_works) const {

@@ -101,7 +101,7 @@ class QueueDelayTest : public ::testing::Test {
   /// A packet a millisecond that takes `owd`, on clocks an hour apart.
   void Run(int packets, Duration owd, Duration rtt_excess) {
     for (int i = 0; i < packets; ++i, now_ += 1ms) {
-      ok_ = delay_.Add(now_, now_ - 20ms, now_ - 20ms + owd + 1h, rtt_excess) && ok_;
+      ok_ = delay_.Add(now_, {now_ - 20ms, now_ - 20ms + owd + 1h, rtt_excess}) && ok_;
       delay_.Update(now_, 40ms, 60ms);
     }
   }

@@ -125,7 +125,7 @@ TEST_F(StreamTest, AFrameThatHasBegunGoesOutToItsEnd) {
 TEST_F(StreamTest, TheFramePeriodIsMeasured) {
   for (int i = 0; i < 100; ++i) {
     Frame(kStart + i * 100ms, 1, static_cast<std::uint32_t>(i));
-    stream_.OnDropped(1);
+    stream_.OnDropped(kStart, 1);
   }
   EXPECT_NEAR(Milliseconds(stream_.frame_period()), 100, 1);
 }
@@ -138,7 +138,7 @@ TEST_F(StreamTest, AQueueThatOutlastsTheFramePeriodLowersTheRate) {
 TEST_F(StreamTest, FramesAboveTheNominalSizeAreCompensated) {
   for (int i = 0; i < 500; ++i) {
     Frame(kStart + i * 20ms, 11, static_cast<std::uint32_t>(i));  // nominal: 10
-    stream_.OnDropped(11);
+    stream_.OnDropped(kStart, 11);
   }
   EXPECT_NEAR(stream_.frame_size_dev(), 0.1, 1e-3);
 }

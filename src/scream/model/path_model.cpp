@@ -1,0 +1,146 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "src/scream/model/path_model.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace lidar::scream {
+namespace {
+
+/// So long after a mark the next sign of congestion is expected to be one too.
+constexpr Duration kMarksExpected = 30s;
+/// Reports that are no further apart than this part of a round trip need no allowance; others one
+/// of this at most.
+constexpr int kCloseReports = 5;
+constexpr Duration kLongestGap = 100ms;
+/// Packets in a row behind a queue that are no accident.
+constexpr int kQueueingPackets = 3;
+/// The clock-drift remedy lasts five round trips, but not less than this.
+constexpr Duration kShortestHalfRate = 200ms;
+
+}  // namespace
+
+PathModel::PathModel(const Parameters& parameters) : p_(parameters) {}
+
+void PathModel::OnSent(Time now, DataSize size, Ecn ecn, DataSize in_flight) {
+  max_in_flight_.Add(in_flight);
+  sent_rate_.Add(now, size);
+  ecn_.OnSent(now, ecn);
+}
+
+void PathModel::OnRoundTrip(Time now, Duration sample, DataSize ref_wnd) {
+  rtt_.Add(now, sample, SourceLimited(ref_wnd));
+}
+
+void PathModel::OnReport(Time now, const AckSummary& acks, const SenderState& sender) {
+  MeasureDelays(now, acks, sender);
+  CountMarksAndLosses(now, acks, sender);
+  ObserveCapacity(now, acks, sender.qdelay_target);
+  MeasureReports(now, acks, sender.ref_wnd);
+}
+
+bool PathModel::EndRoundTrip(Time now) {
+  return max_in_flight_.Update(now, std::max(p_.virtual_rtt, rtt_.smoothed()));
+}
+
+void PathModel::Reset() {
+  queue_delay_.Reset();
+  rtt_.Reset();
+  ecn_.Reset();
+  last_mark_.reset();
+}
+
+void PathModel::MeasureDelays(Time now, const AckSummary& acks, const SenderState& sender) {
+  const Duration excess = rtt_.last() - rtt_.min();
+  for (const AckedPacket& packet : acks.acked)
+    if (packet.arrival &&
+        !queue_delay_.Add(now, {packet.sent, *packet.arrival, excess}, L4sWorks(now))) {
+      ++clock_resets_;
+      busy_run_.Reset();
+    }
+  queue_delay_.Update(now, rtt_.smoothed(), sender.qdelay_target);
+  if (queue_delay_.TakeDriftReset()) {
+    ++clock_resets_;
+    half_rate_until_ = now + std::max(5 * rtt_.smoothed(), kShortestHalfRate);
+  }
+}
+
+void PathModel::CountMarksAndLosses(Time now, const AckSummary& acks, const SenderState& sender) {
+  int marked = acks.late_ce;
+  int answered = 0;
+  acked_rate_.set_window(std::max(rtt_.smoothed(), 2 * sender.frame_period));
+  for (const AckedPacket& packet : acks.acked) {
+    if (packet.arrived_ecn == Ecn::kCe) ++(packet.sent >= sender.marks_answered ? marked : answered);
+    ecn_.OnAcked(packet.ecn, packet.arrived_ecn);
+    loss_rate_.Add(false, sender.ref_wnd);
+    acked_rate_.Add(now, packet.size);
+  }
+  for (std::size_t i = 0; i < acks.lost.size(); ++i) loss_rate_.Add(true, sender.ref_wnd);
+  packets_ce_ += static_cast<std::uint64_t>(marked + answered);
+  if (marked + answered > 0) last_mark_ = now;
+  const Duration round = std::max({rtt_.smoothed(), p_.virtual_rtt, sender.frame_period});
+  l4s_alpha_.Update(now, static_cast<int>(acks.acked.size()), marked, rtt_.smoothed(), round);
+}
+
+void PathModel::ObserveCapacity(Time now, const AckSummary& acks, Duration qdelay_target) {
+  for (const AckedPacket& packet : acks.acked) {
+    if (!packet.arrival) {  // a hole in what is known of the link
+      busy_run_.Reset();
+      continue;
+    }
+    const bool marked = packet.arrived_ecn == Ecn::kCe;
+    const Duration qdelay = *packet.arrival - packet.sent - queue_delay_.base();
+    const bool busy = marked || qdelay >= BusyQdelay(now, qdelay_target);
+    busy_run_.Add({*packet.arrival, packet.size, busy, marked});
+  }
+}
+
+/// Weighted by what the report acknowledges: a pause of the source is no gap.
+void PathModel::MeasureReports(Time now, const AckSummary& acks, DataSize ref_wnd) {
+  const Duration gap = std::min(now - std::exchange(last_report_, now), kLongestGap);
+  const double weight = std::min(1.0, acks.bytes_newly_acked / ref_wnd);
+  report_gap_ += FromSeconds(Seconds(gap - report_gap_) * weight);
+}
+
+bool PathModel::SourceLimited(DataSize ref_wnd) const {
+  return std::max(max_in_flight_.current(), max_in_flight_.previous()) *
+             p_.bytes_in_flight_head_room <
+         ref_wnd;
+}
+
+bool PathModel::L4sWorks(Time now) const {
+  return p_.ecn == Ecn::kEct1 && ecn_.state() == EcnState::kCapable && last_mark_ &&
+         now - *last_mark_ < kMarksExpected;
+}
+
+Duration PathModel::BusyQdelay(Time now, Duration qdelay_target) const {
+  return L4sWorks(now) ? p_.busy_qdelay
+                       : FromSeconds(Seconds(qdelay_target) * p_.busy_qdelay_unmarked);
+}
+
+bool PathModel::Queueing(Time now, Duration qdelay) const {
+  const bool believed = !L4sWorks(now) || 3 * busy_run_.marked() >= busy_run_.packets();
+  return busy_run_.packets() >= kQueueingPackets && believed && queue_delay_.qdelay() > qdelay;
+}
+
+Duration PathModel::UnreportedTime() const {
+  return std::max(Duration{0}, report_gap_ - rtt_.smoothed() / kCloseReports);
+}
+
+void PathModel::Describe(Time now, Statistics* s) const {
+  s->max_bytes_in_flight = max_in_flight_.longest();
+  s->s_rtt = rtt_.known() ? rtt_.smoothed() : Duration{0};
+  s->min_rtt = rtt_.known() ? rtt_.min() : Duration{0};
+  s->qdelay = queue_delay_.qdelay();
+  s->qdelay_avg = queue_delay_.qdelay_avg();
+  s->l4s_alpha = l4s_alpha_.value();
+  s->ref_wnd_delay_scale = queue_delay_.ref_wnd_delay_scale();
+  s->loss_rate = loss_rate_.value();
+  s->sent_bitrate = sent_rate_.Rate(now);
+  s->acked_bitrate = acked_rate_.Rate(now);
+  s->packets_ce = packets_ce_;
+  s->clock_resets = clock_resets_;
+  s->ecn_state = ecn_.state();
+}
+
+}  // namespace lidar::scream

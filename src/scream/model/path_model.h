@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// What acknowledgements tell of the path: delays, marks, losses, rates and the link's capacity.
+#pragma once
+#include <cstdint>
+#include <optional>
+
+#include "src/scream/model/busy_run.h"
+#include "src/scream/model/ecn_monitor.h"
+#include "src/scream/model/flight.h"
+#include "src/scream/model/l4s_alpha.h"
+#include "src/scream/model/loss_rate.h"
+#include "src/scream/model/queue_delay.h"
+#include "src/scream/model/rate_meter.h"
+#include "src/scream/model/rtt.h"
+#include "src/scream/model/sent_history.h"
+#include "src/scream/parameters.h"
+#include "src/scream/statistics.h"
+
+namespace lidar::scream {
+
+/// What the sender does while it measures.
+struct SenderState {
+  DataSize ref_wnd;
+  Duration frame_period{0};
+  Duration qdelay_target{0};
+  Time marks_answered{};  ///< marks of packets sent before it have had their reaction
+};
+
+/// The estimators of one path. It decides nothing: the responses ask it.
+class PathModel {
+ public:
+  explicit PathModel(const Parameters& parameters);
+
+  /// `in_flight` includes the packet.
+  void OnSent(Time now, DataSize size, Ecn ecn, DataSize in_flight);
+  /// Of a report, before the rest of it. `ref_wnd` shows whether the source uses its window.
+  void OnRoundTrip(Time now, Duration sample, DataSize ref_wnd);
+  void OnReport(Time now, const AckSummary& acks, const SenderState& sender);
+  /// True at the end of a round trip.
+  bool EndRoundTrip(Time now);
+  void OnTimer(Time now) { ecn_.OnTimer(now); }
+  /// Another route: base delay, round trip and ECN are unknown again.
+  void Reset();
+
+  const RoundTripTime& rtt() const { return rtt_; }
+  const QueueDelay& queue_delay() const { return queue_delay_; }
+  const L4sAlpha& l4s_alpha() const { return l4s_alpha_; }
+  const LossRate& loss_rate() const { return loss_rate_; }
+  const EcnMonitor& ecn() const { return ecn_; }
+  const BusyRun& busy_run() const { return busy_run_; }
+  const MaxBytesInFlight& max_in_flight() const { return max_in_flight_; }
+  DataRate sent_rate(Time now) const { return sent_rate_.Rate(now); }
+  /// Over a round trip, or two frame periods where those are longer.
+  DataRate acked_rate(Time now) const { return acked_rate_.Rate(now); }
+
+  /// The path carries ECT(1), and its bottleneck has lately been one that marks it.
+  bool L4sWorks(Time now) const;
+  /// A packet that waited so long came out of a queue. Without marks a queue is no sign of
+  /// congestion before the draft takes it for one.
+  Duration BusyQdelay(Time now, Duration qdelay_target) const;
+  /// The queue is longer than `qdelay` and packets keep coming back out of it; where marks work,
+  /// marked: delay alone may be a longer path.
+  bool Queueing(Time now, Duration qdelay) const;
+  /// Reports that are far apart, as round trips go: what arrived for so long is not reported yet
+  /// and still counts as in flight.
+  Duration UnreportedTime() const;
+  /// The clocks drift apart: the draft sends at half the rate until then.
+  Time half_rate_until() const { return half_rate_until_; }
+  /// Round trips, delays, marks and rates; the rest of `statistics` is left alone.
+  void Describe(Time now, Statistics* statistics) const;
+
+ private:
+  void MeasureDelays(Time now, const AckSummary& acks, const SenderState& sender);
+  void CountMarksAndLosses(Time now, const AckSummary& acks, const SenderState& sender);
+  void ObserveCapacity(Time now, const AckSummary& acks, Duration qdelay_target);
+  void MeasureReports(Time now, const AckSummary& acks, DataSize ref_wnd);
+  bool SourceLimited(DataSize ref_wnd) const;
+
+  const Parameters& p_;
+  RoundTripTime rtt_;
+  QueueDelay queue_delay_{p_};
+  L4sAlpha l4s_alpha_{p_};
+  LossRate loss_rate_{p_};
+  EcnMonitor ecn_{p_.ecn};
+  BusyRun busy_run_;
+  MaxBytesInFlight max_in_flight_;
+  mutable RateMeter sent_rate_{1s};
+  mutable RateMeter acked_rate_{100ms};
+  std::optional<Time> last_mark_;
+  Time last_report_{};
+  Duration report_gap_{0};
+  Time half_rate_until_{};
+  std::uint64_t packets_ce_ = 0;
+  std::uint64_t clock_resets_ = 0;
+};
+
+}  // namespace lidar::scream

@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "src/scream/response/capacity_drop.h"
+
+#include <algorithm>
+
+namespace lidar::scream {
+
+std::optional<DataSize> CapacityDrop::Update(Time now, const PathModel& path, const Load& load) {
+  const auto capacity = path.busy_run().capacity();
+  if (!p_.extensions.drop_response || !capacity) return std::nullopt;
+  if (!path.Queueing(now, path.BusyQdelay(now, load.qdelay_target))) return std::nullopt;
+  if (now - last_drop_ < std::min(p_.virtual_rtt, path.rtt().smoothed())) return std::nullopt;
+  const double part = Sure(now, path, load) ? p_.drop_threshold : p_.drop_threshold_unsure;
+  if (*capacity * part > load.target_bitrate) return std::nullopt;
+  const DataSize window = *capacity * path.rtt().min() * p_.target_rate_divisor;
+  if (window > load.ref_wnd) return std::nullopt;
+  last_drop_ = now;
+  return window;
+}
+
+bool CapacityDrop::Sure(Time now, const PathModel& path, const Load& load) const {
+  // While a frame of another flow takes turns with ours, we see but our share.
+  if (path.busy_run().span() < std::min(load.frame_period, p_.virtual_rtt)) return false;
+  // Few marks may be those of a link that is well used.
+  if (path.L4sWorks(now) && 2 * path.busy_run().marked() < path.busy_run().packets()) return false;
+  // What was just answered may be enough.
+  return now - load.last_reaction >= std::min(p_.virtual_rtt, path.rtt().smoothed());
+}
+
+}  // namespace lidar::scream

@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Extension isolated_loss: how much loss is taken for the radio's and not for congestion.
+#pragma once
+#include <algorithm>
+
+#include "src/scream/model/path_model.h"
+#include "src/scream/parameters.h"
+
+namespace lidar::scream {
+
+struct LossTolerance {
+  double loss_rate_threshold = 0;  ///< the draft's LOSS_RATE_THRESHOLD, or more
+  bool queue_at_loss = false;      ///< packets around the loss had waited: congestion, always
+};
+
+inline LossTolerance TolerateLoss(const Parameters& p, const PathModel& path) {
+  LossTolerance tolerance{p.loss_rate_threshold, false};
+  if (!p.extensions.isolated_loss) return tolerance;
+  tolerance.queue_at_loss = path.queue_delay().qdelay() > p.isolated_loss_qdelay;
+  if (p.ecn == Ecn::kEct1 && path.ecn().state() == EcnState::kCapable)
+    tolerance.loss_rate_threshold = std::max(p.loss_rate_threshold, p.isolated_loss_threshold);
+  return tolerance;
+}
+
+}  // namespace lidar::scream

@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// The draft's send window, and the extension bounded_flight.
+#pragma once
+#include "src/scream/model/path_model.h"
+#include "src/scream/parameters.h"
+
+namespace lidar::scream {
+
+class SendWindow {
+ public:
+  explicit SendWindow(const Parameters& parameters) : p_(parameters) {}
+
+  void OnSent(Time now) { last_sent_ = now; }
+  /// Before the first packet.
+  bool unused() const { return last_sent_ == Time{}; }
+  /// Bytes in flight at most. With bounded_flight few more than the window where marks work, no
+  /// more while packets keep coming back out of a queue, and as many more as are unreported.
+  DataSize Max(Time now, DataSize ref_wnd, const PathModel& path, Duration qdelay_target) const;
+  /// When a packet of `size` may leave. A closed window lets one go at RATE_PACE_MIN, so that it
+  /// does not wait for ever for feedback that was lost.
+  Time Opens(DataSize size, DataSize in_flight, DataSize max) const;
+
+ private:
+  const Parameters& p_;
+  Time last_sent_{};
+};
+
+}  // namespace lidar::scream
