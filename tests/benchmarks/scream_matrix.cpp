@@ -88,7 +88,7 @@ bool WriteSamples(const std::string& path, const SimulationResult& result) {
 
 void PrintRow(const Scenario& s, const ScenarioMetrics& m) {
   std::printf(
-      "%-20s %5.1f  %5.1f %5.1f %6.1f %6.1f  %6.1f %6.1f %6.1f %6.1f  %5.2f  %5.3f  %5.2f %5.1f  "
+      "%-24s %5.1f  %5.1f %5.1f %6.1f %6.1f  %6.1f %6.1f %6.1f %6.1f  %5.2f  %5.3f  %5.2f %5.1f  "
       "%4.0f %4.0f",
       s.name.c_str(), 100 * m.utilisation, m.queue_ms.p50, m.queue_ms.p95, m.queue_ms.p99,
       m.queue_ms.max, m.frame_ms.p50, m.frame_ms.p95, m.frame_ms.p99, m.frame_ms.max,
@@ -111,7 +111,7 @@ int main(int argc, char** argv) {
     PrintUsage();
     return argc > 1 && std::strcmp(argv[1], "--help") == 0 ? 0 : 2;
   }
-  std::printf("%-20s %5s  %-25s  %-27s  %5s  %5s  %-11s  %s\n", "scenario", "util%",
+  std::printf("%-24s %5s  %-25s  %-27s  %5s  %5s  %-11s  %s\n", "scenario", "util%",
               "queue p50/p95/p99/max ms", "frame p50/p95/p99/max ms", "loss%", "Jain",
               "start s, ms", "dropped, feedback kbit/s");
   for (Scenario& s : Scenarios(options.parameters)) {

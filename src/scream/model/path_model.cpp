@@ -70,7 +70,8 @@ void PathModel::CountMarksAndLosses(Time now, const AckSummary& acks, const Send
   int answered = 0;
   acked_rate_.set_window(std::max(rtt_.smoothed(), 2 * sender.frame_period));
   for (const AckedPacket& packet : acks.acked) {
-    if (packet.arrived_ecn == Ecn::kCe) ++(packet.sent >= sender.marks_answered ? marked : answered);
+    if (packet.arrived_ecn == Ecn::kCe)
+      ++(packet.sent >= sender.marks_answered ? marked : answered);
     ecn_.OnAcked(packet.ecn, packet.arrived_ecn);
     loss_rate_.Add(false, sender.ref_wnd);
     acked_rate_.Add(now, packet.size);

@@ -44,8 +44,7 @@ void QueueDelay::AddToBase(Time now, Duration owd, bool short_history) {
 
 bool QueueDelay::Add(Time now, const DelaySample& sample, bool short_history) {
   const Duration owd = sample.arrival - sample.sent;
-  const bool jumped =
-      base_ && (owd - *base_ > sample.rtt_excess + kJump || owd < *base_ - kJump);
+  const bool jumped = base_ && (owd - *base_ > sample.rtt_excess + kJump || owd < *base_ - kJump);
   if (jumped) {
     Reset();
     // A queue that stands across the jump shows in the round trip still.

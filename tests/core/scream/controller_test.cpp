@@ -82,13 +82,13 @@ TEST(Controller, ImplausibleFeedbackChangesNothingAndIsCounted) {
 }
 
 TEST(Simulation, IsDeterministic) {
-  const SimulationResult a = RunScenario("C"), b = RunScenario("C");
+  const SimulationResult a = RunScenario("frames_8M_rtt40"), b = RunScenario("frames_8M_rtt40");
   EXPECT_EQ(a.flows[0].delivered_bytes, b.flows[0].delivered_bytes);
   EXPECT_EQ(a.packets.size(), b.packets.size());
 }
 
 TEST(Simulation, ThePureDraftHoldsTheL4sQueue) {
-  const Scenario s = *FindScenario("A", Parameters::Draft());
+  const Scenario s = *FindScenario("frames_20M_rtt25", Parameters::Draft());
   const ScenarioMetrics m = Measure(s, Simulate(s.config));
   EXPECT_GT(m.utilisation, 0.6);
   EXPECT_LT(m.queue_ms.p99, 5);
@@ -96,21 +96,21 @@ TEST(Simulation, ThePureDraftHoldsTheL4sQueue) {
 }
 
 TEST(Simulation, ThePureDraftFillsALinkWithoutEcn) {
-  const Scenario s = *FindScenario("D", Parameters::Draft());
+  const Scenario s = *FindScenario("frames_8M_fifo100_notect", Parameters::Draft());
   const ScenarioMetrics m = Measure(s, Simulate(s.config));
   EXPECT_GT(m.utilisation, 0.95);
   EXPECT_LT(m.queue_ms.p95, 40);
 }
 
 TEST(Simulation, ALongerRouteIsNoCongestion) {
-  const Scenario s = *FindScenario("A-longer", Parameters());
+  const Scenario s = *FindScenario("frames_20M_longer_route", Parameters());
   const SimulationResult result = Simulate(s.config);
   const Time change = s.config.forward.origin + s.config.longer_from;
   EXPECT_GT(result.Utilisation(change, change + 20s), 0.85);
 }
 
 TEST(Simulation, AnObstinateEncoderDoesNotFillTheNetworkQueue) {
-  Scenario s = *FindScenario("C", Parameters());
+  Scenario s = *FindScenario("frames_8M_rtt40", Parameters());
   s.config.flows[0].sources[0].obedience = [](Duration t) { return t > 10s ? 2.0 : 1.0; };
   const ScenarioMetrics m = Measure(s, Simulate(s.config));
   EXPECT_LT(m.queue_ms.p99, 15);
@@ -119,7 +119,7 @@ TEST(Simulation, AnObstinateEncoderDoesNotFillTheNetworkQueue) {
 }
 
 TEST(Simulation, AStepMarkerAndAPairOfQueuesAreUsedToo) {
-  for (const char* name : {"S", "A-dualpi2"}) {
+  for (const char* name : {"frames_8M_step1ms", "frames_20M_dualpi2"}) {
     const Scenario s = *FindScenario(name, Parameters());
     const ScenarioMetrics m = Measure(s, Simulate(s.config));
     EXPECT_GT(m.utilisation, 0.8) << name;
@@ -128,7 +128,7 @@ TEST(Simulation, AStepMarkerAndAPairOfQueuesAreUsedToo) {
 }
 
 TEST(Simulation, JitterBurstsAndReorderingCostNothing) {
-  for (const char* name : {"A-jitter", "A-bursts", "A-reorder"}) {
+  for (const char* name : {"frames_20M_jitter4", "frames_20M_bursts5", "frames_20M_reorder1"}) {
     const Scenario s = *FindScenario(name, Parameters());
     const SimulationResult result = Simulate(s.config);
     const ScenarioMetrics m = Measure(s, result);
@@ -158,7 +158,7 @@ TEST(Simulation, BleachedPacketsAreSentAsNotEct) {
 }
 
 TEST(Simulation, SurvivesLostFeedback) {
-  Scenario s = *FindScenario("C", Parameters());
+  Scenario s = *FindScenario("frames_8M_rtt40", Parameters());
   const double clean = Measure(s, Simulate(s.config)).utilisation;
   s.config.return_loss = 0.2;
   const SimulationResult result = Simulate(s.config);

@@ -50,7 +50,7 @@ Scenario WithOutage(Scenario s) {
 
 TEST(Outage, TheTargetFallsToItsMinimumAndTheSenderToItsMinimumRate) {
   for (const Duration rtt : {10ms, 40ms, 200ms}) {
-    Scenario s = WithOutage(Named("C"));
+    Scenario s = WithOutage(Named("frames_8M_rtt40"));
     s.config.forward.delay = s.config.return_delay = rtt / 2;
     const Trial run(s);
     EXPECT_NEAR(run.At(20s).target_bitrate.bits_per_second(), 100e3, 1) << Milliseconds(rtt);
@@ -61,16 +61,18 @@ TEST(Outage, TheTargetFallsToItsMinimumAndTheSenderToItsMinimumRate) {
 }
 
 TEST(Outage, IsForgottenASecondAfterThePathReturns) {
-  for (const char* name : {"A", "C", "C10", "C10-slices", "D"}) {
+  for (const char* name : {"frames_20M_rtt25", "frames_8M_rtt40", "frames10_8M_rtt40",
+                           "slices_8M_rtt40", "frames_8M_fifo100_notect"}) {
     const Trial run(WithOutage(Named(name)));
     // Rounds of 10 frames/s are long.
-    EXPECT_GT(run.Utilisation(41s, 43s), std::string(name) == "C10" ? 0.6 : 0.7) << name;
+    EXPECT_GT(run.Utilisation(41s, 43s), std::string(name) == "frames10_8M_rtt40" ? 0.6 : 0.7)
+        << name;
     EXPECT_LT(run.MaxQueueMs(42s, 43s), 60) << name;
   }
 }
 
 TEST(Outage, OfTheWayBackAloneIsForgottenAsSoon) {
-  Scenario s = Named("C");
+  Scenario s = Named("frames_8M_rtt40");
   s.config.return_outage_from = 10s;
   s.config.return_outage_until = 20s;
   const Trial run(s);
@@ -80,7 +82,8 @@ TEST(Outage, OfTheWayBackAloneIsForgottenAsSoon) {
 
 /// As in a handover: nothing is lost, and afterwards the link carries what it did before.
 TEST(Freeze, OfTheLinkIsNoDropOfItsCapacity) {
-  for (const char* name : {"A", "C", "C10", "C10-slices"}) {
+  for (const char* name :
+       {"frames_20M_rtt25", "frames_8M_rtt40", "frames10_8M_rtt40", "slices_8M_rtt40"}) {
     for (const Duration length : {30ms, 100ms}) {
       Scenario s = Named(name);
       for (Duration at = 10s; at < 26s; at += 2013ms)
@@ -101,7 +104,7 @@ struct Jump {
 };
 class ClockJump : public ::testing::TestWithParam<Jump> {};
 TEST_P(ClockJump, IsForgottenWithinASecond) {
-  for (const char* name : {"C", "C10-slices", "D"}) {
+  for (const char* name : {"frames_8M_rtt40", "slices_8M_rtt40", "frames_8M_fifo100_notect"}) {
     Scenario s = Named(name);
     const Trial calm(s);
     FlowConfig& flow = s.config.flows[0];
@@ -125,7 +128,7 @@ INSTANTIATE_TEST_SUITE_P(OfAnHour, ClockJump,
                          [](const auto& i) { return i.param.name; });
 
 TEST(Restart, OfTheSenderStartsANewFlowAtOnce) {
-  Scenario s = Named("C");
+  Scenario s = Named("frames_8M_rtt40");
   s.config.flows[0].sender_restart = 15s;
   const Trial run(s);
   EXPECT_GT(run.Utilisation(16500ms, 18s), 0.85);
@@ -134,7 +137,7 @@ TEST(Restart, OfTheSenderStartsANewFlowAtOnce) {
 }
 
 TEST(Restart, OfTheReceiverIsForgottenWithinTwoSeconds) {
-  Scenario s = Named("A");
+  Scenario s = Named("frames_20M_rtt25");
   s.config.flows[0].receiver_restart = 10s;
   const Trial run(s);
   EXPECT_GT(run.Utilisation(10s, 12s), 0.8);
@@ -143,7 +146,7 @@ TEST(Restart, OfTheReceiverIsForgottenWithinTwoSeconds) {
 }
 
 TEST(RouteChange, KeepsTheFlowGoingAndTestsEcnAnew) {
-  Scenario s = Named("C");
+  Scenario s = Named("frames_8M_rtt40");
   s.config.flows[0].route_change = 15s;
   s.config.longer_by = 30ms;
   s.config.longer_from = 15s;
@@ -154,7 +157,7 @@ TEST(RouteChange, KeepsTheFlowGoingAndTestsEcnAnew) {
 }
 
 TEST(Feedback, ThatIsSlowCostsLittle) {
-  Scenario s = Named("C");
+  Scenario s = Named("frames_8M_rtt40");
   s.config.return_delay += 150ms;
   const Trial run(s);
   EXPECT_GT(run.Utilisation(10s, 40s), 0.75);
@@ -163,7 +166,8 @@ TEST(Feedback, ThatIsSlowCostsLittle) {
 
 /// As receivers made of the reference's code report.
 TEST(Feedback, OnceAFrameIsEnough) {
-  for (const char* name : {"A", "C", "C10", "J"}) {
+  for (const char* name :
+       {"frames_20M_rtt25", "frames_8M_rtt40", "frames10_8M_rtt40", "two_flows_20M_rtt25"}) {
     Scenario s = Named(name);
     const ScenarioMetrics close = Measure(s, Simulate(s.config));
     for (FlowConfig& flow : s.config.flows) {
@@ -180,7 +184,7 @@ TEST(Feedback, OnceAFrameIsEnough) {
 }
 
 TEST(Feedback, ThatIsLostInPartCostsLittleAndAddsNoQueue) {
-  for (const char* name : {"C", "C10-slices", "D"}) {
+  for (const char* name : {"frames_8M_rtt40", "slices_8M_rtt40", "frames_8M_fifo100_notect"}) {
     Scenario s = Named(name);
     const Trial clean(s);
     s.config.return_loss = 0.2;
@@ -195,7 +199,7 @@ TEST(Feedback, ThatIsLostInPartCostsLittleAndAddsNoQueue) {
 
 /// A local network: the window of one round trip is less than what arrives between two reports.
 TEST(ShortPath, IsUsedFromTheStartByAStreamThatNeedsLittle) {
-  for (const char* name : {"C", "D"}) {
+  for (const char* name : {"frames_8M_rtt40", "frames_8M_fifo100_notect"}) {
     for (const Duration rtt : {Duration(200us), Duration(1ms), Duration(3ms)}) {
       Scenario s = Named(name);
       s.config.forward.capacity = link::Capacity::Constant(Mbps(100));
@@ -212,7 +216,7 @@ TEST(ShortPath, IsUsedFromTheStartByAStreamThatNeedsLittle) {
 
 /// MIN_REF_WND over the round trip is more than this link carries.
 TEST(MinimumWindow, IsHeldOnALinkThatIsSlowerThanIt) {
-  Scenario s = Named("C");
+  Scenario s = Named("frames_8M_rtt40");
   s.config.forward.capacity = link::Capacity::Constant(Mbps(0.5));
   s.config.forward.delay = s.config.return_delay = 5ms;
   s.config.flows[0].sources[0].stream.start_bitrate = Mbps(0.3);

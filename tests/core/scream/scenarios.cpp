@@ -2,6 +2,7 @@
 #include "tests/core/scream/scenarios.h"
 
 #include <algorithm>
+#include <cstdlib>
 
 namespace lidar::scream::test {
 namespace {
@@ -48,8 +49,10 @@ Scenario Make(const std::string& name, const std::string& description, const Pat
   return s;
 }
 
+/// The same path, carrying slices. `name` begins with what it carries.
 Scenario WithSlices(Scenario s) {
-  s.name += "-slices";
+  s.name = "slices" + s.name.substr(s.name.find('_'));
+  s.description = "slices: " + s.description;
   s.source = Source::kSlices;
   for (FlowConfig& flow : s.config.flows) {
     flow.sources[0].frames_per_second = 10 * kSlicesPerScan;
@@ -102,74 +105,91 @@ BesideMetrics MeasureBeside(const Scenario& s, const SimulationResult& result) {
 
 Capacity Constant(double mbps) { return Capacity::Constant(Mbps(mbps)); }
 
-/// What paths beyond the usual ones do.
-std::vector<Scenario> PathScenarios(const Path& a, const Path& c, const Parameters& p) {
+/// Paths that treat packets in unusual ways.
+std::vector<Scenario> PathScenarios(const Path& fast, const Path& slow, const Parameters& p) {
   std::vector<Scenario> all;
-  Path step = c;
+  Path step = slow;
   step.aqm = AqmConfig::Kind::kStep;
-  all.push_back(Make("S", "C with a step at 1 ms", step, 50, p));
+  all.push_back(Make("frames_8M_step1ms", "8 Mbit/s, RTT 40, step at 1 ms", step, 50, p));
   all.back().config.forward.aqm.high = 1ms;
-  all.push_back(Make("A-jitter", "A with 4 ms of jitter", a, 50, p));
+  all.push_back(Make("frames_20M_jitter4", "20 Mbit/s, 4 ms of jitter", fast, 50, p));
   all.back().config.forward.path.jitter = 4ms;
-  all.push_back(Make("A-bursts", "A, packets come out every 5 ms", a, 50, p));
+  all.push_back(Make("frames_20M_bursts5", "20 Mbit/s, packets come out every 5 ms", fast, 50, p));
   all.back().config.forward.path.burst_interval = 5ms;
-  all.push_back(Make("A-reorder", "A, 1 % of the packets 5 ms late", a, 50, p));
+  all.push_back(
+      Make("frames_20M_reorder1", "20 Mbit/s, 1 % of the packets 5 ms late", fast, 50, p));
   all.back().config.forward.path.reorder = 0.01;
-  all.push_back(Make("A-dualpi2", "A with DualPI2", a, 50, p));
+  all.push_back(Make("frames_20M_dualpi2", "20 Mbit/s, DualPI2", fast, 50, p));
   all.back().config.forward.aqm.kind = AqmConfig::Kind::kDualPi2;
-  all.push_back(Make("A-longer", "A, 15 ms longer from 15 s on", a, 50, p));
+  all.push_back(
+      Make("frames_20M_longer_route", "20 Mbit/s, 15 ms longer from 15 s on", fast, 50, p));
   all.back().config.longer_by = 15ms;
   all.back().config.longer_from = 15s;
+  return all;
+}
+
+/// The capacity changes while the flow runs.
+std::vector<Scenario> ChangingScenarios(const Parameters& p) {
+  std::vector<Scenario> all;
+  const auto steps = Capacity::Steps(
+      {Mbps(12), Mbps(4), Mbps(8), Mbps(3), Mbps(15), Mbps(6), Mbps(10)}, std::chrono::seconds(8));
+  Path path{steps, 40ms};
+  path.duration = 56s;
+  const std::string text = "12, 4, 8, 3, 15, 6, 10 Mbit/s for 8 s each, ramp";
+  all.push_back(Make("frames_steps_rtt40", text, path, 50, p));
+  all.push_back(Make("frames10_steps_rtt40", text, path, 10, p));
+  all.push_back(WithSlices(all.back()));
+  for (Scenario& s : all) s.settle = 0s;
+  const Path drop{Capacity::Steps({Mbps(10), Mbps(3)}, std::chrono::seconds(20)), 40ms};
+  Scenario s = Make("frames_drop_10M_to_3M", "10 to 3 Mbit/s at 20 s, ramp", drop, 50, p);
+  s.drop_at = 20s;
+  all.push_back(s);
+  all.push_back(WithSlices(s));
+  return all;
+}
+
+/// Queues that drop what does not fit and mark nothing.
+std::vector<Scenario> FifoScenarios(const Parameters& p) {
+  std::vector<Scenario> all;
+  for (const Ecn ecn : {Ecn::kNotEct, Ecn::kEct1}) {
+    for (const Duration limit : {100ms, 10ms}) {
+      const Path path{Constant(8), 40ms, AqmConfig::Kind::kNone, limit, 0, ecn};
+      const std::string ms = std::to_string(limit / 1ms);
+      const std::string codepoint = ecn == Ecn::kEct1 ? "ect1" : "notect";
+      all.push_back(Make("frames_8M_fifo" + ms + "_" + codepoint,
+                         "8 Mbit/s, RTT 40, FIFO of " + ms + " ms, " + codepoint, path, 50, p));
+      if (ecn == Ecn::kNotEct) all.push_back(WithSlices(all.back()));
+    }
+  }
   return all;
 }
 
 }  // namespace
 
 std::vector<Scenario> Scenarios(const Parameters& p) {
-  const auto steps = Capacity::Steps(
-      {Mbps(12), Mbps(4), Mbps(8), Mbps(3), Mbps(15), Mbps(6), Mbps(10)}, std::chrono::seconds(8));
-  Path a{Constant(20), 25ms};
-  Path c{Constant(8), 40ms};
-  Path d{Constant(8), 40ms, AqmConfig::Kind::kNone, 100ms, 0, Ecn::kNotEct};
-  Path e{steps, 40ms};
-  e.duration = 56s;
-  Path h{Capacity::Steps({Mbps(10), Mbps(3)}, std::chrono::seconds(20)), 40ms};
-  Path k{Constant(8), 40ms, AqmConfig::Kind::kNone, 10ms, 0, Ecn::kNotEct};
+  const Path fast{Constant(20), 25ms};
+  const Path slow{Constant(8), 40ms};
   std::vector<Scenario> all;
-  all.push_back(Make("A", "20 Mbit/s, RTT 25, ramp 2-10 ms", a, 50, p));
+  all.push_back(Make("frames_20M_rtt25", "20 Mbit/s, RTT 25, ramp 2-10 ms", fast, 50, p));
   all.push_back(WithSlices(all.back()));
-  all.push_back(Make("C", "8 Mbit/s, RTT 40, ramp", c, 50, p));
-  all.push_back(Make("C10", "C at 10 frames/s", c, 10, p));
+  all.push_back(Make("frames_8M_rtt40", "8 Mbit/s, RTT 40, ramp", slow, 50, p));
+  all.push_back(Make("frames10_8M_rtt40", "the same at 10 frames/s", slow, 10, p));
   all.push_back(WithSlices(all.back()));
-  all.push_back(Make("D", "8 Mbit/s, Not-ECT, FIFO 100 ms", d, 50, p));
-  all.push_back(WithSlices(all.back()));
-  all.push_back(Make("E", "steps 12,4,8,3,15,6,10 every 8 s, ramp", e, 50, p));
-  all.push_back(Make("E10", "E at 10 frames/s", e, 10, p));
-  all.push_back(WithSlices(all.back()));
-  for (const double percent : {0.5, 1.0, 2.0}) {
-    Path g = a;
-    g.loss = percent / 100;
-    const std::string text = std::to_string(percent).substr(0, 3);
-    all.push_back(Make("G" + text, "A with " + text + " % random loss", g, 50, p));
+  for (const char* percent : {"0.5", "1.0", "2.0"}) {
+    Path lossy = fast;
+    lossy.loss = std::atof(percent) / 100;
+    all.push_back(Make("frames_20M_loss" + std::string(percent),
+                       "20 Mbit/s, " + std::string(percent) + " % random loss", lossy, 50, p));
   }
-  all.push_back(Make("H", "10 -> 3 Mbit/s at 20 s, ramp", h, 50, p));
-  all.push_back(WithSlices(all.back()));
-  Scenario j = Make("J", "two flows on 20 Mbit/s, ramp", a, 50, p);
-  j.config.flows.push_back(j.config.flows.front());
-  j.config.flows.back().start += 5s;
-  j.settle = 15s;
-  all.push_back(j);
-  all.push_back(Make("K", "8 Mbit/s, RTT 40, Not-ECT, FIFO 10 ms", k, 50, p));
-  all.push_back(WithSlices(all.back()));
-  d.ecn = k.ecn = Ecn::kEct1;
-  all.push_back(Make("D-ect1", "D with ECT(1), which nobody marks", d, 50, p));
-  all.push_back(Make("K-ect1", "K with ECT(1), which nobody marks", k, 50, p));
-  for (const Scenario& s : PathScenarios(a, c, p)) all.push_back(s);
+  Scenario two = Make("two_flows_20M_rtt25", "two flows on 20 Mbit/s, ramp", fast, 50, p);
+  two.config.flows.push_back(two.config.flows.front());
+  two.config.flows.back().start += 5s;
+  two.settle = 15s;
+  all.push_back(two);
+  for (const Scenario& s : FifoScenarios(p)) all.push_back(s);
+  for (const Scenario& s : ChangingScenarios(p)) all.push_back(s);
+  for (const Scenario& s : PathScenarios(fast, slow, p)) all.push_back(s);
   for (const Scenario& s : BesideScenarios(p)) all.push_back(s);
-  for (Scenario& s : all) {
-    if (s.name[0] == 'H') s.drop_at = 20s;
-    if (s.name[0] == 'E') s.settle = 0s;
-  }
   return all;
 }
 

@@ -1,0 +1,188 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// The responses beyond the draft, each by itself: capacity drop, outage, send window, pacing.
+#include <gtest/gtest.h>
+
+#include "src/scream/response/adaptive_pacing.h"
+#include "src/scream/response/answered_signals.h"
+#include "src/scream/response/capacity_drop.h"
+#include "src/scream/response/isolated_loss.h"
+#include "src/scream/response/outage.h"
+#include "src/scream/response/send_window.h"
+
+namespace lidar::scream {
+namespace {
+
+constexpr Time kStart{100s};
+constexpr Duration kRtt = 40ms;
+constexpr DataSize kPacket = DataSize::Bytes(1000);
+DataRate Mbps(double r) { return DataRate::BitsPerSecond(r * 1e6); }
+
+/// A path whose packets arrive `spacing` apart, `queue` later than the first one did.
+class Path {
+ public:
+  explicit Path(const Parameters& parameters) : model(parameters) {
+    model.OnRoundTrip(kStart, kRtt, DataSize::Bytes(10000));
+    Arrive(1, Duration{0}, Duration{0}, Ecn::kEct1);
+  }
+  void Arrive(int packets, Duration spacing, Duration queue, Ecn ecn) {
+    for (int i = 0; i < packets; ++i) {
+      now += spacing;
+      model.OnRoundTrip(now, kRtt + queue, DataSize::Bytes(10000));
+      AckSummary acks;
+      AckedPacket packet;
+      packet.size = kPacket;
+      packet.ecn = Ecn::kEct1;
+      packet.arrived_ecn = ecn;
+      packet.sent = now - kRtt - queue;
+      packet.arrival = now - kRtt / 2;
+      acks.acked.push_back(packet);
+      acks.bytes_newly_acked = kPacket;
+      model.OnReport(now, acks, {DataSize::Bytes(10000), 20ms, 60ms, Time{}});
+    }
+  }
+  PathModel model;
+  Time now = kStart;
+};
+
+class CapacityDropTest : public ::testing::Test {
+ protected:
+  CapacityDrop::Load Load(double target_mbps) {
+    return {Mbps(target_mbps), DataSize::Bytes(100000), 20ms, 60ms, kStart};
+  }
+  Parameters parameters_;
+  Path path_{parameters_};
+  CapacityDrop drop_{parameters_};
+};
+
+TEST_F(CapacityDropTest, GivesTheWindowThatFillsTheLink) {
+  path_.Arrive(40, 2ms, 20ms, Ecn::kCe);  // 4 Mbit/s
+  const auto window = drop_.Update(path_.now, path_.model, Load(10));
+  ASSERT_TRUE(window);
+  EXPECT_NEAR(static_cast<double>(window->bytes()), 4e6 / 8 * 0.04 * 1.2, 300);
+  EXPECT_FALSE(drop_.Update(path_.now, path_.model, Load(10))) << "once a round trip";
+}
+
+TEST_F(CapacityDropTest, LeavesATargetAloneThatTheLinkCarries) {
+  path_.Arrive(40, 2ms, 20ms, Ecn::kCe);
+  EXPECT_FALSE(drop_.Update(path_.now, path_.model, Load(3.5)));
+}
+
+TEST_F(CapacityDropTest, TakesFewMarksForALinkThatIsWellUsedUnlessTheTargetIsFarAboveIt) {
+  for (int i = 0; i < 20; ++i) {
+    path_.Arrive(1, 2ms, 20ms, Ecn::kCe);
+    path_.Arrive(1, 2ms, 20ms, Ecn::kEct1);
+    path_.Arrive(1, 2ms, 20ms, Ecn::kEct1);
+  }
+  path_.Arrive(1, 2ms, 20ms, Ecn::kCe);
+  EXPECT_FALSE(drop_.Update(path_.now, path_.model, Load(5)));
+  EXPECT_TRUE(drop_.Update(path_.now, path_.model, Load(7)));
+}
+
+TEST_F(CapacityDropTest, SeesNothingWhereNoPacketWaited) {
+  path_.Arrive(40, 2ms, 0ms, Ecn::kEct1);
+  EXPECT_FALSE(drop_.Update(path_.now, path_.model, Load(10)));
+}
+
+class OutageTest : public ::testing::Test {
+ protected:
+  std::optional<DataSize> Timer(Time now, int window) {
+    return outage_.OnTimer(now, DataSize::Bytes(window), kRtt, 20ms);
+  }
+  Parameters parameters_;
+  Outage outage_{parameters_};
+};
+
+TEST_F(OutageTest, HalvesTheWindowAgainAndAgainAndRestartsFromHalfOfWhatItWas) {
+  outage_.OnFeedback(kStart);
+  EXPECT_FALSE(Timer(kStart + 280ms, 10000));  // 2 RTT + 200 ms
+  EXPECT_EQ(Timer(kStart + 281ms, 10000), DataSize::Bytes(5000));
+  EXPECT_FALSE(Timer(kStart + 500ms, 5000));
+  EXPECT_EQ(Timer(kStart + 562ms, 5000), DataSize::Bytes(2500));
+  EXPECT_EQ(outage_.Silence(kStart + 1s), Duration(1s));
+  EXPECT_EQ(outage_.OnFeedback(kStart + 1s), DataSize::Bytes(5000));
+  EXPECT_FALSE(outage_.active());
+  EXPECT_EQ(outage_.Silence(kStart + 2s), Duration(0));
+}
+
+TEST_F(OutageTest, FeedbackWithoutAnOutageRestartsNothing) {
+  EXPECT_FALSE(outage_.OnFeedback(kStart));
+}
+
+TEST_F(OutageTest, APauseOfTheSourceIsNoSilenceOfTheReceiver) {
+  outage_.OnFeedback(kStart);
+  outage_.Restart(kStart + 10s);
+  EXPECT_FALSE(Timer(kStart + 10100ms, 10000));
+}
+
+class SendWindowTest : public ::testing::Test {
+ protected:
+  double Overhead() {
+    const DataSize window = DataSize::Bytes(100000);
+    return window_.Max(path_.now, window, path_.model, 60ms) / window;
+  }
+  Parameters parameters_;
+  Path path_{parameters_};
+  SendWindow window_{parameters_};
+};
+
+TEST_F(SendWindowTest, IsTheDraftsWhereNothingMarks) { EXPECT_NEAR(Overhead(), 3, 0.15); }
+
+TEST_F(SendWindowTest, IsNarrowWhereMarksWork) {
+  path_.Arrive(1, 1ms, 3ms, Ecn::kCe);
+  path_.Arrive(5, 1ms, 0ms, Ecn::kEct1);
+  EXPECT_NEAR(Overhead(), 1.2, 0.01);
+}
+
+TEST_F(SendWindowTest, IsClosedToTheWindowBehindAQueue) {
+  path_.Arrive(5, 1ms, 20ms, Ecn::kCe);
+  EXPECT_NEAR(Overhead(), 1, 0.01);
+}
+
+TEST_F(SendWindowTest, LetsAPacketGoAtTheMinimumRateWhileItIsClosed) {
+  window_.OnSent(kStart);
+  const DataSize max = DataSize::Bytes(5000);
+  EXPECT_EQ(window_.Opens(kPacket, DataSize::Bytes(4000), max), Time{});
+  EXPECT_EQ(window_.Opens(kPacket, DataSize::Bytes(4001), max), kStart + 160ms);
+  EXPECT_EQ(window_.Opens(DataSize::Bytes(9000), DataSize(), max), Time{});
+}
+
+TEST(PacingHeadroom, LeavesTheReserveAtTheEndOfAFramePeriodWithinLimits) {
+  const Parameters p;
+  EXPECT_NEAR(PacingHeadroom(p, 16ms), 1 / (1 - 0.25), 1e-9);
+  EXPECT_NEAR(PacingHeadroom(p, 100ms), 1 / (1 - 0.2), 1e-9);
+  EXPECT_NEAR(PacingHeadroom(p, 5ms), 1 / (1 - 0.35), 1e-9);
+  EXPECT_NEAR(PacingHeadroom(Parameters::Draft(), 16ms), 1.5, 1e-9);
+}
+
+TEST(TolerateLoss, CountsAnyLossBehindAQueueAndLittleElsewhere) {
+  const Parameters p;
+  Path path(p);
+  path.Arrive(30, 1ms, 0ms, Ecn::kEct1);
+  EXPECT_FALSE(TolerateLoss(p, path.model).queue_at_loss);
+  EXPECT_DOUBLE_EQ(TolerateLoss(p, path.model).loss_rate_threshold, p.isolated_loss_threshold);
+  path.Arrive(1, 1ms, 7ms, Ecn::kEct1);
+  EXPECT_TRUE(TolerateLoss(p, path.model).queue_at_loss);
+  EXPECT_DOUBLE_EQ(TolerateLoss(Parameters::Draft(), path.model).loss_rate_threshold, 0.01);
+}
+
+TEST(AnsweredSignals, AreThoseOfPacketsSentBeforeTheReaction) {
+  const Parameters p;
+  AnsweredSignals answered(p);
+  AckSummary acks;
+  acks.lost.emplace_back();
+  acks.lost.back().sent = kStart;
+  acks.acked.emplace_back();
+  acks.acked.back().sent = kStart;
+  acks.acked.back().arrived_ecn = Ecn::kCe;
+  EXPECT_TRUE(answered.NewLoss(acks) && answered.NewMark(acks));
+  answered.OnLossReaction(kStart + 1ms);
+  EXPECT_FALSE(answered.NewLoss(acks));
+  EXPECT_TRUE(answered.NewMark(acks));
+  answered.OnCapacityDrop(kStart + 1ms);
+  EXPECT_FALSE(answered.NewMark(acks));
+  acks.late_ce = 1;
+  EXPECT_TRUE(answered.NewMark(acks));
+}
+
+}  // namespace
+}  // namespace lidar::scream
