@@ -22,25 +22,25 @@ RAMP = ["--aqm", "ramp"]
 STEPS = ["--steps", "12,4,8,3,15,6,10", "--step-time", "8", "--once", "--rtt", "40"] + RAMP
 # name: (description, link options, ECN, frames/s, seconds, settle)
 SCENARIOS = {
-    "A": ("20 Mbit/s, RTT 25, ramp 2-10 ms", ["--rate", "20", "--rtt", "25"] + RAMP, "ect1", 50, 40),
-    "C": ("8 Mbit/s, RTT 40, ramp", ["--rate", "8", "--rtt", "40"] + RAMP, "ect1", 50, 40),
-    "C10": ("C at 10 frames/s", ["--rate", "8", "--rtt", "40"] + RAMP, "ect1", 10, 40),
-    "D": ("8 Mbit/s, no ECN, FIFO 100 ms", ["--rate", "8", "--rtt", "40", "--queue", "100"], "off", 50, 40),
-    "E": ("steps 12,4,8,3,15,6,10 every 8 s, ramp", STEPS, "ect1", 50, 56),
-    "E10": ("E at 10 frames/s", STEPS, "ect1", 10, 56),
-    "G0.5": ("A with 0.5 % random loss", ["--rate", "20", "--rtt", "25", "--loss", "0.5"] + RAMP, "ect1", 50, 40),
-    "G1": ("A with 1 % random loss", ["--rate", "20", "--rtt", "25", "--loss", "1"] + RAMP, "ect1", 50, 40),
-    "G2": ("A with 2 % random loss", ["--rate", "20", "--rtt", "25", "--loss", "2"] + RAMP, "ect1", 50, 40),
-    "H": ("10 -> 3 Mbit/s at 20 s, ramp",
+    "frames_20M_rtt25": ("20 Mbit/s, RTT 25, ramp 2-10 ms", ["--rate", "20", "--rtt", "25"] + RAMP, "ect1", 50, 40),
+    "frames_8M_rtt40": ("8 Mbit/s, RTT 40, ramp", ["--rate", "8", "--rtt", "40"] + RAMP, "ect1", 50, 40),
+    "frames10_8M_rtt40": ("8 Mbit/s at 10 frames/s", ["--rate", "8", "--rtt", "40"] + RAMP, "ect1", 10, 40),
+    "frames_8M_fifo100_notect": ("8 Mbit/s, no ECN, FIFO 100 ms", ["--rate", "8", "--rtt", "40", "--queue", "100"], "off", 50, 40),
+    "frames_steps_rtt40": ("steps 12,4,8,3,15,6,10 every 8 s, ramp", STEPS, "ect1", 50, 56),
+    "frames10_steps_rtt40": ("the steps at 10 frames/s", STEPS, "ect1", 10, 56),
+    "frames_20M_loss0.5": ("20 Mbit/s with 0.5 % random loss", ["--rate", "20", "--rtt", "25", "--loss", "0.5"] + RAMP, "ect1", 50, 40),
+    "frames_20M_loss1.0": ("20 Mbit/s with 1 % random loss", ["--rate", "20", "--rtt", "25", "--loss", "1"] + RAMP, "ect1", 50, 40),
+    "frames_20M_loss2.0": ("20 Mbit/s with 2 % random loss", ["--rate", "20", "--rtt", "25", "--loss", "2"] + RAMP, "ect1", 50, 40),
+    "frames_drop_10M_to_3M": ("10 -> 3 Mbit/s at 20 s, ramp",
           ["--steps", "10,3", "--step-time", "20", "--once", "--rtt", "40"] + RAMP, "ect1", 50, 40),
-    "J": ("two flows on 20 Mbit/s, ramp", ["--rate", "20", "--rtt", "25"] + RAMP, "ect1", 50, 40),
-    "K": ("8 Mbit/s, Not-ECT, FIFO 10 ms", ["--rate", "8", "--rtt", "40", "--queue", "10"], "off", 50, 40),
+    "frames_20M_two_flows": ("two flows on 20 Mbit/s, ramp", ["--rate", "20", "--rtt", "25"] + RAMP, "ect1", 50, 40),
+    "frames_8M_fifo10_notect": ("8 Mbit/s, Not-ECT, FIFO 10 ms", ["--rate", "8", "--rtt", "40", "--queue", "10"], "off", 50, 40),
 }
 # The slices of a LiDAR instead of frames: 80 a second, of sizes that vary by 10 %.
 SLICES_FPS, SLICES_JITTER = 80, 10
-for _name in ["A", "C", "D", "E", "G1", "H", "J", "K"]:
+for _name in [n for n in SCENARIOS if n.startswith("frames_") and not n.endswith(("loss0.5", "loss2.0"))]:
     _text, _link, _ecn, _, _seconds = SCENARIOS[_name]
-    SCENARIOS[_name + "-slices"] = (_text + ", slices", _link, _ecn, SLICES_FPS, _seconds)
+    SCENARIOS[_name.replace("frames", "slices")] = (_text + ", slices", _link, _ecn, SLICES_FPS, _seconds)
 SETTLE_S = 5.0
 LINK_PORT, RX_PORT = 45004, 45104  # of the first flow, with --port-offset 0
 
@@ -202,14 +202,14 @@ class Run:
 
 
 def print_header():
-    print(f"{'scenario':9} {'sender':>9} {'receiver':>9}  {'util %':>6}  {'queue p50/p95/p99/max ms':>26}  "
+    print(f"{'scenario':24} {'sender':>9} {'receiver':>9}  {'util %':>6}  {'queue p50/p95/p99/max ms':>26}  "
           f"{'frame p50/p95/p99/max ms':>28}  {'own loss %':>10}  {'Jain':>5}")
 
 
 def print_row(name, sender, receiver, m):
     queue = "/".join(f"{v:.1f}" for v in m["queue_ms"])
     frame = "/".join(f"{v:.0f}" for v in m["frame_ms"]) if m["frame_ms"] else "-"
-    print(f"{name:9} {sender:>9} {receiver:>9}  {100 * m['utilisation']:6.1f}  {queue:>26}  {frame:>28}  "
+    print(f"{name:24} {sender:>9} {receiver:>9}  {100 * m['utilisation']:6.1f}  {queue:>26}  {frame:>28}  "
           f"{100 * m['own_loss']:10.2f}  {m['jain']:5.3f}", flush=True)
 
 
@@ -220,7 +220,7 @@ def main():
     parser.add_argument("--reference", type=pathlib.Path, help="folder of scream_bw_test_tx and _rx")
     parser.add_argument("--peers", default="ours-ours",
                         help="comma-separated pairs sender-receiver of 'ours' and 'reference'")
-    parser.add_argument("--mixed-flows", action="store_true", help="J: the second sender is the reference's")
+    parser.add_argument("--mixed-flows", action="store_true", help="two_flows: the second sender is the reference's")
     parser.add_argument("--seconds", type=float, help="of each run, instead of the scenario's own")
     parser.add_argument("--port-offset", type=int, default=0, help="to run two of these side by side")
     parser.add_argument("--json", help="write the figures there")
@@ -250,7 +250,7 @@ def run_all(args, pairs, peers):
     for name in args.scenarios or SCENARIOS:
         for sender, receiver in pairs:
             folder = pathlib.Path(tempfile.mkdtemp(prefix="scream-"))
-            senders = [sender] + (["reference" if args.mixed_flows else sender] if name == "J" else [])
+            senders = [sender] + (["reference" if args.mixed_flows else sender] if name.endswith("two_flows") else [])
             m = Run(peers, name, senders, receiver, args.seconds, folder).execute()
             print_row(name, "+".join(dict.fromkeys(senders)), receiver, m)
             results.append({"scenario": name, "sender": sender, "receiver": receiver, **m})

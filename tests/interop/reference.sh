@@ -21,7 +21,7 @@ if [ "$(id -u)" != 0 ]; then
 fi
 figures=$(mktemp)
 trap 'rm -f "$figures"' EXIT
-python3 "$here/../benchmarks/scream_sockets.py" C --build "$build" --reference "$folder" --seconds "${SECONDS_EACH:-25}" \
+python3 "$here/../benchmarks/scream_sockets.py" frames_8M_rtt40 --build "$build" --reference "$folder" --seconds "${SECONDS_EACH:-25}" \
   --port-offset 2000 --peers ours-ours,ours-reference,reference-reference,reference-ours --json "$figures"
 python3 - "$figures" <<'PYTHON'
 import json

@@ -70,7 +70,7 @@ INSTANTIATE_TEST_SUITE_P(
         OnSteps("frames10_steps_rtt40", 0.72).FrameP95(130),
         OnSteps("slices_steps_rtt40", 0.85).FrameP95(50), Goal("frames_20M_loss0.5", 0.8),
         Goal("frames_20M_loss1.0", 0.8), Goal("frames_20M_loss2.0", 0.8),
-        Goal("two_flows_20M_rtt25", 0.85).FrameP95(40), OnAShortFifo("frames_8M_fifo10_notect"),
+        Goal("frames_20M_two_flows", 0.85).FrameP95(40), OnAShortFifo("frames_8M_fifo10_notect"),
         OnAShortFifo("slices_8M_fifo10_notect")));
 
 TEST(Goals, ACapacityDropIsAnsweredWithinARoundTrip) {

@@ -167,7 +167,7 @@ TEST(Feedback, ThatIsSlowCostsLittle) {
 /// As receivers made of the reference's code report.
 TEST(Feedback, OnceAFrameIsEnough) {
   for (const char* name :
-       {"frames_20M_rtt25", "frames_8M_rtt40", "frames10_8M_rtt40", "two_flows_20M_rtt25"}) {
+       {"frames_20M_rtt25", "frames_8M_rtt40", "frames10_8M_rtt40", "frames_20M_two_flows"}) {
     Scenario s = Named(name);
     const ScenarioMetrics close = Measure(s, Simulate(s.config));
     for (FlowConfig& flow : s.config.flows) {

@@ -181,7 +181,7 @@ std::vector<Scenario> Scenarios(const Parameters& p) {
     all.push_back(Make("frames_20M_loss" + std::string(percent),
                        "20 Mbit/s, " + std::string(percent) + " % random loss", lossy, 50, p));
   }
-  Scenario two = Make("two_flows_20M_rtt25", "two flows on 20 Mbit/s, ramp", fast, 50, p);
+  Scenario two = Make("frames_20M_two_flows", "two flows on 20 Mbit/s, ramp", fast, 50, p);
   two.config.flows.push_back(two.config.flows.front());
   two.config.flows.back().start += 5s;
   two.settle = 15s;

@@ -88,7 +88,7 @@ INSTANTIATE_TEST_SUITE_P(Held, BesideCubic,
                                            "cubic_fifo_20ms_20M", "cubic_dualpi2_20M"));
 
 TEST(TwoFlows, WhoseFramesMeetShareALinkEvenly) {
-  for (const char* name : {"two_flows_20M_rtt25", "frames_8M_rtt40"}) {
+  for (const char* name : {"frames_20M_two_flows", "frames_8M_rtt40"}) {
     Scenario s = *FindScenario(name, Parameters());
     if (s.config.flows.size() == 1) s.config.flows.push_back(s.config.flows[0]);
     s.config.flows[1].start = s.config.flows[0].start + 5s;
@@ -100,7 +100,7 @@ TEST(TwoFlows, WhoseFramesMeetShareALinkEvenly) {
 /// At other phases one's frames find the other's queue always, and more marks: the draft alone
 /// comes to 0.87.
 TEST(TwoFlows, WhoseFramesNeverMeetKeepTheirBalanceAndTheQueue) {
-  for (const char* name : {"two_flows_20M_rtt25", "frames_8M_rtt40"}) {
+  for (const char* name : {"frames_20M_two_flows", "frames_8M_rtt40"}) {
     for (const Duration phase : {4ms, 10ms}) {
       Scenario s = *FindScenario(name, Parameters());
       if (s.config.flows.size() == 1) s.config.flows.push_back(s.config.flows[0]);
