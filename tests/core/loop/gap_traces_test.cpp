@@ -43,11 +43,6 @@ TEST(Loop, AnEncoderThatDoesNotAdaptPutsOutTheCoarsestStep) {
   EXPECT_GE(r.complete + 1, r.captured);
 }
 
-TEST(Loop, FindsTheEndsOfGaps) {
-  const LoopCase c = Case("gap_1s_every_10s");
-  EXPECT_EQ(EndsOfGaps(c.capacity, 35s), (std::vector<Duration>{10s, 20s, 30s}));
-}
-
 TEST(Loop, TheSameRunGivesTheSameFigures) {
   LoopCase c = Case("drive_1");
   c.duration = 10s;

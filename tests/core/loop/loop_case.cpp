@@ -6,6 +6,7 @@
 #include <memory>
 #include <sstream>
 
+#include "src/link/gaps.h"
 #include "src/link/trace_maker.h"
 
 namespace lidar::loop {
@@ -19,9 +20,6 @@ using scream::test::SimulationResult;
 constexpr Time kOrigin{std::chrono::seconds(100)};
 constexpr Duration kSettle = 3s;
 constexpr Duration kBin = 100ms;
-constexpr DataRate kGapRate = DataRate::BitsPerSecond(5e5);
-constexpr double kBackShare = 0.8;
-constexpr Duration kLongestRecovery = 5s;
 constexpr double kFramesPerSecond = 50;
 
 scream::test::SimulationConfig ConfigOf(const LoopCase& c, LoopSource* source) {
@@ -98,43 +96,13 @@ double Utilisation(const LoopCase& c, const SimulationResult& result, const Loop
   return used / usable;
 }
 
-/// Bytes that enter the link, in steps of 10 ms.
-class SentBins {
- public:
-  static constexpr Duration kStep = 10ms;
-  SentBins(const SimulationResult& result, Duration duration)
-      : bins_(static_cast<std::size_t>(duration / kStep) + 1) {
-    for (const PacketLog& p : result.packets) {
-      const auto i = static_cast<std::size_t>((p.sent - kOrigin) / kStep);
-      if (i < bins_.size()) bins_[i] += static_cast<double>(p.bytes) * 8;
-    }
-  }
-  double Bits(Duration from, Duration length) const {
-    double bits = 0;
-    for (Duration t = from; t < from + length; t += kStep) {
-      const auto i = static_cast<std::size_t>(t / kStep);
-      if (i < bins_.size()) bits += bins_[i];
-    }
-    return bits;
-  }
-
- private:
-  std::vector<double> bins_;
-};
-
 void MeasureRecovery(const LoopCase& c, const SimulationResult& result, LoopReport* report) {
-  const SentBins sent(result, c.duration);
-  std::vector<double> times;
-  for (const Duration end : EndsOfGaps(c.capacity, c.duration)) {
-    Duration until = std::min(c.duration, end + kLongestRecovery);
-    for (Duration t = end; t < until; t += SentBins::kStep)
-      if (c.capacity.RateAt(t) <= kGapRate) until = t;
-    if (until - end < 2 * kBin) continue;  // the next gap is too near to tell
-    Duration t = end;
-    while (t + kBin < until && sent.Bits(t, kBin) < kBackShare * Usable(c, *report, t, kBin))
-      t += SentBins::kStep;
-    times.push_back(Seconds(t - end));
-  }
+  std::vector<link::SentPacket> sent;
+  for (const PacketLog& p : result.packets)
+    sent.push_back({p.sent - kOrigin, DataSize::Bytes(p.bytes)});
+  link::RecoveryConfig config{c.duration};
+  if (!c.frames) config.source_max = DataRate::BitsPerSecond(report->max_mbps * 1e6);
+  auto times = RecoveryAfterGaps(c.capacity, sent, config);
   report->gaps = times.size();
   report->recovery_s = scream::test::Summarise(std::move(times));
 }
@@ -168,17 +136,6 @@ NamedTrace Drive(std::uint64_t seed, double mbps) {
 }
 
 }  // namespace
-
-std::vector<Duration> EndsOfGaps(const link::Capacity& capacity, Duration duration) {
-  std::vector<Duration> ends;
-  bool gap = false;
-  for (Duration t{0}; t < duration; t = capacity.NextChange(t)) {
-    const bool now = capacity.RateAt(t) <= kGapRate;
-    if (gap && !now) ends.push_back(t);
-    gap = now;
-  }
-  return ends;
-}
 
 LoopRun RunLoop(const LoopCase& c) {
   LoopSource source(c.source);

@@ -61,9 +61,6 @@ struct LoopRun {
 
 LoopRun RunLoop(const LoopCase& loop_case);
 
-/// Times of the run at which a gap ends: the capacity had been nearly nothing.
-std::vector<Duration> EndsOfGaps(const link::Capacity& capacity, Duration duration);
-
 struct NamedTrace {
   std::string name;
   link::Capacity capacity;

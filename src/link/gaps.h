@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Gaps of a link's capacity, and how soon a sender is back after them.
+#pragma once
+#include <vector>
+
+#include "src/base/time.h"
+#include "src/base/units.h"
+#include "src/link/capacity.h"
+
+namespace lidar::link {
+
+/// Times at which a gap ends: the capacity had been nearly nothing.
+std::vector<Duration> EndsOfGaps(const Capacity& capacity, Duration duration);
+
+/// A packet as it enters the link.
+struct SentPacket {
+  Duration time{0};
+  DataSize size;
+};
+
+struct RecoveryConfig {
+  Duration duration{0};  // of the run
+  /// What the source can use at most.
+  DataRate source_max = DataRate::Infinite();
+  double share = 0.8;
+};
+
+/// For each gap, the time from its end until the sender first puts `share` of what the link can
+/// carry and the source can use on the link, for a tenth of a second [s]; at most 5 s, or until
+/// the next gap. Gaps that come closer than 0.2 s are left out.
+std::vector<double> RecoveryAfterGaps(const Capacity& capacity,
+                                      const std::vector<SentPacket>& packets,
+                                      const RecoveryConfig& config);
+
+}  // namespace lidar::link
