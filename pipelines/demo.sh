@@ -22,7 +22,12 @@ usage() {
 Usage: pipelines/demo.sh [--no-install] [--no-build] [options of the stream]
 
 Streams LiDAR: sender -> lidar-link -> receiver, three processes over UDP sockets, through a link whose capacity
-changes, and compares what arrives with what was sent. Exit code 0: every guarantee held.
+changes, and compares what arrives with what was sent. Exit code 0: every guarantee held; 1: one did
+not, or the run failed; 2: wrong use; 3: all held, but not half of what the link could carry arrived.
+
+  pipelines/demo.sh                               a synthetic drive, capacity in steps
+  pipelines/demo.sh --drive                       the same over a 5G-like link with handover gaps
+  pipelines/demo.sh --drive --pcap drive.pcap     a capture, over such a link
 
   --no-install   do not install Debian packages
   --no-build     take build/ as it is

@@ -23,12 +23,13 @@ echo "0 five" >"$folder/trace.txt"
 echo "not json" >"$folder/metadata.json"
 echo "not a capture" >"$folder/capture.pcap"
 expect 2 "--max-eror" --max-eror 1
-expect 2 "--metadata" --pcap "$folder/capture.pcap"
+expect 2 "--pcap" --metadata "$folder/metadata.json"
+expect 2 "--drive" --drive --steps 1,2
+expect 2 "os1-64" --model os9-64
 expect 2 "no-such-file" --trace no-such-file
 expect 2 "--rate" --rate 5 --steps 1,2
 expect 1 "line 1: expected two numbers" --trace "$folder/trace.txt"
 expect 1 "--start-bitrate must not be above --max-bitrate" --start-bitrate 9 --max-bitrate 8
 expect 1 "the sender ended early" --pcap "$folder/capture.pcap" --metadata "$folder/metadata.json"
-expect 1 "the sender ended early" --model os9-64
 expect 0 "--duration" --help
 exit $failed

@@ -18,6 +18,7 @@
 #include "src/tools/demo/measurements.h"
 #include "src/tools/demo/report.h"
 #include "src/tools/demo/summary.h"
+#include "src/tools/demo/verdict.h"
 
 namespace lidar::demo {
 namespace {
@@ -28,6 +29,9 @@ using tools::Now;
 constexpr auto kStartLimit = 15s;
 constexpr auto kStopLimit = 8s;
 constexpr auto kTick = 100ms;
+constexpr int kPoorStream = 3;  // exit code
+constexpr auto kArrivalLimit = 3s;
+constexpr int kLinesBetweenHeaders = 20;
 
 class Coordinator {
  public:
@@ -35,7 +39,16 @@ class Coordinator {
   int Run();
 
  private:
-  enum class Phase { kReceiver, kLink, kSender, kStreaming, kDraining, kReceiverStops, kLinkStops };
+  enum class Phase {
+    kReceiver,
+    kLink,
+    kSender,
+    kStreaming,
+    kDraining,
+    kArriving,  // what is on its way when the sender has ended
+    kReceiverStops,
+    kLinkStops
+  };
 
   std::unique_ptr<ChildProcess> Start(const std::vector<std::string>& command, const char* name,
                                       bool clouds);
@@ -47,6 +60,7 @@ class Coordinator {
   void Tick();
   void Enter(Phase phase);
   void CheckLimit();
+  bool AllArrived() const;
   void TakeComparisons();
   int Report();
 
@@ -64,6 +78,7 @@ class Coordinator {
   double last_error_m_ = 0;
   std::uint64_t marked_ = 0;
   std::uint64_t dropped_ = 0;
+  int lines_ = 0;
   std::string failure_;
 };
 
@@ -88,6 +103,8 @@ Coordinator::Coordinator(const RunOptions& options) {
   m_.options = options;
   if (mkdir(options.output.c_str(), 0777) != 0 && errno != EEXIST)
     throw std::runtime_error("cannot make the folder " + options.output);
+  RemoveReport(options.output);
+  if (options.drive) std::ofstream(options.output + "/trace.txt") << DriveTraceOf(options);
   ports_ = {FreePort(), FreePort()};
 }
 
@@ -116,7 +133,7 @@ void Coordinator::OnReceiver(const nlohmann::json& record) {
 
 void Coordinator::OnSender(const nlohmann::json& record) {
   const std::string type = record.value("type", "");
-  if (type == "bounds") m_.encoder_max_bps = record.value("max", 0.0);
+  if (type == "bounds") m_.AddBounds(record.value("min", 0.0), record.value("max", 0.0));
   m_.ledger.Add(record);
   if (type != "stats") return;
   m_.sender_stats = record;
@@ -132,19 +149,27 @@ void Coordinator::OnLink(const nlohmann::json& record) {
   if (record.contains("time_s")) PrintLive(record);
 }
 
+void PrintHeader() {
+  std::puts(
+      "     Mbit/s                   ms             mm            scans                        "
+      "packets\n"
+      "   s  capacity target   sent   queue    rtt   step  error  taken skipped  sent  whole "
+      "marked  dropped    late");
+}
+
 void Coordinator::PrintLive(const nlohmann::json& link) {
   TakeComparisons();
   marked_ += link.value("marked", std::uint64_t{0});
   dropped_ += link.value("dropped", std::uint64_t{0});
   const ScanCounts n = m_.ledger.Count();
-  std::printf(
-      "%4.0f s  cap %5.2f  target %5.2f  sent %5.2f Mbit/s  queue %5.1f  rtt %5.1f ms  "
-      "step %5.1f  error %5.1f mm  scans %" PRIu64 "/%" PRIu64 "/%" PRIu64 "/%" PRIu64
-      "  CE %" PRIu64 "  lost %" PRIu64 "\n",
-      link["time_s"].get<double>(), link["capacity_bps"].get<double>() / 1e6,
-      last_.target_bps / 1e6, link["delivered_bps"].get<double>() / 1e6,
-      link["sojourn_ms"]["p95"].get<double>(), last_.rtt_ms, last_.step_m * 1e3,
-      last_error_m_ * 1e3, n.captured, n.skipped, n.sent, n.complete, marked_, dropped_);
+  if (lines_++ % kLinesBetweenHeaders == 0) PrintHeader();
+  std::printf("%4.0f %9.2f %6.2f %6.2f %7.1f %6.1f %6.1f %6.1f %6" PRIu64 " %7" PRIu64 " %5" PRIu64
+              " %6" PRIu64 " %6" PRIu64 " %8" PRIu64 " %7" PRIu64 "\n",
+              link["time_s"].get<double>(), link["capacity_bps"].get<double>() / 1e6,
+              last_.target_bps / 1e6, link["delivered_bps"].get<double>() / 1e6,
+              link["sojourn_ms"]["p95"].get<double>(), last_.rtt_ms, last_.step_m * 1e3,
+              last_error_m_ * 1e3, n.captured, n.skipped, n.sent, n.complete, marked_, dropped_,
+              last_.packets_dropped);
   std::fflush(stdout);
   last_error_m_ = 0;
 }
@@ -189,6 +214,8 @@ void Coordinator::Enter(Phase phase) {
       m_.ran_s = Seconds(Now() - streaming_since_);
       sender_->Signal(SIGINT);
       break;
+    case Phase::kArriving:
+      break;
     case Phase::kReceiverStops:
       receiver_->Signal(SIGINT);
       break;
@@ -201,10 +228,17 @@ void Coordinator::Enter(Phase phase) {
 void Coordinator::CheckLimit() {
   const Duration limit = phase_ < Phase::kStreaming ? kStartLimit : kStopLimit;
   if (phase_ == Phase::kStreaming || Now() - phase_since_ < limit) return;
-  static constexpr const char* kWaitingFor[] = {
-      "the receiver to play", "the link to listen",     "the first packet",  "",
-      "the sender to drain",  "the receiver to finish", "the link to finish"};
+  static constexpr const char* kWaitingFor[] = {"the receiver to play",   "the link to listen",
+                                                "the first packet",       "",
+                                                "the sender to drain",    "",
+                                                "the receiver to finish", "the link to finish"};
   failure_ = std::string("gave up waiting for ") + kWaitingFor[static_cast<int>(phase_)];
+}
+
+/// Nothing is missing, or what is missing has had the time to come: the link may be in a gap.
+bool Coordinator::AllArrived() const {
+  const Duration waited = Now() - phase_since_;
+  return waited >= kArrivalLimit || (waited >= kTick && m_.ledger.Count().slices_lost == 0);
 }
 
 void Coordinator::Tick() {
@@ -227,6 +261,8 @@ void Coordinator::Tick() {
   } else if (streaming && Now() - streaming_since_ >= FromSeconds(m_.options.duration_s)) {
     Enter(Phase::kDraining);
   } else if (phase_ == Phase::kDraining && sender_->Ended()) {
+    Enter(Phase::kArriving);
+  } else if (phase_ == Phase::kArriving && AllArrived()) {
     Enter(Phase::kReceiverStops);
   } else if (phase_ == Phase::kReceiverStops && receiver_->Ended()) {
     Enter(Phase::kLinkStops);
@@ -275,6 +311,8 @@ int Coordinator::Report() {
     summary["guarantees"].push_back({{"text", g.text}, {"holds", g.holds}});
     all = all && g.holds;
   }
+  const Verdict verdict = Judge(m_);
+  summary["verdict"] = verdict.text;
   std::ofstream(folder + "/summary.json") << summary.dump(2) << '\n';
   std::ofstream(folder + "/stats.json")
       << nlohmann::json{{"sender", m_.sender_stats}, {"receiver", m_.receiver_stats}}.dump(2)
@@ -282,9 +320,12 @@ int Coordinator::Report() {
   PrintTable(summary);
   for (const Guarantee& g : guarantees)
     std::printf("  %s  %s\n", g.holds ? "holds " : "BROKEN", g.text.c_str());
+  std::printf("\n%s\n", verdict.text.c_str());
+  for (const std::string& hint : verdict.hints) std::printf("  %s\n", hint.c_str());
   const bool drawn = !m_.options.plots || DrawPlots(m_, folder);
   std::printf("\nReport in %s\n", folder.c_str());
-  return all && drawn ? 0 : 1;
+  if (!all || !drawn) return 1;
+  return verdict.level == Verdict::Level::kPoor ? kPoorStream : 0;
 }
 
 }  // namespace

@@ -29,6 +29,7 @@ SenderSample ReadSample(const nlohmann::json& record) {
   SenderSample s;
   s.unix_ns = record.value("unix_ns", std::int64_t{0});
   s.target_bps = Pick(sender, {"target-bitrate"});
+  s.estimated_capacity_bps = Pick(sender, {"estimated-capacity"});
   s.rtt_ms = Pick(sender, {"rtt", "s-rtt"}) / 1e6;
   s.queue_delay_ms = Pick(sender, {"queue-delay", "qdelay"}) / 1e6;
   s.ref_wnd_bytes = Pick(sender, {"ref-wnd"});
@@ -58,6 +59,12 @@ std::vector<LinkPacket> ReadLinkLog(const std::string& file) {
     packets.push_back(p);
   }
   return packets;
+}
+
+void Measurements::AddBounds(double min_bps, double max_bps) {
+  ++bounds_seen;
+  encoder_min_bps += (min_bps - encoder_min_bps) / bounds_seen;
+  encoder_max_bps = max_bps;
 }
 
 bool Measurements::IsSteady(double time_s) const {

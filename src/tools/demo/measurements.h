@@ -26,6 +26,7 @@ struct LinkPacket {
 struct SenderSample {
   std::int64_t unix_ns = 0;
   double target_bps = 0;
+  double estimated_capacity_bps = 0;  // of the path, whatever the source sends; 0: not known
   double rtt_ms = 0;
   double queue_delay_ms = 0;
   double ref_wnd_bytes = 0;
@@ -49,11 +50,15 @@ struct Measurements {
   Ledger ledger;
   std::vector<LinkPacket> packets;
   std::vector<SenderSample> samples;
-  double encoder_max_bps = 0;   // from its bitrate-bounds; 0: not known
+  // From the encoder's bitrate-bounds; 0: not known
+  double encoder_min_bps = 0;  // mean of the run
+  double encoder_max_bps = 0;
+  int bounds_seen = 0;
   nlohmann::json sender_stats;  // the last of each
   nlohmann::json receiver_stats;
   nlohmann::json link_summary;
 
+  void AddBounds(double min_bps, double max_bps);
   double Since(std::int64_t unix_ns) const {
     return static_cast<double>(unix_ns - origin_unix_ns) / 1e9;
   }

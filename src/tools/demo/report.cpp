@@ -52,7 +52,7 @@ std::vector<Bin> Collect(const Measurements& m) {
 void WriteTimeline(const Measurements& m, const std::string& file) {
   std::ofstream out(file);
   out << "time_s,capacity_mbps,target_mbps,encoded_mbps,sent_mbps,queue_ms,rtt_ms,ref_wnd_bytes,"
-         "bytes_in_flight,sender_queue_ms,step_m,max_error_m\n";
+         "bytes_in_flight,sender_queue_ms,step_m,max_error_m,estimated_capacity_mbps\n";
   const auto capacity = CapacityOf(m.options);
   const auto bins = Collect(m);
   for (std::size_t i = 0; i < bins.size(); ++i) {
@@ -61,11 +61,12 @@ void WriteTimeline(const Measurements& m, const std::string& file) {
         capacity.Between(FromSeconds(start), FromSeconds(start + kBin_s)).bits() / kBin_s / 1e6;
     const Bin& b = bins[i];
     char line[320];
-    std::snprintf(
-        line, sizeof line, "%.1f,%.4f,%.4f,%.4f,%.4f,%.3f,%.3f,%.0f,%.0f,%.3f,%.5f,%.5f\n", start,
-        mbps, b.sender.target_bps / 1e6, b.encoded_bits / kBin_s / 1e6, b.sent_bits / kBin_s / 1e6,
-        b.queue_ms, b.sender.rtt_ms, b.sender.ref_wnd_bytes, b.sender.bytes_in_flight,
-        b.sender.sender_queue_ms, b.sender.step_m, b.max_error_m);
+    std::snprintf(line, sizeof line,
+                  "%.1f,%.4f,%.4f,%.4f,%.4f,%.3f,%.3f,%.0f,%.0f,%.3f,%.5f,%.5f,%.4f\n", start, mbps,
+                  b.sender.target_bps / 1e6, b.encoded_bits / kBin_s / 1e6,
+                  b.sent_bits / kBin_s / 1e6, b.queue_ms, b.sender.rtt_ms, b.sender.ref_wnd_bytes,
+                  b.sender.bytes_in_flight, b.sender.sender_queue_ms, b.sender.step_m,
+                  b.max_error_m, b.sender.estimated_capacity_bps / 1e6);
     out << line;
   }
 }
@@ -102,6 +103,8 @@ set yrange [0:*]
 set output "rate.png"
 set ylabel "Mbit/s"
 plot "timeline.csv" skip 1 using 1:2 with steps lw 2 lc rgb "#999999" title "capacity", \
+     "" skip 1 using 1:($13 > 0 ? $13 : NaN) with lines dt 2 lc rgb "#666666" \
+       title "capacity, estimated", \
      "" skip 1 using 1:3 with lines lw 2 lc rgb "#d95f02" title "target", \
      "" skip 1 using 1:4 with lines lc rgb "#7570b3" title "encoded", \
      "" skip 1 using 1:5 with lines lc rgb "#1b9e77" title "sent"
@@ -120,6 +123,7 @@ plot "timeline.csv" skip 1 using 1:($8 / 1000) with lines lw 2 lc rgb "#d95f02" 
 
 set output "error.png"
 set ylabel "cm"
+set yrange [0:1.2 * bound_cm]
 plot "timeline.csv" skip 1 using 1:($11 * 100) with steps lw 2 lc rgb "#7570b3" title "step", \
      "" skip 1 using 1:($12 > 0 ? $12 * 100 : NaN) with points pt 7 ps 0.4 lc rgb "#d95f02" \
        title "largest error", \
@@ -155,6 +159,14 @@ void WriteTables(const Measurements& m, const std::string& folder) {
   WriteSlices(m, folder + "/slices.csv");
 }
 
+void RemoveReport(const std::string& folder) {
+  for (const char* file :
+       {"summary.json", "stats.json", "slices.csv", "timeline.csv", "packets.csv", "link.json",
+        "trace.txt", "rate.png", "delay.png", "window.png", "error.png", "plots.gp", "plots.log",
+        "sender.log", "receiver.log", "link.log"})
+    std::remove((folder + '/' + file).c_str());
+}
+
 bool DrawPlots(const Measurements& m, const std::string& folder) {
   {
     std::ofstream script(folder + "/plots.gp");
@@ -176,9 +188,9 @@ void PrintTable(const nlohmann::ordered_json& s) {
   PrintLine("slices sent / lost",
             Field(s["slices_sent"], "%.0f") + " / " + Field(s["slices_lost"], "%.0f"));
   PrintLine("mean rate", Field(s["mean_rate_bps"], "%.2f Mbit/s", 1e-6));
-  PrintLine("utilisation, steady", Field(s["utilisation"], "%.1f %%", 100) + " (" +
-                                       Field(s["utilisation_where_usable"], "%.1f %%", 100) +
-                                       " where the encoder can use the capacity)");
+  PrintLine("utilisation, steady", Field(s["utilisation_of_usable"], "%.1f %%", 100) +
+                                       " of what the source can use (" +
+                                       Field(s["utilisation"], "%.1f %%", 100) + " of the link)");
   PrintDelays(s, "queue, whole run", "queue_delay_ms");
   PrintDelays(s, "queue, steady", "queue_delay_steady_ms");
   PrintDelays(s, "capture to cloud, whole run", "capture_to_cloud_ms");
@@ -187,6 +199,11 @@ void PrintTable(const nlohmann::ordered_json& s) {
     PrintLine(("step to " + Field(t["to_bps"], "%.1f Mbit/s", 1e-6)).c_str(),
               "queue up to " + Field(t["peak_ms"], "%.1f ms") + ", below 10 ms after " +
                   Field(t["below_10ms_after_s"], "%.2f s"));
+  if (s["gaps"]["count"].get<int>() > 0)
+    PrintLine("back at 80 % after a gap", "p50 " + Field(s["gaps"]["back_after_s"]["p50"], "%.2f") +
+                                              ", max " +
+                                              Field(s["gaps"]["back_after_s"]["max"], "%.2f s, ") +
+                                              Field(s["gaps"]["count"], "%.0f gaps"));
   PrintLine("error, largest / mean", Field(s["max_error_m"], "%.2f", 100) + " / " +
                                          Field(s["mean_error_m"], "%.2f cm", 100) + " of " +
                                          Field(s["points_compared"], "%.0f points"));

@@ -10,6 +10,8 @@ namespace lidar::demo {
 
 /// slices.csv: the life of every slice. timeline.csv: tenths of a second.
 void WriteTables(const Measurements& m, const std::string& folder);
+/// Removes what an earlier run wrote there, so that nothing stale is taken for this run's.
+void RemoveReport(const std::string& folder);
 /// Runs gnuplot over the tables. False, with a message on standard error, where that fails.
 bool DrawPlots(const Measurements& m, const std::string& folder);
 void PrintTable(const nlohmann::ordered_json& summary);

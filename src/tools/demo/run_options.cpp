@@ -7,11 +7,18 @@
 #include <sstream>
 #include <stdexcept>
 
+#include "src/link/trace_maker.h"
+
 namespace lidar::demo {
 namespace {
 
 /// The cube that --fixed-bits divides: what a sensor of 100 m range can see.
 constexpr double kFixedBitsExtentM = 200;
+
+/// Mean of --drive: between what the source needs at least and what it can use.
+constexpr double kDriveMbps = 4;
+constexpr double kDriveOfCaptureMbps = 8;
+constexpr double kDriveTail_s = 60;  // a stream that starts late must not see the trace begin again
 
 std::string Number(double value) {
   std::ostringstream out;
@@ -39,14 +46,16 @@ std::string SourceOf(const RunOptions& o) {
   const std::string common =
       " name=source is-live=true slices-per-scan=" + std::to_string(o.slices);
   if (!o.pcap.empty())
-    return "ouster_src location=" + Quoted(o.pcap) + " metadata=" + Quoted(o.metadata) +
-           " loop=true" + common;
+    return "ouster_src location=" + Quoted(o.pcap) +
+           (o.metadata.empty() ? "" : " metadata=" + Quoted(o.metadata)) + " loop=true" + common;
   return "lidartestsrc model=" + o.model + " mode=" + o.mode + " scene=" + o.scene +
          " speed=" + Number(o.speed_mps) + " seed=" + std::to_string(o.seed) + common;
 }
 
 void AddSourceOptions(CLI::App* app, RunOptions* o) {
   app->add_option("--model", o->model, "Synthetic sensor: os0-32 ... os2-128")
+      ->check(CLI::IsMember({"os0-32", "os0-64", "os0-128", "os1-32", "os1-64", "os1-128", "os2-32",
+                             "os2-64", "os2-128"}))
       ->capture_default_str();
   app->add_option("--mode", o->mode, "Columns x scans/s: 512x10, 1024x10, 1024x20, 2048x10")
       ->capture_default_str();
@@ -58,10 +67,10 @@ void AddSourceOptions(CLI::App* app, RunOptions* o) {
       ->capture_default_str();
   auto* pcap = app->add_option("--pcap", o->pcap, "Stream an Ouster capture, over and over")
                    ->check(CLI::ExistingFile);
-  auto* metadata = app->add_option("--metadata", o->metadata, "Sensor metadata of --pcap (JSON)")
-                       ->check(CLI::ExistingFile);
-  pcap->needs(metadata);
-  metadata->needs(pcap);
+  app->add_option("--metadata", o->metadata,
+                  "Sensor metadata of --pcap (JSON), where it does not lie beside it")
+      ->check(CLI::ExistingFile)
+      ->needs(pcap);
 }
 
 void AddCodecOptions(CLI::App* app, RunOptions* o) {
@@ -92,13 +101,19 @@ void AddPathOptions(CLI::App* app, RunOptions* o) {
           ->delimiter(',')
           ->check(CLI::Range(0.0, link::Capacity::kMaxMbps))
           ->capture_default_str();
-  auto* rate = app->add_option("--rate", o->rate_mbps, "Constant capacity [Mbit/s]")
-                   ->check(CLI::Range(0.01, link::Capacity::kMaxMbps))
-                   ->excludes(steps);
-  app->add_option("--trace", o->trace, "Capacity from a file of 'time_s rate_mbps' lines")
-      ->check(CLI::ExistingFile)
+  auto* rate =
+      app->add_option("--rate", o->rate_mbps, "Constant capacity [Mbit/s]; with --drive its mean")
+          ->check(CLI::Range(0.01, link::Capacity::kMaxMbps))
+          ->excludes(steps);
+  auto* trace =
+      app->add_option("--trace", o->trace, "Capacity from a file of 'time_s rate_mbps' lines")
+          ->check(CLI::ExistingFile)
+          ->excludes(steps)
+          ->excludes(rate);
+  app->add_flag("--drive", o->drive,
+                "Capacity of a generated drive through a 5G network, with handover gaps (--seed)")
       ->excludes(steps)
-      ->excludes(rate);
+      ->excludes(trace);
   app->add_option("--rtt", o->rtt_ms, "Propagation there and back [ms]")
       ->check(CLI::Range(0.0, 10000.0))
       ->capture_default_str();
@@ -140,6 +155,11 @@ double ErrorBoundOf(const RunOptions& o) {
 
 link::Capacity CapacityOf(const RunOptions& o) {
   const auto mbps = [](double m) { return DataRate::BitsPerSecond(m * 1e6); };
+  if (o.drive) {
+    std::string error;
+    return link::Capacity::ParseTrace(DriveTraceOf(o), true, &error)
+        .value_or(link::Capacity::Constant(mbps(kDriveMbps)));
+  }
   if (!o.trace.empty()) {
     std::stringstream text;
     text << std::ifstream(o.trace).rdbuf();
@@ -154,9 +174,18 @@ link::Capacity CapacityOf(const RunOptions& o) {
   return link::Capacity::Steps(rates, FromSeconds(StepTime(o)));
 }
 
+std::string DriveTraceOf(const RunOptions& o) {
+  link::DriveTraceConfig config;
+  config.seed = o.seed;
+  config.duration = FromSeconds(o.duration_s + kDriveTail_s);
+  const double mean = o.pcap.empty() ? kDriveMbps : kDriveOfCaptureMbps;
+  config.mean = DataRate::BitsPerSecond((o.rate_mbps > 0 ? o.rate_mbps : mean) * 1e6);
+  return MakeDriveTrace(config);
+}
+
 std::vector<Duration> ChangesOf(const RunOptions& o) {
   std::vector<Duration> changes;
-  if (!o.trace.empty() || o.rate_mbps > 0) return changes;
+  if (o.drive || !o.trace.empty() || o.rate_mbps > 0) return changes;
   for (std::size_t i = 1; i < o.steps_mbps.size(); ++i)
     changes.push_back(FromSeconds(StepTime(o)) * static_cast<std::int64_t>(i));
   return changes;
@@ -193,7 +222,9 @@ std::vector<std::string> LinkArguments(const RunOptions& o, Ports ports) {
   const auto add = [&](std::initializer_list<std::string> more) {
     arguments.insert(arguments.end(), more);
   };
-  if (!o.trace.empty()) {
+  if (o.drive) {
+    add({"--trace", o.output + "/trace.txt"});
+  } else if (!o.trace.empty()) {
     add({"--trace", o.trace});
   } else if (o.rate_mbps > 0) {
     add({"--rate", Number(o.rate_mbps)});

@@ -36,9 +36,10 @@ struct RunOptions {
   double max_bitrate_mbps = 100;
   double start_bitrate_mbps = 4;
   // Link
-  std::vector<double> steps_mbps{12, 6, 9, 5, 15, 7};
+  std::vector<double> steps_mbps{4, 2.2, 3, 1.8, 4.4, 2.6};
   double rate_mbps = 0;
   std::string trace;
+  bool drive = false;
   double rtt_ms = 40;
   double loss_percent = 0;
   bool no_l4s = false;
@@ -55,6 +56,9 @@ double ErrorBoundOf(const RunOptions& options);
 link::Capacity CapacityOf(const RunOptions& options);
 /// When the capacity changes in steps, within the run; empty for a trace.
 std::vector<Duration> ChangesOf(const RunOptions& options);
+
+/// The text of the capacity trace of --drive.
+std::string DriveTraceOf(const RunOptions& options);
 
 struct Ports {
   int link = 0;

@@ -3,8 +3,11 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <limits>
 
+#include "src/link/gaps.h"
 #include "src/tools/common/distribution.h"
+#include "src/tools/demo/verdict.h"
 
 namespace lidar::demo {
 namespace {
@@ -16,8 +19,6 @@ constexpr double kShortQueue_ms = 10;
 constexpr double kSettled_s = 0.5;
 /// Coordinates are floats: half a unit in the last place at 200 m, in three dimensions.
 constexpr double kRounding_m = 5e-5;
-/// Below this share of the encoder's ceiling the capacity is what limits.
-constexpr double kUsableShare = 0.95;
 
 nlohmann::ordered_json Percentiles(const Distribution& d) {
   if (d.count() == 0) return nullptr;
@@ -85,9 +86,8 @@ Delays QueueDelays(const Measurements& m) {
   return d;
 }
 
-/// Delivered bits over capacity, in tenths of a second that `counts` accepts.
-template <class F>
-nlohmann::ordered_json Utilisation(const Measurements& m, F&& counts) {
+/// Delivered bits over those that the link carries and the source can use, in steady time.
+nlohmann::ordered_json Utilisation(const Measurements& m, double source_max_bps) {
   constexpr double kBin_s = 0.1;
   const auto bins = static_cast<std::size_t>(m.ran_s / kBin_s);
   std::vector<double> sent(bins);
@@ -101,12 +101,18 @@ nlohmann::ordered_json Utilisation(const Measurements& m, F&& counts) {
   for (std::size_t i = 0; i < bins; ++i) {
     const double start = static_cast<double>(i) * kBin_s;
     const double bits = capacity.Between(FromSeconds(start), FromSeconds(start + kBin_s)).bits();
-    if (!counts(start, bits / kBin_s)) continue;
+    if (!m.IsSteady(start)) continue;
     used += sent[i];
-    offered += bits;
+    offered += std::min(bits, source_max_bps * kBin_s);
   }
   if (offered <= 0) return nullptr;
   return used / offered;
+}
+
+/// On the wire; infinite where it is not known.
+double SourceMax(const Measurements& m) {
+  return m.encoder_max_bps > 0 ? m.encoder_max_bps * WireShare(m)
+                               : std::numeric_limits<double>::infinity();
 }
 
 void AddErrors(const Measurements& m, nlohmann::ordered_json* s) {
@@ -130,16 +136,42 @@ void AddRates(const Measurements& m, nlohmann::ordered_json* s) {
     bits += p.delivered ? static_cast<double>(p.size) * 8 : 0;
   }
   (*s)["mean_rate_bps"] = m.ran_s > 0 ? bits / m.ran_s : 0;
-  const double ceiling = m.encoder_max_bps;
-  (*s)["utilisation"] = Utilisation(m, [&](double t, double) { return m.IsSteady(t); });
-  (*s)["utilisation_where_usable"] = Utilisation(m, [&](double t, double capacity) {
-    return m.IsSteady(t) && (ceiling <= 0 || capacity < kUsableShare * ceiling);
-  });
-  (*s)["encoder_max_bps"] = ceiling;
+  constexpr double kAny = std::numeric_limits<double>::infinity();
+  (*s)["utilisation"] = Utilisation(m, kAny);
+  (*s)["utilisation_of_usable"] = Utilisation(m, SourceMax(m));
+  (*s)["encoder_min_bps"] = m.encoder_min_bps;
+  (*s)["encoder_max_bps"] = m.encoder_max_bps;
   (*s)["packets"] = m.packets.size();
   (*s)["packets_marked"] = marked;
   (*s)["packets_dropped_by_link"] = dropped;
   (*s)["packets_dropped_by_sender"] = m.samples.empty() ? 0 : m.samples.back().packets_dropped;
+}
+
+void AddGaps(const Measurements& m, nlohmann::ordered_json* s) {
+  std::vector<link::SentPacket> sent;
+  for (const LinkPacket& p : m.packets)
+    sent.push_back({FromSeconds(p.time_s), DataSize::Bytes(p.size)});
+  Distribution back;
+  for (const double t :
+       RecoveryAfterGaps(CapacityOf(m.options), sent,
+                         {FromSeconds(m.ran_s), DataRate::BitsPerSecond(SourceMax(m))}))
+    back.Add(t);
+  (*s)["gaps"] = {{"count", back.count()}, {"back_after_s", Percentiles(back)}};
+}
+
+/// What a sender that knew the link could deliver: scans of the lowest bitrate that keeps the
+/// bound, and how soon at the bitrate that was put out.
+void AddOracle(const Measurements& m, nlohmann::ordered_json* s) {
+  double bits = 0;
+  for (const auto& [id, scan] : m.ledger.scans())
+    for (const SliceLife& life : scan) bits += static_cast<double>(life.bytes) * 8;
+  (*s)["oracle"] = nullptr;
+  if (m.encoder_min_bps <= 0 || m.ran_s <= 0) return;
+  const link::OracleResult mean = AskOracle(m, bits / m.ran_s);
+  (*s)["oracle"] = {
+      {"scans_complete", AskOracle(m, m.encoder_min_bps).complete},
+      {"capture_to_cloud_ms",
+       {{"p50", mean.Latency(50)}, {"p95", mean.Latency(95)}, {"p99", mean.Latency(99)}}}};
 }
 
 void AddTransients(const Measurements& m, nlohmann::ordered_json* s) {
@@ -233,6 +265,8 @@ nlohmann::ordered_json Summarise(const Measurements& m) {
                     {"network", Percentiles(f.network)},
                     {"decode", Percentiles(f.decode)}};
   AddTransients(m, &s);
+  AddGaps(m, &s);
+  AddOracle(m, &s);
   AddErrors(m, &s);
   s["encode_ms_p50"] = f.encode_scan.Percentile(50);
   s["decode_ms_p50"] = f.decode_scan.Percentile(50);

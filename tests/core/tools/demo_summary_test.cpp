@@ -3,6 +3,7 @@
 
 #include "src/tools/demo/measurements.h"
 #include "src/tools/demo/summary.h"
+#include "src/tools/demo/verdict.h"
 
 namespace lidar::demo {
 namespace {
@@ -104,7 +105,7 @@ TEST(DemoSummary, UtilisationIsOfSteadyTimeAndOfWhatTheEncoderCanUse) {
   EXPECT_NEAR(s["mean_rate_bps"].get<double>(), 3e6, 1);
   // Steady: 2 s of 8 and 4 s of 4 Mbit/s.
   EXPECT_NEAR(s["utilisation"].get<double>(), 18.0 / 32, 0.005);
-  EXPECT_NEAR(s["utilisation_where_usable"].get<double>(), 0.75, 0.005);
+  EXPECT_NEAR(s["utilisation_of_usable"].get<double>(), 18.0 / 28, 0.005);
 }
 
 TEST(DemoSummary, ATransientLastsUntilTheQueueStaysShort) {
@@ -166,6 +167,71 @@ TEST(DemoSummary, APointThatAppearedFromNowhereBreaksAGuarantee) {
   Live(&m.ledger, 1, 0, kOrigin);
   m.ledger.Add(SliceKey{1, 0}, Comparison{500, 0, 1, 0, 0});
   EXPECT_FALSE(AllHold(m));
+}
+
+/// Four scans of 2 kB a second for 10 s; what arrives of each hundred.
+Measurements Stream(int arrives) {
+  auto m = TwoSteps();
+  m.AddBounds(64e3, 8e6);
+  for (int i = 0; i < 40; ++i) {
+    for (std::uint32_t slice = 0; slice < 2; ++slice) {
+      const auto scan = static_cast<std::uint32_t>(i);
+      const std::int64_t at = kOrigin + i * kSecond / 4 + slice * 50 * kMs;
+      if (i * 100 < arrives * 40)
+        Live(&m.ledger, scan, slice, at);
+      else
+        m.ledger.Add(Record("captured", scan, slice, at));
+    }
+  }
+  return m;
+}
+
+TEST(DemoVerdict, IsAboutTheScansThatTheLinkCouldHaveCarried) {
+  EXPECT_EQ(Judge(Stream(100)).level, Verdict::Level::kUseful);
+  EXPECT_EQ(Judge(Stream(70)).level, Verdict::Level::kReduced);
+  const Verdict poor = Judge(Stream(20));
+  EXPECT_EQ(poor.level, Verdict::Level::kPoor);
+  EXPECT_NE(poor.text.find("8 of 40 scans"), std::string::npos) << poor.text;
+  ASSERT_FALSE(poor.hints.empty());
+  EXPECT_NE(poor.hints[0].find("left out"), std::string::npos) << poor.hints[0];
+}
+
+TEST(DemoVerdict, AsksNoMoreThanALinkInAnOutageCanCarry) {
+  auto m = Stream(20);
+  m.options.steps_mbps = {8, 0, 0, 0, 0};
+  EXPECT_EQ(Judge(m).level, Verdict::Level::kUseful);
+}
+
+TEST(DemoVerdict, SaysThatALinkIsLargerThanTheSource) {
+  auto m = Stream(100);
+  m.encoder_max_bps = 1e6;
+  ASSERT_FALSE(Judge(m).hints.empty());
+  EXPECT_NE(Judge(m).hints[0].find("more than the source can use"), std::string::npos);
+}
+
+TEST(DemoVerdict, OfARunWithoutAScanIsPoor) {
+  EXPECT_EQ(Judge(TwoSteps()).level, Verdict::Level::kPoor);
+}
+
+TEST(DemoSummary, CountsGapsAndHowSoonTheSenderIsBack) {
+  auto m = TwoSteps();
+  m.options.steps_mbps = {8, 0.1, 8, 8};
+  for (int i = 0; i < 5300; ++i)
+    if (i < 2500) m.packets.push_back({i * 0.001, 1000, true, false, 1});
+  for (int i = 5300; i < 10000; ++i) m.packets.push_back({i * 0.001, 1000, true, false, 1});
+  const auto s = Summarise(m);
+  EXPECT_EQ(s["gaps"]["count"], 1);
+  EXPECT_NEAR(s["gaps"]["back_after_s"]["max"].get<double>(), 0.28, 0.03);
+}
+
+TEST(DemoOptions, ADriveHasItsMeanAndGaps) {
+  RunOptions o;
+  o.drive = true;
+  o.duration_s = 200;
+  EXPECT_NEAR(CapacityOf(o).Between({}, std::chrono::seconds(200)).bits() / 200e6, 4, 1);
+  o.rate_mbps = 10;
+  EXPECT_NEAR(CapacityOf(o).Between({}, std::chrono::seconds(200)).bits() / 200e6, 10, 2);
+  EXPECT_TRUE(ChangesOf(o).empty());
 }
 
 TEST(DemoOptions, FixedBitsDivideACubeOf200Metres) {
