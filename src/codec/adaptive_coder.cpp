@@ -88,6 +88,24 @@ void AdaptiveCoder::Encode(const BlockShape& shape, const IntegerLists& lists,
   });
 }
 
+void AdaptiveCoder::Count(const BlockShape& shape, const IntegerLists& lists, SymbolCounts* values,
+                          SymbolCounts* levels) {
+  ForEachRow(shape, [&](std::uint32_t beam, const RowReturns& row, std::size_t first) {
+    const auto count = [&](const auto* list, SymbolCounts* counts, Channel* channel) {
+      channel->predictor.CodeRow(beam, row, kMaxBins,
+                                 [&](unsigned, std::size_t i, const Prediction& p) {
+                                   const std::int32_t value = list[i];
+                                   const Residual residual = ResidualOf(value, p);
+                                   SymbolModel::Count(residual, p.context, counts);
+                                   return Coded{value, residual.magnitude};
+                                 });
+    };
+    count(&lists.values[first], values, &values_);
+    if (!lists.levels.empty()) count(&lists.levels[first], levels, &levels_);
+    return true;
+  });
+}
+
 bool AdaptiveCoder::DecodeRow(std::uint32_t beam, const RowReturns& row, RansDecoder* decoder,
                               Channel* channel) {
   RansDecoder local = *decoder;

@@ -24,6 +24,9 @@ class AdaptiveCoder {
  public:
   /// Values are below kMaxBins.
   void Encode(const BlockShape& shape, const IntegerLists& lists, RansEncoder* encoder);
+  /// Adds the symbols that Encode() would write.
+  void Count(const BlockShape& shape, const IntegerLists& lists, SymbolCounts* values,
+             SymbolCounts* levels);
   /// Fills the ranges of `image`, and its intensity where it has room for one. False where the
   /// stream cannot be one of Encode(), or the ranges are not below kMaxBins.
   bool Decode(const BlockShape& shape, const RangeGrid& grid, RansDecoder* decoder,

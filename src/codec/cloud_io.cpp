@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <cstring>
+#include <numeric>
 
 namespace lidar::codec {
 namespace {
@@ -24,6 +25,18 @@ void Store(T value, std::uint8_t* bytes) {
 /// Null also where the field has another type: caps may come from a network.
 const PointField* FindTyped(const PointFields& fields, const char* name, FieldType type) {
   return fields.Has(name, type) ? fields.Find(name) : nullptr;
+}
+
+/// True where all ranges are multiples of `unit_mm`.
+bool AreMultiples(const std::vector<std::uint32_t>& ranges, std::uint32_t unit_mm) {
+  if (unit_mm == 1) return true;
+  std::uint32_t remainders = 0;
+  if ((unit_mm & (unit_mm - 1)) == 0) {
+    for (const std::uint32_t r : ranges) remainders |= r;
+    return (remainders & (unit_mm - 1)) == 0;
+  }
+  for (const std::uint32_t r : ranges) remainders |= r % unit_mm;
+  return remainders == 0;
 }
 
 }  // namespace
@@ -65,15 +78,18 @@ FullScale ReadRangeImage(ByteView raw, const CloudLayout& layout, bool with_inte
   return scale.full();
 }
 
-bool AreMultiples(const std::vector<std::uint32_t>& ranges, std::uint32_t unit_mm) {
-  if (unit_mm == 1) return true;
-  std::uint32_t remainders = 0;
-  if ((unit_mm & (unit_mm - 1)) == 0) {
-    for (const std::uint32_t r : ranges) remainders |= r;
-    return (remainders & (unit_mm - 1)) == 0;
+std::uint32_t CommonUnit(const std::vector<std::uint32_t>& ranges, std::uint32_t sensor_unit_mm) {
+  constexpr unsigned kSample = 64;  // returns, which nearly always tell the divisor of all
+  std::uint32_t unit = 0;
+  unsigned seen = 0;
+  for (auto r = ranges.begin(); r != ranges.end() && unit != 1 && seen < kSample; ++r) {
+    unit = std::gcd(unit, *r);
+    if (*r != 0) ++seen;
   }
-  for (const std::uint32_t r : ranges) remainders |= r % unit_mm;
-  return remainders == 0;
+  if (unit == 0) return sensor_unit_mm;
+  if (!AreMultiples(ranges, unit))
+    for (const std::uint32_t r : ranges) unit = std::gcd(unit, r);
+  return unit <= RangeGrid::kMaxUnitMm ? unit : std::gcd(unit, sensor_unit_mm);
 }
 
 void ReadXyz(ByteView raw, const CloudLayout& layout, bool with_intensity, XyzCloud* cloud) {

@@ -7,6 +7,7 @@
 
 #include "src/base/byte_reader.h"
 #include "src/cloud/point_fields.h"
+#include "src/cloud/range_grid.h"
 #include "src/cloud/range_projection.h"
 #include "src/codec/intensity_scale.h"
 #include "src/codec/range_image.h"
@@ -54,8 +55,10 @@ bool HasIntensity(const PointFields& fields);
 /// is what they are levels of.
 FullScale ReadRangeImage(ByteView raw, const CloudLayout& layout, bool with_intensity,
                          RangeImage* image);
-/// True where all ranges are multiples of `unit_mm`.
-bool AreMultiples(const std::vector<std::uint32_t>& ranges, std::uint32_t unit_mm);
+/// The common divisor of all ranges [mm], which may be coarser than the sensor's unit, and finer
+/// where a cloud was filtered. Where it is above RangeGrid::kMaxUnitMm or nothing was returned, as
+/// much of the sensor's unit as divides all.
+std::uint32_t CommonUnit(const std::vector<std::uint32_t>& ranges, std::uint32_t sensor_unit_mm);
 
 /// Fills `cloud` with the points of `raw` that are finite and not all zero. What is no intensity
 /// (negative, not finite) becomes 0.

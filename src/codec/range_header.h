@@ -39,7 +39,7 @@ struct RangeHeader {
   /// With kAdaptive the mask is at the head of the payload's stream.
   bool has_mask_stream() const { return has_gaps && coder != RangeCoder::kAdaptive; }
 
-  static constexpr std::uint8_t kVersion = 2;
+  static constexpr std::uint8_t kVersion = 3;
   static constexpr std::uint32_t kMaxBeams = 1'024;
   static constexpr std::uint32_t kMaxColumns = 16'384;
 };

@@ -6,6 +6,19 @@
 #include "src/base/byte_writer.h"
 
 namespace lidar::codec {
+namespace {
+
+/// What a stream says of the size of a state, and the bytes that this stands for.
+unsigned SizeCode(std::uint64_t state) {
+  unsigned bytes = kRansShortestState;
+  while (bytes < kRansStateBytes && state >> (8 * bytes) != 0) ++bytes;
+  return state == kRansLow ? 0 : bytes - kRansShortestState + 1;
+}
+unsigned BytesOf(unsigned size_code) {
+  return size_code == 0 ? 0 : size_code + kRansShortestState - 1;
+}
+
+}  // namespace
 
 void RansEncoder::Finish(std::vector<std::uint8_t>* out) {
   const auto pieces = static_cast<std::size_t>(next_ - pieces_.data());
@@ -34,24 +47,32 @@ void RansEncoder::Finish(std::vector<std::uint8_t>* out) {
   const auto words = static_cast<std::size_t>(words_end - word);
   out->reserve(out->size() + kRansLanes * kRansStateBytes + sizeof(std::uint32_t) * words);
   ByteWriter writer(out);
+  unsigned sizes = 0;
+  for (unsigned lane = 0; lane < kRansLanes; ++lane) sizes |= SizeCode(states[lane]) << (2 * lane);
+  writer.U8(static_cast<std::uint8_t>(sizes));
   for (const std::uint64_t state : states)
-    for (unsigned i = 0; i < kRansStateBytes; ++i)
+    for (unsigned i = 0; i < BytesOf(SizeCode(state)); ++i)
       writer.U8(static_cast<std::uint8_t>(state >> (8 * i)));
   for (; word != words_end; ++word) writer.Le32(*word);
 }
 
 RansDecoder::RansDecoder(ByteView bytes, std::size_t ahead, std::vector<std::uint8_t>* padded) {
-  constexpr std::size_t kStates = kRansLanes * kRansStateBytes;
-  constexpr std::size_t kWord = sizeof(std::uint32_t);
-  const std::size_t size = std::max(bytes.size, kStates);
-  padded->assign(size + (ahead + 2) * kWord, 0);
+  // Behind the end: the states of the shortest stream there is, and the words that are read ahead.
+  constexpr std::size_t kStates = 1 + kRansLanes * kRansStateBytes;
+  padded->assign(bytes.size + kStates + (ahead + 2) * sizeof(std::uint32_t), 0);
   if (bytes.size > 0) std::memcpy(padded->data(), bytes.data, bytes.size);
-  for (unsigned lane = 0; lane < kRansLanes; ++lane)
-    for (unsigned i = 0; i < kRansStateBytes; ++i)
-      states_[lane] |= std::uint64_t{(*padded)[lane * kRansStateBytes + i]} << (8 * i);
-  position_ = padded->data() + kStates;
-  end_ = padded->data() + size;
-  if (bytes.size < kStates) ++position_;  // overran() for good
+  position_ = padded->data();
+  end_ = padded->data() + bytes.size;
+  ReadStates();
+}
+
+void RansDecoder::ReadStates() {
+  const unsigned sizes = *position_++;
+  for (unsigned lane = 0; lane < kRansLanes; ++lane) {
+    const unsigned bytes = BytesOf(sizes >> (2 * lane) & 3);
+    states_[lane] = bytes == 0 ? kRansLow : 0;
+    for (unsigned i = 0; i < bytes; ++i) states_[lane] |= std::uint64_t{*position_++} << (8 * i);
+  }
 }
 
 bool RansDecoder::AtEnd() const {

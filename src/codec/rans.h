@@ -20,6 +20,9 @@ constexpr unsigned kRansLowBits = 24;
 constexpr std::uint64_t kRansLow = std::uint64_t{1} << kRansLowBits;
 constexpr unsigned kRansWordBits = 32;
 constexpr unsigned kRansStateBytes = (kRansLowBits + kRansWordBits) / 8;
+/// Bytes of a state where it is written shortest: none for a lane that was not used, else from here
+/// to kRansStateBytes.
+constexpr unsigned kRansShortestState = kRansStateBytes - 2;
 /// Bits that may follow a symbol, and bits on their own: a state of kRansLow can give no more.
 constexpr unsigned kMaxJointBits = kRansLowBits - kProbabilityBits;
 constexpr unsigned kMaxPlainBits = kRansLowBits;
@@ -111,6 +114,7 @@ class RansDecoder {
   bool AtEnd() const;
 
  private:
+  void ReadStates();
   std::uint64_t LoadWord() const {
     return std::uint64_t{position_[0]} | std::uint64_t{position_[1]} << 8 |
            std::uint64_t{position_[2]} << 16 | std::uint64_t{position_[3]} << 24;

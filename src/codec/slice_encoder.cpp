@@ -75,9 +75,7 @@ void SliceEncoder::Load(ByteView raw, std::uint32_t first_column, bool with_inte
   const auto& ranges = image_.ranges;
   returns_ = ranges.size() - static_cast<std::size_t>(std::count(ranges.begin(), ranges.end(), 0U));
   extent_m_ = ranges.empty() ? 0 : 1e-3 * *std::max_element(ranges.begin(), ranges.end());
-  // A cloud that was filtered or moved may have ranges between the sensor's own.
-  unit_mm_ = format_.sensor_model->range_unit_mm;
-  if (!AreMultiples(ranges, unit_mm_)) unit_mm_ = 1;
+  unit_mm_ = CommonUnit(ranges, format_.sensor_model->range_unit_mm);
 }
 
 void SliceEncoder::Thin(const std::vector<bool>& kept) {

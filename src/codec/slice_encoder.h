@@ -46,7 +46,7 @@ class SliceEncoder {
   std::size_t returns() const { return returns_; }
   /// Longest range [m].
   double extent_m() const { return extent_m_; }
-  /// Resolution of the loaded ranges [mm]: the sensor's, or 1 where they lie in between.
+  /// Resolution of the loaded ranges [mm]: their CommonUnit().
   std::uint32_t range_unit_mm() const { return unit_mm_; }
   bool has_intensity() const { return has_intensity_; }
   /// Names the coder for statistics and predictors: "range-adaptive".

@@ -56,6 +56,12 @@ struct ClassOfMagnitude {
 };
 inline constexpr ClassOfMagnitude kClassOfMagnitude;
 
+/// How often each symbol was coded, to make InitialModels of.
+struct SymbolCounts {
+  std::array<std::array<std::uint64_t, kNibbles>, kContexts> residuals{};
+  std::array<std::uint64_t, kNibbles> longs{};
+};
+
 /// Encoder and decoder do the same with every residual: one symbol, and bits, if only none; nothing
 /// to be mispredicted but the rare long ones.
 class SymbolModel {
@@ -78,6 +84,15 @@ class SymbolModel {
     writer->Put(lane, positive + (magnitude != 0 ? static_cast<unsigned>(-residual.sign) : 0U),
                 &models_[lane][context], low, static_cast<unsigned>(c.bits));
     if (is_long) EncodeLong(magnitude - kLongMagnitude, lane, writer);
+  }
+
+  /// Counts the symbols that Encode() would write.
+  static void Count(const Residual& residual, unsigned context, SymbolCounts* counts) {
+    const auto magnitude = static_cast<std::uint32_t>(residual.magnitude);
+    const unsigned positive = kClassOfMagnitude.symbol[std::min(magnitude, kLongMagnitude)];
+    ++counts->residuals[context][positive + (magnitude != 0 && residual.sign != 0 ? 1 : 0)];
+    if (magnitude >= kLongMagnitude)
+      ++counts->longs[std::min(BitLength(magnitude - kLongMagnitude), kLongest)];
   }
 
   [[gnu::always_inline]] Residual Decode(unsigned context, unsigned lane, RansDecoder* decoder) {

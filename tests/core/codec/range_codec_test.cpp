@@ -22,6 +22,22 @@ INSTANTIATE_TEST_SUITE_P(All, RangeCoders,
                                            test::CodingCase{RangeCoder::kAdaptive, 1, 1},
                                            test::CodingCase{RangeCoder::kAdaptive, 65'535, 8}));
 
+// The encoder computes bins in floating point.
+TEST(RangeEncoders, PutRangesAtTheEdgesOfBinsWhereTheGridPutsThem) {
+  const SensorModel model = test::RoomSensor(1);
+  test::Codec codec(model);
+  for (std::uint32_t cells = 1; cells < 120; ++cells) {
+    RangeImage image;
+    image.beams = 1;
+    image.columns = 510;
+    for (std::uint32_t k = 1; k <= 170; ++k)
+      for (const std::uint32_t beside : {0U, 1U, 2U})
+        image.ranges.push_back(k * k * cells + beside - (k * k * cells > 1 ? 1 : 0));
+    image.intensity.resize(image.ranges.size());
+    test::ExpectRoundTrip(image, {RangeCoder::kAdaptive, RangeGrid(1, cells), {}}, &codec);
+  }
+}
+
 struct Piece {
   unsigned lane;
   unsigned symbol;

@@ -77,6 +77,53 @@ TEST(RangeSlices, AreTheSameCloudFromAnyNumberOfThreads) {
   for (const unsigned threads : {2U, 3U, 64U}) EXPECT_EQ(CodedRanges(image, threads), one);
 }
 
+/// Two blocks of a slice, the second of which begins at `second` and has `bits` of intensity.
+std::vector<std::uint8_t> TwoBlocks(std::uint32_t second, unsigned bits) {
+  const SensorModel model = test::RoomSensor();
+  RangeEncoder encoder(model);
+  std::vector<std::uint8_t> bytes;
+  const IntensityScale five(FullScale::kByte, 5);
+  encoder.Encode(test::RoomScan(model, 0, 40), {RangeCoder::kAdaptive, RangeGrid(1, 41), five},
+                 &bytes);
+  encoder.Encode(test::RoomScan(model, second, 40),
+                 {RangeCoder::kAdaptive, RangeGrid(1, 41), IntensityScale(FullScale::kByte, bits)},
+                 &bytes);
+  return bytes;
+}
+
+TEST(RangeSlices, AreRefusedWhereTheirBlocksDoNotAdjoinOrAreOfAnotherKind) {
+  SliceDecoder decoder(test::RoomFormat(), kMaxPoints);
+  const auto decodes = [&](const std::vector<std::uint8_t>& bytes) {
+    return decoder.Decode({bytes.data(), bytes.size()}).has_value();
+  };
+  EXPECT_TRUE(decodes(TwoBlocks(40, 5)));
+  for (const std::uint32_t second : {39U, 41U, 0U, 80U})
+    EXPECT_FALSE(decodes(TwoBlocks(second, 5)));
+  EXPECT_FALSE(decodes(TwoBlocks(40, 4)));
+  EXPECT_FALSE(decodes(TwoBlocks(40, 0)));
+}
+
+TEST(RangeSlices, OfRangesWithACommonDivisorAreCodedInThatUnit) {
+  const auto unit = [](const std::vector<std::uint32_t>& ranges, std::uint32_t sensor_unit) {
+    return CommonUnit(ranges, sensor_unit);
+  };
+  EXPECT_EQ(unit({}, 8), 8U);
+  EXPECT_EQ(unit({0, 0}, 3), 3U);
+  EXPECT_EQ(unit({4000, 0, 1004, 12}, 1), 4U);
+  EXPECT_EQ(unit({16, 24, 160}, 8), 8U);
+  EXPECT_EQ(unit({16, 24, 161}, 8), 1U);
+  EXPECT_EQ(unit({6000}, 4), 4U) << "a step of 6 m is more than the format takes";
+  EXPECT_EQ(unit({6001}, 4), 1U);
+  std::vector<std::uint32_t> late(500, 3'000);
+  late.push_back(14);
+  EXPECT_EQ(unit(late, 1), 2U) << "behind the sample";
+
+  RangeImage image = test::RoomScan(test::RoomSensor(), 64, 64);
+  for (std::uint32_t& range : image.ranges) range = range / 4 * 4;
+  const auto back = CodedRanges(image, 1);
+  for (std::size_t i = 0; i < back.size(); ++i) EXPECT_NEAR(back[i], image.ranges[i], 20);
+}
+
 class HostileSlices : public ::testing::Test {
  protected:
   void SetUp() override {
