@@ -14,6 +14,7 @@ LIBRARIES = {
     "nlohmann_json": ("nlohmann/",),
     "libpcap": ("pcap/", "pcap."),
     "Eigen": ("Eigen/",),
+    "robin-map": ("tsl/",),
     "Draco": ("draco/",),
     "libcurl": ("curl/",),
     "CLI11": ("CLI/",),

@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// How far a prediction by constant velocity is usually off: the reach of the search for neighbours.
+#pragma once
+#include "src/odometry/pose.h"
+
+namespace lidar::odometry {
+
+/// KISS-ICP, section III-C: the standard deviation of how much registration moved the prediction.
+class MotionThreshold {
+ public:
+  explicit MotionThreshold(double max_range_m) : max_range_m_(max_range_m) {}
+
+  /// `correction`: from the predicted pose to the one found, in the sensor's frame.
+  void Add(const Pose& correction);
+  double sigma_m() const { return sigma_m_; }
+
+ private:
+  double max_range_m_;
+  double sum_of_squares_ = 0;
+  int count_ = 0;
+  double sigma_m_ = 2;  // before anything is known of the motion
+};
+
+}  // namespace lidar::odometry

@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Where the sensor is, from its scans alone: scans in, poses out.
+#pragma once
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "src/base/time.h"
+#include "src/odometry/local_map.h"
+#include "src/odometry/motion_threshold.h"
+#include "src/odometry/registration.h"
+
+namespace lidar::odometry {
+
+struct OdometrySettings {
+  double max_range_m = 100;  // points farther away are left out; also the radius of the map
+  double min_range_m = 1;    // nearer ones are the vehicle itself
+  double voxel_size_m = 1;   // of the map
+  bool deskew = true;        // move points by when they were sampled
+  RegistrationSettings registration;
+};
+
+/// A scan in the frame of the sensor.
+struct TimedPoints {
+  Points points;
+  /// When each point was sampled, as part of the scan's duration: 0 to 1. Empty: not known.
+  std::vector<float> phases;
+};
+
+enum class Tracking {
+  kStarted,  // the first scan: the map begins here
+  kTracking,
+  kDegenerate,  // the scene does not show the motion along one direction; the velocity is kept
+                // there
+  kLost,        // the scan does not fit the map; the pose is a prediction
+};
+const char* ToString(Tracking tracking);
+
+struct Estimate {
+  Time time{};  // the middle of the scan: an error of the velocity moves it least
+  Pose pose;    // of the sensor then, seen from where it started
+  Tracking tracking = Tracking::kStarted;
+  double inlier_share = 0;
+  int iterations = 0;
+  bool map_restarted = false;  // after being lost for too long
+};
+
+/// KISS-ICP (Vizzo et al., 2023): constant velocity, voxel grids, adaptive threshold, robust ICP
+/// against a local map. It goes beyond it where scans are missing: the prediction spans the gap,
+/// and a scan that does not fit does not enter the map. Deterministic; for one thread at a time.
+class Odometry {
+ public:
+  explicit Odometry(const OdometrySettings& settings);
+
+  /// The scan that began at `start` and took `duration`. Times must ascend: an earlier one, or a
+  /// gap of more than kLongestGap, begins a new map at the last pose. Points that are not finite or
+  /// out of range are left out.
+  Estimate OnScan(Time start, Duration duration, const TimedPoints& scan);
+  /// Where the sensor is expected at `t`, by constant velocity.
+  Pose PredictAt(Time t) const;
+
+  const LocalMap& map() const { return map_; }
+  static constexpr Duration kLongestGap = std::chrono::seconds(5);
+
+ private:
+  Points SelectPoints(const TimedPoints& scan, Duration duration) const;
+  void StartMap(const Points& points);
+  Pose GuessFirstMotion(const Points& points) const;
+  void StraightenFirstScan(Duration duration, const Points& second, Duration gap);
+
+  OdometrySettings settings_;
+  LocalMap map_;
+  MotionThreshold threshold_;
+  Pose pose_;
+  Twist velocity_ = Twist::Zero();  // a second, in the sensor's frame
+  std::optional<Time> last_time_;
+  int lost_scans_ = 0;
+  /// The scan that began the map, until the velocity is known that straightens it.
+  std::optional<TimedPoints> first_scan_;
+};
+
+}  // namespace lidar::odometry

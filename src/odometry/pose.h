@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Rigid motions, SE(3), and their logarithms.
+#pragma once
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+#include <vector>
+
+namespace lidar::odometry {
+
+using Points = std::vector<Eigen::Vector3d>;  // [m]
+
+/// A translation [m] and, in the last three, a rotation vector [rad].
+using Twist = Eigen::Matrix<double, 6, 1>;
+
+/// Takes points of a body's frame to the frame that the body is seen from.
+struct Pose {
+  Eigen::Quaterniond rotation = Eigen::Quaterniond::Identity();
+  Eigen::Vector3d position = Eigen::Vector3d::Zero();  // [m]
+
+  Eigen::Vector3d operator*(const Eigen::Vector3d& point) const {
+    return rotation * point + position;
+  }
+  Pose operator*(const Pose& other) const {
+    return {(rotation * other.rotation).normalized(), *this * other.position};
+  }
+  Pose Inverse() const {
+    const Eigen::Quaterniond back = rotation.conjugate();
+    return {back, -(back * position)};
+  }
+};
+
+/// The motion at constant velocity for one unit of time; Sola et al., "A micro Lie theory", (172).
+Pose Exp(const Twist& twist);
+/// Its inverse, for rotations below half a turn.
+Twist Log(const Pose& pose);
+/// Angle of the rotation [rad], 0 to pi.
+double Angle(const Pose& pose);
+/// v with Skew(v) * w = v x w.
+Eigen::Matrix3d Skew(const Eigen::Vector3d& v);
+
+}  // namespace lidar::odometry

@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "src/odometry/registration.h"
+
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
+
+namespace lidar::odometry {
+namespace {
+
+using Matrix6 = Eigen::Matrix<double, 6, 6>;
+
+constexpr std::size_t kLeastPairs = 20;  // fewer than that say nothing
+/// Holds the guess along a direction that the scene does not show, against all points of a scan.
+constexpr double kHold = 1e6;
+
+/// The sums of one Gauss-Newton step, for a motion of the sensor in its own frame.
+struct NormalEquations {
+  Matrix6 lhs = Matrix6::Zero();
+  Twist rhs = Twist::Zero();
+  double weights = 0;
+  std::size_t pairs = 0;
+
+  template <class Jacobian, class Residual>
+  void Add(double weight, const Jacobian& jacobian, const Residual& residual) {
+    lhs.noalias() += weight * jacobian.transpose() * jacobian;
+    rhs.noalias() -= weight * jacobian.transpose() * residual;
+    weights += weight;
+  }
+};
+
+NormalEquations Linearise(const Points& points, LocalMap* map, const Pose& pose, double reach_m,
+                          double kernel_m) {
+  NormalEquations sums;
+  const Eigen::Matrix3d rotation = pose.rotation.toRotationMatrix();
+  const double square = kernel_m * kernel_m;
+  const auto weight_of = [square](double squared_residual) {
+    const double scale = square / (square + squared_residual);
+    return scale * scale;
+  };
+  Eigen::Matrix<double, 3, 6> jacobian;
+  jacobian.leftCols<3>().setIdentity();
+  for (const Eigen::Vector3d& point : points) {
+    const Eigen::Vector3d there = rotation * point + pose.position;
+    const auto nearest = map->FindNearest(there, reach_m);
+    if (!nearest) continue;
+    ++sums.pairs;
+    const Eigen::Vector3d residual = rotation.transpose() * (there - nearest->point);
+    // The residual moves with [I, -p^] in the frame of the sensor.
+    jacobian.rightCols<3>() = -Skew(point);
+    if (nearest->has_normal) {
+      const Eigen::Vector3d normal = rotation.transpose() * nearest->normal;
+      const Eigen::Matrix<double, 1, 1> distance(normal.dot(residual));
+      sums.Add(weight_of(distance.squaredNorm()), normal.transpose() * jacobian, distance);
+    } else {
+      sums.Add(weight_of(residual.squaredNorm()), jacobian, residual);
+    }
+  }
+  return sums;
+}
+
+/// The directions, in the sensor's frame, that the scene does not hold, as the projection on them.
+Eigen::Matrix3d FindUnobserved(const NormalEquations& sums, const RegistrationSettings& settings) {
+  const Eigen::Matrix3d translation = sums.lhs.topLeftCorner<3, 3>() / sums.weights;
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(translation);
+  const Eigen::Vector3d& held = solver.eigenvalues();  // ascending
+  Eigen::Matrix3d unobserved = Eigen::Matrix3d::Zero();
+  for (Eigen::Index i = 0; i < 3; ++i) {
+    const bool alone = i == 0 && held(0) < settings.least_balance * held(1);
+    if (!alone && held(i) >= settings.least_constraint) continue;
+    unobserved += solver.eigenvectors().col(i) * solver.eigenvectors().col(i).transpose();
+  }
+  return unobserved;
+}
+
+}  // namespace
+
+Alignment Align(const Points& points, LocalMap* map, const Pose& guess, double reach_m,
+                double kernel_m, const RegistrationSettings& settings) {
+  Alignment result;
+  result.pose = guess;
+  if (points.empty() || map->empty()) return result;
+  Eigen::Matrix3d unobserved = Eigen::Matrix3d::Zero();  // there the guess stays
+  while (result.iterations++ < settings.max_iterations) {
+    NormalEquations sums = Linearise(points, map, result.pose, reach_m, kernel_m);
+    result.inlier_share = static_cast<double>(sums.pairs) / static_cast<double>(points.size());
+    if (sums.pairs < kLeastPairs) return {guess, result.inlier_share, result.iterations, false};
+    if (result.iterations == 1) {
+      unobserved = FindUnobserved(sums, settings);
+      result.degenerate = !unobserved.isZero();
+    }
+    sums.lhs.topLeftCorner<3, 3>() += kHold * sums.weights * unobserved;
+    const Twist step = sums.lhs.ldlt().solve(sums.rhs);
+    if (!step.allFinite()) return {guess, 0, result.iterations, false};
+    result.pose = result.pose * Exp(step);
+    if (step.norm() < settings.converged) break;
+  }
+  return result;
+}
+
+}  // namespace lidar::odometry

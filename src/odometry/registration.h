@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Robust ICP: the pose from which the map explains a scan.
+#pragma once
+#include "src/odometry/local_map.h"
+#include "src/odometry/pose.h"
+
+namespace lidar::odometry {
+
+struct RegistrationSettings {
+  int max_iterations = 100;
+  double converged = 5e-4;  // length of the last step [m and rad]
+  /// A direction that the surfaces hold less than this (0: not at all, 1: all face it) is not
+  /// observed,
+  double least_constraint = 0.04;
+  /// nor is one that they hold less than this part of the next one: the length of a tunnel.
+  double least_balance = 0.3;
+};
+
+struct Alignment {
+  Pose pose;
+  double inlier_share = 0;  // part of the points with a neighbour within reach
+  int iterations = 0;
+  /// The scene does not show the motion along some direction; the guess is kept there.
+  bool degenerate = false;
+};
+
+/// Aligns `points` of the sensor's frame to `map`, from `guess`, as KISS-ICP does (Vizzo et al.,
+/// 2023, section III-D): neighbours within `reach_m`, residuals weighted by the Geman-McClure
+/// kernel of scale `kernel_m`. It differs where the map has a surface: there the distance from the
+/// surface counts, so that a wall does not hold a motion along it, and a step takes fewer
+/// iterations.
+Alignment Align(const Points& points, LocalMap* map, const Pose& guess, double reach_m,
+                double kernel_m, const RegistrationSettings& settings);
+
+}  // namespace lidar::odometry

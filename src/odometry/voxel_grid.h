@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Space cut into cubes: which cube a point is in, and one point a cube.
+#pragma once
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+
+#include "src/odometry/pose.h"
+
+namespace lidar::odometry {
+
+/// Index of a cube along each axis.
+struct Voxel {
+  std::int32_t x = 0;
+  std::int32_t y = 0;
+  std::int32_t z = 0;
+  bool operator==(const Voxel& o) const { return x == o.x && y == o.y && z == o.z; }
+};
+
+struct VoxelHash {
+  /// The three primes of Teschner et al., "Optimized Spatial Hashing", 2003.
+  std::size_t operator()(const Voxel& v) const {
+    return static_cast<std::uint32_t>(v.x) * std::size_t{73856093} ^
+           static_cast<std::uint32_t>(v.y) * std::size_t{19349663} ^
+           static_cast<std::uint32_t>(v.z) * std::size_t{83492791};
+  }
+};
+
+/// The cube of edge `size_m` that holds `point`, whose coordinates are below 2^31 cubes.
+inline Voxel VoxelOf(const Eigen::Vector3d& point, double size_m) {
+  const auto index = [size_m](double c) {
+    return static_cast<std::int32_t>(std::floor(c / size_m));
+  };
+  return {index(point.x()), index(point.y()), index(point.z())};
+}
+
+/// The first point of each cube, in the order of `points`.
+Points Downsample(const Points& points, double size_m);
+
+}  // namespace lidar::odometry

@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "src/odometry/local_map.h"
+
+#include <gtest/gtest.h>
+
+#include <random>
+
+namespace lidar::odometry {
+namespace {
+
+Points RandomPoints(std::size_t count, double edge_m) {
+  std::mt19937 random(1);
+  std::uniform_real_distribution<double> anywhere(-edge_m, edge_m);
+  Points points;
+  for (std::size_t i = 0; i < count; ++i)
+    points.emplace_back(anywhere(random), anywhere(random), anywhere(random));
+  return points;
+}
+
+TEST(Downsample, KeepsTheFirstPointOfEachCube) {
+  const Points points = {{0.1, 0.1, 0.1}, {0.9, 0.9, 0.9}, {-0.1, 0.1, 0.1}, {1.1, 0.1, 0.1}};
+  const Points kept = Downsample(points, 1);
+  ASSERT_EQ(kept.size(), 3U);
+  EXPECT_EQ(kept[0], points[0]);
+  EXPECT_EQ(kept[1], points[2]);  // zero is no middle of a cube
+  EXPECT_EQ(kept[2], points[3]);
+}
+
+TEST(LocalMap, FindsTheNearestPointWithinACube) {
+  LocalMap map({1, 100});
+  const Points points = RandomPoints(5000, 5);
+  map.Add(points);
+  const Points kept = map.Collect();
+  for (const Eigen::Vector3d& asked : RandomPoints(300, 5)) {
+    double nearest = 1;  // what is farther than the reach is not asked for
+    for (const Eigen::Vector3d& point : kept) nearest = std::min(nearest, (point - asked).norm());
+    const auto found = map.FindNearest(asked, 1);
+    ASSERT_EQ(found.has_value(), nearest < 1);
+    if (found) {
+      EXPECT_NEAR((found->point - asked).norm(), nearest, 1e-5);
+    }
+  }
+}
+
+TEST(LocalMap, FindsNothingBeyondTheReach) {
+  LocalMap map({1, 100});
+  map.Add({{0.5, 0.5, 0.5}});
+  EXPECT_TRUE(map.FindNearest({0.5, 0.5, 0.9}, 0.5));
+  EXPECT_FALSE(map.FindNearest({0.5, 0.5, 0.9}, 0.3));
+  EXPECT_FALSE(map.FindNearest({7, 0, 0}, 10));
+}
+
+TEST(LocalMap, KeepsPointsApartAndFewInACube) {
+  LocalMap map({1, 100});
+  for (int i = 0; i < 5; ++i) map.Add(RandomPoints(5000, 1));
+  EXPECT_EQ(map.voxels(), 8U);
+  EXPECT_LE(map.CountPoints(), 8 * LocalMap::kMaxPoints);
+  const std::size_t before = map.CountPoints();
+  map.Add(map.Collect());
+  EXPECT_EQ(map.CountPoints(), before);
+}
+
+TEST(LocalMap, ForgetsWhatIsFarAndUsesItsPlaceAgain) {
+  LocalMap map({1, 20});
+  for (int x = 0; x < 10'000; x += 5) {
+    map.Add({{double(x), 0.5, 0.5}, {double(x), 3.5, 0.5}});
+    map.Forget({double(x), 0, 0});
+    ASSERT_LE(map.voxels(), 12U);
+  }
+  EXPECT_TRUE(map.FindNearest({9995, 0.5, 0.5}, 1));
+  EXPECT_FALSE(map.FindNearest({0, 0.5, 0.5}, 1));
+}
+
+TEST(LocalMap, KnowsTheNormalOfASurface) {
+  LocalMap map({1, 100});
+  Points floor;
+  for (double x = 0; x < 4; x += 0.25)
+    for (double y = 0; y < 4; y += 0.25) floor.emplace_back(x, y, 0.3 + 0.001 * std::sin(9 * x));
+  map.Add(floor);
+  const auto found = map.FindNearest({2.1, 2.1, 0.5}, 1);
+  ASSERT_TRUE(found);
+  ASSERT_TRUE(found->has_normal);
+  EXPECT_GT(std::abs(found->normal.z()), 0.999);
+}
+
+TEST(LocalMap, KnowsThatACornerIsNoSurface) {
+  LocalMap map({1, 100});
+  map.Add(RandomPoints(200, 0.9));
+  const auto found = map.FindNearest({0.5, 0.5, 0.5}, 1);
+  ASSERT_TRUE(found);
+  EXPECT_FALSE(found->has_normal);
+}
+
+}  // namespace
+}  // namespace lidar::odometry

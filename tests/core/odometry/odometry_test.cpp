@@ -1,0 +1,183 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// The odometry on drives whose every pose is known.
+#include "src/odometry/odometry.h"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+
+#include "src/odometry/trajectory_error.h"
+#include "src/synth/scanner.h"
+
+namespace lidar::odometry {
+namespace {
+
+using std::chrono::milliseconds;
+
+constexpr Duration kPeriod = milliseconds(100);
+
+/// A car with a sensor of 32 beams.
+class Drive {
+ public:
+  Drive(synth::SceneKind scene, double speed_mps) : scanner_(Config(scene, speed_mps)) {}
+
+  TimedPoints Scan(std::uint64_t number) {
+    synth::Returns returns;
+    scanner_.Cast(number, {0, kColumns}, &returns);
+    const auto& ranges = returns.range_mm;
+    std::vector<float> xyz(3 * ranges.size());
+    projection_.Project(ranges.data(), {0, kColumns}, reinterpret_cast<std::uint8_t*>(xyz.data()),
+                        3 * sizeof(float));
+    TimedPoints timed;
+    for (std::size_t i = 0; i < ranges.size(); ++i) {
+      if (ranges[i] == 0) continue;
+      timed.points.push_back(
+          Eigen::Vector3f(xyz[3 * i], xyz[3 * i + 1], xyz[3 * i + 2]).cast<double>());
+      timed.phases.push_back(static_cast<float>(i % kColumns) / kColumns);
+    }
+    return timed;
+  }
+  Time StartOf(std::uint64_t number) const { return Time{} + scanner_.ColumnTime(number, 0); }
+  Pose TruthAt(Time t) const {
+    const synth::Pose pose = scanner_.trajectory().At(t.time_since_epoch());
+    const auto [x, y, z, w] = pose.ToQuaternion();
+    return {Eigen::Quaterniond(w, x, y, z), {pose.x, pose.y, pose.z}};
+  }
+
+ private:
+  static constexpr std::uint32_t kColumns = 512;
+  static synth::ScannerConfig Config(synth::SceneKind scene, double speed_mps) {
+    synth::ScannerConfig config;
+    config.sensor = *synth::MakeSensor("os0-32", kColumns);
+    config.scene = scene;
+    config.speed_mps = speed_mps;
+    return config;
+  }
+  synth::Scanner scanner_;
+  RangeProjection projection_{Config({}, 0).sensor.model};
+};
+
+/// Poses of `scans` scans, of which those in `missing` do not come.
+struct Followed {
+  Trajectory truth;
+  Trajectory estimate;
+  std::vector<Tracking> tracking;
+};
+Followed Follow(Drive* drive, std::uint64_t scans, const OdometrySettings& settings,
+                const std::vector<std::uint64_t>& missing = {}) {
+  Odometry odometry(settings);
+  Followed run;
+  for (std::uint64_t i = 0; i < scans; ++i) {
+    if (std::find(missing.begin(), missing.end(), i) != missing.end()) continue;
+    const Estimate e = odometry.OnScan(drive->StartOf(i), kPeriod, drive->Scan(i));
+    run.truth.push_back({e.time, drive->TruthAt(e.time)});
+    run.estimate.push_back({e.time, e.pose});
+    run.tracking.push_back(e.tracking);
+  }
+  return run;
+}
+
+TEST(Odometry, FollowsADriveThroughAStreet) {
+  Drive drive(synth::SceneKind::kStreet, 10);
+  const Followed run = Follow(&drive, 80, {});
+  const auto error = Compare(run.truth, run.estimate);
+  ASSERT_TRUE(error);
+  EXPECT_NEAR(error->length_m, 79, 1);
+  EXPECT_LT(error->ate_rmse_m, 0.15);
+  EXPECT_LT(error->rpe_rmse_m, 0.1);  // over ten metres
+}
+
+TEST(Odometry, IsWorseWithoutDeskewing) {
+  Drive drive(synth::SceneKind::kStreet, 20);
+  OdometrySettings rigid;
+  rigid.deskew = false;
+  const Followed straightened = Follow(&drive, 40, {});
+  const Followed skewed = Follow(&drive, 40, rigid);
+  const auto with = Compare(straightened.truth, straightened.estimate);
+  const auto without = Compare(skewed.truth, skewed.estimate);
+  ASSERT_TRUE(with && without);
+  EXPECT_LT(with->rpe_rmse_m, without->rpe_rmse_m);
+  EXPECT_LT(with->ate_rmse_m, 0.5);  // it also caught up with a car that drove 20 m/s at the start
+}
+
+TEST(Odometry, SpansMissingScansAtConstantVelocity) {
+  Drive drive(synth::SceneKind::kStreet, 10);
+  const Followed run = Follow(&drive, 60, {}, {20, 21, 22, 30, 31, 32, 33, 34, 35, 36});
+  const auto error = Compare(run.truth, run.estimate);
+  ASSERT_TRUE(error);
+  EXPECT_LT(error->ate_rmse_m, 0.2);
+}
+
+TEST(Odometry, StandsStillWithTheSensor) {
+  Drive drive(synth::SceneKind::kStreet, 0);
+  const Followed run = Follow(&drive, 30, {});
+  EXPECT_LT(run.estimate.back().pose.position.norm(), 0.02);
+  EXPECT_EQ(run.tracking.back(), Tracking::kTracking);
+}
+
+TEST(Odometry, SaysThatATunnelHidesTheMotionAndInventsNone) {
+  Drive standing(synth::SceneKind::kTunnel, 0);
+  const Followed run = Follow(&standing, 20, {});
+  EXPECT_LT(run.estimate.back().pose.position.norm(), 0.05);
+  Drive driving(synth::SceneKind::kTunnel, 10);
+  const Followed blind = Follow(&driving, 30, {});
+  const auto degenerate =
+      std::count(blind.tracking.begin(), blind.tracking.end(), Tracking::kDegenerate);
+  EXPECT_GT(degenerate, 20);
+}
+
+TEST(Odometry, KnowsWhenAScanDoesNotFit) {
+  Drive street(synth::SceneKind::kStreet, 10);
+  Odometry odometry({});
+  for (std::uint64_t i = 0; i < 10; ++i)
+    odometry.OnScan(street.StartOf(i), kPeriod, street.Scan(i));
+  const Pose before = odometry.PredictAt(street.StartOf(10));
+  TimedPoints elsewhere = street.Scan(10);
+  for (Eigen::Vector3d& point : elsewhere.points) point.z() += 40;
+  const Estimate lost = odometry.OnScan(street.StartOf(10), kPeriod, elsewhere);
+  EXPECT_EQ(lost.tracking, Tracking::kLost);
+  EXPECT_LT((lost.pose.position - before.position).norm(), 1.0);
+  const Estimate found = odometry.OnScan(street.StartOf(11), kPeriod, street.Scan(11));
+  EXPECT_EQ(found.tracking, Tracking::kTracking);
+}
+
+TEST(Odometry, BeginsANewMapAfterALongGap) {
+  Drive street(synth::SceneKind::kStreet, 10);
+  Odometry odometry({});
+  for (std::uint64_t i = 0; i < 5; ++i) odometry.OnScan(street.StartOf(i), kPeriod, street.Scan(i));
+  const Estimate later = odometry.OnScan(street.StartOf(100), kPeriod, street.Scan(100));
+  EXPECT_EQ(later.tracking, Tracking::kStarted);
+  EXPECT_TRUE(later.map_restarted);
+  const Estimate earlier = odometry.OnScan(street.StartOf(2), kPeriod, street.Scan(2));
+  EXPECT_TRUE(earlier.map_restarted);
+}
+
+TEST(Odometry, TakesAnyPoints) {
+  Odometry odometry({});
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  const double inf = std::numeric_limits<double>::infinity();
+  const TimedPoints bad = {{{nan, 0, 0}, {inf, 1, 1}, {1e300, 1e300, 0}, {0, 0, 0}},
+                           {0.0F, 2.0F, -1.0F, 0.5F}};
+  for (int i = 0; i < 3; ++i) {
+    const Estimate e = odometry.OnScan(Time{} + i * kPeriod, kPeriod, bad);
+    EXPECT_TRUE(e.pose.position.allFinite());
+    odometry.OnScan(Time{} + i * kPeriod + milliseconds(50), kPeriod, {});
+  }
+  EXPECT_TRUE(odometry.map().empty());
+}
+
+TEST(Odometry, KeepsItsMapBounded) {
+  Drive drive(synth::SceneKind::kField, 30);
+  OdometrySettings settings;
+  settings.max_range_m = 40;
+  Odometry odometry(settings);
+  std::size_t most = 0;
+  for (std::uint64_t i = 0; i < 60; ++i) {
+    odometry.OnScan(drive.StartOf(i), kPeriod, drive.Scan(i));
+    if (i == 20) most = odometry.map().voxels();
+  }
+  EXPECT_LT(odometry.map().voxels(), 2 * most);
+}
+
+}  // namespace
+}  // namespace lidar::odometry
