@@ -61,35 +61,91 @@ Scan FromPoints(const ouster::Slice& slice, const ouster::PointWriter& writer,
   return scan;
 }
 
-ScanSet LoadCapture(const std::string& pcap, const std::string& json, std::size_t max_scans) {
-  const ouster::Metadata metadata = ReadMetadata(json);
-  std::string error;
-  const auto writer = ouster::PointWriter::Create(metadata, {}, &error);
-  if (!writer) throw std::runtime_error(json + ": " + error);
-  const auto reader = ouster::PcapReader::Open(pcap, &error);
-  if (!reader) throw std::runtime_error(pcap + ": " + error);
+class Capture final : public ScanStream {
+ public:
+  Capture(const std::string& pcap, ouster::Metadata metadata, ouster::PointWriter writer,
+          std::unique_ptr<ouster::PcapReader> reader)
+      : ScanStream(metadata.scans_per_second),
+        pcap_(pcap),
+        metadata_(std::move(metadata)),
+        writer_(std::move(writer)),
+        reader_(std::move(reader)),
+        geometry_(std::make_shared<const ScanGeometry>(metadata_.model)),
+        batcher_(metadata_, writer_, {}) {}
 
-  ScanSet set;
-  set.scans_per_second = metadata.scans_per_second;
-  const auto geometry = std::make_shared<const ScanGeometry>(metadata.model);
-  ouster::ScanBatcher batcher(metadata, *writer, {});
-  const auto take = [&] {
-    while (const auto slice = batcher.Pop())
-      if (set.scans.size() < max_scans) set.scans.push_back(FromPoints(*slice, *writer, geometry));
-  };
-  while (const auto captured = reader->Next()) {
-    const auto packet = ouster::LidarPacket::Parse(captured->datagram.view(), metadata.format);
-    if (!packet) continue;
-    batcher.Push(*packet);
-    take();
+  std::optional<TimedScan> Next() override {
+    for (;;) {
+      if (const auto slice = batcher_.Pop()) {
+        TimedScan timed;
+        timed.scan = FromPoints(*slice, writer_, geometry_);
+        timed.start = Time{} + Duration{static_cast<std::int64_t>(slice->start)};
+        timed.duration = period();
+        any_ = true;
+        return timed;
+      }
+      if (ended_ && !any_) throw std::runtime_error(pcap_ + ": no scan of that sensor");
+      if (ended_) return std::nullopt;
+      const auto captured = reader_->Next();
+      ended_ = !captured;
+      if (ended_) batcher_.Flush();
+      if (!captured) continue;
+      const auto packet = ouster::LidarPacket::Parse(captured->datagram.view(), metadata_.format);
+      if (packet) batcher_.Push(*packet);
+    }
   }
-  batcher.Flush();
-  take();
-  if (set.scans.empty()) throw std::runtime_error(pcap + ": no scan of that sensor");
-  return set;
+
+ private:
+  std::string pcap_;
+  ouster::Metadata metadata_;
+  ouster::PointWriter writer_;
+  std::unique_ptr<ouster::PcapReader> reader_;
+  std::shared_ptr<const ScanGeometry> geometry_;
+  ouster::ScanBatcher batcher_;
+  bool ended_ = false;
+  bool any_ = false;
+};
+
+std::unique_ptr<ScanStream> OpenCapture(const std::string& pcap, const std::string& json) {
+  ouster::Metadata metadata = ReadMetadata(json);
+  std::string error;
+  auto writer = ouster::PointWriter::Create(metadata, {}, &error);
+  if (!writer) throw std::runtime_error(json + ": " + error);
+  auto reader = ouster::PcapReader::Open(pcap, &error);
+  if (!reader) throw std::runtime_error(pcap + ": " + error);
+  return std::make_unique<Capture>(pcap, std::move(metadata), *std::move(writer),
+                                   std::move(reader));
 }
 
-ScanSet LoadSynthetic(const std::string& text, const SourceOptions& options) {
+class SyntheticDrive final : public ScanStream {
+ public:
+  explicit SyntheticDrive(const synth::ScannerConfig& config)
+      : ScanStream(1 / Seconds(config.period)),
+        columns_(config.sensor.model.columns_per_scan),
+        scanner_(config),
+        geometry_(std::make_shared<const ScanGeometry>(config.sensor.model)) {}
+
+  std::optional<TimedScan> Next() override {
+    synth::Returns returns;
+    scanner_.Cast(next_, {0, columns_}, &returns);
+    const Duration start = scanner_.ColumnTime(next_++, 0);
+    TimedScan timed;
+    timed.start = Time{} + start;
+    timed.duration = period();
+    timed.truth = scanner_.trajectory().At(start);
+    timed.scan.geometry = geometry_;
+    timed.scan.ranges = std::move(returns.range_mm);
+    timed.scan.intensity.assign(returns.reflectivity.begin(), returns.reflectivity.end());
+    return timed;
+  }
+
+ private:
+  std::uint32_t columns_;
+  synth::Scanner scanner_;
+  std::shared_ptr<const ScanGeometry> geometry_;
+  std::uint64_t next_ = 0;
+};
+
+std::unique_ptr<ScanStream> OpenSynthetic(const std::string& text, const SourceOptions& options) {
   std::vector<std::string> parts;
   std::istringstream in(text);
   for (std::string part; std::getline(in, part, ':');) parts.push_back(part);
@@ -109,67 +165,75 @@ ScanSet LoadSynthetic(const std::string& text, const SourceOptions& options) {
     config.scene = synth::SceneKind::kField;
   else
     throw std::runtime_error(text + ": no such scene, street, tunnel and field are");
+  if (options.max_scans == 0)
+    throw std::runtime_error(text + ": a synthetic drive has no end; say how many scans");
   config.speed_mps = options.speed_mps;
   config.seed = options.seed;
-  synth::Scanner scanner(config);
-  const auto geometry = std::make_shared<const ScanGeometry>(sensor->model);
-  ScanSet set;
-  for (std::uint64_t i = 0; i < options.max_scans; ++i) {
-    synth::Returns returns;
-    scanner.Cast(i, {0, sensor->model.columns_per_scan}, &returns);
-    Scan scan;
-    scan.geometry = geometry;
-    scan.ranges = std::move(returns.range_mm);
-    scan.intensity.assign(returns.reflectivity.begin(), returns.reflectivity.end());
-    set.scans.push_back(std::move(scan));
-  }
-  return set;
+  return std::make_unique<SyntheticDrive>(config);
 }
 
 bool EndsWith(const std::string& text, const std::string& end) {
   return text.size() >= end.size() && text.compare(text.size() - end.size(), end.size(), end) == 0;
 }
 
-ScanSet LoadFolder(const std::string& folder, std::size_t max_scans) {
+/// Clouds in files, at the usual ten a second.
+class CloudFiles final : public ScanStream {
+ public:
+  explicit CloudFiles(std::vector<std::string> files) : ScanStream(10), files_(std::move(files)) {}
+
+  std::optional<TimedScan> Next() override {
+    if (next_ == files_.size()) return std::nullopt;
+    const std::string& file = files_[next_];
+    TimedScan timed;
+    timed.scan = EndsWith(file, ".bin") ? ReadBin(file) : ReadPcd(file);
+    timed.start = Time{} + period() * static_cast<std::int64_t>(next_++);
+    timed.duration = period();
+    return timed;
+  }
+
+ private:
+  std::vector<std::string> files_;
+  std::size_t next_ = 0;
+};
+
+std::unique_ptr<ScanStream> OpenFolder(const std::string& folder) {
   std::vector<std::string> files;
   for (const auto& entry : std::filesystem::directory_iterator(folder))
     if (entry.path().extension() == ".bin" || entry.path().extension() == ".pcd")
       files.push_back(entry.path().string());
   std::sort(files.begin(), files.end());
-  files.resize(std::min(files.size(), max_scans));
   if (files.empty()) throw std::runtime_error(folder + ": no .bin or .pcd file in it");
-  ScanSet set;
-  for (const std::string& file : files)
-    set.scans.push_back(EndsWith(file, ".bin") ? ReadBin(file) : ReadPcd(file));
-  return set;
+  return std::make_unique<CloudFiles>(std::move(files));
 }
 
 }  // namespace
 
-ScanSet LoadScans(const std::string& text, const SourceOptions& options) {
-  ScanSet set;
-  if (text.rfind("synth:", 0) == 0) {
-    set = LoadSynthetic(text, options);
-    set.name = text;
-    return set;
-  }
+std::unique_ptr<ScanStream> OpenScans(const std::string& text, const SourceOptions& options) {
+  if (text.rfind("synth:", 0) == 0) return OpenSynthetic(text, options);
   const std::size_t comma = text.find(',');
   const std::string path = text.substr(0, comma);
-  if (std::filesystem::is_directory(path)) {
-    set = LoadFolder(path, options.max_scans);
-  } else if (EndsWith(path, ".bin")) {
-    set.scans.push_back(ReadBin(path));
-  } else if (EndsWith(path, ".pcd")) {
-    set.scans.push_back(ReadPcd(path));
-  } else if (EndsWith(path, ".pcap") || EndsWith(path, ".pcapng")) {
-    const std::string json = comma == std::string::npos
+  if (std::filesystem::is_directory(path)) return OpenFolder(path);
+  if (EndsWith(path, ".bin") || EndsWith(path, ".pcd"))
+    return std::make_unique<CloudFiles>(std::vector<std::string>{path});
+  if (EndsWith(path, ".pcap") || EndsWith(path, ".pcapng"))
+    return OpenCapture(path, comma == std::string::npos
                                  ? std::filesystem::path(path).replace_extension(".json").string()
-                                 : text.substr(comma + 1);
-    set = LoadCapture(path, json, options.max_scans);
-  } else {
-    throw std::runtime_error(text + ": not a .pcap, .pcapng, .bin, .pcd or synth: source");
+                                 : text.substr(comma + 1));
+  throw std::runtime_error(text + ": not a .pcap, .pcapng, .bin, .pcd or synth: source");
+}
+
+ScanSet LoadScans(const std::string& text, const SourceOptions& options) {
+  const auto stream = OpenScans(text, options);
+  ScanSet set;
+  set.scans_per_second = stream->scans_per_second();
+  const bool synthetic = text.rfind("synth:", 0) == 0;
+  set.name =
+      synthetic ? text : std::filesystem::path(text.substr(0, text.find(','))).stem().string();
+  while (options.max_scans == 0 || set.scans.size() < options.max_scans) {
+    auto timed = stream->Next();
+    if (!timed) break;
+    set.scans.push_back(std::move(timed->scan));
   }
-  set.name = std::filesystem::path(path).stem().string();
   return set;
 }
 

@@ -1,17 +1,45 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Reads the scans that a command line names: captures, cloud files and synthetic drives.
 #pragma once
+#include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "src/base/time.h"
+#include "src/synth/geometry.h"
 #include "src/tools/codec_lab/scan.h"
 
 namespace lidar::tools {
 
 struct SourceOptions {
-  std::size_t max_scans = 20;  // of each source
+  std::size_t max_scans = 20;  // of each source; 0: all there are
   double speed_mps = 10;       // of synthetic drives
   std::uint64_t seed = 0;      // of synthetic drives
+};
+
+/// A scan and when it was taken.
+struct TimedScan {
+  Scan scan;
+  Time start{};  // of the first column
+  Duration duration{};
+  std::optional<synth::Pose> truth;  // of the sensor at `start`, where the source knows it
+};
+
+/// Scans one after the other, read or computed as they are asked for: a drive may be of any length.
+class ScanStream {
+ public:
+  explicit ScanStream(double scans_per_second) : scans_per_second_(scans_per_second) {}
+  virtual ~ScanStream() = default;
+  /// None at the end. Throws std::runtime_error with a message for the user.
+  virtual std::optional<TimedScan> Next() = 0;
+  double scans_per_second() const { return scans_per_second_; }
+
+ protected:
+  Duration period() const { return FromSeconds(1 / scans_per_second_); }
+
+ private:
+  double scans_per_second_;
 };
 
 /// `text` is one of
@@ -22,6 +50,8 @@ struct SourceOptions {
 ///   synth:os1-64:street    a synthetic sensor in street, tunnel or field; a third part is the
 ///                          number of columns (1024)
 /// Throws std::runtime_error with a message for the user.
+std::unique_ptr<ScanStream> OpenScans(const std::string& text, const SourceOptions& options);
+/// All of them at once; at least one, or std::runtime_error.
 ScanSet LoadScans(const std::string& text, const SourceOptions& options);
 std::vector<ScanSet> LoadAllScans(const std::vector<std::string>& texts,
                                   const SourceOptions& options);
