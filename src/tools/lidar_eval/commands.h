@@ -10,5 +10,8 @@ void AddRateDistortionCommand(CLI::App* app);
 void AddTrackCommand(CLI::App* app);
 void AddPredictCommand(CLI::App* app);
 void AddToPcapCommand(CLI::App* app);
+// Only where there is odometry.
+void AddSlamCommand(CLI::App* app);
+void AddAteCommand(CLI::App* app);
 
 }  // namespace lidar::tools

@@ -12,6 +12,10 @@ int main(int argc, char** argv) {
   lidar::tools::AddPredictCommand(&app);
   lidar::tools::AddTrackCommand(&app);
   lidar::tools::AddToPcapCommand(&app);
+#ifdef HAVE_ODOMETRY
+  lidar::tools::AddSlamCommand(&app);
+  lidar::tools::AddAteCommand(&app);
+#endif
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& e) {

@@ -1,0 +1,184 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// lidar-eval slam and ate: the way of the sensor from its scans, and how wrong it is.
+#include <cstdio>
+#include <fstream>
+#include <iostream>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "src/odometry/trajectory_error.h"
+#include "src/tools/codec_lab/plot.h"
+#include "src/tools/codec_lab/progress.h"
+#include "src/tools/lidar_eval/commands.h"
+#include "src/tools/lidar_eval/slam_run.h"
+
+namespace lidar::tools {
+namespace {
+
+using odometry::Tracking;
+using odometry::Trajectory;
+using odometry::TrajectoryError;
+
+struct SlamArguments {
+  std::string source;
+  SourceOptions read;
+  SlamOptions slam;
+  std::string out;
+  std::string truth;
+  bool kitti = false;
+  bool json = false;
+};
+
+struct AteArguments {
+  std::string truth;
+  std::string estimate;
+  double kitti_rate = 10;
+  bool json = false;
+};
+
+Trajectory Load(const std::string& path, double kitti_rate) {
+  std::ifstream file(path);
+  if (!file) throw std::runtime_error("cannot open " + path);
+  std::string error;
+  Trajectory trajectory = odometry::ReadTrajectory(file, FromSeconds(1 / kitti_rate), &error);
+  if (trajectory.empty()) throw std::runtime_error(path + ": " + error);
+  return trajectory;
+}
+
+void Save(const std::string& path, const Trajectory& trajectory, bool kitti) {
+  std::ofstream file(path);
+  if (!kitti) file << "# timestamp tx ty tz qx qy qz qw\n";
+  for (const odometry::StampedPose& pose : trajectory) {
+    if (kitti) {
+      WriteKittiLine(file, pose.pose);
+    } else {
+      WriteTumLine(file, pose);
+    }
+  }
+  if (!file.flush()) throw std::runtime_error("cannot write " + path);
+}
+
+nlohmann::ordered_json ToJson(const TrajectoryError& e) {
+  nlohmann::ordered_json j = {{"poses", e.poses},
+                              {"length_m", e.length_m},
+                              {"ate_rmse_m", e.ate_rmse_m},
+                              {"ate_max_m", e.ate_max_m},
+                              {"rpe_rmse_m", e.rpe_rmse_m},
+                              {"rpe_rmse_deg", e.rpe_rmse_deg},
+                              {"end_error_m", e.end_error_m}};
+  if (e.drift) j["drift"] = *e.drift;
+  return j;
+}
+
+void Print(const TrajectoryError& e) {
+  std::printf("  %zu poses, %.1f m\n", e.poses, e.length_m);
+  std::printf("  ATE   %.3f m (RMSE after alignment), %.3f m at most\n", e.ate_rmse_m, e.ate_max_m);
+  std::printf("  RPE   %.4f m, %.4f degrees (RMSE over a second)\n", e.rpe_rmse_m, e.rpe_rmse_deg);
+  std::printf("  end   %.3f m\n", e.end_error_m);
+  if (e.drift) std::printf("  drift %.3f %% of 100 to 800 m\n", 100 * *e.drift);
+}
+
+std::size_t CountOf(const SlamResult& result, Tracking tracking) {
+  const auto found = result.tracking.find(tracking);
+  return found == result.tracking.end() ? 0 : found->second;
+}
+
+void PrintRun(const SlamResult& r) {
+  const auto at = [&](double q) {
+    return r.cpu_ms[static_cast<std::size_t>(q * static_cast<double>(r.cpu_ms.size() - 1))];
+  };
+  std::printf(
+      "  %zu scans: %zu tracked, %zu where the scene hides the motion, %zu lost, %zu maps\n",
+      r.estimate.size(), CountOf(r, Tracking::kTracking), CountOf(r, Tracking::kDegenerate),
+      CountOf(r, Tracking::kLost), r.maps);
+  std::printf("  CPU time a scan: %.1f ms median, %.1f ms p95; map of %zu voxels\n", at(0.5),
+              at(0.95), r.map_voxels);
+}
+
+void RunSlamCommand(const SlamArguments& a) {
+  const auto scans = OpenScans(a.source, a.read);
+  SlamOptions options = a.slam;
+  options.max_scans = a.read.max_scans;
+  const auto bar = ProgressBar("slam");
+  const SlamResult r = RunSlam(scans.get(), options, [&](std::size_t done) {
+    if (options.max_scans > 0)
+      bar(static_cast<double>(done) / static_cast<double>(options.max_scans));
+  });
+  if (r.estimate.empty()) throw std::runtime_error(a.source + ": no scan in it");
+  if (!a.out.empty()) Save(a.out, r.estimate, a.kitti);
+  const Trajectory truth = a.truth.empty() ? r.truth : Load(a.truth, scans->scans_per_second());
+  const auto error = Compare(truth, r.estimate);
+  if (a.json) {
+    nlohmann::ordered_json j = {{"source", a.source},
+                                {"scans", r.estimate.size()},
+                                {"tracked", CountOf(r, Tracking::kTracking)},
+                                {"degenerate", CountOf(r, Tracking::kDegenerate)},
+                                {"lost", CountOf(r, Tracking::kLost)},
+                                {"maps", r.maps}};
+    if (error) j["error"] = ToJson(*error);
+    std::cout << j.dump(2) << '\n';
+    return;
+  }
+  std::printf("%s\n", a.source.c_str());
+  PrintRun(r);
+  if (error) Print(*error);
+}
+
+void RunAteCommand(const AteArguments& a) {
+  const auto error = Compare(Load(a.truth, a.kitti_rate), Load(a.estimate, a.kitti_rate));
+  if (!error)
+    throw std::runtime_error("fewer than three poses of " + a.estimate +
+                             " lie within the time of " + a.truth);
+  if (a.json) {
+    std::cout << ToJson(*error).dump(2) << '\n';
+    return;
+  }
+  Print(*error);
+}
+
+}  // namespace
+
+void AddSlamCommand(CLI::App* app) {
+  auto a = std::make_shared<SlamArguments>();
+  a->read.max_scans = 0;
+  CLI::App* command = app->add_subcommand("slam", "The way of the sensor, from its scans");
+  command->option_defaults()->always_capture_default();
+  command->add_option("SOURCE", a->source, kSourceHelp)->required();
+  command->add_option("--scans", a->read.max_scans, "Scans to read; 0: all");
+  command->add_option("--speed", a->read.speed_mps, "Of synthetic drives [m/s]");
+  command->add_option("--seed", a->read.seed, "Of synthetic drives");
+  command->add_option("--out", a->out, "Write the trajectory to this file, in TUM's format");
+  command->add_flag("--kitti", a->kitti, "Write it in KITTI's format");
+  command->add_option("--truth", a->truth,
+                      "Compare with this trajectory (TUM or KITTI); synthetic drives bring theirs");
+  command
+      ->add_option("--step", a->slam.distortion.range_step_m,
+                   "Put ranges on a grid of this step first, as lidarenc does [m]")
+      ->check(CLI::Range(0.0, 10.0));
+  command
+      ->add_option("--xyz-bits", a->slam.distortion.xyz_bits,
+                   "Put points on a grid of so many bits over their cube first, as the paper "
+                   "does; 0: no")
+      ->check(CLI::Range(0U, 30U));
+  command->add_option("--voxel-size", a->slam.odometry.voxel_size_m, "Of the map [m]")
+      ->check(CLI::Range(0.05, 20.0));
+  command->add_option("--max-range", a->slam.odometry.max_range_m, "Of points, and of the map [m]")
+      ->check(CLI::Range(1.0, 1000.0));
+  command->add_flag("--json", a->json, "Print JSON");
+  command->callback([a] { RunSlamCommand(*a); });
+}
+
+void AddAteCommand(CLI::App* app) {
+  auto a = std::make_shared<AteArguments>();
+  CLI::App* command =
+      app->add_subcommand("ate", "How far a trajectory is from the true one: ATE, RPE, drift");
+  command->option_defaults()->always_capture_default();
+  command->add_option("TRUTH", a->truth, "Trajectory in TUM's or KITTI's format")->required();
+  command->add_option("ESTIMATE", a->estimate, "Another")->required();
+  command->add_option("--kitti-rate", a->kitti_rate, "Poses a second of KITTI files")
+      ->check(CLI::Range(0.01, 1000.0));
+  command->add_flag("--json", a->json, "Print JSON");
+  command->callback([a] { RunAteCommand(*a); });
+}
+
+}  // namespace lidar::tools

@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "src/tools/lidar_eval/slam_run.h"
+
+#include <algorithm>
+#include <cmath>
+#include <ctime>
+
+#include "src/cloud/range_grid.h"
+
+namespace lidar::tools {
+namespace {
+
+odometry::Pose ToPose(const synth::Pose& pose) {
+  const auto [x, y, z, w] = pose.ToQuaternion();
+  return {Eigen::Quaterniond(w, x, y, z), {pose.x, pose.y, pose.z}};
+}
+
+/// The grid that Draco lays over the cube of the cloud.
+void QuantizeCube(unsigned bits, odometry::Points* points) {
+  if (points->empty()) return;
+  Eigen::Vector3d low = points->front();
+  Eigen::Vector3d high = low;
+  for (const Eigen::Vector3d& p : *points) {
+    low = low.cwiseMin(p);
+    high = high.cwiseMax(p);
+  }
+  const double step = (high - low).maxCoeff() / (std::ldexp(1.0, static_cast<int>(bits)) - 1);
+  if (step <= 0) return;
+  for (Eigen::Vector3d& p : *points) p = low + step * ((p - low) / step).array().round().matrix();
+}
+
+odometry::TimedPoints OrganisedPoints(const Scan& scan, double range_step_m) {
+  const ScanGeometry& geometry = *scan.geometry;
+  const std::uint32_t columns = geometry.model.columns_per_scan;
+  std::vector<std::uint32_t> ranges = scan.ranges;
+  if (range_step_m > 0) {
+    const RangeGrid grid = RangeGrid::ForStep(range_step_m, geometry.model.range_unit_mm);
+    for (std::uint32_t& range : ranges)
+      if (range != 0) range = grid.RangeOf(grid.BinOf(range));
+  }
+  std::vector<float> xyz(3 * ranges.size());
+  geometry.projection.Project(ranges.data(), {0, columns},
+                              reinterpret_cast<std::uint8_t*>(xyz.data()), 3 * sizeof(float));
+  odometry::TimedPoints timed;
+  timed.points.reserve(ranges.size());
+  timed.phases.reserve(ranges.size());
+  for (std::size_t i = 0; i < ranges.size(); ++i) {
+    if (ranges[i] == 0) continue;
+    timed.points.push_back(Eigen::Map<const Eigen::Vector3f>(&xyz[3 * i]).cast<double>());
+    timed.phases.push_back(static_cast<float>(i % columns) / static_cast<float>(columns));
+  }
+  return timed;
+}
+
+}  // namespace
+
+odometry::TimedPoints PointsOf(const Scan& scan, const Distortion& distortion) {
+  odometry::TimedPoints timed;
+  if (scan.organised()) {
+    timed = OrganisedPoints(scan, distortion.range_step_m);
+  } else {
+    for (std::size_t i = 0; i + 2 < scan.xyz.size(); i += 3)
+      timed.points.push_back(Eigen::Map<const Eigen::Vector3f>(&scan.xyz[i]).cast<double>());
+  }
+  if (distortion.xyz_bits > 0) QuantizeCube(distortion.xyz_bits, &timed.points);
+  return timed;
+}
+
+SlamResult RunSlam(ScanStream* scans, const SlamOptions& options,
+                   const std::function<void(std::size_t)>& progress) {
+  SlamResult result;
+  odometry::Odometry odometry(options.odometry);
+  for (std::size_t done = 0; options.max_scans == 0 || done < options.max_scans; ++done) {
+    const auto timed = scans->Next();
+    if (!timed) break;
+    const odometry::TimedPoints points = PointsOf(timed->scan, options.distortion);
+    const std::clock_t begin = std::clock();
+    const odometry::Estimate e = odometry.OnScan(timed->start, timed->duration, points);
+    result.cpu_ms.push_back(1e3 * static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC);
+    result.estimate.push_back({e.time, e.pose});
+    ++result.tracking[e.tracking];
+    if (e.map_restarted || e.tracking == odometry::Tracking::kStarted) ++result.maps;
+    if (timed->truth) result.truth.push_back({timed->start, ToPose(*timed->truth)});
+    progress(done + 1);
+  }
+  std::sort(result.cpu_ms.begin(), result.cpu_ms.end());
+  result.map_voxels = odometry.map().voxels();
+  return result;
+}
+
+}  // namespace lidar::tools

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// An odometry over all scans of a source, with what a codec does to their points.
+#pragma once
+#include <cstdint>
+#include <functional>
+#include <map>
+
+#include "src/odometry/odometry.h"
+#include "src/odometry/trajectory.h"
+#include "src/tools/codec_lab/scan_source.h"
+
+namespace lidar::tools {
+
+/// What is done to the points before they are aligned; nothing by default.
+struct Distortion {
+  double range_step_m = 0;  // lidarenc: ranges on a grid of this step
+  unsigned xyz_bits = 0;    // Draco as in the paper: so many bits over the cube of the scan
+};
+
+struct SlamOptions {
+  odometry::OdometrySettings odometry;
+  Distortion distortion;
+  std::size_t max_scans = 0;  // 0: all
+};
+
+struct SlamResult {
+  odometry::Trajectory estimate;
+  odometry::Trajectory truth;  // empty where the source knows none
+  std::map<odometry::Tracking, std::size_t> tracking;
+  std::vector<double> cpu_ms;  // of each scan, ascending
+  std::size_t map_voxels = 0;  // at the end
+  std::size_t maps = 0;
+};
+
+/// Calls progress() with the number of scans done.
+SlamResult RunSlam(ScanStream* scans, const SlamOptions& options,
+                   const std::function<void(std::size_t)>& progress);
+
+/// The returns of a scan after `distortion`, with their phase in the sweep where it is known.
+odometry::TimedPoints PointsOf(const Scan& scan, const Distortion& distortion);
+
+}  // namespace lidar::tools
