@@ -34,6 +34,7 @@ void gst_lidar_init(void) {
   if (g_once_init_enter(&done)) {
     RegisterMeta(GST_LIDAR_SLICE_META_NAME);
     RegisterMeta(GST_LIDAR_ECN_META_NAME);
+    RegisterMeta(GST_LIDAR_POSE_META_NAME);
     g_once_init_leave(&done, 1);
   }
 }
@@ -89,6 +90,31 @@ GstClockTime gst_lidar_buffer_get_capture_time(GstBuffer* buffer) {
   auto* meta = gst_buffer_get_reference_timestamp_meta(buffer, reference);
   gst_caps_unref(reference);
   return meta == nullptr ? GST_CLOCK_TIME_NONE : meta->timestamp;
+}
+
+void gst_lidar_buffer_set_pose(GstBuffer* buffer, const GstLidarPose* pose) {
+  const gdouble* p = pose->position;
+  const gdouble* q = pose->orientation;
+  gst_structure_set(WritableMeta(buffer, GST_LIDAR_POSE_META_NAME), "x", G_TYPE_DOUBLE, p[0], "y",
+                    G_TYPE_DOUBLE, p[1], "z", G_TYPE_DOUBLE, p[2], "qx", G_TYPE_DOUBLE, q[0], "qy",
+                    G_TYPE_DOUBLE, q[1], "qz", G_TYPE_DOUBLE, q[2], "qw", G_TYPE_DOUBLE, q[3],
+                    "tracking", G_TYPE_UINT, static_cast<guint>(pose->tracking), nullptr);
+}
+
+gboolean gst_lidar_buffer_get_pose(GstBuffer* buffer, GstLidarPose* pose) {
+  GstStructure* s = ReadMeta(buffer, GST_LIDAR_POSE_META_NAME);
+  gdouble* p = pose->position;
+  gdouble* q = pose->orientation;
+  guint tracking = 0;
+  if (s == nullptr ||
+      !gst_structure_get(s, "x", G_TYPE_DOUBLE, &p[0], "y", G_TYPE_DOUBLE, &p[1], "z",
+                         G_TYPE_DOUBLE, &p[2], "qx", G_TYPE_DOUBLE, &q[0], "qy", G_TYPE_DOUBLE,
+                         &q[1], "qz", G_TYPE_DOUBLE, &q[2], "qw", G_TYPE_DOUBLE, &q[3], "tracking",
+                         G_TYPE_UINT, &tracking, nullptr)) {
+    return FALSE;
+  }
+  pose->tracking = static_cast<GstLidarTracking>(MIN(tracking, GST_LIDAR_TRACKING_LOST));
+  return TRUE;
 }
 
 GstEvent* gst_lidar_event_new_target_bitrate(const GstLidarTargetBitrate* target) {

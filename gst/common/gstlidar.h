@@ -13,8 +13,10 @@ G_BEGIN_DECLS
 
 #define GST_LIDAR_CLOUD_MEDIA_TYPE "application/x-pointcloud2"
 #define GST_LIDAR_DRACO_MEDIA_TYPE "application/x-draco"
+#define GST_LIDAR_ODOMETRY_MEDIA_TYPE "application/x-odometry"
 #define GST_LIDAR_SLICE_META_NAME "LidarSliceMeta"
 #define GST_LIDAR_ECN_META_NAME "LidarEcnMeta"
+#define GST_LIDAR_POSE_META_NAME "LidarPoseMeta"
 #define GST_LIDAR_TARGET_BITRATE_EVENT "target-bitrate"
 #define GST_LIDAR_BITRATE_BOUNDS_EVENT "bitrate-bounds"
 
@@ -52,6 +54,25 @@ GST_LIDAR_API gboolean gst_lidar_buffer_get_ecn(GstBuffer* buffer, GstLidarEcn* 
 GST_LIDAR_API void gst_lidar_buffer_set_capture_time(GstBuffer* buffer, GstClockTime unix_time);
 /** GST_CLOCK_TIME_NONE where it is not known. */
 GST_LIDAR_API GstClockTime gst_lidar_buffer_get_capture_time(GstBuffer* buffer);
+
+/** How sure a pose is. */
+typedef enum {
+  GST_LIDAR_TRACKING_STARTED = 0,    /* the first scan: the map begins here */
+  GST_LIDAR_TRACKING_OK = 1,         /* the scan fits the map */
+  GST_LIDAR_TRACKING_DEGENERATE = 2, /* the scene does not show the motion along one direction */
+  GST_LIDAR_TRACKING_LOST = 3        /* the scan does not fit the map; the pose is a prediction */
+} GstLidarTracking;
+
+/** Where the sensor was when the buffer's first column was sampled, seen from where it started. */
+typedef struct {
+  gdouble position[3];    /* x, y, z [m] */
+  gdouble orientation[4]; /* unit quaternion x, y, z, w: sensor to start */
+  GstLidarTracking tracking;
+} GstLidarPose;
+
+GST_LIDAR_API void gst_lidar_buffer_set_pose(GstBuffer* buffer, const GstLidarPose* pose);
+/** FALSE where the buffer has no meta. */
+GST_LIDAR_API gboolean gst_lidar_buffer_get_pose(GstBuffer* buffer, GstLidarPose* pose);
 
 /** Upstream: what the element that gets it may put out [bit/s]. */
 typedef struct {

@@ -1,0 +1,378 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+/**
+ * SECTION:element-lidarodometry
+ *
+ * Finds where the sensor is from its clouds, and puts its pose on each of them.
+ *
+ * |[
+ * gst-launch-1.0 lidartestsrc speed=10 slices-per-scan=1 num-buffers=50
+ *   ! lidarodometry trajectory=drive.tum ! fakesink
+ * ]|
+ */
+#include "ext/odometry/gstlidarodometry.h"
+
+#include <fstream>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <vector>
+
+#include "ext/odometry/scan_collector.h"
+#include "gst/common/buffer_map.h"
+#include "gst/common/properties.h"
+#include "gst/common/refs.h"
+#include "gst/common/stats.h"
+#include "src/odometry/trajectory.h"
+
+GST_DEBUG_CATEGORY_STATIC(gst_lidar_odometry_debug);
+#define GST_CAT_DEFAULT gst_lidar_odometry_debug
+
+namespace {
+
+using lidar::Duration;
+using lidar::Time;
+using lidar::gst::CloudInfo;
+using lidar::odometry::Estimate;
+using lidar::odometry::Odometry;
+using lidar::odometry::OdometrySettings;
+using lidar::odometry::Pose;
+using lidar::odometry::Tracking;
+
+struct Settings {
+  OdometrySettings odometry;
+  std::string trajectory;
+  bool post_messages = true;
+};
+
+struct Counters {
+  guint64 scans = 0;
+  guint64 scans_lost = 0;
+  guint64 scans_degenerate = 0;
+  guint64 maps = 0;
+  guint64 scan_time = 0;  // of the last scan
+  guint64 longest_scan_time = 0;
+  guint map_voxels = 0;
+  gdouble inlier_share = 0;
+};
+
+const std::array<lidar::gst::Stat<Counters>, 8> kStats = {{
+    {"scans", &Counters::scans},
+    {"scans-lost", &Counters::scans_lost},
+    {"scans-degenerate", &Counters::scans_degenerate},
+    {"maps", &Counters::maps},
+    {"scan-time", &Counters::scan_time},
+    {"longest-scan-time", &Counters::longest_scan_time},
+    {"map-voxels", &Counters::map_voxels},
+    {"inlier-share", &Counters::inlier_share},
+}};
+
+/// Of the streaming thread.
+struct Stream {
+  std::optional<CloudInfo> info;
+  lidar::gst::ScanCollector collector;
+  std::unique_ptr<Odometry> odometry;
+  std::ofstream trajectory;
+  Tracking tracking = Tracking::kStarted;  // of the last scan
+  bool posted_lost = false;
+  bool posted_full = false;
+};
+
+struct State {
+  std::mutex mutex;  // guards settings and counters; never held while pushing or posting
+  Settings settings;
+  Counters counters;
+  Stream stream;
+};
+
+lidar::gst::StructurePtr ReadStats(GObject* object);
+
+using lidar::gst::At;
+const std::array<lidar::gst::Property<Settings>, 7> kProperties = {{
+    {"max-range", "Points farther away are left out; also the radius of the map [m]",
+     At<&Settings::odometry, &OdometrySettings::max_range_m>, 1, 1000},
+    {"min-range", "Points nearer than that are left out: the vehicle itself [m]",
+     At<&Settings::odometry, &OdometrySettings::min_range_m>, 0, 100},
+    {"voxel-size", "Edge of the map's cubes [m]",
+     At<&Settings::odometry, &OdometrySettings::voxel_size_m>, 0.05, 20},
+    {"deskew", "Move points by when they were sampled",
+     At<&Settings::odometry, &OdometrySettings::deskew>},
+    {"trajectory", "File to write the poses to, in TUM's format; NULL: none",
+     &Settings::trajectory},
+    {"post-messages", "Post an element message \"odometry\" for each scan",
+     &Settings::post_messages, 0, 0, GST_PARAM_MUTABLE_PLAYING},
+    {"stats",
+     "scans, scans-lost, scans-degenerate, maps, scan-time [ns], longest-scan-time [ns], "
+     "map-voxels, inlier-share",
+     ReadStats},
+}};
+
+}  // namespace
+
+struct _GstLidarOdometry {
+  GstBaseTransform parent;
+  GstPad* poses;
+  State* state;
+};
+
+G_DEFINE_TYPE(GstLidarOdometry, gst_lidar_odometry, GST_TYPE_BASE_TRANSFORM)
+GST_ELEMENT_REGISTER_DEFINE(lidarodometry, "lidarodometry", GST_RANK_NONE, GST_TYPE_LIDAR_ODOMETRY)
+
+namespace {
+
+lidar::gst::StructurePtr ReadStats(GObject* object) {
+  State& state = *GST_LIDAR_ODOMETRY(object)->state;
+  std::lock_guard lock(state.mutex);
+  return lidar::gst::ToStructure("application/x-lidar-odometry-stats", kStats, state.counters);
+}
+
+Settings Snapshot(State& state) {
+  std::lock_guard lock(state.mutex);
+  return state.settings;
+}
+
+GstLidarPose ToMeta(const Pose& pose, Tracking tracking) {
+  const auto& p = pose.position;
+  const auto& q = pose.rotation;
+  return {
+      {p.x(), p.y(), p.z()}, {q.x(), q.y(), q.z(), q.w()}, static_cast<GstLidarTracking>(tracking)};
+}
+
+/// When the first column of `buffer` was sampled: its capture time, or else its timestamp.
+std::optional<Time> SampledAt(GstBuffer* buffer) {
+  const GstClockTime captured = gst_lidar_buffer_get_capture_time(buffer);
+  const GstClockTime at = GST_CLOCK_TIME_IS_VALID(captured) ? captured : GST_BUFFER_PTS(buffer);
+  if (!GST_CLOCK_TIME_IS_VALID(at)) return std::nullopt;
+  return Time{} + Duration{static_cast<std::int64_t>(at)};
+}
+
+void CountScan(State* state, const Estimate& estimate, GstClockTime time) {
+  std::lock_guard lock(state->mutex);
+  Counters& c = state->counters;
+  ++c.scans;
+  if (estimate.tracking == Tracking::kLost) ++c.scans_lost;
+  if (estimate.tracking == Tracking::kDegenerate) ++c.scans_degenerate;
+  if (estimate.map_restarted || estimate.tracking == Tracking::kStarted) ++c.maps;
+  c.scan_time = time;
+  c.longest_scan_time = MAX(c.longest_scan_time, time);
+  c.map_voxels = static_cast<guint>(state->stream.odometry->map().voxels());
+  c.inlier_share = estimate.inlier_share;
+}
+
+/// A warning where tracking begins to fail: once, until it works again.
+void WarnIfLost(GstLidarOdometry* self, const Estimate& estimate) {
+  Stream& stream = self->state->stream;
+  const bool lost = estimate.tracking == Tracking::kLost;
+  if (lost && !stream.posted_lost) {
+    GST_ELEMENT_WARNING(
+        self, STREAM, FAILED,
+        ("The position was lost: a scan does not fit the map. Poses are "
+         "predictions until one fits again."),
+        ("%.0f %% of the points have a neighbour in the map", 100 * estimate.inlier_share));
+  }
+  stream.posted_lost = lost;
+}
+
+void PostMessage(GstLidarOdometry* self, const Estimate& e) {
+  const GstLidarPose pose = ToMeta(e.pose, e.tracking);
+  const gdouble* p = pose.position;
+  const gdouble* q = pose.orientation;
+  gst_element_post_message(
+      GST_ELEMENT(self),
+      gst_message_new_element(
+          GST_OBJECT(self),
+          gst_structure_new("odometry", "timestamp", G_TYPE_UINT64,
+                            static_cast<guint64>(e.time.time_since_epoch().count()), "x",
+                            G_TYPE_DOUBLE, p[0], "y", G_TYPE_DOUBLE, p[1], "z", G_TYPE_DOUBLE, p[2],
+                            "qx", G_TYPE_DOUBLE, q[0], "qy", G_TYPE_DOUBLE, q[1], "qz",
+                            G_TYPE_DOUBLE, q[2], "qw", G_TYPE_DOUBLE, q[3], "tracking",
+                            G_TYPE_STRING, ToString(e.tracking), "inlier-share", G_TYPE_DOUBLE,
+                            e.inlier_share, nullptr)));
+}
+
+void WriteTrajectory(GstLidarOdometry* self, const Estimate& estimate) {
+  Stream& stream = self->state->stream;
+  if (!stream.trajectory.is_open() || stream.posted_full) return;
+  lidar::odometry::WriteTumLine(stream.trajectory, {estimate.time, estimate.pose});
+  stream.trajectory.flush();
+  if (stream.trajectory) return;
+  stream.posted_full = true;
+  GST_ELEMENT_WARNING(self, RESOURCE, NO_SPACE_LEFT,
+                      ("The trajectory cannot be written any more; the stream goes on."),
+                      (nullptr));
+}
+
+/// One buffer for each scan: 7 doubles and the tracking, little-endian. Nobody has to link the pad.
+void PushPose(GstLidarOdometry* self, const Estimate& estimate, GstClockTime pts) {
+  if (!gst_pad_is_linked(self->poses)) return;
+  const GstLidarPose pose = ToMeta(estimate.pose, estimate.tracking);
+  std::array<guint64, 8> words{};
+  for (std::size_t i = 0; i < 7; ++i) {
+    const gdouble value = i < 3 ? pose.position[i] : pose.orientation[i - 3];
+    std::memcpy(&words[i], &value, sizeof value);
+    words[i] = GUINT64_TO_LE(words[i]);
+  }
+  words[7] = GUINT64_TO_LE(static_cast<guint64>(pose.tracking));
+  GstBuffer* buffer = gst_buffer_new_memdup(words.data(), sizeof words);
+  GST_BUFFER_PTS(buffer) = pts;
+  gst_lidar_buffer_set_capture_time(
+      buffer, static_cast<GstClockTime>(estimate.time.time_since_epoch().count()));
+  gst_pad_push(self->poses, buffer);
+}
+
+/// Aligns the scan that is open, if there is one. `pts` is that of its last buffer.
+void FinishScan(GstLidarOdometry* self, GstClockTime pts) {
+  State& state = *self->state;
+  Stream& stream = state.stream;
+  const auto scan = stream.collector.Take();
+  if (!scan) return;
+  const gint64 begin_us = g_get_monotonic_time();
+  const Estimate estimate = stream.odometry->OnScan(scan->start, scan->duration, scan->points);
+  const auto time = static_cast<GstClockTime>(g_get_monotonic_time() - begin_us) * GST_USECOND;
+  stream.tracking = estimate.tracking;
+  CountScan(&state, estimate, time);
+  GST_LOG_OBJECT(self, "%s, %.3f m %.3f m %.3f m, %d iterations in %" GST_TIME_FORMAT,
+                 ToString(estimate.tracking), estimate.pose.position.x(),
+                 estimate.pose.position.y(), estimate.pose.position.z(), estimate.iterations,
+                 GST_TIME_ARGS(time));
+  WriteTrajectory(self, estimate);
+  WarnIfLost(self, estimate);
+  if (Snapshot(state).post_messages) PostMessage(self, estimate);
+  PushPose(self, estimate, pts);
+}
+
+/// True where the buffer could be added to a scan.
+bool AddBuffer(GstLidarOdometry* self, GstBuffer* buffer, const GstLidarSlice& slice, Time at) {
+  Stream& stream = self->state->stream;
+  const lidar::gst::BufferMap map(buffer, GST_MAP_READ);
+  if (!map || map.size() % stream.info->point_step != 0) return false;
+  stream.collector.Add(slice, at, map.data(), map.size());
+  return true;
+}
+
+GstFlowReturn TransformIp(GstBaseTransform* base, GstBuffer* buffer) {
+  auto* self = GST_LIDAR_ODOMETRY(base);
+  Stream& stream = self->state->stream;
+  if (!stream.info || !stream.odometry) return GST_FLOW_NOT_NEGOTIATED;
+  GstLidarSlice slice;
+  if (!gst_lidar_buffer_get_slice(buffer, &slice) || slice.slice_count == 0) slice = {0, 0, 1, 0};
+  const auto at = SampledAt(buffer);
+  if (!at) {
+    GST_ELEMENT_ERROR(self, STREAM, FORMAT,
+                      ("The clouds have no timestamps, which odometry needs. Use pointcloudparse "
+                       "with a framerate."),
+                      (nullptr));
+    return GST_FLOW_ERROR;
+  }
+  if (stream.collector.BeginsNewScan(slice)) FinishScan(self, GST_BUFFER_PTS(buffer));
+  if (!AddBuffer(self, buffer, slice, *at)) {
+    GST_WARNING_OBJECT(self, "a buffer of another size than its caps say");
+    return GST_FLOW_OK;
+  }
+  // A slice leaves with a prediction: its scan is aligned when its last slice is there.
+  if (stream.collector.complete()) FinishScan(self, GST_BUFFER_PTS(buffer));
+  const GstLidarPose pose = ToMeta(stream.odometry->PredictAt(*at), stream.tracking);
+  gst_lidar_buffer_set_pose(buffer, &pose);
+  return GST_FLOW_OK;
+}
+
+gboolean SetCaps(GstBaseTransform* base, GstCaps* in, GstCaps*) {
+  Stream& stream = GST_LIDAR_ODOMETRY(base)->state->stream;
+  FinishScan(GST_LIDAR_ODOMETRY(base), GST_CLOCK_TIME_NONE);
+  stream.info = CloudInfo::FromCaps(in);
+  if (stream.info && stream.collector.SetInfo(*stream.info)) return TRUE;
+  GST_ELEMENT_ERROR(base, STREAM, FORMAT,
+                    ("Odometry needs clouds with x, y, z as F32 side by side."),
+                    ("%" GST_PTR_FORMAT, static_cast<gpointer>(in)));
+  return FALSE;
+}
+
+gboolean SinkEvent(GstBaseTransform* base, GstEvent* event) {
+  auto* self = GST_LIDAR_ODOMETRY(base);
+  Stream& stream = self->state->stream;
+  switch (GST_EVENT_TYPE(event)) {
+    case GST_EVENT_CAPS:
+      break;  // the pad of the poses has its own
+    case GST_EVENT_EOS:
+      FinishScan(self, GST_CLOCK_TIME_NONE);
+      gst_pad_push_event(self->poses, gst_event_ref(event));
+      break;
+    case GST_EVENT_FLUSH_STOP:
+      stream.collector.Take();
+      gst_pad_push_event(self->poses, gst_event_ref(event));
+      break;
+    case GST_EVENT_STREAM_START: {
+      gst_pad_push_event(self->poses, gst_event_ref(event));
+      const lidar::gst::CapsPtr caps(gst_caps_new_empty_simple(GST_LIDAR_ODOMETRY_MEDIA_TYPE));
+      gst_pad_push_event(self->poses, gst_event_new_caps(caps.get()));
+      break;
+    }
+    default:
+      gst_pad_push_event(self->poses, gst_event_ref(event));
+  }
+  return GST_BASE_TRANSFORM_CLASS(gst_lidar_odometry_parent_class)->sink_event(base, event);
+}
+
+gboolean Start(GstBaseTransform* base) {
+  auto* self = GST_LIDAR_ODOMETRY(base);
+  State& state = *self->state;
+  const Settings settings = Snapshot(state);
+  {
+    std::lock_guard lock(state.mutex);
+    state.counters = {};
+  }
+  state.stream = {};
+  state.stream.odometry = std::make_unique<Odometry>(settings.odometry);
+  if (settings.trajectory.empty()) return TRUE;
+  state.stream.trajectory.open(settings.trajectory, std::ios::trunc);
+  if (state.stream.trajectory) return TRUE;
+  GST_ELEMENT_ERROR(self, RESOURCE, OPEN_WRITE,
+                    ("Cannot write the trajectory \"%s\".", settings.trajectory.c_str()),
+                    GST_ERROR_SYSTEM);
+  return FALSE;
+}
+
+gboolean Stop(GstBaseTransform* base) {
+  GST_LIDAR_ODOMETRY(base)->state->stream = {};
+  return TRUE;
+}
+
+GstStaticPadTemplate cloud_sink = GST_STATIC_PAD_TEMPLATE(
+    "sink", GST_PAD_SINK, GST_PAD_ALWAYS, GST_STATIC_CAPS(GST_LIDAR_CLOUD_MEDIA_TYPE));
+GstStaticPadTemplate cloud_src = GST_STATIC_PAD_TEMPLATE(
+    "src", GST_PAD_SRC, GST_PAD_ALWAYS, GST_STATIC_CAPS(GST_LIDAR_CLOUD_MEDIA_TYPE));
+GstStaticPadTemplate pose_src = GST_STATIC_PAD_TEMPLATE(
+    "odometry", GST_PAD_SRC, GST_PAD_ALWAYS, GST_STATIC_CAPS(GST_LIDAR_ODOMETRY_MEDIA_TYPE));
+
+}  // namespace
+
+static void gst_lidar_odometry_init(GstLidarOdometry* self) {
+  self->state = new State;
+  gst_base_transform_set_in_place(GST_BASE_TRANSFORM(self), TRUE);
+  self->poses = gst_pad_new_from_static_template(&pose_src, "odometry");
+  gst_pad_use_fixed_caps(self->poses);
+  gst_element_add_pad(GST_ELEMENT(self), self->poses);
+}
+
+static void gst_lidar_odometry_class_init(GstLidarOdometryClass* klass) {
+  GST_DEBUG_CATEGORY_INIT(gst_lidar_odometry_debug, "lidarodometry", 0,
+                          "Odometry from point clouds");
+  auto* object = G_OBJECT_CLASS(klass);
+  object->finalize = [](GObject* o) {
+    delete GST_LIDAR_ODOMETRY(o)->state;
+    G_OBJECT_CLASS(gst_lidar_odometry_parent_class)->finalize(o);
+  };
+  lidar::gst::ServeProperties<GstLidarOdometry, kProperties>(object);
+  auto* element = GST_ELEMENT_CLASS(klass);
+  gst_element_class_add_static_pad_template(element, &cloud_sink);
+  gst_element_class_add_static_pad_template(element, &cloud_src);
+  gst_element_class_add_static_pad_template(element, &pose_src);
+  gst_element_class_set_static_metadata(
+      element, "LiDAR odometry", "Filter/Analyzer/PointCloud",
+      "Finds the poses of the sensor by aligning its scans to a map of what it saw", "gst-lidar");
+  auto* transform = GST_BASE_TRANSFORM_CLASS(klass);
+  transform->start = Start;
+  transform->stop = Stop;
+  transform->set_caps = SetCaps;
+  transform->sink_event = SinkEvent;
+  transform->transform_ip = TransformIp;
+}

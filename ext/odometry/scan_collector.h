@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Gathers the points of a scan from its slices, with their phases in the sweep.
+#pragma once
+#include <optional>
+
+#include "gst/common/cloud_info.h"
+#include "gst/common/gstlidar.h"
+#include "src/odometry/odometry.h"
+
+namespace lidar::gst {
+
+/// A scan, of which slices may be missing.
+struct CollectedScan {
+  odometry::TimedPoints points;
+  Time start{};
+  Duration duration{};
+};
+
+/// For one thread at a time.
+class ScanCollector {
+ public:
+  /// The layout of the buffers that follow. False where it has no x, y and z as packed F32.
+  bool SetInfo(const CloudInfo& info);
+
+  /// True where a scan is open that `slice` is no further part of.
+  bool BeginsNewScan(const GstLidarSlice& slice) const;
+  /// Adds a slice, whose first column was sampled at `time`, to the open scan or to a new one.
+  /// `size` bytes at `points` are whole points, and whole columns where the cloud is organised.
+  void Add(const GstLidarSlice& slice, Time time, const guint8* points, gsize size);
+  /// True where the last slice of the open scan is there.
+  bool complete() const { return open_ && next_index_ >= count_; }
+  /// The scan that is open, if there is one; none is open then.
+  std::optional<CollectedScan> Take();
+
+ private:
+  void Open(const GstLidarSlice& slice, Time time);
+
+  CloudInfo info_;
+  CollectedScan scan_;
+  bool open_ = false;
+  guint scan_id_ = 0;
+  guint next_index_ = 0;
+  guint count_ = 1;
+};
+
+}  // namespace lidar::gst

@@ -1,0 +1,226 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <string>
+#include <vector>
+
+#include "gst/common/buffer_map.h"
+#include "gst/common/gstlidar.h"
+#include "tests/support/harness.h"
+
+namespace lidar::gst {
+namespace {
+
+using test::Harness;
+
+constexpr const char* kDrive =
+    "lidartestsrc model=os0-32 mode=512x10 speed=10 slices-per-scan=%u num-buffers=%u";
+
+std::string Format(const char* format, unsigned a, unsigned b) {
+  char text[200];
+  std::snprintf(text, sizeof text, format, a, b);
+  return text;
+}
+
+/// A drive of 10 m/s through lidarodometry, until its end.
+class Odometry : public ::testing::Test {
+ protected:
+  void Start(unsigned slices, unsigned scans, const std::string& properties = "") {
+    const std::string line =
+        Format(kDrive, slices, slices * scans) + " ! lidarodometry name=o " + properties;
+    h_.reset(gst_harness_new_parse(line.c_str()));
+    bus_ = gst_bus_new();
+    gst_element_set_bus(h_->element, bus_);
+    gst_harness_play(h_.get());
+    element_.reset(gst_bin_get_by_name(GST_BIN(h_->element), "o"));
+  }
+  void TearDown() override {
+    element_.reset();
+    h_.reset();
+    if (bus_ != nullptr) gst_object_unref(bus_);
+  }
+  std::vector<BufferPtr> PullAll(unsigned count) {
+    std::vector<BufferPtr> buffers;
+    for (unsigned i = 0; i < count; ++i) buffers.emplace_back(gst_harness_pull(h_.get()));
+    return buffers;
+  }
+  StructurePtr Stats() {
+    GstStructure* stats = nullptr;
+    g_object_get(element_.get(), "stats", &stats, nullptr);
+    return StructurePtr(stats);
+  }
+  guint64 Count(const char* name) {
+    guint64 value = 0;
+    gst_structure_get_uint64(Stats().get(), name, &value);
+    return value;
+  }
+  unsigned CountMessages(const char* name) {
+    unsigned count = 0;
+    while (GstMessage* raw = gst_bus_pop_filtered(bus_, GST_MESSAGE_ELEMENT)) {
+      const MessagePtr message(raw);
+      if (gst_structure_has_name(gst_message_get_structure(raw), name)) ++count;
+    }
+    return count;
+  }
+
+  Harness h_;
+  std::unique_ptr<GstElement, Unref> element_;
+  GstBus* bus_ = nullptr;
+};
+
+double Distance(const GstLidarPose& pose) {
+  return std::hypot(pose.position[0], pose.position[1], pose.position[2]);
+}
+
+TEST_F(Odometry, PutsThePoseOnEveryScan) {
+  Start(1, 20);
+  const auto scans = PullAll(20);
+  GstLidarPose first;
+  GstLidarPose last;
+  ASSERT_TRUE(gst_lidar_buffer_get_pose(scans.front().get(), &first));
+  ASSERT_TRUE(gst_lidar_buffer_get_pose(scans.back().get(), &last));
+  EXPECT_EQ(first.tracking, GST_LIDAR_TRACKING_STARTED);
+  EXPECT_EQ(last.tracking, GST_LIDAR_TRACKING_OK);
+  EXPECT_LT(Distance(first), 0.01);
+  EXPECT_NEAR(Distance(last), 19, 1);
+  EXPECT_EQ(Count("scans"), 20U);
+  EXPECT_EQ(CountMessages("odometry"), 20U);
+}
+
+TEST_F(Odometry, LeavesTheCloudsAsTheyAre) {
+  Harness plain(gst_harness_new_parse(Format(kDrive, 1, 2).c_str()));
+  gst_harness_play(plain.get());
+  Start(1, 2);
+  for (int i = 0; i < 2; ++i) {
+    const BufferPtr before(gst_harness_pull(plain.get()));
+    const BufferPtr after(gst_harness_pull(h_.get()));
+    const BufferMap a(before.get(), GST_MAP_READ);
+    const BufferMap b(after.get(), GST_MAP_READ);
+    ASSERT_EQ(a.size(), b.size());
+    EXPECT_EQ(std::memcmp(a.data(), b.data(), a.size()), 0);
+    EXPECT_EQ(GST_BUFFER_PTS(before.get()), GST_BUFFER_PTS(after.get()));
+  }
+}
+
+TEST_F(Odometry, PredictsThePoseOfEachSlice) {
+  Start(8, 12);
+  const auto slices = PullAll(96);
+  EXPECT_EQ(Count("scans"), 12U);
+  double before = -1;
+  for (unsigned i = 40; i < 96; ++i) {  // the velocity is known by then
+    GstLidarPose pose;
+    ASSERT_TRUE(gst_lidar_buffer_get_pose(slices[i].get(), &pose));
+    EXPECT_GT(Distance(pose), before - 0.05) << i;
+    before = Distance(pose);
+  }
+  EXPECT_NEAR(before, 11.9, 1);
+}
+
+TEST_F(Odometry, AlignsAScanOfWhichSlicesAreMissing) {
+  Start(8, 12, "! identity drop-probability=0.2");
+  // What came before identity is aligned; what it lets through does not matter.
+  for (int i = 0; i < 60; ++i) BufferPtr(gst_harness_pull(h_.get()));
+  EXPECT_GT(Count("scans"), 6U);
+  EXPECT_EQ(Count("scans-lost"), 0U);
+}
+
+TEST_F(Odometry, WritesTheTrajectory) {
+  const auto path = std::filesystem::temp_directory_path() /
+                    ("lidarodometry-" + std::to_string(g_random_int()) + ".tum");
+  Start(1, 10, "trajectory=" + path.string());
+  PullAll(10);
+  h_.reset();
+  std::ifstream file(path);
+  unsigned poses = 0;
+  for (std::string line; std::getline(file, line);) ++poses;
+  EXPECT_EQ(poses, 10U);
+  std::filesystem::remove(path);
+}
+
+TEST(OdometryPads, GiveAPoseForEachScan) {
+  GError* raw = nullptr;
+  const ElementPtr pipeline(
+      gst_parse_launch((Format(kDrive, 1, 6) + " ! lidarodometry name=o ! queue ! fakesink "
+                                               "o.odometry ! queue ! appsink name=poses sync=false")
+                           .c_str(),
+                       &raw));
+  ASSERT_EQ(raw, nullptr);
+  const ElementPtr sink(gst_bin_get_by_name(GST_BIN(pipeline.get()), "poses"));
+  gst_element_set_state(pipeline.get(), GST_STATE_PLAYING);
+  unsigned count = 0;
+  for (GstSample* sample = nullptr;;) {
+    g_signal_emit_by_name(sink.get(), "pull-sample", &sample);
+    if (sample == nullptr) break;
+    EXPECT_EQ(gst_buffer_get_size(gst_sample_get_buffer(sample)), 64U);
+    gst_sample_unref(sample);
+    ++count;
+  }
+  EXPECT_EQ(count, 6U);
+  gst_element_set_state(pipeline.get(), GST_STATE_NULL);
+}
+
+/// Clouds made by hand.
+class OddClouds : public ::testing::Test {
+ protected:
+  void Start(const char* caps) {
+    h_.reset(gst_harness_new("lidarodometry"));
+    bus_ = gst_bus_new();
+    gst_element_set_bus(h_->element, bus_);
+    gst_harness_set_src_caps_str(h_.get(), caps);
+  }
+  void TearDown() override {
+    h_.reset();
+    gst_object_unref(bus_);
+  }
+  GstFlowReturn Push(const std::vector<float>& points, GstClockTime pts) {
+    GstBuffer* buffer = gst_buffer_new_allocate(nullptr, points.size() * sizeof(float), nullptr);
+    gst_buffer_fill(buffer, 0, points.data(), points.size() * sizeof(float));
+    GST_BUFFER_PTS(buffer) = pts;
+    return gst_harness_push(h_.get(), buffer);
+  }
+  bool HasError() {
+    const MessagePtr message(gst_bus_pop_filtered(bus_, GST_MESSAGE_ERROR));
+    return message != nullptr;
+  }
+  static constexpr const char* kXyz =
+      "application/x-pointcloud2,width=0,height=1,point-step=12,"
+      "fields=(string)\"x:F32:0,y:F32:4,z:F32:8\",framerate=10/1";
+  Harness h_;
+  GstBus* bus_ = nullptr;
+};
+
+TEST_F(OddClouds, MayBeEmptyOrNotFinite) {
+  Start(kXyz);
+  EXPECT_EQ(Push({}, 0), GST_FLOW_OK);
+  EXPECT_EQ(Push({NAN, 1, 2, INFINITY, 0, 0}, GST_SECOND), GST_FLOW_OK);
+  EXPECT_EQ(Push({1, 2}, 2 * GST_SECOND), GST_FLOW_OK);  // no whole point
+  EXPECT_EQ(Push({3e38F, 3e38F, 3e38F}, 3 * GST_SECOND), GST_FLOW_OK);
+  EXPECT_FALSE(HasError());
+}
+
+TEST_F(OddClouds, NeedTimestamps) {
+  Start(kXyz);
+  EXPECT_EQ(Push({1, 2, 3}, GST_CLOCK_TIME_NONE), GST_FLOW_ERROR);
+  EXPECT_TRUE(HasError());
+}
+
+TEST_F(OddClouds, NeedPackedCoordinates) {
+  Start(
+      "application/x-pointcloud2,width=1,height=1,point-step=24,"
+      "fields=(string)\"x:F64:0,y:F64:8,z:F64:16\",framerate=10/1");
+  EXPECT_NE(Push({1, 2, 3, 4, 5, 6}, 0), GST_FLOW_OK);
+  EXPECT_TRUE(HasError());
+}
+
+TEST_F(OddClouds, MayGoBackInTime) {
+  Start(kXyz);
+  for (const GstClockTime t : {5U, 4U, 3U, 100U, 0U})
+    EXPECT_EQ(Push({1, 2, 3, 4, 5, 6}, t * GST_SECOND), GST_FLOW_OK);
+}
+
+}  // namespace
+}  // namespace lidar::gst
