@@ -1,0 +1,124 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Runs scream-bench beside a greedy flow (tcp-flow) through lidar-link, over real sockets.
+
+Prints what each got of the link, and its loss. A case is KIND_QUEUE_RATE: cubic_fifo_10ms_20M,
+reno_fifo_5ms_20M, prague_ramp_20M, cubic_dualpi2_20M.
+"""
+import argparse
+import csv
+import json
+import os
+import pathlib
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+
+CASES = ["cubic_fifo_15ms_8M", "cubic_fifo_5ms_20M", "cubic_fifo_10ms_20M", "cubic_fifo_5ms_50M",
+         "cubic_fifo_10ms_50M", "cubic_fifo_20ms_20M", "cubic_fifo_100ms_20M", "prague_ramp_20M"]
+RTT_MS = 40
+SHORTEST_FIFO = 10 * 1500  # bytes
+START_S = 1.0  # of the other flow, after ours
+SETTLE_S = 10.0
+LINK_PORT, RX_PORT = 45204, 45304
+
+
+def parse_case(name):
+    """Kind of the other flow, options of the link, and the rate [bit/s]."""
+    parts = name.split("_")
+    kind, rate = parts[0], float(parts[-1].rstrip("M"))
+    options = ["--rate", str(rate), "--rtt", str(RTT_MS)]
+    if parts[1] == "fifo":
+        length = float(parts[2].removesuffix("ms"))
+        options += ["--aqm", "none", "--queue-bytes", str(int(max(SHORTEST_FIFO, rate * length * 125)))]
+    else:
+        options += ["--aqm", parts[1]]
+    return kind, options, rate * 1e6
+
+
+def start(command, log):
+    with open(log, "w") as out:
+        return subprocess.Popen([str(word) for word in command], stdout=out, stderr=out)
+
+
+def stop(processes):
+    for process in processes:
+        process.send_signal(signal.SIGINT)
+        time.sleep(0.2)
+    for process in processes:
+        try:
+            process.wait(timeout=5)
+        except subprocess.TimeoutExpired:
+            process.kill()
+            process.wait()
+
+
+def run(build, name, seconds, folder):
+    kind, options, _ = parse_case(name)
+    bench, link = build / "src/tools/scream-bench", build / "src/tools/lidar-link"
+    other = build / "tests/benchmarks/tcp-flow"
+    receivers = [start([bench, "rx", "--port", RX_PORT], folder / "rx.txt"),
+                 start([other, "rx", RX_PORT + 1], folder / "other_rx.txt")]
+    command = [link, "--quiet", "--log", folder / "link.csv", "--summary", folder / "link.json"] + options
+    for i in range(2):
+        command += ["--listen", f"127.0.0.1:{LINK_PORT + i}", "--forward", f"127.0.0.1:{RX_PORT + i}"]
+    relay = start(command, folder / "link.txt")
+    time.sleep(0.5)
+    senders = [start([bench, "tx", "--host", "127.0.0.1", "--port", LINK_PORT, "--ecn", "ect1", "--fps", 50,
+                      "--max-bitrate", "100M"], folder / "tx.txt")]
+    time.sleep(START_S)
+    senders.append(start([other, "tx", f"127.0.0.1:{LINK_PORT + 1}", "--kind", kind], folder / "other_tx.txt"))
+    time.sleep(seconds)
+    stop(senders + receivers + [relay])
+    return measure(folder, seconds)
+
+
+def measure(folder, seconds):
+    """Mbit/s and loss of both flows; ours was first."""
+    delivered, lost, sent = [0, 0], [0, 0], [0, 0]
+    sojourn = []
+    with open(folder / "link.csv") as log:
+        for row in csv.DictReader(log):
+            at, flow = float(row["time_s"]), min(int(row["flow"]), 1)
+            if at < SETTLE_S or at > seconds:
+                continue
+            sent[flow] += 1
+            if row["fate"] == "delivered":
+                delivered[flow] += int(row["size"])
+                sojourn.append(float(row["sojourn_ms"]))
+            else:
+                lost[flow] += 1
+    mbps = [b * 8 / 1e6 / (seconds - SETTLE_S) for b in delivered]
+    sojourn.sort()
+    return {"ours_mbps": mbps[0], "theirs_mbps": mbps[1],
+            "ratio": max(mbps) / max(min(mbps), 1e-3),
+            "our_loss": lost[0] / max(sent[0], 1), "their_loss": lost[1] / max(sent[1], 1),
+            "queue_p95_ms": sojourn[int(0.95 * len(sojourn))] if sojourn else 0.0}
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("cases", nargs="*", help="by default: " + " ".join(CASES))
+    parser.add_argument("--build", type=pathlib.Path, default=pathlib.Path(__file__).resolve().parents[2] / "build")
+    parser.add_argument("--seconds", type=float, default=60)
+    parser.add_argument("--json", help="write the figures there")
+    args = parser.parse_args()
+    os.environ["GST_PLUGIN_PATH_1_0"] = ":".join(str(p.parent) for p in (args.build / "gst").glob("*/libgst*.so"))
+    results = {}
+    print(f"{'case':22} {'ours':>6} {'theirs':>6} Mbit/s  {'ratio':>5}  {'our loss':>8} {'theirs':>6} %  queue p95 ms")
+    for name in args.cases or CASES:
+        with tempfile.TemporaryDirectory(prefix="beside-") as folder:
+            m = run(args.build, name, args.seconds, pathlib.Path(folder))
+        results[name] = m
+        print(f"{name:22} {m['ours_mbps']:6.1f} {m['theirs_mbps']:6.1f}         {m['ratio']:5.2f}  "
+              f"{100 * m['our_loss']:8.2f} {100 * m['their_loss']:6.2f}    {m['queue_p95_ms']:.1f}", flush=True)
+    if args.json:
+        with open(args.json, "w") as out:
+            json.dump(results, out, indent=2)
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
