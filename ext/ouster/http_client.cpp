@@ -15,23 +15,47 @@ namespace {
 
 constexpr long kConnectTimeoutMs = 2000;
 constexpr long kTimeoutMs = 5000;
-constexpr curl_off_t kMaxAnswer = ouster::Metadata::kMaxJsonSize;
+constexpr std::size_t kMaxBody = ouster::Metadata::kMaxJsonSize;
+constexpr std::size_t kMaxHeaders = 64U << 10;  // bytes
 
 struct Headers {
   curl_slist* list = curl_slist_append(nullptr, "Content-Type: application/json");
   ~Headers() { curl_slist_free_all(list); }
 };
 
-std::size_t Append(char* data, std::size_t size, std::size_t n, void* to) {
-  auto& body = *static_cast<std::string*>(to);
-  // A length that is not announced is bounded here.
-  if (body.size() + size * n > static_cast<std::size_t>(kMaxAnswer)) return 0;
-  body.append(data, size * n);
+/// What came of an answer.
+struct Answer {
+  std::string body;
+  std::size_t header_bytes = 0;
+  bool too_large = false;
+};
+
+/// Returning another size than was given ends the request.
+std::size_t TakeBody(char* data, std::size_t size, std::size_t n, void* to) {
+  auto& answer = *static_cast<Answer*>(to);
+  answer.too_large = answer.body.size() + size * n > kMaxBody;
+  if (answer.too_large) return 0;
+  answer.body.append(data, size * n);
   return size * n;
 }
 
-int Progress(void* cancelled, curl_off_t, curl_off_t, curl_off_t, curl_off_t) {
-  return *static_cast<std::atomic<bool>*>(cancelled) ? 1 : 0;
+std::size_t TakeHeader(char*, std::size_t size, std::size_t n, void* to) {
+  auto& answer = *static_cast<Answer*>(to);
+  answer.header_bytes += size * n;
+  answer.too_large = answer.header_bytes > kMaxHeaders;
+  return answer.too_large ? 0 : size * n;
+}
+
+/// Whom the client may talk to, and for how long.
+void SetBounds(CURL* curl) {
+  curl_easy_setopt(curl, CURLOPT_PROTOCOLS_STR, "http,https");
+  curl_easy_setopt(curl, CURLOPT_FOLLOWLOCATION, 0L);
+  curl_easy_setopt(curl, CURLOPT_NOPROXY, "*");
+  curl_easy_setopt(curl, CURLOPT_NOSIGNAL, 1L);
+  // Name servers that do not answer must not hold up the end of a request.
+  curl_easy_setopt(curl, CURLOPT_QUICK_EXIT, 1L);
+  curl_easy_setopt(curl, CURLOPT_CONNECTTIMEOUT_MS, kConnectTimeoutMs);
+  curl_easy_setopt(curl, CURLOPT_TIMEOUT_MS, kTimeoutMs);
 }
 
 bool IsHostCharacter(char c) {
@@ -66,9 +90,41 @@ std::unique_ptr<HttpClient> HttpClient::Create(const std::string& host, std::str
 }
 
 HttpClient::HttpClient(std::string base_url)
-    : base_url_(std::move(base_url)), curl_(curl_easy_init()) {}
+    : base_url_(std::move(base_url)), curl_(curl_easy_init()), multi_(curl_multi_init()) {}
 
-HttpClient::~HttpClient() { curl_easy_cleanup(curl_); }
+HttpClient::~HttpClient() {
+  curl_easy_cleanup(curl_);
+  curl_multi_cleanup(multi_);
+}
+
+void HttpClient::Cancel() {
+  cancelled_ = true;
+  if (multi_ != nullptr) curl_multi_wakeup(multi_);
+}
+
+/// Runs the request that was set up, until it ends or is cancelled; a CURLcode. curl_easy_perform()
+/// would look at cancelled_ once a second only.
+int HttpClient::Transfer() {
+  constexpr int kLongestWaitMs = 500;
+  CURLcode code = CURLE_ABORTED_BY_CALLBACK;
+  if (curl_multi_add_handle(multi_, curl_) != CURLM_OK) return CURLE_FAILED_INIT;
+  while (!cancelled_) {
+    int running = 0;
+    if (curl_multi_perform(multi_, &running) != CURLM_OK) {
+      code = CURLE_FAILED_INIT;
+      break;
+    }
+    if (running == 0) {
+      int left = 0;
+      const CURLMsg* message = curl_multi_info_read(multi_, &left);
+      code = message != nullptr ? message->data.result : CURLE_FAILED_INIT;
+      break;
+    }
+    curl_multi_poll(multi_, nullptr, 0, kLongestWaitMs, nullptr);
+  }
+  curl_multi_remove_handle(multi_, curl_);
+  return code;
+}
 
 std::string HttpClient::Escape(const std::string& text) {
   char* escaped = curl_easy_escape(curl_, text.data(), static_cast<int>(text.size()));
@@ -80,36 +136,35 @@ std::string HttpClient::Escape(const std::string& text) {
 
 HttpResponse HttpClient::Perform(const std::string& path, const std::string* json) {
   HttpResponse response;
+  if (curl_ == nullptr || multi_ == nullptr) {
+    response.error = "too little memory, or too few file descriptors, to ask " + base_url_;
+    return response;
+  }
   const std::string url = base_url_ + "/api/v1/" + path;
   std::array<char, CURL_ERROR_SIZE> message{};
   const Headers headers;
+  Answer answer;
   CURL* curl = curl_;
   curl_easy_reset(curl);  // keeps the connection
+  SetBounds(curl);
   curl_easy_setopt(curl, CURLOPT_URL, url.c_str());
-  curl_easy_setopt(curl, CURLOPT_PROTOCOLS_STR, "http,https");
-  curl_easy_setopt(curl, CURLOPT_FOLLOWLOCATION, 0L);
-  curl_easy_setopt(curl, CURLOPT_NOPROXY, "*");
-  curl_easy_setopt(curl, CURLOPT_NOSIGNAL, 1L);
-  // Name servers that do not answer must not hold up the end of a request.
-  curl_easy_setopt(curl, CURLOPT_QUICK_EXIT, 1L);
-  curl_easy_setopt(curl, CURLOPT_CONNECTTIMEOUT_MS, kConnectTimeoutMs);
-  curl_easy_setopt(curl, CURLOPT_TIMEOUT_MS, kTimeoutMs);
-  curl_easy_setopt(curl, CURLOPT_MAXFILESIZE_LARGE, kMaxAnswer);
   curl_easy_setopt(curl, CURLOPT_ERRORBUFFER, message.data());
-  curl_easy_setopt(curl, CURLOPT_WRITEFUNCTION, Append);
-  curl_easy_setopt(curl, CURLOPT_WRITEDATA, &response.body);
-  curl_easy_setopt(curl, CURLOPT_NOPROGRESS, 0L);
-  curl_easy_setopt(curl, CURLOPT_XFERINFOFUNCTION, Progress);
-  curl_easy_setopt(curl, CURLOPT_XFERINFODATA, &cancelled_);
+  curl_easy_setopt(curl, CURLOPT_WRITEFUNCTION, TakeBody);
+  curl_easy_setopt(curl, CURLOPT_WRITEDATA, &answer);
+  curl_easy_setopt(curl, CURLOPT_HEADERFUNCTION, TakeHeader);
+  curl_easy_setopt(curl, CURLOPT_HEADERDATA, &answer);
   if (json != nullptr) {
     curl_easy_setopt(curl, CURLOPT_POSTFIELDS, json->c_str());
     curl_easy_setopt(curl, CURLOPT_POSTFIELDSIZE, static_cast<long>(json->size()));
     curl_easy_setopt(curl, CURLOPT_HTTPHEADER, headers.list);
   }
-  const CURLcode code = curl_easy_perform(curl);
+  const auto code = static_cast<CURLcode>(Transfer());
   curl_easy_getinfo(curl, CURLINFO_RESPONSE_CODE, &response.status);
+  response.body = std::move(answer.body);
   response.ok = code == CURLE_OK && response.status >= 200 && response.status < 300;
-  if (code != CURLE_OK)
+  if (answer.too_large)
+    response.error = url + " answers with more than any sensor has to say";
+  else if (code != CURLE_OK)
     response.error =
         base_url_ + ": " + (message[0] != '\0' ? message.data() : curl_easy_strerror(code));
   else if (!response.ok)

@@ -32,15 +32,17 @@ class HttpClient {
     return Perform(path, &json);
   }
   std::string Escape(const std::string& text);
-  /// Ends the request under way, and every later one at once.
-  void Cancel() { cancelled_ = true; }
+  /// Ends the request under way, and every later one, at once.
+  void Cancel();
 
  private:
   explicit HttpClient(std::string base_url);
   HttpResponse Perform(const std::string& path, const std::string* json);
+  int Transfer();
 
   std::string base_url_;
-  void* curl_;  // CURL*
+  void* curl_;   // CURL*
+  void* multi_;  // CURLM*: the way to wait that Cancel() ends at once
   std::atomic<bool> cancelled_{false};
 };
 

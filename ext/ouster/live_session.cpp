@@ -3,9 +3,12 @@
 
 #include <netinet/in.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstring>
 #include <utility>
+
+#include "gst/common/refs.h"
 
 #include "ext/ouster/debug.h"
 
@@ -20,6 +23,14 @@ constexpr gint64 kCheckNs = 250 * GST_MSECOND;  // how often the silence is look
 constexpr gint64 kQuestionIntervalUs = 1'000'000;
 constexpr gint64 kWaitForMetadataUs = 2'000'000;  // of a sensor with a new init id
 constexpr guint kWrongSizesForQuestion = 4;
+
+/// What a server says, fit for a message: short, and UTF-8 as GStreamer asks of strings.
+std::string Readable(const std::string& text) {
+  constexpr gssize kLongest = 1000;  // bytes
+  const auto size = std::min(static_cast<gssize>(text.size()), kLongest);
+  const StringPtr valid(g_utf8_make_valid(text.data(), size));
+  return valid.get();
+}
 
 /// An IPv4 address as a mapped one, so that it is the same on every socket.
 ouster::Sender SenderOf(const NativeAddress& from) {
@@ -145,10 +156,10 @@ void LiveSession::Ask() {
 bool LiveSession::HandleAnswer(SensorLink::Result result) {
   if (result.metadata) {
     api_reported_ = false;
-    destination_ = result.destination;
+    destination_ = Readable(result.destination);
     return TakeMetadata(*std::move(result.metadata));
   }
-  const std::string& why = result.error.text;
+  const std::string why = Readable(result.error.text);
   if (result.error.permanent) {
     GST_ELEMENT_ERROR(element(), RESOURCE, SETTINGS, ("%s", why.c_str()),
                       ("of the sensor %s", settings().hostname.c_str()));

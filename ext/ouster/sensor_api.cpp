@@ -3,6 +3,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include "src/ouster/json_text.h"
+
 namespace lidar::gst {
 namespace {
 
@@ -13,8 +15,14 @@ constexpr const char* kAuto = "@auto";
 
 /// Empty where the text is no object.
 json ParseObject(const std::string& text) {
-  json root = json::parse(text, nullptr, /*allow_exceptions=*/false);
-  return root.is_object() ? root : json::object();
+  json root = ouster::ParseJsonObject(text);
+  if (root.is_discarded()) return json::object();
+  return root;
+}
+
+/// A property may hold bytes that are no UTF-8, which json::dump() refuses by throwing.
+std::string Write(const json& value) {
+  return value.dump(-1, ' ', false, json::error_handler_t::replace);
 }
 
 /// "180000,360000" [millidegrees]
@@ -112,7 +120,7 @@ bool SensorApi::WriteConfig(const std::string& text, ApiError* error) {
     for (const auto& [key, value] : parameters.items())
       response =
           client_.Get("sensor/cmd/set_config_param?args=" + key + "+" +
-                      client_.Escape(value.is_string() ? value.get<std::string>() : value.dump()));
+                      client_.Escape(value.is_string() ? value.get<std::string>() : Write(value)));
     if (response.ok) response = client_.Get("sensor/cmd/reinitialize");
   }
   if (response.ok) return true;
@@ -133,7 +141,7 @@ bool SensorApi::WaitUntilRunning(const std::function<bool()>& sleep, ApiError* e
     if (response.ok && info.is_object()) {
       const auto status = info.find("status");
       if (status == info.end() || *status == "RUNNING") return true;
-      last = status->dump();
+      last = Write(*status);
     }
     if (!sleep()) break;
   }
@@ -156,12 +164,12 @@ bool SensorApi::Configure(const OusterSettings& settings, const std::function<bo
   if (!text) return false;
   const json change = Missing(*wanted, ParseObject(*text));
   if (change.empty()) return true;
-  if (!WriteConfig(change.dump(), error) || !WaitUntilRunning(sleep, error)) return false;
+  if (!WriteConfig(Write(change), error) || !WaitUntilRunning(sleep, error)) return false;
   text = ReadConfig(/*staged=*/false, error);
   if (!text) return false;
   const json refused = Missing(*wanted, ParseObject(*text));
   if (refused.empty()) return true;
-  *error = {"the sensor did not take " + refused.dump(), true};
+  *error = {"the sensor did not take " + Write(refused), true};
   return false;
 }
 

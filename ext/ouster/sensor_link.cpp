@@ -2,6 +2,7 @@
 #include "ext/ouster/sensor_link.h"
 
 #include <algorithm>
+#include <system_error>
 #include <utility>
 
 namespace lidar::gst {
@@ -19,16 +20,20 @@ std::unique_ptr<SensorLink> SensorLink::Create(const OusterSettings& settings,
                                                std::function<void()> notify, std::string* error) {
   auto client = HttpClient::Create(settings.hostname, error);
   if (!client) return nullptr;
-  return std::unique_ptr<SensorLink>(
+  std::unique_ptr<SensorLink> link(
       new SensorLink(settings, std::move(client), std::move(notify)));
+  try {
+    link->thread_ = std::thread([raw = link.get()] { raw->Run(); });
+  } catch (const std::system_error& e) {
+    *error = std::string("Cannot start a thread to ask the sensor: ") + e.what();
+    return nullptr;
+  }
+  return link;
 }
 
 SensorLink::SensorLink(const OusterSettings& settings, std::unique_ptr<HttpClient> client,
                        std::function<void()> notify)
-    : settings_(settings),
-      client_(std::move(client)),
-      notify_(std::move(notify)),
-      thread_([this] { Run(); }) {}
+    : settings_(settings), client_(std::move(client)), notify_(std::move(notify)) {}
 
 SensorLink::~SensorLink() {
   {
@@ -37,7 +42,7 @@ SensorLink::~SensorLink() {
   }
   client_->Cancel();
   changed_.notify_all();
-  thread_.join();
+  if (thread_.joinable()) thread_.join();
 }
 
 void SensorLink::Request() {

@@ -21,8 +21,8 @@ class SensorLink {
     std::string destination;  // where the sensor sends its packets, where it says so
   };
 
-  /// Null and `error` for a hostname that is none. `notify` is called from the thread when there
-  /// is a result to take.
+  /// Null and `error` for a hostname that is none, or where there can be no thread. `notify` is
+  /// called from the thread when there is a result to take.
   static std::unique_ptr<SensorLink> Create(const OusterSettings& settings,
                                             std::function<void()> notify, std::string* error);
   ~SensorLink();

@@ -14,13 +14,15 @@
 namespace lidar::gst {
 namespace {
 
-/// None for what cannot be read; the start of what is larger than any file of ours.
-std::optional<std::string> ReadFile(const std::string& path) {
-  constexpr std::size_t kMaxSize = ouster::Metadata::kMaxJsonSize + 1;
+// 8 bit a pixel and a header: more than the largest scan has.
+constexpr std::size_t kMaxMaskSize = 32U << 20;
+
+/// None for what cannot be read; only the start of a file that is larger than `max_size`.
+std::optional<std::string> ReadFile(const std::string& path, std::size_t max_size) {
   constexpr std::size_t kPiece = 1U << 16;
   std::ifstream file(path, std::ios::binary);
   std::string text;
-  while (file && text.size() < kMaxSize) {
+  while (file && text.size() <= max_size) {
     const std::size_t size = text.size();
     text.resize(size + kPiece);
     file.read(&text[size], kPiece);
@@ -68,7 +70,7 @@ std::optional<ouster::Metadata> Session::LoadMetadata() {
                        "'curl http://SENSOR/api/v1/sensor/metadata' prints"));
     return std::nullopt;
   }
-  const auto text = ReadFile(path);
+  const auto text = ReadFile(path, ouster::Metadata::kMaxJsonSize);
   if (!text) {
     GST_ELEMENT_ERROR(element_, RESOURCE, NOT_FOUND, ("Cannot read the metadata %s", path.c_str()),
                       ("set the property metadata to the sensor's JSON file"));
@@ -87,7 +89,7 @@ bool Session::SetMetadata(ouster::Metadata metadata) {
   std::string why;
   auto options = ToStreamOptions(settings_, &why);
   if (options && !settings_.mask_location.empty()) {
-    const auto image = ReadFile(settings_.mask_location);
+    const auto image = ReadFile(settings_.mask_location, kMaxMaskSize);
     if (image) {
       options->points.mask_image.assign(image->begin(), image->end());
     } else {

@@ -6,12 +6,13 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "src/ouster/json_text.h"
+
 namespace lidar::ouster {
 namespace {
 
 using nlohmann::json;
 
-constexpr int kMaxDepth = 16;
 constexpr std::size_t kTransformSize = 16;
 constexpr double kMaxAngleDeg = 720;
 constexpr double kMaxTranslationMm = 100'000;
@@ -339,13 +340,8 @@ std::optional<Metadata> ParseMetadata(std::string_view text, std::string* error)
     *error = "it is larger than any sensor's metadata";
     return std::nullopt;
   }
-  bool too_deep = false;
-  const auto bound_depth = [&](int depth, json::parse_event_t, json&) {
-    too_deep = too_deep || depth > kMaxDepth;
-    return !too_deep;
-  };
-  const json root = json::parse(text, bound_depth, /*allow_exceptions=*/false);
-  if (root.is_discarded() || too_deep || !root.is_object()) {
+  const json root = ParseJsonObject(text);
+  if (root.is_discarded()) {
     *error = "it is not a JSON object";
     return std::nullopt;
   }

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <ctime>
 #include <nlohmann/json.hpp>
 
 #include "src/ouster/metadata_writer.h"
@@ -156,6 +157,40 @@ TEST(Metadata, WhatIsNoJsonObjectIsRefused) {
   for (int i = 0; i < 10'000; ++i) nested += "{\"a\":";
   EXPECT_FALSE(ParseMetadata(nested, &error));
   EXPECT_FALSE(ParseMetadata(std::string(Metadata::kMaxJsonSize + 1, ' '), &error));
+}
+
+/// As long as metadata may be, of `piece` over and over within an object.
+std::string Filled(const std::string& piece) {
+  std::string text = "{\"a\":[";
+  while (text.size() + 2 * piece.size() + 2 < Metadata::kMaxJsonSize) text += piece + ",";
+  return text + piece + "]}";
+}
+
+TEST(Metadata, TakesTimeLinearInItsSize) {
+  for (const char* piece : {"{}", "[]", "[[[[{}]]]]", "\"\"", "0", "{\"\":0}"}) {
+    const std::string text = Filled(piece);
+    const std::clock_t start = std::clock();
+    std::string error;
+    EXPECT_FALSE(ParseMetadata(text, &error));
+    const double seconds = static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
+    EXPECT_LT(seconds, 3) << piece;  // about 0.1
+    EXPECT_NE(error.find("columns_per_frame"), std::string::npos) << error;
+  }
+}
+
+TEST(Metadata, OfMoreThanAMebibyteIsNotLookedAt) {
+  const std::string text = test::ReadFile(test::DataPath("windowed_frame1_0.json"));
+  std::string error;
+  EXPECT_TRUE(ParseMetadata(text + std::string((1U << 20) - text.size(), ' '), &error)) << error;
+  EXPECT_FALSE(ParseMetadata(text + std::string((1U << 20) + 1 - text.size(), ' '), &error));
+  EXPECT_NE(error.find("larger than any"), std::string::npos) << error;
+}
+
+TEST(Metadata, BracketsWithinStringsAreNoDepth) {
+  json root = Load("windowed_frame1_0.json");
+  root["remark"] = std::string(50, '[') + "\\\"" + std::string(50, '{');
+  std::string error;
+  EXPECT_TRUE(Parse(root, &error)) << error;
 }
 
 }  // namespace

@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// A TCP server that answers every request as the test says, in ways that no sensor would.
+#pragma once
+#include <arpa/inet.h>
+#include <gtest/gtest.h>
+#include <poll.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include <atomic>
+#include <chrono>
+#include <functional>
+#include <string>
+#include <thread>
+#include <utility>
+
+namespace lidar::test {
+
+/// One connection.
+class Exchange {
+ public:
+  Exchange(int fd, const std::atomic<bool>& stopping) : fd_(fd), stopping_(stopping) {}
+  /// False once the client has left or the test is over.
+  bool Send(const std::string& text) const {
+    return !stopping_ && send(fd_, text.data(), text.size(), MSG_NOSIGNAL) > 0;
+  }
+  /// An answer of status 200 with that body.
+  bool Answer(const std::string& body) const {
+    std::string text =
+        "HTTP/1.1 200 OK\r\nContent-Length: " + std::to_string(body.size()) + "\r\n\r\n" + body;
+    while (!text.empty()) {
+      const ssize_t sent = stopping_ ? -1 : send(fd_, text.data(), text.size(), MSG_NOSIGNAL);
+      if (sent <= 0) return false;
+      text.erase(0, static_cast<std::size_t>(sent));
+    }
+    return true;
+  }
+  bool Wait(std::chrono::milliseconds time) const {
+    std::this_thread::sleep_for(time);
+    return !stopping_;
+  }
+
+ private:
+  int fd_;
+  const std::atomic<bool>& stopping_;
+};
+
+class HostileServer {
+ public:
+  using Behaviour = std::function<void(const Exchange&)>;
+
+  /// `behave` is called with each request and ends with the connection.
+  explicit HostileServer(Behaviour behave)
+      : behave_(std::move(behave)), listener_(socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0)) {
+    sockaddr_in address{};
+    address.sin_family = AF_INET;
+    address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+    EXPECT_EQ(bind(listener_, reinterpret_cast<sockaddr*>(&address), sizeof address), 0);
+    EXPECT_EQ(listen(listener_, 8), 0);
+    socklen_t size = sizeof address;
+    getsockname(listener_, reinterpret_cast<sockaddr*>(&address), &size);
+    port_ = ntohs(address.sin_port);
+    thread_ = std::thread([this] { Run(); });
+  }
+  ~HostileServer() {
+    stopping_ = true;
+    thread_.join();
+    close(listener_);
+  }
+  HostileServer(const HostileServer&) = delete;
+  HostileServer& operator=(const HostileServer&) = delete;
+
+  std::string host() const { return "127.0.0.1:" + std::to_string(port_); }
+  int requests() const { return requests_; }
+
+ private:
+  static bool Readable(int fd) {
+    pollfd wanted{fd, POLLIN, 0};
+    return poll(&wanted, 1, 20) > 0;
+  }
+  void Run() {
+    while (!stopping_) {
+      if (!Readable(listener_)) continue;
+      const int fd = accept4(listener_, nullptr, nullptr, SOCK_CLOEXEC);
+      if (fd < 0) continue;
+      const timeval patience{0, 100'000};  // of a send to a client that does not read
+      setsockopt(fd, SOL_SOCKET, SO_SNDTIMEO, &patience, sizeof patience);
+      char request[4096];
+      while (!stopping_ && !Readable(fd)) continue;
+      if (!stopping_ && recv(fd, request, sizeof request, 0) > 0) {
+        ++requests_;
+        behave_(Exchange(fd, stopping_));
+      }
+      close(fd);
+    }
+  }
+
+  const Behaviour behave_;
+  const int listener_;
+  int port_ = 0;
+  std::atomic<bool> stopping_{false};
+  std::atomic<int> requests_{0};
+  std::thread thread_;
+};
+
+}  // namespace lidar::test

@@ -1,0 +1,141 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// HTTP servers that are no sensor, but stand where one is expected: the element says so, stays
+// within its bounds and stops when it is told to.
+#include <ctime>
+
+#include "tests/elements/ouster/hostile_server.h"
+#include "tests/elements/ouster/live_receiver.h"
+#include "tests/support/scarce_threads.h"
+
+namespace lidar::test {
+namespace {
+
+using std::chrono::milliseconds;
+
+constexpr std::size_t kMebibyte = std::size_t{1} << 20;
+constexpr const char* kOk = "HTTP/1.1 200 OK\r\n";
+
+std::string Repeat(const std::string& piece, std::size_t bytes) {
+  std::string text;
+  while (text.size() + piece.size() <= bytes) text += piece;
+  return text;
+}
+
+struct Attack {
+  const char* name;
+  HostileServer::Behaviour behave;
+};
+void PrintTo(const Attack& attack, std::ostream* to) { *to << attack.name; }
+
+const Attack kAttacks[] = {
+    {"NeverAnswers",
+     [](const Exchange& e) {
+       while (e.Wait(milliseconds(20))) continue;
+     }},
+    {"AnswersAByteATime",
+     [](const Exchange& e) {
+       e.Send("HTTP/1.1 200 OK\r\nContent-Length: 1000000\r\n\r\n");
+       while (e.Send(" ") && e.Wait(milliseconds(20))) continue;
+     }},
+    {"SendsHeadersWithoutEnd",
+     [](const Exchange& e) {
+       const std::string header = "X-Pad: " + std::string(1000, 'x') + "\r\n";
+       e.Send(kOk);
+       while (e.Send(header)) continue;
+     }},
+    {"SendsABodyWithoutEnd",
+     [](const Exchange& e) {
+       e.Send(std::string(kOk) + "\r\n");
+       const std::string piece(65536, '[');
+       while (e.Send(piece)) continue;
+     }},
+    {"AnnouncesMoreThanThereIsMemory",
+     [](const Exchange& e) {
+       e.Send(std::string(kOk) + "Content-Length: 1000000000000\r\n\r\n");
+       while (e.Send(std::string(65536, ' '))) continue;
+     }},
+    {"SendsAMebibyteOfObjects",
+     [](const Exchange& e) { e.Answer("{\"a\":[" + Repeat("{},", kMebibyte - 20) + "{}]}"); }},
+    {"SendsAMebibyteOfDepth",
+     [](const Exchange& e) { e.Answer(Repeat("{\"sensor_info\":", kMebibyte)); }},
+    {"SendsAMebibyteOfClosedDepth",
+     [](const Exchange& e) {
+       const std::size_t levels = kMebibyte / 18;
+       std::string text;
+       for (std::size_t i = 0; i < levels; ++i) text += "{\"sensor_info\":";
+       e.Answer(text + "1" + std::string(levels, '}'));
+     }},
+    {"SendsWhatIsNoText",
+     [](const Exchange& e) { e.Send("HTTP/1.1 400 \xff\xfe\r\nContent-Length: 3\r\n\r\n\xff\xfe\xfd"); }},
+    {"ClosesAtOnce", [](const Exchange&) {}},
+};
+
+class OusterServer : public ::testing::TestWithParam<Attack> {};
+
+/// Of the pipeline with its sensor there, from the request for the state to the change.
+double SecondsToStop(Receiver* receiver) {
+  const gint64 start = g_get_monotonic_time();
+  receiver->SetState(GST_STATE_NULL);
+  return static_cast<double>(g_get_monotonic_time() - start) / G_USEC_PER_SEC;
+}
+
+void AwaitRequest(const HostileServer& server) {
+  for (int i = 0; i < 3000 && server.requests() == 0; ++i) g_usleep(10'000);
+  ASSERT_GT(server.requests(), 0);
+}
+
+TEST_P(OusterServer, DoesNotKeepTheElementFromStopping) {
+  const HostileServer server(GetParam().behave);
+  for (const guint wait_ms : {0U, 50U, 300U}) {
+    Receiver receiver(server.host(), "");
+    AwaitRequest(server);
+    g_usleep(wait_ms * 1000);
+    EXPECT_LT(SecondsToStop(&receiver), 1) << wait_ms;
+  }
+}
+
+TEST_P(OusterServer, DoesNotKeepAReconfigurationFromStopping) {
+  const HostileServer server(GetParam().behave);
+  Receiver receiver(server.host(), "udp-dest=@auto lidar-mode=1024x10");
+  AwaitRequest(server);
+  g_usleep(100'000);
+  EXPECT_LT(SecondsToStop(&receiver), 1);
+}
+
+TEST_P(OusterServer, IsSaidToBeNoSensor) {
+  const HostileServer server(GetParam().behave);
+  Receiver receiver(server.host(), "reconnect=false");
+  const std::clock_t start = std::clock();
+  const std::string error = receiver.AwaitError();
+  EXPECT_TRUE(error.find(server.host()) != std::string::npos ||
+              error.find("the sensor did not take") != std::string::npos)
+      << error;
+  // What the answer costs, that of the test's own server included.
+  EXPECT_LT(static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC, 6);
+}
+
+INSTANTIATE_TEST_SUITE_P(All, OusterServer, ::testing::ValuesIn(kAttacks),
+                         [](const ::testing::TestParamInfo<Attack>& attack) {
+                           return std::string(attack.param.name);
+                         });
+
+TEST(OusterThread, ThatCannotBeStartedIsAnElementError) {
+  const gst::ElementPtr source(
+      GST_ELEMENT(gst_object_ref_sink(gst_element_factory_make("ouster_src", nullptr))));
+  g_object_set(source.get(), "hostname", "127.0.0.1:1", nullptr);
+  GstBus* bus = gst_bus_new();
+  gst_element_set_bus(source.get(), bus);
+  {
+    const ScarceThreads scarce;
+    EXPECT_EQ(gst_element_set_state(source.get(), GST_STATE_PAUSED), GST_STATE_CHANGE_FAILURE);
+  }
+  const gst::MessagePtr message(gst_bus_pop_filtered(bus, GST_MESSAGE_ERROR));
+  ASSERT_TRUE(message);
+  EXPECT_NE(TextOf(message.get()).find("Cannot start a thread"), std::string::npos);
+  gst_element_set_state(source.get(), GST_STATE_NULL);
+  gst_element_set_bus(source.get(), nullptr);
+  gst_object_unref(bus);
+}
+
+}  // namespace
+}  // namespace lidar::test

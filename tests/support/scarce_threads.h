@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// A machine on which the calling thread can start no other: pthread_create() of the test program
+// stands before that of libc. Include it in one file of a program.
+#pragma once
+#include <dlfcn.h>
+#include <pthread.h>
+
+#include <cerrno>
+
+namespace lidar::test {
+
+inline thread_local bool no_more_threads = false;
+
+/// No thread starts from this one while it lives.
+class ScarceThreads {
+ public:
+  ScarceThreads() { no_more_threads = true; }
+  ~ScarceThreads() { no_more_threads = false; }
+  ScarceThreads(const ScarceThreads&) = delete;
+  ScarceThreads& operator=(const ScarceThreads&) = delete;
+};
+
+}  // namespace lidar::test
+
+extern "C" int pthread_create(pthread_t* thread, const pthread_attr_t* attributes,
+                              void* (*run)(void*), void* argument) {
+  using Create = int (*)(pthread_t*, const pthread_attr_t*, void* (*)(void*), void*);
+  static const auto next = reinterpret_cast<Create>(dlsym(RTLD_NEXT, "pthread_create"));
+  if (lidar::test::no_more_threads) return EAGAIN;
+  return next(thread, attributes, run, argument);
+}
