@@ -4,6 +4,7 @@
 #include <pcap/pcap.h>
 
 #include <cstdio>
+#include <filesystem>
 #include <vector>
 
 #include "src/base/byte_writer.h"
@@ -15,6 +16,12 @@ constexpr int kSnapLength = 262'144;
 constexpr std::size_t kMaxPayload = 65'507;
 constexpr std::uint32_t kSensor = 0x0a000002;    // 10.0.0.2
 constexpr std::uint32_t kReceiver = 0x0a000001;  // 10.0.0.1
+
+/// Never a device or a pipe.
+void RemoveFile(const std::string& path) {
+  std::error_code ignored;
+  if (std::filesystem::is_regular_file(path, ignored)) std::filesystem::remove(path, ignored);
+}
 
 std::uint16_t HeaderChecksum(const std::uint8_t* header, std::size_t size) {
   std::uint32_t sum = 0;
@@ -53,15 +60,27 @@ std::unique_ptr<PcapWriter> PcapWriter::Open(const std::string& path, std::strin
   pcap* handle =
       pcap_open_dead_with_tstamp_precision(DLT_EN10MB, kSnapLength, PCAP_TSTAMP_PRECISION_NANO);
   pcap_dumper* dumper = handle != nullptr ? pcap_dump_open(handle, path.c_str()) : nullptr;
-  if (dumper != nullptr) return std::unique_ptr<PcapWriter>(new PcapWriter(handle, dumper));
+  if (dumper != nullptr) return std::unique_ptr<PcapWriter>(new PcapWriter(path, handle, dumper));
   *error = handle != nullptr ? pcap_geterr(handle) : "no memory";
   if (handle != nullptr) pcap_close(handle);
   return nullptr;
 }
 
 PcapWriter::~PcapWriter() {
-  pcap_dump_close(dumper_);
+  if (dumper_ != nullptr) {
+    pcap_dump_close(dumper_);
+    RemoveFile(path_);
+  }
   pcap_close(handle_);
+}
+
+bool PcapWriter::Close() {
+  if (dumper_ == nullptr) return true;
+  const bool whole = std::ferror(pcap_dump_file(dumper_)) == 0 && pcap_dump_flush(dumper_) == 0;
+  pcap_dump_close(dumper_);
+  dumper_ = nullptr;
+  if (!whole) RemoveFile(path_);
+  return whole;
 }
 
 bool PcapWriter::Write(Time captured, std::uint16_t port, ByteView payload) {

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <memory>
 #include <string>
+#include <utility>
 
 #include "src/base/byte_reader.h"
 #include "src/base/time.h"
@@ -24,12 +25,17 @@ class PcapWriter {
   /// An Ethernet frame with IPv4, however large. False where the disk is full, or the payload is
   /// larger than UDP can carry.
   bool Write(Time captured, std::uint16_t port, ByteView payload);
+  /// To be called at the end; false where the disk is full. A capture that is not closed well is
+  /// taken away.
+  bool Close();
 
  private:
-  PcapWriter(pcap* handle, pcap_dumper* dumper) : handle_(handle), dumper_(dumper) {}
+  PcapWriter(std::string path, pcap* handle, pcap_dumper* dumper)
+      : path_(std::move(path)), handle_(handle), dumper_(dumper) {}
 
+  const std::string path_;
   pcap* handle_;
-  pcap_dumper* dumper_;
+  pcap_dumper* dumper_;  // null once it is closed
 };
 
 }  // namespace lidar::ouster

@@ -151,6 +151,7 @@ void WriteCapture(const ScanSet& set, const ouster::Metadata& m, const std::stri
         throw std::runtime_error("cannot write " + path);
     }
   }
+  if (!file->Close()) throw std::runtime_error("cannot write " + path);
 }
 
 }  // namespace lidar::tools

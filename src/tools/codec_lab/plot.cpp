@@ -4,23 +4,18 @@
 #include <cstdarg>
 #include <cstdio>
 #include <stdexcept>
+#include <utility>
 
 namespace lidar::tools {
 
-CsvFile::CsvFile(const std::string& path, const std::string& header) : path_(path) {
-  if (path.empty()) return;
-  file_.open(path);
-  if (!file_) throw std::runtime_error("cannot write " + path);
-  Row(header);
-}
+CsvFile::CsvFile(const std::string& path, const std::string& header)
+    : header_(header + '\n'), file_(path, OutputFile::Rest::kKeepRows) {}
 
 void CsvFile::Row(const std::string& row) {
-  if (!path_.empty()) file_ << row << '\n';
+  if (file_.is_open()) file_.stream() << std::exchange(header_, {}) << row << '\n';
 }
 
-void CsvFile::Close() {
-  if (!path_.empty() && !file_.flush()) throw std::runtime_error("cannot write " + path_);
-}
+void CsvFile::Close() { file_.Close(); }
 
 void Plot(const std::string& png, const std::string& commands) {
   std::FILE* gnuplot = popen("gnuplot", "w");

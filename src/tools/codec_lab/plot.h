@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // CSV files and the plots of them, drawn by gnuplot.
 #pragma once
-#include <fstream>
 #include <string>
+
+#include "src/tools/common/output_file.h"
 
 namespace lidar::tools {
 
@@ -16,8 +17,8 @@ class CsvFile {
   void Close();
 
  private:
-  std::string path_;
-  std::ofstream file_;
+  std::string header_;  // until it is written, with the first row
+  OutputFile file_;
 };
 
 /// Runs `commands` after the settings for a PNG at `png`. Throws where gnuplot is missing or fails.

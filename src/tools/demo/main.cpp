@@ -5,6 +5,7 @@
 #include <CLI/CLI.hpp>
 #include <cstdio>
 
+#include "src/tools/common/version.h"
 #include "src/tools/demo/coordinator.h"
 #include "src/tools/demo/ends.h"
 
@@ -13,6 +14,7 @@ namespace {
 int Run(int argc, char** argv) {
   CLI::App app{"lidar-demo: streams LiDAR through a bottleneck link and measures both ends.",
                "lidar-demo"};
+  lidar::tools::AddVersionFlag(&app, "lidar-demo");
   app.require_subcommand(1);
   lidar::demo::RunOptions options;
   auto* run = app.add_subcommand("run", "Start sender, link and receiver; write a report");

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "gst/common/refs.h"
+#include "src/tools/common/version.h"
 
 namespace {
 
@@ -186,6 +187,7 @@ int main(int argc, char** argv) {
       "Runs a pipeline, written as for gst-launch-1.0, whose dtlssrtpdec and dtlssrtpenc have a "
       "certificate of ours and trust one of the peer.\n"
       "Ends with 3 where the peer has another one: before there are keys, so nothing was sent.");
+  lidar::tools::AddVersionFlag(&app, "lidar-dtls-launch");
   Options options;
   app.add_option("--certificate", options.certificate, "Our certificate and private key, PEM")
       ->required();

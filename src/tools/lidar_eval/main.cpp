@@ -2,10 +2,12 @@
 // lidar-eval: what an error bound costs, and how well a bitrate is hit.
 #include <iostream>
 
+#include "src/tools/common/version.h"
 #include "src/tools/lidar_eval/commands.h"
 
 int main(int argc, char** argv) {
   CLI::App app("Measures the codec and the rate control on captures, clouds and synthetic drives.");
+  lidar::tools::AddVersionFlag(&app, "lidar-eval");
   app.require_subcommand(1);
   lidar::tools::AddBoundsCommand(&app);
   lidar::tools::AddRateDistortionCommand(&app);

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // lidar-eval to-pcap: clouds of any sensor as an Ouster capture.
 #include <cstdio>
-#include <fstream>
 #include <memory>
 #include <stdexcept>
 
 #include "src/ouster/metadata_writer.h"
 #include "src/tools/codec_lab/packet_recording.h"
 #include "src/tools/codec_lab/scan_source.h"
+#include "src/tools/common/output_file.h"
 #include "src/tools/lidar_eval/commands.h"
 
 namespace lidar::tools {
@@ -47,10 +47,13 @@ void Run(const Options& o) {
   for (const Scan& scan : set.scans)
     for (const std::uint32_t range : scan.ranges) kept += range != 0 ? 1 : 0;
   const ouster::Metadata metadata = MetadataOf(set);
-  std::ofstream json(MetadataPath(o));
-  json << ouster::WriteMetadata(metadata);
-  if (!json.flush()) throw std::runtime_error("cannot write " + MetadataPath(o));
   WriteCapture(set, metadata, o.output);
+  try {
+    WriteFile(MetadataPath(o), ouster::WriteMetadata(metadata));
+  } catch (const std::runtime_error&) {
+    RemoveFile(o.output);  // nobody could read it
+    throw;
+  }
   std::printf("%s: %zu scans of %zu beams x %u columns, %zu returns", o.output.c_str(),
               set.scans.size(), metadata.model.beams.size(), metadata.model.columns_per_scan, kept);
   if (points > 0)

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // lidar-link: a UDP relay that is a 5G-like bottleneck.
 #include <cstdio>
-#include <fstream>
 #include <iostream>
 
 #include "src/tools/common/event_loop.h"
+#include "src/tools/common/output_file.h"
 #include "src/tools/lidar_link/options.h"
 #include "src/tools/lidar_link/recorder.h"
 #include "src/tools/lidar_link/relay.h"
@@ -27,15 +27,11 @@ void PrintLive(const LinkOptions& options, const nlohmann::ordered_json& line) {
   std::fflush(stdout);
 }
 
-bool WriteSummary(const std::string& name, const nlohmann::ordered_json& summary) {
-  if (name.empty()) return true;
-  if (name == "-") {
+void WriteSummary(const std::string& name, const nlohmann::ordered_json& summary) {
+  if (name == "-")
     std::cout << summary.dump(2) << std::endl;
-    return true;
-  }
-  std::ofstream file(name);
-  file << summary.dump(2) << '\n';
-  return static_cast<bool>(file.flush());
+  else if (!name.empty())
+    WriteFile(name, summary.dump(2) + "\n");
 }
 
 int Run(const LinkOptions& options) {
@@ -64,10 +60,9 @@ int Run(const LinkOptions& options) {
     }
     loop.SetWakeUp(wake_up);
   });
-  if (WriteSummary(options.summary, recorder.Summary(Now(), relay.there(), options.there.capacity)))
-    return 0;
-  std::cerr << "lidar-link: cannot write " << options.summary << '\n';
-  return 1;
+  WriteSummary(options.summary, recorder.Summary(Now(), relay.there(), options.there.capacity));
+  recorder.Close();
+  return 0;
 }
 
 }  // namespace

@@ -6,6 +6,8 @@
 #include <map>
 #include <sstream>
 
+#include "src/tools/common/version.h"
+
 namespace lidar::tools {
 namespace {
 
@@ -185,6 +187,7 @@ LinkOptions ParseLinkOptions(int argc, char** argv) {
       "their ECN bits, or CE where the queue marks them; what the receiver answers goes back to\n"
       "the sender. Every sender address is a flow of its own; all share the bottleneck.\n",
       "lidar-link"};
+  AddVersionFlag(&app, "lidar-link");
   app.footer(
       "Example: a 5G-like link between screamsink port=5004 and screamsrc port=5006\n"
       "  lidar-link --listen 5004 --forward 127.0.0.1:5006 --steps 12,6,9 --rtt 40 --aqm ramp");

@@ -3,7 +3,6 @@
 
 #include <cinttypes>
 #include <cstdio>
-#include <stdexcept>
 
 namespace lidar::tools {
 namespace {
@@ -56,12 +55,10 @@ nlohmann::ordered_json EcnCounts(const std::array<std::uint64_t, 4>& n) {
 
 }  // namespace
 
-Recorder::Recorder(const std::string& log) {
-  if (log.empty()) return;
-  log_.open(log);
-  if (!log_) throw std::runtime_error("cannot write " + log);
-  log_ << "time_s,unix_ns,flow,size,rtp_seq,rtp_timestamp,marker,ecn_in,ecn_out,fate,sojourn_ms,"
-          "delay_ms\n";
+Recorder::Recorder(const std::string& log) : log_(log, OutputFile::Rest::kKeepRows) {
+  log_.stream()
+      << "time_s,unix_ns,flow,size,rtp_seq,rtp_timestamp,marker,ecn_in,ecn_out,fate,sojourn_ms,"
+         "delay_ms\n";
 }
 
 void Recorder::Start(Time origin, Duration unix_offset) {
@@ -99,7 +96,7 @@ void Recorder::OnPacket(const PacketRecord& record) {
       bytes, rtp.sequence, rtp.timestamp, rtp.marker, static_cast<int>(record.ecn_in),
       static_cast<int>(o.packet.ecn), Name(o.fate), Milliseconds(o.sojourn),
       Milliseconds(o.arrival - o.sent));
-  log_.write(line, n);
+  log_.stream().write(line, n);
 }
 
 void Recorder::OnFeedback(bool delivered, std::size_t bytes) {

@@ -3,7 +3,6 @@
 #pragma once
 #include <array>
 #include <cstdint>
-#include <fstream>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
@@ -12,6 +11,7 @@
 #include "src/base/time.h"
 #include "src/link/bottleneck.h"
 #include "src/tools/common/distribution.h"
+#include "src/tools/common/output_file.h"
 
 namespace lidar::tools {
 
@@ -27,6 +27,8 @@ class Recorder {
  public:
   /// `log`: file name or empty. Throws std::runtime_error where it cannot be written.
   explicit Recorder(const std::string& log);
+  /// Ends the log; throws std::runtime_error where it could not be written whole.
+  void Close() { log_.Close(); }
 
   void Start(Time origin, Duration unix_offset);
   void OnPacket(const PacketRecord& record);
@@ -49,7 +51,7 @@ class Recorder {
     std::uint64_t marked = 0;
   };
 
-  std::ofstream log_;
+  OutputFile log_;
   Time origin_;
   Duration unix_offset_{0};
   Time live_since_;

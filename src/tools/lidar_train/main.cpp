@@ -2,7 +2,6 @@
 // lidar-train: fits the rate models to captures, clouds and synthetic drives.
 #include <CLI/CLI.hpp>
 #include <cstdio>
-#include <fstream>
 #include <iostream>
 #include <map>
 
@@ -11,6 +10,8 @@
 #include "src/tools/codec_lab/scan_source.h"
 #include "src/tools/codec_lab/slice_codec.h"
 #include "src/tools/codec_lab/training.h"
+#include "src/tools/common/output_file.h"
+#include "src/tools/common/version.h"
 
 namespace lidar::tools {
 namespace {
@@ -31,6 +32,7 @@ Options ParseOptions(int argc, char** argv) {
       "Fits the models that predict the size of an encoded slice: encodes slices at random\n"
       "settings, prints how well the fits predict them and slices they were not fitted to\n"
       "(each source left out in turn), and writes the file for dracoenc model-location=.");
+  AddVersionFlag(&app, "lidar-train");
   app.option_defaults()->always_capture_default();
   app.add_option("SOURCE", o.sources, kSourceHelp)->required();
   app.add_option("-o,--output", o.output, "Model file to write (JSON)");
@@ -130,11 +132,8 @@ int Run(const Options& options) {
     return 1;
   }
   if (options.output.empty()) return 0;
-  std::ofstream out(options.output);
-  out << rate::WriteModelFile(file);
-  if (out.flush()) return 0;
-  std::cerr << "lidar-train: cannot write " << options.output << '\n';
-  return 1;
+  WriteFile(options.output, rate::WriteModelFile(file));
+  return 0;
 }
 
 }  // namespace

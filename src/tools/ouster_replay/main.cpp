@@ -9,6 +9,7 @@
 #include "src/ouster/metadata_writer.h"
 #include "src/ouster/pcap_writer.h"
 #include "src/tools/common/event_loop.h"
+#include "src/tools/common/output_file.h"
 #include "src/tools/ouster_replay/http_api.h"
 #include "src/tools/ouster_replay/options.h"
 #include "src/tools/ouster_replay/pcap_stream.h"
@@ -100,6 +101,7 @@ int WriteFiles(const ReplayOptions& options, const ouster::Metadata& metadata) {
                        {packet->bytes.data(), packet->bytes.size()}))
       throw std::runtime_error("cannot write " + options.write_pcap);
   }
+  if (!writer->Close()) throw std::runtime_error("cannot write " + options.write_pcap);
   return 0;
 }
 
@@ -137,11 +139,8 @@ int Serve(const ReplayOptions& options, const ouster::Metadata& metadata) {
 
 int Run(const ReplayOptions& options) {
   const ouster::Metadata metadata = FirstMetadata(options);
-  if (!options.write_metadata.empty()) {
-    std::ofstream file(options.write_metadata);
-    file << ouster::WriteMetadata(metadata);
-    if (!file.flush()) throw std::runtime_error("cannot write " + options.write_metadata);
-  }
+  if (!options.write_metadata.empty())
+    WriteFile(options.write_metadata, ouster::WriteMetadata(metadata));
   if (!options.write_pcap.empty()) return WriteFiles(options, metadata);
   return Serve(options, metadata);
 }

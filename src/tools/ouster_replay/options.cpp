@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <map>
 
+#include "src/tools/common/version.h"
 #include "src/tools/ouster_replay/faults.h"
 
 namespace lidar::tools {
@@ -124,6 +125,7 @@ ReplayOptions ParseReplayOptions(int argc, char** argv) {
   CLI::App app(
       "An Ouster sensor in software: sends a capture, or a drive through a synthetic world, as "
       "lidar and IMU packets, answers the HTTP API, and misbehaves on request.");
+  AddVersionFlag(&app, "ouster-replay");
   AddSource(&app, &options, &text);
   AddSending(&app, &options);
   AddFaults(&app, &text);

@@ -3,6 +3,8 @@
 
 #include <CLI/CLI.hpp>
 
+#include "src/tools/common/version.h"
+
 namespace lidar::tools {
 namespace {
 
@@ -65,6 +67,7 @@ BenchOptions ParseBenchOptions(int argc, char** argv) {
       "Unix time at the frame's creation, so that the receiver knows the frames' age where both\n"
       "clocks agree (else: their age over the youngest).",
       "scream-bench");
+  AddVersionFlag(&app, "scream-bench");
   app.footer(
       "Example, in two terminals:\n"
       "  scream-bench rx --port 5004\n"

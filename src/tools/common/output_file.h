@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Files that programs write, and what is left of them on a full disk.
+#pragma once
+#include <fstream>
+#include <string>
+
+namespace lidar::tools {
+
+/// Throws std::runtime_error, with the path and the reason, where the file cannot be written.
+class OutputFile {
+ public:
+  /// What stays of a file that cannot be written whole, or is not closed. Nothing that is empty
+  /// stays, and nothing but a regular file is ever taken away.
+  enum class Rest { kRemove, kKeepRows };
+
+  /// An empty path writes nothing.
+  explicit OutputFile(std::string path, Rest rest = Rest::kRemove);
+  ~OutputFile();
+  OutputFile(const OutputFile&) = delete;
+  OutputFile& operator=(const OutputFile&) = delete;
+
+  bool is_open() const { return file_.is_open(); }
+  std::ostream& stream() { return file_; }
+  /// To be called at the end: a full disk shows up here.
+  void Close();
+
+ private:
+  void RemoveRest();
+
+  const std::string path_;
+  const Rest rest_;
+  std::ofstream file_;
+};
+
+/// Writes all of the file, or leaves none.
+void WriteFile(const std::string& path, const std::string& text);
+
+/// Takes a file away that is not whole, if it is a regular one.
+void RemoveFile(const std::string& path);
+
+}  // namespace lidar::tools
