@@ -8,14 +8,12 @@
 #include <cctype>
 #include <utility>
 
-#include "src/ouster/metadata.h"
-
 namespace lidar::gst {
 namespace {
 
 constexpr long kConnectTimeoutMs = 2000;
 constexpr long kTimeoutMs = 5000;
-constexpr std::size_t kMaxBody = ouster::Metadata::kMaxJsonSize;
+constexpr std::size_t kMaxBody = 1U << 20;      // bytes
 constexpr std::size_t kMaxHeaders = 64U << 10;  // bytes
 
 struct Headers {

@@ -2,11 +2,14 @@
 #include "ext/ouster/live_session.h"
 
 #include <netinet/in.h>
+#include <sys/eventfd.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <cerrno>
 #include <cstring>
 #include <utility>
+#include <vector>
 
 #include "gst/common/refs.h"
 
@@ -48,6 +51,18 @@ ouster::Sender SenderOf(const NativeAddress& from) {
   return sender;
 }
 
+/// Whether the process may open so many more files. GLib aborts where it finds none for itself.
+bool CanOpenFiles(std::size_t count) {
+  std::vector<int> files;
+  while (files.size() < count) {
+    const int fd = eventfd(0, EFD_CLOEXEC);
+    if (fd < 0) break;
+    files.push_back(fd);
+  }
+  for (const int fd : files) close(fd);
+  return files.size() == count;
+}
+
 }  // namespace
 
 LiveSession::LiveSession(GstBaseSrc* element, const OusterSettings& settings)
@@ -57,6 +72,23 @@ LiveSession::LiveSession(GstBaseSrc* element, const OusterSettings& settings)
 LiveSession::~LiveSession() { link_.reset(); }
 
 bool LiveSession::Open() {
+  constexpr std::size_t kFilesOfLink = 6;    // sockets of HTTP and of the resolver
+  constexpr std::size_t kFilesOfFeed = 5;    // two sockets and what wakes their readers
+  constexpr std::size_t kFilesOfOthers = 4;  // of the application's main loop
+  const std::size_t wanted =
+      kFilesOfFeed + kFilesOfOthers + (settings().hostname.empty() ? 0 : kFilesOfLink);
+  if (!CanOpenFiles(wanted)) {
+    GST_ELEMENT_ERROR(
+        element(), RESOURCE, NO_SPACE_LEFT,
+        ("The process may open too few files: fewer than %" G_GSIZE_FORMAT " are left", wanted),
+        ("raise the limit: ulimit -n 1024"));
+    return false;
+  }
+  return OpenFeed() && OpenLink();
+}
+
+/// Where the metadata is in a file: the sockets need no answer of the sensor.
+bool LiveSession::OpenFeed() {
   if (settings().hostname.empty() || !settings().metadata.empty()) {
     auto metadata = LoadMetadata();
     if (!metadata || !SetMetadata(*std::move(metadata)) || !OpenSockets(stream()->metadata()))
@@ -64,6 +96,10 @@ bool LiveSession::Open() {
     // Metadata from a file has no doubt of its own: the first packets tell.
     last_packet_us_ = g_get_monotonic_time();
   }
+  return true;
+}
+
+bool LiveSession::OpenLink() {
   if (settings().hostname.empty()) return true;
   std::string why;
   link_ = SensorLink::Create(

@@ -26,6 +26,8 @@ class LiveSession : public Session {
   void AddCounters(Counters* counters) const override;
 
  private:
+  bool OpenFeed();
+  bool OpenLink();
   bool OpenSockets(const ouster::Metadata& metadata);
   bool HandleAnswer(SensorLink::Result result);
   bool TakeMetadata(ouster::Metadata metadata);

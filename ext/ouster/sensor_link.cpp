@@ -20,8 +20,7 @@ std::unique_ptr<SensorLink> SensorLink::Create(const OusterSettings& settings,
                                                std::function<void()> notify, std::string* error) {
   auto client = HttpClient::Create(settings.hostname, error);
   if (!client) return nullptr;
-  std::unique_ptr<SensorLink> link(
-      new SensorLink(settings, std::move(client), std::move(notify)));
+  std::unique_ptr<SensorLink> link(new SensorLink(settings, std::move(client), std::move(notify)));
   try {
     link->thread_ = std::thread([raw = link.get()] { raw->Run(); });
   } catch (const std::system_error& e) {

@@ -6,10 +6,11 @@
 namespace lidar::ouster {
 namespace {
 
-/// Whether brackets outside strings nest too deeply. A pass of its own: the parser's callback takes
+/// Whether what is outside strings keeps the bounds. A pass of its own: the parser's callback takes
 /// time that is quadratic in the number of objects.
-bool IsTooDeep(std::string_view text) {
+bool IsWithinBounds(std::string_view text) {
   int depth = 0;
+  std::size_t items = 0;
   bool in_string = false;
   for (std::size_t i = 0; i < text.size(); ++i) {
     const char c = text[i];
@@ -18,13 +19,15 @@ bool IsTooDeep(std::string_view text) {
       in_string = c != '"';
     } else if (c == '"') {
       in_string = true;
+      ++items;
     } else if (c == '[' || c == '{') {
-      if (++depth > kMaxJsonDepth) return true;
+      ++items;
+      if (++depth > kMaxJsonDepth) return false;
     } else if (c == ']' || c == '}') {
       --depth;
     }
   }
-  return false;
+  return items <= kMaxJsonItems;
 }
 
 }  // namespace
@@ -32,7 +35,7 @@ bool IsTooDeep(std::string_view text) {
 nlohmann::json ParseJsonObject(std::string_view text) {
   using nlohmann::json;
   json refused(json::value_t::discarded);
-  if (IsTooDeep(text)) return refused;
+  if (!IsWithinBounds(text)) return refused;
   json root = json::parse(text, nullptr, /*allow_exceptions=*/false);
   if (!root.is_object()) return refused;
   return root;

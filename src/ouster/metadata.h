@@ -51,7 +51,7 @@ struct Metadata {
   ScanShape shape() const { return {model.columns_per_scan, format.beams, scan_period()}; }
   std::size_t imu_packet_size() const;
 
-  static constexpr std::size_t kMaxJsonSize = 1U << 20;  // bytes
+  static constexpr std::size_t kMaxJsonSize = 8U << 20;  // bytes; per-pixel angles take megabytes
 };
 
 /// Reads both layouts: sections (`lidar_data_format`, firmware 2.0 and later) and the flat one

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // HTTP servers that are no sensor, but stand where one is expected: the element says so, stays
 // within its bounds and stops when it is told to.
+#include <sys/resource.h>
+
 #include <ctime>
 
 #include "tests/elements/ouster/hostile_server.h"
@@ -66,7 +68,9 @@ const Attack kAttacks[] = {
        e.Answer(text + "1" + std::string(levels, '}'));
      }},
     {"SendsWhatIsNoText",
-     [](const Exchange& e) { e.Send("HTTP/1.1 400 \xff\xfe\r\nContent-Length: 3\r\n\r\n\xff\xfe\xfd"); }},
+     [](const Exchange& e) {
+       e.Send("HTTP/1.1 400 \xff\xfe\r\nContent-Length: 3\r\n\r\n\xff\xfe\xfd");
+     }},
     {"ClosesAtOnce", [](const Exchange&) {}},
 };
 
@@ -119,22 +123,53 @@ INSTANTIATE_TEST_SUITE_P(All, OusterServer, ::testing::ValuesIn(kAttacks),
                            return std::string(attack.param.name);
                          });
 
-TEST(OusterThread, ThatCannotBeStartedIsAnElementError) {
+/// What ouster_src says where it cannot start; `scarcity` is created before it tries.
+template <class Scarcity>
+std::string ErrorAmid() {
   const gst::ElementPtr source(
       GST_ELEMENT(gst_object_ref_sink(gst_element_factory_make("ouster_src", nullptr))));
   g_object_set(source.get(), "hostname", "127.0.0.1:1", nullptr);
   GstBus* bus = gst_bus_new();
   gst_element_set_bus(source.get(), bus);
   {
-    const ScarceThreads scarce;
+    const Scarcity scarce;
     EXPECT_EQ(gst_element_set_state(source.get(), GST_STATE_PAUSED), GST_STATE_CHANGE_FAILURE);
   }
   const gst::MessagePtr message(gst_bus_pop_filtered(bus, GST_MESSAGE_ERROR));
-  ASSERT_TRUE(message);
-  EXPECT_NE(TextOf(message.get()).find("Cannot start a thread"), std::string::npos);
+  const std::string text = message ? TextOf(message.get()) : "no error";
   gst_element_set_state(source.get(), GST_STATE_NULL);
   gst_element_set_bus(source.get(), nullptr);
   gst_object_unref(bus);
+  return text;
+}
+
+TEST(OusterThread, ThatCannotBeStartedIsAnElementError) {
+  const std::string error = ErrorAmid<ScarceThreads>();
+  EXPECT_NE(error.find("Cannot start a thread"), std::string::npos) << error;
+}
+
+/// `ulimit -n` leaves ten files more.
+class ScarceFiles {
+ public:
+  ScarceFiles() {
+    getrlimit(RLIMIT_NOFILE, &before_);
+    const int next = dup(0);
+    close(next);
+    rlimit limit = before_;
+    limit.rlim_cur = static_cast<rlim_t>(next) + 10;
+    setrlimit(RLIMIT_NOFILE, &limit);
+  }
+  ~ScarceFiles() { setrlimit(RLIMIT_NOFILE, &before_); }
+  ScarceFiles(const ScarceFiles&) = delete;
+  ScarceFiles& operator=(const ScarceFiles&) = delete;
+
+ private:
+  rlimit before_{};
+};
+
+TEST(OusterFiles, ThatMayNotBeOpenedAreAnElementError) {
+  const std::string error = ErrorAmid<ScarceFiles>();
+  EXPECT_NE(error.find("ulimit -n"), std::string::npos) << error;
 }
 
 }  // namespace
