@@ -66,7 +66,7 @@ build() {
   local dir=$1 needed_by=$2
   shift 2
   echo "== build $(basename "$dir") (${SECONDS}s)"
-  [ -f "$dir/build.ninja" ] || meson setup "$dir" "$root" -Dcpp_args=-g1 "$@" >"$dir.log" 2>&1 ||
+  [ -f "$dir/build.ninja" ] || meson setup "$dir" "$root" -Dcpp_args=-g1 -Dwerror=true "$@" >"$dir.log" 2>&1 ||
     { tail -20 "$dir.log"; return 1; }
   local wanted=()
   # shellcheck disable=SC2086

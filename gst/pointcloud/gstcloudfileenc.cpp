@@ -181,7 +181,7 @@ static void gst_lidar_pcd_enc_class_init(GstLidarPcdEncClass* klass) {
   GST_LIDAR_CLOUD_FILE_ENC_CLASS(klass)->write = lidar::gst::WritePcd;
   auto* element = GST_ELEMENT_CLASS(klass);
   gst_element_class_add_static_pad_template(element, &pcd_template);
-  gst_element_class_set_static_metadata(element, "PCD encoder", "Encoder/PointCloud",
+  gst_element_class_set_static_metadata(element, "PCD encoder", "Codec/Encoder/PointCloud",
                                         "Writes each cloud as a file of the Point Cloud Library",
                                         "gst-lidar");
 }
@@ -192,6 +192,6 @@ static void gst_lidar_ply_enc_class_init(GstLidarPlyEncClass* klass) {
   GST_LIDAR_CLOUD_FILE_ENC_CLASS(klass)->write = lidar::gst::WritePly;
   auto* element = GST_ELEMENT_CLASS(klass);
   gst_element_class_add_static_pad_template(element, &ply_template);
-  gst_element_class_set_static_metadata(element, "PLY encoder", "Encoder/PointCloud",
+  gst_element_class_set_static_metadata(element, "PLY encoder", "Codec/Encoder/PointCloud",
                                         "Writes each cloud as a PLY file", "gst-lidar");
 }

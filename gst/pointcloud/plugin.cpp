@@ -13,4 +13,4 @@ static gboolean plugin_init(GstPlugin* plugin) {
 
 GST_PLUGIN_DEFINE(GST_VERSION_MAJOR, GST_VERSION_MINOR, lidarpointcloud,
                   "Raw point clouds: from files, from slices, to files", plugin_init, VERSION,
-                  "LGPL", PACKAGE, "https://gstreamer.freedesktop.org")
+                  "LGPL", PACKAGE, PACKAGE_ORIGIN)

@@ -11,4 +11,4 @@ static gboolean plugin_init(GstPlugin* plugin) {
 
 GST_PLUGIN_DEFINE(GST_VERSION_MAJOR, GST_VERSION_MINOR, rtplidar,
                   "RTP payload format of encoded point clouds", plugin_init, VERSION, "LGPL",
-                  PACKAGE, "https://gstreamer.freedesktop.org/")
+                  PACKAGE, PACKAGE_ORIGIN)

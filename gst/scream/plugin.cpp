@@ -16,4 +16,4 @@ static gboolean plugin_init(GstPlugin* plugin) {
 
 GST_PLUGIN_DEFINE(GST_VERSION_MAJOR, GST_VERSION_MINOR, lidarscream,
                   "SCReAM v2 congestion control for RTP", plugin_init, VERSION, "LGPL", PACKAGE,
-                  "https://gstreamer.freedesktop.org")
+                  PACKAGE_ORIGIN)

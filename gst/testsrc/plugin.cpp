@@ -9,4 +9,4 @@ static gboolean plugin_init(GstPlugin* plugin) {
 
 GST_PLUGIN_DEFINE(GST_VERSION_MAJOR, GST_VERSION_MINOR, lidartestsrc,
                   "A synthetic LiDAR in a synthetic world", plugin_init, VERSION, "LGPL", PACKAGE,
-                  "https://gstreamer.freedesktop.org")
+                  PACKAGE_ORIGIN)

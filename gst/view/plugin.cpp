@@ -8,4 +8,4 @@ static gboolean plugin_init(GstPlugin* plugin) {
 }
 
 GST_PLUGIN_DEFINE(GST_VERSION_MAJOR, GST_VERSION_MINOR, lidarview, "Point clouds as video",
-                  plugin_init, VERSION, "LGPL", PACKAGE, "https://gstreamer.freedesktop.org")
+                  plugin_init, VERSION, "LGPL", PACKAGE, PACKAGE_ORIGIN)
