@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 # A LiDAR and a camera share one congestion-controlled path, over an L4S bottleneck on loopback.
 set -euo pipefail
+source "$(dirname "$0")/options.sh"
 
 usage() {
   cat <<'EOF'
@@ -21,13 +22,13 @@ EOF
 rate=8 rtt=40 share=2 duration=20 port=5204
 while [ $# -gt 0 ]; do
   case $1 in
-    --rate) rate=$2; shift ;;
-    --rtt) rtt=$2; shift ;;
-    --lidar-share) share=$2; shift ;;
-    --duration) duration=$2; shift ;;
-    --port) port=$2; shift ;;
+    --rate) number "$@"; rate=$2; shift ;;
+    --rtt) number "$@"; rtt=$2; shift ;;
+    --lidar-share) number "$@"; share=$2; shift ;;
+    --duration) number "$@"; duration=$2; shift ;;
+    --port) port "$@"; port=$2; shift ;;
     -h | --help) usage; exit 0 ;;
-    *) usage >&2; exit 2 ;;
+    *) wrong "there is no option $1" ;;
   esac
   shift
 done
@@ -54,6 +55,9 @@ gst-launch-1.0 -q \
   filesink location="$work/video.h264" sync=false async=false &
 receiver=$!
 sleep 1
+for end in "$link" "$receiver"; do
+  kill -0 "$end" 2>/dev/null || { echo "The link or the receiver did not start." >&2; exit 1; }
+done
 
 # One line for each of the sender's statistics; quotes within the array of streams are escaped.
 show() {
@@ -80,8 +84,13 @@ timeout -s INT "$duration" gst-launch-1.0 -e -m \
   2>"$work/sender.err" | show || true
 [ ! -s "$work/sender.err" ] || grep -E 'ERROR|WARN' "$work/sender.err" >&2 || true
 
-# The sender's goodbye ends the receiver.
-wait "$receiver"
+# The sender's goodbye ends the receiver; a sender that could not start says none.
+for ((i = 0; i < 50; ++i)); do
+  kill -0 "$receiver" 2>/dev/null || break
+  sleep 0.1
+done
+kill "$receiver" 2>/dev/null || true
+wait "$receiver" 2>/dev/null || true
 for file in scans video.h264; do
   [ -s "$work/$file" ] || { echo "Nothing of $file arrived." >&2; exit 1; }
 done

@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 # Records scans as files, one a scan.
 set -euo pipefail
+source "$(dirname "$0")/options.sh"
 
 usage() {
   cat <<'EOF'
@@ -24,11 +25,11 @@ format=pcd
 output=record-output
 while [ $# -gt 0 ]; do
   case $1 in
-    --scans) scans=$2; shift ;;
-    --format) format=$2; shift ;;
-    --output) output=$2; shift ;;
+    --scans) count "$@"; scans=$2; shift ;;
+    --format) text "$@"; format=$2; shift ;;
+    --output) text "$@"; output=$2; shift ;;
     -h | --help) usage; exit 0 ;;
-    -*) usage >&2; exit 2 ;;
+    -*) wrong "there is no option $1" ;;
     *) source=$1 ;;
   esac
   shift
@@ -41,11 +42,12 @@ case $format in
   ply) encoder="plyenc" ;;
   ply-text) encoder="plyenc binary=false" ;;
   bin) encoder="identity" ;;
-  *) usage >&2; exit 2 ;;
+  *) wrong "there is no format $format" ;;
 esac
 mkdir -p "$output"
-case $source in lidartestsrc*) source="$source trajectory-location=$output/trajectory.tum" ;; esac
+read -ra words <<<"$source"
+case $source in lidartestsrc*) words+=("trajectory-location=$output/trajectory.tum") ;; esac
 # shellcheck disable=SC2086
-gst-launch-1.0 -q -e $source ! scanassembler ! identity eos-after="$((scans + 1))" \
+gst-launch-1.0 -q -e "${words[@]}" ! scanassembler ! identity eos-after="$((scans + 1))" \
   ! $encoder ! multifilesink location="$output/scan%06d.${format%-text}"
 ls "$output"

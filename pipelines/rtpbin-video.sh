@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 # SCReAM in a classic rtpbin application: video both ways, RTCP SR/RR and our feedback side by side.
 set -euo pipefail
+source "$(dirname "$0")/options.sh"
 
 usage() {
   cat <<'EOF'
@@ -19,10 +20,10 @@ EOF
 duration=15 port=5304
 while [ $# -gt 0 ]; do
   case $1 in
-    --duration) duration=$2; shift ;;
-    --port) port=$2; shift ;;
+    --duration) number "$@"; duration=$2; shift ;;
+    --port) port "$@"; port=$2; shift ;;
     -h | --help) usage; exit 0 ;;
-    *) usage >&2; exit 2 ;;
+    *) wrong "there is no option $1" ;;
   esac
   shift
 done

@@ -2,6 +2,27 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 # A LiDAR stream over DTLS-SRTP on loopback: both ends show a certificate, and trust one of the other only.
 set -euo pipefail
+source "$(dirname "$0")/options.sh"
+
+usage() {
+  cat <<'EOF'
+Usage: pipelines/secure-dtls.sh [SECONDS]
+
+A LiDAR stream over DTLS-SRTP on loopback: each end has a certificate and trusts that of the other only;
+a stranger is refused.
+
+  SECONDS   how long it sends (default 5)
+
+The environment variable PORT is the first of the UDP ports to use (default 5064).
+EOF
+}
+
+case ${1:-} in
+  -h | --help) usage; exit 0 ;;
+  -*) wrong "there is no option $1" ;;
+  '') ;;
+  *) count SECONDS "$@" ;;
+esac
 source "$(dirname "$0")/environment.sh"
 seconds=${1:-5}
 port=${PORT:-5064}

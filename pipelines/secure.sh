@@ -2,6 +2,26 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 # A LiDAR stream over SRTP on loopback: both ends, the key in the environment, feedback protected too.
 set -euo pipefail
+source "$(dirname "$0")/options.sh"
+
+usage() {
+  cat <<'EOF'
+Usage: pipelines/secure.sh [SECONDS]
+
+A LiDAR stream over SRTP on loopback: both ends share a key, and feedback is protected, too.
+
+  SECONDS   how long it sends (default 5)
+
+The environment variable PORT is the first of the UDP ports to use (default 5044).
+EOF
+}
+
+case ${1:-} in
+  -h | --help) usage; exit 0 ;;
+  -*) wrong "there is no option $1" ;;
+  '') ;;
+  *) count SECONDS "$@" ;;
+esac
 source "$(dirname "$0")/environment.sh"
 seconds=${1:-5}
 port=${PORT:-5044}

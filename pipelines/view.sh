@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 # Looks at point clouds: pictures of every view, or a window.
 set -euo pipefail
+source "$(dirname "$0")/options.sh"
 
 usage() {
   cat <<'EOF'
@@ -24,11 +25,11 @@ output=view-output
 window=
 while [ $# -gt 0 ]; do
   case $1 in
-    --scan) scan=$2; shift ;;
-    --output) output=$2; shift ;;
-    --window) window=$2; shift ;;
+    --scan) count "$@"; scan=$2; shift ;;
+    --output) text "$@"; output=$2; shift ;;
+    --window) text "$@"; window=$2; shift ;;
     -h | --help) usage; exit 0 ;;
-    -*) usage >&2; exit 2 ;;
+    -*) wrong "there is no option $1" ;;
     *) source=$1 ;;
   esac
   shift
@@ -42,8 +43,10 @@ if [ -n "$window" ]; then
   exec gst-launch-1.0 -e $source ! queue ! pointcloudview view="$window" ! videoconvert ! autovideosink
 fi
 mkdir -p "$output"
-picture() { echo "views. ! queue ! pointcloudview view=$1 ! pngenc snapshot=false ! multifilesink location=$output/$1.png"; }
-# shellcheck disable=SC2046,SC2086
-gst-launch-1.0 -q $source ! scanassembler ! identity eos-after="$((scan + 1))" ! tee name=views \
-  $(picture top) $(picture perspective) $(picture range)
+pictures=()
+for view in top perspective range; do
+  pictures+=(views. ! queue ! pointcloudview "view=$view" ! pngenc snapshot=false ! multifilesink "location=$output/$view.png")
+done
+# shellcheck disable=SC2086
+gst-launch-1.0 -q $source ! scanassembler ! identity eos-after="$((scan + 1))" ! tee name=views "${pictures[@]}"
 ls "$output"/top.png "$output"/perspective.png "$output"/range.png

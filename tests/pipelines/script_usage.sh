@@ -1,0 +1,36 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: LGPL-2.1-or-later
+# The scripts of pipelines/: help, and wrong options that are refused at once with a reason. Nothing is streamed.
+set -uo pipefail
+root=$(cd "$(dirname "$0")/../.." && pwd)
+failed=0
+
+# expect CODE TEXT SCRIPT [options]: the script ends with CODE within seconds and prints TEXT.
+expect() {
+  local code=$1 text=$2 script=$3 output status
+  shift 3
+  output=$(timeout 10 "$root/pipelines/$script" "$@" 2>&1)
+  status=$?
+  if [ "$status" != "$code" ] || ! grep -qF -- "$text" <<<"$output"; then
+    printf '%s %s: code %s instead of %s, or no "%s" in:\n%s\n' "$script" "$*" "$status" "$code" "$text" "$output" >&2
+    failed=1
+  fi
+}
+
+for script in lidar-and-video rtpbin-video record view secure secure-dtls demo; do
+  expect 0 "Usage: pipelines/$script.sh" $script.sh --help
+done
+for script in lidar-and-video rtpbin-video record view secure secure-dtls; do
+  expect 2 "there is no option --nonsense" $script.sh --nonsense
+done
+expect 2 '--rate wants a number above zero, not "abc"' lidar-and-video.sh --rate abc
+expect 2 '--rate wants a number' lidar-and-video.sh --rate 0
+expect 2 '--duration wants a value' lidar-and-video.sh --duration
+expect 2 '--port wants a UDP port' lidar-and-video.sh --port 70000
+expect 2 '--duration wants a number' rtpbin-video.sh --duration ten
+expect 2 '--scans wants a value' record.sh --scans
+expect 2 '--scans wants a whole number' record.sh --scans 1.5
+expect 2 'there is no format las' record.sh --format las
+expect 2 '--scan wants a whole number' view.sh --scan first
+expect 2 'SECONDS wants a whole number' secure.sh five
+exit $failed
