@@ -27,7 +27,6 @@ namespace {
 
 using namespace lidar::gst;
 
-constexpr guint kPropStats = kOusterProperties.size() + 1;
 // Until the sensor is known: what a slice is at 10 and at 20 scans/s.
 constexpr GstClockTime kUsualSlice = 12'500 * GST_USECOND;
 
@@ -115,23 +114,13 @@ static GstStateChangeReturn ChangeState(GstElement* element, GstStateChange tran
   return GST_ELEMENT_CLASS(gst_lidar_ouster_src_parent_class)->change_state(element, transition);
 }
 
-static GstStructure* Stats(State& state) {
+StructurePtr lidar::gst::OusterStats(GObject* source) {
+  State& state = StateOf(source);
   std::unique_lock lock(state.mutex);
   const auto session = state.session;
-  const Counters c = session ? session->counters() : state.last;
+  const Counters counters = session ? session->counters() : state.last;
   lock.unlock();
-  return gst_structure_new(
-      "application/x-ouster-src-stats", "packets", G_TYPE_UINT64, c.batcher.packets, "packets-lost",
-      G_TYPE_UINT64, c.batcher.lost_packets, "packets-late", G_TYPE_UINT64, c.batcher.late_packets,
-      "packets-duplicate", G_TYPE_UINT64, c.batcher.duplicate_packets, "packets-stray",
-      G_TYPE_UINT64, c.batcher.stray_packets, "packets-wrong-size", G_TYPE_UINT64,
-      c.stream.wrong_size, "packets-foreign", G_TYPE_UINT64, c.stream.foreign, "packets-damaged",
-      G_TYPE_UINT64, c.stream.damaged, "packets-imu", G_TYPE_UINT64, c.stream.imu_packets,
-      "dropped-by-kernel", G_TYPE_UINT64, c.kernel_drops, "restarts", G_TYPE_UINT64,
-      c.batcher.restarts, "reconnects", G_TYPE_UINT, c.reconnects, "slices", G_TYPE_UINT64,
-      c.batcher.slices, "slices-incomplete", G_TYPE_UINT64, c.batcher.incomplete_slices,
-      "receive-buffer", G_TYPE_UINT, c.receive_buffer, "clock-synchronised", G_TYPE_BOOLEAN,
-      c.synchronised, nullptr);
+  return ToStructure("application/x-ouster-src-stats", kOusterStats, counters);
 }
 
 static void gst_lidar_ouster_src_init(GstLidarOusterSrc* self) {
@@ -156,27 +145,11 @@ static void InstallVmethods(GstLidarOusterSrcClass* klass) {
 static void gst_lidar_ouster_src_class_init(GstLidarOusterSrcClass* klass) {
   GST_DEBUG_CATEGORY_INIT(gst_lidar_ouster_src_debug, "ouster_src", 0, "Ouster sensors");
   auto* object = G_OBJECT_CLASS(klass);
-  object->set_property = [](GObject* o, guint id, const GValue* v, GParamSpec*) {
-    State& state = StateOf(o);
-    std::lock_guard lock(state.mutex);
-    SetProperty(state.settings, kOusterProperties[id - 1], v);
-  };
-  object->get_property = [](GObject* o, guint id, GValue* v, GParamSpec*) {
-    State& state = StateOf(o);
-    if (id == kPropStats) return g_value_take_boxed(v, Stats(state));
-    std::lock_guard lock(state.mutex);
-    GetProperty(state.settings, kOusterProperties[id - 1], v);
-  };
   object->finalize = [](GObject* o) {
     delete GST_LIDAR_OUSTER_SRC(o)->state;
     G_OBJECT_CLASS(gst_lidar_ouster_src_parent_class)->finalize(o);
   };
-  InstallProperties(object, kOusterProperties);
-  g_object_class_install_property(
-      object, kPropStats,
-      g_param_spec_boxed("stats", "stats", "Counts of packets, slices and what went wrong",
-                         GST_TYPE_STRUCTURE,
-                         static_cast<GParamFlags>(G_PARAM_READABLE | G_PARAM_STATIC_STRINGS)));
+  ServeProperties<GstLidarOusterSrc, kOusterProperties>(object);
   gst_type_mark_as_plugin_api(OusterReturnType(), static_cast<GstPluginAPIFlags>(0));
   gst_type_mark_as_plugin_api(OusterPtsFromType(), static_cast<GstPluginAPIFlags>(0));
   gst_type_mark_as_plugin_api(OusterInvalidType(), static_cast<GstPluginAPIFlags>(0));

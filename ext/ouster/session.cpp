@@ -33,24 +33,6 @@ std::optional<std::string> ReadFile(const std::string& path, std::size_t max_siz
   return text;
 }
 
-void Add(const ouster::BatcherStats& a, ouster::BatcherStats* to) {
-  to->packets += a.packets;
-  to->lost_packets += a.lost_packets;
-  to->late_packets += a.late_packets;
-  to->duplicate_packets += a.duplicate_packets;
-  to->stray_packets += a.stray_packets;
-  to->restarts += a.restarts;
-  to->slices += a.slices;
-  to->incomplete_slices += a.incomplete_slices;
-}
-
-void Add(const ouster::StreamStats& a, ouster::StreamStats* to) {
-  to->wrong_size += a.wrong_size;
-  to->foreign += a.foreign;
-  to->damaged += a.damaged;
-  to->imu_packets += a.imu_packets;
-}
-
 }  // namespace
 
 std::shared_ptr<Session> Session::Create(GstBaseSrc* element, const OusterSettings& settings) {
@@ -103,8 +85,7 @@ bool Session::SetMetadata(ouster::Metadata metadata) {
     return false;
   }
   if (stream_) {
-    Add(stream_->batcher().stats(), &base_.batcher);
-    Add(stream_->stats(), &base_.stream);
+    base_ = Total();
     next->Continue(*stream_);
     discont_ = true;
   }
@@ -162,11 +143,18 @@ GstClockTime Session::RunningTime() const {
   return now > base_time ? now - base_time : 0;
 }
 
+/// Counts of the streams so far.
+Counters Session::Total() const {
+  Counters now;
+  now.batcher = stream_->batcher().stats();
+  now.stream = stream_->stats();
+  AddCounts(kOusterStats, base_, &now);
+  return now;
+}
+
 void Session::UpdateCounters() {
   if (!stream_) return;
-  Counters now = base_;
-  Add(stream_->batcher().stats(), &now.batcher);
-  Add(stream_->stats(), &now.stream);
+  Counters now = Total();
   now.synchronised = stream_->has_synchronised_clock();
   AddCounters(&now);
   {

@@ -7,20 +7,12 @@
 #include <mutex>
 #include <string>
 
+#include "ext/ouster/counters.h"
 #include "ext/ouster/imu_pad.h"
 #include "ext/ouster/settings.h"
 #include "src/ouster/sensor_stream.h"
 
 namespace lidar::gst {
-
-struct Counters {
-  ouster::BatcherStats batcher;
-  ouster::StreamStats stream;
-  guint64 kernel_drops = 0;
-  guint reconnects = 0;
-  guint receive_buffer = 0;  // bytes
-  bool synchronised = false;
-};
 
 /// Runs in the streaming thread, except where it says otherwise. Posts its own errors.
 class Session {
@@ -67,6 +59,7 @@ class Session {
   GstClockTime RunningTime() const;
 
  private:
+  Counters Total() const;
   bool SendCaps();
   void PostLoss(const Counters& now);
 

@@ -40,7 +40,7 @@ GType OusterInvalidType() {
   return type;
 }
 
-const std::array<Property<S>, 30> kOusterProperties = {{
+const std::array<Property<S>, 31> kOusterProperties = {{
     {"location", "Capture file (pcap, pcapng) to read instead of receiving", &S::location},
     {"metadata", "Metadata JSON of the sensor; empty: with location, the .json beside it",
      &S::metadata},
@@ -108,6 +108,7 @@ const std::array<Property<S>, 30> kOusterProperties = {{
     {"destagger",
      "Shift beams so that columns of the buffer are directions; whole scans, and no sensor model",
      &S::destagger},
+    {"stats", "Counts of packets, slices and what went wrong", OusterStats},
 }};
 
 std::string OusterSettings::MetadataPath() const {

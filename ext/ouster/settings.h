@@ -7,6 +7,7 @@
 #include <string>
 
 #include "gst/common/properties.h"
+#include "gst/common/refs.h"
 #include "src/ouster/sensor_stream.h"
 
 namespace lidar::gst {
@@ -58,7 +59,10 @@ struct OusterSettings {
   std::string MetadataPath() const;
 };
 
-extern const std::array<Property<OusterSettings>, 30> kOusterProperties;
+/// The property `stats` of the element.
+StructurePtr OusterStats(GObject* source);
+
+extern const std::array<Property<OusterSettings>, 31> kOusterProperties;
 
 /// None and `error`, in words for a user, where a property makes no sense.
 std::optional<ouster::StreamOptions> ToStreamOptions(const OusterSettings& settings,

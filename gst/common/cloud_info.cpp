@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include "gst/common/cloud_info.h"
 
+#include <utility>
+
 #include "gst/common/buffer_map.h"
 #include "gst/common/refs.h"
 
@@ -9,45 +11,92 @@ namespace {
 
 constexpr gint64 kMaxFrameSize = gint64{1} << 30;
 
-/// Caps integers are `int`; negative ones make the caps invalid.
-bool GetCount(const GstStructure* s, const char* name, guint* value) {
-  gint read = 0;
-  if (!gst_structure_get_int(s, name, &read)) return false;
-  *value = static_cast<guint>(read);
-  return read >= 0;
-}
+/// Takes the caps apart step by step; the first step that fails names the reason.
+class Reader {
+ public:
+  explicit Reader(const GstStructure* s) : s_(s) {}
+
+  std::optional<CloudInfo> Read(std::string* why) {
+    if (ReadPoint() && ReadSize() && ReadModel()) return std::move(info_);
+    *why = why_;
+    return std::nullopt;
+  }
+
+ private:
+  bool Fail(std::string why) {
+    why_ = std::move(why);
+    return false;
+  }
+
+  /// Caps integers are `int`; negative ones make the caps invalid.
+  bool GetCount(const char* name, guint* value) {
+    gint read = 0;
+    if (!gst_structure_get_int(s_, name, &read)) return Fail(std::string(name) + " is missing");
+    *value = static_cast<guint>(read);
+    return read >= 0 || Fail(std::string(name) + " is negative");
+  }
+  bool Flag(const char* name) const {
+    gboolean flag = FALSE;
+    return gst_structure_get_boolean(s_, name, &flag) && flag;
+  }
+
+  bool ReadPoint() {
+    if (!gst_structure_has_name(s_, GST_LIDAR_CLOUD_MEDIA_TYPE))
+      return Fail(std::string(gst_structure_get_name(s_)) + " is no " GST_LIDAR_CLOUD_MEDIA_TYPE);
+    const gchar* fields = gst_structure_get_string(s_, "fields");
+    if (fields == nullptr) return Fail("fields is missing, as in x:F32:0,y:F32:4,z:F32:8");
+    auto parsed = PointFields::Parse(fields, &why_);
+    if (!parsed || !GetCount("point-step", &info_.point_step)) return false;
+    if (info_.point_step < parsed->MinimumStep())
+      return Fail("the fields end past point-step=" + std::to_string(info_.point_step));
+    if (info_.point_step > PointFields::kMaxPointStep)
+      return Fail("point-step is above " + std::to_string(PointFields::kMaxPointStep));
+    if (Flag("is-bigendian")) return Fail("is-bigendian=true: clouds must be little-endian");
+    info_.fields = *std::move(parsed);
+    info_.is_dense = Flag("is-dense");
+    return true;
+  }
+
+  bool ReadSize() {
+    if ((gst_structure_has_field(s_, "height") && !GetCount("height", &info_.height)) ||
+        (gst_structure_has_field(s_, "width") && !GetCount("width", &info_.width)))
+      return false;
+    if (info_.height == 0) return Fail("height is 0");
+    if (gint64{info_.width} * info_.height > kMaxFrameSize / info_.point_step)
+      return Fail("width x height x point-step is above 1 GiB");
+    gst_structure_get_fraction(s_, "framerate", &info_.framerate_n, &info_.framerate_d);
+    return true;
+  }
+
+  bool ReadModel() {
+    if (!gst_structure_has_field(s_, "sensor-model")) return true;
+    info_.sensor_model = SensorModelFromStructure(s_);
+    if (!info_.sensor_model) return Fail("sensor-model is damaged");
+    return info_.sensor_model->beams.size() == info_.height ||
+           Fail("sensor-model has " + std::to_string(info_.sensor_model->beams.size()) +
+                " beams where height=" + std::to_string(info_.height));
+  }
+
+  const GstStructure* s_;
+  CloudInfo info_;
+  std::string why_;
+};
 
 }  // namespace
 
-std::optional<CloudInfo> CloudInfo::FromCaps(const GstCaps* caps) {
+std::optional<CloudInfo> CloudInfo::FromCaps(const GstCaps* caps, std::string* why) {
+  std::string ignored;
+  std::string& reason = why != nullptr ? *why : ignored;
+  reason = "there are none";
   if (caps == nullptr || gst_caps_is_empty(caps) || gst_caps_is_any(caps)) return std::nullopt;
-  const GstStructure* s = gst_caps_get_structure(caps, 0);
-  const gchar* fields = gst_structure_get_string(s, "fields");
-  CloudInfo info;
-  gboolean flag = FALSE;
-  if (!gst_structure_has_name(s, GST_LIDAR_CLOUD_MEDIA_TYPE) || fields == nullptr ||
-      !GetCount(s, "point-step", &info.point_step) ||
-      (gst_structure_has_field(s, "height") && !GetCount(s, "height", &info.height)) ||
-      (gst_structure_has_field(s, "width") && !GetCount(s, "width", &info.width)) ||
-      (gst_structure_get_boolean(s, "is-bigendian", &flag) && flag)) {
-    return std::nullopt;
-  }
-  auto parsed = PointFields::Parse(fields);
-  if (!parsed || info.point_step < parsed->MinimumStep() ||
-      info.point_step > PointFields::kMaxPointStep || info.height == 0 ||
-      gint64{info.width} * info.height > kMaxFrameSize / info.point_step) {
-    return std::nullopt;
-  }
-  info.fields = *std::move(parsed);
-  flag = FALSE;
-  gst_structure_get_boolean(s, "is-dense", &flag);
-  info.is_dense = flag != FALSE;
-  gst_structure_get_fraction(s, "framerate", &info.framerate_n, &info.framerate_d);
-  if (gst_structure_has_field(s, "sensor-model")) {
-    info.sensor_model = SensorModelFromStructure(s);
-    if (!info.sensor_model || info.sensor_model->beams.size() != info.height) return std::nullopt;
-  }
-  return info;
+  return Reader(gst_caps_get_structure(caps, 0)).Read(&reason);
+}
+
+std::optional<CloudInfo> CloudInfo::FromFrameCaps(const GstCaps* caps, std::string* why) {
+  auto info = FromCaps(caps, why);
+  if (!info || info->width > 0) return info;
+  if (why != nullptr) *why = "width is missing; pointcloudparse finds it";
+  return std::nullopt;
 }
 
 GstCaps* CloudInfo::ToCaps() const {

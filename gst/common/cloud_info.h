@@ -4,6 +4,7 @@
 #include <gst/gst.h>
 
 #include <optional>
+#include <string>
 
 #include "gst/common/gstlidar.h"
 #include "src/cloud/point_fields.h"
@@ -23,8 +24,13 @@ struct CloudInfo {
   std::optional<SensorModel> sensor_model;
 
   /// None where the caps are of another type, big-endian, or contradict themselves (fields past
-  /// point-step, a sensor model of another height or not parseable, too large a frame).
-  GST_LIDAR_API static std::optional<CloudInfo> FromCaps(const GstCaps* caps);
+  /// point-step, a sensor model of another height or not parseable, too large a frame); `why` then
+  /// says which, in words for a user.
+  GST_LIDAR_API static std::optional<CloudInfo> FromCaps(const GstCaps* caps,
+                                                         std::string* why = nullptr);
+  /// As FromCaps(), of caps that fix the width as well.
+  GST_LIDAR_API static std::optional<CloudInfo> FromFrameCaps(const GstCaps* caps,
+                                                              std::string* why = nullptr);
   /// transfer full
   GST_LIDAR_API GstCaps* ToCaps() const;
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include "gst/pointcloud/assembler_state.h"
 
+#include "gst/common/stats.h"
+
 namespace lidar::gst {
 
 void AssemblerState::Reset() {
@@ -11,17 +13,22 @@ void AssemblerState::Reset() {
   out_width = 0;
   caps_sent = false;
   early_segment.reset();
+  refused.Reset();
   scan_latency = 0;
   gst_segment_init(&segment, GST_FORMAT_TIME);
 }
 
-GstStructure* AssemblerState::Stats() {
+StructurePtr AssemblerState::Stats() {
+  using Counters = ScanCounters;
+  static const std::array<Stat<Counters>, 5> kStats = {{
+      {"scans", &Counters::scans},
+      {"incomplete", &Counters::incomplete},
+      {"late-slices", &Counters::late},
+      {"duplicate-slices", &Counters::duplicates},
+      {"invalid-slices", &Counters::invalid},
+  }};
   std::lock_guard lock(mutex);
-  const auto& c = queue.counters();
-  return gst_structure_new("application/x-scanassembler-stats", "scans", G_TYPE_UINT64, c.scans,
-                           "incomplete", G_TYPE_UINT64, c.incomplete, "late-slices", G_TYPE_UINT64,
-                           c.late, "duplicate-slices", G_TYPE_UINT64, c.duplicates,
-                           "invalid-slices", G_TYPE_UINT64, c.invalid, nullptr);
+  return ToStructure("application/x-scanassembler-stats", kStats, queue.counters());
 }
 
 }  // namespace lidar::gst

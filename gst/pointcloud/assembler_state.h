@@ -9,6 +9,7 @@
 #include "gst/common/cloud_info.h"
 #include "gst/common/latency.h"
 #include "gst/common/refs.h"
+#include "gst/common/refused_caps.h"
 #include "gst/pointcloud/deadline_timer.h"
 #include "gst/pointcloud/scan_queue.h"
 
@@ -23,7 +24,7 @@ struct AssemblerState {
   /// As it was before the first buffer, but for the settings and the timer; with the mutex held.
   void Reset();
   /// The property `stats`; takes the mutex.
-  GstStructure* Stats();
+  StructurePtr Stats();
 
   // Guards all below. The streaming lock of the sink pad orders what is pushed: the chain function
   // holds it, and the timer takes it; it is taken before this one.
@@ -38,6 +39,7 @@ struct AssemblerState {
   std::optional<Latency> upstream;  // once it was asked
   GstClockTime scan_latency = 0;    // what the latency query adds for a scan, without max-wait
   GstSegment segment;
+  RefusedCaps refused;
   DeadlineTimer timer;
 };
 

@@ -16,8 +16,10 @@
 #include <optional>
 
 #include "gst/common/buffer_map.h"
+#include "gst/common/gstlidar.h"
 #include "gst/common/properties.h"
 #include "gst/common/refs.h"
+#include "gst/common/refused_caps.h"
 #include "gst/pointcloud/cloud_file.h"
 
 GST_DEBUG_CATEGORY_STATIC(gst_lidar_cloud_file_enc_debug);
@@ -40,7 +42,10 @@ const std::array<lidar::gst::Property<Settings>, 1> kProperties = {{
 struct State {
   std::mutex mutex;  // guards the settings
   Settings settings;
-  std::optional<CloudInfo> info;  // of the streaming thread
+  // Of the streaming thread.
+  std::optional<CloudInfo> info;
+  lidar::gst::RefusedCaps refused;
+  bool slices_reported = false;
 };
 
 }  // namespace
@@ -65,11 +70,12 @@ GST_ELEMENT_REGISTER_DEFINE(plyenc, "plyenc", GST_RANK_NONE, GST_TYPE_LIDAR_PLY_
 
 namespace {
 
-State& StateOf(gpointer self) {
-  auto* priv = static_cast<GstLidarCloudFileEncPrivate*>(
+GstLidarCloudFileEncPrivate* PrivateOf(gpointer self) {
+  return static_cast<GstLidarCloudFileEncPrivate*>(
       gst_lidar_cloud_file_enc_get_instance_private(GST_LIDAR_CLOUD_FILE_ENC(self)));
-  return *priv->state;
 }
+
+State& StateOf(gpointer self) { return *PrivateOf(self)->state; }
 
 GstCaps* TransformCaps(GstBaseTransform* base, GstPadDirection direction, GstCaps*,
                        GstCaps* filter) {
@@ -81,15 +87,31 @@ GstCaps* TransformCaps(GstBaseTransform* base, GstPadDirection direction, GstCap
 
 gboolean SetCaps(GstBaseTransform* base, GstCaps* in, GstCaps*) {
   State& state = StateOf(base);
-  state.info = CloudInfo::FromCaps(in);
-  if (state.info && state.info->width > 0) return TRUE;
-  GST_ELEMENT_ERROR(base, STREAM, FORMAT, ("Not the caps of a point cloud of known width."),
-                    ("%" GST_PTR_FORMAT, static_cast<gpointer>(in)));
+  std::string why;
+  state.info = CloudInfo::FromFrameCaps(in, &why);
+  if (state.info) return TRUE;
+  if (state.refused.Note(in))
+    GST_ELEMENT_ERROR(base, STREAM, FORMAT, ("Not the caps of a point cloud: %s.", why.c_str()),
+                      ("%" GST_PTR_FORMAT, static_cast<gpointer>(in)));
   return FALSE;
+}
+
+/// Slices become files of their own, which is rarely what is wanted.
+void ReportSlices(GstBaseTransform* base, GstBuffer* in) {
+  State& state = StateOf(base);
+  GstLidarSlice slice{};
+  if (state.slices_reported || !gst_lidar_buffer_get_slice(in, &slice) || slice.slice_count < 2)
+    return;
+  state.slices_reported = true;
+  GST_ELEMENT_WARNING(
+      base, STREAM, FORMAT,
+      ("Slices come instead of scans, so each scan becomes %u files.", slice.slice_count),
+      ("Put scanassembler in front, or slices-per-scan=1 at the source."));
 }
 
 std::string Write(GstBaseTransform* base, GstBuffer* in) {
   State& state = StateOf(base);
+  ReportSlices(base, in);
   const lidar::gst::BufferMap map(in, GST_MAP_READ);
   if (!map || map.size() != state.info->FrameSize()) return "";
   lidar::gst::CloudFileInput cloud{&*state.info, map.data(), std::nullopt, true};
@@ -121,7 +143,10 @@ GstFlowReturn PrepareOutput(GstBaseTransform* base, GstBuffer* in, GstBuffer** o
 }
 
 gboolean Stop(GstBaseTransform* base) {
-  StateOf(base).info.reset();
+  State& state = StateOf(base);
+  state.info.reset();
+  state.refused.Reset();
+  state.slices_reported = false;
   return TRUE;
 }
 
@@ -152,9 +177,7 @@ static GstStaticPadTemplate ply_template = GST_STATIC_PAD_TEMPLATE(
     "src", GST_PAD_SRC, GST_PAD_ALWAYS, GST_STATIC_CAPS("application/x-ply"));
 
 static void gst_lidar_cloud_file_enc_init(GstLidarCloudFileEnc* self) {
-  auto* priv = static_cast<GstLidarCloudFileEncPrivate*>(
-      gst_lidar_cloud_file_enc_get_instance_private(self));
-  priv->state = new State;
+  PrivateOf(self)->state = new State;
 }
 
 static void gst_lidar_cloud_file_enc_class_init(GstLidarCloudFileEncClass* klass) {

@@ -17,33 +17,62 @@
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <utility>
 
 #include "gst/common/cloud_info.h"
+#include "gst/common/properties.h"
 #include "gst/common/refs.h"
+#include "gst/common/refused_caps.h"
 
 GST_DEBUG_CATEGORY_STATIC(gst_lidar_point_cloud_parse_debug);
 #define GST_CAT_DEFAULT gst_lidar_point_cloud_parse_debug
+
+namespace lidar::gst {
+
+/// A fraction as a property.
+struct Rate {
+  gint n = 0;
+  gint d = 1;
+};
+template <>
+struct Kind<Rate> {
+  static GType Type() { return GST_TYPE_FRACTION; }
+  static GParamSpec* Spec(const SpecArgs& a, Rate initial) {
+    return gst_param_spec_fraction(a.name, a.name, a.blurb, 0, 1, G_MAXINT, 1, initial.n, initial.d,
+                                   a.flags);
+  }
+  static void Set(Rate* field, const GValue* v) {
+    *field = {gst_value_get_fraction_numerator(v), gst_value_get_fraction_denominator(v)};
+  }
+  static void Get(Rate value, GValue* v) { gst_value_set_fraction(v, value.n, value.d); }
+};
+
+}  // namespace lidar::gst
 
 namespace {
 
 using lidar::gst::BufferPtr;
 using lidar::gst::CapsPtr;
 using lidar::gst::CloudInfo;
+using lidar::gst::Rate;
 
-constexpr guint kPropFramerate = 1;
 constexpr gint kDefaultRate = 10;            // scans/s where neither caps nor property say
 constexpr gsize kMaxCloud = gsize{1} << 30;  // bytes
 
-struct Rate {
-  gint n = 0;
-  gint d = 1;
+struct Settings {
+  Rate framerate;  // 0: from the caps
 };
+
+const std::array<lidar::gst::Property<Settings>, 1> kProperties = {{
+    {"framerate", "Clouds per second [1/s]; 0/1: from the caps, 10/1 where they are silent",
+     &Settings::framerate},
+}};
 
 using AdapterPtr = std::unique_ptr<GstAdapter, lidar::gst::Unref>;
 
 struct State {
-  std::mutex mutex;  // guards the property
-  Rate wanted;       // 0: from the caps
+  std::mutex mutex;  // guards the settings
+  Settings settings;
   // Of the streaming thread.
   std::optional<CloudInfo> info;  // of the file; width 0: not known
   CapsPtr caps;
@@ -53,6 +82,9 @@ struct State {
   lidar::gst::EventPtr segment;    // waits for the caps
   std::optional<gsize> file_size;  // of a file that comes in pieces; 0: pieces are clouds
   guint64 count = 0;
+  bool discont = false;  // a cloud was left out
+  bool empty_reported = false;
+  lidar::gst::RefusedCaps refused;
   AdapterPtr adapter{gst_adapter_new()};
 };
 
@@ -128,11 +160,25 @@ void Stamp(State* state, GstBuffer* buffer) {
   GST_BUFFER_OFFSET_END(buffer) = state->count;
 }
 
+/// A recording that broke off leaves empty files; the rest of them counts. The cloud keeps its
+/// place in time.
+GstFlowReturn SkipEmpty(GstLidarPointCloudParse* self) {
+  State& state = *self->state;
+  ++state.count;
+  state.discont = true;
+  if (!std::exchange(state.empty_reported, true))
+    GST_ELEMENT_WARNING(
+        self, STREAM, FORMAT, ("A cloud is empty: it is left out."),
+        ("It is number %" G_GUINT64_FORMAT ", from 1; others are not reported.", state.count));
+  return GST_FLOW_OK;
+}
+
 GstFlowReturn PushCloud(GstLidarPointCloudParse* self, BufferPtr buffer) {
   State& state = *self->state;
   const gsize column = gsize{state.info->height} * state.info->point_step;
   const gsize size = gst_buffer_get_size(buffer.get());
-  if (size == 0 || size % column != 0 || size / column > G_MAXINT) {
+  if (size == 0) return SkipEmpty(self);
+  if (size % column != 0 || size / column > G_MAXINT) {
     GST_ELEMENT_ERROR(
         self, STREAM, FORMAT,
         ("A cloud of %" G_GSIZE_FORMAT " bytes is not made of points of %u bytes in %u rows.", size,
@@ -145,6 +191,7 @@ GstFlowReturn PushCloud(GstLidarPointCloudParse* self, BufferPtr buffer) {
   PushSegment(self);
   GstBuffer* out = gst_buffer_make_writable(buffer.release());
   Stamp(&state, out);
+  if (std::exchange(state.discont, false)) GST_BUFFER_FLAG_SET(out, GST_BUFFER_FLAG_DISCONT);
   return gst_pad_push(self->srcpad, out);
 }
 
@@ -153,6 +200,7 @@ GstFlowReturn Chain(GstPad*, GstObject* parent, GstBuffer* raw) {
   State& state = *self->state;
   BufferPtr buffer(raw);
   if (!state.info) {
+    if (state.refused.noted()) return GST_FLOW_NOT_NEGOTIATED;
     GST_ELEMENT_ERROR(self, CORE, NEGOTIATION, ("The caps of the cloud are missing."),
                       ("Give application/x-pointcloud2 with point-step and fields to the source "
                        "(caps property of multifilesrc, or a caps filter)."));
@@ -181,18 +229,19 @@ gboolean HandleCaps(GstLidarPointCloudParse* self, GstEvent* event) {
   const lidar::gst::EventPtr owner(event);
   GstCaps* caps = nullptr;
   gst_event_parse_caps(event, &caps);
-  auto info = CloudInfo::FromCaps(caps);
+  std::string why;
+  auto info = CloudInfo::FromCaps(caps, &why);
   if (!info) {
-    GST_ELEMENT_ERROR(self, STREAM, FORMAT,
-                      ("The caps do not describe a cloud: point-step and fields are needed, and "
-                       "the fields must fit the step."),
-                      ("%" GST_PTR_FORMAT, static_cast<gpointer>(caps)));
+    if (state.refused.Note(caps))
+      GST_ELEMENT_ERROR(self, STREAM, FORMAT,
+                        ("The caps do not describe a cloud: %s.", why.c_str()),
+                        ("%" GST_PTR_FORMAT, static_cast<gpointer>(caps)));
     return FALSE;
   }
   state.rate = {info->framerate_n, info->framerate_d};
   {
     std::lock_guard lock(state.mutex);
-    if (state.wanted.n > 0) state.rate = state.wanted;
+    if (state.settings.framerate.n > 0) state.rate = state.settings.framerate;
   }
   if (state.rate.n <= 0) state.rate = {kDefaultRate, 1};
   state.info = std::move(info);
@@ -253,21 +302,11 @@ GstStateChangeReturn ChangeState(GstElement* element, GstStateChange transition)
     state.caps.reset();
     state.out_width = 0;
     state.times_given = false;
+    state.discont = false;
+    state.empty_reported = false;
+    state.refused.Reset();
   }
   return result;
-}
-
-void SetObjectProperty(GObject* object, guint, const GValue* value, GParamSpec*) {
-  State& state = StateOf(object);
-  std::lock_guard lock(state.mutex);
-  state.wanted = {gst_value_get_fraction_numerator(value),
-                  gst_value_get_fraction_denominator(value)};
-}
-
-void GetObjectProperty(GObject* object, guint, GValue* value, GParamSpec*) {
-  State& state = StateOf(object);
-  std::lock_guard lock(state.mutex);
-  gst_value_set_fraction(value, state.wanted.n, state.wanted.d);
 }
 
 void Finalize(GObject* object) {
@@ -297,17 +336,8 @@ static void gst_lidar_point_cloud_parse_class_init(GstLidarPointCloudParseClass*
   GST_DEBUG_CATEGORY_INIT(gst_lidar_point_cloud_parse_debug, "pointcloudparse", 0,
                           "Clouds from files");
   auto* object = G_OBJECT_CLASS(klass);
-  object->set_property = SetObjectProperty;
-  object->get_property = GetObjectProperty;
   object->finalize = Finalize;
-  g_object_class_install_property(
-      object, kPropFramerate,
-      gst_param_spec_fraction("framerate", "framerate",
-                              "Clouds per second [1/s]; 0/1: from the caps, 10/1 where they are "
-                              "silent",
-                              0, 1, G_MAXINT, 1, 0, 1,
-                              static_cast<GParamFlags>(G_PARAM_READWRITE | G_PARAM_STATIC_STRINGS |
-                                                       GST_PARAM_MUTABLE_READY)));
+  lidar::gst::ServeProperties<GstLidarPointCloudParse, kProperties>(object);
   auto* element = GST_ELEMENT_CLASS(klass);
   element->change_state = ChangeState;
   gst_element_class_add_static_pad_template(element, &sink_template);

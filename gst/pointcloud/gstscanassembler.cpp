@@ -27,13 +27,15 @@ using lidar::gst::ScanQueue;
 
 using Settings = lidar::gst::AssemblerSettings;
 
-const std::array<lidar::gst::Property<Settings>, 1> kProperties = {{
+lidar::gst::StructurePtr Stats(GObject* object);
+
+const std::array<lidar::gst::Property<Settings>, 2> kProperties = {{
     {"max-wait",
      "How long a scan waits for slices that are late, in a live pipeline [ns]; added to the "
      "latency",
      &Settings::max_wait, 0, static_cast<gdouble>(10 * GST_SECOND), GST_PARAM_MUTABLE_PLAYING},
+    {"stats", "Counters: scans, incomplete, late-slices, duplicate-slices, invalid-slices", Stats},
 }};
-constexpr guint kPropStats = kProperties.size() + 1;
 
 using State = lidar::gst::AssemblerState;
 
@@ -212,13 +214,15 @@ gboolean HandleCaps(GstLidarScanAssembler* self, GstEvent* event) {
   const lidar::gst::EventPtr owner(event);
   GstCaps* caps = nullptr;
   gst_event_parse_caps(event, &caps);
-  auto info = CloudInfo::FromCaps(caps);
-  if (!info || info->width == 0) {
-    GST_ELEMENT_ERROR(self, STREAM, FORMAT, ("Not the caps of a point cloud of known width."),
-                      ("%" GST_PTR_FORMAT, static_cast<gpointer>(caps)));
+  State& state = *self->state;
+  std::string why;
+  auto info = CloudInfo::FromFrameCaps(caps, &why);
+  if (!info) {
+    if (state.refused.Note(caps))
+      GST_ELEMENT_ERROR(self, STREAM, FORMAT, ("Not the caps of a point cloud: %s.", why.c_str()),
+                        ("%" GST_PTR_FORMAT, static_cast<gpointer>(caps)));
     return FALSE;
   }
-  State& state = *self->state;
   bool scan_changes = false;
   {
     std::lock_guard lock(state.mutex);
@@ -321,23 +325,10 @@ GstStateChangeReturn ChangeState(GstElement* element, GstStateChange transition)
   return result;
 }
 
-void SetObjectProperty(GObject* object, guint id, const GValue* value, GParamSpec*) {
-  State& state = StateOf(object);
-  {
-    std::lock_guard lock(state.mutex);
-    lidar::gst::SetProperty(state.settings, kProperties[id - 1], value);
-  }
-  gst_element_post_message(GST_ELEMENT(object), gst_message_new_latency(GST_OBJECT(object)));
-}
+lidar::gst::StructurePtr Stats(GObject* object) { return StateOf(object).Stats(); }
 
-void GetObjectProperty(GObject* object, guint id, GValue* value, GParamSpec*) {
-  State& state = StateOf(object);
-  if (id == kPropStats) {
-    g_value_take_boxed(value, state.Stats());
-    return;
-  }
-  std::lock_guard lock(state.mutex);
-  lidar::gst::GetProperty(state.settings, kProperties[id - 1], value);
+void PostLatency(GObject* object, GParamSpec*) {
+  gst_element_post_message(GST_ELEMENT(object), gst_message_new_latency(GST_OBJECT(object)));
 }
 
 void Finalize(GObject* object) {
@@ -367,17 +358,8 @@ static void gst_lidar_scan_assembler_init(GstLidarScanAssembler* self) {
 static void gst_lidar_scan_assembler_class_init(GstLidarScanAssemblerClass* klass) {
   GST_DEBUG_CATEGORY_INIT(gst_lidar_scan_assembler_debug, "scanassembler", 0, "Scan assembler");
   auto* object = G_OBJECT_CLASS(klass);
-  object->set_property = SetObjectProperty;
-  object->get_property = GetObjectProperty;
   object->finalize = Finalize;
-  lidar::gst::InstallProperties(object, kProperties);
-  g_object_class_install_property(
-      object, kPropStats,
-      g_param_spec_boxed("stats", "stats",
-                         "Counters: scans, incomplete, late-slices, duplicate-slices, "
-                         "invalid-slices",
-                         GST_TYPE_STRUCTURE,
-                         static_cast<GParamFlags>(G_PARAM_READABLE | G_PARAM_STATIC_STRINGS)));
+  lidar::gst::ServeProperties<GstLidarScanAssembler, kProperties, PostLatency>(object);
   auto* element = GST_ELEMENT_CLASS(klass);
   element->change_state = ChangeState;
   gst_element_class_add_static_pad_template(element, &sink_template);

@@ -80,10 +80,11 @@ struct Settings {
   guint slices_per_scan = 0;
   std::string channels;
   std::string trajectory_location;
+  bool is_live = false;
 };
 
 using Row = lidar::gst::Property<Settings>;
-const std::array<Row, 9> kProperties = {{
+const std::array<Row, 10> kProperties = {{
     {"model", "Sensor to simulate", lidar::gst::EnumField<Settings>{&Settings::model, ModelType}},
     {"mode", "Columns of a scan x scans per second",
      lidar::gst::EnumField<Settings>{&Settings::mode, ModeType}},
@@ -105,8 +106,8 @@ const std::array<Row, 9> kProperties = {{
     {"trajectory-location",
      "File for the exact trajectory: one pose a buffer in TUM format, at its capture time",
      &Settings::trajectory_location},
+    {"is-live", "Scan in the time of the clock, else as fast as possible", &Settings::is_live},
 }};
-constexpr guint kPropIsLive = kProperties.size() + 1;
 
 // Where the capture times of a source begin that is not live, so that its output is repeatable:
 // 2024-01-01T00:00:00Z.
@@ -277,24 +278,12 @@ gboolean UnlockStop(GstBaseSrc* base) {
   return TRUE;
 }
 
-void SetObjectProperty(GObject* object, guint id, const GValue* value, GParamSpec*) {
-  if (id == kPropIsLive) {
-    gst_base_src_set_live(GST_BASE_SRC(object), g_value_get_boolean(value));
-    return;
-  }
+void ApplyLive(GObject* object, GParamSpec*) {
   State& state = StateOf(object);
-  std::lock_guard lock(state.mutex);
-  lidar::gst::SetProperty(state.settings, kProperties[id - 1], value);
-}
-
-void GetObjectProperty(GObject* object, guint id, GValue* value, GParamSpec*) {
-  if (id == kPropIsLive) {
-    g_value_set_boolean(value, gst_base_src_is_live(GST_BASE_SRC(object)));
-    return;
-  }
-  State& state = StateOf(object);
-  std::lock_guard lock(state.mutex);
-  lidar::gst::GetProperty(state.settings, kProperties[id - 1], value);
+  std::unique_lock lock(state.mutex);
+  const bool live = state.settings.is_live;
+  lock.unlock();
+  gst_base_src_set_live(GST_BASE_SRC(object), live);
 }
 
 void Finalize(GObject* object) {
@@ -312,16 +301,8 @@ static void gst_lidar_test_src_init(GstLidarTestSrc* self) {
 static void gst_lidar_test_src_class_init(GstLidarTestSrcClass* klass) {
   GST_DEBUG_CATEGORY_INIT(gst_lidar_test_src_debug, "lidartestsrc", 0, "Synthetic LiDAR");
   auto* object = G_OBJECT_CLASS(klass);
-  object->set_property = SetObjectProperty;
-  object->get_property = GetObjectProperty;
   object->finalize = Finalize;
-  lidar::gst::InstallProperties(object, kProperties);
-  g_object_class_install_property(
-      object, kPropIsLive,
-      g_param_spec_boolean("is-live", "is-live",
-                           "Scan in the time of the clock, else as fast as possible", FALSE,
-                           static_cast<GParamFlags>(G_PARAM_READWRITE | G_PARAM_STATIC_STRINGS |
-                                                    GST_PARAM_MUTABLE_READY)));
+  lidar::gst::ServeProperties<GstLidarTestSrc, kProperties, ApplyLive>(object);
   gst_type_mark_as_plugin_api(ModelType(), static_cast<GstPluginAPIFlags>(0));
   gst_type_mark_as_plugin_api(ModeType(), static_cast<GstPluginAPIFlags>(0));
   gst_type_mark_as_plugin_api(SceneType(), static_cast<GstPluginAPIFlags>(0));

@@ -18,6 +18,7 @@
 #include "gst/common/buffer_map.h"
 #include "gst/common/properties.h"
 #include "gst/common/refs.h"
+#include "gst/common/refused_caps.h"
 #include "gst/view/renderer.h"
 
 GST_DEBUG_CATEGORY_STATIC(gst_lidar_point_cloud_view_debug);
@@ -113,6 +114,7 @@ struct State {
   bool changed = true;
   // Of the streaming thread.
   std::optional<CloudInfo> info;
+  lidar::gst::RefusedCaps refused;
   GstVideoInfo video;
   std::unique_ptr<Renderer> renderer;
   bool drawing = false;  // a picture is begun
@@ -182,11 +184,12 @@ GstCaps* FixateCaps(GstBaseTransform* base, GstPadDirection direction, GstCaps*,
 
 gboolean SetCaps(GstBaseTransform* base, GstCaps* in, GstCaps* out) {
   State& state = StateOf(base);
-  state.info = CloudInfo::FromCaps(in);
-  if (!state.info || state.info->width == 0 || !state.info->fields.HasPackedXyz()) {
-    GST_ELEMENT_ERROR(base, STREAM, FORMAT,
-                      ("The view needs a cloud of known width with x, y, z as F32 side by side."),
-                      ("%" GST_PTR_FORMAT, static_cast<gpointer>(in)));
+  std::string why = "x, y and z are not F32 side by side";
+  state.info = CloudInfo::FromFrameCaps(in, &why);
+  if (!state.info || !state.info->fields.HasPackedXyz()) {
+    if (state.refused.Note(in))
+      GST_ELEMENT_ERROR(base, STREAM, FORMAT, ("Not the caps of a cloud to draw: %s.", why.c_str()),
+                        ("%" GST_PTR_FORMAT, static_cast<gpointer>(in)));
     return FALSE;
   }
   GstVideoInfo video;
@@ -306,20 +309,15 @@ gboolean Stop(GstBaseTransform* base) {
   state.drawing = false;
   state.renderer.reset();
   state.info.reset();
+  state.refused.Reset();
   return TRUE;
 }
 
-void SetObjectProperty(GObject* object, guint id, const GValue* value, GParamSpec*) {
+/// The next picture is drawn anew.
+void MarkChanged(GObject* object, GParamSpec*) {
   State& state = StateOf(object);
   std::lock_guard lock(state.mutex);
-  lidar::gst::SetProperty(state.settings, kProperties[id - 1], value);
   state.changed = true;
-}
-
-void GetObjectProperty(GObject* object, guint id, GValue* value, GParamSpec*) {
-  State& state = StateOf(object);
-  std::lock_guard lock(state.mutex);
-  lidar::gst::GetProperty(state.settings, kProperties[id - 1], value);
 }
 
 void Finalize(GObject* object) {
@@ -338,10 +336,8 @@ static void gst_lidar_point_cloud_view_class_init(GstLidarPointCloudViewClass* k
   GST_DEBUG_CATEGORY_INIT(gst_lidar_point_cloud_view_debug, "pointcloudview", 0,
                           "Point clouds as video");
   auto* object = G_OBJECT_CLASS(klass);
-  object->set_property = SetObjectProperty;
-  object->get_property = GetObjectProperty;
   object->finalize = Finalize;
-  lidar::gst::InstallProperties(object, kProperties);
+  lidar::gst::ServeProperties<GstLidarPointCloudView, kProperties, MarkChanged>(object);
   gst_type_mark_as_plugin_api(ViewType(), static_cast<GstPluginAPIFlags>(0));
   gst_type_mark_as_plugin_api(ColorType(), static_cast<GstPluginAPIFlags>(0));
   static GstStaticPadTemplate sink = GST_STATIC_PAD_TEMPLATE(

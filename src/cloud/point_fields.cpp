@@ -39,19 +39,27 @@ bool IsName(std::string_view text) {
          std::all_of(text.begin(), text.end(), [](char c) { return c >= ' ' && c <= '~'; });
 }
 
-std::optional<PointField> ParseField(std::string_view text) {
+std::optional<PointField> ParseField(std::string_view text, std::string* why) {
+  const std::string field = "the field \"" + std::string(text) + "\"";
   const std::string_view name = TakeUntil(':', &text);
   const std::string_view type = TakeUntil(':', &text);
   const auto known =
       std::find_if(kTypes.begin(), kTypes.end(), [&](const auto& t) { return t.name == type; });
   std::uint32_t offset = 0;
   const auto parsed = std::from_chars(text.data(), text.data() + text.size(), offset);
-  if (!IsName(name) || known == kTypes.end() || parsed.ec != std::errc() ||
-      parsed.ptr != text.data() + text.size() ||
-      offset > PointFields::kMaxPointStep - known->size) {
-    return std::nullopt;
+  if (!IsName(name)) {
+    *why = field + " has no name, or one that is not ASCII";
+  } else if (known == kTypes.end()) {
+    *why = field + " is not of type I8, U8, I16, U16, I32, U32, F32 or F64";
+  } else if (parsed.ec != std::errc() || parsed.ptr != text.data() + text.size()) {
+    *why = field + " has no offset in bytes, as in x:F32:0";
+  } else if (offset > PointFields::kMaxPointStep - known->size) {
+    *why = field + " ends past the " + std::to_string(PointFields::kMaxPointStep) +
+           " bytes that a point may have";
+  } else {
+    return PointField{std::string(name), known->type, offset};
   }
-  return PointField{std::string(name), known->type, offset};
+  return std::nullopt;
 }
 
 }  // namespace
@@ -67,12 +75,22 @@ PointFields& PointFields::Add(std::string name, FieldType type) {
   return *this;
 }
 
-std::optional<PointFields> PointFields::Parse(std::string_view text) {
+std::optional<PointFields> PointFields::Parse(std::string_view text, std::string* why) {
+  std::string ignored;
+  std::string& reason = why != nullptr ? *why : ignored;
+  reason = "there are no fields";
   PointFields fields;
   while (!text.empty()) {
-    auto field = ParseField(TakeUntil(',', &text));
-    if (!field || fields.Find(field->name) != nullptr || fields.fields_.size() == kMaxFields)
+    auto field = ParseField(TakeUntil(',', &text), &reason);
+    if (!field) return std::nullopt;
+    if (fields.Find(field->name) != nullptr) {
+      reason = "there are two fields " + field->name;
       return std::nullopt;
+    }
+    if (fields.fields_.size() == kMaxFields) {
+      reason = "there are more than " + std::to_string(kMaxFields) + " fields";
+      return std::nullopt;
+    }
     fields.fields_.push_back(*std::move(field));
   }
   if (fields.empty()) return std::nullopt;

@@ -28,8 +28,9 @@ class PointFields {
   PointFields& Add(std::string name, FieldType type);
 
   /// Parses the caps field `fields`: "x:F32:0,y:F32:4,z:F32:8". None for an unknown type, an empty
-  /// or doubled name, more than kMaxFields, or an offset past kMaxPointStep.
-  static std::optional<PointFields> Parse(std::string_view text);
+  /// or doubled name, more than kMaxFields, or an offset past kMaxPointStep; `why` then says which,
+  /// in words for a user.
+  static std::optional<PointFields> Parse(std::string_view text, std::string* why = nullptr);
   std::string ToString() const;
 
   /// Null where there is no such field.

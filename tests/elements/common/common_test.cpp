@@ -83,23 +83,49 @@ TEST(CloudInfo, RoundTripsThroughCaps) {
   EXPECT_EQ(back->sensor_model->beams.size(), 2U);
 }
 
-class BadCaps : public ::testing::TestWithParam<const char*> {};
-TEST_P(BadCaps, AreRefused) {
-  const CapsPtr caps(gst_caps_from_string(GetParam()));
+struct BadCaps {
+  const char* caps;
+  const char* why;  // part of the reason
+};
+class CloudCaps : public ::testing::TestWithParam<BadCaps> {};
+TEST_P(CloudCaps, AreRefusedWithTheRealReason) {
+  const CapsPtr caps(gst_caps_from_string(GetParam().caps));
+  std::string why;
   EXPECT_FALSE(CloudInfo::FromCaps(caps.get()));
+  EXPECT_FALSE(CloudInfo::FromCaps(caps.get(), &why));
+  EXPECT_NE(why.find(GetParam().why), std::string::npos) << why;
 }
+#define CLOUD "application/x-pointcloud2,point-step=16,"
 INSTANTIATE_TEST_SUITE_P(
-    All, BadCaps,
+    All, CloudCaps,
     ::testing::Values(
-        "video/x-raw", "application/x-pointcloud2",
-        "application/x-pointcloud2,point-step=8,fields=(string)\"x:F32:0,y:F32:4,z:F32:8\"",
-        "application/x-pointcloud2,point-step=-16,fields=(string)\"x:F32:0\"",
-        "application/x-pointcloud2,point-step=16,width=-1,fields=(string)\"x:F32:0\"",
-        "application/x-pointcloud2,point-step=16,is-bigendian=true,fields=(string)\"x:F32:0\"",
-        "application/x-pointcloud2,point-step=16,width=2147483647,height=2147483647,"
-        "fields=(string)\"x:F32:0\"",
-        "application/x-pointcloud2,point-step=16,sensor-model=(buffer)00ff,"
-        "fields=(string)\"x:F32:0\""));
+        BadCaps{"video/x-raw", "video/x-raw is no application/x-pointcloud2"},
+        BadCaps{"application/x-pointcloud2", "fields is missing"},
+        BadCaps{"application/x-pointcloud2,fields=(string)\"x:F32:0\"", "point-step is missing"},
+        BadCaps{"application/x-pointcloud2,point-step=8,fields=(string)\"x:F32:0,z:F32:8\"",
+                "the fields end past point-step=8"},
+        BadCaps{"application/x-pointcloud2,point-step=-16,fields=(string)\"x:F32:0\"",
+                "point-step is negative"},
+        BadCaps{"application/x-pointcloud2,point-step=2000,fields=(string)\"x:F32:0\"",
+                "point-step is above 1024"},
+        BadCaps{CLOUD "width=-1,fields=(string)\"x:F32:0\"", "width is negative"},
+        BadCaps{CLOUD "height=0,fields=(string)\"x:F32:0\"", "height is 0"},
+        BadCaps{CLOUD "is-bigendian=true,fields=(string)\"x:F32:0\"", "little-endian"},
+        BadCaps{CLOUD "width=2147483647,height=2147483647,fields=(string)\"x:F32:0\"", "1 GiB"},
+        BadCaps{CLOUD "sensor-model=(buffer)00ff,fields=(string)\"x:F32:0\"", "damaged"},
+        BadCaps{CLOUD "fields=(string)\"x:F16:0\"", "\"x:F16:0\" is not of type I8"},
+        BadCaps{CLOUD "fields=(string)\":F32:0\"", "has no name"},
+        BadCaps{CLOUD "fields=(string)\"x:F32\"", "has no offset"},
+        BadCaps{CLOUD "fields=(string)\"x:F32:4000000000\"", "past the 1024 bytes"},
+        BadCaps{CLOUD "fields=(string)\"x:F32:0,x:F32:4\"", "two fields x"}));
+
+TEST(CloudInfo, OfFramesNeedsAWidth) {
+  const CapsPtr caps(gst_caps_from_string(CLOUD "fields=(string)\"x:F32:0\""));
+  std::string why;
+  EXPECT_TRUE(CloudInfo::FromCaps(caps.get()));
+  EXPECT_FALSE(CloudInfo::FromFrameCaps(caps.get(), &why));
+  EXPECT_NE(why.find("width is missing"), std::string::npos) << why;
+}
 
 }  // namespace
 }  // namespace lidar::gst

@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <cstring>
+#include <limits>
 #include <sstream>
 
 #include "gst/common/buffer_map.h"
@@ -72,6 +73,16 @@ TEST(PcdEnc, OrganisedTextKeepsTheOrderAndMarksMissingReturnsAsNan) {
             "-7 8 9.5 255 65535\n");
 }
 
+TEST(PcdEnc, APointAtInfinityIsNoReturn) {
+  std::vector<Point> points = kPoints;
+  points[0].y = std::numeric_limits<float>::infinity();
+  points[2].z = -std::numeric_limits<float>::infinity();
+  EXPECT_NE(Encode("pcdenc", Info(3, 1), points).find("POINTS 0\n"), std::string::npos);
+  EXPECT_NE(Encode("plyenc", Info(3, 1), points).find("element vertex 0\n"), std::string::npos);
+  const std::string organised = Encode("pcdenc binary=false", Info(1, 3), points);
+  EXPECT_NE(organised.find("nan nan nan 17 3\n"), std::string::npos) << organised;
+}
+
 TEST(PcdEnc, UnorganisedCloudsLoseMissingReturns) {
   const std::string file = Encode("pcdenc binary=false", Info(3, 1));
   EXPECT_NE(file.find("WIDTH 2\nHEIGHT 1\n"), std::string::npos);
@@ -136,6 +147,30 @@ TEST_P(CloudFileManners, RefusesACloudOfAnotherSizeThanItsCaps) {
   gst_harness_set_src_caps(h.get(), Info(3, 1).ToCaps());
   EXPECT_EQ(gst_harness_push(h.get(), gst_buffer_new_allocate(nullptr, 10, nullptr)),
             GST_FLOW_ERROR);
+}
+
+TEST_P(CloudFileManners, WarnsOnceWhereSlicesComeInsteadOfScans) {
+  const Harness h(gst_harness_new(GetParam()));
+  GstBus* bus = gst_bus_new();
+  gst_element_set_bus(h->element, bus);
+  gst_harness_set_src_caps(h.get(), Info(3, 1).ToCaps());
+  guint warnings = 0;
+  for (const guint slices : {1U, 8U, 8U}) {
+    GstBuffer* in = gst_buffer_new_memdup(kPoints.data(), 3 * sizeof(Point));
+    const GstLidarSlice slice{7, 0, slices, 0};
+    gst_lidar_buffer_set_slice(in, &slice);
+    EXPECT_EQ(gst_harness_push(h.get(), in), GST_FLOW_OK);
+    while (const MessagePtr message{gst_bus_pop_filtered(bus, GST_MESSAGE_WARNING)}) {
+      GError* raw = nullptr;
+      gst_message_parse_warning(message.get(), &raw, nullptr);
+      EXPECT_NE(std::string(ErrorPtr(raw)->message).find("8 files"), std::string::npos);
+      EXPECT_EQ(slices, 8U);
+      ++warnings;
+    }
+  }
+  EXPECT_EQ(warnings, 1U);
+  gst_element_set_bus(h->element, nullptr);
+  gst_object_unref(bus);
 }
 
 TEST_P(CloudFileManners, RefusesCapsWithoutAWidth) {

@@ -153,9 +153,34 @@ TEST_F(Parse, SaysWhenAFileIsNotMadeOfPoints) {
   EXPECT_NE(ErrorText(GST_MESSAGE_ERROR).find("1601 bytes"), std::string::npos);
 }
 
-TEST_F(Parse, SaysWhenTheCapsDoNotDescribeACloud) {
-  Start("application/x-pointcloud2,point-step=8,fields=(string)\"x:F32:0,y:F32:4,z:F32:8\"");
-  EXPECT_EQ(Push(Bytes(160)), GST_FLOW_NOT_NEGOTIATED);
+TEST_F(Parse, LeavesAnEmptyCloudOutAndKeepsTheTimesOfTheOthers) {
+  Start(kKitti);
+  WatchMessages();
+  EXPECT_EQ(Push(Bytes(160)), GST_FLOW_OK);
+  EXPECT_EQ(Push(Bytes(0)), GST_FLOW_OK);
+  EXPECT_EQ(Push(Bytes(0)), GST_FLOW_OK);
+  EXPECT_EQ(Push(Bytes(160)), GST_FLOW_OK);
+  EXPECT_EQ(Push(Bytes(160)), GST_FLOW_OK);
+  EXPECT_EQ(gst_harness_buffers_in_queue(h_.get()), 3U);
+  EXPECT_EQ(GST_BUFFER_PTS(Pull().get()), 0U);
+  const BufferPtr after = Pull();
+  EXPECT_EQ(GST_BUFFER_PTS(after.get()), 300 * GST_MSECOND);
+  EXPECT_TRUE(GST_BUFFER_IS_DISCONT(after.get()));
+  EXPECT_FALSE(GST_BUFFER_IS_DISCONT(Pull().get()));
+  EXPECT_NE(ErrorText(GST_MESSAGE_WARNING).find("A cloud is empty"), std::string::npos);
+  EXPECT_EQ(ErrorText(GST_MESSAGE_WARNING), "");
+}
+
+TEST_F(Parse, ABufferAfterAGapDoesNotFinishTheCloudBeforeIt) {
+  Start("application/x-pointcloud2,width=5,height=2,point-step=16,fields=(string)\"x:F32:0\"");
+  Push(Bytes(100, 1));
+  BufferPtr after = Bytes(160, 2);
+  GST_BUFFER_FLAG_SET(after.get(), GST_BUFFER_FLAG_DISCONT);
+  Push(std::move(after));
+  ASSERT_EQ(gst_harness_buffers_in_queue(h_.get()), 1U);
+  const BufferPtr cloud = Pull();
+  const BufferMap map(cloud.get(), GST_MAP_READ);
+  EXPECT_EQ(map.data()[0], 2);
 }
 
 TEST_F(Parse, StartsAfreshAfterAStateCycle) {

@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Caps that an element cannot take: one error that names the reason, however often they come.
+#include <gtest/gtest.h>
+
+#include <array>
+#include <string>
+#include <vector>
+
+#include "gst/common/refs.h"
+#include "tests/support/harness.h"
+
+namespace lidar::gst {
+namespace {
+
+class RefusedCapsOf : public ::testing::TestWithParam<const char*> {};
+INSTANTIATE_TEST_SUITE_P(All, RefusedCapsOf,
+                         ::testing::Values("pointcloudparse", "scanassembler", "pcdenc", "plyenc",
+                                           "pointcloudview"));
+
+/// Texts of the errors that the element posts on a buffer after another.
+std::vector<std::string> ErrorsOf(const char* element, const std::string& caps) {
+  const test::Harness h(gst_harness_new(element));
+  GstBus* bus = gst_bus_new();
+  gst_element_set_bus(h->element, bus);
+  gst_harness_set_src_caps_str(h.get(), caps.c_str());
+  for (int i = 0; i < 3; ++i)
+    EXPECT_NE(gst_harness_push(h.get(), gst_buffer_new_allocate(nullptr, 160, nullptr)),
+              GST_FLOW_OK);
+  std::vector<std::string> texts;
+  while (const MessagePtr message{gst_bus_pop_filtered(bus, GST_MESSAGE_ERROR)}) {
+    GError* raw = nullptr;
+    gst_message_parse_error(message.get(), &raw, nullptr);
+    texts.emplace_back(ErrorPtr(raw)->message);
+  }
+  gst_element_set_bus(h->element, nullptr);
+  gst_object_unref(bus);
+  return texts;
+}
+
+TEST_P(RefusedCapsOf, AnElementAreOneErrorThatNamesTheReason) {
+  const std::string cloud = "application/x-pointcloud2,point-step=16,width=10,height=1,";
+  const std::array<std::array<std::string, 2>, 2> cases = {
+      {{"is-bigendian=true,fields=(string)\"x:F32:0,y:F32:4,z:F32:8\"", "little-endian"},
+       {"fields=(string)\"x:F16:0,y:F32:4,z:F32:8\"", "x:F16:0"}}};
+  for (const auto& [caps, why] : cases) {
+    const auto errors = ErrorsOf(GetParam(), cloud + caps);
+    ASSERT_EQ(errors.size(), 1U);
+    EXPECT_NE(errors[0].find(why), std::string::npos) << errors[0];
+  }
+}
+
+}  // namespace
+}  // namespace lidar::gst
