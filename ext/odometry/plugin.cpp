@@ -9,4 +9,4 @@ static gboolean plugin_init(GstPlugin* plugin) {
 }
 
 GST_PLUGIN_DEFINE(GST_VERSION_MAJOR, GST_VERSION_MINOR, lidarodometry, "Odometry from point clouds",
-                  plugin_init, VERSION, "LGPL", PACKAGE, "https://gstreamer.freedesktop.org")
+                  plugin_init, VERSION, "LGPL", PACKAGE, PACKAGE_ORIGIN)

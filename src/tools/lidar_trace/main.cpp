@@ -6,6 +6,7 @@
 
 #include "src/link/capacity.h"
 #include "src/link/trace_maker.h"
+#include "src/tools/common/version.h"
 
 namespace {
 
@@ -39,6 +40,7 @@ int main(int argc, char** argv) {
       "A drive through a 5G network with handover gaps of 0.1 to 2 s and fading cell edges, or\n"
       "with --gap, a constant rate with regular gaps.\n",
       "lidar-trace"};
+  lidar::tools::AddVersionFlag(&app, "lidar-trace");
   Options o;
   const auto rate = CLI::Range(0.001, lidar::link::Capacity::kMaxMbps);
   app.add_option("--duration", o.duration_s, "Of the trace [s]")
