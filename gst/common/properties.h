@@ -130,4 +130,13 @@ void ServeProperties(GObjectClass* klass) {
   InstallProperties(klass, RowsOf(table));
 }
 
+/// Frees `state` with the object; `parent_class` is the one that G_DEFINE_TYPE makes.
+template <class Self, gpointer& parent_class>
+void OwnState(GObjectClass* klass) {
+  klass->finalize = [](GObject* object) {
+    delete reinterpret_cast<Self*>(object)->state;
+    G_OBJECT_CLASS(parent_class)->finalize(object);
+  };
+}
+
 }  // namespace lidar::gst

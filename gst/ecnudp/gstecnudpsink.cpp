@@ -20,8 +20,9 @@
 
 #include "gst/common/gstlidar.h"
 #include "gst/common/properties.h"
+#include "gst/common/stats.h"
 #include "gst/net/udp_batch.h"
-#include "gst/net/udp_socket.h"
+#include "gst/net/udp_element.h"
 
 GST_DEBUG_CATEGORY_STATIC(gst_lidar_ecn_udp_sink_debug);
 #define GST_CAT_DEFAULT gst_lidar_ecn_udp_sink_debug
@@ -29,8 +30,6 @@ GST_DEBUG_CATEGORY_STATIC(gst_lidar_ecn_udp_sink_debug);
 namespace {
 
 using namespace lidar::gst;
-using SocketPtr = std::unique_ptr<GSocket, GObjectUnref>;
-using SocketAddressPtr = std::unique_ptr<GSocketAddress, GObjectUnref>;
 
 constexpr guint8 kEcnMask = 0x03;
 
@@ -48,58 +47,35 @@ GType EcnType() {
 }
 
 struct Settings {
-  std::string host = "127.0.0.1";
-  guint port = 5004;
-  std::string bind_address;
-  guint bind_port = 0;
+  UdpTarget target;
   gint ecn = GST_LIDAR_ECN_NOT_ECT;
   gint dscp = -1;
-  bool close_socket = true;
+  GivenSocket given;
   bool reply = false;
   std::string multicast_iface;
   gint ttl_mc = 1;
   guint buffer_size = 0;
 };
 
-const std::array<Property<Settings>, 11> kProperties = {{
-    {"host", "Host to send to: a name or an address", &Settings::host},
-    {"port", "UDP port to send to", &Settings::port, 1, 65535},
-    {"bind-address", "Local address to send from; empty for any", &Settings::bind_address},
-    {"bind-port", "Local UDP port to send from; 0 for any", &Settings::bind_port, 0, 65535},
-    {"ecn", "ECN bits of buffers without LidarEcnMeta",
-     EnumField<Settings>{&Settings::ecn, EcnType}, 0, 0, GST_PARAM_MUTABLE_PLAYING},
-    {"dscp", "Differentiated services code point; -1 keeps the socket's", &Settings::dscp, -1, 63,
-     GST_PARAM_MUTABLE_PLAYING},
-    {"close-socket", "Close a socket given by the property socket on stop",
-     &Settings::close_socket},
-    {"reply",
-     "Send to the peer that the buffer's GstNetAddressMeta names (the last such where it has none) "
-     "instead of host and port",
-     &Settings::reply},
-    {"multicast-iface", "Network interface for multicast; empty for the kernel's choice",
-     &Settings::multicast_iface},
-    {"ttl-mc", "Time to live of multicast datagrams [hops]", &Settings::ttl_mc, 0, 255},
-    {"buffer-size", "Kernel send buffer [bytes]; 0 for its default", &Settings::buffer_size, 0,
-     G_MAXINT},
-}};
-
-enum : guint {
-  kPropSocket = kProperties.size() + 1,
-  kPropUsedSocket,
-  kPropPeerAddress,
-  kPropStats,
-};
-
-struct State {
-  std::mutex mutex;  // guards all to the next comment; never held while sending or posting
-  Settings settings;
-  SocketPtr given;
-  SocketPtr used;
-  SocketAddressPtr peer;
+struct Counters {
   guint64 packets = 0;
   guint64 bytes = 0;
   guint64 errors = 0;
   guint64 no_peer = 0;
+};
+const std::array<Stat<Counters>, 4> kStats = {{
+    {"packets-sent", &Counters::packets},
+    {"bytes-sent", &Counters::bytes},
+    {"send-errors", &Counters::errors},
+    {"dropped-no-peer", &Counters::no_peer},
+}};
+
+struct State {
+  std::mutex mutex;  // guards all to the next comment; never held while sending or posting
+  Settings settings;
+  SharedSocket used;
+  SharedSocketAddress peer;
+  Counters counters;
 
   // Of the streaming thread, between start and stop.
   WakeFd wake;
@@ -129,6 +105,46 @@ GST_ELEMENT_REGISTER_DEFINE(ecnudpsink, "ecnudpsink", GST_RANK_NONE, GST_TYPE_LI
 
 static State& StateOf(gpointer self) { return *GST_LIDAR_ECN_UDP_SINK(self)->state; }
 
+static SharedSocketAddress PeerAddress(GObject* object) {
+  State& state = StateOf(object);
+  const std::lock_guard lock(state.mutex);
+  return state.peer;
+}
+
+static StructurePtr Stats(GObject* object) {
+  State& state = StateOf(object);
+  const std::lock_guard lock(state.mutex);
+  return ToStructure("application/x-ecnudpsink-stats", kStats, state.counters);
+}
+
+static const std::array<Property<Settings>, 15> kProperties = {{
+    {"host", "Host to send to: a name or an address", At<&Settings::target, &UdpTarget::host>},
+    {"port", "UDP port to send to", At<&Settings::target, &UdpTarget::port>, 1, 65535},
+    {"bind-address", "Local address to send from; empty for any",
+     At<&Settings::target, &UdpTarget::bind_address>},
+    {"bind-port", "Local UDP port to send from; 0 for any",
+     At<&Settings::target, &UdpTarget::bind_port>, 0, 65535},
+    {"ecn", "ECN bits of buffers without LidarEcnMeta",
+     EnumField<Settings>{&Settings::ecn, EcnType}, 0, 0, GST_PARAM_MUTABLE_PLAYING},
+    {"dscp", "Differentiated services code point; -1 keeps the socket's", &Settings::dscp, -1, 63,
+     GST_PARAM_MUTABLE_PLAYING},
+    {"close-socket", "Close a socket given by the property socket on stop",
+     At<&Settings::given, &GivenSocket::close>},
+    {"reply",
+     "Send to the peer that the buffer's GstNetAddressMeta names (the last such where it has none) "
+     "instead of host and port",
+     &Settings::reply},
+    {"multicast-iface", "Network interface for multicast; empty for the kernel's choice",
+     &Settings::multicast_iface},
+    {"ttl-mc", "Time to live of multicast datagrams [hops]", &Settings::ttl_mc, 0, 255},
+    {"buffer-size", "Kernel send buffer [bytes]; 0 for its default", &Settings::buffer_size, 0,
+     G_MAXINT},
+    {"socket", "Socket to send from; NULL opens one", At<&Settings::given, &GivenSocket::socket>},
+    {"used-socket", "Socket in use; NULL when stopped", UsedSocket<GstLidarEcnUdpSink>},
+    {"peer-address", "Address that datagrams go to now; NULL when there is none", PeerAddress},
+    {"stats", "packets-sent, bytes-sent [bytes], send-errors, dropped-no-peer", Stats},
+}};
+
 static guint8 SocketTos(int fd, GSocketFamily family) {
   int tos = 0;
   socklen_t size = sizeof tos;
@@ -136,26 +152,6 @@ static guint8 SocketTos(int fd, GSocketFamily family) {
   if (getsockopt(fd, v6 ? IPPROTO_IPV6 : IPPROTO_IP, v6 ? IPV6_TCLASS : IP_TOS, &tos, &size) != 0)
     return 0;
   return static_cast<guint8>(tos & ~kEcnMask);
-}
-
-static bool Fail(GstLidarEcnUdpSink* self, const char* what, const Settings& s, GError* error) {
-  GST_ELEMENT_ERROR(self, RESOURCE, OPEN_WRITE, ("%s: %s", what, error->message),
-                    ("host %s port %u bind-address '%s' bind-port %u", s.host.c_str(), s.port,
-                     s.bind_address.c_str(), s.bind_port));
-  g_error_free(error);
-  return false;
-}
-
-/// The socket given, or a new one of the peer's address family; NULL after an element error.
-static GSocket* AcquireSocket(GstLidarEcnUdpSink* self, const Settings& s, GSocket* given,
-                              GSocketAddress* peer) {
-  if (given != nullptr) return G_SOCKET(g_object_ref(given));
-  UdpBind bind{s.bind_address, s.bind_port, G_SOCKET_FAMILY_INVALID, false};
-  if (peer != nullptr) bind.family = g_socket_address_get_family(peer);
-  GError* error = nullptr;
-  GSocket* socket = OpenUdpSocket(bind, &error);
-  if (socket == nullptr) Fail(self, "Cannot open a UDP socket", s, error);
-  return socket;
 }
 
 static void ConfigureSocket(GSocket* socket, const Settings& s) {
@@ -170,16 +166,14 @@ static gboolean Start(GstBaseSink* base) {
   State& state = StateOf(self);
   std::unique_lock lock(state.mutex);
   const Settings s = state.settings;
-  SocketPtr given(state.given ? G_SOCKET(g_object_ref(state.given.get())) : nullptr);
   lock.unlock();
 
-  GError* error = nullptr;
-  SocketAddressPtr peer;
-  if (!s.reply) {
-    peer.reset(ResolveUdpAddress(s.host, s.port, &error));
-    if (!peer) return Fail(self, "Cannot resolve the host", s, error);
-  }
-  SocketPtr socket(AcquireSocket(self, s, given.get(), peer.get()));
+  SharedSocketAddress peer;
+  if (!s.reply && !(peer = ResolveTarget(GST_ELEMENT(self), s.target))) return FALSE;
+  SharedSocket socket = s.given.socket;
+  const GSocketFamily family =
+      peer ? g_socket_address_get_family(peer.get()) : G_SOCKET_FAMILY_INVALID;
+  if (!socket) socket = OpenSending(GST_ELEMENT(self), s.target, family);
   if (!socket) return FALSE;
   ConfigureSocket(socket.get(), s);
   state.family = g_socket_get_family(socket.get());
@@ -188,24 +182,23 @@ static gboolean Start(GstBaseSink* base) {
   state.warned_errno = 0;
   state.wake.Clear();
   if (peer && !state.to.valid()) {
-    GST_ELEMENT_ERROR(self, RESOURCE, SETTINGS,
-                      ("The host %s is not of the address family of the socket", s.host.c_str()),
-                      ("use an address of the other family, or another bind-address"));
+    GST_ELEMENT_ERROR(
+        self, RESOURCE, SETTINGS,
+        ("The host %s is not of the address family of the socket", s.target.host.c_str()),
+        ("use an address of the other family, or another bind-address"));
     return FALSE;
   }
   lock.lock();
   state.used = std::move(socket);
   state.peer = std::move(peer);
-  state.packets = state.bytes = state.errors = state.no_peer = 0;
+  state.counters = {};
   return TRUE;
 }
 
 static gboolean Stop(GstBaseSink* base) {
   State& state = StateOf(base);
   std::lock_guard lock(state.mutex);
-  if (state.used && (state.used.get() != state.given.get() || state.settings.close_socket))
-    g_socket_close(state.used.get(), nullptr);
-  state.used.reset();
+  CloseUsed(&state.used, state.settings.given);
   state.peer.reset();
   return TRUE;
 }
@@ -216,7 +209,7 @@ static void FollowPeer(State& state, GstBuffer* buffer) {
   if (meta == nullptr || meta->addr == state.peer.get()) return;
   state.to = ToNative(meta->addr, state.family);
   std::lock_guard lock(state.mutex);
-  state.peer.reset(G_SOCKET_ADDRESS(g_object_ref(meta->addr)));
+  state.peer.reset(G_SOCKET_ADDRESS(g_object_ref(meta->addr)), GObjectUnref{});
 }
 
 static Marking CurrentMarking(State& state) {
@@ -245,9 +238,7 @@ static GstFlowReturn Flush(GstLidarEcnUdpSink* self) {
   const auto result = state.batch.Flush(g_socket_get_fd(state.used.get()), state.wake);
   {
     std::lock_guard lock(state.mutex);
-    state.packets += result.packets;
-    state.bytes += result.bytes;
-    state.errors += result.errors;
+    AddCounts(kStats, {result.packets, result.bytes, result.errors, 0}, &state.counters);
   }
   WarnOnce(self, result);
   return result.woken ? GST_FLOW_FLUSHING : GST_FLOW_OK;
@@ -259,7 +250,7 @@ static bool Add(GstLidarEcnUdpSink* self, GstBuffer* buffer, const Marking& mark
   if (marking.reply) FollowPeer(state, buffer);
   if (!state.to.valid()) {
     std::lock_guard lock(state.mutex);
-    ++state.no_peer;
+    ++state.counters.no_peer;
     return true;
   }
   auto ecn = static_cast<GstLidarEcn>(marking.ecn);
@@ -290,67 +281,6 @@ static GstFlowReturn RenderList(GstBaseSink* base, GstBufferList* list) {
   return Flush(self);
 }
 
-static GstStructure* Stats(State& state) {
-  std::lock_guard lock(state.mutex);
-  return gst_structure_new("application/x-ecnudpsink-stats", "packets-sent", G_TYPE_UINT64,
-                           state.packets, "bytes-sent", G_TYPE_UINT64, state.bytes, "send-errors",
-                           G_TYPE_UINT64, state.errors, "dropped-no-peer", G_TYPE_UINT64,
-                           state.no_peer, nullptr);
-}
-
-static void SetPropertyVfunc(GObject* o, guint id, const GValue* v, GParamSpec* spec) {
-  State& state = StateOf(o);
-  std::lock_guard lock(state.mutex);
-  if (id <= kProperties.size()) {
-    SetProperty(state.settings, kProperties[id - 1], v);
-  } else if (id == kPropSocket) {
-    state.given.reset(static_cast<GSocket*>(g_value_dup_object(v)));
-  } else {
-    G_OBJECT_WARN_INVALID_PROPERTY_ID(o, id, spec);
-  }
-}
-
-static void GetPropertyVfunc(GObject* o, guint id, GValue* v, GParamSpec* spec) {
-  State& state = StateOf(o);
-  if (id == kPropStats) return g_value_take_boxed(v, Stats(state));
-  std::lock_guard lock(state.mutex);
-  if (id <= kProperties.size()) {
-    GetProperty(state.settings, kProperties[id - 1], v);
-  } else if (id == kPropSocket) {
-    g_value_set_object(v, state.given.get());
-  } else if (id == kPropUsedSocket) {
-    g_value_set_object(v, state.used.get());
-  } else if (id == kPropPeerAddress) {
-    g_value_set_object(v, state.peer.get());
-  } else {
-    G_OBJECT_WARN_INVALID_PROPERTY_ID(o, id, spec);
-  }
-}
-
-static void InstallObjectProperties(GObjectClass* object) {
-  constexpr auto kRead = static_cast<GParamFlags>(G_PARAM_READABLE | G_PARAM_STATIC_STRINGS);
-  constexpr auto kReadWrite = static_cast<GParamFlags>(G_PARAM_READWRITE | G_PARAM_STATIC_STRINGS |
-                                                       GST_PARAM_MUTABLE_READY);
-  g_object_class_install_property(
-      object, kPropSocket,
-      g_param_spec_object("socket", "socket", "Socket to send from; NULL opens one", G_TYPE_SOCKET,
-                          kReadWrite));
-  g_object_class_install_property(
-      object, kPropUsedSocket,
-      g_param_spec_object("used-socket", "used-socket", "Socket in use; NULL when stopped",
-                          G_TYPE_SOCKET, kRead));
-  g_object_class_install_property(
-      object, kPropPeerAddress,
-      g_param_spec_object("peer-address", "peer-address",
-                          "Address that datagrams go to now; NULL when there is none",
-                          G_TYPE_SOCKET_ADDRESS, kRead));
-  g_object_class_install_property(
-      object, kPropStats,
-      g_param_spec_boxed("stats", "stats",
-                         "packets-sent, bytes-sent [bytes], send-errors, dropped-no-peer",
-                         GST_TYPE_STRUCTURE, kRead));
-}
-
 static void gst_lidar_ecn_udp_sink_init(GstLidarEcnUdpSink* self) {
   self->state = new State;
   gst_base_sink_set_sync(GST_BASE_SINK(self), TRUE);
@@ -361,27 +291,14 @@ static void InstallVmethods(GstBaseSinkClass* sink) {
   sink->stop = Stop;
   sink->render = Render;
   sink->render_list = RenderList;
-  sink->unlock = [](GstBaseSink* base) -> gboolean {
-    StateOf(base).wake.Wake();
-    return TRUE;
-  };
-  sink->unlock_stop = [](GstBaseSink* base) -> gboolean {
-    StateOf(base).wake.Clear();
-    return TRUE;
-  };
+  WakeOnUnlock<GstLidarEcnUdpSink, GstBaseSink>(sink);
 }
 
 static void gst_lidar_ecn_udp_sink_class_init(GstLidarEcnUdpSinkClass* klass) {
   GST_DEBUG_CATEGORY_INIT(gst_lidar_ecn_udp_sink_debug, "ecnudpsink", 0, "UDP sink with ECN");
   auto* object = G_OBJECT_CLASS(klass);
-  object->set_property = SetPropertyVfunc;
-  object->get_property = GetPropertyVfunc;
-  object->finalize = [](GObject* o) {
-    delete GST_LIDAR_ECN_UDP_SINK(o)->state;
-    G_OBJECT_CLASS(gst_lidar_ecn_udp_sink_parent_class)->finalize(o);
-  };
-  InstallProperties(object, kProperties);
-  InstallObjectProperties(object);
+  ServeProperties<GstLidarEcnUdpSink, kProperties>(object);
+  OwnState<GstLidarEcnUdpSink, gst_lidar_ecn_udp_sink_parent_class>(object);
   static GstStaticPadTemplate sink =
       GST_STATIC_PAD_TEMPLATE("sink", GST_PAD_SINK, GST_PAD_ALWAYS, GST_STATIC_CAPS_ANY);
   auto* element = GST_ELEMENT_CLASS(klass);

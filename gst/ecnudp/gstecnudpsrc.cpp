@@ -23,8 +23,9 @@
 #include "gst/common/gstlidar.h"
 #include "gst/common/properties.h"
 #include "gst/common/refs.h"
+#include "gst/common/stats.h"
 #include "gst/net/udp_batch.h"
-#include "gst/net/udp_socket.h"
+#include "gst/net/udp_element.h"
 
 GST_DEBUG_CATEGORY_STATIC(gst_lidar_ecn_udp_src_debug);
 #define GST_CAT_DEFAULT gst_lidar_ecn_udp_src_debug
@@ -32,55 +33,37 @@ GST_DEBUG_CATEGORY_STATIC(gst_lidar_ecn_udp_src_debug);
 namespace {
 
 using namespace lidar::gst;
-using SocketPtr = std::unique_ptr<GSocket, GObjectUnref>;
-using SocketAddressPtr = std::unique_ptr<GSocketAddress, GObjectUnref>;
 
 // What 1 s of 16 Mbit/s needs; asked for silently where the user gave no size.
 constexpr guint kDefaultBuffer = 2u << 20;
 constexpr gint kDefaultPayload = 96;
 
 struct Settings {
-  std::string address;
-  guint port = 5004;
+  UdpListen listen;
   guint buffer_size = 0;
-  std::string multicast_group;
-  std::string multicast_iface;
   guint64 timeout = 0;
-  bool close_socket = true;
+  GivenSocket given;
+  SharedCaps caps;
 };
 
-const std::array<Property<Settings>, 7> kProperties = {{
-    {"address", "Local address to receive on; empty for any, IPv6 and IPv4", &Settings::address},
-    {"port", "UDP port to receive on; 0 for any free one", &Settings::port, 0, 65535},
-    {"buffer-size",
-     "Kernel receive buffer [bytes]; 0 asks for 2 MiB and takes what the kernel grants",
-     &Settings::buffer_size, 0, G_MAXINT},
-    {"multicast-group", "Multicast group to join; empty for none", &Settings::multicast_group},
-    {"multicast-iface", "Network interface for multicast; empty for the kernel's choice",
-     &Settings::multicast_iface},
-    {"timeout", "Silence after which a message GstEcnUdpSrcTimeout is posted [ns]; 0 for never",
-     &Settings::timeout, 0, static_cast<gdouble>(G_MAXINT64)},
-    {"close-socket", "Close a socket given by the property socket on stop",
-     &Settings::close_socket},
-}};
-
-enum : guint {
-  kPropSocket = kProperties.size() + 1,
-  kPropUsedSocket,
-  kPropCaps,
-  kPropStats,
-};
-
-struct State {
-  std::mutex mutex;  // guards all to the next comment; never held while receiving or posting
-  Settings settings;
-  CapsPtr caps;
-  SocketPtr given;
-  SocketPtr used;
+struct Counters {
   guint64 packets = 0;
   guint64 bytes = 0;
   guint64 ce = 0;
   guint kernel_drops = 0;
+};
+const std::array<Stat<Counters>, 4> kStats = {{
+    {"packets-received", &Counters::packets},
+    {"bytes-received", &Counters::bytes},
+    {"packets-ce", &Counters::ce},
+    {"dropped-by-kernel", &Counters::kernel_drops},
+}};
+
+struct State {
+  std::mutex mutex;  // guards all to the next comment; never held while receiving or posting
+  Settings settings;
+  SharedSocket used;
+  Counters counters;
 
   // Of the streaming thread, between start and stop.
   WakeFd wake;
@@ -103,6 +86,35 @@ GST_ELEMENT_REGISTER_DEFINE(ecnudpsrc, "ecnudpsrc", GST_RANK_NONE, GST_TYPE_LIDA
 
 static State& StateOf(gpointer self) { return *GST_LIDAR_ECN_UDP_SRC(self)->state; }
 
+static StructurePtr Stats(GObject* object) {
+  State& state = StateOf(object);
+  const std::lock_guard lock(state.mutex);
+  return ToStructure("application/x-ecnudpsrc-stats", kStats, state.counters);
+}
+
+static const std::array<Property<Settings>, 11> kProperties = {{
+    {"address", "Local address to receive on; empty for any, IPv6 and IPv4",
+     At<&Settings::listen, &UdpListen::address>},
+    {"port", "UDP port to receive on; 0 for any free one", At<&Settings::listen, &UdpListen::port>,
+     0, 65535},
+    {"buffer-size",
+     "Kernel receive buffer [bytes]; 0 asks for 2 MiB and takes what the kernel grants",
+     &Settings::buffer_size, 0, G_MAXINT},
+    {"multicast-group", "Multicast group to join; empty for none",
+     At<&Settings::listen, &UdpListen::multicast_group>},
+    {"multicast-iface", "Network interface for multicast; empty for the kernel's choice",
+     At<&Settings::listen, &UdpListen::multicast_iface>},
+    {"timeout", "Silence after which a message GstEcnUdpSrcTimeout is posted [ns]; 0 for never",
+     &Settings::timeout, 0, static_cast<gdouble>(G_MAXINT64)},
+    {"close-socket", "Close a socket given by the property socket on stop",
+     At<&Settings::given, &GivenSocket::close>},
+    {"socket", "Socket to receive from; NULL opens one",
+     At<&Settings::given, &GivenSocket::socket>},
+    {"used-socket", "Socket in use; NULL when stopped", UsedSocket<GstLidarEcnUdpSrc>},
+    {"caps", "Caps of the stream; NULL takes what downstream wants", &Settings::caps},
+    {"stats", "packets-received, bytes-received [bytes], packets-ce, dropped-by-kernel", Stats},
+}};
+
 static void ConfigureBuffer(GstLidarEcnUdpSrc* self, int fd, guint wanted) {
   const guint granted = SetReceiveBuffer(fd, wanted > 0 ? wanted : kDefaultBuffer);
   GST_DEBUG_OBJECT(self, "receive buffer of %u bytes", granted);
@@ -113,35 +125,15 @@ static void ConfigureBuffer(GstLidarEcnUdpSrc* self, int fd, guint wanted) {
       ("raise it with: sysctl -w net.core.rmem_max=%u", wanted));
 }
 
-static GSocket* OpenSocket(GstLidarEcnUdpSrc* self, const Settings& s, GSocket* given) {
-  if (given != nullptr) return G_SOCKET(g_object_ref(given));
-  const bool multicast = !s.multicast_group.empty();
-  UdpBind bind{s.address, s.port, G_SOCKET_FAMILY_INVALID, multicast};
-  if (multicast)
-    bind.family = s.multicast_group.find(':') != std::string::npos ? G_SOCKET_FAMILY_IPV6
-                                                                   : G_SOCKET_FAMILY_IPV4;
-  GError* error = nullptr;
-  SocketPtr socket(OpenUdpSocket(bind, &error));
-  if (socket && multicast)
-    JoinMulticast(socket.get(), s.multicast_group, s.multicast_iface, &error);
-  if (error == nullptr) return socket.release();
-  GST_ELEMENT_ERROR(self, RESOURCE, OPEN_READ,
-                    ("Cannot receive on UDP port %u: %s", s.port, error->message),
-                    ("address '%s', multicast-group '%s'; is another program using the port?",
-                     s.address.c_str(), s.multicast_group.c_str()));
-  g_error_free(error);
-  return nullptr;
-}
-
 static gboolean Start(GstBaseSrc* base) {
   auto* self = GST_LIDAR_ECN_UDP_SRC(base);
   State& state = StateOf(self);
   std::unique_lock lock(state.mutex);
   const Settings s = state.settings;
-  const SocketPtr given(state.given ? G_SOCKET(g_object_ref(state.given.get())) : nullptr);
   lock.unlock();
 
-  SocketPtr socket(OpenSocket(self, s, given.get()));
+  SharedSocket socket = s.given.socket;
+  if (!socket) socket = OpenListening(GST_ELEMENT(self), s.listen);
   if (!socket) return FALSE;
   const int fd = g_socket_get_fd(socket.get());
   UdpBatchReceiver::Prepare(fd);
@@ -152,16 +144,14 @@ static gboolean Start(GstBaseSrc* base) {
   state.last_address.reset();
   lock.lock();
   state.used = std::move(socket);
-  state.packets = state.bytes = state.ce = 0;
+  state.counters = {};
   return TRUE;
 }
 
 static gboolean Stop(GstBaseSrc* base) {
   State& state = StateOf(base);
   std::lock_guard lock(state.mutex);
-  if (state.used && (state.used.get() != state.given.get() || state.settings.close_socket))
-    g_socket_close(state.used.get(), nullptr);
-  state.used.reset();
+  CloseUsed(&state.used, state.settings.given);
   state.received.clear();
   return TRUE;
 }
@@ -193,9 +183,9 @@ static GstBuffer* ToBuffer(GstLidarEcnUdpSrc* self, const ReceivedDatagram& d) {
   if (state.last_address) gst_buffer_add_net_address_meta(buffer, state.last_address.get());
   gst_lidar_buffer_set_ecn(buffer, static_cast<GstLidarEcn>(d.tos & 3), d.arrival);
   std::lock_guard lock(state.mutex);
-  ++state.packets;
-  state.bytes += d.size;
-  if ((d.tos & 3) == GST_LIDAR_ECN_CE) ++state.ce;
+  ++state.counters.packets;
+  state.counters.bytes += d.size;
+  if ((d.tos & 3) == GST_LIDAR_ECN_CE) ++state.counters.ce;
   return buffer;
 }
 
@@ -245,21 +235,23 @@ static GstFlowReturn Create(GstPushSrc* push, GstBuffer** out) {
     const GstFlowReturn flow = ReceiveBatch(self);
     if (flow != GST_FLOW_OK) return flow;
     std::lock_guard lock(state.mutex);
-    state.kernel_drops = state.batch.kernel_drops();
+    state.counters.kernel_drops = state.batch.kernel_drops();
   }
   *out = state.received.front().release();
   state.received.pop_front();
   return GST_FLOW_OK;
 }
 
-static GstCaps* GetCaps(GstBaseSrc* base, GstCaps* filter) {
+static SharedCaps CapsOf(GstBaseSrc* base) {
   State& state = StateOf(base);
-  CapsPtr caps;
-  {
-    std::lock_guard lock(state.mutex);
-    caps.reset(state.caps ? gst_caps_ref(state.caps.get()) : gst_caps_new_any());
-  }
-  if (filter == nullptr) return caps.release();
+  const std::lock_guard lock(state.mutex);
+  return state.settings.caps;
+}
+
+static GstCaps* GetCaps(GstBaseSrc* base, GstCaps* filter) {
+  const SharedCaps own = CapsOf(base);
+  const CapsPtr caps(own ? gst_caps_ref(own.get()) : gst_caps_new_any());
+  if (filter == nullptr) return gst_caps_ref(caps.get());
   return gst_caps_intersect_full(filter, caps.get(), GST_CAPS_INTERSECT_FIRST);
 }
 
@@ -277,82 +269,14 @@ static GstCaps* FixateForPeer(const GstCaps* peer) {
 }
 
 static gboolean Negotiate(GstBaseSrc* base) {
-  State& state = StateOf(base);
   CapsPtr caps;
-  {
-    std::lock_guard lock(state.mutex);
-    if (state.caps) caps.reset(gst_caps_ref(state.caps.get()));
-  }
-  if (caps) {
-    caps.reset(gst_caps_fixate(gst_caps_copy(caps.get())));
+  if (const SharedCaps own = CapsOf(base)) {
+    caps.reset(gst_caps_fixate(gst_caps_copy(own.get())));
   } else {
     const CapsPtr peer(gst_pad_peer_query_caps(GST_BASE_SRC_PAD(base), nullptr));
     caps.reset(FixateForPeer(peer.get()));
   }
   return !caps || gst_base_src_set_caps(base, caps.get());
-}
-
-static GstStructure* Stats(State& state) {
-  std::lock_guard lock(state.mutex);
-  return gst_structure_new("application/x-ecnudpsrc-stats", "packets-received", G_TYPE_UINT64,
-                           state.packets, "bytes-received", G_TYPE_UINT64, state.bytes,
-                           "packets-ce", G_TYPE_UINT64, state.ce, "dropped-by-kernel", G_TYPE_UINT,
-                           state.kernel_drops, nullptr);
-}
-
-static void SetPropertyVfunc(GObject* o, guint id, const GValue* v, GParamSpec* spec) {
-  State& state = StateOf(o);
-  std::lock_guard lock(state.mutex);
-  if (id <= kProperties.size()) {
-    SetProperty(state.settings, kProperties[id - 1], v);
-  } else if (id == kPropSocket) {
-    state.given.reset(static_cast<GSocket*>(g_value_dup_object(v)));
-  } else if (id == kPropCaps) {
-    const GstCaps* caps = gst_value_get_caps(v);
-    state.caps.reset(caps != nullptr ? gst_caps_copy(caps) : nullptr);
-  } else {
-    G_OBJECT_WARN_INVALID_PROPERTY_ID(o, id, spec);
-  }
-}
-
-static void GetPropertyVfunc(GObject* o, guint id, GValue* v, GParamSpec* spec) {
-  State& state = StateOf(o);
-  if (id == kPropStats) return g_value_take_boxed(v, Stats(state));
-  std::lock_guard lock(state.mutex);
-  if (id <= kProperties.size()) {
-    GetProperty(state.settings, kProperties[id - 1], v);
-  } else if (id == kPropSocket) {
-    g_value_set_object(v, state.given.get());
-  } else if (id == kPropUsedSocket) {
-    g_value_set_object(v, state.used.get());
-  } else if (id == kPropCaps) {
-    gst_value_set_caps(v, state.caps.get());
-  } else {
-    G_OBJECT_WARN_INVALID_PROPERTY_ID(o, id, spec);
-  }
-}
-
-static void InstallObjectProperties(GObjectClass* object) {
-  constexpr auto kRead = static_cast<GParamFlags>(G_PARAM_READABLE | G_PARAM_STATIC_STRINGS);
-  constexpr auto kReadWrite = static_cast<GParamFlags>(G_PARAM_READWRITE | G_PARAM_STATIC_STRINGS |
-                                                       GST_PARAM_MUTABLE_READY);
-  g_object_class_install_property(
-      object, kPropSocket,
-      g_param_spec_object("socket", "socket", "Socket to receive from; NULL opens one",
-                          G_TYPE_SOCKET, kReadWrite));
-  g_object_class_install_property(
-      object, kPropUsedSocket,
-      g_param_spec_object("used-socket", "used-socket", "Socket in use; NULL when stopped",
-                          G_TYPE_SOCKET, kRead));
-  g_object_class_install_property(
-      object, kPropCaps,
-      g_param_spec_boxed("caps", "caps", "Caps of the stream; NULL takes what downstream wants",
-                         GST_TYPE_CAPS, kReadWrite));
-  g_object_class_install_property(
-      object, kPropStats,
-      g_param_spec_boxed("stats", "stats",
-                         "packets-received, bytes-received [bytes], packets-ce, dropped-by-kernel",
-                         GST_TYPE_STRUCTURE, kRead));
 }
 
 static void gst_lidar_ecn_udp_src_init(GstLidarEcnUdpSrc* self) {
@@ -367,28 +291,15 @@ static void InstallVmethods(GstLidarEcnUdpSrcClass* klass) {
   src->stop = Stop;
   src->get_caps = GetCaps;
   src->negotiate = Negotiate;
-  src->unlock = [](GstBaseSrc* base) -> gboolean {
-    StateOf(base).wake.Wake();
-    return TRUE;
-  };
-  src->unlock_stop = [](GstBaseSrc* base) -> gboolean {
-    StateOf(base).wake.Clear();
-    return TRUE;
-  };
+  WakeOnUnlock<GstLidarEcnUdpSrc, GstBaseSrc>(src);
   GST_PUSH_SRC_CLASS(klass)->create = Create;
 }
 
 static void gst_lidar_ecn_udp_src_class_init(GstLidarEcnUdpSrcClass* klass) {
   GST_DEBUG_CATEGORY_INIT(gst_lidar_ecn_udp_src_debug, "ecnudpsrc", 0, "UDP source with ECN");
   auto* object = G_OBJECT_CLASS(klass);
-  object->set_property = SetPropertyVfunc;
-  object->get_property = GetPropertyVfunc;
-  object->finalize = [](GObject* o) {
-    delete GST_LIDAR_ECN_UDP_SRC(o)->state;
-    G_OBJECT_CLASS(gst_lidar_ecn_udp_src_parent_class)->finalize(o);
-  };
-  InstallProperties(object, kProperties);
-  InstallObjectProperties(object);
+  ServeProperties<GstLidarEcnUdpSrc, kProperties>(object);
+  OwnState<GstLidarEcnUdpSrc, gst_lidar_ecn_udp_src_parent_class>(object);
   static GstStaticPadTemplate src =
       GST_STATIC_PAD_TEMPLATE("src", GST_PAD_SRC, GST_PAD_ALWAYS, GST_STATIC_CAPS_ANY);
   auto* element = GST_ELEMENT_CLASS(klass);

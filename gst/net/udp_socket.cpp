@@ -16,8 +16,6 @@ namespace lidar::gst {
 namespace {
 
 using InetAddressPtr = std::unique_ptr<GInetAddress, GObjectUnref>;
-using SocketAddressPtr = std::unique_ptr<GSocketAddress, GObjectUnref>;
-using SocketPtr = std::unique_ptr<GSocket, GObjectUnref>;
 
 std::string WithoutBrackets(const std::string& host) {
   if (host.size() > 2 && host.front() == '[' && host.back() == ']')

@@ -4,13 +4,18 @@
 #include <gio/gio.h>
 #include <sys/socket.h>
 
+#include <memory>
 #include <string>
 
 namespace lidar::gst {
 
 struct GObjectUnref {
-  void operator()(gpointer p) const { g_object_unref(p); }
+  void operator()(gpointer p) const {
+    if (p != nullptr) g_object_unref(p);
+  }
 };
+using SocketPtr = std::unique_ptr<GSocket, GObjectUnref>;
+using SocketAddressPtr = std::unique_ptr<GSocketAddress, GObjectUnref>;
 
 /// A socket address as the kernel takes it.
 struct NativeAddress {

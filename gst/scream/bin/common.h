@@ -10,8 +10,6 @@
 
 namespace lidar::gst {
 
-using SocketPtr = std::unique_ptr<GSocket, GObjectUnref>;
-using SocketAddressPtr = std::unique_ptr<GSocketAddress, GObjectUnref>;
 
 /// Makes a child called like its factory (`name` where given) and adds it; NULL, with an error on
 /// the bus once the bin starts, where the plugin is missing.

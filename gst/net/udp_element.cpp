@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "gst/net/udp_element.h"
+
+#include "gst/common/refs.h"
+
+namespace lidar::gst {
+namespace {
+
+SharedSocket Share(GSocket* socket) { return SharedSocket(socket, GObjectUnref{}); }
+
+void FailToListen(GstElement* element, const UdpListen& listen, const GError* error) {
+  const bool taken = g_error_matches(error, G_IO_ERROR, G_IO_ERROR_ADDRESS_IN_USE) != FALSE;
+  GST_ELEMENT_ERROR(
+      element, RESOURCE, OPEN_READ,
+      ("Cannot receive on UDP port %u: %s", listen.port, error->message),
+      ("address '%s', multicast-group '%s'%s", listen.address.c_str(),
+       listen.multicast_group.c_str(), taken ? "; is another program using the port?" : ""));
+}
+
+void FailToSend(GstElement* element, const char* what, const UdpTarget& t, const GError* error) {
+  GST_ELEMENT_ERROR(element, RESOURCE, OPEN_WRITE, ("%s: %s", what, error->message),
+                    ("host %s port %u bind-address '%s' bind-port %u", t.host.c_str(), t.port,
+                     t.bind_address.c_str(), t.bind_port));
+}
+
+}  // namespace
+
+SharedSocket OpenListening(GstElement* element, const UdpListen& listen) {
+  const bool multicast = !listen.multicast_group.empty();
+  UdpBind bind{listen.address, listen.port, G_SOCKET_FAMILY_INVALID, multicast};
+  if (multicast)
+    bind.family = listen.multicast_group.find(':') != std::string::npos ? G_SOCKET_FAMILY_IPV6
+                                                                        : G_SOCKET_FAMILY_IPV4;
+  GError* error = nullptr;
+  SharedSocket socket = Share(OpenUdpSocket(bind, &error));
+  if (socket && multicast)
+    JoinMulticast(socket.get(), listen.multicast_group, listen.multicast_iface, &error);
+  if (error == nullptr) return socket;
+  const ErrorPtr owner(error);
+  FailToListen(element, listen, error);
+  return nullptr;
+}
+
+SharedSocketAddress ResolveTarget(GstElement* element, const UdpTarget& target) {
+  GError* error = nullptr;
+  SharedSocketAddress peer(ResolveUdpAddress(target.host, target.port, &error), GObjectUnref{});
+  const ErrorPtr owner(error);
+  if (error != nullptr) FailToSend(element, "Cannot resolve the host", target, error);
+  return peer;
+}
+
+SharedSocket OpenSending(GstElement* element, const UdpTarget& target, GSocketFamily family) {
+  const UdpBind bind{target.bind_address, target.bind_port, family, false};
+  GError* error = nullptr;
+  SharedSocket socket = Share(OpenUdpSocket(bind, &error));
+  const ErrorPtr owner(error);
+  if (error != nullptr) FailToSend(element, "Cannot open a UDP socket", target, error);
+  return socket;
+}
+
+void CloseUsed(SharedSocket* used, const GivenSocket& given) {
+  if (*used && (*used != given.socket || given.close)) g_socket_close(used->get(), nullptr);
+  used->reset();
+}
+
+}  // namespace lidar::gst

@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// What elements with a UDP socket share: where they listen or send, their errors and their rows.
+#pragma once
+#include <gst/gst.h>
+
+#include <memory>
+#include <mutex>
+#include <string>
+
+#include "gst/common/fields.h"
+#include "gst/net/udp_socket.h"
+
+namespace lidar::gst {
+
+using SharedSocket = std::shared_ptr<GSocket>;
+using SharedSocketAddress = std::shared_ptr<GSocketAddress>;
+template <>
+inline GType GTypeOf<GSocket>() {
+  return G_TYPE_SOCKET;
+}
+template <>
+inline GType GTypeOf<GSocketAddress>() {
+  return G_TYPE_SOCKET_ADDRESS;
+}
+
+/// Where datagrams are received.
+struct UdpListen {
+  std::string address;
+  guint port = 5004;
+  std::string multicast_group;
+  std::string multicast_iface;
+};
+/// Where datagrams go, and from where.
+struct UdpTarget {
+  std::string host = "127.0.0.1";
+  guint port = 5004;
+  std::string bind_address;
+  guint bind_port = 0;
+};
+/// A socket that the application gives.
+struct GivenSocket {
+  SharedSocket socket;
+  bool close = true;  // on stop
+};
+
+// Each posts an element error and returns NULL where it fails.
+SharedSocket OpenListening(GstElement* element, const UdpListen& listen);
+SharedSocketAddress ResolveTarget(GstElement* element, const UdpTarget& target);
+SharedSocket OpenSending(GstElement* element, const UdpTarget& target, GSocketFamily family);
+
+/// Closes `used` and forgets it, unless it was given and is to stay open.
+void CloseUsed(SharedSocket* used, const GivenSocket& given);
+
+/// The row used-socket of an element whose state has `used` and the mutex that guards it.
+template <class Self>
+SharedSocket UsedSocket(GObject* object) {
+  auto& state = *reinterpret_cast<Self*>(object)->state;
+  const std::lock_guard lock(state.mutex);
+  return state.used;
+}
+
+/// GstBaseSink's or GstBaseSrc's unlock methods, by the state's `wake`.
+template <class Self, class Base, class Class>
+void WakeOnUnlock(Class* klass) {
+  klass->unlock = [](Base* base) -> gboolean {
+    reinterpret_cast<Self*>(base)->state->wake.Wake();
+    return TRUE;
+  };
+  klass->unlock_stop = [](Base* base) -> gboolean {
+    reinterpret_cast<Self*>(base)->state->wake.Clear();
+    return TRUE;
+  };
+}
+
+}  // namespace lidar::gst
