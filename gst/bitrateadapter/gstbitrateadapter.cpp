@@ -41,25 +41,6 @@ struct Settings {
   gdouble fraction = 1;
 };
 
-const std::array<Property<Settings>, 6> kProperties = {{
-    {"encoder", "Name of the encoder; empty: the first element of klass Encoder upstream",
-     &Settings::encoder, 0, 0, GST_PARAM_MUTABLE_PLAYING},
-    {"property", "The encoder's bitrate property; empty: known by the encoder's factory",
-     &Settings::property, 0, 0, GST_PARAM_MUTABLE_PLAYING},
-    {"scale",
-     "Units of the encoder's property in one bit/s [unit/(bit/s)], 0.001 for kbit/s; "
-     "0: known by the encoder's factory",
-     &Settings::scale, 0, 1e6, GST_PARAM_MUTABLE_PLAYING},
-    {"min", "Never set less than this [bit/s]", &Settings::min_bps, 0, kMaxBps,
-     GST_PARAM_MUTABLE_PLAYING},
-    {"max", "Never set more than this [bit/s]", &Settings::max_bps, 1, kMaxBps,
-     GST_PARAM_MUTABLE_PLAYING},
-    {"fraction", "Share of the target that this encoder gets", &Settings::fraction, 0.001, 1,
-     GST_PARAM_MUTABLE_PLAYING},
-}};
-
-enum : guint { kPropBitrate = kProperties.size() + 1 };
-
 struct State {
   std::mutex mutex;  // guards all below; never held while setting, pushing or posting
   Settings settings;
@@ -77,6 +58,30 @@ struct _GstLidarBitrateAdapter {
 G_DEFINE_TYPE(GstLidarBitrateAdapter, gst_lidar_bitrate_adapter, GST_TYPE_BASE_TRANSFORM)
 GST_ELEMENT_REGISTER_DEFINE(bitrateadapter, "bitrateadapter", GST_RANK_NONE,
                             GST_TYPE_LIDAR_BITRATE_ADAPTER)
+
+static guint Bitrate(GObject* object) {
+  State& state = *GST_LIDAR_BITRATE_ADAPTER(object)->state;
+  const std::lock_guard lock(state.mutex);
+  return state.bitrate;
+}
+
+static const std::array<Property<Settings>, 7> kProperties = {{
+    {"encoder", "Name of the encoder; empty: the first element of klass Encoder upstream",
+     &Settings::encoder, 0, 0, GST_PARAM_MUTABLE_PLAYING},
+    {"property", "The encoder's bitrate property; empty: known by the encoder's factory",
+     &Settings::property, 0, 0, GST_PARAM_MUTABLE_PLAYING},
+    {"scale",
+     "Units of the encoder's property in one bit/s [unit/(bit/s)], 0.001 for kbit/s; "
+     "0: known by the encoder's factory",
+     &Settings::scale, 0, 1e6, GST_PARAM_MUTABLE_PLAYING},
+    {"min", "Never set less than this [bit/s]", &Settings::min_bps, 0, kMaxBps,
+     GST_PARAM_MUTABLE_PLAYING},
+    {"max", "Never set more than this [bit/s]", &Settings::max_bps, 1, kMaxBps,
+     GST_PARAM_MUTABLE_PLAYING},
+    {"fraction", "Share of the target that this encoder gets", &Settings::fraction, 0.001, 1,
+     GST_PARAM_MUTABLE_PLAYING},
+    {"bitrate", "What the encoder was told last [bit/s]; 0: nothing yet", Bitrate},
+}};
 
 static ElementPtr FindEncoder(GstBaseTransform* base, const Settings& settings) {
   if (settings.encoder.empty())
@@ -194,37 +199,12 @@ static void gst_lidar_bitrate_adapter_init(GstLidarBitrateAdapter* self) {
   gst_base_transform_set_passthrough(GST_BASE_TRANSFORM(self), TRUE);
 }
 
-static void SetupProperties(GObjectClass* object) {
-  object->set_property = [](GObject* o, guint id, const GValue* v, GParamSpec*) {
-    State& s = *GST_LIDAR_BITRATE_ADAPTER(o)->state;
-    const std::lock_guard lock(s.mutex);
-    lidar::gst::SetProperty(s.settings, kProperties[id - 1], v);
-  };
-  object->get_property = [](GObject* o, guint id, GValue* v, GParamSpec*) {
-    State& s = *GST_LIDAR_BITRATE_ADAPTER(o)->state;
-    const std::lock_guard lock(s.mutex);
-    if (id == kPropBitrate) {
-      g_value_set_uint(v, s.bitrate);
-    } else {
-      lidar::gst::GetProperty(s.settings, kProperties[id - 1], v);
-    }
-  };
-  object->finalize = [](GObject* o) {
-    delete GST_LIDAR_BITRATE_ADAPTER(o)->state;
-    G_OBJECT_CLASS(gst_lidar_bitrate_adapter_parent_class)->finalize(o);
-  };
-  lidar::gst::InstallProperties(object, kProperties);
-  g_object_class_install_property(
-      object, kPropBitrate,
-      g_param_spec_uint("bitrate", "bitrate",
-                        "What the encoder was told last [bit/s]; 0: nothing yet", 0, G_MAXUINT, 0,
-                        static_cast<GParamFlags>(G_PARAM_READABLE | G_PARAM_STATIC_STRINGS)));
-}
-
 static void gst_lidar_bitrate_adapter_class_init(GstLidarBitrateAdapterClass* klass) {
   GST_DEBUG_CATEGORY_INIT(gst_lidar_bitrate_adapter_debug, "bitrateadapter", 0,
                           "Encoder bitrate adapter");
-  SetupProperties(G_OBJECT_CLASS(klass));
+  auto* object = G_OBJECT_CLASS(klass);
+  lidar::gst::ServeProperties<GstLidarBitrateAdapter, kProperties>(object);
+  lidar::gst::OwnState<GstLidarBitrateAdapter, gst_lidar_bitrate_adapter_parent_class>(object);
   static GstStaticPadTemplate sink =
       GST_STATIC_PAD_TEMPLATE("sink", GST_PAD_SINK, GST_PAD_ALWAYS, GST_STATIC_CAPS_ANY);
   static GstStaticPadTemplate src =

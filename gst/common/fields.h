@@ -218,6 +218,9 @@ class Field {
   Field(const EnumField<S, E>& e)
       : member_(reinterpret_cast<Member>(e.field)), type_(e.type), ops_(&kEnum<E>) {}
 
+  /// What `row` is of the struct at the path. The row lives for ever.
+  template <class Row, auto... path>
+  Field(const Row* row, AtPath<path...>) : row_(row), ops_(&kWithin<Row, ByPath<path...>>) {}
   /// `row` is a row of the child's table; its default is that of `defaults`. Both live for ever.
   template <class Row>
   Field(const Row* row, const typename Row::Struct* defaults, GObject* (*child)(GObject*))
@@ -341,6 +344,18 @@ class Field {
   static void GetChild(const Field& f, const S*, GObject* object, GValue* v) {
     if (GObject* child = ChildOf(f, object)) g_object_get_property(child, RowOf<Row>(f).name, v);
   }
+  template <class Row, class Way>
+  static constexpr Ops kWithin = {nullptr,
+                                  [](const Field& f, const SpecArgs& a, const S& s) {
+                                    return RowOf<Row>(f).field.Spec(a, Way::In(f, s));
+                                  },
+                                  [](const Field& f, S* s, GObject* object, const GValue* v) {
+                                    RowOf<Row>(f).field.Set(&Way::In(f, *s), object, v);
+                                  },
+                                  [](const Field& f, const S* s, GObject* object, GValue* v) {
+                                    RowOf<Row>(f).field.Get(&Way::In(f, *s), object, v);
+                                  },
+                                  nullptr};
   template <class Row>
   static constexpr Ops kChild = {nullptr, ChildSpec<Row>, SetChild<Row>, GetChild<Row>, nullptr};
   template <class Row>

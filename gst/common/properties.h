@@ -39,20 +39,36 @@ struct Property {
   }
 };
 
-/// The row called `name` of the table of a child, as a row of its bin: `child` finds it, NULL for
-/// nobody. Without a default of the bin's own it has the child's.
+/// The row of `table` called `name`, which must be there.
+template <class Settings, std::size_t N>
+const Property<Settings>* FindRow(const std::array<Property<Settings>, N>& table,
+                                  std::string_view name) {
+  return std::find_if(table.data(), table.data() + N - 1,
+                      [&](const auto& row) { return row.name == name; });
+}
+
+/// The row `name` of a part of Settings: Within<&Settings::part>(kPartRows, "name").
+template <auto part, class Settings, class Part, std::size_t N>
+Property<Settings> WithinOf(Part Settings::*, const std::array<Property<Part>, N>& table,
+                            std::string_view name) {
+  const auto* row = FindRow(table, name);
+  return {row->name, row->blurb, Field<Settings>(row, AtPath<part>{}),
+          row->min,  row->max,   row->mutability};
+}
+template <auto part, class Part, std::size_t N>
+auto Within(const std::array<Property<Part>, N>& table, std::string_view name) {
+  return WithinOf<part>(part, table, name);
+}
+
+/// The row `name` of the table of a child, as a row of its bin: `child` finds it, NULL for nobody.
+/// Its default is that of `defaults`, which live for ever.
 template <class Settings, class ChildSettings, std::size_t N>
 Property<Settings> Proxy(const std::array<Property<ChildSettings>, N>& table, std::string_view name,
                          GObject* (*child)(GObject*), const ChildSettings* defaults = nullptr) {
   static const ChildSettings kDefaults{};
-  const auto* row = std::find_if(table.data(), table.data() + N - 1,
-                                 [&](const auto& r) { return r.name == name; });
-  return {row->name,
-          row->blurb,
-          Field<Settings>(row, defaults != nullptr ? defaults : &kDefaults, child),
-          row->min,
-          row->max,
-          row->mutability};
+  const auto* row = FindRow(table, name);
+  const Field<Settings> field(row, defaults != nullptr ? defaults : &kDefaults, child);
+  return {row->name, row->blurb, field, row->min, row->max, row->mutability};
 }
 
 /// Installs the rows of `table` under the ids first_id, first_id + 1, ...

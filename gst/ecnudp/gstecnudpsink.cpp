@@ -49,7 +49,7 @@ GType EcnType() {
 struct Settings {
   UdpTarget target;
   gint ecn = GST_LIDAR_ECN_NOT_ECT;
-  gint dscp = -1;
+  UdpOptions options;
   GivenSocket given;
   bool reply = false;
   std::string multicast_iface;
@@ -118,16 +118,13 @@ static StructurePtr Stats(GObject* object) {
 }
 
 static const std::array<Property<Settings>, 15> kProperties = {{
-    {"host", "Host to send to: a name or an address", At<&Settings::target, &UdpTarget::host>},
-    {"port", "UDP port to send to", At<&Settings::target, &UdpTarget::port>, 1, 65535},
-    {"bind-address", "Local address to send from; empty for any",
-     At<&Settings::target, &UdpTarget::bind_address>},
-    {"bind-port", "Local UDP port to send from; 0 for any",
-     At<&Settings::target, &UdpTarget::bind_port>, 0, 65535},
+    Within<&Settings::target>(UdpTargetRows(), "host"),
+    Within<&Settings::target>(UdpTargetRows(), "port"),
+    Within<&Settings::target>(UdpTargetRows(), "bind-address"),
+    Within<&Settings::target>(UdpTargetRows(), "bind-port"),
     {"ecn", "ECN bits of buffers without LidarEcnMeta",
      EnumField<Settings>{&Settings::ecn, EcnType}, 0, 0, GST_PARAM_MUTABLE_PLAYING},
-    {"dscp", "Differentiated services code point; -1 keeps the socket's", &Settings::dscp, -1, 63,
-     GST_PARAM_MUTABLE_PLAYING},
+    Within<&Settings::options>(UdpOptionRows(), "dscp"),
     {"close-socket", "Close a socket given by the property socket on stop",
      At<&Settings::given, &GivenSocket::close>},
     {"reply",
@@ -215,7 +212,8 @@ static void FollowPeer(State& state, GstBuffer* buffer) {
 static Marking CurrentMarking(State& state) {
   std::lock_guard lock(state.mutex);
   const Settings& s = state.settings;
-  const guint8 dscp = s.dscp < 0 ? state.socket_tos : static_cast<guint8>(s.dscp << 2);
+  const guint8 dscp =
+      s.options.dscp < 0 ? state.socket_tos : static_cast<guint8>(s.options.dscp << 2);
   return {dscp, static_cast<guint8>(s.ecn), s.reply};
 }
 

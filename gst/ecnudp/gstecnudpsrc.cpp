@@ -40,10 +40,8 @@ constexpr gint kDefaultPayload = 96;
 
 struct Settings {
   UdpListen listen;
-  guint buffer_size = 0;
-  guint64 timeout = 0;
+  UdpOptions options;
   GivenSocket given;
-  SharedCaps caps;
 };
 
 struct Counters {
@@ -93,25 +91,18 @@ static StructurePtr Stats(GObject* object) {
 }
 
 static const std::array<Property<Settings>, 11> kProperties = {{
-    {"address", "Local address to receive on; empty for any, IPv6 and IPv4",
-     At<&Settings::listen, &UdpListen::address>},
-    {"port", "UDP port to receive on; 0 for any free one", At<&Settings::listen, &UdpListen::port>,
-     0, 65535},
-    {"buffer-size",
-     "Kernel receive buffer [bytes]; 0 asks for 2 MiB and takes what the kernel grants",
-     &Settings::buffer_size, 0, G_MAXINT},
-    {"multicast-group", "Multicast group to join; empty for none",
-     At<&Settings::listen, &UdpListen::multicast_group>},
-    {"multicast-iface", "Network interface for multicast; empty for the kernel's choice",
-     At<&Settings::listen, &UdpListen::multicast_iface>},
-    {"timeout", "Silence after which a message GstEcnUdpSrcTimeout is posted [ns]; 0 for never",
-     &Settings::timeout, 0, static_cast<gdouble>(G_MAXINT64)},
+    Within<&Settings::listen>(UdpListenRows(), "address"),
+    Within<&Settings::listen>(UdpListenRows(), "port"),
+    Within<&Settings::listen>(UdpListenRows(), "multicast-group"),
+    Within<&Settings::listen>(UdpListenRows(), "multicast-iface"),
+    Within<&Settings::options>(UdpOptionRows(), "buffer-size"),
+    Within<&Settings::options>(UdpOptionRows(), "timeout"),
+    Within<&Settings::options>(UdpOptionRows(), "caps"),
     {"close-socket", "Close a socket given by the property socket on stop",
      At<&Settings::given, &GivenSocket::close>},
     {"socket", "Socket to receive from; NULL opens one",
      At<&Settings::given, &GivenSocket::socket>},
     {"used-socket", "Socket in use; NULL when stopped", UsedSocket<GstLidarEcnUdpSrc>},
-    {"caps", "Caps of the stream; NULL takes what downstream wants", &Settings::caps},
     {"stats", "packets-received, bytes-received [bytes], packets-ce, dropped-by-kernel", Stats},
 }};
 
@@ -137,9 +128,9 @@ static gboolean Start(GstBaseSrc* base) {
   if (!socket) return FALSE;
   const int fd = g_socket_get_fd(socket.get());
   UdpBatchReceiver::Prepare(fd);
-  ConfigureBuffer(self, fd, s.buffer_size);
+  ConfigureBuffer(self, fd, s.options.buffer_size);
   state.wake.Clear();
-  state.timeout_ns = s.timeout > 0 ? static_cast<gint64>(s.timeout) : -1;
+  state.timeout_ns = s.options.timeout.count() > 0 ? s.options.timeout.count() : -1;
   state.last_from = {};
   state.last_address.reset();
   lock.lock();
@@ -245,7 +236,7 @@ static GstFlowReturn Create(GstPushSrc* push, GstBuffer** out) {
 static SharedCaps CapsOf(GstBaseSrc* base) {
   State& state = StateOf(base);
   const std::lock_guard lock(state.mutex);
-  return state.settings.caps;
+  return state.settings.options.caps;
 }
 
 static GstCaps* GetCaps(GstBaseSrc* base, GstCaps* filter) {

@@ -25,6 +25,41 @@ void FailToSend(GstElement* element, const char* what, const UdpTarget& t, const
 
 }  // namespace
 
+const std::array<Property<UdpListen>, 4>& UdpListenRows() {
+  static const std::array<Property<UdpListen>, 4> rows = {{
+      {"address", "Local address to receive on; empty for any, IPv6 and IPv4", &UdpListen::address},
+      {"port", "UDP port to receive on; 0 for any free one", &UdpListen::port, 0, 65535},
+      {"multicast-group", "Multicast group to join; empty for none", &UdpListen::multicast_group},
+      {"multicast-iface", "Network interface for multicast; empty for the kernel's choice",
+       &UdpListen::multicast_iface},
+  }};
+  return rows;
+}
+
+const std::array<Property<UdpTarget>, 4>& UdpTargetRows() {
+  static const std::array<Property<UdpTarget>, 4> rows = {{
+      {"host", "Host to send to: a name or an address", &UdpTarget::host},
+      {"port", "UDP port to send to", &UdpTarget::port, 1, 65535},
+      {"bind-address", "Local address to send from; empty for any", &UdpTarget::bind_address},
+      {"bind-port", "Local UDP port to send from; 0 for any", &UdpTarget::bind_port, 0, 65535},
+  }};
+  return rows;
+}
+
+const std::array<Property<UdpOptions>, 4>& UdpOptionRows() {
+  static const std::array<Property<UdpOptions>, 4> rows = {{
+      {"dscp", "Differentiated services code point; -1 keeps the socket's", &UdpOptions::dscp, -1,
+       63, GST_PARAM_MUTABLE_PLAYING},
+      {"buffer-size",
+       "Kernel receive buffer [bytes]; 0 asks for 2 MiB and takes what the kernel grants",
+       &UdpOptions::buffer_size, 0, G_MAXINT},
+      {"timeout", "Silence after which a message GstEcnUdpSrcTimeout is posted [ns]; 0 for never",
+       &UdpOptions::timeout, 0, static_cast<gdouble>(G_MAXINT64)},
+      {"caps", "Caps of the stream; NULL takes what downstream wants", &UdpOptions::caps},
+  }};
+  return rows;
+}
+
 SharedSocket OpenListening(GstElement* element, const UdpListen& listen) {
   const bool multicast = !listen.multicast_group.empty();
   UdpBind bind{listen.address, listen.port, G_SOCKET_FAMILY_INVALID, multicast};

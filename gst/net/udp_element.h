@@ -7,7 +7,7 @@
 #include <mutex>
 #include <string>
 
-#include "gst/common/fields.h"
+#include "gst/common/properties.h"
 #include "gst/net/udp_socket.h"
 
 namespace lidar::gst {
@@ -42,6 +42,19 @@ struct GivenSocket {
   SharedSocket socket;
   bool close = true;  // on stop
 };
+
+/// What the bins leave to the elements.
+struct UdpOptions {
+  gint dscp = -1;         // of a sink
+  guint buffer_size = 0;  // bytes; the rest of a source
+  Duration timeout{};
+  SharedCaps caps;
+};
+
+// Rows that elements and bins both have.
+const std::array<Property<UdpListen>, 4>& UdpListenRows();
+const std::array<Property<UdpTarget>, 4>& UdpTargetRows();
+const std::array<Property<UdpOptions>, 4>& UdpOptionRows();
 
 // Each posts an element error and returns NULL where it fails.
 SharedSocket OpenListening(GstElement* element, const UdpListen& listen);

@@ -79,6 +79,24 @@ GSocketAddress* FromNative(const NativeAddress& address) {
   return g_socket_address_new_from_native(&copy, address.length);
 }
 
+bool SameAddress(GSocketAddress* a, GSocketAddress* b) {
+  if (a == b) return true;
+  return a != nullptr && b != nullptr &&
+         ToNative(a, G_SOCKET_FAMILY_IPV6) == ToNative(b, G_SOCKET_FAMILY_IPV6);
+}
+
+bool SameHost(GSocketAddress* a, GSocketAddress* b) {
+  if (a == nullptr || b == nullptr) return a == b;
+  NativeAddress hosts[] = {ToNative(a, G_SOCKET_FAMILY_IPV6), ToNative(b, G_SOCKET_FAMILY_IPV6)};
+  for (NativeAddress& host : hosts) {
+    sockaddr_in6 v6{};
+    std::memcpy(&v6, &host.storage, sizeof v6);
+    v6.sin6_port = 0;
+    std::memcpy(&host.storage, &v6, sizeof v6);
+  }
+  return hosts[0].valid() && hosts[0] == hosts[1];
+}
+
 GSocketAddress* ResolveUdpAddress(const std::string& host, guint port, GError** error) {
   const InetAddressPtr address(Resolve(WithoutBrackets(host), error));
   if (!address) return nullptr;

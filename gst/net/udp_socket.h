@@ -35,6 +35,11 @@ NativeAddress ToNative(GSocketAddress* address, GSocketFamily family);
 /// Transfer full; a mapped address comes out as IPv4. NULL where it is of no known family.
 GSocketAddress* FromNative(const NativeAddress& address);
 
+/// Equal as the network sees them: a mapped IPv4 address is that address. NULL equals NULL only.
+bool SameAddress(GSocketAddress* a, GSocketAddress* b);
+/// The same, with any port.
+bool SameHost(GSocketAddress* a, GSocketAddress* b);
+
 /// Looks `host` (a name or a literal, brackets allowed) up; may block. Transfer full, or NULL.
 GSocketAddress* ResolveUdpAddress(const std::string& host, guint port, GError** error);
 

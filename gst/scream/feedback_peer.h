@@ -18,7 +18,7 @@ class FeedbackPeer {
   /// Of feedback that was accepted; `from` may be NULL. True where the peer has moved.
   bool OnFeedback(Time now, GSocketAddress* from) {
     if (from == nullptr) return false;
-    if (peer_ && Same(from)) {
+    if (peer_ && SameAddress(from, peer_.get())) {
       last_ = now;
       return false;
     }
@@ -31,9 +31,6 @@ class FeedbackPeer {
   }
 
  private:
-  bool Same(GSocketAddress* from) const {
-    return ToNative(from, G_SOCKET_FAMILY_IPV6) == ToNative(peer_.get(), G_SOCKET_FAMILY_IPV6);
-  }
   std::unique_ptr<GSocketAddress, GObjectUnref> peer_;
   Time last_{};
 };

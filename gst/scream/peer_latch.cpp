@@ -9,13 +9,6 @@ namespace {
 // A sender that gets no feedback any more drops most of what it has: few packets come, with gaps.
 constexpr int kMaxGap = 500;
 
-bool SameAddress(GSocketAddress* a, GSocketAddress* b) {
-  if (a == b) return true;
-  if (a == nullptr || b == nullptr) return false;
-  // Sources keep one object a peer, so that this is rare.
-  return ToNative(a, G_SOCKET_FAMILY_IPV6) == ToNative(b, G_SOCKET_FAMILY_IPV6);
-}
-
 }  // namespace
 
 void PeerLatch::Latch(Time now, GSocketAddress* from) {

@@ -53,6 +53,12 @@ bool IsRtcp(ByteView datagram) {
          datagram.data[1] <= 223;
 }
 
+bool IsRtcp(GstBuffer* datagram) {
+  guint8 head[8];
+  return gst_buffer_extract(datagram, 0, head, sizeof head) == sizeof head &&
+         IsRtcp(ByteView{head, sizeof head});
+}
+
 std::vector<std::uint8_t> BuildBye(const std::vector<guint32>& ssrcs) {
   std::vector<std::uint8_t> out;
   if (ssrcs.empty()) return out;

@@ -26,6 +26,7 @@ std::optional<RtpHeader> ReadRtpHeader(GstBuffer* buffer);
 
 /// True for a datagram on an RTP port that is RTCP (RFC 5761: packet types 192 to 223).
 bool IsRtcp(ByteView datagram);
+bool IsRtcp(GstBuffer* datagram);
 
 /// A compound of an empty receiver report and a BYE for `ssrcs` (at most 31 of them).
 std::vector<std::uint8_t> BuildBye(const std::vector<guint32>& ssrcs);

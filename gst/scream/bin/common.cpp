@@ -3,30 +3,53 @@
 
 namespace lidar::gst {
 
-GstElement* AddChild(GstElement* bin, const char* factory, const char* name) {
-  GstElement* child = gst_element_factory_make(factory, name);
+GstElement* AddChild(GstElement* bin, const char* factory) {
+  GstElement* child = gst_element_factory_make(factory, factory);
   if (child != nullptr) gst_bin_add(GST_BIN(bin), child);
   return child;
 }
 
-void ReportMissing(GstElement* bin, const char* factory) {
-  GST_ELEMENT_ERROR(bin, CORE, MISSING_PLUGIN, ("The element %s is missing", factory),
-                    ("check the installation with: gst-inspect-1.0 %s", factory));
-}
-
-void Forward(GstElement* child, GParamSpec* spec, const GValue* value) {
-  if (child == nullptr) return;
-  if (g_object_class_find_property(G_OBJECT_GET_CLASS(child), spec->name) != nullptr)
-    g_object_set_property(G_OBJECT(child), spec->name, value);
+bool HasChildren(GstElement* bin, std::initializer_list<Child> children) {
+  for (const Child& child : children) {
+    if (child.element != nullptr) continue;
+    GST_ELEMENT_ERROR(bin, CORE, MISSING_PLUGIN, ("The element %s is missing", child.factory),
+                      ("check the installation with: gst-inspect-1.0 %s", child.factory));
+    return false;
+  }
+  return true;
 }
 
 void GiveSocket(GstElement* child, GSocket* socket) {
   g_object_set(child, "socket", socket, "close-socket", FALSE, nullptr);
 }
 
+void CloseBin(BinState& state, std::initializer_list<GstElement*> children) {
+  std::unique_lock lock(state.mutex);
+  std::shared_ptr<SrtpLayer> srtp = std::move(state.srtp);
+  lock.unlock();
+  srtp.reset();  // takes its elements out of the bin
+  for (GstElement* child : children)
+    if (child != nullptr) GiveSocket(child, nullptr);
+  lock.lock();
+  if (state.used) g_socket_close(state.used.get(), nullptr);
+  state.used.reset();
+}
+
 guint OverheadOf(GSocketAddress* peer) {
   constexpr guint kUdp = 8;
   return kUdp + (g_socket_address_get_family(peer) == G_SOCKET_FAMILY_IPV6 ? 40 : 20);
+}
+
+StructurePtr StatsOf(GstElement* child) {
+  GstStructure* stats = nullptr;
+  if (child != nullptr) g_object_get(child, "stats", &stats, nullptr);
+  return StructurePtr(stats);
+}
+
+void CopyStat(GstElement* child, const char* field, GstStructure* to) {
+  const StructurePtr stats = StatsOf(child);
+  const GValue* value = stats ? gst_structure_get_value(stats.get(), field) : nullptr;
+  if (value != nullptr) gst_structure_set_value(to, field, value);
 }
 
 }  // namespace lidar::gst

@@ -1,26 +1,68 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// What screamsink and screamsrc share: children by name, and a socket that two of them use.
+// What screamsink and screamsrc share: children by name, the socket that two of them use, and SRTP.
 #pragma once
 #include <gio/gio.h>
 #include <gst/gst.h>
 
+#include <initializer_list>
 #include <memory>
+#include <mutex>
+#include <string>
 
-#include "gst/net/udp_socket.h"
+#include "gst/common/properties.h"
+#include "gst/net/udp_element.h"
+#include "gst/scream/srtp/layer.h"
 
 namespace lidar::gst {
 
+/// From READY to NULL. Guarded by `mutex`, which nobody holds while a child works.
+struct BinState {
+  std::mutex mutex;
+  SharedSocket used;
+  std::shared_ptr<SrtpLayer> srtp;
+  std::string srtp_key;  // the property as it was when the key was taken
+};
 
-/// Makes a child called like its factory (`name` where given) and adds it; NULL, with an error on
-/// the bus once the bin starts, where the plugin is missing.
-GstElement* AddChild(GstElement* bin, const char* factory, const char* name);
-/// Posts which element is missing; for the start of a bin without all its children.
-void ReportMissing(GstElement* bin, const char* factory);
-/// Sets the same property of `child` where it has one.
-void Forward(GstElement* child, GParamSpec* spec, const GValue* value);
+/// Makes a child called like its factory and adds it; NULL where the plugin is missing.
+GstElement* AddChild(GstElement* bin, const char* factory);
+struct Child {
+  GstElement* element;
+  const char* factory;
+};
+/// False, and an error on the bus, where one of `children` is missing.
+bool HasChildren(GstElement* bin, std::initializer_list<Child> children);
 /// Gives `socket` to a child that does not own it.
 void GiveSocket(GstElement* child, GSocket* socket);
-/// The UDP and IP header bytes of a packet on `socket` to `peer`.
+/// Takes the socket from the children, ends SRTP and closes the socket.
+void CloseBin(BinState& state, std::initializer_list<GstElement*> children);
+/// The UDP and IP header bytes of a packet to `peer`.
 guint OverheadOf(GSocketAddress* peer);
+/// `stats` of the child; NULL without a child. Transfer full.
+StructurePtr StatsOf(GstElement* child);
+/// Copies one field of the child's statistics, where it has it.
+void CopyStat(GstElement* child, const char* field, GstStructure* to);
+
+/// The child of a bin, for rows that are its.
+template <class Self, GstElement* Self::*child>
+GObject* ChildOf(GObject* bin) {
+  GstElement* element = reinterpret_cast<Self*>(bin)->*child;
+  return element == nullptr ? nullptr : G_OBJECT(element);
+}
+
+/// Gives a bin that runs its new key, once srtp-key was set. One that is refused changes nothing.
+template <class Self>
+void ChangeSrtpKey(GObject* bin, GParamSpec* spec) {
+  if (g_strcmp0(spec->name, "srtp-key") != 0) return;
+  auto& state = *reinterpret_cast<Self*>(bin)->state;
+  std::unique_lock lock(state.mutex);
+  if (!state.used) return;
+  const std::shared_ptr<SrtpLayer> layer = state.srtp;
+  const std::string key = state.settings.srtp.key;
+  lock.unlock();
+  const bool taken = TakeSrtpKey(GST_ELEMENT(bin), layer.get(), key);
+  lock.lock();
+  if (taken) state.srtp_key = key;
+  state.settings.srtp.key = state.srtp_key;
+}
 
 }  // namespace lidar::gst

@@ -11,16 +11,12 @@
  */
 #include "gst/scream/bin/gstscreamsink.h"
 
-#include <gst/net/gstnetaddressmeta.h>
-
-#include <array>
 #include <atomic>
-#include <mutex>
 
 #include "gst/common/refs.h"
 #include "gst/scream/bin/common.h"
 #include "gst/scream/bin/gstscreamsinkpad.h"
-#include "gst/scream/srtp/layer.h"
+#include "gst/scream/rtp_packet.h"
 #include "gst/scream/tx/settings.h"
 
 GST_DEBUG_CATEGORY_STATIC(gst_lidar_scream_sink_debug);
@@ -30,62 +26,16 @@ using namespace lidar::gst;
 
 namespace {
 
-/// Those that the children have too are theirs: set and read there.
 struct Settings {
-  std::string host = "127.0.0.1";
-  guint port = 5004;
-  std::string bind_address;
-  guint bind_port = 0;
+  UdpTarget target;
   bool strict_feedback = true;
-  gint dscp = -1;
-  guint min_bps = TxSettings{}.min_bps;
-  guint start_bps = TxSettings{}.start_bps;
-  guint max_bps = TxSettings{}.max_bps;
-  gint ecn_mode = TxSettings{}.ecn_mode;
-  guint64 max_queue_delay = TxSettings{}.max_queue_delay;
-  guint64 stats_interval = TxSettings{}.stats_interval;
-  bool send_bye = true;
-  bool key_unit_on_loss = TxSettings{}.key_unit_on_loss;
   SrtpSettings srtp;
 };
 
-constexpr gint kLive = GST_PARAM_MUTABLE_PLAYING;
-const std::array<Property<Settings>, 14> kProperties = {{
-    {"host", "Receiver: a name or an address", &Settings::host},
-    {"port", "UDP port of the receiver", &Settings::port, 1, 65535},
-    {"bind-address", "Local address to send from; empty for any", &Settings::bind_address},
-    {"bind-port", "Local UDP port to send from; 0 for any", &Settings::bind_port, 0, 65535},
-    {"strict-feedback",
-     "Take feedback only from the host and port that media goes to; else from any port of the host",
-     &Settings::strict_feedback},
-    {"dscp", "Differentiated services code point; -1 for none", &Settings::dscp, -1, 63, kLive},
-    {"min-bitrate", "Lowest target of a pad without its own, IP included [bit/s]",
-     &Settings::min_bps, 1, 4294967295.0, kLive},
-    {"start-bitrate", "First target of a pad without its own, IP included [bit/s]",
-     &Settings::start_bps, 1, 4294967295.0, kLive},
-    {"max-bitrate", "Highest target of a pad without its own, IP included [bit/s]",
-     &Settings::max_bps, 1, 4294967295.0, kLive},
-    {"ecn-mode", "ECN codepoint of sent packets; ect1 also selects the L4S reaction",
-     EnumField<Settings>{&Settings::ecn_mode, EcnModeType}},
-    {"max-queue-delay",
-     "Live input older than this is dropped in whole frames, other input waits [ns]",
-     &Settings::max_queue_delay, 1e6, 60e9},
-    {"stats-interval", "Time between element messages with the statistics; 0 for none [ns]",
-     &Settings::stats_interval, 0, static_cast<gdouble>(G_MAXINT64), kLive},
-    {"send-bye", "Send an RTCP BYE at EOS, so that the receiver ends too", &Settings::send_bye, 0,
-     0, kLive},
-    {"key-unit-on-loss", "Ask a video encoder for a key frame when the network lost packets",
-     &Settings::key_unit_on_loss, 0, 0, kLive},
-}};
-enum : guint { kPropEstimatedBitrate = kProperties.size() + 1, kPropStats, kPropSrtp };
-
-struct State {
-  std::mutex mutex;  // guards settings, socket and peer
+struct State : BinState {
   Settings settings;
-  SocketPtr socket;
-  SocketAddressPtr peer;
+  SharedSocketAddress peer;
   std::atomic<guint64> foreign{0};
-  std::shared_ptr<SrtpLayer> srtp;
 };
 
 }  // namespace
@@ -107,22 +57,68 @@ GST_ELEMENT_REGISTER_DEFINE(screamsink, "screamsink", GST_RANK_NONE, GST_TYPE_LI
 static GstStaticPadTemplate sink_template = GST_STATIC_PAD_TEMPLATE(
     "sink_%u", GST_PAD_SINK, GST_PAD_REQUEST, GST_STATIC_CAPS("application/x-rtp"));
 
-static bool SameHost(GSocketAddress* a, GSocketAddress* b) {
-  return g_inet_address_equal(g_inet_socket_address_get_address(G_INET_SOCKET_ADDRESS(a)),
-                              g_inet_socket_address_get_address(G_INET_SOCKET_ADDRESS(b))) != FALSE;
+static StructurePtr Stats(GObject* object) {
+  auto* self = GST_LIDAR_SCREAM_SINK(object);
+  StructurePtr stats = StatsOf(self->tx);
+  if (!stats) return stats;
+  gst_structure_set(stats.get(), "feedback-foreign-address", G_TYPE_UINT64,
+                    self->state->foreign.load(), nullptr);
+  CopyStat(self->sink, "send-errors", stats.get());
+  const std::lock_guard lock(self->state->mutex);
+  AddSrtpStats(self->state->srtp.get(), stats.get());
+  return stats;
 }
+
+/// The receiver ends with the sender where nobody says otherwise.
+static const TxSettings& TxDefaults() {
+  static const TxSettings defaults = [] {
+    TxSettings s;
+    s.send_bye = true;
+    return s;
+  }();
+  return defaults;
+}
+
+static Property<Settings> OfTx(const char* name) {
+  return Proxy<Settings>(TxPropertyTable(), name,
+                         ChildOf<GstLidarScreamSink, &GstLidarScreamSink::tx>, &TxDefaults());
+}
+
+static const std::array<Property<Settings>, 19> kProperties = {{
+    Within<&Settings::target>(UdpTargetRows(), "host"),
+    Within<&Settings::target>(UdpTargetRows(), "port"),
+    Within<&Settings::target>(UdpTargetRows(), "bind-address"),
+    Within<&Settings::target>(UdpTargetRows(), "bind-port"),
+    {"strict-feedback",
+     "Take feedback only from the host and port that media goes to; else from any port of the host",
+     &Settings::strict_feedback},
+    Proxy<Settings>(UdpOptionRows(), "dscp",
+                    ChildOf<GstLidarScreamSink, &GstLidarScreamSink::sink>),
+    OfTx("min-bitrate"),
+    OfTx("start-bitrate"),
+    OfTx("max-bitrate"),
+    OfTx("ecn-mode"),
+    OfTx("max-queue-delay"),
+    OfTx("stats-interval"),
+    OfTx("send-bye"),
+    OfTx("key-unit-on-loss"),
+    OfTx("estimated-bitrate"),
+    {"stats", "Statistics; bitrates in bit/s, times in ns", Stats},
+    Within<&Settings::srtp>(SrtpRows(), "srtp-key"),
+    Within<&Settings::srtp>(SrtpRows(), "srtp-cipher"),
+    Within<&Settings::srtp>(SrtpRows(), "srtp-auth"),
+}};
 
 /// Whether `buffer` comes from whom we send to. The receivers of a multicast group are many.
 static bool FromPeer(GstLidarScreamSink* self, GstBuffer* buffer) {
   State& state = *self->state;
-  const GstNetAddressMeta* meta = gst_buffer_get_net_address_meta(buffer);
+  GSocketAddress* from = SourceOf(buffer);
   std::lock_guard lock(state.mutex);
-  if (meta == nullptr || !state.peer || !G_IS_INET_SOCKET_ADDRESS(meta->addr)) return false;
+  if (from == nullptr || !state.peer) return false;
   GInetAddress* host = g_inet_socket_address_get_address(G_INET_SOCKET_ADDRESS(state.peer.get()));
   if (g_inet_address_get_is_multicast(host)) return true;
-  if (!state.settings.strict_feedback) return SameHost(meta->addr, state.peer.get());
-  return ToNative(meta->addr, G_SOCKET_FAMILY_IPV6) ==
-         ToNative(state.peer.get(), G_SOCKET_FAMILY_IPV6);
+  return state.settings.strict_feedback ? SameAddress(from, state.peer.get())
+                                        : SameHost(from, state.peer.get());
 }
 
 static gboolean DropForeign(GstBuffer** buffer, guint, gpointer data) {
@@ -146,37 +142,24 @@ static GstPadProbeReturn FilterFeedback(GstPad*, GstPadProbeInfo* info, gpointer
   return GST_PAD_PROBE_DROP;
 }
 
-static bool Fail(GstLidarScreamSink* self, const char* what, const Settings& s, GError* error) {
-  GST_ELEMENT_ERROR(self, RESOURCE, OPEN_WRITE, ("%s: %s", what, error->message),
-                    ("host %s port %u bind-address '%s' bind-port %u", s.host.c_str(), s.port,
-                     s.bind_address.c_str(), s.bind_port));
-  g_error_free(error);
-  return false;
-}
-
 /// Opens the socket for both ways and hands it to the children.
 static bool Open(GstLidarScreamSink* self) {
   State& state = *self->state;
   std::unique_lock lock(state.mutex);
   const Settings s = state.settings;
   lock.unlock();
-  for (const auto& [child, name] :
-       {std::pair{self->tx, "screamtx"}, {self->sink, "ecnudpsink"}, {self->src, "ecnudpsrc"}}) {
-    if (child != nullptr) continue;
-    ReportMissing(GST_ELEMENT(self), name);
+  if (!HasChildren(GST_ELEMENT(self),
+                   {{self->tx, "screamtx"}, {self->sink, "ecnudpsink"}, {self->src, "ecnudpsrc"}}))
     return false;
-  }
-  GError* error = nullptr;
-  SocketAddressPtr peer(ResolveUdpAddress(s.host, s.port, &error));
-  if (!peer) return Fail(self, "Cannot resolve the host", s, error);
-  const UdpBind bind{s.bind_address, s.bind_port, g_socket_address_get_family(peer.get()), false};
-  SocketPtr socket(OpenUdpSocket(bind, &error));
-  if (!socket) return Fail(self, "Cannot open a UDP socket", s, error);
+  SharedSocketAddress peer = ResolveTarget(GST_ELEMENT(self), s.target);
+  if (!peer) return false;
+  SharedSocket socket =
+      OpenSending(GST_ELEMENT(self), s.target, g_socket_address_get_family(peer.get()));
+  if (!socket) return false;
   GInetAddress* host = g_inet_socket_address_get_address(G_INET_SOCKET_ADDRESS(peer.get()));
   // As resolved here: a name may stand for several addresses.
   const StringPtr literal(g_inet_address_to_string(host));
-  g_object_set(self->sink, "host", literal.get(), "port", s.port, nullptr);
-  g_object_set(self->tx, "packet-overhead", OverheadOf(peer.get()), nullptr);
+  g_object_set(self->sink, "host", literal.get(), "port", s.target.port, nullptr);
   GiveSocket(self->sink, socket.get());
   GiveSocket(self->src, socket.get());
   std::shared_ptr<SrtpLayer> srtp;
@@ -184,27 +167,21 @@ static bool Open(GstLidarScreamSink* self) {
                  {GST_ELEMENT(self), self->tx, "src", "rtcp_sink", self->sink, self->src, true},
                  &srtp))
     return false;
-  if (srtp)
-    g_object_set(self->tx, "packet-overhead", OverheadOf(peer.get()) + srtp->overhead(), nullptr);
+  const guint overhead = OverheadOf(peer.get()) + (srtp ? srtp->overhead() : 0);
+  g_object_set(self->tx, "packet-overhead", overhead, nullptr);
   lock.lock();
   state.srtp = std::move(srtp);
-  state.socket = std::move(socket);
+  state.srtp_key = s.srtp.key;
+  state.used = std::move(socket);
   state.peer = std::move(peer);
   state.foreign = 0;
   return true;
 }
 
 static void Close(GstLidarScreamSink* self) {
-  State& state = *self->state;
-  std::unique_lock srtp_lock(state.mutex);
-  const std::shared_ptr<SrtpLayer> srtp = std::move(state.srtp);
-  srtp_lock.unlock();
-  for (GstElement* child : {self->sink, self->src})
-    if (child != nullptr) GiveSocket(child, nullptr);
-  std::lock_guard lock(state.mutex);
-  if (state.socket) g_socket_close(state.socket.get(), nullptr);
-  state.socket.reset();
-  state.peer.reset();
+  CloseBin(*self->state, {self->sink, self->src});
+  const std::lock_guard lock(self->state->mutex);
+  self->state->peer.reset();
 }
 
 static GstStateChangeReturn ChangeState(GstElement* element, GstStateChange change) {
@@ -281,73 +258,13 @@ static void ChildProxyInit(gpointer iface, gpointer) {
   };
 }
 
-static void SetPropertyVfunc(GObject* o, guint id, const GValue* v, GParamSpec* spec) {
-  auto* self = GST_LIDAR_SCREAM_SINK(o);
-  if (id >= kPropSrtp) {
-    SetSrtpProperty(GST_ELEMENT(self), *self->state, id - kPropSrtp, v);
-    return;
-  }
-  {
-    std::lock_guard lock(self->state->mutex);
-    SetProperty(self->state->settings, kProperties[id - 1], v);
-  }
-  Forward(self->tx, spec, v);
-  if (std::string(spec->name) == "dscp") Forward(self->sink, spec, v);
-}
-
-static void AddUdpStats(GstLidarScreamSink* self, GstStructure* stats) {
-  gst_structure_set(stats, "feedback-foreign-address", G_TYPE_UINT64, self->state->foreign.load(),
-                    nullptr);
-  {
-    std::lock_guard lock(self->state->mutex);
-    AddSrtpStats(self->state->srtp.get(), stats);
-  }
-  GstStructure* udp = nullptr;
-  if (self->sink != nullptr) g_object_get(self->sink, "stats", &udp, nullptr);
-  if (udp == nullptr) return;
-  guint64 errors = 0;
-  gst_structure_get_uint64(udp, "send-errors", &errors);
-  gst_structure_set(stats, "send-errors", G_TYPE_UINT64, errors, nullptr);
-  gst_structure_free(udp);
-}
-
-static void GetPropertyVfunc(GObject* o, guint id, GValue* v, GParamSpec* spec) {
-  auto* self = GST_LIDAR_SCREAM_SINK(o);
-  if (id == kPropStats || id == kPropEstimatedBitrate) {
-    if (self->tx == nullptr) return;
-    g_object_get_property(G_OBJECT(self->tx), spec->name, v);
-    if (id == kPropStats) AddUdpStats(self, static_cast<GstStructure*>(g_value_get_boxed(v)));
-    return;
-  }
-  std::lock_guard lock(self->state->mutex);
-  if (id >= kPropSrtp) {
-    GetSrtpProperty(self->state->settings.srtp, id - kPropSrtp, v);
-  } else {
-    GetProperty(self->state->settings, kProperties[id - 1], v);
-  }
-}
-
-static void InstallOwnProperties(GObjectClass* object) {
-  constexpr auto kRead = static_cast<GParamFlags>(G_PARAM_READABLE | G_PARAM_STATIC_STRINGS);
-  g_object_class_install_property(
-      object, kPropEstimatedBitrate,
-      g_param_spec_uint("estimated-bitrate", "estimated-bitrate",
-                        "Target of all streams together, IP included; notifies [bit/s]", 0,
-                        G_MAXUINT, 0, kRead));
-  g_object_class_install_property(
-      object, kPropStats,
-      g_param_spec_boxed("stats", "stats", "Statistics; bitrates in bit/s, times in ns",
-                         GST_TYPE_STRUCTURE, kRead));
-  InstallSrtpProperties(object, kPropSrtp);
-}
-
 static void gst_lidar_scream_sink_init(GstLidarScreamSink* self) {
   auto* element = GST_ELEMENT(self);
   self->state = new State;
   gst_bin_set_suppressed_flags(GST_BIN(self), GST_ELEMENT_FLAG_SOURCE);
-  self->tx = AddChild(element, "screamtx", "screamtx");
-  self->sink = AddChild(element, "ecnudpsink", "ecnudpsink");
-  self->src = AddChild(element, "ecnudpsrc", "ecnudpsrc");
+  self->tx = AddChild(element, "screamtx");
+  self->sink = AddChild(element, "ecnudpsink");
+  self->src = AddChild(element, "ecnudpsrc");
   if (self->tx == nullptr || self->sink == nullptr || self->src == nullptr) return;
   g_object_set(self->tx, "send-bye", TRUE, nullptr);
   g_object_set(self->sink, "sync", FALSE, "async", FALSE, nullptr);
@@ -366,14 +283,8 @@ static void gst_lidar_scream_sink_init(GstLidarScreamSink* self) {
 static void gst_lidar_scream_sink_class_init(GstLidarScreamSinkClass* klass) {
   GST_DEBUG_CATEGORY_INIT(gst_lidar_scream_sink_debug, "screamsink", 0, "SCReAM sink bin");
   auto* object = G_OBJECT_CLASS(klass);
-  object->set_property = SetPropertyVfunc;
-  object->get_property = GetPropertyVfunc;
-  object->finalize = [](GObject* o) {
-    delete GST_LIDAR_SCREAM_SINK(o)->state;
-    G_OBJECT_CLASS(gst_lidar_scream_sink_parent_class)->finalize(o);
-  };
-  InstallProperties(object, kProperties);
-  InstallOwnProperties(object);
+  ServeProperties<GstLidarScreamSink, kProperties, ChangeSrtpKey<GstLidarScreamSink>>(object);
+  OwnState<GstLidarScreamSink, gst_lidar_scream_sink_parent_class>(object);
   auto* element = GST_ELEMENT_CLASS(klass);
   element->change_state = ChangeState;
   element->request_new_pad = RequestPad;

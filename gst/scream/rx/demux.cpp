@@ -19,8 +19,8 @@ GstCaps* CapsOf(GstLidarScreamRx* self, const RtpHeader& header) {
   CapsPtr caps;
   {
     RxLock lock(state.mutex);
-    if (!state.pt_map) return nullptr;
-    const GValue* value = gst_structure_get_value(state.pt_map.get(), field.get());
+    if (!state.settings.pt_map) return nullptr;
+    const GValue* value = gst_structure_get_value(state.settings.pt_map.get(), field.get());
     if (value == nullptr) return nullptr;
     if (GST_VALUE_HOLDS_CAPS(value)) {
       caps.reset(gst_caps_copy(gst_value_get_caps(value)));
@@ -95,7 +95,7 @@ GstPad* Route(GstLidarScreamRx* self, const RtpHeader& header) {
 
 bool HasPtMap(GstLidarScreamRx* self) {
   RxLock lock(self->state->mutex);
-  return self->state->pt_map != nullptr;
+  return self->state->settings.pt_map != nullptr;
 }
 
 /// Of an SSRC for which there is no pad left.
@@ -107,7 +107,7 @@ static GstFlowReturn Refuse(GstLidarScreamRx* self, GstBuffer* buffer) {
                         ("Further SSRCs are dropped until the element is started anew."));
   }
   RxLock lock(state.mutex);
-  ++state.foreign;
+  ++state.counters.foreign;
   return GST_FLOW_OK;
 }
 

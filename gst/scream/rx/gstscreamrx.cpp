@@ -12,6 +12,7 @@
  */
 #include "gst/scream/rx/gstscreamrx.h"
 
+#include "gst/common/stats.h"
 #include "gst/scream/rx/private.h"
 
 GST_DEBUG_CATEGORY(gst_lidar_scream_rx_debug);
@@ -31,24 +32,6 @@ static GstStaticPadTemplate stream_template = GST_STATIC_PAD_TEMPLATE(
 static GstStaticPadTemplate rtcp_template = GST_STATIC_PAD_TEMPLATE(
     "rtcp_src", GST_PAD_SRC, GST_PAD_ALWAYS, GST_STATIC_CAPS("application/x-rtcp"));
 
-static const std::array<Property<RxSettings>, 7> kProperties = {{
-    {"feedback-interval", "Longest wait of a packet for its report; less at high rate [ns]",
-     &RxSettings::feedback_interval, 1e6, 10e9, GST_PARAM_MUTABLE_PLAYING},
-    {"packets-per-feedback", "A report is sent after this many packets",
-     &RxSettings::packets_per_feedback, 1, 1000, GST_PARAM_MUTABLE_PLAYING},
-    {"ssrc", "SSRC of the reports; 0 for a random one", &RxSettings::ssrc, 0, 4294967295.0},
-    {"num-reports", "Meaning of num_reports in the reports",
-     EnumField<RxSettings>{&RxSettings::num_reports, NumReportsType}, 0, 0,
-     GST_PARAM_MUTABLE_PLAYING},
-    {"feedback-on-marker", "Report at the end of each frame or slice",
-     &RxSettings::feedback_on_marker, 0, 0, GST_PARAM_MUTABLE_PLAYING},
-    {"eos-on-bye", "End the stream once every SSRC has said BYE", &RxSettings::eos_on_bye, 0, 0,
-     GST_PARAM_MUTABLE_PLAYING},
-    {"packet-overhead", "UDP and IP header of a packet on the wire [bytes]",
-     &RxSettings::packet_overhead, 0, 1000, GST_PARAM_MUTABLE_PLAYING},
-}};
-enum : guint { kPropPtMap = kProperties.size() + 1, kPropStats };
-
 namespace lidar::gst {
 
 GType NumReportsType() {
@@ -63,16 +46,77 @@ GType NumReportsType() {
   return type;
 }
 
+/// What `stats` shows.
+struct Shown {
+  scream::FeedbackGenerator::Stats feedback;
+  RxCounters own;
+};
+template <auto field>
+constexpr auto F = At<&Shown::feedback, field>;
+template <auto field>
+constexpr auto O = At<&Shown::own, field>;
+
+static StructurePtr Stats(GObject* object) {
+  using S = scream::FeedbackGenerator::Stats;
+  using C = RxCounters;
+  static const std::array<Stat<Shown>, 14> kStats = {{
+      {"packets-received", F<&S::packets>},
+      {"bytes-received", F<&S::received>},
+      {"packets-ce", F<&S::ce_packets>},
+      {"packets-lost", F<&S::lost>},
+      {"packets-reordered", F<&S::reordered>},
+      {"packets-duplicate", F<&S::duplicates>},
+      {"packets-stale", F<&S::stale>},
+      {"packets-foreign", O<&C::foreign>},
+      {"malformed", O<&C::malformed>},
+      {"reports-sent", F<&S::reports>},
+      {"report-bytes", F<&S::sent>},
+      {"peer-moves", O<&C::moves>},
+      {"goodbyes", O<&C::goodbyes>},
+      {"ssrcs", O<&C::ssrcs>},
+  }};
+  RxState& state = *GST_LIDAR_SCREAM_RX(object)->state;
+  const RxLock lock(state.mutex);
+  Shown shown{state.generator.stats(), state.counters};
+  shown.own.ssrcs = static_cast<guint>(state.ssrcs.size());
+  return ToStructure("application/x-screamrx-stats", kStats, shown);
+}
+
+const RxProperties& RxPropertyTable() {
+  using S = RxSettings;
+  using C = scream::FeedbackConfig;
+  constexpr gint kLive = GST_PARAM_MUTABLE_PLAYING;
+  static const RxProperties table = {{
+      {"feedback-interval", "Longest wait of a packet for its report; less at high rate [ns]",
+       At<&S::feedback, &C::feedback_interval>, 1e6, 10e9, kLive},
+      {"packets-per-feedback", "A report is sent after this many packets", &S::packets_per_feedback,
+       1, 1000, kLive},
+      {"ssrc", "SSRC of the reports; 0 for a random one", &S::ssrc, 0, 4294967295.0},
+      {"num-reports", "Meaning of num_reports in the reports",
+       EnumField<S>{&S::num_reports, NumReportsType}, 0, 0, kLive},
+      {"feedback-on-marker", "Report at the end of each frame or slice",
+       At<&S::feedback, &C::report_on_marker>, 0, 0, kLive},
+      {"eos-on-bye", "End the stream once every SSRC has said BYE", &S::eos_on_bye, 0, 0, kLive},
+      {"packet-overhead", "UDP and IP header of a packet on the wire [bytes]", &S::packet_overhead,
+       0, 1000, kLive},
+      {"pt-map",
+       "Caps of each payload type (application/x-rtp-pt-map,96=(string)\"...\"); with it every "
+       "SSRC "
+       "leaves by a pad of its own",
+       &S::pt_map},
+      {"stats", "Counters of packets, bytes and reports", Stats},
+  }};
+  return table;
+}
+
 Time RxNow(const RxState& state) {
   return Time{Duration{static_cast<std::int64_t>(gst_clock_get_time(state.clock))}};
 }
 
 scream::FeedbackConfig ToConfig(const RxSettings& s, guint32 own_ssrc) {
-  scream::FeedbackConfig config;
+  scream::FeedbackConfig config = s.feedback;
   config.sender_ssrc = own_ssrc;
-  config.feedback_interval = Duration{static_cast<std::int64_t>(s.feedback_interval)};
   config.packets_per_feedback = static_cast<int>(s.packets_per_feedback);
-  config.report_on_marker = s.feedback_on_marker;
   return config;
 }
 
@@ -133,7 +177,7 @@ static void Prepare(RxState& state) {
   state.generator = lidar::scream::FeedbackGenerator(ToConfig(state.settings, state.own_ssrc));
   state.latch.Reset();
   state.ssrcs.clear();
-  state.foreign = state.malformed = state.moves = state.goodbyes = 0;
+  state.counters = {};
   state.eos = false;
 }
 
@@ -149,59 +193,11 @@ static GstStateChangeReturn ChangeState(GstElement* element, GstStateChange chan
   return result;
 }
 
-static GstStructure* Stats(RxState& state) {
-  RxLock lock(state.mutex);
-  const auto& s = state.generator.stats();
-  const auto u64 = [](auto v) { return static_cast<guint64>(v); };
-  return gst_structure_new(
-      "application/x-screamrx-stats", "packets-received", G_TYPE_UINT64, u64(s.packets),
-      "bytes-received", G_TYPE_UINT64, u64(s.received.bytes()), "packets-ce", G_TYPE_UINT64,
-      u64(s.ce_packets), "packets-lost", G_TYPE_UINT64, u64(s.lost), "packets-reordered",
-      G_TYPE_UINT64, u64(s.reordered), "packets-duplicate", G_TYPE_UINT64, u64(s.duplicates),
-      "packets-stale", G_TYPE_UINT64, u64(s.stale), "packets-foreign", G_TYPE_UINT64, state.foreign,
-      "malformed", G_TYPE_UINT64, state.malformed, "reports-sent", G_TYPE_UINT64, u64(s.reports),
-      "report-bytes", G_TYPE_UINT64, u64(s.sent.bytes()), "peer-moves", G_TYPE_UINT64, state.moves,
-      "goodbyes", G_TYPE_UINT64, state.goodbyes, "ssrcs", G_TYPE_UINT,
-      static_cast<guint>(state.ssrcs.size()), nullptr);
-}
-
-static void SetPropertyVfunc(GObject* o, guint id, const GValue* v, GParamSpec*) {
-  RxState& state = StateOf(o);
-  RxLock lock(state.mutex);
-  if (id == kPropPtMap) {
-    state.pt_map.reset(static_cast<GstStructure*>(g_value_dup_boxed(v)));
-    return;
-  }
-  SetProperty(state.settings, kProperties[id - 1], v);
+static void SettingsChanged(GObject* object, GParamSpec*) {
+  RxState& state = StateOf(object);
+  const RxLock lock(state.mutex);
   state.settings_changed = true;
   if (state.timer != nullptr) gst_clock_id_unschedule(state.timer);
-}
-
-static void GetPropertyVfunc(GObject* o, guint id, GValue* v, GParamSpec*) {
-  RxState& state = StateOf(o);
-  if (id == kPropStats) return g_value_take_boxed(v, Stats(state));
-  RxLock lock(state.mutex);
-  if (id == kPropPtMap) {
-    g_value_set_boxed(v, state.pt_map.get());
-  } else {
-    GetProperty(state.settings, kProperties[id - 1], v);
-  }
-}
-
-static void InstallOwnProperties(GObjectClass* object) {
-  constexpr auto kRead = static_cast<GParamFlags>(G_PARAM_READABLE | G_PARAM_STATIC_STRINGS);
-  constexpr auto kReadWrite = static_cast<GParamFlags>(G_PARAM_READWRITE | G_PARAM_STATIC_STRINGS |
-                                                       GST_PARAM_MUTABLE_READY);
-  g_object_class_install_property(
-      object, kPropPtMap,
-      g_param_spec_boxed("pt-map", "pt-map",
-                         "Caps of each payload type (application/x-rtp-pt-map,96=(string)\"...\"); "
-                         "with it every SSRC leaves by a pad of its own",
-                         GST_TYPE_STRUCTURE, kReadWrite));
-  g_object_class_install_property(
-      object, kPropStats,
-      g_param_spec_boxed("stats", "stats", "Counters of packets, bytes and reports",
-                         GST_TYPE_STRUCTURE, kRead));
 }
 
 static GstPad* AddStaticPad(GstLidarScreamRx* self, GstStaticPadTemplate* templ) {
@@ -239,11 +235,8 @@ static void Finalize(GObject* o) {
 static void gst_lidar_scream_rx_class_init(GstLidarScreamRxClass* klass) {
   GST_DEBUG_CATEGORY_INIT(gst_lidar_scream_rx_debug, "screamrx", 0, "SCReAM v2 receiver");
   auto* object = G_OBJECT_CLASS(klass);
-  object->set_property = SetPropertyVfunc;
-  object->get_property = GetPropertyVfunc;
+  ServeProperties<GstLidarScreamRx, RxPropertyTable, SettingsChanged>(object);
   object->finalize = Finalize;
-  InstallProperties(object, kProperties);
-  InstallOwnProperties(object);
   auto* element = GST_ELEMENT_CLASS(klass);
   element->change_state = ChangeState;
   gst_element_class_add_static_pad_template(element, &sink_template);

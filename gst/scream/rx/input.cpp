@@ -41,11 +41,11 @@ Time ArrivalTime(const Clocks& clocks, GstClockTime arrival) {
 bool Account(RxState& state, const Clocks& clocks, GstBuffer* buffer, const RtpHeader& header) {
   const auto verdict = state.latch.OnPacket(clocks.now, SourceOf(buffer), header.ssrc, header.seq);
   if (verdict == PeerLatch::Verdict::kForeign) {
-    ++state.foreign;
+    ++state.counters.foreign;
     return false;
   }
   if (verdict == PeerLatch::Verdict::kMoved) {
-    ++state.moves;
+    ++state.counters.moves;
     state.generator.Reset();
     state.ssrcs.clear();
   }
@@ -57,8 +57,8 @@ bool Account(RxState& state, const Clocks& clocks, GstBuffer* buffer, const RtpH
   packet.seq = header.seq;
   packet.ecn = static_cast<scream::Ecn>(ecn);
   packet.marker = header.marker;
-  packet.size = DataSize::Bytes(static_cast<std::int64_t>(gst_buffer_get_size(buffer)) +
-                                state.settings.packet_overhead);
+  packet.size = DataSize::Bytes(static_cast<std::int64_t>(gst_buffer_get_size(buffer))) +
+                state.settings.packet_overhead;
   state.generator.OnPacket(ArrivalTime(clocks, arrival), packet);
   // One that is alive comes back with its next packet.
   if (state.ssrcs.size() >= kMaxSsrcs) state.ssrcs.erase(state.ssrcs.begin());
@@ -73,28 +73,26 @@ Fate LookAtRtcp(RxState& state, GstBuffer* buffer, const BufferMap& map) {
   const auto goodbyes = ParseBye(map.view());
   if (goodbyes.empty()) return Fate::kPass;
   if (!state.latch.IsPeer(SourceOf(buffer))) {
-    ++state.foreign;
+    ++state.counters.foreign;
     return Fate::kDrop;
   }
   bool known = false;
   for (const guint32 ssrc : goodbyes) known = state.ssrcs.erase(ssrc) > 0 || known;
-  if (known) ++state.goodbyes;
+  if (known) ++state.counters.goodbyes;
   return known && state.ssrcs.empty() && state.settings.eos_on_bye ? Fate::kEnd : Fate::kDrop;
 }
 
 Fate Look(GstLidarScreamRx* self, const Clocks& clocks, GstBuffer* buffer, RtpHeader* header) {
   RxState& state = *self->state;
-  guint8 type = 0;
-  gst_buffer_extract(buffer, 1, &type, 1);
-  if (type >= 192 && type <= 223) {
+  if (IsRtcp(buffer)) {
     const BufferMap map(buffer, GST_MAP_READ);
     RxLock lock(state.mutex);
-    if (map && IsRtcp(map.view())) return LookAtRtcp(state, buffer, map);
+    if (map) return LookAtRtcp(state, buffer, map);
   }
   const auto read = ReadRtpHeader(buffer);
   RxLock lock(state.mutex);
   if (!read) {
-    ++state.malformed;
+    ++state.counters.malformed;
     return Fate::kDrop;
   }
   *header = *read;

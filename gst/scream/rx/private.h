@@ -29,29 +29,33 @@ enum NumReportsMode { kNumReportsCount, kNumReportsEricsson };
 GType NumReportsType();
 
 struct RxSettings {
-  static inline const scream::FeedbackConfig kDefault{};
-
-  guint64 feedback_interval = static_cast<guint64>(kDefault.feedback_interval.count());
-  guint packets_per_feedback = static_cast<guint>(kDefault.packets_per_feedback);
+  scream::FeedbackConfig feedback;  // but for what is below
+  guint packets_per_feedback = static_cast<guint>(scream::FeedbackConfig{}.packets_per_feedback);
   guint ssrc = 0;
   gint num_reports = kNumReportsCount;
-  bool feedback_on_marker = kDefault.report_on_marker;
   bool eos_on_bye = true;
-  guint packet_overhead = 28;
+  DataSize packet_overhead = DataSize::Bytes(28);
+  SharedStructure pt_map;
+};
+using RxProperties = std::array<Property<RxSettings>, 9>;
+const RxProperties& RxPropertyTable();
+
+struct RxCounters {
+  guint64 foreign = 0;
+  guint64 malformed = 0;
+  guint64 moves = 0;
+  guint64 goodbyes = 0;
+  guint ssrcs = 0;
 };
 
 struct RxState {
   std::mutex mutex;
   RxSettings settings;
-  StructurePtr pt_map;
   scream::FeedbackGenerator generator;
   PeerLatch latch;
   std::set<guint32> ssrcs;  // of the peer, alive
   bool running = false;
-  guint64 foreign = 0;
-  guint64 malformed = 0;
-  guint64 moves = 0;
-  guint64 goodbyes = 0;
+  RxCounters counters;
   bool settings_changed = false;
   guint32 own_ssrc = 1;
 

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include "gst/scream/rtp_packet.h"
+
 namespace lidar::gst {
 namespace {
 
@@ -102,7 +104,7 @@ SrtpInput::Head SrtpInput::HeadOf(GstBuffer* datagram) {
   guint8 bytes[12] = {};
   const gsize size = gst_buffer_extract(datagram, 0, bytes, sizeof bytes);
   Head head;
-  head.rtcp = bytes[1] >= 192 && bytes[1] <= 223;
+  head.rtcp = IsRtcp(datagram);
   head.sequence = GST_READ_UINT16_BE(bytes + 2);
   const gsize at = head.rtcp ? 4 : 8;
   if (size >= at + 4) head.ssrc = GST_READ_UINT32_BE(bytes + at);

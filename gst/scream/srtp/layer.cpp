@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include "gst/scream/rtp_packet.h"
+
 namespace lidar::gst {
 namespace {
 
@@ -27,11 +29,6 @@ PadPtr NewRelay(GstPad* target) {
   });
   gst_pad_set_active(pad.get(), TRUE);
   return pad;
-}
-
-bool IsRtcp(GstBuffer* buffer) {
-  guint8 head[2] = {0, 0};
-  return gst_buffer_extract(buffer, 0, head, 2) == 2 && head[1] >= 192 && head[1] <= 223;
 }
 
 std::string DigestOf(const SrtpKey& key) {

@@ -8,6 +8,7 @@
 #include <mutex>
 #include <string>
 
+#include "gst/common/properties.h"
 #include "gst/common/refs.h"
 #include "gst/scream/srtp/input.h"
 #include "gst/scream/srtp/key.h"
@@ -61,36 +62,13 @@ class SrtpLayer {
   std::deque<std::string> digests_;  // of the keys so far
 };
 
+/// srtp-key (write-only), srtp-cipher and srtp-auth.
+const std::array<Property<SrtpSettings>, 3>& SrtpRows();
 /// Makes the layer where `settings` ask for one; false, and an error on the bus, where it cannot.
 bool StartSrtp(const SrtpSettings& settings, const SrtpLinks& links,
                std::shared_ptr<SrtpLayer>* layer);
-/// Gives a bin that runs its new key; a warning on the bus, the old key and false where it cannot.
-bool ChangeSrtpKey(GstElement* bin, SrtpLayer* layer, const SrtpSettings& settings);
-/// The properties srtp-key (write-only), srtp-cipher and srtp-auth, as ids from `first_id` on.
-void InstallSrtpProperties(GObjectClass* object, guint first_id);
-/// True where it is the key.
-bool SetSrtpField(SrtpSettings* settings, guint index, const GValue* value);
-/// Of the state of a bin. A key that is refused while it runs changes nothing.
-template <class State>
-void SetSrtpProperty(GstElement* bin, State& state, guint index, const GValue* value) {
-  SrtpSettings next;
-  std::shared_ptr<SrtpLayer> layer;
-  {
-    std::lock_guard lock(state.mutex);
-    next = state.settings.srtp;
-    const bool is_key = SetSrtpField(&next, index, value);
-    const bool runs = state.socket != nullptr;
-    if (!is_key || !runs) {
-      state.settings.srtp = next;
-      return;
-    }
-    layer = state.srtp;
-  }
-  if (!ChangeSrtpKey(bin, layer.get(), next)) return;
-  std::lock_guard lock(state.mutex);
-  state.settings.srtp.key = next.key;
-}
-void GetSrtpProperty(const SrtpSettings& settings, guint index, GValue* value);
+/// Gives a layer that runs its new key; a warning on the bus and false where it cannot.
+bool TakeSrtpKey(GstElement* bin, SrtpLayer* layer, const std::string& key);
 /// srtp-received, srtp-refused and srtp-key-changes; nothing where there is no layer.
 void AddSrtpStats(const SrtpLayer* layer, GstStructure* stats);
 

@@ -81,7 +81,8 @@ Work TakeWork(GstLidarScreamTx* self, Time now) {
   }
   if (state.ecn_due) work.messages.push_back(EcnMessage(self));
   if (state.stats_due)
-    work.messages.push_back(MessagePtr(gst_message_new_element(GST_OBJECT(self), TxStats(state))));
+    work.messages.push_back(
+        MessagePtr(gst_message_new_element(GST_OBJECT(self), StatsOf(state).release())));
   work.notify = state.estimate_due;
   state.ecn_due = state.stats_due = state.estimate_due = false;
   return work;
@@ -138,8 +139,8 @@ void Evaluate(GstLidarScreamTx* self, Time now) {
   }
   state.ecn_state = state.controller->ecn_state();
   if (state.ecn_state != state.ecn_announced) state.ecn_due = due = true;
-  if (state.settings.stats_interval > 0 && now >= state.next_stats) {
-    state.next_stats = now + Duration{static_cast<std::int64_t>(state.settings.stats_interval)};
+  if (state.settings.stats_interval > Duration{0} && now >= state.next_stats) {
+    state.next_stats = now + state.settings.stats_interval;
     state.stats_due = due = true;
   }
   if (due) state.control.notify_one();

@@ -36,10 +36,6 @@ static GstStaticPadTemplate rtcp_sink_template = GST_STATIC_PAD_TEMPLATE(
 static GstStaticPadTemplate rtcp_src_template = GST_STATIC_PAD_TEMPLATE(
     "rtcp_src", GST_PAD_SRC, GST_PAD_ALWAYS, GST_STATIC_CAPS("application/x-rtcp"));
 
-enum : guint {
-  kPropEstimatedBitrate = std::tuple_size_v<TxProperties> + 1,
-  kPropStats,
-};
 enum : guint { kSignalRouteChanged, kSignals };
 static guint signals[kSignals];
 
@@ -164,7 +160,7 @@ static void Prepare(TxState& state) {
     stream->config = MakeConfig(*stream, PadSettings(stream->pad), state.settings);
     stream->id = state.controller->AddStream(stream->config);
   }
-  state.sent_stream_start = state.sent_caps = state.merged_caps = state.eos_sent = false;
+  state.sent_stream_start = state.merged_caps = state.eos_sent = false;
   gst_segment_init(&state.out_segment, GST_FORMAT_UNDEFINED);
   state.eos_deadline.reset();
   state.notifier.Reset();
@@ -209,25 +205,8 @@ static GstStateChangeReturn ChangeState(GstElement* element, GstStateChange chan
   return result;
 }
 
-static void SetPropertyVfunc(GObject* o, guint id, const GValue* v, GParamSpec*) {
-  auto* self = GST_LIDAR_SCREAM_TX(o);
-  {
-    TxLock lock(self->state->mutex);
-    SetProperty(self->state->settings, TxPropertyTable()[id - 1], v);
-  }
-  SettingsChanged(self);
-}
-
-static void GetPropertyVfunc(GObject* o, guint id, GValue* v, GParamSpec*) {
-  TxState& state = StateOf(o);
-  TxLock lock(state.mutex);
-  if (id == kPropStats) {
-    g_value_take_boxed(v, TxStats(state));
-  } else if (id == kPropEstimatedBitrate) {
-    g_value_set_uint(v, state.estimated_bps);
-  } else {
-    GetProperty(state.settings, TxPropertyTable()[id - 1], v);
-  }
+static void OnPropertySet(GObject* object, GParamSpec*) {
+  SettingsChanged(GST_LIDAR_SCREAM_TX(object));
 }
 
 static void RouteChanged(GstLidarScreamTx* self) {
@@ -252,17 +231,7 @@ static void ChildProxyInit(gpointer iface, gpointer) {
   };
 }
 
-static void InstallOwnProperties(GObjectClass* object) {
-  constexpr auto kRead = static_cast<GParamFlags>(G_PARAM_READABLE | G_PARAM_STATIC_STRINGS);
-  g_object_class_install_property(
-      object, kPropEstimatedBitrate,
-      g_param_spec_uint("estimated-bitrate", "estimated-bitrate",
-                        "Target of all streams together, IP included; notifies [bit/s]", 0,
-                        G_MAXUINT, 0, kRead));
-  g_object_class_install_property(
-      object, kPropStats,
-      g_param_spec_boxed("stats", "stats", "Statistics; bitrates in bit/s, times in ns",
-                         GST_TYPE_STRUCTURE, kRead));
+static void InstallSignals() {
   signals[kSignalRouteChanged] = g_signal_new_class_handler(
       "route-changed", GST_TYPE_LIDAR_SCREAM_TX,
       static_cast<GSignalFlags>(G_SIGNAL_RUN_LAST | G_SIGNAL_ACTION), G_CALLBACK(RouteChanged),
@@ -304,16 +273,14 @@ static void InstallPads(GstElementClass* element) {
 static void gst_lidar_scream_tx_class_init(GstLidarScreamTxClass* klass) {
   GST_DEBUG_CATEGORY_INIT(gst_lidar_scream_tx_debug, "screamtx", 0, "SCReAM v2 sender");
   auto* object = G_OBJECT_CLASS(klass);
-  object->set_property = SetPropertyVfunc;
-  object->get_property = GetPropertyVfunc;
+  ServeProperties<GstLidarScreamTx, TxPropertyTable, OnPropertySet>(object);
   object->finalize = [](GObject* o) {
     TxState* state = GST_LIDAR_SCREAM_TX(o)->state;
     if (state->clock != nullptr) gst_object_unref(state->clock);
     delete state;
     G_OBJECT_CLASS(gst_lidar_scream_tx_parent_class)->finalize(o);
   };
-  InstallProperties(object, TxPropertyTable());
-  InstallOwnProperties(object);
+  InstallSignals();
   auto* element = GST_ELEMENT_CLASS(klass);
   element->change_state = ChangeState;
   element->request_new_pad = RequestPad;

@@ -51,13 +51,13 @@ void WaitForEntry(GstLidarScreamTx* self, TxStream& stream, GstBuffer* buffer) {
 void Enqueue(TxState& state, TxStream& stream, BufferPtr buffer, Time now) {
   const auto header = ReadRtpHeader(buffer.get());
   if (!header) {
-    ++stream.malformed;
+    ++stream.counters.malformed;
     return;
   }
   const gsize size = gst_buffer_get_size(buffer.get());
   TxItem item;
   item.header = *header;
-  item.size = DataSize::Bytes(static_cast<std::int64_t>(size) + state.settings.packet_overhead);
+  item.size = DataSize::Bytes(static_cast<std::int64_t>(size)) + state.settings.packet_overhead;
   item.queued = now;
   item.buffer = std::move(buffer);
   if (!stream.ssrc) stream.ssrc = header->ssrc;
@@ -67,14 +67,14 @@ void Enqueue(TxState& state, TxStream& stream, BufferPtr buffer, Time now) {
   state.controller->OnQueued(now, stream.id,
                              {header->ssrc, item.size, header->marker, header->timestamp});
   stream.queue.push_back(std::move(item));
-  ++stream.packets_queued;
+  ++stream.counters.packets_queued;
 }
 
 /// Waits until there is room for input that is not live. Before we play there is room for what a
 /// sink needs to preroll.
 void WaitForRoom(TxState& state, TxStream& stream) {
   TxLock lock(state.mutex);
-  const Duration limit{static_cast<std::int64_t>(state.settings.max_queue_delay)};
+  const Duration limit = state.settings.max_queue_delay();
   state.room.wait(lock, [&] {
     if (!state.running || stream.flushing || state.flow != GST_FLOW_OK) return true;
     if (!state.playing) return stream.queue.empty();

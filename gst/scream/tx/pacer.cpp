@@ -19,12 +19,8 @@ struct Batch {
   bool end = false;
 };
 
-Duration MaxQueueDelay(const TxState& state) {
-  return Duration{static_cast<std::int64_t>(state.settings.max_queue_delay)};
-}
-
 /// How long a frame that has begun to leave may take for the rest of it.
-Duration LongestStay(const TxState& state) { return 2 * MaxQueueDelay(state); }
+Duration LongestStay(const TxState& state) { return 2 * state.settings.max_queue_delay(); }
 
 /// The rest of a frame that has begun to leave, where it waited so long that nobody can use it.
 std::size_t StuckPackets(const TxState& state, const TxStream& stream, Time now) {
@@ -52,7 +48,7 @@ void DropLate(TxState& state, TxStream& stream, Time now) {
       ++it;
       continue;
     }
-    if (frame != it->header.timestamp) ++stream.frames_dropped;
+    if (frame != it->header.timestamp) ++stream.counters.frames_dropped;
     frame = it->header.timestamp;
     it = stream.queue.erase(it);
     --late;
@@ -124,7 +120,6 @@ void NoteSent(TxState& state, EventPtr* event) {
       gst_event_copy_segment(event->get(), &state.out_segment);
       break;
     case GST_EVENT_CAPS:
-      state.sent_caps = true;
       state.merged_caps = state.streams.size() > 1;
       if (!state.merged_caps) break;
       event->reset(
@@ -195,11 +190,11 @@ Batch NextBatch(GstLidarScreamTx* self, Time now) {
 Time NextWake(TxState& state, Time now) {
   Time wake = now + std::chrono::milliseconds(200);  // the pulse of target-bitrate
   wake = std::min(wake, state.controller->NextTimer());
-  if (state.settings.stats_interval > 0) wake = std::min(wake, state.next_stats);
+  if (state.settings.stats_interval > Duration{0}) wake = std::min(wake, state.next_stats);
   if (state.eos_deadline && !state.eos_sent) wake = std::min(wake, *state.eos_deadline);
   for (const auto& stream : state.streams)
     if (!stream->queue.empty() && stream->live.value_or(true))
-      wake = std::min(wake, now - stream->HeadAge(now) + MaxQueueDelay(state));
+      wake = std::min(wake, now - stream->HeadAge(now) + state.settings.max_queue_delay());
   // A late frame that has begun to leave stays: look again, but not without end.
   return std::max(wake, now + std::chrono::milliseconds(1));
 }

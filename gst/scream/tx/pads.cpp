@@ -32,7 +32,7 @@ gboolean AnswerLatency(GstPad* pad, GstObject* parent, GstQuery* query) {
   if (!ReadLatency(query).live) return TRUE;
   TxState& state = StateOf(parent);
   TxLock lock(state.mutex);
-  AddLatency(query, state.settings.max_queue_delay);
+  AddLatency(query, static_cast<GstClockTime>(state.settings.max_queue_delay().count()));
   return TRUE;
 }
 

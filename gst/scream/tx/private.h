@@ -49,7 +49,6 @@ struct TxState {
   bool eos_sent = false;
   // What the src pad has had
   bool sent_stream_start = false;
-  bool sent_caps = false;
   bool merged_caps = false;
   GstSegment out_segment{};
 
@@ -65,7 +64,6 @@ struct TxState {
   guint estimated_bps = 0;
   Time next_stats{};
 
-  guint64 foreign_rtcp = 0;
   guint64 malformed_rtcp = 0;
 };
 
@@ -121,7 +119,7 @@ void StopControl(GstLidarScreamTx* self);
 GstEvent* TargetEvent(const TxState& state, const TxStream& stream, Time now, const char* reason);
 
 // tx_stats.cpp
-/// Transfer full; with the lock held.
-GstStructure* TxStats(TxState& state);
+/// With the lock held.
+StructurePtr StatsOf(TxState& state);
 
 }  // namespace lidar::gst

@@ -8,7 +8,12 @@ constexpr gdouble kMaxBps = 4294967295.0;
 constexpr gdouble kMaxDelay = 60e9;
 constexpr gint kLive = GST_PARAM_MUTABLE_PLAYING;
 
-Duration FromNs(guint64 ns) { return Duration{static_cast<std::int64_t>(ns)}; }
+using scream::Extensions;
+using scream::Parameters;
+template <auto field>
+constexpr auto P = At<&TxSettings::parameters, field>;
+template <auto field>
+constexpr auto X = At<&TxSettings::parameters, &Parameters::extensions, field>;
 
 scream::Ecn ToEcn(gint mode) {
   switch (mode) {
@@ -62,7 +67,7 @@ const TxProperties& TxPropertyTable() {
        EnumField<S>{&S::ecn_mode, EcnModeType}},
       {"max-queue-delay",
        "Live input older than this is dropped in whole frames, other input waits [ns]",
-       &S::max_queue_delay, 1e6, kMaxDelay},
+       P<&Parameters::max_queue_delay>, 1e6, kMaxDelay},
       {"stats-interval", "Time between element messages with the statistics; 0 for none [ns]",
        &S::stats_interval, 0, static_cast<gdouble>(G_MAXINT64), kLive},
       {"packet-overhead", "UDP and IP header of a packet on the wire [bytes]", &S::packet_overhead,
@@ -74,101 +79,75 @@ const TxProperties& TxPropertyTable() {
        &S::key_unit_on_loss, 0, 0, kLive},
       {"pure-draft", "Exactly the draft: its constants, no optional part, no extension",
        &S::pure_draft},
-      {"qdelay-target-lo", "QDELAY_TARGET_LO [ns]", &S::qdelay_target_lo, 1e6, kMaxDelay},
-      {"qdelay-target-hi", "QDELAY_TARGET_HI [ns]", &S::qdelay_target_hi, 1e6, kMaxDelay},
-      {"min-ref-wnd", "MIN_REF_WND [bytes]", &S::min_ref_wnd, 100, 1e6},
-      {"bytes-in-flight-head-room", "BYTES_IN_FLIGHT_HEAD_ROOM", &S::bytes_in_flight_head_room, 1,
-       10},
-      {"beta-loss", "BETA_LOSS: window scale on loss", &S::beta_loss, 0.1, 1},
-      {"beta-ecn", "BETA_ECN: window scale on classic CE", &S::beta_ecn, 0.1, 1},
-      {"mss", "MSS: largest packet [bytes]", &S::mss, 100, 65535},
+      {"qdelay-target-lo", "QDELAY_TARGET_LO [ns]", P<&Parameters::qdelay_target_lo>, 1e6,
+       kMaxDelay},
+      {"qdelay-target-hi", "QDELAY_TARGET_HI [ns]", P<&Parameters::qdelay_target_hi>, 1e6,
+       kMaxDelay},
+      {"min-ref-wnd", "MIN_REF_WND [bytes]", P<&Parameters::min_ref_wnd>, 100, 1e6},
+      {"bytes-in-flight-head-room", "BYTES_IN_FLIGHT_HEAD_ROOM",
+       P<&Parameters::bytes_in_flight_head_room>, 1, 10},
+      {"beta-loss", "BETA_LOSS: window scale on loss", P<&Parameters::beta_loss>, 0.1, 1},
+      {"beta-ecn", "BETA_ECN: window scale on classic CE", P<&Parameters::beta_ecn>, 0.1, 1},
+      {"mss", "MSS: largest packet [bytes]", P<&Parameters::mss>, 100, 65535},
       {"post-congestion-delay-rtt", "POST_CONGESTION_DELAY_RTT [round trips]",
-       &S::post_congestion_delay_rtt, 0, 10000},
-      {"mul-increase-factor", "MUL_INCREASE_FACTOR", &S::mul_increase_factor, 0, 1},
-      {"virtual-rtt", "VIRTUAL_RTT [ns]", &S::virtual_rtt, 1e6, kMaxDelay},
-      {"l4s-avg-g-up", "L4S_AVG_G_UP", &S::l4s_avg_g_up, 0, 1},
-      {"l4s-avg-g-down", "L4S_AVG_G_DOWN", &S::l4s_avg_g_down, 0, 1},
-      {"ref-wnd-overhead-min", "REF_WND_OVERHEAD_MIN", &S::ref_wnd_overhead_min, 1, 10},
-      {"ref-wnd-overhead-max", "REF_WND_OVERHEAD_MAX", &S::ref_wnd_overhead_max, 1, 20},
-      {"rate-pace-min", "RATE_PACE_MIN [bit/s]", &S::rate_pace_min, 1000, kMaxBps},
-      {"packet-pacing-headroom", "PACKET_PACING_HEADROOM", &S::packet_pacing_headroom, 1, 10},
-      {"max-relaxed-pacing-factor", "MAX_RELAXED_PACING_FACTOR", &S::max_relaxed_pacing_factor, 1,
-       100},
-      {"relaxed-pacing-limit-low", "RELAXED_PACING_LIMIT_LOW", &S::relaxed_pacing_limit_low, 0, 1},
-      {"rate-adjust-gain", "RATE_ADJUST_GAIN", &S::rate_adjust_gain, 0, 1},
+       P<&Parameters::post_congestion_delay_rtt>, 0, 10000},
+      {"mul-increase-factor", "MUL_INCREASE_FACTOR", P<&Parameters::mul_increase_factor>, 0, 1},
+      {"virtual-rtt", "VIRTUAL_RTT [ns]", P<&Parameters::virtual_rtt>, 1e6, kMaxDelay},
+      {"l4s-avg-g-up", "L4S_AVG_G_UP", P<&Parameters::l4s_avg_g_up>, 0, 1},
+      {"l4s-avg-g-down", "L4S_AVG_G_DOWN", P<&Parameters::l4s_avg_g_down>, 0, 1},
+      {"ref-wnd-overhead-min", "REF_WND_OVERHEAD_MIN", P<&Parameters::ref_wnd_overhead_min>, 1, 10},
+      {"ref-wnd-overhead-max", "REF_WND_OVERHEAD_MAX", P<&Parameters::ref_wnd_overhead_max>, 1, 20},
+      {"rate-pace-min", "RATE_PACE_MIN [bit/s]", P<&Parameters::rate_pace_min>, 1000, kMaxBps},
+      {"packet-pacing-headroom", "PACKET_PACING_HEADROOM", P<&Parameters::packet_pacing_headroom>,
+       1, 10},
+      {"max-relaxed-pacing-factor", "MAX_RELAXED_PACING_FACTOR",
+       P<&Parameters::max_relaxed_pacing_factor>, 1, 100},
+      {"relaxed-pacing-limit-low", "RELAXED_PACING_LIMIT_LOW",
+       P<&Parameters::relaxed_pacing_limit_low>, 0, 1},
+      {"rate-adjust-gain", "RATE_ADJUST_GAIN", P<&Parameters::rate_adjust_gain>, 0, 1},
       {"target-rate-divisor", "Divisor of window over round trip that gives the target",
-       &S::target_rate_divisor, 1, 4},
-      {"reduce-jitter", "Optional part: smaller window where the delay jitters", &S::reduce_jitter},
-      {"clock-drift", "Optional part: follow the drift between the clocks", &S::clock_drift},
-      {"link-layer-loss", "Optional part: tolerate losses of the link layer", &S::link_layer_loss},
-      {"rate-policer", "Optional part: live with a rate policer", &S::rate_policer},
+       P<&Parameters::target_rate_divisor>, 1, 4},
+      {"reduce-jitter", "Optional part: smaller window where the delay jitters",
+       P<&Parameters::reduce_jitter>},
+      {"clock-drift", "Optional part: follow the drift between the clocks",
+       P<&Parameters::clock_drift>},
+      {"link-layer-loss", "Optional part: tolerate losses of the link layer",
+       P<&Parameters::link_layer_loss>},
+      {"rate-policer", "Optional part: live with a rate policer", P<&Parameters::rate_policer>},
       {"undershoot-remedy", "Optional part: back off less where the encoder undershoots",
-       &S::undershoot_remedy},
+       P<&Parameters::undershoot_remedy>},
       {"competing-flows", "Optional part: raise the delay target against queue-building flows",
-       &S::competing_flows},
+       P<&Parameters::competing_flows>},
       {"fast-start", "Beyond the draft: grow by what was acknowledged until congestion shows",
-       &S::fast_start},
+       X<&Extensions::fast_start>},
       {"drop-response", "Beyond the draft: follow a capacity drop within one round trip",
-       &S::drop_response},
+       X<&Extensions::drop_response>},
       {"bounded-flight", "Beyond the draft: bytes in flight stay near the window under marking",
-       &S::bounded_flight},
+       X<&Extensions::bounded_flight>},
       {"isolated-loss", "Beyond the draft: do not obey loss without other signs of congestion",
-       &S::isolated_loss},
+       X<&Extensions::isolated_loss>},
       {"quick-drain", "Beyond the draft: a backlog leaves at the window's rate after a drop",
-       &S::quick_drain},
+       X<&Extensions::quick_drain>},
       {"answered-signals",
        "Beyond the draft: signs of congestion from before a reduction are not obeyed again",
-       &S::answered_signals},
+       X<&Extensions::answered_signals>},
       {"even-alpha", "Beyond the draft: the marked fraction is averaged evenly over rounds",
-       &S::even_alpha},
+       X<&Extensions::even_alpha>},
       {"adaptive-pacing", "Beyond the draft: pacing headroom follows the frame period",
-       &S::adaptive_pacing},
+       X<&Extensions::adaptive_pacing>},
       {"feedback-timeout", "Beyond the draft: the window decays without feedback",
-       &S::feedback_timeout},
+       X<&Extensions::feedback_timeout>},
+      {"estimated-bitrate", "Target of all streams together, IP included; notifies [bit/s]",
+       TxEstimate},
+      {"stats", "Statistics; bitrates in bit/s, times in ns", TxStats},
   }};
   return table;
 }
 
 scream::Parameters ToParameters(const TxSettings& s) {
-  scream::Parameters p = s.pure_draft ? scream::Parameters::Draft() : scream::Parameters{};
+  scream::Parameters p = s.pure_draft ? scream::Parameters::Draft() : s.parameters;
   p.ecn = ToEcn(s.ecn_mode);
-  p.max_queue_delay = FromNs(s.max_queue_delay);
-  if (s.pure_draft) return p;
-  p.qdelay_target_lo = FromNs(s.qdelay_target_lo);
-  p.qdelay_target_hi = FromNs(s.qdelay_target_hi);
-  p.min_ref_wnd = DataSize::Bytes(s.min_ref_wnd);
-  p.bytes_in_flight_head_room = s.bytes_in_flight_head_room;
-  p.beta_loss = s.beta_loss;
-  p.beta_ecn = s.beta_ecn;
-  p.mss = DataSize::Bytes(s.mss);
-  p.post_congestion_delay_rtt = s.post_congestion_delay_rtt;
-  p.mul_increase_factor = s.mul_increase_factor;
-  p.virtual_rtt = FromNs(s.virtual_rtt);
-  p.l4s_avg_g_up = s.l4s_avg_g_up;
-  p.l4s_avg_g_down = s.l4s_avg_g_down;
-  p.ref_wnd_overhead_min = s.ref_wnd_overhead_min;
-  p.ref_wnd_overhead_max = s.ref_wnd_overhead_max;
-  p.rate_pace_min = DataRate::BitsPerSecond(s.rate_pace_min);
-  p.packet_pacing_headroom = s.packet_pacing_headroom;
-  p.max_relaxed_pacing_factor = s.max_relaxed_pacing_factor;
-  p.relaxed_pacing_limit_low = s.relaxed_pacing_limit_low;
-  p.rate_adjust_gain = s.rate_adjust_gain;
-  p.target_rate_divisor = s.target_rate_divisor;
-  p.reduce_jitter = s.reduce_jitter;
-  p.clock_drift = s.clock_drift;
-  p.link_layer_loss = s.link_layer_loss;
-  p.rate_policer = s.rate_policer;
-  p.undershoot_remedy = s.undershoot_remedy;
-  p.competing_flows = s.competing_flows;
-  p.extensions.fast_start = s.fast_start;
-  p.extensions.drop_response = s.drop_response;
-  p.extensions.bounded_flight = s.bounded_flight;
-  p.extensions.isolated_loss = s.isolated_loss;
-  p.extensions.quick_drain = s.quick_drain;
-  p.extensions.answered_signals = s.answered_signals;
-  p.extensions.even_alpha = s.even_alpha;
-  p.extensions.adaptive_pacing = s.adaptive_pacing;
-  p.extensions.feedback_timeout = s.feedback_timeout;
+  p.max_queue_delay = s.max_queue_delay();
   return p;
 }
 

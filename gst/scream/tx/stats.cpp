@@ -1,87 +1,133 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // The statistics of screamtx as a GstStructure.
-#include <algorithm>
+#include "gst/common/stats.h"
 
 #include "gst/scream/tx/private.h"
 
 namespace lidar::gst {
 namespace {
 
-guint Bps(DataRate rate) {
-  return static_cast<guint>(std::clamp(rate.bits_per_second(), 0.0, 4294967295.0));
-}
-guint64 Bytes(DataSize size) {
-  return static_cast<guint64>(std::max<std::int64_t>(size.bytes(), 0));
-}
-guint64 Ns(Duration d) { return static_cast<guint64>(std::max<std::int64_t>(d.count(), 0)); }
-guint64 U64(std::uint64_t v) { return v; }
+/// What one stream shows: what the controller knows of it, and what screamtx does.
+struct ShownStream {
+  scream::StreamStatistics core;
+  scream::StreamConfig config;
+  StreamCounters own;
+  std::string pad;
+  guint ssrc = 0;
+  guint encoder_bps = 0;
+};
+template <auto field>
+constexpr auto C = At<&ShownStream::core, field>;
+template <auto field>
+constexpr auto O = At<&ShownStream::own, field>;
 
-GstStructure* StreamStats(TxState& state, const TxStream& stream, Time now) {
-  const scream::StreamStatistics s = state.controller->stream_statistics(now, stream.id);
-  gchar* name = gst_pad_get_name(stream.pad);
-  GstStructure* out = gst_structure_new(
-      "stream", "pad", G_TYPE_STRING, name, "ssrc", G_TYPE_UINT, stream.ssrc.value_or(0),
-      "target-bitrate", G_TYPE_UINT, Bps(s.target_bitrate), "encoder-bitrate", G_TYPE_UINT,
-      ToEncoder(stream, s.target_bitrate), "min-bitrate", G_TYPE_UINT,
-      Bps(stream.config.needed_bitrate), "max-bitrate", G_TYPE_UINT, Bps(stream.config.max_bitrate),
-      "sent-bitrate", G_TYPE_UINT, Bps(s.sent_bitrate), "queued-bytes", G_TYPE_UINT64,
-      Bytes(s.queued), "sender-queue-delay", G_TYPE_UINT64, Ns(s.media_qdelay), "packets-queued",
-      G_TYPE_UINT64, stream.packets_queued, "packets-sent", G_TYPE_UINT64, U64(s.packets_sent),
-      "packets-dropped", G_TYPE_UINT64, U64(s.packets_dropped), "frames-dropped", G_TYPE_UINT64,
-      stream.frames_dropped, "packets-lost", G_TYPE_UINT64, U64(s.packets_lost), "packets-ce",
-      G_TYPE_UINT64, U64(s.packets_ce), "bytes-sent", G_TYPE_UINT64, Bytes(s.bytes_sent),
-      "malformed", G_TYPE_UINT64, stream.malformed, nullptr);
-  g_free(name);
-  return out;
+StructurePtr StreamStats(TxState& state, const TxStream& stream, Time now) {
+  using S = scream::StreamStatistics;
+  using G = scream::StreamConfig;
+  static const std::array<Stat<ShownStream>, 17> kStats = {{
+      {"pad", &ShownStream::pad},
+      {"ssrc", &ShownStream::ssrc},
+      {"target-bitrate", C<&S::target_bitrate>},
+      {"encoder-bitrate", &ShownStream::encoder_bps},
+      {"min-bitrate", At<&ShownStream::config, &G::needed_bitrate>},
+      {"max-bitrate", At<&ShownStream::config, &G::max_bitrate>},
+      {"sent-bitrate", C<&S::sent_bitrate>},
+      {"queued-bytes", C<&S::queued>},
+      {"sender-queue-delay", C<&S::media_qdelay>},
+      {"packets-queued", O<&StreamCounters::packets_queued>},
+      {"packets-sent", C<&S::packets_sent>},
+      {"packets-dropped", C<&S::packets_dropped>},
+      {"frames-dropped", O<&StreamCounters::frames_dropped>},
+      {"packets-lost", C<&S::packets_lost>},
+      {"packets-ce", C<&S::packets_ce>},
+      {"bytes-sent", C<&S::bytes_sent>},
+      {"malformed", O<&StreamCounters::malformed>},
+  }};
+  const StringPtr name(gst_pad_get_name(stream.pad));
+  ShownStream shown{state.controller->stream_statistics(now, stream.id),
+                    stream.config,
+                    stream.counters,
+                    name.get(),
+                    stream.ssrc.value_or(0),
+                    0};
+  shown.encoder_bps = ToEncoder(stream, shown.core.target_bitrate);
+  return ToStructure("stream", kStats, shown);
 }
 
-void AddCounters(GstStructure* out, const scream::Statistics& s) {
-  gst_structure_set(
-      out, "packets-sent", G_TYPE_UINT64, U64(s.packets_sent), "packets-acked", G_TYPE_UINT64,
-      U64(s.packets_acked), "packets-lost", G_TYPE_UINT64, U64(s.packets_lost), "packets-late",
-      G_TYPE_UINT64, U64(s.packets_late), "packets-ce", G_TYPE_UINT64, U64(s.packets_ce),
-      "packets-dropped", G_TYPE_UINT64, U64(s.packets_dropped), "bytes-sent", G_TYPE_UINT64,
-      Bytes(s.bytes_sent), "bytes-acked", G_TYPE_UINT64, Bytes(s.bytes_acked), "feedback-accepted",
-      G_TYPE_UINT64, U64(s.feedback_accepted), "feedback-ignored", G_TYPE_UINT64,
-      U64(s.feedback_ignored), "feedback-foreign-blocks", G_TYPE_UINT64, U64(s.foreign_blocks),
-      "feedback-timeouts", G_TYPE_UINT64, U64(s.feedback_timeouts), "loss-events", G_TYPE_UINT64,
-      U64(s.loss_events), "ce-events", G_TYPE_UINT64, U64(s.ce_events), "delay-events",
-      G_TYPE_UINT64, U64(s.delay_events), "capacity-drops", G_TYPE_UINT64, U64(s.capacity_drops),
-      "clock-resets", G_TYPE_UINT64, U64(s.clock_resets), nullptr);
+StructurePtr ControllerStats(const scream::Statistics& statistics) {
+  using S = scream::Statistics;
+  static const std::array<Stat<S>, 34> kStats = {{
+      {"target-bitrate", &S::target_bitrate},
+      {"sent-bitrate", &S::sent_bitrate},
+      {"acked-bitrate", &S::acked_bitrate},
+      {"pace-bitrate", &S::pace_bitrate},
+      {"queue-delay", &S::qdelay},
+      {"queue-delay-avg", &S::qdelay_avg},
+      {"queue-delay-target", &S::qdelay_target},
+      {"rtt", &S::s_rtt},
+      {"min-rtt", &S::min_rtt},
+      {"ref-wnd", &S::ref_wnd},
+      {"bytes-in-flight", &S::bytes_in_flight},
+      {"l4s-alpha", &S::l4s_alpha},
+      {"loss-rate", &S::loss_rate},
+      {"queued-bytes", &S::queued},
+      {"sender-queue-delay", &S::media_qdelay},
+      {"ecn-state", +[](const S& s) { return scream::ToString(s.ecn_state); }},
+      {"reason", +[](const S& s) { return scream::ToString(s.reason); }},
+      {"packets-sent", &S::packets_sent},
+      {"packets-acked", &S::packets_acked},
+      {"packets-lost", &S::packets_lost},
+      {"packets-late", &S::packets_late},
+      {"packets-ce", &S::packets_ce},
+      {"packets-dropped", &S::packets_dropped},
+      {"bytes-sent", &S::bytes_sent},
+      {"bytes-acked", &S::bytes_acked},
+      {"feedback-accepted", &S::feedback_accepted},
+      {"feedback-ignored", &S::feedback_ignored},
+      {"feedback-foreign-blocks", &S::foreign_blocks},
+      {"feedback-timeouts", &S::feedback_timeouts},
+      {"loss-events", &S::loss_events},
+      {"ce-events", &S::ce_events},
+      {"delay-events", &S::delay_events},
+      {"capacity-drops", &S::capacity_drops},
+      {"clock-resets", &S::clock_resets},
+  }};
+  return ToStructure("application/x-screamtx-stats", kStats, statistics);
 }
 
 }  // namespace
 
-GstStructure* TxStats(TxState& state) {
-  if (!state.controller) return gst_structure_new_empty("application/x-screamtx-stats");
+StructurePtr StatsOf(TxState& state) {
+  if (!state.controller)
+    return StructurePtr(gst_structure_new_empty("application/x-screamtx-stats"));
   const Time now = TxNow(state);
-  const scream::Statistics s = state.controller->statistics(now);
-  GstStructure* out = gst_structure_new(
-      "application/x-screamtx-stats", "target-bitrate", G_TYPE_UINT, Bps(s.target_bitrate),
-      "sent-bitrate", G_TYPE_UINT, Bps(s.sent_bitrate), "acked-bitrate", G_TYPE_UINT,
-      Bps(s.acked_bitrate), "pace-bitrate", G_TYPE_UINT, Bps(s.pace_bitrate), "queue-delay",
-      G_TYPE_UINT64, Ns(s.qdelay), "queue-delay-avg", G_TYPE_UINT64, Ns(s.qdelay_avg),
-      "queue-delay-target", G_TYPE_UINT64, Ns(s.qdelay_target), "rtt", G_TYPE_UINT64, Ns(s.s_rtt),
-      "min-rtt", G_TYPE_UINT64, Ns(s.min_rtt), "ref-wnd", G_TYPE_UINT64, Bytes(s.ref_wnd),
-      "bytes-in-flight", G_TYPE_UINT64, Bytes(s.bytes_in_flight), "l4s-alpha", G_TYPE_DOUBLE,
-      s.l4s_alpha, "loss-rate", G_TYPE_DOUBLE, s.loss_rate, "queued-bytes", G_TYPE_UINT64,
-      Bytes(s.queued), "sender-queue-delay", G_TYPE_UINT64, Ns(s.media_qdelay), "ecn-state",
-      G_TYPE_STRING, scream::ToString(s.ecn_state), "reason", G_TYPE_STRING,
-      scream::ToString(s.reason), "rtcp-malformed", G_TYPE_UINT64, state.malformed_rtcp, nullptr);
-  AddCounters(out, s);
+  StructurePtr out = ControllerStats(state.controller->statistics(now));
   guint64 frames_dropped = 0;
   GValue streams = G_VALUE_INIT;
   gst_value_array_init(&streams, static_cast<guint>(state.streams.size()));
   for (const auto& stream : state.streams) {
-    frames_dropped += stream->frames_dropped;
+    frames_dropped += stream->counters.frames_dropped;
     GValue value = G_VALUE_INIT;
     g_value_init(&value, GST_TYPE_STRUCTURE);
-    g_value_take_boxed(&value, StreamStats(state, *stream, now));
+    g_value_take_boxed(&value, StreamStats(state, *stream, now).release());
     gst_value_array_append_and_take_value(&streams, &value);
   }
-  gst_structure_set(out, "frames-dropped", G_TYPE_UINT64, frames_dropped, nullptr);
-  gst_structure_take_value(out, "streams", &streams);
+  gst_structure_set(out.get(), "frames-dropped", G_TYPE_UINT64, frames_dropped, "rtcp-malformed",
+                    G_TYPE_UINT64, state.malformed_rtcp, nullptr);
+  gst_structure_take_value(out.get(), "streams", &streams);
   return out;
+}
+
+StructurePtr TxStats(GObject* tx) {
+  TxState& state = *GST_LIDAR_SCREAM_TX(tx)->state;
+  const TxLock lock(state.mutex);
+  return StatsOf(state);
+}
+
+guint TxEstimate(GObject* tx) {
+  TxState& state = *GST_LIDAR_SCREAM_TX(tx)->state;
+  const TxLock lock(state.mutex);
+  return state.estimated_bps;
 }
 
 }  // namespace lidar::gst

@@ -41,6 +41,12 @@ class OverheadMeter {
   double wire_ = 1228;
 };
 
+struct StreamCounters {
+  guint64 packets_queued = 0;
+  guint64 frames_dropped = 0;
+  guint64 malformed = 0;
+};
+
 struct TxStream {
   GstPad* pad = nullptr;
   scream::StreamId id = -1;
@@ -62,14 +68,10 @@ struct TxStream {
   // Work for the control thread
   bool target_due = false;
   bool key_unit_due = false;
-  const char* reason = nullptr;  // instead of the controller's
   std::optional<Time> last_key_unit;
   guint key_units = 0;
-  // Counters
-  guint64 packets_queued = 0;
-  guint64 frames_dropped = 0;
-  guint64 malformed = 0;
   guint64 lost_seen = 0;
+  StreamCounters counters;
 
   /// Age of the first packet in the queue.
   Duration HeadAge(Time now) const;

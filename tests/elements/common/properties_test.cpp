@@ -89,6 +89,10 @@ guint Changes(GObject* o) {
 }
 void Changed(GObject* o, GParamSpec*) { ++reinterpret_cast<TestThing*>(o)->state->changes; }
 
+const std::array<Property<Nested>, 2> kNestedRows = {{
+    {"factor", "Factor", &Nested::factor, 0.1, 1},
+    {"wait", "Time [ns]", &Nested::wait, 1e6, 60e9},
+}};
 const std::array<Property<Settings>, 15> kProperties = {{
     {"port", "UDP port", &Settings::port, 1, 65535},
     {"level", "Level", &Settings::level, -1, 63, GST_PARAM_MUTABLE_PLAYING},
@@ -98,7 +102,7 @@ const std::array<Property<Settings>, 15> kProperties = {{
     {"colour", "Colour", EnumField<Settings, Colour>{&Settings::colour, ColourType}},
     {"plain-enum", "Colour", EnumField<Settings>{&Settings::plain_enum, ColourType}},
     {"caps", "Caps", &Settings::caps},
-    {"factor", "Factor", At<&Settings::nested, &Nested::factor>, 0.1, 1},
+    Within<&Settings::nested>(kNestedRows, "factor"),
     {"wait", "Time [ns]", At<&Settings::nested, &Nested::wait>, 1e6, 60e9},
     {"packet", "Size [bytes]", At<&Settings::nested, &Nested::packet>, 100, 65535},
     {"rate", "Rate [bit/s]", At<&Settings::nested, &Nested::rate>, 1000, 4294967295.0},

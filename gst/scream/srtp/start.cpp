@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// How a bin starts SRTP, changes its key and shows its counters.
+#include "gst/common/stats.h"
+#include "gst/scream/srtp/layer.h"
+
+namespace lidar::gst {
+
+const std::array<Property<SrtpSettings>, 3>& SrtpRows() {
+  static const std::array<Property<SrtpSettings>, 3> rows = {{
+      {"srtp-key",
+       "SRTP master key and salt: hexadecimal digits, or file:PATH or env:NAME where they stand, "
+       "so that no list of processes shows them; empty for no SRTP. Set while playing, it is a new "
+       "key: at the receiver first",
+       &SrtpSettings::key, 0, 0, G_PARAM_WRITABLE | GST_PARAM_MUTABLE_PLAYING},
+      {"srtp-cipher",
+       "aes-128-icm (60 digits of key), aes-256-icm (92), aes-128-gcm (56) or aes-256-gcm (88)",
+       &SrtpSettings::cipher},
+      {"srtp-auth", "hmac-sha1-80 or hmac-sha1-32; of no meaning with gcm", &SrtpSettings::auth},
+  }};
+  return rows;
+}
+
+bool StartSrtp(const SrtpSettings& settings, const SrtpLinks& links,
+               std::shared_ptr<SrtpLayer>* layer) {
+  if (settings.key.empty()) return true;
+  std::string error;
+  *layer = SrtpLayer::Create(settings, links, &error);
+  if (*layer) return true;
+  GST_ELEMENT_ERROR(links.bin, RESOURCE, SETTINGS, ("SRTP cannot be used: %s.", error.c_str()),
+                    (nullptr));
+  return false;
+}
+
+bool TakeSrtpKey(GstElement* bin, SrtpLayer* layer, const std::string& key) {
+  std::string error = "SRTP begins and ends with a start from NULL";
+  if (layer != nullptr && !key.empty() && layer->ChangeKey(key, &error)) return true;
+  GST_ELEMENT_WARNING(bin, RESOURCE, SETTINGS, ("The SRTP key stays as it is: %s.", error.c_str()),
+                      (nullptr));
+  return false;
+}
+
+void AddSrtpStats(const SrtpLayer* layer, GstStructure* stats) {
+  static const std::array<Stat<SrtpCounts>, 3> kStats = {{
+      {"srtp-received", &SrtpCounts::received},
+      {"srtp-refused", &SrtpCounts::refused},
+      {"srtp-key-changes", &SrtpCounts::key_changes},
+  }};
+  if (layer != nullptr) AddStats(stats, kStats, layer->counts());
+}
+
+}  // namespace lidar::gst
