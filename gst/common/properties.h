@@ -71,6 +71,19 @@ Property<Settings> Proxy(const std::array<Property<ChildSettings>, N>& table, st
   return {row->name, row->blurb, field, row->min, row->max, row->mutability};
 }
 
+template <class Settings, std::size_t N, std::size_t M, std::size_t... i, std::size_t... j>
+std::array<Property<Settings>, N + M> JoinRows(const std::array<Property<Settings>, N>& a,
+                                               const std::array<Property<Settings>, M>& b,
+                                               std::index_sequence<i...>,
+                                               std::index_sequence<j...>) {
+  return {{a[i]..., b[j]...}};
+}
+/// The rows of `a`, then those of `b`.
+template <class Settings, std::size_t N, std::size_t M>
+auto Join(const std::array<Property<Settings>, N>& a, const std::array<Property<Settings>, M>& b) {
+  return JoinRows(a, b, std::make_index_sequence<N>(), std::make_index_sequence<M>());
+}
+
 /// Installs the rows of `table` under the ids first_id, first_id + 1, ...
 template <class Settings, std::size_t N>
 void InstallProperties(GObjectClass* klass, const std::array<Property<Settings>, N>& table,

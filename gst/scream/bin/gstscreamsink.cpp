@@ -69,6 +69,13 @@ static StructurePtr Stats(GObject* object) {
   return stats;
 }
 
+static guint Estimate(GObject* object) {
+  guint bps = 0;
+  if (GstElement* tx = GST_LIDAR_SCREAM_SINK(object)->tx)
+    g_object_get(tx, "estimated-bitrate", &bps, nullptr);
+  return bps;
+}
+
 /// The receiver ends with the sender where nobody says otherwise.
 static const TxSettings& TxDefaults() {
   static const TxSettings defaults = [] {
@@ -102,7 +109,8 @@ static const std::array<Property<Settings>, 19> kProperties = {{
     OfTx("stats-interval"),
     OfTx("send-bye"),
     OfTx("key-unit-on-loss"),
-    OfTx("estimated-bitrate"),
+    {"estimated-bitrate", "Target of all streams together, IP included; notifies [bit/s]",
+     Estimate},
     {"stats", "Statistics; bitrates in bit/s, times in ns", Stats},
     Within<&Settings::srtp>(SrtpRows(), "srtp-key"),
     Within<&Settings::srtp>(SrtpRows(), "srtp-cipher"),

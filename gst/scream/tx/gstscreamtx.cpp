@@ -205,6 +205,28 @@ static GstStateChangeReturn ChangeState(GstElement* element, GstStateChange chan
   return result;
 }
 
+static StructurePtr Stats(GObject* tx) {
+  TxState& state = StateOf(tx);
+  const TxLock lock(state.mutex);
+  return StatsOf(state);
+}
+
+static guint Estimate(GObject* tx) {
+  TxState& state = StateOf(tx);
+  const TxLock lock(state.mutex);
+  return state.estimated_bps;
+}
+
+static const auto& Rows() {
+  static const auto rows =
+      Join(TxPropertyTable(),
+           std::array<Property<TxSettings>, 2>{
+               {{"estimated-bitrate",
+                 "Target of all streams together, IP included; notifies [bit/s]", Estimate},
+                {"stats", "Statistics; bitrates in bit/s, times in ns", Stats}}});
+  return rows;
+}
+
 static void OnPropertySet(GObject* object, GParamSpec*) {
   SettingsChanged(GST_LIDAR_SCREAM_TX(object));
 }
@@ -273,7 +295,7 @@ static void InstallPads(GstElementClass* element) {
 static void gst_lidar_scream_tx_class_init(GstLidarScreamTxClass* klass) {
   GST_DEBUG_CATEGORY_INIT(gst_lidar_scream_tx_debug, "screamtx", 0, "SCReAM v2 sender");
   auto* object = G_OBJECT_CLASS(klass);
-  ServeProperties<GstLidarScreamTx, TxPropertyTable, OnPropertySet>(object);
+  ServeProperties<GstLidarScreamTx, Rows, OnPropertySet>(object);
   object->finalize = [](GObject* o) {
     TxState* state = GST_LIDAR_SCREAM_TX(o)->state;
     if (state->clock != nullptr) gst_object_unref(state->clock);

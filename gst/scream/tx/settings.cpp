@@ -137,9 +137,6 @@ const TxProperties& TxPropertyTable() {
        X<&Extensions::adaptive_pacing>},
       {"feedback-timeout", "Beyond the draft: the window decays without feedback",
        X<&Extensions::feedback_timeout>},
-      {"estimated-bitrate", "Target of all streams together, IP included; notifies [bit/s]",
-       TxEstimate},
-      {"stats", "Statistics; bitrates in bit/s, times in ns", TxStats},
   }};
   return table;
 }

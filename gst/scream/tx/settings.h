@@ -4,7 +4,6 @@
 #include <gst/gst.h>
 
 #include "gst/common/properties.h"
-#include "gst/common/refs.h"
 #include "src/scream/controller.h"
 
 namespace lidar::gst {
@@ -36,11 +35,8 @@ struct TxSettings {
 
   Duration max_queue_delay() const { return parameters.max_queue_delay; }
 };
-using TxProperties = std::array<Property<TxSettings>, 47>;
-/// With estimated-bitrate and stats, which read the element.
+using TxProperties = std::array<Property<TxSettings>, 45>;
 const TxProperties& TxPropertyTable();
-guint TxEstimate(GObject* tx);
-StructurePtr TxStats(GObject* tx);
 
 /// What the controller works with: `pure_draft` undoes what was set of the draft's constants.
 scream::Parameters ToParameters(const TxSettings& settings);

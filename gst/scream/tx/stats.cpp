@@ -118,16 +118,4 @@ StructurePtr StatsOf(TxState& state) {
   return out;
 }
 
-StructurePtr TxStats(GObject* tx) {
-  TxState& state = *GST_LIDAR_SCREAM_TX(tx)->state;
-  const TxLock lock(state.mutex);
-  return StatsOf(state);
-}
-
-guint TxEstimate(GObject* tx) {
-  TxState& state = *GST_LIDAR_SCREAM_TX(tx)->state;
-  const TxLock lock(state.mutex);
-  return state.estimated_bps;
-}
-
 }  // namespace lidar::gst
