@@ -4,7 +4,6 @@
 #include <gst/gst.h>
 
 #include <memory>
-#include <mutex>
 #include <string>
 
 #include "gst/common/properties.h"
@@ -68,7 +67,7 @@ void CloseUsed(SharedSocket* used, const GivenSocket& given);
 template <class Self>
 SharedSocket UsedSocket(GObject* object) {
   auto& state = *reinterpret_cast<Self*>(object)->state;
-  const std::lock_guard lock(state.mutex);
+  const LockIf lock(true, state.mutex);
   return state.used;
 }
 

@@ -78,8 +78,8 @@ void Stream::OnDropped(Time now, std::size_t packets) {
 
 std::size_t Stream::LatePackets(Time now) const {
   const auto is_start = [](const Queued& q) { return q.starts_frame; };
-  // A frame that has begun to leave goes out to its end: half a frame helps nobody.
-  if (queue_.empty() || !queue_.front().starts_frame) return 0;
+  if (queue_.empty()) return 0;
+  if (!queue_.front().starts_frame) return StuckPackets(now);
   std::size_t late = 0;
   for (auto frame = queue_.begin(); frame != queue_.end();) {
     if (now - frame->queued <= p_.max_queue_delay) break;
@@ -87,6 +87,15 @@ std::size_t Stream::LatePackets(Time now) const {
     late = static_cast<std::size_t>(frame - queue_.begin());
   }
   return late;
+}
+
+/// A frame that has begun to leave goes out to its end, for half a frame helps nobody; but the rest
+/// of one that waited twice as long as any may is of no use either.
+std::size_t Stream::StuckPackets(Time now) const {
+  if (now - queue_.front().queued < 2 * p_.max_queue_delay) return 0;
+  const auto next = std::find_if(queue_.begin(), queue_.end(),
+                                 [](const Queued& q) { return q.starts_frame; });
+  return static_cast<std::size_t>(next - queue_.begin());
 }
 
 Duration Stream::media_qdelay(Time now) const {

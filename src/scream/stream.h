@@ -55,6 +55,7 @@ class Stream {
     bool starts_frame = false;
   };
   void OnFrame(Time now);
+  std::size_t StuckPackets(Time now) const;
 
   const Parameters& p_;
   StreamConfig config_;

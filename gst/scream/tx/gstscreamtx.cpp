@@ -45,15 +45,9 @@ Time TxNow(const TxState& state) {
   return Time{Duration{static_cast<std::int64_t>(gst_clock_get_time(state.clock))}};
 }
 
-void WakePacer(TxState& state) {
-  if (state.timer != nullptr) gst_clock_id_unschedule(state.timer);
-}
-
 void SettingsChanged(GstLidarScreamTx* self) {
-  TxState& state = *self->state;
-  TxLock lock(state.mutex);
-  state.settings_changed = true;
-  WakePacer(state);
+  const TxLock lock(self->state->mutex);
+  self->state->pacing.OnSettings();
 }
 
 TxStream* FindStream(TxState& state, scream::StreamId id) {
@@ -128,8 +122,7 @@ static void ReleasePad(GstElement* element, GstPad* pad) {
     TxLock lock(state.mutex);
     TxStream* stream = PadStream(pad);
     stream->flushing = true;
-    if (stream->entry_wait != nullptr) gst_clock_id_unschedule(stream->entry_wait);
-    state.room.notify_all();
+    state.gate.Release(*stream);
   }
   gst_pad_set_active(pad, FALSE);  // returns once the pad's thread has left
   {
@@ -139,7 +132,7 @@ static void ReleasePad(GstElement* element, GstPad* pad) {
     state.streams.erase(std::find_if(state.streams.begin(), state.streams.end(),
                                      [&](const auto& s) { return s.get() == stream; }));
     SetPadStream(pad, nullptr);
-    WakePacer(state);
+    state.pacing.Wake();
   }
   gst_child_proxy_child_removed(GST_CHILD_PROXY(element), G_OBJECT(pad), name.get());
   gst_element_remove_pad(element, pad);
@@ -148,7 +141,6 @@ static void ReleasePad(GstElement* element, GstPad* pad) {
 /// A new controller, and streams that have seen nothing.
 static void Prepare(TxState& state) {
   TxLock lock(state.mutex);
-  if (state.clock == nullptr) state.clock = gst_system_clock_obtain();
   state.controller.emplace(ToParameters(state.settings));
   state.parser = {};
   state.feedback_peer = {};
@@ -160,49 +152,48 @@ static void Prepare(TxState& state) {
     stream->config = MakeConfig(*stream, PadSettings(stream->pad), state.settings);
     stream->id = state.controller->AddStream(stream->config);
   }
-  state.sent_stream_start = state.merged_caps = state.eos_sent = false;
-  gst_segment_init(&state.out_segment, GST_FORMAT_UNDEFINED);
-  state.eos_deadline.reset();
-  state.notifier.Reset();
-  state.ecn_announced = state.ecn_state = state.controller->ecn_state();
-  state.next_stats = TxNow(state);
+  state.merger = {};
+  state.pacing.ForgetEnd();
+  state.reporter.Reset(TxNow(state));
   state.malformed_rtcp = 0;
 }
 
-/// Lets every thread that waits inside go.
-static void Unblock(TxState& state) {
-  TxLock lock(state.mutex);
-  state.running = false;
-  for (auto& stream : state.streams)
-    if (stream->entry_wait != nullptr) gst_clock_id_unschedule(stream->entry_wait);
-  state.room.notify_all();
-  WakePacer(state);
+static void BeforeChange(TxState& state, GstStateChange change) {
+  const TxLock lock(state.mutex);
+  if (change == GST_STATE_CHANGE_PAUSED_TO_READY) {
+    state.gate.Close(state);
+    state.pacing.Wake();
+  } else if (change == GST_STATE_CHANGE_PAUSED_TO_PLAYING) {
+    state.gate.set_playing(state, true);
+  } else if (change == GST_STATE_CHANGE_PLAYING_TO_PAUSED) {
+    state.gate.set_playing(state, false);
+  }
 }
 
 static GstStateChangeReturn ChangeState(GstElement* element, GstStateChange change) {
-  auto* self = GST_LIDAR_SCREAM_TX(element);
-  TxState& state = *self->state;
-  if (change == GST_STATE_CHANGE_READY_TO_PAUSED) {
+  TxState& state = StateOf(element);
+  const bool up = change == GST_STATE_CHANGE_READY_TO_PAUSED;
+  if (up) {
     Prepare(state);
-    StartControl(self);
-  } else if (change == GST_STATE_CHANGE_PAUSED_TO_READY) {
-    Unblock(state);
-  } else if (change == GST_STATE_CHANGE_PAUSED_TO_PLAYING) {
-    TxLock lock(state.mutex);
-    state.playing = true;
-    state.room.notify_all();
-  } else if (change == GST_STATE_CHANGE_PLAYING_TO_PAUSED) {
-    TxLock lock(state.mutex);
-    state.playing = false;
-    for (auto& stream : state.streams)
-      if (stream->entry_wait != nullptr) gst_clock_id_unschedule(stream->entry_wait);
+    if (!state.reporter.Start()) return GST_STATE_CHANGE_FAILURE;
   }
+  BeforeChange(state, change);
   const GstStateChangeReturn result =
       GST_ELEMENT_CLASS(gst_lidar_scream_tx_parent_class)->change_state(element, change);
-  const bool failed_up =
-      result == GST_STATE_CHANGE_FAILURE && change == GST_STATE_CHANGE_READY_TO_PAUSED;
-  if (change == GST_STATE_CHANGE_PAUSED_TO_READY || failed_up) StopControl(self);
+  const bool failed_up = up && result == GST_STATE_CHANGE_FAILURE;
+  if (change == GST_STATE_CHANGE_PAUSED_TO_READY || failed_up) state.reporter.Stop();
   return result;
+}
+
+static gboolean ActivateSrc(GstPad*, GstObject* parent, GstPadMode mode, gboolean active) {
+  TxState& state = StateOf(parent);
+  if (mode != GST_PAD_MODE_PUSH) return FALSE;
+  {
+    const TxLock lock(state.mutex);
+    active ? state.gate.Open() : state.gate.Close(state);
+    state.pacing.Wake();
+  }
+  return active ? state.pacing.Start() : state.pacing.Stop();
 }
 
 static StructurePtr Stats(GObject* tx) {
@@ -214,7 +205,7 @@ static StructurePtr Stats(GObject* tx) {
 static guint Estimate(GObject* tx) {
   TxState& state = StateOf(tx);
   const TxLock lock(state.mutex);
-  return state.estimated_bps;
+  return state.reporter.estimated_bps();
 }
 
 static const auto& Rows() {
@@ -235,7 +226,7 @@ static void RouteChanged(GstLidarScreamTx* self) {
   TxState& state = *self->state;
   TxLock lock(state.mutex);
   if (state.controller) state.controller->OnRouteChange(TxNow(state));
-  WakePacer(state);
+  state.pacing.Wake();
 }
 
 static void ChildProxyInit(gpointer iface, gpointer) {
@@ -268,12 +259,11 @@ static GstPad* AddStaticPad(GstLidarScreamTx* self, GstStaticPadTemplate* templ)
 }
 
 static void gst_lidar_scream_tx_init(GstLidarScreamTx* self) {
-  self->state = new TxState;
-  gst_segment_init(&self->state->out_segment, GST_FORMAT_UNDEFINED);
+  self->state = new TxState(self);
   self->src = AddStaticPad(self, &src_template);
   gst_pad_set_event_function(self->src, TxSrcEvent);
   gst_pad_set_query_function(self->src, TxSrcQuery);
-  gst_pad_set_activatemode_function(self->src, TxActivateSrc);
+  gst_pad_set_activatemode_function(self->src, ActivateSrc);
   self->rtcp_sink = AddStaticPad(self, &rtcp_sink_template);
   gst_pad_set_chain_function(self->rtcp_sink, TxRtcpChain);
   self->rtcp_src = AddStaticPad(self, &rtcp_src_template);
@@ -296,12 +286,7 @@ static void gst_lidar_scream_tx_class_init(GstLidarScreamTxClass* klass) {
   GST_DEBUG_CATEGORY_INIT(gst_lidar_scream_tx_debug, "screamtx", 0, "SCReAM v2 sender");
   auto* object = G_OBJECT_CLASS(klass);
   ServeProperties<GstLidarScreamTx, Rows, OnPropertySet>(object);
-  object->finalize = [](GObject* o) {
-    TxState* state = GST_LIDAR_SCREAM_TX(o)->state;
-    if (state->clock != nullptr) gst_object_unref(state->clock);
-    delete state;
-    G_OBJECT_CLASS(gst_lidar_scream_tx_parent_class)->finalize(o);
-  };
+  OwnState<GstLidarScreamTx, gst_lidar_scream_tx_parent_class>(object);
   InstallSignals();
   auto* element = GST_ELEMENT_CLASS(klass);
   element->change_state = ChangeState;

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// What enters screamtx: RTP and events on the sink pads, RTCP on rtcp_sink.
-#include "gst/common/buffer_map.h"
+// What enters screamtx on its sink pads: RTP and events.
 #include "gst/scream/tx/private.h"
 
 #define GST_CAT_DEFAULT gst_lidar_scream_tx_debug
@@ -11,40 +10,10 @@ namespace {
 bool IsLive(GstPad* pad) {
   const QueryPtr query(gst_query_new_latency());
   gboolean live = TRUE;
-  // Who cannot say is taken for live, and never held back.
+  // Upstream that does not answer counts as live: it is never held back.
   if (gst_pad_peer_query(pad, query.get()))
     gst_query_parse_latency(query.get(), &live, nullptr, nullptr);
   return live != FALSE;
-}
-
-/// The time at which input that is not live may enter: as if a live source had made it.
-GstClockTime EntryTime(GstLidarScreamTx* self, const TxStream& stream, GstBuffer* buffer) {
-  const GstClockTime pts = GST_BUFFER_PTS(buffer);
-  if (!GST_CLOCK_TIME_IS_VALID(pts) || stream.segment.format != GST_FORMAT_TIME)
-    return GST_CLOCK_TIME_NONE;
-  const GstClockTime running = gst_segment_to_running_time(&stream.segment, GST_FORMAT_TIME, pts);
-  if (!GST_CLOCK_TIME_IS_VALID(running)) return GST_CLOCK_TIME_NONE;
-  return running + gst_element_get_base_time(GST_ELEMENT(self));
-}
-
-/// Waits for the pipeline's clock; returns at once where there is none or we do not play.
-void WaitForEntry(GstLidarScreamTx* self, TxStream& stream, GstBuffer* buffer) {
-  TxState& state = *self->state;
-  const GstClockTime entry = EntryTime(self, stream, buffer);
-  GstClock* clock = gst_element_get_clock(GST_ELEMENT(self));
-  if (clock != nullptr && GST_CLOCK_TIME_IS_VALID(entry)) {
-    GstClockID id = gst_clock_new_single_shot_id(clock, entry);
-    TxLock lock(state.mutex);
-    const bool wait = state.running && state.playing && !stream.flushing;
-    stream.entry_wait = id;
-    lock.unlock();
-    if (wait) gst_clock_id_wait(id, nullptr);
-    lock.lock();
-    stream.entry_wait = nullptr;
-    lock.unlock();
-    gst_clock_id_unref(id);
-  }
-  if (clock != nullptr) gst_object_unref(clock);
 }
 
 /// Takes one packet into the queue; with the lock held.
@@ -70,25 +39,6 @@ void Enqueue(TxState& state, TxStream& stream, BufferPtr buffer, Time now) {
   ++stream.counters.packets_queued;
 }
 
-/// Waits until there is room for input that is not live. Before we play there is room for what a
-/// sink needs to preroll.
-void WaitForRoom(TxState& state, TxStream& stream) {
-  TxLock lock(state.mutex);
-  const Duration limit = state.settings.max_queue_delay();
-  state.room.wait(lock, [&] {
-    if (!state.running || stream.flushing || state.flow != GST_FLOW_OK) return true;
-    if (!state.playing) return stream.queue.empty();
-    return stream.HeadAge(TxNow(state)) < limit;
-  });
-}
-
-/// What the chain function is to return before it may queue; with the lock held.
-GstFlowReturn Gate(const TxState& state, const TxStream& stream) {
-  if (!state.running || stream.flushing) return GST_FLOW_FLUSHING;
-  if (stream.eos) return GST_FLOW_EOS;
-  return state.flow;
-}
-
 /// Asks upstream once a stream.
 bool KnownLive(TxState& state, TxStream& stream, GstPad* pad) {
   {
@@ -105,24 +55,20 @@ template <class Take>
 GstFlowReturn Queue(GstLidarScreamTx* self, GstPad* pad, GstBuffer* first, Take take) {
   TxState& state = *self->state;
   TxStream& stream = *PadStream(pad);
-  if (!KnownLive(state, stream, pad)) {
-    WaitForRoom(state, stream);
-    WaitForEntry(self, stream, first);
-  }
+  const bool live = KnownLive(state, stream, pad);
   TxLock lock(state.mutex);
-  const GstFlowReturn flow = Gate(state, stream);
+  if (!live) state.gate.Wait(lock, GST_ELEMENT(self), state, stream, first);
+  const GstFlowReturn flow = state.gate.Check(stream);
   if (flow != GST_FLOW_OK) return flow;
   take(state, stream, TxNow(state));
-  // A task that waits for its pace looks at the queue soon enough.
-  if (!state.waits_for_pace) WakePacer(state);
+  state.pacing.OnQueued();
   return GST_FLOW_OK;
 }
 
-bool Push(TxStream& stream, GstEvent* event) {
+void Push(TxStream& stream, GstEvent* event) {
   TxItem item;
   item.event.reset(event);
   stream.queue.push_back(std::move(item));
-  return true;
 }
 
 void OnCaps(GstLidarScreamTx* self, GstPad* pad, TxStream& stream, GstEvent* event) {
@@ -139,15 +85,9 @@ void OnCaps(GstLidarScreamTx* self, GstPad* pad, TxStream& stream, GstEvent* eve
     if (gst_structure_get_int(s, "payload", &payload))
       stream.payload_type = static_cast<guint8>(payload);
     stream.is_video = g_strcmp0(gst_structure_get_string(s, "media"), "video") == 0;
-    if (!stream.has_caps && state.controller) {
-      stream.has_caps = true;
-      const Time now = TxNow(state);
-      start.reset(TargetEvent(state, stream, now, "start"));
-      stream.notifier.Reset();
-      stream.notifier.ShouldNotify(now, state.controller->target_bitrate(stream.id));
-    }
+    start = state.reporter.FirstTarget(stream, TxNow(state));
     Push(stream, gst_event_ref(event));
-    WakePacer(state);
+    state.pacing.Wake();
   }
   if (start) gst_pad_push_event(pad, start.release());
 }
@@ -156,9 +96,8 @@ void OnFlushStart(GstLidarScreamTx* self, TxStream& stream) {
   TxState& state = *self->state;
   TxLock lock(state.mutex);
   stream.flushing = true;
-  if (stream.entry_wait != nullptr) gst_clock_id_unschedule(stream.entry_wait);
   if (state.controller) ClearQueue(state, stream, TxNow(state));
-  state.room.notify_all();
+  state.gate.Release(stream);
 }
 
 void OnFlushStop(GstLidarScreamTx* self, TxStream& stream) {
@@ -168,9 +107,8 @@ void OnFlushStop(GstLidarScreamTx* self, TxStream& stream) {
   stream.flushing = false;
   stream.eos = false;
   gst_segment_init(&stream.segment, GST_FORMAT_TIME);
-  state.eos_deadline.reset();
-  state.eos_sent = false;
-  state.flow = GST_FLOW_OK;
+  state.pacing.ForgetEnd();
+  state.gate.set_flow(GST_FLOW_OK);
 }
 
 /// A flush of the only stream goes on downstream; one of several stays with its own.
@@ -190,15 +128,10 @@ gboolean HandleFlush(GstLidarScreamTx* self, TxStream& stream, GstEvent* event) 
   }
   const gboolean done = gst_pad_push_event(self->src, event);
   if (start) {
-    {
-      TxLock lock(state.mutex);
-      state.flow = GST_FLOW_FLUSHING;
-      WakePacer(state);
-    }
-    gst_pad_pause_task(self->src);
+    state.pacing.Pause(GST_FLOW_FLUSHING);
   } else {
     OnFlushStop(self, stream);
-    gst_pad_start_task(self->src, TxPace, self, nullptr);
+    state.pacing.Start();
   }
   return done;
 }
@@ -224,27 +157,6 @@ void Remember(TxState& state, TxStream& stream, GstEvent* event) {
     default:
       break;
   }
-}
-
-/// Hands one CCFB packet to the controller; false where it is not for us.
-bool Feed(GstLidarScreamTx* self, ByteView packet, GSocketAddress* from) {
-  TxState& state = *self->state;
-  TxLock lock(state.mutex);
-  if (!state.controller || !state.running) return true;
-  const auto feedback = state.parser.Parse(packet);
-  if (!feedback) {
-    ++state.malformed_rtcp;
-    return false;
-  }
-  const Time now = TxNow(state);
-  const auto result = state.controller->OnFeedback(now, *feedback);
-  if (result == scream::FeedbackResult::kNotOurs) return false;
-  if (result == scream::FeedbackResult::kAccepted && state.feedback_peer.OnFeedback(now, from)) {
-    GST_INFO_OBJECT(self, "feedback comes from a new address: a new path");
-    state.controller->OnRouteChange(now);
-  }
-  WakePacer(state);
-  return true;
 }
 
 }  // namespace
@@ -283,37 +195,14 @@ gboolean TxSinkEvent(GstPad* pad, GstObject* parent, GstEvent* event) {
     return TRUE;
   }
   TxLock lock(state.mutex);
-  if (!state.running || stream.flushing) {
+  if (!state.gate.open() || stream.flushing) {
     gst_event_unref(event);
     return FALSE;
   }
   Remember(state, stream, event);
   Push(stream, event);
-  WakePacer(state);
+  state.pacing.Wake();
   return TRUE;
-}
-
-GstFlowReturn TxRtcpChain(GstPad*, GstObject* parent, GstBuffer* buffer) {
-  auto* self = GST_LIDAR_SCREAM_TX(parent);
-  BufferPtr owner(buffer);
-  std::vector<std::uint8_t> rest;
-  {
-    const BufferMap map(buffer, GST_MAP_READ);
-    if (!map) return GST_FLOW_OK;
-    const auto packets = scream::SplitRtcp(map.view());
-    if (packets.empty()) rest.assign(map.view().begin(), map.view().end());
-    for (const ByteView packet : packets)
-      if (!scream::IsCcfb(packet) || !Feed(self, packet, SourceOf(buffer)))
-        rest.insert(rest.end(), packet.begin(), packet.end());
-  }
-  if (rest.empty() || !gst_pad_is_linked(self->rtcp_src)) return GST_FLOW_OK;
-  if (rest.size() != gst_buffer_get_size(buffer)) {
-    GstBuffer* part = gst_buffer_new_allocate(nullptr, rest.size(), nullptr);
-    gst_buffer_fill(part, 0, rest.data(), rest.size());
-    gst_buffer_copy_into(part, buffer, GST_BUFFER_COPY_METADATA, 0, static_cast<gsize>(-1));
-    owner.reset(part);
-  }
-  return gst_pad_push(self->rtcp_src, owner.release());
 }
 
 }  // namespace lidar::gst

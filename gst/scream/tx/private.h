@@ -1,24 +1,31 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The inside of screamtx: its state, and the functions its files share.
+// The inside of screamtx: what its parts share.
 //
-// Threads: each sink pad's streaming thread queues packets; the pacing task on the src pad takes
-// them out when the controller says; the RTCP pad's thread hands feedback in; the control thread
-// sends events upstream and posts messages, so that a slow encoder delays neither of the others.
-// One mutex guards the state; nobody holds it while pushing, posting, notifying or waiting.
+//     sink pads ── EntryGate ──▶ TxStream::queue ──▶ PacingTask ── StreamMerger ──▶ src
+//                                     │ controller decides
+//     rtcp_sink ──▶ controller ──▶ UpstreamReporter ──▶ events upstream, messages
+//
+// Threads: the sink pads' streaming threads queue packets; the pacing task on the src pad takes
+// them out when the controller says; the RTCP pad's thread hands feedback in and finds out what
+// that changes; the reporter's thread sends it, so that a slow encoder delays neither of the
+// others. One mutex guards all that is shared; nobody holds it while pushing, posting, notifying or
+// waiting.
 #pragma once
 #include <gst/gst.h>
 
-#include <condition_variable>
 #include <memory>
 #include <mutex>
 #include <optional>
-#include <thread>
 #include <vector>
 
 #include "gst/scream/feedback_peer.h"
+#include "gst/scream/tx/entry_gate.h"
 #include "gst/scream/tx/gstscreamtx.h"
+#include "gst/scream/tx/pacing_task.h"
 #include "gst/scream/tx/settings.h"
 #include "gst/scream/tx/stream.h"
+#include "gst/scream/tx/stream_merger.h"
+#include "gst/scream/tx/upstream_reporter.h"
 #include "src/scream/controller.h"
 #include "src/scream/feedback/ccfb.h"
 
@@ -27,44 +34,23 @@ GST_DEBUG_CATEGORY_EXTERN(gst_lidar_scream_tx_debug);
 namespace lidar::gst {
 
 struct TxState {
-  std::mutex mutex;
-  std::condition_variable room;     // queue space for input that is not live
-  std::condition_variable control;  // work for the control thread
+  explicit TxState(GstLidarScreamTx* self) : pacing(self), reporter(self) {}
+  ~TxState() { gst_object_unref(clock); }
+
+  std::mutex mutex;  // guards all but the clock
+  GstClock* clock = gst_system_clock_obtain();
   TxSettings settings;
-  std::optional<scream::Controller> controller;  // between READY and PAUSED
-  scream::CcfbParser parser;
-  FeedbackPeer feedback_peer;
+  std::optional<scream::Controller> controller;  // from the first READY to PAUSED on
   std::vector<std::unique_ptr<TxStream>> streams;
   guint next_pad = 0;
-
-  // The pacing task
-  GstClock* clock = nullptr;
-  GstClockID timer = nullptr;  // what the task waits for, not owned
-  bool waits_for_pace = false;
-  bool settings_changed = false;
-  bool running = false;  // the src pad is active
-  bool playing = false;
-  GstFlowReturn flow = GST_FLOW_OK;
-  std::optional<Time> eos_deadline;
-  bool eos_sent = false;
-  // What the src pad has had
-  bool sent_stream_start = false;
-  bool merged_caps = false;
-  GstSegment out_segment{};
-
-  // The control thread
-  std::thread control_thread;
-  bool control_stop = false;
-  bool estimate_due = false;
-  bool stats_due = false;
-  bool ecn_due = false;
-  scream::TargetNotifier notifier;
-  scream::EcnState ecn_state = scream::EcnState::kOff;
-  scream::EcnState ecn_announced = scream::EcnState::kOff;
-  guint estimated_bps = 0;
-  Time next_stats{};
-
+  scream::CcfbParser parser;
+  FeedbackPeer feedback_peer;
   guint64 malformed_rtcp = 0;
+
+  EntryGate gate;
+  StreamMerger merger;
+  PacingTask pacing;
+  UpstreamReporter reporter;
 };
 
 }  // namespace lidar::gst
@@ -79,47 +65,32 @@ struct _GstLidarScreamTx {
 
 namespace lidar::gst {
 
-using TxLock = std::unique_lock<std::mutex>;
+// With the lock held, but for TxNow().
 
-/// Monotonic; what the controller calls time. Only between READY and PAUSED.
+/// Monotonic; what the controller calls time.
 Time TxNow(const TxState& state);
-/// Takes settings of the element and the pads over, soon.
-void SettingsChanged(GstLidarScreamTx* self);
-/// Makes the pacing task look again at what it waits for.
-void WakePacer(TxState& state);
 TxStream* FindStream(TxState& state, scream::StreamId id);
 /// Gives the controller what has changed for `stream`.
 void Configure(TxState& state, TxStream& stream);
-/// Forgets the packets of `stream`; its events too, where `events`.
+/// Forgets the packets and events of `stream`.
 void ClearQueue(TxState& state, TxStream& stream, Time now);
+StructurePtr StatsOf(TxState& state);
 
-// tx_input.cpp: sink pads
+/// Takes settings of the element and the pads over, soon. Without the lock.
+void SettingsChanged(GstLidarScreamTx* self);
+
+// input.cpp: sink pads
 GstFlowReturn TxChain(GstPad* pad, GstObject* parent, GstBuffer* buffer);
 GstFlowReturn TxChainList(GstPad* pad, GstObject* parent, GstBufferList* list);
 gboolean TxSinkEvent(GstPad* pad, GstObject* parent, GstEvent* event);
+// feedback.cpp: the pad rtcp_sink
 GstFlowReturn TxRtcpChain(GstPad* pad, GstObject* parent, GstBuffer* buffer);
 
-// tx_pads.cpp: what pads answer
+// pads.cpp: what pads answer
 /// RTP and RTCP do not mix: src belongs to the sink pads, rtcp_src to rtcp_sink.
 GstIterator* TxLinksOf(GstPad* pad, GstObject* parent);
 gboolean TxSrcEvent(GstPad* pad, GstObject* parent, GstEvent* event);
 gboolean TxSrcQuery(GstPad* pad, GstObject* parent, GstQuery* query);
 gboolean TxSinkQuery(GstPad* pad, GstObject* parent, GstQuery* query);
-
-// tx_pacer.cpp: the src pad's task
-void TxPace(gpointer self);
-gboolean TxActivateSrc(GstPad* pad, GstObject* parent, GstPadMode mode, gboolean active);
-
-// tx_control.cpp: what goes upstream and to the application
-/// Finds out what is due; with the lock held.
-void Evaluate(GstLidarScreamTx* self, Time now);
-void StartControl(GstLidarScreamTx* self);
-void StopControl(GstLidarScreamTx* self);
-/// The event with the target of `stream`; transfer full.
-GstEvent* TargetEvent(const TxState& state, const TxStream& stream, Time now, const char* reason);
-
-// tx_stats.cpp
-/// With the lock held.
-StructurePtr StatsOf(TxState& state);
 
 }  // namespace lidar::gst

@@ -122,6 +122,14 @@ TEST_F(StreamTest, AFrameThatHasBegunGoesOutToItsEnd) {
   EXPECT_EQ(stream_.LatePackets(kStart + 301ms), 2U);
 }
 
+TEST_F(StreamTest, TheRestOfAFrameThatStuckIsLateAndTheYoungerFrameBehindItIsNot) {
+  Frame(kStart, 3, 1);
+  Frame(kStart + 300ms, 2, 2);
+  stream_.OnSent(kStart, 1, DataSize::Bytes(1000));
+  EXPECT_EQ(stream_.LatePackets(kStart + 399ms), 0U);
+  EXPECT_EQ(stream_.LatePackets(kStart + 400ms), 2U);
+}
+
 TEST_F(StreamTest, TheFramePeriodIsMeasured) {
   for (int i = 0; i < 100; ++i) {
     Frame(kStart + i * 100ms, 1, static_cast<std::uint32_t>(i));

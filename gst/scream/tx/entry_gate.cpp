@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "gst/scream/tx/entry_gate.h"
+
+#include "gst/scream/tx/private.h"
+
+namespace lidar::gst {
+namespace {
+
+/// The time at which input that is not live may enter: as if a live source had made it.
+GstClockTime EntryTime(GstElement* element, const TxStream& stream, GstBuffer* buffer) {
+  const GstClockTime pts = GST_BUFFER_PTS(buffer);
+  if (!GST_CLOCK_TIME_IS_VALID(pts) || stream.segment.format != GST_FORMAT_TIME)
+    return GST_CLOCK_TIME_NONE;
+  const GstClockTime running = gst_segment_to_running_time(&stream.segment, GST_FORMAT_TIME, pts);
+  if (!GST_CLOCK_TIME_IS_VALID(running)) return GST_CLOCK_TIME_NONE;
+  return running + gst_element_get_base_time(element);
+}
+
+}  // namespace
+
+void EntryGate::Set(bool open, GstFlowReturn flow) {
+  open_ = open;
+  flow_ = flow;
+  changed_.notify_all();
+}
+
+void EntryGate::Close(TxState& state) {
+  Set(false, GST_FLOW_FLUSHING);
+  for (auto& stream : state.streams) Release(*stream);
+}
+
+void EntryGate::set_playing(TxState& state, bool playing) {
+  playing_ = playing;
+  changed_.notify_all();
+  if (playing) return;
+  for (auto& stream : state.streams) Release(*stream);
+}
+
+void EntryGate::Release(TxStream& stream) {
+  if (stream.entry_wait != nullptr) gst_clock_id_unschedule(stream.entry_wait);
+  changed_.notify_all();
+}
+
+GstFlowReturn EntryGate::Check(const TxStream& stream) const {
+  if (!open_ || stream.flushing) return GST_FLOW_FLUSHING;
+  if (stream.eos) return GST_FLOW_EOS;
+  return flow_;
+}
+
+void EntryGate::Wait(TxLock& lock, GstElement* element, TxState& state, TxStream& stream,
+                     GstBuffer* first) {
+  WaitForRoom(lock, state, stream);
+  WaitForTime(lock, element, stream, first);
+}
+
+/// Before we play there is room for what a sink needs to preroll.
+void EntryGate::WaitForRoom(TxLock& lock, TxState& state, const TxStream& stream) {
+  const Duration limit = state.settings.max_queue_delay();
+  changed_.wait(lock, [&] {
+    if (Check(stream) != GST_FLOW_OK) return true;
+    if (!playing_) return stream.queue.empty();
+    return stream.HeadAge(TxNow(state)) < limit;
+  });
+}
+
+/// Returns at once where the pipeline has no clock or does not play.
+void EntryGate::WaitForTime(TxLock& lock, GstElement* element, TxStream& stream, GstBuffer* first) {
+  const GstClockTime entry = EntryTime(element, stream, first);
+  GstClock* clock = gst_element_get_clock(element);
+  if (clock == nullptr) return;
+  if (GST_CLOCK_TIME_IS_VALID(entry) && playing_ && Check(stream) == GST_FLOW_OK) {
+    GstClockID id = gst_clock_new_single_shot_id(clock, entry);
+    stream.entry_wait = id;
+    lock.unlock();
+    gst_clock_id_wait(id, nullptr);
+    lock.lock();
+    stream.entry_wait = nullptr;
+    gst_clock_id_unref(id);
+  }
+  gst_object_unref(clock);
+}
+
+}  // namespace lidar::gst

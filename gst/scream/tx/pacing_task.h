@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// The task on the src pad of screamtx: takes packets out of the queues when the controller says.
+#pragma once
+#include <gst/gst.h>
+
+#include <mutex>
+#include <optional>
+#include <vector>
+
+#include "gst/scream/tx/entry_gate.h"
+#include "gst/scream/tx/gstscreamtx.h"
+#include "gst/scream/tx/stream.h"
+
+namespace lidar::gst {
+
+/// Start(), Stop() and Pause() are called without the element's lock, the rest with it. The task
+/// pushes without it.
+class PacingTask {
+ public:
+  explicit PacingTask(GstLidarScreamTx* self) : self_(self) {}
+
+  bool Start();
+  bool Stop();
+  /// Until the next Start(), after what downstream said.
+  void Pause(GstFlowReturn flow);
+
+  /// The task looks again at what it waits for.
+  void Wake();
+  /// A packet was queued. A task that waits for its pace looks at the queue soon enough.
+  void OnQueued() {
+    if (!waits_for_pace_) Wake();
+  }
+  void OnSettings() {
+    settings_changed_ = true;
+    Wake();
+  }
+  /// The stream begins anew: its end is to come.
+  void ForgetEnd();
+
+ private:
+  /// What one round sends: packets, or one event.
+  struct Batch {
+    std::vector<BufferPtr> packets;
+    EventPtr event;
+    bool end = false;
+    std::vector<guint32> goodbyes;
+
+    bool empty() const { return packets.empty() && !event && !end; }
+  };
+  static void Run(gpointer self);
+  void Round(TxLock& lock);
+  Batch NextBatch(Time now);
+  void DropLate(TxStream& stream, Time now);
+  BufferPtr TakePacket(TxStream& stream, scream::Ecn ecn, Time now);
+  void CollectPackets(Time now, Batch* batch);
+  bool Drained(Time now);
+  Time NextWake(Time now) const;
+  void Wait(TxLock& lock);
+  GstFlowReturn Push(Batch batch);
+  TxState& state() const;
+
+  GstLidarScreamTx* self_;
+  GstClockID timer_ = nullptr;  // what the task waits for, not owned
+  bool waits_for_pace_ = false;
+  bool settings_changed_ = false;
+  std::optional<Time> end_deadline_;
+  bool end_sent_ = false;
+};
+
+}  // namespace lidar::gst

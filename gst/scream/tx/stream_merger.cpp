@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "gst/scream/tx/stream_merger.h"
+
+namespace lidar::gst {
+namespace {
+
+/// The merged stream has an identity of its own.
+EventPtr NewStart() {
+  const StringPtr id(g_strdup_printf("screamtx/%08x%08x", g_random_int(), g_random_int()));
+  return EventPtr(gst_event_new_stream_start(id.get()));
+}
+
+}  // namespace
+
+/// Of the head of the queue. A stream that begins with another event gets a start.
+EventPtr StreamMerger::TakeEvent(TxStream* stream) const {
+  const GstEventType type = GST_EVENT_TYPE(stream->queue.front().event.get());
+  if (type != GST_EVENT_STREAM_START && type != GST_EVENT_EOS && !sent_start_) return NewStart();
+  EventPtr event = std::move(stream->queue.front().event);
+  stream->queue.pop_front();
+  return event;
+}
+
+EventPtr StreamMerger::NextEvent(const Streams& streams) {
+  for (const auto& stream : streams) {
+    while (!stream->queue.empty() && stream->queue.front().event) {
+      EventPtr event = TakeEvent(stream.get());
+      // The end is sent once all streams have ended.
+      if (GST_EVENT_TYPE(event.get()) == GST_EVENT_EOS) continue;
+      const bool merged = streams.size() > 1;
+      if (merged && !Suits(*stream, streams, event.get())) continue;
+      NoteSent(merged, &event);
+      return event;
+    }
+  }
+  return nullptr;
+}
+
+bool StreamMerger::Suits(const TxStream& stream, const Streams& streams, GstEvent* event) const {
+  switch (GST_EVENT_TYPE(event)) {
+    case GST_EVENT_STREAM_START:
+      return !sent_start_;
+    case GST_EVENT_SEGMENT:
+      return segment_.format == GST_FORMAT_UNDEFINED;
+    case GST_EVENT_CAPS:
+      return !merged_caps_;
+    default:
+      return &stream == streams.front().get();
+  }
+}
+
+void StreamMerger::NoteSent(bool merged, EventPtr* event) {
+  switch (GST_EVENT_TYPE(event->get())) {
+    case GST_EVENT_STREAM_START:
+      sent_start_ = true;
+      break;
+    case GST_EVENT_SEGMENT:
+      gst_event_copy_segment(event->get(), &segment_);
+      break;
+    case GST_EVENT_CAPS:
+      merged_caps_ = merged;
+      if (!merged) break;
+      event->reset(
+          gst_event_new_caps(CapsPtr(gst_caps_new_empty_simple("application/x-rtp")).get()));
+      break;
+    default:
+      break;
+  }
+}
+
+BufferPtr StreamMerger::ToOutput(const Streams& streams, const TxStream& stream,
+                                 BufferPtr buffer) const {
+  if (streams.size() == 1 || stream.segment.format != GST_FORMAT_TIME ||
+      gst_segment_is_equal(&stream.segment, &segment_))
+    return buffer;
+  GstBuffer* out = gst_buffer_make_writable(buffer.release());
+  for (GstClockTime* t : {&GST_BUFFER_PTS(out), &GST_BUFFER_DTS(out)}) {
+    if (!GST_CLOCK_TIME_IS_VALID(*t)) continue;
+    const GstClockTime running = gst_segment_to_running_time(&stream.segment, GST_FORMAT_TIME, *t);
+    *t = gst_segment_position_from_running_time(&segment_, GST_FORMAT_TIME, running);
+  }
+  return BufferPtr(out);
+}
+
+}  // namespace lidar::gst

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Makes one stream of those that screamtx sends: its events, its segment, its buffers' times.
+#pragma once
+#include <gst/gst.h>
+
+#include <memory>
+#include <vector>
+
+#include "gst/scream/tx/stream.h"
+
+namespace lidar::gst {
+
+/// A stream that is alone keeps its events. Of several, the src pad has events of its own, which
+/// suit all. The pacing task alone uses it, with the element's lock.
+class StreamMerger {
+ public:
+  using Streams = std::vector<std::unique_ptr<TxStream>>;
+
+  StreamMerger() { gst_segment_init(&segment_, GST_FORMAT_UNDEFINED); }
+  /// The next event that goes out before the packets behind it, or NULL.
+  EventPtr NextEvent(const Streams& streams);
+  /// `buffer` with its times in the segment of the src pad.
+  BufferPtr ToOutput(const Streams& streams, const TxStream& stream, BufferPtr buffer) const;
+
+ private:
+  EventPtr TakeEvent(TxStream* stream) const;
+  bool Suits(const TxStream& stream, const Streams& streams, GstEvent* event) const;
+  void NoteSent(bool merged, EventPtr* event);
+
+  bool sent_start_ = false;
+  bool merged_caps_ = false;
+  GstSegment segment_;
+};
+
+}  // namespace lidar::gst

@@ -1,0 +1,192 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "gst/scream/tx/upstream_reporter.h"
+
+#include <gst/video/video.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "gst/scream/tx/private.h"
+
+#define GST_CAT_DEFAULT gst_lidar_scream_tx_debug
+
+namespace lidar::gst {
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr Duration kPulse = 200ms;  // of target-bitrate
+constexpr Duration kKeyUnitInterval = 500ms;
+// The wire share moves the encoder's bounds only where it changed by more than this.
+constexpr double kShareThreshold = 0.02;
+
+/// Key frames are large: asked for too often they are the congestion.
+bool MayAskForKeyUnit(const TxStream& stream, Time now) {
+  return stream.key_unit_due &&
+         (!stream.last_key_unit || now - *stream.last_key_unit >= kKeyUnitInterval);
+}
+
+EventPtr KeyUnitEvent(TxStream& stream, Time now) {
+  stream.key_unit_due = false;
+  stream.last_key_unit = now;
+  return EventPtr(
+      gst_video_event_new_upstream_force_key_unit(GST_CLOCK_TIME_NONE, TRUE, ++stream.key_units));
+}
+
+PadPtr Ref(GstPad* pad) { return PadPtr(GST_PAD(gst_object_ref(pad))); }
+
+}  // namespace
+
+TxState& UpstreamReporter::state() const { return *self_->state; }
+
+bool UpstreamReporter::Start() {
+  stop_ = false;
+  GError* error = nullptr;
+  thread_ = g_thread_try_new(
+      "screamtx:upstream",
+      [](gpointer self) -> gpointer {
+        static_cast<UpstreamReporter*>(self)->Run();
+        return nullptr;
+      },
+      this, &error);
+  if (thread_ != nullptr) return true;
+  const ErrorPtr owner(error);
+  GST_ELEMENT_ERROR(self_, RESOURCE, FAILED, ("No thread can be made: %s", error->message),
+                    ("screamtx needs one to tell the encoders their bitrate"));
+  return false;
+}
+
+void UpstreamReporter::Stop() {
+  if (thread_ == nullptr) return;
+  {
+    const TxLock lock(state().mutex);
+    stop_ = true;
+    due_.notify_one();
+  }
+  g_thread_join(thread_);
+  thread_ = nullptr;
+}
+
+void UpstreamReporter::Reset(Time now) {
+  notifier_.Reset();
+  ecn_announced_ = ecn_state_ = state().controller->ecn_state();
+  next_stats_ = now;
+}
+
+bool UpstreamReporter::EvaluateStream(TxStream& stream, Time now) {
+  TxState& s = state();
+  const double share = stream.overhead.payload_share();
+  if (stream.bounds && std::abs(share / stream.configured_share - 1) > kShareThreshold)
+    Configure(s, stream);
+  if (stream.has_caps && stream.notifier.ShouldNotify(now, s.controller->target_bitrate(stream.id)))
+    stream.target_due = true;
+  if (s.settings.key_unit_on_loss && stream.is_video) {
+    const guint64 lost = s.controller->stream_statistics(now, stream.id).packets_lost;
+    stream.key_unit_due = stream.key_unit_due || lost > stream.lost_seen;
+    stream.lost_seen = lost;
+  }
+  return stream.target_due || MayAskForKeyUnit(stream, now);
+}
+
+bool UpstreamReporter::EvaluateEstimate(Time now) {
+  const DataRate total = state().controller->target_bitrate();
+  if (!notifier_.ShouldNotify(now, total)) return estimate_due_;
+  const guint bps = Kind<DataRate>::Bps(total);
+  estimate_due_ = estimate_due_ || bps != estimated_bps_;
+  estimated_bps_ = bps;
+  return estimate_due_;
+}
+
+void UpstreamReporter::Evaluate(Time now) {
+  TxState& s = state();
+  bool due = EvaluateEstimate(now);
+  for (auto& stream : s.streams) due = EvaluateStream(*stream, now) || due;
+  ecn_state_ = s.controller->ecn_state();
+  if (s.settings.stats_interval > 0ns && now >= next_stats_) {
+    next_stats_ = now + s.settings.stats_interval;
+    stats_due_ = true;
+  }
+  if (due || stats_due_ || ecn_state_ != ecn_announced_) due_.notify_one();
+}
+
+Time UpstreamReporter::NextLook(Time now) const {
+  const bool stats = state().settings.stats_interval > 0ns;
+  return stats ? std::min(now + kPulse, next_stats_) : now + kPulse;
+}
+
+EventPtr UpstreamReporter::FirstTarget(TxStream& stream, Time now) {
+  if (stream.has_caps || !state().controller) return nullptr;
+  stream.has_caps = true;
+  stream.notifier.Reset();
+  stream.notifier.ShouldNotify(now, state().controller->target_bitrate(stream.id));
+  return TargetEvent(stream, now, "start");
+}
+
+EventPtr UpstreamReporter::TargetEvent(const TxStream& stream, Time now, const char* reason) const {
+  const scream::Controller& controller = *state().controller;
+  const scream::Statistics s = state().controller->statistics(now);
+  GstLidarTargetBitrate target{};
+  target.bitrate = ToEncoder(stream, controller.target_bitrate(stream.id));
+  target.ssrc = stream.ssrc.value_or(0);
+  target.min_bitrate = ToEncoder(stream, stream.config.needed_bitrate);
+  target.max_bitrate = ToEncoder(stream, stream.config.max_bitrate);
+  target.rtt = Kind<Duration>::Ns(s.s_rtt);
+  target.queue_delay = Kind<Duration>::Ns(s.qdelay);
+  target.reason = reason != nullptr ? reason : scream::ToString(s.reason);
+  return EventPtr(gst_lidar_event_new_target_bitrate(&target));
+}
+
+MessagePtr UpstreamReporter::EcnMessage() {
+  GstStructure* s = gst_structure_new("scream-ecn-state-changed", "state", G_TYPE_STRING,
+                                      scream::ToString(ecn_state_), "previous", G_TYPE_STRING,
+                                      scream::ToString(ecn_announced_), nullptr);
+  ecn_announced_ = ecn_state_;
+  return MessagePtr(gst_message_new_element(GST_OBJECT(self_), s));
+}
+
+bool UpstreamReporter::HasWork() const {
+  const auto& streams = state().streams;
+  return stop_ || stats_due_ || estimate_due_ || ecn_state_ != ecn_announced_ ||
+         std::any_of(streams.begin(), streams.end(),
+                     [](const auto& s) { return s->target_due || s->key_unit_due; });
+}
+
+/// Takes what is due out of the state.
+UpstreamReporter::Work UpstreamReporter::TakeWork(Time now) {
+  TxState& s = state();
+  Work work;
+  for (auto& stream : s.streams) {
+    if (stream->target_due)
+      work.events.push_back({Ref(stream->pad), TargetEvent(*stream, now, nullptr)});
+    stream->target_due = false;
+    if (MayAskForKeyUnit(*stream, now))
+      work.events.push_back({Ref(stream->pad), KeyUnitEvent(*stream, now)});
+  }
+  if (ecn_state_ != ecn_announced_) work.messages.push_back(EcnMessage());
+  if (stats_due_)
+    work.messages.emplace_back(gst_message_new_element(GST_OBJECT(self_), StatsOf(s).release()));
+  work.notify = estimate_due_;
+  stats_due_ = estimate_due_ = false;
+  return work;
+}
+
+void UpstreamReporter::Run() {
+  TxLock lock(state().mutex);
+  for (;;) {
+    // A key unit that must wait for its interval is looked at with the next target.
+    due_.wait_for(lock, kPulse, [&] { return HasWork(); });
+    if (stop_) return;
+    Work work = TakeWork(TxNow(state()));
+    lock.unlock();
+    Send(std::move(work));
+    lock.lock();
+  }
+}
+
+void UpstreamReporter::Send(Work work) {
+  for (PadEvent& e : work.events) gst_pad_push_event(e.pad.get(), e.event.release());
+  for (MessagePtr& m : work.messages) gst_element_post_message(GST_ELEMENT(self_), m.release());
+  if (work.notify) g_object_notify(G_OBJECT(self_), "estimated-bitrate");
+}
+
+}  // namespace lidar::gst
