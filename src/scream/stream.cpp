@@ -93,8 +93,8 @@ std::size_t Stream::LatePackets(Time now) const {
 /// of one that waited twice as long as any may is of no use either.
 std::size_t Stream::StuckPackets(Time now) const {
   if (now - queue_.front().queued < 2 * p_.max_queue_delay) return 0;
-  const auto next = std::find_if(queue_.begin(), queue_.end(),
-                                 [](const Queued& q) { return q.starts_frame; });
+  const auto next =
+      std::find_if(queue_.begin(), queue_.end(), [](const Queued& q) { return q.starts_frame; });
   return static_cast<std::size_t>(next - queue_.begin());
 }
 

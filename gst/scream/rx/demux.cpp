@@ -12,6 +12,20 @@ namespace {
 // Whoever forges SSRCs makes a pad with each; a sender that restarts makes one each time.
 constexpr std::size_t kMaxRoutes = 1'024;
 
+bool IsLidar(const GstCaps* caps) {
+  if (gst_caps_get_size(caps) == 0) return false;
+  const gchar* name = gst_structure_get_string(gst_caps_get_structure(caps, 0), "encoding-name");
+  return name != nullptr && g_str_has_prefix(name, "X-LIDAR");
+}
+
+CapsPtr CapsOfValue(const GValue* value) {
+  if (value != nullptr && GST_VALUE_HOLDS_CAPS(value))
+    return CapsPtr(gst_caps_copy(gst_value_get_caps(value)));
+  if (value != nullptr && G_VALUE_HOLDS_STRING(value))
+    return CapsPtr(gst_caps_from_string(g_value_get_string(value)));
+  return nullptr;
+}
+
 /// The caps of a payload type with the SSRC put in; NULL where pt-map has none.
 GstCaps* CapsOf(GstLidarScreamRx* self, const RtpHeader& header) {
   RxState& state = *self->state;
@@ -19,14 +33,8 @@ GstCaps* CapsOf(GstLidarScreamRx* self, const RtpHeader& header) {
   CapsPtr caps;
   {
     RxLock lock(state.mutex);
-    if (!state.settings.pt_map) return nullptr;
-    const GValue* value = gst_structure_get_value(state.settings.pt_map.get(), field.get());
-    if (value == nullptr) return nullptr;
-    if (GST_VALUE_HOLDS_CAPS(value)) {
-      caps.reset(gst_caps_copy(gst_value_get_caps(value)));
-    } else if (G_VALUE_HOLDS_STRING(value)) {
-      caps.reset(gst_caps_from_string(g_value_get_string(value)));
-    }
+    if (state.settings.pt_map)
+      caps = CapsOfValue(gst_structure_get_value(state.settings.pt_map.get(), field.get()));
   }
   if (!caps || !gst_caps_is_fixed(caps.get())) return nullptr;
   gst_caps_set_simple(caps.get(), "payload", G_TYPE_INT, static_cast<gint>(header.payload_type),
@@ -92,6 +100,27 @@ GstPad* Route(GstLidarScreamRx* self, const RtpHeader& header) {
 }
 
 }  // namespace
+
+void NoteLidarTypes(RxState& state) {
+  state.lidar_types.reset();
+  if (!state.settings.pt_map) return;
+  const auto note = [](GQuark name, const GValue* value, gpointer data) -> gboolean {
+    const CapsPtr caps = CapsOfValue(value);
+    const auto type = g_ascii_strtoull(g_quark_to_string(name), nullptr, 10);
+    if (caps && IsLidar(caps.get()))
+      static_cast<RxState*>(data)->lidar_types.set(static_cast<std::size_t>(type & 127));
+    return TRUE;
+  };
+  gst_structure_foreach(state.settings.pt_map.get(), note, &state);
+}
+
+void NoteCaps(RxState& state, const GstCaps* caps) {
+  gint type = 0;
+  const RxLock lock(state.mutex);
+  state.lidar_types.reset();
+  if (IsLidar(caps) && gst_structure_get_int(gst_caps_get_structure(caps, 0), "payload", &type))
+    state.lidar_types.set(static_cast<std::size_t>(type & 127));
+}
 
 bool HasPtMap(GstLidarScreamRx* self) {
   RxLock lock(self->state->mutex);

@@ -140,7 +140,12 @@ static gboolean SinkEvent(GstPad*, GstObject* parent, GstEvent* event) {
       state.eos = false;
       break;
     case GST_EVENT_CAPS:
-      if (!HasPtMap(self)) break;
+      if (!HasPtMap(self)) {
+        GstCaps* caps = nullptr;
+        gst_event_parse_caps(event, &caps);
+        NoteCaps(state, caps);
+        break;
+      }
       gst_event_unref(event);  // pt-map says what each stream is
       return TRUE;
     default:
@@ -176,6 +181,7 @@ static void Prepare(RxState& state) {
   state.own_ssrc = state.settings.ssrc != 0 ? state.settings.ssrc : g_random_int() | 1;
   state.generator = lidar::scream::FeedbackGenerator(ToConfig(state.settings, state.own_ssrc));
   state.latch.Reset();
+  NoteLidarTypes(state);
   state.ssrcs.clear();
   state.counters = {};
   state.eos = false;

@@ -37,9 +37,21 @@ Time ArrivalTime(const Clocks& clocks, GstClockTime arrival) {
   return age > Duration{0} && age < kMaxAge ? clocks.now - age : clocks.now;
 }
 
+PeerLatch::Verdict Judge(RxState& state, Time now, GstBuffer* buffer, const RtpHeader& header) {
+  PeerLatch::Packet packet{SourceOf(buffer), header.ssrc, header.seq, {}};
+  if (!state.lidar_types[header.payload_type] || state.latch.HasShownSlices(packet.from))
+    return state.latch.OnPacket(now, packet);
+  const BufferMap map(buffer, GST_MAP_READ);
+  if (map && map.size() > header.header_size)
+    packet.lidar = {map.data() + header.header_size, map.size() - header.header_size};
+  return state.latch.OnPacket(now, packet);
+}
+
 /// Counts one packet of media; false where it is to be dropped. With the lock held.
-bool Account(RxState& state, const Clocks& clocks, GstBuffer* buffer, const RtpHeader& header) {
-  const auto verdict = state.latch.OnPacket(clocks.now, SourceOf(buffer), header.ssrc, header.seq);
+bool Account(GstLidarScreamRx* self, const Clocks& clocks, GstBuffer* buffer,
+             const RtpHeader& header) {
+  RxState& state = *self->state;
+  const PeerLatch::Verdict verdict = Judge(state, clocks.now, buffer, header);
   if (verdict == PeerLatch::Verdict::kForeign) {
     ++state.counters.foreign;
     return false;
@@ -48,6 +60,8 @@ bool Account(RxState& state, const Clocks& clocks, GstBuffer* buffer, const RtpH
     ++state.counters.moves;
     state.generator.Reset();
     state.ssrcs.clear();
+    GST_INFO_OBJECT(self, "the media now comes from %s",
+                    AddressToString(state.latch.peer()).c_str());
   }
   GstLidarEcn ecn = GST_LIDAR_ECN_NOT_ECT;
   GstClockTime arrival = GST_CLOCK_TIME_NONE;
@@ -96,7 +110,7 @@ Fate Look(GstLidarScreamRx* self, const Clocks& clocks, GstBuffer* buffer, RtpHe
     return Fate::kDrop;
   }
   *header = *read;
-  if (!Account(state, clocks, buffer, *read)) return Fate::kDrop;
+  if (!Account(self, clocks, buffer, *read)) return Fate::kDrop;
   WakeFeedback(state);
   return Fate::kPass;
 }

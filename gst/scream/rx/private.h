@@ -8,6 +8,7 @@
 #include <gst/base/gstflowcombiner.h>
 #include <gst/gst.h>
 
+#include <bitset>
 #include <map>
 #include <mutex>
 #include <optional>
@@ -53,7 +54,8 @@ struct RxState {
   RxSettings settings;
   scream::FeedbackGenerator generator;
   PeerLatch latch;
-  std::set<guint32> ssrcs;  // of the peer, alive
+  std::bitset<128> lidar_types;  // payload types that are LiDAR
+  std::set<guint32> ssrcs;       // of the peer, alive
   bool running = false;
   RxCounters counters;
   bool settings_changed = false;
@@ -102,6 +104,10 @@ void WakeFeedback(RxState& state);
 
 // rx_demux.cpp: streams by SSRC, with pt-map
 bool HasPtMap(GstLidarScreamRx* self);
+/// Finds out which payload types are LiDAR: of pt-map, with the lock held...
+void NoteLidarTypes(RxState& state);
+/// ...and of the caps where there is none.
+void NoteCaps(RxState& state, const GstCaps* caps);
 /// Pushes on the pad of the packet's stream, which may be new. Takes the buffer.
 GstFlowReturn Demux(GstLidarScreamRx* self, const RtpHeader& header, GstBuffer* buffer);
 /// Sends a sink event to every pad of media; takes the event.

@@ -7,11 +7,13 @@
 #include <gst/rtp/gstrtpbuffer.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <string>
 #include <vector>
 
 #include "gst/common/gstlidar.h"
 #include "gst/common/refs.h"
+#include "src/rtp/payload_header.h"
 #include "src/scream/feedback/ccfb.h"
 #include "tests/support/harness.h"
 
@@ -33,11 +35,26 @@ struct Rtp {
   bool marker = false;
   guint32 ssrc = 0x1234;
   guint8 payload_type = 96;
-  guint size = 1188;  // of the payload
+  guint size = 1188;  // of the payload, where it is not given
+  std::vector<std::uint8_t> payload{};
 };
 
+/// The payload of a packet with a slice of its own.
+inline std::vector<std::uint8_t> WholeSlice() {
+  lidar::rtp::Unit unit;
+  const std::vector<std::uint8_t> bytes(100, 7);
+  unit.length = 100;
+  unit.body = {bytes.data(), bytes.size()};
+  unit.crc = lidar::rtp::UnitCrc(unit, unit.body);
+  std::vector<std::uint8_t> payload;
+  lidar::rtp::WriteHeader(unit, &payload);
+  payload.insert(payload.end(), bytes.begin(), bytes.end());
+  return payload;
+}
+
 inline GstBuffer* NewRtp(const Rtp& r) {
-  GstBuffer* buffer = gst_rtp_buffer_new_allocate(r.size, 0, 0);
+  const auto size = r.payload.empty() ? r.size : static_cast<guint>(r.payload.size());
+  GstBuffer* buffer = gst_rtp_buffer_new_allocate(size, 0, 0);
   GstRTPBuffer rtp = GST_RTP_BUFFER_INIT;
   gst_rtp_buffer_map(buffer, GST_MAP_WRITE, &rtp);
   gst_rtp_buffer_set_seq(&rtp, r.seq);
@@ -45,6 +62,8 @@ inline GstBuffer* NewRtp(const Rtp& r) {
   gst_rtp_buffer_set_marker(&rtp, r.marker);
   gst_rtp_buffer_set_ssrc(&rtp, r.ssrc);
   gst_rtp_buffer_set_payload_type(&rtp, r.payload_type);
+  std::copy(r.payload.begin(), r.payload.end(),
+            static_cast<std::uint8_t*>(gst_rtp_buffer_get_payload(&rtp)));
   gst_rtp_buffer_unmap(&rtp);
   return buffer;
 }

@@ -78,60 +78,137 @@ constexpr auto kMoved = PeerLatch::Verdict::kMoved;
 constexpr auto kForeign = PeerLatch::Verdict::kForeign;
 
 struct Latch : ::testing::Test {
+  PeerLatch::Verdict Send(const AddressPtr& from, std::uint32_t ssrc, std::uint16_t seq,
+                          bool with_slice = false) {
+    static const std::vector<std::uint8_t> kSlice = test::WholeSlice();
+    const ByteView payload = with_slice ? ByteView{kSlice.data(), kSlice.size()} : ByteView{};
+    return latch.OnPacket(now, {from.get(), ssrc, seq, payload});
+  }
+  /// A packet each 10 ms; true where the latch moved.
+  bool Stream(const AddressPtr& from, std::uint32_t ssrc, std::uint16_t first, int packets,
+              bool with_slices = false) {
+    bool moved = false;
+    for (int i = 0; i < packets; ++i, now += 10ms)
+      moved =
+          Send(from, ssrc, static_cast<std::uint16_t>(first + i), with_slices) == kMoved || moved;
+    return moved;
+  }
+
   AddressPtr robot{test::Address("10.0.0.1", 5000)};
+  AddressPtr other{test::Address("10.0.0.3", 5001)};
   AddressPtr thief{test::Address("10.0.0.2", 5000)};
   PeerLatch latch;
   Time now{1s};
 };
 
 TEST_F(Latch, FirstPeerIsBelievedAtOnceAndByAnyObjectOfItsAddress) {
-  EXPECT_EQ(latch.OnPacket(now, robot.get(), 1, 0), kAccepted);
+  EXPECT_EQ(Send(robot, 1, 0), kAccepted);
   const AddressPtr same(test::Address("10.0.0.1", 5000));
-  EXPECT_EQ(latch.OnPacket(now, same.get(), 1, 1), kAccepted);
+  EXPECT_EQ(Send(same, 1, 1), kAccepted);
   EXPECT_TRUE(latch.IsPeer(robot.get()));
   EXPECT_FALSE(latch.IsPeer(thief.get()));
 }
 
 TEST_F(Latch, CannotBeStolenWhileThePeerSends) {
-  latch.OnPacket(now, robot.get(), 1, 0);
-  for (std::uint16_t seq = 0; seq < 1000; ++seq, now += 10ms) {
-    EXPECT_EQ(latch.OnPacket(now, thief.get(), 1, seq), kForeign);
-    EXPECT_EQ(latch.OnPacket(now, robot.get(), 1, seq), kAccepted);
+  Stream(robot, 1, 0, 10);
+  for (std::uint16_t seq = 10; seq < 1000; ++seq, now += 10ms) {
+    EXPECT_EQ(Send(thief, 1, seq), kForeign);
+    EXPECT_EQ(Send(robot, 1, seq), kAccepted);
   }
 }
 
 TEST_F(Latch, OnePacketAfterSilenceDoesNotMoveItButAStreamDoes) {
-  latch.OnPacket(now, robot.get(), 1, 0);
+  Stream(robot, 1, 0, 10);
   now += 10s;
-  for (std::uint16_t seq = 0; seq + 1 < PeerLatch::kProbation; ++seq)
-    EXPECT_EQ(latch.OnPacket(now, thief.get(), 1, seq), kForeign);
-  EXPECT_EQ(latch.OnPacket(now, thief.get(), 1, PeerLatch::kProbation - 1), kMoved);
+  EXPECT_FALSE(Stream(thief, 2, 0, PeerLatch::kProbation));
+  EXPECT_TRUE(Stream(thief, 2, PeerLatch::kProbation, 1));
   EXPECT_FALSE(latch.IsPeer(robot.get()));
 }
 
-TEST_F(Latch, ScatteredSequenceNumbersAreNoStream) {
-  latch.OnPacket(now, robot.get(), 1, 0);
+TEST_F(Latch, ScatteredOrRepeatedSequenceNumbersAreNoStream) {
+  Stream(robot, 1, 0, 10);
   now += 10s;
-  for (std::uint16_t seq = 0; seq < 100; ++seq)
-    EXPECT_EQ(latch.OnPacket(now, thief.get(), 1, static_cast<std::uint16_t>(seq * 1103)),
-              kForeign);
+  for (std::uint16_t seq = 0; seq < 100; ++seq) {
+    EXPECT_EQ(Send(thief, 1, static_cast<std::uint16_t>(seq * 1103)), kForeign);
+    EXPECT_EQ(Send(thief, 2, 7), kForeign);
+  }
 }
 
 TEST_F(Latch, AStreamWithGapsIsAStream) {
-  latch.OnPacket(now, robot.get(), 1, 0);
+  Stream(robot, 1, 0, 10);
   now += 10s;
   bool moved = false;
   for (std::uint16_t seq = 0; seq < 10; ++seq)
-    moved |= latch.OnPacket(now, thief.get(), 1, static_cast<std::uint16_t>(seq * 90)) == kMoved;
+    moved |= Send(thief, 1, static_cast<std::uint16_t>(seq * 90)) == kMoved;
   EXPECT_TRUE(moved);
 }
 
+TEST_F(Latch, FollowsASenderThatMovesWithAnyNumberOfInterleavedStreams) {
+  for (std::uint32_t streams : {1U, 2U, 3U, 16U}) {
+    latch.Reset();
+    std::uint16_t seq = 0;
+    for (; seq < 100; ++seq, now += 20ms)
+      for (std::uint32_t s = 0; s < streams; ++s) Send(robot, s, seq);
+    const Time moved_at = now;
+    bool moved = false;
+    for (; !moved && now < moved_at + 5s; ++seq, now += 20ms)
+      for (std::uint32_t s = 0; s < streams; ++s) moved |= Send(other, s, seq) == kMoved;
+    EXPECT_LT(now - moved_at, 1s) << streams;
+  }
+}
+
+TEST_F(Latch, WhoSendsFirstAndSeldomLosesThePlaceToTheFirstStream) {
+  Send(thief, 9, 0);
+  std::uint16_t knock = 1;
+  std::uint16_t seq = 0;
+  bool moved = false;
+  for (int ms = 0; ms < 2000; ms += 20, now += 20ms) {
+    if (ms % 400 == 0) Send(thief, 9, knock++);
+    moved |= Send(robot, 1, seq++) == kMoved;
+  }
+  EXPECT_TRUE(moved);
+  EXPECT_TRUE(latch.IsPeer(robot.get()));
+}
+
+TEST_F(Latch, AStreamWithoutSlicesNeitherKeepsNorTakesThePlaceOfOneWithSlices) {
+  Stream(thief, 9, 0, 500);  // first, and often
+  EXPECT_TRUE(Stream(robot, 1, 0, 10, true));
+  now += 1s;  // an outage
+  EXPECT_FALSE(Stream(thief, 9, 500, 200));
+  EXPECT_TRUE(latch.IsPeer(robot.get()));
+}
+
+TEST_F(Latch, TheSenderComesBackWhenAnotherTookItsPlaceInAnOutage) {
+  Stream(robot, 1, 0, 100, true);
+  now += 6s;
+  EXPECT_TRUE(Stream(thief, 9, 0, 20));
+  EXPECT_TRUE(Stream(robot, 1, 150, 6));  // the thief still sends
+  now += 1s;
+  EXPECT_TRUE(Stream(thief, 9, 20, 20, true));  // slices of its own
+  EXPECT_TRUE(Stream(other, 1, 200, 6));        // the sender, moved
+  EXPECT_FALSE(Stream(thief, 9, 40, 40, true));
+}
+
+TEST_F(Latch, AFloodOfRandomSsrcsDoesNotHideASenderThatMoved) {
+  std::uint16_t seq = 0;
+  for (; seq < 100; ++seq, now += 10ms) Send(robot, 1, seq, true);
+  const Time moved_at = now;
+  bool moved = false;
+  for (std::uint32_t flood = 1000; !moved && now < moved_at + 5s; ++flood, now += 5ms) {
+    const AddressPtr from(test::Address("10.9.9.9", static_cast<guint16>(flood)));
+    EXPECT_EQ(Send(from, flood, 7), kForeign);
+    EXPECT_EQ(Send(thief, flood, 7), kForeign);
+    if (flood % 2 == 0) moved = Send(other, 1, seq++) == kMoved;
+  }
+  EXPECT_LT(now - moved_at, 1s);
+}
+
 TEST_F(Latch, PacketsWithoutAddressBelongToAnyPeer) {
-  EXPECT_EQ(latch.OnPacket(now, nullptr, 1, 0), kAccepted);
+  EXPECT_EQ(latch.OnPacket(now, {nullptr, 1, 0, {}}), kAccepted);
   EXPECT_EQ(latch.peer(), nullptr);
-  EXPECT_EQ(latch.OnPacket(now, robot.get(), 1, 1), kAccepted);
+  EXPECT_EQ(Send(robot, 1, 1), kAccepted);
   EXPECT_EQ(latch.peer(), robot.get());
-  EXPECT_EQ(latch.OnPacket(now, thief.get(), 1, 2), kForeign);
+  EXPECT_EQ(Send(thief, 1, 2), kForeign);
 }
 
 TEST_F(Latch, FeedbackFromAnotherAddressIsANewPathOnceTheOldOneIsSilent) {

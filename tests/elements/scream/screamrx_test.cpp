@@ -132,14 +132,13 @@ TEST_F(ScreamRx, AnswersTheLatchedPeer) {
 TEST_F(ScreamRx, DropsWhatAStrangerSends) {
   Start();
   Rtp r;
-  ASSERT_EQ(Push(r, GST_LIDAR_ECN_ECT1, "10.0.0.1"), GST_FLOW_OK);
-  for (guint16 seq = 1; seq < 20; ++seq) {
+  for (guint16 seq = 0; seq < 29; ++seq) {
     r.seq = seq;
-    ASSERT_EQ(Push(r, GST_LIDAR_ECN_ECT1, "10.0.0.2"), GST_FLOW_OK);
+    ASSERT_EQ(Push(r, GST_LIDAR_ECN_ECT1, seq < 10 ? "10.0.0.1" : "10.0.0.2"), GST_FLOW_OK);
   }
-  EXPECT_EQ(Passed(), 1U);
+  EXPECT_EQ(Passed(), 10U);
   EXPECT_EQ(Stats(element)["packets-foreign"], 19U);
-  EXPECT_EQ(Stats(element)["packets-received"], 1U);
+  EXPECT_EQ(Stats(element)["packets-received"], 10U);
 }
 
 TEST_F(ScreamRx, FollowsASenderThatComesBackFromAnotherAddress) {
@@ -153,6 +152,23 @@ TEST_F(ScreamRx, FollowsASenderThatComesBackFromAnotherAddress) {
     ASSERT_EQ(Push(r, GST_LIDAR_ECN_ECT1, "10.0.0.2"), GST_FLOW_OK);
   }
   EXPECT_EQ(Passed(), 7U);  // four of the new address had to prove themselves
+  EXPECT_EQ(Stats(element)["peer-moves"], 1U);
+}
+
+TEST_F(ScreamRx, BelievesTheSenderWhoseSlicesAreWholeOverOneWhoSendsOften) {
+  Start();
+  gst_harness_set_src_caps_str(rtp.get(),
+                               "application/x-rtp, media=(string)application, payload=(int)96, "
+                               "clock-rate=(int)90000, encoding-name=(string)X-LIDAR-DRACO");
+  Rtp r;
+  for (guint16 seq = 0; seq < 200; ++seq) {
+    r.seq = seq;
+    ASSERT_EQ(Push(r, GST_LIDAR_ECN_ECT1, "10.0.0.9"), GST_FLOW_OK);
+  }
+  r.ssrc = 0x5678;
+  r.payload = test::WholeSlice();
+  for (r.seq = 0; r.seq < 5; ++r.seq)
+    ASSERT_EQ(Push(r, GST_LIDAR_ECN_ECT1, "10.0.0.1"), GST_FLOW_OK);
   EXPECT_EQ(Stats(element)["peer-moves"], 1U);
 }
 

@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Says whether a stream of packets brings slices that are whole, without keeping them.
+#pragma once
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "src/rtp/payload_header.h"
+
+namespace lidar::rtp {
+
+/// Follows one unit at a time, in order; a gap ends it, and the next unit has its chance. For
+/// packets of one SSRC whose sender is not believed yet.
+class UnitCheck {
+ public:
+  /// Longer units are not followed.
+  static constexpr std::size_t kMaxBytes = std::size_t{1} << 18;
+
+  /// True where the packet completes a slice whose length and CRC-32 are right.
+  bool Push(std::uint16_t sequence, ByteView payload);
+
+ private:
+  bool PushUnit(std::uint16_t sequence, const Unit& unit);
+
+  std::optional<Unit> first_;  // its body is not to be read
+  std::uint16_t next_sequence_ = 0;
+  std::vector<std::uint8_t> bytes_;
+};
+
+}  // namespace lidar::rtp
