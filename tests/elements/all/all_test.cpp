@@ -130,10 +130,10 @@ std::string NameOf(const ::testing::TestParamInfo<std::string>& info) {
 // The registry is there only after gst_init, so the elements are named here; the test below keeps
 // the list whole.
 const std::vector<std::string> kElements = {
-    "bitrateadapter", "dracodec",      "dracoenc",    "ecnudpsink",    "ecnudpsrc",
-    "lidartestsrc",   "ouster_src",    "pcdenc",      "plyenc",        "pointcloudparse",
-    "pointcloudview", "rtplidardepay", "rtplidarpay", "scanassembler", "screamrx",
-    "screamsink",     "screamsrc",     "screamtx"};
+    "bitrateadapter",  "dracodec",       "dracoenc",      "ecnudpsink",  "ecnudpsrc",
+    "lidarodometry",   "lidartestsrc",   "ouster_src",    "pcdenc",      "plyenc",
+    "pointcloudparse", "pointcloudview", "rtplidardepay", "rtplidarpay", "scanassembler",
+    "screamrx",        "screamsink",     "screamsrc",     "screamtx"};
 
 std::vector<std::string> Built() {
   gst_init(nullptr, nullptr);
