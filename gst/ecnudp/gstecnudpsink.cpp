@@ -185,6 +185,7 @@ static gboolean Start(GstBaseSink* base) {
         ("use an address of the other family, or another bind-address"));
     return FALSE;
   }
+  GST_DEBUG_OBJECT(self, "sending to %s", AddressToString(peer.get()).c_str());
   lock.lock();
   state.used = std::move(socket);
   state.peer = std::move(peer);
@@ -238,6 +239,7 @@ static GstFlowReturn Flush(GstLidarEcnUdpSink* self) {
     std::lock_guard lock(state.mutex);
     AddCounts(kStats, {result.packets, result.bytes, result.errors, 0}, &state.counters);
   }
+  GST_LOG_OBJECT(self, "sent %u datagrams, %u failed", result.packets, result.errors);
   WarnOnce(self, result);
   return result.woken ? GST_FLOW_FLUSHING : GST_FLOW_OK;
 }

@@ -197,7 +197,10 @@ static GstFlowReturn ReceiveBatch(GstLidarEcnUdpSrc* self) {
       // An empty datagram has nothing for anybody.
       if (d.size > 0) state.received.emplace_back(ToBuffer(self, d));
     });
-    if (!state.received.empty()) return GST_FLOW_OK;
+    if (!state.received.empty()) {
+      GST_LOG_OBJECT(self, "received %" G_GSIZE_FORMAT " datagrams", state.received.size());
+      return GST_FLOW_OK;
+    }
     if (n < 0 && errno != EAGAIN && errno != EWOULDBLOCK && errno != EINTR &&
         errno != ECONNREFUSED) {
       GST_ELEMENT_ERROR(self, RESOURCE, READ, ("Receiving failed: %s", g_strerror(errno)),

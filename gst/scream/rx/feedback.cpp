@@ -71,6 +71,7 @@ void Run(gpointer data) {
     return;
   }
   GstBuffer* buffer = ToBuffer(state, *report);
+  GST_LOG_OBJECT(self, "reporting %" G_GSIZE_FORMAT " SSRCs", report->blocks.size());
   const bool first = !std::exchange(state.rtcp_started, true);
   lock.unlock();
   if (first) StartStream(self);

@@ -53,6 +53,7 @@ bool Account(GstLidarScreamRx* self, const Clocks& clocks, GstBuffer* buffer,
   RxState& state = *self->state;
   const PeerLatch::Verdict verdict = Judge(state, clocks.now, buffer, header);
   if (verdict == PeerLatch::Verdict::kForeign) {
+    GST_LOG_OBJECT(self, "dropping a packet of SSRC %08x that is not from the peer", header.ssrc);
     ++state.counters.foreign;
     return false;
   }
@@ -106,6 +107,7 @@ Fate Look(GstLidarScreamRx* self, const Clocks& clocks, GstBuffer* buffer, RtpHe
   const auto read = ReadRtpHeader(buffer);
   RxLock lock(state.mutex);
   if (!read) {
+    GST_DEBUG_OBJECT(self, "dropping what is no RTP");
     ++state.counters.malformed;
     return Fate::kDrop;
   }

@@ -8,6 +8,20 @@
 namespace lidar::gst {
 namespace {
 
+const char* ToString(scream::FeedbackResult result) {
+  switch (result) {
+    case scream::FeedbackResult::kAccepted:
+      return "accepted";
+    case scream::FeedbackResult::kImplausible:
+      return "implausible";
+    case scream::FeedbackResult::kNotOurs:
+      return "of other SSRCs";
+    case scream::FeedbackResult::kStale:
+      return "stale";
+  }
+  return "?";
+}
+
 /// Hands one CCFB packet to the controller; false where it is not for us.
 bool Feed(GstLidarScreamTx* self, ByteView packet, GSocketAddress* from) {
   TxState& state = *self->state;
@@ -16,11 +30,14 @@ bool Feed(GstLidarScreamTx* self, ByteView packet, GSocketAddress* from) {
   const auto feedback = state.parser.Parse(packet);
   if (!feedback) {
     ++state.malformed_rtcp;
+    GST_DEBUG_OBJECT(self, "malformed feedback of %" G_GSIZE_FORMAT " bytes", packet.size);
     return false;
   }
   const Time now = TxNow(state);
   const auto result = state.controller->OnFeedback(now, *feedback);
   if (result == scream::FeedbackResult::kNotOurs) return false;
+  GST_LOG_OBJECT(self, "feedback of %" G_GSIZE_FORMAT " bytes: %s", packet.size, ToString(result));
+  if (result != scream::FeedbackResult::kImplausible) state.reporter.OnFeedback();
   if (result == scream::FeedbackResult::kAccepted && state.feedback_peer.OnFeedback(now, from)) {
     GST_INFO_OBJECT(self, "feedback comes from a new address: a new path");
     state.controller->OnRouteChange(now);

@@ -21,6 +21,7 @@ void Enqueue(TxState& state, TxStream& stream, BufferPtr buffer, Time now) {
   const auto header = ReadRtpHeader(buffer.get());
   if (!header) {
     ++stream.counters.malformed;
+    GST_DEBUG_OBJECT(stream.pad, "dropping what is no RTP");
     return;
   }
   const gsize size = gst_buffer_get_size(buffer.get());
@@ -37,6 +38,7 @@ void Enqueue(TxState& state, TxStream& stream, BufferPtr buffer, Time now) {
                              {header->ssrc, item.size, header->marker, header->timestamp});
   stream.queue.push_back(std::move(item));
   ++stream.counters.packets_queued;
+  state.reporter.OnInput(now);
 }
 
 /// Asks upstream once a stream.

@@ -118,6 +118,7 @@ void PacingTask::DropLate(TxStream& stream, Time now) {
   std::size_t late = state().controller->LatePackets(now, stream.id);
   if (late == 0) return;
   state().controller->OnDropped(now, stream.id, late);
+  GST_DEBUG_OBJECT(stream.pad, "dropping %" G_GSIZE_FORMAT " late packets", late);
   std::optional<guint32> frame;
   for (auto it = stream.queue.begin(); it != stream.queue.end() && late > 0;) {
     if (!it->buffer) {
@@ -137,6 +138,7 @@ BufferPtr PacingTask::TakePacket(TxStream& stream, scream::Ecn ecn, Time now) {
   TxState& s = state();
   TxItem item = std::move(stream.queue.front());
   stream.queue.pop_front();
+  s.reporter.OnSent(now);
   s.controller->OnSent(now, stream.id, {item.header.ssrc, item.header.seq, item.size, ecn});
   if (s.settings.ecn_mode != kEcnOff) {
     GstBuffer* buffer = gst_buffer_make_writable(item.buffer.release());

@@ -5,6 +5,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string>
+#include <utility>
 
 #include "gst/scream/tx/private.h"
 
@@ -17,6 +19,8 @@ using namespace std::chrono_literals;
 
 constexpr Duration kPulse = 200ms;  // of target-bitrate
 constexpr Duration kKeyUnitInterval = 500ms;
+// One may fall to an outage.
+constexpr guint64 kFramesUntilWarning = 20;
 // The wire share moves the encoder's bounds only where it changed by more than this.
 constexpr double kShareThreshold = 0.02;
 
@@ -31,6 +35,30 @@ EventPtr KeyUnitEvent(TxStream& stream, Time now) {
   stream.last_key_unit = now;
   return EventPtr(
       gst_video_event_new_upstream_force_key_unit(GST_CLOCK_TIME_NONE, TRUE, ++stream.key_units));
+}
+
+/// Host and port of the sink behind `src`, where they are to be found.
+std::string Destination(GstPad* src) {
+  PadPtr pad(GST_PAD(gst_object_ref(src)));
+  for (int hops = 0; hops < 8 && pad; ++hops) {
+    const PadPtr peer(gst_pad_get_peer(pad.get()));
+    const ElementPtr next(peer ? gst_pad_get_parent_element(peer.get()) : nullptr);
+    if (!next) return "";
+    auto* klass = G_OBJECT_GET_CLASS(next.get());
+    if (g_object_class_find_property(klass, "host") != nullptr &&
+        g_object_class_find_property(klass, "port") != nullptr) {
+      gchar* host = nullptr;
+      gint port = 0;
+      g_object_get(next.get(), "host", &host, "port", &port, nullptr);
+      const StringPtr owner(host);
+      return std::string(host != nullptr ? host : "?") + ":" + std::to_string(port);
+    }
+    GST_OBJECT_LOCK(next.get());
+    GList* pads = next->srcpads;
+    pad.reset(pads != nullptr ? GST_PAD(gst_object_ref(pads->data)) : nullptr);
+    GST_OBJECT_UNLOCK(next.get());
+  }
+  return "";
 }
 
 PadPtr Ref(GstPad* pad) { return PadPtr(GST_PAD(gst_object_ref(pad))); }
@@ -71,6 +99,8 @@ void UpstreamReporter::Reset(Time now) {
   notifier_.Reset();
   ecn_announced_ = ecn_state_ = state().controller->ecn_state();
   next_stats_ = now;
+  watch_ = {};
+  silence_announced_ = warned_of_silence_ = warned_of_unheeded_ = unheeded_ = false;
 }
 
 bool UpstreamReporter::EvaluateStream(TxStream& stream, Time now) {
@@ -100,6 +130,7 @@ bool UpstreamReporter::EvaluateEstimate(Time now) {
 void UpstreamReporter::Evaluate(Time now) {
   TxState& s = state();
   bool due = EvaluateEstimate(now);
+  due = due || watch_.silent() != silence_announced_;
   for (auto& stream : s.streams) due = EvaluateStream(*stream, now) || due;
   ecn_state_ = s.controller->ecn_state();
   if (s.settings.stats_interval > 0ns && now >= next_stats_) {
@@ -147,8 +178,16 @@ MessagePtr UpstreamReporter::EcnMessage() {
 bool UpstreamReporter::HasWork() const {
   const auto& streams = state().streams;
   return stop_ || stats_due_ || estimate_due_ || ecn_state_ != ecn_announced_ ||
+         watch_.silent() != silence_announced_ ||
          std::any_of(streams.begin(), streams.end(),
                      [](const auto& s) { return s->target_due || s->key_unit_due; });
+}
+
+MessagePtr UpstreamReporter::FeedbackMessage() {
+  silence_announced_ = watch_.silent();
+  GstStructure* s = gst_structure_new("scream-feedback-state-changed", "present", G_TYPE_BOOLEAN,
+                                      !silence_announced_, nullptr);
+  return MessagePtr(gst_message_new_element(GST_OBJECT(self_), s));
 }
 
 /// Takes what is due out of the state.
@@ -157,10 +196,18 @@ UpstreamReporter::Work UpstreamReporter::TakeWork(Time now) {
   Work work;
   for (auto& stream : s.streams) {
     if (stream->target_due)
-      work.events.push_back({Ref(stream->pad), TargetEvent(*stream, now, nullptr)});
+      work.events.push_back({Ref(stream->pad), TargetEvent(*stream, now, nullptr), true});
     stream->target_due = false;
     if (MayAskForKeyUnit(*stream, now))
-      work.events.push_back({Ref(stream->pad), KeyUnitEvent(*stream, now)});
+      work.events.push_back({Ref(stream->pad), KeyUnitEvent(*stream, now), false});
+    work.warn_of_unheeded = work.warn_of_unheeded ||
+                            (unheeded_ && stream->counters.frames_dropped >= kFramesUntilWarning);
+  }
+  if (std::exchange(warned_of_unheeded_, warned_of_unheeded_ || work.warn_of_unheeded))
+    work.warn_of_unheeded = false;
+  if (watch_.silent() != silence_announced_) {
+    work.messages.push_back(FeedbackMessage());
+    work.warn_of_silence = silence_announced_ && !std::exchange(warned_of_silence_, true);
   }
   if (ecn_state_ != ecn_announced_) work.messages.push_back(EcnMessage());
   if (stats_due_)
@@ -184,9 +231,40 @@ void UpstreamReporter::Run() {
 }
 
 void UpstreamReporter::Send(Work work) {
-  for (PadEvent& e : work.events) gst_pad_push_event(e.pad.get(), e.event.release());
+  bool unheeded = false;
+  for (PadEvent& e : work.events) {
+    GST_LOG_OBJECT(e.pad.get(), "sending %" GST_PTR_FORMAT, static_cast<void*>(e.event.get()));
+    const bool taken = gst_pad_push_event(e.pad.get(), e.event.release()) != FALSE;
+    unheeded = unheeded || (e.is_target && !taken);
+  }
+  if (unheeded) {
+    const TxLock lock(state().mutex);
+    unheeded_ = true;
+  }
+  if (work.warn_of_silence) WarnOfSilence();
+  if (work.warn_of_unheeded) WarnOfUnheeded();
   for (MessagePtr& m : work.messages) gst_element_post_message(GST_ELEMENT(self_), m.release());
   if (work.notify) g_object_notify(G_OBJECT(self_), "estimated-bitrate");
+}
+
+void UpstreamReporter::WarnOfSilence() {
+  const std::string to = Destination(self_->src);
+  GST_ELEMENT_WARNING(
+      self_, RESOURCE, READ,
+      ("No feedback%s%s for 2 s, as if nobody listened there.", to.empty() ? "" : " from ",
+       to.c_str()),
+      ("Check host and port; that screamsrc, or screamrx with its rtcp_src linked, runs there; and "
+       "that no firewall is between. Without feedback only the lowest bitrate is sent. This is "
+       "said "
+       "once; messages scream-feedback-state-changed follow."));
+}
+
+void UpstreamReporter::WarnOfUnheeded() {
+  GST_ELEMENT_WARNING(
+      self_, STREAM, ENCODE,
+      ("Frames are dropped, and no encoder upstream follows target-bitrate."),
+      ("Put bitrateadapter behind the encoder, or give the encoder a lower bitrate; this is said "
+       "once, the property stats counts the frames."));
 }
 
 }  // namespace lidar::gst

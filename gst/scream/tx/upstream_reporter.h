@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "gst/common/refs.h"
+#include "gst/scream/tx/feedback_watch.h"
 #include "gst/scream/tx/gstscreamtx.h"
 #include "gst/scream/tx/stream.h"
 #include "src/scream/statistics.h"
@@ -31,6 +32,9 @@ class UpstreamReporter {
 
   /// For a new controller.
   void Reset(Time now);
+  void OnSent(Time now) { watch_.OnSent(now); }
+  void OnInput(Time now) { watch_.OnInput(now); }
+  void OnFeedback() { watch_.OnFeedback(); }
   /// Finds out what is due.
   void Evaluate(Time now);
   /// When to call Evaluate() again, whatever happens.
@@ -43,11 +47,14 @@ class UpstreamReporter {
   struct PadEvent {
     PadPtr pad;
     EventPtr event;
+    bool is_target = false;
   };
   struct Work {
     std::vector<PadEvent> events;
     std::vector<MessagePtr> messages;
     bool notify = false;
+    bool warn_of_silence = false;
+    bool warn_of_unheeded = false;
   };
   void Run();
   void Send(Work work);
@@ -56,6 +63,9 @@ class UpstreamReporter {
   bool HasWork() const;
   Work TakeWork(Time now);
   MessagePtr EcnMessage();
+  MessagePtr FeedbackMessage();
+  void WarnOfSilence();
+  void WarnOfUnheeded();
   EventPtr TargetEvent(const TxStream& stream, Time now, const char* reason) const;
   TxState& state() const;
 
@@ -70,6 +80,11 @@ class UpstreamReporter {
   scream::EcnState ecn_announced_ = scream::EcnState::kOff;
   guint estimated_bps_ = 0;
   Time next_stats_{};
+  FeedbackWatch watch_;
+  bool silence_announced_ = false;
+  bool warned_of_silence_ = false;
+  bool warned_of_unheeded_ = false;
+  bool unheeded_ = false;  // a target that nobody upstream took
 };
 
 }  // namespace lidar::gst

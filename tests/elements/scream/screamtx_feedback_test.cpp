@@ -143,6 +143,50 @@ TEST_F(ScreamTx, FallsBackAndSaysSoWhereThePathBleachesEcn) {
   gst_object_unref(bus);
 }
 
+TEST_F(ScreamTx, SaysOnceThatNobodyAnswersAndEachTimeThatSomebodyDoesAgain) {
+  GstBus* bus = gst_bus_new();
+  gst_element_set_bus(element, bus);
+  Start();
+  const auto run = [&](int frames, bool answer) {
+    for (int i = 0; i < frames; ++i) {
+      PushFrame(static_cast<guint32>(next_seq_) * 900, 1);
+      time.Advance(50 * GST_MSECOND);
+      if (answer) Acknowledge();
+    }
+  };
+  const auto next = [&]() -> gst::MessagePtr {
+    const auto types = static_cast<GstMessageType>(GST_MESSAGE_ELEMENT | GST_MESSAGE_WARNING);
+    for (;;) {
+      gst::MessagePtr message(gst_bus_timed_pop_filtered(bus, 300 * GST_MSECOND, types));
+      if (!message || !gst_message_has_name(message.get(), "scream-ecn-state-changed"))
+        return message;
+    }
+  };
+  const auto tells = [&](const gst::MessagePtr& m, gboolean wanted) {
+    gboolean present = FALSE;
+    return m && gst_message_has_name(m.get(), "scream-feedback-state-changed") &&
+           gst_structure_get_boolean(gst_message_get_structure(m.get()), "present", &present) &&
+           present == wanted;
+  };
+  run(38, false);
+  EXPECT_FALSE(next());
+  run(10, false);  // past 2 s
+  gst::MessagePtr message = next();
+  ASSERT_TRUE(message);
+  EXPECT_EQ(GST_MESSAGE_TYPE(message.get()), GST_MESSAGE_WARNING);
+  EXPECT_TRUE(tells(next(), FALSE));
+  Collect();
+  acknowledged_ = sent.size();  // some between them were dropped
+  run(40, true);
+  EXPECT_TRUE(tells(next(), TRUE));
+  run(60, false);
+  EXPECT_TRUE(tells(next(), FALSE));  // without another warning
+  EXPECT_FALSE(next());
+  gst_element_set_state(element, GST_STATE_NULL);
+  gst_element_set_bus(element, nullptr);
+  gst_object_unref(bus);
+}
+
 TEST_F(ScreamTx, TestsThePathAnewWhenTheReceiverHasMoved) {
   Start();
   const auto run = [&](const char* host, scream::Ecn ecn) {
