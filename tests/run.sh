@@ -10,11 +10,12 @@ usage() {
 Usage: tests/run.sh [--suite NAME] [--no-install] [--no-sanitize] [--tsan]
 
   --suite NAME    run one suite: lint, core, elements, pipelines, fuzz, bench, faults (three
-                  minutes of broken networks; only by name), or sanitize (core, elements and
-                  fuzz under AddressSanitizer and UBSan)
+                  minutes of broken networks; only by name), or sanitize (core without its long
+                  simulations, elements and fuzz under AddressSanitizer and UBSan)
   --no-install    do not install Debian packages
   --no-sanitize   leave out the sanitizer build
-  --tsan          also run core and elements under ThreadSanitizer
+  --tsan          also run core without its long simulations, and elements, under
+                  ThreadSanitizer
   --tidy          also run clang-tidy over src, gst and ext
 EOF
 }
@@ -50,18 +51,22 @@ passed=0
 failed=0
 started=$SECONDS
 
+# The long simulations are about algorithms: the same code as in the short tests, at many times the price.
+no_simulations=(--no-suite simulation)
+
 # targets DIR SUITE...: what the tests of the suites need, as ninja calls it.
 targets() {
   local dir=$1
   shift
   jq -rn --arg dir "$dir/" --arg suites "$*" \
     --slurpfile tests <(meson introspect "$dir" --tests) --slurpfile all <(meson introspect "$dir" --targets) '
-    [$tests[0][] | select(any(.suite[]; sub(".*:"; "") | IN($suites | splits(" ")))) | .depends[]] as $needed
+    def of($names): any(.suite[]; sub(".*:"; "") | IN($names | splits(" ")));
+    [$tests[0][] | select(of($suites) and (of("simulation") | not)) | .depends[]] as $needed
     | $all[0][] | select(.id | IN($needed[])) | .filename[] | ltrimstr($dir)'
 }
 
-# build DIR SUITES [meson options]: configures once, then builds what changed of what the suites need. Line numbers are all that
-# reports need of the debug information, the rest of which is a third of the compiler's time.
+# build DIR SUITES [meson options]: configures once, then builds what changed of what the suites need.
+# Reports need line numbers only; the rest of the debug information is a third of the compiler's time.
 build() {
   local dir=$1 needed_by=$2
   shift 2
@@ -78,6 +83,12 @@ build() {
 build_sanitized() {
   build "$root/build-asan" "$sanitized" -Db_sanitize=address,undefined -Db_lundef=false -Doptimization=1 \
     -Dbenchmarks=disabled
+}
+# It compiles behind the tests of the first build: they wait for most of their time.
+start_sanitized() {
+  build_sanitized &
+  sanitized_job=$!
+  renice -n 19 -p "$sanitized_job" >/dev/null
 }
 sanitized_ready() { if [ -n "$sanitized_job" ]; then wait "$sanitized_job"; else build_sanitized; fi; }
 
@@ -105,15 +116,10 @@ count() { if [ "$1" = 0 ]; then passed=$((passed + 1)); else failed=$((failed + 
 
 if [ ${#suites[@]} -gt 0 ]; then
   if build "$root/build" all; then
+    [ "$sanitize" = no ] || start_sanitized
     for suite in "${suites[@]}"; do
-      # Pipelines stream in real time, so they run one by one. Most of it is waiting: time to compile for the next build.
-      jobs=()
+      jobs=()  # pipelines stream in real time, so they run one by one
       case $suite in pipelines | bench | faults) jobs=(--num-processes 1) ;; esac
-      if [ "$sanitize" = yes ] && [ "$suite" = pipelines ]; then
-        build_sanitized &
-        sanitized_job=$!
-        renice -n 19 -p "$sanitized_job" >/dev/null
-      fi
       run "$root/build" "$suite" "${jobs[@]}"
     done
   else
@@ -132,7 +138,7 @@ if [ "$sanitize" = yes ]; then
   export LSAN_OPTIONS="suppressions=$here/lsan.supp:print_suppressions=0"
   export UBSAN_OPTIONS="print_stacktrace=1:halt_on_error=1"
   if sanitized_ready; then
-    for suite in $sanitized; do run "$root/build-asan" "$suite" --timeout-multiplier 4; done
+    for suite in $sanitized; do run "$root/build-asan" "$suite" "${no_simulations[@]}" --timeout-multiplier 4; done
   else
     count 1
   fi
@@ -148,7 +154,7 @@ if [ "$tsan" = yes ]; then
     meson test -C "$root/build-tsan" --no-rebuild common --timeout-multiplier 8 >/dev/null 2>&1
     for suite in core elements; do
       LIDAR_PRELOAD=$root/build-tsan/tests/tsan/libglib-sync.so run "$root/build-tsan" "$suite" \
-        --timeout-multiplier 20 --wrapper "$here/tsan/with_glib_sync.sh"
+        "${no_simulations[@]}" --timeout-multiplier 20 --wrapper "$here/tsan/with_glib_sync.sh"
     done
   else
     count 1

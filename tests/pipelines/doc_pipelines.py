@@ -2,9 +2,11 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Runs every gst-launch-1.0 command of the README and the docs as it is printed.
 
-A command passes where it ends with exit code 0, or still runs without an error after a few seconds. Windows become
-fakesinks; commands that name a sensor by `hostname=` are left out, and said so.
+A command passes where it ends with exit code 0, or still runs without an error after a few seconds.
+Windows become fakesinks, and each page has ports and a folder of its own: several run at a time.
+Commands that name a sensor by `hostname=` are left out, and said so.
 """
+import concurrent.futures
 import pathlib
 import re
 import signal
@@ -13,6 +15,8 @@ import sys
 import tempfile
 
 SECONDS = 4
+AT_A_TIME = 3
+FIRST_PORT, PORTS = 21000, 100  # of the first page, and from one page to the next
 
 
 def commands(page):
@@ -30,11 +34,28 @@ def commands(page):
             command = None
 
 
-def run(command, folder):
+def with_ports(command, first):
+    """`command` with its ports replaced by those from `first` on, the same for the same."""
+    ports = {}
+
+    def replace(match):
+        port = ports.setdefault(match.group(2), first + len(ports))
+        return match.group(1) + str(port)
+
+    return re.sub(r"(\b(?:\w+-)?port=)(\d+)", replace, command)
+
+
+def run(command, folder, first_port):
     """None, or what went wrong."""
-    shown = command.replace("autovideosink", "fakesink")
-    process = subprocess.Popen(["bash", "-c", "exec " + shown], cwd=folder, text=True, stdin=subprocess.DEVNULL,
-                               stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
+    shown = with_ports(command.replace("autovideosink", "fakesink"), first_port)
+    process = subprocess.Popen(
+        ["bash", "-c", "exec " + shown],
+        cwd=folder,
+        text=True,
+        stdin=subprocess.DEVNULL,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.STDOUT,
+    )
     try:
         output, _ = process.communicate(timeout=SECONDS)
     except subprocess.TimeoutExpired:
@@ -44,7 +65,11 @@ def run(command, folder):
         except subprocess.TimeoutExpired:
             process.kill()
             return "does not stop on SIGINT"
-    bad = [l for l in output.splitlines() if re.search(r"ERROR|CRITICAL|WARNING: erroneous|could not link", l)]
+    bad = [
+        l
+        for l in output.splitlines()
+        if re.search(r"ERROR|CRITICAL|WARNING: erroneous|could not link", l)
+    ]
     if bad:
         return "\n".join(bad[:5])
     if process.returncode not in (0, -signal.SIGINT):
@@ -52,23 +77,36 @@ def run(command, folder):
     return None
 
 
+def run_page(page, root, folder, first_port):
+    """What is to be said of the page's commands, and how many ran and failed."""
+    folder.mkdir()
+    # Pages name the committed captures from the project's folder; what commands write goes elsewhere.
+    (folder / "tests").symlink_to(root / "tests")
+    said, ran, failed = [], 0, 0
+    for command in commands(page):
+        if "hostname=" in command:
+            said.append(f"left out, needs a sensor: {command}")
+            continue
+        ran += 1
+        problem = run(command, folder, first_port)
+        if problem:
+            failed += 1
+            said.append(f"FAILED {page.relative_to(root)}:\n  {command}\n  {problem}")
+    return said, ran, failed
+
+
 def main():
     root = pathlib.Path(sys.argv[1]).resolve()
     pages = [root / "README.md", *sorted((root / "docs").rglob("*.md"))]
     ran, failed = 0, 0
-    with tempfile.TemporaryDirectory() as folder:
-        # Pages name the committed captures from the project's folder; what commands write goes elsewhere.
-        (pathlib.Path(folder) / "tests").symlink_to(root / "tests")
-        for page in pages:
-            for command in commands(page):
-                if "hostname=" in command:
-                    print(f"left out, needs a sensor: {command}")
-                    continue
-                ran += 1
-                problem = run(command, folder)
-                if problem:
-                    failed += 1
-                    print(f"FAILED {page.relative_to(root)}:\n  {command}\n  {problem}")
+    with tempfile.TemporaryDirectory() as parent:
+        folders = [pathlib.Path(parent) / str(number) for number in range(len(pages))]
+        ports = [FIRST_PORT + PORTS * number for number in range(len(pages))]
+        with concurrent.futures.ThreadPoolExecutor(AT_A_TIME) as pool:
+            for result in pool.map(run_page, pages, [root] * len(pages), folders, ports):
+                print("\n".join(result[0]), end="\n" if result[0] else "")
+                ran += result[1]
+                failed += result[2]
     print(f"{ran} commands ran, {failed} failed")
     return 1 if failed or ran == 0 else 0
 
