@@ -165,8 +165,7 @@ bool Reassembler::IsAfter(const Reassembler& previous) const {
          *previous.ledger_.frontier() < ledger_.origin();
 }
 
-void Reassembler::TakeOver(const Reassembler& previous, std::vector<ReceivedSlice>* out) {
-  ledger_.Continue(previous.ledger_);
+void Reassembler::TakeConfigs(const Reassembler& previous, std::vector<ReceivedSlice>* out) {
   for (auto known = previous.configs_.rbegin(); known != previous.configs_.rend(); ++known)
     if (!FindConfig(known->id)) Learn(known->id, known->config, out);
 }

@@ -63,9 +63,11 @@ class Reassembler {
   bool has_whole_slice() const { return has_whole_slice_; }
   /// Has a slice begun here?
   bool started() const { return ledger_.started(); }
-  /// Takes over the configs of `previous`, the same stream before an outage, books what the outage
-  /// took, and appends the slices that had waited for their config.
-  void TakeOver(const Reassembler& previous, std::vector<ReceivedSlice>* out);
+  /// Goes on where `previous`, the same stream before an outage, ended: books what the outage took.
+  void GoOn(const Reassembler& previous) { ledger_.Continue(previous.ledger_); }
+  /// Takes over the configs of `previous`, the same source before an outage or a restart, and
+  /// appends the slices that had waited for them. No two configs of a source share an id.
+  void TakeConfigs(const Reassembler& previous, std::vector<ReceivedSlice>* out);
   /// End of stream: what is not whole now is lost.
   void Finish();
 

@@ -85,10 +85,11 @@ std::vector<ReceivedSlice> Receiver::Promote(Time now) {
   const bool same = candidate_->ssrc == active_->ssrc;
   if (same && candidate_->reassembler.IsAfter(active_->reassembler)) {
     ++booked_.outages;
-    candidate_->reassembler.TakeOver(active_->reassembler, &out);
+    candidate_->reassembler.GoOn(active_->reassembler);
   } else {
     ++booked_.restarts;
   }
+  if (same) candidate_->reassembler.TakeConfigs(active_->reassembler, &out);
   Add(active_->reassembler, &booked_);
   active_ = std::move(candidate_);
   active_->held.clear();

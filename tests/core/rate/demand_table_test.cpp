@@ -37,5 +37,12 @@ TEST(DemandTable, LetsASliceThatItDoesNotKnowTakeAnything) {
   EXPECT_DOUBLE_EQ(table.EvenShare(0, 1000), 990);
 }
 
+TEST(DemandTable, TakesASliceThatItDoesNotKnowForTheMeanOfTheOthersHoweverOftenTheseAreSet) {
+  DemandTable table;
+  for (const double need : {100.0, 8.0}) table.Set(0, 3, {need, need, {}});
+  table.Set(1, 3, {4, 4, {}});
+  EXPECT_DOUBLE_EQ(table.Sum().coarsest, 8 + 4 + 6);
+}
+
 }  // namespace
 }  // namespace lidar::rate

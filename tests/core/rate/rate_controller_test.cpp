@@ -306,6 +306,24 @@ TEST(RateController, SpendsWhatSlicesWithoutReturnsLeave) {
   }
 }
 
+TEST(RateController, PaysBackHalfOfADebtWithEachScan) {
+  SyntheticCodec::Parameters p;
+  p.slices = 1;
+  p.noise = p.drift = 0;
+  Stream run(p);
+  run.Many(50, [](auto) { return 4e6; });
+  const double share = 4e6 / 8 / p.scans_per_second;
+  const double owed = 0.2 * share;
+  const Decision decision = run.controller.NextSlice(run.codec.Features(50, 0));
+  EncodedSize too_large;
+  too_large.size = DataSize::Bytes(static_cast<std::int64_t>(share + owed));
+  too_large.step_m = decision.settings.step_m;
+  if (run.controller.OnEncoded(too_large)) run.controller.OnEncoded(too_large);
+  const Decision next = run.controller.NextSlice(run.codec.Features(51, 0));
+  ASSERT_TRUE(next.budget);
+  EXPECT_NEAR(static_cast<double>(next.budget->bytes()), share - 0.5 * owed, 0.02 * share);
+}
+
 INSTANTIATE_TEST_SUITE_P(Slices, Tracking, ::testing::Values(1U, 2U, 8U, 16U));
 
 }  // namespace

@@ -291,6 +291,21 @@ TEST(Config, InFragmentsSurvivesReorderingAndDoesNotMixRepetitions) {
   EXPECT_EQ(receiver.accounts().configs_received, 1U);
 }
 
+TEST(Config, InFragmentsSurvivesARepeatedFirstOne) {
+  SenderOptions o;
+  o.max_payload = kMinPayload;
+  o.slice_size = 20;
+  Sender sender(o);
+  std::vector<Wire> packets;
+  sender.Config(&packets);
+  ASSERT_GE(packets.size(), 3U);
+  packets.insert(packets.end() - 1, packets.front());
+  sender.Slice(0, 0, &packets);
+  Receiver receiver(kReorder);
+  EXPECT_EQ(DeliverAll(&receiver, packets, 20), Names{"0.0"});
+  EXPECT_EQ(receiver.accounts().configs_received, 1U);
+}
+
 TEST(Memory, IsBoundedAgainstSlicesThatNeverEnd) {
   // Middle fragments only, of more slices than may be pending, each 1 kB.
   Sender sender;

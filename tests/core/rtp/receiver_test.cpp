@@ -54,6 +54,19 @@ TEST(Receiver, FollowsASenderThatRestartsWithTheSameSsrc) {
   EXPECT_EQ(receiver.accounts().restarts, 1U);
 }
 
+TEST(Receiver, FollowsASenderThatRestartsWithTheSameSsrcWithoutAPause) {
+  SenderOptions first;
+  first.scan_number = 1'000;
+  SenderOptions second;
+  second.sequence = 5;
+  second.scan_number = 500;
+  Receiver receiver(milliseconds(100));
+  DeliverAll(&receiver, Sender(first).Scans(0, 3));
+  // Three packets are the probation: the scan is followed before it is over.
+  EXPECT_EQ(DeliverAll(&receiver, Sender(second).Scans(3, 1)), AllSlices(3, 1));
+  EXPECT_EQ(receiver.accounts().restarts, 1U);
+}
+
 class Outage : public ::testing::TestWithParam<std::uint32_t> {};
 TEST_P(Outage, CountsEveryScanOfItOnceWhereverItBeginsAndEnds) {
   const std::uint32_t scans = GetParam();

@@ -95,6 +95,20 @@ TEST(SkippedScans, AreNoneWhereTheSourceStartsItsNumbersAnew) {
   EXPECT_EQ(receiver.accounts().slices.scans_skipped, 0U);
 }
 
+TEST(SkippedScans, AreNotThoseOfWhichAPartWasLost) {
+  Receiver receiver(kReorder);
+  Sender sender;
+  auto packets =
+      sender.ScansWithout(10, [](std::uint32_t s, std::uint16_t i) { return s == 4 && i < 2; });
+  packets.erase(
+      std::remove_if(packets.begin(), packets.end(), [](const Wire& w) { return w.scan == 4; }),
+      packets.end());
+  DeliverAll(&receiver, packets);
+  receiver.Finish();
+  EXPECT_EQ(SkipAccounts(receiver), "skipped 2 lost 2; scans 9 0 1");
+  EXPECT_EQ(receiver.accounts().slices.scans_skipped, 0U);
+}
+
 /// A slice that says that all slices before it were left out, whatever was.
 std::vector<Wire> Liar(Sender* sender, std::uint32_t scan, std::uint16_t index) {
   ScanCounter counter(SenderOptions{}.scan_number + scan - 1);

@@ -4,6 +4,8 @@
 
 #include <gtest/gtest.h>
 
+#include "src/scream/feedback/report_clock.h"
+
 namespace lidar::scream {
 namespace {
 
@@ -127,6 +129,16 @@ TEST(Ccfb, RtcpPaddingIsTakenOff) {
   ASSERT_TRUE(CcfbParser().Parse(View(bytes)));
   bytes.back() = 200;
   EXPECT_FALSE(CcfbParser().Parse(View(bytes)));
+}
+
+TEST(ReportClock, GoesOnWhereTimestampsWrapAfterEighteenHours) {
+  ReportClock clock;
+  const Time before{65535s + 900ms};
+  const Time first = clock.Unwrap(ReportClock::ToTimestamp(before));
+  const Time second = clock.Unwrap(ReportClock::ToTimestamp(before + 200ms));
+  EXPECT_NEAR(Milliseconds(second - first), 200, 0.02);
+  const Time older = clock.Unwrap(ReportClock::ToTimestamp(before + 50ms));
+  EXPECT_NEAR(Milliseconds(older - first), 50, 0.02) << "a report that was overtaken";
 }
 
 }  // namespace

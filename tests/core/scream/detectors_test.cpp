@@ -180,6 +180,15 @@ TEST(EcnMonitor, FallsBackWhenTheCodepointIsBleachedAndProbesANewRoute) {
   EXPECT_EQ(ecn.codepoint(), Ecn::kEct1);
 }
 
+TEST(EcnMonitor, TakesAPathThatBleachesSomePacketsForCapable) {
+  EcnMonitor ecn(Ecn::kEct1);
+  for (int round = 0; round < 5; ++round) {
+    for (int i = 0; i < 19; ++i) ecn.OnAcked(Ecn::kEct1, Ecn::kNotEct);
+    ecn.OnAcked(Ecn::kEct1, Ecn::kCe);
+  }
+  EXPECT_EQ(ecn.state(), EcnState::kCapable);
+}
+
 TEST(EcnMonitor, FallsBackWhenNothingMarkedComesThrough) {
   EcnMonitor ecn(Ecn::kEct1);
   for (int i = 0; i < 10; ++i) ecn.OnSent(kStart, Ecn::kEct1);

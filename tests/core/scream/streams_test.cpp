@@ -93,6 +93,38 @@ TEST_F(StreamsTest, TakeTurnsByTheirTargets) {
   EXPECT_NEAR(turns[b], 25, 1);
 }
 
+TEST_F(StreamsTest, TakeTurnsByTheirTargetsEvenWithOnePacketAtATime) {
+  const StreamId a = Add(3, 0, 100), b = Add(1, 0, 100);
+  streams_.Allocate(kStart, Mbps(8));
+  const auto queue = [&](StreamId id) {
+    streams_.OnQueued(streams_.Find(id));
+    streams_.Find(id)->OnQueued(kStart, {1, DataSize::Bytes(1000), false, 0});
+  };
+  queue(a);
+  queue(b);
+  int turns[2] = {0, 0};
+  for (int i = 0; i < 100; ++i) {
+    const StreamId id = *streams_.Next();
+    ++turns[id];
+    streams_.OnSent(kStart, id, 1, DataSize::Bytes(1000));
+    queue(id);
+  }
+  EXPECT_NEAR(turns[a], 75, 1);
+  EXPECT_NEAR(turns[b], 25, 1);
+}
+
+TEST_F(StreamsTest, ASilentStreamNeedsNothing) {
+  const StreamId a = Add(1, 1, 100), b = Add(1, 0, 100), c = Add(3, 0, 100);
+  streams_.Find(a)->Configure({1, Mbps(1), Mbps(1), Mbps(100), Mbps(5)});
+  streams_.Find(b)->Configure({1, Mbps(0), Mbps(1), Mbps(100), Mbps(4)});
+  streams_.Allocate(kStart, Mbps(5));
+  for (const StreamId id : {a, c})
+    streams_.Find(id)->OnQueued(kStart + 2s, {1, DataSize::Bytes(1000), true, 0});
+  streams_.Allocate(kStart + 2s, Mbps(5));
+  EXPECT_NEAR(Target(a), 5, 1e-3);
+  EXPECT_NEAR(Target(c), 0, 1e-3);
+}
+
 class StreamTest : public ::testing::Test {
  protected:
   /// A frame of `packets` packets of 1000 bytes.

@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "src/rate/adaptive_model.h"
+
+#include <gtest/gtest.h>
+
+namespace lidar::rate {
+namespace {
+
+constexpr std::uint32_t kSlices = 4;
+const Settings kTwoCentimetres{0.02, 0, 0};
+
+SliceFeatures Slice(std::uint32_t scan, std::uint32_t index) {
+  SliceFeatures slice;
+  slice.scan_id = scan;
+  slice.slice_index = index;
+  slice.slice_count = kSlices;
+  slice.returns = 5000;
+  slice.extent_m = 80;
+  slice.mode = "none that has coefficients";
+  return slice;
+}
+
+double Bytes(const AdaptiveModel& model, const SliceFeatures& slice) {
+  return model.Predict(slice, kTwoCentimetres).total();
+}
+
+/// Has learned one scan whose slices are of the size that it says itself.
+AdaptiveModel Taught() {
+  AdaptiveModel model(AdaptiveCoefficients{{}, {{11, -0.5, 0, 0}}});
+  for (std::uint32_t i = 0; i < kSlices; ++i) {
+    const auto bytes = static_cast<std::int64_t>(Bytes(model, Slice(1, i)));
+    model.OnEncoded(Slice(1, i), kTwoCentimetres, {DataSize::Bytes(bytes), {}, 0.02, 1});
+  }
+  return model;
+}
+
+TEST(AdaptiveModel, PassesASurpriseOnToTheNextSlice) {
+  AdaptiveModel model = Taught();
+  const double before = Bytes(model, Slice(2, 1));
+  const EncodedSize larger{DataSize::Bytes(static_cast<std::int64_t>(1.5 * before)), {}, 0.02, 1};
+  model.OnEncoded(Slice(2, 0), kTwoCentimetres, larger);
+  EXPECT_GT(Bytes(model, Slice(2, 1)), 1.05 * before);
+}
+
+TEST(AdaptiveModel, LearnsFromASliceThatIsEncodedAgainAsIfItWereEncodedOnce) {
+  AdaptiveModel once = Taught();
+  AdaptiveModel again = Taught();
+  const EncodedSize larger{
+      DataSize::Bytes(static_cast<std::int64_t>(1.5 * Bytes(once, Slice(2, 0)))), {}, 0.02, 1};
+  once.OnEncoded(Slice(2, 0), kTwoCentimetres, larger);
+  for (int i = 0; i < 2; ++i) again.OnEncoded(Slice(2, 0), kTwoCentimetres, larger);
+  EXPECT_NEAR(Bytes(again, Slice(2, 1)) / Bytes(once, Slice(2, 1)), 1, 1e-6);
+}
+
+}  // namespace
+}  // namespace lidar::rate

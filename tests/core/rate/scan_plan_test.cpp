@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "src/rate/scan_plan.h"
+
+#include <gtest/gtest.h>
+
+namespace lidar::rate {
+namespace {
+
+/// Geometry that needs 60 bytes, and four bytes for each bit of the intensity: 92 with all eight.
+ScanPlanInputs Inputs(double budget, unsigned last_intensity_bits) {
+  ScanPlanInputs in;
+  in.needed.coarsest = in.needed.finest = 60;
+  for (unsigned bits = 0; bits < in.needed.intensity.size(); ++bits)
+    in.needed.intensity[bits] = 4 * bits;
+  in.budget = budget;
+  in.measured = true;
+  in.intensity_bits = 8;
+  in.last_intensity_bits = last_intensity_bits;
+  return in;
+}
+
+unsigned IntensityBits(double budget, unsigned last) {
+  return PlanScan(Inputs(budget, last), DegradationPreference::kMaintainAccuracy).intensity_bits;
+}
+
+TEST(ScanPlan, KeepsTheIntensityThatFits) {
+  EXPECT_EQ(IntensityBits(92, 8), 8U);
+  EXPECT_EQ(IntensityBits(91, 8), 7U);
+  EXPECT_EQ(IntensityBits(50, 8), 0U);
+}
+
+TEST(ScanPlan, RaisesTheIntensityOnlyWithATenthToSpare) {
+  EXPECT_EQ(IntensityBits(92 / 0.95, 7), 7U);
+  EXPECT_EQ(IntensityBits(92 / 0.91, 7), 7U);
+  EXPECT_EQ(IntensityBits(92 / 0.89, 7), 8U);
+}
+
+TEST(ScanPlan, SkipsOnlyWhenMoreThanATenthOfAScanIsOwed) {
+  ScanPlanInputs in = Inputs(50, 0);  // 60 are needed
+  in.saved = 5;
+  EXPECT_FALSE(PlanScan(in, DegradationPreference::kMaintainAccuracy).skip);
+  in.saved = 3;
+  EXPECT_TRUE(PlanScan(in, DegradationPreference::kMaintainAccuracy).skip);
+}
+
+}  // namespace
+}  // namespace lidar::rate
