@@ -27,7 +27,7 @@ constexpr unsigned kTwoBitSymbolsInChunk = 7;
 enum Symbol : std::uint8_t { kNotReceived, kSmallDelta, kLargeDelta, kReserved };
 
 /// Appends the symbols of one chunk, up to `count` in all.
-void ReadChunk(std::uint16_t chunk, std::size_t count, std::vector<std::uint8_t>* symbols) {
+void ReadChunk(unsigned chunk, std::size_t count, std::vector<std::uint8_t>* symbols) {
   const auto add = [&](unsigned symbol) {
     if (symbols->size() < count) symbols->push_back(static_cast<std::uint8_t>(symbol));
   };

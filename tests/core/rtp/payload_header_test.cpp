@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <set>
+
 #include "src/rtp/ntp_time.h"
 #include "src/rtp/stream_config.h"
 #include "tests/core/rtp/stream.h"
@@ -56,6 +58,18 @@ TEST(PayloadHeader, IsReadBackAsWritten) {
   EXPECT_EQ(u.crc, 0xDEADBEEFU);
   ASSERT_EQ(u.body.size, 1U);
   EXPECT_EQ(u.body.data[0], 0xAA);
+}
+
+TEST(UnitCrc, CoversEveryBitOfTheMaskOfSlicesLeftOut) {
+  const std::vector<std::uint8_t> body(100, 0x55);
+  Unit unit = FirstOfASlice();
+  unit.unit = UnitType::kSliceAfterSkip;
+  unit.info.skipped = 1;
+  std::set<std::uint32_t> seen{UnitCrc(unit, {body.data(), body.size()})};
+  for (unsigned bit = 1; bit < 64; ++bit) {
+    unit.info.skipped = 1 | std::uint64_t{1} << bit;
+    EXPECT_TRUE(seen.insert(UnitCrc(unit, {body.data(), body.size()})).second) << bit;
+  }
 }
 
 TEST(PayloadHeader, OfEveryKindIsRefusedWhenTruncated) {

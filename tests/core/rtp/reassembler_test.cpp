@@ -306,6 +306,19 @@ TEST(Config, InFragmentsSurvivesARepeatedFirstOne) {
   EXPECT_EQ(receiver.accounts().configs_received, 1U);
 }
 
+TEST(Config, ThatIsRepeatedIsTheSameObject) {
+  Sender sender;
+  auto packets = sender.Scans(0, 1);
+  sender.Config(&packets);
+  sender.Slice(1, 0, &packets);
+  Receiver receiver(kReorder);
+  std::vector<std::shared_ptr<const StreamConfig>> configs;
+  for (const Wire& w : packets)
+    for (const auto& s : test::Deliver(&receiver, w)) configs.push_back(s.config);
+  ASSERT_EQ(configs.size(), 5U);
+  EXPECT_EQ(configs[0], configs[4]) << "so caps are set once";
+}
+
 TEST(Memory, IsBoundedAgainstSlicesThatNeverEnd) {
   // Middle fragments only, of more slices than may be pending, each 1 kB.
   Sender sender;
