@@ -43,5 +43,11 @@ TEST(ScanPlan, SkipsOnlyWhenMoreThanATenthOfAScanIsOwed) {
   EXPECT_TRUE(PlanScan(in, DegradationPreference::kMaintainAccuracy).skip);
 }
 
+TEST(ThinningPattern, KeepsTheShareEvenlyAndNeverNothing) {
+  EXPECT_EQ(ThinningPattern(6, 0.5), (std::vector<bool>{false, true, false, true, false, true}));
+  EXPECT_EQ(ThinningPattern(3, 0.01), (std::vector<bool>{false, true, false}));
+  EXPECT_EQ(ThinningPattern(0, 1), std::vector<bool>{});
+}
+
 }  // namespace
 }  // namespace lidar::rate
