@@ -10,12 +10,11 @@ usage() {
 Usage: tests/run.sh [--suite NAME] [--no-install] [--no-sanitize] [--tsan]
 
   --suite NAME    run one suite: lint, core, elements, pipelines, fuzz, bench, faults (three
-                  minutes of broken networks; only by name), or sanitize (core without its long
-                  simulations, elements and fuzz under AddressSanitizer and UBSan)
+                  minutes of broken networks; only by name), or sanitize (elements, fuzz, and
+                  core without long simulations and programs, under AddressSanitizer and UBSan)
   --no-install    do not install Debian packages
   --no-sanitize   leave out the sanitizer build
-  --tsan          also run core without its long simulations, and elements, under
-                  ThreadSanitizer
+  --tsan          also run core (without the same) and elements under ThreadSanitizer
   --tidy          also run clang-tidy over src, gst and ext
 EOF
 }
@@ -51,17 +50,19 @@ passed=0
 failed=0
 started=$SECONDS
 
-# The long simulations are about algorithms: the same code as in the short tests, at many times the price.
-no_simulations=(--no-suite simulation)
+# Long simulations and command-line programs run the code of the other tests again, at many times
+# the price under a sanitizer.
+dear=(simulation programs)
+without_dear=("${dear[@]/#/--no-suite=}")
 
 # targets DIR SUITE...: what the tests of the suites need, as ninja calls it.
 targets() {
   local dir=$1
   shift
-  jq -rn --arg dir "$dir/" --arg suites "$*" \
+  jq -rn --arg dir "$dir/" --arg suites "$*" --arg dear "${dear[*]}" \
     --slurpfile tests <(meson introspect "$dir" --tests) --slurpfile all <(meson introspect "$dir" --targets) '
     def of($names): any(.suite[]; sub(".*:"; "") | IN($names | splits(" ")));
-    [$tests[0][] | select(of($suites) and (of("simulation") | not)) | .depends[]] as $needed
+    [$tests[0][] | select(of($suites) and (of($dear) | not)) | .depends[]] as $needed
     | $all[0][] | select(.id | IN($needed[])) | .filename[] | ltrimstr($dir)'
 }
 
@@ -138,7 +139,7 @@ if [ "$sanitize" = yes ]; then
   export LSAN_OPTIONS="suppressions=$here/lsan.supp:print_suppressions=0"
   export UBSAN_OPTIONS="print_stacktrace=1:halt_on_error=1"
   if sanitized_ready; then
-    for suite in $sanitized; do run "$root/build-asan" "$suite" "${no_simulations[@]}" --timeout-multiplier 4; done
+    for suite in $sanitized; do run "$root/build-asan" "$suite" "${without_dear[@]}" --timeout-multiplier 4; done
   else
     count 1
   fi
@@ -154,7 +155,7 @@ if [ "$tsan" = yes ]; then
     meson test -C "$root/build-tsan" --no-rebuild common --timeout-multiplier 8 >/dev/null 2>&1
     for suite in core elements; do
       LIDAR_PRELOAD=$root/build-tsan/tests/tsan/libglib-sync.so run "$root/build-tsan" "$suite" \
-        "${no_simulations[@]}" --timeout-multiplier 20 --wrapper "$here/tsan/with_glib_sync.sh"
+        "${without_dear[@]}" --timeout-multiplier 20 --wrapper "$here/tsan/with_glib_sync.sh"
     done
   else
     count 1
