@@ -14,6 +14,13 @@ TEST(Slicing, AutomaticSweepsAreTwelveAndAHalfMilliseconds) {
   EXPECT_EQ(AutomaticSlices({1024, 128, milliseconds(50)}), 4U);
 }
 
+TEST(Slicing, AutomaticSweepsAreTheNearestToThat) {
+  // 12 scans/s: 6.7 sweeps of 12.5 ms.
+  EXPECT_EQ(AutomaticSlices({1008, 128, std::chrono::microseconds(83'333)}), 7U);
+  // 15 scans/s: 5.3 sweeps.
+  EXPECT_EQ(AutomaticSlices({900, 128, std::chrono::microseconds(66'667)}), 5U);
+}
+
 TEST(Slicing, AutomaticSlicesHoldTwoThousandPoints) {
   EXPECT_EQ(AutomaticSlices({512, 32, milliseconds(100)}), 8U);
   EXPECT_EQ(AutomaticSlices({512, 16, milliseconds(100)}), 4U);

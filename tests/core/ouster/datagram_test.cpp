@@ -169,6 +169,28 @@ TEST_P(Fragments, OfTwoDatagramsDoNotMix) {
   EXPECT_EQ(out[1], b);
 }
 
+TEST(Ipv4Fragments, OfTwoHostsWithTheSameIdentifierDoNotMix) {
+  const Bytes a = Payload(2000);
+  Bytes b = Payload(2000);
+  std::reverse(b.begin(), b.end());
+  UdpExtractor extractor;
+  std::vector<Bytes> out;
+  for (const std::size_t at : {0U, 1480U}) {
+    for (const auto& [payload, host] : {std::pair(a, 2), std::pair(b, 3)}) {
+      const Bytes udp = Udp(payload);
+      const std::size_t end = std::min<std::size_t>(udp.size(), at + 1480);
+      const Bytes body(udp.begin() + static_cast<std::ptrdiff_t>(at),
+                       udp.begin() + static_cast<std::ptrdiff_t>(end));
+      const Part part{at, end < udp.size(), 7, static_cast<std::uint8_t>(host)};
+      if (auto datagram = extractor.Extract(LinkType::kRaw, View(Ipv4(body, part))))
+        out.push_back(datagram->payload);
+    }
+  }
+  ASSERT_EQ(out.size(), 2U);
+  EXPECT_EQ(out[0], a);
+  EXPECT_EQ(out[1], b);
+}
+
 TEST_P(Fragments, ThatComeTwiceCountOnce) {
   const Bytes payload = Payload(4000);
   const auto packets = Cut(Udp(payload), 1480);

@@ -43,6 +43,28 @@ TEST(ClockMapper, FollowsAClockThatDrifts) {
   }
 }
 
+/// Packets each millisecond from `from` to `until`, all `delay` under way; the error of the last.
+Duration ErrorAfter(ClockMapper* mapper, Duration from, Duration until, Duration delay) {
+  Duration error{};
+  for (Duration t = from; t < until; t += 1ms) {
+    const auto sensor = static_cast<std::uint64_t>(t.count());
+    mapper->Observe(sensor, Time(t + delay));
+    error = mapper->Map(sensor) - Time(t);
+  }
+  return error;
+}
+
+TEST(ClockMapper, RemembersTheFastestPacketOfTheWindowBefore) {
+  ClockMapper mapper(ClockMapper::Mode::kFollow);
+  EXPECT_EQ(ErrorAfter(&mapper, 0s, 4s, 0ms), 0ms);
+  // A window of slow packets only: the fast ones before still count.
+  EXPECT_EQ(ErrorAfter(&mapper, 4s, 8s, 10ms), 0ms);
+  // They are forgotten after that, and the offset creeps up as fast as clocks drift.
+  const Duration error = ErrorAfter(&mapper, 8s, 16s, 10ms);
+  EXPECT_GT(error, 2ms);
+  EXPECT_LT(error, 4ms);
+}
+
 TEST(ClockMapper, StartsOverWhenAClockJumps) {
   ClockMapper mapper(ClockMapper::Mode::kFollow);
   mapper.Observe(1'000'000'000, Time{50s});

@@ -3,6 +3,7 @@
 
 #include "gst/common/cloud_info.h"
 #include "gst/common/gstlidar.h"
+#include "gst/common/latency.h"
 #include "gst/common/refs.h"
 
 namespace lidar::gst {
@@ -71,6 +72,22 @@ TEST(Events, CarryTheTargetAndTheBounds) {
   ASSERT_TRUE(gst_lidar_event_parse_bitrate_bounds(down.get(), &got));
   EXPECT_EQ(got.max_bitrate, 2U);
   EXPECT_FALSE(gst_lidar_event_parse_bitrate_bounds(up.get(), &got));
+}
+
+TEST(LatencyQueries, GrowByWhatAnElementHoldsBack) {
+  const QueryPtr query(gst_query_new_latency());
+  gst_query_set_latency(query.get(), TRUE, 10, 50);
+  AddLatency(query.get(), 7);
+  Latency latency = ReadLatency(query.get());
+  EXPECT_TRUE(latency.live);
+  EXPECT_EQ(latency.min, 17U);
+  EXPECT_EQ(latency.max, 57U);
+  gst_query_set_latency(query.get(), FALSE, 10, GST_CLOCK_TIME_NONE);
+  AddLatency(query.get(), 7);
+  latency = ReadLatency(query.get());
+  EXPECT_FALSE(latency.live);
+  EXPECT_EQ(latency.min, 17U);
+  EXPECT_EQ(latency.max, GST_CLOCK_TIME_NONE);
 }
 
 TEST(CloudInfo, RoundTripsThroughCaps) {

@@ -313,6 +313,18 @@ TEST_F(LiveAssembler, ALateSliceStillFindsItsScanWhileTheNextBegins) {
   EXPECT_FALSE(IsCorrupted(Pull()));
 }
 
+TEST_F(LiveAssembler, ASliceOfAScanBetweenTwoOpenOnesIsLate) {
+  Push(Slice(0, 0));
+  Push(Slice(2, 0));
+  Push(Slice(1, 0));
+  EXPECT_EQ(Stat("late-slices"), 1U);
+  EXPECT_EQ(Waiting(), 0U);
+  for (guint i = 1; i < kSlices; ++i) Push(Slice(2, i));
+  EXPECT_EQ(MetaOf(Pull()).scan_id, 0U);
+  EXPECT_EQ(MetaOf(Pull()).scan_id, 2U);
+  EXPECT_EQ(Stat("scans"), 2U);
+}
+
 TEST_F(LiveAssembler, AWholeScanDoesNotWaitForTheOneBefore) {
   Push(Slice(0, 0));
   for (guint i = 0; i < kSlices; ++i) Push(Slice(1, i));
