@@ -123,6 +123,18 @@ bool PointFields::HasPackedXyz() const {
          Find("y")->offset == Find("x")->offset + 4 && Find("z")->offset == Find("x")->offset + 8;
 }
 
+bool PointFields::ArePacked() const {
+  std::vector<PointField> ordered = fields_;
+  std::sort(ordered.begin(), ordered.end(),
+            [](const PointField& a, const PointField& b) { return a.offset < b.offset; });
+  std::size_t end = 0;
+  for (const PointField& f : ordered) {
+    if (f.offset != end) return false;
+    end += SizeOf(f.type);
+  }
+  return true;
+}
+
 std::uint32_t PointFields::MinimumStep() const {
   std::uint32_t end = 0;
   for (const PointField& f : fields_)

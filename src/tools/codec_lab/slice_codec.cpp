@@ -7,7 +7,7 @@
 #include <stdexcept>
 
 #include "ext/draco/draco_check.h"
-#include "src/codec/point_math.h"
+#include "src/cloud/point_math.h"
 #include "src/rate/scan_plan.h"
 
 namespace lidar::tools {
@@ -16,7 +16,7 @@ namespace {
 // The step is what counts; the bound leaves room for the rounding of floats far out.
 constexpr double kRoomForRounding = 1e-3;
 
-double Distance(const float* a, const float* b) { return std::sqrt(codec::SquaredDistance(a, b)); }
+double Distance(const float* a, const float* b) { return std::sqrt(SquaredDistance(a, b)); }
 
 }  // namespace
 

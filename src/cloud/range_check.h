@@ -5,16 +5,18 @@
 #include <optional>
 
 #include "src/base/byte_reader.h"
+#include "src/cloud/point_fields.h"
 #include "src/cloud/range_projection.h"
-#include "src/codec/cloud_io.h"
+#include "src/cloud/sensor_model.h"
 
-namespace lidar::gst {
+namespace lidar {
 
-/// Range geometry codes ranges alone, so points that were moved after the sensor come back unmoved.
+/// Where ranges alone are coded, points that were moved after the sensor come back unmoved.
 class RangeCheck {
  public:
   /// None where there is nothing to compare: no x, y and z beside the range.
-  static std::optional<RangeCheck> Create(const codec::CloudFormat& format);
+  static std::optional<RangeCheck> Create(const PointFields& fields, std::uint32_t point_step,
+                                          const SensorModel& model);
 
   struct Contradiction {
     std::uint32_t beam = 0;
@@ -27,11 +29,13 @@ class RangeCheck {
   static constexpr std::size_t kSamples = 4;
 
  private:
-  explicit RangeCheck(const codec::CloudFormat& format);
+  RangeCheck(const PointFields& fields, std::uint32_t point_step, const SensorModel& model);
 
-  codec::CloudLayout layout_;
+  std::size_t range_offset_;
+  std::size_t xyz_offset_;
+  std::uint32_t point_step_;
   std::uint32_t unit_mm_;
   RangeProjection projection_;
 };
 
-}  // namespace lidar::gst
+}  // namespace lidar

@@ -1,16 +1,34 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // What several judges of points ask of their bytes.
 #pragma once
+#include <array>
+#include <cmath>
 #include <cstdint>
 #include <cstring>
 
-namespace lidar::codec {
+namespace lidar {
 
 /// The field `range` [mm] at `bytes`; 0: no return.
 inline std::uint32_t RangeAt(const std::uint8_t* bytes) {
   std::uint32_t range = 0;
   std::memcpy(&range, bytes, sizeof range);
   return range;
+}
+
+/// The fields x, y and z [m] at `bytes`.
+inline std::array<float, 3> PositionAt(const std::uint8_t* bytes) {
+  std::array<float, 3> p;
+  std::memcpy(p.data(), bytes, sizeof p);
+  return p;
+}
+
+inline bool IsFinite(const std::array<float, 3>& p) {
+  return std::isfinite(p[0]) && std::isfinite(p[1]) && std::isfinite(p[2]);
+}
+
+/// Sensors write a missing return as a point that is all zero, or not finite.
+inline bool IsReturn(const std::array<float, 3>& p) {
+  return IsFinite(p) && (p[0] != 0 || p[1] != 0 || p[2] != 0);
 }
 
 /// Between two points of three coordinates.
@@ -23,4 +41,4 @@ inline double SquaredDistance(const float* a, const float* b) {
   return sum;
 }
 
-}  // namespace lidar::codec
+}  // namespace lidar

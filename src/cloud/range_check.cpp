@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "ext/draco/enc_range_check.h"
+#include "src/cloud/range_check.h"
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 
-#include "src/codec/point_math.h"
+#include "src/cloud/point_math.h"
 
-namespace lidar::gst {
+namespace lidar {
 namespace {
 
 constexpr double kFloatRounding = 1e-5;  // of the range
@@ -15,33 +14,35 @@ constexpr std::size_t kLookAhead = 256;  // points, for a return
 
 }  // namespace
 
-std::optional<RangeCheck> RangeCheck::Create(const codec::CloudFormat& format) {
-  if (!format.sensor_model || !format.layout.fields.HasPackedXyz()) return std::nullopt;
-  return RangeCheck(format);
+std::optional<RangeCheck> RangeCheck::Create(const PointFields& fields, std::uint32_t point_step,
+                                             const SensorModel& model) {
+  if (!fields.HasPackedXyz() || !fields.Has("range", FieldType::kU32)) return std::nullopt;
+  return RangeCheck(fields, point_step, model);
 }
 
-RangeCheck::RangeCheck(const codec::CloudFormat& format)
-    : layout_(format.layout),
-      unit_mm_(format.sensor_model->range_unit_mm),
-      projection_(*format.sensor_model) {}
+RangeCheck::RangeCheck(const PointFields& fields, std::uint32_t point_step,
+                       const SensorModel& model)
+    : range_offset_(fields.Find("range")->offset),
+      xyz_offset_(fields.Find("x")->offset),
+      point_step_(point_step),
+      unit_mm_(model.range_unit_mm),
+      projection_(model) {}
 
 std::optional<RangeCheck::Contradiction> RangeCheck::Find(ByteView raw,
                                                           std::uint32_t first_column) const {
-  const std::size_t points = raw.size / layout_.point_step;
+  const std::size_t points = raw.size / point_step_;
   const std::size_t columns = points / projection_.beams();
-  const std::uint8_t* ranges = raw.data + layout_.fields.Find("range")->offset;
+  const std::uint8_t* ranges = raw.data + range_offset_;
   for (std::size_t k = 0; k < kSamples; ++k) {
     std::size_t i = points * (2 * k + 1) / (2 * kSamples);
     const std::size_t end = std::min(points, i + kLookAhead);
-    while (i < end && codec::RangeAt(ranges + i * layout_.point_step) == 0) ++i;
+    while (i < end && RangeAt(ranges + i * point_step_) == 0) ++i;
     if (i == end) continue;
-    const std::uint32_t range_mm = codec::RangeAt(ranges + i * layout_.point_step);
+    const std::uint32_t range_mm = RangeAt(ranges + i * point_step_);
     const auto beam = static_cast<std::uint32_t>(i / columns);
     const auto column =
         static_cast<std::uint32_t>((first_column + i % columns) % projection_.columns());
-    float found[3];
-    std::memcpy(found, raw.data + i * layout_.point_step + layout_.fields.Find("x")->offset,
-                sizeof found);
+    const auto found = PositionAt(raw.data + i * point_step_ + xyz_offset_);
     const auto expected = projection_.Point(beam, column, range_mm);
     const double distance = std::hypot(static_cast<double>(found[0] - expected[0]),
                                        static_cast<double>(found[1] - expected[1]),
@@ -53,4 +54,4 @@ std::optional<RangeCheck::Contradiction> RangeCheck::Find(ByteView raw,
   return std::nullopt;
 }
 
-}  // namespace lidar::gst
+}  // namespace lidar

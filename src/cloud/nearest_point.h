@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-namespace lidar::gst {
+namespace lidar {
 
 /// A k-d tree over the points of `xyz` (three floats each, finite), which must outlive it.
 class NearestPoint {
@@ -24,4 +24,4 @@ class NearestPoint {
   std::vector<std::uint32_t> order_;  // each range's middle divides it
 };
 
-}  // namespace lidar::gst
+}  // namespace lidar

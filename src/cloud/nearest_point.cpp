@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "ext/draco/enc_nearest.h"
+#include "src/cloud/nearest_point.h"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numeric>
 
-#include "src/codec/point_math.h"
+#include "src/cloud/point_math.h"
 
-namespace lidar::gst {
+namespace lidar {
 
 NearestPoint::NearestPoint(const std::vector<float>& xyz)
     : xyz_(xyz.data()), order_(xyz.size() / 3) {
@@ -37,7 +37,7 @@ void NearestPoint::Search(const float* point, std::size_t begin, std::size_t end
                           double* best) const {
   if (begin >= end) return;
   const std::size_t middle = begin + (end - begin) / 2;
-  *best = std::min(*best, codec::SquaredDistance(point, At(middle)));
+  *best = std::min(*best, SquaredDistance(point, At(middle)));
   const double side = static_cast<double>(point[axis]) - static_cast<double>(At(middle)[axis]);
   const unsigned next = (axis + 1) % 3;
   if (side < 0) {
@@ -49,4 +49,4 @@ void NearestPoint::Search(const float* point, std::size_t begin, std::size_t end
   }
 }
 
-}  // namespace lidar::gst
+}  // namespace lidar

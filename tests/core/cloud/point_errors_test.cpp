@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "src/cloud/point_errors.h"
+
+#include <gtest/gtest.h>
+
+#include <cstring>
+
+namespace lidar {
+namespace {
+
+const PointFields kXyz = *PointFields::Parse("x:F32:0,y:F32:4,z:F32:8");
+
+/// Points two metres apart, so that the nearest one is the one that it was.
+std::vector<DecodedPoint> Lattice() {
+  std::vector<DecodedPoint> points;
+  for (unsigned i = 0; i < 500; ++i) {
+    points.push_back({{2 * static_cast<float>(i % 10) + 1, 2 * static_cast<float>(i / 10 % 10),
+                       2 * static_cast<float>(i / 100)},
+                      0});
+  }
+  return points;
+}
+
+/// As they lie in a buffer.
+std::vector<std::uint8_t> Raw(const std::vector<DecodedPoint>& points) {
+  std::vector<std::uint8_t> raw(12 * points.size());
+  for (std::size_t i = 0; i < points.size(); ++i)
+    std::memcpy(&raw[12 * i], points[i].position.data(), 12);
+  return raw;
+}
+
+PointErrors Measure(const std::vector<DecodedPoint>& before, const std::vector<DecodedPoint>& after,
+                    PointOrder order) {
+  const auto raw = Raw(before);
+  const auto errors = MeasureErrors({raw.data(), raw.size()}, kXyz, 12, after, order);
+  EXPECT_TRUE(errors);
+  return errors.value_or(PointErrors{});
+}
+
+class AnyOrder : public ::testing::TestWithParam<PointOrder> {};
+INSTANTIATE_TEST_SUITE_P(All, AnyOrder,
+                         ::testing::Values(PointOrder::kPixels, PointOrder::kKept,
+                                           PointOrder::kAny));
+
+TEST_P(AnyOrder, SeesOneStrayPointInEitherCloud) {
+  const auto cloud = Lattice();
+  auto stray = cloud;
+  stray[250].position[2] += 0.75F;
+  EXPECT_DOUBLE_EQ(Measure(cloud, stray, GetParam()).max_m, 0.75);
+  EXPECT_DOUBLE_EQ(Measure(stray, cloud, GetParam()).max_m, 0.75);
+  EXPECT_NEAR(Measure(cloud, stray, GetParam()).mean_m, 0.75 / 500, 1e-12);
+  EXPECT_EQ(Measure(cloud, cloud, GetParam()).max_m, 0);
+  EXPECT_EQ(Measure(cloud, cloud, GetParam()).points, 500U);
+}
+
+TEST(PointErrors, CountPointsThatAreGone) {
+  const auto cloud = Lattice();
+  for (const PointOrder order : {PointOrder::kKept, PointOrder::kAny}) {
+    const PointErrors errors = Measure(cloud, {cloud.begin(), cloud.end() - 2}, order);
+    EXPECT_EQ(errors.missing, 2U);
+    EXPECT_EQ(errors.points, 498U);
+    EXPECT_EQ(errors.max_m, 0);
+  }
+  auto gap = cloud;
+  gap[7] = {};
+  EXPECT_EQ(Measure(cloud, gap, PointOrder::kPixels).missing, 1U);
+  EXPECT_EQ(Measure(gap, cloud, PointOrder::kPixels).missing, 1U);
+}
+
+TEST(PointErrors, AreNotConfusedByAnotherOrder) {
+  const auto cloud = Lattice();
+  const std::vector<DecodedPoint> turned(cloud.rbegin(), cloud.rend());
+  EXPECT_EQ(Measure(cloud, turned, PointOrder::kAny).max_m, 0);
+  EXPECT_GT(Measure(cloud, turned, PointOrder::kKept).max_m, 1);
+}
+
+TEST(PointErrors, SayWhatFloatsAddFarAway) {
+  std::vector<DecodedPoint> far = {{{10'000, 0, 0}, 0}};
+  EXPECT_NEAR(Measure(far, far, PointOrder::kKept).rounding_m, 4 * 1.2e-7 * 10'000, 1e-4);
+}
+
+TEST(PointErrors, TakeRangesWhereThereAreNoPositions) {
+  const auto fields = *PointFields::Parse("range:U32:0");
+  const std::uint32_t ranges[] = {1'000, 0, 2'000, 3'000};
+  const std::vector<DecodedPoint> decoded = {{{1, 0, 0}, 1'004}, {}, {}, {{3, 0, 0}, 3'000}};
+  const auto errors = MeasureErrors({reinterpret_cast<const std::uint8_t*>(ranges), sizeof ranges},
+                                    fields, 4, decoded, PointOrder::kPixels);
+  ASSERT_TRUE(errors);
+  EXPECT_NEAR(errors->max_m, 0.004, 1e-9);
+  EXPECT_EQ(errors->points, 2U);
+  EXPECT_EQ(errors->missing, 1U);
+}
+
+TEST(PointErrors, AreNoneWhereThereIsNothingToCompare) {
+  const auto cloud = Lattice();
+  const auto raw = Raw(cloud);
+  const ByteView view{raw.data(), raw.size()};
+  const std::vector<DecodedPoint> fewer(cloud.begin(), cloud.end() - 1);
+  EXPECT_FALSE(MeasureErrors(view, kXyz, 12, fewer, PointOrder::kPixels));
+  const auto times = *PointFields::Parse("t:F32:0");
+  for (const PointOrder order : {PointOrder::kPixels, PointOrder::kKept, PointOrder::kAny})
+    EXPECT_FALSE(MeasureErrors(view, times, 12, cloud, order));
+}
+
+TEST(PointErrors, OfACloudThatIsGoneAreCountedAsMissing) {
+  const PointErrors errors = Measure(Lattice(), {}, PointOrder::kAny);
+  EXPECT_EQ(errors.missing, 500U);
+  EXPECT_EQ(errors.points, 0U);
+}
+
+}  // namespace
+}  // namespace lidar
