@@ -10,6 +10,14 @@
 namespace lidar::gst {
 namespace {
 
+/// A coder of your own needs a row here and a number in rtp::Coder.
+struct CoderName {
+  rtp::Coder coder;
+  const gchar* media_type;
+};
+constexpr CoderName kCoders[] = {{rtp::Coder::kDraco, GST_LIDAR_DRACO_MEDIA_TYPE},
+                                 {rtp::Coder::kLidar, GST_LIDAR_SLICE_MEDIA_TYPE}};
+
 constexpr gsize kMaxModelSize = 0xFFFF;  // its length field on the wire
 
 bool ReadModel(const GstStructure* s, rtp::StreamConfig* config) {
@@ -30,6 +38,8 @@ std::optional<rtp::StreamConfig> StreamConfigFromCaps(const GstCaps* caps) {
   const gchar* fields = gst_structure_get_string(s, "fields");
   const gchar* geometry = gst_structure_get_string(s, "geometry");
   rtp::StreamConfig config;
+  for (const CoderName& name : kCoders)
+    if (gst_structure_has_name(s, name.media_type)) config.coder = name.coder;
   if (fields == nullptr || std::strlen(fields) > 0xFFFF || !ReadModel(s, &config))
     return std::nullopt;
   config.fields = fields;
@@ -47,11 +57,13 @@ std::optional<rtp::StreamConfig> StreamConfigFromCaps(const GstCaps* caps) {
 
 GstCaps* StreamConfigToCaps(const rtp::StreamConfig& config) {
   const bool range = config.geometry == Geometry::kRange;
-  GstCaps* caps = gst_caps_new_simple(GST_LIDAR_DRACO_MEDIA_TYPE, "geometry", G_TYPE_STRING,
-                                      range ? "range" : "xyz", "alignment", G_TYPE_STRING, "slice",
-                                      "fields", G_TYPE_STRING, config.fields.c_str(), "framerate",
-                                      GST_TYPE_FRACTION, static_cast<gint>(config.framerate_n),
-                                      static_cast<gint>(config.framerate_d), nullptr);
+  const gchar* media_type = GST_LIDAR_DRACO_MEDIA_TYPE;
+  for (const CoderName& name : kCoders)
+    if (name.coder == config.coder) media_type = name.media_type;
+  GstCaps* caps = gst_caps_new_simple(
+      media_type, "geometry", G_TYPE_STRING, range ? "range" : "xyz", "alignment", G_TYPE_STRING,
+      "slice", "fields", G_TYPE_STRING, config.fields.c_str(), "framerate", GST_TYPE_FRACTION,
+      static_cast<gint>(config.framerate_n), static_cast<gint>(config.framerate_d), nullptr);
   if (!config.sensor_model.empty()) {
     const BufferPtr model(
         gst_buffer_new_memdup(config.sensor_model.data(), config.sensor_model.size()));

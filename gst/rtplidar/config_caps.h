@@ -5,7 +5,14 @@
 
 #include <optional>
 
+#include "gst/common/gstlidar.h"
 #include "src/rtp/stream_config.h"
+
+/// What can be sent: the slices of each coder.
+#define GST_LIDAR_CODED_CAPS                                                             \
+  GST_LIDAR_SLICE_MEDIA_TYPE                                                             \
+  ", alignment = (string) slice, geometry = (string) range; " GST_LIDAR_DRACO_MEDIA_TYPE \
+  ", alignment = (string) slice, geometry = (string) { xyz, range }"
 
 namespace lidar::gst {
 

@@ -8,7 +8,7 @@
  * |[
  * gst-launch-1.0 udpsrc port=5004
  * caps="application/x-rtp,media=application,clock-rate=90000,encoding-name=X-LIDAR-DRACO,payload=96"
- * ! rtplidardepay ! dracodec ! fakesink
+ * ! rtplidardepay ! lidardec ! fakesink
  * ]|
  */
 #include "gst/rtplidar/gstrtplidardepay.h"
@@ -82,9 +82,7 @@ static GstStaticPadTemplate sink_template = GST_STATIC_PAD_TEMPLATE(
     GST_STATIC_CAPS("application/x-rtp, media = (string) application, payload = (int) [ 96, 127 ], "
                     "clock-rate = (int) 90000, encoding-name = (string) X-LIDAR-DRACO"));
 static GstStaticPadTemplate src_template = GST_STATIC_PAD_TEMPLATE(
-    "src", GST_PAD_SRC, GST_PAD_ALWAYS,
-    GST_STATIC_CAPS(GST_LIDAR_DRACO_MEDIA_TYPE ", alignment = (string) slice, "
-                                               "geometry = (string) { xyz, range }"));
+    "src", GST_PAD_SRC, GST_PAD_ALWAYS, GST_STATIC_CAPS(GST_LIDAR_CODED_CAPS));
 
 namespace {
 

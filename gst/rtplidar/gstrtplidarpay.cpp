@@ -5,7 +5,7 @@
  * Sends encoded clouds, one slice a buffer, as RTP (docs/wire-format.md).
  *
  * |[
- * gst-launch-1.0 lidartestsrc ! dracoenc ! rtplidarpay ! udpsink host=127.0.0.1 port=5004
+ * gst-launch-1.0 lidartestsrc ! lidarenc ! rtplidarpay ! udpsink host=127.0.0.1 port=5004
  * ]|
  */
 #include "gst/rtplidar/gstrtplidarpay.h"
@@ -59,9 +59,7 @@ G_DEFINE_TYPE(GstLidarRtpPay, gst_lidar_rtp_pay, GST_TYPE_RTP_BASE_PAYLOAD)
 GST_ELEMENT_REGISTER_DEFINE(rtplidarpay, "rtplidarpay", GST_RANK_SECONDARY, GST_TYPE_LIDAR_RTP_PAY)
 
 static GstStaticPadTemplate sink_template = GST_STATIC_PAD_TEMPLATE(
-    "sink", GST_PAD_SINK, GST_PAD_ALWAYS,
-    GST_STATIC_CAPS(GST_LIDAR_DRACO_MEDIA_TYPE ", alignment = (string) slice, "
-                                               "geometry = (string) { xyz, range }"));
+    "sink", GST_PAD_SINK, GST_PAD_ALWAYS, GST_STATIC_CAPS(GST_LIDAR_CODED_CAPS));
 static GstStaticPadTemplate src_template = GST_STATIC_PAD_TEMPLATE(
     "src", GST_PAD_SRC, GST_PAD_ALWAYS,
     GST_STATIC_CAPS("application/x-rtp, media = (string) application, payload = (int) [ 96, 127 ], "
@@ -79,10 +77,11 @@ static gboolean gst_lidar_rtp_pay_set_caps(GstRTPBasePayload* base, GstCaps* cap
   State& state = *GST_LIDAR_RTP_PAY(base)->state;
   auto config = lidar::gst::StreamConfigFromCaps(caps);
   if (!config) {
-    GST_ELEMENT_ERROR(base, STREAM, FORMAT,
-                      ("The caps do not describe an encoded cloud that can be sent."),
-                      ("need fields, and a sensor-model with geometry=range: %" GST_PTR_FORMAT,
-                       static_cast<void*>(caps)));
+    GST_ELEMENT_ERROR(
+        base, STREAM, FORMAT, ("The caps do not describe an encoded cloud that can be sent."),
+        ("need packed fields with x, y and z as F32, and a sensor-model with geometry=range: "
+         "%" GST_PTR_FORMAT,
+         static_cast<void*>(caps)));
     return FALSE;
   }
   lidar::gst::PushAggregate(base, state);

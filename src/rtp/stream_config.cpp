@@ -15,13 +15,19 @@ constexpr std::uint8_t kVersion = 1;
 // A fraction of GStreamer's caps is two gint.
 constexpr std::uint32_t kMaxFraction = 0x7FFF'FFFF;
 
+bool IsKnown(Coder coder, Geometry geometry) {
+  if (coder == Coder::kLidar) return geometry == Geometry::kRange;
+  return coder == Coder::kDraco && geometry <= Geometry::kRange;
+}
+
 }  // namespace
 
 std::vector<std::uint8_t> StreamConfig::Serialise() const {
   std::vector<std::uint8_t> bytes;
   ByteWriter w(&bytes);
   w.U8(kVersion);
-  w.U8(static_cast<std::uint8_t>(geometry));
+  w.U8(static_cast<std::uint8_t>(static_cast<unsigned>(coder) << 4 |
+                                 static_cast<unsigned>(geometry)));
   w.Be32(framerate_n);
   w.Be32(framerate_d);
   w.Be16(static_cast<std::uint16_t>(fields.size()));
@@ -35,28 +41,31 @@ std::optional<StreamConfig> StreamConfig::Parse(ByteView bytes) {
   ByteReader r(bytes);
   StreamConfig c;
   const std::uint8_t version = r.U8();
-  c.geometry = static_cast<Geometry>(r.U8());
+  const std::uint8_t coder_and_geometry = r.U8();
+  c.coder = static_cast<Coder>(coder_and_geometry >> 4);
+  c.geometry = static_cast<Geometry>(coder_and_geometry & 15);
   c.framerate_n = r.Be32();
   c.framerate_d = r.Be32();
   const std::uint16_t fields_size = r.Be16();
   const std::uint16_t model_size = r.Be16();
   const ByteView fields = r.Bytes(fields_size);
   const ByteView model = r.Bytes(model_size);
-  if (!r.ok() || r.remaining() != 0 || version != kVersion || c.geometry > Geometry::kRange ||
+  if (!r.ok() || r.remaining() != 0 || version != kVersion || !IsKnown(c.coder, c.geometry) ||
       c.framerate_n > kMaxFraction || c.framerate_d == 0 || c.framerate_d > kMaxFraction) {
     return std::nullopt;
   }
   c.fields.assign(fields.begin(), fields.end());
   c.sensor_model.assign(model.begin(), model.end());
-  if (!PointFields::Parse(c.fields)) return std::nullopt;
+  const auto parsed = PointFields::Parse(c.fields);
+  if (!parsed || !parsed->HasPackedXyz() || !parsed->ArePacked()) return std::nullopt;
   if (!model.empty() && !SensorModel::Parse(model)) return std::nullopt;
   if (c.geometry == Geometry::kRange && model.empty()) return std::nullopt;
   return c;
 }
 
 bool StreamConfig::operator==(const StreamConfig& o) const {
-  return std::tie(geometry, framerate_n, framerate_d, fields, sensor_model) ==
-         std::tie(o.geometry, o.framerate_n, o.framerate_d, o.fields, o.sensor_model);
+  return std::tie(coder, geometry, framerate_n, framerate_d, fields, sensor_model) ==
+         std::tie(o.coder, o.geometry, o.framerate_n, o.framerate_d, o.fields, o.sensor_model);
 }
 
 std::uint8_t ConfigId(const std::vector<std::uint8_t>& config,

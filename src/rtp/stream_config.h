@@ -11,7 +11,11 @@
 
 namespace lidar::rtp {
 
+/// Which coder made the slices; the numbers are part of the format.
+enum class Coder : std::uint8_t { kDraco = 0, kLidar = 1 };
+
 struct StreamConfig {
+  Coder coder = Coder::kDraco;
   Geometry geometry = Geometry::kXyz;
   std::uint32_t framerate_n = 0;  // scans/s; 0/1: not known
   std::uint32_t framerate_d = 1;
@@ -19,7 +23,8 @@ struct StreamConfig {
   std::vector<std::uint8_t> sensor_model;  // serialised and checked; empty: none
 
   std::vector<std::uint8_t> Serialise() const;
-  /// None for another version, a wrong length, or fields or a sensor model that do not parse.
+  /// None for another version or coder, a wrong length, a sensor model that does not parse, or
+  /// fields that no decoder gives: x, y and z as F32 side by side, all packed.
   static std::optional<StreamConfig> Parse(ByteView bytes);
   bool operator==(const StreamConfig& o) const;
   bool operator!=(const StreamConfig& o) const { return !(*this == o); }

@@ -178,6 +178,41 @@ TEST(StreamConfig, IsRefusedWhenAnyPartIsUnusable) {
   EXPECT_FALSE(StreamConfig::Parse({bytes.data(), bytes.size()}));
 }
 
+class UndecodableFields : public ::testing::TestWithParam<const char*> {};
+TEST_P(UndecodableFields, AreRefusedWhereTheyArrive) {
+  StreamConfig c = test::SmallConfig();
+  c.fields = GetParam();
+  const auto bytes = c.Serialise();
+  EXPECT_FALSE(StreamConfig::Parse({bytes.data(), bytes.size()}));
+}
+INSTANTIATE_TEST_SUITE_P(
+    All, UndecodableFields,
+    ::testing::Values("range:U32:0", "x:F64:0,y:F64:8,z:F64:16", "x:F32:0,y:F32:8,z:F32:4",
+                      "x:F32:0,y:F32:4,z:F32:8,range:U32:8",       // overlaps z
+                      "x:F32:0,y:F32:4,z:F32:8,intensity:F32:11",  // overlaps the end of z
+                      "x:F32:0,y:F32:4,z:F32:8,range:U32:1016",    // room that no decoder fills
+                      "x:F32:4,y:F32:8,z:F32:12", "x:F32:0,y:F32:4,z:I32:8"));
+
+TEST(StreamConfig, SaysWhichCoderMadeTheSlices) {
+  StreamConfig config = test::SmallConfig();
+  const auto of_draco = config.Serialise();
+  config.coder = Coder::kLidar;
+  const auto of_lidar = config.Serialise();
+  EXPECT_EQ(of_draco[1], 0x01);  // as it was when Draco's was the only coder
+  EXPECT_EQ(of_lidar[1], 0x11);
+  EXPECT_EQ(StreamConfig::Parse({of_lidar.data(), of_lidar.size()}), config);
+  EXPECT_NE(StreamConfig::Parse({of_draco.data(), of_draco.size()}), config);
+  EXPECT_NE(ConfigId(of_lidar, std::nullopt), ConfigId(of_draco, std::nullopt));
+}
+
+TEST(StreamConfig, IsRefusedOfACoderThatNobodyHas) {
+  for (const int coder_and_geometry : {0x20, 0xF1, 0x10, 0x12}) {
+    auto bytes = test::SmallConfig().Serialise();
+    bytes[1] = static_cast<std::uint8_t>(coder_and_geometry);
+    EXPECT_FALSE(StreamConfig::Parse({bytes.data(), bytes.size()})) << coder_and_geometry;
+  }
+}
+
 TEST(ConfigId, ComesFromTheContentAndNeverRepeatsForAnother) {
   const auto a = test::SmallConfig().Serialise();
   const std::uint8_t id = ConfigId(a, std::nullopt);

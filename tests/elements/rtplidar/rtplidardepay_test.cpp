@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include "src/rtp/packetizer.h"
+#include "src/rtp/stream_config.h"
 #include "tests/elements/rtplidar/slices.h"
 
 namespace lidar::test {
@@ -180,6 +182,60 @@ TEST(RtpLidarDepay, FollowsNewCapsInMidStream) {
     EXPECT_EQ(n, rate);
   }
 }
+
+TEST(RtpLidarDepay, TellsWhichCoderMadeTheSlices) {
+  Harness pay(gst_harness_new("rtplidarpay"));
+  const Harness h = Depay();
+  guint scan = 0;
+  for (const char* type :
+       {GST_LIDAR_SLICE_MEDIA_TYPE, GST_LIDAR_DRACO_MEDIA_TYPE, GST_LIDAR_SLICE_MEDIA_TYPE}) {
+    gst_harness_set_src_caps_str(pay.get(), EncodedCaps("range", 10, type).c_str());
+    for (guint i = 0; i < kSlices; ++i) gst_harness_push(pay.get(), EncodedSlice(scan, i));
+    ++scan;
+    while (GstBuffer* b = gst_harness_try_pull(pay.get())) gst_harness_push(h.get(), b);
+    EXPECT_EQ(Pull(h.get()).size(), kSlices);
+    const gst::CapsPtr caps(gst_pad_get_current_caps(h->sinkpad));
+    EXPECT_STREQ(gst_structure_get_name(gst_caps_get_structure(caps.get(), 0)), type);
+  }
+}
+
+/// A config of `fields` as the packet that comes just before `next`.
+GstBuffer* ConfigBefore(GstBuffer* next, const char* fields) {
+  rtp::StreamConfig config;
+  config.fields = fields;
+  const auto bytes = config.Serialise();
+  rtp::Unit unit;
+  unit.unit = rtp::UnitType::kStreamConfig;
+  unit.config_id = rtp::ConfigId(bytes, std::nullopt);
+  auto packet = rtp::Packetize(unit, {bytes.data(), bytes.size()}, 1'400).at(0).header;
+  packet.insert(packet.end(), bytes.begin(), bytes.end());
+  GstBuffer* buffer = gst_rtp_buffer_new_allocate(static_cast<guint>(packet.size()), 0, 0);
+  GstRTPBuffer of_next = GST_RTP_BUFFER_INIT;
+  GstRTPBuffer rtp = GST_RTP_BUFFER_INIT;
+  gst_rtp_buffer_map(next, GST_MAP_READ, &of_next);
+  gst_rtp_buffer_map(buffer, GST_MAP_WRITE, &rtp);
+  gst_rtp_buffer_set_payload_type(&rtp, 96);
+  gst_rtp_buffer_set_ssrc(&rtp, gst_rtp_buffer_get_ssrc(&of_next));
+  gst_rtp_buffer_set_seq(&rtp, static_cast<guint16>(gst_rtp_buffer_get_seq(&of_next) - 1));
+  std::copy(packet.begin(), packet.end(), static_cast<guint8*>(gst_rtp_buffer_get_payload(&rtp)));
+  gst_rtp_buffer_unmap(&rtp);
+  gst_rtp_buffer_unmap(&of_next);
+  return buffer;
+}
+
+class UndecodableConfigs : public ::testing::TestWithParam<const char*> {};
+TEST_P(UndecodableConfigs, AreCountedAndTheStreamGoesOn) {
+  const Harness h = Depay();
+  const auto packets = Packets(1);
+  EXPECT_EQ(gst_harness_push(h.get(), ConfigBefore(packets[0].get(), GetParam())), GST_FLOW_OK);
+  EXPECT_EQ(Stat(h.get(), "configs-damaged"), 1U);
+  EXPECT_FALSE(gst_pad_has_current_caps(h->sinkpad));
+  Push(h.get(), packets);
+  EXPECT_EQ(Pull(h.get()).size(), kSlices);
+}
+INSTANTIATE_TEST_SUITE_P(All, UndecodableConfigs,
+                         ::testing::Values("range:U32:0", "x:F64:0,y:F64:8,z:F64:16",
+                                           "x:F32:0,y:F32:4,z:F32:8,range:U32:8"));
 
 TEST(RtpLidarDepay, CountsWhatTheEndCutsOffAndRunsAgain) {
   const Harness h = Depay();

@@ -18,12 +18,13 @@ namespace lidar::test {
 constexpr guint64 kCaptureStart = guint64{1'764'000'000} * 1'000'000'000;
 constexpr guint kSlices = 4;
 
-inline std::string EncodedCaps(const char* geometry = "range", int framerate = 10) {
+inline std::string EncodedCaps(const char* geometry = "range", int framerate = 10,
+                               const char* media_type = GST_LIDAR_DRACO_MEDIA_TYPE) {
   SensorModel model;
   model.columns_per_scan = 512;
   model.beams = {{1, 10, 0}, {-1, -10, 4}};
-  gst::CapsPtr caps(gst_caps_new_simple(GST_LIDAR_DRACO_MEDIA_TYPE, "geometry", G_TYPE_STRING,
-                                        geometry, "alignment", G_TYPE_STRING, "slice", "fields",
+  gst::CapsPtr caps(gst_caps_new_simple(media_type, "geometry", G_TYPE_STRING, geometry,
+                                        "alignment", G_TYPE_STRING, "slice", "fields",
                                         G_TYPE_STRING, "x:F32:0,y:F32:4,z:F32:8,range:U32:12",
                                         "framerate", GST_TYPE_FRACTION, framerate, 1, nullptr));
   const gst::BufferPtr bytes(gst::SensorModelToBuffer(model));
