@@ -2,7 +2,7 @@
 /**
  * SECTION:element-dracoenc
  *
- * Encodes point clouds slice by slice, to a bitrate and within an error.
+ * Encodes point clouds of any kind slice by slice with Draco, to a bitrate and within an error.
  *
  * |[
  * gst-launch-1.0 lidartestsrc num-buffers=80 ! dracoenc max-error=0.02 ! dracodec ! fakesink
@@ -10,400 +10,195 @@
  */
 #include "ext/draco/gstdracoenc.h"
 
-#include <memory>
 #include <mutex>
 #include <optional>
+#include <string>
+#include <vector>
 
-#include "ext/draco/enc_coder.h"
-#include "ext/draco/enc_error_report.h"
-#include "ext/draco/enc_model.h"
-#include "ext/draco/enc_range_check.h"
-#include "ext/draco/enc_settings.h"
-#include "ext/draco/enc_stats.h"
-#include "ext/draco/encoded_caps.h"
-#include "gst/common/buffer_map.h"
+#include "ext/draco/draco_check.h"
+#include "ext/draco/draco_settings.h"
+#include "ext/draco/slice_coder.h"
 #include "gst/common/cloud_info.h"
-#include "gst/common/refs.h"
-#include "src/rate/rate_loop.h"
-
-GST_DEBUG_CATEGORY_STATIC(gst_lidar_draco_enc_debug);
-#define GST_CAT_DEFAULT gst_lidar_draco_enc_debug
+#include "gst/common/properties.h"
+#include "src/rate/error_bound.h"
 
 namespace {
 
-using lidar::DataRate;
 using lidar::Geometry;
-using lidar::codec::RangeCoder;
-using lidar::rate::CodingResult;
-using Settings = lidar::gst::EncSettings;
-using lidar::rate::DegradationPreference;
+using lidar::codec::SliceResult;
+using Settings = lidar::gst::DracoSettings;
 
-constexpr guint kPropMinBitrate = lidar::gst::kEncPropertyCount + 1;
-constexpr guint kPropStats = kPropMinBitrate + 1;
-
-/// Of the streaming thread.
-struct Stream {
-  lidar::gst::CloudInfo info;
+/// Belongs to the streaming thread.
+struct Coder {
+  lidar::codec::CloudFormat format;
   std::optional<lidar::draco::SliceEncoder> encoder;
-  std::unique_ptr<lidar::rate::RateLoop> loop;
+  std::optional<lidar::draco::SliceDecoder> decoder;  // for error-check
+  guint max_points = 0;                               // of `decoder`
+  bool with_intensity = false;
+  std::string mode;
   lidar::codec::EncodedSlice slice;
-  std::optional<lidar::gst::RangeCheck> range_check;
-  std::optional<lidar::gst::ErrorReport> error_report;
-  std::optional<guint> scan_id;  // of the last slice
-  guint scans_without_meta = 0;
-  bool discont = false;
-  bool warned_of_reach = false;
-  bool warned_of_ranges = false;
 };
 
 struct State {
-  std::mutex mutex;  // guards settings to stats; never held while pushing, posting or notifying
+  std::mutex mutex;  // guards settings
   Settings settings;
-  std::optional<guint> event_bps;  // from the event target-bitrate
-  guint min_bitrate_bps = 0;
-  lidar::gst::EncStats stats;
-  Stream stream;
+  Coder coder;
 };
+
+const std::array<lidar::gst::Property<Settings>, 3> kProperties = {{
+    {"geometry", "What is coded: ranges or coordinates",
+     lidar::gst::EnumField<Settings, lidar::gst::GeometryChoice>{&Settings::geometry,
+                                                                 lidar::gst::DracoGeometryType}},
+    {"range-coder", "How ranges are coded",
+     lidar::gst::EnumField<Settings, lidar::codec::RangeCoder>{&Settings::range_coder,
+                                                               lidar::gst::DracoRangeCoderType}},
+    {"compression-level",
+     "Draco's compression level for xyz geometry: 0 is its sequential coder, 1-10 its kd-tree",
+     &Settings::level, 0, 10, GST_PARAM_MUTABLE_PLAYING},
+}};
 
 }  // namespace
 
 struct _GstLidarDracoEnc {
-  GstElement parent;
-  GstPad* sink;
-  GstPad* src;
+  GstLidarEncoder parent;
   State* state;
 };
 
-G_DEFINE_TYPE(GstLidarDracoEnc, gst_lidar_draco_enc, GST_TYPE_ELEMENT)
+G_DEFINE_TYPE(GstLidarDracoEnc, gst_lidar_draco_enc, GST_TYPE_LIDAR_ENCODER)
 GST_ELEMENT_REGISTER_DEFINE(dracoenc, "dracoenc", GST_RANK_NONE, GST_TYPE_LIDAR_DRACO_ENC)
 
 namespace {
 
-Settings Snapshot(State* state) {
-  std::lock_guard lock(state->mutex);
-  return state->settings;
+Coder& CoderOf(GstLidarEncoder* base) { return GST_LIDAR_DRACO_ENC(base)->state->coder; }
+
+Settings Snapshot(GstLidarEncoder* base) {
+  State& state = *GST_LIDAR_DRACO_ENC(base)->state;
+  std::lock_guard lock(state.mutex);
+  return state.settings;
 }
 
-/// The bitrate to keep to; 0: none.
-guint EffectiveBitrate(const State& state) {
-  return state.event_bps.value_or(state.settings.bitrate_bps);
-}
+}  // namespace
 
-GstCaps* EncodedCaps(const Stream& stream, const Settings& settings) {
-  lidar::gst::EncodedInfo encoded;
-  encoded.geometry = stream.encoder->geometry();
-  encoded.fields = lidar::codec::KeptFields(stream.info.fields, settings.intensity_bits > 0,
-                                            encoded.geometry == Geometry::kRange);
-  encoded.framerate_n = stream.info.framerate_n;
-  encoded.framerate_d = stream.info.framerate_d;
-  encoded.sensor_model = stream.info.sensor_model;
-  return encoded.ToCaps();
-}
-
-gboolean SetCaps(GstLidarDracoEnc* self, GstCaps* caps) {
-  Stream& stream = self->state->stream;
-  const Settings settings = Snapshot(self->state);
-  const auto info = lidar::gst::CloudInfo::FromCaps(caps);
-  stream.encoder.reset();
-  lidar::codec::CloudFormat format;
-  if (info) {
-    format = {{info->fields, info->point_step}, info->height, info->sensor_model};
-    stream.encoder =
-        lidar::draco::SliceEncoder::Create(format, lidar::gst::GeometryOf(settings.geometry),
-                                           static_cast<RangeCoder>(settings.range_coder));
-  }
-  if (stream.encoder && stream.encoder->geometry() == Geometry::kRange &&
-      info->width > info->sensor_model->columns_per_scan) {
-    stream.encoder.reset();
-  }
-  if (!stream.encoder) {
-    GST_ELEMENT_ERROR(
-        self, STREAM, FORMAT,
-        ("This cloud cannot be encoded with geometry=%s.",
-         lidar::gst::GeometryName(settings.geometry)),
-        ("range needs a field range:U32 and a sensor-model with at least as many columns, xyz the "
-         "fields x, y and z as F32 side by side; caps are %" GST_PTR_FORMAT,
-         static_cast<gpointer>(caps)));
-    return FALSE;
-  }
-  stream.encoder->set_threads(settings.threads);
-  stream.range_check.reset();
-  if (stream.encoder->geometry() == Geometry::kRange)
-    stream.range_check = lidar::gst::RangeCheck::Create(format);
-  stream.error_report.emplace(format, stream.encoder->geometry());
-  stream.info = *info;
-  if (!stream.loop) {
-    auto model = lidar::gst::LoadModel(GST_ELEMENT(self), settings);
-    if (!model) return FALSE;
-    stream.loop = std::make_unique<lidar::rate::RateLoop>(std::move(model));
-  }
-  const lidar::gst::CapsPtr encoded(EncodedCaps(stream, settings));
-  const lidar::gst::CapsPtr current(gst_pad_get_current_caps(self->src));
-  if (current && gst_caps_is_equal(current.get(), encoded.get())) return TRUE;
-  return gst_pad_push_event(self->src, gst_event_new_caps(encoded.get()));
-}
-
-gboolean SinkEvent(GstPad* pad, GstObject* parent, GstEvent* event) {
-  auto* self = GST_LIDAR_DRACO_ENC(parent);
-  if (GST_EVENT_TYPE(event) == GST_EVENT_CAPS) {
-    GstCaps* caps = nullptr;
-    gst_event_parse_caps(event, &caps);
-    const gboolean accepted = SetCaps(self, caps);
-    gst_event_unref(event);
-    return accepted;
-  }
-  if (GST_EVENT_TYPE(event) == GST_EVENT_FLUSH_STOP) {
-    self->state->stream.scan_id.reset();
-    self->state->stream.discont = true;
-  }
-  return gst_pad_event_default(pad, parent, event);
-}
-
-gboolean SrcEvent(GstPad* pad, GstObject* parent, GstEvent* event) {
-  auto* self = GST_LIDAR_DRACO_ENC(parent);
-  GstLidarTargetBitrate target;
-  if (!gst_lidar_event_parse_target_bitrate(event, &target))
-    return gst_pad_event_default(pad, parent, event);
-  GST_LOG_OBJECT(self, "target %u bit/s (%s)", target.bitrate, GST_STR_NULL(target.reason));
-  {
-    std::lock_guard lock(self->state->mutex);
-    // 0 would mean no target at all.
-    self->state->event_bps = MAX(target.bitrate, 1);
-  }
-  gst_event_unref(event);
+static gboolean gst_lidar_draco_enc_set_format(GstLidarEncoder* base,
+                                               const GstLidarCloudFormat* cloud,
+                                               gboolean with_intensity,
+                                               GstLidarCodedFormat* coded) {
+  Coder& coder = CoderOf(base);
+  const Settings settings = Snapshot(base);
+  const auto info = lidar::gst::CloudInfo::FromFormat(*cloud);
+  coder = {};
+  coder.format = {{info.fields, info.point_step}, info.height, info.sensor_model};
+  coder.with_intensity = with_intensity != FALSE;
+  coder.encoder = lidar::draco::SliceEncoder::Create(coder.format, settings.wanted_geometry(),
+                                                     settings.range_coder);
+  coded->refusal =
+      "geometry=range needs a field range:U32 and a sensor-model with as many beams and at least "
+      "as many columns, xyz the fields x, y and z as F32 side by side";
+  if (!coder.encoder) return FALSE;
+  const bool range = coder.encoder->geometry() == Geometry::kRange;
+  if (range && info.width > info.sensor_model->columns_per_scan) return FALSE;
+  const auto kept = lidar::codec::KeptFields(info.fields, coder.with_intensity, range);
+  coded->caps =
+      gst_lidar_coded_caps_new(GST_LIDAR_DRACO_MEDIA_TYPE, kept.ToString().c_str(), cloud);
+  gst_caps_set_simple(coded->caps, "geometry", G_TYPE_STRING, range ? "range" : "xyz", nullptr);
+  coded->codes_ranges = range;
   return TRUE;
 }
 
-/// The place of `buffer` in its stream; counts the scan that it starts.
-lidar::rate::SlicePlace PlaceOf(GstLidarDracoEnc* self, GstBuffer* buffer, GstLidarSlice* slice) {
-  Stream& stream = self->state->stream;
-  if (!gst_lidar_buffer_get_slice(buffer, slice)) slice->scan_id = stream.scans_without_meta++;
-  lidar::rate::SlicePlace place{slice->scan_id, slice->slice_index, slice->slice_count, 10};
-  if (stream.info.framerate_n > 0) {
-    place.scans_per_second = static_cast<double>(stream.info.framerate_n) / stream.info.framerate_d;
-  }
-  if (stream.scan_id != slice->scan_id) {
-    std::lock_guard lock(self->state->mutex);
-    self->state->stats.OnScan(place.scans_per_second);
-  }
-  stream.scan_id = slice->scan_id;
-  return place;
+static void gst_lidar_draco_enc_load(GstLidarEncoder* base, const GstLidarRawSlice* raw,
+                                     GstLidarLoadedSlice* loaded) {
+  Coder& coder = CoderOf(base);
+  loaded->level = Snapshot(base).level;
+  coder.encoder->Load({raw->data, raw->size}, raw->first_column, coder.with_intensity);
+  coder.mode = coder.encoder->Mode(loaded->level);
+  coder.max_points = static_cast<guint>(raw->size / coder.format.layout.point_step);
+  loaded->returns = static_cast<guint>(coder.encoder->returns());
+  loaded->extent = coder.encoder->extent_m();
+  loaded->rows = static_cast<guint>(coder.encoder->rows());
+  loaded->has_intensity = coder.encoder->has_intensity();
+  loaded->mode = coder.mode.c_str();
 }
 
-/// Sends the bounds where they have moved.
-void PushBounds(GstLidarDracoEnc* self) {
-  const auto bounds = self->state->stream.loop->controller().TakeChangedBounds();
-  if (!bounds) return;
-  const auto to_bps = [](DataRate r) {
-    return static_cast<guint>(CLAMP(r.bits_per_second(), 1.0, 4e9));
-  };
-  const GstLidarBitrateBounds event{to_bps(bounds->min), to_bps(bounds->max),
-                                    to_bps(bounds->nominal)};
-  {
-    std::lock_guard lock(self->state->mutex);
-    self->state->min_bitrate_bps = event.min_bitrate;
-  }
-  g_object_notify(G_OBJECT(self), "min-bitrate");
-  gst_pad_push_event(self->src, gst_lidar_event_new_bitrate_bounds(&event));
+static void gst_lidar_draco_enc_get_steps(GstLidarEncoder* base, gdouble max_error,
+                                          GstLidarStepRange* steps) {
+  const auto& encoder = *CoderOf(base).encoder;
+  const auto bound = encoder.geometry() == Geometry::kRange
+                         ? lidar::rate::ErrorBound::Range(encoder.range_unit_mm())
+                         : lidar::rate::ErrorBound::Xyz();
+  *steps = {bound.FinestStep(), bound.CoarsestStep(max_error), bound.step_unit()};
 }
 
-lidar::rate::LoopResult EncodeLoaded(GstLidarDracoEnc* self, const lidar::rate::SlicePlace& place) {
-  State& state = *self->state;
-  lidar::rate::LoopSettings loop;
-  std::optional<DataRate> target;
-  unsigned level = 0;
-  {
-    std::lock_guard lock(state.mutex);
-    const Settings& s = state.settings;
-    level = s.level;
-    loop = {s.max_error_m, s.step_m, s.intensity_bits,
-            static_cast<DegradationPreference>(s.degradation)};
-    if (const guint bps = EffectiveBitrate(state); bps > 0) target = DataRate::BitsPerSecond(bps);
-  }
-  const gint64 start_us = g_get_monotonic_time();
-  Stream& stream = state.stream;
-  lidar::gst::EncCoder coder(&*stream.encoder, level, &stream.slice);
-  const auto result = stream.loop->Encode(place, loop, target, &coder);
-  const auto time = static_cast<GstClockTime>(g_get_monotonic_time() - start_us) * GST_USECOND;
-  std::lock_guard lock(state.mutex);
-  state.stats.OnSlice(result, stream.slice, time);
-  return result;
+static void gst_lidar_draco_enc_thin(GstLidarEncoder* base, const guint8* kept, guint rows) {
+  CoderOf(base).encoder->Thin(std::vector<bool>(kept, kept + rows));
 }
 
-/// Where a slice was left out: downstream should not wait for it.
-GstFlowReturn PushGap(GstLidarDracoEnc* self, GstBuffer* buffer) {
-  if (GST_BUFFER_PTS_IS_VALID(buffer)) {
-    gst_pad_push_event(self->src,
-                       gst_event_new_gap(GST_BUFFER_PTS(buffer), GST_BUFFER_DURATION(buffer)));
-  }
-  self->state->stream.discont = true;
-  return GST_FLOW_OK;
+static GstLidarEncodeResult gst_lidar_draco_enc_encode(GstLidarEncoder* base,
+                                                       const GstLidarEncodeSettings* settings,
+                                                       GByteArray* bytes,
+                                                       GstLidarCodedSlice* coded) {
+  Coder& coder = CoderOf(base);
+  coder.encoder->set_threads(settings->threads);
+  const auto result = coder.encoder->Encode(
+      {{settings->max_error, settings->step, settings->intensity_bits}, settings->level},
+      &coder.slice);
+  if (result == SliceResult::kEmpty) return GST_LIDAR_ENCODE_EMPTY;
+  if (result == SliceResult::kOutOfReach) return GST_LIDAR_ENCODE_OUT_OF_REACH;
+  const lidar::codec::EncodedSlice& slice = coder.slice;
+  g_byte_array_append(bytes, slice.bytes.data(), static_cast<guint>(slice.bytes.size()));
+  *coded = {static_cast<guint>(slice.returns), slice.step_m, slice.error_m};
+  return GST_LIDAR_ENCODE_OK;
 }
 
-GstFlowReturn PushSlice(GstLidarDracoEnc* self, GstBuffer* input) {
-  Stream& stream = self->state->stream;
-  const auto& bytes = stream.slice.bytes;
-  GstBuffer* output = gst_buffer_new_memdup(bytes.data(), bytes.size());
-  gst_buffer_copy_into(
-      output, input,
-      static_cast<GstBufferCopyFlags>(GST_BUFFER_COPY_FLAGS | GST_BUFFER_COPY_TIMESTAMPS |
-                                      GST_BUFFER_COPY_META),
-      0, static_cast<gsize>(-1));
-  if (stream.discont) GST_BUFFER_FLAG_SET(output, GST_BUFFER_FLAG_DISCONT);
-  stream.discont = false;
-  PushBounds(self);
-  return gst_pad_push(self->src, output);
+static gboolean gst_lidar_draco_enc_decode(GstLidarEncoder* base, const guint8* data, gsize size,
+                                           GArray* points, GstLidarPointOrder* order) {
+  Coder& coder = CoderOf(base);
+  auto format = coder.format;
+  format.layout = {*lidar::PointFields::Parse("x:F32:0,y:F32:4,z:F32:8,range:U32:12"),
+                   sizeof(GstLidarPoint)};
+  coder.decoder.emplace(format, coder.encoder->geometry(), coder.max_points);
+  const auto shape = coder.decoder->Decode({data, size});
+  if (!shape) return FALSE;
+  g_array_set_size(points, shape->width * shape->height);
+  coder.decoder->Write(reinterpret_cast<guint8*>(points->data));
+  *order = GST_LIDAR_ORDER_PIXELS;
+  if (coder.encoder->geometry() == Geometry::kRange) return TRUE;
+  const auto summary = lidar::draco::CheckDraco({data, size}, coder.max_points);
+  *order = summary && !summary->is_kd_tree ? GST_LIDAR_ORDER_KEPT : GST_LIDAR_ORDER_ANY;
+  return TRUE;
 }
 
-/// Warns once where the cloud was moved after the sensor: what range geometry sends is not moved.
-void CheckRanges(GstLidarDracoEnc* self, lidar::ByteView raw, guint first_column) {
-  Stream& stream = self->state->stream;
-  const auto found = stream.range_check->Find(raw, first_column);
-  if (!found) return;
-  stream.warned_of_ranges = true;
-  GST_ELEMENT_WARNING(self, STREAM, ENCODE,
-                      ("The points of this cloud are not where its ranges and its sensor-model put "
-                       "them; geometry=range sends the ranges. Use geometry=xyz."),
-                      ("the point of beam %u, column %u is %f m away", found->beam, found->column,
-                       found->distance_m));
-}
+static void gst_lidar_draco_enc_reset(GstLidarEncoder* base) { CoderOf(base) = {}; }
 
-void CheckErrors(GstLidarDracoEnc* self, GstBuffer* input, const GstLidarSlice& place,
-                 const lidar::rate::LoopResult& result) {
-  State& state = *self->state;
-  Stream& stream = state.stream;
-  const lidar::gst::CheckedSlice checked{place.scan_id, place.slice_index, result.max_error_m,
-                                         stream.slice.error_m, result.keep_fraction < 1};
-  const auto found = stream.error_report->OnSlice(GST_ELEMENT(self), Snapshot(&state).error_check,
-                                                  input, stream.slice.bytes, checked);
-  if (!found) return;
-  std::lock_guard lock(state.mutex);
-  state.stats.OnErrorCheck(found->errors, found->holds);
-}
-
-/// Loads the points of `buffer` into the encoder; false after an error message.
-bool LoadBuffer(GstLidarDracoEnc* self, GstBuffer* buffer, guint first_column) {
-  Stream& stream = self->state->stream;
-  const lidar::gst::CloudInfo& info = stream.info;
-  const lidar::gst::BufferMap map(buffer, GST_MAP_READ);
-  if (!map) {
-    GST_ELEMENT_ERROR(self, RESOURCE, READ, (nullptr), ("cannot map a buffer"));
-    return false;
-  }
-  const gsize row = gsize{info.point_step} * info.height;
-  if (map.size() % row != 0 || (info.width > 0 && map.size() != info.FrameSize())) {
-    GST_ELEMENT_ERROR(self, STREAM, ENCODE, ("A buffer does not hold the cloud of its caps."),
-                      ("%" G_GSIZE_FORMAT " bytes for %u x %u points of %u bytes", map.size(),
-                       info.width, info.height, info.point_step));
-    return false;
-  }
-  stream.encoder->Load(map.view(), first_column, Snapshot(self->state).intensity_bits > 0);
-  if (stream.range_check && !stream.warned_of_ranges) CheckRanges(self, map.view(), first_column);
-  return true;
-}
-
-GstFlowReturn Chain(GstPad*, GstObject* parent, GstBuffer* buffer) {
-  auto* self = GST_LIDAR_DRACO_ENC(parent);
-  const lidar::gst::BufferPtr input(buffer);
-  Stream& stream = self->state->stream;
-  if (!stream.encoder || !stream.loop) return GST_FLOW_NOT_NEGOTIATED;
-  GstLidarSlice slice;
-  const auto place = PlaceOf(self, buffer, &slice);
-  if (!LoadBuffer(self, buffer, slice.first_column)) return GST_FLOW_ERROR;
-  const auto result = EncodeLoaded(self, place);
-  if (!result.skipped && result.result == CodingResult::kOutOfReach && !stream.warned_of_reach) {
-    stream.warned_of_reach = true;
-    GST_ELEMENT_WARNING(
-        self, STREAM, ENCODE,
-        ("A cloud is too large for max-error and was left out. Raise max-error, or crop "
-         "the cloud."),
-        ("the longest side of its box is %f m", stream.encoder->extent_m()));
-  }
-  if (result.skipped || result.result != CodingResult::kEncoded) return PushGap(self, buffer);
-  CheckErrors(self, buffer, slice, result);
-  return PushSlice(self, buffer);
-}
-
-GstStateChangeReturn ChangeState(GstElement* element, GstStateChange transition) {
-  State& state = *GST_LIDAR_DRACO_ENC(element)->state;
-  if (transition == GST_STATE_CHANGE_READY_TO_PAUSED) {
-    std::lock_guard lock(state.mutex);
-    state.stats = {};
-    state.event_bps.reset();
-    state.min_bitrate_bps = 0;
-  }
-  const auto result =
-      GST_ELEMENT_CLASS(gst_lidar_draco_enc_parent_class)->change_state(element, transition);
-  if (transition == GST_STATE_CHANGE_PAUSED_TO_READY) state.stream = {};
-  return result;
-}
-
-void SetObjectProperty(GObject* object, guint id, const GValue* value, GParamSpec*) {
-  State& state = *GST_LIDAR_DRACO_ENC(object)->state;
-  std::lock_guard lock(state.mutex);
-  lidar::gst::SetProperty(state.settings, lidar::gst::EncProperties()[id - 1], value);
-}
-
-void GetObjectProperty(GObject* object, guint id, GValue* value, GParamSpec*) {
-  State& state = *GST_LIDAR_DRACO_ENC(object)->state;
-  std::lock_guard lock(state.mutex);
-  if (id == kPropStats) {
-    g_value_take_boxed(value, state.stats.ToStructure(EffectiveBitrate(state)));
-  } else if (id == kPropMinBitrate) {
-    g_value_set_uint(value, state.min_bitrate_bps);
-  } else {
-    lidar::gst::GetProperty(state.settings, lidar::gst::EncProperties()[id - 1], value);
-  }
-}
-
-void Finalize(GObject* object) {
+static void gst_lidar_draco_enc_finalize(GObject* object) {
   delete GST_LIDAR_DRACO_ENC(object)->state;
   G_OBJECT_CLASS(gst_lidar_draco_enc_parent_class)->finalize(object);
 }
 
-GstStaticPadTemplate sink_template = GST_STATIC_PAD_TEMPLATE(
+static GstStaticPadTemplate sink_template = GST_STATIC_PAD_TEMPLATE(
     "sink", GST_PAD_SINK, GST_PAD_ALWAYS, GST_STATIC_CAPS(GST_LIDAR_CLOUD_MEDIA_TYPE));
-GstStaticPadTemplate src_template = GST_STATIC_PAD_TEMPLATE(
+static GstStaticPadTemplate src_template = GST_STATIC_PAD_TEMPLATE(
     "src", GST_PAD_SRC, GST_PAD_ALWAYS,
     GST_STATIC_CAPS(GST_LIDAR_DRACO_MEDIA_TYPE
                     ", geometry = (string) { xyz, range }, alignment = (string) slice"));
 
-}  // namespace
-
-static void gst_lidar_draco_enc_init(GstLidarDracoEnc* self) {
-  self->state = new State;
-  self->sink = gst_pad_new_from_static_template(&sink_template, "sink");
-  gst_pad_set_chain_function(self->sink, Chain);
-  gst_pad_set_event_function(self->sink, SinkEvent);
-  gst_element_add_pad(GST_ELEMENT(self), self->sink);
-  self->src = gst_pad_new_from_static_template(&src_template, "src");
-  gst_pad_set_event_function(self->src, SrcEvent);
-  gst_pad_use_fixed_caps(self->src);
-  gst_element_add_pad(GST_ELEMENT(self), self->src);
-}
+static void gst_lidar_draco_enc_init(GstLidarDracoEnc* self) { self->state = new State; }
 
 static void gst_lidar_draco_enc_class_init(GstLidarDracoEncClass* klass) {
-  GST_DEBUG_CATEGORY_INIT(gst_lidar_draco_enc_debug, "dracoenc", 0, "Point-cloud encoder");
   auto* object = G_OBJECT_CLASS(klass);
-  object->set_property = SetObjectProperty;
-  object->get_property = GetObjectProperty;
-  object->finalize = Finalize;
-  lidar::gst::InstallProperties(object, lidar::gst::EncProperties());
-  constexpr auto kReadable = static_cast<GParamFlags>(G_PARAM_READABLE | G_PARAM_STATIC_STRINGS);
-  g_object_class_install_property(
-      object, kPropMinBitrate,
-      g_param_spec_uint("min-bitrate", "min-bitrate",
-                        "What max-error needs, measured [bit/s]; 0 before the first scan", 0,
-                        G_MAXUINT, 0, kReadable));
-  g_object_class_install_property(
-      object, kPropStats,
-      g_param_spec_boxed("stats", "stats", "Counters and the latest settings", GST_TYPE_STRUCTURE,
-                         kReadable));
+  object->finalize = gst_lidar_draco_enc_finalize;
+  lidar::gst::ServeProperties<GstLidarDracoEnc, kProperties>(object);
   auto* element = GST_ELEMENT_CLASS(klass);
   gst_element_class_add_static_pad_template(element, &sink_template);
   gst_element_class_add_static_pad_template(element, &src_template);
-  gst_element_class_set_static_metadata(element, "Point-cloud encoder", "Codec/Encoder/PointCloud",
+  gst_element_class_set_static_metadata(element, "Draco encoder", "Codec/Encoder/PointCloud",
                                         "Compresses point clouds to a bitrate and within an error",
                                         "gst-lidar");
-  element->change_state = ChangeState;
+  auto* encoder = GST_LIDAR_ENCODER_CLASS(klass);
+  encoder->set_format = gst_lidar_draco_enc_set_format;
+  encoder->load = gst_lidar_draco_enc_load;
+  encoder->get_steps = gst_lidar_draco_enc_get_steps;
+  encoder->thin = gst_lidar_draco_enc_thin;
+  encoder->encode = gst_lidar_draco_enc_encode;
+  encoder->decode = gst_lidar_draco_enc_decode;
+  encoder->reset = gst_lidar_draco_enc_reset;
 }

@@ -99,6 +99,21 @@ std::optional<CloudInfo> CloudInfo::FromFrameCaps(const GstCaps* caps, std::stri
   return std::nullopt;
 }
 
+CloudInfo CloudInfo::FromFormat(const GstLidarCloudFormat& format) {
+  CloudInfo info;
+  info.width = format.width;
+  info.height = format.height;
+  info.point_step = format.point_step;
+  info.fields = PointFields::Parse(format.fields).value_or(PointFields());
+  info.framerate_n = format.framerate_n;
+  info.framerate_d = format.framerate_d;
+  if (format.sensor_model != nullptr) {
+    const BufferMap map(format.sensor_model, GST_MAP_READ);
+    if (map) info.sensor_model = SensorModel::Parse(map.view());
+  }
+  return info;
+}
+
 GstCaps* CloudInfo::ToCaps() const {
   GstCaps* caps = gst_caps_new_simple(
       GST_LIDAR_CLOUD_MEDIA_TYPE, "height", G_TYPE_INT, static_cast<gint>(height), "point-step",

@@ -6,7 +6,7 @@
 #include <optional>
 #include <string>
 
-#include "gst/common/gstlidar.h"
+#include "gst/common/gstlidarcloud.h"
 #include "src/cloud/point_fields.h"
 #include "src/cloud/sensor_model.h"
 
@@ -31,6 +31,8 @@ struct CloudInfo {
   /// As FromCaps(), of caps that fix the width as well.
   GST_LIDAR_API static std::optional<CloudInfo> FromFrameCaps(const GstCaps* caps,
                                                               std::string* why = nullptr);
+  /// What a coder was given by its base class, which has checked it.
+  GST_LIDAR_API static CloudInfo FromFormat(const GstLidarCloudFormat& format);
   /// transfer full
   GST_LIDAR_API GstCaps* ToCaps() const;
 

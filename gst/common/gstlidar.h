@@ -14,6 +14,7 @@ G_BEGIN_DECLS
 #define GST_LIDAR_CLOUD_MEDIA_TYPE "application/x-pointcloud2"
 #define GST_LIDAR_DRACO_MEDIA_TYPE "application/x-draco"
 #define GST_LIDAR_ODOMETRY_MEDIA_TYPE "application/x-odometry"
+#define GST_LIDAR_SLICE_MEDIA_TYPE "application/x-lidar-slice"
 #define GST_LIDAR_SLICE_META_NAME "LidarSliceMeta"
 #define GST_LIDAR_ECN_META_NAME "LidarEcnMeta"
 #define GST_LIDAR_POSE_META_NAME "LidarPoseMeta"

@@ -130,10 +130,11 @@ std::string NameOf(const ::testing::TestParamInfo<std::string>& info) {
 // The registry is there only after gst_init, so the elements are named here; the test below keeps
 // the list whole.
 const std::vector<std::string> kElements = {
-    "bitrateadapter",  "dracodec",       "dracoenc",      "ecnudpsink",  "ecnudpsrc",
-    "lidarodometry",   "lidartestsrc",   "ouster_src",    "pcdenc",      "plyenc",
-    "pointcloudparse", "pointcloudview", "rtplidardepay", "rtplidarpay", "scanassembler",
-    "screamrx",        "screamsink",     "screamsrc",     "screamtx"};
+    "bitrateadapter", "lidarenc",      "lidardec",        "dracodec",       "dracoenc",
+    "ecnudpsink",     "ecnudpsrc",     "lidarodometry",   "lidartestsrc",   "ouster_src",
+    "pcdenc",         "plyenc",        "pointcloudparse", "pointcloudview", "rtplidardepay",
+    "rtplidarpay",    "scanassembler", "screamrx",        "screamsink",     "screamsrc",
+    "screamtx"};
 
 std::vector<std::string> Built() {
   gst_init(nullptr, nullptr);
@@ -166,11 +167,14 @@ INSTANTIATE_TEST_SUITE_P(
         "t. ! queue ! pcdenc ! fakesink t. ! queue ! plyenc ! fakesink "
         "t. ! queue ! pointcloudview width=320 height=180 ! fakesink",
         "lidartestsrc is-live=true model=os1-32 mode=512x10 ! scanassembler ! fakesink sync=true",
+        "lidartestsrc model=os1-32 mode=512x10 ! lidarenc ! lidardec ! scanassembler ! fakesink",
         "lidartestsrc model=os1-32 mode=512x10 ! dracoenc ! dracodec ! scanassembler ! fakesink",
+        "lidartestsrc model=os1-32 mode=512x10 ! lidarenc ! rtplidarpay ! rtplidardepay ! lidardec "
+        "! fakesink",
         "lidartestsrc model=os1-32 mode=512x10 ! dracoenc ! rtplidarpay ! rtplidardepay ! dracodec "
         "! fakesink",
-        "lidartestsrc is-live=true model=os1-32 mode=512x10 ! dracoenc ! rtplidarpay ! screamtx ! "
-        "screamrx ! rtplidardepay ! dracodec ! scanassembler ! fakesink"));
+        "lidartestsrc is-live=true model=os1-32 mode=512x10 ! lidarenc ! rtplidarpay ! screamtx ! "
+        "screamrx ! rtplidardepay ! lidardec ! scanassembler ! fakesink"));
 
 TEST_P(TypicalPipelines, PlayFourTimesInARow) {
   if (!IsBuilt(GetParam())) GTEST_SKIP() << "an element is not built";

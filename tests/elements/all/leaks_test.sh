@@ -45,8 +45,9 @@ run parser multifilesrc "location=$folder/%d.bin" stop-index=2 \
   'caps=application/x-pointcloud2,height=32,point-step=20,fields=(string)"x:F32:0,y:F32:4,z:F32:8"' \
   ! pointcloudparse ! fakesink
 run view "${source[@]}" ! pointcloudview width=320 height=180 ! fakesink
-run codec "${source[@]}" ! dracoenc ! dracodec ! scanassembler ! fakesink
-run RTP "${source[@]}" ! dracoenc ! rtplidarpay ! rtplidardepay ! dracodec ! scanassembler ! fakesink
-run SCReAM "${live[@]}" ! dracoenc ! rtplidarpay ! screamtx ! screamrx ! fakesink
+run "own codec" "${source[@]}" ! lidarenc ! lidardec ! scanassembler ! fakesink
+run Draco "${source[@]}" ! dracoenc ! dracodec ! scanassembler ! fakesink
+run RTP "${source[@]}" ! lidarenc ! rtplidarpay ! rtplidardepay ! lidardec ! scanassembler ! fakesink
+run SCReAM "${live[@]}" ! lidarenc ! rtplidarpay ! screamtx ! screamrx ! fakesink
 echo "$passed passed, $failed failed"
 [ "$failed" = 0 ]

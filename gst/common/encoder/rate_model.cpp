@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "ext/draco/enc_model.h"
+#include "gst/common/encoder/rate_model.h"
 
 #include <string>
 
@@ -8,8 +8,8 @@
 
 namespace lidar::gst {
 
-std::unique_ptr<rate::SizeModel> LoadModel(GstElement* element, const EncSettings& s) {
-  const auto kind = static_cast<rate::RateModel>(s.rate_model);
+std::unique_ptr<rate::SizeModel> LoadModel(GstElement* element, const EncoderSettings& s) {
+  const auto kind = s.rate_model;
   if (s.model_location.empty()) return rate::MakeBuiltInModel(kind);
   gchar* text = nullptr;
   gsize size = 0;

@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The rate model that dracoenc's properties ask for.
+// The rate model that an encoder's properties ask for.
 #pragma once
 #include <gst/gst.h>
 
 #include <memory>
 
-#include "ext/draco/enc_settings.h"
+#include "gst/common/encoder/settings.h"
 #include "src/rate/size_model.h"
 
 namespace lidar::gst {
 
 /// Null, and an error posted by `element`, where the file cannot be read or used.
-std::unique_ptr<rate::SizeModel> LoadModel(GstElement* element, const EncSettings& settings);
+std::unique_ptr<rate::SizeModel> LoadModel(GstElement* element, const EncoderSettings& settings);
 
 }  // namespace lidar::gst

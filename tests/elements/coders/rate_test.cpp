@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <gtest/gtest.h>
 
-#include "tests/elements/draco/draco_harness.h"
+#include "tests/elements/coders/coder_harness.h"
 
 namespace lidar::gst {
 namespace {
@@ -33,11 +33,10 @@ guint CountGaps(GstHarness* h) {
   return gaps;
 }
 
-TEST(DracoEnc, KeepsToATargetBitrateThatComesFromDownstream) {
+TEST_P(EitherCoder, KeepsToATargetBitrateThatComesFromDownstream) {
   const SensorModel model = test::RoomSensor();
-  const Harness h(gst_harness_new_parse("dracoenc max-error=0.2 intensity-bits=0 bitrate=1"));
-  const CapsPtr caps(OrganisedInfo(model, 64).ToCaps());
-  gst_harness_set_src_caps(h.get(), gst_caps_ref(caps.get()));
+  const Harness h = Encoder(GetParam(), "max-error=0.2 intensity-bits=0 bitrate=1");
+  SetCaps(h.get(), OrganisedInfo(model, 64));
   // About 4 bits a return.
   const GstLidarTargetBitrate target{640'000, 0, 0, 0, 0, 0, "update"};
   gst_harness_push_upstream_event(h.get(), gst_lidar_event_new_target_bitrate(&target));
@@ -48,11 +47,10 @@ TEST(DracoEnc, KeepsToATargetBitrateThatComesFromDownstream) {
   EXPECT_EQ(CountGaps(h.get()), 0U);
 }
 
-TEST(DracoEnc, TellsDownstreamWhatItsErrorBoundNeeds) {
+TEST_P(EitherCoder, TellsDownstreamWhatItsErrorBoundNeeds) {
   const SensorModel model = test::RoomSensor();
-  const Harness h(gst_harness_new("dracoenc"));
-  const CapsPtr caps(OrganisedInfo(model, 64).ToCaps());
-  gst_harness_set_src_caps(h.get(), gst_caps_ref(caps.get()));
+  const Harness h = Encoder(GetParam());
+  SetCaps(h.get(), OrganisedInfo(model, 64));
   const auto sizes = ScanSizes(h.get(), model, 10);
   GstLidarBitrateBounds bounds{};
   while (const EventPtr event{gst_harness_try_pull_event(h.get())})
@@ -64,13 +62,12 @@ TEST(DracoEnc, TellsDownstreamWhatItsErrorBoundNeeds) {
   EXPECT_LT(bounds.nominal_bitrate, bounds.max_bitrate);
 }
 
-TEST(DracoEnc, SkipsWholeScansEvenlyBelowTheMinimum) {
+TEST_P(EitherCoder, SkipsWholeScansEvenlyBelowTheMinimum) {
   const SensorModel model = test::RoomSensor();
-  const Harness free(gst_harness_new_parse("dracoenc intensity-bits=0"));
-  const Harness tight(gst_harness_new_parse("dracoenc intensity-bits=0"));
-  const CapsPtr caps(OrganisedInfo(model, 64).ToCaps());
-  gst_harness_set_src_caps(free.get(), gst_caps_ref(caps.get()));
-  gst_harness_set_src_caps(tight.get(), gst_caps_ref(caps.get()));
+  const Harness free = Encoder(GetParam(), "intensity-bits=0");
+  const Harness tight = Encoder(GetParam(), "intensity-bits=0");
+  SetCaps(free.get(), OrganisedInfo(model, 64));
+  SetCaps(tight.get(), OrganisedInfo(model, 64));
   const gsize needed = ScanSizes(free.get(), model, 2)[1];
   const GstLidarTargetBitrate target{static_cast<guint>(needed) * 40, 0, 0, 0, 0, 0, "update"};
   gst_harness_push_upstream_event(tight.get(), gst_lidar_event_new_target_bitrate(&target));
@@ -86,14 +83,13 @@ TEST(DracoEnc, SkipsWholeScansEvenlyBelowTheMinimum) {
   EXPECT_EQ(CountGaps(tight.get()), 8 * skipped);
 }
 
-TEST(DracoEnc, ThinsScansInsteadWhereTheFrameRateMattersMore) {
+TEST_P(EitherCoder, ThinsScansInsteadWhereTheFrameRateMattersMore) {
   const SensorModel model = test::RoomSensor();
-  const Harness free(gst_harness_new_parse("dracoenc intensity-bits=0"));
-  const Harness tight(gst_harness_new_parse(
-      "dracoenc name=enc intensity-bits=0 degradation-preference=maintain-framerate"));
-  const CapsPtr caps(OrganisedInfo(model, 64).ToCaps());
-  gst_harness_set_src_caps(free.get(), gst_caps_ref(caps.get()));
-  gst_harness_set_src_caps(tight.get(), gst_caps_ref(caps.get()));
+  const Harness free = Encoder(GetParam(), "intensity-bits=0");
+  const Harness tight =
+      Encoder(GetParam(), "intensity-bits=0 degradation-preference=maintain-framerate");
+  SetCaps(free.get(), OrganisedInfo(model, 64));
+  SetCaps(tight.get(), OrganisedInfo(model, 64));
   const gsize needed = ScanSizes(free.get(), model, 2)[1];
   const GstLidarTargetBitrate target{static_cast<guint>(needed) * 40, 0, 0, 0, 0, 0, "update"};
   gst_harness_push_upstream_event(tight.get(), gst_lidar_event_new_target_bitrate(&target));

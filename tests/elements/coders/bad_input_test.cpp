@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The table "Odd input" of docs/elements/dracoenc.md, in both geometries.
+// The table "Odd input" of docs/elements/dracoenc.md, with every coder.
 #include <glib/gstdio.h>
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 #include <tuple>
 
 #include "src/rate/model_file.h"
-#include "tests/elements/draco/checked_codec.h"
+#include "tests/elements/coders/checked_codec.h"
 
 namespace lidar::gst {
 namespace {
@@ -64,13 +64,13 @@ const CloudCase kClouds[] = {
      }},
 };
 
-class BadClouds : public ::testing::TestWithParam<std::tuple<CloudCase, const char*>> {};
+class BadClouds : public ::testing::TestWithParam<std::tuple<CloudCase, CoderCase>> {};
 
 TEST_P(BadClouds, GiveFinitePointsWithinTheErrorAndNeverStopTheStream) {
-  const auto& [bad, geometry] = GetParam();
-  const bool xyz = std::string(geometry) == "xyz";
+  const auto& [bad, coder] = GetParam();
+  const bool xyz = coder.xyz;
   const SensorModel model = test::RoomSensor();
-  CheckedCodec codec(std::string("error-check=1 geometry=") + geometry);
+  CheckedCodec codec(coder, "error-check=1");
   codec.SetCaps(OrganisedInfo(model, kColumns));
   auto image = test::RoomScan(model, 0, kColumns);
   bad.ranges(&image);
@@ -94,22 +94,16 @@ TEST_P(BadClouds, GiveFinitePointsWithinTheErrorAndNeverStopTheStream) {
 }
 INSTANTIATE_TEST_SUITE_P(All, BadClouds,
                          ::testing::Combine(::testing::ValuesIn(kClouds),
-                                            ::testing::Values("range", "xyz")),
+                                            ::testing::ValuesIn(OurCoders())),
                          [](const auto& c) {
                            return std::string(std::get<0>(c.param).name) + "_" +
-                                  std::get<1>(c.param);
+                                  std::get<1>(c.param).name;
                          });
 
-class EitherGeometry : public ::testing::TestWithParam<const char*> {
- protected:
-  static std::string Geometry() { return std::string(" geometry=") + GetParam(); }
-};
-INSTANTIATE_TEST_SUITE_P(All, EitherGeometry, ::testing::Values("range", "xyz"));
-
-TEST_P(EitherGeometry, PassesOverABufferWithoutAnyPoint) {
+TEST_P(AnyCoder, PassesOverABufferWithoutAnyPoint) {
   const SensorModel model = test::RoomSensor();
   CloudInfo info = OrganisedInfo(model, 0);  // of any width
-  CheckedCodec codec(Geometry());
+  CheckedCodec codec(GetParam());
   codec.SetCaps(info);
   GstBuffer* empty = gst_buffer_new();
   GST_BUFFER_PTS(empty) = 0;
@@ -118,13 +112,13 @@ TEST_P(EitherGeometry, PassesOverABufferWithoutAnyPoint) {
   EXPECT_EQ(codec.Errors(), 0U);
 }
 
-TEST_P(EitherGeometry, KeepsTheErrorWhateverTheStepAndTheBitrate) {
+TEST_P(AnyCoder, KeepsTheErrorWhateverTheStepAndTheBitrate) {
   const SensorModel model = test::RoomSensor();
   for (const char* settings :
        {"quantization-step=0", "quantization-step=1e-7", "quantization-step=1000", "bitrate=1",
         "bitrate=4000000000", "rate-model=paper bitrate=500000", "intensity-bits=0",
         "degradation-preference=maintain-framerate bitrate=1"}) {
-    CheckedCodec codec("error-check=1 " + std::string(settings) + Geometry());
+    CheckedCodec codec(GetParam(), "error-check=1 " + std::string(settings));
     codec.SetCaps(OrganisedInfo(model, kColumns));
     unsigned checked = 0;
     for (guint i = 0; i < 24; ++i) {
@@ -139,14 +133,13 @@ TEST_P(EitherGeometry, KeepsTheErrorWhateverTheStepAndTheBitrate) {
   }
 }
 
-/// The error on the bus when dracoenc gets caps with `text` as its model file.
-std::string ErrorWithModelFile(const std::string& text, const std::string& options) {
+/// The error on the bus when an encoder gets caps with `text` as its model file.
+std::string ErrorWithModelFile(const std::string& text, const CoderCase& coder) {
   gchar* name = nullptr;
   g_close(g_file_open_tmp("model-XXXXXX.json", &name, nullptr), nullptr);
   const StringPtr owned(name);
   g_file_set_contents(name, text.c_str(), static_cast<gssize>(text.size()), nullptr);
-  const Harness h(
-      gst_harness_new_parse(("dracoenc model-location=" + std::string(name) + options).c_str()));
+  const Harness h = Encoder(coder, "model-location=" + std::string(name));
   GstBus* bus = gst_bus_new();
   gst_element_set_bus(h->element, bus);
   gst_harness_play(h.get());
@@ -168,19 +161,19 @@ std::string ErrorWithModelFile(const std::string& text, const std::string& optio
   return result;
 }
 
-TEST_P(EitherGeometry, RefusesAModelFileThatIsTruncatedForeignOrFromTheFuture) {
+TEST_P(AnyCoder, RefusesAModelFileThatIsTruncatedForeignOrFromTheFuture) {
   const std::string good =
       R"({"format": "gst-lidar-rate-model", "version": 1, "adaptive": {"modes": {},
     "fallback": {"step": [9, -0.5, 0, 0], "log2-step-range": [-3, 5], "returns": 1,
                  "intensity": [6, 1.5], "intensity-returns": 1}}})";
-  const auto error = [&](const std::string& text) { return ErrorWithModelFile(text, Geometry()); };
+  const auto error = [&](const std::string& text) { return ErrorWithModelFile(text, GetParam()); };
   EXPECT_EQ(error(good), "");
   EXPECT_NE(error(good.substr(0, good.size() / 2)).find("cut off"), std::string::npos);
   EXPECT_NE(error(R"({"format": "recipe", "version": 1})").find("format"), std::string::npos);
   std::string future = good;
   future.replace(future.find("\"version\": 1"), 12, "\"version\": 9");
   EXPECT_NE(error(future).find("version"), std::string::npos) << error(future);
-  EXPECT_NE(ErrorWithModelFile("", Geometry()), "");
+  EXPECT_NE(ErrorWithModelFile("", GetParam()), "");
 }
 
 }  // namespace

@@ -2,7 +2,9 @@
 // Below min-bitrate: what gives, and that sender and receiver say the same about it.
 #include <gtest/gtest.h>
 
-#include "tests/elements/draco/draco_harness.h"
+#include <tuple>
+
+#include "tests/elements/coders/coder_harness.h"
 
 namespace lidar::gst {
 namespace {
@@ -16,15 +18,15 @@ struct PreferenceCase {
 };
 void PrintTo(const PreferenceCase& c, std::ostream* out) { *out << c.name; }
 
-class BelowTheMinimum : public ::testing::TestWithParam<PreferenceCase> {
+class BelowTheMinimum : public ::testing::TestWithParam<std::tuple<CoderCase, PreferenceCase>> {
  protected:
   static Harness Pipeline(const std::string& properties) {
-    Harness h(
-        gst_harness_new_parse(("dracoenc name=enc intensity-bits=0 " + properties +
-                               " ! rtplidarpay ! rtplidardepay name=depay ! dracodec name=dec")
-                                  .c_str()));
-    const CapsPtr caps(OrganisedInfo(Sensor(), 64).ToCaps());
-    gst_harness_set_src_caps(h.get(), gst_caps_ref(caps.get()));
+    const CoderCase& coder = std::get<0>(GetParam());
+    Harness h(gst_harness_new_parse((std::string(coder.encoder) + " name=enc intensity-bits=0 " +
+                                     properties + " ! rtplidarpay ! rtplidardepay name=depay ! " +
+                                     coder.decoder + " name=dec")
+                                        .c_str()));
+    SetCaps(h.get(), OrganisedInfo(Sensor(), 64));
     return h;
   }
   static const SensorModel& Sensor() {
@@ -58,7 +60,7 @@ class BelowTheMinimum : public ::testing::TestWithParam<PreferenceCase> {
 };
 
 TEST_P(BelowTheMinimum, TheReceiverKnowsWhatWasLeftOut) {
-  const PreferenceCase& preference = GetParam();
+  const PreferenceCase& preference = std::get<1>(GetParam());
   const Harness h = Pipeline("degradation-preference=" + std::string(preference.name));
   const guint needed = Needed();
   SetTarget(h.get(), needed / 2);
@@ -68,7 +70,7 @@ TEST_P(BelowTheMinimum, TheReceiverKnowsWhatWasLeftOut) {
   const ElementPtr dec = Find(h.get(), "dec");
   const guint64 skipped = Counter(enc.get(), "scans-skipped");
   EXPECT_EQ(skipped > kScans / 10, preference.skips);
-  // Of those after the last scan that came nobody has heard.
+  // Nobody has heard of those after the last scan that came.
   EXPECT_NEAR(static_cast<double>(Counter(depay.get(), "scans-skipped")),
               static_cast<double>(skipped), preference.skips ? 3 : 0);
   EXPECT_EQ(Counter(depay.get(), "slices-lost"), 0U);
@@ -81,10 +83,12 @@ TEST_P(BelowTheMinimum, TheReceiverKnowsWhatWasLeftOut) {
   EXPECT_EQ(Play(h.get(), kScans, 20), 160U);
   EXPECT_EQ(Counter(dec.get(), "slices-thinned"), thinned);
 }
-INSTANTIATE_TEST_SUITE_P(All, BelowTheMinimum,
-                         ::testing::Values(PreferenceCase{"maintain-accuracy", true, false},
-                                           PreferenceCase{"maintain-framerate", false, true},
-                                           PreferenceCase{"balanced", true, true}));
+INSTANTIATE_TEST_SUITE_P(
+    All, BelowTheMinimum,
+    ::testing::Combine(::testing::ValuesIn(RangeCoders()),
+                       ::testing::Values(PreferenceCase{"maintain-accuracy", true, false},
+                                         PreferenceCase{"maintain-framerate", false, true},
+                                         PreferenceCase{"balanced", true, true})));
 
 }  // namespace
 }  // namespace lidar::gst

@@ -1,28 +1,26 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// dracoenc and dracodec behind each other, and what they say on the bus.
+// An encoder and its decoder behind each other, and what they say on the bus.
 #pragma once
 #include <deque>
 #include <memory>
 #include <string>
 
-#include "tests/elements/draco/draco_harness.h"
+#include "tests/elements/coders/coder_harness.h"
 
 namespace lidar::gst {
 
-/// dracoenc and dracodec with a bus.
+/// A codec with a bus.
 class CheckedCodec {
  public:
-  explicit CheckedCodec(const std::string& properties) : harness_(Codec(properties)) {
+  explicit CheckedCodec(const CoderCase& coder, const std::string& properties = "")
+      : harness_(Codec(coder, properties)) {
     gst_element_set_bus(harness_->element, bus_.get());
   }
   ~CheckedCodec() { gst_element_set_bus(harness_->element, nullptr); }
   CheckedCodec(const CheckedCodec&) = delete;
   CheckedCodec& operator=(const CheckedCodec&) = delete;
 
-  void SetCaps(const CloudInfo& info) {
-    const CapsPtr caps(info.ToCaps());
-    gst_harness_set_src_caps(harness_.get(), gst_caps_ref(caps.get()));
-  }
+  void SetCaps(const CloudInfo& info) { gst::SetCaps(harness_.get(), info); }
   GstHarness* harness() const { return harness_.get(); }
   /// Takes `buffer`, gives the decoded cloud.
   BufferPtr Push(GstBuffer* buffer) {
@@ -57,7 +55,7 @@ class CheckedCodec {
       const GstStructure* s = gst_message_get_structure(message.get());
       if (GST_MESSAGE_TYPE(message.get()) == GST_MESSAGE_WARNING) ++warnings_;
       if (GST_MESSAGE_TYPE(message.get()) == GST_MESSAGE_ERROR) ++errors_;
-      if (s != nullptr && gst_structure_has_name(s, "dracoenc-error-check"))
+      if (s != nullptr && gst_structure_has_name(s, "lidar-error-check"))
         checks_.emplace_back(gst_structure_copy(s));
     }
   }

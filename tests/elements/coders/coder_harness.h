@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Buffers and caps for the tests of dracoenc and dracodec.
+// Coders by name, and buffers and caps for their tests.
 #pragma once
 #include <gtest/gtest.h>
 
@@ -12,11 +12,55 @@
 #include "gst/common/buffer_map.h"
 #include "gst/common/cloud_info.h"
 #include "tests/core/codec/test_clouds.h"
+#include "tests/elements/coders/example_coder.h"
 #include "tests/support/harness.h"
 
 namespace lidar::gst {
 
 using test::Harness;
+
+/// An encoder, which may have properties, and its decoder.
+struct CoderCase {
+  const char* name;
+  const char* encoder;
+  const char* decoder;
+  bool xyz = false;  // codes coordinates
+};
+inline void PrintTo(const CoderCase& c, std::ostream* out) { *out << c.name; }
+
+constexpr CoderCase kLidar{"lidar", "lidarenc", "lidardec"};
+constexpr CoderCase kDraco{"draco", "dracoenc", "dracodec"};
+constexpr CoderCase kDracoXyz{"draco_xyz", "dracoenc geometry=xyz", "dracodec", true};
+
+constexpr CoderCase kExample{"example", "exampleenc", "exampledec", true};
+
+/// Those that code the ranges of organised scans.
+inline std::vector<CoderCase> RangeCoders() {
+#ifdef HAVE_DRACO
+  return {kLidar, kDraco};
+#else
+  return {kLidar};
+#endif
+}
+/// Those that we install.
+inline std::vector<CoderCase> OurCoders() {
+  std::vector<CoderCase> coders = RangeCoders();
+#ifdef HAVE_DRACO
+  coders.push_back(kDracoXyz);
+#endif
+  return coders;
+}
+inline std::vector<CoderCase> AllCoders() {
+  std::vector<CoderCase> coders = OurCoders();
+  coders.push_back(kExample);
+  return coders;
+}
+
+inline Harness Launch(const std::string& description) {
+  static const gboolean registered = example_coder_register(nullptr);
+  EXPECT_TRUE(registered);
+  return Harness(gst_harness_new_parse(description.c_str()));
+}
 
 inline std::vector<float> PointsOf(GstBuffer* buffer, gsize step) {
   const BufferMap map(buffer, GST_MAP_READ);
@@ -65,11 +109,24 @@ inline GstBuffer* OrganisedBuffer(const SensorModel& model, guint columns,
   return buffer;
 }
 
-inline Harness Codec(const std::string& enc_properties) {
-  Harness h(gst_harness_new_parse(
-      ("dracoenc name=enc " + enc_properties + " ! dracodec name=dec").c_str()));
-  return h;
+inline Harness Encoder(const CoderCase& coder, const std::string& properties = "") {
+  return Launch(std::string(coder.encoder) + " name=enc " + properties);
 }
+
+inline Harness Codec(const CoderCase& coder, const std::string& properties = "") {
+  return Launch(std::string(coder.encoder) + " name=enc " + properties + " ! " + coder.decoder +
+                " name=dec");
+}
+
+inline void SetCaps(GstHarness* h, const CloudInfo& info) {
+  const CapsPtr caps(info.ToCaps());
+  gst_harness_set_src_caps(h, gst_caps_ref(caps.get()));
+}
+
+/// What holds with every coder of ranges.
+class EitherCoder : public ::testing::TestWithParam<CoderCase> {};
+/// What holds with every coder.
+class AnyCoder : public ::testing::TestWithParam<CoderCase> {};
 
 inline double LargestDistance(const std::vector<float>& a, const std::vector<float>& b) {
   double largest = 0;

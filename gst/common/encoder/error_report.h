@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Messages of an encoder about the point errors that it measured.
+#pragma once
+#include <memory>
+#include <optional>
+
+#include "gst/common/gstlidarencoder.h"
+#include "src/base/byte_reader.h"
+#include "src/cloud/point_errors.h"
+#include "src/cloud/point_fields.h"
+
+namespace lidar::gst {
+
+struct CheckedSlice {
+  guint scan_id = 0;
+  guint slice_index = 0;
+  double max_error_m = 0;  // what was asked for
+  double bound_m = 0;      // what the step of the grid promises
+  bool thinned = false;    // points were left out on purpose
+};
+
+/// Decodes every n-th slice again, and posts its real errors as lidar-error-check. A warning
+/// tells of the first of several that break max_error_m. For the streaming thread.
+class ErrorReport {
+ public:
+  struct Outcome {
+    PointErrors errors;
+    bool holds = false;
+  };
+
+  ErrorReport(GstLidarEncoder* encoder, const PointFields& fields, guint point_step);
+  /// `raw` became `coded`. None where this slice is not one of every `every` (0: of none).
+  std::optional<Outcome> OnSlice(guint every, ByteView raw, ByteView coded,
+                                 const CheckedSlice& slice);
+
+ private:
+  struct FreePoints {
+    void operator()(GArray* points) const { g_array_unref(points); }
+  };
+  bool IsDue(guint every);
+  std::optional<PointErrors> Measure(ByteView raw, ByteView coded);
+  void Warn(const CheckedSlice& slice, const std::optional<PointErrors>& errors);
+  void Post(const CheckedSlice& slice, const Outcome& outcome);
+
+  GstLidarEncoder* encoder_;
+  PointFields fields_;
+  guint point_step_;
+  std::unique_ptr<GArray, FreePoints> points_;
+  guint left_out_ = 0;  // slices until the next check
+  bool warned_ = false;
+};
+
+}  // namespace lidar::gst

@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// What a user sets of any encoder.
+#pragma once
+#include <gst/gst.h>
+
+#include <string>
+
+#include "src/base/units.h"
+#include "src/rate/model_file.h"
+#include "src/rate/scan_plan.h"
+
+namespace lidar::gst {
+
+struct EncoderSettings {
+  guint bitrate_bps = 0;
+  gdouble max_error_m = 0.02;
+  gdouble step_m = 0;
+  guint intensity_bits = 5;
+  rate::RateModel rate_model = rate::RateModel::kAdaptive;
+  std::string model_location;
+  rate::DegradationPreference degradation = rate::DegradationPreference::kMaintainAccuracy;
+  guint threads = 1;
+  guint error_check = 0;
+  Duration stats_interval{};
+};
+
+GType RateModelType();
+GType DegradationPreferenceType();
+
+}  // namespace lidar::gst

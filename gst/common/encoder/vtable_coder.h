@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// The methods of an encoder's class as the rate loop sees a coder.
+#pragma once
+#include <memory>
+#include <vector>
+
+#include "gst/common/gstlidarencoder.h"
+#include "src/base/byte_reader.h"
+#include "src/rate/slice_coder.h"
+
+namespace lidar::gst {
+
+/// For the streaming thread of `encoder`, which owns it.
+class VtableCoder final : public rate::SliceCoder {
+ public:
+  explicit VtableCoder(GstLidarEncoder* encoder);
+
+  void Load(const GstLidarRawSlice& raw);
+  void set_threads(guint threads) { threads_ = threads; }
+  /// Of the last Encode().
+  ByteView bytes() const { return {bytes_->data, bytes_->len}; }
+
+  rate::LoadedSlice loaded() const override { return loaded_; }
+  rate::StepRange Steps(double max_error_m) const override;
+  void Thin(const std::vector<bool>& kept) override;
+  rate::CodingResult Encode(double max_error_m, const rate::Settings& settings,
+                            rate::CodedSlice* slice) override;
+
+ private:
+  struct FreeBytes {
+    void operator()(GByteArray* bytes) const { g_byte_array_unref(bytes); }
+  };
+
+  GstLidarEncoder* encoder_;
+  GstLidarEncoderClass* class_;
+  std::unique_ptr<GByteArray, FreeBytes> bytes_;
+  rate::LoadedSlice loaded_;
+  guint threads_ = 1;
+};
+
+}  // namespace lidar::gst

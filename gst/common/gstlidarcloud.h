@@ -1,0 +1,42 @@
+/* SPDX-License-Identifier: LGPL-2.1-or-later */
+/* Raw clouds as coders meet them: GstLidarEncoder encodes them, GstLidarDecoder gives them. */
+#pragma once
+#include <gst/lidar/gstlidar.h>
+
+G_BEGIN_DECLS
+
+/** The caps of a raw cloud. All pointers are the caller's, and valid until the call returns. */
+typedef struct {
+  guint width;         /* columns; 0: the caps do not say */
+  guint height;        /* beams; 1: the cloud has no rows */
+  guint point_step;    /* bytes a point, gaps between its fields included */
+  const gchar* fields; /* names, types and offsets: "x:F32:0,y:F32:4,z:F32:8" */
+  gint framerate_n;    /* scans/s; 0/1: not known */
+  gint framerate_d;
+  GstBuffer* sensor_model; /* as in the caps (docs/wire-format.md); NULL: none */
+} GstLidarCloudFormat;
+
+/**
+ * Where a field is in a point [bytes], or -1 where there is none of that @name and @type.
+ * Types are I8, U8, I16, U16, I32, U32, F32 and F64; integers and floats are little-endian.
+ */
+GST_LIDAR_API gint gst_lidar_cloud_format_get_offset(const GstLidarCloudFormat* cloud,
+                                                     const gchar* name, const gchar* type);
+
+/**
+ * Caps of @media_type for slices that are encoded from @cloud: alignment=slice, framerate, the
+ * sensor model where there is one, and @fields, which are those of the cloud that a decoder gives,
+ * packed, x, y and z as F32 among them. Transfer full.
+ */
+GST_LIDAR_API GstCaps* gst_lidar_coded_caps_new(const gchar* media_type, const gchar* fields,
+                                                const GstLidarCloudFormat* cloud);
+
+/** A decoded point. A pixel without a return is all zero. */
+typedef struct {
+  gfloat x; /* m */
+  gfloat y;
+  gfloat z;
+  guint32 range; /* mm; 0 where the coder codes no ranges */
+} GstLidarPoint;
+
+G_END_DECLS

@@ -1,0 +1,362 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "gst/common/gstlidardecoder.h"
+
+#include <algorithm>
+#include <mutex>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "gst/common/buffer_map.h"
+#include "gst/common/cloud_info.h"
+#include "gst/common/message_timer.h"
+#include "gst/common/properties.h"
+#include "gst/common/refs.h"
+#include "gst/common/stats.h"
+
+GST_DEBUG_CATEGORY_STATIC(gst_lidar_decoder_debug);
+#define GST_CAT_DEFAULT gst_lidar_decoder_debug
+
+namespace {
+
+using lidar::gst::CloudInfo;
+
+struct Settings {
+  guint max_points = 1U << 20;
+  lidar::Duration stats_interval{};
+};
+
+struct Counters {
+  guint64 slices = 0;
+  guint64 slices_dropped = 0;
+  guint64 slices_thinned = 0;
+  guint64 points = 0;  // missing returns included
+  guint64 bytes = 0;
+  GstClockTime decode_time = 0;
+  GstClockTime last_decode_time = 0;
+  GstLidarDecodedSlice last{0, 0, 0, 0, 0, 1};
+};
+
+gdouble LastStep(const Counters& c) { return c.last.step; }
+gdouble LastErrorBound(const Counters& c) { return c.last.error_bound; }
+guint LastIntensityBits(const Counters& c) { return c.last.intensity_bits; }
+gdouble LastKeepFraction(const Counters& c) { return c.last.keep_fraction; }
+guint64 MeanDecodeTime(const Counters& c) { return c.slices > 0 ? c.decode_time / c.slices : 0; }
+
+const std::array<lidar::gst::Stat<Counters>, 11> kStats = {{
+    {"slices", &Counters::slices},
+    {"slices-dropped", &Counters::slices_dropped},
+    {"slices-thinned", &Counters::slices_thinned},
+    {"points", &Counters::points},
+    {"bytes", &Counters::bytes},
+    {"step", LastStep},
+    {"error-bound", LastErrorBound},
+    {"intensity-bits", LastIntensityBits},
+    {"keep-fraction", LastKeepFraction},
+    {"decode-time", &Counters::last_decode_time},
+    {"mean-decode-time", MeanDecodeTime},
+}};
+
+/// Belongs to the streaming thread.
+struct Stream {
+  std::optional<CloudInfo> cloud;  // of what is given out; its size is that of the last caps
+  guint max_points = 0;
+  bool has_size = false;  // caps for `cloud` have been pushed
+  bool discont = false;
+  std::vector<lidar::gst::EventPtr> pending;  // sticky, to follow the first caps
+  lidar::gst::MessageTimer stats_timer;
+};
+
+}  // namespace
+
+struct _GstLidarDecoderState {
+  GstPad* sink = nullptr;
+  GstPad* src = nullptr;
+
+  std::mutex mutex;  // guards settings and counters; never held while pushing or posting
+  Settings settings;
+  Counters counters;
+
+  Stream stream;
+};
+
+G_DEFINE_ABSTRACT_TYPE(GstLidarDecoder, gst_lidar_decoder, GST_TYPE_ELEMENT)
+
+namespace {
+
+using State = GstLidarDecoderState;
+
+lidar::gst::StructurePtr Stats(GObject* object) {
+  State& state = *GST_LIDAR_DECODER(object)->state;
+  std::lock_guard lock(state.mutex);
+  return lidar::gst::ToStructure("lidar-decoder-stats", kStats, state.counters);
+}
+
+const std::array<lidar::gst::Property<Settings>, 3> kProperties = {{
+    {"max-points", "Slices of more points are dropped, before anything is allocated for them",
+     &Settings::max_points, 1, 1U << 24},
+    {"stats", "Counters", Stats},
+    {"stats-interval", "Posts stats as an element message that often; 0: never [ns]",
+     &Settings::stats_interval, 0, 0, GST_PARAM_MUTABLE_PLAYING},
+}};
+
+Settings Snapshot(State* state) {
+  std::lock_guard lock(state->mutex);
+  return state->settings;
+}
+
+/// The cloud that slices of `caps` hold, but for its size; none where the caps contradict
+/// themselves. A file needs no more caps than its name.
+std::optional<CloudInfo> CloudOf(const GstCaps* caps) {
+  const GstStructure* s = gst_caps_get_structure(caps, 0);
+  const gchar* fields = gst_structure_get_string(s, "fields");
+  CloudInfo cloud;
+  auto parsed = lidar::PointFields::Parse(fields != nullptr ? fields : "x:F32:0,y:F32:4,z:F32:8");
+  if (!parsed || !parsed->HasPackedXyz()) return std::nullopt;
+  cloud.fields = *std::move(parsed);
+  cloud.point_step = cloud.fields.MinimumStep();
+  gst_structure_get_fraction(s, "framerate", &cloud.framerate_n, &cloud.framerate_d);
+  cloud.sensor_model = lidar::gst::SensorModelFromStructure(s);
+  if (cloud.sensor_model) cloud.height = static_cast<guint>(cloud.sensor_model->beams.size());
+  return cloud;
+}
+
+/// Asks the subclass whether it can decode `cloud`, and takes out of it what will not come.
+bool AskSubclass(GstLidarDecoder* self, GstCaps* caps, CloudInfo* cloud,
+                 GstLidarDecodedFormat* decoded) {
+  const std::string fields = cloud->fields.ToString();
+  const lidar::gst::BufferPtr model(
+      cloud->sensor_model ? lidar::gst::SensorModelToBuffer(*cloud->sensor_model) : nullptr);
+  const GstLidarCloudFormat format{0,
+                                   cloud->height,
+                                   cloud->point_step,
+                                   fields.c_str(),
+                                   cloud->framerate_n,
+                                   cloud->framerate_d,
+                                   model.get()};
+  decoded->refusal = "the coder is another";
+  if (!GST_LIDAR_DECODER_GET_CLASS(self)->set_format(self, caps, &format, decoded)) return false;
+  // Rows of pixels may always have gaps: caps should not change with them.
+  cloud->is_dense = decoded->is_organised == FALSE;
+  if (!decoded->is_organised) cloud->sensor_model.reset();
+  return true;
+}
+
+gboolean SetCaps(GstLidarDecoder* self, GstCaps* caps) {
+  Stream& stream = self->state->stream;
+  stream.has_size = false;
+  stream.max_points = Snapshot(self->state).max_points;
+  stream.cloud = CloudOf(caps);
+  GstLidarDecodedFormat decoded{};
+  decoded.refusal = "their fields lack x, y and z as F32 side by side";
+  if (stream.cloud && AskSubclass(self, caps, &*stream.cloud, &decoded)) return TRUE;
+  stream.cloud.reset();
+  GST_ELEMENT_ERROR(self, STREAM, FORMAT,
+                    ("The caps of this stream cannot be decoded: %s.", decoded.refusal),
+                    ("caps are %" GST_PTR_FORMAT, static_cast<gpointer>(caps)));
+  return FALSE;
+}
+
+void PushPending(GstLidarDecoder* self) {
+  for (auto& event : std::exchange(self->state->stream.pending, {}))
+    gst_pad_push_event(self->state->src, event.release());
+}
+
+/// Only the data tell the size of the cloud.
+bool PushCaps(GstLidarDecoder* self, const GstLidarDecodedSlice& slice) {
+  Stream& stream = self->state->stream;
+  CloudInfo& cloud = *stream.cloud;
+  if (stream.has_size && slice.width == cloud.width && slice.height == cloud.height) return true;
+  cloud.width = slice.width;
+  cloud.height = slice.height;
+  const lidar::gst::CapsPtr caps(cloud.ToCaps());
+  GST_DEBUG_OBJECT(self, "giving %" GST_PTR_FORMAT, static_cast<gpointer>(caps.get()));
+  if (!gst_pad_push_event(self->state->src, gst_event_new_caps(caps.get()))) return false;
+  stream.has_size = true;
+  PushPending(self);
+  return true;
+}
+
+/// Sticky events have their order: caps, segment, and then the others. True where `event` has to
+/// wait for caps, which come with the first slice.
+bool WaitsForCaps(GstEvent* event) {
+  return GST_EVENT_IS_SERIALIZED(event) && GST_EVENT_IS_STICKY(event) &&
+         GST_EVENT_TYPE(event) > GST_EVENT_CAPS && GST_EVENT_TYPE(event) != GST_EVENT_EOS;
+}
+
+/// As on a pad: a later event takes the place of one of its kind.
+void HoldBack(Stream* stream, GstEvent* event) {
+  const GstStructure* what = gst_event_get_structure(event);
+  const auto same = [&](const lidar::gst::EventPtr& held) {
+    return GST_EVENT_TYPE(held.get()) == GST_EVENT_TYPE(event) &&
+           (what == nullptr || gst_event_has_name(held.get(), gst_structure_get_name(what)));
+  };
+  auto& pending = stream->pending;
+  pending.erase(std::remove_if(pending.begin(), pending.end(), same), pending.end());
+  pending.emplace_back(event);
+}
+
+void OnFlush(Stream* stream) {
+  stream->discont = true;
+  const auto is_segment = [](const auto& e) {
+    return GST_EVENT_TYPE(e.get()) == GST_EVENT_SEGMENT;
+  };
+  auto& pending = stream->pending;
+  pending.erase(std::remove_if(pending.begin(), pending.end(), is_segment), pending.end());
+}
+
+gboolean SinkEvent(GstPad* pad, GstObject* parent, GstEvent* event) {
+  auto* self = GST_LIDAR_DECODER(parent);
+  if (GST_EVENT_TYPE(event) == GST_EVENT_CAPS) {
+    GstCaps* caps = nullptr;
+    gst_event_parse_caps(event, &caps);
+    const gboolean accepted = SetCaps(self, caps);
+    gst_event_unref(event);
+    return accepted;
+  }
+  Stream& stream = self->state->stream;
+  if (GST_EVENT_TYPE(event) == GST_EVENT_FLUSH_STOP) OnFlush(&stream);
+  const bool has_caps = gst_pad_has_current_caps(self->state->src);
+  if (!has_caps && WaitsForCaps(event)) {
+    HoldBack(&stream, event);
+    return TRUE;
+  }
+  if (!has_caps && GST_EVENT_TYPE(event) == GST_EVENT_GAP) {
+    gst_event_unref(event);  // nobody downstream knows yet what the gap is in
+    return TRUE;
+  }
+  if (GST_EVENT_TYPE(event) == GST_EVENT_EOS) PushPending(self);
+  return gst_pad_event_default(pad, parent, event);
+}
+
+void Count(State* state, const GstLidarDecodedSlice& slice, gsize bytes, GstClockTime time) {
+  std::lock_guard lock(state->mutex);
+  Counters& c = state->counters;
+  ++c.slices;
+  c.points += guint64{slice.width} * slice.height;
+  c.bytes += bytes;
+  c.decode_time += time;
+  c.last_decode_time = time;
+  c.last = slice;
+  if (slice.keep_fraction < 1) ++c.slices_thinned;
+}
+
+/// The decoded slice, or null where the stream is bad.
+lidar::gst::BufferPtr DecodeBuffer(GstLidarDecoder* self, GstBuffer* input,
+                                   GstLidarDecodedSlice* slice) {
+  Stream& stream = self->state->stream;
+  auto* klass = GST_LIDAR_DECODER_GET_CLASS(self);
+  const gint64 start_us = g_get_monotonic_time();
+  const lidar::gst::BufferMap in(input, GST_MAP_READ);
+  *slice = {0, 1, 0, 0, 0, 1};
+  if (!in || !klass->decode(self, in.data(), in.size(), stream.max_points, slice)) return nullptr;
+  const gsize points = gsize{slice->width} * slice->height;
+  if (points > stream.max_points) return nullptr;
+  lidar::gst::BufferPtr output(
+      gst_buffer_new_allocate(nullptr, points * stream.cloud->point_step, nullptr));
+  if (!output) return nullptr;
+  {
+    lidar::gst::BufferMap out(output.get(), GST_MAP_WRITE);
+    if (!out) return nullptr;
+    klass->write(self, out.data());
+  }
+  const auto time = static_cast<GstClockTime>(g_get_monotonic_time() - start_us) * GST_USECOND;
+  Count(self->state, *slice, in.size(), time);
+  return output;
+}
+
+GstFlowReturn DropSlice(GstLidarDecoder* self, GstBuffer* input) {
+  State& state = *self->state;
+  GST_WARNING_OBJECT(self, "dropping a slice that cannot be decoded: %" GST_PTR_FORMAT,
+                     static_cast<gpointer>(input));
+  {
+    std::lock_guard lock(state.mutex);
+    ++state.counters.slices_dropped;
+  }
+  state.stream.discont = true;
+  // Before the first caps nobody downstream knows what the gap is in.
+  if (GST_BUFFER_PTS_IS_VALID(input) && gst_pad_has_current_caps(state.src)) {
+    gst_pad_push_event(state.src,
+                       gst_event_new_gap(GST_BUFFER_PTS(input), GST_BUFFER_DURATION(input)));
+  }
+  return GST_FLOW_OK;
+}
+
+/// Where stats-interval asks for it.
+void PostStats(GstLidarDecoder* self) {
+  if (!self->state->stream.stats_timer.IsDue(Snapshot(self->state).stats_interval)) return;
+  gst_element_post_message(
+      GST_ELEMENT(self),
+      gst_message_new_element(GST_OBJECT(self), Stats(G_OBJECT(self)).release()));
+}
+
+GstFlowReturn Chain(GstPad*, GstObject* parent, GstBuffer* buffer) {
+  auto* self = GST_LIDAR_DECODER(parent);
+  const lidar::gst::BufferPtr input(buffer);
+  Stream& stream = self->state->stream;
+  if (!stream.cloud) return GST_FLOW_NOT_NEGOTIATED;
+  GstLidarDecodedSlice slice;
+  lidar::gst::BufferPtr output = DecodeBuffer(self, buffer, &slice);
+  PostStats(self);
+  if (!output) return DropSlice(self, buffer);
+  if (!PushCaps(self, slice)) return GST_FLOW_NOT_NEGOTIATED;
+  gst_buffer_copy_into(
+      output.get(), buffer,
+      static_cast<GstBufferCopyFlags>(GST_BUFFER_COPY_FLAGS | GST_BUFFER_COPY_TIMESTAMPS |
+                                      GST_BUFFER_COPY_META),
+      0, static_cast<gsize>(-1));
+  if (stream.discont) GST_BUFFER_FLAG_SET(output.get(), GST_BUFFER_FLAG_DISCONT);
+  stream.discont = false;
+  return gst_pad_push(self->state->src, output.release());
+}
+
+GstStateChangeReturn ChangeState(GstElement* element, GstStateChange transition) {
+  auto* self = GST_LIDAR_DECODER(element);
+  State& state = *self->state;
+  if (transition == GST_STATE_CHANGE_READY_TO_PAUSED) {
+    std::lock_guard lock(state.mutex);
+    state.counters = {};
+  }
+  const auto result =
+      GST_ELEMENT_CLASS(gst_lidar_decoder_parent_class)->change_state(element, transition);
+  if (transition == GST_STATE_CHANGE_PAUSED_TO_READY) {
+    state.stream = {};
+    auto* klass = GST_LIDAR_DECODER_GET_CLASS(self);
+    if (klass->reset != nullptr) klass->reset(self);
+  }
+  return result;
+}
+
+/// The pad templates are the subclass's, so the pads come when it is known.
+void Constructed(GObject* object) {
+  G_OBJECT_CLASS(gst_lidar_decoder_parent_class)->constructed(object);
+  auto* self = GST_LIDAR_DECODER(object);
+  State& state = *self->state;
+  auto* klass = GST_ELEMENT_GET_CLASS(self);
+  state.sink = gst_pad_new_from_template(gst_element_class_get_pad_template(klass, "sink"), "sink");
+  gst_pad_set_chain_function(state.sink, Chain);
+  gst_pad_set_event_function(state.sink, SinkEvent);
+  gst_element_add_pad(GST_ELEMENT(self), state.sink);
+  state.src = gst_pad_new_from_template(gst_element_class_get_pad_template(klass, "src"), "src");
+  gst_pad_use_fixed_caps(state.src);
+  gst_element_add_pad(GST_ELEMENT(self), state.src);
+}
+
+void Finalize(GObject* object) {
+  delete GST_LIDAR_DECODER(object)->state;
+  G_OBJECT_CLASS(gst_lidar_decoder_parent_class)->finalize(object);
+}
+
+}  // namespace
+
+static void gst_lidar_decoder_init(GstLidarDecoder* self) { self->state = new State; }
+
+static void gst_lidar_decoder_class_init(GstLidarDecoderClass* klass) {
+  GST_DEBUG_CATEGORY_INIT(gst_lidar_decoder_debug, "lidardecoder", 0, "Point-cloud decoders");
+  gst_lidar_init();
+  auto* object = G_OBJECT_CLASS(klass);
+  object->constructed = Constructed;
+  object->finalize = Finalize;
+  lidar::gst::ServeProperties<GstLidarDecoder, kProperties>(object);
+  GST_ELEMENT_CLASS(klass)->change_state = ChangeState;
+}

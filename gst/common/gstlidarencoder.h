@@ -1,0 +1,139 @@
+/* SPDX-License-Identifier: LGPL-2.1-or-later */
+/*
+ * Base class of encoders of point clouds: slices in, slices out (docs/writing-an-encoder.md).
+ *
+ * The base class has the pads `sink` and `src`, the caps, the rate loop, the events target-bitrate
+ * and bitrate-bounds, the properties bitrate, max-error, min-bitrate, quantization-step,
+ * intensity-bits, rate-model, model-location, degradation-preference, threads, error-check, stats
+ * and stats-interval, gaps, DISCONT, flushes and state changes. A subclass brings two pad templates
+ * and codes one slice at one step.
+ *
+ * All virtual methods but reset() run in the streaming thread, one at a time. None is called while
+ * a lock is held.
+ */
+#pragma once
+#include <gst/lidar/gstlidarcloud.h>
+
+G_BEGIN_DECLS
+
+#define GST_TYPE_LIDAR_ENCODER (gst_lidar_encoder_get_type())
+#define GST_LIDAR_ENCODER(object) \
+  (G_TYPE_CHECK_INSTANCE_CAST((object), GST_TYPE_LIDAR_ENCODER, GstLidarEncoder))
+#define GST_LIDAR_ENCODER_CLASS(klass) \
+  (G_TYPE_CHECK_CLASS_CAST((klass), GST_TYPE_LIDAR_ENCODER, GstLidarEncoderClass))
+#define GST_LIDAR_ENCODER_GET_CLASS(object) \
+  (G_TYPE_INSTANCE_GET_CLASS((object), GST_TYPE_LIDAR_ENCODER, GstLidarEncoderClass))
+#define GST_IS_LIDAR_ENCODER(object) (G_TYPE_CHECK_INSTANCE_TYPE((object), GST_TYPE_LIDAR_ENCODER))
+
+typedef struct _GstLidarEncoder GstLidarEncoder;
+typedef struct _GstLidarEncoderClass GstLidarEncoderClass;
+typedef struct _GstLidarEncoderState GstLidarEncoderState;
+
+GST_LIDAR_API GType gst_lidar_encoder_get_type(void);
+
+/** What set_format() answers. */
+typedef struct {
+  GstCaps* caps;         /* of the coded slices, transfer full: gst_lidar_coded_caps_new() */
+  gboolean codes_ranges; /* points come back from ranges and the sensor model: the base class warns
+                            where the positions of a cloud contradict them */
+  const gchar* refusal;  /* static; where FALSE is returned, what the cloud lacks */
+} GstLidarCodedFormat;
+
+/** One slice of a raw cloud, valid until the next call of load(). */
+typedef struct {
+  const guint8* data;
+  gsize size;         /* bytes; whole points, and whole beams where height is above 1 */
+  guint width;        /* columns; the buffer's, where the caps do not say */
+  guint height;       /* beams */
+  guint first_column; /* measurement id of the first column */
+} GstLidarRawSlice;
+
+/** What load() found. */
+typedef struct {
+  guint returns;          /* points that encode() will code */
+  gdouble extent;         /* longest side of the points' box, or the longest range [m] */
+  guint rows;             /* beams or points that thin() chooses from; 0: it cannot */
+  gboolean has_intensity; /* encode() has intensities to code */
+  guint level;            /* highest compression level, for rate models that lower it; or 0 */
+  const gchar* mode;      /* "xyz-" or "range-" and the coder's own name, valid until the next
+                             load(): sizes are learnt for each mode apart. NULL: "xyz-other" */
+} GstLidarLoadedSlice;
+
+/** The steps of a coder's grid that keep to an error [m]. */
+typedef struct {
+  gdouble finest;   /* a finer one codes digits that nobody has */
+  gdouble coarsest; /* no point moves farther than the error; may be below the finest */
+  gdouble unit;     /* steps are finest and any number of these; 0: any step */
+} GstLidarStepRange;
+
+/** What encode() is to do. */
+typedef struct {
+  gdouble max_error;    /* bound of the distance between a point and its decoded point [m] */
+  gdouble step;         /* of the grid [m]. A wish: what max_error does not allow is not taken */
+  guint intensity_bits; /* 0: geometry only */
+  guint level;          /* at most that of GstLidarLoadedSlice */
+  guint threads;        /* at most, for this slice; 1: the calling one */
+} GstLidarEncodeSettings;
+
+/** What encode() did. */
+typedef struct {
+  guint returns;       /* points coded */
+  gdouble step;        /* really used [m] */
+  gdouble error_bound; /* that holds with this step [m] */
+} GstLidarCodedSlice;
+
+typedef enum {
+  GST_LIDAR_ENCODE_OK = 0,
+  GST_LIDAR_ENCODE_EMPTY = 1,       /* nothing that this coder could encode: the slice is a gap */
+  GST_LIDAR_ENCODE_OUT_OF_REACH = 2 /* no grid of this coder keeps to max_error: a gap, a warning */
+} GstLidarEncodeResult;
+
+/** Which point of the raw slice a decoded point stands for. */
+typedef enum {
+  GST_LIDAR_ORDER_PIXELS = 0, /* as many points as the raw slice has, at their places */
+  GST_LIDAR_ORDER_KEPT = 1,   /* the raw points that are finite and not all zero, in their order */
+  GST_LIDAR_ORDER_ANY = 2     /* those in any order: errors are distances to the nearest point */
+} GstLidarPointOrder;
+
+struct _GstLidarEncoder {
+  GstElement parent;
+  /*< private >*/
+  GstLidarEncoderState* state;
+  gpointer padding[GST_PADDING];
+};
+
+struct _GstLidarEncoderClass {
+  GstElementClass parent_class;
+
+  /**
+   * Before the first slice and at each change of caps. @with_intensity: intensity-bits is above 0.
+   * FALSE where this coder cannot encode such clouds; the base class posts the error.
+   */
+  gboolean (*set_format)(GstLidarEncoder* encoder, const GstLidarCloudFormat* cloud,
+                         gboolean with_intensity, GstLidarCodedFormat* coded);
+  /** Takes one slice in; it is the one that the next four methods are about. */
+  void (*load)(GstLidarEncoder* encoder, const GstLidarRawSlice* raw, GstLidarLoadedSlice* loaded);
+  /** Says which steps keep to @max_error. Optional: those of a cubic grid of coordinates. */
+  void (*get_steps)(GstLidarEncoder* encoder, gdouble max_error, GstLidarStepRange* steps);
+  /** Forgets all rows but those whose element of @kept is not 0. Optional if rows are 0. */
+  void (*thin)(GstLidarEncoder* encoder, const guint8* kept, guint rows);
+  /** Appends the coded slice to @bytes, which is empty. May be called again for the same slice. */
+  GstLidarEncodeResult (*encode)(GstLidarEncoder* encoder, const GstLidarEncodeSettings* settings,
+                                 GByteArray* bytes, GstLidarCodedSlice* coded);
+  /**
+   * Decodes a coded slice as a receiver would, for error-check: appends a GstLidarPoint for each
+   * point to @points. FALSE where it cannot be decoded. Optional; without it error-check does
+   * nothing.
+   */
+  gboolean (*decode)(GstLidarEncoder* encoder, const guint8* data, gsize size, GArray* points,
+                     GstLidarPointOrder* order);
+  /** The element went to READY: free what belongs to the stream. Optional. */
+  void (*reset)(GstLidarEncoder* encoder);
+
+  /*< private >*/
+  gpointer padding[GST_PADDING_LARGE];
+};
+
+G_DEFINE_AUTOPTR_CLEANUP_FUNC(GstLidarEncoder, gst_object_unref)
+
+G_END_DECLS

@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// The plugin lidarcodec: our own coder of spinning sensors' scans.
+#include "gst/lidarcodec/gstlidardec.h"
+#include "gst/lidarcodec/gstlidarenc.h"
+
+static gboolean plugin_init(GstPlugin* plugin) {
+  gst_lidar_init();
+  return GST_ELEMENT_REGISTER(lidarenc, plugin) && GST_ELEMENT_REGISTER(lidardec, plugin);
+}
+
+GST_PLUGIN_DEFINE(GST_VERSION_MAJOR, GST_VERSION_MINOR, lidarcodec,
+                  "LiDAR scans compressed within an error bound", plugin_init, VERSION, "LGPL",
+                  PACKAGE, "https://gstreamer.freedesktop.org")

@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// What the base classes do for a coder that they do not know.
+#include <gtest/gtest.h>
+
+#include "gst/common/gstlidarencoder.h"
+#include "tests/elements/coders/checked_codec.h"
+
+namespace lidar::gst {
+namespace {
+
+class ExampleCoder : public ::testing::Test {
+ protected:
+  static const SensorModel& Sensor() {
+    static const SensorModel model = test::RoomSensor();
+    return model;
+  }
+  static GstBuffer* Slice(guint i) {
+    return OrganisedBuffer(Sensor(), 64, {i / 8, i % 8, 8, 64 * (i % 8)});
+  }
+};
+
+TEST_F(ExampleCoder, KeepsToABitrateItNeverHeardOf) {
+  const Harness h = Encoder(kExample, "max-error=0.5 bitrate=5000000");
+  SetCaps(h.get(), OrganisedInfo(Sensor(), 64));
+  double bits = 0;
+  for (guint i = 0; i < 240; ++i) {
+    ASSERT_EQ(gst_harness_push(h.get(), Slice(i)), GST_FLOW_OK);
+    while (const BufferPtr out{gst_harness_try_pull(h.get())})
+      bits += i >= 80 ? 8.0 * static_cast<double>(gst_buffer_get_size(out.get())) : 0;
+  }
+  EXPECT_NEAR(bits / 20 * 10, 5e6, 0.03 * 5e6);
+  guint min_bps = 0;
+  const ElementPtr encoder(gst_bin_get_by_name(GST_BIN(h->element), "enc"));
+  g_object_get(encoder.get(), "min-bitrate", &min_bps, nullptr);
+  EXPECT_GT(min_bps, 0U);
+  EXPECT_LT(min_bps, 5'000'000U);
+}
+
+TEST_F(ExampleCoder, HasItsErrorsMeasured) {
+  CheckedCodec codec(kExample, "error-check=1 max-error=0.03");
+  codec.SetCaps(OrganisedInfo(Sensor(), 64));
+  for (guint i = 0; i < 8; ++i) {
+    GstBuffer* input = Slice(i);
+    EXPECT_TRUE(codec.Push(input));
+    const StructurePtr check = codec.PopCheck();
+    ASSERT_TRUE(check);
+    EXPECT_TRUE(Holds(check.get()));
+    gdouble largest = 0;
+    EXPECT_TRUE(gst_structure_get_double(check.get(), "largest-error", &largest));
+    EXPECT_GT(largest, 0.02);
+    EXPECT_LT(largest, 0.03);
+  }
+  EXPECT_EQ(codec.Warnings(), 0U);
+}
+
+TEST_F(ExampleCoder, IsWarnedOfWhereItsSlicesCannotBeDecoded) {
+  CheckedCodec codec(kExample, "error-check=1");
+  codec.SetCaps(OrganisedInfo(Sensor(), 64));
+  const ElementPtr enc(gst_bin_get_by_name(GST_BIN(codec.harness()->element), "enc"));
+  GstLidarEncoderClass* klass = GST_LIDAR_ENCODER_GET_CLASS(enc.get());
+  const auto decode = klass->decode;
+  klass->decode = [](GstLidarEncoder*, const guint8*, gsize, GArray*, GstLidarPointOrder*) {
+    return FALSE;
+  };
+  codec.Push(Slice(0));
+  codec.Push(Slice(1));
+  klass->decode = decode;
+  EXPECT_EQ(codec.Warnings(), 1U);
+  EXPECT_FALSE(Holds(codec.PopCheck().get()));
+}
+
+TEST_F(ExampleCoder, HasItsDamagedSlicesDropped) {
+  const Harness enc = Encoder(kExample);
+  const Harness dec = Launch("exampledec name=dec");
+  SetCaps(enc.get(), OrganisedInfo(Sensor(), 64));
+  const BufferPtr good(gst_harness_push_and_pull(enc.get(), Slice(0)));
+  gst_harness_set_src_caps(dec.get(), gst_pad_get_current_caps(enc->sinkpad));
+  const gsize size = gst_buffer_get_size(good.get());
+  const ElementPtr decoder(gst_bin_get_by_name(GST_BIN(dec->element), "dec"));
+  guint dropped = 0;
+  for (gsize length = 0; length < size; length += 1 + size / 50, ++dropped) {
+    GstBuffer* cut = gst_buffer_copy_region(good.get(), GST_BUFFER_COPY_ALL, 0, length);
+    EXPECT_EQ(gst_harness_push(dec.get(), cut), GST_FLOW_OK);
+  }
+  EXPECT_EQ(gst_harness_buffers_received(dec.get()), 0U);
+  EXPECT_EQ(Counter(decoder.get(), "slices-dropped"), dropped);
+  EXPECT_EQ(gst_harness_push(dec.get(), gst_buffer_ref(good.get())), GST_FLOW_OK);
+  EXPECT_EQ(gst_harness_buffers_received(dec.get()), 1U);
+}
+
+TEST_F(ExampleCoder, ThinsPointsWhereTheFrameRateMattersMore) {
+  CheckedCodec codec(kExample,
+                     "max-error=0.5 bitrate=2500000 degradation-preference=maintain-framerate");
+  codec.SetCaps(OrganisedInfo(Sensor(), 64));
+  for (guint i = 0; i < 80; ++i) EXPECT_TRUE(codec.Push(Slice(i))) << i;
+  gdouble kept = 1;
+  EXPECT_TRUE(gst_structure_get_double(codec.Stats().get(), "keep-fraction", &kept));
+  EXPECT_LT(kept, 0.8);
+}
+
+}  // namespace
+}  // namespace lidar::gst
