@@ -8,7 +8,7 @@ usage() {
   cat <<'EOF'
 Usage: pipelines/lidar-and-video.sh [options]
 
-Synthetic LiDAR (dracoenc) and camera (openh264enc, through bitrateadapter) -> screamsink -> lidar-link ->
+Synthetic LiDAR (lidarenc) and camera (openh264enc, through bitrateadapter) -> screamsink -> lidar-link ->
 screamsrc -> both depayloaded. One controller, shares by priority. Prints the bitrates each second.
 
   --rate MBITS       capacity of the link [Mbit/s] (default 8)
@@ -33,7 +33,7 @@ while [ $# -gt 0 ]; do
   shift
 done
 source "$(dirname "$0")/environment.sh"
-for element in openh264enc dracoenc screamsink; do
+for element in openh264enc lidarenc screamsink; do
   gst-inspect-1.0 "$element" >/dev/null 2>&1 || { echo "The element $element is missing." >&2; exit 1; }
 done
 
@@ -49,7 +49,7 @@ video_caps='application/x-rtp,media=video,clock-rate=90000,encoding-name=H264'
 gst-launch-1.0 -q \
   screamsrc name=in address=127.0.0.1 port=$((port + 1)) \
   pt-map="application/x-rtp-pt-map,96=(string)\"$lidar_caps\",97=(string)\"$video_caps\"" \
-  in. ! application/x-rtp,media=application ! rtplidardepay ! dracodec ! scanassembler ! \
+  in. ! application/x-rtp,media=application ! rtplidardepay ! lidardec ! scanassembler ! \
   filesink location="$work/scans" sync=false async=false \
   in. ! application/x-rtp,media=video ! rtph264depay ! h264parse ! \
   filesink location="$work/video.h264" sync=false async=false &
@@ -76,7 +76,7 @@ show() {
 
 timeout -s INT "$duration" gst-launch-1.0 -e -m \
   screamsink name=out host=127.0.0.1 port="$port" stats-interval=1000000000 sink_0::priority="$share" \
-  lidartestsrc is-live=true model=os1-64 mode=1024x10 ! queue ! dracoenc max-error=0.05 ! \
+  lidartestsrc is-live=true model=os1-64 mode=1024x10 ! queue ! lidarenc max-error=0.05 ! \
   rtplidarpay pt=96 ! out.sink_0 \
   videotestsrc is-live=true pattern=zone-plate kx2=30 ky2=20 kt=3 ! video/x-raw,width=640,height=480,framerate=30/1 ! \
   queue ! openh264enc complexity=low rate-control=bitrate gop-size=300 ! bitrateadapter min=300000 max=4000000 ! \

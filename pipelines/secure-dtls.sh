@@ -49,14 +49,14 @@ media=media=application,clock-rate=90000,encoding-name=X-LIDAR-DRACO,payload=96
 receive() {
   exec "$launch" --certificate "$folder/edge.pem" --peer-certificate "$folder/robot.crt" --stats rx,depay \
     ecnudpsrc port="$port" caps=application/x-srtp ! capssetter caps=application/x-srtp ! dtlssrtpdec name=dec connection-id=edge \
-    dec.rtp_src ! capssetter caps=application/x-rtp,$media ! screamrx name=rx ! rtplidardepay name=depay ! dracodec ! \
+    dec.rtp_src ! capssetter caps=application/x-rtp,$media ! screamrx name=rx ! rtplidardepay name=depay ! lidardec ! \
     fakesink sync=false async=false \
     rx.rtcp_src ! enc.rtcp_sink_0 dtlssrtpenc name=enc connection-id=edge ! ecnudpsink host=127.0.0.1 port="$back" sync=false async=false
 }
 # send CERTIFICATE SECONDS. packet-overhead: 28 bytes of UDP and IP, 10 of SRTP.
 send() {
   timeout --signal=INT "$2" "$launch" --certificate "$folder/$1.pem" --peer-certificate "$folder/edge.crt" --stats tx \
-    lidartestsrc is-live=true model=os0-32 mode=512x10 ! dracoenc max-error=0.05 ! rtplidarpay ! \
+    lidartestsrc is-live=true model=os0-32 mode=512x10 ! lidarenc max-error=0.05 ! rtplidarpay ! \
     screamtx name=tx packet-overhead=38 ! \
     enc.rtp_sink_0 dtlssrtpenc name=enc connection-id=robot is-client=true ! ecnudpsink host=127.0.0.1 port="$port" sync=false async=false \
     ecnudpsrc port="$back" caps=application/x-srtcp ! capssetter caps=application/x-srtcp ! \

@@ -34,11 +34,11 @@ export LIDAR_SRTP_KEY
 
 log=$(mktemp)
 trap 'kill $receiver 2>/dev/null || true; rm -f "$log"' EXIT
-gst-launch-1.0 screamsrc port="$port" srtp-key=env:LIDAR_SRTP_KEY ! rtplidardepay ! dracodec ! \
+gst-launch-1.0 screamsrc port="$port" srtp-key=env:LIDAR_SRTP_KEY ! rtplidardepay ! lidardec ! \
   identity silent=false ! fakesink sync=false -v >"$log" 2>&1 &
 receiver=$!
 sleep 1
-gst-launch-1.0 -q lidartestsrc is-live=true num-buffers=$((seconds * 80)) ! dracoenc max-error=0.05 ! rtplidarpay ! \
+gst-launch-1.0 -q lidartestsrc is-live=true num-buffers=$((seconds * 80)) ! lidarenc max-error=0.05 ! rtplidarpay ! \
   screamsink host=127.0.0.1 port="$port" srtp-key=env:LIDAR_SRTP_KEY
 sleep 1
 clouds=$(grep -c 'chain.*identity' "$log" || true)

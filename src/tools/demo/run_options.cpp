@@ -74,6 +74,9 @@ void AddSourceOptions(CLI::App* app, RunOptions* o) {
 }
 
 void AddCodecOptions(CLI::App* app, RunOptions* o) {
+  app->add_option("--encoder", o->encoder,
+                  "lidarenc or dracoenc; default: lidarenc, or dracoenc where --geometry is xyz")
+      ->check(CLI::IsMember({"lidarenc", "dracoenc"}));
   app->add_option("--max-error", o->max_error_m, "Largest error of any point [m]")
       ->check(CLI::Range(0.001, 10.0))
       ->capture_default_str();
@@ -139,6 +142,13 @@ void CheckRunOptions(const RunOptions& o) {
   if (o.steps_mbps.empty()) throw std::runtime_error("--steps needs at least one rate");
   if (o.start_bitrate_mbps > o.max_bitrate_mbps)
     throw std::runtime_error("--start-bitrate must not be above --max-bitrate");
+  if (EncoderOf(o) == "lidarenc" && o.geometry == "xyz")
+    throw std::runtime_error("--geometry xyz needs --encoder dracoenc: lidarenc codes ranges");
+}
+
+std::string EncoderOf(const RunOptions& o) {
+  if (!o.encoder.empty()) return o.encoder;
+  return o.geometry == "xyz" ? "dracoenc" : "lidarenc";
 }
 
 double FixedStepOf(const RunOptions& o) {
@@ -194,8 +204,9 @@ std::vector<Duration> ChangesOf(const RunOptions& o) {
 std::string SenderPipeline(const RunOptions& o, Ports ports) {
   const double step = FixedStepOf(o);
   // The queue lets the source keep its time while a slice is encoded.
-  std::string text = SourceOf(o) + " ! queue ! dracoenc name=encoder geometry=" + o.geometry +
-                     " max-error=" + Number(step > 0 ? std::max(step, 0.001) : o.max_error_m);
+  std::string text = SourceOf(o) + " ! queue ! " + EncoderOf(o) + " name=encoder max-error=" +
+                     Number(step > 0 ? std::max(step, 0.001) : o.max_error_m);
+  if (EncoderOf(o) == "dracoenc") text += " geometry=" + o.geometry;
   if (step > 0) text += " quantization-step=" + Number(step);
   text += " ! rtplidarpay name=payloader ! screamsink name=sender host=127.0.0.1 port=" +
           std::to_string(ports.link) + " max-bitrate=" + Bps(o.max_bitrate_mbps) +
@@ -204,10 +215,11 @@ std::string SenderPipeline(const RunOptions& o, Ports ports) {
   return text;
 }
 
-std::string ReceiverPipeline(const RunOptions&, Ports ports) {
+std::string ReceiverPipeline(const RunOptions& o, Ports ports) {
+  const std::string decoder = EncoderOf(o) == "dracoenc" ? "dracodec" : "lidardec";
   return "screamsrc name=receiver address=127.0.0.1 port=" + std::to_string(ports.receiver) +
-         " ! rtplidardepay name=depayloader ! dracodec name=decoder"
-         " ! scanassembler name=assembler ! fakesink sync=false async=false";
+         " ! rtplidardepay name=depayloader ! " + decoder +
+         " name=decoder ! scanassembler name=assembler ! fakesink sync=false async=false";
 }
 
 std::vector<std::string> LinkArguments(const RunOptions& o, Ports ports) {

@@ -29,6 +29,7 @@ struct RunOptions {
   std::string pcap;
   std::string metadata;
   // Encoder
+  std::string encoder;  // empty: the one for the geometry
   double max_error_m = 0.05;
   std::string geometry = "auto";
   double fixed_step_m = 0;
@@ -49,6 +50,8 @@ void AddRunOptions(CLI::App* app, RunOptions* options);
 /// Throws std::runtime_error with a text for the user where options contradict each other.
 void CheckRunOptions(const RunOptions& options);
 
+/// lidarenc, or dracoenc.
+std::string EncoderOf(const RunOptions& options);
 /// Zero where the encoder adapts.
 double FixedStepOf(const RunOptions& options);
 /// The largest distance between a point that was sent and the one that arrived.
