@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Speed of dracoenc and dracodec as elements, from buffer to buffer, one thread.
+// Speed of the coders as elements, from buffer to buffer, one thread.
 #include <benchmark/benchmark.h>
 #include <gst/check/gstharness.h>
 
@@ -35,16 +35,17 @@ double Returns(const Capture& capture) {
   return returns;
 }
 
-/// Range arguments: slices a scan, intensity bits.
-void Elements(benchmark::State& state, const char* launch) {
+/// Range arguments: slices a scan, intensity bits, and whether to decode.
+void Elements(benchmark::State& state, const char* encoder, const char* decoder) {
   gst_init(nullptr, nullptr);
   const std::string folder = std::string(LIDAR_TEST_DATA) + "/ouster/";
   const auto capture = ReadCapture(folder + "OS-1-128_v2.3.0_1024x10_lb_n3.pcap",
                                    folder + "OS-1-128_v2.3.0_1024x10.json",
                                    static_cast<std::uint32_t>(state.range(0)));
   if (!capture || capture->slices.empty()) std::abort();
-  const std::string text =
-      launch + std::to_string(state.range(1)) + (state.range(2) != 0 ? " ! dracodec" : "");
+  const std::string text = std::string(encoder) +
+                           " intensity-bits=" + std::to_string(state.range(1)) +
+                           (state.range(2) != 0 ? std::string(" ! ") + decoder : "");
   GstHarness* h = gst_harness_new_parse(text.c_str());
   gst_harness_set_drop_buffers(h, TRUE);
   gst_harness_set_src_caps(h, CapsOf(*capture).release());
@@ -65,14 +66,17 @@ void Elements(benchmark::State& state, const char* launch) {
   gst_harness_teardown(h);
 }
 
-BENCHMARK_CAPTURE(Elements, dracoenc, "dracoenc intensity-bits=")
-    ->ArgNames({"slices", "intensity", "decode"})
-    ->Args({1, 0, 0})
-    ->Args({8, 0, 0})
-    ->Args({8, 5, 0})
-    ->Args({8, 0, 1})
-    ->Args({8, 5, 1})
-    ->Unit(benchmark::kMillisecond);
+void Arguments(benchmark::internal::Benchmark* benchmark) {
+  benchmark->ArgNames({"slices", "intensity", "decode"})
+      ->Args({1, 0, 0})
+      ->Args({8, 0, 0})
+      ->Args({8, 5, 0})
+      ->Args({8, 0, 1})
+      ->Args({8, 5, 1})
+      ->Unit(benchmark::kMillisecond);
+}
+BENCHMARK_CAPTURE(Elements, lidarenc, "lidarenc", "lidardec")->Apply(Arguments);
+BENCHMARK_CAPTURE(Elements, dracoenc, "dracoenc", "dracodec")->Apply(Arguments);
 
 }  // namespace
 }  // namespace lidar::bench

@@ -5,7 +5,7 @@
  * screamtx and UDP with ECN in one bin; the receiver's feedback comes back on the same socket.
  *
  * |[
- * gst-launch-1.0 lidartestsrc is-live=true ! dracoenc ! rtplidarpay ! screamsink host=127.0.0.1
+ * gst-launch-1.0 lidartestsrc is-live=true ! lidarenc ! rtplidarpay ! screamsink host=127.0.0.1
  * port=5004
  * ]|
  */

@@ -6,7 +6,7 @@
  * the media came from.
  *
  * |[
- * gst-launch-1.0 screamsrc port=5004 ! rtplidardepay ! dracodec ! fakesink
+ * gst-launch-1.0 screamsrc port=5004 ! rtplidardepay ! lidardec ! fakesink
  * ]|
  */
 #include "gst/scream/bin/gstscreamsrc.h"

@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Every coder's slices through what carries them: files, and SRTP under congestion control.
+#include <gio/gio.h>
+#include <glib/gstdio.h>
+#include <gtest/gtest.h>
+
+#include "tests/elements/coders/coder_harness.h"
+#include "tests/elements/scream/pipeline.h"
+
+namespace lidar::gst {
+namespace {
+
+/// The port that a screamsrc with port=0 has bound.
+guint PortOf(GstElement* source) {
+  gst_element_get_state(source, nullptr, nullptr, 5 * GST_SECOND);
+  GSocket* socket = nullptr;
+  g_object_get(source, "used-socket", &socket, nullptr);
+  EXPECT_NE(socket, nullptr);
+  if (socket == nullptr) return 0;
+  GSocketAddress* address = g_socket_get_local_address(socket, nullptr);
+  const guint port = g_inet_socket_address_get_port(G_INET_SOCKET_ADDRESS(address));
+  g_object_unref(address);
+  g_object_unref(socket);
+  return port;
+}
+
+class Transport : public ::testing::TestWithParam<CoderCase> {
+ protected:
+  static std::string Sender(const std::string& properties) {
+    return "lidartestsrc model=os1-32 mode=512x10 slices-per-scan=8 " + properties + " ! " +
+           GetParam().encoder + " ! rtplidarpay";
+  }
+  static std::string Receiver() {
+    return std::string("rtplidardepay name=depay ! ") + GetParam().decoder +
+           " name=dec ! fakesink sync=false async=false";
+  }
+};
+INSTANTIATE_TEST_SUITE_P(Coders, Transport, ::testing::ValuesIn(OurCoders()),
+                         [](const auto& c) { return c.param.name; });
+
+TEST_P(Transport, RecordsAndPlaysThroughAFile) {
+  const StringPtr folder(g_dir_make_tmp("recording-XXXXXX", nullptr));
+  const std::string file = std::string(folder.get()) + "/drive.gdp";
+  test::Pipeline recorder(Sender("num-buffers=24") + " ! gdppay ! filesink location=" + file);
+  recorder.Play();
+  EXPECT_TRUE(recorder.Ends());
+  test::Pipeline player("filesrc location=" + file + " ! gdpdepay ! " + Receiver());
+  player.Play();
+  EXPECT_TRUE(player.Ends());
+  EXPECT_EQ(Counter(player.Get("dec").get(), "slices"), 24U);
+  EXPECT_EQ(Counter(player.Get("depay").get(), "scans-complete"), 3U);
+  g_remove(file.c_str());
+  g_rmdir(folder.get());
+}
+
+TEST_P(Transport, GoesThroughSrtpUnderCongestionControl) {
+  const ElementPtr srtp(gst_element_factory_make("srtpenc", nullptr));
+  if (!srtp) GTEST_SKIP() << "srtpenc (gstreamer1.0-plugins-bad) is not installed";
+  g_setenv("LIDAR_TRANSPORT_KEY", std::string(60, '7').c_str(), TRUE);
+  const std::string key = " srtp-key=env:LIDAR_TRANSPORT_KEY";
+  test::Pipeline receiver("screamsrc name=in address=127.0.0.1 port=0" + key + " ! " + Receiver());
+  receiver.Play();
+  const guint port = PortOf(receiver.Get("in").get());
+  test::Pipeline sender(Sender("is-live=true num-buffers=24") +
+                        " ! screamsink host=127.0.0.1 port=" + std::to_string(port) + key);
+  sender.Play();
+  EXPECT_TRUE(sender.Ends());
+  const ElementPtr dec = receiver.Get("dec");
+  for (int i = 0; i < 250 && Counter(dec.get(), "slices") < 24; ++i) g_usleep(20'000);
+  EXPECT_EQ(Counter(dec.get(), "slices"), 24U);
+  EXPECT_EQ(Counter(dec.get(), "slices-dropped"), 0U);
+}
+
+}  // namespace
+}  // namespace lidar::gst
