@@ -4,6 +4,7 @@
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <string>
 
 #include "gst/common/buffer_map.h"
 #include "gst/common/cloud_info.h"
