@@ -69,6 +69,13 @@ TEST(Sequence, UnwrapsForwardsAndBackwardsOverTheWrap) {
   EXPECT_FALSE(IsNewer<std::uint16_t>(65535, 1));
 }
 
+TEST(Sequence, UnwrapsNextToTheNewestAndNotToTheLast) {
+  SequenceUnwrapper<std::uint16_t> u;
+  EXPECT_EQ(u.Unwrap(40000), 40000);
+  EXPECT_EQ(u.Unwrap(10000), 10000);
+  EXPECT_EQ(u.Unwrap(100), 65636);
+}
+
 TEST(Units, SizeOverTimeIsARate) {
   EXPECT_DOUBLE_EQ((DataSize::Bytes(1250) / 10ms).bits_per_second(), 1e6);
   EXPECT_EQ((DataRate::BitsPerSecond(1e6) * 10ms).bytes(), 1250);

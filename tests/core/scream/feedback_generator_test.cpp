@@ -86,6 +86,23 @@ TEST_F(FeedbackGeneratorTest, TheIntervalShrinksToFiveMillisecondsAtHighRate) {
   EXPECT_LE(generator_.NextDue(), first + 6ms);
 }
 
+TEST_F(FeedbackGeneratorTest, TheIntervalIsFiveMillisecondsAtLeast) {
+  for (std::uint16_t seq = 0; seq < 5000; ++seq) {
+    Arrive(seq);
+    now_ += 20us;  // 400 Mbit/s
+    while (generator_.Take(now_)) {
+    }
+  }
+  const Time last = std::max(generator_.NextDue(), now_);
+  now_ = last + 1ms;
+  Arrive(5000);
+  while (generator_.Take(now_)) {
+  }
+  const Time reported = now_;
+  Arrive(5001);
+  EXPECT_EQ(generator_.NextDue(), reported + 5ms);
+}
+
 TEST_F(FeedbackGeneratorTest, AChangeToCeAndBackIsReportedNoFasterThanEveryFiveMilliseconds) {
   Begin();
   now_ += 1ms;

@@ -36,6 +36,11 @@ class ReferenceWindowTest : public ::testing::Test {
   Reaction reaction_ = Reaction::kNone;
 };
 
+TEST_F(ReferenceWindowTest, IsNeverSetBelowItsMinimum) {
+  window_.Set(DataSize::Bytes(1));
+  EXPECT_EQ(window_.ref_wnd(), parameters_.min_ref_wnd);
+}
+
 TEST_F(ReferenceWindowTest, LossScalesByBetaLoss) {
   signals_.loss_detected = true;
   EXPECT_NEAR(Factor(), 0.7, 1e-4);
