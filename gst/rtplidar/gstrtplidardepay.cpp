@@ -58,10 +58,12 @@ struct State {
   Receiver receiver{ReorderTime(Settings{})};
   guint64 not_rtp = 0;
   guint64 wrong_payload_type = 0;
+  guint64 not_accepted = 0;
 
   // The rest belongs to the streaming thread.
   std::optional<gint> payload_type;                        // of the caps
   std::shared_ptr<const lidar::rtp::StreamConfig> config;  // of the caps on the src pad
+  bool warned_of_coder = false;
   lidar::Time now;
   GstPadChainFunction base_chain = nullptr;
 };
@@ -106,6 +108,26 @@ GstBuffer* ToBuffer(ReceivedSlice* slice) {
   return buffer;
 }
 
+/// Sets the caps of `config`. False, and a warning the first time, where the next element does not
+/// take them: a stream of another coder must not end the pipeline, as anyone may send one.
+bool SetCapsOf(GstRTPBaseDepayload* base, const lidar::rtp::StreamConfig& config) {
+  State& state = *GST_LIDAR_RTP_DEPAY(base)->state;
+  const CapsPtr caps(lidar::gst::StreamConfigToCaps(config));
+  if (gst_pad_peer_query_accept_caps(base->srcpad, caps.get())) {
+    gst_pad_set_caps(base->srcpad, caps.get());
+    return true;
+  }
+  if (state.warned_of_coder || GST_PAD_IS_FLUSHING(base->srcpad)) return false;
+  state.warned_of_coder = true;
+  const bool own = config.coder == lidar::rtp::Coder::kLidar;
+  GST_ELEMENT_WARNING(base, STREAM, WRONG_TYPE,
+                      ("The slices of this stream are for %s, and the next element does not take "
+                       "them. They are dropped.",
+                       own ? "lidardec" : "dracodec"),
+                      ("caps are %" GST_PTR_FORMAT, static_cast<void*>(caps.get())));
+  return false;
+}
+
 /// Pushes the slices, those of one config as one list.
 void PushSlices(GstRTPBaseDepayload* base, std::vector<ReceivedSlice> slices) {
   State& state = *GST_LIDAR_RTP_DEPAY(base)->state;
@@ -116,9 +138,13 @@ void PushSlices(GstRTPBaseDepayload* base, std::vector<ReceivedSlice> slices) {
   for (ReceivedSlice& slice : slices) {
     if (state.config != slice.config) {
       flush();
-      state.config = slice.config;
-      const CapsPtr caps(lidar::gst::StreamConfigToCaps(*slice.config));
-      gst_pad_set_caps(base->srcpad, caps.get());
+      // What was refused is asked again: a flush refuses, too.
+      state.config = SetCapsOf(base, *slice.config) ? slice.config : nullptr;
+    }
+    if (!state.config) {
+      std::lock_guard lock(state.mutex);
+      ++state.not_accepted;
+      continue;
     }
     if (!list) list.reset(gst_buffer_list_new());
     gst_buffer_list_add(list.get(), ToBuffer(&slice));
@@ -215,7 +241,8 @@ static GstStateChangeReturn gst_lidar_rtp_depay_change_state(GstElement* element
   if (transition == GST_STATE_CHANGE_READY_TO_PAUSED) {
     std::lock_guard lock(state.mutex);
     state.receiver = Receiver(ReorderTime(state.settings));
-    state.not_rtp = state.wrong_payload_type = 0;
+    state.not_rtp = state.wrong_payload_type = state.not_accepted = 0;
+    state.warned_of_coder = false;
     state.payload_type.reset();
     state.config.reset();
     state.now = {};
@@ -249,6 +276,7 @@ static GstStructure* Stats(GObject* object) {
   set("packets-received", a.packets_received);
   set("packets-invalid", a.packets.invalid + state.not_rtp);
   set("packets-wrong-payload-type", state.wrong_payload_type);
+  set("slices-not-accepted", state.not_accepted);
   set("packets-duplicate", a.packets.duplicate);
   set("packets-late", a.packets.late);
   set("configs-received", a.configs_received);

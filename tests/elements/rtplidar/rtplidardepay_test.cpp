@@ -223,6 +223,31 @@ GstBuffer* ConfigBefore(GstBuffer* next, const char* fields) {
   return buffer;
 }
 
+TEST(RtpLidarDepay, DropsSlicesForAnotherDecoderAndGoesOn) {
+  Harness pay(gst_harness_new("rtplidarpay"));
+  const Harness h(gst_harness_new("rtplidardepay"));
+  gst_harness_set_sink_caps_str(h.get(), GST_LIDAR_SLICE_MEDIA_TYPE);
+  gst_harness_set_src_caps_str(h.get(), kRtpCaps);
+  GstBus* bus = gst_bus_new();
+  gst_element_set_bus(h->element, bus);
+  guint scan = 0;
+  for (const char* type : {GST_LIDAR_DRACO_MEDIA_TYPE, GST_LIDAR_SLICE_MEDIA_TYPE,
+                           GST_LIDAR_DRACO_MEDIA_TYPE, GST_LIDAR_SLICE_MEDIA_TYPE}) {
+    gst_harness_set_src_caps_str(pay.get(), EncodedCaps("range", 10, type).c_str());
+    for (guint i = 0; i < kSlices; ++i) gst_harness_push(pay.get(), EncodedSlice(scan, i));
+    while (GstBuffer* b = gst_harness_try_pull(pay.get()))
+      EXPECT_EQ(gst_harness_push(h.get(), b), GST_FLOW_OK);
+    EXPECT_EQ(Pull(h.get()).size(), scan++ % 2 == 0 ? 0U : kSlices);
+  }
+  EXPECT_EQ(Stat(h.get(), "slices-not-accepted"), 2 * kSlices);
+  unsigned warnings = 0;
+  while (const gst::MessagePtr message{gst_bus_pop(bus)})
+    warnings += GST_MESSAGE_TYPE(message.get()) == GST_MESSAGE_WARNING ? 1U : 0U;
+  EXPECT_EQ(warnings, 1U);
+  gst_element_set_bus(h->element, nullptr);
+  gst_object_unref(bus);
+}
+
 class UndecodableConfigs : public ::testing::TestWithParam<const char*> {};
 TEST_P(UndecodableConfigs, AreCountedAndTheStreamGoesOn) {
   const Harness h = Depay();
