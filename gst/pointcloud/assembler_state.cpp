@@ -14,6 +14,7 @@ void AssemblerState::Reset() {
   caps_sent = false;
   early_segment.reset();
   refused.Reset();
+  missing_meta_reported = false;
   scan_latency = 0;
   gst_segment_init(&segment, GST_FORMAT_TIME);
 }

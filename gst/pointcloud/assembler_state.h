@@ -39,8 +39,11 @@ struct AssemblerState {
   std::optional<Latency> upstream;  // once it was asked
   GstClockTime scan_latency = 0;    // what the latency query adds for a scan, without max-wait
   GstSegment segment;
-  RefusedCaps refused;
   DeadlineTimer timer;
+
+  // Of the streaming thread.
+  RefusedCaps refused;
+  bool missing_meta_reported = false;
 };
 
 }  // namespace lidar::gst

@@ -11,6 +11,7 @@
 #include "gst/pointcloud/gstscanassembler.h"
 
 #include <mutex>
+#include <utility>
 
 #include "gst/common/properties.h"
 #include "gst/pointcloud/assembler_state.h"
@@ -126,6 +127,19 @@ GstFlowReturn PassThrough(GstLidarScanAssembler* self, GstBuffer* buffer, guint 
   return gst_pad_push(self->srcpad, buffer);
 }
 
+/// Slices that lost their meta on the way look like scans of few columns.
+void ReportMissingMeta(GstLidarScanAssembler* self, const CloudInfo& info) {
+  State& state = *self->state;
+  if (!info.sensor_model || info.width >= info.sensor_model->columns_per_scan) return;
+  if (std::exchange(state.missing_meta_reported, true)) return;
+  GST_ELEMENT_WARNING(self, STREAM, FORMAT,
+                      ("Clouds of %u of the sensor's %u columns come without LidarSliceMeta: each "
+                       "is taken for a scan.",
+                       info.width, info.sensor_model->columns_per_scan),
+                      ("gdppay, shmsink and other elements of GStreamer 1.22 leave metas behind: "
+                       "record and send RTP (rtplidarpay), which carries them."));
+}
+
 GstFlowReturn Chain(GstPad*, GstObject* parent, GstBuffer* buffer) {
   auto* self = GST_LIDAR_SCAN_ASSEMBLER(parent);
   State& state = *self->state;
@@ -141,7 +155,7 @@ GstFlowReturn Chain(GstPad*, GstObject* parent, GstBuffer* buffer) {
     return GST_FLOW_NOT_NEGOTIATED;
   }
   lidar::gst::SliceView slice{buffer, &*info, {}};
-  gst_lidar_buffer_get_slice(buffer, &slice.meta);
+  if (!gst_lidar_buffer_get_slice(buffer, &slice.meta)) ReportMissingMeta(self, *info);
   UpdateLatency(self, *info, slice.meta.slice_count);
   if (slice.meta.slice_count == 1) return PassThrough(self, buffer, info->width);
   const lidar::gst::BufferPtr owner(buffer);

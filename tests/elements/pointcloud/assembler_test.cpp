@@ -238,6 +238,24 @@ TEST_F(Assembler, PassesWholeScansAsTheyAre) {
   EXPECT_EQ(OutInfo().width, kWidth);
 }
 
+TEST_F(Assembler, WarnsOnceOfSlicesThatLostTheirMeta) {
+  GstBus* bus = gst_bus_new();
+  gst_element_set_bus(h_->element, bus);
+  for (int i = 0; i < 3; ++i) {
+    Push(BufferPtr(gst_buffer_new_allocate(nullptr, SliceInfo().FrameSize(), nullptr)));
+    EXPECT_TRUE(Pull());
+  }
+  const MessagePtr message(gst_bus_pop_filtered(bus, GST_MESSAGE_WARNING));
+  ASSERT_TRUE(message);
+  GError* raw = nullptr;
+  gst_message_parse_warning(message.get(), &raw, nullptr);
+  EXPECT_NE(std::string(ErrorPtr(raw)->message).find("8 of the sensor's 32 columns"),
+            std::string::npos);
+  EXPECT_FALSE(MessagePtr(gst_bus_pop_filtered(bus, GST_MESSAGE_WARNING)));
+  gst_element_set_bus(h_->element, nullptr);
+  gst_object_unref(bus);
+}
+
 TEST_F(Assembler, StringsUnorganisedPointsTogether) {
   CloudInfo info = SliceInfo();
   info.height = 1;
