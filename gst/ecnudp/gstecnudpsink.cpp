@@ -124,7 +124,7 @@ static const std::array<Property<Settings>, 15> kProperties = {{
     Within<&Settings::target>(UdpTargetRows(), "bind-port"),
     {"ecn", "ECN bits of buffers without LidarEcnMeta",
      EnumField<Settings>{&Settings::ecn, EcnType}, 0, 0, GST_PARAM_MUTABLE_PLAYING},
-    Within<&Settings::options>(UdpOptionRows(), "dscp"),
+    Within<&Settings::options>(UdpOptionRows(), "qos-dscp"),
     {"close-socket", "Close a socket given by the property socket on stop",
      At<&Settings::given, &GivenSocket::close>},
     {"reply",

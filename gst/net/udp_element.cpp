@@ -48,8 +48,8 @@ const std::array<Property<UdpTarget>, 4>& UdpTargetRows() {
 
 const std::array<Property<UdpOptions>, 4>& UdpOptionRows() {
   static const std::array<Property<UdpOptions>, 4> rows = {{
-      {"dscp", "Differentiated services code point; -1 keeps the socket's", &UdpOptions::dscp, -1,
-       63, GST_PARAM_MUTABLE_PLAYING},
+      {"qos-dscp", "Differentiated services code point; -1 keeps the socket's", &UdpOptions::dscp,
+       -1, 63, GST_PARAM_MUTABLE_PLAYING},
       {"buffer-size",
        "Kernel receive buffer [bytes]; 0 asks for 2 MiB and takes what the kernel grants",
        &UdpOptions::buffer_size, 0, G_MAXINT},

@@ -99,7 +99,7 @@ static const std::array<Property<Settings>, 19> kProperties = {{
     {"strict-feedback",
      "Take feedback only from the host and port that media goes to; else from any port of the host",
      &Settings::strict_feedback},
-    Proxy<Settings>(UdpOptionRows(), "dscp",
+    Proxy<Settings>(UdpOptionRows(), "qos-dscp",
                     ChildOf<GstLidarScreamSink, &GstLidarScreamSink::sink>),
     OfTx("min-bitrate"),
     OfTx("start-bitrate"),

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // What enters screamrx: media, which is counted and passed on, and goodbyes.
+#include <algorithm>
+
 #include "gst/common/buffer_map.h"
 #include "gst/scream/rx/private.h"
 
@@ -9,6 +11,8 @@ namespace lidar::gst {
 namespace {
 
 constexpr std::size_t kMaxSsrcs = 64;
+// A stream without packets for so long does not keep the others from ending.
+constexpr Duration kAlive = std::chrono::seconds(5);
 // A kernel time older than this, or in the future, means that somebody set the system clock.
 constexpr Duration kMaxAge = std::chrono::seconds(1);
 constexpr Duration kMaxApart = std::chrono::milliseconds(1);
@@ -77,14 +81,20 @@ bool Account(GstLidarScreamRx* self, const Clocks& clocks, GstBuffer* buffer,
   state.generator.OnPacket(ArrivalTime(clocks, arrival), packet);
   // One that is alive comes back with its next packet.
   if (state.ssrcs.size() >= kMaxSsrcs) state.ssrcs.erase(state.ssrcs.begin());
-  state.ssrcs.insert(header.ssrc);
+  state.ssrcs[header.ssrc] = clocks.now;
   return true;
 }
 
 enum class Fate { kPass, kDrop, kEnd };
 
+/// Whether a stream goes on. A sender that restarted said no goodbye for the SSRC it had before.
+bool AnyAlive(const RxState& state, Time now) {
+  return std::any_of(state.ssrcs.begin(), state.ssrcs.end(),
+                     [now](const auto& s) { return now - s.second < kAlive; });
+}
+
 /// A goodbye on the media's port ends streams; other RTCP there goes on unread. Lock held.
-Fate LookAtRtcp(RxState& state, GstBuffer* buffer, const BufferMap& map) {
+Fate LookAtRtcp(RxState& state, Time now, GstBuffer* buffer, const BufferMap& map) {
   const auto goodbyes = ParseBye(map.view());
   if (goodbyes.empty()) return Fate::kPass;
   if (!state.latch.IsPeer(SourceOf(buffer))) {
@@ -94,7 +104,8 @@ Fate LookAtRtcp(RxState& state, GstBuffer* buffer, const BufferMap& map) {
   bool known = false;
   for (const guint32 ssrc : goodbyes) known = state.ssrcs.erase(ssrc) > 0 || known;
   if (known) ++state.counters.goodbyes;
-  return known && state.ssrcs.empty() && state.settings.eos_on_bye ? Fate::kEnd : Fate::kDrop;
+  const bool end = known && state.settings.eos_on_bye && !AnyAlive(state, now);
+  return end ? Fate::kEnd : Fate::kDrop;
 }
 
 Fate Look(GstLidarScreamRx* self, const Clocks& clocks, GstBuffer* buffer, RtpHeader* header) {
@@ -102,7 +113,7 @@ Fate Look(GstLidarScreamRx* self, const Clocks& clocks, GstBuffer* buffer, RtpHe
   if (IsRtcp(buffer)) {
     const BufferMap map(buffer, GST_MAP_READ);
     RxLock lock(state.mutex);
-    if (map) return LookAtRtcp(state, buffer, map);
+    if (map) return LookAtRtcp(state, clocks.now, buffer, map);
   }
   const auto read = ReadRtpHeader(buffer);
   RxLock lock(state.mutex);

@@ -12,7 +12,6 @@
 #include <map>
 #include <mutex>
 #include <optional>
-#include <set>
 
 #include "gst/common/gstlidar.h"
 #include "gst/common/properties.h"
@@ -54,8 +53,8 @@ struct RxState {
   RxSettings settings;
   scream::FeedbackGenerator generator;
   PeerLatch latch;
-  std::bitset<128> lidar_types;  // payload types that are LiDAR
-  std::set<guint32> ssrcs;       // of the peer, alive
+  std::bitset<128> lidar_types;   // payload types that are LiDAR
+  std::map<guint32, Time> ssrcs;  // of the peer, and when each sent last
   bool running = false;
   RxCounters counters;
   bool settings_changed = false;

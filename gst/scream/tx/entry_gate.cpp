@@ -6,6 +6,12 @@
 namespace lidar::gst {
 namespace {
 
+/// `entry` as it is after a flush, if there was one.
+GstClockTime Shifted(EntryShift* s, GstClockTime entry, GstClockTime base_time, GstClockTime now) {
+  if (s->due) *s = {false, base_time, now > entry ? now - entry : 0};
+  return s->base_time == base_time ? entry + s->shift : entry;
+}
+
 /// The time at which input that is not live may enter: as if a live source had made it.
 GstClockTime EntryTime(GstElement* element, const TxStream& stream, GstBuffer* buffer) {
   const GstClockTime pts = GST_BUFFER_PTS(buffer);
@@ -65,10 +71,12 @@ void EntryGate::WaitForRoom(TxLock& lock, TxState& state, const TxStream& stream
 
 /// Returns at once where the pipeline has no clock or does not play.
 void EntryGate::WaitForTime(TxLock& lock, GstElement* element, TxStream& stream, GstBuffer* first) {
-  const GstClockTime entry = EntryTime(element, stream, first);
+  GstClockTime entry = EntryTime(element, stream, first);
   GstClock* clock = gst_element_get_clock(element);
   if (clock == nullptr) return;
   if (GST_CLOCK_TIME_IS_VALID(entry) && playing_ && Check(stream) == GST_FLOW_OK) {
+    entry = Shifted(&stream.entry_shift, entry, gst_element_get_base_time(element),
+                    gst_clock_get_time(clock));
     GstClockID id = gst_clock_new_single_shot_id(clock, entry);
     stream.entry_wait = id;
     lock.unlock();

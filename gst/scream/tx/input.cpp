@@ -102,10 +102,13 @@ void OnFlushStart(GstLidarScreamTx* self, TxStream& stream) {
   state.gate.Release(stream);
 }
 
-void OnFlushStop(GstLidarScreamTx* self, TxStream& stream) {
+void OnFlushStop(GstLidarScreamTx* self, TxStream& stream, GstEvent* event) {
   TxState& state = *self->state;
   TxLock lock(state.mutex);
   if (state.controller) ClearQueue(state, stream, TxNow(state));
+  gboolean resets_time = TRUE;
+  gst_event_parse_flush_stop(event, &resets_time);
+  stream.entry_shift.due = resets_time != FALSE;
   stream.flushing = false;
   stream.eos = false;
   gst_segment_init(&stream.segment, GST_FORMAT_TIME);
@@ -116,6 +119,7 @@ void OnFlushStop(GstLidarScreamTx* self, TxStream& stream) {
 /// A flush of the only stream goes on downstream; one of several stays with its own.
 gboolean HandleFlush(GstLidarScreamTx* self, TxStream& stream, GstEvent* event) {
   TxState& state = *self->state;
+  const EventPtr owner(event);
   const bool start = GST_EVENT_TYPE(event) == GST_EVENT_FLUSH_START;
   bool alone = false;
   {
@@ -124,15 +128,14 @@ gboolean HandleFlush(GstLidarScreamTx* self, TxStream& stream, GstEvent* event) 
   }
   if (start) OnFlushStart(self, stream);
   if (!alone) {
-    if (!start) OnFlushStop(self, stream);
-    gst_event_unref(event);
+    if (!start) OnFlushStop(self, stream, event);
     return TRUE;
   }
-  const gboolean done = gst_pad_push_event(self->src, event);
+  const gboolean done = gst_pad_push_event(self->src, gst_event_ref(event));
   if (start) {
     state.pacing.Pause(GST_FLOW_FLUSHING);
   } else {
-    OnFlushStop(self, stream);
+    OnFlushStop(self, stream, event);
     state.pacing.Start();
   }
   return done;

@@ -47,6 +47,14 @@ struct StreamCounters {
   guint64 malformed = 0;
 };
 
+/// A flush begins the running time anew, but without a preroll the base time stays: the stream then
+/// enters so much later, until the pipeline has a new base time.
+struct EntryShift {
+  bool due = false;  // to be measured with the next buffer
+  GstClockTime base_time = GST_CLOCK_TIME_NONE;
+  GstClockTime shift = 0;
+};
+
 struct TxStream {
   GstPad* pad = nullptr;
   scream::StreamId id = -1;
@@ -60,7 +68,8 @@ struct TxStream {
   double configured_share = 1;         // payload share that `config` was made with
   GstSegment segment{};                // of the pad, for the entry and for a merged output
   GstClockID entry_wait = nullptr;     // not owned
-  std::optional<bool> live;            // not known before the first buffer
+  EntryShift entry_shift;
+  std::optional<bool> live;  // not known before the first buffer
   bool has_caps = false;
   bool is_video = false;
   bool eos = false;

@@ -226,7 +226,7 @@ TEST(EcnUdpSink, KeepsTheDscpBesideTheEcnBits) {
   const Object<GSocketAddress> bound(g_socket_get_local_address(socket.get(), nullptr));
   const Harness sink =
       NewSink("127.0.0.1", g_inet_socket_address_get_port(G_INET_SOCKET_ADDRESS(bound.get())));
-  g_object_set(sink->element, "dscp", 46, nullptr);
+  g_object_set(sink->element, "qos-dscp", 46, nullptr);
   gst_util_set_object_arg(G_OBJECT(sink->element), "ecn", "ect1");
   ASSERT_EQ(gst_harness_push(sink.get(), Payload("x")), GST_FLOW_OK);
   EXPECT_EQ(ReceiveTos(g_socket_get_fd(socket.get())), 46 << 2 | 1);

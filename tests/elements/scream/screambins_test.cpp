@@ -128,6 +128,26 @@ TEST(ScreamBins, InputThatIsNotLiveTakesItsTimeAndLosesNothing) {
   EXPECT_EQ(Stats(sender.Get("out").get())["packets-dropped"], 0U);
 }
 
+TEST(ScreamBins, InputThatIsNotLiveTakesItsTimeAfterAFlushingSeekToo) {
+  Receiver receiver(kAudioCaps);
+  Pipeline sender(
+      "audiotestsrc name=src samplesperbuffer=441 ! "
+      "audio/x-raw,rate=44100,channels=1,format=S16BE ! rtpL16pay name=pay ! " +
+      Sink(receiver.port));
+  sender.Play();
+  g_usleep(1'000'000);
+  EXPECT_TRUE(
+      gst_element_seek_simple(sender.Get("pay").get(), GST_FORMAT_TIME, GST_SEEK_FLAG_FLUSH, 0));
+  const gint64 start = g_get_monotonic_time();
+  const ElementPtr out = sender.Get("out");
+  const auto sent = Stats(out.get())["packets-sent"];
+  g_usleep(1'000'000);
+  const auto after = static_cast<double>(Stats(out.get())["packets-sent"] - sent);
+  const double seconds = static_cast<double>(g_get_monotonic_time() - start) / 1e6;
+  EXPECT_LE(after, 100 * seconds + 25);  // packets of 10 ms, and what the queue may hold
+  EXPECT_GE(after, 50 * seconds);
+}
+
 TEST(ScreamBins, MoreThanTheNetworkTakesIsHeldBackNotDroppedWhereInputIsNotLive) {
   Receiver receiver(kAudioCaps);
   Pipeline sender(

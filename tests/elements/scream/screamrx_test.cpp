@@ -190,6 +190,22 @@ TEST_F(ScreamRx, EndsWhenEveryStreamSaidGoodbye) {
   EXPECT_EQ(Passed(), 3U);
 }
 
+TEST_F(ScreamRx, EndsWithASenderThatRestartedThoughItsFirstSsrcNeverSaidGoodbye) {
+  Start();
+  Rtp next;
+  next.ssrc = 0x5678;
+  ASSERT_EQ(Push({}), GST_FLOW_OK);
+  time.Settle();
+  time.Advance(3 * GST_SECOND);
+  ASSERT_EQ(Push(next), GST_FLOW_OK);
+  EXPECT_EQ(PushBye({0x5678}), GST_FLOW_OK);  // the first may go on
+  next.seq = 1;
+  ASSERT_EQ(Push(next), GST_FLOW_OK);
+  time.Settle();
+  time.Advance(3 * GST_SECOND);
+  EXPECT_EQ(PushBye({0x5678}), GST_FLOW_EOS);
+}
+
 TEST_F(ScreamRx, IgnoresAStrangersGoodbye) {
   Start();
   ASSERT_EQ(Push({}, GST_LIDAR_ECN_ECT1, "10.0.0.1"), GST_FLOW_OK);
