@@ -93,7 +93,7 @@ static gboolean gst_lidar_draco_enc_set_format(GstLidarEncoder* base,
                                                      settings.range_coder);
   coded->refusal =
       "geometry=range needs a field range:U32 and a sensor-model with as many beams and at least "
-      "as many columns, xyz the fields x, y and z as F32 side by side";
+      "as many columns, xyz the fields x, y and z as F32 side by side; geometry=auto chooses";
   if (!coder.encoder) return FALSE;
   const bool range = coder.encoder->geometry() == Geometry::kRange;
   if (range && info.width > info.sensor_model->columns_per_scan) return FALSE;

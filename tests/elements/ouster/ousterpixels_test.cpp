@@ -116,6 +116,7 @@ TEST_F(OusterPixels, RangeGeometryIsRefusedWithTheRemedy) {
       RunToEnd("ouster_src location=" + DataPath(kPcap) + " metadata=" + json_ +
                " ! dracoenc geometry=range ! fakesink");
   EXPECT_NE(error.find("cannot be encoded: geometry=range needs"), std::string::npos) << error;
+  EXPECT_NE(error.find("geometry=auto"), std::string::npos) << error;
 }
 
 }  // namespace
