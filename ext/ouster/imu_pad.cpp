@@ -54,7 +54,7 @@ gboolean Query(GstPad* pad, GstObject* parent, GstQuery* query) {
   return TRUE;
 }
 
-/// Of the group of streams that the clouds are in.
+/// The stream joins the group that the clouds are in.
 GstEvent* StreamStart(GstPad* imu, GstElement* element, GstPad* clouds) {
   const StringPtr id(gst_pad_create_stream_id(imu, element, "imu"));
   GstEvent* event = gst_event_new_stream_start(id.get());

@@ -59,7 +59,7 @@ std::optional<json> Wanted(const OusterSettings& s, ApiError* error) {
   return wanted;
 }
 
-/// What of `wanted` the configuration `has` not.
+/// The entries of `wanted` that the configuration `has` lacks or sets otherwise.
 json Missing(const json& wanted, const json& has) {
   json missing = json::object();
   for (const auto& [key, value] : wanted.items())
@@ -94,7 +94,7 @@ std::optional<std::string> SensorApi::ReadConfig(bool staged, ApiError* error) {
   return std::nullopt;
 }
 
-/// The address of ours that the sensor sees. It is staged to be read back, not made active.
+/// Our address as the sensor sees it. To learn it, `@auto` is staged and read back, not activated.
 std::optional<std::string> SensorApi::ResolveAuto(ApiError* error) {
   HttpResponse response = client_.Post("sensor/config?staging=true&reinit=false&persist=false",
                                        R"({"udp_dest":"@auto"})");

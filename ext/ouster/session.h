@@ -22,23 +22,23 @@ class Session {
   Session(const Session&) = delete;
   Session& operator=(const Session&) = delete;
 
-  /// Of the thread that starts the element. False after an error was posted.
+  /// Called by the thread that starts the element. False after an error was posted.
   virtual bool Open() = 0;
   GstFlowReturn Next(GstBuffer** out);
-  /// Of any thread: Next() returns FLUSHING until UnlockStop().
+  /// Next() returns FLUSHING until UnlockStop(). Any thread may call both.
   virtual void Unlock() = 0;
   virtual void UnlockStop() = 0;
-  /// Of any thread: the pipeline plays, for the first time or again after a pause.
+  /// The pipeline plays, for the first time or again after a pause. Any thread may call this.
   virtual void Resume() {}
 
-  /// Of any thread.
+  /// Any thread may call these.
   Counters counters() const;
   GstClockTime slice_duration() const;
 
  protected:
   Session(GstBaseSrc* element, OusterSettings settings);
 
-  /// Takes packets in, waiting for them; OK where Next() shall look for slices and come again.
+  /// Waits for packets and takes them in. OK: Next() looks for slices, then comes again.
   virtual GstFlowReturn Poll() = 0;
   virtual void AddCounters(Counters*) const {}
 

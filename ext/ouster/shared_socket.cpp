@@ -136,7 +136,7 @@ int SocketReader::socket_fd() const { return socket_->fd(); }
 
 void SocketReader::Enqueue(const ReceivedDatagram& datagram) {
   if (datagram.size == 0) return;
-  // What a small datagram takes is mostly the note of it.
+  // A small datagram takes less memory than the entry that holds it.
   const gsize cost = sizeof(Copy) + datagram.size;
   if (queued_bytes_ + cost > std::max<gsize>(queue_bytes_, kSmallestQueue)) {
     ++queue_overflows_;

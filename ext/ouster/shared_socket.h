@@ -30,9 +30,10 @@ struct SocketPlace {
 
 class SharedSocket;
 
-/// One of a socket's readers; every reader gets every datagram, in the order of their arrival.
-/// Whoever comes first takes them off the socket, for itself in place and for the others as copies,
-/// so that there is no thread in between and a reader alone pays nothing. One thread uses it.
+/// One of a socket's readers; every reader gets every datagram, in the order of their arrival. The
+/// reader that calls Receive() first takes the datagrams off the socket and leaves copies for the
+/// others. So no thread is needed in between, and a socket with one reader copies nothing. One
+/// thread uses a reader.
 class SocketReader {
  public:
   /// `queue_bytes` bounds what waits here while another reader empties the socket, and is asked of

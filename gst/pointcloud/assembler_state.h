@@ -21,7 +21,7 @@ struct AssemblerSettings {
 
 struct AssemblerState {
   AssemblerState() { gst_segment_init(&segment, GST_FORMAT_TIME); }
-  /// As it was before the first buffer, but for the settings and the timer; with the mutex held.
+  /// Makes all but the settings and the timer as before the first buffer. The mutex must be held.
   void Reset();
   /// The property `stats`; takes the mutex.
   StructurePtr Stats();
@@ -41,7 +41,7 @@ struct AssemblerState {
   GstSegment segment;
   DeadlineTimer timer;
 
-  // Of the streaming thread.
+  // Only the streaming thread uses these.
   RefusedCaps refused;
   bool missing_meta_reported = false;
 };

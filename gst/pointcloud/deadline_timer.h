@@ -19,7 +19,7 @@ class DeadlineTimer {
             const std::function<GstClockTime()>& next);
   /// The deadlines have changed, or the element has a clock now; `next` is the earliest.
   void Update(GstClockTime next);
-  /// While flushing, nobody waits.
+  /// Wait() returns at once while flushing.
   void SetFlushing(bool flushing);
   bool flushing() const { return flushing_; }
 

@@ -42,7 +42,7 @@ const std::array<lidar::gst::Property<Settings>, 1> kProperties = {{
 struct State {
   std::mutex mutex;  // guards the settings
   Settings settings;
-  // Of the streaming thread.
+  // Only the streaming thread uses these.
   std::optional<CloudInfo> info;
   lidar::gst::RefusedCaps refused;
   bool slices_reported = false;

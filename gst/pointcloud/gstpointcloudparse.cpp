@@ -73,7 +73,7 @@ using AdapterPtr = std::unique_ptr<GstAdapter, lidar::gst::Unref>;
 struct State {
   std::mutex mutex;  // guards the settings
   Settings settings;
-  // Of the streaming thread.
+  // Only the streaming thread uses these.
   std::optional<CloudInfo> info;  // of the file; width 0: not known
   CapsPtr caps;
   Rate rate;
@@ -134,7 +134,7 @@ void PushSegment(GstLidarPointCloudParse* self) {
   if (self->state->segment) gst_pad_push_event(self->srcpad, self->state->segment.release());
 }
 
-/// Upstream's where it counts time, else one of our own.
+/// Keeps upstream's segment where it counts time, and makes one otherwise.
 void HandleSegment(State* state, GstEvent* event) {
   const GstSegment* given = nullptr;
   gst_event_parse_segment(event, &given);
@@ -250,7 +250,7 @@ gboolean HandleCaps(GstLidarPointCloudParse* self, GstEvent* event) {
   return TRUE;
 }
 
-/// What was left in the adapter is no whole cloud.
+/// Drops what is left in the adapter, which is no whole cloud.
 void Drain(GstLidarPointCloudParse* self) {
   State& state = *self->state;
   const gsize left = gst_adapter_available(state.adapter.get());

@@ -74,7 +74,7 @@ void PushCaps(GstLidarScanAssembler* self, guint width) {
   if (segment) gst_pad_push_event(self->srcpad, segment.release());
 }
 
-/// With the streaming lock held, the mutex not.
+/// The streaming lock must be held, and the mutex must not.
 GstFlowReturn PushScans(GstLidarScanAssembler* self, ScanQueue::Finished* finished) {
   GstFlowReturn flow = GST_FLOW_OK;
   for (auto& scan : *finished) {
@@ -96,7 +96,7 @@ GstFlowReturn PushAll(GstLidarScanAssembler* self) {
   return PushScans(self, &finished);
 }
 
-/// The latency that slices of such a scan cause; posts it when it is news.
+/// Works out the latency that slices of such a scan cause, and posts a message when it changes.
 void UpdateLatency(GstLidarScanAssembler* self, const CloudInfo& info, guint slices) {
   State& state = *self->state;
   const GstClockTime scan = info.ScanDuration();
@@ -172,7 +172,7 @@ GstFlowReturn Chain(GstPad*, GstObject* parent, GstBuffer* buffer) {
     if (state.queue.counters().invalid != invalid)
       GST_WARNING_OBJECT(self, "slice %u of %u of scan %u does not fit: dropped",
                          slice.meta.slice_index, slice.meta.slice_count, slice.meta.scan_id);
-    // The timer may wait for a scan of before the stamps began anew.
+    // Stamps may have begun anew, and the timer may still wait for a scan of before.
     state.timer.Update(state.queue.NextDeadline());
   }
   return PushScans(self, &finished);
@@ -242,13 +242,13 @@ gboolean HandleCaps(GstLidarScanAssembler* self, GstEvent* event) {
     std::lock_guard lock(state.mutex);
     scan_changes = state.info && lidar::gst::CannotMix(*state.info, *info);
   }
-  // What is open was made of the old slices, and leaves with the old caps.
+  // Open scans were made of the old slices, so they leave with the old caps.
   if (scan_changes) PushAll(self);
   TakeCaps(self, caps, *std::move(info));
   return TRUE;
 }
 
-/// True where the event waits for the caps, which go first; it is then taken.
+/// Caps must go before the segment. True: the event was taken, and waits for the caps.
 bool HoldSegment(GstLidarScanAssembler* self, GstEvent* event) {
   State& state = *self->state;
   const GstSegment* segment = nullptr;

@@ -27,8 +27,8 @@ class ScanBuilder {
   /// False for slices that no scan is made of: an index past the count, a size that does not fit
   /// the caps, more columns than a sensor has.
   static bool IsSane(const SliceView& slice);
-  /// Clouds whose points stand in columns keep their place; of the others the points are strung
-  /// together.
+  /// True for clouds whose points stand in columns, which keep their places in the scan. The points
+  /// of other clouds are strung together.
   static bool IsOrganised(const CloudInfo& info) { return info.height > 1 || info.sensor_model; }
 
   /// `slice` must be sane. It is not added by this.

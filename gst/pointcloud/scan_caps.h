@@ -11,7 +11,7 @@ namespace lidar::gst {
 CapsPtr ScanCaps(const GstCaps* slice, const CloudInfo& slice_info, guint width);
 /// True where the caps say the same but for the width.
 bool SameButForWidth(const GstCaps* a, const GstCaps* b);
-/// True where slices of the one kind and of the other cannot be of one scan.
+/// True where slices with these two caps cannot belong to one scan.
 bool CannotMix(const CloudInfo& a, const CloudInfo& b);
 
 struct DeadlineRules {

@@ -7,7 +7,7 @@ namespace lidar::gst {
 namespace {
 
 constexpr std::size_t kMaxOpen = 2;
-// Farther back than any network reorders: the sender has started again.
+// No network reorders scans by that many, so the sender has started again.
 constexpr int kRestart = 16;
 
 }  // namespace
@@ -18,7 +18,7 @@ ScanQueue::Open* ScanQueue::Find(const SliceView& slice) {
   return nullptr;
 }
 
-/// Of a scan that is not open in this cut.
+/// Says how old a scan is that is not open, or not open in this cut.
 ScanQueue::Age ScanQueue::AgeOf(guint scan_id, Finished* finished) {
   const auto newest = open_.empty() ? newest_left_ : open_.back().builder.scan_id();
   if (!newest) return Age::kNew;

@@ -109,8 +109,8 @@ const std::array<Row, 10> kProperties = {{
     {"is-live", "Scan in the time of the clock, else as fast as possible", &Settings::is_live},
 }};
 
-// Where the capture times of a source begin that is not live, so that its output is repeatable:
-// 2024-01-01T00:00:00Z.
+// A source that is not live starts its capture times at 2024-01-01T00:00:00Z, so that its output is
+// repeatable.
 constexpr GstClockTime kEpoch = G_GUINT64_CONSTANT(1'704'067'200) * GST_SECOND;
 
 struct State {
@@ -119,7 +119,7 @@ struct State {
   std::mutex mutex;  // guards settings and latency
   Settings settings;
   GstClockTime latency = GST_CLOCK_TIME_NONE;  // of one slice, while started
-  // Of the streaming thread, between start and stop.
+  // Only the streaming thread uses these, between start and stop.
   std::optional<SliceMaker> maker;
   std::unique_ptr<lidar::gst::TrajectoryLog> log;
   lidar::gst::LivePacer pacer;
@@ -225,7 +225,7 @@ gboolean Query(GstBaseSrc* base, GstQuery* query) {
   return GST_BASE_SRC_CLASS(gst_lidar_test_src_parent_class)->query(base, query);
 }
 
-/// A sensor does not wait for who is late: past one scan it is elsewhere.
+/// A sensor does not wait: a reader that is late by more than a scan misses what was swept.
 bool SkipWhatIsLate(GstElement* element, State* state) {
   const Duration due = state->maker->NextEnd() + state->maker->period();
   const auto now = state->pacer.Now();

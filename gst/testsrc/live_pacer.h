@@ -10,7 +10,8 @@
 
 namespace lidar::gst {
 
-/// One a source; it must not outlive it. All but SetFlushing belong to the streaming thread.
+/// Each source has one, which it must outlive. Only SetFlushing() may be called by other threads
+/// than the streaming thread.
 class LivePacer {
  public:
   explicit LivePacer(GstBaseSrc* source) : source_(source) {}
@@ -25,7 +26,7 @@ class LivePacer {
   std::optional<Duration> Now() const;
   GstClockTime ToRunningTime(Duration t) const;
   GstClockTime ToUnixTime(Duration t) const;
-  /// From unlock and unlock_stop, in any thread.
+  /// Called by unlock and unlock_stop. Any thread may call it.
   void SetFlushing(bool flushing);
 
  private:

@@ -144,7 +144,7 @@ BufferPtr SliceMaker::Make() {
       gst_buffer_new_allocate(nullptr, returns_.range_mm.size() * point_step_, nullptr));
   {
     BufferMap map(buffer.get(), GST_MAP_WRITE);
-    // The steps between the fields hold nothing, but the same nothing each time.
+    // Gaps between the fields are zero, so that the same seed gives the same bytes.
     if (!extras_.empty()) std::memset(map.data(), 0, map.size());
     WritePoints(map.data());
   }

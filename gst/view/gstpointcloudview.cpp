@@ -112,7 +112,7 @@ struct State {
   std::mutex mutex;  // guards the settings and `changed`
   Settings settings;
   bool changed = true;
-  // Of the streaming thread.
+  // Only the streaming thread uses these.
   std::optional<CloudInfo> info;
   lidar::gst::RefusedCaps refused;
   GstVideoInfo video;
@@ -152,7 +152,7 @@ namespace {
 
 State& StateOf(gpointer self) { return *GST_LIDAR_POINT_CLOUD_VIEW(self)->state; }
 
-/// The other side, with the frame rate of this one.
+/// The caps of the other pad, with the frame rate of this one.
 GstCaps* TransformCaps(GstBaseTransform* base, GstPadDirection direction, GstCaps* caps,
                        GstCaps* filter) {
   GstPad* other = direction == GST_PAD_SINK ? base->srcpad : base->sinkpad;
@@ -287,13 +287,14 @@ GstFlowReturn Transform(GstBaseTransform* base, GstBuffer* in, GstBuffer* out) {
   const bool done = flow == GST_FLOW_OK;
   if (!state.drawing) BeginPicture(&state, slice, in);
   state.renderer->Draw(*state.info, slice, map.data());
-  // One picture a buffer: after a loss the scan of a single slice waits for the next.
+  // Each buffer gives at most one picture. After a loss, a scan of one slice waits for the next
+  // scan.
   if (slice.slice_index + 1 < slice.slice_count || done) return flow;
   return FinishPicture(base, out);
 }
 
 gboolean TransformMeta(GstBaseTransform* base, GstBuffer* out, GstMeta* meta, GstBuffer* in) {
-  // A picture is no slice.
+  // A picture must not carry the meta of a slice.
   if (meta->info == gst_meta_get_info(GST_LIDAR_SLICE_META_NAME)) return FALSE;
   return GST_BASE_TRANSFORM_CLASS(gst_lidar_point_cloud_view_parent_class)
       ->transform_meta(base, out, meta, in);

@@ -68,7 +68,7 @@ void Renderer::ForEachPoint(const CloudInfo& info, const std::uint8_t* points, c
       std::memcpy(&point.p, points + xyz, sizeof point.p);
       const Vec& p = point.p;
       point.range = std::sqrt(p.x * p.x + p.y * p.y + p.z * p.z);
-      // No return is zero here and NaN elsewhere.
+      // A missing return is zero from some sources and NaN from others.
       if (!(point.range > 0.01F && point.range < 1e5F)) continue;
       point.beam = beam;
       point.column = column;
@@ -154,7 +154,7 @@ void Renderer::PlotPerspective(const Point& point) {
 void Renderer::DrawRangeImage(const CloudInfo& info, const GstLidarSlice& slice,
                               const std::uint8_t* points) {
   const auto* model = info.sensor_model ? &*info.sensor_model : nullptr;
-  // The meta says what it likes.
+  // The meta is not to be trusted.
   constexpr guint64 kMost = SensorModel::kMaxColumns * guint64{4096};
   const guint64 all = guint64{info.width} * slice.slice_count;
   const guint turn = model != nullptr ? model->columns_per_scan
@@ -174,7 +174,7 @@ void Renderer::DrawRangeImage(const CloudInfo& info, const GstLidarSlice& slice,
   });
 }
 
-/// Of clouds that have lost their order: by azimuth and elevation.
+/// Draws a cloud that has lost its order, by azimuth and elevation of its points.
 void Renderer::DrawPanorama(const CloudInfo& info, const std::uint8_t* points) {
   float low = 1;
   float high = -1;
@@ -236,7 +236,7 @@ void Renderer::DrawRings() {
 
 const Canvas& Renderer::Finish() {
   if (settings_.view == ViewKind::kRange) return canvas_;
-  // Where depth is height, a step of a metre should show as one of a tenth of the way does.
+  // Seen from above, depth is height: a step of one metre is shaded like a tenth of the distance.
   canvas_.ShadeEdges(settings_.view == ViewKind::kTop ? 6.0F : 2.0F);
   DrawRings();
   if (settings_.view == ViewKind::kTop)

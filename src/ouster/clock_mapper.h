@@ -8,7 +8,8 @@
 
 namespace lidar::ouster {
 
-/// Times past the year 2096 are of damaged packets; so bounded, times can be added and subtracted.
+/// Only damaged packets have times past the year 2096. Below this bound, times can be added and
+/// subtracted without overflow.
 constexpr Duration kLatestTime{4'000'000'000'000'000'000};
 
 constexpr Duration SinceSensorEpoch(std::uint64_t sensor_ns) {
@@ -29,8 +30,8 @@ class ClockMapper {
 
   /// A packet whose last column was sampled at `sensor_ns` arrived at `arrival`.
   void Observe(std::uint64_t sensor_ns, Time arrival);
-  /// True where Observe() would find that a clock jumped: what was sampled before the jump must be
-  /// mapped before it.
+  /// True where Observe() would find that a clock jumped. Map what was sampled before the jump
+  /// before that call.
   bool WouldJump(std::uint64_t sensor_ns, Time arrival) const;
   /// The next packet sets the offset anew.
   void Reset() { offset_.reset(); }

@@ -6,8 +6,8 @@
 namespace lidar::ouster {
 namespace {
 
-/// Whether what is outside strings keeps the bounds. A pass of its own: the parser's callback takes
-/// time that is quadratic in the number of objects.
+/// Counts brackets and strings in a pass of its own, since the parser's callback would take time
+/// that is quadratic in the number of objects.
 bool IsWithinBounds(std::string_view text) {
   int depth = 0;
   std::size_t items = 0;

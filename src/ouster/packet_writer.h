@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Writes lidar packets: for software sensors, converted recordings and tests. Of the parser it
-// shares the format's description only.
+// Writes lidar packets for software sensors, converted recordings and tests. It shares nothing with
+// the parser but the description of the format.
 #pragma once
 #include <cstdint>
 #include <vector>

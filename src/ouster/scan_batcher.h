@@ -53,7 +53,7 @@ class ScanBatcher {
   void Push(const LidarPacket& packet, Time arrival = {});
   /// The next slice that is ready.
   std::optional<Slice> Pop();
-  /// Makes all that came so far ready. The next packet may be of any scan.
+  /// Gives out every slice that has begun. The next packet may belong to any scan.
   void Flush();
 
   const BatcherStats& stats() const { return stats_; }

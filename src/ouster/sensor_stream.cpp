@@ -77,7 +77,7 @@ void SensorStream::ObserveClocks(const LidarPacket& packet, const Arrival& arriv
   }
 }
 
-/// What is no lidar packet of this sensor's format.
+/// Counts and names a packet that has another size than this sensor's lidar packets.
 PacketVerdict SensorStream::Refuse(ByteView payload, const Arrival& arrival) {
   if (payload.size == metadata_.imu_packet_size()) {
     const bool first = batcher_.stats().packets == 0;

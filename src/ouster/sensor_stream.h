@@ -66,10 +66,11 @@ class SensorStream {
   static std::unique_ptr<SensorStream> Create(Metadata metadata, const StreamOptions& options,
                                               std::string* error);
 
-  /// The first three verdicts that are no error need no action; on kNewInitId the packet was left
-  /// out: refresh the metadata, or AcceptNewInitId() and push it again.
+  /// Only kNewInitId asks for something: the packet was left out. Refresh the metadata, or call
+  /// AcceptNewInitId() and push the packet again.
   PacketVerdict Push(ByteView payload, const Arrival& arrival);
-  /// After kNewInitId: packets like that one are taken from now on, as of a sensor that restarted.
+  /// To be called after kNewInitId. From now on packets with that init id are taken: the sensor
+  /// restarted.
   void AcceptNewInitId() { metadata_.init_id = refused_init_id_; }
   std::optional<TimedSlice> Pop();
   /// Makes the slices that are not complete ready. The next packet may be of any scan.

@@ -9,7 +9,7 @@ namespace {
 constexpr std::size_t kMaxPartials = 32;
 constexpr std::size_t kMaxIpPayload = 65535;
 constexpr std::size_t kFragmentUnit = 8;
-// Identifiers come round within minutes: what is left of a datagram must not meet a later one.
+// IP identifiers are used again within minutes, so old fragments must be gone by then.
 constexpr Duration kMaxAge = std::chrono::seconds(5);
 constexpr std::uint8_t kUdp = 17;
 constexpr std::uint16_t kEtherIpv4 = 0x0800;

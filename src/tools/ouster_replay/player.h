@@ -26,7 +26,7 @@ class Player {
 
   /// Sends what is due; when to call again, or none at the end.
   std::optional<Time> Pump(Time now);
-  /// Of any thread.
+  /// Any thread may call this.
   FaultCounts counts() const;
 
  private:

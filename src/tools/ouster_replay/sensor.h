@@ -44,7 +44,7 @@ class Sensor {
   };
   Destination destination() const;
 
-  /// Of the thread that sends. After a restart was asked for: the metadata from then on, once.
+  /// For the thread that sends. After a restart was asked for, gives the new metadata once.
   std::optional<ouster::Metadata> TakeRestart();
   void SetRunning(bool running);
 

@@ -76,7 +76,7 @@ const Attack kAttacks[] = {
 
 class OusterServer : public ::testing::TestWithParam<Attack> {};
 
-/// Of the pipeline with its sensor there, from the request for the state to the change.
+/// How long the element takes to stop.
 double SecondsToStop(Receiver* receiver) {
   const gint64 start = g_get_monotonic_time();
   receiver->SetState(GST_STATE_NULL);
