@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "src/codec/mixing/binary_coder.h"
+
+namespace lidar::codec::mixing {
+
+void BinaryEncoder::Finish() {
+  for (unsigned shift = 32; shift >= 8; shift -= 8) {
+    // The first number at or above low_ whose lower bits, which stay unwritten, are 0.
+    const std::uint64_t unit = std::uint64_t{1} << shift;
+    const std::uint64_t value = (low_ + unit - 1) / unit * unit;
+    if (value > high_) continue;
+    for (unsigned at = 32; at > shift; at -= 8)
+      out_->push_back(static_cast<std::uint8_t>(value >> (at - 8)));
+    return;
+  }
+  for (unsigned at = 32; at > 0; at -= 8)
+    out_->push_back(static_cast<std::uint8_t>(low_ >> (at - 8)));
+}
+
+}  // namespace lidar::codec::mixing

@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// A binary range coder without carries: one bit at a time, each with a chance of its own.
+#pragma once
+#include <cstdint>
+#include <vector>
+
+#include "src/base/byte_reader.h"
+#include "src/codec/mixing/arithmetic.h"
+
+namespace lidar::codec::mixing {
+
+class BinaryEncoder {
+ public:
+  /// Appends to `out`.
+  explicit BinaryEncoder(std::vector<std::uint8_t>* out) : out_(out) {}
+
+  /// `chance` of a 1 is from kLeastChance to kMostChance. Returns `bit`.
+  bool Code(bool bit, std::int32_t chance) {
+    const std::uint32_t split =
+        low_ + static_cast<std::uint32_t>(
+                   std::uint64_t{high_ - low_} * static_cast<std::uint32_t>(chance) >> 16);
+    (bit ? high_ : low_) = bit ? split : split + 1;
+    while ((low_ ^ high_) < 1U << 24) {
+      out_->push_back(static_cast<std::uint8_t>(high_ >> 24));
+      low_ <<= 8;
+      high_ = high_ << 8 | 0xFF;
+    }
+    return bit;
+  }
+  /// Writes as many bytes as tell the last interval from others: a decoder reads zeros behind them.
+  void Finish();
+
+ private:
+  std::vector<std::uint8_t>* out_;
+  std::uint32_t low_ = 0;
+  std::uint32_t high_ = UINT32_MAX;
+};
+
+class BinaryDecoder {
+ public:
+  static constexpr bool kDecodes = true;
+  explicit BinaryDecoder(ByteView bytes)
+      : next_(bytes.data), end_(bytes.data == nullptr ? nullptr : bytes.data + bytes.size) {
+    for (int i = 0; i < 4; ++i) code_ = code_ << 8 | NextByte();
+  }
+
+  /// The first argument is for BinaryEncoder, whose twin this is.
+  bool Code(bool /*bit*/, std::int32_t chance) {
+    const std::uint32_t split =
+        low_ + static_cast<std::uint32_t>(
+                   std::uint64_t{high_ - low_} * static_cast<std::uint32_t>(chance) >> 16);
+    const bool bit = code_ <= split;
+    (bit ? high_ : low_) = bit ? split : split + 1;
+    while ((low_ ^ high_) < 1U << 24) {
+      low_ <<= 8;
+      high_ = high_ << 8 | 0xFF;
+      code_ = code_ << 8 | NextByte();
+    }
+    return bit;
+  }
+  /// True where bits were read that no encoder has written.
+  bool overran() const { return missing_ > 4; }
+  /// True where all bytes were of use, and enough of them.
+  bool AtEnd() const { return next_ == end_ && !overran(); }
+
+ private:
+  std::uint32_t NextByte() {
+    if (next_ != end_) return *next_++;
+    ++missing_;
+    return 0;
+  }
+
+  const std::uint8_t* next_;
+  const std::uint8_t* end_;
+  std::uint32_t missing_ = 0;
+  std::uint32_t low_ = 0;
+  std::uint32_t high_ = UINT32_MAX;
+  std::uint32_t code_ = 0;
+};
+
+}  // namespace lidar::codec::mixing

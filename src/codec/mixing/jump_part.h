@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Codes how far a value is from its prediction where that is more than a few steps: then it often
+// lies on a surface that some neighbour has seen.
+#pragma once
+#include <algorithm>
+#include <array>
+#include <cstdint>
+
+#include "src/codec/mixing/bit_mixer.h"
+#include "src/codec/mixing/model.h"
+#include "src/codec/mixing/neighbours.h"
+
+namespace lidar::codec::mixing {
+
+/// What is known before a jump.
+struct JumpContext {
+  std::uint32_t uneven = 0;
+  std::uint32_t range_class = 0;  // with the direction: 32 values
+  std::uint32_t gap_class = 0;    // of gap and step between neighbours: 16 values
+  /// Distances that neighbours would be, in the direction of the jump.
+  std::array<std::int32_t, kCandidates> candidates{};
+};
+
+template <unsigned kUsed, class Coder>
+class JumpPart {
+ public:
+  JumpPart(const Kernel& kernel, Model* model, Coder* coder)
+      : mixer_(kernel), model_(*model), coder_(*coder) {}
+
+  static constexpr std::uint32_t kTooFar = 1U << 26;
+
+  /// `distance` is 1 or more; kTooFar for a damaged stream.
+  std::uint32_t Code(std::uint32_t distance, const JumpContext& context) {
+    context_ = &context;
+    // As in an Exp-Golomb code: the length first, then the bits below the highest one. Each is
+    // coded as a question whether the distance reaches `middle`.
+    unsigned length = 0;
+    const auto last = static_cast<unsigned>(BitLength(distance) - 1);
+    while (CodeNode(length < last, std::min(length, kLengthNodes - 1), context.gap_class,
+                    {2U << length, 1U << length})) {
+      if (++length == kMostLength) return kTooFar;
+    }
+    std::uint32_t value = 1U << length;
+    for (unsigned place = length; place-- > 0;) {
+      const std::uint32_t half = 1U << place;
+      const unsigned level = std::min(length - 1 - place, 3U);
+      const unsigned node = kLengthNodes + 6 * level + std::min(place, 5U);
+      if (CodeNode((distance & half) != 0, node, std::min(length, 15U), {value + half, half}))
+        value += half;
+    }
+    return value;
+  }
+
+ private:
+  static constexpr unsigned kMostLength = 26;
+  struct Split {
+    std::uint32_t middle;
+    std::uint32_t half;  // of the interval that is split
+  };
+  using Places = std::array<std::int32_t, kUsed>;
+
+  /// Where each candidate lies in the interval: 0 for one in the other direction, else 1 to 11.
+  Places PlacesOf(const Split& split) const {
+    const auto middle = static_cast<std::int32_t>(split.middle);
+    const auto half = static_cast<std::int32_t>(split.half);
+    const std::int32_t eighth = (half + 7) / 8;
+    const std::int32_t quarter = (half + 1) / 2;
+    Places places;
+    for (unsigned i = 0; i < kUsed; ++i) {
+      const std::int32_t candidate = context_->candidates[i];
+      const std::int32_t d = candidate - middle;
+      const std::int32_t side = d >> 31;  // -1 below the middle
+      const std::int32_t size = d ^ side;
+      const std::int32_t far = (size >= eighth ? 1 : 0) + (size >= quarter ? 1 : 0) +
+                               (size >= half ? 1 : 0) + (size >= 4 * half ? 1 : 0);
+      const std::int32_t place = 6 + (far ^ side);
+      places[i] = candidate <= -3 ? 0 : std::min(place, 11);
+    }
+    return places;
+  }
+
+  bool CodeNode(bool bit, unsigned node, std::uint32_t gap_class, const Split& split) {
+    const JumpContext& c = *context_;
+    constexpr std::uint32_t kSecond = kJumpNodes * kJumpContexts[0];
+    constexpr std::uint32_t kThird = kSecond + kJumpNodes * kJumpContexts[1];
+    const std::array<std::uint32_t, 3> values = {node * kJumpContexts[0] + c.uneven,
+                                                 kSecond + node * kJumpContexts[1] + c.range_class,
+                                                 kThird + node * kJumpContexts[2] + gap_class};
+    const Places places = PlacesOf(split);
+    mixer_.Ask([&](unsigned k) {
+      if (k < 3) return &model_.counters.jump[values[k]];
+      const auto place = static_cast<std::uint32_t>(places[k - 3]);
+      return &model_.counters.candidates[((k - 3) * kJumpNodes + node) * kPlaces + place];
+    });
+    return mixer_.Code(bit, &model_.weights.jump[node], &coder_);
+  }
+
+  BitMixer<3 + kUsed, 0> mixer_;
+  Model& model_;
+  Coder& coder_;
+  const JumpContext* context_ = nullptr;
+};
+
+}  // namespace lidar::codec::mixing

@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Codes whether a pixel has a return.
+#pragma once
+#include <algorithm>
+#include <array>
+#include <cstdint>
+
+#include "src/codec/mixing/bit_mixer.h"
+#include "src/codec/mixing/model.h"
+#include "src/codec/mixing/neighbours.h"
+
+namespace lidar::codec::mixing {
+
+template <unsigned kContexts, class Coder>
+class MaskPart {
+ public:
+  MaskPart(const Kernel& kernel, Model* model, Coder* coder)
+      : mixer_(kernel), model_(*model), coder_(*coder) {}
+
+  /// `above` is the first azimuth of the row.
+  void StartRow(const Azimuth* above) {
+    above_ = above;
+    west_ = (above[0].returns & 1) != 0 ? 0xFF : 0;
+    run_ = 0;
+    nearby_ = 0;
+    for (int i = -2; i < 8; ++i) nearby_ |= (above[i].returns & 1U) << (i + 2);
+    north_west_ = above[-1].returns;
+  }
+
+  /// Of pixel `i`; `near_class` is the range class of what is nearest to it.
+  bool Code(bool bit, std::uint32_t i, std::uint32_t near_class) {
+    nearby_ |= (above_[static_cast<std::ptrdiff_t>(i) + 8 - 1].returns & 1U) << 9;
+    Ask(i, near_class);
+    const std::uint32_t set = (west_ & 1) << 3 | (nearby_ >> 1 & 7);
+    bit = mixer_.Code(bit, &model_.weights.mask[set], &coder_);
+    run_ = ((west_ & 1) != 0) == bit ? std::min(run_ + 1, 255U) : 1;
+    west_ = west_ << 1 | (bit ? 1 : 0);
+    north_west_ = above_[i].returns;
+    nearby_ >>= 1;
+    return bit;
+  }
+
+ private:
+  void Ask(std::uint32_t i, std::uint32_t near_class) {
+    // Bit 0 is two columns to the left, bit 2 is right above.
+    const std::uint32_t five = nearby_ & 31;
+    const std::uint32_t north = above_[i].returns;
+    const std::uint32_t east = above_[i + 1].returns;
+    const std::uint32_t ahead = nearby_ >> 2;
+    const std::uint32_t change = (ahead & 1) != 0 ? ~ahead : ahead;
+    const auto run_above = static_cast<std::uint32_t>(__builtin_ctz(change | 1U << 8));
+    const std::uint32_t last = west_ & 1;
+    const std::uint32_t short_run = run_ < 8 ? run_ : run_ < 16 ? 8 : run_ < 32 ? 9 : 10;
+    const auto log_run = static_cast<std::uint32_t>(BitLength(std::min(run_, 63U)));
+    const auto log_above = static_cast<std::uint32_t>(BitLength(run_above));
+    const std::array<std::uint32_t, kMaskContexts.size()> values = {
+        ((short_run * 2 + last) * 8 + run_above - 1) * 32 + five,
+        (((north & 15) * 8 + (north_west_ & 7)) * 8 + (east & 7)) * 4 + (west_ & 3),
+        ((log_run * 2 + last) * 5 + log_above) * 8 + (five >> 1 & 7),
+        ((north & 63) * 4 + (west_ & 3)) * 16 + ((nearby_ >> 4 & 3) | (east & 3) << 2),
+        (west_ & 63) * 32 + five,
+        near_class * 64 + (west_ & 3) * 16 + (five >> 1 & 7) * 2};
+    std::array<std::uint32_t, kContexts> contexts;
+    std::uint32_t base = 0;
+    for (unsigned k = 0; k < kContexts; ++k) {
+      contexts[k] = base + values[k];
+      base += kMaskContexts[k];
+    }
+    mixer_.Ask([&](unsigned k) { return &model_.counters.mask[contexts[k]]; });
+  }
+
+  BitMixer<kContexts, 0> mixer_;
+  Model& model_;
+  Coder& coder_;
+  const Azimuth* above_ = nullptr;
+  std::uint32_t west_ = 0;    // the last pixels of the row, the newest in bit 0
+  std::uint32_t run_ = 0;     // how many of them are alike
+  std::uint32_t nearby_ = 0;  // of the row above, from two columns to the left on
+  std::uint32_t north_west_ = 0;
+};
+
+}  // namespace lidar::codec::mixing

@@ -1,0 +1,145 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "src/codec/mixing/mixing_codec.h"
+
+#include <algorithm>
+#include <array>
+
+#include "src/codec/mixing/range_part.h"
+#include "src/codec/mixing/start_states.h"
+
+namespace lidar::codec {
+namespace {
+
+using mixing::SliceBins;
+
+// The first byte of a payload.
+constexpr unsigned kEffortMask = 3;
+constexpr unsigned kGapsFlag = 4;
+constexpr unsigned kVersionShift = 4;
+
+bool Fits(const AzimuthAlignment& alignment, const RangeImage& image) {
+  return image.beams == alignment.beams() && image.columns > 0 &&
+         image.columns <= alignment.columns_per_scan();
+}
+
+std::int64_t StepMm(const RangeGrid& grid) {
+  const std::int64_t parts = std::int64_t{grid.parts()} * grid.unit_mm();
+  return std::max<std::int64_t>((parts + RangeGrid::kParts / 2) / RangeGrid::kParts, 1);
+}
+
+}  // namespace
+
+/// What both sides keep between slices.
+struct MixingCoderState {
+  explicit MixingCoderState(const SensorModel& sensor)
+      : alignment(sensor), coder(alignment), model(std::make_unique<mixing::Model>()) {}
+
+  template <class Coder>
+  bool Code(unsigned effort, Coder* bits) {
+    const mixing::StartStates& start = mixing::Trained();
+    start.CopyTo(effort, slice.step_mm, slice.level_bits, model.get());
+    return coder.Code(effort, mixing::BestKernel(), model.get(), &slice, bits);
+  }
+
+  AzimuthAlignment alignment;
+  mixing::SliceCoder coder;
+  std::unique_ptr<mixing::Model> model;
+  SliceBins slice;
+};
+
+struct MixingEncoder::State : MixingCoderState {
+  using MixingCoderState::MixingCoderState;
+
+  /// False where a range is too long.
+  bool Load(const RangeImage& image, const MixingSettings& settings) {
+    slice.beams = image.beams;
+    slice.columns = image.columns;
+    slice.step_mm = StepMm(settings.grid);
+    slice.level_bits = settings.intensity.bits();
+    slice.has_gaps = false;
+    slice.bins.resize(image.size());
+    const std::uint32_t most = static_cast<std::uint32_t>(mixing::kMaxBins);
+    for (std::size_t i = 0; i < image.size(); ++i) {
+      const std::uint32_t bin = settings.grid.BinOf(image.ranges[i]);
+      if (bin >= most) return false;
+      const bool is_gap = image.ranges[i] == 0;
+      slice.has_gaps = slice.has_gaps || is_gap;
+      slice.bins[i] = is_gap ? mixing::kNoReturn : static_cast<std::int32_t>(bin);
+    }
+    slice.levels.clear();
+    if (slice.level_bits == 0) return true;
+    std::array<std::uint8_t, 256> coarse{};
+    for (unsigned i = 0; i < coarse.size(); ++i)
+      coarse[i] = settings.intensity.Coarsen(static_cast<std::uint8_t>(i));
+    slice.levels.resize(image.size());
+    for (std::size_t i = 0; i < image.size(); ++i) slice.levels[i] = coarse[image.intensity[i]];
+    return true;
+  }
+};
+
+MixingEncoder::MixingEncoder(const SensorModel& model) : state_(std::make_unique<State>(model)) {}
+MixingEncoder::MixingEncoder(MixingEncoder&&) noexcept = default;
+MixingEncoder& MixingEncoder::operator=(MixingEncoder&&) noexcept = default;
+MixingEncoder::~MixingEncoder() = default;
+
+bool MixingEncoder::Encode(const RangeImage& image, const MixingSettings& settings,
+                           std::vector<std::uint8_t>* out) {
+  State& s = *state_;
+  if (!Fits(s.alignment, image) || image.ranges.size() != image.size() ||
+      (settings.intensity.bits() > 0 && image.intensity.size() != image.size()) ||
+      !s.Load(image, settings)) {
+    return false;
+  }
+  const unsigned effort = std::clamp(settings.effort, 1U, mixing::kEfforts);
+  out->push_back(static_cast<std::uint8_t>(effort | (s.slice.has_gaps ? kGapsFlag : 0) |
+                                           mixing::kTableVersion << kVersionShift));
+  mixing::BinaryEncoder encoder(out);
+  s.Code(effort, &encoder);
+  encoder.Finish();
+  return true;
+}
+
+struct MixingDecoder::State : MixingCoderState {
+  using MixingCoderState::MixingCoderState;
+};
+
+MixingDecoder::MixingDecoder(const SensorModel& model) : state_(std::make_unique<State>(model)) {}
+MixingDecoder::MixingDecoder(MixingDecoder&&) noexcept = default;
+MixingDecoder& MixingDecoder::operator=(MixingDecoder&&) noexcept = default;
+MixingDecoder::~MixingDecoder() = default;
+
+bool MixingDecoder::Decode(ByteView payload, const RangeGrid& grid, unsigned intensity_bits,
+                           RangeImage* image) {
+  State& s = *state_;
+  if (payload.empty() || !Fits(s.alignment, *image) || !grid.IsValid() ||
+      intensity_bits > IntensityScale::kMaxBits) {
+    return false;
+  }
+  const unsigned first = payload.data[0];
+  const unsigned effort = first & kEffortMask;
+  if (first >> kVersionShift != mixing::kTableVersion || effort == 0 || effort > mixing::kEfforts ||
+      (first & 8) != 0) {
+    return false;
+  }
+  s.slice.beams = image->beams;
+  s.slice.columns = image->columns;
+  s.slice.step_mm = StepMm(grid);
+  s.slice.level_bits = intensity_bits;
+  s.slice.has_gaps = (first & kGapsFlag) != 0;
+  s.slice.bins.assign(image->size(), 0);
+  s.slice.levels.assign(intensity_bits > 0 ? image->size() : 0, 0);
+  mixing::BinaryDecoder decoder(payload.Sub(1));
+  if (!s.Code(effort, &decoder) || !decoder.AtEnd()) return false;
+  image->ranges.resize(image->size());
+  for (std::size_t i = 0; i < image->size(); ++i) {
+    const std::int32_t bin = s.slice.bins[i];
+    image->ranges[i] = bin < 0 ? 0 : grid.RangeOf(static_cast<std::uint32_t>(bin));
+    // A range of 0 would be none.
+    if (bin >= 0 && (image->ranges[i] == 0 || image->ranges[i] > RangeGrid::kMaxRangeMm))
+      return false;
+  }
+  image->intensity.assign(s.slice.levels.begin(), s.slice.levels.end());
+  return true;
+}
+
+}  // namespace lidar::codec

@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Payloads of the mixing coder: images of one sensor to bytes and back (docs/mixing-coder.md).
+#pragma once
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "src/base/byte_reader.h"
+#include "src/cloud/range_grid.h"
+#include "src/codec/azimuth_alignment.h"
+#include "src/codec/intensity_scale.h"
+#include "src/codec/mixing/model.h"
+#include "src/codec/mixing/slice_coder.h"
+#include "src/codec/range_image.h"
+
+namespace lidar::codec {
+
+struct MixingSettings {
+  RangeGrid grid;
+  IntensityScale intensity;  // 0 bits: geometry only
+  unsigned effort = 2;       // 1 to 3
+};
+
+/// Keeps its buffers between slices; not for several threads at once.
+class MixingEncoder {
+ public:
+  explicit MixingEncoder(const SensorModel& model);
+  MixingEncoder(MixingEncoder&&) noexcept;
+  MixingEncoder& operator=(MixingEncoder&&) noexcept;
+  ~MixingEncoder();
+
+  /// Appends one payload to `out`. False, with nothing appended, where the image does not fit the
+  /// sensor or has ranges past mixing::kMaxBins bins. Ranges are multiples of the grid's unit; the
+  /// image's levels are of 8 bits and become those of settings.intensity.
+  bool Encode(const RangeImage& image, const MixingSettings& settings,
+              std::vector<std::uint8_t>* out);
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+/// Decodes payloads of one sensor; any bytes give an image or false.
+class MixingDecoder {
+ public:
+  explicit MixingDecoder(const SensorModel& model);
+  MixingDecoder(MixingDecoder&&) noexcept;
+  MixingDecoder& operator=(MixingDecoder&&) noexcept;
+  ~MixingDecoder();
+
+  /// Fills ranges and levels of `image`, whose beams, columns and first_column are set. The grid
+  /// and the bits of the intensity are those of the encoder. False, with the image undefined, for
+  /// a payload that is damaged or of another version.
+  bool Decode(ByteView payload, const RangeGrid& grid, unsigned intensity_bits, RangeImage* image);
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace lidar::codec

@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// All that the mixing coder learns within a slice.
+#pragma once
+#include <array>
+#include <cstdint>
+
+#include "src/codec/mixing/arithmetic.h"
+#include "src/codec/mixing/mixer.h"
+
+namespace lidar::codec::mixing {
+
+// How many values the contexts have (docs/mixing-coder.md). Their order is that of the contexts.
+constexpr std::array<std::uint32_t, 6> kMaskContexts = {5'632, 4'096, 560, 4'096, 2'048, 1'024};
+constexpr std::array<std::uint32_t, 13> kRangeContexts = {
+    1'331, 1'372, 484, 512, 1'372, 1'936, 121, 120, 512, 24, 2'401, 1'024, 484};
+constexpr std::array<std::uint32_t, 3> kJumpContexts = {24, 32, 64};
+constexpr std::array<std::uint32_t, 6> kLevelContexts = {24, 225, 1'331, 1'024, 512, 1'331};
+
+/// Decisions about the small differences from a prediction: is it any, its sign, and for each sign
+/// whether it is more than 1, 2, 3.
+constexpr unsigned kSmallNodes = 8;
+/// Of larger ones: 24 bits of the length, and the bits below the highest one by place and level.
+constexpr unsigned kJumpNodes = 48;
+constexpr unsigned kLengthNodes = 24;
+
+constexpr unsigned kUnevenClasses = 24;
+constexpr unsigned kSurfaces = 27;
+constexpr unsigned kCandidates = 9;
+constexpr unsigned kPlaces = 12;
+constexpr unsigned kCentres = 2;
+
+template <std::size_t kSize>
+constexpr std::uint32_t Total(const std::array<std::uint32_t, kSize>& contexts) {
+  std::uint32_t sum = 0;
+  for (const std::uint32_t values : contexts) sum += values;
+  return sum;
+}
+
+/// What codes mask and bins.
+struct BinCounters {
+  std::array<Counter, Total(kMaskContexts)> mask;
+  std::array<Counter, kSmallNodes * Total(kRangeContexts)> range;
+  std::array<Counter, kJumpNodes * Total(kJumpContexts)> jump;
+  std::array<Counter, kJumpNodes * kCandidates * kPlaces> candidates;
+  /// Mean distance from each centre by unevenness and whether there is a gap, in 1/4096 step.
+  std::array<std::int32_t, kCentres * kUnevenClasses * 2> spread;
+};
+struct BinWeights {
+  std::array<Weights, 16> mask;
+  std::array<Weights, kSmallNodes * kUnevenClasses> range;
+  std::array<Weights, kSmallNodes * 64> event;
+  std::array<Weights, kJumpNodes> jump;
+};
+/// What codes intensities.
+struct LevelModel {
+  std::array<Counter, kSmallNodes * Total(kLevelContexts)> counters;
+  std::array<Counter, 512> rest;
+  std::array<Weights, kSmallNodes * kUnevenClasses> weights;
+  std::array<Weights, kSmallNodes * kSurfaces> surface_weights;
+};
+
+struct Model {
+  BinCounters counters;
+  BinWeights weights;
+  LevelModel level;
+};
+
+}  // namespace lidar::codec::mixing

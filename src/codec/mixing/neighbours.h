@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// What is known around a pixel, and the classes in which the contexts see it.
+#pragma once
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <cstdlib>
+
+#include "src/codec/mixing/arithmetic.h"
+
+namespace lidar::codec::mixing {
+
+/// Values of returns are centres of bins, in 1/16 bin; so they are at least 8.
+constexpr std::int32_t kStep = 16;
+constexpr std::int32_t kUnknown = 0;
+
+inline std::int32_t CentreOf(std::int32_t bin) { return kStep * bin + kStep / 2; }
+
+/// One direction, as the beams above have seen it.
+struct Azimuth {
+  std::array<std::int32_t, 3> values{};  // the last returns, newest first
+  std::int8_t residual = 0;              // of the beam above, between -3 and 3
+  std::uint8_t returns = 0xFF;           // whether the beams above had one, the last in bit 0
+  std::uint8_t level = 0;                // of the newest return
+  std::int8_t level_residual = 0;
+};
+
+/// Classes of half an octave: 0, 1, 2, 3, 4-5, 6-7, 8-11, ...
+inline std::uint32_t HalfOctave(std::uint32_t value) {
+  if (value < 2) return value;
+  const auto bits = static_cast<std::uint32_t>(BitLength(value) - 1);
+  return 2 * bits + (value >> (bits - 1) & 1);
+}
+
+/// Of a sum of distances in 1/16 bin, 24 classes.
+inline std::uint32_t UnevenClass(std::uint32_t sum) {
+  if (sum < 4) return sum < 1 ? 0 : 1;
+  return std::min(HalfOctave(sum) - 2, 23U);
+}
+
+/// Of a difference in 1/16 bin: up to half a bin, 1, 2, 4, 10 and more, each way; 11 classes.
+inline std::uint32_t OffsetClass(std::int32_t difference) {
+  static constexpr auto kClasses = [] {
+    std::array<std::uint8_t, 323> classes{};
+    for (std::int32_t i = 0; i < 323; ++i) {
+      const std::int32_t size = i < 161 ? 161 - i : i - 161;
+      const int c = size <= 7     ? 0
+                    : size <= 23  ? 1
+                    : size <= 39  ? 2
+                    : size <= 71  ? 3
+                    : size <= 160 ? 4
+                                  : 5;
+      classes[static_cast<std::size_t>(i)] = static_cast<std::uint8_t>(i < 161 ? 5 - c : 5 + c);
+    }
+    return classes;
+  }();
+  return kClasses[static_cast<std::size_t>(std::clamp(difference, -161, 161) + 161)];
+}
+
+/// Of a difference in 1/16 bin: up to half a bin, 1, 3 and more, each way; 7 classes.
+inline std::uint32_t StepClass(std::int32_t difference) {
+  const std::int32_t size = std::abs(difference);
+  const int c = (size > 7 ? 1 : 0) + (size > 23 ? 1 : 0) + (size > 56 ? 1 : 0);
+  return static_cast<std::uint32_t>(difference < 0 ? 3 - c : 3 + c);
+}
+
+/// Where the mean of the neighbours lies against the prediction, in 1/16 bin; 15 classes.
+inline std::uint32_t PhaseClass(std::int32_t phase) {
+  static constexpr auto kClasses = [] {
+    constexpr std::array<int, 14> kEnds = {-41, -25, -17, -13, -9, -5, -2, 1, 4, 8, 12, 16, 24, 40};
+    std::array<std::uint8_t, 83> classes{};
+    for (int i = 0; i < 83; ++i) {
+      std::uint8_t c = 0;
+      while (c < 14 && i - 41 > kEnds[c]) ++c;
+      classes[static_cast<std::size_t>(i)] = c;
+    }
+    return classes;
+  }();
+  return kClasses[static_cast<std::size_t>(std::clamp(phase, -41, 41) + 41)];
+}
+
+/// Residuals between -3 and 3, as 0 to 6 in the sense of `mirror`, which is 1 or -1.
+inline std::uint32_t ResidualClass(std::int32_t residual, std::int32_t mirror) {
+  return static_cast<std::uint32_t>(residual * mirror + 3);
+}
+
+/// What a line through `far` and `near` meets next, where a straight wall has an even slope in the
+/// inverse of the range.
+inline std::int32_t Extrapolate(std::int32_t near, std::int32_t far) {
+  const std::int64_t divisor = 2 * std::int64_t{far} - near;
+  if (divisor <= 0) return near;
+  return static_cast<std::int32_t>(
+      std::min<std::int64_t>(std::int64_t{near} * far / divisor, 2 * std::int64_t{near}));
+}
+
+/// Median of a, b and a + b - corner.
+inline std::int32_t Median(std::int32_t a, std::int32_t b, std::int32_t corner) {
+  return std::max(std::min(a, b), std::min(std::max(a, b), a + b - corner));
+}
+
+}  // namespace lidar::codec::mixing

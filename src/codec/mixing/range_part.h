@@ -1,0 +1,247 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Codes the bin of a return.
+#pragma once
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <cstdlib>
+
+#include "src/codec/mixing/bit_mixer.h"
+#include "src/codec/mixing/centre.h"
+#include "src/codec/mixing/jump_part.h"
+#include "src/codec/mixing/model.h"
+#include "src/codec/mixing/neighbours.h"
+
+namespace lidar::codec::mixing {
+
+/// Larger bins are not coded, so that sums of a few values fit 32 bits.
+constexpr std::int32_t kMaxBins = 1 << 25;
+
+/// Effort says how many contexts, centres and candidates are asked, and whether there are weights
+/// by events beside those by unevenness.
+template <class Effort, class Coder>
+class RangePart {
+ public:
+  /// `step_mm` is the width of a bin.
+  RangePart(const Kernel& kernel, Model* model, Coder* coder, std::int64_t step_mm)
+      : mixer_(kernel),
+        jump_(kernel, model, coder),
+        model_(*model),
+        coder_(*coder),
+        step_mm_(step_mm) {}
+
+  /// `above` is the first azimuth of the row, and `north` what is known above each; it is kUnknown
+  /// all along where there is nothing.
+  void StartRow(const Azimuth* above, const std::int32_t* north) {
+    above_ = above;
+    north_ = north;
+    blind_ = north[0] == kUnknown;
+    west_ = {};
+    residual_west_ = residual_west2_ = 0;
+    residual_north_west_ = above[-1].residual;
+    gap_ = zero_run_ = 0;
+    other_ = kUnknown;
+  }
+  /// Class of the range nearest to pixel `i`.
+  std::uint32_t NearClass(std::uint32_t i) const {
+    return RangeClass(west_[0] != kUnknown ? west_[0] : north_[i]);
+  }
+  /// Pixel `i` has no return.
+  void Skip(std::uint32_t i) {
+    ++gap_;
+    residual_north_west_ = above_[i].residual;
+  }
+  /// Codes the bin of pixel `i` and keeps what the azimuth learns of it; -1 for a damaged stream.
+  std::int32_t Code(std::int32_t bin, std::uint32_t i, Azimuth* azimuth) {
+    Look(i);
+    SetContexts(i);
+    const std::int32_t base = median_ >> 4;
+    const std::int32_t difference = CodeDifference(mirror_ * (bin - base));
+    bin = base + mirror_ * difference;
+    if (bin < 0 || bin >= kMaxBins) return -1;
+    Keep(CentreOf(bin), difference, azimuth);
+    return bin;
+  }
+
+ private:
+  static constexpr unsigned kContexts = Effort::kRangeContexts;
+  static constexpr unsigned kUsedCentres = Effort::kCentres;
+
+  std::uint32_t RangeClass(std::int32_t value) const {
+    const std::int64_t mm = value * step_mm_ / kStep;
+    return std::min(HalfOctave(static_cast<std::uint32_t>(mm >> 7)), 15U);
+  }
+
+  /// Neighbours and prediction of pixel `i`.
+  void Look(std::uint32_t i) {
+    const Azimuth& at = above_[i];
+    if (blind_) {
+      n_ = nw_ = ne_ = nee_ = west_[0] != kUnknown ? west_[0] : latest_;
+    } else {
+      n_ = north_[i];
+      nw_ = *(north_ + i - 1);
+      ne_ = north_[i + 1];
+      nee_ = north_[i + 2];
+    }
+    w_ = west_[0] != kUnknown ? west_[0] : n_;
+    if (west_[0] == kUnknown) nw_ = n_;
+    ww_ = west_[1] != kUnknown ? west_[1] : w_;
+    nn_ = at.values[1] != kUnknown ? at.values[1] : n_;
+    gradient_ = w_ + n_ - nw_;
+    median_ = Median(w_, n_, nw_);
+    mirror_ = n_ < w_ ? -1 : 1;
+    const std::int32_t uneven = std::abs(w_ - n_) + std::abs(n_ - nw_);
+    const std::int32_t rest = std::abs(ne_ - n_);
+    const std::int32_t errors = std::abs(residual_west_) + std::abs(at.residual);
+    uneven_ = UnevenClass(static_cast<std::uint32_t>(uneven) + static_cast<std::uint32_t>(rest) +
+                          static_cast<std::uint32_t>(2 * kStep * errors));
+    event_ = w_ == n_ ? 3 : median_ == w_ ? 1 : median_ == n_ ? 2 : 0;
+    gap_class_ = gap_ == 0 ? 0 : gap_ < 3 ? 1 : gap_ < 8 ? 2 : 3;
+    range_class_ = RangeClass(median_);
+  }
+
+  std::uint32_t Offset(std::int32_t value) const {
+    return OffsetClass((value - median_) * mirror_);
+  }
+  std::uint32_t Near(std::int32_t difference) const { return StepClass(difference * mirror_); }
+  static std::uint32_t Size(std::int32_t residual) {
+    return static_cast<std::uint32_t>(std::abs(residual));
+  }
+  std::uint32_t Residual(std::int32_t residual) const { return ResidualClass(residual, mirror_); }
+
+  void SetContexts(std::uint32_t i) {
+    const Azimuth& at = above_[i];
+    const std::uint32_t coarse = uneven_ / 3;
+    const auto north_error = static_cast<std::uint32_t>(std::abs(std::int32_t{at.residual}));
+    const auto to_east = static_cast<std::uint32_t>(std::min(std::abs(ne_ - n_) / (kStep / 2), 3));
+    const std::int64_t mean = (std::int64_t{w_} + n_ + ne_ + gradient_) >> 2;
+    const auto phase = static_cast<std::int32_t>(
+        std::clamp<std::int64_t>((mean - median_) * mirror_, -kStep * 4, kStep * 4));
+    const std::int32_t up = at.values[1] != kUnknown ? Extrapolate(n_, nn_) : n_;
+    const std::int32_t left = west_[1] != kUnknown ? Extrapolate(w_, ww_) : w_;
+    const auto zeros = static_cast<std::uint32_t>(std::min(zero_run_, 7));
+    const std::uint32_t east_residual = Residual(above_[i + 1].residual);
+    const std::array<std::uint32_t, mixing::kRangeContexts.size()> values = {
+        (Offset(ne_) * 11 + Offset(nn_)) * 11 + Offset(ww_),
+        ((Residual(residual_west_) * 7 + Residual(at.residual)) * 7 + east_residual) * 4 + event_,
+        (OffsetClass((nee_ - ne_) * mirror_) * 11 + OffsetClass((ne_ - n_) * mirror_)) * 4 + event_,
+        ((event_ * 8 + zeros) * 4 + north_error) * 4 + to_east,
+        ((Residual(residual_west2_) * 7 + Residual(residual_west_)) * 7 +
+         Residual(residual_north_west_)) *
+                4 +
+            event_,
+        ((Offset(up) * 11 + Offset(left)) * 4 + uneven_ / 6) * 4 + event_,
+        OffsetClass((w_ - nw_) * mirror_) * 11 + OffsetClass((n_ - nw_) * mirror_),
+        PhaseClass(phase) * 8 + coarse,
+        (range_class_ * 4 + gap_class_) * 8 + coarse,
+        uneven_,
+        ((Near(w_ - nw_) * 7 + Near(n_ - nw_)) * 7 + Near(ne_ - n_)) * 7 + Near(ww_ - w_),
+        (((Size(residual_west_) * 4 + Size(at.residual)) * 4 + Size(above_[i + 1].residual)) * 4 +
+         Size(residual_north_west_)) *
+                4 +
+            Size(residual_west2_),
+        (Offset(other_ != kUnknown ? other_ : ne_) * 11 +
+         Offset(at.values[2] != kUnknown ? at.values[2] : nn_)) *
+                4 +
+            event_};
+    std::uint32_t base = 0;
+    for (unsigned k = 0; k < kContexts; ++k) {
+      contexts_[k] = kSmallNodes * (base + values[k]);
+      base += mixing::kRangeContexts[k];
+    }
+    event_set_ = event_ * 16 + static_cast<std::uint32_t>(std::min(zero_run_, 15));
+    const std::size_t spread = uneven_ * 2 + (gap_ > 0 ? 1 : 0);
+    if constexpr (kUsedCentres > 0) {
+      centres_[0].Set((w_ - median_) * mirror_, &model_.counters.spread[spread]);
+      centres_[1].Set((n_ - median_) * mirror_,
+                      &model_.counters.spread[2 * kUnevenClasses + spread]);
+    }
+  }
+
+  bool CodeNode(bool bit, unsigned node) {
+    mixer_.Ask([&](unsigned k) { return &model_.counters.range[contexts_[k] + node]; },
+               [&](unsigned k) { return centres_[k].Opinion(node); });
+    Weights* const weights = &model_.weights.range[node * kUnevenClasses + uneven_];
+    if constexpr (!Effort::kEvents) return mixer_.Code(bit, weights, &coder_);
+    return mixer_.Code(bit, weights, &model_.weights.event[node * 64 + event_set_], &coder_);
+  }
+
+  std::int32_t CodeDifference(std::int32_t difference) {
+    if (!CodeNode(difference != 0, 0)) return 0;
+    const bool negative = CodeNode(difference < 0, 1);
+    const std::int32_t size = std::abs(difference);
+    std::int32_t coded = 1;
+    while (coded < 4 && CodeNode(size > coded, static_cast<unsigned>(2 * coded + negative)))
+      ++coded;
+    if (coded == 4) {
+      const auto rest = static_cast<std::uint32_t>(std::max(size - 3, 1));
+      coded = 3 + static_cast<std::int32_t>(jump_.Code(rest, ContextOfJump(negative)));
+    }
+    return negative ? -coded : coded;
+  }
+
+  JumpContext ContextOfJump(bool negative) const {
+    JumpContext c;
+    const bool towards_sensor = negative != (mirror_ < 0);
+    c.uneven = uneven_;
+    c.range_class = (towards_sensor ? 16 : 0) + range_class_;
+    const auto apart = static_cast<std::uint32_t>(std::abs(w_ - n_)) / kStep;
+    c.gap_class = gap_class_ * 4 + static_cast<std::uint32_t>(std::min(BitLength(apart) / 2, 3));
+    const std::int32_t base = median_ >> 4;
+    const std::int32_t sense = negative ? -mirror_ : mirror_;
+    const std::array<std::int32_t, kCandidates> values = {
+        w_, n_, nw_, ne_, nn_, ww_, west_[2] != kUnknown ? west_[2] : ww_, nee_, other_};
+    for (unsigned k = 0; k < kCandidates; ++k)
+      c.candidates[k] = ((values[k] >> 4) - base) * sense - 3;
+    return c;
+  }
+
+  void Keep(std::int32_t value, std::int32_t difference, Azimuth* azimuth) {
+    for (unsigned k = 0; k < kUsedCentres; ++k) centres_[k].Learn((value - median_) * mirror_);
+    if (std::abs(difference) > 3) other_ = w_;
+    const std::int32_t residual = std::clamp(difference, -3, 3) * mirror_;
+    residual_west2_ = residual_west_;
+    residual_west_ = residual;
+    residual_north_west_ = azimuth->residual;
+    azimuth->residual = static_cast<std::int8_t>(residual);
+    azimuth->values = {value, azimuth->values[0], azimuth->values[1]};
+    west_ = {value, west_[0], west_[1]};
+    latest_ = value;
+    zero_run_ = difference == 0 ? zero_run_ + 1 : 0;
+    gap_ = 0;
+  }
+
+  BitMixer<kContexts, kUsedCentres> mixer_;
+  JumpPart<Effort::kCandidates, Coder> jump_;
+  Model& model_;
+  Coder& coder_;
+  std::int64_t step_mm_;
+
+  // Of the row.
+  const Azimuth* above_ = nullptr;
+  const std::int32_t* north_ = nullptr;
+  bool blind_ = false;
+  std::array<std::int32_t, 3> west_{};  // the last returns of the row, newest first
+  std::int32_t residual_west_ = 0;
+  std::int32_t residual_west2_ = 0;
+  std::int32_t residual_north_west_ = 0;
+  std::int32_t gap_ = 0;  // pixels since the last return
+  std::int32_t zero_run_ = 0;
+  std::int32_t other_ = kUnknown;      // what was left in the last jump
+  std::int32_t latest_ = CentreOf(0);  // return of the slice
+
+  // Of the return.
+  std::int32_t n_ = 0, nw_ = 0, ne_ = 0, nee_ = 0, nn_ = 0, w_ = 0, ww_ = 0;
+  std::int32_t gradient_ = 0;
+  std::int32_t median_ = 0;
+  std::int32_t mirror_ = 1;
+  std::uint32_t uneven_ = 0;
+  std::uint32_t event_ = 0;
+  std::uint32_t gap_class_ = 0;
+  std::uint32_t range_class_ = 0;
+  std::uint32_t event_set_ = 0;
+  std::array<std::uint32_t, kContexts> contexts_{};
+  std::array<Centre, kCentres> centres_;
+};
+
+}  // namespace lidar::codec::mixing

@@ -1,0 +1,146 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "src/codec/mixing/slice_coder.h"
+
+#include <cmath>
+
+#include "src/codec/mixing/level_part.h"
+#include "src/codec/mixing/mask_part.h"
+#include "src/codec/mixing/range_part.h"
+
+namespace lidar::codec::mixing {
+namespace {
+
+constexpr auto kMargin = static_cast<std::ptrdiff_t>(AlignedRow<Azimuth>::kMargin);
+
+/// How many of all the opinions are asked.
+struct Effort1 {
+  static constexpr unsigned kMaskContexts = 3;
+  static constexpr unsigned kRangeContexts = 5;
+  static constexpr unsigned kCentres = 0;
+  static constexpr unsigned kCandidates = 5;
+  static constexpr bool kEvents = false;
+};
+struct Effort2 {
+  static constexpr unsigned kMaskContexts = 6;
+  static constexpr unsigned kRangeContexts = 10;
+  static constexpr unsigned kCentres = mixing::kCentres;
+  static constexpr unsigned kCandidates = mixing::kCandidates;
+  static constexpr bool kEvents = true;
+};
+struct Effort3 : Effort2 {
+  static constexpr unsigned kRangeContexts = 13;
+};
+
+/// A stream that has ended gives bits of its own for ever; nobody needs the rest of its slice.
+bool Overran(const BinaryDecoder& coder) { return coder.overran(); }
+template <class Coder>
+bool Overran(const Coder& /*coder*/) {
+  return false;
+}
+
+}  // namespace
+
+bool BitCounter::Code(bool bit, std::int32_t chance) {
+  bits_ -= std::log2((bit ? chance : kOne - chance) / double{kOne});
+  return bit;
+}
+
+void SliceCoder::FillNorth(const Azimuth* above, std::uint32_t columns) {
+  const auto end = static_cast<std::ptrdiff_t>(columns) + kMargin;
+  std::ptrdiff_t first = -kMargin;
+  while (first < end && above[first].values[0] == kUnknown) ++first;
+  std::int32_t last = first < end ? above[first].values[0] : kUnknown;
+  for (std::ptrdiff_t i = -kMargin; i < end; ++i) {
+    if (above[i].values[0] != kUnknown) last = above[i].values[0];
+    north_[static_cast<std::size_t>(i + kMargin)] = last;
+  }
+}
+
+template <class Effort, class Coder>
+bool SliceCoder::CodeBins(const Kernel& kernel, Model* model, SliceBins* slice, Coder* coder) {
+  MaskPart<Effort::kMaskContexts, Coder> mask(kernel, model, coder);
+  RangePart<Effort, Coder> range(kernel, model, coder, slice->step_mm);
+  for (std::uint32_t beam = 0; beam < slice->beams; ++beam) {
+    Azimuth* const above = above_.At(beam);
+    std::int32_t* const bins = &slice->bins[std::size_t{beam} * slice->columns];
+    FillNorth(above, slice->columns);
+    mask.StartRow(above);
+    range.StartRow(above, &north_[kMargin]);
+    for (std::uint32_t i = 0; i < slice->columns; ++i) {
+      const bool is_return = !slice->has_gaps || mask.Code(bins[i] >= 0, i, range.NearClass(i));
+      if (is_return) {
+        bins[i] = range.Code(bins[i], i, &above[i]);
+        if (bins[i] < 0) return false;
+      } else {
+        bins[i] = kNoReturn;
+        range.Skip(i);
+        above[i].residual = 0;
+      }
+      above[i].returns = static_cast<std::uint8_t>(above[i].returns << 1 | (is_return ? 1 : 0));
+    }
+    above_.CloseTurn(beam);
+    if (Overran(*coder)) return false;
+  }
+  return true;
+}
+
+template <class Coder>
+bool SliceCoder::CodeLevels(const Kernel& kernel, Model* model, SliceBins* slice, Coder* coder) {
+  LevelPart<Coder> part(kernel, &model->level, coder, slice->level_bits);
+  for (std::uint32_t beam = 0; beam < slice->beams; ++beam) {
+    Azimuth* const above = above_.At(beam);
+    const std::size_t row = std::size_t{beam} * slice->columns;
+    const auto at = [](const Azimuth& azimuth) {
+      // Bins of this pass are one more than they are, so that 0 means none.
+      return LevelAt{azimuth.values[0] - 1, azimuth.level, azimuth.level_residual};
+    };
+    typename LevelPart<Coder>::Around around{};
+    around.nw = at(above[-1]);
+    for (std::uint32_t i = 0; i < slice->columns; ++i) {
+      Azimuth& azimuth = above[i];
+      const LevelAt old = at(azimuth);
+      around.bin = slice->bins[row + i];
+      if (around.bin < 0) {
+        around.nw = old;
+        continue;
+      }
+      around.n = old;
+      around.ne = at(above[i + 1]);
+      around.nn = {azimuth.values[1] - 1, azimuth.values[2], 0};
+      std::int32_t residual = 0;
+      const std::int32_t level = part.Code(slice->levels[row + i], around, &residual);
+      if (level < 0) return false;
+      slice->levels[row + i] = static_cast<std::uint8_t>(level);
+      azimuth.values = {around.bin + 1, azimuth.values[0], azimuth.level};
+      azimuth.level = static_cast<std::uint8_t>(level);
+      azimuth.level_residual = static_cast<std::int8_t>(residual);
+      around.ww = around.w;
+      around.w = {around.bin, level, residual};
+      around.nw = old;
+    }
+    above_.CloseTurn(beam);
+    if (Overran(*coder)) return false;
+  }
+  return true;
+}
+
+template <class Coder>
+bool SliceCoder::Code(unsigned effort, const Kernel& kernel, Model* model, SliceBins* slice,
+                      Coder* coder) {
+  north_.resize(slice->columns + 2 * AlignedRow<Azimuth>::kMargin);
+  above_.Reset(alignment_, slice->columns, {});
+  bool coded = false;
+  if (effort == 1) coded = CodeBins<Effort1>(kernel, model, slice, coder);
+  if (effort == 2) coded = CodeBins<Effort2>(kernel, model, slice, coder);
+  if (effort == 3) coded = CodeBins<Effort3>(kernel, model, slice, coder);
+  if (!coded) return false;
+  if (slice->level_bits == 0) return true;
+  above_.Reset(alignment_, slice->columns, {});
+  return CodeLevels(kernel, model, slice, coder);
+}
+
+template bool SliceCoder::Code(unsigned, const Kernel&, Model*, SliceBins*, BinaryEncoder*);
+template bool SliceCoder::Code(unsigned, const Kernel&, Model*, SliceBins*, BinaryDecoder*);
+template bool SliceCoder::Code(unsigned, const Kernel&, Model*, SliceBins*, BitCounter*);
+
+}  // namespace lidar::codec::mixing

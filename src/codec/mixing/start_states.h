@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// What a slice begins with: counters and weights that were trained on real scans. They are part of
+// the format (docs/mixing-coder.md).
+#pragma once
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "src/base/byte_reader.h"
+#include "src/codec/mixing/model.h"
+
+namespace lidar::codec::mixing {
+
+constexpr std::uint8_t kTableVersion = 1;
+constexpr unsigned kEfforts = 3;
+
+/// Classes of the width of a bin, each with counters of its own: the last one of each [mm].
+constexpr std::array<std::int64_t, 4> kStepClassEnds = {11, 29, 69, 139};
+constexpr unsigned kStepClasses = kStepClassEnds.size() + 1;
+unsigned StepClassOf(std::int64_t step_mm);
+
+/// Intensities have few levels or many.
+constexpr unsigned kLevelClasses = 2;
+inline unsigned LevelClassOf(unsigned bits) { return bits > 6 ? 1 : 0; }
+
+/// All that is trained.
+struct StartStates {
+  std::array<BinCounters, kStepClasses> counters;
+  std::array<BinWeights, kEfforts> weights;
+  std::array<LevelModel, kLevelClasses> levels;
+
+  /// Chances of a half, and weights that add up to about 1.
+  void Reset();
+  /// The nearest that a table can say, with few enough visits that a slice can still change it.
+  void Round();
+  /// Appends the table of rounded states.
+  void Write(std::vector<std::uint8_t>* out) const;
+  /// False for anything but a whole table.
+  bool Read(ByteView table);
+
+  /// What a slice begins with; without levels, those of `model` stay as they are.
+  void CopyTo(unsigned effort, std::int64_t step_mm, unsigned level_bits, Model* model) const {
+    model->counters = counters[StepClassOf(step_mm)];
+    model->weights = weights[effort - 1];
+    if (level_bits > 0) model->level = levels[LevelClassOf(level_bits)];
+  }
+};
+
+/// The states of this version, from the table in the program.
+const StartStates& Trained();
+
+/// That table, three bytes in four characters (start_table.cpp).
+inline constexpr char kTableDigits[] =
+    "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+extern const char kTableText[];
+extern const std::size_t kTableBytes;
+/// As StartStates::Write() gave it.
+std::vector<std::uint8_t> CommittedTable();
+
+}  // namespace lidar::codec::mixing

@@ -1,0 +1,149 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// mixing-train: makes the table of start states of the mixing coder, and tells what it is worth.
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <fstream>
+#include <iostream>
+#include <iterator>
+#include <sstream>
+
+#include "src/tools/codec_lab/scan_source.h"
+#include "src/tools/mixing_train/training.h"
+
+namespace lidar::tools {
+namespace {
+
+struct Options {
+  std::vector<std::string> sources;
+  std::vector<std::string> held_out;
+  SourceOptions source;
+  std::string output;
+  std::string check;
+  bool leave_one_out = false;
+};
+
+Options ParseOptions(int argc, char** argv) {
+  Options o;
+  o.source.max_scans = 3;
+  CLI::App app(
+      "Trains the start states of the mixing coder, which are part of its format, on scans that "
+      "may\n"
+      "be redistributed.");
+  app.option_defaults()->always_capture_default();
+  app.add_option("SOURCE", o.sources, kSourceHelp)->required();
+  app.add_option("-o,--output", o.output, "C++ file to write");
+  app.add_option("--check", o.check, "C++ file that must be what would be written");
+  app.add_flag("--leave-one-out", o.leave_one_out,
+               "Print bits a return of each source with states trained on the others");
+  app.add_option("--held-out", o.held_out,
+                 "Print bits a return of these too, and never train on them");
+  app.add_option("--scans", o.source.max_scans, "Scans to read of each source")
+      ->check(CLI::Range(1, 1000));
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& e) {
+    std::exit(app.exit(e));
+  }
+  return o;
+}
+
+/// The table as text: each character stands for six bits, and `#` is 0, so that none needs an
+/// escape.
+std::string ToSource(const std::vector<std::uint8_t>& table) {
+  std::ostringstream out;
+  out << "// SPDX-License-Identifier: LGPL-2.1-or-later\n"
+         "// Written by mixing-train: the start states of the mixing coder, which are part of its\n"
+         "// format (docs/mixing-coder.md).\n"
+         "#include \"src/codec/mixing/start_states.h\"\n\n"
+         "namespace lidar::codec::mixing {\n\n"
+         "const char kTableText[] =";
+  constexpr std::size_t kBytesPerLine = 69;
+  for (std::size_t at = 0; at < table.size(); at += kBytesPerLine) {
+    out << "\n    \"";
+    const std::size_t end = std::min(at + kBytesPerLine, table.size());
+    for (std::size_t i = at; i < end; i += 3) {
+      std::uint32_t bits = 0;
+      for (std::size_t k = 0; k < 3; ++k) bits = bits << 8 | (i + k < end ? table[i + k] : 0U);
+      for (int shift = 18; shift >= 0; shift -= 6)
+        out << codec::mixing::kTableDigits[bits >> shift & 63];
+    }
+    out << '"';
+  }
+  if (table.empty()) out << " \"\"";
+  out << ";\nconst std::size_t kTableBytes = " << table.size()
+      << ";\n\n}  // namespace lidar::codec::mixing\n";
+  return out.str();
+}
+
+// With 8 slices a scan where nothing else is said.
+constexpr MixingCase kCases[] = {{1, 0.02, 0, 8}, {2, 0.02, 0, 8}, {3, 0.02, 0, 8}, {1, 0.05, 0, 8},
+                                 {2, 0.05, 0, 8}, {3, 0.05, 0, 8}, {3, 0.02, 5, 8}, {3, 0.02, 8, 8},
+                                 {3, 0.01, 0, 8}, {3, 0.1, 0, 8},  {3, 0.02, 0, 1}};
+
+void PrintRow(const std::string& name, const ScanSet& set,
+              const codec::mixing::StartStates& states) {
+  std::printf("%-36s", name.c_str());
+  for (const MixingCase& setting : kCases) {
+    std::printf(" %9.3f", BitsPerReturn(set, setting, states));
+    std::fflush(stdout);
+  }
+  std::printf("\n");
+}
+
+void PrintHeader() {
+  std::printf("%-36s", "bits a return: cm/effort/intensity");
+  for (const MixingCase& c : kCases) {
+    char text[24];
+    std::snprintf(text, sizeof text, "%s%.0f/%u/%u", c.slices == 1 ? "whole " : "", 100 * c.error_m,
+                  c.effort, c.level_bits);
+    std::printf(" %9s", text);
+  }
+  std::printf("\n");
+}
+
+int Run(const Options& o) {
+  const std::vector<ScanSet> sets = LoadAllScans(o.sources, o.source);
+  std::vector<const ScanSet*> all;
+  for (const ScanSet& set : sets) all.push_back(&set);
+  const bool prints = o.leave_one_out || !o.held_out.empty();
+  if (prints) PrintHeader();
+  for (const ScanSet* left_out : all) {
+    if (!o.leave_one_out) break;
+    std::vector<const ScanSet*> others;
+    for (const ScanSet* set : all)
+      if (set != left_out) others.push_back(set);
+    PrintRow(left_out->name, *left_out, *TrainMixing(others));
+  }
+  const auto states = TrainMixing(all);
+  for (const ScanSet& set : LoadAllScans(o.held_out, o.source))
+    PrintRow(set.name + " (held out)", set, *states);
+  std::vector<std::uint8_t> table;
+  states->Write(&table);
+  const std::string source = ToSource(table);
+  if (!o.output.empty() && !(std::ofstream(o.output) << source)) {
+    std::cerr << "mixing-train: cannot write " << o.output << "\n";
+    return 1;
+  }
+  if (!o.check.empty()) {
+    std::ifstream file(o.check, std::ios::binary);
+    const std::string committed{std::istreambuf_iterator<char>(file), {}};
+    if (committed != source) {
+      std::cerr << o.check << ": not what this training gives\n";
+      return 1;
+    }
+  }
+  std::printf("table: %zu bytes\n", table.size());
+  return 0;
+}
+
+}  // namespace
+}  // namespace lidar::tools
+
+int main(int argc, char** argv) {
+  try {
+    return lidar::tools::Run(lidar::tools::ParseOptions(argc, argv));
+  } catch (const std::exception& e) {
+    std::cerr << "mixing-train: " << e.what() << "\n";
+    return 1;
+  }
+}

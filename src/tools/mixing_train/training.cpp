@@ -1,0 +1,268 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "src/tools/mixing_train/training.h"
+
+#include <algorithm>
+#include <array>
+#include <stdexcept>
+#include <utility>
+
+#include "src/codec/intensity_scale.h"
+
+namespace lidar::tools {
+namespace {
+
+namespace mixing = codec::mixing;
+using mixing::SliceBins;
+
+constexpr std::uint32_t kSlices = 8;
+// At least one for each class of steps, with ranges in units of 1 and of 8 mm.
+constexpr std::array<double, 6> kErrors = {0.001, 0.004, 0.01, 0.02, 0.05, 0.1};
+constexpr std::array<unsigned, mixing::kLevelClasses> kLevelBits = {5, 8};
+constexpr double kLevelError = 0.02;
+// A slice has to be able to change what others have taught.
+constexpr std::uint16_t kMostVisits = 24;
+constexpr std::uint16_t kMostJumpVisits = 48;
+// Version, flags, lengths and the first byte of the payload.
+constexpr std::size_t kHeaderBytes = 13;
+
+/// Fills `bins`; returns how many returns they have.
+std::size_t ToBins(const Scan& scan, SliceOf slice, const MixingCase& setting, SliceBins* bins) {
+  const SensorModel& model = scan.geometry->model;
+  const ColumnWindow window = WindowOf(scan, slice);
+  const auto grid = RangeGrid::ForError(setting.error_m, model.range_unit_mm);
+  const codec::IntensityScale scale(codec::FullScale::kByte, setting.level_bits);
+  bins->beams = static_cast<std::uint32_t>(model.beams.size());
+  bins->columns = window.count;
+  bins->step_mm = std::int64_t{grid.parts() / RangeGrid::kParts} * grid.unit_mm();
+  bins->level_bits = setting.level_bits;
+  bins->has_gaps = false;
+  bins->bins.clear();
+  bins->levels.clear();
+  std::size_t returns = 0;
+  for (std::size_t beam = 0; beam < bins->beams; ++beam) {
+    for (std::size_t i = 0; i < window.count; ++i) {
+      const std::size_t at = beam * model.columns_per_scan + window.first + i;
+      const std::uint32_t range = scan.ranges[at];
+      bins->bins.push_back(range == 0 ? mixing::kNoReturn
+                                      : static_cast<std::int32_t>(grid.BinOf(range)));
+      if (setting.level_bits > 0)
+        bins->levels.push_back(range == 0 ? 0 : scale.LevelOf(scan.intensity[at]));
+      bins->has_gaps = bins->has_gaps || range == 0;
+      returns += range != 0 ? 1 : 0;
+    }
+  }
+  return returns;
+}
+
+template <std::size_t kSize>
+void Cap(std::uint16_t most, std::array<mixing::Counter, kSize>* counters) {
+  for (mixing::Counter& counter : *counters) counter.visits = std::min(counter.visits, most);
+}
+
+/// Means of what numbers were behind each slice that changed them. So no slice weighs more than
+/// another, and none more for being the last.
+class Means {
+ public:
+  void Add(std::size_t place, std::int64_t number) {
+    if (sums_.size() <= place) {
+      sums_.resize(place + 1);
+      counts_.resize(place + 1);
+    }
+    sums_[place] += number;
+    ++counts_[place];
+  }
+  template <class Number>
+  void Take(std::size_t place, Number* number) const {
+    if (place < sums_.size() && counts_[place] > 0)
+      *number = static_cast<Number>(sums_[place] / counts_[place]);
+  }
+
+ private:
+  std::vector<std::int64_t> sums_;
+  std::vector<std::int64_t> counts_;
+};
+
+/// Goes through pairs of numbers of two objects of one type, in order.
+class Walk {
+ public:
+  template <std::size_t kSize, class Do>
+  void Of(std::array<mixing::Counter, kSize>& a, const std::array<mixing::Counter, kSize>& b,
+          Do&& act) {
+    for (std::size_t i = 0; i < kSize; ++i, ++place_)
+      act(place_, a[i].chance, b[i].chance, a[i].visits != b[i].visits);
+  }
+  template <std::size_t kSize, class Do>
+  void Of(std::array<mixing::Weights, kSize>& a, const std::array<mixing::Weights, kSize>& b,
+          Do&& act) {
+    for (std::size_t i = 0; i < kSize; ++i)
+      for (unsigned k = 0; k < mixing::kInputs; ++k, ++place_)
+        act(place_, a[i].values[k], b[i].values[k], false);
+  }
+  template <std::size_t kSize, class Do>
+  void Of(std::array<std::int32_t, kSize>& a, const std::array<std::int32_t, kSize>& b, Do&& act) {
+    for (std::size_t i = 0; i < kSize; ++i, ++place_) act(place_, a[i], b[i], false);
+  }
+
+ private:
+  std::size_t place_ = 0;
+};
+
+template <class Do>
+void ForEach(mixing::BinCounters& a, const mixing::BinCounters& b, Do&& act) {
+  Walk walk;
+  walk.Of(a.mask, b.mask, act);
+  walk.Of(a.range, b.range, act);
+  walk.Of(a.jump, b.jump, act);
+  walk.Of(a.candidates, b.candidates, act);
+  walk.Of(a.spread, b.spread, act);
+}
+template <class Do>
+void ForEach(mixing::BinWeights& a, const mixing::BinWeights& b, Do&& act) {
+  Walk walk;
+  walk.Of(a.mask, b.mask, act);
+  walk.Of(a.range, b.range, act);
+  walk.Of(a.event, b.event, act);
+  walk.Of(a.jump, b.jump, act);
+}
+template <class Do>
+void ForEach(mixing::LevelModel& a, const mixing::LevelModel& b, Do&& act) {
+  Walk walk;
+  walk.Of(a.counters, b.counters, act);
+  walk.Of(a.rest, b.rest, act);
+  walk.Of(a.weights, b.weights, act);
+  walk.Of(a.surface_weights, b.surface_weights, act);
+}
+
+/// Replaces `states` by what a slice has made of them.
+template <class States>
+void Keep(States& learnt, States* states, Means* means) {
+  ForEach(learnt, *states, [&](std::size_t place, auto& now, auto before, bool visited) {
+    if (visited || now != before) means->Add(place, now);
+  });
+  *states = learnt;
+}
+template <class States>
+void TakeMeans(const Means& means, States* states) {
+  ForEach(*states, *states,
+          [&](std::size_t place, auto& now, auto, bool) { means.Take(place, &now); });
+}
+
+/// Carries states from slice to slice.
+class Trainer {
+ public:
+  Trainer() {
+    for (auto& states : states_) states->Reset();
+  }
+
+  void Learn(const Scan& scan, SliceOf slice) {
+    const codec::AzimuthAlignment alignment(scan.geometry->model);
+    mixing::SliceCoder coder(alignment);
+    for (const double error : kErrors) {
+      ToBins(scan, slice, {1, error, 0, kSlices}, &bins_);
+      for (unsigned effort = 1; effort <= mixing::kEfforts; ++effort) LearnBins(effort, &coder);
+    }
+    for (unsigned i = 0; i < kLevelBits.size(); ++i) {
+      if (scan.intensity.empty()) break;
+      ToBins(scan, slice, {1, kLevelError, kLevelBits[i], kSlices}, &bins_);
+      all().CopyTo(1, bins_.step_mm, bins_.level_bits, model_.get());
+      Run(1, &coder);
+      Keep(model_->level, &all().levels[i], &level_means_[i]);
+    }
+  }
+
+  std::unique_ptr<mixing::StartStates> Finish() {
+    for (unsigned i = 0; i < mixing::kEfforts; ++i) {
+      all().weights[i] = states_[i]->weights[i];
+      TakeMeans(weight_means_[i], &all().weights[i]);
+    }
+    for (unsigned i = 0; i < mixing::kStepClasses; ++i) {
+      auto& c = all().counters[i];
+      TakeMeans(counter_means_[i], &c);
+      Cap(kMostVisits, &c.mask);
+      Cap(kMostVisits, &c.range);
+      Cap(kMostJumpVisits, &c.jump);
+      Cap(kMostJumpVisits, &c.candidates);
+    }
+    for (unsigned i = 0; i < mixing::kLevelClasses; ++i) {
+      auto& level = all().levels[i];
+      TakeMeans(level_means_[i], &level);
+      Cap(kMostVisits, &level.counters);
+      Cap(kMostVisits, &level.rest);
+    }
+    all().Round();
+    return std::move(states_.back());
+  }
+
+ private:
+  void Run(unsigned effort, mixing::SliceCoder* coder) {
+    mixing::BitCounter bits;
+    coder->Code(effort, mixing::BestKernel(), model_.get(), &bins_, &bits);
+  }
+  void LearnBins(unsigned effort, mixing::SliceCoder* coder) {
+    mixing::StartStates& states = *states_[effort - 1];
+    states.CopyTo(effort, bins_.step_mm, 0, model_.get());
+    Run(effort, coder);
+    const unsigned step_class = mixing::StepClassOf(bins_.step_mm);
+    Means unused;
+    Keep(model_->counters, &states.counters[step_class],
+         effort == mixing::kEfforts ? &counter_means_[step_class] : &unused);
+    Keep(model_->weights, &states.weights[effort - 1], &weight_means_[effort - 1]);
+  }
+  /// The last effort has all counters that the others have.
+  mixing::StartStates& all() { return *states_.back(); }
+
+  using States = std::unique_ptr<mixing::StartStates>;
+  std::array<States, mixing::kEfforts> states_ = {std::make_unique<mixing::StartStates>(),
+                                                  std::make_unique<mixing::StartStates>(),
+                                                  std::make_unique<mixing::StartStates>()};
+  std::array<Means, mixing::kStepClasses> counter_means_;
+  std::array<Means, mixing::kEfforts> weight_means_;
+  std::array<Means, mixing::kLevelClasses> level_means_;
+  std::unique_ptr<mixing::Model> model_ = std::make_unique<mixing::Model>();
+  SliceBins bins_;
+};
+
+}  // namespace
+
+std::unique_ptr<mixing::StartStates> TrainMixing(const std::vector<const ScanSet*>& sets) {
+  Trainer trainer;
+  // Slices that follow each other should differ, so the sets take turns.
+  for (std::uint32_t index = 0; index < kSlices; ++index)
+    for (const ScanSet* set : sets)
+      for (const Scan& scan : set->scans) trainer.Learn(scan, {index, kSlices});
+  return trainer.Finish();
+}
+
+double BitsPerReturn(const ScanSet& set, const MixingCase& setting,
+                     const mixing::StartStates& states) {
+  const codec::AzimuthAlignment alignment(set.scans.front().geometry->model);
+  mixing::SliceCoder coder(alignment);
+  const auto model = std::make_unique<mixing::Model>();
+  SliceBins bins;
+  double returns = 0;
+  double bytes = 0;
+  for (const Scan& scan : set.scans) {
+    for (std::uint32_t index = 0; index < setting.slices; ++index) {
+      returns += static_cast<double>(ToBins(scan, {index, setting.slices}, setting, &bins));
+      std::vector<std::uint8_t> payload;
+      mixing::BinaryEncoder encoder(&payload);
+      states.CopyTo(setting.effort, bins.step_mm, setting.level_bits, model.get());
+      coder.Code(setting.effort, mixing::BestKernel(), model.get(), &bins, &encoder);
+      encoder.Finish();
+      bytes += static_cast<double>(payload.size() + kHeaderBytes);
+
+      SliceBins decoded = bins;
+      std::fill(decoded.bins.begin(), decoded.bins.end(), 0);
+      std::fill(decoded.levels.begin(), decoded.levels.end(), std::uint8_t{0});
+      mixing::BinaryDecoder decoder({payload.data(), payload.size()});
+      states.CopyTo(setting.effort, bins.step_mm, setting.level_bits, model.get());
+      if (!coder.Code(setting.effort, mixing::kScalarKernel, model.get(), &decoded, &decoder) ||
+          !decoder.AtEnd() || decoded.bins != bins.bins || decoded.levels != bins.levels) {
+        throw std::runtime_error(set.name + ": a slice did not come back as it was");
+      }
+    }
+  }
+  return 8 * bytes / returns;
+}
+
+}  // namespace lidar::tools

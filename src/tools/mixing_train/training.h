@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Trains the start states of the mixing coder, and measures what they are worth.
+#pragma once
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "src/codec/mixing/slice_coder.h"
+#include "src/codec/mixing/start_states.h"
+#include "src/tools/codec_lab/scan.h"
+
+namespace lidar::tools {
+
+/// One setting of the coder.
+struct MixingCase {
+  unsigned effort = 2;
+  double error_m = 0.02;
+  unsigned level_bits = 0;
+  std::uint32_t slices = 8;  // a scan
+};
+
+/// States trained on all scans of `sets`, rounded as the table has them.
+std::unique_ptr<codec::mixing::StartStates> TrainMixing(const std::vector<const ScanSet*>& sets);
+
+/// Bits a return, with everything that a block has, of real payloads that were decoded again;
+/// throws std::runtime_error where one did not come back as it was.
+double BitsPerReturn(const ScanSet& set, const MixingCase& setting,
+                     const codec::mixing::StartStates& states);
+
+}  // namespace lidar::tools

@@ -1,0 +1,201 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "src/codec/mixing/mixing_codec.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+
+#include "src/codec/mixing/range_part.h"
+#include "src/codec/mixing/start_states.h"
+
+namespace lidar::codec {
+namespace {
+
+SensorModel Sensor(std::uint32_t beams, std::uint32_t columns, std::uint32_t unit_mm = 1) {
+  SensorModel model;
+  model.columns_per_scan = columns;
+  model.range_unit_mm = unit_mm;
+  for (std::uint32_t i = 0; i < beams; ++i)
+    model.beams.push_back({0.0, 10.0 - i, static_cast<int>(i % 4) * 3 - 4});
+  return model;
+}
+
+/// A room with a few things in it, gaps, and noise.
+RangeImage Room(std::uint32_t beams, std::uint32_t columns, std::uint32_t unit_mm,
+                std::uint32_t seed) {
+  std::mt19937 random(seed);
+  RangeImage image;
+  image.beams = beams;
+  image.columns = columns;
+  for (std::uint32_t beam = 0; beam < beams; ++beam) {
+    for (std::uint32_t i = 0; i < columns; ++i) {
+      const double wall = 6'000 / (0.3 + std::abs(std::cos(0.02 * i + 0.1 * beam)));
+      const bool thing = i / 20 % 5 == 2 && beam > 3;
+      const double range = (thing ? 2'500 : wall) + static_cast<double>(random() % 30);
+      const bool gap = random() % 50 == 0 || i / 30 % 7 == 3;
+      const auto units = static_cast<std::uint32_t>(range) / unit_mm;
+      image.ranges.push_back(gap ? 0 : units * unit_mm);
+      image.intensity.push_back(static_cast<std::uint8_t>((thing ? 200 : 40) + random() % 20));
+    }
+  }
+  return image;
+}
+
+struct Case {
+  unsigned effort;
+  double error_m;
+  unsigned bits;
+  std::uint32_t unit_mm;
+};
+
+class MixingCodec : public testing::TestWithParam<Case> {
+ protected:
+  MixingSettings Settings() const {
+    const Case& c = GetParam();
+    return {RangeGrid::ForError(c.error_m, c.unit_mm), IntensityScale(FullScale::kByte, c.bits),
+            c.effort};
+  }
+};
+
+/// Decodes what was encoded; fails the test where that is not possible.
+RangeImage Decoded(const SensorModel& sensor, const RangeImage& image,
+                   const MixingSettings& settings, const std::vector<std::uint8_t>& payload) {
+  RangeImage decoded;
+  decoded.beams = image.beams;
+  decoded.columns = image.columns;
+  MixingDecoder decoder(sensor);
+  EXPECT_TRUE(decoder.Decode({payload.data(), payload.size()}, settings.grid,
+                             settings.intensity.bits(), &decoded));
+  return decoded;
+}
+
+TEST_P(MixingCodec, KeepsMaskBoundAndLevels) {
+  const Case& c = GetParam();
+  const SensorModel sensor = Sensor(16, 256, c.unit_mm);
+  MixingEncoder encoder(sensor);
+  // Whole turns and sectors.
+  for (const std::uint32_t columns : {256U, 64U, 1U}) {
+    const RangeImage image = Room(16, columns, c.unit_mm, columns);
+    std::vector<std::uint8_t> payload;
+    ASSERT_TRUE(encoder.Encode(image, Settings(), &payload));
+    const RangeImage decoded = Decoded(sensor, image, Settings(), payload);
+    ASSERT_EQ(decoded.ranges.size(), image.size());
+    ASSERT_EQ(decoded.intensity.size(), c.bits > 0 ? image.size() : 0);
+    for (std::size_t i = 0; i < image.size(); ++i) {
+      ASSERT_EQ(decoded.ranges[i] == 0, image.ranges[i] == 0) << i;
+      ASSERT_LE(std::abs(1e-3 * decoded.ranges[i] - 1e-3 * image.ranges[i]), c.error_m + 1e-9) << i;
+      if (c.bits == 0 || image.ranges[i] == 0) continue;
+      ASSERT_EQ(decoded.intensity[i], Settings().intensity.Coarsen(image.intensity[i])) << i;
+    }
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Settings, MixingCodec,
+                         testing::Values(Case{1, 0.02, 0, 1}, Case{2, 0.02, 0, 1},
+                                         Case{3, 0.02, 0, 1}, Case{1, 0.02, 5, 8},
+                                         Case{2, 0.05, 5, 8}, Case{3, 0.05, 5, 8},
+                                         Case{2, 0.0001, 8, 1}, Case{3, 0.0001, 1, 1},
+                                         Case{2, 0.5, 0, 1}, Case{3, 0.5, 3, 8}));
+
+TEST(MixingCodecOf, ImagesWithoutGapsAndWithoutReturns) {
+  const SensorModel sensor = Sensor(8, 64);
+  MixingEncoder encoder(sensor);
+  const MixingSettings settings{RangeGrid::ForError(0.02, 1), {}, 2};
+  for (const std::uint32_t range : {0U, 5'000U}) {
+    RangeImage image;
+    image.beams = 8;
+    image.columns = 64;
+    image.ranges.assign(image.size(), range);
+    std::vector<std::uint8_t> payload;
+    ASSERT_TRUE(encoder.Encode(image, settings, &payload));
+    EXPECT_LT(payload.size(), 24U);
+    const RangeImage decoded = Decoded(sensor, image, settings, payload);
+    for (const std::uint32_t r : decoded.ranges) ASSERT_NEAR(r, range, 20);
+  }
+}
+
+TEST(MixingCodecOf, AnyRanges) {
+  const SensorModel sensor = Sensor(8, 64);
+  MixingEncoder encoder(sensor);
+  std::mt19937 random(3);
+  RangeImage image;
+  image.beams = 8;
+  image.columns = 64;
+  for (std::size_t i = 0; i < image.size(); ++i)
+    image.ranges.push_back(
+        static_cast<std::uint32_t>(random() % mixing::kMaxBins >> random() % 26));
+  for (const unsigned effort : {1U, 2U, 3U}) {
+    const MixingSettings settings{RangeGrid(1, 1), {}, effort};
+    std::vector<std::uint8_t> payload;
+    ASSERT_TRUE(encoder.Encode(image, settings, &payload));
+    EXPECT_EQ(Decoded(sensor, image, settings, payload).ranges, image.ranges);
+  }
+}
+
+TEST(MixingCodecOf, RefusesWhatDoesNotFit) {
+  MixingEncoder encoder(Sensor(8, 64));
+  std::vector<std::uint8_t> payload;
+  RangeImage image = Room(8, 64, 1, 1);
+  image.ranges[5] = mixing::kMaxBins;
+  EXPECT_FALSE(encoder.Encode(image, {RangeGrid(1, 1), {}, 2}, &payload));
+  EXPECT_FALSE(encoder.Encode(Room(4, 64, 1, 1), {RangeGrid(1, 41), {}, 2}, &payload));
+  EXPECT_FALSE(encoder.Encode(Room(8, 65, 1, 1), {RangeGrid(1, 41), {}, 2}, &payload));
+  EXPECT_TRUE(payload.empty());
+}
+
+TEST(MixingCodecOf, DependsOnNoSliceBefore) {
+  const SensorModel sensor = Sensor(16, 256);
+  const MixingSettings settings{RangeGrid::ForError(0.02, 1), IntensityScale(FullScale::kByte, 5),
+                                2};
+  MixingEncoder encoder(sensor);
+  const RangeImage image = Room(16, 128, 1, 1);
+  std::vector<std::uint8_t> first;
+  encoder.Encode(image, settings, &first);
+  std::vector<std::uint8_t> other;
+  encoder.Encode(Room(16, 256, 1, 2), settings, &other);
+  std::vector<std::uint8_t> again;
+  encoder.Encode(image, settings, &again);
+  EXPECT_EQ(first, again);
+}
+
+TEST(MixingCodecOf, DamagedPayloadsGiveAnImageOrNothing) {
+  const SensorModel sensor = Sensor(16, 128);
+  const MixingSettings settings{RangeGrid::ForError(0.02, 1), IntensityScale(FullScale::kByte, 5),
+                                2};
+  MixingEncoder encoder(sensor);
+  const RangeImage image = Room(16, 128, 1, 1);
+  std::vector<std::uint8_t> payload;
+  encoder.Encode(image, settings, &payload);
+  MixingDecoder decoder(sensor);
+  RangeImage decoded = image;
+  const auto decode = [&](const std::vector<std::uint8_t>& bytes) {
+    return decoder.Decode({bytes.data(), bytes.size()}, settings.grid, 5, &decoded);
+  };
+  for (std::size_t size = 0; size < payload.size() - 1; size += 7)
+    EXPECT_FALSE(decode({payload.begin(), payload.begin() + static_cast<std::ptrdiff_t>(size)}));
+  std::mt19937 random(5);
+  int accepted = 0;
+  for (int i = 0; i < 200; ++i) {
+    auto damaged = payload;
+    damaged[random() % damaged.size()] ^= static_cast<std::uint8_t>(1U << random() % 8);
+    accepted += decode(damaged) ? 1 : 0;
+  }
+  // The CRC of the unit finds the rest.
+  EXPECT_LT(accepted, 20);
+  EXPECT_TRUE(decode(payload));
+}
+
+TEST(MixingTable, ComesBackAsItWasWritten) {
+  const std::vector<std::uint8_t> table = mixing::CommittedTable();
+  ASSERT_GT(table.size(), 1'000U);
+  const auto states = std::make_unique<mixing::StartStates>();
+  ASSERT_TRUE(states->Read({table.data(), table.size()}));
+  std::vector<std::uint8_t> again;
+  states->Write(&again);
+  EXPECT_EQ(again, table);
+  EXPECT_FALSE(states->Read({table.data(), table.size() - 8}));
+}
+
+}  // namespace
+}  // namespace lidar::codec
