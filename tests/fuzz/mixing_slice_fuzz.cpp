@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Payloads of the mixing coder. The first byte chooses the sensor, the bits of the intensity and
+// the grid.
+#include "src/codec/mixing/mixing_codec.h"
+#include "tests/fuzz/fuzz.h"
+
+namespace {
+
+lidar::SensorModel Sensor(std::uint32_t beams, std::uint32_t columns) {
+  lidar::SensorModel model;
+  model.columns_per_scan = columns;
+  for (std::uint32_t i = 0; i < beams; ++i)
+    model.beams.push_back({0.5, 10.0 - i, static_cast<int>(i % 3)});
+  return model;
+}
+
+}  // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  if (size == 0) return 0;
+  const unsigned choice = data[0];
+  const lidar::SensorModel sensor = Sensor((choice & 1) != 0 ? 16 : 4, (choice & 2) != 0 ? 96 : 32);
+  const unsigned bits = (choice & 4) == 0 ? 0 : (choice & 8) != 0 ? 8 : 5;
+  // From lossless to a step of 19 m.
+  const lidar::RangeGrid grid(1, 1 + (choice >> 4 & 3) * (choice >> 4 & 3) * 2'111);
+  lidar::codec::RangeImage image;
+  image.beams = static_cast<std::uint32_t>(sensor.beams.size());
+  image.columns = (choice & 64) != 0 ? sensor.columns_per_scan : sensor.columns_per_scan / 2;
+  lidar::codec::MixingDecoder decoder(sensor);
+  // Twice: what one slice leaves behind must not change the next.
+  const bool first = decoder.Decode({data + 1, size - 1}, grid, bits, &image);
+  const auto ranges = image.ranges;
+  const bool second = decoder.Decode({data + 1, size - 1}, grid, bits, &image);
+  FUZZ_CHECK(first == second);
+  if (!first) return 0;
+  FUZZ_CHECK(image.ranges == ranges && ranges.size() == image.size());
+  FUZZ_CHECK(image.intensity.size() == (bits > 0 ? image.size() : 0));
+
+  // What is accepted can be written again, with the same ranges.
+  lidar::codec::MixingEncoder encoder(sensor);
+  std::vector<std::uint8_t> payload;
+  lidar::codec::MixingSettings settings;
+  settings.grid = grid;
+  settings.effort = data[1] & 3U;
+  if (!encoder.Encode(image, settings, &payload)) return 0;
+  lidar::codec::RangeImage again = image;
+  FUZZ_CHECK(decoder.Decode({payload.data(), payload.size()}, grid, 0, &again));
+  FUZZ_CHECK(again.ranges == ranges);
+  return 0;
+}
