@@ -15,6 +15,12 @@ constexpr Duration kHousekeeping = 50ms;
 /// A caller that comes so much too late stood still, or its clock was set.
 constexpr Duration kStandstill = 500ms;
 constexpr double kDriftRateScale = 0.5;
+/// Silence up to this is one of the gaps that links have.
+constexpr Duration kLongestGap = 2s;
+/// Receivers report at least so often while packets arrive.
+constexpr Duration kLongestReportGap = 40ms;
+/// So long after a sign of congestion the window is about what the link carries.
+constexpr Duration kCongestedLately = 300ms;
 
 }  // namespace
 
@@ -26,6 +32,8 @@ Time Controller::Advance(Time caller_now) {
   if (silence > kHousekeeping + kStandstill && history_.bytes_in_flight().bytes() > 0) {
     history_.Expire(now_);
     outage_.Restart(now_);
+    gap_recovery_.Reset();
+    path_.OnStandstill(now_);
     last_housekeeping_ = now_;
   }
   return now_;
@@ -105,7 +113,7 @@ void Controller::TakeOutageRestart(Time now) {
 }
 
 void Controller::MeasurePath(Time now, const AckSummary& acks) {
-  if (acks.rtt) path_.OnRoundTrip(now, *acks.rtt, window_.ref_wnd());
+  path_.OnRoundTrip(now, acks, window_.ref_wnd());
   history_.set_max_reordering_window(path_.rtt().smoothed());
   if (!started_ && path_.rtt().known()) {
     started_ = true;
@@ -133,14 +141,26 @@ void Controller::CountAcks(const AckSummary& acks) {
 
 void Controller::Respond(Time now, const AckSummary& acks) {
   if (!RespondToDrop(now)) RespondToSignals(now, acks);
+  TakeGapRestart(now);
   if (path_.EndRoundTrip(now)) window_.RelaxPolicer();
+}
+
+void Controller::TakeGapRestart(Time now) {
+  const auto restart =
+      gap_recovery_.Update(now, path_, window_.ref_wnd(), competing_flows_.qdelay_target());
+  if (!restart) return;
+  window_.Set(restart->window);
+  path_.OnGapEnd(now, restart->s_rtt, restart->l4s_alpha);
+  answered_.OnGapEnd(now);
+  fast_increase_.OnGapEnd();
+  ++counters_.gaps;
 }
 
 bool Controller::RespondToDrop(Time now) {
   const auto window = capacity_drop_.Update(
       now, path_,
-      {streams_.target_bitrate(), window_.ref_wnd(), streams_.frame_period(),
-       competing_flows_.qdelay_target(), window_.last_reaction_to_congestion_time()});
+      {window_target_, window_.ref_wnd(), streams_.frame_period(), competing_flows_.qdelay_target(),
+       window_.last_reaction_to_congestion_time()});
   if (!window) return false;
   window_.SetInflection(*window);
   window_.Set(*window * p_.drop_beta);
@@ -154,7 +174,9 @@ bool Controller::RespondToDrop(Time now) {
 
 void Controller::RespondToSignals(Time now, const AckSummary& acks) {
   const CongestionSignals signals = Signals(now, acks);
-  if (streams_.media_qdelay(now) <= streams_.frame_period()) fast_increase_.Update(now, Round());
+  // A backlog behind fresh congestion has to leave first.
+  if (streams_.media_qdelay(now) <= streams_.frame_period() || !CongestedLately())
+    fast_increase_.Update(now, Round());
   const Reaction reaction = window_.Update(now, signals);
   if (reaction == Reaction::kLoss) answered_.OnLossReaction(now);
   if (reaction != Reaction::kNone) fast_increase_.OnCongestion(now);
@@ -171,10 +193,12 @@ CongestionSignals Controller::Signals(Time now, const AckSummary& acks) const {
   s.loss_rate_threshold = tolerance.loss_rate_threshold;
   s.queue_at_loss = tolerance.queue_at_loss;
   if (p_.extensions.fast_start)
-    s.fast_growth = fast_increase_.growth(path_.queue_delay().qdelay(), path_.L4sWorks(now));
+    s.fast_growth =
+        fast_increase_.growth(path_.queue_delay().qdelay(), Round(), path_.L4sWorks(now)) *
+        (path_.loss_context().AtFullQueue() ? p_.fast_increase_beside : 1);
   if (p_.extensions.even_alpha) s.earliness = path_.UnreportedTime() / 2;
   s.l4s_alpha = path_.l4s_alpha().value();
-  s.is_l4s = p_.ecn == Ecn::kEct1;
+  s.is_l4s = p_.ecn == Ecn::kEct1 && !(p_.extensions.classic_ecn && path_.classic_ecn().found());
   s.qdelay = path_.queue_delay().qdelay();
   s.qdelay_avg = path_.queue_delay().qdelay_avg();
   s.qdelay_target = competing_flows_.qdelay_target();
@@ -182,9 +206,11 @@ CongestionSignals Controller::Signals(Time now, const AckSummary& acks) const {
   s.s_rtt = path_.rtt().smoothed();
   s.max_bytes_in_flight = path_.max_in_flight().current();
   s.max_bytes_in_flight_prev = path_.max_in_flight().previous();
+  s.capacity_window = path_.train_capacity() * (path_.rtt().min() + path_.marking_onset()) *
+                      (p_.target_rate_divisor + streams_.queue_compensation());
   s.bytes_newly_acked = acks.bytes_newly_acked;
   s.bytes_newly_acked_ce = std::min(acks.bytes_newly_acked_ce, acks.bytes_newly_acked);
-  s.target_bitrate = streams_.target_bitrate();
+  s.target_bitrate = window_target_;
   s.target_bitrate_max = streams_.max_bitrate();
   s.acked_bitrate = path_.acked_rate(now);
   return s;
@@ -216,7 +242,7 @@ void Controller::StartWindow() {
 
 /// At the maximum bitrate the window must not drift away from what is in flight.
 void Controller::LimitWindowAtMaxBitrate() {
-  if (streams_.target_bitrate() < streams_.max_bitrate()) return;
+  if (window_target_ < streams_.max_bitrate()) return;
   const DataSize needed = streams_.max_bitrate() * (path_.rtt().smoothed() + 1ms) *
                           (p_.target_rate_divisor + streams_.queue_compensation()) *
                           p_.packet_pacing_headroom;
@@ -224,20 +250,61 @@ void Controller::LimitWindowAtMaxBitrate() {
 }
 
 void Controller::UpdateTarget(Time now) {
-  streams_.Allocate(now, TotalTarget(now));
-  pacer_.Update(streams_.target_bitrate(), streams_.max_bitrate(),
-                PacingHeadroom(p_, streams_.frame_period()));
+  const DataRate allowed = WindowTarget(now);
+  streams_.Allocate(now, AskedTarget(now, allowed));
+  window_target_ = std::clamp(allowed, streams_.min_bitrate(), streams_.max_bitrate());
+  pacer_.Update(window_target_, streams_.max_bitrate(),
+                PacingHeadroom(p_, streams_.frame_period(), PacingReserve(now)));
   if (p_.extensions.quick_drain && streams_.media_qdelay(now) > streams_.frame_period())
     pacer_.RaiseTo(DrainRate(p_, now, window_.ref_wnd(), path_));
 }
 
-DataRate Controller::TotalTarget(Time now) const {
+/// What was sent for a while does not come back at the rate that it did: a gap, or the start of
+/// one.
+bool Controller::Stalled(Time now) const {
+  const bool waiting = history_.bytes_in_flight().bytes() > 0;
+  return gap_recovery_.in_gap() ||
+         (waiting && outage_.Quiet(now) > path_.rtt().min() + kLongestReportGap);
+}
+
+/// The path gives a sign of life, or did so a moment ago.
+bool Controller::Alive(Time now) const { return outage_.Silence(now) < kLongestGap; }
+
+/// More than a frame in the sender's queue has to leave beside what is made now.
+DataRate Controller::WithoutBacklog(DataRate target) const {
+  const DataSize backlog = streams_.queued();
+  const DataSize frame = target * streams_.frame_period();
+  if (backlog <= frame) return target;
+  return std::max(DataRate(), target - (backlog - frame) / p_.backlog_drain);
+}
+
+/// Where marks work, a frame may make as much queue as goes unmarked.
+Duration Controller::PacingReserve(Time now) const {
+  if (!path_.L4sWorks(now)) return p_.pacing_reserve;
+  return std::clamp(FromSeconds(Seconds(path_.marking_onset()) * p_.onset_reserve),
+                    p_.shortest_pacing_reserve, p_.pacing_reserve);
+}
+
+DataRate Controller::WindowTarget(Time now) const {
   if (!started_) return streams_.start_bitrate();
   // Through an outage the round trip is as long as nothing has come back.
   const Duration s_rtt = std::max(path_.rtt().smoothed(), outage_.Silence(now));
   const DataRate target = TargetBitrate(
       p_, {window_.ref_wnd(), window_.ref_wnd_ratio(), s_rtt, streams_.queue_compensation()});
   return now < path_.half_rate_until() ? target * kDriftRateScale : target;
+}
+
+/// What encoders are asked for: less than the window allows while what they make would wait, but
+/// what they need as long as the path lives.
+DataRate Controller::AskedTarget(Time now, DataRate allowed) const {
+  DataRate asked = allowed;
+  if (p_.extensions.gap_recovery && started_ && Stalled(now))
+    asked = asked * p_.stall_share;
+  else if (p_.extensions.quick_drain && started_)
+    asked = WithoutBacklog(asked);
+  if (p_.extensions.needed_floor && Alive(now))
+    asked = std::max(asked, streams_.needed_bitrate() * p_.needed_margin);
+  return asked;
 }
 
 /// Marks of a frame source come once a frame.
@@ -256,9 +323,21 @@ std::optional<SendDecision> Controller::NextSend(Time) const {
                       path_.ecn().codepoint()};
 }
 
+bool Controller::CongestedLately() const {
+  return now_ - window_.last_congestion_detected_time() < kCongestedLately;
+}
+
+/// How fast a stream's queue leaves. A window without a queue in the network, and a gap, tell
+/// nothing about what the link could carry.
+DataRate Controller::QueueRate(const Stream& stream) const {
+  if (gap_recovery_.in_gap() || outage_.active() || !CongestedLately()) return DataRate::Infinite();
+  const DataRate all = std::max(window_target_, path_.acked_rate(now_));
+  return all * (stream.target_bitrate() / std::max(streams_.target_bitrate(), p_.rate_pace_min));
+}
+
 std::size_t Controller::LatePackets(Time now, StreamId id) const {
   const Stream* stream = streams_.Find(id);
-  return stream == nullptr ? 0 : stream->LatePackets(clock_.Peek(now));
+  return stream == nullptr ? 0 : stream->LatePackets(clock_.Peek(now), QueueRate(*stream));
 }
 
 void Controller::OnTimer(Time now) {
@@ -270,6 +349,7 @@ void Controller::OnTimer(Time now) {
     if (const auto window = outage_.OnTimer(now, window_.ref_wnd(), path_.rtt().smoothed(),
                                             streams_.frame_period())) {
       window_.Set(*window);
+      gap_recovery_.OnSilence(now);
       ++counters_.feedback_timeouts;
       counters_.reason = RateReason::kTimeout;
     }
@@ -280,6 +360,7 @@ void Controller::OnTimer(Time now) {
 void Controller::OnRouteChange(Time now) {
   Advance(now);
   path_.Reset();
+  gap_recovery_.Reset();
   started_ = false;
   fast_increase_.Restart();
   history_.Expire(now_);
@@ -299,6 +380,7 @@ Statistics Controller::statistics(Time now) const {
   const Time latest = std::max(clock_.Peek(now), now_);
   Statistics s = counters_;
   path_.Describe(latest, &s);
+  s.estimated_capacity = path_.estimated_capacity();
   s.ref_wnd = window_.ref_wnd();
   s.ref_wnd_i = window_.ref_wnd_i();
   s.max_policed_ref_wnd = window_.max_policed_ref_wnd();

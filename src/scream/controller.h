@@ -13,6 +13,7 @@
 #include "src/scream/response/capacity_drop.h"
 #include "src/scream/response/competing_flows.h"
 #include "src/scream/response/fast_increase.h"
+#include "src/scream/response/gap_recovery.h"
 #include "src/scream/response/outage.h"
 #include "src/scream/response/reference_window.h"
 #include "src/scream/response/send_window.h"
@@ -122,7 +123,15 @@ class Controller {
   void StartWindow();
   void LimitWindowAtMaxBitrate();
   void UpdateTarget(Time now);
-  DataRate TotalTarget(Time now) const;
+  void TakeGapRestart(Time now);
+  DataRate WindowTarget(Time now) const;
+  bool CongestedLately() const;
+  DataRate QueueRate(const Stream& stream) const;
+  DataRate AskedTarget(Time now, DataRate allowed) const;
+  DataRate WithoutBacklog(DataRate target) const;
+  bool Alive(Time now) const;
+  bool Stalled(Time now) const;
+  Duration PacingReserve(Time now) const;
   Duration Round() const;
 
   const Parameters p_;
@@ -137,9 +146,11 @@ class Controller {
   CapacityDrop capacity_drop_{p_};
   AnsweredSignals answered_{p_};
   Outage outage_{p_};
+  GapRecovery gap_recovery_{p_};
   SendWindow send_window_{p_};
   Pacer pacer_{p_};
-  bool started_ = false;  // a round trip is known
+  bool started_ = false;    // a round trip is known
+  DataRate window_target_;  // what the window allows; the streams' may be higher
   Time last_housekeeping_{};
   Statistics counters_;
 };

@@ -30,6 +30,13 @@ struct Extensions {
   bool adaptive_pacing = true;
   /// Without feedback the window decays to its minimum, and jumps back once the path returns.
   bool feedback_timeout = true;
+  /// After a time in which the link carried next to nothing the window is what it was before.
+  bool gap_recovery = true;
+  /// What the streams need is asked of the encoders while the path gives a sign of life, whatever
+  /// the window is; bytes in flight and pacing stay the window's.
+  bool needed_floor = true;
+  /// Marks of a queue that marks ECT(1) like ECT(0) have the reaction that it expects.
+  bool classic_ecn = true;
 };
 
 struct Parameters {
@@ -132,8 +139,22 @@ struct Parameters {
   /// adaptive_pacing: a frame leaves so much sooner than its period ends, but within these
   /// fractions of it. As much queue comes and goes with each frame where the link is full.
   Duration pacing_reserve = 4ms;
-  double min_pacing_reserve = 0.2;
+  /// Where marks work, this part of the queue at which marking begins, if that is less...
+  double onset_reserve = 0.9;
+  Duration shortest_pacing_reserve = 700us;
+  /// ...and less still for frames more often than this.
+  Duration long_frame_period = 50ms;
+  double min_pacing_reserve = 0.18;
   double max_pacing_reserve = 0.35;
+
+  /// fast_start: of its growth, where losses keep to a full queue that others fill, too.
+  double fast_increase_beside = 0.2;
+  /// gap_recovery: of what the window allows, the target in a gap: what is queued then may be late.
+  double stall_share = 0.6;
+  /// quick_drain: the time in which a backlog is to be gone, by a lower target.
+  Duration backlog_drain = 200ms;
+  /// needed_floor: a little more than what is needed, as encoders round.
+  double needed_margin = 1.04;
 
   /// Packets older than this in the sender's queue are late (see Controller::LatePackets).
   Duration max_queue_delay = 200ms;

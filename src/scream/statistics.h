@@ -43,6 +43,8 @@ struct Statistics {
   DataRate pace_bitrate;
   DataRate sent_bitrate;
   DataRate acked_bitrate;
+  /// What the link carries, by the spacing of packets that it held back and by what arrived.
+  DataRate estimated_capacity;
   // Sender's queue
   DataSize queued;
   Duration media_qdelay{};
@@ -63,6 +65,7 @@ struct Statistics {
   std::uint64_t ce_events = 0;
   std::uint64_t delay_events = 0;
   std::uint64_t capacity_drops = 0;
+  std::uint64_t gaps = 0;  ///< after which the window was restored
   std::uint64_t clock_resets = 0;
   EcnState ecn_state = EcnState::kOff;
   RateReason reason = RateReason::kStart;

@@ -12,6 +12,8 @@ constexpr double kFramePeriodGain = 0.1;
 /// Longer gaps are pauses, not frame periods.
 constexpr Duration kMaxFramePeriod = 2s;
 constexpr Duration kMinFramePeriod = 1ms;
+/// The rest of a group that has begun to leave may wait this many times as long.
+constexpr int kBegunStay = 2;
 /// A stream without packets for so long leaves its share to the others.
 constexpr Duration kInactive = 1s;
 
@@ -25,9 +27,10 @@ bool Stream::OnQueued(Time now, const QueuedPacket& packet) {
   last_active_ = now;
   const bool is_media = !media_ssrc_ || *media_ssrc_ == packet.ssrc || packet.marker;
   const bool starts_frame = is_media && frame_timestamp_ != packet.rtp_timestamp;
-  queue_.push_back({packet.size, now, starts_frame});
+  queue_.push_back({packet.size, now, starts_frame, is_media ? packet.group : std::nullopt});
   queued_ += packet.size;
   if (!is_media) return false;
+  if (packet.group) NoteGroup(now, packet);
   media_ssrc_ = packet.ssrc;
   if (starts_frame) frame_size_ = DataSize();
   frame_timestamp_ = packet.rtp_timestamp;
@@ -41,8 +44,9 @@ bool Stream::OnQueued(Time now, const QueuedPacket& packet) {
 /// Draft section "Media Rate Control": rate_adjust_factor and frame_size_dev, for each frame.
 void Stream::OnFrame(Time now) {
   if (last_frame_ && now - *last_frame_ < kMaxFramePeriod) {
-    const double seconds = Seconds(frame_period_) * (1 - kFramePeriodGain) +
-                           Seconds(now - *last_frame_) * kFramePeriodGain;
+    const double gain = frame_period_known_ ? kFramePeriodGain : 1;
+    const double seconds = Seconds(frame_period_) * (1 - gain) + Seconds(now - *last_frame_) * gain;
+    frame_period_known_ = true;
     frame_period_ = std::max(kMinFramePeriod, FromSeconds(seconds));
   }
   last_frame_ = now;
@@ -62,6 +66,7 @@ void Stream::OnSent(Time now, std::uint32_t ssrc, DataSize size) {
   ++counters_.packets_sent;
   counters_.bytes_sent += size;
   if (queue_.empty()) return;
+  if (queue_.front().group) begun_group_ = queue_.front().group;
   queued_ -= queue_.front().size;
   queue_.pop_front();
   last_active_ = now;
@@ -71,20 +76,27 @@ void Stream::OnDropped(Time now, std::size_t packets) {
   if (packets > 0) last_active_ = now;
   for (; packets > 0 && !queue_.empty(); --packets) {
     ++counters_.packets_dropped;
+    dropped_group_ = queue_.front().group;
     queued_ -= queue_.front().size;
     queue_.pop_front();
   }
 }
 
-std::size_t Stream::LatePackets(Time now) const {
+std::size_t Stream::LatePackets(Time now, DataRate rate) const {
   const auto is_start = [](const Queued& q) { return q.starts_frame; };
   if (queue_.empty()) return 0;
   if (!queue_.front().starts_frame) return StuckPackets(now);
   std::size_t late = 0;
+  std::optional<std::uint32_t> dropped = dropped_group_;
   for (auto frame = queue_.begin(); frame != queue_.end();) {
-    if (now - frame->queued <= p_.max_queue_delay) break;
-    frame = std::find_if(std::next(frame), queue_.end(), is_start);
-    late = static_cast<std::size_t>(frame - queue_.begin());
+    const auto next = std::find_if(std::next(frame), queue_.end(), is_start);
+    DataSize size;
+    for (auto packet = frame; packet != next; ++packet) size += packet->size;
+    const bool group_dropped = frame->group && frame->group == dropped;
+    if (!group_dropped && !Late(now, rate, *frame, size)) break;
+    dropped = frame->group;
+    late = static_cast<std::size_t>(next - queue_.begin());
+    frame = next;
   }
   return late;
 }
@@ -96,6 +108,25 @@ std::size_t Stream::StuckPackets(Time now) const {
   const auto next =
       std::find_if(queue_.begin(), queue_.end(), [](const Queued& q) { return q.starts_frame; });
   return static_cast<std::size_t>(next - queue_.begin());
+}
+
+bool Stream::Late(Time now, DataRate rate, const Queued& first, DataSize size) const {
+  const bool begun = first.group && first.group == begun_group_;
+  const Duration longest = p_.max_queue_delay * (begun ? kBegunStay : 1);
+  if (now + size / rate > first.queued + longest) return true;
+  if (!first.group || begun) return false;
+  const Group& group = first.group == queued_group_ ? last_group_ : this_group_;
+  return now + group.size / rate > first.queued + group.span() + p_.max_queue_delay;
+}
+
+void Stream::NoteGroup(Time now, const QueuedPacket& packet) {
+  if (packet.group != queued_group_) {
+    last_group_ = this_group_;
+    this_group_ = {DataSize(), now, now};
+    queued_group_ = packet.group;
+  }
+  this_group_.size += packet.size;
+  this_group_.last = now;
 }
 
 Duration Stream::media_qdelay(Time now) const {

@@ -22,7 +22,11 @@ class Stream {
   /// Takes the head of the queue.
   void OnSent(Time now, std::uint32_t ssrc, DataSize size);
   void OnDropped(Time now, std::size_t packets);
-  std::size_t LatePackets(Time now) const;
+  /// Packets at the head that nobody can use any more. `rate`: at which the queue leaves.
+  /// An access unit is late where its last packet would leave after max_queue_delay; of a group
+  /// that has begun to leave, after twice that. A group is not begun where its last unit would be
+  /// late, and goes whole where one of its units went.
+  std::size_t LatePackets(Time now, DataRate rate) const;
 
   bool empty() const { return queue_.empty(); }
   DataSize head_size() const { return queue_.front().size; }
@@ -53,9 +57,18 @@ class Stream {
     DataSize size;
     Time queued{};
     bool starts_frame = false;
+    std::optional<std::uint32_t> group = std::nullopt;
+  };
+  /// The last group that was queued whole, and the one that is being queued.
+  struct Group {
+    DataSize size;
+    Time first{}, last{};
+    Duration span() const { return last - first; }
   };
   void OnFrame(Time now);
   std::size_t StuckPackets(Time now) const;
+  void NoteGroup(Time now, const QueuedPacket& packet);
+  bool Late(Time now, DataRate rate, const Queued& first, DataSize size) const;
 
   const Parameters& p_;
   StreamConfig config_;
@@ -68,9 +81,12 @@ class Stream {
   std::optional<std::uint32_t> media_ssrc_;
   std::optional<std::uint32_t> frame_timestamp_;
   DataSize frame_size_;
+  std::optional<std::uint32_t> queued_group_, begun_group_, dropped_group_;
+  Group this_group_, last_group_;
   std::optional<Time> last_frame_;
   std::optional<Time> last_active_;
   Duration frame_period_ = 20ms;
+  bool frame_period_known_ = false;
   double rate_adjust_factor_ = 0;
   double frame_size_dev_ = 0;
   StreamStatistics counters_;

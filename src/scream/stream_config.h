@@ -2,6 +2,7 @@
 // What a caller tells about a stream and its packets.
 #pragma once
 #include <cstdint>
+#include <optional>
 
 #include "src/base/time.h"
 #include "src/base/units.h"
@@ -28,6 +29,8 @@ struct QueuedPacket {
   DataSize size;
   bool marker = false;              ///< last packet of an access unit
   std::uint32_t rtp_timestamp = 0;  ///< packets of one access unit share it
+  /// Access units that are of use together, as the slices of a scan, share it.
+  std::optional<std::uint32_t> group = std::nullopt;
 };
 
 /// The packet at the head of a stream's queue, as it leaves.

@@ -121,6 +121,13 @@ DataRate Streams::min_bitrate() const {
   return sum;
 }
 
+DataRate Streams::needed_bitrate() const {
+  DataRate sum;
+  for (const auto& [id, s] : streams_)
+    sum = sum + std::max(s.config().min_bitrate, s.config().needed_bitrate);
+  return sum;
+}
+
 DataRate Streams::max_bitrate() const {
   DataRate sum;
   for (const auto& [id, s] : streams_)

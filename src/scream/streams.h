@@ -27,6 +27,8 @@ class Streams {
   /// (unless all are silent).
   void Allocate(Time now, DataRate total);
   DataRate min_bitrate() const;
+  /// The larger of what each stream needs and its minimum.
+  DataRate needed_bitrate() const;
   DataRate max_bitrate() const;
   DataRate start_bitrate() const;
   DataRate target_bitrate() const;

@@ -16,6 +16,13 @@ bool IsLive(GstPad* pad) {
   return live != FALSE;
 }
 
+/// The scan that a packet is of, where the payloader said so.
+std::optional<std::uint32_t> ScanOf(GstBuffer* buffer) {
+  GstLidarSlice slice;
+  if (!gst_lidar_buffer_get_slice(buffer, &slice)) return std::nullopt;
+  return slice.scan_id;
+}
+
 /// Takes one packet into the queue; with the lock held.
 void Enqueue(TxState& state, TxStream& stream, BufferPtr buffer, Time now) {
   const auto header = ReadRtpHeader(buffer.get());
@@ -25,6 +32,7 @@ void Enqueue(TxState& state, TxStream& stream, BufferPtr buffer, Time now) {
     return;
   }
   const gsize size = gst_buffer_get_size(buffer.get());
+  const auto scan = ScanOf(buffer.get());
   TxItem item;
   item.header = *header;
   item.size = DataSize::Bytes(static_cast<std::int64_t>(size)) + state.settings.packet_overhead;
@@ -35,7 +43,7 @@ void Enqueue(TxState& state, TxStream& stream, BufferPtr buffer, Time now) {
   const bool media = *stream.ssrc == header->ssrc && *stream.payload_type == header->payload_type;
   stream.overhead.Add(media ? size - header->header_size : 0, item.size);
   state.controller->OnQueued(now, stream.id,
-                             {header->ssrc, item.size, header->marker, header->timestamp});
+                             {header->ssrc, item.size, header->marker, header->timestamp, scan});
   stream.queue.push_back(std::move(item));
   ++stream.counters.packets_queued;
   state.reporter.OnInput(now);

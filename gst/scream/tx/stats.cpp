@@ -56,10 +56,11 @@ StructurePtr StreamStats(TxState& state, const TxStream& stream, Time now) {
 
 StructurePtr ControllerStats(const scream::Statistics& statistics) {
   using S = scream::Statistics;
-  static const std::array<Stat<S>, 34> kStats = {{
+  static const std::array<Stat<S>, 36> kStats = {{
       {"target-bitrate", &S::target_bitrate},
       {"sent-bitrate", &S::sent_bitrate},
       {"acked-bitrate", &S::acked_bitrate},
+      {"estimated-capacity", &S::estimated_capacity},
       {"pace-bitrate", &S::pace_bitrate},
       {"queue-delay", &S::qdelay},
       {"queue-delay-avg", &S::qdelay_avg},
@@ -90,6 +91,7 @@ StructurePtr ControllerStats(const scream::Statistics& statistics) {
       {"ce-events", &S::ce_events},
       {"delay-events", &S::delay_events},
       {"capacity-drops", &S::capacity_drops},
+      {"gaps", &S::gaps},
       {"clock-resets", &S::clock_resets},
   }};
   return ToStructure("application/x-screamtx-stats", kStats, statistics);

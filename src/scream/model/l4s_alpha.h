@@ -37,6 +37,9 @@ class L4sAlpha {
     delivered_ = marked_ = 0;
   }
 
+  /// Goes on from a value that was known before.
+  void Restore(double alpha) { alpha_ = alpha; }
+
   double value() const { return alpha_; }
   double last_fraction_marked() const { return last_fraction_marked_; }
 

@@ -13,6 +13,7 @@ constexpr Duration kMarksExpected = 30s;
 /// of this at most.
 constexpr int kCloseReports = 5;
 constexpr Duration kLongestGap = 100ms;
+constexpr double kCapacityGain = 0.25;
 /// Packets in a row behind a queue that are no accident.
 constexpr int kQueueingPackets = 3;
 /// The clock-drift remedy lasts five round trips, but not less than this.
@@ -28,8 +29,18 @@ void PathModel::OnSent(Time now, DataSize size, Ecn ecn, DataSize in_flight) {
   ecn_.OnSent(now, ecn);
 }
 
-void PathModel::OnRoundTrip(Time now, Duration sample, DataSize ref_wnd) {
-  rtt_.Add(now, sample, SourceLimited(ref_wnd));
+void PathModel::OnRoundTrip(Time now, const AckSummary& acks, DataSize ref_wnd) {
+  if (!acks.rtt || (!acks.acked.empty() && acks.acked.back().sent < gap_end_)) return;
+  rtt_.Add(now, *acks.rtt, SourceLimited(ref_wnd));
+}
+
+void PathModel::OnGapEnd(Time now, Duration s_rtt, double l4s_alpha) {
+  gap_end_ = now;
+  queue_delay_.ForgetQueue();
+  busy_run_.Reset();
+  train_.Reset();
+  rtt_.Restore(std::max(s_rtt, rtt_.min()));
+  l4s_alpha_.Restore(l4s_alpha);
 }
 
 void PathModel::OnReport(Time now, const AckSummary& acks, const SenderState& sender) {
@@ -46,6 +57,9 @@ bool PathModel::EndRoundTrip(Time now) {
 void PathModel::Reset() {
   queue_delay_.Reset();
   rtt_.Reset();
+  train_.Reset();
+  classic_ecn_ = ClassicEcn();
+  train_capacity_ = acked_peak_ = DataRate();
   ecn_.Reset();
   last_mark_.reset();
 }
@@ -58,7 +72,8 @@ void PathModel::MeasureDelays(Time now, const AckSummary& acks, const SenderStat
       ++clock_resets_;
       busy_run_.Reset();
     }
-  queue_delay_.Update(now, rtt_.smoothed(), sender.qdelay_target);
+  if (acks.acked.empty() || acks.acked.back().sent >= gap_end_)
+    queue_delay_.Update(now, rtt_.smoothed(), sender.qdelay_target);
   if (queue_delay_.TakeDriftReset()) {
     ++clock_resets_;
     half_rate_until_ = now + std::max(5 * rtt_.smoothed(), kShortestHalfRate);
@@ -84,6 +99,7 @@ void PathModel::CountMarksAndLosses(Time now, const AckSummary& acks, const Send
 }
 
 void PathModel::ObserveCapacity(Time now, const AckSummary& acks, Duration qdelay_target) {
+  hole_in_report_ = false;
   for (const AckedPacket& packet : acks.acked) {
     if (!packet.arrival) {  // a hole in what is known of the link
       busy_run_.Reset();
@@ -92,8 +108,24 @@ void PathModel::ObserveCapacity(Time now, const AckSummary& acks, Duration qdela
     const bool marked = packet.arrived_ecn == Ecn::kCe;
     const Duration qdelay = *packet.arrival - packet.sent - queue_delay_.base();
     const bool busy = marked || qdelay >= BusyQdelay(now, qdelay_target);
+    loss_context_.OnAcked(packet.sent, qdelay);
+    if (packet.sent >= gap_end_) classic_ecn_.OnPacket(now, qdelay, marked);
+    if (marked && packet.sent >= gap_end_) marking_onset_.OnMark(qdelay);
     busy_run_.Add({*packet.arrival, packet.size, busy, marked});
+    if (train_.Add({*packet.arrival, packet.size, qdelay, busy})) hole_in_report_ = true;
   }
+  for (const LostPacket& packet : acks.lost) loss_context_.OnLost(packet.sent);
+  EstimateCapacity(now);
+}
+
+/// Trains show it whatever the source's rate; what arrives is never more.
+void PathModel::EstimateCapacity(Time now) {
+  acked_peak_ = std::max(acked_peak_, acked_rate_.Rate(now));
+  const auto rate = train_.rate();
+  if (!rate) return;
+  const double gain = train_capacity_ > DataRate() ? kCapacityGain : 1;
+  train_capacity_ = train_capacity_ * (1 - gain) + *rate * gain;
+  acked_peak_ = DataRate();
 }
 
 /// Weighted by what the report acknowledges: a pause of the source is no gap.

@@ -1,14 +1,19 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // What acknowledgements tell of the path: delays, marks, losses, rates and the link's capacity.
 #pragma once
+#include <algorithm>
 #include <cstdint>
 #include <optional>
 
+#include "src/scream/model/arrival_train.h"
 #include "src/scream/model/busy_run.h"
+#include "src/scream/model/classic_ecn.h"
 #include "src/scream/model/ecn_monitor.h"
 #include "src/scream/model/flight.h"
 #include "src/scream/model/l4s_alpha.h"
+#include "src/scream/model/loss_context.h"
 #include "src/scream/model/loss_rate.h"
+#include "src/scream/model/marking_onset.h"
 #include "src/scream/model/queue_delay.h"
 #include "src/scream/model/rate_meter.h"
 #include "src/scream/model/rtt.h"
@@ -34,8 +39,12 @@ class PathModel {
   /// `in_flight` includes the packet.
   void OnSent(Time now, DataSize size, Ecn ecn, DataSize in_flight);
   /// Of a report, before the rest of it. `ref_wnd` shows whether the source uses its window.
-  void OnRoundTrip(Time now, Duration sample, DataSize ref_wnd);
+  void OnRoundTrip(Time now, const AckSummary& acks, DataSize ref_wnd);
   void OnReport(Time now, const AckSummary& acks, const SenderState& sender);
+  /// A gap is over: what was sent before `now` met it, and says nothing about the path now.
+  void OnGapEnd(Time now, Duration s_rtt, double l4s_alpha);
+  /// The sender stood still, or its clock was set.
+  void OnStandstill(Time now) { rtt_.OnStandstill(now); }
   /// True at the end of a round trip.
   bool EndRoundTrip(Time now);
   void OnTimer(Time now) { ecn_.OnTimer(now); }
@@ -46,8 +55,21 @@ class PathModel {
   const QueueDelay& queue_delay() const { return queue_delay_; }
   const L4sAlpha& l4s_alpha() const { return l4s_alpha_; }
   const LossRate& loss_rate() const { return loss_rate_; }
+  const LossContext& loss_context() const { return loss_context_; }
+  const ClassicEcn& classic_ecn() const { return classic_ecn_; }
   const EcnMonitor& ecn() const { return ecn_; }
   const BusyRun& busy_run() const { return busy_run_; }
+  const ArrivalTrain& train() const { return train_; }
+  /// The queue at which marking begins.
+  Duration marking_onset() const { return marking_onset_.value(); }
+  /// What the link carries, whatever the source sends: 0 while nothing is known.
+  DataRate estimated_capacity() const { return std::max(train_capacity_, acked_peak_); }
+  /// The same by the spacing of packets alone.
+  DataRate train_capacity() const { return train_capacity_; }
+  /// The link stood still, or nearly so, before a packet of the last report.
+  bool hole_in_report() const { return hole_in_report_; }
+  /// Within the last round trip.
+  bool MarkedLately(Time now) const { return last_mark_ && now - *last_mark_ < rtt_.min(); }
   const MaxBytesInFlight& max_in_flight() const { return max_in_flight_; }
   DataRate sent_rate(Time now) const { return sent_rate_.Rate(now); }
   /// Over a round trip, or two frame periods where those are longer.
@@ -73,6 +95,7 @@ class PathModel {
   void MeasureDelays(Time now, const AckSummary& acks, const SenderState& sender);
   void CountMarksAndLosses(Time now, const AckSummary& acks, const SenderState& sender);
   void ObserveCapacity(Time now, const AckSummary& acks, Duration qdelay_target);
+  void EstimateCapacity(Time now);
   void MeasureReports(Time now, const AckSummary& acks, DataSize ref_wnd);
   bool SourceLimited(DataSize ref_wnd) const;
 
@@ -81,8 +104,16 @@ class PathModel {
   QueueDelay queue_delay_{p_};
   L4sAlpha l4s_alpha_{p_};
   LossRate loss_rate_{p_};
+  LossContext loss_context_;
+  ClassicEcn classic_ecn_;
   EcnMonitor ecn_{p_.ecn};
   BusyRun busy_run_;
+  ArrivalTrain train_;
+  MarkingOnset marking_onset_{p_.pacing_reserve};
+  bool hole_in_report_ = false;
+  DataRate train_capacity_;
+  DataRate acked_peak_;  // since the last train
+  Time gap_end_{};
   MaxBytesInFlight max_in_flight_;
   mutable RateMeter sent_rate_{1s};
   mutable RateMeter acked_rate_{100ms};

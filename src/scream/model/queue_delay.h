@@ -26,6 +26,8 @@ class QueueDelay {
   bool Add(Time now, const DelaySample& sample, bool short_history = false);
   /// After the packets of a report: averages, at most once every min(VIRTUAL_RTT, s_rtt).
   void Update(Time now, Duration s_rtt, Duration qdelay_target);
+  /// Takes no account any more of the queue that was.
+  void ForgetQueue() { qdelay_avg_ = Duration{0}; }
   /// Forgets base delay and averages.
   void Reset();
 

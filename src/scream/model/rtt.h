@@ -2,6 +2,7 @@
 // Smoothed round-trip time (RFC 6298) and its minimum.
 #pragma once
 #include <algorithm>
+#include <cmath>
 #include <optional>
 
 #include "src/base/time.h"
@@ -11,17 +12,25 @@ namespace lidar::scream {
 class RoundTripTime {
  public:
   /// A source that leaves the window unused sees short round trips that say little about
-  /// the ones it would cause: such samples count for less (the draft's discussion).
+  /// the ones it would cause: such samples count for less (the draft's discussion). The older the
+  /// average, the more a sample counts.
   void Add(Time now, Duration sample, bool source_limited) {
     const Duration bounded = std::max(sample, kMin);
     last_ = bounded;
     AddToMin(now, bounded);
     if (!smoothed_) {
       smoothed_ = bounded;
-      return;
+    } else {
+      const double age = Seconds(now - last_time_) / (kMemory * Seconds(*smoothed_));
+      const double gain = std::max(1.0 / (source_limited ? kSlow : kNormal), 1 - std::exp(-age));
+      *smoothed_ += FromSeconds(gain * Seconds(bounded - *smoothed_));
     }
-    *smoothed_ += (bounded - *smoothed_) / (source_limited ? kSlow : kNormal);
+    last_time_ = now;
   }
+  /// The time since the last sample does not make the average older.
+  void OnStandstill(Time now) { last_time_ = now; }
+  /// Goes on from a value that was known before.
+  void Restore(Duration smoothed) { smoothed_ = smoothed; }
   void Reset() { *this = RoundTripTime(); }
 
   bool known() const { return smoothed_.has_value(); }
@@ -45,10 +54,12 @@ class RoundTripTime {
   static constexpr Duration kInitial = std::chrono::milliseconds(100);
   static constexpr int kNormal = 8;
   static constexpr int kSlow = 32;
+  static constexpr double kMemory = 8;  // round trips
   std::optional<Duration> smoothed_;
   Duration min_ = Duration::max();
   Duration previous_min_ = Duration::max();
   Time min_since_{};
+  Time last_time_{};
   Duration last_ = kInitial;
 };
 

@@ -7,12 +7,13 @@
 
 namespace lidar::scream {
 
-/// PACKET_PACING_HEADROOM, or so much that a frame leaves `pacing_reserve` before its period ends.
-inline double PacingHeadroom(const Parameters& p, Duration frame_period) {
+/// PACKET_PACING_HEADROOM, or so much that a frame leaves `reserve` before its period ends: as
+/// much queue comes and goes with each frame where the link is full.
+inline double PacingHeadroom(const Parameters& p, Duration frame_period, Duration reserve) {
   if (!p.extensions.adaptive_pacing) return p.packet_pacing_headroom;
-  const double reserve = std::clamp(Seconds(p.pacing_reserve) / Seconds(frame_period),
-                                    p.min_pacing_reserve, p.max_pacing_reserve);
-  return 1 / (1 - reserve);
+  const double longest = std::min(1.0, Seconds(frame_period) / Seconds(p.long_frame_period));
+  return 1 / (1 - std::clamp(Seconds(reserve) / Seconds(frame_period),
+                             longest * p.min_pacing_reserve, p.max_pacing_reserve));
 }
 
 }  // namespace lidar::scream

@@ -6,8 +6,10 @@
 namespace lidar::scream {
 
 std::optional<DataSize> CapacityDrop::Update(Time now, const PathModel& path, const Load& load) {
-  const auto capacity = path.busy_run().capacity();
+  auto capacity = path.busy_run().capacity();
   if (!p_.extensions.drop_response || !capacity) return std::nullopt;
+  // What left the queue last counts for more than a time in which it stood.
+  if (const auto now_carried = path.train().rate()) capacity = std::max(*capacity, *now_carried);
   if (!path.Queueing(now, path.BusyQdelay(now, load.qdelay_target))) return std::nullopt;
   if (now - last_drop_ < std::min(p_.virtual_rtt, path.rtt().smoothed())) return std::nullopt;
   const double part = Sure(now, path, load) ? p_.drop_threshold : p_.drop_threshold_unsure;

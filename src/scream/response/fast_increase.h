@@ -27,17 +27,22 @@ class FastIncrease {
   }
   /// As at the start of a flow.
   void Restart() { starting_ = true; }
+  /// What the path was before a gap is known ground: growth need not become bold first.
+  void OnGapEnd() { rounds_ = std::max(rounds_, p_.fast_increase_rounds + kBoldRounds); }
   /// Fraction of the acknowledged bytes by which the window may grow; the less, the longer the
   /// queue.
-  double growth(Duration qdelay, bool l4s_works) const {
+  double growth(Duration qdelay, Duration round, bool l4s_works) const {
     const int bold = std::max(0, rounds_ - p_.fast_increase_rounds);
     const double step = l4s_works ? p_.fast_increase_step : p_.fast_increase_step_unmarked;
-    const double growth =
-        starting_ ? p_.fast_increase_max : std::min(p_.fast_increase_max, step * bold);
+    // Rounds of seldom frames are long: what is too much stays in the queue for as long.
+    const double start =
+        p_.fast_increase_max * std::min(1.0, Seconds(p_.long_frame_period) / Seconds(round));
+    const double growth = starting_ ? start : std::min(p_.fast_increase_max, step * bold);
     return growth * std::clamp(1 - Seconds(qdelay) / Seconds(p_.fast_increase_qdelay), 0.0, 1.0);
   }
 
  private:
+  static constexpr int kBoldRounds = 5;
   const Parameters& p_;
   bool starting_ = true;
   int rounds_ = 0;

@@ -16,7 +16,8 @@ struct LossTolerance {
 inline LossTolerance TolerateLoss(const Parameters& p, const PathModel& path) {
   LossTolerance tolerance{p.loss_rate_threshold, false};
   if (!p.extensions.isolated_loss) return tolerance;
-  tolerance.queue_at_loss = path.queue_delay().qdelay() > p.isolated_loss_qdelay;
+  tolerance.queue_at_loss =
+      path.queue_delay().qdelay() > p.isolated_loss_qdelay || path.loss_context().AtFullQueue();
   if (p.ecn == Ecn::kEct1 && path.ecn().state() == EcnState::kCapable)
     tolerance.loss_rate_threshold = std::max(p.loss_rate_threshold, p.isolated_loss_threshold);
   return tolerance;

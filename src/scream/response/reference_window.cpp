@@ -134,8 +134,12 @@ double ReferenceWindow::UndershootScale(const CongestionSignals& s) const {
 
 /// Beyond the draft: what lies above the last known maximum is unknown ground.
 double ReferenceWindow::FastIncrement(const CongestionSignals& s, double scl) const {
-  const bool above = ref_wnd_ > ref_wnd_i_;
-  const double scale = above ? InflectionScale(p_.fast_increase_slope) : scl;
+  const auto capacity = static_cast<double>(s.capacity_window.bytes());
+  double scale = ref_wnd_ > ref_wnd_i_ ? InflectionScale(p_.fast_increase_slope) : scl;
+  if (capacity > 0) {
+    const double distance = (ref_wnd_ - capacity) / capacity * p_.fast_increase_slope;
+    scale = std::clamp(distance * distance, kInflectionMin, 1.0);
+  }
   return s.fast_growth * scale * static_cast<double>(s.bytes_newly_acked.bytes());
 }
 

@@ -26,6 +26,8 @@ struct CongestionSignals {
   Duration s_rtt{0};
   DataSize max_bytes_in_flight;
   DataSize max_bytes_in_flight_prev;
+  /// The window that fills what the link is known to carry; 0: unknown.
+  DataSize capacity_window;
   DataSize bytes_newly_acked;
   DataSize bytes_newly_acked_ce;
   DataRate target_bitrate;

@@ -69,9 +69,24 @@ TEST_P(GapTrace, ScansArriveAsFromASenderThatKnewTheLink) {
   c.source.degradation = GetParam().degradation;
   EXPECT_GE(RunLoop(c).report.OfOracle(), GetParam().of_oracle);
 }
-INSTANTIATE_TEST_SUITE_P(Held, GapTrace,
-                         ::testing::Values(Held{"every_2s_framerate", "gap_100ms_every_2s",
-                                                DegradationPreference::kMaintainFramerate}));
+INSTANTIATE_TEST_SUITE_P(
+    Held, GapTrace,
+    ::testing::Values(
+        Held{"every_2s", "gap_100ms_every_2s"},
+        Held{"every_2s_framerate", "gap_100ms_every_2s", DegradationPreference::kMaintainFramerate},
+        Held{"every_2s_balanced", "gap_100ms_every_2s", DegradationPreference::kBalanced},
+        Held{"often", "gap_100ms_every_0.6s"},
+        Held{"often_framerate", "gap_100ms_every_0.6s", DegradationPreference::kMaintainFramerate},
+        Held{"long", "gap_1s_every_10s", DegradationPreference::kMaintainAccuracy, 0.97},
+        Held{"drive_1", "drive_1", DegradationPreference::kMaintainAccuracy, 0.94},
+        Held{"drive_2", "drive_2", DegradationPreference::kMaintainAccuracy, 0.90},
+        Held{"drive_3", "drive_3", DegradationPreference::kMaintainAccuracy, 0.95}));
+
+/// The time after a gap in which the sender is not yet back at 80 % of what can be used.
+TEST(Loop, IsBackSoonAfterEveryGap) {
+  for (const char* trace : {"gap_100ms_every_0.6s", "gap_100ms_every_2s", "gap_1s_every_10s"})
+    EXPECT_LE(RunLoop(Case(trace)).report.recovery_s.max, 0.3) << trace;
+}
 
 }  // namespace
 }  // namespace lidar::loop

@@ -41,6 +41,7 @@ scream::test::EncodedFrame LoopSource::Next(DataRate target) {
   }
   if (const auto bounds = controller_.TakeChangedBounds())
     frame.bounds = scream::test::EncoderBounds{Wire(bounds->min), Wire(bounds->max)};
+  frame.group = scan_;
   slice_ = (slice_ + 1) % options_.slices;
   if (slice_ == 0) ++scan_;
   return frame;

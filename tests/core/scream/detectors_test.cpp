@@ -3,10 +3,14 @@
 #include <gtest/gtest.h>
 
 #include "src/scream/media_rate.h"
+#include "src/scream/model/arrival_train.h"
 #include "src/scream/model/busy_run.h"
+#include "src/scream/model/classic_ecn.h"
 #include "src/scream/model/ecn_monitor.h"
 #include "src/scream/model/l4s_alpha.h"
+#include "src/scream/model/loss_context.h"
 #include "src/scream/model/loss_rate.h"
+#include "src/scream/model/marking_onset.h"
 #include "src/scream/model/queue_delay.h"
 #include "src/scream/model/rtt.h"
 #include "src/scream/pacer.h"
@@ -62,7 +66,7 @@ TEST(Parameters, ThePureDraftHasNoOptionalPartAndNoExtension) {
   const Extensions& e = p.extensions;
   EXPECT_FALSE(e.fast_start || e.drop_response || e.bounded_flight || e.isolated_loss ||
                e.answered_signals || e.even_alpha || e.quick_drain || e.adaptive_pacing ||
-               e.feedback_timeout);
+               e.feedback_timeout || e.gap_recovery || e.needed_floor || e.classic_ecn);
 }
 
 TEST(L4sAlpha, AttacksWithAnEighthAndDecaysWithA128th) {
@@ -253,6 +257,15 @@ TEST(CompetingFlows, TheTargetGivesWayToASteadyQueueAndComesBack) {
   EXPECT_EQ(flows.qdelay_target(), p.qdelay_target_lo);
 }
 
+TEST(RoundTripTime, AnOldAverageCountsForLittle) {
+  RoundTripTime rtt;
+  rtt.Add(kStart, 40ms, true);
+  for (int i = 0; i < 200; ++i) rtt.Add(kStart + i * 1ms, 400ms, false);
+  EXPECT_GT(rtt.smoothed(), Duration(350ms));
+  rtt.Add(kStart + 10s, 40ms, true);
+  EXPECT_LT(rtt.smoothed(), Duration(60ms));
+}
+
 TEST(RoundTripTime, SmoothsByAnEighth) {
   RoundTripTime rtt;
   EXPECT_FALSE(rtt.known());
@@ -286,6 +299,94 @@ TEST(BusyRun, AMomentInWhichNothingMovedIsNoSlowness) {
   Arrive(&run, stop + 80ms, 1ms, 10);
   ASSERT_TRUE(run.capacity());
   EXPECT_NEAR(run.capacity()->bits_per_second(), 8e6, 1);
+}
+
+TEST(MarkingOnset, FindsTheShortestQueuesThatAreMarked) {
+  MarkingOnset onset(4ms);
+  for (int i = 0; i < 1000; ++i) onset.OnMark(1ms + i % 10 * 1ms);
+  EXPECT_NEAR(Milliseconds(onset.value()), 4, 0.5);
+  for (int i = 0; i < 1000; ++i) onset.OnMark(1ms);
+  EXPECT_NEAR(Milliseconds(onset.value()), 1, 0.1);
+}
+
+/// A frame of ten packets every 20 ms, behind a queue that grows with each.
+class LossContextTest : public ::testing::Test {
+ protected:
+  /// Of each frame one packet is lost.
+  template <class Index>
+  void Lose(int frames, Index lost) {
+    for (int f = 0; f < frames; ++f, now_ += 20ms) {
+      for (int i = 0; i < 10; ++i)
+        if (i != lost(f)) context_.OnAcked(now_ + i * 1ms, i * 300us);
+      context_.OnLost(now_ + lost(f) * 1ms);
+    }
+  }
+  LossContext context_;
+  Time now_ = kStart;
+};
+
+TEST_F(LossContextTest, FindsAQueueThatOverflowsHoweverShort) {
+  Lose(100, [](int) { return 9; });
+  EXPECT_TRUE(context_.AtFullQueue());
+}
+
+TEST_F(LossContextTest, KnowsRandomLossFromIt) {
+  for (int i = 0; i < 50; ++i) {
+    Lose(10, [](int frame) { return frame * 7 % 10; });
+    EXPECT_FALSE(context_.AtFullQueue()) << i;
+  }
+}
+
+class ClassicEcnTest : public ::testing::Test {
+ protected:
+  void Run(int packets, Duration lowest, Duration highest, int mark_every) {
+    for (int i = 0; i < packets; ++i, now_ += 1ms)
+      ecn_.OnPacket(now_, lowest + (highest - lowest) * (i % 100) / 100, i % mark_every == 0);
+  }
+  ClassicEcn ecn_;
+  Time now_ = kStart;
+};
+
+TEST_F(ClassicEcnTest, IsFewMarksBehindALongQueue) {
+  Run(10000, 5ms, 25ms, 50);
+  EXPECT_TRUE(ecn_.found());
+  Run(10000, 0ms, 3ms, 10);
+  EXPECT_FALSE(ecn_.found());
+}
+
+TEST_F(ClassicEcnTest, IsNotALongerRoute) {
+  Run(10000, 0ms, 3ms, 10);
+  Run(10000, 15ms, 18ms, 10);
+  EXPECT_FALSE(ecn_.found());
+}
+
+TEST_F(ClassicEcnTest, IsNotAQueueWithoutMarks) {
+  Run(100, 0ms, 3ms, 1);
+  Run(10000, 5ms, 25ms, 1000000);
+  EXPECT_FALSE(ecn_.found());
+}
+
+/// Packets of 1000 bytes that waited for `qdelay` and came `spacing` apart.
+Time Train(ArrivalTrain* train, Time now, Duration spacing, Duration qdelay, int packets) {
+  for (int i = 0; i < packets; ++i, now += spacing)
+    train->Add({now, DataSize::Bytes(1000), qdelay, true});
+  return now;
+}
+
+TEST(ArrivalTrain, TellsWhatTheLinkCarriesAfterAHole) {
+  ArrivalTrain train;
+  const Time hole = Train(&train, kStart, 50ms, 500ms, 6);
+  EXPECT_FALSE(train.rate());
+  Train(&train, hole, 1ms, 500ms, 8);
+  ASSERT_TRUE(train.rate());
+  EXPECT_NEAR(train.rate()->bits_per_second(), 8e6, 1);
+}
+
+TEST(ArrivalTrain, APauseOfTheSourceIsNoHole) {
+  ArrivalTrain train;
+  EXPECT_FALSE(train.Add({kStart, DataSize::Bytes(1000), 5ms, true}));
+  EXPECT_FALSE(train.Add({kStart + 1s, DataSize::Bytes(1000), 5ms, true}));
+  EXPECT_TRUE(train.Add({kStart + 2s, DataSize::Bytes(1000), 500ms, true}));
 }
 
 TEST(BusyRun, EndsWithAPacketThatDidNotWait) {

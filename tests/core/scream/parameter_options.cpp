@@ -12,6 +12,10 @@ namespace {
 const std::map<std::string, double Parameters::*> kConstants = {
     {"min_pacing_reserve", &Parameters::min_pacing_reserve},
     {"max_pacing_reserve", &Parameters::max_pacing_reserve},
+    {"onset_reserve", &Parameters::onset_reserve},
+    {"stall_share", &Parameters::stall_share},
+    {"needed_margin", &Parameters::needed_margin},
+    {"fast_increase_beside", &Parameters::fast_increase_beside},
     {"open_overhead", &Parameters::open_overhead},
     {"packet_pacing_headroom", &Parameters::packet_pacing_headroom},
     {"target_rate_divisor", &Parameters::target_rate_divisor},
@@ -49,6 +53,9 @@ const std::map<std::string, bool Extensions::*> kExtensions = {
     {"even_alpha", &Extensions::even_alpha},
     {"quick_drain", &Extensions::quick_drain},
     {"feedback_timeout", &Extensions::feedback_timeout},
+    {"gap_recovery", &Extensions::gap_recovery},
+    {"needed_floor", &Extensions::needed_floor},
+    {"classic_ecn", &Extensions::classic_ecn},
 };
 const std::map<std::string, bool Parameters::*> kOptionalParts = {
     {"reduce_jitter", &Parameters::reduce_jitter},

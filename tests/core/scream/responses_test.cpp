@@ -5,6 +5,7 @@
 #include "src/scream/response/adaptive_pacing.h"
 #include "src/scream/response/answered_signals.h"
 #include "src/scream/response/capacity_drop.h"
+#include "src/scream/response/gap_recovery.h"
 #include "src/scream/response/isolated_loss.h"
 #include "src/scream/response/outage.h"
 #include "src/scream/response/send_window.h"
@@ -21,14 +22,17 @@ DataRate Mbps(double r) { return DataRate::BitsPerSecond(r * 1e6); }
 class Path {
  public:
   explicit Path(const Parameters& parameters) : model(parameters) {
-    model.OnRoundTrip(kStart, kRtt, DataSize::Bytes(10000));
+    AckSummary first;
+    first.rtt = kRtt;
+    model.OnRoundTrip(kStart, first, DataSize::Bytes(10000));
     Arrive(1, Duration{0}, Duration{0}, Ecn::kEct1);
   }
   void Arrive(int packets, Duration spacing, Duration queue, Ecn ecn) {
     for (int i = 0; i < packets; ++i) {
       now += spacing;
-      model.OnRoundTrip(now, kRtt + queue, DataSize::Bytes(10000));
       AckSummary acks;
+      acks.rtt = kRtt + queue;
+      model.OnRoundTrip(now, acks, DataSize::Bytes(10000));
       AckedPacket packet;
       packet.size = kPacket;
       packet.ecn = Ecn::kEct1;
@@ -114,6 +118,69 @@ TEST_F(OutageTest, APauseOfTheSourceIsNoSilenceOfTheReceiver) {
   EXPECT_FALSE(Timer(kStart + 10100ms, 10000));
 }
 
+class GapRecoveryTest : public ::testing::Test {
+ protected:
+  static constexpr DataSize kWindow = DataSize::Bytes(50000);  // 8 Mbit/s
+  std::optional<GapRecovery::Restart> Update(DataSize window) {
+    return gaps_.Update(path_.now, path_.model, window, 60ms);
+  }
+  /// 8 Mbit/s, then for a second next to nothing.
+  void FallIntoAGap() {
+    path_.Arrive(20, 1ms, 1ms, Ecn::kEct1);
+    EXPECT_FALSE(Update(kWindow));
+    for (int i = 1; i <= 10; ++i) {
+      path_.Arrive(1, 100ms, i * 95ms, Ecn::kCe);
+      EXPECT_FALSE(Update(DataSize::Bytes(3000))) << i;
+    }
+    EXPECT_TRUE(gaps_.in_gap());
+  }
+  Parameters parameters_;
+  Path path_{parameters_};
+  GapRecovery gaps_{parameters_};
+};
+
+TEST_F(GapRecoveryTest, GivesBackTheWindowWhenTheBacklogLeavesAtTheOldRate) {
+  FallIntoAGap();
+  path_.Arrive(8, 1ms, 900ms, Ecn::kCe);
+  const auto restart = Update(DataSize::Bytes(3000));
+  ASSERT_TRUE(restart);
+  EXPECT_NEAR(restart->window / kWindow, 0.96, 0.02);  // 1.2 round trips of 8 Mbit/s
+  EXPECT_LT(Milliseconds(restart->s_rtt), 45);
+  EXPECT_FALSE(gaps_.in_gap());
+}
+
+TEST_F(GapRecoveryTest, GivesNoMoreThanWhatTheBacklogShows) {
+  FallIntoAGap();
+  path_.Arrive(8, 3ms, 900ms, Ecn::kCe);
+  const auto restart = Update(DataSize::Bytes(3000));
+  ASSERT_TRUE(restart);
+  EXPECT_NEAR(restart->window / kWindow, 0.32, 0.02);
+}
+
+TEST_F(GapRecoveryTest, ComesBackByHalvesWhereThereIsNoBacklogToMeasureBy) {
+  FallIntoAGap();
+  path_.Arrive(2, 50ms, 0ms, Ecn::kEct1);
+  auto restart = Update(DataSize::Bytes(3000));
+  ASSERT_TRUE(restart);
+  EXPECT_EQ(restart->window.bytes(), 26500);
+  EXPECT_FALSE(Update(restart->window)) << "once a round trip";
+  path_.Arrive(1, 50ms, 0ms, Ecn::kEct1);
+  restart = Update(restart->window);
+  ASSERT_TRUE(restart);
+  EXPECT_EQ(restart->window.bytes(), 38250);
+}
+
+TEST_F(GapRecoveryTest, TakesWhatLastsForMoreThanTenSecondsForWhatTheLinkIs) {
+  FallIntoAGap();
+  for (int i = 0; i < 20; ++i) {
+    path_.Arrive(1, 500ms, 900ms, Ecn::kCe);
+    EXPECT_FALSE(Update(DataSize::Bytes(3000)));
+  }
+  path_.Arrive(8, 1ms, 900ms, Ecn::kCe);
+  EXPECT_FALSE(Update(DataSize::Bytes(3000)));
+  EXPECT_FALSE(gaps_.in_gap());
+}
+
 class SendWindowTest : public ::testing::Test {
  protected:
   double Overhead() {
@@ -148,10 +215,11 @@ TEST_F(SendWindowTest, LetsAPacketGoAtTheMinimumRateWhileItIsClosed) {
 
 TEST(PacingHeadroom, LeavesTheReserveAtTheEndOfAFramePeriodWithinLimits) {
   const Parameters p;
-  EXPECT_NEAR(PacingHeadroom(p, 16ms), 1 / (1 - 0.25), 1e-9);
-  EXPECT_NEAR(PacingHeadroom(p, 100ms), 1 / (1 - 0.2), 1e-9);
-  EXPECT_NEAR(PacingHeadroom(p, 5ms), 1 / (1 - 0.35), 1e-9);
-  EXPECT_NEAR(PacingHeadroom(Parameters::Draft(), 16ms), 1.5, 1e-9);
+  EXPECT_NEAR(PacingHeadroom(p, 16ms, 4ms), 1 / (1 - 0.25), 1e-9);
+  EXPECT_NEAR(PacingHeadroom(p, 16ms, 1ms), 1 / (1 - 0.0625), 1e-9);
+  EXPECT_NEAR(PacingHeadroom(p, 100ms, 1ms), 1 / (1 - 0.18), 1e-9);
+  EXPECT_NEAR(PacingHeadroom(p, 5ms, 4ms), 1 / (1 - 0.35), 1e-9);
+  EXPECT_NEAR(PacingHeadroom(Parameters::Draft(), 16ms, 4ms), 1.5, 1e-9);
 }
 
 TEST(TolerateLoss, CountsAnyLossBehindAQueueAndLittleElsewhere) {

@@ -178,37 +178,40 @@ void Flow::MakeFrame(Time now, std::size_t index) {
   const Duration period = FromSeconds(1 / config.frames_per_second);
   source.next_frame =
       since_start + period > config_.stop_after ? Time::max() : source.next_frame + period;
-  const DataSize size = Encode(now, index);
+  const EncodedFrame encoded = Encode(now, index);
+  const DataSize size = encoded.size;
   FrameLog frame;
   frame.created = now;
   frame.source = static_cast<int>(index);
   frame.bytes = size.bytes();
   if (size > DataSize()) {
     ++result_.frames_sent;
-    Packetize(now, &source, size, &frame);
+    Packetize(now, &source, encoded, &frame);
   }
   result_.frames.push_back(frame);
 }
 
 /// What the next frame of a source has on the wire; 0: it is left out.
-DataSize Flow::Encode(Time now, std::size_t index) {
+EncodedFrame Flow::Encode(Time now, std::size_t index) {
   SourceConfig& config = config_.sources[index];
   SourceState& source = sources_[index];
   if (config.encoder) {
     const EncodedFrame frame = config.encoder(source.told);
     if (frame.bounds)
       controller_->ConfigureStream(source.stream, WithBounds(config.stream, *frame.bounds));
-    return frame.size;
+    return frame;
   }
   double scale = 1 + config.frame_jitter * (2 * random_.Uniform() - 1);
   if (config.obedience) scale *= config.obedience(now - config_.start);
   const Duration period = FromSeconds(1 / config.frames_per_second);
-  return std::max(controller_->target_bitrate(source.stream) * scale * period,
-                  DataSize::Bytes(kMinPacket));
+  EncodedFrame frame;
+  frame.size = std::max(controller_->target_bitrate(source.stream) * scale * period,
+                        DataSize::Bytes(kMinPacket));
+  return frame;
 }
 
-void Flow::Packetize(Time now, SourceState* source, DataSize size, FrameLog* frame) {
-  for (std::int64_t left = size.bytes(); left > 0; left -= kMaxPacket) {
+void Flow::Packetize(Time now, SourceState* source, const EncodedFrame& encoded, FrameLog* frame) {
+  for (std::int64_t left = encoded.size.bytes(); left > 0; left -= kMaxPacket) {
     WirePacket packet;
     packet.flow = index_;
     packet.source = frame->source;
@@ -220,9 +223,9 @@ void Flow::Packetize(Time now, SourceState* source, DataSize size, FrameLog* fra
     source->queue.push_back(packet);
     source->queued.push_back(now);
     ++frame->packets;
-    controller_->OnQueued(
-        ToSender(now), source->stream,
-        {source->ssrc, packet.size, packet.marker, static_cast<std::uint32_t>(packet.frame)});
+    controller_->OnQueued(ToSender(now), source->stream,
+                          {source->ssrc, packet.size, packet.marker,
+                           static_cast<std::uint32_t>(packet.frame), encoded.group});
   }
 }
 

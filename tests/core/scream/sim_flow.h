@@ -57,8 +57,8 @@ class Flow {
   std::optional<Time> Wake(Time now);
   bool Stalled(Time now);
   void MakeFrame(Time now, std::size_t index);
-  DataSize Encode(Time now, std::size_t index);
-  void Packetize(Time now, SourceState* source, DataSize size, FrameLog* frame);
+  EncodedFrame Encode(Time now, std::size_t index);
+  void Packetize(Time now, SourceState* source, const EncodedFrame& encoded, FrameLog* frame);
   void TellEncoders(Time now);
   void DropLate(Time now);
   std::size_t StuckPackets(const SourceState& source, Time now) const;

@@ -22,6 +22,8 @@ struct EncoderBounds {
 struct EncodedFrame {
   DataSize size;                        ///< on the wire; 0: left out
   std::optional<EncoderBounds> bounds;  ///< where they have changed
+  /// Frames that are of use together share it.
+  std::optional<std::uint32_t> group = std::nullopt;
 };
 
 /// An encoder that obeys its target, and the stream that it feeds.

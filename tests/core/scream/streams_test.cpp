@@ -139,27 +139,70 @@ class StreamTest : public ::testing::Test {
 TEST_F(StreamTest, LateFramesAreDroppedWhole) {
   Frame(kStart, 3, 1);
   Frame(kStart + 100ms, 2, 2);
-  EXPECT_EQ(stream_.LatePackets(kStart + 200ms), 0U);
-  EXPECT_EQ(stream_.LatePackets(kStart + 201ms), 3U);
-  EXPECT_EQ(stream_.LatePackets(kStart + 301ms), 5U);
+  EXPECT_EQ(stream_.LatePackets(kStart + 200ms, DataRate::Infinite()), 0U);
+  EXPECT_EQ(stream_.LatePackets(kStart + 201ms, DataRate::Infinite()), 3U);
+  EXPECT_EQ(stream_.LatePackets(kStart + 301ms, DataRate::Infinite()), 5U);
 }
 
 TEST_F(StreamTest, AFrameThatHasBegunGoesOutToItsEnd) {
   Frame(kStart, 3, 1);
   Frame(kStart + 100ms, 2, 2);
   stream_.OnSent(kStart, 1, DataSize::Bytes(1000));
-  EXPECT_EQ(stream_.LatePackets(kStart + 301ms), 0U);
+  EXPECT_EQ(stream_.LatePackets(kStart + 301ms, DataRate::Infinite()), 0U);
   stream_.OnSent(kStart, 1, DataSize::Bytes(1000));
   stream_.OnSent(kStart, 1, DataSize::Bytes(1000));
-  EXPECT_EQ(stream_.LatePackets(kStart + 301ms), 2U);
+  EXPECT_EQ(stream_.LatePackets(kStart + 301ms, DataRate::Infinite()), 2U);
+}
+
+/// Four slices of two packets, 25 ms apart: a scan.
+class ScanTest : public StreamTest {
+ protected:
+  void Scan(Time now, std::uint32_t scan) {
+    for (std::uint32_t slice = 0; slice < 4; ++slice)
+      for (int i = 0; i < 2; ++i)
+        stream_.OnQueued(now + slice * 25ms,
+                         {1, DataSize::Bytes(1000), i == 1, 4 * scan + slice, scan});
+  }
+};
+
+TEST_F(ScanTest, IsDroppedWholeWhereOneOfItsSlicesIsLate) {
+  Scan(kStart, 1);
+  Scan(kStart + 100ms, 2);
+  EXPECT_EQ(stream_.LatePackets(kStart + 200ms, DataRate::Infinite()), 0U);
+  EXPECT_EQ(stream_.LatePackets(kStart + 201ms, DataRate::Infinite()), 8U);
+}
+
+TEST_F(ScanTest, IsNotBegunWhereItsLastSliceWouldBeLate) {
+  Scan(kStart - 100ms, 0);
+  for (int i = 0; i < 8; ++i) stream_.OnSent(kStart, 1, DataSize::Bytes(1000));
+  Scan(kStart, 1);
+  // 8000 bytes at 0.25 Mbit/s take 256 ms: the last slice, queued at 75 ms, is too late by 1 ms.
+  EXPECT_EQ(stream_.LatePackets(kStart + 20ms, Mbps(0.25)), 8U);
+  EXPECT_EQ(stream_.LatePackets(kStart + 18ms, Mbps(0.25)), 0U);
+}
+
+TEST_F(ScanTest, SlicesThatFollowADroppedOneOfTheirScanGoTheSameWay) {
+  Scan(kStart, 1);
+  stream_.OnDropped(kStart, 2);
+  EXPECT_EQ(stream_.LatePackets(kStart + 1ms, DataRate::Infinite()), 6U);
+  Scan(kStart + 100ms, 2);
+  EXPECT_EQ(stream_.LatePackets(kStart + 101ms, DataRate::Infinite()), 6U);
 }
 
 TEST_F(StreamTest, TheRestOfAFrameThatStuckIsLateAndTheYoungerFrameBehindItIsNot) {
   Frame(kStart, 3, 1);
   Frame(kStart + 300ms, 2, 2);
   stream_.OnSent(kStart, 1, DataSize::Bytes(1000));
-  EXPECT_EQ(stream_.LatePackets(kStart + 399ms), 0U);
-  EXPECT_EQ(stream_.LatePackets(kStart + 400ms), 2U);
+  EXPECT_EQ(stream_.LatePackets(kStart + 399ms, DataRate::Infinite()), 0U);
+  EXPECT_EQ(stream_.LatePackets(kStart + 400ms, DataRate::Infinite()), 2U);
+}
+
+TEST_F(ScanTest, GoesOutToItsEndForALittleLongerOnceItHasBegun) {
+  Scan(kStart, 1);
+  stream_.OnSent(kStart, 1, DataSize::Bytes(1000));
+  stream_.OnSent(kStart, 1, DataSize::Bytes(1000));
+  EXPECT_EQ(stream_.LatePackets(kStart + 425ms, DataRate::Infinite()), 0U);
+  EXPECT_EQ(stream_.LatePackets(kStart + 426ms, DataRate::Infinite()), 6U);
 }
 
 TEST_F(StreamTest, TheFramePeriodIsMeasured) {
@@ -188,7 +231,7 @@ TEST_F(StreamTest, RepairPacketsOfAnotherSourceAreNoFrames) {
   stream_.OnQueued(kStart, {2, DataSize::Bytes(500), false, 77});
   EXPECT_TRUE(stream_.Owns(2));
   Frame(kStart + 100ms, 2, 2);
-  EXPECT_EQ(stream_.LatePackets(kStart + 201ms), 4U);
+  EXPECT_EQ(stream_.LatePackets(kStart + 201ms, DataRate::Infinite()), 4U);
 }
 
 TEST(TargetNotifier, TellsMovesOfTwoPercentAtOnceAndAllElseEvery200Milliseconds) {

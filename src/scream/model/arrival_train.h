@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Packets that left the bottleneck's queue one behind the other, and the holes between them.
+#pragma once
+#include <algorithm>
+#include <deque>
+#include <optional>
+
+#include "src/base/time.h"
+#include "src/base/units.h"
+
+namespace lidar::scream {
+
+/// A hole: the link stood still, or nearly so, while packets waited for it. The packets after a
+/// hole tell what the link carries now.
+class ArrivalTrain {
+ public:
+  struct Arrival {
+    Time time{};
+    DataSize size;
+    Duration qdelay{0};
+    bool waited = false;  ///< in the bottleneck's queue
+  };
+
+  /// Returns true where the packet came after a hole.
+  bool Add(const Arrival& a) {
+    const bool hole = last_ && std::min(a.time - last_->time, a.qdelay) > kHole;
+    if (hole || !a.waited || (last_ && a.time < last_->time)) train_.clear();
+    if (a.waited) train_.push_back(a);
+    if (train_.size() > kLongest) train_.pop_front();
+    last_ = a;
+    return hole;
+  }
+  void Reset() { *this = ArrivalTrain(); }
+
+  /// What the link carries, without the longest pause. None for a train too short against the
+  /// coarse arrival times of reports.
+  std::optional<DataRate> rate() const {
+    if (train_.size() < kShortest) return std::nullopt;
+    DataSize bytes, after_pause;
+    Duration pause{0};
+    for (std::size_t i = 1; i < train_.size(); ++i) {
+      bytes += train_[i].size;
+      const Duration step = train_[i].time - train_[i - 1].time;
+      if (step <= pause) continue;
+      pause = step;
+      after_pause = train_[i].size;
+    }
+    const Duration span = train_.back().time - train_.front().time - pause;
+    if (span < kMinSpan) return std::nullopt;
+    return (bytes - after_pause) / span;
+  }
+
+ private:
+  static constexpr Duration kHole = std::chrono::milliseconds(30);
+  static constexpr Duration kMinSpan = std::chrono::milliseconds(5);
+  static constexpr std::size_t kShortest = 6;
+  static constexpr std::size_t kLongest = 40;
+  std::deque<Arrival> train_;
+  std::optional<Arrival> last_;
+};
+
+}  // namespace lidar::scream

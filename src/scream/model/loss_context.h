@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Whether packets are lost where the queue is long, or anywhere.
+#pragma once
+#include <algorithm>
+#include <deque>
+
+#include "src/base/time.h"
+
+namespace lidar::scream {
+
+/// A radio loses packets whatever the queue is; a queue that overflows loses those that meet it
+/// full. The rank of a loss is the part of recent packets that waited less than its neighbours: one
+/// half on average for random loss, near one for a full queue, however short that is.
+class LossContext {
+ public:
+  void OnAcked(Time sent, Duration qdelay) {
+    recent_.push_back({sent, qdelay});
+    if (recent_.size() > kRecent) recent_.pop_front();
+  }
+  void OnLost(Time sent) {
+    if (recent_.size() < kRecent / 4) return;
+    rank_ += (Rank(QdelayAround(sent)) - rank_) * kGain;
+    losses_ = std::min(losses_ + 1, kEnough);
+  }
+  /// Losses keep to a full queue.
+  bool AtFullQueue() const { return losses_ >= kEnough && rank_ > kFull; }
+
+ private:
+  struct Packet {
+    Time sent{};
+    Duration qdelay{0};
+  };
+
+  Duration QdelayAround(Time sent) const {
+    const auto after = std::find_if(recent_.begin(), recent_.end(),
+                                    [sent](const Packet& p) { return p.sent >= sent; });
+    Duration longest{0};
+    if (after != recent_.end()) longest = after->qdelay;
+    if (after != recent_.begin()) longest = std::max(longest, std::prev(after)->qdelay);
+    return longest;
+  }
+  double Rank(Duration qdelay) const {
+    double below = 0;
+    for (const Packet& p : recent_) below += p.qdelay < qdelay ? 1 : p.qdelay == qdelay ? 0.5 : 0;
+    return below / static_cast<double>(recent_.size());
+  }
+
+  static constexpr std::size_t kRecent = 256;
+  static constexpr double kGain = 1.0 / 16;
+  static constexpr int kEnough = 6;
+  static constexpr double kFull = 0.72;
+  std::deque<Packet> recent_;
+  double rank_ = 0.5;
+  int losses_ = 0;
+};
+
+}  // namespace lidar::scream

@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// The queue delay at which the bottleneck begins to mark.
+#pragma once
+#include "src/base/time.h"
+
+namespace lidar::scream {
+
+/// A low quantile of the queue delays of marked packets. Arrival times of reports are coarse, and
+/// the base delay is the lowest of them, so it tells a millisecond from two and no more.
+class MarkingOnset {
+ public:
+  explicit MarkingOnset(Duration initial) : value_(initial) {}
+
+  void OnMark(Duration qdelay) {
+    value_ += FromSeconds(Seconds(qdelay - value_) * (qdelay < value_ ? kDown : kUp));
+  }
+  Duration value() const { return value_; }
+
+ private:
+  static constexpr double kDown = 1.0 / 32;
+  static constexpr double kUp = 1.0 / 128;
+  Duration value_;
+};
+
+}  // namespace lidar::scream

@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "src/scream/response/gap_recovery.h"
+
+#include <algorithm>
+
+namespace lidar::scream {
+namespace {
+
+/// A link that carries less than this part of what it did is in a gap...
+constexpr double kGapPart = 0.25;
+/// So much later a gap is no gap any more, but what the link is now.
+constexpr Duration kLongestMemory = 3s;
+constexpr Duration kLongestGap = 10s;
+/// Delay at its base...
+constexpr Duration kNoQueue = 3ms;
+/// ...without anything to measure the link by: each round trip this part of what is missing.
+constexpr double kUnprovenPart = 0.5;
+constexpr double kBack = 0.9;
+
+}  // namespace
+
+std::optional<GapRecovery::Restart> GapRecovery::Update(Time now, const PathModel& path,
+                                                        DataSize ref_wnd, Duration qdelay_target) {
+  if (!p_.extensions.gap_recovery) return std::nullopt;
+  const auto rate = path.train().rate();
+  const bool slow = before_ && rate && *rate < before_->rate * kGapPart;
+  if (path.hole_in_report() || slow) NoteSign(now);
+  if (!last_sign_) {
+    const bool calm = path.queue_delay().qdelay() < path.BusyQdelay(now, qdelay_target);
+    if (calm) Remember(path, ref_wnd);
+    return std::nullopt;
+  }
+  if (now - *last_sign_ > kLongestMemory || now - first_sign_ > kLongestGap) before_.reset();
+  if (!before_) last_sign_.reset();
+  if (!last_sign_ || path.hole_in_report()) return std::nullopt;
+  const auto rate_now = path.train().rate();
+  const auto window = rate_now ? Measured(*rate_now, path) : Unproven(now, path, ref_wnd);
+  if (!window) return std::nullopt;
+  Restart restart = before_->state;
+  restart.window = std::max(ref_wnd, std::min(*window, before_->state.window));
+  if (rate_now || restart.window >= before_->state.window * kBack) last_sign_.reset();
+  last_restart_ = now;
+  return restart;
+}
+
+void GapRecovery::NoteSign(Time now) {
+  if (!last_sign_) first_sign_ = now;
+  last_sign_ = now;
+}
+
+void GapRecovery::Remember(const PathModel& path, DataSize ref_wnd) {
+  before_ = Before{{ref_wnd, path.rtt().smoothed(), path.l4s_alpha().value()},
+                   ref_wnd / path.rtt().smoothed() / p_.target_rate_divisor};
+}
+
+std::optional<DataSize> GapRecovery::Measured(DataRate rate, const PathModel& path) const {
+  if (rate < before_->rate * kGapPart) return std::nullopt;
+  return rate * path.rtt().min() * p_.target_rate_divisor;
+}
+
+std::optional<DataSize> GapRecovery::Unproven(Time now, const PathModel& path,
+                                              DataSize ref_wnd) const {
+  const bool calm = path.queue_delay().qdelay() < kNoQueue && !path.MarkedLately(now);
+  if (!calm || now - last_restart_ < path.rtt().min()) return std::nullopt;
+  return ref_wnd + (before_->state.window - ref_wnd) * kUnprovenPart;
+}
+
+}  // namespace lidar::scream
