@@ -3,9 +3,11 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <random>
 
+#include "src/base/crc.h"
 #include "src/codec/mixing/range_part.h"
 #include "src/codec/mixing/start_states.h"
 
@@ -184,6 +186,33 @@ TEST(MixingCodecOf, DamagedPayloadsGiveAnImageOrNothing) {
   // The CRC of the unit finds the rest.
   EXPECT_LT(accepted, 20);
   EXPECT_TRUE(decode(payload));
+}
+
+/// Made of integers only, so that it is the same everywhere.
+RangeImage Steps() {
+  RangeImage image;
+  image.beams = 16;
+  image.columns = 256;
+  std::uint32_t noise = 1;
+  for (std::uint32_t i = 0; i < 16 * 256; ++i) {
+    noise = noise * 1'664'525 + 1'013'904'223;
+    const std::uint32_t range = 3'000 + i % 256 / 20 * 700 + i / 256 * 40 + (noise >> 27);
+    image.ranges.push_back(noise >> 20 & 15 ? range : 0);
+    image.intensity.push_back(static_cast<std::uint8_t>(40 * (i / 30 % 4) + (noise >> 28)));
+  }
+  return image;
+}
+
+TEST(MixingFormat, IsTheSameWithEveryCompilerAndProcessor) {
+  // Whoever has to change these numbers makes another version of the format.
+  const std::array<std::uint32_t, 3> expected = {3'350'430'147, 3'710'657'467, 768'025'377};
+  MixingEncoder encoder(Sensor(16, 256));
+  for (unsigned effort = 1; effort <= 3; ++effort) {
+    std::vector<std::uint8_t> payload;
+    ASSERT_TRUE(encoder.Encode(
+        Steps(), {RangeGrid(1, 41), IntensityScale(FullScale::kByte, 5), effort}, &payload));
+    EXPECT_EQ(Crc32({payload.data(), payload.size()}), expected[effort - 1]) << effort;
+  }
 }
 
 TEST(MixingTable, ComesBackAsItWasWritten) {
