@@ -68,7 +68,7 @@ static Property<Settings> OfRx(const char* name) {
                          ChildOf<GstLidarScreamSrc, &GstLidarScreamSrc::rx>);
 }
 
-static const std::array<Property<Settings>, 17> kProperties = {{
+static const std::array<Property<Settings>, 18> kProperties = {{
     Within<&Settings::listen>(UdpListenRows(), "address"),
     Within<&Settings::listen>(UdpListenRows(), "port"),
     Within<&Settings::listen>(UdpListenRows(), "multicast-group"),
@@ -80,6 +80,7 @@ static const std::array<Property<Settings>, 17> kProperties = {{
     OfRx("packets-per-feedback"),
     OfRx("num-reports"),
     OfRx("eos-on-bye"),
+    OfRx("max-age"),
     OfRx("pt-map"),
     {"used-socket", "Socket in use; NULL when stopped", UsedSocket<GstLidarScreamSrc>},
     {"stats", "Counters of packets, bytes and reports", Stats},

@@ -59,7 +59,7 @@ constexpr auto O = At<&Shown::own, field>;
 static StructurePtr Stats(GObject* object) {
   using S = scream::FeedbackGenerator::Stats;
   using C = RxCounters;
-  static const std::array<Stat<Shown>, 14> kStats = {{
+  static const std::array<Stat<Shown>, 15> kStats = {{
       {"packets-received", F<&S::packets>},
       {"bytes-received", F<&S::received>},
       {"packets-ce", F<&S::ce_packets>},
@@ -69,6 +69,7 @@ static StructurePtr Stats(GObject* object) {
       {"packets-stale", F<&S::stale>},
       {"packets-foreign", O<&C::foreign>},
       {"malformed", O<&C::malformed>},
+      {"packets-old", O<&C::old>},
       {"reports-sent", F<&S::reports>},
       {"report-bytes", F<&S::sent>},
       {"peer-moves", O<&C::moves>},
@@ -99,6 +100,11 @@ const RxProperties& RxPropertyTable() {
       {"eos-on-bye", "End the stream once every SSRC has said BYE", &S::eos_on_bye, 0, 0, kLive},
       {"packet-overhead", "UDP and IP header of a packet on the wire [bytes]", &S::packet_overhead,
        0, 1000, kLive},
+      {"max-age",
+       "Drop LiDAR captured longer ago than this, or as much in the future, by this machine's "
+       "clock; "
+       "0 for any [ns]",
+       &S::max_age, 0, static_cast<gdouble>(G_MAXINT64), kLive},
       {"pt-map",
        "Caps of each payload type (application/x-rtp-pt-map,96=(string)\"...\"); with it every "
        "SSRC "
@@ -183,6 +189,7 @@ static void Prepare(RxState& state) {
   state.latch.Reset();
   NoteLidarTypes(state);
   state.ssrcs.clear();
+  state.old_ssrcs.clear();
   state.counters = {};
   state.eos = false;
 }

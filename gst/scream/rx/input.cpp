@@ -4,6 +4,8 @@
 
 #include "gst/common/buffer_map.h"
 #include "gst/scream/rx/private.h"
+#include "src/rtp/ntp_time.h"
+#include "src/rtp/payload_header.h"
 
 #define GST_CAT_DEFAULT gst_lidar_scream_rx_debug
 
@@ -41,14 +43,44 @@ Time ArrivalTime(const Clocks& clocks, GstClockTime arrival) {
   return age > Duration{0} && age < kMaxAge ? clocks.now - age : clocks.now;
 }
 
+ByteView PayloadOf(const BufferMap& map, const RtpHeader& header) {
+  if (!map || map.size() <= header.header_size) return {};
+  return {map.data() + header.header_size, map.size() - header.header_size};
+}
+
 PeerLatch::Verdict Judge(RxState& state, Time now, GstBuffer* buffer, const RtpHeader& header) {
   PeerLatch::Packet packet{SourceOf(buffer), header.ssrc, header.seq, {}};
   if (!state.lidar_types[header.payload_type] || state.latch.HasShownSlices(packet.from))
     return state.latch.OnPacket(now, packet);
   const BufferMap map(buffer, GST_MAP_READ);
-  if (map && map.size() > header.header_size)
-    packet.lidar = {map.data() + header.header_size, map.size() - header.header_size};
+  packet.lidar = PayloadOf(map, header);
   return state.latch.OnPacket(now, packet);
+}
+
+/// Whether a slice that begins here was captured too long ago; none where no slice says.
+std::optional<bool> BeginsOld(const RxState& state, GstClockTime unix_now, ByteView payload) {
+  std::optional<bool> old;
+  for (const rtp::Unit& unit : rtp::ParsePayload(payload)) {
+    if (!rtp::IsSlice(unit.unit) || !rtp::StartsUnit(unit.type) || unit.info.capture_ntp == 0)
+      continue;
+    const auto captured = static_cast<std::int64_t>(rtp::FromNtp(unit.info.capture_ntp));
+    const Duration age{static_cast<std::int64_t>(unix_now) - captured};
+    old = age > state.settings.max_age || -age > state.settings.max_age;
+  }
+  return old;
+}
+
+/// Whether the packet is of a recording, sent again. Only the first packet of a slice says when it
+/// was captured; those behind it share its fate.
+bool IsOld(RxState& state, GstClockTime unix_now, GstBuffer* buffer, const RtpHeader& header) {
+  if (state.settings.max_age == Duration{0} || !state.lidar_types[header.payload_type])
+    return false;
+  const BufferMap map(buffer, GST_MAP_READ);
+  const auto begins_old = BeginsOld(state, unix_now, PayloadOf(map, header));
+  if (!begins_old) return state.old_ssrcs.count(header.ssrc) > 0;
+  if (!*begins_old) state.old_ssrcs.erase(header.ssrc);
+  if (*begins_old && state.old_ssrcs.size() < kMaxSsrcs) state.old_ssrcs.insert(header.ssrc);
+  return *begins_old;
 }
 
 /// Counts one packet of media; false where it is to be dropped. With the lock held.
@@ -123,6 +155,10 @@ Fate Look(GstLidarScreamRx* self, const Clocks& clocks, GstBuffer* buffer, RtpHe
     return Fate::kDrop;
   }
   *header = *read;
+  if (IsOld(state, clocks.unix_now, buffer, *read)) {
+    ++state.counters.old;
+    return Fate::kDrop;
+  }
   if (!Account(self, clocks, buffer, *read)) return Fate::kDrop;
   WakeFeedback(state);
   return Fate::kPass;

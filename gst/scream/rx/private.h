@@ -12,6 +12,7 @@
 #include <map>
 #include <mutex>
 #include <optional>
+#include <set>
 
 #include "gst/common/gstlidar.h"
 #include "gst/common/properties.h"
@@ -35,14 +36,16 @@ struct RxSettings {
   gint num_reports = kNumReportsCount;
   bool eos_on_bye = true;
   DataSize packet_overhead = DataSize::Bytes(28);
+  Duration max_age{};  // 0: any
   SharedStructure pt_map;
 };
-using RxProperties = std::array<Property<RxSettings>, 9>;
+using RxProperties = std::array<Property<RxSettings>, 10>;
 const RxProperties& RxPropertyTable();
 
 struct RxCounters {
   guint64 foreign = 0;
   guint64 malformed = 0;
+  guint64 old = 0;
   guint64 moves = 0;
   guint64 goodbyes = 0;
   guint ssrcs = 0;
@@ -54,6 +57,7 @@ struct RxState {
   scream::FeedbackGenerator generator;
   PeerLatch latch;
   std::bitset<128> lidar_types;   // payload types that are LiDAR
+  std::set<guint32> old_ssrcs;    // whose last slice was older than max-age
   std::map<guint32, Time> ssrcs;  // of the peer, and when each sent last
   bool running = false;
   RxCounters counters;

@@ -40,11 +40,12 @@ struct Rtp {
 };
 
 /// The payload of a packet with a slice of its own.
-inline std::vector<std::uint8_t> WholeSlice() {
+inline std::vector<std::uint8_t> WholeSlice(std::uint64_t capture_ntp = 0) {
   lidar::rtp::Unit unit;
   const std::vector<std::uint8_t> bytes(100, 7);
   unit.length = 100;
   unit.body = {bytes.data(), bytes.size()};
+  unit.info.capture_ntp = capture_ntp;
   unit.crc = lidar::rtp::UnitCrc(unit, unit.body);
   std::vector<std::uint8_t> payload;
   lidar::rtp::WriteHeader(unit, &payload);

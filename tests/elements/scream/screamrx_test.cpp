@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "gst/scream/rtp_packet.h"
+#include "src/rtp/ntp_time.h"
 #include "tests/elements/scream/rtp_support.h"
 
 namespace lidar::test {
@@ -170,6 +171,32 @@ TEST_F(ScreamRx, BelievesTheSenderWhoseSlicesAreWholeOverOneWhoSendsOften) {
   for (r.seq = 0; r.seq < 5; ++r.seq)
     ASSERT_EQ(Push(r, GST_LIDAR_ECN_ECT1, "10.0.0.1"), GST_FLOW_OK);
   EXPECT_EQ(Stats(element)["peer-moves"], 1U);
+}
+
+TEST_F(ScreamRx, DropsARecordingThatIsOlderThanAskedFor) {
+  for (const bool asked : {false, true}) {
+    if (asked) g_object_set(element, "max-age", guint64{2 * GST_SECOND}, nullptr);
+    Start();
+    gst_harness_set_src_caps_str(rtp.get(),
+                                 "application/x-rtp, media=(string)application, payload=(int)96, "
+                                 "clock-rate=(int)90000, encoding-name=(string)X-LIDAR-DRACO");
+    const auto now = static_cast<std::uint64_t>(g_get_real_time()) * 1000;
+    constexpr std::uint64_t kSecond = GST_SECOND;
+    Rtp r;
+    for (const std::uint64_t captured :
+         {now - 3600 * kSecond, now - 3 * kSecond, now + 3 * kSecond, now - kSecond / 10}) {
+      ++r.seq;
+      r.payload = WholeSlice(lidar::rtp::ToNtp(captured));
+      ASSERT_EQ(Push(r), GST_FLOW_OK);
+    }
+    ++r.seq;
+    r.payload = WholeSlice();  // says nothing: as the one before
+    ASSERT_EQ(Push(r), GST_FLOW_OK);
+    EXPECT_EQ(Passed(), asked ? 2U : 5U);
+    EXPECT_EQ(Stats(element)["packets-old"], asked ? 3U : 0U);
+    rtcp.reset();
+    rtp.reset();
+  }
 }
 
 TEST_F(ScreamRx, EndsWhenEveryStreamSaidGoodbye) {
