@@ -132,7 +132,7 @@ struct Kind<std::string> {
     g_value_set_string(v, value.empty() ? nullptr : value.c_str());
   }
 };
-/// Of static storage; only for what is read.
+/// Text of static storage, which can only be read.
 template <>
 struct Kind<const char*> {
   static GType Type() { return G_TYPE_STRING; }

@@ -77,7 +77,7 @@ struct State {
   SharedSocketAddress peer;
   Counters counters;
 
-  // Of the streaming thread, between start and stop.
+  // Only the streaming thread uses what follows, between start and stop.
   WakeFd wake;
   UdpBatchSender batch;
   NativeAddress to;

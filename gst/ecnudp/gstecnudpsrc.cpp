@@ -63,7 +63,7 @@ struct State {
   SharedSocket used;
   Counters counters;
 
-  // Of the streaming thread, between start and stop.
+  // Only the streaming thread uses what follows, between start and stop.
   WakeFd wake;
   UdpBatchReceiver batch;
   std::deque<BufferPtr> received;  // of the last batch, to be given out

@@ -15,7 +15,7 @@ class FeedbackPeer {
   /// After this silence of the old address another one is the peer's.
   static constexpr Duration kSilence = std::chrono::milliseconds(500);
 
-  /// Of feedback that was accepted; `from` may be NULL. True where the peer has moved.
+  /// Takes the source of feedback that was accepted; it may be NULL. True where the peer has moved.
   bool OnFeedback(Time now, GSocketAddress* from) {
     if (from == nullptr) return false;
     if (peer_ && SameAddress(from, peer_.get())) {

@@ -127,7 +127,7 @@ bool HasPtMap(GstLidarScreamRx* self) {
   return self->state->settings.pt_map != nullptr;
 }
 
-/// Of an SSRC for which there is no pad left.
+/// Drops a packet whose SSRC came when there was no pad left.
 static GstFlowReturn Refuse(GstLidarScreamRx* self, GstBuffer* buffer) {
   RxState& state = *self->state;
   gst_buffer_unref(buffer);

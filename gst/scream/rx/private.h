@@ -70,7 +70,7 @@ struct RxState {
   Time waits_until{};
   bool rtcp_started = false;
 
-  // Of the streaming thread
+  // Only the streaming thread uses what follows
   bool eos = false;
   std::map<guint32, GstPad*> routes;  // SSRC to the pad it leaves by, where there is a pt-map
   bool src_taken = false;             // by a stream of pt-map

@@ -181,7 +181,7 @@ void SrtpInput::UpdateKeys() {
   std::size_t drop = 0;
   {
     std::lock_guard lock(mutex_);
-    // Whose key we lacked may be anywhere with it.
+    // A stream whose key was missing may have any rollover count under the new one.
     if (!added_.empty())
       for (auto& [ssrc, stream] : streams_) stream.search = {};
     for (Key& key : added_) keys_.push_back(std::move(key));

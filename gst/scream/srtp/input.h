@@ -111,7 +111,7 @@ class SrtpInput {
   std::vector<Key> added_;
   std::uint64_t serial_ = 0;
 
-  // Of the streaming thread.
+  // Only the streaming thread uses what follows.
   std::vector<Key> keys_;   // oldest first
   std::size_t in_use_ = 0;  // of the packet that passed last
   std::size_t newest_used_ = 0;

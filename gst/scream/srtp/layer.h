@@ -39,8 +39,9 @@ class SrtpLayer {
   SrtpCounts counts() const { return input_->counts(); }
   /// Bytes that it adds to each RTP packet.
   unsigned overhead() const { return policy_.overhead; }
-  /// Takes the key that `source` names beside the one in use. Who sends media uses it at once, who
-  /// answers does once the media does. False and `error` where it is no key or was used before.
+  /// Takes the key that `source` names beside the one in use. The end that sends media uses it at
+  /// once; the end that answers does once the media does. False and `error` where it is no key or
+  /// was used before.
   bool ChangeKey(const std::string& source, std::string* error);
 
  private:

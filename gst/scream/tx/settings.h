@@ -11,7 +11,7 @@ namespace lidar::gst {
 enum EcnMode { kEcnOff, kEcnEct0, kEcnEct1 };
 GType EcnModeType();
 
-/// Of one sink pad. A bitrate of 0 takes the element's.
+/// The settings of one sink pad. A bitrate of 0 stands for the element's.
 struct TxPadSettings {
   gdouble priority = 1;
   guint min_bps = 0;

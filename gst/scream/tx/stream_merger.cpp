@@ -12,7 +12,7 @@ EventPtr NewStart() {
 
 }  // namespace
 
-/// Of the head of the queue. A stream that begins with another event gets a start.
+/// Takes the event at the head of the queue. A stream that begins with another event gets a start.
 EventPtr StreamMerger::TakeEvent(TxStream* stream) const {
   const GstEventType type = GST_EVENT_TYPE(stream->queue.front().event.get());
   if (type != GST_EVENT_STREAM_START && type != GST_EVENT_EOS && !sent_start_) return NewStart();
