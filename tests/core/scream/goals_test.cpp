@@ -61,10 +61,11 @@ TEST_P(ScenarioGoal, IsReached) {
 INSTANTIATE_TEST_SUITE_P(
     Matrix, ScenarioGoal,
     ::testing::Values(
-        Goal("frames_20M_rtt25", 0.9), Goal("slices_20M_rtt25", 0.9).QueueMax(15).FrameP95(30),
-        Goal("frames_8M_rtt40", 0.9).FrameP95(45),
+        Goal("frames_20M_rtt25", 0.98).QueueP99(4),
+        Goal("slices_20M_rtt25", 0.96).QueueMax(15).FrameP95(30),
+        Goal("frames_8M_rtt40", 0.98).FrameP95(45),
         Goal("frames10_8M_rtt40", 0.8).QueueP99(8).QueueMax(15).FrameP95(110),
-        Goal("slices_8M_rtt40", 0.9).QueueMax(15).FrameP95(40),
+        Goal("slices_8M_rtt40", 0.96).QueueMax(15).FrameP95(40),
         OnALongFifo("frames_8M_fifo100_notect"), OnALongFifo("slices_8M_fifo100_notect"),
         OnSteps("frames_steps_rtt40", 0.85).FrameP95(50),
         OnSteps("frames10_steps_rtt40", 0.72).FrameP95(130),
@@ -72,6 +73,29 @@ INSTANTIATE_TEST_SUITE_P(
         Goal("frames_20M_loss1.0", 0.8), Goal("frames_20M_loss2.0", 0.8),
         Goal("frames_20M_two_flows", 0.85).FrameP95(40), OnAShortFifo("frames_8M_fifo10_notect"),
         OnAShortFifo("slices_8M_fifo10_notect")));
+
+/// Thresholds of marking far below the usual ones.
+TEST(Goals, AShortQueueBeforeTheFirstMarkIsEnough) {
+  for (const char* name :
+       {"frames_8M_step1ms", "frames_20M_dualpi2", "slices_8M_step1ms", "slices_20M_dualpi2"}) {
+    const Scenario s = *FindScenario(name, Parameters());
+    const ScenarioMetrics m = Measure(s, Simulate(s.config));
+    EXPECT_GE(m.utilisation, s.source == Source::kSlices ? 0.92 : 0.94) << name;
+    EXPECT_LE(m.queue_ms.p99, 3) << name;
+  }
+}
+
+/// Not a multiple of a classic flow's share, and not a fraction of it.
+TEST(Goals, AClassicFlowOnAShortQueueHasItsShare) {
+  for (const char* name :
+       {"cubic_fifo_5ms_20M", "cubic_fifo_10ms_20M", "cubic_fifo_2ms_50M", "cubic_fifo_5ms_50M",
+        "cubic_fifo_10ms_50M", "reno_fifo_5ms_20M", "cubic_pi2_20M"}) {
+    const Scenario s = *FindScenario(name, Parameters());
+    const ScenarioMetrics m = Measure(s, Simulate(s.config));
+    EXPECT_LE(m.beside->ratio(), 2.2) << name;
+    EXPECT_LE(m.own_loss, m.beside->their_loss + 0.01) << name;
+  }
+}
 
 TEST(Goals, ACapacityDropIsAnsweredWithinARoundTrip) {
   for (const char* name : {"frames_drop_10M_to_3M", "slices_drop_10M_to_3M"}) {

@@ -112,6 +112,7 @@ std::vector<Scenario> PathScenarios(const Path& fast, const Path& slow, const Pa
   step.aqm = AqmConfig::Kind::kStep;
   all.push_back(Make("frames_8M_step1ms", "8 Mbit/s, RTT 40, step at 1 ms", step, 50, p));
   all.back().config.forward.aqm.high = 1ms;
+  all.push_back(WithSlices(all.back()));
   all.push_back(Make("frames_20M_jitter4", "20 Mbit/s, 4 ms of jitter", fast, 50, p));
   all.back().config.forward.path.jitter = 4ms;
   all.push_back(Make("frames_20M_bursts5", "20 Mbit/s, packets come out every 5 ms", fast, 50, p));
@@ -121,6 +122,7 @@ std::vector<Scenario> PathScenarios(const Path& fast, const Path& slow, const Pa
   all.back().config.forward.path.reorder = 0.01;
   all.push_back(Make("frames_20M_dualpi2", "20 Mbit/s, DualPI2", fast, 50, p));
   all.back().config.forward.aqm.kind = AqmConfig::Kind::kDualPi2;
+  all.push_back(WithSlices(all.back()));
   all.push_back(
       Make("frames_20M_longer_route", "20 Mbit/s, 15 ms longer from 15 s on", fast, 50, p));
   all.back().config.longer_by = 15ms;
