@@ -5,13 +5,14 @@
 #include "gst/scream/bin/gstscreamsink.h"
 #include "gst/scream/bin/gstscreamsrc.h"
 #include "gst/scream/rx/gstscreamrx.h"
+#include "gst/scream/twcc/gstscreamaux.h"
 #include "gst/scream/tx/gstscreamtx.h"
 
 static gboolean plugin_init(GstPlugin* plugin) {
   gst_lidar_init();
   return GST_ELEMENT_REGISTER(screamtx, plugin) && GST_ELEMENT_REGISTER(screamrx, plugin) &&
          GST_ELEMENT_REGISTER(screamsink, plugin) && GST_ELEMENT_REGISTER(screamsrc, plugin) &&
-         GST_ELEMENT_REGISTER(bitrateadapter, plugin);
+         GST_ELEMENT_REGISTER(screamaux, plugin) && GST_ELEMENT_REGISTER(bitrateadapter, plugin);
 }
 
 GST_PLUGIN_DEFINE(GST_VERSION_MAJOR, GST_VERSION_MINOR, lidarscream,

@@ -158,6 +158,8 @@ struct Parameters {
 
   /// Packets older than this in the sender's queue are late (see Controller::LatePackets).
   Duration max_queue_delay = 200ms;
+  /// How seldom a healthy receiver may report. Above 0 it reports at the end of frames.
+  Duration feedback_interval{0};
 
   Extensions extensions;
 };

@@ -104,10 +104,14 @@ std::size_t Stream::LatePackets(Time now, DataRate rate) const {
 /// A frame that has begun to leave goes out to its end, for half a frame helps nobody; but the rest
 /// of one that waited twice as long as any may is of no use either.
 std::size_t Stream::StuckPackets(Time now) const {
-  if (now - queue_.front().queued < 2 * p_.max_queue_delay) return 0;
+  const Duration age = now - queue_.front().queued;
+  if (age < 2 * p_.max_queue_delay) return 0;
   const auto next =
       std::find_if(queue_.begin(), queue_.end(), [](const Queued& q) { return q.starts_frame; });
-  return static_cast<std::size_t>(next - queue_.begin());
+  const auto rest = static_cast<std::size_t>(next - queue_.begin());
+  // A receiver that reports at the end of frames would wait for it for ever.
+  const bool keeps_last = p_.feedback_interval > Duration{0} && age < 4 * p_.max_queue_delay;
+  return keeps_last ? rest - 1 : rest;
 }
 
 bool Stream::Late(Time now, DataRate rate, const Queued& first, DataSize size) const {

@@ -68,6 +68,9 @@ const TxProperties& TxPropertyTable() {
       {"max-queue-delay",
        "Live input older than this is dropped in whole frames, other input waits [ns]",
        P<&Parameters::max_queue_delay>, 1e6, kMaxDelay},
+      {"feedback-interval",
+       "How seldom a healthy receiver may report; above 0 it reports at the end of frames [ns]",
+       P<&Parameters::feedback_interval>, 0, kMaxDelay},
       {"stats-interval", "Time between element messages with the statistics; 0 for none [ns]",
        &S::stats_interval, 0, static_cast<gdouble>(G_MAXINT64), kLive},
       {"packet-overhead", "UDP and IP header of a packet on the wire [bytes]", &S::packet_overhead,
@@ -145,6 +148,7 @@ scream::Parameters ToParameters(const TxSettings& s) {
   scream::Parameters p = s.pure_draft ? scream::Parameters::Draft() : s.parameters;
   p.ecn = ToEcn(s.ecn_mode);
   p.max_queue_delay = s.max_queue_delay();
+  p.feedback_interval = s.parameters.feedback_interval;
   return p;
 }
 

@@ -35,7 +35,7 @@ struct TxSettings {
 
   Duration max_queue_delay() const { return parameters.max_queue_delay; }
 };
-using TxProperties = std::array<Property<TxSettings>, 45>;
+using TxProperties = std::array<Property<TxSettings>, 46>;
 const TxProperties& TxPropertyTable();
 
 /// What the controller works with: `pure_draft` undoes what was set of the draft's constants.

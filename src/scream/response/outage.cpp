@@ -16,7 +16,8 @@ constexpr double kRestart = 0.5;
 
 std::optional<DataSize> Outage::OnTimer(Time now, DataSize ref_wnd, Duration s_rtt,
                                         Duration frame_period) {
-  const Duration timeout = 2 * s_rtt + std::max(kOutage, 2 * frame_period);
+  const Duration expected = std::max(2 * frame_period, 2 * p_.feedback_interval);
+  const Duration timeout = 2 * s_rtt + std::max(kOutage, expected);
   if (!p_.extensions.feedback_timeout) return std::nullopt;
   if (now - std::max(last_feedback_, last_timeout_) <= timeout) return std::nullopt;
   last_timeout_ = now;

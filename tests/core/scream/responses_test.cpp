@@ -118,6 +118,13 @@ TEST_F(OutageTest, APauseOfTheSourceIsNoSilenceOfTheReceiver) {
   EXPECT_FALSE(Timer(kStart + 10100ms, 10000));
 }
 
+TEST_F(OutageTest, AReceiverThatReportsSeldomIsWaitedForTwiceAsLong) {
+  parameters_.feedback_interval = 400ms;
+  outage_.OnFeedback(kStart);
+  EXPECT_FALSE(Timer(kStart + 880ms, 10000));  // 2 RTT + 800 ms
+  EXPECT_TRUE(Timer(kStart + 881ms, 10000));
+}
+
 class GapRecoveryTest : public ::testing::Test {
  protected:
   static constexpr DataSize kWindow = DataSize::Bytes(50000);  // 8 Mbit/s

@@ -197,6 +197,14 @@ TEST_F(StreamTest, TheRestOfAFrameThatStuckIsLateAndTheYoungerFrameBehindItIsNot
   EXPECT_EQ(stream_.LatePackets(kStart + 400ms, DataRate::Infinite()), 2U);
 }
 
+TEST_F(StreamTest, TheEndOfAFrameThatStuckStaysForReceiversThatReportAtIt) {
+  parameters_.feedback_interval = 400ms;
+  Frame(kStart, 3, 1);
+  stream_.OnSent(kStart, 1, DataSize::Bytes(1000));
+  EXPECT_EQ(stream_.LatePackets(kStart + 400ms, DataRate::Infinite()), 1U);
+  EXPECT_EQ(stream_.LatePackets(kStart + 800ms, DataRate::Infinite()), 2U);
+}
+
 TEST_F(ScanTest, GoesOutToItsEndForALittleLongerOnceItHasBegun) {
   Scan(kStart, 1);
   stream_.OnSent(kStart, 1, DataSize::Bytes(1000));

@@ -1,0 +1,209 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+/**
+ * SECTION:element-screamaux
+ *
+ * SCReAM v2 where the receiver reports with transport-wide feedback (TWCC) in place of RFC 8888:
+ * stands right before an rtpsession, as request-aux-sender of webrtcbin puts it.
+ *
+ * |[
+ * gst-launch-1.0 lidartestsrc is-live=true ! lidarenc ! rtplidarpay ! screamaux !
+ * bin.send_rtp_sink_0 rtpbin name=bin rtp-profile=avpf bin.send_rtp_src_0 ! udpsink
+ * host=127.0.0.1 port=5004 sync=false async=false
+ * ]|
+ */
+#include "gst/scream/twcc/gstscreamaux.h"
+
+#include <mutex>
+
+#include "gst/common/properties.h"
+#include "gst/common/refs.h"
+#include "gst/scream/bin/common.h"
+#include "gst/scream/twcc/session_numbers.h"
+#include "gst/scream/tx/settings.h"
+#include "src/scream/feedback/ccfb.h"
+
+GST_DEBUG_CATEGORY_STATIC(gst_lidar_scream_aux_debug);
+#define GST_CAT_DEFAULT gst_lidar_scream_aux_debug
+
+using namespace lidar;
+using namespace lidar::gst;
+
+namespace {
+
+constexpr guint kIpUdpAndSrtpTag = 38;  // bytes
+/// The rtpsession of a stock receiver reports this seldom at low rates.
+constexpr guint64 kFeedbackInterval = 500 * GST_MSECOND;
+
+struct Settings {};
+
+struct State {
+  std::mutex mutex;
+  Settings settings;
+  SessionNumbers numbers;
+  bool warned = false;
+  bool feedback_started = false;
+};
+
+}  // namespace
+
+struct _GstLidarScreamAux {
+  GstBin parent;
+  GstElement* tx;
+  State* state;
+};
+
+G_DEFINE_TYPE(GstLidarScreamAux, gst_lidar_scream_aux, GST_TYPE_BIN)
+GST_ELEMENT_REGISTER_DEFINE(screamaux, "screamaux", GST_RANK_NONE, GST_TYPE_LIDAR_SCREAM_AUX)
+
+static GstStaticPadTemplate sink_template = GST_STATIC_PAD_TEMPLATE(
+    "sink", GST_PAD_SINK, GST_PAD_ALWAYS, GST_STATIC_CAPS("application/x-rtp"));
+static GstStaticPadTemplate src_template = GST_STATIC_PAD_TEMPLATE(
+    "src", GST_PAD_SRC, GST_PAD_ALWAYS, GST_STATIC_CAPS("application/x-rtp"));
+
+static StructurePtr Stats(GObject* object) {
+  auto* self = GST_LIDAR_SCREAM_AUX(object);
+  StructurePtr stats = StatsOf(self->tx);
+  if (!stats) return stats;
+  const std::lock_guard lock(self->state->mutex);
+  const SessionNumbers::Stats& s = self->state->numbers.stats();
+  gst_structure_set(stats.get(), "twcc-reports", G_TYPE_UINT64, s.reports, "twcc-packets",
+                    G_TYPE_UINT64, s.packets, "twcc-mismatched", G_TYPE_UINT64, s.mismatched,
+                    nullptr);
+  return stats;
+}
+
+static guint Estimate(GObject* object) {
+  guint bps = 0;
+  if (GstElement* tx = GST_LIDAR_SCREAM_AUX(object)->tx)
+    g_object_get(tx, "estimated-bitrate", &bps, nullptr);
+  return bps;
+}
+
+static Property<Settings> OfTx(const char* name) {
+  return Proxy<Settings>(TxPropertyTable(), name,
+                         ChildOf<GstLidarScreamAux, &GstLidarScreamAux::tx>);
+}
+
+static const std::array<Property<Settings>, 8> kProperties = {{
+    OfTx("min-bitrate"),
+    OfTx("start-bitrate"),
+    OfTx("max-bitrate"),
+    OfTx("max-queue-delay"),
+    OfTx("stats-interval"),
+    OfTx("key-unit-on-loss"),
+    {"estimated-bitrate", "Target of all streams together, IP included; notifies [bit/s]",
+     Estimate},
+    {"stats", "Statistics; bitrates in bit/s, times in ns", Stats},
+}};
+
+/// Hands a report to screamtx as RFC 8888 says it.
+static void Feed(GstLidarScreamAux* self, const scream::CongestionFeedback& report) {
+  const PadPtr rtcp(gst_element_get_static_pad(self->tx, "rtcp_sink"));
+  std::unique_lock lock(self->state->mutex);
+  const bool starts = !std::exchange(self->state->feedback_started, true);
+  lock.unlock();
+  if (starts) {
+    GstSegment segment;
+    gst_segment_init(&segment, GST_FORMAT_TIME);
+    gst_pad_send_event(rtcp.get(), gst_event_new_stream_start("screamaux/twcc"));
+    gst_pad_send_event(rtcp.get(), gst_event_new_segment(&segment));
+  }
+  const auto bytes = scream::BuildCcfb(report);
+  GstBuffer* buffer = gst_buffer_new_allocate(nullptr, bytes.size(), nullptr);
+  gst_buffer_fill(buffer, 0, bytes.data(), bytes.size());
+  gst_pad_chain(rtcp.get(), buffer);
+}
+
+static void OnReport(GstLidarScreamAux* self, GstEvent* event) {
+  State& state = *self->state;
+  std::unique_lock lock(state.mutex);
+  const auto report = state.numbers.OnEvent(event);
+  const bool warn =
+      state.numbers.stats().mismatched > 0 &&
+      !std::exchange(state.warned, state.warned || state.numbers.stats().mismatched > 0);
+  lock.unlock();
+  if (warn)
+    GST_ELEMENT_WARNING(self, STREAM, FAILED,
+                        ("The session reports about packets that did not pass here"),
+                        ("all streams of the session have to pass screamaux, which stands right "
+                         "before rtpsession"));
+  if (report) Feed(self, *report);
+}
+
+static GstPadProbeReturn WatchSource(GstPad*, GstPadProbeInfo* info, gpointer data) {
+  auto* self = GST_LIDAR_SCREAM_AUX(data);
+  State& state = *self->state;
+  if ((info->type & GST_PAD_PROBE_TYPE_EVENT_UPSTREAM) != 0) {
+    OnReport(self, GST_PAD_PROBE_INFO_EVENT(info));
+    return GST_PAD_PROBE_OK;
+  }
+  const std::lock_guard lock(state.mutex);
+  if ((info->type & GST_PAD_PROBE_TYPE_EVENT_DOWNSTREAM) != 0) {
+    GstEvent* event = GST_PAD_PROBE_INFO_EVENT(info);
+    GstCaps* caps = nullptr;
+    if (GST_EVENT_TYPE(event) == GST_EVENT_CAPS) gst_event_parse_caps(event, &caps);
+    if (caps != nullptr) state.numbers.OnCaps(caps);
+  } else if ((info->type & GST_PAD_PROBE_TYPE_BUFFER_LIST) != 0) {
+    GstBufferList* list = GST_PAD_PROBE_INFO_BUFFER_LIST(info);
+    for (guint i = 0; i < gst_buffer_list_length(list); ++i)
+      state.numbers.OnPacket(gst_buffer_list_get(list, i));
+  } else {
+    state.numbers.OnPacket(GST_PAD_PROBE_INFO_BUFFER(info));
+  }
+  return GST_PAD_PROBE_OK;
+}
+
+static GstStateChangeReturn ChangeState(GstElement* element, GstStateChange change) {
+  auto* self = GST_LIDAR_SCREAM_AUX(element);
+  if (change == GST_STATE_CHANGE_NULL_TO_READY && !HasChildren(element, {{self->tx, "screamtx"}}))
+    return GST_STATE_CHANGE_FAILURE;
+  if (change == GST_STATE_CHANGE_READY_TO_PAUSED) {
+    // The pad of screamtx forgets its events; the session goes on with its numbers.
+    const std::lock_guard lock(self->state->mutex);
+    self->state->feedback_started = false;
+  }
+  return GST_ELEMENT_CLASS(gst_lidar_scream_aux_parent_class)->change_state(element, change);
+}
+
+static void AddGhost(GstLidarScreamAux* self, GstPad* target, GstStaticPadTemplate* templ) {
+  GstPadTemplate* pad_template = gst_static_pad_template_get(templ);
+  gst_element_add_pad(GST_ELEMENT(self),
+                      gst_ghost_pad_new_from_template(templ->name_template, target, pad_template));
+  gst_object_unref(pad_template);
+}
+
+static void gst_lidar_scream_aux_init(GstLidarScreamAux* self) {
+  self->state = new State;
+  self->tx = AddChild(GST_ELEMENT(self), "screamtx");
+  if (self->tx == nullptr) return;
+  gst_util_set_object_arg(G_OBJECT(self->tx), "ecn-mode", "off");
+  g_object_set(self->tx, "packet-overhead", kIpUdpAndSrtpTag, "feedback-interval",
+               kFeedbackInterval, nullptr);
+  const PadPtr sink(gst_element_request_pad_simple(self->tx, "sink_%u"));
+  const PadPtr src(gst_element_get_static_pad(self->tx, "src"));
+  AddGhost(self, sink.get(), &sink_template);
+  AddGhost(self, src.get(), &src_template);
+  gst_pad_add_probe(src.get(),
+                    static_cast<GstPadProbeType>(
+                        GST_PAD_PROBE_TYPE_BUFFER | GST_PAD_PROBE_TYPE_BUFFER_LIST |
+                        GST_PAD_PROBE_TYPE_EVENT_DOWNSTREAM | GST_PAD_PROBE_TYPE_EVENT_UPSTREAM),
+                    WatchSource, self, nullptr);
+  g_signal_connect_swapped(
+      self->tx, "notify::estimated-bitrate",
+      G_CALLBACK(+[](GObject* bin) { g_object_notify(bin, "estimated-bitrate"); }), self);
+}
+
+static void gst_lidar_scream_aux_class_init(GstLidarScreamAuxClass* klass) {
+  GST_DEBUG_CATEGORY_INIT(gst_lidar_scream_aux_debug, "screamaux", 0, "SCReAM with TWCC");
+  auto* object = G_OBJECT_CLASS(klass);
+  ServeProperties<GstLidarScreamAux, kProperties>(object);
+  OwnState<GstLidarScreamAux, gst_lidar_scream_aux_parent_class>(object);
+  auto* element = GST_ELEMENT_CLASS(klass);
+  element->change_state = ChangeState;
+  gst_element_class_add_static_pad_template(element, &sink_template);
+  gst_element_class_add_static_pad_template(element, &src_template);
+  gst_element_class_set_static_metadata(
+      element, "SCReAM for TWCC sessions", "Filter/Network/RTP",
+      "SCReAM v2 congestion control before an rtpsession, with transport-wide feedback",
+      "gst-lidar");
+}

@@ -1,0 +1,213 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// screamaux before a session that is only a few events, and before stock rtpbin.
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include "src/scream/feedback/twcc.h"
+#include "tests/elements/scream/pipeline.h"
+#include "tests/elements/scream/rtp_support.h"
+
+namespace lidar::test {
+namespace {
+
+constexpr guint8 kExtension = 3;
+
+struct Told {
+  guint number = 0;
+  guint size = 100;
+  bool lost = false;
+  guint64 arrival = GST_SECOND;
+};
+
+/// As rtpsession has it.
+GstEvent* Report(const std::vector<Told>& packets) {
+  GValue list = G_VALUE_INIT;
+  g_value_init(&list, g_type_from_name("GValueArray"));
+  GValueArray array{};
+  std::vector<GValue> values(packets.size(), GValue G_VALUE_INIT);
+  for (std::size_t i = 0; i < packets.size(); ++i) {
+    const Told& p = packets[i];
+    g_value_init(&values[i], GST_TYPE_STRUCTURE);
+    g_value_take_boxed(
+        &values[i],
+        gst_structure_new("RTPTWCCPacket", "seqnum", G_TYPE_UINT, p.number, "size", G_TYPE_UINT,
+                          p.size, "lost", G_TYPE_BOOLEAN, static_cast<gboolean>(p.lost),
+                          "remote-ts", G_TYPE_UINT64,
+                          p.lost ? GST_CLOCK_TIME_NONE : p.arrival + i * GST_MSECOND, nullptr));
+  }
+  array.n_values = static_cast<guint>(values.size());
+  array.values = values.data();
+  g_value_set_boxed(&list, &array);
+  GstStructure* s = gst_structure_new_empty("RTPTWCCPackets");
+  gst_structure_take_value(s, "packets", &list);
+  for (GValue& value : values) g_value_unset(&value);
+  return gst_event_new_custom(GST_EVENT_CUSTOM_UPSTREAM, s);
+}
+
+class ScreamAux : public ::testing::Test {
+ protected:
+  FakeTime time;
+  GstElement* element = gst_element_factory_make("screamaux", nullptr);
+  Harness harness{gst_harness_new_with_element(element, "sink", "src")};
+  guint16 seq = 65534;
+
+  void SetUp() override {
+    // The name of the list's type is known once somebody used it.
+    g_type_class_ref(G_TYPE_OBJECT);
+    ASSERT_NE(g_type_from_name("GValueArray"), G_TYPE_INVALID);
+    gst_harness_set_src_caps_str(
+        harness.get(), (std::string(kRtpCaps) + ",extmap-3=(string)" + scream::kTwccUri).c_str());
+  }
+  void TearDown() override {
+    harness.reset();
+    gst_object_unref(element);
+  }
+  void Push(bool numbered = true) {
+    Rtp r;
+    r.seq = seq++;
+    r.timestamp = r.seq;
+    r.marker = true;
+    r.size = 100;
+    GstBuffer* buffer = NewRtp(r);
+    if (numbered) {
+      GstRTPBuffer rtp = GST_RTP_BUFFER_INIT;
+      gst_rtp_buffer_map(buffer, GST_MAP_READWRITE, &rtp);
+      const guint16 number = 0;
+      gst_rtp_buffer_add_extension_onebyte_header(&rtp, kExtension, &number, 2);
+      gst_rtp_buffer_unmap(&rtp);
+    }
+    ASSERT_EQ(gst_harness_push(harness.get(), buffer), GST_FLOW_OK);
+  }
+  /// Lets packets leave; returns how many did.
+  int Leave() {
+    int packets = 0;
+    for (int i = 0; i < 20; ++i) {
+      time.Advance(10 * GST_MSECOND);
+      while (BufferPtr buffer{gst_harness_try_pull(harness.get())}) ++packets;
+    }
+    return packets;
+  }
+  void Tell(const std::vector<Told>& packets) {
+    gst_harness_push_upstream_event(harness.get(), Report(packets));
+  }
+  guint64 Stat(const char* field) { return Stats(element)[field]; }
+};
+
+TEST_F(ScreamAux, CountsWhatTheSessionReportsAsFeedback) {
+  for (int i = 0; i < 4; ++i) Push();
+  ASSERT_EQ(Leave(), 4);
+  Tell({{0}, {1}, {2, 100, true}, {3}});
+  EXPECT_EQ(Stat("twcc-reports"), 1U);
+  EXPECT_EQ(Stat("twcc-packets"), 4U);
+  EXPECT_EQ(Stat("feedback-accepted"), 1U);
+  EXPECT_EQ(Stat("packets-acked"), 3U);
+}
+
+TEST_F(ScreamAux, NumbersOnlyPacketsThatHaveTheExtension) {
+  Push();
+  Push(false);
+  Push();
+  ASSERT_EQ(Leave(), 3);
+  Tell({{0}, {1}});
+  EXPECT_EQ(Stat("packets-acked"), 2U);
+}
+
+TEST_F(ScreamAux, ReportsAboutPacketsOfOthersAreNotBelieved) {
+  for (int i = 0; i < 3; ++i) Push();
+  ASSERT_EQ(Leave(), 3);
+  Tell({{0, 1200}, {1, 700}, {2}});
+  EXPECT_EQ(Stat("twcc-mismatched"), 1U);
+  EXPECT_EQ(Stat("packets-acked"), 0U);
+  Tell({{0}, {1}, {2}});
+  EXPECT_EQ(Stat("packets-acked"), 3U);
+}
+
+TEST_F(ScreamAux, AbsurdReportsDoNoHarm) {
+  Push();
+  ASSERT_EQ(Leave(), 1);
+  Tell({});
+  Tell({{40000}, {70000}, {4000000000U}});
+  Tell(std::vector<Told>(1000, Told{12345, 0, true, 0}));
+  for (const char* text : {"RTPTWCCPackets;", "RTPTWCCPackets, packets=(string)none;",
+                           "RTPTWCCPackets, packets=(int)7;", "Another, packets=(int)7;"})
+    gst_harness_push_upstream_event(
+        harness.get(),
+        gst_event_new_custom(GST_EVENT_CUSTOM_UPSTREAM, gst_structure_from_string(text, nullptr)));
+  EXPECT_EQ(Stat("packets-acked"), 0U);
+  Tell({{0}});
+  EXPECT_EQ(Stat("packets-acked"), 1U);
+}
+
+TEST_F(ScreamAux, GoesOnWithTheSessionsNumbersAfterAPauseInReady) {
+  Push();
+  ASSERT_EQ(Leave(), 1);
+  gst_element_set_state(element, GST_STATE_READY);
+  gst_element_set_state(element, GST_STATE_PLAYING);
+  gst_harness_play(harness.get());
+  gst_harness_push_event(harness.get(), gst_event_new_stream_start("again"));
+  gst_harness_set_src_caps_str(
+      harness.get(), (std::string(kRtpCaps) + ",extmap-3=(string)" + scream::kTwccUri).c_str());
+  Push();
+  ASSERT_EQ(Leave(), 1);
+  Tell({{1}});
+  EXPECT_EQ(Stat("packets-acked"), 1U);
+}
+
+TEST_F(ScreamAux, TellsTheEncoderItsTargetAndHasTheSendersProperties) {
+  g_object_set(element, "max-bitrate", 3000000U, "start-bitrate", 2000000U, nullptr);
+  guint bps = 0;
+  g_object_get(element, "max-bitrate", &bps, nullptr);
+  EXPECT_EQ(bps, 3000000U);
+  Push();
+  Leave();
+  bool told = false;
+  while (EventPtr event{gst_harness_try_pull_upstream_event(harness.get())}) {
+    GstLidarTargetBitrate target{};
+    told = told || gst_lidar_event_parse_target_bitrate(event.get(), &target);
+  }
+  EXPECT_TRUE(told);
+}
+
+/// Sender and receiver are stock rtpbins; nothing of ours but screamaux.
+TEST(ScreamAuxWithRtpbin, TheReceiversReportsMoveTheTarget) {
+  const std::string caps = std::string(
+                               "application/x-rtp,media=video,clock-rate=90000,"
+                               "encoding-name=JPEG,payload=26,extmap-1=(string)") +
+                           scream::kTwccUri;
+  const int first = 40000 + 3 * (getpid() % 8000);
+  const auto at = [&](const char* element, int offset) {
+    const std::string port = " port=" + std::to_string(first + offset) + " ";
+    if (std::string(element) == "udpsrc") return "udpsrc" + port;
+    return "udpsink host=127.0.0.1 sync=false async=false" + port;
+  };
+  Pipeline pipeline(
+      "videotestsrc is-live=true ! video/x-raw,format=I420,width=160,height=120,framerate=30/1 ! "
+      "jpegenc ! rtpjpegpay mtu=1000 ! " +
+      caps +
+      " ! screamaux name=aux start-bitrate=4000000 ! tx.send_rtp_sink_0 "
+      "rtpbin name=tx rtp-profile=avpf rtpbin name=rx rtp-profile=avpf "
+      "tx.send_rtp_src_0 ! " +
+      at("udpsink", 0) + at("udpsrc", 0) + "! " + caps +
+      " ! rx.recv_rtp_sink_0 fakesink name=end sync=false async=false tx.send_rtcp_src_0 ! " +
+      at("udpsink", 1) + at("udpsrc", 1) + "! rx.recv_rtcp_sink_0 rx.send_rtcp_src_0 ! " +
+      at("udpsink", 2) + at("udpsrc", 2) + "! tx.recv_rtcp_sink_0");
+  const auto end = pipeline.Get("end");
+  g_signal_connect(pipeline.Get("rx").get(), "pad-added",
+                   G_CALLBACK(+[](GstElement*, GstPad* pad, GstElement* sink) {
+                     const gst::PadPtr to(gst_element_get_static_pad(sink, "sink"));
+                     gst_pad_link(pad, to.get());
+                   }),
+                   end.get());
+  pipeline.Play();
+  const auto aux = pipeline.Get("aux");
+  const gint64 until = g_get_monotonic_time() + 10 * G_TIME_SPAN_SECOND;
+  while (Stats(aux.get())["packets-acked"] < 40 && g_get_monotonic_time() < until) g_usleep(50000);
+  const Stats stats(aux.get());
+  EXPECT_GE(stats["packets-acked"], 40U);
+  EXPECT_GT(stats["feedback-accepted"], 2U);
+  EXPECT_EQ(stats["feedback-ignored"], 0U);
+  EXPECT_EQ(stats["twcc-mismatched"], 0U);
+}
+
+}  // namespace
+}  // namespace lidar::test
