@@ -81,7 +81,8 @@ GST_ELEMENT_REGISTER_DEFINE(rtplidardepay, "rtplidardepay", GST_RANK_SECONDARY,
 
 static GstStaticPadTemplate sink_template = GST_STATIC_PAD_TEMPLATE(
     "sink", GST_PAD_SINK, GST_PAD_ALWAYS,
-    GST_STATIC_CAPS("application/x-rtp, media = (string) application, payload = (int) [ 96, 127 ], "
+    GST_STATIC_CAPS("application/x-rtp, media = (string) { application, video }, "
+                    "payload = (int) [ 96, 127 ], "
                     "clock-rate = (int) 90000, encoding-name = (string) X-LIDAR-DRACO"));
 static GstStaticPadTemplate src_template = GST_STATIC_PAD_TEMPLATE(
     "src", GST_PAD_SRC, GST_PAD_ALWAYS, GST_STATIC_CAPS(GST_LIDAR_CODED_CAPS));

@@ -62,7 +62,8 @@ static GstStaticPadTemplate sink_template = GST_STATIC_PAD_TEMPLATE(
     "sink", GST_PAD_SINK, GST_PAD_ALWAYS, GST_STATIC_CAPS(GST_LIDAR_CODED_CAPS));
 static GstStaticPadTemplate src_template = GST_STATIC_PAD_TEMPLATE(
     "src", GST_PAD_SRC, GST_PAD_ALWAYS,
-    GST_STATIC_CAPS("application/x-rtp, media = (string) application, payload = (int) [ 96, 127 ], "
+    GST_STATIC_CAPS("application/x-rtp, media = (string) { application, video }, "
+                    "payload = (int) [ 96, 127 ], "
                     "clock-rate = (int) 90000, encoding-name = (string) X-LIDAR-DRACO"));
 
 static GstFlowReturn gst_lidar_rtp_pay_handle_buffer(GstRTPBasePayload* base, GstBuffer* buffer) {
@@ -71,6 +72,15 @@ static GstFlowReturn gst_lidar_rtp_pay_handle_buffer(GstRTPBasePayload* base, Gs
   const GstFlowReturn flow = lidar::gst::PaySliceBuffer(base, state, buffer);
   if (flow == GST_FLOW_OK) lidar::gst::UpdateBounds(base, state);
   return flow;
+}
+
+/// "video" where nothing else is taken, as in WebRTC, which has no media of its own for LiDAR.
+static const gchar* MediaDownstream(GstRTPBasePayload* base) {
+  const lidar::gst::CapsPtr allowed(gst_pad_get_allowed_caps(GST_RTP_BASE_PAYLOAD_SRCPAD(base)));
+  const lidar::gst::CapsPtr usual(
+      gst_caps_new_simple("application/x-rtp", "media", G_TYPE_STRING, "application", nullptr));
+  const bool any = !allowed || gst_caps_is_empty(allowed.get());
+  return any || gst_caps_can_intersect(allowed.get(), usual.get()) ? "application" : "video";
 }
 
 static gboolean gst_lidar_rtp_pay_set_caps(GstRTPBasePayload* base, GstCaps* caps) {
@@ -94,7 +104,7 @@ static gboolean gst_lidar_rtp_pay_set_caps(GstRTPBasePayload* base, GstCaps* cap
     std::lock_guard lock(state.mutex);
     state.config_due = true;
   }
-  gst_rtp_base_payload_set_options(base, "application", TRUE, "X-LIDAR-DRACO", kClockRate);
+  gst_rtp_base_payload_set_options(base, MediaDownstream(base), TRUE, "X-LIDAR-DRACO", kClockRate);
   return gst_rtp_base_payload_set_outcaps(base, nullptr);
 }
 

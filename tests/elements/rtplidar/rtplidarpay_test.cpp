@@ -24,6 +24,15 @@ TEST(RtpLidarPay, NegotiatesItsMediaAndClockRate) {
   EXPECT_EQ(rate, 90'000);
 }
 
+TEST(RtpLidarPay, TravelsAsVideoWhereNothingElseIsTaken) {
+  Harness h(gst_harness_new("rtplidarpay"));
+  gst_harness_set_sink_caps_str(h.get(), "application/x-rtp,media=video");
+  gst_harness_set_src_caps_str(h.get(), EncodedCaps().c_str());
+  ASSERT_EQ(gst_harness_push(h.get(), EncodedSlice(0, 0)), GST_FLOW_OK);
+  const gst::CapsPtr caps(gst_pad_get_current_caps(h->sinkpad));
+  EXPECT_STREQ(gst_structure_get_string(gst_caps_get_structure(caps.get(), 0), "media"), "video");
+}
+
 TEST(RtpLidarPay, SendsTheConfigFirstThenTheSliceWithItsMarkerLast) {
   const Harness h = Pay();
   ASSERT_EQ(gst_harness_push(h.get(), EncodedSlice(0, 0)), GST_FLOW_OK);
