@@ -10,4 +10,4 @@ static gboolean plugin_init(GstPlugin* plugin) {
 
 GST_PLUGIN_DEFINE(GST_VERSION_MAJOR, GST_VERSION_MINOR, lidarcodec,
                   "LiDAR scans compressed within an error bound", plugin_init, VERSION, "LGPL",
-                  PACKAGE, "https://gstreamer.freedesktop.org")
+                  PACKAGE, PACKAGE_ORIGIN)

@@ -35,9 +35,11 @@ class Exchange {
     }
     return true;
   }
+  /// False as Send().
   bool Wait(std::chrono::milliseconds time) const {
     std::this_thread::sleep_for(time);
-    return !stopping_;
+    char next = 0;
+    return !stopping_ && recv(fd_, &next, 1, MSG_PEEK | MSG_DONTWAIT) != 0;
   }
 
  private:
