@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "src/codec/effort_control.h"
+
+#include <algorithm>
+
+namespace lidar::codec {
+namespace {
+
+constexpr Duration kWindow{1'000'000'000};
+constexpr unsigned kFewestSlices = 8;
+// Slices that may be late in a window: a busy moment of the machine is no reason to change.
+constexpr double kLatePart = 0.1;
+// So many slices in a row that take more than twice what they may end a window early.
+constexpr unsigned kMuchTooLate = 3;
+// A higher effort is tried where it is likely to leave some of its time.
+constexpr double kRoom = 0.75;
+constexpr Duration kFirstHold{4'000'000'000};
+constexpr Duration kLongestHold{120'000'000'000};
+
+}  // namespace
+
+void EffortControl::OnSlice(Duration sweep, std::size_t returns, Duration spent) {
+  if (sweep <= Duration{0}) return;
+  now_ += sweep;
+  const double load = Seconds(spent) / (kAllowedPart * Seconds(sweep));
+  const auto count = static_cast<double>(returns);
+  much_too_late_ = load > 2 ? much_too_late_ + 1 : 0;
+  window_.swept += sweep;
+  ++window_.slices;
+  if (load > 1) ++window_.late;
+  window_.spent_s += Seconds(spent);
+  window_.returns += count;
+  window_.most_returns_per_s = std::max(window_.most_returns_per_s, count / Seconds(sweep));
+  const bool is_full = window_.swept >= kWindow && window_.slices >= kFewestSlices;
+  if (much_too_late_ < kMuchTooLate && !is_full) return;
+  Reconsider(window_.returns > 0 ? window_.spent_s / window_.returns : 0);
+  window_ = {};
+  much_too_late_ = 0;
+}
+
+/// `cost`: s a return, in the window.
+void EffortControl::Reconsider(double cost) {
+  LearnRatio(cost);
+  if (much_too_late_ >= kMuchTooLate || window_.late > kLatePart * window_.slices) {
+    Lower();
+    return;
+  }
+  if (effort_ == kHighest || now_ < levels_[effort_ + 1].not_before) return;
+  const double part = cost * levels_[effort_ + 1].ratio * window_.most_returns_per_s;
+  if (part > kRoom * kAllowedPart) return;
+  cost_below_ = cost;
+  ++effort_;
+}
+
+/// In the first window after a raise. What the machine does beside must not spoil it for long.
+void EffortControl::LearnRatio(double cost) {
+  if (cost_below_ > 0 && cost > 0) {
+    double& ratio = levels_[effort_].ratio;
+    ratio = std::clamp(cost / cost_below_, 0.7 * ratio, 1.4 * ratio);
+  }
+  cost_below_ = 0;
+}
+
+void EffortControl::Lower() {
+  if (effort_ == 0) return;
+  Level& level = levels_[effort_];
+  level.hold = std::clamp(2 * level.hold, kFirstHold, kLongestHold);
+  level.not_before = now_ + level.hold;
+  --effort_;
+}
+
+}  // namespace lidar::codec

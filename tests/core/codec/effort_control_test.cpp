@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "src/codec/effort_control.h"
+
+#include <gtest/gtest.h>
+
+#include <random>
+#include <vector>
+
+namespace lidar::codec {
+namespace {
+
+/// A machine that codes so many million returns a second, by effort.
+struct Machine {
+  std::array<double, 4> speeds = {38, 8, 5, 2};
+  double factor = 1;
+  double noise = 0.1;
+};
+
+/// A sensor of 8 slices a scan at 10 Hz.
+struct Sensor {
+  std::size_t returns = 2'700;  // a slice
+  Duration sweep{12'500'000};
+};
+
+/// The effort of every slice over some seconds.
+std::vector<unsigned> Play(const Machine& machine, const Sensor& sensor, double seconds,
+                           EffortControl* control) {
+  std::mt19937 random(4);
+  std::uniform_real_distribution<double> noise(1 - machine.noise, 1 + machine.noise);
+  std::vector<unsigned> efforts;
+  const auto slices = static_cast<int>(seconds / Seconds(sensor.sweep));
+  for (int i = 0; i < slices; ++i) {
+    efforts.push_back(control->effort());
+    const double speed = 1e6 * machine.speeds[control->effort()] * machine.factor;
+    const double spent_s = static_cast<double>(sensor.returns) / speed * noise(random);
+    control->OnSlice(sensor.sweep, sensor.returns, FromSeconds(spent_s));
+  }
+  return efforts;
+}
+
+unsigned Changes(const std::vector<unsigned>& efforts) {
+  unsigned changes = 0;
+  for (std::size_t i = 1; i < efforts.size(); ++i)
+    changes += efforts[i] != efforts[i - 1] ? 1U : 0U;
+  return changes;
+}
+
+TEST(EffortControl, TakesTheHighestEffortThatFits) {
+  struct Case {
+    std::size_t returns;
+    unsigned effort;
+  };
+  // 12.5 ms of sweep leave 3.1 ms: 6,200 returns at effort 3, 15,600 at 2, 25,000 at 1.
+  for (const Case& c : {Case{2'700, 3}, Case{10'000, 2}, Case{20'000, 1}, Case{60'000, 0}}) {
+    EffortControl control;
+    EXPECT_EQ(Play({}, {c.returns}, 10, &control).back(), c.effort) << c.returns;
+  }
+}
+
+TEST(EffortControl, IsThereWithinSeconds) {
+  EffortControl control;
+  EXPECT_EQ(Play({}, {}, 3, &control).back(), 3U);
+}
+
+TEST(EffortControl, StaysWhereItIsHoweverNearTheLimit) {
+  for (std::size_t returns = 3'000; returns < 60'000; returns += 500) {
+    EffortControl control;
+    Machine machine;
+    machine.noise = 0.3;
+    Play(machine, {returns}, 20, &control);
+    EXPECT_LE(Changes(Play(machine, {returns}, 120, &control)), 6U) << returns;
+  }
+}
+
+TEST(EffortControl, YieldsAtOnceToABusyMachineAndComesBack) {
+  EffortControl control;
+  Machine machine;
+  EXPECT_EQ(Play(machine, {}, 10, &control).back(), 3U);
+  machine.factor = 0.1;
+  const auto busy = Play(machine, {}, 0.2, &control);
+  EXPECT_LT(busy.back(), 3U);
+  Play(machine, {}, 5, &control);
+  EXPECT_EQ(control.effort(), 0U);
+  machine.factor = 1;
+  EXPECT_EQ(Play(machine, {}, 120, &control).back(), 3U);
+}
+
+TEST(EffortControl, LetsSingleSlicesBeLate) {
+  EffortControl control;
+  Play({}, {}, 10, &control);
+  for (int i = 0; i < 1'000; ++i) {
+    const bool late = i % 20 == 0;
+    control.OnSlice(Duration{12'500'000}, 2'700, Duration{late ? 9'000'000 : 1'300'000});
+    ASSERT_EQ(control.effort(), 3U);
+  }
+}
+
+TEST(EffortControl, StandsSlicesWithoutReturnsOrDuration) {
+  EffortControl control;
+  for (int i = 0; i < 1'000; ++i) {
+    control.OnSlice(Duration{i % 2 * 100'000'000}, 0, Duration{0});
+    ASSERT_LE(control.effort(), EffortControl::kHighest);
+  }
+}
+
+}  // namespace
+}  // namespace lidar::codec
