@@ -89,7 +89,7 @@ class RangeGrid {
   }
 
  private:
-  /// Of the cells of a bin, the first of which is the next whole one from its start on.
+  /// The middle of the cells of a bin. Its first cell is the next whole one from its start on.
   template <class Wide>
   Wide Middle(Wide bin) const {
     const Wide first = (bin * parts_ + (kParts - 1)) / kParts;

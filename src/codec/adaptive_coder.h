@@ -13,7 +13,7 @@
 
 namespace lidar::codec {
 
-/// Where the returns of a block are.
+/// A block without its values: which pixels have returns.
 struct BlockShape {
   const AzimuthAlignment& alignment;
   const Mask& mask;
@@ -32,7 +32,7 @@ class AdaptiveCoder {
   bool Decode(const BlockShape& shape, const RangeGrid& grid, RansDecoder* decoder,
               RangeImage* image);
 
-  /// Residuals of values and levels in place of them, and back.
+  /// Replaces values and levels by their residuals, and the other way round.
   void ToResiduals(const BlockShape& shape, IntegerLists* lists);
   bool FromResiduals(const BlockShape& shape, IntegerLists* lists);
 

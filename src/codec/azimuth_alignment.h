@@ -42,8 +42,8 @@ class AlignedRow {
   }
   /// Valid for [-kMargin .. columns + kMargin).
   T* At(std::uint32_t beam) { return &values_[kMargin + alignment_->offset(beam)]; }
-  /// To be called when At(beam)[0 .. columns) has been written: in a full turn the last column is
-  /// the neighbour of the first.
+  /// Call it when At(beam)[0 .. columns) has been written: in a full turn the last column is the
+  /// neighbour of the first.
   void CloseTurn(std::uint32_t beam) {
     if (!closed_) return;
     const std::size_t begin = kMargin + alignment_->offset(beam);

@@ -117,7 +117,7 @@ void WriteRangeImage(const RangeImage& image, const IntensityScale& scale,
   const PointField* range = FindTyped(layout.fields, "range", FieldType::kU32);
   const PointField* intensity =
       image.intensity.empty() ? nullptr : FindTyped(layout.fields, "intensity", FieldType::kF32);
-  // Where these are all there is, every byte is written below.
+  // If these are all fields, every byte is written below.
   const PointFields kept = KeptFields(layout.fields, intensity != nullptr, range != nullptr);
   if (kept != layout.fields || layout.point_step != kept.MinimumStep())
     std::memset(raw, 0, image.size() * layout.point_step);

@@ -23,8 +23,8 @@ struct Interval {
 
 namespace detail {
 
-/// For each symbol the starts that Update() moves towards: a step behind the symbol, on a slope
-/// that keeps intervals from vanishing.
+/// For each symbol the starts that Update() moves towards: a step behind the symbol. Their slope
+/// keeps intervals from vanishing.
 struct Targets {
   constexpr Targets() {
     for (unsigned symbol = 0; symbol < kNibbles; ++symbol)
@@ -36,8 +36,8 @@ struct Targets {
 };
 inline constexpr Targets kTargets;
 
-/// By number of updates. Fast at first, then slower: few samples teach a context most of what there
-/// is to know.
+/// The rate falls with the number of updates: the first few samples teach a context most of what
+/// there is to know.
 struct Rates {
   static constexpr unsigned kMiddleAge = 24;
   static constexpr unsigned kOldest = 400;

@@ -48,7 +48,7 @@ inline std::int32_t Difference(std::int32_t a, std::int32_t b) {
   return static_cast<std::int32_t>(static_cast<std::uint32_t>(a) - static_cast<std::uint32_t>(b));
 }
 
-/// What has come of a prediction.
+/// A value once it is coded.
 struct Coded {
   std::int32_t value;
   std::int32_t magnitude;  // of the residual
@@ -65,7 +65,7 @@ struct RowReturns {
 /// their azimuths; NW is the N of W. The prediction is the median of W, N and W + N - NW (the MED
 /// predictor of LOCO-I), which follows planes and keeps to one side of an edge.
 ///
-/// All but W is known before the row is coded, so that it is prepared at once, and lanes of the row
+/// All but W is known before the row is coded and is prepared for the whole row. The lanes of a row
 /// do not wait for each other.
 class RowPredictor {
  public:
@@ -83,7 +83,7 @@ class RowPredictor {
     }
     return Keep(beam, row, limit);
   }
-  /// Of the row that was coded last.
+  /// The values of the row that was coded last.
   const std::int32_t* values() const { return values_.data(); }
 
  private:
@@ -100,14 +100,14 @@ class RowPredictor {
     for (unsigned lane = 0; lane < kRansLanes; ++lane) {
       const std::size_t start = lane < lanes.lanes ? lanes.Start(lane) : 0;
       west[lane] = kBlind ? latest_ : row[start].north;
-      // Where nothing is known, anything may come.
+      // Nothing is known here, so the context is that of the largest errors.
       error[lane] = kBlind ? std::int32_t{detail::ContextTable::kMost} : 0;
     }
     ForEachInTurns(
         lanes, [&](unsigned lane, std::size_t i) __attribute__((always_inline)) {
           Return& at = row[i];
           const std::int32_t w = west[lane];
-          // No comparison that a compiler could make a jump of: nobody could predict it.
+          // No comparisons here: a compiler could make jumps of them, which are mispredicted.
           const std::int32_t to_north = kBlind ? 0 : Difference(at.north, w);
           const std::int32_t below = to_north & to_north >> 31;
           const std::int32_t above = to_north & ~(to_north >> 31);
@@ -120,8 +120,8 @@ class RowPredictor {
                                        2 * static_cast<std::uint32_t>(error[lane]);
           p.context =
               detail::kContextTable.contexts[std::min(uneven, detail::ContextTable::kMost + 0U)];
-          // Where it is off, the value tends towards the other neighbour; so the sign has a
-          // meaning.
+          // A value that differs from the prediction tends towards the other neighbour, so the
+          // sign of the difference has a meaning.
           p.mirror = -above >> 31;
           const Coded coded = code(lane, i, p);
           error[lane] = at.error = coded.magnitude;
@@ -133,7 +133,7 @@ class RowPredictor {
     std::int32_t value = kUnknown;
     std::int32_t error = 0;  // size of its residual
   };
-  /// Before and after it is coded.
+  /// A return of the row: what surrounds it before it is coded, and what it was after that.
   struct Return {
     union {
       std::int32_t north;

@@ -19,7 +19,7 @@ struct RangeSettings {
   RangeCoder coder = RangeCoder::kAdaptive;
   RangeGrid grid;
   IntensityScale intensity;      // 0 bits: geometry only
-  std::uint32_t kept_beams = 0;  // of those of the image, where the others were left out; 0: all
+  std::uint32_t kept_beams = 0;  // the others were left out on purpose; 0: all
 };
 
 /// Encodes slices of one sensor. Keeps its buffers between slices; not for several threads at once.
@@ -67,14 +67,14 @@ class RangeDecoder {
   /// The next block of `reader`; `scale` says what the levels stand for. False, with `image`
   /// undefined, for a block that is damaged, of another sensor, or of more than `max_points`.
   bool Decode(ByteReader* reader, std::size_t max_points, RangeImage* image, IntensityScale* scale);
-  /// Of the block decoded last.
+  /// The header of the block decoded last.
   const RangeHeader& header() const { return header_; }
 
  private:
   bool DecodeAdaptively(const RangeHeader& header, ByteView payload, RangeImage* image);
   bool DecodeIntegers(const RangeHeader& header, ByteView mask, ByteView payload,
                       RangeImage* image);
-  /// The lists, which are ranges by now, to where the mask has returns.
+  /// Moves the lists, which are ranges by now, to the pixels that have returns.
   void Scatter(RangeImage* image);
 
   AzimuthAlignment alignment_;
@@ -84,7 +84,7 @@ class RangeDecoder {
   AdaptiveCoder coder_;
   Mask mask_;
   IntegerLists lists_;
-  std::vector<std::uint8_t> padded_;  // of RansDecoder
+  std::vector<std::uint8_t> padded_;  // buffer for RansDecoder
 };
 
 }  // namespace lidar::codec

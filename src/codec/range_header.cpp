@@ -24,7 +24,7 @@ std::uint32_t ReadVarint(ByteReader* reader, bool* ok) {
   return 0;
 }
 
-// Of the second byte.
+// Bits of the second byte.
 constexpr unsigned kGapsFlag = 0x80;
 constexpr unsigned kThinnedFlag = 0x40;
 

@@ -26,7 +26,7 @@ struct RangeHeader {
   std::uint32_t columns = 0;
   RangeGrid grid;
   IntensityScale intensity;        // 0 bits: geometry only
-  std::uint32_t kept_beams = 0;    // of beams: the others were left out to save bits; 0: none was
+  std::uint32_t kept_beams = 0;    // the others were left out to save bits; 0: none was
   bool has_gaps = false;           // some pixels have no return, and a mask says which
   std::uint32_t mask_size = 0;     // bytes of the mask where it is a stream of its own
   std::uint32_t payload_size = 0;  // bytes behind it

@@ -85,7 +85,7 @@ class RansDecoder {
   /// More was read than there is: the stream is damaged, and not to be read any further.
   bool overran() const { return position_ > end_; }
 
-  /// To be followed by GetBits() of the same lane, with 0 where there are none.
+  /// The next call must be GetBits() of the same lane, with a count of 0 if no bits follow.
   unsigned Get(unsigned lane, NibbleModel* model) {
     const std::uint64_t x = states_[lane];
     const auto slot = static_cast<std::uint32_t>(x & (kProbabilityOne - 1));

@@ -33,7 +33,7 @@ class SliceDecoder {
     double step_m = 0;
     double error_m = 0;  // bound that holds with this step
     unsigned intensity_bits = 0;
-    double keep_fraction = 1;  // of the beams; the others were left out to save bits
+    double keep_fraction = 1;  // part of the beams; the others were left out to save bits
   };
   /// That of the slice decoded last.
   const Quality& quality() const { return quality_; }

@@ -11,7 +11,7 @@
 
 namespace lidar::codec {
 
-/// What a symbol stands for: a sign (0 or -1), and magnitudes from `base` on, one of 2^bits.
+/// What a symbol stands for: a sign (0 or -1), and one of 2^bits magnitudes from `base` on.
 struct ResidualClass {
   std::int16_t base;
   std::int8_t bits;
@@ -23,8 +23,8 @@ struct Residual {
   std::int32_t sign;  // 0 or -1
 };
 
-/// 0; then for each magnitude 1, 2, 3-4, 5-8, 9-16, 17-32, and from 33 on, one a sign. From 33 on,
-/// the length of the rest is a symbol of its own.
+/// The classes are 0, and with each sign 1, 2, 3-4, 5-8, 9-16, 17-32, and 33 or more. From 33 on,
+/// another symbol tells the length of the rest.
 constexpr std::uint32_t kLongMagnitude = 33;
 constexpr unsigned kFirstLongSymbol = 13;
 constexpr std::array<ResidualClass, kNibbles> kResidualClasses = {{{0, 0, 0, 0},
@@ -62,8 +62,8 @@ struct SymbolCounts {
   std::array<std::uint64_t, kNibbles> longs{};
 };
 
-/// Encoder and decoder do the same with every residual: one symbol, and bits, if only none; nothing
-/// to be mispredicted but the rare long ones.
+/// Every residual is one symbol and some bits, possibly none. Only the rare long ones take another
+/// path, so a processor has hardly a jump to mispredict.
 class SymbolModel {
  public:
   /// Pieces of RansEncoder that a residual may take.
@@ -129,7 +129,7 @@ class SymbolModel {
     if (length > 0 && length < kLongest) rest |= 1U << (length - 1);
     return static_cast<std::int32_t>(rest);
   }
-  /// Of a rest of that length: all but the highest one, which is known to be 1.
+  /// How many bits of a rest of that length are written: the highest one is known to be 1.
   static unsigned PlainBits(unsigned length) {
     if (length == kLongest) return kLongestBits;
     return length > 0 ? length - 1 : 0;

@@ -88,7 +88,7 @@ Settings AdaptiveModel::Choose(const SliceFeatures& slice, double bytes,
     }
     settings.step_m = kUnitStep * std::exp2((low + high) / 2);
   }
-  // Where steps are few, the nearest in bytes; but a little less is better than too much.
+  // If steps are few, take the nearest in bytes; but a little less is better than too much.
   constexpr double kMostOver = 1.06;
   const AllowedSteps steps = StepsAround(settings.step_m, limits);
   settings.step_m = steps.coarser_m;

@@ -11,7 +11,7 @@ namespace {
 
 using Json = nlohmann::json;
 constexpr const char* kFormat = "gst-lidar-rate-model";
-constexpr double kLargest = 1e12;  // of a coefficient: far more is an accident
+constexpr double kLargest = 1e12;  // a coefficient that is larger is an accident
 
 /// Reads members and keeps the first thing that is wrong.
 class Reader {

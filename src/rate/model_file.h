@@ -26,9 +26,9 @@ std::string WriteModelFile(const ModelFile& file);
 
 /// Null, and why in `error`, where the file has no coefficients for `kind`.
 std::unique_ptr<SizeModel> MakeModel(const ModelFile& file, RateModel kind, std::string* error);
-/// From the file that is compiled in.
+/// The model of the file that is compiled in.
 std::unique_ptr<SizeModel> MakeBuiltInModel(RateModel kind);
-/// The text of that file.
+/// The text of the file that is compiled in.
 std::string_view BuiltInModelFile();
 
 constexpr int kModelFileVersion = 1;

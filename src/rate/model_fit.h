@@ -29,7 +29,7 @@ struct FitError {
   double mean = 0;  // of |predicted / real - 1|
   double percentile_95 = 0;
 };
-/// Of predictions without any correction.
+/// The errors of predictions without any correction.
 FitError ErrorOf(const SizeModel& model, const std::vector<Sample>& samples);
 
 constexpr std::size_t kMinSamples = 20;

@@ -7,11 +7,11 @@
 namespace lidar::rate {
 namespace {
 
-// Of what the scans before left or owe, a scan settles half: all at once would double the noise.
+// A scan settles half of what the scans before left or owe: all at once would double the noise.
 constexpr double kRepayGain = 0.5;
 // Unused budget is lost, but for this part of a scan: the network has no memory for it.
 constexpr double kMaxSaved = 0.05;
-constexpr double kOver = 0.015;       // of the slice: worth a second try
+constexpr double kOver = 0.015;       // a slice that is further over its budget is tried again
 constexpr double kOverOfScan = 0.01;  // ... but later slices even out less than this
 constexpr double kUnder = 3;          // times as much: too little is no harm to the network
 constexpr double kSameStep = 0.004;   // a second try with the same step is none

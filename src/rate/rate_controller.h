@@ -55,7 +55,7 @@ class RateController {
   /// Bitrate for the encoded slices alone, transport overhead already taken off. None: constant
   /// quality at the coarsest step.
   void SetTarget(std::optional<DataRate> target);
-  /// From the next slice on.
+  /// They hold from the next slice on.
   void SetParameters(const ControllerParameters& parameters) { parameters_ = parameters; }
   const ControllerParameters& parameters() const { return parameters_; }
 
@@ -91,7 +91,7 @@ class RateController {
   ScanPlan plan_;
   double saved_ = 0;   // bytes from scans before this one
   double repay_ = 0;   // part of saved_ that this scan spends or pays back
-  double ledger_ = 0;  // of this scan: time's share of the target less bytes put out
+  double ledger_ = 0;  // this scan's share of the target so far, less the bytes put out
   bool bounds_due_ = false;
   RateBounds bounds_taken_;
   ControllerStats stats_;

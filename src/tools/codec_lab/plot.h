@@ -13,7 +13,7 @@ class CsvFile {
   /// An empty path writes nothing.
   CsvFile(const std::string& path, const std::string& header);
   void Row(const std::string& row);
-  /// To be called at the end: a full disk shows up here.
+  /// Call it at the end: a full disk shows up here.
   void Close();
 
  private:

@@ -129,7 +129,7 @@ rate::ErrorBound SliceCodec::Bound(const CodingMode& mode) const {
   return rate::ErrorBound::Range(geometry_->model.range_unit_mm);
 }
 
-/// With the coder that the mode names, where dracoenc would take the smaller one.
+/// Takes the coder that the mode names; dracoenc would take the smaller one.
 bool SliceCodec::EncodeXyz(const CodingMode& mode, const rate::Settings& settings,
                            double keep_fraction) {
   codec::XyzCloud all;

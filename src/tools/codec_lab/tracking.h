@@ -23,7 +23,7 @@ struct ProfileOptions {
 /// in the logarithm, every 10 scans.
 std::vector<double> MakeTargets(TargetProfile profile, std::size_t scans,
                                 const ProfileOptions& options);
-/// From lines of `time_s rate_mbps`; a scan takes the rate that holds at its start. Throws.
+/// Reads lines of `time_s rate_mbps`; a scan takes the rate that holds at its start. Throws.
 std::vector<double> ReadTargets(const std::string& path, double scans_per_second);
 
 struct TrackOptions {
