@@ -104,6 +104,10 @@ void SliceEncoder::set_threads(unsigned threads) {
   if (range_) range_->set_threads(threads);
 }
 
+void SliceEncoder::set_effort(unsigned effort) {
+  if (range_) range_->set_effort(effort);
+}
+
 codec::SliceResult SliceEncoder::Encode(const SliceSettings& settings, codec::EncodedSlice* slice) {
   return range_ ? range_->Encode(settings, slice) : xyz_.Encode(settings, slice);
 }

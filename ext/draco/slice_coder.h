@@ -66,8 +66,9 @@ class SliceEncoder {
   /// How many beams or points Thin() chooses from.
   std::size_t rows() const { return range_ ? range_->rows() : xyz_.cloud().size(); }
 
-  /// As in codec::SliceEncoder; without effect in xyz geometry.
+  /// As in codec::SliceEncoder, and without effect in xyz geometry.
   void set_threads(unsigned threads);
+  void set_effort(unsigned effort);
 
   /// Encodes what is loaded, as often as wanted.
   codec::SliceResult Encode(const SliceSettings& settings, codec::EncodedSlice* slice);

@@ -9,21 +9,15 @@ namespace lidar::codec {
 bool RangeEncoder::Encode(const RangeImage& image, const RangeSettings& settings,
                           std::vector<std::uint8_t>* out) {
   const bool with_levels = settings.intensity.bits() > 0;
-  lists_.values.clear();  // for returns()
   if (image.beams != alignment_.beams() || image.columns == 0 ||
       image.columns > alignment_.columns_per_scan() ||
       image.first_column >= alignment_.columns_per_scan() || image.ranges.size() != image.size() ||
       (with_levels && image.intensity.size() != image.size())) {
     return false;
   }
-  CollectReturns(image, settings);
   mask_bytes_.clear();
   payload_.clear();
-  if (settings.coder == RangeCoder::kAdaptive) {
-    EncodeAdaptively(image.columns);
-  } else if (!EncodeIntegers(settings, image.columns)) {
-    return false;
-  }
+  if (!EncodePayload(image, settings)) return false;
   RangeHeader header;
   header.coder = settings.coder;
   header.beams = image.beams;
@@ -32,12 +26,23 @@ bool RangeEncoder::Encode(const RangeImage& image, const RangeSettings& settings
   header.grid = settings.grid;
   header.intensity = settings.intensity;
   header.kept_beams = settings.kept_beams;
-  header.has_gaps = has_gaps();
+  header.has_gaps = has_gaps_;
   header.mask_size = static_cast<std::uint32_t>(mask_bytes_.size());
   header.payload_size = static_cast<std::uint32_t>(payload_.size());
   header.Write(out);
   out->insert(out->end(), mask_bytes_.begin(), mask_bytes_.end());
   out->insert(out->end(), payload_.begin(), payload_.end());
+  return true;
+}
+
+bool RangeEncoder::EncodePayload(const RangeImage& image, const RangeSettings& settings) {
+  if (settings.coder == RangeCoder::kMixing) {
+    has_gaps_ = std::find(image.ranges.begin(), image.ranges.end(), 0U) != image.ranges.end();
+    return mixing_.Encode(image, {settings.grid, settings.intensity, settings.effort}, &payload_);
+  }
+  CollectReturns(image, settings);
+  if (settings.coder != RangeCoder::kAdaptive) return EncodeIntegers(settings, image.columns);
+  EncodeAdaptively(image.columns);
   return true;
 }
 
@@ -58,6 +63,7 @@ void RangeEncoder::CollectReturns(const RangeImage& image, const RangeSettings& 
     count += mask_[i];
   }
   lists_.values.resize(count);
+  has_gaps_ = count < mask_.size();
   lists_.levels.resize(settings.intensity.bits() > 0 ? count : 0);
   if (lists_.levels.empty()) return;
   std::array<std::uint8_t, 256> coarse{};
@@ -71,14 +77,14 @@ void RangeEncoder::CollectReturns(const RangeImage& image, const RangeSettings& 
 void RangeEncoder::EncodeAdaptively(std::uint32_t columns) {
   rans_.Start(MaskCoder::Pieces(alignment_.beams(), columns) +
               SymbolModel::kMostPieces * (lists_.values.size() + lists_.levels.size()));
-  if (has_gaps()) mask_coder_.Encode(mask_, alignment_, columns, &rans_);
+  if (has_gaps_) mask_coder_.Encode(mask_, alignment_, columns, &rans_);
   coder_.Encode({alignment_, mask_, columns}, lists_, &rans_);
   rans_.Finish(&payload_);
 }
 
 bool RangeEncoder::EncodeIntegers(const RangeSettings& settings, std::uint32_t columns) {
   if (integers_ == nullptr) return false;
-  if (has_gaps()) {
+  if (has_gaps_) {
     rans_.Start(MaskCoder::Pieces(alignment_.beams(), columns));
     mask_coder_.Encode(mask_, alignment_, columns, &rans_);
     rans_.Finish(&mask_bytes_);
@@ -106,6 +112,8 @@ bool RangeDecoder::Decode(ByteReader* reader, std::size_t max_points, RangeImage
   const ByteView mask = reader->Bytes(header->mask_size);
   const ByteView payload = reader->Bytes(header->payload_size);
   image->intensity.assign(header->intensity.bits() > 0 ? image->size() : 0, 0);
+  if (header->coder == RangeCoder::kMixing)
+    return mixing_.Decode(payload, header->grid, header->intensity.bits(), image);
   mask_.assign(image->size(), 1);
   return header->coder == RangeCoder::kAdaptive ? DecodeAdaptively(*header, payload, image)
                                                 : DecodeIntegers(*header, mask, payload, image);

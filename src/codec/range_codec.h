@@ -10,6 +10,7 @@
 #include "src/codec/azimuth_alignment.h"
 #include "src/codec/integer_coder.h"
 #include "src/codec/mask_coder.h"
+#include "src/codec/mixing/mixing_codec.h"
 #include "src/codec/range_header.h"
 #include "src/codec/range_image.h"
 
@@ -20,6 +21,7 @@ struct RangeSettings {
   RangeGrid grid;
   IntensityScale intensity;      // 0 bits: geometry only
   std::uint32_t kept_beams = 0;  // the others were left out on purpose; 0: all
+  unsigned effort = 1;           // of kMixing, 1 to 3
 };
 
 /// Encodes slices of one sensor. Keeps its buffers between slices; not for several threads at once.
@@ -27,7 +29,7 @@ class RangeEncoder {
  public:
   /// `integers` codes the payloads that are not our own; it may be null, and must outlive this.
   explicit RangeEncoder(const SensorModel& model, const IntegerCoder* integers = nullptr)
-      : alignment_(model), integers_(integers) {}
+      : alignment_(model), integers_(integers), mixing_(model) {}
 
   /// Appends one block to `out` and returns true; false where the image does not fit the sensor or
   /// the coder is not there.
@@ -35,17 +37,18 @@ class RangeEncoder {
   /// settings.intensity. An image without any return gives a block that decodes to such an image.
   bool Encode(const RangeImage& image, const RangeSettings& settings,
               std::vector<std::uint8_t>* out);
-  /// Returns in the image encoded last.
-  std::size_t returns() const { return lists_.values.size(); }
 
  private:
   void CollectReturns(const RangeImage& image, const RangeSettings& settings);
-  bool has_gaps() const { return returns() < mask_.size(); }
+  std::size_t returns() const { return lists_.values.size(); }
   void EncodeAdaptively(std::uint32_t columns);
   bool EncodeIntegers(const RangeSettings& settings, std::uint32_t columns);
+  bool EncodePayload(const RangeImage& image, const RangeSettings& settings);
 
   AzimuthAlignment alignment_;
   const IntegerCoder* integers_;
+  MixingEncoder mixing_;
+  bool has_gaps_ = false;
   MaskCoder mask_coder_;
   AdaptiveCoder coder_;
   RansEncoder rans_;
@@ -60,7 +63,7 @@ class RangeDecoder {
  public:
   /// Without `integers`, blocks of coders that are not our own are refused.
   explicit RangeDecoder(const SensorModel& model, const IntegerCoder* integers = nullptr)
-      : alignment_(model), integers_(integers) {}
+      : alignment_(model), integers_(integers), mixing_(model) {}
 
   std::uint32_t columns_per_scan() const { return alignment_.columns_per_scan(); }
 
@@ -79,6 +82,7 @@ class RangeDecoder {
 
   AzimuthAlignment alignment_;
   const IntegerCoder* integers_;
+  MixingDecoder mixing_;
   RangeHeader header_;
   MaskCoder mask_coder_;
   AdaptiveCoder coder_;

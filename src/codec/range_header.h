@@ -17,6 +17,7 @@ enum class RangeCoder : std::uint8_t {
   kDraco = 1,     // Draco's sequential coder with its own delta prediction
   kResidual = 2,  // what our prediction leaves, by Draco's sequential coder
   kAdaptive = 3,  // what our prediction leaves, by adaptive rANS
+  kMixing = 4,    // every bit by mixed contexts (docs/mixing-coder.md)
 };
 
 struct RangeHeader {
@@ -36,8 +37,8 @@ struct RangeHeader {
   /// numbers outside of their limits, or lengths past the end.
   static std::optional<RangeHeader> Read(ByteReader* reader);
 
-  /// With kAdaptive the mask is at the head of the payload's stream.
-  bool has_mask_stream() const { return has_gaps && coder != RangeCoder::kAdaptive; }
+  /// Our own coders have the mask in the payload's stream.
+  bool has_mask_stream() const { return has_gaps && coder < RangeCoder::kAdaptive; }
 
   static constexpr std::uint8_t kVersion = 3;
   static constexpr std::uint32_t kMaxBeams = 1'024;

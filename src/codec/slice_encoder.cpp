@@ -7,6 +7,8 @@
 #include <thread>
 #include <utility>
 
+#include "src/codec/effort_control.h"
+
 namespace lidar::codec {
 namespace {
 
@@ -50,7 +52,17 @@ std::optional<SliceEncoder> SliceEncoder::Create(const CloudFormat& format, Rang
 
 SliceEncoder::SliceEncoder(const CloudFormat& format, RangeCoder coder,
                            const IntegerCoder* integers)
-    : format_(format), coder_(coder), encoder_(*format.sensor_model, integers) {}
+    : format_(format),
+      coder_(coder),
+      effort_(coder == RangeCoder::kMixing ? 1 : 0),
+      integers_(integers),
+      encoder_(*format.sensor_model, integers) {}
+
+void SliceEncoder::set_effort(unsigned effort) {
+  if (coder_ != RangeCoder::kAdaptive && coder_ != RangeCoder::kMixing) return;
+  effort_ = std::min(effort, EffortControl::kHighest);
+  coder_ = effort_ > 0 ? RangeCoder::kMixing : RangeCoder::kAdaptive;
+}
 
 std::string SliceEncoder::Mode() const {
   switch (coder_) {
@@ -58,6 +70,8 @@ std::string SliceEncoder::Mode() const {
       return "range-draco";
     case RangeCoder::kResidual:
       return "range-residual";
+    case RangeCoder::kMixing:
+      return "range-mixing" + std::to_string(effort_);
     case RangeCoder::kAdaptive:
       break;
   }
@@ -101,6 +115,7 @@ SliceResult SliceEncoder::Encode(const SliceSettings& settings, EncodedSlice* sl
   slice->bytes.clear();
   RangeSettings range;
   range.coder = coder_;
+  range.effort = effort_;
   range.intensity =
       IntensityScale(full_scale_, image_.intensity.empty() ? 0 : settings.intensity_bits);
   range.kept_beams = kept_beams_;
@@ -118,7 +133,7 @@ SliceResult SliceEncoder::Encode(const SliceSettings& settings, EncodedSlice* sl
 
 bool SliceEncoder::EncodeBlocks(const RangeSettings& settings, std::uint32_t count,
                                 std::vector<std::uint8_t>* out) {
-  while (blocks_.size() < count) blocks_.emplace_back(encoder_);
+  while (blocks_.size() < count) blocks_.emplace_back(*format_.sensor_model, integers_);
   const auto encode = [&](std::uint32_t i) {
     Block& block = blocks_[i];
     const std::uint32_t first = image_.columns * i / count;

@@ -49,8 +49,11 @@ class SliceEncoder {
   /// Resolution of the loaded ranges [mm]: their CommonUnit().
   std::uint32_t range_unit_mm() const { return unit_mm_; }
   bool has_intensity() const { return has_intensity_; }
-  /// Names the coder for statistics and predictors: "range-adaptive".
+  /// Names the coder for statistics and predictors: "range-adaptive", "range-mixing2".
   std::string Mode() const;
+  /// How hard the own coder tries: 0 is RangeCoder::kAdaptive, 1 to EffortControl::kHighest are
+  /// kMixing, each slower and smaller than the one below. Without effect for other coders.
+  void set_effort(unsigned effort);
 
   /// Forgets all but `kept` of the loaded beams.
   void Thin(const std::vector<bool>& kept);
@@ -69,7 +72,7 @@ class SliceEncoder {
  private:
   /// A sector that a thread of its own encodes.
   struct Block {
-    explicit Block(const RangeEncoder& other) : encoder(other) {}
+    Block(const SensorModel& model, const IntegerCoder* integers) : encoder(model, integers) {}
     RangeEncoder encoder;
     RangeImage image;
     std::vector<std::uint8_t> bytes;
@@ -81,6 +84,8 @@ class SliceEncoder {
 
   CloudFormat format_;
   RangeCoder coder_;
+  unsigned effort_ = 0;
+  const IntegerCoder* integers_;
   RangeEncoder encoder_;
   std::vector<Block> blocks_;
   RangeImage image_;

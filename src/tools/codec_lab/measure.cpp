@@ -8,12 +8,11 @@
 
 namespace lidar::tools {
 
-const CodingMode& DefaultRangeMode() {
-  for (const CodingMode& mode : AllModes())
-    if (mode.geometry == Geometry::kRange && mode.coder == codec::RangeCoder::kAdaptive)
-      return mode;
-  throw std::logic_error("the codec's default has no name");
+const CodingMode& ModeOfEffort(unsigned effort) {
+  return ModeNamed(effort == 0 ? "range-adaptive" : "range-mixing" + std::to_string(effort));
 }
+
+const CodingMode& DefaultRangeMode() { return ModeOfEffort(0); }
 
 const CodingMode& DefaultMode(const ScanSet& set) {
   return set.organised() ? DefaultRangeMode() : ModeNamed("xyz-kd6");

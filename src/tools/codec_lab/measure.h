@@ -27,6 +27,8 @@ struct MeasuredSetting {
 std::optional<Measurement> Measure(const ScanSet& set, const CodingMode& mode,
                                    const MeasuredSetting& setting);
 
+/// The own coder at an effort, which is 0 by default.
+const CodingMode& ModeOfEffort(unsigned effort);
 const CodingMode& DefaultRangeMode();
 /// What dracoenc takes by default: range geometry for organised sources, else xyz.
 const CodingMode& DefaultMode(const ScanSet& set);

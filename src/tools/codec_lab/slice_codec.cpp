@@ -23,6 +23,9 @@ double Distance(const float* a, const float* b) { return std::sqrt(SquaredDistan
 const std::vector<CodingMode>& AllModes() {
   static const std::vector<CodingMode> kModes = {
       {"range-adaptive", Geometry::kRange, codec::RangeCoder::kAdaptive, 7},
+      {"range-mixing1", Geometry::kRange, codec::RangeCoder::kMixing, 7, 1},
+      {"range-mixing2", Geometry::kRange, codec::RangeCoder::kMixing, 7, 2},
+      {"range-mixing3", Geometry::kRange, codec::RangeCoder::kMixing, 7, 3},
       {"range-residual", Geometry::kRange, codec::RangeCoder::kResidual, 7},
       {"range-draco", Geometry::kRange, codec::RangeCoder::kDraco, 7},
       {"xyz-sequential", Geometry::kXyz, codec::RangeCoder::kDraco, 0},
@@ -107,6 +110,7 @@ draco::SliceEncoder& SliceCodec::EncoderFor(const CodingMode& mode) {
   if (found == coders_.end()) {
     auto encoder = draco::SliceEncoder::Create(format_, mode.geometry, mode.coder);
     if (!encoder) throw std::runtime_error(mode.name + " needs a sensor's ranges");
+    encoder->set_effort(mode.effort);
     found = coders_.emplace(mode.name, Coder{*std::move(encoder)}).first;
   }
   Coder& coder = found->second;
@@ -123,10 +127,9 @@ rate::SliceFeatures SliceCodec::Features(const CodingMode& mode) {
   return features;
 }
 
-rate::ErrorBound SliceCodec::Bound(const CodingMode& mode) const {
+rate::ErrorBound SliceCodec::Bound(const CodingMode& mode) {
   if (mode.geometry == Geometry::kXyz) return rate::ErrorBound::Xyz();
-  if (!geometry_) throw std::runtime_error(mode.name + " needs a sensor's ranges");
-  return rate::ErrorBound::Range(geometry_->model.range_unit_mm);
+  return rate::ErrorBound::Range(EncoderFor(mode).range_unit_mm());
 }
 
 /// Takes the coder that the mode names; dracoenc would take the smaller one.

@@ -21,6 +21,7 @@ struct CodingMode {
   Geometry geometry = Geometry::kRange;
   codec::RangeCoder coder = codec::RangeCoder::kAdaptive;  // of range geometry
   unsigned level = 7;                                      // Draco's, of xyz geometry
+  unsigned effort = 0;                                     // kMixing\'s
 };
 const std::vector<CodingMode>& AllModes();
 /// Throws std::runtime_error for a name that is none.
@@ -41,7 +42,7 @@ class SliceCodec {
   std::size_t returns() const { return returns_; }
   /// Only the parts that the slice itself knows: returns, extent, mode.
   rate::SliceFeatures Features(const CodingMode& mode);
-  rate::ErrorBound Bound(const CodingMode& mode) const;
+  rate::ErrorBound Bound(const CodingMode& mode);
 
   /// None where the slice is empty or the codec refuses the step. `keep_fraction` thins beams, or
   /// points of a cloud without order.

@@ -11,8 +11,8 @@
 namespace lidar::tools {
 namespace {
 
-rate::ControllerParameters Parameters(const SliceCodec& codec, const TrackOptions& o) {
-  const rate::ErrorBound bound = codec.Bound(*o.mode);
+rate::ControllerParameters Parameters(const TrackOptions& o, SliceCodec* codec) {
+  const rate::ErrorBound bound = codec->Bound(*o.mode);
   rate::ControllerParameters parameters;
   parameters.limits.finest_step_m = bound.FinestStep();
   parameters.limits.coarsest_step_m = bound.CoarsestStep(o.max_error_m);
@@ -117,7 +117,7 @@ std::vector<double> ReadTargets(const std::string& path, double scans_per_second
 rate::RateBounds MeasureBounds(const ScanSet& set, const TrackOptions& o, std::size_t scan) {
   SliceCodec codec;
   codec.Load(set.scans[scan], {});
-  const rate::SettingLimits limits = Parameters(codec, o).limits;
+  const rate::SettingLimits limits = Parameters(o, &codec).limits;
   const auto bitrate = [&](double step_m, unsigned bits) {
     double sum = 0;
     for (std::uint32_t i = 0; i < o.slices; ++i) {
@@ -152,7 +152,7 @@ std::vector<TrackedScan> Track(const ScanSet& set, const std::vector<double>& ta
                                const TrackOptions& o, std::unique_ptr<rate::SizeModel> model) {
   SliceCodec codec;
   codec.Load(set.scans.front(), {});
-  rate::RateController controller(Parameters(codec, o), std::move(model));
+  rate::RateController controller(Parameters(o, &codec), std::move(model));
   Player player{set, o, controller, std::move(codec)};
   std::vector<TrackedScan> tracked(targets.size());
   for (std::size_t i = 0; i < targets.size(); ++i) {

@@ -4,6 +4,7 @@
 #include <cstdio>
 #include <memory>
 
+#include "src/codec/effort_control.h"
 #include "src/tools/codec_lab/measure.h"
 #include "src/tools/codec_lab/plot.h"
 #include "src/tools/codec_lab/scan_source.h"
@@ -16,7 +17,9 @@ struct Options {
   std::vector<std::string> sources;
   SourceOptions source;
   std::vector<std::string> modes = {DefaultRangeMode().name};
+  std::vector<unsigned> efforts;  // not empty: in place of `modes`
   std::vector<std::uint32_t> slices = {1, 8};
+  unsigned intensity_bits = 0;
   std::vector<double> errors = {0.002, 0.003, 0.005, 0.007, 0.01, 0.015,
                                 0.02,  0.03,  0.05,  0.07,  0.1,  0.2};
   std::string csv;
@@ -39,15 +42,16 @@ Curve PaperCurve(const ScanSet& set, const std::string& mode, const char* name) 
 }
 
 Curve OurCurve(const ScanSet& set, const std::string& name, std::uint32_t slices,
-               const std::vector<double>& errors) {
+               const Options& o) {
   const CodingMode& mode = ModeNamed(name);
   Curve curve{name + (slices == 1 ? ", whole scans" : Format(", %u slices", slices)), {}};
   SliceCodec codec;
   codec.Load(set.scans.front(), {});
-  for (const double error : errors) {
+  for (const double error : o.errors) {
     const double step = codec.Bound(mode).CoarsestStep(error);
     if (!curve.points.empty() && curve.points.back().step_m >= step) continue;
-    if (const auto m = Measure(set, mode, {step, 0, 0, slices})) curve.points.push_back(*m);
+    if (const auto m = Measure(set, mode, {step, 0, o.intensity_bits, slices}))
+      curve.points.push_back(*m);
   }
   return curve;
 }
@@ -55,12 +59,14 @@ Curve OurCurve(const ScanSet& set, const std::string& name, std::uint32_t slices
 std::vector<Curve> Evaluate(const ScanSet& set, const Options& o, CsvFile* csv) {
   std::vector<Curve> curves = {PaperCurve(set, "xyz-sequential", "paper: automatic bits, level 0"),
                                PaperCurve(set, "xyz-kd6", "paper: automatic bits, level 7")};
-  for (const std::string& mode : o.modes) {
+  std::vector<std::string> modes = o.efforts.empty() ? o.modes : std::vector<std::string>{};
+  for (const unsigned effort : o.efforts) modes.push_back(ModeOfEffort(effort).name);
+  for (const std::string& mode : modes) {
     if (ModeNamed(mode).geometry == Geometry::kRange && !set.organised()) continue;
-    for (const std::uint32_t slices : o.slices)
-      curves.push_back(OurCurve(set, mode, slices, o.errors));
+    for (const std::uint32_t slices : o.slices) curves.push_back(OurCurve(set, mode, slices, o));
   }
-  std::printf("%s: %zu scans, geometry only\n", set.name.c_str(), set.scans.size());
+  std::printf("%s: %zu scans, intensity of %u bits beside ranges\n", set.name.c_str(),
+              set.scans.size(), o.intensity_bits);
   std::printf("  %-32s %9s %9s %9s %9s %9s %9s\n", "", "step", "q", "mean", "max", "bits per",
               "Mbit/s");
   std::printf("  %-32s %9s %9s %9s %9s %9s\n", "", "[mm]", "", "[mm]", "[mm]", "return");
@@ -122,6 +128,11 @@ void AddRateDistortionCommand(CLI::App* app) {
   command->option_defaults()->always_capture_default();
   command->add_option("SOURCE", o->sources, kSourceHelp)->required();
   command->add_option("--modes", o->modes, "Coding modes, comma-separated")->delimiter(',');
+  command->add_option("--effort", o->efforts, "Efforts of the own coder, in place of modes")
+      ->delimiter(',')
+      ->check(CLI::Range(0U, codec::EffortControl::kHighest));
+  command->add_option("--intensity-bits", o->intensity_bits, "0: geometry only")
+      ->check(CLI::Range(0U, codec::IntensityScale::kMaxBits));
   command->add_option("--slices", o->slices, "Slices per scan, comma-separated")
       ->delimiter(',')
       ->check(CLI::Range(1U, 64U));
