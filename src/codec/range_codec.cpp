@@ -17,9 +17,10 @@ bool RangeEncoder::Encode(const RangeImage& image, const RangeSettings& settings
   }
   mask_bytes_.clear();
   payload_.clear();
-  if (!EncodePayload(image, settings)) return false;
+  const auto coder = EncodePayload(image, settings);
+  if (!coder) return false;
   RangeHeader header;
-  header.coder = settings.coder;
+  header.coder = *coder;
   header.beams = image.beams;
   header.first_column = image.first_column;
   header.columns = image.columns;
@@ -35,15 +36,22 @@ bool RangeEncoder::Encode(const RangeImage& image, const RangeSettings& settings
   return true;
 }
 
-bool RangeEncoder::EncodePayload(const RangeImage& image, const RangeSettings& settings) {
-  if (settings.coder == RangeCoder::kMixing) {
+/// Gives the coder that was taken; none where it failed.
+std::optional<RangeCoder> RangeEncoder::EncodePayload(const RangeImage& image,
+                                                      const RangeSettings& settings) {
+  if (settings.coder == RangeCoder::kMixing &&
+      mixing_.Encode(image, {settings.grid, settings.intensity, settings.effort}, &payload_)) {
     has_gaps_ = std::find(image.ranges.begin(), image.ranges.end(), 0U) != image.ranges.end();
-    return mixing_.Encode(image, {settings.grid, settings.intensity, settings.effort}, &payload_);
+    return settings.coder;
   }
   CollectReturns(image, settings);
-  if (settings.coder != RangeCoder::kAdaptive) return EncodeIntegers(settings, image.columns);
+  if (settings.coder < RangeCoder::kAdaptive) {
+    if (!EncodeIntegers(settings, image.columns)) return std::nullopt;
+    return settings.coder;
+  }
+  // It counts bins that are too many for the mixing coder.
   EncodeAdaptively(image.columns);
-  return true;
+  return RangeCoder::kAdaptive;
 }
 
 void RangeEncoder::CollectReturns(const RangeImage& image, const RangeSettings& settings) {

@@ -2,6 +2,7 @@
 // Range geometry: slices of an organised scan, coded as range integers.
 #pragma once
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "src/base/byte_reader.h"
@@ -43,7 +44,7 @@ class RangeEncoder {
   std::size_t returns() const { return lists_.values.size(); }
   void EncodeAdaptively(std::uint32_t columns);
   bool EncodeIntegers(const RangeSettings& settings, std::uint32_t columns);
-  bool EncodePayload(const RangeImage& image, const RangeSettings& settings);
+  std::optional<RangeCoder> EncodePayload(const RangeImage& image, const RangeSettings& settings);
 
   AzimuthAlignment alignment_;
   const IntegerCoder* integers_;
