@@ -33,12 +33,20 @@ const Capture& CaptureOf(std::int64_t source, std::int64_t slices) {
   return captures[{source, slices}] = *std::move(capture);
 }
 
+// The argument `coder` is a codec::RangeCoder, or this and an effort of kMixing.
+constexpr std::int64_t kEffort = 10;
+
+codec::RangeCoder CoderOf(std::int64_t coder) {
+  return coder > kEffort ? codec::RangeCoder::kMixing : static_cast<codec::RangeCoder>(coder);
+}
+
 /// Range arguments: source, slices a scan, coder, error [mm], intensity bits.
 struct Setup {
   explicit Setup(const benchmark::State& state, Geometry geometry)
       : capture(CaptureOf(state.range(0), state.range(1))),
-        encoder(*draco::SliceEncoder::Create(capture.format, geometry,
-                                             static_cast<codec::RangeCoder>(state.range(2)))) {
+        encoder(*draco::SliceEncoder::Create(capture.format, geometry, CoderOf(state.range(2)))) {
+    if (state.range(2) > kEffort)
+      encoder.set_effort(static_cast<unsigned>(state.range(2) - kEffort));
     settings.level = static_cast<unsigned>(state.range(2));
     settings.max_error_m = 1e-3 * static_cast<double>(state.range(3));
     settings.intensity_bits = static_cast<unsigned>(state.range(4));
@@ -117,12 +125,13 @@ void Decode(benchmark::State& state, Geometry geometry) {
 
 void RangeCases(benchmark::internal::Benchmark* b) {
   b->ArgNames({"source", "slices", "coder", "error_mm", "intensity"});
-  for (const int coder : {1, 2, 3})
+  for (const int coder : {1, 2, 3, 11, 12, 13})
     for (const int source : {0, 1})
       for (const int slices : {1, 8}) b->Args({source, slices, coder, 20, 0});
   for (const int source : {0, 1})
     for (const int slices : {1, 8})
       for (const int bits : {5, 8}) b->Args({source, slices, 3, 20, bits});
+  for (const int coder : {11, 12, 13}) b->Args({1, 8, coder, 20, 5});
   for (const int error : {1, 5, 10, 50}) b->Args({1, 8, 3, error, 0});
   for (const int source : {2, 3}) b->Args({source, 8, 3, 20, 0});
   b->Unit(benchmark::kMillisecond);

@@ -60,7 +60,8 @@ struct MixingEncoder::State : MixingCoderState {
     slice.bins.resize(image.size());
     const std::uint32_t most = static_cast<std::uint32_t>(mixing::kMaxBins);
     for (std::size_t i = 0; i < image.size(); ++i) {
-      const std::uint32_t bin = settings.grid.BinOf(image.ranges[i]);
+      const std::uint32_t bin =
+          settings.grid.BinOf(std::min(image.ranges[i], RangeGrid::kMaxRangeMm));
       if (bin >= most) return false;
       const bool is_gap = image.ranges[i] == 0;
       slice.has_gaps = slice.has_gaps || is_gap;
@@ -131,12 +132,12 @@ bool MixingDecoder::Decode(ByteView payload, const RangeGrid& grid, unsigned int
   mixing::BinaryDecoder decoder(payload.Sub(1));
   if (!s.Code(effort, &decoder) || !decoder.AtEnd()) return false;
   image->ranges.resize(image->size());
+  const auto last_bin = static_cast<std::int32_t>(grid.BinOf(RangeGrid::kMaxRangeMm));
   for (std::size_t i = 0; i < image->size(); ++i) {
     const std::int32_t bin = s.slice.bins[i];
     image->ranges[i] = bin < 0 ? 0 : grid.RangeOf(static_cast<std::uint32_t>(bin));
     // A range of 0 would be none.
-    if (bin >= 0 && (image->ranges[i] == 0 || image->ranges[i] > RangeGrid::kMaxRangeMm))
-      return false;
+    if (bin > last_bin || (bin >= 0 && image->ranges[i] == 0)) return false;
   }
   image->intensity.assign(s.slice.levels.begin(), s.slice.levels.end());
   return true;
