@@ -80,12 +80,13 @@ std::vector<rate::Sample> TakeSamples(const std::vector<ScanSet>& sets,
     const ScanSet& set = sets[i / options.samples];
     progress(static_cast<double>(i) / static_cast<double>(all));
     if (!LoadRandomSlice(set, OneOf(options.slices, &random), &random, &codec)) continue;
+    // All modes get the same settings, so the samples of a mode do not depend on the others.
+    rate::Settings settings;
+    settings.step_m = std::exp2(log_step(random));
+    settings.intensity_bits = static_cast<unsigned>(random() % (options.intensity_bits + 1));
     for (const std::string& name : options.modes) {
       const CodingMode& mode = ModeNamed(name);
       if (!Suits(mode, set)) continue;
-      rate::Settings settings;
-      settings.step_m = std::exp2(log_step(random));
-      settings.intensity_bits = static_cast<unsigned>(random() % (options.intensity_bits + 1));
       settings.level = mode.level;
       if (auto sample = Encode(mode, settings, &codec)) {
         sample->source = static_cast<unsigned>(i / options.samples);

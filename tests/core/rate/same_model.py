@@ -1,8 +1,9 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""usage: same_model.py SCRIPT LIDAR_TRAIN CAPTURES COMMITTED
+"""usage: same_model.py SCRIPT LIDAR_TRAIN CAPTURES COMMITTED [MODES]
 
 The committed rate model is what the script makes, but for what another machine rounds otherwise.
+MODES, separated by commas: of these modes alone, which is faster.
 """
 import json
 import subprocess
@@ -21,10 +22,15 @@ def numbers(node, path=""):
 
 
 def main():
-    script, train, captures, committed = sys.argv[1:]
-    made = dict(numbers(json.loads(subprocess.check_output([script, train, captures]))))
+    script, train, captures, committed = sys.argv[1:5]
+    modes = sys.argv[5:]
+    made = json.loads(subprocess.check_output([script, train, captures, *modes]))
     with open(committed, encoding="utf-8") as file:
-        kept = dict(numbers(json.load(file)))
+        kept = json.load(file)
+    if modes:
+        made = made["adaptive"]["modes"]
+        kept = {mode: kept["adaptive"]["modes"].get(mode) for mode in made}
+    made, kept = dict(numbers(made)), dict(numbers(kept))
     different = [path for path in made.keys() ^ kept.keys()]
     for path in made.keys() & kept.keys():
         a, b = made[path], kept[path]
