@@ -15,6 +15,6 @@ options=(--scans 5 --samples 60 --slices "1,2,4,8")
 "$train" "${sources[@]}" "${options[@]}" --model adaptive --intensity-bits 8 -o "$folder/adaptive" \
   ${modes:+--modes "$modes"} \
   --description "lidartestsrc (street, tunnel, field) and captures of the Ouster SDK (BSD-3-Clause)" >&2
-[ -z "$modes" ] || exec cat "$folder/adaptive"
+if [ -n "$modes" ]; then cat "$folder/adaptive"; exit; fi
 "$train" "${sources[@]}" "${options[@]}" --model paper --intensity-bits 5 -o "$folder/paper" >&2
 jq -S -s '.[0] * {paper: .[1].paper}' "$folder/adaptive" "$folder/paper"
