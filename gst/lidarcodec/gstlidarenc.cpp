@@ -3,7 +3,8 @@
  * SECTION:element-lidarenc
  *
  * Encodes the scans of a spinning sensor slice by slice, to a bitrate and within an error: ranges,
- * predicted from neighbouring beams and coded by adaptive rANS (docs/wire-format.md).
+ * predicted from neighbouring beams and coded as small as the machine has time for
+ * (docs/wire-format.md).
  *
  * |[
  * gst-launch-1.0 lidartestsrc num-buffers=80 ! lidarenc max-error=0.02 ! lidardec ! fakesink
@@ -11,11 +12,14 @@
  */
 #include "gst/lidarcodec/gstlidarenc.h"
 
+#include <mutex>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "gst/common/cloud_info.h"
+#include "gst/common/properties.h"
+#include "src/codec/effort_control.h"
 #include "src/codec/slice_decoder.h"
 #include "src/codec/slice_encoder.h"
 #include "src/rate/error_bound.h"
@@ -24,31 +28,105 @@ namespace {
 
 using lidar::codec::SliceResult;
 
+constexpr gint kAuto = -1;
+
+GType EffortType() {
+  static const GEnumValue values[] = {
+      {kAuto, "The highest that codes a slice in a quarter of its sweep", "auto"},
+      {0, "Fastest: adaptive rANS", "0"},
+      {1, "Mixed contexts, few", "1"},
+      {2, "Mixed contexts, all", "2"},
+      {3, "Smallest: the same, and a search where it wins", "3"},
+      {0, nullptr, nullptr}};
+  static const GType type = [] {
+    const GType registered = g_enum_register_static("GstLidarEncEffort", values);
+    gst_type_mark_as_plugin_api(registered, static_cast<GstPluginAPIFlags>(0));
+    return registered;
+  }();
+  return type;
+}
+
+struct Settings {
+  gint effort = kAuto;
+};
+
 /// Belongs to the streaming thread.
 struct Coder {
   lidar::codec::CloudFormat format;
+  double scans_per_second = 10;
   std::optional<lidar::codec::SliceEncoder> encoder;
   std::optional<lidar::codec::SliceDecoder> decoder;  // for error-check
   bool with_intensity = false;
   std::string mode;
   lidar::codec::EncodedSlice slice;
+
+  lidar::codec::EffortControl effort;
+  bool automatic = false;   // the loaded slice is coded at that effort
+  lidar::Duration sweep{};  // of the loaded slice
+  lidar::Duration spent{};  // on it, with all tries
 };
+
+struct State {
+  std::mutex mutex;  // guards settings
+  Settings settings;
+  Coder coder;
+};
+
+const std::array<lidar::gst::Property<Settings>, 1> kProperties = {{
+    {"effort", "How much computing slices are worth",
+     lidar::gst::EnumField<Settings>{&Settings::effort, EffortType}, 0, 0,
+     GST_PARAM_MUTABLE_PLAYING},
+}};
 
 }  // namespace
 
 struct _GstLidarEnc {
   GstLidarEncoder parent;
-  Coder* coder;
+  State* state;
 };
 
 G_DEFINE_TYPE(GstLidarEnc, gst_lidar_enc, GST_TYPE_LIDAR_ENCODER)
 GST_ELEMENT_REGISTER_DEFINE(lidarenc, "lidarenc", GST_RANK_NONE, GST_TYPE_LIDAR_ENC)
 
+namespace {
+
+Coder& CoderOf(GstLidarEncoder* base) { return GST_LIDAR_ENC(base)->state->coder; }
+
+gint WantedEffort(GstLidarEncoder* base) {
+  State& state = *GST_LIDAR_ENC(base)->state;
+  std::lock_guard lock(state.mutex);
+  return state.settings.effort;
+}
+
+/// How long the sensor took for `columns`.
+lidar::Duration SweepOf(const Coder& coder, guint columns) {
+  return lidar::FromSeconds(columns /
+                            (coder.scans_per_second * coder.format.sensor_model->columns_per_scan));
+}
+
+/// Learns from the slice before, and chooses for the next one.
+void ChooseEffort(GstLidarEncoder* base, guint columns) {
+  Coder& coder = CoderOf(base);
+  if (coder.automatic && coder.spent > lidar::Duration{0})
+    coder.effort.OnSlice(coder.sweep, coder.encoder->returns(), coder.spent);
+  coder.sweep = SweepOf(coder, columns);
+  coder.spent = {};
+  const gint wanted = WantedEffort(base);
+  coder.automatic = wanted == kAuto;
+  coder.encoder->set_effort(coder.automatic ? coder.effort.effort() : static_cast<guint>(wanted));
+}
+
+}  // namespace
+
 static gboolean gst_lidar_enc_set_format(GstLidarEncoder* base, const GstLidarCloudFormat* cloud,
                                          gboolean with_intensity, GstLidarCodedFormat* coded) {
-  Coder& coder = *GST_LIDAR_ENC(base)->coder;
+  Coder& coder = CoderOf(base);
   const auto info = lidar::gst::CloudInfo::FromFormat(*cloud);
+  const auto effort = coder.effort;
   coder = {};
+  coder.effort = effort;
+  if (info.framerate_n > 0)
+    coder.scans_per_second = static_cast<double>(info.framerate_n) / info.framerate_d;
   coder.format = {{info.fields, info.point_step}, info.height, info.sensor_model};
   coder.with_intensity = with_intensity != FALSE;
   coder.encoder = lidar::codec::SliceEncoder::Create(coder.format);
@@ -66,7 +144,8 @@ static gboolean gst_lidar_enc_set_format(GstLidarEncoder* base, const GstLidarCl
 
 static void gst_lidar_enc_load(GstLidarEncoder* base, const GstLidarRawSlice* raw,
                                GstLidarLoadedSlice* loaded) {
-  Coder& coder = *GST_LIDAR_ENC(base)->coder;
+  Coder& coder = CoderOf(base);
+  ChooseEffort(base, raw->width);
   coder.encoder->Load({raw->data, raw->size}, raw->first_column, coder.with_intensity);
   coder.mode = coder.encoder->Mode();
   loaded->returns = static_cast<guint>(coder.encoder->returns());
@@ -78,22 +157,23 @@ static void gst_lidar_enc_load(GstLidarEncoder* base, const GstLidarRawSlice* ra
 
 static void gst_lidar_enc_get_steps(GstLidarEncoder* base, gdouble max_error,
                                     GstLidarStepRange* steps) {
-  const auto bound =
-      lidar::rate::ErrorBound::Range(GST_LIDAR_ENC(base)->coder->encoder->range_unit_mm());
+  const auto bound = lidar::rate::ErrorBound::Range(CoderOf(base).encoder->range_unit_mm());
   *steps = {bound.FinestStep(), bound.CoarsestStep(max_error), bound.step_unit()};
 }
 
 static void gst_lidar_enc_thin(GstLidarEncoder* base, const guint8* kept, guint rows) {
-  GST_LIDAR_ENC(base)->coder->encoder->Thin(std::vector<bool>(kept, kept + rows));
+  CoderOf(base).encoder->Thin(std::vector<bool>(kept, kept + rows));
 }
 
 static GstLidarEncodeResult gst_lidar_enc_encode(GstLidarEncoder* base,
                                                  const GstLidarEncodeSettings* settings,
                                                  GByteArray* bytes, GstLidarCodedSlice* coded) {
-  Coder& coder = *GST_LIDAR_ENC(base)->coder;
+  Coder& coder = CoderOf(base);
   coder.encoder->set_threads(settings->threads);
+  const gint64 start_us = g_get_monotonic_time();
   const auto result = coder.encoder->Encode(
       {settings->max_error, settings->step, settings->intensity_bits}, &coder.slice);
+  coder.spent += std::chrono::microseconds(g_get_monotonic_time() - start_us + 1);
   if (result == SliceResult::kEmpty) return GST_LIDAR_ENCODE_EMPTY;
   if (result == SliceResult::kOutOfReach) return GST_LIDAR_ENCODE_OUT_OF_REACH;
   const lidar::codec::EncodedSlice& slice = coder.slice;
@@ -104,7 +184,7 @@ static GstLidarEncodeResult gst_lidar_enc_encode(GstLidarEncoder* base,
 
 static gboolean gst_lidar_enc_decode(GstLidarEncoder* base, const guint8* data, gsize size,
                                      GArray* points, GstLidarPointOrder* order) {
-  Coder& coder = *GST_LIDAR_ENC(base)->coder;
+  Coder& coder = CoderOf(base);
   if (!coder.decoder) {
     auto format = coder.format;
     format.layout = {*lidar::PointFields::Parse("x:F32:0,y:F32:4,z:F32:8,range:U32:12"),
@@ -119,10 +199,10 @@ static gboolean gst_lidar_enc_decode(GstLidarEncoder* base, const guint8* data, 
   return TRUE;
 }
 
-static void gst_lidar_enc_reset(GstLidarEncoder* base) { *GST_LIDAR_ENC(base)->coder = {}; }
+static void gst_lidar_enc_reset(GstLidarEncoder* base) { CoderOf(base) = {}; }
 
 static void gst_lidar_enc_finalize(GObject* object) {
-  delete GST_LIDAR_ENC(object)->coder;
+  delete GST_LIDAR_ENC(object)->state;
   G_OBJECT_CLASS(gst_lidar_enc_parent_class)->finalize(object);
 }
 
@@ -133,10 +213,12 @@ static GstStaticPadTemplate src_template = GST_STATIC_PAD_TEMPLATE(
     GST_STATIC_CAPS(GST_LIDAR_SLICE_MEDIA_TYPE
                     ", geometry = (string) range, alignment = (string) slice"));
 
-static void gst_lidar_enc_init(GstLidarEnc* self) { self->coder = new Coder; }
+static void gst_lidar_enc_init(GstLidarEnc* self) { self->state = new State; }
 
 static void gst_lidar_enc_class_init(GstLidarEncClass* klass) {
-  G_OBJECT_CLASS(klass)->finalize = gst_lidar_enc_finalize;
+  auto* object = G_OBJECT_CLASS(klass);
+  object->finalize = gst_lidar_enc_finalize;
+  lidar::gst::ServeProperties<GstLidarEnc, kProperties>(object);
   auto* element = GST_ELEMENT_CLASS(klass);
   gst_element_class_add_static_pad_template(element, &sink_template);
   gst_element_class_add_static_pad_template(element, &src_template);

@@ -43,6 +43,7 @@ LoopResult RateLoop::Encode(const SlicePlace& place, const LoopSettings& setting
   controller_.SetTarget(settings.fixed_step_m > 0 ? std::nullopt : target);
   const Decision decision = controller_.NextSlice(FeaturesOf(place, loaded));
   LoopResult result;
+  result.mode = loaded.mode;
   result.skipped = decision.skip;
   result.keep_fraction = decision.keep_fraction;
   result.max_error_m = settings.max_error_m;

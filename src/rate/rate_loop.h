@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <string>
 
 #include "src/rate/rate_controller.h"
 #include "src/rate/slice_coder.h"
@@ -27,6 +28,7 @@ struct SlicePlace {
 
 struct LoopResult {
   bool skipped = false;  // by the controller, to save bitrate
+  std::string mode;      // of coding
   CodingResult result = CodingResult::kEmpty;
   CodedSlice slice;  // where it was encoded
   unsigned intensity_bits = 0;

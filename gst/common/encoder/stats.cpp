@@ -17,13 +17,14 @@ guint64 MeanEncodeTime(const Counters& c) { return c.slices > 0 ? c.encode_time 
 gdouble MeanError(const Counters& c) {
   return c.points_checked > 0 ? c.sum_of_errors_m / static_cast<gdouble>(c.points_checked) : 0;
 }
+std::string LastMode(const Counters& c) { return c.last.mode; }
 gdouble LastStep(const Counters& c) { return c.last.slice.step_m; }
 gdouble LastErrorBound(const Counters& c) { return c.last.slice.error_m; }
 guint LastIntensityBits(const Counters& c) { return c.last.intensity_bits; }
 gdouble LastKeepFraction(const Counters& c) { return c.last.keep_fraction; }
 guint Bitrate(const Counters& c) { return static_cast<guint>(c.bitrate); }
 
-const std::array<Stat<Counters>, 23> kStats = {{
+const std::array<Stat<Counters>, 24> kStats = {{
     {"scans-in", &Counters::scans_in},
     {"scans-encoded", &Counters::scans_encoded},
     {"scans-skipped", &Counters::scans_skipped},
@@ -34,6 +35,7 @@ const std::array<Stat<Counters>, 23> kStats = {{
     {"bytes", &Counters::bytes},
     {"returns", &Counters::returns},
     {"bits-per-return", BitsPerReturn},
+    {"mode", LastMode},
     {"step", LastStep},
     {"error-bound", LastErrorBound},
     {"intensity-bits", LastIntensityBits},
