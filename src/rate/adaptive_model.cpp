@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "src/rate/paper_model.h"
+
 namespace lidar::rate {
 namespace {
 
@@ -47,17 +49,22 @@ const ModeCoefficients& AdaptiveModel::Mode(const std::string& mode) const {
   return found == coefficients_.modes.end() ? coefficients_.fallback : found->second;
 }
 
+const AdaptiveModel::Learned* AdaptiveModel::LearnedOf(const std::string& mode) const {
+  const bool same_geometry = GeometryOf(mode) == GeometryOf(last_mode_);
+  const auto found = learned_.find(same_geometry ? last_mode_ : mode);
+  return found == learned_.end() ? nullptr : &found->second;
+}
+
 double AdaptiveModel::GeometryLog2(const SliceFeatures& slice, double step_m) const {
   const ModeCoefficients& mode = Mode(slice.mode);
   const double n = N(slice.returns);
   const double fit = mode.GeometryLog2(X(step_m), n);
-  const auto found = learned_.find(slice.mode);
-  if (found == learned_.end()) return fit;
-  const Learned& l = found->second;
-  const auto anchor = l.geometry.Predict(slice.slice_index, slice.slice_count);
+  const Learned* l = LearnedOf(slice.mode);
+  if (l == nullptr) return fit;
+  const auto anchor = l->geometry.Predict(slice.slice_index, slice.slice_count);
   if (!anchor) return fit;
   const double start = mode.GeometryLog2(anchor->x, n);
-  return start + l.slope * (fit - start) + anchor->residual;
+  return start + l->slope * (fit - start) + anchor->residual;
 }
 
 PredictedSize AdaptiveModel::Predict(const SliceFeatures& slice, const Settings& settings) const {
@@ -66,8 +73,8 @@ PredictedSize AdaptiveModel::Predict(const SliceFeatures& slice, const Settings&
   size.geometry_bytes = std::exp2(GeometryLog2(slice, settings.step_m));
   if (settings.intensity_bits == 0) return size;
   double log2 = Mode(slice.mode).IntensityLog2(settings.intensity_bits, N(slice.returns));
-  if (const auto found = learned_.find(slice.mode); found != learned_.end())
-    if (const auto anchor = found->second.intensity.Predict(slice.slice_index, slice.slice_count))
+  if (const Learned* l = LearnedOf(slice.mode))
+    if (const auto anchor = l->intensity.Predict(slice.slice_index, slice.slice_count))
       log2 += anchor->residual;
   size.intensity_bytes = std::exp2(log2);
   return size;
@@ -139,6 +146,9 @@ void AdaptiveModel::OnEncoded(const SliceFeatures& slice, const Settings& settin
           ? std::clamp(static_cast<double>(encoded.intensity_size->bytes()), 0.0, bytes - 1)
           : bytes * predicted.intensity_bytes / predicted.total();
   double observed = std::log2(bytes - intensity);
+  if (const Learned* known = LearnedOf(slice.mode); known != nullptr && last_mode_ != slice.mode)
+    learned_[slice.mode] = Learned(*known);
+  last_mode_ = slice.mode;
   Learned& learned = learned_[slice.mode];
   double kept = 0;  // log2 of what thinning left
   if (encoded.keep_fraction < 1) {

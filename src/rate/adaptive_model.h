@@ -52,12 +52,16 @@ class AdaptiveModel : public SizeModel {
     std::optional<std::uint64_t> last_slice;  // scan and sector, to know a re-encoding
   };
   const ModeCoefficients& Mode(const std::string& mode) const;
+  /// What was learned of a mode, or of the last one where the mode has just changed within a
+  /// geometry: the scene is the same. Null where nothing was.
+  const Learned* LearnedOf(const std::string& mode) const;
   double GeometryLog2(const SliceFeatures& slice, double step_m) const;
   void LearnGeometry(Learned* learned, const SliceFeatures& slice, double x, double observed);
   void LearnIntensity(Learned* learned, const SliceFeatures& slice, double bits, double observed);
 
   AdaptiveCoefficients coefficients_;
   std::map<std::string, Learned> learned_;
+  std::string last_mode_;
 };
 
 }  // namespace lidar::rate

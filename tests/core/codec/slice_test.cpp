@@ -207,7 +207,7 @@ TEST_P(HostileSlices, OfFieldsWithOddTypesStayInsideTheirBuffer) {
   SliceDecoder decoder(test::OddFormat(), test::kHostileMaxPoints);
   test::ExpectOddFieldsToStayZero(stream_, &decoder);
 }
-INSTANTIATE_TEST_SUITE_P(All, HostileSlices, ::testing::Range(0U, EffortControl::kHighest + 1));
+INSTANTIATE_TEST_SUITE_P(All, HostileSlices, ::testing::Values(0U, 1U, EffortControl::kHighest));
 
 }  // namespace
 }  // namespace lidar::codec

@@ -52,5 +52,21 @@ TEST(AdaptiveModel, LearnsFromASliceThatIsEncodedAgainAsIfItWereEncodedOnce) {
   EXPECT_NEAR(Bytes(again, Slice(2, 1)) / Bytes(once, Slice(2, 1)), 1, 1e-6);
 }
 
+TEST(AdaptiveModel, KeepsWhatItKnowsOfTheSceneWhereTheModeChangesWithinAGeometry) {
+  AdaptiveModel model(AdaptiveCoefficients{{}, {{11, -0.5, 0, 0}}});
+  SliceFeatures slice = Slice(1, 0);
+  slice.mode = "range-adaptive";
+  const double fit = Bytes(model, slice);
+  const EncodedSize larger{DataSize::Bytes(static_cast<std::int64_t>(2 * fit)), {}, 0.02, 1};
+  model.OnEncoded(slice, kTwoCentimetres, larger);
+  slice.scan_id = 2;
+  slice.mode = "range-mixing2";
+  EXPECT_NEAR(Bytes(model, slice) / fit, 2, 0.1);
+  model.OnEncoded(slice, kTwoCentimetres, larger);
+  EXPECT_NEAR(Bytes(model, slice) / fit, 2, 0.1);
+  slice.mode = "xyz-kd6";
+  EXPECT_NEAR(Bytes(model, slice) / fit, 1, 1e-6);
+}
+
 }  // namespace
 }  // namespace lidar::rate
