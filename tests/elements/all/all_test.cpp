@@ -133,8 +133,8 @@ const std::vector<std::string> kElements = {
     "bitrateadapter", "lidarenc",      "lidardec",        "dracodec",       "dracoenc",
     "ecnudpsink",     "ecnudpsrc",     "lidarodometry",   "lidartestsrc",   "ouster_src",
     "pcdenc",         "plyenc",        "pointcloudparse", "pointcloudview", "rtplidardepay",
-    "rtplidarpay",    "scanassembler", "screamrx",        "screamsink",     "screamsrc",
-    "screamtx"};
+    "rtplidarpay",    "scanassembler", "screamaux",       "screamrx",       "screamsink",
+    "screamsrc",      "screamtx"};
 
 std::vector<std::string> Built() {
   gst_init(nullptr, nullptr);
