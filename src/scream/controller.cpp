@@ -252,6 +252,7 @@ void Controller::LimitWindowAtMaxBitrate() {
 void Controller::UpdateTarget(Time now) {
   const DataRate allowed = WindowTarget(now);
   streams_.Allocate(now, AskedTarget(now, allowed));
+  if (p_.extensions.quick_drain && started_) streams_.LeaveRoomForBacklogs();
   window_target_ = std::clamp(allowed, streams_.min_bitrate(), streams_.max_bitrate());
   pacer_.Update(window_target_, streams_.max_bitrate(),
                 PacingHeadroom(p_, streams_.frame_period(), PacingReserve(now)));
@@ -269,14 +270,6 @@ bool Controller::Stalled(Time now) const {
 
 /// The path gives a sign of life, or did so a moment ago.
 bool Controller::Alive(Time now) const { return outage_.Silence(now) < kLongestGap; }
-
-/// More than a frame in the sender's queue has to leave beside what is made now.
-DataRate Controller::WithoutBacklog(DataRate target) const {
-  const DataSize backlog = streams_.queued();
-  const DataSize frame = target * streams_.frame_period();
-  if (backlog <= frame) return target;
-  return std::max(DataRate(), target - (backlog - frame) / p_.backlog_drain);
-}
 
 /// Where marks work, a frame may make as much queue as goes unmarked.
 Duration Controller::PacingReserve(Time now) const {
@@ -298,10 +291,7 @@ DataRate Controller::WindowTarget(Time now) const {
 /// what they need as long as the path lives.
 DataRate Controller::AskedTarget(Time now, DataRate allowed) const {
   DataRate asked = allowed;
-  if (p_.extensions.gap_recovery && started_ && Stalled(now))
-    asked = asked * p_.stall_share;
-  else if (p_.extensions.quick_drain && started_)
-    asked = WithoutBacklog(asked);
+  if (p_.extensions.gap_recovery && started_ && Stalled(now)) asked = asked * p_.stall_share;
   if (p_.extensions.needed_floor && Alive(now))
     asked = std::max(asked, streams_.needed_bitrate() * p_.needed_margin);
   return asked;

@@ -128,7 +128,6 @@ class Controller {
   bool CongestedLately() const;
   DataRate QueueRate(const Stream& stream) const;
   DataRate AskedTarget(Time now, DataRate allowed) const;
-  DataRate WithoutBacklog(DataRate target) const;
   bool Alive(Time now) const;
   bool Stalled(Time now) const;
   Duration PacingReserve(Time now) const;

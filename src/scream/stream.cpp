@@ -12,6 +12,7 @@ constexpr double kFramePeriodGain = 0.1;
 /// Longer gaps are pauses, not frame periods.
 constexpr Duration kMaxFramePeriod = 2s;
 constexpr Duration kMinFramePeriod = 1ms;
+constexpr Duration kLikelyFramePeriod = 200ms;
 /// The rest of a group that has begun to leave may wait this many times as long.
 constexpr int kBegunStay = 2;
 /// A stream without packets for so long leaves its share to the others.
@@ -44,7 +45,9 @@ bool Stream::OnQueued(Time now, const QueuedPacket& packet) {
 /// Draft section "Media Rate Control": rate_adjust_factor and frame_size_dev, for each frame.
 void Stream::OnFrame(Time now) {
   if (last_frame_ && now - *last_frame_ < kMaxFramePeriod) {
-    const double gain = frame_period_known_ ? kFramePeriodGain : 1;
+    // The first interval tells all, unless it may be a pause.
+    const bool first = !frame_period_known_ && now - *last_frame_ <= kLikelyFramePeriod;
+    const double gain = first ? 1 : kFramePeriodGain;
     const double seconds = Seconds(frame_period_) * (1 - gain) + Seconds(now - *last_frame_) * gain;
     frame_period_known_ = true;
     frame_period_ = std::max(kMinFramePeriod, FromSeconds(seconds));

@@ -115,6 +115,19 @@ void Streams::Allocate(Time now, DataRate total) {
   }
 }
 
+void Streams::LeaveRoomForBacklogs() {
+  for (auto& [id, stream] : streams_) {
+    const DataRate target = stream.target_bitrate();
+    const DataSize frame = target * stream.frame_period();
+    const StreamConfig& c = stream.config();
+    if (stream.queued() <= frame) continue;
+    const DataRate floor =
+        std::min(target, std::max(c.min_bitrate, c.needed_bitrate * p_.needed_margin));
+    stream.set_target_bitrate(
+        std::max(floor, target - (stream.queued() - frame) / p_.backlog_drain));
+  }
+}
+
 DataRate Streams::min_bitrate() const {
   DataRate sum;
   for (const auto& [id, s] : streams_) sum = sum + s.config().min_bitrate;

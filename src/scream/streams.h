@@ -26,6 +26,9 @@ class Streams {
   /// Minimum first, then by priority, none above its maximum; silent streams keep their minimum
   /// (unless all are silent).
   void Allocate(Time now, DataRate total);
+  /// Lowers targets of streams with more than a frame in their queue, so that it leaves within
+  /// `backlog_drain`; not below what they need.
+  void LeaveRoomForBacklogs();
   DataRate min_bitrate() const;
   /// The larger of what each stream needs and its minimum.
   DataRate needed_bitrate() const;

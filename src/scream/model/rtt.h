@@ -13,7 +13,7 @@ class RoundTripTime {
  public:
   /// A source that leaves the window unused sees short round trips that say little about
   /// the ones it would cause: such samples count for less (the draft's discussion). The older the
-  /// average, the more a sample counts.
+  /// average, the more a sample below it counts.
   void Add(Time now, Duration sample, bool source_limited) {
     const Duration bounded = std::max(sample, kMin);
     last_ = bounded;
@@ -22,7 +22,8 @@ class RoundTripTime {
       smoothed_ = bounded;
     } else {
       const double age = Seconds(now - last_time_) / (kMemory * Seconds(*smoothed_));
-      const double gain = std::max(1.0 / (source_limited ? kSlow : kNormal), 1 - std::exp(-age));
+      const double aged = bounded < *smoothed_ ? 1 - std::exp(-age) : 0;
+      const double gain = std::max(1.0 / (source_limited ? kSlow : kNormal), aged);
       *smoothed_ += FromSeconds(gain * Seconds(bounded - *smoothed_));
     }
     last_time_ = now;

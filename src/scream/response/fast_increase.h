@@ -36,7 +36,7 @@ class FastIncrease {
     const double step = l4s_works ? p_.fast_increase_step : p_.fast_increase_step_unmarked;
     // Rounds of seldom frames are long: what is too much stays in the queue for as long.
     const double start =
-        p_.fast_increase_max * std::min(1.0, Seconds(p_.long_frame_period) / Seconds(round));
+        p_.fast_increase_max * std::clamp(Seconds(p_.long_frame_period) / Seconds(round), 0.5, 1.0);
     const double growth = starting_ ? start : std::min(p_.fast_increase_max, step * bold);
     return growth * std::clamp(1 - Seconds(qdelay) / Seconds(p_.fast_increase_qdelay), 0.0, 1.0);
   }
