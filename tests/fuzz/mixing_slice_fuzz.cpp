@@ -2,9 +2,13 @@
 // Payloads of the mixing coder. The first byte chooses the sensor, the bits of the intensity and
 // the grid.
 #include "src/codec/mixing/mixing_codec.h"
+#include "src/codec/mixing/start_states.h"
 #include "tests/fuzz/fuzz.h"
 
 namespace {
+
+// Read before the first input, whose time is limited.
+[[maybe_unused]] const auto& kStart = lidar::codec::mixing::Trained();
 
 lidar::SensorModel Sensor(std::uint32_t beams, std::uint32_t columns) {
   lidar::SensorModel model;

@@ -27,7 +27,7 @@ constexpr std::array<std::uint32_t, 65> kLog = {
 
 /// Between the entries of a table whose steps are 2^shift apart.
 template <class Table>
-std::uint32_t Interpolate(const Table& table, std::uint32_t at, unsigned shift) {
+constexpr std::uint32_t Interpolate(const Table& table, std::uint32_t at, unsigned shift) {
   const std::size_t i = at >> shift;
   const std::uint32_t part = at & ((1U << shift) - 1);
   return table[i] + (((table[i + 1] - table[i] + 0U) * part + (1U << (shift - 1))) >> shift);
@@ -35,7 +35,7 @@ std::uint32_t Interpolate(const Table& table, std::uint32_t at, unsigned shift) 
 
 }  // namespace
 
-Tables::Tables() {
+constexpr Tables::Tables() {
   for (std::uint32_t i = 0; i < chance.size(); ++i)
     chance[i] = static_cast<std::uint16_t>(Interpolate(kLogistic, i, 5));
   std::int32_t x = -kMostLogit;
@@ -51,6 +51,6 @@ Tables::Tables() {
   }
 }
 
-const Tables kTables;
+constexpr Tables kTables;
 
 }  // namespace lidar::codec::mixing

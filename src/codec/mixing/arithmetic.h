@@ -21,14 +21,15 @@ inline std::int32_t ClampLogit(std::int32_t logit) {
   return std::min(std::max(logit, -kMostLogit), kMostLogit);
 }
 
-/// Built from integers only, so that they are the same on every machine.
+/// Built from integers only, so that they are the same on every machine, and by the compiler, so
+/// that they are there before anything runs.
 struct Tables {
-  Tables();
-  std::array<std::uint16_t, 4'096> chance;      // of logit i - 2048
-  std::array<std::int16_t, 4'096> logit;        // of the chance 16 i + 8
-  std::array<std::uint16_t, 256> log_mantissa;  // 256 ln(1 + i / 256)
-  std::array<std::uint16_t, 256> rate;          // of a counter after i visits, in 1/32768
-  std::array<std::uint16_t, 256> confidence;    // of a counter after i visits, in 1/65536
+  constexpr Tables();
+  std::array<std::uint16_t, 4'096> chance{};      // of logit i - 2048
+  std::array<std::int16_t, 4'096> logit{};        // of the chance 16 i + 8
+  std::array<std::uint16_t, 256> log_mantissa{};  // 256 ln(1 + i / 256)
+  std::array<std::uint16_t, 256> rate{};          // of a counter after i visits, in 1/32768
+  std::array<std::uint16_t, 256> confidence{};    // of a counter after i visits, in 1/65536
 };
 extern const Tables kTables;
 

@@ -32,15 +32,19 @@ std::int64_t StepMm(const RangeGrid& grid) {
 /// What both sides keep between slices.
 struct MixingCoderState {
   explicit MixingCoderState(const SensorModel& sensor)
-      : alignment(sensor), coder(alignment), model(std::make_unique<mixing::Model>()) {}
+      : start(mixing::Trained()),
+        alignment(sensor),
+        coder(alignment),
+        model(std::make_unique<mixing::Model>()) {}
 
   template <class Coder>
   bool Code(unsigned effort, Coder* bits) {
-    const mixing::StartStates& start = mixing::Trained();
     start.CopyTo(effort, slice.step_mm, slice.level_bits, model.get());
     return coder.Code(effort, mixing::BestKernel(), model.get(), &slice, bits);
   }
 
+  /// Reading the table takes some 50 ms, once in a process: no slice should wait for it.
+  const mixing::StartStates& start;
   AzimuthAlignment alignment;
   mixing::SliceCoder coder;
   std::unique_ptr<mixing::Model> model;

@@ -21,7 +21,8 @@ struct MixingSettings {
   unsigned effort = 2;       // 1 to 3
 };
 
-/// Keeps its buffers between slices; not for several threads at once.
+/// Keeps its buffers between slices; not for several threads at once. The first one of a process
+/// takes some 50 ms to make.
 class MixingEncoder {
  public:
   explicit MixingEncoder(const SensorModel& model);
