@@ -35,8 +35,8 @@ GType EffortType() {
       {kAuto, "The highest that codes a slice in a quarter of its sweep", "auto"},
       {0, "Fastest: adaptive rANS", "0"},
       {1, "Mixed contexts, few", "1"},
-      {2, "Mixed contexts, all", "2"},
-      {3, "Smallest: the same, and a search where it wins", "3"},
+      {2, "Mixed contexts, more", "2"},
+      {3, "Smallest: mixed contexts, all", "3"},
       {0, nullptr, nullptr}};
   static const GType type = [] {
     const GType registered = g_enum_register_static("GstLidarEncEffort", values);
