@@ -189,7 +189,7 @@ static void Prepare(RxState& state) {
   state.latch.Reset();
   NoteLidarTypes(state);
   state.ssrcs.clear();
-  state.old_ssrcs.clear();
+  state.old_streams.clear();
   state.counters = {};
   state.eos = false;
 }

@@ -77,9 +77,11 @@ bool IsOld(RxState& state, GstClockTime unix_now, GstBuffer* buffer, const RtpHe
     return false;
   const BufferMap map(buffer, GST_MAP_READ);
   const auto begins_old = BeginsOld(state, unix_now, PayloadOf(map, header));
-  if (!begins_old) return state.old_ssrcs.count(header.ssrc) > 0;
-  if (!*begins_old) state.old_ssrcs.erase(header.ssrc);
-  if (*begins_old && state.old_ssrcs.size() < kMaxSsrcs) state.old_ssrcs.insert(header.ssrc);
+  // With the address, or whoever sends a recording under the peer's SSRC would silence the peer.
+  const std::pair stream(AddressToString(SourceOf(buffer)), header.ssrc);
+  if (!begins_old) return state.old_streams.count(stream) > 0;
+  if (!*begins_old) state.old_streams.erase(stream);
+  if (*begins_old && state.old_streams.size() < kMaxSsrcs) state.old_streams.insert(stream);
   return *begins_old;
 }
 

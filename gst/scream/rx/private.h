@@ -13,6 +13,8 @@
 #include <mutex>
 #include <optional>
 #include <set>
+#include <string>
+#include <utility>
 
 #include "gst/common/gstlidar.h"
 #include "gst/common/properties.h"
@@ -56,9 +58,9 @@ struct RxState {
   RxSettings settings;
   scream::FeedbackGenerator generator;
   PeerLatch latch;
-  std::bitset<128> lidar_types;   // payload types that are LiDAR
-  std::set<guint32> old_ssrcs;    // whose last slice was older than max-age
-  std::map<guint32, Time> ssrcs;  // of the peer, and when each sent last
+  std::bitset<128> lidar_types;                           // payload types that are LiDAR
+  std::set<std::pair<std::string, guint32>> old_streams;  // by address and SSRC: older than max-age
+  std::map<guint32, Time> ssrcs;                          // of the peer, and when each sent last
   bool running = false;
   RxCounters counters;
   bool settings_changed = false;
@@ -96,16 +98,16 @@ using RxLock = std::unique_lock<std::mutex>;
 Time RxNow(const RxState& state);
 scream::FeedbackConfig ToConfig(const RxSettings& settings, guint32 own_ssrc);
 
-// rx_input.cpp: the sink pad
+// input.cpp: the sink pad
 GstFlowReturn RxChain(GstPad* pad, GstObject* parent, GstBuffer* buffer);
 GstFlowReturn RxChainList(GstPad* pad, GstObject* parent, GstBufferList* list);
 
-// rx_feedback.cpp
+// feedback.cpp
 gboolean RxActivateRtcp(GstPad* pad, GstObject* parent, GstPadMode mode, gboolean active);
 /// Makes the task look again where the next report is due sooner; with the lock held.
 void WakeFeedback(RxState& state);
 
-// rx_demux.cpp: streams by SSRC, with pt-map
+// demux.cpp: streams by SSRC, with pt-map
 bool HasPtMap(GstLidarScreamRx* self);
 /// Finds out which payload types are LiDAR: of pt-map, with the lock held...
 void NoteLidarTypes(RxState& state);

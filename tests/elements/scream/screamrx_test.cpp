@@ -199,6 +199,26 @@ TEST_F(ScreamRx, DropsARecordingThatIsOlderThanAskedFor) {
   }
 }
 
+TEST_F(ScreamRx, GoesOnWithThePeerWhereSomebodyElseSendsARecordingOfItsSsrc) {
+  g_object_set(element, "max-age", guint64{2 * GST_SECOND}, nullptr);
+  Start();
+  gst_harness_set_src_caps_str(rtp.get(),
+                               "application/x-rtp, media=(string)application, payload=(int)96, "
+                               "clock-rate=(int)90000, encoding-name=(string)X-LIDAR-DRACO");
+  const auto now = static_cast<std::uint64_t>(g_get_real_time()) * 1000;
+  Rtp r;
+  r.payload = WholeSlice(lidar::rtp::ToNtp(now));
+  ASSERT_EQ(Push(r, GST_LIDAR_ECN_ECT1, "10.0.0.1"), GST_FLOW_OK);
+  ++r.seq;
+  Rtp recorded = r;
+  recorded.payload = WholeSlice(lidar::rtp::ToNtp(now - 3600 * GST_SECOND));
+  ASSERT_EQ(Push(recorded, GST_LIDAR_ECN_ECT1, "10.0.0.9"), GST_FLOW_OK);
+  r.payload = WholeSlice();  // says nothing: as the one before
+  ASSERT_EQ(Push(r, GST_LIDAR_ECN_ECT1, "10.0.0.1"), GST_FLOW_OK);
+  EXPECT_EQ(Passed(), 2U);
+  EXPECT_EQ(Stats(element)["packets-old"], 1U);
+}
+
 TEST_F(ScreamRx, EndsWhenEveryStreamSaidGoodbye) {
   Start();
   Rtp other;
