@@ -299,7 +299,8 @@ GstFlowReturn Chain(GstPad*, GstObject* parent, GstBuffer* buffer) {
   lidar::gst::BufferPtr output = DecodeBuffer(self, buffer, &slice);
   PostStats(self);
   if (!output) return DropSlice(self, buffer);
-  if (!PushCaps(self, slice)) return GST_FLOW_NOT_NEGOTIATED;
+  if (!PushCaps(self, slice))
+    return GST_PAD_IS_FLUSHING(self->state->src) ? GST_FLOW_FLUSHING : GST_FLOW_NOT_NEGOTIATED;
   gst_buffer_copy_into(
       output.get(), buffer,
       static_cast<GstBufferCopyFlags>(GST_BUFFER_COPY_FLAGS | GST_BUFFER_COPY_TIMESTAMPS |

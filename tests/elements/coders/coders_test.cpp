@@ -105,6 +105,18 @@ TEST_P(EitherCoder, DropsAndCountsADamagedSliceAndGoesOn) {
   EXPECT_TRUE(GST_BUFFER_IS_DISCONT(after.get()));
 }
 
+TEST_P(EitherCoder, SaysFlushingWhereTheFirstSliceComesWhileItStops) {
+  const SensorModel model = test::RoomSensor();
+  const Harness enc = Encoder(GetParam());
+  const Harness dec(gst_harness_new(GetParam().decoder));
+  SetCaps(enc.get(), OrganisedInfo(model, 64));
+  GstBuffer* slice = gst_harness_push_and_pull(enc.get(), OrganisedBuffer(model, 64, {0, 0, 8, 0}));
+  gst_harness_set_src_caps(dec.get(), gst_pad_get_current_caps(enc->sinkpad));
+  const PadPtr src(gst_element_get_static_pad(dec->element, "src"));
+  gst_pad_set_active(src.get(), FALSE);
+  EXPECT_EQ(gst_harness_push(dec.get(), slice), GST_FLOW_FLUSHING);
+}
+
 class ExtremeSettings : public ::testing::TestWithParam<std::tuple<CoderCase, const char*>> {};
 TEST_P(ExtremeSettings, NeverBreakTheErrorBound) {
   const SensorModel model = test::RoomSensor();
