@@ -9,6 +9,8 @@ namespace lidar::gst {
 namespace {
 
 constexpr Duration kUsualScan = std::chrono::milliseconds(100);
+/// No sensor's scan has more: a stream of endless slices shall not fill the memory.
+constexpr std::size_t kMaxPoints = std::size_t{1} << 22;
 
 }  // namespace
 
@@ -18,7 +20,8 @@ bool ScanCollector::SetInfo(const CloudInfo& info) {
 }
 
 bool ScanCollector::BeginsNewScan(const GstLidarSlice& slice) const {
-  return open_ && (slice.scan_id != scan_id_ || slice.slice_index < next_index_);
+  return open_ && (slice.scan_id != scan_id_ || slice.slice_index < next_index_ ||
+                   scan_.points.points.size() >= kMaxPoints);
 }
 
 void ScanCollector::Open(const GstLidarSlice& slice, Time time) {

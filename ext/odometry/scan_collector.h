@@ -22,7 +22,7 @@ class ScanCollector {
   /// The layout of the buffers that follow. False where it has no x, y and z as packed F32.
   bool SetInfo(const CloudInfo& info);
 
-  /// True where a scan is open that `slice` is no further part of.
+  /// True where a scan is open that `slice` is no further part of, or that has too many points.
   bool BeginsNewScan(const GstLidarSlice& slice) const;
   /// Adds a slice, whose first column was sampled at `time`, to the open scan or to a new one.
   /// `size` bytes at `points` are whole points, and whole columns where the cloud is organised.

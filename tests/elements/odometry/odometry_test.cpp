@@ -202,6 +202,25 @@ TEST_F(OddClouds, MayBeEmptyOrNotFinite) {
   EXPECT_FALSE(HasError());
 }
 
+TEST_F(OddClouds, MayHaveSlicesWithoutEnd) {
+  Start(kXyz);
+  const std::vector<float> points(3 << 20, 2);
+  for (guint i = 0; i < 5; ++i) {
+    GstBuffer* buffer = gst_buffer_new_memdup(points.data(), points.size() * sizeof(float));
+    const GstLidarSlice slice{7, i, 65535, 0};
+    gst_lidar_buffer_set_slice(buffer, &slice);
+    GST_BUFFER_PTS(buffer) = i * GST_MSECOND;
+    ASSERT_EQ(gst_harness_push(h_.get(), buffer), GST_FLOW_OK);
+    gst_buffer_unref(gst_harness_pull(h_.get()));
+  }
+  GstStructure* stats = nullptr;
+  g_object_get(h_->element, "stats", &stats, nullptr);
+  const StructurePtr owned(stats);
+  guint64 scans = 0;
+  gst_structure_get_uint64(stats, "scans", &scans);
+  EXPECT_EQ(scans, 1U);  // the first four, as soon as they were too many
+}
+
 TEST_F(OddClouds, NeedTimestamps) {
   Start(kXyz);
   EXPECT_EQ(Push({1, 2, 3}, GST_CLOCK_TIME_NONE), GST_FLOW_ERROR);
