@@ -25,6 +25,8 @@ constexpr double kLeastInliers = 0.3;
 /// Times within a sweep at which the motion is computed.
 constexpr int kPhases = 1024;
 constexpr int kLostForGood = 10;  // scans
+/// Scans closer than that tell nothing of the velocity.
+constexpr Duration kShortestGap = milliseconds(2);
 /// Beyond this the velocity may have changed: the search reaches farther in proportion.
 constexpr Duration kUsualPeriod = milliseconds(150);
 constexpr double kWidestSearch = 3;
@@ -148,7 +150,9 @@ Estimate Odometry::OnScan(Time start, Duration duration, const TimedPoints& scan
     estimate.tracking = Tracking::kLost;
     estimate.pose = pose_ = guess;
     if (++lost_scans_ >= kLostForGood && !fine.empty()) {
+      velocity_.setZero();  // it led here
       StartMap(fine);
+      first_scan_ = scan;
       estimate.map_restarted = true;
     }
     return estimate;
@@ -156,7 +160,7 @@ Estimate Odometry::OnScan(Time start, Duration duration, const TimedPoints& scan
   estimate.tracking = found.degenerate ? Tracking::kDegenerate : Tracking::kTracking;
   lost_scans_ = 0;
   threshold_.Add(guess.Inverse() * found.pose);
-  velocity_ = Log(pose_.Inverse() * found.pose) / Seconds(gap);
+  if (gap >= kShortestGap) velocity_ = Log(pose_.Inverse() * found.pose) / Seconds(gap);
   estimate.pose = pose_ = found.pose;
   Points placed;
   placed.reserve(fine.size());

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Space cut into cubes: which cube a point is in, and one point a cube.
 #pragma once
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -26,10 +27,12 @@ struct VoxelHash {
   }
 };
 
-/// The cube of edge `size_m` that holds `point`, whose coordinates are below 2^31 cubes.
+/// The cube of edge `size_m` that holds `point`. What is farther than 2^31 cubes is in the last
+/// one.
 inline Voxel VoxelOf(const Eigen::Vector3d& point, double size_m) {
   const auto index = [size_m](double c) {
-    return static_cast<std::int32_t>(std::floor(c / size_m));
+    return static_cast<std::int32_t>(
+        std::clamp(std::floor(c / size_m), -2147483648.0, 2147483647.0));
   };
   return {index(point.x()), index(point.y()), index(point.z())};
 }

@@ -141,6 +141,31 @@ TEST(Odometry, KnowsWhenAScanDoesNotFit) {
   EXPECT_EQ(found.tracking, Tracking::kTracking);
 }
 
+TEST(Odometry, FindsItsWayAfterTwoScansOfTheSameTime) {
+  Drive street(synth::SceneKind::kStreet, 10);
+  Odometry odometry({});
+  for (std::uint64_t i = 0; i < 5; ++i) odometry.OnScan(street.StartOf(i), kPeriod, street.Scan(i));
+  odometry.OnScan(street.StartOf(4) + std::chrono::nanoseconds(1), kPeriod, street.Scan(5));
+  const Estimate next = odometry.OnScan(street.StartOf(6), kPeriod, street.Scan(6));
+  EXPECT_EQ(next.tracking, Tracking::kTracking);
+  EXPECT_NEAR(next.pose.position.norm(), 6, 0.5);
+}
+
+TEST(Odometry, BeginsANewMapWhereItIsLostForGood) {
+  Drive street(synth::SceneKind::kStreet, 10);
+  Odometry odometry({});
+  std::uint64_t i = 0;
+  for (; i < 5; ++i) odometry.OnScan(street.StartOf(i), kPeriod, street.Scan(i));
+  TimedPoints elsewhere = street.Scan(5);
+  for (Eigen::Vector3d& point : elsewhere.points) point.z() += 40;
+  Estimate e;
+  for (; i < 16; ++i) e = odometry.OnScan(street.StartOf(i), kPeriod, elsewhere);
+  EXPECT_TRUE(e.map_restarted || e.tracking == Tracking::kTracking);
+  e = odometry.OnScan(street.StartOf(i), kPeriod, elsewhere);
+  EXPECT_EQ(e.tracking, Tracking::kTracking);
+  EXPECT_LT(odometry.PredictAt(street.StartOf(i + 1)).position.norm(), 20);
+}
+
 TEST(Odometry, BeginsANewMapAfterALongGap) {
   Drive street(synth::SceneKind::kStreet, 10);
   Odometry odometry({});
