@@ -2,7 +2,6 @@
 #include "src/odometry/odometry.h"
 
 #include <algorithm>
-#include <utility>
 
 namespace lidar::odometry {
 namespace {
@@ -110,8 +109,8 @@ Pose Odometry::GuessFirstMotion(const Points& points) const {
 /// A scan that was skewed by an unknown motion would bend the map for good.
 void Odometry::StraightenFirstScan(Duration duration, const Points& second, Duration gap) {
   velocity_ = Log(pose_.Inverse() * GuessFirstMotion(second)) / Seconds(gap);
-  StartMap(Downsample(SelectPoints(*std::exchange(first_scan_, {}), duration),
-                      kMapGrid * settings_.voxel_size_m));
+  StartMap(Downsample(SelectPoints(*first_scan_, duration), kMapGrid * settings_.voxel_size_m));
+  first_scan_.reset();
 }
 
 Estimate Odometry::OnScan(Time start, Duration duration, const TimedPoints& scan) {
