@@ -47,7 +47,8 @@ const Property<Settings>* FindRow(const std::array<Property<Settings>, N>& table
                       [&](const auto& row) { return row.name == name; });
 }
 
-/// The row `name` of a part of Settings: Within<&Settings::part>(kPartRows, "name").
+/// The row `name` of a part of Settings: Within<&Settings::part>(kPartRows, "name"). gcc 12 lets
+/// the instances of two files be one, so structs of two files of a plugin need different names.
 template <auto part, class Settings, class Part, std::size_t N>
 Property<Settings> WithinOf(Part Settings::*, const std::array<Property<Part>, N>& table,
                             std::string_view name) {

@@ -46,7 +46,7 @@ GType EcnType() {
   return type;
 }
 
-struct Settings {
+struct SinkSettings {
   UdpTarget target;
   gint ecn = GST_LIDAR_ECN_NOT_ECT;
   UdpOptions options;
@@ -72,7 +72,7 @@ const std::array<Stat<Counters>, 4> kStats = {{
 
 struct State {
   std::mutex mutex;  // guards all to the next comment; never held while sending or posting
-  Settings settings;
+  SinkSettings settings;
   SharedSocket used;
   SharedSocketAddress peer;
   Counters counters;
@@ -117,26 +117,27 @@ static StructurePtr Stats(GObject* object) {
   return ToStructure("application/x-ecnudpsink-stats", kStats, state.counters);
 }
 
-static const std::array<Property<Settings>, 15> kProperties = {{
-    Within<&Settings::target>(UdpTargetRows(), "host"),
-    Within<&Settings::target>(UdpTargetRows(), "port"),
-    Within<&Settings::target>(UdpTargetRows(), "bind-address"),
-    Within<&Settings::target>(UdpTargetRows(), "bind-port"),
+static const std::array<Property<SinkSettings>, 15> kProperties = {{
+    Within<&SinkSettings::target>(UdpTargetRows(), "host"),
+    Within<&SinkSettings::target>(UdpTargetRows(), "port"),
+    Within<&SinkSettings::target>(UdpTargetRows(), "bind-address"),
+    Within<&SinkSettings::target>(UdpTargetRows(), "bind-port"),
     {"ecn", "ECN bits of buffers without LidarEcnMeta",
-     EnumField<Settings>{&Settings::ecn, EcnType}, 0, 0, GST_PARAM_MUTABLE_PLAYING},
-    Within<&Settings::options>(UdpOptionRows(), "qos-dscp"),
+     EnumField<SinkSettings>{&SinkSettings::ecn, EcnType}, 0, 0, GST_PARAM_MUTABLE_PLAYING},
+    Within<&SinkSettings::options>(UdpOptionRows(), "qos-dscp"),
     {"close-socket", "Close a socket given by the property socket on stop",
-     At<&Settings::given, &GivenSocket::close>},
+     At<&SinkSettings::given, &GivenSocket::close>},
     {"reply",
      "Send to the peer that the buffer's GstNetAddressMeta names (the last such where it has none) "
      "instead of host and port",
-     &Settings::reply},
+     &SinkSettings::reply},
     {"multicast-iface", "Network interface for multicast; empty for the kernel's choice",
-     &Settings::multicast_iface},
-    {"ttl-mc", "Time to live of multicast datagrams [hops]", &Settings::ttl_mc, 0, 255},
-    {"buffer-size", "Kernel send buffer [bytes]; 0 for its default", &Settings::buffer_size, 0,
+     &SinkSettings::multicast_iface},
+    {"ttl-mc", "Time to live of multicast datagrams [hops]", &SinkSettings::ttl_mc, 0, 255},
+    {"buffer-size", "Kernel send buffer [bytes]; 0 for its default", &SinkSettings::buffer_size, 0,
      G_MAXINT},
-    {"socket", "Socket to send from; NULL opens one", At<&Settings::given, &GivenSocket::socket>},
+    {"socket", "Socket to send from; NULL opens one",
+     At<&SinkSettings::given, &GivenSocket::socket>},
     {"used-socket", "Socket in use; NULL when stopped", UsedSocket<GstLidarEcnUdpSink>},
     {"peer-address", "Address that datagrams go to now; NULL when there is none", PeerAddress},
     {"stats", "packets-sent, bytes-sent [bytes], send-errors, dropped-no-peer", Stats},
@@ -151,7 +152,7 @@ static guint8 SocketTos(int fd, GSocketFamily family) {
   return static_cast<guint8>(tos & ~kEcnMask);
 }
 
-static void ConfigureSocket(GSocket* socket, const Settings& s) {
+static void ConfigureSocket(GSocket* socket, const SinkSettings& s) {
   if (s.buffer_size > 0)
     g_socket_set_option(socket, SOL_SOCKET, SO_SNDBUF, static_cast<gint>(s.buffer_size), nullptr);
   g_socket_set_multicast_ttl(socket, static_cast<guint>(s.ttl_mc));
@@ -162,7 +163,7 @@ static gboolean Start(GstBaseSink* base) {
   auto* self = GST_LIDAR_ECN_UDP_SINK(base);
   State& state = StateOf(self);
   std::unique_lock lock(state.mutex);
-  const Settings s = state.settings;
+  const SinkSettings s = state.settings;
   lock.unlock();
 
   SharedSocketAddress peer;
@@ -212,7 +213,7 @@ static void FollowPeer(State& state, GstBuffer* buffer) {
 
 static Marking CurrentMarking(State& state) {
   std::lock_guard lock(state.mutex);
-  const Settings& s = state.settings;
+  const SinkSettings& s = state.settings;
   const guint8 dscp =
       s.options.dscp < 0 ? state.socket_tos : static_cast<guint8>(s.options.dscp << 2);
   return {dscp, static_cast<guint8>(s.ecn), s.reply};

@@ -38,7 +38,7 @@ using namespace lidar::gst;
 constexpr guint kDefaultBuffer = 2u << 20;
 constexpr gint kDefaultPayload = 96;
 
-struct Settings {
+struct SrcSettings {
   UdpListen listen;
   UdpOptions options;
   GivenSocket given;
@@ -59,7 +59,7 @@ const std::array<Stat<Counters>, 4> kStats = {{
 
 struct State {
   std::mutex mutex;  // guards all to the next comment; never held while receiving or posting
-  Settings settings;
+  SrcSettings settings;
   SharedSocket used;
   Counters counters;
 
@@ -90,18 +90,18 @@ static StructurePtr Stats(GObject* object) {
   return ToStructure("application/x-ecnudpsrc-stats", kStats, state.counters);
 }
 
-static const std::array<Property<Settings>, 11> kProperties = {{
-    Within<&Settings::listen>(UdpListenRows(), "address"),
-    Within<&Settings::listen>(UdpListenRows(), "port"),
-    Within<&Settings::listen>(UdpListenRows(), "multicast-group"),
-    Within<&Settings::listen>(UdpListenRows(), "multicast-iface"),
-    Within<&Settings::options>(UdpOptionRows(), "buffer-size"),
-    Within<&Settings::options>(UdpOptionRows(), "timeout"),
-    Within<&Settings::options>(UdpOptionRows(), "caps"),
+static const std::array<Property<SrcSettings>, 11> kProperties = {{
+    Within<&SrcSettings::listen>(UdpListenRows(), "address"),
+    Within<&SrcSettings::listen>(UdpListenRows(), "port"),
+    Within<&SrcSettings::listen>(UdpListenRows(), "multicast-group"),
+    Within<&SrcSettings::listen>(UdpListenRows(), "multicast-iface"),
+    Within<&SrcSettings::options>(UdpOptionRows(), "buffer-size"),
+    Within<&SrcSettings::options>(UdpOptionRows(), "timeout"),
+    Within<&SrcSettings::options>(UdpOptionRows(), "caps"),
     {"close-socket", "Close a socket given by the property socket on stop",
-     At<&Settings::given, &GivenSocket::close>},
+     At<&SrcSettings::given, &GivenSocket::close>},
     {"socket", "Socket to receive from; NULL opens one",
-     At<&Settings::given, &GivenSocket::socket>},
+     At<&SrcSettings::given, &GivenSocket::socket>},
     {"used-socket", "Socket in use; NULL when stopped", UsedSocket<GstLidarEcnUdpSrc>},
     {"stats", "packets-received, bytes-received [bytes], packets-ce, dropped-by-kernel", Stats},
 }};
@@ -120,7 +120,7 @@ static gboolean Start(GstBaseSrc* base) {
   auto* self = GST_LIDAR_ECN_UDP_SRC(base);
   State& state = StateOf(self);
   std::unique_lock lock(state.mutex);
-  const Settings s = state.settings;
+  const SrcSettings s = state.settings;
   lock.unlock();
 
   SharedSocket socket = s.given.socket;

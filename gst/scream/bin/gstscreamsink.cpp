@@ -26,14 +26,14 @@ using namespace lidar::gst;
 
 namespace {
 
-struct Settings {
+struct SinkSettings {
   UdpTarget target;
   bool strict_feedback = true;
   SrtpSettings srtp;
 };
 
 struct State : BinState {
-  Settings settings;
+  SinkSettings settings;
   SharedSocketAddress peer;
   std::atomic<guint64> foreign{0};
 };
@@ -86,21 +86,21 @@ static const TxSettings& TxDefaults() {
   return defaults;
 }
 
-static Property<Settings> OfTx(const char* name) {
-  return Proxy<Settings>(TxPropertyTable(), name,
-                         ChildOf<GstLidarScreamSink, &GstLidarScreamSink::tx>, &TxDefaults());
+static Property<SinkSettings> OfTx(const char* name) {
+  return Proxy<SinkSettings>(TxPropertyTable(), name,
+                             ChildOf<GstLidarScreamSink, &GstLidarScreamSink::tx>, &TxDefaults());
 }
 
-static const std::array<Property<Settings>, 19> kProperties = {{
-    Within<&Settings::target>(UdpTargetRows(), "host"),
-    Within<&Settings::target>(UdpTargetRows(), "port"),
-    Within<&Settings::target>(UdpTargetRows(), "bind-address"),
-    Within<&Settings::target>(UdpTargetRows(), "bind-port"),
+static const std::array<Property<SinkSettings>, 19> kProperties = {{
+    Within<&SinkSettings::target>(UdpTargetRows(), "host"),
+    Within<&SinkSettings::target>(UdpTargetRows(), "port"),
+    Within<&SinkSettings::target>(UdpTargetRows(), "bind-address"),
+    Within<&SinkSettings::target>(UdpTargetRows(), "bind-port"),
     {"strict-feedback",
      "Take feedback only from the host and port that media goes to; else from any port of the host",
-     &Settings::strict_feedback},
-    Proxy<Settings>(UdpOptionRows(), "qos-dscp",
-                    ChildOf<GstLidarScreamSink, &GstLidarScreamSink::sink>),
+     &SinkSettings::strict_feedback},
+    Proxy<SinkSettings>(UdpOptionRows(), "qos-dscp",
+                        ChildOf<GstLidarScreamSink, &GstLidarScreamSink::sink>),
     OfTx("min-bitrate"),
     OfTx("start-bitrate"),
     OfTx("max-bitrate"),
@@ -112,9 +112,9 @@ static const std::array<Property<Settings>, 19> kProperties = {{
     {"estimated-bitrate", "Target of all streams together, IP included; notifies [bit/s]",
      Estimate},
     {"stats", "Statistics; bitrates in bit/s, times in ns", Stats},
-    Within<&Settings::srtp>(SrtpRows(), "srtp-key"),
-    Within<&Settings::srtp>(SrtpRows(), "srtp-cipher"),
-    Within<&Settings::srtp>(SrtpRows(), "srtp-auth"),
+    Within<&SinkSettings::srtp>(SrtpRows(), "srtp-key"),
+    Within<&SinkSettings::srtp>(SrtpRows(), "srtp-cipher"),
+    Within<&SinkSettings::srtp>(SrtpRows(), "srtp-auth"),
 }};
 
 /// Whether `buffer` comes from whom we send to. The receivers of a multicast group are many.
@@ -154,7 +154,7 @@ static GstPadProbeReturn FilterFeedback(GstPad*, GstPadProbeInfo* info, gpointer
 static bool Open(GstLidarScreamSink* self) {
   State& state = *self->state;
   std::unique_lock lock(state.mutex);
-  const Settings s = state.settings;
+  const SinkSettings s = state.settings;
   lock.unlock();
   if (!HasChildren(GST_ELEMENT(self),
                    {{self->tx, "screamtx"}, {self->sink, "ecnudpsink"}, {self->src, "ecnudpsrc"}}))

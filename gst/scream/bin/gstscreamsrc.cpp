@@ -22,13 +22,13 @@ using namespace lidar::gst;
 
 namespace {
 
-struct Settings {
+struct SrcSettings {
   UdpListen listen;
   SrtpSettings srtp;
 };
 
 struct State : BinState {
-  Settings settings;
+  SrcSettings settings;
 };
 
 }  // namespace
@@ -59,20 +59,20 @@ static StructurePtr Stats(GObject* object) {
   return stats;
 }
 
-static Property<Settings> OfSrc(const char* name) {
-  return Proxy<Settings>(UdpOptionRows(), name,
-                         ChildOf<GstLidarScreamSrc, &GstLidarScreamSrc::src>);
+static Property<SrcSettings> OfSrc(const char* name) {
+  return Proxy<SrcSettings>(UdpOptionRows(), name,
+                            ChildOf<GstLidarScreamSrc, &GstLidarScreamSrc::src>);
 }
-static Property<Settings> OfRx(const char* name) {
-  return Proxy<Settings>(RxPropertyTable(), name,
-                         ChildOf<GstLidarScreamSrc, &GstLidarScreamSrc::rx>);
+static Property<SrcSettings> OfRx(const char* name) {
+  return Proxy<SrcSettings>(RxPropertyTable(), name,
+                            ChildOf<GstLidarScreamSrc, &GstLidarScreamSrc::rx>);
 }
 
-static const std::array<Property<Settings>, 18> kProperties = {{
-    Within<&Settings::listen>(UdpListenRows(), "address"),
-    Within<&Settings::listen>(UdpListenRows(), "port"),
-    Within<&Settings::listen>(UdpListenRows(), "multicast-group"),
-    Within<&Settings::listen>(UdpListenRows(), "multicast-iface"),
+static const std::array<Property<SrcSettings>, 18> kProperties = {{
+    Within<&SrcSettings::listen>(UdpListenRows(), "address"),
+    Within<&SrcSettings::listen>(UdpListenRows(), "port"),
+    Within<&SrcSettings::listen>(UdpListenRows(), "multicast-group"),
+    Within<&SrcSettings::listen>(UdpListenRows(), "multicast-iface"),
     OfSrc("buffer-size"),
     OfSrc("timeout"),
     OfSrc("caps"),
@@ -84,16 +84,16 @@ static const std::array<Property<Settings>, 18> kProperties = {{
     OfRx("pt-map"),
     {"used-socket", "Socket in use; NULL when stopped", UsedSocket<GstLidarScreamSrc>},
     {"stats", "Counters of packets, bytes and reports", Stats},
-    Within<&Settings::srtp>(SrtpRows(), "srtp-key"),
-    Within<&Settings::srtp>(SrtpRows(), "srtp-cipher"),
-    Within<&Settings::srtp>(SrtpRows(), "srtp-auth"),
+    Within<&SrcSettings::srtp>(SrtpRows(), "srtp-key"),
+    Within<&SrcSettings::srtp>(SrtpRows(), "srtp-cipher"),
+    Within<&SrcSettings::srtp>(SrtpRows(), "srtp-auth"),
 }};
 
 /// Opens the socket for both ways and hands it to the children.
 static bool Open(GstLidarScreamSrc* self) {
   State& state = *self->state;
   std::unique_lock lock(state.mutex);
-  const Settings s = state.settings;
+  const SrcSettings s = state.settings;
   lock.unlock();
   if (!HasChildren(GST_ELEMENT(self),
                    {{self->src, "ecnudpsrc"}, {self->rx, "screamrx"}, {self->sink, "ecnudpsink"}}))
