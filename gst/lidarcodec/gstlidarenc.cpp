@@ -18,6 +18,7 @@
 #include <vector>
 
 #include "gst/common/cloud_info.h"
+#include "gst/common/enum_type.h"
 #include "gst/common/properties.h"
 #include "src/codec/effort_control.h"
 #include "src/codec/slice_decoder.h"
@@ -38,11 +39,7 @@ GType EffortType() {
       {2, "Mixed contexts, more", "2"},
       {3, "Smallest: mixed contexts, all", "3"},
       {0, nullptr, nullptr}};
-  static const GType type = [] {
-    const GType registered = g_enum_register_static("GstLidarEncEffort", values);
-    gst_type_mark_as_plugin_api(registered, static_cast<GstPluginAPIFlags>(0));
-    return registered;
-  }();
+  static const GType type = lidar::gst::RegisterEnum("GstLidarEncEffort", values);
   return type;
 }
 

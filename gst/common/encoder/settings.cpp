@@ -1,13 +1,10 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include "gst/common/encoder/settings.h"
 
+#include "gst/common/enum_type.h"
+
 namespace lidar::gst {
 namespace {
-
-template <class E>
-constexpr gint Int(E value) {
-  return static_cast<gint>(value);
-}
 
 using rate::DegradationPreference;
 using rate::RateModel;
@@ -24,21 +21,15 @@ const GEnumValue kPreferences[] = {
     {Int(DegradationPreference::kBalanced), "Both by the same factor", "balanced"},
     {0, nullptr, nullptr}};
 
-GType Register(const char* name, const GEnumValue* values) {
-  const GType type = g_enum_register_static(name, values);
-  gst_type_mark_as_plugin_api(type, static_cast<GstPluginAPIFlags>(0));
-  return type;
-}
-
 }  // namespace
 
 GType RateModelType() {
-  static const GType type = Register("GstLidarRateModel", kRateModels);
+  static const GType type = RegisterEnum("GstLidarRateModel", kRateModels);
   return type;
 }
 
 GType DegradationPreferenceType() {
-  static const GType type = Register("GstLidarDegradationPreference", kPreferences);
+  static const GType type = RegisterEnum("GstLidarDegradationPreference", kPreferences);
   return type;
 }
 
