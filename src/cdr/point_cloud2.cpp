@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "src/cdr/point_cloud2.h"
+
+#include <tuple>
+
+namespace lidar::cdr {
+namespace {
+
+// Two texts, three numbers, all texts empty.
+constexpr std::size_t kSmallestField = 13;
+// What a ROS node would take no more as a cloud; it bounds what a field list may allocate.
+constexpr std::uint32_t kMaxRosFields = 1024;
+
+auto Tie(const RosField& f) { return std::tie(f.name, f.offset, f.datatype, f.count); }
+auto Tie(const RosLayout& l) {
+  return std::tie(l.height, l.width, l.fields, l.is_bigendian, l.point_step, l.row_step);
+}
+
+std::vector<RosField> ReadFields(CdrReader* r) {
+  const std::uint32_t count = r->Count(kSmallestField);
+  std::vector<RosField> fields;
+  for (std::uint32_t i = 0; i < count && i < kMaxRosFields && r->ok(); ++i) {
+    RosField& f = fields.emplace_back();
+    f.name = r->Text();
+    f.offset = r->U32();
+    f.datatype = r->U8();
+    f.count = r->U32();
+  }
+  return count <= kMaxRosFields ? fields : std::vector<RosField>();
+}
+
+void WriteFields(const std::vector<RosField>& fields, CdrWriter* w) {
+  w->U32(static_cast<std::uint32_t>(fields.size()));
+  for (const RosField& f : fields) {
+    w->Text(f.name);
+    w->U32(f.offset);
+    w->U8(f.datatype);
+    w->U32(f.count);
+  }
+}
+
+}  // namespace
+
+bool operator==(const RosField& a, const RosField& b) { return Tie(a) == Tie(b); }
+bool operator==(const RosLayout& a, const RosLayout& b) { return Tie(a) == Tie(b); }
+
+std::optional<PointCloud2> ReadPointCloud2(ByteView message, std::string* why) {
+  CdrReader r(message);
+  PointCloud2 cloud;
+  cloud.header = ReadHeader(&r);
+  cloud.layout.height = r.U32();
+  cloud.layout.width = r.U32();
+  cloud.layout.fields = ReadFields(&r);
+  cloud.layout.is_bigendian = r.Bool();
+  cloud.layout.point_step = r.U32();
+  cloud.layout.row_step = r.U32();
+  cloud.data = r.Octets();
+  cloud.is_dense = r.Bool();
+  if (r.ok()) return cloud;
+  if (why != nullptr) *why = "the message is truncated or is no PointCloud2";
+  return std::nullopt;
+}
+
+PointCloud2Frame FramePointCloud2(const PointCloud2& cloud) {
+  PointCloud2Frame frame;
+  CdrWriter w(&frame.head);
+  WriteHeader(cloud.header, &w);
+  w.U32(cloud.layout.height);
+  w.U32(cloud.layout.width);
+  WriteFields(cloud.layout.fields, &w);
+  w.Bool(cloud.layout.is_bigendian);
+  w.U32(cloud.layout.point_step);
+  w.U32(cloud.layout.row_step);
+  w.U32(static_cast<std::uint32_t>(cloud.data.size));
+  frame.tail.push_back(cloud.is_dense ? 1 : 0);
+  return frame;
+}
+
+std::vector<std::uint8_t> WritePointCloud2(const PointCloud2& cloud) {
+  PointCloud2Frame frame = FramePointCloud2(cloud);
+  std::vector<std::uint8_t> out = std::move(frame.head);
+  out.reserve(out.size() + cloud.data.size + frame.tail.size());
+  out.insert(out.end(), cloud.data.begin(), cloud.data.end());
+  out.insert(out.end(), frame.tail.begin(), frame.tail.end());
+  return out;
+}
+
+RosLayout ToRosLayout(const PointLayout& points, std::uint32_t width, std::uint32_t height) {
+  RosLayout layout;
+  layout.height = height;
+  layout.width = width;
+  layout.point_step = points.point_step;
+  layout.row_step = width * points.point_step;
+  std::string array;  // the name before [0] of the field before
+  for (const PointField& f : points.fields.all()) {
+    const auto datatype = static_cast<std::uint8_t>(static_cast<int>(f.type) + 1);
+    RosField* last = layout.fields.empty() ? nullptr : &layout.fields.back();
+    if (last != nullptr && !array.empty() && datatype == last->datatype &&
+        f.name == array + "[" + std::to_string(last->count) + "]" &&
+        f.offset == last->offset + last->count * SizeOf(f.type)) {
+      last->name = array;
+      ++last->count;
+      continue;
+    }
+    layout.fields.push_back({f.name, f.offset, datatype, 1});
+    const std::size_t index = f.name.rfind("[0]");
+    const bool begins = index != std::string::npos && index + 3 == f.name.size();
+    array = begins ? f.name.substr(0, index) : std::string();
+  }
+  return layout;
+}
+
+}  // namespace lidar::cdr

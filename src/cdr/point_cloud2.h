@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// sensor_msgs/msg/PointCloud2, and how its points become ours.
+#pragma once
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "src/base/byte_reader.h"
+#include "src/cdr/messages.h"
+#include "src/cloud/point_fields.h"
+
+namespace lidar::cdr {
+
+/// sensor_msgs/msg/PointField, whose datatypes 1 to 8 are our FieldTypes in the same order.
+struct RosField {
+  std::string name;
+  std::uint32_t offset = 0;
+  std::uint8_t datatype = 0;
+  std::uint32_t count = 1;
+};
+bool operator==(const RosField& a, const RosField& b);
+
+/// What messages of one source have in common.
+struct RosLayout {
+  std::uint32_t height = 1;
+  std::uint32_t width = 0;
+  std::vector<RosField> fields;
+  bool is_bigendian = false;
+  std::uint32_t point_step = 0;  // bytes
+  std::uint32_t row_step = 0;    // bytes
+};
+bool operator==(const RosLayout& a, const RosLayout& b);
+
+struct PointCloud2 {
+  Header header;
+  RosLayout layout;
+  ByteView data;  // not owned: a part of the message it was read from
+  bool is_dense = false;
+};
+
+/// None where `message` is no such message; `why` then says so in words for a user.
+std::optional<PointCloud2> ReadPointCloud2(ByteView message, std::string* why = nullptr);
+std::vector<std::uint8_t> WritePointCloud2(const PointCloud2& cloud);
+
+/// A message in pieces, for writers that gather: the points stand between `head` and `tail`.
+struct PointCloud2Frame {
+  std::vector<std::uint8_t> head;
+  std::vector<std::uint8_t> tail;
+};
+/// `cloud.data` says how long the points are; they are not read.
+PointCloud2Frame FramePointCloud2(const PointCloud2& cloud);
+
+/// How points stand in our clouds.
+struct PointLayout {
+  PointFields fields;
+  std::uint32_t point_step = 0;  // bytes
+};
+
+/// The layout of packed rows of little-endian points. Fields a[0], a[1], ... of one type that stand
+/// side by side become one field of as many elements.
+RosLayout ToRosLayout(const PointLayout& points, std::uint32_t width, std::uint32_t height);
+
+/// Turns the points of messages of one layout into little-endian points in packed rows.
+class PointConverter {
+ public:
+  /// With `wanted` the points get just that, converted where a field's type is another. Without it
+  /// they keep their fields; only x, y and z become F32 side by side, as all our elements want
+  /// them. A field of n elements becomes n fields a[0], a[1], ... A field is padding where it has
+  /// no usable name, a name that came before, a type unknown to us or more than kMaxFields
+  /// elements. None where the layout contradicts itself, is too large, or lacks a wanted field;
+  /// `why` then says which.
+  static std::optional<PointConverter> Make(const RosLayout& layout,
+                                            const std::optional<PointLayout>& wanted = {},
+                                            std::string* why = nullptr);
+
+  const RosLayout& layout() const { return from_; }
+  const PointLayout& points() const { return to_; }
+  /// Bytes of one cloud of ours.
+  std::size_t size() const { return std::size_t{from_.width} * from_.height * to_.point_step; }
+  /// True where points are copied as they are.
+  bool copies() const { return steps_.empty(); }
+
+  /// False where the data of `cloud` are not as long as its layout says. `out` has size() bytes.
+  bool Convert(const PointCloud2& cloud, std::uint8_t* out) const;
+
+  static constexpr std::size_t kMaxSize = std::size_t{1} << 30;  // as caps of clouds have it
+
+ private:
+  /// Bytes that move together, or one number that changes its type or its byte order.
+  struct Step {
+    std::uint32_t from = 0;
+    std::uint32_t to = 0;
+    std::uint32_t size = 0;  // bytes in the message
+    FieldType from_type{};
+    FieldType to_type{};
+    bool converts = false;
+  };
+
+  bool Plan(const std::vector<PointField>& source, std::string* why);
+  void ConvertPoint(const std::uint8_t* from, std::uint8_t* to) const;
+
+  RosLayout from_;
+  PointLayout to_;
+  std::vector<Step> steps_;
+};
+
+}  // namespace lidar::cdr

@@ -1,0 +1,310 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "src/cdr/point_cloud2.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+#include "src/cdr/ros_types.h"
+
+namespace lidar::cdr {
+namespace {
+
+using Bytes = std::vector<std::uint8_t>;
+
+constexpr std::uint8_t kRosU8 = 2;
+constexpr std::uint8_t kRosU16 = 4;
+constexpr std::uint8_t kRosU32 = 6;
+constexpr std::uint8_t kRosF32 = 7;
+constexpr std::uint8_t kRosF64 = 8;
+
+ByteView View(const Bytes& bytes) { return {bytes.data(), bytes.size()}; }
+
+template <class T>
+void Put(T value, bool big_endian, Bytes* out) {
+  std::uint8_t bytes[sizeof value];
+  std::memcpy(bytes, &value, sizeof value);
+  if (big_endian) std::reverse(bytes, bytes + sizeof value);
+  out->insert(out->end(), bytes, bytes + sizeof value);
+}
+
+template <class T>
+T Get(const Bytes& bytes, std::size_t offset) {
+  T value{};
+  std::memcpy(&value, bytes.data() + offset, sizeof value);
+  return value;
+}
+
+/// x, y, z, intensity as F32 and a ring as U16, 18 bytes.
+RosLayout Velodyne(std::uint32_t width, std::uint32_t height) {
+  return {height,
+          width,
+          {{"x", 0, kRosF32, 1},
+           {"y", 4, kRosF32, 1},
+           {"z", 8, kRosF32, 1},
+           {"intensity", 12, kRosF32, 1},
+           {"ring", 16, kRosU16, 1}},
+          false,
+          18,
+          18 * width};
+}
+
+std::optional<Bytes> Convert(const PointCloud2& cloud,
+                             const std::optional<PointLayout>& wanted = {}) {
+  const auto converter = PointConverter::Make(cloud.layout, wanted);
+  if (!converter) return std::nullopt;
+  Bytes out(converter->size(), 0xEE);
+  if (!converter->Convert(cloud, out.data())) return std::nullopt;
+  return out;
+}
+
+std::string FieldsOf(const RosLayout& layout) {
+  std::string why;
+  const auto converter = PointConverter::Make(layout, {}, &why);
+  return converter ? converter->points().fields.ToString() : why;
+}
+
+TEST(PointCloud2, StandsOnTheWireAsRosHasIt) {
+  const Bytes points = {1, 2, 3, 4};
+  PointCloud2 cloud;
+  cloud.header = {Time{} + Duration{3'000'000'005}, "os"};
+  cloud.layout = {1, 1, {{"x", 0, kRosF32, 1}}, false, 4, 4};
+  cloud.data = View(points);
+  cloud.is_dense = true;
+  const Bytes expected = {
+      0, 1, 0, 0,                              // CDR_LE
+      3, 0, 0, 0, 5,   0,   0, 0,              // stamp
+      3, 0, 0, 0, 'o', 's', 0, 0,              // frame_id
+      1, 0, 0, 0, 1,   0,   0, 0,              // height, width
+      1, 0, 0, 0,                              // one field
+      2, 0, 0, 0, 'x', 0,   0, 0, 0, 0, 0, 0,  // name, offset
+      7, 0, 0, 0, 1,   0,   0, 0,              // datatype, count
+      0, 0, 0, 0, 4,   0,   0, 0, 4, 0, 0, 0,  // is_bigendian, point_step, row_step
+      4, 0, 0, 0, 1,   2,   3, 4,              // data
+      1,                                       // is_dense
+  };
+  EXPECT_EQ(WritePointCloud2(cloud), expected);
+}
+
+TEST(PointCloud2, ComesBack) {
+  Bytes points(18 * 12);
+  std::iota(points.begin(), points.end(), std::uint8_t{0});
+  PointCloud2 cloud;
+  cloud.header = {Time{} + Duration{1'700'000'000'123'456'789}, "os_lidar"};
+  cloud.layout = Velodyne(4, 3);
+  cloud.data = View(points);
+  const Bytes message = WritePointCloud2(cloud);
+  const auto read = ReadPointCloud2(View(message));
+  ASSERT_TRUE(read);
+  EXPECT_EQ(read->header.stamp, cloud.header.stamp);
+  EXPECT_EQ(read->header.frame_id, "os_lidar");
+  EXPECT_TRUE(read->layout == cloud.layout);
+  EXPECT_EQ(Bytes(read->data.begin(), read->data.end()), points);
+  EXPECT_FALSE(read->is_dense);
+  EXPECT_EQ(Convert(*read), points);
+}
+
+TEST(PointCloud2, TruncatedOnesAreRefusedAtEachLength) {
+  const Bytes points(18 * 2);
+  PointCloud2 cloud;
+  cloud.layout = Velodyne(2, 1);
+  cloud.data = View(points);
+  const Bytes message = WritePointCloud2(cloud);
+  std::string why;
+  for (std::size_t n = 0; n < message.size(); ++n)
+    ASSERT_FALSE(ReadPointCloud2({message.data(), n}, &why)) << n;
+  EXPECT_EQ(why, "the message is truncated or is no PointCloud2");
+  EXPECT_TRUE(ReadPointCloud2(View(message)));
+}
+
+TEST(PointCloud2, FlippedBytesNeverReadPastTheMessage) {
+  const Bytes points(18 * 2);
+  PointCloud2 cloud;
+  cloud.layout = Velodyne(2, 1);
+  cloud.data = View(points);
+  const Bytes message = WritePointCloud2(cloud);
+  for (std::size_t i = 0; i < message.size(); ++i) {
+    for (const int value : {0x00, 0x01, 0x40, 0x7F, 0x80, 0xFF}) {
+      Bytes hurt = message;
+      hurt[i] = static_cast<std::uint8_t>(value);
+      const auto read = ReadPointCloud2(View(hurt));
+      if (!read || read->layout.width * std::uint64_t{read->layout.height} > 1000) continue;
+      Convert(*read);
+    }
+  }
+}
+
+TEST(PointConverter, DriversLayoutsThatOurElementsTakePassAsTheyAre) {
+  EXPECT_EQ(FieldsOf(Velodyne(4, 3)), "x:F32:0,y:F32:4,z:F32:8,intensity:F32:12,ring:U16:16");
+  const auto converter = PointConverter::Make(Velodyne(4, 3));
+  ASSERT_TRUE(converter);
+  EXPECT_TRUE(converter->copies());
+  EXPECT_EQ(converter->points().point_step, 18u);
+}
+
+TEST(PointConverter, TakesThePaddingOfRowsOut) {
+  PointCloud2 cloud;
+  cloud.layout = {2, 1, {{"x", 0, kRosU8, 1}}, false, 2, 5};
+  const Bytes points = {1, 2, 9, 9, 9, 3, 4, 9, 9, 9};
+  cloud.data = View(points);
+  EXPECT_EQ(Convert(cloud), (Bytes{1, 2, 3, 4}));
+}
+
+TEST(PointConverter, TakesPackedRowsWhoseStepIsNotSet) {
+  PointCloud2 cloud;
+  cloud.layout = {2, 1, {{"x", 0, kRosU8, 1}}, false, 2, 0};
+  const Bytes points = {1, 2, 3, 4};
+  cloud.data = View(points);
+  EXPECT_EQ(Convert(cloud), points);
+}
+
+TEST(PointConverter, RefusesDataOfAnotherLengthThanTheLayoutSays) {
+  PointCloud2 cloud;
+  cloud.layout = Velodyne(4, 3);
+  for (const std::size_t size : {0u, 18u * 12 - 1, 18u * 12 + 1, 18u * 4}) {
+    const Bytes points(size);
+    cloud.data = View(points);
+    EXPECT_FALSE(Convert(cloud)) << size;
+  }
+}
+
+TEST(PointConverter, SwapsBigEndianNumbersWhereTheyStand) {
+  RosLayout layout = Velodyne(1, 1);
+  layout.is_bigendian = true;
+  Bytes points;
+  for (const float v : {1.5f, -2.f, 3.25f, 100.f}) Put(v, true, &points);
+  Put(std::uint16_t{0x0102}, true, &points);
+  PointCloud2 cloud;
+  cloud.layout = layout;
+  cloud.data = View(points);
+  const auto out = Convert(cloud);
+  ASSERT_TRUE(out);
+  EXPECT_EQ(Get<float>(*out, 0), 1.5f);
+  EXPECT_EQ(Get<float>(*out, 4), -2.f);
+  EXPECT_EQ(Get<float>(*out, 12), 100.f);
+  EXPECT_EQ(Get<std::uint16_t>(*out, 16), 0x0102);
+}
+
+TEST(PointConverter, MakesF32OfDoubleCoordinatesAndKeepsOtherDoubles) {
+  PointCloud2 cloud;
+  cloud.layout = {1,
+                  1,
+                  {{"timestamp", 0, kRosF64, 1},
+                   {"x", 8, kRosF64, 1},
+                   {"y", 16, kRosF64, 1},
+                   {"z", 24, kRosF64, 1}},
+                  false,
+                  32,
+                  32};
+  Bytes points;
+  for (const double v : {1.7e9 + 1. / 64, 1.25, -2.5, 1e300}) Put(v, false, &points);
+  cloud.data = View(points);
+  EXPECT_EQ(FieldsOf(cloud.layout), "x:F32:0,y:F32:4,z:F32:8,timestamp:F64:12");
+  const auto out = Convert(cloud);
+  ASSERT_TRUE(out);
+  EXPECT_EQ(Get<float>(*out, 0), 1.25f);
+  EXPECT_EQ(Get<float>(*out, 4), -2.5f);
+  EXPECT_TRUE(std::isinf(Get<float>(*out, 8)));
+  EXPECT_EQ(Get<double>(*out, 12), 1.7e9 + 1. / 64);
+}
+
+TEST(PointConverter, GivesWhatIsWanted) {
+  PointCloud2 cloud;
+  cloud.layout = Velodyne(1, 1);
+  Bytes points;
+  for (const float v : {1.f, 2.f, 3.f, 300.6f}) Put(v, false, &points);
+  Put(std::uint16_t{77}, false, &points);
+  cloud.data = View(points);
+  const auto fields = PointFields::Parse("ring:U8:0,x:F64:2,intensity:U8:10");
+  ASSERT_TRUE(fields);
+  const auto out = Convert(cloud, PointLayout{*fields, 12});
+  ASSERT_TRUE(out);
+  EXPECT_EQ(out->size(), 12u);
+  EXPECT_EQ((*out)[0], 77);
+  EXPECT_EQ((*out)[1], 0);
+  EXPECT_EQ(Get<double>(*out, 2), 1.);
+  EXPECT_EQ((*out)[10], 255);  // the nearest that there is
+  std::string why;
+  EXPECT_FALSE(PointConverter::Make(cloud.layout,
+                                    PointLayout{PointFields().Add("t", FieldType::kU32), 4}, &why));
+  EXPECT_EQ(why, "there is no field t");
+}
+
+TEST(PointConverter, NotANumberIsZeroAsAnInteger) {
+  PointCloud2 cloud;
+  cloud.layout = {1, 1, {{"v", 0, kRosF32, 1}}, false, 4, 4};
+  Bytes points;
+  Put(std::numeric_limits<float>::quiet_NaN(), false, &points);
+  cloud.data = View(points);
+  EXPECT_EQ(Convert(cloud, PointLayout{PointFields().Add("v", FieldType::kI16), 2}), (Bytes{0, 0}));
+}
+
+TEST(PointConverter, GivesEachElementOfAnArrayANameAndTakesItBack) {
+  const RosLayout layout = {
+      1, 1, {{"x", 0, kRosF32, 0}, {"n", 4, kRosF32, 3}, {"r", 16, kRosU8, 1}}, false, 17, 17};
+  RosLayout with_y = layout;
+  with_y.fields[0].name = "v";
+  const auto converter = PointConverter::Make(with_y);
+  ASSERT_TRUE(converter);
+  EXPECT_EQ(converter->points().fields.ToString(),
+            "v:F32:0,n[0]:F32:4,n[1]:F32:8,n[2]:F32:12,r:U8:16");
+  with_y.fields[0].count = 1;
+  EXPECT_TRUE(ToRosLayout(converter->points(), 1, 1) == with_y);
+}
+
+TEST(PointConverter, LeavesOutWhatHasNoUsableName) {
+  const RosLayout layout = {1,
+                            1,
+                            {{"", 0, kRosU8, 1},
+                             {"a,b", 1, kRosU8, 1},
+                             {"k\xC3\xA4", 2, kRosU8, 1},
+                             {"v", 3, kRosU8, 1},
+                             {"v", 4, kRosU8, 1},
+                             {"new", 5, 9, 1},
+                             {"histogram", 0, kRosU8, 4000}},
+                            false,
+                            8,
+                            8};
+  EXPECT_EQ(FieldsOf(layout), "v:U8:3");
+}
+
+TEST(PointConverter, RefusesLayoutsThatContradictThemselves) {
+  RosLayout layout = Velodyne(1, 1);
+  layout.point_step = 17;
+  EXPECT_EQ(FieldsOf(layout), "the field ring ends past point_step 17");
+  layout = Velodyne(1, 1);
+  layout.fields[2].offset = 0xFFFFFFFF;
+  EXPECT_EQ(FieldsOf(layout), "the field z ends past point_step 18");
+  layout = Velodyne(0xFFFFFFFF, 0xFFFFFFFF);
+  EXPECT_EQ(FieldsOf(layout), "width x height x point_step is above 1 GiB");
+  layout = Velodyne(1, 1);
+  layout.fields.clear();
+  EXPECT_EQ(FieldsOf(layout), "there are no fields");
+  layout.point_step = 0;
+  layout.fields = {{"x", 0, kRosU32, 0}};
+  EXPECT_EQ(FieldsOf(layout), "the field x ends past point_step 0");
+  layout = Velodyne(1, 1);
+  layout.point_step = 400;
+  layout.fields = {{"a", 0, kRosU32, 32}, {"b", 128, kRosU32, 1}};
+  EXPECT_EQ(FieldsOf(layout), "there are more than 32 fields");
+}
+
+TEST(PointConverter, PacksPointsThatAreTooLong) {
+  const RosLayout layout = {
+      1,
+      2,
+      {{"x", 0, kRosF32, 1}, {"y", 4, kRosF32, 1}, {"z", 8, kRosF32, 1}, {"far", 2000, kRosU16, 1}},
+      false,
+      2048,
+      4096};
+  EXPECT_EQ(FieldsOf(layout), "x:F32:0,y:F32:4,z:F32:8,far:U16:12");
+}
+
+TEST(RosTypes, StandInTheOrderOfTheirEnumeration) {
+  for (const RosTypeInfo& info : kRosTypes) EXPECT_EQ(InfoOf(info.type).name, info.name);
+}
+
+}  // namespace
+}  // namespace lidar::cdr
