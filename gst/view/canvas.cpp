@@ -4,18 +4,13 @@
 #include <algorithm>
 #include <cmath>
 
+#include "gst/view/palette.h"
+
 namespace lidar::gst {
 namespace {
 
 constexpr Color kSky{13, 15, 22};
 constexpr Color kFloor{27, 31, 42};
-
-std::uint8_t Mix(std::uint8_t a, std::uint8_t b, float t) {
-  return static_cast<std::uint8_t>(static_cast<float>(a) * (1 - t) + static_cast<float>(b) * t);
-}
-Color Mix(Color a, Color b, float t) {
-  return {Mix(a.r, b.r, t), Mix(a.g, b.g, t), Mix(a.b, b.b, t)};
-}
 
 }  // namespace
 
@@ -69,6 +64,19 @@ void Canvas::Line(float x0, float y0, float x1, float y1, Color color) {
     const int y = static_cast<int>(std::floor(y0 + t * (y1 - y0)));
     if (x < 0 || y < 0 || x >= width_ || y >= height_ || depth_[Index(x, y)] < kFar) continue;
     pixels_[Index(x, y)] = Mix(pixels_[Index(x, y)], color, 0.5F);
+  }
+}
+
+void Canvas::Stroke(End from, End to, int size, Color color) {
+  const float length = std::max(std::abs(to.x - from.x), std::abs(to.y - from.y));
+  if (!(length < 1e5F)) return;
+  const int steps = static_cast<int>(length) + 1;
+  for (int i = 0; i <= steps; ++i) {
+    const float t = static_cast<float>(i) / static_cast<float>(steps);
+    const auto between = [t](float a, float b) { return a + t * (b - a); };
+    Splat(static_cast<int>(std::floor(between(from.x, to.x))),
+          static_cast<int>(std::floor(between(from.y, to.y))), size, between(from.depth, to.depth),
+          color);
   }
 }
 

@@ -29,6 +29,11 @@ class Canvas {
   void Fill(int x0, int y0, int x1, int y1, Color color);
   /// A line of half-transparent pixels, under what is drawn already.
   void Line(float x0, float y0, float x1, float y1, Color color);
+  /// A line of `size` pixels' width, from depth to depth; what is nearer hides it.
+  struct End {
+    float x, y, depth;
+  };
+  void Stroke(End from, End to, int size, Color color);
   /// Eye-dome lighting: darkens pixels that lie behind their neighbours, so that edges show.
   void ShadeEdges(float strength);
 

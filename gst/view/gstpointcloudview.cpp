@@ -58,6 +58,7 @@ GType ColorType() {
 struct Settings {
   gint view = 1;
   gint color_by = 0;
+  bool map = false;
   guint width = 1280;
   guint height = 720;
   gdouble extent_m = 100;
@@ -76,11 +77,13 @@ struct Settings {
 using Row = lidar::gst::Property<Settings>;
 constexpr gdouble kFar = 10'000;
 constexpr gint kAnytime = GST_PARAM_MUTABLE_PLAYING;
-const std::array<Row, 15> kProperties = {{
+const std::array<Row, 16> kProperties = {{
     {"view", "How the cloud is seen", lidar::gst::EnumField<Settings>{&Settings::view, ViewType}, 0,
      0, kAnytime},
     {"color-by", "What the colours tell",
      lidar::gst::EnumField<Settings>{&Settings::color_by, ColorType}, 0, 0, kAnytime},
+    {"map", "Draw clouds over the map that their poses make, with the way (see lidarodometry)",
+     &Settings::map, 0, 0, kAnytime},
     {"width", "Width of the video where downstream leaves it open [pixels]", &Settings::width, 16,
      8192},
     {"height", "Height of the video where downstream leaves it open [pixels]", &Settings::height,
@@ -116,7 +119,10 @@ struct State {
   std::optional<CloudInfo> info;
   lidar::gst::RefusedCaps refused;
   GstVideoInfo video;
+  std::optional<lidar::gst::TrailMap> map;
+  gint map_colors = 0;  // the map keeps what its colours tell
   std::unique_ptr<Renderer> renderer;
+  bool warned_no_pose = false;
   bool drawing = false;  // a picture is begun
   guint scan_id = 0;
   GstClockTime pts = GST_CLOCK_TIME_NONE;  // of that scan
@@ -239,16 +245,47 @@ void Paint(const lidar::gst::Canvas& canvas, GstVideoFrame* frame) {
   }
 }
 
-/// Settings that changed while a picture was drawn show in the next one.
-void BeginPicture(State* state, const GstLidarSlice& slice, GstBuffer* in) {
-  {
-    std::lock_guard lock(state->mutex);
-    if (state->changed || !state->renderer)
-      state->renderer =
-          std::make_unique<Renderer>(ToView(state->settings), GST_VIDEO_INFO_WIDTH(&state->video),
-                                     GST_VIDEO_INFO_HEIGHT(&state->video));
-    state->changed = false;
+/// Moves the map to where `in` was taken. False where its points shall not enter the map.
+bool FollowPose(GstBaseTransform* base, GstBuffer* in) {
+  State& state = StateOf(base);
+  if (!state.map) return false;
+  GstLidarPose pose;
+  if (!gst_lidar_buffer_get_pose(in, &pose)) {
+    if (!state.warned_no_pose)
+      GST_ELEMENT_WARNING(base, STREAM, FAILED,
+                          ("The clouds have no poses, so there is no map: put lidarodometry in "
+                           "front of pointcloudview."),
+                          (nullptr));
+    state.warned_no_pose = true;
+    return false;
   }
+  const GstClockTime captured = gst_lidar_buffer_get_capture_time(in);
+  const GstClockTime at = GST_CLOCK_TIME_IS_VALID(captured) ? captured : GST_BUFFER_PTS(in);
+  state.map->MoveTo(pose, GST_CLOCK_TIME_IS_VALID(at) ? static_cast<double>(at) / GST_SECOND : 0);
+  return pose.tracking != GST_LIDAR_TRACKING_LOST;
+}
+
+/// The map lives as long as it is asked for and its colours tell the same.
+lidar::gst::TrailMap* UpdateMap(State* state) {
+  const Settings& settings = state->settings;
+  const bool stale = state->map_colors != settings.color_by;
+  if (!settings.map || stale) state->map.reset();
+  if (settings.map && !state->map) state->map.emplace();
+  state->map_colors = settings.color_by;
+  return state->map ? &*state->map : nullptr;
+}
+
+/// Settings that changed while a picture was drawn show in the next one.
+void ApplySettings(State* state) {
+  std::lock_guard lock(state->mutex);
+  if (state->changed || !state->renderer)
+    state->renderer =
+        std::make_unique<Renderer>(ToView(state->settings), GST_VIDEO_INFO_WIDTH(&state->video),
+                                   GST_VIDEO_INFO_HEIGHT(&state->video), UpdateMap(state));
+  state->changed = false;
+}
+
+void BeginPicture(State* state, const GstLidarSlice& slice, GstBuffer* in) {
   state->renderer->Begin();
   state->drawing = true;
   state->scan_id = slice.scan_id;
@@ -273,8 +310,8 @@ GstFlowReturn FinishPicture(GstBaseTransform* base, GstBuffer* out) {
 /// A scan is a picture: slices are drawn as they come, and the last one lets it go.
 GstFlowReturn Transform(GstBaseTransform* base, GstBuffer* in, GstBuffer* out) {
   State& state = StateOf(base);
-  const lidar::gst::BufferMap map(in, GST_MAP_READ);
-  if (!map || map.size() != state.info->FrameSize()) {
+  const lidar::gst::BufferMap bytes(in, GST_MAP_READ);
+  if (!bytes || bytes.size() != state.info->FrameSize()) {
     GST_ELEMENT_ERROR(base, STREAM, FORMAT, ("A cloud of another size than its caps say."),
                       (nullptr));
     return GST_FLOW_ERROR;
@@ -285,8 +322,11 @@ GstFlowReturn Transform(GstBaseTransform* base, GstBuffer* in, GstBuffer* out) {
   if (state.drawing && slice.scan_id != state.scan_id)
     flow = FinishPicture(base, out);  // its last slice was lost
   const bool done = flow == GST_FLOW_OK;
-  if (!state.drawing) BeginPicture(&state, slice, in);
-  state.renderer->Draw(*state.info, slice, map.data());
+  const bool begins = !state.drawing;
+  if (begins) ApplySettings(&state);
+  const bool into_map = FollowPose(base, in);
+  if (begins) BeginPicture(&state, slice, in);
+  state.renderer->Draw(*state.info, slice, bytes.data(), into_map);
   // Each buffer gives at most one picture. After a loss, a scan of one slice waits for the next
   // scan.
   if (slice.slice_index + 1 < slice.slice_count || done) return flow;
@@ -294,8 +334,10 @@ GstFlowReturn Transform(GstBaseTransform* base, GstBuffer* in, GstBuffer* out) {
 }
 
 gboolean TransformMeta(GstBaseTransform* base, GstBuffer* out, GstMeta* meta, GstBuffer* in) {
-  // A picture must not carry the meta of a slice.
-  if (meta->info == gst_meta_get_info(GST_LIDAR_SLICE_META_NAME)) return FALSE;
+  // A picture must not carry the metas of a slice.
+  if (meta->info == gst_meta_get_info(GST_LIDAR_SLICE_META_NAME) ||
+      meta->info == gst_meta_get_info(GST_LIDAR_POSE_META_NAME))
+    return FALSE;
   return GST_BASE_TRANSFORM_CLASS(gst_lidar_point_cloud_view_parent_class)
       ->transform_meta(base, out, meta, in);
 }
@@ -309,6 +351,12 @@ gboolean Stop(GstBaseTransform* base) {
   State& state = StateOf(base);
   state.drawing = false;
   state.renderer.reset();
+  state.map.reset();
+  state.warned_no_pose = false;
+  {
+    std::lock_guard lock(state.mutex);
+    state.changed = true;
+  }
   state.info.reset();
   state.refused.Reset();
   return TRUE;

@@ -43,4 +43,12 @@ Color Glow(float t) {
   return Blend(kStops, t);
 }
 
+Color Mix(Color a, Color b, float part) {
+  const auto mix = [part](std::uint8_t x, std::uint8_t y) {
+    return static_cast<std::uint8_t>(static_cast<float>(x) * (1 - part) +
+                                     static_cast<float>(y) * part);
+  };
+  return {mix(a.r, b.r), mix(a.g, b.g), mix(a.b, b.b)};
+}
+
 }  // namespace lidar::gst

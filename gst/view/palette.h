@@ -10,4 +10,7 @@ Color Spectrum(float t);
 /// From slate to warm white, for brightness.
 Color Glow(float t);
 
+/// `part` of the way from `a` to `b`.
+Color Mix(Color a, Color b, float part);
+
 }  // namespace lidar::gst

@@ -12,6 +12,8 @@ namespace {
 constexpr float kPi = 3.14159265F;
 constexpr Color kRing{120, 132, 158};
 constexpr Color kCar{255, 255, 255};
+constexpr float kGround = -1.9F;  // below the sensor [m]
+constexpr float kAbove = 100;     // from where the view from above looks down [m]
 
 struct Scale {
   float low, high;
@@ -34,8 +36,11 @@ Scale DefaultScale(ColorBy by, guint beams) {
 
 }  // namespace
 
-Renderer::Renderer(const ViewSettings& settings, int width, int height)
-    : settings_(settings), canvas_(width, height) {
+Renderer::Renderer(const ViewSettings& settings, int width, int height, TrailMap* map)
+    : settings_(settings),
+      canvas_(width, height),
+      pixels_per_m_(static_cast<float>(width) / settings.extent_m),
+      map_(settings.view == ViewKind::kRange ? nullptr : map) {
   const auto& e = settings.eye_m;
   const auto& t = settings.target_m;
   const auto unit = [](Vec v) {
@@ -56,39 +61,7 @@ Renderer::Renderer(const ViewSettings& settings, int width, int height)
 void Renderer::Begin() {
   canvas_.Clear();
   scale_known_ = false;
-}
-
-template <class Plot>
-void Renderer::ForEachPoint(const CloudInfo& info, const std::uint8_t* points, const Plot& plot) {
-  const guint xyz = info.fields.Find("x")->offset;
-  const auto intensity = FieldReader::Find(info.fields, {"intensity", "reflectivity", "signal"});
-  for (guint beam = 0; beam < info.height; ++beam) {
-    for (guint column = 0; column < info.width; ++column, points += info.point_step) {
-      Point point{};
-      std::memcpy(&point.p, points + xyz, sizeof point.p);
-      const Vec& p = point.p;
-      point.range = std::sqrt(p.x * p.x + p.y * p.y + p.z * p.z);
-      // A missing return is zero from some sources and NaN from others.
-      if (!(point.range > 0.01F && point.range < 1e5F)) continue;
-      point.beam = beam;
-      point.column = column;
-      switch (settings_.color_by) {
-        case ColorBy::kHeight:
-          point.value = p.z;
-          break;
-        case ColorBy::kIntensity:
-          point.value = intensity ? (*intensity)(points) : 0;
-          break;
-        case ColorBy::kRange:
-          point.value = point.range;
-          break;
-        case ColorBy::kRing:
-          point.value = static_cast<float>(beam);
-          break;
-      }
-      plot(point);
-    }
-  }
+  if (map_ != nullptr) FrameMap();
 }
 
 void Renderer::LearnScale(const CloudInfo& info, const std::uint8_t* points) {
@@ -117,15 +90,21 @@ Color Renderer::ColorOf(float value) const {
   return Spectrum(t);
 }
 
+std::optional<std::array<float, 3>> Renderer::Place(Vec p) const {
+  if (settings_.view == ViewKind::kPerspective) return Project(p);
+  const float x = static_cast<float>(canvas_.width()) / 2 + pixels_per_m_ * p.x;
+  const float y = static_cast<float>(canvas_.height()) / 2 - pixels_per_m_ * p.y;
+  if (!(std::abs(x) < 1e5F && std::abs(y) < 1e5F)) return std::nullopt;
+  // What is high hides what is low.
+  return std::array<float, 3>{x, y, std::max(1.0F, kAbove - p.z)};
+}
+
 void Renderer::PlotTop(const Point& point) {
-  const float scale = static_cast<float>(canvas_.width()) / settings_.extent_m;
-  const float x = static_cast<float>(canvas_.width()) / 2 + scale * point.p.x;
-  const float y = static_cast<float>(canvas_.height()) / 2 - scale * point.p.y;
-  if (!(std::abs(x) < 1e5F && std::abs(y) < 1e5F)) return;
+  const auto at = Place(point.p);
+  if (!at) return;
   const int size = settings_.point_size > 0 ? settings_.point_size
-                                            : std::max(1, static_cast<int>(scale * 0.12F));
-  // Seen from a hundred metres up, so that what is high hides what is low.
-  canvas_.Splat(static_cast<int>(x), static_cast<int>(y), size, 100 - point.p.z,
+                                            : std::max(1, static_cast<int>(pixels_per_m_ * 0.12F));
+  canvas_.Splat(static_cast<int>((*at)[0]), static_cast<int>((*at)[1]), size, (*at)[2],
                 ColorOf(point.value));
 }
 
@@ -194,8 +173,13 @@ void Renderer::DrawPanorama(const CloudInfo& info, const std::uint8_t* points) {
   });
 }
 
-void Renderer::Draw(const CloudInfo& info, const GstLidarSlice& slice, const std::uint8_t* points) {
+void Renderer::Draw(const CloudInfo& info, const GstLidarSlice& slice, const std::uint8_t* points,
+                    bool into_map) {
   LearnScale(info, points);
+  if (map_ != nullptr) {
+    DrawOverMap(info, slice, points, into_map);
+    return;
+  }
   switch (settings_.view) {
     case ViewKind::kTop:
       ForEachPoint(info, points, [this](const Point& p) { PlotTop(p); });
@@ -216,14 +200,9 @@ void Renderer::Draw(const CloudInfo& info, const GstLidarSlice& slice, const std
 /// Circles on the ground every ten metres, for scale.
 void Renderer::DrawRings() {
   constexpr int kCorners = 120;
-  const float ground = -1.9F;
-  const auto at = [&](float radius, int i) -> std::optional<std::array<float, 3>> {
+  const auto at = [&](float radius, int i) {
     const float angle = 2 * kPi * static_cast<float>(i) / kCorners;
-    const Vec p{radius * std::cos(angle), radius * std::sin(angle), ground};
-    if (settings_.view == ViewKind::kPerspective) return Project(p);
-    const float scale = static_cast<float>(canvas_.width()) / settings_.extent_m;
-    return std::array<float, 3>{static_cast<float>(canvas_.width()) / 2 + scale * p.x,
-                                static_cast<float>(canvas_.height()) / 2 - scale * p.y, 0};
+    return Place({radius * std::cos(angle), radius * std::sin(angle), kGround});
   };
   for (float radius = 10; radius <= 50; radius += 10) {
     for (int i = 0; i < kCorners; ++i) {
@@ -236,8 +215,14 @@ void Renderer::DrawRings() {
 
 const Canvas& Renderer::Finish() {
   if (settings_.view == ViewKind::kRange) return canvas_;
+  if (map_ != nullptr) DrawMap();
   // Seen from above, depth is height: a step of one metre is shaded like a tenth of the distance.
   canvas_.ShadeEdges(settings_.view == ViewKind::kTop ? 6.0F : 2.0F);
+  if (map_ != nullptr) {
+    DrawWay();
+    map_->EndScan();
+    return canvas_;
+  }
   DrawRings();
   if (settings_.view == ViewKind::kTop)
     canvas_.Fill(canvas_.width() / 2 - 2, canvas_.height() / 2 - 2, canvas_.width() / 2 + 3,

@@ -2,11 +2,14 @@
 // Draws clouds: from above, in perspective, or as the range image of the sensor.
 #pragma once
 #include <array>
+#include <cmath>
+#include <cstring>
 #include <optional>
 
 #include "gst/common/cloud_info.h"
 #include "gst/view/canvas.h"
 #include "gst/view/cloud_reader.h"
+#include "gst/view/trail_map.h"
 
 namespace lidar::gst {
 
@@ -28,11 +31,16 @@ struct ViewSettings {
 /// One picture at a time: Begin, Draw for each slice, Finish.
 class Renderer {
  public:
-  Renderer(const ViewSettings& settings, int width, int height);
+  /// With a map, which has to have a pose, scans are drawn where they were taken, over what was
+  /// seen before: from above with all of the way in the picture, in perspective from behind the
+  /// sensor, level. It must outlive the renderer.
+  Renderer(const ViewSettings& settings, int width, int height, TrailMap* map);
 
   void Begin();
   /// `points`: info.FrameSize() bytes, whose fields have x, y, z as F32 side by side.
-  void Draw(const CloudInfo& info, const GstLidarSlice& slice, const std::uint8_t* points);
+  /// `into_map`: the points enter the map.
+  void Draw(const CloudInfo& info, const GstLidarSlice& slice, const std::uint8_t* points,
+            bool into_map);
   const Canvas& Finish();
 
  private:
@@ -57,16 +65,63 @@ class Renderer {
                       const std::uint8_t* points);
   void DrawPanorama(const CloudInfo& info, const std::uint8_t* points);
   void DrawRings();
+  void FrameMap();
+  void DrawOverMap(const CloudInfo& info, const GstLidarSlice& slice, const std::uint8_t* points,
+                   bool into_map);
+  void DrawMap();
+  void DrawWay();
+  Vec ToPicture(const std::array<float, 3>& at) const;
   std::optional<std::array<float, 3>> Project(Vec p) const;  // x, y in pixels; depth
+  /// The same in the view that was chosen.
+  std::optional<std::array<float, 3>> Place(Vec p) const;
 
   ViewSettings settings_;
   Canvas canvas_;
   float low_ = 0;
   float high_ = 1;
   bool scale_known_ = false;
+  float pixels_per_m_;  // from above
+  TrailMap* map_;
+  // What the picture shows of the map: the point in its middle, and how it is turned.
+  std::array<float, 3> middle_{};
+  float cos_turn_ = 1;
+  float sin_turn_ = 0;
   // The camera: right, up, forward, and pixels per tangent.
   Vec right_{}, up_{}, forward_{};
   float focal_ = 1;
 };
+
+template <class Plot>
+void Renderer::ForEachPoint(const CloudInfo& info, const std::uint8_t* points, const Plot& plot) {
+  const guint xyz = info.fields.Find("x")->offset;
+  const auto intensity = FieldReader::Find(info.fields, {"intensity", "reflectivity", "signal"});
+  for (guint beam = 0; beam < info.height; ++beam) {
+    for (guint column = 0; column < info.width; ++column, points += info.point_step) {
+      Point point{};
+      std::memcpy(&point.p, points + xyz, sizeof point.p);
+      const Vec& p = point.p;
+      point.range = std::sqrt(p.x * p.x + p.y * p.y + p.z * p.z);
+      // A missing return is zero from some sources and NaN from others.
+      if (!(point.range > 0.01F && point.range < 1e5F)) continue;
+      point.beam = beam;
+      point.column = column;
+      switch (settings_.color_by) {
+        case ColorBy::kHeight:
+          point.value = p.z;
+          break;
+        case ColorBy::kIntensity:
+          point.value = intensity ? (*intensity)(points) : 0;
+          break;
+        case ColorBy::kRange:
+          point.value = point.range;
+          break;
+        case ColorBy::kRing:
+          point.value = static_cast<float>(beam);
+          break;
+      }
+      plot(point);
+    }
+  }
+}
 
 }  // namespace lidar::gst

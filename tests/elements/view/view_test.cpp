@@ -9,6 +9,7 @@
 
 #include "gst/common/buffer_map.h"
 #include "gst/common/cloud_info.h"
+#include "gst/view/trail_map.h"
 #include "tests/support/harness.h"
 
 namespace lidar::gst {
@@ -51,6 +52,15 @@ class View : public ::testing::Test {
     gst_lidar_buffer_set_slice(buffer.get(), &slice);
     return Push(std::move(buffer), slice.scan_id * 100 * GST_MSECOND);
   }
+  /// A scan taken at `place`, without a rotation.
+  GstFlowReturn PushFrom(std::array<float, 3> place, const std::vector<Point>& points, guint scan) {
+    BufferPtr buffer = Cloud(points);
+    const GstLidarSlice slice{scan, 0, 1, 0};
+    gst_lidar_buffer_set_slice(buffer.get(), &slice);
+    const GstLidarPose pose{{place[0], place[1], place[2]}, {0, 0, 0, 1}, GST_LIDAR_TRACKING_OK};
+    gst_lidar_buffer_set_pose(buffer.get(), &pose);
+    return Push(std::move(buffer), scan * 100 * GST_MSECOND);
+  }
   void Pull() {
     frame_.reset(gst_harness_pull(h_.get()));
     ASSERT_TRUE(frame_);
@@ -74,6 +84,12 @@ class View : public ::testing::Test {
   bool IsPoint(int x, int y) {
     const auto p = Pixel(x, y);
     return std::max({p[0], p[1], p[2]}) > 130;
+  }
+
+  /// The map is dimmer than a point, and brighter than the background.
+  bool IsDrawn(int x, int y) {
+    const auto p = Pixel(x, y);
+    return std::max({p[0], p[1], p[2]}) > 60;
   }
 
   Harness h_;
@@ -169,6 +185,89 @@ TEST_F(View, SettingsMayChangeWhileItPlays) {
   Push(Cloud({{12.5F, 0, 0, 1}}));
   Pull();
   EXPECT_TRUE(IsPoint(150, 50));
+}
+
+TEST_F(View, TheMapKeepsWhatWasSeenWhereItWas) {
+  Start("map=true view=top extent=100 point-size=1", Info(2));
+  for (guint scan = 0; scan < 4; ++scan) {
+    // A wall at x = 25 of the map, seen from a sensor that drives to x = 10.
+    const float driven = scan < 3 ? 0.0F : 10.0F;
+    const float wall = scan < 3 ? 25.0F : 500.0F;  // out of the last scan's sight
+    PushFrom({driven, 0, 0}, {{wall, 12, 0, 1}, {wall, 12.5F, 0, 1}}, scan);
+    Pull();
+  }
+  // The middle of the way, x = 5, is the middle of the picture.
+  EXPECT_TRUE(IsDrawn(140, 25));
+  EXPECT_FALSE(IsDrawn(160, 25));
+  EXPECT_TRUE(IsDrawn(95, 50));  // the way
+  EXPECT_FALSE(IsDrawn(80, 50));
+}
+
+TEST_F(View, TheWholeWayIsInThePictureOfTheMap) {
+  Start("map=true view=top extent=100", Info(1));
+  for (guint scan = 0; scan < 5; ++scan) {
+    PushFrom({400.0F * static_cast<float>(scan), 0, 0}, {{5, 5, 0, 1}}, scan);
+    Pull();
+  }
+  EXPECT_TRUE(IsDrawn(4, 50));
+  EXPECT_TRUE(IsDrawn(100, 50));
+  EXPECT_TRUE(IsDrawn(195, 50));
+}
+
+TEST_F(View, WithoutPosesThereIsNoMapAndAWarning) {
+  Start("map=true view=top extent=100 point-size=1", Info(1));
+  GstBus* bus = gst_bus_new();
+  gst_element_set_bus(h_->element, bus);
+  for (guint scan = 0; scan < 3; ++scan) {
+    PushSlice({{25, 0, 0, 1}}, {scan, 0, 1, 0});
+    Pull();
+    EXPECT_TRUE(IsPoint(150, 50));
+  }
+  int warnings = 0;
+  while (GstMessage* message = gst_bus_pop_filtered(bus, GST_MESSAGE_WARNING)) {
+    ++warnings;
+    gst_message_unref(message);
+  }
+  EXPECT_EQ(warnings, 1);
+  gst_element_set_bus(h_->element, nullptr);
+  gst_object_unref(bus);
+}
+
+TEST_F(View, TakesPosesThatMakeNoSense) {
+  for (const char* view : {"top", "perspective", "range"}) {
+    Start(std::string("map=true view=") + view, Info(1));
+    for (const float at : {0.0F, 3e38F, std::numeric_limits<float>::quiet_NaN()}) {
+      EXPECT_EQ(PushFrom({at, at, at}, {{5, 5, 0, 1}}, at == 0 ? 0 : 1), GST_FLOW_OK);
+    }
+  }
+}
+
+TEST(TrailMap, IsBoundedHoweverLongTheWay) {
+  TrailMap map(1000);
+  GstLidarPose pose{{0, 0, 0}, {0, 0, 0, 1}, GST_LIDAR_TRACKING_OK};
+  for (int i = 0; i < 40'000; ++i) {
+    pose.position[0] = i;
+    map.MoveTo(pose, 0.1 * i);
+    map.Add({static_cast<float>(i), 3, 0}, 0);
+    map.EndScan();
+    ASSERT_LE(map.points().size(), 1000U);
+    ASSERT_LE(map.way().size(), TrailMap::kMostPlaces);
+  }
+  EXPECT_LT(map.points().front().at[0], 100);  // the beginning is still there
+  EXPECT_GT(map.points().back().at[0], 39'000);
+  EXPECT_GT(map.way().back()[0], 39'990);
+}
+
+TEST(TrailMap, FollowsTheVelocityWithinAScan) {
+  TrailMap map(1000);
+  const double half = std::sqrt(0.5);
+  map.MoveTo({{0, 0, 0}, {0, 0, 0, 1}, GST_LIDAR_TRACKING_OK}, 10.0);
+  map.MoveTo({{2, 0, 0}, {0, 0, 0, 1}, GST_LIDAR_TRACKING_OK}, 10.1);
+  EXPECT_NEAR(map.PoseAfter(0.05).position[0], 3, 1e-5);
+  map.MoveTo({{4, 0, 0}, {0, 0, half, half}, GST_LIDAR_TRACKING_OK}, 20);
+  const Rigid after_a_gap = map.PoseAfter(0.05);
+  EXPECT_NEAR(after_a_gap.position[0], 4, 1e-5);
+  EXPECT_NEAR(after_a_gap.heading(), 1.5708F, 1e-3);
 }
 
 TEST_F(View, DrawsNoNonsense) {

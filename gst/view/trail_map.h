@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// What a moving sensor has seen so far, as points in one frame, and the way it took.
+#pragma once
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "gst/common/gstlidar.h"
+
+namespace lidar::gst {
+
+/// Takes points of the sensor to the frame of the poses.
+struct Rigid {
+  std::array<float, 9> rotation{1, 0, 0, 0, 1, 0, 0, 0, 1};  // row-major
+  std::array<float, 3> position{};
+
+  std::array<float, 3> operator()(float x, float y, float z) const {
+    const auto& r = rotation;
+    return {r[0] * x + r[1] * y + r[2] * z + position[0],
+            r[3] * x + r[4] * y + r[5] * z + position[1],
+            r[6] * x + r[7] * y + r[8] * z + position[2]};
+  }
+  float heading() const;  // [rad]
+};
+
+/// One point a cube. Memory is bounded: where there are too many cubes, they grow, and the way
+/// keeps every second place.
+class TrailMap {
+ public:
+  struct Point {
+    std::array<float, 3> at;
+    float value;  // what its colour tells
+    std::uint16_t last_scan = 0;
+    std::uint16_t scans = 0;  // that met it
+  };
+
+  explicit TrailMap(std::size_t most_points = kMostPoints);
+
+  /// The pose of the sensor at `seconds`; the velocity is the one since the pose before.
+  void MoveTo(const GstLidarPose& pose, double seconds);
+  /// Where the sensor is, `later_s` after the last pose.
+  Rigid PoseAfter(double later_s) const;
+  bool has_pose() const { return poses_ > 0; }
+
+  /// Points that were added since the last call belong to one scan.
+  void EndScan() { ++scan_; }
+  void Add(const std::array<float, 3>& at, float value);
+
+  const std::vector<Point>& points() const { return points_; }
+  /// Places of the sensor, in their order.
+  const std::vector<std::array<float, 3>>& way() const { return way_; }
+  float cube_m() const { return cube_m_; }
+
+  static constexpr std::size_t kMostPoints = std::size_t{1} << 20;
+  static constexpr std::size_t kMostPlaces = 16384;
+
+ private:
+  std::size_t SlotOf(const std::array<float, 3>& at) const;
+  void Coarsen();
+  void NotePlace();
+
+  std::size_t most_points_;
+  float cube_m_ = 0.2F;
+  std::vector<Point> points_;
+  std::vector<std::uint32_t> slots_;  // 1 + index of a point; 0: free
+  std::uint16_t scan_ = 1;
+  std::vector<std::array<float, 3>> way_;
+  float place_step_m_ = 0.5F;
+  GstLidarPose pose_{};
+  GstLidarPose before_{};
+  double pose_s_ = 0;
+  double step_s_ = 0;  // from the pose before; 0: the velocity is not known
+  std::uint64_t poses_ = 0;
+};
+
+}  // namespace lidar::gst
