@@ -11,6 +11,8 @@ import sys
 # The table's names of libraries, and how their headers begin.
 LIBRARIES = {
     "liblzma": ("lzma",),
+    "liblz4": ("lz4",),
+    "libzstd": ("zstd",),
     "nlohmann_json": ("nlohmann/",),
     "libpcap": ("pcap/", "pcap."),
     "Eigen": ("Eigen/",),

@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// The records of one chunk, uncompressed.
+#pragma once
+#include <optional>
+
+#include "src/mcap/file_index.h"
+
+namespace lidar::mcap {
+
+/// The header of the chunk that is `record`; none where it is damaged or asks for more than
+/// kMaxChunk.
+std::optional<ChunkHeader> ReadChunkHeader(Input* input, const RecordPlace& record);
+
+/// Replaces `records` by those of the chunk. False where it is damaged.
+bool ReadChunk(Input* input, const ChunkPlace& chunk, Bytes* records);
+
+}  // namespace lidar::mcap

@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Chunks compressed by lz4 or zstd, in the frame formats that MCAP names.
+#pragma once
+#include <cstdint>
+#include <string_view>
+
+#include "src/mcap/records.h"
+
+namespace lidar::mcap {
+
+enum class Compression { kNone, kLz4, kZstd };
+
+/// As a chunk names it.
+std::string_view NameOf(Compression compression);
+
+/// Replaces `out` by `bytes` compressed; false where they do not get smaller by a twentieth, so
+/// that they are better left as they are.
+bool Compress(Compression compression, ByteView bytes, Bytes* out);
+
+/// Replaces `out` by exactly `size` bytes; false where the data are damaged, give more or less, or
+/// are of an unknown compression. The caller has bounded `size`.
+bool Decompress(std::string_view compression, ByteView bytes, std::size_t size, Bytes* out);
+
+}  // namespace lidar::mcap

@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// What a file holds and where: from its summary, or by looking through a file that has none.
+#pragma once
+#include <cstdint>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "src/mcap/record_input.h"
+
+namespace lidar::mcap {
+
+/// A chunk, or a run of messages outside of chunks.
+struct ChunkPlace {
+  std::uint64_t start_time = 0;  // log times [ns], as the file claims
+  std::uint64_t end_time = 0;
+  std::uint64_t offset = 0;  // in the file; of a run, of its first record
+  std::uint64_t size = 0;    // records and all
+  bool is_run = false;
+};
+
+struct FileIndex {
+  std::map<std::uint16_t, Schema> schemas;
+  std::map<std::uint16_t, Channel> channels;
+  std::vector<ChunkPlace> chunks;  // by start time
+  bool complete = false;           // a file that was closed in order
+  std::uint64_t catalogue_size = 0;
+
+  bool empty() const { return chunks.empty(); }
+  std::uint64_t start_time() const;
+  std::uint64_t end_time() const;
+  /// Takes a schema or a channel; false for other records and for damaged ones. What is known
+  /// already stays, and so does the memory within kMaxCatalogue.
+  bool Learn(const Record& record);
+};
+
+/// Reads the index of `input`, which begins with the magic. Never fails: what cannot be read is
+/// not there.
+FileIndex ReadFileIndex(Input* input);
+
+/// By looking through the records from the first on, up to the first that is cut off.
+FileIndex ScanFile(Input* input);
+
+}  // namespace lidar::mcap

@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// A file without a summary: it broke off, or its writer made none.
+#include <algorithm>
+#include <optional>
+
+#include "src/mcap/chunk.h"
+#include "src/mcap/file_index.h"
+
+namespace lidar::mcap {
+namespace {
+
+constexpr std::uint64_t kMaxRun = std::uint64_t{1} << 20;  // bytes
+constexpr int kChunksToLearn = 4;  // the channels of the others come when they are read
+
+class Scanner {
+ public:
+  explicit Scanner(Input* input) : input_(*input) {}
+
+  FileIndex Run() {
+    std::uint64_t offset = kMagic.size();
+    while (const auto record = RecordAt(&input_, offset)) {
+      if (!Take(*record, offset)) break;
+      offset = record->end();
+    }
+    EndRun();
+    auto& chunks = index_.chunks;
+    std::stable_sort(chunks.begin(), chunks.end(), [](const ChunkPlace& a, const ChunkPlace& b) {
+      return a.start_time < b.start_time;
+    });
+    return std::move(index_);
+  }
+
+ private:
+  /// False where the data section ends.
+  bool Take(const RecordPlace& record, std::uint64_t offset) {
+    switch (record.op) {
+      case Op::kChunk:
+        EndRun();
+        return TakeChunk(record, offset);
+      case Op::kMessage:
+        return TakeMessage(record, offset);
+      case Op::kSchema:
+      case Op::kChannel:
+        EndRun();
+        if (record.size > kMaxCatalogue || !ReadContent(&input_, record, record.size, &content_))
+          return false;
+        index_.Learn({record.op, {content_.data(), content_.size()}, 0});
+        return true;
+      case Op::kDataEnd:
+      case Op::kFooter:
+        return false;
+      default:
+        EndRun();
+        return true;
+    }
+  }
+
+  bool TakeChunk(const RecordPlace& record, std::uint64_t offset) {
+    const auto header = ReadChunkHeader(&input_, record);
+    if (!header) return true;  // the next may be better
+    index_.chunks.push_back(
+        {header->start_time, header->end_time, offset, record.end() - offset, false});
+    if (learned_ == kChunksToLearn) return true;
+    ++learned_;
+    if (ReadChunk(&input_, index_.chunks.back(), &content_)) {
+      std::size_t at = 0;
+      while (const auto inner = NextRecord({content_.data(), content_.size()}, &at))
+        index_.Learn(*inner);
+    }
+    return true;
+  }
+
+  bool TakeMessage(const RecordPlace& record, std::uint64_t offset) {
+    ByteView data;
+    if (!ReadContent(&input_, record, MessageHeader::kSize, &content_)) return false;
+    const auto message = ParseMessage({content_.data(), content_.size()}, &data);
+    if (!message) return true;
+    if (run_ && record.end() - run_->offset > kMaxRun) EndRun();
+    if (!run_) run_ = ChunkPlace{message->log_time, message->log_time, offset, 0, true};
+    run_->start_time = std::min(run_->start_time, message->log_time);
+    run_->end_time = std::max(run_->end_time, message->log_time);
+    run_->size = record.end() - run_->offset;
+    return true;
+  }
+
+  void EndRun() {
+    if (run_) index_.chunks.push_back(*run_);
+    run_.reset();
+  }
+
+  Input& input_;
+  FileIndex index_;
+  std::optional<ChunkPlace> run_;
+  Bytes content_;
+  int learned_ = 0;
+};
+
+}  // namespace
+
+FileIndex ScanFile(Input* input) { return Scanner(input).Run(); }
+
+}  // namespace lidar::mcap

@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Reads the messages of an MCAP file by their log times. Any bytes may come.
+#pragma once
+#include <cstdint>
+#include <deque>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "src/mcap/file_index.h"
+
+namespace lidar::mcap {
+
+/// A message; `data` belong to the reader and stay until its next call.
+struct Message {
+  MessageHeader header;
+  ByteView data;
+};
+
+class Reader {
+ public:
+  /// None where `input` is no MCAP file; `why` then says so in words for a user.
+  static std::unique_ptr<Reader> Open(std::unique_ptr<Input> input, std::string* why);
+
+  /// Schemas and channels of a file that broke off may grow with each message.
+  const FileIndex& index() const { return index_; }
+  /// Chunks that were left out.
+  std::uint64_t damaged_chunks() const { return damaged_chunks_; }
+
+  /// Goes on with the first message of `log_time` or later.
+  void Seek(std::uint64_t log_time);
+  /// The next message of a known channel, none at the end. Chunks that overlap are merged.
+  std::optional<Message> Next();
+
+ private:
+  struct Entry {
+    std::uint64_t log_time = 0;
+    std::size_t offset = 0;  // in the records
+  };
+  struct OpenChunk {
+    Bytes records;
+    std::vector<Entry> entries;  // by log time
+    std::size_t next = 0;
+
+    bool ended() const { return next == entries.size(); }
+    std::uint64_t time() const { return entries[next].log_time; }
+  };
+
+  explicit Reader(std::unique_ptr<Input> input);
+  bool WantsNextChunk() const;
+  void OpenNextChunk();
+  void FindMessages(OpenChunk* chunk);
+  OpenChunk* Earliest();
+
+  const std::unique_ptr<Input> input_;
+  FileIndex index_;
+  std::uint64_t from_ = 0;
+  std::size_t next_chunk_ = 0;
+  std::deque<OpenChunk> open_;
+  std::uint64_t damaged_chunks_ = 0;
+};
+
+}  // namespace lidar::mcap

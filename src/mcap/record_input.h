@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Records of a file that nobody has checked yet.
+#pragma once
+#include <cstdint>
+#include <optional>
+
+#include "src/mcap/records.h"
+
+namespace lidar::mcap {
+
+/// A file, as its owner reads it.
+class Input {
+ public:
+  virtual ~Input() = default;
+  virtual std::uint64_t size() const = 0;
+  /// Reads `n` bytes, or fails.
+  virtual bool Read(std::uint64_t offset, std::size_t n, std::uint8_t* to) = 0;
+};
+
+/// What a file may ask for.
+constexpr std::uint64_t kMaxChunk = std::uint64_t{128} << 20;    // bytes, uncompressed
+constexpr std::uint64_t kMaxSummary = std::uint64_t{64} << 20;   // bytes
+constexpr std::uint64_t kMaxCatalogue = std::uint64_t{8} << 20;  // bytes of schemas and channels
+
+/// Where a record stands in the file.
+struct RecordPlace {
+  Op op = Op::kHeader;
+  std::uint64_t content = 0;  // offset
+  std::uint64_t size = 0;     // of the content
+
+  std::uint64_t end() const { return content + size; }
+};
+
+/// The record at `offset`; none where it does not fit into the file.
+std::optional<RecordPlace> RecordAt(Input* input, std::uint64_t offset);
+/// Reads the content, or its first `most` bytes. False where that failed.
+bool ReadContent(Input* input, const RecordPlace& record, std::uint64_t most, Bytes* out);
+/// True where the magic stands at `offset`.
+bool HasMagic(Input* input, std::uint64_t offset);
+
+}  // namespace lidar::mcap

@@ -1,0 +1,145 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// The records of an MCAP file (mcap.dev/spec), to bytes and back.
+#pragma once
+#include <array>
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "src/base/byte_reader.h"
+
+namespace lidar::mcap {
+
+using Bytes = std::vector<std::uint8_t>;
+using Metadata = std::map<std::string, std::string>;
+
+/// A file begins and ends with these.
+constexpr std::array<std::uint8_t, 8> kMagic = {0x89, 'M', 'C', 'A', 'P', '0', '\r', '\n'};
+
+enum class Op : std::uint8_t {
+  kHeader = 0x01,
+  kFooter = 0x02,
+  kSchema = 0x03,
+  kChannel = 0x04,
+  kMessage = 0x05,
+  kChunk = 0x06,
+  kMessageIndex = 0x07,
+  kChunkIndex = 0x08,
+  kStatistics = 0x0B,
+  kSummaryOffset = 0x0E,
+  kDataEnd = 0x0F,
+};
+
+/// Opcode and length stand before each record.
+constexpr std::size_t kRecordHeaderSize = 9;
+
+struct Header {
+  std::string profile;
+  std::string library;
+};
+struct Footer {
+  static constexpr std::size_t kSize = 20;  // of its content
+  std::uint64_t summary_start = 0;          // 0: there is no summary
+  std::uint64_t summary_offset_start = 0;
+  std::uint32_t summary_crc = 0;
+};
+struct Schema {
+  std::uint16_t id = 0;  // never 0
+  std::string name;
+  std::string encoding;
+  std::string text;
+};
+struct Channel {
+  std::uint16_t id = 0;
+  std::uint16_t schema_id = 0;  // 0: without a schema
+  std::string topic;
+  std::string message_encoding;
+  Metadata metadata;
+};
+struct MessageHeader {
+  static constexpr std::size_t kSize = 22;
+  std::uint16_t channel_id = 0;
+  std::uint32_t sequence = 0;
+  std::uint64_t log_time = 0;      // [ns]
+  std::uint64_t publish_time = 0;  // [ns]
+};
+struct ChunkHeader {
+  std::uint64_t start_time = 0;  // log times of the first and the last message [ns]
+  std::uint64_t end_time = 0;
+  std::uint64_t uncompressed_size = 0;
+  std::uint32_t uncompressed_crc = 0;  // 0: not known
+  std::string compression;             // empty, "lz4" or "zstd"
+  std::uint64_t records_size = 0;      // of what follows, compressed
+};
+/// Log times and offsets in the uncompressed chunk of one channel's messages.
+struct MessageIndex {
+  std::uint16_t channel_id = 0;
+  std::vector<std::pair<std::uint64_t, std::uint64_t>> entries;
+};
+struct ChunkIndex {
+  std::uint64_t start_time = 0;
+  std::uint64_t end_time = 0;
+  std::uint64_t offset = 0;  // of the chunk record in the file
+  std::uint64_t size = 0;    // of the chunk record, its opcode and length included
+  std::map<std::uint16_t, std::uint64_t> message_index_offsets;
+  std::uint64_t message_index_size = 0;
+  std::string compression;
+  std::uint64_t compressed_size = 0;
+  std::uint64_t uncompressed_size = 0;
+};
+struct Statistics {
+  std::uint64_t messages = 0;
+  std::uint16_t schemas = 0;
+  std::uint32_t channels = 0;
+  std::uint32_t chunks = 0;
+  std::uint64_t start_time = 0;  // of all messages; 0: there are none
+  std::uint64_t end_time = 0;
+  std::map<std::uint16_t, std::uint64_t> messages_of;  // by channel
+};
+/// Where the records of one kind stand in the summary.
+struct SummaryOffset {
+  Op group = Op::kHeader;
+  std::uint64_t start = 0;
+  std::uint64_t size = 0;
+};
+
+/// Each appends a whole record to `out`.
+void Append(const Header& header, Bytes* out);
+void Append(const Footer& footer, Bytes* out);
+void Append(const Schema& schema, Bytes* out);
+void Append(const Channel& channel, Bytes* out);
+void Append(const MessageHeader& header, ByteView data, Bytes* out);
+void Append(const ChunkHeader& header, ByteView records, Bytes* out);
+void Append(const MessageIndex& index, Bytes* out);
+void Append(const ChunkIndex& index, Bytes* out);
+void Append(const Statistics& statistics, Bytes* out);
+void Append(const SummaryOffset& offset, Bytes* out);
+/// `crc` is that of the data section; 0: not known.
+void AppendDataEnd(std::uint32_t crc, Bytes* out);
+
+/// Each reads the content of a record, which may be followed by fields of later versions. None
+/// where it is cut off.
+std::optional<Header> ParseHeader(ByteView content);
+std::optional<Footer> ParseFooter(ByteView content);
+std::optional<Schema> ParseSchema(ByteView content);
+std::optional<Channel> ParseChannel(ByteView content);
+/// `data` is the message itself, within `content`.
+std::optional<MessageHeader> ParseMessage(ByteView content, ByteView* data);
+/// `content` may end behind the header; the records themselves are not looked at.
+std::optional<ChunkHeader> ParseChunkHeader(ByteView content, std::size_t* header_size);
+std::optional<ChunkIndex> ParseChunkIndex(ByteView content);
+std::optional<Statistics> ParseStatistics(ByteView content);
+
+/// One record of a run of them.
+struct Record {
+  Op op;
+  ByteView content;
+  std::size_t offset;  // of its opcode in the run
+};
+/// Takes the next record of `bytes` from `*offset` on; none at the end and where it is cut off.
+std::optional<Record> NextRecord(ByteView bytes, std::size_t* offset);
+
+}  // namespace lidar::mcap

@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Writes an MCAP file: chunks with their indexes as they fill, and the summary at the end.
+#pragma once
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "src/base/time.h"
+#include "src/mcap/compression.h"
+#include "src/mcap/records.h"
+
+namespace lidar::mcap {
+
+struct WriterSettings {
+  Compression compression = Compression::kZstd;
+  std::size_t chunk_size = std::size_t{1} << 20;  // a chunk ends once it is larger [bytes]
+  Duration chunk_duration = std::chrono::seconds(1);
+};
+
+/// The schemas and channels of a recording, which may have several files.
+struct Catalogue {
+  std::vector<Schema> schemas;
+  std::vector<Channel> channels;
+
+  /// The id of the schema of that name, which is added where it is missing.
+  std::uint16_t AddSchema(const Schema& schema);
+  /// The id of the new channel; 0 where there are 65,535 of them.
+  std::uint16_t AddChannel(Channel channel);
+};
+
+/// One file. Each chunk holds the schemas and channels that it uses, so it can be read alone.
+class Writer {
+ public:
+  /// Appends to the file, all or nothing. False where that failed.
+  using Write = std::function<bool(ByteView)>;
+
+  /// `catalogue` outlives this object, and may grow.
+  Writer(const WriterSettings& settings, const Catalogue* catalogue, Write write);
+
+  /// Takes a message, and writes a chunk where one is full. After false, Finish() may still work.
+  bool Add(const MessageHeader& header, ByteView data);
+  /// Writes what is there as a chunk.
+  bool Flush();
+  /// Writes what is there, index and footer. Nothing where no chunk was ever written.
+  bool Finish();
+
+  /// Bytes of the file so far, those of the open chunk among them.
+  std::uint64_t size() const { return offset_ + chunk_.size(); }
+  /// Chunks that have been written.
+  std::size_t chunks() const { return chunk_indexes_.size(); }
+  const Statistics& statistics() const { return statistics_; }
+
+ private:
+  bool IsFull(std::uint64_t log_time) const;
+  void AddChannelOnce(std::uint16_t id);
+  Bytes BeginFile() const;
+  bool WriteChunk();
+  void AppendIndexes(ChunkIndex* index, Bytes* out) const;
+  void CountChunk();
+  Bytes Summary(std::uint64_t start) const;
+  bool Put(const Bytes& bytes);
+
+  const WriterSettings settings_;
+  const Catalogue& catalogue_;
+  const Write write_;
+
+  std::uint64_t offset_ = 0;    // of the end of the file
+  std::uint32_t data_crc_ = 0;  // of the file up to there
+  // The open chunk.
+  Bytes chunk_;
+  std::uint64_t chunk_start_ = 0;
+  std::uint64_t chunk_end_ = 0;
+  std::map<std::uint16_t, MessageIndex> message_indexes_;
+  // Of the chunks that were written.
+  std::vector<ChunkIndex> chunk_indexes_;
+  Statistics statistics_;
+};
+
+}  // namespace lidar::mcap
