@@ -305,8 +305,9 @@ Duration Controller::Round() const {
 std::optional<SendDecision> Controller::NextSend(Time) const {
   const auto id = streams_.Next();
   if (!id) return std::nullopt;
-  const DataSize max =
-      send_window_.Max(now_, window_.ref_wnd(), path_, competing_flows_.qdelay_target());
+  const DataSize max = history_.full() ? DataSize()
+                                       : send_window_.Max(now_, window_.ref_wnd(), path_,
+                                                          competing_flows_.qdelay_target());
   const Time opens =
       send_window_.Opens(streams_.Find(*id)->head_size(), history_.bytes_in_flight(), max);
   return SendDecision{clock_.ToCaller(std::max(pacer_.next(), opens)), *id,

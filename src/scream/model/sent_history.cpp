@@ -8,10 +8,26 @@ namespace {
 
 using namespace std::chrono_literals;
 
-/// Per SSRC; a quarter of the sequence numbers, so that extension stays exact.
-constexpr std::size_t kMaxPackets = 16384;
-/// Settled packets kept, so that repeated reports find them.
+/// Per SSRC; less than half of the sequence numbers, so that extension stays exact.
+constexpr std::size_t kMaxPackets = 32000;
+/// Settled packets kept, so that repeated reports find them and late ones are told from lost ones;
+/// more than these only while they are younger than this.
 constexpr std::size_t kMaxSettled = 1024;
+constexpr Duration kKeepSettled = 1s;
+/// A number so far behind the newest at most is a packet that was overtaken before it was sent.
+constexpr std::int64_t kOvertaken = 64;
+/// Numbers further behind are a new count where so many unknown ones, or known ones, come in a row.
+/// Receivers take less for reordering, so packets are not counted then until they are new again.
+constexpr std::int64_t kFarBehind = 3000;
+constexpr int kUnknownBehind = 2;
+constexpr int kKnownBehind = 64;
+/// Reports of the numbers of before may still come for so long.
+constexpr Duration kReportsOfBefore = 2s;
+/// A packet sent so much sooner than one that was acknowledged is not waited for.
+constexpr Duration kTailWait = 1s;
+/// The reordering window is kept for so long, and then shrinks by this part each second.
+constexpr Duration kReorderingMemory = 5s;
+constexpr int kReorderingDecay = 8;
 /// SSRCs come and go with restarts; the one silent for longest is forgotten.
 constexpr std::size_t kMaxSources = 64;
 /// The report's fields are coarse: arrival offsets of 1/1024 s.
@@ -23,16 +39,62 @@ void SentHistory::OnSent(std::uint32_t ssrc, std::uint16_t seq, const SentRecord
   const bool is_new = sources_.find(ssrc) == sources_.end();
   if (is_new && sources_.size() >= kMaxSources) ForgetSilentSource();
   Source& source = sources_[ssrc];
+  if (!is_new && StartsAgain(&source, source.unwrapper.Peek(seq)))
+    StartAgain(record.sent, seq, &source);
   Packet packet;
   packet.seq = source.unwrapper.Unwrap(seq);
   packet.record = record;
   if (is_new) source.highest_acked = packet.seq - 1;
-  if (source.packets.empty() || source.packets.back().seq < packet.seq) {
-    source.packets.push_back(packet);
-    in_flight_ += record.size;
-    Trim(&source, &in_flight_);
+  Insert(&source, packet);
+}
+
+/// A number sent before (a repeated packet) is accounted once: feedback cannot tell the copies.
+void SentHistory::Insert(Source* source, const Packet& packet) {
+  auto& packets = source->packets;
+  if (packets.empty() || packets.back().seq < packet.seq) {
+    packets.push_back(packet);
+  } else {
+    const bool overtaken =
+        packet.seq > source->highest_acked && packets.back().seq - packet.seq < kOvertaken;
+    if (!overtaken || Find(source, packet.seq) != nullptr) return;
+    packets.insert(LowerBound(&packets, packet.seq), packet);
   }
-  // A number sent before (a repeated packet) is accounted once: feedback cannot tell the copies.
+  in_flight_ += packet.record.size;
+  Trim(source, &in_flight_);
+}
+
+/// Numbers run backwards: a payloader that was restarted, say.
+bool SentHistory::StartsAgain(Source* source, std::int64_t seq) {
+  if (source->packets.empty() || seq > source->packets.back().seq) {
+    source->behind = 0;
+    return false;
+  }
+  if (source->packets.back().seq - seq < kFarBehind) return false;
+  const bool known = Find(source, seq) != nullptr;
+  source->behind = seq == source->next_behind ? source->behind + 1 : 1;
+  source->next_behind = seq + 1;
+  return source->behind >= (known ? kKnownBehind : kUnknownBehind);
+}
+
+void SentHistory::StartAgain(Time now, std::uint16_t seq, Source* source) {
+  for (const Packet& packet : source->packets)
+    if (packet.seq > source->highest_acked) in_flight_ -= packet.record.size;
+  *source = Source{};
+  source->highest_acked = std::int64_t{seq} - 1;
+  source->restarted = now;
+}
+
+bool SentHistory::OfBefore(Time now, const Source& source, const SsrcReport& block) {
+  return source.restarted && now - *source.restarted < kReportsOfBefore &&
+         source.unwrapper.Peek(block.begin_seq) > source.packets.back().seq;
+}
+
+bool SentHistory::full() const {
+  return std::any_of(sources_.begin(), sources_.end(), [](const auto& entry) {
+    const Source& source = entry.second;
+    return !source.packets.empty() && source.packets.back().seq - source.highest_acked >=
+                                          static_cast<std::int64_t>(kMaxPackets);
+  });
 }
 
 void SentHistory::ForgetSilentSource() {
@@ -44,9 +106,14 @@ void SentHistory::ForgetSilentSource() {
   sources_.erase(silent);
 }
 
+std::deque<SentHistory::Packet>::iterator SentHistory::LowerBound(std::deque<Packet>* packets,
+                                                                  std::int64_t seq) {
+  return std::lower_bound(packets->begin(), packets->end(), seq,
+                          [](const Packet& p, std::int64_t s) { return p.seq < s; });
+}
+
 SentHistory::Packet* SentHistory::Find(Source* source, std::int64_t seq) {
-  auto it = std::lower_bound(source->packets.begin(), source->packets.end(), seq,
-                             [](const Packet& p, std::int64_t s) { return p.seq < s; });
+  const auto it = LowerBound(&source->packets, seq);
   return it != source->packets.end() && it->seq == seq ? &*it : nullptr;
 }
 
@@ -77,15 +144,19 @@ HistoryResult SentHistory::OnFeedback(Time now, const CongestionFeedback& feedba
       continue;
     }
     any_ours = true;
-    if (!Plausible(now, &it->second, block)) return HistoryResult::kImplausible;
+    if (!OfBefore(now, it->second, block) && !Plausible(now, &it->second, block))
+      return HistoryResult::kImplausible;
   }
   if (!any_ours) return HistoryResult::kNotOurs;
-  const Time report = clock_.Unwrap(feedback.report_timestamp);
+  const Time report = summary->report = clock_.Unwrap(feedback.report_timestamp);
+  held_.reset();
   for (const SsrcReport& block : feedback.blocks) {
     const auto it = sources_.find(block.ssrc);
-    if (it != sources_.end() && !it->second.packets.empty())
-      Apply(now, block, &it->second, report, summary);
+    if (it == sources_.end() || it->second.packets.empty()) continue;
+    if (!OfBefore(now, it->second, block)) Apply(now, block, &it->second, report, summary);
   }
+  if (!arrivals_known_) summary->rtt = held_;
+  ExpireTails();
   DetectLoss(now, &summary->lost);
   const bool nothing = summary->acked.empty() && summary->lost.empty() && summary->late_ce == 0;
   return nothing ? HistoryResult::kNothingNew : HistoryResult::kApplied;
@@ -128,9 +199,17 @@ void SentHistory::Acknowledge(Time now, const PacketMetric& metric, Time report,
   const bool timed = metric.arrival_offset && packet->state != State::kExpired;
   if (timed) acked.arrival = report - *metric.arrival_offset;
   acked.was_lost = packet->state == State::kLost;
-  if (packet->state == State::kMissing || acked.was_lost)
+  if (packet->state == State::kMissing || acked.was_lost) {
     reordering_window_ =
         std::min(max_reordering_window_, std::max(reordering_window_, now - packet->missing_since));
+    last_reordering_ = now;
+  }
+  if (packet->state != State::kExpired) {
+    const Duration held = now - packet->record.sent;
+    held_ = std::min(held_.value_or(held), held);
+  }
+  newest_acked_ = std::max(newest_acked_, packet->record.sent);
+  arrivals_known_ = arrivals_known_ || metric.arrival_offset;
   packet->state = State::kAcked;
   packet->ce = ce;
   if (ce) summary->bytes_newly_acked_ce += packet->record.size;
@@ -160,7 +239,14 @@ void SentHistory::MarkMissing(Time now, Source* source, Packet* packet) {
   source->missing.push_back(packet->seq);
 }
 
+void SentHistory::DecayReorderingWindow(Time now) {
+  if (now - last_reordering_ < kReorderingMemory) return;
+  last_reordering_ = now - kReorderingMemory + 1s;
+  reordering_window_ -= reordering_window_ / kReorderingDecay;
+}
+
 void SentHistory::DetectLoss(Time now, std::vector<LostPacket>* lost) {
+  DecayReorderingWindow(now);
   for (auto& [ssrc, source] : sources_) {
     std::vector<std::int64_t> still_missing;
     for (const std::int64_t seq : source.missing) {
@@ -181,10 +267,16 @@ void SentHistory::DetectLoss(Time now, std::vector<LostPacket>* lost) {
 }
 
 void SentHistory::Trim(Source* source, DataSize* in_flight) {
-  while (source->packets.size() > kMaxPackets ||
-         (source->packets.size() > kMaxSettled &&
-          source->packets[kMaxSettled].seq <= source->highest_acked)) {
-    const Packet& front = source->packets.front();
+  const auto& packets = source->packets;
+  const auto superfluous = [&] {
+    return packets.size() > kMaxSettled && packets[kMaxSettled].seq <= source->highest_acked &&
+           packets.back().record.sent - packets.front().record.sent > kKeepSettled;
+  };
+  const auto ambiguous = [&] {
+    return packets.back().seq - packets.front().seq >= static_cast<std::int64_t>(kMaxPackets);
+  };
+  while (ambiguous() || superfluous()) {
+    const Packet& front = packets.front();
     if (front.seq > source->highest_acked) {
       *in_flight -= front.record.size;
       source->highest_acked = front.seq;
@@ -202,6 +294,19 @@ void SentHistory::Expire(Time before) {
       if (packet.seq <= source.highest_acked) continue;
       in_flight_ -= packet.record.size;
       source.highest_acked = packet.seq;
+    }
+  }
+}
+
+/// The lost tail of an SSRC that went quiet: nothing behind it will ever tell of it.
+void SentHistory::ExpireTails() {
+  for (auto& [ssrc, source] : sources_) {
+    auto packet = LowerBound(&source.packets, source.highest_acked + 1);
+    for (; packet != source.packets.end(); ++packet) {
+      if (packet->record.sent + kTailWait >= newest_acked_) break;
+      packet->state = State::kExpired;
+      in_flight_ -= packet->record.size;
+      source.highest_acked = packet->seq;
     }
   }
 }

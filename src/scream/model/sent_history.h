@@ -40,13 +40,15 @@ struct LostPacket : SentRecord {
 struct AckSummary {
   std::vector<AckedPacket> acked;
   std::vector<LostPacket> lost;
+  Time report{};  ///< when it was made, on the receiver's clock, unwrapped
   /// CE marks on packets that an earlier report had acknowledged without.
   int late_ce = 0;
   /// The draft's: by how much the highest acknowledged sequence numbers moved on, lost ones
   /// included.
   DataSize bytes_newly_acked;
   DataSize bytes_newly_acked_ce;
-  /// Of the packet sent last of those newly acknowledged, without the receiver's holding time.
+  /// Of the packet sent last of those newly acknowledged, without the receiver's holding time,
+  /// unless the receiver never tells that.
   std::optional<Duration> rtt;
 };
 
@@ -64,6 +66,8 @@ class SentHistory {
   void Expire(Time before);
 
   DataSize bytes_in_flight() const { return in_flight_; }
+  /// As many packets of one SSRC are unsettled as its numbers can tell apart.
+  bool full() const;
   Duration reordering_window() const { return reordering_window_; }
   void set_max_reordering_window(Duration d) { max_reordering_window_ = d; }
   std::uint64_t foreign_blocks() const { return foreign_blocks_; }
@@ -82,9 +86,18 @@ class SentHistory {
     std::int64_t highest_acked = -1;
     std::deque<Packet> packets;  // by seq
     std::vector<std::int64_t> missing;
+    std::int64_t next_behind = -1;  // the successor of the last number that went backwards
+    int behind = 0;                 // so many came in a row
+    std::optional<Time> restarted;  // numbers began anew
   };
 
   void ForgetSilentSource();
+  static bool StartsAgain(Source* source, std::int64_t seq);
+  void StartAgain(Time now, std::uint16_t seq, Source* source);
+  void Insert(Source* source, const Packet& packet);
+  static bool OfBefore(Time now, const Source& source, const SsrcReport& block);
+  void ExpireTails();
+  static std::deque<Packet>::iterator LowerBound(std::deque<Packet>* packets, std::int64_t seq);
   static Packet* Find(Source* source, std::int64_t seq);
   bool Plausible(Time now, Source* source, const SsrcReport& block) const;
   void Apply(Time now, const SsrcReport& block, Source* source, Time report, AckSummary* summary);
@@ -92,12 +105,17 @@ class SentHistory {
                    Packet* packet, AckSummary* summary);
   void AdvanceHighest(Source* source, std::int64_t seq, AckSummary* summary);
   static void MarkMissing(Time now, Source* source, Packet* packet);
+  void DecayReorderingWindow(Time now);
   static void Trim(Source* source, DataSize* in_flight);
 
   std::map<std::uint32_t, Source> sources_;
   ReportClock clock_;
   DataSize in_flight_;
+  Time newest_acked_{};           // when it was sent
+  bool arrivals_known_ = false;   // the peer tells arrival times
+  std::optional<Duration> held_;  // of this report: the shortest round trip with holding time
   Duration reordering_window_{0};
+  Time last_reordering_{};
   Duration max_reordering_window_ = std::chrono::milliseconds(100);
   std::uint64_t foreign_blocks_ = 0;
 };

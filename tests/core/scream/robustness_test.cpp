@@ -25,6 +25,16 @@ class Trial {
   double MaxQueueMs(Duration from, Duration until) const {
     return result_.QueueDelay(origin_ + from, origin_ + until).max;
   }
+  /// Of what was sent then.
+  double OwnLoss(Duration from, Duration until) const {
+    double sent = 0, lost = 0;
+    for (const PacketLog& p : result_.packets) {
+      if (p.sent < origin_ + from || p.sent >= origin_ + until) continue;
+      ++sent;
+      lost += p.delivered ? 0 : 1;
+    }
+    return lost / sent;
+  }
   /// The statistics as they were at `t`.
   Statistics At(Duration t) const {
     for (const Sample& s : result_.samples)
@@ -143,6 +153,53 @@ TEST(Restart, OfTheReceiverIsForgottenWithinTwoSeconds) {
   EXPECT_GT(run.Utilisation(10s, 12s), 0.8);
   EXPECT_GT(run.Utilisation(12s, 20s), 0.9);
   EXPECT_EQ(run.End().feedback_ignored, 0U);
+}
+
+/// A payloader that was restarted with the SSRC it had.
+TEST(Restart, OfSequenceNumbersAloneChangesNothing) {
+  for (const std::uint16_t back : {30500, 1000}) {
+    Scenario s = Named("frames_8M_rtt40");
+    s.config.flows[0].sequence_jump = 15s;
+    s.config.flows[0].jump_back = back;
+    const Trial run(s);
+    EXPECT_GT(run.Utilisation(15s, 40s), 0.95) << back;
+    EXPECT_LT(run.MaxQueueMs(15s, 40s), 12) << back;
+    EXPECT_GT(run.At(39s).acked_bitrate.bits_per_second(), 7e6) << back;
+    EXPECT_LT(run.End().feedback_ignored, 5U) << back;
+  }
+}
+
+TEST(LossBurst, DoesNotPinTheRateOnALinkThatBecomesFaster) {
+  Scenario s = Named("frames_20M_rtt25");
+  s.config.forward.capacity = *link::Capacity::ParseTrace("0 10\n20 80\n", false, nullptr);
+  s.config.flows[0].sources[0].stream.max_bitrate = Mbps(100);
+  s.config.loss_from = 15s;
+  s.config.loss_until = 15100ms;
+  const Trial run(s);
+  EXPECT_GT(run.Mbps(22s, 25s), 70);
+  EXPECT_GT(run.Mbps(25s, 30s), 70);
+}
+
+/// A queue of 1 ms drops what is above the link's rate, as a policer does.
+TEST(Policer, IsUsedWithoutMuchLoss) {
+  Scenario s = Named("frames_20M_rtt25");
+  s.config.forward.capacity = link::Capacity::Constant(Mbps(10));
+  s.config.forward.limit.time = 1ms;
+  s.config.forward.aqm.kind = link::AqmConfig::Kind::kNone;
+  const Trial run(s);
+  EXPECT_GT(run.Utilisation(10s, 40s), 0.7);
+  EXPECT_LT(run.OwnLoss(10s, 40s), 0.01);
+}
+
+TEST(Feedback, WithoutArrivalTimesStillTellsOfMarksAndRoundTrips) {
+  for (const char* name : {"frames_8M_rtt40", "slices_8M_rtt40"}) {
+    Scenario s = Named(name);
+    s.config.flows[0].arrival_times = false;
+    const Trial run(s);
+    EXPECT_GT(run.Utilisation(5s, 40s), 0.8) << name;
+    EXPECT_LT(run.MaxQueueMs(5s, 40s), 15) << name;
+    EXPECT_NEAR(Milliseconds(run.End().s_rtt), 45, 8) << name;
+  }
 }
 
 TEST(RouteChange, KeepsTheFlowGoingAndTestsEcnAnew) {

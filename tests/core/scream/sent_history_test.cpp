@@ -156,10 +156,103 @@ TEST_F(SentHistoryTest, OnlyTheLastSourcesAreRemembered) {
   EXPECT_EQ(Apply(Report(7, "r", 199)), HistoryResult::kApplied);
 }
 
+TEST_F(SentHistoryTest, NumbersThatGoBackAreThoseOfASenderThatStartedAgain) {
+  Send(40480, 40500);
+  Send(10000, 10010);
+  EXPECT_EQ(history_.bytes_in_flight().bytes(), 9000) << "the second one tells";
+  EXPECT_EQ(Apply(Report(40480, "rrrr")), HistoryResult::kNothingNew) << "of before";
+  EXPECT_EQ(Apply(Report(10001, "rrrr")), HistoryResult::kApplied);
+  EXPECT_EQ(summary_.acked.size(), 4U);
+  EXPECT_TRUE(summary_.lost.empty());
+  EXPECT_EQ(history_.bytes_in_flight().bytes(), 5000);
+}
+
+TEST_F(SentHistoryTest, ARepeatedPacketIsNoRestart) {
+  Send(0, 100);
+  Send(40, 60);
+  EXPECT_EQ(history_.bytes_in_flight().bytes(), 100000);
+  Send(100, 101);
+  EXPECT_EQ(history_.bytes_in_flight().bytes(), 101000);
+}
+
+TEST_F(SentHistoryTest, PacketsThatOvertookEachOtherBeforeTheyWereSentAllCount) {
+  Send(0, 3);
+  Send(5, 6);
+  Send(3, 5);
+  Send(6, 7);
+  EXPECT_EQ(history_.bytes_in_flight().bytes(), 7000);
+  EXPECT_EQ(Apply(Report(0, "rrrrrr")), HistoryResult::kApplied);
+  EXPECT_EQ(summary_.acked.size(), 6U);
+}
+
+TEST_F(SentHistoryTest, TheLostTailOfAQuietSourceDoesNotStayInFlight) {
+  Send(0, 48);
+  for (int seq = 0; seq < 1100; ++seq, now_ += 1ms)
+    history_.OnSent(2, static_cast<std::uint16_t>(seq),
+                    {0, DataSize::Bytes(1000), now_, Ecn::kEct1});
+  Apply(Report(0, std::string(900, 'r'), 2));
+  EXPECT_EQ(history_.bytes_in_flight().bytes(), 248000) << "it may still be reported";
+  Apply(Report(900, std::string(199, 'r'), 2));
+  EXPECT_EQ(history_.bytes_in_flight().bytes(), 1000);
+  EXPECT_TRUE(summary_.lost.empty()) << "nobody knows whether it arrived";
+}
+
+TEST_F(SentHistoryTest, AReorderingWindowOfManyPacketsStillFindsLosses) {
+  const auto send = [&](int from, int until) {  // 1 Gbit/s
+    for (int seq = from; seq < until; ++seq, now_ += 10us)
+      history_.OnSent(1, static_cast<std::uint16_t>(seq),
+                      {0, DataSize::Bytes(1250), now_, Ecn::kEct1});
+  };
+  send(0, 1000);
+  Apply(Report(0, "r-r"));
+  now_ += 15ms;
+  Apply(Report(0, "rrr"));
+  ASSERT_EQ(history_.reordering_window(), Duration(15ms));
+  Apply(Report(3, "-r"));
+  send(1000, 3000);
+  std::string all(2995, 'r');
+  Apply(Report(5, all));
+  EXPECT_EQ(summary_.lost.size(), 1U);
+}
+
+TEST_F(SentHistoryTest, TheReorderingWindowShrinksWhereNothingOvertakesAnyMore) {
+  Send(0, 20);
+  Apply(Report(0, "r-r"));
+  now_ += 8ms;
+  Apply(Report(0, "rrr"));
+  ASSERT_EQ(history_.reordering_window(), Duration(8ms));
+  for (int i = 0; i < 60; ++i, now_ += 1s) {
+    std::vector<LostPacket> lost;
+    history_.DetectLoss(now_, &lost);
+  }
+  EXPECT_LT(history_.reordering_window(), Duration(100us));
+}
+
+TEST_F(SentHistoryTest, ManyPacketsInFlightAreCounted) {
+  for (int i = 0; i < 30000; ++i)
+    history_.OnSent(1, static_cast<std::uint16_t>(i), {0, DataSize::Bytes(1000), now_, Ecn::kEct1});
+  EXPECT_EQ(history_.bytes_in_flight().bytes(), 30000 * 1000);
+  EXPECT_FALSE(history_.full());
+
+  for (int i = 30000; i < 32000; ++i)
+    history_.OnSent(1, static_cast<std::uint16_t>(i), {0, DataSize::Bytes(1000), now_, Ecn::kEct1});
+  EXPECT_TRUE(history_.full());
+}
+
+TEST_F(SentHistoryTest, RoundTripsIncludeTheHoldingTimeOfReceiversThatDoNotTellIt) {
+  Send(0, 4);
+  now_ = kStart + 43ms;
+  CongestionFeedback f = Report(0, "rrrr");
+  for (PacketMetric& m : f.blocks[0].metrics) m.arrival_offset.reset();
+  Apply(f);
+  ASSERT_TRUE(summary_.rtt);
+  EXPECT_EQ(*summary_.rtt, Duration(40ms));
+}
+
 TEST_F(SentHistoryTest, MemoryStaysBoundedWithoutFeedback) {
   for (int i = 0; i < 100000; ++i)
     history_.OnSent(1, static_cast<std::uint16_t>(i), {0, DataSize::Bytes(1000), now_, Ecn::kEct1});
-  EXPECT_EQ(history_.bytes_in_flight().bytes(), 16384 * 1000);
+  EXPECT_EQ(history_.bytes_in_flight().bytes(), 32000 * 1000);
 }
 
 }  // namespace

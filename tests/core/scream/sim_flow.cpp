@@ -83,6 +83,9 @@ void Flow::Happen(Time now) {
     ++generation_;
     StartSender();
   }
+  if (Due(t, &config_.sequence_jump))
+    for (SourceState& source : sources_)
+      source.seq = static_cast<std::uint16_t>(source.seq - config_.jump_back);
   if (Due(t, &config_.route_change)) controller_->OnRouteChange(ToSender(now));
   if (Due(t, &config_.clock_jump)) {
     sender_offset_ += config_.sender_jump;
@@ -114,6 +117,9 @@ void Flow::Report(Time now, const SimulationConfig& sim, link::Random* loss) {
   const bool outage = t >= sim.return_outage_from && t < sim.return_outage_until;
   while (auto report = generator_.Take(ToReceiver(now))) {
     report->report_timestamp += epoch_;
+    if (!config_.arrival_times)
+      for (SsrcReport& block : report->blocks)
+        for (PacketMetric& metric : block.metrics) metric.arrival_offset.reset();
     auto bytes = BuildCcfb(*report);
     result_.feedback_bytes += static_cast<std::int64_t>(bytes.size()) + kIpUdp;
     if (!loss->Chance(sim.return_loss) && !outage)
@@ -176,8 +182,9 @@ void Flow::MakeFrame(Time now, std::size_t index) {
   SourceState& source = sources_[index];
   const Duration since_start = now - config_.start;
   const Duration period = FromSeconds(1 / config.frames_per_second);
-  source.next_frame =
-      since_start + period > config_.stop_after ? Time::max() : source.next_frame + period;
+  source.next_frame = since_start + period > std::min(config_.stop_after, config.stop_at)
+                          ? Time::max()
+                          : source.next_frame + period;
   const EncodedFrame encoded = Encode(now, index);
   const DataSize size = encoded.size;
   FrameLog frame;

@@ -54,6 +54,9 @@ class Simulation {
   void Deliver(Time now) {
     for (link::Outcome& o : link_.Deliver(now)) {
       if (o.arrival - origin_ > config_.longer_from) o.arrival += config_.longer_by;
+      const Duration sent = o.sent - origin_;
+      const bool burst = sent >= config_.loss_from && sent < config_.loss_until;
+      if (burst && o.packet.id % 3 != 0) o.fate = link::Fate::kLost;
       behind_.emplace(o.arrival, o);
     }
     for (; !behind_.empty() && behind_.begin()->first <= now; behind_.erase(behind_.begin()))

@@ -13,6 +13,8 @@
 
 namespace lidar::scream::test {
 
+constexpr Duration kNever = Duration::max();
+
 /// Bitrates that an encoder says it needs and can use, on the wire.
 struct EncoderBounds {
   DataRate min;
@@ -30,14 +32,13 @@ struct EncodedFrame {
 struct SourceConfig {
   StreamConfig stream;
   double frames_per_second = 50;
+  Duration stop_at = kNever;
   double frame_jitter = 0;  ///< frame sizes vary evenly by up to this fraction
   /// Scales what the encoder puts out against its target, over time since the flow's start.
   std::function<double(Duration)> obedience;
   /// In place of both: makes the next frame for the target that it was told last.
   std::function<EncodedFrame(DataRate)> encoder;
 };
-
-constexpr Duration kNever = Duration::max();
 
 /// Times are since the flow's start.
 struct FlowConfig {
@@ -53,6 +54,11 @@ struct FlowConfig {
   Duration receiver_restart = kNever;
   /// A new sender with other SSRCs takes over.
   Duration sender_restart = kNever;
+  /// Sequence numbers go back by so much, or on by the rest of their range.
+  Duration sequence_jump = kNever;
+  std::uint16_t jump_back = 0;
+  /// Reports hold no arrival times (RFC 8888 allows it).
+  bool arrival_times = true;
   /// The sender is told that the route is another one.
   Duration route_change = kNever;
   /// Clocks are set by so much.
@@ -76,6 +82,8 @@ struct SimulationConfig {
   link::BottleneckConfig forward;  ///< its delay is the way there
   Duration return_delay{0};
   double return_loss = 0;
+  /// Two of three packets sent within this time of the run are lost.
+  Duration loss_from = kNever, loss_until = kNever;
   /// Nothing comes back within this time of the run.
   Duration return_outage_from = kNever, return_outage_until = kNever;
   /// A change of route: the way there is longer from then on.
