@@ -43,6 +43,9 @@ class Stream {
   void NoteTime(Time now) { last_active_ = last_active_.value_or(now); }
   /// Has packets, or had lately.
   bool active(Time now) const;
+  /// It has a part in what the streams are together: the last Allocate() found it active.
+  bool counts() const { return counts_; }
+  void set_counts(bool counts) { counts_ = counts; }
   DataRate target_bitrate() const { return target_bitrate_; }
   void set_target_bitrate(DataRate target) { target_bitrate_ = target; }
   DataRate sent_bitrate(Time now) const { return sent_rate_.Rate(now); }
@@ -77,6 +80,7 @@ class Stream {
   std::set<std::uint32_t> ssrcs_;
   mutable RateMeter sent_rate_{1s};
   DataRate target_bitrate_;
+  bool counts_ = true;
   // Frames of the media SSRC: the one that sends markers.
   std::optional<std::uint32_t> media_ssrc_;
   std::optional<std::uint32_t> frame_timestamp_;

@@ -85,7 +85,8 @@ void Streams::Allocate(Time now, DataRate total) {
   const double need_share = NeedShare(now, total);
   for (auto& [id, stream] : streams_) {
     const StreamConfig& c = stream.config();
-    if (any_active && !stream.active(now)) {
+    stream.set_counts(!any_active || stream.active(now));
+    if (!stream.counts()) {
       stream.set_target_bitrate(std::max(c.min_bitrate, c.needed_bitrate));
       continue;
     }
@@ -128,43 +129,41 @@ void Streams::LeaveRoomForBacklogs() {
   }
 }
 
-DataRate Streams::min_bitrate() const {
+template <class Rate>
+DataRate Streams::Sum(Rate rate) const {
   DataRate sum;
-  for (const auto& [id, s] : streams_) sum = sum + s.config().min_bitrate;
+  for (const auto& [id, s] : streams_)
+    if (s.counts()) sum = sum + rate(s);
   return sum;
+}
+
+DataRate Streams::min_bitrate() const {
+  return Sum([](const Stream& s) { return s.config().min_bitrate; });
 }
 
 DataRate Streams::needed_bitrate() const {
-  DataRate sum;
-  for (const auto& [id, s] : streams_)
-    sum = sum + std::max(s.config().min_bitrate, s.config().needed_bitrate);
-  return sum;
+  return Sum(
+      [](const Stream& s) { return std::max(s.config().min_bitrate, s.config().needed_bitrate); });
 }
 
 DataRate Streams::max_bitrate() const {
-  DataRate sum;
-  for (const auto& [id, s] : streams_)
-    sum = sum + std::max(s.config().min_bitrate, s.config().max_bitrate);
-  return sum;
+  return Sum(
+      [](const Stream& s) { return std::max(s.config().min_bitrate, s.config().max_bitrate); });
 }
 
 DataRate Streams::start_bitrate() const {
-  DataRate sum;
-  for (const auto& [id, s] : streams_) sum = sum + s.config().start_bitrate;
-  return sum;
+  return Sum([](const Stream& s) { return s.config().start_bitrate; });
 }
 
 DataRate Streams::target_bitrate() const {
-  DataRate sum;
-  for (const auto& [id, s] : streams_) sum = sum + s.target_bitrate();
-  return sum;
+  return Sum([](const Stream& s) { return s.target_bitrate(); });
 }
 
 Duration Streams::frame_period() const {
   Duration period = 20ms;
   DataRate highest;
   for (const auto& [id, s] : streams_) {
-    if (s.target_bitrate() < highest) continue;
+    if (!s.counts() || s.target_bitrate() < highest) continue;
     highest = s.target_bitrate();
     period = s.frame_period();
   }
@@ -175,8 +174,9 @@ double Streams::queue_compensation() const {
   const double sum = target_bitrate().bits_per_second();
   double weighted = 0;
   for (const auto& [id, s] : streams_)
-    weighted +=
-        (s.rate_adjust_factor() + s.frame_size_dev()) * s.target_bitrate().bits_per_second();
+    if (s.counts())
+      weighted +=
+          (s.rate_adjust_factor() + s.frame_size_dev()) * s.target_bitrate().bits_per_second();
   return sum > 0 ? weighted / sum : 0;
 }
 

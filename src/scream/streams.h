@@ -29,6 +29,7 @@ class Streams {
   /// Lowers targets of streams with more than a frame in their queue, so that it leaves within
   /// `backlog_drain`; not below what they need.
   void LeaveRoomForBacklogs();
+  // Of those that are not silent, or of all where all are.
   DataRate min_bitrate() const;
   /// The larger of what each stream needs and its minimum.
   DataRate needed_bitrate() const;
@@ -47,6 +48,8 @@ class Streams {
   /// How much of what streams need above their minima the path can carry, 0..1.
   double NeedShare(Time now, DataRate total) const;
   bool AnyActive(Time now) const;
+  template <class Rate>
+  DataRate Sum(Rate rate) const;
   const Parameters& p_;
   std::map<StreamId, Stream> streams_;
   StreamId next_id_ = 0;

@@ -74,6 +74,23 @@ TEST_F(TwoStreams, AnEncoderThatIgnoresItsTargetDoesNotTakeTheOthersShare) {
   EXPECT_LT(metrics.queue_ms.p99, 10);
 }
 
+/// A second LiDAR that fails: what it needed is nobody's.
+TEST(SilentStream, LeavesTheLiveOneAsItWas) {
+  for (const double needed : {5.0, 10.0, 20.0}) {
+    Scenario s = *FindScenario("frames_20M_rtt25", Parameters());
+    const double alone = Measure(s, Simulate(s.config)).utilisation;
+    FlowConfig& flow = s.config.flows[0];
+    flow.sources.push_back(flow.sources[0]);
+    flow.sources[1].stream.min_bitrate = Mbps(needed);
+    flow.sources[1].frames_per_second = 10;
+    flow.sources[1].stop_at = 2s;
+    s.settle = 5s;
+    const ScenarioMetrics m = Measure(s, Simulate(s.config));
+    EXPECT_GT(m.utilisation, alone - 0.02) << needed;
+    EXPECT_LT(m.queue_ms.p99, 5) << needed;
+  }
+}
+
 /// Cases whose goal is held; scream-matrix shows the others.
 class BesideCubic : public ::testing::TestWithParam<const char*> {};
 

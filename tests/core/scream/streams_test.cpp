@@ -125,6 +125,19 @@ TEST_F(StreamsTest, ASilentStreamNeedsNothing) {
   EXPECT_NEAR(Target(c), 0, 1e-3);
 }
 
+TEST_F(StreamsTest, ASilentStreamIsNoPartOfTheirSums) {
+  const StreamId a = Add(1, 1, 20);
+  streams_.Find(Add(1, 5, 50))->Configure({1, Mbps(5), Mbps(1), Mbps(50), Mbps(8)});
+  streams_.Allocate(kStart, Mbps(30));
+  EXPECT_NEAR(streams_.needed_bitrate().bits_per_second(), 9e6, 1);
+  streams_.Find(a)->OnQueued(kStart + 2s, {1, DataSize::Bytes(1000), true, 0});
+  streams_.Allocate(kStart + 2s, Mbps(10));
+  EXPECT_NEAR(streams_.min_bitrate().bits_per_second(), 1e6, 1);
+  EXPECT_NEAR(streams_.needed_bitrate().bits_per_second(), 1e6, 1);
+  EXPECT_NEAR(streams_.max_bitrate().bits_per_second(), 20e6, 1);
+  EXPECT_NEAR(streams_.target_bitrate().bits_per_second(), 10e6, 1);
+}
+
 class StreamTest : public ::testing::Test {
  protected:
   /// A frame of `packets` packets of 1000 bytes.
