@@ -29,7 +29,8 @@ Time Controller::Advance(Time caller_now) {
   const Time now = clock_.From(caller_now);
   const Duration silence = now - now_;  // of the caller: with data in flight it has to come often
   now_ = std::max(now_, now);
-  if (silence > kHousekeeping + kStandstill && history_.bytes_in_flight().bytes() > 0) {
+  if (p_.extensions.clock_care && silence > kHousekeeping + kStandstill &&
+      history_.bytes_in_flight().bytes() > 0) {
     history_.Expire(now_);
     outage_.Restart(now_);
     gap_recovery_.Reset();
@@ -142,7 +143,7 @@ void Controller::CountAcks(const AckSummary& acks) {
 void Controller::Respond(Time now, const AckSummary& acks) {
   if (!RespondToDrop(now)) RespondToSignals(now, acks);
   TakeGapRestart(now);
-  if (path_.EndRoundTrip(now)) window_.RelaxPolicer();
+  if (path_.EndRoundTrip(now)) window_.RelaxPolicer(now);
 }
 
 void Controller::TakeGapRestart(Time now) {

@@ -23,7 +23,6 @@ class Pacer {
   DataRate pace_bitrate() const { return pace_bitrate_; }
 
  private:
-  static constexpr Duration kMaxCatchUp = 4ms;
   const Parameters& p_;
   DataRate pace_bitrate_ = DataRate::BitsPerSecond(1e6);
   Time next_{};
@@ -37,7 +36,7 @@ inline void Pacer::Update(DataRate target, DataRate max, double headroom) {
 }
 
 inline void Pacer::OnSent(Time now, DataSize size) {
-  next_ = std::max(next_, now - kMaxCatchUp) + size / pace_bitrate_;
+  next_ = std::max(next_, now - p_.pacing_catch_up) + size / pace_bitrate_;
 }
 
 }  // namespace lidar::scream

@@ -37,6 +37,13 @@ struct Extensions {
   bool needed_floor = true;
   /// Marks of a queue that marks ECT(1) like ECT(0) have the reaction that it expects.
   bool classic_ecn = true;
+  /// A policer is believed in for a second, and for longer where it shows itself again.
+  bool brief_policer = true;
+  /// Clocks that were set and callers that stood still are noticed; where the bottleneck marks, the
+  /// base delay is that of the last half minute.
+  bool clock_care = true;
+  /// An old round trip counts for less, as does one of a source that leaves its window unused.
+  bool aged_rtt = true;
 };
 
 struct Parameters {
@@ -153,6 +160,8 @@ struct Parameters {
   double stall_share = 0.6;
   /// quick_drain: the time in which a backlog is to be gone, by a lower target.
   Duration backlog_drain = 200ms;
+  /// So much of a late wake-up is caught up (the draft's pacing has no such term).
+  Duration pacing_catch_up = 4ms;
   /// needed_floor: a little more than what is needed, as encoders round.
   double needed_margin = 1.04;
 

@@ -15,6 +15,7 @@ class LossRate {
     const double alpha = std::min(p_.loss_rate_threshold / 4, p_.mss / ref_wnd / 2);
     rate_ = (1 - alpha) * rate_ + (lost ? alpha : 0);
   }
+  void Reset() { rate_ = 0; }
   double value() const { return rate_; }
 
  private:

@@ -31,7 +31,7 @@ void PathModel::OnSent(Time now, DataSize size, Ecn ecn, DataSize in_flight) {
 
 void PathModel::OnRoundTrip(Time now, const AckSummary& acks, DataSize ref_wnd) {
   if (!acks.rtt || (!acks.acked.empty() && acks.acked.back().sent < gap_end_)) return;
-  rtt_.Add(now, *acks.rtt, SourceLimited(ref_wnd));
+  rtt_.Add(now, *acks.rtt, p_.extensions.aged_rtt && SourceLimited(ref_wnd));
 }
 
 void PathModel::OnGapEnd(Time now, Duration s_rtt, double l4s_alpha) {
@@ -58,20 +58,27 @@ void PathModel::Reset() {
   queue_delay_.Reset();
   rtt_.Reset();
   train_.Reset();
+  busy_run_.Reset();
   classic_ecn_ = ClassicEcn();
+  loss_context_ = LossContext();
+  loss_rate_.Reset();
   train_capacity_ = acked_peak_ = DataRate();
+  report_gap_ = Duration{0};
+  half_rate_until_ = Time{};
   ecn_.Reset();
   last_mark_.reset();
 }
 
 void PathModel::MeasureDelays(Time now, const AckSummary& acks, const SenderState& sender) {
   const Duration excess = rtt_.last() - rtt_.min();
-  for (const AckedPacket& packet : acks.acked)
-    if (packet.arrival &&
-        !queue_delay_.Add(now, {packet.sent, *packet.arrival, excess}, L4sWorks(now))) {
-      ++clock_resets_;
-      busy_run_.Reset();
-    }
+  const bool recent = p_.extensions.clock_care && L4sWorks(now);
+  for (const AckedPacket& packet : acks.acked) {
+    if (!packet.arrival) continue;
+    if (queue_delay_.Add(now, {packet.sent, *packet.arrival, excess, now - acks.report}, recent))
+      continue;
+    ++clock_resets_;
+    busy_run_.Reset();
+  }
   if (acks.acked.empty() || acks.acked.back().sent >= gap_end_)
     queue_delay_.Update(now, rtt_.smoothed(), sender.qdelay_target);
   if (queue_delay_.TakeDriftReset()) {

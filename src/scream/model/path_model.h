@@ -48,7 +48,8 @@ class PathModel {
   /// True at the end of a round trip.
   bool EndRoundTrip(Time now);
   void OnTimer(Time now) { ecn_.OnTimer(now); }
-  /// Another route: base delay, round trip and ECN are unknown again.
+  /// Another route: base delay, round trip, ECN, losses and capacity are unknown again. What is
+  /// learnt from marks stays until the next ones tell otherwise.
   void Reset();
 
   const RoundTripTime& rtt() const { return rtt_; }
@@ -100,7 +101,7 @@ class PathModel {
   bool SourceLimited(DataSize ref_wnd) const;
 
   const Parameters& p_;
-  RoundTripTime rtt_;
+  RoundTripTime rtt_{p_.extensions.aged_rtt};
   QueueDelay queue_delay_{p_};
   L4sAlpha l4s_alpha_{p_};
   LossRate loss_rate_{p_};

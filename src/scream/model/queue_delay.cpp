@@ -12,8 +12,10 @@ constexpr Duration kBaseInterval = 10s;
 constexpr std::size_t kBaseHistory = 60;
 /// ...and a short one where marks keep the queue from standing for so long.
 constexpr std::size_t kBaseHistoryMarked = 3;
-/// Queue delay that the round trip does not show, beyond jitter of the way back: a clock jumped.
+/// Either way shorter by so much than it ever was: a clock jumped.
 constexpr Duration kJump = 100ms;
+/// Clocks drift: the way back is that of the last one to two of these.
+constexpr Duration kBackWindow = 5min;
 
 Duration Scale(Duration d, double f) { return FromSeconds(Seconds(d) * f); }
 
@@ -23,11 +25,35 @@ QueueDelay::QueueDelay(const Parameters& parameters)
     : p_(parameters), qdelay_max_avg_(parameters.qdelay_target_lo) {}
 
 void QueueDelay::Reset() {
+  ForgetBase();
+  qdelay_max_avg_ = p_.qdelay_target_lo;
+  qdelay_min_avg_ = qdelay_dev_avg_ = Duration{0};
+  ref_wnd_delay_scale_ = 1;
+  last_update_qdelay_avg_time_ = rtt_start_ = Time{};
+}
+
+void QueueDelay::ForgetBase() {
   history_.clear();
   base_.reset();
+  shortest_back_.reset();
+  previous_shortest_back_.reset();
   qdelay_ = qdelay_avg_ = Duration{0};
   slow_min_avg_ = Duration{0};
   min_this_rtt_ = Duration::max();
+}
+
+/// A queue on the way there leaves the way back as it is, and the other way round; a clock that is
+/// set makes one of them shorter than it can be.
+bool QueueDelay::Jumped(Time now, Duration owd, Duration way_back) {
+  if (!p_.extensions.clock_care) return false;
+  if (now - shortest_back_since_ >= kBackWindow) {
+    previous_shortest_back_ = std::exchange(shortest_back_, std::nullopt);
+    shortest_back_since_ = now;
+  }
+  const Duration latest = shortest_back_.value_or(way_back);
+  const Duration shortest = std::min(latest, previous_shortest_back_.value_or(latest));
+  shortest_back_ = std::min(latest, way_back);
+  return owd < *base_ - kJump || way_back < shortest - kJump;
 }
 
 void QueueDelay::AddToBase(Time now, Duration owd, bool short_history) {
@@ -44,9 +70,9 @@ void QueueDelay::AddToBase(Time now, Duration owd, bool short_history) {
 
 bool QueueDelay::Add(Time now, const DelaySample& sample, bool short_history) {
   const Duration owd = sample.arrival - sample.sent;
-  const bool jumped = base_ && (owd - *base_ > sample.rtt_excess + kJump || owd < *base_ - kJump);
+  const bool jumped = base_ && Jumped(now, owd, sample.way_back);
   if (jumped) {
-    Reset();
+    ForgetBase();
     // A queue that stands across the jump shows in the round trip still.
     AddToBase(now, owd - sample.rtt_excess, short_history);
   }
@@ -87,7 +113,7 @@ void QueueDelay::UpdateDrift(Time now, Duration s_rtt, Duration qdelay_target) {
   min_this_rtt_ = Duration::max();
   rtt_start_ = now;
   if (slow_min_avg_ <= qdelay_target / 4) return;
-  Reset();
+  ForgetBase();
   drift_reset_ = true;
 }
 

@@ -14,6 +14,8 @@ struct DelaySample {
   Time arrival{};  ///< on the receiver's clock
   /// How much the round trip is above its minimum: a queue cannot delay more than that.
   Duration rtt_excess{0};
+  /// From the report on the receiver's clock to its arrival on ours.
+  Duration way_back{0};
 };
 
 /// One-way delay above its base (RFC 6817). The two clocks share no epoch: only differences count.
@@ -28,7 +30,7 @@ class QueueDelay {
   void Update(Time now, Duration s_rtt, Duration qdelay_target);
   /// Takes no account any more of the queue that was.
   void ForgetQueue() { qdelay_avg_ = Duration{0}; }
-  /// Forgets base delay and averages.
+  /// As new.
   void Reset();
 
   Duration base() const { return base_.value_or(Duration{0}); }
@@ -44,6 +46,8 @@ class QueueDelay {
     Time since;
     Duration min;
   };
+  void ForgetBase();
+  bool Jumped(Time now, Duration owd, Duration way_back);
   void AddToBase(Time now, Duration owd, bool short_history);
   void CalculateRefWndDelayScale();
   void UpdateDrift(Time now, Duration s_rtt, Duration qdelay_target);
@@ -52,6 +56,8 @@ class QueueDelay {
   std::deque<Base> history_;
   std::optional<Duration> base_;
   Duration qdelay_{0};
+  std::optional<Duration> shortest_back_, previous_shortest_back_;
+  Time shortest_back_since_{};
   Duration qdelay_avg_{0};
   Duration qdelay_max_avg_;
   Duration qdelay_min_avg_{0};

@@ -11,9 +11,11 @@ namespace lidar::scream {
 
 class RoundTripTime {
  public:
+  /// `aged`: the older the average, the more a sample below it counts.
+  explicit RoundTripTime(bool aged = true) : aged_(aged) {}
+
   /// A source that leaves the window unused sees short round trips that say little about
-  /// the ones it would cause: such samples count for less (the draft's discussion). The older the
-  /// average, the more a sample below it counts.
+  /// the ones it would cause: such samples count for less (the draft's discussion).
   void Add(Time now, Duration sample, bool source_limited) {
     const Duration bounded = std::max(sample, kMin);
     last_ = bounded;
@@ -22,7 +24,7 @@ class RoundTripTime {
       smoothed_ = bounded;
     } else {
       const double age = Seconds(now - last_time_) / (kMemory * Seconds(*smoothed_));
-      const double aged = bounded < *smoothed_ ? 1 - std::exp(-age) : 0;
+      const double aged = aged_ && bounded < *smoothed_ ? 1 - std::exp(-age) : 0;
       const double gain = std::max(1.0 / (source_limited ? kSlow : kNormal), aged);
       *smoothed_ += FromSeconds(gain * Seconds(bounded - *smoothed_));
     }
@@ -32,7 +34,7 @@ class RoundTripTime {
   void OnStandstill(Time now) { last_time_ = now; }
   /// Goes on from a value that was known before.
   void Restore(Duration smoothed) { smoothed_ = smoothed; }
-  void Reset() { *this = RoundTripTime(); }
+  void Reset() { *this = RoundTripTime(aged_); }
 
   bool known() const { return smoothed_.has_value(); }
   Duration smoothed() const { return smoothed_.value_or(kInitial); }
@@ -56,6 +58,7 @@ class RoundTripTime {
   static constexpr int kNormal = 8;
   static constexpr int kSlow = 32;
   static constexpr double kMemory = 8;  // round trips
+  bool aged_;
   std::optional<Duration> smoothed_;
   Duration min_ = Duration::max();
   Duration previous_min_ = Duration::max();

@@ -2,7 +2,6 @@
 #include "src/scream/response/reference_window.h"
 
 #include <cmath>
-#include <limits>
 
 namespace lidar::scream {
 namespace {
@@ -21,9 +20,7 @@ double Ratio(Duration a, Duration b) { return Seconds(a) / Seconds(b); }
 }  // namespace
 
 ReferenceWindow::ReferenceWindow(const Parameters& parameters)
-    : p_(parameters),
-      ref_wnd_(static_cast<double>(parameters.min_ref_wnd.bytes())),
-      max_policed_ref_wnd_(std::numeric_limits<double>::infinity()) {}
+    : p_(parameters), ref_wnd_(static_cast<double>(parameters.min_ref_wnd.bytes())) {}
 
 void ReferenceWindow::Set(DataSize window) {
   ref_wnd_ = static_cast<double>(std::max(window, p_.min_ref_wnd).bytes());
@@ -34,9 +31,8 @@ double ReferenceWindow::ref_wnd_ratio() const {
 }
 
 DataSize ReferenceWindow::max_policed_ref_wnd() const {
-  return std::isinf(max_policed_ref_wnd_)
-             ? DataSize::Infinite()
-             : DataSize::Bytes(static_cast<std::int64_t>(max_policed_ref_wnd_));
+  return std::isinf(policer_.max()) ? DataSize::Infinite()
+                                    : DataSize::Bytes(static_cast<std::int64_t>(policer_.max()));
 }
 
 double ReferenceWindow::InflectionScale(double slope) const {
@@ -60,7 +56,7 @@ Reaction ReferenceWindow::Detect(Time now, const CongestionSignals& s) {
   if (now - last_reaction_to_congestion_time_ + s.earliness < std::min(p_.virtual_rtt, s.s_rtt))
     return Reaction::kNone;
   if (std::exchange(loss_detected_, false)) {
-    DetectPolicer(s);
+    DetectPolicer(now, s);
     if (LossCounts(s)) return Reaction::kLoss;
   }
   if (data_units_marked_) return Reaction::kCe;
@@ -74,18 +70,16 @@ bool ReferenceWindow::LossCounts(const CongestionSignals& s) const {
          s.qdelay_avg > s.qdelay_target / 4;
 }
 
-void ReferenceWindow::DetectPolicer(const CongestionSignals& s) {
+void ReferenceWindow::DetectPolicer(Time now, const CongestionSignals& s) {
   if (p_.rate_policer && s.loss_rate > p_.loss_rate_threshold_policer &&
       s.qdelay_avg < s.qdelay_target / 4)
-    max_policed_ref_wnd_ = ref_wnd_ * p_.beta_loss_policer;
+    policer_.OnLoss(now, ref_wnd_);
 }
 
 void ReferenceWindow::NoteReaction(Time now) {
   last_reaction_to_congestion_time_ = last_congestion_detected_time_ = now;
   loss_detected_ = data_units_marked_ = false;
 }
-
-void ReferenceWindow::RelaxPolicer() { max_policed_ref_wnd_ *= 1 + p_.policed_ref_wnd_recovery; }
 
 void ReferenceWindow::Reduce(Time now, Reaction reaction, const CongestionSignals& s, double scl) {
   if (ref_wnd_i_update_allowed_) {
@@ -166,7 +160,7 @@ void ReferenceWindow::Increase(Time now, const CongestionSignals& s, double scl)
     ref_wnd_ = next;
     ref_wnd_i_update_allowed_ = true;
   }
-  if (p_.rate_policer) ref_wnd_ = std::min(ref_wnd_, max_policed_ref_wnd_);
+  if (p_.rate_policer) ref_wnd_ = std::min(ref_wnd_, policer_.max());
   ref_wnd_ = std::max(ref_wnd_, static_cast<double>(p_.min_ref_wnd.bytes()));
 }
 

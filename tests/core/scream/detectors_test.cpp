@@ -66,7 +66,9 @@ TEST(Parameters, ThePureDraftHasNoOptionalPartAndNoExtension) {
   const Extensions& e = p.extensions;
   EXPECT_FALSE(e.fast_start || e.drop_response || e.bounded_flight || e.isolated_loss ||
                e.answered_signals || e.even_alpha || e.quick_drain || e.adaptive_pacing ||
-               e.feedback_timeout || e.gap_recovery || e.needed_floor || e.classic_ecn);
+               e.feedback_timeout || e.gap_recovery || e.needed_floor || e.classic_ecn ||
+               e.brief_policer || e.clock_care || e.aged_rtt);
+  EXPECT_EQ(p.pacing_catch_up, Duration{0});
 }
 
 TEST(L4sAlpha, AttacksWithAnEighthAndDecaysWithA128th) {
@@ -100,12 +102,22 @@ TEST(L4sAlpha, TheEvenOneAveragesARoundWithoutBiasAndStillAttacksWhenMostIsMarke
   EXPECT_NEAR(alpha.value(), before + (1 - before) / 8, 0.01);
 }
 
+TEST(L4sAlpha, TheEvenOneFollowsWithinTheSameTimeWhateverTheFrameRate) {
+  const Parameters p;
+  for (const Duration round : {40ms, 100ms}) {
+    L4sAlpha alpha(p);
+    for (Duration t{0}; t <= 1300ms; t += round) alpha.Update(kStart + t, 10, 2, 20ms, round);
+    EXPECT_NEAR(alpha.value(), 0.2 * 0.64, 0.012) << Milliseconds(round);
+  }
+}
+
 class QueueDelayTest : public ::testing::Test {
  protected:
   /// A packet a millisecond that takes `owd`, on clocks an hour apart.
   void Run(int packets, Duration owd, Duration rtt_excess) {
     for (int i = 0; i < packets; ++i, now_ += 1ms) {
-      ok_ = delay_.Add(now_, {now_ - 20ms, now_ - 20ms + owd + 1h, rtt_excess}) && ok_;
+      const Duration way_back = 40ms + rtt_excess - owd - 1h;
+      ok_ = delay_.Add(now_, {now_ - 20ms, now_ - 20ms + owd + 1h, rtt_excess, way_back}) && ok_;
       delay_.Update(now_, 40ms, 60ms);
     }
   }
@@ -146,6 +158,46 @@ TEST_F(QueueDelayTest, ARealQueueOfASecondIsAQueue) {
   Run(1, 1020ms, 1000ms);
   EXPECT_TRUE(ok_);
   EXPECT_EQ(delay_.qdelay(), Duration(1s));
+}
+
+TEST_F(QueueDelayTest, AQueueThatStandsForMinutesIsNoClock) {
+  parameters_.clock_drift = false;
+  Run(30, 20ms, 0ms);
+  Run(1000, 210ms, 190ms);
+  for (int i = 0; i < 100; ++i, now_ += 1s) {  // the lowest round trip has become this one
+    ok_ = delay_.Add(now_, {now_ - 20ms, now_ + 190ms + 1h, 0ms, 20ms - 1h}) && ok_;
+    delay_.Update(now_, 40ms, 60ms);
+    ASSERT_EQ(delay_.qdelay(), Duration(190ms));
+  }
+  EXPECT_TRUE(ok_);
+}
+
+TEST_F(QueueDelayTest, AHandoverThatHoldsReportsAndPacketsIsNoClock) {
+  Run(30, 20ms, 0ms);
+  ok_ = delay_.Add(now_, {now_ - 20ms, now_ + 1h, 300ms, 320ms - 1h}) && ok_;
+  ok_ = delay_.Add(now_, {now_ - 320ms, now_ + 1h, 300ms, 20ms - 1h}) && ok_;
+  EXPECT_TRUE(ok_);
+  EXPECT_EQ(delay_.qdelay(), Duration(300ms));
+}
+
+TEST_F(QueueDelayTest, TheDraftKnowsNoClockJumps) {
+  parameters_ = Parameters::Draft();
+  Run(30, 20ms, 0ms);
+  Run(1, 3020ms, 0ms);
+  EXPECT_TRUE(ok_);
+  EXPECT_EQ(delay_.qdelay(), Duration(3s));
+}
+
+TEST_F(QueueDelayTest, ResetForgetsAllAverages) {
+  Run(30, 20ms, 0ms);
+  for (int i = 0; i < 40; ++i) {
+    Run(26, 20ms, 0ms);
+    Run(26, 50ms, 30ms);
+  }
+  delay_.Reset();
+  EXPECT_EQ(delay_.qdelay_avg(), Duration(0));
+  const double fresh = QueueDelay(parameters_).ref_wnd_delay_scale();
+  EXPECT_EQ(delay_.ref_wnd_delay_scale(), fresh);
 }
 
 TEST_F(QueueDelayTest, JitterLowersTheScale) {
@@ -226,7 +278,7 @@ TEST(Pacer, RelaxesNearTheMaximumBitrate) {
 }
 
 TEST(Pacer, CatchesUpAfterALateWakeUpButOnlyALittle) {
-  const Parameters p = Parameters::Draft();
+  const Parameters p;
   Pacer pacer(p);
   pacer.Update(Mbps(8), Mbps(100), 1);
   pacer.OnSent(kStart, DataSize::Bytes(1000));

@@ -56,6 +56,9 @@ const std::map<std::string, bool Extensions::*> kExtensions = {
     {"gap_recovery", &Extensions::gap_recovery},
     {"needed_floor", &Extensions::needed_floor},
     {"classic_ecn", &Extensions::classic_ecn},
+    {"brief_policer", &Extensions::brief_policer},
+    {"clock_care", &Extensions::clock_care},
+    {"aged_rtt", &Extensions::aged_rtt},
 };
 const std::map<std::string, bool Parameters::*> kOptionalParts = {
     {"reduce_jitter", &Parameters::reduce_jitter},

@@ -4,6 +4,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 namespace lidar::scream {
 namespace {
 
@@ -153,8 +155,26 @@ TEST_F(ReferenceWindowTest, APolicerLimitsTheWindowAndLetsItGoSlowly) {
   signals_.loss_rate = 0.2;
   Factor();
   EXPECT_EQ(window_.max_policed_ref_wnd().bytes(), 90000);
-  window_.RelaxPolicer();
+  window_.RelaxPolicer(now_);
   EXPECT_NEAR(static_cast<double>(window_.max_policed_ref_wnd().bytes()), 90090, 1);
+}
+
+TEST(Policer, IsBelievedInForASecondAndForLongerWhereItShowsItselfAgain) {
+  const Parameters p;
+  Policer policer(p);
+  Time now = kStart;
+  for (const Duration believed : {1s, 4s, 16s, 64s, 64s}) {
+    policer.OnLoss(now, 100000);
+    policer.Relax(now += believed - 1ms);
+    EXPECT_NEAR(policer.max(), 90090, 1) << Seconds(believed);
+    policer.Relax(now += 1ms);
+    EXPECT_TRUE(std::isinf(policer.max()));
+    now += 1s;
+  }
+  now += 300s;
+  policer.OnLoss(now, 100000);
+  policer.Relax(now + 1s);
+  EXPECT_TRUE(std::isinf(policer.max())) << "another one";
 }
 
 TEST_F(ReferenceWindowTest, ReactsLessWhereTheTargetHasFallenAlready) {

@@ -39,6 +39,7 @@ class Path {
       packet.arrived_ecn = ecn;
       packet.sent = now - kRtt - queue;
       packet.arrival = now - kRtt / 2;
+      acks.report = *packet.arrival;
       acks.acked.push_back(packet);
       acks.bytes_newly_acked = kPacket;
       model.OnReport(now, acks, {DataSize::Bytes(10000), 20ms, 60ms, Time{}});
