@@ -25,7 +25,9 @@ class L4sAlpha {
       return;
     last_fraction_marked_ =
         std::min(1.0, static_cast<double>(marked_) / static_cast<double>(delivered_));
-    const double down = even ? p_.even_alpha_g : p_.l4s_avg_g_down;
+    const double slow = std::max(1.0, Seconds(round) / Seconds(kEvenRound));
+    const double down =
+        even ? std::min(p_.l4s_avg_g_up, p_.even_alpha_g * slow) : p_.l4s_avg_g_down;
     const double up = even && last_fraction_marked_ < p_.even_alpha_max ? down : p_.l4s_avg_g_up;
     if (last_fraction_marked_ >= alpha_)
       alpha_ = up * last_fraction_marked_ + (1 - up) * alpha_;
@@ -45,6 +47,8 @@ class L4sAlpha {
 
  private:
   static constexpr Duration kUpdateInterval = 10ms;
+  /// Longer rounds, as of whole scans, count for more.
+  static constexpr Duration kEvenRound = 40ms;
   const Parameters& p_;
   double alpha_ = 0;
   double last_fraction_marked_ = 0;
