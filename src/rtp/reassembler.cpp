@@ -103,7 +103,7 @@ void Reassembler::Complete(PendingMap::iterator it, std::vector<ReceivedSlice>* 
 /// `skipped` is as in SliceInfo. Of a slice of which a packet is here, whoever says so is wrong.
 void Reassembler::BookSkipped(SlicePosition p, std::uint64_t skipped) {
   for (auto at = ledger_.Before(p); at && skipped != 0; at = ledger_.Before(*at), skipped >>= 1)
-    if ((skipped & 1) != 0 && pending_.count(*at) == 0) ledger_.Settle(*at, SliceOutcome::kSkipped);
+    if ((skipped & 1) != 0 && pending_.count(*at) == 0) ledger_.Skip(*at);
 }
 
 void Reassembler::Emit(PendingMap::iterator it, std::shared_ptr<const StreamConfig> config,
@@ -116,7 +116,7 @@ void Reassembler::Emit(PendingMap::iterator it, std::shared_ptr<const StreamConf
   received.pts = slice.pts;
   received.config = std::move(config);
   received.bytes = std::move(slice.bytes);
-  received.discont = missing_at_last_slice_ != Missing();
+  received.discont = !missing_at_last_slice_ || Missing() > *missing_at_last_slice_;
   missing_at_last_slice_ = Missing();
   out->push_back(std::move(received));
   ledger_.Settle(it->first, SliceOutcome::kReceived);

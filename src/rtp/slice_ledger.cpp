@@ -11,6 +11,8 @@ namespace {
 
 // Bounds memory and time; the reassembler takes no jump as long as this (kMaxScanJump).
 constexpr std::int64_t kMaxOpenScans = 64;
+// A slice tells of as many slices before it, which may be scans of one slice.
+constexpr std::int64_t kKeptScans = 64;
 
 }  // namespace
 
@@ -19,14 +21,14 @@ Admission SliceLedger::Admit(SlicePosition p, std::uint32_t count, Time now) {
     Start(p, count);
     return Admission::kOpen;
   }
-  if (p < origin_ || p.scan < first_scan_) return Admission::kTooOld;
+  if (p < origin_ || p.scan < open_scan_) return Admission::kTooOld;
   if (p.scan - frontier_->scan > kMaxOpenScans) return Admission::kContradiction;
   if (Contradicts(p.scan, count)) return Admission::kContradiction;
   if (*frontier_ < p) {
     AppendScans(p.scan, count);
     frontier_ = p;
     cutoffs_.push_back({now + max_reorder_time_, p});
-    while (p.scan - first_scan_ >= kMaxOpenScans) CloseBefore({first_scan_ + 1, 0});
+    while (p.scan - open_scan_ >= kMaxOpenScans) CloseBefore({open_scan_ + 1, 0});
   }
   Scan* scan = Find(p.scan);
   if (scan == nullptr) return Admission::kTooOld;
@@ -55,7 +57,8 @@ bool SliceLedger::Contradicts(std::int64_t number, std::uint32_t count) {
 void SliceLedger::Start(SlicePosition p, std::uint32_t count) {
   origin_ = p;
   frontier_ = p;
-  first_scan_ = p.scan;
+  origin_count_ = count;
+  first_scan_ = open_scan_ = p.scan;
   scans_.clear();
   AppendScans(p.scan, count);
   Scan& scan = scans_.front();
@@ -102,20 +105,53 @@ void SliceLedger::Close(Scan* scan, std::uint32_t index, SliceOutcome outcome) {
       ++accounts_.slices_lost;
       break;
   }
-  if (scan->open == 0) BookScan(*scan);
+  if (scan->open == 0) BookScan(scan);
 }
 
-void SliceLedger::BookScan(const Scan& scan) {
-  if (scan.joined_late) return;
-  if (scan.skipped == scan.slices.size()) {
-    ++accounts_.scans_skipped;
-  } else if (scan.received == 0) {
-    ++accounts_.scans_lost;
-  } else if (scan.received + scan.skipped == scan.slices.size()) {
-    ++accounts_.scans_complete;
+void SliceLedger::BookScan(Scan* scan) {
+  if (scan->joined_late) return;
+  if (scan->skipped == scan->slices.size()) {
+    scan->booked = &SliceAccounts::scans_skipped;
+  } else if (scan->received == 0) {
+    scan->booked = &SliceAccounts::scans_lost;
+  } else if (scan->received + scan->skipped == scan->slices.size()) {
+    scan->booked = &SliceAccounts::scans_complete;
   } else {
-    ++accounts_.scans_incomplete;
+    scan->booked = &SliceAccounts::scans_incomplete;
   }
+  ++(accounts_.*(scan->booked));
+}
+
+void SliceLedger::Skip(SlicePosition p) {
+  if (p < origin_) {
+    SkipBeforeOrigin(p);
+    return;
+  }
+  Scan* scan = Find(p.scan);
+  if (scan == nullptr || p.index >= scan->slices.size()) return;
+  if (scan->slices[p.index] == SliceOutcome::kLost) {
+    TakeBackLoss(scan, p.index);
+  } else {
+    Close(scan, p.index, SliceOutcome::kSkipped);
+  }
+}
+
+void SliceLedger::TakeBackLoss(Scan* scan, std::uint32_t index) {
+  scan->slices[index] = SliceOutcome::kSkipped;
+  ++scan->skipped;
+  --accounts_.slices_lost;
+  ++accounts_.slices_skipped;
+  if (scan->booked == nullptr) return;
+  --(accounts_.*(scan->booked));
+  BookScan(scan);
+}
+
+/// Such slices are in no account, unless Continue() books them.
+void SliceLedger::SkipBeforeOrigin(SlicePosition p) {
+  const bool is_new = skipped_before_origin_.insert(p).second;
+  if (!is_new || !previous_end_ || !(*previous_end_ < p)) return;
+  --accounts_.slices_lost;
+  ++accounts_.slices_skipped;
 }
 
 /// A source that starts its numbers anew has left out nothing.
@@ -151,12 +187,13 @@ void SliceLedger::CloseFirst(Scan* scan, std::uint32_t limit) {
 }
 
 void SliceLedger::CloseBefore(SlicePosition limit) {
-  while (!scans_.empty() && first_scan_ < limit.scan) {
-    CloseFirst(&scans_.front(), static_cast<std::uint32_t>(scans_.front().slices.size()));
-    scans_.pop_front();
-    ++first_scan_;
+  for (Scan* scan = nullptr; open_scan_ < limit.scan; ++open_scan_) {
+    if ((scan = Find(open_scan_)) == nullptr) break;
+    CloseFirst(scan, static_cast<std::uint32_t>(scan->slices.size()));
   }
-  if (!scans_.empty() && first_scan_ == limit.scan) CloseFirst(&scans_.front(), limit.index);
+  if (open_scan_ == limit.scan)
+    if (Scan* scan = Find(open_scan_)) CloseFirst(scan, limit.index);
+  for (; open_scan_ - first_scan_ > kKeptScans; ++first_scan_) scans_.pop_front();
   while (!cutoffs_.empty() && !(limit < cutoffs_.front().position)) cutoffs_.pop_front();
 }
 
@@ -166,7 +203,7 @@ void SliceLedger::Finish() {
   // What was not sent of the last scan is not lost, but the scan did end here.
   Scan* scan = Find(frontier_->scan);
   if (scan != nullptr && scan->open > 0) {
-    BookScan(*scan);
+    BookScan(scan);
     scan->joined_late = true;  // booked
   }
 }
@@ -175,22 +212,25 @@ void SliceLedger::Continue(const SliceLedger& previous) {
   if (!started() || !previous.started() || !(*previous.frontier_ < origin_)) return;
   if (latest_id_ && previous.latest_id_)
     accounts_.scans_skipped += SkippedBetween(*previous.latest_id_, first_id_);
-  const auto count = static_cast<std::uint64_t>(scans_.front().slices.size());
+  const std::uint64_t count = origin_count_;
   const SlicePosition last = *previous.frontier_;
+  previous_end_ = last;
   if (last.scan < origin_.scan) {
     const auto between = static_cast<std::uint64_t>(origin_.scan - last.scan - 1);
     accounts_.scans_lost += between;
     accounts_.slices_lost += between * count + origin_.index;
     // Finish keeps the frontier's scan.
     accounts_.slices_lost += previous.scans_.back().slices.size() - last.index - 1;
-    scans_.front().joined_late = false;
+    if (Scan* scan = Find(origin_.scan)) scan->joined_late = false;
   } else {
     accounts_.slices_lost += origin_.index - last.index - 1;
   }
+  for (const SlicePosition p : std::exchange(skipped_before_origin_, {})) SkipBeforeOrigin(p);
 }
 
 std::optional<SlicePosition> SliceLedger::Before(SlicePosition p) const {
   if (p.index > 0) return SlicePosition{p.scan, p.index - 1};
+  if (p.scan <= origin_.scan) return SlicePosition{p.scan - 1, origin_count_ - 1};
   const Scan* scan = Find(p.scan - 1);
   if (scan == nullptr) return std::nullopt;
   return SlicePosition{p.scan - 1, static_cast<std::uint32_t>(scan->slices.size()) - 1};

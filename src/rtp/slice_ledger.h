@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <deque>
 #include <optional>
+#include <set>
 #include <tuple>
 #include <vector>
 
@@ -59,10 +60,13 @@ class SliceLedger {
   Admission Admit(SlicePosition p, std::uint32_t count, Time now);
   /// The slice, which must be open, has come to its end.
   void Settle(SlicePosition p, SliceOutcome outcome);
+  /// The source never sent this slice. The word of it may come after the slice was booked as lost.
+  void Skip(SlicePosition p);
   /// A slice of this scan says which one the source had it as: between two scans that were sent
   /// the source's numbers have gaps where scans were left out.
   void BookScanId(std::int64_t scan, std::uint32_t id);
-  /// The slice before `p`; none where that is before the first one that the ledger still has.
+  /// The slice before `p`; none where that is before the scans that the ledger still has. Scans
+  /// before the first one count as having as many slices.
   std::optional<SlicePosition> Before(SlicePosition p) const;
 
   /// Slices before this position are late at `now`; CloseBefore books them.
@@ -90,6 +94,7 @@ class SliceLedger {
     std::uint32_t skipped = 0;
     bool count_known = false;  // else taken from its neighbour: no packet of it came
     bool joined_late = false;  // its beginning was sent before the receiver joined
+    std::uint64_t SliceAccounts::*booked = nullptr;  // where it counts, once it is closed
   };
   struct ScanId {
     std::int64_t scan = 0;
@@ -105,7 +110,9 @@ class SliceLedger {
   void AppendScans(std::int64_t up_to, std::uint32_t count);
   void Close(Scan* scan, std::uint32_t index, SliceOutcome outcome);
   void CloseFirst(Scan* scan, std::uint32_t limit);
-  void BookScan(const Scan& scan);
+  void BookScan(Scan* scan);
+  void TakeBackLoss(Scan* scan, std::uint32_t index);
+  void SkipBeforeOrigin(SlicePosition p);
   static std::uint64_t SkippedBetween(ScanId before, ScanId after);
   Scan* Find(std::int64_t number);
   const Scan* Find(std::int64_t number) const;
@@ -113,7 +120,11 @@ class SliceLedger {
   Duration max_reorder_time_;
   std::deque<Scan> scans_;       // without gaps, from first_scan_
   std::int64_t first_scan_ = 0;  // number of scans_.front()
+  std::int64_t open_scan_ = 0;   // all scans before are closed, and kept for word of skipped slices
   SlicePosition origin_;         // the first slice
+  std::uint32_t origin_count_ = 1;
+  std::set<SlicePosition> skipped_before_origin_;
+  std::optional<SlicePosition> previous_end_;  // of the stream that this one goes on with
   std::optional<SlicePosition> frontier_;
   ScanId first_id_{};  // where there is a latest one
   std::optional<ScanId> latest_id_;

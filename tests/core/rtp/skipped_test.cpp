@@ -55,6 +55,44 @@ TEST(SkippedSlices, AreToldFromLostOnesEvenWhereTheNextSliceIsLostToo) {
   EXPECT_EQ(receiver.accounts().slices.slices_received, 37U);
 }
 
+TEST(SkippedSlices, AreNotLostWhereTheWordOfThemComesLate) {
+  Receiver receiver(kReorder);
+  Sender sender;
+  auto packets = sender.ScansWithout(6, [](std::uint32_t s, std::uint16_t i) {
+    return (s == 2 && i == 3) || (s == 3 && i < 2);
+  });
+  // A sender in need pauses within the slice that tells of them: its last packet comes when
+  // what lies before it is overdue.
+  const auto told = [](const Wire& w) { return w.scan == 3 && w.index == 2; };
+  const auto begun = std::find_if(packets.begin(), packets.end(), told);
+  ASSERT_TRUE(told(*(begun + 1)));
+  for (auto w = begun + 1; w != packets.end(); ++w) w->sent += kReorder * 3 / 2;
+  DeliverAll(&receiver, packets);
+  EXPECT_EQ(receiver.accounts().slices.slices_lost, 0U);
+  receiver.Finish();
+  EXPECT_EQ(SkipAccounts(receiver), "skipped 3 lost 0; scans 6 0 0");
+}
+
+TEST(SkippedSlices, AreNotLostInAnOutage) {
+  Receiver receiver(kReorder);
+  Sender sender;
+  auto packets = sender.ScansWithout(
+      20, [](std::uint32_t s, std::uint16_t i) { return s == 11 || (s == 12 && i < 2) || i == 3; });
+  // Nothing of scans 5 to 11 comes through. Scan 11 has no number, as none of it was sent.
+  packets.erase(
+      std::remove_if(packets.begin(), packets.end(),
+                     [](const Wire& w) { return !w.config && w.scan >= 5 && w.scan <= 11; }),
+      packets.end());
+  DeliverAll(&receiver, packets);
+  receiver.Finish();
+  const auto a = receiver.accounts();
+  EXPECT_EQ(a.outages, 1U);
+  EXPECT_EQ(a.slices.slices_received, 5U * 3 + 1 + 7 * 3);
+  // 12.2 tells of the 64 slices before it.
+  EXPECT_EQ(a.slices.slices_lost, 6U * 3);
+  EXPECT_EQ(a.slices.scans_skipped, 1U);
+}
+
 TEST(SkippedSlices, DoNotInterruptTheStream) {
   Receiver receiver(kReorder);
   Sender sender;
