@@ -68,6 +68,7 @@ void Reassembler::PushSlice(const RtpPacket& packet, const Unit& unit,
   if (!Admit(p, packet, unit)) return;
   newest_scan_ = any_slice_ ? std::max(newest_scan_, p.scan) : p.scan;
   any_slice_ = true;
+  for (KnownConfig& known : configs_) known.after_slices = false;
   const auto it = pending_.try_emplace(p).first;
   Pending& slice = it->second;
   if (!slice.bytes.empty()) {
@@ -140,8 +141,11 @@ void Reassembler::PushConfig(const RtpPacket& packet, const Unit& unit,
     return;
   }
   ++config_count_;
-  const auto known = FindConfig(id);
-  if (known && *known == *config) return;
+  KnownConfig* known = FindKnown(id);
+  if (known != nullptr && *known->config == *config) {
+    known->after_slices = true;
+    return;
+  }
   Learn(id, std::make_shared<const StreamConfig>(*std::move(config)), out);
 }
 
@@ -160,14 +164,26 @@ void Reassembler::Learn(std::uint8_t id, std::shared_ptr<const StreamConfig> con
   }
 }
 
-bool Reassembler::IsAfter(const Reassembler& previous) const {
-  return ledger_.started() && previous.ledger_.started() &&
-         *previous.ledger_.frontier() < ledger_.origin();
+bool Reassembler::IsAfter(const Reassembler& previous, std::int64_t max_scans) const {
+  if (!ledger_.started() || !previous.ledger_.started()) return false;
+  const SlicePosition end = *previous.ledger_.frontier();
+  return end < ledger_.origin() && ledger_.origin().scan - end.scan <= max_scans;
 }
 
-void Reassembler::TakeConfigs(const Reassembler& previous, std::vector<ReceivedSlice>* out) {
+void Reassembler::GoOn(const Reassembler& previous, std::vector<ReceivedSlice>* out) {
+  ledger_.Continue(previous.ledger_);
+  TakeConfigs(previous, true, out);
+}
+
+void Reassembler::StartAnew(const Reassembler& previous, std::vector<ReceivedSlice>* out) {
+  TakeConfigs(previous, false, out);
+}
+
+void Reassembler::TakeConfigs(const Reassembler& previous, bool all,
+                              std::vector<ReceivedSlice>* out) {
   for (auto known = previous.configs_.rbegin(); known != previous.configs_.rend(); ++known)
-    if (!FindConfig(known->id)) Learn(known->id, known->config, out);
+    if ((all || known->after_slices) && !FindConfig(known->id))
+      Learn(known->id, known->config, out);
 }
 
 void Reassembler::Expire(Time now) {
@@ -199,6 +215,12 @@ void Reassembler::Bound() {
 void Reassembler::Finish() {
   while (!pending_.empty()) Remove(pending_.begin());
   ledger_.Finish();
+}
+
+Reassembler::KnownConfig* Reassembler::FindKnown(std::uint8_t id) {
+  for (KnownConfig& known : configs_)
+    if (known.id == id) return &known;
+  return nullptr;
 }
 
 std::shared_ptr<const StreamConfig> Reassembler::FindConfig(std::uint8_t id) const {

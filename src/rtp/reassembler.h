@@ -57,17 +57,18 @@ class Reassembler {
   /// of their completion: no slice waits for another.
   void Push(const RtpPacket& packet, const std::vector<Unit>& units,
             std::vector<ReceivedSlice>* out);
-  /// Has a slice begun here, and behind all that `previous` saw?
-  bool IsAfter(const Reassembler& previous) const;
+  /// Has a slice begun here, behind all that `previous` saw, but by `max_scans` at most?
+  bool IsAfter(const Reassembler& previous, std::int64_t max_scans) const;
   /// Did a slice come here whole and undamaged, whether or not its config is known?
   bool has_whole_slice() const { return has_whole_slice_; }
   /// Has a slice begun here?
   bool started() const { return ledger_.started(); }
-  /// Goes on where `previous`, the same stream before an outage, ended: books what the outage took.
-  void GoOn(const Reassembler& previous) { ledger_.Continue(previous.ledger_); }
-  /// Takes over the configs of `previous`, the same source before an outage or a restart, and
-  /// appends the slices that had waited for them. No two configs of a source share an id.
-  void TakeConfigs(const Reassembler& previous, std::vector<ReceivedSlice>* out);
+  /// Goes on where `previous`, the same stream before an outage, ended: books what the outage took,
+  /// takes over its configs and appends the slices that had waited for them.
+  void GoOn(const Reassembler& previous, std::vector<ReceivedSlice>* out);
+  /// The sender of `previous` started anew, with the same SSRC. Takes over only configs that came
+  /// after the last slice there: older ones may have the id of another one here.
+  void StartAnew(const Reassembler& previous, std::vector<ReceivedSlice>* out);
   /// End of stream: what is not whole now is lost.
   void Finish();
 
@@ -92,6 +93,7 @@ class Reassembler {
   struct KnownConfig {
     std::uint8_t id;
     std::shared_ptr<const StreamConfig> config;
+    bool after_slices = true;  // came after the last slice so far
   };
   using PendingMap = std::map<SlicePosition, Pending>;
 
@@ -101,6 +103,8 @@ class Reassembler {
   void PushConfig(const RtpPacket& packet, const Unit& unit, std::vector<ReceivedSlice>* out);
   void Learn(std::uint8_t id, std::shared_ptr<const StreamConfig> config,
              std::vector<ReceivedSlice>* out);
+  void TakeConfigs(const Reassembler& previous, bool all, std::vector<ReceivedSlice>* out);
+  KnownConfig* FindKnown(std::uint8_t id);
   void Complete(PendingMap::iterator it, std::vector<ReceivedSlice>* out);
   void Emit(PendingMap::iterator it, std::shared_ptr<const StreamConfig> config,
             std::vector<ReceivedSlice>* out);

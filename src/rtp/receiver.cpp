@@ -10,6 +10,9 @@ namespace lidar::rtp {
 namespace {
 
 constexpr int kMaxSequenceStep = 64;  // between two packets of a candidate
+// No sensor turns faster, so a stream that went on further than this in an outage is another one.
+constexpr double kMostScansPerSecond = 1'000;
+constexpr std::int64_t kScansWithoutClock = 10'000;  // where arrival times stand still
 
 void Add(const SliceAccounts& a, SliceAccounts* sum) {
   sum->slices_received += a.slices_received;
@@ -71,25 +74,30 @@ void Receiver::PushToCandidate(const RtpPacket& packet, const std::vector<Unit>&
 bool Receiver::CandidateHasWon(Time now) const {
   const bool same = candidate_->ssrc == active_->ssrc;
   const bool silent = now - active_arrival_ >= kSilence;
-  if (same && silent && candidate_->reassembler.has_whole_slice() &&
-      candidate_->reassembler.IsAfter(active_->reassembler)) {
-    return true;
-  }
+  if (silent && candidate_->reassembler.has_whole_slice() && CandidateGoesOn(now)) return true;
   if (candidate_->streak < kProbation || !candidate_->reassembler.started()) return false;
   return same || silent || candidate_->streak >= kProbationNoClock;
+}
+
+/// The candidate is the active stream after an outage, and not a sender that started anew.
+bool Receiver::CandidateGoesOn(Time now) const {
+  if (candidate_->ssrc != active_->ssrc) return false;
+  const double most = Seconds(now - active_arrival_) * kMostScansPerSecond;
+  return candidate_->reassembler.IsAfter(
+      active_->reassembler, kScansWithoutClock + static_cast<std::int64_t>(most));
 }
 
 std::vector<ReceivedSlice> Receiver::Promote(Time now) {
   active_->reassembler.Finish();
   std::vector<ReceivedSlice> out = std::move(candidate_->held);
-  const bool same = candidate_->ssrc == active_->ssrc;
-  if (same && candidate_->reassembler.IsAfter(active_->reassembler)) {
+  if (CandidateGoesOn(now)) {
     ++booked_.outages;
-    candidate_->reassembler.GoOn(active_->reassembler);
+    candidate_->reassembler.GoOn(active_->reassembler, &out);
   } else {
     ++booked_.restarts;
+    if (candidate_->ssrc == active_->ssrc)
+      candidate_->reassembler.StartAnew(active_->reassembler, &out);
   }
-  if (same) candidate_->reassembler.TakeConfigs(active_->reassembler, &out);
   Add(active_->reassembler, &booked_);
   active_ = std::move(candidate_);
   active_->held.clear();

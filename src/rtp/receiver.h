@@ -49,6 +49,7 @@ class Receiver {
 
   void PushToCandidate(const RtpPacket& packet, const std::vector<Unit>& units);
   bool CandidateHasWon(Time now) const;
+  bool CandidateGoesOn(Time now) const;
   std::vector<ReceivedSlice> Promote(Time now);
 
   Duration max_reorder_time_;

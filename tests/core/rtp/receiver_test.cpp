@@ -47,11 +47,30 @@ TEST(Receiver, FollowsASenderThatRestartsWithTheSameSsrc) {
   Receiver receiver(milliseconds(100));
   auto packets = Sender().Scans(0, 3);
   for (const Wire& w : Sender(second).Scans(10, 3)) packets.push_back(w);
-  // It cannot be told from an outage of a million scans, but all that came is there.
   EXPECT_EQ(DeliverAll(&receiver, packets), AllSlices(0, 3) + AllSlices(10, 3, 2));
   second.scan_number = 500;
   for (const Wire& w : Sender(second).Scans(20, 3)) DeliverAll(&receiver, {w});
-  EXPECT_EQ(receiver.accounts().restarts, 1U);
+  // No outage of half a second takes a million scans.
+  EXPECT_EQ(receiver.accounts().restarts, 2U);
+  EXPECT_EQ(receiver.accounts().slices.slices_lost, 0U);
+}
+
+TEST(Receiver, DecodesNothingOfARestartedSenderByTheConfigOfTheOneBefore) {
+  SenderOptions second;
+  second.sequence = 5;
+  second.scan_number = 1'000'000;
+  second.config.fields = "x:F32:0,y:F32:4,z:F32:8,range:U32:12";  // and the same id
+  Receiver receiver(milliseconds(100));
+  DeliverAll(&receiver, Sender().Scans(0, 3));
+  auto packets = Sender(second).Scans(10, 3);
+  ASSERT_TRUE(packets.front().config);
+  packets.erase(packets.begin());  // lost
+  EXPECT_EQ(DeliverAll(&receiver, packets), Names{});
+  std::vector<Wire> config;
+  Sender(second).Config(&config);
+  config.front().sent = packets.back().sent;
+  for (const ReceivedSlice& slice : test::Deliver(&receiver, config.front()))
+    EXPECT_EQ(slice.config->fields, second.config.fields);
 }
 
 TEST(Receiver, FollowsASenderThatRestartsWithTheSameSsrcWithoutAPause) {
