@@ -19,8 +19,8 @@
 #include "gst/common/refs.h"
 #include "gst/scream/bin/common.h"
 #include "gst/scream/twcc/session_numbers.h"
+#include "gst/scream/tx/feedback.h"
 #include "gst/scream/tx/settings.h"
-#include "src/scream/feedback/ccfb.h"
 
 GST_DEBUG_CATEGORY_STATIC(gst_lidar_scream_aux_debug);
 #define GST_CAT_DEFAULT gst_lidar_scream_aux_debug
@@ -34,14 +34,15 @@ constexpr guint kIpUdpAndSrtpTag = 38;  // bytes
 /// The rtpsession of a stock receiver reports this seldom at low rates.
 constexpr guint64 kFeedbackInterval = 500 * GST_MSECOND;
 
-struct Settings {};
+struct AuxSettings {
+  gint session = -1;
+};
 
 struct State {
   std::mutex mutex;
-  Settings settings;
+  AuxSettings settings;
   SessionNumbers numbers;
   bool warned = false;
-  bool feedback_started = false;
 };
 
 }  // namespace
@@ -49,6 +50,8 @@ struct State {
 struct _GstLidarScreamAux {
   GstBin parent;
   GstElement* tx;
+  GstPad* sink;
+  GstPad* src;
   State* state;
 };
 
@@ -59,6 +62,11 @@ static GstStaticPadTemplate sink_template = GST_STATIC_PAD_TEMPLATE(
     "sink", GST_PAD_SINK, GST_PAD_ALWAYS, GST_STATIC_CAPS("application/x-rtp"));
 static GstStaticPadTemplate src_template = GST_STATIC_PAD_TEMPLATE(
     "src", GST_PAD_SRC, GST_PAD_ALWAYS, GST_STATIC_CAPS("application/x-rtp"));
+// In place of these, where `session` is set.
+static GstStaticPadTemplate session_sink_template = GST_STATIC_PAD_TEMPLATE(
+    "sink_%u", GST_PAD_SINK, GST_PAD_SOMETIMES, GST_STATIC_CAPS("application/x-rtp"));
+static GstStaticPadTemplate session_src_template = GST_STATIC_PAD_TEMPLATE(
+    "src_%u", GST_PAD_SRC, GST_PAD_SOMETIMES, GST_STATIC_CAPS("application/x-rtp"));
 
 static StructurePtr Stats(GObject* object) {
   auto* self = GST_LIDAR_SCREAM_AUX(object);
@@ -79,12 +87,16 @@ static guint Estimate(GObject* object) {
   return bps;
 }
 
-static Property<Settings> OfTx(const char* name) {
-  return Proxy<Settings>(TxPropertyTable(), name,
+static Property<AuxSettings> OfTx(const char* name) {
+  return Proxy<AuxSettings>(TxPropertyTable(), name,
                          ChildOf<GstLidarScreamAux, &GstLidarScreamAux::tx>);
 }
 
-static const std::array<Property<Settings>, 8> kProperties = {{
+static const std::array<Property<AuxSettings>, 9> kProperties = {{
+    {"session",
+     "Session of rtpbin: names the pads sink_N and src_N, as its request-aux-sender wants them; "
+     "-1: sink and src. To be set before the pads are linked",
+     &AuxSettings::session, -1, G_MAXINT},
     OfTx("min-bitrate"),
     OfTx("start-bitrate"),
     OfTx("max-bitrate"),
@@ -95,24 +107,6 @@ static const std::array<Property<Settings>, 8> kProperties = {{
      Estimate},
     {"stats", "Statistics; bitrates in bit/s, times in ns", Stats},
 }};
-
-/// Hands a report to screamtx as RFC 8888 says it.
-static void Feed(GstLidarScreamAux* self, const scream::CongestionFeedback& report) {
-  const PadPtr rtcp(gst_element_get_static_pad(self->tx, "rtcp_sink"));
-  std::unique_lock lock(self->state->mutex);
-  const bool starts = !std::exchange(self->state->feedback_started, true);
-  lock.unlock();
-  if (starts) {
-    GstSegment segment;
-    gst_segment_init(&segment, GST_FORMAT_TIME);
-    gst_pad_send_event(rtcp.get(), gst_event_new_stream_start("screamaux/twcc"));
-    gst_pad_send_event(rtcp.get(), gst_event_new_segment(&segment));
-  }
-  const auto bytes = scream::BuildCcfb(report);
-  GstBuffer* buffer = gst_buffer_new_allocate(nullptr, bytes.size(), nullptr);
-  gst_buffer_fill(buffer, 0, bytes.data(), bytes.size());
-  gst_pad_chain(rtcp.get(), buffer);
-}
 
 static void OnReport(GstLidarScreamAux* self, GstEvent* event) {
   State& state = *self->state;
@@ -127,7 +121,7 @@ static void OnReport(GstLidarScreamAux* self, GstEvent* event) {
                         ("The session reports about packets that did not pass here"),
                         ("all streams of the session have to pass screamaux, which stands right "
                          "before rtpsession"));
-  if (report) Feed(self, *report);
+  if (report) TxTakeReport(GST_LIDAR_SCREAM_TX(self->tx), *report);
 }
 
 static GstPadProbeReturn WatchSource(GstPad*, GstPadProbeInfo* info, gpointer data) {
@@ -157,19 +151,37 @@ static GstStateChangeReturn ChangeState(GstElement* element, GstStateChange chan
   auto* self = GST_LIDAR_SCREAM_AUX(element);
   if (change == GST_STATE_CHANGE_NULL_TO_READY && !HasChildren(element, {{self->tx, "screamtx"}}))
     return GST_STATE_CHANGE_FAILURE;
-  if (change == GST_STATE_CHANGE_READY_TO_PAUSED) {
-    // The pad of screamtx forgets its events; the session goes on with its numbers.
-    const std::lock_guard lock(self->state->mutex);
-    self->state->feedback_started = false;
-  }
   return GST_ELEMENT_CLASS(gst_lidar_scream_aux_parent_class)->change_state(element, change);
 }
 
-static void AddGhost(GstLidarScreamAux* self, GstPad* target, GstStaticPadTemplate* templ) {
+/// A ghost pad in place of `old`, which may be NULL.
+static GstPad* ReplaceGhost(GstLidarScreamAux* self, GstPad* old, const PadPtr& target,
+                            GstStaticPadTemplate* templ, gint session) {
+  if (old != nullptr) gst_element_remove_pad(GST_ELEMENT(self), old);
+  StringPtr name(g_strdup(templ->name_template));
+  if (session >= 0) name.reset(g_strdup_printf(templ->name_template, static_cast<guint>(session)));
   GstPadTemplate* pad_template = gst_static_pad_template_get(templ);
-  gst_element_add_pad(GST_ELEMENT(self),
-                      gst_ghost_pad_new_from_template(templ->name_template, target, pad_template));
+  GstPad* pad = gst_ghost_pad_new_from_template(name.get(), target.get(), pad_template);
   gst_object_unref(pad_template);
+  gst_element_add_pad(GST_ELEMENT(self), pad);
+  return pad;
+}
+
+/// Names the pads after the session that they belong to.
+static void NamePads(GstLidarScreamAux* self) {
+  if (self->tx == nullptr) return;
+  const gint session = self->state->settings.session;
+  const bool named = session >= 0;
+  const PadPtr sink(gst_element_get_static_pad(self->tx, "sink_0"));
+  const PadPtr src(gst_element_get_static_pad(self->tx, "src"));
+  self->sink = ReplaceGhost(self, self->sink, sink,
+                            named ? &session_sink_template : &sink_template, session);
+  self->src =
+      ReplaceGhost(self, self->src, src, named ? &session_src_template : &src_template, session);
+}
+
+static void OnPropertySet(GObject* object, GParamSpec* spec) {
+  if (g_strcmp0(spec->name, "session") == 0) NamePads(GST_LIDAR_SCREAM_AUX(object));
 }
 
 static void gst_lidar_scream_aux_init(GstLidarScreamAux* self) {
@@ -179,10 +191,9 @@ static void gst_lidar_scream_aux_init(GstLidarScreamAux* self) {
   gst_util_set_object_arg(G_OBJECT(self->tx), "ecn-mode", "off");
   g_object_set(self->tx, "packet-overhead", kIpUdpAndSrtpTag, "feedback-interval",
                kFeedbackInterval, nullptr);
-  const PadPtr sink(gst_element_request_pad_simple(self->tx, "sink_%u"));
+  const PadPtr sink(gst_element_request_pad_simple(self->tx, "sink_0"));
+  NamePads(self);
   const PadPtr src(gst_element_get_static_pad(self->tx, "src"));
-  AddGhost(self, sink.get(), &sink_template);
-  AddGhost(self, src.get(), &src_template);
   gst_pad_add_probe(src.get(),
                     static_cast<GstPadProbeType>(
                         GST_PAD_PROBE_TYPE_BUFFER | GST_PAD_PROBE_TYPE_BUFFER_LIST |
@@ -196,12 +207,14 @@ static void gst_lidar_scream_aux_init(GstLidarScreamAux* self) {
 static void gst_lidar_scream_aux_class_init(GstLidarScreamAuxClass* klass) {
   GST_DEBUG_CATEGORY_INIT(gst_lidar_scream_aux_debug, "screamaux", 0, "SCReAM with TWCC");
   auto* object = G_OBJECT_CLASS(klass);
-  ServeProperties<GstLidarScreamAux, kProperties>(object);
+  ServeProperties<GstLidarScreamAux, kProperties, OnPropertySet>(object);
   OwnState<GstLidarScreamAux, gst_lidar_scream_aux_parent_class>(object);
   auto* element = GST_ELEMENT_CLASS(klass);
   element->change_state = ChangeState;
   gst_element_class_add_static_pad_template(element, &sink_template);
   gst_element_class_add_static_pad_template(element, &src_template);
+  gst_element_class_add_static_pad_template(element, &session_sink_template);
+  gst_element_class_add_static_pad_template(element, &session_src_template);
   gst_element_class_set_static_metadata(
       element, "SCReAM for TWCC sessions", "Filter/Network/RTP",
       "SCReAM v2 congestion control before an rtpsession, with transport-wide feedback",

@@ -56,6 +56,7 @@ std::vector<const GstStructure*> PacketsOf(GstEvent* event) {
 
 void SessionNumbers::OnCaps(const GstCaps* caps) {
   const GstStructure* s = gst_caps_get_structure(caps, 0);
+  id_ = 0;
   for (guint id = 1; id <= kMaxId; ++id) {
     char name[16];
     std::snprintf(name, sizeof name, "extmap-%u", id);

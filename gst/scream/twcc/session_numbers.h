@@ -21,7 +21,7 @@ class SessionNumbers {
     guint64 mismatched = 0;  // reports about packets that were not ours
   };
 
-  /// Learns the id of the extension from the session's caps.
+  /// Learns the id of the extension from the session's caps; packets of other caps have none.
   void OnCaps(const GstCaps* caps);
   /// A packet goes into the session.
   void OnPacket(GstBuffer* buffer);

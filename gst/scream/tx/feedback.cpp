@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // What enters screamtx on rtcp_sink: feedback for the controller, and RTCP that goes on.
+#include "gst/scream/tx/feedback.h"
+
 #include "gst/common/buffer_map.h"
 #include "gst/scream/tx/private.h"
 
@@ -22,21 +24,13 @@ const char* ToString(scream::FeedbackResult result) {
   return "?";
 }
 
-/// Hands one CCFB packet to the controller; false where it is not for us.
-bool Feed(GstLidarScreamTx* self, ByteView packet, GSocketAddress* from) {
+/// False where the report is not about us. With the lock held.
+bool Take(GstLidarScreamTx* self, const scream::CongestionFeedback& report, GSocketAddress* from) {
   TxState& state = *self->state;
-  TxLock lock(state.mutex);
-  if (!state.controller || !state.gate.open()) return true;
-  const auto feedback = state.parser.Parse(packet);
-  if (!feedback) {
-    ++state.malformed_rtcp;
-    GST_DEBUG_OBJECT(self, "malformed feedback of %" G_GSIZE_FORMAT " bytes", packet.size);
-    return false;
-  }
   const Time now = TxNow(state);
-  const auto result = state.controller->OnFeedback(now, *feedback);
+  const auto result = state.controller->OnFeedback(now, report);
   if (result == scream::FeedbackResult::kNotOurs) return false;
-  GST_LOG_OBJECT(self, "feedback of %" G_GSIZE_FORMAT " bytes: %s", packet.size, ToString(result));
+  GST_LOG_OBJECT(self, "feedback: %s", ToString(result));
   if (result != scream::FeedbackResult::kImplausible) state.reporter.OnFeedback();
   if (result == scream::FeedbackResult::kAccepted && state.feedback_peer.OnFeedback(now, from)) {
     GST_INFO_OBJECT(self, "feedback comes from a new address: a new path");
@@ -47,7 +41,24 @@ bool Feed(GstLidarScreamTx* self, ByteView packet, GSocketAddress* from) {
   return true;
 }
 
+/// Hands one CCFB packet to the controller; false where it is not for us.
+bool Feed(GstLidarScreamTx* self, ByteView packet, GSocketAddress* from) {
+  TxState& state = *self->state;
+  TxLock lock(state.mutex);
+  if (!state.controller || !state.gate.open()) return true;
+  const auto report = state.parser.Parse(packet);
+  if (report) return Take(self, *report, from);
+  ++state.malformed_rtcp;
+  GST_DEBUG_OBJECT(self, "malformed feedback of %" G_GSIZE_FORMAT " bytes", packet.size);
+  return false;
+}
+
 }  // namespace
+
+void TxTakeReport(GstLidarScreamTx* tx, const scream::CongestionFeedback& report) {
+  const TxLock lock(tx->state->mutex);
+  if (tx->state->controller && tx->state->gate.open()) Take(tx, report, nullptr);
+}
 
 GstFlowReturn TxRtcpChain(GstPad*, GstObject* parent, GstBuffer* buffer) {
   auto* self = GST_LIDAR_SCREAM_TX(parent);

@@ -79,9 +79,9 @@ class ScreamAux : public ::testing::Test {
     ASSERT_EQ(gst_harness_push(harness.get(), buffer), GST_FLOW_OK);
   }
   /// Lets packets leave; returns how many did.
-  int Leave() {
+  int Leave(int rounds = 20) {
     int packets = 0;
-    for (int i = 0; i < 20; ++i) {
+    for (int i = 0; i < rounds; ++i) {
       time.Advance(10 * GST_MSECOND);
       while (BufferPtr buffer{gst_harness_try_pull(harness.get())}) ++packets;
     }
@@ -138,6 +138,74 @@ TEST_F(ScreamAux, AbsurdReportsDoNoHarm) {
   EXPECT_EQ(Stat("packets-acked"), 1U);
 }
 
+TEST_F(ScreamAux, MeasuresDelayInTicksOfTheReport) {
+  // Of two packets in a report that arrive 21 ms apart the first seems to have come almost half a
+  // millisecond earlier, where times are in 1/1024 s.
+  constexpr guint64 kTick = 250 * GST_USECOND;
+  guint number = 0;
+  for (int report = 0; report < 8; ++report) {
+    std::vector<Told> told;
+    for (guint64 i = 0; i < 2; ++i) {
+      time.Advance(11 * GST_MSECOND);
+      Push();
+      ASSERT_EQ(Leave(1), 1);
+      // All of the last report's packets waited for one tick.
+      const guint64 delay = 40 * kTick + (report == 7 ? kTick : 0);
+      told.push_back({number++, 100, false, time.now() + delay - i * GST_MSECOND});  // as Report()
+    }
+    Tell(told);
+  }
+  EXPECT_NEAR(static_cast<double>(Stat("queue-delay")), kTick, 0.15 * kTick);
+}
+
+TEST_F(ScreamAux, ForgetsTheExtensionWhereNewCapsHaveNone) {
+  Push();
+  ASSERT_EQ(Leave(), 1);
+  gst_harness_set_src_caps_str(harness.get(), kRtpCaps);
+  Push();  // what has the extension's id means something else now
+  ASSERT_EQ(Leave(), 1);
+  gst_harness_set_src_caps_str(
+      harness.get(), (std::string(kRtpCaps) + ",extmap-3=(string)" + scream::kTwccUri).c_str());
+  Push();
+  ASSERT_EQ(Leave(), 1);
+  Tell({{0}, {1}, {2}});  // there is no number 2
+  EXPECT_EQ(Stat("packets-acked"), 2U);
+}
+
+TEST_F(ScreamAux, ReportsThatAnAttackerMakesUpMoveNothing) {
+  for (int i = 0; i < 8; ++i) Push();
+  const int sent = Leave();
+  ASSERT_GT(sent, 2);
+  const guint64 target = Stat("target-bitrate");
+  // Packets that were never sent, sizes of others, arrivals long before and after, all at once.
+  for (guint first : {100U, 20000U, 65000U}) Tell({{first}, {first + 1}, {first + 2}});
+  Tell({{0, 1200}, {1, 1200}});
+  for (guint64 arrival : {guint64{1}, guint64{12 * 24 * 3600} * GST_SECOND, G_MAXUINT64 / 2}) {
+    Told t{0};
+    t.arrival = arrival;
+    Tell({t});
+  }
+  for (int i = 0; i < 100; ++i) Tell({{0}, {1}});  // again and again
+  EXPECT_LE(Stat("packets-acked"), 2U);
+  EXPECT_EQ(Stat("packets-lost"), 0U);
+  EXPECT_LE(Stat("target-bitrate"), 2 * target);
+}
+
+TEST(ScreamAuxPads, AreNamedAfterTheSession) {
+  const gst::ElementPtr element(
+      GST_ELEMENT(gst_object_ref_sink(gst_element_factory_make("screamaux", nullptr))));
+  const auto has = [&](const char* name) {
+    return gst::PadPtr(gst_element_get_static_pad(element.get(), name)) != nullptr;
+  };
+  EXPECT_TRUE(has("sink") && has("src"));
+  g_object_set(element.get(), "session", 3, nullptr);
+  EXPECT_TRUE(has("sink_3") && has("src_3"));
+  EXPECT_FALSE(has("sink") || has("src"));
+  g_object_set(element.get(), "session", -1, nullptr);
+  EXPECT_TRUE(has("sink") && has("src"));
+  EXPECT_EQ(element->numpads, 2);
+}
+
 TEST_F(ScreamAux, GoesOnWithTheSessionsNumbersAfterAPauseInReady) {
   Push();
   ASSERT_EQ(Leave(), 1);
@@ -168,8 +236,11 @@ TEST_F(ScreamAux, TellsTheEncoderItsTargetAndHasTheSendersProperties) {
   EXPECT_TRUE(told);
 }
 
-/// Sender and receiver are stock rtpbins; nothing of ours but screamaux.
-TEST(ScreamAuxWithRtpbin, TheReceiversReportsMoveTheTarget) {
+/// Sender and receiver are stock rtpbins; nothing of ours but screamaux, before the sender's or in
+/// it, as its request-aux-sender puts it.
+class ScreamAuxWithRtpbin : public ::testing::TestWithParam<bool> {};
+TEST_P(ScreamAuxWithRtpbin, TheReceiversReportsMoveTheTarget) {
+  const bool inside = GetParam();
   const std::string caps = std::string(
                                "application/x-rtp,media=video,clock-rate=90000,"
                                "encoding-name=JPEG,payload=26,extmap-1=(string)") +
@@ -181,16 +252,31 @@ TEST(ScreamAuxWithRtpbin, TheReceiversReportsMoveTheTarget) {
     return "udpsink host=127.0.0.1 sync=false async=false" + port;
   };
   Pipeline pipeline(
-      "videotestsrc is-live=true ! video/x-raw,format=I420,width=160,height=120,framerate=30/1 ! "
-      "jpegenc ! rtpjpegpay mtu=1000 ! " +
-      caps +
-      " ! screamaux name=aux start-bitrate=4000000 ! tx.send_rtp_sink_0 "
       "rtpbin name=tx rtp-profile=avpf rtpbin name=rx rtp-profile=avpf "
-      "tx.send_rtp_src_0 ! " +
-      at("udpsink", 0) + at("udpsrc", 0) + "! " + caps +
-      " ! rx.recv_rtp_sink_0 fakesink name=end sync=false async=false tx.send_rtcp_src_0 ! " +
-      at("udpsink", 1) + at("udpsrc", 1) + "! rx.recv_rtcp_sink_0 rx.send_rtcp_src_0 ! " +
-      at("udpsink", 2) + at("udpsrc", 2) + "! tx.recv_rtcp_sink_0");
+      "videotestsrc is-live=true ! video/x-raw,format=I420,width=160,height=120,framerate=30/1 ! "
+      "jpegenc ! rtpjpegpay mtu=1000 ! capsfilter name=media caps=\"" +
+      caps + "\" " + (inside ? "" : "! screamaux name=aux start-bitrate=4000000 ! tx.send_rtp_sink_0 ") +
+      at("udpsrc", 0) + "! " + caps +
+      " ! rx.recv_rtp_sink_0 fakesink name=end sync=false async=false " + at("udpsrc", 1) +
+      "! rx.recv_rtcp_sink_0 rx.send_rtcp_src_0 ! " + at("udpsink", 2) + at("udpsrc", 2) +
+      "! tx.recv_rtcp_sink_0 " + at("udpsink", 0) + "name=rtp " + at("udpsink", 1) + "name=rtcp");
+  const auto tx = pipeline.Get("tx");
+  g_signal_connect(tx.get(), "request-aux-sender",
+                   G_CALLBACK(+[](GstElement*, guint session, const bool* wanted) -> GstElement* {
+                     if (!*wanted) return nullptr;
+                     GstElement* aux = gst_element_factory_make("screamaux", "aux");
+                     g_object_set(aux, "session", session, "start-bitrate", 4000000U, nullptr);
+                     return aux;
+                   }),
+                   const_cast<bool*>(&inside));
+  if (inside) {
+    ASSERT_TRUE(gst_element_link_pads(pipeline.Get("media").get(), "src", tx.get(),
+                                      "send_rtp_sink_0"));
+  }
+  ASSERT_TRUE(
+      gst_element_link_pads(tx.get(), "send_rtp_src_0", pipeline.Get("rtp").get(), "sink"));
+  ASSERT_TRUE(
+      gst_element_link_pads(tx.get(), "send_rtcp_src_0", pipeline.Get("rtcp").get(), "sink"));
   const auto end = pipeline.Get("end");
   g_signal_connect(pipeline.Get("rx").get(), "pad-added",
                    G_CALLBACK(+[](GstElement*, GstPad* pad, GstElement* sink) {
@@ -200,6 +286,7 @@ TEST(ScreamAuxWithRtpbin, TheReceiversReportsMoveTheTarget) {
                    end.get());
   pipeline.Play();
   const auto aux = pipeline.Get("aux");
+  ASSERT_TRUE(aux);
   const gint64 until = g_get_monotonic_time() + 10 * G_TIME_SPAN_SECOND;
   while (Stats(aux.get())["packets-acked"] < 40 && g_get_monotonic_time() < until) g_usleep(50000);
   const Stats stats(aux.get());
@@ -208,6 +295,8 @@ TEST(ScreamAuxWithRtpbin, TheReceiversReportsMoveTheTarget) {
   EXPECT_EQ(stats["feedback-ignored"], 0U);
   EXPECT_EQ(stats["twcc-mismatched"], 0U);
 }
+INSTANTIATE_TEST_SUITE_P(Place, ScreamAuxWithRtpbin, ::testing::Bool(),
+                         [](const auto& i) { return i.param ? "Inside" : "Before"; });
 
 }  // namespace
 }  // namespace lidar::test
