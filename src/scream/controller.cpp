@@ -295,7 +295,7 @@ DataRate Controller::AskedTarget(Time now, DataRate allowed) const {
   if (p_.extensions.gap_recovery && started_ && Stalled(now)) asked = asked * p_.stall_share;
   if (p_.extensions.needed_floor && Alive(now))
     asked = std::max(asked, streams_.needed_bitrate() * p_.needed_margin);
-  return asked;
+  return std::min(asked, streams_.max_bitrate());
 }
 
 /// Marks of a frame source come once a frame.

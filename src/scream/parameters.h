@@ -165,6 +165,8 @@ struct Parameters {
   /// needed_floor: a little more than what is needed, as encoders round.
   double needed_margin = 1.04;
 
+  /// Of all streams together, but for their minima.
+  DataRate max_total_bitrate = DataRate::Infinite();
   /// Packets older than this in the sender's queue are late (see Controller::LatePackets).
   Duration max_queue_delay = 200ms;
   /// How seldom a healthy receiver may report. Above 0 it reports at the end of frames.

@@ -147,8 +147,9 @@ DataRate Streams::needed_bitrate() const {
 }
 
 DataRate Streams::max_bitrate() const {
-  return Sum(
+  const DataRate sum = Sum(
       [](const Stream& s) { return std::max(s.config().min_bitrate, s.config().max_bitrate); });
+  return std::min(sum, std::max(p_.max_total_bitrate, min_bitrate()));
 }
 
 DataRate Streams::start_bitrate() const {

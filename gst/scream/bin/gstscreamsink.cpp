@@ -91,7 +91,7 @@ static Property<SinkSettings> OfTx(const char* name) {
                              ChildOf<GstLidarScreamSink, &GstLidarScreamSink::tx>, &TxDefaults());
 }
 
-static const std::array<Property<SinkSettings>, 19> kProperties = {{
+static const std::array<Property<SinkSettings>, 20> kProperties = {{
     Within<&SinkSettings::target>(UdpTargetRows(), "host"),
     Within<&SinkSettings::target>(UdpTargetRows(), "port"),
     Within<&SinkSettings::target>(UdpTargetRows(), "bind-address"),
@@ -104,6 +104,7 @@ static const std::array<Property<SinkSettings>, 19> kProperties = {{
     OfTx("min-bitrate"),
     OfTx("start-bitrate"),
     OfTx("max-bitrate"),
+    OfTx("max-total-bitrate"),
     OfTx("ecn-mode"),
     OfTx("max-queue-delay"),
     OfTx("stats-interval"),

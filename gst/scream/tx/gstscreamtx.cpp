@@ -13,6 +13,8 @@
 #include "gst/scream/tx/gstscreamtx.h"
 
 #include <algorithm>
+#include <cstdio>
+#include <string>
 
 #include "gst/scream/tx/private.h"
 
@@ -86,37 +88,62 @@ static void AddStream(TxState& state, GstPad* pad) {
   state.streams.push_back(std::move(stream));
 }
 
-static GstPad* RequestPad(GstElement* element, GstPadTemplate* templ, const gchar* name,
-                          const GstCaps*) {
-  TxState& state = StateOf(element);
+static bool HasPad(const TxState& state, const std::string& name) {
+  return std::any_of(state.streams.begin(), state.streams.end(),
+                     [&](const auto& s) { return name == GST_PAD_NAME(s->pad); });
+}
+
+/// The name to give to a pad that was requested as `wanted`; empty where another has it.
+static std::string NewPadName(TxState& state, const gchar* wanted) {
   guint index = 0;
-  TxLock lock(state.mutex);
-  if (name == nullptr || sscanf(name, "sink_%u", &index) != 1) index = state.next_pad;
+  if (wanted == nullptr || sscanf(wanted, "sink_%u", &index) != 1) index = state.next_pad;
+  const std::string name = "sink_" + std::to_string(index);
+  if (HasPad(state, name)) return "";
   state.next_pad = std::max(state.next_pad, index + 1);
-  lock.unlock();
-  const StringPtr pad_name(g_strdup_printf("sink_%u", index));
-  auto* pad = GST_PAD(g_object_new(GST_TYPE_LIDAR_SCREAM_TX_PAD, "name", pad_name.get(),
-                                   "direction", GST_PAD_SINK, "template", templ, nullptr));
+  return name;
+}
+
+static void RemoveStream(TxState& state, GstPad* pad) {
+  TxStream* stream = PadStream(pad);
+  if (state.controller) state.controller->RemoveStream(stream->id);
+  state.streams.erase(std::find_if(state.streams.begin(), state.streams.end(),
+                                   [&](const auto& s) { return s.get() == stream; }));
+  SetPadStream(pad, nullptr);
+  state.pacing.Wake();
+}
+
+static GstPad* NewPad(GstPadTemplate* templ, const std::string& name) {
+  auto* pad = GST_PAD(g_object_new(GST_TYPE_LIDAR_SCREAM_TX_PAD, "name", name.c_str(), "direction",
+                                   GST_PAD_SINK, "template", templ, nullptr));
   gst_pad_set_chain_function(pad, TxChain);
   gst_pad_set_chain_list_function(pad, TxChainList);
   gst_pad_set_event_function(pad, TxSinkEvent);
   gst_pad_set_query_function(pad, TxSinkQuery);
   gst_pad_set_iterate_internal_links_function(pad, TxLinksOf);
   GST_PAD_SET_PROXY_CAPS(pad);
-  lock.lock();
-  AddStream(state, pad);
-  lock.unlock();
-  if (!gst_element_add_pad(element, pad)) {  // the name is taken
-    lock.lock();
-    state.streams.pop_back();
+  return pad;
+}
+
+static GstPad* RequestPad(GstElement* element, GstPadTemplate* templ, const gchar* wanted,
+                          const GstCaps*) {
+  TxState& state = StateOf(element);
+  TxLock lock(state.mutex);
+  const std::string name = NewPadName(state, wanted);
+  if (name.empty()) {
+    GST_WARNING_OBJECT(element, "there is a pad %s already", wanted);
     return nullptr;
   }
-  gst_child_proxy_child_added(GST_CHILD_PROXY(element), G_OBJECT(pad), pad_name.get());
+  GstPad* pad = NewPad(templ, name);
+  AddStream(state, pad);
+  lock.unlock();
+  gst_element_add_pad(element, pad);
+  gst_child_proxy_child_added(GST_CHILD_PROXY(element), G_OBJECT(pad), name.c_str());
   return pad;
 }
 
 static void ReleasePad(GstElement* element, GstPad* pad) {
   TxState& state = StateOf(element);
+  const PadPtr keep(GST_PAD(gst_object_ref(pad)));
   const StringPtr name(gst_pad_get_name(pad));
   {
     TxLock lock(state.mutex);
@@ -125,17 +152,12 @@ static void ReleasePad(GstElement* element, GstPad* pad) {
     state.gate.Release(*stream);
   }
   gst_pad_set_active(pad, FALSE);  // returns once the pad's thread has left
+  gst_element_remove_pad(element, pad);
   {
     TxLock lock(state.mutex);
-    TxStream* stream = PadStream(pad);
-    if (state.controller) state.controller->RemoveStream(stream->id);
-    state.streams.erase(std::find_if(state.streams.begin(), state.streams.end(),
-                                     [&](const auto& s) { return s.get() == stream; }));
-    SetPadStream(pad, nullptr);
-    state.pacing.Wake();
+    RemoveStream(state, pad);
   }
   gst_child_proxy_child_removed(GST_CHILD_PROXY(element), G_OBJECT(pad), name.get());
-  gst_element_remove_pad(element, pad);
 }
 
 /// A new controller, and streams that have seen nothing.

@@ -63,6 +63,9 @@ const TxProperties& TxPropertyTable() {
        1, kMaxBps, kLive},
       {"max-bitrate", "Highest target of a pad without its own, IP included [bit/s]", &S::max_bps,
        1, kMaxBps, kLive},
+      {"max-total-bitrate",
+       "Highest target of all pads together, IP included; 0: what the pads may have [bit/s]",
+       &S::max_total_bps, 0, kMaxBps},
       {"ecn-mode", "ECN codepoint of sent packets; ect1 also selects the L4S reaction",
        EnumField<S>{&S::ecn_mode, EcnModeType}},
       {"max-queue-delay",
@@ -140,6 +143,14 @@ const TxProperties& TxPropertyTable() {
        X<&Extensions::adaptive_pacing>},
       {"feedback-timeout", "Beyond the draft: the window decays without feedback",
        X<&Extensions::feedback_timeout>},
+      {"gap-recovery",
+       "Beyond the draft: after a gap of the link the window is what it was before",
+       X<&Extensions::gap_recovery>},
+      {"needed-floor",
+       "Beyond the draft: encoders are asked for what their bounds need while the path lives",
+       X<&Extensions::needed_floor>},
+      {"classic-ecn", "Beyond the draft: find queues that mark ECT(1) like ECT(0), and react so",
+       X<&Extensions::classic_ecn>},
   }};
   return table;
 }
@@ -149,6 +160,7 @@ scream::Parameters ToParameters(const TxSettings& s) {
   p.ecn = ToEcn(s.ecn_mode);
   p.max_queue_delay = s.max_queue_delay();
   p.feedback_interval = s.parameters.feedback_interval;
+  if (s.max_total_bps > 0) p.max_total_bitrate = DataRate::BitsPerSecond(s.max_total_bps);
   return p;
 }
 

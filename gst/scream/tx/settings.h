@@ -25,6 +25,7 @@ struct TxSettings {
   guint min_bps = 100'000;
   guint start_bps = 1'000'000;
   guint max_bps = 50'000'000;
+  guint max_total_bps = 0;  // 0: no limit of its own
   gint ecn_mode = kEcnEct1;
   Duration stats_interval{};  // 0: none
   DataSize packet_overhead = DataSize::Bytes(28);
@@ -35,7 +36,7 @@ struct TxSettings {
 
   Duration max_queue_delay() const { return parameters.max_queue_delay; }
 };
-using TxProperties = std::array<Property<TxSettings>, 46>;
+using TxProperties = std::array<Property<TxSettings>, 50>;
 const TxProperties& TxPropertyTable();
 
 /// What the controller works with: `pure_draft` undoes what was set of the draft's constants.

@@ -2,6 +2,12 @@
 // Several streams of one screamtx: shares, companions, pads that come and go.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <atomic>
+#include <string>
+#include <thread>
+#include <vector>
+
 #include "tests/elements/scream/screamtx_fixture.h"
 
 namespace lidar::test {
@@ -111,6 +117,56 @@ TEST_F(ScreamTx, APadThatComesAndGoesWhilePlayingTakesItsShareAndLeavesIt) {
     EXPECT_EQ(sent.back().ssrc, 0x1234U);
     EXPECT_NEAR(static_cast<double>(Stats(element)["target-bitrate"]), 4e6, 4e6 / 2);
   }
+}
+
+TEST_F(ScreamTx, PadsThatAreAskedForByAllAtOnceAreGivenOnce) {
+  // Without the check for a taken name that gst_element_request_pad makes before it asks.
+  GstElementClass* klass = GST_ELEMENT_GET_CLASS(element);
+  GstPadTemplate* templ = gst_element_class_get_pad_template(klass, "sink_%u");
+  std::atomic<int> given{0};
+  std::vector<std::thread> threads;
+  for (int i = 0; i < 4; ++i)
+    threads.emplace_back([&, i] {
+      for (int k = 0; k < 200; ++k) {
+        const std::string name = "sink_" + std::to_string(i % 2 == 0 ? k : 1000 * i + k);
+        if (klass->request_new_pad(element, templ, name.c_str(), nullptr) != nullptr) ++given;
+      }
+    });
+  for (std::thread& thread : threads) thread.join();
+  EXPECT_EQ(given, 3 * 200);
+  EXPECT_EQ(GST_ELEMENT(element)->numsinkpads, 3 * 200 + 1);
+  EXPECT_EQ(gst_child_proxy_get_children_count(GST_CHILD_PROXY(element)), 3U * 200);
+  for (int i = 0; i < 3 * 200; ++i) {
+    GObject* pad = gst_child_proxy_get_child_by_index(GST_CHILD_PROXY(element), 0);
+    gst_element_release_request_pad(element, GST_PAD(pad));
+    g_object_unref(pad);
+  }
+  EXPECT_EQ(GST_ELEMENT(element)->numsinkpads, 1);
+}
+
+TEST_F(ScreamTx, TargetsOfAllPadsTogetherStayBelowTheTotal) {
+  g_object_set(element, "max-total-bitrate", 3'000'000U, "start-bitrate", 2'000'000U,
+               "min-bitrate", 10'000U, nullptr);
+  Start();
+  Harness second(gst_harness_new_with_element(element, "sink_1", nullptr));
+  gst_harness_set_src_caps_str(second.get(), kVideoCaps);
+  guint64 highest = 0;
+  for (int i = 0; i < 100; ++i) {
+    PushFrame(static_cast<guint32>(i) * 900, 4);
+    Rtp r;
+    r.ssrc = 0x5678;
+    r.seq = static_cast<guint16>(i);
+    r.timestamp = static_cast<guint32>(i);
+    r.marker = true;
+    ASSERT_EQ(gst_harness_push(second.get(), NewRtp(r)), GST_FLOW_OK);
+    for (int k = 0; k < 2; ++k) {
+      time.Advance(5 * GST_MSECOND);
+      Acknowledge();
+    }
+    highest = std::max(highest, Stats(element)["target-bitrate"]);
+  }
+  EXPECT_LE(highest, 3'000'000U);
+  EXPECT_GE(highest, 2'900'000U);
 }
 
 }  // namespace
