@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Several streams behind screamrx: each SSRC leaves by a pad of its own, with caps from pt-map.
+#include <charconv>
+#include <string_view>
 #include <utility>
 
 #include "gst/scream/rx/private.h"
@@ -26,9 +28,24 @@ CapsPtr CapsOfValue(const GValue* value) {
   return nullptr;
 }
 
+/// With the marker bit, these read as RTCP (RFC 5761, section 4).
+constexpr bool CollidesWithRtcp(unsigned type) { return type >= 64 && type <= 95; }
+
+/// What is wrong with one field of pt-map, in words; NULL where nothing is.
+const char* FaultOf(std::string_view name, const GValue* value) {
+  unsigned type = 0;
+  const auto end = std::from_chars(name.data(), name.data() + name.size(), type).ptr;
+  if (end != name.data() + name.size() || type > 127) return "is no payload type (0 to 127)";
+  if (CollidesWithRtcp(type)) return "is RTCP on a port that carries both (64 to 95, RFC 5761)";
+  const CapsPtr caps = CapsOfValue(value);
+  if (!caps || !gst_caps_is_fixed(caps.get())) return "has no fixed caps";
+  return nullptr;
+}
+
 /// The caps of a payload type with the SSRC put in; NULL where pt-map has none.
 GstCaps* CapsOf(GstLidarScreamRx* self, const RtpHeader& header) {
   RxState& state = *self->state;
+  if (CollidesWithRtcp(header.payload_type)) return nullptr;
   const StringPtr field(g_strdup_printf("%u", header.payload_type));
   CapsPtr caps;
   {
@@ -107,11 +124,28 @@ void NoteLidarTypes(RxState& state) {
   const auto note = [](GQuark name, const GValue* value, gpointer data) -> gboolean {
     const CapsPtr caps = CapsOfValue(value);
     const auto type = g_ascii_strtoull(g_quark_to_string(name), nullptr, 10);
-    if (caps && IsLidar(caps.get()))
-      static_cast<RxState*>(data)->lidar_types.set(static_cast<std::size_t>(type & 127));
+    if (caps && IsLidar(caps.get()) && type < 128)
+      static_cast<RxState*>(data)->lidar_types.set(static_cast<std::size_t>(type));
     return TRUE;
   };
   gst_structure_foreach(state.settings.pt_map.get(), note, &state);
+}
+
+void CheckPtMap(GstLidarScreamRx* self) {
+  SharedStructure map;
+  {
+    const RxLock lock(self->state->mutex);
+    map = self->state->settings.pt_map;
+  }
+  if (!map) return;
+  const auto check = [](GQuark field, const GValue* value, gpointer data) -> gboolean {
+    const gchar* name = g_quark_to_string(field);
+    if (const char* fault = FaultOf(name, value))
+      GST_ELEMENT_WARNING(data, RESOURCE, SETTINGS, ("pt-map: %s %s; it is ignored.", name, fault),
+                          (nullptr));
+    return TRUE;
+  };
+  gst_structure_foreach(map.get(), check, self);
 }
 
 void NoteCaps(RxState& state, const GstCaps* caps) {
@@ -140,6 +174,17 @@ static GstFlowReturn Refuse(GstLidarScreamRx* self, GstBuffer* buffer) {
   return GST_FLOW_OK;
 }
 
+/// A stream that nobody takes is dropped, as GStreamer does with pads that nobody links; said once.
+static void WarnOfUntaken(GstLidarScreamRx* self, const RtpHeader& header, GstPad* pad) {
+  if (std::exchange(self->state->warned_of_untaken, true)) return;
+  GST_ELEMENT_WARNING(self, STREAM, DEMUX,
+                      ("A stream with payload type %u (SSRC %u) is dropped: nobody takes it.",
+                       header.payload_type, header.ssrc),
+                      ("link the pad %s, or a second branch from this element: each SSRC leaves by "
+                       "a pad of its own",
+                       GST_PAD_NAME(pad)));
+}
+
 GstFlowReturn Demux(GstLidarScreamRx* self, const RtpHeader& header, GstBuffer* buffer) {
   RxState& state = *self->state;
   auto found = state.routes.find(header.ssrc);
@@ -149,7 +194,9 @@ GstFlowReturn Demux(GstLidarScreamRx* self, const RtpHeader& header, GstBuffer* 
   if (found == state.routes.end())
     found = state.routes.emplace(header.ssrc, Route(self, header)).first;
   GstPad* pad = found->second;
-  return gst_flow_combiner_update_pad_flow(state.combiner, pad, gst_pad_push(pad, buffer));
+  const GstFlowReturn flow = gst_pad_push(pad, buffer);
+  if (flow == GST_FLOW_NOT_LINKED) WarnOfUntaken(self, header, pad);
+  return gst_flow_combiner_update_pad_flow(state.combiner, pad, flow);
 }
 
 gboolean ForwardToAll(GstLidarScreamRx* self, GstEvent* event) {
@@ -172,7 +219,7 @@ void RemoveRoutes(GstLidarScreamRx* self) {
     gst_element_remove_pad(GST_ELEMENT(self), pad);
   }
   state.routes.clear();
-  state.src_taken = state.src_started = state.routes_full = false;
+  state.src_taken = state.src_started = state.routes_full = state.warned_of_untaken = false;
 }
 
 }  // namespace lidar::gst

@@ -196,7 +196,10 @@ static void Prepare(RxState& state) {
 
 static GstStateChangeReturn ChangeState(GstElement* element, GstStateChange change) {
   auto* self = GST_LIDAR_SCREAM_RX(element);
-  if (change == GST_STATE_CHANGE_READY_TO_PAUSED) Prepare(*self->state);
+  if (change == GST_STATE_CHANGE_READY_TO_PAUSED) {
+    Prepare(*self->state);
+    CheckPtMap(self);
+  }
   const GstStateChangeReturn result =
       GST_ELEMENT_CLASS(gst_lidar_scream_rx_parent_class)->change_state(element, change);
   if (change == GST_STATE_CHANGE_PAUSED_TO_READY) {

@@ -78,6 +78,7 @@ struct RxState {
   bool src_taken = false;             // by a stream of pt-map
   bool src_started = false;           // it has had its caps
   bool routes_full = false;           // and a warning said so
+  bool warned_of_untaken = false;
   GstFlowCombiner* combiner = nullptr;
 };
 
@@ -109,6 +110,8 @@ void WakeFeedback(RxState& state);
 
 // demux.cpp: streams by SSRC, with pt-map
 bool HasPtMap(GstLidarScreamRx* self);
+/// Warns of what is wrong with it.
+void CheckPtMap(GstLidarScreamRx* self);
 /// Finds out which payload types are LiDAR: of pt-map, with the lock held...
 void NoteLidarTypes(RxState& state);
 /// ...and of the caps where there is none.

@@ -368,6 +368,45 @@ TEST_F(ScreamRx, GivesEachStreamAPadOfItsOwnWithPtMap) {
   video.reset();
 }
 
+TEST_F(ScreamRx, WarnsOfWhatIsWrongWithPtMapAndOfAStreamThatNobodyTakes) {
+  GstStructure* map = gst_structure_from_string(
+      "application/x-rtp-pt-map,"
+      "72=(string)\"application/x-rtp,media=video,clock-rate=90000,encoding-name=H264\","
+      "97=(string)\"application/x-rtp,media=video,clock-rate=90000,encoding-name=H264\","
+      "98=(string)\"application/x-rtp,clock-rate=[1,2]\",200=(int)7,lidar=(int)96",
+      nullptr);
+  ASSERT_TRUE(map);
+  g_object_set(element, "pt-map", map, nullptr);
+  gst_structure_free(map);
+  GstBus* bus = gst_bus_new();
+  gst_element_set_bus(element, bus);
+  Start();
+  std::string texts;
+  const auto warnings = [&] {
+    int n = 0;
+    for (; const gst::MessagePtr message{gst_bus_pop_filtered(bus, GST_MESSAGE_WARNING)}; ++n) {
+      GError* error = nullptr;
+      gst_message_parse_warning(message.get(), &error, nullptr);
+      texts += gst::ErrorPtr(error)->message + std::string("\n");
+    }
+    return n;
+  };
+  EXPECT_EQ(warnings(), 4);
+  EXPECT_NE(texts.find("72 is RTCP"), std::string::npos) << texts;
+  gst_harness_set_sink_caps_str(rtp.get(), "application/x-rtp,media=application");
+  for (guint16 seq = 0; seq < 4; ++seq) {
+    Rtp camera;
+    camera.ssrc = 0x5678;
+    camera.payload_type = 97;
+    camera.seq = seq;
+    EXPECT_EQ(Push(camera), GST_FLOW_OK);
+  }
+  EXPECT_EQ(warnings(), 1);
+  EXPECT_NE(texts.find("payload type 97"), std::string::npos) << texts;
+  gst_element_set_bus(element, nullptr);
+  gst_object_unref(bus);
+}
+
 TEST_F(ScreamRx, StartsAfreshAfterEveryStateCycle) {
   Start();
   ASSERT_EQ(Push({}, GST_LIDAR_ECN_ECT1, "10.0.0.1"), GST_FLOW_OK);
