@@ -17,6 +17,7 @@
 
 #include <mutex>
 #include <optional>
+#include <utility>
 
 #include "gst/common/gstlidar.h"
 #include "gst/common/properties.h"
@@ -47,6 +48,8 @@ const std::array<lidar::gst::Property<Settings>, 1> kProperties = {{
      &Settings::max_reorder_time, 0, 10.0 * GST_SECOND, GST_PARAM_MUTABLE_PLAYING},
 }};
 constexpr guint kStatsId = kProperties.size() + 1;
+// So many packets of another payload type, and none of ours, are no accident.
+constexpr guint64 kWrongTypePackets = 20;
 
 lidar::Duration ReorderTime(const Settings& s) {
   return lidar::Duration{static_cast<gint64>(s.max_reorder_time)};
@@ -64,6 +67,8 @@ struct State {
   std::optional<gint> payload_type;                        // of the caps
   std::shared_ptr<const lidar::rtp::StreamConfig> config;  // of the caps on the src pad
   bool warned_of_coder = false;
+  bool warned_of_type = false;
+  bool warned_of_rival = false;
   lidar::Time now;
   GstPadChainFunction base_chain = nullptr;
 };
@@ -153,6 +158,13 @@ void PushSlices(GstRTPBaseDepayload* base, std::vector<ReceivedSlice> slices) {
   flush();
 }
 
+/// True once many packets had a wrong payload type and none the right one.
+bool CountWrongType(State& state) {
+  std::lock_guard lock(state.mutex);
+  return ++state.wrong_payload_type >= kWrongTypePackets &&
+         state.receiver.accounts().packets_received == 0;
+}
+
 /// False, and counted, for what is not RTP or of another payload type. The base class would post a
 /// warning for each, and a flood of garbage must not become a flood of messages.
 bool IsOurs(GstLidarRtpDepay* self, GstBuffer* buffer) {
@@ -166,9 +178,25 @@ bool IsOurs(GstLidarRtpDepay* self, GstBuffer* buffer) {
   const gint type = gst_rtp_buffer_get_payload_type(&rtp);
   gst_rtp_buffer_unmap(&rtp);
   if (!state.payload_type || *state.payload_type == type) return true;
-  std::lock_guard lock(state.mutex);
-  ++state.wrong_payload_type;
+  if (CountWrongType(state) && !std::exchange(state.warned_of_type, true)) {
+    GST_ELEMENT_WARNING(self, STREAM, WRONG_TYPE,
+                        ("The packets have payload type %d, not %d as the caps say: none of them "
+                         "is decoded.",
+                         type, *state.payload_type),
+                        ("set payload=%d in the caps of the source, or pt=%d at the payloader",
+                         type, *state.payload_type));
+  }
   return false;
+}
+
+/// Two senders with one payload type, whose streams nobody told apart: said once.
+void WarnOfRival(GstLidarRtpDepay* self, guint32 ssrc, guint32 rival) {
+  if (std::exchange(self->state->warned_of_rival, true)) return;
+  GST_ELEMENT_WARNING(self, STREAM, WRONG_TYPE,
+                      ("Two streams come in; that of SSRC %u is dropped.", rival),
+                      ("this element decodes one, SSRC %u; pt-map of screamsrc, or rtpssrcdemux, "
+                       "gives each a pad of its own",
+                       ssrc));
 }
 
 }  // namespace
@@ -205,10 +233,14 @@ static GstBuffer* gst_lidar_rtp_depay_process(GstRTPBaseDepayload* base, GstRTPB
   }
   packet.arrival = state.now;
   std::vector<ReceivedSlice> slices;
+  std::optional<std::uint32_t> rival;
   {
     std::lock_guard lock(state.mutex);
     slices = state.receiver.Push(packet);
+    rival = state.receiver.rival();
   }
+  if (rival && *rival == packet.ssrc)
+    WarnOfRival(GST_LIDAR_RTP_DEPAY(base), *state.receiver.ssrc(), *rival);
   PushSlices(base, std::move(slices));
   return nullptr;
 }
@@ -243,7 +275,7 @@ static GstStateChangeReturn gst_lidar_rtp_depay_change_state(GstElement* element
     std::lock_guard lock(state.mutex);
     state.receiver = Receiver(ReorderTime(state.settings));
     state.not_rtp = state.wrong_payload_type = state.not_accepted = 0;
-    state.warned_of_coder = false;
+    state.warned_of_coder = state.warned_of_type = state.warned_of_rival = false;
     state.payload_type.reset();
     state.config.reset();
     state.now = {};

@@ -52,8 +52,15 @@ std::vector<ReceivedSlice> Receiver::Push(const RtpPacket& packet) {
     active_->reassembler.Push(packet, units, &out);
     return out;
   }
+  if (packet.ssrc != active_->ssrc) NoteRival(packet.ssrc);
   PushToCandidate(packet, units);
   return CandidateHasWon(packet.arrival) ? Promote(packet.arrival) : std::vector<ReceivedSlice>{};
+}
+
+/// Whoever forges SSRCs makes us forget the counts, and no more.
+void Receiver::NoteRival(std::uint32_t ssrc) {
+  if (rivals_.size() >= kMaxRivals && rivals_.count(ssrc) == 0) rivals_.clear();
+  if (++rivals_[ssrc] >= kRivalPackets) rival_ = ssrc;
 }
 
 void Receiver::PushToCandidate(const RtpPacket& packet, const std::vector<Unit>& units) {
@@ -103,6 +110,8 @@ std::vector<ReceivedSlice> Receiver::Promote(Time now) {
   active_->held.clear();
   active_arrival_ = now;
   candidate_.reset();
+  rivals_.clear();
+  rival_.reset();
   return out;
 }
 
@@ -113,6 +122,8 @@ void Receiver::Finish() {
   }
   active_.reset();
   candidate_.reset();
+  rivals_.clear();
+  rival_.reset();
 }
 
 void Receiver::set_max_reorder_time(Duration t) {

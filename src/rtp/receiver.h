@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Follows one stream through outages and restarts of its sender, whatever else arrives.
 #pragma once
+#include <map>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -32,10 +33,14 @@ class Receiver {
   void set_max_reorder_time(Duration t);
   ReceiverAccounts accounts() const;
   std::optional<std::uint32_t> ssrc() const;
+  /// An SSRC of which many packets came beside those of the stream, and were dropped.
+  std::optional<std::uint32_t> rival() const { return rival_; }
 
   static constexpr unsigned kProbation = 3;          // packets
   static constexpr unsigned kProbationNoClock = 64;  // packets, where arrival times stand still
   static constexpr Duration kSilence = std::chrono::milliseconds(100);
+  static constexpr unsigned kRivalPackets = 100;
+  static constexpr std::size_t kMaxRivals = 16;
 
  private:
   struct Stream {
@@ -47,6 +52,7 @@ class Receiver {
     unsigned streak = 0;  // packets since the active stream's last
   };
 
+  void NoteRival(std::uint32_t ssrc);
   void PushToCandidate(const RtpPacket& packet, const std::vector<Unit>& units);
   bool CandidateHasWon(Time now) const;
   bool CandidateGoesOn(Time now) const;
@@ -56,6 +62,8 @@ class Receiver {
   std::optional<Stream> active_;
   std::optional<Stream> candidate_;
   Time active_arrival_;
+  std::map<std::uint32_t, unsigned> rivals_;  // SSRC to packets since the stream began
+  std::optional<std::uint32_t> rival_;
   ReceiverAccounts booked_;  // of streams that ended
 };
 

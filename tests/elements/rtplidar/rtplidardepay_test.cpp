@@ -151,6 +151,63 @@ TEST(RtpLidarDepay, DropsWhatIsNotItsPayloadTypeOrNotRtpWithoutAMessage) {
   EXPECT_EQ(Pull(h.get()).size(), 4U);
 }
 
+/// Warnings that an element posts while it lives.
+class Warnings {
+ public:
+  explicit Warnings(GstElement* element) : element_(GST_ELEMENT(gst_object_ref(element))) {
+    gst_element_set_bus(element, bus_);
+  }
+  ~Warnings() {
+    gst_element_set_bus(element_, nullptr);
+    gst_object_unref(element_);
+    gst_object_unref(bus_);
+  }
+  Warnings(const Warnings&) = delete;
+  Warnings& operator=(const Warnings&) = delete;
+  /// Those since the last call.
+  std::vector<std::string> Take() {
+    std::vector<std::string> texts;
+    while (const gst::MessagePtr message{gst_bus_pop_filtered(bus_, GST_MESSAGE_WARNING)}) {
+      GError* error = nullptr;
+      gst_message_parse_warning(message.get(), &error, nullptr);
+      texts.emplace_back(gst::ErrorPtr(error)->message);
+    }
+    return texts;
+  }
+
+ private:
+  GstElement* element_;
+  GstBus* bus_ = gst_bus_new();
+};
+
+TEST(RtpLidarDepay, WarnsOnceWhereOnlyAnotherPayloadTypeComes) {
+  const Harness h(gst_harness_new("rtplidardepay"));
+  gst_harness_set_src_caps_str(
+      h.get(),
+      "application/x-rtp,media=application,clock-rate=90000,encoding-name=X-LIDAR-DRACO,"
+      "payload=97");
+  Warnings warnings(h->element);
+  Push(h.get(), Packets(6));
+  const auto texts = warnings.Take();
+  ASSERT_EQ(texts.size(), 1U);
+  EXPECT_NE(texts[0].find("payload type 96, not 97"), std::string::npos) << texts[0];
+}
+
+TEST(RtpLidarDepay, WarnsOnceOfASecondStreamThatIsDropped) {
+  const Harness h = Depay();
+  Warnings warnings(h->element);
+  const auto first = Packets(20);
+  const auto second = Packets(20);  // another SSRC, at the same time
+  ASSERT_EQ(first.size(), second.size());
+  for (std::size_t i = 0; i < first.size(); ++i)
+    for (const auto* packets : {&first, &second})
+      gst_harness_push(h.get(), gst_buffer_copy_deep((*packets)[i].get()));
+  EXPECT_EQ(Pull(h.get()).size(), 80U);
+  const auto texts = warnings.Take();
+  ASSERT_EQ(texts.size(), 1U);
+  EXPECT_NE(texts[0].find("Two streams"), std::string::npos) << texts[0];
+}
+
 TEST(RtpLidarDepay, FollowsASenderThatRestarts) {
   const Harness h = Depay();
   Push(h.get(), Packets(3));
