@@ -149,6 +149,25 @@ TEST_F(LidarLink, LeavesPacketsWithoutEcnUnmarkedAndDropsTheTail) {
   EXPECT_EQ(summary["queue_full"].get<std::size_t>() + got.size(), 50U);
 }
 
+TEST_F(LidarLink, MarksEct1AsSeldomAsEct0WhereItKnowsNoL4s) {
+  // Twice the capacity for 0.2 s: what is rare for classic packets is squared.
+  const auto marks = [this](std::vector<std::string> options) {
+    options.insert(options.end(), {"--rtt", "0", "--rate", "2", "--aqm", "pi2", "--aqm-target", "5"});
+    Start(options);
+    auto sender = Sender();
+    for (int i = 0; i < 100; ++i) {
+      Send(&sender, static_cast<std::uint8_t>(i), 1000, kEct1);
+      std::this_thread::sleep_for(2ms);
+    }
+    Receive(&receiver_, 100, 1s);
+    return Stop()["marked"].get<int>();
+  };
+  const int l4s = marks({});
+  const int classic = marks({"--aqm-classic"});
+  EXPECT_GT(l4s, 20);
+  EXPECT_LT(classic, l4s / 2);
+}
+
 TEST_F(LidarLink, ClearsTheEcnBitsWhereItBleaches) {
   Start({"--rtt", "0", "--bleach"});
   auto sender = Sender();
@@ -224,6 +243,7 @@ TEST(LidarLinkUsage, WrongOptionsEndWithCode2) {
   EXPECT_EQ(ExitCode({"--rate", "1", "--steps", "1,2"}), 2);
   EXPECT_EQ(ExitCode({"--aqm", "best"}), 2);
   EXPECT_EQ(ExitCode({"--aqm-low", "20"}), 2);
+  EXPECT_EQ(ExitCode({"--aqm", "dualpi2", "--aqm-classic"}), 2);
   EXPECT_EQ(ExitCode({"--outage", "3:2"}), 2);
   EXPECT_EQ(ExitCode({"--trace", "/dev/null"}), 2);
   EXPECT_EQ(ExitCode({"--listen", "1", "2", "--forward", "3"}), 2);

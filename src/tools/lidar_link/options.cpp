@@ -28,6 +28,7 @@ struct Text {
   double aqm_low_ms = 2;
   double aqm_high_ms = 10;
   double aqm_target_ms = 15;
+  bool aqm_classic = false;
   struct Way {
     double loss_percent = 0;
     double extra_delay_ms = 0;
@@ -99,6 +100,8 @@ void AddLinkOptions(CLI::App* app, Text* t) {
       ->check(ms);
   app->add_option("--aqm-target", t->aqm_target_ms, "pi2, dualpi2: classic queue delay [ms]")
       ->check(ms);
+  app->add_flag("--aqm-classic", t->aqm_classic,
+                "pi2: mark ECT(1) no more often than ECT(0), as queues that know no L4S do");
   AddWayOptions(app, "--", "on the way there", &t->there);
   AddWayOptions(app, "--back-", "on the way back", &t->back);
   app->add_option("--seed", t->seed, "Seed of everything random");
@@ -149,6 +152,9 @@ void Apply(const Text& t, LinkOptions* o) {
   if (t.aqm == Kind::kRamp && t.aqm_low_ms > t.aqm_high_ms)
     throw CLI::ValidationError("--aqm-low", "must not be above --aqm-high");
   o->there.aqm.pi2.target = Ms(t.aqm_target_ms);
+  if (t.aqm_classic && t.aqm != Kind::kPi2)
+    throw CLI::ValidationError("--aqm-classic", "is for --aqm pi2");
+  o->there.aqm.pi2.knows_l4s = !t.aqm_classic;
   ApplyWay(t.there, t.rtt_ms / 2, &o->there);
   ApplyWay(t.back, t.rtt_ms / 2, &o->back);
   o->there.seed = t.seed;
