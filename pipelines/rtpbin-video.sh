@@ -46,8 +46,8 @@ one_end() {
     rtp.send_rtp_src_0 ! tx.sink_0 \
     screamtx name=tx max-bitrate=3500000 stats-interval=1000000000 ! \
     ecnudpsink host=127.0.0.1 port="$rtp_out" sync=false async=false \
-    ecnudpsrc address=127.0.0.1 port="$rtcp_in" caps=application/x-rtcp ! tx.rtcp_sink \
-    tx.rtcp_src ! rtp.recv_rtcp_sink_0 \
+    ecnudpsrc address=127.0.0.1 port="$rtcp_in" caps=application/x-rtcp ! tee name=rtcp \
+    rtcp. ! tx.rtcp_sink rtcp. ! rtp.recv_rtcp_sink_0 \
     ecnudpsrc address=127.0.0.1 port="$rtp_in" \
     caps="application/x-rtp,media=video,clock-rate=90000,encoding-name=H264,payload=96" ! \
     screamrx name=rx ! rtp.recv_rtp_sink_0 \
@@ -80,6 +80,6 @@ failed=0
 for name in A B; do
   report "$name" || { echo "No feedback reached $name." >&2; failed=1; }
   grep -q '"progress\|progress,' "$work/$name" || { echo "$name decoded nothing." >&2; failed=1; }
-  grep -m5 -E 'ERROR' "$work/$name" >&2 && failed=1
+  grep -m5 -E 'ERROR|loop detected' "$work/$name" >&2 && failed=1
 done
 exit "$failed"
