@@ -90,8 +90,8 @@ bool Receiver::CandidateHasWon(Time now) const {
 bool Receiver::CandidateGoesOn(Time now) const {
   if (candidate_->ssrc != active_->ssrc) return false;
   const double most = Seconds(now - active_arrival_) * kMostScansPerSecond;
-  return candidate_->reassembler.IsAfter(
-      active_->reassembler, kScansWithoutClock + static_cast<std::int64_t>(most));
+  return candidate_->reassembler.IsAfter(active_->reassembler,
+                                         kScansWithoutClock + static_cast<std::int64_t>(most));
 }
 
 std::vector<ReceivedSlice> Receiver::Promote(Time now) {

@@ -152,7 +152,8 @@ TEST_F(LidarLink, LeavesPacketsWithoutEcnUnmarkedAndDropsTheTail) {
 TEST_F(LidarLink, MarksEct1AsSeldomAsEct0WhereItKnowsNoL4s) {
   // Twice the capacity for 0.2 s: what is rare for classic packets is squared.
   const auto marks = [this](std::vector<std::string> options) {
-    options.insert(options.end(), {"--rtt", "0", "--rate", "2", "--aqm", "pi2", "--aqm-target", "5"});
+    options.insert(options.end(),
+                   {"--rtt", "0", "--rate", "2", "--aqm", "pi2", "--aqm-target", "5"});
     Start(options);
     auto sender = Sender();
     for (int i = 0; i < 100; ++i) {

@@ -17,10 +17,10 @@ expect() {
   fi
 }
 
-for script in lidar-and-video rtpbin-video record view secure secure-dtls demo; do
+for script in lidar-and-video rtpbin-video record view secure secure-dtls webrtc demo; do
   expect 0 "Usage: pipelines/$script.sh" $script.sh --help
 done
-for script in lidar-and-video rtpbin-video record view secure secure-dtls; do
+for script in lidar-and-video rtpbin-video record view secure secure-dtls webrtc; do
   expect 2 "there is no option --nonsense" $script.sh --nonsense
 done
 expect 2 '--rate wants a number above zero, not "abc"' lidar-and-video.sh --rate abc
@@ -28,6 +28,7 @@ expect 2 '--rate wants a number' lidar-and-video.sh --rate 0
 expect 2 '--duration wants a value' lidar-and-video.sh --duration
 expect 2 '--port wants a UDP port' lidar-and-video.sh --port 70000
 expect 2 '--duration wants a number' rtpbin-video.sh --duration ten
+expect 2 '--low wants a number above zero' webrtc.sh --low 0
 expect 2 '--scans wants a value' record.sh --scans
 expect 2 '--scans wants a whole number' record.sh --scans 1.5
 expect 2 'there is no format las' record.sh --format las

@@ -89,7 +89,7 @@ static guint Estimate(GObject* object) {
 
 static Property<AuxSettings> OfTx(const char* name) {
   return Proxy<AuxSettings>(TxPropertyTable(), name,
-                         ChildOf<GstLidarScreamAux, &GstLidarScreamAux::tx>);
+                            ChildOf<GstLidarScreamAux, &GstLidarScreamAux::tx>);
 }
 
 static const std::array<Property<AuxSettings>, 9> kProperties = {{
@@ -174,8 +174,8 @@ static void NamePads(GstLidarScreamAux* self) {
   const bool named = session >= 0;
   const PadPtr sink(gst_element_get_static_pad(self->tx, "sink_0"));
   const PadPtr src(gst_element_get_static_pad(self->tx, "src"));
-  self->sink = ReplaceGhost(self, self->sink, sink,
-                            named ? &session_sink_template : &sink_template, session);
+  self->sink = ReplaceGhost(self, self->sink, sink, named ? &session_sink_template : &sink_template,
+                            session);
   self->src =
       ReplaceGhost(self, self->src, src, named ? &session_src_template : &src_template, session);
 }

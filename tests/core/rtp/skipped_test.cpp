@@ -58,9 +58,8 @@ TEST(SkippedSlices, AreToldFromLostOnesEvenWhereTheNextSliceIsLostToo) {
 TEST(SkippedSlices, AreNotLostWhereTheWordOfThemComesLate) {
   Receiver receiver(kReorder);
   Sender sender;
-  auto packets = sender.ScansWithout(6, [](std::uint32_t s, std::uint16_t i) {
-    return (s == 2 && i == 3) || (s == 3 && i < 2);
-  });
+  auto packets = sender.ScansWithout(
+      6, [](std::uint32_t s, std::uint16_t i) { return (s == 2 && i == 3) || (s == 3 && i < 2); });
   // A sender in need pauses within the slice that tells of them: its last packet comes when
   // what lies before it is overdue.
   const auto told = [](const Wire& w) { return w.scan == 3 && w.index == 2; };

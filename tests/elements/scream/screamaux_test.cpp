@@ -255,7 +255,8 @@ TEST_P(ScreamAuxWithRtpbin, TheReceiversReportsMoveTheTarget) {
       "rtpbin name=tx rtp-profile=avpf rtpbin name=rx rtp-profile=avpf "
       "videotestsrc is-live=true ! video/x-raw,format=I420,width=160,height=120,framerate=30/1 ! "
       "jpegenc ! rtpjpegpay mtu=1000 ! capsfilter name=media caps=\"" +
-      caps + "\" " + (inside ? "" : "! screamaux name=aux start-bitrate=4000000 ! tx.send_rtp_sink_0 ") +
+      caps + "\" " +
+      (inside ? "" : "! screamaux name=aux start-bitrate=4000000 ! tx.send_rtp_sink_0 ") +
       at("udpsrc", 0) + "! " + caps +
       " ! rx.recv_rtp_sink_0 fakesink name=end sync=false async=false " + at("udpsrc", 1) +
       "! rx.recv_rtcp_sink_0 rx.send_rtcp_src_0 ! " + at("udpsink", 2) + at("udpsrc", 2) +
@@ -270,11 +271,10 @@ TEST_P(ScreamAuxWithRtpbin, TheReceiversReportsMoveTheTarget) {
                    }),
                    const_cast<bool*>(&inside));
   if (inside) {
-    ASSERT_TRUE(gst_element_link_pads(pipeline.Get("media").get(), "src", tx.get(),
-                                      "send_rtp_sink_0"));
+    ASSERT_TRUE(
+        gst_element_link_pads(pipeline.Get("media").get(), "src", tx.get(), "send_rtp_sink_0"));
   }
-  ASSERT_TRUE(
-      gst_element_link_pads(tx.get(), "send_rtp_src_0", pipeline.Get("rtp").get(), "sink"));
+  ASSERT_TRUE(gst_element_link_pads(tx.get(), "send_rtp_src_0", pipeline.Get("rtp").get(), "sink"));
   ASSERT_TRUE(
       gst_element_link_pads(tx.get(), "send_rtcp_src_0", pipeline.Get("rtcp").get(), "sink"));
   const auto end = pipeline.Get("end");

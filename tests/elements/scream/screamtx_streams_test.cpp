@@ -145,8 +145,8 @@ TEST_F(ScreamTx, PadsThatAreAskedForByAllAtOnceAreGivenOnce) {
 }
 
 TEST_F(ScreamTx, TargetsOfAllPadsTogetherStayBelowTheTotal) {
-  g_object_set(element, "max-total-bitrate", 3'000'000U, "start-bitrate", 2'000'000U,
-               "min-bitrate", 10'000U, nullptr);
+  g_object_set(element, "max-total-bitrate", 3'000'000U, "start-bitrate", 2'000'000U, "min-bitrate",
+               10'000U, nullptr);
   Start();
   Harness second(gst_harness_new_with_element(element, "sink_1", nullptr));
   gst_harness_set_src_caps_str(second.get(), kVideoCaps);

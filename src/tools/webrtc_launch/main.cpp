@@ -1,0 +1,271 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// gst-launch for pipelines with two webrtcbins that call each other: does their signalling.
+#include <glib-unix.h>
+#include <gst/gst.h>
+
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <memory>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "gst/common/refs.h"
+#include "src/tools/common/version.h"
+
+namespace {
+
+using lidar::gst::ElementPtr;
+using lidar::gst::MessagePtr;
+using lidar::gst::StringPtr;
+using lidar::gst::StructurePtr;
+
+enum ExitCode { kGood = 0, kFailed = 1, kUsage = 2 };
+
+struct Options {
+  std::string aux;  // of both ends, as gst-launch writes it
+  std::string stats;
+  std::string address = "127.0.0.1";
+  guint port = 0;   // of the callee; 0: any
+  guint relay = 0;  // port that the caller gets to know in its place; 0: none
+  double duration_s = 0;
+  std::vector<std::string> pipeline;
+};
+
+struct Call {
+  Options options;
+  ElementPtr pipeline;
+  ElementPtr caller;
+  ElementPtr callee;
+};
+
+/// A step of the signalling, run once a webrtcbin has answered.
+using Step = void (*)(Call*, const GstStructure* reply);
+
+struct Pending {
+  Call* call;
+  Step step;
+};
+
+/// A promise whose answer runs `step`.
+GstPromise* Then(Call* call, Step step) {
+  return gst_promise_new_with_change_func(
+      [](GstPromise* promise, gpointer data) {
+        const auto* pending = static_cast<Pending*>(data);
+        const GstStructure* reply = gst_promise_wait(promise) == GST_PROMISE_RESULT_REPLIED
+                                        ? gst_promise_get_reply(promise)
+                                        : nullptr;
+        pending->step(pending->call, reply);
+        gst_promise_unref(promise);
+      },
+      new Pending{call, step}, [](gpointer data) { delete static_cast<Pending*>(data); });
+}
+
+void Fail(Call* call, const char* what) {
+  GST_ELEMENT_ERROR(call->pipeline.get(), RESOURCE, FAILED, ("%s", what), (nullptr));
+}
+
+/// The description that is `name` in a reply.
+gpointer DescriptionIn(const GstStructure* reply, const char* name) {
+  const GValue* value = reply != nullptr ? gst_structure_get_value(reply, name) : nullptr;
+  return value != nullptr && G_VALUE_HOLDS_BOXED(value) ? g_value_get_boxed(value) : nullptr;
+}
+
+/// Gives a description of `from` to both ends. The webrtcbins run their tasks in order.
+void Exchange(GstElement* from, GstElement* to, gpointer description) {
+  g_signal_emit_by_name(from, "set-local-description", description, nullptr);
+  g_signal_emit_by_name(to, "set-remote-description", description, nullptr);
+}
+
+void OnAnswer(Call* call, const GstStructure* reply) {
+  const gpointer answer = DescriptionIn(reply, "answer");
+  if (answer == nullptr) return Fail(call, "The callee does not answer the offer.");
+  Exchange(call->callee.get(), call->caller.get(), answer);
+}
+
+void OnOffer(Call* call, const GstStructure* reply) {
+  const gpointer offer = DescriptionIn(reply, "offer");
+  if (offer == nullptr) return Fail(call, "The caller has nothing to offer.");
+  Exchange(call->caller.get(), call->callee.get(), offer);
+  g_signal_emit_by_name(call->callee.get(), "create-answer", nullptr, Then(call, OnAnswer));
+}
+
+void OnNegotiationNeeded(GstElement* caller, Call* call) {
+  g_signal_emit_by_name(caller, "create-offer", nullptr, Then(call, OnOffer));
+}
+
+/// Tells the caller where the callee is: at the relay, if there is one.
+void OnCandidateOfCallee(GstElement*, guint line, gchar* text, Call* call) {
+  std::string candidate = text;
+  if (call->options.relay != 0) {
+    const std::string host = " " + call->options.address + " ";
+    const std::string own = host + std::to_string(call->options.port) + " ";
+    const auto at = candidate.find(own);
+    if (at == std::string::npos) return;
+    candidate.replace(at, own.size(), host + std::to_string(call->options.relay) + " ");
+  }
+  g_signal_emit_by_name(call->caller.get(), "add-ice-candidate", line, candidate.c_str());
+}
+
+/// Behind a relay the callee learns the caller's address from what comes through it.
+void OnCandidateOfCaller(GstElement*, guint line, gchar* text, Call* call) {
+  if (call->options.relay == 0)
+    g_signal_emit_by_name(call->callee.get(), "add-ice-candidate", line, text);
+}
+
+/// Called caller-aux or callee-aux.
+GstElement* OnAuxSender(GstElement* webrtc, GObject*, Call* call) {
+  GError* error = nullptr;
+  GstElement* aux = gst_parse_launch(call->options.aux.c_str(), &error);
+  if (error != nullptr) Fail(call, error->message);
+  g_clear_error(&error);
+  const StringPtr end(gst_element_get_name(webrtc));
+  if (aux != nullptr)
+    gst_object_set_name(GST_OBJECT(aux), (end.get() + std::string("-aux")).c_str());
+  return aux;
+}
+
+/// Only this address, and of the callee only this port: others would go around the relay.
+void BindIce(GstElement* webrtc, const std::string& address, guint port) {
+  GObject* ice = nullptr;
+  g_object_get(webrtc, "ice-agent", &ice, nullptr);
+  gboolean added = FALSE;
+  g_signal_emit_by_name(ice, "add-local-ip-address", address.c_str(), &added);
+  if (port != 0) g_object_set(ice, "min-rtp-port", port, "max-rtp-port", port, nullptr);
+  g_object_unref(ice);
+}
+
+ElementPtr WebrtcBin(GstElement* pipeline, const char* name) {
+  ElementPtr element(gst_bin_get_by_name(GST_BIN(pipeline), name));
+  const GstElementFactory* factory = element ? gst_element_get_factory(element.get()) : nullptr;
+  if (factory != nullptr && g_strcmp0(GST_OBJECT_NAME(factory), "webrtcbin") == 0) return element;
+  std::fprintf(stderr, "The pipeline has no webrtcbin with name=%s.\n", name);
+  return nullptr;
+}
+
+bool MakePipeline(Call* call) {
+  std::vector<const gchar*> argv;
+  for (const std::string& word : call->options.pipeline) argv.push_back(word.c_str());
+  argv.push_back(nullptr);
+  GError* error = nullptr;
+  call->pipeline.reset(gst_parse_launchv(argv.data(), &error));
+  if (error != nullptr) {
+    std::fprintf(stderr, "%s\n", error->message);
+    g_error_free(error);
+    return false;
+  }
+  if (!GST_IS_BIN(call->pipeline.get())) return false;
+  call->caller = WebrtcBin(call->pipeline.get(), "caller");
+  call->callee = WebrtcBin(call->pipeline.get(), "callee");
+  return call->caller && call->callee;
+}
+
+void Connect(Call* call) {
+  BindIce(call->caller.get(), call->options.address, 0);
+  BindIce(call->callee.get(), call->options.address, call->options.port);
+  g_signal_connect(call->caller.get(), "on-negotiation-needed", G_CALLBACK(OnNegotiationNeeded),
+                   call);
+  g_signal_connect(call->caller.get(), "on-ice-candidate", G_CALLBACK(OnCandidateOfCaller), call);
+  g_signal_connect(call->callee.get(), "on-ice-candidate", G_CALLBACK(OnCandidateOfCallee), call);
+  if (call->options.aux.empty()) return;
+  for (GstElement* end : {call->caller.get(), call->callee.get()})
+    g_signal_connect(end, "request-aux-sender", G_CALLBACK(OnAuxSender), call);
+}
+
+/// A line for each of the elements named, with their statistics.
+void PrintStats(const Call& call, gint64 start) {
+  std::istringstream words(call.options.stats);
+  for (std::string name; std::getline(words, name, ',');) {
+    const ElementPtr element(gst_bin_get_by_name(GST_BIN(call.pipeline.get()), name.c_str()));
+    GstStructure* stats = nullptr;
+    if (element) g_object_get(element.get(), "stats", &stats, nullptr);
+    const StructurePtr owner(stats);
+    if (stats == nullptr) continue;
+    const StringPtr text(gst_structure_to_string(stats));
+    std::printf("%.1f %s: %s\n", static_cast<double>(g_get_monotonic_time() - start) / 1e6,
+                name.c_str(), text.get());
+  }
+  std::fflush(stdout);
+}
+
+/// True where the pipeline goes on.
+bool Handle(GstMessage* message, int* result) {
+  if (message == nullptr) return true;
+  if (GST_MESSAGE_TYPE(message) == GST_MESSAGE_EOS) return false;
+  GError* error = nullptr;
+  gst_message_parse_error(message, &error, nullptr);
+  std::fprintf(stderr, "%s: %s\n", GST_MESSAGE_SRC_NAME(message), error->message);
+  g_error_free(error);
+  *result = kFailed;
+  return false;
+}
+
+/// Until EOS, an error, a signal, or the duration is over; prints statistics each second.
+int Play(const Call& call) {
+  bool run = true;
+  const auto interrupt = [](gpointer data) -> gboolean {
+    *static_cast<bool*>(data) = false;
+    return G_SOURCE_CONTINUE;
+  };
+  g_unix_signal_add(SIGINT, interrupt, &run);
+  g_unix_signal_add(SIGTERM, interrupt, &run);
+  GstBus* bus = gst_element_get_bus(call.pipeline.get());
+  gst_element_set_state(call.pipeline.get(), GST_STATE_PLAYING);
+  const gint64 start = g_get_monotonic_time();
+  gint64 next = start + G_TIME_SPAN_SECOND;
+  int result = kGood;
+  while (run) {
+    g_main_context_iteration(nullptr, FALSE);
+    const MessagePtr message(gst_bus_timed_pop_filtered(
+        bus, 50 * GST_MSECOND, static_cast<GstMessageType>(GST_MESSAGE_EOS | GST_MESSAGE_ERROR)));
+    run = run && Handle(message.get(), &result);
+    const gint64 now = g_get_monotonic_time();
+    const double elapsed_s = static_cast<double>(now - start) / 1e6;
+    if (call.options.duration_s > 0 && elapsed_s >= call.options.duration_s) run = false;
+    if (now < next) continue;
+    next += G_TIME_SPAN_SECOND;
+    PrintStats(call, start);
+  }
+  PrintStats(call, start);
+  gst_element_set_state(call.pipeline.get(), GST_STATE_NULL);
+  gst_object_unref(bus);
+  return result;
+}
+
+void AddOptions(CLI::App* app, Options* o) {
+  lidar::tools::AddVersionFlag(app, "lidar-webrtc-launch");
+  const auto port = CLI::Range(1U, 65535U);
+  app->add_option("--aux", o->aux,
+                  "What request-aux-sender of both ends returns; called caller-aux and callee-aux");
+  app->add_option("--stats", o->stats, "Elements, with commas, whose stats are printed");
+  app->add_option("--address", o->address, "Address of both ends")->capture_default_str();
+  auto* own = app->add_option("--port", o->port, "UDP port of the callee")->check(port);
+  app->add_option("--relay", o->relay,
+                  "UDP port of a relay to the callee: the caller knows the callee by it")
+      ->check(port)
+      ->needs(own);
+  app->add_option("--duration", o->duration_s, "How long [s]; without it, until Ctrl-C")
+      ->check(CLI::Range(0.1, 1e7));
+  app->prefix_command();  // the first word that is no option begins the pipeline
+  app->footer("PIPELINE: elements, properties and links, after the options");
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App app(
+      "Runs a pipeline, written as for gst-launch-1.0, with two webrtcbins: name=caller offers,\n"
+      "name=callee answers. Both are in this process, so no server is needed.");
+  Call call;
+  AddOptions(&app, &call.options);
+  CLI11_PARSE(app, argc, argv);
+  call.options.pipeline = app.remaining();
+  gst_init(nullptr, nullptr);
+  if (!MakePipeline(&call)) return kUsage;
+  Connect(&call);
+  const int result = Play(call);
+  call.callee.reset();
+  call.caller.reset();
+  call.pipeline.reset();
+  return result;
+}
