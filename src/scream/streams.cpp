@@ -147,8 +147,8 @@ DataRate Streams::needed_bitrate() const {
 }
 
 DataRate Streams::max_bitrate() const {
-  const DataRate sum = Sum(
-      [](const Stream& s) { return std::max(s.config().min_bitrate, s.config().max_bitrate); });
+  const DataRate sum =
+      Sum([](const Stream& s) { return std::max(s.config().min_bitrate, s.config().max_bitrate); });
   return std::min(sum, std::max(p_.max_total_bitrate, min_bitrate()));
 }
 
