@@ -1,13 +1,14 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Every path and program that the docs or a comment name is there; every element has its page."""
+"""Every path and program that the docs or a comment name is there; every element has its page,
+and every property its word on it; every message that docs/troubleshooting.md explains exists."""
 import json
 import pathlib
 import re
 import subprocess
 import sys
 
-TOPS = r"(?:\.ci|src|gst|ext|tests|docs|pipelines)"
+TOPS = r"(?:\.ci|src|gst|ext|tests|docs|pipelines|packaging)"
 PATH = re.compile(r"(?<![\w/.<>{}*$-])(" + TOPS + r"/[\w./*<>{},@$-]*)")
 BUILT = re.compile(r"(?<![\w/.-])build(?:-asan|-tsan|-fuzz)?/(" + TOPS + r"/[\w./-]+)")
 FILE = re.compile(r"[\w-]+\.(?:md|h|cpp|sh|py)")
@@ -116,9 +117,17 @@ class Checker:
                 ):
                     self.path(f"{file}:{number}", path)
 
+    def messages(self):
+        page = self.root / "docs/troubleshooting.md"
+        sources = [(self.root / f).read_text() for f in self.files if f.endswith(".cpp")]
+        for message in re.findall(r'^### "(.+)"$', page.read_text(), re.M) if page.exists() else []:
+            if not any(message in text for text in sources):
+                self.problems.append(f'docs/troubleshooting.md: nobody says "{message}"')
+
     def elements(self):
         cache = json.loads((self.root / "docs/plugins_cache.json").read_text())
-        elements = {name for plugin in cache.values() for name in plugin.get("elements", {})}
+        all_elements = [e for plugin in cache.values() for e in plugin.get("elements", {}).items()]
+        elements = {name for name, _ in all_elements}
         pages = {page.stem for page in (self.root / "docs/elements").glob("*.md")}
         self.problems += [
             f"docs/elements/{e}.md: element {e} has no page" for e in sorted(elements - pages)
@@ -126,6 +135,13 @@ class Checker:
         self.problems += [
             f"docs/elements/{p}.md: there is no element {p}" for p in sorted(pages - elements)
         ]
+        for name, element in all_elements:
+            if name in pages:
+                self.properties(f"docs/elements/{name}.md", element.get("properties", {}))
+
+    def properties(self, page, properties):
+        said = set(re.findall(r"`([a-z0-9-]+)(?:[=:][^`]*)?`", (self.root / page).read_text()))
+        self.problems += [f"{page}: no word on property {p}" for p in properties if p not in said]
 
 
 def check(root):
@@ -133,6 +149,7 @@ def check(root):
     checker.pages()
     checker.comments()
     checker.elements()
+    checker.messages()
     return checker.problems
 
 

@@ -31,8 +31,9 @@ See `src/base/units.h`, `units.h`, `gst/*`, `gst<name>.cpp`, `lidar-eval --help`
 
     build/src/tools/eval/lidar-eval > out.csv
 """,
-    "docs/elements/alpha.md": "# alpha\n",
-    "docs/plugins_cache.json": '{"one": {"elements": {"alpha": {}}}}',
+    "docs/elements/alpha.md": "# alpha\n\n| `speed` | how fast; see `rate=3` |\n",
+    "docs/plugins_cache.json": '{"one": {"elements": {"alpha": {"properties": {"speed": {}, "rate": {}}}}}}',
+    "docs/troubleshooting.md": '# Troubleshooting\n\n### "No cloud of %s."\n',
     "CHANGELOG.md": "# Changelog\n",
     "README.md": "See [the layout](docs/architecture.md).\n",
     "src/base/units.h": "#include <lzma.h>\n#include <vector>\n",
@@ -46,6 +47,7 @@ See `src/base/units.h`, `units.h`, `gst/*`, `gst<name>.cpp`, `lidar-eval --help`
 #include "gst/common/meta.h"
 #include "gst/net/socket.h"
 const char* kPort = "lidar-port";
+const char* kWarning = "No cloud of %s.";
 """,
     "ext/draco/draco.cpp": '#include <draco/draco.h>\n#include "gst/common/meta.h"\n',
     "tests/core/test.cpp": '#include "ext/draco/draco.h"\n#include "src/tools/eval/main.h"\n',
@@ -152,6 +154,13 @@ PLANTED = [
         '{"one": {"elements": {"alpha": {}, "beta": {}}}}',
         "element beta has no page",
     ),
+    (
+        "paths",
+        "docs/plugins_cache.json",
+        '{"one": {"elements": {"alpha": {"properties": {"speeds": {}}}}}}',
+        "docs/elements/alpha.md: no word on property speeds",
+    ),
+    ("paths", "docs/troubleshooting.md", '### "No such cloud."', 'nobody says "No such cloud."'),
     ("links", "README.md", "[gone](docs/gone.md)", "no such file: docs/gone.md"),
     ("widths", "docs/a.md", "word " * 21, "docs/a.md:1: wider"),
     ("widths", "tests/data/a.md", "word " * 21, "tests/data/a.md:1: wider"),
