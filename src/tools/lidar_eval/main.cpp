@@ -6,8 +6,10 @@
 #include "src/tools/lidar_eval/commands.h"
 
 int main(int argc, char** argv) {
-  CLI::App app("Measures the codec and the rate control on captures, clouds and synthetic drives.");
+  CLI::App app("Measures the codec and the rate control on captures, clouds and synthetic drives.",
+               "lidar-eval");
   lidar::tools::AddVersionFlag(&app, "lidar-eval");
+  lidar::tools::AddHelpAllFlag(&app);
   app.require_subcommand(1);
   lidar::tools::AddBoundsCommand(&app);
   lidar::tools::AddRateDistortionCommand(&app);

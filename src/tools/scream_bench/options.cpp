@@ -68,6 +68,7 @@ BenchOptions ParseBenchOptions(int argc, char** argv) {
       "clocks agree (else: their age over the youngest).",
       "scream-bench");
   AddVersionFlag(&app, "scream-bench");
+  AddHelpAllFlag(&app);
   app.footer(
       "Example, in two terminals:\n"
       "  scream-bench rx --port 5004\n"
