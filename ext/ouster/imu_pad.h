@@ -8,8 +8,6 @@
 
 namespace lidar::gst {
 
-#define GST_LIDAR_IMU_MEDIA_TYPE "application/x-imu"
-
 /// A buffer holds one packet's samples, each the capture time [ns since the Unix epoch, U64],
 /// acceleration [m/s^2, 3 x F32] and angular velocity [rad/s, 3 x F32] in the IMU's frame,
 /// little-endian.

@@ -13,6 +13,7 @@ G_BEGIN_DECLS
 
 #define GST_LIDAR_CLOUD_MEDIA_TYPE "application/x-pointcloud2"
 #define GST_LIDAR_DRACO_MEDIA_TYPE "application/x-draco"
+#define GST_LIDAR_IMU_MEDIA_TYPE "application/x-imu"
 #define GST_LIDAR_ODOMETRY_MEDIA_TYPE "application/x-odometry"
 #define GST_LIDAR_SLICE_MEDIA_TYPE "application/x-lidar-slice"
 #define GST_LIDAR_SLICE_META_NAME "LidarSliceMeta"

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include "src/cdr/point_cloud2.h"
 
+#include <algorithm>
 #include <tuple>
 
 namespace lidar::cdr {
@@ -58,6 +59,16 @@ std::optional<PointCloud2> ReadPointCloud2(ByteView message, std::string* why) {
   cloud.is_dense = r.Bool();
   if (r.ok()) return cloud;
   if (why != nullptr) *why = "the message is truncated or is no PointCloud2";
+  return std::nullopt;
+}
+
+std::optional<std::size_t> RowStride(const PointCloud2& cloud) {
+  const RosLayout& l = cloud.layout;
+  const std::size_t height = std::max<std::size_t>(l.height, 1);
+  if (cloud.data.size % height != 0) return std::nullopt;
+  const std::size_t stride = cloud.data.size / height;
+  const std::uint64_t row = std::uint64_t{l.width} * l.point_step;
+  if (stride == row || (stride > row && stride == l.row_step)) return stride;
   return std::nullopt;
 }
 

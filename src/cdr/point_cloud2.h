@@ -44,6 +44,11 @@ struct PointCloud2 {
 std::optional<PointCloud2> ReadPointCloud2(ByteView message, std::string* why = nullptr);
 std::vector<std::uint8_t> WritePointCloud2(const PointCloud2& cloud);
 
+/// Bytes from one row of its data to the next; none where the data are not as long as width, height
+/// and steps say. Many drivers leave row_step at 0 or at the size of all: packed rows are known by
+/// their size alone.
+std::optional<std::size_t> RowStride(const PointCloud2& cloud);
+
 /// A message in pieces, for writers that gather: the points stand between `head` and `tail`.
 struct PointCloud2Frame {
   std::vector<std::uint8_t> head;
@@ -82,7 +87,7 @@ class PointConverter {
   /// True where points are copied as they are.
   bool copies() const { return steps_.empty(); }
 
-  /// False where the data of `cloud` are not as long as its layout says. `out` has size() bytes.
+  /// `cloud` has layout(). False where it has no RowStride(). `out` has size() bytes.
   bool Convert(const PointCloud2& cloud, std::uint8_t* out) const;
 
   static constexpr std::size_t kMaxSize = std::size_t{1} << 30;  // as caps of clouds have it

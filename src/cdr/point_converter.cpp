@@ -211,13 +211,12 @@ void PointConverter::ConvertPoint(const std::uint8_t* from, std::uint8_t* to) co
 }
 
 bool PointConverter::Convert(const PointCloud2& cloud, std::uint8_t* out) const {
+  const auto stride = RowStride(cloud);
+  if (!stride) return false;
   const std::size_t row = std::size_t{from_.width} * from_.point_step;
-  // Many drivers leave row_step at 0 or at the size of all: packed rows are known by their size.
-  const std::size_t stride = cloud.data.size == row * from_.height ? row : from_.row_step;
-  if (stride < row || cloud.data.size != stride * from_.height) return false;
   if (!copies()) std::fill_n(out, size(), std::uint8_t{0});
   for (std::uint32_t y = 0; y < from_.height; ++y) {
-    const std::uint8_t* from = cloud.data.data + y * stride;
+    const std::uint8_t* from = cloud.data.data + y * *stride;
     if (copies()) {
       std::copy_n(from, row, out);
       out += row;

@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// The DDS domains of this process. Cyclone has one of each number, so elements share them.
+#pragma once
+#include <cstdint>
+#include <memory>
+#include <string>
+
+namespace lidar::dds {
+
+/// Held by who has entities in it.
+class Domain {
+ public:
+  /// Null where Cyclone refuses its configuration, which may be the user's: ours is only what
+  /// large messages need, and the environment variable CYCLONEDDS_URI comes after it. `why` then
+  /// says so.
+  static std::unique_ptr<Domain> Join(std::uint32_t id, std::string* why);
+  ~Domain();
+  Domain(const Domain&) = delete;
+  Domain& operator=(const Domain&) = delete;
+
+  std::uint32_t id() const { return id_; }
+
+  static constexpr std::uint32_t kReceiveBuffer = 4u << 20;  // bytes
+  /// What of kReceiveBuffer the kernel grants [bytes].
+  static std::uint32_t GrantedReceiveBuffer();
+
+ private:
+  explicit Domain(std::uint32_t id) : id_(id) {}
+
+  std::uint32_t id_;
+};
+
+}  // namespace lidar::dds

@@ -1,0 +1,280 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+/**
+ * SECTION:element-ros2sink
+ *
+ * Publishes clouds, samples of an IMU, or odometry for ROS 2 nodes, each buffer as a message. Needs
+ * no ROS.
+ *
+ * |[
+ * gst-launch-1.0 lidartestsrc is-live=true ! scanassembler ! ros2sink topic=/points
+ * ]|
+ */
+#include "ext/ros2/gstros2sink.h"
+
+#include <memory>
+#include <mutex>
+
+#include "ext/ros2/message_writer.h"
+#include "ext/ros2/ros_settings.h"
+#include "gst/common/enum_type.h"
+#include "gst/common/gstlidar.h"
+#include "gst/common/stats.h"
+
+GST_DEBUG_CATEGORY_STATIC(gst_lidar_ros2_sink_debug);
+#define GST_CAT_DEFAULT gst_lidar_ros2_sink_debug
+
+namespace {
+
+using namespace lidar::gst;
+using lidar::Duration;
+using lidar::Time;
+using lidar::cdr::RosType;
+using lidar::dds::Writer;
+
+constexpr gint kAutoType = -1;
+
+GType SinkTypeType() {
+  static const GEnumValue kValues[] = {
+      {kAutoType, "PointCloud2, Imu or Odometry, as the caps say", "auto"},
+      {Int(RosType::kPointCloud2), "sensor_msgs/msg/PointCloud2", "pointcloud2"},
+      {Int(RosType::kImu), "sensor_msgs/msg/Imu", "imu"},
+      {Int(RosType::kOdometry), "nav_msgs/msg/Odometry", "odometry"},
+      {Int(RosType::kTransforms), "tf2_msgs/msg/TFMessage", "tf"},
+      {0, nullptr, nullptr}};
+  static const GType type = RegisterEnum("GstLidarRos2SinkType", kValues);
+  return type;
+}
+
+/// Tools of ROS 2 subscribe reliably where nobody tells them otherwise.
+RosSettings SinkDefaults() {
+  RosSettings settings;
+  settings.qos = RosQos::kReliable;
+  return settings;
+}
+
+struct Ros2SinkSettings {
+  RosSettings ros = SinkDefaults();
+  gint type = kAutoType;
+  Frames frames;
+};
+
+struct Counters {
+  guint64 messages = 0;
+  guint64 bytes = 0;
+  guint64 unread = 0;
+  guint64 timeouts = 0;
+  guint64 refused = 0;
+  guint subscribers = 0;
+};
+const std::array<Stat<Counters>, 6> kStats = {{
+    {"messages", &Counters::messages},
+    {"bytes", &Counters::bytes},
+    {"messages-without-subscriber", &Counters::unread},
+    {"messages-timed-out", &Counters::timeouts},
+    {"buffers-refused", &Counters::refused},
+    {"subscribers", &Counters::subscribers},
+}};
+
+struct State {
+  std::mutex mutex;  // guards all to the next comment; never held while publishing or posting
+  Ros2SinkSettings settings;
+  std::shared_ptr<Writer> writer;  // from the first caps to stop
+  Counters counters;
+
+  // Only the streaming thread uses what follows, between start and stop.
+  std::unique_ptr<MessageWriter> messages;
+  bool warned_timeout = false;
+  bool warned_refused = false;
+};
+
+}  // namespace
+
+struct _GstLidarRos2Sink {
+  GstBaseSink parent;
+  State* state;
+};
+
+G_DEFINE_TYPE(GstLidarRos2Sink, gst_lidar_ros2_sink, GST_TYPE_BASE_SINK)
+GST_ELEMENT_REGISTER_DEFINE(ros2sink, "ros2sink", GST_RANK_NONE, GST_TYPE_LIDAR_ROS2_SINK)
+
+static State& StateOf(gpointer self) { return *GST_LIDAR_ROS2_SINK(self)->state; }
+
+static std::shared_ptr<Writer> WriterOf(gpointer self) {
+  State& state = StateOf(self);
+  const std::lock_guard lock(state.mutex);
+  return state.writer;
+}
+
+static StructurePtr Stats(GObject* object) {
+  State& state = StateOf(object);
+  const auto writer = WriterOf(object);
+  const guint subscribers = writer ? writer->subscribers() : 0;
+  std::unique_lock lock(state.mutex);
+  Counters counters = state.counters;
+  lock.unlock();
+  counters.subscribers = subscribers;
+  return ToStructure("application/x-ros2sink-stats", kStats, counters);
+}
+
+static const std::array<Property<Ros2SinkSettings>, 10> kProperties = {{
+    Within<&Ros2SinkSettings::ros>(RosRows(), "topic"),
+    {"type", "What the topic holds",
+     EnumField<Ros2SinkSettings>{&Ros2SinkSettings::type, SinkTypeType}},
+    Within<&Ros2SinkSettings::ros>(RosRows(), "domain-id"),
+    Within<&Ros2SinkSettings::ros>(RosRows(), "node-name"),
+    Within<&Ros2SinkSettings::ros>(RosRows(), "qos"),
+    Within<&Ros2SinkSettings::ros>(RosRows(), "depth"),
+    Within<&Ros2SinkSettings::ros>(RosRows(), "ros-distro"),
+    {"frame-id",
+     "Frame of the data; NULL: as the caps say, else lidar for clouds, imu, or odom for odometry",
+     At<&Ros2SinkSettings::frames, &Frames::frame_id>, 0, 0, GST_PARAM_MUTABLE_PLAYING},
+    {"child-frame-id", "Frame whose pose odometry is; NULL: as the caps say, else lidar",
+     At<&Ros2SinkSettings::frames, &Frames::child_frame_id>, 0, 0, GST_PARAM_MUTABLE_PLAYING},
+    {"stats",
+     "messages, bytes [bytes], messages-without-subscriber, messages-timed-out, buffers-refused, "
+     "subscribers",
+     Stats},
+}};
+
+static Ros2SinkSettings Snapshot(State& state) {
+  const std::lock_guard lock(state.mutex);
+  return state.settings;
+}
+
+static bool OpenWriter(GstLidarRos2Sink* self, const RosSettings& settings, RosType type) {
+  State& state = StateOf(self);
+  const auto options = ToOptions(GST_ELEMENT(self), settings, type);
+  if (!options) return false;
+  std::string why;
+  std::shared_ptr<Writer> writer = Writer::Create(*options, &why);
+  if (!writer) {
+    GST_ELEMENT_ERROR(self, RESOURCE, OPEN_WRITE,
+                      ("DDS cannot publish %s: %s", settings.topic.c_str(), why.c_str()),
+                      (nullptr));
+    return false;
+  }
+  state.messages = std::make_unique<MessageWriter>(type);
+  std::unique_lock lock(state.mutex);
+  std::swap(state.writer, writer);
+  lock.unlock();  // the one before, if there was one, ends without the lock
+  return true;
+}
+
+/// What is wrong with the settings shows at once; the type may have to wait for the caps.
+static gboolean Start(GstBaseSink* base) {
+  auto* self = GST_LIDAR_ROS2_SINK(base);
+  State& state = StateOf(self);
+  const Ros2SinkSettings settings = Snapshot(state);
+  state.warned_timeout = state.warned_refused = false;
+  {
+    const std::lock_guard lock(state.mutex);
+    state.counters = {};
+  }
+  if (settings.type != kAutoType)
+    return OpenWriter(self, settings.ros, static_cast<RosType>(settings.type));
+  return ToOptions(GST_ELEMENT(self), settings.ros, RosType::kPointCloud2).has_value();
+}
+
+static gboolean Stop(GstBaseSink* base) {
+  State& state = StateOf(base);
+  std::unique_lock lock(state.mutex);
+  // It goes without the lock: DDS waits for its threads.
+  const std::shared_ptr<Writer> writer = std::move(state.writer);
+  lock.unlock();
+  state.messages.reset();
+  return TRUE;
+}
+
+static gboolean SetCaps(GstBaseSink* base, GstCaps* caps) {
+  auto* self = GST_LIDAR_ROS2_SINK(base);
+  State& state = StateOf(self);
+  const Ros2SinkSettings settings = Snapshot(state);
+  if (settings.type == kAutoType) {
+    const auto type = MessageWriter::UsualType(caps);
+    if (!type) return FALSE;
+    const bool open = state.messages && state.messages->type() == *type;
+    if (!open && !OpenWriter(self, settings.ros, *type)) return FALSE;
+  }
+  if (state.messages->SetCaps(caps)) return TRUE;
+  GST_ELEMENT_ERROR(self, STREAM, FORMAT,
+                    ("This cannot be published: %s.", state.messages->why().c_str()),
+                    ("caps are %" GST_PTR_FORMAT, static_cast<gpointer>(caps)));
+  return FALSE;
+}
+
+/// One warning, until a message gets through: a subscriber that hangs would make many.
+static void NoteResult(GstLidarRos2Sink* self, Writer::Result result, gsize bytes) {
+  State& state = StateOf(self);
+  const bool sent = result == Writer::Result::kSent;
+  {
+    const std::lock_guard lock(state.mutex);
+    sent ? ++state.counters.messages : ++state.counters.timeouts;
+    if (sent) state.counters.bytes += bytes;
+  }
+  if (!sent && !state.warned_timeout)
+    GST_ELEMENT_WARNING(
+        self, RESOURCE, WRITE,
+        ("A subscriber is too slow for this topic; messages are dropped and counted."),
+        ("DDS %s", result == Writer::Result::kTimeout ? "timed out" : "refused a message"));
+  state.warned_timeout = !sent;
+}
+
+static void PublishMessage(GstLidarRos2Sink* self, Writer* writer,
+                           const std::vector<lidar::ByteView>& pieces) {
+  gsize bytes = 0;
+  for (const lidar::ByteView& piece : pieces) bytes += piece.size;
+  NoteResult(self, writer->Publish(pieces), bytes);
+}
+
+static GstFlowReturn Render(GstBaseSink* base, GstBuffer* buffer) {
+  auto* self = GST_LIDAR_ROS2_SINK(base);
+  State& state = StateOf(self);
+  const auto writer = WriterOf(self);
+  if (!writer || !state.messages) return GST_FLOW_NOT_NEGOTIATED;
+  if (writer->FoundIncompatible())
+    GST_ELEMENT_WARNING(self, RESOURCE, SETTINGS,
+                        ("A subscriber of the topic wants what qos=sensor-data does not give."),
+                        ("use qos=reliable"));
+  if (writer->subscribers() == 0) {
+    const std::lock_guard lock(state.mutex);
+    ++state.counters.unread;
+    return GST_FLOW_OK;
+  }
+  const Time now = Time{} + Duration{g_get_real_time() * 1000};
+  const bool published = state.messages->Write(
+      buffer, Snapshot(state).frames, now,
+      [&](const auto& pieces) { PublishMessage(self, writer.get(), pieces); });
+  if (published) return GST_FLOW_OK;
+  {
+    const std::lock_guard lock(state.mutex);
+    ++state.counters.refused;
+  }
+  if (!state.warned_refused)
+    GST_ELEMENT_WARNING(self, STREAM, FORMAT,
+                        ("A buffer is not as its caps say; such buffers are dropped and counted."),
+                        ("%" G_GSIZE_FORMAT " bytes", gst_buffer_get_size(buffer)));
+  state.warned_refused = true;
+  return GST_FLOW_OK;
+}
+
+static void gst_lidar_ros2_sink_init(GstLidarRos2Sink* self) { self->state = new State; }
+
+static void gst_lidar_ros2_sink_class_init(GstLidarRos2SinkClass* klass) {
+  GST_DEBUG_CATEGORY_INIT(gst_lidar_ros2_sink_debug, "ros2sink", 0, "Publisher of ROS 2");
+  auto* object = G_OBJECT_CLASS(klass);
+  ServeProperties<GstLidarRos2Sink, kProperties>(object);
+  OwnState<GstLidarRos2Sink, gst_lidar_ros2_sink_parent_class>(object);
+  static GstStaticPadTemplate sink = GST_STATIC_PAD_TEMPLATE(
+      "sink", GST_PAD_SINK, GST_PAD_ALWAYS,
+      GST_STATIC_CAPS(GST_LIDAR_CLOUD_MEDIA_TYPE ";" GST_LIDAR_IMU_MEDIA_TYPE
+                                                 ";" GST_LIDAR_ODOMETRY_MEDIA_TYPE));
+  auto* element = GST_ELEMENT_CLASS(klass);
+  gst_element_class_add_static_pad_template(element, &sink);
+  gst_element_class_set_static_metadata(element, "ROS 2 sink", "Sink/Network",
+                                        "Publishes on a topic of ROS 2", "gst-lidar");
+  auto* base = GST_BASE_SINK_CLASS(klass);
+  base->start = Start;
+  base->stop = Stop;
+  base->set_caps = SetCaps;
+  base->render = Render;
+}

@@ -1,0 +1,312 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+/**
+ * SECTION:element-ros2src
+ *
+ * Clouds, samples of an IMU, or odometry that ROS 2 nodes publish, as they come. Needs no ROS.
+ *
+ * |[
+ * gst-launch-1.0 ros2src topic=/ouster/points ! dracoenc geometry=xyz ! fakesink
+ * ]|
+ */
+#include "ext/ros2/gstros2src.h"
+
+#include <memory>
+#include <mutex>
+
+#include "ext/ros2/message_reader.h"
+#include "ext/ros2/ros_settings.h"
+#include "gst/common/enum_type.h"
+#include "gst/common/gstlidar.h"
+#include "gst/common/refs.h"
+#include "gst/common/stats.h"
+
+GST_DEBUG_CATEGORY_STATIC(gst_lidar_ros2_src_debug);
+#define GST_CAT_DEFAULT gst_lidar_ros2_src_debug
+
+namespace {
+
+using namespace lidar::gst;
+using lidar::cdr::RosType;
+using lidar::dds::Reader;
+using Verdict = MessageReader::Verdict;
+
+GType SrcTypeType() {
+  static const GEnumValue kValues[] = {
+      {Int(RosType::kPointCloud2), "sensor_msgs/msg/PointCloud2", "pointcloud2"},
+      {Int(RosType::kImu), "sensor_msgs/msg/Imu", "imu"},
+      {Int(RosType::kOdometry), "nav_msgs/msg/Odometry", "odometry"},
+      {0, nullptr, nullptr}};
+  static const GType type = RegisterEnum("GstLidarRos2SrcType", kValues);
+  return type;
+}
+
+struct Ros2SrcSettings {
+  RosSettings ros;
+  RosType type = RosType::kPointCloud2;
+};
+
+struct Counters {
+  guint64 messages = 0;
+  guint64 bytes = 0;
+  guint64 empty = 0;
+  guint64 damaged = 0;
+  guint64 other_types = 0;
+  guint64 lost = 0;
+  guint publishers = 0;
+};
+const std::array<Stat<Counters>, 7> kStats = {{
+    {"messages", &Counters::messages},
+    {"bytes", &Counters::bytes},
+    {"messages-empty", &Counters::empty},
+    {"messages-damaged", &Counters::damaged},
+    {"messages-lost", &Counters::lost},
+    {"publishers", &Counters::publishers},
+    {"publishers-of-other-types", &Counters::other_types},
+}};
+
+struct State {
+  std::mutex mutex;  // guards all to the next comment; never held while waiting or posting
+  Ros2SrcSettings settings;
+  std::shared_ptr<Reader> reader;  // between start and stop
+  Counters counters;
+
+  // Only the streaming thread uses what follows, between start and stop.
+  std::unique_ptr<MessageReader> messages;
+  bool warned_damaged = false;
+};
+
+}  // namespace
+
+struct _GstLidarRos2Src {
+  GstPushSrc parent;
+  State* state;
+};
+
+G_DEFINE_TYPE(GstLidarRos2Src, gst_lidar_ros2_src, GST_TYPE_PUSH_SRC)
+GST_ELEMENT_REGISTER_DEFINE(ros2src, "ros2src", GST_RANK_NONE, GST_TYPE_LIDAR_ROS2_SRC)
+
+static State& StateOf(gpointer self) { return *GST_LIDAR_ROS2_SRC(self)->state; }
+
+static std::shared_ptr<Reader> ReaderOf(gpointer self) {
+  State& state = StateOf(self);
+  const std::lock_guard lock(state.mutex);
+  return state.reader;
+}
+
+/// With what DDS counts itself.
+static Counters CountersNow(GObject* object) {
+  State& state = StateOf(object);
+  const auto reader = ReaderOf(object);
+  const std::lock_guard lock(state.mutex);
+  if (reader) {
+    state.counters.lost = reader->lost();
+    state.counters.publishers = reader->publishers();
+  }
+  return state.counters;
+}
+
+static StructurePtr Stats(GObject* object) {
+  return ToStructure("application/x-ros2src-stats", kStats, CountersNow(object));
+}
+
+static const std::array<Property<Ros2SrcSettings>, 8> kProperties = {{
+    Within<&Ros2SrcSettings::ros>(RosRows(), "topic"),
+    {"type", "What the topic holds",
+     EnumField<Ros2SrcSettings, RosType>{&Ros2SrcSettings::type, SrcTypeType}},
+    Within<&Ros2SrcSettings::ros>(RosRows(), "domain-id"),
+    Within<&Ros2SrcSettings::ros>(RosRows(), "node-name"),
+    Within<&Ros2SrcSettings::ros>(RosRows(), "qos"),
+    Within<&Ros2SrcSettings::ros>(RosRows(), "depth"),
+    Within<&Ros2SrcSettings::ros>(RosRows(), "ros-distro"),
+    {"stats",
+     "messages, bytes [bytes], messages-empty, messages-damaged, messages-lost, publishers, "
+     "publishers-of-other-types",
+     Stats},
+}};
+
+/// A cloud comes in dozens of datagrams at once: a small buffer loses whole clouds.
+static void WarnOfSmallBuffer(GstLidarRos2Src* self) {
+  constexpr guint kWanted = lidar::dds::Domain::kReceiveBuffer;
+  const guint granted = lidar::dds::Domain::GrantedReceiveBuffer();
+  if (granted >= kWanted) return;
+  GST_ELEMENT_WARNING(
+      self, RESOURCE, SETTINGS,
+      ("The kernel grants a receive buffer of %u bytes instead of %u: clouds may get lost.",
+       granted, kWanted),
+      ("raise it with: sysctl -w net.core.rmem_max=%u", kWanted));
+}
+
+static gboolean Start(GstBaseSrc* base) {
+  auto* self = GST_LIDAR_ROS2_SRC(base);
+  State& state = StateOf(self);
+  std::unique_lock lock(state.mutex);
+  const Ros2SrcSettings settings = state.settings;
+  lock.unlock();
+  const auto options = ToOptions(GST_ELEMENT(self), settings.ros, settings.type);
+  if (!options) return FALSE;
+  std::string why;
+  std::shared_ptr<Reader> reader = Reader::Create(*options, &why);
+  if (!reader) {
+    GST_ELEMENT_ERROR(self, RESOURCE, OPEN_READ,
+                      ("DDS cannot subscribe to %s: %s", settings.ros.topic.c_str(), why.c_str()),
+                      (nullptr));
+    return FALSE;
+  }
+  if (settings.type == RosType::kPointCloud2) WarnOfSmallBuffer(self);
+  state.messages = std::make_unique<MessageReader>(
+      settings.type, [base] { return CapsPtr(gst_pad_get_allowed_caps(GST_BASE_SRC_PAD(base))); });
+  state.warned_damaged = false;
+  lock.lock();
+  state.reader = std::move(reader);
+  state.counters = {};
+  return TRUE;
+}
+
+static gboolean Stop(GstBaseSrc* base) {
+  State& state = StateOf(base);
+  CountersNow(G_OBJECT(base));
+  std::unique_lock lock(state.mutex);
+  // It goes without the lock: DDS waits for its threads.
+  const std::shared_ptr<Reader> reader = std::move(state.reader);
+  state.counters.publishers = 0;
+  lock.unlock();
+  state.messages.reset();
+  return TRUE;
+}
+
+static void Count(GstLidarRos2Src* self, guint64 Counters::*counter, guint64 amount = 1) {
+  State& state = StateOf(self);
+  const std::lock_guard lock(state.mutex);
+  state.counters.*counter += amount;
+}
+
+static void NoteOtherType(GstLidarRos2Src* self, const Reader& reader) {
+  Count(self, &Counters::other_types);
+  GST_ELEMENT_WARNING(self, STREAM, WRONG_TYPE,
+                      ("A publisher of the topic has the type %s, which is not taken.",
+                       reader.other_type().c_str()),
+                      (nullptr));
+}
+
+/// One warning, until a message is good again: a publisher that is broken sends many.
+static void NoteDamaged(GstLidarRos2Src* self, const std::string& why) {
+  State& state = StateOf(self);
+  Count(self, &Counters::damaged);
+  GST_DEBUG_OBJECT(self, "dropping a message: %s", why.c_str());
+  if (!state.warned_damaged)
+    GST_ELEMENT_WARNING(
+        self, STREAM, DECODE,
+        ("A message is damaged: %s. Such messages are dropped and counted.", why.c_str()),
+        (nullptr));
+  state.warned_damaged = true;
+}
+
+/// OK where there is a buffer, CUSTOM_SUCCESS where the message has none.
+static GstFlowReturn Take(GstLidarRos2Src* self, const lidar::dds::MessagePtr& message) {
+  State& state = StateOf(self);
+  const lidar::ByteView bytes = lidar::dds::BytesOf(message.get());
+  Count(self, &Counters::messages);
+  Count(self, &Counters::bytes, bytes.size);
+  switch (state.messages->Read(bytes)) {
+    case Verdict::kBuffer:
+      state.warned_damaged = false;
+      return GST_FLOW_OK;
+    case Verdict::kEmpty:
+      Count(self, &Counters::empty);
+      break;
+    case Verdict::kDamaged:
+      NoteDamaged(self, state.messages->why());
+      break;
+    case Verdict::kNotNegotiated:
+      return GST_FLOW_NOT_NEGOTIATED;
+  }
+  return GST_FLOW_CUSTOM_SUCCESS;
+}
+
+/// Waits for the next message that makes a buffer.
+static GstFlowReturn NextBuffer(GstLidarRos2Src* self, Reader* reader) {
+  for (;;) {
+    switch (reader->Wait()) {
+      case Reader::Event::kWoken:
+        return GST_FLOW_FLUSHING;
+      case Reader::Event::kFailed:
+        GST_ELEMENT_ERROR(self, RESOURCE, READ, ("DDS has failed."), (nullptr));
+        return GST_FLOW_ERROR;
+      case Reader::Event::kOtherType:
+        NoteOtherType(self, *reader);
+        continue;
+      case Reader::Event::kIncompatible:
+        GST_ELEMENT_WARNING(
+            self, RESOURCE, SETTINGS,
+            ("A publisher of the topic is best-effort, which qos=reliable does not take."),
+            ("use qos=sensor-data"));
+        continue;
+      case Reader::Event::kMessage:
+        break;
+    }
+    const lidar::dds::MessagePtr message = reader->Take();
+    const GstFlowReturn flow = message ? Take(self, message) : GST_FLOW_CUSTOM_SUCCESS;
+    if (flow != GST_FLOW_CUSTOM_SUCCESS) return flow;
+  }
+}
+
+static GstFlowReturn Create(GstPushSrc* push, GstBuffer** out) {
+  auto* self = GST_LIDAR_ROS2_SRC(push);
+  State& state = StateOf(self);
+  const auto reader = ReaderOf(self);
+  if (!reader) return GST_FLOW_FLUSHING;
+  const GstFlowReturn flow = NextBuffer(self, reader.get());
+  if (flow != GST_FLOW_OK) return flow;
+  if (const CapsPtr caps = state.messages->TakeNewCaps()) {
+    GST_DEBUG_OBJECT(self, "caps %" GST_PTR_FORMAT, static_cast<gpointer>(caps.get()));
+    if (!gst_base_src_set_caps(GST_BASE_SRC(self), caps.get())) return GST_FLOW_NOT_NEGOTIATED;
+  }
+  *out = state.messages->TakeBuffer().release();
+  return GST_FLOW_OK;
+}
+
+static gboolean Unlock(GstBaseSrc* base) {
+  if (const auto reader = ReaderOf(base)) reader->Wake(true);
+  return TRUE;
+}
+
+static gboolean UnlockStop(GstBaseSrc* base) {
+  if (const auto reader = ReaderOf(base)) reader->Wake(false);
+  return TRUE;
+}
+
+static void gst_lidar_ros2_src_init(GstLidarRos2Src* self) {
+  self->state = new State;
+  auto* base = GST_BASE_SRC(self);
+  gst_base_src_set_live(base, TRUE);
+  gst_base_src_set_format(base, GST_FORMAT_TIME);
+  gst_base_src_set_do_timestamp(base, TRUE);
+}
+
+static void InstallVmethods(GstLidarRos2SrcClass* klass) {
+  auto* src = GST_BASE_SRC_CLASS(klass);
+  src->start = Start;
+  src->stop = Stop;
+  src->unlock = Unlock;
+  src->unlock_stop = UnlockStop;
+  src->is_seekable = [](GstBaseSrc*) -> gboolean { return FALSE; };
+  // Caps are set with the first message, which says what they are.
+  src->negotiate = [](GstBaseSrc*) -> gboolean { return TRUE; };
+  GST_PUSH_SRC_CLASS(klass)->create = Create;
+}
+
+static void gst_lidar_ros2_src_class_init(GstLidarRos2SrcClass* klass) {
+  GST_DEBUG_CATEGORY_INIT(gst_lidar_ros2_src_debug, "ros2src", 0, "Subscription of ROS 2");
+  auto* object = G_OBJECT_CLASS(klass);
+  ServeProperties<GstLidarRos2Src, kProperties>(object);
+  OwnState<GstLidarRos2Src, gst_lidar_ros2_src_parent_class>(object);
+  static GstStaticPadTemplate src = GST_STATIC_PAD_TEMPLATE(
+      "src", GST_PAD_SRC, GST_PAD_ALWAYS,
+      GST_STATIC_CAPS(GST_LIDAR_CLOUD_MEDIA_TYPE ";" GST_LIDAR_IMU_MEDIA_TYPE
+                                                 ";" GST_LIDAR_ODOMETRY_MEDIA_TYPE));
+  auto* element = GST_ELEMENT_CLASS(klass);
+  gst_element_class_add_static_pad_template(element, &src);
+  gst_element_class_set_static_metadata(element, "ROS 2 source", "Source/Network",
+                                        "Subscribes to a topic of ROS 2", "gst-lidar");
+  InstallVmethods(klass);
+}

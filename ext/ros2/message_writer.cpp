@@ -1,0 +1,134 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "ext/ros2/message_writer.h"
+
+#include "ext/ros2/motion_buffer.h"
+#include "ext/ros2/ros_settings.h"
+#include "gst/common/buffer_map.h"
+#include "gst/common/gstlidar.h"
+
+namespace lidar::gst {
+namespace {
+
+// Frames where nobody names them: the cloud is in the frame whose pose odometry tells.
+constexpr const char* kCloudFrame = "lidar";
+constexpr const char* kImuFrame = "imu";
+constexpr const char* kOdometryFrame = "odom";
+
+std::string TextOf(const GstStructure* s, const char* field) {
+  const gchar* text = gst_structure_get_string(s, field);
+  return text != nullptr ? text : "";
+}
+
+const char* MediaTypeOf(cdr::RosType type) {
+  switch (type) {
+    case cdr::RosType::kPointCloud2:
+      return GST_LIDAR_CLOUD_MEDIA_TYPE;
+    case cdr::RosType::kImu:
+      return GST_LIDAR_IMU_MEDIA_TYPE;
+    default:
+      return GST_LIDAR_ODOMETRY_MEDIA_TYPE;
+  }
+}
+
+ByteView View(const std::vector<std::uint8_t>& bytes) { return {bytes.data(), bytes.size()}; }
+
+}  // namespace
+
+std::optional<cdr::RosType> MessageWriter::UsualType(const GstCaps* caps) {
+  const GstStructure* s = gst_caps_get_structure(caps, 0);
+  for (const cdr::RosTypeInfo& info : cdr::kRosTypes)
+    if (gst_structure_has_name(s, MediaTypeOf(info.type))) return info.type;
+  return std::nullopt;
+}
+
+bool MessageWriter::SetCaps(const GstCaps* caps) {
+  const GstStructure* s = gst_caps_get_structure(caps, 0);
+  if (!gst_structure_has_name(s, MediaTypeOf(type_))) {
+    why_ = std::string(cdr::InfoOf(type_).name) + " is made of " + MediaTypeOf(type_);
+    return false;
+  }
+  from_caps_ = {TextOf(s, GST_LIDAR_FRAME_ID), TextOf(s, GST_LIDAR_CHILD_FRAME_ID)};
+  if (type_ == cdr::RosType::kImu) {
+    const gchar* fields = gst_structure_get_string(s, "fields");
+    why_ = std::string("samples must have the fields ") + kImuFields;
+    return fields == nullptr || std::string_view(fields) == kImuFields;
+  }
+  if (type_ != cdr::RosType::kPointCloud2) return true;
+  auto info = CloudInfo::FromCaps(caps, &why_);
+  if (!info) return false;
+  info_ = *std::move(info);
+  layout_ = cdr::ToRosLayout({info_.fields, info_.point_step}, info_.width, info_.height);
+  return true;
+}
+
+bool MessageWriter::Write(GstBuffer* buffer, const Frames& frames, Time now,
+                          const Publish& publish) {
+  const BufferMap map(buffer, GST_MAP_READ);
+  if (!map) return false;
+  wanted_ = frames;
+  const GstClockTime captured = gst_lidar_buffer_get_capture_time(buffer);
+  stamp_ = GST_CLOCK_TIME_IS_VALID(captured)
+               ? Time{} + Duration{static_cast<std::int64_t>(captured)}
+               : now;
+  switch (type_) {
+    case cdr::RosType::kPointCloud2:
+      return WriteCloud(map.view(), publish);
+    case cdr::RosType::kImu:
+      return WriteImu(map.view(), publish);
+    default:
+      return WritePose(map.view(), publish);
+  }
+}
+
+cdr::Header MessageWriter::HeaderOf(Time stamp, const char* usual_frame) const {
+  if (!wanted_.frame_id.empty()) return {stamp, wanted_.frame_id};
+  return {stamp, from_caps_.frame_id.empty() ? usual_frame : from_caps_.frame_id};
+}
+
+std::string MessageWriter::ChildFrame() const {
+  if (!wanted_.child_frame_id.empty()) return wanted_.child_frame_id;
+  return from_caps_.child_frame_id.empty() ? kCloudFrame : from_caps_.child_frame_id;
+}
+
+/// A cloud of one row may have any number of points.
+bool MessageWriter::WriteCloud(ByteView points, const Publish& publish) {
+  const std::size_t row = points.size / info_.height;
+  if (points.size % info_.height != 0 || row % info_.point_step != 0) return false;
+  if (info_.height > 1 && info_.width > 0 && points.size != info_.FrameSize()) return false;
+  cdr::PointCloud2 cloud;
+  cloud.header = HeaderOf(stamp_, kCloudFrame);
+  layout_.width = static_cast<std::uint32_t>(row / info_.point_step);
+  layout_.row_step = static_cast<std::uint32_t>(row);
+  cloud.layout = layout_;
+  cloud.data = points;
+  cloud.is_dense = info_.is_dense;
+  const cdr::PointCloud2Frame frame = cdr::FramePointCloud2(cloud);
+  publish({View(frame.head), points, View(frame.tail)});
+  return true;
+}
+
+bool MessageWriter::WriteImu(ByteView samples, const Publish& publish) {
+  std::vector<cdr::Imu> messages = ReadImuSamples(samples);
+  for (cdr::Imu& imu : messages) {
+    imu.header = HeaderOf(imu.header.stamp, kImuFrame);
+    publish({View(cdr::WriteImu(imu))});
+  }
+  return !messages.empty();
+}
+
+bool MessageWriter::WritePose(ByteView bytes, const Publish& publish) {
+  auto pose = ReadPose(bytes);
+  if (!pose) return false;
+  pose->header = HeaderOf(stamp_, kOdometryFrame);
+  pose->child_frame_id = ChildFrame();
+  if (type_ == cdr::RosType::kOdometry) {
+    publish({View(cdr::WriteOdometry(*pose))});
+  } else {
+    const cdr::TransformStamped transform{pose->header, pose->child_frame_id, pose->position,
+                                          pose->orientation};
+    publish({View(cdr::WriteTransforms({transform}))});
+  }
+  return true;
+}
+
+}  // namespace lidar::gst

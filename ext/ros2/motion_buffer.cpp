@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "ext/ros2/motion_buffer.h"
+
+#include <algorithm>
+
+#include "gst/common/gstlidar.h"
+#include "src/base/byte_writer.h"
+
+namespace lidar::gst {
+namespace {
+
+constexpr std::size_t kPoseSize = 64;
+
+}  // namespace
+
+std::vector<std::uint8_t> WriteImuSample(const cdr::Imu& imu) {
+  std::vector<std::uint8_t> bytes;
+  ByteWriter w(&bytes);
+  w.Le64(static_cast<std::uint64_t>(
+      std::max<std::int64_t>(imu.header.stamp.time_since_epoch().count(), 0)));
+  for (const double v : imu.linear_acceleration) w.LeF32(static_cast<float>(v));
+  for (const double v : imu.angular_velocity) w.LeF32(static_cast<float>(v));
+  return bytes;
+}
+
+std::vector<cdr::Imu> ReadImuSamples(ByteView bytes) {
+  std::vector<cdr::Imu> samples;
+  if (bytes.size % kImuSampleSize != 0) return samples;
+  ByteReader r(bytes);
+  while (r.remaining() > 0) {
+    cdr::Imu& imu = samples.emplace_back();
+    const auto ns = std::min<std::uint64_t>(r.Le64(), INT64_MAX);
+    imu.header.stamp += Duration{static_cast<std::int64_t>(ns)};
+    for (double& v : imu.linear_acceleration) v = double{r.LeF32()};
+    for (double& v : imu.angular_velocity) v = double{r.LeF32()};
+  }
+  return samples;
+}
+
+std::vector<std::uint8_t> WritePose(const cdr::Odometry& odometry) {
+  std::vector<std::uint8_t> bytes;
+  ByteWriter w(&bytes);
+  for (const double v : odometry.position) w.LeF64(v);
+  for (const double v : odometry.orientation) w.LeF64(v);
+  w.Le64(GST_LIDAR_TRACKING_OK);
+  return bytes;
+}
+
+std::optional<cdr::Odometry> ReadPose(ByteView bytes) {
+  if (bytes.size != kPoseSize) return std::nullopt;
+  ByteReader r(bytes);
+  cdr::Odometry odometry;
+  for (double& v : odometry.position) v = r.LeF64();
+  for (double& v : odometry.orientation) v = r.LeF64();
+  return odometry;
+}
+
+}  // namespace lidar::gst

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// What the elements of ROS 2 have in common: their properties, and how they open their endpoint.
+#pragma once
+#include <gst/gst.h>
+
+#include <optional>
+#include <string>
+
+#include "ext/ros2/endpoint.h"
+#include "gst/common/properties.h"
+
+namespace lidar::gst {
+
+// Fields of caps: the frame that data are in, and the frame whose pose odometry is.
+#define GST_LIDAR_FRAME_ID "frame-id"
+#define GST_LIDAR_CHILD_FRAME_ID "child-frame-id"
+
+enum class RosQos : gint { kSensorData, kReliable };
+enum class RosDistro : gint { kHumble, kIron, kJazzy, kKilted, kRolling };
+
+struct RosSettings {
+  std::string topic = "/points";
+  gint domain_id = -1;  // -1: the environment's
+  std::string node_name;
+  RosQos qos = RosQos::kSensorData;
+  guint depth = 5;
+  RosDistro distro = RosDistro::kJazzy;
+};
+
+GType RosQosType();
+GType RosDistroType();
+const std::array<Property<RosSettings>, 6>& RosRows();
+
+/// None after an error message that names the setting that is wrong.
+std::optional<dds::EndpointOptions> ToOptions(GstElement* element, const RosSettings& settings,
+                                              cdr::RosType type);
+
+}  // namespace lidar::gst

@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// How ROS 2 finds its nodes and names things in DDS.
+#pragma once
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace lidar::cdr {
+
+/// The topic that every participant tells its nodes on: reliable, transient-local.
+inline constexpr const char* kGraphTopic = "ros_discovery_info";
+inline constexpr const char* kGraphDdsName = "rmw_dds_common::msg::dds_::ParticipantEntitiesInfo_";
+
+using Guid = std::array<std::uint8_t, 16>;
+
+struct NodeName {
+  std::string name_space = "/";
+  std::string name;
+};
+/// "lidar", "/robot/lidar" or "robot/lidar"; none where ROS would not take it.
+std::optional<NodeName> ParseNodeName(std::string_view text);
+/// Any text as the last part of a node's name.
+std::string ToNodeName(std::string_view text);
+/// "/ouster/points" or "points" as its topic in DDS, rt/...; none where ROS would not take it.
+std::optional<std::string> ToDdsTopic(std::string_view ros_topic);
+
+/// rmw_dds_common/msg/ParticipantEntitiesInfo of a participant with one node. A Gid has
+/// `gid_size` bytes: 24 up to ROS 2 Humble, then 16.
+struct ParticipantEntities {
+  Guid participant{};
+  NodeName node;
+  std::vector<Guid> readers;
+  std::vector<Guid> writers;
+};
+std::vector<std::uint8_t> WriteParticipantEntities(const ParticipantEntities& entities,
+                                                   std::size_t gid_size);
+
+}  // namespace lidar::cdr
