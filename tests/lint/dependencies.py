@@ -18,6 +18,7 @@ LIBRARIES = {
     "Eigen": ("Eigen/",),
     "robin-map": ("tsl/",),
     "Draco": ("draco/",),
+    "Cyclone DDS": ("dds/",),
     "libcurl": ("curl/",),
     "CLI11": ("CLI/",),
     "cpp-httplib": ("httplib",),

@@ -1,0 +1,134 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// What the tests of ros2src and ros2sink share: a domain of their own, clouds, pipelines.
+#pragma once
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <chrono>
+
+#include <cstring>
+#include <string>
+#include <vector>
+
+#include "gst/common/buffer_map.h"
+#include "gst/common/gstlidar.h"
+#include "gst/common/refs.h"
+#include "tests/elements/ros2/fast_peer.h"
+#include "tests/support/harness.h"
+
+namespace lidar::test {
+
+constexpr const char* kCloudType = "sensor_msgs::msg::dds_::PointCloud2_";
+constexpr std::chrono::milliseconds kPatience{10'000};
+
+/// Programs that run side by side do not hear each other.
+inline std::uint32_t TestDomain() { return 100 + static_cast<std::uint32_t>(getpid()) % 100; }
+
+/// Points of x, y, z, intensity and a time, 24 bytes, with all bytes different from cloud to cloud.
+inline PeerCloud TestCloud(std::uint32_t width, std::uint32_t height, unsigned seed = 1) {
+  PeerCloud cloud;
+  cloud.header = {1'700'000'000 + static_cast<std::int32_t>(seed), 123'456'789, "os_lidar"};
+  cloud.width = width;
+  cloud.height = height;
+  cloud.fields = {{"x", 0, 7, 1},          {"y", 4, 7, 1},  {"z", 8, 7, 1},
+                  {"intensity", 12, 7, 1}, {"t", 16, 6, 1}, {"range", 20, 6, 1}};
+  cloud.point_step = 24;
+  cloud.row_step = 24 * width;
+  cloud.data.resize(std::size_t{24} * width * height);
+  std::uint32_t state = seed * 2654435761u + 1;
+  for (auto& byte : cloud.data) {
+    state = state * 1664525u + 1013904223u;
+    byte = static_cast<std::uint8_t>(state >> 24);
+  }
+  return cloud;
+}
+constexpr const char* kTestFields =
+    "x:F32:0,y:F32:4,z:F32:8,intensity:F32:12,t:U32:16,range:U32:20";
+constexpr GstClockTime kTestNs = 123'456'789;
+
+inline gst::CapsPtr CloudCaps(const PeerCloud& cloud, const char* extra = "") {
+  char text[400];
+  std::snprintf(text, sizeof text,
+                "application/x-pointcloud2,width=%u,height=%u,point-step=24,fields=(string)\"%s\","
+                "is-bigendian=false,is-dense=%s%s",
+                cloud.width, cloud.height, kTestFields, cloud.is_dense ? "true" : "false", extra);
+  return gst::CapsPtr(gst_caps_from_string(text));
+}
+
+/// A buffer of the cloud's points with its time.
+inline GstBuffer* CloudBuffer(const PeerCloud& cloud) {
+  GstBuffer* buffer = gst_buffer_new_memdup(cloud.data.data(), cloud.data.size());
+  gst_lidar_buffer_set_capture_time(
+      buffer, static_cast<GstClockTime>(cloud.header.sec) * GST_SECOND + cloud.header.nanosec);
+  return buffer;
+}
+
+inline std::vector<std::uint8_t> BytesOf(GstBuffer* buffer) {
+  const gst::BufferMap map(buffer, GST_MAP_READ);
+  return {map.view().begin(), map.view().end()};
+}
+
+/// An element of the domain, alone or with what stands before and behind it.
+class Ros2Test : public ::testing::Test {
+ protected:
+  void Start(const std::string& element, const std::string& properties,
+             const std::string& behind = "") {
+    const std::string line =
+        element + " name=ros domain-id=" + std::to_string(TestDomain()) + " " + properties + behind;
+    h_.reset(gst_harness_new_parse(line.c_str()));
+    ASSERT_NE(h_, nullptr);
+    bus_ = gst_bus_new();
+    gst_element_set_bus(h_->element, bus_);
+    ros_.reset(GST_IS_BIN(h_->element) ? gst_bin_get_by_name(GST_BIN(h_->element), "ros")
+                                       : GST_ELEMENT(gst_object_ref(h_->element)));
+    gst_harness_play(h_.get());
+  }
+  void TearDown() override {
+    ros_.reset();
+    h_.reset();
+    if (bus_ != nullptr) gst_object_unref(bus_);
+  }
+  gst::BufferPtr Pull() { return gst::BufferPtr(gst_harness_pull(h_.get())); }
+  guint64 Stat(const char* name) {
+    GstStructure* raw = nullptr;
+    g_object_get(ros_.get(), "stats", &raw, nullptr);
+    const gst::StructurePtr stats(raw);
+    guint64 value = 0;
+    guint small = 0;
+    if (!gst_structure_get_uint64(raw, name, &value) && gst_structure_get_uint(raw, name, &small))
+      value = small;
+    return value;
+  }
+  /// False where it takes too long.
+  bool WaitForStat(const char* name, guint64 least) {
+    const gint64 end = g_get_monotonic_time() + 10 * G_USEC_PER_SEC;
+    while (Stat(name) < least && g_get_monotonic_time() < end) g_usleep(5000);
+    return Stat(name) >= least;
+  }
+  /// The text of the next warning or error, or nothing.
+  std::string NextComplaint(GstClockTime timeout = 5 * GST_SECOND) {
+    const gst::MessagePtr message(gst_bus_timed_pop_filtered(
+        bus_, timeout, static_cast<GstMessageType>(GST_MESSAGE_WARNING | GST_MESSAGE_ERROR)));
+    if (!message) return "";
+    GError* raw = nullptr;
+    if (GST_MESSAGE_TYPE(message.get()) == GST_MESSAGE_WARNING)
+      gst_message_parse_warning(message.get(), &raw, nullptr);
+    else
+      gst_message_parse_error(message.get(), &raw, nullptr);
+    const gst::ErrorPtr error(raw);
+    return error->message;
+  }
+  /// As NextComplaint(), without what the machine's settings bring.
+  std::string NextOwnComplaint() {
+    std::string text = NextComplaint();
+    if (text.find("receive buffer") != std::string::npos) text = NextComplaint();
+    return text;
+  }
+
+  Harness h_;
+  std::unique_ptr<GstElement, gst::Unref> ros_;
+  GstBus* bus_ = nullptr;
+};
+
+}  // namespace lidar::test
