@@ -63,6 +63,12 @@ static void gst_lidar_dec_write(GstLidarDecoder* base, guint8* points) {
 
 static void gst_lidar_dec_reset(GstLidarDecoder* base) { *GST_LIDAR_DEC(base)->coder = {}; }
 
+static GstStateChangeReturn gst_lidar_dec_change_state(GstElement* element,
+                                                       GstStateChange transition) {
+  if (transition == GST_STATE_CHANGE_NULL_TO_READY) lidar::codec::PrepareMixing();
+  return GST_ELEMENT_CLASS(gst_lidar_dec_parent_class)->change_state(element, transition);
+}
+
 static void gst_lidar_dec_finalize(GObject* object) {
   delete GST_LIDAR_DEC(object)->coder;
   G_OBJECT_CLASS(gst_lidar_dec_parent_class)->finalize(object);
@@ -78,6 +84,7 @@ static void gst_lidar_dec_init(GstLidarDec* self) { self->coder = new Coder; }
 static void gst_lidar_dec_class_init(GstLidarDecClass* klass) {
   G_OBJECT_CLASS(klass)->finalize = gst_lidar_dec_finalize;
   auto* element = GST_ELEMENT_CLASS(klass);
+  element->change_state = gst_lidar_dec_change_state;
   gst_element_class_add_static_pad_template(element, &sink_template);
   gst_element_class_add_static_pad_template(element, &src_template);
   gst_element_class_set_static_metadata(

@@ -198,6 +198,12 @@ static gboolean gst_lidar_enc_decode(GstLidarEncoder* base, const guint8* data, 
 
 static void gst_lidar_enc_reset(GstLidarEncoder* base) { CoderOf(base) = {}; }
 
+static GstStateChangeReturn gst_lidar_enc_change_state(GstElement* element,
+                                                       GstStateChange transition) {
+  if (transition == GST_STATE_CHANGE_NULL_TO_READY) lidar::codec::PrepareMixing();
+  return GST_ELEMENT_CLASS(gst_lidar_enc_parent_class)->change_state(element, transition);
+}
+
 static void gst_lidar_enc_finalize(GObject* object) {
   delete GST_LIDAR_ENC(object)->state;
   G_OBJECT_CLASS(gst_lidar_enc_parent_class)->finalize(object);
@@ -217,6 +223,7 @@ static void gst_lidar_enc_class_init(GstLidarEncClass* klass) {
   object->finalize = gst_lidar_enc_finalize;
   lidar::gst::ServeProperties<GstLidarEnc, kProperties>(object);
   auto* element = GST_ELEMENT_CLASS(klass);
+  element->change_state = gst_lidar_enc_change_state;
   gst_element_class_add_static_pad_template(element, &sink_template);
   gst_element_class_add_static_pad_template(element, &src_template);
   gst_element_class_set_static_metadata(

@@ -29,22 +29,19 @@ std::int64_t StepMm(const RangeGrid& grid) {
 
 }  // namespace
 
+void PrepareMixing() { mixing::Trained(); }
+
 /// What both sides keep between slices.
 struct MixingCoderState {
   explicit MixingCoderState(const SensorModel& sensor)
-      : start(mixing::Trained()),
-        alignment(sensor),
-        coder(alignment),
-        model(std::make_unique<mixing::Model>()) {}
+      : alignment(sensor), coder(alignment), model(std::make_unique<mixing::Model>()) {}
 
   template <class Coder>
   bool Code(unsigned effort, Coder* bits) {
-    start.CopyTo(effort, slice.step_mm, slice.level_bits, model.get());
+    mixing::Trained().CopyTo(effort, slice.step_mm, slice.level_bits, model.get());
     return coder.Code(effort, mixing::BestKernel(), model.get(), &slice, bits);
   }
 
-  /// Reading the table takes some 50 ms, once in a process: no slice should wait for it.
-  const mixing::StartStates& start;
   AzimuthAlignment alignment;
   mixing::SliceCoder coder;
   std::unique_ptr<mixing::Model> model;
@@ -96,12 +93,15 @@ bool MixingEncoder::Encode(const RangeImage& image, const MixingSettings& settin
     return false;
   }
   const unsigned effort = std::clamp(settings.effort, 1U, mixing::kEfforts);
+  const std::size_t before = out->size();
   out->push_back(static_cast<std::uint8_t>(effort | (s.slice.has_gaps ? kGapsFlag : 0) |
                                            mixing::kTableVersion << kVersionShift));
   mixing::BinaryEncoder encoder(out);
   s.Code(effort, &encoder);
   encoder.Finish();
-  return true;
+  const bool allowed = image.size() <= MostMixedPixels(out->size() - before);
+  if (!allowed) out->resize(before);
+  return allowed;
 }
 
 struct MixingDecoder::State : MixingCoderState {
@@ -116,8 +116,8 @@ MixingDecoder::~MixingDecoder() = default;
 bool MixingDecoder::Decode(ByteView payload, const RangeGrid& grid, unsigned intensity_bits,
                            RangeImage* image) {
   State& s = *state_;
-  if (payload.empty() || !Fits(s.alignment, *image) || !grid.IsValid() ||
-      intensity_bits > IntensityScale::kMaxBits) {
+  if (payload.empty() || image->size() > MostMixedPixels(payload.size) ||
+      !Fits(s.alignment, *image) || !grid.IsValid() || intensity_bits > IntensityScale::kMaxBits) {
     return false;
   }
   const unsigned first = payload.data[0];

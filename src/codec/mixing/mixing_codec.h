@@ -21,8 +21,19 @@ struct MixingSettings {
   unsigned effort = 2;       // 1 to 3
 };
 
-/// Keeps its buffers between slices; not for several threads at once. The first one of a process
-/// takes some 50 ms to make.
+/// A payload of so many bytes holds no more pixels than this. A pixel costs a decoder 0.3 us, and
+/// may cost its sender a thousandth of a bit.
+constexpr std::size_t MostMixedPixels(std::size_t payload_bytes) {
+  constexpr std::size_t kFree = 4'096;
+  constexpr std::size_t kPixelsPerByte = 256;
+  return kFree + kPixelsPerByte * payload_bytes;
+}
+
+/// Reads the start states, some 50 ms of work, where nobody has yet in this process. Without it the
+/// first slice has to wait for that.
+void PrepareMixing();
+
+/// Keeps its buffers between slices; not for several threads at once.
 class MixingEncoder {
  public:
   explicit MixingEncoder(const SensorModel& model);
@@ -31,8 +42,9 @@ class MixingEncoder {
   ~MixingEncoder();
 
   /// Appends one payload to `out`. False, with nothing appended, where the image does not fit the
-  /// sensor or has ranges past mixing::kMaxBins bins. Ranges are multiples of the grid's unit; the
-  /// image's levels are of 8 bits and become those of settings.intensity.
+  /// sensor, has ranges past mixing::kMaxBins bins, or becomes smaller than MostMixedPixels()
+  /// allows. Ranges are multiples of the grid's unit; the image's levels are of 8 bits and become
+  /// those of settings.intensity.
   bool Encode(const RangeImage& image, const MixingSettings& settings,
               std::vector<std::uint8_t>* out);
 

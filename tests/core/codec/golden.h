@@ -79,6 +79,7 @@ struct GoldenBlock {
   codec::FullScale full = codec::FullScale::kByte;
   std::uint32_t kept_beams = 0;
   std::uint32_t columns_per_scan = 1024;
+  unsigned effort = 1;
 };
 inline void PrintTo(const GoldenBlock& block, std::ostream* out) { *out << block.name; }
 
@@ -88,8 +89,8 @@ inline void ExpectGoldenBlock(const GoldenBlock& c, const std::string& folder,
   const SensorModel model = GoldenSensor(c.scan.beams, c.columns_per_scan);
   const codec::RangeImage image = GoldenImage(c.scan);
   const codec::RangeSettings settings{c.coder, RangeGrid::OfParts(c.scan.unit_mm, c.parts),
-                                      codec::IntensityScale(c.full, c.intensity_bits),
-                                      c.kept_beams};
+                                      codec::IntensityScale(c.full, c.intensity_bits), c.kept_beams,
+                                      c.effort};
   std::vector<std::uint8_t> bytes;
   codec::RangeEncoder encoder(model, integers);
   ASSERT_TRUE(encoder.Encode(image, settings, &bytes));

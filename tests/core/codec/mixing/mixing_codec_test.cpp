@@ -146,6 +146,45 @@ TEST(MixingCodecOf, RefusesWhatDoesNotFit) {
   EXPECT_TRUE(payload.empty());
 }
 
+/// A payload that a decoder would follow to the end of any image: each pixel is what it expects.
+std::vector<std::uint8_t> AsExpected(std::size_t bytes) {
+  std::vector<std::uint8_t> payload(bytes, 0xFF);
+  payload[0] = 0x10 | 4 | 3;  // the version, gaps, effort 3
+  return payload;
+}
+
+TEST(MixingCodecOf, WorkIsBoundedByTheBytes) {
+  const SensorModel sensor = Sensor(128, 8'192);
+  MixingDecoder decoder(sensor);
+  for (const std::size_t bytes : {4U, 60U, 1'400U}) {
+    const auto payload = AsExpected(bytes);
+    RangeImage image;
+    image.beams = 128;
+    const std::size_t most = MostMixedPixels(bytes) / image.beams;
+    // More is refused before anything is allocated for it.
+    image.columns = static_cast<std::uint32_t>(most + 1);
+    EXPECT_FALSE(decoder.Decode({payload.data(), bytes}, RangeGrid(1, 41), 0, &image));
+    EXPECT_EQ(image.ranges.capacity(), 0U);
+  }
+  EXPECT_LE(MostMixedPixels(60), 20'000U);  // of 1,048,576 that a decoder takes by default
+}
+
+TEST(MixingCodecOf, AnEncoderLeavesWhatIsTooSmallToOthers) {
+  const SensorModel sensor = Sensor(32, 512);
+  const MixingSettings settings{RangeGrid(1, 41), {}, 3};
+  RangeImage sky;
+  sky.beams = 32;
+  std::vector<std::uint8_t> payload;
+  MixingEncoder encoder(sensor);
+  for (const std::uint32_t columns : {128U, 512U}) {
+    sky.columns = columns;
+    sky.ranges.assign(sky.size(), 0);
+    EXPECT_EQ(encoder.Encode(sky, settings, &payload), columns == 128) << columns;
+    EXPECT_EQ(payload.empty(), columns != 128);
+    payload.clear();
+  }
+}
+
 TEST(MixingCodecOf, DependsOnNoSliceBefore) {
   const SensorModel sensor = Sensor(16, 256);
   const MixingSettings settings{RangeGrid::ForError(0.02, 1), IntensityScale(FullScale::kByte, 5),
