@@ -1,0 +1,88 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Attacks receivers, senders and ouster_src, and says of each attack whether the promises held."""
+import argparse
+import concurrent.futures
+import dataclasses
+import random
+import sys
+import time
+import traceback
+
+import attacks
+import ends
+import servers
+
+AT_ONCE = 4  # attacks mostly wait
+
+
+@dataclasses.dataclass
+class Context:
+    recording: ends.Recording
+    other: ends.Recording
+    random: random.Random
+    seconds: float  # of each attack
+    sanitized: bool
+
+
+def run(attack, context):
+    """(name, whether the promises held, what was seen)"""
+    try:
+        return attack.__name__, True, attack(context)
+    except AssertionError as broken:
+        return attack.__name__, False, str(broken) or traceback.format_exc(limit=-1)
+    except Exception:  # pylint: disable=broad-except
+        return attack.__name__, False, traceback.format_exc(limit=-2)
+
+
+def show(name, good, text):
+    print(f"{'held  ' if good else 'BROKEN'}  {name.replace('_', ' '):34} {text}", flush=True)
+
+
+def one_round(chosen, make_context):
+    results = []
+    with concurrent.futures.ThreadPoolExecutor(AT_ONCE) as pool:
+        pending = [pool.submit(run, attack, make_context()) for attack in chosen]
+        for done in concurrent.futures.as_completed(pending):
+            results.append(done.result())
+            show(*results[-1])
+    return results
+
+
+def table(results):
+    print(f"\n{'attack':36} runs  held")
+    names = dict.fromkeys(name for name, _, _ in results)
+    for name in names:
+        runs = [good for n, good, _ in results if n == name]
+        print(f"{name.replace('_', ' '):36} {len(runs):4}  {sum(runs):4}")
+    broken = sum(not good for _, good, _ in results)
+    print(f"{len(results)} attacks, {broken} broke a promise")
+    return broken
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--victim", required=True, help="the program `victim` of this folder")
+    parser.add_argument("--minutes", type=float, default=0, help="rounds for so long; 0 for one short round")
+    parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--sanitized", action="store_true", help="the victim is slow, and takes more memory")
+    parser.add_argument("--only", help="attacks whose name contains this")
+    options = parser.parse_args()
+    ends.Victim.program = options.victim
+    rng = random.Random(options.seed)
+    random.seed(options.seed)
+    print(f"seed {options.seed}")
+    recording, other = ends.record(1, 1), ends.record(2, 1)
+    chosen = [a for a in attacks.MEDIA + servers.ALL if not options.only or options.only in a.__name__.replace("_", " ")]
+    seconds = 8 if options.minutes else 1
+    until = time.monotonic() + 60 * options.minutes
+    results = []
+    while not results or time.monotonic() < until:
+        rng.shuffle(chosen)
+        results += one_round(chosen, lambda: Context(recording, other, random.Random(rng.random()), seconds,
+                                                     options.sanitized))
+    return 1 if table(results) else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,212 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// A pipeline that is attacked: plays it, and answers each line of standard input with a line of
+// JSON about it.
+#include <gst/gst.h>
+#include <sys/resource.h>
+
+#include <chrono>
+#include <cstdint>
+#include <cstdio>
+#include <deque>
+#include <fstream>
+#include <iostream>
+#include <map>
+#include <mutex>
+#include <sstream>
+#include <string>
+
+#include "gst/common/buffer_map.h"
+#include "gst/common/refs.h"
+#include "src/base/crc.h"
+
+namespace {
+
+using namespace lidar::gst;
+
+constexpr std::size_t kMaxRemembered = 100'000;  // slices between two reports
+
+/// Counts what passes a pad, and remembers the CRC-32 of each buffer until it was reported.
+class Tap {
+ public:
+  void Watch(GstElement* pipeline, const char* element, const char* pad_name) {
+    const ElementPtr owner(gst_bin_get_by_name(GST_BIN(pipeline), element));
+    if (!owner) return;
+    const PadPtr pad(gst_element_get_static_pad(owner.get(), pad_name));
+    gst_pad_add_probe(
+        pad.get(),
+        static_cast<GstPadProbeType>(GST_PAD_PROBE_TYPE_BUFFER | GST_PAD_PROBE_TYPE_BUFFER_LIST),
+        [](GstPad*, GstPadProbeInfo* info, gpointer self) {
+          static_cast<Tap*>(self)->OnProbe(*info);
+          return GST_PAD_PROBE_OK;
+        },
+        this, nullptr);
+  }
+
+  std::string Take() {
+    std::lock_guard lock(mutex_);
+    std::string list;
+    for (const std::uint32_t hash : hashes_)
+      list += (list.empty() ? "" : ",") + std::to_string(hash);
+    hashes_.clear();
+    return "[" + list + "]";
+  }
+  std::uint64_t count() const {
+    std::lock_guard lock(mutex_);
+    return count_;
+  }
+
+ private:
+  void OnProbe(const GstPadProbeInfo& info) {
+    if ((info.type & GST_PAD_PROBE_TYPE_BUFFER) != 0) return Add(GST_BUFFER(info.data));
+    auto* list = static_cast<GstBufferList*>(info.data);
+    for (guint i = 0; i < gst_buffer_list_length(list); ++i) Add(gst_buffer_list_get(list, i));
+  }
+  void Add(GstBuffer* buffer) {
+    const BufferMap map(buffer, GST_MAP_READ);
+    std::lock_guard lock(mutex_);
+    ++count_;
+    if (hashes_.size() < kMaxRemembered) hashes_.push_back(lidar::Crc32(map.view()));
+  }
+
+  mutable std::mutex mutex_;
+  std::deque<std::uint32_t> hashes_;
+  std::uint64_t count_ = 0;
+};
+
+std::string Quoted(const std::string& text) {
+  std::string quoted = "\"";
+  for (const char c : text) {
+    if (c == '"' || c == '\\') quoted += '\\';
+    quoted += static_cast<unsigned char>(c) < ' ' ? ' ' : c;
+  }
+  return quoted + "\"";
+}
+
+/// The numbers of the property `stats` of an element, as the members of an object.
+std::string Stats(GstElement* pipeline, const char* name) {
+  const ElementPtr element(gst_bin_get_by_name(GST_BIN(pipeline), name));
+  if (!element ||
+      g_object_class_find_property(G_OBJECT_GET_CLASS(element.get()), "stats") == nullptr)
+    return "{}";
+  GstStructure* stats = nullptr;
+  g_object_get(element.get(), "stats", &stats, nullptr);
+  if (stats == nullptr) return "{}";
+  const StructurePtr owner(stats);
+  std::string members;
+  for (int i = 0; i < gst_structure_n_fields(stats); ++i) {
+    const gchar* field = gst_structure_nth_field_name(stats, static_cast<guint>(i));
+    GValue number = G_VALUE_INIT;
+    g_value_init(&number, G_TYPE_DOUBLE);
+    const GValue* value = gst_structure_get_value(stats, field);
+    if (!G_VALUE_HOLDS_STRING(value) && g_value_transform(value, &number))
+      members += (members.empty() ? "" : ",") + Quoted(field) + ":" +
+                 std::to_string(g_value_get_double(&number));
+    g_value_unset(&number);
+  }
+  return "{" + members + "}";
+}
+
+/// A line of /proc/self/status [kB, or a count].
+long Status(const std::string& name) {
+  std::ifstream file("/proc/self/status");
+  for (std::string line; std::getline(file, line);)
+    if (line.rfind(name + ":", 0) == 0) return std::stol(line.substr(name.size() + 1));
+  return -1;
+}
+
+double CpuSeconds() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  return static_cast<double>(usage.ru_utime.tv_sec + usage.ru_stime.tv_sec) +
+         static_cast<double>(usage.ru_utime.tv_usec + usage.ru_stime.tv_usec) / 1e6;
+}
+
+class Victim {
+ public:
+  explicit Victim(const char* description) {
+    GError* error = nullptr;
+    pipeline_.reset(gst_parse_launch(description, &error));
+    if (error != nullptr) {
+      error_ = error->message;
+      g_clear_error(&error);
+    }
+    if (!pipeline_) return;
+    slices_.Watch(pipeline_.get(), "depay", "src");
+    clouds_.Watch(pipeline_.get(), "out", "sink");
+    SetState(GST_STATE_PLAYING);
+  }
+  ~Victim() {
+    if (pipeline_) SetState(GST_STATE_NULL);
+  }
+  Victim(const Victim&) = delete;
+  Victim& operator=(const Victim&) = delete;
+
+  bool exists() const { return pipeline_ != nullptr; }
+
+  /// Milliseconds that it took; a state that is not reached within 10 s is left to come.
+  long SetState(GstState state) {
+    const auto start = std::chrono::steady_clock::now();
+    if (gst_element_set_state(pipeline_.get(), state) == GST_STATE_CHANGE_ASYNC)
+      gst_element_get_state(pipeline_.get(), nullptr, nullptr, 10 * GST_SECOND);
+    return std::chrono::duration_cast<std::chrono::milliseconds>(std::chrono::steady_clock::now() -
+                                                                 start)
+        .count();
+  }
+
+  void Report(long took) {
+    ReadBus();
+    std::string stats;
+    for (const char* name : {"net", "depay", "dec", "pay", "src"})
+      stats += "," + Quoted(name) + ":" + Stats(pipeline_.get(), name);
+    std::printf(
+        "{\"took\":%ld,\"clouds\":%llu,\"slices\":%s,\"error\":%s,\"warnings\":%u,"
+        "\"threads\":%ld,\"rss_kb\":%ld,\"cpu\":%.3f%s}\n",
+        took, static_cast<unsigned long long>(clouds_.count()), slices_.Take().c_str(),
+        Quoted(error_).c_str(), warnings_, Status("Threads"), Status("VmRSS"), CpuSeconds(),
+        stats.c_str());
+    std::fflush(stdout);
+  }
+
+ private:
+  void ReadBus() {
+    GstBus* bus = gst_element_get_bus(pipeline_.get());
+    while (const MessagePtr message{gst_bus_pop(bus)}) {
+      if (GST_MESSAGE_TYPE(message.get()) == GST_MESSAGE_WARNING) ++warnings_;
+      if (GST_MESSAGE_TYPE(message.get()) != GST_MESSAGE_ERROR) continue;
+      GError* error = nullptr;
+      gst_message_parse_error(message.get(), &error, nullptr);
+      const ErrorPtr owner(error);
+      if (error_.empty()) error_ = error->message;
+    }
+    gst_object_unref(bus);
+  }
+
+  Tap slices_;
+  Tap clouds_;
+  ElementPtr pipeline_;
+  std::string error_;
+  unsigned warnings_ = 0;
+};
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  if (argc != 2) {
+    std::fprintf(stderr, "usage: %s PIPELINE\n", argv[0]);
+    return 2;
+  }
+  gst_init(nullptr, nullptr);
+  {
+    Victim victim(argv[1]);
+    if (!victim.exists()) return 2;
+    victim.Report(0);
+    for (std::string command; std::getline(std::cin, command);) {
+      long took = 0;
+      if (command == "null") took = victim.SetState(GST_STATE_NULL);
+      if (command == "play") took = victim.SetState(GST_STATE_PLAYING);
+      victim.Report(took);
+    }
+  }
+  gst_deinit();
+  return 0;
+}
