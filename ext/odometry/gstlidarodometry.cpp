@@ -11,7 +11,6 @@
  */
 #include "ext/odometry/gstlidarodometry.h"
 
-#include <fstream>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -22,6 +21,7 @@
 #include "gst/common/properties.h"
 #include "gst/common/refs.h"
 #include "gst/common/stats.h"
+#include "src/base/row_file.h"
 #include "src/odometry/trajectory.h"
 
 GST_DEBUG_CATEGORY_STATIC(gst_lidar_odometry_debug);
@@ -71,7 +71,7 @@ struct Stream {
   std::optional<CloudInfo> info;
   lidar::gst::ScanCollector collector;
   std::unique_ptr<Odometry> odometry;
-  std::ofstream trajectory;
+  lidar::RowFile trajectory;
   Tracking tracking = Tracking::kStarted;  // of the last scan
   bool posted_lost = false;
   bool posted_full = false;
@@ -192,9 +192,8 @@ void PostMessage(GstLidarOdometry* self, const Estimate& e) {
 void WriteTrajectory(GstLidarOdometry* self, const Estimate& estimate) {
   Stream& stream = self->state->stream;
   if (!stream.trajectory.is_open() || stream.posted_full) return;
-  lidar::odometry::WriteTumLine(stream.trajectory, {estimate.time, estimate.pose});
-  stream.trajectory.flush();
-  if (stream.trajectory) return;
+  lidar::odometry::WriteTumLine(stream.trajectory.stream(), {estimate.time, estimate.pose});
+  if (stream.trajectory.Flush()) return;
   stream.posted_full = true;
   GST_ELEMENT_WARNING(self, RESOURCE, NO_SPACE_LEFT,
                       ("The trajectory cannot be written any more; the stream goes on."),
@@ -323,8 +322,8 @@ gboolean Start(GstBaseTransform* base) {
   state.stream = {};
   state.stream.odometry = std::make_unique<Odometry>(settings.odometry);
   if (settings.trajectory.empty()) return TRUE;
-  state.stream.trajectory.open(settings.trajectory, std::ios::trunc);
-  if (state.stream.trajectory) return TRUE;
+  state.stream.trajectory = lidar::RowFile(settings.trajectory);
+  if (state.stream.trajectory.ok()) return TRUE;
   GST_ELEMENT_ERROR(self, RESOURCE, OPEN_WRITE,
                     ("Cannot write the trajectory \"%s\".", settings.trajectory.c_str()),
                     GST_ERROR_SYSTEM);

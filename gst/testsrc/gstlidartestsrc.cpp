@@ -236,6 +236,16 @@ bool SkipWhatIsLate(GstElement* element, State* state) {
   return true;
 }
 
+/// Rows that were written stay; the first one that does not fit is told, and the last.
+void LogPose(GstLidarTestSrc* self, GstClockTime capture, const lidar::synth::Pose& pose) {
+  State& state = *self->state;
+  if (!state.log || state.log->Write(capture, pose)) return;
+  state.log.reset();
+  GST_ELEMENT_WARNING(self, RESOURCE, NO_SPACE_LEFT,
+                      ("The trajectory cannot be written any more; the stream goes on."),
+                      GST_ERROR_SYSTEM);
+}
+
 GstFlowReturn CreateLive(GstLidarTestSrc* self, GstBuffer** out) {
   State& state = *self->state;
   if (!state.pacer.started()) state.pacer.Start();
@@ -250,7 +260,7 @@ GstFlowReturn CreateLive(GstLidarTestSrc* self, GstBuffer** out) {
   GST_BUFFER_PTS(buffer.get()) = state.pacer.ToRunningTime(begin);
   gst_lidar_buffer_set_capture_time(buffer.get(), state.pacer.ToUnixTime(begin));
   if (skipped) GST_BUFFER_FLAG_SET(buffer.get(), GST_BUFFER_FLAG_DISCONT);
-  if (state.log) state.log->Write(state.pacer.ToUnixTime(begin), pose);
+  LogPose(self, state.pacer.ToUnixTime(begin), pose);
   *out = buffer.release();
   return GST_FLOW_OK;
 }
@@ -263,7 +273,7 @@ GstFlowReturn Create(GstPushSrc* push, GstBuffer** out) {
   BufferPtr buffer = state.maker->Make();
   const GstClockTime capture = kEpoch + GST_BUFFER_PTS(buffer.get());
   gst_lidar_buffer_set_capture_time(buffer.get(), capture);
-  if (state.log) state.log->Write(capture, pose);
+  LogPose(self, capture, pose);
   *out = buffer.release();
   return GST_FLOW_OK;
 }

@@ -2,22 +2,21 @@
 #include "gst/testsrc/trajectory_log.h"
 
 #include <iomanip>
-#include <locale>
 
 namespace lidar::gst {
 
-TrajectoryLog::TrajectoryLog(const std::string& path) : file_(path, std::ios::trunc) {
-  file_.imbue(std::locale::classic());
-  file_ << std::fixed << "# timestamp tx ty tz qx qy qz qw\n" << std::flush;
+TrajectoryLog::TrajectoryLog(const std::string& path) : file_(path) {
+  file_.stream() << std::fixed << "# timestamp tx ty tz qx qy qz qw\n" << std::flush;
 }
 
-void TrajectoryLog::Write(GstClockTime capture_time, const synth::Pose& pose) {
+bool TrajectoryLog::Write(GstClockTime capture_time, const synth::Pose& pose) {
   const auto [x, y, z, w] = pose.ToQuaternion();
   // A double does not hold the nanoseconds of a Unix time.
-  file_ << capture_time / GST_SECOND << '.' << std::setfill('0') << std::setw(9)
-        << capture_time % GST_SECOND << std::setprecision(6) << ' ' << pose.x << ' ' << pose.y
-        << ' ' << pose.z << std::setprecision(9) << ' ' << x << ' ' << y << ' ' << z << ' ' << w
-        << '\n';
+  file_.stream() << capture_time / GST_SECOND << '.' << std::setfill('0') << std::setw(9)
+                 << capture_time % GST_SECOND << std::setprecision(6) << ' ' << pose.x << ' '
+                 << pose.y << ' ' << pose.z << std::setprecision(9) << ' ' << x << ' ' << y << ' '
+                 << z << ' ' << w << '\n';
+  return file_.Flush();
 }
 
 }  // namespace lidar::gst

@@ -3,9 +3,9 @@
 #pragma once
 #include <gst/gst.h>
 
-#include <fstream>
 #include <string>
 
+#include "src/base/row_file.h"
 #include "src/synth/geometry.h"
 
 namespace lidar::gst {
@@ -14,12 +14,13 @@ class TrajectoryLog {
  public:
   /// Truncates the file. Test ok() for success.
   explicit TrajectoryLog(const std::string& path);
-  bool ok() const { return file_.good(); }
+  bool ok() const { return file_.ok(); }
   /// Appends "seconds x y z qx qy qz qw" for the time `capture_time` [ns since the Unix epoch].
-  void Write(GstClockTime capture_time, const synth::Pose& pose);
+  /// False where that did not fit.
+  bool Write(GstClockTime capture_time, const synth::Pose& pose);
 
  private:
-  std::ofstream file_;
+  RowFile file_;
 };
 
 }  // namespace lidar::gst

@@ -74,12 +74,18 @@ bool ToPose(const Row& row, Pose* pose) {
   return (rotation * rotation.transpose() - Eigen::Matrix3d::Identity()).norm() < 0.01;
 }
 
+/// A file stream that has written must not be given a locale: where the disk is full it is of no
+/// use afterwards, not even to be closed.
+void WriteAsInC(std::ostream& out) {
+  if (out.getloc() != std::locale::classic()) out.imbue(std::locale::classic());
+}
+
 }  // namespace
 
 void WriteTumLine(std::ostream& out, const StampedPose& stamped) {
   const std::int64_t ns = stamped.time.time_since_epoch().count();
   const auto [p, q] = std::pair(stamped.pose.position, stamped.pose.rotation);
-  out.imbue(std::locale::classic());
+  WriteAsInC(out);
   if (ns < 0) out << '-';
   out << std::abs(ns) / 1'000'000'000 << '.' << std::setfill('0') << std::setw(9)
       << std::abs(ns) % 1'000'000'000 << std::fixed << std::setprecision(6) << ' ' << p.x() << ' '
@@ -90,7 +96,7 @@ void WriteTumLine(std::ostream& out, const StampedPose& stamped) {
 void WriteKittiLine(std::ostream& out, const Pose& pose) {
   Eigen::Matrix<double, 3, 4> m;
   m << pose.rotation.toRotationMatrix(), pose.position;
-  out.imbue(std::locale::classic());
+  WriteAsInC(out);
   out << std::scientific << std::setprecision(9);
   for (Eigen::Index row = 0; row < 3; ++row)
     for (Eigen::Index column = 0; column < 4; ++column)

@@ -38,12 +38,12 @@ class Victim:
 
     program = None  # set once by the main program
 
-    def __init__(self, pipeline):
+    def __init__(self, pipeline, **process):
         env = dict(os.environ)
         # Freed memory that AddressSanitizer holds back is not the pipeline's.
         env["ASAN_OPTIONS"] = ":".join(filter(None, [env.get("ASAN_OPTIONS"), "quarantine_size_mb=8"]))
         self.process = subprocess.Popen([self.program, pipeline], stdin=subprocess.PIPE, stdout=subprocess.PIPE,
-                                        text=True, env=env)
+                                        text=True, env=env, **process)
         self.shown = []  # CRC-32 of every slice that came out
         self.last = None
         self._read()

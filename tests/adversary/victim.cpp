@@ -1,16 +1,20 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// A pipeline that is attacked: plays it, and answers each line of standard input with a line of
-// JSON about it.
+// A pipeline that is attacked, or has a hard time: plays it, and answers each line of standard
+// input with a line of JSON about it.
 #include <gst/gst.h>
+#include <gst/net/net.h>
 #include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 #include <chrono>
+#include <csignal>
 #include <cstdint>
 #include <cstdio>
 #include <deque>
 #include <fstream>
 #include <iostream>
-#include <map>
+#include <memory>
 #include <mutex>
 #include <sstream>
 #include <string>
@@ -121,14 +125,74 @@ double CpuSeconds() {
          static_cast<double>(usage.ru_utime.tv_usec + usage.ru_stime.tv_usec) / 1e6;
 }
 
+/// The application forks, as Python's subprocess does: how the child ended, or -1 where it did not
+/// within 5 s. A child that becomes another program ends with the number of sockets that it sees.
+int ForkAndWait(bool becomes_another) {
+  std::fflush(stdout);
+  const pid_t child = fork();
+  if (child == 0) {
+    if (!becomes_another) _exit(0);
+    // GStreamer's bus has a pair of sockets, too, which are no network's.
+    execl("/bin/sh", "sh", "-c",
+          "exit $(ls -l /proc/self/fd | sed -n 's/.*socket:.\\([0-9]*\\).*/\\1/p' | while read -r "
+          "i; do "
+          "grep -h \" $i \" /proc/net/udp /proc/net/udp6 /proc/net/tcp; done | wc -l)",
+          nullptr);
+    _exit(127);
+  }
+  for (int i = 0; i < 500; ++i) {
+    int status = 0;
+    if (waitpid(child, &status, WNOHANG) == child)
+      return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+    usleep(10'000);
+  }
+  kill(child, SIGKILL);
+  waitpid(child, nullptr, 0);
+  return -1;
+}
+
+/// A second stream for the sink `net`, which comes and goes while the first one plays.
+class Branch {
+ public:
+  explicit Branch(GstElement* pipeline)
+      : pipeline_(GST_BIN(pipeline)), net_(gst_bin_get_by_name(pipeline_, "net")) {
+    bin_ = gst_parse_bin_from_description(
+        "lidartestsrc is-live=true model=os0-32 mode=512x10 seed=9 ! lidarenc effort=0 ! "
+        "rtplidarpay",
+        TRUE, nullptr);
+    gst_bin_add(pipeline_, bin_);
+    pad_.reset(gst_element_request_pad_simple(net_.get(), "sink_%u"));
+    const PadPtr from(gst_element_get_static_pad(bin_, "src"));
+    gst_pad_link(from.get(), pad_.get());
+    gst_element_sync_state_with_parent(bin_);
+  }
+  /// The pad may go while packets are under way.
+  ~Branch() {
+    gst_element_set_locked_state(bin_, TRUE);
+    const PadPtr from(gst_element_get_static_pad(bin_, "src"));
+    gst_element_release_request_pad(net_.get(), pad_.get());
+    gst_element_set_state(bin_, GST_STATE_NULL);
+    gst_bin_remove(pipeline_, bin_);
+  }
+  Branch(const Branch&) = delete;
+  Branch& operator=(const Branch&) = delete;
+
+ private:
+  GstBin* pipeline_;
+  ElementPtr net_;
+  GstElement* bin_ = nullptr;
+  PadPtr pad_;
+};
+
 class Victim {
  public:
   explicit Victim(const char* description) {
     GError* error = nullptr;
     pipeline_.reset(gst_parse_launch(description, &error));
     if (error != nullptr) {
-      error_ = error->message;
-      g_clear_error(&error);
+      const ErrorPtr owner(error);
+      std::fprintf(stderr, "%s: %s\n", description, error->message);
+      pipeline_.reset();
     }
     if (!pipeline_) return;
     slices_.Watch(pipeline_.get(), "depay", "src");
@@ -153,6 +217,22 @@ class Victim {
         .count();
   }
 
+  long Obey(const std::string& command, int argument) {
+    if (command == "null") return SetState(GST_STATE_NULL);
+    if (command == "play") return SetState(GST_STATE_PLAYING);
+    if (command == "fork") return ForkAndWait(false);
+    if (command == "spawn") return ForkAndWait(true);
+    if (command == "provide") return ProvideClock();
+    if (command == "follow") return FollowClock(argument);
+    if (command == "pads") {
+      for (int i = 0; i < argument; ++i) {
+        const Branch branch(pipeline_.get());
+        g_usleep(static_cast<gulong>(i % 5) * 20'000);
+      }
+    }
+    return 0;
+  }
+
   void Report(long took) {
     ReadBus();
     std::string stats;
@@ -160,18 +240,41 @@ class Victim {
       stats += "," + Quoted(name) + ":" + Stats(pipeline_.get(), name);
     std::printf(
         "{\"took\":%ld,\"clouds\":%llu,\"slices\":%s,\"error\":%s,\"warnings\":%u,"
-        "\"threads\":%ld,\"rss_kb\":%ld,\"cpu\":%.3f%s}\n",
+        "\"eos\":%s,\"threads\":%ld,\"rss_kb\":%ld,\"cpu\":%.3f%s}\n",
         took, static_cast<unsigned long long>(clouds_.count()), slices_.Take().c_str(),
-        Quoted(error_).c_str(), warnings_, Status("Threads"), Status("VmRSS"), CpuSeconds(),
-        stats.c_str());
+        Quoted(error_).c_str(), warnings_, eos_ ? "true" : "false", Status("Threads"),
+        Status("VmRSS"), CpuSeconds(), stats.c_str());
     std::fflush(stdout);
   }
 
  private:
+  /// The port at which this pipeline's clock is served.
+  long ProvideClock() {
+    const std::unique_ptr<GstClock, Unref> clock(
+        gst_pipeline_get_clock(GST_PIPELINE(pipeline_.get())));
+    provider_.reset(GST_OBJECT(gst_net_time_provider_new(clock.get(), "127.0.0.1", 0)));
+    gint port = 0;
+    g_object_get(provider_.get(), "port", &port, nullptr);
+    return port;
+  }
+
+  /// Plays by the clock at a port; 1 once it runs with that one.
+  long FollowClock(int port) {
+    const std::unique_ptr<GstClock, Unref> clock(
+        gst_net_client_clock_new("net", "127.0.0.1", port, 0));
+    if (!gst_clock_wait_for_sync(clock.get(), 5 * GST_SECOND)) return 0;
+    SetState(GST_STATE_NULL);
+    gst_pipeline_use_clock(GST_PIPELINE(pipeline_.get()), clock.get());
+    SetState(GST_STATE_PLAYING);
+    const std::unique_ptr<GstClock, Unref> used(gst_element_get_clock(pipeline_.get()));
+    return used == clock ? 1 : 0;
+  }
+
   void ReadBus() {
     GstBus* bus = gst_element_get_bus(pipeline_.get());
     while (const MessagePtr message{gst_bus_pop(bus)}) {
       if (GST_MESSAGE_TYPE(message.get()) == GST_MESSAGE_WARNING) ++warnings_;
+      if (GST_MESSAGE_TYPE(message.get()) == GST_MESSAGE_EOS) eos_ = true;
       if (GST_MESSAGE_TYPE(message.get()) != GST_MESSAGE_ERROR) continue;
       GError* error = nullptr;
       gst_message_parse_error(message.get(), &error, nullptr);
@@ -184,8 +287,10 @@ class Victim {
   Tap slices_;
   Tap clouds_;
   ElementPtr pipeline_;
+  std::unique_ptr<GstObject, Unref> provider_;
   std::string error_;
   unsigned warnings_ = 0;
+  bool eos_ = false;
 };
 
 }  // namespace
@@ -200,11 +305,12 @@ int main(int argc, char** argv) {
     Victim victim(argv[1]);
     if (!victim.exists()) return 2;
     victim.Report(0);
-    for (std::string command; std::getline(std::cin, command);) {
-      long took = 0;
-      if (command == "null") took = victim.SetState(GST_STATE_NULL);
-      if (command == "play") took = victim.SetState(GST_STATE_PLAYING);
-      victim.Report(took);
+    for (std::string line; std::getline(std::cin, line);) {
+      std::istringstream words(line);
+      std::string command;
+      int argument = 0;
+      words >> command >> argument;
+      victim.Report(victim.Obey(command, argument));
     }
   }
   gst_deinit();

@@ -9,6 +9,7 @@
 #include "src/codec/adaptive_coder.h"
 #include "src/codec/intensity_scale.h"
 #include "src/tools/codec_lab/scan_source.h"
+#include "src/tools/common/output_file.h"
 
 namespace lidar::tools {
 namespace {
@@ -112,6 +113,7 @@ void Run(const std::string& folder) {
   std::puts("// Made by codec-tables; part of the format. Frequencies of symbols in a thousand.");
   Print("Values", sum.values);
   Print("Levels", sum.levels);
+  FinishStandardOutput();
 }
 
 }  // namespace

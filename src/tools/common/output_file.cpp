@@ -2,8 +2,10 @@
 #include "src/tools/common/output_file.h"
 
 #include <cerrno>
+#include <cstdio>
 #include <cstring>
 #include <filesystem>
+#include <iostream>
 #include <stdexcept>
 #include <utility>
 
@@ -20,6 +22,13 @@ namespace {
 void RemoveFile(const std::string& path) {
   std::error_code ignored;
   if (std::filesystem::is_regular_file(path, ignored)) std::filesystem::remove(path, ignored);
+}
+
+void FinishStandardOutput() {
+  errno = 0;
+  const bool flushed = std::fflush(stdout) == 0;
+  if (!flushed || std::ferror(stdout) != 0 || !std::cout.flush())
+    ThrowCannotWrite("to the standard output", errno);
 }
 
 OutputFile::OutputFile(std::string path, Rest rest) : path_(std::move(path)), rest_(rest) {

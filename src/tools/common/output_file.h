@@ -35,6 +35,10 @@ class OutputFile {
 /// Writes all of the file, or leaves none.
 void WriteFile(const std::string& path, const std::string& text);
 
+/// Throws where something that was printed could not be written; errors of a full disk stay with
+/// the stream, so asking once, at the end, is enough.
+void FinishStandardOutput();
+
 /// Takes a file away that is not whole, if it is a regular one.
 void RemoveFile(const std::string& path);
 

@@ -13,6 +13,7 @@
 
 #include "src/tools/common/child_process.h"
 #include "src/tools/common/event_loop.h"
+#include "src/tools/common/output_file.h"
 #include "src/tools/common/udp_socket.h"
 #include "src/tools/demo/comparer.h"
 #include "src/tools/demo/measurements.h"
@@ -104,7 +105,7 @@ Coordinator::Coordinator(const RunOptions& options) {
   if (mkdir(options.output.c_str(), 0777) != 0 && errno != EEXIST)
     throw std::runtime_error("cannot make the folder " + options.output);
   RemoveReport(options.output);
-  if (options.drive) std::ofstream(options.output + "/trace.txt") << DriveTraceOf(options);
+  if (options.drive) tools::WriteFile(options.output + "/trace.txt", DriveTraceOf(options));
   ports_ = {FreePort(), FreePort()};
 }
 
@@ -313,10 +314,9 @@ int Coordinator::Report() {
   }
   const Verdict verdict = Judge(m_);
   summary["verdict"] = verdict.text;
-  std::ofstream(folder + "/summary.json") << summary.dump(2) << '\n';
-  std::ofstream(folder + "/stats.json")
-      << nlohmann::json{{"sender", m_.sender_stats}, {"receiver", m_.receiver_stats}}.dump(2)
-      << '\n';
+  tools::WriteFile(folder + "/summary.json", summary.dump(2) + '\n');
+  const nlohmann::json stats = {{"sender", m_.sender_stats}, {"receiver", m_.receiver_stats}};
+  tools::WriteFile(folder + "/stats.json", stats.dump(2) + '\n');
   PrintTable(summary);
   for (const Guarantee& g : guarantees)
     std::printf("  %s  %s\n", g.holds ? "holds " : "BROKEN", g.text.c_str());

@@ -5,9 +5,10 @@
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
-#include <fstream>
 #include <iostream>
 #include <vector>
+
+#include "src/tools/common/output_file.h"
 
 namespace lidar::demo {
 namespace {
@@ -50,7 +51,8 @@ std::vector<Bin> Collect(const Measurements& m) {
 }
 
 void WriteTimeline(const Measurements& m, const std::string& file) {
-  std::ofstream out(file);
+  tools::OutputFile output(file);
+  std::ostream& out = output.stream();
   out << "time_s,capacity_mbps,target_mbps,encoded_mbps,sent_mbps,queue_ms,rtt_ms,ref_wnd_bytes,"
          "bytes_in_flight,sender_queue_ms,step_m,max_error_m,estimated_capacity_mbps\n";
   const auto capacity = CapacityOf(m.options);
@@ -69,10 +71,12 @@ void WriteTimeline(const Measurements& m, const std::string& file) {
                   b.max_error_m, b.sender.estimated_capacity_bps / 1e6);
     out << line;
   }
+  output.Close();
 }
 
 void WriteSlices(const Measurements& m, const std::string& file) {
-  std::ofstream out(file);
+  tools::OutputFile output(file);
+  std::ostream& out = output.stream();
   out << "scan,slice,due_s,captured_s,encoded_s,received_s,decoded_s,returns,bytes,encode_ms,"
          "decode_ms,max_error_m,mean_error_m\n";
   const auto time = [&](std::int64_t unix_ns) { return unix_ns > 0 ? m.Since(unix_ns) : -1; };
@@ -90,6 +94,7 @@ void WriteSlices(const Measurements& m, const std::string& file) {
       out << line;
     }
   }
+  output.Close();
 }
 
 constexpr const char* kPlots = R"(set terminal pngcairo size 1000,420 font "sans,10"
@@ -168,10 +173,9 @@ void RemoveReport(const std::string& folder) {
 }
 
 bool DrawPlots(const Measurements& m, const std::string& folder) {
-  {
-    std::ofstream script(folder + "/plots.gp");
-    script << "bound_cm = " << ErrorBoundOf(m.options) * 100 << '\n' << kPlots;
-  }
+  tools::OutputFile script(folder + "/plots.gp");
+  script.stream() << "bound_cm = " << ErrorBoundOf(m.options) * 100 << '\n' << kPlots;
+  script.Close();
   std::string quoted = "'";
   for (const char c : folder) quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);
   quoted += '\'';

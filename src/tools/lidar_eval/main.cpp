@@ -2,6 +2,7 @@
 // lidar-eval: what an error bound costs, and how well a bitrate is hit.
 #include <iostream>
 
+#include "src/tools/common/output_file.h"
 #include "src/tools/common/version.h"
 #include "src/tools/lidar_eval/commands.h"
 
@@ -22,6 +23,7 @@ int main(int argc, char** argv) {
 #endif
   try {
     app.parse(argc, argv);
+    lidar::tools::FinishStandardOutput();
   } catch (const CLI::ParseError& e) {
     return app.exit(e);
   } catch (const std::exception& e) {

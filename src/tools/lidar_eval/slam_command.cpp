@@ -9,6 +9,7 @@
 #include "src/odometry/trajectory_error.h"
 #include "src/tools/codec_lab/plot.h"
 #include "src/tools/codec_lab/progress.h"
+#include "src/tools/common/output_file.h"
 #include "src/tools/lidar_eval/commands.h"
 #include "src/tools/lidar_eval/slam_run.h"
 
@@ -46,7 +47,8 @@ Trajectory Load(const std::string& path, double kitti_rate) {
 }
 
 void Save(const std::string& path, const Trajectory& trajectory, bool kitti) {
-  std::ofstream file(path);
+  tools::OutputFile output(path);
+  std::ostream& file = output.stream();
   if (!kitti) file << "# timestamp tx ty tz qx qy qz qw\n";
   for (const odometry::StampedPose& pose : trajectory) {
     if (kitti) {
@@ -55,7 +57,7 @@ void Save(const std::string& path, const Trajectory& trajectory, bool kitti) {
       WriteTumLine(file, pose);
     }
   }
-  if (!file.flush()) throw std::runtime_error("cannot write " + path);
+  output.Close();
 }
 
 nlohmann::ordered_json ToJson(const TrajectoryError& e) {

@@ -2,10 +2,12 @@
 // lidar-trace: prints capacity traces for lidar-link and the demo.
 #include <CLI/CLI.hpp>
 #include <cstdio>
+#include <exception>
 #include <string>
 
 #include "src/link/capacity.h"
 #include "src/link/trace_maker.h"
+#include "src/tools/common/output_file.h"
 #include "src/tools/common/version.h"
 
 namespace {
@@ -66,5 +68,11 @@ int main(int argc, char** argv) {
     return app.exit(e) == 0 ? 0 : 2;
   }
   std::fputs(Make(o).c_str(), stdout);
-  return std::fflush(stdout) == 0 ? 0 : 1;
+  try {
+    lidar::tools::FinishStandardOutput();
+    return 0;
+  } catch (const std::exception& e) {
+    std::fprintf(stderr, "lidar-trace: %s\n", e.what());
+    return 1;
+  }
 }

@@ -8,6 +8,7 @@
 #include <sstream>
 
 #include "src/tools/codec_lab/scan_source.h"
+#include "src/tools/common/output_file.h"
 #include "src/tools/mixing_train/training.h"
 
 namespace lidar::tools {
@@ -120,10 +121,7 @@ int Run(const Options& o) {
   std::vector<std::uint8_t> table;
   states->Write(&table);
   const std::string source = ToSource(table);
-  if (!o.output.empty() && !(std::ofstream(o.output) << source)) {
-    std::cerr << "mixing-train: cannot write " << o.output << "\n";
-    return 1;
-  }
+  if (!o.output.empty()) tools::WriteFile(o.output, source);
   if (!o.check.empty()) {
     std::ifstream file(o.check, std::ios::binary);
     const std::string committed{std::istreambuf_iterator<char>(file), {}};

@@ -10,6 +10,7 @@
 #include <stdexcept>
 
 #include "gst/common/gstlidar.h"
+#include "src/tools/common/output_file.h"
 #include "src/tools/scream_bench/frame_meter.h"
 #include "src/tools/scream_bench/frame_source.h"
 #include "src/tools/scream_bench/pipeline.h"
@@ -31,7 +32,7 @@ class Receiver {
   void OnBuffer(GstBuffer* buffer);
   void Tick();
   void PrintLine(double seconds);
-  bool Finish();
+  void Finish();
 
   const BenchOptions& options_;
   gst::ElementPtr pipeline_;
@@ -151,7 +152,7 @@ void Receiver::PrintLine(double seconds) {
   second_.Clear();
 }
 
-bool Receiver::Finish() {
+void Receiver::Finish() {
   const std::lock_guard lock(mutex_);
   const double seconds = Seconds(last_ - first_);
   const Distribution& ages = meter_.ages_ms();
@@ -169,16 +170,13 @@ bool Receiver::Finish() {
         {"p99", ages.Percentile(99)},
         {"max", ages.Max()}}}};
   std::puts(summary.dump(2).c_str());
-  if (options_.summary.empty()) return true;
-  std::ofstream file(options_.summary);
-  file << summary.dump(2) << '\n';
-  return static_cast<bool>(file.flush());
+  if (!options_.summary.empty()) tools::WriteFile(options_.summary, summary.dump(2) + '\n');
 }
 
 int Receiver::Run() {
   const int result =
       RunPipeline(pipeline_.get(), "scream-bench rx", options_.duration, [this] { Tick(); });
-  if (!Finish()) throw std::runtime_error("cannot write " + options_.summary);
+  Finish();
   return result;
 }
 

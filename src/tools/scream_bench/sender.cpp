@@ -12,6 +12,7 @@
 #include <thread>
 
 #include "gst/common/gstlidar.h"
+#include "src/tools/common/output_file.h"
 #include "src/tools/scream_bench/frame_source.h"
 #include "src/tools/scream_bench/pipeline.h"
 
@@ -42,7 +43,7 @@ class Sender {
   gst::StructurePtr Stats() const;
   void Tick();
   void PrintLine(double seconds, const GstStructure* stats);
-  bool Finish(const GstStructure* stats, double seconds);
+  void Finish(const GstStructure* stats, double seconds);
 
   const BenchOptions& options_;
   gst::ElementPtr pipeline_;
@@ -183,7 +184,7 @@ void Sender::PrintLine(double seconds, const GstStructure* stats) {
   std::fflush(stdout);
 }
 
-bool Sender::Finish(const GstStructure* stats, double seconds) {
+void Sender::Finish(const GstStructure* stats, double seconds) {
   const nlohmann::ordered_json summary = {
       {"seconds", seconds},
       {"packets_sent", Number(stats, "packets-sent")},
@@ -193,10 +194,7 @@ bool Sender::Finish(const GstStructure* stats, double seconds) {
       {"packets_dropped", Number(stats, "packets-dropped")},
       {"mean_rate_bps", seconds > 0 ? Number(stats, "bytes-sent") * 8 / seconds : 0}};
   std::puts(summary.dump(2).c_str());
-  if (options_.summary.empty()) return true;
-  std::ofstream file(options_.summary);
-  file << summary.dump(2) << '\n';
-  return static_cast<bool>(file.flush());
+  if (!options_.summary.empty()) tools::WriteFile(options_.summary, summary.dump(2) + '\n');
 }
 
 int Sender::Run() {
@@ -207,7 +205,7 @@ int Sender::Run() {
   });
   stop_ = true;
   const double seconds = started_ == Duration{0} ? 0 : Seconds(UnixNow() - started_);
-  if (!Finish(last.get(), seconds)) throw std::runtime_error("cannot write " + options_.summary);
+  Finish(last.get(), seconds);
   return result;
 }
 

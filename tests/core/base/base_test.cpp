@@ -2,11 +2,15 @@
 #include <gtest/gtest.h>
 
 #include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <string>
 #include <vector>
 
 #include "src/base/byte_reader.h"
 #include "src/base/byte_writer.h"
 #include "src/base/crc.h"
+#include "src/base/row_file.h"
 #include "src/base/sequence.h"
 #include "src/base/units.h"
 
@@ -81,6 +85,36 @@ TEST(Units, SizeOverTimeIsARate) {
   EXPECT_EQ((DataRate::BitsPerSecond(1e6) * 10ms).bytes(), 1250);
   EXPECT_EQ(DataSize::Bytes(1250) / DataRate::BitsPerSecond(1e6), 10ms);
   EXPECT_EQ(DataSize::Bytes(1) / DataRate{}, Duration::max());
+}
+
+TEST(RowFile, KeepsItsRowsAndNothingThatIsEmpty) {
+  const std::string path = ::testing::TempDir() + "row_file.txt";
+  const auto exists = [&] { return std::filesystem::exists(path); };
+  {
+    RowFile empty(path);
+    EXPECT_TRUE(empty.ok());
+    EXPECT_TRUE(exists());
+  }
+  EXPECT_FALSE(exists());
+  RowFile rows(path);
+  rows.stream() << 1'234.5 << '\n';
+  EXPECT_TRUE(rows.Flush());
+  rows = RowFile();
+  EXPECT_FALSE(rows.ok());
+  std::string line;
+  std::getline(std::ifstream(path) >> std::ws, line);
+  EXPECT_EQ(line, "1234.5");
+  std::filesystem::remove(path);
+  EXPECT_FALSE(RowFile("/nonexistent/file").ok());
+}
+
+TEST(RowFile, SaysWhenTheDiskIsFull) {
+  RowFile full("/dev/full");
+  full.stream() << "row\n";
+  EXPECT_FALSE(full.Flush());
+  EXPECT_FALSE(full.ok());
+  full.Close();
+  EXPECT_TRUE(std::filesystem::exists("/dev/full"));  // no regular file
 }
 
 }  // namespace

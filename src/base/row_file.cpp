@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "src/base/row_file.h"
+
+#include <filesystem>
+#include <locale>
+#include <utility>
+
+namespace lidar {
+
+RowFile::RowFile(const std::string& path) : path_(path), file_(path, std::ios::trunc) {
+  file_.imbue(std::locale::classic());
+}
+
+RowFile::RowFile(RowFile&& other) noexcept
+    : path_(std::move(other.path_)), file_(std::move(other.file_)) {}
+
+RowFile& RowFile::operator=(RowFile&& other) noexcept {
+  if (this == &other) return *this;
+  Close();
+  path_ = std::move(other.path_);
+  file_ = std::move(other.file_);
+  return *this;
+}
+
+/// Nothing but a regular file is ever taken away.
+void RowFile::Close() {
+  if (!file_.is_open()) return;
+  file_.close();
+  std::error_code error;
+  if (std::filesystem::is_regular_file(path_, error) &&
+      std::filesystem::file_size(path_, error) == 0 && !error) {
+    std::filesystem::remove(path_, error);
+  }
+}
+
+}  // namespace lidar

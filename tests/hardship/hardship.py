@@ -1,0 +1,418 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Machines that give too little: processor time, buffers, files, disk; and applications that fork, stop or
+change what they stream. Streams survive, and what cannot work says so."""
+import argparse
+import concurrent.futures
+import contextlib
+import os
+import pathlib
+import resource
+import shutil
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+import traceback
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent.parent / "adversary"))
+import ends  # noqa: E402
+
+AT_ONCE = 3
+
+
+class Skip(Exception):
+    """This machine cannot do it; the text says why."""
+
+
+class Stream:
+    """A real sender and a real receiver."""
+
+    def __init__(self, receiver="", sender="", **process):
+        self.port = ends.free_port()
+        self.receiver = ends.Victim(ends.RECEIVER.format(port=self.port, options=receiver), **process)
+        self.sender = ends.Victim(ends.SENDER.format(port=self.port, seed=1, options=sender))
+        self.await_clouds(10)
+
+    def clouds(self):
+        return self.receiver.ask()["clouds"]
+
+    def await_clouds(self, limit, more=5):
+        """Seconds until so many more came."""
+        start, before = time.monotonic(), self.clouds()
+        while self.clouds() < before + more:
+            assert time.monotonic() - start < limit, f"no clouds within {limit} s"
+            time.sleep(0.02)
+        return time.monotonic() - start
+
+    def rate(self, seconds=1.0):
+        """Clouds a second; 80 are sent."""
+        before, start = self.clouds(), time.monotonic()
+        time.sleep(seconds)
+        return (self.clouds() - before) / (time.monotonic() - start)
+
+    def finish(self):
+        for end in (self.sender, self.receiver):
+            assert not end.ask()["error"], end.last["error"]
+            end.close()
+
+
+@contextlib.contextmanager
+def cpu_group(percent):
+    """A group of processes with so much of a processor; gives what a process does to join it."""
+    name = f"lidar-hardship-{os.getpid()}"
+    v1, v2 = pathlib.Path("/sys/fs/cgroup/cpu"), pathlib.Path("/sys/fs/cgroup")
+    try:
+        if (v2 / "cgroup.controllers").exists():
+            group, limits = v2 / name, {"cpu.max": f"{percent * 1000} 100000"}
+        elif v1.exists():
+            group, limits = v1 / name, {"cpu.cfs_period_us": "100000", "cpu.cfs_quota_us": f"{percent * 1000}"}
+        else:
+            raise Skip("there is no cgroup for processor time")
+        group.mkdir()
+    except OSError as error:
+        raise Skip(f"no cgroup can be made: {error}") from None
+    try:
+        for file, value in limits.items():
+            (group / file).write_text(value)
+    except OSError as error:
+        group.rmdir()
+        raise Skip(f"the cgroup cannot be limited: {error}") from None
+    try:
+        yield group / "cgroup.procs"
+    finally:
+        for _ in range(100):
+            with contextlib.suppress(OSError):
+                group.rmdir()
+                break
+            time.sleep(0.05)
+
+
+def tenth_of_a_processor(options):
+    """Either end gets 10 % of a processor for some seconds."""
+    if options.sanitized:
+        raise Skip("a sanitizer needs more than that")
+    seen = []
+    with cpu_group(10) as procs:
+        for name in ("receiver", "sender"):
+            stream = Stream()
+            end = getattr(stream, name)
+            procs.write_text(str(end.process.pid))
+            time.sleep(0.5)
+            rate = stream.rate(options.seconds)
+            assert rate > 5, f"{rate:.0f} clouds a second come with a tenth of a processor at the {name}"
+            rss = end.ask()["rss_kb"]
+            (procs.parent.parent / "cgroup.procs").write_text(str(end.process.pid))
+            stream.await_clouds(2)
+            time.sleep(1)
+            recovered = stream.rate()
+            assert recovered > 60, f"{recovered:.0f} clouds a second come afterwards"
+            assert end.last["rss_kb"] < rss + 50_000
+            stream.finish()
+            seen.append(f"{name}: {rate:.0f} of 80 clouds/s, then {recovered:.0f}")
+    return "; ".join(seen)
+
+
+def stopped(options):
+    """A process is stopped, as a debugger or a suspended virtual machine does."""
+    seen = []
+    for name in ("receiver", "sender"):
+        stream = Stream()
+        pid = getattr(stream, name).process.pid
+        os.kill(pid, signal.SIGSTOP)
+        time.sleep(options.stop_seconds)
+        os.kill(pid, signal.SIGCONT)
+        took = stream.await_clouds(3)
+        time.sleep(1)
+        rate = stream.rate()
+        assert rate > 60, f"{rate:.0f} clouds a second come after the {name} stood still"
+        stream.finish()
+        seen.append(f"{name} after {1000 * took:.0f} ms")
+    return f"{options.stop_seconds:g} s; clouds again: " + ", ".join(seen)
+
+
+def buffers_of_4_kb(_options):
+    """Socket buffers that hold three packets."""
+    stream = Stream("buffer-size=4096", "ecnudpsink::buffer-size=4096 ecnudpsrc::buffer-size=4096")
+    rate = stream.rate(2)
+    dropped = stream.receiver.last["net"]["dropped-by-kernel"]
+    lost = stream.receiver.last["depay"]["slices-lost"]
+    assert rate > 20, f"{rate:.0f} of 80 clouds a second"
+    stream.finish()
+    return f"{rate:.0f} of 80 clouds/s; the kernel dropped {dropped:.0f} packets, {lost:.0f} slices were lost"
+
+
+def forks(_options):
+    """The application forks while it streams."""
+    stream = Stream()
+    for end in (stream.sender, stream.receiver):
+        for _ in range(3):
+            assert end.ask("fork")["took"] == 0, "a child did not end"
+            sockets = end.ask("spawn")["took"]
+            assert sockets == 0, f"a program that was started sees {sockets} of our sockets"
+    rate = stream.rate()
+    assert rate > 60, f"{rate:.0f} clouds a second"
+    stream.finish()
+    return f"12 children, {rate:.0f} clouds/s"
+
+
+def clock_of_another(_options):
+    """The edge plays by the robot's clock, and the robot by the edge's, over the network."""
+    stream = Stream()
+    for server, client in ((stream.sender, stream.receiver), (stream.receiver, stream.sender)):
+        port = server.ask("provide")["took"]
+        assert client.ask(f"follow {port}")["took"] == 1, "the clock was not taken"
+        stream.await_clouds(3)
+        rate = stream.rate()
+        assert rate > 60, f"{rate:.0f} clouds a second by another's clock"
+    stream.finish()
+    return f"{rate:.0f} clouds/s"
+
+
+def pads_that_come_and_go(_options):
+    """Streams are added to a sender and taken away under load, some at once."""
+    stream = Stream("eos-on-bye=false")
+    threads = stream.sender.ask()["threads"]
+    stream.sender.ask("pads 30")
+    rate = stream.rate()
+    more = stream.sender.last["threads"] - threads
+    assert rate > 60, f"{rate:.0f} clouds a second of the stream that stayed"
+    stream.sender.ask()
+    more = stream.sender.last["threads"] - threads
+    assert more <= 2, f"{more} threads are left"
+    stream.finish()
+    return f"30 pads, then {rate:.0f} clouds/s of the stream that stayed"
+
+
+def many_receivers(options):
+    """200 receivers in one process: a thread or two each, and all end."""
+    count = 50 if options.sanitized else 200
+    victim = ends.Victim("fakesrc num-buffers=1 ! fakesink async=false")
+    few = victim.ask()["threads"]
+    victim.close()
+    parts = " ".join("screamsrc address=127.0.0.1 port=0 ! rtplidardepay ! lidardec ! fakesink async=false"
+                     for _ in range(count))
+    victim = ends.Victim(parts)
+    threads = victim.ask()["threads"] - few
+    assert not victim.last["error"], victim.last["error"]
+    assert threads <= 2 * count + 5, f"{threads} threads for {count} receivers"
+    took = victim.ask("null")["took"]
+    assert took < 5000, f"stopping took {took} ms"
+    time.sleep(2)  # GLib ends threads without work after a while
+    left = victim.ask()["threads"] - few
+    assert left <= 5, f"{left} threads are left"
+    victim.close()
+    return f"{threads} threads for {count} receivers, stopped within {took} ms"
+
+
+def many_streams(options):
+    """50 streams through one sender and one port."""
+    count = 50
+    port = ends.free_port()
+    caps = ("application/x-rtp-pt-map,96=(string)\\\"application/x-rtp,media=application,clock-rate=90000,"
+            "encoding-name=X-LIDAR-DRACO\\\"")
+    pads = " ".join(f"net.src_{n} ! rtplidardepay ! fakesink async=false sync=false" for n in range(1, count + 1))
+    receiver = ends.Victim(f'screamsrc name=net address=127.0.0.1 port={port} pt-map="{caps}" {pads}')
+    sources = " ".join(f"lidartestsrc is-live=true model=os0-32 mode=512x10 slices-per-scan=1 num-buffers=200 ! "
+                       f"lidarenc effort=0 max-error=0.2 ! rtplidarpay ssrc={n} ! net." for n in range(1, count + 1))
+    sender = ends.Victim(f"screamsink name=net host=127.0.0.1 port={port} max-bitrate=20000000 {sources}")
+    time.sleep(3)
+    net = sender.ask()["net"]
+    threads = sender.last["threads"]
+    assert not sender.last["error"], sender.last["error"]
+    assert threads <= count + 12, f"{threads} threads for {count} streams"
+    assert net["feedback-accepted"] > 20 and net["packets-sent"] > 300, net
+    got = receiver.ask()["net"]
+    assert got["ssrcs"] == count, f"{got['ssrcs']:.0f} of {count} streams arrived"
+    edge = receiver.last["threads"]
+    assert edge <= 12, f"{edge} threads at the receiver"
+    for end in (sender, receiver):
+        end.ask("null")
+        end.close()
+    return f"{count} streams: {threads} threads at the sender (one each is the source's), {edge} at the receiver"
+
+
+FEW_FILES = {
+    "screamsrc": "screamsrc address=127.0.0.1 port=0 ! fakesink async=false",
+    "screamsink": "lidartestsrc is-live=true ! lidarenc ! rtplidarpay ! screamsink host=127.0.0.1 port=9",
+    "ecnudpsrc": "ecnudpsrc address=127.0.0.1 port=0 ! fakesink async=false",
+    "ouster_src": "ouster_src hostname=127.0.0.1:9 ! fakesink async=false",
+    "ouster_src capture": "ouster_src location={data}/OS-0-32-U1_v2.2.0_1024x10.pcap ! fakesink async=false",
+    "lidarodometry": "lidartestsrc num-buffers=8 ! lidarodometry trajectory={folder}/few.tum ! fakesink async=false",
+}
+
+
+def few_files(options):
+    """ulimit -n from what a process has up to what it needs: an error that says so, or it works."""
+    data = pathlib.Path(__file__).resolve().parent.parent / "data" / "ouster"
+    told = worked = 0
+    with tempfile.TemporaryDirectory() as folder:
+        for name, pipeline in FEW_FILES.items():
+            for limit in (8, 9, 10, 11, 12, 14, 16, 20):
+                run = subprocess.run(
+                    [ends.Victim.program, pipeline.format(data=data, folder=folder)], input="report\n", text=True,
+                    capture_output=True, timeout=60, check=False,
+                    preexec_fn=lambda n=limit: resource.setrlimit(resource.RLIMIT_NOFILE, (n, n)))
+                said = run.stdout + run.stderr
+                assert run.returncode >= 0, f"{name} with {limit} files: signal {-run.returncode}: {said[-300:]}"
+                clear = any(word in said for word in ("Too many open files", "too few files", "ulimit"))
+                failed = run.returncode != 0 or '"error":""' not in run.stdout
+                assert not failed or clear, f"{name} with {limit} files: {said[-300:]}"
+                told += failed
+                worked += not failed
+    assert worked > 0
+    return f"{told} runs said that there are too few files, {worked} worked"
+
+
+@contextlib.contextmanager
+def small_disk():
+    """A folder of 64 kB; another process may fill it."""
+    with tempfile.TemporaryDirectory() as folder:
+        mount = subprocess.run(["mount", "-t", "tmpfs", "-o", "size=64k", "none", folder], capture_output=True,
+                               text=True, check=False)
+        if mount.returncode != 0:
+            raise Skip(f"no disk can be made: {mount.stderr.strip()}")
+        try:
+            yield pathlib.Path(folder)
+        finally:
+            subprocess.run(["umount", folder], check=False)
+
+
+WRITERS = {  # elements; {file} is what they write
+    "lidarodometry": "lidartestsrc num-buffers=2000 model=os0-32 mode=512x10 ! lidarodometry trajectory={file} ! "
+                     "fakesink async=false",
+    "lidartestsrc": "lidartestsrc num-buffers=4000 model=os0-32 mode=512x10 slices-per-scan=64 "
+                    "trajectory-location={file} ! fakesink async=false",
+    "pcdenc": "lidartestsrc num-buffers=80 model=os0-32 mode=512x10 ! scanassembler ! pcdenc ! filesink location={file}",
+    "plyenc": "lidartestsrc num-buffers=80 model=os0-32 mode=512x10 ! scanassembler ! plyenc ! filesink location={file}",
+}
+
+
+def play_to_the_end(pipeline, limit=30):
+    victim = ends.Victim(pipeline)
+    start = time.monotonic()
+    while time.monotonic() - start < limit:
+        report = victim.ask()
+        if report["error"] or report["eos"]:
+            break
+        time.sleep(0.05)
+    victim.ask("null")
+    last = victim.ask()
+    victim.close()
+    return last
+
+
+def full_disk(_options):
+    """A disk without room: every writer says so, and leaves nothing empty behind."""
+    with small_disk() as disk:
+        (disk / "ballast").write_bytes(b"x" * 65536)
+        for name, pipeline in WRITERS.items():
+            file = disk / "out"
+            last = play_to_the_end(pipeline.format(file=file))
+            assert last["error"] or last["warnings"], f"{name} does not say that the disk is full"
+            left = file.exists() and file.stat().st_size == 0
+            assert not left or "filesink" in pipeline, f"{name} left an empty file"
+            file.unlink(missing_ok=True)
+    return f"{len(WRITERS)} elements"
+
+
+def disk_that_fills(_options):
+    """A disk that is full after the first rows: what is there stays, and the error says why."""
+    with small_disk() as disk:
+        for name in ("lidarodometry", "lidartestsrc"):
+            (disk / "ballast").write_bytes(b"x" * (65536 - 8192))
+            file = disk / "out"
+            last = play_to_the_end(WRITERS[name].format(file=file))
+            assert last["error"] or last["warnings"], f"{name} does not say that the disk is full"
+            assert file.stat().st_size >= 4096, f"{name} left {file.stat().st_size} bytes"
+            file.unlink()
+    return "rows that were written stay"
+
+
+def read_only_disk(_options):
+    """A folder that may not be written to."""
+    with small_disk() as disk:
+        subprocess.run(["mount", "-o", "remount,ro", str(disk)], check=True)
+        for name, pipeline in WRITERS.items():
+            last = play_to_the_end(pipeline.format(file=disk / "out"))
+            assert "out" in last["error"], f"{name}: {last['error']!r}"
+    return f"{len(WRITERS)} elements name the file"
+
+
+def programs_on_a_full_disk(options):
+    """Command-line programs exit with an error that names the file, and leave nothing empty."""
+    tools = pathlib.Path(options.tools)
+    data = pathlib.Path(__file__).resolve().parent.parent / "data" / "ouster"
+    capture = data / "OS-0-32-U1_v2.2.0_1024x10.pcap"
+    rd = ["rd", str(capture), "--scans", "1", "--errors", "0.1", "--slices", "1"]
+    commands = {  # program, arguments, and a word of the error
+        "lidar-eval rd": (rd + ["--csv", "{file}"], "out"),
+        "lidar-eval slam": (["slam", "synth:os0-32:street:512", "--scans", "3", "--out", "{file}"], "out"),
+        "lidar-demo": (["--duration", "1", "--no-plots", "--output", "{file}"], ""),
+        "lidar-trace": (["--duration", "3600"], "standard output"),
+        "lidar-eval": (rd, "standard output"),
+        "codec-tables": ([str(data)], "standard output"),
+    }
+    ran = 0
+    with small_disk() as disk:
+        (disk / "ballast").write_bytes(b"x" * 65536)
+        for name, (arguments, word) in commands.items():
+            program = tools / name.split()[0]
+            if not program.exists():
+                continue
+            file = disk / "out"
+            with open("/dev/full", "w") as full:
+                writes = "{file}" in arguments
+                run = subprocess.run([program] + [a.format(file=file) for a in arguments], text=True, timeout=60,
+                                     stdout=subprocess.DEVNULL if writes else full, stderr=subprocess.PIPE, check=False)
+            said = run.stderr[-300:]
+            assert run.returncode > 0, f"{name} ended with {run.returncode}: {said}"
+            assert said and word in said, f"{name} does not name the file: {said}"
+            for left in list(disk.glob("out")) + list(disk.glob("out/*")):
+                assert left.is_dir() or left.stat().st_size > 0 or left.suffix == ".log", f"{name} left {left.name} empty"
+            shutil.rmtree(file, ignore_errors=True)
+            file.unlink(missing_ok=True)
+            ran += 1
+    if ran == 0:
+        raise Skip("the programs are not built")
+    return f"{ran} programs"
+
+
+ALL = [tenth_of_a_processor, stopped, buffers_of_4_kb, forks, clock_of_another, pads_that_come_and_go, many_receivers,
+       many_streams, few_files, full_disk, disk_that_fills, read_only_disk, programs_on_a_full_disk]
+
+
+def run(hardship, options):
+    try:
+        return hardship.__name__, "held", hardship(options)
+    except Skip as reason:
+        return hardship.__name__, "skipped", str(reason)
+    except AssertionError as broken:
+        return hardship.__name__, "BROKEN", str(broken) or traceback.format_exc(limit=-1)
+    except Exception:  # pylint: disable=broad-except
+        return hardship.__name__, "BROKEN", traceback.format_exc(limit=-2)
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--victim", required=True, help="the program tests/adversary/victim")
+    parser.add_argument("--tools", default="", help="the folder of the command-line programs")
+    parser.add_argument("--seconds", type=float, default=2, help="of each hardship")
+    parser.add_argument("--stop-seconds", type=float, default=2, help="for which a process is stopped")
+    parser.add_argument("--sanitized", action="store_true")
+    parser.add_argument("--only", help="hardships whose name contains this")
+    options = parser.parse_args()
+    ends.Victim.program = options.victim
+    chosen = [h for h in ALL if not options.only or options.only in h.__name__]
+    broken = 0
+    with concurrent.futures.ThreadPoolExecutor(AT_ONCE) as pool:
+        for done in concurrent.futures.as_completed([pool.submit(run, h, options) for h in chosen]):
+            name, verdict, text = done.result()
+            broken += verdict == "BROKEN"
+            print(f"{verdict:8} {name.replace('_', ' '):26} {text}", flush=True)
+    return 1 if broken else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
