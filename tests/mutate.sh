@@ -7,13 +7,14 @@ root=$(dirname "$here")
 
 usage() {
   cat <<EOF
-Usage: tests/mutate.sh [--quick] [--folder DIR] [NAME...]
+Usage: tests/mutate.sh [--quick | --check] [--folder DIR] [NAME...]
 
 Each tests/mutants/NAME.patch is a bug of a line or two. It is applied to a copy of the tree, what
 changed is built, and the suites core and elements run until a test fails. The line "Tests:" of a
 patch names the tests that are meant to notice it; they run first.
 
   --quick         run only the tests that the patches name
+  --check         build and run nothing: say which patches do not fit the code any more
   --folder DIR    where the copy is built (build-mutants); kept, so that the next time is faster
 
 A name may be a pattern, as in 'rtp-*'. The exit code is 0 where every bug was noticed.
@@ -21,11 +22,13 @@ EOF
 }
 
 quick=no
+check=no
 folder=$root/build-mutants
 names=()
 while [ $# -gt 0 ]; do
   case $1 in
     --quick) quick=yes ;;
+    --check) check=yes ;;
     --folder) [ $# -ge 2 ] || { usage >&2; exit 2; }; folder=$2; shift ;;
     -h | --help) usage; exit 0 ;;
     -*) echo "Unknown option '$1'." >&2; usage >&2; exit 2 ;;
@@ -42,17 +45,29 @@ for name in "${names[@]-*}"; do
   done
 done
 
+if [ "$check" = yes ]; then
+  stale=0
+  for patch in "${patches[@]}"; do
+    patch -d "$root" -p1 --fuzz=2 -s -f --dry-run <"$patch" >/dev/null 2>&1 && continue
+    echo "$(basename "$patch" .patch) does not apply"
+    stale=$((stale + 1))
+  done
+  echo "$stale of ${#patches[@]} do not apply"
+  [ "$stale" = 0 ]
+  exit
+fi
+
 mkdir -p "$folder" || exit 2
 folder=$(cd "$folder" && pwd)
 tree=$folder/tree
-build=$folder/build
+build=$tree/build  # as in a usual tree, so that a compiler cache knows what it compiled there
 log=$folder/log
 
 # Files that have not changed keep their times, so that only what changed is built again.
 copy_tree() {
   mkdir -p "$tree"
   git -C "$root" ls-files | sort >"$folder/files"
-  (cd "$tree" && find . -type f | sed 's|^\./||' | sort | comm -13 "$folder/files" - | xargs -r -d '\n' rm)
+  (cd "$tree" && find . -path ./build -prune -o -type f -print | sed 's|^\./||' | sort | comm -13 "$folder/files" - | xargs -r -d '\n' rm)
   while IFS= read -r file; do
     cmp -s "$root/$file" "$tree/$file" && continue
     mkdir -p "$(dirname "$tree/$file")" && cp -p "$root/$file" "$tree/$file" && touch "$tree/$file" || return 1
