@@ -66,7 +66,7 @@ log=$folder/log
 # Files that have not changed keep their times, so that only what changed is built again.
 copy_tree() {
   mkdir -p "$tree"
-  git -C "$root" ls-files | sort >"$folder/files"
+  git -C "$root" ls-files --cached --others --exclude-standard | sort >"$folder/files"
   (cd "$tree" && find . -path ./build -prune -o -type f -print | sed 's|^\./||' | sort | comm -13 "$folder/files" - | xargs -r -d '\n' rm)
   while IFS= read -r file; do
     cmp -s "$root/$file" "$tree/$file" && continue

@@ -1,11 +1,15 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Streams for hours through a link with random faults and checks each minute what must always hold.
+#include <gio/gio.h>
+
 #include <chrono>
 #include <cinttypes>
+#include <csignal>
 #include <cstdio>
 #include <cstdlib>
 #include <memory>
 #include <random>
+#include <stdexcept>
 #include <string>
 #include <thread>
 
@@ -21,6 +25,41 @@ using std::chrono::seconds;
 constexpr std::uint64_t kMaxGrowth = std::uint64_t{16} << 20;  // bytes, since the fifth minute
 constexpr unsigned kWarmUp = 5;                                // minutes
 constexpr std::uint64_t kInFlight = 4;                         // slices, when the books are read
+
+struct Options {
+  unsigned minutes = 0;
+  unsigned seed = 1;
+  bool srtp = false;
+  std::string link;   // the program lidar-link, where there is a trace
+  std::string trace;  // file with the capacity of the link; empty: without limit
+};
+
+/// lidar-link between the sender and the link with faults.
+class Bottleneck {
+ public:
+  Bottleneck(const Options& o, std::uint16_t to) : port_(o.trace.empty() ? to : FreePort()) {
+    if (o.trace.empty()) return;
+    const auto address = [](std::uint16_t port) { return "127.0.0.1:" + std::to_string(port); };
+    process_ =
+        g_subprocess_new(G_SUBPROCESS_FLAGS_NONE, nullptr, o.link.c_str(), "--quiet", "--listen",
+                         address(port_).c_str(), "--forward", address(to).c_str(), "--trace",
+                         o.trace.c_str(), "--rtt", "40", "--queue", "300", nullptr);
+    if (process_ == nullptr) throw std::runtime_error("lidar-link cannot be started");
+  }
+  ~Bottleneck() {
+    if (process_ == nullptr) return;
+    g_subprocess_send_signal(process_, SIGTERM);
+    g_subprocess_wait(process_, nullptr, nullptr);
+    g_object_unref(process_);
+  }
+  Bottleneck(const Bottleneck&) = delete;
+  Bottleneck& operator=(const Bottleneck&) = delete;
+  std::uint16_t port() const { return port_; }
+
+ private:
+  std::uint16_t port_;
+  GSubprocess* process_ = nullptr;
+};
 
 struct Fall {
   const char* name;
@@ -66,7 +105,12 @@ Fall RandomFall(std::mt19937* random) {
 
 class Soak {
  public:
-  explicit Soak(unsigned seed) : random_(seed), port_(FreePort()), link_(port_, seed) {
+  explicit Soak(const Options& options)
+      : options_(options),
+        random_(options.seed),
+        port_(FreePort()),
+        link_(port_, options.seed),
+        bottleneck_(options, link_.port()) {
     StartReceiver();
     StartSender();
   }
@@ -77,7 +121,8 @@ class Soak {
   bool Minute(unsigned minute) {
     const auto end = std::chrono::steady_clock::now() + seconds(60);
     std::string story;
-    comparable_ = true;
+    // Slices cannot be seen in what is encrypted.
+    comparable_ = !options_.srtp;
     while (std::chrono::steady_clock::now() + seconds(16) < end) {
       std::this_thread::sleep_for(milliseconds(1'000 + random_() % 4'000));
       story += std::string(story.empty() ? "" : ", ") + Disturb();
@@ -89,11 +134,14 @@ class Soak {
 
  private:
   void StartSender() {
-    sender_ = std::make_unique<SendingEnd>(&sent_, link_.port());
+    sender_ = std::make_unique<SendingEnd>(&sent_, bottleneck_.port(), Key());
     sender_->pipeline().SetState(GST_STATE_PLAYING);
   }
+  std::string Key() const {
+    return options_.srtp ? "srtp-key=" + std::string(60, '5') : std::string();
+  }
   void StartReceiver() {
-    receiver_ = std::make_unique<ReceivingEnd>(&sent_, port_);
+    receiver_ = std::make_unique<ReceivingEnd>(&sent_, port_, Key());
     receiver_->pipeline().SetState(GST_STATE_PLAYING);
   }
 
@@ -167,10 +215,12 @@ class Soak {
     return good;
   }
 
+  const Options options_;
   std::mt19937 random_;
   std::uint16_t port_;
   SentSlices sent_;
   FaultLink link_;
+  Bottleneck bottleneck_;
   std::unique_ptr<SendingEnd> sender_;
   std::unique_ptr<ReceivingEnd> receiver_;
   std::uint64_t foreign_ = 0;
@@ -184,16 +234,23 @@ class Soak {
 }  // namespace
 
 int main(int argc, char** argv) {
-  if (argc != 3) {
-    std::fprintf(stderr, "usage: %s MINUTES SEED\n", argv[0]);
+  if (argc < 3 || argc > 6) {
+    std::fprintf(stderr, "usage: %s MINUTES SEED [srtp|plain [LIDAR_LINK TRACE]]\n", argv[0]);
     return 2;
   }
   gst_init(nullptr, nullptr);
-  const auto minutes = static_cast<unsigned>(std::atoi(argv[1]));
+  Options options;
+  options.minutes = static_cast<unsigned>(std::atoi(argv[1]));
+  options.seed = static_cast<unsigned>(std::atoi(argv[2]));
+  options.srtp = argc > 3 && std::string(argv[3]) == "srtp";
+  if (argc == 6) {
+    options.link = argv[4];
+    options.trace = argv[5];
+  }
   bool good = true;
-  Soak soak(static_cast<unsigned>(std::atoi(argv[2])));
-  for (unsigned minute = 1; minute <= minutes; ++minute) good &= soak.Minute(minute);
-  std::printf("%s after %u minutes, seed %s; in %u minutes the books could be compared\n",
-              good ? "passed" : "FAILED", minutes, argv[2], soak.compared());
+  Soak soak(options);
+  for (unsigned minute = 1; minute <= options.minutes; ++minute) good &= soak.Minute(minute);
+  std::printf("%s after %u minutes, seed %u; in %u minutes the books could be compared\n",
+              good ? "passed" : "FAILED", options.minutes, options.seed, soak.compared());
   return good ? 0 : 1;
 }

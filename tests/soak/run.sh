@@ -1,18 +1,23 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: LGPL-2.1-or-later
-# Streams for hours through a link with random faults; each minute a line, and what must hold is checked.
+# Streams for hours, encrypted, through a drive with gaps and random faults; each minute a line, and what must
+# hold is checked.
 set -euo pipefail
 root=$(cd "$(dirname "$0")/../.." && pwd)
 build=${BUILD_DIR:-$root/build}
 
 minutes=0
-seed=1
+seed=$RANDOM
+cipher=srtp
+gaps=yes
 while [ $# -gt 0 ]; do
   case $1 in
     --hours) minutes=$(awk "BEGIN { print int($2 * 60) }"); shift ;;
     --minutes) minutes=$2; shift ;;
     --seed) seed=$2; shift ;;
-    *) echo "Usage: tests/soak/run.sh --hours N | --minutes N [--seed S]" >&2
+    --no-srtp) cipher=plain ;;
+    --no-gaps) gaps=no ;;
+    *) echo "Usage: tests/soak/run.sh --hours N | --minutes N [--seed S] [--no-srtp] [--no-gaps]" >&2
        [ "$1" = --help ] && exit 0 || exit 2 ;;
   esac
   shift
@@ -23,4 +28,13 @@ done
 ninja -C "$build" endurance >"$build.log" 2>&1 || { tail -20 "$build.log" >&2; exit 1; }
 plugins=$(find "$build/gst" "$build/ext" -name 'libgst*.so' -printf '%h\n' | sort -u | paste -sd:)
 export GST_PLUGIN_PATH_1_0=$plugins GST_REGISTRY=$build/soak-registry.bin
-exec "$build/tests/faults/soak" "$minutes" "$seed"
+link=()
+if [ "$gaps" = yes ]; then
+  # A drive with handovers and edges of cells; it starts again after ten minutes.
+  trace=$(mktemp)
+  trap 'rm -f "$trace"' EXIT
+  "$build/src/tools/lidar-trace" --duration 600 --rate 2 --seed "$seed" >"$trace"
+  link=("$build/src/tools/lidar-link" "$trace")
+fi
+echo "seed $seed"
+"$build/tests/faults/soak" "$minutes" "$seed" "$cipher" "${link[@]}"

@@ -1,0 +1,297 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// What a receiver with a key believes: other keys, replays, recordings, wraps and floods, by a
+// clock that the test sets.
+#include <gst/check/gstharness.h>
+#include <gtest/gtest.h>
+
+#include <ctime>
+#include <set>
+
+#include "gst/scream/rtp_packet.h"
+#include "gst/scream/srtp/input.h"
+#include "tests/elements/scream/rtp_support.h"
+
+namespace {
+
+gint64 frozen_at = 0;  // [us]; 0: the clock runs
+
+}  // namespace
+
+/// Stands before GLib's in this program.
+extern "C" gint64 g_get_monotonic_time() {
+  if (frozen_at != 0) return frozen_at;
+  timespec now{};
+  clock_gettime(CLOCK_MONOTONIC, &now);
+  return gint64{now.tv_sec} * G_USEC_PER_SEC + now.tv_nsec / 1'000;
+}
+
+namespace lidar::gst {
+namespace {
+
+const SrtpPolicy kPolicy = {"aes-128-icm", "hmac-sha1-80", "hmac-sha1-80", 30, 10};
+constexpr guint32 kSsrc = 0x1234;
+using Sequences = std::vector<guint16>;
+
+SrtpKey Key(std::uint8_t digit) { return SrtpKey(kPolicy.key_size, digit); }
+
+/// Protects packets as a sender does, with a rollover counter of its own for each SSRC.
+class Protector {
+ public:
+  explicit Protector(const SrtpKey& key) {
+    GstElement* encoder = gst_element_factory_make("srtpenc", nullptr);
+    const BufferPtr master(gst_buffer_new_memdup(key.data(), key.size()));
+    g_object_set(encoder, "key", master.get(), nullptr);
+    harness_.reset(gst_harness_new_with_element(encoder, "rtp_sink_0", "rtp_src_0"));
+    gst_object_unref(encoder);
+    gst_harness_set_src_caps_str(harness_.get(), "application/x-rtp");
+  }
+  BufferPtr Protect(guint16 seq, guint32 ssrc = kSsrc) {
+    test::Rtp r;
+    r.seq = seq;
+    r.ssrc = ssrc;
+    r.size = 20;
+    return BufferPtr(gst_harness_push_and_pull(harness_.get(), test::NewRtp(r)));
+  }
+  /// As a sender that has sent 65,536 packets more.
+  void Wrap(guint32 ssrc = kSsrc) {
+    for (const guint16 seq : Sequences{20'000, 40'000, 60'000, 5}) Protect(seq, ssrc);
+  }
+
+ private:
+  test::Harness harness_;
+};
+
+BufferPtr Forged(guint16 seq, guint32 ssrc = kSsrc) {
+  test::Rtp r;
+  r.seq = seq;
+  r.ssrc = ssrc;
+  r.size = 30;
+  return BufferPtr(test::NewRtp(r));
+}
+
+class SrtpIn : public ::testing::Test {
+ protected:
+  SrtpIn()
+      : bin_(GST_ELEMENT(gst_object_ref_sink(gst_bin_new(nullptr)))),
+        bus_(gst_bus_new()),
+        socket_(gst_pad_new("socket", GST_PAD_SRC)),
+        target_(gst_pad_new("target", GST_PAD_SINK)) {
+    frozen_at = 1'000 * G_USEC_PER_SEC;
+    gst_element_set_bus(bin_.get(), bus_);
+    gst_element_set_state(bin_.get(), GST_STATE_PLAYING);
+    for (GstPad* pad : {socket_, target_}) gst_object_ref_sink(pad);
+    gst_pad_set_element_private(target_, this);
+    gst_pad_set_chain_function(target_, [](GstPad* pad, GstObject*, GstBuffer* buffer) {
+      auto* self = static_cast<SrtpIn*>(gst_pad_get_element_private(pad));
+      self->passed_.insert(ReadRtpHeader(buffer)->seq);
+      gst_buffer_unref(buffer);
+      return GST_FLOW_OK;
+    });
+    input_ = std::make_unique<SrtpInput>(bin_.get(), kPolicy,
+                                         [this](const SrtpKey& key) { new_keys_.push_back(key); });
+    EXPECT_TRUE(input_->AddKey(Key(5)));
+    gst_pad_set_active(target_, TRUE);
+    EXPECT_TRUE(input_->Link(socket_, target_));
+    gst_pad_set_active(socket_, TRUE);
+    GstSegment segment;
+    gst_segment_init(&segment, GST_FORMAT_TIME);
+    gst_pad_push_event(socket_, gst_event_new_stream_start("socket"));
+    gst_pad_push_event(socket_, gst_event_new_segment(&segment));
+  }
+  ~SrtpIn() override {
+    frozen_at = 0;
+    gst_pad_set_active(socket_, FALSE);
+    input_.reset();
+    gst_pad_set_active(target_, FALSE);
+    for (GstPad* pad : {socket_, target_}) gst_object_unref(pad);
+    gst_element_set_state(bin_.get(), GST_STATE_NULL);
+    gst_element_set_bus(bin_.get(), nullptr);
+    gst_object_unref(bus_);
+  }
+
+  /// Whether the datagram came out.
+  bool Passes(const BufferPtr& datagram) {
+    const std::size_t before = passed_.size();
+    gst_pad_push(socket_, gst_buffer_ref(datagram.get()));
+    return passed_.size() > before;
+  }
+  void Forge(unsigned count, guint32 ssrc = kSsrc) {
+    for (unsigned i = 0; i < count; ++i)
+      EXPECT_FALSE(Passes(Forged(static_cast<guint16>(i), ssrc)));
+  }
+  static void Wait(double seconds) {
+    frozen_at += static_cast<gint64>(seconds * static_cast<double>(G_USEC_PER_SEC));
+  }
+  unsigned Warnings() {
+    unsigned n = 0;
+    while (GstMessage* message = gst_bus_pop_filtered(bus_, GST_MESSAGE_WARNING)) {
+      gst_message_unref(message);
+      ++n;
+    }
+    return n;
+  }
+
+  ElementPtr bin_;
+  GstBus* bus_;
+  GstPad* socket_;
+  GstPad* target_;
+  std::unique_ptr<SrtpInput> input_;
+  std::multiset<guint16> passed_;
+  std::vector<SrtpKey> new_keys_;
+};
+
+TEST_F(SrtpIn, BelievesItsKeyAndNoOther) {
+  Protector sender(Key(5));
+  Protector stranger(Key(6));
+  for (guint16 seq = 1; seq <= 50; ++seq) {
+    EXPECT_TRUE(Passes(sender.Protect(seq))) << seq;
+    EXPECT_FALSE(Passes(stranger.Protect(seq))) << seq;
+  }
+  EXPECT_EQ(input_->counts().received, 100U);
+  EXPECT_EQ(input_->counts().refused, 50U);
+  EXPECT_EQ(input_->counts().key_changes, 0U);
+}
+
+TEST_F(SrtpIn, RefusesWhatWasChangedOrRepeated) {
+  Protector sender(Key(5));
+  const BufferPtr first = sender.Protect(1);
+  EXPECT_TRUE(Passes(first));
+  EXPECT_FALSE(Passes(first));
+  const BufferPtr second = sender.Protect(2);
+  for (gsize at = 0; at < gst_buffer_get_size(second.get()); at += 3) {
+    const BufferPtr changed(gst_buffer_copy_deep(second.get()));
+    guint8 byte = 0;
+    gst_buffer_extract(changed.get(), at, &byte, 1);
+    byte ^= 4;
+    gst_buffer_fill(changed.get(), at, &byte, 1);
+    EXPECT_FALSE(Passes(changed)) << at;
+  }
+  EXPECT_TRUE(Passes(second));
+}
+
+TEST_F(SrtpIn, WarnsOnceOfPacketsThatDoNotFit) {
+  Forge(19);
+  EXPECT_EQ(Warnings(), 0U);
+  Forge(100);
+  EXPECT_EQ(Warnings(), 1U);
+}
+
+TEST_F(SrtpIn, JoinsAStreamThatHasWrapped) {
+  Protector sender(Key(5));
+  sender.Protect(5);
+  sender.Wrap();
+  int tried = 1;
+  for (guint16 seq = 100; !Passes(sender.Protect(seq)); ++seq) ++tried;
+  EXPECT_LE(tried, 6);
+  EXPECT_TRUE(Passes(sender.Protect(500)));
+}
+
+TEST_F(SrtpIn, FollowsAWrap) {
+  Protector sender(Key(5));
+  for (const guint16 seq : Sequences{65'500, 65'535, 0, 1, 30'000, 60'000, 2, 3})
+    EXPECT_TRUE(Passes(sender.Protect(seq))) << seq;
+  EXPECT_EQ(input_->counts().refused, 0U);
+}
+
+TEST_F(SrtpIn, RefusesARecordingOfAStreamThatFellSilent) {
+  Protector sender(Key(5));
+  std::vector<BufferPtr> recording;
+  for (const guint16 seq : Sequences{20'000, 40'000, 60'000, 5, 6}) {  // rolls over
+    recording.push_back(sender.Protect(seq));
+    EXPECT_TRUE(Passes(recording.back()));
+  }
+  Wait(3);
+  Forge(30);
+  for (int round = 0; round < 20; ++round)
+    for (const BufferPtr& packet : recording) EXPECT_FALSE(Passes(packet));
+  // It goes on where it was.
+  EXPECT_TRUE(Passes(sender.Protect(7)));
+}
+
+TEST_F(SrtpIn, FindsAStreamThatWrappedInSilence) {
+  Protector sender(Key(5));
+  for (const guint16 seq : Sequences{40'000, 60'000, 5}) EXPECT_TRUE(Passes(sender.Protect(seq)));
+  sender.Wrap();
+  Wait(3);
+  int refused = 0;
+  for (guint16 seq = 10; !Passes(sender.Protect(seq)); ++seq) ASSERT_LT(++refused, 40);
+  EXPECT_GE(refused, 19);  // before that the losses may be damage
+  EXPECT_TRUE(Passes(sender.Protect(1'000)));
+}
+
+TEST_F(SrtpIn, ForgersDoNotMakeAStreamLost) {
+  Protector sender(Key(5));
+  EXPECT_TRUE(Passes(sender.Protect(1)));
+  Forge(3'000);
+  EXPECT_TRUE(Passes(sender.Protect(2)));
+  // Nor did they use up what may be tried on strangers.
+  EXPECT_TRUE(Passes(sender.Protect(1, 99)));
+}
+
+TEST_F(SrtpIn, TriesFiveHundredStrangersASecond) {
+  Protector sender(Key(5));
+  EXPECT_TRUE(Passes(sender.Protect(1)));
+  for (guint32 ssrc = 1'000; ssrc < 1'600; ++ssrc) Forge(1, ssrc);
+  EXPECT_TRUE(Passes(sender.Protect(2)));       // it is no stranger
+  EXPECT_FALSE(Passes(sender.Protect(1, 99)));  // this one has to wait
+  Wait(0.1);
+  EXPECT_TRUE(Passes(sender.Protect(2, 99)));
+}
+
+TEST_F(SrtpIn, KnowsItsStreamsAmongAnyNumberOfOthers) {
+  Protector sender(Key(5));
+  sender.Protect(5);
+  sender.Wrap();
+  for (guint16 seq = 100; !Passes(sender.Protect(seq)); ++seq) ASSERT_LT(seq, 120);
+  for (guint32 ssrc = 0; ssrc < 2'000; ++ssrc) {
+    if (ssrc % 100 == 0) Wait(1);
+    Forge(1, 100'000 + ssrc);
+  }
+  EXPECT_TRUE(Passes(sender.Protect(200)));  // at its rollover count
+}
+
+TEST_F(SrtpIn, TakesANewKeyAndForgetsTheOldOne) {
+  Protector before(Key(5));
+  Protector after(Key(6));
+  EXPECT_TRUE(Passes(before.Protect(1)));
+  EXPECT_TRUE(input_->AddKey(Key(6)));
+  EXPECT_EQ(input_->waiting_keys(), 1U);
+  EXPECT_TRUE(Passes(before.Protect(2)));
+  EXPECT_TRUE(new_keys_.empty());
+  EXPECT_TRUE(Passes(after.Protect(3)));
+  EXPECT_EQ(new_keys_, (std::vector<SrtpKey>{Key(6)}));
+  EXPECT_EQ(input_->waiting_keys(), 0U);
+  EXPECT_EQ(input_->counts().key_changes, 1U);
+  Wait(9);
+  EXPECT_TRUE(Passes(before.Protect(4)));  // overtaken
+  EXPECT_EQ(new_keys_.size(), 1U);
+  Wait(2);
+  EXPECT_FALSE(Passes(before.Protect(5)));
+  EXPECT_TRUE(Passes(after.Protect(6)));
+}
+
+TEST_F(SrtpIn, RefusesARecordingOfTheKeyBefore) {
+  Protector before(Key(5));
+  Protector after(Key(6));
+  const BufferPtr old = before.Protect(1);
+  EXPECT_TRUE(Passes(old));
+  EXPECT_TRUE(input_->AddKey(Key(6)));
+  EXPECT_TRUE(Passes(after.Protect(2)));
+  Wait(3);
+  Forge(30);
+  EXPECT_FALSE(Passes(old));
+  EXPECT_TRUE(Passes(after.Protect(3)));
+}
+
+TEST_F(SrtpIn, OfFourKeysTheOldestGoes) {
+  for (const std::uint8_t digit : SrtpKey{6, 7, 8}) EXPECT_TRUE(input_->AddKey(Key(digit)));
+  Protector oldest(Key(5));
+  Protector next(Key(6));
+  Protector newest(Key(8));
+  EXPECT_FALSE(Passes(oldest.Protect(1)));
+  EXPECT_TRUE(Passes(next.Protect(1)));
+  EXPECT_TRUE(Passes(newest.Protect(2)));
+}
+
+}  // namespace
+}  // namespace lidar::gst
