@@ -514,6 +514,7 @@ def hostile_feedback(context):
             wire.ccfb(9, [(n, 0, [(True, 1, 0)]) for n in range(2000)], now),
             wire.ccfb(9, [(ssrc, 0, [(False, 0, 0)] * 16_000)], now),
             wire.ccfb(9, [], now - 1000), honest[:-4] + honest, wire.bye(ssrc),
+            struct.pack(">BBHI", 0x8B, 205, 1, 9),  # no report in it
         ]
         for report in hostile:
             bench.receiver.socket.sendto(report, bench.receiver.sender)
