@@ -15,7 +15,7 @@ run() {
   # An element that is not built has no pipeline to leak.
   for word in "$@"; do
     case $word in
-      dracoenc | dracodec | pointcloudview)
+      dracoenc | dracodec | pointcloudview | ros2src | ros2sink)
         gst-inspect-1.0 "$word" >/dev/null 2>&1 || { echo "skipped $name: no $word"; return; } ;;
     esac
   done
@@ -48,6 +48,7 @@ run view "${source[@]}" ! pointcloudview width=320 height=180 ! fakesink
 run "own codec" "${source[@]}" ! lidarenc ! lidardec ! scanassembler ! fakesink
 run Draco "${source[@]}" ! dracoenc ! dracodec ! scanassembler ! fakesink
 run RTP "${source[@]}" ! lidarenc ! rtplidarpay ! rtplidardepay ! lidardec ! scanassembler ! fakesink
+run "ROS 2" "${live[@]}" ! ros2sink topic=/leaks ros2src topic=/leaks num-buffers=2 ! fakesink
 run SCReAM "${live[@]}" ! lidarenc ! rtplidarpay ! screamtx ! screamrx ! fakesink
 echo "$passed passed, $failed failed"
 [ "$failed" = 0 ]
