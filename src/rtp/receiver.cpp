@@ -45,16 +45,29 @@ std::vector<ReceivedSlice> Receiver::Push(const RtpPacket& packet) {
     return {};
   }
   if (!active_) active_.emplace(packet.ssrc, Reassembler(max_reorder_time_));
+  std::vector<ReceivedSlice> out;
+  Dispatch(packet, units, &out);
+  return out;
+}
+
+void Receiver::Dispatch(const RtpPacket& packet, const std::vector<Unit>& units,
+                        std::vector<ReceivedSlice>* out) {
   if (packet.ssrc == active_->ssrc && active_->reassembler.Continues(units)) {
     active_arrival_ = packet.arrival;
     if (candidate_) candidate_->streak = 0;
-    std::vector<ReceivedSlice> out;
-    active_->reassembler.Push(packet, units, &out);
-    return out;
+    active_->reassembler.Push(packet, units, out);
+    return;
   }
   if (packet.ssrc != active_->ssrc) NoteRival(packet.ssrc);
+  // After a gap all that a sender in need put out comes at once: slices far apart.
+  if (packet.ssrc == active_->ssrc && candidate_ && !GoesOnWithCandidate(packet, units) &&
+      candidate_->reassembler.has_whole_slice() && CandidateGoesOn(packet.arrival)) {
+    Promote(packet.arrival, out);
+    Dispatch(packet, units, out);
+    return;
+  }
   PushToCandidate(packet, units);
-  return CandidateHasWon(packet.arrival) ? Promote(packet.arrival) : std::vector<ReceivedSlice>{};
+  if (CandidateHasWon(packet.arrival)) Promote(packet.arrival, out);
 }
 
 /// Whoever forges SSRCs makes us forget the counts, and no more.
@@ -63,17 +76,20 @@ void Receiver::NoteRival(std::uint32_t ssrc) {
   if (++rivals_[ssrc] >= kRivalPackets) rival_ = ssrc;
 }
 
+bool Receiver::GoesOnWithCandidate(const RtpPacket& packet, const std::vector<Unit>& units) const {
+  return candidate_->ssrc == packet.ssrc && candidate_->reassembler.Continues(units) &&
+         std::abs(SequenceDistance(packet.sequence, candidate_->last_sequence)) <= kMaxSequenceStep;
+}
+
 void Receiver::PushToCandidate(const RtpPacket& packet, const std::vector<Unit>& units) {
-  const bool goes_on =
-      candidate_ && candidate_->ssrc == packet.ssrc && candidate_->reassembler.Continues(units) &&
-      std::abs(SequenceDistance(packet.sequence, candidate_->last_sequence)) <= kMaxSequenceStep;
-  if (!goes_on) {
+  if (!candidate_ || !GoesOnWithCandidate(packet, units)) {
     if (candidate_) booked_.packets.invalid += candidate_->streak;
     candidate_.emplace(packet.ssrc, packet.ssrc == active_->ssrc
                                         ? Reassembler(max_reorder_time_, active_->reassembler)
                                         : Reassembler(max_reorder_time_));
   }
   candidate_->last_sequence = packet.sequence;
+  candidate_->last_arrival = packet.arrival;
   ++candidate_->streak;
   candidate_->reassembler.Push(packet, units, &candidate_->held);
 }
@@ -94,25 +110,24 @@ bool Receiver::CandidateGoesOn(Time now) const {
                                          kScansWithoutClock + static_cast<std::int64_t>(most));
 }
 
-std::vector<ReceivedSlice> Receiver::Promote(Time now) {
+void Receiver::Promote(Time now, std::vector<ReceivedSlice>* out) {
   active_->reassembler.Finish();
-  std::vector<ReceivedSlice> out = std::move(candidate_->held);
+  for (ReceivedSlice& slice : candidate_->held) out->push_back(std::move(slice));
   if (CandidateGoesOn(now)) {
     ++booked_.outages;
-    candidate_->reassembler.GoOn(active_->reassembler, &out);
+    candidate_->reassembler.GoOn(active_->reassembler, out);
   } else {
     ++booked_.restarts;
     if (candidate_->ssrc == active_->ssrc)
-      candidate_->reassembler.StartAnew(active_->reassembler, &out);
+      candidate_->reassembler.StartAnew(active_->reassembler, out);
   }
   Add(active_->reassembler, &booked_);
   active_ = std::move(candidate_);
   active_->held.clear();
-  active_arrival_ = now;
+  active_arrival_ = active_->last_arrival;
   candidate_.reset();
   rivals_.clear();
   rival_.reset();
-  return out;
 }
 
 void Receiver::Finish() {

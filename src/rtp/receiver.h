@@ -49,14 +49,18 @@ class Receiver {
     Reassembler reassembler;
     std::vector<ReceivedSlice> held;  // of a candidate
     std::uint16_t last_sequence = 0;
+    Time last_arrival;
     unsigned streak = 0;  // packets since the active stream's last
   };
 
+  void Dispatch(const RtpPacket& packet, const std::vector<Unit>& units,
+                std::vector<ReceivedSlice>* out);
+  bool GoesOnWithCandidate(const RtpPacket& packet, const std::vector<Unit>& units) const;
   void NoteRival(std::uint32_t ssrc);
   void PushToCandidate(const RtpPacket& packet, const std::vector<Unit>& units);
   bool CandidateHasWon(Time now) const;
   bool CandidateGoesOn(Time now) const;
-  std::vector<ReceivedSlice> Promote(Time now);
+  void Promote(Time now, std::vector<ReceivedSlice>* out);
 
   Duration max_reorder_time_;
   std::optional<Stream> active_;

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <random>
 
 #include "tests/core/rtp/stream.h"
@@ -129,6 +130,24 @@ TEST(Receiver, GivesOutSlicesThatComeAloneAndFarApart) {
   EXPECT_EQ(a.packets.invalid, 0U);
   EXPECT_EQ(a.outages, 5U);
   EXPECT_EQ(a.restarts, 0U);
+}
+
+TEST(Receiver, GivesOutSlicesFromFarApartThatComeAllAtOnce) {
+  // As where a link without capacity keeps them until it has some again.
+  SenderOptions options;
+  options.slice_size = 1'500;
+  std::vector<Wire> through;
+  for (Wire& w : Sender(options).Scans(0, 80)) {
+    if (!w.config && (w.scan % 10 != 5 || w.index != 2)) continue;
+    if (w.scan < 70) w.sent = std::min(w.sent, Time{milliseconds(1'500)});
+    through.push_back(w);
+  }
+  Receiver receiver(milliseconds(100));
+  EXPECT_EQ(DeliverAll(&receiver, through, 1'500),
+            (Names{"5.2", "15.2", "25.2", "35.2", "45.2", "55.2", "65.2", "75.2"}));
+  receiver.Finish();
+  EXPECT_EQ(receiver.accounts().slices.slices_lost, 7 * 39U);
+  EXPECT_EQ(receiver.accounts().restarts, 0U);
 }
 
 TEST(Receiver, IsNotMovedByOnePacketThatClaimsAnotherPlaceOrSsrc) {
