@@ -6,13 +6,18 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
+#include <chrono>
+#include <cmath>
 #include <cstring>
+#include <stdexcept>
 
 namespace lidar::test {
 namespace {
 
 constexpr std::size_t kRtpHeader = 12;
+constexpr std::size_t kIpAndUdp = 28;
 constexpr std::size_t kMaxSlices = 10'000;
 constexpr std::uint32_t kOpenScans = 8;  // whose slices may still get packets
 
@@ -41,6 +46,11 @@ int Open(std::uint16_t* port) {
 bool IsMedia(const std::vector<std::uint8_t>& bytes) {
   // RTCP has packet types 192 to 223 in its second byte (RFC 5761).
   return bytes.size() > kRtpHeader && (bytes[1] < 192 || bytes[1] > 223);
+}
+
+lidar::Time Now() {
+  return lidar::Time{std::chrono::duration_cast<lidar::Duration>(
+      std::chrono::steady_clock::now().time_since_epoch())};
 }
 
 std::uint32_t Ssrc(const std::vector<std::uint8_t>& bytes) {
@@ -158,7 +168,58 @@ bool FaultLink::Seen::IsWhole() const {
   return starts && ends && !hit && (span == sequences.size() || span > 60'000);
 }
 
-void FaultLink::Forward(const Datagram& datagram) { Send(out_, datagram, receiver_port_); }
+void FaultLink::SetCapacity(const std::string& trace) {
+  std::string error;
+  const auto capacity = link::Capacity::ParseTrace(trace, false, &error);
+  if (!capacity) throw std::runtime_error(error);
+  link::BottleneckConfig config;
+  config.origin = Now();
+  config.capacity = *capacity;
+  config.aqm.kind = link::AqmConfig::Kind::kRamp;
+  std::lock_guard lock(mutex_);
+  bottleneck_ = std::make_unique<link::Bottleneck>(config);
+}
+
+void FaultLink::Send(const Datagram& datagram) { Send(out_, datagram, receiver_port_); }
+
+void FaultLink::Forward(const Datagram& datagram) {
+  {
+    std::lock_guard lock(mutex_);
+    if (bottleneck_) {
+      const auto size = static_cast<std::int64_t>(datagram.bytes.size() + kIpAndUdp);
+      bottleneck_->Enqueue(
+          Now(), {DataSize::Bytes(size), static_cast<link::Ecn>(datagram.tos & 3), next_id_});
+      queued_.emplace(next_id_++, datagram);
+      return;
+    }
+  }
+  Send(datagram);
+}
+
+/// Sends what has come through the bottleneck.
+void FaultLink::Deliver() {
+  std::vector<Datagram> through;
+  {
+    std::lock_guard lock(mutex_);
+    if (!bottleneck_) return;
+    for (const link::Outcome& outcome : bottleneck_->Deliver(Now())) {
+      auto node = queued_.extract(outcome.packet.id);
+      if (node.empty() || !outcome.delivered()) continue;
+      node.mapped().tos |= static_cast<int>(outcome.packet.ecn);
+      through.push_back(std::move(node.mapped()));
+    }
+  }
+  for (const Datagram& datagram : through) Send(datagram);
+}
+
+/// How long nothing has to be done but for what comes in.
+int FaultLink::WaitMs() const {
+  constexpr int kLongestMs = 20;
+  std::lock_guard lock(mutex_);
+  if (!bottleneck_ || bottleneck_->NextEventTime() == Time::max()) return kLongestMs;
+  const double ms = 1e3 * Seconds(bottleneck_->NextEventTime() - Now());
+  return static_cast<int>(std::clamp(std::ceil(ms), 0.0, double{kLongestMs}));
+}
 
 void FaultLink::SendGarbage(const Fault& fault, const Datagram& model) {
   for (unsigned i = 0; i < fault.garbage_ratio; ++i) {
@@ -207,7 +268,7 @@ void FaultLink::OnMedia(Datagram datagram) {
 void FaultLink::Run() {
   while (!stop_) {
     std::array<pollfd, 2> fds{pollfd{in_, POLLIN, 0}, pollfd{out_, POLLIN, 0}};
-    poll(fds.data(), fds.size(), 20);
+    poll(fds.data(), fds.size(), WaitMs());
     bool down = false;
     double feedback_loss = 0;
     {
@@ -227,6 +288,7 @@ void FaultLink::Run() {
       sender_port_ = ntohs(from.sin_port);
       OnMedia(*std::move(d));
     }
+    Deliver();
     while (auto d = Receive(out_, &from))
       if (!down && !Chance(feedback_loss) && sender_port_ != 0) Send(in_, *d, sender_port_);
   }

@@ -6,14 +6,17 @@
 #include <atomic>
 #include <cstdint>
 #include <map>
+#include <memory>
 #include <mutex>
 #include <optional>
 #include <random>
 #include <set>
+#include <string>
 #include <thread>
 #include <tuple>
 #include <vector>
 
+#include "src/link/bottleneck.h"
 #include "src/rtp/payload_header.h"
 
 namespace lidar::test {
@@ -61,6 +64,9 @@ class FaultLink {
 
   std::uint16_t port() const { return port_; }
   void Set(const Fault& fault);
+  /// Media passes a queue before a link of this capacity (see link::Capacity::ParseTrace), which
+  /// marks and drops nothing for want of room. From now on; the last rate stays.
+  void SetCapacity(const std::string& trace);
   /// Media goes on from another source port, as after NAT rebinding.
   void Rebind();
   /// Media goes on to another port of 127.0.0.1, as after a change of routes.
@@ -77,12 +83,15 @@ class FaultLink {
   void Send(int socket, const Datagram& datagram, std::uint16_t port);
   void OnMedia(Datagram datagram);
   void Forward(const Datagram& datagram);
+  void Send(const Datagram& datagram);
+  void Deliver();
+  int WaitMs() const;
   void SendGarbage(const Fault& fault, const Datagram& model);
   void Note(const Datagram& datagram, bool hit);
   void Fold(const SliceKey& newest);
   bool Chance(double probability);
 
-  mutable std::mutex mutex_;  // guards fault_, slices_, counts_ and rebind_
+  mutable std::mutex mutex_;  // guards fault_, slices_, counts_, rebind_ and bottleneck_
   Fault fault_;
   struct Seen {
     std::set<std::uint16_t> sequences;
@@ -94,7 +103,11 @@ class FaultLink {
   std::map<SliceKey, Seen> slices_;
   LinkCounts counts_;
   bool rebind_ = false;
+  std::unique_ptr<link::Bottleneck> bottleneck_;  // none: no limit
 
+  // Of the thread
+  std::map<std::uint64_t, Datagram> queued_;  // by the bottleneck's id
+  std::uint64_t next_id_ = 0;
   std::atomic<std::uint16_t> receiver_port_;
   std::uint16_t port_ = 0;
   int in_ = -1;

@@ -7,78 +7,12 @@
 
 #include <csignal>
 #include <functional>
-#include <optional>
 #include <thread>
 
-#include "tests/faults/ends.h"
-#include "tests/faults/fault_link.h"
+#include "tests/faults/fixture.h"
 
 namespace lidar::test {
 namespace {
-
-using std::chrono::milliseconds;
-using std::chrono::seconds;
-
-class Faults : public ::testing::Test {
- protected:
-  Faults() : port_(FreePort()), link_(port_) {}
-
-  void StartSender() {
-    sender_.emplace(&sent_, link_.port());
-    sender_->pipeline().SetState(GST_STATE_PLAYING);
-  }
-  void StartReceiver() {
-    receiver_.emplace(&sent_, port_);
-    receiver_->pipeline().SetState(GST_STATE_PLAYING);
-  }
-  /// Both ends play, and clouds come.
-  void Start() {
-    StartReceiver();
-    StartSender();
-    ASSERT_NE(receiver_->NextCloud(seconds(10)), milliseconds::max());
-    std::this_thread::sleep_for(milliseconds(500));
-  }
-  void Suffer(const Fault& fault, milliseconds length) {
-    link_.Set(fault);
-    std::this_thread::sleep_for(length);
-    link_.Set({});
-  }
-  /// Clouds come again within `limit`; the time goes to the table.
-  void ExpectRecovery(const char* what, milliseconds limit) {
-    const auto time = receiver_->NextCloud(limit);
-    EXPECT_LE(time, limit) << what;
-    std::printf("recovery: %-44s %5lld ms\n", what, static_cast<long long>(time.count()));
-  }
-  /// Lets the sender end well and holds both sides' books against each other: what the payloader
-  /// sent is what the depayloader received or misses, each slice once; what it received is what
-  /// the link let through.
-  /// An encoder in need leaves out slices that the receiver misses too: then `sends_all` is false.
-  void ExpectBooksAgree(bool sends_all = true) {
-    std::this_thread::sleep_for(milliseconds(500));
-    EXPECT_TRUE(sender_->pipeline().Finish(seconds(10)));
-    std::this_thread::sleep_for(milliseconds(300));
-    const std::uint64_t sent = sender_->slices_sent();
-    receiver_->pipeline().SetState(GST_STATE_PAUSED);
-    const Accounts a = receiver_->accounts();
-    const LinkCounts link = link_.counts();
-    EXPECT_EQ(a.received + a.mismatch, link.slices_whole);
-    if (sends_all) {
-      EXPECT_EQ(a.slices(), sent);
-      EXPECT_EQ(a.lost + a.damaged, sent - link.slices_whole);
-    } else {
-      EXPECT_GE(a.slices(), sent);
-    }
-    EXPECT_EQ(receiver_->foreign(), 0U);
-    EXPECT_EQ(receiver_->clouds(), a.received);
-    EXPECT_EQ(sender_->pipeline().Error() + receiver_->pipeline().Error(), "");
-  }
-
-  std::uint16_t port_;
-  SentSlices sent_;
-  FaultLink link_;
-  std::optional<ReceivingEnd> receiver_;
-  std::optional<SendingEnd> sender_;
-};
 
 TEST_F(Faults, NoneLosesNothing) {
   Start();

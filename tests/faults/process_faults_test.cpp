@@ -58,6 +58,31 @@ INSTANTIATE_TEST_SUITE_P(EitherSide, ClockStep,
                          ::testing::Values(Step{"receiver", 3'600}, Step{"receiver", -3'600},
                                            Step{"sender", 3'600}, Step{"sender", -3'600}));
 
+TEST(ClockStepInAGap, CostsNoMoreThanTheGap) {
+  for (const int step : {3'600, -3'600}) {
+    const std::uint16_t port = FreePort();
+    FaultLink link(port);
+    ChildEnd receiver("receive", port);
+    ChildEnd sender("send", link.port());
+    ASSERT_NE(receiver.NextCloud(seconds(10)), milliseconds::max());
+    std::this_thread::sleep_for(milliseconds(500));
+    link.SetCapacity("0 0\n1 6\n");
+    std::this_thread::sleep_for(milliseconds(500));
+    receiver.StepClock(step);
+    sender.StepClock(-step);
+    std::this_thread::sleep_for(milliseconds(500));
+    const auto time = receiver.NextCloud(seconds(3));
+    EXPECT_LT(time, seconds(1));
+    std::printf("recovery: both clocks step in a gap of 1 s %24lld ms\n",
+                static_cast<long long>(time.count()));
+    const std::uint64_t reports = sender.Report().feedback;
+    std::this_thread::sleep_for(seconds(2));
+    EXPECT_GT(sender.Report().feedback, reports + 20);
+    EXPECT_TRUE(sender.Close());
+    EXPECT_TRUE(receiver.Close());
+  }
+}
+
 struct Flood {
   const char* name;
   bool is_rtp;
