@@ -17,10 +17,10 @@ expect() {
   fi
 }
 
-for script in lidar-and-video rtpbin-video record view secure secure-dtls webrtc demo; do
+for script in lidar-and-video rtpbin-video record play view secure secure-dtls webrtc demo; do
   expect 0 "Usage: pipelines/$script.sh" $script.sh --help
 done
-for script in lidar-and-video rtpbin-video record view secure secure-dtls webrtc; do
+for script in lidar-and-video rtpbin-video record play view secure secure-dtls webrtc; do
   expect 2 "there is no option --nonsense" $script.sh --nonsense
 done
 expect 2 '--rate wants a number above zero, not "abc"' lidar-and-video.sh --rate abc
@@ -32,6 +32,8 @@ expect 2 '--low wants a number above zero' webrtc.sh --low 0
 expect 2 '--scans wants a value' record.sh --scans
 expect 2 '--scans wants a whole number' record.sh --scans 1.5
 expect 2 'there is no format las' record.sh --format las
+expect 2 'there is no way to play to disk' play.sh --to disk
+expect 2 '--send wants HOST:PORT' play.sh --send edge
 expect 2 '--scan wants a whole number' view.sh --scan first
 expect 2 'SECONDS wants a whole number' secure.sh five
 exit $failed

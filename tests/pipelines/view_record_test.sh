@@ -1,10 +1,11 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: LGPL-2.1-or-later
-# pipelines/view.sh and pipelines/record.sh leave the files that their help promises.
+# pipelines/view.sh, pipelines/record.sh and pipelines/play.sh leave the files that their help promises.
 set -euo pipefail
 root=$(cd "$(dirname "$0")/../.." && pwd)
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
+. "$root/pipelines/environment.sh"
 passed=0
 failed=0
 
@@ -41,5 +42,18 @@ check "a raw scan has 32 x 512 points of 20 bytes" \
   [ "$(stat -c %s "$folder/bin/scan000000.bin")" = $((32 * 512 * 20)) ]
 check "record.sh takes a folder with a space" "$root/pipelines/record.sh" --scans 1 --output "$folder/my scans" "$small"
 check "and writes there" counts "$folder/my scans" "scan*" 1
+if gst-inspect-1.0 mcapsink >/dev/null 2>&1; then
+  for format in slices clouds; do
+    check "record.sh records $format" "$root/pipelines/record.sh" --seconds 1.5 --piece 1 --format $format \
+      --output "$folder/$format" "$small"
+    check "$format come in pieces" [ -s "$folder/$format/rec-00001.mcap" ]
+  done
+  check "play.sh plays slices to files" "$root/pipelines/play.sh" --to pcd --output "$folder/played" \
+    "$folder/slices/rec-%05d.mcap"
+  check "play.sh plays clouds to files" "$root/pipelines/play.sh" --to ply --topic /points --decoder none \
+    --output "$folder/played" "$folder/clouds/rec-%05d.mcap"
+  for file in scan000005.pcd scan000005.ply; do check "$file is there" [ -s "$folder/played/$file" ]; done
+  check "play.sh sends slices" "$root/pipelines/play.sh" --send 127.0.0.1:5504 "$folder/slices/rec-00000.mcap"
+fi
 echo "$passed passed, $failed failed"
 [ "$failed" = 0 ]

@@ -1,0 +1,159 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "ext/mcap/buffer_writer.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "ext/mcap/sample_layout.h"
+#include "gst/common/buffer_map.h"
+#include "gst/common/cloud_info.h"
+#include "gst/common/gstlidar.h"
+#include "src/cdr/coded_slice.h"
+#include "src/cdr/point_cloud2.h"
+
+namespace lidar::gst {
+namespace {
+
+/// A header of ROS; the stamp 0 stands for an unknown time.
+cdr::Header HeaderOf(GstClockTime time, const std::string& frame_id) {
+  const GstClockTime known = GST_CLOCK_TIME_IS_VALID(time) ? time : 0;
+  return {Time(Duration(static_cast<gint64>(std::min<GstClockTime>(known, G_MAXINT64)))), frame_id};
+}
+
+GstClockTime CaptureTime(GstBuffer* buffer, GstClockTime otherwise) {
+  const GstClockTime time = gst_lidar_buffer_get_capture_time(buffer);
+  return GST_CLOCK_TIME_IS_VALID(time) ? time : otherwise;
+}
+
+class SliceWriter : public BufferWriter {
+ public:
+  explicit SliceWriter(std::string frame_id) : frame_id_(std::move(frame_id)) {}
+  MessageType type() const override { return MessageType::kSlice; }
+
+  bool Write(GstBuffer* buffer, GstClockTime log_time, std::vector<NewMessage>* out) override {
+    const BufferMap map(buffer, GST_MAP_READ);
+    if (!map) return false;
+    cdr::CodedSlice slice;
+    slice.header = HeaderOf(gst_lidar_buffer_get_capture_time(buffer), frame_id_);
+    if (GST_BUFFER_DURATION_IS_VALID(buffer))
+      slice.duration = Duration(static_cast<gint64>(GST_BUFFER_DURATION(buffer)));
+    GstLidarSlice place{};
+    if (gst_lidar_buffer_get_slice(buffer, &place)) {
+      slice.scan_id = place.scan_id;
+      slice.slice_index = place.slice_index;
+      slice.slice_count = place.slice_count;
+      slice.first_column = place.first_column;
+    }
+    slice.discontinuity = GST_BUFFER_FLAG_IS_SET(buffer, GST_BUFFER_FLAG_DISCONT);
+    slice.data = map.view();
+    out->push_back({0, CaptureTime(buffer, log_time), cdr::WriteCodedSlice(slice)});
+    return true;
+  }
+
+ private:
+  const std::string frame_id_;
+};
+
+class CloudWriter : public BufferWriter {
+ public:
+  CloudWriter(CloudInfo info, std::string frame_id)
+      : info_(std::move(info)), frame_id_(std::move(frame_id)) {}
+  MessageType type() const override { return MessageType::kCloud; }
+
+  bool Write(GstBuffer* buffer, GstClockTime log_time, std::vector<NewMessage>* out) override {
+    const BufferMap map(buffer, GST_MAP_READ);
+    if (!map || map.size() != info_.FrameSize()) return false;
+    const GstClockTime stamp = CaptureTime(buffer, log_time);
+    cdr::PointCloud2 cloud;
+    cloud.header = HeaderOf(stamp, frame_id_);
+    cloud.layout = cdr::ToRosLayout({info_.fields, info_.point_step}, info_.width, info_.height);
+    cloud.data = map.view();
+    cloud.is_dense = info_.is_dense;
+    out->push_back({0, stamp, cdr::WritePointCloud2(cloud)});
+    return true;
+  }
+
+ private:
+  const CloudInfo info_;
+  const std::string frame_id_;
+};
+
+/// A packet of samples becomes a message each.
+class ImuWriter : public BufferWriter {
+ public:
+  explicit ImuWriter(std::string frame_id) : frame_id_(std::move(frame_id)) {}
+  MessageType type() const override { return MessageType::kImu; }
+
+  bool Write(GstBuffer* buffer, GstClockTime, std::vector<NewMessage>* out) override {
+    const BufferMap map(buffer, GST_MAP_READ);
+    if (!map || map.size() % kImuSampleSize != 0) return false;
+    ByteReader r(map.view());
+    GstClockTime first = 0;
+    while (r.remaining() > 0) {
+      const GstClockTime time = r.Le64();
+      if (first == 0) first = time;
+      cdr::Imu imu;
+      imu.header = HeaderOf(time, frame_id_);
+      for (double& v : imu.linear_acceleration) v = static_cast<double>(r.LeF32());
+      for (double& v : imu.angular_velocity) v = static_cast<double>(r.LeF32());
+      out->push_back({time > first ? time - first : 0, time, cdr::WriteImu(imu)});
+    }
+    return true;
+  }
+
+ private:
+  const std::string frame_id_;
+};
+
+class OdometryWriter : public BufferWriter {
+ public:
+  explicit OdometryWriter(std::string frame_id) : frame_id_(std::move(frame_id)) {}
+  MessageType type() const override { return MessageType::kOdometry; }
+
+  bool Write(GstBuffer* buffer, GstClockTime log_time, std::vector<NewMessage>* out) override {
+    const BufferMap map(buffer, GST_MAP_READ);
+    if (!map || map.size() != kOdometrySize) return false;
+    const GstClockTime stamp = CaptureTime(buffer, log_time);
+    cdr::Odometry odometry;
+    odometry.header = HeaderOf(stamp, "odom");
+    odometry.child_frame_id = frame_id_;
+    ByteReader r(map.view());
+    for (double& v : odometry.position) v = r.LeF64();
+    for (double& v : odometry.orientation) v = r.LeF64();
+    SetTracking(static_cast<GstLidarTracking>(r.Le64()), &odometry);
+    out->push_back({0, stamp, cdr::WriteOdometry(odometry)});
+    return true;
+  }
+
+ private:
+  const std::string frame_id_;
+};
+
+}  // namespace
+
+std::unique_ptr<BufferWriter> BufferWriter::Make(const GstCaps* caps, const std::string& frame_id,
+                                                 std::string* why) {
+  const auto type = TypeOf(caps);
+  if (!type) {
+    *why = std::string("clouds, coded slices, IMU samples and odometry can be recorded, and no ") +
+           gst_structure_get_name(gst_caps_get_structure(caps, 0));
+    return nullptr;
+  }
+  switch (*type) {
+    case MessageType::kImu:
+      if (IsOurImu(caps)) return std::make_unique<ImuWriter>(frame_id);
+      *why = std::string("the samples of the IMU are not ") + kImuFields;
+      return nullptr;
+    case MessageType::kOdometry:
+      return std::make_unique<OdometryWriter>(frame_id);
+    case MessageType::kSlice:
+      return std::make_unique<SliceWriter>(frame_id);
+    case MessageType::kCloud:
+      break;
+  }
+  auto info = CloudInfo::FromFrameCaps(caps, why);
+  if (!info) return nullptr;
+  return std::make_unique<CloudWriter>(*std::move(info), frame_id);
+}
+
+}  // namespace lidar::gst

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Buffers of one stream as messages.
+#pragma once
+#include <gst/gst.h>
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "ext/mcap/message_types.h"
+
+namespace lidar::gst {
+
+/// A message that a buffer became.
+struct NewMessage {
+  GstClockTime after{};         // since the buffer's own time [ns]
+  GstClockTime publish_time{};  // when it was captured, as far as known [ns since 1970]
+  mcap::Bytes data;
+};
+
+class BufferWriter {
+ public:
+  /// For buffers of `caps`. NULL where those cannot be recorded; `why` then says so in words for a
+  /// user.
+  static std::unique_ptr<BufferWriter> Make(const GstCaps* caps, const std::string& frame_id,
+                                            std::string* why);
+  virtual ~BufferWriter() = default;
+
+  virtual MessageType type() const = 0;
+  /// Appends what `buffer`, logged at `log_time`, becomes. False where it contradicts its caps.
+  virtual bool Write(GstBuffer* buffer, GstClockTime log_time, std::vector<NewMessage>* out) = 0;
+};
+
+}  // namespace lidar::gst

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// The names of a recording's files: one, or numbered pieces.
+#pragma once
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace lidar::gst {
+
+class FileNames {
+ public:
+  /// `location` is a path, or one whose file name has a number: `rec-%05d.mcap`. None where there
+  /// is another conversion, or a second one; `why` then says so in words for a user.
+  static std::optional<FileNames> Parse(const std::string& location, std::string* why);
+
+  bool is_numbered() const { return is_numbered_; }
+  std::string Name(std::uint32_t number) const;
+  /// The folder that the files are in.
+  std::string Folder() const;
+  /// The files that are there, by their numbers. Without a number, the one of that name.
+  std::vector<std::pair<std::uint32_t, std::string>> Existing() const;
+
+ private:
+  std::string before_;  // what stands before and after the number
+  std::string after_;
+  std::size_t digits_ = 0;
+  bool is_numbered_ = false;
+};
+
+}  // namespace lidar::gst

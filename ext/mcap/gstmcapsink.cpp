@@ -1,0 +1,374 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+/**
+ * SECTION:element-mcapsink
+ *
+ * Records coded slices, clouds, IMU samples and odometry into MCAP files.
+ *
+ * |[
+ * gst-launch-1.0 -e lidartestsrc num-buffers=80 ! lidarenc ! mcapsink location=drive.mcap
+ * ]|
+ */
+#include "ext/mcap/gstmcapsink.h"
+
+#include <algorithm>
+#include <memory>
+#include <mutex>
+#include <set>
+#include <utility>
+#include <vector>
+
+#include "ext/mcap/gstmcapstream.h"
+#include "ext/mcap/recorder.h"
+#include "ext/mcap/timeline.h"
+#include "gst/common/enum_type.h"
+#include "gst/common/gstlidar.h"
+#include "gst/common/properties.h"
+#include "gst/common/stats.h"
+
+GST_DEBUG_CATEGORY_STATIC(gst_lidar_mcap_sink_debug);
+#define GST_CAT_DEFAULT gst_lidar_mcap_sink_debug
+
+namespace {
+
+using lidar::gst::NewMessage;
+using lidar::gst::RecordedStream;
+using lidar::gst::Recorder;
+using lidar::gst::RecorderFault;
+using lidar::mcap::Compression;
+
+struct Settings {
+  std::string location;
+  lidar::gst::RecorderSettings recorder;
+  Compression compression = Compression::kZstd;
+  lidar::DataSize chunk_size = lidar::DataSize::Bytes(1 << 20);
+};
+
+using lidar::gst::At;
+using lidar::gst::Int;
+using lidar::gst::RecorderSettings;
+using lidar::mcap::WriterSettings;
+
+GType CompressionType() {
+  static const GEnumValue values[] = {
+      {Int(Compression::kNone), "Chunks as they are", "none"},
+      {Int(Compression::kLz4), "The least CPU time", "lz4"},
+      {Int(Compression::kZstd), "The smallest files", "zstd"},
+      {0, nullptr, nullptr},
+  };
+  static const GType type = lidar::gst::RegisterEnum("GstLidarMcapCompression", values);
+  return type;
+}
+
+struct Counters {
+  guint64 messages = 0;
+  guint64 bytes = 0;
+  guint64 files = 0;
+  guint64 chunks = 0;
+};
+const std::array<lidar::gst::Stat<Counters>, 4> kStats = {{
+    {"messages", &Counters::messages},
+    {"bytes", &Counters::bytes},
+    {"files", &Counters::files},
+    {"chunks", &Counters::chunks},
+}};
+
+struct State {
+  std::mutex mutex;  // guards all but `next_pad`; never held while posting
+  Settings settings;
+  std::unique_ptr<Recorder> recorder;
+  lidar::gst::Timeline timeline;
+  std::set<std::string> topics;
+  std::vector<NewMessage> messages;
+  bool has_slices = false;
+  bool failed = false;
+  Counters counters;
+
+  guint next_pad = 0;  // under the object's lock
+};
+
+lidar::gst::StructurePtr Stats(GObject* object);
+
+const std::array<lidar::gst::Property<Settings>, 9> kProperties = {{
+    {"location", "File to write; with a number (rec-%05d.mcap) a file after the other",
+     &Settings::location},
+    {"compression", "Of the chunks that get smaller by it",
+     lidar::gst::EnumField<Settings, Compression>{&Settings::compression, CompressionType}},
+    {"chunk-size", "A chunk is written once it is larger [bytes]", &Settings::chunk_size, 1024,
+     1 << 26},
+    {"chunk-duration", "... or once it lasts longer; what a crash costs at most [ns]",
+     At<&Settings::recorder, &RecorderSettings::writer, &WriterSettings::chunk_duration>, 1,
+     3600e9},
+    {"max-file-size", "A file ends with the scan that reaches this; 0: no limit [bytes]",
+     At<&Settings::recorder, &RecorderSettings::max_file_size>},
+    {"max-file-duration", "A file ends with the scan that reaches this; 0: no limit [ns]",
+     At<&Settings::recorder, &RecorderSettings::max_file_duration>},
+    {"max-files", "The oldest file is removed before there are more; 0: no limit",
+     At<&Settings::recorder, &RecorderSettings::max_files>},
+    {"sync-to-disk", "Each chunk is on the disk, not in memory, before the next begins",
+     At<&Settings::recorder, &RecorderSettings::sync>},
+    {"stats", "messages, bytes, files, chunks", Stats},
+}};
+
+}  // namespace
+
+struct _GstLidarMcapSink {
+  GstBin parent;
+  State* state;
+};
+
+G_DEFINE_TYPE(GstLidarMcapSink, gst_lidar_mcap_sink, GST_TYPE_BIN)
+GST_ELEMENT_REGISTER_DEFINE(mcapsink, "mcapsink", GST_RANK_NONE, GST_TYPE_LIDAR_MCAP_SINK)
+
+namespace {
+
+lidar::gst::StructurePtr Stats(GObject* object) {
+  State& state = *GST_LIDAR_MCAP_SINK(object)->state;
+  std::lock_guard lock(state.mutex);
+  Counters counters = state.counters;
+  if (state.recorder) counters.chunks = state.recorder->chunks();
+  return lidar::gst::ToStructure("mcap-sink-stats", kStats, counters);
+}
+
+void PostFault(GstLidarMcapSink* self, const RecorderFault& fault) {
+  const gchar* reason = g_strerror(fault.error);
+  if (fault.error == ENOSPC || fault.error == EDQUOT)
+    GST_ELEMENT_ERROR(self, RESOURCE, NO_SPACE_LEFT,
+                      ("No space is left for \"%s\".", fault.path.c_str()),
+                      ("What was recorded before is complete. %s", reason));
+  else if (fault.opening)
+    GST_ELEMENT_ERROR(self, RESOURCE, OPEN_WRITE,
+                      ("Cannot write \"%s\": %s.", fault.path.c_str(), reason), (nullptr));
+  else
+    GST_ELEMENT_ERROR(self, RESOURCE, WRITE,
+                      ("Writing \"%s\" failed: %s.", fault.path.c_str(), reason),
+                      ("What was recorded before is complete."));
+}
+
+/// Tells the application of each file that is complete.
+void PostFinished(GstLidarMcapSink* self, const std::vector<lidar::gst::RecordedFile>& files) {
+  for (const auto& file : files) {
+    const auto& s = file.statistics;
+    GST_INFO_OBJECT(self, "%s is complete", file.path.c_str());
+    gst_element_post_message(
+        GST_ELEMENT(self),
+        gst_message_new_element(
+            GST_OBJECT(self),
+            gst_structure_new("mcap-file-complete", "location", G_TYPE_STRING, file.path.c_str(),
+                              "messages", G_TYPE_UINT64, guint64{s.messages}, "size", G_TYPE_UINT64,
+                              guint64{file.size}, "start-time", G_TYPE_UINT64,
+                              guint64{s.start_time}, "end-time", G_TYPE_UINT64, guint64{s.end_time},
+                              nullptr)));
+  }
+}
+
+/// Runs `work` on the recorder under the lock, and posts what comes of it without. False where the
+/// recording is over.
+template <class Work>
+bool WithRecorder(GstLidarMcapSink* self, Work work) {
+  State& state = *self->state;
+  std::optional<RecorderFault> fault;
+  std::vector<lidar::gst::RecordedFile> finished;
+  {
+    std::lock_guard lock(state.mutex);
+    if (!state.recorder || state.failed) return false;
+    fault = work(&state);
+    finished = state.recorder->TakeFinished();
+    state.counters.files += finished.size();
+    state.failed = fault.has_value();
+  }
+  PostFinished(self, finished);
+  if (fault) PostFault(self, *fault);
+  return !fault;
+}
+
+/// A recorder for the settings; NULL and a message where there can be none.
+bool Start(GstLidarMcapSink* self) {
+  State& state = *self->state;
+  std::string why = "there is no location";
+  std::optional<RecorderFault> fault;
+  {
+    std::lock_guard lock(state.mutex);
+    Settings s = state.settings;
+    s.recorder.writer.compression = s.compression;
+    s.recorder.writer.chunk_size = static_cast<std::size_t>(s.chunk_size.bytes());
+    const bool limited = s.recorder.max_file_size > 0 || s.recorder.max_files > 0 ||
+                         s.recorder.max_file_duration > lidar::Duration{};
+    auto names = s.location.empty() ? std::nullopt : lidar::gst::FileNames::Parse(s.location, &why);
+    if (names && limited && !names->is_numbered()) {
+      why = "several files need a number in their name, as in rec-%05d.mcap";
+      names.reset();
+    }
+    state.timeline = {};
+    state.counters = {};
+    state.topics.clear();
+    state.has_slices = state.failed = false;
+    state.recorder.reset();
+    if (names) {
+      state.recorder = std::make_unique<Recorder>(s.recorder, *std::move(names));
+      fault = state.recorder->Check();
+      if (!fault) return true;
+    }
+  }
+  if (fault)
+    PostFault(self, *fault);
+  else
+    GST_ELEMENT_ERROR(self, RESOURCE, SETTINGS, ("Wrong location: %s.", why.c_str()), (nullptr));
+  return false;
+}
+
+void Finish(GstLidarMcapSink* self) {
+  WithRecorder(self, [](State* state) { return state->recorder->Finish(); });
+}
+
+GstStateChangeReturn ChangeState(GstElement* element, GstStateChange transition) {
+  auto* self = GST_LIDAR_MCAP_SINK(element);
+  if (transition == GST_STATE_CHANGE_READY_TO_PAUSED && !Start(self))
+    return GST_STATE_CHANGE_FAILURE;
+  const auto result =
+      GST_ELEMENT_CLASS(gst_lidar_mcap_sink_parent_class)->change_state(element, transition);
+  if (transition == GST_STATE_CHANGE_PAUSED_TO_READY) Finish(self);
+  return result;
+}
+
+GstPad* RequestPad(GstElement* element, GstPadTemplate* pad_template, const gchar* wanted,
+                   const GstCaps*) {
+  auto* self = GST_LIDAR_MCAP_SINK(element);
+  std::string name;
+  do {
+    GST_OBJECT_LOCK(self);
+    const guint number = self->state->next_pad++;
+    GST_OBJECT_UNLOCK(self);
+    name = wanted != nullptr ? wanted : "sink_" + std::to_string(number);
+    if (const lidar::gst::PadPtr taken(gst_element_get_static_pad(element, name.c_str())); !taken)
+      break;
+  } while (wanted == nullptr);
+  // The stream is called as its pad, so that sink_0::topic reaches it.
+  GstElement* stream = gst_lidar_mcap_stream_new(self, name.c_str());
+  if (!gst_bin_add(GST_BIN(self), stream)) return nullptr;
+  const lidar::gst::PadPtr target(gst_element_get_static_pad(stream, "sink"));
+  GstPad* pad = gst_ghost_pad_new_from_template(name.c_str(), target.get(), pad_template);
+  gst_pad_set_active(pad, TRUE);
+  if (gst_element_add_pad(element, pad)) {
+    gst_element_sync_state_with_parent(stream);
+    return pad;
+  }
+  gst_bin_remove(GST_BIN(self), stream);
+  return nullptr;
+}
+
+void ReleasePad(GstElement* element, GstPad* pad) {
+  const lidar::gst::StringPtr name(gst_pad_get_name(pad));
+  GstElement* stream = gst_bin_get_by_name(GST_BIN(element), name.get());
+  gst_pad_set_active(pad, FALSE);
+  gst_element_remove_pad(element, pad);
+  if (stream == nullptr) return;
+  gst_element_set_locked_state(stream, TRUE);
+  gst_element_set_state(stream, GST_STATE_NULL);
+  gst_bin_remove(GST_BIN(element), stream);
+  gst_object_unref(stream);
+}
+
+/// True where every stream has ended.
+bool HaveAllEnded(GstLidarMcapSink* self) {
+  bool all = true;
+  GST_OBJECT_LOCK(self);
+  for (GList* child = GST_BIN_CHILDREN(self); child != nullptr; child = child->next)
+    all = all && gst_lidar_mcap_stream_ended(GST_LIDAR_MCAP_STREAM(child->data));
+  GST_OBJECT_UNLOCK(self);
+  return all;
+}
+
+}  // namespace
+
+namespace lidar::gst {
+
+std::string McapSinkFreeTopic(GstLidarMcapSink* sink, const std::string& wanted) {
+  State& state = *sink->state;
+  std::lock_guard lock(state.mutex);
+  std::string topic = wanted;
+  for (int i = 1; !state.topics.insert(topic).second; ++i) topic = wanted + "_" + std::to_string(i);
+  return topic;
+}
+
+bool McapSinkAddChannel(GstLidarMcapSink* sink, const BufferWriter& writer,
+                        const std::string& topic, const GstCaps* caps, RecordedStream* stream) {
+  State& state = *sink->state;
+  std::lock_guard lock(state.mutex);
+  if (!state.recorder) return false;
+  state.topics.insert(topic);
+  state.has_slices = state.has_slices || writer.type() == MessageType::kSlice;
+  mcap::Catalogue& catalogue = state.recorder->catalogue();
+  mcap::Channel channel;
+  channel.schema_id = catalogue.AddSchema(SchemaOf(writer.type()));
+  channel.topic = topic;
+  channel.message_encoding = "cdr";
+  channel.metadata = {{kCapsKey, CapsToText(caps)}, {kQosKey, ""}};
+  stream->channel_id = catalogue.AddChannel(std::move(channel));
+  return stream->channel_id != 0;
+}
+
+GstFlowReturn McapSinkTake(GstLidarMcapSink* sink, BufferWriter* writer, RecordedStream* stream,
+                           GstBuffer* buffer, GstClockTime running_time) {
+  const auto known = [](GstClockTime time) {
+    return GST_CLOCK_TIME_IS_VALID(time) ? std::optional<std::uint64_t>(time) : std::nullopt;
+  };
+  bool understood = true;
+  const bool recorded = WithRecorder(sink, [&](State* state) -> std::optional<RecorderFault> {
+    const auto now = static_cast<std::uint64_t>(g_get_real_time()) * 1'000;
+    const std::uint64_t log_time = state->timeline.LogTime(
+        {known(running_time), known(gst_lidar_buffer_get_capture_time(buffer)), now});
+    state->messages.clear();
+    understood = writer->Write(buffer, log_time, &state->messages);
+    GstLidarSlice slice{};
+    gst_lidar_buffer_get_slice(buffer, &slice);
+    const bool is_slice = writer->type() == MessageType::kSlice;
+    const bool begins_scan = is_slice ? slice.slice_index == 0 : !state->has_slices;
+    for (const NewMessage& message : state->messages) {
+      const mcap::MessageHeader header{stream->channel_id, stream->sequence++,
+                                       log_time + message.after, message.publish_time};
+      ++state->counters.messages;
+      state->counters.bytes += message.data.size();
+      const ByteView data{message.data.data(), message.data.size()};
+      if (auto fault = state->recorder->Add(header, data, begins_scan)) return fault;
+    }
+    return std::nullopt;
+  });
+  if (!understood)
+    GST_ELEMENT_ERROR(sink, STREAM, FORMAT, ("A buffer has another size than its caps say."),
+                      ("%" GST_PTR_FORMAT, static_cast<gpointer>(buffer)));
+  return recorded && understood ? GST_FLOW_OK : GST_FLOW_ERROR;
+}
+
+void McapSinkStreamEnded(GstLidarMcapSink* sink) {
+  if (HaveAllEnded(sink)) Finish(sink);
+}
+
+void McapSinkFlushed(GstLidarMcapSink* sink) {
+  std::lock_guard lock(sink->state->mutex);
+  sink->state->timeline.Restart();
+}
+
+}  // namespace lidar::gst
+
+static GstStaticPadTemplate sink_template =
+    GST_STATIC_PAD_TEMPLATE("sink_%u", GST_PAD_SINK, GST_PAD_REQUEST, GST_STATIC_CAPS_ANY);
+
+static void gst_lidar_mcap_sink_init(GstLidarMcapSink* self) {
+  self->state = new State;
+  GST_OBJECT_FLAG_SET(self, GST_ELEMENT_FLAG_SINK);
+}
+
+static void gst_lidar_mcap_sink_class_init(GstLidarMcapSinkClass* klass) {
+  GST_DEBUG_CATEGORY_INIT(gst_lidar_mcap_sink_debug, "mcapsink", 0, "Recordings");
+  auto* object = G_OBJECT_CLASS(klass);
+  lidar::gst::OwnState<GstLidarMcapSink, gst_lidar_mcap_sink_parent_class>(object);
+  lidar::gst::ServeProperties<GstLidarMcapSink, kProperties>(object);
+  auto* element = GST_ELEMENT_CLASS(klass);
+  element->change_state = ChangeState;
+  element->request_new_pad = RequestPad;
+  element->release_pad = ReleasePad;
+  gst_element_class_add_static_pad_template(element, &sink_template);
+  gst_element_class_set_static_metadata(
+      element, "MCAP recorder", "Sink/File",
+      "Records slices, clouds, IMU samples and odometry into MCAP files", "gst-lidar");
+}

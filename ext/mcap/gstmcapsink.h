@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Records streams into MCAP files.
+#pragma once
+#include <gst/gst.h>
+
+#include <string>
+
+#include "ext/mcap/buffer_writer.h"
+
+G_BEGIN_DECLS
+#define GST_TYPE_LIDAR_MCAP_SINK (gst_lidar_mcap_sink_get_type())
+G_DECLARE_FINAL_TYPE(GstLidarMcapSink, gst_lidar_mcap_sink, GST, LIDAR_MCAP_SINK, GstBin)
+GST_ELEMENT_REGISTER_DECLARE(mcapsink)
+G_END_DECLS
+
+namespace lidar::gst {
+
+/// What a stream of the sink has to say about its next buffers.
+struct RecordedStream {
+  std::uint16_t channel_id = 0;
+  std::uint32_t sequence = 0;
+};
+
+/// For the streams of the sink, from their threads. Errors are posted on the sink.
+bool McapSinkAddChannel(GstLidarMcapSink* sink, const BufferWriter& writer,
+                        const std::string& topic, const GstCaps* caps, RecordedStream* stream);
+/// `running_time` may be GST_CLOCK_TIME_NONE.
+GstFlowReturn McapSinkTake(GstLidarMcapSink* sink, BufferWriter* writer, RecordedStream* stream,
+                           GstBuffer* buffer, GstClockTime running_time);
+/// A stream ended; with the last one the recording is complete.
+void McapSinkStreamEnded(GstLidarMcapSink* sink);
+/// Running times begin anew.
+void McapSinkFlushed(GstLidarMcapSink* sink);
+/// A topic that no other stream has.
+std::string McapSinkFreeTopic(GstLidarMcapSink* sink, const std::string& wanted);
+
+}  // namespace lidar::gst

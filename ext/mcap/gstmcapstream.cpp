@@ -1,0 +1,141 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "ext/mcap/gstmcapstream.h"
+
+#include <atomic>
+#include <memory>
+#include <mutex>
+#include <utility>
+
+#include "gst/common/properties.h"
+#include "gst/common/refused_caps.h"
+
+namespace {
+
+using lidar::gst::BufferWriter;
+
+struct StreamSettings {
+  std::string topic;
+  std::string frame_id = "lidar";
+};
+
+const std::array<lidar::gst::Property<StreamSettings>, 2> kProperties = {{
+    {"topic", "Where its messages go; NULL: /points, /slices, /imu or /odometry",
+     &StreamSettings::topic},
+    {"frame-id", "The sensor's frame, as messages name it", &StreamSettings::frame_id},
+}};
+
+struct State {
+  GstLidarMcapSink* sink = nullptr;
+  std::atomic<bool> ended{false};
+  std::mutex mutex;  // guards the settings
+  StreamSettings settings;
+  // Only the streaming thread uses these.
+  std::unique_ptr<BufferWriter> writer;
+  lidar::gst::RecordedStream stream;
+  std::string topic;
+  lidar::gst::RefusedCaps refused;
+};
+
+}  // namespace
+
+struct _GstLidarMcapStream {
+  GstBaseSink parent;
+  State* state;
+};
+
+G_DEFINE_TYPE(GstLidarMcapStream, gst_lidar_mcap_stream, GST_TYPE_BASE_SINK)
+
+namespace {
+
+State& StateOf(gpointer self) { return *GST_LIDAR_MCAP_STREAM(self)->state; }
+
+StreamSettings Snapshot(State* state) {
+  std::lock_guard lock(state->mutex);
+  return state->settings;
+}
+
+gboolean SetCaps(GstBaseSink* base, GstCaps* caps) {
+  State& state = StateOf(base);
+  const StreamSettings settings = Snapshot(&state);
+  std::string why;
+  state.writer = BufferWriter::Make(caps, settings.frame_id, &why);
+  if (!state.writer) {
+    if (state.refused.Note(caps))
+      GST_ELEMENT_ERROR(state.sink, STREAM, WRONG_TYPE, ("Cannot be recorded: %s.", why.c_str()),
+                        ("%" GST_PTR_FORMAT, static_cast<gpointer>(caps)));
+    return FALSE;
+  }
+  if (state.topic.empty()) {
+    const std::string usual(lidar::gst::TopicOf(state.writer->type()));
+    state.topic =
+        settings.topic.empty() ? lidar::gst::McapSinkFreeTopic(state.sink, usual) : settings.topic;
+  }
+  return lidar::gst::McapSinkAddChannel(state.sink, *state.writer, state.topic, caps,
+                                        &state.stream);
+}
+
+GstFlowReturn Render(GstBaseSink* base, GstBuffer* buffer) {
+  State& state = StateOf(base);
+  if (!state.writer) return GST_FLOW_NOT_NEGOTIATED;
+  const GstClockTime running_time =
+      base->segment.format == GST_FORMAT_TIME && GST_BUFFER_PTS_IS_VALID(buffer)
+          ? gst_segment_to_running_time(&base->segment, GST_FORMAT_TIME, GST_BUFFER_PTS(buffer))
+          : GST_CLOCK_TIME_NONE;
+  return lidar::gst::McapSinkTake(state.sink, state.writer.get(), &state.stream, buffer,
+                                  running_time);
+}
+
+gboolean Event(GstBaseSink* base, GstEvent* event) {
+  State& state = StateOf(base);
+  if (GST_EVENT_TYPE(event) == GST_EVENT_FLUSH_STOP) {
+    state.ended = false;
+    lidar::gst::McapSinkFlushed(state.sink);
+  } else if (GST_EVENT_TYPE(event) == GST_EVENT_EOS) {
+    // Before the base class tells the application.
+    state.ended = true;
+    lidar::gst::McapSinkStreamEnded(state.sink);
+  }
+  return GST_BASE_SINK_CLASS(gst_lidar_mcap_stream_parent_class)->event(base, event);
+}
+
+gboolean Stop(GstBaseSink* base) {
+  State& state = StateOf(base);
+  state.writer.reset();
+  state.stream = {};
+  state.topic.clear();
+  state.refused.Reset();
+  state.ended = false;
+  return TRUE;
+}
+
+}  // namespace
+
+static GstStaticPadTemplate sink_template =
+    GST_STATIC_PAD_TEMPLATE("sink", GST_PAD_SINK, GST_PAD_ALWAYS, GST_STATIC_CAPS_ANY);
+
+static void gst_lidar_mcap_stream_init(GstLidarMcapStream* self) { self->state = new State; }
+
+static void gst_lidar_mcap_stream_class_init(GstLidarMcapStreamClass* klass) {
+  auto* object = G_OBJECT_CLASS(klass);
+  lidar::gst::OwnState<GstLidarMcapStream, gst_lidar_mcap_stream_parent_class>(object);
+  lidar::gst::ServeProperties<GstLidarMcapStream, kProperties>(object);
+  auto* element = GST_ELEMENT_CLASS(klass);
+  gst_element_class_add_static_pad_template(element, &sink_template);
+  gst_element_class_set_static_metadata(element, "Stream of an MCAP recording", "Sink/File",
+                                        "Gives the buffers of one stream to mcapsink", "gst-lidar");
+  auto* base = GST_BASE_SINK_CLASS(klass);
+  base->set_caps = SetCaps;
+  base->render = Render;
+  base->event = Event;
+  base->stop = Stop;
+}
+
+GstElement* gst_lidar_mcap_stream_new(GstLidarMcapSink* sink, const gchar* name) {
+  // A sparse stream must not hold up the start of the others, and disks know no time.
+  auto* stream = static_cast<GstElement*>(g_object_new(GST_TYPE_LIDAR_MCAP_STREAM, "name", name,
+                                                       "async", FALSE, "sync", FALSE, nullptr));
+  StateOf(stream).sink = sink;
+  return stream;
+}
+
+gboolean gst_lidar_mcap_stream_ended(GstLidarMcapStream* stream) { return StateOf(stream).ended; }

@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// One stream of an mcapsink, inside of it.
+#pragma once
+#include <gst/base/gstbasesink.h>
+
+#include "ext/mcap/gstmcapsink.h"
+
+G_BEGIN_DECLS
+#define GST_TYPE_LIDAR_MCAP_STREAM (gst_lidar_mcap_stream_get_type())
+G_DECLARE_FINAL_TYPE(GstLidarMcapStream, gst_lidar_mcap_stream, GST, LIDAR_MCAP_STREAM, GstBaseSink)
+
+/** @sink outlives the stream. Floating. */
+GstElement* gst_lidar_mcap_stream_new(GstLidarMcapSink* sink, const gchar* name);
+/** TRUE from its EOS to the next flush. */
+gboolean gst_lidar_mcap_stream_ended(GstLidarMcapStream* stream);
+G_END_DECLS

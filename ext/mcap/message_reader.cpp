@@ -1,0 +1,166 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "ext/mcap/message_reader.h"
+
+#include <algorithm>
+#include <cstring>
+#include <optional>
+#include <utility>
+
+#include "ext/mcap/sample_layout.h"
+#include "gst/common/buffer_map.h"
+#include "gst/common/cloud_info.h"
+#include "gst/common/gstlidar.h"
+#include "src/base/byte_writer.h"
+#include "src/cdr/coded_slice.h"
+#include "src/cdr/point_cloud2.h"
+
+namespace lidar::gst {
+namespace {
+
+constexpr guint kMaxSlices = 4'096;
+
+void SetCaptureTime(const cdr::Header& header, GstBuffer* buffer) {
+  const gint64 ns = header.stamp.time_since_epoch().count();
+  if (ns > 0) gst_lidar_buffer_set_capture_time(buffer, static_cast<GstClockTime>(ns));
+}
+
+class SliceReader : public MessageReader {
+ public:
+  explicit SliceReader(CapsPtr caps) { caps_ = std::move(caps); }
+
+  BufferPtr Read(ByteView message) override {
+    const auto slice = cdr::ReadCodedSlice(message);
+    if (!slice || slice->slice_count > kMaxSlices ||
+        (slice->slice_count > 0 && slice->slice_index >= slice->slice_count))
+      return nullptr;
+    BufferPtr buffer(gst_buffer_new_memdup(slice->data.data, slice->data.size));
+    SetCaptureTime(slice->header, buffer.get());
+    if (slice->duration)
+      GST_BUFFER_DURATION(buffer.get()) = static_cast<GstClockTime>(slice->duration->count());
+    if (slice->discontinuity) GST_BUFFER_FLAG_SET(buffer.get(), GST_BUFFER_FLAG_DISCONT);
+    if (slice->slice_count > 0) {
+      const GstLidarSlice place{slice->scan_id, slice->slice_index, slice->slice_count,
+                                slice->first_column};
+      gst_lidar_buffer_set_slice(buffer.get(), &place);
+    }
+    return buffer;
+  }
+};
+
+class CloudReader : public MessageReader {
+ public:
+  /// `caps` may be NULL: ROS messages say nearly all.
+  explicit CloudReader(CapsPtr caps) {
+    if (caps) info_ = CloudInfo::FromFrameCaps(caps.get());
+    if (info_) caps_ = std::move(caps);
+  }
+
+  BufferPtr Read(ByteView message) override {
+    const auto cloud = cdr::ReadPointCloud2(message);
+    if (!cloud || !Follow(*cloud)) return nullptr;
+    BufferPtr buffer(gst_buffer_new_allocate(nullptr, converter_->size(), nullptr));
+    BufferMap map(buffer.get(), GST_MAP_WRITE);
+    if (!map) return nullptr;
+    if (!converter_->copies()) std::memset(map.data(), 0, map.size());  // gaps between fields
+    if (!converter_->Convert(*cloud, map.data())) return nullptr;
+    SetCaptureTime(cloud->header, buffer.get());
+    GST_BUFFER_DURATION(buffer.get()) = info_->ScanDuration();
+    return buffer;
+  }
+
+ private:
+  /// Makes converter and caps where the message has another layout than the last one.
+  bool Follow(const cdr::PointCloud2& cloud) {
+    if (converter_ && converter_->layout() == cloud.layout && info_->is_dense == cloud.is_dense)
+      return true;
+    // What was recorded from our caps comes back as it was, gaps between fields included.
+    std::optional<cdr::PointLayout> wanted;
+    if (info_) wanted = cdr::PointLayout{info_->fields, info_->point_step};
+    converter_ = cdr::PointConverter::Make(cloud.layout, wanted);
+    if (!converter_ && wanted) converter_ = cdr::PointConverter::Make(cloud.layout);
+    if (!converter_ || cloud.layout.width == 0 || cloud.layout.height == 0) return false;
+    CloudInfo info = info_.value_or(CloudInfo());
+    info.width = cloud.layout.width;
+    info.height = cloud.layout.height;
+    info.point_step = converter_->points().point_step;
+    info.fields = converter_->points().fields;
+    info.is_dense = cloud.is_dense;
+    if (info.sensor_model && info.sensor_model->beams.size() != info.height)
+      info.sensor_model.reset();
+    info_ = std::move(info);
+    CapsPtr caps(info_->ToCaps());
+    if (!caps_ || !gst_caps_is_equal(caps.get(), caps_.get())) caps_ = std::move(caps);
+    return true;
+  }
+
+  std::optional<CloudInfo> info_;
+  std::optional<cdr::PointConverter> converter_;
+};
+
+class ImuReader : public MessageReader {
+ public:
+  explicit ImuReader(CapsPtr caps) {
+    if (caps && IsOurImu(caps.get()))
+      caps_ = std::move(caps);
+    else
+      caps_.reset(gst_caps_new_simple(GST_LIDAR_IMU_MEDIA_TYPE, "sample-size", G_TYPE_INT,
+                                      static_cast<gint>(kImuSampleSize), "fields", G_TYPE_STRING,
+                                      kImuFields, nullptr));
+  }
+
+  BufferPtr Read(ByteView message) override {
+    const auto imu = cdr::ReadImu(message);
+    if (!imu) return nullptr;
+    mcap::Bytes bytes;
+    ByteWriter w(&bytes);
+    w.Le64(static_cast<std::uint64_t>(
+        std::max<gint64>(imu->header.stamp.time_since_epoch().count(), 0)));
+    for (const double v : imu->linear_acceleration) w.LeF32(static_cast<float>(v));
+    for (const double v : imu->angular_velocity) w.LeF32(static_cast<float>(v));
+    BufferPtr buffer(gst_buffer_new_memdup(bytes.data(), bytes.size()));
+    SetCaptureTime(imu->header, buffer.get());
+    return buffer;
+  }
+};
+
+class OdometryReader : public MessageReader {
+ public:
+  OdometryReader() { caps_.reset(gst_caps_new_empty_simple(GST_LIDAR_ODOMETRY_MEDIA_TYPE)); }
+
+  BufferPtr Read(ByteView message) override {
+    const auto odometry = cdr::ReadOdometry(message);
+    if (!odometry) return nullptr;
+    mcap::Bytes bytes;
+    ByteWriter w(&bytes);
+    for (const double v : odometry->position) w.LeF64(v);
+    for (const double v : odometry->orientation) w.LeF64(v);
+    w.Le64(static_cast<std::uint64_t>(TrackingOf(*odometry)));
+    BufferPtr buffer(gst_buffer_new_memdup(bytes.data(), bytes.size()));
+    SetCaptureTime(odometry->header, buffer.get());
+    return buffer;
+  }
+};
+
+}  // namespace
+
+std::unique_ptr<MessageReader> MessageReader::Make(const mcap::Schema& schema,
+                                                   const mcap::Channel& channel) {
+  const auto type = TypeOf(schema);
+  if (!type || channel.message_encoding != "cdr") return nullptr;
+  const auto text = channel.metadata.find(kCapsKey);
+  CapsPtr caps(text == channel.metadata.end() ? nullptr : CapsFromText(text->second, *type));
+  switch (*type) {
+    case MessageType::kCloud:
+      return std::make_unique<CloudReader>(std::move(caps));
+    case MessageType::kImu:
+      return std::make_unique<ImuReader>(std::move(caps));
+    case MessageType::kOdometry:
+      return std::make_unique<OdometryReader>();
+    case MessageType::kSlice:
+      break;
+  }
+  // Without caps nobody could decode the slices.
+  return caps ? std::make_unique<SliceReader>(std::move(caps)) : nullptr;
+}
+
+}  // namespace lidar::gst

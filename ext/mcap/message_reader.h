@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Messages of one channel as buffers.
+#pragma once
+#include <gst/gst.h>
+
+#include <memory>
+
+#include "ext/mcap/message_types.h"
+#include "gst/common/refs.h"
+
+namespace lidar::gst {
+
+class MessageReader {
+ public:
+  /// NULL where messages of that channel are none that we know.
+  static std::unique_ptr<MessageReader> Make(const mcap::Schema& schema,
+                                             const mcap::Channel& channel);
+  virtual ~MessageReader() = default;
+
+  /// Of the buffers from the last Read() on; NULL where only a message can tell.
+  GstCaps* caps() const { return caps_.get(); }
+  /// Null for what is damaged. Any bytes may come. The buffer has no PTS.
+  virtual BufferPtr Read(ByteView message) = 0;
+
+ protected:
+  CapsPtr caps_;
+};
+
+}  // namespace lidar::gst

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// The messages in our recordings, and their definitions in ROS 2's language.
+#pragma once
+#include <gst/gst.h>
+
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "src/mcap/records.h"
+
+namespace lidar::gst {
+
+enum class MessageType { kCloud, kImu, kOdometry, kSlice };
+
+/// Schema of the messages of that type, without an id.
+mcap::Schema SchemaOf(MessageType type);
+/// None for a schema that is none of ours.
+std::optional<MessageType> TypeOf(const mcap::Schema& schema);
+/// What buffers of `caps` become; none where they cannot be recorded.
+std::optional<MessageType> TypeOf(const GstCaps* caps);
+/// Where messages of that type go unless a topic is given.
+std::string_view TopicOf(MessageType type);
+
+/// Caps in the metadata of a channel, and back. NULL where `text` comes from elsewhere and is not
+/// the fixed caps of `type`.
+std::string CapsToText(const GstCaps* caps);
+GstCaps* CapsFromText(const std::string& text, MessageType type);
+
+/// The entries of a channel's metadata.
+constexpr const char* kCapsKey = "gst_caps";
+constexpr const char* kQosKey = "offered_qos_profiles";  // of rosbag2; empty: its default
+
+}  // namespace lidar::gst

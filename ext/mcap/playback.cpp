@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "ext/mcap/playback.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "ext/mcap/file_names.h"
+#include "ext/mcap/input_file.h"
+
+namespace lidar::gst {
+namespace {
+
+std::unique_ptr<mcap::Reader> OpenReader(const std::string& path, std::string* why) {
+  auto input = InputFile::Open(path, why);
+  return input ? mcap::Reader::Open(std::move(input), why) : nullptr;
+}
+
+}  // namespace
+
+std::unique_ptr<Playback> Playback::Open(const std::string& location, std::string* why) {
+  const auto names = FileNames::Parse(location, why);
+  if (!names) return nullptr;
+  const auto existing = names->Existing();
+  if (existing.empty()) *why = "there is no such file";
+  std::unique_ptr<Playback> playback(new Playback);
+  for (const auto& [number, path] : existing) {
+    const auto reader = OpenReader(path, why);
+    if (reader != nullptr && !reader->index().empty()) {
+      playback->Add(path, reader->index());
+      continue;
+    }
+    if (reader != nullptr) *why = "it holds no messages";
+    ++playback->unreadable_files_;
+  }
+  return playback->files_.empty() ? nullptr : std::move(playback);
+}
+
+void Playback::Add(const std::string& path, const mcap::FileIndex& index) {
+  start_time_ = files_.empty() ? index.start_time() : std::min(start_time_, index.start_time());
+  end_time_ = std::max(end_time_, index.end_time());
+  unclosed_files_ += index.complete ? 0 : 1;
+  files_.push_back({path, index.start_time(), index.end_time()});
+  for (const auto& [id, channel] : index.channels) {
+    const bool known =
+        std::any_of(topics_.begin(), topics_.end(),
+                    [&, &c = channel](const Topic& t) { return t.channel.topic == c.topic; });
+    const auto schema = index.schemas.find(channel.schema_id);
+    if (!known && schema != index.schemas.end()) topics_.push_back({schema->second, channel});
+  }
+}
+
+std::uint64_t Playback::damaged_chunks() const {
+  return damaged_before_ + (reader_ ? reader_->damaged_chunks() : 0);
+}
+
+void Playback::Seek(std::uint64_t log_time) {
+  damaged_before_ = damaged_chunks();
+  from_ = log_time;
+  next_file_ = 0;
+  reader_.reset();
+}
+
+bool Playback::OpenNextFile() {
+  damaged_before_ = damaged_chunks();
+  reader_.reset();
+  while (next_file_ < files_.size()) {
+    const File& file = files_[next_file_++];
+    std::string why;
+    if (file.end_time < from_) continue;
+    reader_ = OpenReader(file.path, &why);
+    if (reader_ == nullptr) {
+      ++unreadable_files_;
+      continue;
+    }
+    reader_->Seek(from_);
+    return true;
+  }
+  return false;
+}
+
+std::optional<Playback::Item> Playback::Next() {
+  while (reader_ || OpenNextFile()) {
+    const auto message = reader_->Next();
+    if (!message) {
+      if (!OpenNextFile()) return std::nullopt;
+      continue;
+    }
+    const mcap::FileIndex& index = reader_->index();
+    Item item;
+    item.message = *message;
+    item.channel = &index.channels.at(message->header.channel_id);
+    const auto schema = index.schemas.find(item.channel->schema_id);
+    if (schema == index.schemas.end()) continue;
+    item.schema = &schema->second;
+    return item;
+  }
+  return std::nullopt;
+}
+
+}  // namespace lidar::gst

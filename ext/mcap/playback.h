@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// The files of a recording as one.
+#pragma once
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "src/mcap/reader.h"
+
+namespace lidar::gst {
+
+class Playback {
+ public:
+  struct Topic {
+    mcap::Schema schema;
+    mcap::Channel channel;
+  };
+  /// `message` stays until the next call of Next() or Seek().
+  struct Item {
+    const mcap::Schema* schema = nullptr;
+    const mcap::Channel* channel = nullptr;
+    mcap::Message message;
+  };
+
+  /// Opens the files that `location` names, which may have a number. None where nothing can be
+  /// read; `why` then says so in words for a user.
+  static std::unique_ptr<Playback> Open(const std::string& location, std::string* why);
+
+  /// Log times [ns].
+  std::uint64_t start_time() const { return start_time_; }
+  std::uint64_t end_time() const { return end_time_; }
+  /// What is known of the topics before any message is read: the first channel of each.
+  const std::vector<Topic>& topics() const { return topics_; }
+  /// Files that nobody closed, and those that cannot be read.
+  std::uint64_t unclosed_files() const { return unclosed_files_; }
+  std::uint64_t unreadable_files() const { return unreadable_files_; }
+  /// Chunks that were left out so far.
+  std::uint64_t damaged_chunks() const;
+
+  void Seek(std::uint64_t log_time);
+  std::optional<Item> Next();
+
+ private:
+  struct File {
+    std::string path;
+    std::uint64_t start_time = 0;
+    std::uint64_t end_time = 0;
+  };
+
+  void Add(const std::string& path, const mcap::FileIndex& index);
+  bool OpenNextFile();
+
+  std::vector<File> files_;
+  std::vector<Topic> topics_;
+  std::uint64_t start_time_ = 0;
+  std::uint64_t end_time_ = 0;
+  std::uint64_t unclosed_files_ = 0;
+  std::uint64_t unreadable_files_ = 0;
+  // Where it is.
+  std::uint64_t from_ = 0;
+  std::size_t next_file_ = 0;
+  std::unique_ptr<mcap::Reader> reader_;
+  std::uint64_t damaged_before_ = 0;  // in files before the one that is open
+};
+
+}  // namespace lidar::gst

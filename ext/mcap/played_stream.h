@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// One pad of an mcapsrc: the messages of one topic.
+#pragma once
+#include <gst/gst.h>
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <utility>
+
+#include "ext/mcap/message_reader.h"
+
+namespace lidar::gst {
+
+/// What all pads of a source have in common.
+struct PlaybackGroup {
+  guint group_id = 0;
+  GstSegment segment{};
+  guint32 seqnum = GST_SEQNUM_INVALID;
+};
+
+/// Used by the streaming thread, or while it stands still.
+class PlayedStream {
+ public:
+  /// Makes the pad and adds it to `element` once its caps are known. `pad` is inactive.
+  PlayedStream(GstElement* element, GstPad* pad, std::string topic)
+      : element_(element), pad_(pad), topic_(std::move(topic)) {}
+
+  GstPad* pad() const { return pad_; }
+  const std::string& topic() const { return topic_; }
+  bool is_added() const { return added_; }
+
+  /// Reads from now on messages of that channel. False where nobody can.
+  bool Follow(const mcap::Schema& schema, const mcap::Channel& channel);
+  /// Pushes caps and segment where they are due, and shows the pad. False where caps are not known.
+  bool Prepare(const PlaybackGroup& group);
+  /// Null where the message is damaged.
+  BufferPtr Read(ByteView message, GstClockTime pts);
+  GstFlowReturn Push(BufferPtr buffer);
+  /// Says that nothing comes before `time`, where the stream is far behind it.
+  void FillUpTo(GstClockTime time, const PlaybackGroup& group);
+  /// The source was sought: a new segment begins at `start`.
+  void Restart(GstClockTime start) {
+    needs_segment_ = true;
+    discont_ = true;
+    last_ = start;
+  }
+  void End(const PlaybackGroup& group, GstEvent* event);
+
+ private:
+  void PushStreamStart(const PlaybackGroup& group);
+
+  GstElement* const element_;
+  GstPad* const pad_;  // of the element, once it is added
+  const std::string topic_;
+  std::unique_ptr<MessageReader> reader_;
+  std::uint16_t channel_id_ = 0;
+  mcap::Metadata metadata_;  // of the channel that is read
+  CapsPtr pushed_caps_;
+  bool added_ = false;
+  bool needs_segment_ = true;
+  bool discont_ = true;
+  GstClockTime last_ = 0;  // end of what was pushed
+};
+
+}  // namespace lidar::gst

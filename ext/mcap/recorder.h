@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Messages into the files of a recording.
+#pragma once
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "ext/mcap/file_names.h"
+#include "ext/mcap/output_file.h"
+#include "src/mcap/writer.h"
+
+namespace lidar::gst {
+
+struct RecorderSettings {
+  mcap::WriterSettings writer;
+  std::uint64_t max_file_size = 0;  // bytes; 0: no limit
+  Duration max_file_duration{};     // 0: no limit
+  unsigned max_files = 0;           // the oldest goes; 0: no limit
+  bool sync = false;
+};
+
+/// Why a recording cannot go on.
+struct RecorderFault {
+  std::string path;
+  int error = 0;  // errno
+  bool opening = false;
+};
+
+struct RecordedFile {
+  std::string path;
+  mcap::Statistics statistics;
+  std::uint64_t size = 0;  // bytes
+};
+
+class Recorder {
+ public:
+  Recorder(const RecorderSettings& settings, FileNames names);
+
+  /// What is in the way of the first file, without making it.
+  std::optional<RecorderFault> Check() const;
+
+  mcap::Catalogue& catalogue() { return catalogue_; }
+  /// `begins_scan`: a file may begin here. After a fault the recording is over, and what was
+  /// complete before is in order.
+  std::optional<RecorderFault> Add(const mcap::MessageHeader& header, ByteView data,
+                                   bool begins_scan);
+  /// Completes the file. The next message begins another one.
+  std::optional<RecorderFault> Finish();
+
+  /// Files that were completed since the last call.
+  std::vector<RecordedFile> TakeFinished() { return std::exchange(finished_, {}); }
+  std::uint64_t chunks() const { return chunks_ + (writer_ ? writer_->chunks() : 0); }
+
+ private:
+  bool IsOver(std::uint64_t log_time, bool begins_scan) const;
+  void BeginFile();
+  void RemoveOldFiles();
+  std::optional<RecorderFault> Fault() const;
+
+  const RecorderSettings settings_;
+  const FileNames names_;
+  mcap::Catalogue catalogue_;
+  std::uint32_t next_number_ = 0;
+  std::unique_ptr<OutputFile> file_;
+  std::unique_ptr<mcap::Writer> writer_;
+  std::uint64_t file_start_ = 0;  // log time of its first message
+  std::vector<std::string> files_;
+  std::vector<RecordedFile> finished_;
+  std::uint64_t chunks_ = 0;
+};
+
+}  // namespace lidar::gst

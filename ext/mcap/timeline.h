@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// When a message was recorded, on a clock that runs as evenly as the pipeline's.
+#pragma once
+#include <algorithm>
+#include <cstdint>
+#include <optional>
+
+namespace lidar::gst {
+
+/// All times are nanoseconds; log times count from 1970.
+class Timeline {
+ public:
+  struct Moment {
+    std::optional<std::uint64_t> running_time;
+    std::optional<std::uint64_t> capture_time;
+    std::uint64_t now = 0;
+  };
+
+  /// The first buffer says what running times are since 1970: its capture time, or now. So the
+  /// distances of buffers stay what they were.
+  std::uint64_t LogTime(const Moment& at) {
+    if (!at.running_time) return last_ > 0 ? last_ : at.capture_time.value_or(at.now);
+    if (!origin_) {
+      const std::uint64_t first = std::max(at.capture_time.value_or(at.now), last_);
+      origin_ = first - *at.running_time;
+    }
+    const std::uint64_t time = *origin_ + *at.running_time;
+    last_ = std::max(last_, time);
+    return time;
+  }
+  /// Running times begin anew; the recording goes on.
+  void Restart() { origin_.reset(); }
+
+ private:
+  std::optional<std::uint64_t> origin_;  // wraps, where a recording begins late
+  std::uint64_t last_ = 0;
+};
+
+}  // namespace lidar::gst

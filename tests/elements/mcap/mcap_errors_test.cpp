@@ -1,0 +1,122 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// What mcapsink and mcapsrc say where they cannot do their work.
+#include <sys/resource.h>
+
+#include <csignal>
+#include <fstream>
+
+#include "tests/elements/mcap/recording.h"
+
+namespace lidar::test {
+namespace {
+
+class McapErrors : public Recording {
+ protected:
+  std::string RecordError(const std::string& options) const {
+    return Play(kSensor + " num-buffers=80 ! lidarenc ! mcapsink " + options).error;
+  }
+  std::string PlayError(const std::string& options) const {
+    return Play("mcapsrc " + options + " ! fakesink").error;
+  }
+};
+
+/// No file may grow beyond `size` while it lives, as on a disk that is full there.
+class SmallDisk {
+ public:
+  explicit SmallDisk(rlim_t size) {
+    std::signal(SIGXFSZ, SIG_IGN);
+    getrlimit(RLIMIT_FSIZE, &before_);
+    const rlimit limit{size, before_.rlim_max};
+    setrlimit(RLIMIT_FSIZE, &limit);
+  }
+  ~SmallDisk() { setrlimit(RLIMIT_FSIZE, &before_); }
+  SmallDisk(const SmallDisk&) = delete;
+  SmallDisk& operator=(const SmallDisk&) = delete;
+
+ private:
+  rlimit before_{};
+};
+
+TEST_F(McapErrors, AFullDiskIsAnErrorAndWhatWasCompleteStays) {
+  const std::string options = "chunk-duration=100000000 compression=none" + At("a.mcap");
+  std::string error;
+  {
+    const SmallDisk disk(60'000);
+    error = RecordError(options);
+  }
+  EXPECT_EQ(error, "Writing \"" + Path("a.mcap") + "\" failed: File too large.");
+  const auto played = Play("mcapsrc name=m" + At("a.mcap") + " ! fakesink name=see");
+  EXPECT_EQ(played.error, "");
+  EXPECT_GE(played.buffers.at("see").size(), 8U);
+}
+
+TEST_F(McapErrors, ADiskWithoutAnySpaceGetsNoEmptyFile) {
+  {
+    const SmallDisk disk(100);
+    EXPECT_NE(RecordError(At("a.mcap")), "");
+  }
+  EXPECT_TRUE(Files().empty());
+}
+
+TEST_F(McapErrors, ADeviceWithoutSpaceStays) {
+  EXPECT_EQ(RecordError("location=/dev/full"), "No space is left for \"/dev/full\".");
+  EXPECT_TRUE(std::filesystem::exists("/dev/full"));
+}
+
+TEST_F(McapErrors, TheLocationIsCheckedBeforeTheFirstBuffer) {
+  EXPECT_EQ(RecordError(""), "Wrong location: there is no location.");
+  EXPECT_EQ(RecordError("location=/nowhere/a.mcap"),
+            "Cannot write \"/nowhere/a.mcap\": No such file or directory.");
+  EXPECT_EQ(RecordError("location=" + folder_),
+            "Cannot write \"" + folder_ + "\": Is a directory.");
+  EXPECT_EQ(RecordError(At("a-%s.mcap")),
+            "Wrong location: a file name may have one number, as in rec-%05d.mcap.");
+  EXPECT_EQ(RecordError(At("a-%d-%d.mcap")),
+            "Wrong location: a file name may have one number, as in rec-%05d.mcap.");
+  EXPECT_EQ(RecordError("max-files=3" + At("a.mcap")),
+            "Wrong location: several files need a number in their name, as in rec-%05d.mcap.");
+  EXPECT_TRUE(Files().empty());
+}
+
+TEST_F(McapErrors, OtherStreamsAreRefusedByName) {
+  EXPECT_EQ(Play("videotestsrc num-buffers=1 ! mcapsink" + At("a.mcap")).error,
+            "Cannot be recorded: clouds, coded slices, IMU samples and odometry can be recorded, "
+            "and no video/x-raw.");
+  EXPECT_TRUE(Files().empty());
+}
+
+TEST_F(McapErrors, APlayerSaysWhyItCannotPlay) {
+  EXPECT_EQ(PlayError(""), "Cannot play \"\": there is no location.");
+  EXPECT_EQ(PlayError("location=/nowhere.mcap"),
+            "Cannot play \"/nowhere.mcap\": there is no such file.");
+  EXPECT_EQ(PlayError("location=/dev/zero"), "Cannot play \"/dev/zero\": it is no file.");
+  std::ofstream(Path("empty.mcap")).flush();
+  EXPECT_EQ(PlayError(At("empty.mcap")),
+            "Cannot play \"" + Path("empty.mcap") + "\": it is empty.");
+  std::ofstream(Path("text.mcap")) << "This is no recording.";
+  EXPECT_EQ(PlayError(At("text.mcap")),
+            "Cannot play \"" + Path("text.mcap") + "\": it does not begin as an MCAP file.");
+  Record(1, "", "a.mcap");
+  EXPECT_EQ(PlayError("topic=/other" + At("a.mcap")),
+            "\"" + Path("a.mcap") + "\" holds nothing that can be played.");
+}
+
+TEST_F(McapErrors, APipelineThatIsStoppedLeavesACompleteFile) {
+  Pipeline p(kSensor + " is-live=true ! lidarenc ! mcapsink name=m" + At("a.mcap"));
+  gst_element_set_state(p.get(), GST_STATE_PLAYING);
+  g_usleep(300'000);
+  gst_element_set_state(p.get(), GST_STATE_NULL);  // without an EOS
+  const auto played = Play("mcapsrc name=m" + At("a.mcap") + " ! fakesink name=see");
+  EXPECT_EQ(played.error, "");
+  EXPECT_EQ(played.stats.at("files-unclosed"), 0U);
+}
+
+TEST_F(McapErrors, NothingRecordedLeavesNoFile) {
+  Pipeline p("appsrc ! mcapsink" + At("a.mcap"));
+  gst_element_set_state(p.get(), GST_STATE_PLAYING);
+  gst_element_set_state(p.get(), GST_STATE_NULL);
+  EXPECT_TRUE(Files().empty());
+}
+
+}  // namespace
+}  // namespace lidar::test

@@ -1,0 +1,120 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Recordings in pieces, those that broke off, and those that are damaged.
+#include <fstream>
+#include <random>
+
+#include "tests/elements/mcap/recording.h"
+
+namespace lidar::test {
+namespace {
+
+class McapFiles : public Recording {
+ protected:
+  std::string ReadFile(const std::string& name) const {
+    std::ifstream file(Path(name), std::ios::binary);
+    return {std::istreambuf_iterator<char>(file), {}};
+  }
+  void WriteFile(const std::string& name, const std::string& bytes) const {
+    std::ofstream(Path(name), std::ios::binary) << bytes;
+  }
+  Outcome PlayFile(const std::string& name) const {
+    return Play("mcapsrc name=m" + At(name) + " ! fakesink name=see");
+  }
+};
+
+TEST_F(McapFiles, PiecesPlayAsOneRecording) {
+  const auto written = Record(10, "max-file-duration=300000000", "rec-%03d.mcap");
+  EXPECT_EQ(Files(), (std::vector<std::string>{"rec-000.mcap", "rec-001.mcap", "rec-002.mcap",
+                                               "rec-003.mcap"}));
+  EXPECT_EQ(files_.size(), 4U);
+  EXPECT_EQ(files_[0], Path("rec-000.mcap"));
+  const auto played = PlayFile("rec-%03d.mcap");
+  ASSERT_EQ(played.buffers.at("see").size(), written.size());
+  for (std::size_t i = 0; i < written.size(); ++i) {
+    EXPECT_TRUE(played.buffers.at("see")[i].SameAs(written[i]));
+    EXPECT_EQ(played.buffers.at("see")[i].pts, written[i].pts);
+  }
+  // Each begins with a scan.
+  const auto second = PlayFile("rec-001.mcap");
+  EXPECT_EQ(second.buffers.at("see")[0].slice.slice_index, 0U);
+  EXPECT_EQ(second.buffers.at("see").size(), 24U);
+}
+
+TEST_F(McapFiles, SeeksOverPieces) {
+  Record(10, "max-file-duration=300000000", "rec-%03d.mcap");
+  Pipeline p("mcapsrc" + At("rec-%03d.mcap") + " ! fakesink name=see");
+  gst_element_set_state(p.get(), GST_STATE_PAUSED);
+  ASSERT_TRUE(p.Wait(GST_MESSAGE_ASYNC_DONE));
+  p.outcome().buffers.clear();
+  ASSERT_TRUE(
+      gst_element_seek_simple(p.get(), GST_FORMAT_TIME, GST_SEEK_FLAG_FLUSH, 800 * GST_MSECOND));
+  gst_element_set_state(p.get(), GST_STATE_PLAYING);
+  ASSERT_TRUE(p.Wait(GST_MESSAGE_EOS));
+  EXPECT_EQ(p.outcome().buffers.at("see").size(), 16U);
+}
+
+TEST_F(McapFiles, PiecesEndByTheirSize) {
+  Record(10, "max-file-size=20000 chunk-size=4000", "rec-%d.mcap");
+  const auto files = Files();
+  ASSERT_GE(files.size(), 3U);
+  for (const auto& name : files) EXPECT_LT(std::filesystem::file_size(Path(name)), 40'000U) << name;
+}
+
+TEST_F(McapFiles, OldPiecesStayAndOldestGo) {
+  Record(4, "max-file-duration=200000000", "rec-%03d.mcap");
+  Record(4, "max-file-duration=200000000", "rec-%03d.mcap");
+  EXPECT_EQ(Files().size(), 4U);  // two and two
+  Record(4, "max-file-duration=200000000 max-files=3", "rec-%03d.mcap");
+  EXPECT_EQ(Files(), (std::vector<std::string>{"rec-003.mcap", "rec-004.mcap", "rec-005.mcap"}));
+}
+
+TEST_F(McapFiles, AFileThatBrokeOffPlaysUpToItsLastChunk) {
+  const auto written = Record(10, "chunk-duration=200000000 compression=none", "a.mcap");
+  const std::string whole = ReadFile("a.mcap");
+  std::size_t most = 0;
+  for (std::size_t part = 1; part <= 10; ++part) {
+    WriteFile("b.mcap", whole.substr(0, whole.size() * part / 11));
+    const auto played = PlayFile("b.mcap");
+    if (played.buffers.count("see") == 0) {
+      EXPECT_NE(played.error, "");
+      continue;
+    }
+    EXPECT_EQ(played.error, "");
+    EXPECT_EQ(played.stats.at("files-unclosed"), 1U);
+    const auto& read = played.buffers.at("see");
+    EXPECT_EQ(read.size() % 16, 0U);  // two scans a chunk
+    EXPECT_GE(read.size() + 32, written.size() * part / 11);
+    for (std::size_t i = 0; i < read.size(); ++i) EXPECT_TRUE(read[i].SameAs(written[i]));
+    most = std::max(most, read.size());
+  }
+  EXPECT_GE(most, 64U);
+}
+
+TEST_F(McapFiles, APieceThatIsMissingOrDamagedCostsItselfOnly) {
+  Record(10, "max-file-duration=200000000", "rec-%03d.mcap");
+  std::filesystem::remove(Path("rec-001.mcap"));
+  WriteFile("rec-003.mcap", "no recording");
+  const auto played = PlayFile("rec-%03d.mcap");
+  EXPECT_EQ(played.error, "");
+  EXPECT_NE(played.warning, "");
+  EXPECT_EQ(played.buffers.at("see").size(), 48U);
+  EXPECT_EQ(played.stats.at("files-unreadable"), 1U);
+}
+
+TEST_F(McapFiles, DamageAnywhereIsSurvived) {
+  Record(2, "chunk-duration=50000000 compression=none", "a.mcap");
+  const std::string whole = ReadFile("a.mcap");
+  std::mt19937 random(11);
+  for (int round = 0; round < 60; ++round) {
+    std::string damaged = whole;
+    // Half of it where the caps are, which are the most complicated thing in it.
+    for (int i = 0; i < 4; ++i)
+      damaged[random() % (round % 2 == 0 ? 4'000 : damaged.size())] = static_cast<char>(random());
+    WriteFile("b.mcap", damaged);
+    const auto played = PlayFile("b.mcap");
+    EXPECT_TRUE(!played.error.empty() || played.stats.at("messages") <= 32U);
+  }
+}
+
+}  // namespace
+}  // namespace lidar::test

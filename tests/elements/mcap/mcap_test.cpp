@@ -1,0 +1,293 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// What goes into mcapsink comes out of mcapsrc.
+#include "src/base/byte_writer.h"
+#include "src/cdr/point_cloud2.h"
+#include "src/mcap/writer.h"
+#include "tests/elements/mcap/recording.h"
+#include "tests/support/harness.h"
+
+#include <fstream>
+
+namespace lidar::test {
+namespace {
+
+constexpr GstClockTime kCapture = GstClockTime{1'764'000'000} * GST_SECOND;
+
+class Mcap : public Recording {};
+
+void ExpectSame(const std::vector<Kept>& read, const std::vector<Kept>& written) {
+  ASSERT_EQ(read.size(), written.size());
+  for (std::size_t i = 0; i < read.size(); ++i) {
+    EXPECT_TRUE(read[i].SameAs(written[i])) << i;
+    EXPECT_EQ(read[i].pts, written[i].pts - written[0].pts) << i;
+    EXPECT_EQ(read[i].duration, written[i].duration) << i;
+  }
+}
+
+TEST_F(Mcap, SlicesComeBackBitForBit) {
+  const auto written = Record(3, "", "a.mcap");
+  const auto played = Play("mcapsrc name=m" + At("a.mcap") + " ! fakesink name=see");
+  EXPECT_EQ(played.error, "");
+  ExpectSame(played.buffers.at("see"), written);
+  EXPECT_EQ(played.caps.at("see"), caps_);
+  EXPECT_EQ(played.stats.at("messages"), 24U);
+  EXPECT_EQ(played.stats.at("files-unclosed"), 0U);
+}
+
+TEST_F(Mcap, DecodedScansAreThoseOfALiveStream) {
+  const std::string live = kSensor +
+                           " num-buffers=24 ! lidarenc ! tee name=t t. ! queue ! lidardec "
+                           "! scanassembler ! fakesink name=see t. ! queue ! mcapsink" +
+                           At("a.mcap");
+  const auto direct = Play(live);
+  EXPECT_EQ(direct.error, "");
+  const auto played =
+      Play("mcapsrc" + At("a.mcap") + " ! lidardec ! scanassembler ! fakesink name=see");
+  ASSERT_EQ(played.buffers.at("see").size(), 3U);
+  ExpectSame(played.buffers.at("see"), direct.buffers.at("see"));
+  EXPECT_EQ(played.caps.at("see"), direct.caps.at("see"));
+}
+
+TEST_F(Mcap, CloudsComeBackWithTheirCaps) {
+  const auto recorded = Play(kSensor +
+                             " num-buffers=3 slices-per-scan=1 ! identity name=see "
+                             "! mcapsink" +
+                             At("a.mcap"));
+  const auto played = Play("mcapsrc" + At("a.mcap") + " ! fakesink name=see");
+  const auto& in = recorded.buffers.at("see");
+  const auto& out = played.buffers.at("see");
+  ASSERT_EQ(out.size(), 3U);
+  for (std::size_t i = 0; i < 3; ++i) {
+    EXPECT_EQ(out[i].bytes, in[i].bytes);
+    EXPECT_EQ(out[i].capture_time, in[i].capture_time);
+    EXPECT_EQ(out[i].pts, i * 100 * GST_MSECOND);
+  }
+  EXPECT_EQ(played.caps.at("see"), recorded.caps.at("see"));
+}
+
+/// The harness plays what it gets, so the element knows its file before.
+Harness RecordingTo(const std::string& path) {
+  const gst::ElementPtr sink(gst_element_factory_make("mcapsink", nullptr));
+  g_object_set(sink.get(), "location", path.c_str(), nullptr);
+  return Harness(gst_harness_new_with_element(sink.get(), "sink_0", nullptr));
+}
+
+/// Pushes `buffers` of `caps` into a recording, and gives what is played.
+std::vector<Kept> ThroughFile(const std::string& path, const char* caps,
+                              const std::vector<GstBuffer*>& buffers) {
+  {
+    const Harness h = RecordingTo(path);
+    gst_harness_set_src_caps_str(h.get(), caps);
+    gst_harness_play(h.get());
+    for (GstBuffer* buffer : buffers) EXPECT_EQ(gst_harness_push(h.get(), buffer), GST_FLOW_OK);
+    gst_harness_push_event(h.get(), gst_event_new_eos());
+  }
+  const auto played = Play("mcapsrc location=" + path + " ! fakesink name=see");
+  EXPECT_EQ(played.error, "");
+  const auto found = played.buffers.find("see");
+  return found == played.buffers.end() ? std::vector<Kept>() : found->second;
+}
+
+GstBuffer* Bytes(const std::vector<std::uint8_t>& bytes, GstClockTime pts) {
+  GstBuffer* buffer = gst_buffer_new_memdup(bytes.data(), bytes.size());
+  GST_BUFFER_PTS(buffer) = pts;
+  gst_lidar_buffer_set_capture_time(buffer, kCapture + pts);
+  return buffer;
+}
+
+TEST_F(Mcap, SamplesOfAnImuComeBackOneByOne) {
+  std::vector<std::uint8_t> packet;
+  ByteWriter w(&packet);
+  for (unsigned i = 0; i < 4; ++i) {
+    w.Le64(kCapture + i * 10 * GST_MSECOND);
+    for (unsigned k = 0; k < 6; ++k) w.LeF32(static_cast<float>(i) + 0.1F * static_cast<float>(k));
+  }
+  const auto read = ThroughFile(
+      Path("imu.mcap"),
+      "application/x-imu,sample-size=32,"
+      "fields=(string)\"t:U64:0,ax:F32:8,ay:F32:12,az:F32:16,gx:F32:20,gy:F32:24,gz:F32:28\"",
+      {Bytes(packet, 0)});
+  ASSERT_EQ(read.size(), 4U);
+  std::string all;
+  for (std::size_t i = 0; i < 4; ++i) {
+    all += read[i].bytes;
+    EXPECT_EQ(read[i].pts, i * 10 * GST_MSECOND);
+    EXPECT_EQ(read[i].capture_time, kCapture + read[i].pts);
+  }
+  EXPECT_EQ(all, std::string(packet.begin(), packet.end()));
+}
+
+TEST_F(Mcap, PosesComeBackWithTheirTracking) {
+  for (const GstLidarTracking tracking :
+       {GST_LIDAR_TRACKING_OK, GST_LIDAR_TRACKING_DEGENERATE, GST_LIDAR_TRACKING_LOST}) {
+    std::vector<std::uint8_t> pose;
+    ByteWriter w(&pose);
+    for (const double v : {1.5, -2.25, 0.125, 0.0, 0.6, 0.0, 0.8}) w.LeF64(v);
+    w.Le64(tracking);
+    const auto read = ThroughFile(Path("pose.mcap"), "application/x-odometry", {Bytes(pose, 0)});
+    ASSERT_EQ(read.size(), 1U);
+    EXPECT_EQ(read[0].bytes, std::string(pose.begin(), pose.end()));
+  }
+}
+
+TEST_F(Mcap, EachStreamHasItsTopicAndItsPad) {
+  const std::string sensor = kSensor + " num-buffers=16 ! ";
+  const auto recorded = Play("mcapsink name=m" + At("a.mcap") + "sink_1::topic=/rear/slices " +
+                             sensor + "lidarenc ! m. " + sensor + "lidarenc ! m. " + sensor +
+                             "lidarenc ! m. " + sensor + "scanassembler ! m.");
+  EXPECT_EQ(recorded.error, "");
+  EXPECT_EQ(recorded.stats.at("messages"), 3 * 16 + 2U);
+  for (const auto& [topic, count] : std::map<std::string, std::size_t>{
+           {"/slices", 16}, {"/rear/slices", 16}, {"/slices_1", 16}, {"/points", 2}}) {
+    const auto played = Play("mcapsrc topic=" + topic + At("a.mcap") + " ! fakesink name=see");
+    EXPECT_EQ(played.error, "") << topic;
+    EXPECT_EQ(played.buffers.at("see").size(), count) << topic;
+  }
+  const auto all = Play("mcapsrc name=s" + At("a.mcap") +
+                        " s.src_0 ! queue ! fakesink name=see0 s.src_1 ! queue ! fakesink "
+                        "name=see1 s.src_2 ! queue ! fakesink name=see2 s.src_3 ! queue ! fakesink "
+                        "name=see3");
+  EXPECT_EQ(all.error, "");
+  std::size_t count = 0;
+  for (const auto& [name, buffers] : all.buffers) count += buffers.size();
+  EXPECT_EQ(count, 50U);
+}
+
+TEST_F(Mcap, ASparseStreamDoesNotHoldUpTheOthers) {
+  {
+    const Harness h = RecordingTo(Path("a.mcap"));
+    GstHarness* late = gst_harness_new_with_element(h->element, "sink_1", nullptr);
+    const Harness owner(late);
+    gst_harness_set_src_caps_str(h.get(), "application/x-odometry");
+    gst_harness_set_src_caps_str(late, "application/x-odometry");
+    for (guint i = 0; i < 100; ++i)
+      gst_harness_push(h.get(), Bytes(std::vector<std::uint8_t>(64, 1), i * 100 * GST_MSECOND));
+    gst_harness_push(late, Bytes(std::vector<std::uint8_t>(64, 2), 9'900 * GST_MSECOND));
+    gst_harness_push_event(h.get(), gst_event_new_eos());
+    gst_harness_push_event(late, gst_event_new_eos());
+  }
+  // Without gaps the sink of the late stream would wait for ever, and the queue before the other
+  // would be full.
+  const auto played = Play("mcapsrc name=m" + At("a.mcap") +
+                           " m.src_0 ! queue max-size-buffers=10 ! fakesink name=see0 m.src_1 ! "
+                           "queue ! fakesink name=see1");
+  EXPECT_EQ(played.error, "");
+  EXPECT_EQ(played.buffers.at("see0").size(), 100U);
+  EXPECT_EQ(played.buffers.at("see1").size(), 1U);
+}
+
+/// Where the playing pipeline `p` is, and how long the recording.
+std::pair<gint64, gint64> Times(const Pipeline& p) {
+  std::pair<gint64, gint64> times{-1, -1};
+  gst_element_query_position(p.get(), GST_FORMAT_TIME, &times.first);
+  gst_element_query_duration(p.get(), GST_FORMAT_TIME, &times.second);
+  return times;
+}
+
+TEST_F(Mcap, SeeksByTime) {
+  const auto written = Record(20, "chunk-duration=300000000", "a.mcap");
+  Pipeline p("mcapsrc" + At("a.mcap") + " ! fakesink name=see");
+  gst_element_set_state(p.get(), GST_STATE_PAUSED);
+  ASSERT_TRUE(p.Wait(GST_MESSAGE_ASYNC_DONE));
+  const auto length = static_cast<gint64>(written.back().pts - written.front().pts);
+  EXPECT_EQ(Times(p).second, length);
+  for (const gint64 to : {1'210 * GST_MSECOND, 50 * GST_MSECOND, gint64{0}}) {
+    p.outcome().buffers.clear();
+    ASSERT_TRUE(gst_element_seek_simple(p.get(), GST_FORMAT_TIME, GST_SEEK_FLAG_FLUSH, to));
+    ASSERT_TRUE(p.Wait(GST_MESSAGE_ASYNC_DONE));
+    EXPECT_EQ(Times(p).first, to);
+  }
+  p.outcome().buffers.clear();
+  const gint64 from = 1'210 * GST_MSECOND;
+  ASSERT_TRUE(gst_element_seek(p.get(), 2, GST_FORMAT_TIME, GST_SEEK_FLAG_FLUSH, GST_SEEK_TYPE_SET,
+                               from, GST_SEEK_TYPE_SET, from + 200 * GST_MSECOND));
+  gst_element_set_state(p.get(), GST_STATE_PLAYING);
+  ASSERT_TRUE(p.Wait(GST_MESSAGE_EOS));
+  const auto& played = p.outcome().buffers.at("see");
+  ASSERT_EQ(played.size(), 16U);  // of 12.5 ms each
+  EXPECT_GE(played.front().pts, static_cast<GstClockTime>(from));
+  EXPECT_LT(played.front().pts, static_cast<GstClockTime>(from) + 13 * GST_MSECOND);
+  EXPECT_TRUE(played.front().discont);
+  // And again, from the end.
+  p.outcome().buffers.clear();
+  ASSERT_TRUE(gst_element_seek_simple(p.get(), GST_FORMAT_TIME, GST_SEEK_FLAG_FLUSH, 0));
+  ASSERT_TRUE(p.Wait(GST_MESSAGE_EOS));
+  ExpectSame(p.outcome().buffers.at("see"), written);
+  // Backwards is refused.
+  EXPECT_FALSE(gst_element_seek(p.get(), -1, GST_FORMAT_TIME, GST_SEEK_FLAG_FLUSH,
+                                GST_SEEK_TYPE_SET, 0, GST_SEEK_TYPE_NONE, 0));
+}
+
+TEST_F(Mcap, ASegmentSeekEndsWithItsMessage) {
+  Record(10, "", "a.mcap");
+  Pipeline p("mcapsrc" + At("a.mcap") + " ! fakesink name=see");
+  gst_element_set_state(p.get(), GST_STATE_PAUSED);
+  ASSERT_TRUE(p.Wait(GST_MESSAGE_ASYNC_DONE));
+  p.outcome().buffers.clear();
+  const auto flags = static_cast<GstSeekFlags>(GST_SEEK_FLAG_FLUSH | GST_SEEK_FLAG_SEGMENT);
+  ASSERT_TRUE(gst_element_seek(p.get(), 1, GST_FORMAT_TIME, flags, GST_SEEK_TYPE_SET, 0,
+                               GST_SEEK_TYPE_SET, 300 * GST_MSECOND));
+  gst_element_set_state(p.get(), GST_STATE_PLAYING);
+  ASSERT_TRUE(p.Wait(GST_MESSAGE_SEGMENT_DONE));
+  // The next segment follows without a flush, as loops do it.
+  ASSERT_TRUE(gst_element_seek(p.get(), 1, GST_FORMAT_TIME, GST_SEEK_FLAG_NONE, GST_SEEK_TYPE_SET,
+                               0, GST_SEEK_TYPE_SET, 300 * GST_MSECOND));
+  ASSERT_TRUE(p.Wait(GST_MESSAGE_EOS));
+  EXPECT_EQ(p.outcome().buffers.at("see").size(), 48U);
+}
+
+TEST_F(Mcap, PlaysAgainAfterReady) {
+  const auto written = Record(2, "", "a.mcap");
+  Pipeline p("mcapsrc" + At("a.mcap") + " ! fakesink name=see");
+  for (int round = 0; round < 3; ++round) {
+    p.outcome().buffers.clear();
+    gst_element_set_state(p.get(), GST_STATE_PLAYING);
+    // The pad is another one each time; who linked it by its signal does so again.
+    ASSERT_TRUE(p.Wait(round == 0 ? GST_MESSAGE_EOS : GST_MESSAGE_ANY));
+    if (round == 0) ExpectSame(p.outcome().buffers.at("see"), written);
+    gst_element_set_state(p.get(), GST_STATE_READY);
+  }
+}
+
+TEST_F(Mcap, CloudsOfOthersBecomeOurs) {
+  // Big-endian doubles, as another program may have recorded them.
+  std::vector<std::uint8_t> points;
+  ByteWriter w(&points);
+  for (const double v : {1.5, -2.0, 0.25, 4.0, 5.0, 6.0}) {
+    std::uint64_t bits = 0;
+    std::memcpy(&bits, &v, sizeof v);
+    w.Be64(bits);
+  }
+  cdr::PointCloud2 cloud;
+  cloud.header = {Time(Duration(kCapture)), "velodyne"};
+  cloud.layout = {1, 2, {{"x", 0, 8, 1}, {"y", 8, 8, 1}, {"z", 16, 8, 1}}, true, 24, 48};
+  cloud.data = {points.data(), points.size()};
+  const auto message = cdr::WritePointCloud2(cloud);
+  mcap::Catalogue catalogue;
+  mcap::Channel channel;
+  channel.schema_id = catalogue.AddSchema({0, "sensor_msgs/msg/PointCloud2", "ros2msg", ""});
+  channel.topic = "/velodyne_points";
+  channel.message_encoding = "cdr";
+  const auto id = catalogue.AddChannel(channel);
+  std::ofstream file(Path("other.mcap"), std::ios::binary);
+  mcap::Writer writer({}, &catalogue, [&](ByteView v) {
+    file.write(reinterpret_cast<const char*>(v.data), static_cast<std::streamsize>(v.size));
+    return true;
+  });
+  writer.Add({id, 0, kCapture, kCapture}, {message.data(), message.size()});
+  writer.Finish();
+  file.close();
+
+  const auto played = Play("mcapsrc" + At("other.mcap") + " ! fakesink name=see");
+  EXPECT_EQ(played.error, "");
+  ASSERT_EQ(played.buffers.at("see").size(), 1U);
+  const Kept& kept = played.buffers.at("see")[0];
+  ASSERT_EQ(kept.bytes.size(), 24U);
+  std::array<float, 6> read{};
+  std::memcpy(read.data(), kept.bytes.data(), 24);
+  EXPECT_EQ(read, (std::array<float, 6>{1.5F, -2, 0.25F, 4, 5, 6}));
+  EXPECT_EQ(kept.capture_time, kCapture);
+}
+
+}  // namespace
+}  // namespace lidar::test

@@ -1,0 +1,202 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Pipelines that record and play, run to their end.
+#pragma once
+#include <gst/gst.h>
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "gst/common/buffer_map.h"
+#include "gst/common/gstlidar.h"
+#include "gst/common/refs.h"
+
+namespace lidar::test {
+
+/// A buffer, kept.
+struct Kept {
+  std::string bytes;
+  GstClockTime pts = 0;
+  GstClockTime duration = 0;
+  GstClockTime capture_time = 0;
+  GstLidarSlice slice{};
+  bool discont = false;
+
+  bool SameAs(const Kept& o) const {
+    return bytes == o.bytes && capture_time == o.capture_time && slice.scan_id == o.slice.scan_id &&
+           slice.slice_index == o.slice.slice_index && slice.slice_count == o.slice.slice_count &&
+           slice.first_column == o.slice.first_column;
+  }
+};
+
+inline Kept Keep(GstBuffer* buffer) {
+  Kept kept;
+  const gst::BufferMap map(buffer, GST_MAP_READ);
+  kept.bytes.assign(map.data(), map.data() + map.size());
+  kept.pts = GST_BUFFER_PTS(buffer);
+  kept.duration = GST_BUFFER_DURATION(buffer);
+  kept.capture_time = gst_lidar_buffer_get_capture_time(buffer);
+  gst_lidar_buffer_get_slice(buffer, &kept.slice);
+  kept.discont = GST_BUFFER_FLAG_IS_SET(buffer, GST_BUFFER_FLAG_DISCONT);
+  return kept;
+}
+
+/// What a pipeline did.
+struct Outcome {
+  std::map<std::string, std::vector<Kept>> buffers;  // by the names of fakesinks and identities
+  std::map<std::string, std::string> caps;
+  std::string error;  // empty at EOS
+  std::string warning;
+  std::vector<std::string> files;        // that mcapsink completed
+  std::map<std::string, guint64> stats;  // of mcapsrc or mcapsink
+};
+
+class Pipeline {
+ public:
+  /// Elements whose names begin with "see" show their buffers.
+  explicit Pipeline(const std::string& description) {
+    GError* raw = nullptr;
+    pipeline_.reset(gst_parse_launch(description.c_str(), &raw));
+    const gst::ErrorPtr error(raw);
+    EXPECT_EQ(error ? error->message : std::string(), "") << description;
+    GstIterator* elements = gst_bin_iterate_elements(GST_BIN(pipeline_.get()));
+    gst_iterator_foreach(
+        elements,
+        [](const GValue* v, gpointer self) {
+          static_cast<Pipeline*>(self)->Watch(GST_ELEMENT(g_value_get_object(v)));
+        },
+        this);
+    gst_iterator_free(elements);
+  }
+  ~Pipeline() { gst_element_set_state(pipeline_.get(), GST_STATE_NULL); }
+
+  GstElement* get() const { return pipeline_.get(); }
+  gst::ElementPtr Find(const char* name) const {
+    return gst::ElementPtr(gst_bin_get_by_name(GST_BIN(pipeline_.get()), name));
+  }
+
+  /// Plays until EOS, an error or `until`, and stops.
+  Outcome Run(GstMessageType until = GST_MESSAGE_EOS) {
+    gst_element_set_state(pipeline_.get(), GST_STATE_PLAYING);
+    Wait(until);
+    TakeStats();
+    gst_element_set_state(pipeline_.get(), GST_STATE_NULL);
+    return outcome_;
+  }
+  /// False at an error, and after 20 s.
+  bool Wait(GstMessageType until) {
+    GstBus* bus = gst_element_get_bus(pipeline_.get());
+    bool good = false;
+    for (bool ended = false; !ended;) {
+      const gst::MessagePtr message(gst_bus_timed_pop(bus, 20 * GST_SECOND));
+      if (!message) {
+        ADD_FAILURE() << "nothing happens";
+        break;
+      }
+      Note(message.get());
+      good = (GST_MESSAGE_TYPE(message.get()) & until) != 0;
+      ended = good || GST_MESSAGE_TYPE(message.get()) == GST_MESSAGE_ERROR;
+    }
+    gst_object_unref(bus);
+    return good;
+  }
+  Outcome& outcome() { return outcome_; }
+
+ private:
+  static void OnBuffer(GstElement* element, GstBuffer* buffer, gpointer, gpointer self) {
+    const gst::StringPtr name(gst_object_get_name(GST_OBJECT(element)));
+    static_cast<Pipeline*>(self)->outcome_.buffers[name.get()].push_back(Keep(buffer));
+  }
+  static void OnIdentity(GstElement* element, GstBuffer* buffer, gpointer self) {
+    OnBuffer(element, buffer, nullptr, self);
+  }
+  void Watch(GstElement* element) {
+    const gst::StringPtr name(gst_object_get_name(GST_OBJECT(element)));
+    if (!g_str_has_prefix(name.get(), "see")) return;
+    const std::string type = G_OBJECT_TYPE_NAME(element);
+    g_object_set(element, "signal-handoffs", TRUE, nullptr);
+    g_signal_connect(element, "handoff",
+                     type == "GstFakeSink" ? G_CALLBACK(OnBuffer) : G_CALLBACK(OnIdentity), this);
+    const gst::PadPtr pad(gst_element_get_static_pad(element, "sink"));
+    gst_pad_add_probe(pad.get(), GST_PAD_PROBE_TYPE_EVENT_DOWNSTREAM, OnEvent, this, nullptr);
+  }
+  static GstPadProbeReturn OnEvent(GstPad* pad, GstPadProbeInfo* info, gpointer self) {
+    if (GST_EVENT_TYPE(GST_PAD_PROBE_INFO_EVENT(info)) != GST_EVENT_CAPS) return GST_PAD_PROBE_OK;
+    GstCaps* caps = nullptr;
+    gst_event_parse_caps(GST_PAD_PROBE_INFO_EVENT(info), &caps);
+    const gst::StringPtr text(gst_caps_to_string(caps));
+    const gst::StringPtr name(gst_object_get_name(GST_OBJECT_PARENT(pad)));
+    static_cast<Pipeline*>(self)->outcome_.caps[name.get()] = text.get();
+    return GST_PAD_PROBE_OK;
+  }
+  void Note(GstMessage* message) {
+    GError* raw = nullptr;
+    if (GST_MESSAGE_TYPE(message) == GST_MESSAGE_ERROR) {
+      gst_message_parse_error(message, &raw, nullptr);
+      if (outcome_.error.empty()) outcome_.error = raw->message;
+      g_error_free(raw);
+    } else if (GST_MESSAGE_TYPE(message) == GST_MESSAGE_WARNING) {
+      gst_message_parse_warning(message, &raw, nullptr);
+      outcome_.warning = raw->message;
+      g_error_free(raw);
+    } else if (GST_MESSAGE_TYPE(message) == GST_MESSAGE_ELEMENT) {
+      const GstStructure* s = gst_message_get_structure(message);
+      if (gst_structure_has_name(s, "mcap-file-complete"))
+        outcome_.files.emplace_back(gst_structure_get_string(s, "location"));
+    }
+  }
+  void TakeStats() {
+    const gst::ElementPtr element = Find("m");
+    if (!element) return;
+    GstStructure* raw = nullptr;
+    g_object_get(element.get(), "stats", &raw, nullptr);
+    const gst::StructurePtr stats(raw);
+    for (gint i = 0; i < gst_structure_n_fields(raw); ++i) {
+      const gchar* name = gst_structure_nth_field_name(raw, static_cast<guint>(i));
+      gst_structure_get_uint64(raw, name, &outcome_.stats[name]);
+    }
+  }
+
+  gst::ElementPtr pipeline_;
+  Outcome outcome_;
+};
+
+inline Outcome Play(const std::string& description) { return Pipeline(description).Run(); }
+
+/// A folder of the test's own.
+class Recording : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    char name[] = "/tmp/mcap-test-XXXXXX";
+    folder_ = mkdtemp(name);
+  }
+  void TearDown() override { std::filesystem::remove_all(folder_); }
+  std::string Path(const std::string& name) const { return folder_ + "/" + name; }
+  std::string At(const std::string& name) const { return " location=" + Path(name) + " "; }
+  std::vector<std::string> Files() const {
+    std::vector<std::string> names;
+    for (const auto& entry : std::filesystem::directory_iterator(folder_))
+      names.push_back(entry.path().filename().string());
+    std::sort(names.begin(), names.end());
+    return names;
+  }
+  /// Records `scans` scans of the synthetic sensor as coded slices, and gives those slices.
+  std::vector<Kept> Record(int scans, const std::string& options, const std::string& name) {
+    const auto outcome =
+        Play(kSensor + " num-buffers=" + std::to_string(8 * scans) +
+             " ! lidarenc ! identity name=see ! mcapsink name=m " + options + At(name));
+    EXPECT_EQ(outcome.error, "");
+    caps_ = outcome.caps.at("see");
+    files_ = outcome.files;
+    return outcome.buffers.at("see");
+  }
+
+  const std::string kSensor = "lidartestsrc model=os1-32 mode=512x10";
+  std::string folder_;
+  std::string caps_;                // of what Record() wrote
+  std::vector<std::string> files_;  // that it completed
+};
+
+}  // namespace lidar::test
