@@ -10,7 +10,8 @@ usage() {
 Usage: tests/run.sh [--suite NAME] [--no-install] [--no-sanitize] [--tsan]
 
   --suite NAME    run one suite: lint, core, elements, pipelines, fuzz, bench, faults (three
-                  minutes of broken networks; only by name), or sanitize (elements, fuzz, and
+                  minutes of broken networks; only by name), peers (libraries from npm; only by
+                  name), or sanitize (elements, fuzz, and
                   core without long simulations and programs, under AddressSanitizer and UBSan)
   --no-install    do not install Debian packages
   --no-sanitize   leave out the sanitizer build
@@ -30,7 +31,7 @@ while [ $# -gt 0 ]; do
       [ $# -ge 2 ] || { usage >&2; exit 2; }
       case $2 in
         sanitize) suites=() ;;
-        lint | core | elements | pipelines | fuzz | bench | faults) suites=("$2"); sanitize=no ;;
+        lint | core | elements | pipelines | fuzz | bench | faults | peers) suites=("$2"); sanitize=no ;;
         *) echo "No suite is called '$2'." >&2; usage >&2; exit 2 ;;
       esac
       shift ;;
@@ -142,7 +143,7 @@ if [ ${#suites[@]} -gt 0 ]; then
     for suite in "${suites[@]}"; do
       case $suite in
         pipelines) run_pipelines "$root/build" ;;
-        bench | faults) run "$root/build" "$suite" --num-processes 1 ;;
+        bench | faults | peers) run "$root/build" "$suite" --num-processes 1 ;;
         *) run "$root/build" "$suite" ;;
       esac
     done
