@@ -5,28 +5,20 @@
 set -euo pipefail
 source=$1
 build=$2
-work=$(mktemp -d)
-trap 'rm -rf "$work"' EXIT
-
-# As meson install lays it out; the .pc file is the one that it installs.
-mkdir -p "$work/include/gstreamer-1.0/gst/lidar" "$work/lib"
-cp "$source"/gst/common/gstlidar{,cloud,decoder,encoder}.h "$work/include/gstreamer-1.0/gst/lidar/"
-ln -s "$build"/gst/common/libgstlidar-1.0.so* "$work/lib/"
-sed -e "s|^prefix=.*|prefix=$work|; s|^includedir=.*|includedir=$work/include|; s|^libdir=.*|libdir=$work/lib|" \
-  "$build/meson-private/gstreamer-lidar-1.0.pc" >"$work/gstreamer-lidar-1.0.pc"
-flags=$(PKG_CONFIG_PATH=$work pkg-config --cflags --libs gstreamer-lidar-1.0)
+. "$source/tests/support/installed.sh"
 
 cp "$source/tests/elements/coders/example_coder.cpp" "$work/"
 cd "$work"
 # shellcheck disable=SC2086
 c++ -std=c++17 -O1 -shared -fPIC -DEXAMPLE_PLUGIN -DPACKAGE='"lidarexample"' example_coder.cpp \
   -o libgstlidarexample.so $flags
-echo '#include <gst/lidar/gstlidardecoder.h>
+echo '#include <gst/lidar/gstlidarcloudinfo.h>
+#include <gst/lidar/gstlidardecoder.h>
 #include <gst/lidar/gstlidarencoder.h>' >header.c
 # shellcheck disable=SC2086
 cc -std=c99 -Wall -Wextra -Wno-unused-parameter -Werror -fsyntax-only header.c $flags
 
-export LD_LIBRARY_PATH=$work/lib GST_REGISTRY=$work/registry GST_REGISTRY_FORK=no GST_PLUGIN_PATH_1_0=$work:$build/gst/testsrc
+export GST_PLUGIN_PATH_1_0=$work:$build/gst/testsrc
 gst-inspect-1.0 exampleenc >inspected
 for property in bitrate max-error min-bitrate degradation-preference error-check stats stats-interval; do
   grep -q "^  $property *:" inspected || { echo "exampleenc has no $property" >&2; exit 1; }

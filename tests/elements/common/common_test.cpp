@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "gst/common/cloud_info.h"
 #include "gst/common/gstlidar.h"
+#include "gst/common/gstlidarcloudinfo.h"
 #include "gst/common/latency.h"
 #include "gst/common/refs.h"
 
@@ -142,6 +145,50 @@ TEST(CloudInfo, OfFramesNeedsAWidth) {
   EXPECT_TRUE(CloudInfo::FromCaps(caps.get()));
   EXPECT_FALSE(CloudInfo::FromFrameCaps(caps.get(), &why));
   EXPECT_NE(why.find("width is missing"), std::string::npos) << why;
+}
+
+TEST(Clouds, GiveTheNumbersOfFieldsByName) {
+  CloudInfo parsed;
+  parsed.width = 3;
+  parsed.point_step = 16;
+  parsed.fields = *PointFields::Parse("a:I8:0,b:U16:2,c:F64:8,d:I32:4");
+  const CapsPtr caps(parsed.ToCaps());
+  GstLidarCloudInfo info;
+  ASSERT_TRUE(gst_lidar_cloud_info_from_caps(&info, caps.get()));
+  EXPECT_EQ(info.n_fields, 4U);
+  EXPECT_EQ(gst_lidar_cloud_info_find(&info, "e"), nullptr);
+  const BufferPtr buffer(gst_buffer_new_allocate(nullptr, 48, nullptr));
+  gst_buffer_memset(buffer.get(), 0, 0, 48);
+  GstLidarCloud cloud;
+  ASSERT_TRUE(gst_lidar_cloud_map(&cloud, &info, buffer.get(), GST_MAP_READWRITE));
+  EXPECT_EQ(cloud.n_points, 3U);
+  const auto through = [&](const char* name, gdouble value) {
+    const GstLidarField* field = gst_lidar_cloud_info_find(&info, name);
+    gst_lidar_cloud_set(&cloud, field, 1, value);
+    EXPECT_EQ(gst_lidar_cloud_get(&cloud, field, 0), 0);
+    EXPECT_EQ(gst_lidar_cloud_get(&cloud, field, 2), 0);
+    return gst_lidar_cloud_get(&cloud, field, 1);
+  };
+  EXPECT_EQ(through("a", -7), -7);
+  EXPECT_EQ(through("a", 300), 127);
+  EXPECT_EQ(through("b", -1), 0);
+  EXPECT_EQ(through("b", 65'534.6), 65'535);
+  EXPECT_EQ(through("c", 0.1), 0.1);
+  EXPECT_EQ(through("d", -2e9), -2e9);
+  EXPECT_EQ(through("d", NAN), 0);
+  gst_lidar_cloud_unmap(&cloud);
+}
+
+TEST(Clouds, AreRefusedWhereBufferAndCapsContradictEachOther) {
+  GstLidarCloudInfo info;
+  const CapsPtr other(gst_caps_from_string("video/x-raw"));
+  EXPECT_FALSE(gst_lidar_cloud_info_from_caps(&info, other.get()));
+  const CapsPtr caps(SmallCloud().ToCaps());
+  ASSERT_TRUE(gst_lidar_cloud_info_from_caps(&info, caps.get()));
+  const BufferPtr buffer(gst_buffer_new_allocate(nullptr, 64, nullptr));
+  GstLidarCloud cloud;
+  EXPECT_FALSE(gst_lidar_cloud_map(&cloud, &info, buffer.get(), GST_MAP_READ));
+  gst_lidar_cloud_unmap(&cloud);  // does nothing
 }
 
 }  // namespace
