@@ -53,6 +53,7 @@ make_root() {
   mmdebstrap --quiet --variant=minbase --include="$(IFS=,; echo "$*")" "$release" "$dir" "$mirror"
   mount -t proc proc "$dir/proc"
   cp /etc/resolv.conf "$dir/etc/resolv.conf"
+  inside "$dir" 'apt-get -q update >/dev/null'
 }
 inside() { chroot "$1" env -i PATH=/usr/sbin:/usr/bin:/sbin:/bin HOME=/root LC_ALL=C.UTF-8 DEBIAN_FRONTEND=noninteractive sh -euc "$2"; }
 
@@ -62,7 +63,7 @@ make_root "$work/build" build-essential lintian
 mkdir -p "$work/build/src"
 git -C "$top" archive --prefix=gst-lidar/ HEAD | tar -x -C "$work/build/src"
 echo "== packages to build with ($((SECONDS - started)) s)"
-inside "$work/build" 'cd /src/gst-lidar && apt-get -q -y --no-install-recommends build-dep ./ >/dev/null || apt-get -o Debug::pkgProblemResolver=yes -s --no-install-recommends build-dep ./ | tail -30'
+inside "$work/build" 'cd /src/gst-lidar && apt-get -q -y --no-install-recommends build-dep ./ >/dev/null'
 echo "== building ($((SECONDS - started)) s)"
 inside "$work/build" 'cd /src/gst-lidar && dpkg-buildpackage -us -uc -b' >"$work/build.log" 2>&1 ||
   { tail -40 "$work/build.log"; exit 1; }

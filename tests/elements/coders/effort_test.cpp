@@ -59,12 +59,12 @@ TEST(Effort, MayChangeFromSliceToSlice) {
 
 // A scan takes a minute here, so that any machine has time.
 TEST(Effort, RisesByItselfWhereThereIsTime) {
-  EXPECT_EQ(EffortHarness("", 1, 60).Push(40), "range-mixing3");
+  EXPECT_EQ(EffortHarness("effort=auto", 1, 60).Push(40), "range-mixing3");
 }
 
 // A slice sweeps in a microsecond here, so that no machine has time.
 TEST(Effort, FallsByItselfWhereThereIsNone) {
-  EXPECT_EQ(EffortHarness("", 125'000, 1).Push(20), "range-adaptive");
+  EXPECT_EQ(EffortHarness("effort=auto", 125'000, 1).Push(20), "range-adaptive");
 }
 
 }  // namespace
