@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// What channels carry, as protobuf: clouds, poses and transforms.
+#pragma once
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "src/base/byte_reader.h"
+#include "src/cloud/point_fields.h"
+
+namespace lidar::foxglove {
+
+/// Where and when something was seen.
+struct Header {
+  std::uint64_t unix_ns = 0;
+  std::string frame_id;
+};
+
+struct Pose {
+  std::array<double, 3> position{};               // x, y, z [m]
+  std::array<double, 4> orientation{0, 0, 0, 1};  // unit quaternion x, y, z, w
+};
+
+/// Points as they are in memory.
+struct PointsView {
+  const PointFields& fields;
+  std::uint32_t point_step = 0;  // bytes
+  std::uint32_t width = 0;       // points of a row
+  std::uint32_t height = 1;      // rows: beams, where it is more than one
+  ByteView data;                 // width * height points, row-major
+};
+
+struct EncodedCloud {
+  std::vector<std::uint8_t> message;
+  std::uint32_t points = 0;
+};
+
+/// foxglove.PointCloud of those points that are returns: not all zero, and finite. Of more than
+/// `max_points` (0: no limit) every n-th is taken. Points of an organised cloud get a field `ring`,
+/// the number of their beam, where they have none: their place no longer tells. `points` has x, y
+/// and z as F32 side by side, and as many bytes as it says.
+EncodedCloud EncodePointCloud(const Header& header, const PointsView& points,
+                              std::uint32_t max_points);
+/// foxglove.CompressedPointCloud of a Draco file.
+std::vector<std::uint8_t> EncodeDracoCloud(const Header& header, ByteView draco);
+/// foxglove.PoseInFrame.
+std::vector<std::uint8_t> EncodePose(const Header& header, const Pose& pose);
+/// foxglove.FrameTransform: `pose` is that of `child` in the frame of the header.
+std::vector<std::uint8_t> EncodeTransform(const Header& header, const std::string& child,
+                                          const Pose& pose);
+
+}  // namespace lidar::foxglove

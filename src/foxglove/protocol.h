@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// The texts of Foxglove's WebSocket protocol: what a server tells its clients, and what they ask.
+#pragma once
+#include <array>
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "src/foxglove/schemas.h"
+
+namespace lidar::foxglove {
+
+/// https://docs.foxglove.dev/docs/sdk/websocket-server and its predecessor; both mean the same to
+/// us.
+inline constexpr std::array<const char*, 2> kSubprotocols = {"foxglove.sdk.v1",
+                                                             "foxglove.websocket.v1"};
+
+struct Channel {
+  std::uint32_t id = 0;
+  std::string topic;
+  Schema schema = Schema::kPointCloud;
+};
+
+std::string ServerInfo(const std::string& name, const std::string& session_id);
+std::string Advertise(const std::vector<Channel>& channels);
+std::string Unadvertise(const std::vector<std::uint32_t>& channel_ids);
+/// What was wrong with a message of the client.
+std::string ErrorStatus(const std::string& text);
+
+struct Subscription {
+  std::uint32_t id = 0;  // the client's choice
+  std::uint32_t channel_id = 0;
+};
+
+/// What a client asks for.
+struct Request {
+  enum class Kind {
+    kMalformed,    // `error` says why
+    kUnsupported,  // an operation that we offer nobody
+    kSubscribe,
+    kUnsubscribe,
+  };
+  Kind kind = Kind::kMalformed;
+  std::vector<Subscription> subscriptions;
+  std::vector<std::uint32_t> unsubscribed;  // ids of subscriptions
+  std::string error;
+};
+/// `text` may be anything.
+Request ParseRequest(std::string_view text);
+
+/// The bytes before the payload of a message: opcode, subscription and time [ns since 1970].
+using MessageHead = std::array<std::uint8_t, 13>;
+MessageHead HeadOf(std::uint32_t subscription_id, std::uint64_t unix_ns);
+
+}  // namespace lidar::foxglove

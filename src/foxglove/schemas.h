@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// The schemas of what we send, as channels carry them: https://github.com/foxglove/foxglove-sdk.
+#pragma once
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace lidar::foxglove {
+
+/// What a channel carries.
+enum class Schema { kPointCloud, kCompressedPointCloud, kPose, kFrameTransform, kStatistics };
+
+struct SchemaText {
+  const char* name;      // "foxglove.PointCloud"
+  const char* encoding;  // of the messages: "protobuf" or "json"
+  const char* language;  // of the schema: "protobuf" or "jsonschema"
+  std::string text;      // base64 where the language is protobuf
+};
+SchemaText TextOf(Schema schema);
+
+/// A serialised google.protobuf.FileDescriptorSet with all messages of protobuf that we send.
+std::vector<std::uint8_t> FileDescriptorSet();
+
+/// The members of a message of the channel of statistics, with what they are.
+struct StatisticsField {
+  const char* name;
+  const char* description;  // with its unit
+};
+extern const std::vector<StatisticsField> kStatisticsFields;
+
+}  // namespace lidar::foxglove

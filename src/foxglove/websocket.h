@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Frames of the WebSocket protocol (RFC 6455) as a server meets them.
+#pragma once
+#include <cstdint>
+#include <optional>
+#include <string_view>
+#include <vector>
+
+#include "src/base/byte_reader.h"
+
+namespace lidar::foxglove {
+
+enum class Opcode : std::uint8_t {
+  kContinuation = 0,
+  kText = 1,
+  kBinary = 2,
+  kClose = 8,
+  kPing = 9,
+  kPong = 10,
+};
+
+/// Why a connection is closed (section 7.4.1).
+enum class CloseCode : std::uint16_t {
+  kNormal = 1000,
+  kGoingAway = 1001,
+  kProtocolError = 1002,
+  kTooLarge = 1009,
+};
+
+/// Appends the header of a final frame of the server with a payload of `size` bytes.
+void AppendFrameHeader(Opcode opcode, std::uint64_t size, std::vector<std::uint8_t>* out);
+/// A whole frame. The payload of a control frame has at most 125 bytes.
+std::vector<std::uint8_t> Frame(Opcode opcode, ByteView payload);
+std::vector<std::uint8_t> TextFrame(std::string_view text);
+std::vector<std::uint8_t> CloseFrame(CloseCode code);
+
+/// A message of the client, put together from its fragments, or a control frame.
+struct ClientMessage {
+  Opcode opcode = Opcode::kText;
+  std::vector<std::uint8_t> payload;
+};
+
+/// Finds the messages in the bytes that a client sends, which may be anything.
+class MessageReader {
+ public:
+  /// Messages of more than `max_size` bytes are an error.
+  explicit MessageReader(std::size_t max_size) : max_size_(max_size) {}
+
+  /// Keeps what no message was made of yet: take all messages before you append more.
+  void Append(ByteView bytes);
+  /// None where more bytes are needed, and for ever after an error.
+  std::optional<ClientMessage> Next();
+  /// Why the connection has to be closed.
+  std::optional<CloseCode> error() const { return error_; }
+
+ private:
+  struct FrameHead {
+    bool final = false;
+    Opcode opcode = Opcode::kText;
+    std::size_t head_size = 0;
+    std::size_t size = 0;
+    std::uint32_t mask = 0;
+  };
+  std::optional<FrameHead> ReadHead();
+  bool IsAllowed(const FrameHead& frame);
+  std::vector<std::uint8_t> TakePayload(const FrameHead& frame);
+  void Fail(CloseCode code) { error_ = code; }
+
+  const std::size_t max_size_;
+  std::vector<std::uint8_t> pending_;
+  std::size_t read_ = 0;                    // bytes of pending_ that are done with
+  std::optional<ClientMessage> fragments_;  // of a message that is not whole yet
+  std::optional<CloseCode> error_;
+};
+
+}  // namespace lidar::foxglove
