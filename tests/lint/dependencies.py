@@ -20,6 +20,7 @@ LIBRARIES = {
     "Draco": ("draco/",),
     "Cyclone DDS": ("dds/",),
     "libcurl": ("curl/",),
+    "libsoup": ("libsoup/",),
     "CLI11": ("CLI/",),
     "cpp-httplib": ("httplib",),
     "GStreamer": ("gst/", "glib", "gio/", "gmodule"),

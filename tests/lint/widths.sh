@@ -4,7 +4,7 @@
 # blocks and single words without a break (addresses) may be wider.
 set -uo pipefail
 cd "$1" || exit 1
-mapfile -t pages < <(find . -name '*.md' -not -path './build*' -not -path './.git/*')
+mapfile -t pages < <(find . -name '*.md' -not -path './build*' -not -path './.git/*' -not -path '*/node_modules/*')
 LC_ALL=C.UTF-8 perl -CSD -ne '
   if ($. == 1) { $code = 0 }
   if (/^\s*```/) { $code = !$code }

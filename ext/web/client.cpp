@@ -1,0 +1,198 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "ext/web/client.h"
+
+#include <array>
+
+namespace lidar::web {
+namespace {
+
+using foxglove::CloseCode;
+using foxglove::Opcode;
+
+/// A subscription is a hundred bytes.
+constexpr std::size_t kMaxClientMessage = 64 * 1024;
+constexpr std::size_t kMaxControls = 64;
+constexpr gint64 kSecond_us = G_USEC_PER_SEC;
+constexpr gint64 kAskAfter_us = 10 * kSecond_us;
+constexpr gint64 kSilent_us = 30 * kSecond_us;
+constexpr gint64 kStalled_us = 30 * kSecond_us;
+
+ByteView ViewOf(const std::vector<std::uint8_t>& bytes) { return {bytes.data(), bytes.size()}; }
+
+}  // namespace
+
+Client::Client(ObjectPtr<GIOStream> stream, Handlers handlers)
+    : stream_(std::move(stream)),
+      handlers_(std::move(handlers)),
+      reader_(kMaxClientMessage),
+      heard_us_(g_get_monotonic_time()),
+      progress_us_(heard_us_) {
+  auto* input = G_POLLABLE_INPUT_STREAM(g_io_stream_get_input_stream(stream_.get()));
+  readable_.reset(g_pollable_input_stream_create_source(input, nullptr));
+  g_source_set_callback(readable_.get(), G_SOURCE_FUNC(OnReadable), this, nullptr);
+  g_source_attach(readable_.get(), g_main_context_get_thread_default());
+}
+
+Client::~Client() {
+  readable_.reset();
+  writable_.reset();
+  g_io_stream_close(stream_.get(), nullptr, nullptr);
+}
+
+gboolean Client::OnReadable(GObject*, gpointer self) {
+  static_cast<Client*>(self)->Read();
+  return G_SOURCE_CONTINUE;
+}
+
+gboolean Client::OnWritable(GObject*, gpointer self) {
+  auto* client = static_cast<Client*>(self);
+  client->writable_.reset();
+  client->Write();
+  return G_SOURCE_REMOVE;
+}
+
+/// A bounded part a turn: who sends without end does not keep the thread.
+void Client::Read() {
+  std::array<std::uint8_t, 16 * 1024> buffer;
+  auto* input = G_POLLABLE_INPUT_STREAM(g_io_stream_get_input_stream(stream_.get()));
+  GError* error = nullptr;
+  const gssize size = g_pollable_input_stream_read_nonblocking(input, buffer.data(), buffer.size(),
+                                                               nullptr, &error);
+  const GErrorPtr owner(error);
+  if (size < 0 && g_error_matches(error, G_IO_ERROR, G_IO_ERROR_WOULD_BLOCK)) return;
+  if (size <= 0) return End();
+  heard_us_ = g_get_monotonic_time();
+  asked_us_ = 0;
+  reader_.Append({buffer.data(), static_cast<std::size_t>(size)});
+  while (!closed_) {
+    const auto message = reader_.Next();
+    if (!message) break;
+    Handle(*message);
+  }
+  if (closed_ || !reader_.error()) return;
+  handlers_.on_garbage(this);
+  Close(*reader_.error());
+}
+
+void Client::Handle(const foxglove::ClientMessage& message) {
+  switch (message.opcode) {
+    case Opcode::kText:
+      return handlers_.on_text(this, message.payload);
+    case Opcode::kPing:
+      pong_ = Frame(Opcode::kPong, ViewOf(message.payload));
+      return Write();
+    case Opcode::kClose:
+      return Close(CloseCode::kNormal);
+    case Opcode::kPong:
+      return;
+    case Opcode::kBinary:
+    case Opcode::kContinuation:
+      return handlers_.on_garbage(this);  // we offer nothing that a client could publish
+  }
+}
+
+void Client::SendText(const std::string& text) { SendFrame(foxglove::TextFrame(text)); }
+
+void Client::SendFrame(std::vector<std::uint8_t> frame) {
+  if (closed_) return;
+  if (controls_.size() >= kMaxControls) return End();
+  controls_.push_back(std::move(frame));
+  Write();
+}
+
+bool Client::Send(Outbox::Item item, std::size_t depth) {
+  if (closed_) return false;
+  const bool dropped = outbox_.Push(std::move(item), depth);
+  Write();
+  return dropped;
+}
+
+void Client::Close(CloseCode code) {
+  if (closed_) return;
+  // Between two frames the peer can be told; within one it could not read it.
+  if (!current_ || current_->sent == 0) WriteSome({foxglove::CloseFrame(code), nullptr, 0});
+  End();
+}
+
+void Client::End() {
+  if (closed_) return;
+  closed_ = true;
+  readable_.reset();
+  writable_.reset();
+  handlers_.on_closed(this);
+}
+
+void Client::Tick(gint64 now_us) {
+  if (closed_) return;
+  const bool stalled = current_ && now_us - progress_us_ > kStalled_us;
+  if (stalled || now_us - heard_us_ > kSilent_us) return Close(CloseCode::kGoingAway);
+  if (asked_us_ != 0 || now_us - heard_us_ < kAskAfter_us) return;
+  asked_us_ = now_us;
+  SendFrame(foxglove::Frame(Opcode::kPing, {}));
+}
+
+/// Makes the next frame the current one. Control frames come before data.
+bool Client::TakeNext() {
+  if (pong_) {
+    current_ = Outgoing{std::move(*pong_), nullptr, 0};
+    pong_.reset();
+    return true;
+  }
+  if (!controls_.empty()) {
+    current_ = Outgoing{std::move(controls_.front()), nullptr, 0};
+    controls_.pop_front();
+    return true;
+  }
+  auto item = outbox_.Pop();
+  if (!item) return false;
+  Outgoing out;
+  out.body = std::move(item->message);
+  const auto head = foxglove::HeadOf(item->subscription_id, out.body->unix_ns);
+  foxglove::AppendFrameHeader(Opcode::kBinary, head.size() + out.body->payload.size(), &out.head);
+  out.head.insert(out.head.end(), head.begin(), head.end());
+  current_ = std::move(out);
+  return true;
+}
+
+std::size_t Client::WriteSome(const Outgoing& out) {
+  std::array<GOutputVector, 2> vectors;
+  gsize n = 0;
+  const std::size_t head_left = out.head.size() - std::min(out.sent, out.head.size());
+  if (head_left > 0) vectors[n++] = {out.head.data() + out.sent, head_left};
+  if (out.body) {
+    const std::size_t done = out.sent - (out.head.size() - head_left);
+    vectors[n++] = {out.body->payload.data() + done, out.body->payload.size() - done};
+  }
+  auto* output = G_POLLABLE_OUTPUT_STREAM(g_io_stream_get_output_stream(stream_.get()));
+  gsize written = 0;
+  GError* error = nullptr;
+  const GPollableReturn result = g_pollable_output_stream_writev_nonblocking(
+      output, vectors.data(), n, &written, nullptr, &error);
+  const GErrorPtr owner(error);
+  if (result == G_POLLABLE_RETURN_FAILED) End();
+  return result == G_POLLABLE_RETURN_OK ? written : 0;
+}
+
+void Client::Write() {
+  if (writable_) return;  // the peer has no room
+  while (!closed_ && (current_ || TakeNext())) {
+    const std::size_t written = WriteSome(*current_);
+    if (closed_) return;
+    if (written == 0) return WaitForRoom();
+    progress_us_ = g_get_monotonic_time();
+    counters_.bytes += written;
+    current_->sent += written;
+    if (current_->sent < current_->Size()) continue;
+    if (current_->body) ++counters_.messages;
+    current_.reset();
+  }
+}
+
+void Client::WaitForRoom() {
+  auto* output = G_POLLABLE_OUTPUT_STREAM(g_io_stream_get_output_stream(stream_.get()));
+  writable_.reset(g_pollable_output_stream_create_source(output, nullptr));
+  g_source_set_callback(writable_.get(), G_SOURCE_FUNC(OnWritable), this, nullptr);
+  g_source_attach(writable_.get(), g_main_context_get_thread_default());
+}
+
+}  // namespace lidar::web

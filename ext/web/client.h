@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// One WebSocket connection: reads requests, writes what its outbox holds, as fast as the peer takes
+// it and no faster.
+#pragma once
+#include <deque>
+#include <functional>
+#include <map>
+#include <optional>
+
+#include "ext/web/glib_ptr.h"
+#include "ext/web/outbox.h"
+#include "src/foxglove/websocket.h"
+
+namespace lidar::web {
+
+/// Lives in the server's thread, whose context is its thread's default.
+class Client {
+ public:
+  struct Handlers {
+    std::function<void(Client*, const std::vector<std::uint8_t>& text)> on_text;
+    std::function<void(Client*)> on_garbage;  // not what a client of this protocol sends
+    std::function<void(Client*)> on_closed;   // the last call; the owner deletes the client later
+  };
+  struct Counters {
+    std::uint64_t messages = 0;
+    std::uint64_t bytes = 0;  // handed to the system
+  };
+
+  Client(ObjectPtr<GIOStream> stream, Handlers handlers);
+  ~Client();
+  Client(const Client&) = delete;
+  Client& operator=(const Client&) = delete;
+
+  /// Control texts wait in order; a client that lets too many wait is closed.
+  void SendText(const std::string& text);
+  /// True where an older message gave way to this one.
+  bool Send(Outbox::Item item, std::size_t depth);
+  /// Nothing of the channel is sent any more.
+  void Forget(std::uint32_t channel) { outbox_.Forget(channel); }
+  /// Sends the close frame, if the peer takes it, and ends the connection.
+  void Close(foxglove::CloseCode code);
+  bool closed() const { return closed_; }
+
+  /// Once a second: asks for a sign of life, and closes where none came or nothing was taken.
+  void Tick(gint64 now_us);
+
+  /// Subscription ids by channel; kept by the owner.
+  std::map<std::uint32_t, std::uint32_t> subscriptions;
+  const Counters& counters() const { return counters_; }
+
+ private:
+  struct Outgoing {
+    std::vector<std::uint8_t> head;
+    SharedMessage body;  // may be null
+    std::size_t sent = 0;
+    std::size_t Size() const { return head.size() + (body ? body->payload.size() : 0); }
+  };
+  static gboolean OnReadable(GObject*, gpointer self);
+  static gboolean OnWritable(GObject*, gpointer self);
+  void Read();
+  void Handle(const foxglove::ClientMessage& message);
+  void SendFrame(std::vector<std::uint8_t> frame);
+  void Write();
+  bool TakeNext();
+  /// Bytes written; 0 where the peer takes no more, or after an error, which closes.
+  std::size_t WriteSome(const Outgoing& out);
+  void WaitForRoom();
+  void End();
+
+  const ObjectPtr<GIOStream> stream_;
+  const Handlers handlers_;
+  SourcePtr readable_;
+  SourcePtr writable_;
+  foxglove::MessageReader reader_;
+  std::deque<std::vector<std::uint8_t>> controls_;
+  std::optional<std::vector<std::uint8_t>> pong_;  // only the newest ping needs an answer
+  Outbox outbox_;
+  std::optional<Outgoing> current_;
+  Counters counters_;
+  gint64 heard_us_;
+  gint64 asked_us_ = 0;
+  gint64 progress_us_;
+  bool closed_ = false;
+};
+
+}  // namespace lidar::web

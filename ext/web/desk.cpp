@@ -1,0 +1,320 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "ext/web/desk.h"
+
+#include <algorithm>
+#include <string_view>
+
+#include "ext/web/page_files.h"
+
+namespace lidar::web {
+namespace {
+
+using foxglove::CloseCode;
+using foxglove::Request;
+
+constexpr std::uint32_t kStatisticsId = 0;
+constexpr guint kTick_ms = 1000;
+constexpr guint kStatistics_ms = 250;
+/// A browser has six at a time.
+constexpr std::size_t kMaxWaiting = 32;
+
+/// Takes as long whatever the texts are, so that time does not tell how much of a token was right.
+bool SameSecret(std::string_view a, std::string_view b) {
+  unsigned difference = a.size() == b.size() ? 0 : 1;
+  for (std::size_t i = 0; i < a.size() && !b.empty(); ++i)
+    difference |= static_cast<unsigned>(a[i] ^ b[i % b.size()]);
+  return difference == 0;
+}
+
+std::string_view TokenOf(SoupServerMessage* request, GHashTable* query) {
+  const auto* in_query =
+      query != nullptr ? static_cast<const char*>(g_hash_table_lookup(query, "token")) : nullptr;
+  if (in_query != nullptr) return in_query;
+  constexpr std::string_view kBearer = "Bearer ";
+  const char* header = soup_message_headers_get_one(
+      soup_server_message_get_request_headers(request), "Authorization");
+  const std::string_view text = header != nullptr ? header : "";
+  return text.substr(0, kBearer.size()) == kBearer ? text.substr(kBearer.size()) : "";
+}
+
+void Answer(SoupServerMessage* request, guint status, const char* text) {
+  soup_server_message_set_status(request, status, nullptr);
+  soup_server_message_set_response(request, "text/plain; charset=utf-8", SOUP_MEMORY_COPY, text,
+                                   strlen(text));
+  soup_message_headers_replace(soup_server_message_get_response_headers(request), "Cache-Control",
+                               "no-store");
+}
+
+bool WantsWebSocket(SoupServerMessage* request) {
+  return soup_message_headers_header_contains(soup_server_message_get_request_headers(request),
+                                              "Upgrade", "websocket") != FALSE;
+}
+
+std::string NewSessionId() {
+  gchar* uuid = g_uuid_string_random();
+  std::string id = uuid;
+  g_free(uuid);
+  return id;
+}
+
+}  // namespace
+
+Desk::Desk(const ServerConfig& config, ServerCounters* counters)
+    : config_(config),
+      counters_(*counters),
+      session_id_(NewSessionId()),
+      soup_(soup_server_new("server-header", "gst-lidar", nullptr)),
+      door_(soup_.get(), kMaxWaiting) {
+  soup_server_add_early_handler(soup_.get(), nullptr, OnHeaders, this, nullptr);
+  soup_server_add_handler(soup_.get(), nullptr, OnRequest, this, nullptr);
+  statistics_ = std::make_shared<Topic>(
+      foxglove::Channel{kStatisticsId, kStatisticsTopic, foxglove::Schema::kStatistics});
+  topics_[kStatisticsId] = statistics_;
+  tick_ = Every(kTick_ms, [](gpointer self) -> gboolean {
+    static_cast<Desk*>(self)->Tick();
+    return G_SOURCE_CONTINUE;
+  });
+  statistics_timer_ = Every(kStatistics_ms, [](gpointer self) -> gboolean {
+    static_cast<Desk*>(self)->SendStatistics();
+    return G_SOURCE_CONTINUE;
+  });
+}
+
+Desk::~Desk() {
+  for (auto& client : clients_) client->Close(CloseCode::kGoingAway);
+  clients_.clear();
+  soup_server_remove_handler(soup_.get(), nullptr);
+  soup_server_disconnect(soup_.get());
+}
+
+std::uint16_t Desk::Listen(std::string* error) {
+  const ObjectPtr<GInetAddress> address(g_inet_address_new_from_string(config_.address.c_str()));
+  return door_.Listen(address.get(), config_.port, error);
+}
+
+SourcePtr Desk::Every(guint interval_ms, GSourceFunc function) {
+  SourcePtr source(g_timeout_source_new(interval_ms));
+  g_source_set_callback(source.get(), function, this, nullptr);
+  g_source_attach(source.get(), g_main_context_get_thread_default());
+  return source;
+}
+
+// --- HTTP ---
+
+/// Nobody sends us anything that has a body.
+void Desk::OnHeaders(SoupServer*, SoupServerMessage* request, const char*, GHashTable*,
+                     gpointer self) {
+  soup_message_body_set_accumulate(soup_server_message_get_request_body(request), FALSE);
+  // Parts of files are asked for by nobody but trouble-makers.
+  soup_message_headers_remove(soup_server_message_get_request_headers(request), "Range");
+  const char* method = soup_server_message_get_method(request);
+  if (method == SOUP_METHOD_GET || method == SOUP_METHOD_HEAD) return;
+  ++static_cast<Desk*>(self)->counters_.malformed;
+  Answer(request, SOUP_STATUS_METHOD_NOT_ALLOWED, "Only GET.\n");
+  soup_message_headers_replace(soup_server_message_get_response_headers(request), "Connection",
+                               "close");
+}
+
+void Desk::OnRequest(SoupServer*, SoupServerMessage* request, const char* path, GHashTable* query,
+                     gpointer data) {
+  auto* self = static_cast<Desk*>(data);
+  if (WantsWebSocket(request)) {
+    if (self->Admit(request, query)) self->Upgrade(request);
+  } else if (strcmp(path, "/session") == 0) {
+    // A page cannot read why its WebSocket was refused: it asks here.
+    if (self->Admit(request, query)) Answer(request, SOUP_STATUS_OK, "welcome\n");
+  } else if (!ServePageFile(request, path)) {
+    Answer(request, SOUP_STATUS_NOT_FOUND, "There is no such file.\n");
+  }
+}
+
+bool Desk::Admit(SoupServerMessage* request, GHashTable* query) {
+  if (!config_.token.empty() && !SameSecret(TokenOf(request, query), config_.token)) {
+    ++counters_.clients_refused;
+    Answer(request, SOUP_STATUS_UNAUTHORIZED, "The token is missing or wrong.\n");
+    return false;
+  }
+  if (counters_.clients < config_.max_clients) return true;
+  ++counters_.clients_refused;
+  Answer(request, SOUP_STATUS_SERVICE_UNAVAILABLE, "Too many clients are connected.\n");
+  return false;
+}
+
+void Desk::Upgrade(SoupServerMessage* request) {
+  auto* headers = soup_server_message_get_request_headers(request);
+  const char* offered = soup_message_headers_get_list(headers, "Sec-WebSocket-Protocol");
+  if (offered == nullptr || *offered == 0) {
+    ++counters_.malformed;
+    return Answer(request, SOUP_STATUS_BAD_REQUEST, "The subprotocol is foxglove.sdk.v1.\n");
+  }
+  std::array<char*, foxglove::kSubprotocols.size() + 1> protocols{};
+  std::transform(foxglove::kSubprotocols.begin(), foxglove::kSubprotocols.end(), protocols.begin(),
+                 [](const char* p) { return const_cast<char*>(p); });
+  // No extensions: compressing clouds costs seconds of delay.
+  if (!soup_websocket_server_process_handshake(request, nullptr, protocols.data(), nullptr,
+                                               nullptr)) {
+    ++counters_.malformed;
+    return;
+  }
+  g_signal_connect(request, "wrote-informational", G_CALLBACK(OnUpgraded), this);
+}
+
+void Desk::OnUpgraded(SoupServerMessage* request, gpointer self) {
+  static_cast<Desk*>(self)->AddClient(request);
+}
+
+// --- clients ---
+
+void Desk::AddClient(SoupServerMessage* request) {
+  const auto keep = Ref(request);
+  door_.Promote(request);
+  ObjectPtr<GIOStream> stream(soup_server_message_steal_connection(request));
+  if (!stream) return;
+  Client::Handlers handlers;
+  handlers.on_text = [this](Client* c, const auto& text) { OnText(c, text); };
+  handlers.on_garbage = [this](Client*) { ++counters_.malformed; };
+  handlers.on_closed = [this](Client* c) { ForgetClient(c); };
+  clients_.push_back(std::make_unique<Client>(std::move(stream), std::move(handlers)));
+  Client* client = clients_.back().get();
+  ++counters_.clients_accepted;
+  ++counters_.clients;
+  client->SendText(foxglove::ServerInfo(config_.name, session_id_));
+  std::vector<foxglove::Channel> channels;
+  for (const auto& [id, topic] : topics_) channels.push_back(topic->channel());
+  client->SendText(foxglove::Advertise(channels));
+}
+
+/// It may be one of its own calls that ended the client, so it is deleted after them.
+void Desk::ForgetClient(Client* client) {
+  for (const auto& [channel, subscription] : client->subscriptions) {
+    const auto topic = topics_.find(channel);
+    if (topic != topics_.end()) topic->second->AddSubscribers(-1);
+  }
+  client->subscriptions.clear();
+  --counters_.clients;
+  if (reap_) return;
+  reap_.reset(g_idle_source_new());
+  g_source_set_callback(
+      reap_.get(),
+      [](gpointer self) -> gboolean {
+        static_cast<Desk*>(self)->Reap();
+        return G_SOURCE_REMOVE;
+      },
+      this, nullptr);
+  g_source_attach(reap_.get(), g_main_context_get_thread_default());
+}
+
+void Desk::Reap() {
+  reap_.reset();
+  CountSent();
+  clients_.remove_if([this](const auto& client) {
+    if (!client->closed()) return false;
+    gone_.messages += client->counters().messages;
+    gone_.bytes += client->counters().bytes;
+    return true;
+  });
+}
+
+void Desk::OnText(Client* client, const std::vector<std::uint8_t>& text) {
+  const Request request =
+      foxglove::ParseRequest({reinterpret_cast<const char*>(text.data()), text.size()});
+  switch (request.kind) {
+    case Request::Kind::kSubscribe:
+      for (const auto& subscription : request.subscriptions) Subscribe(client, subscription);
+      return;
+    case Request::Kind::kUnsubscribe:
+      for (const auto id : request.unsubscribed) Unsubscribe(client, id);
+      return;
+    case Request::Kind::kUnsupported:
+      return client->SendText(foxglove::ErrorStatus("This server does not offer that operation."));
+    case Request::Kind::kMalformed:
+      ++counters_.malformed;
+      return client->SendText(foxglove::ErrorStatus("Malformed request: " + request.error + "."));
+  }
+}
+
+/// The newest subscription of a channel counts.
+void Desk::Subscribe(Client* client, const foxglove::Subscription& subscription) {
+  const auto topic = topics_.find(subscription.channel_id);
+  if (topic == topics_.end() || client->closed()) return;  // it has just gone
+  const bool added =
+      client->subscriptions.insert_or_assign(subscription.channel_id, subscription.id).second;
+  if (added) topic->second->AddSubscribers(1);
+}
+
+void Desk::Unsubscribe(Client* client, std::uint32_t subscription_id) {
+  auto& all = client->subscriptions;
+  const auto found = std::find_if(all.begin(), all.end(), [subscription_id](const auto& s) {
+    return s.second == subscription_id;
+  });
+  if (found == all.end()) return;
+  client->Forget(found->first);
+  const auto topic = topics_.find(found->first);
+  if (topic != topics_.end()) topic->second->AddSubscribers(-1);
+  all.erase(found);
+}
+
+// --- topics ---
+
+void Desk::SetTopics(const std::vector<SharedTopic>& topics) {
+  std::map<std::uint32_t, SharedTopic> wanted{{kStatisticsId, statistics_}};
+  std::vector<foxglove::Channel> come;
+  std::vector<std::uint32_t> gone;
+  for (const SharedTopic& topic : topics) {
+    wanted[topic->channel().id] = topic;
+    if (topics_.count(topic->channel().id) == 0) come.push_back(topic->channel());
+  }
+  for (const auto& [id, topic] : topics_)
+    if (wanted.count(id) == 0) gone.push_back(id);
+  topics_ = std::move(wanted);
+  if (come.empty() && gone.empty()) return;
+  for (const auto& client : clients_) {
+    for (const auto id : gone) {
+      client->subscriptions.erase(id);
+      client->Forget(id);
+    }
+    if (!gone.empty()) client->SendText(foxglove::Unadvertise(gone));
+    if (!come.empty()) client->SendText(foxglove::Advertise(come));
+  }
+}
+
+void Desk::Deliver(std::uint32_t channel, const SharedMessage& message) {
+  const auto topic = topics_.find(channel);
+  if (topic == topics_.end()) return;  // it has just gone
+  for (const auto& client : clients_) {
+    const auto found = client->subscriptions.find(channel);
+    if (found == client->subscriptions.end()) continue;
+    if (client->Send({channel, found->second, message}, topic->second->depth()))
+      ++counters_.messages_dropped;
+  }
+  CountSent();
+}
+
+void Desk::CountSent() {
+  Client::Counters sum = gone_;
+  for (const auto& client : clients_) {
+    sum.messages += client->counters().messages;
+    sum.bytes += client->counters().bytes;
+  }
+  counters_.messages_sent = sum.messages;
+  counters_.bytes_sent = sum.bytes;
+}
+
+void Desk::SendStatistics() {
+  if (!statistics_->wanted() || !config_.statistics) return;
+  const std::string text = config_.statistics();
+  Message message;
+  message.unix_ns = static_cast<std::uint64_t>(g_get_real_time()) * 1000;
+  message.payload.assign(text.begin(), text.end());
+  Deliver(kStatisticsId, std::make_shared<const Message>(std::move(message)));
+}
+
+void Desk::Tick() {
+  const gint64 now_us = g_get_monotonic_time();
+  door_.Tick(now_us);
+  counters_.connections_evicted = door_.evicted();
+  for (const auto& client : clients_) client->Tick(now_us);
+  CountSent();
+}
+
+}  // namespace lidar::web

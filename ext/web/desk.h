@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// The part of the server that lives in its thread: HTTP, handshakes, clients and what they asked
+// for.
+#pragma once
+#include <libsoup/soup.h>
+
+#include <list>
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "ext/web/client.h"
+#include "ext/web/front_door.h"
+#include "ext/web/glib_ptr.h"
+#include "ext/web/server_config.h"
+#include "ext/web/topic.h"
+
+namespace lidar::web {
+
+/// All calls come from one thread, whose default context runs it.
+class Desk {
+ public:
+  Desk(const ServerConfig& config, ServerCounters* counters);
+  ~Desk();
+  Desk(const Desk&) = delete;
+  Desk& operator=(const Desk&) = delete;
+
+  /// The port, or 0 and why not.
+  std::uint16_t Listen(std::string* error);
+  /// Tells clients of what came and went.
+  void SetTopics(const std::vector<SharedTopic>& topics);
+  void Deliver(std::uint32_t channel, const SharedMessage& message);
+
+ private:
+  static void OnHeaders(SoupServer*, SoupServerMessage*, const char*, GHashTable*, gpointer self);
+  static void OnRequest(SoupServer*, SoupServerMessage*, const char* path, GHashTable* query,
+                        gpointer self);
+  static void OnUpgraded(SoupServerMessage*, gpointer self);
+  /// Whether there is room, and the token is right; else the answer is made.
+  bool Admit(SoupServerMessage* request, GHashTable* query);
+  void Upgrade(SoupServerMessage* request);
+  void AddClient(SoupServerMessage* request);
+
+  void OnText(Client* client, const std::vector<std::uint8_t>& text);
+  void Subscribe(Client* client, const foxglove::Subscription& subscription);
+  void Unsubscribe(Client* client, std::uint32_t subscription_id);
+  void ForgetClient(Client* client);
+  void Reap();
+  void CountSent();
+
+  SourcePtr Every(guint interval_ms, GSourceFunc function);
+  void Tick();
+  void SendStatistics();
+
+  const ServerConfig& config_;
+  ServerCounters& counters_;
+  const std::string session_id_;
+  ObjectPtr<SoupServer> soup_;
+  FrontDoor door_;
+  std::list<std::unique_ptr<Client>> clients_;
+  Client::Counters gone_;  // of the clients that have left
+  std::map<std::uint32_t, SharedTopic> topics_;
+  SharedTopic statistics_;  // always there
+  SourcePtr reap_;
+  SourcePtr tick_;
+  SourcePtr statistics_timer_;
+};
+
+}  // namespace lidar::web

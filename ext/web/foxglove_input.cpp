@@ -1,0 +1,308 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "ext/web/foxglove_input.h"
+
+#include <mutex>
+#include <optional>
+
+#include "gst/common/buffer_map.h"
+#include "gst/common/cloud_info.h"
+#include "gst/common/gstlidar.h"
+#include "gst/common/properties.h"
+#include "gst/common/refused_caps.h"
+#include "src/foxglove/messages.h"
+
+GST_DEBUG_CATEGORY_STATIC(gst_lidar_foxglove_input_debug);
+#define GST_CAT_DEFAULT gst_lidar_foxglove_input_debug
+
+namespace {
+
+using lidar::foxglove::Header;
+using lidar::foxglove::Pose;
+using lidar::foxglove::Schema;
+using lidar::gst::BufferMap;
+using lidar::gst::CloudInfo;
+using lidar::web::Hub;
+using lidar::web::InputSettings;
+using lidar::web::SharedTopic;
+
+constexpr const char* kFixedFrame = "odom";
+constexpr const char* kTransforms = "/tf";
+constexpr const char* kPoses = "/pose";
+/// A scan has no more slices in our streams; each has a transform.
+constexpr guint kMaxDepth = 64;
+
+enum class Kind { kNone, kCloud, kDraco, kOdometry };
+
+struct State {
+  std::mutex mutex;  // guards the settings and the pointer
+  InputSettings settings;
+  std::shared_ptr<Hub> hub;
+  // Of the streaming thread.
+  std::shared_ptr<Hub> used;  // since start
+  Kind kind = Kind::kNone;
+  CloudInfo info;
+  lidar::gst::RefusedCaps refused;
+  SharedTopic data;
+  SharedTopic transforms;
+  SharedTopic poses;
+  bool no_poses = false;  // another stream has their topics
+};
+
+}  // namespace
+
+struct _GstLidarFoxgloveInput {
+  GstBaseSink parent;
+  State* state;
+};
+
+G_DEFINE_TYPE(GstLidarFoxgloveInput, gst_lidar_foxglove_input, GST_TYPE_BASE_SINK)
+
+namespace lidar::web {
+
+void SetHub(GstLidarFoxgloveInput* input, std::shared_ptr<Hub> hub) {
+  const std::lock_guard lock(input->state->mutex);
+  input->state->hub = std::move(hub);
+}
+
+InputSettings SettingsOf(GstLidarFoxgloveInput* input) {
+  const std::lock_guard lock(input->state->mutex);
+  return input->state->settings;
+}
+
+void SetSettings(GstLidarFoxgloveInput* input, const InputSettings& settings) {
+  const std::lock_guard lock(input->state->mutex);
+  input->state->settings = settings;
+}
+
+}  // namespace lidar::web
+
+namespace {
+
+State& StateOf(gpointer self) { return *GST_LIDAR_FOXGLOVE_INPUT(self)->state; }
+
+void CloseTopics(State* state) {
+  for (SharedTopic* topic : {&state->data, &state->transforms, &state->poses}) {
+    if (*topic && state->used) state->used->server->Close(*topic);
+    topic->reset();
+  }
+  state->no_poses = false;
+}
+
+std::string TopicName(const InputSettings& settings, const char* usual) {
+  if (!settings.topic.empty()) return settings.topic;
+  return settings.number == 0 ? usual : usual + ("_" + std::to_string(settings.number));
+}
+
+/// False, with an element error, where another pad publishes something else there.
+bool OpenTopic(GstBaseSink* sink, const std::string& name, Schema schema, SharedTopic* topic) {
+  State& state = StateOf(sink);
+  *topic = state.used->server->Open(name, schema);
+  if (*topic) return true;
+  GST_ELEMENT_ERROR(sink, RESOURCE, SETTINGS,
+                    ("The topic \"%s\" is already used for something else.", name.c_str()),
+                    (nullptr));
+  return false;
+}
+
+bool OpenPoses(GstBaseSink* sink, const std::string& name) {
+  State& state = StateOf(sink);
+  if (!OpenTopic(sink, name, Schema::kPose, &state.poses) ||
+      !OpenTopic(sink, kTransforms, Schema::kFrameTransform, &state.transforms))
+    return false;
+  state.transforms->set_depth(kMaxDepth);
+  return true;
+}
+
+/// What the caps say, or none and why.
+Kind KindOf(GstCaps* caps, std::optional<CloudInfo>* info, std::string* why) {
+  const GstStructure* s = gst_caps_get_structure(caps, 0);
+  if (gst_structure_has_name(s, GST_LIDAR_DRACO_MEDIA_TYPE)) return Kind::kDraco;
+  if (gst_structure_has_name(s, GST_LIDAR_ODOMETRY_MEDIA_TYPE)) return Kind::kOdometry;
+  *info = CloudInfo::FromFrameCaps(caps, why);
+  if (!*info) return Kind::kNone;
+  if ((*info)->fields.HasPackedXyz()) return Kind::kCloud;
+  *why = "x, y and z are not F32 side by side";
+  return Kind::kNone;
+}
+
+bool OpenTopics(GstBaseSink* sink, Kind kind) {
+  State& state = StateOf(sink);
+  const InputSettings settings = lidar::web::SettingsOf(GST_LIDAR_FOXGLOVE_INPUT(sink));
+  switch (kind) {
+    case Kind::kCloud:
+      return OpenTopic(sink, TopicName(settings, "/points"), Schema::kPointCloud, &state.data);
+    case Kind::kDraco:
+      return OpenTopic(sink, TopicName(settings, "/points_draco"), Schema::kCompressedPointCloud,
+                       &state.data);
+    case Kind::kOdometry:
+      return OpenPoses(sink, TopicName(settings, kPoses));
+    case Kind::kNone:
+      break;
+  }
+  return false;
+}
+
+gboolean SetCaps(GstBaseSink* sink, GstCaps* caps) {
+  State& state = StateOf(sink);
+  if (!state.used) return FALSE;
+  std::optional<CloudInfo> info;
+  std::string why;
+  const Kind kind = KindOf(caps, &info, &why);
+  if (kind == Kind::kNone) {
+    if (state.refused.Note(caps))
+      GST_ELEMENT_ERROR(sink, STREAM, FORMAT, ("Not the caps of a cloud to show: %s.", why.c_str()),
+                        ("%" GST_PTR_FORMAT, static_cast<gpointer>(caps)));
+    return FALSE;
+  }
+  if (info) state.info = std::move(*info);
+  if (kind == state.kind) return TRUE;  // slices of another width
+  CloseTopics(&state);
+  const bool good = OpenTopics(sink, kind);
+  if (!good) CloseTopics(&state);
+  state.kind = good ? kind : Kind::kNone;
+  return good;
+}
+
+guint64 TimeOf(GstBuffer* buffer) {
+  const GstClockTime captured = gst_lidar_buffer_get_capture_time(buffer);
+  if (GST_CLOCK_TIME_IS_VALID(captured)) return captured;
+  return static_cast<guint64>(g_get_real_time()) * GST_USECOND;
+}
+
+Pose PoseOf(const GstLidarPose& meta) {
+  Pose pose;
+  std::copy_n(meta.position, pose.position.size(), pose.position.begin());
+  std::copy_n(meta.orientation, pose.orientation.size(), pose.orientation.begin());
+  return pose;
+}
+
+void PublishPose(State* state, guint64 unix_ns, const std::string& frame_id, const Pose& pose) {
+  auto& server = *state->used->server;
+  const Header header{unix_ns, kFixedFrame};
+  if (state->transforms->wanted())
+    server.Publish(state->transforms,
+                   {unix_ns, lidar::foxglove::EncodeTransform(header, frame_id, pose)});
+  if (state->poses->wanted())
+    server.Publish(state->poses, {unix_ns, lidar::foxglove::EncodePose(header, pose)});
+}
+
+/// The pose that odometry has put on a cloud goes before it.
+void PublishPoseOfCloud(GstBaseSink* sink, GstBuffer* buffer, const Header& header) {
+  State& state = StateOf(sink);
+  GstLidarPose meta;
+  if (state.no_poses || !gst_lidar_buffer_get_pose(buffer, &meta)) return;
+  if (!state.poses) {
+    InputSettings settings = lidar::web::SettingsOf(GST_LIDAR_FOXGLOVE_INPUT(sink));
+    settings.topic.clear();
+    auto& server = *state.used->server;
+    state.poses = server.Open(TopicName(settings, kPoses), Schema::kPose);
+    state.transforms = server.Open(kTransforms, Schema::kFrameTransform);
+    if (!state.poses || !state.transforms) {
+      GST_WARNING_OBJECT(sink, "poses of the clouds are not shown: their topics are in use");
+      state.no_poses = true;
+      return;
+    }
+    state.transforms->set_depth(kMaxDepth);
+  }
+  PublishPose(&state, header.unix_ns, header.frame_id, PoseOf(meta));
+}
+
+bool RenderCloud(State* state, const Header& header, const BufferMap& map) {
+  const CloudInfo& info = state->info;
+  if (map.size() != info.FrameSize()) return false;
+  ++state->used->clouds;
+  if (!state->data->wanted()) return true;
+  auto cloud = lidar::foxglove::EncodePointCloud(
+      header, {info.fields, info.point_step, info.width, info.height, map.view()},
+      state->used->max_points);
+  state->used->points += cloud.points;
+  state->used->server->Publish(state->data, {header.unix_ns, std::move(cloud.message)});
+  return true;
+}
+
+bool RenderDraco(State* state, const Header& header, const BufferMap& map) {
+  ++state->used->clouds;
+  if (!state->data->wanted()) return true;
+  state->used->server->Publish(
+      state->data, {header.unix_ns, lidar::foxglove::EncodeDracoCloud(header, map.view())});
+  return true;
+}
+
+/// Position and orientation as seven doubles, and the tracking.
+bool RenderOdometry(State* state, const Header& header, const BufferMap& map) {
+  lidar::ByteReader in(map.view());
+  Pose pose;
+  for (double& value : pose.position) value = in.LeF64();
+  for (double& value : pose.orientation) value = in.LeF64();
+  if (!in.ok()) return false;
+  PublishPose(state, header.unix_ns, header.frame_id, pose);
+  return true;
+}
+
+/// How many messages are one scan: a slow client may miss whole scans, a fast one no slice.
+void LearnDepth(State* state, GstBuffer* buffer) {
+  GstLidarSlice slice;
+  gst_lidar_buffer_get_slice(buffer, &slice);
+  if (state->data) state->data->set_depth(CLAMP(slice.slice_count, 1, kMaxDepth));
+}
+
+GstFlowReturn Render(GstBaseSink* sink, GstBuffer* buffer) {
+  State& state = StateOf(sink);
+  if (!state.used || state.kind == Kind::kNone) return GST_FLOW_NOT_NEGOTIATED;
+  LearnDepth(&state, buffer);
+  const Header header{TimeOf(buffer),
+                      lidar::web::SettingsOf(GST_LIDAR_FOXGLOVE_INPUT(sink)).frame_id};
+  if (state.kind != Kind::kOdometry) PublishPoseOfCloud(sink, buffer, header);
+  const BufferMap map(buffer, GST_MAP_READ);
+  bool good = false;
+  if (map && map.size() > 0) {
+    if (state.kind == Kind::kCloud) good = RenderCloud(&state, header, map);
+    if (state.kind == Kind::kDraco) good = RenderDraco(&state, header, map);
+    if (state.kind == Kind::kOdometry) good = RenderOdometry(&state, header, map);
+  }
+  if (!good) {
+    ++state.used->malformed;
+    GST_WARNING_OBJECT(sink, "a buffer of another size than its caps say");
+  }
+  return GST_FLOW_OK;
+}
+
+gboolean Start(GstBaseSink* sink) {
+  State& state = StateOf(sink);
+  const std::lock_guard lock(state.mutex);
+  state.used = state.hub;
+  state.refused.Reset();
+  return TRUE;
+}
+
+gboolean Stop(GstBaseSink* sink) {
+  State& state = StateOf(sink);
+  CloseTopics(&state);
+  state.kind = Kind::kNone;
+  state.used.reset();
+  return TRUE;
+}
+
+GstStaticPadTemplate sink_template = GST_STATIC_PAD_TEMPLATE(
+    "sink", GST_PAD_SINK, GST_PAD_ALWAYS,
+    GST_STATIC_CAPS(GST_LIDAR_CLOUD_MEDIA_TYPE "; " GST_LIDAR_DRACO_MEDIA_TYPE
+                                               ", geometry=xyz; " GST_LIDAR_ODOMETRY_MEDIA_TYPE));
+
+}  // namespace
+
+static void gst_lidar_foxglove_input_init(GstLidarFoxgloveInput* self) { self->state = new State; }
+
+static void gst_lidar_foxglove_input_class_init(GstLidarFoxgloveInputClass* klass) {
+  GST_DEBUG_CATEGORY_INIT(gst_lidar_foxglove_input_debug, "foxglovesink", 0, "Foxglove server");
+  lidar::gst::OwnState<GstLidarFoxgloveInput, gst_lidar_foxglove_input_parent_class>(
+      G_OBJECT_CLASS(klass));
+  auto* element = GST_ELEMENT_CLASS(klass);
+  gst_element_class_add_static_pad_template(element, &sink_template);
+  gst_element_class_set_static_metadata(element, "Foxglove input", "Sink",
+                                        "One stream of foxglovesink", "gst-lidar");
+  auto* sink = GST_BASE_SINK_CLASS(klass);
+  sink->start = Start;
+  sink->stop = Stop;
+  sink->set_caps = SetCaps;
+  sink->render = Render;
+}

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// The sink behind each pad of foxglovesink: buffers to messages, and nothing that waits.
+#pragma once
+#include <gst/base/gstbasesink.h>
+
+#include <memory>
+#include <string>
+
+#include "ext/web/server.h"
+
+G_BEGIN_DECLS
+#define GST_TYPE_LIDAR_FOXGLOVE_INPUT (gst_lidar_foxglove_input_get_type())
+G_DECLARE_FINAL_TYPE(GstLidarFoxgloveInput, gst_lidar_foxglove_input, GST, LIDAR_FOXGLOVE_INPUT,
+                     GstBaseSink)
+G_END_DECLS
+
+namespace lidar::web {
+
+/// What the inputs of an element share while it is above NULL.
+struct Hub {
+  std::unique_ptr<Server> server;
+  guint max_points = 0;
+  std::atomic<guint64> clouds{0};
+  std::atomic<guint64> points{0};  // that were sent to somebody
+  std::atomic<guint64> malformed{0};
+};
+
+struct InputSettings {
+  std::string topic;  // empty: by what comes
+  std::string frame_id = "lidar";
+  guint number = 0;  // of the pad; makes topics differ
+};
+
+void SetHub(GstLidarFoxgloveInput* input, std::shared_ptr<Hub> hub);
+InputSettings SettingsOf(GstLidarFoxgloveInput* input);
+void SetSettings(GstLidarFoxgloveInput* input, const InputSettings& settings);
+
+}  // namespace lidar::web

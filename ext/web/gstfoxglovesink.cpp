@@ -1,0 +1,330 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+/**
+ * SECTION:element-foxglovesink
+ *
+ * Shows clouds, poses and statistics in a browser, in Foxglove and in all that speaks its WebSocket
+ * protocol.
+ *
+ * |[
+ * gst-launch-1.0 lidartestsrc is-live=true ! foxglovesink
+ * ]|
+ */
+#include "ext/web/gstfoxglovesink.h"
+
+#include "ext/web/foxglove_input.h"
+#include "ext/web/foxglove_pad.h"
+#include "ext/web/glib_ptr.h"
+#include "ext/web/statistics.h"
+#include "gst/common/properties.h"
+#include "gst/common/refs.h"
+#include "gst/common/stats.h"
+
+GST_DEBUG_CATEGORY_STATIC(gst_lidar_foxglove_sink_debug);
+#define GST_CAT_DEFAULT gst_lidar_foxglove_sink_debug
+
+namespace {
+
+using lidar::gst::ElementPtr;
+using lidar::gst::PadPtr;
+using lidar::gst::StringPtr;
+using lidar::web::Hub;
+
+struct Settings {
+  guint port = 8765;
+  std::string bind_address = "127.0.0.1";
+  std::string token;
+  guint max_clients = 8;
+  guint max_points = 0;
+  bool sync = true;
+};
+
+struct State {
+  std::mutex mutex;  // guards the settings and the pointer
+  Settings settings;
+  std::shared_ptr<Hub> hub;  // above NULL
+  std::atomic<guint> next_pad{0};
+};
+
+lidar::gst::StructurePtr ReadStats(GObject* object);
+
+const std::array<lidar::gst::Property<Settings>, 7> kProperties = {{
+    {"port", "TCP port; 0: one that is free, as stats tell", &Settings::port, 0, 65535},
+    {"bind-address", "Address to listen on; others than of this machine need a token",
+     &Settings::bind_address},
+    {"token", "What clients must name: http://host:port/?token=...; NULL: nothing",
+     &Settings::token},
+    {"max-clients", "How many may be connected at a time", &Settings::max_clients, 1, 1000},
+    {"max-points", "The most points of a message, of more every n-th is sent; 0: all",
+     &Settings::max_points},
+    {"sync", "Show buffers when the pipeline's clock says, not as they come", &Settings::sync},
+    {"stats",
+     "port, clients, clients-accepted, clients-refused, connections-evicted, messages-sent, "
+     "messages-dropped, bytes-sent [bytes], clouds, points-sent, malformed",
+     ReadStats},
+}};
+
+struct Counters {
+  guint port = 0;
+  guint64 clients = 0;
+  guint64 accepted = 0;
+  guint64 refused = 0;
+  guint64 evicted = 0;
+  guint64 sent = 0;
+  guint64 dropped = 0;
+  guint64 bytes = 0;
+  guint64 clouds = 0;
+  guint64 points = 0;
+  guint64 malformed = 0;
+};
+
+const std::array<lidar::gst::Stat<Counters>, 11> kStats = {{
+    {"port", &Counters::port},
+    {"clients", &Counters::clients},
+    {"clients-accepted", &Counters::accepted},
+    {"clients-refused", &Counters::refused},
+    {"connections-evicted", &Counters::evicted},
+    {"messages-sent", &Counters::sent},
+    {"messages-dropped", &Counters::dropped},
+    {"bytes-sent", &Counters::bytes},
+    {"clouds", &Counters::clouds},
+    {"points-sent", &Counters::points},
+    {"malformed", &Counters::malformed},
+}};
+
+Counters CountersOf(const Hub& hub) {
+  const auto& server = hub.server->counters();
+  Counters c;
+  c.port = hub.server->port();
+  c.clients = server.clients;
+  c.accepted = server.clients_accepted;
+  c.refused = server.clients_refused;
+  c.evicted = server.connections_evicted;
+  c.sent = server.messages_sent;
+  c.dropped = server.messages_dropped;
+  c.bytes = server.bytes_sent;
+  c.clouds = hub.clouds;
+  c.points = hub.points;
+  c.malformed = server.malformed + hub.malformed;
+  return c;
+}
+
+}  // namespace
+
+struct _GstLidarFoxgloveSink {
+  GstBin parent;
+  State* state;
+};
+
+static void ChildProxyInit(gpointer iface, gpointer);
+
+G_DEFINE_TYPE_WITH_CODE(GstLidarFoxgloveSink, gst_lidar_foxglove_sink, GST_TYPE_BIN,
+                        G_IMPLEMENT_INTERFACE(GST_TYPE_CHILD_PROXY, ChildProxyInit))
+GST_ELEMENT_REGISTER_DEFINE(foxglovesink, "foxglovesink", GST_RANK_NONE,
+                            GST_TYPE_LIDAR_FOXGLOVE_SINK)
+
+namespace {
+
+GstStaticPadTemplate sink_template = GST_STATIC_PAD_TEMPLATE(
+    "sink_%u", GST_PAD_SINK, GST_PAD_REQUEST,
+    GST_STATIC_CAPS("application/x-pointcloud2; application/x-draco, geometry=xyz; "
+                    "application/x-odometry"));
+
+std::shared_ptr<Hub> HubOf(GObject* object) {
+  State& state = *GST_LIDAR_FOXGLOVE_SINK(object)->state;
+  const std::lock_guard lock(state.mutex);
+  return state.hub;
+}
+
+lidar::gst::StructurePtr ReadStats(GObject* object) {
+  const auto hub = HubOf(object);
+  return lidar::gst::ToStructure("application/x-foxglove-stats", kStats,
+                                 hub ? CountersOf(*hub) : Counters{});
+}
+
+/// False, with an element error, where the settings would let strangers in or make no sense.
+bool CheckAddress(GstElement* element, const Settings& s) {
+  const lidar::web::ObjectPtr<GInetAddress> address(
+      g_inet_address_new_from_string(s.bind_address.c_str()));
+  if (!address) {
+    GST_ELEMENT_ERROR(element, RESOURCE, SETTINGS,
+                      ("\"%s\" is no address of a network interface.", s.bind_address.c_str()),
+                      ("bind-address takes an IPv4 or IPv6 address"));
+    return false;
+  }
+  if (g_inet_address_get_is_loopback(address.get()) || !s.token.empty()) return true;
+  GST_ELEMENT_ERROR(
+      element, RESOURCE, SETTINGS,
+      ("The address %s can be reached from other machines: set a token.", s.bind_address.c_str()),
+      (nullptr));
+  return false;
+}
+
+bool Open(GstElement* element) {
+  auto* self = GST_LIDAR_FOXGLOVE_SINK(element);
+  State& state = *self->state;
+  std::unique_lock lock(state.mutex);
+  const Settings s = state.settings;
+  lock.unlock();
+  if (!CheckAddress(element, s)) return false;
+  lidar::web::ServerConfig config;
+  config.address = s.bind_address;
+  config.port = static_cast<std::uint16_t>(s.port);
+  config.token = s.token;
+  config.max_clients = s.max_clients;
+  config.name = "gst-lidar";
+  // The server ends before the element does.
+  config.statistics = [element] { return lidar::web::StatisticsOf(element); };
+  auto hub = std::make_shared<Hub>();
+  hub->max_points = s.max_points;
+  std::string error;
+  hub->server = lidar::web::Server::Start(std::move(config), &error);
+  if (!hub->server) {
+    GST_ELEMENT_ERROR(element, RESOURCE, OPEN_READ_WRITE,
+                      ("Cannot serve on port %u of %s.", s.port, s.bind_address.c_str()),
+                      ("%s", error.c_str()));
+    return false;
+  }
+  GST_INFO_OBJECT(element, "serves on http://%s:%u/", s.bind_address.c_str(), hub->server->port());
+  lock.lock();
+  state.hub = std::move(hub);
+  return true;
+}
+
+/// Gives each input what `state` has; nothing where that is null.
+void GiveHub(GstElement* element) {
+  const auto hub = HubOf(G_OBJECT(element));
+  GstIterator* inputs = gst_bin_iterate_elements(GST_BIN(element));
+  GstIteratorForeachFunction give = [](const GValue* value, gpointer data) {
+    auto* input = GST_LIDAR_FOXGLOVE_INPUT(g_value_get_object(value));
+    lidar::web::SetHub(input, *static_cast<const std::shared_ptr<Hub>*>(data));
+  };
+  auto* data = const_cast<std::shared_ptr<Hub>*>(&hub);
+  while (gst_iterator_foreach(inputs, give, data) == GST_ITERATOR_RESYNC)
+    gst_iterator_resync(inputs);
+  gst_iterator_free(inputs);
+}
+
+void Close(GstElement* element) {
+  State& state = *GST_LIDAR_FOXGLOVE_SINK(element)->state;
+  std::unique_lock lock(state.mutex);
+  const auto hub = std::move(state.hub);
+  state.hub.reset();
+  lock.unlock();
+  GiveHub(element);
+}
+
+GstStateChangeReturn ChangeState(GstElement* element, GstStateChange change) {
+  if (change == GST_STATE_CHANGE_NULL_TO_READY) {
+    if (!Open(element)) return GST_STATE_CHANGE_FAILURE;
+    GiveHub(element);
+  }
+  const GstStateChangeReturn result =
+      GST_ELEMENT_CLASS(gst_lidar_foxglove_sink_parent_class)->change_state(element, change);
+  const bool failed =
+      change == GST_STATE_CHANGE_NULL_TO_READY && result == GST_STATE_CHANGE_FAILURE;
+  if (failed || change == GST_STATE_CHANGE_READY_TO_NULL) Close(element);
+  return result;
+}
+
+GstPad* RequestPad(GstElement* element, GstPadTemplate* templ, const gchar* name, const GstCaps*) {
+  auto* self = GST_LIDAR_FOXGLOVE_SINK(element);
+  guint number = 0;
+  if (name == nullptr || sscanf(name, "sink_%u", &number) != 1)
+    number = self->state->next_pad++;
+  else
+    self->state->next_pad = MAX(self->state->next_pad.load(), number + 1);
+  const StringPtr pad_name(g_strdup_printf("sink_%u", number));
+  auto* input = GST_ELEMENT(g_object_new(GST_TYPE_LIDAR_FOXGLOVE_INPUT, nullptr));
+  lidar::web::InputSettings settings;
+  settings.number = number;
+  lidar::web::SetSettings(GST_LIDAR_FOXGLOVE_INPUT(input), settings);
+  lidar::web::SetHub(GST_LIDAR_FOXGLOVE_INPUT(input), HubOf(G_OBJECT(element)));
+  {
+    const std::lock_guard lock(self->state->mutex);
+    // A pipeline need not have data for each pad of its viewer before it plays.
+    g_object_set(input, "sync", self->state->settings.sync, "async", FALSE, nullptr);
+  }
+  const PadPtr target(gst_element_get_static_pad(input, "sink"));
+  gst_bin_add(GST_BIN(element), input);
+  auto* ghost = GST_PAD(g_object_new(GST_TYPE_LIDAR_FOXGLOVE_PAD, "name", pad_name.get(),
+                                     "direction", GST_PAD_SINK, "template", templ, nullptr));
+  gst_ghost_pad_set_target(GST_GHOST_PAD(ghost), target.get());
+  gst_element_sync_state_with_parent(input);
+  if (GST_STATE(element) > GST_STATE_READY || GST_STATE_NEXT(element) > GST_STATE_READY)
+    gst_pad_set_active(ghost, TRUE);
+  gst_element_add_pad(element, ghost);
+  gst_child_proxy_child_added(GST_CHILD_PROXY(element), G_OBJECT(ghost), pad_name.get());
+  return ghost;
+}
+
+void ReleasePad(GstElement* element, GstPad* pad) {
+  const ElementPtr input(lidar::web::InputOf(pad));
+  const StringPtr name(gst_pad_get_name(pad));
+  gst_pad_set_active(pad, FALSE);
+  gst_ghost_pad_set_target(GST_GHOST_PAD(pad), nullptr);
+  if (input) {
+    gst_element_set_locked_state(input.get(), TRUE);
+    gst_element_set_state(input.get(), GST_STATE_NULL);
+    gst_bin_remove(GST_BIN(element), input.get());
+  }
+  gst_child_proxy_child_removed(GST_CHILD_PROXY(element), G_OBJECT(pad), name.get());
+  gst_element_remove_pad(element, pad);
+}
+
+/// Each input renders by the clock, or at once.
+void PropertyChanged(GObject* object, GParamSpec* spec) {
+  if (g_strcmp0(spec->name, "sync") != 0) return;
+  gboolean sync = FALSE;
+  g_object_get(object, "sync", &sync, nullptr);
+  GstIterator* inputs = gst_bin_iterate_elements(GST_BIN(object));
+  gst_iterator_foreach(
+      inputs,
+      [](const GValue* value, gpointer on) {
+        g_object_set(g_value_get_object(value), "sync", *static_cast<gboolean*>(on), nullptr);
+      },
+      &sync);
+  gst_iterator_free(inputs);
+}
+
+}  // namespace
+
+/// The pads are children, so that sink_0::topic can be set.
+static void ChildProxyInit(gpointer iface, gpointer) {
+  auto* proxy = static_cast<GstChildProxyInterface*>(iface);
+  proxy->get_children_count = [](GstChildProxy* p) -> guint {
+    GST_OBJECT_LOCK(p);
+    const guint pads = GST_ELEMENT(p)->numsinkpads;
+    GST_OBJECT_UNLOCK(p);
+    return pads;
+  };
+  proxy->get_child_by_index = [](GstChildProxy* p, guint index) -> GObject* {
+    GST_OBJECT_LOCK(p);
+    gpointer pad = g_list_nth_data(GST_ELEMENT(p)->sinkpads, index);
+    if (pad != nullptr) gst_object_ref(pad);
+    GST_OBJECT_UNLOCK(p);
+    return static_cast<GObject*>(pad);
+  };
+  proxy->get_child_by_name = [](GstChildProxy* p, const gchar* name) -> GObject* {
+    GstPad* pad = gst_element_get_static_pad(GST_ELEMENT(p), name);
+    return pad != nullptr ? G_OBJECT(pad) : nullptr;
+  };
+}
+
+static void gst_lidar_foxglove_sink_init(GstLidarFoxgloveSink* self) { self->state = new State; }
+
+static void gst_lidar_foxglove_sink_class_init(GstLidarFoxgloveSinkClass* klass) {
+  GST_DEBUG_CATEGORY_INIT(gst_lidar_foxglove_sink_debug, "foxglovesink", 0, "Foxglove server");
+  auto* object = G_OBJECT_CLASS(klass);
+  lidar::gst::ServeProperties<GstLidarFoxgloveSink, kProperties, PropertyChanged>(object);
+  lidar::gst::OwnState<GstLidarFoxgloveSink, gst_lidar_foxglove_sink_parent_class>(object);
+  auto* element = GST_ELEMENT_CLASS(klass);
+  element->change_state = ChangeState;
+  element->request_new_pad = RequestPad;
+  element->release_pad = ReleasePad;
+  gst_element_class_add_static_pad_template_with_gtype(element, &sink_template,
+                                                       GST_TYPE_LIDAR_FOXGLOVE_PAD);
+  gst_element_class_set_static_metadata(
+      element, "Foxglove server", "Sink/Network/PointCloud",
+      "Serves clouds, poses and statistics to browsers and to Foxglove", "gst-lidar");
+  gst_type_mark_as_plugin_api(GST_TYPE_LIDAR_FOXGLOVE_PAD, static_cast<GstPluginAPIFlags>(0));
+}

@@ -1,0 +1,12 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Registers the elements of the plugin.
+#include "ext/web/gstfoxglovesink.h"
+#include "gst/common/gstlidar.h"
+
+static gboolean plugin_init(GstPlugin* plugin) {
+  gst_lidar_init();
+  return GST_ELEMENT_REGISTER(foxglovesink, plugin);
+}
+
+GST_PLUGIN_DEFINE(GST_VERSION_MAJOR, GST_VERSION_MINOR, lidarweb, "Point clouds in browsers",
+                  plugin_init, VERSION, "LGPL", PACKAGE, PACKAGE_ORIGIN)

@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// A server of Foxglove's WebSocket protocol and of its own page, in a thread of its own.
+#pragma once
+#include <functional>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <thread>
+
+#include "ext/web/glib_ptr.h"
+#include "ext/web/outbox.h"
+#include "ext/web/server_config.h"
+#include "ext/web/topic.h"
+
+namespace lidar::web {
+
+class Desk;
+
+/// The public functions may be called from any thread, and wait for no client.
+class Server {
+ public:
+  /// None where the server cannot listen; `error` then says why, in words for a user.
+  static std::unique_ptr<Server> Start(ServerConfig config, std::string* error);
+  /// Ends all connections.
+  ~Server();
+  Server(const Server&) = delete;
+  Server& operator=(const Server&) = delete;
+
+  std::uint16_t port() const { return port_; }
+  const ServerCounters& counters() const { return counters_; }
+
+  /// The channel `topic`, which several may share. None where it has another schema.
+  SharedTopic Open(const std::string& topic, foxglove::Schema schema);
+  /// Whoever opened it last closes the channel.
+  void Close(const SharedTopic& topic);
+  /// Of what waits for the server's thread, too, the newest messages stay.
+  void Publish(const SharedTopic& topic, Message message);
+
+ private:
+  struct Entry {
+    SharedTopic topic;
+    int users = 0;
+  };
+  explicit Server(ServerConfig config);
+  void Run(std::function<void(std::string)> listens);
+  /// Has the thread look at topics and inboxes.
+  void WakeLocked();
+  static gboolean OnWake(gpointer self);
+  void Collect();
+
+  const ServerConfig config_;
+  ServerCounters counters_;
+  std::uint16_t port_ = 0;
+  ContextPtr context_;
+  LoopPtr loop_;
+  std::thread thread_;
+  std::unique_ptr<Desk> desk_;  // of the thread
+
+  std::mutex mutex_;  // guards what follows; never held while anything is called
+  std::map<std::string, Entry> entries_;  // by topic
+  Outbox inbox_;                          // for the thread
+  std::uint32_t next_id_ = 1;
+  bool wake_pending_ = false;
+};
+
+}  // namespace lidar::web

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// What a server is told, and what it counts.
+#pragma once
+#include <atomic>
+#include <cstdint>
+#include <functional>
+#include <string>
+
+namespace lidar::web {
+
+/// The channel of ServerConfig::statistics.
+inline constexpr const char* kStatisticsTopic = "/statistics";
+
+struct ServerConfig {
+  std::string address = "127.0.0.1";
+  std::uint16_t port = 0;  // 0: one that is free
+  std::string token;       // empty: everybody may come
+  unsigned max_clients = 8;
+  std::string name;                         // as clients show it
+  std::function<std::string()> statistics;  // JSON; called in the server's thread
+};
+
+/// Written by the server's thread, read by any.
+struct ServerCounters {
+  using Count = std::atomic<std::uint64_t>;
+  Count clients{0};
+  Count clients_accepted{0};
+  Count clients_refused{0};  // wrong token, or too many
+  Count messages_sent{0};
+  Count messages_dropped{0};  // a slow client gets a newer one instead
+  Count bytes_sent{0};
+  Count malformed{0};            // requests and messages that nobody of this protocol sends
+  Count connections_evicted{0};  // were silent for long, or too many
+};
+
+}  // namespace lidar::web

@@ -1,0 +1,171 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "ext/web/statistics.h"
+
+#include <algorithm>
+#include <array>
+#include <nlohmann/json.hpp>
+
+#include "gst/common/refs.h"
+
+namespace lidar::web {
+namespace {
+
+using gst::ElementPtr;
+using gst::StringPtr;
+using gst::StructurePtr;
+using nlohmann::json;
+
+json ToJson(const GstStructure* structure);
+
+json Items(const GValue* value, guint count, const GValue* (*get)(const GValue*, guint));
+
+json ToJson(const GValue* value) {
+  if (GST_VALUE_HOLDS_STRUCTURE(value)) return ToJson(gst_value_get_structure(value));
+  if (GST_VALUE_HOLDS_ARRAY(value))
+    return Items(value, gst_value_array_get_size(value), gst_value_array_get_value);
+  switch (G_VALUE_TYPE(value)) {
+    case G_TYPE_INT:
+      return g_value_get_int(value);
+    case G_TYPE_UINT:
+      return g_value_get_uint(value);
+    case G_TYPE_INT64:
+      return g_value_get_int64(value);
+    case G_TYPE_UINT64:
+      return g_value_get_uint64(value);
+    case G_TYPE_DOUBLE:
+      return g_value_get_double(value);
+    case G_TYPE_BOOLEAN:
+      return g_value_get_boolean(value) != FALSE;
+    default:
+      break;
+  }
+  if (G_VALUE_HOLDS_STRING(value)) {
+    const gchar* text = g_value_get_string(value);
+    return text != nullptr ? text : "";
+  }
+  const StringPtr text(gst_value_serialize(value));
+  return text ? text.get() : "";
+}
+
+json Items(const GValue* value, guint count, const GValue* (*get)(const GValue*, guint)) {
+  json items = json::array();
+  for (guint i = 0; i < count; ++i) items.push_back(ToJson(get(value, i)));
+  return items;
+}
+
+/// Names have no dashes: the paths of Foxglove's plots take none.
+json ToJson(const GstStructure* structure) {
+  json object = json::object();
+  if (structure == nullptr) return object;
+  gst_structure_foreach(
+      structure,
+      [](GQuark field, const GValue* value, gpointer out) -> gboolean {
+        std::string name = g_quark_to_string(field);
+        std::replace(name.begin(), name.end(), '-', '_');
+        (*static_cast<json*>(out))[name] = ToJson(value);
+        return TRUE;
+      },
+      &object);
+  return object;
+}
+
+ElementPtr TopOf(GstElement* element) {
+  ElementPtr top(GST_ELEMENT(gst_object_ref(element)));
+  while (GstObject* parent = gst_object_get_parent(GST_OBJECT(top.get()))) {
+    if (!GST_IS_ELEMENT(parent)) {
+      gst_object_unref(parent);
+      break;
+    }
+    top.reset(GST_ELEMENT(parent));
+  }
+  return top;
+}
+
+StructurePtr StatsOf(GstElement* element) {
+  GParamSpec* spec = g_object_class_find_property(G_OBJECT_GET_CLASS(element), "stats");
+  if (spec == nullptr || spec->value_type != GST_TYPE_STRUCTURE ||
+      (spec->flags & G_PARAM_READABLE) == 0)
+    return nullptr;
+  GstStructure* stats = nullptr;
+  g_object_get(element, "stats", &stats, nullptr);
+  return StructurePtr(stats);
+}
+
+void Collect(GstElement* element, json* all);
+
+void CollectChildren(GstBin* bin, json* all) {
+  GstIterator* children = gst_bin_iterate_elements(bin);
+  // Where children come and go meanwhile, the next message is whole again.
+  gst_iterator_foreach(
+      children,
+      [](const GValue* child, gpointer out) {
+        Collect(GST_ELEMENT(g_value_get_object(child)), static_cast<json*>(out));
+      },
+      all);
+  gst_iterator_free(children);
+}
+
+void Collect(GstElement* element, json* all) {
+  if (const StructurePtr stats = StatsOf(element)) {
+    const StringPtr name(gst_element_get_name(element));
+    json object = ToJson(stats.get());
+    if (GstElementFactory* factory = gst_element_get_factory(element))
+      object["factory"] = GST_OBJECT_NAME(factory);
+    (*all)[name.get()] = std::move(object);
+  } else if (GST_IS_BIN(element)) {
+    CollectChildren(GST_BIN(element), all);
+  }
+}
+
+/// A member of the message: what an element calls `from`, where it is one that has `beside`.
+struct Summary {
+  const char* name;
+  const char* from;
+  const char* beside;
+  double scale = 1;
+};
+constexpr double kMs = 1e-6;  // of ns
+constexpr std::array<Summary, 12> kSummaries = {{
+    {"target_bitrate", "target_bitrate", "ref_wnd"},
+    {"sent_bitrate", "sent_bitrate", "ref_wnd"},
+    {"estimated_capacity", "estimated_capacity", "ref_wnd"},
+    {"queue_delay", "queue_delay", "ref_wnd", kMs},
+    {"rtt", "rtt", "ref_wnd", kMs},
+    {"ref_wnd", "ref_wnd", "ref_wnd"},
+    {"bytes_in_flight", "bytes_in_flight", "ref_wnd"},
+    {"step", "step", "error_bound"},
+    {"error_bound", "error_bound", "error_bound"},
+    {"packets_lost", "packets_lost", "packets_ce"},
+    {"packets_ce", "packets_ce", "packets_ce"},
+    {"slices_lost", "slices_lost", "slices_lost"},
+}};
+
+void AddSummaries(const json& elements, json* message) {
+  for (const Summary& summary : kSummaries) {
+    for (const json& element : elements) {
+      const auto value = element.find(summary.from);
+      if (!element.contains(summary.beside) || value == element.end() || !value->is_number())
+        continue;
+      if (summary.scale < 1)
+        (*message)[summary.name] = value->get<double>() * summary.scale;
+      else
+        (*message)[summary.name] = *value;
+      break;
+    }
+  }
+}
+
+}  // namespace
+
+std::string StatisticsOf(GstElement* element) {
+  const gint64 now_us = g_get_real_time();
+  json message = {
+      {"timestamp", {{"sec", now_us / G_USEC_PER_SEC}, {"nsec", now_us % G_USEC_PER_SEC * 1000}}}};
+  json elements = json::object();
+  Collect(TopOf(element).get(), &elements);
+  AddSummaries(elements, &message);
+  message["elements"] = std::move(elements);
+  return message.dump(-1, ' ', false, json::error_handler_t::replace);
+}
+
+}  // namespace lidar::web

@@ -1,0 +1,315 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <gtest/gtest.h>
+
+#include "tests/elements/web/web_peer.h"
+#include "tests/support/proto_reader.h"
+
+namespace lidar::test {
+namespace {
+
+constexpr GstClockTime kCapture_ns = 1'700'000'000'000'000'007;
+
+ProtoMessage Parse(const Received& received) {
+  ProtoMessage message(
+      {reinterpret_cast<const std::uint8_t*>(received.payload.data()), received.payload.size()});
+  EXPECT_TRUE(message.whole());
+  return message;
+}
+
+float FirstX(const Received& received) {
+  float x = 0;
+  const std::string data = Parse(received).Text(6);
+  if (data.size() >= sizeof x) std::memcpy(&x, data.data(), sizeof x);
+  return x;
+}
+
+TEST(FoxgloveSink, SendsCloudsToWhoeverSubscribes) {
+  Sink sink;
+  sink.SetCloudCaps();
+  Peer peer(&sink);
+  ASSERT_TRUE(peer.connected());
+  peer.Subscribe("/points", 42);
+  EXPECT_EQ(peer.server_info["op"], "serverInfo");
+  EXPECT_EQ(peer.channels["/points"]["schemaName"], "foxglove.PointCloud");
+  ASSERT_EQ(sink.PushCloud(7, 4, kCapture_ns), GST_FLOW_OK);
+  const Received received = peer.Next();
+  EXPECT_EQ(received.subscription, 42U);
+  EXPECT_EQ(received.unix_ns, kCapture_ns);
+  EXPECT_EQ(FirstX(received), 7.0F);
+  EXPECT_EQ(Parse(received).Text(6).size(), 4 * 16U);
+  EXPECT_EQ(Parse(received).Text(2), "lidar");
+  EXPECT_EQ(sink.Stat("points-sent"), 4U);
+}
+
+TEST(FoxgloveSink, SpeaksBothSubprotocolsWithoutCompression) {
+  Sink sink;
+  for (const char* protocol : {"foxglove.sdk.v1", "foxglove.websocket.v1"}) {
+    Peer peer(sink.Url("ws"), {"other", protocol});
+    ASSERT_TRUE(peer.connected()) << protocol;
+    EXPECT_EQ(peer.protocol(), protocol);
+    EXPECT_FALSE(peer.compressed());
+  }
+  EXPECT_FALSE(Peer(sink.Url("ws"), {"chat"}).connected());
+  EXPECT_FALSE(Peer(sink.Url("ws"), {}).connected());
+  EXPECT_EQ(sink.Stat("malformed"), 2U);
+}
+
+TEST(FoxgloveSink, ServesSeveralClientsEachWhatItAskedFor) {
+  Sink sink;
+  sink.SetCloudCaps();
+  Peer first(&sink);
+  Peer second(&sink);
+  first.Subscribe("/points", 1);
+  second.Subscribe("/points", 2);
+  sink.PushCloud(1);
+  EXPECT_EQ(first.Next().subscription, 1U);
+  EXPECT_EQ(second.Next().subscription, 2U);
+  first.SendText(R"({"op":"unsubscribe","subscriptionIds":[1]})");
+  first.Sync();
+  sink.PushCloud(2);
+  EXPECT_EQ(FirstX(second.Next()), 2.0F);
+  first.Sync();
+  EXPECT_TRUE(first.received.empty());
+}
+
+TEST(FoxgloveSink, EncodesNothingThatNobodyWants) {
+  Sink sink;
+  sink.SetCloudCaps();
+  sink.PushCloud(1);
+  EXPECT_EQ(sink.Stat("clouds"), 1U);
+  EXPECT_EQ(sink.Stat("points-sent"), 0U);
+}
+
+TEST(FoxgloveSink, ThinsCloudsToMaxPoints) {
+  Sink sink("max-points=10");
+  sink.SetCloudCaps(100);
+  Peer peer(&sink);
+  peer.Subscribe("/points", 1);
+  sink.PushCloud(1, 100);
+  EXPECT_EQ(Parse(peer.Next()).Text(6).size(), 10 * 16U);
+}
+
+TEST(FoxgloveSink, PassesDracoOnAsItIs) {
+  Sink sink;
+  gst_harness_set_src_caps_str(sink.harness(), "application/x-draco,geometry=xyz,alignment=slice");
+  Peer peer(&sink);
+  peer.Subscribe("/points_draco", 5);
+  EXPECT_EQ(peer.channels["/points_draco"]["schemaName"], "foxglove.CompressedPointCloud");
+  gst_harness_push(sink.harness(), gst_buffer_new_memdup("DRACO", 5));
+  const Received received = peer.Next();
+  EXPECT_EQ(Parse(received).Text(4), "DRACO");
+  EXPECT_EQ(Parse(received).Text(5), "draco");
+}
+
+TEST(FoxgloveSink, RefusesDracoOfRanges) {
+  Sink sink;
+  gst_harness_set_src_caps_str(sink.harness(), "application/x-draco,geometry=range");
+  EXPECT_EQ(gst_harness_push(sink.harness(), gst_buffer_new_memdup("DRACO", 5)),
+            GST_FLOW_NOT_NEGOTIATED);
+}
+
+TEST(FoxgloveSink, SendsPosesAsTransformsToo) {
+  Sink sink("sink_0::frame-id=os1");
+  gst_harness_set_src_caps_str(sink.harness(), GST_LIDAR_ODOMETRY_MEDIA_TYPE);
+  Peer peer(&sink);
+  peer.Subscribe("/pose", 1);
+  peer.Subscribe("/tf", 2);
+  const std::array<double, 8> words = {1, 2, 3, 0, 0, 0, 1, 0};
+  gst_harness_push(sink.harness(), gst_buffer_new_memdup(words.data(), sizeof words));
+  std::map<std::uint32_t, Received> got;
+  for (int i = 0; i < 2; ++i) {
+    const Received received = peer.Next();
+    got[received.subscription] = received;
+  }
+  EXPECT_EQ(Parse(got[1]).Message(3).Message(1).Double(3), 3.0);
+  EXPECT_EQ(Parse(got[2]).Text(2), "odom");
+  EXPECT_EQ(Parse(got[2]).Text(3), "os1");
+  EXPECT_EQ(Parse(got[2]).Message(4).Double(1), 1.0);
+}
+
+TEST(FoxgloveSink, SendsThePosesThatOdometryPutOnClouds) {
+  Sink sink;
+  sink.SetCloudCaps();
+  Peer peer(&sink);
+  peer.Subscribe("/points", 1);
+  std::vector<float> point = {1, 0, 0, 0};
+  const GstLidarPose pose = {{4, 5, 6}, {0, 0, 0, 1}, GST_LIDAR_TRACKING_OK};
+  const auto push = [&] {
+    GstBuffer* buffer = gst_buffer_new();
+    point.resize(16, 1);
+    gst_buffer_append_memory(buffer, gst_memory_new_wrapped(GST_MEMORY_FLAG_READONLY, point.data(),
+                                                            64, 0, 64, nullptr, nullptr));
+    gst_lidar_buffer_set_pose(buffer, &pose);
+    gst_harness_push(sink.harness(), buffer);
+  };
+  push();
+  peer.Subscribe("/tf", 2);
+  peer.received.clear();
+  push();
+  const Received transform = peer.Next();  // before its cloud
+  ASSERT_EQ(transform.subscription, 2U);
+  EXPECT_EQ(Parse(transform).Message(4).Double(3), 6.0);
+  EXPECT_EQ(peer.Next().subscription, 1U);
+}
+
+TEST(FoxgloveSink, TellsTheStatisticsOfThePipelineAroundIt) {
+  const gst::ElementPtr pipeline(
+      gst_parse_launch("lidartestsrc is-live=true mode=512x10 model=os0-32 ! tee name=t "
+                       "t. ! queue ! lidarenc name=enc ! fakesink "
+                       "t. ! queue ! foxglovesink name=web port=0",
+                       nullptr));
+  ASSERT_TRUE(pipeline);
+  const gst::ElementPtr web(gst_bin_get_by_name(GST_BIN(pipeline.get()), "web"));
+  gst_element_set_state(pipeline.get(), GST_STATE_PLAYING);
+  GstStructure* raw = nullptr;
+  g_object_get(web.get(), "stats", &raw, nullptr);
+  const gst::StructurePtr stats(raw);
+  guint port = 0;
+  gst_structure_get_uint(stats.get(), "port", &port);
+  {
+    Peer peer("ws://127.0.0.1:" + std::to_string(port), {"foxglove.sdk.v1"});
+    peer.Subscribe("/statistics", 3);
+    nlohmann::json message = nlohmann::json::object();
+    for (int i = 0; i < 20 && message.value("step", 0.0) <= 0; ++i)
+      message = nlohmann::json::parse(peer.Next().payload);
+    EXPECT_GT(message["step"], 0);
+    EXPECT_GT(message["timestamp"]["sec"], 0);
+    EXPECT_EQ(message["elements"]["enc"]["factory"], "lidarenc");
+    EXPECT_GT(message["elements"]["enc"]["slices"], 0);
+    EXPECT_EQ(message["elements"]["web"]["clients"], 1);
+  }
+  gst_element_set_state(pipeline.get(), GST_STATE_NULL);
+}
+
+TEST(FoxgloveSink, ServesItsPageAndNothingElse) {
+  Sink sink("token=secret");
+  const HttpAnswer page = HttpGet(sink.Url("http"));
+  EXPECT_EQ(page.status, 200U);
+  EXPECT_EQ(page.type, "text/html; charset=utf-8");
+  EXPECT_NE(page.policy.find("default-src 'self'"), std::string::npos);
+  EXPECT_NE(page.body.find("<title>"), std::string::npos);
+  EXPECT_EQ(HttpGet(sink.Url("http", "/etc/passwd")).status, 404U);
+  EXPECT_EQ(HttpGet(sink.Url("http", "/..%2f..%2fetc/passwd")).status, 400U);
+  EXPECT_EQ(HttpGet(sink.Url("http"), "POST").status, 405U);
+}
+
+TEST(FoxgloveSink, AdmitsOnlyWhoKnowsTheToken) {
+  Sink sink("token=secret");
+  for (const char* path : {"/", "/?token=wrong!", "/?token=", "/?token=secre", "/?token=secrets"}) {
+    Peer peer(sink.Url("ws", path), {"foxglove.sdk.v1"});
+    EXPECT_FALSE(peer.connected()) << path;
+    EXPECT_EQ(peer.status(), 401U) << path;
+  }
+  EXPECT_EQ(HttpGet(sink.Url("http", "/session")).status, 401U);
+  EXPECT_EQ(HttpGet(sink.Url("http", "/session?token=secret")).status, 200U);
+  EXPECT_TRUE(Peer(sink.Url("ws", "/?token=secret"), {"foxglove.sdk.v1"}).connected());
+  EXPECT_EQ(sink.Stat("clients-refused"), 6U);
+}
+
+TEST(FoxgloveSink, AdmitsNoMoreThanMaxClientsAtATime) {
+  Sink sink("max-clients=1");
+  {
+    const Peer first(&sink);
+    ASSERT_TRUE(first.connected());
+    const Peer second(&sink);
+    EXPECT_FALSE(second.connected());
+    EXPECT_EQ(second.status(), 503U);
+  }
+  ASSERT_TRUE(WaitUntil([&] { return sink.Stat("clients") == 0; }));
+  EXPECT_TRUE(Peer(&sink).connected());
+}
+
+/// What a start with these properties says.
+std::string ErrorOf(const std::string& properties) {
+  const gst::ElementPtr element(gst_parse_launch(("foxglovesink " + properties).c_str(), nullptr));
+  GstBus* bus = gst_bus_new();
+  gst_element_set_bus(element.get(), bus);
+  const bool failed =
+      gst_element_set_state(element.get(), GST_STATE_READY) == GST_STATE_CHANGE_FAILURE;
+  std::string text;
+  if (GstMessage* message = gst_bus_pop_filtered(bus, GST_MESSAGE_ERROR)) {
+    GError* error = nullptr;
+    gst_message_parse_error(message, &error, nullptr);
+    text = error->message;
+    g_error_free(error);
+    gst_message_unref(message);
+  }
+  EXPECT_EQ(failed, !text.empty());
+  gst_element_set_state(element.get(), GST_STATE_NULL);
+  gst_element_set_bus(element.get(), nullptr);
+  gst_object_unref(bus);
+  return text;
+}
+
+TEST(FoxgloveSink, NeedsATokenWhereOthersCanReachIt) {
+  EXPECT_NE(ErrorOf("port=0 bind-address=0.0.0.0").find("set a token"), std::string::npos);
+  EXPECT_EQ(ErrorOf("port=0 bind-address=0.0.0.0 token=t"), "");
+  EXPECT_EQ(ErrorOf("port=0 bind-address=::1"), "");
+  EXPECT_NE(ErrorOf("port=0 bind-address=robot").find("no address"), std::string::npos);
+}
+
+TEST(FoxgloveSink, SaysThatItsPortIsInUse) {
+  Sink sink;
+  const std::string port = std::to_string(sink.Stat("port"));
+  EXPECT_NE(ErrorOf("port=" + port).find("Cannot serve on port " + port), std::string::npos);
+}
+
+TEST(FoxgloveSink, TellsClientsOfPadsThatComeAndGo) {
+  Sink sink;
+  sink.SetCloudCaps();
+  Peer peer(&sink);
+  peer.Channel("/points");
+  {
+    Harness second(gst_harness_new_with_element(sink.element(), "sink_7", nullptr));
+    gst_harness_set_src_caps_str(second.get(), GST_LIDAR_ODOMETRY_MEDIA_TYPE);
+    const std::array<double, 8> words = {0, 0, 0, 0, 0, 0, 1, 0};
+    gst_harness_push(second.get(), gst_buffer_new_memdup(words.data(), sizeof words));
+    peer.Channel("/pose_7");
+    gst_element_release_request_pad(
+        sink.element(), gst::PadPtr(gst_element_get_static_pad(sink.element(), "sink_7")).get());
+  }
+  EXPECT_TRUE(WaitUntil([&] { return peer.channels.count("/pose_7") == 0; }));
+  EXPECT_EQ(peer.channels.count("/points"), 1U);
+}
+
+TEST(FoxgloveSink, RefusesOneTopicForTwoKindsOfMessages) {
+  Sink sink("sink_1::topic=/points");
+  sink.SetCloudCaps();
+  sink.PushCloud(1);
+  Harness second(gst_harness_new_with_element(sink.element(), "sink_1", nullptr));
+  gst_harness_set_src_caps_str(second.get(), GST_LIDAR_ODOMETRY_MEDIA_TYPE);
+  const std::array<double, 8> words = {};
+  EXPECT_EQ(gst_harness_push(second.get(), gst_buffer_new_memdup(words.data(), sizeof words)),
+            GST_FLOW_NOT_NEGOTIATED);
+}
+
+TEST(FoxgloveSink, GoesOnAfterFlushesAndNewStarts) {
+  Sink sink;
+  sink.SetCloudCaps();
+  sink.PushCloud(1);
+  EXPECT_TRUE(gst_harness_push_event(sink.harness(), gst_event_new_flush_start()));
+  EXPECT_TRUE(gst_harness_push_event(sink.harness(), gst_event_new_flush_stop(TRUE)));
+  GstSegment segment;
+  gst_segment_init(&segment, GST_FORMAT_TIME);
+  gst_harness_push_event(sink.harness(), gst_event_new_segment(&segment));
+  EXPECT_EQ(sink.PushCloud(2), GST_FLOW_OK);
+  Peer peer(&sink);
+  EXPECT_TRUE(peer.connected());
+  gst_element_set_state(sink.element(), GST_STATE_NULL);
+  EXPECT_TRUE(WaitUntil([&] { return peer.closed(); }));
+  EXPECT_EQ(sink.Stat("port"), 0U);
+  gst_element_set_state(sink.element(), GST_STATE_PLAYING);
+  EXPECT_TRUE(Peer(&sink).connected());
+}
+
+TEST(FoxgloveSink, CountsBuffersOfAWrongSizeAndGoesOn) {
+  Sink sink;
+  sink.SetCloudCaps();
+  EXPECT_EQ(gst_harness_push(sink.harness(), gst_buffer_new_memdup("short", 5)), GST_FLOW_OK);
+  EXPECT_EQ(gst_harness_push(sink.harness(), gst_buffer_new()), GST_FLOW_OK);
+  EXPECT_EQ(sink.Stat("malformed"), 2U);
+  EXPECT_EQ(sink.PushCloud(1), GST_FLOW_OK);
+}
+
+}  // namespace
+}  // namespace lidar::test

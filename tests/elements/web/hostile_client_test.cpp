@@ -1,0 +1,255 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Clients that read nothing, say nothing or talk nonsense: the pipeline must not notice.
+#include <gtest/gtest.h>
+
+#include "src/foxglove/websocket.h"
+#include "tests/elements/web/web_peer.h"
+#include "tests/support/proto_reader.h"
+
+namespace lidar::test {
+namespace {
+
+/// A connection that says what it likes, and blocks where it reads.
+class RawClient {
+ public:
+  explicit RawClient(Sink* sink) {
+    GSocketClient* client = g_socket_client_new();
+    connection_ = g_socket_client_connect_to_host(
+        client, "127.0.0.1", static_cast<guint16>(sink->Stat("port")), nullptr, nullptr);
+    g_object_unref(client);
+    EXPECT_NE(connection_, nullptr);
+    g_socket_set_timeout(g_socket_connection_get_socket(connection_), 10);
+  }
+  ~RawClient() { g_clear_object(&connection_); }
+  RawClient(RawClient&& o) noexcept : connection_(std::exchange(o.connection_, nullptr)) {}
+  RawClient(const RawClient&) = delete;
+  RawClient& operator=(const RawClient&) = delete;
+
+  bool Send(const std::string& bytes) {
+    return g_output_stream_write_all(g_io_stream_get_output_stream(G_IO_STREAM(connection_)),
+                                     bytes.data(), bytes.size(), nullptr, nullptr,
+                                     nullptr) != FALSE;
+  }
+  /// At most `size` bytes; empty at the end of the stream.
+  std::string Read(std::size_t size) {
+    std::string bytes(size, 0);
+    const gssize n = g_input_stream_read(g_io_stream_get_input_stream(G_IO_STREAM(connection_)),
+                                         bytes.data(), size, nullptr, nullptr);
+    bytes.resize(n > 0 ? static_cast<std::size_t>(n) : 0);
+    return bytes;
+  }
+  /// Reads whole; empty where the stream ends before.
+  std::string ReadAll(std::size_t size) {
+    std::string all;
+    while (all.size() < size) {
+      const std::string part = Read(size - all.size());
+      if (part.empty()) return "";
+      all += part;
+    }
+    return all;
+  }
+  void Upgrade() {
+    Send(
+        "GET / HTTP/1.1\r\nHost: localhost\r\nUpgrade: websocket\r\nConnection: Upgrade\r\n"
+        "Sec-WebSocket-Key: dGhlIHNhbXBsZSBub25jZQ==\r\nSec-WebSocket-Version: 13\r\n"
+        "Sec-WebSocket-Protocol: foxglove.sdk.v1\r\n\r\n");
+    std::string head;
+    while (head.find("\r\n\r\n") == std::string::npos) {
+      const std::string byte = Read(1);
+      ASSERT_FALSE(byte.empty());
+      head += byte;
+    }
+    EXPECT_EQ(head.substr(0, 12), "HTTP/1.1 101");
+  }
+  void SendText(const std::string& text) {
+    std::string frame(1, '\x81');
+    if (text.size() < 126) {
+      frame += static_cast<char>(0x80 | text.size());
+    } else {
+      frame += '\xFE';
+      frame += static_cast<char>(text.size() >> 8);
+      frame += static_cast<char>(text.size());
+    }
+    Send(frame + std::string(4, '\0') + text);  // a mask of zeros
+  }
+  /// The payload of the next frame; empty where the connection ends.
+  std::string ReadFrame() {
+    const std::string head = ReadAll(2);
+    if (head.empty()) return "";
+    std::uint64_t size = static_cast<std::uint8_t>(head[1]);
+    if (size >= 126) {
+      const std::string more = ReadAll(size == 126 ? 2 : 8);
+      size = 0;
+      for (const char c : more) size = size << 8 | static_cast<std::uint8_t>(c);
+    }
+    return size > 0 ? ReadAll(size) : "";
+  }
+
+ private:
+  GSocketConnection* connection_;
+};
+
+/// Subscribed to /points: with the ids of a server that has just started.
+RawClient SubscribedClient(Sink* sink) {
+  RawClient client(sink);
+  client.Upgrade();
+  const auto advertise = [&] {
+    for (;;) {
+      const auto text = nlohmann::json::parse(client.ReadFrame());
+      if (text["op"] != "advertise") continue;
+      for (const auto& channel : text["channels"])
+        if (channel["topic"] == "/points") return channel["id"].get<int>();
+    }
+  };
+  const int id = advertise();
+  client.SendText(R"({"op":"subscribe","subscriptions":[{"id":1,"channelId":)" +
+                  std::to_string(id) + "}]}");
+  client.SendText(R"({"op":"nothing"})");
+  client.ReadFrame();  // the answer to that: the subscription is known
+  return client;
+}
+
+float XOf(const std::string& frame) {
+  const ProtoMessage cloud(
+      {reinterpret_cast<const std::uint8_t*>(frame.data()) + 13, frame.size() - 13});
+  float x = 0;
+  std::memcpy(&x, cloud.Text(6).data(), sizeof x);
+  return x;
+}
+
+TEST(SlowClient, GetsTheNewestAndHoldsUpNobody) {
+  constexpr guint kColumns = 100'000;  // 1.6 MB
+  constexpr int kClouds = 24;
+  Sink sink;
+  sink.SetCloudCaps(kColumns);
+  sink.PushCloud(1, kColumns);
+  RawClient slow = SubscribedClient(&sink);
+  Peer quick(&sink);
+  quick.Subscribe("/points", 1);
+  gint64 longest_us = 0;
+  for (int i = 1; i <= kClouds; ++i) {
+    const gint64 begin_us = g_get_monotonic_time();
+    ASSERT_EQ(sink.PushCloud(static_cast<float>(i), kColumns), GST_FLOW_OK);
+    longest_us = MAX(longest_us, g_get_monotonic_time() - begin_us);
+    quick.Next();
+  }
+  EXPECT_LT(longest_us, 2 * G_USEC_PER_SEC);
+  // The slow one has what was in the sockets' buffers, and then the last cloud.
+  ASSERT_TRUE(WaitUntil([&] { return sink.Stat("messages-dropped") > kClouds / 2; }));
+  int got = 0;
+  float newest = 0;
+  while (newest < kClouds && got < kClouds) {
+    const std::string frame = slow.ReadFrame();
+    ASSERT_FALSE(frame.empty());
+    newest = XOf(frame);
+    ++got;
+  }
+  EXPECT_EQ(newest, static_cast<float>(kClouds));
+  EXPECT_LT(got, kClouds / 2);
+  EXPECT_LE(sink.Stat("messages-dropped") + static_cast<guint64>(got), guint64{kClouds});
+}
+
+TEST(SlowClient, MissesWholeScansButNoSliceOfThoseThatItGets) {
+  constexpr guint kColumns = 20'000;
+  constexpr guint kSlices = 4;
+  Sink sink;
+  sink.SetCloudCaps(kColumns);
+  sink.PushCloud(1, kColumns);
+  RawClient slow = SubscribedClient(&sink);
+  std::vector<float> points(kColumns * 4, 1);
+  for (guint i = 0; i < 40 * kSlices; ++i) {
+    points[0] = static_cast<float>(i);
+    GstBuffer* buffer = gst_buffer_new_memdup(points.data(), points.size() * sizeof(float));
+    const GstLidarSlice slice = {i / kSlices, i % kSlices, kSlices, 0};
+    gst_lidar_buffer_set_slice(buffer, &slice);
+    ASSERT_EQ(gst_harness_push(sink.harness(), buffer), GST_FLOW_OK);
+  }
+  std::vector<int> got;
+  while (got.empty() || got.back() < static_cast<int>(40 * kSlices - 1)) {
+    const std::string frame = slow.ReadFrame();
+    ASSERT_FALSE(frame.empty());
+    got.push_back(static_cast<int>(XOf(frame)));
+  }
+  ASSERT_GE(got.size(), kSlices);
+  for (guint i = 1; i <= kSlices; ++i)
+    EXPECT_EQ(got[got.size() - i], static_cast<int>(40 * kSlices - i));
+}
+
+TEST(SilentConnections, GiveWayToThoseThatAsk) {
+  Sink sink;
+  std::vector<RawClient> silent;
+  for (int i = 0; i < 200; ++i) silent.emplace_back(&sink);
+  for (int i = 0; i < 100; ++i) silent[static_cast<std::size_t>(i)].Send("GET / HT");
+  Peer peer(&sink);
+  ASSERT_TRUE(peer.connected());
+  EXPECT_EQ(HttpGet(sink.Url("http")).status, 200U);
+  EXPECT_TRUE(WaitUntil([&] { return sink.Stat("connections-evicted") >= 150; }));
+}
+
+struct Nonsense {
+  const char* name;
+  bool upgrade;
+  std::string bytes;
+};
+
+class NonsenseClient : public ::testing::TestWithParam<Nonsense> {};
+
+TEST_P(NonsenseClient, IsDisconnectedAndOthersAreServed) {
+  Sink sink;
+  sink.SetCloudCaps();
+  Peer peer(&sink);
+  peer.Subscribe("/points", 1);
+  {
+    RawClient client(&sink);
+    if (GetParam().upgrade) client.Upgrade();
+    client.Send(GetParam().bytes);
+    for (int i = 0; i < 1000 && !client.Read(65'536).empty(); ++i) continue;
+  }
+  ASSERT_TRUE(WaitUntil([&] { return sink.Stat("clients") == 1; }));
+  sink.PushCloud(1);
+  EXPECT_EQ(peer.Next().subscription, 1U);
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    All, NonsenseClient,
+    ::testing::Values(Nonsense{"not_http", false, std::string(1000, '\x16') + "\r\n\r\n"},
+                      Nonsense{"endless_header", false,
+                               "GET / HTTP/1.1\r\nX: " + std::string(300'000, 'a')},
+                      Nonsense{"unmasked_frame", true, "\x81\x02hi"},
+                      Nonsense{"huge_frame", true,
+                               "\x82\xFF\x7F\xFF\xFF\xFF\xFF\xFF\xFF\xFF"
+                               "1234"},
+                      Nonsense{"garbage_frames", true, std::string(100'000, '\xAA')},
+                      Nonsense{"close", true, std::string("\x88\x80\0\0\0\0", 6)}),
+    [](const auto& bad) { return std::string(bad.param.name); });
+
+TEST(Flood, OfPingsIsAnsweredWithoutAQueue) {
+  Sink sink;
+  RawClient client(&sink);
+  client.Upgrade();
+  std::string pings;
+  for (int i = 0; i < 2000; ++i)
+    pings += std::string("\x89\xFD\0\0\0\0", 6) + std::string(125, 'p');
+  for (int i = 0; i < 40; ++i) {
+    if (!client.Send(pings)) break;
+  }
+  EXPECT_EQ(HttpGet(sink.Url("http")).status, 200U);
+}
+
+TEST(Flood, OfRequestsThatNobodyReadsTheAnswersOfEndsTheClient) {
+  Sink sink;
+  RawClient client(&sink);
+  client.Upgrade();
+  std::string requests;
+  const std::string one = R"({"op":"x"})";
+  for (int i = 0; i < 5000; ++i)
+    requests +=
+        '\x81' + std::string(1, static_cast<char>(0x80 | one.size())) + std::string(4, '\0') + one;
+  bool ended = false;
+  for (int i = 0; i < 100 && !ended; ++i) ended = !client.Send(requests);
+  EXPECT_TRUE(ended);
+  EXPECT_TRUE(WaitUntil([&] { return sink.Stat("clients") == 0; }));
+}
+
+}  // namespace
+}  // namespace lidar::test
