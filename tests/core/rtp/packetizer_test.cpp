@@ -3,7 +3,12 @@
 
 #include <gtest/gtest.h>
 
+#include <cstdio>
+#include <numeric>
+#include <string>
+
 #include "src/rtp/fragment_buffer.h"
+#include "src/rtp/stream_config.h"
 #include "tests/core/rtp/stream.h"
 
 namespace lidar::rtp {
@@ -61,6 +66,90 @@ TEST(Packetize, GivesConfigsNoMarker) {
   const auto packets = Packetize(unit, {bytes.data(), bytes.size()}, 80);
   ASSERT_GT(packets.size(), 1U);
   EXPECT_FALSE(packets.back().marker);
+}
+
+std::string Hex(const std::vector<std::uint8_t>& bytes) {
+  std::string text;
+  char digits[3];
+  for (const std::uint8_t byte : bytes) {
+    std::snprintf(digits, sizeof digits, "%02x", byte);
+    text += digits;
+  }
+  return text;
+}
+
+Unit GoldenUnit() {
+  Unit unit;
+  unit.config_id = 0xC1;
+  unit.slice = {0x01020304, 5, 8};
+  unit.info = {0x0A0B0C0D, 640, 12'500'000, 0x1122334455667788};
+  return unit;
+}
+
+/// `size` bytes that begin with `first` and count on.
+std::vector<std::uint8_t> Count(std::size_t size, std::uint8_t first) {
+  std::vector<std::uint8_t> bytes(size);
+  std::iota(bytes.begin(), bytes.end(), first);
+  return bytes;
+}
+
+// The bytes below were made by tests/adversary/wire.py, which knows the document alone.
+
+TEST(GoldenUnits, AreThoseOfAnotherWriter) {
+  const auto bytes = Count(30, 1);
+  Unit unit = GoldenUnit();
+  EXPECT_EQ(Hex(Payload(Packetize(unit, {bytes.data(), 30}, 1'000)[0], bytes)),
+            "02c10000001e5a39149901020304000500080a0b0c0d028000bebc201122334455667788"
+            "0102030405060708090a0b0c0d0e0f101112131415161718191a1b1c1d1e");
+  unit.unit = UnitType::kSliceAfterSkip;
+  unit.info.skipped = 0x8000000000000005;
+  EXPECT_EQ(Hex(Payload(Packetize(unit, {bytes.data(), 30}, 1'000)[0], bytes)),
+            "03c10000001e8cbc6b3201020304000500080a0b0c0d028000bebc201122334455667788"
+            "80000000000000050102030405060708090a0b0c0d0e0f101112131415161718191a1b1c1d1e");
+}
+
+TEST(GoldenUnits, InFragmentsAreThoseOfAnotherWriter) {
+  const auto bytes = Count(100, 0);
+  const auto packets = Packetize(GoldenUnit(), {bytes.data(), 100}, 64);
+  ASSERT_EQ(packets.size(), 3U);
+  EXPECT_EQ(Hex(Payload(packets[0], bytes)),
+            "42c100000064f9747d2801020304000500080a0b0c0d028000bebc201122334455667788"
+            "000102030405060708090a0b0c0d0e0f101112131415161718191a1b");
+  EXPECT_EQ(Hex(Payload(packets[1], bytes)),
+            "62c101020304000500081c1d1e1f202122232425262728292a2b2c2d2e2f3031323334353637"
+            "38393a3b3c3d3e3f404142434445464748494a4b4c4d4e4f5051");
+  EXPECT_EQ(Hex(Payload(packets[2], bytes)),
+            "82c1010203040005000852535455565758595a5b5c5d5e5f60616263");
+}
+
+TEST(GoldenUnits, InOnePacketAreThoseOfAnotherWriter) {
+  Aggregator aggregator;
+  const auto first = Count(30, 1);
+  const auto second = Count(1, 7);
+  Unit unit = GoldenUnit();
+  ASSERT_TRUE(aggregator.Add(unit, {first.data(), 30}, 600, 9'000));
+  unit.slice.index = 6;
+  ASSERT_TRUE(aggregator.Add(unit, {second.data(), 1}, 600, 9'000 + 1'125));
+  EXPECT_EQ(Hex(aggregator.Take()->header),
+            "200000004202c10000001e5a39149901020304000500080a0b0c0d028000bebc20112233445566"
+            "77880102030405060708090a0b0c0d0e0f101112131415161718191a1b1c1d1e0465002502c100"
+            "000001dc8a1b5101020304000600080a0b0c0d028000bebc20112233445566778807");
+}
+
+TEST(GoldenUnits, OfAConfigAreThoseOfAnotherWriter) {
+  StreamConfig config;
+  config.coder = Coder::kDraco;
+  config.geometry = Geometry::kXyz;
+  config.framerate_n = 10;
+  config.framerate_d = 1;
+  config.fields = "x:F32:0,y:F32:4,z:F32:8";
+  const auto bytes = config.Serialise();
+  Unit unit;
+  unit.unit = UnitType::kStreamConfig;
+  unit.config_id = ConfigId(bytes, std::nullopt);
+  EXPECT_EQ(Hex(Payload(Packetize(unit, {bytes.data(), bytes.size()}, 1'000)[0], bytes)),
+            "00840000002547f9fb2401000000000a0000000100170000783a4633323a302c793a4633323a34"
+            "2c7a3a4633323a38");
 }
 
 TEST(Aggregator, PutsSmallSlicesTogetherAndKeepsTheirTimes) {
