@@ -51,6 +51,7 @@ constexpr std::array<Mode, 5> kModeValues = {
 const GEnumValue kScenes[] = {{0, "A street in a town, with traffic", "street"},
                               {1, "A road tunnel", "tunnel"},
                               {2, "Open country", "field"},
+                              {3, "A town on hills, and a round trip of 2 km through it", "town"},
                               {0, nullptr, nullptr}};
 
 GType RegisterEnum(gsize* type, const char* name, const GEnumValue* values) {
@@ -76,6 +77,7 @@ struct Settings {
   gint scene = 0;
   gdouble speed_mps = 12;
   gdouble noise_m = 0.01;
+  bool mixed_pixels = false;
   guint seed = 0;
   guint slices_per_scan = 0;
   std::string channels;
@@ -84,7 +86,7 @@ struct Settings {
 };
 
 using Row = lidar::gst::Property<Settings>;
-const std::array<Row, 10> kProperties = {{
+const std::array<Row, 11> kProperties = {{
     {"model", "Sensor to simulate", lidar::gst::EnumField<Settings>{&Settings::model, ModelType}},
     {"mode", "Columns of a scan x scans per second",
      lidar::gst::EnumField<Settings>{&Settings::mode, ModeType}},
@@ -93,6 +95,7 @@ const std::array<Row, 10> kProperties = {{
     {"speed", "Speed of the sensor [m/s]", &Settings::speed_mps, 0, 100},
     {"noise", "Standard deviation of ranges on a bright target nearby [m]", &Settings::noise_m, 0,
      10},
+    {"mixed-pixels", "Ranges at edges lie between the two surfaces", &Settings::mixed_pixels},
     {"seed", "Chooses the world and the noise: the same seed gives the same clouds",
      &Settings::seed, 0, G_MAXUINT},
     {"slices-per-scan",
@@ -133,6 +136,7 @@ lidar::synth::ScannerConfig ConfigFrom(const Settings& s) {
   config.scene = static_cast<lidar::synth::SceneKind>(s.scene);
   config.speed_mps = s.speed_mps;
   config.noise_m = s.noise_m;
+  config.mixed_pixels = s.mixed_pixels;
   config.seed = s.seed;
   return config;
 }

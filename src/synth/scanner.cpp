@@ -10,6 +10,7 @@ namespace {
 constexpr Duration kChunk = std::chrono::milliseconds(2);
 constexpr float kFastest = 25;  // of what moves in a scene [m/s]
 constexpr std::size_t kGaussBits = 12;
+constexpr float kHalfDivergence = 0.0015F;  // of a beam [rad]
 
 /// Normal deviates by quantile, to be drawn with uniform bits.
 std::vector<float> MakeGaussTable() {
@@ -27,7 +28,6 @@ std::vector<float> MakeGaussTable() {
 
 /// A direction on the rim of the beam around `axis`; `turn` says where on it [rad].
 Vec3 OnTheRim(Vec3 axis, float turn) {
-  constexpr float kHalfDivergence = 0.0015F;  // [rad]
   const float horizontal = std::sqrt(axis.x * axis.x + axis.y * axis.y) + 1e-9F;
   const Vec3 left{-axis.y / horizontal, axis.x / horizontal, 0};
   const Vec3 up{-axis.x * axis.z / horizontal, -axis.y * axis.z / horizontal, horizontal};
@@ -56,7 +56,7 @@ Scanner::Scanner(const ScannerConfig& config)
       chunk_columns_(std::max(
           1U, static_cast<std::uint32_t>(projection_.columns() * kChunk / config.period))) {
   view_.radius = reach_m_ + static_cast<float>(kAnchorStep);
-  MoveAnchor(0);
+  MoveAnchor(0, 0);
 }
 
 Duration Scanner::ColumnTime(std::uint64_t scan, std::uint32_t column) const {
@@ -64,11 +64,15 @@ Duration Scanner::ColumnTime(std::uint64_t scan, std::uint32_t column) const {
          config_.period * std::int64_t{column} / std::int64_t{projection_.columns()};
 }
 
-void Scanner::MoveAnchor(double x) {
-  const double anchor = std::floor(x / kAnchorStep) * kAnchorStep;
-  if (anchor == view_.anchor_x && !shapes_.empty()) return;
-  view_.anchor_x = anchor;
+void Scanner::MoveAnchor(double x, double y) {
+  const double anchor_x = std::floor(x / kAnchorStep) * kAnchorStep;
+  // Worlds along x stay within half a step of their middle.
+  const double anchor_y = std::round(y / kAnchorStep) * kAnchorStep;
+  if (anchor_x == view_.anchor_x && anchor_y == view_.anchor_y && !shapes_.empty()) return;
+  view_.anchor_x = anchor_x;
+  view_.anchor_y = anchor_y;
   shapes_.clear();
+  scene_->MoveTo(view_);
   scene_->AddStatic(view_, &shapes_);
   static_shapes_ = shapes_.size();
 }
@@ -82,8 +86,8 @@ Scanner::Column Scanner::MakeColumn(std::uint64_t scan, std::uint32_t column) co
   // Where the beams of this column begin, in the sensor frame: a point less its way.
   const Vec3 at_1m = ToVec(projection_.Point(0, column, 1000));
   const Vec3 origin = at_1m - (1.0F - beam_origin_m_) * ToVec(projection_.Direction(0, column));
-  c.origin = Vec3{static_cast<float>(pose.x - view_.anchor_x), static_cast<float>(pose.y),
-                  static_cast<float>(pose.z)} +
+  c.origin = Vec3{static_cast<float>(pose.x - view_.anchor_x),
+                  static_cast<float>(pose.y - view_.anchor_y), static_cast<float>(pose.z)} +
              c.rotation * origin;
   c.age_s = static_cast<float>(Seconds(time - chunk_time_));
   c.key = Mix(Mix(config_.seed + scan * 0x10001) + column);
@@ -118,9 +122,9 @@ void Scanner::BeginChunk(std::uint64_t scan, std::uint32_t chunk) {
   const std::uint32_t last = std::min(first + chunk_columns_, projection_.columns()) - 1;
   chunk_time_ = ColumnTime(scan, first);
   const Pose pose = trajectory_.At(chunk_time_);
-  MoveAnchor(pose.x);
+  MoveAnchor(pose.x, pose.y);
   shapes_.resize(static_shapes_);
-  scene_->AddMoving(view_, {Seconds(chunk_time_), pose.x, trajectory_.speed()}, &shapes_);
+  scene_->AddMoving(view_, {Seconds(chunk_time_), pose.x, trajectory_.speed(), pose.y}, &shapes_);
   const float margin = 0.05F + static_cast<float>(Seconds(kChunk)) *
                                    (static_cast<float>(trajectory_.speed()) + kFastest);
   index_.Build(shapes_, MakeColumn(scan, first).origin, margin, ArcOf(scan, first, last));
@@ -129,7 +133,8 @@ void Scanner::BeginChunk(std::uint64_t scan, std::uint32_t chunk) {
 Hit Scanner::Trace(const Ray& ray, float age_s, Random* noise) const {
   Hit hit;
   hit.distance = reach_m_;
-  scene_->IntersectGround(view_, ray, noise, &hit);
+  const bool ground_first = scene_->GroundFirst(ray);
+  if (ground_first) scene_->IntersectGround(view_, ray, noise, &hit);
   for (const auto& entry : index_.Find(PseudoAngle(ray.direction.x, ray.direction.y))) {
     if (entry.nearest > hit.distance * ray.horizontal) break;
     if (ray.slope > entry.max_slope || ray.slope < entry.min_slope) continue;
@@ -142,6 +147,7 @@ Hit Scanner::Trace(const Ray& ray, float age_s, Random* noise) const {
       Intersect(shape, relative, noise, &hit);
     }
   }
+  if (!ground_first) scene_->IntersectGround(view_, ray, noise, &hit);
   return hit;
 }
 
@@ -190,6 +196,34 @@ Scanner::Echoes Scanner::MeasureBoth(const Column& column, Vec3 direction, const
   return a_leads ? Echoes{a, b} : Echoes{b, a};
 }
 
+/// What the beams of a column meet. It draws from the noise of the column as its own cast does.
+std::vector<Hit> Scanner::TraceColumn(std::uint64_t scan, std::uint32_t index) {
+  BeginChunk(scan, index / chunk_columns_);
+  const Column column = MakeColumn(scan, index);
+  std::vector<Hit> hits;
+  for (std::uint32_t beam = 0; beam < projection_.beams(); ++beam) {
+    Random noise(column.key + beam);
+    const Vec3 direction = column.rotation * ToVec(projection_.Direction(beam, index));
+    hits.push_back(Trace(MakeRay(column.origin, direction), column.age_s, &noise));
+  }
+  return hits;
+}
+
+/// Where an edge lies within the beam, its two echoes run into one: the range lies between.
+Hit Scanner::MixWith(const Hit& beside, Hit hit, Random* noise) const {
+  constexpr float kPulse = 1.0F;  // echoes farther apart than that are told apart [m]
+  constexpr float kSurface = 0.15F;
+  const float apart = std::abs(beside.distance - hit.distance);
+  if (!(apart > kSurface && apart < kPulse)) return hit;
+  const float pitch = 6.2831853F / static_cast<float>(projection_.columns());
+  Random edge(noise->Bits());
+  if (!edge.Chance(std::min(1.0F, 2 * kHalfDivergence / pitch))) return hit;
+  const float share = edge.Uniform();
+  hit.distance += share * (beside.distance - hit.distance);
+  hit.reflectivity += share * (beside.reflectivity - hit.reflectivity);
+  return hit;
+}
+
 void Scanner::Cast(std::uint64_t scan, ColumnWindow window, Returns* returns) {
   const std::uint32_t beams = projection_.beams();
   returns->range_mm.resize(std::size_t{beams} * window.count);
@@ -199,6 +233,9 @@ void Scanner::Cast(std::uint64_t scan, ColumnWindow window, Returns* returns) {
   returns->range2_mm.resize(seconds);
   returns->reflectivity2.resize(seconds);
   returns->signal2.resize(seconds);
+  // The returns must not depend on where a window begins.
+  std::vector<Hit> beside;
+  if (config_.mixed_pixels && window.first > 0) beside = TraceColumn(scan, window.first - 1);
   std::uint32_t chunk = UINT32_MAX;
   for (std::uint32_t i = 0; i < window.count; ++i) {
     const std::uint32_t index = window.first + i;
@@ -207,7 +244,13 @@ void Scanner::Cast(std::uint64_t scan, ColumnWindow window, Returns* returns) {
     for (std::uint32_t beam = 0; beam < beams; ++beam) {
       Random noise(column.key + beam);
       const Vec3 direction = column.rotation * ToVec(projection_.Direction(beam, index));
-      const Hit hit = Trace(MakeRay(column.origin, direction), column.age_s, &noise);
+      Hit hit = Trace(MakeRay(column.origin, direction), column.age_s, &noise);
+      if (config_.mixed_pixels) {
+        const Hit traced = hit;
+        if (index > 0) hit = MixWith(beside[beam], hit, &noise);
+        beside.resize(beams);
+        beside[beam] = traced;
+      }
       const Echoes echoes = config_.second_returns ? MeasureBoth(column, direction, hit, &noise)
                                                    : Echoes{Measure(hit, &noise), {}};
       const std::size_t at = std::size_t{beam} * window.count + i;

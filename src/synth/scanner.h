@@ -21,6 +21,7 @@ struct ScannerConfig {
   double noise_m = 0.01;  // standard deviation of a range on a white wall nearby
   std::uint64_t seed = 0;
   bool second_returns = false;  // two echoes where a beam meets two things; costs a second ray
+  bool mixed_pixels = false;    // ranges between two surfaces, where a beam meets an edge
 };
 
 /// What the sensor measured, beam by beam: [beam * columns + column]. Range 0: no return.
@@ -61,12 +62,14 @@ class Scanner {
     std::uint16_t signal = 0;
   };
 
-  void MoveAnchor(double x);
+  void MoveAnchor(double x, double y);
   void BeginChunk(std::uint64_t scan, std::uint32_t chunk);
   Column MakeColumn(std::uint64_t scan, std::uint32_t column) const;
   SectorIndex::Arc ArcOf(std::uint64_t scan, std::uint32_t first, std::uint32_t last) const;
   Hit Trace(const Ray& ray, float age_s, Random* noise) const;
   Pixel Measure(const Hit& hit, Random* noise) const;
+  std::vector<Hit> TraceColumn(std::uint64_t scan, std::uint32_t column);
+  Hit MixWith(const Hit& beside, Hit hit, Random* noise) const;
   struct Echoes {
     Pixel strongest;
     Pixel second;

@@ -11,6 +11,8 @@ std::unique_ptr<Scene> Scene::Make(SceneKind kind, std::uint64_t seed) {
       return MakeTunnel(seed);
     case SceneKind::kField:
       return MakeField(seed);
+    case SceneKind::kTown:
+      return MakeTown(seed);
     case SceneKind::kStreet:
       break;
   }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// A world without end along x: what stands near a place is made from the seed and the place.
+// A world without end: what stands near a place is made from the seed and the place.
 #pragma once
 #include <cmath>
 #include <cstdint>
@@ -11,12 +11,13 @@
 
 namespace lidar::synth {
 
-enum class SceneKind { kStreet, kTunnel, kField };
+enum class SceneKind { kStreet, kTunnel, kField, kTown };
 
-/// A piece of the world. Its coordinates are floats relative to the anchor, (anchor_x, 0, 0), so
-/// that a long drive does not eat their precision.
+/// A piece of the world. Its coordinates are floats relative to the anchor, (anchor_x, anchor_y,
+/// 0), so that a long drive does not eat their precision. Both are multiples of kAnchorStep.
 struct View {
-  double anchor_x = 0;  // a multiple of kAnchorStep
+  double anchor_x = 0;
+  double anchor_y = 0;  // 0 in the worlds along x
   float radius = 100;   // how far from the anchor things matter
 };
 /// Textures of the ground repeat by divisors of this.
@@ -29,6 +30,8 @@ class Scene {
 
   /// The lane of the sensor's car.
   virtual TrajectorySettings Lane(double speed_mps) const = 0;
+  /// Tells which view the calls of IntersectGround are about.
+  virtual void MoveTo(const View&) {}
   /// Appends what stands still.
   virtual void AddStatic(const View& view, std::vector<Shape>* shapes) const = 0;
   /// Appends what moves, where it is at `time_s`, when the sensor's car is at `ego_x` with `speed`.
@@ -36,9 +39,12 @@ class Scene {
     double time_s = 0;
     double ego_x = 0;
     double ego_speed = 0;
+    double ego_y = 0;
   };
   virtual void AddMoving(const View& view, const Instant& now,
                          std::vector<Shape>* shapes) const = 0;
+  /// Where the ground is dear, rays that rather meet something else ask for it last.
+  virtual bool GroundFirst(const Ray&) const { return true; }
   /// Ground and whatever else never ends; true where it is met nearer than hit->distance.
   virtual bool IntersectGround(const View& view, const Ray& ray, Random* noise, Hit* hit) const = 0;
 

@@ -8,5 +8,6 @@ namespace lidar::synth {
 std::unique_ptr<Scene> MakeStreet(std::uint64_t seed);
 std::unique_ptr<Scene> MakeTunnel(std::uint64_t seed);
 std::unique_ptr<Scene> MakeField(std::uint64_t seed);
+std::unique_ptr<Scene> MakeTown(std::uint64_t seed);
 
 }  // namespace lidar::synth

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // A street in a town: façades, pavements, parked and moving cars, trees, lamps, people, crossings.
+#include "src/synth/street.h"
+
 #include <algorithm>
 
 #include "src/synth/props.h"
@@ -8,13 +10,10 @@
 namespace lidar::synth {
 namespace {
 
-constexpr double kBlock = kAnchorStep;  // a house and its plot
-constexpr std::int64_t kBlocksToCrossing = 7;
-constexpr float kHalfRoad = 5.8F;  // two lanes and two rows of parked cars
-constexpr float kKerb = 0.14F;
-constexpr float kLane = 1.75F;    // middle of a lane
+constexpr float kHalfRoad = kStreetHalfRoad;
+constexpr float kKerb = kStreetKerb;
+constexpr float kLane = kStreetLane;
 constexpr float kParked = 4.65F;  // middle of a parked car
-constexpr float kPavementEnd = 9.2F;
 constexpr double kOncomingSpeed = 11;
 constexpr double kOncomingGap = 46;
 
@@ -33,41 +32,30 @@ bool IsCrossing(double x) {
   return ((block % kBlocksToCrossing) + kBlocksToCrossing) % kBlocksToCrossing == 3;
 }
 
-class Street final : public Scene {
- public:
-  explicit Street(std::uint64_t seed) : Scene(seed) {}
+}  // namespace
 
-  TrajectorySettings Lane(double speed_mps) const override {
-    TrajectorySettings lane;
-    lane.speed_mps = speed_mps;
-    lane.lane_y_m = -static_cast<double>(kLane);
-    return lane;
+TrajectorySettings Street::Lane(double speed_mps) const {
+  TrajectorySettings lane;
+  lane.speed_mps = speed_mps;
+  lane.lane_y_m = -static_cast<double>(kLane);
+  return lane;
+}
+
+void Street::AddStatic(const View& view, std::vector<Shape>* shapes) const {
+  for (const float side : {-1.0F, 1.0F}) {
+    AddHouses(view, side, shapes);
+    AddParked(view, side, shapes);
+    AddFurniture(view, side, shapes);
   }
+}
 
-  void AddStatic(const View& view, std::vector<Shape>* shapes) const override {
-    for (const float side : {-1.0F, 1.0F}) {
-      AddHouses(view, side, shapes);
-      AddParked(view, side, shapes);
-      AddFurniture(view, side, shapes);
-    }
-  }
+void Street::AddMoving(const View& view, const Instant& now, std::vector<Shape>* shapes) const {
+  AddOwnLane(view, now, shapes);
+  AddOncoming(view, now, shapes);
+  AddWalkers(view, now, shapes);
+}
 
-  void AddMoving(const View& view, const Instant& now, std::vector<Shape>* shapes) const override {
-    AddOwnLane(view, now, shapes);
-    AddOncoming(view, now, shapes);
-    AddWalkers(view, now, shapes);
-  }
-
-  bool IntersectGround(const View& view, const Ray& ray, Random* noise, Hit* hit) const override;
-
- private:
-  void AddHouses(const View& view, float side, std::vector<Shape>* shapes) const;
-  void AddParked(const View& view, float side, std::vector<Shape>* shapes) const;
-  void AddFurniture(const View& view, float side, std::vector<Shape>* shapes) const;
-  void AddOwnLane(const View& view, const Instant& now, std::vector<Shape>* shapes) const;
-  void AddOncoming(const View& view, const Instant& now, std::vector<Shape>* shapes) const;
-  void AddWalkers(const View& view, const Instant& now, std::vector<Shape>* shapes) const;
-};
+double Street::oncoming_speed() { return kOncomingSpeed; }
 
 void Street::AddHouses(const View& view, float side, std::vector<Shape>* shapes) const {
   const std::uint64_t kind = kHouse + (side > 0 ? 64 : 0);
@@ -174,12 +162,10 @@ void Street::AddWalkers(const View& view, const Instant& now, std::vector<Shape>
   }
 }
 
-/// Asphalt and what is painted on it.
-float RoadReflectivity(double anchor_x, float x, float y) {
-  const float lane_phase = x - 9.0F * std::floor(x / 9.0F);
+float Street::RoadReflectivity(double along, float y) {
+  const double lane_phase = along - 9.0 * std::floor(along / 9.0);
   if (std::abs(y) < 0.07F && lane_phase < 3) return 0.6F;
   if (std::abs(std::abs(y) - 3.55F) < 0.05F) return 0.5F;
-  const double along = anchor_x + static_cast<double>(x);
   // Zebra stripes on the last metres before a crossing.
   const bool zebra = !IsCrossing(along) && (IsCrossing(along + 3.5) || IsCrossing(along - 3.5));
   if (zebra && y - std::floor(y) < 0.5F) return 0.6F;
@@ -210,11 +196,10 @@ bool Street::IntersectGround(const View& view, const Ray& ray, Random* noise, Hi
     }
   }
   if (road >= hit->distance) return false;
-  *hit = {road, RoadReflectivity(view.anchor_x, p.x, p.y) * grain, -ray.direction.z};
+  *hit = {road, RoadReflectivity(view.anchor_x + static_cast<double>(p.x), p.y) * grain,
+          -ray.direction.z};
   return true;
 }
-
-}  // namespace
 
 std::unique_ptr<Scene> MakeStreet(std::uint64_t seed) { return std::make_unique<Street>(seed); }
 

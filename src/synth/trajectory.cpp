@@ -26,7 +26,24 @@ constexpr Wave kRoll{0.008, 17.9};
 
 }  // namespace
 
+Pose Trajectory::OnRoute(Duration t) const {
+  const Route::Place place = settings_.route->At(Seconds(t));
+  const double s = place.distance;
+  const double side = settings_.sway_m * (kSwayLong.At(s) + kSwayShort.At(s));
+  const double bounce = settings_.bounce;
+  Pose pose;
+  pose.x = place.x - side * std::sin(place.yaw);
+  pose.y = place.y + side * std::cos(place.yaw);
+  pose.z = place.z + side * place.bank + settings_.sensor_height_m +
+           bounce * (kHeave.At(s) + kHeaveShort.At(s));
+  pose.yaw = place.yaw + std::atan(settings_.sway_m * (kSwayLong.Slope(s) + kSwayShort.Slope(s)));
+  pose.pitch = bounce * kPitch.At(s) - std::atan(place.grade);
+  pose.roll = bounce * kRoll.At(s) + std::atan(place.bank);
+  return pose;
+}
+
 Pose Trajectory::At(Duration t) const {
+  if (settings_.route) return OnRoute(t);
   const double s = settings_.speed_mps * Seconds(t);
   const double sway = settings_.sway_m;
   const double bounce = settings_.bounce;

@@ -1,20 +1,41 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // The exact motion of the sensor: a car that follows its lane.
 #pragma once
+#include <memory>
+
 #include "src/base/time.h"
 #include "src/synth/geometry.h"
 
 namespace lidar::synth {
 
-struct TrajectorySettings {
-  double speed_mps = 0;
-  double lane_y_m = 0;           // centre of the lane
-  double sensor_height_m = 1.9;  // above the road
-  double sway_m = 0.25;          // how far the driver wanders off the centre
-  double bounce = 1;             // body motion, 1 on asphalt
+/// A lane over hills and around corners.
+class Route {
+ public:
+  virtual ~Route() = default;
+  struct Place {
+    double x = 0;
+    double y = 0;
+    double z = 0;         // of the road [m]
+    double yaw = 0;       // [rad]
+    double grade = 0;     // rise over the distance
+    double bank = 0;      // rise to the left
+    double distance = 0;  // driven since the start [m]
+  };
+  /// Where a car is that wants to drive at `speed_mps` and slows down for corners.
+  virtual Place At(double seconds) const = 0;
 };
 
-/// Everything is a function of the distance driven, so a sensor that stands still does not shake.
+struct TrajectorySettings {
+  double speed_mps = 0;
+  double lane_y_m = 0;                 // centre of the lane
+  double sensor_height_m = 1.9;        // above the road
+  double sway_m = 0.25;                // how far the driver wanders off the centre
+  double bounce = 1;                   // body motion, 1 on asphalt
+  std::shared_ptr<const Route> route;  // of the lane's centre; none: along x at constant speed
+};
+
+/// Sway and bounce are functions of the distance driven, so a sensor that stands still does not
+/// shake.
 class Trajectory {
  public:
   explicit Trajectory(const TrajectorySettings& settings) : settings_(settings) {}
@@ -23,6 +44,8 @@ class Trajectory {
   double speed() const { return settings_.speed_mps; }
 
  private:
+  Pose OnRoute(Duration t) const;
+
   TrajectorySettings settings_;
 };
 

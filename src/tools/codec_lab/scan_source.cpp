@@ -163,12 +163,16 @@ std::unique_ptr<ScanStream> OpenSynthetic(const std::string& text, const SourceO
     config.scene = synth::SceneKind::kTunnel;
   else if (parts[2] == "field")
     config.scene = synth::SceneKind::kField;
+  else if (parts[2] == "town")
+    config.scene = synth::SceneKind::kTown;
   else
-    throw std::runtime_error(text + ": no such scene, street, tunnel and field are");
+    throw std::runtime_error(text + ": no such scene; street, tunnel, field and town are");
   if (options.max_scans == 0)
     throw std::runtime_error(text + ": a synthetic drive has no end; say how many scans");
   config.speed_mps = options.speed_mps;
   config.seed = options.seed;
+  config.noise_m = options.noise_m;
+  config.mixed_pixels = options.mixed_pixels;
   return std::make_unique<SyntheticDrive>(config);
 }
 

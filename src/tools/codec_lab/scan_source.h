@@ -16,6 +16,8 @@ struct SourceOptions {
   std::size_t max_scans = 20;  // of each source; 0: all there are
   double speed_mps = 10;       // of synthetic drives
   std::uint64_t seed = 0;      // of synthetic drives
+  double noise_m = 0.01;       // of synthetic ranges on a bright target nearby
+  bool mixed_pixels = false;   // of synthetic drives
 };
 
 /// A scan and when it was taken.
@@ -47,7 +49,8 @@ class ScanStream {
 ///   drive.pcap,sensor.json the same with another metadata file
 ///   cloud.bin, cloud.pcd   a cloud (KITTI's x y z intensity floats; PCD in ascii or binary)
 ///   folder                 consecutive clouds in such files, by name
-///   synth:os1-64:street    a synthetic sensor in street, tunnel or field; a third part is the
+///   synth:os1-64:street    a synthetic sensor in street, tunnel, field or town; a third part is
+///   the
 ///                          number of columns (1024)
 /// Throws std::runtime_error with a message for the user.
 std::unique_ptr<ScanStream> OpenScans(const std::string& text, const SourceOptions& options);

@@ -34,7 +34,7 @@ double ShareOfReturns(const std::vector<std::uint32_t>& ranges) {
 class EveryScene : public ::testing::TestWithParam<SceneKind> {};
 INSTANTIATE_TEST_SUITE_P(All, EveryScene,
                          ::testing::Values(SceneKind::kStreet, SceneKind::kTunnel,
-                                           SceneKind::kField));
+                                           SceneKind::kField, SceneKind::kTown));
 
 TEST_P(EveryScene, IsTheSameHoweverTheScanIsCut) {
   const ScannerConfig config = Config(GetParam());

@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// A straight street along x, piece by piece: towns are made of bent ones.
+#pragma once
+#include "src/synth/scene.h"
+
+namespace lidar::synth {
+
+/// The length of a house and its plot; every seventh is a crossing instead.
+constexpr double kBlock = kAnchorStep;
+constexpr std::int64_t kBlocksToCrossing = 7;
+constexpr double kCrossingSpacing = kBlock * kBlocksToCrossing;
+constexpr double kFirstCrossing = 3.5 * kBlock;  // its middle
+constexpr float kStreetHalfRoad = 5.8F;          // two lanes and two rows of parked cars
+constexpr float kStreetKerb = 0.14F;
+constexpr float kStreetLane = 1.75F;  // middle of a lane
+constexpr float kPavementEnd = 9.2F;
+
+class Street final : public Scene {
+ public:
+  explicit Street(std::uint64_t seed) : Scene(seed) {}
+
+  TrajectorySettings Lane(double speed_mps) const override;
+  void AddStatic(const View& view, std::vector<Shape>* shapes) const override;
+  void AddMoving(const View& view, const Instant& now, std::vector<Shape>* shapes) const override;
+  bool IntersectGround(const View& view, const Ray& ray, Random* noise, Hit* hit) const override;
+
+  void AddHouses(const View& view, float side, std::vector<Shape>* shapes) const;
+  /// Parked cars, trees, lamps, signs and bins.
+  void AddParked(const View& view, float side, std::vector<Shape>* shapes) const;
+  void AddFurniture(const View& view, float side, std::vector<Shape>* shapes) const;
+  /// Cars on the left lane, which drive toward -x.
+  void AddOncoming(const View& view, const Instant& now, std::vector<Shape>* shapes) const;
+  void AddWalkers(const View& view, const Instant& now, std::vector<Shape>* shapes) const;
+  static double oncoming_speed();
+
+  /// Asphalt and what is painted on it, `along` the street and `lateral` of its middle.
+  static float RoadReflectivity(double along, float lateral);
+
+ private:
+  void AddOwnLane(const View& view, const Instant& now, std::vector<Shape>* shapes) const;
+};
+
+}  // namespace lidar::synth
