@@ -9,6 +9,7 @@ namespace {
 
 constexpr double kLongestStep_s = 1;  // a velocity over a longer time tells nothing of now
 constexpr float kGrowth = 1.5F;
+constexpr float kNews = 0.3F;  // how much a scan counts: what was seen from afar may be wrong
 constexpr float kFarthest = 1e7F;  // [m]: beyond it floats do not tell cubes apart
 
 using Cube = std::array<std::int32_t, 3>;
@@ -107,6 +108,7 @@ void TrailMap::Add(const std::array<float, 3>& at, float value) {
   if (slots_[slot] != 0) {
     Point& there = points_[slots_[slot] - 1];
     if (there.last_scan == scan_) return;
+    there.value += kNews * (value - there.value);
     there.last_scan = scan_;
     if (there.scans < UINT16_MAX) ++there.scans;
     return;

@@ -21,6 +21,8 @@ constexpr double kKernel = 1.0 / 3;
 constexpr std::size_t kMostAligned = 4000;
 /// A scan of which fewer points have a neighbour does not fit.
 constexpr double kLeastInliers = 0.3;
+/// How often the motion between the first two scans is computed anew.
+constexpr int kFirstRounds = 4;
 /// Times within a sweep at which the motion is computed.
 constexpr int kPhases = 1024;
 constexpr int kLostForGood = 10;  // scans
@@ -107,9 +109,19 @@ Pose Odometry::GuessFirstMotion(const Points& points) const {
 }
 
 /// A scan that was skewed by an unknown motion would bend the map for good.
-void Odometry::StraightenFirstScan(Duration duration, const Points& second, Duration gap) {
-  velocity_ = Log(pose_.Inverse() * GuessFirstMotion(second)) / Seconds(gap);
-  StartMap(Downsample(SelectPoints(*first_scan_, duration), kMapGrid * settings_.voxel_size_m));
+void Odometry::StraightenFirstScan(Duration duration, const TimedPoints& second, Duration gap) {
+  const double grid = kMapGrid * settings_.voxel_size_m;
+  Pose found = GuessFirstMotion(Downsample(SelectPoints(second, duration), grid));
+  for (int round = 0; round < kFirstRounds; ++round) {
+    velocity_ = Log(pose_.Inverse() * found) / Seconds(gap);
+    StartMap(Downsample(SelectPoints(*first_scan_, duration), grid));
+    // Both are straightened by the same velocity now, which makes the next one better.
+    const Points points =
+        Downsample(SelectPoints(second, duration), kAlignedGrid * settings_.voxel_size_m);
+    found = Align(Thin(points, kMostAligned), &map_, found, settings_.voxel_size_m,
+                  kKernel * settings_.voxel_size_m, settings_.registration)
+                .pose;
+  }
   first_scan_.reset();
 }
 
@@ -128,11 +140,12 @@ Estimate Odometry::OnScan(Time start, Duration duration, const TimedPoints& scan
     StartMap(fine);
     first_scan_ = scan;
     last_time_ = middle;
+    last_scan_ = std::move(fine);
     estimate.pose = pose_;
     return estimate;
   }
   if (first_scan_) {
-    StraightenFirstScan(duration, fine, gap);
+    StraightenFirstScan(duration, scan, gap);
     fine = Downsample(SelectPoints(scan, duration), kMapGrid * settings_.voxel_size_m);
   }
   const Points aligned =
@@ -154,6 +167,7 @@ Estimate Odometry::OnScan(Time start, Duration duration, const TimedPoints& scan
       first_scan_ = scan;
       estimate.map_restarted = true;
     }
+    last_scan_ = std::move(fine);
     return estimate;
   }
   estimate.tracking = found.degenerate ? Tracking::kDegenerate : Tracking::kTracking;
@@ -166,6 +180,7 @@ Estimate Odometry::OnScan(Time start, Duration duration, const TimedPoints& scan
   for (const Eigen::Vector3d& point : fine) placed.push_back(pose_ * point);
   map_.Add(placed);
   map_.Forget(pose_.position);
+  last_scan_ = std::move(fine);
   return estimate;
 }
 

@@ -60,13 +60,15 @@ class Odometry {
   Pose PredictAt(Time t) const;
 
   const LocalMap& map() const { return map_; }
+  /// The points of the last scan in the sensor's frame at its middle, thinned out.
+  const Points& last_scan() const { return last_scan_; }
   static constexpr Duration kLongestGap = std::chrono::seconds(5);
 
  private:
   Points SelectPoints(const TimedPoints& scan, Duration duration) const;
   void StartMap(const Points& points);
   Pose GuessFirstMotion(const Points& points) const;
-  void StraightenFirstScan(Duration duration, const Points& second, Duration gap);
+  void StraightenFirstScan(Duration duration, const TimedPoints& second, Duration gap);
 
   OdometrySettings settings_;
   LocalMap map_;
@@ -75,6 +77,7 @@ class Odometry {
   Twist velocity_ = Twist::Zero();  // a second, in the sensor's frame
   std::optional<Time> last_time_;
   int lost_scans_ = 0;
+  Points last_scan_;
   /// The scan that began the map, until the velocity is known that straightens it.
   std::optional<TimedPoints> first_scan_;
 };

@@ -87,6 +87,28 @@ void MeasureDrift(const Pairs& pairs, TrajectoryError* error) {
   if (count > 0) error->drift = sum / static_cast<double>(count);
 }
 
+/// Where the estimate ends, with its first second laid over the truth's: one pose alone would not
+/// tell the direction of a long way.
+double EndError(const Pairs& pairs) {
+  Eigen::Vector4d rotation = Eigen::Vector4d::Zero();
+  Eigen::Vector3d truth = Eigen::Vector3d::Zero();
+  Eigen::Vector3d estimate = Eigen::Vector3d::Zero();
+  double count = 0;
+  const Time until = pairs.truth.front().time + kRpeSpan;
+  for (std::size_t i = 0; i < pairs.truth.size() && pairs.truth[i].time < until; ++i) {
+    const Eigen::Quaterniond turn =
+        pairs.truth[i].pose.rotation * pairs.estimate[i].pose.rotation.conjugate();
+    rotation += turn.coeffs().dot(rotation) < 0 ? -turn.coeffs() : turn.coeffs();
+    truth += pairs.truth[i].pose.position;
+    estimate += pairs.estimate[i].pose.position;
+    ++count;
+  }
+  const Eigen::Quaterniond turn(rotation.normalized());
+  const Eigen::Vector3d end =
+      turn * (pairs.estimate.back().pose.position - estimate / count) + truth / count;
+  return (end - pairs.truth.back().pose.position).norm();
+}
+
 }  // namespace
 
 std::optional<TrajectoryError> Compare(const Trajectory& truth, const Trajectory& estimate) {
@@ -97,7 +119,7 @@ std::optional<TrajectoryError> Compare(const Trajectory& truth, const Trajectory
   MeasureAte(pairs, &error);
   MeasureRpe(pairs, &error);
   MeasureDrift(pairs, &error);
-  error.end_error_m = MotionError(pairs, 0, pairs.truth.size() - 1).position.norm();
+  error.end_error_m = EndError(pairs);
   return error;
 }
 

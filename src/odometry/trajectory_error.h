@@ -15,7 +15,7 @@ struct TrajectoryError {
   double rpe_rmse_m = 0;  // of the motion over a second
   double rpe_rmse_deg = 0;
   double length_m = 0;          // of the true way
-  double end_error_m = 0;       // of the last position, with the first poses laid over each other
+  double end_error_m = 0;       // of the last position, with the first second laid over each other
   std::optional<double> drift;  // mean error over stretches of 100 to 800 m, as part of them
 };
 

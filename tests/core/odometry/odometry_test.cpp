@@ -191,6 +191,38 @@ TEST(Odometry, TakesAnyPoints) {
   EXPECT_TRUE(odometry.map().empty());
 }
 
+TEST(Odometry, FollowsWhateverTheRateOfTheScans) {
+  for (const std::uint64_t every : {2U, 3U}) {  // of ten scans a second
+    Drive drive(synth::SceneKind::kStreet, 8);
+    Odometry odometry({});
+    Pose pose;
+    for (std::uint64_t i = 0; i < 30; i += every)
+      pose = odometry.OnScan(drive.StartOf(i), kPeriod, drive.Scan(i)).pose;
+    const std::uint64_t last = 29 / every * every;
+    const Pose way = drive.TruthAt(drive.StartOf(0) + kPeriod / 2).Inverse() *
+                     drive.TruthAt(drive.StartOf(last) + kPeriod / 2);
+    EXPECT_LT((pose.position - way.position).norm(), 0.9) << every;
+  }
+}
+
+TEST(Odometry, BeginsAgainWhereScansComeInTheWrongOrder) {
+  Drive drive(synth::SceneKind::kStreet, 10);
+  Odometry odometry({});
+  for (const std::uint64_t i : {0U, 1U, 2U, 3U, 2U, 3U, 4U, 5U}) {
+    const Estimate e = odometry.OnScan(drive.StartOf(i), kPeriod, drive.Scan(i));
+    EXPECT_TRUE(e.pose.position.allFinite());
+    EXPECT_LT(e.pose.position.norm(), 10);
+  }
+}
+
+TEST(Odometry, FollowsThroughATownOfHillsAndCorners) {
+  Drive drive(synth::SceneKind::kTown, 12);
+  const Followed run = Follow(&drive, 40, {});
+  const auto error = Compare(run.truth, run.estimate);
+  ASSERT_TRUE(error);
+  EXPECT_LT(error->ate_rmse_m, 0.2);
+}
+
 TEST(Odometry, KeepsItsMapBounded) {
   Drive drive(synth::SceneKind::kField, 30);
   OdometrySettings settings;
