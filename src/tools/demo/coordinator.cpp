@@ -18,6 +18,7 @@
 #include "src/tools/demo/comparer.h"
 #include "src/tools/demo/measurements.h"
 #include "src/tools/demo/report.h"
+#include "src/tools/demo/slam.h"
 #include "src/tools/demo/summary.h"
 #include "src/tools/demo/verdict.h"
 
@@ -102,6 +103,9 @@ std::string Tail(const std::string& file) {
 
 Coordinator::Coordinator(const RunOptions& options) {
   m_.options = options;
+  if (options.slam && !CanFollow())
+    throw std::runtime_error(
+        "--slam needs a build with lidarodometry (libeigen3-dev, robin-map-dev)");
   if (mkdir(options.output.c_str(), 0777) != 0 && errno != EEXIST)
     throw std::runtime_error("cannot make the folder " + options.output);
   RemoveReport(options.output);
@@ -314,10 +318,12 @@ int Coordinator::Report() {
   }
   const Verdict verdict = Judge(m_);
   summary["verdict"] = verdict.text;
+  if (m_.options.slam) AddSlam(m_, folder, &summary);
   tools::WriteFile(folder + "/summary.json", summary.dump(2) + '\n');
   const nlohmann::json stats = {{"sender", m_.sender_stats}, {"receiver", m_.receiver_stats}};
   tools::WriteFile(folder + "/stats.json", stats.dump(2) + '\n');
   PrintTable(summary);
+  if (m_.options.slam) PrintSlam(summary);
   for (const Guarantee& g : guarantees)
     std::printf("  %s  %s\n", g.holds ? "holds " : "BROKEN", g.text.c_str());
   std::printf("\n%s\n", verdict.text.c_str());

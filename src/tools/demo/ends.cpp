@@ -93,7 +93,11 @@ int Send(const std::string& description) {
 int Receive(const std::string& description) {
   MediaProcess process(description);
   WatchCodec(&process, "decoder", "decoded");
-  ReportStats(&process, {"receiver", "depayloader", "decoder"});
+  if (process.Find("odometry"))
+    process.OnBuffer("odometry", "src", [&process](GstPad*, GstBuffer* buffer) {
+      process.Write(Record("posed", buffer));
+    });
+  ReportStats(&process, {"receiver", "depayloader", "decoder", "odometry"});
   return process.Run();
 }
 

@@ -34,6 +34,7 @@ void Apply(const nlohmann::json& record, const std::string& type, SliceLife* lif
 
 void Ledger::Add(const nlohmann::json& record) {
   const std::string type = record.value("type", "");
+  if (type == "posed") posed_[record.value("scan", 0U)] = record.value("unix_ns", std::int64_t{0});
   if (type != "captured" && type != "encoded" && type != "decoded") return;
   const SliceKey key{record.value("scan", 0U), record.value("slice", 0U)};
   const auto count = record.value("count", 0U);

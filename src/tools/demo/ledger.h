@@ -39,7 +39,7 @@ struct ScanCounts {
 
 class Ledger {
  public:
-  /// Takes the records captured, encoded and decoded; ignores others and malformed ones.
+  /// Takes the records captured, encoded, decoded and posed; ignores others and malformed ones.
   void Add(const nlohmann::json& record);
   void Add(SliceKey key, const Comparison& comparison);
 
@@ -47,6 +47,8 @@ class Ledger {
   /// lost, nor a scan captured after it as skipped.
   ScanCounts Count(std::int64_t settled = INT64_MAX) const;
   const std::map<std::uint32_t, ScanLife>& scans() const { return scans_; }
+  /// When the edge knew the pose of a scan.
+  const std::map<std::uint32_t, std::int64_t>& posed() const { return posed_; }
   const Comparison& total() const { return total_; }
   std::uint64_t compared_slices() const { return compared_slices_; }
 
@@ -54,6 +56,7 @@ class Ledger {
   SliceLife* Find(SliceKey key);
 
   std::map<std::uint32_t, ScanLife> scans_;
+  std::map<std::uint32_t, std::int64_t> posed_;
   Comparison total_;
   std::uint64_t compared_slices_ = 0;
 };

@@ -166,9 +166,10 @@ void WriteTables(const Measurements& m, const std::string& folder) {
 
 void RemoveReport(const std::string& folder) {
   for (const char* file :
-       {"summary.json", "stats.json", "slices.csv", "timeline.csv", "packets.csv", "link.json",
-        "trace.txt", "rate.png", "delay.png", "window.png", "error.png", "plots.gp", "plots.log",
-        "sender.log", "receiver.log", "link.log"})
+       {"summary.json", "stats.json", "slices.csv", "timeline.csv", "packets.csv",
+        "link.json",    "trace.txt",  "rate.png",   "delay.png",    "window.png",
+        "error.png",    "plots.gp",   "plots.log",  "sender.log",   "receiver.log",
+        "link.log",     "truth.tum",  "edge.tum",   "poses.csv",    "map.png"})
     std::remove((folder + '/' + file).c_str());
 }
 

@@ -49,7 +49,8 @@ std::string SourceOf(const RunOptions& o) {
     return "ouster_src location=" + Quoted(o.pcap) +
            (o.metadata.empty() ? "" : " metadata=" + Quoted(o.metadata)) + " loop=true" + common;
   return "lidartestsrc model=" + o.model + " mode=" + o.mode + " scene=" + o.scene +
-         " speed=" + Number(o.speed_mps) + " seed=" + std::to_string(o.seed) + common;
+         " speed=" + Number(o.speed_mps) + " seed=" + std::to_string(o.seed) +
+         (o.slam ? " trajectory-location=" + Quoted(o.output + "/truth.tum") : "") + common;
 }
 
 void AddSourceOptions(CLI::App* app, RunOptions* o) {
@@ -59,7 +60,7 @@ void AddSourceOptions(CLI::App* app, RunOptions* o) {
       ->capture_default_str();
   app->add_option("--mode", o->mode, "Columns x scans/s: 512x10, 1024x10, 1024x20, 2048x10")
       ->capture_default_str();
-  app->add_option("--scene", o->scene, "Synthetic world: street, tunnel, field")
+  app->add_option("--scene", o->scene, "Synthetic world: street, tunnel, field, town")
       ->capture_default_str();
   app->add_option("--speed", o->speed_mps, "Of the vehicle [m/s]")->capture_default_str();
   app->add_option("--seed", o->seed, "Of the synthetic world and the link")->capture_default_str();
@@ -131,6 +132,8 @@ void AddRunOptions(CLI::App* app, RunOptions* o) {
       ->check(CLI::Range(1.0, 1e6))
       ->capture_default_str();
   app->add_option("--output", o->output, "Folder for the report")->capture_default_str();
+  app->add_flag("--slam", o->slam,
+                "The receiver follows the sensor by lidarodometry: trajectories, error and map");
   app->add_flag("!--no-plots", o->plots, "Do not draw plots");
   AddSourceOptions(app, o);
   AddCodecOptions(app, o);
@@ -215,11 +218,27 @@ std::string SenderPipeline(const RunOptions& o, Ports ports) {
   return text;
 }
 
+/// The odometry, and a map every ten seconds, in a thread of its own.
+std::string SlamOf(const RunOptions& o) {
+  if (!o.slam) return "";
+  const std::string odometry =
+      "queue ! lidarodometry name=odometry post-messages=false trajectory=" +
+      Quoted(o.output + "/edge.tum") + " ! ";
+  if (!o.plots) return odometry;
+  return odometry +
+         "tee name=posed ! queue leaky=downstream max-size-buffers=1 "
+         "! pointcloudview map=true view=top width=1280 height=720 ! videorate drop-only=true "
+         "! video/x-raw,framerate=1/10 ! pngenc snapshot=false ! multifilesink async=false "
+         "location=" +
+         Quoted(o.output + "/map.png") + " posed. ! queue ! ";
+}
+
 std::string ReceiverPipeline(const RunOptions& o, Ports ports) {
   const std::string decoder = EncoderOf(o) == "dracoenc" ? "dracodec" : "lidardec";
   return "screamsrc name=receiver address=127.0.0.1 port=" + std::to_string(ports.receiver) +
          " ! rtplidardepay name=depayloader ! " + decoder +
-         " name=decoder ! scanassembler name=assembler ! fakesink sync=false async=false";
+         " name=decoder ! scanassembler name=assembler ! " + SlamOf(o) +
+         "fakesink sync=false async=false";
 }
 
 std::vector<std::string> LinkArguments(const RunOptions& o, Ports ports) {

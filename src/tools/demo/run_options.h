@@ -26,6 +26,7 @@ struct RunOptions {
   double speed_mps = 12;
   std::uint32_t seed = 1;
   std::uint32_t slices = 0;
+  bool slam = false;  // the edge follows the sensor
   std::string pcap;
   std::string metadata;
   // Encoder

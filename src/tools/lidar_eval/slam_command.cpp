@@ -107,9 +107,10 @@ void RunSlamCommand(const SlamArguments& a) {
       bar(static_cast<double>(done) / static_cast<double>(options.max_scans));
   });
   if (r.estimate.empty()) throw std::runtime_error(a.source + ": no scan in it");
-  if (!a.out.empty()) Save(a.out, r.estimate, a.kitti);
+  if (!a.out.empty()) Save(a.out, options.close_loops ? r.closed : r.estimate, a.kitti);
   const Trajectory truth = a.truth.empty() ? r.truth : Load(a.truth, scans->scans_per_second());
   const auto error = Compare(truth, r.estimate);
+  const auto closed = Compare(truth, r.closed);
   if (a.json) {
     nlohmann::ordered_json j = {{"source", a.source},
                                 {"scans", r.estimate.size()},
@@ -118,12 +119,18 @@ void RunSlamCommand(const SlamArguments& a) {
                                 {"lost", CountOf(r, Tracking::kLost)},
                                 {"maps", r.maps}};
     if (error) j["error"] = ToJson(*error);
+    if (options.close_loops)
+      j["loop_closure"] = {{"local_maps", r.local_maps}, {"closures", r.closures}};
+    if (closed) j["loop_closure"]["error"] = ToJson(*closed);
     std::cout << j.dump(2) << '\n';
     return;
   }
   std::printf("%s\n", a.source.c_str());
   PrintRun(r);
   if (error) Print(*error);
+  if (!options.close_loops) return;
+  std::printf("With %zu loops closed between %zu local maps\n", r.closures, r.local_maps);
+  if (closed) Print(*closed);
 }
 
 void RunAteCommand(const AteArguments& a) {
@@ -149,6 +156,10 @@ void AddSlamCommand(CLI::App* app) {
   command->add_option("--scans", a->read.max_scans, "Scans to read; 0: all");
   command->add_option("--speed", a->read.speed_mps, "Of synthetic drives [m/s]");
   command->add_option("--seed", a->read.seed, "Of synthetic drives");
+  command->add_option("--noise", a->read.noise_m, "Of synthetic ranges, standard deviation [m]")
+      ->check(CLI::Range(0.0, 10.0));
+  command->add_flag("--mixed-pixels", a->read.mixed_pixels,
+                    "Synthetic ranges at edges lie between the two surfaces");
   command->add_option("--out", a->out, "Write the trajectory to this file, in TUM's format");
   command->add_flag("--kitti", a->kitti, "Write it in KITTI's format");
   command->add_option("--truth", a->truth,
@@ -166,6 +177,8 @@ void AddSlamCommand(CLI::App* app) {
       ->check(CLI::Range(0.05, 20.0));
   command->add_option("--max-range", a->slam.odometry.max_range_m, "Of points, and of the map [m]")
       ->check(CLI::Range(1.0, 1000.0));
+  command->add_flag("--loop-closure", a->slam.close_loops,
+                    "Find places that were seen before, and take out the drift between");
   command->add_flag("--json", a->json, "Print JSON");
   command->callback([a] { RunSlamCommand(*a); });
 }

@@ -4,8 +4,12 @@
 #include <algorithm>
 #include <cmath>
 #include <ctime>
+#include <stdexcept>
 
 #include "src/cloud/range_grid.h"
+#ifdef HAVE_LOOP_CLOSURE
+#include "src/slam/loop_closer.h"
+#endif
 
 namespace lidar::tools {
 namespace {
@@ -52,6 +56,24 @@ odometry::TimedPoints OrganisedPoints(const Scan& scan, double range_step_m) {
   return timed;
 }
 
+#ifdef HAVE_LOOP_CLOSURE
+using slam::LoopCloser;
+using slam::LoopSettings;
+#else
+struct LoopSettings {};
+/// Stands in where the program was built without Ceres.
+class LoopCloser {
+ public:
+  explicit LoopCloser(const LoopSettings&) {
+    throw std::runtime_error("built without loop closure, which needs libceres-dev");
+  }
+  void AddScan(const odometry::StampedPose&, const odometry::Points&) {}
+  odometry::Trajectory Close() { return {}; }
+  std::vector<int> closures() const { return {}; }
+  std::size_t local_maps() const { return 0; }
+};
+#endif
+
 }  // namespace
 
 odometry::TimedPoints PointsOf(const Scan& scan, const Distortion& distortion) {
@@ -70,6 +92,8 @@ SlamResult RunSlam(ScanStream* scans, const SlamOptions& options,
                    const std::function<void(std::size_t)>& progress) {
   SlamResult result;
   odometry::Odometry odometry(options.odometry);
+  std::unique_ptr<LoopCloser> closer;
+  if (options.close_loops) closer = std::make_unique<LoopCloser>(LoopSettings{});
   for (std::size_t done = 0; options.max_scans == 0 || done < options.max_scans; ++done) {
     const auto timed = scans->Next();
     if (!timed) break;
@@ -78,6 +102,7 @@ SlamResult RunSlam(ScanStream* scans, const SlamOptions& options,
     const odometry::Estimate e = odometry.OnScan(timed->start, timed->duration, points);
     result.cpu_ms.push_back(1e3 * static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC);
     result.estimate.push_back({e.time, e.pose});
+    if (closer) closer->AddScan(result.estimate.back(), odometry.last_scan());
     ++result.tracking[e.tracking];
     if (e.map_restarted || e.tracking == odometry::Tracking::kStarted) ++result.maps;
     if (timed->truth) result.truth.push_back({timed->start, ToPose(*timed->truth)});
@@ -85,6 +110,11 @@ SlamResult RunSlam(ScanStream* scans, const SlamOptions& options,
   }
   std::sort(result.cpu_ms.begin(), result.cpu_ms.end());
   result.map_voxels = odometry.map().voxels();
+  if (closer) {
+    result.closed = closer->Close();
+    result.closures = closer->closures().size();
+    result.local_maps = closer->local_maps();
+  }
   return result;
 }
 

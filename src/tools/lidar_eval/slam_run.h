@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <functional>
 #include <map>
+#include <memory>
 
 #include "src/odometry/odometry.h"
 #include "src/odometry/trajectory.h"
@@ -21,6 +22,7 @@ struct SlamOptions {
   odometry::OdometrySettings odometry;
   Distortion distortion;
   std::size_t max_scans = 0;  // 0: all
+  bool close_loops = false;
 };
 
 struct SlamResult {
@@ -30,6 +32,10 @@ struct SlamResult {
   std::vector<double> cpu_ms;  // of each scan, ascending
   std::size_t map_voxels = 0;  // at the end
   std::size_t maps = 0;
+  // With close_loops
+  odometry::Trajectory closed;  // the estimate without the drift between loops
+  std::size_t closures = 0;
+  std::size_t local_maps = 0;
 };
 
 /// Calls progress() with the number of scans done.

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// What a place looks like from above, and how two looks at a place lie to each other.
+#pragma once
+#include <Eigen/Core>
+#include <optional>
+
+#include "src/odometry/pose.h"
+
+namespace lidar::slam {
+
+/// The density map of KISS-SLAM (Guadagnino et al., 2025): how much stands on each square metre.
+/// Flat ground counts nothing, so it may be seen or not.
+class Place {
+ public:
+  /// `points` around the middle of the place, z up but for a slope; what is farther than kRadius is
+  /// left out.
+  explicit Place(const odometry::Points& points);
+
+  static constexpr double kRadius = 64;  // [m]
+  static constexpr int kCells = 128;     // along each side of the map, a metre each
+  using Density = Eigen::Array<std::complex<float>, Eigen::Dynamic, Eigen::Dynamic>;
+  const Density& spectrum() const { return spectrum_; }
+  double energy() const { return energy_; }
+  const odometry::Points& standing() const { return standing_; }
+  const odometry::Points& ground() const { return ground_; }
+
+  /// The lowest point near (x, y), NaN where there is none.
+  float LowestAt(double x, double y) const;
+
+ private:
+  Density spectrum_;
+  double energy_ = 0;          // the sum of the squares of the map
+  odometry::Points standing_;  // what the map counts
+  odometry::Points ground_;    // the lowest points
+  Eigen::ArrayXXf lowest_;
+};
+
+struct PlaceMatch {
+  odometry::Pose pose;  // of `b`, seen from `a`
+  double score = 0;     // 0 to 1: how much of both maps lies over each other
+  /// The score as a multiple of the best one elsewhere: streets look alike along their length.
+  double distinct = 0;
+};
+
+/// Lays the map of `b` over that of `a`, turned by `yaw` give or take `yaw_range` [rad], wherever
+/// it fits best; then tilts it so that their ground meets. None where they share no ground.
+std::optional<PlaceMatch> Match(const Place& a, const Place& b, double yaw, double yaw_range);
+
+}  // namespace lidar::slam
