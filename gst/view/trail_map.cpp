@@ -9,7 +9,7 @@ namespace {
 
 constexpr double kLongestStep_s = 1;  // a velocity over a longer time tells nothing of now
 constexpr float kGrowth = 1.5F;
-constexpr float kNews = 0.3F;  // how much a scan counts: what was seen from afar may be wrong
+constexpr float kNews = 0.3F;      // how much a scan counts: what was seen from afar may be wrong
 constexpr float kFarthest = 1e7F;  // [m]: beyond it floats do not tell cubes apart
 
 using Cube = std::array<std::int32_t, 3>;
