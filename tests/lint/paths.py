@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Every path and program that the docs or a comment name is there; every element has its page,
-and every property its word on it; every message that docs/troubleshooting.md explains exists."""
+and every property its word on it; every message that docs/troubleshooting.md explains exists; every page is in the site."""
 import json
 import pathlib
 import re
@@ -124,6 +124,13 @@ class Checker:
             if not any(message in text for text in sources):
                 self.problems.append(f'docs/troubleshooting.md: nobody says "{message}"')
 
+    def site(self):
+        site = self.root / "mkdocs.yml"
+        listed = re.findall(r"^ +- (\S+\.md)$", site.read_text(), re.M) if site.exists() else []
+        for file in self.files:
+            if listed and file.startswith("docs/") and file.endswith(".md") and file[5:] not in listed:
+                self.problems.append(f"mkdocs.yml: {file} is not in the site")
+
     def elements(self):
         cache = json.loads((self.root / "docs/plugins_cache.json").read_text())
         all_elements = [e for plugin in cache.values() for e in plugin.get("elements", {}).items()]
@@ -150,6 +157,7 @@ def check(root):
     checker.comments()
     checker.elements()
     checker.messages()
+    checker.site()
     return checker.problems
 
 

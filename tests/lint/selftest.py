@@ -34,6 +34,12 @@ See `src/base/units.h`, `units.h`, `gst/*`, `gst<name>.cpp`, `lidar-eval --help`
     "docs/elements/alpha.md": "# alpha\n\n| `speed` | how fast; see `rate=3` |\n",
     "docs/plugins_cache.json": '{"one": {"elements": {"alpha": {"properties": {"speed": {}, "rate": {}}}}}}',
     "docs/troubleshooting.md": '# Troubleshooting\n\n### "No cloud of %s."\n',
+    "mkdocs.yml": """nav:
+  - architecture.md
+  - troubleshooting.md
+  - Elements:
+      - elements/alpha.md
+""",
     "CHANGELOG.md": "# Changelog\n",
     "README.md": "See [the layout](docs/architecture.md).\n",
     "src/base/units.h": "#include <lzma.h>\n#include <vector>\n",
@@ -161,6 +167,7 @@ PLANTED = [
         "docs/elements/alpha.md: no word on property speeds",
     ),
     ("paths", "docs/troubleshooting.md", '### "No such cloud."', 'nobody says "No such cloud."'),
+    ("paths", "docs/more.md", "# More", "docs/more.md is not in the site"),
     ("links", "README.md", "[gone](docs/gone.md)", "no such file: docs/gone.md"),
     ("widths", "docs/a.md", "word " * 21, "docs/a.md:1: wider"),
     ("widths", "tests/data/a.md", "word " * 21, "tests/data/a.md:1: wider"),
