@@ -1,7 +1,10 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Every path and program that the docs or a comment name is there; every element has its page,
-and every property its word on it; every message that docs/troubleshooting.md explains exists; every page is in the site."""
+"""Every path and program that the docs or a comment name is there.
+
+Every element has its page and every property its word on it, every message that
+docs/troubleshooting.md explains exists, and every page is in the site.
+"""
 import json
 import pathlib
 import re
