@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Runs scream-bench beside a greedy flow (tcp-flow) through lidar-link, over real sockets.
 
-Prints what each got of the link, and its loss. A case is KIND_QUEUE_RATE: cubic_fifo_10ms_20M,
+Prints what each got of the link, and its loss, as rows of docs/results/scream.md. A case is KIND_QUEUE_RATE: cubic_fifo_10ms_20M,
 reno_fifo_5ms_20M, prague_ramp_20M, cubic_dualpi2_20M.
 """
 import argparse
@@ -98,22 +98,33 @@ def measure(folder, seconds):
             "queue_p95_ms": sojourn[int(0.95 * len(sojourn))] if sojourn else 0.0}
 
 
+def row(name, runs):
+    def each(text):
+        return ", ".join(text(m) for m in runs)
+
+    return " | ".join([
+        f"| `{name}`", each(lambda m: f"{m['ours_mbps']:.1f} / {m['theirs_mbps']:.1f}"), each(lambda m: f"{m['ratio']:.1f}"),
+        each(lambda m: f"{100 * m['our_loss']:.2f} / {100 * m['their_loss']:.2f}"),
+        each(lambda m: f"{m['queue_p95_ms']:.1f}")]) + " |"
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("cases", nargs="*", help="by default: " + " ".join(CASES))
     parser.add_argument("--build", type=pathlib.Path, default=pathlib.Path(__file__).resolve().parents[2] / "build")
     parser.add_argument("--seconds", type=float, default=60)
+    parser.add_argument("--runs", type=int, default=1, help="of each case")
     parser.add_argument("--json", help="write the figures there")
     args = parser.parse_args()
     os.environ["GST_PLUGIN_PATH_1_0"] = ":".join(str(p.parent) for p in (args.build / "gst").glob("*/libgst*.so"))
     results = {}
-    print(f"{'case':22} {'ours':>6} {'theirs':>6} Mbit/s  {'ratio':>5}  {'our loss':>8} {'theirs':>6} %  queue p95 ms")
+    print("| case | ours / other [Mbit/s] | ratio | own / other's loss [%] | queue p95 [ms] |\n|---|---|---|---|---|")
     for name in args.cases or CASES:
-        with tempfile.TemporaryDirectory(prefix="beside-") as folder:
-            m = run(args.build, name, args.seconds, pathlib.Path(folder))
-        results[name] = m
-        print(f"{name:22} {m['ours_mbps']:6.1f} {m['theirs_mbps']:6.1f}         {m['ratio']:5.2f}  "
-              f"{100 * m['our_loss']:8.2f} {100 * m['their_loss']:6.2f}    {m['queue_p95_ms']:.1f}", flush=True)
+        results[name] = []
+        for _ in range(args.runs):
+            with tempfile.TemporaryDirectory(prefix="beside-") as folder:
+                results[name].append(run(args.build, name, args.seconds, pathlib.Path(folder)))
+        print(row(name, results[name]), flush=True)
     if args.json:
         with open(args.json, "w") as out:
             json.dump(results, out, indent=2)
