@@ -36,9 +36,10 @@ look() {
 for script in "$root"/pipelines/*.sh; do
   name=$(basename "$script" .sh)
   case $name in
-    environment) continue ;;
+    environment | options) continue ;;
     demo) arguments=(--no-install --no-build --duration 6 --no-plots --output "$work/demo") ;;
     lidar-and-video | rtpbin-video) arguments=(--duration 5) ;;
+    webrtc) arguments=(--part 3) ;;
     record) arguments=(--scans 3 --output "$work/record") ;;
     view) arguments=(--output "$work/view") ;;
     *) arguments=(3) ;;

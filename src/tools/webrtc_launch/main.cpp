@@ -267,5 +267,6 @@ int main(int argc, char** argv) {
   call.callee.reset();
   call.caller.reset();
   call.pipeline.reset();
+  gst_deinit();
   return result;
 }
