@@ -319,11 +319,12 @@ bool Controller::CongestedLately() const {
   return now_ - window_.last_congestion_detected_time() < kCongestedLately;
 }
 
-/// How fast a stream's queue leaves. A window without a queue in the network, and a gap, tell
-/// nothing about what the link could carry.
+/// How fast a stream's queue may leave at best. A window without a queue in the network, and a gap,
+/// tell nothing about what the link could carry.
 DataRate Controller::QueueRate(const Stream& stream) const {
   if (gap_recovery_.in_gap() || outage_.active() || !CongestedLately()) return DataRate::Infinite();
-  const DataRate all = std::max(window_target_, path_.acked_rate(now_));
+  const DataRate known = std::max({window_target_, path_.acked_rate(now_), path_.train_capacity()});
+  const DataRate all = known * p_.link_may_be_faster;
   return all * (stream.target_bitrate() / std::max(streams_.target_bitrate(), p_.rate_pace_min));
 }
 

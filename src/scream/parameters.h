@@ -163,12 +163,14 @@ struct Parameters {
   /// So much of a late wake-up is caught up (the draft's pacing has no such term).
   Duration pacing_catch_up = 4ms;
   /// needed_floor: a little more than what is needed, as encoders round.
-  double needed_margin = 1.04;
+  double needed_margin = 1.08;
 
   /// Of all streams together, but for their minima.
   DataRate max_total_bitrate = DataRate::Infinite();
   /// Packets older than this in the sender's queue are late (see Controller::LatePackets).
   Duration max_queue_delay = 200ms;
+  /// What would be late on a link so many times as fast as is known is given up at once.
+  double link_may_be_faster = 1.5;
   /// How seldom a healthy receiver may report. Above 0 it reports at the end of frames.
   Duration feedback_interval{0};
 

@@ -14,7 +14,7 @@ constexpr Duration kMaxFramePeriod = 2s;
 constexpr Duration kMinFramePeriod = 1ms;
 constexpr Duration kLikelyFramePeriod = 200ms;
 /// The rest of a group that has begun to leave may wait this many times as long.
-constexpr int kBegunStay = 2;
+constexpr int kBegunStay = 5;
 /// A stream without packets for so long leaves its share to the others.
 constexpr Duration kInactive = 1s;
 
@@ -108,12 +108,13 @@ std::size_t Stream::LatePackets(Time now, DataRate rate) const {
 /// of one that waited twice as long as any may is of no use either.
 std::size_t Stream::StuckPackets(Time now) const {
   const Duration age = now - queue_.front().queued;
-  if (age < 2 * p_.max_queue_delay) return 0;
+  if (age < kBegunStay * p_.max_queue_delay) return 0;
   const auto next =
       std::find_if(queue_.begin(), queue_.end(), [](const Queued& q) { return q.starts_frame; });
   const auto rest = static_cast<std::size_t>(next - queue_.begin());
   // A receiver that reports at the end of frames would wait for it for ever.
-  const bool keeps_last = p_.feedback_interval > Duration{0} && age < 4 * p_.max_queue_delay;
+  const bool keeps_last =
+      p_.feedback_interval > Duration{0} && age < 2 * kBegunStay * p_.max_queue_delay;
   return keeps_last ? rest - 1 : rest;
 }
 

@@ -38,6 +38,7 @@ class Stream {
   const StreamConfig& config() const { return config_; }
   double rate_adjust_factor() const { return rate_adjust_factor_; }
   double frame_size_dev() const { return frame_size_dev_; }
+  double queue_compensation() const { return rate_adjust_factor_ + frame_size_dev_; }
   Duration frame_period() const { return frame_period_; }
   /// Silence counts from here on, at the latest.
   void NoteTime(Time now) { last_active_ = last_active_.value_or(now); }

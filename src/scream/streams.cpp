@@ -94,8 +94,10 @@ void Streams::Allocate(Time now, DataRate total) {
     if (c.needed_bitrate > floor) floor = floor + (c.needed_bitrate - floor) * need_share;
     stream.set_target_bitrate(floor);
     left = left - floor;
-    open.push_back(
-        {&stream, std::max(1e-6, c.priority), floor, std::max(c.min_bitrate, c.max_bitrate)});
+    // The target allows for the queues of all: who has one bears it.
+    const double weight =
+        std::max(1e-6, c.priority) / (p_.target_rate_divisor + stream.queue_compensation());
+    open.push_back({&stream, weight, floor, std::max(c.min_bitrate, c.max_bitrate)});
   }
   // Fill by weight; who reaches the maximum leaves the rest to the others.
   while (left.bits_per_second() > 1 && !open.empty()) {
@@ -116,8 +118,15 @@ void Streams::Allocate(Time now, DataRate total) {
   }
 }
 
+/// A stream that waits for its turn behind the backlog of another one has done nothing wrong.
 void Streams::LeaveRoomForBacklogs() {
+  const auto backlog = [](const Stream& s) {
+    return s.queued() / std::max(s.target_bitrate(), DataRate::BitsPerSecond(1));
+  };
+  Duration longest{0};
+  for (const auto& [id, stream] : streams_) longest = std::max(longest, backlog(stream));
   for (auto& [id, stream] : streams_) {
+    if (backlog(stream) < longest / 2) continue;
     const DataRate target = stream.target_bitrate();
     const DataSize frame = target * stream.frame_period();
     const StreamConfig& c = stream.config();
@@ -175,9 +184,7 @@ double Streams::queue_compensation() const {
   const double sum = target_bitrate().bits_per_second();
   double weighted = 0;
   for (const auto& [id, s] : streams_)
-    if (s.counts())
-      weighted +=
-          (s.rate_adjust_factor() + s.frame_size_dev()) * s.target_bitrate().bits_per_second();
+    if (s.counts()) weighted += s.queue_compensation() * s.target_bitrate().bits_per_second();
   return sum > 0 ? weighted / sum : 0;
 }
 

@@ -115,7 +115,7 @@ TEST(Simulation, AnObstinateEncoderDoesNotFillTheNetworkQueue) {
   const ScenarioMetrics m = Measure(s, Simulate(s.config));
   EXPECT_LT(m.queue_ms.p99, 15);
   EXPECT_GT(m.utilisation, 0.9);
-  EXPECT_LT(m.frame_ms.p95, 250);
+  EXPECT_LT(m.frame_ms.p95, 100);
 }
 
 TEST(Simulation, AStepMarkerAndAPairOfQueuesAreUsedToo) {

@@ -41,6 +41,8 @@ const std::map<std::string, double Parameters::*> kConstants = {
     {"drop_beta", &Parameters::drop_beta},
     {"bounded_overhead", &Parameters::bounded_overhead},
     {"isolated_loss_threshold", &Parameters::isolated_loss_threshold},
+    {"needed_margin", &Parameters::needed_margin},
+    {"stall_share", &Parameters::stall_share},
 };
 
 const std::map<std::string, bool Extensions::*> kExtensions = {

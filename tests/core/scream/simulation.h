@@ -49,7 +49,7 @@ struct FlowConfig {
   Duration stop_after = kNever;
   bool drop_late = true;
   /// The rest of a frame that began to leave is dropped once its head has waited for so long.
-  Duration longest_stay = std::chrono::milliseconds(400);
+  Duration longest_stay = std::chrono::milliseconds(1000);
   /// The receiver forgets everything, and its clock has another epoch.
   Duration receiver_restart = kNever;
   /// A new sender with other SSRCs takes over.

@@ -204,26 +204,26 @@ TEST_F(ScanTest, SlicesThatFollowADroppedOneOfTheirScanGoTheSameWay) {
 
 TEST_F(StreamTest, TheRestOfAFrameThatStuckIsLateAndTheYoungerFrameBehindItIsNot) {
   Frame(kStart, 3, 1);
-  Frame(kStart + 300ms, 2, 2);
+  Frame(kStart + 900ms, 2, 2);
   stream_.OnSent(kStart, 1, DataSize::Bytes(1000));
-  EXPECT_EQ(stream_.LatePackets(kStart + 399ms, DataRate::Infinite()), 0U);
-  EXPECT_EQ(stream_.LatePackets(kStart + 400ms, DataRate::Infinite()), 2U);
+  EXPECT_EQ(stream_.LatePackets(kStart + 999ms, DataRate::Infinite()), 0U);
+  EXPECT_EQ(stream_.LatePackets(kStart + 1000ms, DataRate::Infinite()), 2U);
 }
 
 TEST_F(StreamTest, TheEndOfAFrameThatStuckStaysForReceiversThatReportAtIt) {
   parameters_.feedback_interval = 400ms;
   Frame(kStart, 3, 1);
   stream_.OnSent(kStart, 1, DataSize::Bytes(1000));
-  EXPECT_EQ(stream_.LatePackets(kStart + 400ms, DataRate::Infinite()), 1U);
-  EXPECT_EQ(stream_.LatePackets(kStart + 800ms, DataRate::Infinite()), 2U);
+  EXPECT_EQ(stream_.LatePackets(kStart + 1000ms, DataRate::Infinite()), 1U);
+  EXPECT_EQ(stream_.LatePackets(kStart + 2000ms, DataRate::Infinite()), 2U);
 }
 
 TEST_F(ScanTest, GoesOutToItsEndForALittleLongerOnceItHasBegun) {
   Scan(kStart, 1);
   stream_.OnSent(kStart, 1, DataSize::Bytes(1000));
   stream_.OnSent(kStart, 1, DataSize::Bytes(1000));
-  EXPECT_EQ(stream_.LatePackets(kStart + 425ms, DataRate::Infinite()), 0U);
-  EXPECT_EQ(stream_.LatePackets(kStart + 426ms, DataRate::Infinite()), 6U);
+  EXPECT_EQ(stream_.LatePackets(kStart + 1025ms, DataRate::Infinite()), 0U);
+  EXPECT_EQ(stream_.LatePackets(kStart + 1026ms, DataRate::Infinite()), 6U);
 }
 
 TEST_F(StreamTest, TheFramePeriodIsMeasured) {
