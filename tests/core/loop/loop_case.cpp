@@ -53,21 +53,26 @@ double Usable(const LoopCase& c, const LoopReport& report, Duration from, Durati
 void CountScans(const LoopCase& c, const SimulationResult& result, LoopReport* report) {
   const std::vector<FrameLog>& frames = result.flows.front().frames;
   const std::size_t slices = c.frames ? 1 : c.source.slices;
+  const Duration max_age = link::OracleConfig{}.max_age;
   std::vector<double> latency_ms;
   std::int64_t bytes = 0;
   for (std::size_t i = 0; i + slices <= frames.size(); i += slices) {
     std::size_t complete = 0;
     std::size_t left_out = 0;
+    std::size_t in_time = 0;
     for (std::size_t k = i; k < i + slices; ++k) {
       const FrameLog& f = frames[k];
       bytes += f.bytes;
       left_out += f.bytes == 0;
       complete += f.complete();
-      if (f.complete()) latency_ms.push_back(Milliseconds(f.arrival - f.created));
+      if (!f.complete()) continue;
+      latency_ms.push_back(Milliseconds(f.arrival - f.created));
+      in_time += f.arrival - f.created <= max_age;
     }
     ++report->captured;
     report->skipped += left_out > 0;
     report->complete += complete == slices;
+    report->in_time += in_time == slices;
   }
   report->encoded_mbps = static_cast<double>(bytes) * 8 / 1e6 / Seconds(c.duration);
   report->capture_to_cloud_ms = scream::test::Summarise(std::move(latency_ms));

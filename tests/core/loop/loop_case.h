@@ -33,6 +33,7 @@ struct LoopReport {
   std::uint64_t captured = 0;
   std::uint64_t skipped = 0;  // by the encoder
   std::uint64_t complete = 0;
+  std::uint64_t in_time = 0;          ///< of these: each slice within the oracle's age
   link::OracleResult oracle_at_min;   // for scans of the lowest bitrate that keeps the bound
   link::OracleResult oracle_at_mean;  // for scans of the bitrate that the encoder put out
   // Slices

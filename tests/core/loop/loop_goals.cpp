@@ -64,4 +64,12 @@ std::vector<GoalResult> CheckGoals(const LoopCase& c, const LoopReport& r) {
   return goals;
 }
 
+GoalResult CheckAgainstFixed(const LoopReport& r, const LoopReport& fixed) {
+  char text[120];
+  std::snprintf(text, sizeof text, "complete %d, of these %d in time; a fixed step: %d, %d",
+                static_cast<int>(r.complete), static_cast<int>(r.in_time),
+                static_cast<int>(fixed.complete), static_cast<int>(fixed.in_time));
+  return {text, r.complete >= fixed.complete};
+}
+
 }  // namespace lidar::loop

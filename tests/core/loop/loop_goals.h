@@ -17,4 +17,7 @@ struct GoalResult {
 /// The goals of this kind of run; those of a trace with gaps where it has any.
 std::vector<GoalResult> CheckGoals(const LoopCase& loop_case, const LoopReport& report);
 
+/// Adapting is never worse than the coarsest step of the same bound.
+GoalResult CheckAgainstFixed(const LoopReport& report, const LoopReport& fixed);
+
 }  // namespace lidar::loop
