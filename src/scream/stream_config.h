@@ -21,6 +21,8 @@ struct StreamConfig {
   /// What the stream should not be asked to go below while the path can carry it; between
   /// min_bitrate, which holds always, and max_bitrate. 0: none.
   DataRate needed_bitrate{};
+  /// Goes before all streams without, and gets its maximum before they get more than they need.
+  bool strict = false;
 };
 
 /// A packet as it enters the sender's queue. `size` as on the wire: RTP, UDP and IP included.

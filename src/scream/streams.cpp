@@ -2,7 +2,6 @@
 #include "src/scream/streams.h"
 
 #include <algorithm>
-#include <vector>
 
 namespace lidar::scream {
 
@@ -30,11 +29,12 @@ std::optional<StreamId> Streams::Owner(std::uint32_t ssrc) const {
 
 std::optional<StreamId> Streams::Next() const {
   std::optional<StreamId> next;
-  double earliest = 0;
+  std::pair<bool, double> earliest;
   for (const auto& [id, stream] : streams_) {
-    if (stream.empty() || (next && stream.virtual_time >= earliest)) continue;
+    const std::pair<bool, double> turn{!stream.config().strict, stream.virtual_time};
+    if (stream.empty() || (next && turn >= earliest)) continue;
     next = id;
-    earliest = stream.virtual_time;
+    earliest = turn;
   }
   return next;
 }
@@ -48,7 +48,8 @@ void Streams::OnSent(Time now, StreamId id, std::uint32_t ssrc, DataSize size) {
   Stream* stream = Find(id);
   if (stream == nullptr) return;
   stream->OnSent(now, ssrc, size);
-  virtual_now_ = stream->virtual_time;
+  // The time of the others' turns goes on with theirs alone.
+  if (!stream->config().strict) virtual_now_ = stream->virtual_time;
   const double weight = std::max(1.0, stream->target_bitrate().bits_per_second());
   stream->virtual_time += size.bits() / weight;
 }
@@ -71,12 +72,6 @@ double Streams::NeedShare(Time now, DataRate total) const {
 }
 
 void Streams::Allocate(Time now, DataRate total) {
-  struct Share {
-    Stream* stream;
-    double weight;
-    DataRate rate;
-    DataRate max;
-  };
   std::vector<Share> open;
   DataRate left = total;
   if (now != Time{})  // else there was no event yet
@@ -99,7 +94,14 @@ void Streams::Allocate(Time now, DataRate total) {
         std::max(1e-6, c.priority) / (p_.target_rate_divisor + stream.queue_compensation());
     open.push_back({&stream, weight, floor, std::max(c.min_bitrate, c.max_bitrate)});
   }
-  // Fill by weight; who reaches the maximum leaves the rest to the others.
+  const auto others = std::stable_partition(
+      open.begin(), open.end(), [](const Share& s) { return s.stream->config().strict; });
+  left = Fill({open.begin(), others}, left);
+  Fill({others, open.end()}, left);
+}
+
+/// By weight; who reaches the maximum leaves the rest to the others. Returns what is left.
+DataRate Streams::Fill(std::vector<Share> open, DataRate left) {
   while (left.bits_per_second() > 1 && !open.empty()) {
     double weights = 0;
     for (const Share& s : open) weights += s.weight;
@@ -116,6 +118,7 @@ void Streams::Allocate(Time now, DataRate total) {
     open.erase(std::remove_if(open.begin(), open.end(), full), open.end());
     if (fraction >= 1) break;
   }
+  return left;
 }
 
 /// A stream that waits for its turn behind the backlog of another one has done nothing wrong.

@@ -3,6 +3,7 @@
 #pragma once
 #include <map>
 #include <optional>
+#include <vector>
 
 #include "src/scream/stream.h"
 
@@ -18,7 +19,8 @@ class Streams {
   const Stream* Find(StreamId id) const;
   std::optional<StreamId> Owner(std::uint32_t ssrc) const;
 
-  /// The stream whose turn it is: weighted fair queueing by target bitrates.
+  /// The stream whose turn it is: strict ones first, then weighted fair queueing by target
+  /// bitrates.
   std::optional<StreamId> Next() const;
   void OnSent(Time now, StreamId id, std::uint32_t ssrc, DataSize size);
   void OnQueued(Stream* stream);
@@ -47,6 +49,14 @@ class Streams {
  private:
   /// How much of what streams need above their minima the path can carry, 0..1.
   double NeedShare(Time now, DataRate total) const;
+  /// What a stream has got of the rate so far.
+  struct Share {
+    Stream* stream;
+    double weight;
+    DataRate rate;
+    DataRate max;
+  };
+  static DataRate Fill(std::vector<Share> open, DataRate left);
   bool AnyActive(Time now) const;
   template <class Rate>
   DataRate Sum(Rate rate) const;

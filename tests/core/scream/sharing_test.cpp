@@ -74,6 +74,20 @@ TEST_F(TwoStreams, AnEncoderThatIgnoresItsTargetDoesNotTakeTheOthersShare) {
   EXPECT_LT(metrics.queue_ms.p99, 10);
 }
 
+/// Audio beside an encoder that sends twice its target.
+TEST_F(TwoStreams, AStrictOneNeverWaitsForTheOther) {
+  Camera().obedience = [](Duration) { return 2.0; };
+  Lidar().stream.strict = true;
+  Lidar().stream.max_bitrate = Mbps(0.2);
+  Lidar().stream.start_bitrate = Mbps(0.2);
+  Run();
+  EXPECT_NEAR(Rate(0), 0.2, 0.02);
+  std::vector<double> latency_ms;
+  for (const FrameLog& f : result.flows[0].frames)
+    if (f.source == 0 && f.complete()) latency_ms.push_back(Milliseconds(f.arrival - f.created));
+  EXPECT_LT(Summarise(latency_ms).p99, 35);
+}
+
 /// A second LiDAR that fails: what it needed is nobody's.
 TEST(SilentStream, LeavesTheLiveOneAsItWas) {
   for (const double needed : {5.0, 10.0, 20.0}) {

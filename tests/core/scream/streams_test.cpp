@@ -138,6 +138,34 @@ TEST_F(StreamsTest, ASilentStreamIsNoPartOfTheirSums) {
   EXPECT_NEAR(streams_.target_bitrate().bits_per_second(), 10e6, 1);
 }
 
+TEST_F(StreamsTest, AStrictOneGoesFirstHoweverMuchWaits) {
+  const StreamId a = Add(100, 1, 100), b = Add(1, 0, 1);
+  StreamConfig audio{1, Mbps(0.1), Mbps(0.1), Mbps(0.2), Mbps(0), true};
+  streams_.Find(b)->Configure(audio);
+  streams_.Allocate(kStart, Mbps(10));
+  EXPECT_NEAR(Target(b), 0.2, 1e-3);
+  EXPECT_NEAR(Target(a), 9.8, 1e-3);
+  for (int i = 0; i < 100; ++i)
+    streams_.Find(a)->OnQueued(kStart, {1, DataSize::Bytes(1000), false, 0});
+  for (int i = 0; i < 20; ++i) {
+    streams_.OnSent(kStart, a, 1, DataSize::Bytes(1000));
+    streams_.OnQueued(streams_.Find(b));
+    streams_.Find(b)->OnQueued(kStart, {2, DataSize::Bytes(200), true, 0});
+    ASSERT_EQ(streams_.Next(), b);
+    streams_.OnSent(kStart, b, 2, DataSize::Bytes(200));
+    ASSERT_EQ(streams_.Next(), a);
+  }
+}
+
+TEST_F(StreamsTest, AStrictOneLeavesTheOthersWhatTheyNeed) {
+  const StreamId a = Add(1, 1, 100), b = Add(1, 0, 10);
+  streams_.Find(a)->Configure({1, Mbps(1), Mbps(1), Mbps(100), Mbps(4)});
+  streams_.Find(b)->Configure({1, Mbps(0.1), Mbps(0.1), Mbps(10), Mbps(0), true});
+  streams_.Allocate(kStart, Mbps(6));
+  EXPECT_NEAR(Target(a), 4, 1e-3);
+  EXPECT_NEAR(Target(b), 2, 1e-3);
+}
+
 class StreamTest : public ::testing::Test {
  protected:
   /// A frame of `packets` packets of 1000 bytes.
