@@ -19,6 +19,11 @@ constexpr double kDriftRateScale = 0.5;
 constexpr Duration kLongestGap = 2s;
 /// Receivers report at least so often while packets arrive.
 constexpr Duration kLongestReportGap = 40ms;
+/// A source that sends less than this part of its target says nothing about the link...
+constexpr double kUnusedTarget = 0.85;
+/// ...which need not be known beyond this multiple of the streams' maximum.
+constexpr double kProbeRoom = 1.2;
+constexpr Duration kNoQueue = 3ms;
 /// So long after a sign of congestion the window is about what the link carries.
 constexpr Duration kCongestedLately = 300ms;
 
@@ -57,7 +62,10 @@ void Controller::OnQueued(Time now, StreamId id, const QueuedPacket& packet) {
   now = Advance(now);
   Stream* stream = streams_.Find(id);
   if (stream == nullptr) return;
-  if (streams_.empty()) pacer_.OnIdleEnd(now);
+  if (streams_.empty()) {
+    pacer_.OnIdleEnd(now);
+    ProbeByBurst(now);
+  }
   if (stream->empty()) streams_.OnQueued(stream);
   if (stream->OnQueued(now, packet)) UpdateTarget(now);
 }
@@ -259,6 +267,17 @@ void Controller::UpdateTarget(Time now) {
                 PacingHeadroom(p_, streams_.frame_period(), PacingReserve(now)));
   if (p_.extensions.quick_drain && streams_.media_qdelay(now) > streams_.frame_period())
     pacer_.RaiseTo(DrainRate(p_, now, window_.ref_wnd(), path_));
+}
+
+void Controller::ProbeByBurst(Time now) {
+  const bool unused = path_.sent_rate(now) < streams_.target_bitrate() * kUnusedTarget;
+  BurstProbe::Input in;
+  in.limited = started_ && (unused || window_target_ >= streams_.max_bitrate());
+  in.congested = CongestedLately() || outage_.active() || gap_recovery_.in_gap() ||
+                 path_.queue_delay().qdelay() > kNoQueue;
+  in.known = path_.estimated_capacity();
+  in.wanted = streams_.max_bitrate() * kProbeRoom;
+  if (const auto rate = burst_probe_.Update(now, in)) pacer_.Burst(*rate, BurstProbe::kBurst);
 }
 
 /// What was sent for a while does not come back at the rate that it did: a gap, or the start of

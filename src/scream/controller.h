@@ -10,6 +10,7 @@
 #include "src/scream/pacer.h"
 #include "src/scream/parameters.h"
 #include "src/scream/response/answered_signals.h"
+#include "src/scream/response/burst_probe.h"
 #include "src/scream/response/capacity_drop.h"
 #include "src/scream/response/competing_flows.h"
 #include "src/scream/response/fast_increase.h"
@@ -123,6 +124,7 @@ class Controller {
   void StartWindow();
   void LimitWindowAtMaxBitrate();
   void UpdateTarget(Time now);
+  void ProbeByBurst(Time now);
   void TakeGapRestart(Time now);
   DataRate WindowTarget(Time now) const;
   bool CongestedLately() const;
@@ -145,6 +147,7 @@ class Controller {
   CapacityDrop capacity_drop_{p_};
   AnsweredSignals answered_{p_};
   Outage outage_{p_};
+  BurstProbe burst_probe_{p_};
   GapRecovery gap_recovery_{p_};
   SendWindow send_window_{p_};
   Pacer pacer_{p_};

@@ -13,6 +13,11 @@ class Pacer {
 
   /// `headroom` is PACKET_PACING_HEADROOM or what an extension makes of it.
   void Update(DataRate target_bitrate, DataRate target_bitrate_max, double headroom);
+  /// The next packets leave at `rate`, for so long.
+  void Burst(DataRate rate, Duration length) {
+    burst_rate_ = rate;
+    burst_ = rate * length;
+  }
   void RaiseTo(DataRate rate) { pace_bitrate_ = std::max(pace_bitrate_, rate); }
   /// A packet comes into an empty queue: the time before it gives no credit.
   void OnIdleEnd(Time now) { next_ = std::max(next_, now); }
@@ -25,6 +30,8 @@ class Pacer {
  private:
   const Parameters& p_;
   DataRate pace_bitrate_ = DataRate::BitsPerSecond(1e6);
+  DataRate burst_rate_;
+  DataSize burst_;  // of which is left
   Time next_{};
 };
 
@@ -36,7 +43,10 @@ inline void Pacer::Update(DataRate target, DataRate max, double headroom) {
 }
 
 inline void Pacer::OnSent(Time now, DataSize size) {
-  next_ = std::max(next_, now - p_.pacing_catch_up) + size / pace_bitrate_;
+  const bool burst = burst_ >= size;
+  if (burst) burst_ -= size;
+  const DataRate rate = burst ? std::max(pace_bitrate_, burst_rate_) : pace_bitrate_;
+  next_ = std::max(next_, now - p_.pacing_catch_up) + size / rate;
 }
 
 }  // namespace lidar::scream

@@ -42,6 +42,8 @@ struct Extensions {
   /// Clocks that were set and callers that stood still are noticed; where the bottleneck marks, the
   /// base delay is that of the last half minute.
   bool clock_care = true;
+  /// Short bursts of a source that sends little measure the link.
+  bool burst_probe = true;
   /// An old round trip counts for less, as does one of a source that leaves its window unused.
   bool aged_rtt = true;
 };

@@ -58,6 +58,7 @@ void PathModel::Reset() {
   queue_delay_.Reset();
   rtt_.Reset();
   train_.Reset();
+  burst_.Reset();
   busy_run_.Reset();
   classic_ecn_ = ClassicEcn();
   loss_context_ = LossContext();
@@ -119,6 +120,8 @@ void PathModel::ObserveCapacity(Time now, const AckSummary& acks, Duration qdela
     if (packet.sent >= gap_end_) classic_ecn_.OnPacket(now, qdelay, marked);
     if (marked && packet.sent >= gap_end_) marking_onset_.OnMark(qdelay);
     busy_run_.Add({*packet.arrival, packet.size, busy, marked});
+    if (const auto rate = burst_.Add({packet.sent, *packet.arrival, packet.size}))
+      acked_peak_ = std::max(acked_peak_, *rate);
     if (train_.Add({*packet.arrival, packet.size, qdelay, busy})) hole_in_report_ = true;
   }
   for (const LostPacket& packet : acks.lost) loss_context_.OnLost(packet.sent);

@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "src/scream/model/arrival_train.h"
+#include "src/scream/model/burst_rate.h"
 #include "src/scream/model/busy_run.h"
 #include "src/scream/model/classic_ecn.h"
 #include "src/scream/model/ecn_monitor.h"
@@ -110,10 +111,11 @@ class PathModel {
   EcnMonitor ecn_{p_.ecn};
   BusyRun busy_run_;
   ArrivalTrain train_;
+  BurstRate burst_;
   MarkingOnset marking_onset_{p_.pacing_reserve};
   bool hole_in_report_ = false;
   DataRate train_capacity_;
-  DataRate acked_peak_;  // since the last train
+  DataRate acked_peak_;  // of averages and bursts, since the last train
   Time gap_end_{};
   MaxBytesInFlight max_in_flight_;
   mutable RateMeter sent_rate_{1s};

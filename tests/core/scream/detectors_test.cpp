@@ -4,6 +4,7 @@
 
 #include "src/scream/media_rate.h"
 #include "src/scream/model/arrival_train.h"
+#include "src/scream/model/burst_rate.h"
 #include "src/scream/model/busy_run.h"
 #include "src/scream/model/classic_ecn.h"
 #include "src/scream/model/ecn_monitor.h"
@@ -67,7 +68,7 @@ TEST(Parameters, ThePureDraftHasNoOptionalPartAndNoExtension) {
   EXPECT_FALSE(e.fast_start || e.drop_response || e.bounded_flight || e.isolated_loss ||
                e.answered_signals || e.even_alpha || e.quick_drain || e.adaptive_pacing ||
                e.feedback_timeout || e.gap_recovery || e.needed_floor || e.classic_ecn ||
-               e.brief_policer || e.clock_care || e.aged_rtt);
+               e.brief_policer || e.clock_care || e.aged_rtt || e.burst_probe);
   EXPECT_EQ(p.pacing_catch_up, Duration{0});
 }
 
@@ -290,6 +291,19 @@ TEST(Pacer, CatchesUpAfterALateWakeUpButOnlyALittle) {
   EXPECT_EQ(pacer.next(), kStart + 6ms);
 }
 
+TEST(Pacer, ABurstIsFasterAndShort) {
+  const Parameters p = Parameters::Draft();
+  Pacer pacer(p);
+  pacer.Update(Mbps(8), Mbps(100), 1);
+  pacer.Burst(Mbps(16), 2ms);
+  Time now = kStart;
+  for (const Duration gap : {500us, 500us, 500us, 500us, 1000us, 1000us}) {
+    pacer.OnSent(now, DataSize::Bytes(1000));
+    EXPECT_EQ(pacer.next() - now, Duration(gap));
+    now = pacer.next();
+  }
+}
+
 TEST(MediaRate, IsTheWindowOverTheRoundTripWithTheDraftsReserves) {
   const Parameters p = Parameters::Draft();
   const DataRate rate = TargetBitrate(p, {DataSize::Bytes(50000), 0.02, 40ms, 0});
@@ -351,6 +365,28 @@ TEST(BusyRun, AMomentInWhichNothingMovedIsNoSlowness) {
   Arrive(&run, stop + 80ms, 1ms, 10);
   ASSERT_TRUE(run.capacity());
   EXPECT_NEAR(run.capacity()->bits_per_second(), 8e6, 1);
+}
+
+TEST(BurstRate, IsThatOfPacketsThatLeftTogether) {
+  BurstRate burst;
+  std::optional<DataRate> rate;
+  Time sent = kStart;
+  for (int frame = 0; frame < 3; ++frame, sent += 50ms)
+    for (int i = 0; i < 11; ++i)  // sent at 16 Mbit/s, over a link of 8
+      if (const auto r =
+              burst.Add({sent + i * 500us, sent + 20ms + i * 1ms, DataSize::Bytes(1000)}))
+        rate = r;
+  ASSERT_TRUE(rate);
+  EXPECT_NEAR(rate->bits_per_second(), 8e6, 1);
+}
+
+TEST(BurstRate, IsNeverAboveWhatWasSent) {
+  BurstRate burst;
+  for (int i = 0; i < 100; ++i) {  // a radio that delivers in lumps
+    const auto rate =
+        burst.Add({kStart + i * 1ms, kStart + (i / 10 + 1) * 10ms, DataSize::Bytes(1000)});
+    if (rate) EXPECT_LE(rate->bits_per_second(), 8e6 + 1);
+  }
 }
 
 TEST(MarkingOnset, FindsTheShortestQueuesThatAreMarked) {

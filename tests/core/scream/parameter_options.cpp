@@ -60,6 +60,7 @@ const std::map<std::string, bool Extensions::*> kExtensions = {
     {"classic_ecn", &Extensions::classic_ecn},
     {"brief_policer", &Extensions::brief_policer},
     {"clock_care", &Extensions::clock_care},
+    {"burst_probe", &Extensions::burst_probe},
     {"aged_rtt", &Extensions::aged_rtt},
 };
 const std::map<std::string, bool Parameters::*> kOptionalParts = {

@@ -4,6 +4,7 @@
 
 #include "src/scream/response/adaptive_pacing.h"
 #include "src/scream/response/answered_signals.h"
+#include "src/scream/response/burst_probe.h"
 #include "src/scream/response/capacity_drop.h"
 #include "src/scream/response/gap_recovery.h"
 #include "src/scream/response/isolated_loss.h"
@@ -48,6 +49,32 @@ class Path {
   PathModel model;
   Time now = kStart;
 };
+
+TEST(BurstProbe, EndsAfterThreeSecondsOrWithCongestionAndRests) {
+  const Parameters p;
+  BurstProbe probe(p);
+  BurstProbe::Input in{true, false, Mbps(3), Mbps(20)};
+  EXPECT_FALSE(probe.Update(kStart - 2s, in)) << "the target may be rising";
+  ASSERT_TRUE(probe.Update(kStart, in));
+  EXPECT_NEAR(probe.Update(kStart + 2900ms, in)->bits_per_second(), 6e6, 1);
+  EXPECT_FALSE(probe.Update(kStart + 3s, in));
+  EXPECT_FALSE(probe.Update(kStart + 12s, in));
+  EXPECT_TRUE(probe.Update(kStart + 13s, in));
+  in.congested = true;
+  EXPECT_FALSE(probe.Update(kStart + 13100ms, in));
+  in.congested = false;
+  EXPECT_FALSE(probe.Update(kStart + 14s, in));
+}
+
+TEST(BurstProbe, IsNotNeededWhereEnoughIsKnownOrTheSourceSendsEnough) {
+  const Parameters p;
+  BurstProbe probe(p);
+  for (Time now = kStart; now < kStart + 5s; now += 100ms) {
+    EXPECT_FALSE(probe.Update(now, {true, false, Mbps(20), Mbps(20)}));
+    EXPECT_FALSE(probe.Update(now, {false, false, Mbps(3), Mbps(20)}));
+    EXPECT_FALSE(probe.Update(now, {true, true, Mbps(3), Mbps(20)}));
+  }
+}
 
 class CapacityDropTest : public ::testing::Test {
  protected:
