@@ -72,7 +72,7 @@ def main():
     rng = random.Random(options.seed)
     random.seed(options.seed)
     print(f"seed {options.seed}")
-    recording, other = ends.record(1, 1), ends.record(2, 1)
+    recording, other = ends.record(1, 8), ends.record(2, 8)
     chosen = [a for a in attacks.MEDIA + servers.ALL if not options.only or options.only in a.__name__.replace("_", " ")]
     seconds = 8 if options.minutes else 1
     until = time.monotonic() + 60 * options.minutes

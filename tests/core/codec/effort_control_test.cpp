@@ -85,6 +85,21 @@ TEST(EffortControl, YieldsAtOnceToABusyMachineAndComesBack) {
   EXPECT_EQ(Play(machine, {}, 120, &control).back(), 3U);
 }
 
+TEST(EffortControl, WaitsLongerEachTimeThatAnEffortFailed) {
+  EffortControl control;
+  std::vector<double> raised_at;  // [s]
+  unsigned before = 0;
+  for (int i = 0; i < 100 * 80; ++i) {
+    const bool fails = control.effort() == 3;
+    if (fails && before != 3) raised_at.push_back(i / 80.0);
+    before = control.effort();
+    control.OnSlice(Duration{12'500'000}, 100, Duration{fails ? 10'000'000 : 20'000});
+  }
+  ASSERT_GE(raised_at.size(), 4U);
+  for (std::size_t i = 2; i < raised_at.size(); ++i)
+    EXPECT_GT(raised_at[i] - raised_at[i - 1], 1.5 * (raised_at[i - 1] - raised_at[i - 2]));
+}
+
 TEST(EffortControl, LetsSingleSlicesBeLate) {
   EffortControl control;
   Play({}, {}, 10, &control);

@@ -18,6 +18,22 @@ struct PreferenceCase {
 };
 void PrintTo(const PreferenceCase& c, std::ostream* out) { *out << c.name; }
 
+TEST_P(AnyCoder, TakesACloudWithoutItsPlaceForAScan) {
+  const SensorModel model = test::RoomSensor();
+  const Harness h = Encoder(GetParam());
+  SetCaps(h.get(), OrganisedInfo(model, 64));
+  for (int i = 0; i < 3; ++i) {
+    const BufferPtr placed(OrganisedBuffer(model, 64, {0, 0, 1, 0}));
+    GstBuffer* buffer = gst_buffer_copy_region(placed.get(), GST_BUFFER_COPY_MEMORY, 0,
+                                               gst_buffer_get_size(placed.get()));
+    GstLidarSlice slice;
+    ASSERT_FALSE(gst_lidar_buffer_get_slice(buffer, &slice));
+    gst_buffer_unref(gst_harness_push_and_pull(h.get(), buffer));
+  }
+  const ElementPtr enc(gst_bin_get_by_name(GST_BIN(h->element), "enc"));
+  EXPECT_EQ(Counter(enc.get(), "scans-in"), 3U);
+}
+
 class BelowTheMinimum : public ::testing::TestWithParam<std::tuple<CoderCase, PreferenceCase>> {
  protected:
   static Harness Pipeline(const std::string& properties) {

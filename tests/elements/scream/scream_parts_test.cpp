@@ -189,6 +189,28 @@ TEST_F(Latch, TheSenderComesBackWhenAnotherTookItsPlaceInAnOutage) {
   EXPECT_FALSE(Stream(thief, 9, 40, 40, true));
 }
 
+TEST_F(Latch, AKnownSenderMayHaveLostMuchOnTheWay) {
+  Stream(robot, 1, 0, 100, true);
+  now += 1s;
+  EXPECT_TRUE(Stream(other, 1, 5'000, 8));
+}
+
+TEST_F(Latch, WhoWasOutweighedWhileItSentIsNotKnown) {
+  Stream(robot, 1, 0, 100, true);
+  now += 6s;
+  EXPECT_TRUE(Stream(thief, 9, 0, 20, true));
+  EXPECT_TRUE(Stream(robot, 1, 150, 6));
+  now += 1s;
+  EXPECT_FALSE(Stream(thief, 9, 20, 20));
+}
+
+TEST_F(Latch, APacketNowAndThenIsNoStream) {
+  Stream(robot, 1, 0, 10);
+  now += 10s;
+  for (std::uint16_t seq = 0; seq < 50; ++seq, now += 400ms)
+    EXPECT_EQ(Send(thief, 2, seq), kForeign) << seq;
+}
+
 TEST_F(Latch, AFloodOfRandomSsrcsDoesNotHideASenderThatMoved) {
   std::uint16_t seq = 0;
   for (; seq < 100; ++seq, now += 10ms) Send(robot, 1, seq, true);

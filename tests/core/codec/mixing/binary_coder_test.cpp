@@ -62,6 +62,13 @@ TEST(BinaryCoder, TellsWhenItReadsWhatNobodyWrote) {
   EXPECT_FALSE(decoder.AtEnd());
 }
 
+TEST(BinaryCoder, ReadsFourBytesThatAreNotThereAndNoMore) {
+  BinaryDecoder decoder({});
+  EXPECT_FALSE(decoder.overran());
+  decoder.Code(false, 256);  // 1/256: a byte goes
+  EXPECT_TRUE(decoder.overran());
+}
+
 TEST(Tables, RiseAndInvertEachOther) {
   for (std::int32_t x = -kMostLogit; x < kMostLogit; ++x) ASSERT_LE(Chance(x), Chance(x + 1));
   for (std::int32_t p = 64; p < kOne - 64; p += 16)

@@ -169,6 +169,19 @@ TEST(MixingCodecOf, WorkIsBoundedByTheBytes) {
   EXPECT_LE(MostMixedPixels(60), 20'000U);  // of 1,048,576 that a decoder takes by default
 }
 
+TEST(MixingCodecOf, AReturnIsNeverAtTheSensor) {
+  const SensorModel sensor = Sensor(4, 16);
+  MixingDecoder decoder(sensor);
+  RangeImage image;
+  image.beams = 4;
+  image.columns = 16;
+  for (std::size_t bytes = 2; bytes < 40; ++bytes) {
+    auto payload = AsExpected(bytes);
+    payload[0] = 0x10 | 3;  // no gaps: a bin of 0 for each pixel
+    EXPECT_FALSE(decoder.Decode({payload.data(), bytes}, RangeGrid(1, 1), 0, &image)) << bytes;
+  }
+}
+
 TEST(MixingCodecOf, AnEncoderLeavesWhatIsTooSmallToOthers) {
   const SensorModel sensor = Sensor(32, 512);
   const MixingSettings settings{RangeGrid(1, 41), {}, 3};
