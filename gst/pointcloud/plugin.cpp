@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include "gst/common/gstlidar.h"
 #include "gst/pointcloud/gstcloudfileenc.h"
+#include "gst/pointcloud/gstpointcloudfilter.h"
 #include "gst/pointcloud/gstpointcloudparse.h"
 #include "gst/pointcloud/gstscanassembler.h"
 
 static gboolean plugin_init(GstPlugin* plugin) {
   gst_lidar_init();
   return GST_ELEMENT_REGISTER(pcdenc, plugin) && GST_ELEMENT_REGISTER(plyenc, plugin) &&
+         GST_ELEMENT_REGISTER(pointcloudfilter, plugin) &&
          GST_ELEMENT_REGISTER(pointcloudparse, plugin) &&
          GST_ELEMENT_REGISTER(scanassembler, plugin);
 }

@@ -1,0 +1,173 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "gst/pointcloud/filter_plan.h"
+
+#include <algorithm>
+#include <sstream>
+#include <utility>
+
+#include "gst/common/buffer_map.h"
+#include "gst/common/gstlidar.h"
+
+namespace lidar::gst {
+namespace {
+
+/// CloudInfo knows little-endian clouds only.
+std::optional<CloudInfo> ParseCaps(const GstCaps* caps, bool* big_endian, std::string* why) {
+  const CapsPtr copy(gst_caps_copy(caps));
+  gboolean flag = FALSE;
+  gst_structure_get_boolean(gst_caps_get_structure(caps, 0), "is-bigendian", &flag);
+  *big_endian = flag != FALSE;
+  gst_caps_set_simple(copy.get(), "is-bigendian", G_TYPE_BOOLEAN, FALSE, nullptr);
+  return CloudInfo::FromFrameCaps(copy.get(), why);
+}
+
+/// "x,y,z,intensity" or, with types, "x:F32,intensity:U8", packed.
+std::optional<cdr::PointLayout> ParseWanted(const std::string& text, const PointFields& given,
+                                            std::string* why) {
+  std::istringstream in(text);
+  cdr::PointLayout layout;
+  for (std::string word; std::getline(in, word, ',');) {
+    const std::size_t colon = word.find(':');
+    const std::string name = word.substr(0, colon);
+    const PointField* field = given.Find(name);
+    if (field == nullptr) {
+      *why = "there is no field " + name + " among " + given.ToString();
+      return std::nullopt;
+    }
+    // What our elements want of coordinates, unless another type is asked for.
+    const bool is_axis = name == "x" || name == "y" || name == "z";
+    FieldType type = is_axis ? FieldType::kF32 : field->type;
+    if (colon != std::string::npos) {
+      const auto parsed = PointFields::Parse(word + ":0", why);
+      if (!parsed) return std::nullopt;
+      type = parsed->all()[0].type;
+    }
+    if (layout.fields.Find(name) != nullptr) {
+      *why = "there are two fields " + name;
+      return std::nullopt;
+    }
+    layout.fields.Add(name, type);
+  }
+  layout.point_step = layout.fields.MinimumStep();
+  return layout;
+}
+
+std::optional<PointFilterSettings> ParseSettings(const FilterSettings& s, std::string* why) {
+  PointFilterSettings parsed;
+  parsed.beam_step = s.beam_step;
+  parsed.column_step = s.column_step;
+  parsed.min_range_m = s.min_range;
+  parsed.max_range_m = s.max_range;
+  parsed.voxel_size_m = s.voxel_size;
+  parsed.crop_inside = s.crop_inside;
+  parsed.invalid = s.invalid;
+  if (!s.transform.empty()) {
+    parsed.transform = ParseTransform(s.transform);
+    *why = "transform wants 16 numbers, or x, y, z, roll, pitch, yaw";
+    if (!parsed.transform) return std::nullopt;
+  }
+  if (!s.crop_box.empty()) {
+    const auto box = ParseNumbers(s.crop_box);
+    *why = "crop-box wants six numbers: the least x, y, z, then the largest";
+    if (!box || box->size() != 6) return std::nullopt;
+    for (std::size_t i = 0; i < 3; ++i)
+      if ((*box)[i] > (*box)[i + 3]) return std::nullopt;
+    parsed.crop_box.emplace();
+    std::copy(box->begin(), box->end(), parsed.crop_box->begin());
+  }
+  return parsed;
+}
+
+/// The model of the beams that stay, where it still says where the points are.
+void KeepModel(const PointFilterSettings& s, CloudInfo* out) {
+  if (!out->sensor_model) return;
+  if (s.transform || s.column_step > 1 || s.invalid == InvalidPoints::kRemove) {
+    out->sensor_model.reset();
+    return;
+  }
+  std::vector<Beam> beams;
+  for (std::size_t i = 0; i < out->sensor_model->beams.size(); i += s.beam_step)
+    beams.push_back(out->sensor_model->beams[i]);
+  out->sensor_model->beams = std::move(beams);
+}
+
+}  // namespace
+
+std::unique_ptr<FilterPlan> FilterPlan::Make(const FilterSettings& settings, const GstCaps* caps,
+                                             std::string* why) {
+  bool big_endian = false;
+  const auto info = ParseCaps(caps, &big_endian, why);
+  if (!info) return nullptr;
+  const auto parsed = ParseSettings(settings, why);
+  if (!parsed) return nullptr;
+  std::optional<cdr::PointLayout> wanted;
+  if (!settings.fields.empty()) {
+    wanted = ParseWanted(settings.fields, info->fields, why);
+    if (!wanted) return nullptr;
+  }
+  auto plan = std::make_unique<FilterPlan>();
+  plan->in_ = *info;
+  plan->layout_ = cdr::ToRosLayout({info->fields, info->point_step}, info->width, info->height);
+  plan->layout_.is_bigendian = big_endian;
+  plan->converter_ = cdr::PointConverter::Make(plan->layout_, wanted, why);
+  if (!plan->converter_) return nullptr;
+  const cdr::PointLayout& points = plan->converter_->points();
+  plan->filter_ = PointFilter::Make(*parsed, points.fields, points.point_step);
+  if (!plan->filter_) {
+    *why = "these settings need x, y and z as F32 side by side, and the fields are " +
+           points.fields.ToString();
+    return nullptr;
+  }
+  plan->column_step_ = parsed->column_step;
+  plan->out_ = *info;
+  plan->out_.fields = points.fields;
+  plan->out_.point_step = points.point_step;
+  if (parsed->invalid == InvalidPoints::kRemove)
+    plan->out_.is_dense = true;
+  else if (parsed->needs_xyz())
+    plan->out_.is_dense = false;
+  KeepModel(*parsed, &plan->out_);
+  return plan;
+}
+
+void FilterPlan::Describe(const FilteredCloud& cloud) {
+  if (caps_ && out_.width == cloud.width && out_.height == cloud.height) return;
+  out_.width = cloud.width;
+  out_.height = cloud.height;
+  caps_.reset(out_.ToCaps());
+}
+
+BufferPtr FilterPlan::Apply(GstBuffer* buffer) {
+  const BufferMap map(buffer, GST_MAP_READ);
+  if (!map || map.size() != in_.FrameSize()) return nullptr;
+  const std::uint8_t* points = map.data();
+  if (!converter_->copies()) {
+    converted_.assign(converter_->size(), 0);
+    cdr::PointCloud2 cloud;
+    cloud.layout = layout_;
+    cloud.data = map.view();
+    if (!converter_->Convert(cloud, converted_.data())) return nullptr;
+    points = converted_.data();
+  }
+  GstLidarSlice slice{};
+  const bool is_slice = gst_lidar_buffer_get_slice(buffer, &slice) != FALSE;
+  auto owned = std::make_unique<FilteredCloud>(
+      filter_->Apply({points, in_.width, in_.height, slice.first_column}));
+  if (!owned->points.empty()) Describe(*owned);
+  FilteredCloud* cloud = owned.release();
+  BufferPtr out(gst_buffer_new_wrapped_full(
+      static_cast<GstMemoryFlags>(0), cloud->points.data(), cloud->points.size(), 0,
+      cloud->points.size(), cloud, [](gpointer p) { delete static_cast<FilteredCloud*>(p); }));
+  gst_buffer_copy_into(
+      out.get(), buffer,
+      static_cast<GstBufferCopyFlags>(GST_BUFFER_COPY_FLAGS | GST_BUFFER_COPY_TIMESTAMPS |
+                                      GST_BUFFER_COPY_META),
+      0, static_cast<gsize>(-1));
+  if (is_slice && column_step_ > 1) {
+    slice.first_column = cloud->first_column;
+    gst_lidar_buffer_set_slice(out.get(), &slice);
+  }
+  return out;
+}
+
+}  // namespace lidar::gst

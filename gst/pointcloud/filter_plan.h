@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// What pointcloudfilter does with clouds of certain caps.
+#pragma once
+#include <gst/gst.h>
+
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "gst/common/cloud_info.h"
+#include "gst/common/refs.h"
+#include "src/cdr/point_cloud2.h"
+#include "src/cloud/point_filter.h"
+
+namespace lidar::gst {
+
+/// The properties, as they are set.
+struct FilterSettings {
+  std::string fields;
+  std::string crop_box;
+  bool crop_inside = false;
+  gdouble min_range = 0;
+  gdouble max_range = 0;
+  gdouble voxel_size = 0;
+  guint beam_step = 1;
+  guint column_step = 1;
+  std::string transform;
+  InvalidPoints invalid = InvalidPoints::kKeep;
+};
+
+class FilterPlan {
+ public:
+  /// None where the settings are wrong, or not to be done with clouds of `caps`; `why` then says so
+  /// in words for a user.
+  static std::unique_ptr<FilterPlan> Make(const FilterSettings& settings, const GstCaps* caps,
+                                          std::string* why);
+
+  /// The filtered cloud, without metas; null where `buffer` contradicts the caps. A cloud of which
+  /// nothing is left has no bytes.
+  BufferPtr Apply(GstBuffer* buffer);
+  /// Those of the cloud that Apply() gave last.
+  GstCaps* caps() const { return caps_.get(); }
+  std::uint64_t removed() const { return filter_->removed(); }
+
+ private:
+  void Describe(const FilteredCloud& cloud);
+
+  CloudInfo in_;
+  CloudInfo out_;
+  cdr::RosLayout layout_;
+  std::optional<cdr::PointConverter> converter_;
+  std::optional<PointFilter> filter_;
+  guint column_step_ = 1;
+  std::vector<std::uint8_t> converted_;
+  CapsPtr caps_;
+};
+
+}  // namespace lidar::gst

@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Takes points out of clouds, thins them and moves them.
+#pragma once
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <unordered_set>
+#include <vector>
+
+#include "src/cloud/point_fields.h"
+#include "src/cloud/sensor_model.h"
+
+namespace lidar {
+
+/// What becomes of points without a return, and of those that are taken out.
+enum class InvalidPoints {
+  kKeep,    // the first stay as they are, the others become zero
+  kZero,    // all fields zero
+  kNan,     // x, y and z are NaN, the rest zero
+  kRemove,  // they are not in the cloud, which loses its rows
+};
+
+/// In the order in which it is done.
+struct PointFilterSettings {
+  std::uint32_t beam_step = 1;    // every n-th row
+  std::uint32_t column_step = 1;  // every n-th column, as the scan counts them
+  double min_range_m = 0;
+  double max_range_m = 0;                         // 0: no limit
+  std::optional<Transform> transform;             // of the points
+  std::optional<std::array<double, 6>> crop_box;  // least and largest x, y, z, as transformed [m]
+  bool crop_inside = false;                       // what is in the box goes, not what is outside
+  double voxel_size_m = 0;                        // one point in each cube stays; 0: all
+  InvalidPoints invalid = InvalidPoints::kKeep;
+
+  bool needs_xyz() const {
+    return min_range_m > 0 || max_range_m > 0 || transform || crop_box || voxel_size_m > 0 ||
+           invalid != InvalidPoints::kKeep;
+  }
+};
+
+/// Numbers apart from each other by spaces or commas; none where there is anything else.
+std::optional<std::vector<double>> ParseNumbers(const std::string& text);
+/// Sixteen numbers, row by row, or x, y, z [m], roll, pitch, yaw [degrees]: turned about x, then y,
+/// then z, then moved.
+std::optional<Transform> ParseTransform(const std::string& text);
+
+/// Rows of columns.
+struct CloudRows {
+  const std::uint8_t* points = nullptr;
+  std::uint32_t width = 0;
+  std::uint32_t height = 0;
+  std::uint32_t first_column = 0;  // of the scan
+};
+
+struct FilteredCloud {
+  std::vector<std::uint8_t> points;
+  std::uint32_t width = 0;
+  std::uint32_t height = 0;
+  std::uint32_t first_column = 0;
+};
+
+class PointFilter {
+ public:
+  /// None where the settings need x, y and z as F32 side by side, and `fields` lack them.
+  static std::optional<PointFilter> Make(const PointFilterSettings& settings,
+                                         const PointFields& fields, std::uint32_t point_step);
+
+  FilteredCloud Apply(const CloudRows& cloud);
+  /// Points that were returns, and are gone.
+  std::uint64_t removed() const { return removed_; }
+
+ private:
+  PointFilter(const PointFilterSettings& settings, std::uint32_t xyz, std::uint32_t point_step)
+      : settings_(settings), xyz_(xyz), point_step_(point_step) {}
+  void Take(const std::uint8_t* point, std::vector<std::uint8_t>* out);
+  bool Keeps(std::array<float, 3>* xyz);
+  bool IsFirstInVoxel(const std::array<float, 3>& xyz);
+
+  PointFilterSettings settings_;
+  std::uint32_t xyz_;  // offset of x
+  std::uint32_t point_step_;
+  std::unordered_set<std::uint64_t> voxels_;  // of the cloud
+  std::uint64_t removed_ = 0;
+};
+
+}  // namespace lidar

@@ -1,0 +1,144 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "src/cloud/point_filter.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstring>
+#include <limits>
+
+namespace lidar {
+namespace {
+
+struct Point {
+  float x, y, z;
+  std::uint32_t id;
+};
+
+PointFields Fields() { return *PointFields::Parse("x:F32:0,y:F32:4,z:F32:8,id:U32:12"); }
+
+/// 2 rows of 6 columns along x, from 1 m on; the last of the first row has no return.
+std::vector<Point> Cloud() {
+  std::vector<Point> points;
+  for (std::uint32_t i = 0; i < 12; ++i)
+    points.push_back({static_cast<float>(i % 6 + 1), i < 6 ? 0.0F : 1.0F, 0, i});
+  points[5] = {0, 0, 0, 5};
+  return points;
+}
+
+struct Filtered {
+  std::vector<Point> points;
+  std::uint32_t width = 0;
+  std::uint32_t height = 0;
+  std::uint32_t first_column = 0;
+  std::vector<std::uint32_t> Ids() const {
+    std::vector<std::uint32_t> ids;
+    for (const Point& p : points) ids.push_back(p.id);
+    return ids;
+  }
+};
+
+Filtered Filter(const PointFilterSettings& settings, const std::vector<Point>& cloud = Cloud(),
+                std::uint32_t first_column = 0) {
+  auto filter = PointFilter::Make(settings, Fields(), sizeof(Point));
+  const auto out =
+      filter->Apply({reinterpret_cast<const std::uint8_t*>(cloud.data()), 6, 2, first_column});
+  Filtered filtered{std::vector<Point>(out.points.size() / sizeof(Point)), out.width, out.height,
+                    out.first_column};
+  std::memcpy(filtered.points.data(), out.points.data(), out.points.size());
+  return filtered;
+}
+
+using Ids = std::vector<std::uint32_t>;
+
+TEST(PointFilter, KeepsEveryNthRowAndColumnOfTheScan) {
+  PointFilterSettings settings;
+  settings.beam_step = 2;
+  settings.column_step = 2;
+  EXPECT_EQ(Filter(settings).Ids(), (Ids{0, 2, 4}));
+  // A slice that begins with column 3 of the scan has columns 4, 6 and 8.
+  const auto slice = Filter(settings, Cloud(), 3);
+  EXPECT_EQ(slice.Ids(), (Ids{1, 3, 5}));
+  EXPECT_EQ(slice.first_column, 2U);
+  EXPECT_EQ(slice.height, 1U);
+  EXPECT_EQ(slice.width, 3U);
+}
+
+TEST(PointFilter, ZerosWhatIsTooNearOrTooFarAndKeepsTheRows) {
+  PointFilterSettings settings;
+  settings.min_range_m = 1.2;
+  settings.max_range_m = 4;
+  const auto out = Filter(settings);
+  EXPECT_EQ(out.Ids(), (Ids{0, 1, 2, 3, 0, 5, 6, 7, 8, 0, 0, 0}));
+  EXPECT_EQ(out.points[0].x, 0);
+  EXPECT_EQ(out.points[1].x, 2);
+  EXPECT_EQ(out.width, 6U);
+  EXPECT_EQ(out.height, 2U);
+}
+
+TEST(PointFilter, RemovesWhatIsOutsideOrInsideOfTheBox) {
+  PointFilterSettings settings;
+  settings.invalid = InvalidPoints::kRemove;
+  settings.crop_box = {{2, -1, -1, 4, 0.5, 1}};
+  EXPECT_EQ(Filter(settings).Ids(), (Ids{1, 2, 3}));
+  EXPECT_EQ(Filter(settings).height, 1U);
+  settings.crop_inside = true;
+  EXPECT_EQ(Filter(settings).Ids(), (Ids{0, 4, 6, 7, 8, 9, 10, 11}));
+}
+
+TEST(PointFilter, KeepsOnePointOfEachVoxel) {
+  PointFilterSettings settings;
+  settings.invalid = InvalidPoints::kRemove;
+  settings.voxel_size_m = 2;
+  EXPECT_EQ(Filter(settings).Ids(), (Ids{0, 1, 3, 11}));
+}
+
+TEST(PointFilter, MovesPointsBeforeItCrops) {
+  PointFilterSettings settings;
+  settings.invalid = InvalidPoints::kRemove;
+  settings.transform = ParseTransform("0,0,1, 0,0,90");
+  settings.crop_box = {{-10, 5.5, 0.5, 10, 6.5, 1.5}};
+  const auto out = Filter(settings);
+  ASSERT_EQ(out.Ids(), (Ids{11}));
+  EXPECT_NEAR(out.points[0].x, -1, 1e-6);
+  EXPECT_NEAR(out.points[0].y, 6, 1e-6);
+  EXPECT_NEAR(out.points[0].z, 1, 1e-6);
+}
+
+TEST(PointFilter, PointsWithoutAReturnFollowThePolicy) {
+  auto cloud = Cloud();
+  cloud[0].x = std::numeric_limits<float>::quiet_NaN();
+  PointFilterSettings settings;
+  settings.max_range_m = 100;
+  const auto kept = Filter(settings, cloud);
+  EXPECT_TRUE(std::isnan(kept.points[0].x));
+  EXPECT_EQ(kept.points[5].x, 0);
+  settings.invalid = InvalidPoints::kZero;
+  const auto zero = Filter(settings, cloud);
+  EXPECT_EQ(zero.points[0].x, 0);
+  settings.invalid = InvalidPoints::kNan;
+  const auto nan = Filter(settings, cloud);
+  EXPECT_TRUE(std::isnan(nan.points[0].x) && std::isnan(nan.points[5].z));
+  EXPECT_EQ(nan.points[5].id, 0U);
+  settings.invalid = InvalidPoints::kRemove;
+  EXPECT_EQ(Filter(settings, cloud).Ids(), (Ids{1, 2, 3, 4, 6, 7, 8, 9, 10, 11}));
+}
+
+TEST(PointFilter, NeedsCoordinatesForWhatIsAboutThem) {
+  const auto fields = *PointFields::Parse("intensity:F32:0");
+  PointFilterSettings settings;
+  settings.column_step = 2;
+  EXPECT_TRUE(PointFilter::Make(settings, fields, 4));
+  settings.max_range_m = 5;
+  EXPECT_FALSE(PointFilter::Make(settings, fields, 4));
+}
+
+TEST(PointFilter, TransformsAreReadStrictly) {
+  EXPECT_TRUE(ParseTransform("1 0 0 0 0 1 0 0 0 0 1 0 0 0 0 1"));
+  for (const char* bad :
+       {"1 2 3", "1,2,3,4,5,x", "1,2,3,4,5,6m", "nan,0,0,0,0,0", "1e999,0,0,0,0,0"})
+    EXPECT_FALSE(ParseTransform(bad)) << bad;
+}
+
+}  // namespace
+}  // namespace lidar

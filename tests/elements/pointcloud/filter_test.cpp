@@ -1,0 +1,163 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <gtest/gtest.h>
+
+#include "gst/common/buffer_map.h"
+#include "gst/common/cloud_info.h"
+#include "src/base/byte_writer.h"
+#include "tests/support/harness.h"
+
+namespace lidar::gst {
+namespace {
+
+using test::Harness;
+
+class Filter : public ::testing::Test {
+ protected:
+  /// `properties` as gst-launch has them.
+  void Start(const std::string& properties, const std::string& caps) {
+    const ElementPtr filter(gst_parse_launch(("pointcloudfilter " + properties).c_str(), nullptr));
+    h_.reset(gst_harness_new_with_element(filter.get(), "sink", "src"));
+    GstBus* bus = gst_bus_new();
+    gst_element_set_bus(h_->element, bus);
+    gst_object_unref(bus);
+    gst_harness_set_src_caps_str(h_.get(), caps.c_str());
+  }
+  std::string Error() {
+    GstBus* bus = gst_element_get_bus(h_->element);
+    const MessagePtr message(gst_bus_pop_filtered(bus, GST_MESSAGE_ERROR));
+    gst_object_unref(bus);
+    if (!message) return "";
+    GError* raw = nullptr;
+    gst_message_parse_error(message.get(), &raw, nullptr);
+    const ErrorPtr error(raw);
+    return error->message;
+  }
+  GstFlowReturn Push(const std::vector<std::uint8_t>& bytes, guint first_column = 0) {
+    GstBuffer* buffer = gst_buffer_new_memdup(bytes.data(), bytes.size());
+    GST_BUFFER_PTS(buffer) = 0;
+    GST_BUFFER_DURATION(buffer) = GST_SECOND;
+    const GstLidarSlice slice{1, 0, 2, first_column};
+    gst_lidar_buffer_set_slice(buffer, &slice);
+    gst_lidar_buffer_set_capture_time(buffer, 77);
+    return gst_harness_push(h_.get(), buffer);
+  }
+  std::optional<CloudInfo> Info() {
+    const CapsPtr caps(gst_pad_get_current_caps(h_->sinkpad));
+    return CloudInfo::FromCaps(caps.get());
+  }
+
+  Harness h_;
+};
+
+std::string Caps(const std::string& fields, int step, int width, int height,
+                 const std::string& more = "") {
+  return "application/x-pointcloud2,width=" + std::to_string(width) +
+         ",height=" + std::to_string(height) + ",point-step=" + std::to_string(step) +
+         ",fields=(string)\"" + fields + "\"" + more;
+}
+
+TEST_F(Filter, ConvertsDoublesAndByteOrderAndChoosesFields) {
+  Start("fields=x,y,z,ring:U16",
+        Caps("x:F64:0,y:F64:8,z:F64:16,t:F64:24,ring:I32:32", 36, 1, 1, ",is-bigendian=true"));
+  std::vector<std::uint8_t> point;
+  ByteWriter w(&point);
+  for (const double v : {1.5, -2.5, 3.25, 9.0}) {
+    std::uint64_t bits = 0;
+    std::memcpy(&bits, &v, sizeof v);
+    w.Be64(bits);
+  }
+  w.Be32(17);
+  ASSERT_EQ(Push(point), GST_FLOW_OK);
+  EXPECT_EQ(Info()->fields.ToString(), "x:F32:0,y:F32:4,z:F32:8,ring:U16:12");
+  const BufferPtr out(gst_harness_pull(h_.get()));
+  const BufferMap map(out.get(), GST_MAP_READ);
+  ByteReader r(map.view());
+  EXPECT_EQ(map.size(), 14U);
+  EXPECT_EQ(r.LeF32(), 1.5F);
+  EXPECT_EQ(r.LeF32(), -2.5F);
+  EXPECT_EQ(r.LeF32(), 3.25F);
+  EXPECT_EQ(r.Le16(), 17U);
+  EXPECT_EQ(gst_lidar_buffer_get_capture_time(out.get()), 77U);
+}
+
+TEST_F(Filter, WithoutSettingsCloudsAreAsTheyWere) {
+  Start("", Caps("x:F32:0,y:F32:4,z:F32:8", 16, 2, 1));
+  std::vector<std::uint8_t> bytes(32);
+  for (std::size_t i = 0; i < bytes.size(); ++i) bytes[i] = static_cast<std::uint8_t>(i);
+  ASSERT_EQ(Push(bytes), GST_FLOW_OK);
+  const BufferPtr out(gst_harness_pull(h_.get()));
+  const BufferMap map(out.get(), GST_MAP_READ);
+  EXPECT_EQ(std::vector<std::uint8_t>(map.data(), map.data() + map.size()), bytes);
+  EXPECT_EQ(Info()->point_step, 16U);
+}
+
+TEST_F(Filter, SlicesKeepTheirPlaceAndModelsTheirBeams) {
+  CloudInfo info;
+  info.width = 4;
+  info.height = 2;
+  info.point_step = 12;
+  info.fields = *PointFields::Parse("x:F32:0,y:F32:4,z:F32:8");
+  info.sensor_model.emplace();
+  info.sensor_model->columns_per_scan = 512;
+  info.sensor_model->beams = {{1, 10, 0}, {-1, -10, 4}};
+  const CapsPtr caps(info.ToCaps());
+  const StringPtr text(gst_caps_to_string(caps.get()));
+  Start("beam-step=2", text.get());
+  ASSERT_EQ(Push(std::vector<std::uint8_t>(96, 1), 8), GST_FLOW_OK);
+  ASSERT_TRUE(Info()->sensor_model);
+  EXPECT_EQ(Info()->sensor_model->beams.size(), 1U);
+  gst_buffer_unref(gst_harness_pull(h_.get()));
+  // A property that changes takes effect with the next cloud.
+  g_object_set(h_->element, "column-step", 2, nullptr);
+  ASSERT_EQ(Push(std::vector<std::uint8_t>(96, 1), 8), GST_FLOW_OK);
+  EXPECT_FALSE(Info()->sensor_model);
+  EXPECT_EQ(Info()->width, 2U);
+  const BufferPtr out(gst_harness_pull(h_.get()));
+  GstLidarSlice slice{};
+  gst_lidar_buffer_get_slice(out.get(), &slice);
+  EXPECT_EQ(slice.first_column, 4U);
+}
+
+TEST_F(Filter, ACloudOfWhichNothingIsLeftIsAGap) {
+  Start("invalid=remove max-range=1", Caps("x:F32:0,y:F32:4,z:F32:8", 12, 2, 1));
+  std::vector<std::uint8_t> near_and_far;
+  ByteWriter w(&near_and_far);
+  for (const float v : {0.5F, 0.0F, 0.0F, 5.0F, 0.0F, 0.0F}) w.LeF32(v);
+  ASSERT_EQ(Push(near_and_far), GST_FLOW_OK);
+  EXPECT_EQ(Info()->width, 1U);
+  EXPECT_TRUE(Info()->is_dense);
+  std::vector<std::uint8_t> far_away;
+  ByteWriter v(&far_away);
+  for (int i = 0; i < 6; ++i) v.LeF32(7);
+  ASSERT_EQ(Push(far_away), GST_FLOW_OK);
+  EXPECT_EQ(gst_harness_buffers_received(h_.get()), 1U);
+  GstStructure* raw = nullptr;
+  g_object_get(h_->element, "stats", &raw, nullptr);
+  const StructurePtr stats(raw);
+  guint64 removed = 0;
+  gst_structure_get_uint64(raw, "points-removed", &removed);
+  EXPECT_EQ(removed, 3U);
+}
+
+TEST_F(Filter, SaysWhatIsWrong) {
+  const std::string caps = Caps("x:F32:0,y:F32:4,z:F32:8", 12, 1, 1);
+  const std::vector<std::pair<std::string, std::string>> wrong = {
+      {"transform=1,2,3", "transform wants 16 numbers, or x, y, z, roll, pitch, yaw"},
+      {"crop-box=1,2,3", "crop-box wants six numbers: the least x, y, z, then the largest"},
+      {"crop-box=5,0,0,1,1,1", "crop-box wants six numbers: the least x, y, z, then the largest"},
+      {"fields=x,q", "there is no field q among x:F32:0,y:F32:4,z:F32:8"},
+      {"fields=x,x", "there are two fields x"},
+      {"fields=x max-range=3",
+       "these settings need x, y and z as F32 side by side, and the fields are x:F32:0"},
+  };
+  for (const auto& [properties, why] : wrong) {
+    Start(properties, caps);
+    EXPECT_EQ(Error(), "Clouds cannot be filtered so: " + why + ".");
+    EXPECT_NE(Push(std::vector<std::uint8_t>(12)), GST_FLOW_OK);
+  }
+  Start("", caps);
+  EXPECT_EQ(Push(std::vector<std::uint8_t>(13)), GST_FLOW_ERROR);
+}
+
+}  // namespace
+}  // namespace lidar::gst
