@@ -34,6 +34,7 @@ struct Counters {
   guint64 bytes = 0;
   GstClockTime decode_time = 0;
   GstClockTime last_decode_time = 0;
+  GstClockTime last_capture_time = GST_CLOCK_TIME_NONE;
   GstLidarDecodedSlice last{0, 0, 0, 0, 0, 1};
 };
 
@@ -41,9 +42,15 @@ gdouble LastStep(const Counters& c) { return c.last.step; }
 gdouble LastErrorBound(const Counters& c) { return c.last.error_bound; }
 guint LastIntensityBits(const Counters& c) { return c.last.intensity_bits; }
 gdouble LastKeepFraction(const Counters& c) { return c.last.keep_fraction; }
+/// Of the slice decoded last, now; both clocks must tell UTC.
+guint64 AgeOf(const Counters& c) {
+  if (!GST_CLOCK_TIME_IS_VALID(c.last_capture_time)) return GST_CLOCK_TIME_NONE;
+  const auto now = static_cast<GstClockTime>(g_get_real_time()) * GST_USECOND;
+  return now > c.last_capture_time ? now - c.last_capture_time : 0;
+}
 guint64 MeanDecodeTime(const Counters& c) { return c.slices > 0 ? c.decode_time / c.slices : 0; }
 
-const std::array<lidar::gst::Stat<Counters>, 11> kStats = {{
+const std::array<lidar::gst::Stat<Counters>, 12> kStats = {{
     {"slices", &Counters::slices},
     {"slices-dropped", &Counters::slices_dropped},
     {"slices-thinned", &Counters::slices_thinned},
@@ -55,6 +62,7 @@ const std::array<lidar::gst::Stat<Counters>, 11> kStats = {{
     {"keep-fraction", LastKeepFraction},
     {"decode-time", &Counters::last_decode_time},
     {"mean-decode-time", MeanDecodeTime},
+    {"age", AgeOf},
 }};
 
 /// Belongs to the streaming thread.
@@ -92,9 +100,19 @@ lidar::gst::StructurePtr Stats(GObject* object) {
   return lidar::gst::ToStructure("lidar-decoder-stats", kStats, state.counters);
 }
 
-const std::array<lidar::gst::Property<Settings>, 3> kProperties = {{
+guint64 Age(GObject* object) {
+  State& state = *GST_LIDAR_DECODER(object)->state;
+  std::lock_guard lock(state.mutex);
+  return AgeOf(state.counters);
+}
+
+const std::array<lidar::gst::Property<Settings>, 4> kProperties = {{
     {"max-points", "Slices of more points are dropped, before anything is allocated for them",
      &Settings::max_points, 1, 1U << 24},
+    {"age",
+     "Time since the newest slice was sampled, where the clocks of sensor and receiver are "
+     "synchronised; 2^64 - 1: not known [ns]",
+     Age},
     {"stats", "Counters", Stats},
     {"stats-interval", "Posts stats as an element message that often; 0: never [ns]",
      &Settings::stats_interval, 0, 0, GST_PARAM_MUTABLE_PLAYING},
@@ -229,14 +247,16 @@ gboolean SinkEvent(GstPad* pad, GstObject* parent, GstEvent* event) {
   return gst_pad_event_default(pad, parent, event);
 }
 
-void Count(State* state, const GstLidarDecodedSlice& slice, gsize bytes, GstClockTime time) {
+void Count(State* state, const GstLidarDecodedSlice& slice, const lidar::gst::BufferMap& in,
+           GstClockTime time, GstClockTime capture_time) {
   std::lock_guard lock(state->mutex);
   Counters& c = state->counters;
   ++c.slices;
   c.points += guint64{slice.width} * slice.height;
-  c.bytes += bytes;
+  c.bytes += in.size();
   c.decode_time += time;
   c.last_decode_time = time;
+  c.last_capture_time = capture_time;
   c.last = slice;
   if (slice.keep_fraction < 1) ++c.slices_thinned;
 }
@@ -261,7 +281,7 @@ lidar::gst::BufferPtr DecodeBuffer(GstLidarDecoder* self, GstBuffer* input,
     klass->write(self, out.data());
   }
   const auto time = static_cast<GstClockTime>(g_get_monotonic_time() - start_us) * GST_USECOND;
-  Count(self->state, *slice, in.size(), time);
+  Count(self->state, *slice, in, time, gst_lidar_buffer_get_capture_time(input));
   return output;
 }
 

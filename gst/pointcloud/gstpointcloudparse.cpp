@@ -2,7 +2,8 @@
 /**
  * SECTION:element-pointcloudparse
  *
- * Makes clouds of files: the width from the size, a TIME segment, stamps from the frame rate.
+ * Makes clouds of files, PCD, PLY or raw: the width from the size, a TIME segment, stamps from the
+ * frame rate.
  *
  * |[
  * gst-launch-1.0 multifilesrc location=%06d.bin caps='application/x-pointcloud2,height=1,
@@ -19,10 +20,12 @@
 #include <optional>
 #include <utility>
 
+#include "gst/common/buffer_map.h"
 #include "gst/common/cloud_info.h"
 #include "gst/common/properties.h"
 #include "gst/common/refs.h"
 #include "gst/common/refused_caps.h"
+#include "gst/pointcloud/file_cloud.h"
 
 GST_DEBUG_CATEGORY_STATIC(gst_lidar_point_cloud_parse_debug);
 #define GST_CAT_DEFAULT gst_lidar_point_cloud_parse_debug
@@ -74,7 +77,8 @@ struct State {
   std::mutex mutex;  // guards the settings
   Settings settings;
   // Only the streaming thread uses these.
-  std::optional<CloudInfo> info;  // of the file; width 0: not known
+  std::optional<CloudInfo> info;             // of the file; width 0: not known
+  std::optional<lidar::CloudFileType> type;  // none: raw points
   CapsPtr caps;
   Rate rate;
   guint out_width = 0;
@@ -108,7 +112,7 @@ State& StateOf(gpointer self) { return *GST_LIDAR_POINT_CLOUD_PARSE(self)->state
 /// Bytes of one cloud in a stream that is cut anywhere; 0 where every buffer is a cloud.
 gsize CloudSize(GstLidarPointCloudParse* self) {
   State& state = *self->state;
-  if (state.info->width > 0) return state.info->FrameSize();
+  if (!state.type && state.info->width > 0) return state.info->FrameSize();
   if (!state.file_size) {
     // filesrc knows the size of its file and reads it in blocks; multifilesrc gives whole files.
     gint64 size = 0;
@@ -195,15 +199,66 @@ GstFlowReturn PushCloud(GstLidarPointCloudParse* self, BufferPtr buffer) {
   return gst_pad_push(self->srcpad, out);
 }
 
+/// A whole PCD or PLY file.
+GstFlowReturn PushFile(GstLidarPointCloudParse* self, const BufferPtr& file) {
+  State& state = *self->state;
+  std::string why = "it cannot be mapped";
+  std::optional<lidar::gst::FileBuffer> read;
+  if (gst_buffer_get_size(file.get()) == 0) return SkipEmpty(self);
+  if (const lidar::gst::BufferMap map(file.get(), GST_MAP_READ); map)
+    read = lidar::gst::ReadCloudFile(*state.type, map.view(), &why);
+  if (!read) {
+    GST_ELEMENT_ERROR(
+        self, STREAM, DECODE,
+        ("The %s file cannot be read: %s.", lidar::gst::NameOf(*state.type), why.c_str()),
+        ("It is number %" G_GUINT64_FORMAT ", from 1.", state.count + 1));
+    return GST_FLOW_ERROR;
+  }
+  if (!state.info || state.info->height != read->info.height ||
+      state.info->fields != read->info.fields) {
+    state.out_width = 0;  // other caps
+    state.caps.reset(read->info.ToCaps());
+  }
+  state.info = read->info;
+  gst_buffer_copy_into(
+      read->buffer.get(), file.get(),
+      static_cast<GstBufferCopyFlags>(GST_BUFFER_COPY_FLAGS | GST_BUFFER_COPY_TIMESTAMPS), 0,
+      static_cast<gsize>(-1));
+  return PushCloud(self, std::move(read->buffer));
+}
+
+GstFlowReturn PushWhole(GstLidarPointCloudParse* self, BufferPtr buffer) {
+  return self->state->type ? PushFile(self, buffer) : PushCloud(self, std::move(buffer));
+}
+
+/// From the caps, which say more than the property where that is not set.
+void SetRate(State* state, gint n, gint d) {
+  state->rate = {n, d};
+  {
+    std::lock_guard lock(state->mutex);
+    if (state->settings.framerate.n > 0) state->rate = state->settings.framerate;
+  }
+  if (state->rate.n <= 0) state->rate = {kDefaultRate, 1};
+}
+
+/// Files say themselves what they are.
+void GuessType(State* state, GstBuffer* buffer) {
+  const lidar::gst::BufferMap map(buffer, GST_MAP_READ);
+  if (map) state->type = lidar::TypeOfCloudFile(map.view());
+  if (state->type) SetRate(state, 0, 1);
+}
+
 GstFlowReturn Chain(GstPad*, GstObject* parent, GstBuffer* raw) {
   auto* self = GST_LIDAR_POINT_CLOUD_PARSE(parent);
   State& state = *self->state;
   BufferPtr buffer(raw);
-  if (!state.info) {
+  if (!state.info && !state.type && !state.refused.noted()) GuessType(&state, raw);
+  if (!state.info && !state.type) {
     if (state.refused.noted()) return GST_FLOW_NOT_NEGOTIATED;
     GST_ELEMENT_ERROR(self, CORE, NEGOTIATION, ("The caps of the cloud are missing."),
-                      ("Give application/x-pointcloud2 with point-step and fields to the source "
-                       "(caps property of multifilesrc, or a caps filter)."));
+                      ("It is neither PCD nor PLY, so give application/x-pointcloud2 with "
+                       "point-step and fields to the source (caps property of multifilesrc, or a "
+                       "caps filter)."));
     return GST_FLOW_NOT_NEGOTIATED;
   }
   const gsize cloud = CloudSize(self);
@@ -213,14 +268,14 @@ GstFlowReturn Chain(GstPad*, GstObject* parent, GstBuffer* raw) {
                       ("Give the caps a width where the file holds many clouds."));
     return GST_FLOW_ERROR;
   }
-  if (cloud == 0) return PushCloud(self, std::move(buffer));
+  if (cloud == 0) return PushWhole(self, std::move(buffer));
   if (GST_BUFFER_IS_DISCONT(buffer.get())) gst_adapter_clear(state.adapter.get());
   if (gst_adapter_available(state.adapter.get()) == 0 && gst_buffer_get_size(raw) == cloud)
-    return PushCloud(self, std::move(buffer));
+    return PushWhole(self, std::move(buffer));
   gst_adapter_push(state.adapter.get(), buffer.release());
   GstFlowReturn flow = GST_FLOW_OK;
   while (flow == GST_FLOW_OK && gst_adapter_available(state.adapter.get()) >= cloud)
-    flow = PushCloud(self, BufferPtr(gst_adapter_take_buffer(state.adapter.get(), cloud)));
+    flow = PushWhole(self, BufferPtr(gst_adapter_take_buffer(state.adapter.get(), cloud)));
   return flow;
 }
 
@@ -229,6 +284,12 @@ gboolean HandleCaps(GstLidarPointCloudParse* self, GstEvent* event) {
   const lidar::gst::EventPtr owner(event);
   GstCaps* caps = nullptr;
   gst_event_parse_caps(event, &caps);
+  state.type = lidar::gst::CloudFileTypeOf(caps);
+  if (state.type) {
+    state.info.reset();
+    SetRate(&state, 0, 1);
+    return TRUE;
+  }
   std::string why;
   auto info = CloudInfo::FromCaps(caps, &why);
   if (!info) {
@@ -238,12 +299,7 @@ gboolean HandleCaps(GstLidarPointCloudParse* self, GstEvent* event) {
                         ("%" GST_PTR_FORMAT, static_cast<gpointer>(caps)));
     return FALSE;
   }
-  state.rate = {info->framerate_n, info->framerate_d};
-  {
-    std::lock_guard lock(state.mutex);
-    if (state.settings.framerate.n > 0) state.rate = state.settings.framerate;
-  }
-  if (state.rate.n <= 0) state.rate = {kDefaultRate, 1};
+  SetRate(&state, info->framerate_n, info->framerate_d);
   state.info = std::move(info);
   state.caps.reset(gst_caps_ref(caps));
   state.out_width = 0;
@@ -299,6 +355,7 @@ GstStateChangeReturn ChangeState(GstElement* element, GstStateChange transition)
     State& state = StateOf(element);
     Reset(&state);
     state.info.reset();
+    state.type.reset();
     state.caps.reset();
     state.out_width = 0;
     state.times_given = false;
@@ -317,7 +374,8 @@ void Finalize(GObject* object) {
 }  // namespace
 
 static GstStaticPadTemplate sink_template = GST_STATIC_PAD_TEMPLATE(
-    "sink", GST_PAD_SINK, GST_PAD_ALWAYS, GST_STATIC_CAPS(GST_LIDAR_CLOUD_MEDIA_TYPE));
+    "sink", GST_PAD_SINK, GST_PAD_ALWAYS,
+    GST_STATIC_CAPS(GST_LIDAR_CLOUD_MEDIA_TYPE "; application/x-pcd; application/x-ply"));
 static GstStaticPadTemplate src_template = GST_STATIC_PAD_TEMPLATE(
     "src", GST_PAD_SRC, GST_PAD_ALWAYS, GST_STATIC_CAPS(GST_LIDAR_CLOUD_MEDIA_TYPE));
 
@@ -343,6 +401,5 @@ static void gst_lidar_point_cloud_parse_class_init(GstLidarPointCloudParseClass*
   gst_element_class_add_static_pad_template(element, &sink_template);
   gst_element_class_add_static_pad_template(element, &src_template);
   gst_element_class_set_static_metadata(element, "Point cloud parser", "Codec/Parser/PointCloud",
-                                        "Makes clouds of files: width, TIME segment, timestamps",
-                                        "gst-lidar");
+                                        "Makes clouds of files: PCD, PLY, raw points", "gst-lidar");
 }

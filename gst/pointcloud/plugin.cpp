@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include "gst/common/gstlidar.h"
+#include "gst/pointcloud/file_cloud.h"
 #include "gst/pointcloud/gstcloudfileenc.h"
 #include "gst/pointcloud/gstpointcloudfilter.h"
 #include "gst/pointcloud/gstpointcloudparse.h"
@@ -10,7 +11,7 @@ static gboolean plugin_init(GstPlugin* plugin) {
   return GST_ELEMENT_REGISTER(pcdenc, plugin) && GST_ELEMENT_REGISTER(plyenc, plugin) &&
          GST_ELEMENT_REGISTER(pointcloudfilter, plugin) &&
          GST_ELEMENT_REGISTER(pointcloudparse, plugin) &&
-         GST_ELEMENT_REGISTER(scanassembler, plugin);
+         GST_ELEMENT_REGISTER(scanassembler, plugin) && lidar::gst::RegisterCloudFileTypes(plugin);
 }
 
 GST_PLUGIN_DEFINE(GST_VERSION_MAJOR, GST_VERSION_MINOR, lidarpointcloud,

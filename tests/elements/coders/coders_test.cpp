@@ -289,5 +289,34 @@ INSTANTIATE_TEST_SUITE_P(Coders, EitherCoder, ::testing::ValuesIn(RangeCoders())
 INSTANTIATE_TEST_SUITE_P(Coders, AnyCoder, ::testing::ValuesIn(AllCoders()),
                          [](const auto& c) { return c.param.name; });
 
+TEST(Decoders, TellTheAgeOfTheNewestSlice) {
+  GError* error = nullptr;
+  const ElementPtr pipeline(
+      gst_parse_launch("lidartestsrc num-buffers=1 model=os1-32 mode=512x10 ! lidarenc ! lidardec "
+                       "name=d ! fakesink name=s",
+                       &error));
+  ASSERT_EQ(error, nullptr);
+  const ElementPtr decoder(gst_bin_get_by_name(GST_BIN(pipeline.get()), "d"));
+  guint64 age = 0;
+  g_object_get(decoder.get(), "age", &age, nullptr);
+  EXPECT_EQ(age, GST_CLOCK_TIME_NONE);
+  gst_element_set_state(pipeline.get(), GST_STATE_PAUSED);
+  ASSERT_EQ(gst_element_get_state(pipeline.get(), nullptr, nullptr, 10 * GST_SECOND),
+            GST_STATE_CHANGE_SUCCESS);
+  const ElementPtr sink(gst_bin_get_by_name(GST_BIN(pipeline.get()), "s"));
+  GstSample* sample = nullptr;
+  g_object_get(sink.get(), "last-sample", &sample, nullptr);
+  ASSERT_NE(sample, nullptr);
+  const GstClockTime captured = gst_lidar_buffer_get_capture_time(gst_sample_get_buffer(sample));
+  gst_sample_unref(sample);
+  const auto now = static_cast<GstClockTime>(g_get_real_time()) * GST_USECOND;
+  g_object_get(decoder.get(), "age", &age, nullptr);
+  EXPECT_GE(age, now - captured);
+  EXPECT_LT(age, now - captured + 5 * GST_SECOND);
+  const StructurePtr stats(StatsOf(decoder.get()));
+  EXPECT_TRUE(gst_structure_has_field_typed(stats.get(), "age", G_TYPE_UINT64));
+  gst_element_set_state(pipeline.get(), GST_STATE_NULL);
+}
+
 }  // namespace
 }  // namespace lidar::gst

@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// PCD and PLY files as clouds of ours.
+#pragma once
+#include <gst/gst.h>
+
+#include <optional>
+#include <string>
+
+#include "gst/common/cloud_info.h"
+#include "gst/common/refs.h"
+#include "src/cloud/cloud_files.h"
+
+namespace lidar::gst {
+
+/// What caps say a file is; none for caps of raw clouds.
+std::optional<CloudFileType> CloudFileTypeOf(const GstCaps* caps);
+const char* NameOf(CloudFileType type);
+
+struct FileBuffer {
+  CloudInfo info;  // of the cloud; width 0: it is empty
+  BufferPtr buffer;
+};
+/// None where `file` cannot be read; `why` then says so in words for a user. x, y and z become F32
+/// side by side, numbers little-endian.
+std::optional<FileBuffer> ReadCloudFile(CloudFileType type, ByteView file, std::string* why);
+
+/// Lets typefind know both.
+gboolean RegisterCloudFileTypes(GstPlugin* plugin);
+
+}  // namespace lidar::gst

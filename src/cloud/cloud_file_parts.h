@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// What readers of PCD and PLY share: lines, fields, numbers as text.
+#pragma once
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "src/cloud/cloud_files.h"
+
+namespace lidar::cloud_file {
+
+constexpr std::size_t kMaxHeader = 65'536;               // bytes
+constexpr std::size_t kMaxCloud = std::size_t{1} << 30;  // bytes
+
+/// Reads a header line by line.
+class Lines {
+ public:
+  explicit Lines(ByteView file) : file_(file) {}
+  /// The next line without its end, in words; none at the end of the header's room.
+  std::optional<std::vector<std::string_view>> Next();
+  /// What follows the last line.
+  ByteView Rest() const { return file_.Sub(position_); }
+  /// The last line as it stands.
+  std::string_view text() const { return text_; }
+
+ private:
+  ByteView file_;
+  std::size_t position_ = 0;
+  std::string_view text_;
+};
+
+std::optional<std::uint64_t> ParseCount(std::string_view text);
+/// The time in a comment of our own writers.
+std::optional<std::uint64_t> ParseCaptureTime(std::string_view comment);
+
+/// Numbers of a point as the file has them, in the order of the file.
+struct FileField {
+  std::string name;  // empty: padding
+  std::optional<FieldType> type;
+  std::uint32_t size = 0;   // bytes of one number
+  std::uint32_t count = 1;  // numbers
+};
+
+/// Sets fields and point_step of `cloud`. False where there are too many.
+bool Lay(const std::vector<FileField>& fields, FileCloud* cloud, std::string* why);
+/// Bytes of all points; none where that is beyond kMaxCloud.
+std::optional<std::size_t> SizeOfPoints(const FileCloud& cloud, std::string* why);
+
+/// Reads points * numbers numbers of text into little-endian points. False where some are missing
+/// or none.
+bool ReadText(ByteView text, const std::vector<FileField>& fields, FileCloud* cloud,
+              std::string* why);
+
+}  // namespace lidar::cloud_file

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Clouds from the files of the Point Cloud Library (PCD) and of Stanford (PLY). Any bytes may come.
+#pragma once
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "src/base/byte_reader.h"
+#include "src/cloud/point_fields.h"
+
+namespace lidar {
+
+enum class CloudFileType { kPcd, kPly };
+
+/// By how `file` begins; a few hundred bytes of it are enough.
+std::optional<CloudFileType> TypeOfCloudFile(ByteView file);
+
+struct FileCloud {
+  std::vector<PointField> fields;  // as the file names them; what we cannot use is left out
+  std::uint32_t point_step = 0;
+  std::uint32_t width = 0;
+  std::uint32_t height = 1;
+  bool is_bigendian = false;
+  std::optional<std::uint64_t> capture_time;  // ns since 1970, where we wrote the file
+  std::vector<std::uint8_t> points;
+};
+
+/// None where the file is damaged or of a kind that we do not read; `why` then says so in words for
+/// a user. What it claims is believed only as far as its bytes go.
+std::optional<FileCloud> ReadPcd(ByteView file, std::string* why);
+std::optional<FileCloud> ReadPly(ByteView file, std::string* why);
+
+}  // namespace lidar

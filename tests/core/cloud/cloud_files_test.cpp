@@ -1,0 +1,195 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "src/cloud/cloud_files.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstring>
+#include <random>
+
+#include "src/base/byte_writer.h"
+#include "src/cloud/lzf.h"
+
+namespace lidar {
+namespace {
+
+ByteView View(const std::string& text) {
+  return {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()};
+}
+
+std::optional<FileCloud> Pcd(const std::string& file, std::string* why = nullptr) {
+  std::string ignored;
+  return ReadPcd(View(file), why != nullptr ? why : &ignored);
+}
+std::optional<FileCloud> Ply(const std::string& file, std::string* why = nullptr) {
+  std::string ignored;
+  return ReadPly(View(file), why != nullptr ? why : &ignored);
+}
+
+std::string PcdHeader(const std::string& data, int width = 2, int height = 1) {
+  return "# .PCD v0.7 - Point Cloud Data file format\nVERSION 0.7\nFIELDS x y z _ ring\n"
+         "SIZE 4 4 4 1 2\nTYPE F F F U U\nCOUNT 1 1 1 2 1\nWIDTH " +
+         std::to_string(width) + "\nHEIGHT " + std::to_string(height) +
+         "\nVIEWPOINT 0 0 0 1 0 0 0\nPOINTS " + std::to_string(width * height) + "\nDATA " + data +
+         "\n";
+}
+
+/// Two points of that header: x, y, z, two bytes of padding, ring.
+std::vector<std::uint8_t> TwoPoints() {
+  std::vector<std::uint8_t> bytes;
+  ByteWriter w(&bytes);
+  for (const float v : {1.0F, -2.5F, 0.25F}) w.LeF32(v);
+  w.Le16(0);
+  w.Le16(7);
+  for (const float v : {4.0F, 5.0F, 6.0F}) w.LeF32(v);
+  w.Le16(0);
+  w.Le16(65'535);
+  return bytes;
+}
+
+std::string Text(const std::vector<std::uint8_t>& bytes) { return {bytes.begin(), bytes.end()}; }
+
+void ExpectTwoPoints(const std::optional<FileCloud>& cloud) {
+  ASSERT_TRUE(cloud);
+  EXPECT_EQ(cloud->width, 2U);
+  EXPECT_EQ(cloud->height, 1U);
+  EXPECT_EQ(cloud->point_step, 16U);
+  ASSERT_EQ(cloud->fields.size(), 4U);  // without the padding
+  EXPECT_EQ(cloud->fields[3], (PointField{"ring", FieldType::kU16, 14}));
+  EXPECT_EQ(cloud->points, TwoPoints());
+}
+
+TEST(Pcd, TextIsRead) {
+  ExpectTwoPoints(Pcd(PcdHeader("ascii") + "1 -2.5 2.5e-1 0 0 7\n 4 5\t6 0 0 65535"));
+}
+
+TEST(Pcd, BinaryIsRead) { ExpectTwoPoints(Pcd(PcdHeader("binary") + Text(TwoPoints()))); }
+
+TEST(Pcd, CompressedIsRead) {
+  // All x, then all y, ..., as literals of LZF.
+  const auto points = TwoPoints();
+  std::string planes;
+  for (const auto& [offset, size] :
+       std::vector<std::pair<int, int>>{{0, 4}, {4, 4}, {8, 4}, {12, 2}, {14, 2}})
+    for (int i = 0; i < 2; ++i)
+      planes.append(points.begin() + 16 * i + offset, points.begin() + 16 * i + offset + size);
+  std::string lzf = "\x1F" + planes;  // 32 literals
+  std::vector<std::uint8_t> sizes;
+  ByteWriter w(&sizes);
+  w.Le32(static_cast<std::uint32_t>(lzf.size()));
+  w.Le32(32);
+  ExpectTwoPoints(Pcd(PcdHeader("binary_compressed") + Text(sizes) + lzf));
+  lzf.back() = 0;
+  EXPECT_TRUE(Pcd(PcdHeader("binary_compressed") + Text(sizes) + lzf));
+  EXPECT_FALSE(Pcd(PcdHeader("binary_compressed", 3) + Text(sizes) + lzf));
+  EXPECT_FALSE(Pcd(PcdHeader("binary_compressed") + Text(sizes) + lzf.substr(0, 20)));
+}
+
+TEST(Pcd, RowsStayRowsAndNanStaysNan) {
+  const auto cloud = Pcd(PcdHeader("ascii", 1, 2) + "nan nan nan 0 0 1\n1 2 3 0 0 2\n");
+  ASSERT_TRUE(cloud);
+  EXPECT_EQ(cloud->height, 2U);
+  float x = 0;
+  std::memcpy(&x, cloud->points.data(), 4);
+  EXPECT_TRUE(std::isnan(x));
+}
+
+TEST(Pcd, SaysWhyItCannotBeRead) {
+  const std::vector<std::pair<std::string, std::string>> bad = {
+      {"", "its header has no line DATA"},
+      {PcdHeader("zip"), "DATA is neither ascii, binary nor binary_compressed"},
+      {PcdHeader("binary"), "the file ends before its last point"},
+      {PcdHeader("binary", 2'000'000'000), "the cloud is larger than 1 GiB"},
+      {PcdHeader("ascii") + "1 2 3", "the file ends before its last point"},
+      {PcdHeader("ascii") + "1 2 3 0 0 1 1 2 three 0 0 1 1", "\"three\" is no number"},
+      {"FIELDS x\nSIZE 4 4\nTYPE F\nDATA ascii\n",
+       "FIELDS, SIZE, TYPE and COUNT do not fit together"},
+      {"FIELDS x\nSIZE 4\nTYPE F\nWIDTH 2\nHEIGHT 2\nPOINTS 3\nDATA ascii\n",
+       "WIDTH, HEIGHT and POINTS do not fit together"},
+  };
+  for (const auto& [file, reason] : bad) {
+    std::string why;
+    EXPECT_FALSE(Pcd(file, &why));
+    EXPECT_EQ(why, reason);
+  }
+}
+
+std::string PlyHeader(const std::string& format, int vertices = 2) {
+  return "ply\nformat " + format + " 1.0\ncomment capture time [s since 1970-01-01T00:00:00Z]: " +
+         "1764000000.000000123\nelement vertex " + std::to_string(vertices) +
+         "\nproperty float x\nproperty float y\nproperty double z\nproperty uchar i\n"
+         "element face 1\nproperty list uchar int vertex_indices\nend_header\n";
+}
+
+TEST(Ply, TextIsRead) {
+  const auto cloud = Ply(PlyHeader("ascii") + "1 2 3 4\n5 6 7 8\n3 0 1 1\n");
+  ASSERT_TRUE(cloud);
+  EXPECT_EQ(cloud->width, 2U);
+  EXPECT_EQ(cloud->point_step, 17U);
+  EXPECT_EQ(cloud->points[16], 4);
+  EXPECT_EQ(cloud->points[33], 8);
+  EXPECT_EQ(cloud->capture_time, 1'764'000'000'000'000'123U);
+}
+
+TEST(Ply, BinaryOfBothByteOrdersIsRead) {
+  for (const bool big : {false, true}) {
+    const auto cloud =
+        Ply(PlyHeader(big ? "binary_big_endian" : "binary_little_endian") + std::string(40, 'x'));
+    ASSERT_TRUE(cloud);
+    EXPECT_EQ(cloud->is_bigendian, big);
+    EXPECT_EQ(cloud->points.size(), 34U);
+  }
+}
+
+TEST(Ply, SaysWhyItCannotBeRead) {
+  const std::vector<std::pair<std::string, std::string>> bad = {
+      {"ply\nformat ascii 1.0\n", "its header does not end"},
+      {"ply\nelement vertex 1\nend_header\n", "its header has no format that we read"},
+      {"ply\nformat ascii 1.0\nelement face 1\nelement vertex 1\nend_header\n",
+       "its vertices are not its first element"},
+      {"ply\nformat ascii 1.0\nelement vertex 1\nproperty list uchar int x\nend_header\n",
+       "a property of its vertices is a list or of an unknown type"},
+      {"ply\nformat ascii 1.0\nelement vertex 1\nend_header\n", "there are no fields"},
+      {PlyHeader("binary_little_endian", 3) + std::string(40, 'x'),
+       "the file ends before its last point"},
+  };
+  for (const auto& [file, reason] : bad) {
+    std::string why;
+    EXPECT_FALSE(Ply(file, &why));
+    EXPECT_EQ(why, reason);
+  }
+}
+
+TEST(CloudFiles, AreKnownByHowTheyBegin) {
+  EXPECT_EQ(TypeOfCloudFile(View(PcdHeader("ascii"))), CloudFileType::kPcd);
+  EXPECT_EQ(TypeOfCloudFile(View("VERSION .7\nFIELDS x y z\n")), CloudFileType::kPcd);
+  EXPECT_EQ(TypeOfCloudFile(View("ply\r\nformat")), CloudFileType::kPly);
+  EXPECT_EQ(TypeOfCloudFile(View("")), std::nullopt);
+  EXPECT_EQ(TypeOfCloudFile(View("VERSION 2")), std::nullopt);
+}
+
+TEST(CloudFiles, DamageIsSurvived) {
+  std::mt19937 random(5);
+  const std::vector<std::string> files = {
+      PcdHeader("ascii") + "1 -2.5 2.5e-1 0 0 7\n 4 5\t6 0 0 65535",
+      PcdHeader("binary") + Text(TwoPoints()),
+      PcdHeader("binary_compressed") + std::string(60, '\x21'),
+      PlyHeader("ascii") + "1 2 3 4\n5 6 7 8\n3 0 1 1\n"};
+  for (int round = 0; round < 4'000; ++round) {
+    std::string file = files[static_cast<std::size_t>(round) % files.size()];
+    for (int i = 0; i < 3; ++i) file[random() % file.size()] = static_cast<char>(random());
+    for (const auto& cloud : {Pcd(file), Ply(file)})
+      ASSERT_TRUE(!cloud || cloud->points.size() <= 100 * file.size());
+  }
+}
+
+TEST(Lzf, RepeatsWhatCameBefore) {
+  // "abc", then 3 bytes from 3 back, then 9 + 5 from 1 back.
+  const std::string data = {'\x02', 'a', 'b', 'c', '\x20', '\x02', '\xE0', '\x05', '\x00'};
+  const auto out = DecompressLzf(View(data), 20);
+  ASSERT_TRUE(out);
+  EXPECT_EQ(std::string(out->begin(), out->end()), "abcabc" + std::string(14, 'c'));
+}
+
+}  // namespace
+}  // namespace lidar

@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// pointcloudparse reads what pcdenc and plyenc wrote, and what others write.
+#include <gtest/gtest.h>
+
+#include <fstream>
+
+#include "tests/elements/mcap/recording.h"
+
+namespace lidar::test {
+namespace {
+
+class FileParse : public Recording {
+ protected:
+  Outcome Write(const std::string& encoder, const std::string& name) const {
+    return Play(kSensor + " num-buffers=3 slices-per-scan=1 ! identity name=see ! " + encoder +
+                " ! multifilesink" + At(name));
+  }
+};
+
+TEST_F(FileParse, PcdComesBackAsItWas) {
+  for (const char* encoder : {"pcdenc", "pcdenc binary=false"}) {
+    const auto written = Write(encoder, "scan%d.pcd");
+    const auto read =
+        Play("multifilesrc" + At("scan%d.pcd") + " ! pointcloudparse ! fakesink name=see");
+    EXPECT_EQ(read.error, "");
+    const auto& in = written.buffers.at("see");
+    const auto& out = read.buffers.at("see");
+    ASSERT_EQ(out.size(), 3U);
+    for (std::size_t i = 0; i < 3; ++i) {
+      ASSERT_EQ(out[i].bytes.size(), in[i].bytes.size());
+      EXPECT_EQ(out[i].capture_time, in[i].capture_time);
+      EXPECT_EQ(out[i].pts, i * 100 * GST_MSECOND);
+      for (std::size_t at = 0; at < in[i].bytes.size(); at += 20) {
+        // Points without a return are NaN in the file.
+        float x = 0;
+        std::memcpy(&x, out[i].bytes.data() + at, sizeof x);
+        const std::size_t from = x == x ? 0 : 12;
+        ASSERT_EQ(out[i].bytes.compare(at + from, 20 - from, in[i].bytes, at + from, 20 - from), 0);
+      }
+    }
+    EXPECT_NE(read.caps.at("see").find("height=(int)32"), std::string::npos);
+    EXPECT_NE(read.caps.at("see").find("width=(int)512"), std::string::npos);
+  }
+}
+
+TEST_F(FileParse, PlyComesBackWithoutWhatIsMissing) {
+  for (const char* encoder : {"plyenc", "plyenc binary=false"}) {
+    Write(encoder, "scan%d.ply");
+    // One large file comes in pieces.
+    const auto read =
+        Play("filesrc" + At("scan1.ply") + " ! typefind ! pointcloudparse ! fakesink name=see");
+    EXPECT_EQ(read.error, "");
+    ASSERT_EQ(read.buffers.at("see").size(), 1U);
+    const Kept& kept = read.buffers.at("see")[0];
+    EXPECT_GT(kept.bytes.size(), 20U * 32 * 512 / 2);
+    EXPECT_EQ(kept.bytes.size() % 20, 0U);
+    EXPECT_NE(kept.capture_time, GST_CLOCK_TIME_NONE);
+  }
+}
+
+TEST_F(FileParse, CloudsOfOtherSizesFollowEachOther) {
+  const std::string header = "ply\nformat ascii 1.0\nelement vertex ";
+  const std::string rest =
+      "\nproperty double x\nproperty double y\nproperty double z\nend_header\n";
+  std::ofstream(Path("a0.ply")) << header << 1 << rest << "1 2 3\n";
+  std::ofstream(Path("a1.ply")) << header << 2 << rest << "1 2 3\n4 5 6\n";
+  std::ofstream(Path("a2.ply")) << header << 0 << rest;
+  const auto read = Play("multifilesrc" + At("a%d.ply") + " ! pointcloudparse ! fakesink name=see");
+  EXPECT_EQ(read.error, "");
+  ASSERT_EQ(read.buffers.at("see").size(), 2U);
+  EXPECT_EQ(read.buffers.at("see")[0].bytes.size(), 12U);  // doubles became floats
+  EXPECT_EQ(read.buffers.at("see")[1].bytes.size(), 24U);
+  EXPECT_NE(read.warning, "");  // of the empty one
+}
+
+TEST_F(FileParse, ADamagedFileIsAnErrorThatSaysWhy) {
+  std::ofstream(Path("a.ply")) << "ply\nformat ascii 1.0\nelement vertex 2\nproperty float x\n"
+                                  "end_header\n1\n";
+  EXPECT_EQ(Play("filesrc" + At("a.ply") + " ! pointcloudparse ! fakesink").error,
+            "The PLY file cannot be read: the file ends before its last point.");
+  std::ofstream(Path("a.txt")) << "neither";
+  EXPECT_EQ(Play("filesrc" + At("a.txt") + " ! pointcloudparse ! fakesink").error,
+            "The caps of the cloud are missing.");
+}
+
+}  // namespace
+}  // namespace lidar::test
