@@ -12,6 +12,7 @@ Synthetic LiDAR (lidarenc) and camera (openh264enc, through bitrateadapter) -> s
 screamsrc -> both depayloaded. One controller, shares by priority. Prints the bitrates each second.
 
   --rate MBITS       capacity of the link [Mbit/s] (default 8)
+  --trace FILE       capacity from lines of 'time_s rate_mbps', as lidar-trace prints them, in place of --rate
   --rtt MS           round trip of the link [ms] (default 40)
   --lidar-share N    priority of the LiDAR; the camera has 1 (default 2)
   --duration S       how long [s] (default 20)
@@ -19,10 +20,11 @@ screamsrc -> both depayloaded. One controller, shares by priority. Prints the bi
 EOF
 }
 
-rate=8 rtt=40 share=2 duration=20 port=5204
+rate=8 trace= rtt=40 share=2 duration=20 port=5204
 while [ $# -gt 0 ]; do
   case $1 in
     --rate) number "$@"; rate=$2; shift ;;
+    --trace) file "$@"; trace=$2; shift ;;
     --rtt) number "$@"; rtt=$2; shift ;;
     --lidar-share) number "$@"; share=$2; shift ;;
     --duration) number "$@"; duration=$2; shift ;;
@@ -40,8 +42,10 @@ done
 work=$(mktemp -d)
 trap 'kill "${link:-}" "${receiver:-}" 2>/dev/null || true; wait 2>/dev/null || true; rm -rf "$work"' EXIT
 
+capacity=(--rate "$rate")
+[ -z "$trace" ] || capacity=(--trace "$trace")
 "$build/src/tools/lidar-link" --listen "127.0.0.1:$port" --forward "127.0.0.1:$((port + 1))" \
-  --rate "$rate" --rtt "$rtt" --aqm ramp --quiet &
+  "${capacity[@]}" --rtt "$rtt" --aqm ramp --quiet &
 link=$!
 
 lidar_caps='application/x-rtp,media=application,clock-rate=90000,encoding-name=X-LIDAR-DRACO'

@@ -17,6 +17,11 @@ count() {
   text "$@"
   [[ $2 =~ ^[0-9]+$ && ! $2 =~ ^0+$ ]] || wrong "$1 wants a whole number above zero, not \"$2\""
 }
+# file OPTION VALUE ...
+file() {
+  text "$@"
+  [ -r "$2" ] || wrong "$1 wants a file that can be read, not $2"
+}
 # port OPTION VALUE ...
 port() {
   count "$@"

@@ -26,6 +26,7 @@ done
 expect 2 '--rate wants a number above zero, not "abc"' lidar-and-video.sh --rate abc
 expect 2 '--rate wants a number' lidar-and-video.sh --rate 0
 expect 2 '--duration wants a value' lidar-and-video.sh --duration
+expect 2 '--trace wants a file that can be read' lidar-and-video.sh --trace no-such-file
 expect 2 '--port wants a UDP port' lidar-and-video.sh --port 70000
 expect 2 '--duration wants a number' rtpbin-video.sh --duration ten
 expect 2 '--low wants a number above zero' webrtc.sh --low 0
