@@ -50,6 +50,9 @@ const TxPadProperties& TxPadPropertyTable() {
        0, kMaxBps, kLive},
       {"max-bitrate", "Highest target, IP included; 0 takes the element's [bit/s]", &S::max_bps, 0,
        kMaxBps, kLive},
+      {"strict-priority",
+       "Goes before all pads without, and gets its maximum before they get more than they need",
+       &S::strict, 0, 0, kLive},
   }};
   return table;
 }
@@ -148,6 +151,9 @@ const TxProperties& TxPropertyTable() {
       {"needed-floor",
        "Beyond the draft: encoders are asked for what their bounds need while the path lives",
        X<&Extensions::needed_floor>},
+      {"burst-probe",
+       "Beyond the draft: a source that sends little measures the path by short bursts",
+       X<&Extensions::burst_probe>},
       {"classic-ecn", "Beyond the draft: find queues that mark ECT(1) like ECT(0), and react so",
        X<&Extensions::classic_ecn>},
   }};

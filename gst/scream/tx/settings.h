@@ -17,8 +17,9 @@ struct TxPadSettings {
   guint min_bps = 0;
   guint start_bps = 0;
   guint max_bps = 0;
+  bool strict = false;
 };
-using TxPadProperties = std::array<Property<TxPadSettings>, 4>;
+using TxPadProperties = std::array<Property<TxPadSettings>, 5>;
 const TxPadProperties& TxPadPropertyTable();
 
 struct TxSettings {
@@ -36,7 +37,7 @@ struct TxSettings {
 
   Duration max_queue_delay() const { return parameters.max_queue_delay; }
 };
-using TxProperties = std::array<Property<TxSettings>, 50>;
+using TxProperties = std::array<Property<TxSettings>, 51>;
 const TxProperties& TxPropertyTable();
 
 /// What the controller works with: `pure_draft` undoes what was set of the draft's constants.

@@ -33,6 +33,7 @@ scream::StreamConfig MakeConfig(const TxStream& stream, const TxPadSettings& pad
   needed = std::clamp(needed, min, max);
   scream::StreamConfig config;
   config.priority = pad.priority;
+  config.strict = pad.strict;
   config.min_bitrate = Bps(min);
   config.start_bitrate = Bps(std::clamp(start, needed, max));
   config.max_bitrate = Bps(max);

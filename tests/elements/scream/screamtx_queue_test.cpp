@@ -47,7 +47,7 @@ TEST_F(ScreamTx, GivesUpTheRestOfAFrameThatStuckOnItsWay) {
   g_object_set(element, "max-queue-delay", guint64{100 * GST_MSECOND}, nullptr);
   Start();
   PushFrame(0, 100);
-  time.Advance(190 * GST_MSECOND);
+  time.Advance(490 * GST_MSECOND);
   EXPECT_EQ(Stats(element)["frames-dropped"], 0U);
   time.Advance(15 * GST_MSECOND);
   EXPECT_EQ(Stats(element)["frames-dropped"], 1U);
@@ -147,8 +147,9 @@ TEST_F(ScreamTx, HoldsNoMoreThanItsDelayThroughAnOutageAndRecoversWithinASecond)
   EXPECT_LT(down["sent-bitrate"], 400'000U);
   EXPECT_GT(down["feedback-timeouts"], 0U);
   EXPECT_GT(down["frames-dropped"], 1000U);
-  // 4 packets each 20 ms for at most twice the 200 ms: a frame that has begun is in no hurry to go.
-  EXPECT_LE(down["queued-bytes"], 21U * 4 * 1228);
+  // 4 packets each 20 ms for at most five times the 200 ms: the rest of a frame that has begun may
+  // stay so long, and what came after it waits behind it.
+  EXPECT_LE(down["queued-bytes"], 51U * 4 * 1228);
   EXPECT_GT(down["packets-sent"], 0U);
   run(GST_SECOND, true);
   EXPECT_GT(Stats(element)["target-bitrate"], before / 2);

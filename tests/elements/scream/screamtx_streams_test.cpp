@@ -144,6 +144,29 @@ TEST_F(ScreamTx, PadsThatAreAskedForByAllAtOnceAreGivenOnce) {
   EXPECT_EQ(GST_ELEMENT(element)->numsinkpads, 1);
 }
 
+TEST_F(ScreamTx, APadWithStrictPriorityGoesBeforeWhatWaits) {
+  g_object_set(element, "start-bitrate", 1'000'000U, nullptr);
+  Start();
+  Harness audio(gst_harness_new_with_element(element, "sink_1", nullptr));
+  gst_harness_set_src_caps_str(audio.get(), kVideoCaps);
+  const gst::PadPtr pad(gst_element_get_static_pad(element, "sink_1"));
+  g_object_set(pad.get(), "strict-priority", TRUE, "max-bitrate", 100'000U, nullptr);
+  PushFrame(0, 60);  // half a second of the first target
+  Collect();
+  const std::size_t before = sent.size();
+  ASSERT_LT(before, 60U);
+  Rtp r;
+  r.ssrc = 0x5678;
+  r.marker = true;
+  ASSERT_EQ(gst_harness_push(audio.get(), NewRtp(r)), GST_FLOW_OK);
+  for (int i = 0; i < 20 && sent.size() == before; ++i) {
+    time.Advance(5 * GST_MSECOND);
+    Acknowledge();
+  }
+  ASSERT_GT(sent.size(), before);
+  EXPECT_EQ(sent[before].ssrc, 0x5678U);
+}
+
 TEST_F(ScreamTx, TargetsOfAllPadsTogetherStayBelowTheTotal) {
   g_object_set(element, "max-total-bitrate", 3'000'000U, "start-bitrate", 2'000'000U, "min-bitrate",
                10'000U, nullptr);
