@@ -65,7 +65,6 @@ std::optional<CongestionFeedback> TwccMapper::Map(const TwccFeedback& feedback) 
   for (const auto& arrival : feedback.arrivals)
     if (arrival) last = std::max(last.value_or(*arrival), *arrival);
   CongestionFeedback report;
-  report.sender_ssrc = feedback.sender_ssrc;
   std::map<std::uint32_t, Metrics> by_ssrc;
   std::map<std::uint32_t, SequenceUnwrapper<std::uint16_t>> unwrap;
   std::uint16_t number = feedback.base_number;

@@ -1,17 +1,32 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Turns transport-wide numbers back into packets of SSRCs, so that TWCC reports reach a controller
-// that counts by SSRC.
+// Turns the numbers of transport-wide feedback (TWCC, draft-holmer-rmcat-transport-wide-cc-
+// extensions-01) back into packets of SSRCs, so that its reports reach a controller that counts by
+// SSRC. An rtpsession reads the packets themselves.
 #pragma once
 #include <cstdint>
 #include <deque>
 #include <optional>
+#include <vector>
 
 #include "src/base/sequence.h"
 #include "src/scream/feedback/ccfb.h"
 #include "src/scream/feedback/report_clock.h"
-#include "src/scream/feedback/twcc.h"
 
 namespace lidar::scream {
+
+/// The URI of the RTP header extension that numbers the packets.
+constexpr const char* kTwccUri =
+    "http://www.ietf.org/id/draft-holmer-rmcat-transport-wide-cc-extensions-01";
+/// Arrival times repeat after this, 12 days.
+constexpr Duration kTwccPeriod = std::chrono::milliseconds(64) * (1 << 24);
+/// Half of the numbers are the most that can be told apart.
+constexpr std::size_t kMaxTwccPackets = 1 << 14;
+
+struct TwccFeedback {
+  std::uint16_t base_number = 0;
+  /// Of base_number, base_number + 1, ...: arrival by the receiver's clock; none: not received.
+  std::vector<std::optional<Duration>> arrivals;
+};
 
 /// The sender's side. TWCC carries no ECN bits and no time of the report itself: a packet counts as
 /// Not-ECT, and the report as made when the last of its packets arrived.
