@@ -13,7 +13,7 @@ namespace {
 constexpr int kMaxGap = 500;
 // A sender that moved may have lost much on the way.
 constexpr int kMaxKnownGap = 1 << 14;
-constexpr std::size_t kMaxSources = 64;
+constexpr std::size_t kMostSources = 64;
 
 bool GoesOn(std::uint16_t seq, std::uint16_t next_seq, int max_gap) {
   const int distance = SequenceDistance(seq, next_seq);
@@ -38,7 +38,7 @@ void PeerLatch::Peer::Add(Time now, const Packet& packet) {
   }
   // An SSRC that went back stays where it was for a while, or a repeated packet would be a stream.
   if (goes_on || found == sources.end() || now - found->second.at > kStreamTime) {
-    if (found == sources.end() && sources.size() >= kMaxSources) sources.erase(sources.begin());
+    if (found == sources.end() && sources.size() >= kMostSources) sources.erase(sources.begin());
     sources[packet.ssrc] = {static_cast<std::uint16_t>(packet.seq + 1), now};
   }
   if (!has_slices && packet.lidar.size > 0) has_slices = check.Push(packet.seq, packet.lidar);
@@ -95,7 +95,7 @@ void PeerLatch::Promote(Time now, Peer candidate) {
     const bool old = now - it->second.at > kMemory || candidate.sources.count(it->first) > 0;
     it = old ? known_.erase(it) : std::next(it);
   }
-  while (known_.size() > kMaxSources) known_.erase(known_.begin());
+  while (known_.size() > kMostSources) known_.erase(known_.begin());
   candidate.has_slices = candidate.has_slices || candidate.is_known;
   peer_ = std::move(candidate);
   candidates_.erase(std::remove_if(candidates_.begin(), candidates_.end(),

@@ -30,7 +30,7 @@ std::optional<FieldType> TypeOf(std::string_view type, std::uint64_t size) {
 }
 
 /// The lines of a header, as they stand.
-struct Header {
+struct PcdHeader {
   Words fields, sizes, types, counts;
   std::optional<std::uint64_t> width, height, points;
   std::string data;
@@ -38,8 +38,8 @@ struct Header {
 };
 
 /// None where there is no line DATA.
-std::optional<Header> ReadHeader(cloud_file::Lines* lines) {
-  Header header;
+std::optional<PcdHeader> ReadPcdHeader(cloud_file::Lines* lines) {
+  PcdHeader header;
   while (const auto words = lines->Next()) {
     if (words->empty()) continue;
     const std::string_view key = words->front();
@@ -69,7 +69,7 @@ std::optional<Header> ReadHeader(cloud_file::Lines* lines) {
   return std::nullopt;
 }
 
-std::optional<std::vector<FileField>> Fields(const Header& h, std::string* why) {
+std::optional<std::vector<FileField>> Fields(const PcdHeader& h, std::string* why) {
   *why = "FIELDS, SIZE, TYPE and COUNT do not fit together";
   if (h.sizes.size() != h.fields.size() || h.types.size() != h.fields.size() ||
       (!h.counts.empty() && h.counts.size() != h.fields.size()))
@@ -90,7 +90,7 @@ std::optional<std::vector<FileField>> Fields(const Header& h, std::string* why) 
   return fields;
 }
 
-bool SetSize(const Header& h, FileCloud* cloud, std::string* why) {
+bool SetSize(const PcdHeader& h, FileCloud* cloud, std::string* why) {
   const std::uint64_t height = h.height.value_or(1);
   const std::uint64_t width = h.width.value_or(h.points.value_or(0));
   *why = "WIDTH, HEIGHT and POINTS do not fit together";
@@ -141,7 +141,7 @@ bool ReadBinary(ByteView rest, FileCloud* cloud, std::string* why) {
 
 std::optional<FileCloud> ReadPcd(ByteView file, std::string* why) {
   cloud_file::Lines lines(file);
-  const auto header = ReadHeader(&lines);
+  const auto header = ReadPcdHeader(&lines);
   *why = "its header has no line DATA";
   if (!header) return std::nullopt;
   const auto fields = Fields(*header, why);

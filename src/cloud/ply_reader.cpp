@@ -29,7 +29,7 @@ std::optional<FieldType> TypeOf(std::string_view name) {
 enum class Format { kNone, kText, kLittle, kBig };
 
 /// Takes a header apart, a line at a time.
-struct Header {
+struct PlyHeader {
   Format format = Format::kNone;
   std::optional<std::uint64_t> vertices;
   std::vector<FileField> fields;
@@ -73,8 +73,8 @@ struct Header {
   }
 };
 
-std::optional<Header> ReadHeader(cloud_file::Lines* lines, std::string* why) {
-  Header header;
+std::optional<PlyHeader> ReadPlyHeader(cloud_file::Lines* lines, std::string* why) {
+  PlyHeader header;
   *why = "its header does not end";
   while (const auto words = lines->Next()) {
     if (words->empty()) continue;
@@ -91,7 +91,7 @@ std::optional<Header> ReadHeader(cloud_file::Lines* lines, std::string* why) {
 
 std::optional<FileCloud> ReadPly(ByteView file, std::string* why) {
   cloud_file::Lines lines(file);
-  const auto header = ReadHeader(&lines, why);
+  const auto header = ReadPlyHeader(&lines, why);
   if (!header) return std::nullopt;
   FileCloud cloud;
   cloud.capture_time = header->capture_time;

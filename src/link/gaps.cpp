@@ -9,7 +9,7 @@ namespace {
 using namespace std::chrono_literals;
 
 constexpr DataRate kGapRate = DataRate::BitsPerSecond(5e5);
-constexpr Duration kStep = 10ms;
+constexpr Duration kGrain = 10ms;
 constexpr Duration kWindow = 100ms;
 constexpr Duration kLongest = 5s;
 
@@ -17,16 +17,16 @@ constexpr Duration kLongest = 5s;
 class SentBits {
  public:
   SentBits(const std::vector<SentPacket>& packets, Duration duration)
-      : bits_(static_cast<std::size_t>(std::max(duration, Duration{0}) / kStep) + 1) {
+      : bits_(static_cast<std::size_t>(std::max(duration, Duration{0}) / kGrain) + 1) {
     for (const SentPacket& p : packets) {
-      const auto i = static_cast<std::size_t>(std::max(p.time, Duration{0}) / kStep);
+      const auto i = static_cast<std::size_t>(std::max(p.time, Duration{0}) / kGrain);
       if (i < bits_.size()) bits_[i] += p.size.bits();
     }
   }
   double In(Duration from, Duration length) const {
     double sum = 0;
-    for (Duration t = from; t < from + length; t += kStep) {
-      const auto i = static_cast<std::size_t>(t / kStep);
+    for (Duration t = from; t < from + length; t += kGrain) {
+      const auto i = static_cast<std::size_t>(t / kGrain);
       if (i < bits_.size()) sum += bits_[i];
     }
     return sum;
@@ -61,11 +61,11 @@ std::vector<double> RecoveryAfterGaps(const Capacity& capacity,
   std::vector<double> times;
   for (const Duration end : EndsOfGaps(capacity, config.duration)) {
     Duration until = std::min(config.duration, end + kLongest);
-    for (Duration t = end; t < until; t += kStep)
+    for (Duration t = end; t < until; t += kGrain)
       if (capacity.RateAt(t) <= kGapRate) until = t;
     if (until - end < 2 * kWindow) continue;
     Duration t = end;
-    while (t + kWindow < until && !back(t)) t += kStep;
+    while (t + kWindow < until && !back(t)) t += kGrain;
     times.push_back(Seconds(t - end));
   }
   return times;

@@ -8,7 +8,7 @@
 namespace lidar::link {
 namespace {
 
-constexpr Duration kStep = std::chrono::microseconds{500};
+constexpr Duration kTick = std::chrono::microseconds{500};
 
 class Sender {
  public:
@@ -98,8 +98,8 @@ OracleResult AskOracle(const Capacity& capacity, const OracleConfig& config) {
   if (!(config.rate > DataRate{}) || !(config.scans_per_second > 0) || config.slices_per_scan == 0)
     return {};
   Sender sender(config);
-  for (Duration t{0}; t < config.duration; t += kStep)
-    sender.Step(Seconds(t), capacity.RateAt(t).bits_per_second() * config.share * Seconds(kStep));
+  for (Duration t{0}; t < config.duration; t += kTick)
+    sender.Step(Seconds(t), capacity.RateAt(t).bits_per_second() * config.share * Seconds(kTick));
   return sender.Finish();
 }
 

@@ -9,16 +9,16 @@ namespace {
 
 constexpr std::uint64_t kMaxChunkHeader = 64;  // with a short name of the compression
 
-struct Header {
+struct PlacedHeader {
   ChunkHeader chunk;
   std::size_t size = 0;
 };
 
-std::optional<Header> ReadHeader(Input* input, const RecordPlace& record) {
+std::optional<PlacedHeader> ReadHeader(Input* input, const RecordPlace& record) {
   Bytes bytes;
   if (record.op != Op::kChunk || !ReadContent(input, record, kMaxChunkHeader, &bytes))
     return std::nullopt;
-  Header header;
+  PlacedHeader header;
   const auto chunk = ParseChunkHeader({bytes.data(), bytes.size()}, &header.size);
   if (!chunk || chunk->records_size > record.size - header.size ||
       chunk->uncompressed_size > kMaxChunk)

@@ -7,7 +7,7 @@ namespace {
 constexpr std::size_t kHeaderSize = 32;
 constexpr std::size_t kNmeaSize = 100;
 constexpr float kGravity = 9.80665F;  // LEGACY counts in g and degrees
-constexpr float kRadiansPerDegree = 3.14159265F / 180;
+constexpr float kRadiansPerSecond = 3.14159265F / 180;
 
 std::array<float, 3> ReadVector(ByteReader* r, float scale) {
   std::array<float, 3> v{};
@@ -21,7 +21,7 @@ std::vector<ImuSample> ReadLegacy(ByteView bytes) {
   r.Skip(16);                   // when the packet was made, and the accelerometer read
   sample.timestamp = r.Le64();  // when the gyroscope was read
   sample.acceleration = ReadVector(&r, kGravity);
-  sample.angular_velocity = ReadVector(&r, kRadiansPerDegree);
+  sample.angular_velocity = ReadVector(&r, kRadiansPerSecond);
   return {sample};
 }
 

@@ -52,7 +52,7 @@ void CopyAddress(ByteView from, std::array<std::uint8_t, 16>* to) {
 }
 
 std::optional<UdpDatagram> ParseUdp(const IpEndpoints& addresses, ByteView bytes) {
-  constexpr std::size_t kHeaderSize = 8;
+  constexpr std::size_t kUdpHeaderSize = 8;
   ByteReader r(bytes);
   UdpDatagram datagram;
   datagram.addresses = addresses;
@@ -60,8 +60,8 @@ std::optional<UdpDatagram> ParseUdp(const IpEndpoints& addresses, ByteView bytes
   datagram.destination_port = r.Be16();
   const std::size_t length = r.Be16();
   r.Skip(2);  // checksum: network cards fill it in after the capture, so it is often wrong
-  if (!r.ok() || length < kHeaderSize || length > bytes.size) return std::nullopt;
-  const ByteView payload = r.Bytes(length - kHeaderSize);
+  if (!r.ok() || length < kUdpHeaderSize || length > bytes.size) return std::nullopt;
+  const ByteView payload = r.Bytes(length - kUdpHeaderSize);
   datagram.payload.assign(payload.begin(), payload.end());
   return datagram;
 }

@@ -16,7 +16,7 @@ constexpr Duration kHousekeeping = 50ms;
 constexpr Duration kStandstill = 500ms;
 constexpr double kDriftRateScale = 0.5;
 /// Silence up to this is one of the gaps that links have.
-constexpr Duration kLongestGap = 2s;
+constexpr Duration kLongestSilence = 2s;
 /// Receivers report at least so often while packets arrive.
 constexpr Duration kLongestReportGap = 40ms;
 /// A source that sends less than this part of its target says nothing about the link...
@@ -289,7 +289,7 @@ bool Controller::Stalled(Time now) const {
 }
 
 /// The path gives a sign of life, or did so a moment ago.
-bool Controller::Alive(Time now) const { return outage_.Silence(now) < kLongestGap; }
+bool Controller::Alive(Time now) const { return outage_.Silence(now) < kLongestSilence; }
 
 /// Where marks work, a frame may make as much queue as goes unmarked.
 Duration Controller::PacingReserve(Time now) const {

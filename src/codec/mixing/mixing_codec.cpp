@@ -14,7 +14,7 @@ using mixing::SliceBins;
 
 // The first byte of a payload.
 constexpr unsigned kEffortMask = 3;
-constexpr unsigned kGapsFlag = 4;
+constexpr unsigned kGapsBit = 4;
 constexpr unsigned kVersionShift = 4;
 
 bool Fits(const AzimuthAlignment& alignment, const RangeImage& image) {
@@ -94,7 +94,7 @@ bool MixingEncoder::Encode(const RangeImage& image, const MixingSettings& settin
   }
   const unsigned effort = std::clamp(settings.effort, 1U, mixing::kEfforts);
   const std::size_t before = out->size();
-  out->push_back(static_cast<std::uint8_t>(effort | (s.slice.has_gaps ? kGapsFlag : 0) |
+  out->push_back(static_cast<std::uint8_t>(effort | (s.slice.has_gaps ? kGapsBit : 0) |
                                            mixing::kTableVersion << kVersionShift));
   mixing::BinaryEncoder encoder(out);
   s.Code(effort, &encoder);
@@ -130,7 +130,7 @@ bool MixingDecoder::Decode(ByteView payload, const RangeGrid& grid, unsigned int
   s.slice.columns = image->columns;
   s.slice.step_mm = StepMm(grid);
   s.slice.level_bits = intensity_bits;
-  s.slice.has_gaps = (first & kGapsFlag) != 0;
+  s.slice.has_gaps = (first & kGapsBit) != 0;
   s.slice.bins.assign(image->size(), 0);
   s.slice.levels.assign(intensity_bits > 0 ? image->size() : 0, 0);
   mixing::BinaryDecoder decoder(payload.Sub(1));

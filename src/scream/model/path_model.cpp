@@ -12,7 +12,7 @@ constexpr Duration kMarksExpected = 30s;
 /// Reports that are no further apart than this part of a round trip need no allowance; others one
 /// of this at most.
 constexpr int kCloseReports = 5;
-constexpr Duration kLongestGap = 100ms;
+constexpr Duration kLongestInterval = 100ms;
 constexpr double kCapacityGain = 0.25;
 /// Packets in a row behind a queue that are no accident.
 constexpr int kQueueingPackets = 3;
@@ -140,7 +140,7 @@ void PathModel::EstimateCapacity(Time now) {
 
 /// Weighted by what the report acknowledges: a pause of the source is no gap.
 void PathModel::MeasureReports(Time now, const AckSummary& acks, DataSize ref_wnd) {
-  const Duration gap = std::min(now - std::exchange(last_report_, now), kLongestGap);
+  const Duration gap = std::min(now - std::exchange(last_report_, now), kLongestInterval);
   const double weight = std::min(1.0, acks.bytes_newly_acked / ref_wnd);
   report_gap_ += FromSeconds(Seconds(gap - report_gap_) * weight);
 }

@@ -29,7 +29,7 @@ constexpr Duration kTailWait = 1s;
 constexpr Duration kReorderingMemory = 5s;
 constexpr int kReorderingDecay = 8;
 /// SSRCs come and go with restarts; the one silent for longest is forgotten.
-constexpr std::size_t kMaxSources = 64;
+constexpr std::size_t kMostSources = 64;
 /// The report's fields are coarse: arrival offsets of 1/1024 s.
 constexpr Duration kTimeTolerance = 2ms;
 
@@ -37,7 +37,7 @@ constexpr Duration kTimeTolerance = 2ms;
 
 void SentHistory::OnSent(std::uint32_t ssrc, std::uint16_t seq, const SentRecord& record) {
   const bool is_new = sources_.find(ssrc) == sources_.end();
-  if (is_new && sources_.size() >= kMaxSources) ForgetSilentSource();
+  if (is_new && sources_.size() >= kMostSources) ForgetSilentSource();
   Source& source = sources_[ssrc];
   if (!is_new && StartsAgain(&source, source.unwrapper.Peek(seq)))
     StartAgain(record.sent, seq, &source);

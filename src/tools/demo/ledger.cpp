@@ -8,8 +8,6 @@ namespace {
 
 constexpr std::uint32_t kMaxSlices = 16384;
 
-double Ms(std::int64_t ns) { return static_cast<double>(ns) / 1e6; }
-
 void Apply(const nlohmann::json& record, const std::string& type, SliceLife* life) {
   const auto time = record.at("unix_ns").get<std::int64_t>();
   if (type == "captured") {

@@ -12,6 +12,8 @@
 
 namespace lidar::demo {
 
+inline double Ms(std::int64_t ns) { return static_cast<double>(ns) / 1e6; }
+
 /// Times are nanoseconds since the Unix epoch; 0: has not happened.
 struct SliceLife {
   std::int64_t due = 0;  // sampling time of the last column

@@ -29,7 +29,7 @@ Bin* BinAt(std::vector<Bin>* bins, double time_s) {
   return index < bins->size() ? &(*bins)[index] : nullptr;
 }
 
-std::vector<Bin> Collect(const Measurements& m) {
+std::vector<Bin> CollectBins(const Measurements& m) {
   std::vector<Bin> bins(static_cast<std::size_t>(std::ceil(m.ran_s / kBin_s)));
   for (const LinkPacket& p : m.packets) {
     Bin* bin = BinAt(&bins, p.time_s);
@@ -56,7 +56,7 @@ void WriteTimeline(const Measurements& m, const std::string& file) {
   out << "time_s,capacity_mbps,target_mbps,encoded_mbps,sent_mbps,queue_ms,rtt_ms,ref_wnd_bytes,"
          "bytes_in_flight,sender_queue_ms,step_m,max_error_m,estimated_capacity_mbps\n";
   const auto capacity = CapacityOf(m.options);
-  const auto bins = Collect(m);
+  const auto bins = CollectBins(m);
   for (std::size_t i = 0; i < bins.size(); ++i) {
     const double start = static_cast<double>(i) * kBin_s;
     const double mbps =

@@ -28,8 +28,6 @@ nlohmann::ordered_json Percentiles(const Distribution& d) {
           {"max", d.Max()}};
 }
 
-double Ms(std::int64_t ns) { return static_cast<double>(ns) / 1e6; }
-
 struct Delays {
   Distribution all;
   Distribution steady;
@@ -51,7 +49,7 @@ struct SliceFigures {
   std::uint64_t returns = 0;
 };
 
-SliceFigures Collect(const Measurements& m) {
+SliceFigures CollectFigures(const Measurements& m) {
   SliceFigures f;
   for (const auto& [id, scan] : m.ledger.scans()) {
     double encode_ms = 0;
@@ -88,22 +86,22 @@ Delays QueueDelays(const Measurements& m) {
 
 /// Delivered bits over those that the link carries and the source can use, in steady time.
 nlohmann::ordered_json Utilisation(const Measurements& m, double source_max_bps) {
-  constexpr double kBin_s = 0.1;
-  const auto bins = static_cast<std::size_t>(m.ran_s / kBin_s);
+  constexpr double kSpan_s = 0.1;
+  const auto bins = static_cast<std::size_t>(m.ran_s / kSpan_s);
   std::vector<double> sent(bins);
   for (const LinkPacket& p : m.packets) {
-    const auto bin = static_cast<std::size_t>(std::max(p.time_s, 0.0) / kBin_s);
+    const auto bin = static_cast<std::size_t>(std::max(p.time_s, 0.0) / kSpan_s);
     if (p.delivered && bin < bins) sent[bin] += static_cast<double>(p.size) * 8;
   }
   const auto capacity = CapacityOf(m.options);
   double used = 0;
   double offered = 0;
   for (std::size_t i = 0; i < bins; ++i) {
-    const double start = static_cast<double>(i) * kBin_s;
-    const double bits = capacity.Between(FromSeconds(start), FromSeconds(start + kBin_s)).bits();
+    const double start = static_cast<double>(i) * kSpan_s;
+    const double bits = capacity.Between(FromSeconds(start), FromSeconds(start + kSpan_s)).bits();
     if (!m.IsSteady(start)) continue;
     used += sent[i];
-    offered += std::min(bits, source_max_bps * kBin_s);
+    offered += std::min(bits, source_max_bps * kSpan_s);
   }
   if (offered <= 0) return nullptr;
   return used / offered;
@@ -245,7 +243,7 @@ std::vector<Guarantee> CheckGuarantees(const Measurements& m) {
 
 nlohmann::ordered_json Summarise(const Measurements& m) {
   const ScanCounts n = m.ledger.Count();
-  const SliceFigures f = Collect(m);
+  const SliceFigures f = CollectFigures(m);
   const Delays queue = QueueDelays(m);
   nlohmann::ordered_json s;
   s["duration_s"] = m.ran_s;

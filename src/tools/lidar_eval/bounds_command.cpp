@@ -13,7 +13,7 @@
 namespace lidar::tools {
 namespace {
 
-struct Options {
+struct BoundsOptions {
   std::vector<std::string> sources;
   SourceOptions source;
   std::vector<double> errors = {0.002, 0.005, 0.01, 0.02, 0.05, 0.1, 0.2};
@@ -41,7 +41,7 @@ void WriteRow(const ScanSet& set, const CodingMode& mode, double error,
 }
 
 std::optional<Measurement> AtError(const ScanSet& set, const CodingMode& mode, double error,
-                                   const Options& o) {
+                                   const BoundsOptions& o) {
   if (mode.geometry == Geometry::kRange && !set.organised()) return std::nullopt;
   SliceCodec codec;
   codec.Load(set.scans.front(), {});
@@ -50,7 +50,7 @@ std::optional<Measurement> AtError(const ScanSet& set, const CodingMode& mode, d
 
 /// The paper's way: the fewest bits of the bounding cube that keep the bound in every scan, at
 /// the level that needs the fewest bytes.
-void PrintPaperMinimum(const ScanSet& set, double error, const Options& o) {
+void PrintPaperMinimum(const ScanSet& set, double error, const BoundsOptions& o) {
   double extent = 0;
   SliceCodec codec;
   for (const Scan& scan : set.scans) {
@@ -73,7 +73,7 @@ void PrintPaperMinimum(const ScanSet& set, double error, const Options& o) {
               bits, of, 1e-6 * least);
 }
 
-void Evaluate(const ScanSet& set, const Options& o, CsvFile* csv) {
+void Evaluate(const ScanSet& set, const BoundsOptions& o, CsvFile* csv) {
   const CodingMode& range = o.range_mode.empty() ? DefaultRangeMode() : ModeNamed(o.range_mode);
   const CodingMode& xyz = ModeNamed(o.xyz_mode);
   std::printf("%s: %zu scans at %g Hz, %u slice(s) a scan, %u intensity bits\n", set.name.c_str(),
@@ -102,7 +102,7 @@ void Evaluate(const ScanSet& set, const Options& o, CsvFile* csv) {
   std::printf("\n");
 }
 
-void Run(const Options& o) {
+void RunBounds(const BoundsOptions& o) {
   CsvFile csv(o.csv,
               "source,mode,error_bound_m,step_m,quantization_bits,mean_error_m,max_error_m,"
               "bits_per_return,bitrate_bps");
@@ -113,7 +113,7 @@ void Run(const Options& o) {
 }  // namespace
 
 void AddBoundsCommand(CLI::App* app) {
-  auto o = std::make_shared<Options>();
+  auto o = std::make_shared<BoundsOptions>();
   CLI::App* command = app->add_subcommand(
       "bounds", "Step, real error, size and bitrate for a list of error bounds");
   command->option_defaults()->always_capture_default();
@@ -130,7 +130,7 @@ void AddBoundsCommand(CLI::App* app) {
   command->add_option("--scans", o->source.max_scans, "Scans to read of each source");
   command->add_option("--speed", o->source.speed_mps, "Of synthetic drives [m/s]");
   command->add_option("--csv", o->csv, "Write the table to this file as well");
-  command->callback([o] { Run(*o); });
+  command->callback([o] { RunBounds(*o); });
 }
 
 }  // namespace lidar::tools

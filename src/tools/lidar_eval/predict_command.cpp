@@ -17,7 +17,7 @@
 namespace lidar::tools {
 namespace {
 
-struct Options {
+struct PredictOptions {
   std::vector<std::string> sources;
   SourceOptions source;
   SamplingOptions sampling;
@@ -33,7 +33,7 @@ std::string Cell(const rate::FitError& e) {
 
 /// Scan after scan, each at another random step: what the model says once it has seen the scan
 /// before.
-rate::FitError Corrected(const ScanSet& set, const CodingMode& mode, const Options& o,
+rate::FitError Corrected(const ScanSet& set, const CodingMode& mode, const PredictOptions& o,
                          rate::SizeModel* model) {
   std::mt19937_64 random(o.sampling.seed);
   std::uniform_real_distribution<double> log_step(std::log2(o.min_step_m), std::log2(o.max_step_m));
@@ -58,7 +58,7 @@ rate::FitError Corrected(const ScanSet& set, const CodingMode& mode, const Optio
   return {sum / static_cast<double>(errors.size()), errors[(errors.size() - 1) * 95 / 100]};
 }
 
-void Evaluate(const ScanSet& set, const rate::ModelFile& file, const Options& o) {
+void Evaluate(const ScanSet& set, const rate::ModelFile& file, const PredictOptions& o) {
   SamplingOptions sampling = o.sampling;
   sampling.min_step_m = o.min_step_m;
   sampling.max_step_m = o.max_step_m;
@@ -83,7 +83,7 @@ void Evaluate(const ScanSet& set, const rate::ModelFile& file, const Options& o)
   }
 }
 
-void Run(const Options& o) {
+void RunPredict(const PredictOptions& o) {
   const rate::ModelFile file = LoadModelFile(o.model);
   std::printf("model trained on: %s\nsteps %g to %g m, whole scans, geometry only\n",
               file.trained_on.c_str(), o.min_step_m, o.max_step_m);
@@ -93,7 +93,7 @@ void Run(const Options& o) {
 }  // namespace
 
 void AddPredictCommand(CLI::App* app) {
-  auto o = std::make_shared<Options>();
+  auto o = std::make_shared<PredictOptions>();
   o->sampling.modes = {DefaultRangeMode().name, "xyz-sequential", "xyz-kd0", "xyz-kd6"};
   o->sampling.intensity_bits = 0;
   o->sampling.seed = 2;
@@ -113,7 +113,7 @@ void AddPredictCommand(CLI::App* app) {
   command->add_option("--scans", o->source.max_scans, "Scans to read of each source");
   command->add_option("--speed", o->source.speed_mps, "Of synthetic drives [m/s]");
   command->add_option("--seed", o->sampling.seed, "Of the random settings");
-  command->callback([o] { Run(*o); });
+  command->callback([o] { RunPredict(*o); });
 }
 
 }  // namespace lidar::tools

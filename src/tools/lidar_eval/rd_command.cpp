@@ -13,7 +13,7 @@
 namespace lidar::tools {
 namespace {
 
-struct Options {
+struct RdOptions {
   std::vector<std::string> sources;
   SourceOptions source;
   std::vector<std::string> modes = {DefaultRangeMode().name};
@@ -42,7 +42,7 @@ Curve PaperCurve(const ScanSet& set, const std::string& mode, const char* name) 
 }
 
 Curve OurCurve(const ScanSet& set, const std::string& name, std::uint32_t slices,
-               const Options& o) {
+               const RdOptions& o) {
   const CodingMode& mode = ModeNamed(name);
   Curve curve{name + (slices == 1 ? ", whole scans" : Format(", %u slices", slices)), {}};
   SliceCodec codec;
@@ -56,7 +56,7 @@ Curve OurCurve(const ScanSet& set, const std::string& name, std::uint32_t slices
   return curve;
 }
 
-std::vector<Curve> Evaluate(const ScanSet& set, const Options& o, CsvFile* csv) {
+std::vector<Curve> Evaluate(const ScanSet& set, const RdOptions& o, CsvFile* csv) {
   std::vector<Curve> curves = {PaperCurve(set, "xyz-sequential", "paper: automatic bits, level 0"),
                                PaperCurve(set, "xyz-kd6", "paper: automatic bits, level 7")};
   std::vector<std::string> modes = o.efforts.empty() ? o.modes : std::vector<std::string>{};
@@ -98,7 +98,7 @@ std::string Draw(const std::string& title, const std::vector<Curve>& curves) {
   return data + "set title '" + title + "' noenhanced\n" + lines + "\n";
 }
 
-void Run(const Options& o) {
+void RunRd(const RdOptions& o) {
   CsvFile csv(o.csv,
               "source,coding,step_m,quantization_bits,mean_error_m,max_error_m,bits_per_return,"
               "bitrate_bps");
@@ -122,7 +122,7 @@ void Run(const Options& o) {
 }  // namespace
 
 void AddRateDistortionCommand(CLI::App* app) {
-  auto o = std::make_shared<Options>();
+  auto o = std::make_shared<RdOptions>();
   CLI::App* command = app->add_subcommand(
       "rd", "Rate against distortion: our coding modes, and Draco set up as in the paper");
   command->option_defaults()->always_capture_default();
@@ -141,7 +141,7 @@ void AddRateDistortionCommand(CLI::App* app) {
   command->add_option("--speed", o->source.speed_mps, "Of synthetic drives [m/s]");
   command->add_option("--csv", o->csv, "Write the table to this file as well");
   command->add_option("--plot", o->plot, "Draw all sources into this PNG");
-  command->callback([o] { Run(*o); });
+  command->callback([o] { RunRd(*o); });
 }
 
 }  // namespace lidar::tools

@@ -165,11 +165,11 @@ void AddSlamCommand(CLI::App* app) {
   command->add_option("--truth", a->truth,
                       "Compare with this trajectory (TUM or KITTI); synthetic drives bring theirs");
   command
-      ->add_option("--step", a->slam.distortion.range_step_m,
+      ->add_option("--step", a->slam.loss.range_step_m,
                    "Put ranges on a grid of this step first, as lidarenc does [m]")
       ->check(CLI::Range(0.0, 10.0));
   command
-      ->add_option("--xyz-bits", a->slam.distortion.xyz_bits,
+      ->add_option("--xyz-bits", a->slam.loss.xyz_bits,
                    "Put points on a grid of so many bits over their cube first, as the paper "
                    "does; 0: no")
       ->check(CLI::Range(0U, 30U));

@@ -76,15 +76,15 @@ class LoopCloser {
 
 }  // namespace
 
-odometry::TimedPoints PointsOf(const Scan& scan, const Distortion& distortion) {
+odometry::TimedPoints PointsOf(const Scan& scan, const CodingLoss& loss) {
   odometry::TimedPoints timed;
   if (scan.organised()) {
-    timed = OrganisedPoints(scan, distortion.range_step_m);
+    timed = OrganisedPoints(scan, loss.range_step_m);
   } else {
     for (std::size_t i = 0; i + 2 < scan.xyz.size(); i += 3)
       timed.points.push_back(Eigen::Map<const Eigen::Vector3f>(&scan.xyz[i]).cast<double>());
   }
-  if (distortion.xyz_bits > 0) QuantizeCube(distortion.xyz_bits, &timed.points);
+  if (loss.xyz_bits > 0) QuantizeCube(loss.xyz_bits, &timed.points);
   return timed;
 }
 
@@ -97,7 +97,7 @@ SlamResult RunSlam(ScanStream* scans, const SlamOptions& options,
   for (std::size_t done = 0; options.max_scans == 0 || done < options.max_scans; ++done) {
     const auto timed = scans->Next();
     if (!timed) break;
-    const odometry::TimedPoints points = PointsOf(timed->scan, options.distortion);
+    const odometry::TimedPoints points = PointsOf(timed->scan, options.loss);
     const std::clock_t begin = std::clock();
     const odometry::Estimate e = odometry.OnScan(timed->start, timed->duration, points);
     result.cpu_ms.push_back(1e3 * static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC);

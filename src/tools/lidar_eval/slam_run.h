@@ -13,14 +13,14 @@
 namespace lidar::tools {
 
 /// What is done to the points before they are aligned; nothing by default.
-struct Distortion {
+struct CodingLoss {
   double range_step_m = 0;  // lidarenc: ranges on a grid of this step
   unsigned xyz_bits = 0;    // Draco as in the paper: so many bits over the cube of the scan
 };
 
 struct SlamOptions {
   odometry::OdometrySettings odometry;
-  Distortion distortion;
+  CodingLoss loss;
   std::size_t max_scans = 0;  // 0: all
   bool close_loops = false;
 };
@@ -42,7 +42,7 @@ struct SlamResult {
 SlamResult RunSlam(ScanStream* scans, const SlamOptions& options,
                    const std::function<void(std::size_t)>& progress);
 
-/// The returns of a scan after `distortion`, with their phase in the sweep where it is known.
-odometry::TimedPoints PointsOf(const Scan& scan, const Distortion& distortion);
+/// The returns of a scan after `loss`, with their phase in the sweep where it is known.
+odometry::TimedPoints PointsOf(const Scan& scan, const CodingLoss& loss);
 
 }  // namespace lidar::tools

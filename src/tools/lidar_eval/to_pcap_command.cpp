@@ -13,7 +13,7 @@
 namespace lidar::tools {
 namespace {
 
-struct Options {
+struct PcapOptions {
   std::string source;
   SourceOptions scans;
   std::string output;
@@ -23,14 +23,14 @@ struct Options {
   double rate = 10;
 };
 
-std::string MetadataPath(const Options& o) {
+std::string MetadataPath(const PcapOptions& o) {
   if (!o.metadata.empty()) return o.metadata;
   const std::size_t dot = o.output.find_last_of("./");
   const bool has_extension = dot != std::string::npos && o.output[dot] == '.';
   return (has_extension ? o.output.substr(0, dot) : o.output) + ".json";
 }
 
-void Run(const Options& o) {
+void RunPcap(const PcapOptions& o) {
   ScanSet set = LoadScans(o.source, o.scans);
   if (set.scans.empty()) throw std::runtime_error(o.source + " holds no scans");
   std::size_t points = 0;
@@ -65,7 +65,7 @@ void Run(const Options& o) {
 }  // namespace
 
 void AddToPcapCommand(CLI::App* app) {
-  auto o = std::make_shared<Options>();
+  auto o = std::make_shared<PcapOptions>();
   CLI::App* command = app->add_subcommand(
       "to-pcap", "Packs scans into an Ouster capture, which ouster_src and ouster-replay take");
   command->option_defaults()->always_capture_default();
@@ -79,7 +79,7 @@ void AddToPcapCommand(CLI::App* app) {
   command->add_option("--rate", o->rate, "Scans/s of clouds without order")
       ->check(CLI::Range(1.0, 100.0));
   command->add_option("--scans", o->scans.max_scans, "Scans to read");
-  command->callback([o] { Run(*o); });
+  command->callback([o] { RunPcap(*o); });
 }
 
 }  // namespace lidar::tools

@@ -14,7 +14,7 @@
 namespace lidar::tools {
 namespace {
 
-struct Options {
+struct TrackArguments {
   std::string source;
   SourceOptions read;
   TrackOptions track;
@@ -44,7 +44,8 @@ void Draw(const std::string& png, const ScanSet& set, const std::vector<TrackedS
                 "$d using 1:3 with points pt 7 ps 0.5 lc rgb '#c03020' title 'sent, each scan'");
 }
 
-std::vector<double> Targets(const std::string& name, const Options& o, double scans_per_second) {
+std::vector<double> Targets(const std::string& name, const TrackArguments& o,
+                            double scans_per_second) {
   if (name == "recorded") return ReadTargets(o.targets, scans_per_second);
   const std::map<std::string, TargetProfile> profiles = {{"steady", TargetProfile::kSteady},
                                                          {"walk", TargetProfile::kWalk},
@@ -60,7 +61,7 @@ std::string PathFor(const std::string& path, const std::string& name, bool sever
                                   : path.substr(0, dot) + "-" + name + path.substr(dot);
 }
 
-void Run(Options o) {
+void RunTrack(TrackArguments o) {
   const ScanSet set = LoadScans(o.source, o.read);
   o.track.mode = o.mode.empty() ? &DefaultMode(set) : &ModeNamed(o.mode);
   const rate::RateBounds bounds = MeasureBounds(set, o.track);
@@ -103,7 +104,7 @@ void Run(Options o) {
 }  // namespace
 
 void AddTrackCommand(CLI::App* app) {
-  auto o = std::make_shared<Options>();
+  auto o = std::make_shared<TrackArguments>();
   CLI::App* command = app->add_subcommand(
       "track", "Rate controller and codec on a steady, walking, jumping or recorded target");
   command->option_defaults()->always_capture_default();
@@ -145,7 +146,7 @@ void AddTrackCommand(CLI::App* app) {
   command->add_option("--speed", o->read.speed_mps, "Of synthetic drives [m/s]");
   command->add_option("--csv", o->csv, "Write every scan to this file, one a profile");
   command->add_option("--plot", o->plot, "Draw it as this PNG, one a profile");
-  command->callback([o] { Run(*o); });
+  command->callback([o] { RunTrack(*o); });
 }
 
 }  // namespace lidar::tools

@@ -3,13 +3,12 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/support/simulated.h"
+
 namespace lidar::link {
 namespace {
 using namespace std::chrono_literals;
 
-constexpr Time kStart{100s};
-
-DataRate Mbps(double m) { return DataRate::BitsPerSecond(m * 1e6); }
 Packet Sized(std::int64_t bytes, std::uint64_t id, Ecn ecn = Ecn::kEct1) {
   return {DataSize::Bytes(bytes), ecn, id};
 }

@@ -3,11 +3,12 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/support/simulated.h"
+
 namespace lidar::link {
 namespace {
 using namespace std::chrono_literals;
 
-DataRate Mbps(double m) { return DataRate::BitsPerSecond(m * 1e6); }
 DataSize Bytes(std::int64_t n) { return DataSize::Bytes(n); }
 
 TEST(Capacity, AConstantRateSerialisesAtThatRate) {

@@ -3,11 +3,11 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/support/simulated.h"
+
 namespace lidar::link {
 namespace {
 using namespace std::chrono_literals;
-
-DataRate Mbps(double m) { return DataRate::BitsPerSecond(m * 1e6); }
 
 /// 8 Mbit/s with a gap in the second half of the first second and of the third.
 Capacity TwoGaps() {

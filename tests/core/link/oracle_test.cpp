@@ -4,12 +4,11 @@
 #include <gtest/gtest.h>
 
 #include "src/link/trace_maker.h"
+#include "tests/support/simulated.h"
 
 namespace lidar::link {
 namespace {
 using namespace std::chrono_literals;
-
-DataRate Mbps(double m) { return DataRate::BitsPerSecond(m * 1e6); }
 
 OracleResult Ask(const std::string& trace, double mbps) {
   std::string error;

@@ -4,12 +4,11 @@
 #include <gtest/gtest.h>
 
 #include "src/link/bottleneck.h"
+#include "tests/support/simulated.h"
 
 namespace lidar::link {
 namespace {
 using namespace std::chrono_literals;
-
-constexpr Time kStart{100s};
 
 TEST(Path, AnIdealPathChangesNothing) {
   Path path({}, 1);

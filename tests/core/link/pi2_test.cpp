@@ -7,12 +7,11 @@
 #include <cmath>
 
 #include "src/link/bottleneck.h"
+#include "tests/support/simulated.h"
 
 namespace lidar::link {
 namespace {
 using namespace std::chrono_literals;
-
-constexpr Time kStart{100s};
 
 struct Share {
   int packets = 0;

@@ -7,12 +7,11 @@
 #include <vector>
 
 #include "src/link/capacity.h"
+#include "tests/support/simulated.h"
 
 namespace lidar::link {
 namespace {
 using namespace std::chrono_literals;
-
-DataRate Mbps(double m) { return DataRate::BitsPerSecond(m * 1e6); }
 
 Capacity Parse(const std::string& text) {
   std::string error;

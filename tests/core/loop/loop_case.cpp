@@ -8,6 +8,7 @@
 
 #include "src/link/gaps.h"
 #include "src/link/trace_maker.h"
+#include "tests/support/simulated.h"
 
 namespace lidar::loop {
 namespace {
@@ -17,14 +18,13 @@ using scream::test::FrameLog;
 using scream::test::PacketLog;
 using scream::test::SimulationResult;
 
-constexpr Time kOrigin{std::chrono::seconds(100)};
 constexpr Duration kSettle = 3s;
 constexpr Duration kBin = 100ms;
 constexpr double kFramesPerSecond = 50;
 
 scream::test::SimulationConfig ConfigOf(const LoopCase& c, LoopSource* source) {
   scream::test::SimulationConfig config;
-  config.forward.origin = kOrigin;
+  config.forward.origin = kStart;
   config.forward.capacity = c.capacity;
   config.forward.delay = c.rtt / 2;
   config.forward.aqm.kind = c.aqm;
@@ -33,7 +33,7 @@ scream::test::SimulationConfig ConfigOf(const LoopCase& c, LoopSource* source) {
   config.duration = c.duration;
   scream::test::FlowConfig& flow = config.flows.front();
   flow.parameters = c.parameters;
-  flow.start = kOrigin;
+  flow.start = kStart;
   scream::test::SourceConfig& media = flow.sources.front();
   media.stream.start_bitrate = DataRate::BitsPerSecond(4e6);
   media.stream.max_bitrate = DataRate::BitsPerSecond(100e6);
@@ -97,14 +97,14 @@ double Utilisation(const LoopCase& c, const SimulationResult& result, const Loop
     usable += Usable(c, report, t, kBin);
   const Duration delay = c.rtt / 2;
   used = static_cast<double>(
-      result.DeliveredBytes(kOrigin + kSettle + delay, kOrigin + c.duration + delay) * 8);
+      result.DeliveredBytes(kStart + kSettle + delay, kStart + c.duration + delay) * 8);
   return used / usable;
 }
 
 void MeasureRecovery(const LoopCase& c, const SimulationResult& result, LoopReport* report) {
   std::vector<link::SentPacket> sent;
   for (const PacketLog& p : result.packets)
-    sent.push_back({p.sent - kOrigin, DataSize::Bytes(p.bytes)});
+    sent.push_back({p.sent - kStart, DataSize::Bytes(p.bytes)});
   link::RecoveryConfig config{c.duration};
   if (!c.frames) config.source_max = DataRate::BitsPerSecond(report->max_mbps * 1e6);
   auto times = RecoveryAfterGaps(c.capacity, sent, config);
@@ -113,7 +113,7 @@ void MeasureRecovery(const LoopCase& c, const SimulationResult& result, LoopRepo
 }
 
 void MeasureNetwork(const LoopCase& c, const SimulationResult& result, LoopReport* report) {
-  report->queue_ms = result.QueueDelay(kOrigin + kSettle, kOrigin + c.duration);
+  report->queue_ms = result.QueueDelay(kStart + kSettle, kStart + c.duration);
   const auto& flow = result.flows.front();
   report->own_loss = static_cast<double>(flow.packets_congestion_lost) /
                      static_cast<double>(std::max<std::uint64_t>(1, flow.packets_sent));

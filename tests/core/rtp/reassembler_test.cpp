@@ -13,12 +13,11 @@ namespace {
 using std::chrono::milliseconds;
 using test::AllSlices;
 using test::DeliverAll;
+using test::kReorder;
 using test::Sender;
 using test::SenderOptions;
 using test::Wire;
 using Names = std::vector<std::string>;
-
-constexpr milliseconds kReorder{100};
 
 /// Equality of what the stream has become, in one line.
 std::string Accounts(const Receiver& r) {

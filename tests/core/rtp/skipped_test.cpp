@@ -12,12 +12,11 @@ namespace {
 
 using std::chrono::milliseconds;
 using test::DeliverAll;
+using test::kReorder;
 using test::Sender;
 using test::SenderOptions;
 using test::Wire;
 using Names = std::vector<std::string>;
-
-constexpr milliseconds kReorder{100};
 
 /// "skipped n lost n; scans complete incomplete lost"
 std::string SkipAccounts(const Receiver& r) {

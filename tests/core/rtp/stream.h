@@ -14,6 +14,8 @@ namespace lidar::rtp::test {
 
 using std::chrono::milliseconds;
 
+constexpr milliseconds kReorder{100};  // time that receivers wait for late packets
+
 inline std::vector<std::uint8_t> SliceBytes(std::uint32_t scan, std::uint32_t index,
                                             std::size_t size) {
   std::vector<std::uint8_t> bytes(size);

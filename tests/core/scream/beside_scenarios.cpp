@@ -3,13 +3,13 @@
 #include <utility>
 
 #include "tests/core/scream/scenarios.h"
+#include "tests/support/simulated.h"
 
 namespace lidar::scream::test {
 namespace {
 
 using link::AqmConfig;
 
-constexpr Time kOrigin{std::chrono::seconds(100)};
 constexpr Duration kRtt = std::chrono::milliseconds(40);
 constexpr DataSize kShortestFifo = DataSize::Bytes(10 * 1500);
 
@@ -17,12 +17,12 @@ Scenario Beside(const std::string& name, double mbps, TcpKind other, const Param
   Scenario s;
   s.name = name;
   const DataRate capacity = DataRate::BitsPerSecond(mbps * 1e6);
-  s.config.forward.origin = kOrigin;
+  s.config.forward.origin = kStart;
   s.config.forward.capacity = link::Capacity::Constant(capacity);
   s.config.forward.delay = s.config.return_delay = kRtt / 2;
   s.config.duration = 60s;
   s.config.flows.front().parameters = p;
-  s.config.flows.front().start = kOrigin;
+  s.config.flows.front().start = kStart;
   s.config.flows.front().sources[0].stream.max_bitrate = DataRate::BitsPerSecond(100e6);
   s.config.others = {{other}};
   s.settle = 20s;

@@ -5,12 +5,10 @@
 #include <gtest/gtest.h>
 
 #include "tests/core/scream/scenarios.h"
+#include "tests/support/simulated.h"
 
 namespace lidar::scream::test {
 namespace {
-
-constexpr Time kStart{100s};
-DataRate Mbps(double r) { return DataRate::BitsPerSecond(r * 1e6); }
 
 SimulationResult RunScenario(const std::string& name, const Parameters& parameters = {}) {
   return Simulate(FindScenario(name, parameters)->config);

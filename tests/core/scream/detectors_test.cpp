@@ -16,12 +16,10 @@
 #include "src/scream/model/rtt.h"
 #include "src/scream/pacer.h"
 #include "src/scream/response/competing_flows.h"
+#include "tests/support/simulated.h"
 
 namespace lidar::scream {
 namespace {
-
-constexpr Time kStart{100s};
-DataRate Mbps(double r) { return DataRate::BitsPerSecond(r * 1e6); }
 
 TEST(Parameters, TheDraftColumnIsTheDrafts) {
   const Parameters p = Parameters::Draft();

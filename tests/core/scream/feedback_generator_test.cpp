@@ -6,10 +6,10 @@
 
 #include <set>
 
+#include "tests/support/simulated.h"
+
 namespace lidar::scream {
 namespace {
-
-constexpr Time kStart{100s};
 
 class FeedbackGeneratorTest : public ::testing::Test {
  protected:

@@ -6,11 +6,10 @@
 
 #include <cmath>
 
+#include "tests/support/simulated.h"
+
 namespace lidar::scream {
 namespace {
-
-constexpr Time kStart{100s};
-DataRate Mbps(double r) { return DataRate::BitsPerSecond(r * 1e6); }
 
 class ReferenceWindowTest : public ::testing::Test {
  protected:

@@ -10,14 +10,13 @@
 #include "src/scream/response/isolated_loss.h"
 #include "src/scream/response/outage.h"
 #include "src/scream/response/send_window.h"
+#include "tests/support/simulated.h"
 
 namespace lidar::scream {
 namespace {
 
-constexpr Time kStart{100s};
 constexpr Duration kRtt = 40ms;
 constexpr DataSize kPacket = DataSize::Bytes(1000);
-DataRate Mbps(double r) { return DataRate::BitsPerSecond(r * 1e6); }
 
 /// A path whose packets arrive `spacing` apart, `queue` later than the first one did.
 class Path {

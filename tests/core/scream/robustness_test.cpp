@@ -3,11 +3,10 @@
 #include <gtest/gtest.h>
 
 #include "tests/core/scream/scenarios.h"
+#include "tests/support/simulated.h"
 
 namespace lidar::scream::test {
 namespace {
-
-DataRate Mbps(double r) { return DataRate::BitsPerSecond(r * 1e6); }
 
 /// A run, and figures of parts of it by seconds since its start.
 class Trial {

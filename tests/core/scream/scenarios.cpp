@@ -4,17 +4,16 @@
 #include <algorithm>
 #include <cstdlib>
 
+#include "tests/support/simulated.h"
+
 namespace lidar::scream::test {
 namespace {
 
 using link::AqmConfig;
 using link::Capacity;
 
-constexpr Time kOrigin{std::chrono::seconds(100)};
 constexpr double kSlicesPerScan = 8;
 constexpr double kSliceJitter = 0.1;
-
-DataRate Mbps(double r) { return DataRate::BitsPerSecond(r * 1e6); }
 
 struct Path {
   Capacity capacity = Capacity::Constant(DataRate::Infinite());
@@ -32,7 +31,7 @@ Scenario Make(const std::string& name, const std::string& description, const Pat
   s.name = name;
   s.description = description;
   s.frames_per_second = frames_per_second;
-  s.config.forward.origin = kOrigin;
+  s.config.forward.origin = kStart;
   s.config.forward.capacity = path.capacity;
   s.config.forward.delay = path.rtt / 2;
   s.config.forward.aqm.kind = path.aqm;
@@ -44,7 +43,7 @@ Scenario Make(const std::string& name, const std::string& description, const Pat
   flow.parameters = parameters;
   flow.parameters.ecn = path.ecn;
   flow.sources[0].frames_per_second = frames_per_second;
-  flow.start = kOrigin;
+  flow.start = kStart;
   flow.sources[0].stream.max_bitrate = Mbps(60);
   return s;
 }

@@ -5,13 +5,13 @@
 #include <gtest/gtest.h>
 
 #include "src/scream/feedback/report_clock.h"
+#include "tests/support/simulated.h"
 
 namespace lidar::scream {
 namespace {
 
 using namespace std::chrono_literals;
-constexpr Time kStart{100s};
-constexpr Duration kRtt = 40ms;
+constexpr Duration kRoundTrip = 40ms;
 
 class SentHistoryTest : public ::testing::Test {
  protected:
@@ -111,7 +111,7 @@ TEST_F(SentHistoryTest, AReportOfAPacketNeverSentIsIgnoredWhole) {
 
 TEST_F(SentHistoryTest, AnArrivalBeforeTheSendingIsIgnoredWhole) {
   Send(0, 2);
-  now_ = kStart + kRtt;
+  now_ = kStart + kRoundTrip;
   CongestionFeedback f = Report(0, "rr");
   f.blocks[0].metrics[1].arrival_offset = 60ms;
   EXPECT_EQ(Apply(f), HistoryResult::kImplausible);

@@ -3,11 +3,10 @@
 #include <gtest/gtest.h>
 
 #include "tests/core/scream/scenarios.h"
+#include "tests/support/simulated.h"
 
 namespace lidar::scream::test {
 namespace {
-
-DataRate Mbps(double r) { return DataRate::BitsPerSecond(r * 1e6); }
 
 /// One sender with two streams: the slices of a LiDAR and the frames of a camera.
 class TwoStreams : public ::testing::Test {

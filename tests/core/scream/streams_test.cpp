@@ -5,12 +5,10 @@
 #include <gtest/gtest.h>
 
 #include "src/scream/target_notifier.h"
+#include "tests/support/simulated.h"
 
 namespace lidar::scream {
 namespace {
-
-constexpr Time kStart{100s};
-DataRate Mbps(double r) { return DataRate::BitsPerSecond(r * 1e6); }
 
 class StreamsTest : public ::testing::Test {
  protected:

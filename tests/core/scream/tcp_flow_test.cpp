@@ -6,19 +6,16 @@
 #include <cmath>
 
 #include "tests/core/scream/simulation.h"
+#include "tests/support/simulated.h"
 
 namespace lidar::scream::test {
 namespace {
-
-constexpr Time kOrigin{100s};
-
-DataRate Mbps(double r) { return DataRate::BitsPerSecond(r * 1e6); }
 
 SimulationConfig Path(TcpKind kind, DataRate capacity, Duration rtt) {
   SimulationConfig config;
   config.flows.clear();
   config.others = {{kind}};
-  config.forward.origin = kOrigin;
+  config.forward.origin = kStart;
   config.forward.capacity = link::Capacity::Constant(capacity);
   config.forward.delay = config.return_delay = rtt / 2;
   config.duration = 60s;
@@ -26,11 +23,11 @@ SimulationConfig Path(TcpKind kind, DataRate capacity, Duration rtt) {
 }
 
 double Utilisation(const SimulationResult& result) {
-  return result.Utilisation(kOrigin + 10s, kOrigin + 59s);
+  return result.Utilisation(kStart + 10s, kStart + 59s);
 }
 
 double RateOf(const SimulationResult& result, int flow, Duration from, Duration until) {
-  return static_cast<double>(result.DeliveredBytes(kOrigin + from, kOrigin + until, flow)) * 8 /
+  return static_cast<double>(result.DeliveredBytes(kStart + from, kStart + until, flow)) * 8 /
          1e6 / Seconds(until - from);
 }
 
@@ -60,7 +57,7 @@ TEST_P(Greedy, SurvivesAnOutage) {
   config.forward.limit.bytes = Mbps(20) * 40ms;
   config.forward.capacity.AddOutage(20s, 25s);
   const SimulationResult r = Simulate(config);
-  EXPECT_GE(r.Utilisation(kOrigin + 35s, kOrigin + 59s), 0.9);
+  EXPECT_GE(r.Utilisation(kStart + 35s, kStart + 59s), 0.9);
 }
 
 INSTANTIATE_TEST_SUITE_P(Kinds, Greedy,
@@ -112,7 +109,7 @@ TEST(Prague, KeepsTheQueueAtAStepAndTheLinkFull) {
   config.forward.aqm.high = 2ms;
   const SimulationResult r = Simulate(config);
   EXPECT_GE(Utilisation(r), 0.95);
-  EXPECT_LE(r.QueueDelay(kOrigin + 10s, kOrigin + 60s).p99, 6);
+  EXPECT_LE(r.QueueDelay(kStart + 10s, kStart + 60s).p99, 6);
   EXPECT_EQ(r.others[0].packets_lost, 0U);
 }
 
@@ -133,7 +130,7 @@ TEST(Classic, AnEcnMarkCountsAsALoss) {
   config.forward.aqm.kind = link::AqmConfig::Kind::kPi2;
   const SimulationResult r = Simulate(config);
   EXPECT_GE(Utilisation(r), 0.93);
-  EXPECT_NEAR(r.QueueDelay(kOrigin + 10s, kOrigin + 60s).p50, 15, 10);
+  EXPECT_NEAR(r.QueueDelay(kStart + 10s, kStart + 60s).p50, 15, 10);
   EXPECT_EQ(r.others[0].packets_lost, 0U);
 }
 

@@ -13,8 +13,6 @@
 namespace lidar::gst {
 namespace {
 
-constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
-constexpr float kInfinity = std::numeric_limits<float>::infinity();
 constexpr guint kColumns = 64;
 constexpr std::size_t kStep = 20;  // bytes a point: x, y, z, intensity, range
 

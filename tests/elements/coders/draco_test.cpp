@@ -13,7 +13,7 @@
 namespace lidar::gst {
 namespace {
 
-CloudInfo PlainInfo(guint points) {
+CloudInfo XyzInfo(guint points) {
   CloudInfo info;
   info.width = points;
   info.point_step = 16;
@@ -68,7 +68,7 @@ TEST_P(PlainClouds, ComeBackWithinTheErrorWhateverIsInThem) {
   const auto& [cloud, level] = GetParam();
   const Harness h = Codec(kDracoXyz, "max-error=0.02 compression-level=" + std::to_string(level));
   const auto points = static_cast<guint>(cloud.xyz.size() / 3);
-  SetCaps(h.get(), PlainInfo(points));
+  SetCaps(h.get(), XyzInfo(points));
   ASSERT_EQ(gst_harness_push(h.get(), PlainBuffer(cloud.xyz)), GST_FLOW_OK);
   ASSERT_EQ(gst_harness_buffers_received(h.get()), cloud.expected.empty() ? 0U : 1U);
   if (cloud.expected.empty()) return;
@@ -79,8 +79,6 @@ TEST_P(PlainClouds, ComeBackWithinTheErrorWhateverIsInThem) {
   EXPECT_LE(LargestGap(after, cloud.expected), 0.02);
 }
 
-constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
-constexpr float kInfinity = std::numeric_limits<float>::infinity();
 const std::vector<float> kRandom = RandomPoints(500, 40);
 const std::vector<float> kFar = {1, 2, 3, 10'000, 1, 1, 4, 5, 6};
 INSTANTIATE_TEST_SUITE_P(
@@ -101,7 +99,7 @@ TEST(DracoEnc, GivesStockDracoFilesInXyzGeometry) {
   const StringPtr program(g_find_program_in_path("draco_decoder"));
   if (!program) GTEST_SKIP() << "draco_decoder (Debian package draco) is not installed";
   const Harness h(gst_harness_new("dracoenc"));
-  SetCaps(h.get(), PlainInfo(500));
+  SetCaps(h.get(), XyzInfo(500));
   const BufferPtr encoded(gst_harness_push_and_pull(h.get(), PlainBuffer(kRandom)));
   const BufferMap map(encoded.get(), GST_MAP_READ);
   const StringPtr folder(g_dir_make_tmp("draco-XXXXXX", nullptr));

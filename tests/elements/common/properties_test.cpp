@@ -9,7 +9,8 @@
 #include "gst/common/stats.h"
 
 namespace lidar::gst {
-namespace {
+// Named: types at file scope have fields of these.
+inline namespace properties_test {
 
 enum class Colour { kRed, kGreen = 7 };
 GType ColourType() {
@@ -50,7 +51,7 @@ struct State {
   int changes = 0;
 };
 
-}  // namespace
+}  // namespace properties_test
 }  // namespace lidar::gst
 
 struct TestThing {

@@ -10,7 +10,7 @@
 namespace lidar::test {
 namespace {
 
-using nlohmann::json;
+using Json = nlohmann::json;
 
 std::string ReadFile(const std::string& path) {
   std::ifstream in(path, std::ios::binary);
@@ -172,7 +172,7 @@ TEST(OusterCapture, WithoutDatagramsIsAClearError) {
 }
 
 TEST(OusterCapture, OfAnotherInitIdIsReadWithAWarning) {
-  json root = json::parse(ReadFile(DataPath("crc_test.json")));
+  Json root = Json::parse(ReadFile(DataPath("crc_test.json")));
   root["sensor_info"]["initialization_id"] =
       (root["sensor_info"]["initialization_id"].get<int>() + 1) % 0xffffff;
   const TempFile file("init.json", root.dump());
@@ -189,8 +189,8 @@ struct Hostile {
 };
 class OusterHostileMetadata : public ::testing::TestWithParam<Hostile> {};
 TEST_P(OusterHostileMetadata, IsAClearError) {
-  json root = json::parse(ReadFile(DataPath("windowed_frame1_0.json")));
-  root[json::json_pointer(GetParam().pointer)] = "@HERE@";
+  Json root = Json::parse(ReadFile(DataPath("windowed_frame1_0.json")));
+  root[Json::json_pointer(GetParam().pointer)] = "@HERE@";
   std::string text = root.dump();
   const std::string mark = "\"@HERE@\"";
   text.replace(text.find(mark), mark.size(), GetParam().value);
@@ -216,7 +216,7 @@ INSTANTIATE_TEST_SUITE_P(
         Hostile{"/lidar_data_format/udp_profile_lidar", "\"RNG99\"", "RNG99 is not known"}));
 
 TEST(OusterHostile, AnAngleListOfMillionsIsRefusedAtOnce) {
-  json root = json::parse(ReadFile(DataPath("windowed_frame1_0.json")));
+  Json root = Json::parse(ReadFile(DataPath("windowed_frame1_0.json")));
   root["beam_intrinsics"]["beam_azimuth_angles"] = std::vector<int>(3'000'000, 1);
   const TempFile file("millions.json", root.dump());
   const Ending ending = RunFile(DataPath("windowed_frame1.pcap"), file.path());

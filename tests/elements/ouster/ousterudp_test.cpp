@@ -10,7 +10,7 @@ namespace {
 using gst::BufferMap;
 using gst::BufferPtr;
 
-const char* const kPcap = "OS-1-128_v2.3.0_1024x10_lb_n3.pcap";
+const char* const kCapture = "OS-1-128_v2.3.0_1024x10_lb_n3.pcap";
 const char* const kJson = "OS-1-128_v2.3.0_1024x10.json";
 
 class OusterUdp : public ::testing::Test {
@@ -28,7 +28,7 @@ class OusterUdp : public ::testing::Test {
   guint16 port_ = 0;
   std::unique_ptr<UdpSender> sender_;
   const ouster::Metadata metadata_ = LoadMetadata(kJson);
-  const std::vector<std::vector<std::uint8_t>> packets_ = LoadPackets(kPcap, metadata_);
+  const std::vector<std::vector<std::uint8_t>> packets_ = LoadPackets(kCapture, metadata_);
 };
 
 TEST_F(OusterUdp, GivesASliceOnceItsLastPacketCame) {

@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// What tests in simulated time share.
+#pragma once
+#include "src/base/units.h"
+
+namespace lidar {
+
+/// Not zero, which a time that nobody set would be.
+constexpr Time kStart{std::chrono::seconds(100)};
+
+constexpr DataRate Mbps(double megabits) { return DataRate::BitsPerSecond(megabits * 1e6); }
+
+}  // namespace lidar
