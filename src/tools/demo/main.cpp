@@ -5,7 +5,8 @@
 #include <CLI/CLI.hpp>
 #include <cstdio>
 
-#include "src/tools/common/version.h"
+#include "src/tools/common/guard.h"
+#include "src/tools/common/program.h"
 #include "src/tools/demo/coordinator.h"
 #include "src/tools/demo/ends.h"
 
@@ -24,11 +25,7 @@ int Run(int argc, char** argv) {
   auto* receive = app.add_subcommand("receive", "The receiving end (started by run)");
   for (auto* end : {send, receive})
     end->add_option("pipeline", pipeline, "As for gst-launch-1.0")->required();
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& e) {
-    return app.exit(e) == 0 ? 0 : 2;
-  }
+  lidar::tools::Parse(&app, argc, argv);
   if (run->parsed()) {
     lidar::demo::CheckRunOptions(options);
     return lidar::demo::RunDemo(options);
@@ -42,10 +39,5 @@ int Run(int argc, char** argv) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  try {
-    return Run(argc, argv);
-  } catch (const std::exception& e) {
-    std::fprintf(stderr, "lidar-demo: %s\n", e.what());
-    return 1;
-  }
+  return lidar::tools::Guard("lidar-demo", [&] { return Run(argc, argv); });
 }

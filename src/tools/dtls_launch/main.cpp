@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "gst/common/refs.h"
-#include "src/tools/common/version.h"
+#include "src/tools/common/program.h"
 
 namespace {
 
@@ -197,7 +197,7 @@ int main(int argc, char** argv) {
                  "Elements, with commas, whose stats are printed at the end");
   app.prefix_command();  // the first word that is no option begins the pipeline
   app.footer("PIPELINE: elements, properties and links, after the options");
-  CLI11_PARSE(app, argc, argv);
+  lidar::tools::Parse(&app, argc, argv);
   options.pipeline = app.remaining();
   Context context;
   std::string peer;

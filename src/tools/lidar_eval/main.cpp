@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // lidar-eval: what an error bound costs, and how well a bitrate is hit.
-#include <iostream>
 
+#include "src/tools/common/guard.h"
 #include "src/tools/common/output_file.h"
-#include "src/tools/common/version.h"
+#include "src/tools/common/program.h"
 #include "src/tools/lidar_eval/commands.h"
 
 int main(int argc, char** argv) {
@@ -21,13 +21,9 @@ int main(int argc, char** argv) {
   lidar::tools::AddSlamCommand(&app);
   lidar::tools::AddAteCommand(&app);
 #endif
-  try {
-    app.parse(argc, argv);
+  return lidar::tools::Guard("lidar-eval", [&] {
+    lidar::tools::Parse(&app, argc, argv);  // runs the command
     lidar::tools::FinishStandardOutput();
-  } catch (const CLI::ParseError& e) {
-    return app.exit(e);
-  } catch (const std::exception& e) {
-    std::cerr << "lidar-eval: " << e.what() << '\n';
-    return 1;
-  }
+    return 0;
+  });
 }

@@ -4,6 +4,7 @@
 #include <iostream>
 
 #include "src/tools/common/event_loop.h"
+#include "src/tools/common/guard.h"
 #include "src/tools/common/output_file.h"
 #include "src/tools/lidar_link/options.h"
 #include "src/tools/lidar_link/recorder.h"
@@ -70,10 +71,5 @@ int Run(const LinkOptions& options) {
 
 int main(int argc, char** argv) {
   const auto options = lidar::tools::ParseLinkOptions(argc, argv);
-  try {
-    return lidar::tools::Run(options);
-  } catch (const std::exception& e) {
-    std::cerr << "lidar-link: " << e.what() << '\n';
-    return 1;
-  }
+  return lidar::tools::Guard("lidar-link", [&] { return lidar::tools::Run(options); });
 }

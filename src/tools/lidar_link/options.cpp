@@ -6,7 +6,7 @@
 #include <map>
 #include <sstream>
 
-#include "src/tools/common/version.h"
+#include "src/tools/common/program.h"
 
 namespace lidar::tools {
 namespace {
@@ -201,15 +201,11 @@ LinkOptions ParseLinkOptions(int argc, char** argv) {
   LinkOptions options;
   AddProgramOptions(&app, &text, &options);
   AddLinkOptions(&app, &text);
-  try {
-    app.parse(argc, argv);
+  Parse(&app, argc, argv, [&] {
     Apply(text, &options);
     if (options.listen.size() != options.forward.size())
       throw CLI::ValidationError("--forward", "one for each --listen");
-  } catch (const CLI::ParseError& e) {
-    const int code = app.exit(e);
-    std::exit(code == 0 ? 0 : 2);
-  }
+  });
   return options;
 }
 

@@ -7,8 +7,9 @@
 
 #include "src/link/capacity.h"
 #include "src/link/trace_maker.h"
+#include "src/tools/common/guard.h"
 #include "src/tools/common/output_file.h"
-#include "src/tools/common/version.h"
+#include "src/tools/common/program.h"
 
 namespace {
 
@@ -61,18 +62,12 @@ int main(int argc, char** argv) {
       ->check(CLI::Range(0.002, 86400.0))
       ->needs(gap)
       ->capture_default_str();
-  try {
-    app.parse(argc, argv);
+  lidar::tools::Parse(&app, argc, argv, [&] {
     if (o.gap_s >= o.every_s) throw CLI::ValidationError("--gap", "must be shorter than --every");
-  } catch (const CLI::ParseError& e) {
-    return app.exit(e) == 0 ? 0 : 2;
-  }
-  std::fputs(Make(o).c_str(), stdout);
-  try {
+  });
+  return lidar::tools::Guard("lidar-trace", [&] {
+    std::fputs(Make(o).c_str(), stdout);
     lidar::tools::FinishStandardOutput();
     return 0;
-  } catch (const std::exception& e) {
-    std::fprintf(stderr, "lidar-trace: %s\n", e.what());
-    return 1;
-  }
+  });
 }

@@ -10,8 +10,9 @@
 #include "src/tools/codec_lab/scan_source.h"
 #include "src/tools/codec_lab/slice_codec.h"
 #include "src/tools/codec_lab/training.h"
+#include "src/tools/common/guard.h"
 #include "src/tools/common/output_file.h"
-#include "src/tools/common/version.h"
+#include "src/tools/common/program.h"
 
 namespace lidar::tools {
 namespace {
@@ -57,14 +58,11 @@ Options ParseOptions(int argc, char** argv) {
   app.add_option("--world-seed", o.source.seed, "Of synthetic worlds");
   app.add_option("--seed", o.sampling.seed, "Of the random settings");
   app.add_option("--description", o.description, "Text for the file's \"trained-on\"");
-  try {
-    app.parse(argc, argv);
+  Parse(&app, argc, argv, [&] {
     for (const std::string& name : o.sampling.modes) ModeNamed(name);
     if (o.sampling.min_step_m >= o.sampling.max_step_m)
       throw CLI::ValidationError("--min-step", "must be below --max-step");
-  } catch (const CLI::ParseError& e) {
-    std::exit(app.exit(e));
-  }
+  });
   return o;
 }
 
@@ -140,10 +138,6 @@ int Run(const Options& options) {
 }  // namespace lidar::tools
 
 int main(int argc, char** argv) {
-  try {
-    return lidar::tools::Run(lidar::tools::ParseOptions(argc, argv));
-  } catch (const std::exception& e) {
-    std::cerr << "lidar-train: " << e.what() << '\n';
-    return 1;
-  }
+  using namespace lidar::tools;
+  return Guard("lidar-train", [&] { return Run(ParseOptions(argc, argv)); });
 }

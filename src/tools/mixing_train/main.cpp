@@ -8,7 +8,9 @@
 #include <sstream>
 
 #include "src/tools/codec_lab/scan_source.h"
+#include "src/tools/common/guard.h"
 #include "src/tools/common/output_file.h"
+#include "src/tools/common/program.h"
 #include "src/tools/mixing_train/training.h"
 
 namespace lidar::tools {
@@ -40,11 +42,7 @@ Options ParseOptions(int argc, char** argv) {
                  "Print bits a return of these too, and never train on them");
   app.add_option("--scans", o.source.max_scans, "Scans to read of each source")
       ->check(CLI::Range(1, 1000));
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& e) {
-    std::exit(app.exit(e));
-  }
+  Parse(&app, argc, argv);
   return o;
 }
 
@@ -138,10 +136,6 @@ int Run(const Options& o) {
 }  // namespace lidar::tools
 
 int main(int argc, char** argv) {
-  try {
-    return lidar::tools::Run(lidar::tools::ParseOptions(argc, argv));
-  } catch (const std::exception& e) {
-    std::cerr << "mixing-train: " << e.what() << "\n";
-    return 1;
-  }
+  using namespace lidar::tools;
+  return Guard("mixing-train", [&] { return Run(ParseOptions(argc, argv)); });
 }

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <stdexcept>
+#include <tuple>
 #include <utility>
 
 #include "src/codec/intensity_scale.h"
@@ -107,30 +108,25 @@ class Walk {
   std::size_t place_ = 0;
 };
 
-template <class Do>
-void ForEach(mixing::BinCounters& a, const mixing::BinCounters& b, Do&& act) {
+template <class States>
+constexpr auto kParts = std::tuple(&States::counters, &States::rest, &States::weights,
+                                   &States::surface_weights);
+template <>
+constexpr auto kParts<mixing::BinCounters> = std::tuple(&mixing::BinCounters::mask,
+                                                        &mixing::BinCounters::range,
+                                                        &mixing::BinCounters::jump,
+                                                        &mixing::BinCounters::candidates,
+                                                        &mixing::BinCounters::spread);
+template <>
+constexpr auto kParts<mixing::BinWeights> = std::tuple(&mixing::BinWeights::mask,
+                                                       &mixing::BinWeights::range,
+                                                       &mixing::BinWeights::event,
+                                                       &mixing::BinWeights::jump);
+
+template <class States, class Do>
+void ForEach(States& a, const States& b, Do&& act) {
   Walk walk;
-  walk.Of(a.mask, b.mask, act);
-  walk.Of(a.range, b.range, act);
-  walk.Of(a.jump, b.jump, act);
-  walk.Of(a.candidates, b.candidates, act);
-  walk.Of(a.spread, b.spread, act);
-}
-template <class Do>
-void ForEach(mixing::BinWeights& a, const mixing::BinWeights& b, Do&& act) {
-  Walk walk;
-  walk.Of(a.mask, b.mask, act);
-  walk.Of(a.range, b.range, act);
-  walk.Of(a.event, b.event, act);
-  walk.Of(a.jump, b.jump, act);
-}
-template <class Do>
-void ForEach(mixing::LevelModel& a, const mixing::LevelModel& b, Do&& act) {
-  Walk walk;
-  walk.Of(a.counters, b.counters, act);
-  walk.Of(a.rest, b.rest, act);
-  walk.Of(a.weights, b.weights, act);
-  walk.Of(a.surface_weights, b.surface_weights, act);
+  std::apply([&](auto... part) { (walk.Of(a.*part, b.*part, act), ...); }, kParts<States>);
 }
 
 /// Replaces `states` by what a slice has made of them.

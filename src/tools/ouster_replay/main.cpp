@@ -9,6 +9,7 @@
 #include "src/ouster/metadata_writer.h"
 #include "src/ouster/pcap_writer.h"
 #include "src/tools/common/event_loop.h"
+#include "src/tools/common/guard.h"
 #include "src/tools/common/output_file.h"
 #include "src/tools/ouster_replay/http_api.h"
 #include "src/tools/ouster_replay/options.h"
@@ -150,10 +151,5 @@ int Run(const ReplayOptions& options) {
 
 int main(int argc, char** argv) {
   const auto options = lidar::tools::ParseReplayOptions(argc, argv);
-  try {
-    return lidar::tools::Run(options);
-  } catch (const std::exception& e) {
-    std::cerr << "ouster-replay: " << e.what() << '\n';
-    return 1;
-  }
+  return lidar::tools::Guard("ouster-replay", [&] { return lidar::tools::Run(options); });
 }

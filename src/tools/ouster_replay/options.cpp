@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <map>
 
-#include "src/tools/common/version.h"
+#include "src/tools/common/program.h"
 #include "src/tools/ouster_replay/faults.h"
 
 namespace lidar::tools {
@@ -129,12 +129,7 @@ ReplayOptions ParseReplayOptions(int argc, char** argv) {
   AddSource(&app, &options, &text);
   AddSending(&app, &options);
   AddFaults(&app, &text);
-  try {
-    app.parse(argc, argv);
-    Convert(text, &options);
-  } catch (const CLI::ParseError& e) {
-    std::exit(app.exit(e));
-  }
+  Parse(&app, argc, argv, [&] { Convert(text, &options); });
   return options;
 }
 

@@ -2,9 +2,7 @@
 // scream-bench: measures a network path with SCReAM v2.
 #include <gst/gst.h>
 
-#include <exception>
-#include <iostream>
-
+#include "src/tools/common/guard.h"
 #include "src/tools/scream_bench/options.h"
 #include "src/tools/scream_bench/receiver.h"
 #include "src/tools/scream_bench/sender.h"
@@ -12,11 +10,8 @@
 int main(int argc, char** argv) {
   const auto options = lidar::tools::ParseBenchOptions(argc, argv);
   gst_init(nullptr, nullptr);
-  try {
+  return lidar::tools::Guard("scream-bench", [&] {
     return options.is_sender ? lidar::tools::RunSender(options)
                              : lidar::tools::RunReceiver(options);
-  } catch (const std::exception& e) {
-    std::cerr << "scream-bench: " << e.what() << '\n';
-    return 1;
-  }
+  });
 }

@@ -3,7 +3,7 @@
 
 #include <CLI/CLI.hpp>
 
-#include "src/tools/common/version.h"
+#include "src/tools/common/program.h"
 
 namespace lidar::tools {
 namespace {
@@ -83,17 +83,12 @@ BenchOptions ParseBenchOptions(int argc, char** argv) {
         ->check(CLI::Range(0.1, 1e7));
     sub->add_option("--summary", options.summary, "JSON file with the totals");
   }
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& e) {
-    std::exit(app.exit(e) == 0 ? 0 : 2);
-  }
+  Parse(&app, argc, argv, [&] {
+    if (options.tx.min_bitrate > options.tx.max_bitrate)
+      throw CLI::ValidationError("--min-bitrate", "is above --max-bitrate");
+  });
   options.is_sender = tx->parsed();
   if (duration_s > 0) options.duration = FromSeconds(duration_s);
-  if (options.tx.min_bitrate > options.tx.max_bitrate) {
-    std::cerr << "scream-bench: --min-bitrate is above --max-bitrate\n";
-    std::exit(2);
-  }
   return options;
 }
 

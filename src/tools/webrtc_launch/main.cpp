@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "gst/common/refs.h"
-#include "src/tools/common/version.h"
+#include "src/tools/common/program.h"
 
 namespace {
 
@@ -258,7 +258,7 @@ int main(int argc, char** argv) {
       "name=callee answers. Both are in this process, so no server is needed.");
   Call call;
   AddOptions(&app, &call.options);
-  CLI11_PARSE(app, argc, argv);
+  lidar::tools::Parse(&app, argc, argv);
   call.options.pipeline = app.remaining();
   gst_init(nullptr, nullptr);
   if (!MakePipeline(&call)) return kUsage;

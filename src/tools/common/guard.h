@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Errors of programs alike: a message, and 1 as the exit code.
+#pragma once
+#include <cstdio>
+#include <exception>
+
+namespace lidar::tools {
+
+/// The exit code of `run`; what it throws becomes a message.
+template <class Run>
+int Guard(const char* program, Run run) {
+  try {
+    return run();
+  } catch (const std::exception& e) {
+    std::fprintf(stderr, "%s: %s\n", program, e.what());
+    return 1;
+  }
+}
+
+}  // namespace lidar::tools

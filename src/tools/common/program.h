@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Command lines alike in every program: --version, and 2 as the exit code of wrong options.
+#pragma once
+#include <CLI/CLI.hpp>
+#include <string>
+
+namespace lidar::tools {
+
+inline void AddVersionFlag(CLI::App* app, const std::string& program) {
+  app->set_version_flag("--version", program + " (gst-lidar) " LIDAR_VERSION);
+}
+
+/// For programs of several commands: all their options at once, of which the man page is made.
+inline void AddHelpAllFlag(CLI::App* app) {
+  app->set_help_all_flag("--help-all", "Print the help of all subcommands and exit");
+}
+
+/// Parses the command line, and has `check` throw CLI::ParseError for options that contradict each
+/// other. Ends the program where it is not to run.
+template <class Check>
+void Parse(CLI::App* app, int argc, char** argv, Check check) {
+  try {
+    app->parse(argc, argv);
+    check();
+  } catch (const CLI::ParseError& e) {
+    std::exit(app->exit(e) == 0 ? 0 : 2);
+  }
+}
+inline void Parse(CLI::App* app, int argc, char** argv) {
+  Parse(app, argc, argv, [] {});
+}
+
+}  // namespace lidar::tools
