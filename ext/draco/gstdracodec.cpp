@@ -9,19 +9,20 @@
  * gst-launch-1.0 lidartestsrc num-buffers=80 ! dracoenc ! dracodec ! fakesink
  * ]|
  */
-#include "ext/draco/gstdracodec.h"
-
 #include <optional>
 
 #include "ext/draco/slice_coder.h"
 #include "gst/common/cloud_info.h"
+#include "gst/common/element_class.h"
+#include "gst/common/gstlidardecoder.h"
+#include "gst/common/properties.h"
 
 namespace {
 
 using lidar::Geometry;
 
 /// Belongs to the streaming thread.
-struct Coder {
+struct State {
   lidar::codec::CloudFormat format;
   Geometry geometry = Geometry::kXyz;
   std::optional<lidar::draco::SliceDecoder> decoder;
@@ -37,18 +38,19 @@ std::optional<Geometry> GeometryOf(const GstCaps* caps) {
 
 }  // namespace
 
+G_DECLARE_FINAL_TYPE(GstLidarDracoDec, gst_lidar_draco_dec, GST, LIDAR_DRACO_DEC, GstLidarDecoder)
 struct _GstLidarDracoDec {
   GstLidarDecoder parent;
-  Coder* coder;
+  State* state;
 };
 
 G_DEFINE_TYPE(GstLidarDracoDec, gst_lidar_draco_dec, GST_TYPE_LIDAR_DECODER)
-GST_ELEMENT_REGISTER_DEFINE(dracodec, "dracodec", GST_RANK_PRIMARY, GST_TYPE_LIDAR_DRACO_DEC)
+GST_ELEMENT_REGISTER_DEFINE(dracodec, "dracodec", GST_RANK_PRIMARY, gst_lidar_draco_dec_get_type())
 
 static gboolean gst_lidar_draco_dec_set_format(GstLidarDecoder* base, GstCaps* caps,
                                                const GstLidarCloudFormat* cloud,
                                                GstLidarDecodedFormat* decoded) {
-  Coder& coder = *GST_LIDAR_DRACO_DEC(base)->coder;
+  State& coder = *GST_LIDAR_DRACO_DEC(base)->state;
   const auto info = lidar::gst::CloudInfo::FromFormat(*cloud);
   const auto geometry = GeometryOf(caps);
   coder = {};
@@ -62,7 +64,7 @@ static gboolean gst_lidar_draco_dec_set_format(GstLidarDecoder* base, GstCaps* c
 
 static gboolean gst_lidar_draco_dec_decode(GstLidarDecoder* base, const guint8* data, gsize size,
                                            guint max_points, GstLidarDecodedSlice* slice) {
-  Coder& coder = *GST_LIDAR_DRACO_DEC(base)->coder;
+  State& coder = *GST_LIDAR_DRACO_DEC(base)->state;
   if (!coder.decoder) coder.decoder.emplace(coder.format, coder.geometry, max_points);
   const auto shape = coder.decoder->Decode({data, size});
   if (!shape) return FALSE;
@@ -73,33 +75,22 @@ static gboolean gst_lidar_draco_dec_decode(GstLidarDecoder* base, const guint8* 
 }
 
 static void gst_lidar_draco_dec_write(GstLidarDecoder* base, guint8* points) {
-  GST_LIDAR_DRACO_DEC(base)->coder->decoder->Write(points);
+  GST_LIDAR_DRACO_DEC(base)->state->decoder->Write(points);
 }
 
 static void gst_lidar_draco_dec_reset(GstLidarDecoder* base) {
-  *GST_LIDAR_DRACO_DEC(base)->coder = {};
+  *GST_LIDAR_DRACO_DEC(base)->state = {};
 }
 
-static void gst_lidar_draco_dec_finalize(GObject* object) {
-  delete GST_LIDAR_DRACO_DEC(object)->coder;
-  G_OBJECT_CLASS(gst_lidar_draco_dec_parent_class)->finalize(object);
-}
-
-static GstStaticPadTemplate sink_template = GST_STATIC_PAD_TEMPLATE(
-    "sink", GST_PAD_SINK, GST_PAD_ALWAYS, GST_STATIC_CAPS(GST_LIDAR_DRACO_MEDIA_TYPE));
-static GstStaticPadTemplate src_template = GST_STATIC_PAD_TEMPLATE(
-    "src", GST_PAD_SRC, GST_PAD_ALWAYS, GST_STATIC_CAPS(GST_LIDAR_CLOUD_MEDIA_TYPE));
-
-static void gst_lidar_draco_dec_init(GstLidarDracoDec* self) { self->coder = new Coder; }
+static void gst_lidar_draco_dec_init(GstLidarDracoDec* self) { self->state = new State; }
 
 static void gst_lidar_draco_dec_class_init(GstLidarDracoDecClass* klass) {
-  G_OBJECT_CLASS(klass)->finalize = gst_lidar_draco_dec_finalize;
-  auto* element = GST_ELEMENT_CLASS(klass);
-  gst_element_class_add_static_pad_template(element, &sink_template);
-  gst_element_class_add_static_pad_template(element, &src_template);
-  gst_element_class_set_static_metadata(element, "Draco decoder", "Codec/Decoder/PointCloud",
-                                        "Decompresses point clouds, safe on hostile input",
-                                        "gst-lidar");
+  lidar::gst::OwnState<GstLidarDracoDec, gst_lidar_draco_dec_parent_class>(G_OBJECT_CLASS(klass));
+  lidar::gst::Describe(klass,
+                       {"Draco decoder", "Codec/Decoder/PointCloud",
+                        "Decompresses point clouds, safe on hostile input"},
+                       {{"sink", GST_PAD_SINK, GST_LIDAR_DRACO_MEDIA_TYPE},
+                        {"src", GST_PAD_SRC, GST_LIDAR_CLOUD_MEDIA_TYPE}});
   auto* decoder = GST_LIDAR_DECODER_CLASS(klass);
   decoder->set_format = gst_lidar_draco_dec_set_format;
   decoder->decode = gst_lidar_draco_dec_decode;

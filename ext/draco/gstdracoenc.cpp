@@ -8,8 +8,6 @@
  * gst-launch-1.0 lidartestsrc num-buffers=80 ! dracoenc max-error=0.02 ! dracodec ! fakesink
  * ]|
  */
-#include "ext/draco/gstdracoenc.h"
-
 #include <mutex>
 #include <optional>
 #include <string>
@@ -19,6 +17,8 @@
 #include "ext/draco/draco_settings.h"
 #include "ext/draco/slice_coder.h"
 #include "gst/common/cloud_info.h"
+#include "gst/common/element_class.h"
+#include "gst/common/gstlidarencoder.h"
 #include "gst/common/properties.h"
 #include "src/rate/error_bound.h"
 
@@ -59,13 +59,14 @@ const std::array<lidar::gst::Property<Settings>, 3> kProperties = {{
 
 }  // namespace
 
+G_DECLARE_FINAL_TYPE(GstLidarDracoEnc, gst_lidar_draco_enc, GST, LIDAR_DRACO_ENC, GstLidarEncoder)
 struct _GstLidarDracoEnc {
   GstLidarEncoder parent;
   State* state;
 };
 
 G_DEFINE_TYPE(GstLidarDracoEnc, gst_lidar_draco_enc, GST_TYPE_LIDAR_ENCODER)
-GST_ELEMENT_REGISTER_DEFINE(dracoenc, "dracoenc", GST_RANK_NONE, GST_TYPE_LIDAR_DRACO_ENC)
+GST_ELEMENT_REGISTER_DEFINE(dracoenc, "dracoenc", GST_RANK_NONE, gst_lidar_draco_enc_get_type())
 
 namespace {
 
@@ -169,30 +170,19 @@ static gboolean gst_lidar_draco_enc_decode(GstLidarEncoder* base, const guint8* 
 
 static void gst_lidar_draco_enc_reset(GstLidarEncoder* base) { CoderOf(base) = {}; }
 
-static void gst_lidar_draco_enc_finalize(GObject* object) {
-  delete GST_LIDAR_DRACO_ENC(object)->state;
-  G_OBJECT_CLASS(gst_lidar_draco_enc_parent_class)->finalize(object);
-}
-
-static GstStaticPadTemplate sink_template = GST_STATIC_PAD_TEMPLATE(
-    "sink", GST_PAD_SINK, GST_PAD_ALWAYS, GST_STATIC_CAPS(GST_LIDAR_CLOUD_MEDIA_TYPE));
-static GstStaticPadTemplate src_template = GST_STATIC_PAD_TEMPLATE(
-    "src", GST_PAD_SRC, GST_PAD_ALWAYS,
-    GST_STATIC_CAPS(GST_LIDAR_DRACO_MEDIA_TYPE
-                    ", geometry = (string) { xyz, range }, alignment = (string) slice"));
-
 static void gst_lidar_draco_enc_init(GstLidarDracoEnc* self) { self->state = new State; }
 
 static void gst_lidar_draco_enc_class_init(GstLidarDracoEncClass* klass) {
   auto* object = G_OBJECT_CLASS(klass);
-  object->finalize = gst_lidar_draco_enc_finalize;
+  lidar::gst::OwnState<GstLidarDracoEnc, gst_lidar_draco_enc_parent_class>(object);
   lidar::gst::ServeProperties<GstLidarDracoEnc, kProperties>(object);
-  auto* element = GST_ELEMENT_CLASS(klass);
-  gst_element_class_add_static_pad_template(element, &sink_template);
-  gst_element_class_add_static_pad_template(element, &src_template);
-  gst_element_class_set_static_metadata(element, "Draco encoder", "Codec/Encoder/PointCloud",
-                                        "Compresses point clouds to a bitrate and within an error",
-                                        "gst-lidar");
+  lidar::gst::Describe(klass,
+                       {"Draco encoder", "Codec/Encoder/PointCloud",
+                        "Compresses point clouds to a bitrate and within an error"},
+                       {{"sink", GST_PAD_SINK, GST_LIDAR_CLOUD_MEDIA_TYPE},
+                        {"src", GST_PAD_SRC,
+                         GST_LIDAR_DRACO_MEDIA_TYPE
+                         ", geometry = (string) { xyz, range }, alignment = (string) slice"}});
   auto* encoder = GST_LIDAR_ENCODER_CLASS(klass);
   encoder->set_format = gst_lidar_draco_enc_set_format;
   encoder->load = gst_lidar_draco_enc_load;

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "ext/draco/gstdracodec.h"
-#include "ext/draco/gstdracoenc.h"
 #include "gst/common/gstlidar.h"
+
+GST_ELEMENT_REGISTER_DECLARE(dracodec)
+GST_ELEMENT_REGISTER_DECLARE(dracoenc)
 
 static gboolean plugin_init(GstPlugin* plugin) {
   gst_lidar_init();

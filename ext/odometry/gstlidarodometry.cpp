@@ -9,7 +9,7 @@
  *   ! lidarodometry trajectory=drive.tum ! fakesink
  * ]|
  */
-#include "ext/odometry/gstlidarodometry.h"
+#include <gst/base/gstbasetransform.h>
 
 #include <memory>
 #include <mutex>
@@ -18,6 +18,7 @@
 
 #include "ext/odometry/scan_collector.h"
 #include "gst/common/buffer_map.h"
+#include "gst/common/element_class.h"
 #include "gst/common/properties.h"
 #include "gst/common/refs.h"
 #include "gst/common/stats.h"
@@ -108,6 +109,7 @@ const std::array<lidar::gst::Property<Settings>, 7> kProperties = {{
 
 }  // namespace
 
+G_DECLARE_FINAL_TYPE(GstLidarOdometry, gst_lidar_odometry, GST, LIDAR_ODOMETRY, GstBaseTransform)
 struct _GstLidarOdometry {
   GstBaseTransform parent;
   GstPad* poses;
@@ -115,7 +117,8 @@ struct _GstLidarOdometry {
 };
 
 G_DEFINE_TYPE(GstLidarOdometry, gst_lidar_odometry, GST_TYPE_BASE_TRANSFORM)
-GST_ELEMENT_REGISTER_DEFINE(lidarodometry, "lidarodometry", GST_RANK_NONE, GST_TYPE_LIDAR_ODOMETRY)
+GST_ELEMENT_REGISTER_DEFINE(lidarodometry, "lidarodometry", GST_RANK_NONE,
+                            gst_lidar_odometry_get_type())
 
 namespace {
 
@@ -335,39 +338,28 @@ gboolean Stop(GstBaseTransform* base) {
   return TRUE;
 }
 
-GstStaticPadTemplate cloud_sink = GST_STATIC_PAD_TEMPLATE(
-    "sink", GST_PAD_SINK, GST_PAD_ALWAYS, GST_STATIC_CAPS(GST_LIDAR_CLOUD_MEDIA_TYPE));
-GstStaticPadTemplate cloud_src = GST_STATIC_PAD_TEMPLATE(
-    "src", GST_PAD_SRC, GST_PAD_ALWAYS, GST_STATIC_CAPS(GST_LIDAR_CLOUD_MEDIA_TYPE));
-GstStaticPadTemplate pose_src = GST_STATIC_PAD_TEMPLATE(
-    "odometry", GST_PAD_SRC, GST_PAD_ALWAYS, GST_STATIC_CAPS(GST_LIDAR_ODOMETRY_MEDIA_TYPE));
-
 }  // namespace
 
 static void gst_lidar_odometry_init(GstLidarOdometry* self) {
   self->state = new State;
   gst_base_transform_set_in_place(GST_BASE_TRANSFORM(self), TRUE);
-  self->poses = gst_pad_new_from_static_template(&pose_src, "odometry");
+  self->poses = lidar::gst::AddPad(self, "odometry");
   gst_pad_use_fixed_caps(self->poses);
-  gst_element_add_pad(GST_ELEMENT(self), self->poses);
 }
 
 static void gst_lidar_odometry_class_init(GstLidarOdometryClass* klass) {
   GST_DEBUG_CATEGORY_INIT(gst_lidar_odometry_debug, "lidarodometry", 0,
                           "Odometry from point clouds");
   auto* object = G_OBJECT_CLASS(klass);
-  object->finalize = [](GObject* o) {
-    delete GST_LIDAR_ODOMETRY(o)->state;
-    G_OBJECT_CLASS(gst_lidar_odometry_parent_class)->finalize(o);
-  };
+  lidar::gst::OwnState<GstLidarOdometry, gst_lidar_odometry_parent_class>(object);
   lidar::gst::ServeProperties<GstLidarOdometry, kProperties>(object);
-  auto* element = GST_ELEMENT_CLASS(klass);
-  gst_element_class_add_static_pad_template(element, &cloud_sink);
-  gst_element_class_add_static_pad_template(element, &cloud_src);
-  gst_element_class_add_static_pad_template(element, &pose_src);
-  gst_element_class_set_static_metadata(
-      element, "LiDAR odometry", "Filter/Analyzer/PointCloud",
-      "Finds the poses of the sensor by aligning its scans to a map of what it saw", "gst-lidar");
+  lidar::gst::Describe(
+      klass,
+      {"LiDAR odometry", "Filter/Analyzer/PointCloud",
+       "Finds the poses of the sensor by aligning its scans to a map of what it saw"},
+      {{"sink", GST_PAD_SINK, GST_LIDAR_CLOUD_MEDIA_TYPE},
+       {"src", GST_PAD_SRC, GST_LIDAR_CLOUD_MEDIA_TYPE},
+       {"odometry", GST_PAD_SRC, GST_LIDAR_ODOMETRY_MEDIA_TYPE}});
   auto* transform = GST_BASE_TRANSFORM_CLASS(klass);
   transform->start = Start;
   transform->stop = Stop;

@@ -10,7 +10,7 @@
  * gst-launch-1.0 ouster_src hostname=os1.local udp-dest=@auto ! fakesink silent=false -v
  * ]|
  */
-#include "ext/ouster/gstoustersrc.h"
+#include <gst/base/gstpushsrc.h>
 
 #include <memory>
 #include <mutex>
@@ -18,7 +18,9 @@
 #include "ext/ouster/imu_pad.h"
 #include "ext/ouster/session.h"
 #include "ext/ouster/settings.h"
+#include "gst/common/element_class.h"
 #include "gst/common/gstlidar.h"
+#include "gst/common/properties.h"
 
 GST_DEBUG_CATEGORY(gst_lidar_ouster_src_debug);
 #define GST_CAT_DEFAULT gst_lidar_ouster_src_debug
@@ -39,13 +41,15 @@ struct State {
 
 }  // namespace
 
+G_DECLARE_FINAL_TYPE(GstLidarOusterSrc, gst_lidar_ouster_src, GST, LIDAR_OUSTER_SRC, GstPushSrc)
 struct _GstLidarOusterSrc {
   GstPushSrc parent;
   State* state;
 };
 
 G_DEFINE_TYPE(GstLidarOusterSrc, gst_lidar_ouster_src, GST_TYPE_PUSH_SRC)
-GST_ELEMENT_REGISTER_DEFINE(ouster_src, "ouster_src", GST_RANK_NONE, GST_TYPE_LIDAR_OUSTER_SRC)
+GST_ELEMENT_REGISTER_DEFINE(ouster_src, "ouster_src", GST_RANK_NONE,
+                            gst_lidar_ouster_src_get_type())
 
 static State& StateOf(gpointer self) { return *GST_LIDAR_OUSTER_SRC(self)->state; }
 
@@ -145,23 +149,12 @@ static void InstallVmethods(GstLidarOusterSrcClass* klass) {
 static void gst_lidar_ouster_src_class_init(GstLidarOusterSrcClass* klass) {
   GST_DEBUG_CATEGORY_INIT(gst_lidar_ouster_src_debug, "ouster_src", 0, "Ouster sensors");
   auto* object = G_OBJECT_CLASS(klass);
-  object->finalize = [](GObject* o) {
-    delete GST_LIDAR_OUSTER_SRC(o)->state;
-    G_OBJECT_CLASS(gst_lidar_ouster_src_parent_class)->finalize(o);
-  };
+  OwnState<GstLidarOusterSrc, gst_lidar_ouster_src_parent_class>(object);
   ServeProperties<GstLidarOusterSrc, kOusterProperties>(object);
-  gst_type_mark_as_plugin_api(OusterReturnType(), static_cast<GstPluginAPIFlags>(0));
-  gst_type_mark_as_plugin_api(OusterPtsFromType(), static_cast<GstPluginAPIFlags>(0));
-  gst_type_mark_as_plugin_api(OusterInvalidType(), static_cast<GstPluginAPIFlags>(0));
-  static GstStaticPadTemplate src = GST_STATIC_PAD_TEMPLATE(
-      "src", GST_PAD_SRC, GST_PAD_ALWAYS, GST_STATIC_CAPS(GST_LIDAR_CLOUD_MEDIA_TYPE));
-  static GstStaticPadTemplate imu = GST_STATIC_PAD_TEMPLATE(
-      "imu", GST_PAD_SRC, GST_PAD_SOMETIMES, GST_STATIC_CAPS(GST_LIDAR_IMU_MEDIA_TYPE));
-  auto* element = GST_ELEMENT_CLASS(klass);
-  gst_element_class_add_static_pad_template(element, &src);
-  gst_element_class_add_static_pad_template(element, &imu);
-  gst_element_class_set_static_metadata(element, "Ouster LiDAR source", "Source/Network",
-                                        "Receives an Ouster sensor, or reads a capture of one",
-                                        "gst-lidar");
+  Describe(klass,
+           {"Ouster LiDAR source", "Source/Network",
+            "Receives an Ouster sensor, or reads a capture of one"},
+           {{"src", GST_PAD_SRC, GST_LIDAR_CLOUD_MEDIA_TYPE},
+            {"imu", GST_PAD_SRC, GST_LIDAR_IMU_MEDIA_TYPE, GST_PAD_SOMETIMES}});
   InstallVmethods(klass);
 }

@@ -2,8 +2,9 @@
 // Registers the elements of the plugin.
 #include <curl/curl.h>
 
-#include "ext/ouster/gstoustersrc.h"
 #include "gst/common/gstlidar.h"
+
+GST_ELEMENT_REGISTER_DECLARE(ouster_src)
 
 static gboolean plugin_init(GstPlugin* plugin) {
   gst_lidar_init();

@@ -1,16 +1,12 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include "ext/ouster/settings.h"
 
+#include "gst/common/enum_type.h"
+
 namespace lidar::gst {
 namespace {
 
 using S = OusterSettings;
-
-/// Registers an enumeration once; GType names are process-wide.
-GType RegisterEnum(const char* name, const GEnumValue* values) {
-  const GType known = g_type_from_name(name);
-  return known != G_TYPE_INVALID ? known : g_enum_register_static(name, values);
-}
 
 }  // namespace
 

@@ -11,13 +11,14 @@
  *   rtph264pay ! screamsink host=127.0.0.1 port=5004
  * ]|
  */
-#include "gst/bitrateadapter/gstbitrateadapter.h"
+#include <gst/base/gstbasetransform.h>
 
 #include <algorithm>
 #include <limits>
 #include <mutex>
 
 #include "gst/bitrateadapter/encoder_bitrate.h"
+#include "gst/common/element_class.h"
 #include "gst/common/gstlidar.h"
 #include "gst/common/properties.h"
 
@@ -50,6 +51,8 @@ struct State {
 
 }  // namespace
 
+G_DECLARE_FINAL_TYPE(GstLidarBitrateAdapter, gst_lidar_bitrate_adapter, GST, LIDAR_BITRATE_ADAPTER,
+                     GstBaseTransform)
 struct _GstLidarBitrateAdapter {
   GstBaseTransform parent;
   State* state;
@@ -57,7 +60,7 @@ struct _GstLidarBitrateAdapter {
 
 G_DEFINE_TYPE(GstLidarBitrateAdapter, gst_lidar_bitrate_adapter, GST_TYPE_BASE_TRANSFORM)
 GST_ELEMENT_REGISTER_DEFINE(bitrateadapter, "bitrateadapter", GST_RANK_NONE,
-                            GST_TYPE_LIDAR_BITRATE_ADAPTER)
+                            gst_lidar_bitrate_adapter_get_type())
 
 static guint Bitrate(GObject* object) {
   State& state = *GST_LIDAR_BITRATE_ADAPTER(object)->state;
@@ -205,17 +208,10 @@ static void gst_lidar_bitrate_adapter_class_init(GstLidarBitrateAdapterClass* kl
   auto* object = G_OBJECT_CLASS(klass);
   lidar::gst::ServeProperties<GstLidarBitrateAdapter, kProperties>(object);
   lidar::gst::OwnState<GstLidarBitrateAdapter, gst_lidar_bitrate_adapter_parent_class>(object);
-  static GstStaticPadTemplate sink =
-      GST_STATIC_PAD_TEMPLATE("sink", GST_PAD_SINK, GST_PAD_ALWAYS, GST_STATIC_CAPS_ANY);
-  static GstStaticPadTemplate src =
-      GST_STATIC_PAD_TEMPLATE("src", GST_PAD_SRC, GST_PAD_ALWAYS, GST_STATIC_CAPS_ANY);
-  auto* element = GST_ELEMENT_CLASS(klass);
-  gst_element_class_add_static_pad_template(element, &sink);
-  gst_element_class_add_static_pad_template(element, &src);
-  gst_element_class_set_static_metadata(
-      element, "Encoder bitrate adapter", "Filter/Network",
-      "Sets the bitrate of the encoder before it from target-bitrate events",
-      "The gst-lidar developers");
+  lidar::gst::Describe(klass,
+                       {"Encoder bitrate adapter", "Filter/Network",
+                        "Sets the bitrate of the encoder before it from target-bitrate events"},
+                       {{"sink", GST_PAD_SINK, "ANY"}, {"src", GST_PAD_SRC, "ANY"}});
   auto* transform = GST_BASE_TRANSFORM_CLASS(klass);
   transform->start = Start;
   transform->src_event = SrcEvent;

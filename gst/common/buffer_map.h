@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// A mapped buffer that unmaps itself.
+// A mapped buffer that unmaps itself, and what a buffer has beside its bytes.
 #pragma once
 #include <gst/gst.h>
 
@@ -28,5 +28,12 @@ class BufferMap {
   GstMapInfo info_{};
   GstBuffer* buffer_;
 };
+
+/// Gives `output` the flags, times and metas of `input`.
+inline void CopyMetadata(GstBuffer* output, GstBuffer* input) {
+  constexpr auto kAll = static_cast<GstBufferCopyFlags>(
+      GST_BUFFER_COPY_FLAGS | GST_BUFFER_COPY_TIMESTAMPS | GST_BUFFER_COPY_META);
+  gst_buffer_copy_into(output, input, kAll, 0, static_cast<gsize>(-1));
+}
 
 }  // namespace lidar::gst

@@ -39,12 +39,14 @@ struct Property {
   }
 };
 
-/// The row of `table` called `name`, which must be there.
+/// The row of `table` called `name`. A table that lacks it is a mistake in the program, and ends
+/// it.
 template <class Settings, std::size_t N>
 const Property<Settings>* FindRow(const std::array<Property<Settings>, N>& table,
                                   std::string_view name) {
-  return std::find_if(table.data(), table.data() + N - 1,
-                      [&](const auto& row) { return row.name == name; });
+  for (const auto& row : table)
+    if (row.name == name) return &row;
+  g_error("no property row is called \"%s\"", std::string(name).c_str());
 }
 
 /// The row `name` of a part of Settings: Within<&Settings::part>(kPartRows, "name"). gcc 12 lets

@@ -10,7 +10,7 @@
  * ecn=ect1
  * ]|
  */
-#include "gst/ecnudp/gstecnudpsink.h"
+#include <gst/base/gstbasesink.h>
 
 #include <gst/net/gstnetaddressmeta.h>
 #include <netinet/in.h>
@@ -18,6 +18,8 @@
 #include <memory>
 #include <mutex>
 
+#include "gst/common/element_class.h"
+#include "gst/common/enum_type.h"
 #include "gst/common/gstlidar.h"
 #include "gst/common/properties.h"
 #include "gst/common/stats.h"
@@ -34,15 +36,12 @@ using namespace lidar::gst;
 constexpr guint8 kEcnMask = 0x03;
 
 GType EcnType() {
-  static gsize type = 0;
-  if (g_once_init_enter(&type)) {
-    static const GEnumValue values[] = {{GST_LIDAR_ECN_NOT_ECT, "Not ECN-capable", "not-ect"},
-                                        {GST_LIDAR_ECN_ECT1, "ECT(1): L4S", "ect1"},
-                                        {GST_LIDAR_ECN_ECT0, "ECT(0): classic ECN", "ect0"},
-                                        {GST_LIDAR_ECN_CE, "Congestion experienced", "ce"},
-                                        {0, nullptr, nullptr}};
-    g_once_init_leave(&type, g_enum_register_static("GstLidarEcnUdpSinkEcn", values));
-  }
+  static const GEnumValue values[] = {{GST_LIDAR_ECN_NOT_ECT, "Not ECN-capable", "not-ect"},
+                                      {GST_LIDAR_ECN_ECT1, "ECT(1): L4S", "ect1"},
+                                      {GST_LIDAR_ECN_ECT0, "ECT(0): classic ECN", "ect0"},
+                                      {GST_LIDAR_ECN_CE, "Congestion experienced", "ce"},
+                                      {0, nullptr, nullptr}};
+  static const GType type = RegisterEnum("GstLidarEcnUdpSinkEcn", values);
   return type;
 }
 
@@ -95,13 +94,16 @@ struct Marking {
 
 }  // namespace
 
+G_DECLARE_FINAL_TYPE(GstLidarEcnUdpSink, gst_lidar_ecn_udp_sink, GST, LIDAR_ECN_UDP_SINK,
+                     GstBaseSink)
 struct _GstLidarEcnUdpSink {
   GstBaseSink parent;
   State* state;
 };
 
 G_DEFINE_TYPE(GstLidarEcnUdpSink, gst_lidar_ecn_udp_sink, GST_TYPE_BASE_SINK)
-GST_ELEMENT_REGISTER_DEFINE(ecnudpsink, "ecnudpsink", GST_RANK_NONE, GST_TYPE_LIDAR_ECN_UDP_SINK)
+GST_ELEMENT_REGISTER_DEFINE(ecnudpsink, "ecnudpsink", GST_RANK_NONE,
+                            gst_lidar_ecn_udp_sink_get_type())
 
 static State& StateOf(gpointer self) { return *GST_LIDAR_ECN_UDP_SINK(self)->state; }
 
@@ -300,13 +302,9 @@ static void gst_lidar_ecn_udp_sink_class_init(GstLidarEcnUdpSinkClass* klass) {
   auto* object = G_OBJECT_CLASS(klass);
   ServeProperties<GstLidarEcnUdpSink, kProperties>(object);
   OwnState<GstLidarEcnUdpSink, gst_lidar_ecn_udp_sink_parent_class>(object);
-  static GstStaticPadTemplate sink =
-      GST_STATIC_PAD_TEMPLATE("sink", GST_PAD_SINK, GST_PAD_ALWAYS, GST_STATIC_CAPS_ANY);
-  auto* element = GST_ELEMENT_CLASS(klass);
-  gst_element_class_add_static_pad_template(element, &sink);
-  gst_element_class_set_static_metadata(element, "UDP sink with ECN", "Sink/Network",
-                                        "Sends datagrams with the ECN field set for each packet",
-                                        "gst-lidar");
-  gst_type_mark_as_plugin_api(EcnType(), static_cast<GstPluginAPIFlags>(0));
+  Describe(klass,
+           {"UDP sink with ECN", "Sink/Network",
+            "Sends datagrams with the ECN field set for each packet"},
+           {{"sink", GST_PAD_SINK, "ANY"}});
   InstallVmethods(GST_BASE_SINK_CLASS(klass));
 }

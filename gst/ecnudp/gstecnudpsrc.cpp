@@ -9,7 +9,7 @@
  * gst-launch-1.0 ecnudpsrc port=5004 num-buffers=100 ! fakesink dump=true
  * ]|
  */
-#include "gst/ecnudp/gstecnudpsrc.h"
+#include <gst/base/gstpushsrc.h>
 
 #include <gst/net/gstnetaddressmeta.h>
 #include <netinet/in.h>
@@ -20,6 +20,7 @@
 #include <memory>
 #include <mutex>
 
+#include "gst/common/element_class.h"
 #include "gst/common/gstlidar.h"
 #include "gst/common/properties.h"
 #include "gst/common/refs.h"
@@ -74,13 +75,14 @@ struct State {
 
 }  // namespace
 
+G_DECLARE_FINAL_TYPE(GstLidarEcnUdpSrc, gst_lidar_ecn_udp_src, GST, LIDAR_ECN_UDP_SRC, GstPushSrc)
 struct _GstLidarEcnUdpSrc {
   GstPushSrc parent;
   State* state;
 };
 
 G_DEFINE_TYPE(GstLidarEcnUdpSrc, gst_lidar_ecn_udp_src, GST_TYPE_PUSH_SRC)
-GST_ELEMENT_REGISTER_DEFINE(ecnudpsrc, "ecnudpsrc", GST_RANK_NONE, GST_TYPE_LIDAR_ECN_UDP_SRC)
+GST_ELEMENT_REGISTER_DEFINE(ecnudpsrc, "ecnudpsrc", GST_RANK_NONE, gst_lidar_ecn_udp_src_get_type())
 
 static State& StateOf(gpointer self) { return *GST_LIDAR_ECN_UDP_SRC(self)->state; }
 
@@ -294,11 +296,8 @@ static void gst_lidar_ecn_udp_src_class_init(GstLidarEcnUdpSrcClass* klass) {
   auto* object = G_OBJECT_CLASS(klass);
   ServeProperties<GstLidarEcnUdpSrc, kProperties>(object);
   OwnState<GstLidarEcnUdpSrc, gst_lidar_ecn_udp_src_parent_class>(object);
-  static GstStaticPadTemplate src =
-      GST_STATIC_PAD_TEMPLATE("src", GST_PAD_SRC, GST_PAD_ALWAYS, GST_STATIC_CAPS_ANY);
-  auto* element = GST_ELEMENT_CLASS(klass);
-  gst_element_class_add_static_pad_template(element, &src);
-  gst_element_class_set_static_metadata(element, "UDP source with ECN", "Source/Network",
-                                        "Receives datagrams with their ECN field", "gst-lidar");
+  Describe(klass,
+           {"UDP source with ECN", "Source/Network", "Receives datagrams with their ECN field"},
+           {{"src", GST_PAD_SRC, "ANY"}});
   InstallVmethods(klass);
 }

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Plugin ecnudp: UDP with the ECN field set and read.
 #include "gst/common/gstlidar.h"
-#include "gst/ecnudp/gstecnudpsink.h"
-#include "gst/ecnudp/gstecnudpsrc.h"
+
+GST_ELEMENT_REGISTER_DECLARE(ecnudpsrc)
+GST_ELEMENT_REGISTER_DECLARE(ecnudpsink)
 
 static gboolean plugin_init(GstPlugin* plugin) {
   gst_lidar_init();

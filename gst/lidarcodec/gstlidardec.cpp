@@ -8,35 +8,37 @@
  * gst-launch-1.0 lidartestsrc num-buffers=80 ! lidarenc ! lidardec ! fakesink
  * ]|
  */
-#include "gst/lidarcodec/gstlidardec.h"
-
 #include <optional>
 
 #include "gst/common/cloud_info.h"
+#include "gst/common/element_class.h"
+#include "gst/common/gstlidardecoder.h"
+#include "gst/common/properties.h"
 #include "src/codec/slice_decoder.h"
 
 namespace {
 
 /// Belongs to the streaming thread.
-struct Coder {
+struct State {
   lidar::codec::CloudFormat format;
   std::optional<lidar::codec::SliceDecoder> decoder;
 };
 
 }  // namespace
 
+G_DECLARE_FINAL_TYPE(GstLidarDec, gst_lidar_dec, GST, LIDAR_DEC, GstLidarDecoder)
 struct _GstLidarDec {
   GstLidarDecoder parent;
-  Coder* coder;
+  State* state;
 };
 
 G_DEFINE_TYPE(GstLidarDec, gst_lidar_dec, GST_TYPE_LIDAR_DECODER)
-GST_ELEMENT_REGISTER_DEFINE(lidardec, "lidardec", GST_RANK_PRIMARY, GST_TYPE_LIDAR_DEC)
+GST_ELEMENT_REGISTER_DEFINE(lidardec, "lidardec", GST_RANK_PRIMARY, gst_lidar_dec_get_type())
 
 static gboolean gst_lidar_dec_set_format(GstLidarDecoder* base, GstCaps*,
                                          const GstLidarCloudFormat* cloud,
                                          GstLidarDecodedFormat* decoded) {
-  Coder& coder = *GST_LIDAR_DEC(base)->coder;
+  State& coder = *GST_LIDAR_DEC(base)->state;
   const auto info = lidar::gst::CloudInfo::FromFormat(*cloud);
   coder = {};
   coder.format = {{info.fields, info.point_step}, info.height, info.sensor_model};
@@ -47,7 +49,7 @@ static gboolean gst_lidar_dec_set_format(GstLidarDecoder* base, GstCaps*,
 
 static gboolean gst_lidar_dec_decode(GstLidarDecoder* base, const guint8* data, gsize size,
                                      guint max_points, GstLidarDecodedSlice* slice) {
-  Coder& coder = *GST_LIDAR_DEC(base)->coder;
+  State& coder = *GST_LIDAR_DEC(base)->state;
   if (!coder.decoder) coder.decoder.emplace(coder.format, max_points);
   const auto shape = coder.decoder->Decode({data, size});
   if (!shape) return FALSE;
@@ -58,10 +60,10 @@ static gboolean gst_lidar_dec_decode(GstLidarDecoder* base, const guint8* data, 
 }
 
 static void gst_lidar_dec_write(GstLidarDecoder* base, guint8* points) {
-  GST_LIDAR_DEC(base)->coder->decoder->Write(points);
+  GST_LIDAR_DEC(base)->state->decoder->Write(points);
 }
 
-static void gst_lidar_dec_reset(GstLidarDecoder* base) { *GST_LIDAR_DEC(base)->coder = {}; }
+static void gst_lidar_dec_reset(GstLidarDecoder* base) { *GST_LIDAR_DEC(base)->state = {}; }
 
 static GstStateChangeReturn gst_lidar_dec_change_state(GstElement* element,
                                                        GstStateChange transition) {
@@ -69,27 +71,16 @@ static GstStateChangeReturn gst_lidar_dec_change_state(GstElement* element,
   return GST_ELEMENT_CLASS(gst_lidar_dec_parent_class)->change_state(element, transition);
 }
 
-static void gst_lidar_dec_finalize(GObject* object) {
-  delete GST_LIDAR_DEC(object)->coder;
-  G_OBJECT_CLASS(gst_lidar_dec_parent_class)->finalize(object);
-}
-
-static GstStaticPadTemplate sink_template = GST_STATIC_PAD_TEMPLATE(
-    "sink", GST_PAD_SINK, GST_PAD_ALWAYS, GST_STATIC_CAPS(GST_LIDAR_SLICE_MEDIA_TYPE));
-static GstStaticPadTemplate src_template = GST_STATIC_PAD_TEMPLATE(
-    "src", GST_PAD_SRC, GST_PAD_ALWAYS, GST_STATIC_CAPS(GST_LIDAR_CLOUD_MEDIA_TYPE));
-
-static void gst_lidar_dec_init(GstLidarDec* self) { self->coder = new Coder; }
+static void gst_lidar_dec_init(GstLidarDec* self) { self->state = new State; }
 
 static void gst_lidar_dec_class_init(GstLidarDecClass* klass) {
-  G_OBJECT_CLASS(klass)->finalize = gst_lidar_dec_finalize;
-  auto* element = GST_ELEMENT_CLASS(klass);
-  element->change_state = gst_lidar_dec_change_state;
-  gst_element_class_add_static_pad_template(element, &sink_template);
-  gst_element_class_add_static_pad_template(element, &src_template);
-  gst_element_class_set_static_metadata(
-      element, "LiDAR decoder", "Codec/Decoder/PointCloud",
-      "Decompresses the scans of a spinning sensor, safe on hostile input", "gst-lidar");
+  lidar::gst::OwnState<GstLidarDec, gst_lidar_dec_parent_class>(G_OBJECT_CLASS(klass));
+  GST_ELEMENT_CLASS(klass)->change_state = gst_lidar_dec_change_state;
+  lidar::gst::Describe(klass,
+                       {"LiDAR decoder", "Codec/Decoder/PointCloud",
+                        "Decompresses the scans of a spinning sensor, safe on hostile input"},
+                       {{"sink", GST_PAD_SINK, GST_LIDAR_SLICE_MEDIA_TYPE},
+                        {"src", GST_PAD_SRC, GST_LIDAR_CLOUD_MEDIA_TYPE}});
   auto* decoder = GST_LIDAR_DECODER_CLASS(klass);
   decoder->set_format = gst_lidar_dec_set_format;
   decoder->decode = gst_lidar_dec_decode;

@@ -10,15 +10,15 @@
  * gst-launch-1.0 lidartestsrc num-buffers=80 ! lidarenc max-error=0.02 ! lidardec ! fakesink
  * ]|
  */
-#include "gst/lidarcodec/gstlidarenc.h"
-
 #include <mutex>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "gst/common/cloud_info.h"
+#include "gst/common/element_class.h"
 #include "gst/common/enum_type.h"
+#include "gst/common/gstlidarencoder.h"
 #include "gst/common/properties.h"
 #include "src/codec/effort_control.h"
 #include "src/codec/slice_decoder.h"
@@ -77,13 +77,14 @@ const std::array<lidar::gst::Property<Settings>, 1> kProperties = {{
 
 }  // namespace
 
+G_DECLARE_FINAL_TYPE(GstLidarEnc, gst_lidar_enc, GST, LIDAR_ENC, GstLidarEncoder)
 struct _GstLidarEnc {
   GstLidarEncoder parent;
   State* state;
 };
 
 G_DEFINE_TYPE(GstLidarEnc, gst_lidar_enc, GST_TYPE_LIDAR_ENCODER)
-GST_ELEMENT_REGISTER_DEFINE(lidarenc, "lidarenc", GST_RANK_NONE, GST_TYPE_LIDAR_ENC)
+GST_ELEMENT_REGISTER_DEFINE(lidarenc, "lidarenc", GST_RANK_NONE, gst_lidar_enc_get_type())
 
 namespace {
 
@@ -204,31 +205,20 @@ static GstStateChangeReturn gst_lidar_enc_change_state(GstElement* element,
   return GST_ELEMENT_CLASS(gst_lidar_enc_parent_class)->change_state(element, transition);
 }
 
-static void gst_lidar_enc_finalize(GObject* object) {
-  delete GST_LIDAR_ENC(object)->state;
-  G_OBJECT_CLASS(gst_lidar_enc_parent_class)->finalize(object);
-}
-
-static GstStaticPadTemplate sink_template = GST_STATIC_PAD_TEMPLATE(
-    "sink", GST_PAD_SINK, GST_PAD_ALWAYS, GST_STATIC_CAPS(GST_LIDAR_CLOUD_MEDIA_TYPE));
-static GstStaticPadTemplate src_template = GST_STATIC_PAD_TEMPLATE(
-    "src", GST_PAD_SRC, GST_PAD_ALWAYS,
-    GST_STATIC_CAPS(GST_LIDAR_SLICE_MEDIA_TYPE
-                    ", geometry = (string) range, alignment = (string) slice"));
-
 static void gst_lidar_enc_init(GstLidarEnc* self) { self->state = new State; }
 
 static void gst_lidar_enc_class_init(GstLidarEncClass* klass) {
   auto* object = G_OBJECT_CLASS(klass);
-  object->finalize = gst_lidar_enc_finalize;
+  lidar::gst::OwnState<GstLidarEnc, gst_lidar_enc_parent_class>(object);
   lidar::gst::ServeProperties<GstLidarEnc, kProperties>(object);
-  auto* element = GST_ELEMENT_CLASS(klass);
-  element->change_state = gst_lidar_enc_change_state;
-  gst_element_class_add_static_pad_template(element, &sink_template);
-  gst_element_class_add_static_pad_template(element, &src_template);
-  gst_element_class_set_static_metadata(
-      element, "LiDAR encoder", "Codec/Encoder/PointCloud",
-      "Compresses the scans of a spinning sensor to a bitrate and within an error", "gst-lidar");
+  GST_ELEMENT_CLASS(klass)->change_state = gst_lidar_enc_change_state;
+  lidar::gst::Describe(
+      klass,
+      {"LiDAR encoder", "Codec/Encoder/PointCloud",
+       "Compresses the scans of a spinning sensor to a bitrate and within an error"},
+      {{"sink", GST_PAD_SINK, GST_LIDAR_CLOUD_MEDIA_TYPE},
+       {"src", GST_PAD_SRC,
+        GST_LIDAR_SLICE_MEDIA_TYPE ", geometry = (string) range, alignment = (string) slice"}});
   auto* encoder = GST_LIDAR_ENCODER_CLASS(klass);
   encoder->set_format = gst_lidar_enc_set_format;
   encoder->load = gst_lidar_enc_load;

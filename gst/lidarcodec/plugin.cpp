@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // The plugin lidarcodec: our own coder of spinning sensors' scans.
-#include "gst/lidarcodec/gstlidardec.h"
-#include "gst/lidarcodec/gstlidarenc.h"
+#include "gst/common/gstlidar.h"
+
+GST_ELEMENT_REGISTER_DECLARE(lidardec)
+GST_ELEMENT_REGISTER_DECLARE(lidarenc)
 
 static gboolean plugin_init(GstPlugin* plugin) {
   gst_lidar_init();

@@ -10,12 +10,15 @@
  *   ! multifilesink location=scan%06d.pcd
  * ]|
  */
-#include "gst/pointcloud/gstcloudfileenc.h"
+#include <gst/gst.h>
+
+#include <gst/base/gstbasetransform.h>
 
 #include <mutex>
 #include <optional>
 
 #include "gst/common/buffer_map.h"
+#include "gst/common/element_class.h"
 #include "gst/common/gstlidar.h"
 #include "gst/common/properties.h"
 #include "gst/common/refs.h"
@@ -29,6 +32,8 @@ namespace {
 
 using lidar::gst::CapsPtr;
 using lidar::gst::CloudInfo;
+
+constexpr lidar::gst::PadRow kSink{"sink", GST_PAD_SINK, GST_LIDAR_CLOUD_MEDIA_TYPE};
 
 struct Settings {
   bool binary = true;
@@ -50,32 +55,32 @@ struct State {
 
 }  // namespace
 
-struct GstLidarCloudFileEncPrivate {
+/// The element; its subclasses differ in the format that they write.
+struct GstLidarCloudFileEnc {
+  GstBaseTransform parent;
   State* state;
 };
-
-struct _GstLidarPcdEnc {
-  GstLidarCloudFileEnc parent;
+struct GstLidarCloudFileEncClass {
+  GstBaseTransformClass parent;
+  std::string (*write)(const lidar::gst::CloudFileInput& cloud);
 };
-struct _GstLidarPlyEnc {
-  GstLidarCloudFileEnc parent;
-};
+using GstLidarPcdEnc = GstLidarCloudFileEnc;
+using GstLidarPcdEncClass = GstLidarCloudFileEncClass;
+using GstLidarPlyEnc = GstLidarCloudFileEnc;
+using GstLidarPlyEncClass = GstLidarCloudFileEncClass;
 
-G_DEFINE_ABSTRACT_TYPE_WITH_PRIVATE(GstLidarCloudFileEnc, gst_lidar_cloud_file_enc,
-                                    GST_TYPE_BASE_TRANSFORM)
-G_DEFINE_TYPE(GstLidarPcdEnc, gst_lidar_pcd_enc, GST_TYPE_LIDAR_CLOUD_FILE_ENC)
-G_DEFINE_TYPE(GstLidarPlyEnc, gst_lidar_ply_enc, GST_TYPE_LIDAR_CLOUD_FILE_ENC)
-GST_ELEMENT_REGISTER_DEFINE(pcdenc, "pcdenc", GST_RANK_NONE, GST_TYPE_LIDAR_PCD_ENC)
-GST_ELEMENT_REGISTER_DEFINE(plyenc, "plyenc", GST_RANK_NONE, GST_TYPE_LIDAR_PLY_ENC)
+static GType gst_lidar_cloud_file_enc_get_type();
+static GType gst_lidar_pcd_enc_get_type();
+static GType gst_lidar_ply_enc_get_type();
+G_DEFINE_ABSTRACT_TYPE(GstLidarCloudFileEnc, gst_lidar_cloud_file_enc, GST_TYPE_BASE_TRANSFORM)
+G_DEFINE_TYPE(GstLidarPcdEnc, gst_lidar_pcd_enc, gst_lidar_cloud_file_enc_get_type())
+G_DEFINE_TYPE(GstLidarPlyEnc, gst_lidar_ply_enc, gst_lidar_cloud_file_enc_get_type())
+GST_ELEMENT_REGISTER_DEFINE(pcdenc, "pcdenc", GST_RANK_NONE, gst_lidar_pcd_enc_get_type())
+GST_ELEMENT_REGISTER_DEFINE(plyenc, "plyenc", GST_RANK_NONE, gst_lidar_ply_enc_get_type())
 
 namespace {
 
-GstLidarCloudFileEncPrivate* PrivateOf(gpointer self) {
-  return static_cast<GstLidarCloudFileEncPrivate*>(
-      gst_lidar_cloud_file_enc_get_instance_private(GST_LIDAR_CLOUD_FILE_ENC(self)));
-}
-
-State& StateOf(gpointer self) { return *PrivateOf(self)->state; }
+State& StateOf(gpointer self) { return *static_cast<GstLidarCloudFileEnc*>(self)->state; }
 
 GstCaps* TransformCaps(GstBaseTransform* base, GstPadDirection direction, GstCaps*,
                        GstCaps* filter) {
@@ -121,7 +126,7 @@ std::string Write(GstBaseTransform* base, GstBuffer* in) {
     std::lock_guard lock(state.mutex);
     cloud.binary = state.settings.binary;
   }
-  return GST_LIDAR_CLOUD_FILE_ENC_GET_CLASS(base)->write(cloud);
+  return reinterpret_cast<GstLidarCloudFileEncClass*>(G_OBJECT_GET_CLASS(base))->write(cloud);
 }
 
 /// The size of a file is known once it is written, so this makes the whole output.
@@ -136,9 +141,7 @@ GstFlowReturn PrepareOutput(GstBaseTransform* base, GstBuffer* in, GstBuffer** o
   *out = gst_buffer_new_wrapped_full(GST_MEMORY_FLAG_READONLY, owned->data(), owned->size(), 0,
                                      owned->size(), owned,
                                      [](gpointer p) { delete static_cast<std::string*>(p); });
-  const auto what = static_cast<GstBufferCopyFlags>(
-      GST_BUFFER_COPY_FLAGS | GST_BUFFER_COPY_TIMESTAMPS | GST_BUFFER_COPY_META);
-  gst_buffer_copy_into(*out, in, what, 0, static_cast<gsize>(-1));
+  lidar::gst::CopyMetadata(*out, in);
   return GST_FLOW_OK;
 }
 
@@ -150,46 +153,17 @@ gboolean Stop(GstBaseTransform* base) {
   return TRUE;
 }
 
-void SetObjectProperty(GObject* object, guint id, const GValue* value, GParamSpec*) {
-  State& state = StateOf(object);
-  std::lock_guard lock(state.mutex);
-  lidar::gst::SetProperty(state.settings, kProperties[id - 1], value);
-}
-
-void GetObjectProperty(GObject* object, guint id, GValue* value, GParamSpec*) {
-  State& state = StateOf(object);
-  std::lock_guard lock(state.mutex);
-  lidar::gst::GetProperty(state.settings, kProperties[id - 1], value);
-}
-
-void Finalize(GObject* object) {
-  delete &StateOf(object);
-  G_OBJECT_CLASS(gst_lidar_cloud_file_enc_parent_class)->finalize(object);
-}
-
 }  // namespace
 
-static GstStaticPadTemplate sink_template = GST_STATIC_PAD_TEMPLATE(
-    "sink", GST_PAD_SINK, GST_PAD_ALWAYS, GST_STATIC_CAPS(GST_LIDAR_CLOUD_MEDIA_TYPE));
-static GstStaticPadTemplate pcd_template = GST_STATIC_PAD_TEMPLATE(
-    "src", GST_PAD_SRC, GST_PAD_ALWAYS, GST_STATIC_CAPS("application/x-pcd"));
-static GstStaticPadTemplate ply_template = GST_STATIC_PAD_TEMPLATE(
-    "src", GST_PAD_SRC, GST_PAD_ALWAYS, GST_STATIC_CAPS("application/x-ply"));
-
-static void gst_lidar_cloud_file_enc_init(GstLidarCloudFileEnc* self) {
-  PrivateOf(self)->state = new State;
-}
+static void gst_lidar_cloud_file_enc_init(GstLidarCloudFileEnc* self) { self->state = new State; }
 
 static void gst_lidar_cloud_file_enc_class_init(GstLidarCloudFileEncClass* klass) {
   GST_DEBUG_CATEGORY_INIT(gst_lidar_cloud_file_enc_debug, "cloudfileenc", 0,
                           "Point clouds as files");
   auto* object = G_OBJECT_CLASS(klass);
-  object->set_property = SetObjectProperty;
-  object->get_property = GetObjectProperty;
-  object->finalize = Finalize;
-  lidar::gst::InstallProperties(object, kProperties);
-  gst_type_mark_as_plugin_api(GST_TYPE_LIDAR_CLOUD_FILE_ENC, static_cast<GstPluginAPIFlags>(0));
-  gst_element_class_add_static_pad_template(GST_ELEMENT_CLASS(klass), &sink_template);
+  lidar::gst::ServeProperties<GstLidarCloudFileEnc, kProperties>(object);
+  lidar::gst::OwnState<GstLidarCloudFileEnc, gst_lidar_cloud_file_enc_parent_class>(object);
+  gst_type_mark_as_plugin_api(gst_lidar_cloud_file_enc_get_type(), {});
   auto* transform = GST_BASE_TRANSFORM_CLASS(klass);
   transform->transform_caps = TransformCaps;
   transform->set_caps = SetCaps;
@@ -201,20 +175,18 @@ static void gst_lidar_cloud_file_enc_class_init(GstLidarCloudFileEncClass* klass
 static void gst_lidar_pcd_enc_init(GstLidarPcdEnc*) {}
 
 static void gst_lidar_pcd_enc_class_init(GstLidarPcdEncClass* klass) {
-  GST_LIDAR_CLOUD_FILE_ENC_CLASS(klass)->write = lidar::gst::WritePcd;
-  auto* element = GST_ELEMENT_CLASS(klass);
-  gst_element_class_add_static_pad_template(element, &pcd_template);
-  gst_element_class_set_static_metadata(element, "PCD encoder", "Codec/Encoder/PointCloud",
-                                        "Writes each cloud as a file of the Point Cloud Library",
-                                        "gst-lidar");
+  klass->write = lidar::gst::WritePcd;
+  lidar::gst::Describe(klass,
+                       {"PCD encoder", "Codec/Encoder/PointCloud",
+                        "Writes each cloud as a file of the Point Cloud Library"},
+                       {kSink, {"src", GST_PAD_SRC, "application/x-pcd"}});
 }
 
 static void gst_lidar_ply_enc_init(GstLidarPlyEnc*) {}
 
 static void gst_lidar_ply_enc_class_init(GstLidarPlyEncClass* klass) {
-  GST_LIDAR_CLOUD_FILE_ENC_CLASS(klass)->write = lidar::gst::WritePly;
-  auto* element = GST_ELEMENT_CLASS(klass);
-  gst_element_class_add_static_pad_template(element, &ply_template);
-  gst_element_class_set_static_metadata(element, "PLY encoder", "Codec/Encoder/PointCloud",
-                                        "Writes each cloud as a PLY file", "gst-lidar");
+  klass->write = lidar::gst::WritePly;
+  lidar::gst::Describe(
+      klass, {"PLY encoder", "Codec/Encoder/PointCloud", "Writes each cloud as a PLY file"},
+      {kSink, {"src", GST_PAD_SRC, "application/x-ply"}});
 }

@@ -11,7 +11,7 @@
  * ! pointcloudparse ! fakesink
  * ]|
  */
-#include "gst/pointcloud/gstpointcloudparse.h"
+#include <gst/gst.h>
 
 #include <gst/base/gstadapter.h>
 
@@ -22,6 +22,7 @@
 
 #include "gst/common/buffer_map.h"
 #include "gst/common/cloud_info.h"
+#include "gst/common/element_class.h"
 #include "gst/common/properties.h"
 #include "gst/common/refs.h"
 #include "gst/common/refused_caps.h"
@@ -94,6 +95,8 @@ struct State {
 
 }  // namespace
 
+G_DECLARE_FINAL_TYPE(GstLidarPointCloudParse, gst_lidar_point_cloud_parse, GST,
+                     LIDAR_POINT_CLOUD_PARSE, GstElement)
 struct _GstLidarPointCloudParse {
   GstElement parent;
   GstPad* sinkpad;
@@ -103,7 +106,7 @@ struct _GstLidarPointCloudParse {
 
 G_DEFINE_TYPE(GstLidarPointCloudParse, gst_lidar_point_cloud_parse, GST_TYPE_ELEMENT)
 GST_ELEMENT_REGISTER_DEFINE(pointcloudparse, "pointcloudparse", GST_RANK_NONE,
-                            GST_TYPE_LIDAR_POINT_CLOUD_PARSE)
+                            gst_lidar_point_cloud_parse_get_type())
 
 namespace {
 
@@ -366,40 +369,29 @@ GstStateChangeReturn ChangeState(GstElement* element, GstStateChange transition)
   return result;
 }
 
-void Finalize(GObject* object) {
-  delete GST_LIDAR_POINT_CLOUD_PARSE(object)->state;
-  G_OBJECT_CLASS(gst_lidar_point_cloud_parse_parent_class)->finalize(object);
-}
-
 }  // namespace
-
-static GstStaticPadTemplate sink_template = GST_STATIC_PAD_TEMPLATE(
-    "sink", GST_PAD_SINK, GST_PAD_ALWAYS,
-    GST_STATIC_CAPS(GST_LIDAR_CLOUD_MEDIA_TYPE "; application/x-pcd; application/x-ply"));
-static GstStaticPadTemplate src_template = GST_STATIC_PAD_TEMPLATE(
-    "src", GST_PAD_SRC, GST_PAD_ALWAYS, GST_STATIC_CAPS(GST_LIDAR_CLOUD_MEDIA_TYPE));
 
 static void gst_lidar_point_cloud_parse_init(GstLidarPointCloudParse* self) {
   self->state = new State;
-  self->sinkpad = gst_pad_new_from_static_template(&sink_template, "sink");
+  self->sinkpad = lidar::gst::AddPad(self, "sink");
   gst_pad_set_chain_function(self->sinkpad, Chain);
   gst_pad_set_event_function(self->sinkpad, SinkEvent);
-  gst_element_add_pad(GST_ELEMENT(self), self->sinkpad);
-  self->srcpad = gst_pad_new_from_static_template(&src_template, "src");
+  self->srcpad = lidar::gst::AddPad(self, "src");
   gst_pad_use_fixed_caps(self->srcpad);
-  gst_element_add_pad(GST_ELEMENT(self), self->srcpad);
 }
 
 static void gst_lidar_point_cloud_parse_class_init(GstLidarPointCloudParseClass* klass) {
   GST_DEBUG_CATEGORY_INIT(gst_lidar_point_cloud_parse_debug, "pointcloudparse", 0,
                           "Clouds from files");
   auto* object = G_OBJECT_CLASS(klass);
-  object->finalize = Finalize;
+  lidar::gst::OwnState<GstLidarPointCloudParse, gst_lidar_point_cloud_parse_parent_class>(object);
   lidar::gst::ServeProperties<GstLidarPointCloudParse, kProperties>(object);
   auto* element = GST_ELEMENT_CLASS(klass);
   element->change_state = ChangeState;
-  gst_element_class_add_static_pad_template(element, &sink_template);
-  gst_element_class_add_static_pad_template(element, &src_template);
-  gst_element_class_set_static_metadata(element, "Point cloud parser", "Codec/Parser/PointCloud",
-                                        "Makes clouds of files: PCD, PLY, raw points", "gst-lidar");
+  lidar::gst::Describe(
+      klass,
+      {"Point cloud parser", "Codec/Parser/PointCloud",
+       "Makes clouds of files: PCD, PLY, raw points"},
+      {{"sink", GST_PAD_SINK, GST_LIDAR_CLOUD_MEDIA_TYPE "; application/x-pcd; application/x-ply"},
+       {"src", GST_PAD_SRC, GST_LIDAR_CLOUD_MEDIA_TYPE}});
 }

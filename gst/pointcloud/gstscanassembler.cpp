@@ -8,11 +8,12 @@
  * gst-launch-1.0 lidartestsrc num-buffers=80 ! scanassembler ! fakesink silent=false -v
  * ]|
  */
-#include "gst/pointcloud/gstscanassembler.h"
+#include <gst/gst.h>
 
 #include <mutex>
 #include <utility>
 
+#include "gst/common/element_class.h"
 #include "gst/common/properties.h"
 #include "gst/pointcloud/assembler_state.h"
 #include "gst/pointcloud/scan_caps.h"
@@ -42,6 +43,8 @@ using State = lidar::gst::AssemblerState;
 
 }  // namespace
 
+G_DECLARE_FINAL_TYPE(GstLidarScanAssembler, gst_lidar_scan_assembler, GST, LIDAR_SCAN_ASSEMBLER,
+                     GstElement)
 struct _GstLidarScanAssembler {
   GstElement parent;
   GstPad* sinkpad;
@@ -51,7 +54,7 @@ struct _GstLidarScanAssembler {
 
 G_DEFINE_TYPE(GstLidarScanAssembler, gst_lidar_scan_assembler, GST_TYPE_ELEMENT)
 GST_ELEMENT_REGISTER_DEFINE(scanassembler, "scanassembler", GST_RANK_NONE,
-                            GST_TYPE_LIDAR_SCAN_ASSEMBLER)
+                            gst_lidar_scan_assembler_get_type())
 
 namespace {
 
@@ -345,40 +348,28 @@ void PostLatency(GObject* object, GParamSpec*) {
   gst_element_post_message(GST_ELEMENT(object), gst_message_new_latency(GST_OBJECT(object)));
 }
 
-void Finalize(GObject* object) {
-  delete GST_LIDAR_SCAN_ASSEMBLER(object)->state;
-  G_OBJECT_CLASS(gst_lidar_scan_assembler_parent_class)->finalize(object);
-}
-
 }  // namespace
-
-static GstStaticPadTemplate sink_template = GST_STATIC_PAD_TEMPLATE(
-    "sink", GST_PAD_SINK, GST_PAD_ALWAYS, GST_STATIC_CAPS(GST_LIDAR_CLOUD_MEDIA_TYPE));
-static GstStaticPadTemplate src_template = GST_STATIC_PAD_TEMPLATE(
-    "src", GST_PAD_SRC, GST_PAD_ALWAYS, GST_STATIC_CAPS(GST_LIDAR_CLOUD_MEDIA_TYPE));
 
 static void gst_lidar_scan_assembler_init(GstLidarScanAssembler* self) {
   self->state = new State;
-  self->sinkpad = gst_pad_new_from_static_template(&sink_template, "sink");
+  self->sinkpad = lidar::gst::AddPad(self, "sink");
   gst_pad_set_chain_function(self->sinkpad, Chain);
   gst_pad_set_event_function(self->sinkpad, SinkEvent);
-  gst_element_add_pad(GST_ELEMENT(self), self->sinkpad);
-  self->srcpad = gst_pad_new_from_static_template(&src_template, "src");
+  self->srcpad = lidar::gst::AddPad(self, "src");
   gst_pad_set_query_function(self->srcpad, SrcQuery);
   gst_pad_set_activatemode_function(self->srcpad, ActivateSource);
-  gst_element_add_pad(GST_ELEMENT(self), self->srcpad);
 }
 
 static void gst_lidar_scan_assembler_class_init(GstLidarScanAssemblerClass* klass) {
   GST_DEBUG_CATEGORY_INIT(gst_lidar_scan_assembler_debug, "scanassembler", 0, "Scan assembler");
   auto* object = G_OBJECT_CLASS(klass);
-  object->finalize = Finalize;
+  lidar::gst::OwnState<GstLidarScanAssembler, gst_lidar_scan_assembler_parent_class>(object);
   lidar::gst::ServeProperties<GstLidarScanAssembler, kProperties, PostLatency>(object);
   auto* element = GST_ELEMENT_CLASS(klass);
   element->change_state = ChangeState;
-  gst_element_class_add_static_pad_template(element, &sink_template);
-  gst_element_class_add_static_pad_template(element, &src_template);
-  gst_element_class_set_static_metadata(element, "Scan assembler", "Filter/PointCloud",
-                                        "Puts the slices of a LiDAR scan together again",
-                                        "gst-lidar");
+  lidar::gst::Describe(
+      klass,
+      {"Scan assembler", "Filter/PointCloud", "Puts the slices of a LiDAR scan together again"},
+      {{"sink", GST_PAD_SINK, GST_LIDAR_CLOUD_MEDIA_TYPE},
+       {"src", GST_PAD_SRC, GST_LIDAR_CLOUD_MEDIA_TYPE}});
 }

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include "gst/common/gstlidar.h"
 #include "gst/pointcloud/file_cloud.h"
-#include "gst/pointcloud/gstcloudfileenc.h"
 #include "gst/pointcloud/gstpointcloudfilter.h"
-#include "gst/pointcloud/gstpointcloudparse.h"
-#include "gst/pointcloud/gstscanassembler.h"
+
+GST_ELEMENT_REGISTER_DECLARE(pcdenc)
+GST_ELEMENT_REGISTER_DECLARE(plyenc)
+GST_ELEMENT_REGISTER_DECLARE(scanassembler)
+GST_ELEMENT_REGISTER_DECLARE(pointcloudparse)
 
 static gboolean plugin_init(GstPlugin* plugin) {
   gst_lidar_init();

@@ -1,19 +1,19 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Adds to the `stats` that GStreamer's RTP base classes already have.
 #pragma once
-#include <gst/gst.h>
+#include "gst/common/refs.h"
 
 namespace lidar::gst {
 
 /// The structure of the property `stats` that an ancestor above `parent_class` gives of `object`,
-/// for the element to add its own fields to; transfer full.
-inline GstStructure* BaseClassStats(GObject* object, gpointer parent_class) {
+/// for the element to add its own fields to.
+inline StructurePtr BaseClassStats(GObject* object, gpointer parent_class) {
   GParamSpec* spec = g_object_class_find_property(G_OBJECT_CLASS(parent_class), "stats");
   GValue value = G_VALUE_INIT;
   g_value_init(&value, GST_TYPE_STRUCTURE);
   G_OBJECT_CLASS(g_type_class_peek(spec->owner_type))
       ->get_property(object, spec->param_id, &value, spec);
-  auto* stats = static_cast<GstStructure*>(g_value_dup_boxed(&value));
+  StructurePtr stats(static_cast<GstStructure*>(g_value_dup_boxed(&value)));
   g_value_unset(&value);
   return stats;
 }

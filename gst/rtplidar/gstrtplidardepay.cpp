@@ -11,7 +11,7 @@
  * ! rtplidardepay ! lidardec ! fakesink
  * ]|
  */
-#include "gst/rtplidar/gstrtplidardepay.h"
+#include <gst/rtp/gstrtpbasedepayload.h>
 
 #include <gst/rtp/gstrtpbuffer.h>
 
@@ -19,9 +19,11 @@
 #include <optional>
 #include <utility>
 
+#include "gst/common/element_class.h"
 #include "gst/common/gstlidar.h"
 #include "gst/common/properties.h"
 #include "gst/common/refs.h"
+#include "gst/common/stats.h"
 #include "gst/rtplidar/base_stats.h"
 #include "gst/rtplidar/config_caps.h"
 #include "src/rtp/ntp_time.h"
@@ -32,8 +34,11 @@ GST_DEBUG_CATEGORY_STATIC(gst_lidar_rtp_depay_debug);
 
 using lidar::gst::BufferListPtr;
 using lidar::gst::CapsPtr;
+using lidar::rtp::PacketAccounts;
 using lidar::rtp::ReceivedSlice;
 using lidar::rtp::Receiver;
+using lidar::rtp::ReceiverAccounts;
+using lidar::rtp::SliceAccounts;
 
 namespace {
 
@@ -41,13 +46,54 @@ struct Settings {
   guint64 max_reorder_time = 100 * GST_MSECOND;
 };
 
-const std::array<lidar::gst::Property<Settings>, 1> kProperties = {{
+lidar::gst::StructurePtr Stats(GObject* object);
+
+const std::array<lidar::gst::Property<Settings>, 2> kProperties = {{
     {"max-reorder-time",
      "How long a slice may wait for missing packets once a later slice began; no other slice waits "
      "with it [ns]",
      &Settings::max_reorder_time, 0, 10.0 * GST_SECOND, GST_PARAM_MUTABLE_PLAYING},
+    {"stats",
+     "Slices and scans received and missing, each counted once, beside the fields that every RTP "
+     "depayloader has",
+     Stats},
 }};
-constexpr guint kStatsId = kProperties.size() + 1;
+
+/// What `stats` shows.
+struct Shown {
+  ReceiverAccounts all;
+  guint64 invalid = 0;
+  guint64 wrong_payload_type = 0;
+  guint64 not_accepted = 0;
+};
+template <auto field>
+constexpr auto A = lidar::gst::At<&Shown::all, field>;
+template <auto field>
+constexpr auto S = lidar::gst::At<&Shown::all, &ReceiverAccounts::slices, field>;
+template <auto field>
+constexpr auto P = lidar::gst::At<&Shown::all, &ReceiverAccounts::packets, field>;
+const std::array<lidar::gst::Stat<Shown>, 19> kStats = {{
+    {"slices-received", S<&SliceAccounts::slices_received>},
+    {"slices-lost", S<&SliceAccounts::slices_lost>},
+    {"slices-damaged", S<&SliceAccounts::slices_damaged>},
+    {"slices-config-mismatch", S<&SliceAccounts::slices_config_mismatch>},
+    {"slices-skipped", S<&SliceAccounts::slices_skipped>},
+    {"scans-complete", S<&SliceAccounts::scans_complete>},
+    {"scans-incomplete", S<&SliceAccounts::scans_incomplete>},
+    {"scans-lost", S<&SliceAccounts::scans_lost>},
+    {"scans-skipped", S<&SliceAccounts::scans_skipped>},
+    {"packets-received", A<&ReceiverAccounts::packets_received>},
+    {"packets-invalid", &Shown::invalid},
+    {"packets-wrong-payload-type", &Shown::wrong_payload_type},
+    {"slices-not-accepted", &Shown::not_accepted},
+    {"packets-duplicate", P<&PacketAccounts::duplicate>},
+    {"packets-late", P<&PacketAccounts::late>},
+    {"configs-received", A<&ReceiverAccounts::configs_received>},
+    {"configs-damaged", P<&PacketAccounts::config_damaged>},
+    {"sender-restarts", A<&ReceiverAccounts::restarts>},
+    {"outages", A<&ReceiverAccounts::outages>},
+}};
+
 // So many packets of another payload type, and none of ours, are no accident.
 constexpr guint64 kWrongTypePackets = 20;
 
@@ -75,6 +121,8 @@ struct State {
 
 }  // namespace
 
+G_DECLARE_FINAL_TYPE(GstLidarRtpDepay, gst_lidar_rtp_depay, GST_LIDAR, RTP_DEPAY,
+                     GstRTPBaseDepayload)
 struct _GstLidarRtpDepay {
   GstRTPBaseDepayload parent;
   State* state;
@@ -82,15 +130,7 @@ struct _GstLidarRtpDepay {
 
 G_DEFINE_TYPE(GstLidarRtpDepay, gst_lidar_rtp_depay, GST_TYPE_RTP_BASE_DEPAYLOAD)
 GST_ELEMENT_REGISTER_DEFINE(rtplidardepay, "rtplidardepay", GST_RANK_SECONDARY,
-                            GST_TYPE_LIDAR_RTP_DEPAY)
-
-static GstStaticPadTemplate sink_template = GST_STATIC_PAD_TEMPLATE(
-    "sink", GST_PAD_SINK, GST_PAD_ALWAYS,
-    GST_STATIC_CAPS("application/x-rtp, media = (string) { application, video }, "
-                    "payload = (int) [ 96, 127 ], "
-                    "clock-rate = (int) 90000, encoding-name = (string) X-LIDAR-DRACO"));
-static GstStaticPadTemplate src_template = GST_STATIC_PAD_TEMPLATE(
-    "src", GST_PAD_SRC, GST_PAD_ALWAYS, GST_STATIC_CAPS(GST_LIDAR_CODED_CAPS));
+                            gst_lidar_rtp_depay_get_type())
 
 namespace {
 
@@ -289,35 +329,26 @@ static GstStateChangeReturn gst_lidar_rtp_depay_change_state(GstElement* element
   return result;
 }
 
-static GstStructure* Stats(GObject* object) {
+namespace {
+
+lidar::gst::StructurePtr Stats(GObject* object) {
   State& state = *GST_LIDAR_RTP_DEPAY(object)->state;
-  GstStructure* s = lidar::gst::BaseClassStats(object, gst_lidar_rtp_depay_parent_class);
+  auto stats = lidar::gst::BaseClassStats(object, gst_lidar_rtp_depay_parent_class);
   std::lock_guard lock(state.mutex);
-  const auto a = state.receiver.accounts();
-  const auto set = [s](const char* name, guint64 value) {
-    gst_structure_set(s, name, G_TYPE_UINT64, value, nullptr);
-  };
-  set("slices-received", a.slices.slices_received);
-  set("slices-lost", a.slices.slices_lost);
-  set("slices-damaged", a.slices.slices_damaged);
-  set("slices-config-mismatch", a.slices.slices_config_mismatch);
-  set("slices-skipped", a.slices.slices_skipped);
-  set("scans-complete", a.slices.scans_complete);
-  set("scans-incomplete", a.slices.scans_incomplete);
-  set("scans-lost", a.slices.scans_lost);
-  set("scans-skipped", a.slices.scans_skipped);
-  set("packets-received", a.packets_received);
-  set("packets-invalid", a.packets.invalid + state.not_rtp);
-  set("packets-wrong-payload-type", state.wrong_payload_type);
-  set("slices-not-accepted", state.not_accepted);
-  set("packets-duplicate", a.packets.duplicate);
-  set("packets-late", a.packets.late);
-  set("configs-received", a.configs_received);
-  set("configs-damaged", a.packets.config_damaged);
-  set("sender-restarts", a.restarts);
-  set("outages", a.outages);
-  return s;
+  const auto all = state.receiver.accounts();
+  lidar::gst::AddStats(
+      stats.get(), kStats,
+      {all, all.packets.invalid + state.not_rtp, state.wrong_payload_type, state.not_accepted});
+  return stats;
 }
+
+void TakeReorderTime(GObject* object, GParamSpec*) {
+  State& state = *GST_LIDAR_RTP_DEPAY(object)->state;
+  std::lock_guard lock(state.mutex);
+  state.receiver.set_max_reorder_time(ReorderTime(state.settings));
+}
+
+}  // namespace
 
 static void gst_lidar_rtp_depay_init(GstLidarRtpDepay* self) {
   self->state = new State;
@@ -329,46 +360,21 @@ static void gst_lidar_rtp_depay_init(GstLidarRtpDepay* self) {
   g_object_set(self, "max-reorder", 0, nullptr);
 }
 
-static void InstallGObject(GObjectClass* object) {
-  object->set_property = [](GObject* o, guint id, const GValue* v, GParamSpec*) {
-    State& s = *GST_LIDAR_RTP_DEPAY(o)->state;
-    std::lock_guard lock(s.mutex);
-    lidar::gst::SetProperty(s.settings, kProperties[id - 1], v);
-    s.receiver.set_max_reorder_time(ReorderTime(s.settings));
-  };
-  object->get_property = [](GObject* o, guint id, GValue* v, GParamSpec*) {
-    if (id == kStatsId) {
-      g_value_take_boxed(v, Stats(o));
-      return;
-    }
-    State& s = *GST_LIDAR_RTP_DEPAY(o)->state;
-    std::lock_guard lock(s.mutex);
-    lidar::gst::GetProperty(s.settings, kProperties[id - 1], v);
-  };
-  object->finalize = [](GObject* o) {
-    delete GST_LIDAR_RTP_DEPAY(o)->state;
-    G_OBJECT_CLASS(gst_lidar_rtp_depay_parent_class)->finalize(o);
-  };
-  lidar::gst::InstallProperties(object, kProperties);
-  g_object_class_install_property(
-      object, kStatsId,
-      g_param_spec_boxed("stats", "stats",
-                         "Slices and scans received and missing, each counted once, beside the "
-                         "fields that every RTP depayloader has",
-                         GST_TYPE_STRUCTURE,
-                         static_cast<GParamFlags>(G_PARAM_READABLE | G_PARAM_STATIC_STRINGS)));
-}
-
 static void gst_lidar_rtp_depay_class_init(GstLidarRtpDepayClass* klass) {
   GST_DEBUG_CATEGORY_INIT(gst_lidar_rtp_depay_debug, "rtplidardepay", 0,
                           "RTP depayloader for clouds");
-  InstallGObject(G_OBJECT_CLASS(klass));
+  auto* object = G_OBJECT_CLASS(klass);
+  lidar::gst::ServeProperties<GstLidarRtpDepay, kProperties, TakeReorderTime>(object);
+  lidar::gst::OwnState<GstLidarRtpDepay, gst_lidar_rtp_depay_parent_class>(object);
   auto* element = GST_ELEMENT_CLASS(klass);
-  gst_element_class_add_static_pad_template(element, &sink_template);
-  gst_element_class_add_static_pad_template(element, &src_template);
-  gst_element_class_set_static_metadata(element, "RTP depayloader for point clouds",
-                                        "Codec/Depayloader/Network/RTP",
-                                        "Gets slices of encoded clouds out of RTP", "gst-lidar");
+  lidar::gst::Describe(klass,
+                       {"RTP depayloader for point clouds", "Codec/Depayloader/Network/RTP",
+                        "Gets slices of encoded clouds out of RTP"},
+                       {{"sink", GST_PAD_SINK,
+                         "application/x-rtp, media = (string) { application, video }, "
+                         "payload = (int) [ 96, 127 ], "
+                         "clock-rate = (int) 90000, encoding-name = (string) X-LIDAR-DRACO"},
+                        {"src", GST_PAD_SRC, GST_LIDAR_CODED_CAPS}});
   element->change_state = gst_lidar_rtp_depay_change_state;
   auto* depay = GST_RTP_BASE_DEPAYLOAD_CLASS(klass);
   depay->set_caps = gst_lidar_rtp_depay_set_caps;

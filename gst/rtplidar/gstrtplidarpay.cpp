@@ -8,14 +8,16 @@
  * gst-launch-1.0 lidartestsrc ! lidarenc ! rtplidarpay ! udpsink host=127.0.0.1 port=5004
  * ]|
  */
-#include "gst/rtplidar/gstrtplidarpay.h"
+#include <gst/rtp/gstrtpbasepayload.h>
 
 #include <mutex>
 
+#include "gst/common/element_class.h"
 #include "gst/common/gstlidar.h"
 #include "gst/common/latency.h"
 #include "gst/common/properties.h"
 #include "gst/common/refs.h"
+#include "gst/common/stats.h"
 #include "gst/rtplidar/base_stats.h"
 #include "gst/rtplidar/config_caps.h"
 #include "gst/rtplidar/pay_slices.h"
@@ -32,7 +34,9 @@ using Settings = lidar::gst::PaySettings;
 
 constexpr guint kClockRate = 90'000;
 
-const std::array<lidar::gst::Property<Settings>, 2> kProperties = {{
+lidar::gst::StructurePtr Stats(GObject* object);
+
+const std::array<lidar::gst::Property<Settings>, 3> kProperties = {{
     {"config-interval",
      "Time between repetitions of the stream config, by which receivers join late; 0: only before "
      "the first slice and when it changes [s]",
@@ -41,8 +45,19 @@ const std::array<lidar::gst::Property<Settings>, 2> kProperties = {{
      "Put small slices of one scan together into one packet: fewer headers, more delay (max-ptime "
      "bounds it)",
      &Settings::aggregate, 0, 0, GST_PARAM_MUTABLE_PLAYING},
+    {"stats", "What was sent, beside the fields that every RTP payloader has", Stats},
 }};
-constexpr guint kStatsId = kProperties.size() + 1;
+
+using Counters = lidar::gst::PayCounters;
+const std::array<lidar::gst::Stat<Counters>, 7> kStats = {{
+    {"scans-sent", &Counters::scans},
+    {"slices-sent", &Counters::slices},
+    {"packets-sent", &Counters::packets},
+    {"configs-sent", &Counters::configs},
+    {"slice-bytes", &Counters::slice_bytes},
+    {"payload-bytes", &Counters::payload_bytes},
+    {"empty-dropped", &Counters::empty},
+}};
 
 struct State : lidar::gst::PayState {
   GstPadQueryFunction base_src_query = nullptr;
@@ -50,21 +65,15 @@ struct State : lidar::gst::PayState {
 
 }  // namespace
 
+G_DECLARE_FINAL_TYPE(GstLidarRtpPay, gst_lidar_rtp_pay, GST_LIDAR, RTP_PAY, GstRTPBasePayload)
 struct _GstLidarRtpPay {
   GstRTPBasePayload parent;
   State* state;
 };
 
 G_DEFINE_TYPE(GstLidarRtpPay, gst_lidar_rtp_pay, GST_TYPE_RTP_BASE_PAYLOAD)
-GST_ELEMENT_REGISTER_DEFINE(rtplidarpay, "rtplidarpay", GST_RANK_SECONDARY, GST_TYPE_LIDAR_RTP_PAY)
-
-static GstStaticPadTemplate sink_template = GST_STATIC_PAD_TEMPLATE(
-    "sink", GST_PAD_SINK, GST_PAD_ALWAYS, GST_STATIC_CAPS(GST_LIDAR_CODED_CAPS));
-static GstStaticPadTemplate src_template = GST_STATIC_PAD_TEMPLATE(
-    "src", GST_PAD_SRC, GST_PAD_ALWAYS,
-    GST_STATIC_CAPS("application/x-rtp, media = (string) { application, video }, "
-                    "payload = (int) [ 96, 127 ], "
-                    "clock-rate = (int) 90000, encoding-name = (string) X-LIDAR-DRACO"));
+GST_ELEMENT_REGISTER_DEFINE(rtplidarpay, "rtplidarpay", GST_RANK_SECONDARY,
+                            gst_lidar_rtp_pay_get_type())
 
 static GstFlowReturn gst_lidar_rtp_pay_handle_buffer(GstRTPBasePayload* base, GstBuffer* buffer) {
   const BufferPtr owner(buffer);
@@ -213,18 +222,17 @@ static GstStateChangeReturn gst_lidar_rtp_pay_change_state(GstElement* element,
   return GST_ELEMENT_CLASS(gst_lidar_rtp_pay_parent_class)->change_state(element, transition);
 }
 
-static GstStructure* Stats(GObject* object) {
+namespace {
+
+lidar::gst::StructurePtr Stats(GObject* object) {
   State& state = *GST_LIDAR_RTP_PAY(object)->state;
-  GstStructure* s = lidar::gst::BaseClassStats(object, gst_lidar_rtp_pay_parent_class);
+  auto stats = lidar::gst::BaseClassStats(object, gst_lidar_rtp_pay_parent_class);
   std::lock_guard lock(state.mutex);
-  const lidar::gst::PayCounters& c = state.counters;
-  gst_structure_set(s, "scans-sent", G_TYPE_UINT64, c.scans, "slices-sent", G_TYPE_UINT64, c.slices,
-                    "packets-sent", G_TYPE_UINT64, c.packets, "configs-sent", G_TYPE_UINT64,
-                    c.configs, "slice-bytes", G_TYPE_UINT64, c.slice_bytes, "payload-bytes",
-                    G_TYPE_UINT64, c.payload_bytes, "empty-dropped", G_TYPE_UINT64, c.empty,
-                    nullptr);
-  return s;
+  lidar::gst::AddStats(stats.get(), kStats, state.counters);
+  return stats;
 }
+
+}  // namespace
 
 static void gst_lidar_rtp_pay_init(GstLidarRtpPay* self) {
   self->state = new State;
@@ -233,42 +241,20 @@ static void gst_lidar_rtp_pay_init(GstLidarRtpPay* self) {
   gst_pad_set_query_function(src, gst_lidar_rtp_pay_src_query);
 }
 
-static void InstallGObject(GObjectClass* object) {
-  object->set_property = [](GObject* o, guint id, const GValue* v, GParamSpec*) {
-    State& s = *GST_LIDAR_RTP_PAY(o)->state;
-    std::lock_guard lock(s.mutex);
-    lidar::gst::SetProperty(s.settings, kProperties[id - 1], v);
-  };
-  object->get_property = [](GObject* o, guint id, GValue* v, GParamSpec*) {
-    if (id == kStatsId) {
-      g_value_take_boxed(v, Stats(o));
-      return;
-    }
-    State& s = *GST_LIDAR_RTP_PAY(o)->state;
-    std::lock_guard lock(s.mutex);
-    lidar::gst::GetProperty(s.settings, kProperties[id - 1], v);
-  };
-  object->finalize = [](GObject* o) {
-    delete GST_LIDAR_RTP_PAY(o)->state;
-    G_OBJECT_CLASS(gst_lidar_rtp_pay_parent_class)->finalize(o);
-  };
-  lidar::gst::InstallProperties(object, kProperties);
-  g_object_class_install_property(
-      object, kStatsId,
-      g_param_spec_boxed(
-          "stats", "stats", "What was sent, beside the fields that every RTP payloader has",
-          GST_TYPE_STRUCTURE, static_cast<GParamFlags>(G_PARAM_READABLE | G_PARAM_STATIC_STRINGS)));
-}
-
 static void gst_lidar_rtp_pay_class_init(GstLidarRtpPayClass* klass) {
   GST_DEBUG_CATEGORY_INIT(gst_lidar_rtp_pay_debug, "rtplidarpay", 0, "RTP payloader for clouds");
-  InstallGObject(G_OBJECT_CLASS(klass));
+  auto* object = G_OBJECT_CLASS(klass);
+  lidar::gst::ServeProperties<GstLidarRtpPay, kProperties>(object);
+  lidar::gst::OwnState<GstLidarRtpPay, gst_lidar_rtp_pay_parent_class>(object);
   auto* element = GST_ELEMENT_CLASS(klass);
-  gst_element_class_add_static_pad_template(element, &sink_template);
-  gst_element_class_add_static_pad_template(element, &src_template);
-  gst_element_class_set_static_metadata(element, "RTP payloader for point clouds",
-                                        "Codec/Payloader/Network/RTP",
-                                        "Sends slices of encoded clouds as RTP", "gst-lidar");
+  lidar::gst::Describe(klass,
+                       {"RTP payloader for point clouds", "Codec/Payloader/Network/RTP",
+                        "Sends slices of encoded clouds as RTP"},
+                       {{"sink", GST_PAD_SINK, GST_LIDAR_CODED_CAPS},
+                        {"src", GST_PAD_SRC,
+                         "application/x-rtp, media = (string) { application, video }, "
+                         "payload = (int) [ 96, 127 ], "
+                         "clock-rate = (int) 90000, encoding-name = (string) X-LIDAR-DRACO"}});
   element->change_state = gst_lidar_rtp_pay_change_state;
   auto* pay = GST_RTP_BASE_PAYLOAD_CLASS(klass);
   pay->set_caps = gst_lidar_rtp_pay_set_caps;

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // The plugin rtplidar: clouds over RTP.
 #include "gst/common/gstlidar.h"
-#include "gst/rtplidar/gstrtplidardepay.h"
-#include "gst/rtplidar/gstrtplidarpay.h"
+
+GST_ELEMENT_REGISTER_DECLARE(rtplidarpay)
+GST_ELEMENT_REGISTER_DECLARE(rtplidardepay)
 
 static gboolean plugin_init(GstPlugin* plugin) {
   gst_lidar_init();

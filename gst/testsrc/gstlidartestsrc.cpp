@@ -8,12 +8,14 @@
  * gst-launch-1.0 lidartestsrc is-live=true model=os1-64 ! fakesink dump=false
  * ]|
  */
-#include "gst/testsrc/gstlidartestsrc.h"
+#include <gst/base/gstpushsrc.h>
 
 #include <memory>
 #include <mutex>
 #include <optional>
 
+#include "gst/common/element_class.h"
+#include "gst/common/enum_type.h"
 #include "gst/common/properties.h"
 #include "gst/testsrc/live_pacer.h"
 #include "gst/testsrc/slice_maker.h"
@@ -54,21 +56,17 @@ const GEnumValue kScenes[] = {{0, "A street in a town, with traffic", "street"},
                               {3, "A town on hills, and a round trip of 2 km through it", "town"},
                               {0, nullptr, nullptr}};
 
-GType RegisterEnum(gsize* type, const char* name, const GEnumValue* values) {
-  if (g_once_init_enter(type)) g_once_init_leave(type, g_enum_register_static(name, values));
-  return *type;
-}
 GType ModelType() {
-  static gsize type = 0;
-  return RegisterEnum(&type, "GstLidarTestSrcModel", kModels);
+  static const GType type = lidar::gst::RegisterEnum("GstLidarTestSrcModel", kModels);
+  return type;
 }
 GType ModeType() {
-  static gsize type = 0;
-  return RegisterEnum(&type, "GstLidarTestSrcMode", kModes);
+  static const GType type = lidar::gst::RegisterEnum("GstLidarTestSrcMode", kModes);
+  return type;
 }
 GType SceneType() {
-  static gsize type = 0;
-  return RegisterEnum(&type, "GstLidarTestSrcScene", kScenes);
+  static const GType type = lidar::gst::RegisterEnum("GstLidarTestSrcScene", kScenes);
+  return type;
 }
 
 struct Settings {
@@ -152,13 +150,15 @@ lidar::gst::SliceOptions OptionsFrom(const Settings& s) {
 
 }  // namespace
 
+G_DECLARE_FINAL_TYPE(GstLidarTestSrc, gst_lidar_test_src, GST, LIDAR_TEST_SRC, GstPushSrc)
 struct _GstLidarTestSrc {
   GstPushSrc parent;
   State* state;
 };
 
 G_DEFINE_TYPE(GstLidarTestSrc, gst_lidar_test_src, GST_TYPE_PUSH_SRC)
-GST_ELEMENT_REGISTER_DEFINE(lidartestsrc, "lidartestsrc", GST_RANK_NONE, GST_TYPE_LIDAR_TEST_SRC)
+GST_ELEMENT_REGISTER_DEFINE(lidartestsrc, "lidartestsrc", GST_RANK_NONE,
+                            gst_lidar_test_src_get_type())
 
 namespace {
 
@@ -300,11 +300,6 @@ void ApplyLive(GObject* object, GParamSpec*) {
   gst_base_src_set_live(GST_BASE_SRC(object), live);
 }
 
-void Finalize(GObject* object) {
-  delete GST_LIDAR_TEST_SRC(object)->state;
-  G_OBJECT_CLASS(gst_lidar_test_src_parent_class)->finalize(object);
-}
-
 }  // namespace
 
 static void gst_lidar_test_src_init(GstLidarTestSrc* self) {
@@ -315,18 +310,12 @@ static void gst_lidar_test_src_init(GstLidarTestSrc* self) {
 static void gst_lidar_test_src_class_init(GstLidarTestSrcClass* klass) {
   GST_DEBUG_CATEGORY_INIT(gst_lidar_test_src_debug, "lidartestsrc", 0, "Synthetic LiDAR");
   auto* object = G_OBJECT_CLASS(klass);
-  object->finalize = Finalize;
+  lidar::gst::OwnState<GstLidarTestSrc, gst_lidar_test_src_parent_class>(object);
   lidar::gst::ServeProperties<GstLidarTestSrc, kProperties, ApplyLive>(object);
-  gst_type_mark_as_plugin_api(ModelType(), static_cast<GstPluginAPIFlags>(0));
-  gst_type_mark_as_plugin_api(ModeType(), static_cast<GstPluginAPIFlags>(0));
-  gst_type_mark_as_plugin_api(SceneType(), static_cast<GstPluginAPIFlags>(0));
-  static GstStaticPadTemplate src = GST_STATIC_PAD_TEMPLATE(
-      "src", GST_PAD_SRC, GST_PAD_ALWAYS, GST_STATIC_CAPS(GST_LIDAR_CLOUD_MEDIA_TYPE));
-  auto* element = GST_ELEMENT_CLASS(klass);
-  gst_element_class_add_static_pad_template(element, &src);
-  gst_element_class_set_static_metadata(element, "LiDAR test source", "Source/PointCloud",
-                                        "A synthetic LiDAR that drives through a synthetic world",
-                                        "gst-lidar");
+  lidar::gst::Describe(klass,
+                       {"LiDAR test source", "Source/PointCloud",
+                        "A synthetic LiDAR that drives through a synthetic world"},
+                       {{"src", GST_PAD_SRC, GST_LIDAR_CLOUD_MEDIA_TYPE}});
   auto* base = GST_BASE_SRC_CLASS(klass);
   base->start = Start;
   base->stop = Stop;

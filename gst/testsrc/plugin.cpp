@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include "gst/common/gstlidar.h"
-#include "gst/testsrc/gstlidartestsrc.h"
+
+GST_ELEMENT_REGISTER_DECLARE(lidartestsrc)
 
 static gboolean plugin_init(GstPlugin* plugin) {
   gst_lidar_init();

@@ -8,7 +8,7 @@
  * gst-launch-1.0 lidartestsrc is-live=true ! pointcloudview ! videoconvert ! autovideosink
  * ]|
  */
-#include "gst/view/gstpointcloudview.h"
+#include <gst/base/gstbasetransform.h>
 
 #include <gst/video/video.h>
 
@@ -16,6 +16,8 @@
 #include <mutex>
 
 #include "gst/common/buffer_map.h"
+#include "gst/common/element_class.h"
+#include "gst/common/enum_type.h"
 #include "gst/common/properties.h"
 #include "gst/common/refs.h"
 #include "gst/common/refused_caps.h"
@@ -42,17 +44,13 @@ const GEnumValue kColors[] = {{0, "z", "height"},
                               {3, "Number of the beam", "ring"},
                               {0, nullptr, nullptr}};
 
-GType RegisterEnum(gsize* type, const char* name, const GEnumValue* values) {
-  if (g_once_init_enter(type)) g_once_init_leave(type, g_enum_register_static(name, values));
-  return *type;
-}
 GType ViewType() {
-  static gsize type = 0;
-  return RegisterEnum(&type, "GstLidarPointCloudViewView", kViews);
+  static const GType type = lidar::gst::RegisterEnum("GstLidarPointCloudViewView", kViews);
+  return type;
 }
 GType ColorType() {
-  static gsize type = 0;
-  return RegisterEnum(&type, "GstLidarPointCloudViewColor", kColors);
+  static const GType type = lidar::gst::RegisterEnum("GstLidarPointCloudViewColor", kColors);
+  return type;
 }
 
 struct Settings {
@@ -145,6 +143,8 @@ lidar::gst::ViewSettings ToView(const Settings& s) {
 
 }  // namespace
 
+G_DECLARE_FINAL_TYPE(GstLidarPointCloudView, gst_lidar_point_cloud_view, GST,
+                     LIDAR_POINT_CLOUD_VIEW, GstBaseTransform)
 struct _GstLidarPointCloudView {
   GstBaseTransform parent;
   State* state;
@@ -152,7 +152,7 @@ struct _GstLidarPointCloudView {
 
 G_DEFINE_TYPE(GstLidarPointCloudView, gst_lidar_point_cloud_view, GST_TYPE_BASE_TRANSFORM)
 GST_ELEMENT_REGISTER_DEFINE(pointcloudview, "pointcloudview", GST_RANK_NONE,
-                            GST_TYPE_LIDAR_POINT_CLOUD_VIEW)
+                            gst_lidar_point_cloud_view_get_type())
 
 namespace {
 
@@ -369,11 +369,6 @@ void MarkChanged(GObject* object, GParamSpec*) {
   state.changed = true;
 }
 
-void Finalize(GObject* object) {
-  delete GST_LIDAR_POINT_CLOUD_VIEW(object)->state;
-  G_OBJECT_CLASS(gst_lidar_point_cloud_view_parent_class)->finalize(object);
-}
-
 }  // namespace
 
 static void gst_lidar_point_cloud_view_init(GstLidarPointCloudView* self) {
@@ -385,22 +380,15 @@ static void gst_lidar_point_cloud_view_class_init(GstLidarPointCloudViewClass* k
   GST_DEBUG_CATEGORY_INIT(gst_lidar_point_cloud_view_debug, "pointcloudview", 0,
                           "Point clouds as video");
   auto* object = G_OBJECT_CLASS(klass);
-  object->finalize = Finalize;
+  lidar::gst::OwnState<GstLidarPointCloudView, gst_lidar_point_cloud_view_parent_class>(object);
   lidar::gst::ServeProperties<GstLidarPointCloudView, kProperties, MarkChanged>(object);
-  gst_type_mark_as_plugin_api(ViewType(), static_cast<GstPluginAPIFlags>(0));
-  gst_type_mark_as_plugin_api(ColorType(), static_cast<GstPluginAPIFlags>(0));
-  static GstStaticPadTemplate sink = GST_STATIC_PAD_TEMPLATE(
-      "sink", GST_PAD_SINK, GST_PAD_ALWAYS, GST_STATIC_CAPS(GST_LIDAR_CLOUD_MEDIA_TYPE));
-  static GstStaticPadTemplate src =
-      GST_STATIC_PAD_TEMPLATE("src", GST_PAD_SRC, GST_PAD_ALWAYS,
-                              GST_STATIC_CAPS("video/x-raw, format = (string) " VIDEO_FORMATS
-                                              ", width = [ 16, 8192 ], height = [ 16, 8192 ], "
-                                              "framerate = (fraction) [ 0, max ]"));
-  auto* element = GST_ELEMENT_CLASS(klass);
-  gst_element_class_add_static_pad_template(element, &sink);
-  gst_element_class_add_static_pad_template(element, &src);
-  gst_element_class_set_static_metadata(element, "Point cloud view", "Converter/Video/PointCloud",
-                                        "Draws point clouds as video", "gst-lidar");
+  lidar::gst::Describe(
+      klass, {"Point cloud view", "Converter/Video/PointCloud", "Draws point clouds as video"},
+      {{"sink", GST_PAD_SINK, GST_LIDAR_CLOUD_MEDIA_TYPE},
+       {"src", GST_PAD_SRC,
+        "video/x-raw, format = (string) " VIDEO_FORMATS
+        ", width = [ 16, 8192 ], height = [ 16, 8192 ], "
+        "framerate = (fraction) [ 0, max ]"}});
   auto* transform = GST_BASE_TRANSFORM_CLASS(klass);
   transform->transform_caps = TransformCaps;
   transform->fixate_caps = FixateCaps;

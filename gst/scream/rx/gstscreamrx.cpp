@@ -12,6 +12,7 @@
  */
 #include "gst/scream/rx/gstscreamrx.h"
 
+#include "gst/common/enum_type.h"
 #include "gst/common/stats.h"
 #include "gst/scream/rx/private.h"
 
@@ -35,14 +36,11 @@ static GstStaticPadTemplate rtcp_template = GST_STATIC_PAD_TEMPLATE(
 namespace lidar::gst {
 
 GType NumReportsType() {
-  static gsize type = 0;
-  if (g_once_init_enter(&type)) {
-    static const GEnumValue values[] = {
-        {kNumReportsCount, "Number of blocks (RFC 8888 with erratum 8166)", "count"},
-        {kNumReportsEricsson, "One less, as Ericsson's SCReAM reads it", "ericsson"},
-        {0, nullptr, nullptr}};
-    g_once_init_leave(&type, g_enum_register_static("GstLidarScreamNumReports", values));
-  }
+  static const GEnumValue values[] = {
+      {kNumReportsCount, "Number of blocks (RFC 8888 with erratum 8166)", "count"},
+      {kNumReportsEricsson, "One less, as Ericsson's SCReAM reads it", "ericsson"},
+      {0, nullptr, nullptr}};
+  static const GType type = RegisterEnum("GstLidarScreamNumReports", values);
   return type;
 }
 
@@ -262,5 +260,4 @@ static void gst_lidar_scream_rx_class_init(GstLidarScreamRxClass* klass) {
   gst_element_class_set_static_metadata(element, "SCReAM receiver", "Filter/Network/RTP",
                                         "Congestion control feedback for RTP (RFC 8888) with ECN",
                                         "gst-lidar");
-  gst_type_mark_as_plugin_api(NumReportsType(), static_cast<GstPluginAPIFlags>(0));
 }

@@ -300,7 +300,6 @@ static void InstallPads(GstElementClass* element) {
   gst_element_class_set_static_metadata(element, "SCReAM sender", "Filter/Network/RTP",
                                         "Congestion control for RTP with SCReAM v2 and L4S",
                                         "gst-lidar");
-  gst_type_mark_as_plugin_api(EcnModeType(), static_cast<GstPluginAPIFlags>(0));
   gst_type_mark_as_plugin_api(GST_TYPE_LIDAR_SCREAM_TX_PAD, static_cast<GstPluginAPIFlags>(0));
 }
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include "gst/scream/tx/settings.h"
 
+#include "gst/common/enum_type.h"
+
 namespace lidar::gst {
 namespace {
 
@@ -29,14 +31,11 @@ scream::Ecn ToEcn(gint mode) {
 }  // namespace
 
 GType EcnModeType() {
-  static gsize type = 0;
-  if (g_once_init_enter(&type)) {
-    static const GEnumValue values[] = {{kEcnOff, "Not ECN-capable", "off"},
-                                        {kEcnEct0, "Classic ECN, ECT(0)", "ect0"},
-                                        {kEcnEct1, "L4S, ECT(1)", "ect1"},
-                                        {0, nullptr, nullptr}};
-    g_once_init_leave(&type, g_enum_register_static("GstLidarScreamEcnMode", values));
-  }
+  static const GEnumValue values[] = {{kEcnOff, "Not ECN-capable", "off"},
+                                      {kEcnEct0, "Classic ECN, ECT(0)", "ect0"},
+                                      {kEcnEct1, "L4S, ECT(1)", "ect1"},
+                                      {0, nullptr, nullptr}};
+  static const GType type = RegisterEnum("GstLidarScreamEcnMode", values);
   return type;
 }
 

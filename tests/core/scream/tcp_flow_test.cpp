@@ -27,8 +27,8 @@ double Utilisation(const SimulationResult& result) {
 }
 
 double RateOf(const SimulationResult& result, int flow, Duration from, Duration until) {
-  return static_cast<double>(result.DeliveredBytes(kStart + from, kStart + until, flow)) * 8 /
-         1e6 / Seconds(until - from);
+  return static_cast<double>(result.DeliveredBytes(kStart + from, kStart + until, flow)) * 8 / 1e6 /
+         Seconds(until - from);
 }
 
 class Greedy : public ::testing::TestWithParam<TcpKind> {};

@@ -6,6 +6,7 @@
 
 #include <mutex>
 
+#include "gst/common/enum_type.h"
 #include "gst/common/stats.h"
 
 namespace lidar::gst {
@@ -14,12 +15,9 @@ inline namespace properties_test {
 
 enum class Colour { kRed, kGreen = 7 };
 GType ColourType() {
-  static gsize type = 0;
-  if (g_once_init_enter(&type)) {
-    static const GEnumValue values[] = {
-        {0, "Red", "red"}, {7, "Green", "green"}, {0, nullptr, nullptr}};
-    g_once_init_leave(&type, g_enum_register_static("TestColour", values));
-  }
+  static const GEnumValue values[] = {
+      {0, "Red", "red"}, {7, "Green", "green"}, {0, nullptr, nullptr}};
+  static const GType type = RegisterEnum("TestColour", values);
   return type;
 }
 
@@ -247,6 +245,10 @@ TEST_F(PropertyTable, ShowsTheRowsOfAChildOnItsBin) {
   EXPECT_EQ(seen, 8U);
   EXPECT_EQ(changes, 1U);
   g_object_unref(bin);
+}
+
+TEST(PropertyTableDeathTest, EndsTheProgramWhereARowIsAskedForThatIsNotThere) {
+  EXPECT_DEATH(FindRow(kNestedRows, "wiat"), "no property row is called \"wiat\"");
 }
 
 TEST(StatTable, ShowsEachFieldUnderItsNameAndType) {

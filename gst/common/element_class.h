@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// What the registry shows of an element, and its pads.
+#pragma once
+#include <gst/gst.h>
+
+#include <initializer_list>
+
+namespace lidar::gst {
+
+struct ElementInfo {
+  const char* long_name;
+  const char* classification;
+  const char* description;
+};
+
+struct PadRow {
+  const char* name;
+  GstPadDirection direction;
+  const char* caps;
+  GstPadPresence presence = GST_PAD_ALWAYS;
+};
+
+/// Documents an element class and installs its pad templates.
+inline void Describe(gpointer klass, const ElementInfo& info,
+                     std::initializer_list<PadRow> pads = {}) {
+  auto* element = GST_ELEMENT_CLASS(klass);
+  for (const PadRow& pad : pads) {
+    GstStaticPadTemplate row{pad.name, pad.direction, pad.presence, GST_STATIC_CAPS(pad.caps)};
+    gst_element_class_add_static_pad_template(element, &row);
+  }
+  gst_element_class_set_static_metadata(element, info.long_name, info.classification,
+                                        info.description, "gst-lidar");
+}
+
+/// Adds the pad of the template `name`; the element owns it.
+inline GstPad* AddPad(gpointer element, const char* name) {
+  auto* klass = GST_ELEMENT_GET_CLASS(element);
+  GstPad* pad = gst_pad_new_from_template(gst_element_class_get_pad_template(klass, name), name);
+  gst_element_add_pad(GST_ELEMENT(element), pad);
+  return pad;
+}
+
+}  // namespace lidar::gst
