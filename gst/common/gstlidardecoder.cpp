@@ -9,9 +9,9 @@
 
 #include "gst/common/buffer_map.h"
 #include "gst/common/cloud_info.h"
+#include "gst/common/coder_pads.h"
 #include "gst/common/message_timer.h"
 #include "gst/common/properties.h"
-#include "gst/common/refs.h"
 #include "gst/common/stats.h"
 
 GST_DEBUG_CATEGORY_STATIC(gst_lidar_decoder_debug);
@@ -69,8 +69,7 @@ const std::array<lidar::gst::Stat<Counters>, 12> kStats = {{
 struct Stream {
   std::optional<CloudInfo> cloud;  // of what is given out; its size is that of the last caps
   guint max_points = 0;
-  bool has_size = false;  // caps for `cloud` have been pushed
-  bool discont = false;
+  bool has_size = false;                      // caps for `cloud` have been pushed
   std::vector<lidar::gst::EventPtr> pending;  // sticky, to follow the first caps
   lidar::gst::MessageTimer stats_timer;
 };
@@ -78,8 +77,7 @@ struct Stream {
 }  // namespace
 
 struct _GstLidarDecoderState {
-  GstPad* sink = nullptr;
-  GstPad* src = nullptr;
+  lidar::gst::CoderPads pads;
 
   std::mutex mutex;  // guards settings and counters; never held while pushing or posting
   Settings settings;
@@ -177,7 +175,7 @@ gboolean SetCaps(GstLidarDecoder* self, GstCaps* caps) {
 
 void PushPending(GstLidarDecoder* self) {
   for (auto& event : std::exchange(self->state->stream.pending, {}))
-    gst_pad_push_event(self->state->src, event.release());
+    gst_pad_push_event(self->state->pads.src(), event.release());
 }
 
 /// Only the data tell the size of the cloud.
@@ -189,7 +187,7 @@ bool PushCaps(GstLidarDecoder* self, const GstLidarDecodedSlice& slice) {
   cloud.height = slice.height;
   const lidar::gst::CapsPtr caps(cloud.ToCaps());
   GST_DEBUG_OBJECT(self, "giving %" GST_PTR_FORMAT, static_cast<gpointer>(caps.get()));
-  if (!gst_pad_push_event(self->state->src, gst_event_new_caps(caps.get()))) return false;
+  if (!gst_pad_push_event(self->state->pads.src(), gst_event_new_caps(caps.get()))) return false;
   stream.has_size = true;
   PushPending(self);
   return true;
@@ -215,7 +213,6 @@ void HoldBack(Stream* stream, GstEvent* event) {
 }
 
 void OnFlush(Stream* stream) {
-  stream->discont = true;
   const auto is_segment = [](const auto& e) {
     return GST_EVENT_TYPE(e.get()) == GST_EVENT_SEGMENT;
   };
@@ -233,8 +230,11 @@ gboolean SinkEvent(GstPad* pad, GstObject* parent, GstEvent* event) {
     return accepted;
   }
   Stream& stream = self->state->stream;
-  if (GST_EVENT_TYPE(event) == GST_EVENT_FLUSH_STOP) OnFlush(&stream);
-  const bool has_caps = gst_pad_has_current_caps(self->state->src);
+  if (GST_EVENT_TYPE(event) == GST_EVENT_FLUSH_STOP) {
+    OnFlush(&stream);
+    self->state->pads.set_discont(true);
+  }
+  const bool has_caps = gst_pad_has_current_caps(self->state->pads.src());
   if (!has_caps && WaitsForCaps(event)) {
     HoldBack(&stream, event);
     return TRUE;
@@ -293,21 +293,7 @@ GstFlowReturn DropSlice(GstLidarDecoder* self, GstBuffer* input) {
     std::lock_guard lock(state.mutex);
     ++state.counters.slices_dropped;
   }
-  state.stream.discont = true;
-  // Before the first caps nobody downstream knows what the gap is in.
-  if (GST_BUFFER_PTS_IS_VALID(input) && gst_pad_has_current_caps(state.src)) {
-    gst_pad_push_event(state.src,
-                       gst_event_new_gap(GST_BUFFER_PTS(input), GST_BUFFER_DURATION(input)));
-  }
-  return GST_FLOW_OK;
-}
-
-/// Where stats-interval asks for it.
-void PostStats(GstLidarDecoder* self) {
-  if (!self->state->stream.stats_timer.IsDue(Snapshot(self->state).stats_interval)) return;
-  gst_element_post_message(
-      GST_ELEMENT(self),
-      gst_message_new_element(GST_OBJECT(self), Stats(G_OBJECT(self)).release()));
+  return state.pads.LeaveOut(input);
 }
 
 GstFlowReturn Chain(GstPad*, GstObject* parent, GstBuffer* buffer) {
@@ -317,18 +303,12 @@ GstFlowReturn Chain(GstPad*, GstObject* parent, GstBuffer* buffer) {
   if (!stream.cloud) return GST_FLOW_NOT_NEGOTIATED;
   GstLidarDecodedSlice slice;
   lidar::gst::BufferPtr output = DecodeBuffer(self, buffer, &slice);
-  PostStats(self);
+  stream.stats_timer.Post(GST_ELEMENT(self), Snapshot(self->state).stats_interval, Stats);
   if (!output) return DropSlice(self, buffer);
   if (!PushCaps(self, slice))
-    return GST_PAD_IS_FLUSHING(self->state->src) ? GST_FLOW_FLUSHING : GST_FLOW_NOT_NEGOTIATED;
-  gst_buffer_copy_into(
-      output.get(), buffer,
-      static_cast<GstBufferCopyFlags>(GST_BUFFER_COPY_FLAGS | GST_BUFFER_COPY_TIMESTAMPS |
-                                      GST_BUFFER_COPY_META),
-      0, static_cast<gsize>(-1));
-  if (stream.discont) GST_BUFFER_FLAG_SET(output.get(), GST_BUFFER_FLAG_DISCONT);
-  stream.discont = false;
-  return gst_pad_push(self->state->src, output.release());
+    return GST_PAD_IS_FLUSHING(self->state->pads.src()) ? GST_FLOW_FLUSHING
+                                                        : GST_FLOW_NOT_NEGOTIATED;
+  return self->state->pads.Push(std::move(output), buffer);
 }
 
 GstStateChangeReturn ChangeState(GstElement* element, GstStateChange transition) {
@@ -342,6 +322,7 @@ GstStateChangeReturn ChangeState(GstElement* element, GstStateChange transition)
       GST_ELEMENT_CLASS(gst_lidar_decoder_parent_class)->change_state(element, transition);
   if (transition == GST_STATE_CHANGE_PAUSED_TO_READY) {
     state.stream = {};
+    state.pads.set_discont(false);
     auto* klass = GST_LIDAR_DECODER_GET_CLASS(self);
     if (klass->reset != nullptr) klass->reset(self);
   }
@@ -351,21 +332,7 @@ GstStateChangeReturn ChangeState(GstElement* element, GstStateChange transition)
 /// The pad templates are the subclass's, so the pads come when it is known.
 void Constructed(GObject* object) {
   G_OBJECT_CLASS(gst_lidar_decoder_parent_class)->constructed(object);
-  auto* self = GST_LIDAR_DECODER(object);
-  State& state = *self->state;
-  auto* klass = GST_ELEMENT_GET_CLASS(self);
-  state.sink = gst_pad_new_from_template(gst_element_class_get_pad_template(klass, "sink"), "sink");
-  gst_pad_set_chain_function(state.sink, Chain);
-  gst_pad_set_event_function(state.sink, SinkEvent);
-  gst_element_add_pad(GST_ELEMENT(self), state.sink);
-  state.src = gst_pad_new_from_template(gst_element_class_get_pad_template(klass, "src"), "src");
-  gst_pad_use_fixed_caps(state.src);
-  gst_element_add_pad(GST_ELEMENT(self), state.src);
-}
-
-void Finalize(GObject* object) {
-  delete GST_LIDAR_DECODER(object)->state;
-  G_OBJECT_CLASS(gst_lidar_decoder_parent_class)->finalize(object);
+  GST_LIDAR_DECODER(object)->state->pads.Create(object, Chain, SinkEvent);
 }
 
 }  // namespace
@@ -377,7 +344,7 @@ static void gst_lidar_decoder_class_init(GstLidarDecoderClass* klass) {
   gst_lidar_init();
   auto* object = G_OBJECT_CLASS(klass);
   object->constructed = Constructed;
-  object->finalize = Finalize;
+  lidar::gst::OwnState<GstLidarDecoder, gst_lidar_decoder_parent_class>(object);
   lidar::gst::ServeProperties<GstLidarDecoder, kProperties>(object);
   GST_ELEMENT_CLASS(klass)->change_state = ChangeState;
 }

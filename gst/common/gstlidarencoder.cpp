@@ -6,8 +6,8 @@
 #include <optional>
 #include <string>
 
-#include "gst/common/buffer_map.h"
-#include "gst/common/cloud_info.h"
+#include "gst/common/coder_pads.h"
+#include "gst/common/encoder/cloud_input.h"
 #include "gst/common/encoder/error_report.h"
 #include "gst/common/encoder/rate_model.h"
 #include "gst/common/encoder/settings.h"
@@ -15,8 +15,6 @@
 #include "gst/common/encoder/vtable_coder.h"
 #include "gst/common/message_timer.h"
 #include "gst/common/properties.h"
-#include "gst/common/refs.h"
-#include "src/cloud/range_check.h"
 #include "src/rate/rate_loop.h"
 
 GST_DEBUG_CATEGORY_STATIC(gst_lidar_encoder_debug);
@@ -25,31 +23,24 @@ GST_DEBUG_CATEGORY_STATIC(gst_lidar_encoder_debug);
 namespace {
 
 using lidar::DataRate;
+using lidar::gst::CloudInput;
 using lidar::gst::EncoderSettings;
 using lidar::rate::CodingResult;
 using lidar::rate::LoopResult;
-using lidar::rate::SlicePlace;
 
 /// Belongs to the streaming thread.
 struct Stream {
-  lidar::gst::CloudInfo info;
+  lidar::gst::CloudInput input;
   std::unique_ptr<lidar::gst::VtableCoder> coder;  // null: no format yet
   std::unique_ptr<lidar::rate::RateLoop> loop;
-  std::optional<lidar::RangeCheck> range_check;
   std::optional<lidar::gst::ErrorReport> error_report;
-  std::optional<guint> scan_id;  // of the last slice
-  guint scans_without_meta = 0;
-  bool discont = false;
-  bool warned_of_reach = false;
-  bool warned_of_ranges = false;
   lidar::gst::MessageTimer stats_timer;
 };
 
 }  // namespace
 
 struct _GstLidarEncoderState {
-  GstPad* sink = nullptr;
-  GstPad* src = nullptr;
+  lidar::gst::CoderPads pads;
 
   std::mutex mutex;  // guards settings to stats; never held while pushing, posting or notifying
   EncoderSettings settings;
@@ -150,11 +141,7 @@ lidar::gst::CapsPtr AskForCaps(GstLidarEncoder* self, GstCaps* caps, Stream* str
                       ("caps are %" GST_PTR_FORMAT, static_cast<gpointer>(caps)));
     return nullptr;
   }
-  stream->info = *info;
-  if (coded.codes_ranges && info->sensor_model) {
-    stream->range_check =
-        lidar::RangeCheck::Create(info->fields, info->point_step, *info->sensor_model);
-  }
+  stream->input.SetFormat(*info, coded.codes_ranges != FALSE);
   return lidar::gst::CapsPtr(coded.caps);
 }
 
@@ -162,10 +149,10 @@ gboolean SetCaps(GstLidarEncoder* self, GstCaps* caps) {
   State& state = *self->state;
   Stream& stream = state.stream;
   stream.coder.reset();
-  stream.range_check.reset();
   const lidar::gst::CapsPtr encoded = AskForCaps(self, caps, &stream);
   if (!encoded) return FALSE;
-  stream.error_report.emplace(self, stream.info.fields, stream.info.point_step);
+  const lidar::gst::CloudInfo& info = stream.input.info();
+  stream.error_report.emplace(self, info.fields, info.point_step);
   if (!stream.loop) {
     auto model = lidar::gst::LoadModel(GST_ELEMENT(self), Snapshot(&state));
     if (!model) return FALSE;
@@ -173,9 +160,9 @@ gboolean SetCaps(GstLidarEncoder* self, GstCaps* caps) {
   }
   stream.coder = std::make_unique<lidar::gst::VtableCoder>(self);
   GST_DEBUG_OBJECT(self, "coding %" GST_PTR_FORMAT, static_cast<gpointer>(encoded.get()));
-  const lidar::gst::CapsPtr current(gst_pad_get_current_caps(state.src));
+  const lidar::gst::CapsPtr current(gst_pad_get_current_caps(state.pads.src()));
   if (current && gst_caps_is_equal(current.get(), encoded.get())) return TRUE;
-  return gst_pad_push_event(state.src, gst_event_new_caps(encoded.get()));
+  return gst_pad_push_event(state.pads.src(), gst_event_new_caps(encoded.get()));
 }
 
 gboolean SinkEvent(GstPad* pad, GstObject* parent, GstEvent* event) {
@@ -188,8 +175,8 @@ gboolean SinkEvent(GstPad* pad, GstObject* parent, GstEvent* event) {
     return accepted;
   }
   if (GST_EVENT_TYPE(event) == GST_EVENT_FLUSH_STOP) {
-    self->state->stream.scan_id.reset();
-    self->state->stream.discont = true;
+    self->state->stream.input.ForgetScan();
+    self->state->pads.set_discont(true);
   }
   return gst_pad_event_default(pad, parent, event);
 }
@@ -209,22 +196,6 @@ gboolean SrcEvent(GstPad* pad, GstObject* parent, GstEvent* event) {
   return TRUE;
 }
 
-/// The place of `buffer` in its stream; counts the scan that it starts.
-SlicePlace PlaceOf(GstLidarEncoder* self, GstBuffer* buffer, GstLidarSlice* slice) {
-  Stream& stream = self->state->stream;
-  if (!gst_lidar_buffer_get_slice(buffer, slice)) slice->scan_id = stream.scans_without_meta++;
-  SlicePlace place{slice->scan_id, slice->slice_index, slice->slice_count, 10};
-  if (stream.info.framerate_n > 0) {
-    place.scans_per_second = static_cast<double>(stream.info.framerate_n) / stream.info.framerate_d;
-  }
-  if (stream.scan_id != slice->scan_id) {
-    std::lock_guard lock(self->state->mutex);
-    self->state->stats.OnScan(place.scans_per_second);
-  }
-  stream.scan_id = slice->scan_id;
-  return place;
-}
-
 /// Sends the bounds where they have moved.
 void PushBounds(GstLidarEncoder* self) {
   const auto bounds = self->state->stream.loop->controller().TakeChangedBounds();
@@ -239,10 +210,10 @@ void PushBounds(GstLidarEncoder* self) {
     self->state->min_bitrate_bps = event.min_bitrate;
   }
   g_object_notify(G_OBJECT(self), "min-bitrate");
-  gst_pad_push_event(self->state->src, gst_lidar_event_new_bitrate_bounds(&event));
+  gst_pad_push_event(self->state->pads.src(), gst_lidar_event_new_bitrate_bounds(&event));
 }
 
-LoopResult EncodeLoaded(GstLidarEncoder* self, const SlicePlace& place) {
+LoopResult EncodeLoaded(GstLidarEncoder* self, const CloudInput::Place& place) {
   State& state = *self->state;
   lidar::rate::LoopSettings loop;
   std::optional<DataRate> target;
@@ -257,50 +228,19 @@ LoopResult EncodeLoaded(GstLidarEncoder* self, const SlicePlace& place) {
   const gint64 start_us = g_get_monotonic_time();
   Stream& stream = state.stream;
   stream.coder->set_threads(threads);
-  const LoopResult result = stream.loop->Encode(place, loop, target, stream.coder.get());
+  const LoopResult result = stream.loop->Encode(place.in_stream, loop, target, stream.coder.get());
   const auto time = static_cast<GstClockTime>(g_get_monotonic_time() - start_us) * GST_USECOND;
   std::lock_guard lock(state.mutex);
+  if (place.starts_scan) state.stats.OnScan(place.in_stream.scans_per_second);
   state.stats.OnSlice(result, time);
   return result;
 }
 
-/// Where a slice was left out: downstream should not wait for it.
-GstFlowReturn PushGap(GstLidarEncoder* self, GstBuffer* buffer) {
-  if (GST_BUFFER_PTS_IS_VALID(buffer)) {
-    gst_pad_push_event(self->state->src,
-                       gst_event_new_gap(GST_BUFFER_PTS(buffer), GST_BUFFER_DURATION(buffer)));
-  }
-  self->state->stream.discont = true;
-  return GST_FLOW_OK;
-}
-
 GstFlowReturn PushSlice(GstLidarEncoder* self, GstBuffer* input) {
-  Stream& stream = self->state->stream;
-  const lidar::ByteView bytes = stream.coder->bytes();
-  GstBuffer* output = gst_buffer_new_memdup(bytes.data, bytes.size);
-  gst_buffer_copy_into(
-      output, input,
-      static_cast<GstBufferCopyFlags>(GST_BUFFER_COPY_FLAGS | GST_BUFFER_COPY_TIMESTAMPS |
-                                      GST_BUFFER_COPY_META),
-      0, static_cast<gsize>(-1));
-  if (stream.discont) GST_BUFFER_FLAG_SET(output, GST_BUFFER_FLAG_DISCONT);
-  stream.discont = false;
+  const lidar::ByteView bytes = self->state->stream.coder->bytes();
+  lidar::gst::BufferPtr output(gst_buffer_new_memdup(bytes.data, bytes.size));
   PushBounds(self);
-  return gst_pad_push(self->state->src, output);
-}
-
-/// Warns once where the cloud was moved after the sensor: the ranges that are sent are not moved.
-void CheckRanges(GstLidarEncoder* self, lidar::ByteView raw, guint first_column) {
-  Stream& stream = self->state->stream;
-  if (!stream.range_check || stream.warned_of_ranges) return;
-  const auto found = stream.range_check->Find(raw, first_column);
-  if (!found) return;
-  stream.warned_of_ranges = true;
-  GST_ELEMENT_WARNING(self, STREAM, ENCODE,
-                      ("The points of this cloud are not where its ranges and its sensor-model put "
-                       "them, and ranges are what is sent. Use dracoenc geometry=xyz."),
-                      ("the point of beam %u, column %u is %f m away", found->beam, found->column,
-                       found->distance_m));
+  return self->state->pads.Push(std::move(output), input);
 }
 
 void CheckErrors(GstLidarEncoder* self, lidar::ByteView raw, const GstLidarSlice& place,
@@ -315,62 +255,26 @@ void CheckErrors(GstLidarEncoder* self, lidar::ByteView raw, const GstLidarSlice
   state.stats.OnErrorCheck(found->errors, found->holds);
 }
 
-/// Loads the points of `map` into the coder; false after an error message.
-bool LoadBuffer(GstLidarEncoder* self, const lidar::gst::BufferMap& map, guint first_column) {
-  Stream& stream = self->state->stream;
-  const lidar::gst::CloudInfo& info = stream.info;
-  if (!map) {
-    GST_ELEMENT_ERROR(self, RESOURCE, READ, (nullptr), ("cannot map a buffer"));
-    return false;
-  }
-  const gsize row = gsize{info.point_step} * info.height;
-  if (map.size() % row != 0 || (info.width > 0 && map.size() != info.FrameSize())) {
-    GST_ELEMENT_ERROR(self, STREAM, ENCODE, ("A buffer does not hold the cloud of its caps."),
-                      ("%" G_GSIZE_FORMAT " bytes for %u x %u points of %u bytes", map.size(),
-                       info.width, info.height, info.point_step));
-    return false;
-  }
-  stream.coder->Load(
-      {map.data(), map.size(), static_cast<guint>(map.size() / row), info.height, first_column});
-  CheckRanges(self, map.view(), first_column);
-  return true;
-}
-
-void WarnOfReach(GstLidarEncoder* self) {
-  Stream& stream = self->state->stream;
-  if (stream.warned_of_reach) return;
-  stream.warned_of_reach = true;
-  GST_ELEMENT_WARNING(
-      self, STREAM, ENCODE,
-      ("A cloud is too large for max-error and was left out. Raise max-error, or crop the cloud."),
-      ("the longest side of its box is %f m", stream.coder->loaded().extent_m));
-}
-
-/// Where stats-interval asks for it.
-void PostStats(GstLidarEncoder* self) {
-  if (!self->state->stream.stats_timer.IsDue(Snapshot(self->state).stats_interval)) return;
-  gst_element_post_message(
-      GST_ELEMENT(self),
-      gst_message_new_element(GST_OBJECT(self), Stats(G_OBJECT(self)).release()));
-}
-
 GstFlowReturn Chain(GstPad*, GstObject* parent, GstBuffer* buffer) {
   auto* self = GST_LIDAR_ENCODER(parent);
   const lidar::gst::BufferPtr input(buffer);
   Stream& stream = self->state->stream;
   if (!stream.coder) return GST_FLOW_NOT_NEGOTIATED;
-  GstLidarSlice slice;
-  const SlicePlace place = PlaceOf(self, buffer, &slice);
+  const CloudInput::Place place = stream.input.PlaceOf(buffer);
+  const GstLidarSlice& slice = place.slice;
   const lidar::gst::BufferMap map(buffer, GST_MAP_READ);
-  if (!LoadBuffer(self, map, slice.first_column)) return GST_FLOW_ERROR;
+  const auto raw = stream.input.Read(self, map, slice.first_column);
+  if (!raw) return GST_FLOW_ERROR;
+  stream.coder->Load(*raw);
   const LoopResult result = EncodeLoaded(self, place);
   GST_LOG_OBJECT(self, "slice %u of scan %u: %" G_GSIZE_FORMAT " bytes, step %f m%s",
                  slice.slice_index, slice.scan_id, result.slice.bytes, result.slice.step_m,
                  result.encoded() ? "" : ", left out");
-  if (!result.skipped && result.result == CodingResult::kOutOfReach) WarnOfReach(self);
+  if (!result.skipped && result.result == CodingResult::kOutOfReach)
+    stream.input.WarnOfReach(self, stream.coder->loaded().extent_m);
   if (result.encoded()) CheckErrors(self, map.view(), slice, result);
-  PostStats(self);
-  return result.encoded() ? PushSlice(self, buffer) : PushGap(self, buffer);
+  stream.stats_timer.Post(GST_ELEMENT(self), Snapshot(self->state).stats_interval, Stats);
+  return result.encoded() ? PushSlice(self, buffer) : self->state->pads.LeaveOut(buffer);
 }
 
 GstStateChangeReturn ChangeState(GstElement* element, GstStateChange transition) {
@@ -386,6 +290,7 @@ GstStateChangeReturn ChangeState(GstElement* element, GstStateChange transition)
       GST_ELEMENT_CLASS(gst_lidar_encoder_parent_class)->change_state(element, transition);
   if (transition == GST_STATE_CHANGE_PAUSED_TO_READY) {
     state.stream = {};
+    state.pads.set_discont(false);
     auto* klass = GST_LIDAR_ENCODER_GET_CLASS(self);
     if (klass->reset != nullptr) klass->reset(self);
   }
@@ -395,22 +300,9 @@ GstStateChangeReturn ChangeState(GstElement* element, GstStateChange transition)
 /// The pad templates are the subclass's, so the pads come when it is known.
 void Constructed(GObject* object) {
   G_OBJECT_CLASS(gst_lidar_encoder_parent_class)->constructed(object);
-  auto* self = GST_LIDAR_ENCODER(object);
-  State& state = *self->state;
-  auto* klass = GST_ELEMENT_GET_CLASS(self);
-  state.sink = gst_pad_new_from_template(gst_element_class_get_pad_template(klass, "sink"), "sink");
-  gst_pad_set_chain_function(state.sink, Chain);
-  gst_pad_set_event_function(state.sink, SinkEvent);
-  gst_element_add_pad(GST_ELEMENT(self), state.sink);
-  state.src = gst_pad_new_from_template(gst_element_class_get_pad_template(klass, "src"), "src");
-  gst_pad_set_event_function(state.src, SrcEvent);
-  gst_pad_use_fixed_caps(state.src);
-  gst_element_add_pad(GST_ELEMENT(self), state.src);
-}
-
-void Finalize(GObject* object) {
-  delete GST_LIDAR_ENCODER(object)->state;
-  G_OBJECT_CLASS(gst_lidar_encoder_parent_class)->finalize(object);
+  State& state = *GST_LIDAR_ENCODER(object)->state;
+  state.pads.Create(object, Chain, SinkEvent);
+  gst_pad_set_event_function(state.pads.src(), SrcEvent);
 }
 
 }  // namespace
@@ -422,7 +314,7 @@ static void gst_lidar_encoder_class_init(GstLidarEncoderClass* klass) {
   gst_lidar_init();
   auto* object = G_OBJECT_CLASS(klass);
   object->constructed = Constructed;
-  object->finalize = Finalize;
+  lidar::gst::OwnState<GstLidarEncoder, gst_lidar_encoder_parent_class>(object);
   lidar::gst::ServeProperties<GstLidarEncoder, kProperties>(object);
   GST_ELEMENT_CLASS(klass)->change_state = ChangeState;
 }

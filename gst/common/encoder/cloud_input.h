@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// The clouds that come to an encoder: their place in the stream, and what is wrong with them.
+#pragma once
+#include <optional>
+
+#include "gst/common/buffer_map.h"
+#include "gst/common/cloud_info.h"
+#include "gst/common/gstlidarencoder.h"
+#include "src/cloud/range_check.h"
+#include "src/rate/rate_loop.h"
+
+namespace lidar::gst {
+
+/// For the streaming thread. What it finds wrong, it posts as a message of the encoder.
+class CloudInput {
+ public:
+  /// `codes_ranges`: points come back from ranges, so positions that contradict them are told of.
+  void SetFormat(const CloudInfo& info, bool codes_ranges);
+  const CloudInfo& info() const { return info_; }
+
+  struct Place {
+    GstLidarSlice slice{};
+    rate::SlicePlace in_stream;
+    bool starts_scan = false;
+  };
+  /// The next buffer. One without a meta is a scan of one slice.
+  Place PlaceOf(GstBuffer* buffer);
+  /// After a flush the next slice starts a scan.
+  void ForgetScan() { scan_id_.reset(); }
+
+  /// None after an error message: the buffer does not hold the cloud of its caps.
+  std::optional<GstLidarRawSlice> Read(GstLidarEncoder* encoder, const BufferMap& map,
+                                       guint first_column);
+  /// Warns, once, that a cloud whose box is so long [m] was left out.
+  void WarnOfReach(GstLidarEncoder* encoder, double extent_m);
+
+ private:
+  void CheckRanges(GstLidarEncoder* encoder, ByteView raw, guint first_column);
+
+  CloudInfo info_;
+  std::optional<RangeCheck> range_check_;
+  std::optional<guint> scan_id_;  // of the last slice
+  guint scans_without_meta_ = 0;
+  bool warned_of_reach_ = false;
+  bool warned_of_ranges_ = false;
+};
+
+}  // namespace lidar::gst
