@@ -75,6 +75,17 @@ TEST(FitPaper, FindsThePolynomialThatMadeTheSamples) {
   EXPECT_LT(ErrorOf(PaperModel(*fit), samples).mean, 1e-6);
 }
 
+TEST(FitPaper, GivesAFeatureThatNeverVariesNoPart) {
+  const auto samples = Samples(400, [](Sample* s) {
+    s->settings.level = 7;
+    s->geometry_bytes = 5000 + 3 * BitsOfStep(s->slice.extent_m, s->settings.step_m);
+  });
+  const auto fit = FitPaper(samples);
+  ASSERT_TRUE(fit);
+  EXPECT_LT(ErrorOf(PaperModel(*fit), samples).mean, 1e-6);
+  for (const double alpha : fit->geometries.at("xyz").alpha) EXPECT_LT(std::abs(alpha), 1e4);
+}
+
 TEST(AdaptiveModel, TakesTheStepOfTheGridWhoseSizeIsNearestButNotFarAbove) {
   AdaptiveCoefficients c;
   c.fallback.step = {10, -0.5, 0, 0};  // bytes = 1024 sqrt(10 mm / step)
