@@ -10,7 +10,7 @@ Usage: pipelines/webrtc.sh [options]
 
 Two LiDARs -> lidarenc -> rtplidarpay -> webrtcbin with screamaux, both in one process, which does the signalling.
 What the caller sends passes lidar-link; what the callee sends has all the capacity that it needs. Prints both
-directions each second. Exit code 0: scans came both ways, and the caller's bitrate followed the link; else 1.
+directions twice a second. Exit code 0: scans came both ways, and the caller's bitrate followed the link; else 1.
 
   --high MBITS       capacity of the link in the first and third part [Mbit/s] (default 6)
   --low MBITS        capacity in the second part [Mbit/s] (default 2)
@@ -51,7 +51,7 @@ twcc=http://www.ietf.org/id/draft-holmer-rmcat-transport-wide-cc-extensions-01
 caps="application/x-rtp,media=video,clock-rate=90000,encoding-name=X-LIDAR-DRACO,payload=96"
 caps+=",extmap-1=(string)$twcc,rtcp-fb-transport-cc=(boolean)true"
 "$build/src/tools/lidar-webrtc-launch" --aux "screamaux max-bitrate=20000000" \
-  --stats caller-aux,callee-aux,there,back --duration "$(awk "BEGIN { print 3 * $part }")" \
+  --stats caller-aux,callee-aux,there,back --interval 0.5 --duration "$(awk "BEGIN { print 3 * $part + 1 }")" \
   --port $((port + 1)) --relay "$port" \
   webrtcbin name=caller bundle-policy=max-bundle webrtcbin name=callee bundle-policy=max-bundle \
   lidartestsrc is-live=true model=os1-64 mode=1024x10 ! queue ! lidarenc max-error=0.1 ! rtplidarpay ! "$caps" ! caller. \
@@ -60,7 +60,8 @@ caps+=",extmap-1=(string)$twcc,rtcp-fb-transport-cc=(boolean)true"
   caller. ! rtplidardepay name=back ! lidardec ! fakesink sync=false async=false >"$work/stats" ||
   { echo "FAILED: the call ended early." >&2; exit 1; }
 
-# The second part is judged by what it came to, its second half; the third by how high it got.
+# The link's time starts with its first packet, when there is a screamaux, too. The second part is judged by what it
+# came to, its second half; the third by how high it got.
 awk -v high="$high" -v low="$low" -v part="$part" '
   function value(field) {
     if (!match($0, "[ ,]" field "=\\([a-z0-9]*\\)[0-9]+")) return 0
@@ -71,9 +72,10 @@ awk -v high="$high" -v low="$low" -v part="$part" '
     target = value("target-bitrate") / 1e6; sent = value("sent-bitrate") / 1e6
     printf "%5.1f s  to the callee: target %5.2f  sent %5.2f Mbit/s  RTT %3.0f ms  reports %4d", $1, target, sent,
       value("rtt") / 1e6, value("twcc-reports")
-    p = int($1 / part)
-    if ($1 >= (p + 0.5) * part && p < 3) { n[p]++; targets[p] += target; rates[p] += sent }
-    if ($1 > 2 * part && target > highest) highest = target
+    if (!start) start = $1 - 0.4
+    at = $1 - start; p = int(at / part)
+    if (at >= (p + 0.5) * part || p > 2) { p = p > 2 ? 2 : p; n[p]++; targets[p] += target; rates[p] += sent }
+    if (at > 2 * part && target > highest) highest = target
   }
   $2 == "callee-aux:" {
     reports = value("twcc-reports")
@@ -82,7 +84,7 @@ awk -v high="$high" -v low="$low" -v part="$part" '
   $2 == "there:" { there = value("scans-complete") }
   $2 == "back:" { back = value("scans-complete") }
   END {
-    if (!n[0] || !n[1] || !n[2]) { fail("no statistics came"); exit 1 }
+    if (!n[0] || !n[1] || !n[2]) { fail("the call was too short"); exit 1 }
     for (p = 0; p < 3; ++p) { targets[p] /= n[p]; rates[p] /= n[p] }
     printf "%g, %g, %g Mbit/s: mean target %.2f, %.2f, %.2f; %d scans came there, %d back\n", high, low, high,
       targets[0], targets[1], targets[2], there, back

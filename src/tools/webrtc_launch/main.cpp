@@ -29,6 +29,7 @@ struct Options {
   guint port = 0;   // of the callee; 0: any
   guint relay = 0;  // port that the caller gets to know in its place; 0: none
   double duration_s = 0;
+  double interval_s = 1;
   std::vector<std::string> pipeline;
 };
 
@@ -200,7 +201,7 @@ bool Handle(GstMessage* message, int* result) {
   return false;
 }
 
-/// Until EOS, an error, a signal, or the duration is over; prints statistics each second.
+/// Until EOS, an error, a signal, or the duration is over; prints statistics meanwhile.
 int Play(const Call& call) {
   bool run = true;
   const auto interrupt = [](gpointer data) -> gboolean {
@@ -212,7 +213,8 @@ int Play(const Call& call) {
   GstBus* bus = gst_element_get_bus(call.pipeline.get());
   gst_element_set_state(call.pipeline.get(), GST_STATE_PLAYING);
   const gint64 start = g_get_monotonic_time();
-  gint64 next = start + G_TIME_SPAN_SECOND;
+  const auto interval = static_cast<gint64>(call.options.interval_s * G_TIME_SPAN_SECOND);
+  gint64 next = start + interval;
   int result = kGood;
   while (run) {
     g_main_context_iteration(nullptr, FALSE);
@@ -223,7 +225,7 @@ int Play(const Call& call) {
     const double elapsed_s = static_cast<double>(now - start) / 1e6;
     if (call.options.duration_s > 0 && elapsed_s >= call.options.duration_s) run = false;
     if (now < next) continue;
-    next += G_TIME_SPAN_SECOND;
+    next += interval;
     PrintStats(call, start);
   }
   PrintStats(call, start);
@@ -238,6 +240,9 @@ void AddOptions(CLI::App* app, Options* o) {
   app->add_option("--aux", o->aux,
                   "What request-aux-sender of both ends returns; called caller-aux and callee-aux");
   app->add_option("--stats", o->stats, "Elements, with commas, whose stats are printed");
+  app->add_option("--interval", o->interval_s, "Time between prints of --stats [s]")
+      ->check(CLI::Range(0.05, 3600.0))
+      ->capture_default_str();
   app->add_option("--address", o->address, "Address of both ends")->capture_default_str();
   auto* own = app->add_option("--port", o->port, "UDP port of the callee")->check(port);
   app->add_option("--relay", o->relay,
