@@ -17,8 +17,8 @@ constexpr Duration kStandstill = 500ms;
 constexpr double kDriftRateScale = 0.5;
 /// Silence up to this is one of the gaps that links have.
 constexpr Duration kLongestSilence = 2s;
-/// Receivers report at least so often while packets arrive.
-constexpr Duration kLongestReportGap = 40ms;
+/// A packet whose report is so late met a link that stands still.
+constexpr Duration kOverdue = 5ms;
 /// A source that sends less than this part of its target says nothing about the link...
 constexpr double kUnusedTarget = 0.85;
 /// ...which need not be known beyond this multiple of the streams' maximum.
@@ -283,9 +283,9 @@ void Controller::ProbeByBurst(Time now) {
 /// What was sent for a while does not come back at the rate that it did: a gap, or the start of
 /// one.
 bool Controller::Stalled(Time now) const {
-  const bool waiting = history_.bytes_in_flight().bytes() > 0;
-  return gap_recovery_.in_gap() ||
-         (waiting && outage_.Quiet(now) > path_.rtt().min() + kLongestReportGap);
+  const auto oldest = history_.oldest_in_flight();
+  const Duration expected = path_.rtt().smoothed() + path_.report_gap() + kOverdue;
+  return gap_recovery_.in_gap() || (oldest && now - *oldest > expected);
 }
 
 /// The path gives a sign of life, or did so a moment ago.

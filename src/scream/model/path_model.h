@@ -85,6 +85,8 @@ class PathModel {
   /// The queue is longer than `qdelay` and packets keep coming back out of it; where marks work,
   /// marked: delay alone may be a longer path.
   bool Queueing(Time now, Duration qdelay) const;
+  /// Time between reports, on average.
+  Duration report_gap() const { return report_gap_; }
   /// Reports that are far apart, as round trips go: what arrived for so long is not reported yet
   /// and still counts as in flight.
   Duration UnreportedTime() const;

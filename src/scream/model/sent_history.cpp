@@ -89,6 +89,18 @@ bool SentHistory::OfBefore(Time now, const Source& source, const SsrcReport& blo
          source.unwrapper.Peek(block.begin_seq) > source.packets.back().seq;
 }
 
+std::optional<Time> SentHistory::oldest_in_flight() const {
+  std::optional<Time> oldest;
+  for (const auto& [ssrc, source] : sources_) {
+    const auto first =
+        std::upper_bound(source.packets.begin(), source.packets.end(), source.highest_acked,
+                         [](std::int64_t s, const Packet& p) { return s < p.seq; });
+    if (first != source.packets.end())
+      oldest = std::min(oldest.value_or(first->record.sent), first->record.sent);
+  }
+  return oldest;
+}
+
 bool SentHistory::full() const {
   return std::any_of(sources_.begin(), sources_.end(), [](const auto& entry) {
     const Source& source = entry.second;

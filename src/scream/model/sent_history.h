@@ -66,6 +66,8 @@ class SentHistory {
   void Expire(Time before);
 
   DataSize bytes_in_flight() const { return in_flight_; }
+  /// When the packet was sent that has been in flight for longest.
+  std::optional<Time> oldest_in_flight() const;
   /// As many packets of one SSRC are unsettled as its numbers can tell apart.
   bool full() const;
   Duration reordering_window() const { return reordering_window_; }

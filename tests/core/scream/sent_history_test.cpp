@@ -48,6 +48,14 @@ TEST_F(SentHistoryTest, BytesInFlightRunFromTheHighestAcknowledgedToTheLastSent)
   EXPECT_EQ(summary_.acked.size(), 2U);
 }
 
+TEST_F(SentHistoryTest, KnowsWhatHasBeenInFlightForLongest) {
+  EXPECT_FALSE(history_.oldest_in_flight());
+  Send(0, 10);
+  EXPECT_EQ(history_.oldest_in_flight(), kStart);
+  Apply(Report(0, "rr-r"));
+  EXPECT_EQ(history_.oldest_in_flight(), kStart + 4ms);
+}
+
 TEST_F(SentHistoryTest, APacketCountsOnceHoweverOftenItIsReported) {
   Send(0, 4);
   Apply(Report(0, "rC"));
