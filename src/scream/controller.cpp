@@ -23,7 +23,7 @@ constexpr Duration kOverdue = 5ms;
 constexpr double kUnusedTarget = 0.85;
 /// ...which need not be known beyond this multiple of the streams' maximum.
 constexpr double kProbeRoom = 1.2;
-constexpr Duration kNoQueue = 3ms;
+constexpr Duration kQuietQueue = 3ms;
 /// So long after a sign of congestion the window is about what the link carries.
 constexpr Duration kCongestedLately = 300ms;
 
@@ -274,7 +274,7 @@ void Controller::ProbeByBurst(Time now) {
   BurstProbe::Input in;
   in.limited = started_ && (unused || window_target_ >= streams_.max_bitrate());
   in.congested = CongestedLately() || outage_.active() || gap_recovery_.in_gap() ||
-                 path_.queue_delay().qdelay() > kNoQueue;
+                 path_.queue_delay().qdelay() > kQuietQueue;
   in.known = path_.estimated_capacity();
   in.wanted = streams_.max_bitrate() * kProbeRoom;
   if (const auto rate = burst_probe_.Update(now, in)) pacer_.Burst(*rate, BurstProbe::kBurst);
