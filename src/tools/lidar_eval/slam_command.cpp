@@ -117,7 +117,10 @@ void RunSlamCommand(const SlamArguments& a) {
                                 {"tracked", CountOf(r, Tracking::kTracking)},
                                 {"degenerate", CountOf(r, Tracking::kDegenerate)},
                                 {"lost", CountOf(r, Tracking::kLost)},
-                                {"maps", r.maps}};
+                                {"maps", r.maps},
+                                {"cpu_ms_p95", r.cpu_ms[(r.cpu_ms.size() - 1) * 95 / 100]},
+                                {"mean_point_error_m", r.mean_point_error_m},
+                                {"max_point_error_m", r.max_point_error_m}};
     if (error) j["error"] = ToJson(*error);
     if (options.close_loops)
       j["loop_closure"] = {{"local_maps", r.local_maps}, {"closures", r.closures}};

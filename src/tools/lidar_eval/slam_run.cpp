@@ -74,6 +74,23 @@ class LoopCloser {
 };
 #endif
 
+/// Adds to the sums how far `coded` lies from what the scan holds.
+struct PointErrors {
+  double sum_m = 0;
+  double max_m = 0;
+  double count = 0;
+
+  void Add(const odometry::Points& points, const odometry::Points& coded) {
+    for (std::size_t i = 0; i < std::min(points.size(), coded.size()); ++i) {
+      const double off = (points[i] - coded[i]).norm();
+      if (!std::isfinite(off)) continue;
+      sum_m += off;
+      max_m = std::max(max_m, off);
+      ++count;
+    }
+  }
+};
+
 }  // namespace
 
 odometry::TimedPoints PointsOf(const Scan& scan, const CodingLoss& loss) {
@@ -94,10 +111,13 @@ SlamResult RunSlam(ScanStream* scans, const SlamOptions& options,
   odometry::Odometry odometry(options.odometry);
   std::unique_ptr<LoopCloser> closer;
   if (options.close_loops) closer = std::make_unique<LoopCloser>(LoopSettings{});
+  PointErrors errors;
+  const bool lossy = options.loss.range_step_m > 0 || options.loss.xyz_bits > 0;
   for (std::size_t done = 0; options.max_scans == 0 || done < options.max_scans; ++done) {
     const auto timed = scans->Next();
     if (!timed) break;
     const odometry::TimedPoints points = PointsOf(timed->scan, options.loss);
+    if (lossy) errors.Add(PointsOf(timed->scan, {}).points, points.points);
     const std::clock_t begin = std::clock();
     const odometry::Estimate e = odometry.OnScan(timed->start, timed->duration, points);
     result.cpu_ms.push_back(1e3 * static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC);
@@ -108,6 +128,8 @@ SlamResult RunSlam(ScanStream* scans, const SlamOptions& options,
     if (timed->truth) result.truth.push_back({timed->start, ToPose(*timed->truth)});
     progress(done + 1);
   }
+  result.mean_point_error_m = errors.count > 0 ? errors.sum_m / errors.count : 0;
+  result.max_point_error_m = errors.max_m;
   std::sort(result.cpu_ms.begin(), result.cpu_ms.end());
   result.map_voxels = odometry.map().voxels();
   if (closer) {

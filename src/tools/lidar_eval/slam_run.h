@@ -32,6 +32,9 @@ struct SlamResult {
   std::vector<double> cpu_ms;  // of each scan, ascending
   std::size_t map_voxels = 0;  // at the end
   std::size_t maps = 0;
+  // How far the loss moved the points
+  double mean_point_error_m = 0;
+  double max_point_error_m = 0;
   // With close_loops
   odometry::Trajectory closed;  // the estimate without the drift between loops
   std::size_t closures = 0;

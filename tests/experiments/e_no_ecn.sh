@@ -1,0 +1,19 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: LGPL-2.1-or-later
+# The same drive without ECN: a FIFO of 100 ms that marks nothing.
+set -euo pipefail
+. "$(dirname "$0")/common.sh" "$@"
+. "$here/network.sh"
+
+echo "$row_header" >"$csv"
+for run in $(seq $runs); do
+  stream c "$run"
+  stream no-ecn "$run" --no-l4s
+  for name in c no-ecn; do row $name "$run"; done >>"$csv"
+done
+plot <<TEXT
+set xlabel 'time [s]'; set ylabel 'queue [ms]'
+plot '$output/c.1/timeline.csv' skip 1 using 1:6 with lines title 'L4S', '$output/no-ecn.1/timeline.csv' skip 1 using 1:6 with lines title 'no ECN'
+TEXT
+of() { echo "p95 capture to cloud $(middle cloud_p95_ms "$csv" "$1") ms, $(middle complete "$csv" "$1") scans whole, ATE $(middle ate_m "$csv" "$1") m"; }
+verdict "with L4S $(of c); without ECN $(of no-ecn)"

@@ -1,0 +1,26 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: LGPL-2.1-or-later
+# The way at the edge, coloured by step and by error, of c and d.
+set -euo pipefail
+. "$(dirname "$0")/common.sh" "$@"
+. "$here/network.sh"
+
+stream c 1
+stream q16 1 --fixed-bits 16
+echo "name,x_m,y_m,step_m,error_m" >"$csv"
+for name in c q16; do
+  "$here/figures.py" way "$output/$name.1" | sed "s/^/$name,/" >>"$csv"
+done
+plot_height=900
+plot <<TEXT
+set multiplot layout 2,2; set size ratio -1; unset key
+set palette defined (0 '#3a3e96', 0.5 '#38cca4', 1 '#e2463e'); set xlabel 'x [m]'; set ylabel 'y [m]'
+do for [n in 'c q16'] {
+  set title (n eq 'c' ? 'adaptive' : 'q = 16').': step [cm]'
+  plot '< grep ^'.n.', $csv' using 2:3:(\$4*100) with points pt 7 ps 0.4 palette
+  set title (n eq 'c' ? 'adaptive' : 'q = 16').': error [m]'
+  plot '< grep ^'.n.', $csv' using 2:3:5 with points pt 7 ps 0.4 palette
+}
+TEXT
+verdict "$(awk -F, 'NR > 1 { ++n[$1]; if ($5 > most[$1]) most[$1] = $5 } END {
+  printf "poses at the edge: adaptive %d, off by %.2f m at most; q = 16 %d, %.2f m", n["c"], most["c"], n["q16"], most["q16"] }' "$csv")"

@@ -1,0 +1,145 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Figures of a run of the demo with --slam that take more than a line of awk.
+
+figures.py way FOLDER   x,y,step,error of each pose at the edge
+figures.py age FOLDER   how old points and poses at the edge are, and how wrong that makes them [ms, m]
+"""
+import bisect
+import csv
+import math
+import sys
+
+SAMPLE_S = 0.005
+PERIOD_S = 0.1  # of a scan
+
+
+def trajectory(path):
+    """Times, and places x, y, z."""
+    rows = [line.split() for line in open(path) if line.strip() and line[0] != "#"]
+    rows = [row for row in rows if len(row) == 8]
+    return [float(row[0]) for row in rows], [[float(c) for c in row[1:4]] for row in rows]
+
+
+def at(times, places, time):
+    i = min(max(bisect.bisect_left(times, time), 1), len(times) - 1)
+    span = times[i] - times[i - 1]
+    f = min(max((time - times[i - 1]) / span if span > 0 else 0, 0), 1)
+    return [a + f * (b - a) for a, b in zip(places[i - 1], places[i])]
+
+
+def table(path):
+    return [{k: float(v) for k, v in row.items()} for row in csv.DictReader(open(path))]
+
+
+def percentile(values, p):
+    values = sorted(values)
+    return values[min(len(values) - 1, int(p / 100 * len(values)))] if values else float("nan")
+
+
+def rotated(q, v):
+    """`v` turned by the quaternion w, x, y, z."""
+    w, x, y, z = q
+    tx, ty, tz = 2 * (y * v[2] - z * v[1]), 2 * (z * v[0] - x * v[2]), 2 * (x * v[1] - y * v[0])
+    return [
+        v[0] + w * tx + y * tz - z * ty,
+        v[1] + w * ty + z * tx - x * tz,
+        v[2] + w * tz + x * ty - y * tx,
+    ]
+
+
+def lay_over(places, truth):
+    """`places` turned and moved so that they fit `truth` best (Horn, 1987)."""
+    n = len(places)
+    mean_p = [sum(p[k] for p in places) / n for k in range(3)]
+    mean_t = [sum(t[k] for t in truth) / n for k in range(3)]
+    m = [[0.0] * 3 for _ in range(3)]
+    for p, t in zip(places, truth):
+        for a in range(3):
+            for b in range(3):
+                m[a][b] += (p[a] - mean_p[a]) * (t[b] - mean_t[b])
+    (xx, xy, xz), (yx, yy, yz), (zx, zy, zz) = m
+    matrix = [
+        [xx + yy + zz, yz - zy, zx - xz, xy - yx],
+        [yz - zy, xx - yy - zz, xy + yx, zx + xz],
+        [zx - xz, xy + yx, yy - xx - zz, yz + zy],
+        [xy - yx, zx + xz, yz + zy, zz - xx - yy],
+    ]
+    # The quaternion is the eigenvector of the largest eigenvalue; the shift makes that the largest
+    # in magnitude.
+    shift = max(sum(abs(v) for v in row) for row in matrix)
+    q = [1.0, 0.1, 0.1, 0.1]
+    for _ in range(5000):
+        q = [shift * q[a] + sum(matrix[a][b] * q[b] for b in range(4)) for a in range(4)]
+        norm = math.sqrt(sum(v * v for v in q))
+        q = [v / norm for v in q]
+    moved = []
+    for p in places:
+        turned = rotated(q, [p[k] - mean_p[k] for k in range(3)])
+        moved.append([turned[k] + mean_t[k] for k in range(3)])
+    return moved
+
+
+def offset_of(folder, times):
+    """From the time of the tables to that of the trajectories."""
+    poses = table(folder + "/poses.csv")
+    gaps = [t + PERIOD_S / 2 - p["due_s"] for t, p in zip(times, poses)]
+    return percentile(gaps, 50), poses
+
+
+def way(folder):
+    times, places = trajectory(folder + "/edge.tum")
+    truth = trajectory(folder + "/truth.tum")
+    true_places = [at(*truth, t) for t in times]
+    offset, _ = offset_of(folder, times)
+    timeline = table(folder + "/timeline.csv")
+    for t, place, true in zip(times, lay_over(places, true_places), true_places):
+        i = min(max(int((t - offset) * 10), 0), len(timeline) - 1)
+        # The step of a bin in which nothing was said is that of the one before.
+        while i > 0 and timeline[i]["step_m"] == 0:
+            i -= 1
+        print(f"{place[0]:.3f},{place[1]:.3f},{timeline[i]['step_m']},{math.dist(place, true):.4f}")
+
+
+def ages(events, end):
+    """How old the newest thing is, over time; `events` are pairs of arrival and birth."""
+    events.sort()
+    newest, i, found, t = None, 0, [], events[0][0] + 3
+    while t < end:
+        while i < len(events) and events[i][0] <= t:
+            newest = max(newest or 0, events[i][1])
+            i += 1
+        found.append((t, newest))
+        t += SAMPLE_S
+    return found
+
+
+def age(folder):
+    slices = [(s["decoded_s"], s["due_s"]) for s in table(folder + "/slices.csv") if s["decoded_s"] > 0]
+    times, _ = trajectory(folder + "/edge.tum")
+    truth = trajectory(folder + "/truth.tum")
+    offset, poses = offset_of(folder, times)
+    posed = [(p["posed_s"], p["due_s"] - PERIOD_S / 2) for p in poses]
+    end = min(max(slices)[0], max(posed)[0])
+    points = [1000 * (t - birth) for t, birth in ages(slices, end)]
+    pose_ages, held, predicted = [], [], []
+    for t, birth in ages(posed, end):
+        now = at(*truth, t + offset)
+        then = at(*truth, birth + offset)
+        before = at(*truth, birth + offset - PERIOD_S)
+        step = (t - birth) / PERIOD_S
+        pose_ages.append(1000 * (t - birth))
+        held.append(math.dist(now, then))
+        predicted.append(math.dist(now, [b + step * (b - a) for a, b in zip(before, then)]))
+    figures = [percentile(points, 50), percentile(points, 95), percentile(pose_ages, 50)]
+    figures += [percentile(pose_ages, 95), percentile(held, 95), percentile(predicted, 95)]
+    print(",".join(f"{f:.4g}" for f in figures))
+
+
+def main():
+    if len(sys.argv) != 3 or sys.argv[1] not in ("way", "age"):
+        sys.exit(__doc__)
+    {"way": way, "age": age}[sys.argv[1]](sys.argv[2])
+
+
+main()

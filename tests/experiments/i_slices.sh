@@ -1,0 +1,18 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: LGPL-2.1-or-later
+# Slices against whole scans: how old the newest point at the edge is, and what that does to the pose of now.
+set -euo pipefail
+. "$(dirname "$0")/common.sh" "$@"
+. "$here/network.sh"
+
+stream c 1
+stream whole 1 --slices 1
+echo "name,point_age_p50_ms,point_age_p95_ms,pose_age_p50_ms,pose_age_p95_ms,held_p95_m,predicted_p95_m" >"$csv"
+for pair in c:slices whole:whole; do
+  "$here/figures.py" age "$output/${pair%%:*}.1" | sed "s/^/${pair##*:},/" >>"$csv"
+done
+plot <<TEXT
+set style data histograms; set style fill solid; set ylabel 'age at the edge [ms]'; set yrange [0:*]
+plot '$csv' using 2:xtic(1) title 'newest point, p50', '' using 3 title 'p95', '' using 4 title 'newest pose, p50', '' using 5 title 'p95'
+TEXT
+verdict "$(awk -F, 'NR > 1 { printf "%s%s: newest point %.0f ms old (p95 %.0f), pose of now off by %.2f m if held, %.3f m if predicted (p95)", (NR == 2 ? "" : "; "), $1, $2, $3, $6, $7 }' "$csv")"

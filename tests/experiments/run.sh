@@ -1,0 +1,16 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: LGPL-2.1-or-later
+# Every figure of docs/paper.md: a table, a plot and one line of verdict each.
+set -uo pipefail
+. "$(dirname "$0")/common.sh" "$@"
+
+touch "$output/started"
+failed=0
+for script in "$here"/[a-i]_*.sh; do
+  name=$(basename "$script")
+  [[ $only == *"${name%%_*}"* ]] || continue
+  began=$SECONDS
+  "$script" "${options[@]}" || { echo "${name%%_*}: FAILED"; failed=1; }
+  echo "   ($((SECONDS - began)) s)" >&2
+done
+exit $failed
