@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Clouds in files: KITTI's .bin and PCD.
+// Clouds in files: KITTI's .bin, PCD and PLY.
 #pragma once
 #include <string>
 
@@ -7,8 +7,9 @@
 
 namespace lidar::tools {
 
-/// Points that are all zero or not finite are left out. Throw std::runtime_error.
-Scan ReadBin(const std::string& path);
-Scan ReadPcd(const std::string& path);
+/// By how the name ends.
+bool IsCloudFile(const std::string& path);
+/// Points that are all zero or not finite are left out. Throws std::runtime_error.
+Scan ReadCloud(const std::string& path);
 
 }  // namespace lidar::tools

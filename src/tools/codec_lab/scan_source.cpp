@@ -19,7 +19,8 @@ namespace lidar::tools {
 
 const char* const kSourceHelp =
     "What to read: drive.pcap (with drive.json beside it), drive.pcap,sensor.json, cloud.bin, "
-    "cloud.pcd, a folder of these, or synth:MODEL:SCENE[:COLUMNS] such as synth:os1-64:street";
+    "cloud.pcd, cloud.ply, a folder of these, or synth:MODEL:SCENE[:COLUMNS] such as "
+    "synth:os1-64:street";
 
 ColumnWindow WindowOf(const Scan& scan, SliceOf slice) {
   const std::uint32_t width = scan.geometry->model.columns_per_scan / slice.count;
@@ -189,7 +190,7 @@ class CloudFiles final : public ScanStream {
     if (next_ == files_.size()) return std::nullopt;
     const std::string& file = files_[next_];
     TimedScan timed;
-    timed.scan = EndsWith(file, ".bin") ? ReadBin(file) : ReadPcd(file);
+    timed.scan = ReadCloud(file);
     timed.start = Time{} + period() * static_cast<std::int64_t>(next_++);
     timed.duration = period();
     return timed;
@@ -203,10 +204,9 @@ class CloudFiles final : public ScanStream {
 std::unique_ptr<ScanStream> OpenFolder(const std::string& folder) {
   std::vector<std::string> files;
   for (const auto& entry : std::filesystem::directory_iterator(folder))
-    if (entry.path().extension() == ".bin" || entry.path().extension() == ".pcd")
-      files.push_back(entry.path().string());
+    if (IsCloudFile(entry.path().string())) files.push_back(entry.path().string());
   std::sort(files.begin(), files.end());
-  if (files.empty()) throw std::runtime_error(folder + ": no .bin or .pcd file in it");
+  if (files.empty()) throw std::runtime_error(folder + ": no .bin, .pcd or .ply file in it");
   return std::make_unique<CloudFiles>(std::move(files));
 }
 
@@ -217,13 +217,12 @@ std::unique_ptr<ScanStream> OpenScans(const std::string& text, const SourceOptio
   const std::size_t comma = text.find(',');
   const std::string path = text.substr(0, comma);
   if (std::filesystem::is_directory(path)) return OpenFolder(path);
-  if (EndsWith(path, ".bin") || EndsWith(path, ".pcd"))
-    return std::make_unique<CloudFiles>(std::vector<std::string>{path});
+  if (IsCloudFile(path)) return std::make_unique<CloudFiles>(std::vector<std::string>{path});
   if (EndsWith(path, ".pcap") || EndsWith(path, ".pcapng"))
     return OpenCapture(path, comma == std::string::npos
                                  ? std::filesystem::path(path).replace_extension(".json").string()
                                  : text.substr(comma + 1));
-  throw std::runtime_error(text + ": not a .pcap, .pcapng, .bin, .pcd or synth: source");
+  throw std::runtime_error(text + ": not a .pcap, .pcapng, .bin, .pcd, .ply or synth: source");
 }
 
 ScanSet LoadScans(const std::string& text, const SourceOptions& options) {

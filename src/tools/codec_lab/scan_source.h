@@ -47,7 +47,8 @@ class ScanStream {
 /// `text` is one of
 ///   drive.pcap             an Ouster capture; its metadata is drive.json beside it
 ///   drive.pcap,sensor.json the same with another metadata file
-///   cloud.bin, cloud.pcd   a cloud (KITTI's x y z intensity floats; PCD in ascii or binary)
+///   cloud.bin              a cloud (KITTI's x y z intensity floats)
+///   cloud.pcd, cloud.ply   a cloud
 ///   folder                 consecutive clouds in such files, by name
 ///   synth:os1-64:street    a synthetic sensor in street, tunnel, field or town; a third part is
 ///   the

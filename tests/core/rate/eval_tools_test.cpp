@@ -45,16 +45,16 @@ constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 TEST_F(Files, KittiCloudsLoseTheirMissingPoints) {
   const auto path = Write(
       "a.bin", Bytes<float>({1, 2, 3, 0.5F, 0, 0, 0, 0.1F, kNan, 1, 1, 0.2F, -4, 5, -6, 0.7F}));
-  const Scan scan = ReadBin(path);
+  const Scan scan = ReadCloud(path);
   EXPECT_EQ(scan.xyz, (std::vector<float>{1, 2, 3, -4, 5, -6}));
   EXPECT_EQ(scan.intensity, (std::vector<float>{0.5F, 0.7F}));
   EXPECT_FALSE(scan.organised());
 }
 
 TEST_F(Files, KittiCloudsOfOddLengthAreRefused) {
-  EXPECT_THROW(ReadBin(Write("a.bin", "123")), std::runtime_error);
-  EXPECT_THROW(ReadBin(Write("b.bin", "")), std::runtime_error);
-  EXPECT_THROW(ReadBin(folder_ + "/none.bin"), std::runtime_error);
+  EXPECT_THROW(ReadCloud(Write("a.bin", "123")), std::runtime_error);
+  EXPECT_THROW(ReadCloud(Write("b.bin", "")), std::runtime_error);
+  EXPECT_THROW(ReadCloud(folder_ + "/none.bin"), std::runtime_error);
 }
 
 const char* const kPcdHeader =
@@ -62,18 +62,30 @@ const char* const kPcdHeader =
     "COUNT 1 1 1 1 1\nWIDTH 2\nHEIGHT 1\nVIEWPOINT 0 0 0 1 0 0 0\nPOINTS 2\n";
 
 TEST_F(Files, PcdInAsciiAndBinaryGivesTheSameCloud) {
-  const auto ascii =
-      ReadPcd(Write("a.pcd", std::string(kPcdHeader) + "DATA ascii\n7 1 2 3 0.5\n9 4 5 6 0.25\n"));
+  const auto ascii = ReadCloud(
+      Write("a.pcd", std::string(kPcdHeader) + "DATA ascii\n7 1 2 3 0.5\n9 4 5 6 0.25\n"));
   const auto point = [](std::uint16_t ring, const std::vector<float>& rest) {
     return Bytes<std::uint16_t>({ring}) + Bytes(rest);
   };
   const auto binary =
-      ReadPcd(Write("b.pcd", std::string(kPcdHeader) + "DATA binary\n" + point(7, {1, 2, 3, 0.5F}) +
-                                 point(9, {4, 5, 6, 0.25F})));
+      ReadCloud(Write("b.pcd", std::string(kPcdHeader) + "DATA binary\n" +
+                                   point(7, {1, 2, 3, 0.5F}) + point(9, {4, 5, 6, 0.25F})));
   EXPECT_EQ(ascii.xyz, (std::vector<float>{1, 2, 3, 4, 5, 6}));
   EXPECT_EQ(ascii.intensity, (std::vector<float>{0.5F, 0.25F}));
   EXPECT_EQ(binary.xyz, ascii.xyz);
   EXPECT_EQ(binary.intensity, ascii.intensity);
+}
+
+TEST_F(Files, PlyGivesItsPoints) {
+  const auto path =
+      Write("a.ply",
+            "ply\nformat ascii 1.0\nelement vertex 2\nproperty float x\nproperty float y\n"
+            "property float z\nproperty uchar intensity\nend_header\n1 2 3 7\n4 5 6 9\n");
+  const Scan scan = ReadCloud(path);
+  EXPECT_EQ(scan.xyz, (std::vector<float>{1, 2, 3, 4, 5, 6}));
+  EXPECT_EQ(scan.intensity, (std::vector<float>{7, 9}));
+  EXPECT_THROW(ReadCloud(Write("b.ply", "ply\nformat ascii 1.0\nelement vertex 2\n")),
+               std::runtime_error);
 }
 
 TEST_F(Files, PcdThatIsCutOffOrOfAnotherKindIsRefused) {
@@ -83,7 +95,7 @@ TEST_F(Files, PcdThatIsCutOffOrOfAnotherKindIsRefused) {
         header + "DATA binary_compressed\n", std::string("FIELDS x y\nDATA ascii\n"),
         std::string("FIELDS x y z\nSIZE 8 8 8\nPOINTS 1\nDATA ascii\n1 2 3\n"),
         std::string("FIELDS x y z\nPOINTS 99999999999\nDATA ascii\n"), std::string()}) {
-    EXPECT_THROW(ReadPcd(Write("bad.pcd", bad)), std::runtime_error) << bad;
+    EXPECT_THROW(ReadCloud(Write("bad.pcd", bad)), std::runtime_error) << bad;
   }
 }
 
