@@ -16,7 +16,7 @@ f = '$output/c.1/timeline.csv'
 set multiplot layout 5,1; set xlabel ''; set key outside right top
 set ylabel 'kB'; plot f skip 1 using 1:(\$8/1000) with lines title 'ref\\_wnd', '' skip 1 using 1:(\$9/1000) with lines title 'in flight'
 set ylabel 'ms'; plot f skip 1 using 1:7 with lines title 'RTT', '' skip 1 using 1:6 with lines title 'queue', '' skip 1 using 1:10 with lines title 'sender queue'
-set ylabel 'Mbit/s'; plot f skip 1 using 1:2 with steps lc rgb '#999999' title 'capacity', '' skip 1 using 1:3 with lines title 'target', '' skip 1 using 1:4 with lines title 'encoded', '' skip 1 using 1:5 with lines title 'sent', '' skip 1 using 1:(\$2 < 0.1 ? 0 : NaN) with points pt 7 lc rgb 'red' title 'gap'
+set ylabel 'Mbit/s'; plot f skip 1 using 1:2 with steps lc rgb '#999999' title 'capacity', '' skip 1 using 1:3 with lines title 'target', '' skip 1 using 1:4 with lines title 'encoded', '' skip 1 using 1:5 with lines title 'sent', '' skip 1 using 1:(\$2 < 0.25 ? 0 : NaN) with points pt 7 lc rgb 'red' title 'gap'
 set ylabel 'cm'; plot f skip 1 using 1:(\$11*100) with steps title 'step'
 set xlabel 'time [s]'; plot f skip 1 using 1:(\$12 > 0 ? \$12*100 : NaN) with points pt 7 ps 0.3 title 'largest error', 5 dt 2 title 'bound'
 TEXT

@@ -11,14 +11,14 @@ echo "name,x_m,y_m,step_m,error_m" >"$csv"
 for name in c q16; do
   "$here/figures.py" way "$output/$name.1" | sed "s/^/$name,/" >>"$csv"
 done
-plot_height=900
+plot_height=620
 plot <<TEXT
 set multiplot layout 2,2; set size ratio -1; unset key
 set palette defined (0 '#3a3e96', 0.5 '#38cca4', 1 '#e2463e'); set xlabel 'x [m]'; set ylabel 'y [m]'
 do for [n in 'c q16'] {
-  set title (n eq 'c' ? 'adaptive' : 'q = 16').': step [cm]'
+  set title (n eq 'c' ? 'adaptive' : 'q = 16').': step [cm]'; set cbrange [0:10]
   plot '< grep ^'.n.', $csv' using 2:3:(\$4*100) with points pt 7 ps 0.4 palette
-  set title (n eq 'c' ? 'adaptive' : 'q = 16').': error [m]'
+  set title (n eq 'c' ? 'adaptive' : 'q = 16').': error [m]'; set cbrange [0:*]
   plot '< grep ^'.n.', $csv' using 2:3:5 with points pt 7 ps 0.4 palette
 }
 TEXT
