@@ -94,5 +94,17 @@ TEST_F(Mapper, TimesGoOnWhereTheReferenceWrapsAround) {
               ReportClock::ToTimestamp(Time{20ms}), 1);
 }
 
+TEST_F(Mapper, AReportThatWasOvertakenAcrossTheWrapIsTheEarlierOne) {
+  mapper.OnSent(65534, 100, 1);
+  mapper.OnSent(65535, 100, 2);
+  TwccFeedback next = Report({10ms});
+  next.base_number = 65535;
+  const auto after = mapper.Map(next);
+  const auto before = mapper.Map(Report({kTwccPeriod - 10ms}));
+  ASSERT_TRUE(before && after);
+  EXPECT_NEAR(static_cast<std::int32_t>(after->report_timestamp - before->report_timestamp),
+              ReportClock::ToTimestamp(Time{20ms}), 1);
+}
+
 }  // namespace
 }  // namespace lidar::scream
