@@ -1,0 +1,274 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+/**
+ * SECTION:element-pointcloudorganize
+ *
+ * Finds out how the sensor of an organised cloud is built, and adds ranges and sensor model, so
+ * that lidarenc can code clouds of any spinning sensor. Each point is checked.
+ *
+ * |[
+ * gst-launch-1.0 ros2src topic=/points ! pointcloudorganize ! lidarenc ! fakesink
+ * ]|
+ */
+#include <gst/gst.h>
+
+#include <mutex>
+#include <optional>
+#include <vector>
+
+#include "gst/common/buffer_map.h"
+#include "gst/common/gstlidar.h"
+#include "gst/common/properties.h"
+#include "gst/common/refs.h"
+#include "gst/common/stats.h"
+#include "gst/pointcloud/cloud_organizer.h"
+
+GST_DEBUG_CATEGORY_STATIC(gst_lidar_point_cloud_organize_debug);
+#define GST_CAT_DEFAULT gst_lidar_point_cloud_organize_debug
+
+namespace {
+
+using namespace lidar::gst;
+
+// Clouds that may pass before the first that fits: a sensor that starts in the open sees little.
+constexpr guint kPatience = 10;
+
+struct OrganizeSettings {
+  gdouble max_error_m = 0.005;
+};
+
+struct Counters {
+  guint64 clouds = 0;
+  guint64 dropped = 0;
+  guint64 outside = 0;
+  guint models = 0;
+};
+const std::array<Stat<Counters>, 4> kStats = {{
+    {"clouds", &Counters::clouds},
+    {"clouds-dropped", &Counters::dropped},
+    {"points-outside", &Counters::outside},
+    {"models", &Counters::models},
+}};
+
+struct State {
+  std::mutex mutex;  // guards settings and counters; never held while pushing or posting
+  OrganizeSettings settings;
+  Counters counters;
+
+  // Only the streaming thread uses what follows.
+  std::optional<CloudInfo> info;
+  CapsPtr caps;                             // of the input
+  std::optional<CloudOrganizer> organizer;  // none: clouds pass as they are
+  guint attempts = 0;                       // since the last cloud that fitted
+  guint models_sent = 0;                    // the model that the caps have; 0: caps are due
+  bool caps_sent = false;
+  std::vector<EventPtr> waiting;  // sticky events that come behind the caps
+};
+
+StructurePtr ReadStats(GObject* object);
+
+const std::array<Property<OrganizeSettings>, 2> kProperties = {{
+    {"max-error", "Points farther than that from their beam become missing returns [m]",
+     &OrganizeSettings::max_error_m, 0.001, 1, GST_PARAM_MUTABLE_PLAYING},
+    {"stats", "clouds, clouds-dropped, points-outside, models", ReadStats},
+}};
+
+}  // namespace
+
+#define GST_TYPE_LIDAR_POINT_CLOUD_ORGANIZE (gst_lidar_point_cloud_organize_get_type())
+G_DECLARE_FINAL_TYPE(GstLidarPointCloudOrganize, gst_lidar_point_cloud_organize, GST,
+                     LIDAR_POINT_CLOUD_ORGANIZE, GstElement)
+
+struct _GstLidarPointCloudOrganize {
+  GstElement parent;
+  GstPad* sinkpad;
+  GstPad* srcpad;
+  State* state;
+};
+
+G_DEFINE_TYPE(GstLidarPointCloudOrganize, gst_lidar_point_cloud_organize, GST_TYPE_ELEMENT)
+GST_ELEMENT_REGISTER_DEFINE(pointcloudorganize, "pointcloudorganize", GST_RANK_NONE,
+                            GST_TYPE_LIDAR_POINT_CLOUD_ORGANIZE)
+
+namespace {
+
+State& StateOf(gpointer self) { return *GST_LIDAR_POINT_CLOUD_ORGANIZE(self)->state; }
+
+StructurePtr ReadStats(GObject* object) {
+  State& state = StateOf(object);
+  const std::lock_guard lock(state.mutex);
+  return ToStructure("application/x-pointcloudorganize-stats", kStats, state.counters);
+}
+
+bool PushCaps(GstLidarPointCloudOrganize* self, GstCaps* caps) {
+  State& state = *self->state;
+  state.caps_sent = true;
+  if (!gst_pad_push_event(self->srcpad, gst_event_new_caps(caps))) return false;
+  for (EventPtr& event : state.waiting) gst_pad_push_event(self->srcpad, event.release());
+  state.waiting.clear();
+  return true;
+}
+
+/// Clouds pass as they are from now on.
+void GiveUp(GstLidarPointCloudOrganize* self, const std::string& why) {
+  State& state = *self->state;
+  state.organizer.reset();
+  GST_ELEMENT_WARNING(
+      self, STREAM, FORMAT,
+      ("No beams were found in the clouds, which pass as they are: %s.", why.c_str()),
+      ("dracoenc geometry=xyz codes them"));
+}
+
+/// The input's caps with what was found.
+bool PushModel(GstLidarPointCloudOrganize* self) {
+  State& state = *self->state;
+  const CapsPtr found(state.organizer->output().ToCaps());
+  const CapsPtr caps(gst_caps_copy(state.caps.get()));
+  GstStructure* to = gst_caps_get_structure(caps.get(), 0);
+  const GstStructure* from = gst_caps_get_structure(found.get(), 0);
+  for (const char* name : {"fields", "point-step", "is-dense", "sensor-model"})
+    gst_structure_set_value(to, name, gst_structure_get_value(from, name));
+  state.models_sent = state.organizer->models();
+  return PushCaps(self, caps.get());
+}
+
+/// Null where the cloud does not fit; it is then counted.
+BufferPtr Organize(GstLidarPointCloudOrganize* self, GstBuffer* buffer) {
+  State& state = *self->state;
+  std::unique_lock lock(state.mutex);
+  const gdouble max_error_m = state.settings.max_error_m;
+  lock.unlock();
+  BufferPtr out(gst_buffer_new_allocate(nullptr, state.organizer->output().FrameSize(), nullptr));
+  std::optional<CloudOrganizer::Result> result;
+  {
+    const BufferMap from(buffer, GST_MAP_READ);
+    BufferMap to(out.get(), GST_MAP_WRITE);
+    if (from && to && from.size() == state.info->FrameSize())
+      result = state.organizer->Organize(from.view(), max_error_m, to.data());
+  }
+  lock.lock();
+  ++state.counters.clouds;
+  state.counters.models = state.organizer->models();
+  if (!result) {
+    ++state.counters.dropped;
+    return nullptr;
+  }
+  state.counters.outside += result->outside;
+  gst_buffer_copy_into(out.get(), buffer, GST_BUFFER_COPY_METADATA, 0, static_cast<gsize>(-1));
+  return out;
+}
+
+GstFlowReturn Chain(GstPad*, GstObject* parent, GstBuffer* raw) {
+  auto* self = GST_LIDAR_POINT_CLOUD_ORGANIZE(parent);
+  State& state = *self->state;
+  BufferPtr buffer(raw);
+  if (!state.info) return GST_FLOW_NOT_NEGOTIATED;
+  GstLidarSlice slice;
+  if (state.organizer && gst_lidar_buffer_get_slice(raw, &slice) && slice.slice_count > 1)
+    GiveUp(self, "they are slices; put scanassembler in front");
+  if (state.organizer) {
+    BufferPtr out = Organize(self, raw);
+    if (!out && ++state.attempts < kPatience) return GST_FLOW_OK;
+    if (out) {
+      state.attempts = 0;
+      if (state.models_sent != state.organizer->models() && !PushModel(self))
+        return GST_FLOW_NOT_NEGOTIATED;
+      return gst_pad_push(self->srcpad, out.release());
+    }
+    GiveUp(self, "their points do not lie on lines from one origin, in even columns");
+    state.caps_sent = false;  // they were those of the model
+  }
+  if (!state.caps_sent && !PushCaps(self, state.caps.get())) return GST_FLOW_NOT_NEGOTIATED;
+  return gst_pad_push(self->srcpad, buffer.release());
+}
+
+gboolean SetCaps(GstLidarPointCloudOrganize* self, GstCaps* caps) {
+  State& state = *self->state;
+  std::string why;
+  state.info = CloudInfo::FromFrameCaps(caps, &why);
+  if (!state.info) {
+    GST_ELEMENT_ERROR(self, STREAM, FORMAT, ("This is no cloud to organise: %s.", why.c_str()),
+                      ("caps are %" GST_PTR_FORMAT, static_cast<gpointer>(caps)));
+    return FALSE;
+  }
+  state.caps.reset(gst_caps_ref(caps));
+  state.caps_sent = false;
+  state.models_sent = 0;
+  state.attempts = 0;
+  state.organizer.reset();
+  if (state.info->sensor_model) return TRUE;  // somebody knows better
+  state.organizer = CloudOrganizer::Create(*state.info, &why);
+  if (!state.organizer) GiveUp(self, why);
+  return TRUE;
+}
+
+/// The caps wait for the first cloud, and what has to be behind them waits, too.
+gboolean SinkEvent(GstPad* pad, GstObject* parent, GstEvent* event) {
+  auto* self = GST_LIDAR_POINT_CLOUD_ORGANIZE(parent);
+  State& state = *self->state;
+  const GstEventType type = GST_EVENT_TYPE(event);
+  if (type == GST_EVENT_CAPS) {
+    const EventPtr owned(event);
+    GstCaps* caps = nullptr;
+    gst_event_parse_caps(event, &caps);
+    return SetCaps(self, caps);
+  }
+  if (type == GST_EVENT_FLUSH_STOP) state.waiting.clear();
+  if (type == GST_EVENT_EOS && !state.caps_sent && state.caps) PushCaps(self, state.caps.get());
+  const bool behind_caps = GST_EVENT_IS_STICKY(event) && type > GST_EVENT_CAPS;
+  if (behind_caps && type != GST_EVENT_EOS && !state.caps_sent) {
+    state.waiting.emplace_back(event);
+    return TRUE;
+  }
+  return gst_pad_event_default(pad, parent, event);
+}
+
+GstStateChangeReturn ChangeState(GstElement* element, GstStateChange transition) {
+  State& state = StateOf(element);
+  if (transition == GST_STATE_CHANGE_READY_TO_PAUSED) {
+    const std::lock_guard lock(state.mutex);
+    state.counters = {};
+  }
+  const GstStateChangeReturn result = GST_ELEMENT_CLASS(gst_lidar_point_cloud_organize_parent_class)
+                                          ->change_state(element, transition);
+  if (transition == GST_STATE_CHANGE_PAUSED_TO_READY) {
+    state.info.reset();
+    state.caps.reset();
+    state.organizer.reset();
+    state.waiting.clear();
+    state.caps_sent = false;
+  }
+  return result;
+}
+
+GstStaticPadTemplate organize_sink = GST_STATIC_PAD_TEMPLATE(
+    "sink", GST_PAD_SINK, GST_PAD_ALWAYS, GST_STATIC_CAPS(GST_LIDAR_CLOUD_MEDIA_TYPE));
+GstStaticPadTemplate organize_src = GST_STATIC_PAD_TEMPLATE(
+    "src", GST_PAD_SRC, GST_PAD_ALWAYS, GST_STATIC_CAPS(GST_LIDAR_CLOUD_MEDIA_TYPE));
+
+}  // namespace
+
+static void gst_lidar_point_cloud_organize_init(GstLidarPointCloudOrganize* self) {
+  self->state = new State;
+  self->sinkpad = gst_pad_new_from_static_template(&organize_sink, "sink");
+  gst_pad_set_chain_function(self->sinkpad, Chain);
+  gst_pad_set_event_function(self->sinkpad, SinkEvent);
+  gst_element_add_pad(GST_ELEMENT(self), self->sinkpad);
+  self->srcpad = gst_pad_new_from_static_template(&organize_src, "src");
+  gst_pad_use_fixed_caps(self->srcpad);
+  gst_element_add_pad(GST_ELEMENT(self), self->srcpad);
+}
+
+static void gst_lidar_point_cloud_organize_class_init(GstLidarPointCloudOrganizeClass* klass) {
+  GST_DEBUG_CATEGORY_INIT(gst_lidar_point_cloud_organize_debug, "pointcloudorganize", 0,
+                          "Beams of organised clouds");
+  auto* object = G_OBJECT_CLASS(klass);
+  ServeProperties<GstLidarPointCloudOrganize, kProperties>(object);
+  OwnState<GstLidarPointCloudOrganize, gst_lidar_point_cloud_organize_parent_class>(object);
+  auto* element = GST_ELEMENT_CLASS(klass);
+  gst_element_class_add_static_pad_template(element, &organize_sink);
+  gst_element_class_add_static_pad_template(element, &organize_src);
+  gst_element_class_set_static_metadata(
+      element, "Point cloud organizer", "Filter/Analyzer/PointCloud",
+      "Finds the beams of the sensor in its clouds, and adds ranges", "gst-lidar");
+  element->change_state = ChangeState;
+}
