@@ -14,25 +14,17 @@ constexpr int kMaxSequenceStep = 64;  // between two packets of a candidate
 constexpr double kMostScansPerSecond = 1'000;
 constexpr std::int64_t kScansWithoutClock = 10'000;  // where arrival times stand still
 
-void Add(const SliceAccounts& a, SliceAccounts* sum) {
-  sum->slices_received += a.slices_received;
-  sum->slices_lost += a.slices_lost;
-  sum->slices_damaged += a.slices_damaged;
-  sum->slices_config_mismatch += a.slices_config_mismatch;
-  sum->slices_skipped += a.slices_skipped;
-  sum->scans_complete += a.scans_complete;
-  sum->scans_incomplete += a.scans_incomplete;
-  sum->scans_lost += a.scans_lost;
-  sum->scans_skipped += a.scans_skipped;
-}
-
-void Add(const Reassembler& r, ReceiverAccounts* sum) {
-  Add(r.slices(), &sum->slices);
+void AddPackets(const Reassembler& r, ReceiverAccounts* sum) {
   sum->packets.invalid += r.packets().invalid;
   sum->packets.duplicate += r.packets().duplicate;
   sum->packets.late += r.packets().late;
   sum->packets.config_damaged += r.packets().config_damaged;
   sum->configs_received += r.configs();
+}
+
+void Add(const Reassembler& r, ReceiverAccounts* sum) {
+  sum->slices += r.slices();
+  AddPackets(r, sum);
 }
 
 }  // namespace
@@ -116,12 +108,13 @@ void Receiver::Promote(Time now, std::vector<ReceivedSlice>* out) {
   if (CandidateGoesOn(now)) {
     ++booked_.outages;
     candidate_->reassembler.GoOn(active_->reassembler, out);
+    AddPackets(active_->reassembler, &booked_);
   } else {
     ++booked_.restarts;
+    Add(active_->reassembler, &booked_);
     if (candidate_->ssrc == active_->ssrc)
       candidate_->reassembler.StartAnew(active_->reassembler, out);
   }
-  Add(active_->reassembler, &booked_);
   active_ = std::move(candidate_);
   active_->held.clear();
   active_arrival_ = active_->last_arrival;

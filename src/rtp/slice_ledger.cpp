@@ -13,8 +13,22 @@ namespace {
 constexpr std::int64_t kMaxOpenScans = 64;
 // A slice tells of as many slices before it, which may be scans of one slice.
 constexpr std::int64_t kKeptScans = 64;
+constexpr int kToldSlices = 64;
 
 }  // namespace
+
+SliceAccounts& SliceAccounts::operator+=(const SliceAccounts& o) {
+  slices_received += o.slices_received;
+  slices_lost += o.slices_lost;
+  slices_damaged += o.slices_damaged;
+  slices_config_mismatch += o.slices_config_mismatch;
+  slices_skipped += o.slices_skipped;
+  scans_complete += o.scans_complete;
+  scans_incomplete += o.scans_incomplete;
+  scans_lost += o.scans_lost;
+  scans_skipped += o.scans_skipped;
+  return *this;
+}
 
 Admission SliceLedger::Admit(SlicePosition p, std::uint32_t count, Time now) {
   if (!started()) {
@@ -148,8 +162,8 @@ void SliceLedger::TakeBackLoss(Scan* scan, std::uint32_t index) {
 
 /// Such slices are in no account, unless Continue() books them.
 void SliceLedger::SkipBeforeOrigin(SlicePosition p) {
-  const bool is_new = skipped_before_origin_.insert(p).second;
-  if (!is_new || !previous_end_ || !(*previous_end_ < p)) return;
+  if (!skipped_before_origin_.insert(p).second || !previous_end_) return;
+  if (!(*previous_end_ < p) && lost_before_end_.erase(p) == 0) return;
   --accounts_.slices_lost;
   ++accounts_.slices_skipped;
 }
@@ -170,6 +184,16 @@ void SliceLedger::BookScanId(std::int64_t scan, std::uint32_t id) {
     first_id_ = now;
   }
   latest_id_ = now;
+}
+
+bool SliceLedger::BookedAsLost(SlicePosition p) const {
+  if (p < origin_) {
+    const bool in_outage = previous_end_ && *previous_end_ < p;
+    return lost_before_end_.count(p) > 0 || (in_outage && skipped_before_origin_.count(p) == 0);
+  }
+  const Scan* scan = Find(p.scan);
+  return scan != nullptr && p.index < scan->slices.size() &&
+         scan->slices[p.index] == SliceOutcome::kLost;
 }
 
 std::optional<SlicePosition> SliceLedger::Overdue(Time now) const {
@@ -215,6 +239,10 @@ void SliceLedger::Continue(const SliceLedger& previous) {
   const std::uint64_t count = origin_count_;
   const SlicePosition last = *previous.frontier_;
   previous_end_ = last;
+  accounts_ += previous.accounts_;
+  auto at = previous.Before(last);
+  for (int i = 0; i < kToldSlices && at; ++i, at = previous.Before(*at))
+    if (previous.BookedAsLost(*at)) lost_before_end_.insert(*at);
   if (last.scan < origin_.scan) {
     const auto between = static_cast<std::uint64_t>(origin_.scan - last.scan - 1);
     accounts_.scans_lost += between;

@@ -28,6 +28,8 @@ struct SlicePosition {
 
 /// Each slice and each scan from the first one seen on is in one of its counters once it settles.
 struct SliceAccounts {
+  SliceAccounts& operator+=(const SliceAccounts& o);
+
   std::uint64_t slices_received = 0;
   std::uint64_t slices_lost = 0;
   std::uint64_t slices_damaged = 0;          // all packets there, but not the bytes that were sent
@@ -77,6 +79,7 @@ class SliceLedger {
   void Finish();
   /// The scans between `previous`, which is finished, and this ledger's first slice are lost, and
   /// so is the beginning of this ledger's first scan: the same stream goes on after a long outage.
+  /// The accounts of `previous` become a part of these, as word of its slices may still come.
   void Continue(const SliceLedger& previous);
 
   void set_max_reorder_time(Duration t) { max_reorder_time_ = t; }
@@ -113,6 +116,7 @@ class SliceLedger {
   void BookScan(Scan* scan);
   void TakeBackLoss(Scan* scan, std::uint32_t index);
   void SkipBeforeOrigin(SlicePosition p);
+  bool BookedAsLost(SlicePosition p) const;
   static std::uint64_t SkippedBetween(ScanId before, ScanId after);
   Scan* Find(std::int64_t number);
   const Scan* Find(std::int64_t number) const;
@@ -124,7 +128,9 @@ class SliceLedger {
   SlicePosition origin_;         // the first slice
   std::uint32_t origin_count_ = 1;
   std::set<SlicePosition> skipped_before_origin_;
-  std::optional<SlicePosition> previous_end_;  // of the stream that this one goes on with
+  // Of the stream that this one goes on with: what follows its end is lost, and so are these.
+  std::optional<SlicePosition> previous_end_;
+  std::set<SlicePosition> lost_before_end_;  // the last ones
   std::optional<SlicePosition> frontier_;
   ScanId first_id_{};  // where there is a latest one
   std::optional<ScanId> latest_id_;

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <utility>
 
 #include "src/rtp/receiver.h"
 #include "tests/core/rtp/stream.h"
@@ -89,6 +90,29 @@ TEST(SkippedSlices, AreNotLostInAnOutage) {
   // 12.2 tells of the 64 slices before it.
   EXPECT_EQ(a.slices.slices_lost, 6U * 3);
   EXPECT_EQ(a.slices.scans_skipped, 1U);
+}
+
+TEST(SkippedSlices, AreNotLostWhereTheWordOfThemComesAfterAnOutage) {
+  Receiver receiver(kReorder);
+  Sender sender;
+  auto packets = sender.ScansWithout(
+      20, [](std::uint32_t s, std::uint16_t i) { return s == 4 && (i == 1 || i == 2); });
+  // Of 4.3, which would have told, only one packet comes; then an outage of scans 5 to 9.
+  bool first = true;
+  packets.erase(std::remove_if(packets.begin(), packets.end(),
+                               [&](const Wire& w) {
+                                 if (w.config) return false;
+                                 if (w.scan != 4 || w.index != 3) return w.scan >= 5 && w.scan <= 9;
+                                 return !std::exchange(first, false);
+                               }),
+                packets.end());
+  DeliverAll(&receiver, packets);
+  receiver.Finish();
+  const auto a = receiver.accounts();
+  EXPECT_EQ(a.outages, 1U);
+  EXPECT_EQ(a.slices.slices_received, 4U * 4 + 1 + 10 * 4);
+  EXPECT_EQ(a.slices.slices_skipped, 2U);
+  EXPECT_EQ(a.slices.slices_lost, 1U + 5 * 4);
 }
 
 TEST(SkippedSlices, DoNotInterruptTheStream) {
