@@ -151,6 +151,7 @@ Accounts ReceivingEnd::accounts() const {
   a.lost = stat("slices-lost");
   a.damaged = stat("slices-damaged");
   a.mismatch = stat("slices-config-mismatch");
+  a.skipped = stat("slices-skipped");
   a.complete = stat("scans-complete");
   a.incomplete = stat("scans-incomplete");
   a.scans_lost = stat("scans-lost");

@@ -60,13 +60,19 @@ class SendingEnd {
   SendingEnd(SentSlices* sent, std::uint16_t port, const std::string& sink_options = "");
   Pipeline& pipeline() { return pipeline_; }
   std::uint64_t slices_sent() const { return pipeline_.Stat("pay", "slices-sent"); }
+  /// As many as the sensor has since it was made: 80 a second.
+  std::uint64_t slices_captured() const {
+    const std::chrono::duration<double> time = std::chrono::steady_clock::now() - made_;
+    return static_cast<std::uint64_t>(80 * time.count()) + 1;
+  }
 
  private:
+  std::chrono::steady_clock::time_point made_ = std::chrono::steady_clock::now();
   Pipeline pipeline_;
 };
 
 struct Accounts {
-  std::uint64_t received = 0, lost = 0, damaged = 0, mismatch = 0;
+  std::uint64_t received = 0, lost = 0, damaged = 0, mismatch = 0, skipped = 0;
   std::uint64_t complete = 0, incomplete = 0, scans_lost = 0;
   std::uint64_t restarts = 0, outages = 0;
   std::uint64_t slices() const { return received + lost + damaged + mismatch; }
