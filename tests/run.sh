@@ -84,8 +84,9 @@ build() {
 }
 
 # Under a sanitizer gcc warns of what it could not follow; the plain build has refused real warnings.
+# The optimizer takes minutes for code full of checks, so only the libraries with hot loops have it.
 build_sanitized() {
-  build "$root/build-asan" "$sanitized" -Db_sanitize=address,undefined -Db_lundef=false -Doptimization=1 \
+  build "$root/build-asan" "$sanitized" -Db_sanitize=address,undefined -Db_lundef=false -Doptimization=0 \
     -Dbenchmarks=disabled -Dwerror=false
 }
 # It compiles behind the tests of the first build: they wait for most of their time.
