@@ -9,6 +9,7 @@
 namespace lidar::rate {
 namespace {
 
+constexpr double kUnitStep = 0.01;
 // Fewer returns than this say nothing about the scene: headers are most of the bytes.
 constexpr std::uint32_t kFewReturns = 64;
 constexpr double kMinSlope = 0.6;

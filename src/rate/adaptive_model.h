@@ -10,10 +10,7 @@
 
 namespace lidar::rate {
 
-/// The step whose logarithm is 0 [m].
-constexpr double kUnitStep = 0.01;
-
-/// log2(bytes) of one coding mode, with x = log2(step / kUnitStep) and n = log2(returns / 1000).
+/// log2(bytes) of one coding mode, with x = log2(step / 1 cm) and n = log2(returns / 1000).
 struct ModeCoefficients {
   std::array<double, 4> step{};  // cubic in x, lowest power first
   double min_x = -3;             // the fit is a straight line outside of [min_x, max_x]

@@ -1,68 +1,26 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include "src/rate/model_fit.h"
 
+#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <numeric>
 
 namespace lidar::rate {
 namespace {
 
-constexpr std::size_t kMaxDegree = 3;
+constexpr double kUnitStep = 0.01;
+constexpr Eigen::Index kMaxDegree = 3;
 
 using Samples = std::vector<const Sample*>;
 
 double X(const Sample& s) { return std::log2(s.settings.step_m / kUnitStep); }
 double N(const Sample& s) { return std::log2(s.slice.returns / 1000.0); }
 
-double Dot(const std::vector<double>& a, const std::vector<double>& b) {
-  return std::inner_product(a.begin(), a.end(), b.begin(), 0.0);
+/// Minimises |A c - b|; a feature that never varies has no part.
+Eigen::VectorXd LeastSquares(const Eigen::MatrixXd& a, const Eigen::VectorXd& b) {
+  return a.colPivHouseholderQr().solve(b);
 }
-/// a -= factor * b
-void Subtract(std::vector<double>* a, double factor, const std::vector<double>& b) {
-  for (std::size_t i = 0; i < b.size(); ++i) (*a)[i] -= factor * b[i];
-}
-
-/// Linear least squares, by the QR decomposition of modified Gram-Schmidt.
-class LeastSquares {
- public:
-  explicit LeastSquares(std::size_t features) : columns_(features) {}
-
-  void Add(const std::vector<double>& features, double value) {
-    for (std::size_t k = 0; k < columns_.size(); ++k) columns_[k].push_back(features[k]);
-    values_.push_back(value);
-  }
-
-  /// A coefficient for each feature; 0 for one that the features before it tell already.
-  std::vector<double> Solve() {
-    const std::size_t n = columns_.size();
-    std::vector<std::vector<double>> upper(n, std::vector<double>(n));
-    std::vector<double> solution(n);
-    for (std::size_t k = 0; k < n; ++k) {
-      std::vector<double>& column = columns_[k];
-      const double length = std::sqrt(Dot(column, column));
-      for (std::size_t j = 0; j < k; ++j) {
-        upper[j][k] = Dot(columns_[j], column);
-        Subtract(&column, upper[j][k], columns_[j]);
-      }
-      const double rest = std::sqrt(Dot(column, column));
-      upper[k][k] = rest > 1e-9 * length ? rest : 0;
-      for (double& x : column) x = upper[k][k] > 0 ? x / rest : 0;
-      solution[k] = Dot(column, values_);
-      Subtract(&values_, solution[k], column);
-    }
-    for (std::size_t k = n; k-- > 0;) {
-      for (std::size_t j = k + 1; j < n; ++j) solution[k] -= upper[k][j] * solution[j];
-      solution[k] = upper[k][k] > 0 ? solution[k] / upper[k][k] : 0;
-    }
-    return solution;
-  }
-
- private:
-  std::vector<std::vector<double>> columns_;
-  std::vector<double> values_;
-};
 
 /// Fits the exponent of the returns too, where their number varies enough to tell it.
 double ReturnsSpread(const Samples& samples) {
@@ -72,21 +30,22 @@ double ReturnsSpread(const Samples& samples) {
   return N(**high) - N(**low);
 }
 
-void FitGeometry(const Samples& samples, std::size_t degree, ModeCoefficients* mode) {
+void FitGeometry(const Samples& samples, Eigen::Index degree, ModeCoefficients* mode) {
   constexpr double kEnoughSpread = 0.5;  // doublings
+  const auto rows = static_cast<Eigen::Index>(samples.size());
   const bool fit_returns = ReturnsSpread(samples) > kEnoughSpread;
-  LeastSquares fit(degree + 1 + (fit_returns ? 1 : 0));
-  for (const Sample* s : samples) {
-    std::vector<double> features;
-    for (std::size_t k = 0; k <= degree; ++k)
-      features.push_back(std::pow(X(*s), static_cast<double>(k)));
-    features.push_back(N(*s));
-    fit.Add(features, std::log2(s->geometry_bytes) - (fit_returns ? 0 : N(*s)));
+  Eigen::MatrixXd a(rows, degree + 1 + (fit_returns ? 1 : 0));
+  Eigen::VectorXd b(rows);
+  for (Eigen::Index i = 0; i < rows; ++i) {
+    const Sample& s = *samples[static_cast<std::size_t>(i)];
+    for (Eigen::Index k = 0; k <= degree; ++k) a(i, k) = std::pow(X(s), static_cast<double>(k));
+    b(i) = std::log2(s.geometry_bytes) - (fit_returns ? 0 : N(s));
+    if (fit_returns) a(i, degree + 1) = N(s);
   }
-  const std::vector<double> c = fit.Solve();
+  const Eigen::VectorXd c = LeastSquares(a, b);
   mode->step = {};
-  for (std::size_t k = 0; k <= degree; ++k) mode->step[k] = c[k];
-  mode->returns = fit_returns ? c[degree + 1] : 1;
+  for (Eigen::Index k = 0; k <= degree; ++k) mode->step[static_cast<std::size_t>(k)] = c(k);
+  mode->returns = fit_returns ? c(degree + 1) : 1;
 }
 
 void FitIntensity(const Samples& all, ModeCoefficients* mode) {
@@ -98,12 +57,16 @@ void FitIntensity(const Samples& all, ModeCoefficients* mode) {
   mode->intensity = {std::log2(1000 / 16.0), 1};
   mode->intensity_returns = 1;
   if (samples.size() < kMinSamples) return;
-  LeastSquares fit(2);
-  for (const Sample* s : samples)
-    fit.Add({1, std::log2(static_cast<double>(s->settings.intensity_bits))},
-            std::log2(s->intensity_bytes) - N(*s));
-  const std::vector<double> c = fit.Solve();
-  if (c[1] >= 0) mode->intensity = {c[0], c[1]};
+  const auto rows = static_cast<Eigen::Index>(samples.size());
+  Eigen::MatrixXd a(rows, 2);
+  Eigen::VectorXd b(rows);
+  for (Eigen::Index i = 0; i < rows; ++i) {
+    const Sample& s = *samples[static_cast<std::size_t>(i)];
+    a.row(i) << 1, std::log2(static_cast<double>(s.settings.intensity_bits));
+    b(i) = std::log2(s.intensity_bytes) - N(s);
+  }
+  const Eigen::VectorXd c = LeastSquares(a, b);
+  if (c(1) >= 0) mode->intensity = {c(0), c(1)};
 }
 
 std::optional<ModeCoefficients> FitMode(const Samples& samples) {
@@ -116,7 +79,7 @@ std::optional<ModeCoefficients> FitMode(const Samples& samples) {
   mode.max_x = X(**coarsest);
   if (!(mode.min_x < mode.max_x)) return std::nullopt;
   FitIntensity(samples, &mode);
-  for (std::size_t degree = kMaxDegree; degree >= 1; --degree) {
+  for (Eigen::Index degree = kMaxDegree; degree >= 1; --degree) {
     FitGeometry(samples, degree, &mode);
     if (mode.Falls()) return mode;
   }
@@ -149,18 +112,23 @@ std::optional<PaperCoefficients> FitPaper(const std::vector<Sample>& samples) {
   PaperCoefficients coefficients;
   for (const auto& [name, of_geometry] : by_geometry) {
     if (of_geometry.size() < kMinSamples) return std::nullopt;
-    LeastSquares fit(kPaperFeatures + 1);
-    for (const Sample* s : of_geometry) {
-      const auto features = PaperFeatures(BitsOfStep(s->slice.extent_m, s->settings.step_m),
-                                          s->settings.level, s->slice.returns);
-      std::vector<double> row(features.begin(), features.end());
-      row.push_back(1);
-      fit.Add(row, s->geometry_bytes + s->intensity_bytes);
+    const auto rows = static_cast<Eigen::Index>(of_geometry.size());
+    Eigen::MatrixXd a(rows, kPaperFeatures + 1);
+    Eigen::VectorXd b(rows);
+    for (Eigen::Index i = 0; i < rows; ++i) {
+      const Sample& s = *of_geometry[static_cast<std::size_t>(i)];
+      const auto features = PaperFeatures(BitsOfStep(s.slice.extent_m, s.settings.step_m),
+                                          s.settings.level, s.slice.returns);
+      for (std::size_t k = 0; k < kPaperFeatures; ++k)
+        a(i, static_cast<Eigen::Index>(k)) = features[k];
+      a(i, kPaperFeatures) = 1;
+      b(i) = s.geometry_bytes + s.intensity_bytes;
     }
-    const std::vector<double> c = fit.Solve();
+    const Eigen::VectorXd c = LeastSquares(a, b);
     PaperPolynomial& polynomial = coefficients.geometries[name];
-    std::copy_n(c.begin(), kPaperFeatures, polynomial.alpha.begin());
-    polynomial.beta = c[kPaperFeatures];
+    for (std::size_t k = 0; k < kPaperFeatures; ++k)
+      polynomial.alpha[k] = c(static_cast<Eigen::Index>(k));
+    polynomial.beta = c(kPaperFeatures);
   }
   if (coefficients.geometries.empty()) return std::nullopt;
   return coefficients;
