@@ -125,6 +125,15 @@ Kind KindOf(GstCaps* caps, std::optional<CloudInfo>* info, std::string* why) {
   return Kind::kNone;
 }
 
+/// Coded caps have a framerate, too.
+guint64 ScanDurationOf(GstCaps* caps) {
+  gint n = 0;
+  gint d = 1;
+  if (!gst_structure_get_fraction(gst_caps_get_structure(caps, 0), "framerate", &n, &d) || n <= 0)
+    return 0;
+  return gst_util_uint64_scale_int(GST_SECOND, d, n);
+}
+
 bool OpenTopics(GstBaseSink* sink, Kind kind) {
   State& state = StateOf(sink);
   const InputSettings settings = lidar::web::SettingsOf(GST_LIDAR_FOXGLOVE_INPUT(sink));
@@ -155,6 +164,7 @@ gboolean SetCaps(GstBaseSink* sink, GstCaps* caps) {
     return FALSE;
   }
   if (info) state.info = std::move(*info);
+  if (kind != Kind::kOdometry) state.used->scan_duration = ScanDurationOf(caps);
   if (kind == state.kind) return TRUE;  // slices of another width
   CloseTopics(&state);
   const bool good = OpenTopics(sink, kind);

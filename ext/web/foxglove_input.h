@@ -23,6 +23,7 @@ struct Hub {
   std::atomic<guint64> clouds{0};
   std::atomic<guint64> points{0};  // that were sent to somebody
   std::atomic<guint64> malformed{0};
+  std::atomic<guint64> scan_duration{0};  // of the newest caps; 0: they do not say
 };
 
 struct InputSettings {

@@ -59,7 +59,7 @@ const std::array<lidar::gst::Property<Settings>, 7> kProperties = {{
     {"sync", "Show buffers when the pipeline's clock says, not as they come", &Settings::sync},
     {"stats",
      "port, clients, clients-accepted, clients-refused, connections-evicted, messages-sent, "
-     "messages-dropped, bytes-sent [bytes], clouds, points-sent, malformed",
+     "messages-dropped, bytes-sent [bytes], clouds, points-sent, scan-duration [ns], malformed",
      ReadStats},
 }};
 
@@ -74,10 +74,11 @@ struct Counters {
   guint64 bytes = 0;
   guint64 clouds = 0;
   guint64 points = 0;
+  guint64 scan_duration = 0;
   guint64 malformed = 0;
 };
 
-const std::array<lidar::gst::Stat<Counters>, 11> kStats = {{
+const std::array<lidar::gst::Stat<Counters>, 12> kStats = {{
     {"port", &Counters::port},
     {"clients", &Counters::clients},
     {"clients-accepted", &Counters::accepted},
@@ -88,6 +89,7 @@ const std::array<lidar::gst::Stat<Counters>, 11> kStats = {{
     {"bytes-sent", &Counters::bytes},
     {"clouds", &Counters::clouds},
     {"points-sent", &Counters::points},
+    {"scan-duration", &Counters::scan_duration},
     {"malformed", &Counters::malformed},
 }};
 
@@ -104,6 +106,7 @@ Counters CountersOf(const Hub& hub) {
   c.bytes = server.bytes_sent;
   c.clouds = hub.clouds;
   c.points = hub.points;
+  c.scan_duration = hub.scan_duration;
   c.malformed = server.malformed + hub.malformed;
   return c;
 }

@@ -14,13 +14,12 @@ struct Type {
   std::string_view ending;
   const char* name;
 };
-constexpr std::array<Type, 6> kTypes = {{
+constexpr std::array<Type, 5> kTypes = {{
     {".html", "text/html; charset=utf-8"},
     {".js", "text/javascript; charset=utf-8"},
     {".css", "text/css; charset=utf-8"},
-    {".svg", "image/svg+xml"},
     {".wasm", "application/wasm"},
-    {".json", "application/json"},
+    {".txt", "text/plain; charset=utf-8"},
 }};
 
 const char* TypeOf(std::string_view path) {

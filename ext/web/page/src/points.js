@@ -1,0 +1,146 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// The points that are fresh: a ring in the memory of the graphics card, coloured where it is drawn.
+import * as THREE from 'three';
+import { FLOATS } from './fields.js';
+import { MODES, rampOf, texels } from './palette.js';
+
+const CAPACITY = 1 << 19; // two scans of the largest sensors
+const STRIDE = FLOATS + 1; // and the time
+
+const vertexShader = `
+attribute vec4 rest;   // intensity, beam, range, time
+uniform float now, span, mode, low, high, scale;
+varying float vValue, vFresh, vSize;
+void main() {
+  float age = now - rest.w;
+  float value = mode < 0.5 ? position.z : mode < 1.5 ? rest.x : mode < 2.5 ? rest.z
+              : mode < 3.5 ? rest.y : age * 1000.0;
+  vValue = clamp((value - low) / max(high - low, 1e-6), 0.0, 1.0);
+  if (mode > 0.5 && mode < 1.5) vValue = sqrt(vValue);
+  vFresh = clamp(1.0 - age / span, 0.0, 1.0);
+  vec4 view = modelViewMatrix * vec4(position, 1.0);
+  gl_Position = age < -1e-4 || age > span ? vec4(2.0, 2.0, 2.0, 1.0) : projectionMatrix * view;
+  vSize = clamp(scale / -view.z, 1.6, 6.0);
+  gl_PointSize = vSize;
+}`;
+
+const fragmentShader = `
+uniform sampler2D ramp;
+uniform float glow, opacity;
+varying float vValue, vFresh, vSize;
+void main() {
+  vec2 corner = gl_PointCoord - 0.5;
+  if (vSize > 2.5 && dot(corner, corner) > 0.25) discard; // near points are round
+  vec3 color = texture2D(ramp, vec2(vValue, 0.5)).rgb;
+  // What the sensor has just seen is brightest: the sweep shows.
+  float bright = glow > 0.5 ? 0.62 + 0.38 * vFresh * vFresh : 1.0;
+  gl_FragColor = vec4(color * bright, opacity);
+}`;
+
+export class FreshPoints {
+  constructor() {
+    this.data = new Float32Array(CAPACITY * STRIDE);
+    this.buffer = new THREE.InterleavedBuffer(this.data, STRIDE).setUsage(THREE.DynamicDrawUsage);
+    const geometry = new THREE.BufferGeometry();
+    geometry.setAttribute('position', new THREE.InterleavedBufferAttribute(this.buffer, 3, 0));
+    geometry.setAttribute('rest', new THREE.InterleavedBufferAttribute(this.buffer, 4, 3));
+    geometry.setDrawRange(0, 0);
+    const ramp = new THREE.DataTexture(new Uint8Array(1024), 256, 1);
+    ramp.magFilter = ramp.minFilter = THREE.LinearFilter;
+    this.uniforms = {
+      now: { value: 0 },
+      span: { value: 0.1 },
+      mode: { value: 0 },
+      low: { value: -2 },
+      high: { value: 6 },
+      scale: { value: 60 },
+      ramp: { value: ramp },
+      glow: { value: 1 },
+      opacity: { value: 1 },
+    };
+    const material = new THREE.ShaderMaterial({
+      uniforms: this.uniforms,
+      vertexShader,
+      fragmentShader,
+      transparent: true,
+    });
+    this.object = new THREE.Points(geometry, material);
+    this.object.frustumCulled = false;
+    this.clear();
+  }
+
+  clear() {
+    this.next = 0;
+    this.filled = 0;
+    this.epoch = null; // times are floats: from here on
+    this.latest = 0;
+    this.pending = [];
+    this.object.geometry.setDrawRange(0, 0);
+  }
+
+  /** `points` as fields.js has them, at `time`, moved by `matrix` where there is one. */
+  add(points, time, matrix) {
+    const count = Math.min(points.length / FLOATS, CAPACITY);
+    if (this.epoch === null || time - this.epoch > 3600 || time < this.epoch) {
+      this.clear();
+      this.epoch = time;
+    }
+    const stamp = time - this.epoch;
+    this.latest = Math.max(this.latest, stamp);
+    const m = matrix?.elements;
+    const { data } = this;
+    const start = this.next;
+    for (let i = 0, from = 0; i < count; ++i, from += FLOATS) {
+      const to = ((start + i) % CAPACITY) * STRIDE;
+      const x = points[from];
+      const y = points[from + 1];
+      const z = points[from + 2];
+      data[to] = m ? m[0] * x + m[4] * y + m[8] * z + m[12] : x;
+      data[to + 1] = m ? m[1] * x + m[5] * y + m[9] * z + m[13] : y;
+      data[to + 2] = m ? m[2] * x + m[6] * y + m[10] * z + m[14] : z;
+      data[to + 3] = points[from + 3];
+      data[to + 4] = points[from + 4];
+      data[to + 5] = points[from + 5];
+      data[to + 6] = stamp;
+    }
+    this.markDirty(start, count);
+    this.next = (start + count) % CAPACITY;
+    this.filled = Math.min(CAPACITY, Math.max(this.filled, start + count));
+    this.object.geometry.setDrawRange(0, this.filled);
+  }
+
+  /** Only what is new goes to the graphics card. */
+  markDirty(start, count) {
+    const end = Math.min(start + count, CAPACITY);
+    this.buffer.addUpdateRange(start * STRIDE, (end - start) * STRIDE);
+    if (start + count > CAPACITY) this.buffer.addUpdateRange(0, (start + count - CAPACITY) * STRIDE);
+    this.buffer.needsUpdate = true;
+  }
+
+  /** After each frame. */
+  drawn() {
+    this.buffer.clearUpdateRanges();
+  }
+
+  setColors(mode, isDark) {
+    this.uniforms.mode.value = Object.keys(MODES).indexOf(mode);
+    this.uniforms.glow.value = isDark && mode !== 'age' ? 1 : 0;
+    const { value: ramp } = this.uniforms.ramp;
+    ramp.image.data.set(texels(rampOf(mode, isDark)));
+    ramp.needsUpdate = true;
+  }
+
+  setScale(low, high) {
+    this.uniforms.low.value = low;
+    this.uniforms.high.value = high;
+  }
+
+  /** How long a point stays [s]. */
+  setSpan(span) {
+    this.uniforms.span.value = span;
+  }
+
+  update() {
+    this.uniforms.now.value = this.latest;
+  }
+}

@@ -1,0 +1,166 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// The scene: fresh points, map, ground rings, and a camera that orbits or follows.
+import * as THREE from 'three';
+import { OrbitControls } from 'three/examples/jsm/controls/OrbitControls.js';
+import { WorldMap } from './map.js';
+import { FreshPoints } from './points.js';
+
+const RINGS_M = [10, 20, 30, 40, 50];
+const HOME = new THREE.Vector3(-27, -9, 24);
+const LOOK = new THREE.Vector3(6, 0, -1);
+const TURN = 0.08; // a key press [rad]
+const ZOOM = 0.88;
+
+function rings() {
+  const group = new THREE.Group();
+  for (const radius of RINGS_M) {
+    const corners = Array.from({ length: 129 }, (_, i) => {
+      const a = (i / 128) * 2 * Math.PI;
+      return new THREE.Vector3(radius * Math.cos(a), radius * Math.sin(a), 0);
+    });
+    const geometry = new THREE.BufferGeometry().setFromPoints(corners);
+    group.add(new THREE.Line(geometry, new THREE.LineBasicMaterial({ transparent: true })));
+  }
+  const tip = [
+    [1.6, 0],
+    [-0.9, 0.75],
+    [-0.5, 0],
+    [-0.9, -0.75],
+    [1.6, 0],
+  ].map(([x, y]) => new THREE.Vector3(x, y, 0));
+  const arrow = new THREE.Line(
+    new THREE.BufferGeometry().setFromPoints(tip),
+    new THREE.LineBasicMaterial(),
+  );
+  arrow.name = 'sensor';
+  group.add(arrow);
+  return group;
+}
+
+export class Scene {
+  constructor(canvas) {
+    this.canvas = canvas;
+    this.renderer = new THREE.WebGLRenderer({ canvas, antialias: true, powerPreference: 'high-performance' });
+    this.scene = new THREE.Scene();
+    this.camera = new THREE.PerspectiveCamera(55, 1, 0.1, 2000);
+    this.camera.up.set(0, 0, 1);
+    this.controls = new OrbitControls(this.camera, canvas);
+    this.controls.enableDamping = true;
+    this.controls.maxPolarAngle = Math.PI * 0.98;
+    this.controls.addEventListener('change', () => (this.dirty = true));
+    this.fresh = new FreshPoints();
+    this.map = new WorldMap();
+    this.rings = rings();
+    this.scene.add(this.map.object, this.rings, this.fresh.object);
+    this.sensor = new THREE.Vector3();
+    this.follow = true;
+    this.frames = 0;
+    this.ground = -1.9;
+    this.home();
+    new ResizeObserver(() => this.resize()).observe(canvas.parentElement);
+    this.resize();
+  }
+
+  home() {
+    this.camera.position.copy(HOME).add(this.sensor);
+    this.controls.target.copy(LOOK).add(this.sensor);
+    this.controls.update();
+    this.dirty = true;
+  }
+
+  resize() {
+    const { clientWidth: w, clientHeight: h } = this.canvas.parentElement;
+    if (w === 0 || h === 0) return;
+    this.renderer.setPixelRatio(Math.min(devicePixelRatio, 2));
+    this.renderer.setSize(w, h, false);
+    this.camera.aspect = w / h;
+    // A tall window sees as much to the sides.
+    this.camera.fov = w < h ? 80 : 55;
+    this.camera.updateProjectionMatrix();
+    this.fresh.uniforms.scale.value = (h * this.renderer.getPixelRatio()) / 13;
+    this.dirty = true;
+  }
+
+  setTheme(colors, mode, isDark) {
+    this.scene.background = new THREE.Color(colors.ground);
+    for (const line of this.rings.children) {
+      line.material.color.set(line.name === 'sensor' ? colors.accent : colors.line);
+      line.material.opacity = 0.8;
+    }
+    this.map.setColors(colors.map, colors.accent);
+    this.fresh.setColors(mode, isDark);
+    this.dirty = true;
+  }
+
+  /** The sensor has moved; the camera goes with it where it follows. */
+  moveSensor(matrix) {
+    const at = new THREE.Vector3().setFromMatrixPosition(matrix);
+    if (this.follow) {
+      const step = at.clone().sub(this.sensor);
+      this.camera.position.add(step);
+      this.controls.target.add(step);
+    }
+    this.sensor.copy(at);
+    this.rings.quaternion.setFromRotationMatrix(matrix);
+    this.dirty = true;
+  }
+
+  setFollow(on) {
+    if (on && !this.follow) {
+      const step = this.sensor.clone().add(LOOK).sub(this.controls.target);
+      this.camera.position.add(step);
+      this.controls.target.add(step);
+    }
+    this.follow = on;
+    this.dirty = true;
+  }
+
+  add(points, time, matrix) {
+    this.fresh.add(points, time, matrix);
+    if (matrix) {
+      this.moveSensor(matrix);
+      this.map.add(points, matrix);
+    }
+    this.dirty = true;
+  }
+
+  clear() {
+    this.fresh.clear();
+    this.map.clear();
+    this.dirty = true;
+  }
+
+  /** Turns by steps to the right and up; zooms by steps inwards. */
+  nudge(right, up, inwards) {
+    const offset = this.camera.position.clone().sub(this.controls.target);
+    const s = new THREE.Spherical().setFromVector3(new THREE.Vector3(offset.x, offset.z, -offset.y));
+    s.theta += right * TURN;
+    s.phi = THREE.MathUtils.clamp(s.phi - up * TURN, 0.02, Math.PI * 0.98);
+    s.radius = THREE.MathUtils.clamp(s.radius * ZOOM ** inwards, 1, 800);
+    const v = new THREE.Vector3().setFromSpherical(s);
+    this.camera.position.copy(this.controls.target).add(new THREE.Vector3(v.x, -v.z, v.y));
+    this.controls.update();
+    this.dirty = true;
+  }
+
+  /** Draws where something has changed. */
+  draw() {
+    this.controls.update();
+    if (!this.dirty) return;
+    this.dirty = false;
+    this.rings.position.copy(this.sensor);
+    this.rings.position.z += this.ground;
+    this.fresh.update();
+    this.renderer.render(this.scene, this.camera);
+    this.fresh.drawn();
+    this.map.drawn();
+    ++this.frames;
+  }
+
+  /** The picture as a PNG. */
+  picture() {
+    this.dirty = true;
+    this.draw();
+    return new Promise((done) => this.canvas.toBlob(done, 'image/png'));
+  }
+}
