@@ -1,8 +1,9 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: LGPL-2.1-or-later
 # Installs the Debian packages that building, running and testing need; quiet where all are there.
+# Usage: install.sh [LIST]
 set -euo pipefail
-list=$(cd "$(dirname "$0")" && pwd)/packages.txt
+list=${1:-$(cd "$(dirname "$0")" && pwd)/packages.txt}
 
 missing=()
 while read -r package; do

@@ -9,10 +9,10 @@ usage() {
   cat <<EOF
 Usage: tests/run.sh [--suite NAME] [--no-install] [--no-sanitize] [--tsan]
 
-  --suite NAME    run one suite: lint, core, elements, pipelines, fuzz, bench, faults (three
-                  minutes of broken networks; only by name), peers (libraries from npm; only by
-                  name), or sanitize (elements, fuzz, and
-                  core without long simulations and programs, under AddressSanitizer and UBSan)
+  --suite NAME    run one suite: lint, core, elements, pipelines, fuzz, bench, sanitize (elements,
+                  fuzz, and core without long simulations and programs, under AddressSanitizer and
+                  UBSan), or one that runs by name only: faults (three minutes of broken networks),
+                  peers (libraries from npm), browser (foxglovesink's page in Chromium)
   --no-install    do not install Debian packages
   --no-sanitize   leave out the sanitizer build
   --tsan          also run core (without the same) and elements under ThreadSanitizer
@@ -31,7 +31,7 @@ while [ $# -gt 0 ]; do
       [ $# -ge 2 ] || { usage >&2; exit 2; }
       case $2 in
         sanitize) suites=() ;;
-        lint | core | elements | pipelines | fuzz | bench | faults | peers) suites=("$2"); sanitize=no ;;
+        lint | core | elements | pipelines | fuzz | bench | faults | peers | browser) suites=("$2"); sanitize=no ;;
         *) echo "No suite is called '$2'." >&2; usage >&2; exit 2 ;;
       esac
       shift ;;
@@ -138,6 +138,12 @@ run_pipelines() {
 count() { if [ "$1" = 0 ]; then passed=$((passed + 1)); else failed=$((failed + 1)); fi; }
 
 [ "$install" = no ] || "$here/install.sh" || exit 1
+if [ "$install" = yes ] && [ "${suites[*]}" = browser ]; then
+  "$here/install.sh" "$here/browser/packages.txt" || exit 1
+  for folder in "$root/ext/web/page" "$here/browser"; do
+    (cd "$folder" && npm ci --silent --no-audit --no-fund) || exit 1
+  done
+fi
 
 if [ ${#suites[@]} -gt 0 ]; then
   if build "$root/build" all; then
@@ -145,7 +151,7 @@ if [ ${#suites[@]} -gt 0 ]; then
     for suite in "${suites[@]}"; do
       case $suite in
         pipelines) run_pipelines "$root/build" ;;
-        bench | faults | peers) run "$root/build" "$suite" --num-processes 1 ;;
+        bench | faults | peers | browser) run "$root/build" "$suite" --num-processes 1 ;;
         *) run "$root/build" "$suite" ;;
       esac
     done

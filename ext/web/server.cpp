@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include "ext/web/server.h"
 
+#include <pthread.h>
+
 #include <future>
 #include <system_error>
 
@@ -47,6 +49,7 @@ Server::~Server() {
 }
 
 void Server::Run(std::function<void(std::string)> listens) {
+  pthread_setname_np(pthread_self(), "foxglovesink");
   g_main_context_push_thread_default(context_.get());
   desk_ = std::make_unique<Desk>(config_, &counters_);
   std::string error;

@@ -23,7 +23,7 @@ function plainFiles() {
         const terms = file ? text(`./node_modules/${name}/${file}`) : `Licence: ${pack.license}`;
         return `${name} ${pack.version}\n\n${terms.trim()}\n`;
       })
-      .concat(['Draco decoder\n\nCopyright The Draco Authors. Licence: Apache-2.0\n'])
+      .concat(['Draco decoder\n\nCopyright The Draco Authors. Licence: Apache-2.0,\nhttps://www.apache.org/licenses/LICENSE-2.0\n'])
       .join(`\n${'-'.repeat(72)}\n\n`);
   return {
     name: 'plain-files',

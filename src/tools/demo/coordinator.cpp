@@ -275,6 +275,8 @@ void Coordinator::Tick() {
 }
 
 int Coordinator::Run() {
+  const std::string page = PageOf(m_.options);
+  if (!page.empty()) std::fprintf(stderr, "demo: look at %s\n", page.c_str());
   Enter(Phase::kReceiver);
   Time next = Now();
   const auto before_wait = [&] {

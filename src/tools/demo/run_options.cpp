@@ -20,6 +20,9 @@ constexpr double kDriveMbps = 4;
 constexpr double kDriveOfCaptureMbps = 8;
 constexpr double kDriveTail_s = 60;  // a stream that starts late must not see the trace begin again
 
+constexpr int kReceiverPage = 8765;
+constexpr int kSenderPage = 8766;
+
 std::string Number(double value) {
   std::ostringstream out;
   out.precision(12);
@@ -132,6 +135,9 @@ void AddRunOptions(CLI::App* app, RunOptions* o) {
       ->check(CLI::Range(1.0, 1e6))
       ->capture_default_str();
   app->add_option("--output", o->output, "Folder for the report")->capture_default_str();
+  app->add_flag("--view", o->view,
+                "Serve a page with the clouds that arrive and the figures of both ends, while the "
+                "stream lasts");
   app->add_flag("--slam", o->slam,
                 "The receiver follows the sensor by lidarodometry: trajectories, error and map");
   app->add_flag("!--no-plots", o->plots, "Do not draw plots");
@@ -215,6 +221,8 @@ std::string SenderPipeline(const RunOptions& o, Ports ports) {
           std::to_string(ports.link) + " max-bitrate=" + Bps(o.max_bitrate_mbps) +
           " start-bitrate=" + Bps(o.start_bitrate_mbps) +
           " ecn-mode=" + (o.no_l4s ? "off" : "ect1");
+  // Without a pad it tells the statistics alone.
+  if (o.view) text += " foxglovesink port=" + std::to_string(kSenderPage);
   return text;
 }
 
@@ -233,12 +241,26 @@ std::string SlamOf(const RunOptions& o) {
          Quoted(o.output + "/map.png") + " posed. ! queue ! ";
 }
 
+/// A branch for the page, which may lose clouds and holds up nobody.
+std::string ViewOf(const RunOptions& o) {
+  if (!o.view) return "";
+  return "tee name=viewed ! queue leaky=downstream max-size-buffers=64 ! foxglovesink sync=false "
+         "port=" +
+         std::to_string(kReceiverPage) + " viewed. ! queue ! ";
+}
+
+std::string PageOf(const RunOptions& o) {
+  if (!o.view) return "";
+  return "http://127.0.0.1:" + std::to_string(kReceiverPage) +
+         "/?also=127.0.0.1:" + std::to_string(kSenderPage);
+}
+
 std::string ReceiverPipeline(const RunOptions& o, Ports ports) {
   const std::string decoder = EncoderOf(o) == "dracoenc" ? "dracodec" : "lidardec";
   return "screamsrc name=receiver address=127.0.0.1 port=" + std::to_string(ports.receiver) +
-         " ! rtplidardepay name=depayloader ! " + decoder +
-         " name=decoder ! scanassembler name=assembler ! " + SlamOf(o) +
-         "fakesink sync=false async=false";
+         " ! rtplidardepay name=depayloader ! " + decoder + " name=decoder ! " +
+         (o.slam ? "" : ViewOf(o)) + "scanassembler name=assembler ! " + SlamOf(o) +
+         (o.slam ? ViewOf(o) : "") + "fakesink sync=false async=false";
 }
 
 std::vector<std::string> LinkArguments(const RunOptions& o, Ports ports) {

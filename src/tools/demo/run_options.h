@@ -27,6 +27,7 @@ struct RunOptions {
   std::uint32_t seed = 1;
   std::uint32_t slices = 0;
   bool slam = false;  // the edge follows the sensor
+  bool view = false;  // both ends show themselves to browsers
   std::string pcap;
   std::string metadata;
   // Encoder
@@ -68,6 +69,8 @@ struct Ports {
   int link = 0;
   int receiver = 0;
 };
+/// Where --view serves its page; empty without it.
+std::string PageOf(const RunOptions& options);
 std::string SenderPipeline(const RunOptions& options, Ports ports);
 std::string ReceiverPipeline(const RunOptions& options, Ports ports);
 std::vector<std::string> LinkArguments(const RunOptions& options, Ports ports);

@@ -11,14 +11,16 @@ import { compressedCloud, frameTransform, pointCloud } from './wire.js';
 
 const STALLED_MS = 2000;
 const SLOW_DRAW_MS = 250;
+const BUSY_MS = 100;
 
 const page = {
   state: 'connecting',
   paused: false,
-  lastCloud: 0,
+  quietMs: 0, // since the last cloud
   clouds: 0, // since the last count
   points: 0,
   bytes: 0,
+  received: {}, // by schema, since the start
   spanS: 0.1,
   charts: new Charts(document.getElementById('charts')),
   scene: new Scene(document.getElementById('scene')),
@@ -48,7 +50,7 @@ function decodeDraco(cloud) {
 }
 
 function addCloud({ time, frame }, { points, has }) {
-  page.lastCloud = performance.now();
+  page.quietMs = 0;
   ++page.clouds;
   page.points += points.length / 6;
   tools.learn(points, has);
@@ -59,6 +61,7 @@ function addCloud({ time, frame }, { points, has }) {
 }
 
 function onStatistics(message) {
+  page.statistics = message;
   const sink = Object.values(message.elements ?? {}).find((e) => e.factory === 'foxglovesink');
   if (sink?.scan_duration > 0) page.spanS = sink.scan_duration * 1e-9;
   tools.setSpan();
@@ -99,7 +102,7 @@ page.showState = () => setState(page.state);
 
 function checkFlow() {
   if (page.state !== 'live' && page.state !== 'stalled') return;
-  const quiet = performance.now() - page.lastCloud > STALLED_MS;
+  const quiet = page.quietMs > STALLED_MS;
   if (quiet !== (page.state === 'stalled')) setState(quiet ? 'stalled' : 'live');
 }
 
@@ -142,7 +145,7 @@ function askForToken() {
 function connect() {
   const on = {
     state: (state) => {
-      if (state === 'open') page.lastCloud = performance.now();
+      if (state === 'open') page.quietMs = 0;
       if (state === 'lost') page.poses.clear();
       if (state === 'connecting' && page.state !== 'connecting') return; // still lost
       setState(state === 'open' ? 'live' : state);
@@ -150,6 +153,9 @@ function connect() {
     },
     message: (channel, bytes) => {
       page.bytes += bytes.length;
+      const received = (page.received[channel.schemaName] ??= { messages: 0, bytes: 0 });
+      ++received.messages;
+      received.bytes += bytes.length;
       handlers[channel.schemaName](bytes);
     },
   };
@@ -169,9 +175,13 @@ function connectOthers() {
 
 // --- the loop ---
 
+let drawn = 0;
 let drawnCharts = 0;
 function frame(now) {
   page.scene.draw();
+  // Where the browser itself was busy, clouds may have come that it has not told of yet.
+  page.quietMs += Math.min(now - drawn, BUSY_MS);
+  drawn = now;
   if (now - drawnCharts > SLOW_DRAW_MS) {
     drawnCharts = now;
     page.charts.draw(tools.style());

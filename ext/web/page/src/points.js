@@ -26,7 +26,7 @@ void main() {
 
 const fragmentShader = `
 uniform sampler2D ramp;
-uniform float glow, opacity;
+uniform float glow;
 varying float vValue, vFresh, vSize;
 void main() {
   vec2 corner = gl_PointCoord - 0.5;
@@ -34,7 +34,7 @@ void main() {
   vec3 color = texture2D(ramp, vec2(vValue, 0.5)).rgb;
   // What the sensor has just seen is brightest: the sweep shows.
   float bright = glow > 0.5 ? 0.62 + 0.38 * vFresh * vFresh : 1.0;
-  gl_FragColor = vec4(color * bright, opacity);
+  gl_FragColor = vec4(color * bright, 1.0);
 }`;
 
 export class FreshPoints {
@@ -44,7 +44,6 @@ export class FreshPoints {
     const geometry = new THREE.BufferGeometry();
     geometry.setAttribute('position', new THREE.InterleavedBufferAttribute(this.buffer, 3, 0));
     geometry.setAttribute('rest', new THREE.InterleavedBufferAttribute(this.buffer, 4, 3));
-    geometry.setDrawRange(0, 0);
     const ramp = new THREE.DataTexture(new Uint8Array(1024), 256, 1);
     ramp.magFilter = ramp.minFilter = THREE.LinearFilter;
     this.uniforms = {
@@ -56,26 +55,35 @@ export class FreshPoints {
       scale: { value: 60 },
       ramp: { value: ramp },
       glow: { value: 1 },
-      opacity: { value: 1 },
     };
     const material = new THREE.ShaderMaterial({
       uniforms: this.uniforms,
       vertexShader,
       fragmentShader,
-      transparent: true,
     });
-    this.object = new THREE.Points(geometry, material);
-    this.object.frustumCulled = false;
+    // Two parts of one ring: what is fresh may go over its end.
+    this.parts = [geometry, geometry.clone()].map((part) => {
+      for (const name of ['position', 'rest']) part.setAttribute(name, geometry.getAttribute(name));
+      const points = new THREE.Points(part, material);
+      points.frustumCulled = false;
+      return points;
+    });
+    this.object = new THREE.Group();
+    this.object.add(...this.parts);
     this.clear();
   }
 
   clear() {
     this.next = 0;
-    this.filled = 0;
+    this.batches = []; // {start, count, stamp}, the oldest first
     this.epoch = null; // times are floats: from here on
     this.latest = 0;
-    this.pending = [];
-    this.object.geometry.setDrawRange(0, 0);
+    for (const part of this.parts) part.geometry.setDrawRange(0, 0);
+  }
+
+  /** Points that are on the way to the screen. */
+  get count() {
+    return this.parts.reduce((sum, part) => sum + part.geometry.drawRange.count, 0);
   }
 
   /** `points` as fields.js has them, at `time`, moved by `matrix` where there is one. */
@@ -105,8 +113,21 @@ export class FreshPoints {
     }
     this.markDirty(start, count);
     this.next = (start + count) % CAPACITY;
-    this.filled = Math.min(CAPACITY, Math.max(this.filled, start + count));
-    this.object.geometry.setDrawRange(0, this.filled);
+    this.batches.push({ start, count, stamp });
+    this.forget();
+  }
+
+  /** Drops batches that are too old, or overwritten. */
+  forget() {
+    const { batches } = this;
+    let held = batches.reduce((sum, batch) => sum + batch.count, 0);
+    const oldest = this.latest - this.uniforms.span.value;
+    while (batches.length > 1 && (held > CAPACITY || batches[0].stamp < oldest))
+      held -= batches.shift().count;
+    const start = batches.length ? batches[0].start : 0;
+    const first = Math.min(held, CAPACITY - start);
+    this.parts[0].geometry.setDrawRange(start, first);
+    this.parts[1].geometry.setDrawRange(0, held - first);
   }
 
   /** Only what is new goes to the graphics card. */

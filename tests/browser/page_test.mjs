@@ -1,0 +1,243 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// The page in a real browser: what a user sees and does, and what a server that ends, refuses or
+// waits for a stalled client does to it.
+import assert from 'node:assert/strict';
+import { after, before, test } from 'node:test';
+import WebSocket from 'ws';
+import { freePort, openBrowser, openPage, Pipeline, sleep, until } from './support.mjs';
+
+const SENSOR = 'lidartestsrc is-live=true model=os0-32 mode=512x10 speed=5';
+const limits = { timeout: 240_000 };
+let browser;
+
+before(async () => (browser = await openBrowser()), limits);
+after(() => browser?.close());
+
+const address = (port, rest = '') => `http://127.0.0.1:${port}/${rest}`;
+const state = (page) => page.evaluate(() => document.body.dataset.state);
+const isLive = (page) => until('the page is live', async () => (await state(page)) === 'live');
+
+/** How much of the scene is not background, and a sum that changes with it. */
+function look(page) {
+  return page.evaluate(async () => {
+    const blob = await window.lidarPage.scene.picture();
+    const image = await createImageBitmap(blob);
+    const canvas = new OffscreenCanvas(image.width, image.height);
+    const context = canvas.getContext('2d');
+    context.drawImage(image, 0, 0);
+    const { data } = context.getImageData(0, 0, image.width, image.height);
+    let drawn = 0;
+    let sum = 0;
+    for (let i = 0; i < data.length; i += 4) {
+      const off = Math.abs(data[i] - data[0]) + Math.abs(data[i + 1] - data[1]) + Math.abs(data[i + 2] - data[2]);
+      if (off > 40) {
+        ++drawn;
+        sum = (sum * 31 + i) % 1_000_003;
+      }
+    }
+    return { drawn, sum };
+  });
+}
+
+test('points are drawn and move, in every colour', limits, async () => {
+  const port = await freePort();
+  const pipeline = await Pipeline.start(`${SENSOR} ! foxglovesink port=${port}`, port);
+  const { page, context, complaints } = await openPage(browser, address(port));
+  const hosts = new Set();
+  page.on('request', (request) => hosts.add(new URL(request.url()).host));
+  await page.reload();
+  await isLive(page);
+  const first = await until('points', async () => {
+    const seen = await look(page);
+    return seen.drawn > 1000 && seen;
+  });
+  await sleep(1000);
+  assert.notEqual((await look(page)).sum, first.sum, 'the scene stands still');
+  for (const mode of ['intensity', 'range', 'beam', 'age', 'height']) {
+    await page.click(`[data-mode=${mode}]`);
+    assert.equal(await page.getAttribute(`[data-mode=${mode}]`, 'aria-checked'), 'true');
+    assert.ok((await look(page)).drawn > 1000, mode);
+  }
+  await page.focus('#scene');
+  assert.deepEqual([...hosts], [`127.0.0.1:${port}`], 'the page asks elsewhere');
+  assert.deepEqual(complaints, []);
+  await context.close();
+  await pipeline.stop();
+});
+
+test('mouse and keys orbit, pause holds, a snapshot is saved', limits, async () => {
+  const port = await freePort();
+  const pipeline = await Pipeline.start(`${SENSOR} ! foxglovesink port=${port}`, port);
+  const { page, context, complaints } = await openPage(browser, address(port));
+  await isLive(page);
+  const camera = () => page.evaluate(() => window.lidarPage.scene.camera.position.toArray());
+  const start = await camera();
+  await page.mouse.move(400, 300);
+  await page.mouse.down();
+  await page.mouse.move(560, 340, { steps: 4 });
+  await page.mouse.up();
+  await until('the camera turns', async () => `${await camera()}` !== `${start}`);
+  await page.focus('#scene');
+  const turned = await camera();
+  await page.keyboard.press('ArrowLeft');
+  await page.keyboard.press('+');
+  await until('keys turn it', async () => `${await camera()}` !== `${turned}`);
+  await page.keyboard.press(' ');
+  assert.equal(await page.getAttribute('#pause', 'aria-pressed'), 'true');
+  await until('the picture holds', async () => {
+    const held = await look(page);
+    await sleep(700);
+    return (await look(page)).sum === held.sum;
+  });
+  const [download] = await Promise.all([page.waitForEvent('download'), page.click('#snapshot')]);
+  assert.match(download.suggestedFilename(), /^gst-lidar-.*\.png$/);
+  assert.deepEqual(complaints, []);
+  await context.close();
+  await pipeline.stop();
+});
+
+test('charts advance with the statistics of the pipeline', limits, async () => {
+  const [port, rtp] = [await freePort(), await freePort()];
+  const way =
+    `${SENSOR} ! queue ! lidarenc ! rtplidarpay ! screamsink host=127.0.0.1 port=${rtp} ` +
+    `screamsrc port=${rtp} ! rtplidardepay ! lidardec ! lidarodometry ! foxglovesink port=${port}`;
+  const pipeline = await Pipeline.start(way, port);
+  const { page, context, complaints } = await openPage(browser, address(port));
+  await isLive(page);
+  const titles = await until('all charts', async () => {
+    const shown = await page.$$eval('.chart:not([hidden]) h2', (all) =>
+      all.map((h) => h.firstChild.textContent),
+    );
+    return shown.length === 6 && shown;
+  });
+  assert.deepEqual(titles, ['Bitrate', 'Delay', 'Window', 'Precision', 'Losses', 'To this page']);
+  const samples = () => page.evaluate(() => window.lidarPage.charts.samples);
+  const before = await samples();
+  await until('more samples', async () => (await samples()) >= before + 8);
+  assert.ok((await page.$$('.chart:not([hidden]) canvas')).length === 6);
+  await until('a map', () => page.evaluate(() => window.lidarPage.scene.map.count > 1000));
+  assert.equal(await page.isDisabled('#follow'), false);
+  assert.deepEqual(complaints, []);
+  await context.close();
+  await pipeline.stop();
+});
+
+test('Draco clouds are decoded in the page', limits, async () => {
+  const port = await freePort();
+  const way = `${SENSOR} ! dracoenc geometry=xyz max-error=0.02 ! foxglovesink port=${port}`;
+  const pipeline = await Pipeline.start(way, port);
+  const { page, context, complaints } = await openPage(browser, address(port));
+  await until('points', async () => (await look(page)).drawn > 1000);
+  assert.deepEqual(complaints, []);
+  await context.close();
+  await pipeline.stop();
+});
+
+test('the page comes back when the server does', limits, async () => {
+  const port = await freePort();
+  const way = `${SENSOR} ! foxglovesink port=${port}`;
+  let pipeline = await Pipeline.start(way, port);
+  const { page, context } = await openPage(browser, address(port));
+  await isLive(page);
+  await pipeline.stop();
+  await until('the loss shows', async () => (await state(page)) === 'lost');
+  assert.match(await page.textContent('#notice'), /Trying again/);
+  pipeline = await Pipeline.start(way, port);
+  await isLive(page);
+  await until('points', async () => (await look(page)).drawn > 1000);
+  await context.close();
+  await pipeline.stop();
+});
+
+test('a silent sensor shows as one', limits, async () => {
+  const port = await freePort();
+  const pipeline = await Pipeline.start(`${SENSOR} num-buffers=60 ! foxglovesink port=${port} ` +
+    `lidartestsrc is-live=true ! fakesink`, port);
+  const { page, context } = await openPage(browser, address(port));
+  await until('no clouds', async () => (await state(page)) === 'stalled');
+  await context.close();
+  await pipeline.stop();
+});
+
+test('a wrong token is refused, the right one lets in', limits, async () => {
+  const port = await freePort();
+  const pipeline = await Pipeline.start(`${SENSOR} ! foxglovesink port=${port} token=right`, port);
+  const { page, context } = await openPage(browser, address(port, '?token=wrong'));
+  await until('a refusal', async () => (await state(page)) === 'refused');
+  assert.ok(!page.url().includes('token'), 'the token stays in the address');
+  await page.fill('#token', 'right');
+  await page.keyboard.press('Enter');
+  await isLive(page);
+  await context.close();
+  await pipeline.stop();
+});
+
+test('two viewers see it; a stalled one slows neither them nor the pipeline', limits, async () => {
+  const port = await freePort();
+  const way = `lidartestsrc is-live=true model=os1-64 ! foxglovesink name=web port=${port}`;
+  const pipeline = await Pipeline.start(way, port);
+  const first = await openPage(browser, address(port));
+  const second = await openPage(browser, address(port));
+  await Promise.all([first, second].map(({ page }) => isLive(page)));
+  const watcher = new WebSocket(`ws://127.0.0.1:${port}`, ['foxglove.sdk.v1']);
+  let sink = {};
+  watcher.on('message', (data, isBinary) => {
+    if (isBinary) {
+      const { elements } = JSON.parse(data.subarray(13).toString());
+      sink = Object.values(elements).find((e) => e.factory === 'foxglovesink');
+    } else if (JSON.parse(data).op === 'advertise') {
+      watcher.send('{"op":"subscribe","subscriptions":[{"id":0,"channelId":0}]}');
+    }
+  });
+  await until('statistics', () => sink.clouds > 0);
+  const rate = async () => {
+    const [clouds, at] = [sink.clouds, Date.now()];
+    await sleep(4000);
+    return ((sink.clouds - clouds) * 1000) / (Date.now() - at);
+  };
+  const free = await rate();
+  const stalled = new WebSocket(`ws://127.0.0.1:${port}`, ['foxglove.sdk.v1']);
+  await new Promise((done) => stalled.on('open', done));
+  stalled.send(
+    JSON.stringify({ op: 'subscribe', subscriptions: [1, 2, 3].map((id) => ({ id, channelId: id })) }),
+  );
+  await sleep(200);
+  stalled._socket.pause();
+  const dropped = sink.messages_dropped;
+  const beside = await rate();
+  console.log(`slices/s: ${free.toFixed(1)} alone, ${beside.toFixed(1)} beside a stalled client`);
+  assert.ok(beside > 0.9 * free);
+  assert.ok(sink.messages_dropped > dropped, 'nothing was dropped for it');
+  for (const { page, context, complaints } of [first, second]) {
+    assert.equal(await state(page), 'live');
+    assert.deepEqual(complaints, []);
+    await context.close();
+  }
+  stalled.terminate();
+  watcher.terminate();
+  await pipeline.stop();
+});
+
+test('it fits a phone, follows the theme, and the keyboard reaches all of it', limits, async () => {
+  const port = await freePort();
+  const pipeline = await Pipeline.start(`${SENSOR} ! foxglovesink port=${port}`, port);
+  const phone = { viewport: { width: 390, height: 780 }, colorScheme: 'light' };
+  const { page, context, complaints } = await openPage(browser, address(port), phone);
+  await isLive(page);
+  assert.equal(await page.getAttribute('html', 'data-theme'), 'light');
+  assert.ok(await page.evaluate(() => document.documentElement.scrollWidth <= innerWidth));
+  const reached = new Set();
+  for (let i = 0; i < 20; ++i) {
+    await page.keyboard.press('Tab');
+    reached.add(await page.evaluate(() => document.activeElement.id || document.activeElement.dataset.mode));
+  }
+  for (const id of ['scene', 'height', 'trail', 'pause', 'snapshot', 'panel', 'theme'])
+    assert.ok(reached.has(id), `${id} is out of reach: ${[...reached]}`);
+  await page.click('#theme');
+  assert.equal(await page.getAttribute('html', 'data-theme'), 'dark');
+  await page.click('#panel');
+  assert.ok(await page.isVisible('#charts'));
+  assert.deepEqual(complaints, []);
+  await context.close();
+  await pipeline.stop();
+});

@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Pipelines with a foxglovesink, and Debian's Chromium to look at them.
+import { spawn } from 'node:child_process';
+import net from 'node:net';
+import { chromium } from 'playwright-core';
+
+export const sleep = (ms) => new Promise((done) => setTimeout(done, ms));
+
+/** A port that is free now. */
+export function freePort() {
+  return new Promise((done) => {
+    const server = net.createServer();
+    server.listen(0, '127.0.0.1', () => {
+      const { port } = server.address();
+      server.close(() => done(port));
+    });
+  });
+}
+
+/** Waits for `question()` to be true; throws with `what` after `patienceMs`. */
+export async function until(what, question, patienceMs = 60_000) {
+  const end = Date.now() + patienceMs;
+  for (;;) {
+    const answer = await question();
+    if (answer) return answer;
+    if (Date.now() > end) throw new Error(`did not happen: ${what}`);
+    await sleep(100);
+  }
+}
+
+const canConnect = (port) =>
+  new Promise((done) => {
+    const socket = net.connect(port, '127.0.0.1');
+    socket.on('connect', () => done(socket.destroy() && true));
+    socket.on('error', () => done(false));
+  });
+
+/** gst-launch-1.0 with this description, whose foxglovesink listens on `port`. */
+export class Pipeline {
+  static async start(description, port) {
+    const child = spawn('gst-launch-1.0', ['-q', ...description.split(/\s+/)], {
+      stdio: ['ignore', 'pipe', 'pipe'],
+    });
+    const pipeline = new Pipeline(child);
+    child.stdout.on('data', (text) => (pipeline.output += text));
+    child.stderr.on('data', (text) => (pipeline.output += text));
+    await until(`a server on port ${port}: ${description}`, () => {
+      if (child.exitCode !== null) throw new Error(`${description}\n${pipeline.output}`);
+      return canConnect(port);
+    });
+    return pipeline;
+  }
+
+  constructor(child) {
+    this.child = child;
+    this.output = '';
+    this.ended = new Promise((done) => child.on('exit', done));
+  }
+
+  async stop() {
+    this.child.kill('SIGINT');
+    const timer = setTimeout(() => this.child.kill('SIGKILL'), 10_000);
+    await this.ended;
+    clearTimeout(timer);
+  }
+}
+
+/** Chromium without a graphics card. */
+export const openBrowser = () =>
+  chromium.launch({
+    executablePath: process.env.CHROMIUM ?? '/usr/bin/chromium',
+    args: ['--no-sandbox', '--use-angle=swiftshader', '--enable-unsafe-swiftshader'],
+  });
+
+/** A page at `url`, whose complaints are in `complaints`. */
+export async function openPage(browser, url, options = {}) {
+  const context = await browser.newContext({ viewport: { width: 1280, height: 800 }, ...options });
+  const page = await context.newPage();
+  const complaints = [];
+  page.on('console', (m) => ['error', 'warning'].includes(m.type()) && complaints.push(m.text()));
+  page.on('pageerror', (error) => complaints.push(error.message));
+  await page.goto(url);
+  return { page, context, complaints };
+}
