@@ -2,14 +2,18 @@
 // Foxglove's own client and schemas on foxglovesink: npm's @foxglove/ws-protocol gets the messages,
 // protobufjs reads them by the schemas in the channels.
 import assert from 'node:assert/strict';
+import { createRequire } from 'node:module';
 import { test } from 'node:test';
 import ws from '@foxglove/ws-protocol';
-import * as jsonSchemas from '@foxglove/schemas/jsonschema/index.js';
-import { NumericType } from '@foxglove/schemas';
 import protobuf from 'protobufjs';
 import descriptor from 'protobufjs/ext/descriptor/index.js';
 import WebSocket from 'ws';
 import { freePort, Pipeline, until } from './support.mjs';
+
+// They are CommonJS, whose names Node does not see.
+const require = createRequire(import.meta.url);
+const { NumericType } = require('@foxglove/schemas');
+const jsonSchemas = require('@foxglove/schemas/jsonschema');
 
 /** The first message of each channel, decoded, after `count` channels had one. */
 async function messages(port, subprotocol, count) {
@@ -48,8 +52,7 @@ const decode = (channel, bytes) => typeOf(channel).decode(bytes);
 function assertSameFields({ channel, type }) {
   const schema = jsonSchemas[channel.schemaName.replace('foxglove.', '')];
   assert.ok(schema, channel.schemaName);
-  const snake = (name) => name.replace(/[A-Z]/g, (c) => `_${c.toLowerCase()}`);
-  assert.deepEqual(type.fieldsArray.map((f) => snake(f.name)).sort(), Object.keys(schema.properties).sort());
+  assert.deepEqual(type.fieldsArray.map((f) => f.name).sort(), Object.keys(schema.properties).sort());
 }
 
 for (const subprotocol of ['foxglove.sdk.v1', 'foxglove.websocket.v1']) {
@@ -59,18 +62,18 @@ for (const subprotocol of ['foxglove.sdk.v1', 'foxglove.websocket.v1']) {
       `lidartestsrc is-live=true model=os0-32 mode=512x10 ! tee name=t t. ! queue ! lidarodometry name=o ! queue ! web.sink_0 ` +
       `o.odometry ! queue ! web.sink_2 t. ! queue ! dracoenc geometry=xyz ! queue ! web.sink_1 foxglovesink name=web port=${port}`;
     const pipeline = await Pipeline.start(way.replace(/ {2,}/g, ' '), port);
-    const got = await messages(port, subprotocol, 5);
+    const got = await messages(port, subprotocol, 6);
     const points = got['/points'].message;
-    assert.equal(points.frameId, 'lidar');
+    assert.equal(points.frame_id, 'lidar');
     assert.ok(Math.abs(Number(points.timestamp.seconds) - Date.now() / 1000) < 60);
     const x = points.fields.find((f) => f.name === 'x');
     assert.equal(x.type, NumericType.FLOAT32);
-    assert.equal(points.data.length % points.pointStride, 0);
-    assert.ok(points.data.length / points.pointStride > 100);
+    assert.equal(points.data.length % points.point_stride, 0);
+    assert.ok(points.data.length / points.point_stride > 100);
     const draco = got['/points_draco_1'].message;
     assert.equal(draco.format, 'draco');
     assert.equal(new TextDecoder().decode(draco.data.subarray(0, 5)), 'DRACO');
-    assert.equal(got['/tf'].message.parentFrameId, 'odom');
+    assert.equal(got['/tf'].message.parent_frame_id, 'odom');
     const poses = Object.values(got).find((g) => g.channel.schemaName === 'foxglove.PoseInFrame');
     assert.ok(Math.abs(Math.hypot(...['x', 'y', 'z', 'w'].map((k) => poses.message.pose.orientation[k])) - 1) < 1e-6);
     const statistics = got['/statistics'].message;
