@@ -284,8 +284,9 @@ void Controller::ProbeByBurst(Time now) {
 /// one.
 bool Controller::Stalled(Time now) const {
   const auto oldest = history_.oldest_in_flight();
-  const Duration expected = path_.rtt().smoothed() + path_.report_gap() + kOverdue;
-  return gap_recovery_.in_gap() || (oldest && now - *oldest > expected);
+  const Duration late = path_.report_gap() + kOverdue;
+  const bool overdue = oldest && now - *oldest > path_.rtt().smoothed() + late;
+  return gap_recovery_.in_gap() || (overdue && outage_.Quiet(now) > late);
 }
 
 /// The path gives a sign of life, or did so a moment ago.

@@ -22,6 +22,8 @@ class Outage {
   std::optional<DataSize> OnFeedback(Time now);
 
   bool active() const { return window_before_.has_value(); }
+  /// Since the last acknowledgement, or since there was anything to wait for.
+  Duration Quiet(Time now) const { return now - last_feedback_; }
   /// How long nothing has come back; 0 where there is no outage.
   Duration Silence(Time now) const { return active() ? now - last_feedback_ : Duration{0}; }
 
