@@ -204,6 +204,31 @@ TEST_F(Latch, WhoWasOutweighedWhileItSentIsNotKnown) {
   EXPECT_FALSE(Stream(thief, 9, 20, 20));
 }
 
+TEST_F(Latch, AnSsrcIsKnownForMinutesAndNotForEver) {
+  Stream(robot, 1, 0, 100, true);
+  now += 6s;
+  EXPECT_TRUE(Stream(thief, 9, 0, 20, true));
+  now += PeerLatch::kMemory;
+  Stream(thief, 9, 20, 20, true);
+  EXPECT_FALSE(Stream(robot, 1, 150, 20));
+}
+
+TEST_F(Latch, AnSsrcThatWentBackBeginsAnewAfterAWhile) {
+  Stream(robot, 1, 0, 10);
+  now += 10s;
+  Send(other, 2, 40'000);
+  now += 2s;
+  EXPECT_TRUE(Stream(other, 2, 0, 8));
+}
+
+TEST_F(Latch, RemembersSoManySsrcsOfAPeer) {
+  Stream(robot, 1, 0, 10, true);
+  for (std::uint32_t ssrc = 2; ssrc < 500; ++ssrc, now += 1ms) Send(robot, ssrc, 10);
+  now += 1s;
+  EXPECT_FALSE(Stream(thief, 1, 10, 20));
+  EXPECT_TRUE(Stream(other, 499, 11, 8));
+}
+
 TEST_F(Latch, APacketNowAndThenIsNoStream) {
   Stream(robot, 1, 0, 10);
   now += 10s;
