@@ -9,7 +9,6 @@
 namespace lidar {
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
 constexpr std::uint32_t kSpan = 16;        // columns between two points that show the turn
 constexpr std::size_t kFewestPairs = 100;  // of such points
 constexpr double kFewestReturns = 3;       // of a beam whose line is its own

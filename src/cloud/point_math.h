@@ -8,6 +8,8 @@
 
 namespace lidar {
 
+constexpr double kPi = 3.14159265358979323846;
+
 /// The field `range` [mm] at `bytes`; 0: no return.
 inline std::uint32_t RangeAt(const std::uint8_t* bytes) {
   std::uint32_t range = 0;

@@ -5,10 +5,11 @@
 #include <cmath>
 #include <cstring>
 
+#include "src/cloud/point_math.h"
+
 namespace lidar {
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
 constexpr float kMetresPerMm = 1e-3F;
 
 double Radians(double degrees) { return degrees * kPi / 180.0; }
