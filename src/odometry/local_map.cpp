@@ -11,8 +11,6 @@ namespace {
 constexpr std::uint32_t kPointsOfASurface = 8;
 /// The spread across a surface, as a part of the spread along it.
 constexpr double kFlatness = 0.1;
-/// The spread along a surface [m^2], at least, in cubes of 1 m. A full one has 1/12.
-constexpr double kWidth = 0.02;
 
 constexpr std::array<Voxel, 7> kCross = {
     {{0, 0, 0}, {1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1}}};
@@ -27,31 +25,6 @@ double SquaredGap(const Eigen::Vector3d& inside, const Voxel& step, double size)
   const double z = gap(inside.z(), step.z);
   return x * x + y * y + z * z;
 }
-
-/// Sums over points, and the surface that these lie on.
-struct Moments {
-  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
-  Eigen::Matrix3d squares = Eigen::Matrix3d::Zero();
-  std::uint32_t count = 0;
-  Eigen::Vector3d normal;
-
-  void Add(const Eigen::Vector3d& p) {
-    sum += p;
-    squares += p * p.transpose();
-    ++count;
-  }
-  /// True where they spread by `wide` [m^2] along two directions, and little along the third. On a
-  /// single ring of the sensor only the noise spreads them across, along the beam: a surface
-  /// through it would lean toward the sensor.
-  bool LieOnASurface(double wide) {
-    const Eigen::Vector3d mean = sum / count;
-    Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver;
-    solver.computeDirect(squares / count - mean * mean.transpose());
-    normal = solver.eigenvectors().col(0);
-    const Eigen::Vector3d& spread = solver.eigenvalues();
-    return spread(1) >= wide && spread(0) <= kFlatness * spread(1);
-  }
-};
 
 }  // namespace
 
@@ -148,24 +121,34 @@ std::optional<LocalMap::Neighbour> LocalMap::FindNearest(const Eigen::Vector3d& 
   return neighbour;
 }
 
-/// The surface that the points of the cube lie on; where they are few, or on a line, with those of
-/// the cubes that share a face with it.
+/// The surface that the points of the cube lie on; where they are few, with those of the cubes that
+/// share a face with it.
 void LocalMap::UpdateNormal(const Voxel& voxel, Block* block) {
-  block->counted = block->count;
-  block->has_normal = false;
-  Moments moments;
-  const double wide = kWidth * settings_.voxel_size_m * settings_.voxel_size_m;
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  Eigen::Matrix3d squares = Eigen::Matrix3d::Zero();
+  std::uint32_t count = 0;
   for (const Voxel& step : kCross) {
+    if (count >= kPointsOfASurface) break;
     const Block* other = FindBlock(voxel + step);
     if (other == nullptr) continue;
     const Eigen::Vector3d shift = Eigen::Vector3d(step.x, step.y, step.z) * settings_.voxel_size_m;
-    for (std::uint32_t i = 0; i < other->count; ++i)
-      moments.Add(other->points[i].cast<double>() + shift);
-    if (moments.count >= kPointsOfASurface && moments.LieOnASurface(wide)) break;
+    for (std::uint32_t i = 0; i < other->count; ++i) {
+      const Eigen::Vector3d p = other->points[i].cast<double>() + shift;
+      sum += p;
+      squares += p * p.transpose();
+    }
+    count += other->count;
   }
-  if (moments.count < kPointsOfASurface || !moments.LieOnASurface(wide)) return;
+  block->counted = block->count;
+  block->has_normal = false;
+  if (count < kPointsOfASurface) return;
+  const Eigen::Vector3d mean = sum / count;
+  const Eigen::Matrix3d covariance = squares / count - mean * mean.transpose();
+  Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver;
+  solver.computeDirect(covariance);
+  if (solver.eigenvalues()(0) > kFlatness * solver.eigenvalues()(1)) return;
   block->has_normal = true;
-  block->normal = moments.normal.cast<float>();
+  block->normal = solver.eigenvectors().col(0).cast<float>();
 }
 
 std::size_t LocalMap::CountPoints() const {

@@ -83,28 +83,6 @@ TEST(LocalMap, KnowsTheNormalOfASurface) {
   EXPECT_GT(std::abs(found->normal.z()), 0.999);
 }
 
-TEST(LocalMap, TakesNoSurfaceThroughASingleRing) {
-  // Where a beam that looks down by 20 degrees meets the floor, with noise along the beam.
-  std::mt19937 random(3);
-  std::normal_distribution<double> noise(0, 0.05);
-  Points ring;
-  for (double y = -1.5; y < 1.5; y += 0.01) {
-    const double off = noise(random);
-    ring.emplace_back(5.22 + 0.94 * off, y, 0.5 - 0.34 * off);
-  }
-  LocalMap map({1, 100});
-  map.Add(ring);
-  const auto found = map.FindNearest({5.2, 0.1, 0.5}, 1);
-  ASSERT_TRUE(found);
-  EXPECT_FALSE(found->has_normal);
-  // With another ring beside it, it is a floor again.
-  for (Eigen::Vector3d& p : ring) p.x() += 0.4;
-  map.Add(ring);
-  const auto floor = map.FindNearest({5.2, 0.1, 0.5}, 1);
-  ASSERT_TRUE(floor && floor->has_normal);
-  EXPECT_GT(std::abs(floor->normal.z()), 0.98);
-}
-
 TEST(LocalMap, KnowsThatACornerIsNoSurface) {
   LocalMap map({1, 100});
   map.Add(RandomPoints(200, 0.9));
