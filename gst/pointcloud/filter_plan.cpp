@@ -21,7 +21,8 @@ std::optional<CloudInfo> ParseCaps(const GstCaps* caps, bool* big_endian, std::s
   return CloudInfo::FromFrameCaps(copy.get(), why);
 }
 
-/// "x,y,z,intensity" or, with types, "x:F32,intensity:U8", packed.
+/// "x,y,z,intensity" or, with types, "x:F32,intensity:U8", packed. Offsets, as caps have them, are
+/// passed over.
 std::optional<cdr::PointLayout> ParseWanted(const std::string& text, const PointFields& given,
                                             std::string* why) {
   std::istringstream in(text);
@@ -38,7 +39,8 @@ std::optional<cdr::PointLayout> ParseWanted(const std::string& text, const Point
     const bool is_axis = name == "x" || name == "y" || name == "z";
     FieldType type = is_axis ? FieldType::kF32 : field->type;
     if (colon != std::string::npos) {
-      const auto parsed = PointFields::Parse(word + ":0", why);
+      const std::string type_name = word.substr(colon + 1, word.find(':', colon + 1) - colon - 1);
+      const auto parsed = PointFields::Parse(name + ":" + type_name + ":0", why);
       if (!parsed) return std::nullopt;
       type = parsed->all()[0].type;
     }

@@ -40,6 +40,8 @@ class FilterPlan {
   BufferPtr Apply(GstBuffer* buffer);
   /// Those of the cloud that Apply() gave last.
   GstCaps* caps() const { return caps_.get(); }
+  /// Of that cloud, with their types and places.
+  std::string fields() const { return out_.fields.ToString(); }
   std::uint64_t removed() const { return filter_->removed(); }
 
  private:

@@ -2,6 +2,7 @@
 #include "gst/common/gstlidar.h"
 #include "gst/pointcloud/file_cloud.h"
 #include "gst/pointcloud/gstpointcloudfilter.h"
+#include "gst/pointcloud/gstpointcloudmerge.h"
 
 GST_ELEMENT_REGISTER_DECLARE(pcdenc)
 GST_ELEMENT_REGISTER_DECLARE(plyenc)
@@ -13,6 +14,7 @@ static gboolean plugin_init(GstPlugin* plugin) {
   gst_lidar_init();
   return GST_ELEMENT_REGISTER(pcdenc, plugin) && GST_ELEMENT_REGISTER(plyenc, plugin) &&
          GST_ELEMENT_REGISTER(pointcloudfilter, plugin) &&
+         GST_ELEMENT_REGISTER(pointcloudmerge, plugin) &&
          GST_ELEMENT_REGISTER(pointcloudorganize, plugin) &&
          GST_ELEMENT_REGISTER(pointcloudparse, plugin) &&
          GST_ELEMENT_REGISTER(scanassembler, plugin) && lidar::gst::RegisterCloudFileTypes(plugin);

@@ -149,7 +149,9 @@ class Pipeline {
   }
   void TakeStats() {
     const gst::ElementPtr element = Find("m");
-    if (!element) return;
+    if (!element ||
+        g_object_class_find_property(G_OBJECT_GET_CLASS(element.get()), "stats") == nullptr)
+      return;
     GstStructure* raw = nullptr;
     g_object_get(element.get(), "stats", &raw, nullptr);
     const gst::StructurePtr stats(raw);

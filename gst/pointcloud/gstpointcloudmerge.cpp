@@ -1,0 +1,285 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+/**
+ * SECTION:element-pointcloudmerge
+ *
+ * Makes one cloud of the scans of several sensors.
+ *
+ * |[
+ * gst-launch-1.0 pointcloudmerge name=m sink_1::transform="-2,0,0,0,0,180" ! fakesink
+ *   lidartestsrc num-buffers=80 ! scanassembler ! m. lidartestsrc num-buffers=80 ! scanassembler !
+ * m.
+ * ]|
+ */
+#include "gst/pointcloud/gstpointcloudmerge.h"
+
+#include <algorithm>
+#include <utility>
+#include <vector>
+
+#include "gst/common/buffer_map.h"
+#include "gst/common/cloud_info.h"
+#include "gst/common/gstlidar.h"
+#include "gst/pointcloud/gstpointcloudmergepad.h"
+
+GST_DEBUG_CATEGORY_STATIC(gst_lidar_point_cloud_merge_debug);
+#define GST_CAT_DEFAULT gst_lidar_point_cloud_merge_debug
+
+namespace {
+
+using lidar::gst::BufferPtr;
+using lidar::gst::CapsPtr;
+using lidar::gst::CloudInfo;
+
+/// Scans that are farther apart are of different turns, where clouds do not say how long one takes.
+constexpr GstClockTime kUsualScan = 100 * GST_MSECOND;
+
+struct Head {
+  GstLidarPointCloudMergePad* pad = nullptr;
+  GstClockTime time = 0;  // running time
+  GstClockTime duration = 0;
+};
+
+/// What goes out next.
+struct Merged {
+  std::vector<std::uint8_t> points;
+  std::string fields;  // of the first pad that gave a cloud
+  GstClockTime time = GST_CLOCK_TIME_NONE;
+  GstClockTime duration = 0;
+  GstClockTime capture_time = GST_CLOCK_TIME_NONE;
+};
+
+struct State {
+  CapsPtr pushed;
+  bool slices_reported = false;
+};
+
+}  // namespace
+
+struct _GstLidarPointCloudMerge {
+  GstAggregator parent;
+  State* state;
+};
+
+static void gst_lidar_point_cloud_merge_child_proxy_init(gpointer iface, gpointer);
+
+G_DEFINE_TYPE_WITH_CODE(GstLidarPointCloudMerge, gst_lidar_point_cloud_merge, GST_TYPE_AGGREGATOR,
+                        G_IMPLEMENT_INTERFACE(GST_TYPE_CHILD_PROXY,
+                                              gst_lidar_point_cloud_merge_child_proxy_init))
+GST_ELEMENT_REGISTER_DEFINE(pointcloudmerge, "pointcloudmerge", GST_RANK_NONE,
+                            GST_TYPE_LIDAR_POINT_CLOUD_MERGE)
+
+namespace {
+
+/// The pads in their order; each is referenced.
+std::vector<lidar::gst::PadPtr> Pads(GstAggregator* base) {
+  std::vector<lidar::gst::PadPtr> pads;
+  GST_OBJECT_LOCK(base);
+  for (GList* pad = GST_ELEMENT(base)->sinkpads; pad != nullptr; pad = pad->next)
+    pads.emplace_back(GST_PAD(gst_object_ref(pad->data)));
+  GST_OBJECT_UNLOCK(base);
+  return pads;
+}
+
+GstClockTime RunningTime(GstAggregatorPad* pad, GstBuffer* buffer) {
+  const GstClockTime time =
+      gst_segment_to_running_time(&pad->segment, GST_FORMAT_TIME, GST_BUFFER_PTS(buffer));
+  return GST_CLOCK_TIME_IS_VALID(time) ? time : 0;
+}
+
+/// What waits on each pad.
+std::vector<Head> Heads(const std::vector<lidar::gst::PadPtr>& pads) {
+  std::vector<Head> heads;
+  for (const auto& owner : pads) {
+    auto* pad = GST_AGGREGATOR_PAD(owner.get());
+    const BufferPtr buffer(gst_aggregator_pad_peek_buffer(pad));
+    if (!buffer) continue;
+    const GstClockTime duration =
+        GST_BUFFER_DURATION_IS_VALID(buffer.get()) ? GST_BUFFER_DURATION(buffer.get()) : kUsualScan;
+    heads.push_back(
+        {GST_LIDAR_POINT_CLOUD_MERGE_PAD(pad), RunningTime(pad, buffer.get()), duration});
+  }
+  return heads;
+}
+
+/// Drops scans of earlier turns than the newest; true where there were any.
+bool DropOld(GstLidarPointCloudMerge* self, const std::vector<Head>& heads) {
+  GstClockTime newest = 0;
+  for (const Head& head : heads) newest = std::max(newest, head.time);
+  bool dropped = false;
+  for (const Head& head : heads) {
+    if (head.time + head.duration > newest) continue;
+    GST_DEBUG_OBJECT(self, "dropping a scan of %" GST_TIME_FORMAT, GST_TIME_ARGS(head.time));
+    dropped = gst_aggregator_pad_drop_buffer(GST_AGGREGATOR_PAD(head.pad)) || dropped;
+  }
+  return dropped;
+}
+
+/// Slices would be merged one by one, of any two parts of the turn.
+void ReportSlices(GstLidarPointCloudMerge* self, GstBuffer* buffer) {
+  GstLidarSlice slice{};
+  if (self->state->slices_reported || !gst_lidar_buffer_get_slice(buffer, &slice) ||
+      slice.slice_count < 2)
+    return;
+  self->state->slices_reported = true;
+  GST_ELEMENT_WARNING(self, STREAM, FORMAT, ("Slices come instead of scans."),
+                      ("Put scanassembler in front of each pad."));
+}
+
+bool AddCloud(GstLidarPointCloudMerge* self, const Head& head, Merged* merged) {
+  const BufferPtr buffer(gst_aggregator_pad_pop_buffer(GST_AGGREGATOR_PAD(head.pad)));
+  if (!buffer) return true;
+  ReportSlices(self, buffer.get());
+  std::string why;
+  const BufferPtr cloud = lidar::gst::MergePadRead(head.pad, buffer.get(), merged->fields, &why);
+  if (!cloud) {
+    GST_ELEMENT_ERROR(self, STREAM, FORMAT,
+                      ("Clouds of %s cannot be merged: %s.", GST_PAD_NAME(head.pad), why.c_str()),
+                      (nullptr));
+    return false;
+  }
+  if (merged->fields.empty()) merged->fields = lidar::gst::MergePadFields(head.pad).value_or("");
+  const lidar::gst::BufferMap map(cloud.get(), GST_MAP_READ);
+  if (map) merged->points.insert(merged->points.end(), map.view().begin(), map.view().end());
+  if (GST_CLOCK_TIME_IS_VALID(merged->time) && merged->time <= head.time) return true;
+  merged->time = head.time;
+  merged->duration = head.duration;
+  merged->capture_time = gst_lidar_buffer_get_capture_time(buffer.get());
+  return true;
+}
+
+/// Caps of the next cloud, which has as many points as there are.
+void SetCaps(GstLidarPointCloudMerge* self, const Merged& merged,
+             const lidar::PointFields& fields) {
+  CloudInfo info;
+  info.fields = fields;
+  info.point_step = fields.MinimumStep();
+  info.width = static_cast<guint>(merged.points.size() / info.point_step);
+  info.is_dense = true;
+  CapsPtr caps(info.ToCaps());
+  if (self->state->pushed && gst_caps_is_equal(self->state->pushed.get(), caps.get())) return;
+  gst_aggregator_set_src_caps(GST_AGGREGATOR(self), caps.get());
+  self->state->pushed = std::move(caps);
+}
+
+GstFlowReturn Push(GstLidarPointCloudMerge* self, Merged merged) {
+  auto* base = GST_AGGREGATOR(self);
+  const auto fields = lidar::PointFields::Parse(merged.fields);
+  if (merged.points.empty() || !fields) return GST_FLOW_OK;
+  SetCaps(self, merged, *fields);
+  GstBuffer* out = gst_buffer_new_memdup(merged.points.data(), merged.points.size());
+  GST_BUFFER_PTS(out) = merged.time;
+  GST_BUFFER_DURATION(out) = merged.duration;
+  if (GST_CLOCK_TIME_IS_VALID(merged.capture_time))
+    gst_lidar_buffer_set_capture_time(out, merged.capture_time);
+  GstSegment* segment = &GST_AGGREGATOR_PAD(base->srcpad)->segment;
+  segment->position = merged.time + merged.duration;
+  return gst_aggregator_finish_buffer(base, out);
+}
+
+GstFlowReturn Aggregate(GstAggregator* base, gboolean timeout) {
+  auto* self = GST_LIDAR_POINT_CLOUD_MERGE(base);
+  const auto pads = Pads(base);
+  const auto heads = Heads(pads);
+  if (heads.empty()) {
+    const bool ended = std::all_of(pads.begin(), pads.end(), [](const auto& pad) {
+      return gst_aggregator_pad_is_eos(GST_AGGREGATOR_PAD(pad.get())) != FALSE;
+    });
+    return ended ? GST_FLOW_EOS : GST_AGGREGATOR_FLOW_NEED_DATA;
+  }
+  // A sensor that is late is waited for no longer than the latency.
+  if (DropOld(self, heads) && !timeout) return GST_AGGREGATOR_FLOW_NEED_DATA;
+  Merged merged;
+  for (const Head& head : heads)
+    if (!AddCloud(self, head, &merged)) return GST_FLOW_ERROR;
+  return Push(self, std::move(merged));
+}
+
+gboolean SinkEvent(GstAggregator* base, GstAggregatorPad* pad, GstEvent* event) {
+  if (GST_EVENT_TYPE(event) == GST_EVENT_CAPS) {
+    GstCaps* caps = nullptr;
+    gst_event_parse_caps(event, &caps);
+    lidar::gst::MergePadSetCaps(GST_LIDAR_POINT_CLOUD_MERGE_PAD(pad), caps);
+  }
+  return GST_AGGREGATOR_CLASS(gst_lidar_point_cloud_merge_parent_class)
+      ->sink_event(base, pad, event);
+}
+
+/// Pads are children, so that sink_1::transform reaches its pad.
+GstPad* RequestPad(GstElement* element, GstPadTemplate* pad_template, const gchar* name,
+                   const GstCaps* caps) {
+  GstPad* pad = GST_ELEMENT_CLASS(gst_lidar_point_cloud_merge_parent_class)
+                    ->request_new_pad(element, pad_template, name, caps);
+  if (pad != nullptr)
+    gst_child_proxy_child_added(GST_CHILD_PROXY(element), G_OBJECT(pad), GST_PAD_NAME(pad));
+  return pad;
+}
+
+void ReleasePad(GstElement* element, GstPad* pad) {
+  gst_child_proxy_child_removed(GST_CHILD_PROXY(element), G_OBJECT(pad), GST_PAD_NAME(pad));
+  GST_ELEMENT_CLASS(gst_lidar_point_cloud_merge_parent_class)->release_pad(element, pad);
+}
+
+guint ChildrenCount(GstChildProxy* proxy) {
+  GST_OBJECT_LOCK(proxy);
+  const guint count = GST_ELEMENT(proxy)->numsinkpads;
+  GST_OBJECT_UNLOCK(proxy);
+  return count;
+}
+
+GObject* ChildByIndex(GstChildProxy* proxy, guint index) {
+  GST_OBJECT_LOCK(proxy);
+  gpointer pad = g_list_nth_data(GST_ELEMENT(proxy)->sinkpads, index);
+  if (pad != nullptr) g_object_ref(pad);
+  GST_OBJECT_UNLOCK(proxy);
+  return static_cast<GObject*>(pad);
+}
+
+GstClockTime NextTime(GstAggregator* base) { return gst_aggregator_simple_get_next_time(base); }
+
+gboolean Stop(GstAggregator* base) {
+  *GST_LIDAR_POINT_CLOUD_MERGE(base)->state = State();
+  return TRUE;
+}
+
+}  // namespace
+
+static GstStaticPadTemplate sink_template = GST_STATIC_PAD_TEMPLATE(
+    "sink_%u", GST_PAD_SINK, GST_PAD_REQUEST, GST_STATIC_CAPS(GST_LIDAR_CLOUD_MEDIA_TYPE));
+static GstStaticPadTemplate src_template = GST_STATIC_PAD_TEMPLATE(
+    "src", GST_PAD_SRC, GST_PAD_ALWAYS, GST_STATIC_CAPS(GST_LIDAR_CLOUD_MEDIA_TYPE));
+
+static void gst_lidar_point_cloud_merge_init(GstLidarPointCloudMerge* self) {
+  self->state = new State;
+}
+
+static void gst_lidar_point_cloud_merge_class_init(GstLidarPointCloudMergeClass* klass) {
+  GST_DEBUG_CATEGORY_INIT(gst_lidar_point_cloud_merge_debug, "pointcloudmerge", 0,
+                          "Clouds of several sensors");
+  G_OBJECT_CLASS(klass)->finalize = [](GObject* object) {
+    delete GST_LIDAR_POINT_CLOUD_MERGE(object)->state;
+    G_OBJECT_CLASS(gst_lidar_point_cloud_merge_parent_class)->finalize(object);
+  };
+  auto* element = GST_ELEMENT_CLASS(klass);
+  gst_element_class_add_static_pad_template_with_gtype(element, &sink_template,
+                                                       GST_TYPE_LIDAR_POINT_CLOUD_MERGE_PAD);
+  gst_element_class_add_static_pad_template_with_gtype(element, &src_template,
+                                                       GST_TYPE_AGGREGATOR_PAD);
+  gst_element_class_set_static_metadata(element, "Point cloud merger", "Filter/PointCloud",
+                                        "Makes one cloud of the scans of several sensors",
+                                        "gst-lidar");
+  gst_type_mark_as_plugin_api(GST_TYPE_LIDAR_POINT_CLOUD_MERGE_PAD,
+                              static_cast<GstPluginAPIFlags>(0));
+  auto* aggregator = GST_AGGREGATOR_CLASS(klass);
+  aggregator->aggregate = Aggregate;
+  aggregator->sink_event = SinkEvent;
+  aggregator->get_next_time = NextTime;
+  aggregator->stop = Stop;
+  element->request_new_pad = RequestPad;
+  element->release_pad = ReleasePad;
+}
+
+static void gst_lidar_point_cloud_merge_child_proxy_init(gpointer iface, gpointer) {
+  auto* proxy = static_cast<GstChildProxyInterface*>(iface);
+  proxy->get_children_count = ChildrenCount;
+  proxy->get_child_by_index = ChildByIndex;
+}
