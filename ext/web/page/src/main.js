@@ -53,8 +53,8 @@ function addCloud({ time, frame }, { points, has }) {
   page.quietMs = 0;
   ++page.clouds;
   page.points += points.length / 6;
-  tools.learn(points, has);
   if (page.paused) return;
+  tools.learn(points, has);
   const matrix = page.poses.at(frame, time);
   tools.hasPoses(matrix !== null);
   page.scene.add(points, time, matrix);
