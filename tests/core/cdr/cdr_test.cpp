@@ -3,13 +3,10 @@
 
 #include "src/cdr/cdr_reader.h"
 #include "src/cdr/cdr_writer.h"
+#include "tests/core/cdr/bytes.h"
 
 namespace lidar::cdr {
 namespace {
-
-using Bytes = std::vector<std::uint8_t>;
-
-ByteView View(const Bytes& bytes) { return {bytes.data(), bytes.size()}; }
 
 TEST(CdrWriter, AlignsEachNumberToItsSizeFromBehindTheHeader) {
   Bytes bytes;

@@ -5,12 +5,10 @@
 
 #include <numeric>
 
+#include "tests/core/cdr/bytes.h"
+
 namespace lidar::cdr {
 namespace {
-
-using Bytes = std::vector<std::uint8_t>;
-
-ByteView View(const Bytes& bytes) { return {bytes.data(), bytes.size()}; }
 
 const Header kHeader = {Time{} + Duration{1'700'000'000'123'456'789}, "map"};
 

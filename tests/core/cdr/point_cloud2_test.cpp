@@ -8,19 +8,16 @@
 #include <numeric>
 
 #include "src/cdr/ros_types.h"
+#include "tests/core/cdr/bytes.h"
 
 namespace lidar::cdr {
 namespace {
-
-using Bytes = std::vector<std::uint8_t>;
 
 constexpr std::uint8_t kRosU8 = 2;
 constexpr std::uint8_t kRosU16 = 4;
 constexpr std::uint8_t kRosU32 = 6;
 constexpr std::uint8_t kRosF32 = 7;
 constexpr std::uint8_t kRosF64 = 8;
-
-ByteView View(const Bytes& bytes) { return {bytes.data(), bytes.size()}; }
 
 template <class T>
 void Put(T value, bool big_endian, Bytes* out) {

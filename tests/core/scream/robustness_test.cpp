@@ -156,7 +156,7 @@ TEST(Restart, OfTheReceiverIsForgottenWithinTwoSeconds) {
 
 /// A payloader that was restarted with the SSRC it had.
 TEST(Restart, OfSequenceNumbersAloneChangesNothing) {
-  for (const std::uint16_t back : {30500, 1000}) {
+  for (const std::uint16_t back : {std::uint16_t{30500}, std::uint16_t{1000}}) {
     Scenario s = Named("frames_8M_rtt40");
     s.config.flows[0].sequence_jump = 15s;
     s.config.flows[0].jump_back = back;
