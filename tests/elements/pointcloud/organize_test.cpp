@@ -16,29 +16,29 @@ namespace {
 
 using test::Harness;
 
-constexpr guint kBeams = 16;
-constexpr guint kWidth = 256;
+constexpr guint kRings = 16;
+constexpr guint kColumnsOfTurn = 256;
 
 SensorModel Model() {
   SensorModel model;
-  model.columns_per_scan = kWidth;
+  model.columns_per_scan = kColumnsOfTurn;
   model.beam_to_lidar_x_m = 0.0158;
-  for (guint k = 0; k < kBeams; ++k) model.beams.push_back({k % 4 * 1.4, 15. - 2 * k, 0});
+  for (guint k = 0; k < kRings; ++k) model.beams.push_back({k % 4 * 1.4, 15. - 2 * k, 0});
   return model;
 }
 
 /// x, y, z and a ring, as drivers give them.
 CloudInfo DriverInfo() {
   CloudInfo info;
-  info.width = kWidth;
-  info.height = kBeams;
+  info.width = kColumnsOfTurn;
+  info.height = kRings;
   info.point_step = 14;
   info.fields = *PointFields::Parse("x:F32:0,y:F32:4,z:F32:8,ring:U16:12");
   return info;
 }
 
 std::vector<std::uint32_t> Ranges(unsigned seed = 1) {
-  std::vector<std::uint32_t> ranges(kWidth * kBeams);
+  std::vector<std::uint32_t> ranges(kColumnsOfTurn * kRings);
   for (std::uint32_t i = 0; i < ranges.size(); ++i)
     ranges[i] = 1000 + (i * 7919 + seed * 104'729) % 40'000;
   return ranges;
@@ -46,9 +46,9 @@ std::vector<std::uint32_t> Ranges(unsigned seed = 1) {
 
 std::vector<std::uint8_t> DriverCloud(const std::vector<std::uint32_t>& ranges) {
   std::vector<std::uint8_t> points(DriverInfo().FrameSize());
-  RangeProjection(Model()).Project(ranges.data(), {0, kWidth}, points.data(), 14);
+  RangeProjection(Model()).Project(ranges.data(), {0, kColumnsOfTurn}, points.data(), 14);
   for (std::size_t i = 0; i < ranges.size(); ++i)
-    points[14 * i + 12] = static_cast<std::uint8_t>(i / kWidth);
+    points[14 * i + 12] = static_cast<std::uint8_t>(i / kColumnsOfTurn);
   return points;
 }
 
@@ -90,7 +90,7 @@ TEST_F(Organize, GivesCloudsOfAnyDriverRangesAndTheSensorModel) {
   EXPECT_EQ(info.fields.ToString(), "x:F32:0,y:F32:4,z:F32:8,ring:U16:12,range:U32:14");
   EXPECT_EQ(info.point_step, 18u);
   ASSERT_TRUE(info.sensor_model);
-  EXPECT_EQ(info.sensor_model->beams.size(), kBeams);
+  EXPECT_EQ(info.sensor_model->beams.size(), kRings);
   EXPECT_EQ(GST_BUFFER_PTS(buffer.get()), GST_SECOND);
   EXPECT_EQ(gst_lidar_buffer_get_capture_time(buffer.get()), 77 * GST_SECOND);
   const BufferMap map(buffer.get(), GST_MAP_READ);
@@ -99,7 +99,7 @@ TEST_F(Organize, GivesCloudsOfAnyDriverRangesAndTheSensorModel) {
     std::uint32_t range = 0;
     std::memcpy(&range, map.data() + 18 * i + 14, sizeof range);
     ASSERT_NEAR(range, ranges[i], 1) << i;
-    ASSERT_EQ(map.data()[18 * i + 12], i / kWidth);
+    ASSERT_EQ(map.data()[18 * i + 12], i / kColumnsOfTurn);
   }
 }
 
@@ -124,7 +124,7 @@ TEST_F(Organize, LetsCloudsPassThatHaveNoBeams) {
   Start(DriverInfo());
   std::vector<std::uint8_t> points(DriverInfo().FrameSize());
   std::uint32_t state = 1;
-  for (std::size_t i = 0; i < kWidth * kBeams; ++i) {
+  for (std::size_t i = 0; i < kColumnsOfTurn * kRings; ++i) {
     for (std::size_t axis = 0; axis < 3; ++axis) {
       state = state * 1664525u + 1013904223u;
       const float v = static_cast<float>(state >> 16) * 1e-3F - 30;
@@ -146,7 +146,7 @@ TEST_F(Organize, LetsCloudsPassThatHaveNoBeams) {
 
 TEST_F(Organize, LetsCloudsPassThatHaveNoRowsAndThoseOfAKnownSensor) {
   CloudInfo flat = DriverInfo();
-  flat.width = kWidth * kBeams;
+  flat.width = kColumnsOfTurn * kRings;
   flat.height = 1;
   Start(flat);
   ASSERT_EQ(Push(DriverCloud(Ranges())), GST_FLOW_OK);

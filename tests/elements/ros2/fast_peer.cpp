@@ -200,8 +200,10 @@ std::string ToText(const Octets& octets) {
   return std::string(octets.begin(), octets.end());
 }
 
+}  // namespace
+
 /// Notes what discovery finds.
-class Listener : public DomainParticipantListener {
+class DiscoveryListener : public DomainParticipantListener {
  public:
   void on_publisher_discovery(DomainParticipant*,
                               eprosima::fastrtps::rtps::WriterDiscoveryInfo&& found) override {
@@ -253,15 +255,13 @@ void Apply(FastPeer::Qos wanted, EndpointQos* qos) {
       eprosima::fastrtps::rtps::PREALLOCATED_WITH_REALLOC_MEMORY_MODE;
 }
 
-}  // namespace
-
 struct FastPeer::Impl {
   Topic* NewTopic(TypeSupport type, const std::string& topic) {
     type.register_type(participant);
     return participant->create_topic(topic, type.get_type_name(), TOPIC_QOS_DEFAULT);
   }
 
-  Listener listener;
+  DiscoveryListener listener;
   DomainParticipant* participant = nullptr;
   DataReader* reader = nullptr;
   DataWriter* writer = nullptr;
