@@ -105,7 +105,7 @@ std::size_t Stream::LatePackets(Time now, DataRate rate) const {
 }
 
 /// A frame that has begun to leave goes out to its end, for half a frame helps nobody; but the rest
-/// of one that waited twice as long as any may is of no use either.
+/// of one that waited kBegunStay times as long as any may is of no use either.
 std::size_t Stream::StuckPackets(Time now) const {
   const Duration age = now - queue_.front().queued;
   if (age < kBegunStay * p_.max_queue_delay) return 0;

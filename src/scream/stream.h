@@ -24,8 +24,8 @@ class Stream {
   void OnDropped(Time now, std::size_t packets);
   /// Packets at the head that nobody can use any more. `rate`: at which the queue leaves.
   /// An access unit is late where its last packet would leave after max_queue_delay; of a group
-  /// that has begun to leave, after twice that. A group is not begun where its last unit would be
-  /// late, and goes whole where one of its units went.
+  /// that has begun to leave, after kBegunStay times that. A group is not begun where its last unit
+  /// would be late, and goes whole where one of its units went.
   std::size_t LatePackets(Time now, DataRate rate) const;
 
   bool empty() const { return queue_.empty(); }
