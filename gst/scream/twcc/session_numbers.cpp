@@ -32,8 +32,12 @@ std::optional<Reported> Read(const GstStructure* s) {
   gboolean lost = TRUE;
   if (!gst_structure_get_uint(s, "seqnum", &r.number)) return std::nullopt;
   if (!gst_structure_get_boolean(s, "lost", &lost)) return std::nullopt;
-  if (!lost && gst_structure_get_uint64(s, "remote-ts", &remote) && GST_CLOCK_TIME_IS_VALID(remote))
+  if (!lost && gst_structure_get_uint64(s, "remote-ts", &remote) &&
+      GST_CLOCK_TIME_IS_VALID(remote)) {
+    // A report's reference time is below one period, and its deltas add less than another.
+    if (remote > static_cast<guint64>((2 * scream::kTwccPeriod).count())) return std::nullopt;
     r.arrival = Duration{static_cast<std::int64_t>(remote)};
+  }
   return r;
 }
 
