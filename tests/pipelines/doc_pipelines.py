@@ -15,7 +15,7 @@ import sys
 import tempfile
 
 SECONDS = 4
-AT_A_TIME = 3
+AT_A_TIME = 6
 FIRST_PORT, PORTS = 21000, 100  # of the first page, and from one page to the next
 
 
