@@ -268,6 +268,14 @@ void ReleasePad(GstElement* element, GstPad* pad) {
   gst_object_unref(stream);
 }
 
+/// What needs a channel of its own. The message of a cloud says its width itself.
+std::string KindOf(const GstCaps* caps, lidar::gst::MessageType type) {
+  const lidar::gst::CapsPtr kind(gst_caps_copy(caps));
+  if (type == lidar::gst::MessageType::kCloud)
+    gst_structure_remove_field(gst_caps_get_structure(kind.get(), 0), "width");
+  return lidar::gst::CapsToText(kind.get());
+}
+
 /// True where every stream has ended.
 bool HaveAllEnded(GstLidarMcapSink* self) {
   bool all = true;
@@ -297,6 +305,9 @@ bool McapSinkAddChannel(GstLidarMcapSink* sink, const BufferWriter& writer,
   if (!state.recorder) return false;
   state.topics.insert(topic);
   state.has_slices = state.has_slices || writer.type() == MessageType::kSlice;
+  std::string kind = KindOf(caps, writer.type());
+  if (stream->channel_id != 0 && stream->kind == kind) return true;
+  stream->kind = std::move(kind);
   mcap::Catalogue& catalogue = state.recorder->catalogue();
   mcap::Channel channel;
   channel.schema_id = catalogue.AddSchema(SchemaOf(writer.type()));

@@ -19,6 +19,7 @@ namespace lidar::gst {
 struct RecordedStream {
   std::uint16_t channel_id = 0;
   std::uint32_t sequence = 0;
+  std::string kind;  // what its channel was made for
 };
 
 /// For the streams of the sink, from their threads. Errors are posted on the sink.

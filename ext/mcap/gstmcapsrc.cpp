@@ -239,6 +239,11 @@ void EndAll(GstLidarMcapSrc* self, bool with_segment_done) {
   const auto position =
       static_cast<gint64>(GST_CLOCK_TIME_IS_VALID(segment.stop) ? segment.stop : segment.duration);
   if (with_segment_done) {
+    {
+      // A seek without a flush goes on from here.
+      std::lock_guard lock(self->state->mutex);
+      self->state->segment.position = static_cast<guint64>(position);
+    }
     GstMessage* message = gst_message_new_segment_done(GST_OBJECT(self), GST_FORMAT_TIME, position);
     if (run.group.seqnum != GST_SEQNUM_INVALID) gst_message_set_seqnum(message, run.group.seqnum);
     gst_element_post_message(GST_ELEMENT(self), message);
@@ -382,15 +387,20 @@ bool DoSeek(GstLidarMcapSrc* self, GstEvent* event) {
   }
   SetTaskState(&state, GST_TASK_PAUSED);
   g_rec_mutex_lock(&state.task_lock);
-  Restart(self, seek, seqnum);
+  bool open = false;  // it may have been closed meanwhile
+  {
+    std::lock_guard lock(state.mutex);
+    open = state.is_open;
+  }
+  if (open) Restart(self, seek, seqnum);
   if (flush) {
     GstEvent* stop = gst_event_new_flush_stop(TRUE);
     gst_event_set_seqnum(stop, seqnum);
     PushToAll(self, stop);
   }
-  SetTaskState(&state, GST_TASK_STARTED);
+  if (open) SetTaskState(&state, GST_TASK_STARTED);
   g_rec_mutex_unlock(&state.task_lock);
-  return true;
+  return open;
 }
 
 gboolean SrcEvent(GstPad* pad, GstObject* parent, GstEvent* event) {
@@ -454,15 +464,20 @@ gboolean SrcQuery(GstPad* pad, GstObject* parent, GstQuery* query) {
 /// The task is gone and the pads are inactive.
 void Close(GstLidarMcapSrc* self) {
   State& state = *self->state;
-  for (const auto& stream : state.run.streams) {
+  {
+    std::lock_guard lock(state.mutex);
+    state.is_open = false;
+    state.last_seek = GST_SEQNUM_INVALID;
+  }
+  // A seek may still be at work on it.
+  g_rec_mutex_lock(&state.task_lock);
+  const Run run = std::exchange(state.run, Run());
+  g_rec_mutex_unlock(&state.task_lock);
+  for (const auto& stream : run.streams) {
     if (stream->is_added()) gst_element_remove_pad(GST_ELEMENT(self), stream->pad());
     gst_object_unref(stream->pad());
   }
-  state.run = Run();
   state.end_wanted = false;
-  std::lock_guard lock(state.mutex);
-  state.is_open = false;
-  state.last_seek = GST_SEQNUM_INVALID;
 }
 
 GstStateChangeReturn ChangeState(GstElement* element, GstStateChange transition) {

@@ -57,7 +57,10 @@ class CloudReader : public MessageReader {
 
   BufferPtr Read(ByteView message) override {
     const auto cloud = cdr::ReadPointCloud2(message);
-    if (!cloud || !Follow(*cloud)) return nullptr;
+    // What it claims has to be there, before anything is allocated or remembered.
+    if (!cloud || cloud->layout.width == 0 || cloud->layout.height == 0 ||
+        !cdr::RowStride(*cloud) || !Follow(*cloud))
+      return nullptr;
     BufferPtr buffer(gst_buffer_new_allocate(nullptr, converter_->size(), nullptr));
     BufferMap map(buffer.get(), GST_MAP_WRITE);
     if (!map) return nullptr;
@@ -78,7 +81,7 @@ class CloudReader : public MessageReader {
     if (info_) wanted = cdr::PointLayout{info_->fields, info_->point_step};
     converter_ = cdr::PointConverter::Make(cloud.layout, wanted);
     if (!converter_ && wanted) converter_ = cdr::PointConverter::Make(cloud.layout);
-    if (!converter_ || cloud.layout.width == 0 || cloud.layout.height == 0) return false;
+    if (!converter_) return false;
     CloudInfo info = info_.value_or(CloudInfo());
     info.width = cloud.layout.width;
     info.height = cloud.layout.height;

@@ -12,6 +12,8 @@
 namespace lidar::gst {
 namespace {
 
+// The parser of caps recurses with each list; only the names of fields are lists in ours.
+constexpr std::ptrdiff_t kMaxNesting = 1024;
 constexpr std::size_t kMaxCapsText = 1U << 20;  // a sensor model of 512 beams takes 30 kB
 
 constexpr const char* kTime = R"(MSG: builtin_interfaces/Time
@@ -177,7 +179,10 @@ std::string CapsToText(const GstCaps* caps) {
 
 GstCaps* CapsFromText(const std::string& text, MessageType type) {
   const auto is_plain = [](char c) { return c >= ' ' && c <= '~'; };
+  // GStreamer's parser recurses with each of these.
+  const auto nests = [](char c) { return c == '{' || c == '<' || c == '['; };
   if (text.empty() || text.size() > kMaxCapsText ||
+      std::count_if(text.begin(), text.end(), nests) > kMaxNesting ||
       !std::all_of(text.begin(), text.end(), is_plain))
     return nullptr;
   CapsPtr caps(gst_caps_from_string(text.c_str()));

@@ -63,6 +63,9 @@ std::optional<RecorderFault> Recorder::Add(const mcap::MessageHeader& header, By
     if (auto fault = Finish()) return fault;
   }
   if (!writer_) {
+    // The only file that there can be is complete already.
+    if (!names_.is_numbered() && next_number_ > 0)
+      return RecorderFault{names_.Name(0), EEXIST, true};
     BeginFile();
     file_start_ = header.log_time;
   }

@@ -54,7 +54,10 @@ void AddChunk(const Input& input, const Record& record, FileIndex* index) {
 }  // namespace
 
 std::uint64_t FileIndex::start_time() const {
-  return chunks.empty() ? 0 : chunks.front().start_time;
+  // A chunk without messages has no times: both are 0.
+  for (const ChunkPlace& chunk : chunks)
+    if (chunk.end_time > 0) return chunk.start_time;
+  return 0;
 }
 
 std::uint64_t FileIndex::end_time() const {
