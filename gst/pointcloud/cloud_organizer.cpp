@@ -32,6 +32,10 @@ std::optional<CloudOrganizer> CloudOrganizer::Create(const CloudInfo& info, std:
     *why = "it has no rows of beams (height=" + std::to_string(info.height) + ")";
     return std::nullopt;
   }
+  if (info.height > SensorModel::kMaxBeams) {
+    *why = "it has more than " + std::to_string(SensorModel::kMaxBeams) + " rows";
+    return std::nullopt;
+  }
   if (!info.fields.HasPackedXyz()) {
     *why = "x, y and z are not F32 side by side";
     return std::nullopt;

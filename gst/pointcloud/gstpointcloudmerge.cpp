@@ -128,6 +128,10 @@ void ReportSlices(GstLidarPointCloudMerge* self, GstBuffer* buffer) {
 bool AddCloud(GstLidarPointCloudMerge* self, const Head& head, Merged* merged) {
   const BufferPtr buffer(gst_aggregator_pad_pop_buffer(GST_AGGREGATOR_PAD(head.pad)));
   if (!buffer) return true;
+  // What the base class makes of a GAP event.
+  if (gst_buffer_get_size(buffer.get()) == 0 &&
+      GST_BUFFER_FLAG_IS_SET(buffer.get(), GST_BUFFER_FLAG_GAP))
+    return true;
   ReportSlices(self, buffer.get());
   std::string why;
   const BufferPtr cloud = lidar::gst::MergePadRead(head.pad, buffer.get(), merged->fields, &why);
@@ -271,6 +275,8 @@ static void gst_lidar_point_cloud_merge_class_init(GstLidarPointCloudMergeClass*
                               static_cast<GstPluginAPIFlags>(0));
   auto* aggregator = GST_AGGREGATOR_CLASS(klass);
   aggregator->aggregate = Aggregate;
+  // The caps come with the clouds; the base class would send those of the template first.
+  aggregator->negotiate = [](GstAggregator*) -> gboolean { return TRUE; };
   aggregator->sink_event = SinkEvent;
   aggregator->get_next_time = NextTime;
   aggregator->stop = Stop;

@@ -11,6 +11,7 @@
  */
 #include <gst/gst.h>
 
+#include <algorithm>
 #include <mutex>
 #include <optional>
 #include <vector>
@@ -101,8 +102,9 @@ StructurePtr ReadStats(GObject* object) {
 
 bool PushCaps(GstLidarPointCloudOrganize* self, GstCaps* caps) {
   State& state = *self->state;
-  state.caps_sent = true;
-  if (!gst_pad_push_event(self->srcpad, gst_event_new_caps(caps))) return false;
+  // A pad that flushes keeps no caps: they stay due.
+  state.caps_sent = gst_pad_push_event(self->srcpad, gst_event_new_caps(caps));
+  if (!state.caps_sent) return false;
   for (EventPtr& event : state.waiting) gst_pad_push_event(self->srcpad, event.release());
   state.waiting.clear();
   return true;
@@ -112,6 +114,7 @@ bool PushCaps(GstLidarPointCloudOrganize* self, GstCaps* caps) {
 void GiveUp(GstLidarPointCloudOrganize* self, const std::string& why) {
   State& state = *self->state;
   state.organizer.reset();
+  state.caps_sent = false;  // they may be those of the model
   GST_ELEMENT_WARNING(
       self, STREAM, FORMAT,
       ("No beams were found in the clouds, which pass as they are: %s.", why.c_str()),
@@ -127,11 +130,16 @@ bool PushModel(GstLidarPointCloudOrganize* self) {
   const GstStructure* from = gst_caps_get_structure(found.get(), 0);
   for (const char* name : {"fields", "point-step", "is-dense", "sensor-model"})
     gst_structure_set_value(to, name, gst_structure_get_value(from, name));
+  if (!PushCaps(self, caps.get())) return false;
   state.models_sent = state.organizer->models();
-  return PushCaps(self, caps.get());
+  return true;
 }
 
-/// Null where the cloud does not fit; it is then counted.
+GstFlowReturn WithoutCaps(GstLidarPointCloudOrganize* self) {
+  return GST_PAD_IS_FLUSHING(self->srcpad) ? GST_FLOW_FLUSHING : GST_FLOW_NOT_NEGOTIATED;
+}
+
+/// Null where the cloud does not fit.
 BufferPtr Organize(GstLidarPointCloudOrganize* self, GstBuffer* buffer) {
   State& state = *self->state;
   std::unique_lock lock(state.mutex);
@@ -148,10 +156,7 @@ BufferPtr Organize(GstLidarPointCloudOrganize* self, GstBuffer* buffer) {
   lock.lock();
   ++state.counters.clouds;
   state.counters.models = state.organizer->models();
-  if (!result) {
-    ++state.counters.dropped;
-    return nullptr;
-  }
+  if (!result) return nullptr;
   state.counters.outside += result->outside;
   gst_buffer_copy_into(out.get(), buffer, GST_BUFFER_COPY_METADATA, 0, static_cast<gsize>(-1));
   return out;
@@ -167,17 +172,20 @@ GstFlowReturn Chain(GstPad*, GstObject* parent, GstBuffer* raw) {
     GiveUp(self, "they are slices; put scanassembler in front");
   if (state.organizer) {
     BufferPtr out = Organize(self, raw);
-    if (!out && ++state.attempts < kPatience) return GST_FLOW_OK;
+    if (!out && ++state.attempts < kPatience) {
+      const std::lock_guard lock(state.mutex);
+      ++state.counters.dropped;
+      return GST_FLOW_OK;
+    }
     if (out) {
       state.attempts = 0;
-      if (state.models_sent != state.organizer->models() && !PushModel(self))
-        return GST_FLOW_NOT_NEGOTIATED;
+      const bool due = !state.caps_sent || state.models_sent != state.organizer->models();
+      if (due && !PushModel(self)) return WithoutCaps(self);
       return gst_pad_push(self->srcpad, out.release());
     }
     GiveUp(self, "their points do not lie on lines from one origin, in even columns");
-    state.caps_sent = false;  // they were those of the model
   }
-  if (!state.caps_sent && !PushCaps(self, state.caps.get())) return GST_FLOW_NOT_NEGOTIATED;
+  if (!state.caps_sent && !PushCaps(self, state.caps.get())) return WithoutCaps(self);
   return gst_pad_push(self->srcpad, buffer.release());
 }
 
@@ -201,6 +209,14 @@ gboolean SetCaps(GstLidarPointCloudOrganize* self, GstCaps* caps) {
   return TRUE;
 }
 
+/// A flush ends what is timed; tags and the like come only once.
+void DropSegments(std::vector<EventPtr>* waiting) {
+  const auto is_segment = [](const EventPtr& e) {
+    return GST_EVENT_TYPE(e.get()) == GST_EVENT_SEGMENT;
+  };
+  waiting->erase(std::remove_if(waiting->begin(), waiting->end(), is_segment), waiting->end());
+}
+
 /// The caps wait for the first cloud, and what has to be behind them waits, too.
 gboolean SinkEvent(GstPad* pad, GstObject* parent, GstEvent* event) {
   auto* self = GST_LIDAR_POINT_CLOUD_ORGANIZE(parent);
@@ -212,7 +228,7 @@ gboolean SinkEvent(GstPad* pad, GstObject* parent, GstEvent* event) {
     gst_event_parse_caps(event, &caps);
     return SetCaps(self, caps);
   }
-  if (type == GST_EVENT_FLUSH_STOP) state.waiting.clear();
+  if (type == GST_EVENT_FLUSH_STOP) DropSegments(&state.waiting);
   if (type == GST_EVENT_EOS && !state.caps_sent && state.caps) PushCaps(self, state.caps.get());
   const bool behind_caps = GST_EVENT_IS_STICKY(event) && type > GST_EVENT_CAPS;
   if (behind_caps && type != GST_EVENT_EOS && !state.caps_sent) {

@@ -218,7 +218,7 @@ GstFlowReturn PushFile(GstLidarPointCloudParse* self, const BufferPtr& file) {
     return GST_FLOW_ERROR;
   }
   if (!state.info || state.info->height != read->info.height ||
-      state.info->fields != read->info.fields) {
+      state.info->point_step != read->info.point_step || state.info->fields != read->info.fields) {
     state.out_width = 0;  // other caps
     state.caps.reset(read->info.ToCaps());
   }

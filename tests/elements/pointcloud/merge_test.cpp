@@ -75,6 +75,22 @@ TEST_F(Merge, ASensorThatStartsLaterIsJoinedAtItsTurn) {
   EXPECT_EQ(merged.front().pts, 300 * GST_MSECOND);
 }
 
+TEST_F(Merge, StandsBeforeElementsThatNeedTheFields) {
+  const auto outcome = Play("pointcloudmerge name=m ! pointcloudfilter ! fakesink name=see " +
+                            kSensor + " num-buffers=8 ! scanassembler ! queue ! m.sink_0 " +
+                            kSensor + " num-buffers=8 ! scanassembler ! queue ! m.sink_1");
+  EXPECT_EQ(outcome.error, "");
+  EXPECT_EQ(outcome.buffers.at("see").size(), 1U);
+}
+
+TEST_F(Merge, ASensorThatSeesNothingIsNoError) {
+  const auto outcome = Play("pointcloudmerge name=m ! fakesink name=see " + kSensor +
+                            " num-buffers=24 ! scanassembler ! pointcloudfilter invalid=remove "
+                            "crop-box=9000,9000,9000,9001,9001,9001 ! queue ! m.sink_0 " +
+                            kSensor + " num-buffers=24 ! scanassembler ! queue ! m.sink_1");
+  EXPECT_EQ(outcome.error, "");
+}
+
 TEST_F(Merge, SaysWhatIsWrong) {
   const std::string scan = kSensor + " num-buffers=1 slices-per-scan=1 ! ";
   EXPECT_EQ(Play("pointcloudmerge name=m sink_0::transform=1,2 ! fakesink " + scan + "m.").error,

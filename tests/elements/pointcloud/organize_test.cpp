@@ -169,6 +169,14 @@ TEST_F(Organize, DropsBuffersOfAnotherSize) {
   EXPECT_TRUE(Pull());
 }
 
+TEST_F(Organize, TakesNoMoreRowsThanASensorHasBeams) {
+  CloudInfo tall = DriverInfo();
+  tall.width = 2;
+  tall.height = 2000;
+  Start(tall);
+  EXPECT_TRUE(Warned());
+}
+
 TEST_F(Organize, EndsWithoutAnyCloud) {
   Start(DriverInfo());
   EXPECT_TRUE(gst_harness_push_event(h_.get(), gst_event_new_eos()));
