@@ -206,24 +206,29 @@ static gboolean SetCaps(GstBaseSink* base, GstCaps* caps) {
 static void NoteResult(GstLidarRos2Sink* self, Writer::Result result, gsize bytes) {
   State& state = StateOf(self);
   const bool sent = result == Writer::Result::kSent;
+  const bool timeout = result == Writer::Result::kTimeout;
   {
     const std::lock_guard lock(state.mutex);
-    sent ? ++state.counters.messages : ++state.counters.timeouts;
-    if (sent) state.counters.bytes += bytes;
+    Counters& c = state.counters;
+    ++(sent ? c.messages : timeout ? c.timeouts : c.refused);
+    if (sent) c.bytes += bytes;
   }
   if (!sent && !state.warned_timeout)
     GST_ELEMENT_WARNING(
         self, RESOURCE, WRITE,
-        ("A subscriber is too slow for this topic; messages are dropped and counted."),
-        ("DDS %s", result == Writer::Result::kTimeout ? "timed out" : "refused a message"));
+        ("%s; messages are dropped and counted.",
+         timeout ? "A subscriber is too slow for this topic" : "DDS refuses messages"),
+        ("DDS %s", timeout ? "timed out" : "refused a message"));
   state.warned_timeout = !sent;
 }
 
-static void PublishMessage(GstLidarRos2Sink* self, Writer* writer,
-                           const std::vector<lidar::ByteView>& pieces) {
+static Writer::Result PublishMessage(GstLidarRos2Sink* self, Writer* writer,
+                                     const std::vector<lidar::ByteView>& pieces) {
   gsize bytes = 0;
   for (const lidar::ByteView& piece : pieces) bytes += piece.size;
-  NoteResult(self, writer->Publish(pieces), bytes);
+  const Writer::Result result = writer->Publish(pieces);
+  NoteResult(self, result, bytes);
+  return result;
 }
 
 static GstFlowReturn Render(GstBaseSink* base, GstBuffer* buffer) {
@@ -241,9 +246,15 @@ static GstFlowReturn Render(GstBaseSink* base, GstBuffer* buffer) {
     return GST_FLOW_OK;
   }
   const Time now = Time{} + Duration{g_get_real_time() * 1000};
-  const bool published = state.messages->Write(
-      buffer, Snapshot(state).frames, now,
-      [&](const auto& pieces) { PublishMessage(self, writer.get(), pieces); });
+  auto last = Writer::Result::kSent;
+  const auto publish = [&](const auto& pieces) {
+    // One wait a buffer: one for each of many samples would keep the element from stopping.
+    if (last == Writer::Result::kTimeout)
+      NoteResult(self, last, 0);
+    else
+      last = PublishMessage(self, writer.get(), pieces);
+  };
+  const bool published = state.messages->Write(buffer, Snapshot(state).frames, now, publish);
   if (published) return GST_FLOW_OK;
   {
     const std::lock_guard lock(state.mutex);

@@ -182,9 +182,10 @@ static void Count(GstLidarRos2Src* self, guint64 Counters::*counter, guint64 amo
 
 static void NoteOtherType(GstLidarRos2Src* self, const Reader& reader) {
   Count(self, &Counters::other_types);
+  // It comes from the network, and messages on the bus are valid UTF-8.
+  const StringPtr type(g_utf8_make_valid(reader.other_type().c_str(), -1));
   GST_ELEMENT_WARNING(self, STREAM, WRONG_TYPE,
-                      ("A publisher of the topic has the type %s, which is not taken.",
-                       reader.other_type().c_str()),
+                      ("A publisher of the topic has the type %s, which is not taken.", type.get()),
                       (nullptr));
 }
 
@@ -207,6 +208,8 @@ static GstFlowReturn Take(GstLidarRos2Src* self, const lidar::dds::MessagePtr& m
   const lidar::ByteView bytes = lidar::dds::BytesOf(message.get());
   Count(self, &Counters::messages);
   Count(self, &Counters::bytes, bytes.size);
+  // Downstream may have changed while we waited for the message.
+  if (gst_pad_check_reconfigure(GST_BASE_SRC_PAD(self))) state.messages->Renegotiate();
   switch (state.messages->Read(bytes)) {
     case Verdict::kBuffer:
       state.warned_damaged = false;
@@ -291,7 +294,10 @@ static void InstallVmethods(GstLidarRos2SrcClass* klass) {
   src->unlock_stop = UnlockStop;
   src->is_seekable = [](GstBaseSrc*) -> gboolean { return FALSE; };
   // Caps are set with the first message, which says what they are.
-  src->negotiate = [](GstBaseSrc*) -> gboolean { return TRUE; };
+  src->negotiate = [](GstBaseSrc* base) -> gboolean {
+    if (const auto& messages = StateOf(base).messages) messages->Renegotiate();
+    return TRUE;
+  };
   GST_PUSH_SRC_CLASS(klass)->create = Create;
 }
 

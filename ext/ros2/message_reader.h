@@ -28,6 +28,8 @@ class MessageReader {
     kNotNegotiated,  // no caps of this message are what downstream takes: why()
   };
   Verdict Read(ByteView message);
+  /// Downstream may take something else from now on: it is asked at the next cloud.
+  void Renegotiate() { converter_.reset(); }
 
   const std::string& why() const { return why_; }
   BufferPtr TakeBuffer() { return std::move(buffer_); }
