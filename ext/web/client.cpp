@@ -125,6 +125,8 @@ void Client::End() {
 void Client::Tick(gint64 now_us) {
   if (closed_) return;
   const bool stalled = current_ && now_us - progress_us_ > kStalled_us;
+  // Who takes a long frame can neither be asked nor answer before its end.
+  if (current_ && progress_us_ > heard_us_) heard_us_ = progress_us_;
   if (stalled || now_us - heard_us_ > kSilent_us) return Close(CloseCode::kGoingAway);
   if (asked_us_ != 0 || now_us - heard_us_ < kAskAfter_us) return;
   asked_us_ = now_us;

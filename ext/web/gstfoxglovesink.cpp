@@ -139,9 +139,14 @@ std::shared_ptr<Hub> HubOf(GObject* object) {
 }
 
 lidar::gst::StructurePtr ReadStats(GObject* object) {
-  const auto hub = HubOf(object);
-  return lidar::gst::ToStructure("application/x-foxglove-stats", kStats,
-                                 hub ? CountersOf(*hub) : Counters{});
+  State& state = *GST_LIDAR_FOXGLOVE_SINK(object)->state;
+  Counters counters;
+  {
+    // The server's thread asks, too. With a reference of its own it could be the one to end itself.
+    const std::lock_guard lock(state.mutex);
+    if (state.hub) counters = CountersOf(*state.hub);
+  }
+  return lidar::gst::ToStructure("application/x-foxglove-stats", kStats, counters);
 }
 
 /// False, with an element error, where the settings would let strangers in or make no sense.
@@ -263,13 +268,14 @@ GstPad* RequestPad(GstElement* element, GstPadTemplate* templ, const gchar* name
 void ReleasePad(GstElement* element, GstPad* pad) {
   const ElementPtr input(lidar::web::InputOf(pad));
   const StringPtr name(gst_pad_get_name(pad));
-  gst_pad_set_active(pad, FALSE);
-  gst_ghost_pad_set_target(GST_GHOST_PAD(pad), nullptr);
   if (input) {
+    // First, so that it wakes who waits in it and holds the pad's lock.
     gst_element_set_locked_state(input.get(), TRUE);
     gst_element_set_state(input.get(), GST_STATE_NULL);
-    gst_bin_remove(GST_BIN(element), input.get());
   }
+  gst_pad_set_active(pad, FALSE);
+  gst_ghost_pad_set_target(GST_GHOST_PAD(pad), nullptr);
+  if (input) gst_bin_remove(GST_BIN(element), input.get());
   gst_child_proxy_child_removed(GST_CHILD_PROXY(element), G_OBJECT(pad), name.get());
   gst_element_remove_pad(element, pad);
 }
