@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Runs every gst-launch-1.0 command of the README and the docs as it is printed.
+"""Runs every gst-launch-1.0 command of the README and the docs, or of the pages named, as it is printed.
 
 A command passes where it ends with exit code 0, or still runs without an error after a few seconds.
 Windows become fakesinks, and each page has ports and a folder of its own: several run at a time.
@@ -97,7 +97,8 @@ def run_page(page, root, folder, first_port):
 
 def main():
     root = pathlib.Path(sys.argv[1]).resolve()
-    pages = [root / "README.md", *sorted((root / "docs").rglob("*.md"))]
+    named = [root / page for page in sys.argv[2:]]
+    pages = named or [root / "README.md", *sorted((root / "docs").rglob("*.md"))]
     ran, failed = 0, 0
     with tempfile.TemporaryDirectory() as parent:
         folders = [pathlib.Path(parent) / str(number) for number in range(len(pages))]
