@@ -9,10 +9,11 @@ import tempfile
 sys.dont_write_bytecode = True
 import dependencies
 import paths
+import versions
 
 HERE = pathlib.Path(__file__).resolve().parent
 SCRIPTS = {"links": HERE / "links.sh", "widths": HERE / "widths.sh"}
-MODULES = {"dependencies": dependencies, "paths": paths}
+MODULES = {"dependencies": dependencies, "paths": paths, "versions": versions}
 
 SOUND = {
     "docs/architecture.md": """
@@ -41,6 +42,9 @@ See `src/base/units.h`, `units.h`, `gst/*`, `gst<name>.cpp`, `lidar-eval --help`
       - elements/alpha.md
 """,
     "CHANGELOG.md": "# Changelog\n",
+    "meson.build": """
+dependency(name, version: name.startswith('gstreamer') ? '>= 1.20' : '>= 2.70')
+""",
     "README.md": "See [the layout](docs/architecture.md).\n",
     "src/base/units.h": "#include <lzma.h>\n#include <vector>\n",
     "src/cloud/cloud.h": '#include "src/base/units.h"\n#include "src/cloud/cloud.h"\n',
@@ -54,6 +58,14 @@ See `src/base/units.h`, `units.h`, `gst/*`, `gst<name>.cpp`, `lidar-eval --help`
 #include "gst/net/socket.h"
 const char* kPort = "lidar-port";
 const char* kWarning = "No cloud of %s.";
+#if GST_CHECK_VERSION(1, 24, 0)
+#elif GST_CHECK_VERSION(1, 22, 0)
+auto id = gst_debug_message_get_id(nullptr);
+#endif
+#if !GLIB_CHECK_VERSION(2, 72, 0)
+#else
+auto* memory = g_aligned_alloc(1, 8, 8);
+#endif
 """,
     "ext/draco/draco.cpp": '#include <draco/draco.h>\n#include "gst/common/meta.h"\n',
     "tests/core/test.cpp": '#include "ext/draco/draco.h"\n#include "src/tools/eval/main.h"\n',
@@ -169,6 +181,26 @@ PLANTED = [
     ("paths", "docs/troubleshooting.md", '### "No such cloud."', 'nobody says "No such cloud."'),
     ("paths", "docs/more.md", "# More", "docs/more.md is not in the site"),
     ("links", "README.md", "[gone](docs/gone.md)", "no such file: docs/gone.md"),
+    (
+        "versions",
+        "gst/alpha/a.h",
+        "auto id = gst_debug_message_get_id(message);",
+        "gst_debug_message_get_id is of GStreamer 1.22",
+    ),
+    (
+        "versions",
+        "gst/alpha/a.h",
+        "#if GST_CHECK_VERSION(1, 22, 0)\n#else\ngst_debug_message_get_id(message);\n#endif",
+        "gst/alpha/a.h:3: gst_debug_message_get_id is of GStreamer 1.22",
+    ),
+    (
+        "versions",
+        "gst/alpha/a.h",
+        "#if !GST_CHECK_VERSION(1, 22, 0) && defined(X)\n#else\ngst_debug_message_get_id(m);\n#endif",
+        "gst/alpha/a.h:3: gst_debug_message_get_id is of GStreamer 1.22",
+    ),
+    ("versions", "tests/core/a.h", "g_aligned_alloc", "is of GLib 2.72"),
+    ("versions", "meson.build", "", "GStreamer: no lower bound in meson.build"),
     ("widths", "docs/a.md", "word " * 21, "docs/a.md:1: wider"),
     ("widths", "tests/data/a.md", "word " * 21, "tests/data/a.md:1: wider"),
 ]
