@@ -13,7 +13,10 @@ bool FileSession::Open() {
   std::string why;
   const std::string& path = settings().location;
   pcap_ = PcapFeed::Open(path, stream()->metadata(), settings().loop, &why);
-  if (pcap_) return true;
+  if (pcap_) {
+    timeline_.emplace(path, stream()->metadata().packet_interval());
+    return true;
+  }
   GST_ELEMENT_ERROR(element(), RESOURCE, OPEN_READ,
                     ("Cannot read the capture %s: %s", path.c_str(), why.c_str()),
                     ("it must be a pcap or pcapng file, as 'tcpdump -i eth0 -s 0 -w FILE udp' "
@@ -24,12 +27,45 @@ bool FileSession::Open() {
 void FileSession::Unlock() {
   std::lock_guard lock(wait_mutex_);
   flushing_ = true;
+  if (timeline_) timeline_->Cancel();
   if (wait_ != nullptr) gst_clock_id_unschedule(wait_);
 }
 
 void FileSession::UnlockStop() {
   std::lock_guard lock(wait_mutex_);
   flushing_ = false;
+  if (timeline_) timeline_->Allow();
+}
+
+std::optional<GstClockTime> FileSession::duration() {
+  return seekable() && timeline_ ? timeline_->duration() : std::nullopt;
+}
+
+void FileSession::Seek(const GstSegment& segment) {
+  Session::Seek(segment);
+  if (begun_ || segment.start > 0) target_ = ToTime(segment.start);
+}
+
+/// Moves to where the slice of the target begins.
+GstFlowReturn FileSession::GoToTarget() {
+  // By as much, the sensor's clock may run away from that of the capture.
+  constexpr Duration kLead = std::chrono::seconds(1);
+  // The scan before, too: its packets may be out of order.
+  skip_to_ = *target_ - 2 * stream()->metadata().scan_period();
+  const auto place = timeline_->Find(skip_to_->time_since_epoch() - kLead);
+  if (!place && timeline_->cancelled()) return GST_FLOW_FLUSHING;
+  target_.reset();
+  stream()->Reposition();
+  if (place && pcap_->Reposition(place->first, place->offset)) return GST_FLOW_OK;
+  GST_ELEMENT_ERROR(element(), RESOURCE, SEEK,
+                    ("Cannot go to another place in %s", settings().location.c_str()), (nullptr));
+  return GST_FLOW_ERROR;
+}
+
+bool FileSession::IsBeforeTarget(const PcapFeed::Packet& packet) const {
+  if (!skip_to_) return false;
+  const auto sampled = stream()->SampledAt({packet.payload.data(), packet.payload.size()});
+  return sampled.value_or(Time(packet.due)) < *skip_to_;
 }
 
 /// Waits for the pipeline's clock; false when it was woken to stop.
@@ -82,24 +118,35 @@ GstFlowReturn FileSession::EndOfCapture() {
 }
 
 GstFlowReturn FileSession::Poll() {
+  // The first packets set the clock, whatever is played.
+  if (target_ && stream()->knows_time()) {
+    const GstFlowReturn flow = GoToTarget();
+    if (flow != GST_FLOW_OK) return flow;
+  }
   const auto packet = pcap_->Next();
   if (!packet) return EndOfCapture();
-  ouster::Arrival arrival{Time(packet->due), packet->captured, packet->sender};
+  begun_ = true;
+  if (IsBeforeTarget(*packet)) return GST_FLOW_OK;
+  return Take(*packet);
+}
+
+GstFlowReturn FileSession::Take(const PcapFeed::Packet& packet) {
+  ouster::Arrival arrival{Time(packet.due), packet.captured, packet.sender};
   if (settings().is_live) {
     if (!GST_CLOCK_TIME_IS_VALID(pace_start_)) {
       pace_start_ = RunningTime();
       pace_start_utc_ = UtcNow();
     }
-    const auto due = static_cast<GstClockTime>(packet->due.count());
+    const auto due = static_cast<GstClockTime>(packet.due.count());
     if (!WaitUntil(pace_start_ + due)) return GST_FLOW_FLUSHING;
-    arrival.local = ToTime(pace_start_) + packet->due;
-    arrival.utc = pace_start_utc_ + packet->due;
+    arrival.local = ToTime(pace_start_) + packet.due;
+    arrival.utc = pace_start_utc_ + packet.due;
   }
-  if (packet->starts_over) {
+  if (packet.starts_over) {
     WarnIfCutShort();
     stream()->Restart();
   }
-  const ByteView payload{packet->payload.data(), packet->payload.size()};
+  const ByteView payload{packet.payload.data(), packet.payload.size()};
   if (Push(payload, arrival) != ouster::PacketVerdict::kNewInitId) return GST_FLOW_OK;
   if (!restart_reported_)
     GST_ELEMENT_WARNING(element(), STREAM, WRONG_TYPE,

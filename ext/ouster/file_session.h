@@ -3,7 +3,9 @@
 #pragma once
 #include <memory>
 #include <mutex>
+#include <optional>
 
+#include "ext/ouster/capture_timeline.h"
 #include "ext/ouster/pcap_feed.h"
 #include "ext/ouster/session.h"
 
@@ -16,16 +18,26 @@ class FileSession : public Session {
   bool Open() override;
   void Unlock() override;
   void UnlockStop() override;
+  bool seekable() const override { return !settings().is_live && !settings().loop; }
+  void Seek(const GstSegment& segment) override;
+  std::optional<GstClockTime> duration() override;
 
  protected:
   GstFlowReturn Poll() override;
 
  private:
+  GstFlowReturn GoToTarget();
+  bool IsBeforeTarget(const PcapFeed::Packet& packet) const;
+  GstFlowReturn Take(const PcapFeed::Packet& packet);
   bool WaitUntil(GstClockTime running_time);
   GstFlowReturn EndOfCapture();
   void WarnIfCutShort();
 
   std::unique_ptr<PcapFeed> pcap_;
+  std::optional<CaptureTimeline> timeline_;
+  bool begun_ = false;           // a packet was read
+  std::optional<Time> target_;   // of a seek that is to be done
+  std::optional<Time> skip_to_;  // packets before it are left out
   bool restart_reported_ = false;
   bool cut_reported_ = false;
   GstClockTime pace_start_ = GST_CLOCK_TIME_NONE;  // running time of the capture's first packet

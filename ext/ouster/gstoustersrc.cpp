@@ -14,6 +14,7 @@
 
 #include <memory>
 #include <mutex>
+#include <utility>
 
 #include "ext/ouster/imu_pad.h"
 #include "ext/ouster/session.h"
@@ -37,6 +38,7 @@ struct State {
   OusterSettings settings;
   std::shared_ptr<Session> session;  // between start and stop
   Counters last;                     // of the last session
+  guint32 last_seek = GST_SEQNUM_INVALID;
 };
 
 }  // namespace
@@ -77,6 +79,7 @@ static gboolean Stop(GstBaseSrc* base) {
   if (!session) return TRUE;
   std::lock_guard lock(state.mutex);
   state.last = session->counters();
+  state.last_seek = GST_SEQNUM_INVALID;
   state.session.reset();
   return TRUE;
 }
@@ -95,14 +98,91 @@ static gboolean UnlockStop(GstBaseSrc* base) {
   return TRUE;
 }
 
-static gboolean Query(GstBaseSrc* base, GstQuery* query) {
-  if (GST_QUERY_TYPE(query) != GST_QUERY_LATENCY || !gst_base_src_is_live(base))
-    return GST_BASE_SRC_CLASS(gst_lidar_ouster_src_parent_class)->query(base, query);
+/// Of a capture that can be sought; -1 else.
+static gint64 DurationOf(GstBaseSrc* base) {
   const auto session = SessionOf(base);
-  const GstClockTime slice = session ? session->slice_duration() : GST_CLOCK_TIME_NONE;
-  gst_query_set_latency(query, TRUE, GST_CLOCK_TIME_IS_VALID(slice) ? slice : kUsualSlice,
-                        GST_CLOCK_TIME_NONE);
+  const auto duration = session ? session->duration() : std::nullopt;
+  return duration ? static_cast<gint64>(*duration) : -1;
+}
+
+static gboolean IsSeekable(GstBaseSrc* base) {
+  const auto session = SessionOf(base);
+  return session && session->seekable();
+}
+
+static gboolean Query(GstBaseSrc* base, GstQuery* query) {
+  GstFormat format = GST_FORMAT_TIME;
+  if (GST_QUERY_TYPE(query) == GST_QUERY_LATENCY && gst_base_src_is_live(base)) {
+    const auto session = SessionOf(base);
+    const GstClockTime slice = session ? session->slice_duration() : GST_CLOCK_TIME_NONE;
+    gst_query_set_latency(query, TRUE, GST_CLOCK_TIME_IS_VALID(slice) ? slice : kUsualSlice,
+                          GST_CLOCK_TIME_NONE);
+    return TRUE;
+  }
+  if (GST_QUERY_TYPE(query) == GST_QUERY_DURATION) {
+    gst_query_parse_duration(query, &format, nullptr);
+    if (format == GST_FORMAT_TIME) {
+      const gint64 duration = DurationOf(base);
+      if (duration >= 0) gst_query_set_duration(query, format, duration);
+      return duration >= 0;
+    }
+  }
+  if (GST_QUERY_TYPE(query) == GST_QUERY_SEEKING) {
+    gst_query_parse_seeking(query, &format, nullptr, nullptr, nullptr);
+    const bool seekable = format == GST_FORMAT_TIME && IsSeekable(base);
+    gst_query_set_seeking(query, format, seekable, 0, seekable ? DurationOf(base) : -1);
+    return TRUE;
+  }
+  return GST_BASE_SRC_CLASS(gst_lidar_ouster_src_parent_class)->query(base, query);
+}
+
+static gboolean DoSeek(GstBaseSrc* base, GstSegment* segment) {
+  if (const auto session = SessionOf(base)) session->Seek(*segment);
   return TRUE;
+}
+
+/// The base class knows nothing of the pad imu, which is flushed with src.
+static gboolean SeekAll(GstBaseSrc* base, GstEvent* event, Session* session) {
+  gdouble rate = 1;
+  GstFormat format = GST_FORMAT_UNDEFINED;
+  GstSeekFlags flags = GST_SEEK_FLAG_NONE;
+  GstSeekType start = GST_SEEK_TYPE_NONE;
+  GstSeekType stop = GST_SEEK_TYPE_NONE;
+  gst_event_parse_seek(event, &rate, &format, &flags, &start, nullptr, &stop, nullptr);
+  if (rate <= 0 || format != GST_FORMAT_TIME) return FALSE;
+  const guint32 seqnum = gst_event_get_seqnum(event);
+  {
+    State& state = StateOf(base);
+    const std::lock_guard lock(state.mutex);
+    // Each sink sends the same one upstream.
+    if (std::exchange(state.last_seek, seqnum) == seqnum) return TRUE;
+  }
+  if (start == GST_SEEK_TYPE_END || stop == GST_SEEK_TYPE_END) {
+    const gint64 duration = DurationOf(base);
+    GST_OBJECT_LOCK(base);
+    base->segment.duration = static_cast<guint64>(duration);
+    GST_OBJECT_UNLOCK(base);
+  }
+  const bool flush = (flags & GST_SEEK_FLAG_FLUSH) != 0;
+  if (flush) session->imu().StartFlush(seqnum);
+  const gboolean done = GST_BASE_SRC_CLASS(gst_lidar_ouster_src_parent_class)->event(base, event);
+  if (flush) session->imu().StopFlush(seqnum);
+  return done;
+}
+
+static gboolean Event(GstBaseSrc* base, GstEvent* event) {
+  const auto session = SessionOf(base);
+  if (GST_EVENT_TYPE(event) == GST_EVENT_SEEK && session && session->seekable())
+    return SeekAll(base, event, session.get());
+  return GST_BASE_SRC_CLASS(gst_lidar_ouster_src_parent_class)->event(base, event);
+}
+
+/// The base class would perform a seek that an application sends here without calling Event().
+static gboolean SendEvent(GstElement* element, GstEvent* event) {
+  const auto session = SessionOf(element);
+  if (GST_EVENT_TYPE(event) == GST_EVENT_SEEK && session && session->seekable())
+    return gst_pad_send_event(GST_BASE_SRC_PAD(element), event);
+  return GST_ELEMENT_CLASS(gst_lidar_ouster_src_parent_class)->send_event(element, event);
 }
 
 static GstStateChangeReturn ChangeState(GstElement* element, GstStateChange transition) {
@@ -139,11 +219,14 @@ static void InstallVmethods(GstLidarOusterSrcClass* klass) {
   src->unlock = Unlock;
   src->unlock_stop = UnlockStop;
   src->query = Query;
-  src->is_seekable = [](GstBaseSrc*) -> gboolean { return FALSE; };
+  src->event = Event;
+  src->is_seekable = IsSeekable;
+  src->do_seek = DoSeek;
   // Caps are set with the first slice: the sensor says what they are.
   src->negotiate = [](GstBaseSrc*) -> gboolean { return TRUE; };
   GST_PUSH_SRC_CLASS(klass)->create = Create;
   GST_ELEMENT_CLASS(klass)->change_state = ChangeState;
+  GST_ELEMENT_CLASS(klass)->send_event = SendEvent;
 }
 
 static void gst_lidar_ouster_src_class_init(GstLidarOusterSrcClass* klass) {

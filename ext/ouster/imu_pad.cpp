@@ -4,6 +4,8 @@
 #include <gst/base/gstbasesrc.h>
 
 #include <algorithm>
+#include <memory>
+#include <utility>
 
 #include "gst/common/gstlidar.h"
 #include "gst/common/refs.h"
@@ -42,16 +44,33 @@ GstCaps* MakeCaps(const ouster::Metadata& metadata) {
 
 /// The base class ends the clouds for reasons of its own (num-buffers, EOS sent to the element).
 GstPadProbeReturn EndWithClouds(GstPad*, GstPadProbeInfo* info, gpointer imu) {
-  if (GST_EVENT_TYPE(GST_PAD_PROBE_INFO_EVENT(info)) == GST_EVENT_EOS)
-    gst_pad_push_event(GST_PAD(imu), gst_event_new_eos());
+  GstEvent* event = GST_PAD_PROBE_INFO_EVENT(info);
+  if (GST_EVENT_TYPE(event) == GST_EVENT_EOS || GST_EVENT_TYPE(event) == GST_EVENT_SEGMENT_DONE)
+    gst_pad_push_event(GST_PAD(imu), gst_event_ref(event));
   return GST_PAD_PROBE_OK;
 }
 
-/// Packets leave as they come.
+/// Packets leave as they come. Where in the recording they are, the clouds know.
 gboolean Query(GstPad* pad, GstObject* parent, GstQuery* query) {
-  if (GST_QUERY_TYPE(query) != GST_QUERY_LATENCY) return gst_pad_query_default(pad, parent, query);
-  gst_query_set_latency(query, gst_base_src_is_live(GST_BASE_SRC(parent)), 0, GST_CLOCK_TIME_NONE);
-  return TRUE;
+  switch (GST_QUERY_TYPE(query)) {
+    case GST_QUERY_LATENCY:
+      gst_query_set_latency(query, gst_base_src_is_live(GST_BASE_SRC(parent)), 0,
+                            GST_CLOCK_TIME_NONE);
+      return TRUE;
+    case GST_QUERY_DURATION:
+    case GST_QUERY_POSITION:
+    case GST_QUERY_SEEKING:
+    case GST_QUERY_SEGMENT:
+      return gst_pad_query(GST_BASE_SRC_PAD(parent), query);
+    default:
+      return gst_pad_query_default(pad, parent, query);
+  }
+}
+
+/// A seek is of the clouds and the samples.
+gboolean Event(GstPad* pad, GstObject* parent, GstEvent* event) {
+  if (GST_EVENT_TYPE(event) != GST_EVENT_SEEK) return gst_pad_event_default(pad, parent, event);
+  return gst_pad_send_event(GST_BASE_SRC_PAD(parent), event);
 }
 
 /// The stream joins the group that the clouds are in.
@@ -66,6 +85,10 @@ GstEvent* StreamStart(GstPad* imu, GstElement* element, GstPad* clouds) {
 
 }  // namespace
 
+ImuPad::ImuPad(GstElement* element) : element_(element) {
+  gst_segment_init(&segment_, GST_FORMAT_TIME);
+}
+
 ImuPad::~ImuPad() {
   if (pad_ == nullptr) return;
   gst_pad_remove_probe(GST_BASE_SRC_PAD(element_), end_of_clouds_);
@@ -77,10 +100,15 @@ void ImuPad::AddPad() {
   GstPadTemplate* pad_template =
       gst_element_class_get_pad_template(GST_ELEMENT_GET_CLASS(element_), "imu");
   GstPad* clouds = GST_BASE_SRC_PAD(element_);
-  pad_ = gst_pad_new_from_template(pad_template, "imu");
-  gst_pad_use_fixed_caps(pad_);
-  gst_pad_set_query_function(pad_, Query);
-  gst_pad_set_active(pad_, TRUE);
+  GstPad* pad = gst_pad_new_from_template(pad_template, "imu");
+  gst_pad_use_fixed_caps(pad);
+  gst_pad_set_query_function(pad, Query);
+  gst_pad_set_event_function(pad, Event);
+  gst_pad_set_active(pad, TRUE);
+  {
+    const std::lock_guard lock(mutex_);
+    pad_ = pad;
+  }
   gst_pad_push_event(pad_, StreamStart(pad_, element_, clouds));
   end_of_clouds_ = gst_pad_add_probe(clouds, GST_PAD_PROBE_TYPE_EVENT_DOWNSTREAM, EndWithClouds,
                                      gst_object_ref(pad_), gst_object_unref);
@@ -97,16 +125,49 @@ void ImuPad::Prepare(const ouster::Metadata& metadata) {
   const bool first = pad_ == nullptr;
   if (first) AddPad();
   if (first || imu_to_sensor_ != metadata.imu_to_sensor) SetCaps(metadata);
-  if (!first) return;
-  GstSegment segment;
-  gst_segment_init(&segment, GST_FORMAT_TIME);
-  gst_pad_push_event(pad_, gst_event_new_segment(&segment));
-  gst_element_add_pad(element_, pad_);
+  if (std::exchange(segment_pending_, false))
+    gst_pad_push_event(pad_, gst_event_new_segment(&segment_));
+  if (first) gst_element_add_pad(element_, pad_);
+}
+
+void ImuPad::SetSegment(const GstSegment& segment) {
+  segment_ = segment;
+  segment_pending_ = true;
+  last_pts_ = 0;
+}
+
+/// A reference to the pad, or null where there is none yet.
+GstPad* ImuPad::StartOrStopFlush(bool flushing) {
+  const std::lock_guard lock(mutex_);
+  flushing_ = flushing;
+  return pad_ != nullptr ? GST_PAD(gst_object_ref(pad_)) : nullptr;
+}
+
+void ImuPad::StartFlush(guint32 seqnum) {
+  const std::unique_ptr<GstPad, Unref> pad(StartOrStopFlush(true));
+  if (!pad) return;
+  GstEvent* event = gst_event_new_flush_start();
+  gst_event_set_seqnum(event, seqnum);
+  gst_pad_push_event(pad.get(), event);
+}
+
+void ImuPad::StopFlush(guint32 seqnum) {
+  const std::unique_ptr<GstPad, Unref> pad(StartOrStopFlush(false));
+  if (!pad) return;
+  GstEvent* event = gst_event_new_flush_stop(TRUE);
+  gst_event_set_seqnum(event, seqnum);
+  gst_pad_push_event(pad.get(), event);
 }
 
 void ImuPad::Push(ByteView packet, const ouster::SensorStream& stream) {
   const auto samples = ouster::ParseImuPacket(packet, stream.metadata());
   if (!samples || samples->empty()) return;
+  const GstClockTime start = ToClockTime(stream.LocalOf(samples->front().timestamp));
+  if (start < segment_.start) return;
+  {
+    const std::lock_guard lock(mutex_);
+    if (flushing_) return;
+  }
   Prepare(stream.metadata());
   std::vector<std::uint8_t> bytes;
   bytes.reserve(samples->size() * kSampleSize);
@@ -117,7 +178,7 @@ void ImuPad::Push(ByteView packet, const ouster::SensorStream& stream) {
     for (const float v : s.angular_velocity) w.LeF32(v);
   }
   GstBuffer* buffer = gst_buffer_new_memdup(bytes.data(), bytes.size());
-  last_pts_ = std::max(last_pts_, ToClockTime(stream.LocalOf(samples->front().timestamp)));
+  last_pts_ = std::max(last_pts_, start);
   GST_BUFFER_PTS(buffer) = last_pts_;
   gst_lidar_buffer_set_capture_time(buffer, ToClockTime(stream.UtcOf(samples->front().timestamp)));
   const GstFlowReturn flow = gst_pad_push(pad_, buffer);

@@ -4,6 +4,8 @@
 #pragma once
 #include <gst/gst.h>
 
+#include <mutex>
+
 #include "src/ouster/sensor_stream.h"
 
 namespace lidar::gst {
@@ -13,7 +15,7 @@ namespace lidar::gst {
 /// little-endian.
 class ImuPad {
  public:
-  explicit ImuPad(GstElement* element) : element_(element) {}
+  explicit ImuPad(GstElement* element);
   ~ImuPad();
   ImuPad(const ImuPad&) = delete;
   ImuPad& operator=(const ImuPad&) = delete;
@@ -21,13 +23,25 @@ class ImuPad {
   /// Adds the pad with the first packet. An unlinked or flushing pad is no error.
   void Push(ByteView packet, const ouster::SensorStream& stream);
 
+  /// The packets to come are of `segment`. While Push() does not run.
+  void SetSegment(const GstSegment& segment);
+  /// Around a flushing seek of the clouds; any thread may call them.
+  void StartFlush(guint32 seqnum);
+  void StopFlush(guint32 seqnum);
+
  private:
   void Prepare(const ouster::Metadata& metadata);
   void AddPad();
   void SetCaps(const ouster::Metadata& metadata);
 
+  GstPad* StartOrStopFlush(bool flushing);
+
   GstElement* element_;
-  GstPad* pad_ = nullptr;      // owned by the element
+  std::mutex mutex_;  // guards flushing_, and pad_ against other threads
+  bool flushing_ = false;
+  GstPad* pad_ = nullptr;  // owned by the element
+  GstSegment segment_{};
+  bool segment_pending_ = true;
   gulong end_of_clouds_ = 0;   // probe on the pad src, where pad_ is there
   Transform imu_to_sensor_{};  // of the caps
   GstClockTime last_pts_ = 0;

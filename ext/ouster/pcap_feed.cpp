@@ -13,8 +13,7 @@ std::unique_ptr<PcapFeed> PcapFeed::Open(const std::string& path, const ouster::
   std::unique_ptr<PcapFeed> feed(new PcapFeed);
   feed->reader_ = std::move(reader);
   feed->packet_size_ = metadata.format.packet_size();
-  feed->packet_interval_ =
-      metadata.scan_period() * metadata.format.columns_per_packet / metadata.model.columns_per_scan;
+  feed->packet_interval_ = metadata.packet_interval();
   feed->loop_ = loop;
   return feed;
 }
@@ -47,6 +46,14 @@ std::optional<PcapFeed::Packet> PcapFeed::Next() {
   found_ = found_ || packet.payload.size() == packet_size_;
   if (!found_ && sizes_.size() < kMaxSizes) ++sizes_[packet.payload.size()];
   return packet;
+}
+
+bool PcapFeed::Reposition(Time first, std::optional<std::int64_t> offset) {
+  // From the front, too: after an error, the reader reads no more.
+  if (!reader_->Rewind() || (offset && !reader_->GoTo(*offset))) return false;
+  first_ = last_ = first;
+  error_.clear();
+  return true;
 }
 
 std::string PcapFeed::DescribeContents() const {

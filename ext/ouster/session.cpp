@@ -118,6 +118,8 @@ bool Session::SendCaps() {
 GstFlowReturn Session::Next(GstBuffer** out) {
   for (;;) {
     if (auto slice = stream_ ? stream_->Pop() : std::nullopt) {
+      const Time end = slice->local + stream_->slice_duration();
+      if (start_ > 0 && end <= ToTime(start_)) continue;
       if (caps_pending_ && !SendCaps()) return GST_FLOW_NOT_NEGOTIATED;
       if (std::exchange(discont_, false)) slice->slice.after_gap = true;
       GST_LOG_OBJECT(element_,

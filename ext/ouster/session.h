@@ -5,6 +5,7 @@
 
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <string>
 
 #include "ext/ouster/counters.h"
@@ -31,7 +32,19 @@ class Session {
   /// The pipeline plays, for the first time or again after a pause. Any thread may call this.
   virtual void Resume() {}
 
+  /// Whether Seek() works.
+  virtual bool seekable() const { return false; }
+  /// The next slices are those of `segment`. While Next() does not run.
+  virtual void Seek(const GstSegment& segment) {
+    start_ = segment.start;
+    ended_ = false;
+    imu_.SetSegment(segment);
+  }
+  /// Of all there is; none where nobody knows. Any thread may call this; it may read a file.
+  virtual std::optional<GstClockTime> duration() { return std::nullopt; }
+
   /// Any thread may call these.
+  ImuPad& imu() { return imu_; }
   Counters counters() const;
   GstClockTime slice_duration() const;
 
@@ -54,7 +67,6 @@ class Session {
   GstElement* gst_element() const { return GST_ELEMENT(element_); }
   const OusterSettings& settings() const { return settings_; }
   ouster::SensorStream* stream() const { return stream_.get(); }
-  ImuPad& imu() { return imu_; }
   /// 0 before the pipeline runs.
   GstClockTime RunningTime() const;
 
@@ -70,7 +82,8 @@ class Session {
   bool caps_pending_ = false;
   bool discont_ = false;
   bool ended_ = false;
-  Counters base_;  // of the streams before this one
+  GstClockTime start_ = 0;  // slices that end before it are left out
+  Counters base_;           // of the streams before this one
   guint64 posted_losses_ = 0;
   GstClockTime last_loss_post_ = GST_CLOCK_TIME_NONE;
 

@@ -48,6 +48,9 @@ struct Metadata {
   std::uint16_t imu_port = 0;
 
   Duration scan_period() const { return FromSeconds(1 / scans_per_second); }
+  Duration packet_interval() const {
+    return scan_period() * format.columns_per_packet / model.columns_per_scan;
+  }
   ScanShape shape() const { return {model.columns_per_scan, format.beams, scan_period()}; }
   std::size_t imu_packet_size() const;
 

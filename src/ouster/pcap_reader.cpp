@@ -5,12 +5,16 @@
 
 #include <algorithm>
 #include <array>
+#include <cstdio>
 #include <utility>
 
 #include "src/ouster/clock_mapper.h"
 
 namespace lidar::ouster {
 namespace {
+
+// Of classic pcap; libpcap takes pcapng for another version.
+constexpr int kClassicVersion = 2;
 
 /// The number of LINKTYPE_RAW differs from the DLT_ that libpcap gives for it.
 LinkType FromDlt(int dlt) { return dlt == DLT_RAW ? LinkType::kRaw : static_cast<LinkType>(dlt); }
@@ -69,6 +73,18 @@ bool PcapReader::Rewind() {
   handle_ = std::move(handle);
   extractor_ = UdpExtractor();
   return true;
+}
+
+std::optional<std::int64_t> PcapReader::Offset() const {
+  if (pcap_major_version(handle_.get()) != kClassicVersion) return std::nullopt;
+  const off_t offset = ftello(pcap_file(handle_.get()));
+  if (offset < 0) return std::nullopt;
+  return offset;
+}
+
+bool PcapReader::GoTo(std::int64_t offset) {
+  extractor_ = UdpExtractor();
+  return fseeko(pcap_file(handle_.get()), offset, SEEK_SET) == 0;
 }
 
 }  // namespace lidar::ouster

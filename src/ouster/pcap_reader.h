@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // The UDP datagrams of a capture file (pcap or pcapng), through libpcap.
 #pragma once
+#include <cstdint>
 #include <memory>
 #include <optional>
 #include <string>
@@ -27,6 +28,12 @@ class PcapReader {
   const std::string& error() const { return error_; }
   /// Back to the first packet; false where the file is gone.
   bool Rewind();
+
+  /// Where in the file the next frame begins, for GoTo() of any reader of this file; none in
+  /// pcapng, whose frames mean nothing without the blocks before them.
+  std::optional<std::int64_t> Offset() const;
+  /// False where that fails; the place is then not known.
+  bool GoTo(std::int64_t offset);
 
  private:
   struct Close {

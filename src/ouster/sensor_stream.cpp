@@ -55,6 +55,13 @@ void SensorStream::Restart() {
   utc_.Reset();
 }
 
+void SensorStream::Reposition() {
+  Flush();
+  ready_.clear();
+  last_local_.reset();
+  last_arrival_utc_ = {};
+}
+
 Duration SensorStream::slice_duration() const {
   return metadata_.scan_period() / batcher_.slices_per_scan();
 }
@@ -130,6 +137,14 @@ PacketVerdict SensorStream::Push(ByteView payload, const Arrival& arrival) {
 }
 
 Time SensorStream::LocalOf(std::uint64_t sensor_ns) const { return local_.Map(sensor_ns); }
+
+std::optional<Time> SensorStream::SampledAt(ByteView payload) const {
+  const auto packet = LidarPacket::Parse(payload, metadata_.format);
+  if (!packet) return std::nullopt;
+  for (std::uint32_t i = 0; i < packet->columns(); ++i)
+    if (packet->Column(i).valid()) return LocalOf(packet->Column(i).timestamp);
+  return std::nullopt;
+}
 
 Time SensorStream::UtcOf(std::uint64_t sensor_ns) const {
   if (synchronised_) return Time(SinceSensorEpoch(sensor_ns) + *sensor_to_utc_);

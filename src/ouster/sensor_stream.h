@@ -77,6 +77,10 @@ class SensorStream {
   void Flush();
   /// Flush(), and the next packet may be of any time.
   void Restart();
+  /// Throws away what is not complete or not taken: the next packet is from elsewhere in a
+  /// recording. The clocks stay as they are, so that a slice keeps its time whichever way it is
+  /// come to.
+  void Reposition();
   /// Goes on where the stream before a reconfiguration ended.
   void Continue(const SensorStream& before) {
     first_scan_id_ = before.next_scan_id_;
@@ -85,6 +89,8 @@ class SensorStream {
   /// True once there are clocks to map by.
   bool knows_time() const { return batcher_.stats().packets > 0; }
   Time LocalOf(std::uint64_t sensor_ns) const;
+  /// When a lidar packet's first column was sampled, without taking the packet; none for others.
+  std::optional<Time> SampledAt(ByteView payload) const;
   Time UtcOf(std::uint64_t sensor_ns) const;
   const StreamOptions& options() const { return options_; }
 

@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// What time is where in a capture file: its duration, and where to read from after a seek.
+#pragma once
+#include <functional>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "src/ouster/pcap_reader.h"
+
+namespace lidar::ouster {
+
+/// Reads the file once, no further than it was asked about. Times count from the first datagram,
+/// and the latest time so far stands for datagrams that are out of order.
+class CaptureIndex {
+ public:
+  explicit CaptureIndex(std::unique_ptr<PcapReader> reader) : reader_(std::move(reader)) {}
+
+  /// Reads on until a datagram of `time` or later, or to the end. Asks `go_on` now and then; false
+  /// where that is false.
+  bool ReadUntil(Duration time, const std::function<bool()>& go_on);
+
+  /// When the first datagram was captured; none before it was read.
+  std::optional<Time> first() const { return first_; }
+  /// Of what was read: from the first datagram to the last.
+  Duration duration() const { return first_ ? last_ - *first_ : Duration{0}; }
+  /// Where a reader sees every datagram of `time` and later of what was read; none where it has to
+  /// start at the front.
+  std::optional<std::int64_t> OffsetBefore(Duration time) const;
+
+ private:
+  struct Entry {
+    Duration time{};  // of the latest datagram before the place
+    std::int64_t offset = 0;
+  };
+
+  std::unique_ptr<PcapReader> reader_;  // null at the end
+  std::optional<Time> first_;
+  Time last_{};
+  std::vector<Entry> entries_;
+};
+
+}  // namespace lidar::ouster

@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Places and duration of captures that are longer than those in tests/data.
+#include "src/ouster/capture_index.h"
+
+#include <gtest/gtest.h>
+
+#include <cstdio>
+#include <fstream>
+#include <vector>
+
+#include "src/ouster/pcap_writer.h"
+
+namespace lidar::ouster {
+namespace {
+
+using std::chrono::milliseconds;
+using std::chrono::seconds;
+
+constexpr Time kStart{seconds(1'700'000'000)};
+constexpr int kDatagrams = 5000;
+
+bool Always() { return true; }
+
+/// A datagram a millisecond, which holds its number; `swapped` follows the one after it.
+class CaptureIndexTest : public ::testing::Test {
+ protected:
+  void Write(int swapped = kDatagrams) {
+    std::string error;
+    const auto writer = PcapWriter::Open(path_, &error);
+    ASSERT_TRUE(writer) << error;
+    for (int i = 0; i < kDatagrams; ++i) {
+      const int n = i == swapped ? i + 1 : i == swapped + 1 ? i - 1 : i;
+      const auto bytes = static_cast<std::uint8_t>(n);
+      const std::vector<std::uint8_t> payload(40, bytes);
+      ASSERT_TRUE(writer->Write(kStart + milliseconds(n), 7502, {payload.data(), payload.size()}));
+    }
+    ASSERT_TRUE(writer->Close());
+  }
+  ~CaptureIndexTest() override { std::remove(path_.c_str()); }
+
+  std::unique_ptr<PcapReader> OpenFile() const {
+    std::string error;
+    auto reader = PcapReader::Open(path_, &error);
+    EXPECT_TRUE(reader) << error;
+    return reader;
+  }
+
+  const std::string path_ = ::testing::TempDir() + "capture_index.pcap";
+};
+
+TEST_F(CaptureIndexTest, KnowsTheDurationOnceItReadAll) {
+  Write();
+  CaptureIndex index(OpenFile());
+  EXPECT_FALSE(index.first());
+  EXPECT_TRUE(index.ReadUntil(Duration::max(), Always));
+  EXPECT_EQ(index.first(), kStart);
+  EXPECT_EQ(index.duration(), milliseconds(kDatagrams - 1));
+}
+
+TEST_F(CaptureIndexTest, ReadsNoFurtherThanItWasAsked) {
+  Write();
+  CaptureIndex index(OpenFile());
+  EXPECT_TRUE(index.ReadUntil(seconds(2), Always));
+  EXPECT_EQ(index.duration(), seconds(2));
+  EXPECT_TRUE(index.ReadUntil(seconds(1), Always));
+  EXPECT_EQ(index.duration(), seconds(2));
+  EXPECT_FALSE(index.ReadUntil(seconds(4), [] { return false; }));
+}
+
+TEST_F(CaptureIndexTest, AReaderSeesAllThatIsLaterFromItsPlaces) {
+  Write(3000);
+  CaptureIndex index(OpenFile());
+  ASSERT_TRUE(index.ReadUntil(Duration::max(), Always));
+  EXPECT_FALSE(index.OffsetBefore(Duration{0}));
+  for (const int time : {150, 999, 2999, 3001, 3102, 4998, 60'000}) {
+    const auto offset = index.OffsetBefore(milliseconds(time));
+    ASSERT_TRUE(offset) << time;
+    const auto reader = OpenFile();
+    ASSERT_TRUE(reader->GoTo(*offset));
+    const auto next = reader->Next();
+    ASSERT_TRUE(next) << time;
+    EXPECT_LE(next->time, kStart + milliseconds(time));
+    // Not much before it, or the places would be of no use.
+    EXPECT_GE(next->time, kStart + milliseconds(std::min(time, kDatagrams) - 250));
+  }
+}
+
+TEST_F(CaptureIndexTest, EndsWhereTheFileIsDamaged) {
+  Write();
+  {
+    std::ifstream in(path_, std::ios::binary);
+    std::string bytes{std::istreambuf_iterator<char>(in), {}};
+    bytes.resize(bytes.size() / 2);
+    std::ofstream(path_, std::ios::binary | std::ios::trunc) << bytes;
+  }
+  CaptureIndex index(OpenFile());
+  EXPECT_TRUE(index.ReadUntil(Duration::max(), Always));
+  EXPECT_NEAR(static_cast<double>(index.duration().count()), 2.5e9, 1e7);
+}
+
+}  // namespace
+}  // namespace lidar::ouster
