@@ -7,6 +7,8 @@
 #include <cstring>
 #include <limits>
 
+#include "src/cloud/field_number.h"
+
 namespace lidar::gst {
 namespace {
 
@@ -50,41 +52,18 @@ bool IsCoordinate(const PointField& field) {
          (field.name == "x" || field.name == "y" || field.name == "z");
 }
 
-template <class T>
-void AppendNumber(const std::uint8_t* at, std::string* out) {
-  T value;
-  std::memcpy(&value, at, sizeof value);
-  std::array<char, 40> text{};
-  if constexpr (std::is_floating_point_v<T>) {
-    if (std::isnan(value)) {
+/// Appends the shortest text that reads back as the same number, whatever the locale.
+void AppendText(FieldType type, const std::uint8_t* at, std::string* out) {
+  WithTypeOf(type, [&](auto value) {
+    std::memcpy(&value, at, sizeof value);
+    if (std::isnan(static_cast<double>(value))) {
       *out += "nan";
       return;
     }
-  }
-  // The shortest text that reads back as the same number, whatever the locale.
-  const auto end = std::to_chars(text.data(), text.data() + text.size(), value);
-  out->append(text.data(), end.ptr);
-}
-
-void AppendText(FieldType type, const std::uint8_t* at, std::string* out) {
-  switch (type) {
-    case FieldType::kI8:
-      return AppendNumber<std::int8_t>(at, out);
-    case FieldType::kU8:
-      return AppendNumber<std::uint8_t>(at, out);
-    case FieldType::kI16:
-      return AppendNumber<std::int16_t>(at, out);
-    case FieldType::kU16:
-      return AppendNumber<std::uint16_t>(at, out);
-    case FieldType::kI32:
-      return AppendNumber<std::int32_t>(at, out);
-    case FieldType::kU32:
-      return AppendNumber<std::uint32_t>(at, out);
-    case FieldType::kF32:
-      return AppendNumber<float>(at, out);
-    case FieldType::kF64:
-      return AppendNumber<double>(at, out);
-  }
+    std::array<char, 40> text{};
+    const auto end = std::to_chars(text.data(), text.data() + text.size(), value);
+    out->append(text.data(), end.ptr);
+  });
 }
 
 /// Walks over the points; all fields are packed without gaps.

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <algorithm>
-#include <cmath>
-#include <limits>
+#include <cstring>
 
 #include "src/cdr/point_cloud2.h"
+#include "src/cloud/field_number.h"
 
 namespace lidar::cdr {
 namespace {
@@ -81,75 +81,6 @@ PointLayout Packed(const std::vector<PointField>& source) {
     if (!layout.fields.Find(f.name)) layout.fields.Add(f.name, f.type);
   layout.point_step = layout.fields.MinimumStep();
   return layout;
-}
-
-template <class T>
-double Load(const std::uint8_t* bytes) {
-  T value;
-  std::memcpy(&value, bytes, sizeof value);
-  return static_cast<double>(value);
-}
-
-/// A number of either byte order; a double holds each of them exactly.
-double ReadNumber(const std::uint8_t* from, FieldType type, bool big_endian) {
-  const std::size_t size = SizeOf(type);
-  std::uint8_t bytes[8];
-  std::memcpy(bytes, from, size);
-  if (big_endian) std::reverse(bytes, bytes + size);
-  switch (type) {
-    case FieldType::kI8:
-      return Load<std::int8_t>(bytes);
-    case FieldType::kU8:
-      return Load<std::uint8_t>(bytes);
-    case FieldType::kI16:
-      return Load<std::int16_t>(bytes);
-    case FieldType::kU16:
-      return Load<std::uint16_t>(bytes);
-    case FieldType::kI32:
-      return Load<std::int32_t>(bytes);
-    case FieldType::kU32:
-      return Load<std::uint32_t>(bytes);
-    case FieldType::kF32:
-      return Load<float>(bytes);
-    case FieldType::kF64:
-      return Load<double>(bytes);
-  }
-  return 0;
-}
-
-/// The nearest that T can hold; not a number is 0 for an integer.
-template <class T>
-void Store(double value, std::uint8_t* to) {
-  T stored{};
-  if constexpr (std::numeric_limits<T>::is_integer) {
-    const double nearest = std::clamp(std::nearbyint(value), double{std::numeric_limits<T>::min()},
-                                      double{std::numeric_limits<T>::max()});
-    if (!std::isnan(value)) stored = static_cast<T>(nearest);
-  } else {
-    stored = static_cast<T>(value);
-  }
-  std::memcpy(to, &stored, sizeof stored);
-}
-
-void WriteNumber(double value, FieldType type, std::uint8_t* to) {
-  switch (type) {
-    case FieldType::kI8:
-      return Store<std::int8_t>(value, to);
-    case FieldType::kU8:
-      return Store<std::uint8_t>(value, to);
-    case FieldType::kI16:
-      return Store<std::int16_t>(value, to);
-    case FieldType::kU16:
-      return Store<std::uint16_t>(value, to);
-    case FieldType::kI32:
-      return Store<std::int32_t>(value, to);
-    case FieldType::kU32:
-      return Store<std::uint32_t>(value, to);
-    case FieldType::kF32:
-      return Store<float>(value, to);
-    case FieldType::kF64:
-      return Store<double>(value, to);
-  }
 }
 
 }  // namespace

@@ -1,11 +1,9 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include "src/cloud/cloud_file_parts.h"
 
-#include <algorithm>
 #include <charconv>
-#include <cmath>
-#include <cstring>
-#include <limits>
+
+#include "src/cloud/field_number.h"
 
 namespace lidar::cloud_file {
 namespace {
@@ -27,40 +25,6 @@ std::string_view TakeWord(std::string_view* text) {
 
 std::string_view View(ByteView bytes) {
   return {reinterpret_cast<const char*>(bytes.data), bytes.size};
-}
-
-template <class T>
-void Store(double value, std::uint8_t* to) {
-  T stored{};
-  if constexpr (std::numeric_limits<T>::is_integer) {
-    const double low = std::numeric_limits<T>::min();
-    const double high = std::numeric_limits<T>::max();
-    if (!std::isnan(value)) stored = static_cast<T>(std::clamp(std::nearbyint(value), low, high));
-  } else {
-    stored = static_cast<T>(value);
-  }
-  std::memcpy(to, &stored, sizeof stored);
-}
-
-void StoreAs(FieldType type, double value, std::uint8_t* to) {
-  switch (type) {
-    case FieldType::kI8:
-      return Store<std::int8_t>(value, to);
-    case FieldType::kU8:
-      return Store<std::uint8_t>(value, to);
-    case FieldType::kI16:
-      return Store<std::int16_t>(value, to);
-    case FieldType::kU16:
-      return Store<std::uint16_t>(value, to);
-    case FieldType::kI32:
-      return Store<std::int32_t>(value, to);
-    case FieldType::kU32:
-      return Store<std::uint32_t>(value, to);
-    case FieldType::kF32:
-      return Store<float>(value, to);
-    case FieldType::kF64:
-      return Store<double>(value, to);
-  }
 }
 
 }  // namespace
@@ -154,7 +118,7 @@ bool ReadText(ByteView text, const std::vector<FileField>& fields, FileCloud* cl
           *why = "\"" + std::string(word.substr(0, 20)) + "\" is no number";
           return false;
         }
-        if (f.type) StoreAs(*f.type, value, to);
+        if (f.type) WriteNumber(value, *f.type, to);
       }
     }
   }

@@ -10,6 +10,7 @@
 #include <stdexcept>
 
 #include "src/cloud/cloud_files.h"
+#include "src/cloud/field_number.h"
 
 namespace lidar::tools {
 namespace {
@@ -33,37 +34,8 @@ const PointField* Find(const FileCloud& cloud, const char* name) {
   return found == cloud.fields.end() ? nullptr : &*found;
 }
 
-template <class T>
-float Load(const std::uint8_t* at, bool swap) {
-  std::uint8_t bytes[sizeof(T)];
-  std::memcpy(bytes, at, sizeof bytes);
-  if (swap) std::reverse(std::begin(bytes), std::end(bytes));
-  T value;
-  std::memcpy(&value, bytes, sizeof value);
-  return static_cast<float>(value);
-}
-
 float Number(const std::uint8_t* point, const PointField& field, bool swap) {
-  const std::uint8_t* at = point + field.offset;
-  switch (field.type) {
-    case FieldType::kF64:
-      return Load<double>(at, swap);
-    case FieldType::kU8:
-      return static_cast<float>(*at);
-    case FieldType::kU16:
-      return Load<std::uint16_t>(at, swap);
-    case FieldType::kU32:
-      return Load<std::uint32_t>(at, swap);
-    case FieldType::kI8:
-      return Load<std::int8_t>(at, swap);
-    case FieldType::kI16:
-      return Load<std::int16_t>(at, swap);
-    case FieldType::kI32:
-      return Load<std::int32_t>(at, swap);
-    case FieldType::kF32:
-      break;
-  }
-  return Load<float>(at, swap);
+  return static_cast<float>(ReadNumber(point + field.offset, field.type, swap));
 }
 
 Scan ReadBin(const std::string& path, const std::string& bytes) {
