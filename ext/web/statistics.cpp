@@ -1,73 +1,17 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include "ext/web/statistics.h"
 
-#include <algorithm>
 #include <array>
 #include <nlohmann/json.hpp>
 
-#include "gst/common/refs.h"
+#include "gst/common/structure_json.h"
 
 namespace lidar::web {
 namespace {
 
 using gst::ElementPtr;
 using gst::StringPtr;
-using gst::StructurePtr;
 using nlohmann::json;
-
-json ToJson(const GstStructure* structure);
-
-json Items(const GValue* value, guint count, const GValue* (*get)(const GValue*, guint));
-
-json ToJson(const GValue* value) {
-  if (GST_VALUE_HOLDS_STRUCTURE(value)) return ToJson(gst_value_get_structure(value));
-  if (GST_VALUE_HOLDS_ARRAY(value))
-    return Items(value, gst_value_array_get_size(value), gst_value_array_get_value);
-  switch (G_VALUE_TYPE(value)) {
-    case G_TYPE_INT:
-      return g_value_get_int(value);
-    case G_TYPE_UINT:
-      return g_value_get_uint(value);
-    case G_TYPE_INT64:
-      return g_value_get_int64(value);
-    case G_TYPE_UINT64:
-      return g_value_get_uint64(value);
-    case G_TYPE_DOUBLE:
-      return g_value_get_double(value);
-    case G_TYPE_BOOLEAN:
-      return g_value_get_boolean(value) != FALSE;
-    default:
-      break;
-  }
-  if (G_VALUE_HOLDS_STRING(value)) {
-    const gchar* text = g_value_get_string(value);
-    return text != nullptr ? text : "";
-  }
-  const StringPtr text(gst_value_serialize(value));
-  return text ? text.get() : "";
-}
-
-json Items(const GValue* value, guint count, const GValue* (*get)(const GValue*, guint)) {
-  json items = json::array();
-  for (guint i = 0; i < count; ++i) items.push_back(ToJson(get(value, i)));
-  return items;
-}
-
-/// Names have no dashes: the paths of Foxglove's plots take none.
-json ToJson(const GstStructure* structure) {
-  json object = json::object();
-  if (structure == nullptr) return object;
-  gst_structure_foreach(
-      structure,
-      [](GQuark field, const GValue* value, gpointer out) -> gboolean {
-        std::string name = g_quark_to_string(field);
-        std::replace(name.begin(), name.end(), '-', '_');
-        (*static_cast<json*>(out))[name] = ToJson(value);
-        return TRUE;
-      },
-      &object);
-  return object;
-}
 
 ElementPtr TopOf(GstElement* element) {
   ElementPtr top(GST_ELEMENT(gst_object_ref(element)));
@@ -79,16 +23,6 @@ ElementPtr TopOf(GstElement* element) {
     top.reset(GST_ELEMENT(parent));
   }
   return top;
-}
-
-StructurePtr StatsOf(GstElement* element) {
-  GParamSpec* spec = g_object_class_find_property(G_OBJECT_GET_CLASS(element), "stats");
-  if (spec == nullptr || spec->value_type != GST_TYPE_STRUCTURE ||
-      (spec->flags & G_PARAM_READABLE) == 0)
-    return nullptr;
-  GstStructure* stats = nullptr;
-  g_object_get(element, "stats", &stats, nullptr);
-  return StructurePtr(stats);
 }
 
 void Collect(GstElement* element, json* all);
@@ -106,9 +40,9 @@ void CollectChildren(GstBin* bin, json* all) {
 }
 
 void Collect(GstElement* element, json* all) {
-  if (const StructurePtr stats = StatsOf(element)) {
+  json object = gst::StatsAsJson(element, gst::FieldNames::kWithoutDashes);
+  if (!object.is_null()) {
     const StringPtr name(gst_element_get_name(element));
-    json object = ToJson(stats.get());
     if (GstElementFactory* factory = gst_element_get_factory(element))
       object["factory"] = GST_OBJECT_NAME(factory);
     (*all)[name.get()] = std::move(object);

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "gst/common/gstlidar.h"
+#include "gst/common/structure_json.h"
 #include "src/tools/demo/media_process.h"
-#include "src/tools/demo/structure_json.h"
 
 namespace lidar::demo {
 namespace {
@@ -66,7 +66,8 @@ void WatchCodec(MediaProcess* process, const char* element, const char* type) {
 void ReportStats(MediaProcess* process, std::initializer_list<const char*> names) {
   process->Every(kStatsMs, [process, list = std::vector<const char*>(names)] {
     nlohmann::json record{{"type", "stats"}, {"unix_ns", UnixNow()}};
-    for (const char* name : list) record[name] = StatsOf(process->Find(name).get());
+    for (const char* name : list)
+      record[name] = gst::StatsAsJson(process->Find(name).get(), gst::FieldNames::kAsTheyAre);
     process->Write(record);
   });
 }
