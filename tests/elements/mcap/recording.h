@@ -171,8 +171,8 @@ inline Outcome Play(const std::string& description) { return Pipeline(descriptio
 class Recording : public ::testing::Test {
  protected:
   void SetUp() override {
-    char name[] = "/tmp/mcap-test-XXXXXX";
-    folder_ = mkdtemp(name);
+    const gst::StringPtr name(g_dir_make_tmp("mcap-test-XXXXXX", nullptr));
+    folder_ = name.get();
   }
   void TearDown() override { std::filesystem::remove_all(folder_); }
   std::string Path(const std::string& name) const { return folder_ + "/" + name; }
