@@ -7,6 +7,7 @@ std::unique_ptr<SrtpDecoder> SrtpDecoder::Create(GstElement* bin, const SrtpPoli
                                                  SrtpKey key, GstPad* exit) {
   GstElement* element = gst_element_factory_make("srtpdec", nullptr);
   if (element == nullptr) return nullptr;
+  gst_element_set_locked_state(element, TRUE);
   gst_bin_add(GST_BIN(bin), element);
   return std::unique_ptr<SrtpDecoder>(new SrtpDecoder(bin, element, policy, std::move(key), exit));
 }
@@ -22,7 +23,7 @@ SrtpDecoder::SrtpDecoder(GstElement* bin, GstElement* element, const SrtpPolicy&
   sink_.reset(gst_element_get_static_pad(element_, "rtp_sink"));
   rtp_ = NewRelay("rtp_src");
   rtcp_ = NewRelay("rtcp_src");
-  gst_element_sync_state_with_parent(element_);
+  gst_element_set_state(element_, GST_STATE_PLAYING);
 }
 
 SrtpDecoder::~SrtpDecoder() {

@@ -12,8 +12,9 @@
 
 namespace lidar::gst {
 
-/// A child of the bin while it lives. Everything but the making of it belongs to the one streaming
-/// thread that gives it datagrams.
+/// A child of the bin while it lives, and never stopped by it: srtpdec complains of a state change
+/// while it decodes. Everything but the making of it belongs to the one streaming thread that gives
+/// it datagrams.
 class SrtpDecoder {
  public:
   /// Null where the srtp plugin is missing. What it decodes is pushed from `exit`; without one it
@@ -30,8 +31,6 @@ class SrtpDecoder {
   bool Decode(GstBuffer* datagram, GstFlowReturn* flow);
   /// Forgets all of `ssrc` but this guess of its rollover counter.
   void Restart(std::uint32_t ssrc, std::uint32_t rollover);
-  /// Forgets all guesses; the element has forgotten its streams itself when it stopped.
-  void Reset() { rollovers_.clear(); }
   /// Forgets every stream. The only way to get memory back from srtpdec while it runs: in
   /// GStreamer 1.22 what Restart removes stays in its session.
   void Clear();

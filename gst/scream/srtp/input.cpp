@@ -95,8 +95,8 @@ SrtpCounts SrtpInput::counts() const { return {received_, refused_, key_changes_
 void SrtpInput::Reset() {
   streams_.clear();
   for (const Key& key : keys_) {
-    key.decoder->Reset();
-    key.trial->Reset();
+    key.decoder->Clear();
+    key.trial->Clear();
   }
 }
 

@@ -283,6 +283,20 @@ TEST_F(SrtpIn, RefusesARecordingOfTheKeyBefore) {
   EXPECT_TRUE(Passes(after.Protect(3)));
 }
 
+TEST_F(SrtpIn, IsNotStoppedWhileItMayDecode) {
+  // srtpdec complains of a packet that it decodes while it stops; the socket stops by itself.
+  Protector sender(Key(5));
+  const BufferPtr first = sender.Protect(1);
+  EXPECT_TRUE(Passes(first));
+  gst_element_set_state(bin_.get(), GST_STATE_READY);
+  EXPECT_TRUE(Passes(sender.Protect(2)));
+  // A start finds nothing of the stream before.
+  gst_element_set_state(bin_.get(), GST_STATE_PLAYING);
+  EXPECT_FALSE(Passes(first));
+  gst_pad_push_event(socket_, gst_event_new_stream_start("again"));
+  EXPECT_TRUE(Passes(first));
+}
+
 TEST_F(SrtpIn, OfFourKeysTheOldestGoes) {
   for (const std::uint8_t digit : SrtpKey{6, 7, 8}) EXPECT_TRUE(input_->AddKey(Key(digit)));
   Protector oldest(Key(5));
