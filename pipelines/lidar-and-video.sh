@@ -78,7 +78,7 @@ show() {
       printf "\n"; fflush() }'
 }
 
-timeout -s INT "$duration" gst-launch-1.0 -e -m \
+timeout --foreground -s INT "$duration" gst-launch-1.0 -e -m \
   screamsink name=out host=127.0.0.1 port="$port" stats-interval=1000000000 sink_0::priority="$share" \
   lidartestsrc is-live=true model=os1-64 mode=1024x10 ! queue ! lidarenc max-error=0.05 ! \
   rtplidarpay pt=96 ! out.sink_0 \

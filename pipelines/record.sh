@@ -68,7 +68,17 @@ if [ $into_files = yes ]; then
 else
   # The synthetic sensor is to take its time, as others do.
   case $source in lidartestsrc*) words+=(is-live=true) ;; esac
-  timeout --preserve-status --signal=INT "$seconds" gst-launch-1.0 -q -e "${words[@]}" ! queue \
-    ! "${stage[@]}" ! mcapsink location="$output/rec-%05d.mcap" max-file-duration="${piece}000000000"
+  rm -f "$output/rec-00000.mcap"
+  gst-launch-1.0 -q -e "${words[@]}" ! queue ! "${stage[@]}" \
+    ! mcapsink location="$output/rec-%05d.mcap" max-file-duration="${piece}000000000" &
+  recorder=$!
+  trap 'kill -INT $recorder 2>/dev/null || true' INT TERM
+  # The time counts from the first scan on; starting takes a slow machine seconds.
+  until [ -e "$output/rec-00000.mcap" ] || ! kill -0 $recorder 2>/dev/null; do sleep 0.05; done
+  sleep "$seconds" &
+  wait -n || true
+  kill -INT $recorder 2>/dev/null || true
+  kill $! 2>/dev/null || true
+  wait $recorder
 fi
 ls "$output"

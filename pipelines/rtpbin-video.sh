@@ -38,7 +38,7 @@ trap 'kill $(jobs -p) 2>/dev/null || true; wait 2>/dev/null || true; rm -rf "$wo
 # one_end NAME RTP_IN RTCP_IN RTP_OUT RTCP_OUT: one end of the call.
 one_end() {
   local name=$1 rtp_in=$2 rtcp_in=$3 rtp_out=$4 rtcp_out=$5
-  timeout -s INT "$duration" gst-launch-1.0 -m \
+  timeout --foreground -s INT "$duration" gst-launch-1.0 -m \
     rtpbin name=rtp latency=50 \
     videotestsrc is-live=true pattern=zone-plate kx2=30 ky2=20 kt=3 ! video/x-raw,width=640,height=480,framerate=30/1 ! \
     openh264enc complexity=low rate-control=bitrate gop-size=300 ! bitrateadapter min=200000 max=3000000 ! \

@@ -55,7 +55,7 @@ receive() {
 }
 # send CERTIFICATE SECONDS. packet-overhead: 28 bytes of UDP and IP, 10 of SRTP.
 send() {
-  timeout --signal=INT "$2" "$launch" --certificate "$folder/$1.pem" --peer-certificate "$folder/edge.crt" --stats tx \
+  timeout --foreground --signal=INT "$2" "$launch" --certificate "$folder/$1.pem" --peer-certificate "$folder/edge.crt" --stats tx \
     lidartestsrc is-live=true model=os0-32 mode=512x10 ! lidarenc max-error=0.05 ! rtplidarpay ! \
     screamtx name=tx packet-overhead=38 ! \
     enc.rtp_sink_0 dtlssrtpenc name=enc connection-id=robot is-client=true ! ecnudpsink host=127.0.0.1 port="$port" sync=false async=false \
