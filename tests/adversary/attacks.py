@@ -9,6 +9,7 @@ import zlib
 import ends
 import wire
 
+MOST_BITRATE = 20_000_000  # of senders
 MOST_GROWTH_KB = 96 * 1024  # what the queues of docs/security.md hold together
 
 
@@ -458,11 +459,11 @@ def no_amplifier(context):
 class SenderBench:
     """A real sender, an honest receiver, and a stranger."""
 
-    def __init__(self, context, options=""):
-        self.receiver = ends.HonestReceiver()
+    def __init__(self, pipeline=ends.SENDER, receiver=None, **names):
+        self.receiver = receiver or ends.HonestReceiver()
         self.stranger = ends.udp_socket()
-        self.sender = ends.Victim(ends.SENDER.format(port=self.receiver.port, seed=5,
-                                                     options="max-bitrate=20000000 " + options))
+        self.sender = ends.Victim(pipeline.format(port=self.receiver.port, seed=5,
+                                                  options=f"max-bitrate={MOST_BITRATE}", **names))
         until = time.monotonic() + 10
         while self.net()["feedback-accepted"] < 30:
             assert time.monotonic() < until, "no feedback was accepted"
@@ -492,7 +493,7 @@ class SenderBench:
 
 def forged_feedback(context):
     """Reports from another address: all lost, all marked."""
-    bench = SenderBench(context)
+    bench = SenderBench()
     media = wire.parse_rtp(bench.receiver.packets[-1])
     lost = bench.net()["packets-lost"]
     sent, until = 0, time.monotonic() + context.seconds
@@ -512,7 +513,7 @@ def forged_feedback(context):
 
 def hostile_feedback(context):
     """The receiver itself reports nonsense."""
-    bench = SenderBench(context)
+    bench = SenderBench()
     rng = random.Random(context.random.random())
     ssrc = wire.parse_rtp(bench.receiver.packets[-1]).ssrc
     sent, until = 0, time.monotonic() + context.seconds
@@ -537,6 +538,42 @@ def hostile_feedback(context):
     assert net["feedback-ignored"] > 0 and net["rtcp-malformed"] > 0 and net["feedback-foreign-blocks"] > 0, net
     bench.finish(context)
     return f"{sent} reports, {net['feedback-ignored']:.0f} ignored, {net['rtcp-malformed']:.0f} malformed"
+
+
+def hostile_twcc(context):
+    """Transport-wide feedback that lies: the session takes it from anyone, and screamaux stays sound."""
+    receiver = ends.TwccReceiver()
+    bench = SenderBench(ends.TWCC_SENDER, receiver, rtcp_port=receiver.rtcp_to[1])
+    rng = random.Random(context.random.random())
+    sent, until = 0, time.monotonic() + context.seconds
+    while time.monotonic() < until:
+        now, last = time.time(), receiver.newest
+        ticks = int(now / wire.TWCC_TICK) // 256
+        received, lost = 0x2000, 0x0000  # runs of small deltas, and of nothing
+        hostile = [
+            mutate(rng, receiver.report(now)),
+            wire.twcc_packet(last, 9, ticks, sent, [], rng.randbytes(rng.randrange(99))),
+            wire.twcc_packet(last + 20_000, 10, ticks, sent, [received | 10], bytes(10)),  # never sent
+            wire.twcc_packet(last - 9, 10, ticks, sent, [received | 10], bytes(3)),  # deltas are missing
+            wire.twcc_packet(last - 9, 10, ticks - 10**6, sent, [received | 10], bytes(10)),  # came long ago
+            wire.twcc_packet(last - 9, 10, 0xFF_FFFF, sent, [0x4000 | 10], b"\x7f\xff" * 10),  # and long from now
+            wire.twcc_packet(last - 9, 10, ticks, sent, [0x4000 | 10], b"\x80\x00" * 10),  # each before the one before
+            wire.twcc_packet(last - 9, 10, ticks, sent, [0x6000 | 10], bytes(40)),  # a status that there is not
+            wire.twcc_packet(last, 0xFFFF, ticks, sent, [received | 0x1FFF] * 8, bytes(0x1FFF)),
+            wire.twcc_packet(last - 9, 0, ticks, sent, [received | 10], bytes(10)),
+            wire.twcc_packet(last - 9, 10, ticks, sent, [lost | 0] * 300 + [received | 10], bytes(10)),
+            wire.twcc_packet(last - 9, 10, ticks, sent, [received | 10], bytes(10), media_ssrc=sent),
+        ]
+        if rng.random() < 0.02:  # takes the session 30 ms
+            hostile.append(wire.twcc_packet(0, 0xFFFF, ticks, sent, [lost | 0x1FFF] * 8, b""))
+        for report in hostile:
+            bench.stranger.sendto(report, receiver.rtcp_to)
+            sent += 1
+        time.sleep(0.01)
+    net = bench.net()
+    assert net["packets-acked"] <= net["packets-sent"] and net["target-bitrate"] <= MOST_BITRATE, net
+    bench.finish(context)
+    return f"{sent} reports, {net['twcc-mismatched']:.0f} mismatched"
 
 
 def path_with_key(context):
@@ -614,4 +651,4 @@ def flood_with_key(context):
 
 MEDIA = [another_writer, mutated_packets, repaired_slices, hostile_configs, dear_slices, unfinished_slices,
          stranger_first, stream_of_garbage, forged_from_elsewhere, moved_sender, locked_out, replayed_stream,
-         no_amplifier, forged_feedback, hostile_feedback, path_with_key, flood_with_key]
+         no_amplifier, forged_feedback, hostile_feedback, hostile_twcc, path_with_key, flood_with_key]

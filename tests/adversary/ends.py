@@ -19,6 +19,14 @@ RECEIVER = ("screamsrc name=net address=127.0.0.1 port={port} {options} ! rtplid
 SENDER = ("lidartestsrc is-live=true model=os0-32 mode=512x10 seed={seed} ! lidarenc name=dec effort=0 max-error=0.05 ! "
           "rtplidarpay name=pay mtu=1200 ! screamsink name=net host=127.0.0.1 port={port} {options}")
 
+TWCC_URI = "http://www.ietf.org/id/draft-holmer-rmcat-transport-wide-cc-extensions-01"
+TWCC_SENDER = ("lidartestsrc is-live=true model=os0-32 mode=512x10 seed={seed} ! lidarenc name=dec effort=0 max-error=0.05 ! "
+               "rtplidarpay name=pay mtu=1200 ! application/x-rtp,extmap-1=(string)" + TWCC_URI + " ! "
+               "screamaux name=net {options} ! bin.send_rtp_sink_0 rtpbin name=bin rtp-profile=avpf "
+               "bin.send_rtp_src_0 ! udpsink host=127.0.0.1 port={port} sync=false async=false "
+               "bin.send_rtcp_src_0 ! fakesink sync=false async=false "
+               "udpsrc address=127.0.0.1 port={rtcp_port} ! bin.recv_rtcp_sink_0")
+
 
 def udp_socket(port=0):
     s = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
@@ -104,7 +112,7 @@ class HonestReceiver(threading.Thread):
             if select.select([self.socket], [], [], 0.005)[0]:
                 self._take(*self.socket.recvmsg(65536, 64))
             fresh = len(self.packets) - self._reported
-            if fresh >= 16 or (fresh and wire.parse_rtp(self.packets[-1]).marker):
+            if fresh >= 16 or (fresh and self.packets[-1][1] >> 7):
                 self._reported = len(self.packets)
                 if self.answers:
                     self.socket.sendto(self.report(time.time()), self.sender)
@@ -137,6 +145,35 @@ class HonestReceiver(threading.Thread):
         self.running = False
         self.join()
         self.socket.close()
+
+
+class TwccReceiver(HonestReceiver):
+    """Answers with transport-wide feedback, to a port of its own."""
+
+    def __init__(self):
+        self.rtcp_to = (LOOPBACK, free_port())
+        self.numbers = {}  # number: time of arrival
+        self.newest = 0
+        self._count = 0
+        super().__init__()
+
+    def _take(self, packet, ancillary, _flags, sender):
+        if wire.is_rtcp(packet):
+            return
+        number = wire.transport_number(packet, 1)
+        assert number is not None, "a packet without a number"
+        self.sender = self.rtcp_to
+        self.packets.append(packet)
+        self.numbers[number] = time.time()
+        self.newest = number
+        if len(self.numbers) > 64:
+            del self.numbers[next(iter(self.numbers))]
+
+    def report(self, now):
+        self._count += 1
+        first = min(self.numbers, key=lambda n: (n - self.newest + 0x8000) & 0xFFFF)
+        span = ((self.newest - first) & 0xFFFF) + 1
+        return wire.twcc(first, [self.numbers.get((first + i) & 0xFFFF) for i in range(span)], self._count)
 
 
 class HonestSender(threading.Thread):

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""RTP units and RFC 8888 feedback, written from docs/wire-format.md and the RFCs alone."""
+"""RTP units, RFC 8888 and transport-wide feedback, written from docs/wire-format.md, the RFCs and drafts alone."""
 import dataclasses
 import struct
 import zlib
@@ -213,6 +213,50 @@ def parse_ccfb(packet):
         at += 8 + 2 * (count + count % 2)
     assert at == len(packet) - 4, "the blocks do not fill the report"
     return blocks
+
+
+def transport_number(packet, extension_id):
+    """The transport-wide number in an extension of one byte (RFC 8285); None where there is none."""
+    profile, words = struct.unpack_from(">HH", packet, 12) if packet[0] & 0x10 else (0, 0)
+    at, end = 16, 16 + 4 * words
+    while profile == 0xBEDE and at < end:
+        own_id, size = packet[at] >> 4, (packet[at] & 15) + 1
+        if own_id == extension_id:
+            return struct.unpack_from(">H", packet, at + 1)[0]
+        at += 1 + size if packet[at] else 1
+    return None
+
+
+TWCC_TICK = 1 / 4000  # seconds; a reference time is 256 of them
+
+
+def twcc_packet(base, count, reference, number, chunks, deltas, media_ssrc=0):
+    """draft-holmer-rmcat-transport-wide-cc-extensions-01 behind an empty receiver report; any field may lie."""
+    fci = struct.pack(">HHI", base & 0xFFFF, count & 0xFFFF, (reference & 0xFF_FFFF) << 8 | number & 0xFF)
+    fci += b"".join(struct.pack(">H", c) for c in chunks) + deltas
+    padding = -len(fci) % 4
+    fci += bytes(padding - 1) + bytes([padding]) if padding else b""
+    head = struct.pack(">BBHII", 0x80 | bool(padding) << 5 | 15, 205, 2 + len(fci) // 4, 7, media_ssrc)
+    return struct.pack(">BBHI", 0x80, 201, 1, 7) + head + fci
+
+
+def twcc(base, arrivals, number):
+    """What a receiver saw from a number on: arrival in seconds, or None."""
+    first = next(a for a in arrivals if a is not None)
+    reference = int(first / TWCC_TICK) // 256
+    before, deltas, symbols = 256 * reference, b"", []
+    for arrival in arrivals:
+        if arrival is None:
+            symbols.append(0)
+            continue
+        delta, before = int(arrival / TWCC_TICK) - before, int(arrival / TWCC_TICK)
+        symbols.append(1 if 0 <= delta < 256 else 2)
+        deltas += struct.pack(">B" if symbols[-1] == 1 else ">h", max(-32768, min(delta, 32767)))
+    chunks = []
+    for i in range(0, len(symbols), 7):
+        part = symbols[i:i + 7]
+        chunks.append(0xC000 | sum(symbol << 12 - 2 * n for n, symbol in enumerate(part)))
+    return twcc_packet(base, len(symbols), reference, number, chunks, deltas)
 
 
 def bye(ssrc):

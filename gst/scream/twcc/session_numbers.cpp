@@ -41,7 +41,7 @@ std::optional<Reported> Read(const GstStructure* s) {
   return r;
 }
 
-/// The packets of an event, if it is one of a report.
+/// The packets of an event, if it is one of a report; no more of them than prove it too long.
 std::vector<const GstStructure*> PacketsOf(GstEvent* event) {
   std::vector<const GstStructure*> packets;
   const GstStructure* s = gst_event_get_structure(event);
@@ -51,7 +51,7 @@ std::vector<const GstStructure*> PacketsOf(GstEvent* event) {
   if (list == nullptr || !G_VALUE_HOLDS(list, g_type_from_name("GValueArray"))) return packets;
   const auto* array = static_cast<const GValueArray*>(g_value_get_boxed(list));
   for (guint i = 0; array != nullptr && i < array->n_values; ++i)
-    if (GST_VALUE_HOLDS_STRUCTURE(&array->values[i]))
+    if (packets.size() <= scream::kMaxTwccPackets && GST_VALUE_HOLDS_STRUCTURE(&array->values[i]))
       packets.push_back(gst_value_get_structure(&array->values[i]));
   return packets;
 }
