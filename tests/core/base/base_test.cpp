@@ -54,6 +54,20 @@ TEST(ByteReader, ReadsWhatTheWriterWrote) {
   EXPECT_EQ(r.remaining(), 0U);
 }
 
+TEST(ByteReader, HandsOutOnePartAfterTheOther) {
+  const std::vector<std::uint8_t> bytes = {1, 2, 3, 4, 5, 6};
+  ByteReader r(bytes.data(), bytes.size());
+  r.Skip(1);
+  EXPECT_EQ(r.Bytes(2).data[0], 2);
+  EXPECT_EQ(r.position(), 3U);
+  EXPECT_EQ(r.remaining(), 3U);
+  EXPECT_EQ(r.Le24(), 0x060504U);
+  EXPECT_TRUE(r.Rest().empty());
+  EXPECT_TRUE(r.ok());
+  EXPECT_EQ(r.Bytes(1).size, 0U);
+  EXPECT_FALSE(r.ok());
+}
+
 TEST(ByteReader, StaysBrokenAfterAReadPastTheEnd) {
   const std::uint8_t bytes[] = {1, 2, 3};
   ByteReader r(bytes, sizeof bytes);
@@ -78,6 +92,65 @@ TEST(Sequence, UnwrapsNextToTheNewestAndNotToTheLast) {
   EXPECT_EQ(u.Unwrap(40000), 40000);
   EXPECT_EQ(u.Unwrap(10000), 10000);
   EXPECT_EQ(u.Unwrap(100), 65636);
+}
+
+TEST(Sequence, NothingIsNewerThanItself) {
+  EXPECT_FALSE(IsNewer<std::uint16_t>(7, 7));
+  EXPECT_EQ(SequenceDistance<std::uint16_t>(7, 7), 0);
+  EXPECT_EQ(SequenceDistance<std::uint16_t>(0, 65535), 1);
+  EXPECT_EQ(SequenceDistance<std::uint32_t>(0, 1), -1);
+}
+
+TEST(Sequence, PeekingRemembersNothing) {
+  SequenceUnwrapper<std::uint16_t> u;
+  EXPECT_EQ(u.Peek(9), 9);
+  EXPECT_FALSE(u.newest());
+  u.Unwrap(65535);
+  EXPECT_EQ(u.Peek(30000), 95536);
+  EXPECT_EQ(u.newest(), 65535);
+  u.Reset();
+  EXPECT_EQ(u.Unwrap(3), 3);
+}
+
+TEST(Time, IsRoundedToTheNearestNanosecond) {
+  EXPECT_EQ(FromSeconds(1.4e-9).count(), 1);
+  EXPECT_EQ(FromSeconds(1.6e-9).count(), 2);
+  EXPECT_EQ(FromSeconds(-1.6e-9).count(), -2);
+  EXPECT_EQ(FromSeconds(0).count(), 0);
+  EXPECT_EQ(Seconds(1500ms), 1.5);
+  EXPECT_EQ(Milliseconds(1500us), 1.5);
+}
+
+TEST(Units, AreOrderedByTheirAmounts) {
+  const DataSize one = DataSize::Bytes(1);
+  const DataSize two = DataSize::Bytes(2);
+  EXPECT_TRUE(one == DataSize::Bytes(1) && one != two && one < two && two > one);
+  EXPECT_TRUE(one <= one && one >= one && one <= two && two >= one);
+  EXPECT_FALSE(one == two || one != one || one < one || one > one || two <= one || one >= two);
+  const DataRate slow = DataRate::BitsPerSecond(1);
+  const DataRate fast = DataRate::BitsPerSecond(2);
+  EXPECT_TRUE(slow == DataRate::BitsPerSecond(1) && slow != fast && slow < fast && fast > slow);
+  EXPECT_TRUE(slow <= slow && slow >= slow && slow <= fast && fast >= slow);
+  EXPECT_FALSE(slow == fast || slow != slow || slow < slow || slow > slow || fast <= slow ||
+               slow >= fast);
+}
+
+TEST(Units, AreAddedAndTakenAway) {
+  DataSize size = DataSize::Bytes(5);
+  size += DataSize::Bytes(3);
+  EXPECT_EQ(size.bytes(), 8);
+  size -= DataSize::Bytes(2);
+  EXPECT_EQ(size.bytes(), 6);
+  EXPECT_EQ((size + DataSize::Bytes(4)).bytes(), 10);
+  EXPECT_EQ((size - DataSize::Bytes(7)).bytes(), -1);
+  EXPECT_EQ((size * 0.5).bytes(), 3);
+  EXPECT_EQ(size / DataSize::Bytes(4), 1.5);
+  EXPECT_EQ(size.bits(), 48);
+  const DataRate rate = DataRate::BitsPerSecond(6);
+  EXPECT_EQ((rate + rate).bits_per_second(), 12);
+  EXPECT_EQ((rate - rate * 0.5).bits_per_second(), 3);
+  EXPECT_EQ((rate / 3).bits_per_second(), 2);
+  EXPECT_EQ(rate / DataRate::BitsPerSecond(4), 1.5);
 }
 
 TEST(Units, SizeOverTimeIsARate) {
@@ -106,6 +179,24 @@ TEST(RowFile, KeepsItsRowsAndNothingThatIsEmpty) {
   EXPECT_EQ(line, "1234.5");
   std::filesystem::remove(path);
   EXPECT_FALSE(RowFile("/nonexistent/file").ok());
+}
+
+TEST(RowFile, MovesWithItsFile) {
+  const std::string path = ::testing::TempDir() + "row_file_moved.txt";
+  const std::string other = ::testing::TempDir() + "row_file_other.txt";
+  RowFile to(other);
+  {
+    RowFile from(path);
+    from.stream() << "row\n";
+    to = std::move(from);
+  }
+  EXPECT_FALSE(std::filesystem::exists(other));  // it was closed, and was empty
+  EXPECT_TRUE(to.ok());
+  EXPECT_TRUE(to.Flush());
+  EXPECT_EQ(std::filesystem::file_size(path), 4U);
+  const RowFile last(std::move(to));
+  EXPECT_TRUE(last.ok());
+  std::filesystem::remove(path);
 }
 
 TEST(RowFile, SaysWhenTheDiskIsFull) {

@@ -288,6 +288,55 @@ TEST(PointConverter, RefusesLayoutsThatContradictThemselves) {
   EXPECT_EQ(FieldsOf(layout), "there are more than 32 fields");
 }
 
+TEST(PointConverter, BoundsTheCloudsOfBothSides) {
+  constexpr std::uint32_t kQuarter = 1U << 28;  // of a GiB
+  RosLayout layout = {1, kQuarter, {{"x", 0, kRosU8, 1}}, false, 4, 0};
+  EXPECT_TRUE(PointConverter::Make(layout));
+  layout.width += 1;
+  EXPECT_FALSE(PointConverter::Make(layout));
+  layout = {1, kQuarter, {{"x", 0, kRosU8, 1}}, false, 1, 0};
+  EXPECT_TRUE(PointConverter::Make(layout, PointLayout{*PointFields::Parse("x:F32:0"), 4}));
+  EXPECT_FALSE(PointConverter::Make(layout, PointLayout{*PointFields::Parse("x:F32:0"), 5}));
+}
+
+TEST(PointConverter, TakesAsManyFieldsAsAMessageMayHave) {
+  for (const std::size_t count : {1024U, 1025U}) {
+    PointCloud2 cloud;
+    cloud.layout = {1, 1, {}, false, 1, 1};
+    cloud.layout.fields.resize(count, {"x", 0, kRosU8, 1});
+    const Bytes point(1);
+    cloud.data = View(point);
+    const Bytes message = WritePointCloud2(cloud);
+    const auto read = ReadPointCloud2(View(message));
+    EXPECT_EQ(read ? read->layout.fields.size() : 0U, count == 1024 ? 1024U : 0U);
+  }
+}
+
+TEST(PointConverter, NamesOfSeveralArraysStayApart) {
+  const auto fields = [](const char* text) {
+    std::string names;
+    for (const RosField& f : ToRosLayout({*PointFields::Parse(text), 20}, 3, 2).fields)
+      names += f.name + "*" + std::to_string(f.count) + " ";
+    return names;
+  };
+  EXPECT_EQ(fields("n[0]:F32:0,n[1]:F32:4,n[2]:F32:8"), "n*3 ");
+  EXPECT_EQ(fields("n[0]:F32:0,m[1]:F32:4"), "n[0]*1 m[1]*1 ");
+  EXPECT_EQ(fields("n[0]:F32:0,n[1]:U32:4"), "n[0]*1 n[1]*1 ");
+  EXPECT_EQ(fields("n[0]:F32:0,n[1]:F32:8"), "n[0]*1 n[1]*1 ");
+  EXPECT_EQ(fields("n[1]:F32:0,n[2]:F32:4"), "n[1]*1 n[2]*1 ");
+  EXPECT_EQ(fields("nm:F32:0,nm[1]:F32:4"), "nm*1 nm[1]*1 ");
+  EXPECT_EQ(fields("n[0]x:F32:0,n[1]:F32:4"), "n[0]x*1 n[1]*1 ");
+}
+
+TEST(PointConverter, RowsOfTheLayoutAreThoseOfTheCloud) {
+  const RosLayout layout = ToRosLayout({*PointFields::Parse("x:F32:0"), 8}, 3, 2);
+  EXPECT_EQ(layout.height, 2U);
+  EXPECT_EQ(layout.width, 3U);
+  EXPECT_EQ(layout.point_step, 8U);
+  EXPECT_EQ(layout.row_step, 24U);
+  EXPECT_EQ(layout.fields[0].datatype, kRosF32);
+}
+
 TEST(PointConverter, PacksPointsThatAreTooLong) {
   const RosLayout layout = {
       1,

@@ -82,6 +82,9 @@ TEST(Pcd, CompressedIsRead) {
   lzf.back() = 0;
   EXPECT_TRUE(Pcd(PcdHeader("binary_compressed") + Text(sizes) + lzf));
   EXPECT_FALSE(Pcd(PcdHeader("binary_compressed", 3) + Text(sizes) + lzf));
+  sizes[4] = 31;  // less than the header says; what is there would do
+  EXPECT_FALSE(Pcd(PcdHeader("binary_compressed") + Text(sizes) + lzf));
+  sizes[4] = 32;
   EXPECT_FALSE(Pcd(PcdHeader("binary_compressed") + Text(sizes) + lzf.substr(0, 20)));
 }
 
@@ -92,6 +95,27 @@ TEST(Pcd, RowsStayRowsAndNanStaysNan) {
   float x = 0;
   std::memcpy(&x, cloud->points.data(), 4);
   EXPECT_TRUE(std::isnan(x));
+}
+
+TEST(Pcd, SizesThatAreMissingFollowFromTheOthers) {
+  const std::string head = "FIELDS x\nSIZE 4\nTYPE F\n";
+  const auto size = [&](const std::string& lines, const std::string& points) {
+    const auto cloud = Pcd(head + lines + "DATA ascii\n" + points);
+    return cloud ? std::pair(cloud->width, cloud->height) : std::pair(99U, 99U);
+  };
+  EXPECT_EQ(size("POINTS 3\n", "1 2 3"), std::pair(3U, 1U));
+  EXPECT_EQ(size("WIDTH 2\n", "1 2"), std::pair(2U, 1U));
+  EXPECT_EQ(size("WIDTH 2\nHEIGHT 2\n", "1 2 3 4"), std::pair(2U, 2U));
+  EXPECT_EQ(size("", ""), std::pair(0U, 1U));
+  EXPECT_EQ(size("WIDTH 2\nHEIGHT 0\n", ""), std::pair(99U, 99U));
+}
+
+TEST(Pcd, TextMayEndRightBehindItsLastNumber) {
+  const std::string head = "FIELDS x y\nSIZE 4 4\nTYPE F F\nPOINTS 1\nDATA ascii\n";
+  EXPECT_TRUE(Pcd(head + "1 2"));
+  EXPECT_TRUE(Pcd(head + "+1 +2\n"));
+  EXPECT_FALSE(Pcd(head + "1 "));
+  EXPECT_FALSE(Pcd(head + "10 "));
 }
 
 TEST(Pcd, SaysWhyItCannotBeRead) {

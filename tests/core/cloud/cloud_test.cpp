@@ -57,6 +57,74 @@ TEST(SensorModel, RoundTripsThroughItsBytes) {
   EXPECT_NEAR(back->beams[0].altitude_deg, 21.5, 1e-6);
 }
 
+TEST(PointFields, ArePackedWhereNothingLiesBetweenThem) {
+  const auto packed = [](const char* text) { return PointFields::Parse(text)->ArePacked(); };
+  EXPECT_TRUE(packed("x:F32:0,y:F32:4,z:F32:8"));
+  EXPECT_TRUE(packed("z:F32:8,r:U8:12,x:F32:0,y:F32:4,t:U16:13"));
+  EXPECT_FALSE(packed("x:F32:0,y:F32:4,z:F32:12"));
+  EXPECT_FALSE(packed("x:F32:4"));
+  EXPECT_EQ(PointFields::Parse("z:F32:8,t:F64:16,r:U8:12")->MinimumStep(), 24U);
+}
+
+TEST(PointFields, CoordinatesArePackedInTheirOrderOnly) {
+  const auto packed = [](const char* text) { return PointFields::Parse(text)->HasPackedXyz(); };
+  EXPECT_TRUE(packed("i:U32:0,x:F32:4,y:F32:8,z:F32:12"));
+  EXPECT_FALSE(packed("x:F32:0,y:F32:4,z:F32:12"));
+  EXPECT_FALSE(packed("x:F32:0,y:F32:8,z:F32:12"));
+  EXPECT_FALSE(packed("x:F32:4,y:F32:0,z:F32:8"));
+  EXPECT_FALSE(packed("x:F32:0,y:F32:4,z:U32:8"));
+  EXPECT_FALSE(packed("x:F32:0,y:F32:4"));
+}
+
+/// Byte by byte as docs/wire-format.md has it.
+TEST(SensorModel, StandsOnTheWireAsDocumented) {
+  SensorModel m;
+  m.columns_per_scan = 0x0102;
+  m.range_unit_mm = 3;
+  m.beam_to_lidar_x_m = 1;
+  m.beam_to_lidar_z_m = 2;
+  m.beams = {{-1, 0.5, -2}};
+  const auto bytes = m.Serialise();
+  ASSERT_EQ(bytes.size(), 8U + 8 + 48 + 10);
+  const std::vector<std::uint8_t> head = {1, 0, 1, 0, 2, 1, 3, 0, 0, 0, 0x80, 0x3F, 0, 0, 0, 0x40};
+  EXPECT_EQ(std::vector<std::uint8_t>(bytes.begin(), bytes.begin() + 16), head);
+  const std::vector<std::uint8_t> beam = {0, 0, 0x80, 0xBF, 0, 0, 0, 0x3F, 0xFE, 0xFF};
+  EXPECT_EQ(std::vector<std::uint8_t>(bytes.end() - 10, bytes.end()), beam);
+}
+
+TEST(SensorModel, TakesWhatLiesOnALimit) {
+  const auto parses = [](const SensorModel& m) {
+    const auto bytes = m.Serialise();
+    return SensorModel::Parse({bytes.data(), bytes.size()}).has_value();
+  };
+  for (const double sign : {-1., 1.}) {
+    for (const bool past : {false, true}) {
+      SensorModel m = SmallSensor();
+      m.beams[2].azimuth_deg = sign * (past ? 720.5 : 720);
+      EXPECT_EQ(parses(m), !past);
+      m = SmallSensor();
+      m.beams[2].altitude_deg = sign * (past ? 720.5 : 720);
+      EXPECT_EQ(parses(m), !past);
+      m = SmallSensor();
+      m.beam_to_lidar_z_m = sign * (past ? 100.5 : 100);
+      EXPECT_EQ(parses(m), !past);
+      m = SmallSensor();
+      m.lidar_to_sensor[11] = sign * (past ? 10'001 : 10'000);
+      EXPECT_EQ(parses(m), !past);
+    }
+  }
+  SensorModel m = SmallSensor();
+  m.columns_per_scan = SensorModel::kMaxColumns;
+  EXPECT_TRUE(parses(m));
+  m.columns_per_scan = SensorModel::kMaxColumns + 1;
+  EXPECT_FALSE(parses(m));
+  m = SmallSensor();
+  m.beams.resize(SensorModel::kMaxBeams, m.beams[0]);
+  EXPECT_TRUE(parses(m));
+  m.beams.push_back(m.beams[0]);
+  EXPECT_FALSE(parses(m));
+}
+
 TEST(SensorModel, RefusesEveryTruncationAndForeignVersions) {
   auto bytes = SmallSensor().Serialise();
   for (std::size_t n = 0; n < bytes.size(); ++n)

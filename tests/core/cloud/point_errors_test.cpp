@@ -79,6 +79,16 @@ TEST(PointErrors, SayWhatFloatsAddFarAway) {
   EXPECT_NEAR(Measure(far, far, PointOrder::kKept).rounding_m, 4 * 1.2e-7 * 10'000, 1e-4);
 }
 
+TEST(PointErrors, RangesHaveRoundingToo) {
+  const auto fields = *PointFields::Parse("range:U32:0");
+  const std::uint32_t range = 200'000;
+  const std::vector<DecodedPoint> decoded = {{{1, 0, 0}, 200'000}};
+  const auto errors = MeasureErrors({reinterpret_cast<const std::uint8_t*>(&range), sizeof range},
+                                    fields, 4, decoded, PointOrder::kPixels);
+  ASSERT_TRUE(errors);
+  EXPECT_NEAR(errors->rounding_m, 4 * 1.1920929e-7 * 200, 1e-9);
+}
+
 TEST(PointErrors, TakeRangesWhereThereAreNoPositions) {
   const auto fields = *PointFields::Parse("range:U32:0");
   const std::uint32_t ranges[] = {1'000, 0, 2'000, 3'000};

@@ -93,6 +93,86 @@ TEST(PointFilter, KeepsOnePointOfEachVoxel) {
   EXPECT_EQ(Filter(settings).Ids(), (Ids{0, 1, 3, 11}));
 }
 
+TEST(PointFilter, KeepsWhatLiesOnALimit) {
+  PointFilterSettings settings;
+  settings.invalid = InvalidPoints::kRemove;
+  settings.min_range_m = 2;
+  settings.max_range_m = 4;
+  auto cloud = Cloud();
+  cloud.resize(6);
+  cloud.resize(12, {0, 0, 0, 99});
+  EXPECT_EQ(Filter(settings, cloud).Ids(), (Ids{1, 2, 3}));
+  settings.max_range_m = 0;  // no limit
+  EXPECT_EQ(Filter(settings, cloud).Ids(), (Ids{1, 2, 3, 4}));
+  settings.min_range_m = 0;
+  settings.crop_box = {{2, 0, 0, 3, 0, 0}};
+  EXPECT_EQ(Filter(settings, cloud).Ids(), (Ids{1, 2}));
+  settings.crop_inside = true;
+  EXPECT_EQ(Filter(settings, cloud).Ids(), (Ids{0, 3, 4}));
+}
+
+TEST(PointFilter, MeasuresTheRangeFromTheSensorNotFromWhereItMovesPointsTo) {
+  PointFilterSettings settings;
+  settings.invalid = InvalidPoints::kRemove;
+  settings.max_range_m = 2.5;
+  settings.transform = ParseTransform("0,0,100, 0,0,0");
+  EXPECT_EQ(Filter(settings).Ids(), (Ids{0, 1, 6, 7}));
+}
+
+TEST(PointFilter, RangeIsOfAllThreeCoordinates) {
+  PointFilterSettings settings;
+  settings.invalid = InvalidPoints::kRemove;
+  settings.max_range_m = 6.9;
+  auto cloud = std::vector<Point>(12, {0, 0, 0, 99});
+  cloud[0] = {2, 3, 6, 0};  // 7 m away
+  cloud[1] = {2, 3, 5, 1};
+  EXPECT_EQ(Filter(settings, cloud).Ids(), (Ids{1}));
+  settings.min_range_m = 6.3;
+  EXPECT_EQ(Filter(settings, cloud).Ids(), (Ids{}));
+}
+
+TEST(PointFilter, VoxelsOnBothSidesOfZeroAreTwo) {
+  PointFilterSettings settings;
+  settings.invalid = InvalidPoints::kRemove;
+  settings.voxel_size_m = 1;
+  auto cloud = std::vector<Point>(12, {0, 0, 0, 99});
+  cloud[0] = {0.4F, 0, 0, 0};
+  cloud[1] = {-0.4F, 0, 0, 1};
+  cloud[2] = {0.4F, -0.4F, 0, 2};
+  cloud[3] = {0.4F, 0, -0.4F, 3};
+  cloud[4] = {0.6F, 0.1F, 0.1F, 4};  // as 0
+  cloud[5] = {-0.6F, 0, 0, 5};       // as 1
+  EXPECT_EQ(Filter(settings, cloud).Ids(), (Ids{0, 1, 2, 3}));
+}
+
+TEST(PointFilter, EachCloudHasItsOwnVoxelsAndAllCountInWhatIsRemoved) {
+  PointFilterSettings settings;
+  settings.invalid = InvalidPoints::kRemove;
+  settings.voxel_size_m = 100;
+  auto filter = PointFilter::Make(settings, Fields(), sizeof(Point));
+  const auto cloud = Cloud();
+  const CloudRows rows{reinterpret_cast<const std::uint8_t*>(cloud.data()), 6, 2, 0};
+  for (std::uint64_t n = 1; n <= 2; ++n) {
+    EXPECT_EQ(filter->Apply(rows).width, 1U);
+    EXPECT_EQ(filter->removed(), 10 * n);  // of eleven returns
+  }
+}
+
+TEST(PointFilter, LeavesNoColumnOfASliceBetweenTwoSteps) {
+  PointFilterSettings settings;
+  settings.column_step = 8;
+  const auto out = Filter(settings, Cloud(), 1);  // columns 1 to 6; the next is 8
+  EXPECT_EQ(out.width, 0U);
+  EXPECT_EQ(out.height, 2U);
+  settings.column_step = 7;
+  const auto last = Filter(settings, Cloud(), 2);  // the last of 2 to 7
+  EXPECT_EQ(last.Ids(), (Ids{5, 11}));
+  EXPECT_EQ(last.first_column, 1U);
+  settings.column_step = 1;
+  settings.beam_step = 3;
+  EXPECT_EQ(Filter(settings).height, 1U);
+}
+
 TEST(PointFilter, MovesPointsBeforeItCrops) {
   PointFilterSettings settings;
   settings.invalid = InvalidPoints::kRemove;
@@ -135,8 +215,16 @@ TEST(PointFilter, NeedsCoordinatesForWhatIsAboutThem) {
 
 TEST(PointFilter, TransformsAreReadStrictly) {
   EXPECT_TRUE(ParseTransform("1 0 0 0 0 1 0 0 0 0 1 0 0 0 0 1"));
-  for (const char* bad :
-       {"1 2 3", "1,2,3,4,5,x", "1,2,3,4,5,6m", "nan,0,0,0,0,0", "1e999,0,0,0,0,0"})
+  // Metres, then degrees about x, y and z; the one about z comes last.
+  const auto turned = ParseTransform("1,2,3, 90,0,90");
+  ASSERT_TRUE(turned);
+  const Transform expected = {0, 0, 1, 1, 1, 0, 0, 2, 0, 1, 0, 3, 0, 0, 0, 1};
+  for (std::size_t i = 0; i < expected.size(); ++i) EXPECT_NEAR((*turned)[i], expected[i], 1e-9);
+  const auto pitched = ParseTransform("0,0,0, 0,90,0");
+  EXPECT_NEAR((*pitched)[2], 1, 1e-9);
+  EXPECT_NEAR((*pitched)[8], -1, 1e-9);
+  for (const char* bad : {"1 2 3", "1 2 3 4 5", "1 2 3 4 5 6 7", "1,2,3,4,5,x", "1,2,3,4,5,6m",
+                          "nan,0,0,0,0,0", "1e999,0,0,0,0,0"})
     EXPECT_FALSE(ParseTransform(bad)) << bad;
 }
 

@@ -37,6 +37,11 @@ ProtoMessage Parse(const std::vector<std::uint8_t>& bytes) {
   return message;
 }
 
+void ExpectTime(const ProtoMessage& message) {
+  EXPECT_EQ(message.Message(1).Number(1), 1'700'000'000U);
+  EXPECT_EQ(message.Message(1).Number(2), 123'456'789U);
+}
+
 float XOf(const ProtoMessage& cloud, std::size_t point) {
   float x = 0;
   std::memcpy(&x, cloud.Text(6).data() + point * cloud.Number(4), sizeof x);
@@ -48,8 +53,7 @@ TEST(PointCloud, HasTimeFrameFieldsAndPoints) {
   const auto encoded = EncodePointCloud({kTime_ns, "lidar"}, View(points, 2), 0);
   const ProtoMessage cloud = Parse(encoded.message);
   EXPECT_EQ(encoded.points, 2U);
-  EXPECT_EQ(cloud.Message(1).Number(1), 1'700'000'000U);
-  EXPECT_EQ(cloud.Message(1).Number(2), 123'456'789U);
+  ExpectTime(cloud);
   EXPECT_EQ(cloud.Text(2), "lidar");
   EXPECT_EQ(cloud.Message(3).Message(2).Double(4), 1.0);  // w of no rotation
   EXPECT_EQ(cloud.Number(4), sizeof(Point));
@@ -71,6 +75,43 @@ TEST(PointCloud, LeavesOutWhatIsNoReturn) {
   ASSERT_EQ(encoded.points, 2U);
   EXPECT_EQ(XOf(cloud, 0), 1.0F);
   EXPECT_EQ(XOf(cloud, 1), 2.0F);
+}
+
+TEST(PointCloud, KeepsWhatLiesOnAnAxis) {
+  const float infinity = std::numeric_limits<float>::infinity();
+  const std::vector<Point> points = {
+      {0, 0, -1, 0}, {0, -1, 0, 0}, {-1, 0, 0, 0}, {1, 0, infinity, 0}, {infinity, 0, 1, 0}};
+  EXPECT_EQ(EncodePointCloud({}, View(points, 5), 0).points, 3U);
+}
+
+TEST(PointCloud, NamesTheTypeOfEachField) {
+  const std::vector<std::uint8_t> point(40, 1);
+  const auto fields = PointFields::Parse(
+      "x:F32:0,y:F32:4,z:F32:8,a:U8:12,b:I8:13,c:U16:14,d:I16:16,e:U32:20,f:I32:24,g:F64:32");
+  ASSERT_TRUE(fields);
+  const auto encoded = EncodePointCloud({}, {*fields, 40, 1, 1, {point.data(), point.size()}}, 0);
+  const ProtoMessage cloud = Parse(encoded.message);
+  // PackedElementField.NumericType: UINT8 is 1, INT8 is 2, ..., FLOAT32 is 7, FLOAT64 is 8.
+  const std::vector<std::uint64_t> expected = {7, 7, 7, 1, 2, 3, 4, 5, 6, 8};
+  ASSERT_EQ(cloud.Count(5), expected.size());
+  for (std::size_t i = 0; i < expected.size(); ++i)
+    EXPECT_EQ(cloud.Message(5, i).Number(3), expected[i]) << cloud.Message(5, i).Text(1);
+}
+
+TEST(PointCloud, TellsTheBeamPast255) {
+  std::vector<Point> points(300, {1, 0, 0, 0});
+  const auto encoded = EncodePointCloud({}, View(points, 1), 0);
+  const std::string data = Parse(encoded.message).Text(6);
+  const std::size_t last = 299 * (sizeof(Point) + 2) + sizeof(Point);
+  ASSERT_EQ(data.size(), last + 2);
+  EXPECT_EQ(data[last], 299 - 256);
+  EXPECT_EQ(data[last + 1], 1);
+}
+
+TEST(PointCloud, OfAsManyPointsAsAreAllowedIsNotThinned) {
+  const std::vector<Point> points(30, {1, 0, 0, 0});
+  EXPECT_EQ(EncodePointCloud({}, View(points, 30), 30).points, 30U);
+  EXPECT_EQ(EncodePointCloud({}, View(points, 30), 29).points, 15U);
 }
 
 TEST(PointCloud, OfAnOrganisedCloudTellsTheBeam) {
@@ -106,6 +147,9 @@ TEST(DracoCloud, CarriesTheFileAsItIs) {
   const std::vector<std::uint8_t> file = {'D', 'R', 'A', 'C', 'O'};
   const ProtoMessage cloud =
       Parse(EncodeDracoCloud({kTime_ns, "lidar"}, {file.data(), file.size()}));
+  ExpectTime(cloud);
+  EXPECT_EQ(cloud.Text(2), "lidar");
+  EXPECT_EQ(cloud.Message(3).Message(2).Double(4), 1.0);
   EXPECT_EQ(cloud.Text(4), "DRACO");
   EXPECT_EQ(cloud.Text(5), "draco");
 }
@@ -113,10 +157,12 @@ TEST(DracoCloud, CarriesTheFileAsItIs) {
 TEST(Poses, AreInTheFixedFrame) {
   const Pose pose{{1, 2, 3}, {0, 0, 0.6, 0.8}};
   const ProtoMessage in_frame = Parse(EncodePose({kTime_ns, "odom"}, pose));
+  ExpectTime(in_frame);
   EXPECT_EQ(in_frame.Text(2), "odom");
   EXPECT_EQ(in_frame.Message(3).Message(1).Double(3), 3.0);
   EXPECT_EQ(in_frame.Message(3).Message(2).Double(4), 0.8);
   const ProtoMessage transform = Parse(EncodeTransform({kTime_ns, "odom"}, "lidar", pose));
+  ExpectTime(transform);
   EXPECT_EQ(transform.Text(2), "odom");
   EXPECT_EQ(transform.Text(3), "lidar");
   EXPECT_EQ(transform.Message(4).Double(2), 2.0);

@@ -28,6 +28,25 @@ TEST(ServerInfo, SurvivesANameThatIsNoText) {
   EXPECT_EQ(json::parse(ServerInfo("\xff", "id"))["op"], "serverInfo");
 }
 
+TEST(ErrorStatus, HasTheLevelOfAnError) {
+  const auto text = json::parse(ErrorStatus("no such channel"));
+  EXPECT_EQ(text["op"], "status");
+  EXPECT_EQ(text["level"], 2);  // 0: information, 1: warning
+  EXPECT_EQ(text["message"], "no such channel");
+}
+
+TEST(Unadvertise, NamesTheChannels) {
+  const auto text = json::parse(Unadvertise({3, 5}));
+  EXPECT_EQ(text["op"], "unadvertise");
+  EXPECT_EQ(text["channelIds"], (std::vector<int>{3, 5}));
+}
+
+TEST(ServerInfo, HasNameAndSession) {
+  const auto text = json::parse(ServerInfo("robot", "7"));
+  EXPECT_EQ(text["name"], "robot");
+  EXPECT_EQ(text["sessionId"], "7");
+}
+
 TEST(Requests, SubscribeAndUnsubscribe) {
   const Request subscribe = ParseRequest(
       R"({"op":"subscribe","subscriptions":[{"id":7,"channelId":3},{"id":0,"channelId":4}]})");

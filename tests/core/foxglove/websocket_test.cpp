@@ -139,5 +139,19 @@ TEST(Frames, OfTheServerAreWholeAndNotMasked) {
   EXPECT_EQ(CloseFrame(CloseCode::kGoingAway), (std::vector<std::uint8_t>{0x88, 2, 0x03, 0xE9}));
 }
 
+/// RFC 6455, section 5.2: the shortest of three ways to tell a length.
+TEST(Frames, TellTheirLengthInTheFewestBytes) {
+  const auto head = [](std::uint64_t size) {
+    std::vector<std::uint8_t> bytes;
+    AppendFrameHeader(Opcode::kBinary, size, &bytes);
+    return bytes;
+  };
+  using Bytes = std::vector<std::uint8_t>;
+  EXPECT_EQ(head(125), (Bytes{0x82, 125}));
+  EXPECT_EQ(head(126), (Bytes{0x82, 126, 0, 126}));
+  EXPECT_EQ(head(0xFFFF), (Bytes{0x82, 126, 0xFF, 0xFF}));
+  EXPECT_EQ(head(0x10000), (Bytes{0x82, 127, 0, 0, 0, 0, 0, 1, 0, 0}));
+}
+
 }  // namespace
 }  // namespace lidar::foxglove

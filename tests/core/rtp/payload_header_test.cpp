@@ -119,6 +119,14 @@ INSTANTIATE_TEST_SUITE_P(
         Hostile{"an aggregate with a byte too many",
                 {0x20, 0, 0, 0, 11, 0, 0, 0, 0, 0, 1, 0, 0, 0, 0, 7, 0}}));
 
+TEST(PayloadHeader, TakesAsManySlicesAsAScanMayHave) {
+  const std::vector<std::uint8_t> last = {0x62, 0, 0, 0, 0, 0, 0x0F, 0xFF, 0x10, 0, 7};
+  const auto units = ParsePayload({last.data(), last.size()});
+  ASSERT_EQ(units.size(), 1U);
+  EXPECT_EQ(units[0].slice.index, 4095);
+  EXPECT_EQ(units[0].slice.count, 4096);
+}
+
 TEST(PayloadHeader, OfAnAggregateIsRefusedWhereItsSlicesAreOfSeveralScans) {
   for (const std::uint32_t second : {7U, 8U}) {
     std::vector<std::uint8_t> bytes = {0x20};

@@ -93,6 +93,22 @@ TEST(Loss, OfOneSliceMarksTheNextOneDiscontinuousOnce) {
   EXPECT_EQ(discont, (Names{"0.0", "1.3"}));
 }
 
+TEST(Damage, MarksTheNextSliceDiscontinuousWhateverWasLostBefore) {
+  auto packets = Sender().Scans(0, 4);
+  for (Wire& w : packets)
+    if (w.scan == 2 && w.index == 0 && !w.config) w.payload.back() ^= 1;
+  packets.erase(std::remove_if(packets.begin(), packets.end(),
+                               [](const Wire& w) { return w.scan == 1 && w.index < 2; }),
+                packets.end());
+  Receiver receiver(milliseconds(0));
+  Names discont;
+  for (const Wire& w : packets)
+    for (const auto& s : test::Deliver(&receiver, w))
+      if (s.discont)
+        discont.push_back(std::to_string(s.info.scan_id) + "." + std::to_string(s.id.index));
+  EXPECT_EQ(discont, (Names{"0.0", "1.2", "2.1"}));
+}
+
 TEST(Loss, OfWholeScansCountsEachSliceAndScanOnce) {
   auto packets = Sender().Scans(0, 10);
   packets.erase(std::remove_if(packets.begin(), packets.end(),

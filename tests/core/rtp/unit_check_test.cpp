@@ -46,6 +46,42 @@ TEST(UnitCheck, RefusesASliceWithAnyBitWrongInItsBytes) {
   }
 }
 
+TEST(UnitCheck, TakesNoPartOfASliceTwice) {
+  UnitCheck check;
+  const auto payloads = Fragments(3);
+  EXPECT_FALSE(check.Push(0, View(payloads[0])));
+  EXPECT_FALSE(check.Push(1, View(payloads[1])));
+  EXPECT_FALSE(check.Push(1, View(payloads[1])));
+  EXPECT_FALSE(check.Push(2, View(payloads[2])));
+  EXPECT_FALSE(check.Push(3, View(payloads[2])));
+}
+
+TEST(UnitCheck, AnEndWithoutABeginningProvesNothing) {
+  UnitCheck check;
+  const auto payloads = Fragments(2);
+  EXPECT_TRUE(check.Push(0, View(Fragments(1)[0])));
+  EXPECT_FALSE(check.Push(1, View(payloads[1])));
+  EXPECT_FALSE(check.Push(2, View(payloads[0])));
+  EXPECT_TRUE(check.Push(3, View(payloads[1])));
+}
+
+TEST(UnitCheck, AConfigProvesNothingAndEndsTheSliceBefore) {
+  Unit config;
+  config.type = PacketType::kSingle;
+  config.unit = UnitType::kStreamConfig;
+  config.length = 4;
+  std::vector<std::uint8_t> payload;
+  const std::vector<std::uint8_t> bytes(4, 42);
+  config.crc = UnitCrc(config, {bytes.data(), bytes.size()});
+  WriteHeader(config, &payload);
+  payload.insert(payload.end(), bytes.begin(), bytes.end());
+  UnitCheck check;
+  const auto slice = Fragments(2);
+  EXPECT_FALSE(check.Push(0, View(slice[0])));
+  EXPECT_FALSE(check.Push(1, View(payload)));
+  EXPECT_FALSE(check.Push(1, View(slice[1])));
+}
+
 TEST(UnitCheck, AGapEndsASliceAndTheNextOneHasItsChance) {
   UnitCheck check;
   const auto payloads = Fragments(3);

@@ -180,6 +180,23 @@ TEST_P(AnyCoder, SurvivesFlushEosAndStateCycles) {
   }
 }
 
+TEST_P(AnyCoder, ScansBeforeAndAfterAFlushAreTwo) {
+  const SensorModel model = test::RoomSensor();
+  const Harness h = Codec(GetParam());
+  SetCaps(h.get(), OrganisedInfo(model, 64));
+  const ElementPtr enc(gst_bin_get_by_name(GST_BIN(h->element), "enc"));
+  for (guint i = 0; i < 2; ++i)
+    gst_harness_push(h.get(), OrganisedBuffer(model, 64, {7, i, 8, 64 * i}));
+  EXPECT_EQ(Counter(enc.get(), "scans-in"), 1U);
+  gst_harness_push_event(h.get(), gst_event_new_flush_start());
+  gst_harness_push_event(h.get(), gst_event_new_flush_stop(TRUE));
+  GstSegment segment;
+  gst_segment_init(&segment, GST_FORMAT_TIME);
+  gst_harness_push_event(h.get(), gst_event_new_segment(&segment));
+  gst_harness_push(h.get(), OrganisedBuffer(model, 64, {7, 2, 8, 128}));
+  EXPECT_EQ(Counter(enc.get(), "scans-in"), 2U);
+}
+
 class RefusedCaps : public ::testing::TestWithParam<std::pair<const char*, const char*>> {};
 TEST_P(RefusedCaps, GiveAnErrorThatSaysWhatIsMissing) {
   const auto [launch, text] = GetParam();

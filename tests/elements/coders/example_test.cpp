@@ -2,6 +2,7 @@
 // What the base classes do for a coder that they do not know.
 #include <gtest/gtest.h>
 
+#include "gst/common/gstlidardecoder.h"
 #include "gst/common/gstlidarencoder.h"
 #include "tests/elements/coders/checked_codec.h"
 
@@ -86,6 +87,34 @@ TEST_F(ExampleCoder, HasItsDamagedSlicesDropped) {
   EXPECT_EQ(Counter(decoder.get(), "slices-dropped"), dropped);
   EXPECT_EQ(gst_harness_push(dec.get(), gst_buffer_ref(good.get())), GST_FLOW_OK);
   EXPECT_EQ(gst_harness_buffers_received(dec.get()), 1U);
+}
+
+TEST_F(ExampleCoder, MayGiveAsManyPointsAsAreAllowedAndNoMore) {
+  const Harness h = Codec(kExample);
+  const ElementPtr dec(gst_bin_get_by_name(GST_BIN(h->element), "dec"));
+  g_object_set(dec.get(), "max-points", 1000U, nullptr);
+  SetCaps(h.get(), OrganisedInfo(Sensor(), 64));
+  // A decoder that does not look at the most that it may give.
+  GstLidarDecoderClass* klass = GST_LIDAR_DECODER_GET_CLASS(dec.get());
+  static guint width = 0;
+  const auto decode = klass->decode;
+  const auto write = klass->write;
+  klass->decode = [](GstLidarDecoder*, const guint8*, gsize, guint,
+                     GstLidarDecodedSlice* slice) -> gboolean {
+    slice->width = width;
+    slice->height = 2;
+    return TRUE;
+  };
+  klass->write = [](GstLidarDecoder*, guint8*) {};
+  width = 500;
+  gst_harness_push(h.get(), Slice(0));
+  EXPECT_EQ(gst_harness_buffers_received(h.get()), 1U);
+  width = 501;
+  gst_harness_push(h.get(), Slice(1));
+  EXPECT_EQ(gst_harness_buffers_received(h.get()), 1U);
+  klass->decode = decode;
+  klass->write = write;
+  EXPECT_EQ(Counter(dec.get(), "slices-dropped"), 1U);
 }
 
 TEST_F(ExampleCoder, ThinsPointsWhereTheFrameRateMattersMore) {

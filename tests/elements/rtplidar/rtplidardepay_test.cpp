@@ -240,6 +240,20 @@ TEST(RtpLidarDepay, FollowsNewCapsInMidStream) {
   }
 }
 
+TEST(RtpLidarDepay, WaitsForPacketsAsLongAsIsSetWhileItRuns) {
+  for (const guint64 wait : {100U, 1000U}) {
+    const Harness h = Depay();
+    auto packets = Packets(8);
+    // The slice 1.1 comes half a second late.
+    std::rotate(packets.begin() + 16, packets.begin() + 19, packets.end());
+    for (std::size_t i = 0; i < packets.size(); ++i) {
+      if (i == 2) g_object_set(h->element, "max-reorder-time", wait * GST_MSECOND, nullptr);
+      gst_harness_push(h.get(), gst_buffer_copy_deep(packets[i].get()));
+    }
+    EXPECT_EQ(Pull(h.get()).size(), wait == 100 ? 31U : 32U);
+  }
+}
+
 TEST(RtpLidarDepay, TellsWhichCoderMadeTheSlices) {
   Harness pay(gst_harness_new("rtplidarpay"));
   const Harness h = Depay();
@@ -256,28 +270,80 @@ TEST(RtpLidarDepay, TellsWhichCoderMadeTheSlices) {
   }
 }
 
-/// A config of `fields` as the packet that comes just before `next`.
-GstBuffer* ConfigBefore(GstBuffer* next, const char* fields) {
+GstBuffer* RtpOf(const std::vector<std::uint8_t>& payload, guint32 ssrc, guint16 sequence) {
+  GstBuffer* buffer = gst_rtp_buffer_new_allocate(static_cast<guint>(payload.size()), 0, 0);
+  GstRTPBuffer rtp = GST_RTP_BUFFER_INIT;
+  gst_rtp_buffer_map(buffer, GST_MAP_WRITE, &rtp);
+  gst_rtp_buffer_set_payload_type(&rtp, 96);
+  gst_rtp_buffer_set_ssrc(&rtp, ssrc);
+  gst_rtp_buffer_set_seq(&rtp, sequence);
+  std::copy(payload.begin(), payload.end(), static_cast<guint8*>(gst_rtp_buffer_get_payload(&rtp)));
+  gst_rtp_buffer_unmap(&rtp);
+  return buffer;
+}
+
+/// A unit as the only one of its payload.
+std::vector<std::uint8_t> PayloadOf(const rtp::Unit& unit, const std::vector<std::uint8_t>& bytes) {
+  auto payload = rtp::Packetize(unit, {bytes.data(), bytes.size()}, 1'400).at(0).header;
+  payload.insert(payload.end(), bytes.begin(), bytes.end());
+  return payload;
+}
+
+std::vector<std::uint8_t> ConfigPayload(const char* fields, std::uint8_t* id) {
   rtp::StreamConfig config;
   config.fields = fields;
   const auto bytes = config.Serialise();
   rtp::Unit unit;
   unit.unit = rtp::UnitType::kStreamConfig;
   unit.config_id = rtp::ConfigId(bytes, std::nullopt);
-  auto packet = rtp::Packetize(unit, {bytes.data(), bytes.size()}, 1'400).at(0).header;
-  packet.insert(packet.end(), bytes.begin(), bytes.end());
-  GstBuffer* buffer = gst_rtp_buffer_new_allocate(static_cast<guint>(packet.size()), 0, 0);
-  GstRTPBuffer of_next = GST_RTP_BUFFER_INIT;
+  *id = unit.config_id;
+  return PayloadOf(unit, bytes);
+}
+
+/// A config of `fields` as the packet that comes just before `next`.
+GstBuffer* ConfigBefore(GstBuffer* next, const char* fields) {
+  std::uint8_t id = 0;
   GstRTPBuffer rtp = GST_RTP_BUFFER_INIT;
-  gst_rtp_buffer_map(next, GST_MAP_READ, &of_next);
-  gst_rtp_buffer_map(buffer, GST_MAP_WRITE, &rtp);
-  gst_rtp_buffer_set_payload_type(&rtp, 96);
-  gst_rtp_buffer_set_ssrc(&rtp, gst_rtp_buffer_get_ssrc(&of_next));
-  gst_rtp_buffer_set_seq(&rtp, static_cast<guint16>(gst_rtp_buffer_get_seq(&of_next) - 1));
-  std::copy(packet.begin(), packet.end(), static_cast<guint8*>(gst_rtp_buffer_get_payload(&rtp)));
+  gst_rtp_buffer_map(next, GST_MAP_READ, &rtp);
+  GstBuffer* buffer = RtpOf(ConfigPayload(fields, &id), gst_rtp_buffer_get_ssrc(&rtp),
+                            static_cast<guint16>(gst_rtp_buffer_get_seq(&rtp) - 1));
   gst_rtp_buffer_unmap(&rtp);
-  gst_rtp_buffer_unmap(&of_next);
   return buffer;
+}
+
+/// For each buffer that leaves, the fields of the caps that it leaves under.
+GstPadProbeReturn NoteFields(GstPad* pad, GstPadProbeInfo* info, gpointer data) {
+  const guint buffers = (info->type & GST_PAD_PROBE_TYPE_BUFFER_LIST) != 0
+                            ? gst_buffer_list_length(GST_PAD_PROBE_INFO_BUFFER_LIST(info))
+                            : 1;
+  const gst::CapsPtr caps(gst_pad_get_current_caps(pad));
+  const char* fields = gst_structure_get_string(gst_caps_get_structure(caps.get(), 0), "fields");
+  static_cast<std::vector<std::string>*>(data)->insert(
+      static_cast<std::vector<std::string>*>(data)->end(), buffers, fields);
+  return GST_PAD_PROBE_OK;
+}
+
+TEST(RtpLidarDepay, SlicesOfTwoConfigsInOnePacketLeaveEachUnderItsCaps) {
+  const std::vector<std::string> fields = {"x:F32:0,y:F32:4,z:F32:8",
+                                           "x:F32:0,y:F32:4,z:F32:8,range:U32:12"};
+  const Harness h = Depay();
+  std::vector<std::string> seen;
+  const gst::PadPtr src(gst_element_get_static_pad(h->element, "src"));
+  gst_pad_add_probe(
+      src.get(),
+      static_cast<GstPadProbeType>(GST_PAD_PROBE_TYPE_BUFFER | GST_PAD_PROBE_TYPE_BUFFER_LIST),
+      NoteFields, &seen, nullptr);
+  std::vector<std::uint8_t> packet = {0x20};  // an aggregate
+  for (std::uint16_t i = 0; i < 2; ++i) {
+    rtp::Unit unit;
+    gst_harness_push(h.get(), RtpOf(ConfigPayload(fields[i].c_str(), &unit.config_id), 7, i));
+    unit.slice = {1, i, 2};
+    const auto slice = PayloadOf(unit, {1, 2, 3});
+    packet.insert(packet.end(), {0, 0, 0, static_cast<std::uint8_t>(slice.size())});
+    packet.insert(packet.end(), slice.begin(), slice.end());
+  }
+  ASSERT_EQ(gst_harness_push(h.get(), RtpOf(packet, 7, 2)), GST_FLOW_OK);
+  EXPECT_EQ(seen, fields);
 }
 
 TEST(RtpLidarDepay, DropsSlicesForAnotherDecoderAndGoesOn) {

@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "src/rtp/slice_ledger.h"
+
+#include <gtest/gtest.h>
+
+namespace lidar::rtp {
+namespace {
+
+using std::chrono::milliseconds;
+
+class Ledger : public ::testing::Test {
+ protected:
+  Admission Admit(std::int64_t scan, std::uint32_t index, std::uint32_t count, int at_ms = 0) {
+    return ledger.Admit({scan, index}, count, Time{milliseconds(at_ms)});
+  }
+  void Receive(std::int64_t scan, std::uint32_t index, std::uint32_t count = 4, int at_ms = 0) {
+    ASSERT_EQ(Admit(scan, index, count, at_ms), Admission::kOpen);
+    ledger.Settle({scan, index}, SliceOutcome::kReceived);
+  }
+  const SliceAccounts& accounts() { return ledger.accounts(); }
+
+  SliceLedger ledger{milliseconds(100)};
+};
+
+TEST_F(Ledger, AScanHasOneCountOfSlices) {
+  Receive(1, 0);
+  EXPECT_EQ(Admit(1, 1, 8), Admission::kContradiction);
+  EXPECT_EQ(Admit(1, 5, 8), Admission::kContradiction);
+  EXPECT_EQ(Admit(1, 1, 3), Admission::kContradiction);
+  EXPECT_EQ(Admit(1, 3, 4), Admission::kOpen);
+  EXPECT_EQ(Admit(2, 5, 8), Admission::kOpen);  // the next one may have another
+}
+
+TEST_F(Ledger, WhatWasBeforeTheFirstSliceIsTooOld) {
+  Receive(5, 2);
+  EXPECT_EQ(Admit(5, 1, 4), Admission::kTooOld);
+  EXPECT_EQ(Admit(4, 3, 4), Admission::kTooOld);
+  EXPECT_EQ(Admit(5, 2, 4), Admission::kSettled);
+  EXPECT_EQ(Admit(5, 3, 4), Admission::kOpen);
+}
+
+TEST_F(Ledger, ASliceIsOverdueOnceOneBehindItWasSeenLongEnoughAgo) {
+  Receive(1, 0, 4, 0);
+  Receive(1, 2, 4, 10);
+  EXPECT_FALSE(ledger.Overdue(Time{milliseconds(99)}));
+  const auto first = ledger.Overdue(Time{milliseconds(109)});
+  EXPECT_TRUE(!first || !(SlicePosition{1, 1} < *first));
+  const auto limit = ledger.Overdue(Time{milliseconds(110)});
+  ASSERT_TRUE(limit);
+  EXPECT_TRUE((*limit == SlicePosition{1, 2}));
+  ledger.CloseBefore(*limit);
+  EXPECT_EQ(accounts().slices_lost, 1U);
+  EXPECT_EQ(Admit(1, 1, 4, 120), Admission::kTooOld);
+}
+
+TEST_F(Ledger, BooksEachScanOnce) {
+  for (std::uint32_t i = 0; i < 4; ++i) Receive(1, i);
+  EXPECT_EQ(accounts().scans_complete, 1U);
+  Receive(2, 0);
+  Receive(4, 0);  // nothing came of scan 3
+  ledger.Finish();
+  EXPECT_EQ(accounts().slices_received, 6U);
+  EXPECT_EQ(accounts().slices_lost, 3U + 4);  // not those behind the newest slice
+  EXPECT_EQ(accounts().scans_complete, 1U);
+  EXPECT_EQ(accounts().scans_lost, 1U);
+}
+
+TEST_F(Ledger, ASliceBeforeAnotherMayBeOfTheScanBefore) {
+  Receive(1, 0);
+  Receive(2, 1);
+  EXPECT_TRUE((ledger.Before({2, 1}) == SlicePosition{2, 0}));
+  EXPECT_TRUE((ledger.Before({2, 0}) == SlicePosition{1, 3}));
+}
+
+TEST_F(Ledger, AddsUpEachOfItsCounts) {
+  const SliceAccounts one{1, 2, 3, 4, 5, 6, 7, 8, 9};
+  SliceAccounts sum = one;
+  sum += one;
+  EXPECT_EQ(sum.slices_received, 2U);
+  EXPECT_EQ(sum.slices_lost, 4U);
+  EXPECT_EQ(sum.slices_damaged, 6U);
+  EXPECT_EQ(sum.slices_config_mismatch, 8U);
+  EXPECT_EQ(sum.slices_skipped, 10U);
+  EXPECT_EQ(sum.scans_complete, 12U);
+  EXPECT_EQ(sum.scans_incomplete, 14U);
+  EXPECT_EQ(sum.scans_lost, 16U);
+  EXPECT_EQ(sum.scans_skipped, 18U);
+}
+
+}  // namespace
+}  // namespace lidar::rtp
