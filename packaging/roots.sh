@@ -1,16 +1,26 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-# Sourced by the scripts that work in clean roots of Debian's releases, below $work and from $mirror.
+# shellcheck shell=bash disable=SC2154
+# Sourced by the scripts that work in clean roots of Debian's releases, from $mirror and for $architectures.
 
 # make_root DIR RELEASE PACKAGE...: a minimal root of the release with these packages and an empty /src.
 make_root() {
   local dir=$1 release=$2
   shift 2
-  mmdebstrap --quiet --variant=minbase --include="$(IFS=,; echo "$*")" "$release" "$dir" "$mirror"
-  mount -t proc proc "$dir/proc"
+  mmdebstrap --quiet --variant=minbase ${architectures:+--architectures="$architectures"} --dpkgopt=force-unsafe-io \
+    --include="$(IFS=,; echo "$*")" "$release" "$dir" "$mirror"
   mkdir -p "$dir/dev/shm" "$dir/src"
-  mount -t tmpfs tmpfs "$dir/dev/shm"
   cp /etc/resolv.conf "$dir/etc/resolv.conf"
+  enter_root "$dir"
   inside "$dir" 'apt-get -q update >/dev/null'
+}
+
+enter_root() {
+  mount -t proc proc "$1/proc"
+  mount -t tmpfs tmpfs "$1/dev/shm"
+}
+
+leave_root() {
+  umount "$1/dev/shm" "$1/proc" 2>/dev/null || true
 }
 
 # inside DIR COMMANDS: by a shell of the root, which ends where one fails.
@@ -21,15 +31,7 @@ inside() {
 
 # The same, with a loopback network of its own and nothing else.
 inside_alone() {
-  local root=$1 commands=$2
+  local dir=$1 commands=$2
   export -f inside
-  unshare --net bash -euc 'ip link set lo up; inside "$@"' - "$root" "$commands"
-}
-
-remove_roots() {
-  local root
-  for root in "$work"/*/; do
-    umount "$root/dev/shm" "$root/proc" 2>/dev/null || true
-  done
-  rm -rf --one-file-system "$work"
+  unshare --net bash -euc 'ip link set lo up; inside "$@"' - "$dir" "$commands"
 }
