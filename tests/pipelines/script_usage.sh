@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: LGPL-2.1-or-later
-# The scripts of pipelines/: help, and wrong options that are refused at once with a reason. Nothing is streamed.
+# The scripts of pipelines/, and those that take hours: help, and wrong options that are refused at once with a reason. Nothing is streamed.
 set -uo pipefail
 root=$(cd "$(dirname "$0")/../.." && pwd)
 failed=0
@@ -37,4 +37,17 @@ expect 2 'there is no way to play to disk' play.sh --to disk
 expect 2 '--send wants HOST:PORT' play.sh --send edge
 expect 2 '--scan wants a whole number' view.sh --scan first
 expect 2 'SECONDS wants a whole number' secure.sh five
+for script in tests/all.sh tests/other-releases.sh packaging/build-deb.sh; do
+  expect 0 "Usage: $script" ../$script --help
+done
+logs=$(mktemp -d)
+trap 'rm -rf "$logs"' EXIT
+expect 2 'there is no option --nonsense' ../tests/all.sh --nonsense
+expect 2 'there is no step nonsense' ../tests/all.sh --only run,nonsense
+expect 2 '--minutes wants a whole number above zero' ../tests/all.sh --minutes ten
+SCREAM_REFERENCE='' expect 0 'needs SCREAM_REFERENCE' ../tests/all.sh --only interop --output "$logs"
+SCREAM_REFERENCE='' expect 0 '0 of 0 failed' ../tests/all.sh --only interop --skip interop --output "$logs"
+expect 2 'Usage:' ../tests/other-releases.sh
+expect 2 "Unknown option '--nonsense'" ../tests/other-releases.sh --nonsense
+expect 2 "Unknown option '--nonsense'" ../packaging/build-deb.sh --nonsense
 exit $failed

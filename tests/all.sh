@@ -1,0 +1,111 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: LGPL-2.1-or-later
+# Runs everything that tests the tree, one step after another, and ends with a table of them. Takes hours.
+set -uo pipefail
+here=$(cd "$(dirname "$0")" && pwd)
+root=$(dirname "$here")
+
+# Name, what it needs beyond tests/packages.txt, and the command from the tree's root.
+steps=(
+  "run|-|tests/run.sh"
+  "faults|root|tests/run.sh --no-install --suite faults"
+  "peers|npm|tests/run.sh --no-install --suite peers"
+  "browser|npm|tests/run.sh --suite browser"
+  "tsan|-|tests/run.sh --no-install --suite lint --tsan"
+  "tidy|-|tests/tidy.sh"
+  "fuzz|-|tests/fuzz/run.sh --minutes MINUTES --jobs 2"
+  "adversary|-|tests/adversary/run.sh --minutes MINUTES"
+  "hardship|root|tests/hardship/run.sh"
+  "leaks|-|tests/leaks.sh"
+  "memory|-|tests/soak/memory.sh MINUTES"
+  "soak|root|tests/soak/run.sh --minutes MINUTES"
+  "interop|root, the reference|tests/interop/reference.sh"
+  "experiments|-|tests/experiments/run.sh --quick"
+  "mutants|-|tests/mutate.sh --quick"
+  "bookworm|root, mmdebstrap|packaging/build-deb.sh --release bookworm"
+  "trixie|root, mmdebstrap|packaging/build-deb.sh --release trixie"
+  "tests-trixie|root, mmdebstrap|tests/other-releases.sh trixie"
+  "tests-sid|root, mmdebstrap|tests/other-releases.sh sid"
+  "tests-arm64|root, mmdebstrap|tests/other-releases.sh arm64"
+)
+
+usage() {
+  cat <<EOF
+Usage: tests/all.sh [options]
+
+  --only LIST    steps to run, as in "run,fuzz"
+  --skip LIST    steps to leave out
+  --minutes N    for each fuzz target, the adversary, memory and soak (default 2)
+  --output DIR   a log for each step (default: build-all)
+  --list         print the steps, what they need and their commands
+
+Steps: $(printf '%s\n' "${steps[@]%%|*}" | paste -sd' ')
+The exit code is 0 where every step passed or was skipped for what it needs.
+EOF
+}
+fail() { echo "tests/all.sh: $*" >&2; exit 2; }
+
+only=
+skip=
+minutes=2
+output=$root/build-all
+while [ $# -gt 0 ]; do
+  case $1 in
+    --only | --skip | --minutes | --output)
+      [ $# -ge 2 ] || fail "$1 wants a value"
+      declare "${1#--}=$2"
+      shift ;;
+    --list) printf '%s\n' "${steps[@]}" | awk -F'|' '{ printf "%-13s %-21s %s\n", $1, $2, $3 }'; exit 0 ;;
+    -h | --help) usage; exit 0 ;;
+    *) fail "there is no option $1" ;;
+  esac
+  shift
+done
+[[ $minutes =~ ^[1-9][0-9]*$ ]] || fail "--minutes wants a whole number above zero, not \"$minutes\""
+for name in ${only//,/ } ${skip//,/ }; do
+  printf '%s\n' "${steps[@]%%|*}" | grep -qxF -- "$name" || fail "there is no step $name"
+done
+mkdir -p "$output" || exit 2
+output=$(cd "$output" && pwd)
+
+# wanted NAME: whether --only and --skip leave it.
+wanted() { [[ (-z $only || ,$only, == *,$1,*) && ,$skip, != *,$1,* ]]; }
+
+# lacks NEEDS: the first of them that is not here.
+lacks() {
+  local need
+  while read -r need; do
+    case $need in
+      root) [ "$(id -u)" = 0 ] || echo "root" ;;
+      npm | mmdebstrap) command -v "$need" >/dev/null || echo "$need" ;;
+      "the reference") [ -n "${SCREAM_REFERENCE:-}" ] || echo "SCREAM_REFERENCE" ;;
+    esac
+  done < <(tr ',' '\n' <<<"$1" | sed 's/^ //') | head -1
+}
+
+table=("$(printf '%-13s %-8s %8s  %s' step result seconds 'last line')")
+failed=0
+row() { # STEP RESULT SECONDS LAST_LINE
+  table+=("$(printf '%-13s %-8s %8s  %s' "$@")")
+  echo "${table[-1]}"
+}
+for step in "${steps[@]}"; do
+  IFS='|' read -r name needs command <<<"$step"
+  wanted "$name" || continue
+  lacking=$(lacks "$needs")
+  [ -z "$lacking" ] || { row "$name" skipped 0 "needs $lacking"; continue; }
+  began=$SECONDS
+  # shellcheck disable=SC2086
+  if (cd "$root" && exec ${command//MINUTES/$minutes}) >"$output/$name.log" 2>&1 </dev/null; then
+    result=ok
+  else
+    result=FAILED
+    failed=$((failed + 1))
+  fi
+  row "$name" $result $((SECONDS - began)) "$(grep -v '^[[:space:]]*$' "$output/$name.log" | tail -1 | cut -c -100)"
+done
+
+echo
+printf '%s\n' "${table[@]}"
+echo "logs: $output; $failed of $((${#table[@]} - 1)) failed"
+[ "$failed" = 0 ]
