@@ -31,7 +31,7 @@ std::optional<json> ParseWindow(const std::string& text) {
   if (!window.is_array() || window.size() != 2 || !window[0].is_number_unsigned() ||
       !window[1].is_number_unsigned())
     return std::nullopt;
-  return window;
+  return std::make_optional<json>(window);  // by name: nlohmann_json 3.12 makes json of an optional
 }
 
 /// The parameters that the user wants, by the names of the API.
@@ -56,7 +56,7 @@ std::optional<json> Wanted(const OusterSettings& s, ApiError* error) {
     wanted["signal_multiplier"] = whole;
   else if (s.signal_multiplier > 0)
     wanted["signal_multiplier"] = s.signal_multiplier;
-  return wanted;
+  return std::make_optional<json>(wanted);
 }
 
 /// The entries of `wanted` that the configuration `has` lacks or sets otherwise.

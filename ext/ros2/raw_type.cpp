@@ -7,6 +7,7 @@
 #include <dds/ddsi/ddsi_sertype.h>
 #include <dds/ddsi/q_radmin.h>
 
+#include <algorithm>
 #include <cstring>
 #include <new>
 

@@ -7,6 +7,8 @@
 #include <cstring>
 #ifdef __SSE2__
 #include <emmintrin.h>
+#elif defined(__aarch64__)
+#include <arm_neon.h>
 #endif
 
 namespace lidar::codec {
@@ -86,11 +88,17 @@ class NibbleModel {
     const int above =
         _mm_movemask_epi8(_mm_packs_epi16(_mm_cmpgt_epi16(low, v), _mm_cmpgt_epi16(high, v)));
     return static_cast<unsigned>(__builtin_ctz(static_cast<unsigned>(above) | 0x10000U)) - 1U;
+#elif defined(__aarch64__)
+    // The starts rise. Each one up to the slot counts as 65535, which is -1.
+    const int16x8_t v = vdupq_n_s16(static_cast<std::int16_t>(slot));
+    const uint16x8_t up_to_slot = vaddq_u16(vcleq_s16(vld1q_s16(start_.data()), v),
+                                            vcleq_s16(vld1q_s16(start_.data() + 8), v));
+    return static_cast<std::uint16_t>(-vaddvq_u16(up_to_slot)) - 1U;
 #else
-    unsigned s = start_[8] <= static_cast<int>(slot) ? 8 : 0;
-    s += start_[s + 4] <= static_cast<int>(slot) ? 4 : 0;
-    s += start_[s + 2] <= static_cast<int>(slot) ? 2 : 0;
-    s += start_[s + 1] <= static_cast<int>(slot) ? 1 : 0;
+    unsigned s = start_[8] <= static_cast<int>(slot) ? 8U : 0U;
+    s += start_[s + 4] <= static_cast<int>(slot) ? 4U : 0U;
+    s += start_[s + 2] <= static_cast<int>(slot) ? 2U : 0U;
+    s += start_[s + 1] <= static_cast<int>(slot) ? 1U : 0U;
     return s;
 #endif
   }

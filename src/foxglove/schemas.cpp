@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include "src/foxglove/schemas.h"
 
+#include <array>
 #include <nlohmann/json.hpp>
 
 #include "src/foxglove/base64.h"

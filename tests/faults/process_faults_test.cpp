@@ -2,6 +2,7 @@
 // Faults of the machine at one end, which therefore is a process of its own.
 #include <gtest/gtest.h>
 
+#include <cstdio>
 #include <thread>
 
 #include "tests/faults/child_end.h"

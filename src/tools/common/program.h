@@ -2,6 +2,7 @@
 // Command lines alike in every program: --version, and 2 as the exit code of wrong options.
 #pragma once
 #include <CLI/CLI.hpp>
+#include <cstdlib>
 #include <string>
 
 namespace lidar::tools {

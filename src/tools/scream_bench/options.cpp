@@ -2,6 +2,7 @@
 #include "src/tools/scream_bench/options.h"
 
 #include <CLI/CLI.hpp>
+#include <map>
 
 #include "src/tools/common/program.h"
 

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <chrono>
 
+#include <cstdio>
 #include <cstring>
 #include <string>
 #include <vector>

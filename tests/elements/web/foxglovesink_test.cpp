@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <gtest/gtest.h>
 
+#include <array>
+
 #include "tests/elements/web/web_peer.h"
 #include "tests/support/proto_reader.h"
 
