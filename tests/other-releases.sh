@@ -73,11 +73,12 @@ install_packages() {
   grep '^not in' "$output/install.log" || true
 }
 
-# A cross build has tools of this machine, and libraries of the other.
+# A cross build has tools of this machine, and libraries of the other. foxglovesink is left out.
 install_for_arm64() {
   local package foreign=()
   for package in "${packages[@]}"; do
     case $package in
+      libsoup-3.0-dev) ;; # needs gobject-introspection of arm64, and that the Python of arm64
       nlohmann-json3-dev | libcli11-dev | libeigen3-dev | robin-map-dev | libcpp-httplib-dev) foreign+=("$package") ;;
       lib*-dev | *-dev | gstreamer1.0-plugins-*) foreign+=("$package:arm64") ;;
     esac
