@@ -20,6 +20,7 @@
 #include "ext/mcap/gstmcapstream.h"
 #include "ext/mcap/recorder.h"
 #include "ext/mcap/timeline.h"
+#include "gst/common/caps_text.h"
 #include "gst/common/enum_type.h"
 #include "gst/common/gstlidar.h"
 #include "gst/common/properties.h"

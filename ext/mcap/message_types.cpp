@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include "ext/mcap/message_types.h"
 
-#include <algorithm>
 #include <array>
 
+#include "gst/common/caps_text.h"
 #include "gst/common/gstlidar.h"
 #include "gst/common/refs.h"
 #include "src/cdr/coded_slice.h"
@@ -11,10 +11,6 @@
 
 namespace lidar::gst {
 namespace {
-
-// The parser of caps recurses with each list; only the names of fields are lists in ours.
-constexpr std::ptrdiff_t kMaxNesting = 1024;
-constexpr std::size_t kMaxCapsText = 1U << 20;  // a sensor model of 512 beams takes 30 kB
 
 constexpr const char* kTime = R"(MSG: builtin_interfaces/Time
 int32 sec
@@ -172,28 +168,9 @@ std::optional<MessageType> TypeOf(const GstCaps* caps) {
 
 std::string_view TopicOf(MessageType type) { return InfoOf(type).topic; }
 
-std::string CapsToText(const GstCaps* caps) {
-  const StringPtr text(gst_caps_to_string(caps));
-  return text.get();
-}
-
 GstCaps* CapsFromText(const std::string& text, MessageType type) {
-  const auto is_plain = [](char c) { return c >= ' ' && c <= '~'; };
-  // GStreamer's parser recurses with each of these.
-  const auto nests = [](char c) { return c == '{' || c == '<' || c == '['; };
-  if (text.empty() || text.size() > kMaxCapsText ||
-      std::count_if(text.begin(), text.end(), nests) > kMaxNesting ||
-      !std::all_of(text.begin(), text.end(), is_plain))
-    return nullptr;
-  CapsPtr caps(gst_caps_from_string(text.c_str()));
-  if (!caps || gst_caps_get_size(caps.get()) != 1 || !gst_caps_is_fixed(caps.get()) ||
-      TypeOf(caps.get()) != type)
-    return nullptr;
-  // No other memory than the system's.
-  if (!gst_caps_features_is_equal(gst_caps_get_features(caps.get(), 0),
-                                  GST_CAPS_FEATURES_MEMORY_SYSTEM_MEMORY))
-    return nullptr;
-  return caps.release();
+  CapsPtr caps = FixedCapsFromText(text);
+  return caps && TypeOf(caps.get()) == type ? caps.release() : nullptr;
 }
 
 }  // namespace lidar::gst

@@ -22,9 +22,8 @@ std::optional<MessageType> TypeOf(const GstCaps* caps);
 /// Where messages of that type go unless a topic is given.
 std::string_view TopicOf(MessageType type);
 
-/// Caps in the metadata of a channel, and back. NULL where `text` comes from elsewhere and is not
-/// the fixed caps of `type`.
-std::string CapsToText(const GstCaps* caps);
+/// Caps from the metadata of a channel. NULL where `text` comes from elsewhere and is not the fixed
+/// caps of `type`.
 GstCaps* CapsFromText(const std::string& text, MessageType type);
 
 /// The entries of a channel's metadata.
