@@ -22,6 +22,7 @@ LIBRARIES = {
     "Cyclone DDS": ("dds/",),
     "libcurl": ("curl/",),
     "libsoup": ("libsoup/",),
+    "libnats": ("nats/",),
     "CLI11": ("CLI/",),
     "cpp-httplib": ("httplib",),
     "GStreamer": ("gst/", "glib", "gio/", "gmodule"),

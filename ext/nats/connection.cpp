@@ -1,0 +1,199 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "ext/nats/connection.h"
+
+#include <unistd.h>
+
+#include <chrono>
+#include <condition_variable>
+#include <mutex>
+#include <sstream>
+#include <utility>
+#include <vector>
+
+#include "ext/nats/nats_ptr.h"
+
+namespace lidar::nats {
+namespace {
+
+constexpr std::int64_t kReconnectWaitMs = 250;
+constexpr std::int64_t kReconnectJitterMs = 250;  // a fleet does not come back in one instant
+constexpr std::int64_t kPingIntervalMs = 2'000;
+constexpr int kMaxPingsOut = 2;
+constexpr std::chrono::seconds kCloseTimeout{5};
+
+std::vector<std::string> SplitUrls(const std::string& list) {
+  std::vector<std::string> urls;
+  std::istringstream in(list);
+  for (std::string url; std::getline(in, url, ',');)
+    if (!url.empty()) urls.push_back(url);
+  return urls;
+}
+
+/// What is wrong with the files that the settings name; empty: nothing.
+std::string CheckFiles(const ConnectionSettings& s) {
+  for (const std::string* path :
+       {&s.credentials_file, &s.tls_ca_file, &s.tls_cert_file, &s.tls_key_file})
+    if (!path->empty() && access(path->c_str(), R_OK) != 0) return "cannot read " + *path;
+  if (s.tls_cert_file.empty() != s.tls_key_file.empty())
+    return "tls-cert-file and tls-key-file belong together";
+  if (!s.token.empty() && !s.credentials_file.empty())
+    return "token and credentials-file exclude each other";
+  return "";
+}
+
+natsStatus SetSecurity(natsOptions* o, const ConnectionSettings& s) {
+  natsStatus status = NATS_OK;
+  if (!s.credentials_file.empty())
+    status = natsOptions_SetUserCredentialsFromFiles(o, s.credentials_file.c_str(), nullptr);
+  if (status == NATS_OK && !s.token.empty()) status = natsOptions_SetToken(o, s.token.c_str());
+  if (status == NATS_OK && !s.tls_ca_file.empty())
+    status = natsOptions_LoadCATrustedCertificates(o, s.tls_ca_file.c_str());
+  if (status == NATS_OK && !s.tls_cert_file.empty())
+    status = natsOptions_LoadCertificatesChain(o, s.tls_cert_file.c_str(), s.tls_key_file.c_str());
+  // Who trusts an authority means TLS: nothing goes out in the clear to a server that has none.
+  const bool tls = !s.tls_ca_file.empty() || !s.tls_cert_file.empty();
+  if (status == NATS_OK && tls) status = natsOptions_SetSecure(o, true);
+  return status;
+}
+
+natsStatus SetPace(natsOptions* o) {
+  natsStatus s = natsOptions_SetTimeout(o, Connection::kConnectTimeoutMs);
+  if (s == NATS_OK) s = natsOptions_SetAllowReconnect(o, true);
+  if (s == NATS_OK) s = natsOptions_SetMaxReconnect(o, -1);
+  if (s == NATS_OK) s = natsOptions_SetReconnectWait(o, kReconnectWaitMs);
+  if (s == NATS_OK) s = natsOptions_SetReconnectJitter(o, kReconnectJitterMs, kReconnectJitterMs);
+  if (s == NATS_OK) s = natsOptions_SetPingInterval(o, kPingIntervalMs);
+  if (s == NATS_OK) s = natsOptions_SetMaxPingsOut(o, kMaxPingsOut);
+  if (s == NATS_OK) s = natsOptions_SetWriteDeadline(o, Connection::kWriteTimeoutMs);
+  // Its flusher would wait a millisecond for more to send.
+  if (s == NATS_OK) s = natsOptions_SetSendAsap(o, true);
+  return s;
+}
+
+}  // namespace
+
+struct Connection::Shared {
+  std::mutex mutex;  // guards all but `changed`; never held while that runs
+  std::condition_variable ended;
+  ConnectionState state;
+  bool over = false;  // no callback comes any more
+  Changed changed;
+
+  template <class Change>
+  void Update(Change change) {
+    std::unique_lock lock(mutex);
+    change(&state);
+    const ConnectionState now = state;
+    lock.unlock();
+    if (changed) changed(now);
+  }
+};
+
+namespace {
+
+std::string LastError(natsConnection* nc, natsStatus otherwise) {
+  const char* words = nullptr;
+  const natsStatus last = natsConnection_GetLastError(nc, &words);
+  const bool known = last != NATS_OK && words != nullptr && *words != '\0';
+  return known ? words : natsStatus_GetText(otherwise);
+}
+
+/// Callbacks of libnats get a pointer to a SharedPtr of their own.
+template <class SharedPtr>
+struct Callbacks {
+  static auto& Of(void* closure) { return **static_cast<SharedPtr*>(closure); }
+
+  static void OnConnected(natsConnection*, void* closure) {
+    Of(closure).Update([](ConnectionState* s) { ++s->connections; });
+  }
+  static void OnDisconnected(natsConnection*, void* closure) {
+    Of(closure).Update([](ConnectionState* s) { ++s->disconnections; });
+  }
+  static void OnError(natsConnection* nc, natsSubscription*, natsStatus error, void* closure) {
+    // Consumers count what they were too slow for themselves.
+    if (error == NATS_SLOW_CONSUMER || error == NATS_MISMATCH) return;
+    if (error == NATS_MISSED_HEARTBEAT)
+      return Of(closure).Update([](ConnectionState* s) { ++s->missed_heartbeats; });
+    const std::string text = LastError(nc, error);
+    Of(closure).Update([&](ConnectionState* s) {
+      ++s->errors;
+      s->last_error = text;
+    });
+  }
+  /// The last callback of a connection.
+  static void OnClosed(natsConnection* nc, void* closure) {
+    const std::unique_ptr<SharedPtr> mine(static_cast<SharedPtr*>(closure));
+    auto& shared = **mine;
+    const std::string text = LastError(nc, NATS_CONNECTION_CLOSED);
+    shared.Update([&](ConnectionState* s) {
+      s->closed = true;
+      if (s->last_error.empty()) s->last_error = text;
+    });
+    const std::lock_guard lock(shared.mutex);
+    shared.over = true;
+    shared.ended.notify_all();
+  }
+};
+
+}  // namespace
+
+std::string ErrorText(natsStatus status) {
+  natsStatus last = NATS_OK;
+  const char* words = nats_GetLastError(&last);
+  return last == status && words != nullptr && *words != '\0' ? words : natsStatus_GetText(status);
+}
+
+natsStatus Connection::Connect(natsOptions* o) {
+  using Call = Callbacks<SharedPtr>;
+  auto closure = std::make_unique<SharedPtr>(shared_);
+  natsStatus s = natsOptions_SetClosedCB(o, Call::OnClosed, closure.get());
+  if (s == NATS_OK) s = natsOptions_SetDisconnectedCB(o, Call::OnDisconnected, closure.get());
+  if (s == NATS_OK) s = natsOptions_SetReconnectedCB(o, Call::OnConnected, closure.get());
+  if (s == NATS_OK) s = natsOptions_SetErrorHandler(o, Call::OnError, closure.get());
+  if (s == NATS_OK)
+    s = natsOptions_SetRetryOnFailedConnect(o, true, Call::OnConnected, closure.get());
+  if (s != NATS_OK) return s;
+  s = natsConnection_Connect(&nc_, o);
+  if (nc_ == nullptr) return s;
+  closure.release();  // OnClosed() deletes it
+  if (s == NATS_OK) shared_->Update([](ConnectionState* state) { ++state->connections; });
+  return NATS_OK;
+}
+
+std::unique_ptr<Connection> Connection::Open(const ConnectionSettings& settings, Changed changed,
+                                             std::string* why) {
+  *why = CheckFiles(settings);
+  if (!why->empty()) return nullptr;
+  std::vector<std::string> urls = SplitUrls(settings.url);
+  std::vector<const char*> servers;
+  for (const std::string& url : urls) servers.push_back(url.c_str());
+  natsOptions* raw = nullptr;
+  natsStatus s = natsOptions_Create(&raw);
+  const OptionsPtr options(raw);
+  if (s == NATS_OK)
+    s = natsOptions_SetServers(raw, servers.data(), static_cast<int>(servers.size()));
+  if (s == NATS_OK && !settings.name.empty()) s = natsOptions_SetName(raw, settings.name.c_str());
+  if (s == NATS_OK) s = SetPace(raw);
+  if (s == NATS_OK) s = SetSecurity(raw, settings);
+  auto shared = std::make_shared<Shared>();
+  shared->changed = std::move(changed);
+  std::unique_ptr<Connection> connection(new Connection(std::move(shared)));
+  if (s == NATS_OK) s = connection->Connect(raw);
+  if (s == NATS_OK) return connection;
+  *why = ErrorText(s);
+  return nullptr;
+}
+
+Connection::~Connection() {
+  if (nc_ == nullptr) return;
+  natsConnection_Destroy(nc_);
+  std::unique_lock lock(shared_->mutex);
+  shared_->ended.wait_for(lock, kCloseTimeout, [this] { return shared_->over; });
+}
+
+ConnectionState Connection::state() const {
+  const std::lock_guard lock(shared_->mutex);
+  return shared_->state;
+}
+
+}  // namespace lidar::nats

@@ -1,0 +1,254 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+/**
+ * SECTION:element-natssink
+ *
+ * Publishes coded slices, clouds, IMU samples or odometry on a subject of NATS, each buffer as a
+ * message, and has JetStream keep them where that is wanted.
+ *
+ * |[
+ * gst-launch-1.0 lidartestsrc is-live=true ! lidarenc ! natssink subject=fleet.r7.lidar.front
+ * ]|
+ */
+#include "ext/nats/gstnatssink.h"
+
+#include <memory>
+#include <mutex>
+#include <utility>
+
+#include "ext/nats/nats_settings.h"
+#include "ext/nats/publisher.h"
+#include "gst/common/element_class.h"
+#include "gst/common/gstlidar.h"
+#include "gst/common/refused_caps.h"
+#include "gst/common/stats.h"
+
+GST_DEBUG_CATEGORY_STATIC(gst_lidar_nats_sink_debug);
+#define GST_CAT_DEFAULT gst_lidar_nats_sink_debug
+
+namespace {
+
+using namespace lidar::gst;
+using lidar::Duration;
+using lidar::nats::Publisher;
+using lidar::nats::PublisherCounters;
+using lidar::nats::StreamFormat;
+
+struct NatsSinkSettings {
+  NatsSettings nats;
+  Duration max_age = std::chrono::hours(1);
+  guint64 max_bytes = guint64{4} << 30;
+  guint replicas = 1;
+  guint buffer_size = 8U << 20;
+  Duration drain_timeout = std::chrono::seconds(2);
+};
+
+const std::array<Stat<PublisherCounters>, 11> kStats = {{
+    {"messages", &PublisherCounters::messages},
+    {"bytes", &PublisherCounters::bytes},
+    {"messages-acknowledged", &PublisherCounters::acknowledged},
+    {"messages-resent", &PublisherCounters::resent},
+    {"messages-dropped", &PublisherCounters::dropped},
+    {"messages-too-large", &PublisherCounters::too_large},
+    {"messages-waiting", &PublisherCounters::waiting},
+    {"bytes-waiting", &PublisherCounters::buffered},
+    {"server-errors", &PublisherCounters::server_errors},
+    {"reconnects", &PublisherCounters::reconnects},
+    {"connected", &PublisherCounters::connected},
+}};
+
+struct State {
+  std::mutex mutex;  // guards all to the next comment; never held while waiting or posting
+  NatsSinkSettings settings;
+  std::shared_ptr<Publisher> publisher;  // between start and stop
+  PublisherCounters last;                // of the publisher that was
+  guint64 refused = 0;
+
+  // Only start, stop and the streaming thread use what follows.
+  std::shared_ptr<ConnectionWatch> watch;
+  StreamFormat::Ptr format;
+  RefusedCaps refused_caps;
+  bool warned_refused = false;
+};
+
+}  // namespace
+
+struct _GstLidarNatsSink {
+  GstBaseSink parent;
+  State* state;
+};
+
+G_DEFINE_TYPE(GstLidarNatsSink, gst_lidar_nats_sink, GST_TYPE_BASE_SINK)
+GST_ELEMENT_REGISTER_DEFINE(natssink, "natssink", GST_RANK_NONE, GST_TYPE_LIDAR_NATS_SINK)
+
+static State& StateOf(gpointer self) { return *GST_LIDAR_NATS_SINK(self)->state; }
+
+static std::shared_ptr<Publisher> PublisherOf(gpointer self) {
+  State& state = StateOf(self);
+  const std::lock_guard lock(state.mutex);
+  return state.publisher;
+}
+
+static StructurePtr Stats(GObject* object) {
+  State& state = StateOf(object);
+  const auto publisher = PublisherOf(object);
+  const PublisherCounters now = publisher ? publisher->counters() : PublisherCounters();
+  std::unique_lock lock(state.mutex);
+  const PublisherCounters counters = publisher ? now : state.last;
+  const guint64 refused = state.refused;
+  lock.unlock();
+  StructurePtr stats = ToStructure("application/x-natssink-stats", kStats, counters);
+  gst_structure_set(stats.get(), "buffers-refused", G_TYPE_UINT64, refused, nullptr);
+  return stats;
+}
+
+static const std::array<Property<NatsSinkSettings>, 14> kProperties = {{
+    Within<&NatsSinkSettings::nats>(NatsRows(), "url"),
+    Within<&NatsSinkSettings::nats>(NatsRows(), "subject"),
+    Within<&NatsSinkSettings::nats>(NatsRows(), "jetstream"),
+    {"max-age", "Time that JetStream keeps messages; 0: no limit [ns]", &NatsSinkSettings::max_age},
+    {"max-bytes", "Bytes that JetStream keeps, the oldest go; 0: no limit [bytes]",
+     &NatsSinkSettings::max_bytes, 0, 9e18},
+    {"replicas", "Servers of a cluster that keep a copy each, where the stream is made",
+     &NatsSinkSettings::replicas, 1, 5},
+    {"buffer-size", "Bytes that wait for the server or its acknowledgement, the oldest go [bytes]",
+     &NatsSinkSettings::buffer_size, 65536, 1 << 30},
+    {"drain-timeout", "Time that EOS waits until the server has everything [ns]",
+     &NatsSinkSettings::drain_timeout, 0, 6e10, GST_PARAM_MUTABLE_PLAYING},
+    Within<&NatsSinkSettings::nats>(NatsRows(), "credentials-file"),
+    Within<&NatsSinkSettings::nats>(NatsRows(), "token"),
+    Within<&NatsSinkSettings::nats>(NatsRows(), "tls-ca-file"),
+    Within<&NatsSinkSettings::nats>(NatsRows(), "tls-cert-file"),
+    Within<&NatsSinkSettings::nats>(NatsRows(), "tls-key-file"),
+    {"stats",
+     "messages, bytes [bytes], messages-acknowledged, messages-resent, messages-dropped, "
+     "messages-too-large, messages-waiting, bytes-waiting [bytes], server-errors, reconnects, "
+     "connected, buffers-refused",
+     Stats},
+}};
+
+static NatsSinkSettings Snapshot(State& state) {
+  const std::lock_guard lock(state.mutex);
+  return state.settings;
+}
+
+static lidar::nats::PublisherSettings ToPublisher(const NatsSinkSettings& settings) {
+  lidar::nats::PublisherSettings p;
+  p.connection = settings.nats.connection;
+  p.subject = settings.nats.subject;
+  p.stream = {settings.nats.stream, settings.max_age, settings.max_bytes, settings.replicas};
+  p.max_buffered = settings.buffer_size;
+  return p;
+}
+
+static gboolean Start(GstBaseSink* base) {
+  auto* self = GST_LIDAR_NATS_SINK(base);
+  State& state = StateOf(self);
+  NatsSinkSettings settings = Snapshot(state);
+  if (!CheckNatsSettings(GST_ELEMENT(self), &settings.nats)) return FALSE;
+  state.watch = std::make_shared<ConnectionWatch>(GST_ELEMENT(self));
+  state.format.reset();
+  state.refused_caps.Reset();
+  state.warned_refused = false;
+  lidar::nats::PublisherEvents events;
+  events.connection = [watch = state.watch](const auto& now) { watch->Note(now); };
+  events.trouble = [watch = state.watch](const std::string& why) {
+    watch->Warn(why + "; messages wait, then they are dropped and counted.");
+  };
+  std::string why;
+  auto publisher = Publisher::Start(ToPublisher(settings), std::move(events), &why);
+  if (!publisher) {
+    GST_ELEMENT_ERROR(self, RESOURCE, OPEN_WRITE, ("NATS cannot be used: %s.", why.c_str()),
+                      (nullptr));
+    state.watch.reset();
+    return FALSE;
+  }
+  const std::lock_guard lock(state.mutex);
+  state.publisher = std::move(publisher);
+  state.refused = 0;
+  return TRUE;
+}
+
+static gboolean Stop(GstBaseSink* base) {
+  State& state = StateOf(base);
+  const auto publisher = PublisherOf(base);
+  state.watch->Silence();
+  publisher->Stop();
+  state.watch.reset();
+  const PublisherCounters last = publisher->counters();
+  const std::lock_guard lock(state.mutex);
+  state.last = last;
+  state.publisher.reset();
+  return TRUE;
+}
+
+static gboolean SetCaps(GstBaseSink* base, GstCaps* caps) {
+  auto* self = GST_LIDAR_NATS_SINK(base);
+  State& state = StateOf(self);
+  std::string why;
+  state.format = StreamFormat::FromCaps(caps, &why);
+  if (state.format) return TRUE;
+  if (state.refused_caps.Note(caps))
+    GST_ELEMENT_ERROR(self, STREAM, FORMAT, ("This cannot be published: %s.", why.c_str()),
+                      ("caps are %" GST_PTR_FORMAT, static_cast<gpointer>(caps)));
+  return FALSE;
+}
+
+static GstFlowReturn Render(GstBaseSink* base, GstBuffer* buffer) {
+  State& state = StateOf(base);
+  const auto publisher = PublisherOf(base);
+  if (!publisher || !state.format) return GST_FLOW_NOT_NEGOTIATED;
+  if (state.format->Fits(gst_buffer_get_size(buffer))) {
+    publisher->Add(BufferPtr(gst_buffer_ref(buffer)), state.format);
+    return GST_FLOW_OK;
+  }
+  {
+    const std::lock_guard lock(state.mutex);
+    ++state.refused;
+  }
+  if (!std::exchange(state.warned_refused, true))
+    GST_ELEMENT_WARNING(base, STREAM, FORMAT,
+                        ("A buffer is not as its caps say; such buffers are dropped and counted."),
+                        ("%" G_GSIZE_FORMAT " bytes", gst_buffer_get_size(buffer)));
+  return GST_FLOW_OK;
+}
+
+static gboolean OnEvent(GstBaseSink* base, GstEvent* event) {
+  if (GST_EVENT_TYPE(event) == GST_EVENT_EOS) {
+    const auto publisher = PublisherOf(base);
+    if (publisher && !publisher->Drain(Snapshot(StateOf(base)).drain_timeout))
+      GST_WARNING_OBJECT(base, "at EOS the server does not have everything yet");
+  }
+  return GST_BASE_SINK_CLASS(gst_lidar_nats_sink_parent_class)->event(base, event);
+}
+
+static gboolean Unlock(GstBaseSink* base) {
+  if (const auto publisher = PublisherOf(base)) publisher->Interrupt(true);
+  return TRUE;
+}
+
+static gboolean UnlockStop(GstBaseSink* base) {
+  if (const auto publisher = PublisherOf(base)) publisher->Interrupt(false);
+  return TRUE;
+}
+
+static void gst_lidar_nats_sink_init(GstLidarNatsSink* self) { self->state = new State; }
+
+static void gst_lidar_nats_sink_class_init(GstLidarNatsSinkClass* klass) {
+  GST_DEBUG_CATEGORY_INIT(gst_lidar_nats_sink_debug, "natssink", 0, "Publisher of NATS");
+  auto* object = G_OBJECT_CLASS(klass);
+  ServeProperties<GstLidarNatsSink, kProperties>(object);
+  OwnState<GstLidarNatsSink, gst_lidar_nats_sink_parent_class>(object);
+  Describe(klass, {"NATS sink", "Sink/Network", "Publishes a stream on a subject of NATS"},
+           {{"sink", GST_PAD_SINK,
+             GST_LIDAR_CLOUD_MEDIA_TYPE ";" GST_LIDAR_SLICE_MEDIA_TYPE
+                                        ";" GST_LIDAR_DRACO_MEDIA_TYPE ";" GST_LIDAR_IMU_MEDIA_TYPE
+                                        ";" GST_LIDAR_ODOMETRY_MEDIA_TYPE}});
+  auto* base = GST_BASE_SINK_CLASS(klass);
+  base->start = Start;
+  base->stop = Stop;
+  base->set_caps = SetCaps;
+  base->render = Render;
+  base->event = OnEvent;
+  base->unlock = Unlock;
+  base->unlock_stop = UnlockStop;
+}

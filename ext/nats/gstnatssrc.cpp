@@ -1,0 +1,399 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+/**
+ * SECTION:element-natssrc
+ *
+ * The stream that a natssink publishes on a subject of NATS, as it comes or as JetStream kept it.
+ *
+ * |[
+ * gst-launch-1.0 natssrc subject=fleet.r7.lidar.front ! lidardec ! fakesink
+ * ]|
+ */
+#include "ext/nats/gstnatssrc.h"
+
+#include <atomic>
+#include <memory>
+#include <mutex>
+#include <utility>
+
+#include "ext/nats/message.h"
+#include "ext/nats/nats_settings.h"
+#include "ext/nats/subscriber.h"
+#include "gst/common/element_class.h"
+#include "gst/common/gstlidar.h"
+#include "gst/common/stats.h"
+
+GST_DEBUG_CATEGORY_STATIC(gst_lidar_nats_src_debug);
+#define GST_CAT_DEFAULT gst_lidar_nats_src_debug
+
+namespace {
+
+using namespace lidar::gst;
+using lidar::nats::Delivery;
+using lidar::nats::Place;
+using lidar::nats::ReadMessage;
+using lidar::nats::StreamFormat;
+using lidar::nats::Subscriber;
+using std::chrono::milliseconds;
+
+constexpr milliseconds kPoll{100};          // how late a change of state may be seen
+constexpr milliseconds kFormatWait{1'000};  // for caps that nobody told us yet
+constexpr gint64 kFormatPauseUs = 5'000'000;
+
+struct NatsSrcSettings {
+  NatsSettings nats;
+  guint64 start_time = GST_CLOCK_TIME_NONE;
+  bool eos_at_end = false;
+  guint buffer_size = 8U << 20;
+};
+
+struct Counters {
+  guint64 messages = 0;
+  guint64 bytes = 0;
+  guint64 damaged = 0;
+  guint64 without_caps = 0;
+  guint64 lost = 0;
+  guint64 again = 0;
+  guint64 overruns = 0;
+  guint reconnects = 0;
+  bool connected = false;
+};
+const std::array<Stat<Counters>, 9> kStats = {{
+    {"messages", &Counters::messages},
+    {"bytes", &Counters::bytes},
+    {"messages-damaged", &Counters::damaged},
+    {"messages-without-caps", &Counters::without_caps},
+    {"messages-lost", &Counters::lost},
+    {"messages-again", &Counters::again},
+    {"messages-overrun", &Counters::overruns},
+    {"reconnects", &Counters::reconnects},
+    {"connected", &Counters::connected},
+}};
+
+struct State {
+  std::mutex mutex;  // guards all to the next comment; never held while waiting or posting
+  NatsSrcSettings settings;
+  Counters counters;
+
+  std::atomic<bool> flushing{false};
+
+  // Only start, stop and the streaming thread use what follows.
+  NatsSrcSettings now;  // as it was at start
+  std::unique_ptr<Subscriber> subscriber;
+  std::shared_ptr<ConnectionWatch> watch;
+  StreamFormat::Ptr format;
+  std::string trouble;           // that was told
+  Delivery delivery;             // of the buffer that was pushed last
+  std::optional<Place> place;    // of it
+  std::optional<guint64> first;  // when JetStream stored the first message
+  gint64 no_wait_until_us = 0;   // unknown caps are not waited for
+  bool warned_damaged = false;
+  bool at_end = false;
+};
+
+}  // namespace
+
+struct _GstLidarNatsSrc {
+  GstPushSrc parent;
+  State* state;
+};
+
+G_DEFINE_TYPE(GstLidarNatsSrc, gst_lidar_nats_src, GST_TYPE_PUSH_SRC)
+GST_ELEMENT_REGISTER_DEFINE(natssrc, "natssrc", GST_RANK_NONE, GST_TYPE_LIDAR_NATS_SRC)
+
+static State& StateOf(gpointer self) { return *GST_LIDAR_NATS_SRC(self)->state; }
+
+static Counters CountersNow(State& state) {
+  const std::lock_guard lock(state.mutex);
+  return state.counters;
+}
+
+static StructurePtr Stats(GObject* object) {
+  return ToStructure("application/x-natssrc-stats", kStats, CountersNow(StateOf(object)));
+}
+
+static const std::array<Property<NatsSrcSettings>, 14> kProperties = {{
+    Within<&NatsSrcSettings::nats>(NatsRows(), "url"),
+    Within<&NatsSrcSettings::nats>(NatsRows(), "subject"),
+    {"queue-group", "Sources of a group share the messages, each gets some; NULL: all of them",
+     At<&NatsSrcSettings::nats, &NatsSettings::queue_group>},
+    Within<&NatsSrcSettings::nats>(NatsRows(), "jetstream"),
+    {"durable", "Consumer of JetStream that knows what was taken; NULL: none",
+     At<&NatsSrcSettings::nats, &NatsSettings::durable>},
+    {"start-time",
+     "When what JetStream shall send first was stored; 0: all of it; default: from now on "
+     "[ns since 1970]",
+     &NatsSrcSettings::start_time},
+    {"eos-at-end", "EOS once JetStream has no more", &NatsSrcSettings::eos_at_end},
+    {"buffer-size", "Bytes that wait to be taken, without JetStream; the newest go [bytes]",
+     &NatsSrcSettings::buffer_size, 65536, 1 << 30},
+    Within<&NatsSrcSettings::nats>(NatsRows(), "credentials-file"),
+    Within<&NatsSrcSettings::nats>(NatsRows(), "token"),
+    Within<&NatsSrcSettings::nats>(NatsRows(), "tls-ca-file"),
+    Within<&NatsSrcSettings::nats>(NatsRows(), "tls-cert-file"),
+    Within<&NatsSrcSettings::nats>(NatsRows(), "tls-key-file"),
+    {"stats",
+     "messages, bytes [bytes], messages-damaged, messages-without-caps, messages-lost, "
+     "messages-again, messages-overrun, reconnects, connected",
+     Stats},
+}};
+
+/// What JetStream kept comes as fast as it is wanted, with times of its own.
+static void FollowSettings(GObject* object, GParamSpec*) {
+  State& state = StateOf(object);
+  std::unique_lock lock(state.mutex);
+  const bool live = state.settings.nats.stream.empty();
+  lock.unlock();
+  gst_base_src_set_live(GST_BASE_SRC(object), live);
+  gst_base_src_set_do_timestamp(GST_BASE_SRC(object), live);
+}
+
+static lidar::nats::SubscriberSettings ToSubscriber(const NatsSrcSettings& settings) {
+  lidar::nats::SubscriberSettings s;
+  s.connection = settings.nats.connection;
+  s.subject = settings.nats.subject;
+  s.queue_group = settings.nats.queue_group;
+  s.stream = settings.nats.stream;
+  s.durable = settings.nats.durable;
+  if (GST_CLOCK_TIME_IS_VALID(settings.start_time)) s.start_time = settings.start_time;
+  s.max_pending = static_cast<int>(settings.buffer_size);
+  return s;
+}
+
+/// False after an error message.
+static bool CheckSettings(GstLidarNatsSrc* self, NatsSrcSettings* settings) {
+  if (!CheckNatsSettings(GST_ELEMENT(self), &settings->nats)) return false;
+  const NatsSettings& nats = settings->nats;
+  const bool group_alone =
+      !nats.stream.empty() && !nats.queue_group.empty() && nats.durable.empty();
+  const bool durable_alone = nats.stream.empty() && !nats.durable.empty();
+  if (!group_alone && !durable_alone) return true;
+  GST_ELEMENT_ERROR(self, RESOURCE, SETTINGS,
+                    ("%s.", durable_alone ? "durable needs jetstream"
+                                          : "queue-group with jetstream needs durable"),
+                    (nullptr));
+  return false;
+}
+
+static void NoteConnection(State& state, const lidar::nats::ConnectionState& now) {
+  const std::lock_guard lock(state.mutex);
+  state.counters.connected = now.connected();
+  state.counters.reconnects = now.connections > 0 ? now.connections - 1 : 0;
+}
+
+static void ForgetStream(State& state) {
+  state.format.reset();
+  state.trouble.clear();
+  state.delivery = {};
+  state.place.reset();
+  state.first.reset();
+  state.no_wait_until_us = 0;
+  state.warned_damaged = false;
+  state.at_end = false;
+}
+
+static gboolean Start(GstBaseSrc* base) {
+  auto* self = GST_LIDAR_NATS_SRC(base);
+  State& state = StateOf(self);
+  {
+    const std::lock_guard lock(state.mutex);
+    state.now = state.settings;
+    state.counters = {};
+  }
+  if (!CheckSettings(self, &state.now)) return FALSE;
+  ForgetStream(state);
+  state.watch = std::make_shared<ConnectionWatch>(GST_ELEMENT(self));
+  std::string why;
+  state.subscriber = Subscriber::Open(
+      ToSubscriber(state.now), [watch = state.watch](const auto& now) { watch->Note(now); }, &why);
+  if (state.subscriber) return TRUE;
+  state.watch.reset();
+  GST_ELEMENT_ERROR(self, RESOURCE, OPEN_READ, ("NATS cannot be used: %s.", why.c_str()),
+                    (nullptr));
+  return FALSE;
+}
+
+static gboolean Stop(GstBaseSrc* base) {
+  State& state = StateOf(base);
+  state.watch->Silence();
+  state.delivery = {};
+  state.subscriber.reset();
+  state.watch.reset();
+  const std::lock_guard lock(state.mutex);
+  state.counters.connected = false;
+  return TRUE;
+}
+
+static void Count(GstLidarNatsSrc* self, guint64 Counters::*counter, guint64 amount = 1) {
+  State& state = StateOf(self);
+  const std::lock_guard lock(state.mutex);
+  state.counters.*counter += amount;
+}
+
+/// One warning, until a message is good again: a publisher that is broken sends many.
+static void NoteDamaged(GstLidarNatsSrc* self) {
+  Count(self, &Counters::damaged);
+  if (!std::exchange(StateOf(self).warned_damaged, true))
+    GST_ELEMENT_WARNING(self, STREAM, DECODE,
+                        ("A message is none of natssink's, or damaged. Such messages are dropped "
+                         "and counted."),
+                        (nullptr));
+}
+
+/// What is missing between two messages of one sink; those of a queue group go to others, too.
+static void NotePlace(GstLidarNatsSrc* self, const Place& place, GstBuffer* buffer) {
+  State& state = StateOf(self);
+  const bool shared = !state.now.nats.queue_group.empty();
+  if (!shared && state.place && state.place->run == place.run) {
+    if (place.number <= state.place->number) {
+      Count(self, &Counters::again);
+      return;
+    }
+    const guint64 missing = place.number - state.place->number - 1;
+    if (missing > 0) GST_BUFFER_FLAG_SET(buffer, GST_BUFFER_FLAG_DISCONT);
+    Count(self, &Counters::lost, missing);
+  }
+  state.place = place;
+}
+
+/// Null after the message was dropped and counted.
+static StreamFormat::Ptr FormatOf(GstLidarNatsSrc* self, const std::string& id) {
+  State& state = StateOf(self);
+  if (state.format && state.format->id() == id) return state.format;
+  const bool wait = g_get_monotonic_time() >= state.no_wait_until_us;
+  StreamFormat::Ptr format = state.subscriber->Format(id, wait ? kFormatWait : milliseconds{});
+  if (format) return format;
+  // Not for each of many: others may be good.
+  if (wait) state.no_wait_until_us = g_get_monotonic_time() + kFormatPauseUs;
+  Count(self, &Counters::without_caps);
+  return nullptr;
+}
+
+static void SetTimes(State& state, const Delivery& delivery, GstBuffer* buffer) {
+  if (!delivery.stored) return;  // the base class takes the time of arrival
+  if (!state.first) state.first = *delivery.stored;
+  GST_BUFFER_PTS(buffer) = *delivery.stored - std::min(*state.first, *delivery.stored);
+}
+
+/// OK where there is a buffer, CUSTOM_SUCCESS where the message has none.
+static GstFlowReturn Take(GstLidarNatsSrc* self, const Delivery& delivery, GstBuffer** out) {
+  State& state = StateOf(self);
+  std::optional<ReadMessage> read = lidar::nats::Read(delivery.message.get());
+  if (!read) {
+    NoteDamaged(self);
+    return GST_FLOW_CUSTOM_SUCCESS;
+  }
+  const StreamFormat::Ptr format = FormatOf(self, read->format_id);
+  if (!format) return GST_FLOW_CUSTOM_SUCCESS;
+  const gsize size = gst_buffer_get_size(read->buffer.get());
+  if (!format->Fits(size)) {
+    NoteDamaged(self);
+    return GST_FLOW_CUSTOM_SUCCESS;
+  }
+  if (format != state.format) {
+    if (!gst_base_src_set_caps(GST_BASE_SRC(self), format->caps())) return GST_FLOW_NOT_NEGOTIATED;
+    state.format = format;
+  }
+  NotePlace(self, read->place, read->buffer.get());
+  SetTimes(state, delivery, read->buffer.get());
+  state.warned_damaged = false;
+  Count(self, &Counters::messages);
+  Count(self, &Counters::bytes, size);
+  *out = read->buffer.release();
+  return GST_FLOW_OK;
+}
+
+static void Acknowledge(State& state) {
+  if (state.delivery.message && state.subscriber->acknowledges())
+    state.subscriber->Acknowledge(state.delivery.message.get());
+  state.delivery = {};
+}
+
+static void NoteTrouble(GstLidarNatsSrc* self) {
+  State& state = StateOf(self);
+  const std::string& trouble = state.subscriber->trouble();
+  if (trouble == state.trouble) return;
+  state.trouble = trouble;
+  state.watch->Warn("JetStream gives nothing: " + trouble + "; it is tried again.");
+}
+
+static GstFlowReturn Handle(GstLidarNatsSrc* self, Subscriber::Event event, Delivery delivery,
+                            GstBuffer** out) {
+  State& state = StateOf(self);
+  const bool eos_at_end = state.now.eos_at_end;
+  switch (event) {
+    case Subscriber::Event::kClosed:  // the watch has posted why
+      return GST_FLOW_ERROR;
+    case Subscriber::Event::kEmpty:
+      return eos_at_end ? GST_FLOW_EOS : GST_FLOW_CUSTOM_SUCCESS;
+    case Subscriber::Event::kTrouble:
+      NoteTrouble(self);
+      return GST_FLOW_CUSTOM_SUCCESS;
+    case Subscriber::Event::kNothing:
+      return GST_FLOW_CUSTOM_SUCCESS;
+    case Subscriber::Event::kMessage:
+      break;
+  }
+  state.trouble.clear();
+  const GstFlowReturn flow = Take(self, delivery, out);
+  state.at_end = eos_at_end && delivery.stored && delivery.to_come == 0;
+  state.delivery = std::move(delivery);
+  if (flow != GST_FLOW_CUSTOM_SUCCESS) return flow;
+  Acknowledge(state);
+  return state.at_end ? GST_FLOW_EOS : flow;
+}
+
+static GstFlowReturn Create(GstPushSrc* push, GstBuffer** out) {
+  auto* self = GST_LIDAR_NATS_SRC(push);
+  State& state = StateOf(self);
+  Acknowledge(state);  // downstream has had it
+  if (state.at_end) return GST_FLOW_EOS;
+  while (!state.flushing) {
+    Delivery delivery;
+    const Subscriber::Event event = state.subscriber->Next(kPoll, &delivery);
+    NoteConnection(state, state.subscriber->connection());
+    {
+      const std::lock_guard lock(state.mutex);
+      state.counters.overruns = state.subscriber->overruns();
+    }
+    const GstFlowReturn flow = Handle(self, event, std::move(delivery), out);
+    if (flow != GST_FLOW_CUSTOM_SUCCESS) return flow;
+  }
+  return GST_FLOW_FLUSHING;
+}
+
+static gboolean Unlock(GstBaseSrc* base) {
+  StateOf(base).flushing = true;
+  return TRUE;
+}
+
+static gboolean UnlockStop(GstBaseSrc* base) {
+  StateOf(base).flushing = false;
+  return TRUE;
+}
+
+static void gst_lidar_nats_src_init(GstLidarNatsSrc* self) {
+  self->state = new State;
+  gst_base_src_set_format(GST_BASE_SRC(self), GST_FORMAT_TIME);
+  FollowSettings(G_OBJECT(self), nullptr);
+}
+
+static void gst_lidar_nats_src_class_init(GstLidarNatsSrcClass* klass) {
+  GST_DEBUG_CATEGORY_INIT(gst_lidar_nats_src_debug, "natssrc", 0, "Subscription of NATS");
+  auto* object = G_OBJECT_CLASS(klass);
+  ServeProperties<GstLidarNatsSrc, kProperties, FollowSettings>(object);
+  OwnState<GstLidarNatsSrc, gst_lidar_nats_src_parent_class>(object);
+  Describe(klass, {"NATS source", "Source/Network", "Takes a stream from a subject of NATS"},
+           {{"src", GST_PAD_SRC,
+             GST_LIDAR_CLOUD_MEDIA_TYPE ";" GST_LIDAR_SLICE_MEDIA_TYPE
+                                        ";" GST_LIDAR_DRACO_MEDIA_TYPE ";" GST_LIDAR_IMU_MEDIA_TYPE
+                                        ";" GST_LIDAR_ODOMETRY_MEDIA_TYPE}});
+  auto* src = GST_BASE_SRC_CLASS(klass);
+  src->start = Start;
+  src->stop = Stop;
+  src->unlock = Unlock;
+  src->unlock_stop = UnlockStop;
+  src->is_seekable = [](GstBaseSrc*) -> gboolean { return FALSE; };
+  // Caps are set with the first message, which says what they are.
+  src->negotiate = [](GstBaseSrc*) -> gboolean { return TRUE; };
+  GST_PUSH_SRC_CLASS(klass)->create = Create;
+}

@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Owners of what libnats hands out.
+#pragma once
+#include <nats/nats.h>
+
+#include <memory>
+
+namespace lidar::nats {
+
+struct Destroy {
+  void operator()(natsOptions* p) const { natsOptions_Destroy(p); }
+  void operator()(natsSubscription* p) const { natsSubscription_Destroy(p); }
+  void operator()(natsMsg* p) const { natsMsg_Destroy(p); }
+  void operator()(jsCtx* p) const { jsCtx_Destroy(p); }
+  void operator()(jsStreamInfo* p) const { jsStreamInfo_Destroy(p); }
+  void operator()(jsConsumerInfo* p) const { jsConsumerInfo_Destroy(p); }
+  void operator()(jsMsgMetaData* p) const { jsMsgMetaData_Destroy(p); }
+  void operator()(natsInbox* p) const { natsInbox_Destroy(p); }
+};
+
+using OptionsPtr = std::unique_ptr<natsOptions, Destroy>;
+using SubscriptionPtr = std::unique_ptr<natsSubscription, Destroy>;
+using MessagePtr = std::unique_ptr<natsMsg, Destroy>;
+using JetStreamPtr = std::unique_ptr<jsCtx, Destroy>;
+using StreamInfoPtr = std::unique_ptr<jsStreamInfo, Destroy>;
+using ConsumerInfoPtr = std::unique_ptr<jsConsumerInfo, Destroy>;
+using MetaDataPtr = std::unique_ptr<jsMsgMetaData, Destroy>;
+using InboxPtr = std::unique_ptr<natsInbox, Destroy>;
+
+}  // namespace lidar::nats

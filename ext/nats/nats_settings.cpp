@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "ext/nats/nats_settings.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "ext/nats/jetstream.h"
+#include "ext/nats/message.h"
+
+namespace lidar::gst {
+
+const std::array<Property<NatsSettings>, 8>& NatsRows() {
+  using Connection = nats::ConnectionSettings;
+  constexpr auto connection = &NatsSettings::connection;
+  static const std::array<Property<NatsSettings>, 8> kRows = {{
+      {"url", "Server; several of a cluster with commas between them",
+       At<connection, &Connection::url>},
+      {"subject", "Subject of the stream, such as fleet.robot7.lidar.front",
+       &NatsSettings::subject},
+      {"jetstream", "Stream of JetStream, which is kept on the server's disk; NULL: none",
+       &NatsSettings::stream},
+      {"credentials-file", "User and key, as nsc writes them (.creds)",
+       At<connection, &Connection::credentials_file>},
+      {"token", "Token for the server; can only be set", At<connection, &Connection::token>, 0, 0,
+       G_PARAM_WRITABLE},
+      {"tls-ca-file", "Authorities to trust (PEM); set, the connection is TLS or none",
+       At<connection, &Connection::tls_ca_file>},
+      {"tls-cert-file", "Our own certificate (PEM)", At<connection, &Connection::tls_cert_file>},
+      {"tls-key-file", "The key of tls-cert-file (PEM)", At<connection, &Connection::tls_key_file>},
+  }};
+  return kRows;
+}
+
+bool CheckNatsSettings(GstElement* element, NatsSettings* settings) {
+  const StringPtr name(gst_element_get_name(element));
+  settings->connection.name = name.get();
+  const struct {
+    const char* property;
+    const std::string& value;
+    std::string why;
+  } checks[] = {{"subject", settings->subject, nats::CheckSubject(settings->subject)},
+                {"jetstream", settings->stream, nats::CheckName(settings->stream)},
+                {"queue-group", settings->queue_group, nats::CheckName(settings->queue_group)},
+                {"durable", settings->durable, nats::CheckName(settings->durable)}};
+  for (const auto& check : checks) {
+    if (check.why.empty()) continue;
+    GST_ELEMENT_ERROR(
+        element, RESOURCE, SETTINGS,
+        ("NATS takes no %s \"%s\": %s.", check.property, check.value.c_str(), check.why.c_str()),
+        (nullptr));
+    return false;
+  }
+  return true;
+}
+
+void ConnectionWatch::Silence() {
+  const std::lock_guard lock(mutex_);
+  silent_ = true;
+}
+
+void ConnectionWatch::Warn(const std::string& text) {
+  std::unique_lock lock(mutex_);
+  if (silent_) return;
+  lock.unlock();
+  GST_ELEMENT_WARNING(element_.get(), RESOURCE, FAILED, ("%s", text.c_str()), (nullptr));
+}
+
+void ConnectionWatch::Note(const nats::ConnectionState& state) {
+  std::unique_lock lock(mutex_);
+  if (silent_) return;
+  const bool changed = std::exchange(connected_, state.connected()) != state.connected();
+  const bool closed = state.closed && !std::exchange(closed_, true);
+  const bool error = state.errors > std::exchange(errors_, std::max(errors_, state.errors));
+  lock.unlock();
+  // The words are the server's, and messages on the bus are valid UTF-8.
+  const StringPtr words(g_utf8_make_valid(state.last_error.c_str(), -1));
+  if (changed)
+    gst_element_post_message(
+        element_.get(),
+        gst_message_new_element(GST_OBJECT(element_.get()),
+                                gst_structure_new("nats-connection-changed", "connected",
+                                                  G_TYPE_BOOLEAN, state.connected(), nullptr)));
+  if (closed)
+    GST_ELEMENT_ERROR(element_.get(), RESOURCE, NOT_AUTHORIZED,
+                      ("The NATS server refuses us: %s.", words.get()), (nullptr));
+  else if (error)
+    Warn(std::string("The NATS server complains: ") + words.get() + ".");
+}
+
+}  // namespace lidar::gst

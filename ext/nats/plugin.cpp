@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Registers the elements of the plugin.
+#include "ext/nats/gstnatssink.h"
+#include "ext/nats/gstnatssrc.h"
+#include "gst/common/gstlidar.h"
+
+static gboolean plugin_init(GstPlugin* plugin) {
+  gst_lidar_init();
+  return GST_ELEMENT_REGISTER(natssink, plugin) && GST_ELEMENT_REGISTER(natssrc, plugin);
+}
+
+GST_PLUGIN_DEFINE(GST_VERSION_MAJOR, GST_VERSION_MINOR, lidarnats,
+                  "Streams of clouds and slices over NATS", plugin_init, VERSION, "LGPL", PACKAGE,
+                  PACKAGE_ORIGIN)

@@ -1,0 +1,329 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "ext/nats/publisher.h"
+
+#include <algorithm>
+#include <charconv>
+#include <string_view>
+#include <system_error>
+#include <utility>
+
+namespace lidar::nats {
+namespace {
+
+constexpr std::chrono::milliseconds kConfigInterval{1'000};
+constexpr std::chrono::milliseconds kAskedInterval{
+    20};  // whoever asks often gets no more than this
+constexpr std::chrono::milliseconds kStreamRetry{500};
+constexpr std::chrono::milliseconds kAckTimeout{5'000};
+constexpr std::chrono::milliseconds kPatrol{500};  // how late an unanswered message may be seen
+constexpr std::size_t kMaxInFlight = 256;          // messages
+
+/// The answer of JetStream says where it stored a message, or what was wrong.
+std::string ErrorOfAck(natsMsg* message) {
+  if (natsMsg_IsNoResponders(message)) return "no stream of JetStream takes the subject";
+  const std::string_view text(natsMsg_GetData(message),
+                              static_cast<std::size_t>(natsMsg_GetDataLength(message)));
+  if (text.find("\"error\"") == text.npos && text.find("\"stream\"") != text.npos) return "";
+  constexpr std::size_t kShown = 200;
+  const gst::StringPtr shown(
+      g_utf8_make_valid(text.data(), static_cast<gssize>(std::min(text.size(), kShown))));
+  return std::string("JetStream refuses a message: ") + shown.get();
+}
+
+}  // namespace
+
+Publisher::Publisher(PublisherSettings settings, PublisherEvents events)
+    : settings_(std::move(settings)),
+      events_(std::move(events)),
+      run_((std::uint64_t{g_random_int()} << 32) | g_random_int()),
+      outbox_(settings_.max_buffered) {}
+
+std::shared_ptr<Publisher> Publisher::Start(const PublisherSettings& settings,
+                                            PublisherEvents events, std::string* why) {
+  std::shared_ptr<Publisher> publisher(new Publisher(settings, std::move(events)));
+  const bool open = publisher->Open(why);
+  if (!open) publisher->Stop();
+  return open ? publisher : nullptr;
+}
+
+bool Publisher::Open(std::string* why) {
+  const std::weak_ptr<Publisher> weak = weak_from_this();
+  connection_ = Connection::Open(
+      settings_.connection,
+      [weak](const ConnectionState& state) {
+        const auto self = weak.lock();
+        if (!self) return;
+        {
+          const std::lock_guard lock(self->mutex_);
+          self->wake_.notify_all();
+        }
+        if (self->events_.connection) self->events_.connection(state);
+      },
+      why);
+  if (!connection_ || !Subscribe(AskSubject(settings_.subject), &Publisher::OnAsk, &asks_, why))
+    return false;
+  if (keeps()) {
+    natsInbox* raw = nullptr;
+    natsInbox_Create(&raw);
+    const InboxPtr inbox(raw);
+    js_ = OpenJetStream(connection_->get());
+    if (!inbox || !js_) {
+      *why = "memory is short";
+      return false;
+    }
+    ack_prefix_ = std::string(inbox.get()) + ".";
+    if (!Subscribe(ack_prefix_ + "*", &Publisher::OnAck, &acks_, why)) return false;
+  }
+  try {
+    thread_ = std::thread([this] { Run(); });
+  } catch (const std::system_error&) {
+    *why = "a thread cannot be started";
+    return false;
+  }
+  return true;
+}
+
+bool Publisher::Subscribe(const std::string& subject, void (Publisher::*call)(natsMsg*),
+                          SubscriptionPtr* out, std::string* why) {
+  struct Target {
+    std::weak_ptr<Publisher> publisher;
+    void (Publisher::*call)(natsMsg*);
+  };
+  const auto on_message = [](natsConnection*, natsSubscription*, natsMsg* raw, void* closure) {
+    const MessagePtr message(raw);
+    const auto& target = *static_cast<Target*>(closure);
+    const auto self = target.publisher.lock();
+    if (self) (self.get()->*target.call)(raw);
+  };
+  auto target = std::make_unique<Target>(Target{weak_from_this(), call});
+  natsSubscription* raw = nullptr;
+  const natsStatus s =
+      natsConnection_Subscribe(&raw, connection_->get(), subject.c_str(), on_message, target.get());
+  out->reset(raw);
+  if (s != NATS_OK) {
+    *why = ErrorText(s);
+    return false;
+  }
+  // The callback may still run when the subscription is gone; this comes after it.
+  natsSubscription_SetOnCompleteCB(
+      raw, [](void* closure) { delete static_cast<Target*>(closure); }, target.release());
+  return true;
+}
+
+void Publisher::Stop() {
+  {
+    const std::lock_guard lock(mutex_);
+    stopping_ = true;
+    wake_.notify_all();
+    drained_.notify_all();
+  }
+  if (thread_.joinable()) thread_.join();
+  asks_.reset();
+  acks_.reset();
+  js_.reset();
+  connection_.reset();
+  const std::lock_guard lock(mutex_);
+  counters_.dropped += outbox_.Clear();
+  counters_.connected = false;
+}
+
+void Publisher::Add(gst::BufferPtr buffer, const StreamFormat::Ptr& format) {
+  const std::lock_guard lock(mutex_);
+  format_ = format;
+  counters_.dropped += outbox_.Push({next_number_++, std::move(buffer), format});
+  wake_.notify_all();
+}
+
+bool Publisher::Drain(Duration timeout) {
+  Lock lock(mutex_);
+  draining_ = true;
+  wake_.notify_all();
+  drained_.wait_for(lock, timeout, [this] { return !draining_ || interrupted_ || stopping_; });
+  return !std::exchange(draining_, false);
+}
+
+void Publisher::Interrupt(bool on) {
+  const std::lock_guard lock(mutex_);
+  interrupted_ = on;
+  drained_.notify_all();
+}
+
+PublisherCounters Publisher::counters() const {
+  const std::lock_guard lock(mutex_);
+  PublisherCounters counters = counters_;
+  counters.waiting = outbox_.waiting() + outbox_.in_flight();
+  counters.buffered = outbox_.bytes();
+  return counters;
+}
+
+void Publisher::OnAsk(natsMsg*) {
+  const std::lock_guard lock(mutex_);
+  asked_ = true;
+  wake_.notify_all();
+}
+
+void Publisher::OnAck(natsMsg* message) {
+  const std::string_view subject(natsMsg_GetSubject(message));
+  if (subject.size() <= ack_prefix_.size()) return;
+  const std::string_view word = subject.substr(ack_prefix_.size());
+  std::uint64_t number = 0;
+  const auto end = word.data() + word.size();
+  if (std::from_chars(word.data(), end, number).ptr != end) return;
+  const std::string error = ErrorOfAck(message);
+  Lock lock(mutex_);
+  if (error.empty()) {
+    if (outbox_.Remove(number)) ++counters_.acknowledged;
+    told_.clear();
+  } else {
+    // Those behind it wait as well, so that the order stays.
+    counters_.resent += outbox_.RetryAll();
+    stream_ready_ = false;
+    retry_at_ = Clock::now() + kStreamRetry;
+  }
+  wake_.notify_all();
+  if (!error.empty()) Tell(&lock, error);
+}
+
+void Publisher::Tell(Lock* lock, const std::string& why) {
+  if (why == told_) return;
+  told_ = why;
+  lock->unlock();
+  if (events_.trouble) events_.trouble(why);
+  lock->lock();
+}
+
+void Publisher::Run() {
+  Lock lock(mutex_);
+  while (!stopping_) Step(&lock);
+  lock.unlock();
+  nats_ReleaseThreadMemory();
+}
+
+void Publisher::Step(Lock* lock) {
+  const ConnectionState state = connection_->state();
+  counters_.connected = state.connected();
+  counters_.reconnects = state.connections > 0 ? state.connections - 1 : 0;
+  counters_.server_errors = state.errors;
+  const auto now = Clock::now();
+  if (!state.connected()) {
+    wake_.wait_for(*lock, kPatrol);
+    return;
+  }
+  RetryAfterConnect(state.connections);
+  RetryUnanswered(now);
+  if (keeps() && !stream_ready_ && !PrepareStream(lock)) return;
+  if (ConfigDue(now))
+    SendConfig(lock);
+  else if (outbox_.waiting() > 0 && outbox_.in_flight() < kMaxInFlight)
+    SendNext(lock);
+  else if (draining_ && outbox_.empty())
+    FinishDrain(lock);
+  else
+    wake_.wait_for(*lock, kPatrol);
+}
+
+void Publisher::RetryAfterConnect(unsigned connections) {
+  if (connections == connections_) return;
+  connections_ = connections;
+  counters_.resent += outbox_.RetryAll();
+  stream_ready_ = false;
+  sent_format_.reset();
+}
+
+void Publisher::RetryUnanswered(Clock::time_point now) {
+  const auto oldest = outbox_.OldestInFlight();
+  if (oldest && now - *oldest > kAckTimeout) counters_.resent += outbox_.RetryAll();
+}
+
+/// True once the stream of JetStream is there.
+bool Publisher::PrepareStream(Lock* lock) {
+  const auto now = Clock::now();
+  if (now < retry_at_) {
+    wake_.wait_until(*lock, retry_at_);
+    return false;
+  }
+  lock->unlock();
+  std::string why;
+  const bool ready = EnsureStream(js_.get(), settings_.stream,
+                                  {settings_.subject, ConfigSubject(settings_.subject, "*")}, &why);
+  lock->lock();
+  stream_ready_ = ready;
+  retry_at_ = Clock::now() + kStreamRetry;
+  if (!ready) Tell(lock, "The stream " + settings_.stream.name + " cannot be made: " + why);
+  return ready;
+}
+
+/// The caps of what goes next, or went last.
+StreamFormat::Ptr Publisher::NextFormat() const {
+  const StreamFormat::Ptr waiting = outbox_.NextFormat();
+  return waiting ? waiting : format_;
+}
+
+bool Publisher::ConfigDue(Clock::time_point now) const {
+  const StreamFormat::Ptr format = NextFormat();
+  if (!format) return false;
+  if (format != sent_format_) return true;
+  if (asked_ && now - config_at_ >= kAskedInterval) return true;
+  // A small box must not lose them before the messages that need them.
+  const std::uint64_t max_bytes = settings_.stream.max_bytes;
+  const bool box_turns = keeps() && max_bytes > 0 && bytes_since_config_ > max_bytes / 4;
+  return outbox_.waiting() > 0 && (box_turns || now - config_at_ >= kConfigInterval);
+}
+
+void Publisher::SendConfig(Lock* lock) {
+  const StreamFormat::Ptr format = NextFormat();
+  asked_ = false;
+  sent_format_ = format;
+  config_at_ = Clock::now();
+  bytes_since_config_ = 0;
+  lock->unlock();
+  const std::string subject = ConfigSubject(settings_.subject, format->id());
+  const std::string& text = format->text();
+  natsConnection_Publish(connection_->get(), subject.c_str(), text.data(),
+                         static_cast<int>(text.size()));
+  lock->lock();
+}
+
+void Publisher::SendNext(Lock* lock) {
+  const auto item = outbox_.Take(Clock::now());
+  lock->unlock();
+  const std::string reply = keeps() ? ack_prefix_ + std::to_string(item->number) : "";
+  const Place place{run_, item->number};
+  const MessagePtr message = WriteMessage(settings_.subject, keeps() ? reply.c_str() : nullptr,
+                                          item->format->id(), place, item->buffer.get());
+  const natsStatus status =
+      message ? natsConnection_PublishMsg(connection_->get(), message.get()) : NATS_NO_MEMORY;
+  lock->lock();
+  NoteSent(status, item->number, gst_buffer_get_size(item->buffer.get()));
+  if (status == NATS_MAX_PAYLOAD)
+    Tell(lock, "A buffer is larger than the server takes (max_payload)");
+  else if (status != NATS_OK)
+    wake_.wait_for(*lock, kStreamRetry);  // the connection is about to be given up
+}
+
+void Publisher::NoteSent(natsStatus status, std::uint64_t number, std::size_t bytes) {
+  if (status == NATS_OK) {
+    ++counters_.messages;
+    counters_.bytes += bytes;
+    bytes_since_config_ += bytes;
+    if (keeps()) return;
+    outbox_.Remove(number);
+    told_.clear();
+  } else if (status == NATS_MAX_PAYLOAD) {
+    ++counters_.too_large;
+    outbox_.Remove(number);
+  } else {
+    counters_.resent += outbox_.Retry(number);
+  }
+}
+
+void Publisher::FinishDrain(Lock* lock) {
+  lock->unlock();
+  const natsStatus status = natsConnection_FlushTimeout(connection_->get(), kRequestTimeoutMs);
+  lock->lock();
+  if (status != NATS_OK || !outbox_.empty()) return;
+  draining_ = false;
+  drained_.notify_all();
+}
+
+}  // namespace lidar::nats

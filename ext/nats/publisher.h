@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Sends buffers to NATS in a thread of its own, so that nobody waits for the network.
+#pragma once
+#include <chrono>
+#include <condition_variable>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <thread>
+
+#include "ext/nats/connection.h"
+#include "ext/nats/jetstream.h"
+#include "ext/nats/message.h"
+#include "ext/nats/outbox.h"
+
+namespace lidar::nats {
+
+struct PublisherSettings {
+  ConnectionSettings connection;
+  std::string subject;
+  StreamSettings stream;
+  std::size_t max_buffered = 8U << 20;  // bytes
+};
+
+struct PublisherCounters {
+  std::uint64_t messages = 0;      // handed to the server
+  std::uint64_t bytes = 0;         // of buffers in them
+  std::uint64_t acknowledged = 0;  // JetStream has them
+  std::uint64_t resent = 0;
+  std::uint64_t dropped = 0;    // for lack of room, and at stop
+  std::uint64_t too_large = 0;  // for the server
+  std::uint64_t waiting = 0;    // to be sent or acknowledged
+  std::uint64_t buffered = 0;   // bytes in those
+  std::uint64_t server_errors = 0;
+  unsigned reconnects = 0;
+  bool connected = false;
+};
+
+/// All run without a lock, in threads of libnats and of the publisher.
+struct PublisherEvents {
+  Connection::Changed connection;
+  /// Something keeps messages from being sent or kept; each reason once, until it goes well again.
+  std::function<void(const std::string& why)> trouble;
+};
+
+class Publisher : public std::enable_shared_from_this<Publisher> {
+ public:
+  /// Null, and `why`, where the settings are wrong.
+  static std::shared_ptr<Publisher> Start(const PublisherSettings& settings, PublisherEvents events,
+                                          std::string* why);
+  /// Nothing runs any more when it returns; what was not sent is counted as dropped.
+  void Stop();
+
+  /// Never waits.
+  void Add(gst::BufferPtr buffer, const StreamFormat::Ptr& format);
+  /// Waits until all is sent and, with JetStream, acknowledged. False at a timeout or Interrupt().
+  bool Drain(Duration timeout);
+  void Interrupt(bool on);
+
+  PublisherCounters counters() const;
+
+ private:
+  using Lock = std::unique_lock<std::mutex>;
+  using Clock = Outbox::Clock;
+
+  Publisher(PublisherSettings settings, PublisherEvents events);
+  bool Open(std::string* why);
+  bool Subscribe(const std::string& subject, void (Publisher::*call)(natsMsg*),
+                 SubscriptionPtr* out, std::string* why);
+  void OnAsk(natsMsg* message);
+  void OnAck(natsMsg* message);
+
+  void Run();
+  void Step(Lock* lock);
+  bool PrepareStream(Lock* lock);
+  void RetryAfterConnect(unsigned connections);
+  void RetryUnanswered(Clock::time_point now);
+  StreamFormat::Ptr NextFormat() const;
+  bool ConfigDue(Clock::time_point now) const;
+  void SendConfig(Lock* lock);
+  void SendNext(Lock* lock);
+  void NoteSent(natsStatus status, std::uint64_t number, std::size_t bytes);
+  void FinishDrain(Lock* lock);
+  void Tell(Lock* lock, const std::string& why);
+  bool keeps() const { return !settings_.stream.name.empty(); }
+
+  const PublisherSettings settings_;
+  const PublisherEvents events_;
+  const std::uint64_t run_;
+  std::unique_ptr<Connection> connection_;  // from Open() to Stop()
+  JetStreamPtr js_;
+  std::string ack_prefix_;  // an inbox with a dot behind it
+  SubscriptionPtr asks_;
+  SubscriptionPtr acks_;
+  std::thread thread_;
+
+  mutable std::mutex mutex_;  // guards what follows; never held while sending or calling events_
+  std::condition_variable wake_;
+  std::condition_variable drained_;
+  Outbox outbox_;
+  PublisherCounters counters_;
+  std::uint64_t next_number_ = 0;
+  StreamFormat::Ptr format_;       // of the newest buffer
+  StreamFormat::Ptr sent_format_;  // the last that went out
+  Clock::time_point config_at_{};  // when it did
+  std::uint64_t bytes_since_config_ = 0;
+  Clock::time_point retry_at_{};  // not before: the stream is not there
+  unsigned connections_ = 0;      // that were seen
+  std::string told_;              // the trouble that is known
+  bool asked_ = false;
+  bool stream_ready_ = false;
+  bool stopping_ = false;
+  bool draining_ = false;
+  bool interrupted_ = false;
+};
+
+}  // namespace lidar::nats

@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "ext/nats/stream_format.h"
+
+#include <algorithm>
+#include <cstdio>
+#include <utility>
+
+#include "gst/common/caps_text.h"
+#include "gst/common/cloud_info.h"
+#include "gst/common/gstlidar.h"
+#include "src/base/crc.h"
+
+namespace lidar::nats {
+namespace {
+
+constexpr std::size_t kIdSize = 16;
+constexpr std::size_t kPoseSize = 64;  // bytes, as lidarodometry has it
+
+std::string IdOf(const std::string& text) {
+  const ByteView bytes{reinterpret_cast<const std::uint8_t*>(text.data()), text.size()};
+  char id[kIdSize + 1];
+  std::snprintf(id, sizeof id, "%016llx", static_cast<unsigned long long>(Crc64(bytes)));
+  return id;
+}
+
+}  // namespace
+
+StreamFormat::Ptr StreamFormat::FromCaps(GstCaps* caps, std::string* why) {
+  auto format = std::make_shared<StreamFormat>();
+  const GstStructure* s = gst_caps_get_structure(caps, 0);
+  if (gst_structure_has_name(s, GST_LIDAR_CLOUD_MEDIA_TYPE)) {
+    const auto info = gst::CloudInfo::FromFrameCaps(caps, why);
+    if (!info) return nullptr;
+    format->size_ = info->FrameSize();
+  } else if (gst_structure_has_name(s, GST_LIDAR_IMU_MEDIA_TYPE)) {
+    gint size = 0;
+    gst_structure_get_int(s, "sample-size", &size);
+    if (size <= 0) {
+      *why = "the samples of the IMU have no sample-size";
+      return nullptr;
+    }
+    format->multiple_ = static_cast<std::size_t>(size);
+  } else if (gst_structure_has_name(s, GST_LIDAR_ODOMETRY_MEDIA_TYPE)) {
+    format->size_ = kPoseSize;
+  } else if (g_strcmp0(gst_structure_get_string(s, "alignment"), "slice") != 0) {
+    *why = std::string("clouds, coded slices, IMU samples and odometry can be published, and no ") +
+           gst_structure_get_name(s);
+    return nullptr;
+  }
+  format->caps_.reset(gst_caps_ref(caps));
+  format->text_ = gst::CapsToText(caps);
+  format->id_ = IdOf(format->text_);
+  return format;
+}
+
+StreamFormat::Ptr StreamFormat::FromText(const std::string& text) {
+  const gst::CapsPtr caps = gst::FixedCapsFromText(text);
+  if (!caps) return nullptr;
+  std::string why;
+  const Ptr read = FromCaps(caps.get(), &why);
+  if (!read) return nullptr;
+  // The sender's id is that of the sender's text, which another GStreamer may write otherwise.
+  auto format = std::make_shared<StreamFormat>();
+  format->caps_.reset(gst_caps_ref(caps.get()));
+  format->text_ = text;
+  format->id_ = IdOf(text);
+  format->size_ = read->size_;
+  format->multiple_ = read->multiple_;
+  return format;
+}
+
+bool StreamFormat::Fits(std::size_t size) const {
+  return size > 0 && (size_ == 0 || size == size_) && size % multiple_ == 0;
+}
+
+bool IsFormatId(const std::string& text) {
+  const auto is_hex = [](char c) { return (c >= '0' && c <= '9') || (c >= 'a' && c <= 'f'); };
+  return text.size() == kIdSize && std::all_of(text.begin(), text.end(), is_hex);
+}
+
+}  // namespace lidar::nats

@@ -1,0 +1,274 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "ext/nats/subscriber.h"
+
+#include <algorithm>
+#include <thread>
+#include <utility>
+
+#include "ext/nats/message.h"
+
+namespace lidar::nats {
+namespace {
+
+using std::chrono::milliseconds;
+using std::chrono::steady_clock;
+
+constexpr milliseconds kRenewInterval{500};
+constexpr milliseconds kAskInterval{200};
+constexpr milliseconds kConfigWait{10};
+constexpr int kMaxPendingMessages = 65'536;
+constexpr int kMaxPendingConfigs = 64;
+constexpr int kMaxPendingConfigBytes = 1 << 20;
+constexpr std::int64_t kSecondNs = 1'000'000'000;
+constexpr std::int64_t kAckWaitNs = 2 * kSecondNs;
+constexpr std::int64_t kMaxUnacknowledged = 256;  // messages
+
+}  // namespace
+
+std::unique_ptr<Subscriber> Subscriber::Open(const SubscriberSettings& settings,
+                                             Connection::Changed changed, std::string* why) {
+  std::unique_ptr<Subscriber> self(new Subscriber(settings));
+  self->connection_ = Connection::Open(settings.connection, std::move(changed), why);
+  if (!self->connection_) return nullptr;
+  natsStatus status = NATS_OK;
+  if (self->stored()) {
+    self->js_ = OpenJetStream(self->connection_->get());
+    if (!self->js_) status = NATS_NO_MEMORY;
+  } else {
+    status = self->SubscribeLive();
+    // Whoever publishes once this is open is heard, where the server is there.
+    natsConnection_FlushTimeout(self->connection_->get(), Connection::kConnectTimeoutMs);
+  }
+  if (status == NATS_OK) return self;
+  *why = ErrorText(status);
+  return nullptr;
+}
+
+Subscriber::~Subscriber() {
+  // A socket that closes with messages unread takes back what it sent.
+  if (connection_ && acknowledges() && connection_->state().connected())
+    natsConnection_FlushTimeout(connection_->get(), Connection::kConnectTimeoutMs);
+}
+
+/// libnats subscribes again by itself when a connection comes back.
+natsStatus Subscriber::SubscribeLive() {
+  natsSubscription* raw = nullptr;
+  const std::string configs = ConfigSubject(settings_.subject, "*");
+  natsStatus s = natsConnection_SubscribeSync(&raw, connection_->get(), configs.c_str());
+  configs_.reset(raw);
+  if (s == NATS_OK)
+    s = natsSubscription_SetPendingLimits(raw, kMaxPendingConfigs, kMaxPendingConfigBytes);
+  raw = nullptr;
+  if (s == NATS_OK)
+    s = settings_.queue_group.empty()
+            ? natsConnection_SubscribeSync(&raw, connection_->get(), settings_.subject.c_str())
+            : natsConnection_QueueSubscribeSync(&raw, connection_->get(), settings_.subject.c_str(),
+                                                settings_.queue_group.c_str());
+  messages_.reset(raw);
+  if (s == NATS_OK)
+    s = natsSubscription_SetPendingLimits(raw, kMaxPendingMessages, settings_.max_pending);
+  return s;
+}
+
+void Subscriber::SetStart(jsConsumerConfig* config) const {
+  if (last_stored_ > 0)
+    config->OptStartSeq = last_stored_ + 1;
+  else if (!settings_.start_time)
+    config->DeliverPolicy = js_DeliverNew;
+  else if (*settings_.start_time == 0)
+    config->DeliverPolicy = js_DeliverAll;
+  else
+    config->OptStartTime = static_cast<std::int64_t>(*settings_.start_time);
+}
+
+/// A consumer that goes with this subscriber. It is made anew from where the last one ended.
+natsStatus Subscriber::SubscribeOwn(jsErrCode* code) {
+  jsSubOptions options;
+  jsSubOptions_Init(&options);
+  options.Stream = settings_.stream.c_str();
+  options.Config.AckPolicy = js_AckNone;
+  options.Config.FlowControl = true;
+  options.Config.Heartbeat = kSecondNs;
+  options.Config.MemoryStorage = true;
+  options.Config.Replicas = 1;
+  SetStart(&options.Config);
+  natsSubscription* raw = nullptr;
+  const natsStatus s =
+      js_SubscribeSync(&raw, js_.get(), settings_.subject.c_str(), nullptr, &options, code);
+  messages_.reset(raw);
+  return s;
+}
+
+natsStatus Subscriber::AddDurable(jsErrCode* code) {
+  natsInbox* raw = nullptr;
+  natsStatus s = natsInbox_Create(&raw);
+  const InboxPtr inbox(raw);
+  if (s != NATS_OK) return s;
+  jsConsumerConfig config;
+  jsConsumerConfig_Init(&config);
+  config.Durable = settings_.durable.c_str();
+  config.DeliverSubject = inbox.get();
+  config.DeliverGroup = settings_.queue_group.empty() ? nullptr : settings_.queue_group.c_str();
+  config.FilterSubject = settings_.subject.c_str();
+  config.AckPolicy = js_AckExplicit;
+  config.AckWait = kAckWaitNs;
+  config.MaxAckPending = kMaxUnacknowledged;
+  SetStart(&config);
+  if (config.OptStartTime > 0) config.DeliverPolicy = js_DeliverByStartTime;
+  return js_AddConsumer(nullptr, js_.get(), settings_.stream.c_str(), &config, nullptr, code);
+}
+
+/// The consumer stays on the server, so this binds to it and deletes nothing.
+natsStatus Subscriber::SubscribeDurable(jsErrCode* code) {
+  jsConsumerInfo* raw_info = nullptr;
+  natsStatus s = js_GetConsumerInfo(&raw_info, js_.get(), settings_.stream.c_str(),
+                                    settings_.durable.c_str(), nullptr, code);
+  const ConsumerInfoPtr info(raw_info);
+  if (s == NATS_NOT_FOUND) s = AddDurable(code);
+  if (s != NATS_OK) return s;
+  jsSubOptions options;
+  jsSubOptions_Init(&options);
+  options.Stream = settings_.stream.c_str();
+  options.Consumer = settings_.durable.c_str();
+  options.Queue = settings_.queue_group.empty() ? nullptr : settings_.queue_group.c_str();
+  options.ManualAck = true;
+  natsSubscription* raw = nullptr;
+  s = js_SubscribeSync(&raw, js_.get(), settings_.subject.c_str(), nullptr, &options, code);
+  messages_.reset(raw);
+  return s;
+}
+
+natsStatus Subscriber::SubscribeStored(jsErrCode* code) {
+  jsSubOptions options;
+  jsSubOptions_Init(&options);
+  options.Stream = settings_.stream.c_str();
+  options.Config.AckPolicy = js_AckNone;
+  options.Config.DeliverPolicy = js_DeliverLastPerSubject;
+  options.Config.MemoryStorage = true;
+  options.Config.Replicas = 1;
+  natsSubscription* raw = nullptr;
+  const std::string configs = ConfigSubject(settings_.subject, "*");
+  const natsStatus s = js_SubscribeSync(&raw, js_.get(), configs.c_str(), nullptr, &options, code);
+  configs_.reset(raw);
+  if (s != NATS_OK) return s;
+  natsSubscription_SetPendingLimits(raw, kMaxPendingConfigs, kMaxPendingConfigBytes);
+  return settings_.durable.empty() ? SubscribeOwn(code) : SubscribeDurable(code);
+}
+
+/// Consumers of JetStream are made anew after each connect, as the server may have lost them.
+Subscriber::Event Subscriber::Renew() {
+  const auto now = steady_clock::now();
+  if (now < renew_at_) {
+    std::this_thread::sleep_for(
+        std::min<steady_clock::duration>(renew_at_ - now, milliseconds(50)));
+    return Event::kNothing;
+  }
+  renew_at_ = now + kRenewInterval;
+  const ConnectionState state = connection_->state();
+  if (!state.connected()) return Event::kNothing;
+  messages_.reset();
+  configs_.reset();
+  last_number_ = 0;
+  dropped_ = 0;
+  jsErrCode code{};
+  const natsStatus status = SubscribeStored(&code);
+  if (status != NATS_OK) {
+    messages_.reset();
+    trouble_ = status == NATS_NO_RESPONDERS ? "the server has no JetStream" : ErrorText(status);
+    return Event::kTrouble;
+  }
+  stale_ = false;
+  connections_ = state.connections;
+  missed_heartbeats_ = state.missed_heartbeats;
+  if (std::exchange(began_, true)) return Event::kNothing;
+  jsConsumerInfo* raw = nullptr;
+  natsSubscription_GetConsumerInfo(&raw, messages_.get(), nullptr, nullptr);
+  const ConsumerInfoPtr info(raw);
+  if (!info || info->Delivered.Consumer != 0) return Event::kNothing;
+  // Where it begins, in case that it is made anew before anything came.
+  if (!acknowledges()) last_stored_ = info->Delivered.Stream;
+  return info->NumPending == 0 ? Event::kEmpty : Event::kNothing;
+}
+
+void Subscriber::CountOverruns() {
+  std::int64_t dropped = 0;
+  if (natsSubscription_GetDropped(messages_.get(), &dropped) != NATS_OK || dropped <= dropped_)
+    return;
+  overruns_ += static_cast<std::uint64_t>(dropped - dropped_);
+  dropped_ = dropped;
+}
+
+/// What came out of order makes the consumer begin anew behind what came last.
+Subscriber::Event Subscriber::NoteStored(Delivery* delivery) {
+  jsMsgMetaData* raw = nullptr;
+  if (natsMsg_GetMetaData(&raw, delivery->message.get()) != NATS_OK) return Event::kNothing;
+  const MetaDataPtr meta(raw);
+  if (!acknowledges()) {
+    if (meta->Sequence.Consumer != last_number_ + 1) {
+      stale_ = true;
+      return Event::kNothing;
+    }
+    last_number_ = meta->Sequence.Consumer;
+    last_stored_ = meta->Sequence.Stream;
+  }
+  delivery->stored = static_cast<std::uint64_t>(std::max<std::int64_t>(meta->Timestamp, 0));
+  delivery->to_come = meta->NumPending;
+  delivery->again = meta->NumDelivered > 1;
+  return Event::kMessage;
+}
+
+Subscriber::Event Subscriber::Next(milliseconds timeout, Delivery* delivery) {
+  const ConnectionState state = connection_->state();
+  if (state.closed) return Event::kClosed;
+  if (stored() && (!messages_ || stale_ || state.connections != connections_ ||
+                   state.missed_heartbeats != missed_heartbeats_))
+    return Renew();
+  if (!stored() && state.connections != connections_) {
+    connections_ = state.connections;
+    AskForFormat();
+  }
+  TakeFormats({});
+  natsMsg* raw = nullptr;
+  const natsStatus s = natsSubscription_NextMsg(&raw, messages_.get(), timeout.count());
+  delivery->message.reset(raw);
+  if (s == NATS_SLOW_CONSUMER) CountOverruns();
+  if (s == NATS_MISMATCH) stale_ = true;
+  if (s == NATS_CONNECTION_CLOSED) return Event::kClosed;
+  if (s != NATS_OK || raw == nullptr) return Event::kNothing;
+  return stored() ? NoteStored(delivery) : Event::kMessage;
+}
+
+void Subscriber::Acknowledge(natsMsg* message) { natsMsg_Ack(message, nullptr); }
+
+void Subscriber::TakeFormats(milliseconds wait) {
+  natsMsg* raw = nullptr;
+  while (configs_ && natsSubscription_NextMsg(&raw, configs_.get(), wait.count()) == NATS_OK) {
+    const MessagePtr message(raw);
+    wait = {};
+    book_.Note(natsMsg_GetSubject(raw),
+               {natsMsg_GetData(raw), static_cast<std::size_t>(natsMsg_GetDataLength(raw))});
+  }
+}
+
+void Subscriber::AskForFormat() {
+  const std::string subject = AskSubject(settings_.subject);
+  natsConnection_Publish(connection_->get(), subject.c_str(), nullptr, 0);
+}
+
+StreamFormat::Ptr Subscriber::Format(const std::string& id, milliseconds timeout) {
+  TakeFormats({});
+  StreamFormat::Ptr format = book_.Find(id);
+  const auto deadline = steady_clock::now() + timeout;
+  auto ask_at = steady_clock::now();
+  while (!format && steady_clock::now() < deadline) {
+    if (!stored() && steady_clock::now() >= ask_at) {
+      AskForFormat();
+      ask_at += kAskInterval;
+    }
+    TakeFormats(kConfigWait);
+    format = book_.Find(id);
+  }
+  return format;
+}
+
+}  // namespace lidar::nats

@@ -1,0 +1,169 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Garbage from the network, settings that are wrong, and servers that want to know who one is.
+#include <cstdlib>
+
+#include "ext/nats/nats_ptr.h"
+#include "ext/nats/stream_format.h"
+#include "tests/elements/nats/nats_pipeline.h"
+
+namespace lidar::test {
+namespace {
+
+class NatsErrors : public NatsTest {};
+
+/// Another program at the same server.
+class Stranger {
+ public:
+  explicit Stranger(const std::string& url) {
+    EXPECT_EQ(natsConnection_ConnectTo(&nc_, url.c_str()), NATS_OK);
+  }
+  ~Stranger() { natsConnection_Destroy(nc_); }
+  void Publish(const char* subject, const std::string& bytes,
+               const std::vector<std::pair<const char*, std::string>>& headers = {}) {
+    natsMsg* raw = nullptr;
+    natsMsg_Create(&raw, subject, nullptr, bytes.data(), static_cast<int>(bytes.size()));
+    const nats::MessagePtr message(raw);
+    for (const auto& [name, value] : headers) natsMsgHeader_Set(raw, name, value.c_str());
+    EXPECT_EQ(natsConnection_PublishMsg(nc_, raw), NATS_OK);
+  }
+  void Flush() { natsConnection_FlushTimeout(nc_, 30'000); }
+
+ private:
+  natsConnection* nc_ = nullptr;
+};
+
+TEST_F(NatsErrors, GarbageIsCountedAndTheStreamGoesOn) {
+  server_.Start();
+  NatsPipeline receiver("natssrc name=n" + At() + "! fakesink name=see sync=false");
+  receiver.Play();
+  Stranger stranger(server_.url());
+  const std::string id = "0123456789abcdef";
+  stranger.Publish("lidar", "hello");
+  stranger.Publish("lidar", "");
+  stranger.Publish("lidar", std::string(900'000, 'x'));
+  stranger.Publish("lidar", "x", {{"Lidar-Caps", id}});
+  stranger.Publish("lidar", "x",
+                   {{"Lidar-Caps", id}, {"Lidar-Place", "1 2"}, {"Lidar-Slice", "9"}});
+  stranger.Publish("lidar", "x", {{"Lidar-Caps", id}, {"Lidar-Place", "1 2"}});  // unknown caps
+  stranger.Publish(
+      "lidar.config."
+      "0123456789abcdef",
+      "application/x-odometry");
+  stranger.Publish("lidar.config.x", std::string(500'000, '{'));
+  stranger.Publish("lidar.get-config", std::string(1'000, 'x'));
+  stranger.Flush();
+  EXPECT_TRUE(Eventually([&] { return receiver.stat("messages-damaged") == 5; }));
+  EXPECT_TRUE(Eventually([&] { return receiver.stat("messages-without-caps") == 1; }));
+  const auto sent = PublishSlices(16, At());
+  ASSERT_TRUE(receiver.WaitForBuffers(16));
+  ExpectSameStream(receiver.buffers(), sent);
+}
+
+TEST_F(NatsErrors, ABufferOfAnotherSizeThanItsCapsSayIsCounted) {
+  server_.Start();
+  NatsPipeline receiver("natssrc name=n" + At() + "! fakesink name=see sync=false");
+  receiver.Play();
+  PublishSlices(1, At());
+  ASSERT_TRUE(receiver.WaitForBuffers(1));
+  NatsPipeline clouds(kQuick + "num-buffers=1" + kSee + "! natssink name=n sync=false" + At());
+  clouds.Play();
+  EXPECT_EQ(clouds.WaitForEnd(), "");
+  ASSERT_TRUE(receiver.WaitForBuffers(2));
+  Stranger stranger(server_.url());
+  // The caps of the clouds, and a cloud cut short.
+  std::string why;
+  const gst::CapsPtr caps(gst_caps_from_string(clouds.caps().c_str()));
+  const auto format = nats::StreamFormat::FromCaps(caps.get(), &why);
+  ASSERT_TRUE(format);
+  stranger.Publish("lidar", "short", {{"Lidar-Caps", format->id()}, {"Lidar-Place", "1 2"}});
+  stranger.Flush();
+  EXPECT_TRUE(Eventually([&] { return receiver.stat("messages-damaged") == 1; }));
+  EXPECT_EQ(receiver.count(), 2U);
+}
+
+TEST_F(NatsErrors, ABufferThatTheServerDoesNotTakeIsCounted) {
+  std::ofstream(server_.folder() + "/conf") << "max_payload: 1024\n";
+  server_.Start({"-c", server_.folder() + "/conf"});
+  NatsPipeline sender(kQuick + "num-buffers=8" + kSee + "! natssink name=n sync=false" + At());
+  sender.Play();
+  EXPECT_NE(sender.WaitForWarning().find("larger than the server takes"), std::string::npos);
+  EXPECT_EQ(sender.WaitForEnd(), "");
+  EXPECT_EQ(sender.stat("messages-too-large"), 8U);
+}
+
+TEST_F(NatsErrors, AWrongTokenIsAnErrorAndTheRightOneIsTaken) {
+  server_.Start({"--auth", "s3cret"});
+  for (const std::string end : {" ! fakesink name=see", ""}) {
+    const std::string with = At("token=wrong");
+    NatsPipeline refused(end.empty() ? kLive + "! lidarenc" + kSee + "! natssink name=n" + with
+                                     : "natssrc name=n" + with + end);
+    refused.Play();
+    EXPECT_NE(refused.WaitForEnd().find("refuses us"), std::string::npos);
+  }
+  NatsPipeline receiver("natssrc name=n" + At("token=s3cret") + "! fakesink name=see sync=false");
+  receiver.Play();
+  PublishSlices(8, At("token=s3cret"));
+  EXPECT_TRUE(receiver.WaitForBuffers(8));
+}
+
+TEST_F(NatsErrors, TlsChecksTheServersCertificate) {
+  const std::string f = server_.folder();
+  const std::string make =
+      "cd " + f +
+      " && openssl req -x509 -newkey ec -pkeyopt ec_paramgen_curve:prime256v1 -nodes"
+      " -keyout key.pem -out cert.pem -days 2 -subj /CN=127.0.0.1"
+      " -addext subjectAltName=IP:127.0.0.1 2>/dev/null && openssl req -x509 -newkey ec -pkeyopt"
+      " ec_paramgen_curve:prime256v1 -nodes -keyout other-key.pem -out other.pem -days 2 -subj "
+      "/CN=x"
+      " 2>/dev/null";
+  if (std::system(make.c_str()) != 0) GTEST_SKIP() << "openssl is not installed";
+  server_.Start({"--tls", "--tlscert", f + "/cert.pem", "--tlskey", f + "/key.pem"});
+  const std::string good = " url=" + server_.url("tls") + " tls-ca-file=" + f + "/cert.pem ";
+  NatsPipeline receiver("natssrc name=n" + good + "! fakesink name=see sync=false");
+  receiver.Play();
+  PublishSlices(8, good);
+  EXPECT_TRUE(receiver.WaitForBuffers(8));
+  NatsPipeline wary("natssrc name=n url=" + server_.url("tls") + " tls-ca-file=" + f +
+                    "/other.pem ! fakesink name=see sync=false");
+  wary.Play();
+  PublishSlices(8, good);
+  EXPECT_EQ(wary.stat("connected"), 0U);
+}
+
+struct WrongSetting {
+  const char* element;
+  const char* message;
+};
+class NatsWrongSetting : public ::testing::TestWithParam<WrongSetting> {};
+INSTANTIATE_TEST_SUITE_P(
+    All, NatsWrongSetting,
+    ::testing::Values(
+        WrongSetting{"natssink name=n subject=a..b",
+                     "NATS takes no subject \"a..b\": a word between two dots is empty."},
+        WrongSetting{"natssink name=n subject=fleet.>",
+                     "NATS takes no subject \"fleet.>\": it has a blank, a wildcard or a letter "
+                     "beyond ASCII."},
+        WrongSetting{
+            "natssink name=n jetstream=a.b",
+            "NATS takes no jetstream \"a.b\": it has something beside letters, digits, - and _."},
+        WrongSetting{"natssink name=n tls-ca-file=/none",
+                     "NATS cannot be used: cannot read /none."},
+        WrongSetting{"natssink name=n credentials-file=/none",
+                     "NATS cannot be used: cannot read /none."},
+        WrongSetting{"natssink name=n tls-cert-file=/etc/passwd",
+                     "NATS cannot be used: tls-cert-file and tls-key-file belong together."},
+        WrongSetting{"natssrc name=n durable=d ! fakesink", "durable needs jetstream."},
+        WrongSetting{"natssrc name=n jetstream=s queue-group=q ! fakesink",
+                     "queue-group with jetstream needs durable."}));
+
+TEST_P(NatsWrongSetting, IsNamed) {
+  const std::string element = GetParam().element;
+  const bool sink = element.find("natssink") == 0;
+  NatsPipeline pipeline(sink ? kLive + "! lidarenc" + kSee + "! " + element
+                             : element.substr(0, element.find('!')) + kSee + "! fakesink");
+  pipeline.Play();
+  EXPECT_EQ(pipeline.WaitForEnd(), GetParam().message);
+}
+
+}  // namespace
+}  // namespace lidar::test

@@ -1,0 +1,154 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// What JetStream keeps: replays, durable consumers, a server that dies.
+#include "tests/elements/nats/nats_pipeline.h"
+
+namespace lidar::test {
+namespace {
+
+const std::string kBox = "subject=r1.front jetstream=box";
+
+class NatsJetStream : public NatsTest {
+ protected:
+  void SetUp() override {
+    NatsTest::SetUp();
+    if (!IsSkipped()) server_.Start();
+  }
+  /// What JetStream has from `start` on.
+  std::vector<Kept> Replay(guint64 start, const std::string& more = "") {
+    NatsPipeline player("natssrc name=n eos-at-end=true start-time=" + std::to_string(start) +
+                        At(kBox + " " + more) + "! fakesink name=see sync=false");
+    player.Play();
+    EXPECT_EQ(player.WaitForEnd(), "");
+    caps_ = player.caps();
+    EXPECT_EQ(player.stat("messages-without-caps"), 0U);
+    EXPECT_EQ(player.stat("messages-lost"), 0U);
+    return player.buffers();
+  }
+
+  std::string caps_;  // of what Replay() gave
+};
+
+TEST_F(NatsJetStream, ABlackBoxIsReplayedWhole) {
+  const auto sent = PublishSlices(80, At(kBox));
+  const auto played = Replay(0);
+  ExpectSameStream(played, sent);
+  ASSERT_FALSE(played.empty());
+  EXPECT_EQ(played.front().pts, 0U);
+  for (std::size_t i = 1; i < played.size(); ++i) EXPECT_GE(played[i].pts, played[i - 1].pts);
+  EXPECT_NE(caps_.find("application/x-lidar-slice"), caps_.npos);
+}
+
+TEST_F(NatsJetStream, AReplayBeginsAtItsTime) {
+  const auto first = PublishSlices(40, At(kBox));
+  const guint64 between = static_cast<guint64>(g_get_real_time()) * 1000;
+  const auto second = PublishSlices(24, At(kBox));
+  ExpectSameStream(Replay(between), second);
+  EXPECT_EQ(Replay(0).size(), 64U);
+  EXPECT_EQ(Replay(between + 3600 * GST_SECOND).size(), 0U);
+}
+
+TEST_F(NatsJetStream, NothingIsLostWhereTheServerIsKilledMeanwhile) {
+  NatsPipeline sender(kLive + "! lidarenc" + kSee + "! natssink name=n drain-timeout=30000000000" +
+                      At(kBox));
+  sender.Play();
+  ASSERT_TRUE(Eventually([&] { return sender.stat("messages-acknowledged") >= 20; }));
+  NatsPipeline receiver("natssrc name=n start-time=0" + At(kBox) +
+                        "! fakesink name=see sync=false");
+  receiver.Play();
+  ASSERT_TRUE(receiver.WaitForBuffers(20));
+  server_.Kill();
+  ASSERT_TRUE(Eventually([&] { return sender.stat("messages-waiting") >= 20; }));
+  server_.Restart();
+  ASSERT_TRUE(Eventually([&] { return sender.stat("messages-waiting") <= 4; }));
+  sender.SendEos();
+  EXPECT_EQ(sender.WaitForEnd(), "");
+  const auto sent = sender.buffers();
+  EXPECT_EQ(sender.stat("messages-dropped"), 0U);
+  EXPECT_EQ(sender.stat("messages-acknowledged"), sent.size());
+  ASSERT_TRUE(receiver.WaitForBuffers(sent.size()));
+  ExpectSameStream(receiver.buffers(), sent);
+  EXPECT_EQ(receiver.stat("messages-lost"), 0U);
+  ExpectSameStream(Replay(0), sent);
+}
+
+TEST_F(NatsJetStream, ADurableConsumerGoesOnWhereTheLastOneEnded) {
+  const auto sent = PublishSlices(64, At(kBox));
+  std::vector<Kept> all;
+  {
+    NatsPipeline first("natssrc name=n durable=slam start-time=0 num-buffers=30" + At(kBox) +
+                       "! fakesink name=see sync=false");
+    first.Play();
+    EXPECT_EQ(first.WaitForEnd(), "");
+    all = first.buffers();
+  }
+  NatsPipeline second("natssrc name=n durable=slam" + At(kBox) + "! fakesink name=see sync=false");
+  second.Play();
+  // What the first had taken and not acknowledged comes again, later.
+  const auto has_all = [&] {
+    auto seen = all;
+    for (const Kept& kept : second.buffers()) seen.push_back(kept);
+    return std::all_of(sent.begin(), sent.end(), [&](const Kept& want) {
+      return std::any_of(seen.begin(), seen.end(), [&](const Kept& k) { return k.SameAs(want); });
+    });
+  };
+  EXPECT_TRUE(Eventually(has_all));
+  EXPECT_LE(second.count(), 64U - 28U);
+}
+
+TEST_F(NatsJetStream, OfTwoWithOneDurableConsumerTheSecondWaitsForTheFirst) {
+  PublishSlices(8, At(kBox));
+  auto first = std::make_unique<NatsPipeline>("natssrc name=n durable=slam start-time=0" +
+                                              At(kBox) + "! fakesink name=see sync=false");
+  first->Play();
+  ASSERT_TRUE(first->WaitForBuffers(8));
+  NatsPipeline second("natssrc name=n durable=slam" + At(kBox) + "! fakesink name=see sync=false");
+  second.Play();
+  EXPECT_NE(second.WaitForWarning().find("JetStream gives nothing"), std::string::npos);
+  first.reset();
+  PublishSlices(8, At(kBox));
+  EXPECT_TRUE(second.WaitForBuffers(8));
+}
+
+TEST_F(NatsJetStream, WorkersOfAGroupShareADurableConsumer) {
+  const std::string source = "natssrc name=n durable=work queue-group=work start-time=0" +
+                             At(kBox) + "! fakesink name=see sync=false";
+  PublishSlices(8, At(kBox));
+  NatsPipeline a(source);
+  NatsPipeline b(source);
+  a.Play();
+  ASSERT_TRUE(a.WaitForBuffers(8));
+  b.Play();
+  ASSERT_TRUE(Eventually([&] { return b.stat("connected") == 1; }));
+  // The second takes its share once the server knows of it.
+  ASSERT_TRUE(Eventually([&] {
+    PublishSlices(8, At(kBox));
+    return b.count() > 0;
+  }));
+}
+
+TEST_F(NatsJetStream, TheOldestGoesWhereTheBoxIsFull) {
+  const auto sent = PublishSlices(80, At(kBox + " max-bytes=50000"));
+  const auto played = Replay(0);
+  ASSERT_FALSE(played.empty());
+  ASSERT_LT(played.size(), sent.size());
+  ExpectSameStream(played, {sent.end() - static_cast<std::ptrdiff_t>(played.size()), sent.end()});
+}
+
+TEST_F(NatsJetStream, SeveralStreamsShareABox) {
+  const auto front = PublishSlices(16, At("subject=r1.front jetstream=box"));
+  PublishSlices(24, At("subject=r1.rear jetstream=box"));
+  ExpectSameStream(Replay(0), front);
+}
+
+TEST_F(NatsJetStream, AServerWithoutJetStreamIsToldOf) {
+  NatsServer plain;
+  std::ofstream(plain.folder() + "/conf") << "jetstream: disabled\n";
+  plain.Start({"-c", plain.folder() + "/conf", "-js=false"});
+  NatsPipeline sender(kLive + "! lidarenc" + kSee +
+                      "! natssink name=n jetstream=box url=" + plain.url());
+  sender.Play();
+  EXPECT_NE(sender.WaitForWarning().find("The stream box cannot be made"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace lidar::test

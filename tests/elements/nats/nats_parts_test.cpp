@@ -1,0 +1,235 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// The parts of the plugin that need no server.
+#include <gtest/gtest.h>
+
+#include <string>
+#include <vector>
+
+#include "ext/nats/format_book.h"
+#include "ext/nats/jetstream.h"
+#include "ext/nats/message.h"
+#include "ext/nats/outbox.h"
+#include "gst/common/gstlidar.h"
+#include "tests/elements/mcap/recording.h"
+
+namespace lidar::nats {
+namespace {
+
+constexpr const char* kId = "0123456789abcdef";
+constexpr const char* kSliceCaps =
+    "application/x-lidar-slice, geometry=(string)range, alignment=(string)slice";
+
+class NatsParts : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    gst_lidar_init();
+    nats_Open(-1);  // connections do it by themselves
+  }
+};
+
+gst::BufferPtr Bytes(std::size_t size) {
+  gst::BufferPtr buffer(gst_buffer_new_allocate(nullptr, size, nullptr));
+  gst_buffer_memset(buffer.get(), 0, 0x5a, size);
+  return buffer;
+}
+
+TEST_F(NatsParts, AMessageCarriesAllThatABufferHas) {
+  const gst::BufferPtr buffer = Bytes(100);
+  const GstLidarSlice slice{4'000'000'000, 3, 8, 512};
+  const GstLidarPose pose{{1.5, -2.25, 1e-300}, {0.1, 0.2, 0.3, 0.9}, GST_LIDAR_TRACKING_LOST};
+  gst_lidar_buffer_set_slice(buffer.get(), &slice);
+  gst_lidar_buffer_set_pose(buffer.get(), &pose);
+  gst_lidar_buffer_set_capture_time(buffer.get(), 1'764'000'000'123'456'789);
+  GST_BUFFER_DURATION(buffer.get()) = 12'500'000;
+  GST_BUFFER_FLAG_SET(buffer.get(), GST_BUFFER_FLAG_DISCONT);
+  const Place place{~std::uint64_t{0}, 42};
+  const MessagePtr message = WriteMessage("a.b", nullptr, kId, place, buffer.get());
+  ASSERT_TRUE(message);
+  const auto read = Read(message.get());
+  ASSERT_TRUE(read);
+  EXPECT_EQ(read->format_id, kId);
+  EXPECT_EQ(read->place.run, place.run);
+  EXPECT_EQ(read->place.number, 42U);
+  const auto kept = test::Keep(read->buffer.get());
+  EXPECT_TRUE(kept.SameAs(test::Keep(buffer.get())));
+  EXPECT_EQ(kept.duration, 12'500'000U);
+  EXPECT_TRUE(kept.discont);
+  GstLidarPose back{};
+  ASSERT_TRUE(gst_lidar_buffer_get_pose(read->buffer.get(), &back));
+  for (int i = 0; i < 3; ++i) EXPECT_EQ(back.position[i], pose.position[i]);
+  for (int i = 0; i < 4; ++i) EXPECT_EQ(back.orientation[i], pose.orientation[i]);
+  EXPECT_EQ(back.tracking, pose.tracking);
+}
+
+TEST_F(NatsParts, ABareBufferComesBackBare) {
+  const gst::BufferPtr buffer = Bytes(1);
+  const auto read = Read(WriteMessage("a", nullptr, kId, {1, 2}, buffer.get()).get());
+  ASSERT_TRUE(read);
+  GstLidarSlice slice{};
+  EXPECT_FALSE(gst_lidar_buffer_get_slice(read->buffer.get(), &slice));
+  EXPECT_EQ(gst_lidar_buffer_get_capture_time(read->buffer.get()), GST_CLOCK_TIME_NONE);
+  EXPECT_EQ(GST_BUFFER_DURATION(read->buffer.get()), GST_CLOCK_TIME_NONE);
+}
+
+struct BadHeader {
+  const char* name;
+  const char* value;
+};
+class NatsBadHeader : public NatsParts, public ::testing::WithParamInterface<BadHeader> {};
+INSTANTIATE_TEST_SUITE_P(
+    All, NatsBadHeader,
+    ::testing::Values(
+        BadHeader{"Lidar-Caps", "0123456789ABCDEF"}, BadHeader{"Lidar-Caps", "01"},
+        BadHeader{"Lidar-Caps", "../../../../etc/"}, BadHeader{"Lidar-Place", "1"},
+        BadHeader{"Lidar-Place", "1 -2"}, BadHeader{"Lidar-Place", "1 2 3"},
+        BadHeader{"Lidar-Place", " 1 2"}, BadHeader{"Lidar-Place", "1  2"},
+        BadHeader{"Lidar-Place", "99999999999999999999 1"}, BadHeader{"Lidar-Capture-Time", "-1"},
+        BadHeader{"Lidar-Capture-Time", "18446744073709551615"},
+        BadHeader{"Lidar-Capture-Time", "12x"}, BadHeader{"Lidar-Duration", "1e9"},
+        BadHeader{"Lidar-Slice", "1 2 3"}, BadHeader{"Lidar-Slice", "1 8 8 0"},
+        BadHeader{"Lidar-Slice", "1 0 0 0"}, BadHeader{"Lidar-Slice", "1 0 4097 0"},
+        BadHeader{"Lidar-Slice", "4294967296 0 1 0"}, BadHeader{"Lidar-Pose", "0 0 0 0 0 0 1"},
+        BadHeader{"Lidar-Pose", "nan 0 0 0 0 0 1 1"}, BadHeader{"Lidar-Pose", "0 0 0 0 0 0 1 4"},
+        BadHeader{"Lidar-Pose", "0 0 0 0 0 0 1e999 1"}));
+
+TEST_P(NatsBadHeader, IsRefused) {
+  const gst::BufferPtr buffer = Bytes(10);
+  const MessagePtr message = WriteMessage("a", nullptr, kId, {1, 2}, buffer.get());
+  ASSERT_TRUE(Read(message.get()));
+  natsMsgHeader_Set(message.get(), GetParam().name, GetParam().value);
+  EXPECT_FALSE(Read(message.get())) << GetParam().name << ": " << GetParam().value;
+}
+
+TEST_F(NatsParts, AMessageWithoutHeadersOrBytesIsRefused) {
+  natsMsg* raw = nullptr;
+  ASSERT_EQ(natsMsg_Create(&raw, "a", nullptr, "hello", 5), NATS_OK);
+  const MessagePtr plain(raw);
+  EXPECT_FALSE(Read(plain.get()));
+  const gst::BufferPtr empty(gst_buffer_new());
+  EXPECT_FALSE(Read(WriteMessage("a", nullptr, kId, {1, 2}, empty.get()).get()));
+  const gst::BufferPtr some = Bytes(1);
+  const MessagePtr message = WriteMessage("a", nullptr, kId, {1, 2}, some.get());
+  natsMsgHeader_Set(message.get(), "Lidar-Slice", std::string(100'000, '1').c_str());
+  EXPECT_FALSE(Read(message.get()));
+}
+
+StreamFormat::Ptr FormatOf(const char* text, std::string* why) {
+  const gst::CapsPtr caps(gst_caps_from_string(text));
+  return StreamFormat::FromCaps(caps.get(), why);
+}
+
+TEST_F(NatsParts, AFormatComesBackFromItsText) {
+  std::string why;
+  const auto format = FormatOf(kSliceCaps, &why);
+  ASSERT_TRUE(format) << why;
+  const auto back = StreamFormat::FromText(format->text());
+  ASSERT_TRUE(back);
+  EXPECT_EQ(back->id(), format->id());
+  EXPECT_TRUE(gst_caps_is_equal(back->caps(), format->caps()));
+  EXPECT_TRUE(format->Fits(7));
+  EXPECT_FALSE(format->Fits(0));
+}
+
+TEST_F(NatsParts, AFormatKnowsHowLargeItsBuffersAre) {
+  std::string why;
+  const auto imu = FormatOf("application/x-imu, sample-size=(int)32, fields=(string)t", &why);
+  ASSERT_TRUE(imu);
+  EXPECT_TRUE(imu->Fits(96));
+  EXPECT_FALSE(imu->Fits(97));
+  const auto pose = FormatOf("application/x-odometry", &why);
+  ASSERT_TRUE(pose);
+  EXPECT_TRUE(pose->Fits(64));
+  EXPECT_FALSE(pose->Fits(65));
+  EXPECT_FALSE(FormatOf("application/x-imu", &why));
+  EXPECT_FALSE(FormatOf("application/x-pointcloud2, width=(int)4", &why));
+  EXPECT_FALSE(FormatOf("video/x-raw", &why));
+  EXPECT_EQ(why,
+            "clouds, coded slices, IMU samples and odometry can be published, and no video/x-raw");
+}
+
+TEST_F(NatsParts, TextOfStrangersMakesNoFormat) {
+  const std::string deep(2'000, '{');
+  for (const std::string& text :
+       {std::string(), std::string("ANY"), std::string("EMPTY"),
+        std::string("application/x-odometry;") + kSliceCaps, std::string("video/x-raw"),
+        std::string("application/x-imu, sample-size=(int)[1,5]"),
+        std::string("application/x-imu, sample-size=(int)0"),
+        std::string("application/x-imu, sample-size=(int)-1"), "application/x-odometry, a=" + deep,
+        std::string("application/x-odometry, a=(string)\"\x01\""),
+        std::string("application/x-odometry(memory:GLMemory)")})
+    EXPECT_FALSE(StreamFormat::FromText(text)) << text.substr(0, 80);
+}
+
+TEST_F(NatsParts, TheBookKeepsTheNewestFormatsAndCountsWhatIsDamaged) {
+  FormatBook book;
+  std::vector<std::string> ids;
+  for (int i = 0; i < 40; ++i) {
+    std::string why;
+    const auto format =
+        FormatOf((std::string(kSliceCaps) + ", number=(int)" + std::to_string(i)).c_str(), &why);
+    ids.push_back(format->id());
+    book.Note("a.config." + format->id(), format->text());
+  }
+  EXPECT_EQ(book.damaged(), 0U);
+  EXPECT_TRUE(book.Find(ids.back()));
+  EXPECT_FALSE(book.Find(ids.front()));
+  book.Note("a.config." + ids.front(), "application/x-odometry");  // another's id
+  book.Note("a.config.*", kSliceCaps);
+  book.Note("", "");
+  EXPECT_EQ(book.damaged(), 3U);
+}
+
+Outgoing Item(std::uint64_t number, std::size_t size) { return {number, Bytes(size), nullptr}; }
+
+TEST_F(NatsParts, TheOutboxDropsTheOldestThatWait) {
+  Outbox box(10'000);
+  std::size_t dropped = 0;
+  for (std::uint64_t i = 0; i < 20; ++i) dropped += box.Push(Item(i, 1'000));
+  EXPECT_LE(box.bytes(), 10'000U);
+  EXPECT_EQ(box.waiting() + dropped, 20U);
+  EXPECT_EQ(box.Take({})->number, dropped);
+  EXPECT_EQ(box.Push(Item(20, 1'000'000)), box.in_flight() == 1 ? 21 - dropped - 1 : 0U);
+  EXPECT_EQ(box.waiting(), 0U);
+  EXPECT_EQ(box.in_flight(), 1U);  // what is with the server stays
+}
+
+TEST_F(NatsParts, TheOutboxSendsAgainInOrder) {
+  Outbox box(1'000'000);
+  for (std::uint64_t i = 0; i < 6; ++i) box.Push(Item(i, 10));
+  for (int i = 0; i < 4; ++i) box.Take({});
+  EXPECT_TRUE(box.Remove(1));
+  EXPECT_FALSE(box.Remove(1));
+  EXPECT_FALSE(box.Remove(5));  // never sent
+  EXPECT_EQ(box.RetryAll(), 3U);
+  EXPECT_FALSE(box.OldestInFlight());
+  std::vector<std::uint64_t> order;
+  while (const auto item = box.Take({})) order.push_back(item->number);
+  EXPECT_EQ(order, (std::vector<std::uint64_t>{0, 2, 3, 4, 5}));
+  EXPECT_EQ(box.Clear(), 5U);
+  EXPECT_EQ(box.bytes(), 0U);
+}
+
+TEST_F(NatsParts, APatternCoversWhatItsWildcardsSay) {
+  EXPECT_TRUE(Covers("a.b", "a.b"));
+  EXPECT_TRUE(Covers("a.*", "a.b"));
+  EXPECT_TRUE(Covers("a.>", "a.b.config.*"));
+  EXPECT_TRUE(Covers(">", "a"));
+  EXPECT_FALSE(Covers("a.*", "a.b.c"));
+  EXPECT_FALSE(Covers("a.b.c", "a.b"));
+  EXPECT_FALSE(Covers("a.b", "a.*"));
+  EXPECT_FALSE(Covers("a.>", "a"));
+  EXPECT_FALSE(Covers("a.*", "a.>"));
+}
+
+TEST_F(NatsParts, NamesThatTheServerWouldMisreadAreRefused) {
+  EXPECT_EQ(CheckSubject("fleet.r-7.lidar.front_2"), "");
+  for (const char* bad : {"", ".a", "a.", "a..b", "a b", "a.*", "a.>", "a\r\nPUB", "$JS.API",
+                          "_INBOX.x", "gr\xc3\xbc"})
+    EXPECT_NE(CheckSubject(bad), "") << bad;
+  EXPECT_NE(CheckSubject(std::string(300, 'a')), "");
+  EXPECT_EQ(CheckName("black-box_2"), "");
+  for (const char* bad : {"a.b", "a b", "a*", "a/b", "a>"}) EXPECT_NE(CheckName(bad), "") << bad;
+}
+
+}  // namespace
+}  // namespace lidar::nats

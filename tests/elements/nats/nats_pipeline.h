@@ -1,0 +1,126 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Pipelines with an end at NATS that are watched while they run.
+#pragma once
+#include <mutex>
+
+#include "tests/elements/mcap/recording.h"
+#include "tests/elements/nats/nats_server.h"
+
+namespace lidar::test {
+
+/// `n` is the element of NATS. The buffers that pass the pad of `see` are kept.
+class NatsPipeline {
+ public:
+  explicit NatsPipeline(const std::string& description) {
+    GError* raw = nullptr;
+    pipeline_.reset(gst_parse_launch(description.c_str(), &raw));
+    const gst::ErrorPtr error(raw);
+    EXPECT_EQ(error ? error->message : std::string(), "") << description;
+    bus_ = gst_element_get_bus(pipeline_.get());
+    nats_.reset(gst_bin_get_by_name(GST_BIN(pipeline_.get()), "n"));
+    const gst::ElementPtr see(gst_bin_get_by_name(GST_BIN(pipeline_.get()), "see"));
+    const gst::PadPtr pad(gst_element_get_static_pad(see.get(), "sink"));
+    gst_pad_add_probe(pad.get(), GST_PAD_PROBE_TYPE_BUFFER, OnBuffer, this, nullptr);
+  }
+  ~NatsPipeline() {
+    Stop();
+    gst_object_unref(bus_);
+  }
+
+  void Play() { gst_element_set_state(pipeline_.get(), GST_STATE_PLAYING); }
+  void Stop() { gst_element_set_state(pipeline_.get(), GST_STATE_NULL); }
+  /// Ends a live source.
+  void SendEos() { gst_element_send_event(pipeline_.get(), gst_event_new_eos()); }
+  /// The text of the error; empty at EOS.
+  std::string WaitForEnd() {
+    const gst::MessagePtr message(gst_bus_timed_pop_filtered(
+        bus_, GST_SECOND * static_cast<GstClockTime>(kPatience.count()),
+        static_cast<GstMessageType>(GST_MESSAGE_EOS | GST_MESSAGE_ERROR)));
+    if (!message) return "nothing happens";
+    if (GST_MESSAGE_TYPE(message.get()) == GST_MESSAGE_EOS) return "";
+    return Text(message.get(), gst_message_parse_error);
+  }
+  /// Of the next warning.
+  std::string WaitForWarning() {
+    const gst::MessagePtr message(gst_bus_timed_pop_filtered(
+        bus_, GST_SECOND * static_cast<GstClockTime>(kPatience.count()), GST_MESSAGE_WARNING));
+    return message ? Text(message.get(), gst_message_parse_warning) : "";
+  }
+
+  std::vector<Kept> buffers() const {
+    const std::lock_guard lock(mutex_);
+    return buffers_;
+  }
+  std::size_t count() const {
+    const std::lock_guard lock(mutex_);
+    return buffers_.size();
+  }
+  bool WaitForBuffers(std::size_t count_wanted) const {
+    return Eventually([&] { return count() >= count_wanted; });
+  }
+  std::string caps() const {
+    const gst::ElementPtr see(gst_bin_get_by_name(GST_BIN(pipeline_.get()), "see"));
+    const gst::PadPtr pad(gst_element_get_static_pad(see.get(), "sink"));
+    const gst::CapsPtr caps(gst_pad_get_current_caps(pad.get()));
+    const gst::StringPtr text(caps ? gst_caps_to_string(caps.get()) : nullptr);
+    return text ? text.get() : "";
+  }
+  /// A counter of `n`, or a flag.
+  guint64 stat(const char* name) const {
+    GstStructure* raw = nullptr;
+    g_object_get(nats_.get(), "stats", &raw, nullptr);
+    const gst::StructurePtr stats(raw);
+    guint64 big = 0;
+    guint small = 0;
+    gboolean flag = FALSE;
+    if (gst_structure_get_uint64(raw, name, &big)) return big;
+    if (gst_structure_get_uint(raw, name, &small)) return small;
+    EXPECT_TRUE(gst_structure_get_boolean(raw, name, &flag)) << name;
+    return flag ? 1 : 0;
+  }
+  GstElement* nats() const { return nats_.get(); }
+
+ private:
+  static std::string Text(GstMessage* message, void (*parse)(GstMessage*, GError**, gchar**)) {
+    GError* raw = nullptr;
+    parse(message, &raw, nullptr);
+    const gst::ErrorPtr error(raw);
+    return error->message;
+  }
+  static GstPadProbeReturn OnBuffer(GstPad*, GstPadProbeInfo* info, gpointer data) {
+    auto* self = static_cast<NatsPipeline*>(data);
+    const Kept kept = Keep(GST_PAD_PROBE_INFO_BUFFER(info));
+    const std::lock_guard lock(self->mutex_);
+    self->buffers_.push_back(kept);
+    return GST_PAD_PROBE_OK;
+  }
+
+  gst::ElementPtr pipeline_;
+  gst::ElementPtr nats_;
+  GstBus* bus_ = nullptr;
+  mutable std::mutex mutex_;
+  std::vector<Kept> buffers_;
+};
+
+inline const std::string kLive = "lidartestsrc is-live=true model=os1-32 mode=512x10 ";
+inline const std::string kQuick = "lidartestsrc model=os1-32 mode=512x10 ";
+inline const std::string kSee = " ! identity name=see ";
+
+/// Publishes `count` coded slices, waits until the server has them, and gives them.
+inline std::vector<Kept> PublishSlices(int count, const std::string& where) {
+  NatsPipeline sender(kQuick + "num-buffers=" + std::to_string(count) + " ! lidarenc" + kSee +
+                      "! natssink name=n sync=false drain-timeout=30000000000" + where);
+  sender.Play();
+  EXPECT_EQ(sender.WaitForEnd(), "");
+  return sender.buffers();
+}
+
+inline void ExpectSameStream(const std::vector<Kept>& got, const std::vector<Kept>& sent) {
+  ASSERT_EQ(got.size(), sent.size());
+  for (std::size_t i = 0; i < got.size(); ++i) {
+    EXPECT_TRUE(got[i].SameAs(sent[i])) << i;
+    EXPECT_EQ(got[i].duration, sent[i].duration) << i;
+  }
+}
+
+}  // namespace lidar::test

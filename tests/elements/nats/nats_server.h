@@ -1,0 +1,143 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// A nats-server of the test's own, on a free port of the loopback interface.
+#pragma once
+#include <gst/gst.h>
+#include <gtest/gtest.h>
+#include <signal.h>
+#include <sys/prctl.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <filesystem>
+#include <fstream>
+#include <functional>
+#include <string>
+#include <thread>
+#include <vector>
+
+namespace lidar::test {
+
+constexpr std::chrono::seconds kPatience{30};
+
+/// True once `holds` is, false where that takes too long.
+inline bool Eventually(const std::function<bool()>& holds) {
+  const auto deadline = std::chrono::steady_clock::now() + kPatience;
+  while (!holds()) {
+    if (std::chrono::steady_clock::now() > deadline) return false;
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  }
+  return true;
+}
+
+class NatsServer {
+ public:
+  /// Of Debian, in a folder that the path of users may lack.
+  static std::string Program() {
+    for (const char* path : {"/usr/sbin/nats-server", "/usr/local/bin/nats-server"})
+      if (access(path, X_OK) == 0) return path;
+    gchar* found = g_find_program_in_path("nats-server");
+    const std::string program = found != nullptr ? found : "";
+    g_free(found);
+    return program;
+  }
+
+  NatsServer() {
+    char name[] = "/tmp/nats-test-XXXXXX";
+    folder_ = mkdtemp(name);
+  }
+  ~NatsServer() {
+    Kill();
+    std::error_code ignored;
+    std::filesystem::remove_all(folder_, ignored);
+  }
+  NatsServer(const NatsServer&) = delete;
+  NatsServer& operator=(const NatsServer&) = delete;
+
+  /// With JetStream. The port stays the same from the first start on.
+  void Start(const std::vector<std::string>& options = {}) {
+    options_ = options;
+    ASSERT_TRUE(Eventually([this] { return TryToStart(); })) << "nats-server does not start";
+  }
+  void Restart() { Start(options_); }
+  /// As a power cut would.
+  void Kill() {
+    if (pid_ <= 0) return;
+    kill(pid_, SIGKILL);
+    waitpid(pid_, nullptr, 0);
+    pid_ = -1;
+  }
+  void Freeze() { kill(pid_, SIGSTOP); }
+  void Thaw() { kill(pid_, SIGCONT); }
+
+  std::string url(const std::string& scheme = "nats", const std::string& user = "") const {
+    return scheme + "://" + user + "127.0.0.1:" + port_;
+  }
+  const std::string& folder() const { return folder_; }
+
+ private:
+  /// Another program may have taken the port meanwhile, so it may take more than one go.
+  bool TryToStart() {
+    Kill();
+    for (const auto& entry : std::filesystem::directory_iterator(folder_))
+      if (entry.path().extension() == ".ports") std::filesystem::remove(entry.path());
+    std::vector<std::string> words = {Program(),
+                                      "-a",
+                                      "127.0.0.1",
+                                      "-p",
+                                      port_,
+                                      "-js",
+                                      "-sd",
+                                      folder_ + "/store",
+                                      "--ports_file_dir",
+                                      folder_,
+                                      "-l",
+                                      folder_ + "/log"};
+    words.insert(words.end(), options_.begin(), options_.end());
+    std::vector<char*> arguments;
+    for (std::string& word : words) arguments.push_back(word.data());
+    arguments.push_back(nullptr);
+    pid_ = fork();
+    if (pid_ == 0) {
+      prctl(PR_SET_PDEATHSIG, SIGKILL);
+      execv(arguments[0], arguments.data());
+      _exit(127);
+    }
+    return WaitForPort();
+  }
+  bool WaitForPort() {
+    const std::string path = folder_ + "/nats-server_" + std::to_string(pid_) + ".ports";
+    std::string text;
+    const bool there = Eventually([&] {
+      std::ifstream in(path);
+      text.assign(std::istreambuf_iterator<char>(in), {});
+      return text.find('}') != text.npos || waitpid(pid_, nullptr, WNOHANG) == pid_;
+    });
+    const auto at = text.find("127.0.0.1:");
+    if (!there || at == text.npos) return false;
+    const auto begin = at + std::string("127.0.0.1:").size();
+    port_ = text.substr(begin, text.find_first_not_of("0123456789", begin) - begin);
+    return true;
+  }
+
+  std::string folder_;
+  std::string port_ = "-1";  // any
+  std::vector<std::string> options_;
+  pid_t pid_ = -1;
+};
+
+/// Tests of streams, which need a server.
+class NatsTest : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    if (NatsServer::Program().empty())
+      GTEST_SKIP() << "nats-server is not installed (Debian: nats-server)";
+  }
+  std::string At(const std::string& more = "") const {
+    return " url=" + server_.url() + " " + more + " ";
+  }
+
+  NatsServer server_;
+};
+
+}  // namespace lidar::test

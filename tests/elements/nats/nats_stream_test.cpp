@@ -1,0 +1,137 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// What goes into natssink comes out of natssrc, while both run.
+#include "tests/elements/nats/nats_pipeline.h"
+
+namespace lidar::test {
+namespace {
+
+class NatsStream : public NatsTest {
+ protected:
+  void SetUp() override {
+    NatsTest::SetUp();
+    if (!IsSkipped()) server_.Start();
+  }
+};
+
+TEST_F(NatsStream, SlicesComeBackByteForByte) {
+  NatsPipeline receiver("natssrc name=n" + At("subject=r1.front") +
+                        "! fakesink name=see sync=false");
+  receiver.Play();
+  NatsPipeline sender(kQuick + "num-buffers=80 ! lidarenc" + kSee + "! natssink name=n sync=false" +
+                      At("subject=r1.front"));
+  sender.Play();
+  EXPECT_EQ(sender.WaitForEnd(), "");
+  ASSERT_TRUE(receiver.WaitForBuffers(80));
+  ExpectSameStream(receiver.buffers(), sender.buffers());
+  EXPECT_EQ(receiver.caps(), sender.caps());
+  EXPECT_EQ(receiver.stat("messages-lost"), 0U);
+  EXPECT_EQ(receiver.stat("messages-without-caps"), 0U);
+  EXPECT_EQ(sender.stat("messages"), 80U);
+  EXPECT_EQ(sender.stat("messages-waiting"), 0U);
+}
+
+TEST_F(NatsStream, CloudsComeBackByteForByte) {
+  NatsPipeline receiver("natssrc name=n" + At() + "! fakesink name=see sync=false");
+  receiver.Play();
+  NatsPipeline sender(kQuick + "num-buffers=16" + kSee + "! natssink name=n sync=false" + At());
+  sender.Play();
+  EXPECT_EQ(sender.WaitForEnd(), "");
+  ASSERT_TRUE(receiver.WaitForBuffers(16));
+  ExpectSameStream(receiver.buffers(), sender.buffers());
+  EXPECT_EQ(receiver.caps(), sender.caps());
+}
+
+TEST_F(NatsStream, ALateJoinerHasItsCapsWithTheFirstMessage) {
+  NatsPipeline sender(kLive + "! lidarenc" + kSee + "! natssink name=n" + At());
+  sender.Play();
+  ASSERT_TRUE(Eventually([&] { return sender.stat("messages") >= 10; }));
+  NatsPipeline receiver("natssrc name=n" + At() + "! fakesink name=see sync=false");
+  receiver.Play();
+  ASSERT_TRUE(receiver.WaitForBuffers(8));
+  EXPECT_EQ(receiver.caps(), sender.caps());
+  EXPECT_EQ(receiver.stat("messages-without-caps"), 0U);
+  EXPECT_EQ(receiver.stat("messages-lost"), 0U);
+}
+
+TEST_F(NatsStream, CapsThatChangeArriveBeforeTheirBuffers) {
+  NatsPipeline receiver("natssrc name=n" + At() + "! fakesink name=see sync=false");
+  receiver.Play();
+  const auto slices = PublishSlices(8, At());
+  ASSERT_TRUE(receiver.WaitForBuffers(8));
+  const std::string first = receiver.caps();
+  NatsPipeline clouds(kQuick + "num-buffers=8" + kSee + "! natssink name=n sync=false" + At());
+  clouds.Play();
+  EXPECT_EQ(clouds.WaitForEnd(), "");
+  ASSERT_TRUE(receiver.WaitForBuffers(16));
+  EXPECT_NE(receiver.caps(), first);
+  EXPECT_EQ(receiver.caps(), clouds.caps());
+  EXPECT_EQ(receiver.stat("messages-damaged"), 0U);
+}
+
+TEST_F(NatsStream, ServerKilledAndBackEveryLossIsCounted) {
+  NatsPipeline receiver("natssrc name=n" + At() + "! fakesink name=see sync=false");
+  receiver.Play();
+  NatsPipeline sender(kLive + "! lidarenc" + kSee +
+                      "! natssink name=n buffer-size=65536 drain-timeout=30000000000" + At());
+  sender.Play();
+  ASSERT_TRUE(receiver.WaitForBuffers(20));
+  server_.Kill();
+  ASSERT_TRUE(Eventually([&] { return sender.stat("messages-dropped") > 0; }));
+  EXPECT_LE(sender.stat("bytes-waiting"), 65536U);
+  EXPECT_EQ(sender.stat("connected"), 0U);
+  server_.Restart();
+  ASSERT_TRUE(Eventually([&] { return receiver.stat("reconnects") > 0; }));
+  const std::size_t before = receiver.count();
+  ASSERT_TRUE(receiver.WaitForBuffers(before + 40));
+  sender.SendEos();
+  EXPECT_EQ(sender.WaitForEnd(), "");
+  const guint64 sent = sender.count();
+  EXPECT_TRUE(Eventually([&] {
+    return receiver.stat("messages") + receiver.stat("messages-lost") == sent;
+  })) << receiver.stat("messages")
+      << " + " << receiver.stat("messages-lost") << " of " << sent;
+  EXPECT_GE(receiver.stat("messages-lost"), sender.stat("messages-dropped"));
+  EXPECT_EQ(sender.stat("messages") + sender.stat("messages-dropped"), sent);
+  EXPECT_GE(sender.stat("reconnects"), 1U);
+}
+
+TEST_F(NatsStream, AServerThatComesLateGetsWhatWaits) {
+  const std::string where = At();
+  server_.Kill();
+  NatsPipeline sender(kQuick + "num-buffers=40 ! lidarenc" + kSee +
+                      "! natssink name=n sync=false drain-timeout=30000000000" + where);
+  NatsPipeline receiver("natssrc name=n" + where + "! fakesink name=see sync=false");
+  receiver.Play();
+  sender.Play();
+  ASSERT_TRUE(Eventually([&] { return sender.stat("messages-waiting") == 40; }));
+  server_.Restart();
+  EXPECT_EQ(sender.WaitForEnd(), "");
+  EXPECT_EQ(sender.stat("messages"), 40U);
+  EXPECT_EQ(sender.stat("messages-dropped"), 0U);
+}
+
+TEST_F(NatsStream, TheStreamingThreadNeverWaitsForAServerThatHangs) {
+  NatsPipeline sender(kQuick + "num-buffers=400 ! lidarenc" + kSee +
+                      "! natssink name=n sync=false buffer-size=65536 drain-timeout=0" + At());
+  sender.Play();
+  ASSERT_TRUE(sender.WaitForBuffers(1));
+  server_.Freeze();
+  EXPECT_EQ(sender.WaitForEnd(), "");
+  server_.Thaw();
+}
+
+TEST_F(NatsStream, AQueueGroupSharesTheMessages) {
+  NatsPipeline a("natssrc name=n queue-group=workers" + At() + "! fakesink name=see sync=false");
+  NatsPipeline b("natssrc name=n queue-group=workers" + At() + "! fakesink name=see sync=false");
+  a.Play();
+  b.Play();
+  PublishSlices(200, At());
+  EXPECT_TRUE(Eventually([&] { return a.count() + b.count() >= 200; }));
+  EXPECT_EQ(a.count() + b.count(), 200U);
+  EXPECT_GT(a.count(), 0U);
+  EXPECT_GT(b.count(), 0U);
+  EXPECT_EQ(a.stat("messages-lost") + b.stat("messages-lost"), 0U);
+}
+
+}  // namespace
+}  // namespace lidar::test
