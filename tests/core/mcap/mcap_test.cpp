@@ -204,6 +204,51 @@ TEST(Mcap, MessagesOutsideOfChunksAreRead) {
   EXPECT_EQ(ReadAll(reader.get()).size(), 2U);
 }
 
+TEST(Mcap, AFileWithoutASummaryIsAsLongAsItsChunks) {
+  FileMaker maker(WriterSettings{});
+  const auto a = maker.AddChannel("a");
+  // The later second is written first.
+  for (const std::uint64_t second : {7U, 3U, 5U}) {
+    maker.Add(a, second * kSecond, "x");
+    ASSERT_TRUE(maker.writer().Flush());
+  }
+  for (const bool finished : {false, true}) {
+    if (finished) {
+      ASSERT_TRUE(maker.writer().Finish());
+    }
+    const auto reader = Open(maker.file());
+    EXPECT_EQ(reader->index().complete, finished);
+    EXPECT_EQ(reader->index().start_time(), 3 * kSecond);
+    EXPECT_EQ(reader->index().end_time(), 7 * kSecond);
+    EXPECT_EQ(reader->index().channels.count(a), 1U);  // known before a chunk is played
+    const auto read = ReadAll(reader.get());
+    ASSERT_EQ(read.size(), 3U);
+    EXPECT_EQ(read[0].log_time, 3 * kSecond);
+    EXPECT_EQ(read[2].log_time, 7 * kSecond);
+  }
+}
+
+TEST(Mcap, ASeekTakesTheMessageOfItsTime) {
+  FileMaker maker(WriterSettings{});
+  Record(&maker, 50);
+  ASSERT_TRUE(maker.writer().Finish());
+  const auto reader = Open(maker.file());
+  for (const std::uint64_t time : {5 * kSecond, 6 * kSecond, 99 * kSecond / 10}) {
+    reader->Seek(time);
+    ASSERT_TRUE(reader->Next());
+    reader->Seek(time);
+    EXPECT_EQ(reader->Next()->header.log_time, time);
+    reader->Seek(time + 1);
+    const auto after = reader->Next();
+    if (time < 9 * kSecond) {
+      ASSERT_TRUE(after);
+      EXPECT_EQ(after->header.log_time, time + kSecond / 10);
+    } else {
+      EXPECT_FALSE(after);
+    }
+  }
+}
+
 TEST(Mcap, SaysWhyAFileIsNone) {
   std::string why;
   EXPECT_EQ(Reader::Open(std::make_unique<test::MemoryInput>(Bytes()), &why), nullptr);

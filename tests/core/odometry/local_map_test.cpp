@@ -83,6 +83,90 @@ TEST(LocalMap, KnowsTheNormalOfASurface) {
   EXPECT_GT(std::abs(found->normal.z()), 0.999);
 }
 
+TEST(LocalMap, LearnsANewNormalFromNewPoints) {
+  LocalMap map({1, 100});
+  Points line;
+  for (double x = 0.05; x < 1; x += 0.24)
+    for (const double y : {0.05, 0.5, 0.95}) line.emplace_back(x, y, 0.5);
+  map.Add(line);
+  ASSERT_TRUE(map.FindNearest({0.5, 0.5, 0.5}, 1)->has_normal);
+  Points across;
+  for (double x = 0.05; x < 1; x += 0.24)
+    for (const double z : {0.05, 0.95}) across.emplace_back(x, 0.5, z);
+  map.Add(across);
+  EXPECT_FALSE(map.FindNearest({0.5, 0.5, 0.5}, 1)->has_normal);
+}
+
+TEST(LocalMap, ASurfaceTakesEightPoints) {
+  const Points eight = {{0.1, 0.1, 0.5}, {0.5, 0.1, 0.5}, {0.9, 0.1, 0.5}, {0.1, 0.5, 0.5},
+                        {0.9, 0.5, 0.5}, {0.1, 0.9, 0.5}, {0.5, 0.9, 0.5}, {0.9, 0.9, 0.5}};
+  LocalMap map({1, 100});
+  map.Add({eight.begin(), eight.end() - 1});
+  EXPECT_FALSE(map.FindNearest({0.5, 0.5, 0.5}, 1)->has_normal);
+  map.Add({eight.back()});
+  const auto found = map.FindNearest({0.5, 0.5, 0.6}, 1);
+  ASSERT_TRUE(found && found->has_normal);
+  EXPECT_NEAR(std::abs(found->normal.z()), 1, 1e-6);
+}
+
+TEST(LocalMap, ASurfaceIsSeenWithTheCubesNextToIt) {
+  // Four points in one cube, eight in the next one, all at the same height.
+  LocalMap map({1, 100});
+  map.Add({{0.1, 0.1, 0.5}, {0.6, 0.1, 0.5}, {0.1, 0.9, 0.5}, {0.6, 0.9, 0.5}});
+  Points next;
+  for (const double x : {1.1, 1.4, 1.7, 1.95})
+    for (const double y : {0.2, 0.7}) next.emplace_back(x, y, 0.5);
+  map.Add(next);
+  const auto found = map.FindNearest({0.1, 0.1, 0.5}, 0.2);
+  ASSERT_TRUE(found && found->has_normal);
+  EXPECT_NEAR(std::abs(found->normal.z()), 1, 1e-6);
+}
+
+TEST(LocalMap, ACubeHoldsTwentyPoints) {
+  LocalMap map({1, 100});
+  Points grid;
+  for (double x = 0.02; x < 1; x += 0.23)
+    for (double y = 0.02; y < 1; y += 0.23) grid.emplace_back(x, y, 0.5);
+  ASSERT_EQ(grid.size(), 25U);
+  map.Add(grid);
+  EXPECT_EQ(map.CountPoints(), 20U);
+}
+
+TEST(LocalMap, PointsAreAQuarterOfACubeApart) {
+  LocalMap map({4.4721359, 100});  // so that points stay a metre apart
+  map.Add({{0.1, 0.1, 0.1}, {1.09, 0.1, 0.1}, {0.1, 1.11, 0.1}});
+  EXPECT_EQ(map.CountPoints(), 2U);
+}
+
+TEST(LocalMap, SearchesAllCubesAroundAPoint) {
+  for (const double x : {-0.05, 0.5, 1.05})
+    for (const double y : {-0.05, 0.5, 1.05})
+      for (const double z : {-0.05, 0.5, 1.05}) {
+        LocalMap map({1, 100});
+        map.Add({{x, y, z}});
+        const Eigen::Vector3d asked(x < 0   ? 0.02
+                                    : x > 1 ? 0.98
+                                            : 0.5,
+                                    y < 0   ? 0.02
+                                    : y > 1 ? 0.98
+                                            : 0.5,
+                                    z < 0   ? 0.02
+                                    : z > 1 ? 0.98
+                                            : 0.5);
+        const auto found = map.FindNearest(asked, 0.2);
+        ASSERT_TRUE(found);
+        EXPECT_LT((found->point - Eigen::Vector3d(x, y, z)).norm(), 1e-6);
+      }
+}
+
+TEST(LocalMap, ForgetsWhatIsFartherThanItsRadiusOnly) {
+  LocalMap map({1, 20});
+  map.Add({{19.5, 0.5, 0.5}, {-20.5, 0.5, 0.5}, {0.5, 20.5, 0.5}});
+  map.Forget({0, 0, 0});
+  EXPECT_EQ(map.voxels(), 2U);  // cubes whose corners lie at 19 and 20
+  EXPECT_FALSE(map.FindNearest({-20.5, 0.5, 0.5}, 0.5));
+}
+
 TEST(LocalMap, KnowsThatACornerIsNoSurface) {
   LocalMap map({1, 100});
   map.Add(RandomPoints(200, 0.9));

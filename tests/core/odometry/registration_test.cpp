@@ -1,0 +1,138 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "src/odometry/registration.h"
+
+#include <gtest/gtest.h>
+
+#include "src/odometry/motion_threshold.h"
+
+namespace lidar::odometry {
+namespace {
+
+constexpr double kReach_m = 1;
+constexpr double kKernel_m = 0.3;
+
+/// The inner faces of a corner between floor and two walls, 8 m long, seen from its inside.
+Points Corner() {
+  Points points;
+  for (double a = 0.05; a < 8; a += 0.25)
+    for (double b = 0.05; b < 8; b += 0.25) {
+      points.emplace_back(a - 4, b - 4, -1.5);
+      points.emplace_back(a - 4, 4.5, b - 1.4);
+      points.emplace_back(4.5, a - 4, b - 1.4);
+    }
+  return points;
+}
+
+Points Floor() {
+  Points points;
+  for (double a = 0.05; a < 8; a += 0.25)
+    for (double b = 0.05; b < 8; b += 0.25) points.emplace_back(a - 4, b - 4, -1.5);
+  return points;
+}
+
+LocalMap MapOf(const Points& points) {
+  LocalMap map({1, 100});
+  map.Add(points);
+  return map;
+}
+
+/// What a sensor at `pose` sees of `points`.
+Points SeenFrom(const Pose& pose, const Points& points) {
+  Points seen;
+  for (const Eigen::Vector3d& point : points) seen.push_back(pose.Inverse() * point);
+  return seen;
+}
+
+Pose Moved(double x, double y, double z, double turn_z = 0) {
+  Twist twist;
+  twist << x, y, z, 0, 0, turn_z;
+  return Exp(twist);
+}
+
+TEST(Align, FindsEveryDirectionOfAMotion) {
+  LocalMap map = MapOf(Corner());
+  for (const Pose& truth : {Moved(0.2, 0, 0), Moved(0, -0.2, 0), Moved(0, 0, 0.15),
+                            Moved(0, 0, 0, 0.02), Moved(0.1, 0.1, -0.1, -0.02)}) {
+    const Alignment found = Align(SeenFrom(truth, Corner()), &map, Pose(), kReach_m, kKernel_m, {});
+    const Pose off = truth.Inverse() * found.pose;
+    EXPECT_LT(off.position.norm(), 0.01);
+    EXPECT_LT(Angle(off), 0.002);
+    EXPECT_GT(found.inlier_share, 0.95);
+    EXPECT_FALSE(found.degenerate);
+    EXPECT_LT(found.iterations, 50);
+  }
+}
+
+TEST(Align, KeepsTheGuessWhereTheSceneDoesNotShowTheMotion) {
+  LocalMap map = MapOf(Floor());
+  const Pose guess = Moved(0.3, -0.2, 0.1);
+  const Alignment found =
+      Align(SeenFrom(Moved(0, 0, 0), Floor()), &map, guess, kReach_m, kKernel_m, {});
+  EXPECT_TRUE(found.degenerate);
+  EXPECT_NEAR(found.pose.position.x(), 0.3, 0.01);
+  EXPECT_NEAR(found.pose.position.y(), -0.2, 0.01);
+  EXPECT_NEAR(found.pose.position.z(), 0, 0.01);
+}
+
+TEST(Align, TellsThePartOfThePointsThatFit) {
+  LocalMap map = MapOf(Corner());
+  Points seen = Corner();
+  const std::size_t whole = seen.size();
+  for (std::size_t i = 0; i < whole; ++i) seen.emplace_back(100, 100, 100);
+  const Alignment found = Align(seen, &map, Pose(), kReach_m, kKernel_m, {});
+  EXPECT_DOUBLE_EQ(found.inlier_share, 0.5);
+  EXPECT_LT(found.pose.position.norm(), 1e-3);
+}
+
+TEST(Align, LeavesTheGuessWhereFewerThanTwentyPointsFit) {
+  LocalMap map = MapOf(Corner());
+  const Pose guess = Moved(0.05, 0, 0);
+  for (const std::size_t count : {19U, 20U}) {
+    const Points all = Corner();
+    Points few;
+    for (std::size_t i = 0; i < count; ++i) few.push_back(all[i * 97 % all.size()]);
+    for (int i = 0; i < 50; ++i) few.emplace_back(100, 100, 100);
+    const Alignment found = Align(few, &map, guess, kReach_m, kKernel_m, {});
+    EXPECT_NEAR(found.inlier_share, static_cast<double>(count) / few.size(), 1e-9);
+    EXPECT_EQ((found.pose.position - guess.position).norm() == 0, count == 19);
+  }
+}
+
+TEST(Align, StaysWithTheGuessWithoutPointsOrMap) {
+  LocalMap map = MapOf(Corner());
+  LocalMap empty({1, 100});
+  const Pose guess = Moved(1, 2, 3);
+  EXPECT_EQ(Align({}, &map, guess, kReach_m, kKernel_m, {}).pose.position, guess.position);
+  EXPECT_EQ(Align(Corner(), &empty, guess, kReach_m, kKernel_m, {}).inlier_share, 0);
+}
+
+TEST(Align, EndsAfterItsMostIterations) {
+  LocalMap map = MapOf(Corner());
+  RegistrationSettings settings;
+  settings.max_iterations = 3;
+  settings.converged = 0;
+  const Alignment found =
+      Align(SeenFrom(Moved(0.2, 0, 0), Corner()), &map, Pose(), kReach_m, kKernel_m, settings);
+  EXPECT_GE(found.iterations, 3);
+  EXPECT_LE(found.iterations, 4);
+}
+
+TEST(MotionThreshold, IsTheRootOfTheMeanSquare) {
+  MotionThreshold threshold(100);
+  EXPECT_EQ(threshold.sigma_m(), 2);
+  threshold.Add(Moved(0.09, 0, 0));  // a sensor that stands
+  EXPECT_EQ(threshold.sigma_m(), 2);
+  threshold.Add(Moved(3, 0, 0));
+  EXPECT_NEAR(threshold.sigma_m(), 3, 1e-9);
+  threshold.Add(Moved(0, -4, 0));
+  EXPECT_NEAR(threshold.sigma_m(), std::sqrt((9. + 16) / 2), 1e-9);
+}
+
+TEST(MotionThreshold, CountsHowFarATurnMovesTheFarthestPoints) {
+  MotionThreshold threshold(100);
+  threshold.Add(Moved(0, 0, 0, 0.02));
+  EXPECT_NEAR(threshold.sigma_m(), 2 * 100 * std::sin(0.01), 1e-9);
+}
+
+}  // namespace
+}  // namespace lidar::odometry
