@@ -4,7 +4,9 @@
 
 #include <cstring>
 
+#include "gst/common/gstlidar.h"
 #include "tests/elements/mcap/recording.h"
+#include "tests/support/harness.h"
 
 namespace lidar::test {
 namespace {
@@ -103,6 +105,94 @@ TEST_F(Merge, SaysWhatIsWrong) {
             "x:F32:0,y:F32:4,z:F32:8.");
   EXPECT_NE(Play("pointcloudmerge name=m ! fakesink " + kSensor + " num-buffers=8 ! m.").warning,
             "");
+}
+
+/// Two pads that take clouds of one point each.
+class MergedByHand : public ::testing::Test {
+ protected:
+  static constexpr const char* kCaps =
+      "application/x-pointcloud2,width=1,height=1,point-step=12,"
+      "fields=(string)\"x:F32:0,y:F32:4,z:F32:8\",is-bigendian=false,is-dense=true";
+
+  MergedByHand() {
+    gst_object_ref_sink(element_.get());
+    first_.reset(gst_harness_new_with_element(element_.get(), "sink_0", "src"));
+    second_.reset(gst_harness_new_with_element(element_.get(), "sink_1", nullptr));
+    for (GstHarness* h : {first_.get(), second_.get()}) gst_harness_set_src_caps_str(h, kCaps);
+  }
+  static void Push(const Harness& h, float x, GstClockTime time_ms,
+                   GstClockTime duration_ms = 100) {
+    const float xyz[3] = {x, 1, 0};
+    GstBuffer* buffer = gst_buffer_new_memdup(xyz, sizeof xyz);
+    GST_BUFFER_PTS(buffer) = time_ms * GST_MSECOND;
+    if (duration_ms > 0) GST_BUFFER_DURATION(buffer) = duration_ms * GST_MSECOND;
+    gst_lidar_buffer_set_capture_time(buffer, (1'000'000 + time_ms) * GST_MSECOND);
+    ASSERT_EQ(gst_harness_push(h.get(), buffer), GST_FLOW_OK);
+  }
+  void ExpectCloud(const std::vector<float>& xs, GstClockTime time_ms,
+                   GstClockTime duration_ms = 100) {
+    const gst::BufferPtr cloud(gst_harness_pull(first_.get()));
+    ASSERT_TRUE(cloud);
+    EXPECT_EQ(GST_BUFFER_PTS(cloud.get()), time_ms * GST_MSECOND);
+    EXPECT_EQ(GST_BUFFER_DURATION(cloud.get()), duration_ms * GST_MSECOND);
+    EXPECT_EQ(gst_lidar_buffer_get_capture_time(cloud.get()), (1'000'000 + time_ms) * GST_MSECOND);
+    std::vector<float> points(3 * xs.size());
+    ASSERT_EQ(gst_buffer_get_size(cloud.get()), 4 * points.size());
+    gst_buffer_extract(cloud.get(), 0, points.data(), 4 * points.size());
+    for (std::size_t i = 0; i < xs.size(); ++i) EXPECT_FLOAT_EQ(points[3 * i], xs[i]);
+  }
+
+  const gst::ElementPtr element_{gst_element_factory_make("pointcloudmerge", nullptr)};
+  Harness first_;
+  Harness second_;
+};
+
+TEST_F(MergedByHand, ScansThatOverlapAreOneCloudOfTheEarliersTime) {
+  Push(first_, 1, 100);
+  Push(second_, 2, 199);
+  ExpectCloud({1, 2}, 100);
+  Push(first_, 3, 250, 80);
+  Push(second_, 4, 210, 70);
+  ExpectCloud({3, 4}, 210, 70);
+}
+
+TEST_F(MergedByHand, AScanThatEndsAsTheOtherBeginsIsOfAnEarlierTurn) {
+  Push(first_, 1, 100);
+  Push(second_, 2, 200);
+  Push(first_, 3, 200);
+  ExpectCloud({3, 2}, 200);
+}
+
+TEST_F(MergedByHand, AScanWithoutADurationTakesATenthOfASecond) {
+  Push(first_, 1, 100, 0);
+  Push(second_, 2, 199);
+  ExpectCloud({1, 2}, 100);
+  Push(first_, 3, 300, 0);
+  Push(second_, 4, 400);
+  Push(first_, 5, 410);
+  ExpectCloud({5, 4}, 400);
+}
+
+TEST_F(MergedByHand, EachPadHasItsOwnTransform) {
+  const gst::PadPtr pad(gst_element_get_static_pad(element_.get(), "sink_1"));
+  g_object_set(pad.get(), "transform", "5,0,0, 0,0,0", nullptr);
+  Push(first_, 1, 100);
+  Push(second_, 1, 100);
+  ExpectCloud({1, 6}, 100);
+  g_object_set(pad.get(), "transform", "", nullptr);
+  Push(first_, 1, 200);
+  Push(second_, 1, 200);
+  ExpectCloud({1, 1}, 200);
+}
+
+TEST_F(MergedByHand, PadsAreChildrenByTheirOrder) {
+  EXPECT_EQ(gst_child_proxy_get_children_count(GST_CHILD_PROXY(element_.get())), 2U);
+  for (guint i = 0; i < 2; ++i) {
+    GObject* child = gst_child_proxy_get_child_by_index(GST_CHILD_PROXY(element_.get()), i);
+    ASSERT_NE(child, nullptr);
+    EXPECT_EQ(GST_PAD_NAME(child), "sink_" + std::to_string(i));
+    g_object_unref(child);
+  }
 }
 
 }  // namespace
