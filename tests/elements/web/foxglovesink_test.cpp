@@ -82,6 +82,45 @@ TEST(FoxgloveSink, EncodesNothingThatNobodyWants) {
   EXPECT_EQ(sink.Stat("points-sent"), 0U);
 }
 
+TEST(FoxgloveSink, OfTwoSubscriptionsOfATopicTheNewestCounts) {
+  Sink sink;
+  sink.SetCloudCaps();
+  Peer peer(&sink);
+  peer.Subscribe("/points", 1);
+  peer.Subscribe("/points", 2);
+  sink.PushCloud(7);
+  EXPECT_EQ(peer.Next().subscription, 2U);
+  const guint64 sent = sink.Stat("points-sent");
+  peer.SendText(R"({"op":"unsubscribe","subscriptionIds":[1]})");  // gave way
+  peer.Sync();
+  sink.PushCloud(8);
+  EXPECT_EQ(FirstX(peer.Next()), 8.0F);
+  EXPECT_GT(sink.Stat("points-sent"), sent);
+  // With the only one gone, nobody wants the topic.
+  peer.SendText(R"({"op":"unsubscribe","subscriptionIds":[2]})");
+  peer.Sync();
+  const guint64 before = sink.Stat("points-sent");
+  sink.PushCloud(9);
+  EXPECT_EQ(sink.Stat("points-sent"), before);
+  EXPECT_EQ(sink.Stat("clouds"), 3U);
+}
+
+TEST(FoxgloveSink, AClientThatGoesWantsNothingAnyMore) {
+  Sink sink;
+  sink.SetCloudCaps();
+  {
+    Peer peer(&sink);
+    peer.Subscribe("/points", 1);
+    sink.PushCloud(7);
+    EXPECT_EQ(FirstX(peer.Next()), 7.0F);
+  }
+  ASSERT_TRUE(WaitUntil([&] { return sink.Stat("clients") == 0; }));
+  const guint64 before = sink.Stat("points-sent");
+  sink.PushCloud(8);
+  EXPECT_EQ(sink.Stat("points-sent"), before);
+  EXPECT_EQ(sink.Stat("messages-sent"), 1U);  // counted although its client is gone
+}
+
 TEST(FoxgloveSink, ThinsCloudsToMaxPoints) {
   Sink sink("max-points=10");
   sink.SetCloudCaps(100);
