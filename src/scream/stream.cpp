@@ -123,8 +123,8 @@ bool Stream::Late(Time now, DataRate rate, const Queued& first, DataSize size) c
   const Duration longest = p_.max_queue_delay * (begun ? kBegunStay : 1);
   if (now + size / rate > first.queued + longest) return true;
   if (!first.group || begun) return false;
-  const Group& group = first.group == queued_group_ ? last_group_ : this_group_;
-  return now + group.size / rate > first.queued + group.span() + p_.max_queue_delay;
+  // The group itself, or the one before it where it is still being queued.
+  return now + last_group_.size / rate > first.queued + last_group_.span() + p_.max_queue_delay;
 }
 
 void Stream::NoteGroup(Time now, const QueuedPacket& packet) {

@@ -1,0 +1,189 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Streams at the limits of what they are given: sums, turns, backlogs, frames.
+#include <gtest/gtest.h>
+
+#include "src/scream/streams.h"
+#include "tests/support/simulated.h"
+
+namespace lidar::scream {
+namespace {
+
+class Limits : public ::testing::Test {
+ protected:
+  StreamId Add(const StreamConfig& config) { return streams_.Add(config); }
+  double Target(StreamId id) { return streams_.Find(id)->target_bitrate().bits_per_second() / 1e6; }
+  void Queue(StreamId id, Time now, int packets, std::uint32_t timestamp = 7) {
+    for (int i = 0; i < packets; ++i)
+      streams_.Find(id)->OnQueued(now, {1, DataSize::Bytes(1000), i + 1 == packets, timestamp});
+  }
+  static double InMbps(DataRate rate) { return rate.bits_per_second() / 1e6; }
+
+  Parameters parameters_;
+  Streams streams_{parameters_};
+};
+
+TEST_F(Limits, TheMaximumOfAllIsNoMoreThanIsSet) {
+  Add({1, Mbps(1), Mbps(2), Mbps(10)});
+  Add({1, Mbps(3), Mbps(3), Mbps(20)});
+  EXPECT_NEAR(InMbps(streams_.max_bitrate()), 30, 1e-6);
+  EXPECT_NEAR(InMbps(streams_.start_bitrate()), 5, 1e-6);
+  parameters_.max_total_bitrate = Mbps(12);
+  EXPECT_NEAR(InMbps(streams_.max_bitrate()), 12, 1e-6);
+  parameters_.max_total_bitrate = Mbps(2);  // below what both must have
+  EXPECT_NEAR(InMbps(streams_.max_bitrate()), 4, 1e-6);
+}
+
+TEST_F(Limits, AMaximumBelowTheMinimumIsTheMinimum) {
+  const StreamId a = Add({1, Mbps(5), Mbps(5), Mbps(2)});
+  streams_.Allocate(kStart, Mbps(20));
+  EXPECT_NEAR(Target(a), 5, 1e-3);
+  EXPECT_NEAR(InMbps(streams_.max_bitrate()), 5, 1e-6);
+}
+
+TEST_F(Limits, AllAtTheirMaximumLeaveTheRest) {
+  const StreamId a = Add({5, Mbps(0), Mbps(1), Mbps(2)});
+  const StreamId b = Add({1, Mbps(1), Mbps(1), Mbps(3)});
+  streams_.Allocate(kStart, Mbps(20));
+  EXPECT_NEAR(Target(a), 2, 1e-3);
+  EXPECT_NEAR(Target(b), 3, 1e-3);
+}
+
+TEST_F(Limits, ASilentStreamHasWhatItNeedsToComeBack) {
+  const StreamId a = Add({1, Mbps(1), Mbps(1), Mbps(10)});
+  const StreamId b = Add({1, Mbps(1), Mbps(1), Mbps(10), Mbps(3)});
+  streams_.Allocate(kStart, Mbps(10));
+  Queue(a, kStart + 2s, 1);
+  streams_.Allocate(kStart + 2s, Mbps(6));
+  EXPECT_NEAR(Target(a), 6, 1e-3);
+  EXPECT_NEAR(Target(b), 3, 1e-3);
+}
+
+TEST_F(Limits, AStreamIsSilentAfterASecondWithoutPackets) {
+  const StreamId a = Add({1, Mbps(1), Mbps(1), Mbps(10)});
+  Queue(a, kStart, 1);
+  EXPECT_TRUE(streams_.Find(a)->active(kStart + 9s));  // it still waits
+  streams_.OnSent(kStart + 9s, a, 1, DataSize::Bytes(1000));
+  EXPECT_TRUE(streams_.Find(a)->active(kStart + 9s + 999ms));
+  EXPECT_FALSE(streams_.Find(a)->active(kStart + 10s));
+}
+
+TEST_F(Limits, OnlyTheLongestBacklogsMakeRoom) {
+  const StreamId a = Add({1, Mbps(0), Mbps(1), Mbps(100)});
+  const StreamId b = Add({1, Mbps(0), Mbps(1), Mbps(100)});
+  streams_.Allocate(kStart, Mbps(16));  // 8 Mbit/s each: 20,000 bytes in a frame of 20 ms
+  Queue(a, kStart, 120);                // 120 ms
+  Queue(b, kStart, 59);                 // 59 ms, less than half
+  streams_.LeaveRoomForBacklogs();
+  // 100,000 bytes are to leave within 200 ms: 4 Mbit/s.
+  EXPECT_NEAR(Target(a), 4, 1e-3);
+  EXPECT_NEAR(Target(b), 8, 1e-3);
+}
+
+TEST_F(Limits, AFrameIsNoBacklogAndWhatIsNeededStays) {
+  const StreamId a = Add({1, Mbps(0), Mbps(1), Mbps(100)});
+  streams_.Allocate(kStart, Mbps(8));
+  Queue(a, kStart, 20);
+  streams_.LeaveRoomForBacklogs();
+  EXPECT_NEAR(Target(a), 8, 1e-3);
+  Queue(a, kStart, 200);
+  streams_.LeaveRoomForBacklogs();
+  EXPECT_NEAR(Target(a), 0, 1e-3);
+  streams_.Find(a)->Configure({1, Mbps(0), Mbps(1), Mbps(100), Mbps(3)});
+  streams_.Allocate(kStart, Mbps(8));
+  streams_.LeaveRoomForBacklogs();
+  EXPECT_NEAR(Target(a), 3 * 1.08, 1e-3);
+}
+
+TEST_F(Limits, TheStreamWithTheHighestTargetSetsThePeriod) {
+  const StreamId slow = Add({9, Mbps(0), Mbps(1), Mbps(100)});
+  const StreamId fast = Add({1, Mbps(0), Mbps(1), Mbps(100)});
+  for (int i = 0; i < 3; ++i) Queue(slow, kStart + 100ms * i, 1, static_cast<std::uint32_t>(i));
+  for (int i = 0; i < 9; ++i) Queue(fast, kStart + 30ms * i, 1, static_cast<std::uint32_t>(i));
+  streams_.Find(slow)->OnDropped(kStart + 200ms, 3);
+  streams_.Find(fast)->OnDropped(kStart + 240ms, 9);
+  streams_.Allocate(kStart + 240ms, Mbps(10));
+  EXPECT_NEAR(Seconds(streams_.frame_period()), 0.1, 1e-6);
+  streams_.Find(slow)->Configure({0.1, Mbps(0), Mbps(1), Mbps(100)});
+  streams_.Allocate(kStart + 240ms, Mbps(10));
+  EXPECT_NEAR(Seconds(streams_.frame_period()), 0.03, 1e-6);
+}
+
+TEST_F(Limits, SumsWhatWaitsAndTellsTheOldest) {
+  const StreamId a = Add({}), b = Add({});
+  EXPECT_TRUE(streams_.empty());
+  Queue(a, kStart, 2);
+  Queue(b, kStart + 10ms, 3);
+  EXPECT_FALSE(streams_.empty());
+  EXPECT_EQ(streams_.queued().bytes(), 5000);
+  EXPECT_EQ(streams_.media_qdelay(kStart + 30ms), 30ms);
+  streams_.OnSent(kStart + 30ms, a, 1, DataSize::Bytes(1000));
+  streams_.OnSent(kStart + 30ms, a, 1, DataSize::Bytes(1000));
+  EXPECT_EQ(streams_.media_qdelay(kStart + 30ms), 20ms);
+  EXPECT_EQ(streams_.queued().bytes(), 3000);
+  EXPECT_EQ(streams_.Owner(1), a);
+  EXPECT_FALSE(streams_.Owner(2));
+  streams_.Remove(a);
+  EXPECT_EQ(streams_.Find(a), nullptr);
+  EXPECT_EQ(streams_.Owner(1), b);
+  EXPECT_NE(streams_.Add({}), a);
+}
+
+TEST_F(Limits, WhoWasIdleGetsNoCreditForIt) {
+  const StreamId a = Add({1, Mbps(0), Mbps(1), Mbps(100)});
+  const StreamId b = Add({1, Mbps(0), Mbps(1), Mbps(100)});
+  streams_.Allocate(kStart, Mbps(8));
+  Queue(a, kStart, 60);
+  for (int i = 0; i < 30; ++i) streams_.OnSent(kStart, a, 1, DataSize::Bytes(1000));
+  streams_.OnQueued(streams_.Find(b));
+  Queue(b, kStart, 30);
+  int turns_of_b = 0;
+  for (int i = 0; i < 20; ++i) {
+    const StreamId id = *streams_.Next();
+    turns_of_b += id == b ? 1 : 0;
+    streams_.OnSent(kStart, id, 1, DataSize::Bytes(1000));
+  }
+  EXPECT_NEAR(turns_of_b, 10, 1);
+}
+
+class ScanGroups : public ::testing::Test {
+ protected:
+  void Slice(Time now, std::uint32_t scan, std::uint32_t slice) {
+    for (int i = 0; i < 2; ++i)
+      stream_.OnQueued(now, {1, DataSize::Bytes(1000), i == 1, 4 * scan + slice, scan});
+  }
+  void Scan(Time now, std::uint32_t scan) {
+    for (std::uint32_t slice = 0; slice < 4; ++slice) Slice(now + slice * 25ms, scan, slice);
+  }
+  Parameters parameters_;
+  Stream stream_{parameters_, {1, Mbps(0), Mbps(4), Mbps(50)}};
+};
+
+TEST_F(ScanGroups, AScanIsNotBegunWhereItWouldBeLateAlsoOnceTheNextIsQueued) {
+  Scan(kStart, 1);
+  Slice(kStart + 100ms, 2, 0);
+  // 8000 bytes at 0.25 Mbit/s take 256 ms: the last slice of scan 1, queued at 75 ms, is late.
+  EXPECT_EQ(stream_.LatePackets(kStart + 100ms, Mbps(0.25)), 8U);
+  EXPECT_EQ(stream_.LatePackets(kStart + 100ms, Mbps(1)), 0U);
+}
+
+TEST_F(ScanGroups, WhatHasBegunMayStayFiveTimesAsLong) {
+  Scan(kStart, 1);
+  for (int i = 0; i < 2; ++i) stream_.OnSent(kStart, 1, DataSize::Bytes(1000));
+  EXPECT_EQ(stream_.LatePackets(kStart + 1025ms, DataRate::Infinite()), 0U);
+  EXPECT_EQ(stream_.LatePackets(kStart + 1026ms, DataRate::Infinite()), 6U);
+}
+
+TEST_F(ScanGroups, CountsWhatItSendsAndDrops) {
+  Scan(kStart, 1);
+  stream_.OnSent(kStart, 1, DataSize::Bytes(1000));
+  stream_.OnDropped(kStart, 3);
+  const StreamStatistics s = stream_.statistics(kStart);
+  EXPECT_EQ(s.packets_sent, 1U);
+  EXPECT_EQ(s.bytes_sent.bytes(), 1000);
+  EXPECT_EQ(s.packets_dropped, 3U);
+  EXPECT_EQ(s.queued.bytes(), 4000);
+  EXPECT_EQ(stream_.queued().bytes(), 4000);
+}
+
+}  // namespace
+}  // namespace lidar::scream
