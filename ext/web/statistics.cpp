@@ -3,6 +3,7 @@
 
 #include <array>
 #include <nlohmann/json.hpp>
+#include <string_view>
 
 #include "gst/common/structure_json.h"
 
@@ -59,7 +60,15 @@ struct Summary {
   double scale = 1;
 };
 constexpr double kMs = 1e-6;  // of ns
-constexpr std::array<Summary, 12> kSummaries = {{
+// Where the sender is another pipeline, its reports tell; what stands further down goes before.
+constexpr std::array<Summary, 19> kSummaries = {{
+    {"target_bitrate", "sender_target_bitrate", "sender_reports"},
+    {"sent_bitrate", "sender_sent_bitrate", "sender_reports"},
+    {"estimated_capacity", "sender_estimated_capacity", "sender_reports"},
+    {"queue_delay", "sender_queue_delay", "sender_reports", kMs},
+    {"rtt", "sender_rtt", "sender_reports", kMs},
+    {"ref_wnd", "sender_ref_wnd", "sender_reports"},
+    {"bytes_in_flight", "sender_bytes_in_flight", "sender_reports"},
     {"target_bitrate", "target_bitrate", "ref_wnd"},
     {"sent_bitrate", "sent_bitrate", "ref_wnd"},
     {"estimated_capacity", "estimated_capacity", "ref_wnd"},
@@ -74,12 +83,17 @@ constexpr std::array<Summary, 12> kSummaries = {{
     {"slices_lost", "slices_lost", "slices_lost"},
 }};
 
+bool IsSenders(const Summary& summary) {
+  return std::string_view(summary.beside) == "sender_reports";
+}
+
 void AddSummaries(const json& elements, json* message) {
   for (const Summary& summary : kSummaries) {
     for (const json& element : elements) {
       const auto value = element.find(summary.from);
-      if (!element.contains(summary.beside) || value == element.end() || !value->is_number())
-        continue;
+      const auto beside = element.find(summary.beside);
+      if (beside == element.end() || value == element.end() || !value->is_number()) continue;
+      if (IsSenders(summary) && *beside == 0) continue;  // none came yet
       if (summary.scale < 1)
         (*message)[summary.name] = value->get<double>() * summary.scale;
       else

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// RFC 8888 feedback, alone and in compound RTCP.
+// RTCP of both ends: RFC 8888 feedback, alone and in compounds, and the sender's reports.
 #include "src/scream/feedback/ccfb.h"
+#include "src/scream/feedback/sender_report.h"
 #include "tests/fuzz/fuzz.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
@@ -21,5 +22,13 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   }
   FUZZ_CHECK(total == 0 || total == size);
   parser.Parse({data, size});
+  const auto report = lidar::scream::ParseSenderReport({data, size});
+  if (!report) return 0;
+  FUZZ_CHECK(lidar::scream::HasSenderReport({data, size}));
+  const auto bytes = lidar::scream::BuildSenderReport(*report);
+  const auto again = lidar::scream::ParseSenderReport({bytes.data(), bytes.size()});
+  FUZZ_CHECK(again && again->ssrc == report->ssrc && again->rtt == report->rtt &&
+             again->target_bitrate == report->target_bitrate && again->ref_wnd == report->ref_wnd &&
+             again->packets_dropped == report->packets_dropped);
   return 0;
 }

@@ -76,11 +76,12 @@ static guint Estimate(GObject* object) {
   return bps;
 }
 
-/// The receiver ends with the sender where nobody says otherwise.
+/// The receiver ends with the sender, and knows how it does, where nobody says otherwise.
 static const TxSettings& TxDefaults() {
   static const TxSettings defaults = [] {
     TxSettings s;
     s.send_bye = true;
+    s.report_interval = std::chrono::seconds(1);
     return s;
   }();
   return defaults;
@@ -91,7 +92,7 @@ static Property<SinkSettings> OfTx(const char* name) {
                              ChildOf<GstLidarScreamSink, &GstLidarScreamSink::tx>, &TxDefaults());
 }
 
-static const std::array<Property<SinkSettings>, 20> kProperties = {{
+static const std::array<Property<SinkSettings>, 21> kProperties = {{
     Within<&SinkSettings::target>(UdpTargetRows(), "host"),
     Within<&SinkSettings::target>(UdpTargetRows(), "port"),
     Within<&SinkSettings::target>(UdpTargetRows(), "bind-address"),
@@ -109,6 +110,7 @@ static const std::array<Property<SinkSettings>, 20> kProperties = {{
     OfTx("max-queue-delay"),
     OfTx("stats-interval"),
     OfTx("send-bye"),
+    OfTx("sender-report-interval"),
     OfTx("key-unit-on-loss"),
     {"estimated-bitrate", "Target of all streams together, IP included; notifies [bit/s]",
      Estimate},

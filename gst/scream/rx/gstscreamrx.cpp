@@ -78,7 +78,9 @@ static StructurePtr Stats(GObject* object) {
   const RxLock lock(state.mutex);
   Shown shown{state.generator.stats(), state.counters};
   shown.own.ssrcs = static_cast<guint>(state.ssrcs.size());
-  return ToStructure("application/x-screamrx-stats", kStats, shown);
+  StructurePtr stats = ToStructure("application/x-screamrx-stats", kStats, shown);
+  state.sender.AddStats(state.clock != nullptr ? RxNow(state) : Time{}, stats.get());
+  return stats;
 }
 
 const RxProperties& RxPropertyTable() {
@@ -189,6 +191,7 @@ static void Prepare(RxState& state) {
   state.ssrcs.clear();
   state.old_streams.clear();
   state.counters = {};
+  state.sender.Reset();
   state.eos = false;
 }
 

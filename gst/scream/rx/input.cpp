@@ -98,6 +98,7 @@ bool Account(GstLidarScreamRx* self, const Clocks& clocks, GstBuffer* buffer,
   if (verdict == PeerLatch::Verdict::kMoved) {
     ++state.counters.moves;
     state.generator.Reset();
+    state.sender.Reset();
     state.ssrcs.clear();
     GST_INFO_OBJECT(self, "the media now comes from %s",
                     AddressToString(state.latch.peer()).c_str());
@@ -127,14 +128,17 @@ bool AnyAlive(const RxState& state, Time now) {
                      [now](const auto& s) { return now - s.second < kAlive; });
 }
 
-/// A goodbye on the media's port ends streams; other RTCP there goes on unread. Lock held.
+/// A goodbye on the media's port ends streams, and a sender's report is kept for `stats`; other
+/// RTCP there goes on unread. Lock held.
 Fate LookAtRtcp(RxState& state, Time now, GstBuffer* buffer, const BufferMap& map) {
   const auto goodbyes = ParseBye(map.view());
-  if (goodbyes.empty()) return Fate::kPass;
+  if (goodbyes.empty() && !scream::HasSenderReport(map.view())) return Fate::kPass;
   if (!state.latch.IsPeer(SourceOf(buffer))) {
     ++state.counters.foreign;
     return Fate::kDrop;
   }
+  const auto report = scream::ParseSenderReport(map.view());
+  if (report && state.ssrcs.count(report->ssrc) > 0) state.sender.OnReport(now, *report);
   bool known = false;
   for (const guint32 ssrc : goodbyes) known = state.ssrcs.erase(ssrc) > 0 || known;
   if (known) ++state.counters.goodbyes;

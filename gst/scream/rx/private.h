@@ -22,6 +22,7 @@
 #include "gst/scream/peer_latch.h"
 #include "gst/scream/rtp_packet.h"
 #include "gst/scream/rx/gstscreamrx.h"
+#include "gst/scream/rx/sender_view.h"
 #include "src/scream/feedback/feedback_generator.h"
 
 GST_DEBUG_CATEGORY_EXTERN(gst_lidar_scream_rx_debug);
@@ -63,6 +64,7 @@ struct RxState {
   std::map<guint32, Time> ssrcs;                          // of the peer, and when each sent last
   bool running = false;
   RxCounters counters;
+  SenderView sender;
   bool settings_changed = false;
   guint32 own_ssrc = 1;
 

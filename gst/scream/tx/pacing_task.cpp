@@ -30,14 +30,14 @@ GstFlowReturn PushPackets(GstPad* src, std::vector<BufferPtr> packets) {
   return gst_pad_push_list(src, list);
 }
 
+GstFlowReturn PushRtcp(GstPad* src, const std::vector<std::uint8_t>& rtcp) {
+  return gst_pad_push(src, gst_buffer_new_memdup(rtcp.data(), rtcp.size()));
+}
+
 /// Says goodbye for `ssrcs`, then ends the stream.
 void PushEnd(GstPad* src, const std::vector<guint32>& ssrcs) {
   const auto bye = BuildBye(ssrcs);
-  for (int i = 0; i < kByeCopies && !bye.empty(); ++i) {
-    GstBuffer* buffer = gst_buffer_new_allocate(nullptr, bye.size(), nullptr);
-    gst_buffer_fill(buffer, 0, bye.data(), bye.size());
-    gst_pad_push(src, buffer);
-  }
+  for (int i = 0; i < kByeCopies && !bye.empty(); ++i) PushRtcp(src, bye);
   gst_pad_push_event(src, gst_event_new_eos());
 }
 
@@ -108,7 +108,10 @@ PacingTask::Batch PacingTask::NextBatch(Time now) {
   batch.event = s.merger.NextEvent(s.streams);
   if (batch.event) return batch;
   CollectPackets(now, &batch);
-  if (batch.packets.empty()) batch.end = Drained(now);
+  if (batch.packets.empty())
+    batch.end = Drained(now);
+  else
+    batch.report = s.reports.Take(s, now);
   if (batch.end) batch.goodbyes = Goodbyes(s);
   return batch;
 }
@@ -205,6 +208,7 @@ GstFlowReturn PacingTask::Push(Batch batch) {
   GstFlowReturn flow = GST_FLOW_OK;
   if (batch.event) gst_pad_push_event(self_->src, batch.event.release());
   if (!batch.packets.empty()) flow = PushPackets(self_->src, std::move(batch.packets));
+  if (!batch.report.empty() && flow == GST_FLOW_OK) flow = PushRtcp(self_->src, batch.report);
   if (batch.end) PushEnd(self_->src, batch.goodbyes);
   return flow;
 }

@@ -3,6 +3,7 @@
 #pragma once
 #include <gst/gst.h>
 
+#include <cstdint>
 #include <mutex>
 #include <optional>
 #include <vector>
@@ -41,6 +42,7 @@ class PacingTask {
   /// What one round sends: packets, or one event.
   struct Batch {
     std::vector<BufferPtr> packets;
+    std::vector<std::uint8_t> report;  // RTCP that goes with the packets
     EventPtr event;
     bool end = false;
     std::vector<guint32> goodbyes;

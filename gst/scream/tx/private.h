@@ -22,6 +22,7 @@
 #include "gst/scream/tx/entry_gate.h"
 #include "gst/scream/tx/gstscreamtx.h"
 #include "gst/scream/tx/pacing_task.h"
+#include "gst/scream/tx/sender_reports.h"
 #include "gst/scream/tx/settings.h"
 #include "gst/scream/tx/stream.h"
 #include "gst/scream/tx/stream_merger.h"
@@ -50,6 +51,7 @@ struct TxState {
   EntryGate gate;
   StreamMerger merger;
   PacingTask pacing;
+  SenderReports reports;
   UpstreamReporter reporter;
 };
 

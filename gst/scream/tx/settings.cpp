@@ -81,6 +81,10 @@ const TxProperties& TxPropertyTable() {
       {"packet-overhead", "UDP and IP header of a packet on the wire [bytes]", &S::packet_overhead,
        0, 1000, kLive},
       {"send-bye", "Send an RTCP BYE on the src pad before EOS", &S::send_bye, 0, 0, kLive},
+      {"sender-report-interval",
+       "Time between reports to the receiver of how the sender sees the path, as RTCP on the src "
+       "pad; 100 ms at least, 0 for none [ns]",
+       &S::report_interval, 0, kMaxDelay, kLive},
       {"key-unit-on-loss",
        "Ask a video encoder for a key frame also when the network lost packets, not only when the "
        "queue dropped some",

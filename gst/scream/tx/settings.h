@@ -28,7 +28,8 @@ struct TxSettings {
   guint max_bps = 50'000'000;
   guint max_total_bps = 0;  // 0: no limit of its own
   gint ecn_mode = kEcnEct1;
-  Duration stats_interval{};  // 0: none
+  Duration stats_interval{};   // 0: none
+  Duration report_interval{};  // to the receiver; 0: none
   DataSize packet_overhead = DataSize::Bytes(28);
   bool send_bye = false;
   bool key_unit_on_loss = false;
@@ -37,7 +38,7 @@ struct TxSettings {
 
   Duration max_queue_delay() const { return parameters.max_queue_delay; }
 };
-using TxProperties = std::array<Property<TxSettings>, 51>;
+using TxProperties = std::array<Property<TxSettings>, 52>;
 const TxProperties& TxPropertyTable();
 
 /// What the controller works with: `pure_draft` undoes what was set of the draft's constants.

@@ -81,6 +81,23 @@ TEST(ScreamBins, CarryAStreamAndEndBothEnds) {
   EXPECT_GT(tx["rtt"], 0U);
 }
 
+TEST(ScreamBins, TheReceiverKnowsWhatTheSenderSees) {
+  g_setenv("LIDAR_BINS_KEY", std::string(60, '5').c_str(), TRUE);
+  const ElementPtr srtp(gst_element_factory_make("srtpenc", nullptr));
+  for (const char* key : {"", " srtp-key=env:LIDAR_BINS_KEY"}) {
+    if (*key != '\0' && !srtp) GTEST_SKIP() << "srtpenc is not installed";
+    Receiver receiver(std::string(kAudioCaps) + key);
+    Pipeline sender(kAudio + Sink(receiver.port, "sender-report-interval=100000000") + key);
+    sender.Play();
+    ASSERT_TRUE(Comes([&] { return Stats(receiver.in.get())["sender-rtt"] > 0; })) << key;
+    const Stats rx(receiver.in.get());
+    EXPECT_GT(rx["sender-reports"], 0U);
+    EXPECT_GT(rx["sender-target-bitrate"], 0U);
+    EXPECT_GT(rx["sender-packets-sent"], 0U);
+    EXPECT_EQ(rx["malformed"], 0U);
+  }
+}
+
 TEST(ScreamBins, EndBothEndsWhenTheApplicationEndsTheSender) {
   Receiver receiver(kAudioCaps);
   Pipeline sender(kAudio + Sink(receiver.port));

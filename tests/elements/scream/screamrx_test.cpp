@@ -4,6 +4,7 @@
 
 #include "gst/scream/rtp_packet.h"
 #include "src/rtp/ntp_time.h"
+#include "src/scream/feedback/sender_report.h"
 #include "tests/elements/scream/rtp_support.h"
 
 namespace lidar::test {
@@ -39,6 +40,11 @@ class ScreamRx : public ::testing::Test {
   GstFlowReturn PushBye(std::vector<guint32> ssrcs, const char* host = nullptr) {
     GstBuffer* buffer = FromBytes(gst::BuildBye(ssrcs));
     if (host != nullptr) SetSource(buffer, host, 5000);
+    return gst_harness_push(rtp.get(), buffer);
+  }
+  GstFlowReturn PushReport(const scream::SenderReport& report, const char* host = "10.0.0.1") {
+    GstBuffer* buffer = FromBytes(scream::BuildSenderReport(report));
+    SetSource(buffer, host, 5000);
     return gst_harness_push(rtp.get(), buffer);
   }
   CongestionFeedback Report(BufferPtr* raw = nullptr) {
@@ -261,6 +267,63 @@ TEST_F(ScreamRx, IgnoresAStrangersGoodbye) {
   r.seq = 1;
   EXPECT_EQ(Push(r, GST_LIDAR_ECN_ECT1, "10.0.0.1"), GST_FLOW_OK);
   EXPECT_EQ(Passed(), 2U);
+}
+
+TEST_F(ScreamRx, ShowsWhatItsSenderReports) {
+  Start();
+  EXPECT_EQ(Stats(element)["sender-reports"], 0U);
+  ASSERT_EQ(Push({}, GST_LIDAR_ECN_ECT1, "10.0.0.1"), GST_FLOW_OK);
+  scream::SenderReport report;
+  report.ssrc = 0x1234;
+  report.time_ms = 0xffffff00;
+  report.target_bitrate = DataRate::BitsPerSecond(7e6);
+  report.queue_delay = std::chrono::milliseconds(3);
+  report.packets_lost = 11;
+  ASSERT_EQ(PushReport(report), GST_FLOW_OK);
+  time.Settle();
+  time.Advance(250 * GST_MSECOND);
+  const Stats stats(element);
+  EXPECT_EQ(stats["sender-reports"], 1U);
+  EXPECT_EQ(stats["sender-target-bitrate"], 7'000'000U);
+  EXPECT_EQ(stats["sender-queue-delay"], 3 * GST_MSECOND);
+  EXPECT_EQ(stats["sender-packets-lost"], 11U);
+  EXPECT_EQ(stats["sender-report-age"], 250 * GST_MSECOND);
+  report.time_ms += 1000;  // over the wrap
+  report.packets_lost = 12;
+  ASSERT_EQ(PushReport(report), GST_FLOW_OK);
+  EXPECT_EQ(Stats(element)["sender-packets-lost"], 12U);
+  EXPECT_EQ(Passed(), 1U);
+}
+
+TEST_F(ScreamRx, BelievesNoReportThatIsOldOrOfSomebodyElse) {
+  Start();
+  ASSERT_EQ(Push({}, GST_LIDAR_ECN_ECT1, "10.0.0.1"), GST_FLOW_OK);
+  scream::SenderReport report;
+  report.ssrc = 0x1234;
+  report.time_ms = 5000;
+  ASSERT_EQ(PushReport(report), GST_FLOW_OK);
+  ASSERT_EQ(PushReport(report), GST_FLOW_OK);  // twice
+  report.time_ms = 4000;
+  ASSERT_EQ(PushReport(report), GST_FLOW_OK);
+  report.time_ms = 6000;
+  ASSERT_EQ(PushReport(report, "10.0.0.2"), GST_FLOW_OK);
+  report.ssrc = 0x9999;
+  ASSERT_EQ(PushReport(report), GST_FLOW_OK);
+  EXPECT_EQ(Stats(element)["sender-reports"], 1U);
+  EXPECT_EQ(Stats(element)["packets-foreign"], 1U);
+  EXPECT_EQ(Passed(), 1U);
+}
+
+TEST_F(ScreamRx, DropsAReportOfAVersionToCome) {
+  Start();
+  ASSERT_EQ(Push({}), GST_FLOW_OK);
+  scream::SenderReport report;
+  report.ssrc = 0x1234;
+  auto bytes = scream::BuildSenderReport(report);
+  bytes[8] = 0x82;
+  ASSERT_EQ(gst_harness_push(rtp.get(), FromBytes(bytes)), GST_FLOW_OK);
+  EXPECT_EQ(Stats(element)["sender-reports"], 0U);
+  EXPECT_EQ(Passed(), 1U);
 }
 
 TEST_F(ScreamRx, WaitsForTheNextSenderWhereAskedTo) {

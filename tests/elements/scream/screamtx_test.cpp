@@ -2,6 +2,7 @@
 // screamtx under a test clock: what goes upstream, what leaves, what it says of itself.
 #include <gtest/gtest.h>
 
+#include "src/scream/feedback/sender_report.h"
 #include "tests/elements/scream/screamtx_fixture.h"
 
 namespace lidar::test {
@@ -118,6 +119,53 @@ TEST_F(ScreamTx, NotifiesTheEstimatedBitrateOnTheWire) {
   guint bps = 0;
   g_object_get(element, "estimated-bitrate", &bps, nullptr);
   EXPECT_EQ(bps, 3'000'000U);
+}
+
+/// Sends and acknowledges a packet each 100 ms.
+class ScreamTxReports : public ScreamTx {
+ protected:
+  void Run(int packets) {
+    for (int i = 0; i < packets; ++i) {
+      PushFrame(static_cast<guint32>(i) * 9000, 1);
+      Acknowledge();
+      time.Advance(100 * GST_MSECOND);
+    }
+    Collect();
+  }
+  std::vector<scream::SenderReport> Reports() {
+    std::vector<scream::SenderReport> reports;
+    for (const auto& bytes : byes)
+      if (const auto r = scream::ParseSenderReport({bytes.data(), bytes.size()}))
+        reports.push_back(*r);
+    return reports;
+  }
+};
+
+TEST_F(ScreamTxReports, TellTheReceiverHowItSeesThePath) {
+  g_object_set(element, "sender-report-interval", guint64{GST_SECOND}, nullptr);
+  Start();
+  Run(45);
+  const auto reports = Reports();
+  ASSERT_EQ(reports.size(), 4U);
+  for (std::size_t i = 1; i < reports.size(); ++i)
+    EXPECT_NEAR(reports[i].time_ms - reports[i - 1].time_ms, 1000, 120);
+  const scream::SenderReport& last = reports.back();
+  EXPECT_EQ(last.ssrc, 0x1234U);
+  EXPECT_EQ(last.target_bitrate,
+            DataRate::BitsPerSecond(static_cast<double>(Stats(element)["target-bitrate"])));
+  EXPECT_GT(last.packets_sent, 39U);
+  EXPECT_EQ(last.packets_lost, 0U);
+  EXPECT_GT(last.ref_wnd, DataSize());
+}
+
+TEST_F(ScreamTxReports, AreNotSentUnlessAskedForNorMoreOftenThanTenASecond) {
+  Start();
+  Run(15);
+  EXPECT_TRUE(Reports().empty());
+  g_object_set(element, "sender-report-interval", guint64{1}, nullptr);
+  Run(20);
+  EXPECT_GE(Reports().size(), 15U);
+  EXPECT_LE(Reports().size(), 20U);
 }
 
 TEST_F(ScreamTx, PostsItsStatisticsAtTheInterval) {

@@ -3,6 +3,7 @@
 
 #include <array>
 
+#include "src/scream/feedback/sender_report.h"
 #include "tests/elements/web/web_peer.h"
 #include "tests/support/proto_reader.h"
 
@@ -218,6 +219,46 @@ TEST(FoxgloveSink, TellsTheStatisticsOfThePipelineAroundIt) {
     EXPECT_EQ(message["elements"]["enc"]["factory"], "lidarenc");
     EXPECT_GT(message["elements"]["enc"]["slices"], 0);
     EXPECT_EQ(message["elements"]["web"]["clients"], 1);
+  }
+  gst_element_set_state(pipeline.get(), GST_STATE_NULL);
+}
+
+void PushTo(GstElement* source, const std::vector<std::uint8_t>& bytes) {
+  const gst::BufferPtr buffer(gst_buffer_new_memdup(bytes.data(), bytes.size()));
+  GstFlowReturn flow = GST_FLOW_ERROR;
+  g_signal_emit_by_name(source, "push-buffer", buffer.get(), &flow);
+  EXPECT_EQ(flow, GST_FLOW_OK);
+}
+
+TEST(FoxgloveSink, TellsAtTheReceiverWhatTheSenderReports) {
+  const gst::ElementPtr pipeline(gst_parse_launch(
+      "appsrc name=in caps=application/x-rtp ! screamrx name=rx ! fakesink sync=false async=false "
+      "foxglovesink name=web port=0",
+      nullptr));
+  ASSERT_TRUE(pipeline);
+  const gst::ElementPtr web(gst_bin_get_by_name(GST_BIN(pipeline.get()), "web"));
+  const gst::ElementPtr in(gst_bin_get_by_name(GST_BIN(pipeline.get()), "in"));
+  gst_element_set_state(pipeline.get(), GST_STATE_PLAYING);
+  scream::SenderReport report;
+  report.ssrc = 7;
+  report.target_bitrate = DataRate::BitsPerSecond(9e6);
+  report.rtt = std::chrono::milliseconds(30);
+  PushTo(in.get(), {0x80, 96, 0, 1, 0, 0, 0, 0, 0, 0, 0, 7, 1, 2, 3, 4});
+  PushTo(in.get(), scream::BuildSenderReport(report));
+  GstStructure* raw = nullptr;
+  g_object_get(web.get(), "stats", &raw, nullptr);
+  const gst::StructurePtr stats(raw);
+  guint port = 0;
+  gst_structure_get_uint(stats.get(), "port", &port);
+  {
+    Peer peer("ws://127.0.0.1:" + std::to_string(port), {"foxglove.sdk.v1"});
+    peer.Subscribe("/statistics", 3);
+    nlohmann::json message = nlohmann::json::object();
+    for (int i = 0; i < 20 && !message.contains("rtt"); ++i)
+      message = nlohmann::json::parse(peer.Next().payload);
+    EXPECT_EQ(message.value("target_bitrate", 0), 9'000'000);
+    EXPECT_EQ(message.value("rtt", 0.0), 30.0);
+    EXPECT_EQ(message["elements"]["rx"]["sender_reports"], 1);
   }
   gst_element_set_state(pipeline.get(), GST_STATE_NULL);
 }

@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// What the sender said last of itself and the path.
+#pragma once
+#include <gst/gst.h>
+
+#include "gst/common/refs.h"
+#include "src/base/time.h"
+#include "src/scream/feedback/sender_report.h"
+
+namespace lidar::gst {
+
+class SenderView {
+ public:
+  /// Takes what is newer than what it has.
+  void OnReport(Time now, const scream::SenderReport& report);
+  /// Adds the fields sender-... to `stats`; all are 0 before the first report.
+  void AddStats(Time now, GstStructure* stats) const;
+  void Reset() { *this = {}; }
+
+ private:
+  scream::SenderReport newest_;
+  Time arrived_{};
+  guint64 reports_ = 0;
+};
+
+}  // namespace lidar::gst

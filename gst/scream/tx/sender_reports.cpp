@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "gst/scream/tx/sender_reports.h"
+
+#include <algorithm>
+
+#include "gst/scream/tx/private.h"
+#include "src/scream/feedback/sender_report.h"
+
+namespace lidar::gst {
+namespace {
+
+// 72 bytes a report, whatever the property says: less than 10 kbit/s with all headers.
+constexpr Duration kMinInterval = std::chrono::milliseconds(100);
+
+scream::SenderReport ReportOf(const scream::Statistics& s) {
+  scream::SenderReport r;
+  r.target_bitrate = s.target_bitrate;
+  r.estimated_capacity = s.estimated_capacity;
+  r.sent_bitrate = s.sent_bitrate;
+  r.ref_wnd = s.ref_wnd;
+  r.bytes_in_flight = s.bytes_in_flight;
+  r.queue_delay = s.qdelay;
+  r.rtt = s.s_rtt;
+  r.sender_queue_delay = s.media_qdelay;
+  r.packets_sent = static_cast<std::uint32_t>(s.packets_sent);
+  r.packets_lost = static_cast<std::uint32_t>(s.packets_lost);
+  r.packets_ce = static_cast<std::uint32_t>(s.packets_ce);
+  r.packets_dropped = static_cast<std::uint32_t>(s.packets_dropped);
+  return r;
+}
+
+std::uint32_t Milliseconds(Time time) {
+  return static_cast<std::uint32_t>(time.time_since_epoch() / std::chrono::milliseconds(1));
+}
+
+}  // namespace
+
+std::vector<std::uint8_t> SenderReports::Take(const TxState& state, Time now) {
+  const Duration interval = state.settings.report_interval;
+  if (interval <= Duration{0}) return {};
+  if (!last_) last_ = now;
+  if (now - *last_ < std::max(interval, kMinInterval)) return {};
+  const auto known = std::find_if(state.streams.begin(), state.streams.end(),
+                                  [](const auto& stream) { return stream->ssrc.has_value(); });
+  if (known == state.streams.end()) return {};
+  last_ = now;
+  scream::SenderReport report = ReportOf(state.controller->statistics(now));
+  report.ssrc = *(*known)->ssrc;
+  report.time_ms = Milliseconds(now);
+  return scream::BuildSenderReport(report);
+}
+
+}  // namespace lidar::gst
