@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// ROS 2 messages as CDR, from DDS peers and from recordings.
+#include <optional>
+#include <vector>
+
+#include "src/cdr/coded_slice.h"
+#include "src/cdr/messages.h"
+#include "src/cdr/point_cloud2.h"
+#include "tests/fuzz/fuzz.h"
+
+namespace {
+
+using lidar::ByteView;
+using Bytes = std::vector<std::uint8_t>;
+
+/// What was understood can be said again, and is then understood as the same.
+template <class Message>
+void CheckComesBack(ByteView data, std::optional<Message> (*read)(ByteView),
+                    Bytes (*write)(const Message&)) {
+  const auto message = read(data);
+  if (!message) return;
+  const Bytes said = write(*message);
+  const auto again = read({said.data(), said.size()});
+  FUZZ_CHECK(again && write(*again) == said);
+}
+
+void CheckCloud(ByteView data) {
+  constexpr std::size_t kEnough = 16U << 20;  // bytes of points: a fuzzer has little memory
+  std::string why;
+  const auto cloud = lidar::cdr::ReadPointCloud2(data, &why);
+  FUZZ_CHECK(cloud || !why.empty());
+  if (!cloud) return;
+  FUZZ_CHECK(cloud->data.size <= data.size);
+  const Bytes said = lidar::cdr::WritePointCloud2(*cloud);
+  const auto again = lidar::cdr::ReadPointCloud2({said.data(), said.size()});
+  FUZZ_CHECK(again && again->layout == cloud->layout && again->data.size == cloud->data.size);
+  const auto converter = lidar::cdr::PointConverter::Make(cloud->layout, {}, &why);
+  if (!converter || converter->size() > kEnough) return;
+  for (const auto& field : converter->points().fields.all())
+    FUZZ_CHECK(field.offset + lidar::SizeOf(field.type) <= converter->points().point_step);
+  Bytes points(converter->size());
+  FUZZ_CHECK(converter->Convert(*cloud, points.data()) ==
+             lidar::cdr::RowStride(*cloud).has_value());
+}
+
+}  // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t size) {
+  using namespace lidar::cdr;
+  const ByteView data{bytes, size};
+  CheckCloud(data);
+  CheckComesBack<Imu>(data, ReadImu, WriteImu);
+  CheckComesBack<Odometry>(data, ReadOdometry, WriteOdometry);
+  CheckComesBack<Transforms>(data, ReadTransforms, WriteTransforms);
+  CheckComesBack<CodedSlice>(data, ReadCodedSlice, WriteCodedSlice);
+  return 0;
+}
