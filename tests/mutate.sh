@@ -74,16 +74,30 @@ copy_tree() {
   done <"$folder/files"
 }
 
+# What a patch touched is as before.
+restore() {
+  local file
+  while IFS= read -r file; do
+    cp "$root/$file" "$tree/$file" || return 1
+  done < <(sed -n 's|^+++ b/||p' "$1")
+}
+
 compile() {
   [ -f "$build/build.ninja" ] || meson setup "$build" "$tree" -Dcpp_args=-g1 -Dwerror=false -Dbenchmarks=disabled >"$log" 2>&1 ||
     { tail -20 "$log" >&2; exit 2; }
   ninja -C "$build" "$@" >"$log" 2>&1
 }
 
+# What belongs to which test stays as it is: no patch touches a meson.build.
+introspect() {
+  [ "$folder/$1.json" -nt "$build/build.ninja" ] || meson introspect "$build" "--$1" >"$folder/$1.json"
+  echo "$folder/$1.json"
+}
+
 # What the named tests need, as ninja calls it; with no name, what those of both suites need.
 targets() {
   jq -rn --arg dir "$build/" --arg names "$*" \
-    --slurpfile tests <(meson introspect "$build" --tests) --slurpfile all <(meson introspect "$build" --targets) '
+    --slurpfile tests "$(introspect tests)" --slurpfile all "$(introspect targets)" '
     ($names | split(" ")) as $wanted
     | [$tests[0][] | select((.name | IN($wanted[]))
         or ($names == "" and any(.suite[]; sub(".*:"; "") | IN("core", "elements")))) | .depends[]] as $needed
@@ -132,7 +146,7 @@ fi
 noticed=0
 for patch in "${patches[@]}"; do
   outcome=$(try_patch "$patch")
-  copy_tree || exit 2
+  restore "$patch" || exit 2
   printf '%-36s %s\n' "$(basename "$patch" .patch)" "$outcome"
   case $outcome in noticed*) noticed=$((noticed + 1)) ;; esac
 done

@@ -149,6 +149,17 @@ TEST(PointConverter, TakesThePaddingOfRowsOut) {
   EXPECT_EQ(Convert(cloud), (Bytes{1, 2, 3, 4}));
 }
 
+TEST(PointConverter, TakesNoPaddingThatRowStepDoesNotSay) {
+  PointCloud2 cloud;
+  cloud.layout = {2, 1, {{"x", 0, kRosU8, 1}}, false, 2, 4};
+  const Bytes points(10);  // rows of 5
+  cloud.data = View(points);
+  EXPECT_FALSE(RowStride(cloud));
+  EXPECT_FALSE(Convert(cloud));
+  cloud.layout.row_step = 5;
+  EXPECT_EQ(RowStride(cloud), 5U);
+}
+
 TEST(PointConverter, TakesPackedRowsWhoseStepIsNotSet) {
   PointCloud2 cloud;
   cloud.layout = {2, 1, {{"x", 0, kRosU8, 1}}, false, 2, 0};

@@ -161,6 +161,7 @@ TEST_P(Tracking, SkipsWholeScansEvenlyBelowTheMinimumAndStillKeepsTheRate) {
   EXPECT_NEAR(skipped, 0.6 * kScans, 0.02 * kScans);
   EXPECT_LE(longest, 2U);
   EXPECT_NEAR(sent / (kScans * 0.4 * minimum / 80), 1, 0.02);
+  EXPECT_EQ(run.controller.stats().scans_thinned, 0U);
 }
 
 TEST_P(Tracking, ThinsEveryScanWhereTheFramerateIsToBeKept) {
@@ -178,6 +179,9 @@ TEST_P(Tracking, ThinsEveryScanWhereTheFramerateIsToBeKept) {
     sent += scan.bytes;
   }
   EXPECT_NEAR(sent / (kScans * 0.4 * minimum / 80), 1, 0.02);
+  EXPECT_GE(run.controller.stats().scans_thinned, kScans);
+  EXPECT_LT(run.controller.stats().scans_thinned, kScans + 25U);
+  EXPECT_EQ(run.controller.stats().scans_skipped, 0U);
 }
 
 TEST_P(Tracking, BalancedThinsAndSkipsAlike) {
@@ -195,6 +199,9 @@ TEST_P(Tracking, BalancedThinsAndSkipsAlike) {
     sent += scan.bytes;
   }
   EXPECT_NEAR(skipped, 0.45 * kScans, 0.06 * kScans);
+  EXPECT_GE(run.controller.stats().scans_skipped, skipped);
+  EXPECT_LE(run.controller.stats().scans_skipped + run.controller.stats().scans_thinned,
+            kScans + 25U);
   EXPECT_NEAR(sent / (kScans * 0.36 * minimum / 80), 1, 0.03);
 }
 

@@ -100,6 +100,25 @@ TEST(Simulation, ThePureDraftFillsALinkWithoutEcn) {
   EXPECT_LT(m.queue_ms.p95, 40);
 }
 
+/// Which signal moved the rate is counted, and no other.
+TEST(Simulation, CountsWhatItAnswers) {
+  const Statistics marked =
+      Simulate(FindScenario("frames_20M_rtt25", Parameters::Draft())->config).flows[0].statistics;
+  EXPECT_GT(marked.ce_events, 10U);
+  EXPECT_LT(marked.ce_events, 10'000U);
+  EXPECT_GE(marked.packets_ce, marked.ce_events);
+  EXPECT_EQ(marked.loss_events, 0U);
+  EXPECT_EQ(marked.packets_lost, 0U);
+  const Statistics delayed =
+      Simulate(FindScenario("frames_8M_fifo100_notect", Parameters::Draft())->config)
+          .flows[0]
+          .statistics;
+  EXPECT_GT(delayed.delay_events, 10U);
+  EXPECT_LT(delayed.delay_events, 10'000U);
+  EXPECT_EQ(delayed.ce_events, 0U);
+  EXPECT_EQ(delayed.packets_ce, 0U);
+}
+
 TEST(Simulation, ALongerRouteIsNoCongestion) {
   const Scenario s = *FindScenario("frames_20M_longer_route", Parameters());
   const SimulationResult result = Simulate(s.config);

@@ -310,6 +310,27 @@ TEST(MediaRate, IsTheWindowOverTheRoundTripWithTheDraftsReserves) {
   EXPECT_NEAR(small.bits_per_second(), 6e5 * 0.8 * (1000.0 / 1020) / 1.5, 1);
 }
 
+TEST(CompetingFlows, LossEventsGiveHalfAsMuchAgain) {
+  Parameters p;
+  p.competing_flows = true;
+  for (const bool loss : {false, true}) {
+    CompetingFlows flows(p);
+    Time now = kStart;
+    for (int i = 0; i < 300; ++i, now += 50ms) flows.Update(now, 80ms, 40ms, loss && i > 200);
+    EXPECT_NEAR(Milliseconds(flows.qdelay_target()), loss ? 120 : 80, 1);
+  }
+}
+
+TEST(CompetingFlows, OneLossInAThousandRoundTripsIsNone) {
+  Parameters p;
+  p.competing_flows = true;
+  CompetingFlows flows(p);
+  Time now = kStart;
+  // After one event of 0.02 the rate falls below 0.002 within 114 round trips.
+  for (int i = 0; i < 400; ++i, now += 50ms) flows.Update(now, 80ms, 40ms, i == 200);
+  EXPECT_NEAR(Milliseconds(flows.qdelay_target()), 80, 1);
+}
+
 TEST(CompetingFlows, TheTargetGivesWayToASteadyQueueAndComesBack) {
   Parameters p;
   p.competing_flows = true;
