@@ -11,7 +11,8 @@
 namespace lidar::gst {
 
 std::unique_ptr<InputFile> InputFile::Open(const std::string& path, std::string* why) {
-  const int fd = open(path.c_str(), O_RDONLY | O_CLOEXEC);
+  // A pipe would wait for its writer.
+  const int fd = open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
   if (fd < 0) {
     *why = std::generic_category().message(errno);
     return nullptr;

@@ -205,7 +205,11 @@ gboolean SinkEvent(GstPad* pad, GstObject* parent, GstEvent* event) {
   if (type == GST_EVENT_CAPS) return HandleCaps(self, event);
   if (type == GST_EVENT_EOS) PushPending(self);
   if (type == GST_EVENT_FLUSH_STOP) state.pending.clear();
-  // Caps come first, with the first cloud.
+  // Caps come first, with the first cloud, and before them a gap means nothing.
+  if (type == GST_EVENT_GAP && !state.pushed) {
+    gst_event_unref(event);
+    return TRUE;
+  }
   const bool waits = GST_EVENT_IS_STICKY(event) && type > GST_EVENT_CAPS && type != GST_EVENT_EOS;
   if (state.pushed || !waits) return gst_pad_event_default(pad, parent, event);
   state.pending.emplace_back(event);

@@ -93,10 +93,11 @@ std::vector<Head> Heads(const std::vector<lidar::gst::PadPtr>& pads) {
     auto* pad = GST_AGGREGATOR_PAD(owner.get());
     const BufferPtr buffer(gst_aggregator_pad_peek_buffer(pad));
     if (!buffer) continue;
-    const GstClockTime duration =
-        GST_BUFFER_DURATION_IS_VALID(buffer.get()) ? GST_BUFFER_DURATION(buffer.get()) : kUsualScan;
-    heads.push_back(
-        {GST_LIDAR_POINT_CLOUD_MERGE_PAD(pad), RunningTime(pad, buffer.get()), duration});
+    // A scan of no length would be of an earlier turn than itself.
+    const GstClockTime duration = GST_BUFFER_DURATION(buffer.get());
+    const bool known = GST_CLOCK_TIME_IS_VALID(duration) && duration > 0;
+    heads.push_back({GST_LIDAR_POINT_CLOUD_MERGE_PAD(pad), RunningTime(pad, buffer.get()),
+                     known ? duration : kUsualScan});
   }
   return heads;
 }

@@ -230,6 +230,11 @@ gboolean SinkEvent(GstPad* pad, GstObject* parent, GstEvent* event) {
   }
   if (type == GST_EVENT_FLUSH_STOP) DropSegments(&state.waiting);
   if (type == GST_EVENT_EOS && !state.caps_sent && state.caps) PushCaps(self, state.caps.get());
+  if (type == GST_EVENT_GAP && !state.caps_sent) {
+    // Nothing stands behind a gap that nobody knows the caps and the segment of.
+    gst_event_unref(event);
+    return TRUE;
+  }
   const bool behind_caps = GST_EVENT_IS_STICKY(event) && type > GST_EVENT_CAPS;
   if (behind_caps && type != GST_EVENT_EOS && !state.caps_sent) {
     state.waiting.emplace_back(event);

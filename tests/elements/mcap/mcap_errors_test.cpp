@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // What mcapsink and mcapsrc say where they cannot do their work.
 #include <sys/resource.h>
+#include <sys/stat.h>
 
 #include <csignal>
 #include <fstream>
@@ -90,6 +91,9 @@ TEST_F(McapErrors, APlayerSaysWhyItCannotPlay) {
   EXPECT_EQ(PlayError("location=/nowhere.mcap"),
             "Cannot play \"/nowhere.mcap\": there is no such file.");
   EXPECT_EQ(PlayError("location=/dev/zero"), "Cannot play \"/dev/zero\": it is no file.");
+  ASSERT_EQ(mkfifo(Path("pipe.mcap").c_str(), 0600), 0);
+  EXPECT_EQ(PlayError(At("pipe.mcap")),
+            "Cannot play \"" + Path("pipe.mcap") + "\": it is no file.");
   std::ofstream(Path("empty.mcap")).flush();
   EXPECT_EQ(PlayError(At("empty.mcap")),
             "Cannot play \"" + Path("empty.mcap") + "\": it is empty.");

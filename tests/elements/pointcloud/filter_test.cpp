@@ -139,6 +139,17 @@ TEST_F(Filter, ACloudOfWhichNothingIsLeftIsAGap) {
   EXPECT_EQ(removed, 3U);
 }
 
+TEST_F(Filter, NoGapComesBeforeTheCaps) {
+  Start("", Caps("x:F32:0,y:F32:4,z:F32:8", 12, 2, 1));
+  ASSERT_TRUE(gst_harness_push_event(h_.get(), gst_event_new_gap(0, GST_SECOND)));
+  ASSERT_EQ(Push(std::vector<std::uint8_t>(24)), GST_FLOW_OK);
+  ASSERT_TRUE(gst_harness_push_event(h_.get(), gst_event_new_gap(0, GST_SECOND)));
+  std::vector<std::string> names;
+  while (const lidar::gst::EventPtr event{gst_harness_try_pull_event(h_.get())})
+    names.emplace_back(GST_EVENT_TYPE_NAME(event.get()));
+  EXPECT_EQ(names, (std::vector<std::string>{"stream-start", "caps", "segment", "gap"}));
+}
+
 TEST_F(Filter, SaysWhatIsWrong) {
   const std::string caps = Caps("x:F32:0,y:F32:4,z:F32:8", 12, 1, 1);
   const std::vector<std::pair<std::string, std::string>> wrong = {

@@ -120,12 +120,14 @@ class MergedByHand : public ::testing::Test {
     second_.reset(gst_harness_new_with_element(element_.get(), "sink_1", nullptr));
     for (GstHarness* h : {first_.get(), second_.get()}) gst_harness_set_src_caps_str(h, kCaps);
   }
+  static constexpr GstClockTime kUnset = G_MAXUINT64;
+
   static void Push(const Harness& h, float x, GstClockTime time_ms,
                    GstClockTime duration_ms = 100) {
     const float xyz[3] = {x, 1, 0};
     GstBuffer* buffer = gst_buffer_new_memdup(xyz, sizeof xyz);
     GST_BUFFER_PTS(buffer) = time_ms * GST_MSECOND;
-    if (duration_ms > 0) GST_BUFFER_DURATION(buffer) = duration_ms * GST_MSECOND;
+    if (duration_ms != kUnset) GST_BUFFER_DURATION(buffer) = duration_ms * GST_MSECOND;
     gst_lidar_buffer_set_capture_time(buffer, (1'000'000 + time_ms) * GST_MSECOND);
     ASSERT_EQ(gst_harness_push(h.get(), buffer), GST_FLOW_OK);
   }
@@ -164,13 +166,19 @@ TEST_F(MergedByHand, AScanThatEndsAsTheOtherBeginsIsOfAnEarlierTurn) {
 }
 
 TEST_F(MergedByHand, AScanWithoutADurationTakesATenthOfASecond) {
-  Push(first_, 1, 100, 0);
+  Push(first_, 1, 100, kUnset);
   Push(second_, 2, 199);
   ExpectCloud({1, 2}, 100);
-  Push(first_, 3, 300, 0);
+  Push(first_, 3, 300, kUnset);
   Push(second_, 4, 400);
   Push(first_, 5, 410);
   ExpectCloud({5, 4}, 400);
+}
+
+TEST_F(MergedByHand, SoDoesAScanWhoseDurationIsZero) {
+  Push(first_, 1, 100, 0);
+  Push(second_, 2, 150, 0);
+  ExpectCloud({1, 2}, 100);
 }
 
 TEST_F(MergedByHand, EachPadHasItsOwnTransform) {

@@ -52,6 +52,13 @@ std::vector<std::uint8_t> DriverCloud(const std::vector<std::uint32_t>& ranges) 
   return points;
 }
 
+std::vector<std::string> EventsOf(GstHarness* h) {
+  std::vector<std::string> names;
+  while (const EventPtr event{gst_harness_try_pull_event(h)})
+    names.emplace_back(GST_EVENT_TYPE_NAME(event.get()));
+  return names;
+}
+
 class Organize : public ::testing::Test {
  protected:
   void Start(const CloudInfo& info, const char* behind = "") {
@@ -175,6 +182,18 @@ TEST_F(Organize, TakesNoMoreRowsThanASensorHasBeams) {
   tall.height = 2000;
   Start(tall);
   EXPECT_TRUE(Warned());
+}
+
+TEST_F(Organize, NoGapComesBeforeTheCaps) {
+  Start(DriverInfo());
+  for (int i = 0; i < 2; ++i) {
+    ASSERT_TRUE(gst_harness_push_event(h_.get(), gst_event_new_gap(0, GST_SECOND)));
+    if (i == 0) {
+      ASSERT_EQ(Push(DriverCloud(Ranges())), GST_FLOW_OK);
+    }
+  }
+  EXPECT_EQ(EventsOf(h_.get()),
+            (std::vector<std::string>{"stream-start", "caps", "segment", "gap"}));
 }
 
 TEST_F(Organize, EndsWithoutAnyCloud) {
