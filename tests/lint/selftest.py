@@ -8,12 +8,18 @@ import tempfile
 
 sys.dont_write_bytecode = True
 import dependencies
+import packaging
 import paths
 import versions
 
 HERE = pathlib.Path(__file__).resolve().parent
 SCRIPTS = {"links": HERE / "links.sh", "widths": HERE / "widths.sh"}
-MODULES = {"dependencies": dependencies, "paths": paths, "versions": versions}
+MODULES = {
+    "dependencies": dependencies,
+    "packaging": packaging,
+    "paths": paths,
+    "versions": versions,
+}
 
 SOUND = {
     "docs/architecture.md": """
@@ -49,7 +55,21 @@ dependency(name, version: name.startswith('gstreamer') ? '>= 1.20' : '>= 2.70')
     "src/base/units.h": "#include <lzma.h>\n#include <vector>\n",
     "src/cloud/cloud.h": '#include "src/base/units.h"\n#include "src/cloud/cloud.h"\n',
     "src/tools/common/loop.cpp": "#include <sys/epoll.h>\nauto now = steady_clock::now();\n",
-    "src/tools/eval/meson.build": "executable('lidar-eval', 'main.cpp')\n",
+    "src/tools/eval/meson.build": """
+executable('lidar-eval', 'main.cpp', dependencies: dependency('a'), install: true)
+executable('lidar-helper', 'main.cpp', install: true, install_dir: helper_dir)
+executable('lidar-lab', 'main.cpp')
+""",
+    "src/tools/meson.build": """
+purposes = {
+  'lidar-eval': 'measures',
+}
+""",
+    "debian/control": "Build-Depends:\n libdraco-dev,\n liblzma-dev (>= 5),\n\nPackage: gst\n",
+    "debian/gst.install": "usr/lib/*/gstreamer-1.0/libgstone.so\n",
+    "debian/libgstlidar-1.0-0.symbols": " gst_lidar_init@Base 0.1.0\n",
+    "tests/packages.txt": "g++\nlibdraco-dev\nlibgtest-dev\nliblzma-dev # for models\n",
+    "gst/common/gstlidar.h": "#include <gst/gst.h>\nGST_LIDAR_API void gst_lidar_init(void);\n",
     "src/tools/eval/main.cpp": '#include "src/cloud/cloud.h"\n#include "src/tools/common/loop.h"\n',
     "gst/common/meta.h": '#include <gst/gst.h>\n#include "src/base/units.h"\n',
     "gst/net/socket.h": "#include <sys/socket.h>\n",
@@ -181,6 +201,27 @@ PLANTED = [
     ("paths", "docs/troubleshooting.md", '### "No such cloud."', 'nobody says "No such cloud."'),
     ("paths", "docs/more.md", "# More", "docs/more.md is not in the site"),
     ("links", "README.md", "[gone](docs/gone.md)", "no such file: docs/gone.md"),
+    (
+        "packaging",
+        "docs/plugins_cache.json",
+        '{"one": {"elements": {"alpha": {}}}, "two": {}}',
+        "no package has libgsttwo.so",
+    ),
+    (
+        "packaging",
+        "src/tools/a/meson.build",
+        "executable('lidar-a', 'main.cpp', install: true)",
+        "lidar-a has no purpose",
+    ),
+    ("packaging", "src/tools/eval/meson.build", "", "nothing installs lidar-eval"),
+    (
+        "packaging",
+        "gst/common/gstcloud.h",
+        "GST_LIDAR_API const char* gst_lidar_name(int);",
+        "no line for gst_lidar_name",
+    ),
+    ("packaging", "gst/common/gstlidar.h", "", "nobody declares gst_lidar_init"),
+    ("packaging", "tests/packages.txt", "libnats-dev", "Build-Depends lacks libnats-dev"),
     (
         "versions",
         "gst/alpha/a.h",
