@@ -122,6 +122,25 @@ TEST(LocalMap, ASurfaceIsSeenWithTheCubesNextToIt) {
   EXPECT_NEAR(std::abs(found->normal.z()), 1, 1e-6);
 }
 
+TEST(LocalMap, TheCubeBesideStandsWhereItIs) {
+  // The plane z = 0.3 x + 0.2, of which the point's own cube has too few points.
+  const auto on_plane = [](double x, double y) { return Eigen::Vector3d(x, y, 0.3 * x + 0.2); };
+  for (const double beside : {-1., 1.}) {
+    LocalMap map({1, 100});
+    Points points;
+    for (const double x : {0.1, 0.6})
+      for (const double y : {0.1, 0.9}) points.push_back(on_plane(x, y));
+    for (const double x : {0.05, 0.35, 0.65, 0.95})
+      for (const double y : {0.2, 0.7}) points.push_back(on_plane(x + beside, y));
+    for (Eigen::Vector3d& point : points) point.z() += 0.1;
+    map.Add(points);
+    const auto found = map.FindNearest(on_plane(0.1, 0.1) + Eigen::Vector3d(0, 0, 0.1), 0.2);
+    ASSERT_TRUE(found && found->has_normal);
+    const Eigen::Vector3d expected = Eigen::Vector3d(-0.3, 0, 1).normalized();
+    EXPECT_NEAR(std::abs(found->normal.dot(expected)), 1, 1e-4);
+  }
+}
+
 TEST(LocalMap, ACubeHoldsTwentyPoints) {
   LocalMap map({1, 100});
   Points grid;

@@ -74,6 +74,22 @@ TEST(Align, KeepsTheGuessWhereTheSceneDoesNotShowTheMotion) {
   EXPECT_NEAR(found.pose.position.z(), 0, 0.01);
 }
 
+TEST(Align, InATunnelOnlyTheMotionAlongItIsUnknown) {
+  Points tunnel;
+  for (double a = 0.05; a < 16; a += 0.25)
+    for (double b = 0.05; b < 5; b += 0.25) {
+      tunnel.emplace_back(a - 8, b - 2.5, -1.5);
+      tunnel.emplace_back(a - 8, -2.6, b - 1.4);
+      tunnel.emplace_back(a - 8, 2.6, b - 1.4);
+    }
+  LocalMap map = MapOf(tunnel);
+  const Alignment found = Align(tunnel, &map, Moved(0.3, -0.1, 0.1), kReach_m, kKernel_m, {});
+  EXPECT_TRUE(found.degenerate);
+  EXPECT_NEAR(found.pose.position.x(), 0.3, 0.01);
+  EXPECT_NEAR(found.pose.position.y(), 0, 0.01);
+  EXPECT_NEAR(found.pose.position.z(), 0, 0.01);
+}
+
 TEST(Align, TellsThePartOfThePointsThatFit) {
   LocalMap map = MapOf(Corner());
   Points seen = Corner();

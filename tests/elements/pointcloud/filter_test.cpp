@@ -118,6 +118,15 @@ TEST_F(Filter, SlicesKeepTheirPlaceAndModelsTheirBeams) {
   EXPECT_EQ(slice.first_column, 4U);
 }
 
+TEST_F(Filter, SendsCapsOnceWhileTheyStayTheSame) {
+  Start("", Caps("x:F32:0,y:F32:4,z:F32:8", 12, 1, 1));
+  for (int i = 0; i < 3; ++i) EXPECT_EQ(Push(std::vector<std::uint8_t>(12, 1)), GST_FLOW_OK);
+  int caps = 0;
+  while (const EventPtr event{gst_harness_try_pull_event(h_.get())})
+    caps += GST_EVENT_TYPE(event.get()) == GST_EVENT_CAPS ? 1 : 0;
+  EXPECT_EQ(caps, 1);
+}
+
 TEST_F(Filter, ACloudOfWhichNothingIsLeftIsAGap) {
   Start("invalid=remove max-range=1", Caps("x:F32:0,y:F32:4,z:F32:8", 12, 2, 1));
   std::vector<std::uint8_t> near_and_far;
