@@ -149,6 +149,26 @@ TEST(SlowClient, GetsTheNewestAndHoldsUpNobody) {
   EXPECT_LE(sink.Stat("messages-dropped") + static_cast<guint64>(got), guint64{kClouds});
 }
 
+TEST(SlowClient, GetsNothingThatWaitedOnceItUnsubscribed) {
+  constexpr guint kColumns = 100'000;
+  Sink sink;
+  sink.SetCloudCaps(kColumns);
+  sink.PushCloud(1, kColumns);
+  RawClient slow = SubscribedClient(&sink);
+  for (int i = 1; i <= 24; ++i) sink.PushCloud(static_cast<float>(i), kColumns);
+  ASSERT_TRUE(WaitUntil([&] { return sink.Stat("messages-dropped") > 2; }));
+  slow.SendText(R"({"op":"unsubscribe","subscriptionIds":[1]})");
+  slow.SendText(R"({"op":"nothing"})");
+  // The answer comes behind what is in the sockets' buffers.
+  std::string frame;
+  do {
+    frame = slow.ReadFrame();
+    ASSERT_FALSE(frame.empty());
+  } while (frame[0] != '{');
+  slow.SendText(R"({"op":"nothing"})");
+  EXPECT_EQ(slow.ReadFrame()[0], '{');
+}
+
 TEST(SlowClient, MissesWholeScansButNoSliceOfThoseThatItGets) {
   constexpr guint kColumns = 20'000;
   constexpr guint kSlices = 4;
