@@ -5,10 +5,12 @@
 set -euo pipefail
 list=${1:-$(cd "$(dirname "$0")" && pwd)/packages.txt}
 
+# What is there, by its own name or by what it provides: Node.js of its makers brings npm along.
+there=$(dpkg-query -W -f '${db:Status-Status}:${Package},${Provides}\n' | sed -n 's/^installed://p' | tr ',' '\n' |
+  sed 's/(.*//; s/ //g')
 missing=()
 while read -r package; do
-  status=$(dpkg-query -W -f '${db:Status-Status}' "$package" 2>/dev/null || true)
-  [ "$status" = installed ] || missing+=("$package")
+  grep -qxF "$package" <<<"$there" || missing+=("$package")
 done < <(sed 's/#.*//; /^[[:space:]]*$/d' "$list")
 [ ${#missing[@]} -gt 0 ] || exit 0
 
