@@ -144,6 +144,8 @@ void PointConverter::ConvertPoint(const std::uint8_t* from, std::uint8_t* to) co
 bool PointConverter::Convert(const PointCloud2& cloud, std::uint8_t* out) const {
   const auto stride = RowStride(cloud);
   if (!stride) return false;
+  // Four billion rows of no points are no work.
+  if (size() == 0) return true;
   const std::size_t row = std::size_t{from_.width} * from_.point_step;
   if (!copies()) std::fill_n(out, size(), std::uint8_t{0});
   for (std::uint32_t y = 0; y < from_.height; ++y) {

@@ -85,6 +85,13 @@ TEST(PointCloud2, StandsOnTheWireAsRosHasIt) {
   EXPECT_EQ(WritePointCloud2(cloud), expected);
 }
 
+TEST(PointCloud2, HasNoPointsHoweverManyRows) {
+  PointCloud2 cloud;
+  cloud.layout = Velodyne(0, 0xffffffff);
+  cloud.layout.is_bigendian = true;
+  EXPECT_EQ(Convert(cloud), Bytes());
+}
+
 TEST(PointCloud2, ComesBack) {
   Bytes points(18 * 12);
   std::iota(points.begin(), points.end(), std::uint8_t{0});
