@@ -63,6 +63,7 @@ std::optional<PointFilterSettings> ParseSettings(const FilterSettings& s, std::s
   parsed.voxel_size_m = s.voxel_size;
   parsed.crop_inside = s.crop_inside;
   parsed.invalid = s.invalid;
+  parsed.has_pose = s.apply_pose;
   if (!s.transform.empty()) {
     parsed.transform = ParseTransform(s.transform);
     *why = "transform wants 16 numbers, or x, y, z, roll, pitch, yaw";
@@ -80,10 +81,24 @@ std::optional<PointFilterSettings> ParseSettings(const FilterSettings& s, std::s
   return parsed;
 }
 
+std::optional<Transform> PoseOf(GstBuffer* buffer) {
+  GstLidarPose pose{};
+  if (!gst_lidar_buffer_get_pose(buffer, &pose)) return std::nullopt;
+  const double* p = pose.position;
+  const double* q = pose.orientation;
+  return FromPose({p[0], p[1], p[2]}, {q[0], q[1], q[2], q[3]});
+}
+
+/// The points are where the pose puts them: whoever comes next must not move them again.
+void DropPose(GstBuffer* buffer) {
+  GstCustomMeta* meta = gst_buffer_get_custom_meta(buffer, GST_LIDAR_POSE_META_NAME);
+  if (meta != nullptr) gst_buffer_remove_meta(buffer, &meta->meta);
+}
+
 /// The model of the beams that stay, where it still says where the points are.
 void KeepModel(const PointFilterSettings& s, CloudInfo* out) {
   if (!out->sensor_model) return;
-  if (s.transform || s.column_step > 1 || s.invalid == InvalidPoints::kRemove) {
+  if (s.has_pose || s.transform || s.column_step > 1 || s.invalid == InvalidPoints::kRemove) {
     out->sensor_model.reset();
     return;
   }
@@ -121,6 +136,7 @@ std::unique_ptr<FilterPlan> FilterPlan::Make(const FilterSettings& settings, con
     return nullptr;
   }
   plan->column_step_ = parsed->column_step;
+  plan->apply_pose_ = settings.apply_pose;
   plan->out_ = *info;
   plan->out_.fields = points.fields;
   plan->out_.point_step = points.point_step;
@@ -142,6 +158,11 @@ void FilterPlan::Describe(const FilteredCloud& cloud) {
 BufferPtr FilterPlan::Apply(GstBuffer* buffer) {
   const BufferMap map(buffer, GST_MAP_READ);
   if (!map || map.size() != in_.FrameSize()) return nullptr;
+  const std::optional<Transform> pose = apply_pose_ ? PoseOf(buffer) : Transform{};
+  if (!pose) {
+    ++without_pose_;
+    return BufferPtr(gst_buffer_new());
+  }
   const std::uint8_t* points = map.data();
   if (!converter_->copies()) {
     converted_.assign(converter_->size(), 0);
@@ -154,7 +175,7 @@ BufferPtr FilterPlan::Apply(GstBuffer* buffer) {
   GstLidarSlice slice{};
   const bool is_slice = gst_lidar_buffer_get_slice(buffer, &slice) != FALSE;
   auto owned = std::make_unique<FilteredCloud>(
-      filter_->Apply({points, in_.width, in_.height, slice.first_column}));
+      filter_->Apply({points, in_.width, in_.height, slice.first_column, *pose}));
   if (!owned->points.empty()) Describe(*owned);
   FilteredCloud* cloud = owned.release();
   BufferPtr out(gst_buffer_new_wrapped_full(
@@ -165,6 +186,7 @@ BufferPtr FilterPlan::Apply(GstBuffer* buffer) {
       static_cast<GstBufferCopyFlags>(GST_BUFFER_COPY_FLAGS | GST_BUFFER_COPY_TIMESTAMPS |
                                       GST_BUFFER_COPY_META),
       0, static_cast<gsize>(-1));
+  if (apply_pose_) DropPose(out.get());
   if (is_slice && column_step_ > 1) {
     slice.first_column = cloud->first_column;
     gst_lidar_buffer_set_slice(out.get(), &slice);

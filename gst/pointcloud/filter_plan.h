@@ -24,6 +24,7 @@ struct FilterSettings {
   gdouble voxel_size = 0;
   guint beam_step = 1;
   guint column_step = 1;
+  bool apply_pose = false;
   std::string transform;
   InvalidPoints invalid = InvalidPoints::kKeep;
 };
@@ -43,6 +44,8 @@ class FilterPlan {
   /// Of that cloud, with their types and places.
   std::string fields() const { return out_.fields.ToString(); }
   std::uint64_t removed() const { return filter_->removed(); }
+  /// Clouds that had no pose where one was wanted: nothing is left of them.
+  std::uint64_t without_pose() const { return without_pose_; }
 
  private:
   void Describe(const FilteredCloud& cloud);
@@ -53,6 +56,8 @@ class FilterPlan {
   std::optional<cdr::PointConverter> converter_;
   std::optional<PointFilter> filter_;
   guint column_step_ = 1;
+  bool apply_pose_ = false;
+  std::uint64_t without_pose_ = 0;
   std::vector<std::uint8_t> converted_;
   CapsPtr caps_;
 };

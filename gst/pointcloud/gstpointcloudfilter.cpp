@@ -49,16 +49,18 @@ GType InvalidType() {
 struct Counters {
   guint64 clouds = 0;
   guint64 points_removed = 0;
+  guint64 without_pose = 0;
 };
-const std::array<lidar::gst::Stat<Counters>, 2> kStats = {{
+const std::array<lidar::gst::Stat<Counters>, 3> kStats = {{
     {"clouds", &Counters::clouds},
     {"points-removed", &Counters::points_removed},
+    {"clouds-without-pose", &Counters::without_pose},
 }};
 
 lidar::gst::StructurePtr Stats(GObject* object);
 constexpr gint kLive = GST_PARAM_MUTABLE_PLAYING;
 
-const std::array<lidar::gst::Property<FilterSettings>, 11> kProperties = {{
+const std::array<lidar::gst::Property<FilterSettings>, 12> kProperties = {{
     {"fields", "Fields to keep, with a type where it is to be another: x,y,z,intensity:U8",
      &FilterSettings::fields, 0, 0, kLive},
     {"beam-step", "Keep every n-th row", &FilterSettings::beam_step, 1, 1024, kLive},
@@ -67,6 +69,10 @@ const std::array<lidar::gst::Property<FilterSettings>, 11> kProperties = {{
     {"min-range", "What is nearer goes [m]", &FilterSettings::min_range, 0, 1e6, kLive},
     {"max-range", "What is farther goes; 0: no limit [m]", &FilterSettings::max_range, 0, 1e6,
      kLive},
+    {"apply-pose",
+     "Clouds go to where the odometry began, by the pose that lidarodometry put on them; those "
+     "without one go",
+     &FilterSettings::apply_pose, 0, 0, kLive},
     {"transform",
      "Of the points: 16 numbers row by row, or x, y, z [m], roll, pitch, yaw [degrees]",
      &FilterSettings::transform, 0, 0, kLive},
@@ -79,7 +85,7 @@ const std::array<lidar::gst::Property<FilterSettings>, 11> kProperties = {{
     {"invalid", "What becomes of points without a return, and of those that go",
      lidar::gst::EnumField<FilterSettings, InvalidPoints>{&FilterSettings::invalid, InvalidType}, 0,
      0, kLive},
-    {"stats", "clouds, points-removed", Stats},
+    {"stats", "clouds, points-removed, clouds-without-pose", Stats},
 }};
 
 struct State {
@@ -90,7 +96,7 @@ struct State {
   // Only the streaming thread uses these.
   CapsPtr caps;  // of what comes
   std::unique_ptr<FilterPlan> plan;
-  guint64 removed_before = 0;  // by earlier plans
+  Counters before;  // of earlier plans
   CapsPtr pushed;
   std::vector<lidar::gst::EventPtr> pending;  // sticky, to follow the first caps
   lidar::gst::RefusedCaps refused;
@@ -132,7 +138,10 @@ bool MakePlan(GstLidarPointCloudFilter* self) {
     state.changed = false;
   }
   std::string why;
-  if (state.plan) state.removed_before += state.plan->removed();
+  if (state.plan) {
+    state.before.points_removed += state.plan->removed();
+    state.before.without_pose += state.plan->without_pose();
+  }
   state.plan = FilterPlan::Make(settings, state.caps.get(), &why);
   if (!state.plan && state.refused.Note(state.caps.get()))
     GST_ELEMENT_ERROR(self, STREAM, FORMAT, ("Clouds cannot be filtered so: %s.", why.c_str()),
@@ -158,7 +167,8 @@ bool PushCaps(GstLidarPointCloudFilter* self) {
 void Count(State* state) {
   std::lock_guard lock(state->mutex);
   ++state->counters.clouds;
-  state->counters.points_removed = state->removed_before + state->plan->removed();
+  state->counters.points_removed = state->before.points_removed + state->plan->removed();
+  state->counters.without_pose = state->before.without_pose + state->plan->without_pose();
 }
 
 GstFlowReturn Chain(GstPad*, GstObject* parent, GstBuffer* raw) {
@@ -226,7 +236,7 @@ GstStateChangeReturn ChangeState(GstElement* element, GstStateChange transition)
     state.pushed.reset();
     state.pending.clear();
     state.refused.Reset();
-    state.removed_before = 0;
+    state.before = {};
     std::lock_guard lock(state.mutex);
     state.counters = {};
   }

@@ -74,6 +74,26 @@ std::optional<Transform> ParseTransform(const std::string& text) {
   return transform;
 }
 
+Transform FromPose(const std::array<double, 3>& p, const std::array<double, 4>& q) {
+  const auto [x, y, z, w] = q;
+  return {1 - 2 * (y * y + z * z),
+          2 * (x * y - z * w),
+          2 * (x * z + y * w),
+          p[0],
+          2 * (x * y + z * w),
+          1 - 2 * (x * x + z * z),
+          2 * (y * z - x * w),
+          p[1],
+          2 * (x * z - y * w),
+          2 * (y * z + x * w),
+          1 - 2 * (x * x + y * y),
+          p[2],
+          0,
+          0,
+          0,
+          1};
+}
+
 std::optional<PointFilter> PointFilter::Make(const PointFilterSettings& settings,
                                              const PointFields& fields, std::uint32_t point_step) {
   const bool has_xyz = fields.HasPackedXyz();
@@ -99,6 +119,7 @@ bool PointFilter::Keeps(std::array<float, 3>* xyz) {
   const double range = square((*xyz)[0]) + square((*xyz)[1]) + square((*xyz)[2]);
   if (range < s.min_range_m * s.min_range_m) return false;
   if (s.max_range_m > 0 && range > s.max_range_m * s.max_range_m) return false;
+  if (s.has_pose) *xyz = Moved(pose_, *xyz);
   if (s.transform) *xyz = Moved(*s.transform, *xyz);
   if (s.crop_box) {
     bool inside = true;
@@ -141,6 +162,7 @@ FilteredCloud PointFilter::Apply(const CloudRows& cloud) {
   out.first_column = (cloud.first_column + skipped) / step;
   out.points.reserve(std::size_t{rows} * columns * point_step_);
   voxels_.clear();
+  pose_ = cloud.pose;
   for (std::uint32_t row = 0; row < rows; ++row) {
     const std::size_t first = std::size_t{row} * settings_.beam_step * cloud.width + skipped;
     for (std::uint32_t column = 0; column < columns; ++column) {

@@ -27,15 +27,16 @@ struct PointFilterSettings {
   std::uint32_t column_step = 1;  // every n-th column, as the scan counts them
   double min_range_m = 0;
   double max_range_m = 0;                         // 0: no limit
-  std::optional<Transform> transform;             // of the points
+  bool has_pose = false;                          // clouds come with one, which moves them
+  std::optional<Transform> transform;             // of the points, behind the pose
   std::optional<std::array<double, 6>> crop_box;  // least and largest x, y, z, as transformed [m]
   bool crop_inside = false;                       // what is in the box goes, not what is outside
   double voxel_size_m = 0;                        // one point in each cube stays; 0: all
   InvalidPoints invalid = InvalidPoints::kKeep;
 
   bool needs_xyz() const {
-    return min_range_m > 0 || max_range_m > 0 || transform || crop_box || voxel_size_m > 0 ||
-           invalid != InvalidPoints::kKeep;
+    return min_range_m > 0 || max_range_m > 0 || has_pose || transform || crop_box ||
+           voxel_size_m > 0 || invalid != InvalidPoints::kKeep;
   }
 };
 
@@ -44,6 +45,8 @@ std::optional<std::vector<double>> ParseNumbers(const std::string& text);
 /// Sixteen numbers, row by row, or x, y, z [m], roll, pitch, yaw [degrees]: turned about x, then y,
 /// then z, then moved.
 std::optional<Transform> ParseTransform(const std::string& text);
+/// Of a position and a unit quaternion x, y, z, w.
+Transform FromPose(const std::array<double, 3>& position, const std::array<double, 4>& orientation);
 
 /// Rows of columns.
 struct CloudRows {
@@ -51,6 +54,7 @@ struct CloudRows {
   std::uint32_t width = 0;
   std::uint32_t height = 0;
   std::uint32_t first_column = 0;  // of the scan
+  Transform pose{};                // of the sensor, where the settings have one
 };
 
 struct FilteredCloud {
@@ -80,6 +84,7 @@ class PointFilter {
   PointFilterSettings settings_;
   std::uint32_t xyz_;  // offset of x
   std::uint32_t point_step_;
+  Transform pose_{};                          // of the cloud
   std::unordered_set<std::uint64_t> voxels_;  // of the cloud
   std::uint64_t removed_ = 0;
 };

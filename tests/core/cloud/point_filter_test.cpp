@@ -185,6 +185,16 @@ TEST(PointFilter, MovesPointsBeforeItCrops) {
   EXPECT_NEAR(out.points[0].z, 1, 1e-6);
 }
 
+TEST(PointFilter, APoseIsTheTransformOfItsQuaternion) {
+  // 2 * acos(0.5): a third of a turn about (1, 1, 1), which takes x to y to z to x.
+  const Transform t = FromPose({7, 8, 9}, {0.5, 0.5, 0.5, 0.5});
+  EXPECT_EQ(t, (Transform{0, 0, 1, 7, 1, 0, 0, 8, 0, 1, 0, 9, 0, 0, 0, 1}));
+  const double half = std::sqrt(0.5);
+  const Transform turn = FromPose({1, 2, 3}, {0, 0, half, half});
+  const Transform angles = *ParseTransform("1,2,3, 0,0,90");
+  for (std::size_t i = 0; i < turn.size(); ++i) EXPECT_NEAR(turn[i], angles[i], 1e-12);
+}
+
 TEST(PointFilter, PointsWithoutAReturnFollowThePolicy) {
   auto cloud = Cloud();
   cloud[0].x = std::numeric_limits<float>::quiet_NaN();

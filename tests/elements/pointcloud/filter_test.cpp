@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <gtest/gtest.h>
 
+#include <array>
+
 #include "gst/common/buffer_map.h"
 #include "gst/common/cloud_info.h"
 #include "src/base/byte_writer.h"
@@ -146,6 +148,31 @@ TEST_F(Filter, ACloudOfWhichNothingIsLeftIsAGap) {
   guint64 removed = 0;
   gst_structure_get_uint64(raw, "points-removed", &removed);
   EXPECT_EQ(removed, 3U);
+}
+
+TEST_F(Filter, PutsCloudsWhereTheirPoseSays) {
+  Start("apply-pose=true transform=0,0,100,0,0,0", Caps("x:F32:0,y:F32:4,z:F32:8", 12, 2, 1));
+  std::vector<std::uint8_t> points;
+  ByteWriter w(&points);
+  for (const float v : {1.0F, 2.0F, 3.0F, 0.0F, 0.0F, 0.0F}) w.LeF32(v);
+  ASSERT_EQ(Push(points), GST_FLOW_OK);  // without a pose
+  EXPECT_EQ(gst_harness_buffers_received(h_.get()), 0U);
+  GstBuffer* buffer = gst_buffer_new_memdup(points.data(), points.size());
+  const GstLidarPose pose{{10, 20, 30}, {0, 0, 1, 0}, GST_LIDAR_TRACKING_OK};
+  gst_lidar_buffer_set_pose(buffer, &pose);
+  ASSERT_EQ(gst_harness_push(h_.get(), buffer), GST_FLOW_OK);
+  const BufferPtr out(gst_harness_pull(h_.get()));
+  std::array<float, 6> moved{};
+  ASSERT_EQ(gst_buffer_extract(out.get(), 0, moved.data(), sizeof moved), sizeof moved);
+  EXPECT_EQ(moved, (std::array<float, 6>{9, 18, 133, 0, 0, 0}));
+  GstLidarPose left{};
+  EXPECT_FALSE(gst_lidar_buffer_get_pose(out.get(), &left));
+  GstStructure* raw = nullptr;
+  g_object_get(h_->element, "stats", &raw, nullptr);
+  const StructurePtr stats(raw);
+  guint64 without = 0;
+  gst_structure_get_uint64(raw, "clouds-without-pose", &without);
+  EXPECT_EQ(without, 1U);
 }
 
 TEST_F(Filter, NoGapComesBeforeTheCaps) {
