@@ -11,7 +11,10 @@ const limits = { timeout: 240_000 };
 let browser;
 
 before(async () => (browser = await openBrowser()), limits);
-after(() => browser?.close());
+after(async () => {
+  await browser?.close();
+  await Pipeline.stopAll();
+});
 
 const address = (port, rest = '') => `http://127.0.0.1:${port}/${rest}`;
 const state = (page) => page.evaluate(() => document.body.dataset.state);

@@ -35,6 +35,8 @@ const canConnect = (port) =>
     socket.on('error', () => done(false));
   });
 
+const running = new Set();
+
 /** gst-launch-1.0 with this description, whose foxglovesink listens on `port`. */
 export class Pipeline {
   static async start(description, port) {
@@ -55,6 +57,7 @@ export class Pipeline {
     this.child = child;
     this.output = '';
     this.ended = new Promise((done) => child.on('exit', done));
+    running.add(this);
   }
 
   async stop() {
@@ -62,6 +65,12 @@ export class Pipeline {
     const timer = setTimeout(() => this.child.kill('SIGKILL'), 10_000);
     await this.ended;
     clearTimeout(timer);
+    running.delete(this);
+  }
+
+  /** Those of tests that failed, which would keep Node waiting. */
+  static stopAll() {
+    return Promise.all([...running].map((pipeline) => pipeline.stop()));
   }
 }
 

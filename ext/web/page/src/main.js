@@ -63,7 +63,7 @@ function addCloud({ time, frame }, { points, has }) {
 function onStatistics(message) {
   page.statistics = message;
   const sink = Object.values(message.elements ?? {}).find((e) => e.factory === 'foxglovesink');
-  if (sink?.scan_duration > 0) page.spanS = sink.scan_duration * 1e-9;
+  if (sink?.scan_duration > 0 && !page.paused) page.spanS = sink.scan_duration * 1e-9;
   tools.setSpan();
   page.charts.add({ ...message, received: page.receivedBps });
 }

@@ -9,6 +9,7 @@ const RINGS_M = [10, 20, 30, 40, 50];
 const HOME = new THREE.Vector3(-27, -9, 24);
 const LOOK = new THREE.Vector3(6, 0, -1);
 const TURN = 0.08; // a key press [rad]
+const DAMPING_MS = 330; // until a turn of the camera is down to a third
 const ZOOM = 0.88;
 
 function rings() {
@@ -55,6 +56,7 @@ export class Scene {
     this.sensor = new THREE.Vector3();
     this.follow = true;
     this.frames = 0;
+    this.drawnAt = performance.now();
     this.ground = -1.9;
     this.home();
     new ResizeObserver(() => this.resize()).observe(canvas.parentElement);
@@ -145,6 +147,10 @@ export class Scene {
 
   /** Draws where something has changed. */
   draw() {
+    // As long at any frame rate: where one takes a second, the camera would turn on for minutes.
+    const now = performance.now();
+    this.controls.dampingFactor = 1 - Math.exp((this.drawnAt - now) / DAMPING_MS);
+    this.drawnAt = now;
     this.controls.update();
     if (!this.dirty) return;
     this.dirty = false;
