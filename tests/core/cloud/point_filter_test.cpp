@@ -45,7 +45,8 @@ Filtered Filter(const PointFilterSettings& settings, const std::vector<Point>& c
       filter->Apply({reinterpret_cast<const std::uint8_t*>(cloud.data()), 6, 2, first_column});
   Filtered filtered{std::vector<Point>(out.points.size() / sizeof(Point)), out.width, out.height,
                     out.first_column};
-  std::memcpy(filtered.points.data(), out.points.data(), out.points.size());
+  if (!out.points.empty())
+    std::memcpy(filtered.points.data(), out.points.data(), out.points.size());
   return filtered;
 }
 

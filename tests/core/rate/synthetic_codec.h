@@ -2,6 +2,7 @@
 // A codec's response without a codec: sizes that fall with the step, differ by sector, drift from
 // scan to scan and never agree with the model's coefficients.
 #pragma once
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <random>
@@ -50,7 +51,11 @@ class SyntheticCodec {
         20 + returns * std::exp2(log2) * sector * std::exp(log_complexity_) * slice_noise_ / 8;
     // Four bits a return for 8-bit intensities, 1.2 for 5-bit ones, as on real captures.
     const double intensity = returns * 4 * std::pow(s.intensity_bits / 8.0, 2.5) / 8;
-    const auto bytes = [](double b) { return DataSize::Bytes(static_cast<std::int64_t>(b)); };
+    // Features that are no numbers have a slice of nothing.
+    const auto bytes = [](double b) {
+      return DataSize::Bytes(
+          static_cast<std::int64_t>(std::isfinite(b) ? std::clamp(b, 0., 1e12) : 0));
+    };
     return {bytes(geometry + intensity), bytes(intensity), s.step_m, keep};
   }
 
