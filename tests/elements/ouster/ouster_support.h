@@ -21,6 +21,10 @@
 
 namespace lidar::test {
 
+// A capture of three scans.
+inline constexpr const char* kThreeScans = "OS-1-128_v2.3.0_1024x10_lb_n3.pcap";
+inline constexpr const char* kThreeScansMetadata = "OS-1-128_v2.3.0_1024x10.json";
+
 inline std::string DataPath(const std::string& name) {
   return std::string(LIDAR_TEST_DATA) + "/ouster/" + name;
 }

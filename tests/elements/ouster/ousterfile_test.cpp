@@ -16,9 +16,6 @@ using gst::BufferPtr;
 using gst::CapsPtr;
 using gst::CloudInfo;
 
-const char* const kThreeScans = "OS-1-128_v2.3.0_1024x10_lb_n3.pcap";
-const char* const kThreeScansMetadata = "OS-1-128_v2.3.0_1024x10.json";
-
 Harness FromFile(const std::string& pcap, const std::string& json, const char* more = "") {
   const std::string launch =
       "ouster_src location=" + DataPath(pcap) + " metadata=" + DataPath(json) + " " + more;

@@ -15,8 +15,6 @@ using gst::BufferPtr;
 using gst::ElementPtr;
 using gst::EventPtr;
 
-const char* const kThreeScans = "OS-1-128_v2.3.0_1024x10_lb_n3.pcap";
-const char* const kThreeScansMetadata = "OS-1-128_v2.3.0_1024x10.json";
 constexpr GstClockTime kSlice = 12500 * GST_USECOND;
 
 /// What a slice is, wherever the playback came from.
