@@ -201,6 +201,19 @@ TEST(Crc, TheSensorsOwnIsChecked) {
   EXPECT_FALSE(check.Accept({packets[0].data(), packets[0].size()}));
 }
 
+TEST(Crc, IsGivenUpAfterSixtyFourPacketsWithoutOne) {
+  const Metadata m = test::LoadMetadata("crc_test.json");
+  const auto good = test::LoadPackets("crc_test.pcap", m).at(0);
+  auto bad = good;
+  bad[1000] ^= 1;
+  for (const int before : {63, 64}) {
+    PacketCrcCheck check(m.format);
+    for (int i = 0; i < before; ++i) EXPECT_TRUE(check.Accept({bad.data(), bad.size()}));
+    EXPECT_TRUE(check.Accept({good.data(), good.size()}));
+    EXPECT_EQ(check.Accept({bad.data(), bad.size()}), before == 64);
+  }
+}
+
 TEST(Crc, TheConstantOfOldFirmwareIsNoDamage) {
   const Metadata m = test::LoadMetadata("OS-1-128_v2.3.0_1024x10.json");
   PacketCrcCheck check(m.format);

@@ -28,6 +28,24 @@ TEST(ClockMapper, FollowsTheFastestPacketAndNotTheJitter) {
   }
 }
 
+TEST(ClockMapper, OfAFileHoldsTheOffsetOfTheFirstPacketUntilAClockJumps) {
+  ClockMapper mapper(ClockMapper::Mode::kHold);
+  const std::uint64_t second = 1'000'000'000;
+  mapper.Observe(5 * second, Time{std::chrono::seconds(100)});
+  // The next packets took less and less time.
+  for (std::uint64_t i = 1; i < 9; ++i) {
+    const Time arrival = Time{std::chrono::seconds(100 + i)} - Duration{1'000'000} * i;
+    EXPECT_FALSE(mapper.WouldJump((5 + i) * second, arrival));
+    mapper.Observe((5 + i) * second, arrival);
+    EXPECT_EQ(mapper.Map((5 + i) * second), Time{std::chrono::seconds(100 + i)});
+  }
+  EXPECT_FALSE(mapper.WouldJump(20 * second, Time{std::chrono::seconds(116)}));  // just a second
+  EXPECT_TRUE(mapper.WouldJump(20 * second, Time{std::chrono::seconds(116)} + Duration{1}));
+  EXPECT_TRUE(mapper.WouldJump(20 * second, Time{std::chrono::seconds(114)} - Duration{1}));
+  mapper.Observe(20 * second, Time{std::chrono::seconds(200)});
+  EXPECT_EQ(mapper.Map(20 * second), Time{std::chrono::seconds(200)});
+}
+
 TEST(ClockMapper, FollowsAClockThatDrifts) {
   ClockMapper mapper(ClockMapper::Mode::kFollow);
   // 100 ppm fast and then 100 ppm slow, a minute each.

@@ -145,6 +145,26 @@ TEST_F(Limits, WhoWasIdleGetsNoCreditForIt) {
   EXPECT_NEAR(turns_of_b, 10, 1);
 }
 
+TEST_F(Limits, WhatAStrictStreamSendsCostsNobodyATurn) {
+  const StreamId a = Add({1, Mbps(0), Mbps(1), Mbps(100)});
+  const StreamId b = Add({1, Mbps(0), Mbps(1), Mbps(100)});
+  const StreamId audio = Add({1, Mbps(0.1), Mbps(0.1), Mbps(0.2), Mbps(0), true});
+  streams_.Allocate(kStart, Mbps(10));
+  Queue(a, kStart, 60);
+  for (int i = 0; i < 5; ++i) streams_.OnSent(kStart, a, 1, DataSize::Bytes(1000));
+  Queue(audio, kStart, 10);
+  for (int i = 0; i < 10; ++i) streams_.OnSent(kStart, audio, 3, DataSize::Bytes(1000));
+  streams_.OnQueued(streams_.Find(b));
+  Queue(b, kStart, 30);
+  int turns_of_b = 0;
+  for (int i = 0; i < 20; ++i) {
+    const StreamId id = *streams_.Next();
+    turns_of_b += id == b ? 1 : 0;
+    streams_.OnSent(kStart, id, 1, DataSize::Bytes(1000));
+  }
+  EXPECT_NEAR(turns_of_b, 10, 1);
+}
+
 class ScanGroups : public ::testing::Test {
  protected:
   void Slice(Time now, std::uint32_t scan, std::uint32_t slice) {
