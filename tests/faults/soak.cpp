@@ -157,6 +157,7 @@ class Soak {
       foreign_ += receiver_->foreign();
       receiver_.reset();
       StartReceiver();
+      last_ = {};  // it counts from its start
       comparable_ = false;
       return "receiver restarts";
     }
@@ -206,8 +207,7 @@ class Soak {
     const bool good = demand(error.empty(), ("no errors: " + error).c_str()) &
                       demand(recovery != milliseconds::max(), "clouds come once the link is well") &
                       demand(foreign == 0, "nothing is shown that was not sent") &
-                      demand(a.slices() >= last_.slices() || a.received < last_.received,
-                             "accounts do not shrink") &
+                      demand(a.slices() >= last_.slices(), "accounts do not shrink") &
                       demand(agree, "the receiver counts what the link let through") &
                       demand(!grows, "memory does not grow");
     last_ = a;
