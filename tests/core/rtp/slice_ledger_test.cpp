@@ -31,6 +31,12 @@ TEST_F(Ledger, AScanHasOneCountOfSlices) {
   EXPECT_EQ(Admit(2, 5, 8), Admission::kOpen);  // the next one may have another
 }
 
+TEST_F(Ledger, AScanHasOneCountAlsoBeforeASliceOfItIsWhole) {
+  EXPECT_EQ(Admit(1, 0, 4), Admission::kOpen);
+  EXPECT_EQ(Admit(1, 1, 8), Admission::kContradiction);
+  EXPECT_EQ(Admit(1, 1, 4), Admission::kOpen);
+}
+
 TEST_F(Ledger, WhatWasBeforeTheFirstSliceIsTooOld) {
   Receive(5, 2);
   EXPECT_EQ(Admit(5, 1, 4), Admission::kTooOld);

@@ -56,6 +56,14 @@ TEST(UnitCheck, TakesNoPartOfASliceTwice) {
   EXPECT_FALSE(check.Push(3, View(payloads[2])));
 }
 
+TEST(UnitCheck, TakesNoSliceWithAGapInItsPacketNumbersHoweverWellItFits) {
+  UnitCheck check;
+  const auto payloads = Fragments(3);
+  EXPECT_FALSE(check.Push(0, View(payloads[0])));
+  EXPECT_FALSE(check.Push(2, View(payloads[1])));
+  EXPECT_FALSE(check.Push(3, View(payloads[2])));
+}
+
 TEST(UnitCheck, AnEndWithoutABeginningProvesNothing) {
   UnitCheck check;
   const auto payloads = Fragments(2);

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include <cstring>
 #include <string>
 #include <vector>
@@ -125,6 +127,30 @@ TEST_F(Organize, MakesMissingReturnsOfPointsThatStandElsewhere) {
   EXPECT_EQ(std::memcmp(map.data() + 18 * 500, zeros.data(), 12), 0);
   EXPECT_EQ(std::memcmp(map.data() + 18 * 500 + 14, zeros.data(), 4), 0);
   EXPECT_NE(std::memcmp(map.data() + 18 * 501, zeros.data(), 12), 0);
+}
+
+TEST_F(Organize, PointsMayStandOffTheirBeamsByMaxError) {
+  Start(DriverInfo());
+  const ElementPtr organize(gst_bin_get_by_name(GST_BIN(h_->element), "o"));
+  g_object_set(organize.get(), "max-error", 0.1, nullptr);
+  ASSERT_EQ(Push(DriverCloud(Ranges())), GST_FLOW_OK);
+  Pull();
+  for (const float off : {0.08F, 0.13F, 0.25F}) {
+    auto points = DriverCloud(Ranges(2));
+    std::uint8_t* point = points.data() + 14 * 500;
+    float xyz[3];
+    std::memcpy(xyz, point, sizeof xyz);
+    const float away = std::hypot(xyz[0], xyz[1]);
+    const float moved[3] = {xyz[0] - xyz[1] / away * off, xyz[1] + xyz[0] / away * off, xyz[2]};
+    std::memcpy(point, moved, sizeof moved);
+    ASSERT_EQ(Push(points), GST_FLOW_OK);
+    const BufferPtr buffer = Pull();
+    ASSERT_TRUE(buffer);
+    const BufferMap map(buffer.get(), GST_MAP_READ);
+    std::uint32_t range = 0;
+    std::memcpy(&range, map.data() + 18 * 500 + 14, sizeof range);
+    EXPECT_EQ(range > 0, off < 0.1F) << off;
+  }
 }
 
 TEST_F(Organize, LetsCloudsPassThatHaveNoBeams) {
