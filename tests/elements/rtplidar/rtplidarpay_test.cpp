@@ -142,6 +142,52 @@ TEST(RtpLidarPay, HoldsAggregatesNoLongerThanMaxPtime) {
   EXPECT_EQ(gst_harness_query_latency(h.get()), 50 * GST_MSECOND);
 }
 
+/// Slices take 25 ms each: what is held is the time from the first one's begin to the last one's
+/// end.
+TEST(RtpLidarPay, CountsTheDurationOfTheLastSliceInMaxPtime) {
+  for (const gint64 max_ms : {49, 50, 51}) {
+    const Harness h(gst_harness_new("rtplidarpay"));
+    g_object_set(h->element, "aggregate", TRUE, "config-interval", 0, "max-ptime",
+                 gint64{max_ms * GST_MSECOND}, nullptr);
+    gst_harness_set_src_caps_str(h.get(), EncodedCaps().c_str());
+    gst_harness_push(h.get(), EncodedSlice(0, 0, 100));
+    gst_harness_push(h.get(), EncodedSlice(0, 1, 100));
+    std::size_t slices = 0;
+    for (const Rtp& packet : PullAll(h.get())) slices += packet.IsConfig() ? 0 : 1;
+    EXPECT_EQ(slices, max_ms <= 50 ? 1U : 0U) << max_ms;
+  }
+}
+
+TEST(RtpLidarPay, SendsWhatItCollectedBeforeANewSegment) {
+  const Harness h(gst_harness_new("rtplidarpay"));
+  g_object_set(h->element, "aggregate", TRUE, "config-interval", 0, nullptr);
+  gst_harness_set_src_caps_str(h.get(), EncodedCaps().c_str());
+  for (guint i = 0; i < kSlices; ++i) gst_harness_push(h.get(), EncodedSlice(0, i, 100));
+  gst_harness_push(h.get(), EncodedSlice(1, 0, 100));
+  const auto before = gst_harness_buffers_received(h.get());
+  GstSegment segment;
+  gst_segment_init(&segment, GST_FORMAT_TIME);
+  segment.base = GST_SECOND;
+  const gst::PadPtr src(gst_element_get_static_pad(h->element, "src"));
+  std::string order;
+  gst_pad_add_probe(
+      src.get(),
+      static_cast<GstPadProbeType>(GST_PAD_PROBE_TYPE_BUFFER | GST_PAD_PROBE_TYPE_BUFFER_LIST |
+                                   GST_PAD_PROBE_TYPE_EVENT_DOWNSTREAM),
+      [](GstPad*, GstPadProbeInfo* info, gpointer data) {
+        auto& text = *static_cast<std::string*>(data);
+        if ((info->type & GST_PAD_PROBE_TYPE_EVENT_DOWNSTREAM) == 0)
+          text += "packet ";
+        else if (GST_EVENT_TYPE(info->data) == GST_EVENT_SEGMENT)
+          text += "segment ";
+        return GST_PAD_PROBE_OK;
+      },
+      &order, nullptr);
+  gst_harness_push_event(h.get(), gst_event_new_segment(&segment));
+  EXPECT_EQ(gst_harness_buffers_received(h.get()), before + 1);
+  EXPECT_EQ(order, "packet segment ");
+}
+
 TEST(RtpLidarPay, TakesItsHeadersOffTheTargetBitrate) {
   const Harness h = Pay();
   const GstLidarTargetBitrate target{5'000'000, 42, 1'000'000, 10'000'000, 7, 8, "update"};
