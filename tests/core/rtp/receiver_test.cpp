@@ -175,6 +175,22 @@ TEST(Receiver, IsNotMovedByOnePacketThatClaimsAnotherPlaceOrSsrc) {
   EXPECT_EQ(receiver.accounts().restarts + receiver.accounts().outages, 0U);
 }
 
+TEST(Receiver, IsNotMovedByAWholeStreamOfAnotherWhileItsOwnGoesOn) {
+  SenderOptions foreign;
+  foreign.ssrc = 1;
+  const auto own = Sender().Scans(0, 60);
+  const auto other = Sender(foreign).Scans(0, 60);
+  std::vector<Wire> packets;
+  for (std::size_t i = 0; i < own.size(); ++i) {
+    packets.push_back(own[i]);
+    packets.push_back(other[i]);
+  }
+  Receiver receiver(milliseconds(100));
+  EXPECT_EQ(DeliverAll(&receiver, packets), AllSlices(0, 60));
+  EXPECT_EQ(receiver.ssrc(), SenderOptions{}.ssrc);
+  EXPECT_EQ(receiver.accounts().restarts, 0U);
+}
+
 TEST(Receiver, KeepsTheStreamAmongAHundredTimesAsMuchGarbage) {
   std::mt19937 random(1);
   Receiver receiver(milliseconds(100));

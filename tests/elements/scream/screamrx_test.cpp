@@ -124,6 +124,24 @@ TEST_F(ScreamRx, CountsInTheKernelsArrivalTime) {
   EXPECT_LT(Milliseconds(*offset), 900);
 }
 
+TEST_F(ScreamRx, AClockThatWasSetIsNoArrivalTime) {
+  Start();
+  guint16 seq = 0;
+  for (const gint64 set_s : {-3600, 3600, -2, 2}) {
+    Rtp r;
+    r.seq = seq++;
+    r.marker = true;
+    GstBuffer* buffer = NewRtp(r);
+    const gint64 arrival = g_get_real_time() * 1000 + set_s * gint64{GST_SECOND};
+    gst_lidar_buffer_set_ecn(buffer, GST_LIDAR_ECN_ECT1, static_cast<GstClockTime>(arrival));
+    ASSERT_EQ(gst_harness_push(rtp.get(), buffer), GST_FLOW_OK);
+    const auto offset = Report().blocks.at(0).metrics.back().arrival_offset;
+    ASSERT_TRUE(offset) << set_s;
+    EXPECT_LT(Milliseconds(*offset), 100) << set_s;  // the clock of the test stands still
+    time.Advance(20 * GST_MSECOND);
+  }
+}
+
 TEST_F(ScreamRx, AnswersTheLatchedPeer) {
   Start();
   Rtp r;
