@@ -13,7 +13,7 @@
 namespace lidar::mcap {
 namespace {
 
-constexpr std::uint64_t kSecond = 1'000'000'000;
+using test::kSecond;
 
 struct Walked {
   std::uint8_t op = 0;

@@ -12,10 +12,9 @@ namespace {
 
 using test::FileMaker;
 using test::Kept;
+using test::kSecond;
 using test::Open;
 using test::ReadAll;
-
-constexpr std::uint64_t kSecond = 1'000'000'000;
 
 class Compressed : public ::testing::TestWithParam<Compression> {
  protected:

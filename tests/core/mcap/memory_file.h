@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // MCAP files in memory.
 #pragma once
+#include <cstdint>
 #include <cstring>
 #include <memory>
 #include <string>
@@ -11,6 +12,8 @@
 #include "src/mcap/writer.h"
 
 namespace lidar::mcap::test {
+
+constexpr std::uint64_t kSecond = 1'000'000'000;  // ns
 
 class MemoryInput : public Input {
  public:

@@ -109,7 +109,8 @@ TEST(Align, LeavesTheGuessWhereFewerThanTwentyPointsFit) {
     for (std::size_t i = 0; i < count; ++i) few.push_back(all[i * 97 % all.size()]);
     for (int i = 0; i < 50; ++i) few.emplace_back(100, 100, 100);
     const Alignment found = Align(few, &map, guess, kReach_m, kKernel_m, {});
-    EXPECT_NEAR(found.inlier_share, static_cast<double>(count) / few.size(), 1e-9);
+    EXPECT_NEAR(found.inlier_share, static_cast<double>(count) / static_cast<double>(few.size()),
+                1e-9);
     EXPECT_EQ((found.pose.position - guess.position).norm() == 0, count == 19);
   }
 }

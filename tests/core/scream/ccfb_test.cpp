@@ -5,14 +5,12 @@
 #include <gtest/gtest.h>
 
 #include "src/scream/feedback/report_clock.h"
+#include "tests/core/scream/bytes.h"
 
 namespace lidar::scream {
 namespace {
 
 using namespace std::chrono_literals;
-using Bytes = std::vector<std::uint8_t>;
-
-ByteView View(const Bytes& b) { return {b.data(), b.size()}; }
 
 /// One SSRC, `count` packets from 100; all received where `last_received`, else all but the last.
 CongestionFeedback Report(std::size_t count, bool last_received = true) {

@@ -5,12 +5,12 @@
 #include <gtest/gtest.h>
 
 #include "src/scream/feedback/ccfb.h"
+#include "tests/core/scream/bytes.h"
 
 namespace lidar::scream {
 namespace {
 
 using std::chrono::microseconds;
-using Bytes = std::vector<std::uint8_t>;
 
 constexpr std::size_t kAppAt = 8;  // behind the empty receiver report
 
@@ -32,8 +32,6 @@ SenderReport Sample() {
   r.packets_dropped = 5;
   return r;
 }
-
-ByteView View(const Bytes& bytes) { return {bytes.data(), bytes.size()}; }
 
 TEST(SenderReport, ComesBackAsItWas) {
   const SenderReport sent = Sample();

@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Packets as the tests hold them.
+#pragma once
+#include <cstdint>
+#include <vector>
+
+#include "src/base/byte_reader.h"
+
+namespace lidar::scream {
+
+using Bytes = std::vector<std::uint8_t>;
+
+inline ByteView View(const Bytes& bytes) { return {bytes.data(), bytes.size()}; }
+
+}  // namespace lidar::scream
