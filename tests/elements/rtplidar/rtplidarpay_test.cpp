@@ -153,7 +153,7 @@ TEST(RtpLidarPay, CountsTheDurationOfTheLastSliceInMaxPtime) {
     gst_harness_push(h.get(), EncodedSlice(0, 0, 100));
     gst_harness_push(h.get(), EncodedSlice(0, 1, 100));
     std::size_t slices = 0;
-    for (const Rtp& packet : PullAll(h.get())) slices += packet.IsConfig() ? 0 : 1;
+    for (const Rtp& packet : PullAll(h.get())) slices += packet.IsConfig() ? 0U : 1U;
     EXPECT_EQ(slices, max_ms <= 50 ? 1U : 0U) << max_ms;
   }
 }
