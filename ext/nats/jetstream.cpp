@@ -57,17 +57,35 @@ natsStatus Update(jsCtx* js, const StreamSettings& settings,
                   const std::vector<std::string>& subjects, const jsStreamConfig& now,
                   jsErrCode* code) {
   std::vector<const char*> names(now.Subjects, now.Subjects + now.SubjectsLen);
-  for (const std::string& subject : subjects)
-    if (std::none_of(names.begin(), names.end(),
-                     [&](const char* name) { return Covers(name, subject); }))
-      names.push_back(subject.c_str());
+  bool same_names = true;
+  for (const std::string& subject : subjects) {
+    if (std::any_of(names.begin(), names.end(),
+                    [&](const char* name) { return Covers(name, subject); }))
+      continue;
+    // Those of a stream must not overlap.
+    names.erase(std::remove_if(names.begin(), names.end(),
+                               [&](const char* name) { return Covers(subject, name); }),
+                names.end());
+    names.push_back(subject.c_str());
+    same_names = false;
+  }
   const bool same_limits = now.MaxAge == AgeNs(settings) && now.MaxBytes == SizeLimit(settings);
-  if (names.size() == static_cast<std::size_t>(now.SubjectsLen) && same_limits) return NATS_OK;
+  if (same_names && same_limits) return NATS_OK;
   jsStreamConfig config = now;
   config.Subjects = names.data();
   config.SubjectsLen = static_cast<int>(names.size());
   SetLimits(settings, &config);
   return js_UpdateStream(nullptr, js, &config, nullptr, code);
+}
+
+natsStatus AddOrUpdate(jsCtx* js, const StreamSettings& settings,
+                       const std::vector<std::string>& subjects, jsErrCode* code) {
+  *code = {};
+  jsStreamInfo* raw = nullptr;
+  const natsStatus status = js_GetStreamInfo(&raw, js, settings.name.c_str(), nullptr, code);
+  const StreamInfoPtr info(raw);
+  if (status == NATS_OK) return Update(js, settings, subjects, *info->Config, code);
+  return status == NATS_NOT_FOUND ? Add(js, settings, subjects, code) : status;
 }
 
 }  // namespace
@@ -83,14 +101,10 @@ JetStreamPtr OpenJetStream(natsConnection* connection) {
 
 bool EnsureStream(jsCtx* js, const StreamSettings& settings,
                   const std::vector<std::string>& subjects, std::string* why) {
-  jsStreamInfo* raw = nullptr;
   jsErrCode code{};
-  natsStatus status = js_GetStreamInfo(&raw, js, settings.name.c_str(), nullptr, &code);
-  const StreamInfoPtr info(raw);
-  if (status == NATS_OK)
-    status = Update(js, settings, subjects, *info->Config, &code);
-  else if (status == NATS_NOT_FOUND)
-    status = Add(js, settings, subjects, &code);
+  natsStatus status = AddOrUpdate(js, settings, subjects, &code);
+  // Another sink of the stream was faster.
+  if (code == JSStreamNameExistErr) status = AddOrUpdate(js, settings, subjects, &code);
   if (status != NATS_OK) *why = Explain(status, code);
   return status == NATS_OK;
 }

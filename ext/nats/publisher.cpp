@@ -12,11 +12,18 @@ namespace {
 
 constexpr std::chrono::milliseconds kConfigInterval{1'000};
 constexpr std::chrono::milliseconds kAskedInterval{
-    20};  // whoever asks often gets no more than this
-constexpr std::chrono::milliseconds kStreamRetry{500};
+    20};                                                // whoever asks often gets no more than this
+constexpr std::chrono::milliseconds kStreamRetry{500};  // the longest
+constexpr gint kMinStreamRetryMs = 50;
 constexpr std::chrono::milliseconds kAckTimeout{5'000};
 constexpr std::chrono::milliseconds kPatrol{500};  // how late an unanswered message may be seen
 constexpr std::size_t kMaxInFlight = 256;          // messages
+
+/// Sinks that change one stream at a time undo each other's work, so each waits for another time.
+std::chrono::milliseconds StreamPause() {
+  return std::chrono::milliseconds(
+      g_random_int_range(kMinStreamRetryMs, static_cast<gint>(kStreamRetry.count())));
+}
 
 /// The answer of JetStream says where it stored a message, or what was wrong.
 std::string ErrorOfAck(natsMsg* message) {
@@ -178,7 +185,7 @@ void Publisher::OnAck(natsMsg* message) {
     // Those behind it wait as well, so that the order stays.
     counters_.resent += outbox_.RetryAll();
     stream_ready_ = false;
-    retry_at_ = Clock::now() + kStreamRetry;
+    retry_at_ = Clock::now() + StreamPause();
   }
   wake_.notify_all();
   if (!error.empty()) Tell(&lock, error);
@@ -232,7 +239,9 @@ void Publisher::RetryAfterConnect(unsigned connections) {
 
 void Publisher::RetryUnanswered(Clock::time_point now) {
   const auto oldest = outbox_.OldestInFlight();
-  if (oldest && now - *oldest > kAckTimeout) counters_.resent += outbox_.RetryAll();
+  if (!oldest || now - *oldest <= kAckTimeout) return;
+  counters_.resent += outbox_.RetryAll();
+  stream_ready_ = false;  // nobody may keep the subject any more
 }
 
 /// True once the stream of JetStream is there.
@@ -248,7 +257,7 @@ bool Publisher::PrepareStream(Lock* lock) {
                                   {settings_.subject, ConfigSubject(settings_.subject, "*")}, &why);
   lock->lock();
   stream_ready_ = ready;
-  retry_at_ = Clock::now() + kStreamRetry;
+  retry_at_ = Clock::now() + StreamPause();
   if (!ready) Tell(lock, "The stream " + settings_.stream.name + " cannot be made: " + why);
   return ready;
 }

@@ -37,7 +37,8 @@ std::unique_ptr<Subscriber> Subscriber::Open(const SubscriberSettings& settings,
   } else {
     status = self->SubscribeLive();
     // Whoever publishes once this is open is heard, where the server is there.
-    natsConnection_FlushTimeout(self->connection_->get(), Connection::kConnectTimeoutMs);
+    if (self->connection_->state().connected())
+      natsConnection_FlushTimeout(self->connection_->get(), Connection::kConnectTimeoutMs);
   }
   if (status == NATS_OK) return self;
   *why = ErrorText(status);

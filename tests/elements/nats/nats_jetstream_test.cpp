@@ -140,6 +140,23 @@ TEST_F(NatsJetStream, SeveralStreamsShareABox) {
   ExpectSameStream(Replay(0), front);
 }
 
+TEST_F(NatsJetStream, ManyThatBeginAtOnceShareABox) {
+  std::vector<std::unique_ptr<NatsPipeline>> senders;
+  for (int i = 0; i < 6; ++i) {
+    senders.push_back(std::make_unique<NatsPipeline>(
+        kQuick + "num-buffers=16 ! lidarenc" + kSee +
+        "! natssink name=n sync=false drain-timeout=30000000000 jetstream=box" +
+        At("subject=r" + std::to_string(i) + ".front")));
+    senders.back()->Play();
+  }
+  for (const auto& sender : senders) {
+    EXPECT_EQ(sender->WaitForEnd(), "");
+    EXPECT_EQ(sender->stat("messages-acknowledged"), 16U);
+    EXPECT_EQ(sender->stat("messages-dropped"), 0U);
+  }
+  ExpectSameStream(Replay(0), senders[1]->buffers());
+}
+
 TEST_F(NatsJetStream, AServerWithoutJetStreamIsToldOf) {
   NatsServer plain;
   std::ofstream(plain.folder() + "/conf") << "jetstream: disabled\n";

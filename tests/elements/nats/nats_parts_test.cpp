@@ -217,6 +217,7 @@ TEST_F(NatsParts, APatternCoversWhatItsWildcardsSay) {
   EXPECT_FALSE(Covers("a.*", "a.b.c"));
   EXPECT_FALSE(Covers("a.b.c", "a.b"));
   EXPECT_FALSE(Covers("a.b", "a.*"));
+  EXPECT_TRUE(Covers("a.>", "a.*"));
   EXPECT_FALSE(Covers("a.>", "a"));
   EXPECT_FALSE(Covers("a.*", "a.>"));
 }

@@ -74,6 +74,7 @@ class NatsServer {
     return scheme + "://" + user + "127.0.0.1:" + port_;
   }
   const std::string& folder() const { return folder_; }
+  pid_t pid() const { return pid_; }
 
  private:
   /// Another program may have taken the port meanwhile, so it may take more than one go.

@@ -1,0 +1,166 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "src/tools/edge/edge_config.h"
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+#include <set>
+#include <stdexcept>
+#include <utility>
+
+namespace lidar::edge {
+namespace {
+
+using nlohmann::json;
+
+/// An object whose keys are all known: a word that is misspelt is no setting that is left out.
+class Section {
+ public:
+  Section(const json& object, std::string where) : object_(object), where_(std::move(where)) {
+    if (!object.is_object()) Fail("is no object");
+  }
+
+  void Read(const char* key, std::string* value) {
+    if (const json* v = Find(key)) {
+      if (!v->is_string()) Fail(key, "is no string");
+      *value = v->get<std::string>();
+    }
+  }
+  template <class T>
+  void ReadCount(const char* key, T* value, std::uint64_t min, std::uint64_t max) {
+    if (const json* v = Find(key)) {
+      if (!v->is_number_unsigned() || v->get<std::uint64_t>() < min ||
+          v->get<std::uint64_t>() > max)
+        Fail(key, "is no whole number from " + std::to_string(min) + " to " + std::to_string(max));
+      *value = static_cast<T>(v->get<std::uint64_t>());
+    }
+  }
+  void ReadAmount(const char* key, double* value, double min, double max) {
+    if (const json* v = Find(key)) {
+      if (!v->is_number() || !(v->get<double>() >= min && v->get<double>() <= max))
+        Fail(key, "is out of range");
+      *value = v->get<double>();
+    }
+  }
+  const json* Find(const char* key) {
+    known_.insert(key);
+    const auto found = object_.find(key);
+    return found == object_.end() ? nullptr : &*found;
+  }
+  void Finish() const {
+    for (const auto& item : object_.items())
+      if (known_.count(item.key()) == 0) Fail(item.key(), "is not known");
+  }
+  [[noreturn]] void Fail(const std::string& key, const std::string& what) const {
+    throw std::runtime_error(where_ + (where_.empty() ? "" : ".") + key + " " + what);
+  }
+
+ private:
+  [[noreturn]] void Fail(const std::string& what) const {
+    throw std::runtime_error((where_.empty() ? "the configuration" : where_) + " " + what);
+  }
+
+  const json& object_;
+  const std::string where_;
+  std::set<std::string> known_;
+};
+
+/// A word of a subject, and of a label of Prometheus.
+bool IsWord(const std::string& text) {
+  const auto is_good = [](char c) {
+    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '-' ||
+           c == '_';
+  };
+  return !text.empty() && text.size() <= 64 && std::all_of(text.begin(), text.end(), is_good);
+}
+
+constexpr std::uint64_t kMaxBytes = std::uint64_t{1} << 50;
+
+NatsConfig ReadNats(const json& object) {
+  NatsConfig nats;
+  Section s(object, "nats");
+  nats.url = "nats://localhost:4222";
+  s.Read("url", &nats.url);
+  s.Read("credentials-file", &nats.credentials_file);
+  s.Read("tls-ca-file", &nats.tls_ca_file);
+  s.Read("tls-cert-file", &nats.tls_cert_file);
+  s.Read("tls-key-file", &nats.tls_key_file);
+  s.Read("prefix", &nats.prefix);
+  s.Read("jetstream", &nats.jetstream);
+  s.ReadCount("max-age", &nats.max_age_s, 0, 366 * 86'400);
+  s.ReadCount("max-bytes", &nats.max_bytes, 0, kMaxBytes);
+  s.ReadCount("buffer-size", &nats.buffer_size, 65'536, 1 << 30);
+  s.Finish();
+  if (nats.url.empty()) s.Fail("url", "is empty");
+  if (!IsWord(nats.prefix)) s.Fail("prefix", "is no word of letters, digits, - and _");
+  if (!nats.jetstream.empty() && !IsWord(nats.jetstream))
+    s.Fail("jetstream", "is no word of letters, digits, - and _");
+  return nats;
+}
+
+RobotConfig ReadRobot(const json& object, std::size_t index) {
+  RobotConfig robot;
+  Section s(object, "robots[" + std::to_string(index) + "]");
+  s.Read("name", &robot.name);
+  s.Read("sensor", &robot.sensor);
+  s.ReadCount("port", &robot.port, 1, 65'535);
+  s.Read("srtp-key", &robot.srtp_key);
+  s.Read("srtp-cipher", &robot.srtp_cipher);
+  s.Read("record", &robot.record);
+  s.ReadCount("record-max-file-size", &robot.record_max_file_size, 0, kMaxBytes);
+  s.ReadCount("record-max-files", &robot.record_max_files, 0, 1'000'000);
+  s.ReadAmount("max-mbps", &robot.max_mbps, 0, 1e5);
+  s.Finish();
+  if (!IsWord(robot.name)) s.Fail("name", "is no word of letters, digits, - and _");
+  if (!IsWord(robot.sensor)) s.Fail("sensor", "is no word of letters, digits, - and _");
+  if (robot.port == 0) s.Fail("port", "is missing");
+  const bool limited = robot.record_max_files > 0 || robot.record_max_file_size > 0;
+  if (limited && robot.record.find('%') == std::string::npos)
+    s.Fail("record", "has no number such as %05d, which limits for files need");
+  return robot;
+}
+
+void CheckTwins(const std::vector<RobotConfig>& robots) {
+  std::set<std::uint16_t> ports;
+  std::set<std::string> names;
+  std::set<std::string> records;
+  for (const RobotConfig& robot : robots) {
+    if (!ports.insert(robot.port).second)
+      throw std::runtime_error("port " + std::to_string(robot.port) + " has two robots");
+    if (!names.insert(robot.name + "/" + robot.sensor).second)
+      throw std::runtime_error(robot.name + " has two sensors called " + robot.sensor);
+    if (!robot.record.empty() && !records.insert(robot.record).second)
+      throw std::runtime_error(robot.record + " is recorded by two robots");
+  }
+}
+
+}  // namespace
+
+EdgeConfig ParseEdgeConfig(const std::string& json_text) {
+  const json root = json::parse(json_text, nullptr, false, true);
+  if (root.is_discarded()) throw std::runtime_error("the configuration is no JSON");
+  EdgeConfig config;
+  Section s(root, "");
+  s.Read("address", &config.address);
+  if (const json* nats = s.Find("nats")) config.nats = ReadNats(*nats);
+  s.Read("http-address", &config.http_address);
+  s.ReadCount("http-port", &config.http_port, 0, 65'535);
+  s.ReadAmount("interval", &config.interval_s, 0.1, 3600);
+  const json* robots = s.Find("robots");
+  s.Finish();
+  if (robots == nullptr || !robots->is_array() || robots->empty())
+    s.Fail("robots", "is no list of at least one robot");
+  for (std::size_t i = 0; i < robots->size(); ++i)
+    config.robots.push_back(ReadRobot((*robots)[i], i));
+  CheckTwins(config.robots);
+  return config;
+}
+
+std::string StreamSubject(const NatsConfig& nats, const RobotConfig& robot) {
+  return nats.prefix + "." + robot.name + ".lidar." + robot.sensor;
+}
+
+std::string StatisticsSubject(const NatsConfig& nats, const RobotConfig& robot) {
+  return nats.prefix + "." + robot.name + ".statistics." + robot.sensor;
+}
+
+}  // namespace lidar::edge

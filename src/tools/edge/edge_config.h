@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// What lidar-edge is told: which robots come on which ports, and where their streams go.
+#pragma once
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace lidar::edge {
+
+struct NatsConfig {
+  std::string url;  // empty: no NATS
+  std::string credentials_file;
+  std::string tls_ca_file;
+  std::string tls_cert_file;
+  std::string tls_key_file;
+  std::string prefix = "fleet";  // of all subjects
+  std::string jetstream;         // empty: nothing is kept
+  std::uint64_t max_age_s = 3600;
+  std::uint64_t max_bytes = 0;          // 0: no limit
+  std::uint64_t buffer_size = 8 << 20;  // bytes that wait, for each robot
+};
+
+struct RobotConfig {
+  std::string name;
+  std::string sensor = "lidar";
+  std::uint16_t port = 0;
+  std::string srtp_key;  // file:PATH or env:NAME; empty: none
+  std::string srtp_cipher = "aes-128-icm";
+  std::string record;                      // pattern of file names; empty: none
+  std::uint64_t record_max_file_size = 0;  // bytes
+  std::uint64_t record_max_files = 0;
+  double max_mbps = 0;  // 0: no limit
+};
+
+struct EdgeConfig {
+  std::string address;  // that robots send to; empty: any
+  NatsConfig nats;
+  std::string http_address = "127.0.0.1";
+  int http_port = -1;  // -1: none; 0: any
+  double interval_s = 5;
+  std::vector<RobotConfig> robots;
+};
+
+/// Throws std::runtime_error, which names the key that is wrong.
+EdgeConfig ParseEdgeConfig(const std::string& json_text);
+
+std::string StreamSubject(const NatsConfig& nats, const RobotConfig& robot);
+std::string StatisticsSubject(const NatsConfig& nats, const RobotConfig& robot);
+
+}  // namespace lidar::edge

@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Statistics of elements as JSON and as Prometheus reads them.
+#pragma once
+#include <gst/gst.h>
+
+#include <map>
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+#include <vector>
+
+namespace lidar::edge {
+
+/// Numbers, flags, text and structures; what else there is is left out.
+nlohmann::json ToJson(const GstStructure* structure);
+
+/// Collects values and writes them by their names, as the text format wants them.
+class Exposition {
+ public:
+  /// `labels` have their braces; empty: none.
+  void Add(const std::string& name, const std::string& labels, double value);
+  /// All numbers and flags of `structure`, called lidar_`element`_their name.
+  void Add(const std::string& element, const std::string& labels, const GstStructure* structure);
+  std::string text() const;
+
+ private:
+  std::map<std::string, std::vector<std::string>> lines_;
+};
+
+}  // namespace lidar::edge
