@@ -321,7 +321,9 @@ static GstFlowReturn Handle(GstLidarNatsSrc* self, Subscriber::Event event, Deli
   State& state = StateOf(self);
   const bool eos_at_end = state.now.eos_at_end;
   switch (event) {
-    case Subscriber::Event::kClosed:  // the watch has posted why
+    case Subscriber::Event::kClosed:
+      // The watch may be about to say so, but the base class would be faster.
+      state.watch->PostRefused(state.subscriber->connection());
       return GST_FLOW_ERROR;
     case Subscriber::Event::kEmpty:
       return eos_at_end ? GST_FLOW_EOS : GST_FLOW_CUSTOM_SUCCESS;

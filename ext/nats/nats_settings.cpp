@@ -65,6 +65,12 @@ void ConnectionWatch::Warn(const std::string& text) {
   GST_ELEMENT_WARNING(element_.get(), RESOURCE, FAILED, ("%s", text.c_str()), (nullptr));
 }
 
+void ConnectionWatch::PostRefused(const nats::ConnectionState& state) {
+  const StringPtr words(g_utf8_make_valid(state.last_error.c_str(), -1));
+  GST_ELEMENT_ERROR(element_.get(), RESOURCE, NOT_AUTHORIZED,
+                    ("The NATS server refuses us: %s.", words.get()), (nullptr));
+}
+
 void ConnectionWatch::Note(const nats::ConnectionState& state) {
   std::unique_lock lock(mutex_);
   if (silent_) return;
@@ -81,8 +87,7 @@ void ConnectionWatch::Note(const nats::ConnectionState& state) {
                                 gst_structure_new("nats-connection-changed", "connected",
                                                   G_TYPE_BOOLEAN, state.connected(), nullptr)));
   if (closed)
-    GST_ELEMENT_ERROR(element_.get(), RESOURCE, NOT_AUTHORIZED,
-                      ("The NATS server refuses us: %s.", words.get()), (nullptr));
+    PostRefused(state);
   else if (error)
     Warn(std::string("The NATS server complains: ") + words.get() + ".");
 }

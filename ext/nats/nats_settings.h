@@ -33,6 +33,7 @@ class ConnectionWatch {
   /// Runs in any thread.
   void Note(const nats::ConnectionState& state);
   void Warn(const std::string& text);
+  void PostRefused(const nats::ConnectionState& state);
   /// Nothing is posted any more: the element stops by itself.
   void Silence();
 

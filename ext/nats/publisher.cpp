@@ -17,6 +17,7 @@ constexpr std::chrono::milliseconds kStreamRetry{500};  // the longest
 constexpr gint kMinStreamRetryMs = 50;
 constexpr std::chrono::milliseconds kAckTimeout{5'000};
 constexpr std::chrono::milliseconds kPatrol{500};  // how late an unanswered message may be seen
+constexpr const char* kConfigReply = "config";     // where others have their number
 constexpr std::size_t kMaxInFlight = 256;          // messages
 
 /// Sinks that change one stream at a time undo each other's work, so each waits for another time.
@@ -175,16 +176,19 @@ void Publisher::OnAck(natsMsg* message) {
   const std::string_view word = subject.substr(ack_prefix_.size());
   std::uint64_t number = 0;
   const auto end = word.data() + word.size();
-  if (std::from_chars(word.data(), end, number).ptr != end) return;
+  const bool is_config = word == kConfigReply;
+  if (!is_config && std::from_chars(word.data(), end, number).ptr != end) return;
   const std::string error = ErrorOfAck(message);
   Lock lock(mutex_);
   if (error.empty()) {
-    if (outbox_.Remove(number)) ++counters_.acknowledged;
+    if (is_config)
+      config_unanswered_ = false;
+    else if (outbox_.Remove(number))
+      ++counters_.acknowledged;
     told_.clear();
   } else {
     // Those behind it wait as well, so that the order stays.
-    counters_.resent += outbox_.RetryAll();
-    stream_ready_ = false;
+    SendAllAgain();
     retry_at_ = Clock::now() + StreamPause();
   }
   wake_.notify_all();
@@ -223,7 +227,7 @@ void Publisher::Step(Lock* lock) {
     SendConfig(lock);
   else if (outbox_.waiting() > 0 && outbox_.in_flight() < kMaxInFlight)
     SendNext(lock);
-  else if (draining_ && outbox_.empty())
+  else if (draining_ && Done())
     FinishDrain(lock);
   else
     wake_.wait_for(*lock, kPatrol);
@@ -232,6 +236,10 @@ void Publisher::Step(Lock* lock) {
 void Publisher::RetryAfterConnect(unsigned connections) {
   if (connections == connections_) return;
   connections_ = connections;
+  SendAllAgain();
+}
+
+void Publisher::SendAllAgain() {
   counters_.resent += outbox_.RetryAll();
   stream_ready_ = false;
   sent_format_.reset();
@@ -239,9 +247,9 @@ void Publisher::RetryAfterConnect(unsigned connections) {
 
 void Publisher::RetryUnanswered(Clock::time_point now) {
   const auto oldest = outbox_.OldestInFlight();
-  if (!oldest || now - *oldest <= kAckTimeout) return;
-  counters_.resent += outbox_.RetryAll();
-  stream_ready_ = false;  // nobody may keep the subject any more
+  const bool message = oldest && now - *oldest > kAckTimeout;
+  const bool config = config_unanswered_ && now - config_at_ > kAckTimeout;
+  if (message || config) SendAllAgain();  // nobody may keep the subject any more
 }
 
 /// True once the stream of JetStream is there.
@@ -284,12 +292,17 @@ void Publisher::SendConfig(Lock* lock) {
   asked_ = false;
   sent_format_ = format;
   config_at_ = Clock::now();
+  config_unanswered_ = keeps();
   bytes_since_config_ = 0;
   lock->unlock();
   const std::string subject = ConfigSubject(settings_.subject, format->id());
   const std::string& text = format->text();
-  natsConnection_Publish(connection_->get(), subject.c_str(), text.data(),
-                         static_cast<int>(text.size()));
+  const auto size = static_cast<int>(text.size());
+  if (keeps())
+    natsConnection_PublishRequest(connection_->get(), subject.c_str(),
+                                  (ack_prefix_ + kConfigReply).c_str(), text.data(), size);
+  else
+    natsConnection_Publish(connection_->get(), subject.c_str(), text.data(), size);
   lock->lock();
 }
 
@@ -330,7 +343,7 @@ void Publisher::FinishDrain(Lock* lock) {
   lock->unlock();
   const natsStatus status = natsConnection_FlushTimeout(connection_->get(), kRequestTimeoutMs);
   lock->lock();
-  if (status != NATS_OK || !outbox_.empty()) return;
+  if (status != NATS_OK || !Done()) return;
   draining_ = false;
   drained_.notify_all();
 }

@@ -76,6 +76,7 @@ class Publisher : public std::enable_shared_from_this<Publisher> {
   void Step(Lock* lock);
   bool PrepareStream(Lock* lock);
   void RetryAfterConnect(unsigned connections);
+  void SendAllAgain();
   void RetryUnanswered(Clock::time_point now);
   StreamFormat::Ptr NextFormat() const;
   bool ConfigDue(Clock::time_point now) const;
@@ -84,6 +85,7 @@ class Publisher : public std::enable_shared_from_this<Publisher> {
   void NoteSent(natsStatus status, std::uint64_t number, std::size_t bytes);
   void FinishDrain(Lock* lock);
   void Tell(Lock* lock, const std::string& why);
+  bool Done() const { return outbox_.empty() && !config_unanswered_; }
   bool keeps() const { return !settings_.stream.name.empty(); }
 
   const PublisherSettings settings_;
@@ -110,6 +112,7 @@ class Publisher : public std::enable_shared_from_this<Publisher> {
   unsigned connections_ = 0;      // that were seen
   std::string told_;              // the trouble that is known
   bool asked_ = false;
+  bool config_unanswered_ = false;
   bool stream_ready_ = false;
   bool stopping_ = false;
   bool draining_ = false;

@@ -23,6 +23,13 @@ constexpr std::int64_t kSecondNs = 1'000'000'000;
 constexpr std::int64_t kAckWaitNs = 2 * kSecondNs;
 constexpr std::int64_t kMaxUnacknowledged = 256;  // messages
 
+/// libnats 3.4 writes .012 s as .12 s, so such times become the whole second before them.
+std::int64_t SafeTime(std::uint64_t time) {
+  const auto ns = static_cast<std::int64_t>(time);
+  const std::int64_t fraction = ns % kSecondNs;
+  return fraction < kSecondNs / 10 ? ns - fraction : ns;
+}
+
 }  // namespace
 
 std::unique_ptr<Subscriber> Subscriber::Open(const SubscriberSettings& settings,
@@ -79,7 +86,7 @@ void Subscriber::SetStart(jsConsumerConfig* config) const {
   else if (*settings_.start_time == 0)
     config->DeliverPolicy = js_DeliverAll;
   else
-    config->OptStartTime = static_cast<std::int64_t>(*settings_.start_time);
+    config->OptStartTime = SafeTime(*settings_.start_time);
 }
 
 /// A consumer that goes with this subscriber. It is made anew from where the last one ended.
@@ -211,6 +218,8 @@ Subscriber::Event Subscriber::NoteStored(Delivery* delivery) {
     }
     last_number_ = meta->Sequence.Consumer;
     last_stored_ = meta->Sequence.Stream;
+    if (settings_.start_time && meta->Timestamp < static_cast<std::int64_t>(*settings_.start_time))
+      return meta->NumPending == 0 ? Event::kEmpty : Event::kNothing;  // see SafeTime()
   }
   delivery->stored = static_cast<std::uint64_t>(std::max<std::int64_t>(meta->Timestamp, 0));
   delivery->to_come = meta->NumPending;

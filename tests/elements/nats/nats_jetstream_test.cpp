@@ -47,6 +47,16 @@ TEST_F(NatsJetStream, AReplayBeginsAtItsTime) {
   EXPECT_EQ(Replay(between + 3600 * GST_SECOND).size(), 0U);
 }
 
+TEST_F(NatsJetStream, AReplayBeginsEarlyInASecondAsWell) {
+  const auto first = PublishSlices(8, At(kBox));
+  const auto now = [] { return static_cast<guint64>(g_get_real_time()) * 1000; };
+  ASSERT_TRUE(Eventually([&] { return now() % GST_SECOND < 40 * GST_MSECOND; }));
+  const guint64 between = now();
+  const auto second = PublishSlices(8, At(kBox));
+  const auto played = Replay(between);
+  ExpectSameStream(played, second);
+}
+
 TEST_F(NatsJetStream, NothingIsLostWhereTheServerIsKilledMeanwhile) {
   NatsPipeline sender(kLive + "! lidarenc" + kSee + "! natssink name=n drain-timeout=30000000000" +
                       At(kBox));
