@@ -9,6 +9,7 @@ import sys
 # What tests need and packages do not.
 TESTS_ONLY = {
     "libbenchmark-dev",
+    "libclang-rt-dev",
     "libfastcdr-dev",
     "libfastrtps-dev",
     "libgirepository1.0-dev",
