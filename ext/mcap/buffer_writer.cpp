@@ -120,7 +120,8 @@ class OdometryWriter : public BufferWriter {
     ByteReader r(map.view());
     for (double& v : odometry.position) v = r.LeF64();
     for (double& v : odometry.orientation) v = r.LeF64();
-    SetTracking(static_cast<GstLidarTracking>(r.Le64()), &odometry);
+    const std::uint64_t tracking = std::min<std::uint64_t>(r.Le64(), GST_LIDAR_TRACKING_LOST);
+    SetTracking(static_cast<GstLidarTracking>(tracking), &odometry);
     out->push_back({0, stamp, cdr::WriteOdometry(odometry)});
     return true;
   }

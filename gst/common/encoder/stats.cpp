@@ -22,7 +22,7 @@ gdouble LastStep(const Counters& c) { return c.last.slice.step_m; }
 gdouble LastErrorBound(const Counters& c) { return c.last.slice.error_m; }
 guint LastIntensityBits(const Counters& c) { return c.last.intensity_bits; }
 gdouble LastKeepFraction(const Counters& c) { return c.last.keep_fraction; }
-guint Bitrate(const Counters& c) { return static_cast<guint>(c.bitrate); }
+guint Bitrate(const Counters& c) { return static_cast<guint>(MIN(c.bitrate, gdouble{G_MAXUINT})); }
 
 const std::array<Stat<Counters>, 24> kStats = {{
     {"scans-in", &Counters::scans_in},
