@@ -68,7 +68,6 @@ void RateController::UpdateDemand() {
 }
 
 void RateController::StartScan() {
-  bounds_due_ = true;
   const Demand needed = demand_.Sum();
   const unsigned bits = std::min(parameters_.limits.intensity_bits, kMaxIntensityBits);
   saved_ += repay_ + ledger_;
@@ -146,6 +145,7 @@ Decision RateController::NextSlice(const SliceFeatures& slice) {
 void RateController::Settle(double bytes) {
   ledger_ -= bytes;
   pending_ = false;
+  bounds_due_ = bounds_due_ || slice_.slice_index + 1 == slice_.slice_count;
   stats_.saved_bytes = saved_ + repay_ + ledger_;
 }
 

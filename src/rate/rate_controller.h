@@ -66,7 +66,7 @@ class RateController {
   /// Zero before the first slice.
   RateBounds bounds() const;
   /// The bounds, when one of them has moved by more than 3 % since they were last taken; at most
-  /// once a scan.
+  /// once a scan, after its last slice.
   std::optional<RateBounds> TakeChangedBounds();
   const ControllerStats& stats() const { return stats_; }
 

@@ -268,6 +268,29 @@ TEST_P(Tracking, KnowsTheMinimumWithoutEverHavingBeenThere) {
   }
 }
 
+/// A target that falls to the minimum while a scan is under way is of use only if the minimum is
+/// known before the next scan begins.
+TEST_P(Tracking, TellsTheMinimumAfterTheLastSliceOfEachScan) {
+  Stream run(Codec());
+  double told = 0;
+  for (std::uint32_t i = 0; i < 20; ++i) {
+    for (std::uint32_t k = 0; k < run.p.slices; ++k) {
+      const bool low = i > 10 || (i == 10 && 2 * k >= run.p.slices);
+      run.controller.SetTarget(DataRate::BitsPerSecond(low ? 1.05 * told : 4e6));
+      const SliceFeatures f = run.codec.Features(i, k);
+      const Decision d = run.controller.NextSlice(f);
+      EXPECT_FALSE(d.skip) << i;
+      if (d.skip) continue;
+      EncodedSize encoded = run.codec.Encode(f, d.settings, d.keep_fraction);
+      if (const auto again = run.controller.OnEncoded(encoded))
+        run.controller.OnEncoded(run.codec.Encode(f, *again, d.keep_fraction));
+      if (const auto bounds = run.controller.TakeChangedBounds())
+        told = bounds->min.bits_per_second();
+    }
+    EXPECT_NEAR(told / run.controller.bounds().min.bits_per_second(), 1, 0.031) << i;
+  }
+}
+
 TEST_P(Tracking, LowersTheIntensityBeforeItSkips) {
   ControllerParameters parameters = Parameters();
   parameters.limits.intensity_bits = 8;
