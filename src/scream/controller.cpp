@@ -283,11 +283,17 @@ void Controller::ProbeByBurst(Time now) {
 /// What was sent for a while does not come back at the rate that it did: a gap, or the start of
 /// one.
 bool Controller::Stalled(Time now) const {
-  const auto oldest = history_.oldest_in_flight();
-  const Duration late = path_.report_gap() + kOverdue;
-  const bool overdue = oldest && now - *oldest > path_.rtt().smoothed() + late;
-  return gap_recovery_.in_gap() || (overdue && outage_.Quiet(now) > late);
+  return gap_recovery_.in_gap() || (Overdue(now) && outage_.Quiet(now) > Lateness());
 }
+
+/// What is in flight takes longer than it did: packets wait for the link.
+bool Controller::Overdue(Time now) const {
+  const auto oldest = history_.oldest_in_flight();
+  return oldest && now - *oldest > path_.rtt().smoothed() + Lateness();
+}
+
+/// One report may be lost.
+Duration Controller::Lateness() const { return 2 * path_.report_gap() + kOverdue; }
 
 /// The path gives a sign of life, or did so a moment ago.
 bool Controller::Alive(Time now) const { return outage_.Silence(now) < kLongestSilence; }
@@ -323,16 +329,23 @@ Duration Controller::Round() const {
   return std::max({path_.rtt().smoothed(), p_.virtual_rtt, streams_.frame_period()});
 }
 
-std::optional<SendDecision> Controller::NextSend(Time) const {
+std::optional<SendDecision> Controller::NextSend(Time caller_now) const {
   const auto id = streams_.Next();
   if (!id) return std::nullopt;
-  const DataSize max = history_.full() ? DataSize()
-                                       : send_window_.Max(now_, window_.ref_wnd(), path_,
-                                                          competing_flows_.qdelay_target());
-  const Time opens =
-      send_window_.Opens(streams_.Find(*id)->head_size(), history_.bytes_in_flight(), max);
+  const Stream& stream = *streams_.Find(*id);
+  const DataSize max =
+      Holds(stream, std::max(now_, clock_.Peek(caller_now)))
+          ? DataSize()
+          : send_window_.Max(now_, window_.ref_wnd(), path_, competing_flows_.qdelay_target());
+  const Time opens = send_window_.Opens(stream.head_size(), history_.bytes_in_flight(), max);
   return SendDecision{clock_.ToCaller(std::max(pacer_.next(), opens)), *id,
                       path_.ecn().codepoint()};
+}
+
+/// Nothing is begun into a link that stands still: it would wait where it cannot be dropped.
+bool Controller::Holds(const Stream& stream, Time now) const {
+  const bool stalled = p_.extensions.gap_recovery && started_ && Overdue(now) && Stalled(now);
+  return history_.full() || (stalled && stream.at_start());
 }
 
 bool Controller::CongestedLately() const {

@@ -132,6 +132,9 @@ class Controller {
   DataRate AskedTarget(Time now, DataRate allowed) const;
   bool Alive(Time now) const;
   bool Stalled(Time now) const;
+  bool Overdue(Time now) const;
+  Duration Lateness() const;
+  bool Holds(const Stream& stream, Time now) const;
   Duration PacingReserve(Time now) const;
   Duration Round() const;
 

@@ -165,7 +165,7 @@ struct Parameters {
   /// So much of a late wake-up is caught up (the draft's pacing has no such term).
   Duration pacing_catch_up = 4ms;
   /// needed_floor: a little more than what is needed, as encoders round.
-  double needed_margin = 1.08;
+  double needed_margin = 1.03;
 
   /// Of all streams together, but for their minima.
   DataRate max_total_bitrate = DataRate::Infinite();

@@ -86,22 +86,18 @@ void Stream::OnDropped(Time now, std::size_t packets) {
 }
 
 std::size_t Stream::LatePackets(Time now, DataRate rate) const {
-  const auto is_start = [](const Queued& q) { return q.starts_frame; };
   if (queue_.empty()) return 0;
   if (!queue_.front().starts_frame) return StuckPackets(now);
-  std::size_t late = 0;
   std::optional<std::uint32_t> dropped = dropped_group_;
-  for (auto frame = queue_.begin(); frame != queue_.end();) {
-    const auto next = std::find_if(std::next(frame), queue_.end(), is_start);
-    DataSize size;
-    for (auto packet = frame; packet != next; ++packet) size += packet->size;
-    const bool group_dropped = frame->group && frame->group == dropped;
-    if (!group_dropped && !Late(now, rate, *frame, size)) break;
-    dropped = frame->group;
-    late = static_cast<std::size_t>(next - queue_.begin());
-    frame = next;
+  auto unit = queue_.begin();
+  while (unit != queue_.end()) {
+    const auto next = UnitEnd(unit);
+    const bool group_dropped = unit->group && unit->group == dropped;
+    if (!group_dropped && !Late(now, rate, unit, next)) break;
+    dropped = unit->group;
+    unit = next;
   }
-  return late;
+  return static_cast<std::size_t>(unit - queue_.begin());
 }
 
 /// A frame that has begun to leave goes out to its end, for half a frame helps nobody; but the rest
@@ -118,13 +114,24 @@ std::size_t Stream::StuckPackets(Time now) const {
   return keeps_last ? rest - 1 : rest;
 }
 
-bool Stream::Late(Time now, DataRate rate, const Queued& first, DataSize size) const {
-  const bool begun = first.group && first.group == begun_group_;
-  const Duration longest = p_.max_queue_delay * (begun ? kBegunStay : 1);
-  if (now + size / rate > first.queued + longest) return true;
-  if (!first.group || begun) return false;
-  // The group itself, or the one before it where it is still being queued.
-  return now + last_group_.size / rate > first.queued + last_group_.span() + p_.max_queue_delay;
+Stream::Queue::const_iterator Stream::UnitEnd(Queue::const_iterator unit) const {
+  return std::find_if(std::next(unit), queue_.end(), [unit](const Queued& q) {
+    return q.starts_frame && !(q.group && q.group == unit->group);
+  });
+}
+
+/// The units of a group that are still to come are expected to be as in the group before.
+bool Stream::Late(Time now, DataRate rate, Queue::const_iterator unit,
+                  Queue::const_iterator next) const {
+  DataSize size;
+  for (auto packet = unit; packet != next; ++packet) size += packet->size;
+  Time last = std::prev(next)->queued;
+  if (unit->group && unit->group == queued_group_) {
+    size += std::max(DataSize(), last_group_.size - this_group_.size);
+    last = std::max(last, this_group_.first + last_group_.span());
+  }
+  const Time middle = unit->queued + (last - unit->queued) / 2;
+  return now + size / rate > middle + p_.max_queue_delay * (Begun(*unit) ? kBegunStay : 1);
 }
 
 void Stream::NoteGroup(Time now, const QueuedPacket& packet) {

@@ -23,13 +23,15 @@ class Stream {
   void OnSent(Time now, std::uint32_t ssrc, DataSize size);
   void OnDropped(Time now, std::size_t packets);
   /// Packets at the head that nobody can use any more. `rate`: at which the queue leaves.
-  /// An access unit is late where its last packet would leave after max_queue_delay; of a group
-  /// that has begun to leave, after kBegunStay times that. A group is not begun where its last unit
-  /// would be late, and goes whole where one of its units went.
+  /// An access unit, or a group of them as a whole, is late where its last packet would leave
+  /// max_queue_delay after the middle of its capture; the rest of one that has begun to leave,
+  /// after kBegunStay times that.
   std::size_t LatePackets(Time now, DataRate rate) const;
 
   bool empty() const { return queue_.empty(); }
   DataSize head_size() const { return queue_.front().size; }
+  /// Nothing of the access unit at the head, or of its group, has left yet.
+  bool at_start() const { return queue_.front().starts_frame && !Begun(queue_.front()); }
   DataSize queued() const { return queued_; }
   /// Age of the oldest packet.
   Duration media_qdelay(Time now) const;
@@ -72,11 +74,15 @@ class Stream {
   void OnFrame(Time now);
   std::size_t StuckPackets(Time now) const;
   void NoteGroup(Time now, const QueuedPacket& packet);
-  bool Late(Time now, DataRate rate, const Queued& first, DataSize size) const;
+  using Queue = std::deque<Queued>;
+  bool Begun(const Queued& packet) const { return packet.group && packet.group == begun_group_; }
+  /// Behind the packets of an access unit, or of all those of a group.
+  Queue::const_iterator UnitEnd(Queue::const_iterator unit) const;
+  bool Late(Time now, DataRate rate, Queue::const_iterator unit, Queue::const_iterator next) const;
 
   const Parameters& p_;
   StreamConfig config_;
-  std::deque<Queued> queue_;
+  Queue queue_;
   DataSize queued_;
   std::set<std::uint32_t> ssrcs_;
   mutable RateMeter sent_rate_{1s};

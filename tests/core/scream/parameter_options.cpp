@@ -15,6 +15,7 @@ const std::map<std::string, double Parameters::*> kConstants = {
     {"onset_reserve", &Parameters::onset_reserve},
     {"stall_share", &Parameters::stall_share},
     {"needed_margin", &Parameters::needed_margin},
+    {"link_may_be_faster", &Parameters::link_may_be_faster},
     {"fast_increase_beside", &Parameters::fast_increase_beside},
     {"open_overhead", &Parameters::open_overhead},
     {"packet_pacing_headroom", &Parameters::packet_pacing_headroom},
@@ -41,8 +42,6 @@ const std::map<std::string, double Parameters::*> kConstants = {
     {"drop_beta", &Parameters::drop_beta},
     {"bounded_overhead", &Parameters::bounded_overhead},
     {"isolated_loss_threshold", &Parameters::isolated_loss_threshold},
-    {"needed_margin", &Parameters::needed_margin},
-    {"stall_share", &Parameters::stall_share},
 };
 
 const std::map<std::string, bool Extensions::*> kExtensions = {

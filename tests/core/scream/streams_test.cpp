@@ -204,20 +204,29 @@ class ScanTest : public StreamTest {
   }
 };
 
-TEST_F(ScanTest, IsDroppedWholeWhereOneOfItsSlicesIsLate) {
+TEST_F(ScanTest, IsDroppedWholeWhereTheMiddleOfItsCaptureIsLate) {
   Scan(kStart, 1);
   Scan(kStart + 100ms, 2);
-  EXPECT_EQ(stream_.LatePackets(kStart + 200ms, DataRate::Infinite()), 0U);
-  EXPECT_EQ(stream_.LatePackets(kStart + 201ms, DataRate::Infinite()), 8U);
+  EXPECT_EQ(stream_.LatePackets(kStart + 237ms, DataRate::Infinite()), 0U);
+  EXPECT_EQ(stream_.LatePackets(kStart + 238ms, DataRate::Infinite()), 8U);
+  EXPECT_EQ(stream_.LatePackets(kStart + 338ms, DataRate::Infinite()), 16U);
+}
+
+TEST_F(ScanTest, IsJudgedByItsOwnSizeWhileTheNextOneBegins) {
+  Scan(kStart, 1);
+  stream_.OnQueued(kStart + 100ms, {1, DataSize::Bytes(1000), false, 8, 2});
+  // 8000 bytes at 0.64 Mbit/s take 100 ms.
+  EXPECT_EQ(stream_.LatePackets(kStart + 137ms, Mbps(0.64)), 0U);
+  EXPECT_EQ(stream_.LatePackets(kStart + 138ms, Mbps(0.64)), 8U);
 }
 
 TEST_F(ScanTest, IsNotBegunWhereItsLastSliceWouldBeLate) {
   Scan(kStart - 100ms, 0);
   for (int i = 0; i < 8; ++i) stream_.OnSent(kStart, 1, DataSize::Bytes(1000));
   Scan(kStart, 1);
-  // 8000 bytes at 0.25 Mbit/s take 256 ms: the last slice, queued at 75 ms, is too late by 1 ms.
-  EXPECT_EQ(stream_.LatePackets(kStart + 20ms, Mbps(0.25)), 8U);
-  EXPECT_EQ(stream_.LatePackets(kStart + 18ms, Mbps(0.25)), 0U);
+  // 8000 bytes at 0.32 Mbit/s take 200 ms, from the middle of the capture on.
+  EXPECT_EQ(stream_.LatePackets(kStart + 38ms, Mbps(0.32)), 8U);
+  EXPECT_EQ(stream_.LatePackets(kStart + 37ms, Mbps(0.32)), 0U);
 }
 
 TEST_F(ScanTest, SlicesThatFollowADroppedOneOfTheirScanGoTheSameWay) {
@@ -248,8 +257,9 @@ TEST_F(ScanTest, GoesOutToItsEndForALittleLongerOnceItHasBegun) {
   Scan(kStart, 1);
   stream_.OnSent(kStart, 1, DataSize::Bytes(1000));
   stream_.OnSent(kStart, 1, DataSize::Bytes(1000));
-  EXPECT_EQ(stream_.LatePackets(kStart + 1025ms, DataRate::Infinite()), 0U);
-  EXPECT_EQ(stream_.LatePackets(kStart + 1026ms, DataRate::Infinite()), 6U);
+  // Of the three slices that are left.
+  EXPECT_EQ(stream_.LatePackets(kStart + 1050ms, DataRate::Infinite()), 0U);
+  EXPECT_EQ(stream_.LatePackets(kStart + 1051ms, DataRate::Infinite()), 6U);
 }
 
 TEST_F(StreamTest, TheFramePeriodIsMeasured) {
