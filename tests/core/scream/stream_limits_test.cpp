@@ -181,16 +181,16 @@ class ScanGroups : public ::testing::Test {
 TEST_F(ScanGroups, AScanIsNotBegunWhereItWouldBeLateAlsoOnceTheNextIsQueued) {
   Scan(kStart, 1);
   Slice(kStart + 100ms, 2, 0);
-  // 8000 bytes at 0.25 Mbit/s take 256 ms: the last slice of scan 1, queued at 75 ms, is late.
-  EXPECT_EQ(stream_.LatePackets(kStart + 100ms, Mbps(0.25)), 8U);
+  // 8000 bytes at 0.3 Mbit/s take 213 ms: too late for scan 1, not for scan 2.
+  EXPECT_EQ(stream_.LatePackets(kStart + 100ms, Mbps(0.3)), 8U);
   EXPECT_EQ(stream_.LatePackets(kStart + 100ms, Mbps(1)), 0U);
 }
 
 TEST_F(ScanGroups, WhatHasBegunMayStayFiveTimesAsLong) {
   Scan(kStart, 1);
   for (int i = 0; i < 2; ++i) stream_.OnSent(kStart, 1, DataSize::Bytes(1000));
-  EXPECT_EQ(stream_.LatePackets(kStart + 1025ms, DataRate::Infinite()), 0U);
-  EXPECT_EQ(stream_.LatePackets(kStart + 1026ms, DataRate::Infinite()), 6U);
+  EXPECT_EQ(stream_.LatePackets(kStart + 1050ms, DataRate::Infinite()), 0U);
+  EXPECT_EQ(stream_.LatePackets(kStart + 1051ms, DataRate::Infinite()), 6U);
 }
 
 TEST_F(ScanGroups, CountsWhatItSendsAndDrops) {
