@@ -30,6 +30,7 @@ RangeCheck::RangeCheck(const PointFields& fields, std::uint32_t point_step,
 
 std::optional<RangeCheck::Contradiction> RangeCheck::Find(ByteView raw,
                                                           std::uint32_t first_column) const {
+  if (raw.size == 0) return std::nullopt;
   const std::size_t points = raw.size / point_step_;
   const std::size_t columns = points / projection_.beams();
   const std::uint8_t* ranges = raw.data + range_offset_;

@@ -59,11 +59,12 @@ bool HasIntensity(const PointFields& fields) { return fields.Has("intensity", Fi
 FullScale ReadRangeImage(ByteView raw, const CloudLayout& layout, bool with_intensity,
                          RangeImage* image) {
   const std::size_t count = image->size();
-  const std::uint8_t* point = raw.data + layout.fields.Find("range")->offset;
   image->ranges.resize(count);
+  image->intensity.clear();
+  if (count == 0) return FullScale::kByte;
+  const std::uint8_t* point = raw.data + layout.fields.Find("range")->offset;
   for (std::size_t i = 0; i < count; ++i, point += layout.point_step)
     image->ranges[i] = Load<std::uint32_t>(point);
-  image->intensity.clear();
   if (!with_intensity || !HasIntensity(layout.fields)) return FullScale::kByte;
   const std::uint8_t* first = raw.data + layout.fields.Find("intensity")->offset;
   float largest = 0;
