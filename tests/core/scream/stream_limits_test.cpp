@@ -91,7 +91,7 @@ TEST_F(Limits, AFrameIsNoBacklogAndWhatIsNeededStays) {
   streams_.Find(a)->Configure({1, Mbps(0), Mbps(1), Mbps(100), Mbps(3)});
   streams_.Allocate(kStart, Mbps(8));
   streams_.LeaveRoomForBacklogs();
-  EXPECT_NEAR(Target(a), 3 * 1.08, 1e-3);
+  EXPECT_NEAR(Target(a), 3 * 1.03, 1e-3);
 }
 
 TEST_F(Limits, TheStreamWithTheHighestTargetSetsThePeriod) {
