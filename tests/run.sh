@@ -217,7 +217,7 @@ if [ "$sanitize" = yes ]; then
   export LSAN_OPTIONS="suppressions=$here/lsan.supp:print_suppressions=0"
   export UBSAN_OPTIONS="print_stacktrace=1:halt_on_error=1"
   if sanitized_ready; then
-    for suite in $sanitized; do run "$root/build-asan" "$suite" "${without_dear[@]}"; done
+    for suite in $sanitized; do run "$root/build-asan" "$suite" "${without_dear[@]}" --timeout-multiplier 12; done
   else
     count 1
   fi
