@@ -4,10 +4,24 @@
 #include <algorithm>
 #include <array>
 
+#include "src/base/byte_writer.h"
+#include "src/base/crc.h"
+
 namespace lidar::codec {
+namespace {
+
+// The first byte of a payload of kTemporal.
+constexpr std::uint8_t kStandsAlone = 0;
+constexpr std::uint8_t kHasReference = 1;
+
+bool HasGaps(const RangeImage& image) {
+  return std::find(image.ranges.begin(), image.ranges.end(), 0U) != image.ranges.end();
+}
+
+}  // namespace
 
 bool RangeEncoder::Encode(const RangeImage& image, const RangeSettings& settings,
-                          std::vector<std::uint8_t>* out) {
+                          std::vector<std::uint8_t>* out, BlockLink* link) {
   const bool with_levels = settings.intensity.bits() > 0;
   if (image.beams != alignment_.beams() || image.columns == 0 ||
       image.columns > alignment_.columns_per_scan() ||
@@ -17,7 +31,7 @@ bool RangeEncoder::Encode(const RangeImage& image, const RangeSettings& settings
   }
   mask_bytes_.clear();
   payload_.clear();
-  const auto coder = EncodePayload(image, settings);
+  const auto coder = EncodePayload(image, settings, link);
   if (!coder) return false;
   RangeHeader header;
   header.coder = *coder;
@@ -30,19 +44,26 @@ bool RangeEncoder::Encode(const RangeImage& image, const RangeSettings& settings
   header.has_gaps = has_gaps_;
   header.mask_size = static_cast<std::uint32_t>(mask_bytes_.size());
   header.payload_size = static_cast<std::uint32_t>(payload_.size());
+  const std::size_t start = out->size();
   header.Write(out);
   out->insert(out->end(), mask_bytes_.begin(), mask_bytes_.end());
   out->insert(out->end(), payload_.begin(), payload_.end());
+  if (link != nullptr && link->left != nullptr)
+    link->left->crc = Crc32({out->data() + start, out->size() - start});
   return true;
 }
 
 /// Gives the coder that was taken; none where it failed.
 std::optional<RangeCoder> RangeEncoder::EncodePayload(const RangeImage& image,
-                                                      const RangeSettings& settings) {
-  if (settings.coder == RangeCoder::kMixing &&
-      mixing_.Encode(image, {settings.grid, settings.intensity, settings.effort}, &payload_)) {
-    has_gaps_ = std::find(image.ranges.begin(), image.ranges.end(), 0U) != image.ranges.end();
-    return settings.coder;
+                                                      const RangeSettings& settings,
+                                                      BlockLink* link) {
+  if (link != nullptr) link->left = nullptr;
+  if (settings.coder == RangeCoder::kMixing) {
+    has_gaps_ = HasGaps(image);
+    if (link != nullptr && EncodeLinked(image, settings, link)) return RangeCoder::kTemporal;
+    payload_.clear();
+    if (mixing_.Encode(image, {settings.grid, settings.intensity, settings.effort, {}}, &payload_))
+      return settings.coder;
   }
   CollectReturns(image, settings);
   if (settings.coder < RangeCoder::kAdaptive) {
@@ -52,6 +73,29 @@ std::optional<RangeCoder> RangeEncoder::EncodePayload(const RangeImage& image,
   // It counts bins that are too many for the mixing coder.
   EncodeAdaptively(image.columns);
   return RangeCoder::kAdaptive;
+}
+
+/// False where nothing can refer to the block, and so it need not be linked.
+bool RangeEncoder::EncodeLinked(const RangeImage& image, const RangeSettings& settings,
+                                BlockLink* link) {
+  const BlockMemory* reference = link->reference.get();
+  if (settings.kept_beams > 0 || (reference != nullptr && !reference->Fits(image))) return false;
+  RangeImage decoded = image;
+  for (std::uint32_t& range : decoded.ranges) {
+    if (range == 0) continue;
+    range = settings.grid.RangeOf(settings.grid.BinOf(std::min(range, RangeGrid::kMaxRangeMm)));
+  }
+  auto left = Remember(decoded, settings.grid, reference);
+  MixingSettings mixing{settings.grid, settings.intensity, settings.effort, {}};
+  ByteWriter writer(&payload_);
+  writer.U8(reference != nullptr ? kHasReference : kStandsAlone);
+  if (reference != nullptr) {
+    writer.Le32(reference->crc);
+    mixing.memory = {reference->pixels.data(), &left->model};
+  }
+  if (!mixing_.Encode(image, mixing, &payload_)) return false;
+  link->left = std::move(left);
+  return true;
 }
 
 void RangeEncoder::CollectReturns(const RangeImage& image, const RangeSettings& settings) {
@@ -104,7 +148,9 @@ bool RangeEncoder::EncodeIntegers(const RangeSettings& settings, std::uint32_t c
 }
 
 bool RangeDecoder::Decode(ByteReader* reader, std::size_t max_points, RangeImage* image,
-                          IntensityScale* scale) {
+                          IntensityScale* scale, BlockStore* store) {
+  lacks_reference_ = false;
+  ByteReader whole = *reader;
   const auto header = RangeHeader::Read(reader);
   if (!header || header->beams != alignment_.beams() ||
       header->columns > alignment_.columns_per_scan() ||
@@ -122,9 +168,44 @@ bool RangeDecoder::Decode(ByteReader* reader, std::size_t max_points, RangeImage
   image->intensity.assign(header->intensity.bits() > 0 ? image->size() : 0, 0);
   if (header->coder == RangeCoder::kMixing)
     return mixing_.Decode(payload, header->grid, header->intensity.bits(), image);
+  if (header->coder == RangeCoder::kTemporal) {
+    std::shared_ptr<BlockMemory> left;
+    if (!DecodeLinked(*header, payload, store, image, &left)) return false;
+    if (left == nullptr) return true;
+    left->crc = Crc32(whole.Bytes(reader->position() - whole.position()));
+    store->Add(std::move(left));
+    return true;
+  }
   mask_.assign(image->size(), 1);
   return header->coder == RangeCoder::kAdaptive ? DecodeAdaptively(*header, payload, image)
                                                 : DecodeIntegers(*header, mask, payload, image);
+}
+
+/// With a store, `left` is what the block leaves for it.
+bool RangeDecoder::DecodeLinked(const RangeHeader& header, ByteView payload, BlockStore* store,
+                                RangeImage* image, std::shared_ptr<BlockMemory>* left) {
+  ByteReader reader(payload);
+  const std::uint8_t kind = reader.U8();
+  if (kind != kStandsAlone && kind != kHasReference) return false;
+  const unsigned bits = header.intensity.bits();
+  if (kind == kStandsAlone) {
+    if (!mixing_.Decode(reader.Rest(), header.grid, bits, image)) return false;
+    if (store != nullptr) *left = Remember(*image, header.grid, nullptr);
+    return true;
+  }
+  const std::uint32_t crc = reader.Le32();
+  if (!reader.ok()) return false;
+  const BlockMemoryPtr reference = store != nullptr ? store->Recall(crc, *image) : nullptr;
+  lacks_reference_ = reference == nullptr;
+  if (lacks_reference_) return false;
+  const auto model = std::make_unique<mixing::TemporalModel>(reference->model);
+  if (!mixing_.Decode(reader.Rest(), header.grid, bits, image,
+                      {reference->pixels.data(), model.get()})) {
+    return false;
+  }
+  *left = Remember(*image, header.grid, reference.get());
+  (*left)->model = *model;
+  return true;
 }
 
 bool RangeDecoder::DecodeAdaptively(const RangeHeader& header, ByteView payload,

@@ -9,6 +9,7 @@
 #include "src/cloud/sensor_model.h"
 #include "src/codec/adaptive_coder.h"
 #include "src/codec/azimuth_alignment.h"
+#include "src/codec/block_store.h"
 #include "src/codec/integer_coder.h"
 #include "src/codec/mask_coder.h"
 #include "src/codec/mixing/mixing_codec.h"
@@ -36,15 +37,18 @@ class RangeEncoder {
   /// the coder is not there.
   /// Ranges are multiples of the grid's unit. The image's levels are of 8 bits and become those of
   /// settings.intensity. An image without any return gives a block that decodes to such an image.
+  /// With `link`, blocks of kMixing become kTemporal where they can: others may refer to them.
   bool Encode(const RangeImage& image, const RangeSettings& settings,
-              std::vector<std::uint8_t>* out);
+              std::vector<std::uint8_t>* out, BlockLink* link = nullptr);
 
  private:
   void CollectReturns(const RangeImage& image, const RangeSettings& settings);
   std::size_t returns() const { return lists_.values.size(); }
   void EncodeAdaptively(std::uint32_t columns);
   bool EncodeIntegers(const RangeSettings& settings, std::uint32_t columns);
-  std::optional<RangeCoder> EncodePayload(const RangeImage& image, const RangeSettings& settings);
+  std::optional<RangeCoder> EncodePayload(const RangeImage& image, const RangeSettings& settings,
+                                          BlockLink* link);
+  bool EncodeLinked(const RangeImage& image, const RangeSettings& settings, BlockLink* link);
 
   AzimuthAlignment alignment_;
   const IntegerCoder* integers_;
@@ -70,11 +74,17 @@ class RangeDecoder {
 
   /// The next block of `reader`; `scale` says what the levels stand for. False, with `image`
   /// undefined, for a block that is damaged, of another sensor, or of more than `max_points`.
-  bool Decode(ByteReader* reader, std::size_t max_points, RangeImage* image, IntensityScale* scale);
+  /// Blocks that others may refer to go into `store`, and references come from there.
+  bool Decode(ByteReader* reader, std::size_t max_points, RangeImage* image, IntensityScale* scale,
+              BlockStore* store = nullptr);
+  /// The last Decode() failed for want of the block that its block refers to.
+  bool lacks_reference() const { return lacks_reference_; }
   /// The header of the block decoded last.
   const RangeHeader& header() const { return header_; }
 
  private:
+  bool DecodeLinked(const RangeHeader& header, ByteView payload, BlockStore* store,
+                    RangeImage* image, std::shared_ptr<BlockMemory>* left);
   bool DecodeAdaptively(const RangeHeader& header, ByteView payload, RangeImage* image);
   bool DecodeIntegers(const RangeHeader& header, ByteView mask, ByteView payload,
                       RangeImage* image);
@@ -85,6 +95,7 @@ class RangeDecoder {
   const IntegerCoder* integers_;
   MixingDecoder mixing_;
   RangeHeader header_;
+  bool lacks_reference_ = false;
   MaskCoder mask_coder_;
   AdaptiveCoder coder_;
   Mask mask_;

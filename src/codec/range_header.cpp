@@ -30,7 +30,7 @@ constexpr unsigned kThinnedFlag = 0x40;
 
 bool IsKnown(std::uint8_t coder) {
   return coder >= static_cast<std::uint8_t>(RangeCoder::kDraco) &&
-         coder <= static_cast<std::uint8_t>(RangeCoder::kMixing);
+         coder <= static_cast<std::uint8_t>(RangeCoder::kTemporal);
 }
 
 }  // namespace

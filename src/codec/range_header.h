@@ -18,6 +18,7 @@ enum class RangeCoder : std::uint8_t {
   kResidual = 2,  // what our prediction leaves, by Draco's sequential coder
   kAdaptive = 3,  // what our prediction leaves, by adaptive rANS
   kMixing = 4,    // every bit by mixed contexts (docs/mixing-coder.md)
+  kTemporal = 5,  // the same, by what pixels saw in scans before (docs/temporal-coder.md)
 };
 
 struct RangeHeader {

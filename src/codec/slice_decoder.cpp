@@ -15,7 +15,7 @@ SliceDecoder::SliceDecoder(const CloudFormat& format, std::uint32_t max_points,
 
 std::optional<SliceDecoder::Shape> SliceDecoder::Decode(ByteView stream) {
   ByteReader reader(stream);
-  if (!decoder_.Decode(&reader, max_points_, &image_, &scale_)) return std::nullopt;
+  if (!decoder_.Decode(&reader, max_points_, &image_, &scale_, &store_)) return std::nullopt;
   const RangeHeader& h = decoder_.header();
   quality_ = {h.grid.step_m(), h.grid.error_m(), h.intensity.bits(),
               h.kept_beams > 0 ? static_cast<double>(h.kept_beams) / h.beams : 1};
@@ -35,7 +35,7 @@ bool SliceDecoder::AppendBlocks(ByteReader* reader) {
     RangeImage block;
     IntensityScale scale;
     const std::size_t room = max_points_ - std::size_t{columns} * blocks_[0].beams;
-    if (!decoder_.Decode(reader, room, &block, &scale) ||
+    if (!decoder_.Decode(reader, room, &block, &scale, &store_) ||
         block.first_column != (blocks_[0].first_column + columns) % turn ||
         block.columns > turn - columns || scale.bits() != scale_.bits() ||
         scale.full() != scale_.full()) {

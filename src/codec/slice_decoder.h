@@ -28,6 +28,10 @@ class SliceDecoder {
   /// Decodes a slice and keeps it for Write(). None for a stream that is damaged, of another
   /// sensor, or larger than max_points.
   std::optional<Shape> Decode(ByteView stream);
+  /// The last Decode() failed because its slice refers to one that never came.
+  bool lacks_reference() const { return decoder_.lacks_reference(); }
+  /// Lets slices refer to `block`, as if this decoder had decoded it.
+  void Know(BlockMemoryPtr block) { store_.Add(std::move(block)); }
   /// What the slice says of itself.
   struct Quality {
     double step_m = 0;
@@ -46,6 +50,7 @@ class SliceDecoder {
   CloudLayout layout_;
   std::uint32_t max_points_;
   RangeDecoder decoder_;
+  BlockStore store_;
   RangeProjection projection_;
   RangeImage image_;
   std::vector<RangeImage> blocks_;

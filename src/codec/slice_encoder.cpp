@@ -55,8 +55,7 @@ SliceEncoder::SliceEncoder(const CloudFormat& format, RangeCoder coder,
     : format_(format),
       coder_(coder),
       effort_(coder == RangeCoder::kMixing ? 1 : 0),
-      integers_(integers),
-      encoder_(*format.sensor_model, integers) {}
+      integers_(integers) {}
 
 void SliceEncoder::set_effort(unsigned effort) {
   if (coder_ != RangeCoder::kAdaptive && coder_ != RangeCoder::kMixing) return;
@@ -71,7 +70,8 @@ std::string SliceEncoder::Mode() const {
     case RangeCoder::kResidual:
       return "range-residual";
     case RangeCoder::kMixing:
-      return "range-mixing" + std::to_string(effort_);
+      return (refers_ ? "range-temporal" : "range-mixing") + std::to_string(effort_);
+    case RangeCoder::kTemporal:
     case RangeCoder::kAdaptive:
       break;
   }
@@ -81,6 +81,8 @@ std::string SliceEncoder::Mode() const {
 void SliceEncoder::Load(ByteView raw, std::uint32_t first_column, bool with_intensity) {
   has_intensity_ = with_intensity && HasIntensity(format_.layout.fields);
   kept_beams_ = 0;
+  keeper_ = nullptr;
+  refers_ = false;
   image_.beams = format_.height;
   image_.columns =
       static_cast<std::uint32_t>(raw.size / format_.layout.point_step / format_.height);
@@ -90,6 +92,16 @@ void SliceEncoder::Load(ByteView raw, std::uint32_t first_column, bool with_inte
   returns_ = ranges.size() - static_cast<std::size_t>(std::count(ranges.begin(), ranges.end(), 0U));
   extent_m_ = ranges.empty() ? 0 : 1e-3 * *std::max_element(ranges.begin(), ranges.end());
   unit_mm_ = CommonUnit(ranges, format_.sensor_model->range_unit_mm);
+}
+
+void SliceEncoder::LinkBy(const ReferenceKeeper* keeper) {
+  keeper_ = nullptr;
+  refers_ = false;
+  if (keeper == nullptr || coder_ != RangeCoder::kMixing) return;
+  const bool stands = standstill_.OnImage(image_, last_step_m_);
+  if (!stands) return;
+  keeper_ = keeper;
+  refers_ = keeper->HasReference();
 }
 
 void SliceEncoder::Thin(const std::vector<bool>& kept) {
@@ -122,32 +134,51 @@ SliceResult SliceEncoder::Encode(const SliceSettings& settings, EncodedSlice* sl
   range.grid = GridFor(settings);
   const std::size_t most = std::min<std::size_t>(returns_ / kMinBlockReturns, image_.columns);
   const auto blocks = static_cast<std::uint32_t>(std::min<std::size_t>(threads_, most));
-  const bool encoded = blocks > 1 ? EncodeBlocks(range, blocks, &slice->bytes)
-                                  : encoder_.Encode(image_, range, &slice->bytes);
-  if (!encoded) return SliceResult::kEmpty;
+  slice->blocks.clear();
+  if (!EncodeBlocks(range, std::max(blocks, 1U), slice)) return SliceResult::kEmpty;
+  last_step_m_ = range.grid.step_m();
   slice->returns = returns_;
   slice->step_m = range.grid.step_m();
   slice->error_m = range.grid.error_m();
   return SliceResult::kEncoded;
 }
 
+bool SliceEncoder::EncodeBlock(const RangeImage& image, const RangeSettings& settings,
+                               RangeEncoder* encoder, BlockLink* link,
+                               std::vector<std::uint8_t>* out) const {
+  out->clear();
+  if (keeper_ == nullptr) return encoder->Encode(image, settings, out);
+  link->reference = refers_ ? keeper_->Reference(image) : nullptr;
+  if (link->reference && !Resembles(image, *link->reference, last_step_m_)) link->reference.reset();
+  return encoder->Encode(image, settings, out, link);
+}
+
 bool SliceEncoder::EncodeBlocks(const RangeSettings& settings, std::uint32_t count,
-                                std::vector<std::uint8_t>* out) {
+                                EncodedSlice* slice) {
   while (blocks_.size() < count) blocks_.emplace_back(*format_.sensor_model, integers_);
   const auto encode = [&](std::uint32_t i) {
     Block& block = blocks_[i];
+    if (count == 1) {
+      block.encoded = EncodeBlock(image_, settings, &block.encoder, &block.link, &block.bytes);
+      return;
+    }
     const std::uint32_t first = image_.columns * i / count;
     block.image.columns = image_.columns * (i + 1) / count - first;
     block.image.first_column =
         (image_.first_column + first) % format_.sensor_model->columns_per_scan;
     CopySector(image_, first, &block.image);
-    block.bytes.clear();
-    block.encoder.Encode(block.image, settings, &block.bytes);
+    block.encoded = EncodeBlock(block.image, settings, &block.encoder, &block.link, &block.bytes);
   };
   CallInThreads(count, encode);
   for (std::uint32_t i = 0; i < count; ++i) {
-    if (blocks_[i].bytes.empty()) return false;
-    out->insert(out->end(), blocks_[i].bytes.begin(), blocks_[i].bytes.end());
+    Block& block = blocks_[i];
+    if (!block.encoded) {
+      slice->blocks.clear();
+      return false;
+    }
+    slice->bytes.insert(slice->bytes.end(), block.bytes.begin(), block.bytes.end());
+    if (block.link.left != nullptr) slice->blocks.push_back(std::move(block.link.left));
+    block.link = {};
   }
   return true;
 }

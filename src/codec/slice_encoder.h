@@ -8,6 +8,8 @@
 
 #include "src/codec/cloud_io.h"
 #include "src/codec/range_codec.h"
+#include "src/codec/reference_keeper.h"
+#include "src/codec/standstill.h"
 
 namespace lidar::codec {
 
@@ -22,6 +24,7 @@ struct EncodedSlice {
   std::size_t returns = 0;
   double step_m = 0;
   double error_m = 0;  // bound that holds with this step
+  std::vector<BlockMemoryPtr> blocks;  // what it left for later ones; empty: nothing
 };
 
 enum class SliceResult {
@@ -49,8 +52,13 @@ class SliceEncoder {
   /// Resolution of the loaded ranges [mm]: their CommonUnit().
   std::uint32_t range_unit_mm() const { return unit_mm_; }
   bool has_intensity() const { return has_intensity_; }
-  /// Names the coder for statistics and predictors: "range-adaptive", "range-mixing2".
+  /// Names the coder for statistics and predictors: "range-adaptive", "range-mixing2",
+  /// "range-temporal2".
   std::string Mode() const;
+  /// Lets what is loaded refer to slices that `keeper`, which has begun this one and outlives the
+  /// coding of it, knows the receiver to have, if it saves bits. Only with an effort above 0. Null:
+  /// no slice refers to any other.
+  void LinkBy(const ReferenceKeeper* keeper);
   /// How hard the own coder tries: 0 is RangeCoder::kAdaptive, 1 to EffortControl::kHighest are
   /// kMixing, each slower and smaller than the one below. Without effect for other coders.
   void set_effort(unsigned effort);
@@ -76,17 +84,19 @@ class SliceEncoder {
     RangeEncoder encoder;
     RangeImage image;
     std::vector<std::uint8_t> bytes;
+    BlockLink link;
+    bool encoded = false;
   };
   SliceEncoder(const CloudFormat& format, RangeCoder coder, const IntegerCoder* integers);
   RangeGrid GridFor(const SliceSettings& settings) const;
-  bool EncodeBlocks(const RangeSettings& settings, std::uint32_t count,
-                    std::vector<std::uint8_t>* out);
+  bool EncodeBlock(const RangeImage& image, const RangeSettings& settings, RangeEncoder* encoder,
+                   BlockLink* link, std::vector<std::uint8_t>* out) const;
+  bool EncodeBlocks(const RangeSettings& settings, std::uint32_t count, EncodedSlice* slice);
 
   CloudFormat format_;
   RangeCoder coder_;
   unsigned effort_ = 0;
   const IntegerCoder* integers_;
-  RangeEncoder encoder_;
   std::vector<Block> blocks_;
   RangeImage image_;
   std::uint32_t kept_beams_ = 0;  // by Thin(); 0: all
@@ -96,6 +106,11 @@ class SliceEncoder {
   std::size_t returns_ = 0;
   double extent_m_ = 0;
   std::uint32_t unit_mm_ = 1;
+
+  Standstill standstill_;
+  const ReferenceKeeper* keeper_ = nullptr;  // of what is loaded; null: it is not linked
+  bool refers_ = false;                      // it may refer to others
+  double last_step_m_ = 0.04;
 };
 
 }  // namespace lidar::codec

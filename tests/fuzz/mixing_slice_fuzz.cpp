@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Payloads of the mixing coder. The first byte chooses the sensor, the bits of the intensity and
-// the grid.
+// Payloads of the mixing coder. The first byte chooses the sensor, the bits of the intensity, the
+// grid, and whether pixels have seen something before.
+#include "src/codec/block_memory.h"
 #include "src/codec/mixing/mixing_codec.h"
 #include "src/codec/mixing/start_states.h"
 #include "tests/fuzz/fuzz.h"
@@ -18,6 +19,31 @@ lidar::SensorModel Sensor(std::uint32_t beams, std::uint32_t columns) {
   return model;
 }
 
+/// What a scan of walls, poles, gaps and far returns leaves, which was seen three times.
+std::shared_ptr<lidar::codec::BlockMemory> Before(const lidar::codec::RangeImage& like,
+                                                  const lidar::RangeGrid& grid) {
+  lidar::codec::RangeImage image = like;
+  std::shared_ptr<lidar::codec::BlockMemory> memory;
+  for (std::uint32_t scan = 0; scan < 3; ++scan) {
+    image.ranges.clear();
+    for (std::uint32_t i = 0; i < image.size(); ++i) {
+      const std::uint32_t far = i % 31 == 7 ? lidar::RangeGrid::kMaxRangeMm - 9 : 4'000 + 11 * i;
+      image.ranges.push_back(i % 13 == scan ? 0 : far + i * (scan + 1) % 7);
+    }
+    memory = lidar::codec::Remember(image, grid, memory.get());
+  }
+  return memory;
+}
+
+/// Decodes once; without memory where `before` is null.
+bool Decode(lidar::codec::MixingDecoder* decoder, lidar::ByteView payload,
+            const lidar::RangeGrid& grid, unsigned bits, const lidar::codec::BlockMemory* before,
+            lidar::codec::RangeImage* image) {
+  if (before == nullptr) return decoder->Decode(payload, grid, bits, image);
+  const auto model = std::make_unique<lidar::codec::mixing::TemporalModel>(before->model);
+  return decoder->Decode(payload, grid, bits, image, {before->pixels.data(), model.get()});
+}
+
 }  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
@@ -32,9 +58,12 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   image.columns = (choice & 64) != 0 ? sensor.columns_per_scan : sensor.columns_per_scan / 2;
   lidar::codec::MixingDecoder decoder(sensor);
   // Twice: what one slice leaves behind must not change the next.
-  const bool first = decoder.Decode({data + 1, size - 1}, grid, bits, &image);
+  const auto before = (choice & 128) != 0 ? Before(image, grid) : nullptr;
+  const bool first =
+      Decode(&decoder, {data + 1, size - 1}, grid, bits, before.get(), &image);
   const auto ranges = image.ranges;
-  const bool second = decoder.Decode({data + 1, size - 1}, grid, bits, &image);
+  const bool second =
+      Decode(&decoder, {data + 1, size - 1}, grid, bits, before.get(), &image);
   FUZZ_CHECK(first == second);
   if (!first) return 0;
   FUZZ_CHECK(image.ranges == ranges && ranges.size() == image.size());
@@ -46,9 +75,12 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   lidar::codec::MixingSettings settings;
   settings.grid = grid;
   settings.effort = data[1] & 3U;
+  const auto next = before ? lidar::codec::Remember(image, grid, before.get()) : nullptr;
+  if (next) settings.memory = {before->pixels.data(), &next->model};
   if (!encoder.Encode(image, settings, &payload)) return 0;
   lidar::codec::RangeImage again = image;
-  FUZZ_CHECK(decoder.Decode({payload.data(), payload.size()}, grid, 0, &again));
+  FUZZ_CHECK(
+      Decode(&decoder, {payload.data(), payload.size()}, grid, 0, before.get(), &again));
   FUZZ_CHECK(again.ranges == ranges);
   return 0;
 }

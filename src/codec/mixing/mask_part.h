@@ -30,18 +30,34 @@ class MaskPart {
   /// Of pixel `i`; `near_class` is the range class of what is nearest to it.
   bool Code(bool bit, std::uint32_t i, std::uint32_t near_class) {
     nearby_ |= (above_[static_cast<std::ptrdiff_t>(i) + 8 - 1].returns & 1U) << 9;
-    Ask(i, near_class);
+    SetContexts(i, near_class);
+    mixer_.Ask([&](unsigned k) { return CounterAt(k); });
     const std::uint32_t set = (west_ & 1) << 3 | (nearby_ >> 1 & 7);
     bit = mixer_.Code(bit, &model_.weights.mask[set], &coder_);
-    run_ = ((west_ & 1) != 0) == bit ? std::min(run_ + 1, 255U) : 1;
-    west_ = west_ << 1 | (bit ? 1 : 0);
-    north_west_ = above_[i].returns;
-    nearby_ >>= 1;
+    Keep(bit, i);
+    return bit;
+  }
+  /// The same, with what `code(bit, counters)` makes of the first contexts.
+  template <class Code>
+  bool CodeBy(bool bit, std::uint32_t i, std::uint32_t near_class, Code&& code) {
+    nearby_ |= (above_[static_cast<std::ptrdiff_t>(i) + 8 - 1].returns & 1U) << 9;
+    SetContexts(i, near_class);
+    bit = code(bit, [&](unsigned k) { return CounterAt(k); });
+    Keep(bit, i);
     return bit;
   }
 
  private:
-  void Ask(std::uint32_t i, std::uint32_t near_class) {
+  Counter* CounterAt(unsigned k) { return &model_.counters.mask[contexts_[k]]; }
+
+  void Keep(bool bit, std::uint32_t i) {
+    run_ = ((west_ & 1) != 0) == bit ? std::min(run_ + 1, 255U) : 1;
+    west_ = west_ << 1 | (bit ? 1 : 0);
+    north_west_ = above_[i].returns;
+    nearby_ >>= 1;
+  }
+
+  void SetContexts(std::uint32_t i, std::uint32_t near_class) {
     // Bit 0 is two columns to the left, bit 2 is right above.
     const std::uint32_t five = nearby_ & 31;
     const std::uint32_t north = above_[i].returns;
@@ -60,13 +76,11 @@ class MaskPart {
         ((north & 63) * 4 + (west_ & 3)) * 16 + ((nearby_ >> 4 & 3) | (east & 3) << 2),
         (west_ & 63) * 32 + five,
         near_class * 64 + (west_ & 3) * 16 + (five >> 1 & 7) * 2};
-    std::array<std::uint32_t, kContexts> contexts;
     std::uint32_t base = 0;
     for (unsigned k = 0; k < kContexts; ++k) {
-      contexts[k] = base + values[k];
+      contexts_[k] = base + values[k];
       base += kMaskContexts[k];
     }
-    mixer_.Ask([&](unsigned k) { return &model_.counters.mask[contexts[k]]; });
   }
 
   BitMixer<kContexts, 0> mixer_;
@@ -77,6 +91,7 @@ class MaskPart {
   std::uint32_t run_ = 0;     // how many of them are alike
   std::uint32_t nearby_ = 0;  // of the row above, from two columns to the left on
   std::uint32_t north_west_ = 0;
+  std::array<std::uint32_t, kContexts> contexts_{};
 };
 
 }  // namespace lidar::codec::mixing

@@ -37,9 +37,10 @@ struct MixingCoderState {
       : alignment(sensor), coder(alignment), model(std::make_unique<mixing::Model>()) {}
 
   template <class Coder>
-  bool Code(unsigned effort, Coder* bits) {
+  bool Code(unsigned effort, const mixing::Recollection& recollection, Coder* bits) {
     mixing::Trained().CopyTo(effort, slice.step_mm, slice.level_bits, model.get());
-    return coder.Code(effort, mixing::BestKernel(), model.get(), &slice, bits);
+    return coder.Code(effort, mixing::BestKernel(), model.get(), &slice, bits,
+                      recollection.memory.pixels != nullptr ? &recollection : nullptr);
   }
 
   AzimuthAlignment alignment;
@@ -97,7 +98,7 @@ bool MixingEncoder::Encode(const RangeImage& image, const MixingSettings& settin
   out->push_back(static_cast<std::uint8_t>(effort | (s.slice.has_gaps ? kGapsBit : 0) |
                                            mixing::kTableVersion << kVersionShift));
   mixing::BinaryEncoder encoder(out);
-  s.Code(effort, &encoder);
+  s.Code(effort, {settings.memory, settings.grid}, &encoder);
   encoder.Finish();
   const bool allowed = image.size() <= MostMixedPixels(out->size() - before);
   if (!allowed) out->resize(before);
@@ -114,7 +115,7 @@ MixingDecoder& MixingDecoder::operator=(MixingDecoder&&) noexcept = default;
 MixingDecoder::~MixingDecoder() = default;
 
 bool MixingDecoder::Decode(ByteView payload, const RangeGrid& grid, unsigned intensity_bits,
-                           RangeImage* image) {
+                           RangeImage* image, const mixing::Memory& memory) {
   State& s = *state_;
   if (payload.empty() || image->size() > MostMixedPixels(payload.size) ||
       !Fits(s.alignment, *image) || !grid.IsValid() || intensity_bits > IntensityScale::kMaxBits) {
@@ -134,7 +135,7 @@ bool MixingDecoder::Decode(ByteView payload, const RangeGrid& grid, unsigned int
   s.slice.bins.assign(image->size(), 0);
   s.slice.levels.assign(intensity_bits > 0 ? image->size() : 0, 0);
   mixing::BinaryDecoder decoder(payload.Sub(1));
-  if (!s.Code(effort, &decoder) || !decoder.AtEnd()) return false;
+  if (!s.Code(effort, {memory, grid}, &decoder) || !decoder.AtEnd()) return false;
   image->ranges.resize(image->size());
   const auto last_bin = static_cast<std::int32_t>(grid.BinOf(RangeGrid::kMaxRangeMm));
   for (std::size_t i = 0; i < image->size(); ++i) {

@@ -19,6 +19,7 @@ struct MixingSettings {
   RangeGrid grid;
   IntensityScale intensity;  // 0 bits: geometry only
   unsigned effort = 2;       // 1 to 3
+  mixing::Memory memory;     // what its pixels have seen; none: the image stands alone
 };
 
 /// A payload of so many bytes holds no more pixels than this. A pixel costs a decoder 0.3 us, and
@@ -61,10 +62,11 @@ class MixingDecoder {
   MixingDecoder& operator=(MixingDecoder&&) noexcept;
   ~MixingDecoder();
 
-  /// Fills ranges and levels of `image`, whose beams, columns and first_column are set. The grid
-  /// and the bits of the intensity are those of the encoder. False, with the image undefined, for
-  /// a payload that is damaged or of another version.
-  bool Decode(ByteView payload, const RangeGrid& grid, unsigned intensity_bits, RangeImage* image);
+  /// Fills ranges and levels of `image`, whose beams, columns and first_column are set. The grid,
+  /// the bits of the intensity and the memory are those of the encoder. False, with the image
+  /// undefined, for a payload that is damaged or of another version.
+  bool Decode(ByteView payload, const RangeGrid& grid, unsigned intensity_bits, RangeImage* image,
+              const mixing::Memory& memory = {});
 
  private:
   struct State;

@@ -17,6 +17,15 @@ namespace lidar::codec::mixing {
 /// Larger bins are not coded, so that sums of a few values fit 32 bits.
 constexpr std::int32_t kMaxBins = 1 << 25;
 
+/// What is known around a return.
+struct Surroundings {
+  std::int32_t w = 0;
+  std::int32_t n = 0;
+  std::int32_t median = 0;  // the prediction
+  std::uint32_t uneven = 0;
+  std::uint32_t range_class = 0;
+};
+
 /// Effort says how many contexts, centres and candidates are asked, and whether there are weights
 /// by events beside those by unevenness.
 template <class Effort, class Coder>
@@ -59,8 +68,19 @@ class RangePart {
     const std::int32_t difference = CodeDifference(mirror_ * (bin - base));
     bin = base + mirror_ * difference;
     if (bin < 0 || bin >= kMaxBins) return -1;
+    for (unsigned k = 0; k < kUsedCentres; ++k)
+      centres_[k].Learn((CentreOf(bin) - median_) * mirror_);
     Keep(CentreOf(bin), difference, azimuth);
     return bin;
+  }
+  /// What is known around pixel `i`, for another coder...
+  Surroundings SurroundingsOf(std::uint32_t i) {
+    Look(i);
+    return {w_, n_, median_, uneven_, range_class_};
+  }
+  /// ...that found `bin` there.
+  void See(std::int32_t bin, Azimuth* azimuth) {
+    Keep(CentreOf(bin), mirror_ * (bin - (median_ >> 4)), azimuth);
   }
 
  private:
@@ -197,7 +217,6 @@ class RangePart {
   }
 
   void Keep(std::int32_t value, std::int32_t difference, Azimuth* azimuth) {
-    for (unsigned k = 0; k < kUsedCentres; ++k) centres_[k].Learn((value - median_) * mirror_);
     if (std::abs(difference) > 3) other_ = w_;
     const std::int32_t residual = std::clamp(difference, -3, 3) * mirror_;
     residual_west2_ = residual_west_;

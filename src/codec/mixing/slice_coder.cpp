@@ -6,6 +6,7 @@
 #include "src/codec/mixing/level_part.h"
 #include "src/codec/mixing/mask_part.h"
 #include "src/codec/mixing/range_part.h"
+#include "src/codec/mixing/temporal_part.h"
 
 namespace lidar::codec::mixing {
 namespace {
@@ -84,6 +85,56 @@ bool SliceCoder::CodeBins(const Kernel& kernel, Model* model, SliceBins* slice, 
   return true;
 }
 
+/// As CodeBins(), but pixels that know where they look are coded by that.
+template <class Effort, class Coder>
+bool SliceCoder::CodeRecalledBins(const Kernel& kernel, Model* model, SliceBins* slice,
+                                  Coder* coder, const Recollection& recollection) {
+  using Temporal = TemporalPart<Coder>;
+  MaskPart<Temporal::kSpatialMask, Coder> mask(kernel, model, coder);
+  RangePart<Effort, Coder> range(kernel, model, coder, slice->step_mm);
+  Temporal temporal(kernel, recollection.grid, recollection.memory.model, coder);
+  surprises_.Reset(alignment_, slice->columns, {});
+  for (std::uint32_t beam = 0; beam < slice->beams; ++beam) {
+    Azimuth* const above = above_.At(beam);
+    const std::size_t row = std::size_t{beam} * slice->columns;
+    std::int32_t* const bins = &slice->bins[row];
+    FillNorth(above, slice->columns);
+    mask.StartRow(above);
+    range.StartRow(above, &north_[kMargin]);
+    temporal.StartRow(&recollection.memory.pixels[row], slice->columns, surprises_.At(beam));
+    for (std::uint32_t i = 0; i < slice->columns; ++i) {
+      temporal.Look(i);
+      const bool is_return =
+          !slice->has_gaps ||
+          mask.CodeBy(bins[i] >= 0, i, range.NearClass(i), [&](bool bit, auto&& counter_at) {
+            return temporal.CodeReturn(bit, counter_at);
+          });
+      if (is_return) {
+        std::int32_t bin = Temporal::kFarAway;
+        if (temporal.Knows()) bin = temporal.CodeBin(bins[i], range.SurroundingsOf(i));
+        if (bin >= 0) {
+          range.See(bin, &above[i]);
+        } else {
+          bin = range.Code(bins[i], i, &above[i]);
+        }
+        if (bin < 0 || bin >= kMaxBins) return false;
+        bins[i] = bin;
+        temporal.SeeBin(bin);
+      } else {
+        bins[i] = kNoReturn;
+        range.Skip(i);
+        above[i].residual = 0;
+        temporal.SeeGap();
+      }
+      above[i].returns = static_cast<std::uint8_t>(above[i].returns << 1 | (is_return ? 1 : 0));
+    }
+    above_.CloseTurn(beam);
+    surprises_.CloseTurn(beam);
+    if (Overran(*coder)) return false;
+  }
+  return true;
+}
+
 template <class Coder>
 bool SliceCoder::CodeLevels(const Kernel& kernel, Model* model, SliceBins* slice, Coder* coder) {
   LevelPart<Coder> part(kernel, &model->level, coder, slice->level_bits);
@@ -124,23 +175,34 @@ bool SliceCoder::CodeLevels(const Kernel& kernel, Model* model, SliceBins* slice
   return true;
 }
 
+template <class Effort, class Coder>
+bool SliceCoder::CodeBinsOf(const Kernel& kernel, Model* model, SliceBins* slice, Coder* coder,
+                            const Recollection* recollection) {
+  return recollection != nullptr
+             ? CodeRecalledBins<Effort>(kernel, model, slice, coder, *recollection)
+             : CodeBins<Effort>(kernel, model, slice, coder);
+}
+
 template <class Coder>
 bool SliceCoder::Code(unsigned effort, const Kernel& kernel, Model* model, SliceBins* slice,
-                      Coder* coder) {
+                      Coder* coder, const Recollection* recollection) {
   north_.resize(slice->columns + 2 * AlignedRow<Azimuth>::kMargin);
   above_.Reset(alignment_, slice->columns, {});
   bool coded = false;
-  if (effort == 1) coded = CodeBins<Effort1>(kernel, model, slice, coder);
-  if (effort == 2) coded = CodeBins<Effort2>(kernel, model, slice, coder);
-  if (effort == 3) coded = CodeBins<Effort3>(kernel, model, slice, coder);
+  if (effort == 1) coded = CodeBinsOf<Effort1>(kernel, model, slice, coder, recollection);
+  if (effort == 2) coded = CodeBinsOf<Effort2>(kernel, model, slice, coder, recollection);
+  if (effort == 3) coded = CodeBinsOf<Effort3>(kernel, model, slice, coder, recollection);
   if (!coded) return false;
   if (slice->level_bits == 0) return true;
   above_.Reset(alignment_, slice->columns, {});
   return CodeLevels(kernel, model, slice, coder);
 }
 
-template bool SliceCoder::Code(unsigned, const Kernel&, Model*, SliceBins*, BinaryEncoder*);
-template bool SliceCoder::Code(unsigned, const Kernel&, Model*, SliceBins*, BinaryDecoder*);
-template bool SliceCoder::Code(unsigned, const Kernel&, Model*, SliceBins*, BitCounter*);
+template bool SliceCoder::Code(unsigned, const Kernel&, Model*, SliceBins*, BinaryEncoder*,
+                               const Recollection*);
+template bool SliceCoder::Code(unsigned, const Kernel&, Model*, SliceBins*, BinaryDecoder*,
+                               const Recollection*);
+template bool SliceCoder::Code(unsigned, const Kernel&, Model*, SliceBins*, BitCounter*,
+                               const Recollection*);
 
 }  // namespace lidar::codec::mixing

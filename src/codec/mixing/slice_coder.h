@@ -10,7 +10,21 @@
 #include "src/codec/mixing/model.h"
 #include "src/codec/mixing/neighbours.h"
 
+namespace lidar::codec {
+struct PixelMemory;
+}
+
 namespace lidar::codec::mixing {
+
+struct TemporalModel;
+
+/// How the newest pixel of an azimuth differed from what was recalled of it.
+struct Surprise {
+  std::uint8_t shift = 3;  // 0 to 6: by -3 to 3 bins; kChanged: by more
+  bool returns = false;    // a return where there was none before, or none where there was one
+
+  static constexpr std::uint8_t kChanged = 7;
+};
 
 /// Row-major, beam by beam. A decoder fills it.
 struct SliceBins {
@@ -24,6 +38,16 @@ struct SliceBins {
 };
 constexpr std::int32_t kNoReturn = -1;
 
+/// What the pixels of a slice have seen before, and how to make use of it.
+struct Memory {
+  const PixelMemory* pixels = nullptr;  // as many as the slice has; null: none
+  TemporalModel* model = nullptr;       // learns from the slice
+};
+struct Recollection {
+  Memory memory;
+  RangeGrid grid;  // of the slice
+};
+
 /// Keeps its buffers between slices.
 class SliceCoder {
  public:
@@ -31,17 +55,25 @@ class SliceCoder {
 
   /// Codes all of `slice` at an effort from 1 on; false for a damaged stream.
   template <class Coder>
-  bool Code(unsigned effort, const Kernel& kernel, Model* model, SliceBins* slice, Coder* coder);
+  bool Code(unsigned effort, const Kernel& kernel, Model* model, SliceBins* slice, Coder* coder,
+            const Recollection* recollection = nullptr);
 
  private:
   template <class Effort, class Coder>
   bool CodeBins(const Kernel& kernel, Model* model, SliceBins* slice, Coder* coder);
+  template <class Effort, class Coder>
+  bool CodeRecalledBins(const Kernel& kernel, Model* model, SliceBins* slice, Coder* coder,
+                        const Recollection& recollection);
+  template <class Effort, class Coder>
+  bool CodeBinsOf(const Kernel& kernel, Model* model, SliceBins* slice, Coder* coder,
+                  const Recollection* recollection);
   template <class Coder>
   bool CodeLevels(const Kernel& kernel, Model* model, SliceBins* slice, Coder* coder);
   void FillNorth(const Azimuth* above, std::uint32_t columns);
 
   const AzimuthAlignment& alignment_;
   AlignedRow<Azimuth> above_;
+  AlignedRow<Surprise> surprises_;
   std::vector<std::int32_t> north_;
 };
 
@@ -55,8 +87,11 @@ class BitCounter {
   double bits_ = 0;
 };
 
-extern template bool SliceCoder::Code(unsigned, const Kernel&, Model*, SliceBins*, BinaryEncoder*);
-extern template bool SliceCoder::Code(unsigned, const Kernel&, Model*, SliceBins*, BinaryDecoder*);
-extern template bool SliceCoder::Code(unsigned, const Kernel&, Model*, SliceBins*, BitCounter*);
+extern template bool SliceCoder::Code(unsigned, const Kernel&, Model*, SliceBins*, BinaryEncoder*,
+                                      const Recollection*);
+extern template bool SliceCoder::Code(unsigned, const Kernel&, Model*, SliceBins*, BinaryDecoder*,
+                                      const Recollection*);
+extern template bool SliceCoder::Code(unsigned, const Kernel&, Model*, SliceBins*, BitCounter*,
+                                      const Recollection*);
 
 }  // namespace lidar::codec::mixing

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// What the temporal coder learns of how scans follow each other; it goes on from block to block.
+#pragma once
+#include <array>
+#include <cstdint>
+
+#include "src/codec/mixing/model.h"
+
+namespace lidar::codec::mixing {
+
+constexpr unsigned kSpreadClasses = 12;
+constexpr unsigned kCountClasses = 5;
+constexpr unsigned kPhases = 9;
+
+// How many values the contexts have (docs/temporal-coder.md), in their order.
+constexpr std::array<std::uint32_t, 8> kTemporalContexts = {540, 1'536, 441, 264, 576, 256, 363, 144};
+constexpr std::array<std::uint32_t, 3> kTemporalMaskContexts = {1'024, 256, 480};
+constexpr unsigned kTemporalCentres = 2;
+constexpr unsigned kTemporalMaskSets = 16;
+
+struct TemporalModel {
+  std::array<Counter, kSmallNodes * Total(kTemporalContexts)> counters;
+  std::array<Counter, Total(kTemporalMaskContexts)> mask;
+  /// Mean distances from the recalled value, by spread and count, and from the spatial prediction,
+  /// by unevenness; in 1/4096 step.
+  std::array<std::int32_t, kSpreadClasses * kCountClasses> recalled_spread;
+  std::array<std::int32_t, kUnevenClasses> spatial_spread;
+  std::array<Weights, kSmallNodes * kSpreadClasses> weights;
+  std::array<Weights, kTemporalMaskSets> mask_weights;
+
+  void Reset();
+};
+
+}  // namespace lidar::codec::mixing

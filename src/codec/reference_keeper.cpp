@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "src/codec/reference_keeper.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace lidar::codec {
+
+void ReferenceKeeper::Release(const std::vector<BlockMemoryPtr>& blocks) {
+  for (const BlockMemoryPtr& block : blocks) bytes_ -= block->bytes();
+}
+
+void ReferenceKeeper::Forget() {
+  for (auto& [index, slot] : slots_) Restart(&slot);
+}
+
+void ReferenceKeeper::Restart(Slot* slot) {
+  for (const Sent& sent : slot->sent) Release(sent.blocks);
+  Release(slot->reference);
+  slot->sent.clear();
+  slot->reference.clear();
+}
+
+void ReferenceKeeper::OnAcknowledged(Time now, std::uint32_t receiver, std::uint32_t scan_id,
+                                     std::uint32_t index) {
+  if (receiver_ != receiver) {
+    // A second receiver lacks what the first one has, and so does one that was started anew.
+    if (receiver_) alone_since_ = now + kPatience;
+    receiver_ = receiver;
+    Forget();
+  }
+  last_heard_ = now;
+  const auto found = slots_.find(index);
+  if (found == slots_.end()) return;
+  Slot& slot = found->second;
+  const auto is_it = [&](const Sent& sent) { return sent.scan_id == scan_id; };
+  const auto sent = std::find_if(slot.sent.begin(), slot.sent.end(), is_it);
+  if (sent == slot.sent.end()) return;
+  Release(slot.reference);
+  slot.reference = std::move(sent->blocks);
+  for (auto older = slot.sent.begin(); older != sent; ++older) Release(older->blocks);
+  slot.sent.erase(slot.sent.begin(), sent + 1);
+}
+
+void ReferenceKeeper::OnKeyRequest() { Forget(); }
+
+bool ReferenceKeeper::Begin(Time now, const SliceName& slice) {
+  current_ = nullptr;
+  if (!receiver_) return false;
+  if (now - last_heard_ > kPatience) {
+    receiver_.reset();
+    slots_.clear();
+    bytes_ = 0;
+    return false;
+  }
+  if (now < alone_since_) return false;
+  Slot& slot = slots_[slice.index];
+  if (key_interval_ > Duration{0}) {
+    // Not all slices at once: they would make a scan much larger than the others.
+    const Duration head_start = key_interval_ * slice.index / std::max(slice.count, 1U);
+    if (!slot.last_key) slot.last_key = now - head_start;
+    if (now - *slot.last_key >= key_interval_) {
+      Restart(&slot);
+      slot.last_key = now;
+    }
+  }
+  if (slot.sent.size() >= kMostOfSlice) Restart(&slot);
+  current_ = &slot;
+  name_ = slice;
+  return bytes_ < kMostBytes;
+}
+
+BlockMemoryPtr ReferenceKeeper::Reference(const RangeImage& image) const {
+  if (current_ == nullptr) return nullptr;
+  for (const BlockMemoryPtr& block : current_->reference)
+    if (block->Fits(image)) return block;
+  return nullptr;
+}
+
+void ReferenceKeeper::OnEncoded(std::vector<BlockMemoryPtr> blocks) {
+  if (current_ == nullptr || blocks.empty()) return;
+  for (const BlockMemoryPtr& block : blocks) bytes_ += block->bytes();
+  current_->sent.push_back({name_.scan_id, std::move(blocks)});
+}
+
+}  // namespace lidar::codec

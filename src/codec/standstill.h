@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Whether a sensor sees what it saw before, so well that slices should refer to others.
+#pragma once
+#include <cstdint>
+#include <map>
+#include <vector>
+
+#include "src/codec/block_memory.h"
+#include "src/codec/range_image.h"
+
+namespace lidar::codec {
+
+/// The memory says more about `image` than its pixels do about each other, on a grid of `step_m`.
+bool Resembles(const RangeImage& image, const BlockMemory& memory, double step_m);
+
+/// Compares each slice with the one of the same sector before.
+class Standstill {
+ public:
+  /// True where `image` resembles the last one that began in the same column.
+  bool OnImage(const RangeImage& image, double step_m);
+
+ private:
+  static constexpr std::size_t kMostSectors = 256;
+  std::map<std::uint32_t, std::vector<std::uint32_t>> last_;  // ranges, by first column
+};
+
+}  // namespace lidar::codec

@@ -1,0 +1,437 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Slices that refer to others, over links that acknowledge, lose, and say nothing.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstring>
+#include <deque>
+#include <functional>
+#include <random>
+
+#include "src/codec/slice_decoder.h"
+#include "src/codec/slice_encoder.h"
+#include "tests/core/codec/golden.h"
+#include "tests/core/codec/test_clouds.h"
+
+namespace lidar::codec {
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr std::uint32_t kSlices = 4;
+constexpr std::uint32_t kColumns = 256;
+constexpr std::uint32_t kReceiver = 77;
+
+/// What a link does to slice `index` of scan `scan`.
+struct LinkTest {
+  unsigned effort = 2;
+  unsigned threads = 1;
+  std::uint32_t beams = 16;
+  std::uint32_t slices = kSlices;
+  Duration key_interval = 10s;
+  std::function<bool(std::uint32_t scan, std::uint32_t index)> loses = [](auto, auto) {
+    return false;
+  };
+  /// Scans after which a receiver has said what it has; none: it says nothing.
+  std::optional<std::uint32_t> delay = 2;
+  /// Of a scan; nobody moves by default.
+  std::function<RangeImage(const SensorModel&, std::uint32_t scan)> scene =
+      [](const SensorModel& model, std::uint32_t scan) {
+        return test::RoomScan(model, 0, kColumns, scan + 1);
+      };
+};
+
+struct Sent {
+  std::size_t bytes = 0;
+  std::size_t plain_bytes = 0;  // by an encoder without references
+  bool is_plain = false;        // the very same bytes
+  bool refers = false;
+  bool decoded = false;
+};
+
+/// A sensor, an encoder with a keeper, a link and a decoder.
+class Loop {
+ public:
+  explicit Loop(LinkTest test)
+      : test_(std::move(test)),
+        model_(test::RoomSensor(test_.beams)),
+        format_{test::OrganisedLayout(), test_.beams, model_},
+        encoder_(*SliceEncoder::Create(format_)),
+        plain_(*SliceEncoder::Create(format_)),
+        decoder_(format_, 1U << 20) {
+    keeper_.set_key_interval(test_.key_interval);
+    for (SliceEncoder* encoder : {&encoder_, &plain_}) {
+      encoder->set_effort(test_.effort);
+      encoder->set_threads(test_.threads);
+    }
+  }
+
+  ReferenceKeeper& keeper() { return keeper_; }
+  Time now() const { return Time{100ms * scan_}; }
+
+  /// The slices of the next scan.
+  std::vector<Sent> Scan() {
+    const RangeImage whole = test_.scene(model_, scan_);
+    std::vector<Sent> sent;
+    for (std::uint32_t i = 0; i < test_.slices; ++i) sent.push_back(Slice(whole, i));
+    ++scan_;
+    Acknowledge();
+    return sent;
+  }
+  std::vector<Sent> Scans(int count) {
+    std::vector<Sent> all;
+    for (int i = 0; i < count; ++i)
+      for (const Sent& sent : Scan()) all.push_back(sent);
+    return all;
+  }
+
+ private:
+  struct Arrived {
+    std::uint32_t scan;
+    std::uint32_t index;
+  };
+
+  void Acknowledge() {
+    while (test_.delay && !arrived_.empty() && arrived_.front().scan + *test_.delay <= scan_) {
+      keeper_.OnAcknowledged(now(), kReceiver, arrived_.front().scan, arrived_.front().index);
+      arrived_.pop_front();
+    }
+  }
+
+  RangeImage Sector(const RangeImage& whole, std::uint32_t index) const {
+    RangeImage sector;
+    sector.beams = whole.beams;
+    sector.columns = whole.columns / test_.slices;
+    sector.first_column = index * sector.columns;
+    for (std::uint32_t beam = 0; beam < whole.beams; ++beam) {
+      for (std::uint32_t i = 0; i < sector.columns; ++i) {
+        const std::size_t at = std::size_t{beam} * whole.columns + sector.first_column + i;
+        sector.ranges.push_back(whole.ranges[at]);
+        sector.intensity.push_back(whole.intensity[at]);
+      }
+    }
+    return sector;
+  }
+
+  Sent Slice(const RangeImage& whole, std::uint32_t index) {
+    const RangeImage image = Sector(whole, index);
+    const auto raw = test::RawCloud(model_, image);
+    const SliceSettings settings{0.02, 0, 5};
+    EncodedSlice plain;
+    plain_.Load({raw.data(), raw.size()}, image.first_column, true);
+    EXPECT_EQ(plain_.Encode(settings, &plain), SliceResult::kEncoded);
+    EncodedSlice slice;
+    encoder_.Load({raw.data(), raw.size()}, image.first_column, true);
+    const bool remembers = keeper_.Begin(now(), {scan_, index, test_.slices});
+    encoder_.LinkBy(remembers ? &keeper_ : nullptr);
+    Sent sent;
+    sent.refers = encoder_.Mode().rfind("range-temporal", 0) == 0;
+    EXPECT_EQ(encoder_.Encode(settings, &slice), SliceResult::kEncoded);
+    sent.bytes = slice.bytes.size();
+    sent.plain_bytes = plain.bytes.size();
+    sent.is_plain = slice.bytes == plain.bytes;
+    keeper_.OnEncoded(std::move(slice.blocks));
+    if (test_.loses(scan_, index)) return sent;
+    arrived_.push_back({scan_, index});
+    Check(image, slice.bytes, &sent);
+    return sent;
+  }
+
+  /// What arrives comes back as it was, within the error.
+  void Check(const RangeImage& image, const std::vector<std::uint8_t>& bytes, Sent* sent) {
+    const auto shape = decoder_.Decode({bytes.data(), bytes.size()});
+    sent->decoded = shape.has_value();
+    if (!shape) return;
+    std::vector<std::uint8_t> back(image.size() * 20);
+    decoder_.Write(back.data());
+    for (std::size_t i = 0; i < image.size(); ++i) {
+      std::uint32_t range = 0;
+      std::memcpy(&range, &back[20 * i + 16], sizeof range);
+      ASSERT_EQ(range == 0, image.ranges[i] == 0) << i;
+      ASSERT_NEAR(range, image.ranges[i], 20) << i;
+    }
+  }
+
+  LinkTest test_;
+  SensorModel model_;
+  CloudFormat format_;
+  SliceEncoder encoder_;
+  SliceEncoder plain_;
+  SliceDecoder decoder_;
+  ReferenceKeeper keeper_;
+  std::uint32_t scan_ = 0;
+  std::deque<Arrived> arrived_;
+};
+
+std::size_t Bytes(const std::vector<Sent>& slices, std::size_t Sent::*bytes) {
+  std::size_t sum = 0;
+  for (const Sent& s : slices) sum += s.*bytes;
+  return sum;
+}
+bool AllDecoded(const std::vector<Sent>& slices) {
+  return std::all_of(slices.begin(), slices.end(), [](const Sent& s) { return s.decoded; });
+}
+bool AllPlain(const std::vector<Sent>& slices) {
+  return std::all_of(slices.begin(), slices.end(), [](const Sent& s) { return s.is_plain; });
+}
+bool AnyRefers(const std::vector<Sent>& slices) {
+  return std::any_of(slices.begin(), slices.end(), [](const Sent& s) { return s.refers; });
+}
+
+class EffortsAndThreads : public ::testing::TestWithParam<std::pair<unsigned, unsigned>> {};
+TEST_P(EffortsAndThreads, SaveBitsWhereTheSensorStandsStill) {
+  LinkTest test;
+  test.effort = GetParam().first;
+  test.threads = GetParam().second;
+  if (test.threads > 1) {
+    test.slices = 1;
+    test.beams = 128;
+  }
+  Loop loop(test);
+  EXPECT_TRUE(AllDecoded(loop.Scans(8)));
+  const auto later = loop.Scans(8);
+  EXPECT_TRUE(AllDecoded(later));
+  EXPECT_LT(static_cast<double>(Bytes(later, &Sent::bytes)),
+            0.9 * static_cast<double>(Bytes(later, &Sent::plain_bytes)));
+}
+INSTANTIATE_TEST_SUITE_P(All, EffortsAndThreads,
+                         ::testing::Values(std::pair(1U, 1U), std::pair(2U, 1U), std::pair(3U, 1U),
+                                           std::pair(2U, 4U)));
+
+TEST(Temporal, SlicesAreThePlainOnesWithoutAcknowledgements) {
+  LinkTest test;
+  test.delay.reset();
+  EXPECT_TRUE(AllPlain(Loop(test).Scans(10)));
+}
+
+TEST(Temporal, SlicesAreThePlainOnesAtEffort0) {
+  LinkTest test;
+  test.effort = 0;
+  EXPECT_TRUE(AllPlain(Loop(test).Scans(10)));
+}
+
+TEST(Temporal, SlicesThatArriveDecodeWhateverWasLost) {
+  std::mt19937 random(5);
+  LinkTest test;
+  test.loses = [&](auto, auto) { return random() % 4 == 0; };
+  Loop loop(test);
+  const auto sent = loop.Scans(30);
+  EXPECT_GT(std::count_if(sent.begin(), sent.end(), [](const Sent& s) { return s.refers; }), 60);
+  // Of those that came, none was refused: the decoder never had to ask.
+  LinkTest all;
+  all.loses = [](std::uint32_t scan, std::uint32_t index) { return (scan + index) % 3 == 1; };
+  Loop steady(all);
+  for (std::uint32_t scan = 0; scan < 20; ++scan) {
+    const auto slices = steady.Scan();
+    for (std::uint32_t i = 0; i < kSlices; ++i) EXPECT_EQ(slices[i].decoded, (scan + i) % 3 != 1);
+  }
+}
+
+TEST(Temporal, SlicesStandAloneOnceInAKeyInterval) {
+  LinkTest test;
+  test.key_interval = 1s;
+  Loop loop(test);
+  loop.Scans(15);
+  for (std::uint32_t i = 0; i < 2; ++i) {
+    // Ten scans a second: each sector is renewed once, and not all with the same scan.
+    std::vector<unsigned> alone(kSlices, 0);
+    for (int scan = 0; scan < 10; ++scan) {
+      const auto sent = loop.Scan();
+      unsigned now = 0;
+      for (std::uint32_t s = 0; s < kSlices; ++s) {
+        if (!sent[s].refers) ++alone[s];
+        if (!sent[s].refers) ++now;
+      }
+      EXPECT_LT(now, kSlices);
+    }
+    // As long as the new one is on its way, there is nothing to refer to.
+    for (const unsigned count : alone) EXPECT_TRUE(count >= 1 && count <= 3) << count;
+  }
+}
+
+TEST(Temporal, SlicesStandAloneAfterAKeyRequest) {
+  Loop loop({});
+  EXPECT_TRUE(AnyRefers(loop.Scans(6)));
+  loop.keeper().OnKeyRequest();
+  EXPECT_FALSE(AnyRefers(loop.Scans(2)));
+  EXPECT_TRUE(AnyRefers(loop.Scans(3)));
+}
+
+TEST(Temporal, SlicesAreThePlainOnesWithASecondReceiver) {
+  Loop loop({});
+  EXPECT_TRUE(AnyRefers(loop.Scans(6)));
+  for (int scan = 0; scan < 10; ++scan) {
+    loop.keeper().OnAcknowledged(loop.now(), kReceiver + 1, 0, 0);
+    EXPECT_TRUE(AllPlain(loop.Scan())) << scan;
+  }
+  // Once it is gone, the first one is alone again.
+  loop.Scans(25);
+  EXPECT_TRUE(AnyRefers(loop.Scans(3)));
+}
+
+TEST(Temporal, SlicesAreThePlainOnesWhenTheReceiverHasFallenSilent) {
+  std::uint32_t heard = 10;
+  LinkTest test;
+  test.loses = [&](std::uint32_t scan, auto) { return scan >= heard; };
+  Loop loop(test);
+  EXPECT_TRUE(AnyRefers(loop.Scans(10)));
+  loop.Scans(25);
+  EXPECT_TRUE(AllPlain(loop.Scans(10)));
+  EXPECT_EQ(loop.keeper().bytes(), 0U);
+}
+
+TEST(Temporal, SlicesOfAMovingSensorAreThePlainOnes) {
+  LinkTest test;
+  test.scene = [](const SensorModel& model, std::uint32_t scan) {
+    RangeImage image = test::RoomScan(model, 0, kColumns, scan + 1);
+    for (std::uint32_t& range : image.ranges)
+      if (range > 0) range += scan * 300;
+    return image;
+  };
+  const auto sent = Loop(test).Scans(10);
+  EXPECT_TRUE(AllDecoded(sent));
+  EXPECT_TRUE(AllPlain(sent));
+}
+
+TEST(Temporal, SlicesFollowASensorThatStopsAndGoesOn) {
+  LinkTest test;
+  test.scene = [](const SensorModel& model, std::uint32_t scan) {
+    RangeImage image = test::RoomScan(model, 0, kColumns, scan + 1);
+    const bool moves = scan % 20 >= 10;
+    for (std::uint32_t& range : image.ranges)
+      if (range > 0 && moves) range += scan * 300;
+    return image;
+  };
+  Loop loop(test);
+  for (int i = 0; i < 3; ++i) {
+    const auto standing = loop.Scans(10);
+    EXPECT_TRUE(AllDecoded(standing));
+    EXPECT_TRUE(AnyRefers(standing));
+    EXPECT_TRUE(AllDecoded(loop.Scans(10)));
+  }
+}
+
+TEST(Temporal, MemoryIsBoundedOverALongRoundTrip) {
+  LinkTest test;
+  test.delay = 60;
+  Loop loop(test);
+  loop.keeper().OnAcknowledged(loop.now(), kReceiver, 0, 0);
+  for (int i = 0; i < 50; ++i) {
+    // Acknowledgements come all the time, and all of them too late.
+    loop.keeper().OnAcknowledged(loop.now(), kReceiver, 4'000'000, 0);
+    const auto sent = loop.Scan();
+    EXPECT_TRUE(AllDecoded(sent));
+    EXPECT_LE(loop.keeper().bytes(),
+              kSlices * ReferenceKeeper::kMostOfSlice * (sizeof(BlockMemory) + 8 * 16 * 64));
+  }
+}
+
+/// Two blocks of a room, the second by the first.
+struct Pair {
+  SensorModel model = test::GoldenSensor(16, 256);
+  RangeSettings settings;
+  std::vector<std::uint8_t> key;
+  std::vector<std::uint8_t> dependent;
+
+  explicit Pair(unsigned effort = 2) {
+    settings.coder = RangeCoder::kMixing;
+    settings.effort = effort;
+    settings.grid = RangeGrid(1, 41);
+    RangeImage image = test::GoldenImage({16, 128, 64, 1, 10});
+    image.intensity.clear();
+    RangeEncoder encoder(model);
+    BlockLink link;
+    EXPECT_TRUE(encoder.Encode(image, settings, &key, &link));
+    link.reference = link.left;
+    for (std::size_t i = 0; i < image.size(); ++i)
+      if (image.ranges[i] != 0) image.ranges[i] += static_cast<std::uint32_t>(i * 7 % 19);
+    EXPECT_TRUE(encoder.Encode(image, settings, &dependent, &link));
+  }
+  /// True where `bytes` is a block; `decoder` says why not.
+  bool Decode(const std::vector<std::uint8_t>& bytes, RangeDecoder* decoder,
+              BlockStore* store) const {
+    ByteReader reader(bytes.data(), bytes.size());
+    RangeImage image;
+    IntensityScale scale;
+    return decoder->Decode(&reader, 1U << 20, &image, &scale, store);
+  }
+};
+
+class TemporalBlocks : public ::testing::TestWithParam<unsigned> {};
+TEST_P(TemporalBlocks, AreTheBytesThatTheyAlwaysWere) {
+  const Pair pair(GetParam());
+  const std::string name = GOLDEN_FOLDER "/temporal" + std::to_string(GetParam());
+  test::ExpectGolden(name + "_key.bin", pair.key);
+  test::ExpectGolden(name + "_dependent.bin", pair.dependent);
+  EXPECT_LT(pair.dependent.size(), pair.key.size());
+}
+INSTANTIATE_TEST_SUITE_P(Efforts, TemporalBlocks, ::testing::Values(1U, 2U, 3U));
+
+TEST(Temporal, BlocksNeedTheirReferenceAndNothingElse) {
+  const Pair pair;
+  RangeDecoder decoder(pair.model);
+  BlockStore store;
+  EXPECT_FALSE(pair.Decode(pair.dependent, &decoder, &store));
+  EXPECT_TRUE(decoder.lacks_reference());
+  EXPECT_FALSE(pair.Decode(pair.dependent, &decoder, nullptr));
+  EXPECT_TRUE(decoder.lacks_reference());
+  EXPECT_TRUE(pair.Decode(pair.key, &decoder, nullptr));
+  EXPECT_TRUE(pair.Decode(pair.key, &decoder, &store));
+  EXPECT_TRUE(pair.Decode(pair.dependent, &decoder, &store));
+  EXPECT_FALSE(decoder.lacks_reference());
+  EXPECT_EQ(store.size(), 2U);
+}
+
+TEST(Temporal, DamagedBlocksAreRefusedOrGiveAnImageAndNeverFillTheMemory) {
+  const Pair pair;
+  RangeDecoder decoder(pair.model);
+  BlockStore store;
+  ASSERT_TRUE(pair.Decode(pair.key, &decoder, &store));
+  std::mt19937 random(3);
+  for (int i = 0; i < 300; ++i) {
+    auto bytes = i % 2 == 0 ? pair.key : pair.dependent;
+    bytes[random() % bytes.size()] ^= static_cast<std::uint8_t>(1 + random() % 255);
+    if (i % 3 == 0) bytes.resize(bytes.size() - random() % 40);
+    pair.Decode(bytes, &decoder, &store);
+    ASSERT_LE(store.size(), 40 * BlockStore::kMostOfSector);
+  }
+}
+
+TEST(Temporal, MemoryOfADecoderIsBounded) {
+  const Pair pair;
+  BlockStore store;
+  RangeImage place;
+  place.beams = 1;
+  place.columns = 4;
+  const auto add = [&](std::uint32_t first_column, std::uint32_t crc) {
+    auto block = std::make_shared<BlockMemory>();
+    block->beams = place.beams;
+    block->columns = place.columns;
+    block->first_column = first_column;
+    block->crc = crc;
+    store.Add(std::move(block));
+  };
+  for (std::uint32_t i = 0; i < 100; ++i) add(0, i);
+  EXPECT_EQ(store.size(), BlockStore::kMostOfSector);
+  for (std::uint32_t i = 0; i < 1'000; ++i) add(i, 7);
+  EXPECT_LE(store.size(), BlockStore::kMostBytes / sizeof(BlockMemory));
+  EXPECT_EQ(store.Recall(7, place), nullptr);  // the oldest is gone
+  place.first_column = 999;
+  EXPECT_NE(store.Recall(7, place), nullptr);
+}
+
+TEST(Temporal, ReferencesMakeTheDecoderForgetWhatIsMuchOlder) {
+  BlockStore store;
+  RangeImage place;
+  for (std::uint32_t i = 0; i < 20; ++i) {
+    auto block = std::make_shared<BlockMemory>();
+    block->crc = i;
+    store.Add(std::move(block));
+  }
+  EXPECT_NE(store.Recall(15, place), nullptr);
+  EXPECT_EQ(store.size(), 5 + BlockStore::kOvertaking);
+  EXPECT_EQ(store.Recall(3, place), nullptr);
+}
+
+}  // namespace
+}  // namespace lidar::codec
