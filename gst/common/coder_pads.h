@@ -13,12 +13,13 @@ class CoderPads {
  public:
   /// For constructed(): the pad templates are the subclass's.
   void Create(GObject* element, GstPadChainFunction chain, GstPadEventFunction sink_event) {
-    GstPad* sink = AddPad(element, "sink");
-    gst_pad_set_chain_function(sink, chain);
-    gst_pad_set_event_function(sink, sink_event);
+    sink_ = AddPad(element, "sink");
+    gst_pad_set_chain_function(sink_, chain);
+    gst_pad_set_event_function(sink_, sink_event);
     src_ = AddPad(element, "src");
     gst_pad_use_fixed_caps(src_);
   }
+  GstPad* sink() const { return sink_; }
   GstPad* src() const { return src_; }
 
   /// The next buffer does not go on where the last one ended.
@@ -41,6 +42,7 @@ class CoderPads {
   }
 
  private:
+  GstPad* sink_ = nullptr;
   GstPad* src_ = nullptr;
   bool discont_ = false;
 };

@@ -146,6 +146,103 @@ gboolean gst_lidar_event_parse_target_bitrate(GstEvent* event, GstLidarTargetBit
   return TRUE;
 }
 
+namespace {
+
+/// A list of pairs of numbers, one after the other.
+void SetPairs(GstStructure* s, const char* name, guint count, guint (*number)(gconstpointer, guint),
+              gconstpointer data) {
+  GValue list = G_VALUE_INIT;
+  GValue value = G_VALUE_INIT;
+  gst_value_array_init(&list, 2 * count);
+  g_value_init(&value, G_TYPE_UINT);
+  for (guint i = 0; i < 2 * count; ++i) {
+    g_value_set_uint(&value, number(data, i));
+    gst_value_array_append_value(&list, &value);
+  }
+  gst_structure_take_value(s, name, &list);
+}
+
+/// False where there is no such list, or another. Takes no more than GST_LIDAR_MAX_RECEIVED.
+gboolean GetPairs(const GstStructure* s, const char* name, guint* count,
+                  void (*take)(gpointer, guint, guint, guint), gpointer data) {
+  const GValue* list = gst_structure_get_value(s, name);
+  if (list == nullptr || !GST_VALUE_HOLDS_ARRAY(list)) return FALSE;
+  const guint pairs = gst_value_array_get_size(list) / 2;
+  *count = MIN(pairs, guint{GST_LIDAR_MAX_RECEIVED});
+  for (guint i = 0; i < *count; ++i) {
+    const GValue* first = gst_value_array_get_value(list, 2 * i);
+    const GValue* second = gst_value_array_get_value(list, 2 * i + 1);
+    if (!G_VALUE_HOLDS_UINT(first) || !G_VALUE_HOLDS_UINT(second)) return FALSE;
+    take(data, i, g_value_get_uint(first), g_value_get_uint(second));
+  }
+  return TRUE;
+}
+
+const GstStructure* UpstreamNamed(GstEvent* event, const char* name) {
+  const GstStructure* s = gst_event_get_structure(event);
+  const bool is_it = GST_EVENT_TYPE(event) == GST_EVENT_CUSTOM_UPSTREAM && s != nullptr &&
+                     gst_structure_has_name(s, name);
+  return is_it ? s : nullptr;
+}
+
+}  // namespace
+
+GstEvent* gst_lidar_event_new_packets_received(const GstLidarPacketsReceived* received) {
+  GstStructure* s = gst_structure_new(GST_LIDAR_PACKETS_RECEIVED_EVENT, "ssrc", G_TYPE_UINT,
+                                      received->ssrc, "receiver", G_TYPE_UINT, received->receiver,
+                                      nullptr);
+  SetPairs(
+      s, "ranges", received->count,
+      [](gconstpointer data, guint i) -> guint {
+        const GstLidarSequenceRange& range =
+            static_cast<const GstLidarPacketsReceived*>(data)->ranges[i / 2];
+        return i % 2 == 0 ? range.first : range.last;
+      },
+      received);
+  return gst_event_new_custom(GST_EVENT_CUSTOM_UPSTREAM, s);
+}
+
+gboolean gst_lidar_event_parse_packets_received(GstEvent* event,
+                                                GstLidarPacketsReceived* received) {
+  *received = {};
+  const GstStructure* s = UpstreamNamed(event, GST_LIDAR_PACKETS_RECEIVED_EVENT);
+  return s != nullptr && gst_structure_get_uint(s, "ssrc", &received->ssrc) &&
+         gst_structure_get_uint(s, "receiver", &received->receiver) &&
+         GetPairs(
+             s, "ranges", &received->count,
+             [](gpointer data, guint i, guint first, guint last) {
+               static_cast<GstLidarPacketsReceived*>(data)->ranges[i] = {
+                   static_cast<guint16>(first), static_cast<guint16>(last)};
+             },
+             received);
+}
+
+GstEvent* gst_lidar_event_new_slices_received(const GstLidarSlicesReceived* received) {
+  GstStructure* s = gst_structure_new(GST_LIDAR_SLICES_RECEIVED_EVENT, "receiver", G_TYPE_UINT,
+                                      received->receiver, nullptr);
+  SetPairs(
+      s, "slices", received->count,
+      [](gconstpointer data, guint i) -> guint {
+        const GstLidarReceivedSlice& slice =
+            static_cast<const GstLidarSlicesReceived*>(data)->slices[i / 2];
+        return i % 2 == 0 ? slice.scan_id : slice.slice_index;
+      },
+      received);
+  return gst_event_new_custom(GST_EVENT_CUSTOM_UPSTREAM, s);
+}
+
+gboolean gst_lidar_event_parse_slices_received(GstEvent* event, GstLidarSlicesReceived* received) {
+  *received = {};
+  const GstStructure* s = UpstreamNamed(event, GST_LIDAR_SLICES_RECEIVED_EVENT);
+  return s != nullptr && gst_structure_get_uint(s, "receiver", &received->receiver) &&
+         GetPairs(
+             s, "slices", &received->count,
+             [](gpointer data, guint i, guint scan_id, guint slice_index) {
+               static_cast<GstLidarSlicesReceived*>(data)->slices[i] = {scan_id, slice_index};
+             },
+             received);
+}
+
 GstEvent* gst_lidar_event_new_bitrate_bounds(const GstLidarBitrateBounds* bounds) {
   return gst_event_new_custom(
       GST_EVENT_CUSTOM_DOWNSTREAM_STICKY,

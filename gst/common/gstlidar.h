@@ -21,6 +21,8 @@ G_BEGIN_DECLS
 #define GST_LIDAR_POSE_META_NAME "LidarPoseMeta"
 #define GST_LIDAR_TARGET_BITRATE_EVENT "target-bitrate"
 #define GST_LIDAR_BITRATE_BOUNDS_EVENT "bitrate-bounds"
+#define GST_LIDAR_PACKETS_RECEIVED_EVENT "packets-received"
+#define GST_LIDAR_SLICES_RECEIVED_EVENT "slices-received"
 
 /** Registers the metas. Idempotent and thread-safe; every plugin of the set calls it. */
 GST_LIDAR_API void gst_lidar_init(void);
@@ -90,6 +92,45 @@ typedef struct {
 GST_LIDAR_API GstEvent* gst_lidar_event_new_target_bitrate(const GstLidarTargetBitrate* target);
 GST_LIDAR_API gboolean gst_lidar_event_parse_target_bitrate(GstEvent* event,
                                                             GstLidarTargetBitrate* target);
+
+/** RTP sequence numbers from @first to @last, both of them included; they may wrap. */
+typedef struct {
+  guint16 first;
+  guint16 last;
+} GstLidarSequenceRange;
+
+#define GST_LIDAR_MAX_RECEIVED 256
+
+/** Upstream, from a sender to the payloader: what a receiver has got. What is missing in it may
+ * still come. */
+typedef struct {
+  guint ssrc;
+  guint receiver; /* another number is another receiver */
+  guint count;
+  GstLidarSequenceRange ranges[GST_LIDAR_MAX_RECEIVED];
+} GstLidarPacketsReceived;
+
+GST_LIDAR_API GstEvent* gst_lidar_event_new_packets_received(
+    const GstLidarPacketsReceived* received);
+GST_LIDAR_API gboolean gst_lidar_event_parse_packets_received(GstEvent* event,
+                                                              GstLidarPacketsReceived* received);
+
+/** A slice by its GstLidarSlice. */
+typedef struct {
+  guint scan_id;
+  guint slice_index;
+} GstLidarReceivedSlice;
+
+/** Upstream, from a payloader to the encoder: slices of which a receiver has got all. */
+typedef struct {
+  guint receiver;
+  guint count;
+  GstLidarReceivedSlice slices[GST_LIDAR_MAX_RECEIVED];
+} GstLidarSlicesReceived;
+
+GST_LIDAR_API GstEvent* gst_lidar_event_new_slices_received(const GstLidarSlicesReceived* received);
+GST_LIDAR_API gboolean gst_lidar_event_parse_slices_received(GstEvent* event,
+                                                             GstLidarSlicesReceived* received);
 
 /** Downstream, sticky: what the encoder needs for its error bound and can use at most [bit/s]. */
 typedef struct {

@@ -29,13 +29,14 @@ struct Settings {
 struct Counters {
   guint64 slices = 0;
   guint64 slices_dropped = 0;
+  guint64 slices_unreferenced = 0;  // of those
   guint64 slices_thinned = 0;
   guint64 points = 0;  // missing returns included
   guint64 bytes = 0;
   GstClockTime decode_time = 0;
   GstClockTime last_decode_time = 0;
   GstClockTime last_capture_time = GST_CLOCK_TIME_NONE;
-  GstLidarDecodedSlice last{0, 0, 0, 0, 0, 1};
+  GstLidarDecodedSlice last{0, 0, 0, 0, 0, 1, FALSE};
 };
 
 gdouble LastStep(const Counters& c) { return c.last.step; }
@@ -50,9 +51,10 @@ guint64 AgeOf(const Counters& c) {
 }
 guint64 MeanDecodeTime(const Counters& c) { return c.slices > 0 ? c.decode_time / c.slices : 0; }
 
-const std::array<lidar::gst::Stat<Counters>, 12> kStats = {{
+const std::array<lidar::gst::Stat<Counters>, 13> kStats = {{
     {"slices", &Counters::slices},
     {"slices-dropped", &Counters::slices_dropped},
+    {"slices-unreferenced", &Counters::slices_unreferenced},
     {"slices-thinned", &Counters::slices_thinned},
     {"points", &Counters::points},
     {"bytes", &Counters::bytes},
@@ -72,6 +74,8 @@ struct Stream {
   bool has_size = false;                      // caps for `cloud` have been pushed
   std::vector<lidar::gst::EventPtr> pending;  // sticky, to follow the first caps
   lidar::gst::MessageTimer stats_timer;
+  gint64 asked_at_us = 0;  // for a slice that stands alone
+  guint asked = 0;
 };
 
 }  // namespace
@@ -268,7 +272,7 @@ lidar::gst::BufferPtr DecodeBuffer(GstLidarDecoder* self, GstBuffer* input,
   auto* klass = GST_LIDAR_DECODER_GET_CLASS(self);
   const gint64 start_us = g_get_monotonic_time();
   const lidar::gst::BufferMap in(input, GST_MAP_READ);
-  *slice = {0, 1, 0, 0, 0, 1};
+  *slice = {0, 1, 0, 0, 0, 1, FALSE};
   if (!in || !klass->decode(self, in.data(), in.size(), stream.max_points, slice)) return nullptr;
   const gsize points = gsize{slice->width} * slice->height;
   if (points > stream.max_points) return nullptr;
@@ -285,14 +289,29 @@ lidar::gst::BufferPtr DecodeBuffer(GstLidarDecoder* self, GstBuffer* input,
   return output;
 }
 
-GstFlowReturn DropSlice(GstLidarDecoder* self, GstBuffer* input) {
+/// Asks for a slice that stands alone, unless one may still be on its way.
+void AskForKeyUnit(GstLidarDecoder* self) {
+  constexpr gint64 kInterval = G_USEC_PER_SEC / 2;
+  Stream& stream = self->state->stream;
+  const gint64 now = g_get_monotonic_time();
+  if (stream.asked > 0 && now - stream.asked_at_us < kInterval) return;
+  stream.asked_at_us = now;
+  GstStructure* s = gst_structure_new("GstForceKeyUnit", "running-time", GST_TYPE_CLOCK_TIME,
+                                      GST_CLOCK_TIME_NONE, "all-headers", G_TYPE_BOOLEAN, TRUE,
+                                      "count", G_TYPE_UINT, ++stream.asked, nullptr);
+  gst_pad_push_event(self->state->pads.sink(), gst_event_new_custom(GST_EVENT_CUSTOM_UPSTREAM, s));
+}
+
+GstFlowReturn DropSlice(GstLidarDecoder* self, GstBuffer* input, bool lacks_reference) {
   State& state = *self->state;
   GST_WARNING_OBJECT(self, "dropping a slice that cannot be decoded: %" GST_PTR_FORMAT,
                      static_cast<gpointer>(input));
   {
     std::lock_guard lock(state.mutex);
     ++state.counters.slices_dropped;
+    if (lacks_reference) ++state.counters.slices_unreferenced;
   }
+  if (lacks_reference) AskForKeyUnit(self);
   return state.pads.LeaveOut(input);
 }
 
@@ -304,7 +323,7 @@ GstFlowReturn Chain(GstPad*, GstObject* parent, GstBuffer* buffer) {
   GstLidarDecodedSlice slice;
   lidar::gst::BufferPtr output = DecodeBuffer(self, buffer, &slice);
   stream.stats_timer.Post(GST_ELEMENT(self), Snapshot(self->state).stats_interval, Stats);
-  if (!output) return DropSlice(self, buffer);
+  if (!output) return DropSlice(self, buffer, slice.lacks_reference != FALSE);
   if (!PushCaps(self, slice))
     return GST_PAD_IS_FLUSHING(self->state->pads.src()) ? GST_FLOW_FLUSHING
                                                         : GST_FLOW_NOT_NEGOTIATED;

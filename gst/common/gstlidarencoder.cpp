@@ -10,6 +10,7 @@
 #include "gst/common/encoder/cloud_input.h"
 #include "gst/common/encoder/error_report.h"
 #include "gst/common/encoder/rate_model.h"
+#include "gst/common/encoder/receivers.h"
 #include "gst/common/encoder/settings.h"
 #include "gst/common/encoder/stats.h"
 #include "gst/common/encoder/vtable_coder.h"
@@ -48,6 +49,7 @@ struct _GstLidarEncoderState {
   guint min_bitrate_bps = 0;
   lidar::gst::EncoderStats stats;
 
+  lidar::gst::ReceiverEvents receivers;
   Stream stream;
 };
 
@@ -183,6 +185,11 @@ gboolean SinkEvent(GstPad* pad, GstObject* parent, GstEvent* event) {
 
 gboolean SrcEvent(GstPad* pad, GstObject* parent, GstEvent* event) {
   auto* self = GST_LIDAR_ENCODER(parent);
+  if (GST_LIDAR_ENCODER_GET_CLASS(self)->request_key != nullptr &&
+      self->state->receivers.OnEvent(event)) {
+    gst_event_unref(event);
+    return TRUE;
+  }
   GstLidarTargetBitrate target;
   if (!gst_lidar_event_parse_target_bitrate(event, &target))
     return gst_pad_event_default(pad, parent, event);
@@ -211,6 +218,16 @@ void PushBounds(GstLidarEncoder* self) {
   }
   g_object_notify(G_OBJECT(self), "min-bitrate");
   gst_pad_push_event(self->state->pads.src(), gst_lidar_event_new_bitrate_bounds(&event));
+}
+
+/// Tells the subclass what receivers have said since the last slice.
+void TellOfReceivers(GstLidarEncoder* self) {
+  const auto news = self->state->receivers.Take(self->state->pads.src());
+  auto* klass = GST_LIDAR_ENCODER_GET_CLASS(self);
+  if (klass->acknowledge != nullptr)
+    for (const auto& slice : news.received)
+      klass->acknowledge(self, slice.receiver, slice.scan_id, slice.slice_index);
+  if (news.key_requested && klass->request_key != nullptr) klass->request_key(self);
 }
 
 LoopResult EncodeLoaded(GstLidarEncoder* self, const CloudInput::Place& place) {
@@ -263,8 +280,9 @@ GstFlowReturn Chain(GstPad*, GstObject* parent, GstBuffer* buffer) {
   const CloudInput::Place place = stream.input.PlaceOf(buffer);
   const GstLidarSlice& slice = place.slice;
   const lidar::gst::BufferMap map(buffer, GST_MAP_READ);
-  const auto raw = stream.input.Read(self, map, slice.first_column);
+  const auto raw = stream.input.Read(self, map, slice);
   if (!raw) return GST_FLOW_ERROR;
+  TellOfReceivers(self);
   stream.coder->Load(*raw);
   const LoopResult result = EncodeLoaded(self, place);
   GST_LOG_OBJECT(self, "slice %u of scan %u: %" G_GSIZE_FORMAT " bytes, step %f m%s",
@@ -282,6 +300,7 @@ GstStateChangeReturn ChangeState(GstElement* element, GstStateChange transition)
   State& state = *self->state;
   if (transition == GST_STATE_CHANGE_READY_TO_PAUSED) {
     std::lock_guard lock(state.mutex);
+    state.receivers.Forget();
     state.stats = {};
     state.event_bps.reset();
     state.min_bitrate_bps = 0;

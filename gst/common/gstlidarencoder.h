@@ -2,8 +2,8 @@
 /*
  * Base class of encoders of point clouds: slices in, slices out (docs/writing-an-encoder.md).
  *
- * The base class has the pads `sink` and `src`, the caps, the rate loop, the events target-bitrate
- * and bitrate-bounds, the properties bitrate, max-error, min-bitrate, quantization-step,
+ * The base class has the pads `sink` and `src`, the caps, the rate loop, the events target-bitrate,
+ * bitrate-bounds and slices-received, the properties bitrate, max-error, min-bitrate, quantization-step,
  * intensity-bits, rate-model, model-location, degradation-preference, threads, error-check, stats
  * and stats-interval, gaps, DISCONT, flushes and state changes. A subclass brings two pad templates
  * and codes one slice at one step.
@@ -46,6 +46,9 @@ typedef struct {
   guint width;        /* columns; the buffer's, where the caps do not say */
   guint height;       /* beams */
   guint first_column; /* measurement id of the first column */
+  guint scan_id;      /* its place, as in GstLidarSlice */
+  guint slice_index;
+  guint slice_count;
 } GstLidarRawSlice;
 
 /** What load() found. */
@@ -129,6 +132,13 @@ struct _GstLidarEncoderClass {
                      GstLidarPointOrder* order);
   /** The element went to READY: free what belongs to the stream. Optional. */
   void (*reset)(GstLidarEncoder* encoder);
+  /**
+   * A receiver has got all of a slice, or of none yet (@slice_index G_MAXUINT), and there is one
+   * way only that slices go. @receiver is another number for another receiver. Optional.
+   */
+  void (*acknowledge)(GstLidarEncoder* encoder, guint receiver, guint scan_id, guint slice_index);
+  /** A receiver cannot decode what it gets: encode so that it can. Optional. */
+  void (*request_key)(GstLidarEncoder* encoder);
 
   /*< private >*/
   gpointer padding[GST_PADDING_LARGE];

@@ -52,10 +52,11 @@ static gboolean gst_lidar_dec_decode(GstLidarDecoder* base, const guint8* data, 
   State& coder = *GST_LIDAR_DEC(base)->state;
   if (!coder.decoder) coder.decoder.emplace(coder.format, max_points);
   const auto shape = coder.decoder->Decode({data, size});
+  slice->lacks_reference = !shape && coder.decoder->lacks_reference();
   if (!shape) return FALSE;
   const auto& quality = coder.decoder->quality();
   *slice = {shape->width,    shape->height,          quality.step_m,
-            quality.error_m, quality.intensity_bits, quality.keep_fraction};
+            quality.error_m, quality.intensity_bits, quality.keep_fraction, FALSE};
   return TRUE;
 }
 

@@ -43,8 +43,22 @@ GType EffortType() {
   return type;
 }
 
+enum class Reference : gint { kNothing, kAcknowledged };
+
+GType ReferenceType() {
+  static const GEnumValue values[] = {
+      {lidar::gst::Int(Reference::kNothing), "Every slice stands alone", "none"},
+      {lidar::gst::Int(Reference::kAcknowledged),
+       "The newest scan that the receiver has, where the sensor stands still", "auto"},
+      {0, nullptr, nullptr}};
+  static const GType type = lidar::gst::RegisterEnum("GstLidarEncReference", values);
+  return type;
+}
+
 struct Settings {
   gint effort = kAuto;
+  Reference reference = Reference::kAcknowledged;
+  lidar::Duration key_interval = std::chrono::seconds(10);
 };
 
 /// Belongs to the streaming thread.
@@ -56,6 +70,7 @@ struct Coder {
   bool with_intensity = false;
   std::string mode;
   lidar::codec::EncodedSlice slice;
+  lidar::codec::ReferenceKeeper keeper;
 
   lidar::codec::EffortControl effort;
   bool automatic = false;   // the loaded slice is coded at that effort
@@ -69,10 +84,18 @@ struct State {
   Coder coder;
 };
 
-const std::array<lidar::gst::Property<Settings>, 1> kProperties = {{
+const std::array<lidar::gst::Property<Settings>, 3> kProperties = {{
     {"effort", "How much computing slices are worth",
      lidar::gst::EnumField<Settings>{&Settings::effort, EffortType}, 0, 0,
      GST_PARAM_MUTABLE_PLAYING},
+    {"reference",
+     "What slices may be predicted from; what nobody acknowledges is predicted from nothing",
+     lidar::gst::EnumField<Settings, Reference>{&Settings::reference, ReferenceType}, 0, 0,
+     GST_PARAM_MUTABLE_PLAYING},
+    {"key-interval",
+     "Each sector comes at least so often as a slice that stands alone, for those who join late; 0: "
+     "only when asked for [ns]",
+     &Settings::key_interval, 0, 3600e9, GST_PARAM_MUTABLE_PLAYING},
 }};
 
 }  // namespace
@@ -90,10 +113,31 @@ namespace {
 
 Coder& CoderOf(GstLidarEncoder* base) { return GST_LIDAR_ENC(base)->state->coder; }
 
-gint WantedEffort(GstLidarEncoder* base) {
+Settings Snapshot(GstLidarEncoder* base) {
   State& state = *GST_LIDAR_ENC(base)->state;
   std::lock_guard lock(state.mutex);
-  return state.settings.effort;
+  return state.settings;
+}
+
+lidar::Time Now() {
+  return lidar::Time{std::chrono::microseconds(g_get_monotonic_time())};
+}
+
+/// What the last slice left is known from now on; which of several encodings was sent is known only
+/// when the next slice comes.
+void KeepBlocks(Coder& coder) {
+  coder.keeper.OnEncoded(std::move(coder.slice.blocks));
+  coder.slice.blocks.clear();
+}
+
+/// Lets what is loaded refer to what the receiver has.
+void Link(GstLidarEncoder* base, const GstLidarRawSlice& raw) {
+  Coder& coder = CoderOf(base);
+  const Settings settings = Snapshot(base);
+  coder.keeper.set_key_interval(settings.key_interval);
+  const bool remembers = settings.reference == Reference::kAcknowledged &&
+                         coder.keeper.Begin(Now(), {raw.scan_id, raw.slice_index, raw.slice_count});
+  coder.encoder->LinkBy(remembers ? &coder.keeper : nullptr);
 }
 
 /// How long the sensor took for `columns`.
@@ -109,7 +153,7 @@ void ChooseEffort(GstLidarEncoder* base, guint columns) {
     coder.effort.OnSlice(coder.sweep, coder.encoder->returns(), coder.spent);
   coder.sweep = SweepOf(coder, columns);
   coder.spent = {};
-  const gint wanted = WantedEffort(base);
+  const gint wanted = Snapshot(base).effort;
   coder.automatic = wanted == kAuto;
   coder.encoder->set_effort(coder.automatic ? coder.effort.effort() : static_cast<guint>(wanted));
 }
@@ -143,8 +187,10 @@ static gboolean gst_lidar_enc_set_format(GstLidarEncoder* base, const GstLidarCl
 static void gst_lidar_enc_load(GstLidarEncoder* base, const GstLidarRawSlice* raw,
                                GstLidarLoadedSlice* loaded) {
   Coder& coder = CoderOf(base);
+  KeepBlocks(coder);
   ChooseEffort(base, raw->width);
   coder.encoder->Load({raw->data, raw->size}, raw->first_column, coder.with_intensity);
+  Link(base, *raw);
   coder.mode = coder.encoder->Mode();
   loaded->returns = static_cast<guint>(coder.encoder->returns());
   loaded->extent = coder.encoder->extent_m();
@@ -189,6 +235,7 @@ static gboolean gst_lidar_enc_decode(GstLidarEncoder* base, const guint8* data, 
                      sizeof(GstLidarPoint)};
     coder.decoder.emplace(format, format.height * format.sensor_model->columns_per_scan);
   }
+  for (const auto& block : coder.keeper.references()) coder.decoder->Know(block);
   const auto shape = coder.decoder->Decode({data, size});
   if (!shape) return FALSE;
   g_array_set_size(points, shape->width * shape->height);
@@ -198,6 +245,19 @@ static gboolean gst_lidar_enc_decode(GstLidarEncoder* base, const guint8* data, 
 }
 
 static void gst_lidar_enc_reset(GstLidarEncoder* base) { CoderOf(base) = {}; }
+
+static void gst_lidar_enc_acknowledge(GstLidarEncoder* base, guint receiver, guint scan_id,
+                                      guint slice_index) {
+  Coder& coder = CoderOf(base);
+  KeepBlocks(coder);
+  coder.keeper.OnAcknowledged(Now(), receiver, scan_id, slice_index);
+}
+
+static void gst_lidar_enc_request_key(GstLidarEncoder* base) {
+  Coder& coder = CoderOf(base);
+  KeepBlocks(coder);
+  coder.keeper.OnKeyRequest();
+}
 
 static GstStateChangeReturn gst_lidar_enc_change_state(GstElement* element,
                                                        GstStateChange transition) {
@@ -227,4 +287,6 @@ static void gst_lidar_enc_class_init(GstLidarEncClass* klass) {
   encoder->encode = gst_lidar_enc_encode;
   encoder->decode = gst_lidar_enc_decode;
   encoder->reset = gst_lidar_enc_reset;
+  encoder->acknowledge = gst_lidar_enc_acknowledge;
+  encoder->request_key = gst_lidar_enc_request_key;
 }

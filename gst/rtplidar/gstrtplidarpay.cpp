@@ -21,6 +21,7 @@
 #include "gst/rtplidar/base_stats.h"
 #include "gst/rtplidar/config_caps.h"
 #include "gst/rtplidar/pay_slices.h"
+#include "gst/rtplidar/receipts.h"
 
 GST_DEBUG_CATEGORY_STATIC(gst_lidar_rtp_pay_debug);
 #define GST_CAT_DEFAULT gst_lidar_rtp_pay_debug
@@ -60,6 +61,7 @@ const std::array<lidar::gst::Stat<Counters>, 7> kStats = {{
 }};
 
 struct State : lidar::gst::PayState {
+  lidar::gst::Receipts receipts;
   GstPadQueryFunction base_src_query = nullptr;
 };
 
@@ -168,6 +170,12 @@ bool WantsConfig(GstEvent* event) {
 
 static gboolean gst_lidar_rtp_pay_src_event(GstRTPBasePayload* base, GstEvent* event) {
   State& state = *GST_LIDAR_RTP_PAY(base)->state;
+  GstEvent* receipt = nullptr;
+  if (state.receipts.OnEvent(event, &receipt)) {
+    gst_event_unref(event);
+    if (receipt != nullptr) gst_pad_push_event(GST_RTP_BASE_PAYLOAD_SINKPAD(base), receipt);
+    return TRUE;
+  }
   GstLidarTargetBitrate target{};
   if (gst_lidar_event_parse_target_bitrate(event, &target)) {
     GstEvent* out = WithoutHeaders(event, lidar::gst::SliceShare(base, state));
@@ -239,6 +247,7 @@ static void gst_lidar_rtp_pay_init(GstLidarRtpPay* self) {
   GstPad* src = GST_RTP_BASE_PAYLOAD_SRCPAD(self);
   self->state->base_src_query = GST_PAD_QUERYFUNC(src);
   gst_pad_set_query_function(src, gst_lidar_rtp_pay_src_query);
+  self->state->receipts.Watch(src);
 }
 
 static void gst_lidar_rtp_pay_class_init(GstLidarRtpPayClass* klass) {

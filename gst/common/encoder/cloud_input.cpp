@@ -24,7 +24,7 @@ CloudInput::Place CloudInput::PlaceOf(GstBuffer* buffer) {
 }
 
 std::optional<GstLidarRawSlice> CloudInput::Read(GstLidarEncoder* encoder, const BufferMap& map,
-                                                 guint first_column) {
+                                                 const GstLidarSlice& slice) {
   if (!map) {
     GST_ELEMENT_ERROR(encoder, RESOURCE, READ, (nullptr), ("cannot map a buffer"));
     return std::nullopt;
@@ -36,9 +36,10 @@ std::optional<GstLidarRawSlice> CloudInput::Read(GstLidarEncoder* encoder, const
                        info_.width, info_.height, info_.point_step));
     return std::nullopt;
   }
-  CheckRanges(encoder, map.view(), first_column);
-  return GstLidarRawSlice{map.data(), map.size(), static_cast<guint>(map.size() / row),
-                          info_.height, first_column};
+  CheckRanges(encoder, map.view(), slice.first_column);
+  return GstLidarRawSlice{map.data(),         map.size(),    static_cast<guint>(map.size() / row),
+                          info_.height,       slice.first_column, slice.scan_id,
+                          slice.slice_index, slice.slice_count};
 }
 
 void CloudInput::CheckRanges(GstLidarEncoder* encoder, ByteView raw, guint first_column) {

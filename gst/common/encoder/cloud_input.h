@@ -30,7 +30,7 @@ class CloudInput {
 
   /// None after an error message: the buffer does not hold the cloud of its caps.
   std::optional<GstLidarRawSlice> Read(GstLidarEncoder* encoder, const BufferMap& map,
-                                       guint first_column);
+                                       const GstLidarSlice& slice);
   /// Warns, once, that a cloud whose box is so long [m] was left out.
   void WarnOfReach(GstLidarEncoder* encoder, double extent_m);
 

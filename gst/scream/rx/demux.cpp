@@ -71,6 +71,7 @@ GstPad* NewPad(GstLidarScreamRx* self, guint32 ssrc, GstCaps* caps) {
   const StringPtr name(g_strdup_printf("src_%u", ssrc));
   GstPad* pad = gst_pad_new_from_template(templ, name.get());
   gst_pad_use_fixed_caps(pad);
+  gst_pad_set_event_function(pad, RxSrcEvent);
   gst_pad_set_active(pad, TRUE);
   gchar* id = gst_pad_create_stream_id(pad, GST_ELEMENT(self), name.get());
   gst_pad_push_event(pad, gst_event_new_stream_start(id));

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "gst/scream/key_request.h"
 #include "gst/scream/rx/private.h"
 
 #define GST_CAT_DEFAULT gst_lidar_scream_rx_debug
@@ -39,16 +40,30 @@ void Wait(RxState& state, RxLock& lock, Time now) {
   gst_clock_id_unref(id);
 }
 
-/// The report as a buffer that names the peer, for a sink that replies.
-GstBuffer* ToBuffer(const RxState& state, const scream::CongestionFeedback& report) {
-  const auto reading = state.settings.num_reports == kNumReportsEricsson
-                           ? scream::NumReports::kCountMinusOne
-                           : scream::NumReports::kCount;
-  const auto bytes = scream::BuildCcfb(report, reading);
+/// RTCP as a buffer that names the peer, for a sink that replies.
+GstBuffer* ToBuffer(const RxState& state, const std::vector<std::uint8_t>& bytes) {
   GstBuffer* buffer = gst_buffer_new_allocate(nullptr, bytes.size(), nullptr);
   gst_buffer_fill(buffer, 0, bytes.data(), bytes.size());
   if (state.latch.peer() != nullptr) gst_buffer_add_net_address_meta(buffer, state.latch.peer());
   return buffer;
+}
+
+/// The next packet to be sent, or null.
+GstBuffer* NextPacket(GstLidarScreamRx* self, Time now) {
+  RxState& state = *self->state;
+  if (!state.key_requests.empty()) {
+    const guint32 ssrc = *state.key_requests.begin();
+    state.key_requests.erase(state.key_requests.begin());
+    GST_DEBUG_OBJECT(self, "asking for a key unit of %08x", ssrc);
+    return ToBuffer(state, BuildKeyRequest(state.own_ssrc, ssrc));
+  }
+  const auto report = state.generator.Take(now);
+  if (!report) return nullptr;
+  GST_LOG_OBJECT(self, "reporting %" G_GSIZE_FORMAT " SSRCs", report->blocks.size());
+  const auto reading = state.settings.num_reports == kNumReportsEricsson
+                           ? scream::NumReports::kCountMinusOne
+                           : scream::NumReports::kCount;
+  return ToBuffer(state, scream::BuildCcfb(*report, reading));
 }
 
 void Run(gpointer data) {
@@ -65,13 +80,11 @@ void Run(gpointer data) {
     state.generator.set_config(ToConfig(state.settings, state.own_ssrc));
   }
   const Time now = RxNow(state);
-  const auto report = state.generator.Take(now);
-  if (!report) {
+  GstBuffer* buffer = NextPacket(self, now);
+  if (buffer == nullptr) {
     Wait(state, lock, now);
     return;
   }
-  GstBuffer* buffer = ToBuffer(state, *report);
-  GST_LOG_OBJECT(self, "reporting %" G_GSIZE_FORMAT " SSRCs", report->blocks.size());
   const bool first = !std::exchange(state.rtcp_started, true);
   lock.unlock();
   if (first) StartStream(self);
@@ -85,6 +98,20 @@ void Run(gpointer data) {
 void WakeFeedback(RxState& state) {
   if (state.timer != nullptr && state.generator.NextDue() < state.waits_until)
     gst_clock_id_unschedule(state.timer);
+}
+
+gboolean RxSrcEvent(GstPad* pad, GstObject* parent, GstEvent* event) {
+  if (GST_EVENT_TYPE(event) != GST_EVENT_CUSTOM_UPSTREAM ||
+      !gst_event_has_name(event, "GstForceKeyUnit")) {
+    return gst_pad_event_default(pad, parent, event);
+  }
+  const EventPtr owner(event);
+  RxState& state = *GST_LIDAR_SCREAM_RX(parent)->state;
+  const RxLock lock(state.mutex);
+  // By which pad an SSRC leaves, only the streaming thread knows; to ask for all does no harm.
+  for (const auto& [ssrc, last] : state.ssrcs) state.key_requests.insert(ssrc);
+  if (state.timer != nullptr) gst_clock_id_unschedule(state.timer);
+  return state.ssrcs.empty() ? FALSE : TRUE;
 }
 
 gboolean RxActivateRtcp(GstPad* pad, GstObject* parent, GstPadMode mode, gboolean active) {

@@ -189,6 +189,7 @@ static void Prepare(RxState& state) {
   state.latch.Reset();
   NoteLidarTypes(state);
   state.ssrcs.clear();
+  state.key_requests.clear();
   state.old_streams.clear();
   state.counters = {};
   state.sender.Reset();
@@ -236,6 +237,7 @@ static void gst_lidar_scream_rx_init(GstLidarScreamRx* self) {
   GST_PAD_SET_PROXY_ALLOCATION(self->sink);
   self->src = AddStaticPad(self, &src_template);
   GST_PAD_SET_PROXY_CAPS(self->src);
+  gst_pad_set_event_function(self->src, RxSrcEvent);
   gst_flow_combiner_add_pad(self->state->combiner, self->src);
   self->rtcp_src = AddStaticPad(self, &rtcp_template);
   gst_pad_set_activatemode_function(self->rtcp_src, RxActivateRtcp);

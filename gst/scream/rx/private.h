@@ -73,6 +73,7 @@ struct RxState {
   GstClockID timer = nullptr;  // not owned
   Time waits_until{};
   bool rtcp_started = false;
+  std::set<guint32> key_requests;  // SSRCs of which somebody downstream needs a key unit
 
   // Only the streaming thread uses what follows
   bool eos = false;
@@ -107,6 +108,8 @@ GstFlowReturn RxChainList(GstPad* pad, GstObject* parent, GstBufferList* list);
 
 // feedback.cpp
 gboolean RxActivateRtcp(GstPad* pad, GstObject* parent, GstPadMode mode, gboolean active);
+/// Events that come from downstream.
+gboolean RxSrcEvent(GstPad* pad, GstObject* parent, GstEvent* event);
 /// Makes the task look again where the next report is due sooner; with the lock held.
 void WakeFeedback(RxState& state);
 

@@ -3,6 +3,7 @@
 #include "gst/scream/tx/feedback.h"
 
 #include "gst/common/buffer_map.h"
+#include "gst/scream/key_request.h"
 #include "gst/scream/tx/private.h"
 
 #define GST_CAT_DEFAULT gst_lidar_scream_tx_debug
@@ -24,6 +25,32 @@ const char* ToString(scream::FeedbackResult result) {
   return "?";
 }
 
+/// Lets payloaders know what has arrived. With the lock held.
+void KeepReceipts(TxState& state, const scream::CongestionFeedback& report) {
+  for (const scream::SsrcReport& block : report.blocks) {
+    const auto id = state.controller->FindStream(block.ssrc);
+    TxStream* stream = id ? FindStream(state, *id) : nullptr;
+    if (stream != nullptr && stream->wants_receipts)
+      stream->receipts.Add(report.sender_ssrc, block);
+  }
+}
+
+/// A receiver asks for a key unit of one of our streams. Where RTCP goes on to somebody else, it is
+/// for them to ask upstream.
+void TakeKeyRequest(GstLidarScreamTx* self, ByteView packet) {
+  const auto ssrc = ParseKeyRequest(packet);
+  if (!ssrc || gst_pad_is_linked(self->rtcp_src)) return;
+  TxState& state = *self->state;
+  const TxLock lock(state.mutex);
+  if (!state.controller || !state.gate.open()) return;
+  const auto id = state.controller->FindStream(*ssrc);
+  TxStream* stream = id ? FindStream(state, *id) : nullptr;
+  // Encoders of video are asked by those who manage their RTP session.
+  if (stream == nullptr || !stream->wants_receipts) return;
+  stream->key_unit_due = true;
+  state.reporter.Evaluate(TxNow(state));
+}
+
 /// False where the report is not about us. With the lock held.
 bool Take(GstLidarScreamTx* self, const scream::CongestionFeedback& report, GSocketAddress* from) {
   TxState& state = *self->state;
@@ -36,6 +63,7 @@ bool Take(GstLidarScreamTx* self, const scream::CongestionFeedback& report, GSoc
     GST_INFO_OBJECT(self, "feedback comes from a new address: a new path");
     state.controller->OnRouteChange(now);
   }
+  if (result == scream::FeedbackResult::kAccepted) KeepReceipts(state, report);
   state.reporter.Evaluate(now);
   state.pacing.Wake();
   return true;
@@ -69,6 +97,7 @@ GstFlowReturn TxRtcpChain(GstPad*, GstObject* parent, GstBuffer* buffer) {
     if (!map) return GST_FLOW_OK;
     const auto packets = scream::SplitRtcp(map.view());
     if (packets.empty()) rest.assign(map.view().begin(), map.view().end());
+    for (const ByteView packet : packets) TakeKeyRequest(self, packet);
     for (const ByteView packet : packets)
       if (!scream::IsCcfb(packet) || !Feed(self, packet, SourceOf(buffer)))
         rest.insert(rest.end(), packet.begin(), packet.end());

@@ -95,6 +95,8 @@ void OnCaps(GstLidarScreamTx* self, GstPad* pad, TxStream& stream, GstEvent* eve
     if (gst_structure_get_int(s, "payload", &payload))
       stream.payload_type = static_cast<guint8>(payload);
     stream.is_video = g_strcmp0(gst_structure_get_string(s, "media"), "video") == 0;
+    const gchar* encoding = gst_structure_get_string(s, "encoding-name");
+    stream.wants_receipts = encoding != nullptr && g_str_has_prefix(encoding, "X-LIDAR");
     start = state.reporter.FirstTarget(stream, TxNow(state));
     Push(stream, gst_event_ref(event));
     state.pacing.Wake();

@@ -10,6 +10,7 @@
 #include "gst/common/refs.h"
 #include "gst/scream/rtp_packet.h"
 #include "gst/scream/tx/gstscreamtxpad.h"
+#include "gst/scream/tx/receipts.h"
 #include "src/scream/controller.h"
 #include "src/scream/target_notifier.h"
 
@@ -72,6 +73,7 @@ struct TxStream {
   std::optional<bool> live;  // not known before the first buffer
   bool has_caps = false;
   bool is_video = false;
+  bool wants_receipts = false;  // its payloader makes use of them
   bool eos = false;
   bool flushing = false;
   // Work for the control thread
@@ -80,6 +82,7 @@ struct TxStream {
   std::optional<Time> last_key_unit;
   guint key_units = 0;
   guint64 lost_seen = 0;
+  PacketReceipts receipts;
   StreamCounters counters;
 
   /// Age of the first packet in the queue.

@@ -115,7 +115,7 @@ bool UpstreamReporter::EvaluateStream(TxStream& stream, Time now) {
     stream.key_unit_due = stream.key_unit_due || lost > stream.lost_seen;
     stream.lost_seen = lost;
   }
-  return stream.target_due || MayAskForKeyUnit(stream, now);
+  return stream.target_due || !stream.receipts.empty() || MayAskForKeyUnit(stream, now);
 }
 
 bool UpstreamReporter::EvaluateEstimate(Time now) {
@@ -180,7 +180,9 @@ bool UpstreamReporter::HasWork() const {
   return stop_ || stats_due_ || estimate_due_ || ecn_state_ != ecn_announced_ ||
          watch_.silent() != silence_announced_ ||
          std::any_of(streams.begin(), streams.end(),
-                     [](const auto& s) { return s->target_due || s->key_unit_due; });
+                     [](const auto& s) {
+                       return s->target_due || s->key_unit_due || !s->receipts.empty();
+                     });
 }
 
 MessagePtr UpstreamReporter::FeedbackMessage() {
@@ -198,6 +200,8 @@ UpstreamReporter::Work UpstreamReporter::TakeWork(Time now) {
     if (stream->target_due)
       work.events.push_back({Ref(stream->pad), TargetEvent(*stream, now, nullptr), true});
     stream->target_due = false;
+    for (EventPtr& receipt : stream->receipts.Take())
+      work.events.push_back({Ref(stream->pad), std::move(receipt), false});
     if (MayAskForKeyUnit(*stream, now))
       work.events.push_back({Ref(stream->pad), KeyUnitEvent(*stream, now), false});
     work.warn_of_unheeded = work.warn_of_unheeded ||

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "gst/scream/feedback_peer.h"
+#include "gst/scream/key_request.h"
 #include "gst/scream/peer_latch.h"
 #include "gst/scream/rtp_packet.h"
 #include "gst/scream/tx/settings.h"
@@ -53,6 +54,18 @@ INSTANTIATE_TEST_SUITE_P(
                       std::vector<std::uint8_t>{0x90, 96, 0, 1, 0, 0, 0, 0, 0, 0, 0, 7},
                       std::vector<std::uint8_t>{0x90, 96, 0, 1, 0, 0, 0, 0, 0, 0, 0, 7, 0, 0, 0xff,
                                                 0xff}));  // extensions past the end
+
+TEST(KeyRequest, RoundTripsAndNothingElseIsOne) {
+  const auto request = BuildKeyRequest(1, 0xfedcba98);
+  EXPECT_EQ(ParseKeyRequest({request.data(), request.size()}), 0xfedcba98U);
+  for (std::size_t size = 0; size < request.size(); ++size)
+    EXPECT_FALSE(ParseKeyRequest({request.data(), size}));
+  for (const std::size_t at : {0U, 1U, 2U, 3U}) {
+    auto other = request;
+    other[at] ^= 4;
+    EXPECT_FALSE(ParseKeyRequest({other.data(), other.size()})) << at;
+  }
+}
 
 TEST(Bye, RoundTripsThroughACompound) {
   const auto bye = BuildBye({1, 0xfffffffe});

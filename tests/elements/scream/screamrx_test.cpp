@@ -2,6 +2,7 @@
 // screamrx under a test clock: what it reports, to whom, and whom it believes.
 #include <gtest/gtest.h>
 
+#include "gst/scream/key_request.h"
 #include "gst/scream/rtp_packet.h"
 #include "src/rtp/ntp_time.h"
 #include "src/scream/feedback/sender_report.h"
@@ -66,6 +67,19 @@ class ScreamRx : public ::testing::Test {
   }
   guint Passed() { return gst_harness_buffers_received(rtp.get()); }
 };
+
+TEST_F(ScreamRx, CarriesTheWishForAKeyUnitToTheSender) {
+  g_object_set(element, "ssrc", 77, nullptr);
+  Start();
+  PushFirst(1);
+  GstStructure* wish = gst_structure_new_empty("GstForceKeyUnit");
+  ASSERT_TRUE(gst_harness_push_upstream_event(
+      rtp.get(), gst_event_new_custom(GST_EVENT_CUSTOM_UPSTREAM, wish)));
+  const BufferPtr packet(gst_harness_pull(rtcp.get()));
+  ASSERT_TRUE(packet);
+  EXPECT_EQ(ToBytes(packet.get()), gst::BuildKeyRequest(77, 0x1234));
+  EXPECT_EQ(Passed(), 1U);
+}
 
 TEST_F(ScreamRx, ReportsEachPacketOfAFrameAtItsMarker) {
   g_object_set(element, "ssrc", 77, nullptr);

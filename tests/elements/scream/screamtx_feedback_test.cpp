@@ -2,6 +2,7 @@
 // What screamtx makes of RTCP: reports, lies, and what is not for it.
 #include <gtest/gtest.h>
 
+#include "gst/scream/key_request.h"
 #include "tests/elements/scream/screamtx_fixture.h"
 
 namespace lidar::test {
@@ -51,6 +52,55 @@ TEST_F(ScreamTx, RaisesTheTargetOnAFreePathAndLowersItUnderMarks) {
     ASSERT_TRUE(gst_lidar_event_parse_target_bitrate(event.get(), &told));
   } while (told.bitrate >= free / 2);
   EXPECT_GT(told.rtt, 0U);
+}
+
+constexpr const char* kLidarCaps =
+    "application/x-rtp,media=(string)application,clock-rate=90000,"
+    "encoding-name=(string)X-LIDAR-DRACO,payload=96";
+
+TEST_F(ScreamTx, TellsThePayloaderOfLidarWhatHasArrived) {
+  Start(kLidarCaps);
+  PushFrame(0, 4);
+  guint16 last = 0;
+  for (int i = 0; i < 100 && last < 3; ++i) {
+    time.Advance(10 * GST_MSECOND);
+    const std::size_t before = acknowledged_;
+    Acknowledge();
+    if (acknowledged_ == before) continue;
+    const EventPtr event(WaitForUpstream(rtp.get(), "packets-received"));
+    GstLidarPacketsReceived received{};
+    ASSERT_TRUE(event && gst_lidar_event_parse_packets_received(event.get(), &received));
+    EXPECT_EQ(received.ssrc, 0x1234U);
+    EXPECT_EQ(received.receiver, 9U);
+    ASSERT_EQ(received.count, 1U);
+    EXPECT_EQ(received.ranges[0].first, before);
+    last = received.ranges[0].last;
+  }
+  EXPECT_EQ(last, 3U);
+}
+
+TEST_F(ScreamTx, LeavesTheReceiptsOutOfOtherMedia) {
+  Start();
+  PushFrame(0, 4);
+  for (int i = 0; i < 10; ++i) {
+    time.Advance(50 * GST_MSECOND);
+    Acknowledge();
+  }
+  NextTarget(rtp.get());
+  while (EventPtr event{gst_harness_try_pull_upstream_event(rtp.get())})
+    EXPECT_FALSE(gst_event_has_name(event.get(), "packets-received"));
+}
+
+TEST_F(ScreamTx, AsksTheEncoderOfLidarForAKeyUnitWhereAReceiverDoes) {
+  rtp.reset(gst_harness_new_with_element(element, "sink_0", "src"));
+  rtcp.reset(gst_harness_new_with_element(element, "rtcp_sink", nullptr));
+  gst_harness_set_src_caps_str(rtp.get(), kLidarCaps);
+  gst_harness_set_src_caps_str(rtcp.get(), "application/x-rtcp");
+  PushFrame(0, 1);
+  Collect();
+  const auto request = gst::BuildKeyRequest(9, 0x1234);
+  ASSERT_EQ(gst_harness_push(rtcp.get(), FromBytes(request)), GST_FLOW_OK);
+  EXPECT_TRUE(EventPtr(WaitForUpstream(rtp.get(), "GstForceKeyUnit")));
 }
 
 TEST_F(ScreamTx, PassesForeignRtcpAndKeepsItsOwn) {

@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// What feedback says about the packets of one stream, until its payloader is told.
+#pragma once
+#include <vector>
+
+#include "gst/common/gstlidar.h"
+#include "gst/common/refs.h"
+#include "src/scream/feedback/ccfb.h"
+
+namespace lidar::gst {
+
+/// With the element's lock held.
+class PacketReceipts {
+ public:
+  void Add(guint receiver, const scream::SsrcReport& report);
+  bool empty() const { return receipts_.empty(); }
+  /// Upstream events with all of it.
+  std::vector<EventPtr> Take();
+
+ private:
+  // A payloader that is told of less than there was takes slices for lost, and no harm is done.
+  static constexpr std::size_t kMost = 16;
+  std::vector<GstLidarPacketsReceived> receipts_;
+};
+
+}  // namespace lidar::gst

@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Which slices have arrived, from the sequence numbers that did.
+#pragma once
+#include <cstdint>
+#include <deque>
+#include <optional>
+#include <vector>
+
+namespace lidar::rtp {
+
+/// The packets of one SSRC that were sent lately, and the slices that they were of. Bounded: what a
+/// receiver never acknowledges is forgotten.
+class Delivery {
+ public:
+  struct Slice {
+    std::uint32_t scan_id = 0;
+    std::uint32_t index = 0;
+  };
+  struct Packet {
+    std::uint32_t ssrc = 0;
+    std::uint16_t seq = 0;
+    Slice slice;
+    bool ends_slice = false;
+  };
+
+  /// In the order of sending.
+  void OnSent(const Packet& packet);
+  /// The receiver has the packets from `first` to `last`; the slices of which it now has all.
+  std::vector<Slice> OnReceived(std::uint32_t ssrc, std::uint16_t first, std::uint16_t last);
+
+  static constexpr std::size_t kMostPackets = 8'192;
+
+ private:
+  struct SentPacket {
+    std::uint64_t slice;  // by its number
+    bool received = false;
+  };
+  struct SentSlice {
+    Slice name;
+    std::size_t missing = 0;
+    bool ended = false;
+  };
+  void Forget();
+  void DropFirst();
+
+  std::optional<std::uint32_t> ssrc_;
+  std::uint16_t first_seq_ = 0;
+  std::deque<SentPacket> packets_;
+  std::uint64_t first_slice_ = 0;  // number of the first of slices_
+  std::deque<SentSlice> slices_;
+};
+
+}  // namespace lidar::rtp

@@ -1,0 +1,188 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// lidarenc, rtplidarpay, rtplidardepay and lidardec over a link that the test makes: what arrives,
+// what the sender hears of it, and what the decoder asks for.
+#include <gst/rtp/gstrtpbuffer.h>
+#include <gtest/gtest.h>
+
+#include <functional>
+
+#include "tests/elements/coders/coder_harness.h"
+
+namespace lidar::gst {
+namespace {
+
+constexpr guint kSlices = 8;
+
+class StaticSensor : public ::testing::Test {
+ protected:
+  void Start(const std::string& properties = "", const std::string& between = "") {
+    sender_ = Launch("lidarenc name=enc effort=1 error-check=1 " + properties + " ! " + between +
+                     " rtplidarpay name=pay config-interval=1");
+    receiver_ = Launch("rtplidardepay ! lidardec name=dec");
+    CloudInfo info = OrganisedInfo(model_, 64);
+    SetCaps(sender_.get(), info);
+  }
+
+  /// One scan. Packets for which `loses` is true never arrive; the sender hears of the others.
+  void Scan(const std::function<bool(guint packet)>& loses = nullptr) {
+    for (guint i = 0; i < kSlices; ++i) {
+      const GstLidarSlice slice{scan_, i, kSlices, 64 * i};
+      GstBuffer* input = OrganisedBuffer(model_, 64, slice);
+      AddNoise(input);
+      ASSERT_EQ(gst_harness_push(sender_.get(), input), GST_FLOW_OK);
+      while (BufferPtr packet{gst_harness_try_pull(sender_.get())}) Carry(std::move(packet), loses);
+    }
+    ++scan_;
+    if (acknowledges_) Acknowledge();
+  }
+  void Scans(int count) {
+    for (int i = 0; i < count; ++i) Scan();
+  }
+  void Acknowledge(guint receiver = 1) {
+    GstLidarPacketsReceived received{ssrc_, receiver, 0, {}};
+    for (const guint16 seq : arrived_) {
+      if (received.count == GST_LIDAR_MAX_RECEIVED) break;
+      received.ranges[received.count++] = {seq, seq};
+    }
+    arrived_.clear();
+    gst_harness_push_upstream_event(sender_.get(),
+                                    gst_lidar_event_new_packets_received(&received));
+  }
+  /// Hands on what the receiver asks of the sender; true where it asked for a key unit.
+  bool CarryKeyRequest() {
+    bool asked = false;
+    while (EventPtr event{gst_harness_try_pull_upstream_event(receiver_.get())}) {
+      if (!gst_event_has_name(event.get(), "GstForceKeyUnit")) continue;
+      asked = true;
+      gst_harness_push_upstream_event(sender_.get(), event.release());
+    }
+    return asked;
+  }
+  std::string Mode() {
+    const StructurePtr stats(StatsOf(Get("enc", sender_).get()));
+    return gst_structure_get_string(stats.get(), "mode");
+  }
+  guint64 Encoded(const char* name) { return Counter(Get("enc", sender_).get(), name); }
+  guint64 Decoded(const char* name) { return Counter(Get("dec", receiver_).get(), name); }
+  static ElementPtr Get(const char* name, const Harness& harness) {
+    return ElementPtr(gst_bin_get_by_name(GST_BIN(harness->element), name));
+  }
+  /// What it had is gone, but the caps are still there.
+  void RestartDecoder() {
+    const ElementPtr dec = Get("dec", receiver_);
+    gst_element_set_state(dec.get(), GST_STATE_READY);
+    gst_element_sync_state_with_parent(dec.get());
+  }
+
+  bool acknowledges_ = true;
+
+ private:
+  /// The room is the same in all scans, and the sensor's noise is not.
+  void AddNoise(GstBuffer* buffer) {
+    BufferMap map(buffer, GST_MAP_READWRITE);
+    const RangeProjection projection(model_);
+    GstLidarSlice slice{};
+    gst_lidar_buffer_get_slice(buffer, &slice);
+    for (gsize i = 0; i < map.size() / 20; ++i) {
+      guint8* point = map.data() + 20 * i;
+      guint32 range = 0;
+      std::memcpy(&range, point + 16, sizeof range);
+      if (range == 0) continue;
+      range += (scan_ * 7 + static_cast<guint>(i) * 5) % 9;
+      const auto xyz = projection.Point(static_cast<guint>(i) / 64,
+                                        slice.first_column + static_cast<guint>(i) % 64, range);
+      std::memcpy(point, xyz.data(), sizeof xyz);
+      std::memcpy(point + 16, &range, sizeof range);
+    }
+  }
+
+  void Carry(BufferPtr packet, const std::function<bool(guint)>& loses) {
+    if (!receiver_has_caps_) {
+      const PadPtr pad(gst_element_get_static_pad(sender_->element, "src"));
+      const CapsPtr caps(gst_pad_get_current_caps(pad.get()));
+      gst_harness_set_src_caps(receiver_.get(), gst_caps_ref(caps.get()));
+      receiver_has_caps_ = true;
+    }
+    GstRTPBuffer rtp = GST_RTP_BUFFER_INIT;
+    ASSERT_TRUE(gst_rtp_buffer_map(packet.get(), GST_MAP_READ, &rtp));
+    ssrc_ = gst_rtp_buffer_get_ssrc(&rtp);
+    const guint16 seq = gst_rtp_buffer_get_seq(&rtp);
+    gst_rtp_buffer_unmap(&rtp);
+    if (loses && loses(packets_++)) return;
+    arrived_.push_back(seq);
+    ASSERT_EQ(gst_harness_push(receiver_.get(), packet.release()), GST_FLOW_OK);
+  }
+
+  SensorModel model_ = test::RoomSensor();
+  Harness sender_;
+  Harness receiver_;
+  bool receiver_has_caps_ = false;
+  guint scan_ = 0;
+  guint packets_ = 0;
+  guint32 ssrc_ = 0;
+  std::vector<guint16> arrived_;
+};
+
+TEST_F(StaticSensor, IsCodedByTheScansThatTheReceiverHas) {
+  Start();
+  Scans(4);
+  EXPECT_EQ(Mode(), "range-temporal1");
+  Scans(6);
+  EXPECT_EQ(Decoded("slices"), 10 * kSlices);
+  EXPECT_EQ(Decoded("slices-dropped"), 0U);
+  EXPECT_EQ(Encoded("error-checks"), 10 * kSlices);
+  EXPECT_EQ(Encoded("error-checks-failed"), 0U);
+}
+
+TEST_F(StaticSensor, IsCodedSliceBySliceWhereNobodyAcknowledges) {
+  Start();
+  acknowledges_ = false;
+  Scans(4);
+  EXPECT_EQ(Mode(), "range-mixing1");
+}
+
+TEST_F(StaticSensor, IsCodedSliceBySliceWithoutReferences) {
+  Start("reference=none");
+  Scans(4);
+  EXPECT_EQ(Mode(), "range-mixing1");
+}
+
+TEST_F(StaticSensor, IsCodedSliceBySliceBehindATee) {
+  Start("", "tee name=t t. ! fakesink sync=false async=false t. ! ");
+  Scans(4);
+  EXPECT_EQ(Mode(), "range-mixing1");
+}
+
+TEST_F(StaticSensor, IsCodedByWhatIsThereWhateverWasLost) {
+  Start();
+  for (int i = 0; i < 12; ++i) Scan([](guint packet) { return packet % 5 == 2; });
+  EXPECT_EQ(Mode(), "range-temporal1");
+  EXPECT_GT(Decoded("slices"), 5 * kSlices);
+  EXPECT_EQ(Decoded("slices-dropped"), 0U);
+}
+
+TEST_F(StaticSensor, IsAskedForSlicesThatStandAloneByAReceiverThatHasNone) {
+  Start();
+  Scans(4);
+  RestartDecoder();
+  Scan();
+  EXPECT_EQ(Decoded("slices"), 0U);
+  EXPECT_EQ(Decoded("slices-unreferenced"), kSlices);
+  EXPECT_TRUE(CarryKeyRequest());
+  Scans(3);
+  EXPECT_EQ(Decoded("slices"), 3 * kSlices);
+  EXPECT_EQ(Mode(), "range-temporal1");
+}
+
+TEST_F(StaticSensor, IsCodedSliceBySliceForTwoReceivers) {
+  Start();
+  Scans(3);
+  for (int i = 0; i < 3; ++i) {
+    Acknowledge(2);
+    Scan();
+    EXPECT_EQ(Mode(), "range-mixing1");
+  }
+}
+
+}  // namespace
+}  // namespace lidar::gst
