@@ -40,6 +40,10 @@ class SliceCodec {
   void Load(const Scan& scan, SliceOf slice);
 
   std::size_t returns() const { return returns_; }
+  /// The slice as it would lie in a buffer.
+  const codec::CloudFormat& format() const { return format_; }
+  ByteView raw() const { return {raw_.data(), raw_.size()}; }
+  std::uint32_t first_column() const { return first_column_; }
   /// Only the parts that the slice itself knows: returns, extent, mode.
   rate::SliceFeatures Features(const CodingMode& mode);
   rate::ErrorBound Bound(const CodingMode& mode);
