@@ -69,8 +69,8 @@ static gboolean gst_lidar_draco_dec_decode(GstLidarDecoder* base, const guint8* 
   const auto shape = coder.decoder->Decode({data, size});
   if (!shape) return FALSE;
   const auto quality = coder.decoder->quality();
-  *slice = {shape->width,    shape->height,          quality.step_m,
-            quality.error_m, quality.intensity_bits, quality.keep_fraction, FALSE};
+  *slice = {shape->width,           shape->height,         quality.step_m, quality.error_m,
+            quality.intensity_bits, quality.keep_fraction, FALSE};
   return TRUE;
 }
 

@@ -188,9 +188,9 @@ const GstStructure* UpstreamNamed(GstEvent* event, const char* name) {
 }  // namespace
 
 GstEvent* gst_lidar_event_new_packets_received(const GstLidarPacketsReceived* received) {
-  GstStructure* s = gst_structure_new(GST_LIDAR_PACKETS_RECEIVED_EVENT, "ssrc", G_TYPE_UINT,
-                                      received->ssrc, "receiver", G_TYPE_UINT, received->receiver,
-                                      nullptr);
+  GstStructure* s =
+      gst_structure_new(GST_LIDAR_PACKETS_RECEIVED_EVENT, "ssrc", G_TYPE_UINT, received->ssrc,
+                        "receiver", G_TYPE_UINT, received->receiver, nullptr);
   SetPairs(
       s, "ranges", received->count,
       [](gconstpointer data, guint i) -> guint {

@@ -44,7 +44,7 @@ typedef struct {
   gdouble step; /* of the grid [m]; 0: not known */
   gdouble error_bound;
   guint intensity_bits;
-  gdouble keep_fraction; /* rows that the encoder kept; the others it left out to save bits */
+  gdouble keep_fraction;    /* rows that the encoder kept; the others it left out to save bits */
   gboolean lacks_reference; /* where FALSE is returned: only because it was coded by another slice
                                that never came. The base class asks for one that stands alone */
 } GstLidarDecodedSlice;

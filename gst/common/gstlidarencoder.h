@@ -3,10 +3,10 @@
  * Base class of encoders of point clouds: slices in, slices out (docs/writing-an-encoder.md).
  *
  * The base class has the pads `sink` and `src`, the caps, the rate loop, the events target-bitrate,
- * bitrate-bounds and slices-received, the properties bitrate, max-error, min-bitrate, quantization-step,
- * intensity-bits, rate-model, model-location, degradation-preference, threads, error-check, stats
- * and stats-interval, gaps, DISCONT, flushes and state changes. A subclass brings two pad templates
- * and codes one slice at one step.
+ * bitrate-bounds and slices-received, the properties bitrate, max-error, min-bitrate,
+ * quantization-step, intensity-bits, rate-model, model-location, degradation-preference, threads,
+ * error-check, stats and stats-interval, gaps, DISCONT, flushes and state changes. A subclass
+ * brings two pad templates and codes one slice at one step.
  *
  * All virtual methods but reset() run in the streaming thread, one at a time. None is called while
  * a lock is held.

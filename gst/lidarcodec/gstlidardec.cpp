@@ -55,8 +55,8 @@ static gboolean gst_lidar_dec_decode(GstLidarDecoder* base, const guint8* data, 
   slice->lacks_reference = !shape && coder.decoder->lacks_reference();
   if (!shape) return FALSE;
   const auto& quality = coder.decoder->quality();
-  *slice = {shape->width,    shape->height,          quality.step_m,
-            quality.error_m, quality.intensity_bits, quality.keep_fraction, FALSE};
+  *slice = {shape->width,           shape->height,         quality.step_m, quality.error_m,
+            quality.intensity_bits, quality.keep_fraction, FALSE};
   return TRUE;
 }
 

@@ -93,7 +93,8 @@ const std::array<lidar::gst::Property<Settings>, 3> kProperties = {{
      lidar::gst::EnumField<Settings, Reference>{&Settings::reference, ReferenceType}, 0, 0,
      GST_PARAM_MUTABLE_PLAYING},
     {"key-interval",
-     "Each sector comes at least so often as a slice that stands alone, for those who join late; 0: "
+     "Each sector comes at least so often as a slice that stands alone, for those who join late; "
+     "0: "
      "only when asked for [ns]",
      &Settings::key_interval, 0, 3600e9, GST_PARAM_MUTABLE_PLAYING},
 }};
@@ -119,9 +120,7 @@ Settings Snapshot(GstLidarEncoder* base) {
   return state.settings;
 }
 
-lidar::Time Now() {
-  return lidar::Time{std::chrono::microseconds(g_get_monotonic_time())};
-}
+lidar::Time Now() { return lidar::Time{std::chrono::microseconds(g_get_monotonic_time())}; }
 
 /// What the last slice left is known from now on; which of several encodings was sent is known only
 /// when the next slice comes.

@@ -14,7 +14,8 @@ void Receipts::OnBuffer(GstBuffer* buffer) {
       !gst_rtp_buffer_map(buffer, GST_MAP_READ, &rtp)) {
     return;
   }
-  const rtp::Delivery::Packet packet{gst_rtp_buffer_get_ssrc(&rtp), gst_rtp_buffer_get_seq(&rtp),
+  const rtp::Delivery::Packet packet{gst_rtp_buffer_get_ssrc(&rtp),
+                                     gst_rtp_buffer_get_seq(&rtp),
                                      {slice.scan_id, slice.slice_index},
                                      gst_rtp_buffer_get_marker(&rtp) != FALSE};
   gst_rtp_buffer_unmap(&rtp);
@@ -34,8 +35,8 @@ void Receipts::Watch(GstPad* src) {
       receipts->OnBuffer(gst_buffer_list_get(list, i));
     return GST_PAD_PROBE_OK;
   };
-  constexpr auto kBoth = static_cast<GstPadProbeType>(GST_PAD_PROBE_TYPE_BUFFER |
-                                                      GST_PAD_PROBE_TYPE_BUFFER_LIST);
+  constexpr auto kBoth =
+      static_cast<GstPadProbeType>(GST_PAD_PROBE_TYPE_BUFFER | GST_PAD_PROBE_TYPE_BUFFER_LIST);
   gst_pad_add_probe(src, kBoth, look, this, nullptr);
 }
 

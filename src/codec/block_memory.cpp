@@ -26,8 +26,8 @@ void PixelMemory::See(std::uint32_t range_mm, std::int64_t step) {
 
 std::shared_ptr<BlockMemory> Remember(const RangeImage& image, const RangeGrid& grid,
                                       const BlockMemory* before) {
-  auto memory = before != nullptr ? std::make_shared<BlockMemory>(*before)
-                                  : std::make_shared<BlockMemory>();
+  auto memory =
+      before != nullptr ? std::make_shared<BlockMemory>(*before) : std::make_shared<BlockMemory>();
   if (before == nullptr) {
     memory->beams = image.beams;
     memory->columns = image.columns;

@@ -54,9 +54,9 @@ using BlockMemoryPtr = std::shared_ptr<const BlockMemory>;
 
 /// How a block hangs together with others.
 struct BlockLink {
-  BlockMemoryPtr reference;               // to be coded by; null: the block stands alone
-  std::shared_ptr<BlockMemory> left;      // by the block, which names itself; null where it is of
-                                          // a coder that nothing can refer to
+  BlockMemoryPtr reference;           // to be coded by; null: the block stands alone
+  std::shared_ptr<BlockMemory> left;  // by the block, which names itself; null where it is of
+                                      // a coder that nothing can refer to
 };
 
 /// The memory after `image`, whose ranges are those that a decoder has, by that `before` it, which

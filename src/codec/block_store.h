@@ -19,7 +19,8 @@ class BlockStore {
   static constexpr std::size_t kOvertaking = 3;
 
   void Add(BlockMemoryPtr block);
-  /// The block of that name and place; null where there is none. Forgets much older ones of its sector.
+  /// The block of that name and place; null where there is none. Forgets much older ones of its
+  /// sector.
   BlockMemoryPtr Recall(std::uint32_t crc, const RangeImage& place);
 
   std::size_t size() const { return blocks_.size(); }

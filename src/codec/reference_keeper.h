@@ -28,8 +28,7 @@ class ReferenceKeeper {
   void set_key_interval(Duration interval) { key_interval_ = interval; }
 
   /// `receiver` has all of the slice.
-  void OnAcknowledged(Time now, std::uint32_t receiver, std::uint32_t scan_id,
-                      std::uint32_t index);
+  void OnAcknowledged(Time now, std::uint32_t receiver, std::uint32_t scan_id, std::uint32_t index);
   /// Somebody needs slices that stand alone, now.
   void OnKeyRequest();
 
@@ -62,7 +61,7 @@ class ReferenceKeeper {
   };
   /// One sector of all scans.
   struct Slot {
-    std::deque<Sent> sent;                // since the reference, the oldest first
+    std::deque<Sent> sent;                  // since the reference, the oldest first
     std::vector<BlockMemoryPtr> reference;  // empty: none
     std::optional<Time> last_key;
   };

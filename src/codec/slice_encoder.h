@@ -23,7 +23,7 @@ struct EncodedSlice {
   std::vector<std::uint8_t> bytes;
   std::size_t returns = 0;
   double step_m = 0;
-  double error_m = 0;  // bound that holds with this step
+  double error_m = 0;                  // bound that holds with this step
   std::vector<BlockMemoryPtr> blocks;  // what it left for later ones; empty: nothing
 };
 

@@ -47,8 +47,9 @@ bool Standstill::OnImage(const RangeImage& image, double step_m) {
   if (last_.size() > kMostSectors) last_.clear();
   std::vector<std::uint32_t>& last = last_[image.first_column];
   const bool known = last.size() == image.size();
-  const bool stands =
-      known && IsWorthIt(image, step_m, [&](std::size_t i) { return static_cast<double>(last[i]); });
+  const bool stands = known && IsWorthIt(image, step_m, [&](std::size_t i) {
+                        return static_cast<double>(last[i]);
+                      });
   last = image.ranges;
   return stands;
 }

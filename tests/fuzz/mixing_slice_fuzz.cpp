@@ -59,11 +59,9 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   lidar::codec::MixingDecoder decoder(sensor);
   // Twice: what one slice leaves behind must not change the next.
   const auto before = (choice & 128) != 0 ? Before(image, grid) : nullptr;
-  const bool first =
-      Decode(&decoder, {data + 1, size - 1}, grid, bits, before.get(), &image);
+  const bool first = Decode(&decoder, {data + 1, size - 1}, grid, bits, before.get(), &image);
   const auto ranges = image.ranges;
-  const bool second =
-      Decode(&decoder, {data + 1, size - 1}, grid, bits, before.get(), &image);
+  const bool second = Decode(&decoder, {data + 1, size - 1}, grid, bits, before.get(), &image);
   FUZZ_CHECK(first == second);
   if (!first) return 0;
   FUZZ_CHECK(image.ranges == ranges && ranges.size() == image.size());
@@ -79,8 +77,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   if (next) settings.memory = {before->pixels.data(), &next->model};
   if (!encoder.Encode(image, settings, &payload)) return 0;
   lidar::codec::RangeImage again = image;
-  FUZZ_CHECK(
-      Decode(&decoder, {payload.data(), payload.size()}, grid, 0, before.get(), &again));
+  FUZZ_CHECK(Decode(&decoder, {payload.data(), payload.size()}, grid, 0, before.get(), &again));
   FUZZ_CHECK(again.ranges == ranges);
   return 0;
 }

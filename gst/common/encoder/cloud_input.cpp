@@ -37,9 +37,10 @@ std::optional<GstLidarRawSlice> CloudInput::Read(GstLidarEncoder* encoder, const
     return std::nullopt;
   }
   CheckRanges(encoder, map.view(), slice.first_column);
-  return GstLidarRawSlice{map.data(),         map.size(),    static_cast<guint>(map.size() / row),
-                          info_.height,       slice.first_column, slice.scan_id,
-                          slice.slice_index, slice.slice_count};
+  return GstLidarRawSlice{
+      map.data(),        map.size(),         static_cast<guint>(map.size() / row),
+      info_.height,      slice.first_column, slice.scan_id,
+      slice.slice_index, slice.slice_count};
 }
 
 void CloudInput::CheckRanges(GstLidarEncoder* encoder, ByteView raw, guint first_column) {

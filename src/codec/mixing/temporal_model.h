@@ -13,7 +13,8 @@ constexpr unsigned kCountClasses = 5;
 constexpr unsigned kPhases = 9;
 
 // How many values the contexts have (docs/temporal-coder.md), in their order.
-constexpr std::array<std::uint32_t, 8> kTemporalContexts = {540, 1'536, 441, 264, 576, 256, 363, 144};
+constexpr std::array<std::uint32_t, 8> kTemporalContexts = {540, 1'536, 441, 264,
+                                                            576, 256,   363, 144};
 constexpr std::array<std::uint32_t, 3> kTemporalMaskContexts = {1'024, 256, 480};
 constexpr unsigned kTemporalCentres = 2;
 constexpr unsigned kTemporalMaskSets = 16;

@@ -38,23 +38,23 @@ class TemporalPart {
   /// To be called for each pixel, before anything else.
   void Look(std::uint32_t i) {
     const PixelMemory& p = pixels_[i];
-    constexpr std::uint64_t kScale =
-        std::uint64_t{kStep} * RangeGrid::kParts / PixelMemory::kPerMm;
+    constexpr std::uint64_t kScale = std::uint64_t{kStep} * RangeGrid::kParts / PixelMemory::kPerMm;
     const std::uint64_t half_cell = std::uint64_t{grid_.unit_mm()} * PixelMemory::kPerMm / 2;
     const std::uint64_t value = (p.mean + half_cell) * kScale / divisor_;
     known_ = p.count > 0 && value < std::uint64_t{kStep} * kMostBins;
     value_ = known_ ? static_cast<std::int32_t>(value) : 0;
     const auto spread = std::min<std::uint64_t>(4 * kScale * p.spread / divisor_, 1 << 16);
     spread_class_ = std::min(HalfOctave(static_cast<std::uint32_t>(spread)), kSpreadClasses - 1);
-    count_class_ = p.count < 3 ? std::max<std::uint32_t>(p.count, 1) - 1
-                   : p.count < 5 ? 2
-                   : p.count < 12 ? 3 : 4;
+    count_class_ = p.count < 3    ? std::max<std::uint32_t>(p.count, 1) - 1
+                   : p.count < 5  ? 2
+                   : p.count < 12 ? 3
+                                  : 4;
     index_ = i;
   }
   /// What the memory says about the bin is worth more than what its neighbours do.
   bool Knows() const {
-    return known_ && (west_.shift != Surprise::kChanged ||
-                      above_[index_].shift != Surprise::kChanged);
+    return known_ &&
+           (west_.shift != Surprise::kChanged || above_[index_].shift != Surprise::kChanged);
   }
 
   /// `mask_counters` are the first contexts of MaskPart.
@@ -136,17 +136,18 @@ class TemporalPart {
       return OffsetClass((value - CentreOf(base_)) * mirror_);
     };
     const std::uint32_t coarse = phase / 3 < 3 ? phase / 3 : 2;
-    const std::uint32_t activity = std::min(Size(west_) + Size(west2_) + Size(north) +
-                                                Size(north_west_) + Size(north_east),
-                                            11U);
-    const std::uint32_t changed = Changed(west_) | Changed(north) << 1 |
-                                  Changed(north_west_) << 2 | Changed(north_east) << 3;
+    const std::uint32_t activity = std::min(
+        Size(west_) + Size(west2_) + Size(north) + Size(north_west_) + Size(north_east), 11U);
+    const std::uint32_t changed =
+        Changed(west_) | Changed(north) << 1 | Changed(north_west_) << 2 | Changed(north_east) << 3;
     const std::array<std::uint32_t, kTemporalContexts.size()> values = {
         (phase * kSpreadClasses + spread_class_) * kCountClasses + count_class_,
         ((Shift(west_, mirror_) * 8 + Shift(north, mirror_)) * 8 + Shift(north_east, mirror_)) * 3 +
             coarse,
         ((Shift(west_, mirror_) < 7 ? Shift(west_, mirror_) : 3) * 7 +
-         (Shift(west2_, mirror_) < 7 ? Shift(west2_, mirror_) : 3)) * 9 + phase,
+         (Shift(west2_, mirror_) < 7 ? Shift(west2_, mirror_) : 3)) *
+                9 +
+            phase,
         (offset(around.median) * 8 + around.uneven / 3) * 3 + coarse,
         (around.range_class * kSpreadClasses + spread_class_) * 3 + coarse,
         changed * 16 + (p.returns & 15U),

@@ -26,7 +26,7 @@ struct StaticOptions {
 };
 
 struct Sizes {
-  std::size_t alone = 0;     // bytes without any reference
+  std::size_t alone = 0;  // bytes without any reference
   std::size_t referring = 0;
   std::size_t returns = 0;
   std::size_t slices = 0;
@@ -132,8 +132,8 @@ void RunStatic(const StaticOptions& o) {
     const ScanSet set = LoadScans(source, o.source);
     std::printf("%s: %zu scans, %u slices each, acknowledged %u scans later\n", set.name.c_str(),
                 set.scans.size(), o.slices, o.delay);
-    std::printf("  %6s %9s %9s %9s %9s %11s\n", "effort", "error", "alone", "referring",
-                "2nd half", "slices");
+    std::printf("  %6s %9s %9s %9s %9s %11s\n", "effort", "error", "alone", "referring", "2nd half",
+                "slices");
     std::printf("  %6s %9s %9s %9s %9s %11s\n", "", "[mm]", "[bits]", "[bits]", "[bits]",
                 "that refer");
     for (const unsigned effort : o.efforts)

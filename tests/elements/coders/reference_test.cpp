@@ -45,8 +45,7 @@ class StaticSensor : public ::testing::Test {
       received.ranges[received.count++] = {seq, seq};
     }
     arrived_.clear();
-    gst_harness_push_upstream_event(sender_.get(),
-                                    gst_lidar_event_new_packets_received(&received));
+    gst_harness_push_upstream_event(sender_.get(), gst_lidar_event_new_packets_received(&received));
   }
   /// Hands on what the receiver asks of the sender; true where it asked for a key unit.
   bool CarryKeyRequest() {
