@@ -19,7 +19,7 @@ struct MixingSettings {
   RangeGrid grid;
   IntensityScale intensity;  // 0 bits: geometry only
   unsigned effort = 2;       // 1 to 3
-  mixing::Memory memory;     // what its pixels have seen; none: the image stands alone
+  mixing::Memory memory{};   // what its pixels have seen; none: the image stands alone
 };
 
 /// A payload of so many bytes holds no more pixels than this. A pixel costs a decoder 0.3 us, and
