@@ -154,10 +154,10 @@ run() {
 
 # again_undisturbed DIR LOG: what streams in real time may fail because a compiler runs beside it.
 again_undisturbed() {
-  local failed='.result == "FAIL" or .result == "TIMEOUT" or .result == "INTERRUPT"'
-  jq -e -s "any(.[]; $failed)" "$1/meson-logs/$2" >/dev/null 2>&1 || return 0
+  local which='.result == "FAIL" or .result == "TIMEOUT" or .result == "INTERRUPT"'
+  jq -e -s "any(.[]; $which)" "$1/meson-logs/$2" >/dev/null 2>&1 || return 0
   [ "$sanitize" = no ] || sanitized_ready
-  again "$1" "$2" "Failed while a compiler ran beside them" "$failed"
+  again "$1" "$2" "Failed while a compiler ran beside them" "$which"
 }
 
 # The pipelines stream in real time, so they run one by one. Those of the suite beside wait for most
