@@ -146,13 +146,17 @@ bool Publisher::Drain(Duration timeout) {
   Lock lock(mutex_);
   draining_ = true;
   wake_.notify_all();
-  drained_.wait_for(lock, timeout, [this] { return !draining_ || interrupted_ || stopping_; });
+  const unsigned before = interrupts_;
+  drained_.wait_for(lock, timeout, [&] {
+    return !draining_ || interrupted_ || interrupts_ != before || stopping_;
+  });
   return !std::exchange(draining_, false);
 }
 
 void Publisher::Interrupt(bool on) {
   const std::lock_guard lock(mutex_);
   interrupted_ = on;
+  if (on) ++interrupts_;  // GstBaseSink takes it back before who waits may have seen it
   drained_.notify_all();
 }
 
@@ -280,7 +284,8 @@ bool Publisher::ConfigDue(Clock::time_point now) const {
   const StreamFormat::Ptr format = NextFormat();
   if (!format) return false;
   if (format != sent_format_) return true;
-  if (asked_ && now - config_at_ >= kAskedInterval) return true;
+  // What is kept is not to be filled by whoever asks.
+  if (asked_ && now - config_at_ >= (keeps() ? kConfigInterval / 2 : kAskedInterval)) return true;
   // A small box must not lose them before the messages that need them.
   const std::uint64_t max_bytes = settings_.stream.max_bytes;
   const bool box_turns = keeps() && max_bytes > 0 && bytes_since_config_ > max_bytes / 4;

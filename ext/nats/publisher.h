@@ -117,6 +117,7 @@ class Publisher : public std::enable_shared_from_this<Publisher> {
   bool stopping_ = false;
   bool draining_ = false;
   bool interrupted_ = false;
+  unsigned interrupts_ = 0;
 };
 
 }  // namespace lidar::nats

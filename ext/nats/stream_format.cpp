@@ -42,7 +42,9 @@ StreamFormat::Ptr StreamFormat::FromCaps(GstCaps* caps, std::string* why) {
     format->multiple_ = static_cast<std::size_t>(size);
   } else if (gst_structure_has_name(s, GST_LIDAR_ODOMETRY_MEDIA_TYPE)) {
     format->size_ = kPoseSize;
-  } else if (g_strcmp0(gst_structure_get_string(s, "alignment"), "slice") != 0) {
+  } else if ((!gst_structure_has_name(s, GST_LIDAR_SLICE_MEDIA_TYPE) &&
+              !gst_structure_has_name(s, GST_LIDAR_DRACO_MEDIA_TYPE)) ||
+             g_strcmp0(gst_structure_get_string(s, "alignment"), "slice") != 0) {
     *why = std::string("clouds, coded slices, IMU samples and odometry can be published, and no ") +
            gst_structure_get_name(s);
     return nullptr;

@@ -21,7 +21,7 @@ constexpr int kMaxPendingConfigs = 64;
 constexpr int kMaxPendingConfigBytes = 1 << 20;
 constexpr std::int64_t kSecondNs = 1'000'000'000;
 constexpr std::int64_t kAckWaitNs = 2 * kSecondNs;
-constexpr std::int64_t kMaxUnacknowledged = 256;  // messages
+constexpr std::int64_t kMaxUnacknowledged = 32;  // messages; more would wait here past kAckWaitNs
 
 /// libnats 3.4 writes .012 s as .12 s, so such times become the whole second before them.
 std::int64_t SafeTime(std::uint64_t time) {
@@ -252,7 +252,11 @@ void Subscriber::Acknowledge(natsMsg* message) { natsMsg_Ack(message, nullptr); 
 
 void Subscriber::TakeFormats(milliseconds wait) {
   natsMsg* raw = nullptr;
-  while (configs_ && natsSubscription_NextMsg(&raw, configs_.get(), wait.count()) == NATS_OK) {
+  // Whoever sends them faster than they are read must not keep the thread here.
+  for (int left = kMaxPendingConfigs;
+       left > 0 && configs_ &&
+       natsSubscription_NextMsg(&raw, configs_.get(), wait.count()) == NATS_OK;
+       --left) {
     const MessagePtr message(raw);
     wait = {};
     book_.Note(natsMsg_GetSubject(raw),
