@@ -64,7 +64,7 @@ bool ReferenceKeeper::Begin(Time now, const SliceName& slice) {
       slot.last_key = now;
     }
   }
-  if (slot.sent.size() >= kMostOfSlice) Restart(&slot);
+  if (slot.sent.size() >= kMostOfSlice || bytes_ >= kMostBytes) Restart(&slot);
   current_ = &slot;
   name_ = slice;
   return bytes_ < kMostBytes;
@@ -79,6 +79,9 @@ BlockMemoryPtr ReferenceKeeper::Reference(const RangeImage& image) const {
 
 void ReferenceKeeper::OnEncoded(std::vector<BlockMemoryPtr> blocks) {
   if (current_ == nullptr || blocks.empty()) return;
+  // An acknowledgement could not tell two of one name apart.
+  const auto same = [&](const Sent& sent) { return sent.scan_id == name_.scan_id; };
+  if (std::any_of(current_->sent.begin(), current_->sent.end(), same)) return Restart(current_);
   for (const BlockMemoryPtr& block : blocks) bytes_ += block->bytes();
   current_->sent.push_back({name_.scan_id, std::move(blocks)});
 }

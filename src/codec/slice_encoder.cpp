@@ -174,6 +174,7 @@ bool SliceEncoder::EncodeBlocks(const RangeSettings& settings, std::uint32_t cou
     Block& block = blocks_[i];
     if (!block.encoded) {
       slice->blocks.clear();
+      for (Block& each : blocks_) each.link = {};
       return false;
     }
     slice->bytes.insert(slice->bytes.end(), block.bytes.begin(), block.bytes.end());

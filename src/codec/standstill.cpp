@@ -44,7 +44,7 @@ bool Resembles(const RangeImage& image, const BlockMemory& memory, double step_m
 
 bool Standstill::OnImage(const RangeImage& image, double step_m) {
   // A source whose slices begin anywhere cannot be followed.
-  if (last_.size() > kMostSectors) last_.clear();
+  if (last_.size() > kMostSectors || (last_.size() + 1) * image.size() > kMostPixels) last_.clear();
   std::vector<std::uint32_t>& last = last_[image.first_column];
   const bool known = last.size() == image.size();
   const bool stands = known && IsWorthIt(image, step_m, [&](std::size_t i) {

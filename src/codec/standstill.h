@@ -21,6 +21,7 @@ class Standstill {
 
  private:
   static constexpr std::size_t kMostSectors = 256;
+  static constexpr std::size_t kMostPixels = 4U << 20;        // 16 MiB
   std::map<std::uint32_t, std::vector<std::uint32_t>> last_;  // ranges, by first column
 };
 

@@ -85,9 +85,9 @@ ReceiverEvents::News ReceiverEvents::Take(GstPad* src) {
     std::lock_guard lock(mutex_);
     news = std::exchange(news_, {});
   }
-  if (news.received.empty()) return news;
   const gint64 now = g_get_monotonic_time();
-  if (looked_at_us_ == 0 || now - looked_at_us_ >= G_USEC_PER_SEC) {
+  constexpr gint64 kLookInterval = G_USEC_PER_SEC / 10;
+  if (looked_at_us_ == 0 || now - looked_at_us_ >= kLookInterval) {
     looked_at_us_ = now;
     const bool had_one_way = std::exchange(one_way_, HasOneWay(src));
     // Who was added lacks what the receiver has.

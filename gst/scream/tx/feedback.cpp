@@ -63,7 +63,9 @@ bool Take(GstLidarScreamTx* self, const scream::CongestionFeedback& report, GSoc
     GST_INFO_OBJECT(self, "feedback comes from a new address: a new path");
     state.controller->OnRouteChange(now);
   }
-  if (result == scream::FeedbackResult::kAccepted) KeepReceipts(state, report);
+  // Transport-wide feedback names no receiver, and its packets may still be dropped behind it.
+  if (result == scream::FeedbackResult::kAccepted && report.sender_ssrc != 0)
+    KeepReceipts(state, report);
   state.reporter.Evaluate(now);
   state.pacing.Wake();
   return true;

@@ -177,10 +177,11 @@ MessagePtr UpstreamReporter::EcnMessage() {
 
 bool UpstreamReporter::HasWork() const {
   const auto& streams = state().streams;
+  const Time now = TxNow(state());
   return stop_ || stats_due_ || estimate_due_ || ecn_state_ != ecn_announced_ ||
          watch_.silent() != silence_announced_ ||
-         std::any_of(streams.begin(), streams.end(), [](const auto& s) {
-           return s->target_due || s->key_unit_due || !s->receipts.empty();
+         std::any_of(streams.begin(), streams.end(), [now](const auto& s) {
+           return s->target_due || MayAskForKeyUnit(*s, now) || !s->receipts.empty();
          });
 }
 
