@@ -3,17 +3,17 @@
 
 #include <httplib.h>
 
-#include <chrono>
 #include <mutex>
-#include <stdexcept>
-#include <thread>
+#include <optional>
 #include <utility>
+
+#include "src/tools/common/http_listener.h"
 
 namespace lidar::edge {
 
 class MetricsServer::Impl {
  public:
-  Impl(const std::string& address, int port) : port_(port) {
+  Impl(const std::string& address, int port) {
     // Whoever connects and says nothing holds one of few threads, and not for long.
     server_.new_task_queue = [] { return new httplib::ThreadPool(2); };
     server_.set_read_timeout(2, 0);
@@ -24,22 +24,10 @@ class MetricsServer::Impl {
       const std::lock_guard lock(mutex_);
       response.set_content(text_, "text/plain; version=0.0.4");
     });
-    const bool bound = port != 0 ? server_.bind_to_port(address.c_str(), port)
-                                 : (port_ = server_.bind_to_any_port(address.c_str())) > 0;
-    if (!bound)
-      throw std::runtime_error("cannot serve HTTP on " + address + ":" + std::to_string(port));
-    thread_ = std::thread([this] { server_.listen_after_bind(); });
-    // A server that does not run yet cannot be stopped.
-    while (!server_.is_running()) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    listener_.emplace(&server_, address, port);
   }
-  ~Impl() {
-    server_.stop();
-    thread_.join();
-  }
-  Impl(const Impl&) = delete;
-  Impl& operator=(const Impl&) = delete;
 
-  int port() const { return port_; }
+  int port() const { return listener_->port(); }
   void Publish(std::string text) {
     const std::lock_guard lock(mutex_);
     text_ = std::move(text);
@@ -49,8 +37,7 @@ class MetricsServer::Impl {
   std::mutex mutex_;  // guards text_
   std::string text_;
   httplib::Server server_;
-  int port_;
-  std::thread thread_;
+  std::optional<tools::HttpListener> listener_;  // the last, so that it ends first
 };
 
 MetricsServer::MetricsServer(const std::string& address, int port)

@@ -4,9 +4,11 @@
 #include <httplib.h>
 
 #include <chrono>
-#include <stdexcept>
+#include <optional>
 #include <thread>
 #include <utility>
+
+#include "src/tools/common/http_listener.h"
 
 namespace lidar::tools {
 namespace {
@@ -50,24 +52,9 @@ class HttpApi::Impl {
     else
       AddConfig();
     AddReplay();
-    port_ = options.port;
-    const bool bound = options.port != 0
-                           ? server_.bind_to_port(options.address.c_str(), options.port)
-                           : (port_ = server_.bind_to_any_port(options.address.c_str())) > 0;
-    if (!bound)
-      throw std::runtime_error("cannot serve HTTP on " + options.address + ":" +
-                               std::to_string(options.port));
-    thread_ = std::thread([this] { server_.listen_after_bind(); });
-    // A server that does not run yet cannot be stopped.
-    while (!server_.is_running()) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    listener_.emplace(&server_, options.address, options.port);
   }
-  ~Impl() {
-    server_.stop();
-    thread_.join();
-  }
-  Impl(const Impl&) = delete;
-  Impl& operator=(const Impl&) = delete;
-  int port() const { return port_; }
+  int port() const { return listener_->port(); }
 
  private:
   void AddFaults() {
@@ -144,8 +131,7 @@ class HttpApi::Impl {
   Sensor& sensor_;
   std::function<std::string()> stats_;
   httplib::Server server_;
-  int port_ = 0;
-  std::thread thread_;
+  std::optional<HttpListener> listener_;  // the last, so that it ends first
 };
 
 HttpApi::HttpApi(const Options& options, Sensor* sensor, std::function<std::string()> stats)
