@@ -222,12 +222,13 @@ void PushBounds(GstLidarEncoder* self) {
 
 /// Tells the subclass what receivers have said since the last slice.
 void TellOfReceivers(GstLidarEncoder* self) {
-  const auto news = self->state->receivers.Take(self->state->pads.src());
   auto* klass = GST_LIDAR_ENCODER_GET_CLASS(self);
+  if (klass->request_key == nullptr) return;  // nothing it sends depends on them
+  const auto news = self->state->receivers.Take(self->state->pads.src());
   if (klass->acknowledge != nullptr)
     for (const auto& slice : news.received)
       klass->acknowledge(self, slice.receiver, slice.scan_id, slice.slice_index);
-  if (news.key_requested && klass->request_key != nullptr) klass->request_key(self);
+  if (news.key_requested) klass->request_key(self);
 }
 
 LoopResult EncodeLoaded(GstLidarEncoder* self, const CloudInput::Place& place) {
