@@ -16,6 +16,16 @@ class Limits : public ::testing::Test {
     for (int i = 0; i < packets; ++i)
       streams_.Find(id)->OnQueued(now, {1, DataSize::Bytes(1000), i + 1 == packets, timestamp});
   }
+  /// How many of the next packets that go are of the stream.
+  int TurnsOf(StreamId stream, int packets) {
+    int turns = 0;
+    for (int i = 0; i < packets; ++i) {
+      const StreamId id = *streams_.Next();
+      turns += id == stream ? 1 : 0;
+      streams_.OnSent(kStart, id, 1, DataSize::Bytes(1000));
+    }
+    return turns;
+  }
   static double InMbps(DataRate rate) { return rate.bits_per_second() / 1e6; }
 
   Parameters parameters_;
@@ -136,13 +146,7 @@ TEST_F(Limits, WhoWasIdleGetsNoCreditForIt) {
   for (int i = 0; i < 30; ++i) streams_.OnSent(kStart, a, 1, DataSize::Bytes(1000));
   streams_.OnQueued(streams_.Find(b));
   Queue(b, kStart, 30);
-  int turns_of_b = 0;
-  for (int i = 0; i < 20; ++i) {
-    const StreamId id = *streams_.Next();
-    turns_of_b += id == b ? 1 : 0;
-    streams_.OnSent(kStart, id, 1, DataSize::Bytes(1000));
-  }
-  EXPECT_NEAR(turns_of_b, 10, 1);
+  EXPECT_NEAR(TurnsOf(b, 20), 10, 1);
 }
 
 TEST_F(Limits, WhatAStrictStreamSendsCostsNobodyATurn) {
@@ -156,13 +160,7 @@ TEST_F(Limits, WhatAStrictStreamSendsCostsNobodyATurn) {
   for (int i = 0; i < 10; ++i) streams_.OnSent(kStart, audio, 3, DataSize::Bytes(1000));
   streams_.OnQueued(streams_.Find(b));
   Queue(b, kStart, 30);
-  int turns_of_b = 0;
-  for (int i = 0; i < 20; ++i) {
-    const StreamId id = *streams_.Next();
-    turns_of_b += id == b ? 1 : 0;
-    streams_.OnSent(kStart, id, 1, DataSize::Bytes(1000));
-  }
-  EXPECT_NEAR(turns_of_b, 10, 1);
+  EXPECT_NEAR(TurnsOf(b, 20), 10, 1);
 }
 
 class ScanGroups : public ::testing::Test {

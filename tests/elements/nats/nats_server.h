@@ -16,6 +16,8 @@
 #include <thread>
 #include <vector>
 
+#include "gst/common/refs.h"
+
 namespace lidar::test {
 
 constexpr std::chrono::seconds kPatience{30};
@@ -43,8 +45,8 @@ class NatsServer {
   }
 
   NatsServer() {
-    char name[] = "/tmp/nats-test-XXXXXX";
-    folder_ = mkdtemp(name);
+    const gst::StringPtr name(g_dir_make_tmp("nats-test-XXXXXX", nullptr));
+    folder_ = name.get();
   }
   ~NatsServer() {
     Kill();
