@@ -51,6 +51,8 @@ sanitized_job=
 sanitized_result=
 passed=0
 failed=0
+second_tries=()
+most_again=6
 started=$SECONDS
 
 # Long simulations and command-line programs run the code of the other tests again, at many times
@@ -122,15 +124,20 @@ tally() {
   failed=$((failed + bad))
 }
 
-# again DIR LOG REASON FILTER: runs once more, one by one, the tests in one of meson's logs that jq's FILTER
-# selects. What they do now is what counts.
+# again DIR LOG [meson options]: runs the failed tests in one of meson's logs once more, one by one and
+# without a compiler beside them: many stream in real time, on a machine that others may use. What they
+# do now is what counts, and the last lines name them. Where many fail, the tree is wrong, not the moment.
 again() {
   local dir=$1 log=$1/meson-logs/$2 names
-  mapfile -t names < <(jq -r "select($4) | .name | sub(\".*/ \"; \"\")" "$log" 2>/dev/null)
-  [ ${#names[@]} -gt 0 ] || return 0
-  echo "== $3; again: ${names[*]}"
-  jq -c "select($4 | not)" "$log" >"$log.rest" && mv "$log.rest" "$log"
-  meson test -C "$dir" --no-rebuild --logbase again --num-processes 1 --print-errorlogs --timeout-multiplier 4 "${names[@]}" 2>&1 |
+  shift 2
+  local which='.result == "FAIL" or .result == "TIMEOUT" or .result == "INTERRUPT"'
+  mapfile -t names < <(jq -r "select($which) | .name | sub(\".*/ \"; \"\")" "$log" 2>/dev/null)
+  [ ${#names[@]} -gt 0 ] && [ ${#names[@]} -le "$most_again" ] || return 0
+  [ -z "$sanitized_job" ] || sanitized_ready
+  echo "== failed, and run again alone: ${names[*]}"
+  second_tries+=("${names[@]/#/$(basename "$dir"): }")
+  jq -c "select($which | not)" "$log" >"$log.rest" && mv "$log.rest" "$log"
+  meson test -C "$dir" --no-rebuild --logbase again --num-processes 1 --print-errorlogs "$@" --timeout-multiplier 12 "${names[@]}" 2>&1 |
     shorten
   tally "$dir/meson-logs/again.json"
 }
@@ -142,24 +149,8 @@ run() {
   echo "== $(basename "$dir"): $suite (${SECONDS}s)"
   rm -f "$dir/meson-logs/testlog.json"
   meson test -C "$dir" --no-rebuild --suite "$suite" --print-errorlogs --timeout-multiplier 4 "$@" 2>&1 | shorten
-  if [ "$suite" = pipelines ]; then
-    again_undisturbed "$dir" testlog.json
-  else
-    # It does so by itself where a thread ends meanwhile.
-    again "$dir" testlog.json "LeakSanitizer crashed" \
-      '.result == "FAIL" and (.stderr // "" | test("LeakSanitizer has encountered a fatal error"))'
-  fi
+  [ "$suite" = lint ] || again "$dir" testlog.json "$@"
   tally "$dir/meson-logs/testlog.json"
-}
-
-# again_undisturbed DIR LOG: what streams in real time may fail because a compiler runs beside it. Without
-# one a failure is a failure.
-again_undisturbed() {
-  [ -n "$sanitized_job" ] || return 0
-  local which='.result == "FAIL" or .result == "TIMEOUT" or .result == "INTERRUPT"'
-  jq -e -s "any(.[]; $which)" "$1/meson-logs/$2" >/dev/null 2>&1 || return 0
-  sanitized_ready
-  again "$1" "$2" "Failed while a compiler ran beside them" "$which"
 }
 
 # The pipelines stream in real time, so they run one by one. Those of the suite beside wait for most
@@ -172,7 +163,7 @@ run_pipelines() {
   run "$dir" pipelines --num-processes 1
   wait "$beside"
   shorten <"$dir/beside.log"
-  again_undisturbed "$dir" beside.json
+  again "$dir" beside.json
   tally "$dir/meson-logs/beside.json"
 }
 
@@ -243,5 +234,6 @@ if [ "$tsan" = yes ]; then
 fi
 
 echo "== $((SECONDS - started)) s"
+[ ${#second_tries[@]} = 0 ] || printf 'a second try for %s\n' "${second_tries[@]}"
 echo "$passed passed, $failed failed"
 [ "$failed" = 0 ] && [ "$passed" -gt 0 ]
