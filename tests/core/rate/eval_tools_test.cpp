@@ -160,7 +160,7 @@ TEST(Measure, FindsErrorsBelowTheBoundAndCloseToIt) {
   SliceCodec codec;
   codec.Load(set.scans.front(), {});
   for (const char* name : {"range-adaptive", "range-draco", "xyz-kd6", "xyz-sequential"}) {
-    const CodingMode& mode = ModeNamed(name);
+    const CodingMode mode = ModeNamed(name);
     const double step = codec.Bound(mode).CoarsestStep(0.02);
     const auto m = Measure(set, mode, {step, 0, 0, 4});
     ASSERT_TRUE(m) << name;
