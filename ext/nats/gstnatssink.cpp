@@ -38,11 +38,13 @@ struct NatsSinkSettings {
   Duration max_age = std::chrono::hours(1);
   guint64 max_bytes = guint64{4} << 30;
   guint replicas = 1;
+  std::string stream_subjects;
+  bool keep_trying = false;
   guint buffer_size = 8U << 20;
   Duration drain_timeout = std::chrono::seconds(2);
 };
 
-const std::array<Stat<PublisherCounters>, 11> kStats = {{
+const std::array<Stat<PublisherCounters>, 12> kStats = {{
     {"messages", &PublisherCounters::messages},
     {"bytes", &PublisherCounters::bytes},
     {"messages-acknowledged", &PublisherCounters::acknowledged},
@@ -52,6 +54,7 @@ const std::array<Stat<PublisherCounters>, 11> kStats = {{
     {"messages-waiting", &PublisherCounters::waiting},
     {"bytes-waiting", &PublisherCounters::buffered},
     {"server-errors", &PublisherCounters::server_errors},
+    {"refusals", &PublisherCounters::refusals},
     {"reconnects", &PublisherCounters::reconnects},
     {"connected", &PublisherCounters::connected},
 }};
@@ -101,7 +104,7 @@ static StructurePtr Stats(GObject* object) {
   return stats;
 }
 
-static const std::array<Property<NatsSinkSettings>, 14> kProperties = {{
+static const std::array<Property<NatsSinkSettings>, 16> kProperties = {{
     Within<&NatsSinkSettings::nats>(NatsRows(), "url"),
     Within<&NatsSinkSettings::nats>(NatsRows(), "subject"),
     Within<&NatsSinkSettings::nats>(NatsRows(), "jetstream"),
@@ -110,10 +113,16 @@ static const std::array<Property<NatsSinkSettings>, 14> kProperties = {{
      &NatsSinkSettings::max_bytes, 0, 9e18},
     {"replicas", "Servers of a cluster that keep a copy each, where the stream is made",
      &NatsSinkSettings::replicas, 1, 5},
+    {"jetstream-subjects",
+     "Pattern of the subjects that the stream of JetStream keeps, such as fleet.*.lidar.>; NULL: "
+     "that of this sink",
+     &NatsSinkSettings::stream_subjects},
     {"buffer-size", "Bytes that wait for the server or its acknowledgement, the oldest go [bytes]",
      &NatsSinkSettings::buffer_size, 65536, 1 << 30},
     {"drain-timeout", "Time that EOS waits until the server has everything [ns]",
      &NatsSinkSettings::drain_timeout, 0, 6e10, GST_PARAM_MUTABLE_PLAYING},
+    {"keep-trying", "A server that refuses us is a warning and is tried again, after 1 s to 16 s",
+     &NatsSinkSettings::keep_trying},
     Within<&NatsSinkSettings::nats>(NatsRows(), "credentials-file"),
     Within<&NatsSinkSettings::nats>(NatsRows(), "token"),
     Within<&NatsSinkSettings::nats>(NatsRows(), "tls-ca-file"),
@@ -121,8 +130,8 @@ static const std::array<Property<NatsSinkSettings>, 14> kProperties = {{
     Within<&NatsSinkSettings::nats>(NatsRows(), "tls-key-file"),
     {"stats",
      "messages, bytes [bytes], messages-acknowledged, messages-resent, messages-dropped, "
-     "messages-too-large, messages-waiting, bytes-waiting [bytes], server-errors, reconnects, "
-     "connected, buffers-refused",
+     "messages-too-large, messages-waiting, bytes-waiting [bytes], server-errors, refusals, "
+     "reconnects, connected, buffers-refused",
      Stats},
 }};
 
@@ -135,17 +144,38 @@ static lidar::nats::PublisherSettings ToPublisher(const NatsSinkSettings& settin
   lidar::nats::PublisherSettings p;
   p.connection = settings.nats.connection;
   p.subject = settings.nats.subject;
-  p.stream = {settings.nats.stream, settings.max_age, settings.max_bytes, settings.replicas};
+  p.stream = {settings.nats.stream, settings.max_age, settings.max_bytes, settings.replicas,
+              settings.stream_subjects};
   p.max_buffered = settings.buffer_size;
+  p.keep_trying = settings.keep_trying;
   return p;
+}
+
+/// False after an error message.
+static bool CheckStreamSubjects(GstLidarNatsSink* self, const NatsSinkSettings& settings) {
+  const std::string& pattern = settings.stream_subjects;
+  const std::string& subject = settings.nats.subject;
+  const bool covers =
+      pattern.empty() || (lidar::nats::Covers(pattern, subject) &&
+                          lidar::nats::Covers(pattern, lidar::nats::ConfigSubject(subject, "*")));
+  // A stream of all subjects would keep, and answer, the server's own.
+  const bool all = !pattern.empty() && (pattern.front() == '*' || pattern.front() == '>');
+  if (covers && !all) return true;
+  GST_ELEMENT_ERROR(self, RESOURCE, SETTINGS,
+                    ("jetstream-subjects \"%s\" %s.", pattern.c_str(),
+                     all ? "begins with a wildcard"
+                         : ("does not cover " + subject + " and " + subject + ".config.*").c_str()),
+                    (nullptr));
+  return false;
 }
 
 static gboolean Start(GstBaseSink* base) {
   auto* self = GST_LIDAR_NATS_SINK(base);
   State& state = StateOf(self);
   NatsSinkSettings settings = Snapshot(state);
-  if (!CheckNatsSettings(GST_ELEMENT(self), &settings.nats)) return FALSE;
-  state.watch = std::make_shared<ConnectionWatch>(GST_ELEMENT(self));
+  if (!CheckNatsSettings(GST_ELEMENT(self), &settings.nats) || !CheckStreamSubjects(self, settings))
+    return FALSE;
+  state.watch = std::make_shared<ConnectionWatch>(GST_ELEMENT(self), settings.keep_trying);
   state.format.reset();
   state.refused_caps.Reset();
   state.warned_refused = false;

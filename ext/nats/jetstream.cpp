@@ -84,6 +84,8 @@ natsStatus AddOrUpdate(jsCtx* js, const StreamSettings& settings,
   jsStreamInfo* raw = nullptr;
   const natsStatus status = js_GetStreamInfo(&raw, js, settings.name.c_str(), nullptr, code);
   const StreamInfoPtr info(raw);
+  // A stream of all subjects answers requests itself, with an acknowledgement.
+  if (status == NATS_OK && info->Config == nullptr) return NATS_PROTOCOL_ERROR;
   if (status == NATS_OK) return Update(js, settings, subjects, *info->Config, code);
   return status == NATS_NOT_FOUND ? Add(js, settings, subjects, code) : status;
 }

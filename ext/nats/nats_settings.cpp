@@ -75,6 +75,7 @@ void ConnectionWatch::Note(const nats::ConnectionState& state) {
   std::unique_lock lock(mutex_);
   if (silent_) return;
   const bool changed = std::exchange(connected_, state.connected()) != state.connected();
+  if (state.connected()) closed_ = false;
   const bool closed = state.closed && !std::exchange(closed_, true);
   const bool error = state.errors > std::exchange(errors_, std::max(errors_, state.errors));
   lock.unlock();
@@ -86,7 +87,9 @@ void ConnectionWatch::Note(const nats::ConnectionState& state) {
         gst_message_new_element(GST_OBJECT(element_.get()),
                                 gst_structure_new("nats-connection-changed", "connected",
                                                   G_TYPE_BOOLEAN, state.connected(), nullptr)));
-  if (closed)
+  if (closed && keeps_trying_)
+    Warn(std::string("The NATS server refuses us: ") + words.get() + "; it is tried again.");
+  else if (closed)
     PostRefused(state);
   else if (error)
     Warn(std::string("The NATS server complains: ") + words.get() + ".");

@@ -29,7 +29,9 @@ bool CheckNatsSettings(GstElement* element, NatsSettings* settings);
 /// server complains, and an error where it refuses us.
 class ConnectionWatch {
  public:
-  explicit ConnectionWatch(GstElement* element) : element_(GST_ELEMENT(gst_object_ref(element))) {}
+  /// `keeps_trying`: a server that refuses us is a warning.
+  ConnectionWatch(GstElement* element, bool keeps_trying)
+      : element_(GST_ELEMENT(gst_object_ref(element))), keeps_trying_(keeps_trying) {}
   /// Runs in any thread.
   void Note(const nats::ConnectionState& state);
   void Warn(const std::string& text);
@@ -39,6 +41,7 @@ class ConnectionWatch {
 
  private:
   const ElementPtr element_;  // threads of libnats may still be here when it stops
+  const bool keeps_trying_;
   std::mutex mutex_;
   bool silent_ = false;
   bool connected_ = false;

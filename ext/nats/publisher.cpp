@@ -49,9 +49,31 @@ Publisher::Publisher(PublisherSettings settings, PublisherEvents events)
 std::shared_ptr<Publisher> Publisher::Start(const PublisherSettings& settings,
                                             PublisherEvents events, std::string* why) {
   std::shared_ptr<Publisher> publisher(new Publisher(settings, std::move(events)));
-  const bool open = publisher->Open(why);
+  const bool open = publisher->MakeInbox(why) && (settings.keep_trying || publisher->Open(why)) &&
+                    publisher->StartThread(why);
   if (!open) publisher->Stop();
   return open ? publisher : nullptr;
+}
+
+bool Publisher::MakeInbox(std::string* why) {
+  natsInbox* raw = nullptr;
+  natsInbox_Create(&raw);
+  const InboxPtr inbox(raw);
+  if (inbox)
+    ack_prefix_ = std::string(inbox.get()) + ".";
+  else
+    *why = "memory is short";
+  return inbox != nullptr;
+}
+
+bool Publisher::StartThread(std::string* why) {
+  try {
+    thread_ = std::thread([this] { Run(); });
+  } catch (const std::system_error&) {
+    *why = "a thread cannot be started";
+    return false;
+  }
+  return true;
 }
 
 bool Publisher::Open(std::string* why) {
@@ -70,25 +92,18 @@ bool Publisher::Open(std::string* why) {
       why);
   if (!connection_ || !Subscribe(AskSubject(settings_.subject), &Publisher::OnAsk, &asks_, why))
     return false;
-  if (keeps()) {
-    natsInbox* raw = nullptr;
-    natsInbox_Create(&raw);
-    const InboxPtr inbox(raw);
-    js_ = OpenJetStream(connection_->get());
-    if (!inbox || !js_) {
-      *why = "memory is short";
-      return false;
-    }
-    ack_prefix_ = std::string(inbox.get()) + ".";
-    if (!Subscribe(ack_prefix_ + "*", &Publisher::OnAck, &acks_, why)) return false;
-  }
-  try {
-    thread_ = std::thread([this] { Run(); });
-  } catch (const std::system_error&) {
-    *why = "a thread cannot be started";
-    return false;
-  }
-  return true;
+  if (!keeps()) return true;
+  js_ = OpenJetStream(connection_->get());
+  if (js_) return Subscribe(ack_prefix_ + "*", &Publisher::OnAck, &acks_, why);
+  *why = "memory is short";
+  return false;
+}
+
+void Publisher::Close() {
+  asks_.reset();
+  acks_.reset();
+  js_.reset();
+  connection_.reset();
 }
 
 bool Publisher::Subscribe(const std::string& subject, void (Publisher::*call)(natsMsg*),
@@ -126,10 +141,7 @@ void Publisher::Stop() {
     drained_.notify_all();
   }
   if (thread_.joinable()) thread_.join();
-  asks_.reset();
-  acks_.reset();
-  js_.reset();
-  connection_.reset();
+  Close();
   const std::lock_guard lock(mutex_);
   counters_.dropped += outbox_.Clear();
   counters_.connected = false;
@@ -215,16 +227,14 @@ void Publisher::Run() {
 }
 
 void Publisher::Step(Lock* lock) {
-  const ConnectionState state = connection_->state();
-  counters_.connected = state.connected();
-  counters_.reconnects = state.connections > 0 ? state.connections - 1 : 0;
-  counters_.server_errors = state.errors;
-  const auto now = Clock::now();
+  const ConnectionState state = connection_ ? connection_->state() : ConnectionState();
+  NoteConnection(state);
+  if (settings_.keep_trying && (!connection_ || state.closed)) return OpenAgain(lock);
   if (!state.connected()) {
     wake_.wait_for(*lock, kPatrol);
     return;
   }
-  RetryAfterConnect(state.connections);
+  const auto now = Clock::now();
   RetryUnanswered(now);
   if (keeps() && !stream_ready_ && !PrepareStream(lock)) return;
   if (ConfigDue(now))
@@ -237,10 +247,37 @@ void Publisher::Step(Lock* lock) {
     wake_.wait_for(*lock, kPatrol);
 }
 
-void Publisher::RetryAfterConnect(unsigned connections) {
-  if (connections == connections_) return;
+void Publisher::NoteConnection(const ConnectionState& state) {
+  const unsigned connections = connections_before_ + state.connections;
+  counters_.connected = state.connected();
+  counters_.reconnects = connections > 0 ? connections - 1 : 0;
+  counters_.server_errors = errors_before_ + state.errors;
+  if (connections == connections_ || !state.connected()) return;
   connections_ = connections;
+  refusals_.Reset();
   SendAllAgain();
+}
+
+/// libnats gives up a connection that the server has refused twice, so there is to be another.
+void Publisher::OpenAgain(Lock* lock) {
+  if (Clock::now() < open_at_) {
+    wake_.wait_until(*lock, open_at_);
+    return;
+  }
+  if (connection_) {
+    const ConnectionState state = connection_->state();
+    connections_before_ += state.connections;
+    errors_before_ += state.errors;
+    if (state.closed) ++counters_.refusals;
+  }
+  lock->unlock();
+  Close();
+  std::string why;
+  const bool open = Open(&why);
+  if (!open) Close();
+  lock->lock();
+  open_at_ = Clock::now() + refusals_.Next();
+  if (!open) Tell(lock, "NATS cannot be used: " + why);
 }
 
 void Publisher::SendAllAgain() {
@@ -256,6 +293,11 @@ void Publisher::RetryUnanswered(Clock::time_point now) {
   if (message || config) SendAllAgain();  // nobody may keep the subject any more
 }
 
+std::vector<std::string> Publisher::KeptSubjects() const {
+  if (!settings_.stream.subjects.empty()) return {settings_.stream.subjects};
+  return {settings_.subject, ConfigSubject(settings_.subject, "*")};
+}
+
 /// True once the stream of JetStream is there.
 bool Publisher::PrepareStream(Lock* lock) {
   const auto now = Clock::now();
@@ -265,8 +307,7 @@ bool Publisher::PrepareStream(Lock* lock) {
   }
   lock->unlock();
   std::string why;
-  const bool ready = EnsureStream(js_.get(), settings_.stream,
-                                  {settings_.subject, ConfigSubject(settings_.subject, "*")}, &why);
+  const bool ready = EnsureStream(js_.get(), settings_.stream, KeptSubjects(), &why);
   lock->lock();
   stream_ready_ = ready;
   retry_at_ = Clock::now() + StreamPause();

@@ -9,11 +9,13 @@
 #include <mutex>
 #include <string>
 #include <thread>
+#include <vector>
 
 #include "ext/nats/connection.h"
 #include "ext/nats/jetstream.h"
 #include "ext/nats/message.h"
 #include "ext/nats/outbox.h"
+#include "src/base/backoff.h"
 
 namespace lidar::nats {
 
@@ -22,6 +24,8 @@ struct PublisherSettings {
   std::string subject;
   StreamSettings stream;
   std::size_t max_buffered = 8U << 20;  // bytes
+  // A server that refuses us, and settings that are wrong, are tried again: later they may be good.
+  bool keep_trying = false;
 };
 
 struct PublisherCounters {
@@ -34,6 +38,7 @@ struct PublisherCounters {
   std::uint64_t waiting = 0;    // to be sent or acknowledged
   std::uint64_t buffered = 0;   // bytes in those
   std::uint64_t server_errors = 0;
+  std::uint64_t refusals = 0;  // of the server, with keep_trying
   unsigned reconnects = 0;
   bool connected = false;
 };
@@ -47,7 +52,8 @@ struct PublisherEvents {
 
 class Publisher : public std::enable_shared_from_this<Publisher> {
  public:
-  /// Null, and `why`, where the settings are wrong.
+  /// Null, and `why`, where the settings are wrong. With `keep_trying` it does not wait for the
+  /// network.
   static std::shared_ptr<Publisher> Start(const PublisherSettings& settings, PublisherEvents events,
                                           std::string* why);
   /// Nothing runs any more when it returns; what was not sent is counted as dropped.
@@ -67,6 +73,9 @@ class Publisher : public std::enable_shared_from_this<Publisher> {
 
   Publisher(PublisherSettings settings, PublisherEvents events);
   bool Open(std::string* why);
+  bool MakeInbox(std::string* why);
+  bool StartThread(std::string* why);
+  void Close();
   bool Subscribe(const std::string& subject, void (Publisher::*call)(natsMsg*),
                  SubscriptionPtr* out, std::string* why);
   void OnAsk(natsMsg* message);
@@ -74,8 +83,10 @@ class Publisher : public std::enable_shared_from_this<Publisher> {
 
   void Run();
   void Step(Lock* lock);
+  void NoteConnection(const ConnectionState& state);
+  void OpenAgain(Lock* lock);
+  std::vector<std::string> KeptSubjects() const;
   bool PrepareStream(Lock* lock);
-  void RetryAfterConnect(unsigned connections);
   void SendAllAgain();
   void RetryUnanswered(Clock::time_point now);
   StreamFormat::Ptr NextFormat() const;
@@ -91,11 +102,12 @@ class Publisher : public std::enable_shared_from_this<Publisher> {
   const PublisherSettings settings_;
   const PublisherEvents events_;
   const std::uint64_t run_;
-  std::unique_ptr<Connection> connection_;  // from Open() to Stop()
+  // The thread's, while there is one.
+  std::unique_ptr<Connection> connection_;  // null: not yet, or refused
   JetStreamPtr js_;
-  std::string ack_prefix_;  // an inbox with a dot behind it
   SubscriptionPtr asks_;
   SubscriptionPtr acks_;
+  std::string ack_prefix_;  // an inbox with a dot behind it; fixed once the thread runs
   std::thread thread_;
 
   mutable std::mutex mutex_;  // guards what follows; never held while sending or calling events_
@@ -109,8 +121,12 @@ class Publisher : public std::enable_shared_from_this<Publisher> {
   Clock::time_point config_at_{};  // when it did
   std::uint64_t bytes_since_config_ = 0;
   Clock::time_point retry_at_{};  // not before: the stream is not there
-  unsigned connections_ = 0;      // that were seen
-  std::string told_;              // the trouble that is known
+  Clock::time_point open_at_{};   // not before: the server has refused us
+  Backoff refusals_{std::chrono::seconds(1), std::chrono::seconds(16)};
+  unsigned connections_before_ = 0;  // of the connections that were
+  std::uint64_t errors_before_ = 0;
+  unsigned connections_ = 0;  // that were seen
+  std::string told_;          // the trouble that is known
   bool asked_ = false;
   bool config_unanswered_ = false;
   bool stream_ready_ = false;

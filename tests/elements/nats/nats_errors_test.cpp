@@ -106,18 +106,80 @@ TEST_F(NatsErrors, AWrongTokenIsAnErrorAndTheRightOneIsTaken) {
   EXPECT_TRUE(receiver.WaitForBuffers(8));
 }
 
+TEST_F(NatsErrors, ASinkThatKeepsTryingIsTakenOnceTheServerWants) {
+  server_.Start({"--auth", "other"});
+  NatsPipeline sender(kLive + "! lidarenc" + kSee + "! natssink name=n keep-trying=true" +
+                      At("token=s3cret"));
+  sender.Play();
+  EXPECT_NE(sender.WaitForWarning().find("refuses us"), std::string::npos);
+  EXPECT_EQ(sender.stat("connected"), 0U);
+  server_.Start({"--auth", "s3cret"});
+  NatsPipeline receiver("natssrc name=n" + At("token=s3cret") + "! fakesink name=see sync=false");
+  receiver.Play();
+  EXPECT_TRUE(receiver.WaitForBuffers(8));
+  EXPECT_EQ(sender.stat("connected"), 1U);
+}
+
+TEST_F(NatsErrors, CredentialsAreTakenFromAFile) {
+  const auto options = server_.OptionsForCredentials();
+  if (options.empty()) GTEST_SKIP() << "openssl or python3 is not installed";
+  server_.Start(options);
+  const std::string good = At("credentials-file=" + server_.folder() + "/good.creds");
+  NatsPipeline receiver("natssrc name=n" + good + "! fakesink name=see sync=false");
+  receiver.Play();
+  PublishSlices(8, good);
+  EXPECT_TRUE(receiver.WaitForBuffers(8));
+  const std::string bad = At("credentials-file=" + server_.folder() + "/bad.creds");
+  for (const std::string& with : {bad, At()}) {
+    NatsPipeline refused("natssrc name=n" + with + "! fakesink name=see");
+    refused.Play();
+    EXPECT_NE(refused.WaitForEnd().find("refuses us"), std::string::npos);
+  }
+}
+
+/// A certificate for 127.0.0.1 that signs itself, as NAME.pem and NAME-key.pem.
+bool MakeCertificate(const std::string& folder, const std::string& name) {
+  const std::string make =
+      "cd " + folder +
+      " && openssl req -x509 -newkey ec -pkeyopt ec_paramgen_curve:prime256v1 -nodes -keyout " +
+      name + "-key.pem -out " + name +
+      ".pem -days 2 -subj /CN=127.0.0.1 -addext subjectAltName=IP:127.0.0.1 2>/dev/null";
+  return std::system(make.c_str()) == 0;
+}
+
+TEST_F(NatsErrors, AnAddressWithTlsMeansTls) {
+  server_.Start();
+  // In the clear there would be a connection. One of several addresses is enough.
+  for (const std::string& url : {server_.url("tls"), server_.url() + "," + server_.url("tls")}) {
+    NatsPipeline wary("natssrc name=n url=" + url + " ! fakesink name=see sync=false");
+    wary.Play();
+    EXPECT_NE(wary.WaitForEnd().find("refuses us"), std::string::npos) << url;
+    EXPECT_EQ(wary.stat("connected"), 0U);
+  }
+}
+
+TEST_F(NatsErrors, AnAddressWithTlsTrustsWhomTheSystemTrusts) {
+  const std::string f = server_.folder();
+  if (!MakeCertificate(f, "cert")) GTEST_SKIP() << "openssl is not installed";
+  server_.Start({"--tls", "--tlscert", f + "/cert.pem", "--tlskey", f + "/cert-key.pem"});
+  const std::string tls = " url=" + server_.url("tls") + " ";
+  g_setenv("SSL_CERT_FILE", (f + "/cert.pem").c_str(), TRUE);
+  NatsPipeline receiver("natssrc name=n" + tls + "! fakesink name=see sync=false");
+  receiver.Play();
+  PublishSlices(8, tls);
+  EXPECT_TRUE(receiver.WaitForBuffers(8));
+  g_unsetenv("SSL_CERT_FILE");
+  NatsPipeline wary("natssrc name=n" + tls + "! fakesink name=see sync=false");
+  wary.Play();
+  EXPECT_TRUE(Eventually([&] { return server_.Logged("TLS handshake error") > 0; }));
+  EXPECT_EQ(wary.stat("connected"), 0U);
+}
+
 TEST_F(NatsErrors, TlsChecksTheServersCertificate) {
   const std::string f = server_.folder();
-  const std::string make =
-      "cd " + f +
-      " && openssl req -x509 -newkey ec -pkeyopt ec_paramgen_curve:prime256v1 -nodes"
-      " -keyout key.pem -out cert.pem -days 2 -subj /CN=127.0.0.1"
-      " -addext subjectAltName=IP:127.0.0.1 2>/dev/null && openssl req -x509 -newkey ec -pkeyopt"
-      " ec_paramgen_curve:prime256v1 -nodes -keyout other-key.pem -out other.pem -days 2 -subj "
-      "/CN=x"
-      " 2>/dev/null";
-  if (std::system(make.c_str()) != 0) GTEST_SKIP() << "openssl is not installed";
-  server_.Start({"--tls", "--tlscert", f + "/cert.pem", "--tlskey", f + "/key.pem"});
+  if (!MakeCertificate(f, "cert") || !MakeCertificate(f, "other"))
+    GTEST_SKIP() << "openssl is not installed";
+  server_.Start({"--tls", "--tlscert", f + "/cert.pem", "--tlskey", f + "/cert-key.pem"});
   const std::string good = " url=" + server_.url("tls") + " tls-ca-file=" + f + "/cert.pem ";
   NatsPipeline receiver("natssrc name=n" + good + "! fakesink name=see sync=false");
   receiver.Play();
@@ -146,6 +208,10 @@ INSTANTIATE_TEST_SUITE_P(
         WrongSetting{
             "natssink name=n jetstream=a.b",
             "NATS takes no jetstream \"a.b\": it has something beside letters, digits, - and _."},
+        WrongSetting{"natssink name=n subject=a.b jetstream=s jetstream-subjects=a.*",
+                     "jetstream-subjects \"a.*\" does not cover a.b and a.b.config.*."},
+        WrongSetting{"natssink name=n jetstream=s jetstream-subjects=>",
+                     "jetstream-subjects \">\" begins with a wildcard."},
         WrongSetting{"natssink name=n tls-ca-file=/none",
                      "NATS cannot be used: cannot read /none."},
         WrongSetting{"natssink name=n credentials-file=/none",

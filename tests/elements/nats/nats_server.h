@@ -9,6 +9,7 @@
 #include <unistd.h>
 
 #include <chrono>
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <functional>
@@ -76,6 +77,20 @@ class NatsServer {
     return scheme + "://" + user + "127.0.0.1:" + port_;
   }
   const std::string& folder() const { return folder_; }
+  /// How often the server has told of it.
+  std::size_t Logged(const std::string& text) const {
+    std::ifstream in(folder_ + "/log");
+    const std::string log{std::istreambuf_iterator<char>(in), {}};
+    std::size_t count = 0;
+    for (auto at = log.find(text); at != log.npos; at = log.find(text, at + 1)) ++count;
+    return count;
+  }
+  /// Files good.creds and bad.creds in the folder. Empty where a tool for it is missing.
+  std::vector<std::string> OptionsForCredentials() const {
+    const std::string make = std::string(g_getenv("NATS_MAKE_CREDENTIALS")) + " " + folder_;
+    if (std::system(make.c_str()) != 0) return {};
+    return {"-c", folder_ + "/operator.conf", "-js=false"};
+  }
   pid_t pid() const { return pid_; }
 
  private:

@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Pauses between attempts at what fails: each twice the last, up to a limit.
+#pragma once
+#include <algorithm>
+
+#include "src/base/time.h"
+
+namespace lidar {
+
+class Backoff {
+ public:
+  Backoff(Duration first, Duration most) : first_(first), most_(most), next_(first) {}
+
+  /// How long to wait before the next attempt.
+  Duration Next() {
+    const Duration pause = next_;
+    next_ = std::min(2 * next_, most_);
+    return pause;
+  }
+  /// It went well.
+  void Reset() { next_ = first_; }
+
+ private:
+  Duration first_;
+  Duration most_;
+  Duration next_;
+};
+
+}  // namespace lidar
