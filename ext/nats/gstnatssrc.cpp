@@ -17,6 +17,7 @@
 
 #include "ext/nats/message.h"
 #include "ext/nats/nats_settings.h"
+#include "ext/nats/place_book.h"
 #include "ext/nats/subscriber.h"
 #include "gst/common/element_class.h"
 #include "gst/common/gstlidar.h"
@@ -30,6 +31,7 @@ namespace {
 using namespace lidar::gst;
 using lidar::nats::Delivery;
 using lidar::nats::Place;
+using lidar::nats::PlaceBook;
 using lidar::nats::ReadMessage;
 using lidar::nats::StreamFormat;
 using lidar::nats::Subscriber;
@@ -53,17 +55,19 @@ struct Counters {
   guint64 without_caps = 0;
   guint64 lost = 0;
   guint64 again = 0;
+  guint64 late = 0;
   guint64 overruns = 0;
   guint reconnects = 0;
   bool connected = false;
 };
-const std::array<Stat<Counters>, 9> kStats = {{
+const std::array<Stat<Counters>, 10> kStats = {{
     {"messages", &Counters::messages},
     {"bytes", &Counters::bytes},
     {"messages-damaged", &Counters::damaged},
     {"messages-without-caps", &Counters::without_caps},
     {"messages-lost", &Counters::lost},
     {"messages-again", &Counters::again},
+    {"messages-late", &Counters::late},
     {"messages-overrun", &Counters::overruns},
     {"reconnects", &Counters::reconnects},
     {"connected", &Counters::connected},
@@ -81,9 +85,9 @@ struct State {
   std::unique_ptr<Subscriber> subscriber;
   std::shared_ptr<ConnectionWatch> watch;
   StreamFormat::Ptr format;
-  std::string trouble;           // that was told
-  Delivery delivery;             // of the buffer that was pushed last
-  std::optional<Place> place;    // of it
+  std::string trouble;  // that was told
+  Delivery delivery;    // of the buffer that was pushed last
+  PlaceBook places;
   std::optional<guint64> first;  // when JetStream stored the first message
   gint64 no_wait_until_us = 0;   // unknown caps are not waited for
   bool warned_damaged = false;
@@ -133,7 +137,7 @@ static const std::array<Property<NatsSrcSettings>, 14> kProperties = {{
     Within<&NatsSrcSettings::nats>(NatsRows(), "tls-key-file"),
     {"stats",
      "messages, bytes [bytes], messages-damaged, messages-without-caps, messages-lost, "
-     "messages-again, messages-overrun, reconnects, connected",
+     "messages-again, messages-late, messages-overrun, reconnects, connected",
      Stats},
 }};
 
@@ -184,7 +188,7 @@ static void ForgetStream(State& state) {
   state.format.reset();
   state.trouble.clear();
   state.delivery = {};
-  state.place.reset();
+  state.places = {};
   state.first.reset();
   state.no_wait_until_us = 0;
   state.warned_damaged = false;
@@ -201,7 +205,7 @@ static gboolean Start(GstBaseSrc* base) {
   }
   if (!CheckSettings(self, &state.now)) return FALSE;
   ForgetStream(state);
-  state.watch = std::make_shared<ConnectionWatch>(GST_ELEMENT(self));
+  state.watch = std::make_shared<ConnectionWatch>(GST_ELEMENT(self), false);
   std::string why;
   state.subscriber = Subscriber::Open(
       ToSubscriber(state.now), [watch = state.watch](const auto& now) { watch->Note(now); }, &why);
@@ -239,20 +243,20 @@ static void NoteDamaged(GstLidarNatsSrc* self) {
                         (nullptr));
 }
 
-/// What is missing between two messages of one sink; those of a queue group go to others, too.
-static void NotePlace(GstLidarNatsSrc* self, const Place& place, GstBuffer* buffer) {
+/// False where the message came before: JetStream sends again what it saw no acknowledgement of.
+/// The messages of a queue group go to others, too, so what is missing here is not lost.
+static bool NotePlace(GstLidarNatsSrc* self, const Place& place, GstBuffer* buffer) {
   State& state = StateOf(self);
-  const bool shared = !state.now.nats.queue_group.empty();
-  if (!shared && state.place && state.place->run == place.run) {
-    if (place.number <= state.place->number) {
-      Count(self, &Counters::again);
-      return;
-    }
-    const guint64 missing = place.number - state.place->number - 1;
-    if (missing > 0) GST_BUFFER_FLAG_SET(buffer, GST_BUFFER_FLAG_DISCONT);
-    Count(self, &Counters::lost, missing);
-  }
-  state.place = place;
+  const PlaceBook::Verdict verdict = state.places.Note(place);
+  const std::lock_guard lock(state.mutex);
+  Counters& counters = state.counters;
+  if (verdict.again) ++counters.again;
+  if (verdict.late) ++counters.late;
+  if (verdict.again || !state.now.nats.queue_group.empty()) return !verdict.again;
+  if (verdict.missing > 0) GST_BUFFER_FLAG_SET(buffer, GST_BUFFER_FLAG_DISCONT);
+  counters.lost += verdict.missing;
+  if (verdict.fills_gap && counters.lost > 0) --counters.lost;
+  return true;
 }
 
 /// Null after the message was dropped and counted.
@@ -293,7 +297,7 @@ static GstFlowReturn Take(GstLidarNatsSrc* self, const Delivery& delivery, GstBu
     if (!gst_base_src_set_caps(GST_BASE_SRC(self), format->caps())) return GST_FLOW_NOT_NEGOTIATED;
     state.format = format;
   }
-  NotePlace(self, read->place, read->buffer.get());
+  if (!NotePlace(self, read->place, read->buffer.get())) return GST_FLOW_CUSTOM_SUCCESS;
   SetTimes(state, delivery, read->buffer.get());
   state.warned_damaged = false;
   Count(self, &Counters::messages);

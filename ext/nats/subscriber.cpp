@@ -22,6 +22,7 @@ constexpr int kMaxPendingConfigBytes = 1 << 20;
 constexpr std::int64_t kSecondNs = 1'000'000'000;
 constexpr std::int64_t kAckWaitNs = 2 * kSecondNs;
 constexpr std::int64_t kMaxUnacknowledged = 32;  // messages; more would wait here past kAckWaitNs
+constexpr int kMaxPendingUnacknowledged = 256;   // where somebody else made the consumer
 
 /// libnats 3.4 writes .012 s as .12 s, so such times become the whole second before them.
 std::int64_t SafeTime(std::uint64_t time) {
@@ -143,7 +144,12 @@ natsStatus Subscriber::SubscribeDurable(jsErrCode* code) {
   natsSubscription* raw = nullptr;
   s = js_SubscribeSync(&raw, js_.get(), settings_.subject.c_str(), nullptr, &options, code);
   messages_.reset(raw);
-  return s;
+  if (s != NATS_OK) return s;
+  // What goes beyond comes again, as nobody acknowledges it. A message must fit.
+  const std::int64_t largest = natsConnection_GetMaxPayload(connection_->get());
+  const auto bytes = std::max<std::int64_t>(settings_.max_pending, 2 * largest);
+  return natsSubscription_SetPendingLimits(
+      raw, kMaxPendingUnacknowledged, static_cast<int>(std::min<std::int64_t>(bytes, G_MAXINT)));
 }
 
 natsStatus Subscriber::SubscribeStored(jsErrCode* code) {
@@ -223,7 +229,6 @@ Subscriber::Event Subscriber::NoteStored(Delivery* delivery) {
   }
   delivery->stored = static_cast<std::uint64_t>(std::max<std::int64_t>(meta->Timestamp, 0));
   delivery->to_come = meta->NumPending;
-  delivery->again = meta->NumDelivered > 1;
   return Event::kMessage;
 }
 

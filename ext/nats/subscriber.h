@@ -28,7 +28,6 @@ struct Delivery {
   MessagePtr message;
   std::optional<std::uint64_t> stored;  // when [ns since 1970]
   std::uint64_t to_come = 0;            // messages that are stored behind it
-  bool again = false;
 };
 
 /// Used by one thread.

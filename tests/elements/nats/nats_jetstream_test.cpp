@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // What JetStream keeps: replays, durable consumers, a server that dies.
+#include "ext/nats/jetstream.h"
 #include "tests/elements/nats/nats_pipeline.h"
 
 namespace lidar::test {
@@ -26,6 +27,45 @@ class NatsJetStream : public NatsTest {
   }
 
   std::string caps_;  // of what Replay() gave
+};
+
+/// A durable consumer of r1.front that somebody else has made.
+class DurableConsumer {
+ public:
+  DurableConsumer(const std::string& url, std::int64_t ack_wait_ns, std::int64_t max_pending) {
+    EXPECT_EQ(natsConnection_ConnectTo(&nc_, url.c_str()), NATS_OK);
+    js_ = nats::OpenJetStream(nc_);
+    jsConsumerConfig config;
+    jsConsumerConfig_Init(&config);
+    config.Durable = "slam";
+    config.DeliverSubject = "slam-delivery";
+    config.FilterSubject = "r1.front";
+    config.AckPolicy = js_AckExplicit;
+    config.AckWait = ack_wait_ns;
+    config.MaxAckPending = max_pending;
+    EXPECT_EQ(js_AddConsumer(nullptr, js_.get(), "box", &config, nullptr, nullptr), NATS_OK);
+  }
+  ~DurableConsumer() {
+    js_.reset();
+    natsConnection_Destroy(nc_);
+  }
+  /// Messages that were sent again and are not acknowledged.
+  std::int64_t again() const { return Info()->NumRedelivered; }
+  /// Messages that nobody has acknowledged.
+  std::uint64_t open() const {
+    const auto info = Info();
+    return info->NumPending + static_cast<std::uint64_t>(info->NumAckPending);
+  }
+
+ private:
+  nats::ConsumerInfoPtr Info() const {
+    jsConsumerInfo* info = nullptr;
+    EXPECT_EQ(js_GetConsumerInfo(&info, js_.get(), "box", "slam", nullptr, nullptr), NATS_OK);
+    return nats::ConsumerInfoPtr(info);
+  }
+
+  natsConnection* nc_ = nullptr;
+  nats::JetStreamPtr js_;
 };
 
 TEST_F(NatsJetStream, ABlackBoxIsReplayedWhole) {
@@ -105,6 +145,37 @@ TEST_F(NatsJetStream, ADurableConsumerGoesOnWhereTheLastOneEnded) {
   EXPECT_LE(second.count(), 64U - 28U);
 }
 
+TEST_F(NatsJetStream, WhatADurableConsumerSendsAgainIsTakenOnce) {
+  const auto sent = PublishSlices(40, At(kBox));
+  const DurableConsumer consumer(server_.url(), 200'000'000, 100);
+  NatsPipeline receiver("natssrc name=n durable=slam" + At(kBox) +
+                        "! fakesink name=see sync=false");
+  receiver.Hold(true);
+  receiver.Play();
+  ASSERT_TRUE(Eventually([&] { return consumer.again() > 0; }));
+  receiver.Hold(false);
+  ASSERT_TRUE(Eventually([&] { return consumer.open() == 0; }));
+  ExpectSameStream(receiver.buffers(), sent);
+  EXPECT_GT(receiver.stat("messages-again"), 0U);
+  EXPECT_EQ(receiver.stat("messages-lost"), 0U);
+}
+
+TEST_F(NatsJetStream, WhatWaitsForADurableConsumerIsBoundedAndNothingIsLost) {
+  constexpr int kCount = 600;
+  PublishSlices(kCount, At(kBox));
+  const DurableConsumer consumer(server_.url(), 1'000'000'000, 10'000);
+  NatsPipeline receiver("natssrc name=n durable=slam" + At(kBox) +
+                        "! fakesink name=see sync=false");
+  receiver.Hold(true);
+  receiver.Play();
+  ASSERT_TRUE(Eventually([&] { return consumer.again() > 0; }));
+  receiver.Hold(false);
+  ASSERT_TRUE(Eventually([&] { return consumer.open() == 0; }));
+  EXPECT_EQ(receiver.count(), std::size_t{kCount});
+  EXPECT_GT(receiver.stat("messages-overrun"), 0U);
+  EXPECT_EQ(receiver.stat("messages-lost"), 0U);
+}
+
 TEST_F(NatsJetStream, OfTwoWithOneDurableConsumerTheSecondWaitsForTheFirst) {
   PublishSlices(8, At(kBox));
   auto first = std::make_unique<NatsPipeline>("natssrc name=n durable=slam start-time=0" +
@@ -165,6 +236,35 @@ TEST_F(NatsJetStream, ManyThatBeginAtOnceShareABox) {
     EXPECT_EQ(sender->stat("messages-dropped"), 0U);
   }
   ExpectSameStream(Replay(0), senders[1]->buffers());
+}
+
+TEST_F(NatsJetStream, SinksThatNameAllSubjectsFindTheStreamAsTheyWantIt) {
+  const std::string all = " jetstream=box jetstream-subjects=r1.> ";
+  const auto front = PublishSlices(16, At("subject=r1.front" + all));
+  const auto rear = PublishSlices(8, At("subject=r1.rear" + all));
+  ExpectSameStream(Replay(0), front);
+  natsConnection* raw = nullptr;
+  ASSERT_EQ(natsConnection_ConnectTo(&raw, server_.url().c_str()), NATS_OK);
+  nats::JetStreamPtr js = nats::OpenJetStream(raw);
+  jsStreamInfo* info = nullptr;
+  ASSERT_EQ(js_GetStreamInfo(&info, js.get(), "box", nullptr, nullptr), NATS_OK);
+  ASSERT_EQ(info->Config->SubjectsLen, 1);
+  EXPECT_STREQ(info->Config->Subjects[0], "r1.>");
+  jsStreamInfo_Destroy(info);
+  js.reset();
+  natsConnection_Destroy(raw);
+}
+
+TEST_F(NatsJetStream, AStreamThatAnswersForTheServerIsToldOf) {
+  natsConnection* raw = nullptr;
+  ASSERT_EQ(natsConnection_ConnectTo(&raw, server_.url().c_str()), NATS_OK);
+  nats::JetStreamPtr js = nats::OpenJetStream(raw);
+  std::string why;
+  EXPECT_TRUE(nats::EnsureStream(js.get(), {"all", {}, 0, 1, ""}, {"*.>"}, &why)) << why;
+  EXPECT_FALSE(nats::EnsureStream(js.get(), {"all", {}, 0, 1, ""}, {"*.>"}, &why));
+  EXPECT_NE(why, "");
+  js.reset();
+  natsConnection_Destroy(raw);
 }
 
 TEST_F(NatsJetStream, AServerWithoutJetStreamIsToldOf) {

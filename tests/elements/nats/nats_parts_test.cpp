@@ -2,6 +2,7 @@
 // The parts of the plugin that need no server.
 #include <gtest/gtest.h>
 
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -9,6 +10,7 @@
 #include "ext/nats/jetstream.h"
 #include "ext/nats/message.h"
 #include "ext/nats/outbox.h"
+#include "ext/nats/place_book.h"
 #include "gst/common/gstlidar.h"
 #include "tests/elements/mcap/recording.h"
 
@@ -207,6 +209,35 @@ TEST_F(NatsParts, TheOutboxSendsAgainInOrder) {
   EXPECT_EQ(order, (std::vector<std::uint64_t>{0, 2, 3, 4, 5}));
   EXPECT_EQ(box.Clear(), 5U);
   EXPECT_EQ(box.bytes(), 0U);
+}
+
+TEST_F(NatsParts, ABookOfPlacesKnowsWhatCameAndWhatIsMissing) {
+  PlaceBook book;
+  EXPECT_FALSE(book.Note({1, 10}).again);
+  EXPECT_TRUE(book.Note({1, 10}).again);
+  EXPECT_EQ(book.Note({1, 11}).missing, 0U);
+  EXPECT_EQ(book.Note({1, 15}).missing, 3U);
+  const auto late = book.Note({1, 13});
+  EXPECT_TRUE(late.late && late.fills_gap && !late.again);
+  for (const std::uint64_t n : {10U, 11U, 13U, 15U}) EXPECT_TRUE(book.Note({1, n}).again) << n;
+  EXPECT_FALSE(book.Note({1, 12}).again);
+  EXPECT_FALSE(book.Note({1, 14}).again);
+  EXPECT_EQ(book.Note({1, 16}).missing, 0U) << "there is no gap any more";
+  const auto before = book.Note({1, 5});
+  EXPECT_TRUE(before.late && !before.fills_gap);
+  EXPECT_FALSE(book.Note({2, 10}).again) << "another sink";
+  EXPECT_FALSE(book.Note({1, std::numeric_limits<std::uint64_t>::max()}).again);
+  EXPECT_TRUE(book.Note({1, std::numeric_limits<std::uint64_t>::max()}).again);
+}
+
+TEST_F(NatsParts, ABookOfPlacesIsBounded) {
+  PlaceBook book;
+  for (std::uint64_t n = 0; n < 100'000; n += 2) book.Note({1, n});  // all apart
+  EXPECT_TRUE(book.Note({1, 99'998}).again);
+  EXPECT_FALSE(book.Note({1, 0}).again) << "forgotten";
+  for (std::uint64_t run = 2; run < 1'000; ++run) book.Note({run, 1});
+  EXPECT_TRUE(book.Note({999, 1}).again);
+  EXPECT_FALSE(book.Note({1, 99'998}).again) << "forgotten";
 }
 
 TEST_F(NatsParts, APatternCoversWhatItsWildcardsSay) {

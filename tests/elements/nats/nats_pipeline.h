@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Pipelines with an end at NATS that are watched while they run.
 #pragma once
+#include <atomic>
 #include <mutex>
 
 #include "tests/elements/mcap/recording.h"
@@ -28,7 +29,12 @@ class NatsPipeline {
   }
 
   void Play() { gst_element_set_state(pipeline_.get(), GST_STATE_PLAYING); }
-  void Stop() { gst_element_set_state(pipeline_.get(), GST_STATE_NULL); }
+  void Stop() {
+    held_ = false;
+    gst_element_set_state(pipeline_.get(), GST_STATE_NULL);
+  }
+  /// The next buffer stays where it is seen until this is taken back.
+  void Hold(bool on) { held_ = on; }
   /// Ends a live source.
   void SendEos() { gst_element_send_event(pipeline_.get(), gst_event_new_eos()); }
   /// The text of the error; empty at EOS.
@@ -90,14 +96,17 @@ class NatsPipeline {
   static GstPadProbeReturn OnBuffer(GstPad*, GstPadProbeInfo* info, gpointer data) {
     auto* self = static_cast<NatsPipeline*>(data);
     const Kept kept = Keep(GST_PAD_PROBE_INFO_BUFFER(info));
-    const std::lock_guard lock(self->mutex_);
+    std::unique_lock lock(self->mutex_);
     self->buffers_.push_back(kept);
+    lock.unlock();
+    while (self->held_) std::this_thread::sleep_for(std::chrono::milliseconds(5));
     return GST_PAD_PROBE_OK;
   }
 
   gst::ElementPtr pipeline_;
   gst::ElementPtr nats_;
   GstBus* bus_ = nullptr;
+  std::atomic<bool> held_{false};
   mutable std::mutex mutex_;
   std::vector<Kept> buffers_;
 };
