@@ -17,18 +17,18 @@
 #include <thread>
 #include <vector>
 
-#include "ext/nats/connection.h"
-#include "ext/nats/jetstream.h"
 #include "src/tools/common/guard.h"
 #include "src/tools/common/program.h"
 #include "src/tools/edge/edge_config.h"
 #include "src/tools/edge/metrics_server.h"
 #include "src/tools/edge/receiver.h"
+#include "src/tools/edge/reporter.h"
 
 namespace lidar::edge {
 namespace {
 
 constexpr std::chrono::milliseconds kPoll{50};
+constexpr unsigned kStopSeconds = 6;
 
 std::atomic<bool> stopping{false};
 
@@ -42,22 +42,6 @@ EdgeConfig ReadConfig(const std::string& path) {
   } catch (const std::exception& e) {
     throw std::runtime_error(path + ": " + e.what());
   }
-}
-
-/// Of the statistics alone: each robot's stream has a connection of its own.
-std::unique_ptr<nats::Connection> Connect(const NatsConfig& nats) {
-  if (nats.url.empty()) return nullptr;
-  nats::ConnectionSettings settings;
-  settings.url = nats.url;
-  settings.name = "lidar-edge";
-  settings.credentials_file = nats.credentials_file;
-  settings.tls_ca_file = nats.tls_ca_file;
-  settings.tls_cert_file = nats.tls_cert_file;
-  settings.tls_key_file = nats.tls_key_file;
-  std::string why;
-  auto connection = nats::Connection::Open(settings, nullptr, &why);
-  if (!connection) throw std::runtime_error("NATS cannot be used: " + why);
-  return connection;
 }
 
 void AddProcess(Exposition* exposition) {
@@ -77,66 +61,63 @@ void AddProcess(Exposition* exposition) {
 
 class Edge {
  public:
-  explicit Edge(const EdgeConfig& config) : config_(config), connection_(Connect(config.nats)) {
+  explicit Edge(const EdgeConfig& config) : config_(config) {
     for (const RobotConfig& robot : config.robots)
       receivers_.push_back(std::make_unique<Receiver>(config, robot));
+    if (!config.nats.url.empty()) reporter_.emplace(config, [this] { return Reports(); });
     if (config.http_port < 0) return;
     metrics_.emplace(config.http_address, config.http_port);
     std::printf("metrics http://%s:%d/metrics\n", config.http_address.c_str(), metrics_->port());
     std::fflush(stdout);
   }
+  /// All sessions end at the same time.
+  ~Edge() {
+    for (const auto& receiver : receivers_) receiver->AskToEnd();
+  }
 
   void Run() {
-    MakeStream();
-    auto tell_at = Receiver::Clock::now();
+    auto tell_at = Clock::now();
     while (!stopping) {
-      const auto now = Receiver::Clock::now();
-      for (const auto& receiver : receivers_) receiver->Poll(now);
-      if (now >= tell_at) {
-        Tell();
-        tell_at = now + std::chrono::duration_cast<Receiver::Clock::duration>(
-                            std::chrono::duration<double>(config_.interval_s));
-      }
       std::this_thread::sleep_for(kPoll);
+      if (!metrics_ || Clock::now() < tell_at) continue;
+      tell_at = Clock::now() + std::chrono::duration_cast<Clock::duration>(
+                                   std::chrono::duration<double>(config_.interval_s));
+      Exposition exposition;
+      AddProcess(&exposition);
+      for (const auto& receiver : receivers_) receiver->AddTo(&exposition);
+      metrics_->Publish(exposition.text());
     }
   }
 
  private:
-  /// One stream for all robots. Where the server is not there yet, their sinks make it.
-  void MakeStream() {
-    const NatsConfig& nats = config_.nats;
-    if (nats.jetstream.empty() || !connection_->state().connected()) return;
-    const auto js = lidar::nats::OpenJetStream(connection_->get());
-    const lidar::nats::StreamSettings settings{nats.jetstream, std::chrono::seconds(nats.max_age_s),
-                                               nats.max_bytes, 1};
-    std::string why;
-    if (!js || !lidar::nats::EnsureStream(js.get(), settings, {nats.prefix + ".*.lidar.>"}, &why))
-      std::fprintf(stderr, "the stream %s cannot be made: %s\n", nats.jetstream.c_str(),
-                   why.c_str());
-  }
+  using Clock = std::chrono::steady_clock;
 
-  void Tell() {
-    if (connection_ && connection_->state().connected())
-      for (const auto& receiver : receivers_) {
-        const std::string subject = StatisticsSubject(config_.nats, receiver->robot());
-        // Errors of the network may hold any bytes.
-        const std::string text =
-            receiver->Statistics().dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
-        natsConnection_Publish(connection_->get(), subject.c_str(), text.data(),
-                               static_cast<int>(text.size()));
-      }
-    if (!metrics_) return;
-    Exposition exposition;
-    AddProcess(&exposition);
-    for (const auto& receiver : receivers_) receiver->AddTo(&exposition);
-    metrics_->Publish(exposition.text());
+  Reporter::Reports Reports() const {
+    Reporter::Reports reports;
+    for (const auto& receiver : receivers_)
+      // Errors of the network may hold any bytes.
+      reports.emplace_back(
+          StatisticsSubject(config_.nats, receiver->robot()),
+          receiver->Statistics().dump(-1, ' ', false, nlohmann::json::error_handler_t::replace));
+    return reports;
   }
 
   const EdgeConfig& config_;
-  std::unique_ptr<nats::Connection> connection_;
   std::vector<std::unique_ptr<Receiver>> receivers_;
+  std::optional<Reporter> reporter_;
   std::optional<MetricsServer> metrics_;
 };
+
+/// Servers, disks and clients that do not answer must not keep the process: its end is a matter of
+/// kStopSeconds.
+void BoundTheEnd() {
+  std::signal(SIGALRM, [](int) {
+    constexpr char kText[] = "lidar-edge: not all has ended in time; ending all the same\n";
+    if (write(STDERR_FILENO, kText, sizeof kText - 1) >= 0) _exit(0);
+    _exit(0);
+  });
+  alarm(kStopSeconds);
+}
 
 int Main(int argc, char** argv) {
   CLI::App app(
@@ -152,7 +133,9 @@ int Main(int argc, char** argv) {
   if (check) return 0;
   gst_init(nullptr, nullptr);
   for (const int signal : {SIGINT, SIGTERM}) std::signal(signal, [](int) { stopping = true; });
-  Edge(config).Run();
+  Edge edge(config);
+  edge.Run();
+  BoundTheEnd();
   return 0;
 }
 

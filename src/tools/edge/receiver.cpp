@@ -4,7 +4,8 @@
 #include <algorithm>
 #include <cstdio>
 #include <nlohmann/json.hpp>
-#include <stdexcept>
+
+#include "src/tools/edge/pipeline.h"
 
 namespace lidar::edge {
 namespace {
@@ -14,76 +15,14 @@ using gst::MessagePtr;
 using gst::StructurePtr;
 using std::chrono::seconds;
 
-constexpr seconds kAfterFailure{2};
+constexpr std::chrono::milliseconds kPoll{100};
+constexpr seconds kFirstPause{2};  // after a failure
+constexpr seconds kLongestPause{64};
+constexpr seconds kHealthy{10};  // a session of that age is none that fails at once
 constexpr seconds kAfterFlood{10};
-constexpr seconds kSilence{10};           // a robot that is silent for as long is gone
-constexpr int kPatience = 3;              // seconds that a robot may be above its limit
-constexpr guint kRecordQueue = 8U << 20;  // bytes that wait for a slow disk
-
-GstElement* Add(GstElement* bin, const char* factory) {
-  GstElement* element = gst_element_factory_make(factory, factory);
-  if (element == nullptr)
-    throw std::runtime_error(std::string("the element ") + factory + " is not installed");
-  gst_bin_add(GST_BIN(bin), element);
-  return element;
-}
-
-void Link(GstElement* from, GstElement* to) {
-  if (!gst_element_link(from, to)) throw std::runtime_error("elements cannot be linked");
-}
-
-/// NULL stays the default.
-void SetText(GstElement* element, const char* property, const std::string& value) {
-  if (!value.empty()) g_object_set(element, property, value.c_str(), nullptr);
-}
-
-void AddNats(GstElement* pipeline, GstElement* from, const NatsConfig& nats,
-             const RobotConfig& robot) {
-  GstElement* sink = Add(pipeline, "natssink");
-  g_object_set(sink, "sync", FALSE, "url", nats.url.c_str(), "subject",
-               StreamSubject(nats, robot).c_str(), "max-age", nats.max_age_s * GST_SECOND,
-               "max-bytes", nats.max_bytes, "buffer-size", static_cast<guint>(nats.buffer_size),
-               nullptr);
-  SetText(sink, "jetstream", nats.jetstream);
-  SetText(sink, "credentials-file", nats.credentials_file);
-  SetText(sink, "tls-ca-file", nats.tls_ca_file);
-  SetText(sink, "tls-cert-file", nats.tls_cert_file);
-  SetText(sink, "tls-key-file", nats.tls_key_file);
-  Link(from, sink);
-}
-
-/// A disk that is slow costs the recording, and nothing else.
-void AddRecorder(GstElement* pipeline, GstElement* from, const RobotConfig& robot) {
-  GstElement* queue = Add(pipeline, "queue");
-  gst_util_set_object_arg(G_OBJECT(queue), "leaky", "downstream");
-  g_object_set(queue, "max-size-buffers", 0, "max-size-time", guint64{0}, "max-size-bytes",
-               kRecordQueue, nullptr);
-  GstElement* sink = Add(pipeline, "mcapsink");
-  g_object_set(sink, "location", robot.record.c_str(), "max-file-size", robot.record_max_file_size,
-               "max-files", static_cast<guint>(robot.record_max_files), nullptr);
-  Link(from, queue);
-  Link(queue, sink);
-}
-
-ElementPtr MakePipeline(const EdgeConfig& config, const RobotConfig& robot) {
-  const std::string name = robot.name + "-" + robot.sensor;
-  ElementPtr pipeline(GST_ELEMENT(gst_object_ref_sink(gst_pipeline_new(name.c_str()))));
-  GstElement* source = Add(pipeline.get(), "screamsrc");
-  g_object_set(source, "port", static_cast<guint>(robot.port), "eos-on-bye", TRUE, nullptr);
-  SetText(source, "address", config.address);
-  if (!robot.srtp_key.empty()) {
-    g_object_set(source, "srtp-cipher", robot.srtp_cipher.c_str(), "srtp-key",
-                 robot.srtp_key.c_str(), nullptr);
-  }
-  GstElement* depayloader = Add(pipeline.get(), "rtplidardepay");
-  GstElement* tee = Add(pipeline.get(), "tee");
-  g_object_set(tee, "allow-not-linked", TRUE, nullptr);
-  Link(source, depayloader);
-  Link(depayloader, tee);
-  if (!config.nats.url.empty()) AddNats(pipeline.get(), tee, config.nats, robot);
-  if (!robot.record.empty()) AddRecorder(pipeline.get(), tee, robot);
-  return pipeline;
-}
+constexpr seconds kSilence{10};  // a robot that is silent for as long is gone
+constexpr int kPatience = 3;     // seconds that a robot may be above its limit
+constexpr GstClockTime kFinish = 3 * GST_SECOND;
 
 std::string Text(GstMessage* message) {
   GError* raw = nullptr;
@@ -99,13 +38,61 @@ constexpr const char* kElements[] = {"screamsrc", "rtplidardepay", "natssink", "
 }  // namespace
 
 Receiver::Receiver(const EdgeConfig& config, const RobotConfig& robot)
-    : config_(config), robot_(robot), pipeline_(MakePipeline(config, robot)) {}
+    : config_(config),
+      robot_(robot),
+      pipeline_(MakePipeline(config, robot)),
+      failures_(kFirstPause, kLongestPause),
+      record_failures_(kFirstPause, kLongestPause) {
+  if (!robot.record.empty()) {  // throws here where it cannot be
+    AddRecorder(pipeline_.get(), robot);
+    RemoveRecorder(pipeline_.get());
+  }
+  thread_ = std::thread([this] { Run(); });
+}
 
-Receiver::~Receiver() { End(); }
+Receiver::~Receiver() {
+  AskToEnd();
+  thread_.join();
+}
 
-void Receiver::Begin() {
-  ++sessions_;
+void Receiver::AskToEnd() {
+  const std::lock_guard lock(mutex_);
+  ending_ = true;
+  wake_.notify_all();
+}
+
+void Receiver::Run() {
+  std::unique_lock lock(mutex_);
+  while (!ending_) {
+    lock.unlock();
+    Poll(Clock::now());
+    lock.lock();
+    wake_.wait_for(lock, kPoll, [this] { return ending_; });
+  }
+  lock.unlock();
+  Finish();
+}
+
+template <class Change>
+void Receiver::Update(Change change) {
+  const std::lock_guard lock(mutex_);
+  change(&account_);
+  account_.state = state_;
+}
+
+Receiver::Account Receiver::account() const {
+  const std::lock_guard lock(mutex_);
+  return account_;
+}
+
+void Receiver::Say(const std::string& what) const {
+  std::fprintf(stderr, "%s: %s\n", GST_OBJECT_NAME(pipeline_.get()), what.c_str());
+}
+
+void Receiver::Begin(Clock::time_point now) {
   state_ = State::kWaiting;
+  Update([](Account* a) { ++a->sessions; });
+  began_at_ = now;
   watch_at_.reset();
   bytes_ = 0;
   fast_seconds_ = 0;
@@ -113,13 +100,63 @@ void Receiver::Begin() {
   gst_element_set_state(pipeline_.get(), GST_STATE_PLAYING);
 }
 
-void Receiver::End() { gst_element_set_state(pipeline_.get(), GST_STATE_NULL); }
+void Receiver::End() {
+  gst_element_set_state(pipeline_.get(), GST_STATE_NULL);
+  RemoveRecorder(pipeline_.get());
+  recording_ = false;
+}
 
-void Receiver::Rest(Clock::time_point now, seconds pause, const std::string& why) {
+/// What has come is written and sent, where disk and server take it.
+void Receiver::Finish() {
+  if (state_ != State::kResting && BytesReceived() > 0) {
+    const ElementPtr source(gst_bin_get_by_name(GST_BIN(pipeline_.get()), "screamsrc"));
+    gst_element_send_event(source.get(), gst_event_new_eos());
+    const MessagePtr ended(gst_bus_timed_pop_filtered(
+        GST_ELEMENT_BUS(pipeline_.get()), kFinish,
+        static_cast<GstMessageType>(GST_MESSAGE_EOS | GST_MESSAGE_ERROR)));
+  }
+  End();
+}
+
+void Receiver::Rest(Clock::time_point now, Duration pause, const std::string& why) {
   End();
   state_ = State::kResting;
   begin_at_ = now + pause;
-  if (!why.empty()) std::fprintf(stderr, "%s: %s\n", GST_OBJECT_NAME(pipeline_.get()), why.c_str());
+  Update([](Account*) {});
+  Say(why);
+}
+
+/// Where the recorder has failed, another one is tried later, and the stream goes on meanwhile.
+void Receiver::Record(Clock::time_point now) {
+  if (robot_.record.empty() || recording_ || now < record_at_) return;
+  recording_ = true;
+  record_at_ = now;
+  AddRecorder(pipeline_.get(), robot_);
+}
+
+/// False where the session is over.
+bool Receiver::NoteError(Clock::time_point now, GstMessage* message) {
+  const std::string text = Text(message);
+  if (IsFromRecorder(message)) {
+    if (!recording_) return true;  // its second error
+    RemoveRecorder(pipeline_.get());
+    recording_ = false;
+    if (now - record_at_ > kHealthy) record_failures_.Reset();
+    record_at_ = now + record_failures_.Next();
+    Update([&](Account* a) {
+      ++a->record_failures;
+      a->last_error = text;
+    });
+    Say(text);
+    return true;
+  }
+  if (now - began_at_ > kHealthy) failures_.Reset();
+  Update([&](Account* a) {
+    ++a->failures;
+    a->last_error = text;
+  });
+  Rest(now, failures_.Next(), text);
+  return false;
 }
 
 /// False where the session is over.
@@ -128,14 +165,14 @@ bool Receiver::ReadBus(Clock::time_point now) {
   while (const MessagePtr message{gst_bus_pop(bus)}) {
     switch (GST_MESSAGE_TYPE(message.get())) {
       case GST_MESSAGE_ERROR:
-        ++failures_;
-        last_error_ = Text(message.get());
-        Rest(now, kAfterFailure, last_error_);
-        return false;
-      case GST_MESSAGE_WARNING:
-        last_error_ = Text(message.get());
-        std::fprintf(stderr, "%s: %s\n", GST_OBJECT_NAME(pipeline_.get()), last_error_.c_str());
+        if (!NoteError(now, message.get())) return false;
         break;
+      case GST_MESSAGE_WARNING: {
+        const std::string text = Text(message.get());
+        Update([&](Account* a) { a->last_error = text; });
+        Say(text);
+        break;
+      }
       case GST_MESSAGE_EOS:
         Rest(now, seconds(0), "the robot has said goodbye");
         return false;
@@ -170,9 +207,9 @@ void Receiver::Watch(Clock::time_point now) {
   const guint64 more = bytes - std::min(bytes_, bytes);
   bytes_ = bytes;
   if (more > 0) {
-    if (state_ == State::kWaiting)
-      std::fprintf(stderr, "%s: the robot is here\n", GST_OBJECT_NAME(pipeline_.get()));
+    if (state_ == State::kWaiting) Say("the robot is here");
     state_ = State::kReceiving;
+    Update([](Account*) {});
     heard_at_ = now;
   } else if (state_ == State::kReceiving && now - heard_at_ > kSilence) {
     return Rest(now, seconds(0), "the robot is gone");
@@ -181,37 +218,44 @@ void Receiver::Watch(Clock::time_point now) {
   const bool fast = robot_.max_mbps > 0 && mbps > robot_.max_mbps;
   fast_seconds_ = fast ? fast_seconds_ + 1 : 0;
   if (fast_seconds_ < kPatience) return;
-  ++penalties_;
+  Update([](Account* a) { ++a->penalties; });
   Rest(now, kAfterFlood, "the robot sends more than max-mbps, and is shut out for a while");
 }
 
 void Receiver::Poll(Clock::time_point now) {
-  if (sessions_ == 0 || (state_ == State::kResting && now >= begin_at_)) Begin();
-  if (state_ == State::kResting) return;
+  if (state_ == State::kResting) {
+    if (now < begin_at_) return;
+    Begin(now);
+  }
+  Record(now);
   if (ReadBus(now)) Watch(now);
 }
 
 nlohmann::json Receiver::Statistics() const {
   static constexpr const char* kStates[] = {"waiting", "receiving", "resting"};
+  const Account a = account();
   nlohmann::json out = {{"robot", robot_.name},
                         {"sensor", robot_.sensor},
                         {"time", g_get_real_time() * 1000},
-                        {"state", kStates[static_cast<int>(state_)]},
-                        {"sessions", sessions_},
-                        {"failures", failures_},
-                        {"penalties", penalties_}};
-  if (!last_error_.empty()) out["last-error"] = last_error_;
+                        {"state", kStates[static_cast<int>(a.state)]},
+                        {"sessions", a.sessions},
+                        {"failures", a.failures},
+                        {"penalties", a.penalties},
+                        {"record-failures", a.record_failures}};
+  if (!a.last_error.empty()) out["last-error"] = a.last_error;
   for (const char* element : kElements)
     if (const StructurePtr stats = StatsOf(element)) out[element] = ToJson(stats.get());
   return out;
 }
 
 void Receiver::AddTo(Exposition* exposition) const {
+  const Account a = account();
   const std::string labels = "{robot=\"" + robot_.name + "\",sensor=\"" + robot_.sensor + "\"}";
-  exposition->Add("lidar_edge_receiving", labels, state_ == State::kReceiving ? 1 : 0);
-  exposition->Add("lidar_edge_sessions", labels, static_cast<double>(sessions_));
-  exposition->Add("lidar_edge_failures", labels, static_cast<double>(failures_));
-  exposition->Add("lidar_edge_penalties", labels, static_cast<double>(penalties_));
+  exposition->Add("lidar_edge_receiving", labels, a.state == State::kReceiving ? 1 : 0);
+  exposition->Add("lidar_edge_sessions", labels, static_cast<double>(a.sessions));
+  exposition->Add("lidar_edge_failures", labels, static_cast<double>(a.failures));
+  exposition->Add("lidar_edge_penalties", labels, static_cast<double>(a.penalties));
+  exposition->Add("lidar_edge_record_failures", labels, static_cast<double>(a.record_failures));
   for (const char* element : kElements)
     if (const StructurePtr stats = StatsOf(element)) exposition->Add(element, labels, stats.get());
 }

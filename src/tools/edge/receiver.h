@@ -1,62 +1,96 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// One robot's receiver: a pipeline of its own, so that what it does harms no other.
+// One robot's receiver: a pipeline and a thread of its own, so that what happens to it harms no
+// other.
 #pragma once
 #include <gst/gst.h>
 
 #include <chrono>
+#include <condition_variable>
+#include <mutex>
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
+#include <thread>
 
 #include "gst/common/refs.h"
+#include "src/base/backoff.h"
 #include "src/tools/edge/edge_config.h"
 #include "src/tools/edge/exposition.h"
 
 namespace lidar::edge {
 
-/// Used by one thread.
 class Receiver {
  public:
-  using Clock = std::chrono::steady_clock;
-
   /// Throws std::runtime_error where an element is missing or a setting is wrong.
   Receiver(const EdgeConfig& config, const RobotConfig& robot);
+  /// Ends the session, and waits for it.
   ~Receiver();
   Receiver(const Receiver&) = delete;
   Receiver& operator=(const Receiver&) = delete;
 
-  /// Reads what the pipeline says, and ends or begins it. To be called several times a second.
-  void Poll(Clock::time_point now);
+  /// The session ends as soon as its files are complete. Does not wait.
+  void AskToEnd();
 
   const RobotConfig& robot() const { return robot_; }
+  // From any thread; neither waits for servers or disks.
   nlohmann::json Statistics() const;
   void AddTo(Exposition* exposition) const;
 
  private:
+  using Clock = std::chrono::steady_clock;
   enum class State { kWaiting, kReceiving, kResting };
+  /// What is told of the robot.
+  struct Account {
+    State state = State::kWaiting;
+    std::uint64_t sessions = 0;
+    std::uint64_t failures = 0;
+    std::uint64_t penalties = 0;
+    std::uint64_t record_failures = 0;
+    std::string last_error;
+  };
 
-  void Begin();
+  void Run();
+  void Poll(Clock::time_point now);
+  void Begin(Clock::time_point now);
   void End();
+  void Finish();
   /// Nothing comes in for as long.
-  void Rest(Clock::time_point now, std::chrono::seconds pause, const std::string& why);
+  void Rest(Clock::time_point now, Duration pause, const std::string& why);
+  void Record(Clock::time_point now);
   bool ReadBus(Clock::time_point now);
+  bool NoteError(Clock::time_point now, GstMessage* message);
   void Watch(Clock::time_point now);
+  void NoteBytes(Clock::time_point now, bool more);
   guint64 BytesReceived() const;
   gst::StructurePtr StatsOf(const char* element) const;
+  Account account() const;
+  template <class Change>
+  void Update(Change change);
+  void Say(const std::string& what) const;
 
   const EdgeConfig& config_;
   const RobotConfig& robot_;
-  gst::ElementPtr pipeline_;
-  State state_ = State::kWaiting;
-  Clock::time_point begin_at_{};               // of a rest's end
+  const gst::ElementPtr pipeline_;
+
+  // The thread's alone.
+  State state_ = State::kResting;
+  Clock::time_point begin_at_{};  // of a rest's end
+  Clock::time_point began_at_{};
   std::optional<Clock::time_point> watch_at_;  // the rate is taken then
   Clock::time_point heard_at_{};
-  guint64 bytes_ = 0;  // when the rate was last taken
+  bool recording_ = false;
+  Clock::time_point record_at_{};  // when it began, or is to begin
+  guint64 bytes_ = 0;              // when the rate was last taken
   int fast_seconds_ = 0;
-  std::uint64_t sessions_ = 0;
-  std::uint64_t failures_ = 0;
-  std::uint64_t penalties_ = 0;
-  std::string last_error_;
+  Backoff failures_;
+  Backoff record_failures_;
+
+  mutable std::mutex mutex_;  // guards what follows
+  std::condition_variable wake_;
+  bool ending_ = false;
+  Account account_;
+
+  std::thread thread_;
 };
 
 }  // namespace lidar::edge

@@ -7,6 +7,7 @@
 #include <cstdlib>
 #include <nlohmann/json.hpp>
 
+#include "ext/nats/nats_ptr.h"
 #include "src/tools/common/child_process.h"
 #include "src/tools/edge/edge_config.h"
 #include "src/tools/edge/exposition.h"
@@ -110,19 +111,11 @@ int FreePort() {
 
 class LidarEdge : public NatsTest {
  protected:
-  void SetUp() override {
-    NatsTest::SetUp();
-    if (IsSkipped()) return;
-    server_.Start();
-    for (int& port : ports_) port = FreePort();
+  /// With `config`, on an HTTP port of its own; `interval` is short.
+  void StartEdge(nlohmann::json config) {
+    config["http-port"] = 0;
+    config["interval"] = 0.2;
     const std::string path = server_.folder() + "/edge.json";
-    nlohmann::json config = {
-        {"http-port", 0},
-        {"interval", 0.2},
-        {"nats", {{"url", server_.url()}, {"jetstream", "fleet"}}},
-        {"robots",
-         {{{"name", "r1"}, {"port", ports_[0]}, {"record", server_.folder() + "/r1-%05d.mcap"}},
-          {{"name", "r2"}, {"port", ports_[1]}, {"max-mbps", 0.1}}}}};
     std::ofstream(path) << config.dump();
     program_ = std::make_unique<tools::ChildProcess>(
         tools::ChildProcess::Config{{std::getenv("LIDAR_EDGE"), path}, "", false});
@@ -132,6 +125,23 @@ class LidarEdge : public NatsTest {
       });
       return metrics_port_ > 0;
     }));
+  }
+  /// Of one robot.
+  std::size_t Recordings(const std::string& robot) const {
+    std::size_t count = 0;
+    for (const auto& entry : std::filesystem::directory_iterator(server_.folder()))
+      if (entry.path().filename().string().rfind(robot + "-", 0) == 0) ++count;
+    return count;
+  }
+  std::unique_ptr<NatsPipeline> Consumer(const std::string& subject, const std::string& more = "") {
+    auto consumer = std::make_unique<NatsPipeline>("natssrc name=n subject=" + subject + At(more) +
+                                                   "! fakesink name=see sync=false");
+    consumer->Play();
+    return consumer;
+  }
+  bool EndsByItself() {
+    program_->Signal(SIGTERM);
+    return Eventually([this] { return program_->Ended(); }) && program_->Wait() == 0;
   }
   /// None where it is not told.
   std::optional<double> Metric(const std::string& name, const std::string& robot) {
@@ -143,26 +153,41 @@ class LidarEdge : public NatsTest {
     if (at == std::string::npos) return std::nullopt;
     return std::atof(answer->body.c_str() + at + line.size());
   }
-  std::unique_ptr<NatsPipeline> Robot(int port, const char* address = "127.0.0.1") {
+  std::unique_ptr<NatsPipeline> Robot(int port, const std::string& more = "") {
     auto robot = std::make_unique<NatsPipeline>(
-        kLive + "! lidarenc" + kSee + "! rtplidarpay ! screamsink name=n host=" + address +
-        " port=" + std::to_string(port));
+        kLive + "! lidarenc" + kSee + "! rtplidarpay ! screamsink name=n host=127.0.0.1 port=" +
+        std::to_string(port) + " " + more);
     robot->Play();
     return robot;
   }
 
-  int ports_[2] = {};
   std::unique_ptr<tools::ChildProcess> program_;
   int metrics_port_ = 0;
 };
 
-TEST_F(LidarEdge, HandsOnWhatARobotSendsAndTellsOfIt) {
-  NatsPipeline consumer("natssrc name=n subject=fleet.r1.lidar.lidar" + At() +
-                        "! fakesink name=see sync=false");
-  consumer.Play();
+/// A robot that is recorded, and one that may not send much.
+class TwoRobots : public LidarEdge {
+ protected:
+  void SetUp() override {
+    LidarEdge::SetUp();
+    if (IsSkipped()) return;
+    server_.Start();
+    for (int& port : ports_) port = FreePort();
+    StartEdge(
+        {{"nats", {{"url", server_.url()}, {"jetstream", "fleet"}}},
+         {"robots",
+          {{{"name", "r1"}, {"port", ports_[0]}, {"record", server_.folder() + "/r1-%05d.mcap"}},
+           {{"name", "r2"}, {"port", ports_[1]}, {"max-mbps", 0.1}}}}});
+  }
+
+  int ports_[2] = {};
+};
+
+TEST_F(TwoRobots, HandsOnWhatARobotSendsAndTellsOfIt) {
+  const auto consumer = Consumer("fleet.r1.lidar.lidar");
   auto robot = Robot(ports_[0]);
-  ASSERT_TRUE(consumer.WaitForBuffers(20));
-  const auto got = consumer.buffers();
+  ASSERT_TRUE(consumer->WaitForBuffers(20));
+  const auto got = consumer->buffers();
   const auto sent = robot->buffers();
   const auto first =
       std::find_if(sent.begin(), sent.end(), [&](const Kept& kept) { return kept.SameAs(got[0]); });
@@ -176,25 +201,129 @@ TEST_F(LidarEdge, HandsOnWhatARobotSendsAndTellsOfIt) {
   EXPECT_EQ(robot->WaitForEnd(), "");
   robot.reset();
   EXPECT_TRUE(Eventually([&] { return Metric("lidar_edge_sessions", "r1").value_or(0) >= 2; }));
-  const std::size_t before = consumer.count();
+  const std::size_t before = consumer->count();
   robot = Robot(ports_[0]);
-  EXPECT_TRUE(consumer.WaitForBuffers(before + 8));
-  program_->Signal(SIGTERM);
-  EXPECT_EQ(program_->Wait(), 0);
-  EXPECT_TRUE(std::filesystem::exists(server_.folder() + "/r1-00000.mcap"));
+  EXPECT_TRUE(consumer->WaitForBuffers(before + 8));
+  EXPECT_TRUE(EndsByItself());
+  EXPECT_EQ(Recordings("r1"), 2U);
 }
 
-TEST_F(LidarEdge, ShutsOutARobotThatSendsTooMuchAndNoOther) {
-  NatsPipeline consumer("natssrc name=n subject=fleet.r1.lidar.lidar" + At() +
-                        "! fakesink name=see sync=false");
-  consumer.Play();
+TEST_F(TwoRobots, OneThatSendsTooMuchIsShutOutAndNoOther) {
+  const auto consumer = Consumer("fleet.r1.lidar.lidar");
   const auto good = Robot(ports_[0]);
   const auto flood = Robot(ports_[1]);
   EXPECT_TRUE(Eventually([&] { return Metric("lidar_edge_penalties", "r2").value_or(0) >= 1; }));
-  const std::size_t before = consumer.count();
-  EXPECT_TRUE(consumer.WaitForBuffers(before + 8));
+  const std::size_t before = consumer->count();
+  EXPECT_TRUE(consumer->WaitForBuffers(before + 8));
   EXPECT_EQ(Metric("lidar_edge_penalties", "r1"), 0);
   EXPECT_EQ(Metric("lidar_edge_failures", "r1"), 0);
+}
+
+/// Takes connections, and says nothing.
+class SilentServer {
+ public:
+  SilentServer()
+      : socket_(g_socket_new(G_SOCKET_FAMILY_IPV4, G_SOCKET_TYPE_STREAM, G_SOCKET_PROTOCOL_TCP,
+                             nullptr)) {
+    GSocketAddress* any = g_inet_socket_address_new_from_string("127.0.0.1", 0);
+    g_socket_bind(socket_, any, FALSE, nullptr);
+    g_object_unref(any);
+    g_socket_set_listen_backlog(socket_, 1'000);
+    g_socket_listen(socket_, nullptr);
+    GSocketAddress* bound = g_socket_get_local_address(socket_, nullptr);
+    port_ = g_inet_socket_address_get_port(G_INET_SOCKET_ADDRESS(bound));
+    g_object_unref(bound);
+  }
+  ~SilentServer() { g_object_unref(socket_); }
+  std::string url() const { return "nats://127.0.0.1:" + std::to_string(port_); }
+
+ private:
+  GSocket* socket_;
+  int port_ = 0;
+};
+
+TEST_F(LidarEdge, AServerThatSaysNothingDelaysNoRobotAndNotTheEnd) {
+  const SilentServer silent;
+  nlohmann::json robots = nlohmann::json::array();
+  for (int i = 0; i < 60; ++i)
+    robots.push_back({{"name", "r" + std::to_string(i)}, {"port", FreePort()}});
+  // One after the other they would take a minute, at the beginning and at the end.
+  robots.back()["record"] = server_.folder() + "/last-%05d.mcap";
+  StartEdge({{"nats", {{"url", silent.url()}}}, {"robots", robots}});
+  const auto robot = Robot(robots.back()["port"]);
+  EXPECT_TRUE(Eventually([&] { return Metric("lidar_edge_receiving", "r59") == 1; }));
+  EXPECT_TRUE(Eventually([&] { return Metric("lidar_mcapsink_messages", "r59").value_or(0) > 0; }));
+  EXPECT_TRUE(EndsByItself());
+  EXPECT_EQ(Recordings("last"), 1U);
+}
+
+TEST_F(LidarEdge, AServerThatRefusesDoesNotEndARecordingAndMayTakeUsLater) {
+  server_.Start({"--user", "edge", "--pass", "first"});
+  const int port = FreePort();
+  StartEdge({{"nats", {{"url", server_.url("nats", "edge:second@")}}},
+             {"robots",
+              {{{"name", "r1"}, {"port", port}, {"record", server_.folder() + "/r1-%05d.mcap"}}}}});
+  const auto robot = Robot(port);
+  ASSERT_TRUE(Eventually([&] { return Metric("lidar_edge_receiving", "r1") == 1; }));
+  ASSERT_TRUE(Eventually([&] { return Metric("lidar_natssink_refusals", "r1").value_or(0) >= 2; }));
+  server_.Start({"--user", "edge", "--pass", "second"});
+  natsConnection* raw = nullptr;
+  ASSERT_EQ(natsConnection_ConnectTo(&raw, server_.url("nats", "edge:second@").c_str()), NATS_OK);
+  natsSubscription* statistics = nullptr;
+  natsConnection_SubscribeSync(&statistics, raw, "fleet.r1.statistics.lidar");
+  NatsPipeline consumer("natssrc name=n subject=fleet.r1.lidar.lidar url=" +
+                        server_.url("nats", "edge:second@") + " ! fakesink name=see sync=false");
+  consumer.Play();
+  EXPECT_TRUE(consumer.WaitForBuffers(8));
+  natsMsg* report = nullptr;
+  EXPECT_EQ(natsSubscription_NextMsg(&report, statistics, 30'000), NATS_OK);
+  natsMsg_Destroy(report);
+  natsSubscription_Destroy(statistics);
+  natsConnection_Destroy(raw);
+  EXPECT_EQ(Metric("lidar_edge_sessions", "r1"), 1);
+  EXPECT_EQ(Metric("lidar_edge_failures", "r1"), 0);
+  EXPECT_TRUE(EndsByItself());
+  EXPECT_EQ(Recordings("r1"), 1U);
+}
+
+TEST_F(LidarEdge, ARecordingThatFailsDoesNotEndTheStream) {
+  server_.Start();
+  const int port = FreePort();
+  const std::string folder = server_.folder() + "/later";
+  StartEdge({{"nats", {{"url", server_.url()}}},
+             {"robots", {{{"name", "r1"}, {"port", port}, {"record", folder + "/%05d.mcap"}}}}});
+  const auto consumer = Consumer("fleet.r1.lidar.lidar");
+  const auto robot = Robot(port);
+  ASSERT_TRUE(Eventually([&] { return Metric("lidar_edge_record_failures", "r1") == 1; }));
+  EXPECT_TRUE(consumer->WaitForBuffers(8));
+  std::filesystem::create_directory(folder);
+  EXPECT_TRUE(Eventually([&] { return Metric("lidar_mcapsink_messages", "r1").value_or(0) > 0; }));
+  EXPECT_EQ(Metric("lidar_edge_sessions", "r1"), 1);
+  EXPECT_EQ(Metric("lidar_edge_failures", "r1"), 0);
+  EXPECT_EQ(consumer->stat("messages-lost"), 0U);
+}
+
+TEST_F(LidarEdge, TakesEncryptedRobotsToAServerThatWantsCredentials) {
+  const auto options = server_.OptionsForCredentials();
+  if (options.empty()) GTEST_SKIP() << "openssl or python3 is not installed";
+  server_.Start(options);
+  const int ports[] = {FreePort(), FreePort()};
+  const std::string key = server_.folder() + "/key";
+  std::ofstream(key) << std::string(60, 'a');
+  std::filesystem::permissions(key, std::filesystem::perms::owner_read);
+  StartEdge(
+      {{"nats", {{"url", server_.url()}, {"credentials-file", server_.folder() + "/good.creds"}}},
+       {"robots",
+        {{{"name", "r1"}, {"port", ports[0]}, {"srtp-key", "file:" + key}},
+         {{"name", "r2"}, {"port", ports[1]}, {"srtp-key", "file:" + key}}}}});
+  const auto consumer =
+      Consumer("fleet.r1.lidar.lidar", "credentials-file=" + server_.folder() + "/good.creds");
+  const auto robot = Robot(ports[0], "srtp-key=file:" + key);
+  const auto forger = Robot(ports[1]);
+  EXPECT_TRUE(consumer->WaitForBuffers(8));
+  EXPECT_TRUE(
+      Eventually([&] { return Metric("lidar_screamsrc_srtp_refused", "r2").value_or(0) > 0; }));
+  EXPECT_EQ(Metric("lidar_edge_receiving", "r2"), 0);
 }
 
 }  // namespace

@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "src/tools/edge/pipeline.h"
+
+#include <stdexcept>
+#include <string>
+
+namespace lidar::edge {
+namespace {
+
+using gst::ElementPtr;
+using gst::PadPtr;
+
+constexpr guint kRecordQueue = 8U << 20;  // bytes that wait for a slow disk
+constexpr GstClockTime kDrainTimeout = GST_SECOND;
+constexpr const char* kRecorder = "recorder";
+
+GstElement* Add(GstElement* bin, const char* factory) {
+  GstElement* element = gst_element_factory_make(factory, factory);
+  if (element == nullptr)
+    throw std::runtime_error(std::string("the element ") + factory + " is not installed");
+  gst_bin_add(GST_BIN(bin), element);
+  return element;
+}
+
+void Link(GstElement* from, GstElement* to) {
+  if (!gst_element_link(from, to)) throw std::runtime_error("elements cannot be linked");
+}
+
+/// NULL stays the default.
+void SetText(GstElement* element, const char* property, const std::string& value) {
+  if (!value.empty()) g_object_set(element, property, value.c_str(), nullptr);
+}
+
+/// All robots' sinks want the same stream, so whoever comes first makes it for all.
+void AddNats(GstElement* pipeline, GstElement* from, const NatsConfig& nats,
+             const RobotConfig& robot) {
+  GstElement* sink = Add(pipeline, "natssink");
+  g_object_set(sink, "sync", FALSE, "async", FALSE, "keep-trying", TRUE, "url", nats.url.c_str(),
+               "subject", StreamSubject(nats, robot).c_str(), "jetstream-subjects",
+               (nats.prefix + ".*.lidar.>").c_str(), "max-age", nats.max_age_s * GST_SECOND,
+               "max-bytes", nats.max_bytes, "buffer-size", static_cast<guint>(nats.buffer_size),
+               "drain-timeout", kDrainTimeout, nullptr);
+  SetText(sink, "jetstream", nats.jetstream);
+  SetText(sink, "credentials-file", nats.credentials_file);
+  SetText(sink, "tls-ca-file", nats.tls_ca_file);
+  SetText(sink, "tls-cert-file", nats.tls_cert_file);
+  SetText(sink, "tls-key-file", nats.tls_key_file);
+  Link(from, sink);
+}
+
+ElementPtr RecorderOf(GstElement* pipeline) {
+  return ElementPtr(gst_bin_get_by_name(GST_BIN(pipeline), kRecorder));
+}
+
+/// The pad that others push to tells them that all is well.
+void Shield(GstPad* pad) {
+  gst_pad_set_chain_function(pad, [](GstPad* self, GstObject* parent, GstBuffer* buffer) {
+    gst_proxy_pad_chain_default(self, parent, buffer);
+    return GST_FLOW_OK;
+  });
+}
+
+}  // namespace
+
+ElementPtr MakePipeline(const EdgeConfig& config, const RobotConfig& robot) {
+  const std::string name = robot.name + "-" + robot.sensor;
+  ElementPtr pipeline(GST_ELEMENT(gst_object_ref_sink(gst_pipeline_new(name.c_str()))));
+  GstElement* source = Add(pipeline.get(), "screamsrc");
+  g_object_set(source, "port", static_cast<guint>(robot.port), "eos-on-bye", TRUE, nullptr);
+  SetText(source, "address", config.address);
+  if (!robot.srtp_key.empty()) {
+    g_object_set(source, "srtp-cipher", robot.srtp_cipher.c_str(), "srtp-key",
+                 robot.srtp_key.c_str(), nullptr);
+  }
+  GstElement* depayloader = Add(pipeline.get(), "rtplidardepay");
+  GstElement* tee = Add(pipeline.get(), "tee");
+  g_object_set(tee, "allow-not-linked", TRUE, nullptr);
+  Link(source, depayloader);
+  Link(depayloader, tee);
+  if (!config.nats.url.empty()) AddNats(pipeline.get(), tee, config.nats, robot);
+  return pipeline;
+}
+
+void AddRecorder(GstElement* pipeline, const RobotConfig& robot) {
+  GstElement* recorder = gst_bin_new(kRecorder);
+  gst_bin_add(GST_BIN(pipeline), recorder);
+  // A disk that is slow costs the recording, and nothing else.
+  GstElement* queue = Add(recorder, "queue");
+  gst_util_set_object_arg(G_OBJECT(queue), "leaky", "downstream");
+  g_object_set(queue, "max-size-buffers", 0, "max-size-time", guint64{0}, "max-size-bytes",
+               kRecordQueue, nullptr);
+  GstElement* sink = Add(recorder, "mcapsink");
+  g_object_set(sink, "location", robot.record.c_str(), "max-file-size", robot.record_max_file_size,
+               "max-files", static_cast<guint>(robot.record_max_files), nullptr);
+  Link(queue, sink);
+  const PadPtr inner(gst_element_get_static_pad(queue, "sink"));
+  GstPad* entry = gst_ghost_pad_new("sink", inner.get());
+  Shield(entry);
+  gst_element_add_pad(recorder, entry);
+  gst_element_sync_state_with_parent(recorder);  // what fails is on the bus
+  const ElementPtr tee(gst_bin_get_by_name(GST_BIN(pipeline), "tee"));
+  Link(tee.get(), recorder);
+}
+
+void RemoveRecorder(GstElement* pipeline) {
+  const ElementPtr recorder = RecorderOf(pipeline);
+  if (!recorder) return;
+  const ElementPtr tee(gst_bin_get_by_name(GST_BIN(pipeline), "tee"));
+  const PadPtr entry(gst_element_get_static_pad(recorder.get(), "sink"));
+  const PadPtr exit(gst_pad_get_peer(entry.get()));
+  if (exit) gst_element_release_request_pad(tee.get(), exit.get());
+  gst_element_set_locked_state(recorder.get(), TRUE);
+  gst_element_set_state(recorder.get(), GST_STATE_NULL);
+  gst_bin_remove(GST_BIN(pipeline), recorder.get());
+}
+
+bool IsFromRecorder(GstMessage* message) {
+  // It may be out of the pipeline already.
+  for (const char* name : {kRecorder, "queue", "mcapsink"})
+    if (g_strcmp0(GST_MESSAGE_SRC_NAME(message), name) == 0) return true;
+  return false;
+}
+
+}  // namespace lidar::edge

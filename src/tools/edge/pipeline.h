@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// The pipeline of one robot, and the branch that records it, which comes and goes by itself.
+#pragma once
+#include <gst/gst.h>
+
+#include "gst/common/refs.h"
+#include "src/tools/edge/edge_config.h"
+
+namespace lidar::edge {
+
+/// Receives, and hands on to NATS. Throws std::runtime_error where an element is missing.
+gst::ElementPtr MakePipeline(const EdgeConfig& config, const RobotConfig& robot);
+
+/// Makes a recorder and lets it run with the pipeline. What fails in it stays in it, and is told on
+/// the bus. Throws std::runtime_error where an element is missing.
+void AddRecorder(GstElement* pipeline, const RobotConfig& robot);
+/// Nothing happens where there is none.
+void RemoveRecorder(GstElement* pipeline);
+/// Whether the message is of the recorder.
+bool IsFromRecorder(GstMessage* message);
+
+}  // namespace lidar::edge
