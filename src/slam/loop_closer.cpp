@@ -54,6 +54,21 @@ Shares CountShares(const Points& points, odometry::LocalMap* map, const Pose& po
 
 }  // namespace
 
+std::size_t FindWorst(const std::vector<Closure>& closures, const std::vector<Pose>& poses) {
+  double worst = 1;
+  std::size_t found = closures.size();
+  for (std::size_t i = 0; i < closures.size(); ++i) {
+    const Closure& c = closures[i];
+    const Pose off = c.pose.Inverse() * (poses[c.from].Inverse() * poses[c.to]);
+    const double doubt =
+        std::max(off.position.norm() / kContradiction_m, Angle(off) / kContradiction_rad);
+    if (doubt <= worst) continue;
+    worst = doubt;
+    found = i;
+  }
+  return found;
+}
+
 void LoopCloser::AddScan(const odometry::StampedPose& pose, const Points& points) {
   const double step = way_.empty() ? 0 : (pose.pose.position - way_.back().pose.position).norm();
   driven_m_.push_back(way_.empty() ? 0 : driven_m_.back() + step);
@@ -109,23 +124,6 @@ void LoopCloser::TryToClose(const LocalMap& a, const LocalMap& b) {
   closures_.push_back({a.key, b.key, found.pose, match->score, shares.overlap, shares.fit});
 }
 
-/// A closure that the others contradict is wrong. True where there was one.
-bool LoopCloser::DropWorst(const std::vector<Pose>& poses) {
-  double worst = 1;
-  auto drop = closures_.end();
-  for (auto c = closures_.begin(); c != closures_.end(); ++c) {
-    const Pose off = c->pose.Inverse() * (poses[c->from].Inverse() * poses[c->to]);
-    const double doubt =
-        std::max(off.position.norm() / kContradiction_m, Angle(off) / kContradiction_rad);
-    if (doubt <= worst) continue;
-    worst = doubt;
-    drop = c;
-  }
-  if (drop == closures_.end()) return false;
-  closures_.erase(drop);
-  return true;
-}
-
 odometry::Trajectory LoopCloser::Close() {
   EndMap();
   closures_.clear();
@@ -133,7 +131,7 @@ odometry::Trajectory LoopCloser::Close() {
     for (std::size_t i = 0; i < j; ++i)
       if (MayBeTheSame(maps_[i], maps_[j])) TryToClose(maps_[i], maps_[j]);
   std::vector<Pose> poses;
-  do {
+  for (;;) {
     if (closures_.empty()) return way_;
     poses.clear();
     for (const odometry::StampedPose& stamped : way_) poses.push_back(stamped.pose);
@@ -143,7 +141,11 @@ odometry::Trajectory LoopCloser::Close() {
     for (const Closure& c : closures_)
       edges.push_back({c.from, c.to, c.pose, kClosure_m, kClosure_rad});
     if (!Optimise(edges, &poses)) return way_;
-  } while (DropWorst(poses));
+    // A closure that the others contradict is wrong.
+    const std::size_t worst = FindWorst(closures_, poses);
+    if (worst == closures_.size()) break;
+    closures_.erase(closures_.begin() + static_cast<std::ptrdiff_t>(worst));
+  }
   odometry::Trajectory closed = way_;
   for (std::size_t i = 0; i < closed.size(); ++i) closed[i].pose = poses[i];
   return closed;

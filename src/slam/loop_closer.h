@@ -35,6 +35,11 @@ struct Closure {
   double fit = 0;
 };
 
+/// The closure that `poses` contradict most, where one is off by more than it may; else
+/// closures.size().
+std::size_t FindWorst(const std::vector<Closure>& closures,
+                      const std::vector<odometry::Pose>& poses);
+
 /// For drives of some kilometres: every local map is kept, a megabyte each. Deterministic.
 class LoopCloser {
  public:
@@ -56,7 +61,6 @@ class LoopCloser {
   };
   void EndMap();
   bool MayBeTheSame(const LocalMap& a, const LocalMap& b) const;
-  bool DropWorst(const std::vector<odometry::Pose>& poses);
   void TryToClose(const LocalMap& a, const LocalMap& b);
 
   LoopSettings settings_;

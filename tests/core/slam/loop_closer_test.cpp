@@ -117,6 +117,20 @@ TEST(LoopCloser, TakesADriveWithoutPoints) {
   EXPECT_TRUE(blind.closures().empty());
 }
 
+TEST(LoopCloser, DoubtsTheClosureThatIsMostContradicted) {
+  const std::vector<Pose> poses(4);  // all at one place
+  std::vector<Closure> closures(3);
+  closures[0].pose.position.x() = 2;
+  closures[1].pose.position.x() = 9;
+  closures[2].pose.rotation = Eigen::AngleAxisd(0.1, Eigen::Vector3d::UnitZ());
+  EXPECT_EQ(FindWorst(closures, poses), 1U);
+  closures.erase(closures.begin() + 1);
+  EXPECT_EQ(FindWorst(closures, poses), 1U);  // twice as far as it may turn
+  closures.pop_back();
+  closures[0].pose.position.x() = 1.4;
+  EXPECT_EQ(FindWorst(closures, poses), 1U);  // none
+}
+
 TEST(Place, IsFoundAgainTurnedMovedAndTilted) {
   const Points world = MakeWorld();
   Points here;
