@@ -223,6 +223,17 @@ TEST(Odometry, FollowsThroughATownOfHillsAndCorners) {
   EXPECT_LT(error->ate_rmse_m, 0.2);
 }
 
+TEST(Odometry, ReachesFartherAfterAGapInWhichTheCarBraked) {
+  Drive drive(synth::SceneKind::kTown, 10);
+  Odometry odometry({});
+  for (std::uint64_t i = 0; i < 20; ++i) odometry.OnScan(drive.StartOf(i), kPeriod, drive.Scan(i));
+  // Half a second later it has come as far as in 0.4 s before.
+  const Pose found = odometry.OnScan(drive.StartOf(24), kPeriod, drive.Scan(23)).pose;
+  const Pose way = drive.TruthAt(drive.StartOf(0) + kPeriod / 2).Inverse() *
+                   drive.TruthAt(drive.StartOf(23) + kPeriod / 2);
+  EXPECT_LT((found.position - way.position).norm(), 0.6);
+}
+
 TEST(Odometry, KeepsItsMapBounded) {
   Drive drive(synth::SceneKind::kField, 30);
   OdometrySettings settings;

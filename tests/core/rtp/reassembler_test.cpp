@@ -250,6 +250,19 @@ TEST(Damage, IsCountedOnce) {
   EXPECT_EQ(Accounts(receiver), "received 7 lost 0 damaged 1 mismatch 0; scans 1 1 0");
 }
 
+TEST(Damage, TakesNoMemory) {
+  auto packets = Sender().Scans(0, 2);
+  packets.back().payload.back() ^= 1;
+  Reassembler reassembler(kReorder);
+  std::vector<ReceivedSlice> out;
+  for (const Wire& w : packets)
+    reassembler.Push({w.ssrc, w.sequence, w.sent, std::nullopt, ByteView{}},
+                     ParsePayload({w.payload.data(), w.payload.size()}), &out);
+  EXPECT_EQ(out.size(), 7U);
+  EXPECT_EQ(reassembler.slices().slices_damaged, 1U);
+  EXPECT_EQ(reassembler.pending_bytes(), 0U);
+}
+
 TEST(Join, InMidStreamStartsWithTheFirstSliceThatIsWholeAfterAConfig) {
   Sender sender;
   auto packets = sender.Scans(0, 3);

@@ -192,6 +192,16 @@ TEST_F(ScreamRx, FollowsASenderThatComesBackFromAnotherAddress) {
   }
   EXPECT_EQ(Passed(), 7U);  // four of the new address had to prove themselves
   EXPECT_EQ(Stats(element)["peer-moves"], 1U);
+  r.seq = 11;
+  r.marker = true;
+  ASSERT_EQ(Push(r, GST_LIDAR_ECN_ECT1, "10.0.0.2"), GST_FLOW_OK);
+  scream::SsrcReport last;
+  do {
+    const CongestionFeedback report = Report();
+    ASSERT_EQ(report.blocks.size(), 1U);
+    last = report.blocks[0];
+  } while (last.begin_seq + last.metrics.size() <= 11);
+  EXPECT_EQ(last.begin_seq, 5);  // what the old address sent is none of the new one's business
 }
 
 TEST_F(ScreamRx, BelievesTheSenderWhoseSlicesAreWholeOverOneWhoSendsOften) {

@@ -2,6 +2,7 @@
 // The queue of screamtx under a test clock: what waits, what is dropped, how it ends.
 #include <gtest/gtest.h>
 
+#include <future>
 #include <map>
 
 #include "tests/elements/scream/screamtx_fixture.h"
@@ -112,6 +113,30 @@ TEST_F(ScreamTx, AFlushForgetsTheQueueAndItGoesOn) {
   const BufferPtr out(gst_harness_pull(rtp.get()));
   ASSERT_TRUE(out);
   EXPECT_EQ(ReadRtp(out.get()).timestamp, 77U);
+}
+
+TEST_F(ScreamTx, TakesALiveStreamAtOnceThatFollowsOneThatIsNot) {
+  static bool live;
+  live = false;
+  Start();
+  gst_pad_set_query_function(rtp->srcpad, [](GstPad*, GstObject*, GstQuery* query) -> gboolean {
+    if (GST_QUERY_TYPE(query) != GST_QUERY_LATENCY) return FALSE;
+    gst_query_set_latency(query, live ? TRUE : FALSE, 0, GST_CLOCK_TIME_NONE);
+    return TRUE;
+  });
+  const auto push = [&](guint16 seq, GstClockTime pts) {
+    GstBuffer* buffer = NewRtp({seq});
+    GST_BUFFER_PTS(buffer) = pts;
+    return gst_harness_push(rtp.get(), buffer);
+  };
+  ASSERT_EQ(push(0, GST_CLOCK_TIME_NONE), GST_FLOW_OK);  // no time to wait for
+  live = true;
+  ASSERT_TRUE(gst_harness_push_event(rtp.get(), gst_event_new_stream_start("live")));
+  const GstClockTime far = time.now() + 2 * GST_SECOND;
+  auto entered = std::async(std::launch::async, push, guint16{1}, far);
+  EXPECT_EQ(entered.wait_for(std::chrono::seconds(30)), std::future_status::ready);
+  time.AdvanceTo(far);
+  EXPECT_EQ(entered.get(), GST_FLOW_OK);
 }
 
 TEST_F(ScreamTx, AddsItsLongestDelayToTheLatency) {
