@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// The pads of an mcapsrc, a topic each, and what they have in common.
+#pragma once
+#include <gst/base/gstflowcombiner.h>
+#include <gst/gst.h>
+
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "ext/mcap/playback.h"
+#include "ext/mcap/played_stream.h"
+
+namespace lidar::gst {
+
+/// Used by the streaming thread, or while it stands still. Takes its pads away at the end.
+class StreamGroup {
+ public:
+  /// Gives new pads that are inactive and belong to nobody.
+  using NewPad = std::function<GstPad*(const std::string& name)>;
+  StreamGroup(GstElement* element, NewPad new_pad, const GstSegment& segment);
+  ~StreamGroup();
+  StreamGroup(const StreamGroup&) = delete;
+  StreamGroup& operator=(const StreamGroup&) = delete;
+
+  const GstSegment& segment() const { return common_.segment; }
+  guint32 seqnum() const { return common_.seqnum; }
+  bool empty() const { return streams_.empty(); }
+  bool has_pads() const;
+
+  /// Shows the pads whose caps the channels tell, so that they are there from the start: those of
+  /// `topic`, or of all where it is empty.
+  void ShowKnown(const Playback& playback, const std::string& topic);
+  /// Says once that there come no more.
+  void EndPads();
+  /// A message for its pad; no buffer where it is damaged or its caps are not known.
+  struct Played {
+    PlayedStream* stream = nullptr;
+    BufferPtr buffer;
+  };
+  Played Read(const Playback::Item& item, GstClockTime pts);
+  /// Returns what all pads together say.
+  GstFlowReturn Push(Played played);
+  /// The source was sought.
+  void Restart(const GstSegment& segment, guint32 seqnum);
+  /// Sends `event` on all pads.
+  void End(GstEvent* event);
+
+ private:
+  PlayedStream* StreamOf(const std::string& topic);
+
+  struct FreeCombiner {
+    void operator()(GstFlowCombiner* p) const { gst_flow_combiner_free(p); }
+  };
+  GstElement* const element_;
+  const NewPad new_pad_;
+  PlaybackGroup common_;
+  std::vector<std::unique_ptr<PlayedStream>> streams_;
+  std::unique_ptr<GstFlowCombiner, FreeCombiner> flows_{gst_flow_combiner_new()};
+  bool told_no_more_pads_ = false;
+};
+
+}  // namespace lidar::gst
