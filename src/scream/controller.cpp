@@ -15,10 +15,6 @@ constexpr Duration kHousekeeping = 50ms;
 /// A caller that comes so much too late stood still, or its clock was set.
 constexpr Duration kStandstill = 500ms;
 constexpr double kDriftRateScale = 0.5;
-/// Silence up to this is one of the gaps that links have.
-constexpr Duration kLongestSilence = 2s;
-/// A packet whose report is so late met a link that stands still.
-constexpr Duration kOverdue = 5ms;
 /// A source that sends less than this part of its target says nothing about the link...
 constexpr double kUnusedTarget = 0.85;
 /// ...which need not be known beyond this multiple of the streams' maximum.
@@ -108,6 +104,7 @@ FeedbackResult Controller::OnFeedback(Time now, const CongestionFeedback& feedba
   if (!acks.acked.empty()) TakeOutageRestart(now);
   MeasurePath(now, acks);
   CountAcks(acks);
+  streams_.OnReport(acks);
   Respond(now, acks);
   UpdateTarget(now);
   return FeedbackResult::kAccepted;
@@ -138,12 +135,8 @@ void Controller::MeasurePath(Time now, const AckSummary& acks) {
 void Controller::CountAcks(const AckSummary& acks) {
   for (const AckedPacket& packet : acks.acked) {
     if (packet.was_lost) ++counters_.packets_late;
-    if (Stream* stream = streams_.Find(packet.stream))
-      stream->OnAcked(packet.arrived_ecn == Ecn::kCe);
     counters_.bytes_acked += packet.size;
   }
-  for (const LostPacket& packet : acks.lost)
-    if (Stream* stream = streams_.Find(packet.stream)) stream->OnLost();
   counters_.packets_acked += acks.acked.size();
   counters_.packets_lost += acks.lost.size();
 }
@@ -264,7 +257,7 @@ void Controller::UpdateTarget(Time now) {
   if (p_.extensions.quick_drain && started_) streams_.LeaveRoomForBacklogs();
   window_target_ = std::clamp(allowed, streams_.min_bitrate(), streams_.max_bitrate());
   pacer_.Update(window_target_, streams_.max_bitrate(),
-                PacingHeadroom(p_, streams_.frame_period(), PacingReserve(now)));
+                PacingHeadroom(p_, streams_.frame_period(), PacingReserve(p_, path_, now)));
   if (p_.extensions.quick_drain && streams_.media_qdelay(now) > streams_.frame_period())
     pacer_.RaiseTo(DrainRate(p_, now, window_.ref_wnd(), path_));
 }
@@ -280,31 +273,6 @@ void Controller::ProbeByBurst(Time now) {
   if (const auto rate = burst_probe_.Update(now, in)) pacer_.Burst(*rate, BurstProbe::kBurst);
 }
 
-/// What was sent for a while does not come back at the rate that it did: a gap, or the start of
-/// one.
-bool Controller::Stalled(Time now) const {
-  return gap_recovery_.in_gap() || (Overdue(now) && outage_.Quiet(now) > Lateness());
-}
-
-/// What is in flight takes longer than it did: packets wait for the link.
-bool Controller::Overdue(Time now) const {
-  const auto oldest = history_.oldest_in_flight();
-  return oldest && now - *oldest > path_.rtt().smoothed() + Lateness();
-}
-
-/// One report may be lost.
-Duration Controller::Lateness() const { return 2 * path_.report_gap() + kOverdue; }
-
-/// The path gives a sign of life, or did so a moment ago.
-bool Controller::Alive(Time now) const { return outage_.Silence(now) < kLongestSilence; }
-
-/// Where marks work, a frame may make as much queue as goes unmarked.
-Duration Controller::PacingReserve(Time now) const {
-  if (!path_.L4sWorks(now)) return p_.pacing_reserve;
-  return std::clamp(FromSeconds(Seconds(path_.marking_onset()) * p_.onset_reserve),
-                    p_.shortest_pacing_reserve, p_.pacing_reserve);
-}
-
 DataRate Controller::WindowTarget(Time now) const {
   if (!started_) return streams_.start_bitrate();
   // Through an outage the round trip is as long as nothing has come back.
@@ -318,8 +286,9 @@ DataRate Controller::WindowTarget(Time now) const {
 /// what they need as long as the path lives.
 DataRate Controller::AskedTarget(Time now, DataRate allowed) const {
   DataRate asked = allowed;
-  if (p_.extensions.gap_recovery && started_ && Stalled(now)) asked = asked * p_.stall_share;
-  if (p_.extensions.needed_floor && Alive(now))
+  if (p_.extensions.gap_recovery && started_ && liveness_.Stalled(now))
+    asked = asked * p_.stall_share;
+  if (p_.extensions.needed_floor && liveness_.Alive(now))
     asked = std::max(asked, streams_.needed_bitrate() * p_.needed_margin);
   return std::min(asked, streams_.max_bitrate());
 }
@@ -344,7 +313,8 @@ std::optional<SendDecision> Controller::NextSend(Time caller_now) const {
 
 /// Nothing is begun into a link that stands still: it would wait where it cannot be dropped.
 bool Controller::Holds(const Stream& stream, Time now) const {
-  const bool stalled = p_.extensions.gap_recovery && started_ && Overdue(now) && Stalled(now);
+  const bool stalled =
+      p_.extensions.gap_recovery && started_ && liveness_.Overdue(now) && liveness_.Stalled(now);
   return history_.full() || (stalled && stream.at_start());
 }
 

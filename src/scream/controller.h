@@ -15,6 +15,7 @@
 #include "src/scream/response/competing_flows.h"
 #include "src/scream/response/fast_increase.h"
 #include "src/scream/response/gap_recovery.h"
+#include "src/scream/response/liveness.h"
 #include "src/scream/response/outage.h"
 #include "src/scream/response/reference_window.h"
 #include "src/scream/response/send_window.h"
@@ -130,12 +131,7 @@ class Controller {
   bool CongestedLately() const;
   DataRate QueueRate(const Stream& stream) const;
   DataRate AskedTarget(Time now, DataRate allowed) const;
-  bool Alive(Time now) const;
-  bool Stalled(Time now) const;
-  bool Overdue(Time now) const;
-  Duration Lateness() const;
   bool Holds(const Stream& stream, Time now) const;
-  Duration PacingReserve(Time now) const;
   Duration Round() const;
 
   const Parameters p_;
@@ -152,6 +148,7 @@ class Controller {
   Outage outage_{p_};
   BurstProbe burst_probe_{p_};
   GapRecovery gap_recovery_{p_};
+  const Liveness liveness_{history_, path_, outage_, gap_recovery_};
   SendWindow send_window_{p_};
   Pacer pacer_{p_};
   bool started_ = false;    // a round trip is known

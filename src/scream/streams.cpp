@@ -71,6 +71,13 @@ double Streams::NeedShare(Time now, DataRate total) const {
   return extra > DataRate{} ? std::clamp(total / extra, 0.0, 1.0) : 0;
 }
 
+void Streams::OnReport(const AckSummary& acks) {
+  for (const AckedPacket& packet : acks.acked)
+    if (Stream* stream = Find(packet.stream)) stream->OnAcked(packet.arrived_ecn == Ecn::kCe);
+  for (const LostPacket& packet : acks.lost)
+    if (Stream* stream = Find(packet.stream)) stream->OnLost();
+}
+
 void Streams::Allocate(Time now, DataRate total) {
   std::vector<Share> open;
   DataRate left = total;

@@ -5,6 +5,7 @@
 #include <optional>
 #include <vector>
 
+#include "src/scream/model/sent_history.h"
 #include "src/scream/stream.h"
 
 namespace lidar::scream {
@@ -24,6 +25,8 @@ class Streams {
   std::optional<StreamId> Next() const;
   void OnSent(Time now, StreamId id, std::uint32_t ssrc, DataSize size);
   void OnQueued(Stream* stream);
+  /// Counts what became of their packets.
+  void OnReport(const AckSummary& acks);
 
   /// Minimum first, then by priority, none above its maximum; silent streams keep their minimum
   /// (unless all are silent).

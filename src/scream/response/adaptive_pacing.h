@@ -3,9 +3,17 @@
 #pragma once
 #include <algorithm>
 
+#include "src/scream/model/path_model.h"
 #include "src/scream/parameters.h"
 
 namespace lidar::scream {
+
+/// Where marks work, a frame may make as much queue as goes unmarked.
+inline Duration PacingReserve(const Parameters& p, const PathModel& path, Time now) {
+  if (!path.L4sWorks(now)) return p.pacing_reserve;
+  return std::clamp(FromSeconds(Seconds(path.marking_onset()) * p.onset_reserve),
+                    p.shortest_pacing_reserve, p.pacing_reserve);
+}
 
 /// PACKET_PACING_HEADROOM, or so much that a frame leaves `reserve` before its period ends: as
 /// much queue comes and goes with each frame where the link is full.
