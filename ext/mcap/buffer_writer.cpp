@@ -9,6 +9,7 @@
 #include "gst/common/cloud_info.h"
 #include "gst/common/gstlidar.h"
 #include "src/cdr/coded_slice.h"
+#include "src/cdr/motion_samples.h"
 #include "src/cdr/point_cloud2.h"
 
 namespace lidar::gst {
@@ -86,16 +87,12 @@ class ImuWriter : public BufferWriter {
 
   bool Write(GstBuffer* buffer, GstClockTime, std::vector<NewMessage>* out) override {
     const BufferMap map(buffer, GST_MAP_READ);
-    if (!map || map.size() % kImuSampleSize != 0) return false;
-    ByteReader r(map.view());
-    GstClockTime first = 0;
-    while (r.remaining() > 0) {
-      const GstClockTime time = r.Le64();
+    if (!map || map.size() % cdr::kImuSampleSize != 0) return false;
+    std::uint64_t first = 0;
+    for (cdr::Imu& imu : cdr::ReadImuSamples(map.view())) {
+      const auto time = static_cast<std::uint64_t>(imu.header.stamp.time_since_epoch().count());
       if (first == 0) first = time;
-      cdr::Imu imu;
-      imu.header = HeaderOf(time, frame_id_);
-      for (double& v : imu.linear_acceleration) v = static_cast<double>(r.LeF32());
-      for (double& v : imu.angular_velocity) v = static_cast<double>(r.LeF32());
+      imu.header.frame_id = frame_id_;
       out->push_back({time > first ? time - first : 0, time, cdr::WriteImu(imu)});
     }
     return true;
@@ -112,17 +109,14 @@ class OdometryWriter : public BufferWriter {
 
   bool Write(GstBuffer* buffer, GstClockTime log_time, std::vector<NewMessage>* out) override {
     const BufferMap map(buffer, GST_MAP_READ);
-    if (!map || map.size() != kOdometrySize) return false;
+    std::uint64_t tracking = 0;
+    auto odometry = map ? cdr::ReadPose(map.view(), &tracking) : std::nullopt;
+    if (!odometry) return false;
     const GstClockTime stamp = CaptureTime(buffer, log_time);
-    cdr::Odometry odometry;
-    odometry.header = HeaderOf(stamp, "odom");
-    odometry.child_frame_id = frame_id_;
-    ByteReader r(map.view());
-    for (double& v : odometry.position) v = r.LeF64();
-    for (double& v : odometry.orientation) v = r.LeF64();
-    const std::uint64_t tracking = std::min<std::uint64_t>(r.Le64(), GST_LIDAR_TRACKING_LOST);
-    SetTracking(static_cast<GstLidarTracking>(tracking), &odometry);
-    out->push_back({0, stamp, cdr::WriteOdometry(odometry)});
+    odometry->header = HeaderOf(stamp, "odom");
+    odometry->child_frame_id = frame_id_;
+    SetTracking(tracking, &*odometry);
+    out->push_back({0, stamp, cdr::WriteOdometry(*odometry)});
     return true;
   }
 
@@ -143,7 +137,7 @@ std::unique_ptr<BufferWriter> BufferWriter::Make(const GstCaps* caps, const std:
   switch (*type) {
     case MessageType::kImu:
       if (IsOurImu(caps)) return std::make_unique<ImuWriter>(frame_id);
-      *why = std::string("the samples of the IMU are not ") + kImuFields;
+      *why = std::string("the samples of the IMU are not ") + cdr::kImuFields;
       return nullptr;
     case MessageType::kOdometry:
       return std::make_unique<OdometryWriter>(frame_id);

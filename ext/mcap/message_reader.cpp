@@ -10,8 +10,8 @@
 #include "gst/common/buffer_map.h"
 #include "gst/common/cloud_info.h"
 #include "gst/common/gstlidar.h"
-#include "src/base/byte_writer.h"
 #include "src/cdr/coded_slice.h"
+#include "src/cdr/motion_samples.h"
 #include "src/cdr/point_cloud2.h"
 
 namespace lidar::gst {
@@ -107,19 +107,14 @@ class ImuReader : public MessageReader {
       caps_ = std::move(caps);
     else
       caps_.reset(gst_caps_new_simple(GST_LIDAR_IMU_MEDIA_TYPE, "sample-size", G_TYPE_INT,
-                                      static_cast<gint>(kImuSampleSize), "fields", G_TYPE_STRING,
-                                      kImuFields, nullptr));
+                                      static_cast<gint>(cdr::kImuSampleSize), "fields",
+                                      G_TYPE_STRING, cdr::kImuFields, nullptr));
   }
 
   BufferPtr Read(ByteView message) override {
     const auto imu = cdr::ReadImu(message);
     if (!imu) return nullptr;
-    mcap::Bytes bytes;
-    ByteWriter w(&bytes);
-    w.Le64(static_cast<std::uint64_t>(
-        std::max<gint64>(imu->header.stamp.time_since_epoch().count(), 0)));
-    for (const double v : imu->linear_acceleration) w.LeF32(static_cast<float>(v));
-    for (const double v : imu->angular_velocity) w.LeF32(static_cast<float>(v));
+    const mcap::Bytes bytes = cdr::WriteImuSample(*imu);
     BufferPtr buffer(gst_buffer_new_memdup(bytes.data(), bytes.size()));
     SetCaptureTime(imu->header, buffer.get());
     return buffer;
@@ -133,11 +128,7 @@ class OdometryReader : public MessageReader {
   BufferPtr Read(ByteView message) override {
     const auto odometry = cdr::ReadOdometry(message);
     if (!odometry) return nullptr;
-    mcap::Bytes bytes;
-    ByteWriter w(&bytes);
-    for (const double v : odometry->position) w.LeF64(v);
-    for (const double v : odometry->orientation) w.LeF64(v);
-    w.Le64(static_cast<std::uint64_t>(TrackingOf(*odometry)));
+    const mcap::Bytes bytes = cdr::WritePose(*odometry, TrackingOf(*odometry));
     BufferPtr buffer(gst_buffer_new_memdup(bytes.data(), bytes.size()));
     SetCaptureTime(odometry->header, buffer.get());
     return buffer;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// How samples of an IMU and poses stand in buffers, and what of it ROS messages can say.
+// Which samples of an IMU can be recorded, and how a recording says whether a pose is to be
+// believed.
 #pragma once
 #include <gst/gst.h>
 
@@ -8,16 +9,10 @@
 
 namespace lidar::gst {
 
-/// `application/x-imu`: a time and six floats.
-constexpr gsize kImuSampleSize = 32;
-constexpr const char* kImuFields =
-    "t:U64:0,ax:F32:8,ay:F32:12,az:F32:16,gx:F32:20,gy:F32:24,gz:F32:28";
 bool IsOurImu(const GstCaps* caps);
 
-/// `application/x-odometry`: seven doubles and the tracking.
-constexpr gsize kOdometrySize = 64;
 /// ROS has no word for the tracking: a pose that is not to be believed has a large covariance.
-void SetTracking(GstLidarTracking tracking, cdr::Odometry* odometry);
+void SetTracking(std::uint64_t tracking, cdr::Odometry* odometry);
 GstLidarTracking TrackingOf(const cdr::Odometry& odometry);
 
 }  // namespace lidar::gst

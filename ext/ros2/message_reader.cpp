@@ -4,11 +4,11 @@
 #include <utility>
 #include <vector>
 
-#include "ext/ros2/motion_buffer.h"
 #include "ext/ros2/ros_settings.h"
 #include "gst/common/buffer_map.h"
 #include "gst/common/cloud_info.h"
 #include "gst/common/gstlidar.h"
+#include "src/cdr/motion_samples.h"
 
 namespace lidar::gst {
 namespace {
@@ -126,10 +126,10 @@ MessageReader::Verdict MessageReader::ReadImu(ByteView message) {
     return Verdict::kDamaged;
   }
   CapsPtr caps(gst_caps_new_simple(GST_LIDAR_IMU_MEDIA_TYPE, "sample-size", G_TYPE_INT,
-                                   static_cast<gint>(kImuSampleSize), "fields", G_TYPE_STRING,
-                                   kImuFields, GST_LIDAR_FRAME_ID, G_TYPE_STRING,
+                                   static_cast<gint>(cdr::kImuSampleSize), "fields", G_TYPE_STRING,
+                                   cdr::kImuFields, GST_LIDAR_FRAME_ID, G_TYPE_STRING,
                                    ToText(imu->header.frame_id).c_str(), nullptr));
-  buffer_ = ToBuffer(WriteImuSample(*imu));
+  buffer_ = ToBuffer(cdr::WriteImuSample(*imu));
   SetStamp(imu->header.stamp);
   return SetCaps(std::move(caps));
 }
@@ -144,7 +144,7 @@ MessageReader::Verdict MessageReader::ReadOdometry(ByteView message) {
                                    ToText(odometry->header.frame_id).c_str(),
                                    GST_LIDAR_CHILD_FRAME_ID, G_TYPE_STRING,
                                    ToText(odometry->child_frame_id).c_str(), nullptr));
-  buffer_ = ToBuffer(WritePose(*odometry));
+  buffer_ = ToBuffer(cdr::WritePose(*odometry, GST_LIDAR_TRACKING_OK));
   SetStamp(odometry->header.stamp);
   return SetCaps(std::move(caps));
 }

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include "ext/ros2/message_writer.h"
 
-#include "ext/ros2/motion_buffer.h"
 #include "ext/ros2/ros_settings.h"
 #include "gst/common/buffer_map.h"
 #include "gst/common/gstlidar.h"
+#include "src/cdr/motion_samples.h"
 
 namespace lidar::gst {
 namespace {
@@ -50,8 +50,8 @@ bool MessageWriter::SetCaps(const GstCaps* caps) {
   from_caps_ = {TextOf(s, GST_LIDAR_FRAME_ID), TextOf(s, GST_LIDAR_CHILD_FRAME_ID)};
   if (type_ == cdr::RosType::kImu) {
     const gchar* fields = gst_structure_get_string(s, "fields");
-    why_ = std::string("samples must have the fields ") + kImuFields;
-    return fields == nullptr || std::string_view(fields) == kImuFields;
+    why_ = std::string("samples must have the fields ") + cdr::kImuFields;
+    return fields == nullptr || std::string_view(fields) == cdr::kImuFields;
   }
   if (type_ != cdr::RosType::kPointCloud2) return true;
   auto info = CloudInfo::FromCaps(caps, &why_);
@@ -108,7 +108,7 @@ bool MessageWriter::WriteCloud(ByteView points, const Publish& publish) {
 }
 
 bool MessageWriter::WriteImu(ByteView samples, const Publish& publish) {
-  std::vector<cdr::Imu> messages = ReadImuSamples(samples);
+  std::vector<cdr::Imu> messages = cdr::ReadImuSamples(samples);
   for (cdr::Imu& imu : messages) {
     imu.header = HeaderOf(imu.header.stamp, kImuFrame);
     publish({View(cdr::WriteImu(imu))});
@@ -117,7 +117,8 @@ bool MessageWriter::WriteImu(ByteView samples, const Publish& publish) {
 }
 
 bool MessageWriter::WritePose(ByteView bytes, const Publish& publish) {
-  auto pose = ReadPose(bytes);
+  std::uint64_t tracking = 0;
+  auto pose = cdr::ReadPose(bytes, &tracking);
   if (!pose) return false;
   pose->header = HeaderOf(stamp_, kOdometryFrame);
   pose->child_frame_id = ChildFrame();

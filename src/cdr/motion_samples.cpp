@@ -1,19 +1,13 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "ext/ros2/motion_buffer.h"
+#include "src/cdr/motion_samples.h"
 
 #include <algorithm>
 
-#include "gst/common/gstlidar.h"
 #include "src/base/byte_writer.h"
 
-namespace lidar::gst {
-namespace {
+namespace lidar::cdr {
 
-constexpr std::size_t kPoseSize = 64;
-
-}  // namespace
-
-std::vector<std::uint8_t> WriteImuSample(const cdr::Imu& imu) {
+std::vector<std::uint8_t> WriteImuSample(const Imu& imu) {
   std::vector<std::uint8_t> bytes;
   ByteWriter w(&bytes);
   w.Le64(static_cast<std::uint64_t>(
@@ -23,12 +17,12 @@ std::vector<std::uint8_t> WriteImuSample(const cdr::Imu& imu) {
   return bytes;
 }
 
-std::vector<cdr::Imu> ReadImuSamples(ByteView bytes) {
-  std::vector<cdr::Imu> samples;
+std::vector<Imu> ReadImuSamples(ByteView bytes) {
+  std::vector<Imu> samples;
   if (bytes.size % kImuSampleSize != 0) return samples;
   ByteReader r(bytes);
   while (r.remaining() > 0) {
-    cdr::Imu& imu = samples.emplace_back();
+    Imu& imu = samples.emplace_back();
     const auto ns = std::min<std::uint64_t>(r.Le64(), INT64_MAX);
     imu.header.stamp += Duration{static_cast<std::int64_t>(ns)};
     for (double& v : imu.linear_acceleration) v = double{r.LeF32()};
@@ -37,22 +31,23 @@ std::vector<cdr::Imu> ReadImuSamples(ByteView bytes) {
   return samples;
 }
 
-std::vector<std::uint8_t> WritePose(const cdr::Odometry& odometry) {
+std::vector<std::uint8_t> WritePose(const Odometry& odometry, std::uint64_t tracking) {
   std::vector<std::uint8_t> bytes;
   ByteWriter w(&bytes);
   for (const double v : odometry.position) w.LeF64(v);
   for (const double v : odometry.orientation) w.LeF64(v);
-  w.Le64(GST_LIDAR_TRACKING_OK);
+  w.Le64(tracking);
   return bytes;
 }
 
-std::optional<cdr::Odometry> ReadPose(ByteView bytes) {
+std::optional<Odometry> ReadPose(ByteView bytes, std::uint64_t* tracking) {
   if (bytes.size != kPoseSize) return std::nullopt;
   ByteReader r(bytes);
-  cdr::Odometry odometry;
+  Odometry odometry;
   for (double& v : odometry.position) v = r.LeF64();
   for (double& v : odometry.orientation) v = r.LeF64();
+  *tracking = r.Le64();
   return odometry;
 }
 
-}  // namespace lidar::gst
+}  // namespace lidar::cdr

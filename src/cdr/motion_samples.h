@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The buffers of application/x-imu and application/x-odometry, little-endian.
+// Samples of an IMU and poses as GStreamer's buffers have them, little-endian, and as messages.
 #pragma once
 #include <cstdint>
 #include <optional>
@@ -7,21 +7,23 @@
 
 #include "src/cdr/messages.h"
 
-namespace lidar::gst {
+namespace lidar::cdr {
 
 /// Capture time [ns since the Unix epoch], acceleration [m/s^2], angular velocity [rad/s].
 inline constexpr const char* kImuFields =
     "t:U64:0,ax:F32:8,ay:F32:12,az:F32:16,gx:F32:20,gy:F32:24,gz:F32:28";
 inline constexpr std::size_t kImuSampleSize = 32;
+/// Seven doubles and an integer.
+inline constexpr std::size_t kPoseSize = 64;
 
-std::vector<std::uint8_t> WriteImuSample(const cdr::Imu& imu);
+std::vector<std::uint8_t> WriteImuSample(const Imu& imu);
 /// As many messages as `bytes` have samples, with no orientation and no frame; none where a sample
 /// is cut.
-std::vector<cdr::Imu> ReadImuSamples(ByteView bytes);
+std::vector<Imu> ReadImuSamples(ByteView bytes);
 
-/// Position [m], orientation x, y, z, w and how sure the pose is.
-std::vector<std::uint8_t> WritePose(const cdr::Odometry& odometry);
+/// Position [m], orientation x, y, z, w and how sure the pose is, which messages do not say.
+std::vector<std::uint8_t> WritePose(const Odometry& odometry, std::uint64_t tracking);
 /// The pose, with neither time nor frames; none where `bytes` are of another size.
-std::optional<cdr::Odometry> ReadPose(ByteView bytes);
+std::optional<Odometry> ReadPose(ByteView bytes, std::uint64_t* tracking);
 
-}  // namespace lidar::gst
+}  // namespace lidar::cdr

@@ -3,10 +3,8 @@
 #include <gtest/gtest.h>
 
 #include "ext/ros2/message_reader.h"
-#include "ext/ros2/motion_buffer.h"
 #include "gst/common/buffer_map.h"
 #include "gst/common/gstlidar.h"
-#include "src/base/byte_writer.h"
 
 namespace lidar::gst {
 namespace {
@@ -97,46 +95,6 @@ TEST_F(CloudMessages, BecomeWhatDownstreamTakesOrAreRefused) {
   reader_.Renegotiate();
   EXPECT_EQ(Read(), Verdict::kNotNegotiated);
   EXPECT_EQ(reader_.why(), "downstream takes other caps");
-}
-
-TEST(ImuSamples, HaveTimeAccelerationsAndTurnRatesInTheirOrder) {
-  cdr::Imu imu;
-  imu.header.stamp = Time{} + Duration{77};
-  imu.linear_acceleration = {1, 2, 3};
-  imu.angular_velocity = {4, 5, 6};
-  Bytes expected;
-  ByteWriter w(&expected);
-  w.Le64(77);
-  for (const float v : {1.F, 2.F, 3.F, 4.F, 5.F, 6.F}) w.LeF32(v);
-  EXPECT_EQ(WriteImuSample(imu), expected);
-  Bytes two = expected;
-  two.insert(two.end(), expected.begin(), expected.end());
-  const auto back = ReadImuSamples(View(two));
-  ASSERT_EQ(back.size(), 2U);
-  EXPECT_EQ(back[1].header.stamp, imu.header.stamp);
-  EXPECT_EQ(back[1].linear_acceleration, imu.linear_acceleration);
-  EXPECT_EQ(back[1].angular_velocity, imu.angular_velocity);
-  two.pop_back();
-  EXPECT_TRUE(ReadImuSamples(View(two)).empty());
-  imu.header.stamp = Time{} - Duration{1};
-  EXPECT_EQ(ReadImuSamples(View(WriteImuSample(imu)))[0].header.stamp, Time{});
-}
-
-TEST(Poses, HavePositionOrientationAndThatTheyAreTracked) {
-  cdr::Odometry o;
-  o.position = {1, 2, 3};
-  o.orientation = {0, 0, 0.6, 0.8};
-  Bytes expected;
-  ByteWriter w(&expected);
-  for (const double v : {1., 2., 3., 0., 0., 0.6, 0.8}) w.LeF64(v);
-  w.Le64(GST_LIDAR_TRACKING_OK);
-  EXPECT_EQ(WritePose(o), expected);
-  const auto back = ReadPose(View(expected));
-  ASSERT_TRUE(back);
-  EXPECT_EQ(back->position, o.position);
-  EXPECT_EQ(back->orientation, o.orientation);
-  expected.push_back(0);
-  EXPECT_FALSE(ReadPose(View(expected)));
 }
 
 }  // namespace
