@@ -102,6 +102,26 @@ TEST(Bottleneck, AQueueLimitInTimeFollowsTheCapacity) {
   EXPECT_EQ(link.stats().queue_full, 89U);
 }
 
+TEST(Bottleneck, InAGapTheLastLimitOfTheQueueStands) {
+  auto config = Simple();
+  config.capacity = Capacity::Steps({Mbps(8), Mbps(0)}, 1s);
+  config.limit.time = 10ms;
+  Bottleneck link(config);
+  link.Enqueue(kStart, Sized(1000, 0));
+  for (int i = 0; i < 11; ++i) link.Enqueue(kStart + 1500ms, Sized(1000, 1));
+  EXPECT_EQ(link.queued_packets(), 10U);
+}
+
+TEST(Bottleneck, APacketThatCameMarkedIsNotCountedAsMarkedHere) {
+  auto config = Simple();
+  config.aqm.kind = AqmConfig::Kind::kDualPi2;
+  Bottleneck link(config);
+  for (int i = 0; i < 100; ++i) link.Enqueue(kStart, Sized(1000, 0, Ecn::kCe));
+  Drain(&link);
+  EXPECT_EQ(link.stats().delivered, 100U);
+  EXPECT_EQ(link.stats().marked, 0U);
+}
+
 TEST(Bottleneck, InAGapTheQueueKeepsItsPacketsAndTheirSojournGoesOn) {
   auto config = Simple();
   config.capacity = Capacity::Steps({Mbps(0), Mbps(8)}, 1s);

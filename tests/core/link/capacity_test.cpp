@@ -64,6 +64,14 @@ TEST(Capacity, ReadsATraceWithCommentsBlankLinesAndWindowsEnds) {
   EXPECT_EQ(Capacity::ParseTrace("0 1\n1 2", false, &error)->RateAt(9s), Mbps(2));
 }
 
+TEST(Capacity, ReadsNoMoreLinesThanItsLimit) {
+  std::string text;
+  for (std::size_t i = 0; i <= Capacity::kMaxChanges; ++i) text += std::to_string(i) + " 1\n";
+  std::string error;
+  EXPECT_FALSE(Capacity::ParseTrace(text, false, &error));
+  EXPECT_EQ(error, "line 1000001: too many lines");
+}
+
 class BadTrace : public testing::TestWithParam<std::pair<const char*, const char*>> {};
 
 TEST_P(BadTrace, IsRefusedWithItsLine) {

@@ -43,6 +43,14 @@ TEST(Gaps, ASourceThatCanUseLessNeedsLess) {
   EXPECT_EQ(RecoveryAfterGaps(TwoGaps(), Sent(4, 0s, 10s), config)[0], 0);
 }
 
+TEST(Gaps, ThoseThatComeTooCloseAreLeftOut) {
+  std::string error;
+  const auto c = Capacity::ParseTrace("0 8\n1 0\n1.5 8\n1.65 0\n2 8", false, &error);
+  ASSERT_TRUE(c) << error;
+  EXPECT_EQ(EndsOfGaps(*c, 10s), (std::vector<Duration>{1500ms, 2s}));
+  EXPECT_EQ(RecoveryAfterGaps(*c, Sent(8, 0s, 10s), {10s}).size(), 1U);
+}
+
 TEST(Gaps, NobodyIsBackWhoSendsNothing) {
   const auto never = RecoveryAfterGaps(TwoGaps(), {}, {30s});
   ASSERT_EQ(never.size(), 2U);

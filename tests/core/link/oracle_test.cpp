@@ -42,6 +42,27 @@ TEST(Oracle, LosesTheScansOfAGapThatIsLongerThanTheyKeep) {
   EXPECT_NEAR(static_cast<double>(Ask(MakeGapTrace(gaps), 1.4).complete), 599, 1);
 }
 
+TEST(Oracle, KeepsTheNewestScanHoweverOld) {
+  std::string error;
+  OracleConfig config;
+  config.rate = Mbps(1.4);
+  config.duration = 10s;
+  config.scans_per_second = 2;
+  const auto c = Capacity::ParseTrace("0 8\n0.95 0\n1.35 8", false, &error);
+  EXPECT_EQ(AskOracle(*c, config).complete, 20U);
+}
+
+TEST(Oracle, FinishesAScanThatHasBegunToLeave) {
+  std::string error;
+  OracleConfig config;
+  config.rate = Mbps(1.4);
+  config.duration = 10s;
+  const auto c = Capacity::ParseTrace("0 8\n1.001 0\n1.45 8", false, &error);
+  EXPECT_EQ(AskOracle(*c, config).complete, 98U);
+  const auto sooner = Capacity::ParseTrace("0 8\n0.999 0\n1.45 8", false, &error);
+  EXPECT_EQ(AskOracle(*sooner, config).complete, 97U);
+}
+
 TEST(Oracle, AskedForNothingDeliversNothing) {
   EXPECT_EQ(AskOracle(Capacity::Constant(Mbps(8)), {}).complete, 0U);
   OracleConfig config;

@@ -33,6 +33,18 @@ TEST(Path, JitterDelaysWithinItsBoundAndKeepsTheOrder) {
   EXPECT_NEAR(sum_ms / 2000, 4, 0.2);
 }
 
+TEST(Path, JitterKeepsTheOrderOfPacketsThatAreClose) {
+  PathConfig config;
+  config.jitter = 8ms;
+  Path path(config, 1);
+  Time last{};
+  for (int i = 0; i < 100; ++i) {
+    const Time arrival = path.Arrival(kStart + i * 1ms);
+    EXPECT_GE(arrival, last);
+    last = arrival;
+  }
+}
+
 TEST(Path, BurstsComeOutTogether) {
   PathConfig config;
   config.burst_interval = 10ms;

@@ -24,11 +24,13 @@ struct Share {
 
 /// 8 Mbit/s; flows of 1000-byte packets that never slow down, `load` each, for 20 s; figures of
 /// the last 10.
-std::array<Share, 4> Overload(AqmConfig::Kind kind, std::vector<Ecn> flows, double load) {
+std::array<Share, 4> Overload(AqmConfig::Kind kind, std::vector<Ecn> flows, double load,
+                              bool knows_l4s = true) {
   BottleneckConfig config;
   config.origin = kStart;
   config.capacity = Capacity::Constant(DataRate::BitsPerSecond(8e6));
   config.aqm.kind = kind;
+  config.aqm.pi2.knows_l4s = knows_l4s;
   Bottleneck link(config);
   std::array<Share, 4> shares;
   const auto spacing = FromSeconds(1e-3 / load);
@@ -85,6 +87,11 @@ TEST(Pi2, MarksEct0InsteadOfDroppingIt) {
   EXPECT_NEAR(s[2].rate(), s[0].rate(), 0.02);
 }
 
+TEST(Pi2, MarksEct1AsRarelyAsEct0WhereItDoesNotKnowL4s) {
+  const auto s = Overload(AqmConfig::Kind::kPi2, {Ecn::kEct1, Ecn::kNotEct}, 0.525, false);
+  EXPECT_NEAR(s[1].rate(), s[0].rate(), 0.02);
+}
+
 TEST(DualPi2, L4sWaitsLittleBesideAStandingClassicQueue) {
   const auto s = Overload(AqmConfig::Kind::kDualPi2, {Ecn::kNotEct, Ecn::kEct1}, 0.525);
   EXPECT_NEAR(s[0].mean_ms(), 15, 3);
@@ -92,6 +99,11 @@ TEST(DualPi2, L4sWaitsLittleBesideAStandingClassicQueue) {
   const double coupled = 2 * std::sqrt(s[0].rate());
   EXPECT_GT(s[1].rate(), coupled - 0.03);
   EXPECT_LT(s[1].rate(), coupled + 0.12) << "a classic packet being sent takes a millisecond";
+}
+
+TEST(DualPi2, APacketThatWasMarkedBeforeWaitsAsL4s) {
+  const auto s = Overload(AqmConfig::Kind::kDualPi2, {Ecn::kNotEct, Ecn::kCe}, 0.525);
+  EXPECT_LT(s[3].mean_ms(), 1);
 }
 
 TEST(DualPi2, ClassicIsNotStarvedWhereL4sAloneFillsTheLink) {

@@ -42,6 +42,7 @@ TEST_P(Drive, HasTheMeanTheGapsAndTheFadesOfMeasuredOnes) {
   config.seed = GetParam();
   const Capacity c = Parse(MakeDriveTrace(config));
   EXPECT_NEAR(c.Between(0s, 180s).bits() / 180e6, 8, 0.8);
+  for (Duration t{0}; t < 180s; t += 100ms) ASSERT_GE(c.RateAt(t), Mbps(0.2));
   const std::vector<int> gaps = GapsOf(c, 180s);
   int in_gaps = 0;
   for (const int g : gaps) in_gaps += g;
