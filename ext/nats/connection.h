@@ -46,6 +46,8 @@ class Connection {
   Connection& operator=(const Connection&) = delete;
 
   natsConnection* get() const { return nc_; }
+  /// What is published now goes out at once. May wait for a write that is under way.
+  bool ready() const { return natsConnection_Status(nc_) == NATS_CONN_STATUS_CONNECTED; }
   /// Never waits for the network.
   ConnectionState state() const;
 
