@@ -19,9 +19,12 @@ if [ "${2:-}" = --update ]; then
   exit 0
 fi
 
-# A plugin that needs a missing library is not built here, and not compared.
-jq --slurpfile new "$now" 'with_entries(select(.key as $k | $new[0] | has($k)))' "$snapshot" >"$now.kept"
-if ! diff -u --label docs/plugins_cache.json --label "the plugins as built" "$now.kept" <(jq . "$now"); then
+# A plugin that needs a missing library is not built here, and not compared. Newer versions of jq keep
+# 1.0 where it was not calculated.
+numbers='def numbers_as_values: walk(if type == "number" then . + 0 else . end);'
+jq --slurpfile new "$now" "$numbers"' with_entries(select(.key as $k | $new[0] | has($k))) | numbers_as_values' \
+  "$snapshot" >"$now.kept"
+if ! diff -u --label docs/plugins_cache.json --label "the plugins as built" "$now.kept" <(jq "$numbers numbers_as_values" "$now"); then
   echo "If this is meant: tests/inspect/update.sh, and commit docs/plugins_cache.json." >&2
   exit 1
 fi
