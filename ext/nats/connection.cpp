@@ -71,6 +71,8 @@ natsStatus SetPace(natsOptions* o) {
   if (s == NATS_OK) s = natsOptions_SetReconnectBufSize(o, 1);
   // Its flusher would wait a millisecond for more to send.
   if (s == NATS_OK) s = natsOptions_SetSendAsap(o, true);
+  // What it held back would be stored before what was lost with the connection.
+  if (s == NATS_OK) s = natsOptions_SetReconnectBufSize(o, 0);
   return s;
 }
 
@@ -198,6 +200,16 @@ Connection::~Connection() {
 ConnectionState Connection::state() const {
   const std::lock_guard lock(shared_->mutex);
   return shared_->state;
+}
+
+std::uint64_t Connection::reconnects() const {
+  natsStatistics* raw = nullptr;
+  natsStatistics_Create(&raw);
+  const StatisticsPtr statistics(raw);
+  std::uint64_t reconnects = 0;
+  if (statistics && natsConnection_GetStats(nc_, raw) == NATS_OK)
+    natsStatistics_GetCounts(raw, nullptr, nullptr, nullptr, nullptr, &reconnects);
+  return reconnects;
 }
 
 }  // namespace lidar::nats

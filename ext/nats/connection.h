@@ -50,6 +50,8 @@ class Connection {
   bool ready() const { return natsConnection_Status(nc_) == NATS_CONN_STATUS_CONNECTED; }
   /// Never waits for the network.
   ConnectionState state() const;
+  /// How often it was made anew: known before anything can be sent on the new one.
+  std::uint64_t reconnects() const;
 
   static constexpr std::int64_t kConnectTimeoutMs = 1'000;
   static constexpr std::int64_t kWriteTimeoutMs = 1'000;

@@ -15,6 +15,7 @@ struct Destroy {
   void operator()(jsStreamInfo* p) const { jsStreamInfo_Destroy(p); }
   void operator()(jsConsumerInfo* p) const { jsConsumerInfo_Destroy(p); }
   void operator()(jsMsgMetaData* p) const { jsMsgMetaData_Destroy(p); }
+  void operator()(natsStatistics* p) const { natsStatistics_Destroy(p); }
   void operator()(natsInbox* p) const { natsInbox_Destroy(p); }
 };
 
@@ -25,6 +26,7 @@ using JetStreamPtr = std::unique_ptr<jsCtx, Destroy>;
 using StreamInfoPtr = std::unique_ptr<jsStreamInfo, Destroy>;
 using ConsumerInfoPtr = std::unique_ptr<jsConsumerInfo, Destroy>;
 using MetaDataPtr = std::unique_ptr<jsMsgMetaData, Destroy>;
+using StatisticsPtr = std::unique_ptr<natsStatistics, Destroy>;
 using InboxPtr = std::unique_ptr<natsInbox, Destroy>;
 
 }  // namespace lidar::nats

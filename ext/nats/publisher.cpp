@@ -234,10 +234,13 @@ void Publisher::Step(Lock* lock) {
     wake_.wait_for(*lock, kPatrol);
     return;
   }
+  RetryAfterReconnect(lock);
+  if (stopping_) return;
   const auto now = Clock::now();
   RetryUnanswered(now);
-  if (keeps() && !stream_ready_ && !PrepareStream(lock)) return;
-  if (ConfigDue(now))
+  if (keeps() && !stream_ready_)
+    PrepareStream(lock);
+  else if (ConfigDue(now))
     SendConfig(lock);
   else if (outbox_.waiting() > 0 && outbox_.in_flight() < kMaxInFlight)
     SendNext(lock);
@@ -255,6 +258,14 @@ void Publisher::NoteConnection(const ConnectionState& state) {
   if (connections == connections_ || !state.connected()) return;
   connections_ = connections;
   refusals_.Reset();
+}
+
+/// What was on its way goes before what waits, so that it is stored in order.
+void Publisher::RetryAfterReconnect(Lock* lock) {
+  lock->unlock();
+  const std::uint64_t reconnects = connection_->reconnects();  // may wait for a write
+  lock->lock();
+  if (reconnects == std::exchange(reconnects_, reconnects)) return;
   SendAllAgain();
 }
 
@@ -277,6 +288,8 @@ void Publisher::OpenAgain(Lock* lock) {
   if (!open) Close();
   lock->lock();
   open_at_ = Clock::now() + refusals_.Next();
+  reconnects_ = 0;
+  SendAllAgain();
   if (!open) Tell(lock, "NATS cannot be used: " + why);
 }
 
@@ -298,12 +311,11 @@ std::vector<std::string> Publisher::KeptSubjects() const {
   return {settings_.subject, ConfigSubject(settings_.subject, "*")};
 }
 
-/// True once the stream of JetStream is there.
-bool Publisher::PrepareStream(Lock* lock) {
+void Publisher::PrepareStream(Lock* lock) {
   const auto now = Clock::now();
   if (now < retry_at_) {
     wake_.wait_until(*lock, retry_at_);
-    return false;
+    return;
   }
   lock->unlock();
   std::string why;
@@ -312,7 +324,6 @@ bool Publisher::PrepareStream(Lock* lock) {
   stream_ready_ = ready;
   retry_at_ = Clock::now() + StreamPause();
   if (!ready) Tell(lock, "The stream " + settings_.stream.name + " cannot be made: " + why);
-  return ready;
 }
 
 /// The caps of what goes next, or went last.

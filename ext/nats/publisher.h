@@ -86,7 +86,8 @@ class Publisher : public std::enable_shared_from_this<Publisher> {
   void NoteConnection(const ConnectionState& state);
   void OpenAgain(Lock* lock);
   std::vector<std::string> KeptSubjects() const;
-  bool PrepareStream(Lock* lock);
+  void RetryAfterReconnect(Lock* lock);
+  void PrepareStream(Lock* lock);
   void SendAllAgain();
   void RetryUnanswered(Clock::time_point now);
   StreamFormat::Ptr NextFormat() const;
@@ -125,8 +126,9 @@ class Publisher : public std::enable_shared_from_this<Publisher> {
   Backoff refusals_{std::chrono::seconds(1), std::chrono::seconds(16)};
   unsigned connections_before_ = 0;  // of the connections that were
   std::uint64_t errors_before_ = 0;
-  unsigned connections_ = 0;  // that were seen
-  std::string told_;          // the trouble that is known
+  unsigned connections_ = 0;      // that were seen
+  std::uint64_t reconnects_ = 0;  // of this connection, that were seen
+  std::string told_;              // the trouble that is known
   bool asked_ = false;
   bool config_unanswered_ = false;
   bool stream_ready_ = false;
