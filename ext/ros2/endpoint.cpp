@@ -39,7 +39,7 @@ QosPtr MakeQos(bool reliable, bool transient, unsigned depth) {
 }
 
 QosPtr EndpointQos(const EndpointOptions& options) {
-  QosPtr qos = MakeQos(options.reliable, false, options.depth);
+  QosPtr qos = MakeQos(options.reliable, options.transient, options.depth);
   if (!options.tells_type_hash) return qos;
   const std::string text = "typehash=" + std::string(cdr::InfoOf(options.type).hash) + ";";
   dds_qset_userdata(qos.get(), text.data(), text.size());

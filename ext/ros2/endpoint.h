@@ -19,7 +19,8 @@ struct EndpointOptions {
   std::string topic;  // as DDS has it
   cdr::RosType type = cdr::RosType::kPointCloud2;
   bool reliable = false;
-  unsigned depth = 5;  // messages kept
+  bool transient = false;  // publishers keep messages for those who come later
+  unsigned depth = 5;      // messages kept
   std::size_t gid_size = 16;
   bool tells_type_hash = true;
 };

@@ -2,7 +2,8 @@
 /**
  * SECTION:element-ros2src
  *
- * Clouds, samples of an IMU, or odometry that ROS 2 nodes publish, as they come. Needs no ROS.
+ * Clouds, samples of an IMU, odometry, or transforms that ROS 2 nodes publish, as they come. Needs
+ * no ROS.
  *
  * |[
  * gst-launch-1.0 ros2src topic=/ouster/points ! dracoenc geometry=xyz ! fakesink
@@ -10,12 +11,14 @@
  */
 #include "ext/ros2/gstros2src.h"
 
+#include <algorithm>
 #include <memory>
 #include <mutex>
 
 #include "ext/ros2/message_reader.h"
 #include "ext/ros2/ros_settings.h"
 #include "gst/common/enum_type.h"
+#include "gst/common/frames.h"
 #include "gst/common/gstlidar.h"
 #include "gst/common/refs.h"
 #include "gst/common/stats.h"
@@ -35,6 +38,7 @@ GType SrcTypeType() {
       {Int(RosType::kPointCloud2), "sensor_msgs/msg/PointCloud2", "pointcloud2"},
       {Int(RosType::kImu), "sensor_msgs/msg/Imu", "imu"},
       {Int(RosType::kOdometry), "nav_msgs/msg/Odometry", "odometry"},
+      {Int(RosType::kTransforms), "tf2_msgs/msg/TFMessage", "tf"},
       {0, nullptr, nullptr}};
   static const GType type = RegisterEnum("GstLidarRos2SrcType", kValues);
   return type;
@@ -44,6 +48,15 @@ struct Ros2SrcSettings {
   RosSettings ros;
   RosType type = RosType::kPointCloud2;
 };
+
+/// Each publisher of static transforms sends them once; tf2 keeps as many.
+constexpr guint kStaticDepth = 100;
+
+/// True where the topic holds what does not change: by its name, as ROS has it.
+bool IsForGood(const Ros2SrcSettings& settings) {
+  const std::string name = settings.ros.topic.substr(settings.ros.topic.rfind('/') + 1);
+  return settings.type == RosType::kTransforms && name == "tf_static";
+}
 
 struct Counters {
   guint64 messages = 0;
@@ -73,6 +86,7 @@ struct State {
   // Only the streaming thread uses what follows, between start and stop.
   std::unique_ptr<MessageReader> messages;
   bool warned_damaged = false;
+  const char* incompatible = "";  // what a publisher does that is not taken
 };
 
 }  // namespace
@@ -142,8 +156,12 @@ static gboolean Start(GstBaseSrc* base) {
   std::unique_lock lock(state.mutex);
   const Ros2SrcSettings settings = state.settings;
   lock.unlock();
-  const auto options = ToOptions(GST_ELEMENT(self), settings.ros, settings.type);
+  auto options = ToOptions(GST_ELEMENT(self), settings.ros, settings.type);
   if (!options) return FALSE;
+  if (IsForGood(settings)) {
+    options->reliable = options->transient = true;
+    options->depth = std::max(options->depth, kStaticDepth);
+  }
   std::string why;
   std::shared_ptr<Reader> reader = Reader::Create(*options, &why);
   if (!reader) {
@@ -154,7 +172,12 @@ static gboolean Start(GstBaseSrc* base) {
   }
   if (settings.type == RosType::kPointCloud2) WarnOfSmallBuffer(self);
   state.messages = std::make_unique<MessageReader>(
-      settings.type, [base] { return CapsPtr(gst_pad_get_allowed_caps(GST_BASE_SRC_PAD(base))); });
+      settings.type, [base] { return CapsPtr(gst_pad_get_allowed_caps(GST_BASE_SRC_PAD(base))); },
+      IsForGood(settings));
+  state.incompatible = IsForGood(settings)
+                           ? "does not keep its transforms for those who come later (durability "
+                             "transient local)"
+                           : "is best-effort, which qos=reliable does not take";
   state.warned_damaged = false;
   lock.lock();
   state.reader = std::move(reader);
@@ -239,10 +262,9 @@ static GstFlowReturn NextBuffer(GstLidarRos2Src* self, Reader* reader) {
         NoteOtherType(self, *reader);
         continue;
       case Reader::Event::kIncompatible:
-        GST_ELEMENT_WARNING(
-            self, RESOURCE, SETTINGS,
-            ("A publisher of the topic is best-effort, which qos=reliable does not take."),
-            ("use qos=sensor-data"));
+        GST_ELEMENT_WARNING(self, RESOURCE, SETTINGS,
+                            ("A publisher of the topic %s.", StateOf(self).incompatible),
+                            ("use qos=sensor-data where it is best-effort"));
         continue;
       case Reader::Event::kMessage:
         break;
@@ -309,7 +331,8 @@ static void gst_lidar_ros2_src_class_init(GstLidarRos2SrcClass* klass) {
   static GstStaticPadTemplate src = GST_STATIC_PAD_TEMPLATE(
       "src", GST_PAD_SRC, GST_PAD_ALWAYS,
       GST_STATIC_CAPS(GST_LIDAR_CLOUD_MEDIA_TYPE ";" GST_LIDAR_IMU_MEDIA_TYPE
-                                                 ";" GST_LIDAR_ODOMETRY_MEDIA_TYPE));
+                                                 ";" GST_LIDAR_ODOMETRY_MEDIA_TYPE
+                                                 ";" GST_LIDAR_TF_MEDIA_TYPE));
   auto* element = GST_ELEMENT_CLASS(klass);
   gst_element_class_add_static_pad_template(element, &src);
   gst_element_class_set_static_metadata(element, "ROS 2 source", "Source/Network",

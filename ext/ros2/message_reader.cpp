@@ -4,9 +4,9 @@
 #include <utility>
 #include <vector>
 
-#include "ext/ros2/ros_settings.h"
 #include "gst/common/buffer_map.h"
 #include "gst/common/cloud_info.h"
+#include "gst/common/frames.h"
 #include "gst/common/gstlidar.h"
 #include "src/cdr/motion_samples.h"
 
@@ -44,9 +44,12 @@ MessageReader::Verdict MessageReader::Read(ByteView message) {
       return ReadCloud(message);
     case cdr::RosType::kImu:
       return ReadImu(message);
-    default:
+    case cdr::RosType::kOdometry:
       return ReadOdometry(message);
+    case cdr::RosType::kTransforms:
+      break;
   }
+  return ReadTransforms(message);
 }
 
 void MessageReader::SetStamp(Time stamp) {
@@ -146,6 +149,21 @@ MessageReader::Verdict MessageReader::ReadOdometry(ByteView message) {
                                    ToText(odometry->child_frame_id).c_str(), nullptr));
   buffer_ = ToBuffer(cdr::WritePose(*odometry, GST_LIDAR_TRACKING_OK));
   SetStamp(odometry->header.stamp);
+  return SetCaps(std::move(caps));
+}
+
+/// The message as it is: each transform of it has frames and a time of its own.
+MessageReader::Verdict MessageReader::ReadTransforms(ByteView message) {
+  const auto transforms = cdr::ReadTransforms(message);
+  if (!transforms) {
+    why_ = "the message is truncated or is no TFMessage";
+    return Verdict::kDamaged;
+  }
+  if (transforms->empty()) return Verdict::kEmpty;
+  CapsPtr caps(gst_caps_new_simple(GST_LIDAR_TF_MEDIA_TYPE, GST_LIDAR_TF_STATIC, G_TYPE_BOOLEAN,
+                                   for_good_, nullptr));
+  buffer_.reset(gst_buffer_new_memdup(message.data, message.size));
+  SetStamp(transforms->front().header.stamp);
   return SetCaps(std::move(caps));
 }
 

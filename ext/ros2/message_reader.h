@@ -19,11 +19,13 @@ class MessageReader {
  public:
   /// `wanted` gives what downstream takes; null: anything.
   using Wanted = std::function<CapsPtr()>;
-  MessageReader(cdr::RosType type, Wanted wanted) : type_(type), wanted_(std::move(wanted)) {}
+  /// `for_good`: what transforms say does not change with time.
+  MessageReader(cdr::RosType type, Wanted wanted, bool for_good = false)
+      : type_(type), wanted_(std::move(wanted)), for_good_(for_good) {}
 
   enum class Verdict {
     kBuffer,         // buffer()
-    kEmpty,          // a cloud of no points
+    kEmpty,          // a cloud of no points, a message of no transforms
     kDamaged,        // why()
     kNotNegotiated,  // no caps of this message are what downstream takes: why()
   };
@@ -40,12 +42,14 @@ class MessageReader {
   Verdict ReadCloud(ByteView message);
   Verdict ReadImu(ByteView message);
   Verdict ReadOdometry(ByteView message);
+  Verdict ReadTransforms(ByteView message);
   Verdict Adapt(const cdr::PointCloud2& cloud);
   Verdict SetCaps(CapsPtr caps);
   void SetStamp(Time stamp);
 
   cdr::RosType type_;
   Wanted wanted_;
+  bool for_good_;
   std::optional<cdr::PointConverter> converter_;
   bool is_dense_ = false;
   std::string frame_id_;

@@ -1,18 +1,13 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include "ext/ros2/message_writer.h"
 
-#include "ext/ros2/ros_settings.h"
 #include "gst/common/buffer_map.h"
+#include "gst/common/frames.h"
 #include "gst/common/gstlidar.h"
 #include "src/cdr/motion_samples.h"
 
 namespace lidar::gst {
 namespace {
-
-// Frames where nobody names them: the cloud is in the frame whose pose odometry tells.
-constexpr const char* kCloudFrame = "lidar";
-constexpr const char* kImuFrame = "imu";
-constexpr const char* kOdometryFrame = "odom";
 
 std::string TextOf(const GstStructure* s, const char* field) {
   const gchar* text = gst_structure_get_string(s, field);

@@ -11,10 +11,6 @@
 
 namespace lidar::gst {
 
-// Fields of caps: the frame that data are in, and the frame whose pose odometry is.
-#define GST_LIDAR_FRAME_ID "frame-id"
-#define GST_LIDAR_CHILD_FRAME_ID "child-frame-id"
-
 enum class RosQos : gint { kSensorData, kReliable };
 enum class RosDistro : gint { kHumble, kIron, kJazzy, kKilted, kRolling };
 

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "gst/common/buffer_map.h"
+#include "gst/common/frames.h"
 #include "gst/common/gstlidar.h"
 
 namespace lidar::gst {
@@ -63,7 +64,9 @@ std::optional<PointFilterSettings> ParseSettings(const FilterSettings& s, std::s
   parsed.voxel_size_m = s.voxel_size;
   parsed.crop_inside = s.crop_inside;
   parsed.invalid = s.invalid;
-  parsed.has_pose = s.apply_pose;
+  *why = "apply-pose and target-frame exclude each other";
+  if (s.apply_pose && !s.target_frame.empty()) return std::nullopt;
+  parsed.has_pose = s.apply_pose || !s.target_frame.empty();
   if (!s.transform.empty()) {
     parsed.transform = ParseTransform(s.transform);
     *why = "transform wants 16 numbers, or x, y, z, roll, pitch, yaw";
@@ -87,6 +90,13 @@ std::optional<Transform> PoseOf(GstBuffer* buffer) {
   const double* p = pose.position;
   const double* q = pose.orientation;
   return FromPose({p[0], p[1], p[2]}, {q[0], q[1], q[2], q[3]});
+}
+
+/// Of the clouds, where anybody says.
+std::string FrameOf(const FilterSettings& settings, const GstCaps* caps) {
+  if (!settings.frame_id.empty()) return settings.frame_id;
+  const gchar* text = gst_structure_get_string(gst_caps_get_structure(caps, 0), GST_LIDAR_FRAME_ID);
+  return text != nullptr ? text : "";
 }
 
 /// The points are where the pose puts them: whoever comes next must not move them again.
@@ -137,6 +147,10 @@ std::unique_ptr<FilterPlan> FilterPlan::Make(const FilterSettings& settings, con
   }
   plan->column_step_ = parsed->column_step;
   plan->apply_pose_ = settings.apply_pose;
+  plan->frame_ = FrameOf(settings, caps);
+  if (!parsed->has_pose && !parsed->transform) plan->out_frame_ = plan->frame_;
+  if (!parsed->transform && !settings.target_frame.empty())
+    plan->out_frame_ = settings.target_frame;
   plan->out_ = *info;
   plan->out_.fields = points.fields;
   plan->out_.point_step = points.point_step;
@@ -153,12 +167,15 @@ void FilterPlan::Describe(const FilteredCloud& cloud) {
   out_.width = cloud.width;
   out_.height = cloud.height;
   caps_.reset(out_.ToCaps());
+  if (!out_frame_.empty())
+    gst_caps_set_simple(caps_.get(), GST_LIDAR_FRAME_ID, G_TYPE_STRING, out_frame_.c_str(),
+                        nullptr);
 }
 
-BufferPtr FilterPlan::Apply(GstBuffer* buffer) {
+BufferPtr FilterPlan::Apply(GstBuffer* buffer, const Transform& placed) {
   const BufferMap map(buffer, GST_MAP_READ);
   if (!map || map.size() != in_.FrameSize()) return nullptr;
-  const std::optional<Transform> pose = apply_pose_ ? PoseOf(buffer) : Transform{};
+  const std::optional<Transform> pose = apply_pose_ ? PoseOf(buffer) : placed;
   if (!pose) {
     ++without_pose_;
     return BufferPtr(gst_buffer_new());

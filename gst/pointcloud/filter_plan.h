@@ -9,6 +9,7 @@
 
 #include "gst/common/cloud_info.h"
 #include "gst/common/refs.h"
+#include "src/base/time.h"
 #include "src/cdr/point_cloud2.h"
 #include "src/cloud/point_filter.h"
 
@@ -25,6 +26,9 @@ struct FilterSettings {
   guint beam_step = 1;
   guint column_step = 1;
   bool apply_pose = false;
+  std::string frame_id;      // of the clouds; empty: as their caps say
+  std::string target_frame;  // where transforms put them
+  Duration tf_timeout = std::chrono::milliseconds(200);
   std::string transform;
   InvalidPoints invalid = InvalidPoints::kKeep;
 };
@@ -37,8 +41,8 @@ class FilterPlan {
                                           std::string* why);
 
   /// The filtered cloud, without metas; null where `buffer` contradicts the caps. A cloud of which
-  /// nothing is left has no bytes.
-  BufferPtr Apply(GstBuffer* buffer);
+  /// nothing is left has no bytes. `placed` takes it to the target frame, where there is one.
+  BufferPtr Apply(GstBuffer* buffer, const Transform& placed = kIdentity);
   /// Those of the cloud that Apply() gave last.
   GstCaps* caps() const { return caps_.get(); }
   /// Of that cloud, with their types and places.
@@ -46,6 +50,8 @@ class FilterPlan {
   std::uint64_t removed() const { return filter_->removed(); }
   /// Clouds that had no pose where one was wanted: nothing is left of them.
   std::uint64_t without_pose() const { return without_pose_; }
+  /// The frame that clouds come in.
+  const std::string& frame() const { return frame_; }
 
  private:
   void Describe(const FilteredCloud& cloud);
@@ -57,6 +63,8 @@ class FilterPlan {
   std::optional<PointFilter> filter_;
   guint column_step_ = 1;
   bool apply_pose_ = false;
+  std::string frame_;
+  std::string out_frame_;  // empty: not known
   std::uint64_t without_pose_ = 0;
   std::vector<std::uint8_t> converted_;
   CapsPtr caps_;

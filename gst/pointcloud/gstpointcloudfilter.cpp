@@ -11,16 +11,20 @@
  */
 #include "gst/pointcloud/gstpointcloudfilter.h"
 
+#include <algorithm>
 #include <mutex>
 #include <utility>
 #include <vector>
 
+#include "gst/common/element_class.h"
 #include "gst/common/enum_type.h"
+#include "gst/common/frames.h"
 #include "gst/common/gstlidar.h"
 #include "gst/common/properties.h"
 #include "gst/common/refused_caps.h"
 #include "gst/common/stats.h"
 #include "gst/pointcloud/filter_plan.h"
+#include "gst/pointcloud/transform_inbox.h"
 
 GST_DEBUG_CATEGORY_STATIC(gst_lidar_point_cloud_filter_debug);
 #define GST_CAT_DEFAULT gst_lidar_point_cloud_filter_debug
@@ -33,6 +37,7 @@ using lidar::gst::CapsPtr;
 using lidar::gst::FilterPlan;
 using lidar::gst::FilterSettings;
 using lidar::gst::Int;
+using lidar::gst::TransformInbox;
 
 GType InvalidType() {
   static const GEnumValue values[] = {
@@ -50,17 +55,23 @@ struct Counters {
   guint64 clouds = 0;
   guint64 points_removed = 0;
   guint64 without_pose = 0;
+  guint64 without_transform = 0;
+  guint64 transforms = 0;
+  guint64 transforms_refused = 0;
 };
-const std::array<lidar::gst::Stat<Counters>, 3> kStats = {{
+const std::array<lidar::gst::Stat<Counters>, 6> kStats = {{
     {"clouds", &Counters::clouds},
     {"points-removed", &Counters::points_removed},
     {"clouds-without-pose", &Counters::without_pose},
+    {"clouds-without-transform", &Counters::without_transform},
+    {"transforms", &Counters::transforms},
+    {"transforms-refused", &Counters::transforms_refused},
 }};
 
 lidar::gst::StructurePtr Stats(GObject* object);
 constexpr gint kLive = GST_PARAM_MUTABLE_PLAYING;
 
-const std::array<lidar::gst::Property<FilterSettings>, 12> kProperties = {{
+const std::array<lidar::gst::Property<FilterSettings>, 15> kProperties = {{
     {"fields", "Fields to keep, with a type where it is to be another: x,y,z,intensity:U8",
      &FilterSettings::fields, 0, 0, kLive},
     {"beam-step", "Keep every n-th row", &FilterSettings::beam_step, 1, 1024, kLive},
@@ -73,6 +84,13 @@ const std::array<lidar::gst::Property<FilterSettings>, 12> kProperties = {{
      "Clouds go to where the odometry began, by the pose that lidarodometry put on them; those "
      "without one go",
      &FilterSettings::apply_pose, 0, 0, kLive},
+    {"target-frame",
+     "Clouds go to this frame, by the transforms that the pads tf_%u take; those without go",
+     &FilterSettings::target_frame, 0, 0, kLive},
+    {"frame-id", "Frame of the clouds; NULL: as the caps say, else lidar",
+     &FilterSettings::frame_id, 0, 0, kLive},
+    {"tf-timeout", "How long a cloud waits for a transform of its time [ns]",
+     &FilterSettings::tf_timeout, 0, 60e9, kLive},
     {"transform",
      "Of the points: 16 numbers row by row, or x, y, z [m], roll, pitch, yaw [degrees]",
      &FilterSettings::transform, 0, 0, kLive},
@@ -85,7 +103,10 @@ const std::array<lidar::gst::Property<FilterSettings>, 12> kProperties = {{
     {"invalid", "What becomes of points without a return, and of those that go",
      lidar::gst::EnumField<FilterSettings, InvalidPoints>{&FilterSettings::invalid, InvalidType}, 0,
      0, kLive},
-    {"stats", "clouds, points-removed, clouds-without-pose", Stats},
+    {"stats",
+     "clouds, points-removed, clouds-without-pose, clouds-without-transform, transforms, "
+     "transforms-refused",
+     Stats},
 }};
 
 struct State {
@@ -93,10 +114,14 @@ struct State {
   FilterSettings settings;
   bool changed = false;  // the settings, since the plan was made
   Counters counters;
+  TransformInbox inbox;  // has a lock of its own
   // Only the streaming thread uses these.
   CapsPtr caps;  // of what comes
   std::unique_ptr<FilterPlan> plan;
-  Counters before;  // of earlier plans
+  std::string target_frame;  // of the plan
+  std::chrono::nanoseconds tf_timeout{};
+  bool reported_transform = false;  // that there is none, until there is one
+  Counters before;                  // of earlier plans
   CapsPtr pushed;
   std::vector<lidar::gst::EventPtr> pending;  // sticky, to follow the first caps
   lidar::gst::RefusedCaps refused;
@@ -106,7 +131,9 @@ struct State {
 
 struct _GstLidarPointCloudFilter {
   GstElement parent;
+  GstPad* sinkpad;
   GstPad* srcpad;
+  guint next_pad;  // number of the next pad for transforms
   State* state;
 };
 
@@ -118,8 +145,12 @@ namespace {
 
 lidar::gst::StructurePtr Stats(GObject* object) {
   State& state = *GST_LIDAR_POINT_CLOUD_FILTER(object)->state;
+  const TransformInbox::Counters taken = state.inbox.counters();
   std::lock_guard lock(state.mutex);
-  return lidar::gst::ToStructure("point-cloud-filter-stats", kStats, state.counters);
+  Counters counters = state.counters;
+  counters.transforms = taken.transforms;
+  counters.transforms_refused = taken.refused;
+  return lidar::gst::ToStructure("point-cloud-filter-stats", kStats, counters);
 }
 
 void NoteChange(GObject* object, GParamSpec*) {
@@ -143,6 +174,8 @@ bool MakePlan(GstLidarPointCloudFilter* self) {
     state.before.without_pose += state.plan->without_pose();
   }
   state.plan = FilterPlan::Make(settings, state.caps.get(), &why);
+  state.target_frame = settings.target_frame;
+  state.tf_timeout = settings.tf_timeout;
   if (!state.plan && state.refused.Note(state.caps.get()))
     GST_ELEMENT_ERROR(self, STREAM, FORMAT, ("Clouds cannot be filtered so: %s.", why.c_str()),
                       ("%" GST_PTR_FORMAT, static_cast<gpointer>(state.caps.get())));
@@ -171,6 +204,39 @@ void Count(State* state) {
   state->counters.without_pose = state->before.without_pose + state->plan->without_pose();
 }
 
+void PushGap(GstLidarPointCloudFilter* self, GstBuffer* buffer) {
+  if (self->state->pushed && GST_BUFFER_PTS_IS_VALID(buffer))
+    gst_pad_push_event(self->srcpad,
+                       gst_event_new_gap(GST_BUFFER_PTS(buffer), GST_BUFFER_DURATION(buffer)));
+}
+
+/// What takes the cloud to the target frame. Where there is nothing, that is counted, and reported
+/// once until there is something.
+std::optional<lidar::Transform> Place(GstLidarPointCloudFilter* self, GstBuffer* buffer) {
+  State& state = *self->state;
+  if (state.target_frame.empty()) return lidar::kIdentity;
+  const GstClockTime captured = gst_lidar_buffer_get_capture_time(buffer);
+  std::optional<lidar::Time> at;
+  if (GST_CLOCK_TIME_IS_VALID(captured))
+    at = lidar::Time{} + lidar::Duration{static_cast<std::int64_t>(captured)};
+  const std::string frame =
+      state.plan->frame().empty() ? lidar::gst::kCloudFrame : state.plan->frame();
+  const auto answer = state.inbox.Find(state.target_frame, frame, at, state.tf_timeout);
+  if (!answer.transform) {
+    std::unique_lock lock(state.mutex);
+    ++state.counters.without_transform;
+    lock.unlock();
+    if (!state.reported_transform)
+      GST_ELEMENT_WARNING(self, STREAM, FAILED,
+                          ("A cloud of %s cannot be put into %s: %s. Such clouds are dropped and "
+                           "counted.",
+                           frame.c_str(), state.target_frame.c_str(), answer.why.c_str()),
+                          (nullptr));
+  }
+  state.reported_transform = !answer.transform;
+  return answer.transform;
+}
+
 GstFlowReturn Chain(GstPad*, GstObject* parent, GstBuffer* raw) {
   auto* self = GST_LIDAR_POINT_CLOUD_FILTER(parent);
   State& state = *self->state;
@@ -182,7 +248,8 @@ GstFlowReturn Chain(GstPad*, GstObject* parent, GstBuffer* raw) {
     changed = state.changed;
   }
   if ((changed || !state.plan) && !MakePlan(self)) return GST_FLOW_NOT_NEGOTIATED;
-  BufferPtr out = state.plan->Apply(raw);
+  const auto placed = Place(self, raw);
+  BufferPtr out = placed ? state.plan->Apply(raw, *placed) : BufferPtr(gst_buffer_new());
   if (!out) {
     GST_ELEMENT_ERROR(self, STREAM, FORMAT, ("A cloud of another size than its caps say."),
                       (nullptr));
@@ -190,9 +257,7 @@ GstFlowReturn Chain(GstPad*, GstObject* parent, GstBuffer* raw) {
   }
   Count(&state);
   if (gst_buffer_get_size(out.get()) == 0) {
-    if (state.pushed && GST_BUFFER_PTS_IS_VALID(raw))
-      gst_pad_push_event(self->srcpad,
-                         gst_event_new_gap(GST_BUFFER_PTS(raw), GST_BUFFER_DURATION(raw)));
+    PushGap(self, raw);
     return GST_FLOW_OK;
   }
   if (!PushCaps(self))
@@ -213,8 +278,12 @@ gboolean SinkEvent(GstPad* pad, GstObject* parent, GstEvent* event) {
   State& state = *self->state;
   const GstEventType type = GST_EVENT_TYPE(event);
   if (type == GST_EVENT_CAPS) return HandleCaps(self, event);
+  if (type == GST_EVENT_FLUSH_START) state.inbox.Interrupt(true);
   if (type == GST_EVENT_EOS) PushPending(self);
-  if (type == GST_EVENT_FLUSH_STOP) state.pending.clear();
+  if (type == GST_EVENT_FLUSH_STOP) {
+    state.pending.clear();
+    state.inbox.Interrupt(false);
+  }
   // Caps come first, with the first cloud, and before them a gap means nothing.
   if (type == GST_EVENT_GAP && !state.pushed) {
     gst_event_unref(event);
@@ -226,7 +295,38 @@ gboolean SinkEvent(GstPad* pad, GstObject* parent, GstEvent* event) {
   return TRUE;
 }
 
+/// Queries and events of the clouds do not go to who gives transforms.
+GstIterator* LinksOf(GstPad* pad, GstObject* parent) {
+  auto* self = GST_LIDAR_POINT_CLOUD_FILTER(parent);
+  GValue other = G_VALUE_INIT;
+  g_value_init(&other, GST_TYPE_PAD);
+  g_value_set_object(&other, pad == self->srcpad ? self->sinkpad : self->srcpad);
+  GstIterator* iterator = gst_iterator_new_single(GST_TYPE_PAD, &other);
+  g_value_unset(&other);
+  return iterator;
+}
+
+GstPad* RequestPad(GstElement* element, GstPadTemplate* pad_template, const gchar* name,
+                   const GstCaps*) {
+  auto* self = GST_LIDAR_POINT_CLOUD_FILTER(element);
+  GST_OBJECT_LOCK(self);
+  // A name that is asked for goes before, and the next that is not must be another.
+  guint64 number = self->next_pad;
+  if (name != nullptr) g_ascii_string_to_unsigned(name + 3, 10, 0, G_MAXUINT - 1, &number, nullptr);
+  self->next_pad = std::max(self->next_pad, static_cast<guint>(number) + 1);
+  GST_OBJECT_UNLOCK(self);
+  const std::string chosen = "tf_" + std::to_string(number);
+  return self->state->inbox.AddPad(element, pad_template, chosen.c_str());
+}
+
+void ReleasePad(GstElement* element, GstPad* pad) {
+  GST_LIDAR_POINT_CLOUD_FILTER(element)->state->inbox.ReleasePad(element, pad);
+}
+
 GstStateChangeReturn ChangeState(GstElement* element, GstStateChange transition) {
+  TransformInbox& inbox = GST_LIDAR_POINT_CLOUD_FILTER(element)->state->inbox;
+  if (transition == GST_STATE_CHANGE_READY_TO_PAUSED) inbox.Interrupt(false);
+  if (transition == GST_STATE_CHANGE_PAUSED_TO_READY) inbox.Interrupt(true);
   const auto result = GST_ELEMENT_CLASS(gst_lidar_point_cloud_filter_parent_class)
                           ->change_state(element, transition);
   if (transition == GST_STATE_CHANGE_PAUSED_TO_READY) {
@@ -237,6 +337,8 @@ GstStateChangeReturn ChangeState(GstElement* element, GstStateChange transition)
     state.pending.clear();
     state.refused.Reset();
     state.before = {};
+    state.reported_transform = false;
+    inbox.Clear();
     std::lock_guard lock(state.mutex);
     state.counters = {};
   }
@@ -245,20 +347,15 @@ GstStateChangeReturn ChangeState(GstElement* element, GstStateChange transition)
 
 }  // namespace
 
-static GstStaticPadTemplate sink_template = GST_STATIC_PAD_TEMPLATE(
-    "sink", GST_PAD_SINK, GST_PAD_ALWAYS, GST_STATIC_CAPS(GST_LIDAR_CLOUD_MEDIA_TYPE));
-static GstStaticPadTemplate src_template = GST_STATIC_PAD_TEMPLATE(
-    "src", GST_PAD_SRC, GST_PAD_ALWAYS, GST_STATIC_CAPS(GST_LIDAR_CLOUD_MEDIA_TYPE));
-
 static void gst_lidar_point_cloud_filter_init(GstLidarPointCloudFilter* self) {
   self->state = new State;
-  GstPad* sinkpad = gst_pad_new_from_static_template(&sink_template, "sink");
-  gst_pad_set_chain_function(sinkpad, Chain);
-  gst_pad_set_event_function(sinkpad, SinkEvent);
-  gst_element_add_pad(GST_ELEMENT(self), sinkpad);
-  self->srcpad = gst_pad_new_from_static_template(&src_template, "src");
+  self->sinkpad = lidar::gst::AddPad(self, "sink");
+  gst_pad_set_chain_function(self->sinkpad, Chain);
+  gst_pad_set_event_function(self->sinkpad, SinkEvent);
+  gst_pad_set_iterate_internal_links_function(self->sinkpad, LinksOf);
+  self->srcpad = lidar::gst::AddPad(self, "src");
   gst_pad_use_fixed_caps(self->srcpad);
-  gst_element_add_pad(GST_ELEMENT(self), self->srcpad);
+  gst_pad_set_iterate_internal_links_function(self->srcpad, LinksOf);
 }
 
 static void gst_lidar_point_cloud_filter_class_init(GstLidarPointCloudFilterClass* klass) {
@@ -269,8 +366,12 @@ static void gst_lidar_point_cloud_filter_class_init(GstLidarPointCloudFilterClas
   lidar::gst::ServeProperties<GstLidarPointCloudFilter, kProperties, NoteChange>(object);
   auto* element = GST_ELEMENT_CLASS(klass);
   element->change_state = ChangeState;
-  gst_element_class_add_static_pad_template(element, &sink_template);
-  gst_element_class_add_static_pad_template(element, &src_template);
-  gst_element_class_set_static_metadata(element, "Point cloud filter", "Filter/PointCloud",
-                                        "Crops, thins, moves and converts clouds", "gst-lidar");
+  element->request_new_pad = RequestPad;
+  element->release_pad = ReleasePad;
+  lidar::gst::Describe(
+      klass, {"Point cloud filter", "Filter/PointCloud", "Crops, thins, moves and converts clouds"},
+      {{"sink", GST_PAD_SINK, GST_LIDAR_CLOUD_MEDIA_TYPE},
+       {"src", GST_PAD_SRC, GST_LIDAR_CLOUD_MEDIA_TYPE},
+       {"tf_%u", GST_PAD_SINK, GST_LIDAR_TF_MEDIA_TYPE "; " GST_LIDAR_ODOMETRY_MEDIA_TYPE,
+        GST_PAD_REQUEST}});
 }

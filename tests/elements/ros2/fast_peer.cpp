@@ -350,10 +350,12 @@ template void FastPeer::Subscribe<PeerBytes>(const std::string&, const std::stri
 template void FastPeer::Advertise<PeerCloud>(const std::string&, const std::string&, Qos);
 template void FastPeer::Advertise<PeerImu>(const std::string&, const std::string&, Qos);
 template void FastPeer::Advertise<PeerOdometry>(const std::string&, const std::string&, Qos);
+template void FastPeer::Advertise<PeerTransforms>(const std::string&, const std::string&, Qos);
 template void FastPeer::Advertise<PeerBytes>(const std::string&, const std::string&, Qos);
 template bool FastPeer::Publish<PeerCloud>(const PeerCloud&);
 template bool FastPeer::Publish<PeerImu>(const PeerImu&);
 template bool FastPeer::Publish<PeerOdometry>(const PeerOdometry&);
+template bool FastPeer::Publish<PeerTransforms>(const PeerTransforms&);
 template bool FastPeer::Publish<PeerBytes>(const PeerBytes&);
 template bool FastPeer::Take<PeerCloud>(PeerCloud*, std::chrono::milliseconds);
 template bool FastPeer::Take<PeerImu>(PeerImu*, std::chrono::milliseconds);

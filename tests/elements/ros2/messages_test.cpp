@@ -97,5 +97,16 @@ TEST_F(CloudMessages, BecomeWhatDownstreamTakesOrAreRefused) {
   EXPECT_EQ(reader_.why(), "downstream takes other caps");
 }
 
+TEST(TransformMessages, AreDamagedWhereTheyAreCutAndEmptyWhereTheySayNothing) {
+  MessageReader reader(
+      cdr::RosType::kTransforms, [] { return CapsPtr(); }, true);
+  Bytes message = cdr::WriteTransforms({cdr::TransformStamped{}});
+  EXPECT_EQ(reader.Read(View(message)), Verdict::kBuffer);
+  message.pop_back();
+  EXPECT_EQ(reader.Read(View(message)), Verdict::kDamaged);
+  EXPECT_EQ(reader.why(), "the message is truncated or is no TFMessage");
+  EXPECT_EQ(reader.Read(View(cdr::WriteTransforms({}))), Verdict::kEmpty);
+}
+
 }  // namespace
 }  // namespace lidar::gst

@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// What caps say of frames, and the media type of transforms between them.
+#pragma once
+
+/// tf2_msgs/msg/TFMessage as ROS 2 has it, in CDR with its encapsulation header. `static`
+/// (boolean): the transforms hold for good.
+#define GST_LIDAR_TF_MEDIA_TYPE "application/x-tf"
+#define GST_LIDAR_TF_STATIC "static"
+
+// Fields of caps: the frame that data are in, and the frame whose pose odometry is.
+#define GST_LIDAR_FRAME_ID "frame-id"
+#define GST_LIDAR_CHILD_FRAME_ID "child-frame-id"
+
+namespace lidar::gst {
+
+// Frames where nobody names them: the cloud is in the frame whose pose odometry tells.
+inline constexpr const char* kCloudFrame = "lidar";
+inline constexpr const char* kImuFrame = "imu";
+inline constexpr const char* kOdometryFrame = "odom";
+
+}  // namespace lidar::gst

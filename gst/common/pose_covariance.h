@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// The covariances of nav_msgs/msg/Odometry, where all that is known is whether a pose is tracked.
+#pragma once
+#include <array>
+#include <cstddef>
+
+#include "gst/common/gstlidar.h"
+
+namespace lidar::gst {
+
+using Covariance = std::array<double, 36>;  // of x, y, z and the turns about them
+
+/// Variances so large that nobody who weighs poses believes them [m^2, rad^2].
+inline constexpr double kDegenerateVariance = 1e3;
+inline constexpr double kUnknownVariance = 1e6;
+
+inline void SetVariances(double position, double orientation, Covariance* covariance) {
+  for (std::size_t i = 0; i < 6; ++i) (*covariance)[i * 7] = i < 3 ? position : orientation;
+}
+
+/// ROS has no word for the tracking. Zeros say that a covariance is not known.
+inline Covariance CovarianceOf(GstLidarTracking tracking) {
+  Covariance covariance{};
+  if (tracking == GST_LIDAR_TRACKING_DEGENERATE)
+    SetVariances(kDegenerateVariance, kDegenerateVariance, &covariance);
+  if (tracking == GST_LIDAR_TRACKING_LOST)
+    SetVariances(kUnknownVariance, kUnknownVariance, &covariance);
+  return covariance;
+}
+
+inline GstLidarTracking TrackingOf(const Covariance& covariance) {
+  if (covariance[0] >= kUnknownVariance) return GST_LIDAR_TRACKING_LOST;
+  return covariance[0] >= kDegenerateVariance ? GST_LIDAR_TRACKING_DEGENERATE
+                                              : GST_LIDAR_TRACKING_OK;
+}
+
+/// Of a velocity that nobody tells, so that its zeros are not taken for a standstill.
+inline Covariance NoVelocity() {
+  Covariance covariance{};
+  SetVariances(kUnknownVariance, kUnknownVariance, &covariance);
+  return covariance;
+}
+
+}  // namespace lidar::gst

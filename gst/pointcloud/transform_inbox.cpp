@@ -1,0 +1,163 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "gst/pointcloud/transform_inbox.h"
+
+#include <algorithm>
+
+#include "gst/common/buffer_map.h"
+#include "gst/common/frames.h"
+#include "gst/common/gstlidar.h"
+#include "gst/common/refs.h"
+#include "src/base/byte_reader.h"
+#include "src/cdr/messages.h"
+
+namespace lidar::gst {
+namespace {
+
+constexpr std::size_t kPoseSize = 64;  // of application/x-odometry
+
+TransformInbox& InboxOf(GstPad* pad) {
+  return *static_cast<TransformInbox*>(gst_pad_get_element_private(pad));
+}
+
+std::string TextOf(const GstStructure* s, const char* field, const char* usual) {
+  const gchar* text = gst_structure_get_string(s, field);
+  return text != nullptr ? text : usual;
+}
+
+}  // namespace
+
+GstPad* TransformInbox::AddPad(GstElement* element, GstPadTemplate* pad_template,
+                               const gchar* name) {
+  GstPad* pad = gst_pad_new_from_template(pad_template, name);
+  gst_pad_set_element_private(pad, this);
+  gst_pad_set_chain_function(pad, Chain);
+  gst_pad_set_event_function(pad, Event);
+  SetEnded(pad, false);
+  gst_pad_set_active(pad, TRUE);
+  gst_element_add_pad(element, pad);
+  return pad;
+}
+
+void TransformInbox::ReleasePad(GstElement* element, GstPad* pad) {
+  gst_pad_set_active(pad, FALSE);
+  {
+    const std::lock_guard lock(mutex_);
+    pads_.erase(pad);
+  }
+  changed_.notify_all();
+  gst_element_remove_pad(element, pad);
+}
+
+GstFlowReturn TransformInbox::Chain(GstPad* pad, GstObject*, GstBuffer* raw) {
+  const BufferPtr buffer(raw);
+  const CapsPtr caps(gst_pad_get_current_caps(pad));
+  if (!caps) return GST_FLOW_NOT_NEGOTIATED;
+  const GstStructure* s = gst_caps_get_structure(caps.get(), 0);
+  TransformInbox& inbox = InboxOf(pad);
+  if (gst_structure_has_name(s, GST_LIDAR_TF_MEDIA_TYPE))
+    inbox.TakeMessage(s, raw);
+  else
+    inbox.TakePose(s, raw);
+  inbox.changed_.notify_all();
+  return GST_FLOW_OK;
+}
+
+/// Nothing of it is for who gets the clouds.
+gboolean TransformInbox::Event(GstPad* pad, GstObject*, GstEvent* event) {
+  const EventPtr owner(event);
+  if (GST_EVENT_TYPE(event) == GST_EVENT_EOS) InboxOf(pad).SetEnded(pad, true);
+  if (GST_EVENT_TYPE(event) == GST_EVENT_STREAM_START ||
+      GST_EVENT_TYPE(event) == GST_EVENT_FLUSH_STOP)
+    InboxOf(pad).SetEnded(pad, false);
+  return TRUE;
+}
+
+/// tf2_msgs/msg/TFMessage, as ros2src has it.
+void TransformInbox::TakeMessage(const GstStructure* caps, GstBuffer* buffer) {
+  const BufferMap map(buffer, GST_MAP_READ);
+  const auto transforms = map ? cdr::ReadTransforms(map.view()) : std::nullopt;
+  if (!transforms) return Refuse();
+  gboolean for_good = FALSE;
+  gst_structure_get_boolean(caps, GST_LIDAR_TF_STATIC, &for_good);
+  for (const cdr::TransformStamped& t : *transforms)
+    Note(t.header.frame_id, t.child_frame_id, t.header.stamp, {t.translation, t.rotation},
+         for_good != FALSE);
+}
+
+/// A pose, as lidarodometry and ros2src have it.
+void TransformInbox::TakePose(const GstStructure* caps, GstBuffer* buffer) {
+  const BufferMap map(buffer, GST_MAP_READ);
+  const GstClockTime captured = gst_lidar_buffer_get_capture_time(buffer);
+  if (!map || map.size() != kPoseSize || !GST_CLOCK_TIME_IS_VALID(captured)) return Refuse();
+  ByteReader r(map.view());
+  FramePose pose;
+  for (double& v : pose.position) v = r.LeF64();
+  for (double& v : pose.orientation) v = r.LeF64();
+  Note(TextOf(caps, GST_LIDAR_FRAME_ID, kOdometryFrame),
+       TextOf(caps, GST_LIDAR_CHILD_FRAME_ID, kCloudFrame),
+       Time{} + Duration{static_cast<std::int64_t>(captured)}, pose, false);
+}
+
+void TransformInbox::Note(const std::string& parent, const std::string& child, Time at,
+                          const FramePose& pose, bool for_good) {
+  const std::lock_guard lock(mutex_);
+  ++(tree_.Set(parent, child, at, pose, for_good) ? counters_.transforms : counters_.refused);
+}
+
+void TransformInbox::Refuse() {
+  const std::lock_guard lock(mutex_);
+  ++counters_.refused;
+}
+
+void TransformInbox::SetEnded(GstPad* pad, bool ended) {
+  {
+    const std::lock_guard lock(mutex_);
+    pads_[pad] = ended;
+  }
+  changed_.notify_all();
+}
+
+bool TransformInbox::MayCome(const TransformTree::Answer& answer) const {
+  return answer.may_come && !interrupted_ && waited_in_vain_ != answer.newest &&
+         std::any_of(pads_.begin(), pads_.end(), [](const auto& pad) { return !pad.second; });
+}
+
+TransformTree::Answer TransformInbox::Find(const std::string& target, const std::string& source,
+                                           std::optional<Time> at,
+                                           std::chrono::nanoseconds timeout) {
+  const auto deadline = std::chrono::steady_clock::now() + timeout;
+  std::unique_lock lock(mutex_);
+  auto answer = tree_.Find(target, source, at);
+  while (!answer.transform && MayCome(answer)) {
+    const bool late = changed_.wait_until(lock, deadline) == std::cv_status::timeout;
+    answer = tree_.Find(target, source, at);
+    if (!late || answer.transform) continue;
+    waited_in_vain_ = answer.newest;
+    return answer;
+  }
+  if (answer.transform) waited_in_vain_.reset();
+  return answer;
+}
+
+void TransformInbox::Interrupt(bool on) {
+  {
+    const std::lock_guard lock(mutex_);
+    interrupted_ = on;
+  }
+  changed_.notify_all();
+}
+
+void TransformInbox::Clear() {
+  const std::lock_guard lock(mutex_);
+  tree_ = {};
+  counters_ = {};
+  waited_in_vain_.reset();
+  for (auto& pad : pads_) pad.second = false;
+}
+
+TransformInbox::Counters TransformInbox::counters() const {
+  const std::lock_guard lock(mutex_);
+  return counters_;
+}
+
+}  // namespace lidar::gst

@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// What the pads for transforms of an element have brought, and the pads themselves.
+#pragma once
+#include <gst/gst.h>
+
+#include <chrono>
+#include <condition_variable>
+#include <map>
+#include <mutex>
+#include <optional>
+#include <string>
+
+#include "src/cloud/transform_tree.h"
+
+namespace lidar::gst {
+
+/// For any number of threads.
+class TransformInbox {
+ public:
+  /// A sink pad of `pad_template` that puts what comes in here; the inbox must outlive it. It takes
+  /// TFMessages and odometry. Adds it to the element.
+  GstPad* AddPad(GstElement* element, GstPadTemplate* pad_template, const gchar* name);
+  void ReleasePad(GstElement* element, GstPad* pad);
+
+  /// What takes points of `source` to `target`. Waits for a transform that is missing, but not for
+  /// one that has already been waited for in vain.
+  TransformTree::Answer Find(const std::string& target, const std::string& source,
+                             std::optional<Time> at, std::chrono::nanoseconds timeout);
+  /// Find() waits no longer, until Interrupt(false).
+  void Interrupt(bool on);
+  void Clear();
+
+  struct Counters {
+    guint64 transforms = 0;
+    guint64 refused = 0;  // transforms and messages that are none
+  };
+  Counters counters() const;
+
+ private:
+  static GstFlowReturn Chain(GstPad* pad, GstObject* parent, GstBuffer* buffer);
+  static gboolean Event(GstPad* pad, GstObject* parent, GstEvent* event);
+  void TakeMessage(const GstStructure* caps, GstBuffer* buffer);
+  void TakePose(const GstStructure* caps, GstBuffer* buffer);
+  void Note(const std::string& parent, const std::string& child, Time at, const FramePose& pose,
+            bool for_good);
+  void Refuse();
+  void SetEnded(GstPad* pad, bool ended);
+  bool MayCome(const TransformTree::Answer& answer) const;
+
+  mutable std::mutex mutex_;  // guards all that follows
+  std::condition_variable changed_;
+  TransformTree tree_;
+  Counters counters_;
+  std::map<GstPad*, bool> pads_;  // true: ended
+  bool interrupted_ = false;
+  std::optional<Time> waited_in_vain_;  // for what comes after this time
+};
+
+}  // namespace lidar::gst

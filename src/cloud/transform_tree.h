@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// How frames stand to each other over time, as ROS's tf2 keeps it.
+#pragma once
+#include <array>
+#include <cstddef>
+#include <deque>
+#include <optional>
+#include <string>
+#include <unordered_map>
+#include <vector>
+
+#include "src/base/time.h"
+#include "src/cloud/sensor_model.h"
+
+namespace lidar {
+
+/// Takes points of a child frame to its parent.
+struct FramePose {
+  std::array<double, 3> position{};                  // m
+  std::array<double, 4> orientation = {0, 0, 0, 1};  // unit quaternion x, y, z, w
+};
+
+/// Frames, each below one parent. Memory is bounded, whatever comes.
+class TransformTree {
+ public:
+  static constexpr std::size_t kMaxFrames = 512;
+  static constexpr std::size_t kMaxSamples = 2048;  // of a frame
+  static constexpr Duration kHistory = std::chrono::seconds(10);
+
+  /// Where `child` is in `parent` at a time, or for good. False where this is no pose, frames are
+  /// not named or the same, or there are too many.
+  bool Set(std::string parent, std::string child, Time at, const FramePose& pose, bool for_good);
+
+  struct Answer {
+    std::optional<Transform> transform;  // takes points of the source to the target
+    std::string why;                     // there is none, in words for a user
+    bool may_come = false;               // a later pose can make one
+    Time newest{};                       // of the frame that the later pose is missing of
+  };
+  /// At a time between two poses they are interpolated. Without a time the newest of each count.
+  Answer Find(const std::string& target, const std::string& source, std::optional<Time> at) const;
+
+  std::size_t frames() const { return links_.size(); }
+
+ private:
+  struct Sample {
+    Time at{};
+    FramePose pose;
+  };
+  struct Link {
+    std::string parent;
+    bool for_good = false;
+    std::deque<Sample> samples;  // by time; never empty
+  };
+
+  bool Knows(const std::string& frame) const;
+  std::vector<std::string> PathUp(const std::string& frame) const;
+  std::optional<FramePose> Climb(const std::vector<std::string>& path, std::size_t steps,
+                                 std::optional<Time> at, Answer* answer) const;
+
+  std::unordered_map<std::string, Link> links_;  // by child
+};
+
+}  // namespace lidar

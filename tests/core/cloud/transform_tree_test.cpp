@@ -1,0 +1,156 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "src/cloud/transform_tree.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+namespace lidar {
+namespace {
+
+using std::chrono::milliseconds;
+using std::chrono::seconds;
+
+constexpr Time kStart = Time{} + seconds(1'700'000'000);
+const double kHalf = std::sqrt(0.5);
+constexpr FramePose kNowhere{};
+
+FramePose At(double x, double y = 0, double z = 0) { return {{x, y, z}, {0, 0, 0, 1}}; }
+FramePose TurnedLeft(double x = 0) { return {{x, 0, 0}, {0, 0, kHalf, kHalf}}; }  // about z
+
+/// Where a point of the source is in the target.
+std::array<double, 3> Place(const TransformTree::Answer& answer, std::array<double, 3> p) {
+  const Transform t = answer.transform.value();
+  std::array<double, 3> out{};
+  for (std::size_t i = 0; i < 3; ++i)
+    out[i] = t[4 * i] * p[0] + t[4 * i + 1] * p[1] + t[4 * i + 2] * p[2] + t[4 * i + 3];
+  return out;
+}
+
+void ExpectNear(const std::array<double, 3>& a, const std::array<double, 3>& b) {
+  for (std::size_t i = 0; i < 3; ++i) EXPECT_NEAR(a[i], b[i], 1e-9) << i;
+}
+
+class Tree : public ::testing::Test {
+ protected:
+  /// map <- odom <- base <- lidar, and base <- camera.
+  void SetUp() override {
+    ASSERT_TRUE(tree_.Set("map", "odom", kStart, At(100), false));
+    ASSERT_TRUE(tree_.Set("odom", "base", kStart, TurnedLeft(10), false));
+    ASSERT_TRUE(tree_.Set("base", "lidar", Time{}, At(1), true));
+    ASSERT_TRUE(tree_.Set("base", "camera", Time{}, At(0, 0, 2), true));
+  }
+  TransformTree tree_;
+};
+
+TEST_F(Tree, GoesUpAndDownAndAcross) {
+  ExpectNear(Place(tree_.Find("map", "lidar", kStart), {1, 0, 0}), {110, 2, 0});
+  ExpectNear(Place(tree_.Find("lidar", "map", kStart), {110, 2, 0}), {1, 0, 0});
+  ExpectNear(Place(tree_.Find("camera", "lidar", kStart), {0, 0, 0}), {1, 0, -2});
+  ExpectNear(Place(tree_.Find("lidar", "lidar", kStart), {4, 5, 6}), {4, 5, 6});
+}
+
+TEST_F(Tree, WhatHoldsForGoodHoldsAtAnyTime) {
+  ExpectNear(Place(tree_.Find("base", "lidar", kStart + seconds(9999)), {0, 0, 0}), {1, 0, 0});
+  ExpectNear(Place(tree_.Find("base", "lidar", Time{}), {0, 0, 0}), {1, 0, 0});
+}
+
+TEST_F(Tree, BetweenTwoPosesItInterpolatesByTheShorterTurn) {
+  ASSERT_TRUE(tree_.Set("map", "odom", kStart + milliseconds(100), At(102), false));
+  FramePose turned = TurnedLeft(20);
+  turned.orientation = {0, 0, -1, 0};  // half a turn, as its other quaternion
+  ASSERT_TRUE(tree_.Set("odom", "base", kStart + milliseconds(100), turned, false));
+  const auto found = tree_.Find("map", "base", kStart + milliseconds(50));
+  ExpectNear(Place(found, {0, 0, 0}), {116, 0, 0});
+  ExpectNear(Place(found, {1, 0, 0}), {116 - kHalf, kHalf, 0});  // 135 degrees
+  // Nearly the same orientation twice.
+  TransformTree still;
+  still.Set("a", "b", kStart, kNowhere, false);
+  still.Set("a", "b", kStart + milliseconds(10), At(1), false);
+  ExpectNear(Place(still.Find("a", "b", kStart + milliseconds(5)), {0, 0, 1}), {0.5, 0, 1});
+}
+
+TEST_F(Tree, WithoutATimeTheNewestCounts) {
+  ASSERT_TRUE(tree_.Set("map", "odom", kStart + seconds(1), At(200), false));
+  ExpectNear(Place(tree_.Find("map", "lidar", std::nullopt), {0, 0, 0}), {210, 1, 0});
+}
+
+TEST_F(Tree, SaysWhatIsMissingAndWhetherItMayCome) {
+  auto answer = tree_.Find("map", "radar", kStart);
+  EXPECT_FALSE(answer.transform);
+  EXPECT_TRUE(answer.may_come);
+  EXPECT_EQ(answer.why, "no transform names the frame radar");
+  tree_.Set("earth", "moon", kStart, kNowhere, true);
+  EXPECT_EQ(tree_.Find("moon", "lidar", kStart).why, "no transforms connect lidar with moon");
+  answer = tree_.Find("map", "lidar", kStart + milliseconds(250));
+  EXPECT_TRUE(answer.may_come);
+  EXPECT_EQ(answer.newest, kStart);
+  EXPECT_EQ(answer.why, "the newest transform from base to odom is 0.250 s older than the cloud");
+  answer = tree_.Find("map", "lidar", kStart - milliseconds(250));
+  EXPECT_FALSE(answer.may_come);
+  EXPECT_EQ(answer.why, "the cloud is 0.250 s older than the oldest transform from base to odom");
+}
+
+TEST_F(Tree, KeepsPosesInTheOrderOfTheirTimes) {
+  TransformTree tree;
+  for (const int ms : {0, 20, 10, 20})
+    ASSERT_TRUE(tree.Set("a", "b", kStart + milliseconds(ms), At(ms), false));
+  ExpectNear(Place(tree.Find("a", "b", kStart + milliseconds(15)), {0, 0, 0}), {15, 0, 0});
+}
+
+TEST_F(Tree, ForgetsWhatIsOldAndWhatWasBeforeTheClockWentBack) {
+  TransformTree tree;
+  tree.Set("a", "b", kStart, At(1), false);
+  tree.Set("a", "b", kStart + seconds(11), At(2), false);
+  EXPECT_FALSE(tree.Find("a", "b", kStart + seconds(5)).transform);
+  tree.Set("a", "b", kStart - seconds(100), At(3), false);
+  ExpectNear(Place(tree.Find("a", "b", std::nullopt), {0, 0, 0}), {3, 0, 0});
+  EXPECT_TRUE(tree.Find("a", "b", kStart).may_come);
+}
+
+TEST_F(Tree, AFrameThatMovesToAnotherParentLeavesTheFirst) {
+  ASSERT_TRUE(tree_.Set("odom", "lidar", kStart, At(7), false));
+  ExpectNear(Place(tree_.Find("odom", "lidar", kStart), {0, 0, 0}), {7, 0, 0});
+}
+
+TEST_F(Tree, TakesNamesWithTheSlashOfRos1) {
+  ASSERT_TRUE(tree_.Set("/base", "/imu", kStart, At(5), true));
+  ExpectNear(Place(tree_.Find("base", "/imu", kStart), {0, 0, 0}), {5, 0, 0});
+}
+
+TEST_F(Tree, RefusesWhatIsNoPose) {
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_FALSE(tree_.Set("a", "b", kStart, {{nan, 0, 0}, {0, 0, 0, 1}}, false));
+  EXPECT_FALSE(tree_.Set("a", "b", kStart, {{0, 0, 0}, {0, 0, nan, 1}}, false));
+  EXPECT_FALSE(tree_.Set("a", "b", kStart, {{0, 0, 0}, {0, 0, 0, 0}}, false));
+  EXPECT_FALSE(tree_.Set("a", "b", kStart, {{0, 0, 0}, {0, 0, 1, 1}}, false));
+  EXPECT_FALSE(tree_.Set("a", "a", kStart, kNowhere, false));
+  EXPECT_FALSE(tree_.Set("", "a", kStart, kNowhere, false));
+  EXPECT_FALSE(tree_.Set("a", "/", kStart, kNowhere, false));
+  EXPECT_EQ(tree_.frames(), 4U);
+}
+
+TEST_F(Tree, ACircleConnectsNothingElse) {
+  TransformTree tree;
+  tree.Set("a", "b", kStart, kNowhere, true);
+  tree.Set("b", "a", kStart, At(1), true);
+  EXPECT_FALSE(tree.Find("c", "a", kStart).transform);
+  EXPECT_TRUE(tree.Find("b", "a", kStart).transform);
+}
+
+TEST(TreeOfStrangers, IsBounded) {
+  TransformTree tree;
+  for (std::size_t i = 0; i < 2 * TransformTree::kMaxFrames; ++i)
+    EXPECT_EQ(tree.Set("root", "f" + std::to_string(i), kStart, kNowhere, false),
+              i < TransformTree::kMaxFrames);
+  for (std::size_t i = 0; i < 2 * TransformTree::kMaxSamples; ++i)
+    ASSERT_TRUE(tree.Set("root", "f0", kStart + std::chrono::microseconds(i), kNowhere, false));
+  EXPECT_EQ(tree.frames(), TransformTree::kMaxFrames);
+  const Time first_kept = kStart + std::chrono::microseconds(TransformTree::kMaxSamples);
+  EXPECT_TRUE(tree.Find("root", "f0", first_kept).transform);
+  EXPECT_FALSE(tree.Find("root", "f0", first_kept - std::chrono::microseconds(1)).transform);
+}
+
+}  // namespace
+}  // namespace lidar
