@@ -26,38 +26,19 @@
 #include "gst/common/properties.h"
 #include "gst/common/refs.h"
 #include "gst/common/refused_caps.h"
+#include "gst/pointcloud/cloud_timeline.h"
 #include "gst/pointcloud/file_cloud.h"
+#include "gst/pointcloud/rate.h"
 
 GST_DEBUG_CATEGORY_STATIC(gst_lidar_point_cloud_parse_debug);
 #define GST_CAT_DEFAULT gst_lidar_point_cloud_parse_debug
-
-namespace lidar::gst {
-
-/// A fraction as a property.
-struct Rate {
-  gint n = 0;
-  gint d = 1;
-};
-template <>
-struct Kind<Rate> {
-  static GType Type() { return GST_TYPE_FRACTION; }
-  static GParamSpec* Spec(const SpecArgs& a, Rate initial) {
-    return gst_param_spec_fraction(a.name, a.name, a.blurb, 0, 1, G_MAXINT, 1, initial.n, initial.d,
-                                   a.flags);
-  }
-  static void Set(Rate* field, const GValue* v) {
-    *field = {gst_value_get_fraction_numerator(v), gst_value_get_fraction_denominator(v)};
-  }
-  static void Get(Rate value, GValue* v) { gst_value_set_fraction(v, value.n, value.d); }
-};
-
-}  // namespace lidar::gst
 
 namespace {
 
 using lidar::gst::BufferPtr;
 using lidar::gst::CapsPtr;
 using lidar::gst::CloudInfo;
+using lidar::gst::CloudTimeline;
 using lidar::gst::Rate;
 
 constexpr gint kDefaultRate = 10;            // scans/s where neither caps nor property say
@@ -77,6 +58,7 @@ using AdapterPtr = std::unique_ptr<GstAdapter, lidar::gst::Unref>;
 struct State {
   std::mutex mutex;  // guards the settings
   Settings settings;
+  CloudTimeline timeline;  // has a lock of its own
   // Only the streaming thread uses these.
   std::optional<CloudInfo> info;             // of the file; width 0: not known
   std::optional<lidar::CloudFileType> type;  // none: raw points
@@ -85,6 +67,7 @@ struct State {
   guint out_width = 0;
   bool times_given = false;        // upstream stamps its buffers
   lidar::gst::EventPtr segment;    // waits for the caps
+  gsize cloud_size = 0;            // of the timeline
   std::optional<gsize> file_size;  // of a file that comes in pieces; 0: pieces are clouds
   guint64 count = 0;
   bool discont = false;  // a cloud was left out
@@ -143,28 +126,36 @@ void PushSegment(GstLidarPointCloudParse* self) {
 
 /// Keeps upstream's segment where it counts time, and makes one otherwise.
 void HandleSegment(State* state, GstEvent* event) {
+  lidar::gst::EventPtr owner(event);
   const GstSegment* given = nullptr;
   gst_event_parse_segment(event, &given);
-  state->segment.reset(event);
   state->times_given = given->format == GST_FORMAT_TIME;
-  if (state->times_given) return;
-  GstSegment segment;
-  gst_segment_init(&segment, GST_FORMAT_TIME);
-  state->segment.reset(gst_event_new_segment(&segment));
+  state->segment =
+      state->times_given ? std::move(owner) : state->timeline.ToTime(event, &state->count);
+  gst_adapter_clear(state->adapter.get());
+}
+
+CloudTimeline::Grid GridOf(const State& state, gsize cloud_size) {
+  return {cloud_size, static_cast<guint64>(state.rate.n), static_cast<guint64>(state.rate.d)};
+}
+
+/// Seeks and queries are ours where bytes come in of clouds of one size.
+void SetTimeline(State* state, gsize cloud_size) {
+  if (state->times_given || cloud_size == state->cloud_size) return;
+  state->cloud_size = cloud_size;
+  state->timeline.SetGrid(GridOf(*state, cloud_size));
 }
 
 void Stamp(State* state, GstBuffer* buffer) {
-  const auto time_of = [&](guint64 n) {
-    return gst_util_uint64_scale(n, static_cast<guint64>(state->rate.d) * GST_SECOND,
-                                 static_cast<guint64>(state->rate.n));
-  };
+  const CloudTimeline::Grid grid = GridOf(*state, state->cloud_size);
   if (!state->times_given || !GST_BUFFER_PTS_IS_VALID(buffer)) {
-    GST_BUFFER_PTS(buffer) = time_of(state->count);
+    GST_BUFFER_PTS(buffer) = grid.TimeOf(state->count);
     GST_BUFFER_DTS(buffer) = GST_CLOCK_TIME_NONE;
   }
-  GST_BUFFER_DURATION(buffer) = time_of(state->count + 1) - time_of(state->count);
+  GST_BUFFER_DURATION(buffer) = grid.TimeOf(state->count + 1) - grid.TimeOf(state->count);
   GST_BUFFER_OFFSET(buffer) = state->count++;
   GST_BUFFER_OFFSET_END(buffer) = state->count;
+  state->timeline.NotePosition(GST_BUFFER_PTS(buffer) + GST_BUFFER_DURATION(buffer));
 }
 
 /// A recording that broke off leaves empty files; the rest of them counts. The cloud keeps its
@@ -271,6 +262,7 @@ GstFlowReturn Chain(GstPad*, GstObject* parent, GstBuffer* raw) {
                       ("Give the caps a width where the file holds many clouds."));
     return GST_FLOW_ERROR;
   }
+  SetTimeline(&state, cloud);
   if (cloud == 0) return PushWhole(self, std::move(buffer));
   if (GST_BUFFER_IS_DISCONT(buffer.get())) gst_adapter_clear(state.adapter.get());
   if (gst_adapter_available(state.adapter.get()) == 0 && gst_buffer_get_size(raw) == cloud)
@@ -290,7 +282,9 @@ gboolean HandleCaps(GstLidarPointCloudParse* self, GstEvent* event) {
   state.type = lidar::gst::CloudFileTypeOf(caps);
   if (state.type) {
     state.info.reset();
-    SetRate(&state, 0, 1);
+    Rate given;
+    gst_structure_get_fraction(gst_caps_get_structure(caps, 0), "framerate", &given.n, &given.d);
+    SetRate(&state, given.n, given.d);
     return TRUE;
   }
   std::string why;
@@ -326,7 +320,6 @@ void Reset(State* state) {
   gst_adapter_clear(state->adapter.get());
   state->count = 0;
   state->segment.reset();
-  state->file_size.reset();
 }
 
 gboolean SinkEvent(GstPad* pad, GstObject* parent, GstEvent* event) {
@@ -342,6 +335,9 @@ gboolean SinkEvent(GstPad* pad, GstObject* parent, GstEvent* event) {
       Drain(self);
       PushSegment(self);
       break;
+    case GST_EVENT_SEGMENT_DONE:
+      if (state.times_given) break;
+      return gst_pad_push_event(self->srcpad, state.timeline.EndInTime(event).release());
     case GST_EVENT_FLUSH_STOP:
       Reset(&state);
       break;
@@ -351,12 +347,32 @@ gboolean SinkEvent(GstPad* pad, GstObject* parent, GstEvent* event) {
   return gst_pad_event_default(pad, parent, event);
 }
 
+gboolean SrcEvent(GstPad* pad, GstObject* parent, GstEvent* event) {
+  auto* self = GST_LIDAR_POINT_CLOUD_PARSE(parent);
+  if (GST_EVENT_TYPE(event) == GST_EVENT_SEEK) {
+    if (const auto done = self->state->timeline.Seek(self->sinkpad, event)) {
+      gst_event_unref(event);
+      return *done;
+    }
+  }
+  return gst_pad_event_default(pad, parent, event);
+}
+
+gboolean SrcQuery(GstPad* pad, GstObject* parent, GstQuery* query) {
+  auto* self = GST_LIDAR_POINT_CLOUD_PARSE(parent);
+  return self->state->timeline.Answer(self->sinkpad, query) ||
+         gst_pad_query_default(pad, parent, query);
+}
+
 GstStateChangeReturn ChangeState(GstElement* element, GstStateChange transition) {
   const auto result = GST_ELEMENT_CLASS(gst_lidar_point_cloud_parse_parent_class)
                           ->change_state(element, transition);
   if (transition == GST_STATE_CHANGE_PAUSED_TO_READY) {
     State& state = StateOf(element);
     Reset(&state);
+    state.timeline.Reset();
+    state.cloud_size = 0;
+    state.file_size.reset();
     state.info.reset();
     state.type.reset();
     state.caps.reset();
@@ -378,6 +394,8 @@ static void gst_lidar_point_cloud_parse_init(GstLidarPointCloudParse* self) {
   gst_pad_set_event_function(self->sinkpad, SinkEvent);
   self->srcpad = lidar::gst::AddPad(self, "src");
   gst_pad_use_fixed_caps(self->srcpad);
+  gst_pad_set_event_function(self->srcpad, SrcEvent);
+  gst_pad_set_query_function(self->srcpad, SrcQuery);
 }
 
 static void gst_lidar_point_cloud_parse_class_init(GstLidarPointCloudParseClass* klass) {

@@ -231,6 +231,100 @@ TEST(ParseFile, AFileThatIsTooLargeForOneCloudIsAnErrorAtOnce) {
       << error->message;
 }
 
+/// A file of ten clouds at 10 Hz, each of 8 points that hold its number, in PAUSED.
+class ParseSeek : public ::testing::Test {
+ protected:
+  ParseSeek() {
+    std::ofstream file(path_, std::ios::binary);
+    for (char i = 0; i < 10; ++i) file << std::string(8 * 16, i);
+    file.close();
+    const std::string line = "filesrc location=" + path_ + " ! " + kKitti +
+                             ",width=8 ! pointcloudparse ! fakesink name=sink sync=false "
+                             "signal-handoffs=true";
+    pipeline_.reset(gst_parse_launch(line.c_str(), nullptr));
+    const ElementPtr sink(gst_bin_get_by_name(GST_BIN(pipeline_.get()), "sink"));
+    g_signal_connect(sink.get(), "handoff",
+                     G_CALLBACK(+[](GstElement*, GstBuffer* buffer, GstPad*, gpointer data) {
+                       const BufferMap map(buffer, GST_MAP_READ);
+                       auto* self = static_cast<ParseSeek*>(data);
+                       self->clouds_.push_back(map.data()[0]);
+                       self->times_.push_back(GST_BUFFER_PTS(buffer));
+                     }),
+                     this);
+    gst_element_set_state(pipeline_.get(), GST_STATE_PAUSED);
+    gst_element_get_state(pipeline_.get(), nullptr, nullptr, GST_CLOCK_TIME_NONE);
+  }
+  ~ParseSeek() override {
+    gst_element_set_state(pipeline_.get(), GST_STATE_NULL);
+    std::remove(path_.c_str());
+  }
+  bool Seek(gint flags, GstClockTime start, gint64 stop = -1, gdouble rate = 1) {
+    return gst_element_seek(pipeline_.get(), rate, GST_FORMAT_TIME,
+                            static_cast<GstSeekFlags>(flags), GST_SEEK_TYPE_SET,
+                            static_cast<gint64>(start), GST_SEEK_TYPE_SET, stop) != FALSE;
+  }
+  /// The clouds from now to the message.
+  std::vector<int> PlayTo(GstMessageType type) {
+    clouds_.clear();
+    times_.clear();
+    gst_element_set_state(pipeline_.get(), GST_STATE_PLAYING);
+    GstBus* bus = gst_element_get_bus(pipeline_.get());
+    const MessagePtr message(gst_bus_timed_pop_filtered(
+        bus, 30 * GST_SECOND, static_cast<GstMessageType>(type | GST_MESSAGE_ERROR)));
+    gst_object_unref(bus);
+    EXPECT_TRUE(message && GST_MESSAGE_TYPE(message.get()) == type);
+    gst_element_set_state(pipeline_.get(), GST_STATE_PAUSED);
+    return clouds_;
+  }
+
+  const std::string path_ = ::testing::TempDir() + "seek.bin";
+  ElementPtr pipeline_;
+  std::vector<int> clouds_;
+  std::vector<GstClockTime> times_;
+};
+
+TEST_F(ParseSeek, KnowsHowLongTheFileIsAndThatItCanBeSought) {
+  gint64 duration = 0;
+  ASSERT_TRUE(gst_element_query_duration(pipeline_.get(), GST_FORMAT_TIME, &duration));
+  EXPECT_EQ(duration, gint64{GST_SECOND});
+  const QueryPtr query(gst_query_new_seeking(GST_FORMAT_TIME));
+  ASSERT_TRUE(gst_element_query(pipeline_.get(), query.get()));
+  gboolean seekable = FALSE;
+  gint64 end = 0;
+  gst_query_parse_seeking(query.get(), nullptr, &seekable, nullptr, &end);
+  EXPECT_TRUE(seekable);
+  EXPECT_EQ(end, gint64{GST_SECOND});
+}
+
+TEST_F(ParseSeek, BeginsWithTheCloudOfTheTimeAndEndsWithThatOfTheStop) {
+  ASSERT_TRUE(Seek(GST_SEEK_FLAG_FLUSH | GST_SEEK_FLAG_ACCURATE, 300 * GST_MSECOND));
+  EXPECT_EQ(PlayTo(GST_MESSAGE_EOS), (std::vector<int>{3, 4, 5, 6, 7, 8, 9}));
+  EXPECT_EQ(times_.front(), 300 * GST_MSECOND);
+  ASSERT_TRUE(
+      Seek(GST_SEEK_FLAG_FLUSH | GST_SEEK_FLAG_KEY_UNIT, 250 * GST_MSECOND, 500 * GST_MSECOND));
+  EXPECT_EQ(PlayTo(GST_MESSAGE_EOS), (std::vector<int>{2, 3, 4}));
+}
+
+TEST_F(ParseSeek, ASegmentSeekEndsWithItsMessageAndGoesOnFromThere) {
+  ASSERT_TRUE(Seek(GST_SEEK_FLAG_FLUSH | GST_SEEK_FLAG_SEGMENT, 0, 200 * GST_MSECOND));
+  EXPECT_EQ(PlayTo(GST_MESSAGE_SEGMENT_DONE), (std::vector<int>{0, 1}));
+  ASSERT_TRUE(Seek(GST_SEEK_FLAG_SEGMENT, 800 * GST_MSECOND));
+  EXPECT_EQ(PlayTo(GST_MESSAGE_SEGMENT_DONE), (std::vector<int>{8, 9}));
+}
+
+TEST_F(ParseSeek, CountsFromTheEndWhereItIsAsked) {
+  ASSERT_TRUE(gst_element_seek(pipeline_.get(), 1, GST_FORMAT_TIME, GST_SEEK_FLAG_FLUSH,
+                               GST_SEEK_TYPE_END, -200 * gint64{GST_MSECOND}, GST_SEEK_TYPE_NONE,
+                               0));
+  EXPECT_EQ(PlayTo(GST_MESSAGE_EOS), (std::vector<int>{8, 9}));
+}
+
+TEST_F(ParseSeek, RefusesToPlayBackwardsAndToEndBeforeItBegins) {
+  EXPECT_FALSE(Seek(GST_SEEK_FLAG_FLUSH, 800 * GST_MSECOND, 200 * GST_MSECOND));
+  EXPECT_FALSE(Seek(GST_SEEK_FLAG_FLUSH, 0, gint64{GST_SECOND}, -1));
+  EXPECT_EQ(PlayTo(GST_MESSAGE_EOS).size(), 10U);
+}
+
 TEST(ParseFile, EachFileOfASeriesIsACloud) {
   const std::string folder = ::testing::TempDir();
   for (int i = 0; i < 3; ++i)

@@ -1,0 +1,174 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "gst/pointcloud/cloud_timeline.h"
+
+#include <utility>
+
+namespace lidar::gst {
+namespace {
+
+/// What a seek asks for, with times counted from the beginning; none where it asks for nothing that
+/// there is.
+struct SeekRange {
+  GstSeekType start_type = GST_SEEK_TYPE_NONE;
+  GstClockTime start = 0;
+  GstSeekType stop_type = GST_SEEK_TYPE_NONE;
+  GstClockTime stop = GST_CLOCK_TIME_NONE;
+
+  bool IsSound(const GstSegment& now) const {
+    const GstClockTime from = start_type == GST_SEEK_TYPE_NONE ? now.position : start;
+    const GstClockTime to = stop_type == GST_SEEK_TYPE_NONE ? now.stop : stop;
+    return GST_CLOCK_TIME_IS_VALID(from) && (!GST_CLOCK_TIME_IS_VALID(to) || from <= to);
+  }
+};
+
+GstClockTime FromBeginning(GstSeekType* type, gint64 time, const GstSegment& segment) {
+  if (*type != GST_SEEK_TYPE_END) return static_cast<GstClockTime>(time);
+  if (!GST_CLOCK_TIME_IS_VALID(segment.duration)) return GST_CLOCK_TIME_NONE;
+  *type = GST_SEEK_TYPE_SET;
+  return static_cast<GstClockTime>(MAX(static_cast<gint64>(segment.duration) + time, 0));
+}
+
+}  // namespace
+
+/// Times are rounded down, so the cloud that a time was made of would be missed by one.
+guint64 CloudTimeline::Grid::CloudAt(GstClockTime time) const {
+  const guint64 cloud = gst_util_uint64_scale(time, rate_n, rate_d * GST_SECOND);
+  return TimeOf(cloud + 1) <= time ? cloud + 1 : cloud;
+}
+
+void CloudTimeline::SetGrid(const Grid& grid) {
+  const std::lock_guard lock(mutex_);
+  grid_ = grid;
+}
+
+void CloudTimeline::Reset() {
+  const std::lock_guard lock(mutex_);
+  grid_ = {};
+  sought_.reset();
+  gst_segment_init(&segment_, GST_FORMAT_TIME);
+}
+
+EventPtr CloudTimeline::ToTime(GstEvent* event, guint64* cloud) {
+  const GstSegment* bytes = nullptr;
+  gst_event_parse_segment(event, &bytes);
+  const guint32 seqnum = gst_event_get_seqnum(event);
+  const std::lock_guard lock(mutex_);
+  const bool counts = bytes->format == GST_FORMAT_BYTES && grid_.cloud_bytes > 0;
+  if (counts) *cloud = bytes->start / grid_.cloud_bytes;
+  if (sought_ && sought_->seqnum == seqnum) {
+    segment_ = sought_->segment;
+  } else {
+    gst_segment_init(&segment_, GST_FORMAT_TIME);
+    if (counts) segment_.start = segment_.time = segment_.position = grid_.TimeOf(*cloud);
+  }
+  sought_.reset();
+  EventPtr segment(gst_event_new_segment(&segment_));
+  gst_event_set_seqnum(segment.get(), seqnum);
+  return segment;
+}
+
+void CloudTimeline::NotePosition(GstClockTime end) {
+  const std::lock_guard lock(mutex_);
+  segment_.position = end;
+}
+
+EventPtr CloudTimeline::EndInTime(GstEvent* done) const {
+  const EventPtr owner(done);
+  const std::lock_guard lock(mutex_);
+  EventPtr in_time(
+      gst_event_new_segment_done(GST_FORMAT_TIME, static_cast<gint64>(segment_.position)));
+  gst_event_set_seqnum(in_time.get(), gst_event_get_seqnum(done));
+  return in_time;
+}
+
+std::optional<GstClockTime> CloudTimeline::Duration(GstPad* sinkpad, const Grid& grid) const {
+  gint64 bytes = 0;
+  if (!gst_pad_peer_query_duration(sinkpad, GST_FORMAT_BYTES, &bytes) || bytes < 0)
+    return std::nullopt;
+  return grid.TimeOf(static_cast<guint64>(bytes) / grid.cloud_bytes);
+}
+
+bool CloudTimeline::Answer(GstPad* sinkpad, GstQuery* query) const {
+  std::unique_lock lock(mutex_);
+  const Grid grid = grid_;
+  const auto at = static_cast<gint64>(segment_.position);
+  lock.unlock();
+  if (grid.cloud_bytes == 0) return false;
+  GstFormat format = GST_FORMAT_UNDEFINED;
+  switch (GST_QUERY_TYPE(query)) {
+    case GST_QUERY_DURATION: {
+      gst_query_parse_duration(query, &format, nullptr);
+      const auto duration = Duration(sinkpad, grid);
+      if (format != GST_FORMAT_TIME || !duration) return false;
+      gst_query_set_duration(query, format, static_cast<gint64>(*duration));
+      return true;
+    }
+    case GST_QUERY_POSITION:
+      gst_query_parse_position(query, &format, nullptr);
+      if (format != GST_FORMAT_TIME) return false;
+      gst_query_set_position(query, format, at);
+      return true;
+    case GST_QUERY_SEEKING: {
+      gst_query_parse_seeking(query, &format, nullptr, nullptr, nullptr);
+      if (format != GST_FORMAT_TIME) return false;
+      const QueryPtr bytes(gst_query_new_seeking(GST_FORMAT_BYTES));
+      gboolean seekable = FALSE;
+      if (gst_pad_peer_query(sinkpad, bytes.get()))
+        gst_query_parse_seeking(bytes.get(), nullptr, &seekable, nullptr, nullptr);
+      const auto duration = Duration(sinkpad, grid);
+      gst_query_set_seeking(query, format, seekable, 0,
+                            duration ? static_cast<gint64>(*duration) : -1);
+      return true;
+    }
+    default:
+      return false;
+  }
+}
+
+std::optional<bool> CloudTimeline::Seek(GstPad* sinkpad, GstEvent* event) {
+  gdouble rate = 1;
+  GstFormat format = GST_FORMAT_UNDEFINED;
+  GstSeekFlags flags = GST_SEEK_FLAG_NONE;
+  SeekRange range;
+  gint64 start = 0;
+  gint64 stop = 0;
+  gst_event_parse_seek(event, &rate, &format, &flags, &range.start_type, &start, &range.stop_type,
+                       &stop);
+  Sought sought;
+  sought.seqnum = gst_event_get_seqnum(event);
+  std::unique_lock lock(mutex_);
+  const Grid grid = grid_;
+  sought.segment = segment_;
+  lock.unlock();
+  if (grid.cloud_bytes == 0) return std::nullopt;
+  if (format != GST_FORMAT_TIME || rate <= 0) return false;
+  GstSegment& segment = sought.segment;
+  if (const auto duration = Duration(sinkpad, grid)) segment.duration = *duration;
+  range.start = FromBeginning(&range.start_type, start, segment);
+  range.stop = FromBeginning(&range.stop_type, stop, segment);
+  // GStreamer takes other ranges for a mistake of the caller.
+  if (!range.IsSound(segment) ||
+      !gst_segment_do_seek(&segment, rate, format, flags, range.start_type, range.start,
+                           range.stop_type, range.stop, nullptr))
+    return false;
+  const guint64 first = grid.CloudAt(segment.start);
+  if (flags & GST_SEEK_FLAG_KEY_UNIT)
+    segment.start = segment.time = segment.position = grid.TimeOf(first);
+  const bool ends = GST_CLOCK_TIME_IS_VALID(segment.stop) && segment.stop > 0;
+  const guint64 past_last = ends ? grid.CloudAt(segment.stop - 1) + 1 : 0;
+  // A stop of -1 takes an earlier one away.
+  EventPtr bytes(
+      gst_event_new_seek(rate, GST_FORMAT_BYTES, flags, GST_SEEK_TYPE_SET,
+                         static_cast<gint64>(first * grid.cloud_bytes), GST_SEEK_TYPE_SET,
+                         ends ? static_cast<gint64>(past_last * grid.cloud_bytes) : gint64{-1}));
+  gst_event_set_seqnum(bytes.get(), sought.seqnum);
+  lock.lock();
+  sought_ = sought;
+  lock.unlock();
+  if (gst_pad_push_event(sinkpad, bytes.release())) return true;
+  lock.lock();
+  sought_.reset();
+  return false;
+}
+
+}  // namespace lidar::gst

@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Time and bytes of a file of clouds that are all of one size: seeks and queries of its parser.
+#pragma once
+#include <gst/gst.h>
+
+#include <mutex>
+#include <optional>
+
+#include "gst/common/refs.h"
+
+namespace lidar::gst {
+
+/// Upstream counts bytes, downstream counts time. Queries and seeks come from any thread.
+class CloudTimeline {
+ public:
+  CloudTimeline() { gst_segment_init(&segment_, GST_FORMAT_TIME); }
+
+  struct Grid {
+    guint64 cloud_bytes = 0;  // 0: not known, so that nothing is answered
+    guint64 rate_n = 10;      // clouds/s
+    guint64 rate_d = 1;
+
+    /// When a cloud begins, counted from 0, and which is there at a time.
+    GstClockTime TimeOf(guint64 cloud) const {
+      return gst_util_uint64_scale(cloud, rate_d * GST_SECOND, rate_n);
+    }
+    guint64 CloudAt(GstClockTime time) const;
+  };
+  void SetGrid(const Grid& grid);
+  void Reset();
+
+  /// The segment in time for one in bytes; `cloud` becomes the first of it, where that is known.
+  EventPtr ToTime(GstEvent* segment, guint64* cloud);
+  /// Of SEGMENT_DONE; takes the event.
+  EventPtr EndInTime(GstEvent* done) const;
+  /// A cloud has gone that ends then.
+  void NotePosition(GstClockTime end);
+
+  /// True where the query has its answer. `sinkpad` is where the bytes come in.
+  bool Answer(GstPad* sinkpad, GstQuery* query) const;
+  /// None where the seek is not for us; else whether upstream has done it.
+  std::optional<bool> Seek(GstPad* sinkpad, GstEvent* event);
+
+ private:
+  struct Sought {
+    guint32 seqnum = 0;
+    GstSegment segment{};
+  };
+
+  std::optional<GstClockTime> Duration(GstPad* sinkpad, const Grid& grid) const;
+
+  mutable std::mutex mutex_;  // guards what follows; not held while anything is pushed
+  Grid grid_;
+  GstSegment segment_{};          // as downstream has it
+  std::optional<Sought> sought_;  // until its segment comes
+};
+
+}  // namespace lidar::gst
