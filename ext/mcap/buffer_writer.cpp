@@ -8,6 +8,7 @@
 #include "gst/common/buffer_map.h"
 #include "gst/common/cloud_info.h"
 #include "gst/common/gstlidar.h"
+#include "gst/common/pose_covariance.h"
 #include "src/cdr/coded_slice.h"
 #include "src/cdr/motion_samples.h"
 #include "src/cdr/point_cloud2.h"
@@ -115,7 +116,8 @@ class OdometryWriter : public BufferWriter {
     const GstClockTime stamp = CaptureTime(buffer, log_time);
     odometry->header = HeaderOf(stamp, "odom");
     odometry->child_frame_id = frame_id_;
-    SetTracking(tracking, &*odometry);
+    odometry->pose_covariance = CovarianceOf(tracking);
+    odometry->twist_covariance = NoVelocity();
     out->push_back({0, stamp, cdr::WriteOdometry(*odometry)});
     return true;
   }

@@ -10,6 +10,7 @@
 #include "gst/common/buffer_map.h"
 #include "gst/common/cloud_info.h"
 #include "gst/common/gstlidar.h"
+#include "gst/common/pose_covariance.h"
 #include "src/cdr/coded_slice.h"
 #include "src/cdr/motion_samples.h"
 #include "src/cdr/point_cloud2.h"
@@ -128,7 +129,7 @@ class OdometryReader : public MessageReader {
   BufferPtr Read(ByteView message) override {
     const auto odometry = cdr::ReadOdometry(message);
     if (!odometry) return nullptr;
-    const mcap::Bytes bytes = cdr::WritePose(*odometry, TrackingOf(*odometry));
+    const mcap::Bytes bytes = cdr::WritePose(*odometry, TrackingOf(odometry->pose_covariance));
     BufferPtr buffer(gst_buffer_new_memdup(bytes.data(), bytes.size()));
     SetCaptureTime(odometry->header, buffer.get());
     return buffer;

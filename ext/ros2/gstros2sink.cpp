@@ -55,7 +55,7 @@ RosSettings SinkDefaults() {
 struct Ros2SinkSettings {
   RosSettings ros = SinkDefaults();
   gint type = kAutoType;
-  Frames frames;
+  MessageSettings messages;
 };
 
 struct Counters {
@@ -116,7 +116,7 @@ static StructurePtr Stats(GObject* object) {
   return ToStructure("application/x-ros2sink-stats", kStats, counters);
 }
 
-static const std::array<Property<Ros2SinkSettings>, 10> kProperties = {{
+static const std::array<Property<Ros2SinkSettings>, 12> kProperties = {{
     Within<&Ros2SinkSettings::ros>(RosRows(), "topic"),
     {"type", "What the topic holds",
      EnumField<Ros2SinkSettings>{&Ros2SinkSettings::type, SinkTypeType}},
@@ -127,9 +127,17 @@ static const std::array<Property<Ros2SinkSettings>, 10> kProperties = {{
     Within<&Ros2SinkSettings::ros>(RosRows(), "ros-distro"),
     {"frame-id",
      "Frame of the data; NULL: as the caps say, else lidar for clouds, imu, or odom for odometry",
-     At<&Ros2SinkSettings::frames, &Frames::frame_id>, 0, 0, GST_PARAM_MUTABLE_PLAYING},
+     At<&Ros2SinkSettings::messages, &MessageSettings::frames, &Frames::frame_id>, 0, 0,
+     GST_PARAM_MUTABLE_PLAYING},
     {"child-frame-id", "Frame whose pose odometry is; NULL: as the caps say, else lidar",
-     At<&Ros2SinkSettings::frames, &Frames::child_frame_id>, 0, 0, GST_PARAM_MUTABLE_PLAYING},
+     At<&Ros2SinkSettings::messages, &MessageSettings::frames, &Frames::child_frame_id>, 0, 0,
+     GST_PARAM_MUTABLE_PLAYING},
+    {"position-variance", "Of poses that are tracked, along each axis; 0: not known [m^2]",
+     At<&Ros2SinkSettings::messages, &MessageSettings::position_variance>, 0, 1e3,
+     GST_PARAM_MUTABLE_PLAYING},
+    {"orientation-variance", "Of poses that are tracked, about each axis; 0: not known [rad^2]",
+     At<&Ros2SinkSettings::messages, &MessageSettings::orientation_variance>, 0, 1e3,
+     GST_PARAM_MUTABLE_PLAYING},
     {"stats",
      "messages, bytes [bytes], messages-without-subscriber, messages-timed-out, buffers-refused, "
      "subscribers",
@@ -254,7 +262,7 @@ static GstFlowReturn Render(GstBaseSink* base, GstBuffer* buffer) {
     else
       last = PublishMessage(self, writer.get(), pieces);
   };
-  const bool published = state.messages->Write(buffer, Snapshot(state).frames, now, publish);
+  const bool published = state.messages->Write(buffer, Snapshot(state).messages, now, publish);
   if (published) return GST_FLOW_OK;
   {
     const std::lock_guard lock(state.mutex);

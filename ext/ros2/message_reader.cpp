@@ -8,6 +8,7 @@
 #include "gst/common/cloud_info.h"
 #include "gst/common/frames.h"
 #include "gst/common/gstlidar.h"
+#include "gst/common/pose_covariance.h"
 #include "src/cdr/motion_samples.h"
 
 namespace lidar::gst {
@@ -147,7 +148,7 @@ MessageReader::Verdict MessageReader::ReadOdometry(ByteView message) {
                                    ToText(odometry->header.frame_id).c_str(),
                                    GST_LIDAR_CHILD_FRAME_ID, G_TYPE_STRING,
                                    ToText(odometry->child_frame_id).c_str(), nullptr));
-  buffer_ = ToBuffer(cdr::WritePose(*odometry, GST_LIDAR_TRACKING_OK));
+  buffer_ = ToBuffer(cdr::WritePose(*odometry, TrackingOf(odometry->pose_covariance)));
   SetStamp(odometry->header.stamp);
   return SetCaps(std::move(caps));
 }

@@ -4,6 +4,7 @@
 #include "gst/common/buffer_map.h"
 #include "gst/common/frames.h"
 #include "gst/common/gstlidar.h"
+#include "gst/common/pose_covariance.h"
 #include "src/cdr/motion_samples.h"
 
 namespace lidar::gst {
@@ -56,11 +57,11 @@ bool MessageWriter::SetCaps(const GstCaps* caps) {
   return true;
 }
 
-bool MessageWriter::Write(GstBuffer* buffer, const Frames& frames, Time now,
+bool MessageWriter::Write(GstBuffer* buffer, const MessageSettings& settings, Time now,
                           const Publish& publish) {
   const BufferMap map(buffer, GST_MAP_READ);
   if (!map) return false;
-  wanted_ = frames;
+  wanted_ = settings;
   const GstClockTime captured = gst_lidar_buffer_get_capture_time(buffer);
   stamp_ = GST_CLOCK_TIME_IS_VALID(captured)
                ? Time{} + Duration{static_cast<std::int64_t>(captured)}
@@ -76,12 +77,12 @@ bool MessageWriter::Write(GstBuffer* buffer, const Frames& frames, Time now,
 }
 
 cdr::Header MessageWriter::HeaderOf(Time stamp, const char* usual_frame) const {
-  if (!wanted_.frame_id.empty()) return {stamp, wanted_.frame_id};
+  if (!wanted_.frames.frame_id.empty()) return {stamp, wanted_.frames.frame_id};
   return {stamp, from_caps_.frame_id.empty() ? usual_frame : from_caps_.frame_id};
 }
 
 std::string MessageWriter::ChildFrame() const {
-  if (!wanted_.child_frame_id.empty()) return wanted_.child_frame_id;
+  if (!wanted_.frames.child_frame_id.empty()) return wanted_.frames.child_frame_id;
   return from_caps_.child_frame_id.empty() ? kCloudFrame : from_caps_.child_frame_id;
 }
 
@@ -117,6 +118,10 @@ bool MessageWriter::WritePose(ByteView bytes, const Publish& publish) {
   if (!pose) return false;
   pose->header = HeaderOf(stamp_, kOdometryFrame);
   pose->child_frame_id = ChildFrame();
+  pose->pose_covariance = CovarianceOf(tracking);
+  pose->twist_covariance = NoVelocity();
+  if (tracking <= GST_LIDAR_TRACKING_OK)
+    SetVariances(wanted_.position_variance, wanted_.orientation_variance, &pose->pose_covariance);
   if (type_ == cdr::RosType::kOdometry) {
     publish({View(cdr::WriteOdometry(*pose))});
   } else {

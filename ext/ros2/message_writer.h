@@ -21,6 +21,14 @@ struct Frames {
   std::string child_frame_id;
 };
 
+/// What messages say that buffers do not.
+struct MessageSettings {
+  Frames frames;
+  // Of poses that are tracked; 0: not known.
+  double position_variance = 0;     // m^2
+  double orientation_variance = 0;  // rad^2
+};
+
 /// Used by the streaming thread.
 class MessageWriter {
  public:
@@ -35,7 +43,7 @@ class MessageWriter {
   /// Gives each message of `buffer` in pieces, which live until it returns. `now` is the time of
   /// buffers that have no capture time. False where the buffer is not as its caps say.
   using Publish = std::function<void(const std::vector<ByteView>& pieces)>;
-  bool Write(GstBuffer* buffer, const Frames& frames, Time now, const Publish& publish);
+  bool Write(GstBuffer* buffer, const MessageSettings& settings, Time now, const Publish& publish);
 
   cdr::RosType type() const { return type_; }
   const std::string& why() const { return why_; }
@@ -51,8 +59,8 @@ class MessageWriter {
   CloudInfo info_;
   cdr::RosLayout layout_;
   Frames from_caps_;
-  Frames wanted_;  // of the buffer at hand
-  Time stamp_{};   // of the buffer at hand
+  MessageSettings wanted_;  // of the buffer at hand
+  Time stamp_{};            // of the buffer at hand
   std::string why_;
 };
 

@@ -3,6 +3,7 @@
 #pragma once
 #include <array>
 #include <cstddef>
+#include <cstdint>
 
 #include "gst/common/gstlidar.h"
 
@@ -18,12 +19,13 @@ inline void SetVariances(double position, double orientation, Covariance* covari
   for (std::size_t i = 0; i < 6; ++i) (*covariance)[i * 7] = i < 3 ? position : orientation;
 }
 
-/// ROS has no word for the tracking. Zeros say that a covariance is not known.
-inline Covariance CovarianceOf(GstLidarTracking tracking) {
+/// ROS has no word for the tracking, which is a GstLidarTracking. Zeros say that a covariance is
+/// not known.
+inline Covariance CovarianceOf(std::uint64_t tracking) {
   Covariance covariance{};
   if (tracking == GST_LIDAR_TRACKING_DEGENERATE)
     SetVariances(kDegenerateVariance, kDegenerateVariance, &covariance);
-  if (tracking == GST_LIDAR_TRACKING_LOST)
+  if (tracking >= GST_LIDAR_TRACKING_LOST)
     SetVariances(kUnknownVariance, kUnknownVariance, &covariance);
   return covariance;
 }

@@ -7,13 +7,11 @@
 #include "gst/common/frames.h"
 #include "gst/common/gstlidar.h"
 #include "gst/common/refs.h"
-#include "src/base/byte_reader.h"
 #include "src/cdr/messages.h"
+#include "src/cdr/motion_samples.h"
 
 namespace lidar::gst {
 namespace {
-
-constexpr std::size_t kPoseSize = 64;  // of application/x-odometry
 
 TransformInbox& InboxOf(GstPad* pad) {
   return *static_cast<TransformInbox*>(gst_pad_get_element_private(pad));
@@ -88,11 +86,10 @@ void TransformInbox::TakeMessage(const GstStructure* caps, GstBuffer* buffer) {
 void TransformInbox::TakePose(const GstStructure* caps, GstBuffer* buffer) {
   const BufferMap map(buffer, GST_MAP_READ);
   const GstClockTime captured = gst_lidar_buffer_get_capture_time(buffer);
-  if (!map || map.size() != kPoseSize || !GST_CLOCK_TIME_IS_VALID(captured)) return Refuse();
-  ByteReader r(map.view());
-  FramePose pose;
-  for (double& v : pose.position) v = r.LeF64();
-  for (double& v : pose.orientation) v = r.LeF64();
+  std::uint64_t tracking = 0;
+  const auto read = map ? cdr::ReadPose(map.view(), &tracking) : std::nullopt;
+  if (!read || !GST_CLOCK_TIME_IS_VALID(captured)) return Refuse();
+  const FramePose pose{read->position, read->orientation};
   Note(TextOf(caps, GST_LIDAR_FRAME_ID, kOdometryFrame),
        TextOf(caps, GST_LIDAR_CHILD_FRAME_ID, kCloudFrame),
        Time{} + Duration{static_cast<std::int64_t>(captured)}, pose, false);

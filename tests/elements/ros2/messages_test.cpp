@@ -5,6 +5,7 @@
 #include "ext/ros2/message_reader.h"
 #include "gst/common/buffer_map.h"
 #include "gst/common/gstlidar.h"
+#include "gst/common/pose_covariance.h"
 
 namespace lidar::gst {
 namespace {
@@ -106,6 +107,16 @@ TEST(TransformMessages, AreDamagedWhereTheyAreCutAndEmptyWhereTheySayNothing) {
   EXPECT_EQ(reader.Read(View(message)), Verdict::kDamaged);
   EXPECT_EQ(reader.why(), "the message is truncated or is no TFMessage");
   EXPECT_EQ(reader.Read(View(cdr::WriteTransforms({}))), Verdict::kEmpty);
+}
+
+TEST(Covariances, OfPosesThatAreNotTrackedAreLarge) {
+  for (const GstLidarTracking tracking :
+       {GST_LIDAR_TRACKING_OK, GST_LIDAR_TRACKING_DEGENERATE, GST_LIDAR_TRACKING_LOST})
+    EXPECT_EQ(TrackingOf(CovarianceOf(tracking)), tracking);
+  EXPECT_EQ(CovarianceOf(GST_LIDAR_TRACKING_STARTED), Covariance{});
+  EXPECT_EQ(CovarianceOf(GST_LIDAR_TRACKING_LOST)[35], 1e6);
+  EXPECT_EQ(CovarianceOf(77)[35], 1e6);
+  EXPECT_EQ(CovarianceOf(GST_LIDAR_TRACKING_DEGENERATE)[0], 1e3);
 }
 
 }  // namespace

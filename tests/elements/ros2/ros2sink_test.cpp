@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <thread>
 
+#include "src/cdr/messages.h"
 #include "tests/elements/ros2/ros2_support.h"
 
 namespace lidar::test {
@@ -149,9 +150,10 @@ TEST_F(Ros2Sink, PublishesEachSampleOfAnImu) {
 
 constexpr double kPose[7] = {1, -2, 3, 0, 0, 0.6, 0.8};
 
-GstBuffer* PoseBuffer() {
+GstBuffer* PoseBuffer(GstLidarTracking tracking = GST_LIDAR_TRACKING_OK) {
   std::uint8_t bytes[64] = {};
   std::memcpy(bytes, kPose, sizeof kPose);
+  bytes[56] = static_cast<std::uint8_t>(tracking);
   GstBuffer* buffer = gst_buffer_new_memdup(bytes, sizeof bytes);
   gst_lidar_buffer_set_capture_time(buffer, 7 * GST_SECOND + 8);
   return buffer;
@@ -167,6 +169,44 @@ TEST_F(Ros2Sink, PublishesOdometry) {
   EXPECT_EQ(odometry.header.frame_id, "odom");
   EXPECT_EQ(odometry.child_frame_id, "base_link");
   EXPECT_TRUE(std::equal(odometry.pose.begin(), odometry.pose.end(), std::begin(kPose)));
+}
+
+TEST_F(Ros2Sink, GivesTrackedPosesTheVarianceThatItIsTold) {
+  StartWithPeer<PeerOdometry>("nav_msgs::msg::dds_::Odometry_",
+                              "position-variance=0.01 orientation-variance=0.002",
+                              CapsPtr(gst_caps_from_string("application/x-odometry")));
+  for (const auto tracking : {GST_LIDAR_TRACKING_OK, GST_LIDAR_TRACKING_LOST}) {
+    ASSERT_EQ(gst_harness_push(h_.get(), PoseBuffer(tracking)), GST_FLOW_OK);
+    PeerOdometry odometry;
+    ASSERT_TRUE(peer_->Take(&odometry, kPatience));
+    const bool tracked = tracking == GST_LIDAR_TRACKING_OK;
+    EXPECT_EQ(odometry.pose_covariance[7], tracked ? 0.01 : 1e6);
+    EXPECT_EQ(odometry.pose_covariance[21], tracked ? 0.002 : 1e6);
+    EXPECT_EQ(odometry.pose_covariance[1], 0);
+    EXPECT_EQ(odometry.twist_covariance[0], 1e6);
+  }
+}
+
+TEST_F(Ros2Sink, ItsTransformsAreThoseThatTheSourceTakes) {
+  Start("ros2src", "topic=/tf type=tf qos=reliable");
+  const std::string line =
+      "ros2sink topic=/tf type=tf sync=false domain-id=" + std::to_string(TestDomain());
+  const Harness sink(gst_harness_new_parse(line.c_str()));
+  gst_harness_set_src_caps_str(sink.get(), "application/x-odometry,child-frame-id=base");
+  ASSERT_TRUE(WaitForStat("publishers", 1));
+  // What goes before the two know each other is not seen.
+  for (int i = 0; i < 100 && Stat("messages") == 0; ++i) {
+    ASSERT_EQ(gst_harness_push(sink.get(), PoseBuffer()), GST_FLOW_OK);
+    g_usleep(50'000);
+  }
+  const gst::BufferPtr buffer = Pull();
+  ASSERT_TRUE(buffer);
+  const auto bytes = BytesOf(buffer.get());
+  const auto transforms = cdr::ReadTransforms({bytes.data(), bytes.size()});
+  ASSERT_TRUE(transforms);
+  ASSERT_EQ(transforms->size(), 1u);
+  EXPECT_EQ((*transforms)[0].child_frame_id, "base");
+  EXPECT_EQ((*transforms)[0].rotation, (cdr::Quaternion{0, 0, 0.6, 0.8}));
 }
 
 TEST_F(Ros2Sink, PublishesTransforms) {
