@@ -1,11 +1,19 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// What the page and foxglovesink cost at 131,072 points and 10 scans/s: node tests/browser/measure.mjs
-// Run by hand; prints a line for raw clouds and one for Draco (docs/results/ecosystem.md).
-import { readdirSync, readFileSync } from 'node:fs';
+// What foxglovesink costs at OS1-128 and 10 scans/s, and what its page draws, as Markdown tables:
+// tests/benchmarks/ecosystem.sh runs it, and docs/results/ecosystem.md has the figures.
+import { execFileSync } from 'node:child_process';
+import { mkdtempSync, readdirSync, readFileSync, rmSync } from 'node:fs';
+import os from 'node:os';
+import path from 'node:path';
+import ws from '@foxglove/ws-protocol';
+import WebSocket from 'ws';
 import { freePort, openBrowser, openPage, Pipeline, sleep, until } from './support.mjs';
 
 const SECONDS = Number(process.env.WAIT_S ?? 20);
 const TICKS = 100; // a second, of /proc
+const CODERS = { raw: '', 'Draco at 2 cm': '! dracoenc geometry=xyz max-error=0.02' };
+const SCANS = 10; // that are played again and again
+const FIELDS = 'x:F32:0,y:F32:4,z:F32:8,intensity:F32:12,range:U32:16';
 
 /** CPU time of the threads of that name so far [s]. */
 function cpuOf(pid, name) {
@@ -19,43 +27,111 @@ function cpuOf(pid, name) {
   return ticks / TICKS;
 }
 
-const browser = await openBrowser();
-const coders = { raw: '', draco: '! dracoenc geometry=xyz max-error=0.02' };
-for (const [name, coder] of Object.entries(coders)) {
+/** Puts scans into files, so that no ray caster runs beside what is measured; gives what plays them. */
+function record(folder, width) {
+  const files = path.join(folder, `${width}-%d.bin`);
+  const line =
+    `lidartestsrc model=os1-128 mode=${width}x10 slices-per-scan=1 speed=5 num-buffers=${SCANS} ` +
+    `! multifilesink location=${files}`;
+  execFileSync('gst-launch-1.0', ['-q', ...line.split(' ')]);
+  return (
+    `multifilesrc location=${files} loop=true stop-index=${SCANS - 1} caps=application/x-pointcloud2,` +
+    `width=${width},height=128,point-step=20,fields=(string)"${FIELDS}",framerate=10/1 ` +
+    '! pointcloudparse ! identity sync=true'
+  );
+}
+
+async function start(source, coder) {
   const port = await freePort();
-  const way =
-    `lidartestsrc is-live=true model=os1-128 mode=1024x10 slices-per-scan=1 speed=5 ${coder} ` +
-    `! queue leaky=downstream ! foxglovesink port=${port}`;
-  const pipeline = await Pipeline.start(way.replace(/ {2,}/g, ' '), port);
+  const way = `${source} ${coder} ! queue leaky=downstream ! foxglovesink sync=false port=${port}`;
+  return { port, pipeline: await Pipeline.start(way, port) };
+}
+
+const sinkOf = (statistics) => Object.values(statistics.elements).find((e) => e.factory === 'foxglovesink');
+const row = (cells) => console.log(`| ${cells.join(' | ')} |`);
+
+/** A program that takes clouds as they come. They have no capture time, so their time is when the sink got them. */
+async function measureClient(name, width, source, coder) {
+  const { port, pipeline } = await start(source, coder);
+  const socket = new WebSocket(`ws://127.0.0.1:${port}`, ['foxglove.sdk.v1'], { maxPayload: 2 ** 28 });
+  const client = new ws.FoxgloveClient({ ws: socket });
+  const topics = new Map();
+  const seen = { clouds: 0, bytes: 0, sum: 0, most: 0, statistics: null };
+  client.on('advertise', (list) => {
+    for (const channel of list) topics.set(client.subscribe(channel.id), channel.topic);
+  });
+  client.on('message', ({ subscriptionId, timestamp, data }) => {
+    if (topics.get(subscriptionId) === '/statistics') {
+      seen.statistics = sinkOf(JSON.parse(new TextDecoder().decode(data)));
+      return;
+    }
+    const ms = performance.timeOrigin + performance.now() - Number(timestamp) / 1e6;
+    seen.clouds += 1;
+    seen.bytes += data.byteLength;
+    seen.sum += ms;
+    seen.most = Math.max(seen.most, ms);
+  });
+  await until('clouds', () => seen.clouds > 5 && seen.statistics);
+  const cpu = (thread) => cpuOf(pipeline.child.pid, thread);
+  const read = () => ({ ...seen.statistics, encode: cpu('queue0:src'), server: cpu('foxglovesink') });
+  const before = read();
+  Object.assign(seen, { clouds: 0, bytes: 0, sum: 0, most: 0 });
+  await sleep(SECONDS * 1000);
+  const now = read();
+  const perScan = (what) => `${(((now[what] - before[what]) * 1000) / (now.clouds - before.clouds)).toFixed(2)} ms`;
+  row([
+    `${width}x10`, name, `${(seen.bytes / seen.clouds / 1e6).toFixed(3)} MB`, `${seen.clouds} of ${SECONDS * 10}`,
+    now.messages_dropped - before.messages_dropped, perScan('encode'), perScan('server'),
+    `${(seen.sum / seen.clouds).toFixed(1)} ms`, `${seen.most.toFixed(1)} ms`,
+  ]);
+  client.close();
+  await pipeline.stop();
+}
+
+/** The page in a headless browser, where software draws. */
+async function measurePage(browser, name, width, source, coder) {
+  const { port, pipeline } = await start(source, coder);
   const { page, context } = await openPage(browser, `http://127.0.0.1:${port}/`);
   const read = () =>
     page.evaluate(() => {
-      const cloudsOf = (r) => ({ ...(r['foxglove.PointCloud'] ?? r['foxglove.CompressedPointCloud']) });
-      const { scene, statistics, received } = window.lidarPage;
-      const sink = Object.values(statistics.elements).find((e) => e.factory === 'foxglovesink');
-      return { frames: scene.frames, points: scene.fresh.count, at: performance.now(), sink, received: cloudsOf(received) };
+      const { scene, received } = window.lidarPage;
+      const clouds = received['foxglove.PointCloud'] ?? received['foxglove.CompressedPointCloud'];
+      return { frames: scene.frames, points: scene.fresh.count, at: performance.now(), messages: clouds.messages };
     });
-  await until('a picture', () =>
-    page.evaluate(() => window.lidarPage.statistics && window.lidarPage.scene.fresh.count > 0),
-  );
-  const cpu = (thread) => cpuOf(pipeline.child.pid, thread);
-  const before = { page: await read(), server: cpu('foxglovesink'), encode: cpu('queue0:src') };
+  await until('a picture', () => page.evaluate(() => window.lidarPage.scene.fresh.count > 0));
+  const before = await read();
   await sleep(SECONDS * 1000);
-  const now = { page: await read(), server: cpu('foxglovesink'), encode: cpu('queue0:src') };
-  const seconds = (now.page.at - before.page.at) / 1000;
-  const [a, b] = [before.page.sink, now.page.sink];
-  const got = now.page.received.messages - before.page.received.messages;
-  const bytes = now.page.received.bytes - before.page.received.bytes;
-  const clouds = b.clouds - a.clouds;
-  console.log(
-    `${name}: ${((now.page.frames - before.page.frames) / seconds).toFixed(1)} frames/s, ` +
-      `${now.page.points} points, ${(clouds / seconds).toFixed(1)} scans/s, ` +
-      `${(bytes / got / 1e6).toFixed(3)} MB a scan, ` +
-      `${got} received, ${b.messages_dropped - a.messages_dropped} dropped; ` +
-      `CPU per scan: server ${(((now.server - before.server) * 1000) / clouds).toFixed(2)} ms, ` +
-      `encoding ${(((now.encode - before.encode) * 1000) / clouds).toFixed(2)} ms`,
-  );
+  const now = await read();
+  const rate = (count) => ((count * 1000) / (now.at - before.at)).toFixed(1);
+  row([
+    `${width}x10`, name, now.points, `${rate(now.messages - before.messages)} scans/s`,
+    `${rate(now.frames - before.frames)} frames/s`,
+  ]);
   await context.close();
   await pipeline.stop();
 }
-await browser.close();
+
+const folder = mkdtempSync(path.join(os.tmpdir(), 'lidar-measure-'));
+try {
+  const sources = new Map([1024, 2048].map((width) => [width, record(folder, width)]));
+  const each = async (measure) => {
+    for (const [width, source] of sources)
+      for (const [name, coder] of Object.entries(CODERS)) await measure(name, width, source, coder);
+  };
+  console.log(`\n\`foxglovesink\` to a program of npm's \`@foxglove/ws-protocol\`, ${SECONDS} s each.\n`);
+  row([
+    'OS1-128', 'stream', 'size of a scan', 'scans that came', 'dropped', 'encoding, CPU per scan',
+    'server thread, CPU per scan', 'latency, mean', 'latency, max',
+  ]);
+  row(Array(9).fill('---'));
+  await each(measureClient);
+  const browser = await openBrowser();
+  console.log(`\nThe page in Chromium ${browser.version()}, headless, drawn by software.\n`);
+  row(['OS1-128', 'stream', 'points of a picture', 'taken', 'drawn']);
+  row(Array(5).fill('---'));
+  await each((...of) => measurePage(browser, ...of));
+  await browser.close();
+} finally {
+  await Pipeline.stopAll();
+  rmSync(folder, { recursive: true });
+}
