@@ -17,10 +17,10 @@ expect() {
   fi
 }
 
-for script in lidar-and-video rtpbin-video record play view secure secure-dtls webrtc demo; do
+for script in lidar-and-video rtpbin-video record play view secure secure-dtls webrtc rtsp demo; do
   expect 0 "Usage: pipelines/$script.sh" $script.sh --help
 done
-for script in lidar-and-video rtpbin-video record play view secure secure-dtls webrtc; do
+for script in lidar-and-video rtpbin-video record play view secure secure-dtls webrtc rtsp; do
   expect 2 "there is no option --nonsense" $script.sh --nonsense
 done
 expect 2 '--rate wants a number above zero, not "abc"' lidar-and-video.sh --rate abc
