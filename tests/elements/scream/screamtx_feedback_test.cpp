@@ -86,9 +86,7 @@ TEST_F(ScreamTx, LeavesTheReceiptsOutOfOtherMedia) {
     time.Advance(50 * GST_MSECOND);
     Acknowledge();
   }
-  NextTarget(rtp.get());
-  while (EventPtr event{gst_harness_try_pull_upstream_event(rtp.get())})
-    EXPECT_FALSE(gst_event_has_name(event.get(), "packets-received"));
+  EXPECT_EQ(NamesUpstream(rtp.get()).count("packets-received"), 0U);
 }
 
 TEST_F(ScreamTx, AsksTheEncoderOfLidarForAKeyUnitWhereAReceiverDoes) {
@@ -101,6 +99,29 @@ TEST_F(ScreamTx, AsksTheEncoderOfLidarForAKeyUnitWhereAReceiverDoes) {
   const auto request = gst::BuildKeyRequest(9, 0x1234);
   ASSERT_EQ(gst_harness_push(rtcp.get(), FromBytes(request)), GST_FLOW_OK);
   EXPECT_TRUE(EventPtr(WaitForUpstream(rtp.get(), "GstForceKeyUnit")));
+}
+
+TEST_F(ScreamTx, LeavesKeyUnitsOfVideoToWhoManagesItsSession) {
+  rtp.reset(gst_harness_new_with_element(element, "sink_0", "src"));
+  rtcp.reset(gst_harness_new_with_element(element, "rtcp_sink", nullptr));
+  gst_harness_set_src_caps_str(rtp.get(), kVideoCaps);
+  gst_harness_set_src_caps_str(rtcp.get(), "application/x-rtcp");
+  PushFrame(0, 1);
+  Collect();
+  const auto request = gst::BuildKeyRequest(9, 0x1234);
+  ASSERT_EQ(gst_harness_push(rtcp.get(), FromBytes(request)), GST_FLOW_OK);
+  EXPECT_EQ(NamesUpstream(rtp.get()).count("GstForceKeyUnit"), 0U);
+}
+
+TEST_F(ScreamTx, LeavesKeyRequestsToWhoTakesTheRestOfTheRtcp) {
+  Start(kLidarCaps);
+  PushFrame(0, 1);
+  Collect();
+  const auto request = gst::BuildKeyRequest(9, 0x1234);
+  ASSERT_EQ(gst_harness_push(rtcp.get(), FromBytes(request)), GST_FLOW_OK);
+  const BufferPtr passed(gst_harness_pull(rtcp.get()));
+  EXPECT_EQ(ToBytes(passed.get()), request);
+  EXPECT_EQ(NamesUpstream(rtp.get()).count("GstForceKeyUnit"), 0U);
 }
 
 TEST_F(ScreamTx, PassesForeignRtcpAndKeepsItsOwn) {
@@ -133,6 +154,7 @@ TEST_F(ScreamTx, PassesRtcpGarbageUnread) {
     const BufferPtr out(gst_harness_pull(rtcp.get()));
     EXPECT_EQ(ToBytes(out.get()), bytes);
   }
+  EXPECT_EQ(Stats(element)["rtcp-malformed"], 1U);
 }
 
 TEST_F(ScreamTx, IgnoresFeedbackOfPacketsThatItNeverSent) {
@@ -152,6 +174,24 @@ TEST_F(ScreamTx, IgnoresFeedbackOfPacketsThatItNeverSent) {
   EXPECT_EQ(after["target-bitrate"], before);
   EXPECT_EQ(after["packets-ce"], 0U);
   EXPECT_EQ(after["feedback-ignored"], 20U);
+}
+
+TEST_F(ScreamTx, TakesLiesForNoSignOfAReceiver) {
+  GstBus* bus = gst_bus_new();
+  gst_element_set_bus(element, bus);
+  Start();
+  CongestionFeedback lie;
+  lie.blocks.push_back({0x1234, 30000, {{true, scream::Ecn::kCe, Duration{0}}}});
+  for (guint32 i = 0; i < 50; ++i) {
+    PushFrame(i * 900, 1);
+    Feed(lie);
+    time.Advance(50 * GST_MSECOND);
+  }
+  EXPECT_TRUE(
+      gst::MessagePtr(gst_bus_timed_pop_filtered(bus, 30 * GST_SECOND, GST_MESSAGE_WARNING)));
+  gst_element_set_state(element, GST_STATE_NULL);
+  gst_element_set_bus(element, nullptr);
+  gst_object_unref(bus);
 }
 
 TEST_F(ScreamTx, IsNotMovedByAFloodOfTheSameReport) {
@@ -232,6 +272,15 @@ TEST_F(ScreamTx, SaysOnceThatNobodyAnswersAndEachTimeThatSomebodyDoesAgain) {
   run(60, false);
   EXPECT_TRUE(tells(next(), FALSE));  // without another warning
   EXPECT_FALSE(next());
+  gst_element_set_state(element, GST_STATE_READY);
+  gst_element_set_state(element, GST_STATE_PLAYING);
+  gst_harness_play(rtp.get());
+  run(38, false);
+  EXPECT_FALSE(next());
+  run(10, false);  // nobody was told of this run yet
+  message = next();
+  ASSERT_TRUE(message);
+  EXPECT_EQ(GST_MESSAGE_TYPE(message.get()), GST_MESSAGE_WARNING);
   gst_element_set_state(element, GST_STATE_NULL);
   gst_element_set_bus(element, nullptr);
   gst_object_unref(bus);

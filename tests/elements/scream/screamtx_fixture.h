@@ -6,6 +6,8 @@
 
 #include <map>
 #include <memory>
+#include <set>
+#include <string>
 #include <vector>
 
 #include "gst/net/udp_socket.h"
@@ -101,6 +103,22 @@ class ScreamTx : public ::testing::Test {
       if (event == nullptr || gst_event_has_name(event, name)) return event;
       gst_event_unref(event);
     }
+  }
+  /// The names of all events that go upstream, those of three more pulses included.
+  std::multiset<std::string> NamesUpstream(GstHarness* h) {
+    std::multiset<std::string> names;
+    const auto note = [&](GstEvent* event) {
+      const GstStructure* s = gst_event_get_structure(event);
+      return *names.insert(s != nullptr ? gst_structure_get_name(s) : GST_EVENT_TYPE_NAME(event));
+    };
+    while (EventPtr event{gst_harness_try_pull_upstream_event(h)}) note(event.get());
+    for (int pulse = 0; pulse < 3; ++pulse) {
+      time.Advance(250 * GST_MSECOND);
+      EventPtr event(gst_harness_pull_upstream_event(h));
+      while (event && note(event.get()) != "target-bitrate")
+        event.reset(gst_harness_pull_upstream_event(h));
+    }
+    return names;
   }
   /// The target that the pulse brings, long after everything before.
   GstLidarTargetBitrate NextTarget(GstHarness* h) {

@@ -115,28 +115,127 @@ TEST_F(ScreamTx, AFlushForgetsTheQueueAndItGoesOn) {
   EXPECT_EQ(ReadRtp(out.get()).timestamp, 77U);
 }
 
-TEST_F(ScreamTx, TakesALiveStreamAtOnceThatFollowsOneThatIsNot) {
-  static bool live;
-  live = false;
+TEST_F(ScreamTx, AFlushAfterTheEndLetsAnotherStreamBeginAndEnd) {
   Start();
-  gst_pad_set_query_function(rtp->srcpad, [](GstPad*, GstObject*, GstQuery* query) -> gboolean {
-    if (GST_QUERY_TYPE(query) != GST_QUERY_LATENCY) return FALSE;
-    gst_query_set_latency(query, live ? TRUE : FALSE, 0, GST_CLOCK_TIME_NONE);
-    return TRUE;
-  });
-  const auto push = [&](guint16 seq, GstClockTime pts) {
-    GstBuffer* buffer = NewRtp({seq});
-    GST_BUFFER_PTS(buffer) = pts;
-    return gst_harness_push(rtp.get(), buffer);
-  };
-  ASSERT_EQ(push(0, GST_CLOCK_TIME_NONE), GST_FLOW_OK);  // no time to wait for
-  live = true;
+  GstSegment segment;
+  gst_segment_init(&segment, GST_FORMAT_TIME);
+  for (int round = 0; round < 2; ++round) {
+    PushFrame(static_cast<guint32>(round), 1);
+    gst_harness_push_event(rtp.get(), gst_event_new_eos());
+    for (int i = 0; i < 10; ++i) {
+      time.Advance(10 * GST_MSECOND);
+      Acknowledge();
+    }
+    EXPECT_TRUE(HasEos()) << round;
+    gst_harness_push_event(rtp.get(), gst_event_new_flush_start());
+    gst_harness_push_event(rtp.get(), gst_event_new_flush_stop(TRUE));
+    ASSERT_TRUE(gst_harness_push_event(rtp.get(), gst_event_new_segment(&segment)));
+  }
+  EXPECT_EQ(sent.size(), 2U);
+}
+
+TEST_F(ScreamTx, AnswersNoQueryThatWouldOvertakeThePackets) {
+  Start();
+  const gst::QueryPtr drain(gst_query_new_drain());
+  EXPECT_FALSE(gst_pad_peer_query(rtp->srcpad, drain.get()));
+}
+
+/// Upstream of a screamtx that is live or not, as it says itself.
+class ScreamTxOf : public ScreamTx {
+ protected:
+  void StartLive(bool live) {
+    live_ = live;
+    Start();
+    gst_pad_set_query_function(rtp->srcpad, [](GstPad*, GstObject*, GstQuery* query) -> gboolean {
+      if (GST_QUERY_TYPE(query) != GST_QUERY_LATENCY) return FALSE;
+      gst_query_set_latency(query, live_ ? TRUE : FALSE, 0, GST_CLOCK_TIME_NONE);
+      return TRUE;
+    });
+  }
+  std::future<GstFlowReturn> PushAt(guint16 seq, GstClockTime pts) {
+    return std::async(std::launch::async, [this, seq, pts] {
+      GstBuffer* buffer = NewRtp({seq});
+      GST_BUFFER_PTS(buffer) = pts;
+      return gst_harness_push(rtp.get(), buffer);
+    });
+  }
+  static bool IsIn(const std::future<GstFlowReturn>& pushed, std::chrono::milliseconds patience) {
+    return pushed.wait_for(patience) == std::future_status::ready;
+  }
+  static inline bool live_ = true;
+};
+
+TEST_F(ScreamTxOf, ALiveStreamThatFollowsOneThatIsNotEntersAtOnce) {
+  StartLive(false);
+  ASSERT_EQ(Push({}), GST_FLOW_OK);  // without a time to wait for
+  live_ = true;
   ASSERT_TRUE(gst_harness_push_event(rtp.get(), gst_event_new_stream_start("live")));
-  const GstClockTime far = time.now() + 2 * GST_SECOND;
-  auto entered = std::async(std::launch::async, push, guint16{1}, far);
-  EXPECT_EQ(entered.wait_for(std::chrono::seconds(30)), std::future_status::ready);
-  time.AdvanceTo(far);
-  EXPECT_EQ(entered.get(), GST_FLOW_OK);
+  auto pushed = PushAt(1, 3600 * GST_SECOND);
+  EXPECT_TRUE(IsIn(pushed, std::chrono::seconds(30)));
+  if (!IsIn(pushed, std::chrono::seconds(0))) gst_harness_crank_single_clock_wait(rtp.get());
+  EXPECT_EQ(pushed.get(), GST_FLOW_OK);
+}
+
+TEST_F(ScreamTxOf, AFileEntersAtItsTimeOnTheClock) {
+  StartLive(false);
+  gst_element_set_base_time(element, 5 * GST_SECOND);
+  auto pushed = PushAt(0, GST_SECOND);
+  GstTestClock* clock = gst_harness_get_testclock(rtp.get());
+  GstClockID id = nullptr;
+  gst_test_clock_wait_for_next_pending_id(clock, &id);
+  EXPECT_EQ(gst_clock_id_get_time(id), 6 * GST_SECOND);
+  gst_clock_id_unref(id);
+  gst_object_unref(clock);
+  EXPECT_FALSE(IsIn(pushed, std::chrono::milliseconds(0)));
+  gst_harness_crank_single_clock_wait(rtp.get());
+  EXPECT_EQ(pushed.get(), GST_FLOW_OK);
+}
+
+TEST_F(ScreamTxOf, AFileWaitsForRoomAndLosesNothing) {
+  g_object_set(element, "max-queue-delay", guint64{100 * GST_MSECOND}, nullptr);
+  StartLive(false);
+  PushFrame(0, 60);
+  time.Advance(150 * GST_MSECOND);
+  auto pushed = PushAt(60, GST_CLOCK_TIME_NONE);
+  EXPECT_FALSE(IsIn(pushed, std::chrono::milliseconds(50)));
+  while (!IsIn(pushed, std::chrono::milliseconds(0))) {
+    time.Advance(10 * GST_MSECOND);
+    Acknowledge();
+  }
+  EXPECT_EQ(pushed.get(), GST_FLOW_OK);
+  EXPECT_EQ(Stats(element)["packets-dropped"], 0U);
+}
+
+TEST_F(ScreamTxOf, AFileHasNoLatency) {
+  StartLive(false);
+  const gst::QueryPtr query(gst_query_new_latency());
+  ASSERT_TRUE(gst_pad_peer_query(rtp->sinkpad, query.get()));
+  GstClockTime min = 7;
+  gst_query_parse_latency(query.get(), nullptr, &min, nullptr);
+  EXPECT_EQ(min, 0U);
+}
+
+TEST_F(ScreamTx, AsksAVideoEncoderForKeyFramesTwiceASecondAtMost) {
+  g_object_set(element, "max-queue-delay", guint64{50 * GST_MSECOND}, nullptr);
+  Start(kVideoCaps);
+  for (guint32 i = 0; i < 20; ++i) {
+    PushFrame(i * 900, 30);
+    time.Advance(100 * GST_MSECOND);
+    g_usleep(1'000);
+  }
+  const auto asked = NamesUpstream(rtp.get()).count("GstForceKeyUnit");
+  EXPECT_GE(asked, 1U);
+  EXPECT_LE(asked, 6U);
+}
+
+TEST_F(ScreamTx, AsksNoOtherEncoderForKeyFrames) {
+  g_object_set(element, "max-queue-delay", guint64{100 * GST_MSECOND}, nullptr);
+  Start();
+  PushFrame(0, 30);
+  PushFrame(900, 30);
+  time.Advance(300 * GST_MSECOND);
+  EXPECT_EQ(Stats(element)["frames-dropped"], 1U);
+  EXPECT_EQ(NamesUpstream(rtp.get()).count("GstForceKeyUnit"), 0U);
 }
 
 TEST_F(ScreamTx, AddsItsLongestDelayToTheLatency) {

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <set>
 #include <string>
 #include <thread>
 #include <vector>
@@ -68,7 +69,8 @@ TEST_P(ScreamTxWith, LeavesTheEncoderWhatItsCompanionDoesNotTake) {
 }
 INSTANTIATE_TEST_SUITE_P(Companions, ScreamTxWith,
                          ::testing::Values(Companion{"rtx", 0x5678, 97},
-                                           Companion{"ulpfec", 0x1234, 122}),
+                                           Companion{"ulpfec", 0x1234, 122},
+                                           Companion{"second_ssrc", 0x5678, 96}),
                          [](const auto& i) { return i.param.name; });
 
 TEST_F(ScreamTx, SendsKeyUnitRequestsToTheStreamThatTheyName) {
@@ -165,6 +167,95 @@ TEST_F(ScreamTx, APadWithStrictPriorityGoesBeforeWhatWaits) {
   }
   ASSERT_GT(sent.size(), before);
   EXPECT_EQ(sent[before].ssrc, 0x5678U);
+}
+
+TEST_F(ScreamTx, AStrictPadGetsItsMaximumBeforeOthersGetMoreThanTheyNeed) {
+  g_object_set(element, "start-bitrate", 500'000, "min-bitrate", 10'000, "max-total-bitrate",
+               1'000'000, nullptr);
+  Start();
+  Harness audio(gst_harness_new_with_element(element, "sink_1", nullptr));
+  gst_harness_set_src_caps_str(audio.get(), kVideoCaps);
+  const gst::PadPtr pad(gst_element_get_static_pad(element, "sink_1"));
+  g_object_set(pad.get(), "strict-priority", TRUE, "max-bitrate", 800'000U, nullptr);
+  for (guint16 i = 0; i < 20; ++i) {
+    PushFrame(i * 900U, 1);
+    Rtp r;
+    r.ssrc = 0x5678;
+    r.seq = i;
+    r.marker = true;
+    ASSERT_EQ(gst_harness_push(audio.get(), NewRtp(r)), GST_FLOW_OK);
+    time.Advance(20 * GST_MSECOND);
+    Acknowledge();
+  }
+  EXPECT_NEAR(NextTarget(audio.get()).bitrate, 800'000 * 1188.0 / 1228, 20'000);
+}
+
+TEST_F(ScreamTx, BitratesOfAPadWinOverThoseOfTheElement) {
+  for (const guint min : {2'000'000U, 9'000'000U}) {  // the second above the maximum
+    const gst::PadPtr pad(gst_element_request_pad_simple(element, "sink_0"));
+    g_object_set(pad.get(), "min-bitrate", min, "start-bitrate", 3'000'000U, "max-bitrate",
+                 5'000'000U, nullptr);
+    Start();
+    const auto targets = Targets(rtp.get());
+    ASSERT_GE(targets.size(), 1U);
+    const double share = 1188.0 / 1228;
+    const guint needed = std::min(min, 5'000'000U);
+    EXPECT_NEAR(targets[0].min_bitrate, needed * share, 1000);
+    EXPECT_NEAR(targets[0].max_bitrate, 5'000'000 * share, 1000);
+    EXPECT_NEAR(targets[0].bitrate, std::max(needed, 3'000'000U) * share, 1000);
+    const GstLidarBitrateBounds unlimited{3'000'000, 0, 0};
+    gst_harness_push_event(rtp.get(), gst_lidar_event_new_bitrate_bounds(&unlimited));
+    EXPECT_NEAR(NextTarget(rtp.get()).max_bitrate, 5'000'000 * share, 1000);
+    rtcp.reset();
+    rtp.reset();
+  }
+}
+
+TEST_F(ScreamTx, SeveralStreamsHaveOneStartOneSegmentAndTheEventsOfTheFirst) {
+  Start();
+  Harness second(gst_harness_new_with_element(element, "sink_1", nullptr));
+  gst_harness_set_src_caps_str(second.get(), kVideoCaps);
+  GstSegment segment;
+  gst_segment_init(&segment, GST_FORMAT_TIME);
+  segment.start = segment.time = segment.position = 5 * GST_SECOND;
+  ASSERT_TRUE(gst_harness_push_event(second.get(), gst_event_new_segment(&segment)));
+  gst_harness_push_event(second.get(), gst_event_new_tag(gst_tag_list_new_empty()));
+  Rtp r;
+  r.ssrc = 0x5678;
+  r.marker = true;
+  GstBuffer* in = NewRtp(r);
+  GST_BUFFER_PTS(in) = 5'500 * GST_MSECOND;
+  ASSERT_EQ(gst_harness_push(second.get(), in), GST_FLOW_OK);
+  const BufferPtr out(gst_harness_pull(rtp.get()));
+  ASSERT_TRUE(out);
+  EXPECT_EQ(GST_BUFFER_PTS(out.get()), 500 * GST_MSECOND);
+  std::multiset<GstEventType> events;
+  while (EventPtr event{gst_harness_try_pull_event(rtp.get())})
+    events.insert(GST_EVENT_TYPE(event.get()));
+  EXPECT_EQ(events.count(GST_EVENT_STREAM_START), 1U);
+  EXPECT_EQ(events.count(GST_EVENT_SEGMENT), 1U);
+  EXPECT_EQ(events.count(GST_EVENT_TAG), 0U);
+}
+
+TEST_F(ScreamTx, AFlushOfOneOfSeveralStreamsIsItsOwn) {
+  Start();
+  Harness second(gst_harness_new_with_element(element, "sink_1", nullptr));
+  gst_harness_set_src_caps_str(second.get(), kVideoCaps);
+  gst_harness_push_event(second.get(), gst_event_new_flush_start());
+  gst_harness_push_event(second.get(), gst_event_new_flush_stop(TRUE));
+  PushFrame(0, 1);
+  EXPECT_TRUE(BufferPtr(gst_harness_pull(rtp.get())));
+  while (EventPtr event{gst_harness_try_pull_event(rtp.get())})
+    EXPECT_NE(GST_EVENT_TYPE(event.get()), GST_EVENT_FLUSH_START);
+}
+
+TEST_F(ScreamTx, SeveralStreamsMayHaveAnyCapsTogether) {
+  Start();
+  Harness second(gst_harness_new_with_element(element, "sink_1", nullptr));
+  gst_harness_set_src_caps_str(second.get(), kVideoCaps);
+  const gst::CapsPtr caps(gst_pad_peer_query_caps(rtp->sinkpad, nullptr));
+  const gst::CapsPtr any(gst_caps_new_empty_simple("application/x-rtp"));
+  EXPECT_TRUE(gst_caps_is_equal(caps.get(), any.get()));
 }
 
 TEST_F(ScreamTx, TargetsOfAllPadsTogetherStayBelowTheTotal) {

@@ -77,6 +77,14 @@ TEST_F(ScreamTx, LeavesTimestampsFlagsAndTheSegmentAlone) {
   EXPECT_TRUE(gst_segment_is_equal(passed, &segment));
 }
 
+TEST_F(ScreamTx, CountsBytesAsTheyAreOnTheWire) {
+  g_object_set(element, "packet-overhead", 100U, nullptr);
+  Start();
+  PushFrame(0, 1);
+  Collect();
+  EXPECT_EQ(Stats(element)["bytes-sent"], 1200U + 100);
+}
+
 TEST_F(ScreamTx, CountsWhatIsNoRtp) {
   Start();
   ASSERT_EQ(gst_harness_push(rtp.get(), FromBytes({1, 2, 3})), GST_FLOW_OK);
@@ -181,6 +189,10 @@ TEST_F(ScreamTx, PostsItsStatisticsAtTheInterval) {
     ASSERT_TRUE(message);
     EXPECT_TRUE(gst_message_has_name(message.get(), "application/x-screamtx-stats"));
   }
+  g_usleep(20'000);
+  int more = 0;
+  while (gst::MessagePtr(gst_bus_pop_filtered(bus, GST_MESSAGE_ELEMENT))) ++more;
+  EXPECT_LE(more, 1);  // the first came with the start
   gst_element_set_state(element, GST_STATE_NULL);
   gst_element_set_bus(element, nullptr);
   gst_object_unref(bus);
