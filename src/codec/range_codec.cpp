@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 
 #include "src/base/byte_writer.h"
 #include "src/base/crc.h"
@@ -16,6 +17,21 @@ constexpr std::uint8_t kHasReference = 1;
 
 bool HasGaps(const RangeImage& image) {
   return std::find(image.ranges.begin(), image.ranges.end(), 0U) != image.ranges.end();
+}
+
+/// Two thirds of a step: as a rule one or two of its bins come back within the error of `grid`.
+RangeGrid FinerGrid(const RangeGrid& grid) {
+  constexpr std::uint32_t kThirds = 3 * RangeGrid::kParts;
+  return {grid.unit_mm(), std::max((2 * grid.parts() + kThirds / 2) / kThirds, 1U)};
+}
+
+/// So few bits a return come only of surfaces on which a choice of bins saves some, and nothing
+/// else has to be tried.
+bool IsSmooth(const RangeImage& image, const RangeSettings& settings, std::size_t bytes) {
+  const double bits_per_return = 1.5 + 0.2 * settings.intensity.bits();
+  const auto gaps = std::count(image.ranges.begin(), image.ranges.end(), 0U);
+  const auto returns = static_cast<double>(image.size()) - static_cast<double>(gaps);
+  return 8.0 * static_cast<double>(bytes) <= bits_per_return * returns;
 }
 
 }  // namespace
@@ -38,7 +54,7 @@ bool RangeEncoder::Encode(const RangeImage& image, const RangeSettings& settings
   header.beams = image.beams;
   header.first_column = image.first_column;
   header.columns = image.columns;
-  header.grid = settings.grid;
+  header.grid = grid_;
   header.intensity = settings.intensity;
   header.kept_beams = settings.kept_beams;
   header.has_gaps = has_gaps_;
@@ -58,12 +74,12 @@ std::optional<RangeCoder> RangeEncoder::EncodePayload(const RangeImage& image,
                                                       const RangeSettings& settings,
                                                       BlockLink* link) {
   if (link != nullptr) link->left = nullptr;
+  grid_ = settings.grid;
   if (settings.coder == RangeCoder::kMixing) {
     has_gaps_ = HasGaps(image);
     if (link != nullptr && EncodeLinked(image, settings, link)) return RangeCoder::kTemporal;
     payload_.clear();
-    if (mixing_.Encode(image, {settings.grid, settings.intensity, settings.effort, {}}, &payload_))
-      return settings.coder;
+    if (EncodeMixing(image, settings)) return settings.coder;
   }
   CollectReturns(image, settings);
   if (settings.coder < RangeCoder::kAdaptive) {
@@ -73,6 +89,28 @@ std::optional<RangeCoder> RangeEncoder::EncodePayload(const RangeImage& image,
   // It counts bins that are too many for the mixing coder.
   EncodeAdaptively(image.columns);
   return RangeCoder::kAdaptive;
+}
+
+/// At the highest effort a finer grid leaves a choice of bins within the same error, where that
+/// saves bits.
+bool RangeEncoder::EncodeMixing(const RangeImage& image, const RangeSettings& settings) {
+  MixingSettings mixing{settings.grid, settings.intensity, settings.effort};
+  searched_.clear();
+  if (settings.effort >= mixing::kSearchingEffort && settings.grid.error_m() > 0) {
+    mixing.grid = FinerGrid(settings.grid);
+    mixing.error_mm = static_cast<std::uint32_t>(std::lround(1e3 * settings.grid.error_m()));
+    mixing_.Encode(image, mixing, &searched_);
+  }
+  const bool was_searched = !searched_.empty();
+  if (!was_searched || !IsSmooth(image, settings, searched_.size())) {
+    mixing.grid = settings.grid;
+    mixing.error_mm = 0;
+    if (!mixing_.Encode(image, mixing, &payload_)) return false;
+    if (!was_searched || payload_.size() <= searched_.size()) return true;
+  }
+  payload_.swap(searched_);
+  grid_ = FinerGrid(settings.grid);
+  return true;
 }
 
 /// False where nothing can refer to the block, and so it need not be linked.
@@ -179,6 +217,12 @@ bool RangeDecoder::Decode(ByteReader* reader, std::size_t max_points, RangeImage
   mask_.assign(image->size(), 1);
   return header->coder == RangeCoder::kAdaptive ? DecodeAdaptively(*header, payload, image)
                                                 : DecodeIntegers(*header, mask, payload, image);
+}
+
+double RangeDecoder::error_m() const {
+  const bool mixes = header_.coder == RangeCoder::kMixing || header_.coder == RangeCoder::kTemporal;
+  const bool was_chosen = mixes && mixing_.error_mm() > 0;
+  return was_chosen ? 1e-3 * mixing_.error_mm() : header_.grid.error_m();
 }
 
 /// With a store, `left` is what the block leaves for it.

@@ -48,6 +48,7 @@ class RangeEncoder {
   bool EncodeIntegers(const RangeSettings& settings, std::uint32_t columns);
   std::optional<RangeCoder> EncodePayload(const RangeImage& image, const RangeSettings& settings,
                                           BlockLink* link);
+  bool EncodeMixing(const RangeImage& image, const RangeSettings& settings);
   bool EncodeLinked(const RangeImage& image, const RangeSettings& settings, BlockLink* link);
 
   AzimuthAlignment alignment_;
@@ -61,6 +62,8 @@ class RangeEncoder {
   IntegerLists lists_;
   std::vector<std::uint8_t> mask_bytes_;
   std::vector<std::uint8_t> payload_;
+  std::vector<std::uint8_t> searched_;  // another one of the same image
+  RangeGrid grid_;                      // of the payload
 };
 
 /// Decodes blocks of one sensor; any bytes give an image or false.
@@ -81,6 +84,8 @@ class RangeDecoder {
   bool lacks_reference() const { return lacks_reference_; }
   /// The header of the block decoded last.
   const RangeHeader& header() const { return header_; }
+  /// The largest error of that block.
+  double error_m() const;
 
  private:
   bool DecodeLinked(const RangeHeader& header, ByteView payload, BlockStore* store,

@@ -2,27 +2,10 @@
 #include "src/codec/range_header.h"
 
 #include "src/base/byte_writer.h"
+#include "src/codec/varint.h"
 
 namespace lidar::codec {
 namespace {
-
-/// LEB128: seven bits a byte, the lowest first.
-void WriteVarint(std::uint32_t value, ByteWriter* writer) {
-  for (; value >= 0x80; value >>= 7) writer->U8(static_cast<std::uint8_t>(value | 0x80));
-  writer->U8(static_cast<std::uint8_t>(value));
-}
-
-/// At most four bytes, so values below 2^28; longer ones make `*ok` false.
-std::uint32_t ReadVarint(ByteReader* reader, bool* ok) {
-  std::uint32_t value = 0;
-  for (unsigned shift = 0; shift < 28; shift += 7) {
-    const std::uint8_t byte = reader->U8();
-    value |= (byte & 0x7FU) << shift;
-    if (byte < 0x80) return value;
-  }
-  *ok = false;
-  return 0;
-}
 
 // Bits of the second byte.
 constexpr unsigned kGapsFlag = 0x80;

@@ -17,7 +17,7 @@ std::optional<SliceDecoder::Shape> SliceDecoder::Decode(ByteView stream) {
   ByteReader reader(stream);
   if (!decoder_.Decode(&reader, max_points_, &image_, &scale_, &store_)) return std::nullopt;
   const RangeHeader& h = decoder_.header();
-  quality_ = {h.grid.step_m(), h.grid.error_m(), h.intensity.bits(),
+  quality_ = {h.grid.step_m(), decoder_.error_m(), h.intensity.bits(),
               h.kept_beams > 0 ? static_cast<double>(h.kept_beams) / h.beams : 1};
   if (reader.remaining() > 0 && !AppendBlocks(&reader)) return std::nullopt;
   const bool is_dense =
@@ -42,6 +42,7 @@ bool SliceDecoder::AppendBlocks(ByteReader* reader) {
       return false;
     }
     columns += block.columns;
+    quality_.error_m = std::max(quality_.error_m, decoder_.error_m());
     blocks_.push_back(std::move(block));
   }
   image_ = {blocks_[0].beams, columns, blocks_[0].first_column, {}, {}};

@@ -35,7 +35,7 @@ class SliceDecoder {
   /// What the slice says of itself.
   struct Quality {
     double step_m = 0;
-    double error_m = 0;  // bound that holds with this step
+    double error_m = 0;  // bound that holds
     unsigned intensity_bits = 0;
     double keep_fraction = 1;  // part of the beams; the others were left out to save bits
   };

@@ -11,6 +11,7 @@ namespace lidar::codec::mixing {
 
 class BinaryEncoder {
  public:
+  static constexpr bool kDecodes = false;
   /// Appends to `out`.
   explicit BinaryEncoder(std::vector<std::uint8_t>* out) : out_(out) {}
 

@@ -5,6 +5,7 @@
 #include <cstdint>
 
 #include "src/codec/mixing/arithmetic.h"
+#include "src/codec/mixing/cost_meter.h"
 #include "src/codec/mixing/mixer.h"
 
 namespace lidar::codec::mixing {
@@ -43,6 +44,7 @@ class BitMixer {
     const auto [a, b, c, d] = inputs_.packed;
     const std::int32_t chance = Chance(kernel_.dot(a, b, c, d, weights) >> kDotShift);
     bit = coder->Code(bit, chance);
+    if constexpr (!kTeaches<Coder>) return bit;
     kernel_.learn(a, b, c, d, StepOf(bit, chance), weights);
     Learn(bit);
     return bit;
@@ -55,10 +57,18 @@ class BitMixer {
     const std::int32_t one = ClampLogit(sums.first >> kDotShift);
     const std::int32_t other = ClampLogit(sums.second >> kDotShift);
     bit = coder->Code(bit, Chance((one + other) >> 1));
+    if constexpr (!kTeaches<Coder>) return bit;
     kernel_.learn(a, b, c, d, StepOf(bit, Chance(one)), first);
     kernel_.learn(a, b, c, d, StepOf(bit, Chance(other)), second);
     Learn(bit);
     return bit;
+  }
+  /// What Code() would take for the chance of a 1.
+  std::int32_t ChanceBy(const Weights* first, const Weights* second) const {
+    const auto [a, b, c, d] = inputs_.packed;
+    const Sums sums = kernel_.dots(a, b, c, d, first, second);
+    return Chance((ClampLogit(sums.first >> kDotShift) + ClampLogit(sums.second >> kDotShift)) >>
+                  1);
   }
 
  private:

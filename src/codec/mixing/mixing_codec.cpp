@@ -3,9 +3,13 @@
 
 #include <algorithm>
 #include <array>
+#include <cstdlib>
+#include <optional>
 
+#include "src/base/byte_writer.h"
 #include "src/codec/mixing/range_part.h"
 #include "src/codec/mixing/start_states.h"
+#include "src/codec/varint.h"
 
 namespace lidar::codec {
 namespace {
@@ -15,6 +19,7 @@ using mixing::SliceBins;
 // The first byte of a payload.
 constexpr unsigned kEffortMask = 3;
 constexpr unsigned kGapsBit = 4;
+constexpr unsigned kSearchedBit = 8;
 constexpr unsigned kVersionShift = 4;
 
 bool Fits(const AzimuthAlignment& alignment, const RangeImage& image) {
@@ -69,6 +74,8 @@ struct MixingEncoder::State : MixingCoderState {
       slice.has_gaps = slice.has_gaps || is_gap;
       slice.bins[i] = is_gap ? mixing::kNoReturn : static_cast<std::int32_t>(bin);
     }
+    slice.spare.clear();
+    if (settings.error_mm > 0) Spare(image, settings);
     slice.levels.clear();
     if (slice.level_bits == 0) return true;
     std::array<std::uint8_t, 256> coarse{};
@@ -77,6 +84,25 @@ struct MixingEncoder::State : MixingCoderState {
     slice.levels.resize(image.size());
     for (std::size_t i = 0; i < image.size(); ++i) slice.levels[i] = coarse[image.intensity[i]];
     return true;
+  }
+
+  /// Which bins each return may take.
+  void Spare(const RangeImage& image, const MixingSettings& settings) {
+    constexpr std::int32_t kMostSpare = 255;
+    slice.spare.assign(image.size(), 0);
+    for (std::size_t i = 0; i < image.size(); ++i) {
+      if (slice.bins[i] < 0) continue;
+      const auto within = [&](std::int32_t bin) {
+        const std::int64_t range = settings.grid.RangeOf(static_cast<std::uint32_t>(bin));
+        return range > 0 && bin < mixing::kMaxBins &&
+               std::abs(range - image.ranges[i]) <= settings.error_mm;
+      };
+      std::int32_t last = slice.bins[i];
+      while (last - slice.bins[i] < kMostSpare / 2 && within(last + 1)) ++last;
+      std::int32_t& first = slice.bins[i];
+      while (first > 0 && last - first < kMostSpare && within(first - 1)) --first;
+      slice.spare[i] = static_cast<std::uint8_t>(last - first);
+    }
   }
 };
 
@@ -95,24 +121,48 @@ bool MixingEncoder::Encode(const RangeImage& image, const MixingSettings& settin
   }
   const unsigned effort = std::clamp(settings.effort, 1U, mixing::kEfforts);
   const std::size_t before = out->size();
-  out->push_back(static_cast<std::uint8_t>(effort | (s.slice.has_gaps ? kGapsBit : 0) |
-                                           mixing::kTableVersion << kVersionShift));
+  ByteWriter writer(out);
+  writer.U8(static_cast<std::uint8_t>(effort | (s.slice.has_gaps ? kGapsBit : 0) |
+                                      (settings.error_mm > 0 ? kSearchedBit : 0) |
+                                      mixing::kTableVersion << kVersionShift));
+  if (settings.error_mm > 0) WriteVarint(settings.error_mm, &writer);
   mixing::BinaryEncoder encoder(out);
-  s.Code(effort, {settings.memory, settings.grid}, &encoder);
+  const bool coded = s.Code(effort, {settings.memory, settings.grid}, &encoder);
   encoder.Finish();
-  const bool allowed = image.size() <= MostMixedPixels(out->size() - before);
+  const bool allowed = coded && image.size() <= MostMixedPixels(out->size() - before);
   if (!allowed) out->resize(before);
   return allowed;
 }
 
 struct MixingDecoder::State : MixingCoderState {
   using MixingCoderState::MixingCoderState;
+
+  /// What stands before the bits; none where that is damaged or of another version.
+  std::optional<unsigned> ReadHead(ByteReader* reader) {
+    const unsigned first = reader->U8();
+    const unsigned effort = first & kEffortMask;
+    if (first >> kVersionShift != mixing::kTableVersion || effort == 0 ||
+        effort > mixing::kEfforts) {
+      return std::nullopt;
+    }
+    slice.has_gaps = (first & kGapsBit) != 0;
+    error_mm = 0;
+    if ((first & kSearchedBit) == 0) return effort;
+    bool ok = true;
+    error_mm = ReadVarint(reader, &ok);
+    if (!ok || !reader->ok() || error_mm == 0) return std::nullopt;
+    return effort;
+  }
+
+  std::uint32_t error_mm = 0;
 };
 
 MixingDecoder::MixingDecoder(const SensorModel& model) : state_(std::make_unique<State>(model)) {}
 MixingDecoder::MixingDecoder(MixingDecoder&&) noexcept = default;
 MixingDecoder& MixingDecoder::operator=(MixingDecoder&&) noexcept = default;
 MixingDecoder::~MixingDecoder() = default;
+
+std::uint32_t MixingDecoder::error_mm() const { return state_->error_mm; }
 
 bool MixingDecoder::Decode(ByteView payload, const RangeGrid& grid, unsigned intensity_bits,
                            RangeImage* image, const mixing::Memory& memory) {
@@ -121,21 +171,17 @@ bool MixingDecoder::Decode(ByteView payload, const RangeGrid& grid, unsigned int
       !Fits(s.alignment, *image) || !grid.IsValid() || intensity_bits > IntensityScale::kMaxBits) {
     return false;
   }
-  const unsigned first = payload.data[0];
-  const unsigned effort = first & kEffortMask;
-  if (first >> kVersionShift != mixing::kTableVersion || effort == 0 || effort > mixing::kEfforts ||
-      (first & 8) != 0) {
-    return false;
-  }
+  ByteReader reader(payload);
+  const auto effort = s.ReadHead(&reader);
+  if (!effort) return false;
   s.slice.beams = image->beams;
   s.slice.columns = image->columns;
   s.slice.step_mm = StepMm(grid);
   s.slice.level_bits = intensity_bits;
-  s.slice.has_gaps = (first & kGapsBit) != 0;
   s.slice.bins.assign(image->size(), 0);
   s.slice.levels.assign(intensity_bits > 0 ? image->size() : 0, 0);
-  mixing::BinaryDecoder decoder(payload.Sub(1));
-  if (!s.Code(effort, {memory, grid}, &decoder) || !decoder.AtEnd()) return false;
+  mixing::BinaryDecoder decoder(reader.Rest());
+  if (!s.Code(*effort, {memory, grid}, &decoder) || !decoder.AtEnd()) return false;
   image->ranges.resize(image->size());
   const auto last_bin = static_cast<std::int32_t>(grid.BinOf(RangeGrid::kMaxRangeMm));
   for (std::size_t i = 0; i < image->size(); ++i) {

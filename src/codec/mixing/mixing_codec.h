@@ -20,6 +20,9 @@ struct MixingSettings {
   IntensityScale intensity;  // 0 bits: geometry only
   unsigned effort = 2;       // 1 to 3
   mixing::Memory memory{};   // what its pixels have seen; none: the image stands alone
+  /// Above 0, at kSearchingEffort: returns take the bins that cost least of those that come back
+  /// within this error, which may be above the grid's own.
+  std::uint32_t error_mm = 0;
 };
 
 /// A payload of so many bytes holds no more pixels than this. A pixel costs a decoder 0.3 us, and
@@ -44,8 +47,8 @@ class MixingEncoder {
 
   /// Appends one payload to `out`. False, with nothing appended, where the image does not fit the
   /// sensor, has ranges past mixing::kMaxBins bins, or becomes smaller than MostMixedPixels()
-  /// allows. Ranges are multiples of the grid's unit; the image's levels are of 8 bits and become
-  /// those of settings.intensity.
+  /// allows, or, with an error_mm, where a choice between bins saves nothing. Ranges are multiples
+  /// of the grid's unit; the image's levels are of 8 bits and become those of settings.intensity.
   bool Encode(const RangeImage& image, const MixingSettings& settings,
               std::vector<std::uint8_t>* out);
 
@@ -67,6 +70,9 @@ class MixingDecoder {
   /// undefined, for a payload that is damaged or of another version.
   bool Decode(ByteView payload, const RangeGrid& grid, unsigned intensity_bits, RangeImage* image,
               const mixing::Memory& memory = {});
+  /// The largest error of the image decoded last where its encoder chose between bins; else 0, and
+  /// it is the grid's.
+  std::uint32_t error_mm() const;
 
  private:
   struct State;

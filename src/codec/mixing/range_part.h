@@ -31,6 +31,18 @@ struct Surroundings {
 template <class Effort, class Coder>
 class RangePart {
  public:
+  /// What the returns so far in a row have left.
+  struct Row {
+    std::array<std::int32_t, 3> west{};  // the last ones, newest first
+    std::int32_t residual_west = 0;
+    std::int32_t residual_west2 = 0;
+    std::int32_t residual_north_west = 0;
+    std::int32_t gap = 0;  // pixels since the last return
+    std::int32_t zero_run = 0;
+    std::int32_t other = kUnknown;      // what was left in the last jump
+    std::int32_t latest = CentreOf(0);  // return of the slice
+  };
+
   /// `step_mm` is the width of a bin.
   RangePart(const Kernel& kernel, Model* model, Coder* coder, std::int64_t step_mm)
       : mixer_(kernel),
@@ -45,20 +57,19 @@ class RangePart {
     above_ = above;
     north_ = north;
     blind_ = north[0] == kUnknown;
-    west_ = {};
-    residual_west_ = residual_west2_ = 0;
-    residual_north_west_ = above[-1].residual;
-    gap_ = zero_run_ = 0;
-    other_ = kUnknown;
+    const std::int32_t latest = row_.latest;
+    row_ = {};
+    row_.residual_north_west = above[-1].residual;
+    row_.latest = latest;
   }
   /// Class of the range nearest to pixel `i`.
   std::uint32_t NearClass(std::uint32_t i) const {
-    return RangeClass(west_[0] != kUnknown ? west_[0] : north_[i]);
+    return RangeClass(row_.west[0] != kUnknown ? row_.west[0] : north_[i]);
   }
   /// Pixel `i` has no return.
   void Skip(std::uint32_t i) {
-    ++gap_;
-    residual_north_west_ = above_[i].residual;
+    ++row_.gap;
+    row_.residual_north_west = above_[i].residual;
   }
   /// Codes the bin of pixel `i` and keeps what the azimuth learns of it; -1 for a damaged stream.
   std::int32_t Code(std::int32_t bin, std::uint32_t i, Azimuth* azimuth) {
@@ -83,6 +94,21 @@ class RangePart {
     Keep(CentreOf(bin), mirror_ * (bin - (median_ >> 4)), azimuth);
   }
 
+  /// To try out bins with a CostMeter, from any place in a row...
+  const Row& row() const { return row_; }
+  void Resume(const Row& row) { row_ = row; }
+  /// ...those of pixel `i`...
+  void Consider(std::uint32_t i) {
+    Look(i);
+    SetContexts(i);
+    asked_ = 0;
+  }
+  /// ...of which See() then keeps one.
+  std::int32_t CostOf(std::int32_t bin, CostMeter* meter) {
+    CodeDifference(mirror_ * (bin - (median_ >> 4)));
+    return meter->Take();
+  }
+
  private:
   static constexpr unsigned kContexts = Effort::kRangeContexts;
   static constexpr unsigned kUsedCentres = Effort::kCentres;
@@ -96,27 +122,27 @@ class RangePart {
   void Look(std::uint32_t i) {
     const Azimuth& at = above_[i];
     if (blind_) {
-      n_ = nw_ = ne_ = nee_ = west_[0] != kUnknown ? west_[0] : latest_;
+      n_ = nw_ = ne_ = nee_ = row_.west[0] != kUnknown ? row_.west[0] : row_.latest;
     } else {
       n_ = north_[i];
       nw_ = *(north_ + i - 1);
       ne_ = north_[i + 1];
       nee_ = north_[i + 2];
     }
-    w_ = west_[0] != kUnknown ? west_[0] : n_;
-    if (west_[0] == kUnknown) nw_ = n_;
-    ww_ = west_[1] != kUnknown ? west_[1] : w_;
+    w_ = row_.west[0] != kUnknown ? row_.west[0] : n_;
+    if (row_.west[0] == kUnknown) nw_ = n_;
+    ww_ = row_.west[1] != kUnknown ? row_.west[1] : w_;
     nn_ = at.values[1] != kUnknown ? at.values[1] : n_;
     gradient_ = w_ + n_ - nw_;
     median_ = Median(w_, n_, nw_);
     mirror_ = n_ < w_ ? -1 : 1;
     const std::int32_t uneven = std::abs(w_ - n_) + std::abs(n_ - nw_);
     const std::int32_t rest = std::abs(ne_ - n_);
-    const std::int32_t errors = std::abs(residual_west_) + std::abs(at.residual);
+    const std::int32_t errors = std::abs(row_.residual_west) + std::abs(at.residual);
     uneven_ = UnevenClass(static_cast<std::uint32_t>(uneven) + static_cast<std::uint32_t>(rest) +
                           static_cast<std::uint32_t>(2 * kStep * errors));
     event_ = w_ == n_ ? 3 : median_ == w_ ? 1 : median_ == n_ ? 2 : 0;
-    gap_class_ = gap_ == 0 ? 0 : gap_ < 3 ? 1 : gap_ < 8 ? 2 : 3;
+    gap_class_ = row_.gap == 0 ? 0 : row_.gap < 3 ? 1 : row_.gap < 8 ? 2 : 3;
     range_class_ = RangeClass(median_);
   }
 
@@ -138,16 +164,17 @@ class RangePart {
     const auto phase = static_cast<std::int32_t>(
         std::clamp<std::int64_t>((mean - median_) * mirror_, -kStep * 4, kStep * 4));
     const std::int32_t up = at.values[1] != kUnknown ? Extrapolate(n_, nn_) : n_;
-    const std::int32_t left = west_[1] != kUnknown ? Extrapolate(w_, ww_) : w_;
-    const auto zeros = static_cast<std::uint32_t>(std::min(zero_run_, 7));
+    const std::int32_t left = row_.west[1] != kUnknown ? Extrapolate(w_, ww_) : w_;
+    const auto zeros = static_cast<std::uint32_t>(std::min(row_.zero_run, 7));
     const std::uint32_t east_residual = Residual(above_[i + 1].residual);
     const std::array<std::uint32_t, mixing::kRangeContexts.size()> values = {
         (Offset(ne_) * 11 + Offset(nn_)) * 11 + Offset(ww_),
-        ((Residual(residual_west_) * 7 + Residual(at.residual)) * 7 + east_residual) * 4 + event_,
+        ((Residual(row_.residual_west) * 7 + Residual(at.residual)) * 7 + east_residual) * 4 +
+            event_,
         (OffsetClass((nee_ - ne_) * mirror_) * 11 + OffsetClass((ne_ - n_) * mirror_)) * 4 + event_,
         ((event_ * 8 + zeros) * 4 + north_error) * 4 + to_east,
-        ((Residual(residual_west2_) * 7 + Residual(residual_west_)) * 7 +
-         Residual(residual_north_west_)) *
+        ((Residual(row_.residual_west2) * 7 + Residual(row_.residual_west)) * 7 +
+         Residual(row_.residual_north_west)) *
                 4 +
             event_,
         ((Offset(up) * 11 + Offset(left)) * 4 + uneven_ / 6) * 4 + event_,
@@ -156,11 +183,12 @@ class RangePart {
         (range_class_ * 4 + gap_class_) * 8 + coarse,
         uneven_,
         ((Near(w_ - nw_) * 7 + Near(n_ - nw_)) * 7 + Near(ne_ - n_)) * 7 + Near(ww_ - w_),
-        (((Size(residual_west_) * 4 + Size(at.residual)) * 4 + Size(above_[i + 1].residual)) * 4 +
-         Size(residual_north_west_)) *
+        (((Size(row_.residual_west) * 4 + Size(at.residual)) * 4 + Size(above_[i + 1].residual)) *
+             4 +
+         Size(row_.residual_north_west)) *
                 4 +
-            Size(residual_west2_),
-        (Offset(other_ != kUnknown ? other_ : ne_) * 11 +
+            Size(row_.residual_west2),
+        (Offset(row_.other != kUnknown ? row_.other : ne_) * 11 +
          Offset(at.values[2] != kUnknown ? at.values[2] : nn_)) *
                 4 +
             event_};
@@ -169,8 +197,8 @@ class RangePart {
       contexts_[k] = kSmallNodes * (base + values[k]);
       base += mixing::kRangeContexts[k];
     }
-    event_set_ = event_ * 16 + static_cast<std::uint32_t>(std::min(zero_run_, 15));
-    const std::size_t spread = uneven_ * 2 + (gap_ > 0 ? 1 : 0);
+    event_set_ = event_ * 16 + static_cast<std::uint32_t>(std::min(row_.zero_run, 15));
+    const std::size_t spread = uneven_ * 2 + (row_.gap > 0 ? 1 : 0);
     if constexpr (kUsedCentres > 0) {
       centres_[0].Set((w_ - median_) * mirror_, &model_.counters.spread[spread]);
       centres_[1].Set((n_ - median_) * mirror_,
@@ -178,12 +206,27 @@ class RangePart {
     }
   }
 
-  bool CodeNode(bool bit, unsigned node) {
+  void Ask(unsigned node) {
     mixer_.Ask([&](unsigned k) { return &model_.counters.range[contexts_[k] + node]; },
                [&](unsigned k) { return centres_[k].Opinion(node); });
-    Weights* const weights = &model_.weights.range[node * kUnevenClasses + uneven_];
-    if constexpr (!Effort::kEvents) return mixer_.Code(bit, weights, &coder_);
-    return mixer_.Code(bit, weights, &model_.weights.event[node * 64 + event_set_], &coder_);
+  }
+  Weights* WeightsOf(unsigned node) {
+    return &model_.weights.range[node * kUnevenClasses + uneven_];
+  }
+  Weights* EventWeightsOf(unsigned node) { return &model_.weights.event[node * 64 + event_set_]; }
+
+  bool CodeNode(bool bit, unsigned node) {
+    if constexpr (!kTeaches<Coder>) return coder_.Code(bit, ChanceOf(node));
+    Ask(node);
+    if constexpr (!Effort::kEvents) return mixer_.Code(bit, WeightsOf(node), &coder_);
+    return mixer_.Code(bit, WeightsOf(node), EventWeightsOf(node), &coder_);
+  }
+  /// For all the bins that are tried out; it is asked in the order of the nodes of each side.
+  std::int32_t ChanceOf(unsigned node) {
+    if ((asked_ >> node & 1) != 0) return chances_[node];
+    asked_ |= 1U << node;
+    Ask(node);
+    return chances_[node] = mixer_.ChanceBy(WeightsOf(node), EventWeightsOf(node));
   }
 
   std::int32_t CodeDifference(std::int32_t difference) {
@@ -210,24 +253,25 @@ class RangePart {
     const std::int32_t base = median_ >> 4;
     const std::int32_t sense = negative ? -mirror_ : mirror_;
     const std::array<std::int32_t, kCandidates> values = {
-        w_, n_, nw_, ne_, nn_, ww_, west_[2] != kUnknown ? west_[2] : ww_, nee_, other_};
+        w_,   n_,        nw_, ne_, nn_, ww_, row_.west[2] != kUnknown ? row_.west[2] : ww_,
+        nee_, row_.other};
     for (unsigned k = 0; k < kCandidates; ++k)
       c.candidates[k] = ((values[k] >> 4) - base) * sense - 3;
     return c;
   }
 
   void Keep(std::int32_t value, std::int32_t difference, Azimuth* azimuth) {
-    if (std::abs(difference) > 3) other_ = w_;
+    if (std::abs(difference) > 3) row_.other = w_;
     const std::int32_t residual = std::clamp(difference, -3, 3) * mirror_;
-    residual_west2_ = residual_west_;
-    residual_west_ = residual;
-    residual_north_west_ = azimuth->residual;
+    row_.residual_west2 = row_.residual_west;
+    row_.residual_west = residual;
+    row_.residual_north_west = azimuth->residual;
     azimuth->residual = static_cast<std::int8_t>(residual);
     azimuth->values = {value, azimuth->values[0], azimuth->values[1]};
-    west_ = {value, west_[0], west_[1]};
-    latest_ = value;
-    zero_run_ = difference == 0 ? zero_run_ + 1 : 0;
-    gap_ = 0;
+    row_.west = {value, row_.west[0], row_.west[1]};
+    row_.latest = value;
+    row_.zero_run = difference == 0 ? row_.zero_run + 1 : 0;
+    row_.gap = 0;
   }
 
   BitMixer<kContexts, kUsedCentres> mixer_;
@@ -240,14 +284,7 @@ class RangePart {
   const Azimuth* above_ = nullptr;
   const std::int32_t* north_ = nullptr;
   bool blind_ = false;
-  std::array<std::int32_t, 3> west_{};  // the last returns of the row, newest first
-  std::int32_t residual_west_ = 0;
-  std::int32_t residual_west2_ = 0;
-  std::int32_t residual_north_west_ = 0;
-  std::int32_t gap_ = 0;  // pixels since the last return
-  std::int32_t zero_run_ = 0;
-  std::int32_t other_ = kUnknown;      // what was left in the last jump
-  std::int32_t latest_ = CentreOf(0);  // return of the slice
+  Row row_;
 
   // Of the return.
   std::int32_t n_ = 0, nw_ = 0, ne_ = 0, nee_ = 0, nn_ = 0, w_ = 0, ww_ = 0;
@@ -261,6 +298,8 @@ class RangePart {
   std::uint32_t event_set_ = 0;
   std::array<std::uint32_t, kContexts> contexts_{};
   std::array<Centre, kCentres> centres_;
+  std::uint32_t asked_ = 0;  // bits of nodes, where bins are tried out
+  std::array<std::int32_t, kSmallNodes> chances_{};
 };
 
 }  // namespace lidar::codec::mixing

@@ -2,7 +2,9 @@
 #include "src/codec/mixing/slice_coder.h"
 
 #include <cmath>
+#include <type_traits>
 
+#include "src/codec/mixing/bin_search.h"
 #include "src/codec/mixing/level_part.h"
 #include "src/codec/mixing/mask_part.h"
 #include "src/codec/mixing/range_part.h"
@@ -20,6 +22,7 @@ struct Effort1 {
   static constexpr unsigned kCentres = 0;
   static constexpr unsigned kCandidates = 5;
   static constexpr bool kEvents = false;
+  static constexpr bool kSearches = false;
 };
 struct Effort2 {
   static constexpr unsigned kMaskContexts = 6;
@@ -27,9 +30,11 @@ struct Effort2 {
   static constexpr unsigned kCentres = mixing::kCentres;
   static constexpr unsigned kCandidates = mixing::kCandidates;
   static constexpr bool kEvents = true;
+  static constexpr bool kSearches = false;
 };
 struct Effort3 : Effort2 {
   static constexpr unsigned kRangeContexts = 13;
+  static constexpr bool kSearches = true;
 };
 
 /// A stream that has ended gives bits of its own for ever; nobody needs the rest of its slice.
@@ -38,6 +43,11 @@ template <class Coder>
 bool Overran(const Coder& /*coder*/) {
   return false;
 }
+
+/// Stands where nothing is searched.
+struct NoSearch {
+  NoSearch(const Kernel& /*kernel*/, Model* /*model*/, std::int64_t /*step_mm*/) {}
+};
 
 }  // namespace
 
@@ -61,10 +71,20 @@ template <class Effort, class Coder>
 bool SliceCoder::CodeBins(const Kernel& kernel, Model* model, SliceBins* slice, Coder* coder) {
   MaskPart<Effort::kMaskContexts, Coder> mask(kernel, model, coder);
   RangePart<Effort, Coder> range(kernel, model, coder, slice->step_mm);
+  constexpr bool kSearches = Effort::kSearches && !Coder::kDecodes;
+  [[maybe_unused]] std::conditional_t<kSearches, BinSearch<Effort>, NoSearch> search(
+      kernel, model, slice->step_mm);
   for (std::uint32_t beam = 0; beam < slice->beams; ++beam) {
     Azimuth* const above = above_.At(beam);
-    std::int32_t* const bins = &slice->bins[std::size_t{beam} * slice->columns];
+    const std::size_t row = std::size_t{beam} * slice->columns;
+    std::int32_t* const bins = &slice->bins[row];
     FillNorth(above, slice->columns);
+    if constexpr (kSearches) {
+      if (!slice->spare.empty()) {
+        if (beam == slice->beams / 4 && !search.IsWorthwhile()) return false;
+        search.Choose({above, &north_[kMargin], &slice->spare[row], slice->columns}, bins);
+      }
+    }
     mask.StartRow(above);
     range.StartRow(above, &north_[kMargin]);
     for (std::uint32_t i = 0; i < slice->columns; ++i) {

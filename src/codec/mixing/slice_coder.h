@@ -35,6 +35,9 @@ struct SliceBins {
   bool has_gaps = true;              // false: every pixel has a return
   std::vector<std::int32_t> bins;    // kNoReturn, or below kMaxBins
   std::vector<std::uint8_t> levels;  // empty without level_bits
+  /// How many bins past that of `bins` returns may take as well; an encoder takes those that cost
+  /// least. Empty: none.
+  std::vector<std::uint8_t> spare;
 };
 constexpr std::int32_t kNoReturn = -1;
 
@@ -48,12 +51,16 @@ struct Recollection {
   RangeGrid grid;  // of the slice
 };
 
+/// From this effort on an encoder can choose between bins.
+constexpr unsigned kSearchingEffort = 3;
+
 /// Keeps its buffers between slices.
 class SliceCoder {
  public:
   explicit SliceCoder(const AzimuthAlignment& alignment) : alignment_(alignment) {}
 
-  /// Codes all of `slice` at an effort from 1 on; false for a damaged stream.
+  /// Codes all of `slice` at an effort from 1 on; false for a damaged stream, or where bins to
+  /// spare save nothing.
   template <class Coder>
   bool Code(unsigned effort, const Kernel& kernel, Model* model, SliceBins* slice, Coder* coder,
             const Recollection* recollection = nullptr);
@@ -80,6 +87,7 @@ class SliceCoder {
 /// Sums up what a real coder would write.
 class BitCounter {
  public:
+  static constexpr bool kDecodes = false;
   bool Code(bool bit, std::int32_t chance);
   double bits() const { return bits_; }
 

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// What bits would cost: a coder for trying something out.
+#pragma once
+#include <cstdint>
+
+#include "src/codec/mixing/arithmetic.h"
+
+namespace lidar::codec::mixing {
+
+/// Costs are in 1/256 nat, integers, so that they are the same on every machine.
+class CostMeter {
+ public:
+  bool Code(bool bit, std::int32_t chance) {
+    static constexpr std::int32_t kLogOne = 2'839;  // 256 ln(65536)
+    cost_ += kLogOne - Log(static_cast<std::uint32_t>(bit ? chance : kOne - chance));
+    return bit;
+  }
+  /// What was coded since the last call.
+  std::int32_t Take() {
+    const std::int32_t cost = cost_;
+    cost_ = 0;
+    return cost;
+  }
+
+ private:
+  std::int32_t cost_ = 0;
+};
+
+/// Whether coding a bit teaches the model.
+template <class Coder>
+constexpr bool kTeaches = true;
+template <>
+inline constexpr bool kTeaches<CostMeter> = false;
+
+}  // namespace lidar::codec::mixing

@@ -1,0 +1,144 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// A choice between bins: what it saves, and what it must keep.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "src/base/crc.h"
+#include "src/codec/mixing/mixing_codec.h"
+#include "src/codec/range_codec.h"
+#include "tests/core/codec/test_clouds.h"
+
+namespace lidar::codec {
+namespace {
+
+constexpr std::uint32_t kErrorMm = 50;
+const RangeGrid kCoarse(1, 101);
+const RangeGrid kFine(1, 67);
+
+MixingSettings Searching(unsigned bits = 0) {
+  MixingSettings settings{kFine, IntensityScale(FullScale::kByte, bits), 3};
+  settings.error_mm = kErrorMm;
+  return settings;
+}
+
+std::vector<std::uint8_t> PayloadOf(const SensorModel& model, const RangeImage& image,
+                                    const MixingSettings& settings) {
+  MixingEncoder encoder(model);
+  std::vector<std::uint8_t> payload;
+  EXPECT_TRUE(encoder.Encode(image, settings, &payload));
+  return payload;
+}
+
+/// Pixels that are gaps on one side only, or farther than `error_mm` from each other.
+std::size_t Wrong(const RangeImage& image, const RangeImage& back, std::uint32_t error_mm) {
+  std::size_t wrong = 0;
+  for (std::size_t i = 0; i < image.size(); ++i) {
+    const std::int64_t d = std::int64_t{image.ranges[i]} - back.ranges[i];
+    const bool same_kind = (image.ranges[i] == 0) == (back.ranges[i] == 0);
+    wrong += same_kind && std::abs(d) <= error_mm ? 0U : 1U;
+  }
+  return wrong;
+}
+
+TEST(BinSearch, SavesBitsWithinTheSameError) {
+  const SensorModel model = test::RoomSensor();
+  // Whole turns and sectors.
+  for (const std::uint32_t columns : {512U, 64U, 1U}) {
+    const RangeImage image = test::RoomScan(model, 0, columns);
+    const auto plain = PayloadOf(model, image, {kCoarse, {}, 3});
+    const auto searched = PayloadOf(model, image, Searching());
+    if (columns > 1) {
+      EXPECT_LT(20 * searched.size(), 19 * plain.size());
+    }
+    RangeImage back;
+    back.beams = image.beams;
+    back.columns = columns;
+    MixingDecoder decoder(model);
+    ASSERT_TRUE(decoder.Decode({searched.data(), searched.size()}, kFine, 0, &back));
+    EXPECT_EQ(Wrong(image, back, kErrorMm), 0U);
+    EXPECT_EQ(decoder.error_mm(), kErrorMm);
+    ASSERT_TRUE(decoder.Decode({plain.data(), plain.size()}, kCoarse, 0, &back));
+    EXPECT_EQ(decoder.error_mm(), 0U);
+  }
+}
+
+TEST(BinSearch, KeepsRangesNextToTheSensorAndFarAway) {
+  const SensorModel model = test::RoomSensor();
+  RangeImage image = test::RoomScan(model);
+  for (std::uint32_t i = 0; i < image.size(); i += 701)
+    image.ranges[i] = i % 2 == 0 ? 1 + i % 90 : 1'000'000 + 3 * i % 997;
+  const auto payload = PayloadOf(model, image, Searching());
+  RangeImage back = image;
+  MixingDecoder decoder(model);
+  ASSERT_TRUE(decoder.Decode({payload.data(), payload.size()}, kFine, 0, &back));
+  EXPECT_EQ(Wrong(image, back, kErrorMm), 0U);
+}
+
+TEST(BinSearch, IsTakenWhereItSavesAndToldToTheReceiver) {
+  const SensorModel model = test::RoomSensor();
+  const RangeImage image = test::RoomScan(model);
+  RangeEncoder encoder(model);
+  RangeDecoder decoder(model);
+  RangeSettings settings;
+  settings.coder = RangeCoder::kMixing;
+  settings.effort = 3;
+  settings.intensity = IntensityScale(FullScale::kByte, 5);
+  for (const std::uint32_t cells : {101U, 1U}) {
+    settings.grid = RangeGrid(1, cells);
+    std::vector<std::uint8_t> bytes;
+    ASSERT_TRUE(encoder.Encode(image, settings, &bytes));
+    ByteReader reader(bytes.data(), bytes.size());
+    RangeImage back;
+    IntensityScale scale;
+    ASSERT_TRUE(decoder.Decode(&reader, 1U << 20, &back, &scale));
+    EXPECT_EQ(decoder.header().grid.parts() < settings.grid.parts(), cells > 1);
+    EXPECT_EQ(decoder.error_m(), settings.grid.error_m());
+    EXPECT_EQ(Wrong(image, back, cells / 2), 0U);
+    const auto plain = PayloadOf(model, image, {settings.grid, settings.intensity, 3});
+    EXPECT_EQ(bytes.size() < plain.size(), cells > 1);
+  }
+}
+
+TEST(BinSearch, LeavesRoughScenesAlone) {
+  const SensorModel model = test::RoomSensor();
+  RangeImage image = test::RoomScan(model);
+  std::mt19937 random(3);
+  for (std::uint32_t& range : image.ranges)
+    if (range != 0) range = 1'000 + static_cast<std::uint32_t>(random() % 20'000);
+  MixingEncoder encoder(model);
+  std::vector<std::uint8_t> payload;
+  EXPECT_FALSE(encoder.Encode(image, Searching(), &payload));
+  EXPECT_TRUE(payload.empty());
+}
+
+TEST(BinSearch, RefusesAnErrorThatIsNone) {
+  const SensorModel model = test::RoomSensor();
+  const RangeImage image = test::RoomScan(model, 0, 64);
+  std::vector<std::uint8_t> payload = PayloadOf(model, image, Searching());
+  RangeImage back = image;
+  MixingDecoder decoder(model);
+  ASSERT_EQ(payload[1], kErrorMm);
+  payload[1] = 0;
+  EXPECT_FALSE(decoder.Decode({payload.data(), payload.size()}, kFine, 0, &back));
+  EXPECT_FALSE(decoder.Decode({payload.data(), 1}, kFine, 0, &back));
+  payload.assign({payload[0], 0x80, 0x80, 0x80, 0x80, 0x01, 0, 0, 0});
+  EXPECT_FALSE(decoder.Decode({payload.data(), payload.size()}, kFine, 0, &back));
+}
+
+TEST(BinSearch, IsTheSameWithEveryCompilerAndProcessor) {
+  RangeImage image;
+  image.beams = 32;
+  image.columns = 128;
+  std::uint32_t noise = 1;
+  for (std::uint32_t i = 0; i < image.size(); ++i) {
+    noise = noise * 1'664'525 + 1'013'904'223;
+    image.ranges.push_back(3'000 + i % 128 / 20 * 700 + i % 20 * 13 + i / 128 * 40 + (noise >> 27));
+    image.intensity.push_back(static_cast<std::uint8_t>(40 * (i / 30 % 4) + (noise >> 28)));
+  }
+  const auto payload = PayloadOf(test::RoomSensor(), image, Searching(5));
+  EXPECT_EQ(Crc32({payload.data(), payload.size()}), 3'695'226'837U);
+}
+
+}  // namespace
+}  // namespace lidar::codec
