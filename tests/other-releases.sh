@@ -90,7 +90,7 @@ c = ['ccache', 'aarch64-linux-gnu-gcc']
 cpp = ['ccache', 'aarch64-linux-gnu-g++']
 ar = 'aarch64-linux-gnu-ar'
 strip = 'aarch64-linux-gnu-strip'
-pkg-config = 'pkg-config'
+pkgconfig = 'pkg-config'
 exe_wrapper = 'qemu-aarch64-static'
 
 [properties]

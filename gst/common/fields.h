@@ -309,11 +309,13 @@ class Field {
         Kind<T>::Get(Way::Read(f, s, object), v);
       },
       nullptr};
+  // What is declared later is known in functions only, not in the lambdas of a constant.
+  static GType EnumType(const Field& f) { return f.type_(); }
   template <class E>
-  static constexpr Ops kEnum = {[](const Field& f) { return f.type_(); },
+  static constexpr Ops kEnum = {EnumType,
                                 [](const Field& f, const SpecArgs& a, const S& s) {
                                   const auto initial = static_cast<gint>(ByMember<E>::In(f, s));
-                                  return g_param_spec_enum(a.name, a.name, a.blurb, f.type_(),
+                                  return g_param_spec_enum(a.name, a.name, a.blurb, EnumType(f),
                                                            initial, a.flags);
                                 },
                                 [](const Field& f, S* s, GObject*, const GValue* v) {
