@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// A screamrx between harnesses, under a test clock.
+#pragma once
+#include <gtest/gtest.h>
+
+#include <vector>
+
+#include "gst/scream/rtp_packet.h"
+#include "src/scream/feedback/sender_report.h"
+#include "tests/elements/scream/rtp_support.h"
+
+namespace lidar::test {
+
+using gst::CapsPtr;
+using scream::CongestionFeedback;
+
+class ScreamRx : public ::testing::Test {
+ protected:
+  FakeTime time;
+  GstElement* element = gst_element_factory_make("screamrx", nullptr);
+  Harness rtp;
+  Harness rtcp;
+
+  void Start() {
+    rtp.reset(gst_harness_new_with_element(element, "sink", "src"));
+    rtcp.reset(gst_harness_new_with_element(element, nullptr, "rtcp_src"));
+    gst_harness_set_src_caps_str(rtp.get(), kRtpCaps);
+  }
+  void TearDown() override {
+    rtcp.reset();
+    rtp.reset();
+    gst_object_unref(element);
+  }
+  GstFlowReturn Push(const Rtp& r, GstLidarEcn ecn = GST_LIDAR_ECN_ECT1, const char* host = nullptr,
+                     guint port = 5000) {
+    GstBuffer* buffer = NewRtp(r);
+    gst_lidar_buffer_set_ecn(buffer, ecn, GST_CLOCK_TIME_NONE);
+    if (host != nullptr) SetSource(buffer, host, port);
+    return gst_harness_push(rtp.get(), buffer);
+  }
+  GstFlowReturn PushBye(std::vector<guint32> ssrcs, const char* host = nullptr) {
+    GstBuffer* buffer = FromBytes(gst::BuildBye(ssrcs));
+    if (host != nullptr) SetSource(buffer, host, 5000);
+    return gst_harness_push(rtp.get(), buffer);
+  }
+  GstFlowReturn PushReport(const scream::SenderReport& report, const char* host = "10.0.0.1") {
+    GstBuffer* buffer = FromBytes(scream::BuildSenderReport(report));
+    SetSource(buffer, host, 5000);
+    return gst_harness_push(rtp.get(), buffer);
+  }
+  CongestionFeedback Report(BufferPtr* raw = nullptr) {
+    BufferPtr buffer(gst_harness_pull(rtcp.get()));
+    if (!buffer) return {};
+    const auto bytes = ToBytes(buffer.get());
+    const auto report = scream::CcfbParser().Parse({bytes.data(), bytes.size()});
+    if (raw != nullptr) *raw = std::move(buffer);
+    EXPECT_TRUE(report);
+    return report.value_or(CongestionFeedback{});
+  }
+  /// The first packet of all is reported at once; those behind it show the rules.
+  void PushFirst(guint16 seq) {
+    Rtp r;
+    r.seq = seq;
+    ASSERT_EQ(Push(r), GST_FLOW_OK);
+    Report();
+    time.Settle();
+  }
+  guint Passed() { return gst_harness_buffers_received(rtp.get()); }
+};
+
+}  // namespace lidar::test

@@ -1,0 +1,214 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// The streams of a screamrx: how they end, what their sender says, and the pad of each.
+#include "tests/elements/scream/screamrx_fixture.h"
+
+namespace lidar::test {
+namespace {
+
+TEST_F(ScreamRx, EndsWhenEveryStreamSaidGoodbye) {
+  Start();
+  Rtp other;
+  other.ssrc = 0x5678;
+  ASSERT_EQ(Push({}), GST_FLOW_OK);
+  ASSERT_EQ(Push(other), GST_FLOW_OK);
+  EXPECT_EQ(PushBye({0x1234}), GST_FLOW_OK);
+  EXPECT_EQ(PushBye({0x9999}), GST_FLOW_OK);  // of nobody we know
+  EXPECT_EQ(Push(other), GST_FLOW_OK);
+  EXPECT_EQ(PushBye({0x5678}), GST_FLOW_EOS);
+  EXPECT_EQ(Push(other), GST_FLOW_EOS);
+  bool eos = false;
+  while (EventPtr event{gst_harness_try_pull_event(rtp.get())})
+    eos = eos || GST_EVENT_TYPE(event.get()) == GST_EVENT_EOS;
+  EXPECT_TRUE(eos);
+  EXPECT_EQ(Passed(), 3U);
+}
+
+TEST_F(ScreamRx, EndsWithASenderThatRestartedThoughItsFirstSsrcNeverSaidGoodbye) {
+  Start();
+  Rtp next;
+  next.ssrc = 0x5678;
+  ASSERT_EQ(Push({}), GST_FLOW_OK);
+  time.Settle();
+  time.Advance(3 * GST_SECOND);
+  ASSERT_EQ(Push(next), GST_FLOW_OK);
+  EXPECT_EQ(PushBye({0x5678}), GST_FLOW_OK);  // the first may go on
+  next.seq = 1;
+  ASSERT_EQ(Push(next), GST_FLOW_OK);
+  time.Settle();
+  time.Advance(3 * GST_SECOND);
+  EXPECT_EQ(PushBye({0x5678}), GST_FLOW_EOS);
+}
+
+TEST_F(ScreamRx, IgnoresAStrangersGoodbye) {
+  Start();
+  ASSERT_EQ(Push({}, GST_LIDAR_ECN_ECT1, "10.0.0.1"), GST_FLOW_OK);
+  EXPECT_EQ(PushBye({0x1234}, "10.0.0.2"), GST_FLOW_OK);
+  Rtp r;
+  r.seq = 1;
+  EXPECT_EQ(Push(r, GST_LIDAR_ECN_ECT1, "10.0.0.1"), GST_FLOW_OK);
+  EXPECT_EQ(Passed(), 2U);
+}
+
+TEST_F(ScreamRx, ShowsWhatItsSenderReports) {
+  Start();
+  EXPECT_EQ(Stats(element)["sender-reports"], 0U);
+  ASSERT_EQ(Push({}, GST_LIDAR_ECN_ECT1, "10.0.0.1"), GST_FLOW_OK);
+  scream::SenderReport report;
+  report.ssrc = 0x1234;
+  report.time_ms = 0xffffff00;
+  report.target_bitrate = DataRate::BitsPerSecond(7e6);
+  report.queue_delay = std::chrono::milliseconds(3);
+  report.packets_lost = 11;
+  ASSERT_EQ(PushReport(report), GST_FLOW_OK);
+  time.Settle();
+  time.Advance(250 * GST_MSECOND);
+  const Stats stats(element);
+  EXPECT_EQ(stats["sender-reports"], 1U);
+  EXPECT_EQ(stats["sender-target-bitrate"], 7'000'000U);
+  EXPECT_EQ(stats["sender-queue-delay"], 3 * GST_MSECOND);
+  EXPECT_EQ(stats["sender-packets-lost"], 11U);
+  EXPECT_EQ(stats["sender-report-age"], 250 * GST_MSECOND);
+  report.time_ms += 1000;  // over the wrap
+  report.packets_lost = 12;
+  ASSERT_EQ(PushReport(report), GST_FLOW_OK);
+  EXPECT_EQ(Stats(element)["sender-packets-lost"], 12U);
+  EXPECT_EQ(Passed(), 1U);
+}
+
+TEST_F(ScreamRx, BelievesNoReportThatIsOldOrOfSomebodyElse) {
+  Start();
+  ASSERT_EQ(Push({}, GST_LIDAR_ECN_ECT1, "10.0.0.1"), GST_FLOW_OK);
+  scream::SenderReport report;
+  report.ssrc = 0x1234;
+  report.time_ms = 5000;
+  ASSERT_EQ(PushReport(report), GST_FLOW_OK);
+  ASSERT_EQ(PushReport(report), GST_FLOW_OK);  // twice
+  report.time_ms = 4000;
+  ASSERT_EQ(PushReport(report), GST_FLOW_OK);
+  report.time_ms = 6000;
+  ASSERT_EQ(PushReport(report, "10.0.0.2"), GST_FLOW_OK);
+  report.ssrc = 0x9999;
+  ASSERT_EQ(PushReport(report), GST_FLOW_OK);
+  EXPECT_EQ(Stats(element)["sender-reports"], 1U);
+  EXPECT_EQ(Stats(element)["packets-foreign"], 1U);
+  EXPECT_EQ(Passed(), 1U);
+}
+
+TEST_F(ScreamRx, DropsAReportOfAVersionToCome) {
+  Start();
+  ASSERT_EQ(Push({}), GST_FLOW_OK);
+  scream::SenderReport report;
+  report.ssrc = 0x1234;
+  auto bytes = scream::BuildSenderReport(report);
+  bytes[8] = 0x82;
+  ASSERT_EQ(gst_harness_push(rtp.get(), FromBytes(bytes)), GST_FLOW_OK);
+  EXPECT_EQ(Stats(element)["sender-reports"], 0U);
+  EXPECT_EQ(Passed(), 1U);
+}
+
+TEST_F(ScreamRx, WaitsForTheNextSenderWhereAskedTo) {
+  g_object_set(element, "eos-on-bye", FALSE, nullptr);
+  Start();
+  ASSERT_EQ(Push({}), GST_FLOW_OK);
+  EXPECT_EQ(PushBye({0x1234}), GST_FLOW_OK);
+  Rtp again;
+  again.ssrc = 0x4321;
+  EXPECT_EQ(Push(again), GST_FLOW_OK);
+  EXPECT_EQ(Passed(), 2U);
+}
+
+TEST_F(ScreamRx, GivesEachStreamAPadOfItsOwnWithPtMap) {
+  GstStructure* map = gst_structure_from_string(
+      "application/x-rtp-pt-map,"
+      "96=(string)\"application/x-rtp,media=application,clock-rate=90000,encoding-name=TEST\","
+      "97=(string)\"application/x-rtp,media=video,clock-rate=90000,encoding-name=H264\"",
+      nullptr);
+  ASSERT_TRUE(map);
+  g_object_set(element, "pt-map", map, nullptr);
+  gst_structure_free(map);
+  Harness video;
+  struct Added {
+    Harness* harness;
+    int pads = 0;
+  } added{&video};
+  g_signal_connect(element, "pad-added", G_CALLBACK(+[](GstElement* e, GstPad* pad, Added* a) {
+                     gchar* name = gst_pad_get_name(pad);
+                     if (g_str_has_prefix(name, "src_")) {
+                       a->harness->reset(gst_harness_new_with_element(e, nullptr, name));
+                       ++a->pads;
+                     }
+                     g_free(name);
+                   }),
+                   &added);
+  Start();
+  gst_harness_set_sink_caps_str(rtp.get(), "application/x-rtp,media=application");
+  for (guint16 seq = 0; seq < 4; ++seq) {
+    Rtp camera;
+    camera.ssrc = 0x5678;
+    camera.payload_type = 97;
+    camera.seq = seq;
+    ASSERT_EQ(Push(camera), GST_FLOW_OK);
+    Rtp lidar;
+    lidar.seq = seq;
+    ASSERT_EQ(Push(lidar), GST_FLOW_OK);
+    Rtp repair;  // not in the map: stays with the first
+    repair.ssrc = 0x9abc;
+    repair.payload_type = 110;
+    repair.seq = seq;
+    ASSERT_EQ(Push(repair), GST_FLOW_OK);
+  }
+  EXPECT_EQ(added.pads, 1);
+  ASSERT_TRUE(video);
+  EXPECT_EQ(gst_harness_buffers_received(video.get()), 4U);
+  EXPECT_EQ(Passed(), 8U);
+  const CapsPtr caps(gst_pad_get_current_caps(video->sinkpad));
+  ASSERT_TRUE(caps);
+  const GstStructure* s = gst_caps_get_structure(caps.get(), 0);
+  EXPECT_STREQ(gst_structure_get_string(s, "encoding-name"), "H264");
+  gint payload = 0;
+  EXPECT_TRUE(gst_structure_get_int(s, "payload", &payload));
+  EXPECT_EQ(payload, 97);
+  video.reset();
+}
+
+TEST_F(ScreamRx, WarnsOfWhatIsWrongWithPtMapAndOfAStreamThatNobodyTakes) {
+  GstStructure* map = gst_structure_from_string(
+      "application/x-rtp-pt-map,"
+      "72=(string)\"application/x-rtp,media=video,clock-rate=90000,encoding-name=H264\","
+      "97=(string)\"application/x-rtp,media=video,clock-rate=90000,encoding-name=H264\","
+      "98=(string)\"application/x-rtp,clock-rate=[1,2]\",200=(int)7,lidar=(int)96",
+      nullptr);
+  ASSERT_TRUE(map);
+  g_object_set(element, "pt-map", map, nullptr);
+  gst_structure_free(map);
+  GstBus* bus = gst_bus_new();
+  gst_element_set_bus(element, bus);
+  Start();
+  std::string texts;
+  const auto warnings = [&] {
+    int n = 0;
+    for (; const gst::MessagePtr message{gst_bus_pop_filtered(bus, GST_MESSAGE_WARNING)}; ++n) {
+      GError* error = nullptr;
+      gst_message_parse_warning(message.get(), &error, nullptr);
+      texts += gst::ErrorPtr(error)->message + std::string("\n");
+    }
+    return n;
+  };
+  EXPECT_EQ(warnings(), 4);
+  EXPECT_NE(texts.find("72 is RTCP"), std::string::npos) << texts;
+  gst_harness_set_sink_caps_str(rtp.get(), "application/x-rtp,media=application");
+  for (guint16 seq = 0; seq < 4; ++seq) {
+    Rtp camera;
+    camera.ssrc = 0x5678;
+    camera.payload_type = 97;
+    camera.seq = seq;
+    EXPECT_EQ(Push(camera), GST_FLOW_OK);
+  }
+  EXPECT_EQ(warnings(), 1);
+  EXPECT_NE(texts.find("payload type 97"), std::string::npos) << texts;
+  gst_element_set_bus(element, nullptr);
+  gst_object_unref(bus);
+}
+
+}  // namespace
+}  // namespace lidar::test
