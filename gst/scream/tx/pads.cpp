@@ -36,23 +36,6 @@ gboolean AnswerLatency(GstPad* pad, GstObject* parent, GstQuery* query) {
   return TRUE;
 }
 
-gboolean AnswerSrcCaps(GstPad* pad, GstObject* parent, GstQuery* query) {
-  TxState& state = StateOf(parent);
-  std::size_t streams = 0;
-  {
-    TxLock lock(state.mutex);
-    streams = state.streams.size();
-  }
-  if (streams == 1) return gst_pad_query_default(pad, parent, query);
-  GstCaps* filter = nullptr;
-  gst_query_parse_caps(query, &filter);
-  CapsPtr caps(gst_pad_get_pad_template_caps(pad));
-  if (filter != nullptr)
-    caps.reset(gst_caps_intersect_full(filter, caps.get(), GST_CAPS_INTERSECT_FIRST));
-  gst_query_set_caps_result(query, caps.get());
-  return TRUE;
-}
-
 }  // namespace
 
 /// RTP and RTCP do not mix: src belongs to the sink pads, rtcp_src to rtcp_sink.
@@ -83,14 +66,8 @@ gboolean TxSrcEvent(GstPad* pad, GstObject* parent, GstEvent* event) {
 }
 
 gboolean TxSrcQuery(GstPad* pad, GstObject* parent, GstQuery* query) {
-  switch (GST_QUERY_TYPE(query)) {
-    case GST_QUERY_LATENCY:
-      return AnswerLatency(pad, parent, query);
-    case GST_QUERY_CAPS:
-      return AnswerSrcCaps(pad, parent, query);
-    default:
-      return gst_pad_query_default(pad, parent, query);
-  }
+  if (GST_QUERY_TYPE(query) == GST_QUERY_LATENCY) return AnswerLatency(pad, parent, query);
+  return gst_pad_query_default(pad, parent, query);
 }
 
 gboolean TxSinkQuery(GstPad* pad, GstObject* parent, GstQuery* query) {
