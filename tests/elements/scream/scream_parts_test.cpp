@@ -65,6 +65,18 @@ TEST(KeyRequest, RoundTripsAndNothingElseIsOne) {
     other[at] ^= 4;
     EXPECT_FALSE(ParseKeyRequest({other.data(), other.size()})) << at;
   }
+  auto longer = request;
+  longer.push_back(0);
+  EXPECT_FALSE(ParseKeyRequest({longer.data(), longer.size()}));
+}
+
+TEST(Rtcp, IsToldFromRtpByItsSecondByte) {  // RFC 5761, section 4
+  std::vector<std::uint8_t> bytes(8, 0x80);
+  for (const auto& [type, is_rtcp] : std::vector<std::pair<int, bool>>{
+           {96, false}, {191, false}, {192, true}, {223, true}, {224, false}}) {
+    bytes[1] = static_cast<std::uint8_t>(type);
+    EXPECT_EQ(IsRtcp({bytes.data(), bytes.size()}), is_rtcp) << type;
+  }
 }
 
 TEST(Bye, RoundTripsThroughACompound) {

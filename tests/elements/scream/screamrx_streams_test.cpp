@@ -16,11 +16,24 @@ TEST_F(ScreamRx, EndsWhenEveryStreamSaidGoodbye) {
   EXPECT_EQ(Push(other), GST_FLOW_OK);
   EXPECT_EQ(PushBye({0x5678}), GST_FLOW_EOS);
   EXPECT_EQ(Push(other), GST_FLOW_EOS);
+  EXPECT_EQ(Stats(element)["goodbyes"], 2U);
   bool eos = false;
   while (EventPtr event{gst_harness_try_pull_event(rtp.get())})
     eos = eos || GST_EVENT_TYPE(event.get()) == GST_EVENT_EOS;
   EXPECT_TRUE(eos);
   EXPECT_EQ(Passed(), 3U);
+}
+
+TEST_F(ScreamRx, GoesOnBehindAFlushAfterTheEnd) {
+  Start();
+  ASSERT_EQ(Push({}), GST_FLOW_OK);
+  ASSERT_EQ(PushBye({0x1234}), GST_FLOW_EOS);
+  gst_harness_push_event(rtp.get(), gst_event_new_flush_start());
+  gst_harness_push_event(rtp.get(), gst_event_new_flush_stop(TRUE));
+  GstSegment segment;
+  gst_segment_init(&segment, GST_FORMAT_TIME);
+  gst_harness_push_event(rtp.get(), gst_event_new_segment(&segment));
+  EXPECT_EQ(Push({}), GST_FLOW_OK);
 }
 
 TEST_F(ScreamRx, EndsWithASenderThatRestartedThoughItsFirstSsrcNeverSaidGoodbye) {
@@ -52,6 +65,7 @@ TEST_F(ScreamRx, IgnoresAStrangersGoodbye) {
 TEST_F(ScreamRx, ShowsWhatItsSenderReports) {
   Start();
   EXPECT_EQ(Stats(element)["sender-reports"], 0U);
+  EXPECT_EQ(Stats(element)["sender-report-age"], 0U);
   ASSERT_EQ(Push({}, GST_LIDAR_ECN_ECT1, "10.0.0.1"), GST_FLOW_OK);
   scream::SenderReport report;
   report.ssrc = 0x1234;
@@ -73,6 +87,11 @@ TEST_F(ScreamRx, ShowsWhatItsSenderReports) {
   ASSERT_EQ(PushReport(report), GST_FLOW_OK);
   EXPECT_EQ(Stats(element)["sender-packets-lost"], 12U);
   EXPECT_EQ(Passed(), 1U);
+  time.Advance(11 * GST_SECOND);
+  report.time_ms = 5;  // the sender was started anew
+  report.packets_lost = 0;
+  ASSERT_EQ(PushReport(report), GST_FLOW_OK);
+  EXPECT_EQ(Stats(element)["sender-packets-lost"], 0U);
 }
 
 TEST_F(ScreamRx, BelievesNoReportThatIsOldOrOfSomebodyElse) {
@@ -142,6 +161,7 @@ TEST_F(ScreamRx, GivesEachStreamAPadOfItsOwnWithPtMap) {
                    &added);
   Start();
   gst_harness_set_sink_caps_str(rtp.get(), "application/x-rtp,media=application");
+  EXPECT_FALSE(CapsPtr(gst_pad_get_current_caps(rtp->sinkpad))) << "pt-map says what comes";
   for (guint16 seq = 0; seq < 4; ++seq) {
     Rtp camera;
     camera.ssrc = 0x5678;
@@ -169,6 +189,31 @@ TEST_F(ScreamRx, GivesEachStreamAPadOfItsOwnWithPtMap) {
   EXPECT_TRUE(gst_structure_get_int(s, "payload", &payload));
   EXPECT_EQ(payload, 97);
   video.reset();
+}
+
+TEST_F(ScreamRx, MakesSoManyPadsAtMostAndForgetsThemWhenItStops) {
+  GstStructure* map = gst_structure_from_string(
+      "application/x-rtp-pt-map,"
+      "72=(string)\"application/x-rtp,media=video,clock-rate=90000,encoding-name=H264\","
+      "97=(string)\"application/x-rtp,media=video,clock-rate=90000,encoding-name=H264\"",
+      nullptr);
+  g_object_set(element, "pt-map", map, nullptr);
+  gst_structure_free(map);
+  Start();
+  for (int round = 0; round < 2; ++round) {
+    Rtp camera;
+    camera.payload_type = 97;
+    camera.size = 10;
+    for (camera.ssrc = 1; camera.ssrc <= 1'100; ++camera.ssrc) Push(camera);
+    camera.payload_type = 72;  // would be RTCP with its marker
+    Push(camera);
+    EXPECT_EQ(Passed(), static_cast<guint>(round) + 1);  // `src` takes the first stream
+    EXPECT_EQ(GST_ELEMENT(element)->numsrcpads, 1'025);  // and rtcp_src
+    EXPECT_EQ(Stats(element)["packets-foreign"], 77U);
+    gst_element_set_state(element, GST_STATE_NULL);
+    EXPECT_EQ(GST_ELEMENT(element)->numsrcpads, 2);
+    gst_harness_play(rtp.get());
+  }
 }
 
 TEST_F(ScreamRx, WarnsOfWhatIsWrongWithPtMapAndOfAStreamThatNobodyTakes) {

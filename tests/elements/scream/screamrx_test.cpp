@@ -206,6 +206,37 @@ TEST_F(ScreamRx, GoesOnWithThePeerWhereSomebodyElseSendsARecordingOfItsSsrc) {
   EXPECT_EQ(Stats(element)["packets-old"], 1U);
 }
 
+TEST_F(ScreamRx, CountsBytesAsTheyAreOnTheWire) {
+  g_object_set(element, "packet-overhead", 100U, nullptr);
+  Start();
+  ASSERT_EQ(Push({}), GST_FLOW_OK);
+  EXPECT_EQ(Stats(element)["bytes-received"], 1200U + 100);
+}
+
+TEST_F(ScreamRx, RemembersSoManySsrcsAtMost) {
+  Start();
+  Rtp r;
+  for (r.ssrc = 1; r.ssrc <= 100; ++r.ssrc) ASSERT_EQ(Push(r), GST_FLOW_OK);
+  EXPECT_EQ(Stats(element)["ssrcs"], 64U);
+}
+
+TEST_F(ScreamRx, ReportsAsOftenAsItIsToldToWhileItPlays) {
+  Start();
+  PushFirst(0);
+  g_object_set(element, "packets-per-feedback", 2U, nullptr);
+  time.Settle();
+  Rtp r;
+  for (r.seq = 1; r.seq <= 2; ++r.seq) ASSERT_EQ(Push(r), GST_FLOW_OK);
+  ASSERT_TRUE(WaitFor([&] { return gst_harness_buffers_received(rtcp.get()) == 2; }));
+}
+
+TEST_F(ScreamRx, RefusesTheWishForAKeyUnitWhereNobodySends) {
+  Start();
+  GstStructure* wish = gst_structure_new_empty("GstForceKeyUnit");
+  EXPECT_FALSE(gst_harness_push_upstream_event(
+      rtp.get(), gst_event_new_custom(GST_EVENT_CUSTOM_UPSTREAM, wish)));
+}
+
 TEST_F(ScreamRx, CountsAndDropsGarbage) {
   Start();
   ASSERT_EQ(gst_harness_push(rtp.get(), FromBytes({})), GST_FLOW_OK);
@@ -249,10 +280,20 @@ TEST_F(ScreamRx, ReadsItselfInEricssonsWayWhereAsked) {
 TEST_F(ScreamRx, StartsAfreshAfterEveryStateCycle) {
   Start();
   ASSERT_EQ(Push({}, GST_LIDAR_ECN_ECT1, "10.0.0.1"), GST_FLOW_OK);
+  ASSERT_EQ(Push({}, GST_LIDAR_ECN_ECT1, "10.0.0.2"), GST_FLOW_OK);
+  scream::SenderReport report;
+  report.ssrc = 0x1234;
+  ASSERT_EQ(PushReport(report), GST_FLOW_OK);
+  ASSERT_EQ(PushBye({0x1234}, "10.0.0.1"), GST_FLOW_EOS);
   gst_element_set_state(element, GST_STATE_NULL);
-  gst_element_set_state(element, GST_STATE_PLAYING);
-  EXPECT_EQ(Stats(element)["packets-received"], 0U);
-  EXPECT_EQ(Stats(element)["ssrcs"], 0U);
+  gst_harness_play(rtp.get());
+  gst_harness_play(rtcp.get());
+  for (const char* counter :
+       {"packets-received", "ssrcs", "packets-foreign", "sender-reports", "goodbyes"})
+    EXPECT_EQ(Stats(element)[counter], 0U) << counter;
+  // The address that was foreign is the first now.
+  EXPECT_EQ(Push({}, GST_LIDAR_ECN_ECT1, "10.0.0.2"), GST_FLOW_OK);
+  EXPECT_EQ(Stats(element)["packets-foreign"], 0U);
 }
 
 }  // namespace

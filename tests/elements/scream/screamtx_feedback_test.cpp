@@ -79,6 +79,29 @@ TEST_F(ScreamTx, TellsThePayloaderOfLidarWhatHasArrived) {
   EXPECT_EQ(last, 3U);
 }
 
+TEST_F(ScreamTx, TellsThePayloaderOfNoPacketThatHasNotArrived) {
+  Start(kLidarCaps);
+  PushFrame(0, 4);
+  for (int i = 0; i < 100 && sent.size() < 4; ++i) {
+    time.Advance(10 * GST_MSECOND);
+    Collect();
+  }
+  ASSERT_EQ(sent.size(), 4U);
+  CongestionFeedback report;
+  report.sender_ssrc = 9;
+  report.report_timestamp = 65536 * 1001;
+  const scream::PacketMetric arrived{true, scream::Ecn::kEct1, Duration{0}};
+  report.blocks.push_back({0x1234, 0, {arrived, {}, arrived, arrived}});
+  Feed(report);
+  const EventPtr event(WaitForUpstream(rtp.get(), "packets-received"));
+  GstLidarPacketsReceived received{};
+  ASSERT_TRUE(event && gst_lidar_event_parse_packets_received(event.get(), &received));
+  ASSERT_EQ(received.count, 2U);
+  EXPECT_EQ(received.ranges[0].last, 0);
+  EXPECT_EQ(received.ranges[1].first, 2);
+  EXPECT_EQ(received.ranges[1].last, 3);
+}
+
 TEST_F(ScreamTx, LeavesTheReceiptsOutOfOtherMedia) {
   Start();
   PushFrame(0, 4);
@@ -303,6 +326,22 @@ TEST_F(ScreamTx, TestsThePathAnewWhenTheReceiverHasMoved) {
   run("192.0.2.2", scream::Ecn::kEct1);
   EXPECT_EQ(Stats(element).Text("ecn-state"), "capable");
   EXPECT_EQ(ecns.back(), GST_LIDAR_ECN_ECT1);
+}
+
+TEST_F(ScreamTx, TestsThePathAnewWhereTheApplicationSaysSo) {
+  Start();
+  const auto run = [&](scream::Ecn ecn) {
+    for (guint32 i = 0; i < 60; ++i) {
+      PushFrame(static_cast<guint32>(sent.size()) * 900, 2);
+      time.Advance(20 * GST_MSECOND);
+      Acknowledge(ecn);
+    }
+  };
+  run(scream::Ecn::kNotEct);
+  EXPECT_EQ(Stats(element).Text("ecn-state"), "bleached");
+  g_signal_emit_by_name(element, "route-changed");
+  run(scream::Ecn::kEct1);
+  EXPECT_EQ(Stats(element).Text("ecn-state"), "capable");
 }
 
 TEST_F(ScreamTx, KeepsThePathWhileItsReceiverIsThere) {

@@ -194,7 +194,8 @@ TEST_F(ScreamTxOf, AFileEntersAtItsTimeOnTheClock) {
 TEST_F(ScreamTxOf, AFileWaitsForRoomAndLosesNothing) {
   g_object_set(element, "max-queue-delay", guint64{100 * GST_MSECOND}, nullptr);
   StartLive(false);
-  PushFrame(0, 60);
+  PushFrame(0, 30);
+  PushFrame(900, 30);
   time.Advance(150 * GST_MSECOND);
   auto pushed = PushAt(60, GST_CLOCK_TIME_NONE);
   EXPECT_FALSE(IsIn(pushed, std::chrono::milliseconds(50)));

@@ -146,6 +146,13 @@ TEST_F(ScreamTx, PadsThatAreAskedForByAllAtOnceAreGivenOnce) {
   EXPECT_EQ(GST_ELEMENT(element)->numsinkpads, 1);
 }
 
+TEST_F(ScreamTx, APadWithoutANameGetsTheOneBehindAllBefore) {
+  for (const char* name : {"sink_5", "sink_%u", "sink_2", "sink_%u"})
+    EXPECT_TRUE(gst::PadPtr(gst_element_request_pad_simple(element, name))) << name;
+  for (const char* name : {"sink_2", "sink_5", "sink_6", "sink_7"})
+    EXPECT_TRUE(gst::PadPtr(gst_element_get_static_pad(element, name))) << name;
+}
+
 TEST_F(ScreamTx, APadWithStrictPriorityGoesBeforeWhatWaits) {
   g_object_set(element, "start-bitrate", 1'000'000U, nullptr);
   Start();

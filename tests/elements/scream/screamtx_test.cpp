@@ -114,9 +114,12 @@ TEST_F(ScreamTx, TellsTheEncoderItsOwnBoundsAndStartsWithinThem) {
 TEST_F(ScreamTx, StartsAfreshAfterEveryStateCycle) {
   Start();
   PushFrame(0, 1);
+  const std::vector<std::uint8_t> malformed{0x8b, 205, 0, 1, 0, 0, 0, 1};
+  ASSERT_EQ(gst_harness_push(rtcp.get(), FromBytes(malformed)), GST_FLOW_OK);
   gst_element_set_state(element, GST_STATE_NULL);
   gst_element_set_state(element, GST_STATE_PLAYING);
   EXPECT_EQ(Stats(element)["packets-sent"], 0U);
+  EXPECT_EQ(Stats(element)["rtcp-malformed"], 0U);
 }
 
 TEST_F(ScreamTx, NotifiesTheEstimatedBitrateOnTheWire) {
