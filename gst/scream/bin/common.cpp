@@ -23,7 +23,8 @@ void GiveSocket(GstElement* child, GSocket* socket) {
   g_object_set(child, "socket", socket, "close-socket", FALSE, nullptr);
 }
 
-void CloseBin(BinState& state, std::initializer_list<GstElement*> children) {
+void CloseBin(BinState& state, std::initializer_list<GstElement*> children,
+              const GivenSocket& given) {
   std::unique_lock lock(state.mutex);
   std::shared_ptr<SrtpLayer> srtp = std::move(state.srtp);
   lock.unlock();
@@ -31,8 +32,7 @@ void CloseBin(BinState& state, std::initializer_list<GstElement*> children) {
   for (GstElement* child : children)
     if (child != nullptr) GiveSocket(child, nullptr);
   lock.lock();
-  if (state.used) g_socket_close(state.used.get(), nullptr);
-  state.used.reset();
+  CloseUsed(&state.used, given);
 }
 
 guint OverheadOf(GSocketAddress* peer) {

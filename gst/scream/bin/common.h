@@ -33,8 +33,10 @@ struct Child {
 bool HasChildren(GstElement* bin, std::initializer_list<Child> children);
 /// Gives `socket` to a child that does not own it.
 void GiveSocket(GstElement* child, GSocket* socket);
-/// Takes the socket from the children, ends SRTP and closes the socket.
-void CloseBin(BinState& state, std::initializer_list<GstElement*> children);
+/// Takes the socket from the children, ends SRTP and closes the socket, unless it was given and is
+/// to stay open.
+void CloseBin(BinState& state, std::initializer_list<GstElement*> children,
+              const GivenSocket& given = {});
 /// The UDP and IP header bytes of a packet to `peer`.
 guint OverheadOf(GSocketAddress* peer);
 /// `stats` of the child; NULL without a child. Transfer full.

@@ -24,6 +24,7 @@ namespace {
 
 struct SrcSettings {
   UdpListen listen;
+  GivenSocket given;
   SrtpSettings srtp;
 };
 
@@ -68,7 +69,7 @@ static Property<SrcSettings> OfRx(const char* name) {
                             ChildOf<GstLidarScreamSrc, &GstLidarScreamSrc::rx>);
 }
 
-static const std::array<Property<SrcSettings>, 18> kProperties = {{
+static const std::array<Property<SrcSettings>, 20> kProperties = {{
     Within<&SrcSettings::listen>(UdpListenRows(), "address"),
     Within<&SrcSettings::listen>(UdpListenRows(), "port"),
     Within<&SrcSettings::listen>(UdpListenRows(), "multicast-group"),
@@ -82,6 +83,10 @@ static const std::array<Property<SrcSettings>, 18> kProperties = {{
     OfRx("eos-on-bye"),
     OfRx("max-age"),
     OfRx("pt-map"),
+    {"socket", "Socket to use for both ways; NULL opens one",
+     At<&SrcSettings::given, &GivenSocket::socket>},
+    {"close-socket", "Close a socket given by the property socket on stop",
+     At<&SrcSettings::given, &GivenSocket::close>},
     {"used-socket", "Socket in use; NULL when stopped", UsedSocket<GstLidarScreamSrc>},
     {"stats", "Counters of packets, bytes and reports", Stats},
     Within<&SrcSettings::srtp>(SrtpRows(), "srtp-key"),
@@ -98,7 +103,8 @@ static bool Open(GstLidarScreamSrc* self) {
   if (!HasChildren(GST_ELEMENT(self),
                    {{self->src, "ecnudpsrc"}, {self->rx, "screamrx"}, {self->sink, "ecnudpsink"}}))
     return false;
-  SharedSocket socket = OpenListening(GST_ELEMENT(self), s.listen);
+  SharedSocket socket = s.given.socket;
+  if (!socket) socket = OpenListening(GST_ELEMENT(self), s.listen);
   if (!socket) return false;
   GiveSocket(self->src, socket.get());
   GiveSocket(self->sink, socket.get());
@@ -114,15 +120,23 @@ static bool Open(GstLidarScreamSrc* self) {
   return true;
 }
 
+static void Close(GstLidarScreamSrc* self) {
+  State& state = *self->state;
+  std::unique_lock lock(state.mutex);
+  const GivenSocket given = state.settings.given;
+  lock.unlock();
+  CloseBin(state, {self->sink, self->src}, given);
+}
+
 static GstStateChangeReturn ChangeState(GstElement* element, GstStateChange change) {
   auto* self = GST_LIDAR_SCREAM_SRC(element);
   if (change == GST_STATE_CHANGE_NULL_TO_READY && !Open(self)) {
-    CloseBin(*self->state, {self->sink, self->src});
+    Close(self);
     return GST_STATE_CHANGE_FAILURE;
   }
   const GstStateChangeReturn result =
       GST_ELEMENT_CLASS(gst_lidar_scream_src_parent_class)->change_state(element, change);
-  if (change == GST_STATE_CHANGE_READY_TO_NULL) CloseBin(*self->state, {self->sink, self->src});
+  if (change == GST_STATE_CHANGE_READY_TO_NULL) Close(self);
   return result;
 }
 

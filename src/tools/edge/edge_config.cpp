@@ -2,6 +2,7 @@
 #include "src/tools/edge/edge_config.h"
 
 #include <algorithm>
+#include <charconv>
 #include <nlohmann/json.hpp>
 #include <set>
 #include <stdexcept>
@@ -74,6 +75,7 @@ bool IsWord(const std::string& text) {
 }
 
 constexpr std::uint64_t kMaxBytes = std::uint64_t{1} << 50;
+constexpr std::size_t kMaxSharing = 1'000;  // a program of the kernel has 4,096 steps, 3 a robot
 
 NatsConfig ReadNats(const json& object) {
   NatsConfig nats;
@@ -97,12 +99,44 @@ NatsConfig ReadNats(const json& object) {
   return nats;
 }
 
+/// A number, decimal or 0x and hexadecimal; none where there is more.
+std::optional<std::uint32_t> ReadSsrc(std::string_view text) {
+  const bool hex = text.substr(0, 2) == "0x";
+  if (hex) text.remove_prefix(2);
+  std::uint32_t value = 0;
+  const auto end = text.data() + text.size();
+  const auto result = std::from_chars(text.data(), end, value, hex ? 16 : 10);
+  return result.ec == std::errc() && result.ptr == end ? std::optional(value) : std::nullopt;
+}
+
+/// "FIRST-LAST", or one.
+std::optional<SsrcRange> ReadSsrcs(const std::string& text) {
+  const auto dash = text.find('-');
+  const auto first = ReadSsrc(std::string_view(text).substr(0, dash));
+  const auto last = dash == text.npos ? first : ReadSsrc(std::string_view(text).substr(dash + 1));
+  if (!first || !last || *last < *first) return std::nullopt;
+  return SsrcRange{*first, *last};
+}
+
+void ReadPlace(Section* s, RobotConfig* robot) {
+  std::string ssrc;
+  s->ReadCount("port", &robot->port, 1, 65'535);
+  s->Read("ssrc", &ssrc);
+  if (!ssrc.empty()) {
+    robot->ssrc = ReadSsrcs(ssrc);
+    if (!robot->ssrc) s->Fail("ssrc", "is no number, and no two with - between");
+    if (robot->port != 0) s->Fail("ssrc", "is of no use on a port of its own");
+  } else if (robot->port == 0) {
+    s->Fail("port", "is missing, and so is ssrc");
+  }
+}
+
 RobotConfig ReadRobot(const json& object, std::size_t index) {
   RobotConfig robot;
   Section s(object, "robots[" + std::to_string(index) + "]");
   s.Read("name", &robot.name);
   s.Read("sensor", &robot.sensor);
-  s.ReadCount("port", &robot.port, 1, 65'535);
+  ReadPlace(&s, &robot);
   s.Read("srtp-key", &robot.srtp_key);
   s.Read("srtp-cipher", &robot.srtp_cipher);
   s.Read("record", &robot.record);
@@ -112,7 +146,6 @@ RobotConfig ReadRobot(const json& object, std::size_t index) {
   s.Finish();
   if (!IsWord(robot.name)) s.Fail("name", "is no word of letters, digits, - and _");
   if (!IsWord(robot.sensor)) s.Fail("sensor", "is no word of letters, digits, - and _");
-  if (robot.port == 0) s.Fail("port", "is missing");
   const bool limited = robot.record_max_files > 0 || robot.record_max_file_size > 0;
   if (limited && robot.record.find('%') == std::string::npos)
     s.Fail("record", "has no number such as %05d, which limits for files need");
@@ -124,13 +157,35 @@ void CheckTwins(const std::vector<RobotConfig>& robots) {
   std::set<std::string> names;
   std::set<std::string> records;
   for (const RobotConfig& robot : robots) {
-    if (!ports.insert(robot.port).second)
+    if (robot.port != 0 && !ports.insert(robot.port).second)
       throw std::runtime_error("port " + std::to_string(robot.port) + " has two robots");
     if (!names.insert(robot.name + "/" + robot.sensor).second)
       throw std::runtime_error(robot.name + " has two sensors called " + robot.sensor);
     if (!robot.record.empty() && !records.insert(robot.record).second)
       throw std::runtime_error(robot.record + " is recorded by two robots");
   }
+}
+
+void CheckSharedPort(const EdgeConfig& config) {
+  std::vector<const RobotConfig*> sharing;
+  for (const RobotConfig& robot : config.robots) {
+    if (robot.ssrc) sharing.push_back(&robot);
+    if (robot.port != 0 && robot.port == config.port)
+      throw std::runtime_error("port " + std::to_string(robot.port) +
+                               " is for all robots, and for one");
+  }
+  if (sharing.empty() != (config.port == 0))
+    throw std::runtime_error(sharing.empty() ? "port is used by no robot"
+                                             : "port is missing, which robots with an ssrc need");
+  if (sharing.size() > kMaxSharing)
+    throw std::runtime_error("one port is for " + std::to_string(kMaxSharing) + " robots at most");
+  std::sort(sharing.begin(), sharing.end(), [](const RobotConfig* a, const RobotConfig* b) {
+    return a->ssrc->first < b->ssrc->first;
+  });
+  for (std::size_t i = 1; i < sharing.size(); ++i)
+    if (sharing[i]->ssrc->first <= sharing[i - 1]->ssrc->last)
+      throw std::runtime_error(sharing[i - 1]->name + " and " + sharing[i]->name +
+                               " share an ssrc");
 }
 
 }  // namespace
@@ -141,6 +196,7 @@ EdgeConfig ParseEdgeConfig(const std::string& json_text) {
   EdgeConfig config;
   Section s(root, "");
   s.Read("address", &config.address);
+  s.ReadCount("port", &config.port, 1, 65'535);
   if (const json* nats = s.Find("nats")) config.nats = ReadNats(*nats);
   s.Read("http-address", &config.http_address);
   s.ReadCount("http-port", &config.http_port, 0, 65'535);
@@ -152,6 +208,7 @@ EdgeConfig ParseEdgeConfig(const std::string& json_text) {
   for (std::size_t i = 0; i < robots->size(); ++i)
     config.robots.push_back(ReadRobot((*robots)[i], i));
   CheckTwins(config.robots);
+  CheckSharedPort(config);
   return config;
 }
 

@@ -2,6 +2,7 @@
 // What lidar-edge is told: which robots come on which ports, and where their streams go.
 #pragma once
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -20,11 +21,17 @@ struct NatsConfig {
   std::uint64_t buffer_size = 8 << 20;  // bytes that wait, for each robot
 };
 
+struct SsrcRange {
+  std::uint32_t first = 0;
+  std::uint32_t last = 0;
+};
+
 struct RobotConfig {
   std::string name;
   std::string sensor = "lidar";
-  std::uint16_t port = 0;
-  std::string srtp_key;  // file:PATH or env:NAME; empty: none
+  std::uint16_t port = 0;         // of its own; 0: the one for all
+  std::optional<SsrcRange> ssrc;  // on the port for all
+  std::string srtp_key;           // file:PATH or env:NAME; empty: none
   std::string srtp_cipher = "aes-128-icm";
   std::string record;                      // pattern of file names; empty: none
   std::uint64_t record_max_file_size = 0;  // bytes
@@ -33,7 +40,8 @@ struct RobotConfig {
 };
 
 struct EdgeConfig {
-  std::string address;  // that robots send to; empty: any
+  std::string address;     // that robots send to; empty: any
+  std::uint16_t port = 0;  // of all robots that have none of their own
   NatsConfig nats;
   std::string http_address = "127.0.0.1";
   int http_port = -1;  // -1: none; 0: any

@@ -23,6 +23,7 @@
 #include "src/tools/edge/metrics_server.h"
 #include "src/tools/edge/receiver.h"
 #include "src/tools/edge/reporter.h"
+#include "src/tools/edge/shared_port.h"
 
 namespace lidar::edge {
 namespace {
@@ -62,8 +63,14 @@ void AddProcess(Exposition* exposition) {
 class Edge {
  public:
   explicit Edge(const EdgeConfig& config) : config_(config) {
+    std::vector<SsrcRange> ranges;
     for (const RobotConfig& robot : config.robots)
-      receivers_.push_back(std::make_unique<Receiver>(config, robot));
+      if (robot.ssrc) ranges.push_back(*robot.ssrc);
+    if (!ranges.empty()) shared_port_.emplace(config.address, config.port, ranges);
+    std::size_t next = 0;
+    for (const RobotConfig& robot : config.robots)
+      receivers_.push_back(std::make_unique<Receiver>(
+          config, robot, robot.ssrc ? shared_port_->socket(next++) : nullptr));
     if (!config.nats.url.empty()) reporter_.emplace(config, [this] { return Reports(); });
     if (config.http_port < 0) return;
     metrics_.emplace(config.http_address, config.http_port);
@@ -84,6 +91,7 @@ class Edge {
                                    std::chrono::duration<double>(config_.interval_s));
       Exposition exposition;
       AddProcess(&exposition);
+      if (shared_port_) exposition.Add("lidar_edge_stray_datagrams", "", shared_port_->strays());
       for (const auto& receiver : receivers_) receiver->AddTo(&exposition);
       metrics_->Publish(exposition.text());
     }
@@ -103,6 +111,7 @@ class Edge {
   }
 
   const EdgeConfig& config_;
+  std::optional<SharedPort> shared_port_;
   std::vector<std::unique_ptr<Receiver>> receivers_;
   std::optional<Reporter> reporter_;
   std::optional<MetricsServer> metrics_;

@@ -62,11 +62,12 @@ void Shield(GstPad* pad) {
 
 }  // namespace
 
-ElementPtr MakePipeline(const EdgeConfig& config, const RobotConfig& robot) {
+ElementPtr MakePipeline(const EdgeConfig& config, const RobotConfig& robot, GSocket* socket) {
   const std::string name = robot.name + "-" + robot.sensor;
   ElementPtr pipeline(GST_ELEMENT(gst_object_ref_sink(gst_pipeline_new(name.c_str()))));
   GstElement* source = Add(pipeline.get(), "screamsrc");
-  g_object_set(source, "port", static_cast<guint>(robot.port), "eos-on-bye", TRUE, nullptr);
+  g_object_set(source, "eos-on-bye", TRUE, "socket", socket, "close-socket", FALSE, nullptr);
+  if (robot.port != 0) g_object_set(source, "port", static_cast<guint>(robot.port), nullptr);
   SetText(source, "address", config.address);
   if (!robot.srtp_key.empty()) {
     g_object_set(source, "srtp-cipher", robot.srtp_cipher.c_str(), "srtp-key",

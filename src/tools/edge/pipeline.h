@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // The pipeline of one robot, and the branch that records it, which comes and goes by itself.
 #pragma once
+#include <gio/gio.h>
 #include <gst/gst.h>
 
 #include "gst/common/refs.h"
@@ -8,8 +9,9 @@
 
 namespace lidar::edge {
 
-/// Receives, and hands on to NATS. Throws std::runtime_error where an element is missing.
-gst::ElementPtr MakePipeline(const EdgeConfig& config, const RobotConfig& robot);
+/// Receives, and hands on to NATS; `socket` is the robot's on the port for all, or NULL. Throws
+/// std::runtime_error where an element is missing.
+gst::ElementPtr MakePipeline(const EdgeConfig& config, const RobotConfig& robot, GSocket* socket);
 
 /// Makes a recorder and lets it run with the pipeline. What fails in it stays in it, and is told on
 /// the bus. Throws std::runtime_error where an element is missing.

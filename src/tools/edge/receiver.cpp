@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "src/tools/edge/pipeline.h"
+#include "src/tools/edge/shared_port.h"
 
 namespace lidar::edge {
 namespace {
@@ -37,10 +38,11 @@ constexpr const char* kElements[] = {"screamsrc", "rtplidardepay", "natssink", "
 
 }  // namespace
 
-Receiver::Receiver(const EdgeConfig& config, const RobotConfig& robot)
+Receiver::Receiver(const EdgeConfig& config, const RobotConfig& robot, GSocket* socket)
     : config_(config),
       robot_(robot),
-      pipeline_(MakePipeline(config, robot)),
+      socket_(socket),
+      pipeline_(MakePipeline(config, robot, socket)),
       failures_(kFirstPause, kLongestPause),
       record_failures_(kFirstPause, kLongestPause) {
   if (!robot.record.empty()) {  // throws here where it cannot be
@@ -96,11 +98,13 @@ void Receiver::Begin(Clock::time_point now) {
   watch_at_.reset();
   bytes_ = 0;
   fast_seconds_ = 0;
+  if (socket_ != nullptr) ShutSocket(socket_, false);
   // An error is read from the bus.
   gst_element_set_state(pipeline_.get(), GST_STATE_PLAYING);
 }
 
 void Receiver::End() {
+  if (socket_ != nullptr) ShutSocket(socket_, true);
   gst_element_set_state(pipeline_.get(), GST_STATE_NULL);
   RemoveRecorder(pipeline_.get());
   recording_ = false;

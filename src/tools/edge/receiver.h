@@ -2,6 +2,7 @@
 // One robot's receiver: a pipeline and a thread of its own, so that what happens to it harms no
 // other.
 #pragma once
+#include <gio/gio.h>
 #include <gst/gst.h>
 
 #include <chrono>
@@ -21,8 +22,9 @@ namespace lidar::edge {
 
 class Receiver {
  public:
-  /// Throws std::runtime_error where an element is missing or a setting is wrong.
-  Receiver(const EdgeConfig& config, const RobotConfig& robot);
+  /// `socket` is the robot's on the port for all, or NULL. Throws std::runtime_error where an
+  /// element is missing or a setting is wrong.
+  Receiver(const EdgeConfig& config, const RobotConfig& robot, GSocket* socket);
   /// Ends the session, and waits for it.
   ~Receiver();
   Receiver(const Receiver&) = delete;
@@ -70,6 +72,7 @@ class Receiver {
 
   const EdgeConfig& config_;
   const RobotConfig& robot_;
+  GSocket* const socket_;
   const gst::ElementPtr pipeline_;
 
   // The thread's alone.

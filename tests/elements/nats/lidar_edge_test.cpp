@@ -48,7 +48,20 @@ INSTANTIATE_TEST_SUITE_P(
         WrongConfig{"{}", "robots is no list of at least one robot"},
         WrongConfig{R"({"robot":[]})", "robot is not known"},
         WrongConfig{R"({"robots":[7]})", "robots[0] is no object"},
-        WrongConfig{R"({"robots":[{"name":"a"}]})", "robots[0].port is missing"},
+        WrongConfig{R"({"robots":[{"name":"a"}]})", "robots[0].port is missing, and so is ssrc"},
+        WrongConfig{R"({"port":5,"robots":[{"name":"a","ssrc":"9-8"}]})",
+                    "robots[0].ssrc is no number, and no two with - between"},
+        WrongConfig{R"({"port":5,"robots":[{"name":"a","ssrc":"0x1ffffffff"}]})",
+                    "robots[0].ssrc is no number, and no two with - between"},
+        WrongConfig{R"({"port":5,"robots":[{"name":"a","port":6,"ssrc":"7"}]})",
+                    "robots[0].ssrc is of no use on a port of its own"},
+        WrongConfig{R"({"robots":[{"name":"a","ssrc":"7"}]})",
+                    "port is missing, which robots with an ssrc need"},
+        WrongConfig{R"({"port":5,"robots":[{"name":"a","port":6}]})", "port is used by no robot"},
+        WrongConfig{R"({"port":5,"robots":[{"name":"a","port":5},{"name":"b","ssrc":"7"}]})",
+                    "port 5 is for all robots, and for one"},
+        WrongConfig{R"({"port":5,"robots":[{"name":"a","ssrc":"7-9"},{"name":"b","ssrc":"0x9"}]})",
+                    "a and b share an ssrc"},
         WrongConfig{R"({"robots":[{"name":"a.b","port":1}]})",
                     "robots[0].name is no word of letters, digits, - and _"},
         WrongConfig{R"({"robots":[{"name":"a","port":70000}]})",
@@ -153,10 +166,11 @@ class LidarEdge : public NatsTest {
     if (at == std::string::npos) return std::nullopt;
     return std::atof(answer->body.c_str() + at + line.size());
   }
-  std::unique_ptr<NatsPipeline> Robot(int port, const std::string& more = "") {
+  std::unique_ptr<NatsPipeline> Robot(int port, const std::string& more = "",
+                                      const std::string& payloader = "rtplidarpay") {
     auto robot = std::make_unique<NatsPipeline>(
-        kLive + "! lidarenc" + kSee + "! rtplidarpay ! screamsink name=n host=127.0.0.1 port=" +
-        std::to_string(port) + " " + more);
+        kLive + "! lidarenc" + kSee + "! " + payloader +
+        " ! screamsink name=n host=127.0.0.1 port=" + std::to_string(port) + " " + more);
     robot->Play();
     return robot;
   }
@@ -324,6 +338,64 @@ TEST_F(LidarEdge, TakesEncryptedRobotsToAServerThatWantsCredentials) {
   EXPECT_TRUE(
       Eventually([&] { return Metric("lidar_screamsrc_srtp_refused", "r2").value_or(0) > 0; }));
   EXPECT_EQ(Metric("lidar_edge_receiving", "r2"), 0);
+}
+
+/// Whether a buffer of the consumer is one of the robot's.
+bool Has(const NatsPipeline& consumer, const NatsPipeline& robot) {
+  const auto sent = robot.buffers();
+  const auto got = consumer.buffers();
+  return std::any_of(got.begin(), got.end(), [&](const Kept& g) {
+    return std::any_of(sent.begin(), sent.end(), [&](const Kept& s) { return s.SameAs(g); });
+  });
+}
+
+TEST_F(LidarEdge, RobotsOnOnePortAreToldApartBySsrcAndKey) {
+  server_.Start();
+  const int port = FreePort();
+  const std::string keys[] = {std::string(60, 'a'), std::string(60, 'b')};
+  for (const int i : {0, 1}) {
+    g_setenv(("EDGE_KEY_" + std::to_string(i)).c_str(), keys[i].c_str(), TRUE);
+  }
+  StartEdge({{"nats", {{"url", server_.url()}}},
+             {"port", port},
+             {"robots",
+              {{{"name", "r1"}, {"ssrc", "0x100000-0x1fffff"}, {"srtp-key", "env:EDGE_KEY_0"}},
+               {{"name", "r2"}, {"ssrc", "7"}, {"srtp-key", "env:EDGE_KEY_1"}},
+               {{"name", "r3"}, {"ssrc", "8"}, {"max-mbps", 0.1}}}}});
+  const auto first = Consumer("fleet.r1.lidar.lidar");
+  const auto second = Consumer("fleet.r2.lidar.lidar");
+  auto r1 = Robot(port, "srtp-key=" + keys[0], "rtplidarpay ssrc=1192960");  // 0x123400
+  // Says that it is r2, and has r1's key.
+  auto forger = Robot(port, "srtp-key=" + keys[0], "rtplidarpay ssrc=7");
+  const auto flood = Robot(port, "", "rtplidarpay ssrc=8");
+  const auto stray = Robot(port, "", "rtplidarpay ssrc=99");
+  ASSERT_TRUE(first->WaitForBuffers(8));
+  EXPECT_TRUE(
+      Eventually([&] { return Metric("lidar_screamsrc_srtp_refused", "r2").value_or(0) > 0; }));
+  EXPECT_EQ(second->count(), 0U);
+  forger.reset();
+  const auto r2 = Robot(port, "srtp-key=" + keys[1], "rtplidarpay ssrc=7");
+  ASSERT_TRUE(second->WaitForBuffers(8));
+  EXPECT_TRUE(Has(*first, *r1));
+  EXPECT_TRUE(Has(*second, *r2));
+  EXPECT_FALSE(Has(*first, *r2));
+  EXPECT_FALSE(Has(*second, *r1));
+  EXPECT_TRUE(Eventually([&] { return Metric("lidar_edge_penalties", "r3").value_or(0) >= 1; }));
+  // One goes and comes back with another SSRC of its range, and the others notice nothing.
+  r1->SendEos();
+  EXPECT_EQ(r1->WaitForEnd(), "");
+  EXPECT_TRUE(Eventually([&] { return Metric("lidar_edge_sessions", "r1").value_or(0) >= 2; }));
+  const std::size_t before = first->count();
+  r1 = Robot(port, "srtp-key=" + keys[0], "rtplidarpay ssrc=1048577");
+  EXPECT_TRUE(first->WaitForBuffers(before + 8));
+  EXPECT_EQ(Metric("lidar_edge_sessions", "r2"), 1);
+  EXPECT_EQ(Metric("lidar_edge_failures", "r2"), 0);
+  EXPECT_GT(r1->stat("feedback-accepted"), 0U) << "reports come back from the port";
+  const auto answer = httplib::Client("127.0.0.1", metrics_port_).Get("/metrics");
+  ASSERT_TRUE(answer);
+  const auto at = answer->body.find("\nlidar_edge_stray_datagrams ");
+  ASSERT_NE(at, std::string::npos);
+  EXPECT_GT(std::atof(answer->body.c_str() + at + 28), 0);
 }
 
 }  // namespace

@@ -63,6 +63,32 @@ std::string Sink(guint port, const std::string& more = "") {
   return "screamsink name=out host=127.0.0.1 port=" + std::to_string(port) + " " + more;
 }
 
+TEST(ScreamBins, TheSourceUsesAGivenSocketForBothWaysAndLeavesItOpen) {
+  GSocket* given =
+      g_socket_new(G_SOCKET_FAMILY_IPV4, G_SOCKET_TYPE_DATAGRAM, G_SOCKET_PROTOCOL_UDP, nullptr);
+  GSocketAddress* any = g_inet_socket_address_new_from_string("127.0.0.1", 0);
+  ASSERT_TRUE(g_socket_bind(given, any, FALSE, nullptr));
+  g_object_unref(any);
+  Pipeline receiver(std::string("screamsrc name=in ") + kAudioCaps +
+                    " ! rtpL16depay ! fakesink sync=false");
+  const ElementPtr in = receiver.Get("in");
+  g_object_set(in.get(), "socket", given, "close-socket", FALSE, nullptr);
+  receiver.Play();
+  Pipeline sender(kAudio + Sink(PortOf(in.get())));
+  g_object_set(sender.Get("src").get(), "num-buffers", 100, nullptr);
+  sender.Play();
+  EXPECT_TRUE(sender.Ends());
+  EXPECT_TRUE(receiver.Ends());
+  EXPECT_GT(Stats(sender.Get("out").get())["feedback-accepted"], 0U);
+  gst_element_set_state(in.get(), GST_STATE_NULL);
+  EXPECT_FALSE(g_socket_is_closed(given));
+  g_object_set(in.get(), "close-socket", TRUE, nullptr);
+  gst_element_set_state(in.get(), GST_STATE_READY);
+  gst_element_set_state(in.get(), GST_STATE_NULL);
+  EXPECT_TRUE(g_socket_is_closed(given));
+  g_object_unref(given);
+}
+
 TEST(ScreamBins, CarryAStreamAndEndBothEnds) {
   Receiver receiver(kAudioCaps);
   Pipeline sender(kAudio + Sink(receiver.port));

@@ -1,0 +1,145 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "src/tools/edge/shared_port.h"
+
+#include <linux/filter.h>
+#include <linux/sock_diag.h>
+#include <netdb.h>
+#include <netinet/in.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+#include <stdexcept>
+
+namespace lidar::edge {
+namespace {
+
+using Program = std::vector<sock_filter>;
+
+[[noreturn]] void Fail(const std::string& what) { throw std::runtime_error(what); }
+
+sock_filter Step(unsigned code, std::uint32_t k, std::uint8_t yes = 0, std::uint8_t no = 0) {
+  return {static_cast<std::uint16_t>(code), yes, no, k};
+}
+
+/// Gives the number of the socket: 0 for what is of no range, and for what is too short.
+Program ChooseBySsrc(const std::vector<SsrcRange>& ranges) {
+  // RTCP has the packet types 192 to 223 (RFC 5761), and its SSRC further in front.
+  Program p = {Step(BPF_LD | BPF_B | BPF_ABS, 1),
+               Step(BPF_JMP | BPF_JGE | BPF_K, 192, 0, 3),
+               Step(BPF_JMP | BPF_JGE | BPF_K, 224, 2, 0),
+               Step(BPF_LD | BPF_W | BPF_ABS, 4),
+               Step(BPF_JMP | BPF_JA, 1),
+               Step(BPF_LD | BPF_W | BPF_ABS, 8)};
+  std::uint32_t number = 0;
+  for (const SsrcRange& range : ranges) {
+    p.push_back(Step(BPF_JMP | BPF_JGE | BPF_K, range.first, 0, 2));
+    p.push_back(Step(BPF_JMP | BPF_JGT | BPF_K, range.last, 1, 0));
+    p.push_back(Step(BPF_RET | BPF_K, ++number));
+  }
+  p.push_back(Step(BPF_RET | BPF_K, 0));
+  return p;
+}
+
+bool Attach(int fd, int option, Program program) {
+  const sock_fprog p{static_cast<unsigned short>(program.size()), program.data()};
+  return setsockopt(fd, SOL_SOCKET, option, &p, sizeof p) == 0;
+}
+
+struct Address {
+  sockaddr_storage storage{};
+  socklen_t length = 0;
+};
+
+/// Empty: all addresses, of both families where the machine has them.
+Address Resolve(const std::string& name, std::uint16_t port) {
+  addrinfo hints{};
+  hints.ai_flags = AI_PASSIVE | AI_NUMERICSERV;
+  hints.ai_socktype = SOCK_DGRAM;
+  const int probe = name.empty() ? socket(AF_INET6, SOCK_DGRAM, 0) : -1;
+  if (name.empty()) hints.ai_family = probe >= 0 ? AF_INET6 : AF_INET;
+  if (probe >= 0) close(probe);
+  addrinfo* found = nullptr;
+  const int error = getaddrinfo(name.empty() ? nullptr : name.c_str(), std::to_string(port).c_str(),
+                                &hints, &found);
+  if (error != 0) Fail("address " + name + ": " + gai_strerror(error));
+  Address address;
+  address.length = found->ai_addrlen;
+  std::memcpy(&address.storage, found->ai_addr, found->ai_addrlen);
+  freeaddrinfo(found);
+  return address;
+}
+
+/// One of several on the port, which only this user may share.
+int OpenSocket(const Address& address) {
+  const int fd = socket(address.storage.ss_family, SOCK_DGRAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0);
+  const int on = 1;
+  const int off = 0;
+  if (address.storage.ss_family == AF_INET6)
+    setsockopt(fd, IPPROTO_IPV6, IPV6_V6ONLY, &off, sizeof off);
+  if (fd >= 0 && setsockopt(fd, SOL_SOCKET, SO_REUSEPORT, &on, sizeof on) == 0 &&
+      bind(fd, reinterpret_cast<const sockaddr*>(&address.storage), address.length) == 0)
+    return fd;
+  const int error = errno;
+  if (fd >= 0) close(fd);
+  Fail(std::string("the port for all robots cannot be opened: ") + std::strerror(error));
+}
+
+/// The port must be nobody's: with another process of ours the kernel would mix the sockets.
+void CheckFree(const Address& address) {
+  const int fd = socket(address.storage.ss_family, SOCK_DGRAM | SOCK_CLOEXEC, 0);
+  const int off = 0;
+  if (address.storage.ss_family == AF_INET6)
+    setsockopt(fd, IPPROTO_IPV6, IPV6_V6ONLY, &off, sizeof off);
+  const bool taken =
+      bind(fd, reinterpret_cast<const sockaddr*>(&address.storage), address.length) != 0;
+  const int error = errno;
+  close(fd);
+  if (taken) Fail(std::string("the port for all robots cannot be opened: ") + std::strerror(error));
+}
+
+const Program kNothing = {Step(BPF_RET | BPF_K, 0)};
+
+}  // namespace
+
+SharedPort::SharedPort(const std::string& address, std::uint16_t port,
+                       const std::vector<SsrcRange>& ranges) {
+  const Address local = Resolve(address, port);
+  CheckFree(local);
+  for (std::size_t i = 0; i <= ranges.size(); ++i) {
+    const int fd = OpenSocket(local);
+    GSocket* socket = g_socket_new_from_fd(fd, nullptr);
+    if (socket == nullptr) {
+      close(fd);
+      Fail("a socket cannot be used");
+    }
+    sockets_.emplace_back(socket);
+    // Nobody reads it until its robot's session begins.
+    if (!Attach(fd, SO_ATTACH_FILTER, kNothing)) Fail("a socket takes no filter");
+    if (i == 0 && !Attach(fd, SO_ATTACH_REUSEPORT_CBPF, ChooseBySsrc(ranges)))
+      Fail(std::string("the kernel does not tell ") + std::to_string(ranges.size()) +
+           " robots apart on a port: " + std::strerror(errno) + " (net.core.optmem_max)");
+  }
+}
+
+std::uint32_t SharedPort::strays() const {
+  std::uint32_t info[SK_MEMINFO_VARS] = {};
+  socklen_t length = sizeof info;
+  getsockopt(g_socket_get_fd(sockets_.front().get()), SOL_SOCKET, SO_MEMINFO, info, &length);
+  return info[SK_MEMINFO_DROPS];
+}
+
+void ShutSocket(GSocket* socket, bool shut) {
+  const int fd = g_socket_get_fd(socket);
+  if (shut) {
+    Attach(fd, SO_ATTACH_FILTER, kNothing);
+    return;
+  }
+  char ignored[1];
+  while (recv(fd, ignored, sizeof ignored, MSG_DONTWAIT) >= 0) continue;
+  const int unused = 0;
+  setsockopt(fd, SOL_SOCKET, SO_DETACH_FILTER, &unused, sizeof unused);
+}
+
+}  // namespace lidar::edge
