@@ -97,6 +97,7 @@ TEST_F(Ros2Sink, DropsAndCountsBuffersThatAreNotAsTheirCapsSay) {
               GST_FLOW_OK);
   EXPECT_EQ(Stat("buffers-refused"), 4u);
   EXPECT_NE(NextComplaint().find("not as its caps say"), std::string::npos);
+  EXPECT_EQ(NextComplaint(0), "");  // one for all
   ASSERT_EQ(gst_harness_push(h_.get(), CloudBuffer(cloud)), GST_FLOW_OK);
   EXPECT_EQ(Taken().data, cloud.data);
 }
@@ -108,6 +109,9 @@ TEST_F(Ros2Sink, CostsLittleWhereNobodyListens) {
   ASSERT_EQ(gst_harness_push(h_.get(), CloudBuffer(cloud)), GST_FLOW_OK);
   EXPECT_EQ(Stat("messages-without-subscriber"), 1u);
   EXPECT_EQ(Stat("messages"), 0u);
+  gst_element_set_state(h_->element, GST_STATE_NULL);
+  gst_element_set_state(h_->element, GST_STATE_PLAYING);
+  EXPECT_EQ(Stat("messages-without-subscriber"), 0u);
 }
 
 TEST_F(Ros2Sink, TellsOfSubscribersThatItsReliabilityDoesNotFit) {
@@ -122,6 +126,35 @@ TEST_F(Ros2Sink, TellsOfSubscribersThatItsReliabilityDoesNotFit) {
     text = NextComplaint(50 * GST_MSECOND);
   }
   EXPECT_NE(text.find("qos=sensor-data"), std::string::npos);
+  ASSERT_EQ(gst_harness_push(h_.get(), CloudBuffer(cloud)), GST_FLOW_OK);
+  EXPECT_EQ(NextComplaint(0), "");  // once for each
+}
+
+TEST_F(Ros2Sink, RefusesACloudOfOneRowThatEndsWithinAPoint) {
+  const PeerCloud cloud = TestCloud(2, 1);
+  StartWithCloudPeer(cloud);
+  for (const gsize size : {25u, 72u})  // a row may have any number of points
+    ASSERT_EQ(gst_harness_push(h_.get(), gst_buffer_new_allocate(nullptr, size, nullptr)),
+              GST_FLOW_OK);
+  EXPECT_EQ(Stat("buffers-refused"), 1u);
+  EXPECT_EQ(Taken().width, 3u);
+}
+
+TEST_F(Ros2Sink, TakesAnotherTypeWithTheCaps) {
+  Start("ros2sink", "topic=/points sync=false");
+  gst_harness_set_src_caps(h_.get(), CloudCaps(TestCloud(2, 1)).release());
+  ASSERT_EQ(gst_harness_push(h_.get(), CloudBuffer(TestCloud(2, 1))), GST_FLOW_OK);
+  gst_harness_set_src_caps_str(h_.get(), "application/x-imu,sample-size=32");
+  ASSERT_EQ(gst_harness_push(h_.get(), gst_buffer_new_allocate(nullptr, 32, nullptr)), GST_FLOW_OK);
+  EXPECT_EQ(Stat("messages-without-subscriber"), 2u);
+}
+
+TEST_F(Ros2Sink, RefusesSamplesOfOtherFields) {
+  Start("ros2sink", "topic=/imu");
+  gst_harness_set_src_caps_str(h_.get(), "application/x-imu,sample-size=8,fields=(string)t:U64:0");
+  gst_harness_push(h_.get(), gst_buffer_new_allocate(nullptr, 32, nullptr));
+  EXPECT_NE(NextComplaint().find("samples must have the fields t:U64:0,ax:F32:8"),
+            std::string::npos);
 }
 
 TEST_F(Ros2Sink, PublishesEachSampleOfAnImu) {

@@ -54,6 +54,13 @@ TEST_F(Ros2Src, TakesCloudsOfFastDdsWithStampFrameAndFields) {
   EXPECT_EQ(Field("height"), "16");
   EXPECT_EQ(Field("is-dense"), "true");
   EXPECT_EQ(Stat("messages"), 1u);
+  EXPECT_GT(Stat("bytes"), cloud.data.size());
+  gst_element_set_state(h_->element, GST_STATE_READY);
+  EXPECT_EQ(Stat("messages"), 1u);
+  EXPECT_EQ(Stat("publishers"), 0u);
+  gst_element_set_state(h_->element, GST_STATE_PLAYING);
+  EXPECT_EQ(Stat("messages"), 0u);
+  EXPECT_EQ(Stat("bytes"), 0u);
 }
 
 TEST_F(Ros2Src, FollowsCloudsThatChangeTheirLayout) {
@@ -108,6 +115,10 @@ TEST_F(Ros2Src, GivesTheFieldsAndTheRateThatAFilterNames) {
   std::memcpy(&wide, point.data() + 2, sizeof wide);
   EXPECT_EQ(wide, 2.5);
   EXPECT_EQ(Field("framerate"), "20/1");
+  gst_util_set_object_arg(G_OBJECT(filter.get()), "caps",
+                          "application/x-pointcloud2,fields=(string)\"x:F32:0\"");
+  ASSERT_TRUE(peer_->Publish(cloud));
+  EXPECT_EQ(gst_buffer_get_size(Pull().get()), 4u);
 }
 
 TEST_F(Ros2Src, DropsAndCountsWhatIsDamagedAndGoesOn) {
@@ -136,6 +147,8 @@ TEST_F(Ros2Src, DropsAndCountsWhatIsDamagedAndGoesOn) {
   EXPECT_NE(NextOwnComplaint().find("is damaged"), std::string::npos);
   EXPECT_EQ(NextComplaint(0), "");  // one for all
   EXPECT_EQ(Stat("messages"), 6u);
+  ASSERT_TRUE(peer_->Publish(PeerBytes{garbage}));
+  EXPECT_NE(NextOwnComplaint().find("is damaged"), std::string::npos);  // after a good one
 }
 
 TEST_F(Ros2Src, CountsCloudsOfNoPoints) {
@@ -299,6 +312,14 @@ TEST_F(Ros2Src, IsLiveAndStopsWhileItWaits) {
     EXPECT_NE(gst_element_set_state(h_->element, GST_STATE_PLAYING), GST_STATE_CHANGE_FAILURE);
   }
   EXPECT_LT(g_get_monotonic_time() - begin, 5 * G_USEC_PER_SEC);
+}
+
+TEST_F(Ros2Src, GoesOnAfterAPause) {
+  StartWithPeer("qos=reliable");
+  gst_element_set_state(h_->element, GST_STATE_PAUSED);
+  gst_element_set_state(h_->element, GST_STATE_PLAYING);
+  ASSERT_TRUE(peer_->Publish(TestCloud(2, 1)));
+  EXPECT_TRUE(Pull());
 }
 
 TEST_F(Ros2Src, EndsAndFlushesWhileItWaits) {
