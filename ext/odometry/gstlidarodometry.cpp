@@ -41,6 +41,7 @@ using lidar::odometry::Tracking;
 
 struct Settings {
   OdometrySettings odometry;
+  std::string initial_pose;
   std::string trajectory;
   bool post_messages = true;
 };
@@ -88,7 +89,7 @@ struct State {
 lidar::gst::StructurePtr ReadStats(GObject* object);
 
 using lidar::gst::At;
-const std::array<lidar::gst::Property<Settings>, 7> kProperties = {{
+const std::array<lidar::gst::Property<Settings>, 8> kProperties = {{
     {"max-range", "Points farther away are left out; also the radius of the map [m]",
      At<&Settings::odometry, &OdometrySettings::max_range_m>, 1, 1000},
     {"min-range", "Points nearer than that are left out: the vehicle itself [m]",
@@ -97,6 +98,10 @@ const std::array<lidar::gst::Property<Settings>, 7> kProperties = {{
      At<&Settings::odometry, &OdometrySettings::voxel_size_m>, 0.05, 20},
     {"deskew", "Move points by when they were sampled",
      At<&Settings::odometry, &OdometrySettings::deskew>},
+    {"initial-pose",
+     "Pose of the first scan, such as another lidarodometry left it: \"x y z qx qy qz qw\" [m]; "
+     "NULL: the origin",
+     &Settings::initial_pose},
     {"trajectory", "File to write the poses to, in TUM's format; NULL: none",
      &Settings::trajectory},
     {"post-messages", "Post an element message \"odometry\" for each scan",
@@ -317,11 +322,22 @@ gboolean SinkEvent(GstBaseTransform* base, GstEvent* event) {
 gboolean Start(GstBaseTransform* base) {
   auto* self = GST_LIDAR_ODOMETRY(base);
   State& state = *self->state;
-  const Settings settings = Snapshot(state);
+  Settings settings = Snapshot(state);
   {
     std::lock_guard lock(state.mutex);
     state.counters = {};
   }
+  const auto start = settings.initial_pose.empty()
+                         ? std::optional(Pose())
+                         : lidar::odometry::ParsePose(settings.initial_pose);
+  if (!start) {
+    GST_ELEMENT_ERROR(
+        self, RESOURCE, SETTINGS,
+        ("The initial-pose \"%s\" is not x y z qx qy qz qw.", settings.initial_pose.c_str()),
+        (nullptr));
+    return FALSE;
+  }
+  settings.odometry.start = *start;
   state.stream = {};
   state.stream.odometry = std::make_unique<Odometry>(settings.odometry);
   if (settings.trajectory.empty()) return TRUE;

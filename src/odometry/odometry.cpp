@@ -60,7 +60,8 @@ const char* ToString(Tracking tracking) {
 Odometry::Odometry(const OdometrySettings& settings)
     : settings_(settings),
       map_({settings.voxel_size_m, settings.max_range_m}),
-      threshold_(settings.max_range_m) {}
+      threshold_(settings.max_range_m),
+      pose_(settings.start) {}
 
 Pose Odometry::PredictAt(Time t) const {
   if (!last_time_) return pose_;

@@ -17,6 +17,7 @@ struct OdometrySettings {
   double min_range_m = 1;    // nearer ones are the vehicle itself
   double voxel_size_m = 1;   // of the map
   bool deskew = true;        // move points by when they were sampled
+  Pose start;                // of the first scan
   RegistrationSettings registration;
 };
 
@@ -38,7 +39,7 @@ const char* ToString(Tracking tracking);
 
 struct Estimate {
   Time time{};  // the middle of the scan: an error of the velocity moves it least
-  Pose pose;    // of the sensor then, seen from where it started
+  Pose pose;    // of the sensor then, as OdometrySettings::start has it
   Tracking tracking = Tracking::kStarted;
   double inlier_share = 0;
   int iterations = 0;

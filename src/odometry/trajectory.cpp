@@ -59,14 +59,17 @@ bool ParseTime(const std::string& line, Time* time) {
   return true;
 }
 
+/// Seven columns of a TUM file, from tx on.
+bool ToPose(const double* v, Pose* pose) {
+  pose->position = {v[0], v[1], v[2]};
+  const Eigen::Quaterniond q(v[6], v[3], v[4], v[5]);
+  pose->rotation = q.normalized();
+  return q.norm() > 0.5 && q.norm() < 2;
+}
+
 bool ToPose(const Row& row, Pose* pose) {
   const auto& v = row.values;
-  if (row.count == kTumColumns) {
-    pose->position = {v[1], v[2], v[3]};
-    const Eigen::Quaterniond q(v[7], v[4], v[5], v[6]);
-    pose->rotation = q.normalized();
-    return q.norm() > 0.5 && q.norm() < 2;
-  }
+  if (row.count == kTumColumns) return ToPose(&v[1], pose);
   Eigen::Matrix3d rotation;
   rotation << v[0], v[1], v[2], v[4], v[5], v[6], v[8], v[9], v[10];
   pose->position = {v[3], v[7], v[11]};
@@ -101,6 +104,14 @@ void WriteKittiLine(std::ostream& out, const Pose& pose) {
   for (Eigen::Index row = 0; row < 3; ++row)
     for (Eigen::Index column = 0; column < 4; ++column)
       out << m(row, column) << (row == 2 && column == 3 ? '\n' : ' ');
+}
+
+std::optional<Pose> ParsePose(const std::string& text) {
+  Row row;
+  Pose pose;
+  const bool good =
+      ParseRow(text, &row) && row.count == kTumColumns - 1 && ToPose(row.values.data(), &pose);
+  return good ? std::optional(pose) : std::nullopt;
 }
 
 Trajectory ReadTrajectory(std::istream& in, Duration kitti_period, std::string* error) {

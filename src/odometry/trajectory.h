@@ -2,6 +2,7 @@
 // Poses over time, and the text files that the field keeps them in.
 #pragma once
 #include <istream>
+#include <optional>
 #include <ostream>
 #include <string>
 #include <vector>
@@ -21,6 +22,9 @@ using Trajectory = std::vector<StampedPose>;  // ascending in time
 void WriteTumLine(std::ostream& out, const StampedPose& pose);
 /// One line of a KITTI file: the first three rows of the 4x4 matrix. It has no time.
 void WriteKittiLine(std::ostream& out, const Pose& pose);
+
+/// Of "tx ty tz qx qy qz qw"; none where it is not that.
+std::optional<Pose> ParsePose(const std::string& text);
 
 /// Reads a TUM file (eight columns) or a KITTI file (twelve; its poses are `kitti_period` apart).
 /// Lines that begin with # are comments. On an error the result is empty and `error` says which

@@ -92,6 +92,33 @@ TEST_F(Odometry, PutsThePoseOnEveryScan) {
   EXPECT_EQ(CountMessages("odometry"), 20U);
 }
 
+TEST_F(Odometry, BeginsAtItsInitialPose) {
+  // A quarter turn to the left: who drives along x goes along y.
+  Start(1, 10, "initial-pose=\"100 20 3 0 0 0.70710678 0.70710678\"");
+  const auto scans = PullAll(10);
+  GstLidarPose first;
+  GstLidarPose last;
+  ASSERT_TRUE(gst_lidar_buffer_get_pose(scans.front().get(), &first));
+  ASSERT_TRUE(gst_lidar_buffer_get_pose(scans.back().get(), &last));
+  EXPECT_EQ(first.tracking, GST_LIDAR_TRACKING_STARTED);
+  EXPECT_NEAR(first.position[0], 100, 0.01);
+  EXPECT_NEAR(first.position[1], 20, 0.01);
+  EXPECT_NEAR(last.position[0], 100, 1);
+  EXPECT_NEAR(last.position[1], 29, 1);
+  EXPECT_NEAR(last.position[2], 3, 1);
+}
+
+TEST_F(Odometry, RefusesAnInitialPoseThatIsNone) {
+  for (const char* pose : {"1 2 3", "1 2 3 0 0 0 0", "1 2 3 0 0 0 nan", "1 2 3 0 0 0 1 9", "x"}) {
+    const ElementPtr element(
+        GST_ELEMENT(gst_object_ref_sink(gst_element_factory_make("lidarodometry", nullptr))));
+    g_object_set(element.get(), "initial-pose", pose, nullptr);
+    EXPECT_EQ(gst_element_set_state(element.get(), GST_STATE_PAUSED), GST_STATE_CHANGE_FAILURE)
+        << pose;
+    gst_element_set_state(element.get(), GST_STATE_NULL);
+  }
+}
+
 TEST_F(Odometry, LeavesTheCloudsAsTheyAre) {
   Harness plain(gst_harness_new_parse(Format(kDrive, 1, 2).c_str()));
   gst_harness_play(plain.get());
