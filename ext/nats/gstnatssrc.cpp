@@ -44,6 +44,7 @@ constexpr gint64 kFormatPauseUs = 5'000'000;
 struct NatsSrcSettings {
   NatsSettings nats;
   guint64 start_time = GST_CLOCK_TIME_NONE;
+  guint64 start_sequence = 0;
   bool eos_at_end = false;
   guint buffer_size = 8U << 20;
 };
@@ -115,7 +116,7 @@ static StructurePtr Stats(GObject* object) {
   return ToStructure("application/x-natssrc-stats", kStats, CountersNow(StateOf(object)));
 }
 
-static const std::array<Property<NatsSrcSettings>, 14> kProperties = {{
+static const std::array<Property<NatsSrcSettings>, 15> kProperties = {{
     Within<&NatsSrcSettings::nats>(NatsRows(), "url"),
     Within<&NatsSrcSettings::nats>(NatsRows(), "subject"),
     {"queue-group", "Sources of a group share the messages, each gets some; NULL: all of them",
@@ -127,6 +128,9 @@ static const std::array<Property<NatsSrcSettings>, 14> kProperties = {{
      "When what JetStream shall send first was stored; 0: all of it; default: from now on "
      "[ns since 1970]",
      &NatsSrcSettings::start_time},
+    {"start-sequence",
+     "Number in JetStream's stream of what shall come first, before start-time; 0: none",
+     &NatsSrcSettings::start_sequence},
     {"eos-at-end", "EOS once JetStream has no more", &NatsSrcSettings::eos_at_end},
     {"buffer-size", "Bytes that wait to be taken, without JetStream; the newest go [bytes]",
      &NatsSrcSettings::buffer_size, 65536, 1 << 30},
@@ -159,6 +163,7 @@ static lidar::nats::SubscriberSettings ToSubscriber(const NatsSrcSettings& setti
   s.stream = settings.nats.stream;
   s.durable = settings.nats.durable;
   if (GST_CLOCK_TIME_IS_VALID(settings.start_time)) s.start_time = settings.start_time;
+  s.start_sequence = settings.start_sequence;
   s.max_pending = static_cast<int>(settings.buffer_size);
   return s;
 }
@@ -272,8 +277,9 @@ static StreamFormat::Ptr FormatOf(GstLidarNatsSrc* self, const std::string& id) 
   return nullptr;
 }
 
-static void SetTimes(State& state, const Delivery& delivery, GstBuffer* buffer) {
+static void SetStored(State& state, const Delivery& delivery, GstBuffer* buffer) {
   if (!delivery.stored) return;  // the base class takes the time of arrival
+  GST_BUFFER_OFFSET(buffer) = delivery.sequence;
   if (!state.first) state.first = *delivery.stored;
   GST_BUFFER_PTS(buffer) = *delivery.stored - std::min(*state.first, *delivery.stored);
 }
@@ -298,7 +304,7 @@ static GstFlowReturn Take(GstLidarNatsSrc* self, const Delivery& delivery, GstBu
     state.format = format;
   }
   if (!NotePlace(self, read->place, read->buffer.get())) return GST_FLOW_CUSTOM_SUCCESS;
-  SetTimes(state, delivery, read->buffer.get());
+  SetStored(state, delivery, read->buffer.get());
   state.warned_damaged = false;
   Count(self, &Counters::messages);
   Count(self, &Counters::bytes, size);

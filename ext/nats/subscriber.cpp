@@ -80,14 +80,17 @@ natsStatus Subscriber::SubscribeLive() {
 }
 
 void Subscriber::SetStart(jsConsumerConfig* config) const {
-  if (last_stored_ > 0)
-    config->OptStartSeq = last_stored_ + 1;
-  else if (!settings_.start_time)
+  const std::uint64_t first = last_stored_ > 0 ? last_stored_ + 1 : settings_.start_sequence;
+  if (first > 0) {
+    config->OptStartSeq = first;
+    config->DeliverPolicy = js_DeliverByStartSequence;
+  } else if (!settings_.start_time) {
     config->DeliverPolicy = js_DeliverNew;
-  else if (*settings_.start_time == 0)
+  } else if (*settings_.start_time == 0) {
     config->DeliverPolicy = js_DeliverAll;
-  else
+  } else {
     config->OptStartTime = SafeTime(*settings_.start_time);
+  }
 }
 
 /// A consumer that goes with this subscriber. It is made anew from where the last one ended.
@@ -228,6 +231,7 @@ Subscriber::Event Subscriber::NoteStored(Delivery* delivery) {
       return meta->NumPending == 0 ? Event::kEmpty : Event::kNothing;  // see SafeTime()
   }
   delivery->stored = static_cast<std::uint64_t>(std::max<std::int64_t>(meta->Timestamp, 0));
+  delivery->sequence = meta->Sequence.Stream;
   delivery->to_come = meta->NumPending;
   return Event::kMessage;
 }

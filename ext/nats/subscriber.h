@@ -20,6 +20,7 @@ struct SubscriberSettings {
   std::string stream;                       // of JetStream; empty: what is sent from now on
   std::string durable;                      // consumer; empty: one of this subscriber's own
   std::optional<std::uint64_t> start_time;  // [ns since 1970]; none: what is stored from now on
+  std::uint64_t start_sequence = 0;         // of the first message, before start_time; 0: none
   int max_pending = 8 << 20;                // bytes that wait, without JetStream
 };
 
@@ -27,6 +28,7 @@ struct SubscriberSettings {
 struct Delivery {
   MessagePtr message;
   std::optional<std::uint64_t> stored;  // when [ns since 1970]
+  std::uint64_t sequence = 0;           // in the stream; 0: not stored
   std::uint64_t to_come = 0;            // messages that are stored behind it
 };
 

@@ -97,6 +97,13 @@ TEST_F(NatsJetStream, AReplayBeginsEarlyInASecondAsWell) {
   ExpectSameStream(played, second);
 }
 
+TEST_F(NatsJetStream, AReplayBeginsAtItsNumber) {
+  const auto sent = PublishSlices(16, At(kBox));
+  // The first message of the stream is the caps.
+  ExpectSameStream(Replay(0, "start-sequence=6"), {sent.begin() + 4, sent.end()});
+  EXPECT_EQ(Replay(0, "start-sequence=900").size(), 0U);
+}
+
 TEST_F(NatsJetStream, NothingIsLostWhereTheServerIsKilledMeanwhile) {
   NatsPipeline sender(kLive + "! lidarenc" + kSee + "! natssink name=n drain-timeout=30000000000" +
                       At(kBox));
