@@ -1,0 +1,198 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "src/tools/worker/fleet_watch.h"
+
+#include <glib.h>
+
+#include <algorithm>
+#include <chrono>
+#include <utility>
+
+#include "ext/nats/jetstream.h"
+#include "src/tools/worker/lease_store.h"
+
+namespace lidar::worker {
+namespace {
+
+using std::chrono::milliseconds;
+using std::chrono::steady_clock;
+
+constexpr milliseconds kPoll{50};
+constexpr milliseconds kRenewInterval{200};
+constexpr milliseconds kListInterval{1'000};
+constexpr std::int64_t kHeartbeatNs = 500'000'000;
+constexpr int kMaxValueSize = 4'096;
+constexpr const char* kSeparator = ".lidar.";
+
+using KeyValuePtr = std::unique_ptr<kvStore, decltype(&kvStore_Destroy)>;
+
+}  // namespace
+
+bool IsWanted(const FleetSettings& settings, const std::string& name) {
+  const auto dot = name.find('.');
+  if (dot == name.npos) return false;
+  const std::string robot = name.substr(0, dot);
+  const std::string sensor = name.substr(dot + 1);
+  for (const std::string& word : {robot, sensor})
+    if (word.empty() || !nats::CheckName(word).empty()) return false;
+  return std::any_of(settings.patterns.begin(), settings.patterns.end(), [&](const auto& pattern) {
+    return g_pattern_match_simple(pattern.c_str(), robot.c_str()) != FALSE ||
+           g_pattern_match_simple(pattern.c_str(), name.c_str()) != FALSE;
+  });
+}
+
+std::string RobotOf(const FleetSettings& settings, const std::string& subject) {
+  const std::string begin = settings.prefix + ".";
+  if (subject.compare(0, begin.size(), begin) != 0) return "";
+  const auto at = subject.find(kSeparator, begin.size());
+  if (at == subject.npos) return "";
+  return subject.substr(begin.size(), at - begin.size()) + "." +
+         subject.substr(at + std::string(kSeparator).size());
+}
+
+FleetWatch::FleetWatch(nats::Connection* connection, const FleetSettings& settings)
+    : connection_(connection),
+      settings_(settings),
+      js_(nats::OpenJetStream(connection->get())),
+      thread_([this] { Run(); }) {}
+
+FleetWatch::~FleetWatch() {
+  stopping_ = true;
+  thread_.join();
+}
+
+FleetWatch::News FleetWatch::Take() {
+  const std::lock_guard lock(mutex_);
+  return std::exchange(news_, {});
+}
+
+void FleetWatch::Tell(const std::string& trouble) {
+  if (std::exchange(told_, trouble) == trouble) return;
+  const std::lock_guard lock(mutex_);
+  news_.trouble = trouble;
+}
+
+void FleetWatch::Run() {
+  while (!stopping_) Step();
+  entries_.reset();
+  nats_ReleaseThreadMemory();
+}
+
+natsStatus FleetWatch::MakeBucket() {
+  kvStore* raw = nullptr;
+  natsStatus s = js_KeyValue(&raw, js_.get(), settings_.bucket.c_str());
+  if (s == NATS_NOT_FOUND) {
+    kvConfig config;
+    kvConfig_Init(&config);
+    config.Bucket = settings_.bucket.c_str();
+    config.Description = "which lidar-worker has which robot, and how far it is";
+    config.MaxValueSize = kMaxValueSize;
+    config.Replicas = settings_.replicas;
+    s = js_CreateKeyValue(&raw, js_.get(), &config);
+  }
+  const KeyValuePtr store(raw, kvStore_Destroy);
+  return s;
+}
+
+/// Consumers that are made with a connection go with their server, so this happens again and again.
+natsStatus FleetWatch::Subscribe() {
+  entries_.reset();
+  last_number_ = 0;
+  natsStatus s = MakeBucket();
+  if (s != NATS_OK) return s;
+  const std::string stream = "KV_" + settings_.bucket;
+  jsSubOptions options;
+  jsSubOptions_Init(&options);
+  options.Stream = stream.c_str();
+  options.Config.AckPolicy = js_AckNone;
+  options.Config.DeliverPolicy = js_DeliverLastPerSubject;
+  options.Config.FlowControl = true;
+  options.Config.Heartbeat = kHeartbeatNs;
+  options.Config.MemoryStorage = true;
+  options.Config.Replicas = 1;
+  natsSubscription* raw = nullptr;
+  s = js_SubscribeSync(&raw, js_.get(), LeaseStore::Subject(settings_.bucket, ">").c_str(), nullptr,
+                       &options, nullptr);
+  entries_.reset(raw);
+  return s;
+}
+
+void FleetWatch::Step() {
+  const nats::ConnectionState state = connection_->state();
+  const auto now = steady_clock::now();
+  if (!js_ || !state.connected()) {
+    std::this_thread::sleep_for(kPoll);
+    return;
+  }
+  stale_ = renew_.exchange(false) || stale_ || state.connections != connections_ ||
+           state.missed_heartbeats != missed_heartbeats_;
+  if (stale_ && now >= renew_at_) {
+    renew_at_ = now + kRenewInterval;
+    const natsStatus s = Subscribe();
+    stale_ = s != NATS_OK;
+    if (stale_) Tell("the bucket " + settings_.bucket + " cannot be used: " + nats::ErrorText(s));
+    connections_ = state.connections;
+    missed_heartbeats_ = state.missed_heartbeats;
+  }
+  if (now >= list_at_) {
+    list_at_ = now + kListInterval;
+    ListRobots();
+  }
+  if (!entries_) {
+    std::this_thread::sleep_for(kPoll);
+    return;
+  }
+  natsMsg* raw = nullptr;
+  const natsStatus s = natsSubscription_NextMsg(&raw, entries_.get(), kPoll.count());
+  const nats::MessagePtr message(raw);
+  if (s == NATS_OK)
+    TakeEntry(raw);
+  else if (s != NATS_TIMEOUT)
+    stale_ = true;
+}
+
+void FleetWatch::TakeEntry(natsMsg* message) {
+  jsMsgMetaData* raw = nullptr;
+  if (natsMsg_GetMetaData(&raw, message) != NATS_OK) return;
+  const nats::MetaDataPtr meta(raw);
+  if (meta->Sequence.Consumer != ++last_number_) {
+    stale_ = true;
+    return;
+  }
+  const std::string subject = natsMsg_GetSubject(message);
+  const std::string begin = LeaseStore::Subject(settings_.bucket, "");
+  if (subject.compare(0, begin.size(), begin) != 0) return;
+  Entry entry{subject.substr(begin.size()), meta->Sequence.Stream, ""};
+  if (!IsWanted(settings_, entry.robot)) return;
+  const int size = natsMsg_GetDataLength(message);
+  if (size > 0) entry.text.assign(natsMsg_GetData(message), static_cast<std::size_t>(size));
+  const std::lock_guard lock(mutex_);
+  news_.entries.push_back(std::move(entry));
+}
+
+void FleetWatch::ListRobots() {
+  const std::string filter = settings_.prefix + ".*.lidar.*";
+  jsOptions options;
+  jsOptions_Init(&options);
+  options.Wait = nats::kRequestTimeoutMs;
+  options.Stream.Info.SubjectsFilter = filter.c_str();
+  jsStreamInfo* raw = nullptr;
+  const natsStatus s =
+      js_GetStreamInfo(&raw, js_.get(), settings_.stream.c_str(), &options, nullptr);
+  const nats::StreamInfoPtr info(raw);
+  if (s != NATS_OK)
+    return Tell(s == NATS_NOT_FOUND
+                    ? "there is no stream " + settings_.stream + " yet"
+                    : "the stream " + settings_.stream + " says nothing: " + nats::ErrorText(s));
+  if (!stale_) Tell("");
+  std::set<std::string> robots;
+  const jsStreamStateSubjects* subjects = info->State.Subjects;
+  for (int i = 0; subjects != nullptr && i < subjects->Count; ++i) {
+    const std::string robot = RobotOf(settings_, subjects->List[i].Subject);
+    if (IsWanted(settings_, robot)) robots.insert(robot);
+  }
+  const std::lock_guard lock(mutex_);
+  news_.robots = std::move(robots);
+  news_.stream = static_cast<std::uint64_t>(info->Created);
+}
+
+}  // namespace lidar::worker

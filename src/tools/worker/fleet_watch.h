@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Follows the leases in the key-value store, and which robots there are, in a thread of its own:
+// questions to a server that is not there take their time.
+#pragma once
+#include <atomic>
+#include <cstdint>
+#include <mutex>
+#include <optional>
+#include <set>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "ext/nats/connection.h"
+#include "ext/nats/nats_ptr.h"
+
+namespace lidar::worker {
+
+struct FleetSettings {
+  std::string prefix = "fleet";  // of all subjects
+  std::string stream = "fleet";  // of JetStream, that keeps what the robots send
+  std::string bucket = "lidar-workers";
+  int replicas = 1;                   // of the bucket, where it is made
+  std::vector<std::string> patterns;  // of robots, with * and ?; "robot" or "robot.sensor"
+};
+
+class FleetWatch {
+ public:
+  struct Entry {
+    std::string robot;
+    std::uint64_t revision = 0;
+    std::string text;
+  };
+  struct News {
+    std::vector<Entry> entries;
+    std::optional<std::set<std::string>> robots;  // "robot.sensor"; all that there are
+    std::uint64_t stream = 0;                     // that has them, as in Progress
+    std::string trouble;                          // empty: none, or told already
+  };
+
+  FleetWatch(nats::Connection* connection, const FleetSettings& settings);
+  ~FleetWatch();
+  FleetWatch(const FleetWatch&) = delete;
+  FleetWatch& operator=(const FleetWatch&) = delete;
+
+  /// All entries come again.
+  void Renew() { renew_ = true; }
+  /// What is new since the last call. Never waits.
+  News Take();
+
+ private:
+  void Run();
+  void Step();
+  natsStatus MakeBucket();
+  natsStatus Subscribe();
+  void TakeEntry(natsMsg* message);
+  void ListRobots();
+  void Tell(const std::string& trouble);
+
+  nats::Connection* const connection_;
+  const FleetSettings settings_;
+  nats::JetStreamPtr js_;
+  nats::SubscriptionPtr entries_;
+  unsigned connections_ = 0;  // as the subscription knows them
+  unsigned missed_heartbeats_ = 0;
+  std::uint64_t last_number_ = 0;  // of the consumer
+  bool stale_ = true;              // the subscription missed something, or there is none
+  std::chrono::steady_clock::time_point renew_at_{};
+  std::chrono::steady_clock::time_point list_at_{};
+  std::string told_;
+
+  std::atomic<bool> stopping_{false};
+  std::atomic<bool> renew_{false};
+  std::mutex mutex_;  // guards news_
+  News news_;
+  std::thread thread_;
+};
+
+/// Whether `name` is a "robot.sensor" that fits a pattern.
+bool IsWanted(const FleetSettings& settings, const std::string& name);
+/// "robot.sensor" of the subject of a stream; empty where it is none.
+std::string RobotOf(const FleetSettings& settings, const std::string& subject);
+
+}  // namespace lidar::worker

@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Writes to a bucket of NATS's key-value store that nobody waits for: the answers come by
+// themselves, and a server that says nothing holds up nothing.
+#pragma once
+#include <chrono>
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include "ext/nats/nats_ptr.h"
+
+namespace lidar::worker {
+
+/// For one thread.
+class LeaseStore {
+ public:
+  struct Answer {
+    std::uint64_t ticket = 0;
+    std::optional<std::uint64_t> revision;  // of what was written; none: it was refused
+    std::optional<std::uint64_t> newest;    // the revision that was in the way, where it is told
+  };
+
+  /// The bucket may be made later. Throws std::runtime_error.
+  LeaseStore(natsConnection* connection, const std::string& bucket);
+
+  /// Replaces the entry of `key` whose revision is `replaces`; 0: there must be none.
+  void Write(std::uint64_t ticket, const std::string& key, std::uint64_t replaces,
+             const std::string& text);
+  std::optional<Answer> NextAnswer(std::chrono::milliseconds timeout);
+
+  /// The subject of a key, or of all keys: "*".
+  static std::string Subject(const std::string& bucket, const std::string& key);
+
+ private:
+  natsConnection* const connection_;
+  const std::string bucket_;
+  std::string answer_prefix_;
+  lidar::nats::SubscriptionPtr answers_;
+};
+
+/// What an answer of JetStream says, but for the ticket; none for anything else.
+std::optional<LeaseStore::Answer> ParseAnswer(const std::string& text);
+
+}  // namespace lidar::worker

@@ -1,0 +1,189 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "src/tools/worker/lease_table.h"
+
+#include <algorithm>
+#include <functional>
+
+namespace lidar::worker {
+namespace {
+
+constexpr int kRenewals = 4;  // in the time of a lease
+/// Others wait longer than a lease by this part of it: steady clocks differ by far less.
+constexpr int kMargin = 20;
+/// A worker that has all it can take hesitates for this part of a lease, so that others go first.
+constexpr double kHesitation = 0.3;
+
+}  // namespace
+
+LeaseTable::Robot* LeaseTable::FindPending(std::uint64_t ticket) {
+  for (auto& [name, robot] : robots_)
+    if (robot.pending && robot.pending->ticket == ticket) return &robot;
+  return nullptr;
+}
+
+void LeaseTable::SetRobots(const std::set<std::string>& robots, Time now) {
+  for (auto& [name, robot] : robots_) robot.wanted = robots.count(name) > 0;
+  for (const std::string& name : robots) {
+    const auto [at, is_new] = robots_.try_emplace(name);
+    at->second.wanted = true;
+    // Others' leases are told of first, where there are any.
+    if (is_new) at->second.not_before = now + settings_.lease / kRenewals;
+  }
+}
+
+/// From when on others may have a robot whose entry was just seen.
+void LeaseTable::NoteFree(Robot* robot, bool damaged, Time now) const {
+  const LeaseRecord& record = robot->record;
+  const bool nobody = !damaged && (record.worker.empty() || record.worker == settings_.worker);
+  const Duration lease = damaged ? settings_.lease : record.lease;
+  robot->free_at = nobody ? now : now + lease + lease / kMargin;
+}
+
+void LeaseTable::OnEntry(const std::string& name, std::uint64_t revision,
+                         const std::optional<LeaseRecord>& record, Time now) {
+  Robot& robot = robots_[name];
+  if (revision < robot.revision && !robot.doubted_since) return;
+  robot.doubted_since.reset();
+  if (revision == robot.revision) return;
+  robot.revision = revision;
+  const auto progress = robot.record.progress;
+  robot.record = record.value_or(LeaseRecord());
+  // Ours, and its answer is still to come or was lost. What we know of our progress is newer.
+  const bool ours = record && record->worker == settings_.worker;
+  if (ours && robot.held) robot.record.progress = progress;
+  if (!ours) robot.held = false;
+  NoteFree(&robot, !record.has_value(), now);
+}
+
+void LeaseTable::OnStored(std::uint64_t ticket, std::uint64_t revision, Time now) {
+  Robot* robot = FindPending(ticket);
+  if (robot == nullptr) return;
+  const Time sent_at = robot->pending->sent_at;
+  robot->pending.reset();
+  if (revision < robot->revision && !robot->doubted_since) return;  // it was replaced already
+  robot->revision = revision;
+  robot->doubted_since.reset();
+  if (ending_) return;
+  robot->record.worker = settings_.worker;
+  robot->record.lease = settings_.lease;
+  NoteFree(robot, false, now);
+  robot->held = true;
+  robot->until = sent_at + settings_.lease;
+  robot->renew_at = sent_at + settings_.lease / kRenewals;
+}
+
+void LeaseTable::OnRefused(std::uint64_t ticket, std::optional<std::uint64_t> newest, Time now) {
+  Robot* robot = FindPending(ticket);
+  if (robot == nullptr) return;
+  robot->pending.reset();
+  // The entry comes by itself, and says who was faster: an earlier write of ours, maybe.
+  robot->not_before = robot->renew_at = now + settings_.lease / kRenewals;
+  if (!robot->doubted_since) robot->doubted_since = now;
+  if (newest != 0U) return;
+  robot->revision = 0;
+  robot->free_at = now;
+}
+
+void LeaseTable::SetProgress(const std::string& name, const Progress& progress) {
+  const auto found = robots_.find(name);
+  if (found != robots_.end() && found->second.held) found->second.record.progress = progress;
+}
+
+void LeaseTable::Drop(const std::string& name, Duration pause, Time now) {
+  const auto found = robots_.find(name);
+  if (found == robots_.end()) return;
+  found->second.held = false;
+  found->second.pending.reset();  // its answer must not make it ours again
+  found->second.not_before = now + pause;
+}
+
+void LeaseTable::Expire(Time now) {
+  for (auto& [name, robot] : robots_) {
+    if (!robot.wanted) robot.pending.reset();
+    if (now >= robot.until || !robot.wanted) robot.held = false;
+    if (robot.pending && now - robot.pending->sent_at > settings_.lease / 2) robot.pending.reset();
+  }
+}
+
+std::map<std::string, LeaseTable::Robot>::iterator LeaseTable::Choose(Time now) {
+  std::size_t held = 0;
+  for (const auto& [name, robot] : robots_) {
+    if (!robot.held && robot.pending) return robots_.end();  // one at a time
+    if (robot.held) ++held;
+  }
+  if (held >= settings_.most) return robots_.end();
+  const auto hesitation =
+      FromSeconds(kHesitation * Seconds(settings_.lease) * static_cast<double>(held) /
+                  static_cast<double>(settings_.most));
+  auto best = robots_.end();
+  std::size_t best_rank = 0;
+  for (auto at = robots_.begin(); at != robots_.end(); ++at) {
+    const Robot& robot = at->second;
+    const bool free =
+        robot.wanted && !robot.held && now >= robot.not_before && now >= robot.free_at + hesitation;
+    // Each worker has an order of its own, so that two seldom want the same one.
+    const std::size_t rank = std::hash<std::string>()(settings_.worker + "/" + at->first);
+    if (!free || (best != robots_.end() && rank > best_rank)) continue;
+    best = at;
+    best_rank = rank;
+  }
+  return best;
+}
+
+LeaseTable::Write LeaseTable::Send(const std::string& name, Robot* robot, const std::string& worker,
+                                   Time now) {
+  robot->pending = Pending{next_ticket_++, now};
+  const LeaseRecord record{worker, settings_.lease, robot->record.progress};
+  return {robot->pending->ticket, name, robot->revision, ToJson(record)};
+}
+
+std::vector<LeaseTable::Write> LeaseTable::Poll(Time now) {
+  Expire(now);
+  std::vector<Write> writes;
+  if (ending_) return writes;
+  for (auto& [name, robot] : robots_)
+    if (robot.held && !robot.pending && now >= robot.renew_at)
+      writes.push_back(Send(name, &robot, settings_.worker, now));
+  const auto chosen = Choose(now);
+  if (chosen != robots_.end()) {
+    chosen->second.last_worker = chosen->second.record.worker;
+    writes.push_back(Send(chosen->first, &chosen->second, settings_.worker, now));
+  }
+  return writes;
+}
+
+std::vector<LeaseTable::Write> LeaseTable::HandOver(Time now) {
+  ending_ = true;
+  std::vector<Write> writes;
+  for (auto& [name, robot] : robots_) {
+    robot.pending.reset();
+    if (IsHeld(robot, now)) writes.push_back(Send(name, &robot, "", now));
+    robot.held = false;
+  }
+  return writes;
+}
+
+std::map<std::string, LeaseTable::Held> LeaseTable::HeldAt(Time now) const {
+  std::map<std::string, Held> held;
+  for (const auto& [name, robot] : robots_)
+    if (IsHeld(robot, now) && robot.wanted)
+      held[name] = {robot.until, robot.last_worker, robot.record.progress};
+  return held;
+}
+
+bool LeaseTable::MissesEntries(Time now) {
+  bool misses = false;
+  for (auto& [name, robot] : robots_) {
+    if (!robot.doubted_since || now - *robot.doubted_since < settings_.lease / 2) continue;
+    robot.doubted_since = now;
+    misses = true;
+  }
+  return misses;
+}
+
+std::size_t LeaseTable::unanswered() const {
+  return static_cast<std::size_t>(std::count_if(
+      robots_.begin(), robots_.end(), [](const auto& item) { return item.second.pending; }));
+}
+
+}  // namespace lidar::worker

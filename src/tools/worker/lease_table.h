@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Which robots are ours: entries of the key-value store and answers in, writes out.
+#pragma once
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "src/base/time.h"
+#include "src/tools/worker/lease_record.h"
+
+namespace lidar::worker {
+
+struct LeaseSettings {
+  std::string worker;  // a name that no other process has, nor will have
+  Duration lease = std::chrono::seconds(1);
+  std::size_t most = 8;  // robots at a time
+};
+
+/// Leases by revisions alone. A write names the revision that it replaces, and the store refuses
+/// it where that is not the newest. An owner has a robot for `lease` from when it *sent* the write
+/// that was stored last. Who wants it waits for longer than that from when it *saw* that write, and
+/// then replaces exactly that one. So no two have a robot at once, and the clocks of machines and
+/// servers need not agree: each span of time is measured by one steady clock. Deterministic; for
+/// one thread.
+class LeaseTable {
+ public:
+  struct Write {
+    std::uint64_t ticket;  // comes back with the answer
+    std::string robot;
+    std::uint64_t replaces;  // revision; 0: there is none
+    std::string text;
+  };
+  struct Held {
+    Time until{};             // the lease is over then, if it is not renewed
+    std::string last_worker;  // who had it before; empty: nobody
+    std::optional<Progress> progress;
+  };
+
+  explicit LeaseTable(const LeaseSettings& settings) : settings_(settings) {}
+
+  /// The robots there are to care for.
+  void SetRobots(const std::set<std::string>& robots, Time now);
+  /// The store has that of a robot; no record: it is damaged.
+  void OnEntry(const std::string& robot, std::uint64_t revision,
+               const std::optional<LeaseRecord>& record, Time now);
+  void OnStored(std::uint64_t ticket, std::uint64_t revision, Time now);
+  /// `newest` is the revision that the store has instead, where it says so.
+  void OnRefused(std::uint64_t ticket, std::optional<std::uint64_t> newest, Time now);
+
+  /// What is written with the next renewal.
+  void SetProgress(const std::string& robot, const Progress& progress);
+  /// Gives up a robot that fails here; it is not taken again for `pause`.
+  void Drop(const std::string& robot, Duration pause, Time now);
+  /// Ends leases that are over, and gives what to write now.
+  std::vector<Write> Poll(Time now);
+  /// Gives up all robots at once, and says so to whoever waits for them. Nothing is taken any more.
+  std::vector<Write> HandOver(Time now);
+
+  /// What is ours at `now`, whether or not it is renewed in time.
+  std::map<std::string, Held> HeldAt(Time now) const;
+  /// True where entries that others must have written do not come: all of them are wanted again.
+  bool MissesEntries(Time now);
+  /// Writes that have no answer yet.
+  std::size_t unanswered() const;
+
+ private:
+  struct Pending {
+    std::uint64_t ticket;
+    Time sent_at;
+  };
+  struct Robot {
+    bool wanted = false;
+    bool held = false;
+    std::uint64_t revision = 0;  // of the newest entry that is known; 0: none
+    // Since a write was refused: the store may have another entry, with a lower revision even.
+    std::optional<Time> doubted_since;
+    LeaseRecord record;  // in that entry
+    Time free_at{};      // whoever has it has lost it then
+    Time not_before{};   // it is not tried
+    Time until{};        // while it is held
+    Time renew_at{};
+    std::string last_worker;
+    std::optional<Pending> pending;
+  };
+
+  Robot* FindPending(std::uint64_t ticket);
+  bool IsHeld(const Robot& robot, Time now) const { return robot.held && now < robot.until; }
+  void NoteFree(Robot* robot, bool damaged, Time now) const;
+  void Expire(Time now);
+  /// The robot to take now; end() for none.
+  std::map<std::string, Robot>::iterator Choose(Time now);
+  Write Send(const std::string& name, Robot* robot, const std::string& worker, Time now);
+
+  const LeaseSettings settings_;
+  std::map<std::string, Robot> robots_;
+  std::uint64_t next_ticket_ = 1;
+  bool ending_ = false;
+};
+
+}  // namespace lidar::worker

@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// lidar-worker: follows robots with odometry, beside others of its kind that take over.
+#include <gst/gst.h>
+#include <unistd.h>
+
+#include <CLI/CLI.hpp>
+#include <atomic>
+#include <csignal>
+#include <string>
+
+#include "ext/nats/jetstream.h"
+#include "src/tools/common/guard.h"
+#include "src/tools/common/program.h"
+#include "src/tools/worker/worker.h"
+
+namespace lidar::worker {
+namespace {
+
+std::atomic<bool> stopping{false};
+
+/// No process before or after this one is called so.
+std::string NameOfThisProcess() {
+  char host[65] = "";
+  gethostname(host, sizeof host - 1);
+  return std::string(host) + "-" + std::to_string(getpid()) + "-" + std::to_string(g_random_int());
+}
+
+std::vector<std::pair<std::string, std::string>> ParseProperties(
+    const std::vector<std::string>& list) {
+  std::vector<std::pair<std::string, std::string>> properties;
+  for (const std::string& text : list) {
+    const auto at = text.find('=');
+    if (at == text.npos || at == 0)
+      throw CLI::ValidationError("--odometry", "\"" + text + "\" is not KEY=VALUE");
+    properties.emplace_back(text.substr(0, at), text.substr(at + 1));
+  }
+  return properties;
+}
+
+void CheckWord(const std::string& option, const std::string& value) {
+  const std::string why = value.empty() ? "it is empty" : nats::CheckName(value);
+  if (!why.empty()) throw CLI::ValidationError(option, "\"" + value + "\": " + why);
+}
+
+void AddConnection(CLI::App* app, nats::ConnectionSettings* c) {
+  app->add_option("--url", c->url, "Server; several of a cluster with commas between them")
+      ->capture_default_str();
+  app->add_option("--credentials-file", c->credentials_file, "User and key (.creds)");
+  app->add_option("--tls-ca-file", c->tls_ca_file, "Authorities to trust (PEM)");
+  app->add_option("--tls-cert-file", c->tls_cert_file, "Our own certificate (PEM)");
+  app->add_option("--tls-key-file", c->tls_key_file, "The key of --tls-cert-file (PEM)");
+}
+
+int Main(int argc, char** argv) {
+  CLI::App app(
+      "Takes robots whose streams JetStream keeps, finds their poses by lidarodometry, and "
+      "publishes them. Several of it share the robots: each has one worker at a time, and where a "
+      "worker dies, another goes on from the last pose.");
+  tools::AddVersionFlag(&app, "lidar-worker");
+  WorkerSettings s;
+  std::vector<std::string> odometry;
+  double rewind_s = Seconds(s.pipeline.rewind);
+  int lease_ms = static_cast<int>(Milliseconds(s.lease.lease));
+  app.add_option("ROBOT", s.fleet.patterns,
+                 "Robots to care for, such as r7, r7.front or '*'; * and ? are wildcards")
+      ->required();
+  app.add_option("--max-robots", s.lease.most, "Robots that it takes at a time")
+      ->check(CLI::Range(1, 10'000))
+      ->capture_default_str();
+  AddConnection(&app, &s.pipeline.connection);
+  app.add_option("--prefix", s.fleet.prefix, "First word of all subjects")->capture_default_str();
+  app.add_option("--jetstream", s.fleet.stream, "Stream of JetStream that keeps the slices")
+      ->capture_default_str();
+  app.add_option("--bucket", s.fleet.bucket, "Bucket of the key-value store for leases and poses")
+      ->capture_default_str();
+  app.add_option("--replicas", s.fleet.replicas, "Servers that keep the bucket, where it is made")
+      ->check(CLI::Range(1, 5))
+      ->capture_default_str();
+  app.add_option("--lease", lease_ms,
+                 "How long a worker may be silent before others take over [ms]")
+      ->check(CLI::Range(200, 60'000))
+      ->capture_default_str();
+  app.add_option("--decoder", s.pipeline.decoder, "lidardec, or dracodec for streams of dracoenc")
+      ->capture_default_str();
+  app.add_option("--rewind", rewind_s,
+                 "What the decoder reads before it goes on: the key-interval of the robots' "
+                 "lidarenc, and a little [s]")
+      ->check(CLI::Range(0.0, 60.0))
+      ->capture_default_str();
+  app.add_option("--odometry", odometry, "Property of lidarodometry, such as voxel-size=0.5");
+  tools::Parse(&app, argc, argv, [&] {
+    CheckWord("--prefix", s.fleet.prefix);
+    CheckWord("--jetstream", s.fleet.stream);
+    CheckWord("--bucket", s.fleet.bucket);
+    s.pipeline.odometry = ParseProperties(odometry);
+  });
+  s.pipeline.prefix = s.fleet.prefix;
+  s.pipeline.stream = s.fleet.stream;
+  s.pipeline.rewind = FromSeconds(rewind_s);
+  s.lease.lease = std::chrono::milliseconds(lease_ms);
+  s.lease.worker = NameOfThisProcess();
+  gst_init(nullptr, nullptr);
+  for (const int signal : {SIGINT, SIGTERM}) std::signal(signal, [](int) { stopping = true; });
+  Worker worker(s);
+  while (!stopping) worker.Step();
+  worker.HandOver();
+  return 0;
+}
+
+}  // namespace
+}  // namespace lidar::worker
+
+int main(int argc, char** argv) {
+  return lidar::tools::Guard("lidar-worker", [&] { return lidar::worker::Main(argc, argv); });
+}

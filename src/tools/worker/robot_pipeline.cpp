@@ -1,0 +1,199 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "src/tools/worker/robot_pipeline.h"
+
+#include <charconv>
+#include <chrono>
+#include <cstdio>
+#include <cstring>
+#include <stdexcept>
+
+#include "gst/common/buffer_map.h"
+
+namespace lidar::worker {
+namespace {
+
+using gst::ElementPtr;
+
+constexpr std::size_t kMaxWindow = 65'536;  // messages
+
+GstElement* Add(GstElement* bin, const std::string& factory) {
+  GstElement* element = gst_element_factory_make(factory.c_str(), nullptr);
+  if (element == nullptr) throw std::runtime_error("the element " + factory + " is not installed");
+  gst_bin_add(GST_BIN(bin), element);
+  return element;
+}
+
+/// NULL stays the default.
+void SetText(GstElement* element, const char* property, const std::string& value) {
+  if (!value.empty()) g_object_set(element, property, value.c_str(), nullptr);
+}
+
+void SetConnection(GstElement* element, const nats::ConnectionSettings& connection) {
+  SetText(element, "url", connection.url);
+  SetText(element, "credentials-file", connection.credentials_file);
+  SetText(element, "tls-ca-file", connection.tls_ca_file);
+  SetText(element, "tls-cert-file", connection.tls_cert_file);
+  SetText(element, "tls-key-file", connection.tls_key_file);
+}
+
+std::string PoseText(const std::array<double, 7>& pose) {
+  std::string text;
+  for (const double value : pose) {
+    char word[32];
+    text.append(word, std::to_chars(word, word + sizeof word, value).ptr) += ' ';
+  }
+  return text;
+}
+
+void SetOdometry(GstElement* odometry, const PipelineSettings& settings,
+                 const std::optional<Progress>& begin) {
+  for (const auto& [name, value] : settings.odometry) {
+    if (g_object_class_find_property(G_OBJECT_GET_CLASS(odometry), name.c_str()) == nullptr)
+      throw std::runtime_error("lidarodometry has no property " + name);
+    gst_util_set_object_arg(G_OBJECT(odometry), name.c_str(), value.c_str());
+  }
+  g_object_set(odometry, "post-messages", FALSE, nullptr);
+  if (begin) g_object_set(odometry, "initial-pose", PoseText(begin->pose).c_str(), nullptr);
+}
+
+std::string Text(GstMessage* message,
+                 void (*parse)(GstMessage*, GError**, gchar**) = gst_message_parse_error) {
+  GError* raw = nullptr;
+  parse(message, &raw, nullptr);
+  const gst::ErrorPtr error(raw);
+  return error->message;
+}
+
+}  // namespace
+
+Time Now() {
+  const auto now = std::chrono::steady_clock::now().time_since_epoch();
+  return Time{} + std::chrono::duration_cast<Duration>(now);
+}
+
+RobotPipeline::RobotPipeline(const PipelineSettings& settings, const std::string& robot,
+                             std::uint64_t stream, const std::optional<Progress>& begin)
+    : stream_(stream),
+      begin_scan_(begin && begin->stream == stream ? begin->scan : 0),
+      rewind_(settings.rewind),
+      pipeline_(GST_ELEMENT(gst_object_ref_sink(gst_pipeline_new(robot.c_str())))) {
+  GstElement* bin = pipeline_.get();
+  GstElement* source = Add(bin, "natssrc");
+  GstElement* decoder = Add(bin, settings.decoder);
+  GstElement* odometry = Add(bin, "lidarodometry");
+  GstElement* clouds = Add(bin, "fakesink");
+  GstElement* poses = Add(bin, "natssink");
+  const auto dot = robot.find('.');
+  const std::string begin_of_subject = settings.prefix + "." + robot.substr(0, dot);
+  const std::string sensor = robot.substr(dot + 1);
+  SetConnection(source, settings.connection);
+  SetConnection(poses, settings.connection);
+  g_object_set(source, "jetstream", settings.stream.c_str(), "subject",
+               (begin_of_subject + ".lidar." + sensor).c_str(), nullptr);
+  if (begin_scan_ > 0) g_object_set(source, "start-sequence", begin->from, nullptr);
+  g_object_set(poses, "subject", (begin_of_subject + ".odometry." + sensor).c_str(), nullptr);
+  SetOdometry(odometry, settings, begin);
+  // One thread does it all, so what is on its way is always one message.
+  for (GstElement* sink : {clouds, poses})
+    g_object_set(sink, "sync", FALSE, "async", FALSE, nullptr);
+  if (!gst_element_link_many(source, decoder, odometry, clouds, nullptr) ||
+      !gst_element_link_pads(odometry, "odometry", poses, "sink"))
+    throw std::runtime_error(settings.decoder + " cannot be linked to natssrc and lidarodometry");
+  Watch(source, "src", &RobotPipeline::OnMessage);
+  Watch(odometry, "sink", &RobotPipeline::OnCloud);
+  Watch(odometry, "odometry", &RobotPipeline::OnPose);
+}
+
+RobotPipeline::~RobotPipeline() {
+  end_ = 0;
+  gst_element_set_state(pipeline_.get(), GST_STATE_NULL);
+}
+
+void RobotPipeline::Watch(GstElement* element, const char* name,
+                          GstPadProbeReturn (RobotPipeline::*on_buffer)(GstBuffer*)) {
+  using Call = GstPadProbeReturn (RobotPipeline::*)(GstBuffer*);
+  struct Target {
+    RobotPipeline* self;
+    Call call;
+  };
+  const gst::PadPtr pad(gst_element_get_static_pad(element, name));
+  gst_pad_add_probe(
+      pad.get(), GST_PAD_PROBE_TYPE_BUFFER,
+      [](GstPad*, GstPadProbeInfo* info, gpointer data) {
+        const auto* target = static_cast<Target*>(data);
+        return (target->self->*target->call)(GST_PAD_PROBE_INFO_BUFFER(info));
+      },
+      new Target{this, on_buffer}, [](gpointer data) { delete static_cast<Target*>(data); });
+}
+
+void RobotPipeline::Play() { gst_element_set_state(pipeline_.get(), GST_STATE_PLAYING); }
+
+/// The pts is when JetStream stored the message, so no clock of a robot is asked.
+GstPadProbeReturn RobotPipeline::OnMessage(GstBuffer* buffer) {
+  number_ = GST_BUFFER_OFFSET(buffer);
+  const GstClockTime stored = GST_BUFFER_PTS(buffer);
+  window_.emplace_back(stored, number_);
+  const auto rewind = static_cast<GstClockTime>(rewind_.count());
+  while (window_.size() > kMaxWindow || window_.front().first + rewind < stored)
+    window_.pop_front();
+  return GST_PAD_PROBE_OK;
+}
+
+/// Lets through what odometry has to see, and knows scans as it does.
+GstPadProbeReturn RobotPipeline::OnCloud(GstBuffer* buffer) {
+  if (number_ < begin_scan_) return GST_PAD_PROBE_DROP;  // the decoder had to see it
+  GstLidarSlice slice{};
+  if (!gst_lidar_buffer_get_slice(buffer, &slice) || slice.slice_count == 0) slice = {0, 0, 1, 0};
+  // A map that begins with half a scan fits the next scan badly.
+  if (!begun_ && begin_scan_ == 0 && slice.slice_index > 0) return GST_PAD_PROBE_DROP;
+  begun_ = true;
+  closed_.reset();
+  if (!open_ || slice.scan_id != open_->id || slice.slice_index < open_->next_index) {
+    closed_ = open_;
+    open_ = Scan{slice.scan_id, 0, number_, window_.front().second};
+  }
+  open_->next_index = slice.slice_index + 1;
+  return GST_PAD_PROBE_OK;
+}
+
+/// Whoever has lost its lease says nothing any more, and changes nothing.
+GstPadProbeReturn RobotPipeline::OnPose(GstBuffer* buffer) {
+  std::optional<Scan>& scan = closed_ ? closed_ : open_;
+  const gst::BufferMap map(buffer, GST_MAP_READ);
+  Progress progress;
+  std::array<guint64, 7> words{};
+  if (!scan || !map || map.size() < sizeof words || Now().time_since_epoch().count() >= end_)
+    return GST_PAD_PROBE_DROP;
+  std::memcpy(words.data(), map.data(), sizeof words);
+  for (std::size_t i = 0; i < words.size(); ++i) {
+    words[i] = GUINT64_FROM_LE(words[i]);
+    std::memcpy(&progress.pose[i], &words[i], sizeof words[i]);
+  }
+  const GstClockTime time = gst_lidar_buffer_get_capture_time(buffer);
+  progress.time = GST_CLOCK_TIME_IS_VALID(time) ? time : 0;
+  progress.scan = scan->first;
+  progress.from = scan->from;
+  scan.reset();
+  const std::lock_guard lock(mutex_);
+  progress_ = progress;
+  return GST_PAD_PROBE_OK;
+}
+
+std::optional<Progress> RobotPipeline::progress() const {
+  const std::lock_guard lock(mutex_);
+  return progress_;
+}
+
+std::string RobotPipeline::Poll() {
+  GstBus* bus = GST_ELEMENT_BUS(pipeline_.get());
+  while (const gst::MessagePtr message{gst_bus_pop(bus)}) {
+    if (GST_MESSAGE_TYPE(message.get()) == GST_MESSAGE_ERROR) return Text(message.get());
+    if (GST_MESSAGE_TYPE(message.get()) == GST_MESSAGE_EOS) return "the stream has ended";
+    if (GST_MESSAGE_TYPE(message.get()) == GST_MESSAGE_WARNING)
+      std::fprintf(stderr, "%s: %s\n", GST_OBJECT_NAME(pipeline_.get()),
+                   Text(message.get(), gst_message_parse_warning).c_str());
+  }
+  return "";
+}
+
+}  // namespace lidar::worker

@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// The work for one robot: its slices from JetStream, decoded and followed by odometry, and its
+// poses back to NATS.
+#pragma once
+#include <gst/gst.h>
+
+#include <atomic>
+#include <cstdint>
+#include <deque>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "ext/nats/connection.h"
+#include "gst/common/gstlidar.h"
+#include "gst/common/refs.h"
+#include "src/base/time.h"
+#include "src/tools/worker/lease_record.h"
+
+namespace lidar::worker {
+
+struct PipelineSettings {
+  nats::ConnectionSettings connection;
+  std::string prefix = "fleet";
+  std::string stream = "fleet";
+  std::string decoder = "lidardec";
+  /// Of lidarodometry: name and value.
+  std::vector<std::pair<std::string, std::string>> odometry;
+  /// What a decoder has to read before a slice, as its key-interval says.
+  Duration rewind = std::chrono::milliseconds(1'200);
+};
+
+/// The steady clock, as leases have it.
+Time Now();
+
+class RobotPipeline {
+ public:
+  /// `robot` is "robot.sensor", and `stream` where it is kept, as in Progress. Where that of
+  /// `begin` is another, only its pose counts. Throws std::runtime_error where an element is
+  /// missing or refuses a setting.
+  RobotPipeline(const PipelineSettings& settings, const std::string& robot, std::uint64_t stream,
+                const std::optional<Progress>& begin);
+  /// May take a second where the network is gone.
+  ~RobotPipeline();
+  RobotPipeline(const RobotPipeline&) = delete;
+  RobotPipeline& operator=(const RobotPipeline&) = delete;
+
+  void Play();
+  /// Poses go out before this time alone, whatever becomes of the thread that would stop them.
+  void SetEnd(Time end) { end_ = end.time_since_epoch().count(); }
+  std::uint64_t stream() const { return stream_; }
+  /// None before the first pose.
+  std::optional<Progress> progress() const;
+  /// An error that has ended it; empty: none. Prints warnings.
+  std::string Poll();
+
+ private:
+  /// A scan that lidarodometry has not aligned yet, as it sees it.
+  struct Scan {
+    guint id = 0;
+    guint next_index = 0;
+    std::uint64_t first = 0;  // numbers in the stream, as in Progress
+    std::uint64_t from = 0;
+  };
+
+  void Watch(GstElement* element, const char* pad,
+             GstPadProbeReturn (RobotPipeline::*on_buffer)(GstBuffer*));
+  GstPadProbeReturn OnMessage(GstBuffer* buffer);
+  GstPadProbeReturn OnCloud(GstBuffer* buffer);
+  GstPadProbeReturn OnPose(GstBuffer* buffer);
+
+  const std::uint64_t stream_;
+  const std::uint64_t begin_scan_;  // 0: from now on
+  const Duration rewind_;
+  gst::ElementPtr pipeline_;
+  std::atomic<std::int64_t> end_{0};
+
+  // Only the streaming thread uses what follows.
+  std::uint64_t number_ = 0;                                   // of the message that is on its way
+  std::deque<std::pair<GstClockTime, std::uint64_t>> window_;  // messages of `rewind_`
+  bool begun_ = false;
+  std::optional<Scan> open_;
+  std::optional<Scan> closed_;  // its pose comes first
+
+  mutable std::mutex mutex_;  // guards progress_
+  std::optional<Progress> progress_;
+};
+
+}  // namespace lidar::worker

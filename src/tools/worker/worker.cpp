@@ -1,0 +1,173 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "src/tools/worker/worker.h"
+
+#include <algorithm>
+#include <cstdio>
+#include <stdexcept>
+#include <utility>
+
+namespace lidar::worker {
+namespace {
+
+using std::chrono::milliseconds;
+
+constexpr milliseconds kStep{10};
+constexpr std::chrono::seconds kAfterFailure{5};
+constexpr std::chrono::seconds kHandOverTimeout{1};
+
+std::unique_ptr<nats::Connection> Connect(const WorkerSettings& settings) {
+  nats::ConnectionSettings connection = settings.pipeline.connection;
+  connection.name = settings.lease.worker;
+  std::string why;
+  auto opened = nats::Connection::Open(connection, nullptr, &why);
+  if (!opened) throw std::runtime_error("NATS cannot be used: " + why);
+  return opened;
+}
+
+void Say(const std::string& robot, const std::string& what) {
+  std::printf("%s: %s\n", robot.c_str(), what.c_str());
+  std::fflush(stdout);
+}
+
+}  // namespace
+
+Worker::Worker(const WorkerSettings& settings)
+    : settings_(settings),
+      connection_(Connect(settings)),
+      store_(connection_->get(), settings.fleet.bucket),
+      table_(settings.lease),
+      watch_(connection_.get(), settings.fleet) {
+  // Loads the plugins, and says at once what is missing.
+  const RobotPipeline try_it(settings_.pipeline, "robot.sensor", 0, std::nullopt);
+}
+
+void Worker::Step() {
+  const nats::ConnectionState state = connection_->state();
+  if (state.closed) throw std::runtime_error("the NATS server refuses us: " + state.last_error);
+  TakeNews();
+  TakeAnswers();
+  if (table_.MissesEntries(Now())) watch_.Renew();
+  PollPipelines();
+  FollowLeases();
+  // What waits for a connection would be sent when it is out of date.
+  if (connection_->state().connected()) Send(table_.Poll(Now()));
+}
+
+void Worker::TakeNews() {
+  const FleetWatch::News news = watch_.Take();
+  if (!news.trouble.empty()) std::fprintf(stderr, "%s\n", news.trouble.c_str());
+  if (news.robots) {
+    table_.SetRobots(*news.robots, Now());
+    NoteStream(news.stream);
+  }
+  for (const FleetWatch::Entry& entry : news.entries) {
+    const auto record = ParseLeaseRecord(entry.text);
+    if (!record)
+      std::fprintf(stderr, "%s: its record is damaged; its last pose is not known\n",
+                   entry.robot.c_str());
+    table_.OnEntry(entry.robot, entry.revision, record, Now());
+  }
+}
+
+/// Numbers of messages mean nothing in another stream, even if it is called the same.
+void Worker::NoteStream(std::uint64_t stream) {
+  if (std::exchange(stream_, stream) == stream) return;
+  for (const auto& [robot, pipeline] : pipelines_) table_.Drop(robot, Duration{0}, Now());
+}
+
+void Worker::NoteProgress(const std::string& robot, const RobotPipeline& pipeline) {
+  auto progress = pipeline.progress();
+  if (!progress) return;
+  progress->stream = pipeline.stream();
+  table_.SetProgress(robot, *progress);
+}
+
+void Worker::TakeAnswers() {
+  auto answer = store_.NextAnswer(kStep);
+  for (; answer; answer = store_.NextAnswer(milliseconds(0))) {
+    if (answer->revision)
+      table_.OnStored(answer->ticket, *answer->revision, Now());
+    else
+      table_.OnRefused(answer->ticket, answer->newest, Now());
+  }
+}
+
+void Worker::PollPipelines() {
+  for (auto& [robot, pipeline] : pipelines_) {
+    NoteProgress(robot, *pipeline);
+    const std::string error = pipeline->Poll();
+    if (error.empty()) continue;
+    std::fprintf(stderr, "%s: %s\n", robot.c_str(), error.c_str());
+    table_.Drop(robot, kAfterFailure, Now());
+  }
+}
+
+void Worker::FollowLeases() {
+  for (auto at = ending_.begin(); at != ending_.end();)
+    at = at->second.wait_for(milliseconds(0)) == std::future_status::ready ? ending_.erase(at)
+                                                                           : std::next(at);
+  const auto held = table_.HeldAt(Now());
+  for (auto at = pipelines_.begin(); at != pipelines_.end();) {
+    const auto lease = held.find(at->first);
+    if (lease != held.end()) {
+      at->second->SetEnd(lease->second.until);
+      ++at;
+      continue;
+    }
+    Say(at->first, "given up");
+    at = End(at);
+  }
+  for (const auto& [robot, lease] : held) {
+    if (pipelines_.count(robot) > 0) continue;
+    if (ending_.count(robot) == 0)
+      Begin(robot, lease);
+    else  // the last one hangs: another worker is faster
+      table_.Drop(robot, settings_.lease.lease, Now());
+  }
+}
+
+void Worker::Begin(const std::string& robot, const LeaseTable::Held& held) {
+  std::string from = "from now on";
+  if (held.progress) {
+    char text[100];
+    const auto& p = held.progress->pose;
+    std::snprintf(text, sizeof text, "from %.2f %.2f %.2f", p[0], p[1], p[2]);
+    from = text;
+  }
+  Say(robot, "taken, " + from + (held.last_worker.empty() ? "" : ", after " + held.last_worker));
+  auto pipeline =
+      std::make_unique<RobotPipeline>(settings_.pipeline, robot, stream_, held.progress);
+  pipeline->SetEnd(held.until);
+  pipeline->Play();
+  pipelines_[robot] = std::move(pipeline);
+}
+
+Worker::Pipelines::iterator Worker::End(Pipelines::iterator at) {
+  at->second->SetEnd(Time{});
+  ending_[at->first] = std::async(
+      std::launch::async, [pipeline = std::move(at->second)]() mutable { pipeline.reset(); });
+  return pipelines_.erase(at);
+}
+
+void Worker::Send(const std::vector<LeaseTable::Write>& writes) {
+  for (const LeaseTable::Write& write : writes)
+    store_.Write(write.ticket, write.robot, write.replaces, write.text);
+}
+
+void Worker::HandOver() {
+  for (auto at = pipelines_.begin(); at != pipelines_.end();) {
+    at->second->SetEnd(Time{});
+    NoteProgress(at->first, *at->second);
+    at = End(at);
+  }
+  for (auto& [robot, ending] : ending_) ending.wait();
+  const Time deadline = Now() + kHandOverTimeout;
+  const auto answered = [&] {
+    while (table_.unanswered() > 0 && Now() < deadline) TakeAnswers();
+  };
+  answered();
+  if (connection_->state().connected()) Send(table_.HandOver(Now()));
+  answered();
+}
+
+}  // namespace lidar::worker

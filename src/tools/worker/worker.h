@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Has a pipeline run for each robot whose lease is ours, and for no other.
+#pragma once
+#include <future>
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "ext/nats/connection.h"
+#include "src/tools/worker/fleet_watch.h"
+#include "src/tools/worker/lease_store.h"
+#include "src/tools/worker/lease_table.h"
+#include "src/tools/worker/robot_pipeline.h"
+
+namespace lidar::worker {
+
+struct WorkerSettings {
+  LeaseSettings lease;
+  FleetSettings fleet;
+  PipelineSettings pipeline;
+};
+
+/// For one thread.
+class Worker {
+ public:
+  /// Throws std::runtime_error where settings are wrong or elements missing.
+  explicit Worker(const WorkerSettings& settings);
+
+  /// Some milliseconds of work.
+  void Step();
+  /// Stops all pipelines, and leaves the robots to other workers at once.
+  void HandOver();
+
+ private:
+  using Pipelines = std::map<std::string, std::unique_ptr<RobotPipeline>>;
+
+  void TakeNews();
+  void NoteStream(std::uint64_t stream);
+  void NoteProgress(const std::string& robot, const RobotPipeline& pipeline);
+  void TakeAnswers();
+  void PollPipelines();
+  void FollowLeases();
+  void Begin(const std::string& robot, const LeaseTable::Held& held);
+  Pipelines::iterator End(Pipelines::iterator at);
+  void Send(const std::vector<LeaseTable::Write>& writes);
+
+  const WorkerSettings settings_;
+  std::unique_ptr<nats::Connection> connection_;
+  LeaseStore store_;
+  LeaseTable table_;
+  std::uint64_t stream_ = 0;  // as in Progress
+  Pipelines pipelines_;
+  /// Pipelines that stop, which may take a while: others must not wait for it.
+  std::map<std::string, std::future<void>> ending_;
+  FleetWatch watch_;  // the last, so that its thread ends first
+};
+
+}  // namespace lidar::worker

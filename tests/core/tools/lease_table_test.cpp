@@ -1,0 +1,369 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "src/tools/worker/lease_table.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <deque>
+#include <functional>
+#include <memory>
+#include <random>
+
+namespace lidar::worker {
+namespace {
+
+using std::chrono::milliseconds;
+using std::chrono::seconds;
+
+Time At(int ms) { return Time{} + milliseconds(ms); }
+
+Progress Scan(std::uint64_t number) {
+  Progress progress;
+  progress.pose = {static_cast<double>(number), 0, 0, 0, 0, 0, 1};
+  progress.scan = progress.from = number;
+  return progress;
+}
+
+TEST(LeaseRecord, ComesBackAsItWas) {
+  Progress progress = Scan(90);
+  progress.pose = {1.25, -3e6, 1e-9, 0.5, 0.5, -0.5, 0.5};
+  progress.time = 1'700'000'000'123'456'789;
+  progress.from = 12;
+  progress.stream = 5;
+  const auto read = ParseLeaseRecord(ToJson({"a-1", milliseconds(1500), progress}));
+  ASSERT_TRUE(read && read->progress);
+  EXPECT_EQ(read->worker, "a-1");
+  EXPECT_EQ(read->lease, milliseconds(1500));
+  EXPECT_EQ(read->progress->pose, progress.pose);
+  EXPECT_EQ(read->progress->time, progress.time);
+  EXPECT_EQ(read->progress->stream, 5U);
+  EXPECT_EQ(read->progress->scan, 90U);
+  EXPECT_EQ(read->progress->from, 12U);
+  EXPECT_FALSE(ParseLeaseRecord(ToJson({"", milliseconds(0), std::nullopt}))->progress);
+  EXPECT_EQ(ParseLeaseRecord("")->worker, "") << "a deleted key";
+}
+
+TEST(LeaseRecord, IsDamagedWhereItSaysWhatCannotBe) {
+  const std::string begin = R"({"worker":"a","lease-ms":1000)";
+  const std::string rest = R"(,"time":1,"stream":4,"scan":5,"from":3})";
+  EXPECT_TRUE(ParseLeaseRecord(begin + R"(,"pose":[1,2,3,0,0,0,1])" + rest));
+  for (const std::string& text :
+       {std::string("x"), std::string("[]"), std::string("{}"), std::string(R"({"worker":"a"})"),
+        std::string(R"({"worker":7,"lease-ms":1})"), std::string(R"({"worker":"a","lease-ms":-1})"),
+        std::string(R"({"worker":"a","lease-ms":99999999})"), std::string(5000, '['),
+        begin + R"(,"pose":[1,2,3,0,0,0])" + rest, begin + R"(,"pose":[1,2,3,0,0,0,0])" + rest,
+        begin + R"(,"pose":[1,2,1e300,0,0,0,1])" + rest,
+        begin + R"(,"pose":[1,2,"3",0,0,0,1])" + rest,
+        begin + R"(,"pose":[1,2,3,0,0,0,1],"time":1,"stream":4,"scan":5,"from":9})",
+        begin + R"(,"pose":[1,2,3,0,0,0,1],"time":1,"stream":4,"scan":5})"})
+    EXPECT_FALSE(ParseLeaseRecord(text)) << text.substr(0, 100);
+}
+
+/// One table, with a store that answers at once.
+class Lease : public ::testing::Test {
+ protected:
+  void Answer(const std::vector<LeaseTable::Write>& writes, Time now) {
+    for (const auto& write : writes) {
+      written_ = write;
+      ++revision_;
+      table_.OnStored(write.ticket, revision_, now);
+    }
+  }
+  bool Has(const std::string& robot, Time now) const { return table_.HeldAt(now).count(robot) > 0; }
+  /// Time passes, in steps of a millisecond; the last.
+  Time Pass(Time now, int ms) {
+    for (; ms > 0; --ms) {
+      now += milliseconds(1);
+      Answer(table_.Poll(now), now);
+    }
+    return now;
+  }
+
+  LeaseTable table_{{"me", seconds(1), 4}};
+  std::uint64_t revision_ = 0;
+  LeaseTable::Write written_{};
+};
+
+TEST_F(Lease, OfARobotThatNobodyHasIsTakenAndRenewed) {
+  table_.SetRobots({"r"}, At(0));
+  Time now = Pass(At(0), 400);
+  ASSERT_TRUE(Has("r", now));
+  table_.SetProgress("r", Scan(7));
+  now = Pass(now, 5000);
+  EXPECT_TRUE(Has("r", now));
+  EXPECT_EQ(written_.replaces + 1, revision_);
+  EXPECT_EQ(ParseLeaseRecord(written_.text)->progress->scan, 7U);
+  EXPECT_LT(revision_, 25U);
+}
+
+TEST_F(Lease, IsOverWhereRenewalsHaveNoAnswer) {
+  table_.SetRobots({"r"}, At(0));
+  const Time now = Pass(At(0), 400);
+  ASSERT_TRUE(Has("r", now));
+  for (int ms = 1; ms < 1100; ++ms) table_.Poll(now + milliseconds(ms));
+  EXPECT_FALSE(Has("r", now + milliseconds(1100)));
+  EXPECT_FALSE(Has("r", now + seconds(9))) << "though nobody looked meanwhile";
+}
+
+TEST_F(Lease, OfADeadWorkerIsTakenWithItsProgressOnceItIsOver) {
+  table_.SetRobots({"r"}, At(0));
+  table_.OnEntry("r", 5, LeaseRecord{"other", seconds(1), Scan(3)}, At(0));
+  table_.OnEntry("r", 6, LeaseRecord{"other", seconds(1), Scan(4)}, At(900));
+  revision_ = 6;
+  Time now = Pass(At(900), 1000);
+  EXPECT_FALSE(Has("r", now));
+  now = Pass(now, 100);
+  ASSERT_TRUE(Has("r", now));
+  EXPECT_EQ(written_.replaces, 6U);
+  EXPECT_EQ(table_.HeldAt(now).at("r").progress->scan, 4U);
+  EXPECT_EQ(table_.HeldAt(now).at("r").last_worker, "other");
+}
+
+TEST_F(Lease, ThatIsHandedOverIsTakenAtOnce) {
+  table_.SetRobots({"r"}, At(0));
+  table_.OnEntry("r", 5, LeaseRecord{"other", seconds(1), Scan(3)}, At(500));
+  table_.OnEntry("r", 6, LeaseRecord{"", seconds(1), Scan(4)}, At(600));
+  revision_ = 6;
+  EXPECT_TRUE(Has("r", Pass(At(600), 2)));
+}
+
+TEST_F(Lease, IsHandedOverWithWhatIsKnown) {
+  table_.SetRobots({"a", "b"}, At(0));
+  const Time now = Pass(At(0), 900);
+  table_.SetProgress("a", Scan(9));
+  const auto writes = table_.HandOver(now);
+  ASSERT_EQ(writes.size(), 2U);
+  EXPECT_EQ(ParseLeaseRecord(writes[0].text)->worker, "");
+  EXPECT_EQ(ParseLeaseRecord(writes[0].text)->progress->scan, 9U);
+  EXPECT_EQ(table_.unanswered(), 2U);
+  Answer(writes, now);
+  EXPECT_EQ(table_.unanswered(), 0U);
+  EXPECT_TRUE(table_.HeldAt(Pass(now, 2000)).empty());
+}
+
+TEST_F(Lease, IsLostToWhoeverWritesInItsPlace) {
+  table_.SetRobots({"r"}, At(0));
+  const Time now = Pass(At(0), 400);
+  ASSERT_TRUE(Has("r", now));
+  table_.OnEntry("r", revision_ + 1, LeaseRecord{"other", seconds(1), std::nullopt}, now);
+  EXPECT_FALSE(Has("r", now));
+}
+
+TEST_F(Lease, OfWhichTheRecordIsDamagedIsTakenWithoutAPose) {
+  table_.SetRobots({"r"}, At(0));
+  table_.OnEntry("r", 5, std::nullopt, At(0));
+  revision_ = 5;
+  EXPECT_FALSE(Has("r", Pass(At(0), 900)));
+  const Time now = Pass(At(900), 500);
+  ASSERT_TRUE(Has("r", now));
+  EXPECT_FALSE(table_.HeldAt(now).at("r").progress);
+}
+
+TEST_F(Lease, BeginsAnewInABucketThatWasDeleted) {
+  table_.SetRobots({"r"}, At(0));
+  Time now = Pass(At(0), 400);
+  for (int tries = 0; tries < 6; ++tries) {
+    for (const auto& write : table_.Poll(now)) {
+      if (write.replaces > 0)
+        table_.OnRefused(write.ticket, 0, now);
+      else
+        table_.OnStored(write.ticket, revision_ = 1, now);
+    }
+    now += milliseconds(300);
+  }
+  EXPECT_TRUE(Has("r", now));
+}
+
+TEST_F(Lease, GoesOnFromAStoreThatForgotItsNewestEntries) {
+  table_.SetRobots({"r"}, At(0));
+  table_.OnEntry("r", 90, LeaseRecord{"other", seconds(1), Scan(9)}, At(0));
+  const Time now = At(1100);
+  const auto writes = table_.Poll(now);
+  ASSERT_EQ(writes.size(), 1U);
+  EXPECT_FALSE(table_.MissesEntries(now));
+  table_.OnRefused(writes[0].ticket, 70, now);
+  EXPECT_TRUE(table_.MissesEntries(now + milliseconds(600)));
+  table_.OnEntry("r", 70, LeaseRecord{"other", seconds(1), Scan(7)}, now + milliseconds(650));
+  EXPECT_FALSE(table_.MissesEntries(now + seconds(2)));
+  revision_ = 90;
+  const Time later = Pass(now + milliseconds(650), 1200);
+  ASSERT_TRUE(Has("r", later));
+  EXPECT_EQ(written_.replaces, 70U);
+  EXPECT_EQ(table_.HeldAt(later).at("r").progress->scan, 7U);
+}
+
+TEST_F(Lease, OfARobotThatFailsHereIsLeftToOthers) {
+  table_.SetRobots({"r"}, At(0));
+  Time now = Pass(At(0), 400);
+  table_.Poll(now + milliseconds(300));  // whose answer comes too late
+  table_.Drop("r", seconds(5), now);
+  table_.OnStored(2, 99, now);
+  EXPECT_FALSE(Has("r", Pass(now, 4900)));
+  EXPECT_TRUE(Has("r", Pass(now + milliseconds(4900), 200)));
+}
+
+TEST_F(Lease, OfARobotThatIsGoneEnds) {
+  table_.SetRobots({"a", "b"}, At(0));
+  const Time now = Pass(At(0), 900);
+  table_.SetRobots({"b"}, now);
+  EXPECT_FALSE(Has("a", now));
+  EXPECT_TRUE(Has("b", Pass(now, 3000)));
+}
+
+TEST_F(Lease, IsNotTakenBeyondTheLimit) {
+  table_.SetRobots({"a", "b", "c", "d", "e", "f"}, At(0));
+  EXPECT_EQ(table_.HeldAt(Pass(At(0), 5000)).size(), 4U);
+}
+
+/// Workers whose messages are late or lost, whose clocks differ, and who sleep or die; and a store.
+class Fleet {
+ public:
+  Fleet(unsigned seed, std::size_t workers, bool rough) : random_(seed), rough_(rough) {
+    for (int i = 0; i < 6; ++i) robots_.insert("r" + std::to_string(i));
+    for (std::size_t i = 0; i < workers; ++i) Join();
+  }
+
+  void Join() {
+    const std::string name = "w" + std::to_string(workers_.size());
+    auto worker = std::make_unique<Node>(LeaseSettings{name, seconds(1), 6});
+    worker->offset = milliseconds(Pick(0, 1'000'000));
+    worker->rate = 1 + 0.001 * Pick(-10, 10);
+    for (const auto& [robot, entry] : store_) Announce(worker.get(), robot, entry);
+    workers_.push_back(std::move(worker));
+  }
+  void Kill(std::size_t i) { workers_[i]->dead = true; }
+  void SetRough(bool rough) { rough_ = rough; }
+
+  void Run(int ms) {
+    for (const int end = now_ms_ + ms; now_ms_ < end; now_ms_ += kStepMs) {
+      for (auto& worker : workers_) Step(worker.get());
+      for (const std::string& robot : robots_) ASSERT_LE(Owners(robot), 1) << robot << now_ms_;
+    }
+  }
+  int Owners(const std::string& robot) const {
+    return static_cast<int>(std::count_if(workers_.begin(), workers_.end(), [&](const auto& w) {
+      return !w->dead && w->table.HeldAt(w->Local(now_ms_)).count(robot) > 0;
+    }));
+  }
+  bool AllHaveAnOwner() const {
+    return std::all_of(robots_.begin(), robots_.end(),
+                       [&](const std::string& robot) { return Owners(robot) == 1; });
+  }
+  std::size_t Owned(std::size_t i) const {
+    return workers_[i]->table.HeldAt(workers_[i]->Local(now_ms_)).size();
+  }
+
+ private:
+  static constexpr int kStepMs = 5;
+  struct Entry {
+    std::uint64_t revision = 0;
+    std::string text;
+  };
+  struct Node {
+    explicit Node(const LeaseSettings& settings) : table(settings) {}
+    Time Local(int ms) const { return Time{} + offset + FromSeconds(rate * ms / 1000); }
+
+    LeaseTable table;
+    Duration offset{};
+    double rate = 1;
+    bool dead = false;
+    int asleep_until = 0;
+    bool knows_robots = false;
+    std::deque<std::pair<int, std::function<void()>>> entries;  // in order, as a consumer has it
+    std::multimap<int, std::function<void()>> answers;
+  };
+
+  int Pick(int least, int most) { return std::uniform_int_distribution<int>(least, most)(random_); }
+  int Delay() { return rough_ && Pick(0, 99) < 5 ? Pick(100, 1500) : Pick(1, 20); }
+  bool Lost() { return rough_ && Pick(0, 99) < 3; }
+
+  void Announce(Node* to, const std::string& robot, const Entry& entry) {
+    const int last = to->entries.empty() ? 0 : to->entries.back().first;
+    to->entries.emplace_back(std::max(last, now_ms_ + Delay()), [=] {
+      to->table.OnEntry(robot, entry.revision, ParseLeaseRecord(entry.text), to->Local(now_ms_));
+    });
+  }
+  void Store(Node* from, const LeaseTable::Write& write) {
+    Entry& entry = store_[write.robot];
+    const bool good = entry.revision == write.replaces;
+    const std::uint64_t newest = entry.revision;
+    if (good) {
+      const auto before = ParseLeaseRecord(entry.text);
+      const auto after = ParseLeaseRecord(write.text);
+      ASSERT_TRUE(before && after);
+      if (before->progress) {
+        ASSERT_TRUE(after->progress) << "a pose was forgotten";
+        ASSERT_GE(after->progress->scan, before->progress->scan);
+      }
+      entry = {++revision_, write.text};
+      for (auto& worker : workers_) Announce(worker.get(), write.robot, entry);
+    }
+    if (Lost()) return;
+    from->answers.emplace(now_ms_ + Delay(), [=, revision = revision_, ticket = write.ticket] {
+      if (good)
+        from->table.OnStored(ticket, revision, from->Local(now_ms_));
+      else
+        from->table.OnRefused(ticket, newest, from->Local(now_ms_));
+    });
+  }
+  void Step(Node* w) {
+    for (; !on_their_way_.empty() && on_their_way_.begin()->first <= now_ms_;
+         on_their_way_.erase(on_their_way_.begin()))
+      on_their_way_.begin()->second();
+    if (w->dead || now_ms_ < w->asleep_until) return;
+    if (rough_ && Pick(0, 9'999) < 15) w->asleep_until = now_ms_ + Pick(100, 3000);
+    const Time now = w->Local(now_ms_);
+    if (!std::exchange(w->knows_robots, true)) w->table.SetRobots(robots_, now);
+    for (; !w->entries.empty() && w->entries.front().first <= now_ms_; w->entries.pop_front())
+      w->entries.front().second();
+    for (; !w->answers.empty() && w->answers.begin()->first <= now_ms_;
+         w->answers.erase(w->answers.begin()))
+      w->answers.begin()->second();
+    for (const auto& [robot, held] : w->table.HeldAt(now))
+      w->table.SetProgress(robot, Scan((held.progress ? held.progress->scan : 0) + 1));
+    for (const auto& write : w->table.Poll(now))
+      if (!Lost()) on_their_way_.emplace(now_ms_ + Delay(), [=] { Store(w, write); });
+  }
+
+  std::mt19937 random_;
+  bool rough_;
+  int now_ms_ = 0;
+  std::set<std::string> robots_;
+  std::vector<std::unique_ptr<Node>> workers_;
+  std::map<std::string, Entry> store_;
+  std::uint64_t revision_ = 0;
+  std::multimap<int, std::function<void()>> on_their_way_;
+};
+
+class LeaseFleet : public ::testing::TestWithParam<unsigned> {};
+INSTANTIATE_TEST_SUITE_P(Seeds, LeaseFleet, ::testing::Range(1U, 7U));
+
+TEST_P(LeaseFleet, NoRobotHasTwoWorkersWhateverHappens) {
+  Fleet fleet(GetParam(), 3, true);
+  fleet.Run(6'000);
+  fleet.Kill(0);
+  fleet.Run(6'000);
+  fleet.Join();
+  fleet.Run(6'000);
+  fleet.SetRough(false);
+  fleet.Run(6'000);
+  EXPECT_TRUE(fleet.AllHaveAnOwner());
+}
+
+TEST_P(LeaseFleet, RobotsAreSharedRoughly) {
+  Fleet fleet(GetParam(), 3, false);
+  fleet.Run(3'000);
+  EXPECT_TRUE(fleet.AllHaveAnOwner());
+  for (std::size_t i = 0; i < 3; ++i) EXPECT_LE(fleet.Owned(i), 4U);
+}
+
+TEST_P(LeaseFleet, OtherWorkersHaveTheRobotsOfADeadOneInASecondAndAHalf) {
+  Fleet fleet(GetParam(), 3, false);
+  fleet.Run(4'000);
+  fleet.Kill(1);
+  fleet.Run(1'500);
+  EXPECT_TRUE(fleet.AllHaveAnOwner());
+}
+
+}  // namespace
+}  // namespace lidar::worker

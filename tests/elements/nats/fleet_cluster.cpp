@@ -1,0 +1,287 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Workers and servers of a fleet are killed, one after another: a cluster of three nats-servers,
+// robots that drive, and workers that follow them. Run by hand: it takes minutes
+// (docs/results/fleet.md).
+#include <gio/gio.h>
+
+#include <cmath>
+#include <map>
+#include <tuple>
+
+#include "ext/nats/connection.h"
+#include "ext/nats/jetstream.h"
+#include "tests/elements/nats/worker_process.h"
+
+namespace lidar::test {
+namespace {
+
+using SteadyClock = std::chrono::steady_clock;
+using std::chrono::milliseconds;
+
+constexpr std::size_t kServers = 3;
+constexpr std::size_t kWorkers = 3;
+constexpr int kRobots = 4;
+constexpr int kWorkerKills = 10;
+
+double SecondsSince(SteadyClock::time_point begin) {
+  return std::chrono::duration<double>(SteadyClock::now() - begin).count();
+}
+
+/// True once `holds` is; clusters take their time.
+bool WaitFor(const std::function<bool()>& holds) { return Eventually(holds) || Eventually(holds); }
+
+/// A TCP port that is free, for the moment.
+int FreePort() {
+  GSocketListener* listener = g_socket_listener_new();
+  const int port = g_socket_listener_add_any_inet_port(listener, nullptr, nullptr);
+  g_socket_listener_close(listener);
+  g_object_unref(listener);
+  return port;
+}
+
+class Cluster {
+ public:
+  void Start() {
+    std::string routes;
+    std::vector<std::string> addresses;
+    for (std::size_t i = 0; i < kServers; ++i) {
+      addresses.push_back("nats://127.0.0.1:" + std::to_string(FreePort()));
+      routes += (i > 0 ? "," : "") + addresses.back();
+    }
+    for (std::size_t i = 0; i < kServers; ++i)
+      servers_[i].Start({"--server_name", Name(i), "--cluster_name", "fleet", "--cluster",
+                         addresses[i], "--routes", routes});
+    nats::ConnectionSettings settings;
+    settings.url = url();
+    std::string why;
+    connection_ = nats::Connection::Open(settings, nullptr, &why);
+    ASSERT_TRUE(connection_) << why;
+    js_ = nats::OpenJetStream(connection_->get());
+  }
+  static std::string Name(std::size_t i) { return "server-" + std::to_string(i); }
+  std::string url() const {
+    std::string list;
+    for (const NatsServer& server : servers_) list += (list.empty() ? "" : ",") + server.url();
+    return list;
+  }
+  NatsServer& server(std::size_t i) { return servers_[i]; }
+  jsCtx* js() { return js_.get(); }
+  /// The leader of a stream whose copies are all there and complete; empty: it has none.
+  std::string LeaderOf(const char* stream) {
+    jsStreamInfo* raw = nullptr;
+    if (js_GetStreamInfo(&raw, js_.get(), stream, nullptr, nullptr) != NATS_OK) return "";
+    const nats::StreamInfoPtr info(raw);
+    const jsClusterInfo* cluster = info->Cluster;
+    if (cluster == nullptr || cluster->Leader == nullptr) return "";
+    if (cluster->ReplicasLen != static_cast<int>(kServers) - 1) return "";
+    for (int i = 0; i < cluster->ReplicasLen; ++i)
+      if (!cluster->Replicas[i]->Current || cluster->Replicas[i]->Offline) return "";
+    return cluster->Leader;
+  }
+
+ private:
+  NatsServer servers_[kServers];
+  std::unique_ptr<nats::Connection> connection_;
+  nats::JetStreamPtr js_;
+};
+
+class Robot {
+ public:
+  Robot(int i, const std::string& url)
+      : name_("r" + std::to_string(i) + ".front"),
+        subject_("fleet.r" + std::to_string(i)),
+        url_(" url=" + url + " "),
+        sender_(DrivingRobot() + "! natssink name=n jetstream=fleet replicas=3 subject=" +
+                subject_ + ".lidar.front drain-timeout=30000000000" + url_),
+        poses_("natssrc name=n subject=" + subject_ + ".odometry.front" + url_ +
+               "! fakesink name=see sync=false") {
+    poses_.Play();
+    sender_.Play();
+  }
+  const std::string& name() const { return name_; }
+  std::size_t poses() const { return poses_.count(); }
+  std::vector<Kept> LivePoses() const { return poses_.buffers(); }
+  NatsPipeline& sender() { return sender_; }
+
+  std::vector<Kept> Replay(const std::string& stream, const std::string& kind) const {
+    NatsPipeline player("natssrc name=n eos-at-end=true start-time=0 jetstream=" + stream +
+                        " subject=" + subject_ + "." + kind + ".front" + url_ +
+                        "! fakesink name=see sync=false");
+    player.Play();
+    EXPECT_EQ(player.WaitForEnd(), "");
+    return player.buffers();
+  }
+
+ private:
+  const std::string name_;
+  const std::string subject_;
+  const std::string url_;
+  NatsPipeline sender_;
+  NatsPipeline poses_;
+};
+
+/// How many of `sent` are not in `stored`: a stream without a leader changes the order of some.
+std::size_t Missing(const std::vector<Kept>& sent, const std::vector<Kept>& stored) {
+  std::set<std::string> there;
+  for (const Kept& kept : stored) there.insert(kept.bytes);
+  return static_cast<std::size_t>(std::count_if(
+      sent.begin(), sent.end(), [&](const Kept& kept) { return there.count(kept.bytes) == 0; }));
+}
+
+class FleetCluster : public NatsTest {
+ protected:
+  void SetUp() override {
+    NatsTest::SetUp();
+    if (IsSkipped()) return;
+    cluster_.Start();
+    // What workers publish is kept here, so that every pose can be counted.
+    const nats::StreamSettings poses{"poses", std::chrono::hours(1), 0, 3, {}};
+    std::string why;
+    ASSERT_TRUE(WaitFor([&] {
+      return nats::EnsureStream(cluster_.js(), poses, {"fleet.*.odometry.>"}, &why);
+    })) << why;
+    for (int i = 0; i < kRobots; ++i) robots_.push_back(std::make_unique<Robot>(i, cluster_.url()));
+    for (std::size_t i = 0; i < kWorkers; ++i) workers_.push_back(NewWorker());
+    ASSERT_TRUE(WaitFor([this] { return AllOwned(); }));
+    ASSERT_TRUE(WaitFor([this] {
+      return std::all_of(robots_.begin(), robots_.end(), [](auto& r) { return r->poses() > 20; });
+    }));
+    std::printf("%d robots, of which the workers have", kRobots);
+    for (auto& worker : workers_) std::printf(" %zu", worker->Robots().size());
+    std::printf("\n");
+  }
+  std::unique_ptr<WorkerProcess> NewWorker() {
+    return std::make_unique<WorkerProcess>(std::vector<std::string>{
+        "*", "--url", cluster_.url(), "--replicas", "3", "--max-robots", "3"});
+  }
+  bool AllOwned() {
+    std::size_t owned = 0;
+    for (auto& worker : workers_) owned += worker->Robots().size();
+    return owned == kRobots;
+  }
+  /// How long it is until each of the robots has a pose that nobody had when it began [s].
+  std::map<std::string, double> TimesToPoses(const std::set<std::string>& names) {
+    const auto begin = SteadyClock::now();
+    // What was on its way is no pose of a successor.
+    std::this_thread::sleep_for(milliseconds(100));
+    std::map<std::string, std::size_t> before;
+    for (const auto& robot : robots_) before[robot->name()] = robot->poses();
+    std::map<std::string, double> times;
+    EXPECT_TRUE(WaitFor([&] {
+      for (const auto& robot : robots_)
+        if (names.count(robot->name()) > 0 && robot->poses() > before[robot->name()])
+          times.try_emplace(robot->name(), SecondsSince(begin));
+      return times.size() == names.size();
+    }));
+    return times;
+  }
+  void TearDown() override {
+    if (!HasFailure()) return;
+    for (auto& worker : workers_)
+      for (const std::string& line : worker->lines()) std::printf("%s\n", line.c_str());
+  }
+  void KillWorkers();
+  void KillServers();
+  void CountAll();
+
+  Cluster cluster_;
+  std::vector<std::unique_ptr<Robot>> robots_;
+  std::vector<std::unique_ptr<WorkerProcess>> workers_;
+};
+
+void FleetCluster::KillWorkers() {
+  std::vector<double> times;
+  for (int kill = 0; kill < kWorkerKills; ++kill) {
+    const auto victim = std::max_element(workers_.begin(), workers_.end(), [](auto& a, auto& b) {
+      return a->Robots().size() < b->Robots().size();
+    });
+    const std::set<std::string> orphans = (*victim)->Robots();
+    (*victim)->Kill();
+    for (const auto& [name, time] : TimesToPoses(orphans)) times.push_back(time);
+    *victim = NewWorker();
+    ASSERT_TRUE(WaitFor([this] { return AllOwned(); }));
+    std::this_thread::sleep_for(milliseconds(1500));  // until it is ready to take over
+  }
+  std::sort(times.begin(), times.end());
+  ASSERT_FALSE(times.empty());
+  std::printf(
+      "worker killed, until its robots have poses: %zu times, %.2f to %.2f s, median %.2f s\n",
+      times.size(), times.front(), times.back(), times[times.size() / 2]);
+}
+
+void FleetCluster::KillServers() {
+  for (std::size_t i = 0; i < kServers; ++i) {
+    std::map<std::string, std::string> leaders;
+    ASSERT_TRUE(WaitFor([&] {
+      for (const char* stream : {"fleet", "KV_lidar-workers", "poses"})
+        if ((leaders[stream] = cluster_.LeaderOf(stream)).empty()) return false;
+      return true;
+    })) << "copies are complete";
+    std::string led;
+    for (const auto& [stream, leader] : leaders)
+      if (leader == Cluster::Name(i)) led += " " + stream;
+    std::set<std::string> all;
+    for (const auto& robot : robots_) all.insert(robot->name());
+    cluster_.server(i).Kill();
+    double longest = 0;
+    for (const auto& [name, time] : TimesToPoses(all)) longest = std::max(longest, time);
+    ASSERT_TRUE(WaitFor([this] { return AllOwned(); }));
+    std::printf("server killed that led%s: every robot has poses again after %.2f s\n",
+                led.empty() ? " nothing" : led.c_str(), longest);
+    std::this_thread::sleep_for(milliseconds(3000));
+    cluster_.server(i).Restart();
+  }
+}
+
+void FleetCluster::CountAll() {
+  for (const auto& robot : robots_) {
+    robot->sender().SendEos();
+    EXPECT_EQ(robot->sender().WaitForEnd(), "");
+    const auto sent = robot->sender().buffers();
+    EXPECT_EQ(robot->sender().stat("messages-dropped"), 0U);
+    EXPECT_EQ(robot->sender().stat("messages-acknowledged"), sent.size());
+    // A server that has just come back replays what it has, which may not be all yet.
+    EXPECT_TRUE(WaitFor([&] { return Missing(sent, robot->Replay("fleet", "lidar")) == 0; }));
+    const GstClockTime last = sent.back().capture_time;
+    std::vector<Kept> poses;
+    EXPECT_TRUE(WaitFor([&] {
+      poses = robot->Replay("poses", "odometry");
+      return !poses.empty() && poses.back().capture_time + 200 * GST_MSECOND > last;
+    }));
+    // The stream of poses has gaps where it had no leader, as nobody waits for its answer.
+    for (const Kept& live : robot->LivePoses()) poses.push_back(live);
+    std::stable_sort(poses.begin(), poses.end(), [](const Kept& a, const Kept& b) {
+      return std::tie(a.capture_time, a.bytes) < std::tie(b.capture_time, b.bytes);
+    });
+    poses.erase(std::unique(poses.begin(), poses.end(),
+                            [](const Kept& a, const Kept& b) {
+                              return a.capture_time == b.capture_time && a.bytes == b.bytes;
+                            }),
+                poses.end());
+    std::set<guint> scans;
+    for (const Kept& kept : sent)
+      if (!poses.empty() && kept.capture_time + 60 * GST_MSECOND > poses.front().capture_time)
+        scans.insert(kept.slice.scan_id);
+    std::set<GstClockTime> times;
+    for (const Kept& pose : poses) times.insert(pose.capture_time);
+    std::printf(
+        "%s: %zu slices sent, acknowledged and kept; %zu scans, %zu with a pose, %zu poses twice; "
+        "largest jump %.2f m in %.0f m\n",
+        robot->name().c_str(), sent.size(), scans.size(), times.size(), poses.size() - times.size(),
+        LargestJump(poses), poses.empty() ? 0 : DistanceOf(poses.back()));
+    EXPECT_LT(LargestJump(poses), 3);
+  }
+}
+
+TEST_F(FleetCluster, GoesOnWhereWorkersAreKilled) {
+  KillWorkers();
+  CountAll();
+}
+
+TEST_F(FleetCluster, GoesOnWhereServersAreKilled) {
+  KillServers();
+  CountAll();
+}
+
+}  // namespace
+}  // namespace lidar::test

@@ -1,0 +1,8 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: LGPL-2.1-or-later
+# Kills workers and servers of a fleet on loopback, and prints what that costs (docs/results/fleet.md). Run by
+# hand: it takes minutes, and its figures want a machine of their own.
+set -euo pipefail
+. "$(cd "$(dirname "$0")" && pwd)/../../../pipelines/environment.sh"
+ninja -C "$build" tests/elements/nats/fleet-cluster >&2
+LIDAR_WORKER=$build/src/tools/worker/lidar-worker exec "$build/tests/elements/nats/fleet-cluster"

@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// A lidar-worker of the test's own, and what it publishes.
+#pragma once
+#include <csignal>
+#include <cstdlib>
+#include <cstring>
+#include <set>
+
+#include "src/tools/common/child_process.h"
+#include "tests/elements/nats/nats_pipeline.h"
+
+namespace lidar::test {
+
+constexpr double kSpeed = 10;  // of all robots [m/s]
+
+/// A robot that drives, without what its sensor would cost.
+inline std::string DrivingRobot(int frames = -1) {
+  return "lidartestsrc is-live=true model=os0-32 mode=512x10 speed=10 num-buffers=" +
+         std::to_string(frames) + " ! lidarenc effort=0 key-interval=1000000000" + kSee;
+}
+
+class WorkerProcess {
+ public:
+  explicit WorkerProcess(const std::vector<std::string>& options) {
+    std::vector<std::string> command = {std::getenv("LIDAR_WORKER")};
+    command.insert(command.end(), options.begin(), options.end());
+    process_ = std::make_unique<tools::ChildProcess>(
+        tools::ChildProcess::Config{std::move(command), "", false});
+  }
+
+  /// "robot.sensor" that it has, as it said so far.
+  std::set<std::string> Robots() {
+    Read();
+    return robots_;
+  }
+  /// What it said when it took a robot first; empty: it did not yet.
+  std::string Taken(const std::string& robot) {
+    Read();
+    for (const std::string& line : lines_)
+      if (line.rfind(robot + ": taken", 0) == 0) return line;
+    return "";
+  }
+  /// All that it said.
+  const std::vector<std::string>& lines() {
+    Read();
+    return lines_;
+  }
+  bool Said(const std::string& line) {
+    Read();
+    return std::count(lines_.begin(), lines_.end(), line) > 0;
+  }
+  void Kill() { process_->Signal(SIGKILL); }
+  int Stop() {
+    process_->Signal(SIGTERM);
+    return process_->Wait();
+  }
+
+ private:
+  void Read() {
+    process_->ReadLines([this](const std::string& line) {
+      lines_.push_back(line);
+      const std::string robot = line.substr(0, line.find(':'));
+      if (line.find(": taken") != line.npos) robots_.insert(robot);
+      if (line.find(": given up") != line.npos) robots_.erase(robot);
+    });
+  }
+
+  std::unique_ptr<tools::ChildProcess> process_;
+  std::vector<std::string> lines_;
+  std::set<std::string> robots_;
+};
+
+/// Metres from the origin.
+inline double DistanceOf(const Kept& pose) {
+  double p[3] = {};
+  if (pose.bytes.size() == 64) std::memcpy(p, pose.bytes.data(), sizeof p);
+  return std::hypot(p[0], p[1], p[2]);
+}
+
+/// The largest difference between how far two poses are apart and how far the robot drove between.
+inline double LargestJump(std::vector<Kept> poses) {
+  std::stable_sort(poses.begin(), poses.end(),
+                   [](const Kept& a, const Kept& b) { return a.capture_time < b.capture_time; });
+  double largest = 0;
+  for (std::size_t i = 1; i < poses.size(); ++i) {
+    const auto gap = static_cast<double>(poses[i].capture_time - poses[i - 1].capture_time) * 1e-9;
+    const double step = DistanceOf(poses[i]) - DistanceOf(poses[i - 1]);
+    largest = std::max(largest, std::abs(step - kSpeed * gap));
+  }
+  return largest;
+}
+
+}  // namespace lidar::test
