@@ -215,10 +215,7 @@ void PushGap(GstLidarPointCloudFilter* self, GstBuffer* buffer) {
 std::optional<lidar::Transform> Place(GstLidarPointCloudFilter* self, GstBuffer* buffer) {
   State& state = *self->state;
   if (state.target_frame.empty()) return lidar::kIdentity;
-  const GstClockTime captured = gst_lidar_buffer_get_capture_time(buffer);
-  std::optional<lidar::Time> at;
-  if (GST_CLOCK_TIME_IS_VALID(captured))
-    at = lidar::Time{} + lidar::Duration{static_cast<std::int64_t>(captured)};
+  const auto at = lidar::gst::CaptureTimeOf(buffer);
   const std::string frame =
       state.plan->frame().empty() ? lidar::gst::kCloudFrame : state.plan->frame();
   const auto answer = state.inbox.Find(state.target_frame, frame, at, state.tf_timeout);

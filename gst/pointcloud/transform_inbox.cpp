@@ -24,6 +24,13 @@ std::string TextOf(const GstStructure* s, const char* field, const char* usual) 
 
 }  // namespace
 
+std::optional<Time> CaptureTimeOf(GstBuffer* buffer) {
+  const GstClockTime captured = gst_lidar_buffer_get_capture_time(buffer);
+  if (!GST_CLOCK_TIME_IS_VALID(captured)) return std::nullopt;
+  const auto ns = std::min<GstClockTime>(captured, G_MAXINT64 / 2);
+  return Time{} + Duration{static_cast<std::int64_t>(ns)};
+}
+
 GstPad* TransformInbox::AddPad(GstElement* element, GstPadTemplate* pad_template,
                                const gchar* name) {
   GstPad* pad = gst_pad_new_from_template(pad_template, name);
@@ -85,14 +92,13 @@ void TransformInbox::TakeMessage(const GstStructure* caps, GstBuffer* buffer) {
 /// A pose, as lidarodometry and ros2src have it.
 void TransformInbox::TakePose(const GstStructure* caps, GstBuffer* buffer) {
   const BufferMap map(buffer, GST_MAP_READ);
-  const GstClockTime captured = gst_lidar_buffer_get_capture_time(buffer);
+  const auto at = CaptureTimeOf(buffer);
   std::uint64_t tracking = 0;
   const auto read = map ? cdr::ReadPose(map.view(), &tracking) : std::nullopt;
-  if (!read || !GST_CLOCK_TIME_IS_VALID(captured)) return Refuse();
+  if (!read || !at) return Refuse();
   const FramePose pose{read->position, read->orientation};
   Note(TextOf(caps, GST_LIDAR_FRAME_ID, kOdometryFrame),
-       TextOf(caps, GST_LIDAR_CHILD_FRAME_ID, kCloudFrame),
-       Time{} + Duration{static_cast<std::int64_t>(captured)}, pose, false);
+       TextOf(caps, GST_LIDAR_CHILD_FRAME_ID, kCloudFrame), *at, pose, false);
 }
 
 void TransformInbox::Note(const std::string& parent, const std::string& child, Time at,

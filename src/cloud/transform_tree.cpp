@@ -16,6 +16,8 @@ using Position = std::array<double, 3>;
 
 /// What tf2 takes for a unit quaternion.
 constexpr double kUnitTolerance = 0.01;
+/// Beyond the moon nobody drives, and sums stay finite [m].
+constexpr double kFarthest = 1e9;
 /// Frames above each other; more are a circle.
 constexpr std::size_t kMaxDepth = 64;
 /// Above this cosine two orientations are so near that a straight line between them will do.
@@ -85,8 +87,8 @@ FramePose Between(const FramePose& a, const FramePose& b, double part) {
 }
 
 bool IsPose(const FramePose& pose) {
-  const auto finite = [](double v) { return std::isfinite(v); };
-  return std::all_of(pose.position.begin(), pose.position.end(), finite) &&
+  const auto near = [](double v) { return std::abs(v) < kFarthest; };  // NaN is not
+  return std::all_of(pose.position.begin(), pose.position.end(), near) &&
          std::abs(Dot(pose.orientation, pose.orientation) - 1) < kUnitTolerance;  // NaN is not
 }
 

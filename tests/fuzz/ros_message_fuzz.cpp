@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // ROS 2 messages as CDR, from DDS peers and from recordings.
+#include <cmath>
 #include <optional>
 #include <vector>
 
 #include "src/cdr/coded_slice.h"
 #include "src/cdr/messages.h"
 #include "src/cdr/point_cloud2.h"
+#include "src/cloud/transform_tree.h"
 #include "tests/fuzz/fuzz.h"
 
 namespace {
@@ -43,6 +45,23 @@ void CheckCloud(ByteView data) {
              lidar::cdr::RowStride(*cloud).has_value());
 }
 
+/// Frames of strangers lead somewhere or nowhere, but to no number that is none.
+void CheckTree(ByteView data) {
+  const auto transforms = lidar::cdr::ReadTransforms(data);
+  if (!transforms) return;
+  lidar::TransformTree tree;
+  for (const auto& t : *transforms)
+    tree.Set(t.header.frame_id, t.child_frame_id, t.header.stamp, {t.translation, t.rotation},
+             t.header.stamp.time_since_epoch().count() % 2 == 0);
+  for (const auto& t : *transforms) {
+    const auto answer =
+        tree.Find(transforms->front().header.frame_id, t.child_frame_id, t.header.stamp);
+    FUZZ_CHECK(answer.transform || !answer.why.empty());
+    if (!answer.transform) continue;
+    for (const double v : *answer.transform) FUZZ_CHECK(std::isfinite(v));
+  }
+}
+
 }  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t size) {
@@ -52,6 +71,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t siz
   CheckComesBack<Imu>(data, ReadImu, WriteImu);
   CheckComesBack<Odometry>(data, ReadOdometry, WriteOdometry);
   CheckComesBack<Transforms>(data, ReadTransforms, WriteTransforms);
+  CheckTree(data);
   CheckComesBack<CodedSlice>(data, ReadCodedSlice, WriteCodedSlice);
   return 0;
 }

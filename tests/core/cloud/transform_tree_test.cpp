@@ -122,6 +122,7 @@ TEST_F(Tree, TakesNamesWithTheSlashOfRos1) {
 TEST_F(Tree, RefusesWhatIsNoPose) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   EXPECT_FALSE(tree_.Set("a", "b", kStart, {{nan, 0, 0}, {0, 0, 0, 1}}, false));
+  EXPECT_FALSE(tree_.Set("a", "b", kStart, At(1e300), false));
   EXPECT_FALSE(tree_.Set("a", "b", kStart, {{0, 0, 0}, {0, 0, nan, 1}}, false));
   EXPECT_FALSE(tree_.Set("a", "b", kStart, {{0, 0, 0}, {0, 0, 0, 0}}, false));
   EXPECT_FALSE(tree_.Set("a", "b", kStart, {{0, 0, 0}, {0, 0, 1, 1}}, false));

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Clients that read nothing, say nothing or talk nonsense: the pipeline must not notice.
 #include <gtest/gtest.h>
+#include <sys/resource.h>
+
+#include <algorithm>
 
 #include "src/foxglove/websocket.h"
 #include "tests/elements/web/web_peer.h"
@@ -195,15 +198,43 @@ TEST(SlowClient, MissesWholeScansButNoSliceOfThoseThatItGets) {
     EXPECT_EQ(got[got.size() - i], static_cast<int>(40 * kSlices - i));
 }
 
-TEST(SilentConnections, GiveWayToThoseThatAsk) {
+/// This process holds both ends of its connections.
+class ManyFiles {
+ public:
+  explicit ManyFiles(rlim_t wanted) {
+    getrlimit(RLIMIT_NOFILE, &before_);
+    rlimit limit = before_;
+    limit.rlim_cur = std::max(limit.rlim_cur, std::min(wanted, limit.rlim_max));
+    setrlimit(RLIMIT_NOFILE, &limit);
+    granted_ = limit.rlim_cur;
+  }
+  ~ManyFiles() { setrlimit(RLIMIT_NOFILE, &before_); }
+  ManyFiles(const ManyFiles&) = delete;
+  ManyFiles& operator=(const ManyFiles&) = delete;
+  rlim_t granted() const { return granted_; }
+
+ private:
+  rlimit before_{};
+  rlim_t granted_ = 0;
+};
+
+TEST(SilentConnections, ByTheThousandGiveWayToThoseThatAsk) {
+  const ManyFiles files(4096);
+  const std::size_t count = files.granted() >= 4096 ? 2000 : 200;
   Sink sink;
+  sink.SetCloudCaps();
   std::vector<RawClient> silent;
-  for (int i = 0; i < 200; ++i) silent.emplace_back(&sink);
-  for (int i = 0; i < 100; ++i) silent[static_cast<std::size_t>(i)].Send("GET / HT");
+  for (std::size_t i = 0; i < count; ++i) {
+    silent.emplace_back(&sink);
+    if (i % 2 == 0) silent.back().Send("GET / HT");
+  }
   Peer peer(&sink);
   ASSERT_TRUE(peer.connected());
   EXPECT_EQ(HttpGet(sink.Url("http")).status, 200U);
-  EXPECT_TRUE(WaitUntil([&] { return sink.Stat("connections-evicted") >= 150; }));
+  EXPECT_TRUE(WaitUntil([&] { return sink.Stat("connections-evicted") >= count - 50; }));
+  peer.Subscribe("/points", 1);
+  sink.PushCloud(1);
+  EXPECT_EQ(peer.Next().subscription, 1U);
 }
 
 struct Nonsense {
