@@ -21,7 +21,7 @@
 namespace lidar::test {
 
 constexpr const char* kCloudType = "sensor_msgs::msg::dds_::PointCloud2_";
-constexpr std::chrono::milliseconds kPatience{10'000};
+constexpr std::chrono::milliseconds kPatience{30'000};
 
 /// Programs that run side by side do not hear each other.
 inline std::uint32_t TestDomain() { return 100 + static_cast<std::uint32_t>(getpid()) % 100; }
@@ -103,12 +103,12 @@ class Ros2Test : public ::testing::Test {
   }
   /// False where it takes too long.
   bool WaitForStat(const char* name, guint64 least) {
-    const gint64 end = g_get_monotonic_time() + 10 * G_USEC_PER_SEC;
+    const gint64 end = g_get_monotonic_time() + 30 * G_USEC_PER_SEC;
     while (Stat(name) < least && g_get_monotonic_time() < end) g_usleep(5000);
     return Stat(name) >= least;
   }
   /// The text of the next warning or error, or nothing.
-  std::string NextComplaint(GstClockTime timeout = 5 * GST_SECOND) {
+  std::string NextComplaint(GstClockTime timeout = 30 * GST_SECOND) {
     const gst::MessagePtr message(gst_bus_timed_pop_filtered(
         bus_, timeout, static_cast<GstMessageType>(GST_MESSAGE_WARNING | GST_MESSAGE_ERROR)));
     if (!message) return "";
