@@ -12,8 +12,8 @@ Usage: tests/run.sh [--suite NAME] [--no-install] [--no-sanitize] [--tsan]
   --suite NAME    run one suite: lint, core, elements, pipelines, fuzz, bench, sanitize (elements,
                   fuzz, and core without long simulations and programs, under AddressSanitizer and
                   UBSan), or one that runs by name only: faults (eight minutes of broken networks and
-                  SRTP, for an idle machine), peers (libraries from npm), browser (foxglovesink's
-                  page in Chromium)
+                  SRTP, for an idle machine), peers (npm's MCAP, Cyclone DDS with its own types),
+                  browser (foxglovesink's page in Chromium)
   --no-install    do not install Debian packages
   --no-sanitize   leave out the sanitizer build
   --tsan          also run core (without the same) and elements under ThreadSanitizer
