@@ -38,7 +38,7 @@ case $only in all | ros2 | web) ;; *) usage >&2; exit 2 ;; esac
 build=$(cd "$build" && pwd)
 bench=$build/tests/elements/ros2/ros2-bench
 mapfile -t plugins < <(meson introspect "$build" --targets | jq -r --arg dir "$build/" '.[].filename[] | select(test("/libgst[^/]*[.]so$")) | ltrimstr($dir)')
-ninja -C "$build" "${plugins[@]}" "${bench#"$build/"}" >/dev/null || { echo "The build fails." >&2; exit 1; }
+ninja -C "$build" "${plugins[@]}" "${bench#"$build/"}" >/dev/null 2>&1 || { echo "The build fails." >&2; exit 1; }
 
 # Plugins of the build tree, and DDS on loopback only.
 export GST_PLUGIN_PATH_1_0 GST_REGISTRY=$build/benchmark-registry.bin
