@@ -122,7 +122,7 @@ class Edge {
 void BoundTheEnd() {
   std::signal(SIGALRM, [](int) {
     constexpr char kText[] = "lidar-edge: not all has ended in time; ending all the same\n";
-    if (write(STDERR_FILENO, kText, sizeof kText - 1) >= 0) _exit(0);
+    [[maybe_unused]] const auto written = write(STDERR_FILENO, kText, sizeof kText - 1);
     _exit(0);
   });
   alarm(kStopSeconds);
@@ -130,8 +130,8 @@ void BoundTheEnd() {
 
 int Main(int argc, char** argv) {
   CLI::App app(
-      "Receives a fleet of robots, each on a port of its own, and hands their streams on to NATS "
-      "and to MCAP files. Statistics go to NATS as JSON, and to Prometheus.");
+      "Receives a fleet of robots, each on a port of its own or all on one, and hands their "
+      "streams on to NATS and to MCAP files. Statistics go to NATS as JSON, and to Prometheus.");
   tools::AddVersionFlag(&app, "lidar-edge");
   std::string path;
   bool check = false;

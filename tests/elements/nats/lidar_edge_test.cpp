@@ -2,6 +2,7 @@
 // lidar-edge: its configuration, what it tells of itself, and robots that come and go.
 #include <gio/gio.h>
 #include <httplib.h>
+#include <sys/stat.h>
 
 #include <csignal>
 #include <cstdlib>
@@ -315,6 +316,27 @@ TEST_F(LidarEdge, ARecordingThatFailsDoesNotEndTheStream) {
   EXPECT_EQ(Metric("lidar_edge_sessions", "r1"), 1);
   EXPECT_EQ(Metric("lidar_edge_failures", "r1"), 0);
   EXPECT_EQ(consumer->stat("messages-lost"), 0U);
+}
+
+TEST_F(LidarEdge, ADiskThatHangsDelaysNoOtherRobotAndNotTheEnd) {
+  server_.Start();
+  const int ports[] = {FreePort(), FreePort()};
+  const std::string stuck = server_.folder() + "/stuck.mcap";  // waits for a reader for ever
+  ASSERT_EQ(mkfifo(stuck.c_str(), 0600), 0);
+  StartEdge(
+      {{"nats", {{"url", server_.url()}}},
+       {"robots",
+        {{{"name", "r1"}, {"port", ports[0]}, {"record", stuck}},
+         {{"name", "r2"}, {"port", ports[1]}, {"record", server_.folder() + "/r2-%05d.mcap"}}}}});
+  const auto first = Consumer("fleet.r1.lidar.lidar");
+  const auto second = Consumer("fleet.r2.lidar.lidar");
+  const auto r1 = Robot(ports[0]);
+  const auto r2 = Robot(ports[1]);
+  EXPECT_TRUE(first->WaitForBuffers(8));
+  EXPECT_TRUE(second->WaitForBuffers(8));
+  EXPECT_TRUE(Eventually([&] { return Metric("lidar_mcapsink_messages", "r2").value_or(0) > 0; }));
+  EXPECT_TRUE(EndsByItself());
+  EXPECT_EQ(Recordings("r2"), 1U);
 }
 
 TEST_F(LidarEdge, TakesEncryptedRobotsToAServerThatWantsCredentials) {
