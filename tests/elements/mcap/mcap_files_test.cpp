@@ -101,6 +101,18 @@ TEST_F(McapFiles, APieceThatIsMissingOrDamagedCostsItselfOnly) {
   EXPECT_EQ(played.stats.at("files-unreadable"), 1U);
 }
 
+TEST_F(McapFiles, AChunkThatIsDamagedCostsItselfAndIsCounted) {
+  Record(4, "chunk-duration=100000000 compression=none", "a.mcap");
+  std::string damaged = ReadFile("a.mcap");
+  damaged[damaged.size() / 2] = static_cast<char>(damaged[damaged.size() / 2] ^ 1);
+  WriteFile("b.mcap", damaged);
+  const auto played = PlayFile("b.mcap");
+  EXPECT_EQ(played.error, "");
+  EXPECT_EQ(played.stats.at("chunks-damaged"), 1U);
+  EXPECT_LT(played.buffers.at("see").size(), 32U);
+  EXPECT_GE(played.buffers.at("see").size(), 16U);
+}
+
 TEST_F(McapFiles, DamageAnywhereIsSurvived) {
   Record(2, "chunk-duration=50000000 compression=none", "a.mcap");
   const std::string whole = ReadFile("a.mcap");

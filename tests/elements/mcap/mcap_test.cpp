@@ -130,6 +130,37 @@ TEST_F(Mcap, PosesComeBackWithTheirTracking) {
   }
 }
 
+TEST_F(Mcap, SlicesKeepTheirGapsAndDoNotInventATime) {
+  const auto slice = [](guint8 byte, bool discont) {
+    GstBuffer* buffer = gst_buffer_new_memdup(&byte, 1);
+    GST_BUFFER_PTS(buffer) = byte * GST_MSECOND;
+    if (discont) GST_BUFFER_FLAG_SET(buffer, GST_BUFFER_FLAG_DISCONT);
+    return buffer;
+  };
+  const auto read = ThroughFile(Path("slices.mcap"), "application/x-lidar-slice,alignment=slice",
+                                {slice(1, true), slice(2, false), slice(3, true), slice(4, false)});
+  ASSERT_EQ(read.size(), 4U);
+  for (std::size_t i = 0; i < 4; ++i) {
+    EXPECT_EQ(read[i].discont, i % 2 == 0) << i;
+    EXPECT_EQ(read[i].capture_time, GST_CLOCK_TIME_NONE) << i;
+  }
+}
+
+TEST_F(Mcap, BuffersOfAnotherSizeThanTheirCapsSayAreAnError) {
+  const std::vector<std::uint8_t> bytes(33);
+  for (const char* caps :
+       {"application/x-imu,sample-size=32,"
+        "fields=(string)\"t:U64:0,ax:F32:8,ay:F32:12,az:F32:16,gx:F32:20,gy:F32:24,gz:F32:28\"",
+        "application/x-odometry",
+        "application/x-pointcloud2,width=2,height=1,point-step=16,framerate=10/1,is-dense=true,"
+        "fields=(string)\"x:F32:0,y:F32:4,z:F32:8\""}) {
+    const Harness h = RecordingTo(Path("bad.mcap"));
+    gst_harness_set_src_caps_str(h.get(), caps);
+    gst_harness_play(h.get());
+    EXPECT_EQ(gst_harness_push(h.get(), Bytes(bytes, 0)), GST_FLOW_ERROR) << caps;
+  }
+}
+
 TEST_F(Mcap, EachStreamHasItsTopicAndItsPad) {
   const std::string sensor = kSensor + " num-buffers=16 ! ";
   const auto recorded = Play("mcapsink name=m" + At("a.mcap") + "sink_1::topic=/rear/slices " +
@@ -186,7 +217,7 @@ std::pair<gint64, gint64> Times(const Pipeline& p) {
 
 TEST_F(Mcap, SeeksByTime) {
   const auto written = Record(20, "chunk-duration=300000000", "a.mcap");
-  Pipeline p("mcapsrc" + At("a.mcap") + " ! fakesink name=see");
+  Pipeline p("mcapsrc name=m" + At("a.mcap") + " ! fakesink name=see");
   gst_element_set_state(p.get(), GST_STATE_PAUSED);
   ASSERT_TRUE(p.Wait(GST_MESSAGE_ASYNC_DONE));
   const auto length = static_cast<gint64>(written.back().pts - written.front().pts);
@@ -213,6 +244,9 @@ TEST_F(Mcap, SeeksByTime) {
   ASSERT_TRUE(gst_element_seek_simple(p.get(), GST_FORMAT_TIME, GST_SEEK_FLAG_FLUSH, 0));
   ASSERT_TRUE(p.Wait(GST_MESSAGE_EOS));
   ExpectSame(p.outcome().buffers.at("see"), written);
+  gint64 position = 0;
+  ASSERT_TRUE(gst_element_query_position(p.Find("m").get(), GST_FORMAT_TIME, &position));
+  EXPECT_EQ(position, length);
   // Backwards is refused.
   EXPECT_FALSE(gst_element_seek(p.get(), -1, GST_FORMAT_TIME, GST_SEEK_FLAG_FLUSH,
                                 GST_SEEK_TYPE_SET, 0, GST_SEEK_TYPE_NONE, 0));
@@ -234,6 +268,15 @@ TEST_F(Mcap, ASegmentSeekEndsWithItsMessage) {
                                0, GST_SEEK_TYPE_SET, 300 * GST_MSECOND));
   ASSERT_TRUE(p.Wait(GST_MESSAGE_EOS));
   EXPECT_EQ(p.outcome().buffers.at("see").size(), 48U);
+}
+
+TEST_F(Mcap, CountsAnewAfterReady) {
+  Record(2, "", "a.mcap");
+  Pipeline p("mcapsrc name=m" + At("a.mcap") + " fakesrc num-buffers=1 ! fakesink");
+  for (int round = 0; round < 2; ++round) {
+    // Nobody takes the first message.
+    EXPECT_EQ(p.Run(GST_MESSAGE_ERROR).stats.at("messages"), 1U);
+  }
 }
 
 TEST_F(Mcap, PlaysAgainAfterReady) {
