@@ -254,9 +254,13 @@ LoopResult EncodeLoaded(GstLidarEncoder* self, const CloudInput::Place& place) {
   return result;
 }
 
-GstFlowReturn PushSlice(GstLidarEncoder* self, GstBuffer* input) {
+GstFlowReturn PushSlice(GstLidarEncoder* self, GstBuffer* input, const GstLidarSlice& place) {
   const lidar::ByteView bytes = self->state->stream.coder->bytes();
   lidar::gst::BufferPtr output(gst_buffer_new_memdup(bytes.data, bytes.size));
+  // Where the input does not say, too: who counts only what arrives misses what was left out, and
+  // acknowledges another scan.
+  GstLidarSlice known{};
+  if (!gst_lidar_buffer_get_slice(input, &known)) gst_lidar_buffer_set_slice(output.get(), &place);
   PushBounds(self);
   return self->state->pads.Push(std::move(output), input);
 }
@@ -293,7 +297,7 @@ GstFlowReturn Chain(GstPad*, GstObject* parent, GstBuffer* buffer) {
     stream.input.WarnOfReach(self, stream.coder->loaded().extent_m);
   if (result.encoded()) CheckErrors(self, map.view(), slice, result);
   stream.stats_timer.Post(GST_ELEMENT(self), Snapshot(self->state).stats_interval, Stats);
-  return result.encoded() ? PushSlice(self, buffer) : self->state->pads.LeaveOut(buffer);
+  return result.encoded() ? PushSlice(self, buffer, slice) : self->state->pads.LeaveOut(buffer);
 }
 
 GstStateChangeReturn ChangeState(GstElement* element, GstStateChange transition) {

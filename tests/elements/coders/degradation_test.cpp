@@ -34,6 +34,29 @@ TEST_P(AnyCoder, TakesACloudWithoutItsPlaceForAScan) {
   EXPECT_EQ(Counter(enc.get(), "scans-in"), 3U);
 }
 
+TEST(LidarEnc, NumbersScansWithoutAPlaceAlsoWhereItLeavesSomeOut) {
+  const SensorModel model = test::RoomSensor();
+  const Harness h = Encoder(kLidar, "bitrate=16000");
+  SetCaps(h.get(), OrganisedInfo(model, 64));
+  guint scans = 0;
+  for (guint i = 0; i < 30; ++i) {
+    const BufferPtr placed(OrganisedBuffer(model, 64, {0, 0, 1, 0}));
+    GstBuffer* buffer = gst_buffer_copy_region(placed.get(), GST_BUFFER_COPY_MEMORY, 0,
+                                               gst_buffer_get_size(placed.get()));
+    GST_BUFFER_PTS(buffer) = i * 100 * GST_MSECOND;
+    ASSERT_EQ(gst_harness_push(h.get(), buffer), GST_FLOW_OK);
+    while (BufferPtr coded{gst_harness_try_pull(h.get())}) {
+      GstLidarSlice slice{};
+      ASSERT_TRUE(gst_lidar_buffer_get_slice(coded.get(), &slice));
+      EXPECT_EQ(slice.scan_id, GST_BUFFER_PTS(coded.get()) / (100 * GST_MSECOND));
+      EXPECT_EQ(slice.slice_count, 1U);
+      ++scans;
+    }
+  }
+  EXPECT_GT(scans, 2U);
+  EXPECT_LT(scans, 30U);
+}
+
 class BelowTheMinimum : public ::testing::TestWithParam<std::tuple<CoderCase, PreferenceCase>> {
  protected:
   static Harness Pipeline(const std::string& properties) {
