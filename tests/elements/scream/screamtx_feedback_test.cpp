@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // What screamtx makes of RTCP: reports, lies, and what is not for it.
 #include <gtest/gtest.h>
+#include <time.h>
 
 #include "gst/scream/key_request.h"
 #include "tests/elements/scream/screamtx_fixture.h"
@@ -102,6 +103,25 @@ TEST_F(ScreamTx, TellsThePayloaderOfNoPacketThatHasNotArrived) {
   EXPECT_EQ(received.ranges[1].last, 3);
 }
 
+TEST_F(ScreamTx, TakesNoReceiptsFromReportsThatNameNoReceiver) {
+  Start(kLidarCaps);
+  // As transport-wide feedback does, whose packets may still be dropped behind it.
+  for (const guint32 ssrc : {0U, 9U}) {
+    receiver = ssrc;
+    const std::size_t before = acknowledged_;
+    PushFrame(ssrc * 9000, 2);
+    for (int i = 0; i < 100 && acknowledged_ < before + 2; ++i) {
+      time.Advance(10 * GST_MSECOND);
+      Acknowledge();
+    }
+    ASSERT_EQ(acknowledged_, before + 2);
+  }
+  const EventPtr event(WaitForUpstream(rtp.get(), "packets-received"));
+  GstLidarPacketsReceived received{};
+  ASSERT_TRUE(event && gst_lidar_event_parse_packets_received(event.get(), &received));
+  EXPECT_EQ(received.receiver, 9U);
+}
+
 TEST_F(ScreamTx, LeavesTheReceiptsOutOfOtherMedia) {
   Start();
   PushFrame(0, 4);
@@ -145,6 +165,31 @@ TEST_F(ScreamTx, LeavesKeyRequestsToWhoTakesTheRestOfTheRtcp) {
   const BufferPtr passed(gst_harness_pull(rtcp.get()));
   EXPECT_EQ(ToBytes(passed.get()), request);
   EXPECT_EQ(NamesUpstream(rtp.get()).count("GstForceKeyUnit"), 0U);
+}
+
+TEST_F(ScreamTx, SleepsWhileAKeyUnitHasToWait) {
+  rtp.reset(gst_harness_new_with_element(element, "sink_0", "src"));
+  rtcp.reset(gst_harness_new_with_element(element, "rtcp_sink", nullptr));
+  gst_harness_set_src_caps_str(rtp.get(), kLidarCaps);
+  gst_harness_set_src_caps_str(rtcp.get(), "application/x-rtcp");
+  PushFrame(0, 1);
+  Collect();
+  const auto request = gst::BuildKeyRequest(9, 0x1234);
+  ASSERT_EQ(gst_harness_push(rtcp.get(), FromBytes(request)), GST_FLOW_OK);
+  ASSERT_TRUE(EventPtr(WaitForUpstream(rtp.get(), "GstForceKeyUnit")));
+  ASSERT_EQ(gst_harness_push(rtcp.get(), FromBytes(request)), GST_FLOW_OK);
+  // The clock of the test stands, so the second one waits on; who tells upstream looks at it every
+  // 200 ms.
+  const auto processor_time = [] {
+    timespec spent{};
+    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &spent);
+    return spent.tv_sec * G_USEC_PER_SEC + spent.tv_nsec / 1000;
+  };
+  const gint64 before = processor_time();
+  g_usleep(G_USEC_PER_SEC / 2);
+  EXPECT_LT(processor_time() - before, G_USEC_PER_SEC / 50);
+  time.Advance(600 * GST_MSECOND);
+  EXPECT_TRUE(EventPtr(WaitForUpstream(rtp.get(), "GstForceKeyUnit")));
 }
 
 TEST_F(ScreamTx, PassesForeignRtcpAndKeepsItsOwn) {

@@ -66,7 +66,7 @@ class ScreamTx : public ::testing::Test {
     Collect();
     if (acknowledged_ == sent.size()) return;
     scream::CongestionFeedback report;
-    report.sender_ssrc = 9;
+    report.sender_ssrc = receiver;
     report.report_timestamp = static_cast<std::uint32_t>(
         gst_util_uint64_scale(time.now(), 65536, GST_SECOND) & 0xffffffff);
     std::map<guint32, scream::SsrcReport> blocks;
@@ -138,6 +138,7 @@ class ScreamTx : public ::testing::Test {
   }
 
   std::unique_ptr<GSocketAddress, gst::GObjectUnref> from;  // of feedback; none by default
+  guint32 receiver = 9;                                     // that reports come from
   std::vector<int> ecns;
   std::vector<std::vector<std::uint8_t>> byes;
   guint16 next_seq_ = 0;

@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// What is remembered for references, and how much of it.
+#include "src/codec/reference_keeper.h"
+
+#include <gtest/gtest.h>
+
+#include <memory>
+
+#include "src/codec/standstill.h"
+
+namespace lidar::codec {
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr std::uint32_t kOneReceiver = 7;
+
+BlockMemoryPtr Block(std::uint32_t columns) {
+  auto block = std::make_shared<BlockMemory>();
+  block->beams = 128;
+  block->columns = columns;
+  block->pixels.resize(std::size_t{128} * columns);
+  return block;
+}
+
+TEST(ReferenceKeeper, LetsOldSlicesGoWhereTheyAreTooLargeAndRemembersNewOnes) {
+  const BlockMemoryPtr block = Block(1024);
+  constexpr std::uint32_t kSlices = 8;
+  ASSERT_GT(kSlices * ReferenceKeeper::kMostOfSlice * block->bytes(), ReferenceKeeper::kMostBytes);
+  ReferenceKeeper keeper;
+  for (std::uint32_t scan = 0; scan < 40; ++scan) {
+    const Time now{scan * 100ms};
+    // It is there, and has got nothing yet.
+    keeper.OnAcknowledged(now, kOneReceiver, 0, UINT32_MAX);
+    for (std::uint32_t index = 0; index < kSlices; ++index) {
+      EXPECT_TRUE(keeper.Begin(now, {scan, index, kSlices})) << scan;
+      keeper.OnEncoded({block});
+      ASSERT_LE(keeper.bytes(), ReferenceKeeper::kMostBytes + block->bytes());
+    }
+  }
+  EXPECT_GT(keeper.bytes(), ReferenceKeeper::kMostBytes / 4);
+}
+
+TEST(ReferenceKeeper, RefersToNoSliceWhoseNameCameTwice) {
+  for (const bool twice : {false, true}) {
+    ReferenceKeeper keeper;
+    keeper.OnAcknowledged(Time{0s}, kOneReceiver, 0, UINT32_MAX);
+    for (int i = 0; i < (twice ? 2 : 1); ++i) {
+      ASSERT_TRUE(keeper.Begin(Time{0s}, {5, 0, 1}));
+      keeper.OnEncoded({Block(64)});
+    }
+    keeper.OnAcknowledged(Time{100ms}, kOneReceiver, 5, 0);
+    ASSERT_TRUE(keeper.Begin(Time{100ms}, {6, 0, 1}));
+    EXPECT_EQ(keeper.HasReference(), !twice);
+    EXPECT_EQ(keeper.bytes() > 0, !twice);
+  }
+}
+
+TEST(Standstill, ForgetsASourceOfMoreSectorsThanItHasMemoryFor) {
+  RangeImage image;
+  image.beams = 64;
+  image.columns = 1'024;
+  image.ranges.assign(image.size(), 5'000);
+  for (std::size_t i = 0; i < image.size(); i += 2) image.ranges[i] = 9'000;
+  // 4 million pixels are 64 of these.
+  for (const std::uint32_t sectors : {60U, 70U}) {
+    Standstill standstill;
+    for (image.first_column = 0; image.first_column < sectors; ++image.first_column)
+      EXPECT_FALSE(standstill.OnImage(image, 0.04));
+    image.first_column = 0;
+    EXPECT_EQ(standstill.OnImage(image, 0.04), sectors == 60);
+  }
+}
+
+}  // namespace
+}  // namespace lidar::codec
