@@ -67,8 +67,6 @@ natsStatus SetPace(natsOptions* o) {
   if (s == NATS_OK) s = natsOptions_SetPingInterval(o, kPingIntervalMs);
   if (s == NATS_OK) s = natsOptions_SetMaxPingsOut(o, kMaxPingsOut);
   if (s == NATS_OK) s = natsOptions_SetWriteDeadline(o, Connection::kWriteTimeoutMs);
-  // What it kept while the server is away would go out before what we send again, and so too early.
-  if (s == NATS_OK) s = natsOptions_SetReconnectBufSize(o, 1);
   // Its flusher would wait a millisecond for more to send.
   if (s == NATS_OK) s = natsOptions_SetSendAsap(o, true);
   // What it held back would be stored before what was lost with the connection.

@@ -46,8 +46,6 @@ class Connection {
   Connection& operator=(const Connection&) = delete;
 
   natsConnection* get() const { return nc_; }
-  /// What is published now goes out at once. May wait for a write that is under way.
-  bool ready() const { return natsConnection_Status(nc_) == NATS_CONN_STATUS_CONNECTED; }
   /// Never waits for the network.
   ConnectionState state() const;
   /// How often it was made anew: known before anything can be sent on the new one.

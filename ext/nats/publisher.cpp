@@ -370,10 +370,8 @@ void Publisher::SendNext(Lock* lock) {
   const Place place{run_, item->number};
   const MessagePtr message = WriteMessage(settings_.subject, keeps() ? reply.c_str() : nullptr,
                                           item->format->id(), place, item->buffer.get());
-  natsStatus status = NATS_NO_MEMORY;
-  if (message)
-    status = connection_->ready() ? natsConnection_PublishMsg(connection_->get(), message.get())
-                                  : NATS_CONNECTION_DISCONNECTED;
+  const natsStatus status =
+      message ? natsConnection_PublishMsg(connection_->get(), message.get()) : NATS_NO_MEMORY;
   lock->lock();
   NoteSent(status, item->number, gst_buffer_get_size(item->buffer.get()));
   if (status == NATS_MAX_PAYLOAD)
