@@ -162,8 +162,8 @@ GstPadProbeReturn RobotPipeline::OnPose(GstBuffer* buffer) {
   const gst::BufferMap map(buffer, GST_MAP_READ);
   Progress progress;
   std::array<guint64, 7> words{};
-  if (!scan || !map || map.size() < sizeof words || Now().time_since_epoch().count() >= end_)
-    return GST_PAD_PROBE_DROP;
+  if (Now().time_since_epoch().count() >= end_) dropped_ = true;
+  if (!scan || !map || map.size() < sizeof words || dropped_) return GST_PAD_PROBE_DROP;
   std::memcpy(words.data(), map.data(), sizeof words);
   for (std::size_t i = 0; i < words.size(); ++i) {
     words[i] = GUINT64_FROM_LE(words[i]);

@@ -51,6 +51,8 @@ class RobotPipeline {
   /// Poses go out before this time alone, whatever becomes of the thread that would stop them.
   void SetEnd(Time end) { end_ = end.time_since_epoch().count(); }
   std::uint64_t stream() const { return stream_; }
+  /// True once a pose came after the end.
+  bool has_dropped() const { return dropped_; }
   /// None before the first pose.
   std::optional<Progress> progress() const;
   /// An error that has ended it; empty: none. Prints warnings.
@@ -76,6 +78,7 @@ class RobotPipeline {
   const Duration rewind_;
   gst::ElementPtr pipeline_;
   std::atomic<std::int64_t> end_{0};
+  std::atomic<bool> dropped_{false};
 
   // Only the streaming thread uses what follows.
   std::uint64_t number_ = 0;                                   // of the message that is on its way

@@ -104,12 +104,13 @@ void Worker::PollPipelines() {
 
 void Worker::FollowLeases() {
   for (auto at = ending_.begin(); at != ending_.end();)
-    at = at->second.wait_for(milliseconds(0)) == std::future_status::ready ? ending_.erase(at)
-                                                                           : std::next(at);
+    at = at->second.done.wait_for(milliseconds(0)) == std::future_status::ready ? ending_.erase(at)
+                                                                                : std::next(at);
   const auto held = table_.HeldAt(Now());
   for (auto at = pipelines_.begin(); at != pipelines_.end();) {
     const auto lease = held.find(at->first);
-    if (lease != held.end()) {
+    // A renewal whose answer was late comes back to the scan that it had no pose of.
+    if (lease != held.end() && !at->second->has_dropped()) {
       at->second->SetEnd(lease->second.until);
       ++at;
       continue;
@@ -119,9 +120,10 @@ void Worker::FollowLeases() {
   }
   for (const auto& [robot, lease] : held) {
     if (pipelines_.count(robot) > 0) continue;
-    if (ending_.count(robot) == 0)
+    const auto last = ending_.find(robot);
+    if (last == ending_.end())
       Begin(robot, lease);
-    else  // the last one hangs: another worker is faster
+    else if (Now() - last->second.since > settings_.lease.lease)  // another worker is faster
       table_.Drop(robot, settings_.lease.lease, Now());
   }
 }
@@ -144,8 +146,10 @@ void Worker::Begin(const std::string& robot, const LeaseTable::Held& held) {
 
 Worker::Pipelines::iterator Worker::End(Pipelines::iterator at) {
   at->second->SetEnd(Time{});
-  ending_[at->first] = std::async(
-      std::launch::async, [pipeline = std::move(at->second)]() mutable { pipeline.reset(); });
+  ending_[at->first] = {
+      std::async(std::launch::async,
+                 [pipeline = std::move(at->second)]() mutable { pipeline.reset(); }),
+      Now()};
   return pipelines_.erase(at);
 }
 
@@ -160,7 +164,7 @@ void Worker::HandOver() {
     NoteProgress(at->first, *at->second);
     at = End(at);
   }
-  for (auto& [robot, ending] : ending_) ending.wait();
+  for (auto& [robot, ending] : ending_) ending.done.wait();
   const Time deadline = Now() + kHandOverTimeout;
   const auto answered = [&] {
     while (table_.unanswered() > 0 && Now() < deadline) TakeAnswers();

@@ -34,6 +34,10 @@ class Worker {
 
  private:
   using Pipelines = std::map<std::string, std::unique_ptr<RobotPipeline>>;
+  struct Ending {
+    std::future<void> done;
+    Time since{};
+  };
 
   void TakeNews();
   void NoteStream(std::uint64_t stream);
@@ -52,7 +56,7 @@ class Worker {
   std::uint64_t stream_ = 0;  // as in Progress
   Pipelines pipelines_;
   /// Pipelines that stop, which may take a while: others must not wait for it.
-  std::map<std::string, std::future<void>> ending_;
+  std::map<std::string, Ending> ending_;
   FleetWatch watch_;  // the last, so that its thread ends first
 };
 

@@ -68,34 +68,37 @@ class LidarWorker : public NatsTest {
     return std::make_unique<WorkerProcess>(
         std::vector<std::string>{"r*", "--url", server_.url(), "--lease", "2000"});
   }
-  void PutRecord(const std::string& text) {
+  /// Makes the bucket where there is none, and hands it to `use`.
+  void WithBucket(const std::function<void(kvStore*)>& use) {
     std::string why;
     nats::ConnectionSettings settings;
     settings.url = server_.url();
     const auto connection = nats::Connection::Open(settings, nullptr, &why);
+    ASSERT_TRUE(connection) << why;
     const auto js = nats::OpenJetStream(connection->get());
     kvConfig config;
     kvConfig_Init(&config);
     config.Bucket = "lidar-workers";
     kvStore* store = nullptr;
-    ASSERT_EQ(js_CreateKeyValue(&store, js.get(), &config), NATS_OK);
-    EXPECT_EQ(kvStore_PutString(nullptr, store, "r1.front", text.c_str()), NATS_OK);
-    EXPECT_EQ(kvStore_PutString(nullptr, store, "no.robot.this", "x"), NATS_OK);
+    if (js_KeyValue(&store, js.get(), config.Bucket) != NATS_OK) {
+      ASSERT_EQ(js_CreateKeyValue(&store, js.get(), &config), NATS_OK);
+    }
+    use(store);
     kvStore_Destroy(store);
   }
+  void PutRecord(const std::string& text) {
+    WithBucket([&](kvStore* store) {
+      EXPECT_EQ(kvStore_PutString(nullptr, store, "r1.front", text.c_str()), NATS_OK);
+      EXPECT_EQ(kvStore_PutString(nullptr, store, "no.robot.this", "x"), NATS_OK);
+    });
+  }
   std::string Record() {
-    std::string why;
-    nats::ConnectionSettings settings;
-    settings.url = server_.url();
-    const auto connection = nats::Connection::Open(settings, nullptr, &why);
-    const auto js = nats::OpenJetStream(connection->get());
-    kvStore* store = nullptr;
-    kvEntry* entry = nullptr;
-    js_KeyValue(&store, js.get(), "lidar-workers");
-    if (store != nullptr) kvStore_Get(&entry, store, "r1.front");
-    const std::string text = entry != nullptr ? kvEntry_ValueString(entry) : "";
-    kvEntry_Destroy(entry);
-    kvStore_Destroy(store);
+    std::string text;
+    WithBucket([&](kvStore* store) {
+      kvEntry* entry = nullptr;
+      if (kvStore_Get(&entry, store, "r1.front") == NATS_OK) text = kvEntry_ValueString(entry);
+      kvEntry_Destroy(entry);
+    });
     return text;
   }
 };
