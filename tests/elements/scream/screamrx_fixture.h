@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <functional>
+#include <string>
 #include <vector>
 
 #include "gst/scream/rtp_packet.h"
@@ -26,6 +27,12 @@ class ScreamRx : public ::testing::Test {
     rtp.reset(gst_harness_new_with_element(element, "sink", "src"));
     rtcp.reset(gst_harness_new_with_element(element, nullptr, "rtcp_src"));
     gst_harness_set_src_caps_str(rtp.get(), kRtpCaps);
+  }
+  void SetPtMap(const std::string& types) {
+    const gst::StructurePtr map(
+        gst_structure_from_string(("application/x-rtp-pt-map," + types).c_str(), nullptr));
+    ASSERT_TRUE(map);
+    g_object_set(element, "pt-map", map.get(), nullptr);
   }
   void TearDown() override {
     rtcp.reset();

@@ -137,14 +137,9 @@ TEST_F(ScreamRx, WaitsForTheNextSenderWhereAskedTo) {
 }
 
 TEST_F(ScreamRx, GivesEachStreamAPadOfItsOwnWithPtMap) {
-  GstStructure* map = gst_structure_from_string(
-      "application/x-rtp-pt-map,"
+  SetPtMap(
       "96=(string)\"application/x-rtp,media=application,clock-rate=90000,encoding-name=TEST\","
-      "97=(string)\"application/x-rtp,media=video,clock-rate=90000,encoding-name=H264\"",
-      nullptr);
-  ASSERT_TRUE(map);
-  g_object_set(element, "pt-map", map, nullptr);
-  gst_structure_free(map);
+      "97=(string)\"application/x-rtp,media=video,clock-rate=90000,encoding-name=H264\"");
   Harness video;
   struct Added {
     Harness* harness;
@@ -195,13 +190,9 @@ TEST_F(ScreamRx, GivesEachStreamAPadOfItsOwnWithPtMap) {
 }
 
 TEST_F(ScreamRx, MakesSoManyPadsAtMostAndForgetsThemWhenItStops) {
-  GstStructure* map = gst_structure_from_string(
-      "application/x-rtp-pt-map,"
+  SetPtMap(
       "72=(string)\"application/x-rtp,media=video,clock-rate=90000,encoding-name=H264\","
-      "97=(string)\"application/x-rtp,media=video,clock-rate=90000,encoding-name=H264\"",
-      nullptr);
-  g_object_set(element, "pt-map", map, nullptr);
-  gst_structure_free(map);
+      "97=(string)\"application/x-rtp,media=video,clock-rate=90000,encoding-name=H264\"");
   Start();
   for (int round = 0; round < 2; ++round) {
     Rtp camera;
@@ -221,15 +212,10 @@ TEST_F(ScreamRx, MakesSoManyPadsAtMostAndForgetsThemWhenItStops) {
 }
 
 TEST_F(ScreamRx, WarnsOfWhatIsWrongWithPtMapAndOfAStreamThatNobodyTakes) {
-  GstStructure* map = gst_structure_from_string(
-      "application/x-rtp-pt-map,"
+  SetPtMap(
       "72=(string)\"application/x-rtp,media=video,clock-rate=90000,encoding-name=H264\","
       "97=(string)\"application/x-rtp,media=video,clock-rate=90000,encoding-name=H264\","
-      "98=(string)\"application/x-rtp,clock-rate=[1,2]\",200=(int)7,lidar=(int)96",
-      nullptr);
-  ASSERT_TRUE(map);
-  g_object_set(element, "pt-map", map, nullptr);
-  gst_structure_free(map);
+      "98=(string)\"application/x-rtp,clock-rate=[1,2]\",200=(int)7,lidar=(int)96");
   GstBus* bus = gst_bus_new();
   gst_element_set_bus(element, bus);
   Start();

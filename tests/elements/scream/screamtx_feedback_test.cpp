@@ -133,10 +133,7 @@ TEST_F(ScreamTx, LeavesTheReceiptsOutOfOtherMedia) {
 }
 
 TEST_F(ScreamTx, AsksTheEncoderOfLidarForAKeyUnitWhereAReceiverDoes) {
-  rtp.reset(gst_harness_new_with_element(element, "sink_0", "src"));
-  rtcp.reset(gst_harness_new_with_element(element, "rtcp_sink", nullptr));
-  gst_harness_set_src_caps_str(rtp.get(), kLidarCaps);
-  gst_harness_set_src_caps_str(rtcp.get(), "application/x-rtcp");
+  StartAsLast(kLidarCaps);
   PushFrame(0, 1);
   Collect();
   const auto request = gst::BuildKeyRequest(9, 0x1234);
@@ -145,10 +142,7 @@ TEST_F(ScreamTx, AsksTheEncoderOfLidarForAKeyUnitWhereAReceiverDoes) {
 }
 
 TEST_F(ScreamTx, LeavesKeyUnitsOfVideoToWhoManagesItsSession) {
-  rtp.reset(gst_harness_new_with_element(element, "sink_0", "src"));
-  rtcp.reset(gst_harness_new_with_element(element, "rtcp_sink", nullptr));
-  gst_harness_set_src_caps_str(rtp.get(), kVideoCaps);
-  gst_harness_set_src_caps_str(rtcp.get(), "application/x-rtcp");
+  StartAsLast(kVideoCaps);
   PushFrame(0, 1);
   Collect();
   const auto request = gst::BuildKeyRequest(9, 0x1234);
@@ -168,10 +162,7 @@ TEST_F(ScreamTx, LeavesKeyRequestsToWhoTakesTheRestOfTheRtcp) {
 }
 
 TEST_F(ScreamTx, SleepsWhileAKeyUnitHasToWait) {
-  rtp.reset(gst_harness_new_with_element(element, "sink_0", "src"));
-  rtcp.reset(gst_harness_new_with_element(element, "rtcp_sink", nullptr));
-  gst_harness_set_src_caps_str(rtp.get(), kLidarCaps);
-  gst_harness_set_src_caps_str(rtcp.get(), "application/x-rtcp");
+  StartAsLast(kLidarCaps);
   PushFrame(0, 1);
   Collect();
   const auto request = gst::BuildKeyRequest(9, 0x1234);

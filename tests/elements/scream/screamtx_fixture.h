@@ -30,6 +30,13 @@ class ScreamTx : public ::testing::Test {
     gst_harness_set_src_caps_str(rtp.get(), caps);
     gst_harness_set_src_caps_str(rtcp.get(), "application/x-rtcp");
   }
+  /// As the end of RTCP's way, which nobody gets the rest of.
+  void StartAsLast(const char* caps) {
+    rtp.reset(gst_harness_new_with_element(element, "sink_0", "src"));
+    rtcp.reset(gst_harness_new_with_element(element, "rtcp_sink", nullptr));
+    gst_harness_set_src_caps_str(rtp.get(), caps);
+    gst_harness_set_src_caps_str(rtcp.get(), "application/x-rtcp");
+  }
   void TearDown() override {
     rtcp.reset();
     rtp.reset();
