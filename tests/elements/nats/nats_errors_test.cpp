@@ -153,8 +153,9 @@ TEST_F(NatsErrors, AnAddressWithTlsMeansTls) {
   for (const std::string& url : {server_.url("tls"), server_.url() + "," + server_.url("tls")}) {
     NatsPipeline wary("natssrc name=n url=" + url + " ! fakesink name=see sync=false");
     wary.Play();
-    EXPECT_NE(wary.WaitForEnd().find("refuses us"), std::string::npos) << url;
-    EXPECT_EQ(wary.stat("connected"), 0U);
+    PublishSlices(8, At());  // newer versions of libnats try on, older ones give up
+    EXPECT_EQ(wary.stat("connected"), 0U) << url;
+    EXPECT_TRUE(wary.buffers().empty()) << url;
   }
 }
 
