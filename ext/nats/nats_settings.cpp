@@ -77,7 +77,7 @@ void ConnectionWatch::Note(const nats::ConnectionState& state) {
   const bool changed = std::exchange(connected_, state.connected()) != state.connected();
   if (state.connected()) closed_ = false;
   const bool closed = state.closed && !std::exchange(closed_, true);
-  const bool error = state.errors > std::exchange(errors_, std::max(errors_, state.errors));
+  const bool error = state.errors > std::exchange(errors_, state.errors);
   lock.unlock();
   // The words are the server's, and messages on the bus are valid UTF-8.
   const StringPtr words(g_utf8_make_valid(state.last_error.c_str(), -1));

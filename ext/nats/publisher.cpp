@@ -108,10 +108,6 @@ void Publisher::Close() {
 
 bool Publisher::Subscribe(const std::string& subject, void (Publisher::*call)(natsMsg*),
                           SubscriptionPtr* out, std::string* why) {
-  struct Target {
-    std::weak_ptr<Publisher> publisher;
-    void (Publisher::*call)(natsMsg*);
-  };
   const auto on_message = [](natsConnection*, natsSubscription*, natsMsg* raw, void* closure) {
     const MessagePtr message(raw);
     const auto& target = *static_cast<Target*>(closure);
@@ -127,9 +123,12 @@ bool Publisher::Subscribe(const std::string& subject, void (Publisher::*call)(na
     *why = ErrorText(s);
     return false;
   }
-  // The callback may still run when the subscription is gone; this comes after it.
-  natsSubscription_SetOnCompleteCB(
-      raw, [](void* closure) { delete static_cast<Target*>(closure); }, target.release());
+  // The callback may still run when the subscription is gone; this comes after it, but not where
+  // the server has closed the connection already.
+  const natsStatus told = natsSubscription_SetOnCompleteCB(
+      raw, [](void* closure) { delete static_cast<Target*>(closure); }, target.get());
+  if (told != NATS_OK) untold_.push_back(std::move(target));
+  target.release();
   return true;
 }
 
@@ -296,7 +295,8 @@ void Publisher::OpenAgain(Lock* lock) {
 void Publisher::SendAllAgain() {
   counters_.resent += outbox_.RetryAll();
   stream_ready_ = false;
-  sent_format_.reset();
+  sent_format_.reset();        // the caps go again as well,
+  config_unanswered_ = false;  // so nobody answers those that went
 }
 
 void Publisher::RetryUnanswered(Clock::time_point now) {
@@ -400,6 +400,7 @@ void Publisher::FinishDrain(Lock* lock) {
   lock->unlock();
   const natsStatus status = natsConnection_FlushTimeout(connection_->get(), kRequestTimeoutMs);
   lock->lock();
+  if (status != NATS_OK) wake_.wait_for(*lock, kPatrol);
   if (status != NATS_OK || !Done()) return;
   draining_ = false;
   drained_.notify_all();

@@ -76,6 +76,11 @@ class Publisher : public std::enable_shared_from_this<Publisher> {
   bool MakeInbox(std::string* why);
   bool StartThread(std::string* why);
   void Close();
+  /// What a subscription calls.
+  struct Target {
+    std::weak_ptr<Publisher> publisher;
+    void (Publisher::*call)(natsMsg*);
+  };
   bool Subscribe(const std::string& subject, void (Publisher::*call)(natsMsg*),
                  SubscriptionPtr* out, std::string* why);
   void OnAsk(natsMsg* message);
@@ -97,7 +102,9 @@ class Publisher : public std::enable_shared_from_this<Publisher> {
   void NoteSent(natsStatus status, std::uint64_t number, std::size_t bytes);
   void FinishDrain(Lock* lock);
   void Tell(Lock* lock, const std::string& why);
-  bool Done() const { return outbox_.empty() && !config_unanswered_; }
+  bool Done() const {
+    return outbox_.empty() && !config_unanswered_ && NextFormat() == sent_format_;
+  }
   bool keeps() const { return !settings_.stream.name.empty(); }
 
   const PublisherSettings settings_;
@@ -108,6 +115,7 @@ class Publisher : public std::enable_shared_from_this<Publisher> {
   JetStreamPtr js_;
   SubscriptionPtr asks_;
   SubscriptionPtr acks_;
+  std::vector<std::unique_ptr<Target>> untold_;  // of subscriptions that nobody tells the end of
   std::string ack_prefix_;  // an inbox with a dot behind it; fixed once the thread runs
   std::thread thread_;
 

@@ -227,7 +227,8 @@ Subscriber::Event Subscriber::NoteStored(Delivery* delivery) {
     }
     last_number_ = meta->Sequence.Consumer;
     last_stored_ = meta->Sequence.Stream;
-    if (settings_.start_time && meta->Timestamp < static_cast<std::int64_t>(*settings_.start_time))
+    if (settings_.start_sequence == 0 && settings_.start_time &&
+        meta->Timestamp < static_cast<std::int64_t>(*settings_.start_time))
       return meta->NumPending == 0 ? Event::kEmpty : Event::kNothing;  // see SafeTime()
   }
   delivery->stored = static_cast<std::uint64_t>(std::max<std::int64_t>(meta->Timestamp, 0));
