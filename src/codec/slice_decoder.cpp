@@ -43,6 +43,7 @@ bool SliceDecoder::AppendBlocks(ByteReader* reader) {
     }
     columns += block.columns;
     quality_.error_m = std::max(quality_.error_m, decoder_.error_m());
+    quality_.step_m = std::max(quality_.step_m, decoder_.header().grid.step_m());
     blocks_.push_back(std::move(block));
   }
   image_ = {blocks_[0].beams, columns, blocks_[0].first_column, {}, {}};

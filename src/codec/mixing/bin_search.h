@@ -104,7 +104,7 @@ class BinSearch {
     trials_.insert(place, trial);
   }
 
-  /// Of the trials; where two ways end alike, the cheaper one.
+  /// Keeps the cheapest trials, and one of two that end alike.
   void KeepBest() {
     count_ = 0;
     for (const Trial& trial : trials_) {

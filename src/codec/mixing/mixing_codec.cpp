@@ -89,12 +89,15 @@ struct MixingEncoder::State : MixingCoderState {
   /// Which bins each return may take.
   void Spare(const RangeImage& image, const MixingSettings& settings) {
     constexpr std::int32_t kMostSpare = 255;
+    // Decoders refuse more.
+    const auto last_bin =
+        std::min<std::int64_t>(settings.grid.BinOf(RangeGrid::kMaxRangeMm), mixing::kMaxBins - 1);
     slice.spare.assign(image.size(), 0);
     for (std::size_t i = 0; i < image.size(); ++i) {
       if (slice.bins[i] < 0) continue;
       const auto within = [&](std::int32_t bin) {
         const std::int64_t range = settings.grid.RangeOf(static_cast<std::uint32_t>(bin));
-        return range > 0 && bin < mixing::kMaxBins &&
+        return range > 0 && bin <= last_bin &&
                std::abs(range - image.ranges[i]) <= settings.error_mm;
       };
       std::int32_t last = slice.bins[i];

@@ -216,7 +216,7 @@ TEST(Temporal, SlicesThatArriveDecodeWhateverWasLost) {
   Loop loop(test);
   const auto sent = loop.Scans(30);
   EXPECT_GT(std::count_if(sent.begin(), sent.end(), [](const Sent& s) { return s.refers; }), 60);
-  // Of those that came, none was refused: the decoder never had to ask.
+  // None of those that came was refused: the decoder never had to ask.
   LinkTest all;
   all.loses = [](std::uint32_t scan, std::uint32_t index) { return (scan + index) % 3 == 1; };
   Loop steady(all);

@@ -75,6 +75,22 @@ TEST(BinSearch, KeepsRangesNextToTheSensorAndFarAway) {
   EXPECT_EQ(Wrong(image, back, kErrorMm), 0U);
 }
 
+/// A bin past the last one would come back within the error, and decoders refuse it.
+TEST(BinSearch, KeepsToTheBinsThatDecodersTake) {
+  const SensorModel model = test::RoomSensor();
+  RangeImage image = test::RoomScan(model);
+  const std::size_t half = image.size() / 2;
+  for (std::size_t i = half; i < image.size(); ++i)
+    image.ranges[i] = RangeGrid::kMaxRangeMm - static_cast<std::uint32_t>(i / 7 % 5);
+  MixingSettings settings{RangeGrid(1, 27), IntensityScale(FullScale::kByte, 0), 3};
+  settings.error_mm = 20;
+  const auto payload = PayloadOf(model, image, settings);
+  RangeImage back = image;
+  MixingDecoder decoder(model);
+  ASSERT_TRUE(decoder.Decode({payload.data(), payload.size()}, settings.grid, 0, &back));
+  EXPECT_EQ(Wrong(image, back, settings.error_mm), 0U);
+}
+
 TEST(BinSearch, IsTakenWhereItSavesAndToldToTheReceiver) {
   const SensorModel model = test::RoomSensor();
   const RangeImage image = test::RoomScan(model);
