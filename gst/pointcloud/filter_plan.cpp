@@ -92,7 +92,7 @@ std::optional<Transform> PoseOf(GstBuffer* buffer) {
   return FromPose({p[0], p[1], p[2]}, {q[0], q[1], q[2], q[3]});
 }
 
-/// Of the clouds, where anybody says.
+/// The frame of the clouds, where anybody says.
 std::string FrameOf(const FilterSettings& settings, const GstCaps* caps) {
   if (!settings.frame_id.empty()) return settings.frame_id;
   const gchar* text = gst_structure_get_string(gst_caps_get_structure(caps, 0), GST_LIDAR_FRAME_ID);
@@ -147,6 +147,7 @@ std::unique_ptr<FilterPlan> FilterPlan::Make(const FilterSettings& settings, con
   }
   plan->column_step_ = parsed->column_step;
   plan->apply_pose_ = settings.apply_pose;
+  plan->drops_pose_ = settings.apply_pose || !settings.target_frame.empty();
   plan->frame_ = FrameOf(settings, caps);
   if (!parsed->has_pose && !parsed->transform) plan->out_frame_ = plan->frame_;
   if (!parsed->transform && !settings.target_frame.empty())
@@ -203,7 +204,7 @@ BufferPtr FilterPlan::Apply(GstBuffer* buffer, const Transform& placed) {
       static_cast<GstBufferCopyFlags>(GST_BUFFER_COPY_FLAGS | GST_BUFFER_COPY_TIMESTAMPS |
                                       GST_BUFFER_COPY_META),
       0, static_cast<gsize>(-1));
-  if (apply_pose_) DropPose(out.get());
+  if (drops_pose_) DropPose(out.get());
   if (is_slice && column_step_ > 1) {
     slice.first_column = cloud->first_column;
     gst_lidar_buffer_set_slice(out.get(), &slice);

@@ -63,6 +63,7 @@ class FilterPlan {
   std::optional<PointFilter> filter_;
   guint column_step_ = 1;
   bool apply_pose_ = false;
+  bool drops_pose_ = false;  // the points are in the frame of the pose then, or in another
   std::string frame_;
   std::string out_frame_;  // empty: not known
   std::uint64_t without_pose_ = 0;

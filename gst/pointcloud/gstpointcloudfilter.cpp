@@ -211,7 +211,8 @@ void PushGap(GstLidarPointCloudFilter* self, GstBuffer* buffer) {
 }
 
 /// What takes the cloud to the target frame. Where there is nothing, that is counted, and reported
-/// once until there is something.
+/// once until there is something; but not where a flush or the end of the stream cut the wait
+/// short.
 std::optional<lidar::Transform> Place(GstLidarPointCloudFilter* self, GstBuffer* buffer) {
   State& state = *self->state;
   if (state.target_frame.empty()) return lidar::kIdentity;
@@ -219,6 +220,7 @@ std::optional<lidar::Transform> Place(GstLidarPointCloudFilter* self, GstBuffer*
   const std::string frame =
       state.plan->frame().empty() ? lidar::gst::kCloudFrame : state.plan->frame();
   const auto answer = state.inbox.Find(state.target_frame, frame, at, state.tf_timeout);
+  if (!answer.transform && state.inbox.is_interrupted()) return std::nullopt;
   if (!answer.transform) {
     std::unique_lock lock(state.mutex);
     ++state.counters.without_transform;
@@ -246,6 +248,7 @@ GstFlowReturn Chain(GstPad*, GstObject* parent, GstBuffer* raw) {
   }
   if ((changed || !state.plan) && !MakePlan(self)) return GST_FLOW_NOT_NEGOTIATED;
   const auto placed = Place(self, raw);
+  if (!placed && state.inbox.is_interrupted()) return GST_FLOW_FLUSHING;
   BufferPtr out = placed ? state.plan->Apply(raw, *placed) : BufferPtr(gst_buffer_new());
   if (!out) {
     GST_ELEMENT_ERROR(self, STREAM, FORMAT, ("A cloud of another size than its caps say."),

@@ -37,7 +37,10 @@ GstPad* TransformInbox::AddPad(GstElement* element, GstPadTemplate* pad_template
   gst_pad_set_element_private(pad, this);
   gst_pad_set_chain_function(pad, Chain);
   gst_pad_set_event_function(pad, Event);
-  SetEnded(pad, false);
+  {
+    const std::lock_guard lock(mutex_);
+    pads_[pad] = false;
+  }
   gst_pad_set_active(pad, TRUE);
   gst_element_add_pad(element, pad);
   return pad;
@@ -115,7 +118,7 @@ void TransformInbox::Refuse() {
 void TransformInbox::SetEnded(GstPad* pad, bool ended) {
   {
     const std::lock_guard lock(mutex_);
-    pads_[pad] = ended;
+    if (const auto known = pads_.find(pad); known != pads_.end()) known->second = ended;
   }
   changed_.notify_all();
 }
@@ -148,6 +151,11 @@ void TransformInbox::Interrupt(bool on) {
     interrupted_ = on;
   }
   changed_.notify_all();
+}
+
+bool TransformInbox::is_interrupted() const {
+  const std::lock_guard lock(mutex_);
+  return interrupted_;
 }
 
 void TransformInbox::Clear() {

@@ -31,6 +31,7 @@ class TransformInbox {
                              std::optional<Time> at, std::chrono::nanoseconds timeout);
   /// Find() waits no longer, until Interrupt(false).
   void Interrupt(bool on);
+  bool is_interrupted() const;
   void Clear();
 
   struct Counters {

@@ -288,10 +288,11 @@ TEST_F(FilterByTransforms, NobodyWaitsForTransformsThatHaveEnded) {
 TEST_F(FilterByTransforms, AFlushEndsTheWait) {
   Start("target-frame=map tf-timeout=60000000000");
   const gint64 begin = g_get_monotonic_time();
-  std::thread waits([this] { PushAt(100); });
+  std::thread waits([this] { EXPECT_EQ(PushAt(100), GST_FLOW_FLUSHING); });
   g_usleep(20'000);
   gst_harness_push_event(h_.get(), gst_event_new_flush_start());
   waits.join();
+  EXPECT_EQ(Stat("clouds-without-transform"), 0U);
   EXPECT_LT(g_get_monotonic_time() - begin, 50 * G_USEC_PER_SEC);
 }
 
