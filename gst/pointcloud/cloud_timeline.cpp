@@ -140,8 +140,8 @@ std::optional<bool> CloudTimeline::Seek(GstPad* sinkpad, GstEvent* event) {
   const Grid grid = grid_;
   sought.segment = segment_;
   lock.unlock();
-  if (grid.cloud_bytes == 0) return std::nullopt;
-  if (format != GST_FORMAT_TIME || rate <= 0) return false;
+  if (grid.cloud_bytes == 0 || format != GST_FORMAT_TIME) return std::nullopt;
+  if (rate <= 0) return false;
   GstSegment& segment = sought.segment;
   if (const auto duration = Duration(sinkpad, grid)) segment.duration = *duration;
   range.start = FromBeginning(&range.start_type, start, segment);
@@ -156,6 +156,8 @@ std::optional<bool> CloudTimeline::Seek(GstPad* sinkpad, GstEvent* event) {
     segment.start = segment.time = segment.position = grid.TimeOf(first);
   const bool ends = GST_CLOCK_TIME_IS_VALID(segment.stop) && segment.stop > 0;
   const guint64 past_last = ends ? grid.CloudAt(segment.stop - 1) + 1 : 0;
+  if (std::max(first, past_last) > static_cast<guint64>(G_MAXINT64) / grid.cloud_bytes)
+    return false;
   // A stop of -1 takes an earlier one away.
   EventPtr bytes(
       gst_event_new_seek(rate, GST_FORMAT_BYTES, flags, GST_SEEK_TYPE_SET,

@@ -31,7 +31,7 @@ class CloudTimeline {
 
   /// The segment in time for one in bytes; `cloud` becomes the first of it, where that is known.
   EventPtr ToTime(GstEvent* segment, guint64* cloud);
-  /// Of SEGMENT_DONE; takes the event.
+  /// SEGMENT_DONE as those behind the parser want it; takes the event.
   EventPtr EndInTime(GstEvent* done) const;
   /// A cloud has gone that ends then.
   void NotePosition(GstClockTime end);

@@ -141,9 +141,8 @@ CloudTimeline::Grid GridOf(const State& state, gsize cloud_size) {
 
 /// Seeks and queries are ours where bytes come in of clouds of one size.
 void SetTimeline(State* state, gsize cloud_size) {
-  if (state->times_given || cloud_size == state->cloud_size) return;
   state->cloud_size = cloud_size;
-  state->timeline.SetGrid(GridOf(*state, cloud_size));
+  state->timeline.SetGrid(state->times_given ? CloudTimeline::Grid{} : GridOf(*state, cloud_size));
 }
 
 void Stamp(State* state, GstBuffer* buffer) {
@@ -337,6 +336,8 @@ gboolean SinkEvent(GstPad* pad, GstObject* parent, GstEvent* event) {
       break;
     case GST_EVENT_SEGMENT_DONE:
       if (state.times_given) break;
+      Drain(self);
+      PushSegment(self);
       return gst_pad_push_event(self->srcpad, state.timeline.EndInTime(event).release());
     case GST_EVENT_FLUSH_STOP:
       Reset(&state);
