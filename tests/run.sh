@@ -113,33 +113,51 @@ sanitized_ready() {
 # What meson prints of a suite, without what is counted below.
 shorten() { grep -vE '^$|^ninja|Full log|^(Ok|Expected Fail|Fail|Unexpected Pass|Skipped|Timeout):'; }
 
-# tally FILE: adds the results in one of meson's logs to the totals.
+# results DIR NAME: meson's log of that name. A wrapper's name is part of it.
+results() { cat "$1/meson-logs/$2".json "$1/meson-logs/$2"-*.json 2>/dev/null; }
+forget() { rm -f "$1/meson-logs/$2".json "$1/meson-logs/$2"-*.json; }
+
+# tally: adds the results that it reads to the totals.
 tally() {
-  local counts
+  local counts ok bad
   counts=$(jq -s -r '[(map(select(.result == "OK" or .result == "EXPECTEDFAIL")) | length),
       (map(select(.result != "OK" and .result != "EXPECTEDFAIL" and .result != "SKIP")) | length)]
-      | @tsv' "$1" 2>/dev/null || echo "0 0")
+      | @tsv')
   read -r ok bad <<<"$counts"
   passed=$((passed + ok))
   failed=$((failed + bad))
 }
 
-# again DIR LOG [meson options]: runs the failed tests in one of meson's logs once more, one by one and
-# without a compiler beside them: many stream in real time, on a machine that others may use. What they
-# do now is what counts, and the last lines name them. Where many fail, the tree is wrong, not the moment.
-again() {
-  local dir=$1 log=$1/meson-logs/$2 names
-  shift 2
-  local which='.result == "FAIL" or .result == "TIMEOUT" or .result == "INTERRUPT"'
-  mapfile -t names < <(jq -r "select($which) | .name | sub(\".*/ \"; \"\")" "$log" 2>/dev/null)
-  [ ${#names[@]} -gt 0 ] && [ ${#names[@]} -le "$most_again" ] || return 0
+# What a moment may have caused: not what a sanitizer found, though its check for leaks fails by itself
+# where a thread ends meanwhile.
+disturbed='def disturbed: (.result == "TIMEOUT" or .result == "INTERRUPT" or .result == "FAIL") and
+  ((.stdout // "") + (.stderr // "") | test("LeakSanitizer has encountered a fatal error") or
+   (test("ERROR: AddressSanitizer|ERROR: LeakSanitizer|runtime error:|WARNING: ThreadSanitizer") | not));'
+
+# settle DIR SUITE NAME [meson options]: adds a log of meson to the totals. Failed tests run once more, one
+# by one and without a compiler beside them: many stream in real time, on a machine that others may use.
+# What they do now is what counts, and the last lines name them. Where many fail, the tree is wrong and
+# not the moment.
+settle() {
+  local dir=$1 suite=$2 name=$3 log=$1/meson-logs/settled.json names before
+  shift 3
+  results "$dir" "$name" >"$log"
+  [ -s "$log" ] || { echo "meson left no results of $suite"; failed=$((failed + 1)); return; }
+  mapfile -t names < <(jq -r "$disturbed"' select(disturbed) | .name | sub(".*(/ |:)"; "")' "$log")
+  if [ "$suite" = lint ] || [ ${#names[@]} = 0 ] || [ ${#names[@]} -gt "$most_again" ]; then
+    tally <"$log"
+    return
+  fi
   [ -z "$sanitized_job" ] || sanitized_ready
   echo "== failed, and run again alone: ${names[*]}"
   second_tries+=("${names[@]/#/$(basename "$dir"): }")
-  jq -c "select($which | not)" "$log" >"$log.rest" && mv "$log.rest" "$log"
-  meson test -C "$dir" --no-rebuild --logbase again --num-processes 1 --print-errorlogs "$@" --timeout-multiplier 12 "${names[@]}" 2>&1 |
-    shorten
-  tally "$dir/meson-logs/again.json"
+  forget "$dir" again
+  meson test -C "$dir" --no-rebuild --suite "$suite" --logbase again --num-processes 1 --print-errorlogs \
+    --timeout-multiplier 12 "$@" "${names[@]}" 2>&1 | shorten
+  before=$((passed + failed))
+  tally < <(results "$dir" again)
+  failed=$((failed + before + ${#names[@]} - passed - failed))  # what did not run
+  tally < <(jq -c "$disturbed"' select(disturbed | not)' "$log")
 }
 
 # run DIR SUITE [meson options]: adds the results of one suite to the totals.
@@ -147,24 +165,23 @@ run() {
   local dir=$1 suite=$2
   shift 2
   echo "== $(basename "$dir"): $suite (${SECONDS}s)"
-  rm -f "$dir/meson-logs/testlog.json"
+  forget "$dir" testlog
   meson test -C "$dir" --no-rebuild --suite "$suite" --print-errorlogs --timeout-multiplier 4 "$@" 2>&1 | shorten
-  [ "$suite" = lint ] || again "$dir" testlog.json "$@"
-  tally "$dir/meson-logs/testlog.json"
+  [ "$suite" = pipelines ] || settle "$dir" "$suite" testlog "$@"
 }
 
 # The pipelines stream in real time, so they run one by one. Those of the suite beside wait for most
 # of their time, so they run beside the others.
 run_pipelines() {
   local dir=$1
-  rm -f "$dir/meson-logs/beside.json"
+  forget "$dir" beside
   meson test -C "$dir" --no-rebuild --suite beside --logbase beside --print-errorlogs --timeout-multiplier 4 >"$dir/beside.log" 2>&1 &
   local beside=$!
   run "$dir" pipelines --num-processes 1
   wait "$beside"
   shorten <"$dir/beside.log"
-  again "$dir" beside.json
-  tally "$dir/meson-logs/beside.json"
+  settle "$dir" pipelines testlog
+  settle "$dir" beside beside
 }
 
 # The outcome of a step that is no meson test.
