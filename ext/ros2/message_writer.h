@@ -24,7 +24,7 @@ struct Frames {
 /// What messages say that buffers do not.
 struct MessageSettings {
   Frames frames;
-  // Of poses that are tracked; 0: not known.
+  // Tracked poses have these; 0: not known.
   double position_variance = 0;     // m^2
   double orientation_variance = 0;  // rad^2
 };

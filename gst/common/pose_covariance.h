@@ -36,7 +36,7 @@ inline GstLidarTracking TrackingOf(const Covariance& covariance) {
                                               : GST_LIDAR_TRACKING_OK;
 }
 
-/// Of a velocity that nobody tells, so that its zeros are not taken for a standstill.
+/// The covariance of a velocity that is not known: its zeros are not taken for a standstill.
 inline Covariance NoVelocity() {
   Covariance covariance{};
   SetVariances(kUnknownVariance, kUnknownVariance, &covariance);

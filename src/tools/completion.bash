@@ -16,4 +16,4 @@ _gst_lidar() {
     _filedir
   fi
 }
-complete -F _gst_lidar lidar-edge lidar-link lidar-trace scream-bench lidar-eval ouster-replay lidar-dtls-launch lidar-worker
+complete -F _gst_lidar lidar-edge lidar-link lidar-trace scream-bench lidar-eval ouster-replay lidar-dtls-launch lidar-rtsp-launch lidar-webrtc-launch lidar-worker

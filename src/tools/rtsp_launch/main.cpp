@@ -113,8 +113,7 @@ void Serve(const Options& options) {
 int main(int argc, char** argv) {
   CLI::App app(
       "Serves a pipeline, written as for gst-launch-1.0, by RTSP. All viewers share it; it runs "
-      "while "
-      "there are any. Prints the address.");
+      "while there are any. Prints the address.");
   lidar::tools::AddVersionFlag(&app, "lidar-rtsp-launch");
   Options options;
   app.add_option("--address", options.address, "Local address to listen on")->capture_default_str();

@@ -66,7 +66,7 @@ FleetWatch::News FleetWatch::Take() {
 }
 
 void FleetWatch::Tell(const std::string& trouble) {
-  if (std::exchange(told_, trouble) == trouble) return;
+  if (std::exchange(told_, trouble) == trouble || trouble.empty()) return;
   const std::lock_guard lock(mutex_);
   news_.trouble = trouble;
 }

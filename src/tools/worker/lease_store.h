@@ -28,7 +28,7 @@ class LeaseStore {
              const std::string& text);
   std::optional<Answer> NextAnswer(std::chrono::milliseconds timeout);
 
-  /// The subject of a key, or of all keys: "*".
+  /// The subject of a key, or of all keys: ">".
   static std::string Subject(const std::string& bucket, const std::string& key);
 
  private:

@@ -26,7 +26,7 @@ struct PipelineSettings {
   std::string prefix = "fleet";
   std::string stream = "fleet";
   std::string decoder = "lidardec";
-  /// Of lidarodometry: name and value.
+  /// Properties of lidarodometry: name and value.
   std::vector<std::pair<std::string, std::string>> odometry;
   /// What a decoder has to read before a slice, as its key-interval says.
   Duration rewind = std::chrono::milliseconds(1'200);

@@ -128,7 +128,8 @@ TEST_F(NatsJetStream, NothingIsLostWhereTheServerIsKilledMeanwhile) {
   ExpectSameStream(Replay(0), sent);
 }
 
-/// The sink waits five seconds for an answer, and sends caps until it waits for 256 messages, so for three.
+/// The sink waits five seconds for an answer, and sends caps until it waits for 256 messages, so
+/// for three.
 TEST_F(NatsJetStream, GoesOnWhereCapsWereNeverAnswered) {
   NatsPipeline sender(kLive + "! lidarenc" + kSee + "! natssink name=n" + At(kBox));
   sender.Play();
