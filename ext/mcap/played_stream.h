@@ -3,7 +3,6 @@
 #pragma once
 #include <gst/gst.h>
 
-#include <cstdint>
 #include <memory>
 #include <string>
 #include <utility>
@@ -54,7 +53,6 @@ class PlayedStream {
   GstPad* const pad_;  // of the element, once it is added
   const std::string topic_;
   std::unique_ptr<MessageReader> reader_;
-  std::uint16_t channel_id_ = 0;
   mcap::Metadata metadata_;  // of the channel that is read
   CapsPtr pushed_caps_;
   bool added_ = false;

@@ -13,7 +13,7 @@ constexpr Time kStart{std::chrono::seconds(50)};
 class Collector : public ::testing::Test {
  protected:
   /// Rows of beams, two of them where clouds are organised.
-  void SetUp(guint height) {
+  void Prepare(guint height) {
     CloudInfo info;
     info.height = height;
     info.point_step = 12;
@@ -37,7 +37,7 @@ class Collector : public ::testing::Test {
 };
 
 TEST_F(Collector, TellsWhenEachColumnWasSampled) {
-  SetUp(2);
+  Prepare(2);
   for (guint i = 0; i < 2; ++i) Add(7, i, 2, kStart + i * milliseconds(50), 4);
   EXPECT_TRUE(collector_.complete());
   const auto scan = collector_.Take();
@@ -54,14 +54,14 @@ TEST_F(Collector, TellsWhenEachColumnWasSampled) {
 }
 
 TEST_F(Collector, AScanWhoseFirstSlicesAreMissingBeganBefore) {
-  SetUp(2);
+  Prepare(2);
   Add(7, 3, 4, kStart, 4);
   EXPECT_TRUE(collector_.complete());
   EXPECT_EQ(collector_.Take()->start, kStart - milliseconds(75));
 }
 
 TEST_F(Collector, OfPointsInNoOrderOnlyTheSliceTellsTheTime) {
-  SetUp(1);
+  Prepare(1);
   Add(7, 1, 4, kStart, 2);
   EXPECT_EQ(collector_.Take()->points.phases, (std::vector<float>{.25, .25}));
   Add(8, 0, 1, kStart, 2);
@@ -69,7 +69,7 @@ TEST_F(Collector, OfPointsInNoOrderOnlyTheSliceTellsTheTime) {
 }
 
 TEST_F(Collector, ANewScanBeginsWithItsIdOrWithASliceThatCameAlready) {
-  SetUp(2);
+  Prepare(2);
   EXPECT_FALSE(collector_.BeginsNewScan({7, 0, 4, 0}));  // none is open
   Add(7, 1, 4, kStart, 4);
   EXPECT_FALSE(collector_.complete());
@@ -82,7 +82,7 @@ TEST_F(Collector, ANewScanBeginsWithItsIdOrWithASliceThatCameAlready) {
 }
 
 TEST_F(Collector, PointsWithoutAReturnAreLeftOutWithTheirTimes) {
-  SetUp(2);
+  Prepare(2);
   const float points[] = {0, 0, 0, 1, 0, 0, 0, 2, 0, 0, 0, 3};
   collector_.Add({1, 0, 1, 0}, kStart, reinterpret_cast<const guint8*>(points), sizeof points);
   const auto scan = collector_.Take();
