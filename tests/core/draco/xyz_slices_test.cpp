@@ -201,9 +201,9 @@ void ExpectAttribute(const ::draco::PointCloud& cloud, ::draco::GeometryAttribut
   attribute->buffer()->Read(0, values.data(), values.size() * sizeof(float));
 #ifdef __x86_64__
   EXPECT_EQ(values, expected);
-#else  // Draco is built with fused multiplications there: the last bit may differ
+#else  // Draco is built with fused multiplications there: the last bit of tens of metres may differ
   ASSERT_EQ(values.size(), expected.size());
-  for (std::size_t i = 0; i < values.size(); ++i) EXPECT_FLOAT_EQ(values[i], expected[i]) << i;
+  for (std::size_t i = 0; i < values.size(); ++i) EXPECT_NEAR(values[i], expected[i], 1e-5) << i;
 #endif
 }
 
