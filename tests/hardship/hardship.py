@@ -199,9 +199,9 @@ def many_receivers(options):
     assert threads <= 2 * count + 5, f"{threads} threads for {count} receivers"
     took = victim.ask("null")["took"]
     assert took < 5000, f"stopping took {took} ms"
-    time.sleep(2)  # GLib ends threads without work after a while
+    time.sleep(2)  # GLib ends threads without work after a while, but keeps 8 from version 2.84 on
     left = victim.ask()["threads"] - few
-    assert left <= 5, f"{left} threads are left"
+    assert left <= 8, f"{left} threads are left"
     victim.close()
     return f"{threads} threads for {count} receivers, stopped within {took} ms"
 
@@ -253,6 +253,7 @@ def few_files(options):
                 run = subprocess.run(
                     [ends.Victim.program, pipeline.format(data=data, folder=folder)], input="report\n", text=True,
                     capture_output=True, timeout=60, check=False,
+                    env=dict(os.environ, G_DEBUG=""),  # GStreamer 1.26 has a critical of its own there
                     preexec_fn=lambda n=limit: resource.setrlimit(resource.RLIMIT_NOFILE, (n, n)))
                 said = run.stdout + run.stderr
                 assert run.returncode >= 0, f"{name} with {limit} files: signal {-run.returncode}: {said[-300:]}"
