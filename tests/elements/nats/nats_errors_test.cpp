@@ -127,6 +127,7 @@ TEST_F(NatsErrors, CredentialsAreTakenFromAFile) {
   const std::string good = At("credentials-file=" + server_.folder() + "/good.creds");
   NatsPipeline receiver("natssrc name=n" + good + "! fakesink name=see sync=false");
   receiver.Play();
+  ASSERT_TRUE(Eventually([&] { return receiver.stat("connected") == 1; }));
   PublishSlices(8, good);
   EXPECT_TRUE(receiver.WaitForBuffers(8));
   const std::string bad = At("credentials-file=" + server_.folder() + "/bad.creds");
@@ -167,6 +168,7 @@ TEST_F(NatsErrors, AnAddressWithTlsTrustsWhomTheSystemTrusts) {
   g_setenv("SSL_CERT_FILE", (f + "/cert.pem").c_str(), TRUE);
   NatsPipeline receiver("natssrc name=n" + tls + "! fakesink name=see sync=false");
   receiver.Play();
+  ASSERT_TRUE(Eventually([&] { return receiver.stat("connected") == 1; }));
   PublishSlices(8, tls);
   EXPECT_TRUE(receiver.WaitForBuffers(8));
   g_unsetenv("SSL_CERT_FILE");
@@ -184,6 +186,7 @@ TEST_F(NatsErrors, TlsChecksTheServersCertificate) {
   const std::string good = " url=" + server_.url("tls") + " tls-ca-file=" + f + "/cert.pem ";
   NatsPipeline receiver("natssrc name=n" + good + "! fakesink name=see sync=false");
   receiver.Play();
+  ASSERT_TRUE(Eventually([&] { return receiver.stat("connected") == 1; }));
   PublishSlices(8, good);
   EXPECT_TRUE(receiver.WaitForBuffers(8));
   NatsPipeline wary("natssrc name=n url=" + server_.url("tls") + " tls-ca-file=" + f +
