@@ -210,30 +210,38 @@ void PushGap(GstLidarPointCloudFilter* self, GstBuffer* buffer) {
                        gst_event_new_gap(GST_BUFFER_PTS(buffer), GST_BUFFER_DURATION(buffer)));
 }
 
-/// What takes the cloud to the target frame. Where there is nothing, that is counted, and reported
-/// once until there is something; but not where a flush or the end of the stream cut the wait
-/// short.
-std::optional<lidar::Transform> Place(GstLidarPointCloudFilter* self, GstBuffer* buffer) {
+/// A cloud for which there is no transform is counted, and reported once until there is one.
+void NoteTransform(GstLidarPointCloudFilter* self, const std::string& frame,
+                   const lidar::TransformTree::Answer& answer) {
   State& state = *self->state;
-  if (state.target_frame.empty()) return lidar::kIdentity;
+  const bool reported = std::exchange(state.reported_transform, !answer.transform);
+  if (answer.transform) return;
+  std::unique_lock lock(state.mutex);
+  ++state.counters.without_transform;
+  lock.unlock();
+  if (reported) return;
+  GST_ELEMENT_WARNING(
+      self, STREAM, FAILED,
+      ("A cloud of %s cannot be put into %s: %s. Such clouds are dropped and counted.",
+       frame.c_str(), state.target_frame.c_str(), answer.why.c_str()),
+      (nullptr));
+}
+
+/// Finds what takes the cloud to the target frame; none where there is nothing. FLUSHING where a
+/// flush or the end of the stream cut the wait short.
+GstFlowReturn Place(GstLidarPointCloudFilter* self, GstBuffer* buffer,
+                    std::optional<lidar::Transform>* transform) {
+  State& state = *self->state;
+  *transform = lidar::kIdentity;
+  if (state.target_frame.empty()) return GST_FLOW_OK;
   const auto at = lidar::gst::CaptureTimeOf(buffer);
   const std::string frame =
       state.plan->frame().empty() ? lidar::gst::kCloudFrame : state.plan->frame();
   const auto answer = state.inbox.Find(state.target_frame, frame, at, state.tf_timeout);
-  if (!answer.transform && state.inbox.is_interrupted()) return std::nullopt;
-  if (!answer.transform) {
-    std::unique_lock lock(state.mutex);
-    ++state.counters.without_transform;
-    lock.unlock();
-    if (!state.reported_transform)
-      GST_ELEMENT_WARNING(self, STREAM, FAILED,
-                          ("A cloud of %s cannot be put into %s: %s. Such clouds are dropped and "
-                           "counted.",
-                           frame.c_str(), state.target_frame.c_str(), answer.why.c_str()),
-                          (nullptr));
-  }
-  state.reported_transform = !answer.transform;
-  return answer.transform;
+  *transform = answer.transform;
+  if (!answer.transform && state.inbox.is_interrupted()) return GST_FLOW_FLUSHING;
+  NoteTransform(self, frame, answer);
+  return GST_FLOW_OK;
 }
 
 GstFlowReturn Chain(GstPad*, GstObject* parent, GstBuffer* raw) {
@@ -247,8 +255,9 @@ GstFlowReturn Chain(GstPad*, GstObject* parent, GstBuffer* raw) {
     changed = state.changed;
   }
   if ((changed || !state.plan) && !MakePlan(self)) return GST_FLOW_NOT_NEGOTIATED;
-  const auto placed = Place(self, raw);
-  if (!placed && state.inbox.is_interrupted()) return GST_FLOW_FLUSHING;
+  std::optional<lidar::Transform> placed;
+  const GstFlowReturn flow = Place(self, raw, &placed);
+  if (flow != GST_FLOW_OK) return flow;
   BufferPtr out = placed ? state.plan->Apply(raw, *placed) : BufferPtr(gst_buffer_new());
   if (!out) {
     GST_ELEMENT_ERROR(self, STREAM, FORMAT, ("A cloud of another size than its caps say."),
