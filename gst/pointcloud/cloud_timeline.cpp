@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include "gst/pointcloud/cloud_timeline.h"
 
-#include <utility>
+#include <algorithm>
 
 namespace lidar::gst {
 namespace {
