@@ -55,12 +55,16 @@ EventPtr CloudTimeline::ToTime(GstEvent* event, guint64* cloud) {
   const std::lock_guard lock(mutex_);
   const bool counts = bytes->format == GST_FORMAT_BYTES && grid_.cloud_bytes > 0;
   if (counts) *cloud = bytes->start / grid_.cloud_bytes;
+  // Clouds may have gone since a seek was asked for.
+  const GstClockTime gone =
+      gst_segment_to_running_time(&segment_, GST_FORMAT_TIME, segment_.position);
   if (sought_ && sought_->seqnum == seqnum) {
     segment_ = sought_->segment;
   } else {
     gst_segment_init(&segment_, GST_FORMAT_TIME);
     if (counts) segment_.start = segment_.time = segment_.position = grid_.TimeOf(*cloud);
   }
+  segment_.base = gone;
   sought_.reset();
   EventPtr segment(gst_event_new_segment(&segment_));
   gst_event_set_seqnum(segment.get(), seqnum);
@@ -69,7 +73,13 @@ EventPtr CloudTimeline::ToTime(GstEvent* event, guint64* cloud) {
 
 void CloudTimeline::NotePosition(GstClockTime end) {
   const std::lock_guard lock(mutex_);
-  segment_.position = end;
+  segment_.position = std::min(end, segment_.stop);  // no stop is the largest number
+}
+
+void CloudTimeline::RestartTime() {
+  const std::lock_guard lock(mutex_);
+  segment_.base = segment_.offset = 0;
+  segment_.position = segment_.start;
 }
 
 EventPtr CloudTimeline::EndInTime(GstEvent* done) const {

@@ -29,12 +29,15 @@ class CloudTimeline {
   void SetGrid(const Grid& grid);
   void Reset();
 
-  /// The segment in time for one in bytes; `cloud` becomes the first of it, where that is known.
+  /// The segment in time for one in bytes, which goes on where the last cloud ended; `cloud`
+  /// becomes the first of it, where that is known.
   EventPtr ToTime(GstEvent* segment, guint64* cloud);
   /// SEGMENT_DONE as those behind the parser want it; takes the event.
   EventPtr EndInTime(GstEvent* done) const;
-  /// A cloud has gone that ends then.
+  /// A cloud has gone that ends then, or with the segment.
   void NotePosition(GstClockTime end);
+  /// The running time begins anew.
+  void RestartTime();
 
   /// True where the query has its answer. `sinkpad` is where the bytes come in.
   bool Answer(GstPad* sinkpad, GstQuery* query) const;

@@ -154,7 +154,8 @@ void Stamp(State* state, GstBuffer* buffer) {
   GST_BUFFER_DURATION(buffer) = grid.TimeOf(state->count + 1) - grid.TimeOf(state->count);
   GST_BUFFER_OFFSET(buffer) = state->count++;
   GST_BUFFER_OFFSET_END(buffer) = state->count;
-  state->timeline.NotePosition(GST_BUFFER_PTS(buffer) + GST_BUFFER_DURATION(buffer));
+  if (!state->times_given)
+    state->timeline.NotePosition(GST_BUFFER_PTS(buffer) + GST_BUFFER_DURATION(buffer));
 }
 
 /// A recording that broke off leaves empty files; the rest of them counts. The cloud keeps its
@@ -339,9 +340,13 @@ gboolean SinkEvent(GstPad* pad, GstObject* parent, GstEvent* event) {
       Drain(self);
       PushSegment(self);
       return gst_pad_push_event(self->srcpad, state.timeline.EndInTime(event).release());
-    case GST_EVENT_FLUSH_STOP:
+    case GST_EVENT_FLUSH_STOP: {
       Reset(&state);
+      gboolean restarts = FALSE;
+      gst_event_parse_flush_stop(event, &restarts);
+      if (restarts) state.timeline.RestartTime();
       break;
+    }
     default:
       break;
   }

@@ -231,6 +231,80 @@ TEST(ParseFile, AFileThatIsTooLargeForOneCloudIsAnErrorAtOnce) {
       << error->message;
 }
 
+/// A source of bytes that can seek and is under way: two clouds come while it is told to.
+class ParseUnderWay : public Parse {
+ protected:
+  static constexpr gsize kCloud = 160;
+
+  ParseUnderWay() {
+    Start("application/x-pointcloud2,width=5,height=2,point-step=16,fields=(string)\"x:F32:0\"");
+    gst_pad_set_element_private(h_->srcpad, this);
+    gst_pad_set_event_function(h_->srcpad, Upstream);
+  }
+  void PushClouds(int count) {
+    for (int i = 0; i < count; ++i) ASSERT_EQ(Push(Bytes(kCloud)), GST_FLOW_OK);
+  }
+  static gboolean Upstream(GstPad* pad, GstObject*, GstEvent* raw) {
+    auto* self = static_cast<ParseUnderWay*>(gst_pad_get_element_private(pad));
+    const EventPtr event(raw);
+    if (GST_EVENT_TYPE(raw) != GST_EVENT_SEEK) return TRUE;
+    self->PushClouds(2);
+    gint64 start = 0;
+    GstSeekFlags flags = GST_SEEK_FLAG_NONE;
+    gst_event_parse_seek(raw, nullptr, nullptr, &flags, nullptr, &start, nullptr, nullptr);
+    if (flags & GST_SEEK_FLAG_FLUSH) {
+      gst_pad_push_event(pad, gst_event_new_flush_start());
+      gst_pad_push_event(pad, gst_event_new_flush_stop(TRUE));
+    }
+    self->PushBytesFrom(static_cast<guint64>(start), gst_event_get_seqnum(raw));
+    return TRUE;
+  }
+  void PushBytesFrom(guint64 start, guint32 seqnum) {
+    GstSegment segment;
+    gst_segment_init(&segment, GST_FORMAT_BYTES);
+    segment.start = segment.time = segment.position = start;
+    GstEvent* event = gst_event_new_segment(&segment);
+    gst_event_set_seqnum(event, seqnum);
+    gst_pad_push_event(h_->srcpad, event);
+  }
+  bool Seek(GstSeekFlags flags, gint64 start) {
+    return gst_pad_push_event(
+               h_->sinkpad, gst_event_new_seek(1, GST_FORMAT_TIME, flags, GST_SEEK_TYPE_SET, start,
+                                               GST_SEEK_TYPE_NONE, 0)) != FALSE;
+  }
+  /// When the last cloud that came is shown.
+  GstClockTime RunningTime() {
+    BufferPtr last;
+    while (BufferPtr next{gst_harness_try_pull(h_.get())}) last = std::move(next);
+    const EventPtr event(gst_pad_get_sticky_event(h_->sinkpad, GST_EVENT_SEGMENT, 0));
+    const GstSegment* segment = nullptr;
+    gst_event_parse_segment(event.get(), &segment);
+    return gst_segment_to_running_time(segment, GST_FORMAT_TIME, GST_BUFFER_PTS(last.get()));
+  }
+};
+
+TEST_F(ParseUnderWay, ASeekWithoutAFlushGoesOnWhereTheLastCloudEnded) {
+  PushClouds(3);
+  ASSERT_TRUE(Seek(GST_SEEK_FLAG_NONE, 2 * gint64{GST_SECOND}));
+  PushClouds(1);
+  EXPECT_EQ(RunningTime(), 500 * GST_MSECOND);
+  ASSERT_TRUE(Seek(GST_SEEK_FLAG_FLUSH, 2 * gint64{GST_SECOND}));
+  PushClouds(1);
+  EXPECT_EQ(RunningTime(), 0U);
+}
+
+TEST_F(ParseUnderWay, BytesFromElsewhereGoOnWhereTheLastCloudEnded) {
+  PushClouds(3);
+  PushBytesFrom(7 * kCloud, 4711);
+  PushClouds(1);
+  EXPECT_EQ(RunningTime(), 300 * GST_MSECOND);
+  gst_pad_push_event(h_->srcpad, gst_event_new_flush_start());
+  gst_pad_push_event(h_->srcpad, gst_event_new_flush_stop(FALSE));
+  PushBytesFrom(0, 4712);
+  PushClouds(1);
+  EXPECT_EQ(RunningTime(), 400 * GST_MSECOND);
+}
+
 /// A file of ten clouds at 10 Hz, each of 8 points that hold its number, in PAUSED.
 class ParseSeek : public ::testing::Test {
  protected:
@@ -251,6 +325,16 @@ class ParseSeek : public ::testing::Test {
                        self->times_.push_back(GST_BUFFER_PTS(buffer));
                      }),
                      this);
+    const PadPtr pad(gst_element_get_static_pad(sink.get(), "sink"));
+    gst_pad_add_probe(
+        pad.get(), GST_PAD_PROBE_TYPE_EVENT_DOWNSTREAM,
+        [](GstPad*, GstPadProbeInfo* info, gpointer data) {
+          if (GST_EVENT_TYPE(info->data) == GST_EVENT_SEGMENT_DONE)
+            gst_event_parse_segment_done(GST_EVENT(info->data), nullptr,
+                                         &static_cast<ParseSeek*>(data)->end_of_segment_);
+          return GST_PAD_PROBE_OK;
+        },
+        this, nullptr);
     gst_element_set_state(pipeline_.get(), GST_STATE_PAUSED);
     gst_element_get_state(pipeline_.get(), nullptr, nullptr, GST_CLOCK_TIME_NONE);
   }
@@ -277,10 +361,21 @@ class ParseSeek : public ::testing::Test {
     return clouds_;
   }
 
+  /// Running time at which the segment of now begins.
+  GstClockTime Base() {
+    const ElementPtr sink(gst_bin_get_by_name(GST_BIN(pipeline_.get()), "sink"));
+    const PadPtr pad(gst_element_get_static_pad(sink.get(), "sink"));
+    const EventPtr event(gst_pad_get_sticky_event(pad.get(), GST_EVENT_SEGMENT, 0));
+    const GstSegment* segment = nullptr;
+    gst_event_parse_segment(event.get(), &segment);
+    return segment->base;
+  }
+
   const std::string path_ = ::testing::TempDir() + "seek.bin";
   ElementPtr pipeline_;
   std::vector<int> clouds_;
   std::vector<GstClockTime> times_;
+  gint64 end_of_segment_ = -1;
 };
 
 TEST_F(ParseSeek, KnowsHowLongTheFileIsAndThatItCanBeSought) {
@@ -310,6 +405,16 @@ TEST_F(ParseSeek, ASegmentSeekEndsWithItsMessageAndGoesOnFromThere) {
   EXPECT_EQ(PlayTo(GST_MESSAGE_SEGMENT_DONE), (std::vector<int>{0, 1}));
   ASSERT_TRUE(Seek(GST_SEEK_FLAG_SEGMENT, 800 * GST_MSECOND));
   EXPECT_EQ(PlayTo(GST_MESSAGE_SEGMENT_DONE), (std::vector<int>{8, 9}));
+}
+
+TEST_F(ParseSeek, ASegmentEndsNoLaterThanItsStop) {
+  ASSERT_TRUE(Seek(GST_SEEK_FLAG_FLUSH | GST_SEEK_FLAG_SEGMENT, 0, 250 * GST_MSECOND));
+  EXPECT_EQ(PlayTo(GST_MESSAGE_SEGMENT_DONE), (std::vector<int>{0, 1, 2}));
+  EXPECT_EQ(end_of_segment_, gint64{250 * GST_MSECOND});
+  // What follows goes on where the segment ended, for a clock.
+  ASSERT_TRUE(Seek(GST_SEEK_FLAG_SEGMENT, 800 * GST_MSECOND));
+  EXPECT_EQ(PlayTo(GST_MESSAGE_SEGMENT_DONE), (std::vector<int>{8, 9}));
+  EXPECT_EQ(Base(), 250 * GST_MSECOND);
 }
 
 TEST_F(ParseSeek, CountsFromTheEndWhereItIsAsked) {
