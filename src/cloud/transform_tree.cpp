@@ -108,25 +108,41 @@ bool TransformTree::Set(std::string parent, std::string child, Time at, const Fr
   if (links_.size() >= kMaxFrames && links_.count(child) == 0) return false;
   const Sample sample{at, {pose.position, Normalised(pose.orientation)}};
   Link& link = links_[child];
-  if (link.parent != parent || link.for_good != for_good) link = {std::move(parent), for_good, {}};
-  auto& samples = link.samples;
-  // A recording that begins again.
-  if (for_good || (!samples.empty() && samples.back().at - at > kHistory)) samples.clear();
-  const auto place = std::lower_bound(samples.begin(), samples.end(), at,
+  if (link.for_good != for_good) link = {};
+  link.for_good = for_good;
+  if (for_good) link.history = {};
+  if (!link.IsTooOld(at)) {
+    link.earlier = {};
+    link.history.Add(parent, sample);
+    return true;
+  }
+  link.earlier.Add(parent, sample);
+  if (link.earlier.samples.size() < kRestart) return false;
+  link.history = std::exchange(link.earlier, {});
+  return true;
+}
+
+bool TransformTree::Link::IsTooOld(Time at) const {
+  return !history.samples.empty() && history.samples.back().at - at > kHistory;
+}
+
+/// A frame has one parent.
+void TransformTree::History::Add(const std::string& of, const Sample& sample) {
+  if (parent != of) *this = {of, {}};
+  const auto place = std::lower_bound(samples.begin(), samples.end(), sample.at,
                                       [](const Sample& s, Time time) { return s.at < time; });
-  if (place != samples.end() && place->at == at)
+  if (place != samples.end() && place->at == sample.at)
     *place = sample;
   else
     samples.insert(place, sample);
   while (samples.size() > kMaxSamples || samples.back().at - samples.front().at > kHistory)
     samples.pop_front();
-  return true;
 }
 
 bool TransformTree::Knows(const std::string& frame) const {
   return links_.count(frame) > 0 ||
          std::any_of(links_.begin(), links_.end(),
-                     [&](const auto& entry) { return entry.second.parent == frame; });
+                     [&](const auto& entry) { return entry.second.history.parent == frame; });
 }
 
 /// The frame, its parent, and so on.
@@ -134,7 +150,7 @@ std::vector<std::string> TransformTree::PathUp(const std::string& frame) const {
   std::vector<std::string> path = {frame};
   auto link = links_.find(frame);
   for (; link != links_.end() && path.size() < kMaxDepth; link = links_.find(path.back()))
-    path.push_back(link->second.parent);
+    path.push_back(link->second.history.parent);
   return path;
 }
 
@@ -145,12 +161,12 @@ std::optional<FramePose> TransformTree::Climb(const std::vector<std::string>& pa
   FramePose pose;
   for (std::size_t i = 0; i < steps; ++i) {
     const Link& link = links_.at(path[i]);
-    const auto& samples = link.samples;
+    const auto& [parent, samples] = link.history;
     if (link.for_good || !at) {
       pose = Times(samples.back().pose, pose);
       continue;
     }
-    const std::string from_to = "from " + path[i] + " to " + link.parent;
+    const std::string from_to = "from " + path[i] + " to " + parent;
     if (*at > samples.back().at) {
       answer->newest = samples.back().at;
       answer->may_come = true;

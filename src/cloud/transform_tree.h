@@ -26,9 +26,12 @@ class TransformTree {
   static constexpr std::size_t kMaxFrames = 512;
   static constexpr std::size_t kMaxSamples = 2048;  // of a frame
   static constexpr Duration kHistory = std::chrono::seconds(10);
+  static constexpr std::size_t kRestart = 10;  // poses
 
   /// Where `child` is in `parent` at a time, or for good. False where this is no pose, frames are
-  /// not named or the same, or there are too many.
+  /// not named or the same, or there are too many; and where the pose is older than kHistory, as
+  /// tf2 has it. After kRestart such poses, with no newer one between them, the clock went back,
+  /// and the history begins with them.
   bool Set(std::string parent, std::string child, Time at, const FramePose& pose, bool for_good);
 
   struct Answer {
@@ -47,10 +50,18 @@ class TransformTree {
     Time at{};
     FramePose pose;
   };
-  struct Link {
+  struct History {
     std::string parent;
+    std::deque<Sample> samples;  // by time
+
+    void Add(const std::string& of, const Sample& sample);
+  };
+  struct Link {
     bool for_good = false;
-    std::deque<Sample> samples;  // by time; never empty
+    History history;  // never empty
+    History earlier;  // of a clock that may have gone back
+
+    bool IsTooOld(Time at) const;
   };
 
   bool Knows(const std::string& frame) const;

@@ -99,14 +99,38 @@ TEST_F(Tree, KeepsPosesInTheOrderOfTheirTimes) {
   ExpectNear(Place(tree.Find("a", "b", kStart + milliseconds(15)), {0, 0, 0}), {15, 0, 0});
 }
 
-TEST_F(Tree, ForgetsWhatIsOldAndWhatWasBeforeTheClockWentBack) {
+TEST_F(Tree, ForgetsWhatIsOld) {
   TransformTree tree;
   tree.Set("a", "b", kStart, At(1), false);
   tree.Set("a", "b", kStart + seconds(11), At(2), false);
   EXPECT_FALSE(tree.Find("a", "b", kStart + seconds(5)).transform);
-  tree.Set("a", "b", kStart - seconds(100), At(3), false);
-  ExpectNear(Place(tree.Find("a", "b", std::nullopt), {0, 0, 0}), {3, 0, 0});
-  EXPECT_TRUE(tree.Find("a", "b", kStart).may_come);
+}
+
+TEST_F(Tree, APoseThatIsTooLateChangesNothing) {
+  ASSERT_TRUE(tree_.Set("map", "odom", kStart + seconds(1), At(200), false));
+  EXPECT_FALSE(tree_.Set("map", "odom", kStart - seconds(10), At(3), false));
+  EXPECT_FALSE(tree_.Set("elsewhere", "odom", kStart - seconds(10), At(3), false));
+  ExpectNear(Place(tree_.Find("map", "odom", kStart + milliseconds(500)), {0, 0, 0}), {150, 0, 0});
+  // However many there are, while newer ones come between them.
+  for (int i = 0; i < 100; ++i) {
+    EXPECT_FALSE(tree_.Set("map", "odom", kStart - seconds(20), At(3), false));
+    EXPECT_TRUE(tree_.Set("map", "odom", kStart + seconds(1) + milliseconds(i), At(200), false));
+  }
+  ExpectNear(Place(tree_.Find("map", "odom", kStart), {0, 0, 0}), {100, 0, 0});
+}
+
+TEST_F(Tree, AClockThatWentBackBeginsAnew) {
+  constexpr auto kAgain = static_cast<int>(TransformTree::kRestart);
+  const Time again = kStart - seconds(100);
+  for (int i = 0; i < kAgain; ++i)
+    EXPECT_EQ(tree_.Set("map", "odom", again + milliseconds(10 * i), At(i), false), i == kAgain - 1)
+        << i;
+  // Nothing of the new time is lost, and nothing of the old one is left.
+  ExpectNear(Place(tree_.Find("map", "odom", again + milliseconds(15)), {0, 0, 0}), {1.5, 0, 0});
+  EXPECT_TRUE(tree_.Find("map", "odom", kStart).may_come);
+  // Poses that are far from each other are of no clock.
+  for (int i = 0; i < 100; ++i)
+    EXPECT_FALSE(tree_.Set("map", "odom", again - seconds(20 + 11 * (i % 5)), At(i), false));
 }
 
 TEST_F(Tree, AFrameThatMovesToAnotherParentLeavesTheFirst) {
