@@ -72,7 +72,7 @@ const std::array<Stat<Counters>, 4> kStats = {{
 struct State {
   std::mutex mutex;  // guards all to the next comment; never held while sending or posting
   SinkSettings settings;
-  SharedSocket used;
+  SocketInUse used;
   SharedSocketAddress peer;
   Counters counters;
 
@@ -170,14 +170,15 @@ static gboolean Start(GstBaseSink* base) {
 
   SharedSocketAddress peer;
   if (!s.reply && !(peer = ResolveTarget(GST_ELEMENT(self), s.target))) return FALSE;
-  SharedSocket socket = s.given.socket;
   const GSocketFamily family =
       peer ? g_socket_address_get_family(peer.get()) : G_SOCKET_FAMILY_INVALID;
-  if (!socket) socket = OpenSending(GST_ELEMENT(self), s.target, family);
-  if (!socket) return FALSE;
-  ConfigureSocket(socket.get(), s);
-  state.family = g_socket_get_family(socket.get());
-  state.socket_tos = SocketTos(g_socket_get_fd(socket.get()), state.family);
+  SocketInUse used =
+      TakeSocket(s.given, [&] { return OpenSending(GST_ELEMENT(self), s.target, family); });
+  if (!used.socket) return FALSE;
+  GSocket* socket = used.socket.get();
+  ConfigureSocket(socket, s);
+  state.family = g_socket_get_family(socket);
+  state.socket_tos = SocketTos(g_socket_get_fd(socket), state.family);
   state.to = peer ? ToNative(peer.get(), state.family) : NativeAddress{};
   state.warned_errno = 0;
   state.wake.Clear();
@@ -190,7 +191,7 @@ static gboolean Start(GstBaseSink* base) {
   }
   GST_DEBUG_OBJECT(self, "sending to %s", AddressToString(peer.get()).c_str());
   lock.lock();
-  state.used = std::move(socket);
+  state.used = std::move(used);
   state.peer = std::move(peer);
   state.counters = {};
   return TRUE;
@@ -199,7 +200,7 @@ static gboolean Start(GstBaseSink* base) {
 static gboolean Stop(GstBaseSink* base) {
   State& state = StateOf(base);
   std::lock_guard lock(state.mutex);
-  CloseUsed(&state.used, state.settings.given);
+  state.used.Close(state.settings.given.close);
   state.peer.reset();
   return TRUE;
 }
@@ -237,7 +238,7 @@ static void WarnOnce(GstLidarEcnUdpSink* self, const UdpBatchSender::Result& res
 
 static GstFlowReturn Flush(GstLidarEcnUdpSink* self) {
   State& state = StateOf(self);
-  const auto result = state.batch.Flush(g_socket_get_fd(state.used.get()), state.wake);
+  const auto result = state.batch.Flush(g_socket_get_fd(state.used.socket.get()), state.wake);
   {
     std::lock_guard lock(state.mutex);
     AddCounts(kStats, {result.packets, result.bytes, result.errors, 0}, &state.counters);

@@ -61,7 +61,7 @@ const std::array<Stat<Counters>, 4> kStats = {{
 struct State {
   std::mutex mutex;  // guards all to the next comment; never held while receiving or posting
   SrcSettings settings;
-  SharedSocket used;
+  SocketInUse used;
   Counters counters;
 
   // Only the streaming thread uses what follows, between start and stop.
@@ -125,10 +125,10 @@ static gboolean Start(GstBaseSrc* base) {
   const SrcSettings s = state.settings;
   lock.unlock();
 
-  SharedSocket socket = s.given.socket;
-  if (!socket) socket = OpenListening(GST_ELEMENT(self), s.listen);
-  if (!socket) return FALSE;
-  const int fd = g_socket_get_fd(socket.get());
+  SocketInUse used =
+      TakeSocket(s.given, [&] { return OpenListening(GST_ELEMENT(self), s.listen); });
+  if (!used.socket) return FALSE;
+  const int fd = g_socket_get_fd(used.socket.get());
   UdpBatchReceiver::Prepare(fd);
   ConfigureBuffer(self, fd, s.options.buffer_size);
   state.wake.Clear();
@@ -136,7 +136,7 @@ static gboolean Start(GstBaseSrc* base) {
   state.last_from = {};
   state.last_address.reset();
   lock.lock();
-  state.used = std::move(socket);
+  state.used = std::move(used);
   state.counters = {};
   return TRUE;
 }
@@ -144,7 +144,7 @@ static gboolean Start(GstBaseSrc* base) {
 static gboolean Stop(GstBaseSrc* base) {
   State& state = StateOf(base);
   std::lock_guard lock(state.mutex);
-  CloseUsed(&state.used, state.settings.given);
+  state.used.Close(state.settings.given.close);
   state.received.clear();
   return TRUE;
 }
@@ -193,7 +193,7 @@ static void PostTimeout(GstLidarEcnUdpSrc* self) {
 /// Waits until datagrams are there and takes them all, up to the capacity of a batch.
 static GstFlowReturn ReceiveBatch(GstLidarEcnUdpSrc* self) {
   State& state = StateOf(self);
-  const int fd = g_socket_get_fd(state.used.get());
+  const int fd = g_socket_get_fd(state.used.socket.get());
   for (;;) {
     const int n = state.batch.Receive(fd, [&](const ReceivedDatagram& d) {
       // An empty datagram has nothing for anybody.

@@ -93,9 +93,9 @@ SharedSocket OpenSending(GstElement* element, const UdpTarget& target, GSocketFa
   return socket;
 }
 
-void CloseUsed(SharedSocket* used, const GivenSocket& given) {
-  if (*used && (*used != given.socket || given.close)) g_socket_close(used->get(), nullptr);
-  used->reset();
+void SocketInUse::Close(bool close_given) {
+  if (socket && (!given || close_given)) g_socket_close(socket.get(), nullptr);
+  *this = {};
 }
 
 }  // namespace lidar::gst

@@ -41,6 +41,14 @@ struct GivenSocket {
   SharedSocket socket;
   bool close = true;  // on stop
 };
+/// A socket in use. The application may have given another one since.
+struct SocketInUse {
+  SharedSocket socket;
+  bool given = false;
+
+  /// Closes it and forgets it; one that was given only where it is to be closed.
+  void Close(bool close_given);
+};
 
 /// What the bins leave to the elements.
 struct UdpOptions {
@@ -60,15 +68,19 @@ SharedSocket OpenListening(GstElement* element, const UdpListen& listen);
 SharedSocketAddress ResolveTarget(GstElement* element, const UdpTarget& target);
 SharedSocket OpenSending(GstElement* element, const UdpTarget& target, GSocketFamily family);
 
-/// Closes `used` and forgets it, unless it was given and is to stay open.
-void CloseUsed(SharedSocket* used, const GivenSocket& given);
+/// The socket that is given, else that which `open` opens; NULL where it fails.
+template <class Open>
+SocketInUse TakeSocket(const GivenSocket& given, Open open) {
+  if (given.socket) return {given.socket, true};
+  return {open(), false};
+}
 
 /// The row used-socket of an element whose state has `used` and the mutex that guards it.
 template <class Self>
 SharedSocket UsedSocket(GObject* object) {
   auto& state = *reinterpret_cast<Self*>(object)->state;
   const LockIf lock(true, state.mutex);
-  return state.used;
+  return state.used.socket;
 }
 
 /// GstBaseSink's or GstBaseSrc's unlock methods, by the state's `wake`.

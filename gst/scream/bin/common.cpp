@@ -23,8 +23,7 @@ void GiveSocket(GstElement* child, GSocket* socket) {
   g_object_set(child, "socket", socket, "close-socket", FALSE, nullptr);
 }
 
-void CloseBin(BinState& state, std::initializer_list<GstElement*> children,
-              const GivenSocket& given) {
+void CloseBin(BinState& state, std::initializer_list<GstElement*> children, bool close_given) {
   std::unique_lock lock(state.mutex);
   std::shared_ptr<SrtpLayer> srtp = std::move(state.srtp);
   lock.unlock();
@@ -32,7 +31,7 @@ void CloseBin(BinState& state, std::initializer_list<GstElement*> children,
   for (GstElement* child : children)
     if (child != nullptr) GiveSocket(child, nullptr);
   lock.lock();
-  CloseUsed(&state.used, given);
+  state.used.Close(close_given);
 }
 
 guint OverheadOf(GSocketAddress* peer) {

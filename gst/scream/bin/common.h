@@ -18,7 +18,7 @@ namespace lidar::gst {
 /// From READY to NULL. Guarded by `mutex`, which nobody holds while a child works.
 struct BinState {
   std::mutex mutex;
-  SharedSocket used;
+  SocketInUse used;
   std::shared_ptr<SrtpLayer> srtp;
   std::string srtp_key;  // the property as it was when the key was taken
 };
@@ -33,10 +33,9 @@ struct Child {
 bool HasChildren(GstElement* bin, std::initializer_list<Child> children);
 /// Gives `socket` to a child that does not own it.
 void GiveSocket(GstElement* child, GSocket* socket);
-/// Takes the socket from the children, ends SRTP and closes the socket, unless it was given and is
-/// to stay open.
-void CloseBin(BinState& state, std::initializer_list<GstElement*> children,
-              const GivenSocket& given = {});
+/// Takes the socket from the children, ends SRTP and closes the socket; one that was given only
+/// where it is to be closed.
+void CloseBin(BinState& state, std::initializer_list<GstElement*> children, bool close_given);
 /// The UDP and IP header bytes of a packet to `peer`.
 guint OverheadOf(GSocketAddress* peer);
 /// `stats` of the child; NULL without a child. Transfer full.
@@ -57,7 +56,7 @@ void ChangeSrtpKey(GObject* bin, GParamSpec* spec) {
   if (g_strcmp0(spec->name, "srtp-key") != 0) return;
   auto& state = *reinterpret_cast<Self*>(bin)->state;
   std::unique_lock lock(state.mutex);
-  if (!state.used) return;
+  if (!state.used.socket) return;
   const std::shared_ptr<SrtpLayer> layer = state.srtp;
   const std::string key = state.settings.srtp.key;
   lock.unlock();

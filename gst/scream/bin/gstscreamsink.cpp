@@ -183,14 +183,14 @@ static bool Open(GstLidarScreamSink* self) {
   lock.lock();
   state.srtp = std::move(srtp);
   state.srtp_key = s.srtp.key;
-  state.used = std::move(socket);
+  state.used = {std::move(socket), false};
   state.peer = std::move(peer);
   state.foreign = 0;
   return true;
 }
 
 static void Close(GstLidarScreamSink* self) {
-  CloseBin(*self->state, {self->sink, self->src});
+  CloseBin(*self->state, {self->sink, self->src}, false);
   const std::lock_guard lock(self->state->mutex);
   self->state->peer.reset();
 }

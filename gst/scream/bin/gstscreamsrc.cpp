@@ -103,11 +103,11 @@ static bool Open(GstLidarScreamSrc* self) {
   if (!HasChildren(GST_ELEMENT(self),
                    {{self->src, "ecnudpsrc"}, {self->rx, "screamrx"}, {self->sink, "ecnudpsink"}}))
     return false;
-  SharedSocket socket = s.given.socket;
-  if (!socket) socket = OpenListening(GST_ELEMENT(self), s.listen);
-  if (!socket) return false;
-  GiveSocket(self->src, socket.get());
-  GiveSocket(self->sink, socket.get());
+  SocketInUse used =
+      TakeSocket(s.given, [&] { return OpenListening(GST_ELEMENT(self), s.listen); });
+  if (!used.socket) return false;
+  GiveSocket(self->src, used.socket.get());
+  GiveSocket(self->sink, used.socket.get());
   std::shared_ptr<SrtpLayer> srtp;
   if (!StartSrtp(s.srtp,
                  {GST_ELEMENT(self), self->rx, "rtcp_src", "sink", self->sink, self->src, false},
@@ -116,16 +116,16 @@ static bool Open(GstLidarScreamSrc* self) {
   lock.lock();
   state.srtp = std::move(srtp);
   state.srtp_key = s.srtp.key;
-  state.used = std::move(socket);
+  state.used = std::move(used);
   return true;
 }
 
 static void Close(GstLidarScreamSrc* self) {
   State& state = *self->state;
   std::unique_lock lock(state.mutex);
-  const GivenSocket given = state.settings.given;
+  const bool close_given = state.settings.given.close;
   lock.unlock();
-  CloseBin(state, {self->sink, self->src}, given);
+  CloseBin(state, {self->sink, self->src}, close_given);
 }
 
 static GstStateChangeReturn ChangeState(GstElement* element, GstStateChange change) {

@@ -363,6 +363,32 @@ TEST(EcnUdp, AGivenSocketStaysOpenWhereAsked) {
   EXPECT_TRUE(g_socket_is_closed(socket.get()));
 }
 
+TEST(EcnUdp, ASocketThatIsReplacedWhileItIsUsedIsTreatedAsItWasGiven) {
+  const auto bound = [] {
+    Object<GSocket> socket(
+        g_socket_new(G_SOCKET_FAMILY_IPV4, G_SOCKET_TYPE_DATAGRAM, G_SOCKET_PROTOCOL_UDP, nullptr));
+    const Object<GInetAddress> any(g_inet_address_new_loopback(G_SOCKET_FAMILY_IPV4));
+    const Object<GSocketAddress> local(g_inet_socket_address_new(any.get(), 0));
+    EXPECT_TRUE(g_socket_bind(socket.get(), local.get(), FALSE, nullptr));
+    return socket;
+  };
+  for (const char* factory : {"ecnudpsrc", "ecnudpsink"}) {
+    const ElementPtr element(gst_element_factory_make(factory, nullptr));
+    const auto first = bound();
+    const auto second = bound();
+    const auto used_between = [&](GSocket* begin, GSocket* end) {
+      g_object_set(element.get(), "socket", begin, "close-socket", FALSE, nullptr);
+      ASSERT_NE(gst_element_set_state(element.get(), GST_STATE_PAUSED), GST_STATE_CHANGE_FAILURE);
+      g_object_set(element.get(), "socket", end, nullptr);
+      gst_element_set_state(element.get(), GST_STATE_NULL);
+    };
+    used_between(first.get(), second.get());
+    EXPECT_FALSE(g_socket_is_closed(first.get())) << factory;
+    used_between(first.get(), nullptr);
+    EXPECT_FALSE(g_socket_is_closed(first.get())) << factory;
+  }
+}
+
 /// Sends datagrams to a port of this machine as fast as it can, until it goes out of scope.
 class Flood {
  public:

@@ -89,6 +89,21 @@ TEST(ScreamBins, TheSourceUsesAGivenSocketForBothWaysAndLeavesItOpen) {
   g_object_unref(given);
 }
 
+TEST(ScreamBins, ASocketThatIsReplacedWhileItIsUsedStaysOpen) {
+  GSocket* given =
+      g_socket_new(G_SOCKET_FAMILY_IPV4, G_SOCKET_TYPE_DATAGRAM, G_SOCKET_PROTOCOL_UDP, nullptr);
+  GSocketAddress* any = g_inet_socket_address_new_from_string("127.0.0.1", 0);
+  ASSERT_TRUE(g_socket_bind(given, any, FALSE, nullptr));
+  g_object_unref(any);
+  const ElementPtr in(gst_element_factory_make("screamsrc", nullptr));
+  g_object_set(in.get(), "socket", given, "close-socket", FALSE, nullptr);
+  gst_element_set_state(in.get(), GST_STATE_READY);
+  g_object_set(in.get(), "socket", nullptr, nullptr);
+  gst_element_set_state(in.get(), GST_STATE_NULL);
+  EXPECT_FALSE(g_socket_is_closed(given));
+  g_object_unref(given);
+}
+
 TEST(ScreamBins, CarryAStreamAndEndBothEnds) {
   Receiver receiver(kAudioCaps);
   Pipeline sender(kAudio + Sink(receiver.port));
