@@ -50,7 +50,7 @@ done
 
 if [ "$help" = yes ]; then
   usage
-  [ ! -x "$build/src/tools/lidar-demo" ] || "$build/src/tools/lidar-demo" run --help | sed -n '/^Options/,$p' | grep -v -- --help
+  [ ! -x "$build/src/tools/lidar-demo" ] || "$build/src/tools/lidar-demo" run --help | sed -n '/^options/I,$p' | grep -v -- --help
   exit 0
 fi
 [ "$install" = no ] || "$root/tests/install.sh" >&2
