@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: LGPL-2.1-or-later
-# Wrong use of the demo: the exit code, and a message that says what to do.
+# Use of the demo: exit codes, messages that say what to do, and signals.
 set -uo pipefail
 root=$(cd "$(dirname "$0")/../.." && pwd)
 folder=$(mktemp -d)
@@ -32,4 +32,24 @@ expect 1 "line 1: expected two numbers" --trace "$folder/trace.txt"
 expect 1 "--start-bitrate must not be above --max-bitrate" --start-bitrate 9 --max-bitrate 8
 expect 1 "the sender ended early" --pcap "$folder/capture.pcap" --metadata "$folder/metadata.json"
 expect 0 "--duration" --help
+
+# The receiver has seen the end of the stream and still writes its clouds: a signal does not cut them off.
+mkfifo "$folder/clouds"
+# shellcheck source=pipelines/environment.sh
+BUILD_DIR=$MESON_BUILD_ROOT source "$root/pipelines/environment.sh"
+"$MESON_BUILD_ROOT/src/tools/lidar-demo" receive "lidartestsrc model=os0-32 mode=512x10 is-live=false slices-per-scan=1 \
+  num-buffers=3 ! lidarenc ! lidardec name=decoder ! fakesink" >"$folder/records" 3>"$folder/clouds" &
+receiver=$!
+exec 4<"$folder/clouds"
+for _ in {1..300}; do
+  [ "$(grep -c '"decoded"' "$folder/records")" -lt 3 ] || break
+  sleep 0.1
+done
+sleep 0.5
+kill -INT $receiver
+sleep 0.2
+clouds=$(wc -c <&4)
+wait $receiver || { echo "the receiver ended with $?" >&2; failed=1; }
+all=$((3 * (20 + 32 * 512 * 12)))
+[ "$clouds" = "$all" ] || { echo "the receiver wrote $clouds bytes of clouds instead of $all" >&2; failed=1; }
 exit $failed

@@ -163,7 +163,6 @@ void PrintHeader() {
 }
 
 void Coordinator::PrintLive(const nlohmann::json& link) {
-  TakeComparisons();
   marked_ += link.value("marked", std::uint64_t{0});
   dropped_ += link.value("dropped", std::uint64_t{0});
   const ScanCounts n = m_.ledger.Count();
@@ -182,6 +181,8 @@ void Coordinator::PrintLive(const nlohmann::json& link) {
 void Coordinator::TakeComparisons() {
   if (!comparer_) return;
   for (const auto& [key, comparison] : comparer_->Take()) {
+    // A receiver that has stopped writes its clouds as fast as they are compared.
+    if (phase_ == Phase::kReceiverStops) phase_since_ = Now();
     last_error_m_ = std::max(last_error_m_, comparison.max_error_m);
     m_.ledger.Add(key, comparison);
   }
@@ -260,6 +261,7 @@ void Coordinator::Tick() {
       failure_ = std::string("the ") + c.name + " ended early, code " +
                  std::to_string(c.child->Wait()) + ":\n" +
                  Tail(m_.options.output + "/" + c.name + ".log");
+  TakeComparisons();
   CheckLimit();
   if (!failure_.empty() || (phase_ == Phase::kLinkStops && link_->Ended())) {
     loop_.Stop();

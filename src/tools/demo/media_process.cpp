@@ -160,8 +160,10 @@ int MediaProcess::Run() {
   GstBus* bus = gst_element_get_bus(pipeline_.get());
   const guint watch = gst_bus_add_watch(bus, OnMessage, this);
   gst_object_unref(bus);
-  std::vector<guint> sources = {watch, g_unix_signal_add(SIGINT, OnSignal, this),
-                                g_unix_signal_add(SIGTERM, OnSignal, this)};
+  // These stay: a signal that comes after the end must not cut off what is still written.
+  g_unix_signal_add(SIGINT, OnSignal, this);
+  g_unix_signal_add(SIGTERM, OnSignal, this);
+  std::vector<guint> sources = {watch};
   for (Periodic& periodic : periodic_)
     sources.push_back(g_timeout_add(periodic.interval_ms, CallHandler, &periodic.handler));
   // A reader that has gone must not kill us before EOS.
