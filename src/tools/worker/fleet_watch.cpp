@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "ext/nats/jetstream.h"
+#include "src/tools/common/event_loop.h"
 #include "src/tools/worker/lease_store.h"
 
 namespace lidar::worker {
@@ -175,6 +176,7 @@ void FleetWatch::ListRobots() {
   jsOptions_Init(&options);
   options.Wait = nats::kRequestTimeoutMs;
   options.Stream.Info.SubjectsFilter = filter.c_str();
+  const Time asked_at = tools::Now();
   jsStreamInfo* raw = nullptr;
   const natsStatus s =
       js_GetStreamInfo(&raw, js_.get(), settings_.stream.c_str(), &options, nullptr);
@@ -193,6 +195,8 @@ void FleetWatch::ListRobots() {
   const std::lock_guard lock(mutex_);
   news_.robots = std::move(robots);
   news_.stream = static_cast<std::uint64_t>(info->Created);
+  news_.last = info->State.LastSeq;
+  news_.asked_at = asked_at;
 }
 
 }  // namespace lidar::worker

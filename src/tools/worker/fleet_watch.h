@@ -13,6 +13,7 @@
 
 #include "ext/nats/connection.h"
 #include "ext/nats/nats_ptr.h"
+#include "src/base/time.h"
 
 namespace lidar::worker {
 
@@ -35,6 +36,8 @@ class FleetWatch {
     std::vector<Entry> entries;
     std::optional<std::set<std::string>> robots;  // "robot.sensor"; all that there are
     std::uint64_t stream = 0;                     // that has them, as in Progress
+    std::uint64_t last = 0;                       // number of its newest message
+    Time asked_at{};                              // it had them then, or later
     std::string trouble;                          // empty: none, or told already
   };
 

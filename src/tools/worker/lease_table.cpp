@@ -81,7 +81,9 @@ void LeaseTable::OnRefused(std::uint64_t ticket, std::optional<std::uint64_t> ne
   if (!robot->doubted_since) robot->doubted_since = now;
   if (newest != 0U) return;
   robot->revision = 0;
-  robot->free_at = now;
+  // The bucket is another one. What its owner wrote last into the old one, nobody will tell us of.
+  const Duration lease = std::max(robot->record.lease, settings_.lease);
+  robot->free_at = IsHeld(*robot, now) ? now : now + lease + lease / kMargin;
 }
 
 void LeaseTable::SetProgress(const std::string& name, const Progress& progress) {

@@ -9,12 +9,15 @@
 #include <string>
 
 #include "ext/nats/jetstream.h"
+#include "src/tools/common/bounded_end.h"
 #include "src/tools/common/guard.h"
 #include "src/tools/common/program.h"
 #include "src/tools/worker/worker.h"
 
 namespace lidar::worker {
 namespace {
+
+constexpr unsigned kEndSeconds = 6;  // whatever servers do
 
 std::atomic<bool> stopping{false};
 
@@ -103,6 +106,7 @@ int Main(int argc, char** argv) {
   for (const int signal : {SIGINT, SIGTERM}) std::signal(signal, [](int) { stopping = true; });
   Worker worker(s);
   while (!stopping) worker.Step();
+  tools::BoundTheEnd(kEndSeconds);
   worker.HandOver();
   return 0;
 }

@@ -2,31 +2,22 @@
 #include "src/tools/worker/robot_pipeline.h"
 
 #include <charconv>
-#include <chrono>
 #include <cstdio>
 #include <cstring>
 #include <stdexcept>
 
 #include "gst/common/buffer_map.h"
+#include "src/tools/common/elements.h"
+#include "src/tools/common/event_loop.h"
 
 namespace lidar::worker {
 namespace {
 
-using gst::ElementPtr;
+using tools::AddElement;
+using tools::MessageText;
+using tools::SetText;
 
 constexpr std::size_t kMaxWindow = 65'536;  // messages
-
-GstElement* Add(GstElement* bin, const std::string& factory) {
-  GstElement* element = gst_element_factory_make(factory.c_str(), nullptr);
-  if (element == nullptr) throw std::runtime_error("the element " + factory + " is not installed");
-  gst_bin_add(GST_BIN(bin), element);
-  return element;
-}
-
-/// NULL stays the default.
-void SetText(GstElement* element, const char* property, const std::string& value) {
-  if (!value.empty()) g_object_set(element, property, value.c_str(), nullptr);
-}
 
 void SetConnection(GstElement* element, const nats::ConnectionSettings& connection) {
   SetText(element, "url", connection.url);
@@ -56,33 +47,22 @@ void SetOdometry(GstElement* odometry, const PipelineSettings& settings,
   if (begin) g_object_set(odometry, "initial-pose", PoseText(begin->pose).c_str(), nullptr);
 }
 
-std::string Text(GstMessage* message,
-                 void (*parse)(GstMessage*, GError**, gchar**) = gst_message_parse_error) {
-  GError* raw = nullptr;
-  parse(message, &raw, nullptr);
-  const gst::ErrorPtr error(raw);
-  return error->message;
-}
-
 }  // namespace
-
-Time Now() {
-  const auto now = std::chrono::steady_clock::now().time_since_epoch();
-  return Time{} + std::chrono::duration_cast<Duration>(now);
-}
 
 RobotPipeline::RobotPipeline(const PipelineSettings& settings, const std::string& robot,
                              std::uint64_t stream, const std::optional<Progress>& begin)
-    : stream_(stream),
+    : made_at_(tools::Now()),
+      stream_(stream),
+      begin_(begin),
       begin_scan_(begin && begin->stream == stream ? begin->scan : 0),
       rewind_(settings.rewind),
       pipeline_(GST_ELEMENT(gst_object_ref_sink(gst_pipeline_new(robot.c_str())))) {
   GstElement* bin = pipeline_.get();
-  GstElement* source = Add(bin, "natssrc");
-  GstElement* decoder = Add(bin, settings.decoder);
-  GstElement* odometry = Add(bin, "lidarodometry");
-  GstElement* clouds = Add(bin, "fakesink");
-  GstElement* poses = Add(bin, "natssink");
+  GstElement* source = AddElement(bin, "natssrc");
+  GstElement* decoder = AddElement(bin, settings.decoder);
+  GstElement* odometry = AddElement(bin, "lidarodometry");
+  GstElement* clouds = AddElement(bin, "fakesink");
+  GstElement* poses = AddElement(bin, "natssink");
   const auto dot = robot.find('.');
   const std::string begin_of_subject = settings.prefix + "." + robot.substr(0, dot);
   const std::string sensor = robot.substr(dot + 1);
@@ -106,6 +86,7 @@ RobotPipeline::RobotPipeline(const PipelineSettings& settings, const std::string
 
 RobotPipeline::~RobotPipeline() {
   end_ = 0;
+  if (start_.valid()) start_.wait();
   gst_element_set_state(pipeline_.get(), GST_STATE_NULL);
 }
 
@@ -126,7 +107,11 @@ void RobotPipeline::Watch(GstElement* element, const char* name,
       new Target{this, on_buffer}, [](gpointer data) { delete static_cast<Target*>(data); });
 }
 
-void RobotPipeline::Play() { gst_element_set_state(pipeline_.get(), GST_STATE_PLAYING); }
+void RobotPipeline::Play() {
+  start_ = std::async(std::launch::async, [pipeline = pipeline_.get()] {
+    gst_element_set_state(pipeline, GST_STATE_PLAYING);  // what fails is on the bus
+  });
+}
 
 /// The pts is when JetStream stored the message, so no clock of a robot is asked.
 GstPadProbeReturn RobotPipeline::OnMessage(GstBuffer* buffer) {
@@ -162,7 +147,7 @@ GstPadProbeReturn RobotPipeline::OnPose(GstBuffer* buffer) {
   const gst::BufferMap map(buffer, GST_MAP_READ);
   Progress progress;
   std::array<guint64, 7> words{};
-  if (Now().time_since_epoch().count() >= end_) dropped_ = true;
+  if (tools::Now().time_since_epoch().count() >= end_) dropped_ = true;
   if (!scan || !map || map.size() < sizeof words || dropped_) return GST_PAD_PROBE_DROP;
   std::memcpy(words.data(), map.data(), sizeof words);
   for (std::size_t i = 0; i < words.size(); ++i) {
@@ -187,11 +172,11 @@ std::optional<Progress> RobotPipeline::progress() const {
 std::string RobotPipeline::Poll() {
   GstBus* bus = GST_ELEMENT_BUS(pipeline_.get());
   while (const gst::MessagePtr message{gst_bus_pop(bus)}) {
-    if (GST_MESSAGE_TYPE(message.get()) == GST_MESSAGE_ERROR) return Text(message.get());
+    if (GST_MESSAGE_TYPE(message.get()) == GST_MESSAGE_ERROR) return MessageText(message.get());
     if (GST_MESSAGE_TYPE(message.get()) == GST_MESSAGE_EOS) return "the stream has ended";
     if (GST_MESSAGE_TYPE(message.get()) == GST_MESSAGE_WARNING)
       std::fprintf(stderr, "%s: %s\n", GST_OBJECT_NAME(pipeline_.get()),
-                   Text(message.get(), gst_message_parse_warning).c_str());
+                   MessageText(message.get()).c_str());
   }
   return "";
 }

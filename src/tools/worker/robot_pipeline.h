@@ -7,6 +7,7 @@
 #include <atomic>
 #include <cstdint>
 #include <deque>
+#include <future>
 #include <mutex>
 #include <optional>
 #include <string>
@@ -32,9 +33,6 @@ struct PipelineSettings {
   Duration rewind = std::chrono::milliseconds(1'200);
 };
 
-/// The steady clock, as leases have it.
-Time Now();
-
 class RobotPipeline {
  public:
   /// `robot` is "robot.sensor", and `stream` where it is kept, as in Progress. Where that of
@@ -42,15 +40,23 @@ class RobotPipeline {
   /// missing or refuses a setting.
   RobotPipeline(const PipelineSettings& settings, const std::string& robot, std::uint64_t stream,
                 const std::optional<Progress>& begin);
-  /// May take a second where the network is gone.
+  /// Waits for a start that is under way, which may take seconds where the network is gone.
   ~RobotPipeline();
   RobotPipeline(const RobotPipeline&) = delete;
   RobotPipeline& operator=(const RobotPipeline&) = delete;
 
+  /// Starts it in a thread of its own: elements wait for servers, and others must not.
   void Play();
   /// Poses go out before this time alone, whatever becomes of the thread that would stop them.
   void SetEnd(Time end) { end_ = end.time_since_epoch().count(); }
   std::uint64_t stream() const { return stream_; }
+  /// Where it was to begin.
+  const std::optional<Progress>& begin() const { return begin_; }
+  /// True where it waits for a scan behind `last`, the newest message that the stream had when it
+  /// was asked at `asked_at`: a record that says so is wrong.
+  bool IsAheadOf(std::uint64_t last, Time asked_at) const {
+    return begin_scan_ > last && asked_at > made_at_;
+  }
   /// True once a pose came after the end.
   bool has_dropped() const { return dropped_; }
   /// None before the first pose.
@@ -73,10 +79,13 @@ class RobotPipeline {
   GstPadProbeReturn OnCloud(GstBuffer* buffer);
   GstPadProbeReturn OnPose(GstBuffer* buffer);
 
+  const Time made_at_;
   const std::uint64_t stream_;
+  const std::optional<Progress> begin_;
   const std::uint64_t begin_scan_;  // 0: from now on
   const Duration rewind_;
   gst::ElementPtr pipeline_;
+  std::future<void> start_;
   std::atomic<std::int64_t> end_{0};
   std::atomic<bool> dropped_{false};
 

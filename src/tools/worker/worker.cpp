@@ -6,14 +6,19 @@
 #include <stdexcept>
 #include <utility>
 
+#include "src/tools/common/event_loop.h"
+#include "src/tools/common/printable.h"
+
 namespace lidar::worker {
 namespace {
 
 using std::chrono::milliseconds;
+using tools::Now;
 
 constexpr milliseconds kStep{10};
 constexpr std::chrono::seconds kAfterFailure{5};
-constexpr std::chrono::seconds kHandOverTimeout{1};
+constexpr std::chrono::seconds kStopTimeout{1};
+constexpr std::chrono::seconds kAnswerTimeout{1};
 
 std::unique_ptr<nats::Connection> Connect(const WorkerSettings& settings) {
   nats::ConnectionSettings connection = settings.pipeline.connection;
@@ -27,6 +32,10 @@ std::unique_ptr<nats::Connection> Connect(const WorkerSettings& settings) {
 void Say(const std::string& robot, const std::string& what) {
   std::printf("%s: %s\n", robot.c_str(), what.c_str());
   std::fflush(stdout);
+}
+
+void Warn(const std::string& robot, const std::string& what) {
+  std::fprintf(stderr, "%s: %s\n", robot.c_str(), what.c_str());
 }
 
 }  // namespace
@@ -55,16 +64,15 @@ void Worker::Step() {
 
 void Worker::TakeNews() {
   const FleetWatch::News news = watch_.Take();
-  if (!news.trouble.empty()) std::fprintf(stderr, "%s\n", news.trouble.c_str());
+  if (!news.trouble.empty()) std::fprintf(stderr, "%s\n", tools::Printable(news.trouble).c_str());
   if (news.robots) {
     table_.SetRobots(*news.robots, Now());
     NoteStream(news.stream);
+    CheckPlaces(news);
   }
   for (const FleetWatch::Entry& entry : news.entries) {
     const auto record = ParseLeaseRecord(entry.text);
-    if (!record)
-      std::fprintf(stderr, "%s: its record is damaged; its last pose is not known\n",
-                   entry.robot.c_str());
+    if (!record) Warn(entry.robot, "its record is damaged; its last pose is not known");
     table_.OnEntry(entry.robot, entry.revision, record, Now());
   }
 }
@@ -73,6 +81,23 @@ void Worker::TakeNews() {
 void Worker::NoteStream(std::uint64_t stream) {
   if (std::exchange(stream_, stream) == stream) return;
   for (const auto& [robot, pipeline] : pipelines_) table_.Drop(robot, Duration{0}, Now());
+}
+
+/// A scan that the stream does not have yet is none that somebody has seen. Waiting for it, a robot
+/// would have no poses for as long. The next renewal mends the record.
+void Worker::CheckPlaces(const FleetWatch::News& news) {
+  for (auto at = pipelines_.begin(); at != pipelines_.end();) {
+    const RobotPipeline& pipeline = *at->second;
+    if (pipeline.stream() != news.stream || !pipeline.IsAheadOf(news.last, news.asked_at)) {
+      ++at;
+      continue;
+    }
+    Warn(at->first, "its record is ahead of the stream; only its pose counts");
+    Progress pose = pipeline.progress().value_or(*pipeline.begin());
+    pose.stream = 0;  // no stream's
+    table_.SetProgress(at->first, pose);
+    at = End(at);
+  }
 }
 
 void Worker::NoteProgress(const std::string& robot, const RobotPipeline& pipeline) {
@@ -97,7 +122,7 @@ void Worker::PollPipelines() {
     NoteProgress(robot, *pipeline);
     const std::string error = pipeline->Poll();
     if (error.empty()) continue;
-    std::fprintf(stderr, "%s: %s\n", robot.c_str(), error.c_str());
+    Warn(robot, error);
     table_.Drop(robot, kAfterFailure, Now());
   }
 }
@@ -136,12 +161,19 @@ void Worker::Begin(const std::string& robot, const LeaseTable::Held& held) {
     std::snprintf(text, sizeof text, "from %.2f %.2f %.2f", p[0], p[1], p[2]);
     from = text;
   }
-  Say(robot, "taken, " + from + (held.last_worker.empty() ? "" : ", after " + held.last_worker));
-  auto pipeline =
-      std::make_unique<RobotPipeline>(settings_.pipeline, robot, stream_, held.progress);
-  pipeline->SetEnd(held.until);
-  pipeline->Play();
-  pipelines_[robot] = std::move(pipeline);
+  Say(robot, "taken, " + from +
+                 (held.last_worker.empty() ? "" : ", after " + tools::Printable(held.last_worker)));
+  try {
+    auto pipeline =
+        std::make_unique<RobotPipeline>(settings_.pipeline, robot, stream_, held.progress);
+    pipeline->SetEnd(held.until);
+    pipeline->Play();
+    pipelines_[robot] = std::move(pipeline);
+  } catch (const std::exception& e) {  // the machine gives no more threads, or no files
+    Warn(robot, e.what());
+    Say(robot, "given up");
+    table_.Drop(robot, kAfterFailure, Now());
+  }
 }
 
 Worker::Pipelines::iterator Worker::End(Pipelines::iterator at) {
@@ -158,14 +190,21 @@ void Worker::Send(const std::vector<LeaseTable::Write>& writes) {
     store_.Write(write.ticket, write.robot, write.replaces, write.text);
 }
 
+void Worker::WaitForEnds() {
+  const Time deadline = Now() + kStopTimeout;
+  for (auto& [robot, ending] : ending_)
+    if (ending.done.wait_for(deadline - Now()) != std::future_status::ready)
+      Warn(robot, "its pipeline does not stop in time; it is left to others all the same");
+}
+
 void Worker::HandOver() {
   for (auto at = pipelines_.begin(); at != pipelines_.end();) {
     at->second->SetEnd(Time{});
     NoteProgress(at->first, *at->second);
     at = End(at);
   }
-  for (auto& [robot, ending] : ending_) ending.done.wait();
-  const Time deadline = Now() + kHandOverTimeout;
+  WaitForEnds();
+  const Time deadline = Now() + kAnswerTimeout;
   const auto answered = [&] {
     while (table_.unanswered() > 0 && Now() < deadline) TakeAnswers();
   };

@@ -29,7 +29,8 @@ class Worker {
 
   /// Some milliseconds of work.
   void Step();
-  /// Stops all pipelines, and leaves the robots to other workers at once.
+  /// Stops all pipelines, and leaves the robots to other workers at once; at most two seconds. What
+  /// has not stopped by then says nothing any more, but the destructor waits for it.
   void HandOver();
 
  private:
@@ -41,11 +42,13 @@ class Worker {
 
   void TakeNews();
   void NoteStream(std::uint64_t stream);
+  void CheckPlaces(const FleetWatch::News& news);
   void NoteProgress(const std::string& robot, const RobotPipeline& pipeline);
   void TakeAnswers();
   void PollPipelines();
   void FollowLeases();
   void Begin(const std::string& robot, const LeaseTable::Held& held);
+  void WaitForEnds();
   Pipelines::iterator End(Pipelines::iterator at);
   void Send(const std::vector<LeaseTable::Write>& writes);
 

@@ -174,6 +174,20 @@ TEST_F(Lease, BeginsAnewInABucketThatWasDeleted) {
   EXPECT_TRUE(Has("r", now));
 }
 
+TEST_F(Lease, OfAnotherInABucketThatWasDeletedIsTakenOnceItIsOver) {
+  table_.SetRobots({"r"}, At(0));
+  table_.OnEntry("r", 5, LeaseRecord{"other", seconds(1), Scan(3)}, At(0));
+  const auto writes = table_.Poll(At(1100));
+  ASSERT_EQ(writes.size(), 1U);
+  // The other may have renewed its lease a moment ago, which nobody will tell us of.
+  table_.OnRefused(writes[0].ticket, 0, At(1110));
+  Time now = Pass(At(1110), 1000);
+  EXPECT_FALSE(Has("r", now));
+  now = Pass(now, 100);
+  ASSERT_TRUE(Has("r", now));
+  EXPECT_EQ(table_.HeldAt(now).at("r").progress->scan, 3U);
+}
+
 TEST_F(Lease, GoesOnFromAStoreThatForgotItsNewestEntries) {
   table_.SetRobots({"r"}, At(0));
   table_.OnEntry("r", 90, LeaseRecord{"other", seconds(1), Scan(9)}, At(0));

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // lidar-worker: robots that change hands.
+#include <gst/base/gstbasetransform.h>
+
 #include <cmath>
 
 #include "ext/nats/connection.h"
@@ -8,11 +10,44 @@
 #include "src/tools/worker/lease_record.h"
 #include "src/tools/worker/lease_store.h"
 #include "src/tools/worker/robot_pipeline.h"
+#include "src/tools/worker/worker.h"
 #include "tests/elements/nats/worker_process.h"
 
 namespace lidar::test {
 namespace {
 
+/// What a decoder does that is slow to start.
+struct Slowness {
+  std::atomic<bool> hold{false};
+  std::atomic<int> held{0};  // that wait, or did
+  std::atomic<bool> gave_up{false};
+} slowness;
+
+struct SlowDecoder {
+  GstBaseTransform parent;
+};
+struct SlowDecoderClass {
+  GstBaseTransformClass parent_class;
+};
+GType slow_decoder_get_type();
+G_DEFINE_TYPE(SlowDecoder, slow_decoder, GST_TYPE_BASE_TRANSFORM)
+
+void slow_decoder_init(SlowDecoder*) {}
+void slow_decoder_class_init(SlowDecoderClass* klass) {
+  auto* element = GST_ELEMENT_CLASS(klass);
+  gst_element_class_set_static_metadata(element, "slow", "Test", "slow to start", "-");
+  for (const auto& [name, direction] : {std::pair{"src", GST_PAD_SRC}, {"sink", GST_PAD_SINK}})
+    gst_element_class_add_pad_template(
+        element, gst_pad_template_new(name, direction, GST_PAD_ALWAYS, GST_CAPS_ANY));
+  GST_BASE_TRANSFORM_CLASS(klass)->start = [](GstBaseTransform*) -> gboolean {
+    if (!slowness.hold) return TRUE;
+    ++slowness.held;
+    if (!Eventually([] { return !slowness.hold; })) slowness.gave_up = true;
+    return TRUE;
+  };
+}
+
+using std::chrono::milliseconds;
 using worker::ParseAnswer;
 
 TEST(LeaseStore, ReadsWhatTheServerAnswers) {
@@ -68,23 +103,27 @@ class LidarWorker : public NatsTest {
     return std::make_unique<WorkerProcess>(
         std::vector<std::string>{"r*", "--url", server_.url(), "--lease", "2000"});
   }
-  /// Makes the bucket where there is none, and hands it to `use`.
-  void WithBucket(const std::function<void(kvStore*)>& use) {
+  void WithJetStream(const std::function<void(jsCtx*)>& use) {
     std::string why;
     nats::ConnectionSettings settings;
     settings.url = server_.url();
     const auto connection = nats::Connection::Open(settings, nullptr, &why);
     ASSERT_TRUE(connection) << why;
-    const auto js = nats::OpenJetStream(connection->get());
-    kvConfig config;
-    kvConfig_Init(&config);
-    config.Bucket = "lidar-workers";
-    kvStore* store = nullptr;
-    if (js_KeyValue(&store, js.get(), config.Bucket) != NATS_OK) {
-      ASSERT_EQ(js_CreateKeyValue(&store, js.get(), &config), NATS_OK);
-    }
-    use(store);
-    kvStore_Destroy(store);
+    use(nats::OpenJetStream(connection->get()).get());
+  }
+  /// Makes the bucket where there is none, and hands it to `use`.
+  void WithBucket(const std::function<void(kvStore*)>& use) {
+    WithJetStream([&](jsCtx* js) {
+      kvConfig config;
+      kvConfig_Init(&config);
+      config.Bucket = "lidar-workers";
+      kvStore* store = nullptr;
+      if (js_KeyValue(&store, js, config.Bucket) != NATS_OK) {
+        ASSERT_EQ(js_CreateKeyValue(&store, js, &config), NATS_OK);
+      }
+      use(store);
+      kvStore_Destroy(store);
+    });
   }
   void PutRecord(const std::string& text) {
     WithBucket([&](kvStore* store) {
@@ -92,15 +131,31 @@ class LidarWorker : public NatsTest {
       EXPECT_EQ(kvStore_PutString(nullptr, store, "no.robot.this", "x"), NATS_OK);
     });
   }
-  std::string Record() {
+  struct Stored {
     std::string text;
+    std::uint64_t revision = 0;
+  };
+  Stored Newest(const std::string& robot) {
+    Stored stored;
     WithBucket([&](kvStore* store) {
       kvEntry* entry = nullptr;
-      if (kvStore_Get(&entry, store, "r1.front") == NATS_OK) text = kvEntry_ValueString(entry);
+      if (kvStore_Get(&entry, store, robot.c_str()) == NATS_OK)
+        stored = {kvEntry_ValueString(entry), kvEntry_Revision(entry)};
       kvEntry_Destroy(entry);
     });
-    return text;
+    return stored;
   }
+  std::uint64_t CreationOf(const char* stream) {
+    std::uint64_t created = 0;
+    WithJetStream([&](jsCtx* js) {
+      jsStreamInfo* raw = nullptr;
+      EXPECT_EQ(js_GetStreamInfo(&raw, js, stream, nullptr, nullptr), NATS_OK);
+      const nats::StreamInfoPtr info(raw);
+      created = static_cast<std::uint64_t>(info->Created);
+    });
+    return created;
+  }
+  std::string Record() { return Newest("r1.front").text; }
 };
 
 TEST_F(LidarWorker, GoesOnWhereOneThatIsKilledWas) {
@@ -160,6 +215,97 @@ TEST_F(LidarWorker, GoesOnFromThePoseAloneInAnotherStream) {
   const auto worker = Worker();
   ASSERT_TRUE(consumer.WaitForBuffers(5));
   EXPECT_NEAR(DistanceOf(consumer.buffers().front()), 500, 3);
+}
+
+TEST_F(LidarWorker, GoesOnFromThePoseAloneWhereTheRecordIsAheadOfTheStream) {
+  const auto robot = Robot();
+  ASSERT_TRUE(Eventually([&] { return robot->stat("messages-acknowledged") > 0; }));
+  worker::Progress progress;
+  progress.pose = {500, 0, 0, 0, 0, 0, 1};
+  progress.stream = CreationOf("fleet");
+  progress.scan = progress.from = 1'000'000'000;
+  PutRecord(worker::ToJson({"", std::chrono::seconds(1), progress}));
+  NatsPipeline consumer("natssrc name=n subject=fleet.r1.odometry.front" + At() +
+                        "! fakesink name=see sync=false");
+  consumer.Play();
+  const auto worker = Worker();
+  ASSERT_TRUE(consumer.WaitForBuffers(5));
+  EXPECT_NEAR(DistanceOf(consumer.buffers().front()), 500, 3);
+  EXPECT_TRUE(Eventually([&] {
+    const auto record = worker::ParseLeaseRecord(Record());
+    return record && record->progress && record->progress->stream == progress.stream &&
+           record->progress->scan < progress.scan;
+  })) << "the next worker is spared it";
+}
+
+TEST_F(LidarWorker, PrintsNoControlCharactersOfARecord) {
+  PutRecord(worker::ToJson({"a\x1b[2J\nr2.front: taken", milliseconds(300), std::nullopt}));
+  const auto robot = Robot();
+  const auto worker = Worker();
+  ASSERT_TRUE(Eventually([&] { return !worker->Taken("r1.front").empty(); }));
+  EXPECT_EQ(worker->Taken("r1.front"),
+            "r1.front: taken, from now on, after a\\x1b[2J\\x0ar2.front: taken");
+}
+
+/// A worker in this process, and two robots whose pipelines are slow to start.
+class SlowRobots : public LidarWorker {
+ protected:
+  void SetUp() override {
+    LidarWorker::SetUp();
+    if (IsSkipped()) return;
+    gst_element_register(nullptr, "slowdecoder", GST_RANK_NONE, slow_decoder_get_type());
+    for (const char* robot : {"r1", "r2"})
+      PublishSlices(2,
+                    " jetstream=fleet subject=fleet." + std::string(robot) + ".lidar.front" + At());
+    worker::WorkerSettings settings;
+    settings.lease.worker = "me";
+    settings.lease.lease = std::chrono::seconds(2);
+    settings.fleet.patterns = {"r*"};
+    settings.pipeline.connection.url = server_.url();
+    settings.pipeline.decoder = "slowdecoder";
+    worker_ = std::make_unique<worker::Worker>(settings);
+    slowness.held = 0;
+    slowness.gave_up = false;
+    slowness.hold = true;
+  }
+  void TearDown() override {
+    slowness.hold = false;
+    worker_.reset();
+  }
+  /// While the worker works.
+  bool WorksUntil(const std::function<bool()>& holds) {
+    return Eventually([&] {
+      worker_->Step();
+      return holds();
+    });
+  }
+
+  std::unique_ptr<worker::Worker> worker_;
+};
+
+TEST_F(SlowRobots, KeepTheirLeasesAndThoseOfOthers) {
+  ASSERT_TRUE(WorksUntil([] { return slowness.held == 2; }));
+  const Stored first = Newest("r1.front");
+  const Stored second = Newest("r2.front");
+  ASSERT_TRUE(WorksUntil([&] {
+    return Newest("r1.front").revision > first.revision + 8 &&
+           Newest("r2.front").revision > second.revision + 8;
+  }));
+  EXPECT_EQ(slowness.held, 2) << "neither was lost and taken again";
+  EXPECT_FALSE(slowness.gave_up);
+}
+
+TEST_F(SlowRobots, AreHandedOverThoughTheyDoNotStop) {
+  ASSERT_TRUE(WorksUntil([] { return slowness.held == 2; }));
+  testing::internal::CaptureStderr();
+  worker_->HandOver();
+  const std::string said = testing::internal::GetCapturedStderr();
+  EXPECT_FALSE(slowness.gave_up) << "it did not wait for them";
+  for (const std::string robot : {"r1.front", "r2.front"}) {
+    EXPECT_NE(said.find(robot + ": its pipeline does not stop in time"), std::string::npos) << said;
+    const auto record = worker::ParseLeaseRecord(Newest(robot).text);
+    EXPECT_TRUE(record && record->worker.empty()) << robot;
+  }
 }
 
 TEST_F(LidarWorker, BeginsAnewWhereTheRecordIsDamaged) {
