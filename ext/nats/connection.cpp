@@ -10,8 +10,6 @@
 #include <utility>
 #include <vector>
 
-#include "ext/nats/nats_ptr.h"
-
 namespace lidar::nats {
 namespace {
 
@@ -182,6 +180,9 @@ std::unique_ptr<Connection> Connection::Open(const ConnectionSettings& settings,
   auto shared = std::make_shared<Shared>();
   shared->changed = std::move(changed);
   std::unique_ptr<Connection> connection(new Connection(std::move(shared)));
+  natsStatistics* statistics = nullptr;
+  if (s == NATS_OK) s = natsStatistics_Create(&statistics);
+  connection->statistics_.reset(statistics);
   if (s == NATS_OK) s = connection->Connect(raw);
   if (s == NATS_OK) return connection;
   *why = ErrorText(s);
@@ -201,12 +202,9 @@ ConnectionState Connection::state() const {
 }
 
 std::uint64_t Connection::reconnects() const {
-  natsStatistics* raw = nullptr;
-  natsStatistics_Create(&raw);
-  const StatisticsPtr statistics(raw);
   std::uint64_t reconnects = 0;
-  if (statistics && natsConnection_GetStats(nc_, raw) == NATS_OK)
-    natsStatistics_GetCounts(raw, nullptr, nullptr, nullptr, nullptr, &reconnects);
+  if (natsConnection_GetStats(nc_, statistics_.get()) == NATS_OK)
+    natsStatistics_GetCounts(statistics_.get(), nullptr, nullptr, nullptr, nullptr, &reconnects);
   return reconnects;
 }
 

@@ -8,6 +8,8 @@
 #include <memory>
 #include <string>
 
+#include "ext/nats/nats_ptr.h"
+
 namespace lidar::nats {
 
 struct ConnectionSettings {
@@ -48,7 +50,7 @@ class Connection {
   natsConnection* get() const { return nc_; }
   /// Never waits for the network.
   ConnectionState state() const;
-  /// How often it was made anew: known before anything can be sent on the new one.
+  /// How often it was made anew: known before anything can be sent on the new one. For one thread.
   std::uint64_t reconnects() const;
 
   static constexpr std::int64_t kConnectTimeoutMs = 1'000;
@@ -60,7 +62,8 @@ class Connection {
   explicit Connection(SharedPtr shared) : shared_(std::move(shared)) {}
   natsStatus Connect(natsOptions* options);
 
-  const SharedPtr shared_;  // with the callbacks, which may outlive this by a moment
+  const SharedPtr shared_;    // with the callbacks, which may outlive this by a moment
+  StatisticsPtr statistics_;  // of reconnects(), which is asked for each message
   natsConnection* nc_ = nullptr;
 };
 

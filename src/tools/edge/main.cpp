@@ -17,6 +17,7 @@
 #include <thread>
 #include <vector>
 
+#include "src/tools/common/bounded_end.h"
 #include "src/tools/common/guard.h"
 #include "src/tools/common/program.h"
 #include "src/tools/edge/edge_config.h"
@@ -29,7 +30,7 @@ namespace lidar::edge {
 namespace {
 
 constexpr std::chrono::milliseconds kPoll{50};
-constexpr unsigned kStopSeconds = 6;
+constexpr unsigned kEndSeconds = 6;  // whatever servers, disks and clients do
 
 std::atomic<bool> stopping{false};
 
@@ -117,17 +118,6 @@ class Edge {
   std::optional<MetricsServer> metrics_;
 };
 
-/// Servers, disks and clients that do not answer must not keep the process: its end is a matter of
-/// kStopSeconds.
-void BoundTheEnd() {
-  std::signal(SIGALRM, [](int) {
-    constexpr char kText[] = "lidar-edge: not all has ended in time; ending all the same\n";
-    [[maybe_unused]] const auto written = write(STDERR_FILENO, kText, sizeof kText - 1);
-    _exit(0);
-  });
-  alarm(kStopSeconds);
-}
-
 int Main(int argc, char** argv) {
   CLI::App app(
       "Receives a fleet of robots, each on a port of its own or all on one, and hands their "
@@ -144,7 +134,7 @@ int Main(int argc, char** argv) {
   for (const int signal : {SIGINT, SIGTERM}) std::signal(signal, [](int) { stopping = true; });
   Edge edge(config);
   edge.Run();
-  BoundTheEnd();
+  tools::BoundTheEnd(kEndSeconds);
   return 0;
 }
 

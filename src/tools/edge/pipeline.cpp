@@ -4,31 +4,25 @@
 #include <stdexcept>
 #include <string>
 
+#include "src/tools/common/elements.h"
+
 namespace lidar::edge {
 namespace {
 
 using gst::ElementPtr;
 using gst::PadPtr;
+using tools::SetText;
 
 constexpr guint kRecordQueue = 8U << 20;  // bytes that wait for a slow disk
 constexpr GstClockTime kDrainTimeout = GST_SECOND;
 constexpr const char* kRecorder = "recorder";
 
 GstElement* Add(GstElement* bin, const char* factory) {
-  GstElement* element = gst_element_factory_make(factory, factory);
-  if (element == nullptr)
-    throw std::runtime_error(std::string("the element ") + factory + " is not installed");
-  gst_bin_add(GST_BIN(bin), element);
-  return element;
+  return tools::AddElement(bin, factory, factory);
 }
 
 void Link(GstElement* from, GstElement* to) {
   if (!gst_element_link(from, to)) throw std::runtime_error("elements cannot be linked");
-}
-
-/// NULL stays the default.
-void SetText(GstElement* element, const char* property, const std::string& value) {
-  if (!value.empty()) g_object_set(element, property, value.c_str(), nullptr);
 }
 
 /// All robots' sinks want the same stream, so whoever comes first makes it for all.
@@ -56,6 +50,10 @@ ElementPtr RecorderOf(GstElement* pipeline) {
 void Shield(GstPad* pad) {
   gst_pad_set_chain_function(pad, [](GstPad* self, GstObject* parent, GstBuffer* buffer) {
     gst_proxy_pad_chain_default(self, parent, buffer);
+    return GST_FLOW_OK;
+  });
+  gst_pad_set_chain_list_function(pad, [](GstPad* self, GstObject* parent, GstBufferList* list) {
+    gst_proxy_pad_chain_list_default(self, parent, list);
     return GST_FLOW_OK;
   });
 }
@@ -108,7 +106,7 @@ void RemoveRecorder(GstElement* pipeline) {
   if (!recorder) return;
   const ElementPtr tee(gst_bin_get_by_name(GST_BIN(pipeline), "tee"));
   const PadPtr entry(gst_element_get_static_pad(recorder.get(), "sink"));
-  const PadPtr exit(gst_pad_get_peer(entry.get()));
+  const PadPtr exit(entry ? gst_pad_get_peer(entry.get()) : nullptr);
   if (exit) gst_element_release_request_pad(tee.get(), exit.get());
   gst_element_set_locked_state(recorder.get(), TRUE);
   gst_element_set_state(recorder.get(), GST_STATE_NULL);
@@ -120,6 +118,23 @@ bool IsFromRecorder(GstMessage* message) {
   for (const char* name : {kRecorder, "queue", "mcapsink"})
     if (g_strcmp0(GST_MESSAGE_SRC_NAME(message), name) == 0) return true;
   return false;
+}
+
+bool Drain(GstElement* pipeline, GstClockTime timeout,
+           const std::function<void(GstMessage*)>& on_recorder_error) {
+  const GstClockTime end = gst_util_get_timestamp() + timeout;
+  const ElementPtr source(gst_bin_get_by_name(GST_BIN(pipeline), "screamsrc"));
+  gst_element_send_event(source.get(), gst_event_new_eos());
+  while (true) {
+    const GstClockTime now = gst_util_get_timestamp();
+    const gst::MessagePtr message(gst_bus_timed_pop_filtered(
+        GST_ELEMENT_BUS(pipeline), end > now ? end - now : 0,
+        static_cast<GstMessageType>(GST_MESSAGE_EOS | GST_MESSAGE_ERROR)));
+    if (!message) return false;
+    if (GST_MESSAGE_TYPE(message.get()) == GST_MESSAGE_EOS) return true;
+    if (!IsFromRecorder(message.get())) return false;
+    on_recorder_error(message.get());
+  }
 }
 
 }  // namespace lidar::edge

@@ -4,6 +4,8 @@
 #include <gio/gio.h>
 #include <gst/gst.h>
 
+#include <functional>
+
 #include "gst/common/refs.h"
 #include "src/tools/edge/edge_config.h"
 
@@ -20,5 +22,11 @@ void AddRecorder(GstElement* pipeline, const RobotConfig& robot);
 void RemoveRecorder(GstElement* pipeline);
 /// Whether the message is of the recorder.
 bool IsFromRecorder(GstMessage* message);
+
+/// Ends the stream, and waits until all that has come is written and sent. Errors of the recorder
+/// go to `on_recorder_error`, which removes it, and what is left goes on. False at another error,
+/// or where it takes longer than `timeout`.
+bool Drain(GstElement* pipeline, GstClockTime timeout,
+           const std::function<void(GstMessage*)>& on_recorder_error);
 
 }  // namespace lidar::edge

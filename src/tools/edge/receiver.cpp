@@ -3,8 +3,10 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <exception>
 #include <nlohmann/json.hpp>
 
+#include "src/tools/common/elements.h"
 #include "src/tools/edge/pipeline.h"
 #include "src/tools/edge/shared_port.h"
 
@@ -24,15 +26,6 @@ constexpr seconds kAfterFlood{10};
 constexpr seconds kSilence{10};  // a robot that is silent for as long is gone
 constexpr int kPatience = 3;     // seconds that a robot may be above its limit
 constexpr GstClockTime kFinish = 3 * GST_SECOND;
-
-std::string Text(GstMessage* message) {
-  GError* raw = nullptr;
-  const auto parse = GST_MESSAGE_TYPE(message) == GST_MESSAGE_ERROR ? gst_message_parse_error
-                                                                    : gst_message_parse_warning;
-  parse(message, &raw, nullptr);
-  const gst::ErrorPtr error(raw);
-  return std::string(GST_MESSAGE_SRC_NAME(message)) + ": " + error->message;
-}
 
 constexpr const char* kElements[] = {"screamsrc", "rtplidardepay", "natssink", "mcapsink"};
 
@@ -112,13 +105,9 @@ void Receiver::End() {
 
 /// What has come is written and sent, where disk and server take it.
 void Receiver::Finish() {
-  if (state_ != State::kResting && BytesReceived() > 0) {
-    const ElementPtr source(gst_bin_get_by_name(GST_BIN(pipeline_.get()), "screamsrc"));
-    gst_element_send_event(source.get(), gst_event_new_eos());
-    const MessagePtr ended(gst_bus_timed_pop_filtered(
-        GST_ELEMENT_BUS(pipeline_.get()), kFinish,
-        static_cast<GstMessageType>(GST_MESSAGE_EOS | GST_MESSAGE_ERROR)));
-  }
+  if (state_ != State::kResting && BytesReceived() > 0)
+    Drain(pipeline_.get(), kFinish,
+          [this](GstMessage* message) { NoteError(Clock::now(), message); });
   End();
 }
 
@@ -135,23 +124,30 @@ void Receiver::Record(Clock::time_point now) {
   if (robot_.record.empty() || recording_ || now < record_at_) return;
   recording_ = true;
   record_at_ = now;
-  AddRecorder(pipeline_.get(), robot_);
+  try {
+    AddRecorder(pipeline_.get(), robot_);
+  } catch (const std::exception& e) {
+    NoteRecordFailure(now, e.what());
+  }
+}
+
+void Receiver::NoteRecordFailure(Clock::time_point now, const std::string& why) {
+  RemoveRecorder(pipeline_.get());
+  recording_ = false;
+  if (now - record_at_ > kHealthy) record_failures_.Reset();
+  record_at_ = now + record_failures_.Next();
+  Update([&](Account* a) {
+    ++a->record_failures;
+    a->last_error = why;
+  });
+  Say(why);
 }
 
 /// False where the session is over.
 bool Receiver::NoteError(Clock::time_point now, GstMessage* message) {
-  const std::string text = Text(message);
+  const std::string text = tools::MessageText(message);
   if (IsFromRecorder(message)) {
-    if (!recording_) return true;  // its second error
-    RemoveRecorder(pipeline_.get());
-    recording_ = false;
-    if (now - record_at_ > kHealthy) record_failures_.Reset();
-    record_at_ = now + record_failures_.Next();
-    Update([&](Account* a) {
-      ++a->record_failures;
-      a->last_error = text;
-    });
-    Say(text);
+    if (recording_) NoteRecordFailure(now, text);  // the first of its errors
     return true;
   }
   if (now - began_at_ > kHealthy) failures_.Reset();
@@ -172,7 +168,7 @@ bool Receiver::ReadBus(Clock::time_point now) {
         if (!NoteError(now, message.get())) return false;
         break;
       case GST_MESSAGE_WARNING: {
-        const std::string text = Text(message.get());
+        const std::string text = tools::MessageText(message.get());
         Update([&](Account* a) { a->last_error = text; });
         Say(text);
         break;

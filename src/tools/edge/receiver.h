@@ -61,8 +61,8 @@ class Receiver {
   void Record(Clock::time_point now);
   bool ReadBus(Clock::time_point now);
   bool NoteError(Clock::time_point now, GstMessage* message);
+  void NoteRecordFailure(Clock::time_point now, const std::string& why);
   void Watch(Clock::time_point now);
-  void NoteBytes(Clock::time_point now, bool more);
   guint64 BytesReceived() const;
   gst::StructurePtr StatsOf(const char* element) const;
   Account account() const;

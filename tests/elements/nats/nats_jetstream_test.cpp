@@ -68,6 +68,15 @@ class DurableConsumer {
   nats::JetStreamPtr js_;
 };
 
+/// Has `receiver` play so slowly that messages are sent again, and then take all there is.
+bool TakesAllAfterItWasSentAgain(const DurableConsumer& consumer, NatsPipeline* receiver) {
+  receiver->Hold(true);
+  receiver->Play();
+  const bool sent_again = Eventually([&] { return consumer.again() > 0; });
+  receiver->Hold(false);
+  return sent_again && Eventually([&] { return consumer.open() == 0; });
+}
+
 TEST_F(NatsJetStream, ABlackBoxIsReplayedWhole) {
   const auto sent = PublishSlices(80, At(kBox));
   const auto played = Replay(0);
@@ -172,11 +181,7 @@ TEST_F(NatsJetStream, WhatADurableConsumerSendsAgainIsTakenOnce) {
   const DurableConsumer consumer(server_.url(), 200'000'000, 100);
   NatsPipeline receiver("natssrc name=n durable=slam" + At(kBox) +
                         "! fakesink name=see sync=false");
-  receiver.Hold(true);
-  receiver.Play();
-  ASSERT_TRUE(Eventually([&] { return consumer.again() > 0; }));
-  receiver.Hold(false);
-  ASSERT_TRUE(Eventually([&] { return consumer.open() == 0; }));
+  ASSERT_TRUE(TakesAllAfterItWasSentAgain(consumer, &receiver));
   ExpectSameStream(receiver.buffers(), sent);
   EXPECT_GT(receiver.stat("messages-again"), 0U);
   EXPECT_EQ(receiver.stat("messages-lost"), 0U);
@@ -188,11 +193,7 @@ TEST_F(NatsJetStream, WhatWaitsForADurableConsumerIsBoundedAndNothingIsLost) {
   const DurableConsumer consumer(server_.url(), 1'000'000'000, 10'000);
   NatsPipeline receiver("natssrc name=n durable=slam" + At(kBox) +
                         "! fakesink name=see sync=false");
-  receiver.Hold(true);
-  receiver.Play();
-  ASSERT_TRUE(Eventually([&] { return consumer.again() > 0; }));
-  receiver.Hold(false);
-  ASSERT_TRUE(Eventually([&] { return consumer.open() == 0; }));
+  ASSERT_TRUE(TakesAllAfterItWasSentAgain(consumer, &receiver));
   EXPECT_EQ(receiver.count(), std::size_t{kCount});
   EXPECT_GT(receiver.stat("messages-overrun"), 0U);
   EXPECT_EQ(receiver.stat("messages-lost"), 0U);

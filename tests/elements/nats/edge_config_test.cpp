@@ -1,0 +1,118 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// lidar-edge: its configuration, and what it tells of itself.
+#include "src/tools/edge/edge_config.h"
+
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "gst/common/refs.h"
+#include "src/tools/common/printable.h"
+#include "src/tools/edge/exposition.h"
+
+namespace lidar::test {
+namespace {
+
+using edge::ParseEdgeConfig;
+
+TEST(EdgeConfig, TakesWhatItSaysAndDefaultsForTheRest) {
+  const auto config = ParseEdgeConfig(R"({
+    // comments are fine
+    "nats": {"url": "tls://a:4222,tls://b:4222", "jetstream": "fleet", "max-age": 60},
+    "http-port": 9464,
+    "robots": [{"name": "r7", "sensor": "front", "port": 5007, "srtp-key": "env:KEY"},
+               {"name": "r8", "port": 5008, "record": "/r8-%05d.mcap", "record-max-files": 3}]})");
+  ASSERT_EQ(config.robots.size(), 2U);
+  EXPECT_EQ(config.nats.max_age_s, 60U);
+  EXPECT_EQ(config.robots[0].srtp_key, "env:KEY");
+  EXPECT_EQ(config.robots[1].sensor, "lidar");
+  EXPECT_EQ(config.robots[1].record_max_files, 3U);
+  EXPECT_EQ(StreamSubject(config.nats, config.robots[0]), "fleet.r7.lidar.front");
+  EXPECT_EQ(StatisticsSubject(config.nats, config.robots[1]), "fleet.r8.statistics.lidar");
+  EXPECT_TRUE(ParseEdgeConfig(R"({"robots":[{"name":"a","port":1}]})").nats.url.empty());
+}
+
+struct WrongConfig {
+  const char* text;
+  const char* message;
+};
+class EdgeConfigWrong : public ::testing::TestWithParam<WrongConfig> {};
+INSTANTIATE_TEST_SUITE_P(
+    All, EdgeConfigWrong,
+    ::testing::Values(
+        WrongConfig{"{", "the configuration is no JSON"},
+        WrongConfig{"[]", "the configuration is no object"},
+        WrongConfig{"{}", "robots is no list of at least one robot"},
+        WrongConfig{R"({"robot":[]})", "robot is not known"},
+        WrongConfig{R"({"robots":[7]})", "robots[0] is no object"},
+        WrongConfig{R"({"robots":[{"name":"a"}]})", "robots[0].port is missing, and so is ssrc"},
+        WrongConfig{R"({"port":5,"robots":[{"name":"a","ssrc":"9-8"}]})",
+                    "robots[0].ssrc is no number, and no two with - between"},
+        WrongConfig{R"({"port":5,"robots":[{"name":"a","ssrc":"0x1ffffffff"}]})",
+                    "robots[0].ssrc is no number, and no two with - between"},
+        WrongConfig{R"({"port":5,"robots":[{"name":"a","port":6,"ssrc":"7"}]})",
+                    "robots[0].ssrc is of no use on a port of its own"},
+        WrongConfig{R"({"robots":[{"name":"a","ssrc":"7"}]})",
+                    "port is missing, which robots with an ssrc need"},
+        WrongConfig{R"({"port":5,"robots":[{"name":"a","port":6}]})", "port is used by no robot"},
+        WrongConfig{R"({"port":5,"robots":[{"name":"a","port":5},{"name":"b","ssrc":"7"}]})",
+                    "port 5 is for all robots, and for one"},
+        WrongConfig{R"({"port":5,"robots":[{"name":"a","ssrc":"7-9"},{"name":"b","ssrc":"0x9"}]})",
+                    "a and b share an ssrc"},
+        WrongConfig{R"({"robots":[{"name":"a.b","port":1}]})",
+                    "robots[0].name is no word of letters, digits, - and _"},
+        WrongConfig{R"({"robots":[{"name":"a","port":70000}]})",
+                    "robots[0].port is no whole number from 1 to 65535"},
+        WrongConfig{R"({"robots":[{"name":"a","port":"1"}]})",
+                    "robots[0].port is no whole number from 1 to 65535"},
+        WrongConfig{R"({"robots":[{"name":"a","port":1,"srtp-kye":"x"}]})",
+                    "robots[0].srtp-kye is not known"},
+        WrongConfig{R"({"robots":[{"name":"a","port":1,"max-mbps":-1}]})",
+                    "robots[0].max-mbps is out of range"},
+        WrongConfig{R"({"robots":[{"name":"a","port":1,"record":"a.mcap","record-max-files":2}]})",
+                    "robots[0].record has no number such as %05d, which limits for files need"},
+        WrongConfig{R"({"robots":[{"name":"a","port":1},{"name":"b","port":1}]})",
+                    "port 1 has two robots"},
+        WrongConfig{R"({"robots":[{"name":"a","port":1},{"name":"a","port":2}]})",
+                    "a has two sensors called lidar"},
+        WrongConfig{R"({"nats":{"prefix":"a.>"},"robots":[{"name":"a","port":1}]})",
+                    "nats.prefix is no word of letters, digits, - and _"}));
+
+TEST_P(EdgeConfigWrong, IsNamed) {
+  try {
+    ParseEdgeConfig(GetParam().text);
+    FAIL() << GetParam().text;
+  } catch (const std::runtime_error& e) {
+    EXPECT_STREQ(e.what(), GetParam().message);
+  }
+}
+
+TEST(EdgeExposition, HasNumbersByTheirNames) {
+  const gst::StructurePtr stats(
+      gst_structure_new("s", "packets-lost", G_TYPE_UINT64, guint64{7}, "connected", G_TYPE_BOOLEAN,
+                        TRUE, "age", G_TYPE_UINT64, G_MAXUINT64, "reason", G_TYPE_STRING, "x",
+                        "rate", G_TYPE_DOUBLE, 0.5, nullptr));
+  edge::Exposition exposition;
+  exposition.Add("natssink", "{robot=\"a\"}", stats.get());
+  exposition.Add("lidar_edge_x", "", 1);
+  EXPECT_EQ(
+      exposition.text(),
+      "# TYPE lidar_edge_x untyped\nlidar_edge_x 1\n"
+      "# TYPE lidar_natssink_connected untyped\nlidar_natssink_connected{robot=\"a\"} 1\n"
+      "# TYPE lidar_natssink_packets_lost untyped\nlidar_natssink_packets_lost{robot=\"a\"} 7\n"
+      "# TYPE lidar_natssink_rate untyped\nlidar_natssink_rate{robot=\"a\"} 0.5\n");
+  EXPECT_EQ(edge::ToJson(stats.get()).dump(),
+            R"({"connected":true,"packets-lost":7,"rate":0.5,"reason":"x"})");
+}
+
+TEST(Printable, IsALineThatGivesATerminalNoOrders) {
+  EXPECT_EQ(tools::Printable("r7: Gerät 1"), "r7: Gerät 1");
+  EXPECT_EQ(tools::Printable("a\x1b[2J\nb\x7f"), "a\\x1b[2J\\x0ab\\x7f");
+  EXPECT_EQ(tools::Printable(std::string("a\0b", 3)), "a\\x00b");
+  EXPECT_EQ(tools::Printable("\xff\xc3"), "\\xff\\xc3") << "no UTF-8";
+  EXPECT_EQ(tools::Printable("\u009b"), "\\xc2\\x9b") << "begins an order in some terminals";
+  EXPECT_EQ(tools::Printable(""), "");
+}
+
+}  // namespace
+}  // namespace lidar::test

@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// lidar-edge: a recorder that fails harms nothing beside it.
+#include "src/tools/edge/pipeline.h"
+#include "tests/elements/nats/nats_server.h"
+
+namespace lidar::test {
+namespace {
+
+class EdgeRecorder : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    robot_.record = "/dev/null";
+    pipeline_.reset(gst_parse_launch(
+        "fakesrc name=screamsrc is-live=true sync=true datarate=1000 sizetype=fixed sizemax=100 ! "
+        "tee name=tee allow-not-linked=true ! fakesink name=sink async=false sync=false",
+        nullptr));
+    edge::AddRecorder(pipeline_.get(), robot_);
+  }
+  void TearDown() override { gst_element_set_state(pipeline_.get(), GST_STATE_NULL); }
+  gst::ElementPtr Find(const char* name) const {
+    return gst::ElementPtr(gst_bin_get_by_name(GST_BIN(pipeline_.get()), name));
+  }
+  gst::PadPtr PadOf(const char* element) const {
+    return gst::PadPtr(gst_element_get_static_pad(Find(element).get(), "sink"));
+  }
+  void FailRecorder() const {
+    const gst::ElementPtr recorder = Find("recorder");
+    GST_ELEMENT_ERROR(recorder.get(), RESOURCE, WRITE, ("The disk is full."), (nullptr));
+  }
+
+  edge::RobotConfig robot_;
+  gst::ElementPtr pipeline_;
+};
+
+TEST_F(EdgeRecorder, ThatFailsAtTheEndDoesNotCutTheStreamShort) {
+  FailRecorder();
+  gst_element_set_state(pipeline_.get(), GST_STATE_PLAYING);
+  int errors = 0;
+  EXPECT_TRUE(edge::Drain(pipeline_.get(), 30 * GST_SECOND, [&](GstMessage*) {
+    ++errors;
+    edge::RemoveRecorder(pipeline_.get());
+  }));
+  EXPECT_GE(errors, 1);
+  EXPECT_TRUE(GST_PAD_IS_EOS(PadOf("sink").get()));
+}
+
+TEST_F(EdgeRecorder, ThatFailsBehindTheEndOfTheStreamDoesNotDelayIt) {
+  FailRecorder();
+  gst_element_set_state(pipeline_.get(), GST_STATE_PLAYING);
+  const gint64 begin = g_get_monotonic_time();
+  EXPECT_TRUE(edge::Drain(pipeline_.get(), 300 * GST_SECOND, [&](GstMessage*) {
+    EXPECT_TRUE(Eventually([&] { return GST_PAD_IS_EOS(PadOf("sink").get()); }));
+    edge::RemoveRecorder(pipeline_.get());
+  }));
+  EXPECT_LT(g_get_monotonic_time() - begin, 200 * G_TIME_SPAN_SECOND);
+}
+
+TEST_F(EdgeRecorder, ThatRefusesWhatItGetsIsNotNoticedInFrontOfIt) {
+  const gst::PadPtr entry = PadOf("recorder");
+  const gst::PadPtr inner = PadOf("queue");
+  for (GstPad* pad : {inner.get(), entry.get()}) gst_pad_set_active(pad, TRUE);
+  int refused = 0;
+  gst_pad_add_probe(
+      inner.get(),
+      static_cast<GstPadProbeType>(GST_PAD_PROBE_TYPE_BUFFER | GST_PAD_PROBE_TYPE_BUFFER_LIST),
+      [](GstPad*, GstPadProbeInfo* info, gpointer count) {
+        gst_mini_object_unref(GST_MINI_OBJECT(GST_PAD_PROBE_INFO_DATA(info)));
+        GST_PAD_PROBE_INFO_FLOW_RETURN(info) = GST_FLOW_ERROR;
+        ++*static_cast<int*>(count);
+        return GST_PAD_PROBE_HANDLED;
+      },
+      &refused, nullptr);
+  GstSegment segment;
+  gst_segment_init(&segment, GST_FORMAT_TIME);
+  gst_pad_send_event(entry.get(), gst_event_new_stream_start("s"));
+  gst_pad_send_event(entry.get(), gst_event_new_segment(&segment));
+  EXPECT_EQ(gst_pad_chain(entry.get(), gst_buffer_new()), GST_FLOW_OK);
+  GstBufferList* list = gst_buffer_list_new();
+  gst_buffer_list_add(list, gst_buffer_new());
+  EXPECT_EQ(gst_pad_chain_list(entry.get(), list), GST_FLOW_OK);
+  EXPECT_EQ(refused, 2);
+}
+
+}  // namespace
+}  // namespace lidar::test
