@@ -212,6 +212,17 @@ EdgeConfig ParseEdgeConfig(const std::string& json_text) {
   return config;
 }
 
+nats::ConnectionSettings ToConnection(const NatsConfig& nats, const std::string& name) {
+  nats::ConnectionSettings connection;
+  connection.url = nats.url;
+  connection.name = name;
+  connection.credentials_file = nats.credentials_file;
+  connection.tls_ca_file = nats.tls_ca_file;
+  connection.tls_cert_file = nats.tls_cert_file;
+  connection.tls_key_file = nats.tls_key_file;
+  return connection;
+}
+
 std::string StreamSubject(const NatsConfig& nats, const RobotConfig& robot) {
   return nats.prefix + "." + robot.name + ".lidar." + robot.sensor;
 }

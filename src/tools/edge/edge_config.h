@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "ext/nats/connection.h"
+
 namespace lidar::edge {
 
 struct NatsConfig {
@@ -51,6 +53,9 @@ struct EdgeConfig {
 
 /// Throws std::runtime_error, which names the key that is wrong.
 EdgeConfig ParseEdgeConfig(const std::string& json_text);
+
+/// `name` is what the server's monitoring shows.
+nats::ConnectionSettings ToConnection(const NatsConfig& nats, const std::string& name);
 
 std::string StreamSubject(const NatsConfig& nats, const RobotConfig& robot);
 std::string StatisticsSubject(const NatsConfig& nats, const RobotConfig& robot);

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // lidar-edge: receives a fleet of robots and hands their streams on to NATS and to files.
 #include <gst/gst.h>
-#include <sys/resource.h>
-#include <unistd.h>
 
 #include <CLI/CLI.hpp>
 #include <atomic>
@@ -21,10 +19,9 @@
 #include "src/tools/common/guard.h"
 #include "src/tools/common/program.h"
 #include "src/tools/edge/edge_config.h"
-#include "src/tools/edge/metrics_server.h"
 #include "src/tools/edge/receiver.h"
-#include "src/tools/edge/reporter.h"
 #include "src/tools/edge/shared_port.h"
+#include "src/tools/fleet/statistics.h"
 
 namespace lidar::edge {
 namespace {
@@ -46,21 +43,6 @@ EdgeConfig ReadConfig(const std::string& path) {
   }
 }
 
-void AddProcess(Exposition* exposition) {
-  rusage usage{};
-  getrusage(RUSAGE_SELF, &usage);
-  const auto time = [](const timeval& t) {
-    return static_cast<double>(t.tv_sec) + static_cast<double>(t.tv_usec) * 1e-6;
-  };
-  exposition->Add("process_cpu_seconds_total", "", time(usage.ru_utime) + time(usage.ru_stime));
-  std::ifstream in("/proc/self/statm");
-  double pages = 0;
-  double resident = 0;
-  if (in >> pages >> resident)
-    exposition->Add("process_resident_memory_bytes", "",
-                    resident * static_cast<double>(sysconf(_SC_PAGESIZE)));
-}
-
 class Edge {
  public:
   explicit Edge(const EdgeConfig& config) : config_(config) {
@@ -72,11 +54,11 @@ class Edge {
     for (const RobotConfig& robot : config.robots)
       receivers_.push_back(std::make_unique<Receiver>(
           config, robot, robot.ssrc ? shared_port_->socket(next++) : nullptr));
-    if (!config.nats.url.empty()) reporter_.emplace(config, [this] { return Reports(); });
-    if (config.http_port < 0) return;
-    metrics_.emplace(config.http_address, config.http_port);
-    std::printf("metrics http://%s:%d/metrics\n", config.http_address.c_str(), metrics_->port());
-    std::fflush(stdout);
+    std::optional<nats::ConnectionSettings> connection;
+    if (!config.nats.url.empty()) connection = ToConnection(config.nats, "lidar-edge");
+    statistics_.emplace(
+        fleet::StatisticsSettings{config.http_address, config.http_port, config.interval_s},
+        connection);
   }
   /// All sessions end at the same time.
   ~Edge() {
@@ -84,38 +66,28 @@ class Edge {
   }
 
   void Run() {
-    auto tell_at = Clock::now();
     while (!stopping) {
       std::this_thread::sleep_for(kPoll);
-      if (!metrics_ || Clock::now() < tell_at) continue;
-      tell_at = Clock::now() + std::chrono::duration_cast<Clock::duration>(
-                                   std::chrono::duration<double>(config_.interval_s));
-      Exposition exposition;
-      AddProcess(&exposition);
-      if (shared_port_) exposition.Add("lidar_edge_stray_datagrams", "", shared_port_->strays());
-      for (const auto& receiver : receivers_) receiver->AddTo(&exposition);
-      metrics_->Publish(exposition.text());
+      statistics_->Poll([this](auto* exposition, auto* reports) { Tell(exposition, reports); });
     }
   }
 
  private:
-  using Clock = std::chrono::steady_clock;
-
-  Reporter::Reports Reports() const {
-    Reporter::Reports reports;
-    for (const auto& receiver : receivers_)
+  void Tell(fleet::Exposition* exposition, fleet::Reporter::Reports* reports) const {
+    if (shared_port_) exposition->Add("lidar_edge_stray_datagrams", "", shared_port_->strays());
+    for (const auto& receiver : receivers_) {
+      receiver->AddTo(exposition);
       // Errors of the network may hold any bytes.
-      reports.emplace_back(
+      reports->emplace_back(
           StatisticsSubject(config_.nats, receiver->robot()),
           receiver->Statistics().dump(-1, ' ', false, nlohmann::json::error_handler_t::replace));
-    return reports;
+    }
   }
 
   const EdgeConfig& config_;
   std::optional<SharedPort> shared_port_;
   std::vector<std::unique_ptr<Receiver>> receivers_;
-  std::optional<Reporter> reporter_;
-  std::optional<MetricsServer> metrics_;
+  std::optional<fleet::Statistics> statistics_;
 };
 
 int Main(int argc, char** argv) {

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "src/tools/common/elements.h"
+#include "src/tools/fleet/connection.h"
 
 namespace lidar::edge {
 namespace {
@@ -29,16 +30,13 @@ void Link(GstElement* from, GstElement* to) {
 void AddNats(GstElement* pipeline, GstElement* from, const NatsConfig& nats,
              const RobotConfig& robot) {
   GstElement* sink = Add(pipeline, "natssink");
-  g_object_set(sink, "sync", FALSE, "async", FALSE, "keep-trying", TRUE, "url", nats.url.c_str(),
-               "subject", StreamSubject(nats, robot).c_str(), "jetstream-subjects",
+  g_object_set(sink, "sync", FALSE, "async", FALSE, "keep-trying", TRUE, "subject",
+               StreamSubject(nats, robot).c_str(), "jetstream-subjects",
                (nats.prefix + ".*.lidar.>").c_str(), "max-age", nats.max_age_s * GST_SECOND,
                "max-bytes", nats.max_bytes, "buffer-size", static_cast<guint>(nats.buffer_size),
                "drain-timeout", kDrainTimeout, nullptr);
   SetText(sink, "jetstream", nats.jetstream);
-  SetText(sink, "credentials-file", nats.credentials_file);
-  SetText(sink, "tls-ca-file", nats.tls_ca_file);
-  SetText(sink, "tls-cert-file", nats.tls_cert_file);
-  SetText(sink, "tls-key-file", nats.tls_key_file);
+  fleet::SetConnection(sink, ToConnection(nats, ""));
   Link(from, sink);
 }
 

@@ -13,7 +13,7 @@
 namespace lidar::edge {
 namespace {
 
-using gst::ElementPtr;
+using fleet::StatsOf;
 using gst::MessagePtr;
 using gst::StructurePtr;
 using std::chrono::seconds;
@@ -183,16 +183,9 @@ bool Receiver::ReadBus(Clock::time_point now) {
   return true;
 }
 
-StructurePtr Receiver::StatsOf(const char* element) const {
-  const ElementPtr found(gst_bin_get_by_name(GST_BIN(pipeline_.get()), element));
-  GstStructure* raw = nullptr;
-  if (found) g_object_get(found.get(), "stats", &raw, nullptr);
-  return StructurePtr(raw);
-}
-
 guint64 Receiver::BytesReceived() const {
   guint64 bytes = 0;
-  if (const StructurePtr stats = StatsOf("screamsrc"))
+  if (const StructurePtr stats = StatsOf(pipeline_.get(), "screamsrc"))
     gst_structure_get_uint64(stats.get(), "bytes-received", &bytes);
   return bytes;
 }
@@ -244,20 +237,22 @@ nlohmann::json Receiver::Statistics() const {
                         {"record-failures", a.record_failures}};
   if (!a.last_error.empty()) out["last-error"] = a.last_error;
   for (const char* element : kElements)
-    if (const StructurePtr stats = StatsOf(element)) out[element] = ToJson(stats.get());
+    if (const StructurePtr stats = StatsOf(pipeline_.get(), element))
+      out[element] = fleet::ToJson(stats.get());
   return out;
 }
 
-void Receiver::AddTo(Exposition* exposition) const {
+void Receiver::AddTo(fleet::Exposition* exposition) const {
   const Account a = account();
-  const std::string labels = "{robot=\"" + robot_.name + "\",sensor=\"" + robot_.sensor + "\"}";
+  const std::string labels = fleet::RobotLabels(robot_.name, robot_.sensor);
   exposition->Add("lidar_edge_receiving", labels, a.state == State::kReceiving ? 1 : 0);
   exposition->Add("lidar_edge_sessions", labels, static_cast<double>(a.sessions));
   exposition->Add("lidar_edge_failures", labels, static_cast<double>(a.failures));
   exposition->Add("lidar_edge_penalties", labels, static_cast<double>(a.penalties));
   exposition->Add("lidar_edge_record_failures", labels, static_cast<double>(a.record_failures));
   for (const char* element : kElements)
-    if (const StructurePtr stats = StatsOf(element)) exposition->Add(element, labels, stats.get());
+    if (const StructurePtr stats = StatsOf(pipeline_.get(), element))
+      exposition->Add(element, labels, stats.get());
 }
 
 }  // namespace lidar::edge

@@ -16,7 +16,7 @@
 #include "gst/common/refs.h"
 #include "src/base/backoff.h"
 #include "src/tools/edge/edge_config.h"
-#include "src/tools/edge/exposition.h"
+#include "src/tools/fleet/exposition.h"
 
 namespace lidar::edge {
 
@@ -36,7 +36,7 @@ class Receiver {
   const RobotConfig& robot() const { return robot_; }
   // From any thread; neither waits for servers or disks.
   nlohmann::json Statistics() const;
-  void AddTo(Exposition* exposition) const;
+  void AddTo(fleet::Exposition* exposition) const;
 
  private:
   using Clock = std::chrono::steady_clock;
@@ -64,7 +64,6 @@ class Receiver {
   void NoteRecordFailure(Clock::time_point now, const std::string& why);
   void Watch(Clock::time_point now);
   guint64 BytesReceived() const;
-  gst::StructurePtr StatsOf(const char* element) const;
   Account account() const;
   template <class Change>
   void Update(Change change);

@@ -12,6 +12,7 @@
 #include "src/tools/common/bounded_end.h"
 #include "src/tools/common/guard.h"
 #include "src/tools/common/program.h"
+#include "src/tools/fleet/statistics.h"
 #include "src/tools/worker/worker.h"
 
 namespace lidar::worker {
@@ -54,6 +55,17 @@ void AddConnection(CLI::App* app, nats::ConnectionSettings* c) {
   app->add_option("--tls-key-file", c->tls_key_file, "The key of --tls-cert-file (PEM)");
 }
 
+void AddStatistics(CLI::App* app, fleet::StatisticsSettings* s) {
+  app->add_option("--http-port", s->http_port,
+                  "TCP port where Prometheus reads /metrics; 0: any, which is printed")
+      ->check(CLI::Range(0, 65'535));
+  app->add_option("--http-address", s->http_address, "Local address for --http-port")
+      ->capture_default_str();
+  app->add_option("--interval", s->interval_s, "Time between statistics [s]")
+      ->check(CLI::Range(0.1, 3600.0))
+      ->capture_default_str();
+}
+
 int Main(int argc, char** argv) {
   CLI::App app(
       "Takes robots whose streams JetStream keeps, finds their poses by lidarodometry, and "
@@ -62,6 +74,7 @@ int Main(int argc, char** argv) {
   tools::AddVersionFlag(&app, "lidar-worker");
   WorkerSettings s;
   std::vector<std::string> odometry;
+  fleet::StatisticsSettings t;
   double rewind_s = Seconds(s.pipeline.rewind);
   int lease_ms = static_cast<int>(Milliseconds(s.lease.lease));
   app.add_option("ROBOT", s.fleet.patterns,
@@ -91,6 +104,7 @@ int Main(int argc, char** argv) {
       ->check(CLI::Range(0.0, 60.0))
       ->capture_default_str();
   app.add_option("--odometry", odometry, "Property of lidarodometry, such as voxel-size=0.5");
+  AddStatistics(&app, &t);
   tools::Parse(&app, argc, argv, [&] {
     CheckWord("--prefix", s.fleet.prefix);
     CheckWord("--jetstream", s.fleet.stream);
@@ -105,7 +119,12 @@ int Main(int argc, char** argv) {
   gst_init(nullptr, nullptr);
   for (const int signal : {SIGINT, SIGTERM}) std::signal(signal, [](int) { stopping = true; });
   Worker worker(s);
-  while (!stopping) worker.Step();
+  s.pipeline.connection.name = "lidar-worker";
+  fleet::Statistics statistics(t, s.pipeline.connection);
+  while (!stopping) {
+    worker.Step();
+    statistics.Poll([&](auto* exposition, auto* reports) { worker.Tell(exposition, reports); });
+  }
   tools::BoundTheEnd(kEndSeconds);
   worker.HandOver();
   return 0;

@@ -9,22 +9,19 @@
 #include "gst/common/buffer_map.h"
 #include "src/tools/common/elements.h"
 #include "src/tools/common/event_loop.h"
+#include "src/tools/fleet/connection.h"
+#include "src/tools/fleet/exposition.h"
 
 namespace lidar::worker {
 namespace {
 
-using tools::AddElement;
+using fleet::SetConnection;
 using tools::MessageText;
-using tools::SetText;
 
 constexpr std::size_t kMaxWindow = 65'536;  // messages
 
-void SetConnection(GstElement* element, const nats::ConnectionSettings& connection) {
-  SetText(element, "url", connection.url);
-  SetText(element, "credentials-file", connection.credentials_file);
-  SetText(element, "tls-ca-file", connection.tls_ca_file);
-  SetText(element, "tls-cert-file", connection.tls_cert_file);
-  SetText(element, "tls-key-file", connection.tls_key_file);
+GstElement* Add(GstElement* bin, const std::string& factory) {
+  return tools::AddElement(bin, factory, factory.c_str());
 }
 
 std::string PoseText(const std::array<double, 7>& pose) {
@@ -56,13 +53,14 @@ RobotPipeline::RobotPipeline(const PipelineSettings& settings, const std::string
       begin_(begin),
       begin_scan_(begin && begin->stream == stream ? begin->scan : 0),
       rewind_(settings.rewind),
+      decoder_(settings.decoder),
       pipeline_(GST_ELEMENT(gst_object_ref_sink(gst_pipeline_new(robot.c_str())))) {
   GstElement* bin = pipeline_.get();
-  GstElement* source = AddElement(bin, "natssrc");
-  GstElement* decoder = AddElement(bin, settings.decoder);
-  GstElement* odometry = AddElement(bin, "lidarodometry");
-  GstElement* clouds = AddElement(bin, "fakesink");
-  GstElement* poses = AddElement(bin, "natssink");
+  GstElement* source = Add(bin, "natssrc");
+  GstElement* decoder = Add(bin, settings.decoder);
+  GstElement* odometry = Add(bin, "lidarodometry");
+  GstElement* clouds = Add(bin, "fakesink");
+  GstElement* poses = Add(bin, "natssink");
   const auto dot = robot.find('.');
   const std::string begin_of_subject = settings.prefix + "." + robot.substr(0, dot);
   const std::string sensor = robot.substr(dot + 1);
@@ -167,6 +165,15 @@ GstPadProbeReturn RobotPipeline::OnPose(GstBuffer* buffer) {
 std::optional<Progress> RobotPipeline::progress() const {
   const std::lock_guard lock(mutex_);
   return progress_;
+}
+
+std::vector<std::pair<std::string, gst::StructurePtr>> RobotPipeline::Stats() const {
+  std::vector<std::pair<std::string, gst::StructurePtr>> all;
+  for (const std::string& element :
+       {std::string("natssrc"), decoder_, std::string("lidarodometry"), std::string("natssink")})
+    if (gst::StructurePtr stats = fleet::StatsOf(pipeline_.get(), element))
+      all.emplace_back(element, std::move(stats));
+  return all;
 }
 
 std::string RobotPipeline::Poll() {

@@ -61,6 +61,8 @@ class RobotPipeline {
   bool has_dropped() const { return dropped_; }
   /// None before the first pose.
   std::optional<Progress> progress() const;
+  /// The `stats` of its elements, by their names. Waits for nobody.
+  std::vector<std::pair<std::string, gst::StructurePtr>> Stats() const;
   /// An error that has ended it; empty: none. Prints warnings.
   std::string Poll();
 
@@ -84,6 +86,7 @@ class RobotPipeline {
   const std::optional<Progress> begin_;
   const std::uint64_t begin_scan_;  // 0: from now on
   const Duration rewind_;
+  const std::string decoder_;
   gst::ElementPtr pipeline_;
   std::future<void> start_;
   std::atomic<std::int64_t> end_{0};

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <nlohmann/json.hpp>
 #include <stdexcept>
 #include <utility>
 
@@ -123,6 +124,7 @@ void Worker::PollPipelines() {
     const std::string error = pipeline->Poll();
     if (error.empty()) continue;
     Warn(robot, error);
+    ++counters_.failures;
     table_.Drop(robot, kAfterFailure, Now());
   }
 }
@@ -141,6 +143,7 @@ void Worker::FollowLeases() {
       continue;
     }
     Say(at->first, "given up");
+    ++counters_.given_up;
     at = End(at);
   }
   for (const auto& [robot, lease] : held) {
@@ -163,6 +166,7 @@ void Worker::Begin(const std::string& robot, const LeaseTable::Held& held) {
   }
   Say(robot, "taken, " + from +
                  (held.last_worker.empty() ? "" : ", after " + tools::Printable(held.last_worker)));
+  ++counters_.taken;
   try {
     auto pipeline =
         std::make_unique<RobotPipeline>(settings_.pipeline, robot, stream_, held.progress);
@@ -172,6 +176,8 @@ void Worker::Begin(const std::string& robot, const LeaseTable::Held& held) {
   } catch (const std::exception& e) {  // the machine gives no more threads, or no files
     Warn(robot, e.what());
     Say(robot, "given up");
+    ++counters_.failures;
+    ++counters_.given_up;
     table_.Drop(robot, kAfterFailure, Now());
   }
 }
@@ -188,6 +194,28 @@ Worker::Pipelines::iterator Worker::End(Pipelines::iterator at) {
 void Worker::Send(const std::vector<LeaseTable::Write>& writes) {
   for (const LeaseTable::Write& write : writes)
     store_.Write(write.ticket, write.robot, write.replaces, write.text);
+}
+
+void Worker::Tell(fleet::Exposition* exposition, fleet::Reporter::Reports* reports) const {
+  exposition->Add("lidar_worker_robots", "", static_cast<double>(pipelines_.size()));
+  exposition->Add("lidar_worker_robots_taken", "", static_cast<double>(counters_.taken));
+  exposition->Add("lidar_worker_robots_given_up", "", static_cast<double>(counters_.given_up));
+  exposition->Add("lidar_worker_failures", "", static_cast<double>(counters_.failures));
+  for (const auto& [name, pipeline] : pipelines_) {
+    const auto dot = name.find('.');
+    const std::string robot = name.substr(0, dot);
+    const std::string sensor = name.substr(dot + 1);
+    nlohmann::json report = {{"robot", robot},
+                             {"sensor", sensor},
+                             {"time", g_get_real_time() * 1000},
+                             {"worker", settings_.lease.worker}};
+    for (const auto& [element, stats] : pipeline->Stats()) {
+      report[element] = fleet::ToJson(stats.get());
+      exposition->Add(element, fleet::RobotLabels(robot, sensor), stats.get());
+    }
+    reports->emplace_back(settings_.fleet.prefix + "." + robot + ".worker." + sensor,
+                          report.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace));
+  }
 }
 
 void Worker::WaitForEnds() {

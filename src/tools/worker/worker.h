@@ -8,6 +8,8 @@
 #include <vector>
 
 #include "ext/nats/connection.h"
+#include "src/tools/fleet/exposition.h"
+#include "src/tools/fleet/reporter.h"
 #include "src/tools/worker/fleet_watch.h"
 #include "src/tools/worker/lease_store.h"
 #include "src/tools/worker/lease_table.h"
@@ -33,6 +35,9 @@ class Worker {
   /// has not stopped by then says nothing any more, but the destructor waits for it.
   void HandOver();
 
+  /// Tells of the worker and of each robot that it has. Waits for nobody.
+  void Tell(fleet::Exposition* exposition, fleet::Reporter::Reports* reports) const;
+
  private:
   using Pipelines = std::map<std::string, std::unique_ptr<RobotPipeline>>;
   struct Ending {
@@ -57,6 +62,11 @@ class Worker {
   LeaseStore store_;
   LeaseTable table_;
   std::uint64_t stream_ = 0;  // as in Progress
+  struct Counters {
+    std::uint64_t taken = 0;
+    std::uint64_t given_up = 0;
+    std::uint64_t failures = 0;  // of pipelines
+  } counters_;
   Pipelines pipelines_;
   /// Pipelines that stop, which may take a while: others must not wait for it.
   std::map<std::string, Ending> ending_;

@@ -1,14 +1,10 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// lidar-edge: its configuration, and what it tells of itself.
+// lidar-edge: its configuration.
 #include "src/tools/edge/edge_config.h"
 
 #include <gtest/gtest.h>
 
-#include <nlohmann/json.hpp>
-
-#include "gst/common/refs.h"
-#include "src/tools/common/printable.h"
-#include "src/tools/edge/exposition.h"
+#include <stdexcept>
 
 namespace lidar::test {
 namespace {
@@ -85,33 +81,6 @@ TEST_P(EdgeConfigWrong, IsNamed) {
   } catch (const std::runtime_error& e) {
     EXPECT_STREQ(e.what(), GetParam().message);
   }
-}
-
-TEST(EdgeExposition, HasNumbersByTheirNames) {
-  const gst::StructurePtr stats(
-      gst_structure_new("s", "packets-lost", G_TYPE_UINT64, guint64{7}, "connected", G_TYPE_BOOLEAN,
-                        TRUE, "age", G_TYPE_UINT64, G_MAXUINT64, "reason", G_TYPE_STRING, "x",
-                        "rate", G_TYPE_DOUBLE, 0.5, nullptr));
-  edge::Exposition exposition;
-  exposition.Add("natssink", "{robot=\"a\"}", stats.get());
-  exposition.Add("lidar_edge_x", "", 1);
-  EXPECT_EQ(
-      exposition.text(),
-      "# TYPE lidar_edge_x untyped\nlidar_edge_x 1\n"
-      "# TYPE lidar_natssink_connected untyped\nlidar_natssink_connected{robot=\"a\"} 1\n"
-      "# TYPE lidar_natssink_packets_lost untyped\nlidar_natssink_packets_lost{robot=\"a\"} 7\n"
-      "# TYPE lidar_natssink_rate untyped\nlidar_natssink_rate{robot=\"a\"} 0.5\n");
-  EXPECT_EQ(edge::ToJson(stats.get()).dump(),
-            R"({"connected":true,"packets-lost":7,"rate":0.5,"reason":"x"})");
-}
-
-TEST(Printable, IsALineThatGivesATerminalNoOrders) {
-  EXPECT_EQ(tools::Printable("r7: Gerät 1"), "r7: Gerät 1");
-  EXPECT_EQ(tools::Printable("a\x1b[2J\nb\x7f"), "a\\x1b[2J\\x0ab\\x7f");
-  EXPECT_EQ(tools::Printable(std::string("a\0b", 3)), "a\\x00b");
-  EXPECT_EQ(tools::Printable("\xff\xc3"), "\\xff\\xc3") << "no UTF-8";
-  EXPECT_EQ(tools::Printable("\u009b"), "\\xc2\\x9b") << "begins an order in some terminals";
-  EXPECT_EQ(tools::Printable(""), "");
 }
 
 }  // namespace

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // lidar-worker: robots that change hands.
 #include <gst/base/gstbasetransform.h>
+#include <httplib.h>
 
 #include <cmath>
+#include <nlohmann/json.hpp>
 
 #include "ext/nats/connection.h"
 #include "ext/nats/jetstream.h"
@@ -245,6 +247,40 @@ TEST_F(LidarWorker, PrintsNoControlCharactersOfARecord) {
   ASSERT_TRUE(Eventually([&] { return !worker->Taken("r1.front").empty(); }));
   EXPECT_EQ(worker->Taken("r1.front"),
             "r1.front: taken, from now on, after a\\x1b[2J\\x0ar2.front: taken");
+}
+
+TEST_F(LidarWorker, TellsOfItsRobots) {
+  const auto robot = Robot();
+  WorkerProcess worker(
+      {"r*", "--url", server_.url(), "--lease", "2000", "--interval", "0.2", "--http-port", "0"});
+  natsConnection* raw = nullptr;
+  ASSERT_EQ(natsConnection_ConnectTo(&raw, server_.url().c_str()), NATS_OK);
+  natsSubscription* raw_reports = nullptr;
+  natsConnection_SubscribeSync(&raw_reports, raw, "fleet.*.worker.*");
+  nats::SubscriptionPtr reports(raw_reports);
+  const auto counts_poses = [&] {
+    natsMsg* raw_report = nullptr;
+    if (natsSubscription_NextMsg(&raw_report, raw_reports, 1'000) != NATS_OK) return false;
+    const nats::MessagePtr message(raw_report);
+    EXPECT_STREQ(natsMsg_GetSubject(raw_report), "fleet.r1.worker.front");
+    const auto report = nlohmann::json::parse(natsMsg_GetData(raw_report));
+    return report["robot"] == "r1" && report["natssink"]["messages"] > 3;
+  };
+  EXPECT_TRUE(Eventually(counts_poses));
+  std::string address;
+  ASSERT_TRUE(Eventually([&] {
+    for (const std::string& line : worker.lines())
+      if (line.rfind("metrics ", 0) == 0) address = line.substr(8, line.rfind('/') - 8);
+    return !address.empty();
+  }));
+  const auto answer = httplib::Client(address).Get("/metrics");
+  ASSERT_TRUE(answer);
+  EXPECT_NE(answer->body.find("\nlidar_worker_robots 1\n"), std::string::npos) << answer->body;
+  EXPECT_NE(answer->body.find("\nlidar_natssink_messages{robot=\"r1\",sensor=\"front\"} "),
+            std::string::npos);
+  reports.reset();
+  natsConnection_Destroy(raw);
+  EXPECT_EQ(worker.Stop(), 0);
 }
 
 /// A worker in this process, and two robots whose pipelines are slow to start.

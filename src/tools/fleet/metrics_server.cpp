@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "src/tools/edge/metrics_server.h"
+#include "src/tools/fleet/metrics_server.h"
 
 #include <httplib.h>
 
@@ -9,7 +9,7 @@
 
 #include "src/tools/common/http_listener.h"
 
-namespace lidar::edge {
+namespace lidar::fleet {
 
 class MetricsServer::Impl {
  public:
@@ -46,4 +46,4 @@ MetricsServer::~MetricsServer() = default;
 int MetricsServer::port() const { return impl_->port(); }
 void MetricsServer::Publish(std::string text) { impl_->Publish(std::move(text)); }
 
-}  // namespace lidar::edge
+}  // namespace lidar::fleet

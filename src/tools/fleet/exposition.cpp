@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "src/tools/edge/exposition.h"
+#include "src/tools/fleet/exposition.h"
 
 #include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-namespace lidar::edge {
+namespace lidar::fleet {
 namespace {
 
 using nlohmann::json;
@@ -45,6 +45,18 @@ std::string MetricName(const std::string& element, const std::string& field) {
 
 }  // namespace
 
+gst::StructurePtr StatsOf(GstElement* bin, const std::string& element) {
+  const gst::ElementPtr found(gst_bin_get_by_name(GST_BIN(bin), element.c_str()));
+  GstStructure* raw = nullptr;
+  if (found && g_object_class_find_property(G_OBJECT_GET_CLASS(found.get()), "stats") != nullptr)
+    g_object_get(found.get(), "stats", &raw, nullptr);
+  return gst::StructurePtr(raw);
+}
+
+std::string RobotLabels(const std::string& robot, const std::string& sensor) {
+  return "{robot=\"" + robot + "\",sensor=\"" + sensor + "\"}";
+}
+
 json ToJson(const GstStructure* structure) {
   json object = json::object();
   for (gint i = 0; i < gst_structure_n_fields(structure); ++i) {
@@ -82,4 +94,4 @@ std::string Exposition::text() const {
   return out;
 }
 
-}  // namespace lidar::edge
+}  // namespace lidar::fleet

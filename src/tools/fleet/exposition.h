@@ -8,7 +8,15 @@
 #include <string>
 #include <vector>
 
-namespace lidar::edge {
+#include "gst/common/refs.h"
+
+namespace lidar::fleet {
+
+/// The `stats` of an element in `bin`; null where it has none, or is not there.
+gst::StructurePtr StatsOf(GstElement* bin, const std::string& element);
+
+/// As Prometheus has them. Neither name has anything that would need quotes.
+std::string RobotLabels(const std::string& robot, const std::string& sensor);
 
 /// Numbers, flags, text and structures; what else there is is left out.
 nlohmann::json ToJson(const GstStructure* structure);
@@ -26,4 +34,4 @@ class Exposition {
   std::map<std::string, std::vector<std::string>> lines_;
 };
 
-}  // namespace lidar::edge
+}  // namespace lidar::fleet

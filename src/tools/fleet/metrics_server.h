@@ -4,7 +4,7 @@
 #include <memory>
 #include <string>
 
-namespace lidar::edge {
+namespace lidar::fleet {
 
 class MetricsServer {
  public:
@@ -20,4 +20,4 @@ class MetricsServer {
   std::unique_ptr<Impl> impl_;
 };
 
-}  // namespace lidar::edge
+}  // namespace lidar::fleet

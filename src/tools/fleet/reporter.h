@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Tells NATS of each robot, in a thread of its own and over a connection of its own.
+// Publishes what is told of robots on NATS, in a thread of its own and over a connection of its
+// own.
 #pragma once
+#include <chrono>
 #include <condition_variable>
-#include <functional>
 #include <memory>
 #include <mutex>
 #include <string>
@@ -12,30 +13,31 @@
 
 #include "ext/nats/connection.h"
 #include "src/base/backoff.h"
-#include "src/tools/edge/edge_config.h"
 
-namespace lidar::edge {
+namespace lidar::fleet {
 
 class Reporter {
  public:
   /// What is published, by subject.
   using Reports = std::vector<std::pair<std::string, std::string>>;
 
-  /// `collect` runs in the thread.
-  Reporter(const EdgeConfig& config, std::function<Reports()> collect);
+  explicit Reporter(const nats::ConnectionSettings& settings);
   /// May wait for a connect that is under way.
   ~Reporter();
   Reporter(const Reporter&) = delete;
   Reporter& operator=(const Reporter&) = delete;
+
+  /// Goes out as soon as there is a connection, in place of what still waits for one. Never waits.
+  void Publish(Reports reports);
 
  private:
   using Clock = std::chrono::steady_clock;
   void Run();
   bool Connected(Clock::time_point now);
   void Open(Clock::time_point now);
+  void Send(const Reports& reports) const;
 
-  const EdgeConfig& config_;
-  const std::function<Reports()> collect_;
+  const nats::ConnectionSettings settings_;
 
   // The thread's alone.
   std::unique_ptr<nats::Connection> connection_;
@@ -45,9 +47,10 @@ class Reporter {
 
   std::mutex mutex_;  // guards what follows
   std::condition_variable wake_;
+  Reports waiting_;
   bool ending_ = false;
 
   std::thread thread_;  // the last: it uses the rest
 };
 
-}  // namespace lidar::edge
+}  // namespace lidar::fleet

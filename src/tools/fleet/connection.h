@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Hands a program's connection to its elements.
+#pragma once
+#include "ext/nats/connection.h"
+#include "src/tools/common/elements.h"
+
+namespace lidar::fleet {
+
+/// For a natssink or a natssrc.
+inline void SetConnection(GstElement* element, const nats::ConnectionSettings& connection) {
+  tools::SetText(element, "url", connection.url);
+  tools::SetText(element, "credentials-file", connection.credentials_file);
+  tools::SetText(element, "tls-ca-file", connection.tls_ca_file);
+  tools::SetText(element, "tls-cert-file", connection.tls_cert_file);
+  tools::SetText(element, "tls-key-file", connection.tls_key_file);
+}
+
+}  // namespace lidar::fleet

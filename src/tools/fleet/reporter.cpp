@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "src/tools/fleet/reporter.h"
+
+#include <cstdio>
+
+#include "src/tools/common/printable.h"
+
+namespace lidar::fleet {
+namespace {
+
+constexpr std::chrono::milliseconds kPoll{100};  // how late a connection may be seen
+
+}  // namespace
+
+Reporter::Reporter(const nats::ConnectionSettings& settings)
+    : settings_(settings),
+      refusals_(std::chrono::seconds(1), std::chrono::seconds(16)),
+      thread_([this] { Run(); }) {}
+
+Reporter::~Reporter() {
+  {
+    const std::lock_guard lock(mutex_);
+    ending_ = true;
+    wake_.notify_all();
+  }
+  thread_.join();
+}
+
+void Reporter::Publish(Reports reports) {
+  const std::lock_guard lock(mutex_);
+  waiting_ = std::move(reports);
+  wake_.notify_all();
+}
+
+void Reporter::Open(Clock::time_point now) {
+  open_at_ = now + refusals_.Next();
+  connection_.reset();
+  std::string why;
+  connection_ = nats::Connection::Open(settings_, nullptr, &why);
+  if (connection_ || why == told_) return;
+  told_ = why;
+  std::fprintf(stderr, "NATS gets no statistics: %s\n", tools::Printable(why).c_str());
+}
+
+/// A connection that the server refused is no more, so there is another one after a while.
+bool Reporter::Connected(Clock::time_point now) {
+  if ((!connection_ || connection_->state().closed) && now >= open_at_) Open(now);
+  const bool connected = connection_ && connection_->state().connected();
+  if (connected) refusals_.Reset();
+  return connected;
+}
+
+void Reporter::Send(const Reports& reports) const {
+  for (const auto& [subject, text] : reports)
+    natsConnection_Publish(connection_->get(), subject.c_str(), text.data(),
+                           static_cast<int>(text.size()));
+}
+
+void Reporter::Run() {
+  std::unique_lock lock(mutex_);
+  while (!ending_) {
+    lock.unlock();
+    const bool connected = Connected(Clock::now());
+    lock.lock();
+    if (connected && !waiting_.empty()) {
+      const Reports reports = std::exchange(waiting_, {});
+      lock.unlock();
+      Send(reports);
+      lock.lock();
+    }
+    wake_.wait_for(lock, kPoll, [&] { return ending_ || (connected && !waiting_.empty()); });
+  }
+  lock.unlock();
+  connection_.reset();
+  nats_ReleaseThreadMemory();
+}
+
+}  // namespace lidar::fleet
