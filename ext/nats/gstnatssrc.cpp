@@ -17,7 +17,7 @@
 
 #include "ext/nats/message.h"
 #include "ext/nats/nats_settings.h"
-#include "ext/nats/place_book.h"
+#include "ext/nats/source_account.h"
 #include "ext/nats/subscriber.h"
 #include "gst/common/element_class.h"
 #include "gst/common/gstlidar.h"
@@ -30,9 +30,8 @@ namespace {
 
 using namespace lidar::gst;
 using lidar::nats::Delivery;
-using lidar::nats::Place;
-using lidar::nats::PlaceBook;
 using lidar::nats::ReadMessage;
+using lidar::nats::SourceCounters;
 using lidar::nats::StreamFormat;
 using lidar::nats::Subscriber;
 using std::chrono::milliseconds;
@@ -49,35 +48,23 @@ struct NatsSrcSettings {
   guint buffer_size = 8U << 20;
 };
 
-struct Counters {
-  guint64 messages = 0;
-  guint64 bytes = 0;
-  guint64 damaged = 0;
-  guint64 without_caps = 0;
-  guint64 lost = 0;
-  guint64 again = 0;
-  guint64 late = 0;
-  guint64 overruns = 0;
-  guint reconnects = 0;
-  bool connected = false;
-};
-const std::array<Stat<Counters>, 10> kStats = {{
-    {"messages", &Counters::messages},
-    {"bytes", &Counters::bytes},
-    {"messages-damaged", &Counters::damaged},
-    {"messages-without-caps", &Counters::without_caps},
-    {"messages-lost", &Counters::lost},
-    {"messages-again", &Counters::again},
-    {"messages-late", &Counters::late},
-    {"messages-overrun", &Counters::overruns},
-    {"reconnects", &Counters::reconnects},
-    {"connected", &Counters::connected},
+const std::array<Stat<SourceCounters>, 10> kStats = {{
+    {"messages", &SourceCounters::messages},
+    {"bytes", &SourceCounters::bytes},
+    {"messages-damaged", &SourceCounters::damaged},
+    {"messages-without-caps", &SourceCounters::without_caps},
+    {"messages-lost", &SourceCounters::lost},
+    {"messages-again", &SourceCounters::again},
+    {"messages-late", &SourceCounters::late},
+    {"messages-overrun", &SourceCounters::overruns},
+    {"reconnects", &SourceCounters::reconnects},
+    {"connected", &SourceCounters::connected},
 }};
 
 struct State {
-  std::mutex mutex;  // guards all to the next comment; never held while waiting or posting
+  std::mutex mutex;  // guards settings; never held while waiting or posting
   NatsSrcSettings settings;
-  Counters counters;
+  lidar::nats::SourceAccount account;
 
   std::atomic<bool> flushing{false};
 
@@ -86,9 +73,8 @@ struct State {
   std::unique_ptr<Subscriber> subscriber;
   std::shared_ptr<ConnectionWatch> watch;
   StreamFormat::Ptr format;
-  std::string trouble;  // that was told
-  Delivery delivery;    // of the buffer that was pushed last
-  PlaceBook places;
+  std::string trouble;           // that was told
+  Delivery delivery;             // of the buffer that was pushed last
   std::optional<guint64> first;  // when JetStream stored the first message
   gint64 no_wait_until_us = 0;   // unknown caps are not waited for
   bool warned_damaged = false;
@@ -107,13 +93,8 @@ GST_ELEMENT_REGISTER_DEFINE(natssrc, "natssrc", GST_RANK_NONE, GST_TYPE_LIDAR_NA
 
 static State& StateOf(gpointer self) { return *GST_LIDAR_NATS_SRC(self)->state; }
 
-static Counters CountersNow(State& state) {
-  const std::lock_guard lock(state.mutex);
-  return state.counters;
-}
-
 static StructurePtr Stats(GObject* object) {
-  return ToStructure("application/x-natssrc-stats", kStats, CountersNow(StateOf(object)));
+  return ToStructure("application/x-natssrc-stats", kStats, StateOf(object).account.counters());
 }
 
 static const std::array<Property<NatsSrcSettings>, 15> kProperties = {{
@@ -183,17 +164,11 @@ static bool CheckSettings(GstLidarNatsSrc* self, NatsSrcSettings* settings) {
   return false;
 }
 
-static void NoteConnection(State& state, const lidar::nats::ConnectionState& now) {
-  const std::lock_guard lock(state.mutex);
-  state.counters.connected = now.connected();
-  state.counters.reconnects = now.connections > 0 ? now.connections - 1 : 0;
-}
-
 static void ForgetStream(State& state) {
   state.format.reset();
   state.trouble.clear();
   state.delivery = {};
-  state.places = {};
+  state.account.Reset();
   state.first.reset();
   state.no_wait_until_us = 0;
   state.warned_damaged = false;
@@ -206,10 +181,9 @@ static gboolean Start(GstBaseSrc* base) {
   {
     const std::lock_guard lock(state.mutex);
     state.now = state.settings;
-    state.counters = {};
   }
-  if (!CheckSettings(self, &state.now)) return FALSE;
   ForgetStream(state);
+  if (!CheckSettings(self, &state.now)) return FALSE;
   state.watch = std::make_shared<ConnectionWatch>(GST_ELEMENT(self), false);
   std::string why;
   state.subscriber = Subscriber::Open(
@@ -227,41 +201,19 @@ static gboolean Stop(GstBaseSrc* base) {
   state.delivery = {};
   state.subscriber.reset();
   state.watch.reset();
-  const std::lock_guard lock(state.mutex);
-  state.counters.connected = false;
+  state.account.NoteStop();
   return TRUE;
-}
-
-static void Count(GstLidarNatsSrc* self, guint64 Counters::*counter, guint64 amount = 1) {
-  State& state = StateOf(self);
-  const std::lock_guard lock(state.mutex);
-  state.counters.*counter += amount;
 }
 
 /// One warning, until a message is good again: a publisher that is broken sends many.
 static void NoteDamaged(GstLidarNatsSrc* self) {
-  Count(self, &Counters::damaged);
-  if (!std::exchange(StateOf(self).warned_damaged, true))
+  State& state = StateOf(self);
+  state.account.NoteDamaged();
+  if (!std::exchange(state.warned_damaged, true))
     GST_ELEMENT_WARNING(self, STREAM, DECODE,
                         ("A message is none of natssink's, or damaged. Such messages are dropped "
                          "and counted."),
                         (nullptr));
-}
-
-/// False where the message came before: JetStream sends again what it saw no acknowledgement of.
-/// The messages of a queue group go to others, too, so what is missing here is not lost.
-static bool NotePlace(GstLidarNatsSrc* self, const Place& place, GstBuffer* buffer) {
-  State& state = StateOf(self);
-  const PlaceBook::Verdict verdict = state.places.Note(place);
-  const std::lock_guard lock(state.mutex);
-  Counters& counters = state.counters;
-  if (verdict.again) ++counters.again;
-  if (verdict.late) ++counters.late;
-  if (verdict.again || !state.now.nats.queue_group.empty()) return !verdict.again;
-  if (verdict.missing > 0) GST_BUFFER_FLAG_SET(buffer, GST_BUFFER_FLAG_DISCONT);
-  counters.lost += verdict.missing;
-  if (verdict.fills_gap && counters.lost > 0) --counters.lost;
-  return true;
 }
 
 /// Null after the message was dropped and counted.
@@ -273,7 +225,7 @@ static StreamFormat::Ptr FormatOf(GstLidarNatsSrc* self, const std::string& id) 
   if (format) return format;
   // Not for each of many: others may be good.
   if (wait) state.no_wait_until_us = g_get_monotonic_time() + kFormatPauseUs;
-  Count(self, &Counters::without_caps);
+  state.account.NoteWithoutCaps();
   return nullptr;
 }
 
@@ -303,11 +255,12 @@ static GstFlowReturn Take(GstLidarNatsSrc* self, const Delivery& delivery, GstBu
     if (!gst_base_src_set_caps(GST_BASE_SRC(self), format->caps())) return GST_FLOW_NOT_NEGOTIATED;
     state.format = format;
   }
-  if (!NotePlace(self, read->place, read->buffer.get())) return GST_FLOW_CUSTOM_SUCCESS;
+  const auto verdict = state.account.NotePlace(read->place, !state.now.nats.queue_group.empty());
+  if (verdict.again) return GST_FLOW_CUSTOM_SUCCESS;
+  if (verdict.gap) GST_BUFFER_FLAG_SET(read->buffer.get(), GST_BUFFER_FLAG_DISCONT);
   SetStored(state, delivery, read->buffer.get());
   state.warned_damaged = false;
-  Count(self, &Counters::messages);
-  Count(self, &Counters::bytes, size);
+  state.account.NoteTaken(size);
   *out = read->buffer.release();
   return GST_FLOW_OK;
 }
@@ -362,11 +315,7 @@ static GstFlowReturn Create(GstPushSrc* push, GstBuffer** out) {
   while (!state.flushing) {
     Delivery delivery;
     const Subscriber::Event event = state.subscriber->Next(kPoll, &delivery);
-    NoteConnection(state, state.subscriber->connection());
-    {
-      const std::lock_guard lock(state.mutex);
-      state.counters.overruns = state.subscriber->overruns();
-    }
+    state.account.NoteConnection(state.subscriber->connection(), state.subscriber->overruns());
     const GstFlowReturn flow = Handle(self, event, std::move(delivery), out);
     if (flow != GST_FLOW_CUSTOM_SUCCESS) return flow;
   }

@@ -2,7 +2,6 @@
 #include "ext/nats/publisher.h"
 
 #include <algorithm>
-#include <charconv>
 #include <string_view>
 #include <system_error>
 #include <utility>
@@ -26,44 +25,23 @@ std::chrono::milliseconds StreamPause() {
       g_random_int_range(kMinStreamRetryMs, static_cast<gint>(kStreamRetry.count())));
 }
 
-/// The answer of JetStream says where it stored a message, or what was wrong.
-std::string ErrorOfAck(natsMsg* message) {
-  if (natsMsg_IsNoResponders(message)) return "no stream of JetStream takes the subject";
-  const std::string_view text(natsMsg_GetData(message),
-                              static_cast<std::size_t>(natsMsg_GetDataLength(message)));
-  if (text.find("\"error\"") == text.npos && text.find("\"stream\"") != text.npos) return "";
-  constexpr std::size_t kShown = 200;
-  const gst::StringPtr shown(
-      g_utf8_make_valid(text.data(), static_cast<gssize>(std::min(text.size(), kShown))));
-  return std::string("JetStream refuses a message: ") + shown.get();
-}
-
 }  // namespace
 
 Publisher::Publisher(PublisherSettings settings, PublisherEvents events)
     : settings_(std::move(settings)),
       events_(std::move(events)),
       run_((std::uint64_t{g_random_int()} << 32) | g_random_int()),
+      answers_(AnswerSubjects::Make()),
       outbox_(settings_.max_buffered) {}
 
 std::shared_ptr<Publisher> Publisher::Start(const PublisherSettings& settings,
                                             PublisherEvents events, std::string* why) {
   std::shared_ptr<Publisher> publisher(new Publisher(settings, std::move(events)));
-  const bool open = publisher->MakeInbox(why) && (settings.keep_trying || publisher->Open(why)) &&
+  if (!publisher->answers_) *why = "memory is short";
+  const bool open = publisher->answers_ && (settings.keep_trying || publisher->Open(why)) &&
                     publisher->StartThread(why);
   if (!open) publisher->Stop();
   return open ? publisher : nullptr;
-}
-
-bool Publisher::MakeInbox(std::string* why) {
-  natsInbox* raw = nullptr;
-  natsInbox_Create(&raw);
-  const InboxPtr inbox(raw);
-  if (inbox)
-    ack_prefix_ = std::string(inbox.get()) + ".";
-  else
-    *why = "memory is short";
-  return inbox != nullptr;
 }
 
 bool Publisher::StartThread(std::string* why) {
@@ -94,7 +72,7 @@ bool Publisher::Open(std::string* why) {
     return false;
   if (!keeps()) return true;
   js_ = OpenJetStream(connection_->get());
-  if (js_) return Subscribe(ack_prefix_ + "*", &Publisher::OnAck, &acks_, why);
+  if (js_) return Subscribe(answers_->All(), &Publisher::OnAck, &acks_, why);
   *why = "memory is short";
   return false;
 }
@@ -186,19 +164,16 @@ void Publisher::OnAsk(natsMsg*) {
 }
 
 void Publisher::OnAck(natsMsg* message) {
-  const std::string_view subject(natsMsg_GetSubject(message));
-  if (subject.size() <= ack_prefix_.size()) return;
-  const std::string_view word = subject.substr(ack_prefix_.size());
-  std::uint64_t number = 0;
-  const auto end = word.data() + word.size();
+  const std::string_view word = answers_->WordOf(message);
+  const auto number = ToNumber(word);
   const bool is_config = word == kConfigReply;
-  if (!is_config && std::from_chars(word.data(), end, number).ptr != end) return;
+  if (!is_config && !number) return;
   const std::string error = ErrorOfAck(message);
   Lock lock(mutex_);
   if (error.empty()) {
     if (is_config)
       config_unanswered_ = false;
-    else if (outbox_.Remove(number))
+    else if (outbox_.Remove(*number))
       ++counters_.acknowledged;
     told_.clear();
   } else {
@@ -357,7 +332,7 @@ void Publisher::SendConfig(Lock* lock) {
   const auto size = static_cast<int>(text.size());
   if (keeps())
     natsConnection_PublishRequest(connection_->get(), subject.c_str(),
-                                  (ack_prefix_ + kConfigReply).c_str(), text.data(), size);
+                                  answers_->Of(kConfigReply).c_str(), text.data(), size);
   else
     natsConnection_Publish(connection_->get(), subject.c_str(), text.data(), size);
   lock->lock();
@@ -366,7 +341,7 @@ void Publisher::SendConfig(Lock* lock) {
 void Publisher::SendNext(Lock* lock) {
   const auto item = outbox_.Take(Clock::now());
   lock->unlock();
-  const std::string reply = keeps() ? ack_prefix_ + std::to_string(item->number) : "";
+  const std::string reply = keeps() ? answers_->Of(item->number) : "";
   const Place place{run_, item->number};
   const MessagePtr message = WriteMessage(settings_.subject, keeps() ? reply.c_str() : nullptr,
                                           item->format->id(), place, item->buffer.get());

@@ -7,10 +7,12 @@
 #include <functional>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <thread>
 #include <vector>
 
+#include "ext/nats/answers.h"
 #include "ext/nats/connection.h"
 #include "ext/nats/jetstream.h"
 #include "ext/nats/message.h"
@@ -73,7 +75,6 @@ class Publisher : public std::enable_shared_from_this<Publisher> {
 
   Publisher(PublisherSettings settings, PublisherEvents events);
   bool Open(std::string* why);
-  bool MakeInbox(std::string* why);
   bool StartThread(std::string* why);
   void Close();
   /// What a subscription calls.
@@ -110,13 +111,13 @@ class Publisher : public std::enable_shared_from_this<Publisher> {
   const PublisherSettings settings_;
   const PublisherEvents events_;
   const std::uint64_t run_;
+  const std::optional<AnswerSubjects> answers_;  // none: memory is short, so nothing starts
   // The thread's, while there is one.
   std::unique_ptr<Connection> connection_;  // null: not yet, or refused
   JetStreamPtr js_;
   SubscriptionPtr asks_;
   SubscriptionPtr acks_;
   std::vector<std::unique_ptr<Target>> untold_;  // of subscriptions that nobody tells the end of
-  std::string ack_prefix_;  // an inbox with a dot behind it; fixed once the thread runs
   std::thread thread_;
 
   mutable std::mutex mutex_;  // guards what follows; never held while sending or calling events_

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "gst/common/refs.h"
+#include "src/tools/common/elements.h"
 #include "src/tools/common/program.h"
 
 namespace {
@@ -168,10 +169,7 @@ int Play(GstElement* pipeline, const std::string& stats) {
     if (!message) continue;
     run = false;
     if (GST_MESSAGE_TYPE(message.get()) != GST_MESSAGE_ERROR) continue;
-    GError* error = nullptr;
-    gst_message_parse_error(message.get(), &error, nullptr);
-    std::fprintf(stderr, "%s: %s\n", GST_MESSAGE_SRC_NAME(message.get()), error->message);
-    g_error_free(error);
+    std::fprintf(stderr, "%s\n", lidar::tools::MessageText(message.get()).c_str());
     result = kFailed;
   }
   PrintStats(pipeline, stats);

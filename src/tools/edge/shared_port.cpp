@@ -12,6 +12,8 @@
 #include <cstring>
 #include <stdexcept>
 
+#include "src/tools/common/file_descriptor.h"
+
 namespace lidar::edge {
 namespace {
 
@@ -71,32 +73,20 @@ Address Resolve(const std::string& name, std::uint16_t port) {
   return address;
 }
 
-/// One of several on the port, which only this user may share.
-int OpenSocket(const Address& address) {
-  const int fd = socket(address.storage.ss_family, SOCK_DGRAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0);
+/// A socket that is bound there, `shared` with others of this user. Of IPv6, it takes IPv4 as well.
+tools::FileDescriptor OpenSocket(const Address& address, bool shared) {
+  tools::FileDescriptor fd(
+      socket(address.storage.ss_family, SOCK_DGRAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0));
   const int on = 1;
   const int off = 0;
   if (address.storage.ss_family == AF_INET6)
-    setsockopt(fd, IPPROTO_IPV6, IPV6_V6ONLY, &off, sizeof off);
-  if (fd >= 0 && setsockopt(fd, SOL_SOCKET, SO_REUSEPORT, &on, sizeof on) == 0 &&
-      bind(fd, reinterpret_cast<const sockaddr*>(&address.storage), address.length) == 0)
+    setsockopt(fd.get(), IPPROTO_IPV6, IPV6_V6ONLY, &off, sizeof off);
+  const bool may_bind =
+      fd && (!shared || setsockopt(fd.get(), SOL_SOCKET, SO_REUSEPORT, &on, sizeof on) == 0);
+  if (may_bind &&
+      bind(fd.get(), reinterpret_cast<const sockaddr*>(&address.storage), address.length) == 0)
     return fd;
-  const int error = errno;
-  if (fd >= 0) close(fd);
-  Fail(std::string("the port for all robots cannot be opened: ") + std::strerror(error));
-}
-
-/// The port must be nobody's: with another process of ours the kernel would mix the sockets.
-void CheckFree(const Address& address) {
-  const int fd = socket(address.storage.ss_family, SOCK_DGRAM | SOCK_CLOEXEC, 0);
-  const int off = 0;
-  if (address.storage.ss_family == AF_INET6)
-    setsockopt(fd, IPPROTO_IPV6, IPV6_V6ONLY, &off, sizeof off);
-  const bool taken =
-      bind(fd, reinterpret_cast<const sockaddr*>(&address.storage), address.length) != 0;
-  const int error = errno;
-  close(fd);
-  if (taken) Fail(std::string("the port for all robots cannot be opened: ") + std::strerror(error));
+  Fail(std::string("the port for all robots cannot be opened: ") + std::strerror(errno));
 }
 
 const Program kNothing = {Step(BPF_RET | BPF_K, 0)};
@@ -106,15 +96,14 @@ const Program kNothing = {Step(BPF_RET | BPF_K, 0)};
 SharedPort::SharedPort(const std::string& address, std::uint16_t port,
                        const std::vector<SsrcRange>& ranges) {
   const Address local = Resolve(address, port);
-  CheckFree(local);
+  // The port must be nobody's: with another process of ours the kernel would mix the sockets.
+  OpenSocket(local, false).Reset();
   for (std::size_t i = 0; i <= ranges.size(); ++i) {
-    const int fd = OpenSocket(local);
-    GSocket* socket = g_socket_new_from_fd(fd, nullptr);
-    if (socket == nullptr) {
-      close(fd);
-      Fail("a socket cannot be used");
-    }
+    tools::FileDescriptor owner = OpenSocket(local, true);
+    GSocket* socket = g_socket_new_from_fd(owner.get(), nullptr);
+    if (socket == nullptr) Fail("a socket cannot be used");
     sockets_.emplace_back(socket);
+    const int fd = owner.Release();
     // Nobody reads it until its robot's session begins.
     if (!Attach(fd, SO_ATTACH_FILTER, kNothing)) Fail("a socket takes no filter");
     if (i == 0 && !Attach(fd, SO_ATTACH_REUSEPORT_CBPF, ChooseBySsrc(ranges)))

@@ -46,10 +46,7 @@ gboolean OnMessage(GstBus*, GstMessage* message, gpointer data) {
   if (GST_MESSAGE_TYPE(message) == GST_MESSAGE_EOS) {
     g_main_loop_quit(runner->loop.get());
   } else if (GST_MESSAGE_TYPE(message) == GST_MESSAGE_ERROR) {
-    GError* error = nullptr;
-    gst_message_parse_error(message, &error, nullptr);
-    std::cerr << runner->program << ": " << error->message << '\n';
-    g_error_free(error);
+    std::cerr << runner->program << ": " << MessageText(message) << '\n';
     runner->result = 1;
     g_main_loop_quit(runner->loop.get());
   }
@@ -57,15 +54,6 @@ gboolean OnMessage(GstBus*, GstMessage* message, gpointer data) {
 }
 
 }  // namespace
-
-GstElement* AddElement(GstElement* bin, const char* factory, const char* name) {
-  GstElement* element = gst_element_factory_make(factory, name);
-  if (element == nullptr)
-    throw std::runtime_error(std::string("the GStreamer element ") + factory +
-                             " is not installed (is GST_PLUGIN_PATH set?)");
-  gst_bin_add(GST_BIN(bin), element);
-  return element;
-}
 
 void LinkPads(GstElement* from, const char* from_pad, GstElement* to, const char* to_pad) {
   if (!gst_element_link_pads(from, from_pad, to, to_pad))

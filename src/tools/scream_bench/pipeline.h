@@ -8,11 +8,10 @@
 
 #include "gst/common/refs.h"
 #include "src/base/time.h"
+#include "src/tools/common/elements.h"
 
 namespace lidar::tools {
 
-/// Makes an element of `factory` in `bin`. Throws std::runtime_error where it is not installed.
-GstElement* AddElement(GstElement* bin, const char* factory, const char* name);
 /// Throws std::runtime_error where the pads don't fit.
 void LinkPads(GstElement* from, const char* from_pad, GstElement* to, const char* to_pad);
 

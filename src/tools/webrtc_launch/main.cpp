@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "gst/common/refs.h"
+#include "src/tools/common/elements.h"
 #include "src/tools/common/program.h"
 
 namespace {
@@ -193,10 +194,7 @@ void PrintStats(const Call& call, gint64 start) {
 bool Handle(GstMessage* message, int* result) {
   if (message == nullptr) return true;
   if (GST_MESSAGE_TYPE(message) == GST_MESSAGE_EOS) return false;
-  GError* error = nullptr;
-  gst_message_parse_error(message, &error, nullptr);
-  std::fprintf(stderr, "%s: %s\n", GST_MESSAGE_SRC_NAME(message), error->message);
-  g_error_free(error);
+  std::fprintf(stderr, "%s\n", lidar::tools::MessageText(message).c_str());
   *result = kFailed;
   return false;
 }

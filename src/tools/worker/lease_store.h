@@ -7,6 +7,7 @@
 #include <optional>
 #include <string>
 
+#include "ext/nats/answers.h"
 #include "ext/nats/nats_ptr.h"
 
 namespace lidar::worker {
@@ -34,7 +35,7 @@ class LeaseStore {
  private:
   natsConnection* const connection_;
   const std::string bucket_;
-  std::string answer_prefix_;
+  const std::optional<nats::AnswerSubjects> subjects_;
   lidar::nats::SubscriptionPtr answers_;
 };
 

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// What a source took of a stream, and what it missed.
+#pragma once
+#include <cstdint>
+#include <mutex>
+
+#include "ext/nats/connection.h"
+#include "ext/nats/place_book.h"
+
+namespace lidar::nats {
+
+struct SourceCounters {
+  std::uint64_t messages = 0;
+  std::uint64_t bytes = 0;
+  std::uint64_t damaged = 0;
+  std::uint64_t without_caps = 0;
+  std::uint64_t lost = 0;
+  std::uint64_t again = 0;
+  std::uint64_t late = 0;
+  std::uint64_t overruns = 0;
+  unsigned reconnects = 0;
+  bool connected = false;
+};
+
+/// One thread notes, and any may read.
+class SourceAccount {
+ public:
+  SourceCounters counters() const;
+
+  void Reset();
+  void NoteTaken(std::size_t bytes);
+  void NoteDamaged();
+  void NoteWithoutCaps();
+  void NoteConnection(const ConnectionState& now, std::uint64_t overruns);
+  void NoteStop();
+
+  struct Verdict {
+    bool again = false;  // the message came before: JetStream saw no acknowledgement of it
+    bool gap = false;    // something before it is missing
+  };
+  /// `shared`: others of a queue group get messages, too, so what is missing here is not lost.
+  Verdict NotePlace(const Place& place, bool shared);
+
+ private:
+  PlaceBook places_;
+  mutable std::mutex mutex_;  // guards counters_
+  SourceCounters counters_;
+};
+
+}  // namespace lidar::nats
