@@ -17,6 +17,16 @@ count() {
   text "$@"
   [[ $2 =~ ^[0-9]+$ && ! $2 =~ ^0+$ ]] || wrong "$1 wants a whole number above zero, not \"$2\""
 }
+# only_count NAME [ARGUMENT ...]: the script takes one count that may be left out, and --help.
+only_count() {
+  case ${2:-} in
+    -h | --help) usage; exit 0 ;;
+    -*) wrong "there is no option $2" ;;
+    '') ;;
+    *) count "$@" ;;
+  esac
+  [ $# -le 2 ] || wrong "there is nothing to say behind $1"
+}
 # file OPTION VALUE ...
 file() {
   text "$@"

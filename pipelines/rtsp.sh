@@ -15,12 +15,7 @@ The environment variable PORT is the TCP port of the server (default 0: any).
 EOF2
 }
 
-case ${1:-} in
-  -h | --help) usage; exit 0 ;;
-  -*) wrong "there is no option $1" ;;
-  '') ;;
-  *) count CLOUDS "$@" ;;
-esac
+only_count CLOUDS "$@"
 source "$(dirname "$0")/environment.sh"
 clouds=${1:-80}
 server=$build/src/tools/lidar-rtsp-launch

@@ -17,12 +17,7 @@ The environment variable PORT is the first of the UDP ports to use (default 5064
 EOF
 }
 
-case ${1:-} in
-  -h | --help) usage; exit 0 ;;
-  -*) wrong "there is no option $1" ;;
-  '') ;;
-  *) count SECONDS "$@" ;;
-esac
+only_count SECONDS "$@"
 source "$(dirname "$0")/environment.sh"
 seconds=${1:-5}
 port=${PORT:-5064}
@@ -62,8 +57,8 @@ send() {
     ecnudpsrc port="$back" caps=application/x-srtcp ! capssetter caps=application/x-srtcp ! \
     dtlssrtpdec name=dec connection-id=robot dec.rtcp_src ! tx.rtcp_sink
 }
-# count FILE NAME: a number of the statistics in it
-count() { grep -oE "[ ,]$2=\(guint64\)[0-9]+" "$1" | grep -oE '[0-9]+$'; }
+# statistic FILE NAME: a number of the statistics in it
+statistic() { grep -oE "[ ,]$2=\(guint64\)[0-9]+" "$1" | grep -oE '[0-9]+$'; }
 
 receive >"$folder/received" & receiver=$!
 sleep 1
@@ -71,9 +66,9 @@ send robot "$seconds" >"$folder/sent" || [ $? = 124 ]
 sleep 0.5
 kill -INT $receiver
 wait $receiver
-slices=$(count "$folder/received" slices-received)
-lost=$(count "$folder/received" slices-lost)
-reports=$(count "$folder/sent" feedback-accepted)
+slices=$(statistic "$folder/received" slices-received)
+lost=$(statistic "$folder/received" slices-lost)
+reports=$(statistic "$folder/sent" feedback-accepted)
 echo "over DTLS-SRTP: $slices slices, $lost lost, $reports reports of feedback; $(grep -o 'ecn-state=(string)[a-z-]*' "$folder/sent")"
 # The handshake takes a second.
 [ "$slices" -gt $((seconds * 60 - 60)) ] || fail "too few slices came"

@@ -16,12 +16,7 @@ The environment variable PORT is the first of the UDP ports to use (default 5044
 EOF
 }
 
-case ${1:-} in
-  -h | --help) usage; exit 0 ;;
-  -*) wrong "there is no option $1" ;;
-  '') ;;
-  *) count SECONDS "$@" ;;
-esac
+only_count SECONDS "$@"
 source "$(dirname "$0")/environment.sh"
 seconds=${1:-5}
 port=${PORT:-5044}
