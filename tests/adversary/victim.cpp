@@ -276,6 +276,9 @@ class Victim {
       if (GST_MESSAGE_TYPE(message.get()) == GST_MESSAGE_WARNING) ++warnings_;
       if (GST_MESSAGE_TYPE(message.get()) == GST_MESSAGE_EOS) eos_ = true;
       if (GST_MESSAGE_TYPE(message.get()) != GST_MESSAGE_ERROR) continue;
+      // A source whose pad is taken away in the midst of a stream may find itself not linked.
+      if (!gst_object_has_as_ancestor(GST_MESSAGE_SRC(message.get()), GST_OBJECT(pipeline_.get())))
+        continue;
       GError* error = nullptr;
       gst_message_parse_error(message.get(), &error, nullptr);
       const ErrorPtr owner(error);

@@ -20,6 +20,7 @@ sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent.parent / "adversa
 import ends  # noqa: E402
 
 AT_ONCE = 3
+PATIENCE = 30  # seconds for what takes a moment where nothing else runs
 
 
 class Skip(Exception):
@@ -33,16 +34,16 @@ class Stream:
         self.port = ends.free_port()
         self.receiver = ends.Victim(ends.RECEIVER.format(port=self.port, options=receiver), **process)
         self.sender = ends.Victim(ends.SENDER.format(port=self.port, seed=1, options=sender))
-        self.await_clouds(10)
+        self.await_clouds()
 
     def clouds(self):
         return self.receiver.ask()["clouds"]
 
-    def await_clouds(self, limit, more=5):
+    def await_clouds(self, more=5):
         """Seconds until so many more came."""
         start, before = time.monotonic(), self.clouds()
         while self.clouds() < before + more:
-            assert time.monotonic() - start < limit, f"no clouds within {limit} s"
+            assert time.monotonic() - start < PATIENCE, f"no clouds within {PATIENCE} s"
             time.sleep(0.02)
         return time.monotonic() - start
 
@@ -51,6 +52,13 @@ class Stream:
         before, start = self.clouds(), time.monotonic()
         time.sleep(seconds)
         return (self.clouds() - before) / (time.monotonic() - start)
+
+    def full_rate(self):
+        """Clouds a second, once nearly all of them come: other work may take its share for a while."""
+        start = time.monotonic()
+        while (rate := self.rate()) <= 60:
+            assert time.monotonic() - start < PATIENCE, f"{rate:.0f} clouds a second come after {PATIENCE} s"
+        return rate
 
     def finish(self):
         for end in (self.sender, self.receiver):
@@ -104,10 +112,8 @@ def tenth_of_a_processor(options):
             assert rate > 5, f"{rate:.0f} clouds a second come with a tenth of a processor at the {name}"
             rss = end.ask()["rss_kb"]
             (procs.parent.parent / "cgroup.procs").write_text(str(end.process.pid))
-            stream.await_clouds(2)
-            time.sleep(1)
-            recovered = stream.rate()
-            assert recovered > 60, f"{recovered:.0f} clouds a second come afterwards"
+            stream.await_clouds()
+            recovered = stream.full_rate()
             assert end.last["rss_kb"] < rss + 50_000
             stream.finish()
             seen.append(f"{name}: {rate:.0f} of 80 clouds/s, then {recovered:.0f}")
@@ -123,10 +129,8 @@ def stopped(options):
         os.kill(pid, signal.SIGSTOP)
         time.sleep(options.stop_seconds)
         os.kill(pid, signal.SIGCONT)
-        took = stream.await_clouds(3)
-        time.sleep(1)
-        rate = stream.rate()
-        assert rate > 60, f"{rate:.0f} clouds a second come after the {name} stood still"
+        took = stream.await_clouds()
+        stream.full_rate()
         stream.finish()
         seen.append(f"{name} after {1000 * took:.0f} ms")
     return f"{options.stop_seconds:g} s; clouds again: " + ", ".join(seen)
@@ -151,8 +155,7 @@ def forks(_options):
             assert end.ask("fork")["took"] == 0, "a child did not end"
             sockets = end.ask("spawn")["took"]
             assert sockets == 0, f"a program that was started sees {sockets} of our sockets"
-    rate = stream.rate()
-    assert rate > 60, f"{rate:.0f} clouds a second"
+    rate = stream.full_rate()
     stream.finish()
     return f"12 children, {rate:.0f} clouds/s"
 
@@ -163,9 +166,8 @@ def clock_of_another(_options):
     for server, client in ((stream.sender, stream.receiver), (stream.receiver, stream.sender)):
         port = server.ask("provide")["took"]
         assert client.ask(f"follow {port}")["took"] == 1, "the clock was not taken"
-        stream.await_clouds(3)
-        rate = stream.rate()
-        assert rate > 60, f"{rate:.0f} clouds a second by another's clock"
+        stream.await_clouds()
+        rate = stream.full_rate()
     stream.finish()
     return f"{rate:.0f} clouds/s"
 
@@ -175,12 +177,11 @@ def pads_that_come_and_go(_options):
     stream = Stream("eos-on-bye=false")
     threads = stream.sender.ask()["threads"]
     stream.sender.ask("pads 30")
-    rate = stream.rate()
-    more = stream.sender.last["threads"] - threads
-    assert rate > 60, f"{rate:.0f} clouds a second of the stream that stayed"
-    stream.sender.ask()
-    more = stream.sender.last["threads"] - threads
-    assert more <= 2, f"{more} threads are left"
+    rate = stream.full_rate()
+    start = time.monotonic()
+    while (more := stream.sender.ask()["threads"] - threads) > 2:
+        assert time.monotonic() - start < PATIENCE, f"{more} threads are left"
+        time.sleep(0.1)
     stream.finish()
     return f"30 pads, then {rate:.0f} clouds/s of the stream that stayed"
 
