@@ -13,6 +13,7 @@
 
 #include <algorithm>
 #include <mutex>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -20,11 +21,12 @@
 #include "gst/common/enum_type.h"
 #include "gst/common/frames.h"
 #include "gst/common/gstlidar.h"
+#include "gst/common/latency.h"
 #include "gst/common/properties.h"
 #include "gst/common/refused_caps.h"
 #include "gst/common/stats.h"
 #include "gst/pointcloud/filter_plan.h"
-#include "gst/pointcloud/transform_inbox.h"
+#include "gst/pointcloud/frame_placer.h"
 
 GST_DEBUG_CATEGORY_STATIC(gst_lidar_point_cloud_filter_debug);
 #define GST_CAT_DEFAULT gst_lidar_point_cloud_filter_debug
@@ -36,6 +38,7 @@ using lidar::gst::BufferPtr;
 using lidar::gst::CapsPtr;
 using lidar::gst::FilterPlan;
 using lidar::gst::FilterSettings;
+using lidar::gst::FramePlacer;
 using lidar::gst::Int;
 using lidar::gst::TransformInbox;
 
@@ -114,14 +117,11 @@ struct State {
   FilterSettings settings;
   bool changed = false;  // the settings, since the plan was made
   Counters counters;
-  TransformInbox inbox;  // has a lock of its own
+  FramePlacer placer;
   // Only the streaming thread uses these.
   CapsPtr caps;  // of what comes
   std::unique_ptr<FilterPlan> plan;
-  std::string target_frame;  // of the plan
-  std::chrono::nanoseconds tf_timeout{};
-  bool reported_transform = false;  // that there is none, until there is one
-  Counters before;                  // of earlier plans
+  Counters before;  // of earlier plans
   CapsPtr pushed;
   std::vector<lidar::gst::EventPtr> pending;  // sticky, to follow the first caps
   lidar::gst::RefusedCaps refused;
@@ -145,18 +145,24 @@ namespace {
 
 lidar::gst::StructurePtr Stats(GObject* object) {
   State& state = *GST_LIDAR_POINT_CLOUD_FILTER(object)->state;
-  const TransformInbox::Counters taken = state.inbox.counters();
+  const TransformInbox::Counters taken = state.placer.inbox().counters();
   std::lock_guard lock(state.mutex);
   Counters counters = state.counters;
+  counters.without_transform = state.placer.clouds_without();
   counters.transforms = taken.transforms;
   counters.transforms_refused = taken.refused;
   return lidar::gst::ToStructure("point-cloud-filter-stats", kStats, counters);
 }
 
-void NoteChange(GObject* object, GParamSpec*) {
+void NoteChange(GObject* object, GParamSpec* spec) {
   State& state = *GST_LIDAR_POINT_CLOUD_FILTER(object)->state;
-  std::lock_guard lock(state.mutex);
-  state.changed = true;
+  {
+    std::lock_guard lock(state.mutex);
+    state.changed = true;
+  }
+  const std::string_view name = spec->name;
+  if (name == "target-frame" || name == "tf-timeout")
+    gst_element_post_message(GST_ELEMENT(object), gst_message_new_latency(GST_OBJECT(object)));
 }
 
 /// A plan for the caps and the settings of now; false and an error where there is none.
@@ -174,8 +180,7 @@ bool MakePlan(GstLidarPointCloudFilter* self) {
     state.before.without_pose += state.plan->without_pose();
   }
   state.plan = FilterPlan::Make(settings, state.caps.get(), &why);
-  state.target_frame = settings.target_frame;
-  state.tf_timeout = settings.tf_timeout;
+  state.placer.SetTarget(settings.target_frame, settings.tf_timeout);
   if (!state.plan && state.refused.Note(state.caps.get()))
     GST_ELEMENT_ERROR(self, STREAM, FORMAT, ("Clouds cannot be filtered so: %s.", why.c_str()),
                       ("%" GST_PTR_FORMAT, static_cast<gpointer>(state.caps.get())));
@@ -210,40 +215,6 @@ void PushGap(GstLidarPointCloudFilter* self, GstBuffer* buffer) {
                        gst_event_new_gap(GST_BUFFER_PTS(buffer), GST_BUFFER_DURATION(buffer)));
 }
 
-/// A cloud for which there is no transform is counted, and reported once until there is one.
-void NoteTransform(GstLidarPointCloudFilter* self, const std::string& frame,
-                   const lidar::TransformTree::Answer& answer) {
-  State& state = *self->state;
-  const bool reported = std::exchange(state.reported_transform, !answer.transform);
-  if (answer.transform) return;
-  std::unique_lock lock(state.mutex);
-  ++state.counters.without_transform;
-  lock.unlock();
-  if (reported) return;
-  GST_ELEMENT_WARNING(
-      self, STREAM, FAILED,
-      ("A cloud of %s cannot be put into %s: %s. Such clouds are dropped and counted.",
-       frame.c_str(), state.target_frame.c_str(), answer.why.c_str()),
-      (nullptr));
-}
-
-/// Finds what takes the cloud to the target frame; none where there is nothing. FLUSHING where a
-/// flush or the end of the stream cut the wait short.
-GstFlowReturn Place(GstLidarPointCloudFilter* self, GstBuffer* buffer,
-                    std::optional<lidar::Transform>* transform) {
-  State& state = *self->state;
-  *transform = lidar::kIdentity;
-  if (state.target_frame.empty()) return GST_FLOW_OK;
-  const auto at = lidar::gst::CaptureTimeOf(buffer);
-  const std::string frame =
-      state.plan->frame().empty() ? lidar::gst::kCloudFrame : state.plan->frame();
-  const auto answer = state.inbox.Find(state.target_frame, frame, at, state.tf_timeout);
-  *transform = answer.transform;
-  if (!answer.transform && state.inbox.is_interrupted()) return GST_FLOW_FLUSHING;
-  NoteTransform(self, frame, answer);
-  return GST_FLOW_OK;
-}
-
 GstFlowReturn Chain(GstPad*, GstObject* parent, GstBuffer* raw) {
   auto* self = GST_LIDAR_POINT_CLOUD_FILTER(parent);
   State& state = *self->state;
@@ -256,7 +227,8 @@ GstFlowReturn Chain(GstPad*, GstObject* parent, GstBuffer* raw) {
   }
   if ((changed || !state.plan) && !MakePlan(self)) return GST_FLOW_NOT_NEGOTIATED;
   std::optional<lidar::Transform> placed;
-  const GstFlowReturn flow = Place(self, raw, &placed);
+  const GstFlowReturn flow =
+      state.placer.Place(GST_ELEMENT(self), raw, state.plan->frame(), &placed);
   if (flow != GST_FLOW_OK) return flow;
   BufferPtr out = placed ? state.plan->Apply(raw, *placed) : BufferPtr(gst_buffer_new());
   if (!out) {
@@ -287,11 +259,11 @@ gboolean SinkEvent(GstPad* pad, GstObject* parent, GstEvent* event) {
   State& state = *self->state;
   const GstEventType type = GST_EVENT_TYPE(event);
   if (type == GST_EVENT_CAPS) return HandleCaps(self, event);
-  if (type == GST_EVENT_FLUSH_START) state.inbox.Interrupt(true);
+  if (type == GST_EVENT_FLUSH_START) state.placer.inbox().Interrupt(true);
   if (type == GST_EVENT_EOS) PushPending(self);
   if (type == GST_EVENT_FLUSH_STOP) {
     state.pending.clear();
-    state.inbox.Interrupt(false);
+    state.placer.inbox().Interrupt(false);
   }
   // Caps come first, with the first cloud, and before them a gap means nothing.
   if (type == GST_EVENT_GAP && !state.pushed) {
@@ -301,6 +273,20 @@ gboolean SinkEvent(GstPad* pad, GstObject* parent, GstEvent* event) {
   const bool waits = GST_EVENT_IS_STICKY(event) && type > GST_EVENT_CAPS && type != GST_EVENT_EOS;
   if (state.pushed || !waits) return gst_pad_event_default(pad, parent, event);
   state.pending.emplace_back(event);
+  return TRUE;
+}
+
+/// A cloud may come as much later as it waits for its transform.
+gboolean SrcQuery(GstPad* pad, GstObject* parent, GstQuery* query) {
+  if (!gst_pad_query_default(pad, parent, query)) return FALSE;
+  if (GST_QUERY_TYPE(query) != GST_QUERY_LATENCY || !lidar::gst::ReadLatency(query).live)
+    return TRUE;
+  State& state = *GST_LIDAR_POINT_CLOUD_FILTER(parent)->state;
+  std::unique_lock lock(state.mutex);
+  const bool waits = !state.settings.target_frame.empty();
+  const auto longest = static_cast<GstClockTime>(state.settings.tf_timeout.count());
+  lock.unlock();
+  if (waits) lidar::gst::AddLatency(query, longest);
   return TRUE;
 }
 
@@ -325,15 +311,15 @@ GstPad* RequestPad(GstElement* element, GstPadTemplate* pad_template, const gcha
   self->next_pad = std::max(self->next_pad, static_cast<guint>(number) + 1);
   GST_OBJECT_UNLOCK(self);
   const std::string chosen = "tf_" + std::to_string(number);
-  return self->state->inbox.AddPad(element, pad_template, chosen.c_str());
+  return self->state->placer.inbox().AddPad(element, pad_template, chosen.c_str());
 }
 
 void ReleasePad(GstElement* element, GstPad* pad) {
-  GST_LIDAR_POINT_CLOUD_FILTER(element)->state->inbox.ReleasePad(element, pad);
+  GST_LIDAR_POINT_CLOUD_FILTER(element)->state->placer.inbox().ReleasePad(element, pad);
 }
 
 GstStateChangeReturn ChangeState(GstElement* element, GstStateChange transition) {
-  TransformInbox& inbox = GST_LIDAR_POINT_CLOUD_FILTER(element)->state->inbox;
+  TransformInbox& inbox = GST_LIDAR_POINT_CLOUD_FILTER(element)->state->placer.inbox();
   if (transition == GST_STATE_CHANGE_READY_TO_PAUSED) inbox.Interrupt(false);
   if (transition == GST_STATE_CHANGE_PAUSED_TO_READY) inbox.Interrupt(true);
   const auto result = GST_ELEMENT_CLASS(gst_lidar_point_cloud_filter_parent_class)
@@ -346,8 +332,7 @@ GstStateChangeReturn ChangeState(GstElement* element, GstStateChange transition)
     state.pending.clear();
     state.refused.Reset();
     state.before = {};
-    state.reported_transform = false;
-    inbox.Clear();
+    state.placer.Clear();
     std::lock_guard lock(state.mutex);
     state.counters = {};
   }
@@ -364,6 +349,7 @@ static void gst_lidar_point_cloud_filter_init(GstLidarPointCloudFilter* self) {
   gst_pad_set_iterate_internal_links_function(self->sinkpad, LinksOf);
   self->srcpad = lidar::gst::AddPad(self, "src");
   gst_pad_use_fixed_caps(self->srcpad);
+  gst_pad_set_query_function(self->srcpad, SrcQuery);
   gst_pad_set_iterate_internal_links_function(self->srcpad, LinksOf);
 }
 

@@ -1,11 +1,16 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <gtest/gtest.h>
 
+#include <unistd.h>
+
 #include <array>
+#include <atomic>
+#include <fstream>
 #include <thread>
 
 #include "gst/common/buffer_map.h"
 #include "gst/common/cloud_info.h"
+#include "gst/common/latency.h"
 #include "src/base/byte_writer.h"
 #include "src/cdr/messages.h"
 #include "tests/support/harness.h"
@@ -14,6 +19,36 @@ namespace lidar::gst {
 namespace {
 
 using test::Harness;
+
+/// A thread that does something once, and that others see asleep while it waits for them.
+class Waiter {
+ public:
+  explicit Waiter(std::function<void()> work)
+      : thread_([this, work = std::move(work)] {
+          id_ = gettid();
+          work();
+          done_ = true;
+        }) {}
+  ~Waiter() { thread_.join(); }
+
+  /// Until the kernel says that it sleeps; false where it comes to its end.
+  bool AwaitSleep() const {
+    while (!done_) {
+      std::ifstream stat("/proc/self/task/" + std::to_string(id_) + "/stat");
+      std::string text;
+      std::getline(stat, text);
+      const auto name_end = text.rfind(')');
+      if (name_end != std::string::npos && text.compare(name_end, 4, ") S ") == 0) return true;
+      g_usleep(1000);
+    }
+    return false;
+  }
+
+ private:
+  std::atomic<pid_t> id_{-1};
+  std::atomic<bool> done_{false};
+  std::thread thread_;
+};
 
 class Filter : public ::testing::Test {
  protected:
@@ -253,12 +288,11 @@ TEST_F(FilterByTransforms, CloudsGoToTheTargetFrameAsItIsAtTheirTime) {
 TEST_F(FilterByTransforms, ACloudWaitsForItsTransform) {
   Start("target-frame=map tf-timeout=60000000000");
   Tell(moving_.get(), "map", "os", 100, 1);
-  std::thread later([this] {
-    g_usleep(20'000);
+  {
+    const Waiter cloud([this] { EXPECT_EQ(PushAt(101), GST_FLOW_OK); });
+    EXPECT_TRUE(cloud.AwaitSleep());
     Tell(moving_.get(), "map", "os", 102, 3);
-  });
-  EXPECT_EQ(PushAt(101), GST_FLOW_OK);
-  later.join();
+  }
   EXPECT_EQ(PulledX(), 3);
   EXPECT_EQ(Warning(), "");
 }
@@ -288,12 +322,36 @@ TEST_F(FilterByTransforms, NobodyWaitsForTransformsThatHaveEnded) {
 TEST_F(FilterByTransforms, AFlushEndsTheWait) {
   Start("target-frame=map tf-timeout=60000000000");
   const gint64 begin = g_get_monotonic_time();
-  std::thread waits([this] { EXPECT_EQ(PushAt(100), GST_FLOW_FLUSHING); });
-  g_usleep(20'000);
-  gst_harness_push_event(h_.get(), gst_event_new_flush_start());
-  waits.join();
+  {
+    const Waiter cloud([this] { EXPECT_EQ(PushAt(100), GST_FLOW_FLUSHING); });
+    EXPECT_TRUE(cloud.AwaitSleep());
+    gst_harness_push_event(h_.get(), gst_event_new_flush_start());
+  }
   EXPECT_EQ(Stat("clouds-without-transform"), 0U);
   EXPECT_LT(g_get_monotonic_time() - begin, 50 * G_USEC_PER_SEC);
+}
+
+TEST_F(FilterByTransforms, ALivePipelineKnowsHowLongCloudsWait) {
+  Start("target-frame=map tf-timeout=150000000");
+  gst_harness_set_upstream_latency(h_.get(), 20 * GST_MSECOND);
+  EXPECT_EQ(gst_harness_query_latency(h_.get()), 170 * GST_MSECOND);
+  GstBus* bus = gst_element_get_bus(h_->element);
+  const auto told = [bus] { return MessagePtr(gst_bus_pop_filtered(bus, GST_MESSAGE_LATENCY)); };
+  while (told()) continue;
+  g_object_set(h_->element, "tf-timeout", guint64{50 * GST_MSECOND}, nullptr);
+  EXPECT_TRUE(told());
+  EXPECT_EQ(gst_harness_query_latency(h_.get()), 70 * GST_MSECOND);
+  g_object_set(h_->element, "target-frame", "", nullptr);
+  EXPECT_TRUE(told());
+  EXPECT_EQ(gst_harness_query_latency(h_.get()), 20 * GST_MSECOND);
+  g_object_set(h_->element, "max-range", 5.0, nullptr);
+  EXPECT_FALSE(told());
+  g_object_set(h_->element, "target-frame", "map", nullptr);
+  gst_object_unref(bus);
+  gst_harness_set_live(h_.get(), FALSE);
+  const QueryPtr query(gst_query_new_latency());
+  ASSERT_TRUE(gst_pad_peer_query(h_->sinkpad, query.get()));
+  EXPECT_EQ(ReadLatency(query.get()).min, 0U);
 }
 
 TEST_F(FilterByTransforms, TakesThePosesOfAnOdometry) {

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Where clouds are to go, by the transforms of an inbox, and those for which there are none.
+#pragma once
+#include <gst/gst.h>
+
+#include <atomic>
+#include <chrono>
+#include <optional>
+#include <string>
+
+#include "gst/pointcloud/transform_inbox.h"
+
+namespace lidar::gst {
+
+class FramePlacer {
+ public:
+  /// For any thread.
+  TransformInbox& inbox() { return inbox_; }
+  guint64 clouds_without() const { return without_; }
+
+  // For the streaming thread.
+
+  /// Clouds go to the frame `target`, or stay in theirs where it is empty.
+  void SetTarget(std::string target, std::chrono::nanoseconds patience);
+  /// Finds what takes a cloud of `frame` to the target; none where there is nothing, which is
+  /// counted, and reported for `element` once until there is something. FLUSHING where a flush or
+  /// the end of the stream cut the wait short.
+  GstFlowReturn Place(GstElement* element, GstBuffer* cloud, const std::string& frame,
+                      std::optional<Transform>* transform);
+  void Clear();
+
+ private:
+  void Note(GstElement* element, const std::string& frame, const TransformTree::Answer& answer);
+
+  TransformInbox inbox_;
+  std::string target_;
+  std::chrono::nanoseconds patience_{};
+  bool reported_ = false;
+  std::atomic<guint64> without_{0};
+};
+
+}  // namespace lidar::gst
