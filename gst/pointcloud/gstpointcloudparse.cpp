@@ -26,7 +26,7 @@
 #include "gst/common/properties.h"
 #include "gst/common/refs.h"
 #include "gst/common/refused_caps.h"
-#include "gst/pointcloud/cloud_timeline.h"
+#include "gst/pointcloud/cloud_stamper.h"
 #include "gst/pointcloud/file_cloud.h"
 #include "gst/pointcloud/rate.h"
 
@@ -38,7 +38,7 @@ namespace {
 using lidar::gst::BufferPtr;
 using lidar::gst::CapsPtr;
 using lidar::gst::CloudInfo;
-using lidar::gst::CloudTimeline;
+using lidar::gst::CloudStamper;
 using lidar::gst::Rate;
 
 constexpr gint kDefaultRate = 10;            // scans/s where neither caps nor property say
@@ -58,19 +58,14 @@ using AdapterPtr = std::unique_ptr<GstAdapter, lidar::gst::Unref>;
 struct State {
   std::mutex mutex;  // guards the settings
   Settings settings;
-  CloudTimeline timeline;  // has a lock of its own
-  // Only the streaming thread uses these.
+  CloudStamper stamper;  // its timeline has a lock of its own
+  // Only the streaming thread uses these, and the rest of the stamper.
   std::optional<CloudInfo> info;             // of the file; width 0: not known
   std::optional<lidar::CloudFileType> type;  // none: raw points
   CapsPtr caps;
-  Rate rate;
   guint out_width = 0;
-  bool times_given = false;        // upstream stamps its buffers
-  lidar::gst::EventPtr segment;    // waits for the caps
-  gsize cloud_size = 0;            // of the timeline
   std::optional<gsize> file_size;  // of a file that comes in pieces; 0: pieces are clouds
-  guint64 count = 0;
-  bool discont = false;  // a cloud was left out
+  bool discont = false;            // a cloud was left out
   bool empty_reported = false;
   lidar::gst::RefusedCaps refused;
   AdapterPtr adapter{gst_adapter_new()};
@@ -112,62 +107,29 @@ void PushCaps(GstLidarPointCloudParse* self, guint width) {
   State& state = *self->state;
   if (state.out_width == width) return;
   state.out_width = width;
+  const Rate& rate = state.stamper.rate();
   CapsPtr caps(gst_caps_copy(state.caps.get()));
   gst_caps_set_simple(caps.get(), "width", G_TYPE_INT, static_cast<gint>(width), "height",
                       G_TYPE_INT, static_cast<gint>(state.info->height), "is-dense", G_TYPE_BOOLEAN,
                       state.info->is_dense, "is-bigendian", G_TYPE_BOOLEAN, FALSE, "framerate",
-                      GST_TYPE_FRACTION, state.rate.n, state.rate.d, nullptr);
+                      GST_TYPE_FRACTION, rate.n, rate.d, nullptr);
   gst_pad_push_event(self->srcpad, gst_event_new_caps(caps.get()));
 }
 
 void PushSegment(GstLidarPointCloudParse* self) {
-  if (self->state->segment) gst_pad_push_event(self->srcpad, self->state->segment.release());
+  if (auto segment = self->state->stamper.NextSegment())
+    gst_pad_push_event(self->srcpad, segment.release());
 }
 
-/// Keeps upstream's segment where it counts time, and makes one otherwise.
-void HandleSegment(State* state, GstEvent* event) {
-  lidar::gst::EventPtr owner(event);
-  const GstSegment* given = nullptr;
-  gst_event_parse_segment(event, &given);
-  state->times_given = given->format == GST_FORMAT_TIME;
-  state->segment =
-      state->times_given ? std::move(owner) : state->timeline.ToTime(event, &state->count);
-  gst_adapter_clear(state->adapter.get());
-}
-
-CloudTimeline::Grid GridOf(const State& state, gsize cloud_size) {
-  return {cloud_size, static_cast<guint64>(state.rate.n), static_cast<guint64>(state.rate.d)};
-}
-
-/// Seeks and queries are ours where bytes come in of clouds of one size.
-void SetTimeline(State* state, gsize cloud_size) {
-  state->cloud_size = cloud_size;
-  state->timeline.SetGrid(state->times_given ? CloudTimeline::Grid{} : GridOf(*state, cloud_size));
-}
-
-void Stamp(State* state, GstBuffer* buffer) {
-  const CloudTimeline::Grid grid = GridOf(*state, state->cloud_size);
-  if (!state->times_given || !GST_BUFFER_PTS_IS_VALID(buffer)) {
-    GST_BUFFER_PTS(buffer) = grid.TimeOf(state->count);
-    GST_BUFFER_DTS(buffer) = GST_CLOCK_TIME_NONE;
-  }
-  GST_BUFFER_DURATION(buffer) = grid.TimeOf(state->count + 1) - grid.TimeOf(state->count);
-  GST_BUFFER_OFFSET(buffer) = state->count++;
-  GST_BUFFER_OFFSET_END(buffer) = state->count;
-  if (!state->times_given)
-    state->timeline.NotePosition(GST_BUFFER_PTS(buffer) + GST_BUFFER_DURATION(buffer));
-}
-
-/// A recording that broke off leaves empty files; the rest of them counts. The cloud keeps its
-/// place in time.
+/// A recording that broke off leaves empty files; the rest of them counts.
 GstFlowReturn SkipEmpty(GstLidarPointCloudParse* self) {
   State& state = *self->state;
-  ++state.count;
+  state.stamper.LeaveOut();
   state.discont = true;
   if (!std::exchange(state.empty_reported, true))
-    GST_ELEMENT_WARNING(
-        self, STREAM, FORMAT, ("A cloud is empty: it is left out."),
-        ("It is number %" G_GUINT64_FORMAT ", from 1; others are not reported.", state.count));
+    GST_ELEMENT_WARNING(self, STREAM, FORMAT, ("A cloud is empty: it is left out."),
+                        ("It is number %" G_GUINT64_FORMAT ", from 1; others are not reported.",
+                         state.stamper.count()));
   return GST_FLOW_OK;
 }
 
@@ -188,7 +150,7 @@ GstFlowReturn PushCloud(GstLidarPointCloudParse* self, BufferPtr buffer) {
   PushCaps(self, static_cast<guint>(size / column));
   PushSegment(self);
   GstBuffer* out = gst_buffer_make_writable(buffer.release());
-  Stamp(&state, out);
+  state.stamper.Stamp(out);
   if (std::exchange(state.discont, false)) GST_BUFFER_FLAG_SET(out, GST_BUFFER_FLAG_DISCONT);
   return gst_pad_push(self->srcpad, out);
 }
@@ -205,7 +167,7 @@ GstFlowReturn PushFile(GstLidarPointCloudParse* self, const BufferPtr& file) {
     GST_ELEMENT_ERROR(
         self, STREAM, DECODE,
         ("The %s file cannot be read: %s.", lidar::gst::NameOf(*state.type), why.c_str()),
-        ("It is number %" G_GUINT64_FORMAT ", from 1.", state.count + 1));
+        ("It is number %" G_GUINT64_FORMAT ", from 1.", state.stamper.count() + 1));
     return GST_FLOW_ERROR;
   }
   if (!state.info || state.info->height != read->info.height ||
@@ -227,12 +189,12 @@ GstFlowReturn PushWhole(GstLidarPointCloudParse* self, BufferPtr buffer) {
 
 /// From the caps, which say more than the property where that is not set.
 void SetRate(State* state, gint n, gint d) {
-  state->rate = {n, d};
+  Rate rate{n, d};
   {
     std::lock_guard lock(state->mutex);
-    if (state->settings.framerate.n > 0) state->rate = state->settings.framerate;
+    if (state->settings.framerate.n > 0) rate = state->settings.framerate;
   }
-  if (state->rate.n <= 0) state->rate = {kDefaultRate, 1};
+  state->stamper.SetRate(rate.n > 0 ? rate : Rate{kDefaultRate, 1});
 }
 
 /// Files say themselves what they are.
@@ -262,7 +224,7 @@ GstFlowReturn Chain(GstPad*, GstObject* parent, GstBuffer* raw) {
                       ("Give the caps a width where the file holds many clouds."));
     return GST_FLOW_ERROR;
   }
-  SetTimeline(&state, cloud);
+  state.stamper.SetCloudSize(cloud);
   if (cloud == 0) return PushWhole(self, std::move(buffer));
   if (GST_BUFFER_IS_DISCONT(buffer.get())) gst_adapter_clear(state.adapter.get());
   if (gst_adapter_available(state.adapter.get()) == 0 && gst_buffer_get_size(raw) == cloud)
@@ -316,12 +278,6 @@ void Drain(GstLidarPointCloudParse* self) {
   gst_adapter_clear(state.adapter.get());
 }
 
-void Reset(State* state) {
-  gst_adapter_clear(state->adapter.get());
-  state->count = 0;
-  state->segment.reset();
-}
-
 gboolean SinkEvent(GstPad* pad, GstObject* parent, GstEvent* event) {
   auto* self = GST_LIDAR_POINT_CLOUD_PARSE(parent);
   State& state = *self->state;
@@ -329,22 +285,23 @@ gboolean SinkEvent(GstPad* pad, GstObject* parent, GstEvent* event) {
     case GST_EVENT_CAPS:
       return HandleCaps(self, event);
     case GST_EVENT_SEGMENT:
-      HandleSegment(&state, event);
+      gst_adapter_clear(state.adapter.get());
+      state.stamper.TakeSegment(event);
       return TRUE;
     case GST_EVENT_EOS:
       Drain(self);
       PushSegment(self);
       break;
     case GST_EVENT_SEGMENT_DONE:
-      if (state.times_given) break;
+      if (state.stamper.times_given()) break;
       Drain(self);
       PushSegment(self);
-      return gst_pad_push_event(self->srcpad, state.timeline.EndInTime(event).release());
+      return gst_pad_push_event(self->srcpad, state.stamper.timeline().EndInTime(event).release());
     case GST_EVENT_FLUSH_STOP: {
-      Reset(&state);
       gboolean restarts = FALSE;
       gst_event_parse_flush_stop(event, &restarts);
-      if (restarts) state.timeline.RestartTime();
+      gst_adapter_clear(state.adapter.get());
+      state.stamper.Flush(restarts != FALSE);
       break;
     }
     default:
@@ -356,7 +313,7 @@ gboolean SinkEvent(GstPad* pad, GstObject* parent, GstEvent* event) {
 gboolean SrcEvent(GstPad* pad, GstObject* parent, GstEvent* event) {
   auto* self = GST_LIDAR_POINT_CLOUD_PARSE(parent);
   if (GST_EVENT_TYPE(event) == GST_EVENT_SEEK) {
-    if (const auto done = self->state->timeline.Seek(self->sinkpad, event)) {
+    if (const auto done = self->state->stamper.timeline().Seek(self->sinkpad, event)) {
       gst_event_unref(event);
       return *done;
     }
@@ -366,7 +323,7 @@ gboolean SrcEvent(GstPad* pad, GstObject* parent, GstEvent* event) {
 
 gboolean SrcQuery(GstPad* pad, GstObject* parent, GstQuery* query) {
   auto* self = GST_LIDAR_POINT_CLOUD_PARSE(parent);
-  return self->state->timeline.Answer(self->sinkpad, query) ||
+  return self->state->stamper.timeline().Answer(self->sinkpad, query) ||
          gst_pad_query_default(pad, parent, query);
 }
 
@@ -375,15 +332,13 @@ GstStateChangeReturn ChangeState(GstElement* element, GstStateChange transition)
                           ->change_state(element, transition);
   if (transition == GST_STATE_CHANGE_PAUSED_TO_READY) {
     State& state = StateOf(element);
-    Reset(&state);
-    state.timeline.Reset();
-    state.cloud_size = 0;
+    gst_adapter_clear(state.adapter.get());
+    state.stamper.Reset();
     state.file_size.reset();
     state.info.reset();
     state.type.reset();
     state.caps.reset();
     state.out_width = 0;
-    state.times_given = false;
     state.discont = false;
     state.empty_reported = false;
     state.refused.Reset();

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "gst/pointcloud/cloud_stamper.h"
+
+namespace lidar::gst {
+
+void CloudStamper::TakeSegment(GstEvent* event) {
+  EventPtr owner(event);
+  const GstSegment* given = nullptr;
+  gst_event_parse_segment(event, &given);
+  times_given_ = given->format == GST_FORMAT_TIME;
+  segment_ = times_given_ ? std::move(owner) : timeline_.ToTime(event, &count_);
+}
+
+CloudTimeline::Grid CloudStamper::Grid() const {
+  return {cloud_size_, static_cast<guint64>(rate_.n), static_cast<guint64>(rate_.d)};
+}
+
+void CloudStamper::SetCloudSize(gsize bytes) {
+  cloud_size_ = bytes;
+  timeline_.SetGrid(times_given_ ? CloudTimeline::Grid{} : Grid());
+}
+
+void CloudStamper::Stamp(GstBuffer* cloud) {
+  const CloudTimeline::Grid grid = Grid();
+  if (!times_given_ || !GST_BUFFER_PTS_IS_VALID(cloud)) {
+    GST_BUFFER_PTS(cloud) = grid.TimeOf(count_);
+    GST_BUFFER_DTS(cloud) = GST_CLOCK_TIME_NONE;
+  }
+  GST_BUFFER_DURATION(cloud) = grid.TimeOf(count_ + 1) - grid.TimeOf(count_);
+  GST_BUFFER_OFFSET(cloud) = count_++;
+  GST_BUFFER_OFFSET_END(cloud) = count_;
+  if (!times_given_) timeline_.NotePosition(GST_BUFFER_PTS(cloud) + GST_BUFFER_DURATION(cloud));
+}
+
+void CloudStamper::Flush(bool restarts_time) {
+  count_ = 0;
+  segment_.reset();
+  if (restarts_time) timeline_.RestartTime();
+}
+
+void CloudStamper::Reset() {
+  Flush(true);
+  timeline_.Reset();
+  times_given_ = false;
+  cloud_size_ = 0;
+}
+
+}  // namespace lidar::gst

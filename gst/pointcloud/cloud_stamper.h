@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Times of clouds that come from files: those that upstream gives, else by their number.
+#pragma once
+#include <gst/gst.h>
+
+#include <utility>
+
+#include "gst/common/refs.h"
+#include "gst/pointcloud/cloud_timeline.h"
+#include "gst/pointcloud/rate.h"
+
+namespace lidar::gst {
+
+/// For the streaming thread, but for the timeline.
+class CloudStamper {
+ public:
+  CloudTimeline& timeline() { return timeline_; }
+  const Rate& rate() const { return rate_; }
+  void SetRate(const Rate& rate) { rate_ = rate; }
+  /// Clouds that went, and that were left out.
+  guint64 count() const { return count_; }
+  /// Whether upstream stamps its buffers.
+  bool times_given() const { return times_given_; }
+
+  /// Keeps upstream's segment where it counts time, and makes one otherwise. Takes the event.
+  void TakeSegment(GstEvent* event);
+  /// The segment that is to go before the next cloud; NULL once it was taken.
+  EventPtr NextSegment() { return std::move(segment_); }
+  /// Clouds are all of one size, in bytes; 0: they are not. Seeks and queries are ours where they
+  /// are, and come as bytes.
+  void SetCloudSize(gsize bytes);
+  void Stamp(GstBuffer* cloud);
+  /// A cloud that is left out keeps its place in time.
+  void LeaveOut() { ++count_; }
+  void Flush(bool restarts_time);
+  void Reset();
+
+ private:
+  CloudTimeline::Grid Grid() const;
+
+  CloudTimeline timeline_;
+  Rate rate_;
+  bool times_given_ = false;
+  EventPtr segment_;
+  gsize cloud_size_ = 0;
+  guint64 count_ = 0;
+};
+
+}  // namespace lidar::gst
