@@ -108,7 +108,7 @@ TEST_F(McapErrors, APlayerSaysWhyItCannotPlay) {
 TEST_F(McapErrors, APipelineThatIsStoppedLeavesACompleteFile) {
   Pipeline p(kSensor + " is-live=true ! lidarenc ! mcapsink name=m" + At("a.mcap"));
   gst_element_set_state(p.get(), GST_STATE_PLAYING);
-  g_usleep(300'000);
+  EXPECT_TRUE(p.AwaitStat("messages", 5));
   gst_element_set_state(p.get(), GST_STATE_NULL);  // without an EOS
   const auto played = Play("mcapsrc name=m" + At("a.mcap") + " ! fakesink name=see");
   EXPECT_EQ(played.error, "");

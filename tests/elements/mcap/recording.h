@@ -86,6 +86,13 @@ class Pipeline {
     gst_element_set_state(pipeline_.get(), GST_STATE_NULL);
     return outcome_;
   }
+  /// Until a number of the statistics is there; false after 30 s.
+  bool AwaitStat(const char* name, guint64 least) {
+    const gint64 end = g_get_monotonic_time() + 30 * G_USEC_PER_SEC;
+    for (; outcome_.stats[name] < least && g_get_monotonic_time() < end; TakeStats())
+      g_usleep(2000);
+    return outcome_.stats[name] >= least;
+  }
   /// False at an error, and after 20 s.
   bool Wait(GstMessageType until) {
     GstBus* bus = gst_element_get_bus(pipeline_.get());
