@@ -91,6 +91,15 @@ class Ros2Test : public ::testing::Test {
     if (bus_ != nullptr) gst_object_unref(bus_);
   }
   gst::BufferPtr Pull() { return gst::BufferPtr(gst_harness_pull(h_.get())); }
+  /// Of the caps that came, as text.
+  std::string Field(const char* name) {
+    const gst::CapsPtr caps(gst_pad_get_current_caps(h_->sinkpad));
+    const GValue* value = gst_structure_get_value(gst_caps_get_structure(caps.get(), 0), name);
+    if (value == nullptr) return "";
+    const gst::StringPtr text(G_VALUE_HOLDS_STRING(value) ? g_value_dup_string(value)
+                                                          : gst_value_serialize(value));
+    return text.get();
+  }
   guint64 Stat(const char* name) {
     GstStructure* raw = nullptr;
     g_object_get(ros_.get(), "stats", &raw, nullptr);

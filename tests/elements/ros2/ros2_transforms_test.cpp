@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Transforms that ros2src takes, and clouds that they place.
+#include "src/cdr/messages.h"
+#include "tests/elements/ros2/ros2_support.h"
+
+namespace lidar::test {
+namespace {
+
+using gst::BufferPtr;
+using Qos = FastPeer::Qos;
+
+class Ros2Transforms : public Ros2Test {
+ protected:
+  std::unique_ptr<FastPeer> peer_;
+};
+
+constexpr const char* kTransformsType = "tf2_msgs::msg::dds_::TFMessage_";
+
+PeerTransforms Transforms(const char* parent, const char* child, double x, std::int32_t sec) {
+  return {{{{sec, 0, parent}, child, {x, 0, 0, 0, 0, 0, 1}}}};
+}
+
+TEST_F(Ros2Transforms, TakesTransformsAsTheyAre) {
+  Start("ros2src", "topic=/tf type=tf qos=reliable");
+  peer_ = std::make_unique<FastPeer>(TestDomain());
+  peer_->Advertise<PeerTransforms>("rt/tf", kTransformsType, Qos::kReliable);
+  ASSERT_TRUE(peer_->WaitForMatch(kPatience));
+  ASSERT_TRUE(WaitForStat("publishers", 1));
+  // What goes before the two know each other is not seen.
+  for (int i = 0; i < 600 && Stat("messages-empty") == 0; ++i) {
+    ASSERT_TRUE(peer_->Publish(PeerTransforms{}));
+    g_usleep(50'000);
+  }
+  ASSERT_GT(Stat("messages-empty"), 0u);
+  ASSERT_TRUE(peer_->Publish(Transforms("odom", "base", 2.5, 5)));
+  const BufferPtr buffer = Pull();
+  const auto bytes = BytesOf(buffer.get());
+  const auto transforms = cdr::ReadTransforms({bytes.data(), bytes.size()});
+  ASSERT_TRUE(transforms);
+  ASSERT_EQ(transforms->size(), 1u);
+  EXPECT_EQ((*transforms)[0].header.frame_id, "odom");
+  EXPECT_EQ((*transforms)[0].child_frame_id, "base");
+  EXPECT_EQ((*transforms)[0].translation[0], 2.5);
+  EXPECT_EQ(gst_lidar_buffer_get_capture_time(buffer.get()), 5 * GST_SECOND);
+  EXPECT_EQ(Field("static"), "false");
+}
+
+TEST_F(Ros2Transforms, TakesStaticTransformsFromBeforeItWasThere) {
+  peer_ = std::make_unique<FastPeer>(TestDomain());
+  peer_->Advertise<PeerTransforms>("rt/robot/tf_static", kTransformsType, Qos::kReliableTransient);
+  ASSERT_TRUE(peer_->Publish(Transforms("base", "lidar", 1, 1)));
+  Start("ros2src", "topic=/robot/tf_static type=tf");
+  const BufferPtr buffer = Pull();
+  ASSERT_TRUE(buffer);
+  EXPECT_EQ(Field("static"), "true");
+}
+
+TEST_F(Ros2Transforms, TellsOfStaticTransformsThatNobodyKeeps) {
+  Start("ros2src", "topic=/tf_static type=tf");
+  peer_ = std::make_unique<FastPeer>(TestDomain());
+  peer_->Advertise<PeerTransforms>("rt/tf_static", kTransformsType, Qos::kReliable);
+  const std::string text = NextOwnComplaint();
+  EXPECT_NE(text.find("transient local"), std::string::npos) << text;
+}
+
+/// Clouds of a lidar in the frame map: one transform holds for good, another moves.
+TEST_F(Ros2Transforms, CloudsGoToTheFrameThatTransformsLeadTo) {
+  const std::string domain = " domain-id=" + std::to_string(TestDomain());
+  FastPeer fixed(TestDomain());
+  FastPeer moving(TestDomain());
+  fixed.Advertise<PeerTransforms>("rt/tf_static", kTransformsType, Qos::kReliableTransient);
+  moving.Advertise<PeerTransforms>("rt/tf", kTransformsType, Qos::kReliable);
+  ASSERT_TRUE(fixed.Publish(Transforms("base", "os_lidar", 1, 1)));
+  Start("ros2src", "topic=/points qos=reliable",
+        " ! pointcloudfilter name=f target-frame=map tf-timeout=60000000000 "
+        "ros2src topic=/tf_static type=tf" +
+            domain +
+            " ! f.tf_0 "
+            "ros2src topic=/tf type=tf qos=reliable" +
+            domain + " ! f.tf_1");
+  peer_ = std::make_unique<FastPeer>(TestDomain());
+  peer_->Advertise<PeerCloud>("rt/points", kCloudType, Qos::kReliable);
+  ASSERT_TRUE(peer_->WaitForMatch(kPatience));
+  ASSERT_TRUE(moving.WaitForMatch(kPatience));
+  ASSERT_TRUE(WaitForStat("publishers", 1));
+  PeerCloud cloud = TestCloud(1, 1);
+  const float x = 4;
+  std::memcpy(cloud.data.data(), &x, sizeof x);
+  ASSERT_TRUE(peer_->Publish(cloud));
+  // The cloud waits for a transform that is as new as it. Those from before the two know each other
+  // are not seen.
+  BufferPtr buffer;
+  for (int i = 0; i < 600 && !buffer; ++i) {
+    for (const int later : {0, 1})
+      ASSERT_TRUE(moving.Publish(Transforms("map", "base", 100 + later, cloud.header.sec + later)));
+    g_usleep(50'000);
+    buffer.reset(gst_harness_try_pull(h_.get()));
+  }
+  ASSERT_TRUE(buffer);
+  float moved = 0;
+  std::memcpy(&moved, BytesOf(buffer.get()).data(), sizeof moved);
+  EXPECT_NEAR(moved, 4 + 1 + 100.123, 0.001);  // 0.123 s on the way from 100 m to 101 m
+  EXPECT_EQ(Field("frame-id"), "map");
+}
+
+}  // namespace
+}  // namespace lidar::test
