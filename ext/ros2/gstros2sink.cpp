@@ -13,6 +13,7 @@
 
 #include <memory>
 #include <mutex>
+#include <utility>
 
 #include "ext/ros2/message_writer.h"
 #include "ext/ros2/ros_settings.h"
@@ -85,6 +86,7 @@ struct State {
   std::unique_ptr<MessageWriter> messages;
   bool warned_timeout = false;
   bool warned_refused = false;
+  bool warned_incompatible = false;
 };
 
 }  // namespace
@@ -173,7 +175,7 @@ static gboolean Start(GstBaseSink* base) {
   auto* self = GST_LIDAR_ROS2_SINK(base);
   State& state = StateOf(self);
   const Ros2SinkSettings settings = Snapshot(state);
-  state.warned_timeout = state.warned_refused = false;
+  state.warned_timeout = state.warned_refused = state.warned_incompatible = false;
   {
     const std::lock_guard lock(state.mutex);
     state.counters = {};
@@ -244,7 +246,7 @@ static GstFlowReturn Render(GstBaseSink* base, GstBuffer* buffer) {
   State& state = StateOf(self);
   const auto writer = WriterOf(self);
   if (!writer || !state.messages) return GST_FLOW_NOT_NEGOTIATED;
-  if (writer->FoundIncompatible())
+  if (writer->FoundIncompatible() && !std::exchange(state.warned_incompatible, true))
     GST_ELEMENT_WARNING(self, RESOURCE, SETTINGS,
                         ("A subscriber of the topic wants what qos=sensor-data does not give."),
                         ("use qos=reliable"));

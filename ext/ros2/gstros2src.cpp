@@ -14,6 +14,7 @@
 #include <algorithm>
 #include <memory>
 #include <mutex>
+#include <utility>
 
 #include "ext/ros2/message_reader.h"
 #include "ext/ros2/ros_settings.h"
@@ -86,6 +87,8 @@ struct State {
   // Only the streaming thread uses what follows, between start and stop.
   std::unique_ptr<MessageReader> messages;
   bool warned_damaged = false;
+  bool warned_type = false;
+  bool warned_incompatible = false;
   const char* incompatible = "";  // what a publisher does that is not taken
 };
 
@@ -178,7 +181,7 @@ static gboolean Start(GstBaseSrc* base) {
                            ? "does not keep its transforms for those who come later (durability "
                              "transient local)"
                            : "is best-effort, which qos=reliable does not take";
-  state.warned_damaged = false;
+  state.warned_damaged = state.warned_type = state.warned_incompatible = false;
   lock.lock();
   state.reader = std::move(reader);
   state.counters = {};
@@ -203,13 +206,23 @@ static void Count(GstLidarRos2Src* self, guint64 Counters::*counter, guint64 amo
   state.counters.*counter += amount;
 }
 
+/// One warning: whoever is in the network can bring any number of publishers.
 static void NoteOtherType(GstLidarRos2Src* self, const Reader& reader) {
   Count(self, &Counters::other_types);
+  if (std::exchange(StateOf(self).warned_type, true)) return;
   // It comes from the network, and messages on the bus are valid UTF-8.
   const StringPtr type(g_utf8_make_valid(reader.other_type().c_str(), -1));
   GST_ELEMENT_WARNING(self, STREAM, WRONG_TYPE,
                       ("A publisher of the topic has the type %s, which is not taken.", type.get()),
                       (nullptr));
+}
+
+static void NoteIncompatible(GstLidarRos2Src* self) {
+  State& state = StateOf(self);
+  if (std::exchange(state.warned_incompatible, true)) return;
+  GST_ELEMENT_WARNING(self, RESOURCE, SETTINGS,
+                      ("A publisher of the topic %s.", state.incompatible),
+                      ("use qos=sensor-data where it is best-effort"));
 }
 
 /// One warning, until a message is good again: a publisher that is broken sends many.
@@ -262,9 +275,7 @@ static GstFlowReturn NextBuffer(GstLidarRos2Src* self, Reader* reader) {
         NoteOtherType(self, *reader);
         continue;
       case Reader::Event::kIncompatible:
-        GST_ELEMENT_WARNING(self, RESOURCE, SETTINGS,
-                            ("A publisher of the topic %s.", StateOf(self).incompatible),
-                            ("use qos=sensor-data where it is best-effort"));
+        NoteIncompatible(self);
         continue;
       case Reader::Event::kMessage:
         break;

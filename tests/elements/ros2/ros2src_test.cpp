@@ -158,6 +158,18 @@ TEST_F(Ros2Src, TellsOfPublishersOfAnotherType) {
   EXPECT_EQ(Stat("publishers"), 0u);
 }
 
+TEST_F(Ros2Src, TellsOnceHoweverManyPublishersOfOtherTypesCome) {
+  StartWithRawPeer("std_msgs::msg::dds_::String_");
+  std::vector<std::unique_ptr<FastPeer>> others;
+  for (const char* type : {"a::A_", "b::B_", "c::C_"}) {
+    others.push_back(std::make_unique<FastPeer>(TestDomain()));
+    others.back()->Advertise<PeerBytes>("rt/points", type, Qos::kReliable);
+  }
+  ASSERT_TRUE(WaitForStat("publishers-of-other-types", 4));
+  EXPECT_NE(NextOwnComplaint().find("which is not taken"), std::string::npos);
+  EXPECT_EQ(NextComplaint(0), "");
+}
+
 TEST_F(Ros2Src, TellsOfPublishersThatItsReliabilityDoesNotFit) {
   Start("ros2src", "topic=/points qos=reliable");
   peer_ = std::make_unique<FastPeer>(TestDomain());
