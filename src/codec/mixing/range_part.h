@@ -97,7 +97,7 @@ class RangePart {
   /// To try out bins with a CostMeter, from any place in a row...
   const Row& row() const { return row_; }
   void Resume(const Row& row) { row_ = row; }
-  /// ...those of pixel `i`...
+  /// ...those of pixel `i`, where Resume() and See() between them change no cost...
   void Consider(std::uint32_t i) {
     Look(i);
     SetContexts(i);
@@ -132,7 +132,9 @@ class RangePart {
     w_ = row_.west[0] != kUnknown ? row_.west[0] : n_;
     if (row_.west[0] == kUnknown) nw_ = n_;
     ww_ = row_.west[1] != kUnknown ? row_.west[1] : w_;
+    www_ = row_.west[2] != kUnknown ? row_.west[2] : ww_;
     nn_ = at.values[1] != kUnknown ? at.values[1] : n_;
+    other_ = row_.other;
     gradient_ = w_ + n_ - nw_;
     median_ = Median(w_, n_, nw_);
     mirror_ = n_ < w_ ? -1 : 1;
@@ -188,7 +190,7 @@ class RangePart {
          Size(row_.residual_north_west)) *
                 4 +
             Size(row_.residual_west2),
-        (Offset(row_.other != kUnknown ? row_.other : ne_) * 11 +
+        (Offset(other_ != kUnknown ? other_ : ne_) * 11 +
          Offset(at.values[2] != kUnknown ? at.values[2] : nn_)) *
                 4 +
             event_};
@@ -252,9 +254,8 @@ class RangePart {
     c.gap_class = gap_class_ * 4 + static_cast<std::uint32_t>(std::min(BitLength(apart) / 2, 3));
     const std::int32_t base = median_ >> 4;
     const std::int32_t sense = negative ? -mirror_ : mirror_;
-    const std::array<std::int32_t, kCandidates> values = {
-        w_,   n_,        nw_, ne_, nn_, ww_, row_.west[2] != kUnknown ? row_.west[2] : ww_,
-        nee_, row_.other};
+    const std::array<std::int32_t, kCandidates> values = {w_,  n_,   nw_,  ne_,   nn_,
+                                                          ww_, www_, nee_, other_};
     for (unsigned k = 0; k < kCandidates; ++k)
       c.candidates[k] = ((values[k] >> 4) - base) * sense - 3;
     return c;
@@ -287,7 +288,8 @@ class RangePart {
   Row row_;
 
   // Of the return.
-  std::int32_t n_ = 0, nw_ = 0, ne_ = 0, nee_ = 0, nn_ = 0, w_ = 0, ww_ = 0;
+  std::int32_t n_ = 0, nw_ = 0, ne_ = 0, nee_ = 0, nn_ = 0, w_ = 0, ww_ = 0, www_ = 0;
+  std::int32_t other_ = kUnknown;
   std::int32_t gradient_ = 0;
   std::int32_t median_ = 0;
   std::int32_t mirror_ = 1;

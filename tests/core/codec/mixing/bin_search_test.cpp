@@ -3,9 +3,13 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <map>
+#include <memory>
 
 #include "src/base/crc.h"
 #include "src/codec/mixing/mixing_codec.h"
+#include "src/codec/mixing/range_part.h"
+#include "src/codec/mixing/start_states.h"
 #include "src/codec/range_codec.h"
 #include "tests/core/codec/test_clouds.h"
 
@@ -39,6 +43,48 @@ std::size_t Wrong(const RangeImage& image, const RangeImage& back, std::uint32_t
     wrong += same_kind && std::abs(d) <= error_mm ? 0U : 1U;
   }
   return wrong;
+}
+
+struct AllOpinions {
+  static constexpr unsigned kRangeContexts = mixing::kRangeContexts.size();
+  static constexpr unsigned kCentres = mixing::kCentres;
+  static constexpr unsigned kCandidates = mixing::kCandidates;
+  static constexpr bool kEvents = true;
+};
+
+TEST(BinSearch, CostsAreTheSameInAnyOrderOfBins) {
+  const auto model = std::make_unique<mixing::Model>();
+  mixing::Trained().CopyTo(3, 50, 0, model.get());
+  mixing::CostMeter meter;
+  mixing::RangePart<AllOpinions, mixing::CostMeter> part(mixing::BestKernel(), model.get(), &meter,
+                                                         50);
+  // A row under a wall and a pole.
+  std::vector<mixing::Azimuth> above(24);
+  std::vector<std::int32_t> north(24);
+  for (std::size_t i = 0; i < above.size(); ++i) {
+    const std::int32_t value = mixing::CentreOf(i < 12 ? 100 : 60);
+    above[i].values = {value, value, value};
+    north[i] = value;
+  }
+  part.StartRow(&above[8], &north[8]);
+  for (std::uint32_t i = 0; i < 3; ++i) {
+    part.Consider(i);
+    part.See(i == 1 ? 90 : 101, &above[8 + i]);
+  }
+  const auto start = part.row();
+  const auto costs_of = [&](std::vector<std::int32_t> bins) {
+    std::map<std::int32_t, std::int32_t> costs;
+    part.Resume(start);
+    part.Consider(3);
+    for (const std::int32_t bin : bins) {
+      costs[bin] = part.CostOf(bin, &meter);
+      mixing::Azimuth azimuth = above[11];
+      part.Resume(start);
+      part.See(bin, &azimuth);
+    }
+    return costs;
+  };
+  EXPECT_EQ(costs_of({80, 90, 101, 120}), costs_of({120, 101, 90, 80}));
 }
 
 TEST(BinSearch, SavesBitsWithinTheSameError) {
