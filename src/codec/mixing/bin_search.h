@@ -13,12 +13,15 @@
 namespace lidar::codec::mixing {
 
 /// A beam search along each row, with the models of the coder as they are before it. A bin that is
-/// cheap by itself may make the next ones expensive, so a few ways are followed at a time.
+/// cheap by itself may make the next ones expensive, so two ways are followed at a time.
 template <class Effort>
 class BinSearch {
  public:
-  BinSearch(const Kernel& kernel, Model* model, std::int64_t step_mm)
-      : part_(kernel, model, &meter_, step_mm) {}
+  /// `steps` is a buffer.
+  BinSearch(const Kernel& kernel, Model* model, std::int64_t step_mm,
+            std::vector<SearchStep>* steps)
+      : parts_{{{kernel, model, &meter_, step_mm}, {kernel, model, &meter_, step_mm}}},
+        steps_(*steps) {}
 
   /// A row of returns, as RangePart takes it.
   struct Row {
@@ -27,101 +30,110 @@ class BinSearch {
     const std::uint8_t* spare;  // how many bins more than one each return may take
     std::uint32_t columns;
   };
-  /// False where the returns so far were so rough that there is next to nothing to choose.
-  bool IsWorthwhile() const {
-    constexpr std::int64_t kMostCost = 461;  // 2.6 bits
-    return cost_ <= kMostCost * tried_;
-  }
 
   /// `bins` are the first that returns may take, and become those that they do take.
   void Choose(const Row& row, std::int32_t* bins) {
-    part_.StartRow(row.above, row.north);
+    for (Part& part : parts_) part.StartRow(row.above, row.north);
     steps_.clear();
-    ways_[0] = {part_.row(), 0, 0};
+    ways_[0] = {};
     count_ = 1;
     for (std::uint32_t i = 0; i < row.columns; ++i) {
       if (bins[i] < 0) {
-        Skip(i);
+        for (unsigned k = 0; k < count_; ++k) parts_[k].Skip(i);
       } else {
-        Try(i, row, bins[i]);
-        KeepBest();
+        Try(i, bins[i], bins[i] + row.spare[i]);
+        Go(row.above[i]);
       }
     }
-    cost_ += ways_[0].cost;
-    part_.Resume(ways_[0].state);
     TraceBack(row.columns, bins);
   }
 
  private:
   using Part = RangePart<Effort, CostMeter>;
-  static constexpr std::size_t kMostWays = 2;  // more save 0.2 %
+  static constexpr unsigned kMostWays = 2;  // more save 0.2 %
+  /// A way that costs so much more than the best one hardly ever becomes that.
+  static constexpr std::int64_t kMostBehind = 1'065;  // 6 bits
   struct Way {
-    typename Part::Row state;
-    std::int64_t cost;
-    std::size_t steps;  // index in steps_ + 1
-  };
-  struct Step {
-    std::int32_t bin;
-    std::size_t before;
+    std::int64_t cost = 0;
+    std::uint32_t steps = 0;  // index in steps_ + 1
   };
   struct Trial {
-    Way way;  // its steps are those before
+    std::int64_t cost;
     std::int32_t bin;
+    unsigned way;
   };
 
-  void Skip(std::uint32_t i) {
-    for (std::size_t k = 0; k < count_; ++k) {
-      part_.Resume(ways_[k].state);
-      part_.Skip(i);
-      ways_[k].state = part_.row();
-    }
-  }
-
-  void Try(std::uint32_t i, const Row& row, std::int32_t first) {
-    trials_.clear();
-    const bool is_free = row.spare[i] > 0 || count_ > 1;
-    tried_ += is_free ? 1 : 0;
-    for (std::size_t k = 0; k < count_; ++k) {
-      part_.Resume(ways_[k].state);
-      part_.Consider(i);
-      for (std::int32_t bin = first; bin <= first + row.spare[i]; ++bin) {
-        Trial trial{ways_[k], bin};
-        if (is_free) trial.way.cost += part_.CostOf(bin, &meter_);
-        Azimuth azimuth = row.above[i];
-        part_.Resume(ways_[k].state);
-        part_.See(bin, &azimuth);
-        trial.way.state = part_.row();
-        Insert(trial);
+  void Try(std::uint32_t i, std::int32_t first, std::int32_t last) {
+    found_ = 0;
+    for (unsigned k = 0; k < count_; ++k) {
+      if (IsHopeless(ways_[k].cost)) continue;
+      Part& part = parts_[k];
+      part.Consider(i);
+      if (count_ == 1 && first == last) {
+        Offer({ways_[k].cost, first, k});
+        continue;
       }
+      const auto try_bin = [&](std::int32_t bin) {
+        const std::int64_t most = found_ > 0 ? trials_[0].cost + kMostBehind : INT64_MAX;
+        Offer({ways_[k].cost + part.CostOf(bin, most - ways_[k].cost), bin, k});
+      };
+      // What is likely to cost least shows early which others are hopeless.
+      const std::int32_t likely = std::clamp(part.Predicted(), first, last);
+      try_bin(likely);
+      for (std::int32_t bin = first; bin <= last; ++bin)
+        if (bin != likely) try_bin(bin);
     }
   }
-
-  /// Behind those that are as cheap.
-  void Insert(const Trial& trial) {
-    const auto place = std::find_if(trials_.begin(), trials_.end(), [&](const Trial& other) {
-      return other.way.cost > trial.way.cost;
-    });
-    trials_.insert(place, trial);
+  bool IsHopeless(std::int64_t cost) const {
+    return found_ > 0 && cost > trials_[0].cost + kMostBehind;
   }
 
-  /// Keeps the cheapest trials, and one of two that end alike.
-  void KeepBest() {
-    count_ = 0;
-    for (const Trial& trial : trials_) {
-      const auto ends_alike = [&](const Way& way) {
-        return way.state.west[0] == trial.way.state.west[0] &&
-               way.state.west[1] == trial.way.state.west[1];
-      };
-      if (std::any_of(ways_.begin(), ways_.begin() + count_, ends_alike)) continue;
-      steps_.push_back({trial.bin, trial.way.steps});
-      ways_[count_] = trial.way;
-      ways_[count_].steps = steps_.size();
-      if (++count_ == kMostWays) break;
+  /// Keeps the two cheapest, and one of those that end in the same two bins.
+  void Offer(const Trial& trial) {
+    if (IsHopeless(trial.cost)) return;
+    if (found_ == 0) {
+      trials_[0] = trial;
+      found_ = 1;
+    } else if (trial.cost < trials_[0].cost) {
+      if (!EndAlike(trial, trials_[0])) {
+        trials_[1] = trials_[0];
+        found_ = 2;
+      }
+      trials_[0] = trial;
+      if (found_ == 2 && IsHopeless(trials_[1].cost)) found_ = 1;
+    } else if (!EndAlike(trial, trials_[0]) && (found_ == 1 || trial.cost < trials_[1].cost)) {
+      trials_[1] = trial;
+      found_ = 2;
+    }
+  }
+  bool EndAlike(const Trial& a, const Trial& b) const {
+    return a.bin == b.bin && parts_[a.way].row().west[0] == parts_[b.way].row().west[0];
+  }
+
+  /// One step on the ways of the trials.
+  void Go(const Azimuth& above) {
+    const std::array<typename Part::Row, kMostWays> before = {parts_[0].row(), parts_[1].row()};
+    std::array<typename Part::Row, kMostWays> after;
+    std::array<Way, kMostWays> ways;
+    for (unsigned k = 0; k < found_; ++k) {
+      const Trial& trial = trials_[k];
+      Part& part = parts_[trial.way];
+      Azimuth azimuth = above;
+      part.Resume(before[trial.way]);
+      part.See(trial.bin, &azimuth);
+      after[k] = part.row();
+      steps_.push_back({trial.bin, ways_[trial.way].steps});
+      ways[k] = {trial.cost, static_cast<std::uint32_t>(steps_.size())};
+    }
+    count_ = found_;
+    for (unsigned k = 0; k < count_; ++k) {
+      parts_[k].Resume(after[k]);
+      ways_[k] = ways[k];
     }
   }
 
   void TraceBack(std::uint32_t columns, std::int32_t* bins) const {
-    std::size_t step = ways_[0].steps;
+    std::uint32_t step = ways_[0].steps;
     for (std::uint32_t i = columns; i-- > 0;) {
       if (bins[i] < 0) continue;
       bins[i] = steps_[step - 1].bin;
@@ -130,13 +142,12 @@ class BinSearch {
   }
 
   CostMeter meter_;
-  Part part_;
+  std::array<Part, kMostWays> parts_;  // each stands where its way ends
   std::array<Way, kMostWays> ways_{};  // the cheapest first
-  std::size_t count_ = 0;
-  std::vector<Step> steps_;
-  std::vector<Trial> trials_;  // the cheapest first
-  std::int64_t cost_ = 0;      // of the rows so far
-  std::int64_t tried_ = 0;     // returns of which it is the cost
+  unsigned count_ = 0;
+  std::array<Trial, kMostWays> trials_{};  // of a return, the cheapest first
+  unsigned found_ = 0;
+  std::vector<SearchStep>& steps_;
 };
 
 }  // namespace lidar::codec::mixing

@@ -52,12 +52,12 @@ class BitMixer {
   /// With two sets of weights, each of which learns from what it would have said alone.
   template <class Coder>
   bool Code(bool bit, Weights* first, Weights* second, Coder* coder) {
+    static_assert(kTeaches<Coder>);
     const auto [a, b, c, d] = inputs_.packed;
     const Sums sums = kernel_.dots(a, b, c, d, first, second);
     const std::int32_t one = ClampLogit(sums.first >> kDotShift);
     const std::int32_t other = ClampLogit(sums.second >> kDotShift);
     bit = coder->Code(bit, Chance((one + other) >> 1));
-    if constexpr (!kTeaches<Coder>) return bit;
     kernel_.learn(a, b, c, d, StepOf(bit, Chance(one)), first);
     kernel_.learn(a, b, c, d, StepOf(bit, Chance(other)), second);
     Learn(bit);

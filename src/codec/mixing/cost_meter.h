@@ -15,7 +15,8 @@ class CostMeter {
     cost_ += kLogOne - Log(static_cast<std::uint32_t>(bit ? chance : kOne - chance));
     return bit;
   }
-  /// What was coded since the last call.
+  /// What was coded since the last Take().
+  std::int32_t cost() const { return cost_; }
   std::int32_t Take() {
     const std::int32_t cost = cost_;
     cost_ = 0;

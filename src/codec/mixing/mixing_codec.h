@@ -47,8 +47,8 @@ class MixingEncoder {
 
   /// Appends one payload to `out`. False, with nothing appended, where the image does not fit the
   /// sensor, has ranges past mixing::kMaxBins bins, or becomes smaller than MostMixedPixels()
-  /// allows, or, with an error_mm, where a choice between bins saves nothing. Ranges are multiples
-  /// of the grid's unit; the image's levels are of 8 bits and become those of settings.intensity.
+  /// allows. Ranges are multiples of the grid's unit; the image's levels are of 8 bits and become
+  /// those of settings.intensity.
   bool Encode(const RangeImage& image, const MixingSettings& settings,
               std::vector<std::uint8_t>* out);
 

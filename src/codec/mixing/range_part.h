@@ -103,10 +103,14 @@ class RangePart {
     SetContexts(i);
     asked_ = 0;
   }
-  /// ...of which See() then keeps one.
-  std::int32_t CostOf(std::int32_t bin, CostMeter* meter) {
-    CodeDifference(mirror_ * (bin - (median_ >> 4)));
-    return meter->Take();
+  std::int32_t Predicted() const { return median_ >> 4; }
+  /// ...of which See() then keeps one. What costs more than `most` may be said to cost less, but
+  /// more than `most`.
+  std::int32_t CostOf(std::int32_t bin, std::int64_t most) {
+    const std::int32_t difference = mirror_ * (bin - Predicted());
+    CodeNode(difference != 0, 0);
+    if (difference != 0 && coder_.cost() <= most) CodeSome(difference);
+    return coder_.Take();
   }
 
  private:
@@ -218,10 +222,13 @@ class RangePart {
   Weights* EventWeightsOf(unsigned node) { return &model_.weights.event[node * 64 + event_set_]; }
 
   bool CodeNode(bool bit, unsigned node) {
-    if constexpr (!kTeaches<Coder>) return coder_.Code(bit, ChanceOf(node));
-    Ask(node);
-    if constexpr (!Effort::kEvents) return mixer_.Code(bit, WeightsOf(node), &coder_);
-    return mixer_.Code(bit, WeightsOf(node), EventWeightsOf(node), &coder_);
+    if constexpr (!kTeaches<Coder>) {
+      return coder_.Code(bit, ChanceOf(node));
+    } else {
+      Ask(node);
+      if constexpr (!Effort::kEvents) return mixer_.Code(bit, WeightsOf(node), &coder_);
+      return mixer_.Code(bit, WeightsOf(node), EventWeightsOf(node), &coder_);
+    }
   }
   /// For all the bins that are tried out; it is asked in the order of the nodes of each side.
   std::int32_t ChanceOf(unsigned node) {
@@ -232,7 +239,10 @@ class RangePart {
   }
 
   std::int32_t CodeDifference(std::int32_t difference) {
-    if (!CodeNode(difference != 0, 0)) return 0;
+    return CodeNode(difference != 0, 0) ? CodeSome(difference) : 0;
+  }
+  /// A difference that is not 0.
+  std::int32_t CodeSome(std::int32_t difference) {
     const bool negative = CodeNode(difference < 0, 1);
     const std::int32_t size = std::abs(difference);
     std::int32_t coded = 1;

@@ -46,7 +46,8 @@ bool Overran(const Coder& /*coder*/) {
 
 /// Stands where nothing is searched.
 struct NoSearch {
-  NoSearch(const Kernel& /*kernel*/, Model* /*model*/, std::int64_t /*step_mm*/) {}
+  NoSearch(const Kernel& /*kernel*/, Model* /*model*/, std::int64_t /*step_mm*/,
+           std::vector<SearchStep>* /*steps*/) {}
 };
 
 }  // namespace
@@ -73,17 +74,15 @@ bool SliceCoder::CodeBins(const Kernel& kernel, Model* model, SliceBins* slice, 
   RangePart<Effort, Coder> range(kernel, model, coder, slice->step_mm);
   constexpr bool kSearches = Effort::kSearches && !Coder::kDecodes;
   [[maybe_unused]] std::conditional_t<kSearches, BinSearch<Effort>, NoSearch> search(
-      kernel, model, slice->step_mm);
+      kernel, model, slice->step_mm, &search_steps_);
   for (std::uint32_t beam = 0; beam < slice->beams; ++beam) {
     Azimuth* const above = above_.At(beam);
     const std::size_t row = std::size_t{beam} * slice->columns;
     std::int32_t* const bins = &slice->bins[row];
     FillNorth(above, slice->columns);
     if constexpr (kSearches) {
-      if (!slice->spare.empty()) {
-        if (beam == slice->beams / 4 && !search.IsWorthwhile()) return false;
+      if (!slice->spare.empty())
         search.Choose({above, &north_[kMargin], &slice->spare[row], slice->columns}, bins);
-      }
     }
     mask.StartRow(above);
     range.StartRow(above, &north_[kMargin]);

@@ -51,6 +51,12 @@ struct Recollection {
   RangeGrid grid;  // of the slice
 };
 
+/// How a search came to a bin.
+struct SearchStep {
+  std::int32_t bin;
+  std::uint32_t before;  // place of the step before, from 1 on; 0: none
+};
+
 /// From this effort on an encoder can choose between bins.
 constexpr unsigned kSearchingEffort = 3;
 
@@ -59,8 +65,7 @@ class SliceCoder {
  public:
   explicit SliceCoder(const AzimuthAlignment& alignment) : alignment_(alignment) {}
 
-  /// Codes all of `slice` at an effort from 1 on; false for a damaged stream, or where bins to
-  /// spare save nothing.
+  /// Codes all of `slice` at an effort from 1 on; false for a damaged stream.
   template <class Coder>
   bool Code(unsigned effort, const Kernel& kernel, Model* model, SliceBins* slice, Coder* coder,
             const Recollection* recollection = nullptr);
@@ -82,6 +87,7 @@ class SliceCoder {
   AlignedRow<Azimuth> above_;
   AlignedRow<Surprise> surprises_;
   std::vector<std::int32_t> north_;
+  std::vector<SearchStep> search_steps_;
 };
 
 /// Sums up what a real coder would write.

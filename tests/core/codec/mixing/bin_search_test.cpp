@@ -77,7 +77,7 @@ TEST(BinSearch, CostsAreTheSameInAnyOrderOfBins) {
     part.Resume(start);
     part.Consider(3);
     for (const std::int32_t bin : bins) {
-      costs[bin] = part.CostOf(bin, &meter);
+      costs[bin] = part.CostOf(bin, INT64_MAX);
       mixing::Azimuth azimuth = above[11];
       part.Resume(start);
       part.See(bin, &azimuth);
@@ -168,10 +168,19 @@ TEST(BinSearch, LeavesRoughScenesAlone) {
   std::mt19937 random(3);
   for (std::uint32_t& range : image.ranges)
     if (range != 0) range = 1'000 + static_cast<std::uint32_t>(random() % 20'000);
-  MixingEncoder encoder(model);
-  std::vector<std::uint8_t> payload;
-  EXPECT_FALSE(encoder.Encode(image, Searching(), &payload));
-  EXPECT_TRUE(payload.empty());
+  RangeSettings settings;
+  settings.coder = RangeCoder::kMixing;
+  settings.effort = 3;
+  settings.grid = kCoarse;
+  std::vector<std::uint8_t> bytes;
+  ASSERT_TRUE(RangeEncoder(model).Encode(image, settings, &bytes));
+  ByteReader reader(bytes.data(), bytes.size());
+  RangeDecoder decoder(model);
+  RangeImage back;
+  IntensityScale scale;
+  ASSERT_TRUE(decoder.Decode(&reader, image.size(), &back, &scale));
+  EXPECT_EQ(decoder.header().grid.parts(), kCoarse.parts());
+  EXPECT_EQ(Wrong(image, back, kErrorMm), 0U);
 }
 
 TEST(BinSearch, RefusesAnErrorThatIsNone) {
