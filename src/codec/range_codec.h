@@ -49,6 +49,8 @@ class RangeEncoder {
   std::optional<RangeCoder> EncodePayload(const RangeImage& image, const RangeSettings& settings,
                                           BlockLink* link);
   bool EncodeMixing(const RangeImage& image, const RangeSettings& settings);
+  bool ChoiceSaves(const RangeImage& image, const RangeGrid& grid);
+  double AdaptiveBits(const RangeImage& image, const RangeGrid& grid);
   bool EncodeLinked(const RangeImage& image, const RangeSettings& settings, BlockLink* link);
 
   AzimuthAlignment alignment_;
@@ -62,8 +64,7 @@ class RangeEncoder {
   IntegerLists lists_;
   std::vector<std::uint8_t> mask_bytes_;
   std::vector<std::uint8_t> payload_;
-  std::vector<std::uint8_t> searched_;  // another one of the same image
-  RangeGrid grid_;                      // of the payload
+  RangeGrid grid_;  // of the payload
 };
 
 /// Decodes blocks of one sensor; any bytes give an image or false.
