@@ -56,6 +56,13 @@ inline codec::RangeImage GoldenImage(const GoldenScan& scan) {
   return image;
 }
 
+inline std::vector<std::uint8_t> ReadGolden(const std::string& file) {
+  std::ifstream in(file, std::ios::binary);
+  std::vector<std::uint8_t> bytes{std::istreambuf_iterator<char>(in), {}};
+  EXPECT_FALSE(bytes.empty()) << file;
+  return bytes;
+}
+
 /// `bytes` are those of the file, which the environment variable UPDATE_GOLDEN=1 writes.
 inline void ExpectGolden(const std::string& file, const std::vector<std::uint8_t>& bytes) {
   if (std::getenv("UPDATE_GOLDEN") != nullptr) {
@@ -63,9 +70,7 @@ inline void ExpectGolden(const std::string& file, const std::vector<std::uint8_t
         .write(reinterpret_cast<const char*>(bytes.data()),
                static_cast<std::streamsize>(bytes.size()));
   }
-  std::ifstream in(file, std::ios::binary);
-  const std::vector<std::uint8_t> golden{std::istreambuf_iterator<char>(in), {}};
-  ASSERT_FALSE(golden.empty()) << file;
+  const std::vector<std::uint8_t> golden = ReadGolden(file);
   EXPECT_TRUE(bytes == golden) << "The format of " << file << " has changed: " << bytes.size()
                                << " bytes, " << golden.size() << " before";
 }
