@@ -4,6 +4,7 @@
 #include <dds/dds.h>
 
 #include <algorithm>
+#include <limits>
 
 namespace lidar::dds {
 namespace {
@@ -54,11 +55,23 @@ cdr::Guid GuidOf(dds_entity_t entity) {
   return guid;
 }
 
-dds_entity_t NewTopic(dds_entity_t participant, const char* name, const char* type_name,
+/// Clouds are bounded by the domain. Of all others a hundred may wait, and thousands of transforms
+/// are less than this.
+std::size_t MaxSizeOf(cdr::RosType type) {
+  constexpr std::size_t kMaxSmall = std::size_t{1} << 20;
+  return type == cdr::RosType::kPointCloud2 ? std::numeric_limits<std::size_t>::max() : kMaxSmall;
+}
+
+struct TopicName {
+  const char* topic;
+  const char* type;
+};
+
+dds_entity_t NewTopic(dds_entity_t participant, const TopicName& name, std::size_t max_size,
                       const ddsi_sertype** type) {
-  ddsi_sertype* raw = NewRawType(type_name);
+  ddsi_sertype* raw = NewRawType(name.type, max_size);
   const dds_entity_t topic =
-      dds_create_topic_sertype(participant, name, &raw, nullptr, nullptr, nullptr);
+      dds_create_topic_sertype(participant, name.topic, &raw, nullptr, nullptr, nullptr);
   *type = raw;
   return topic;
 }
@@ -78,13 +91,15 @@ bool Node::Open(const EndpointOptions& options, std::string* why) {
   participant_ = dds_create_participant(options.domain, qos.get(), nullptr);
   if (!Check(participant_, "no participant", why)) return false;
   const std::string type_name(cdr::InfoOf(options.type).dds_name);
-  topic_ = NewTopic(participant_, options.topic.c_str(), type_name.c_str(), &type_);
+  topic_ = NewTopic(participant_, {options.topic.c_str(), type_name.c_str()},
+                    MaxSizeOf(options.type), &type_);
   return Check(topic_, "no topic", why);
 }
 
 bool Node::Announce(const EndpointOptions& options, bool writes, std::string* why) {
   const ddsi_sertype* type = nullptr;
-  const dds_entity_t topic = NewTopic(participant_, cdr::kGraphTopic, cdr::kGraphDdsName, &type);
+  const dds_entity_t topic =
+      NewTopic(participant_, {cdr::kGraphTopic, cdr::kGraphDdsName}, 0, &type);  // nobody reads it
   if (!Check(topic, "no topic of the graph", why)) return false;
   const QosPtr qos = MakeQos(true, true, 1);
   const dds_entity_t writer = dds_create_writer(participant_, topic, qos.get(), nullptr);

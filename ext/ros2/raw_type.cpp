@@ -14,6 +14,14 @@
 namespace lidar::dds {
 namespace {
 
+struct RawType : ddsi_sertype {
+  std::size_t max_size = 0;  // of a message that comes
+};
+
+std::size_t Cut(const ddsi_sertype* type, std::size_t size) {
+  return std::min(size, static_cast<const RawType*>(type)->max_size);
+}
+
 struct RawData : ddsi_serdata {
   std::unique_ptr<std::uint8_t[]> bytes;  // padded to a multiple of 4, as the protocol sends them
   std::size_t size = 0;
@@ -36,7 +44,8 @@ RawData* NewRaw(const ddsi_sertype* type, ddsi_serdata_kind kind, std::size_t si
 
 /// Fragments may overlap; a gap between two would be a bug of the caller, and stays zero.
 ddsi_serdata* FromFragments(const ddsi_sertype* type, ddsi_serdata_kind kind,
-                            const nn_rdata* fragment, std::size_t size) {
+                            const nn_rdata* fragment, std::size_t whole) {
+  const std::size_t size = Cut(type, whole);
   RawData* data = NewRaw(type, kind, size);
   if (data == nullptr) return nullptr;
   std::size_t filled = 0;
@@ -53,7 +62,8 @@ ddsi_serdata* FromFragments(const ddsi_sertype* type, ddsi_serdata_kind kind,
 }
 
 ddsi_serdata* FromPieces(const ddsi_sertype* type, ddsi_serdata_kind kind, ddsrt_msg_iovlen_t count,
-                         const ddsrt_iovec_t* pieces, std::size_t size) {
+                         const ddsrt_iovec_t* pieces, std::size_t whole) {
+  const std::size_t size = Cut(type, whole);
   RawData* data = NewRaw(type, kind, size);
   if (data == nullptr) return nullptr;
   std::size_t filled = 0;
@@ -116,7 +126,7 @@ ddsi_sertype_ops TypeOps() {
   ops.version = ddsi_sertype_v0;
   ops.free = [](ddsi_sertype* type) {
     ddsi_sertype_fini(type);
-    delete type;
+    delete static_cast<RawType*>(type);
   };
   ops.zero_samples = [](const ddsi_sertype*, void*, std::size_t) {};
   ops.realloc_samples = [](void**, const ddsi_sertype*, void*, std::size_t, std::size_t) {};
@@ -129,10 +139,11 @@ ddsi_sertype_ops TypeOps() {
 
 }  // namespace
 
-ddsi_sertype* NewRawType(const char* dds_name) {
+ddsi_sertype* NewRawType(const char* dds_name, std::size_t max_size) {
   static const ddsi_sertype_ops kTypeOps = TypeOps();
   static const ddsi_serdata_ops kDataOps = DataOps();
-  auto* type = new ddsi_sertype{};
+  auto* type = new RawType{};
+  type->max_size = max_size;
   ddsi_sertype_init_flags(type, dds_name, &kTypeOps, &kDataOps, DDSI_SERTYPE_FLAG_TOPICKIND_NO_KEY);
   type->allowed_data_representation = DDS_DATA_REPRESENTATION_FLAG_XCDR1;
   return type;

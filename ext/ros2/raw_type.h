@@ -14,8 +14,9 @@ struct ddsi_sertype;
 namespace lidar::dds {
 
 /// A keyless type called `dds_name`, with no description of itself (peers of other makers take data
-/// without one). Owned by the topic that is made of it.
-ddsi_sertype* NewRawType(const char* dds_name);
+/// without one). Owned by the topic that is made of it. Messages of others that are larger than
+/// `max_size` [bytes] are cut there, and so damaged.
+ddsi_sertype* NewRawType(const char* dds_name, std::size_t max_size);
 
 struct Release {
   void operator()(ddsi_serdata* data) const;

@@ -45,6 +45,28 @@ TEST_F(Ros2Transforms, TakesTransformsAsTheyAre) {
   EXPECT_EQ(Field("static"), "false");
 }
 
+/// Hundreds of messages may wait: none of them may be as large as a cloud.
+TEST_F(Ros2Transforms, WhatIsLargerThanTransformsAreIsDamaged) {
+  Start("ros2src", "topic=/tf type=tf qos=reliable");
+  peer_ = std::make_unique<FastPeer>(TestDomain());
+  peer_->Advertise<PeerBytes>("rt/tf", kTransformsType, Qos::kReliable);
+  ASSERT_TRUE(peer_->WaitForMatch(kPatience));
+  ASSERT_TRUE(WaitForStat("publishers", 1));
+  cdr::TransformStamped one;
+  one.header.frame_id = "odom";
+  one.child_frame_id = "base";
+  const auto publish = [&](std::size_t count) {
+    return peer_->Publish(PeerBytes{cdr::WriteTransforms(cdr::Transforms(count, one))});
+  };
+  ASSERT_TRUE(publish(15'000));
+  ASSERT_TRUE(WaitForStat("messages-damaged", 1));
+  EXPECT_LE(Stat("bytes"), 1u << 20);
+  ASSERT_TRUE(publish(5'000));
+  const BufferPtr buffer = Pull();
+  ASSERT_TRUE(buffer);
+  EXPECT_EQ(cdr::ReadTransforms(gst::BufferMap(buffer.get(), GST_MAP_READ).view())->size(), 5'000u);
+}
+
 TEST_F(Ros2Transforms, TakesStaticTransformsFromBeforeItWasThere) {
   peer_ = std::make_unique<FastPeer>(TestDomain());
   peer_->Advertise<PeerTransforms>("rt/robot/tf_static", kTransformsType, Qos::kReliableTransient);
