@@ -32,8 +32,9 @@ std::map<std::uint32_t, Shared>& Domains() {
 std::string Configuration() {
   std::string xml =
       "<General><FragmentSize>65000B</FragmentSize><MaxMessageSize>65500B</MaxMessageSize>"
-      "</General><Internal><MaxSampleSize>256MiB</MaxSampleSize>"
-      "<SocketReceiveBufferSize min=\"default\" max=\"" +
+      "</General><Internal><MaxSampleSize>" +
+      std::to_string(Domain::kMaxMessage) +
+      "B</MaxSampleSize><SocketReceiveBufferSize min=\"default\" max=\"" +
       std::to_string(Domain::kReceiveBuffer) + "B\"/></Internal>";
   const char* local = std::getenv("ROS_LOCALHOST_ONLY");
   if (local != nullptr && std::string(local) == "1")

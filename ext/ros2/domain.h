@@ -21,6 +21,7 @@ class Domain {
   std::uint32_t id() const { return id_; }
 
   static constexpr std::uint32_t kReceiveBuffer = 4u << 20;  // bytes
+  static constexpr std::uint32_t kMaxMessage = 256u << 20;   // bytes
   /// What of kReceiveBuffer the kernel grants [bytes].
   static std::uint32_t GrantedReceiveBuffer();
 

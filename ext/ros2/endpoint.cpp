@@ -4,7 +4,6 @@
 #include <dds/dds.h>
 
 #include <algorithm>
-#include <limits>
 
 namespace lidar::dds {
 namespace {
@@ -55,11 +54,11 @@ cdr::Guid GuidOf(dds_entity_t entity) {
   return guid;
 }
 
-/// Clouds are bounded by the domain. Of all others a hundred may wait, and thousands of transforms
-/// are less than this.
+/// Whoever made the domain may let larger ones through. Of what is no cloud a hundred may wait, and
+/// thousands of transforms are less than this.
 std::size_t MaxSizeOf(cdr::RosType type) {
   constexpr std::size_t kMaxSmall = std::size_t{1} << 20;
-  return type == cdr::RosType::kPointCloud2 ? std::numeric_limits<std::size_t>::max() : kMaxSmall;
+  return type == cdr::RosType::kPointCloud2 ? Domain::kMaxMessage : kMaxSmall;
 }
 
 struct TopicName {
