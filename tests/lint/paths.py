@@ -147,7 +147,15 @@ class Checker:
         ]
         for name, element in all_elements:
             if name in pages:
+                self.pipelines(name, f"docs/elements/{name}.md")
                 self.properties(f"docs/elements/{name}.md", element.get("properties", {}))
+
+    def pipelines(self, element, page):
+        """The test printed-pipelines runs what it finds."""
+        text = (self.root / page).read_text()
+        commands = re.findall(r"^ *(?:\w+=\S+ )*gst-launch-1\.0 (?:.*\\\n)*.*", text, re.M)
+        if not any(re.search(rf"(?<![\w-]){element}\b", command) for command in commands):
+            self.problems.append(f"{page}: no pipeline with {element}")
 
     def properties(self, page, properties):
         said = set(re.findall(r"`([a-z0-9-]+)(?:[=:][^`]*)?`", (self.root / page).read_text()))

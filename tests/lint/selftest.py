@@ -38,7 +38,7 @@ See `src/base/units.h`, `units.h`, `gst/*`, `gst<name>.cpp`, `lidar-eval --help`
 
     build/src/tools/eval/lidar-eval > out.csv
 """,
-    "docs/elements/alpha.md": "# alpha\n\n| `speed` | how fast; see `rate=3` |\n",
+    "docs/elements/alpha.md": "# alpha\n\n    gst-launch-1.0 fakesrc ! \\\n        alpha ! fakesink\n\n| `speed` | how fast; see `rate=3` |\n",
     "docs/plugins_cache.json": '{"one": {"elements": {"alpha": {"properties": {"speed": {}, "rate": {}}}}}}',
     "docs/troubleshooting.md": '# Troubleshooting\n\n### "No cloud of %s."\n',
     "mkdocs.yml": """nav:
@@ -186,6 +186,12 @@ PLANTED = [
     ),
     ("paths", "src/base/a.h", "// See docs/gone.md.", "there is no docs/gone.md"),
     ("paths", "docs/elements/beta.md", "# beta", "there is no element beta"),
+    (
+        "paths",
+        "docs/elements/alpha.md",
+        "# alpha\n\n`speed`, `rate`\n\n    gst-launch-1.0 alphabet ! fakesink\n",
+        "docs/elements/alpha.md: no pipeline with alpha",
+    ),
     (
         "paths",
         "docs/plugins_cache.json",
