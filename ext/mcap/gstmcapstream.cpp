@@ -98,14 +98,17 @@ gboolean Event(GstBaseSink* base, GstEvent* event) {
   return GST_BASE_SINK_CLASS(gst_lidar_mcap_stream_parent_class)->event(base, event);
 }
 
-gboolean Stop(GstBaseSink* base) {
-  State& state = StateOf(base);
-  state.writer.reset();
-  state.stream = {};
-  state.topic.clear();
-  state.refused.Reset();
-  state.ended = false;
-  return TRUE;
+/// Each recording has channels of its own, also where the element was only READY in between.
+GstStateChangeReturn ChangeState(GstElement* element, GstStateChange transition) {
+  if (transition == GST_STATE_CHANGE_READY_TO_PAUSED) {
+    State& state = StateOf(element);
+    state.writer.reset();
+    state.stream = {};
+    state.topic.clear();
+    state.refused.Reset();
+    state.ended = false;
+  }
+  return GST_ELEMENT_CLASS(gst_lidar_mcap_stream_parent_class)->change_state(element, transition);
 }
 
 }  // namespace
@@ -120,6 +123,7 @@ static void gst_lidar_mcap_stream_class_init(GstLidarMcapStreamClass* klass) {
   lidar::gst::OwnState<GstLidarMcapStream, gst_lidar_mcap_stream_parent_class>(object);
   lidar::gst::ServeProperties<GstLidarMcapStream, kProperties>(object);
   auto* element = GST_ELEMENT_CLASS(klass);
+  element->change_state = ChangeState;
   gst_element_class_add_static_pad_template(element, &sink_template);
   gst_element_class_set_static_metadata(element, "Stream of an MCAP recording", "Sink/File",
                                         "Gives the buffers of one stream to mcapsink", "gst-lidar");
@@ -127,7 +131,6 @@ static void gst_lidar_mcap_stream_class_init(GstLidarMcapStreamClass* klass) {
   base->set_caps = SetCaps;
   base->render = Render;
   base->event = Event;
-  base->stop = Stop;
 }
 
 GstElement* gst_lidar_mcap_stream_new(GstLidarMcapSink* sink, const gchar* name) {

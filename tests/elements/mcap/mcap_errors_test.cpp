@@ -6,6 +6,7 @@
 #include <csignal>
 #include <fstream>
 
+#include "ext/mcap/output_file.h"
 #include "tests/elements/mcap/recording.h"
 
 namespace lidar::test {
@@ -59,6 +60,25 @@ TEST_F(McapErrors, ADiskWithoutAnySpaceGetsNoEmptyFile) {
   EXPECT_TRUE(Files().empty());
 }
 
+TEST_F(McapErrors, WhatDoesNotFitIsTakenBackAndTheFileGoesOn) {
+  const auto view = [](const std::string& text) {
+    return ByteView{reinterpret_cast<const std::uint8_t*>(text.data()), text.size()};
+  };
+  gst::OutputFile file(Path("a"), true);
+  {
+    const SmallDisk disk(100);
+    EXPECT_TRUE(file.Append(view(std::string(40, 'a'))));
+    EXPECT_TRUE(file.Append(view(std::string(40, 'b'))));
+    EXPECT_FALSE(file.Append(view(std::string(40, 'c'))));
+    EXPECT_EQ(file.error(), EFBIG);
+    EXPECT_TRUE(file.Append(view(std::string(10, 'd'))));
+  }
+  EXPECT_TRUE(file.Close());
+  std::ifstream read(Path("a"), std::ios::binary);
+  EXPECT_EQ(std::string(std::istreambuf_iterator<char>(read), {}),
+            std::string(40, 'a') + std::string(40, 'b') + std::string(10, 'd'));
+}
+
 TEST_F(McapErrors, ADeviceWithoutSpaceStays) {
   EXPECT_EQ(RecordError("location=/dev/full"), "No space is left for \"/dev/full\".");
   EXPECT_TRUE(std::filesystem::exists("/dev/full"));
@@ -84,6 +104,12 @@ TEST_F(McapErrors, OtherStreamsAreRefusedByName) {
             "Cannot be recorded: clouds, coded slices, IMU samples and odometry can be recorded, "
             "and no video/x-raw.");
   EXPECT_TRUE(Files().empty());
+  // Each time it is tried.
+  Pipeline p("videotestsrc num-buffers=1 ! mcapsink" + At("a.mcap"));
+  for (int round = 0; round < 2; ++round) {
+    p.outcome().error.clear();
+    EXPECT_EQ(p.Run().error.rfind("Cannot be recorded", 0), 0U) << round;
+  }
 }
 
 TEST_F(McapErrors, APlayerSaysWhyItCannotPlay) {

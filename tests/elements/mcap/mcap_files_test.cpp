@@ -27,7 +27,7 @@ TEST_F(McapFiles, PiecesPlayAsOneRecording) {
   EXPECT_EQ(Files(), (std::vector<std::string>{"rec-000.mcap", "rec-001.mcap", "rec-002.mcap",
                                                "rec-003.mcap"}));
   EXPECT_EQ(files_.size(), 4U);
-  EXPECT_EQ(files_[0], Path("rec-000.mcap"));
+  EXPECT_EQ(files_[0].location, Path("rec-000.mcap"));
   const auto played = PlayFile("rec-%03d.mcap");
   ASSERT_EQ(played.buffers.at("see").size(), written.size());
   for (std::size_t i = 0; i < written.size(); ++i) {
@@ -51,6 +51,28 @@ TEST_F(McapFiles, SeeksOverPieces) {
   gst_element_set_state(p.get(), GST_STATE_PLAYING);
   ASSERT_TRUE(p.Wait(GST_MESSAGE_EOS));
   EXPECT_EQ(p.outcome().buffers.at("see").size(), 16U);
+  // The last slice of a piece is of that piece.
+  p.outcome().buffers.clear();
+  ASSERT_TRUE(gst_element_seek_simple(p.get(), GST_FORMAT_TIME, GST_SEEK_FLAG_FLUSH,
+                                      300 * GST_MSECOND - 12'500 * GST_USECOND));
+  ASSERT_TRUE(p.Wait(GST_MESSAGE_EOS));
+  EXPECT_EQ(p.outcome().buffers.at("see").size(), 57U);
+}
+
+TEST_F(McapFiles, PiecesInAnotherOrderAreAsLong) {
+  const auto written = Record(6, "max-file-duration=200000000", "rec-%d.mcap");
+  std::filesystem::rename(Path("rec-0.mcap"), Path("rec-3.mcap"));
+  Pipeline p("mcapsrc" + At("rec-%d.mcap") + " ! fakesink name=see");
+  gst_element_set_state(p.get(), GST_STATE_PAUSED);
+  ASSERT_TRUE(p.Wait(GST_MESSAGE_ASYNC_DONE));
+  gint64 length = 0;
+  ASSERT_TRUE(gst_element_query_duration(p.get(), GST_FORMAT_TIME, &length));
+  EXPECT_EQ(length, static_cast<gint64>(written.back().pts - written.front().pts));
+}
+
+TEST_F(McapFiles, MayBeOnTheDiskBeforeTheNextChunk) {
+  const auto written = Record(2, "sync-to-disk=true", "a.mcap");
+  EXPECT_EQ(PlayFile("a.mcap").buffers.at("see").size(), written.size());
 }
 
 TEST_F(McapFiles, PiecesEndByTheirSize) {
@@ -111,6 +133,10 @@ TEST_F(McapFiles, AChunkThatIsDamagedCostsItselfAndIsCounted) {
   EXPECT_EQ(played.stats.at("chunks-damaged"), 1U);
   EXPECT_LT(played.buffers.at("see").size(), 32U);
   EXPECT_GE(played.buffers.at("see").size(), 16U);
+  // The same in two pieces of a recording.
+  WriteFile("b-0.mcap", damaged);
+  WriteFile("b-1.mcap", damaged);
+  EXPECT_EQ(PlayFile("b-%d.mcap").stats.at("chunks-damaged"), 2U);
 }
 
 TEST_F(McapFiles, DamageAnywhereIsSurvived) {

@@ -4,14 +4,11 @@
 #include "src/cdr/point_cloud2.h"
 #include "src/mcap/writer.h"
 #include "tests/elements/mcap/recording.h"
-#include "tests/support/harness.h"
 
 #include <fstream>
 
 namespace lidar::test {
 namespace {
-
-constexpr GstClockTime kCapture = GstClockTime{1'764'000'000} * GST_SECOND;
 
 class Mcap : public Recording {};
 
@@ -61,15 +58,9 @@ TEST_F(Mcap, CloudsComeBackWithTheirCaps) {
     EXPECT_EQ(out[i].bytes, in[i].bytes);
     EXPECT_EQ(out[i].capture_time, in[i].capture_time);
     EXPECT_EQ(out[i].pts, i * 100 * GST_MSECOND);
+    EXPECT_EQ(out[i].duration, 100 * GST_MSECOND);
   }
   EXPECT_EQ(played.caps.at("see"), recorded.caps.at("see"));
-}
-
-/// The harness plays what it gets, so the element knows its file before.
-Harness RecordingTo(const std::string& path) {
-  const gst::ElementPtr sink(gst_element_factory_make("mcapsink", nullptr));
-  g_object_set(sink.get(), "location", path.c_str(), nullptr);
-  return Harness(gst_harness_new_with_element(sink.get(), "sink_0", nullptr));
 }
 
 /// Pushes `buffers` of `caps` into a recording, and gives what is played.
@@ -254,7 +245,7 @@ TEST_F(Mcap, SeeksByTime) {
 
 TEST_F(Mcap, ASegmentSeekEndsWithItsMessage) {
   Record(10, "", "a.mcap");
-  Pipeline p("mcapsrc" + At("a.mcap") + " ! fakesink name=see");
+  Pipeline p("mcapsrc" + At("a.mcap") + " ! identity name=see ! fakesink");
   gst_element_set_state(p.get(), GST_STATE_PAUSED);
   ASSERT_TRUE(p.Wait(GST_MESSAGE_ASYNC_DONE));
   p.outcome().buffers.clear();
@@ -263,11 +254,54 @@ TEST_F(Mcap, ASegmentSeekEndsWithItsMessage) {
                                GST_SEEK_TYPE_SET, 300 * GST_MSECOND));
   gst_element_set_state(p.get(), GST_STATE_PLAYING);
   ASSERT_TRUE(p.Wait(GST_MESSAGE_SEGMENT_DONE));
+  EXPECT_EQ(p.outcome().segment_done, 300 * GST_MSECOND);
   // The next segment follows without a flush, as loops do it.
   ASSERT_TRUE(gst_element_seek(p.get(), 1, GST_FORMAT_TIME, GST_SEEK_FLAG_NONE, GST_SEEK_TYPE_SET,
                                0, GST_SEEK_TYPE_SET, 300 * GST_MSECOND));
   ASSERT_TRUE(p.Wait(GST_MESSAGE_EOS));
   EXPECT_EQ(p.outcome().buffers.at("see").size(), 48U);
+}
+
+TEST_F(Mcap, SaysHowFarOneMaySeekAndWhatIsPlayed) {
+  Record(10, "", "a.mcap");
+  Pipeline p("mcapsrc name=m" + At("a.mcap") + " ! fakesink name=see");
+  gst_element_set_state(p.get(), GST_STATE_PAUSED);
+  ASSERT_TRUE(p.Wait(GST_MESSAGE_ASYNC_DONE));
+  const gst::PadPtr pad(gst_element_get_static_pad(p.Find("m").get(), "src_0"));
+  const gint64 length = Times(p).second;
+  gboolean seekable = FALSE;
+  gint64 start = -1, stop = -1;
+  const gst::QueryPtr seeking(gst_query_new_seeking(GST_FORMAT_TIME));
+  ASSERT_TRUE(gst_pad_query(pad.get(), seeking.get()));
+  gst_query_parse_seeking(seeking.get(), nullptr, &seekable, &start, &stop);
+  EXPECT_TRUE(seekable);
+  EXPECT_EQ(start, 0);
+  EXPECT_EQ(stop, length);
+  for (const gint64 end : {gint64{-1}, gint64{500 * GST_MSECOND}}) {
+    ASSERT_TRUE(gst_element_seek(p.get(), 2, GST_FORMAT_TIME, GST_SEEK_FLAG_FLUSH,
+                                 GST_SEEK_TYPE_SET, 300 * GST_MSECOND, GST_SEEK_TYPE_SET, end));
+    ASSERT_TRUE(p.Wait(GST_MESSAGE_ASYNC_DONE));
+    gdouble rate = 0;
+    const gst::QueryPtr segment(gst_query_new_segment(GST_FORMAT_TIME));
+    ASSERT_TRUE(gst_pad_query(pad.get(), segment.get()));
+    gst_query_parse_segment(segment.get(), &rate, nullptr, &start, &stop);
+    EXPECT_EQ(rate, 2);
+    EXPECT_EQ(start, 300 * GST_MSECOND);
+    EXPECT_EQ(stop, end < 0 ? length : end);
+  }
+}
+
+TEST_F(Mcap, EndsWhenToldToAndPlaysAllTheNextTime) {
+  Record(10, "", "a.mcap");
+  Pipeline p("mcapsrc name=m" + At("a.mcap") +
+             " ! fakesink name=see fakesrc num-buffers=1 ! fakesink");
+  gst_element_set_state(p.get(), GST_STATE_PAUSED);
+  ASSERT_TRUE(p.Wait(GST_MESSAGE_ASYNC_DONE));
+  ASSERT_TRUE(gst_element_send_event(p.Find("m").get(), gst_event_new_eos()));
+  EXPECT_EQ(p.Run().error, "");
+  EXPECT_LE(p.outcome().buffers.at("see").size(), 3U);  // those that were on their way
+  // Nobody takes the first message now, so it plays.
+  EXPECT_EQ(p.Run(GST_MESSAGE_ERROR).stats.at("messages"), 1U);
 }
 
 TEST_F(Mcap, CountsAnewAfterReady) {
@@ -343,6 +377,19 @@ TEST_F(McapOfOthers, CloudsBecomeOurs) {
   std::memcpy(read.data(), kept.bytes.data(), 24);
   EXPECT_EQ(read, (std::array<float, 6>{1.5F, -2, 0.25F, 4, 5, 6}));
   EXPECT_EQ(kept.capture_time, kCapture);
+}
+
+TEST_F(McapOfOthers, NoMorePadsComeOnceAllAreThere) {
+  const std::vector<std::uint8_t> points(48);
+  cdr::PointCloud2 cloud = Cloud(2);
+  cloud.data = {points.data(), points.size()};
+  Record({cloud, cloud});
+  Pipeline p("mcapsrc name=m" + At("other.mcap") + " ! fakesink name=see");
+  guint pads = 0;  // when there are no more
+  g_signal_connect(p.Find("m").get(), "no-more-pads",
+                   G_CALLBACK(+[](GstElement* m, guint* n) { *n = m->numsrcpads; }), &pads);
+  EXPECT_EQ(p.Run().error, "");
+  EXPECT_EQ(pads, 1U);
 }
 
 TEST_F(Mcap, CloudsOfAnyWidthHaveOneChannel) {

@@ -13,8 +13,19 @@
 #include "gst/common/buffer_map.h"
 #include "gst/common/gstlidar.h"
 #include "gst/common/refs.h"
+#include "tests/support/harness.h"
 
 namespace lidar::test {
+
+constexpr GstClockTime kCapture = GstClockTime{1'764'000'000} * GST_SECOND;
+
+/// An mcapsink with one stream. The harness plays what it gets, so the element knows its file
+/// before.
+inline Harness RecordingTo(const std::string& path) {
+  const gst::ElementPtr sink(gst_element_factory_make("mcapsink", nullptr));
+  g_object_set(sink.get(), "location", path.c_str(), nullptr);
+  return Harness(gst_harness_new_with_element(sink.get(), "sink_0", nullptr));
+}
 
 /// A buffer, kept.
 struct Kept {
@@ -44,13 +55,24 @@ inline Kept Keep(GstBuffer* buffer) {
   return kept;
 }
 
+/// What mcapsink says of a file that is complete.
+struct CompleteFile {
+  std::string location;
+  guint64 messages = 0;
+  guint64 size = 0;
+  guint64 start_time = 0;
+  guint64 end_time = 0;
+};
+
 /// What a pipeline did.
 struct Outcome {
   std::map<std::string, std::vector<Kept>> buffers;  // by the names of fakesinks and identities
   std::map<std::string, std::string> caps;
   std::string error;  // empty at EOS
   std::string warning;
-  std::vector<std::string> files;        // that mcapsink completed
+  std::map<std::string, std::vector<std::pair<GstClockTime, GstClockTime>>> gaps;  // [ms]
+  gint64 segment_done = -1;
+  std::vector<CompleteFile> complete;
   std::map<std::string, guint64> stats;  // of mcapsrc or mcapsink
 };
 
@@ -131,12 +153,19 @@ class Pipeline {
     gst_pad_add_probe(pad.get(), GST_PAD_PROBE_TYPE_EVENT_DOWNSTREAM, OnEvent, this, nullptr);
   }
   static GstPadProbeReturn OnEvent(GstPad* pad, GstPadProbeInfo* info, gpointer self) {
-    if (GST_EVENT_TYPE(GST_PAD_PROBE_INFO_EVENT(info)) != GST_EVENT_CAPS) return GST_PAD_PROBE_OK;
-    GstCaps* caps = nullptr;
-    gst_event_parse_caps(GST_PAD_PROBE_INFO_EVENT(info), &caps);
-    const gst::StringPtr text(gst_caps_to_string(caps));
+    GstEvent* event = GST_PAD_PROBE_INFO_EVENT(info);
+    Outcome& outcome = static_cast<Pipeline*>(self)->outcome_;
     const gst::StringPtr name(gst_object_get_name(GST_OBJECT_PARENT(pad)));
-    static_cast<Pipeline*>(self)->outcome_.caps[name.get()] = text.get();
+    if (GST_EVENT_TYPE(event) == GST_EVENT_CAPS) {
+      GstCaps* caps = nullptr;
+      gst_event_parse_caps(event, &caps);
+      const gst::StringPtr text(gst_caps_to_string(caps));
+      outcome.caps[name.get()] = text.get();
+    } else if (GST_EVENT_TYPE(event) == GST_EVENT_GAP) {
+      GstClockTime begin = 0, length = 0;
+      gst_event_parse_gap(event, &begin, &length);
+      outcome.gaps[name.get()].emplace_back(begin / GST_MSECOND, length / GST_MSECOND);
+    }
     return GST_PAD_PROBE_OK;
   }
   void Note(GstMessage* message) {
@@ -151,9 +180,19 @@ class Pipeline {
       g_error_free(raw);
     } else if (GST_MESSAGE_TYPE(message) == GST_MESSAGE_ELEMENT) {
       const GstStructure* s = gst_message_get_structure(message);
-      if (gst_structure_has_name(s, "mcap-file-complete"))
-        outcome_.files.emplace_back(gst_structure_get_string(s, "location"));
+      if (gst_structure_has_name(s, "mcap-file-complete")) NoteComplete(s);
+    } else if (GST_MESSAGE_TYPE(message) == GST_MESSAGE_SEGMENT_DONE) {
+      gst_message_parse_segment_done(message, nullptr, &outcome_.segment_done);
     }
+  }
+  void NoteComplete(const GstStructure* s) {
+    CompleteFile file;
+    file.location = gst_structure_get_string(s, "location");
+    gst_structure_get_uint64(s, "messages", &file.messages);
+    gst_structure_get_uint64(s, "size", &file.size);
+    gst_structure_get_uint64(s, "start-time", &file.start_time);
+    gst_structure_get_uint64(s, "end-time", &file.end_time);
+    outcome_.complete.push_back(std::move(file));
   }
   void TakeStats() {
     const gst::ElementPtr element = Find("m");
@@ -199,14 +238,14 @@ class Recording : public ::testing::Test {
              " ! lidarenc ! identity name=see ! mcapsink name=m " + options + At(name));
     EXPECT_EQ(outcome.error, "");
     caps_ = outcome.caps.at("see");
-    files_ = outcome.files;
+    files_ = outcome.complete;
     return outcome.buffers.at("see");
   }
 
   const std::string kSensor = "lidartestsrc model=os1-32 mode=512x10";
   std::string folder_;
-  std::string caps_;                // of what Record() wrote
-  std::vector<std::string> files_;  // that it completed
+  std::string caps_;  // of what Record() wrote
+  std::vector<CompleteFile> files_;
 };
 
 }  // namespace lidar::test

@@ -1,0 +1,274 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// What the reader believes of files that others wrote, and where it stops believing.
+#include <gtest/gtest.h>
+
+#include <random>
+
+#include "src/mcap/chunk.h"
+#include "src/mcap/compression.h"
+#include "tests/core/mcap/memory_file.h"
+
+namespace lidar::mcap {
+namespace {
+
+using test::FileMaker;
+using test::kSecond;
+using test::MemoryInput;
+using test::Open;
+using test::ReadAll;
+using test::View;
+
+ByteView ViewOf(const Bytes& bytes) { return {bytes.data(), bytes.size()}; }
+
+Bytes Begin() { return {kMagic.begin(), kMagic.end()}; }
+
+/// A channel `id` and a message of it.
+Bytes ChannelWithMessage(std::uint16_t id, std::uint64_t time) {
+  Bytes records;
+  Append(Schema{1, "s", "ros2msg", ""}, &records);
+  Append(Channel{id, 1, "topic " + std::to_string(id), "cdr", {}}, &records);
+  Append(MessageHeader{id, 0, time, time}, View("data"), &records);
+  return records;
+}
+
+void AppendChunk(const Bytes& records, std::uint64_t time, Bytes* file) {
+  Append(ChunkHeader{time, time, records.size(), 0, "", records.size()}, ViewOf(records), file);
+}
+
+/// The end of a file whose summary holds `records`, without a checksum.
+void Close(const Bytes& records, Bytes* file) {
+  AppendDataEnd(0, file);
+  const std::uint64_t start = file->size();
+  file->insert(file->end(), records.begin(), records.end());
+  Append(Footer{start, 0, 0}, file);
+  file->insert(file->end(), kMagic.begin(), kMagic.end());
+}
+
+std::vector<std::uint64_t> Times(Reader* reader) {
+  std::vector<std::uint64_t> times;
+  for (const auto& message : ReadAll(reader)) times.push_back(message.log_time);
+  return times;
+}
+
+TEST(McapOfOthers, AChunkThatClaimsMoreThanItsRecordHoldsIsPassedOver) {
+  Bytes file = Begin();
+  const std::uint64_t at = file.size();
+  const Bytes records = ChannelWithMessage(1, 5);
+  // Whoever believed it would read on into the record behind it.
+  Append(ChunkHeader{5, 5, records.size() + 9, 0, "", 0}, ViewOf(records), &file);
+  file[at + 41] = static_cast<std::uint8_t>(file[at + 41] + 9);
+  AppendChunk(ChannelWithMessage(2, 6), 6, &file);
+  const auto reader = Open(file);
+  EXPECT_EQ(Times(reader.get()), (std::vector<std::uint64_t>{6}));
+  EXPECT_EQ(reader->damaged_chunks(), 0U);
+}
+
+TEST(McapOfOthers, ARecordMustEndWithinTheFile) {
+  Bytes file = Begin();
+  Append(Header{"", ""}, &file);
+  MemoryInput whole(file);
+  EXPECT_TRUE(RecordAt(&whole, kMagic.size()));
+  file.pop_back();
+  MemoryInput cut(file);
+  EXPECT_FALSE(RecordAt(&cut, kMagic.size()));
+}
+
+TEST(McapOfOthers, ChunksMayBeAsLargeAsTheLimitAndNoLarger) {
+  for (const bool larger : {false, true}) {
+    Bytes file;
+    Append(ChunkHeader{1, 2, kMaxChunk + (larger ? 1 : 0), 0, "zstd", 4}, View("bomb"), &file);
+    MemoryInput input(file);
+    EXPECT_EQ(ReadChunkHeader(&input, *RecordAt(&input, 0)).has_value(), !larger);
+  }
+}
+
+TEST(McapOfOthers, ChecksumsMayBeLeftOut) {
+  const Bytes records = ChannelWithMessage(1, 5);
+  Bytes file = Begin();
+  const std::uint64_t at = file.size();
+  AppendChunk(records, 5, &file);
+  Bytes summary;
+  Append(Channel{1, 1, "topic 1", "cdr", {}}, &summary);
+  ChunkIndex index;
+  index.start_time = index.end_time = 5;
+  index.offset = at;
+  index.size = file.size() - at;
+  Append(index, &summary);
+  Close(summary, &file);
+  MemoryInput input(file);
+  const FileIndex found = ReadFileIndex(&input);
+  EXPECT_TRUE(found.complete);
+  EXPECT_TRUE(found.schemas.empty());  // so it was read from the summary
+  const auto reader = Open(file);
+  EXPECT_EQ(Times(reader.get()), (std::vector<std::uint64_t>{5}));
+  EXPECT_EQ(reader->damaged_chunks(), 0U);
+}
+
+TEST(McapOfOthers, ASummaryWithoutChunksOrWithoutChannelsIsNoIndex) {
+  for (const bool channels : {false, true}) {
+    Bytes file = Begin();
+    const std::uint64_t at = file.size();
+    AppendChunk(ChannelWithMessage(1, 5), 5, &file);
+    Bytes summary;
+    if (channels) {
+      Append(Channel{1, 1, "topic 1", "cdr", {}}, &summary);
+    } else {
+      ChunkIndex index;
+      index.start_time = index.end_time = 5;
+      index.offset = at;
+      index.size = file.size() - at;
+      Append(index, &summary);
+    }
+    Close(summary, &file);
+    MemoryInput input(file);
+    const FileIndex found = ReadFileIndex(&input);
+    EXPECT_TRUE(found.complete);
+    EXPECT_EQ(found.chunks.size(), 1U);
+    EXPECT_EQ(found.channels.size(), 1U);
+  }
+}
+
+TEST(McapOfOthers, AnIndexThatPointsOutOfTheFileIsNotTaken) {
+  Bytes file = Begin();
+  const std::uint64_t at = file.size();
+  AppendChunk(ChannelWithMessage(1, 5), 5, &file);
+  Bytes summary;
+  Append(Channel{1, 1, "topic 1", "cdr", {}}, &summary);
+  ChunkIndex index;
+  index.size = file.size() - at;
+  for (const std::uint64_t offset : {at, std::uint64_t{1'000'000}, UINT64_MAX}) {
+    index.offset = offset;
+    Append(index, &summary);
+  }
+  Close(summary, &file);
+  MemoryInput input(file);
+  EXPECT_EQ(ReadFileIndex(&input).chunks.size(), 1U);
+}
+
+TEST(McapOfOthers, ChunksWithoutMessagesHaveNoTime) {
+  FileIndex index;
+  index.chunks = {{0, 0, 8, 10, false}, {3, 5, 18, 10, false}, {4, 4, 28, 10, false}};
+  EXPECT_EQ(index.start_time(), 3U);
+  EXPECT_EQ(index.end_time(), 5U);
+}
+
+TEST(McapOfOthers, ChannelsAndSchemasAreLearntOnceAndWithinALimit) {
+  FileIndex index;
+  const auto learn = [&](std::uint16_t id, std::size_t size) {
+    Bytes bytes;
+    Append(Schema{id, "s", "ros2msg", std::string(size, 'x')}, &bytes);
+    std::size_t offset = 0;
+    return index.Learn(*NextRecord(ViewOf(bytes), &offset));
+  };
+  EXPECT_FALSE(learn(0, 10));  // stands for no schema
+  EXPECT_TRUE(learn(1, 10));
+  const std::uint64_t one = index.catalogue_size;
+  EXPECT_GT(one, 10U);
+  EXPECT_FALSE(learn(1, 10));
+  EXPECT_EQ(index.catalogue_size, one);
+  EXPECT_TRUE(learn(2, kMaxCatalogue / 2));
+  EXPECT_FALSE(learn(3, kMaxCatalogue / 2));
+  EXPECT_EQ(index.schemas.size(), 2U);
+}
+
+TEST(McapOfOthers, MessagesOutsideOfChunksMayBeInAnyOrder) {
+  Bytes file = Begin();
+  Append(Schema{1, "s", "ros2msg", ""}, &file);
+  Append(Channel{1, 1, "t", "cdr", {}}, &file);
+  for (const std::uint64_t time : {5U, 3U, 9U, 7U})
+    Append(MessageHeader{1, 0, time, time}, View("x"), &file);
+  const auto reader = Open(file);
+  EXPECT_EQ(reader->index().start_time(), 3U);
+  EXPECT_EQ(reader->index().end_time(), 9U);
+  EXPECT_EQ(Times(reader.get()), (std::vector<std::uint64_t>{3, 5, 7, 9}));
+  reader->Seek(8);
+  EXPECT_EQ(Times(reader.get()), (std::vector<std::uint64_t>{9}));
+}
+
+TEST(McapOfOthers, TheChannelsOfTheFirstChunksAreKnownAtOnceOthersWithTheirMessages) {
+  Bytes file = Begin();
+  for (std::uint16_t id = 1; id <= 6; ++id) AppendChunk(ChannelWithMessage(id, id), id, &file);
+  const auto reader = Open(file);
+  EXPECT_EQ(reader->index().channels.size(), 4U);
+  EXPECT_EQ(ReadAll(reader.get()).size(), 6U);
+  EXPECT_EQ(reader->index().channels.size(), 6U);
+}
+
+TEST(McapOfOthers, MessagesOfNoChannelAreLeftOut) {
+  Bytes records = ChannelWithMessage(1, 5);
+  Append(MessageHeader{2, 0, 6, 6}, View("whose?"), &records);
+  Append(MessageHeader{1, 0, 7, 7}, View("data"), &records);
+  Bytes file = Begin();
+  AppendChunk(records, 5, &file);
+  Bytes without_chunk = Begin();
+  without_chunk.insert(without_chunk.end(), records.begin(), records.end());
+  for (const Bytes& bytes : {file, without_chunk}) {
+    const auto reader = Open(bytes);
+    EXPECT_EQ(Times(reader.get()), (std::vector<std::uint64_t>{5, 7}));
+  }
+}
+
+TEST(McapOfOthers, AChannelWhoseMetadataAreCutIsNone) {
+  Bytes bytes;
+  Append(Channel{1, 1, "t", "cdr", {{"key", "value"}}}, &bytes);
+  Bytes content(bytes.begin() + 9, bytes.end());
+  ASSERT_TRUE(ParseChannel(ViewOf(content)));
+  content[content.size() - 9] = 6;  // the length of "value"
+  EXPECT_FALSE(ParseChannel(ViewOf(content)));
+}
+
+TEST(Mcap, CompressionMustPayAndItsFramesMustEnd) {
+  std::mt19937 random(5);
+  for (const Compression compression : {Compression::kLz4, Compression::kZstd}) {
+    for (const std::size_t zeros : {3'000U, 10'000U}) {
+      std::string bytes(100'000, '\0');
+      for (std::size_t i = zeros; i < bytes.size(); ++i) bytes[i] = static_cast<char>(random());
+      Bytes packed, out;
+      ASSERT_EQ(Compress(compression, View(bytes), &packed), zeros == 10'000U);
+      packed.push_back(0);
+      EXPECT_FALSE(Decompress(NameOf(compression), ViewOf(packed), bytes.size(), &out));
+    }
+  }
+}
+
+TEST(Mcap, AChunkHoldsTheTimesOfItsMessagesWhateverTheirOrder) {
+  FileMaker maker(WriterSettings{});
+  const auto a = maker.AddChannel("a");
+  for (const std::uint64_t time : {500U, 300U, 400U}) maker.Add(a, 10 * kSecond + time, "x");
+  EXPECT_EQ(maker.writer().chunks(), 0U);  // a message of the past makes no chunk old
+  ASSERT_TRUE(maker.writer().Flush());
+  maker.Add(a, kSecond, "x");
+  ASSERT_TRUE(maker.writer().Finish());
+  EXPECT_EQ(maker.writer().statistics().start_time, kSecond);
+  EXPECT_EQ(maker.writer().statistics().end_time, 10 * kSecond + 500);
+  const auto reader = Open(maker.file());
+  ASSERT_EQ(reader->index().chunks.size(), 2U);
+  EXPECT_EQ(reader->index().chunks[1].start_time, 10 * kSecond + 300);
+  EXPECT_EQ(reader->index().chunks[1].end_time, 10 * kSecond + 500);
+  EXPECT_EQ(Times(reader.get()),
+            (std::vector<std::uint64_t>{kSecond, 10 * kSecond + 300, 10 * kSecond + 400,
+                                        10 * kSecond + 500}));
+}
+
+TEST(Mcap, AnEndThatLostItsLastChunkIsAFailure) {
+  Catalogue catalogue;
+  Channel channel;
+  channel.schema_id = catalogue.AddSchema({0, "s", "ros2msg", ""});
+  const auto id = catalogue.AddChannel(channel);
+  int pieces = 0;
+  Writer writer({}, &catalogue, [&](ByteView) { return ++pieces != 2; });
+  ASSERT_TRUE(writer.Add({id, 0, 1, 1}, View("kept")));
+  ASSERT_TRUE(writer.Flush());
+  ASSERT_TRUE(writer.Add({id, 0, 2, 2}, View("lost")));
+  EXPECT_FALSE(writer.Finish());
+  EXPECT_EQ(pieces, 3);  // the end is written all the same
+}
+
+TEST(Mcap, ThereAreAsManyChannelsAsNumbersForThem) {
+  Catalogue catalogue;
+  for (std::uint32_t i = 1; i <= 0xFFFF; ++i) ASSERT_EQ(catalogue.AddChannel({}), i);
+  for (int more = 0; more < 2; ++more) EXPECT_EQ(catalogue.AddChannel({}), 0);
+}
+
+}  // namespace
+}  // namespace lidar::mcap
