@@ -277,7 +277,10 @@ static void gst_lidar_scream_sink_init(GstLidarScreamSink* self) {
   self->sink = AddChild(element, "ecnudpsink");
   self->src = AddChild(element, "ecnudpsrc");
   if (self->tx == nullptr || self->sink == nullptr || self->src == nullptr) return;
-  g_object_set(self->tx, "send-bye", TRUE, nullptr);
+  const TxSettings& usual = TxDefaults();
+  g_object_set(self->tx, "send-bye", static_cast<gboolean>(usual.send_bye),
+               "sender-report-interval", static_cast<guint64>(usual.report_interval.count()),
+               nullptr);
   g_object_set(self->sink, "sync", FALSE, "async", FALSE, nullptr);
   gst_element_link_pads(self->tx, "src", self->sink, "sink");
   gst_element_link_pads(self->src, "src", self->tx, "rtcp_sink");

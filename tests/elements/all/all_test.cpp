@@ -66,6 +66,11 @@ TEST_P(EveryElement, ReadsAllItsPropertiesAndTakesItsDefaults) {
       GValue value = G_VALUE_INIT;
       g_value_init(&value, spec->value_type);
       g_object_get_property(G_OBJECT(element.get()), spec->name, &value);
+      // What a new element has is what its pages call the default.
+      const bool settable = (spec->flags & G_PARAM_WRITABLE) != 0;
+      if (settable && spec->owner_type == G_OBJECT_TYPE(element.get())) {
+        EXPECT_TRUE(g_param_value_defaults(spec, &value)) << spec->name;
+      }
       g_value_unset(&value);
     }
     const std::string name = spec->name;

@@ -1,0 +1,244 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// How screamsink and screamsrc set up what is in them, mostly without a packet.
+#include <gtest/gtest.h>
+
+#include <memory>
+
+#include "tests/elements/scream/pipeline.h"
+#include "tests/elements/scream/rtp_support.h"
+
+namespace lidar::test {
+namespace {
+
+using OwnedElement = std::unique_ptr<GstElement, gst::Unref>;
+using OwnedSocket = std::unique_ptr<GSocket, gst::Unref>;
+
+class ScreamBin : public ::testing::Test {
+ protected:
+  void Make(const char* factory) {
+    bin_.reset(GST_ELEMENT(gst_object_ref_sink(gst_element_factory_make(factory, nullptr))));
+  }
+  void TearDown() override {
+    if (bin_) gst_element_set_state(bin_.get(), GST_STATE_NULL);
+  }
+  GstStateChangeReturn To(GstState state) { return gst_element_set_state(bin_.get(), state); }
+  ElementPtr Child(const char* name) {
+    return ElementPtr(gst_bin_get_by_name(GST_BIN(bin_.get()), name));
+  }
+  template <class T>
+  T Of(GstElement* element, const char* property) {
+    T value{};
+    g_object_get(element, property, &value, nullptr);
+    return value;
+  }
+  OwnedSocket SocketOf(GstElement* element, const char* property = "socket") {
+    return OwnedSocket(Of<GSocket*>(element, property));
+  }
+
+  // What the bin's signals tell of, also as it goes.
+  std::string added_, removed_;
+  int notified_ = 0;
+  OwnedElement bin_;
+};
+
+TEST_F(ScreamBin, TheSinkCountsTheHeadersOfItsAddressFamily) {
+  for (const auto& [host, overhead] :
+       {std::pair<const char*, guint>{"127.0.0.1", 28}, {"::1", 48}}) {
+    Make("screamsink");
+    g_object_set(bin_.get(), "host", host, nullptr);
+    ASSERT_EQ(To(GST_STATE_READY), GST_STATE_CHANGE_SUCCESS);
+    EXPECT_EQ(Of<guint>(Child("screamtx").get(), "packet-overhead"), overhead);
+    To(GST_STATE_NULL);
+  }
+}
+
+TEST_F(ScreamBin, TheSinkCountsWhatSrtpAdds) {
+  const ElementPtr srtp(gst_element_factory_make("srtpenc", nullptr));
+  if (!srtp) GTEST_SKIP() << "srtpenc is not installed";
+  g_setenv("LIDAR_BIN_PARTS_KEY", std::string(60, '5').c_str(), TRUE);
+  Make("screamsink");
+  g_object_set(bin_.get(), "srtp-key", "env:LIDAR_BIN_PARTS_KEY", nullptr);
+  ASSERT_EQ(To(GST_STATE_READY), GST_STATE_CHANGE_SUCCESS);
+  EXPECT_EQ(Of<guint>(Child("screamtx").get(), "packet-overhead"), 28U + 10);  // the tag
+}
+
+TEST_F(ScreamBin, TheSinkSaysGoodbyeAndReportsEachSecond) {
+  Make("screamsink");
+  for (const OwnedElement& element : {OwnedElement(GST_ELEMENT(gst_object_ref(bin_.get()))),
+                                      OwnedElement(Child("screamtx").release())})
+    EXPECT_TRUE(Of<gboolean>(element.get(), "send-bye"));
+  EXPECT_EQ(Of<guint64>(bin_.get(), "sender-report-interval"), GST_SECOND);
+  const ElementPtr udp = Child("ecnudpsink");
+  EXPECT_FALSE(Of<gboolean>(udp.get(), "sync"));
+  EXPECT_FALSE(Of<gboolean>(udp.get(), "async"));
+}
+
+TEST_F(ScreamBin, TheSinkIsNotLiveTheSourceIs) {
+  Make("screamsink");
+  EXPECT_EQ(To(GST_STATE_PAUSED), GST_STATE_CHANGE_SUCCESS);
+  EXPECT_EQ(To(GST_STATE_NULL), GST_STATE_CHANGE_SUCCESS);
+  Make("screamsrc");
+  g_object_set(bin_.get(), "port", 0, nullptr);
+  EXPECT_EQ(To(GST_STATE_PAUSED), GST_STATE_CHANGE_NO_PREROLL);
+}
+
+TEST_F(ScreamBin, SocketsStayWhileTheBinIsReadyAndGoWithIt) {
+  Make("screamsrc");
+  g_object_set(bin_.get(), "port", 0, nullptr);
+  To(GST_STATE_PLAYING);
+  const OwnedSocket used = SocketOf(bin_.get(), "used-socket");
+  ASSERT_TRUE(used);
+  To(GST_STATE_READY);
+  EXPECT_EQ(SocketOf(bin_.get(), "used-socket"), used);
+  To(GST_STATE_NULL);
+  EXPECT_FALSE(SocketOf(bin_.get(), "used-socket"));
+  EXPECT_TRUE(g_socket_is_closed(used.get()));
+  Make("screamsink");
+  To(GST_STATE_PLAYING);
+  const ElementPtr udp = Child("ecnudpsink");
+  const OwnedSocket sending = SocketOf(udp.get());
+  ASSERT_TRUE(sending);
+  EXPECT_EQ(SocketOf(Child("ecnudpsrc").get()), sending);
+  EXPECT_FALSE(Of<gboolean>(udp.get(), "close-socket"));
+  To(GST_STATE_READY);
+  EXPECT_EQ(SocketOf(udp.get()), sending);
+  To(GST_STATE_NULL);
+  EXPECT_FALSE(SocketOf(udp.get()));
+  EXPECT_TRUE(g_socket_is_closed(sending.get()));
+}
+
+TEST_F(ScreamBin, WhatCannotBeSecuredKeepsNoSocket) {
+  for (const char* factory : {"screamsink", "screamsrc"}) {
+    Make(factory);
+    g_object_set(bin_.get(), "srtp-key", "env:LIDAR_NO_SUCH_KEY", nullptr);
+    if (std::string(factory) == "screamsrc") g_object_set(bin_.get(), "port", 0, nullptr);
+    EXPECT_EQ(To(GST_STATE_READY), GST_STATE_CHANGE_FAILURE);
+    EXPECT_FALSE(SocketOf(Child("ecnudpsink").get())) << factory;
+    EXPECT_FALSE(SocketOf(Child("ecnudpsrc").get())) << factory;
+  }
+}
+
+TEST_F(ScreamBin, PadsOfTheSinkAreItsChildren) {
+  Make("screamsink");
+  auto* proxy = GST_CHILD_PROXY(bin_.get());
+  const auto note =
+      +[](GstChildProxy*, GObject*, const gchar* name, std::string* to) { *to = name; };
+  g_signal_connect(proxy, "child-added", G_CALLBACK(note), &added_);
+  g_signal_connect(proxy, "child-removed", G_CALLBACK(note), &removed_);
+  EXPECT_EQ(gst_child_proxy_get_children_count(proxy), 3U);
+  To(GST_STATE_READY);
+  const gst::PadPtr ready(gst_element_request_pad_simple(bin_.get(), "sink_%u"));
+  EXPECT_FALSE(gst_pad_is_active(ready.get()));
+  To(GST_STATE_PAUSED);
+  const gst::PadPtr pad(gst_element_request_pad_simple(bin_.get(), "sink_%u"));
+  ASSERT_TRUE(pad);
+  EXPECT_TRUE(gst_pad_is_active(pad.get()));
+  EXPECT_EQ(added_, "sink_1");
+  ASSERT_EQ(gst_child_proxy_get_children_count(proxy), 5U);
+  for (guint i = 0; i < 6; ++i) {
+    const std::unique_ptr<GObject, void (*)(gpointer)> child(
+        gst_child_proxy_get_child_by_index(proxy, i), [](gpointer o) {
+          if (o != nullptr) g_object_unref(o);
+        });
+    EXPECT_EQ(GST_IS_ELEMENT(child.get()), i < 3) << i;
+    EXPECT_EQ(GST_IS_PAD(child.get()), i == 3 || i == 4) << i;
+  }
+  gst_element_release_request_pad(bin_.get(), pad.get());
+  EXPECT_EQ(removed_, "sink_1");
+  EXPECT_EQ(gst_child_proxy_get_children_count(proxy), 4U);
+  gst_element_release_request_pad(bin_.get(), ready.get());
+}
+
+TEST_F(ScreamBin, StatisticsHaveWhatTheSocketsCount) {
+  Make("screamsink");
+  EXPECT_EQ(Stats(bin_.get())["send-errors"], 0U);
+  g_signal_connect(bin_.get(), "notify::estimated-bitrate",
+                   G_CALLBACK(+[](GObject*, GParamSpec*, int* n) { ++*n; }), &notified_);
+  g_object_notify(G_OBJECT(Child("screamtx").get()), "estimated-bitrate");
+  EXPECT_EQ(notified_, 1);
+  Make("screamsrc");
+  EXPECT_EQ(Stats(bin_.get())["dropped-by-kernel"], 0U);
+}
+
+/// Feedback as the sink's socket gives it: alone or in a list.
+class ScreamFeedbackFilter : public ScreamBin {
+ protected:
+  void Start(const char* host, bool strict) {
+    Make("screamsink");
+    g_object_set(bin_.get(), "host", host, "port", 5004, "strict-feedback", strict, nullptr);
+    ASSERT_EQ(To(GST_STATE_PLAYING), GST_STATE_CHANGE_SUCCESS);
+    const gst::PadPtr behind(gst_element_get_static_pad(Child("screamtx").get(), "rtcp_sink"));
+    taken_ = 0;
+    const auto count = [](GstPad*, GstPadProbeInfo*, gpointer n) -> GstPadProbeReturn {
+      ++*static_cast<guint64*>(n);
+      return GST_PAD_PROBE_OK;
+    };
+    gst_pad_add_probe(behind.get(), GST_PAD_PROBE_TYPE_BUFFER, count, &taken_, nullptr);
+    // The source waits for its socket meanwhile.
+    pad_.reset(gst_element_get_static_pad(Child("ecnudpsrc").get(), "src"));
+    gst_pad_push_event(pad_.get(), gst_event_new_stream_start("feedback"));
+    const gst::CapsPtr caps(gst_caps_new_empty_simple("application/x-rtcp"));
+    gst_pad_push_event(pad_.get(), gst_event_new_caps(caps.get()));
+    GstSegment segment;
+    gst_segment_init(&segment, GST_FORMAT_TIME);
+    gst_pad_push_event(pad_.get(), gst_event_new_segment(&segment));
+  }
+  static GstBuffer* From(const char* address, guint port) {
+    GstBuffer* buffer = gst_buffer_new_allocate(nullptr, 12, nullptr);
+    gst_buffer_memset(buffer, 0, 0, 12);  // no RTCP
+    GSocketAddress* from = g_inet_socket_address_new_from_string(address, port);
+    gst_buffer_add_net_address_meta(buffer, from);
+    g_object_unref(from);
+    return buffer;
+  }
+  /// How many packets got through, and how many did not.
+  std::pair<guint64, guint64> Counts() {
+    return {taken_, Stats(bin_.get())["feedback-foreign-address"]};
+  }
+  using Pair = std::pair<guint64, guint64>;
+
+  gst::PadPtr pad_;
+  guint64 taken_ = 0;
+};
+
+TEST_F(ScreamFeedbackFilter, TakesItFromHostAndPortOrFromTheHost) {
+  for (const bool strict : {true, false}) {
+    Start("127.0.0.1", strict);
+    gst_pad_push(pad_.get(), From("127.0.0.1", 5004));
+    EXPECT_EQ(Counts(), Pair(1, 0));
+    gst_pad_push(pad_.get(), From("127.0.0.1", 5005));
+    EXPECT_EQ(Counts(), strict ? Pair(1, 1) : Pair(2, 0));
+    gst_pad_push(pad_.get(), From("127.0.0.2", 5004));
+    EXPECT_EQ(Counts(), strict ? Pair(1, 2) : Pair(2, 1));
+    gst_pad_push(pad_.get(), gst_buffer_new_allocate(nullptr, 12, nullptr));  // from nobody
+    EXPECT_EQ(Counts(), strict ? Pair(1, 3) : Pair(2, 2));
+    To(GST_STATE_NULL);
+    To(GST_STATE_READY);
+    EXPECT_EQ(Counts().second, 0U);
+    To(GST_STATE_NULL);
+  }
+}
+
+TEST_F(ScreamFeedbackFilter, LooksAtEachPacketOfAList) {
+  Start("127.0.0.1", true);
+  const auto push = [this](std::initializer_list<guint> ports) {
+    GstBufferList* list = gst_buffer_list_new();
+    for (const guint port : ports) gst_buffer_list_add(list, From("127.0.0.1", port));
+    gst_pad_push_list(pad_.get(), list);
+  };
+  push({5004, 1, 5004, 2, 5004});
+  EXPECT_EQ(Counts(), Pair(3, 2));
+  push({1, 5004});
+  EXPECT_EQ(Counts(), Pair(4, 3));
+  push({1, 2});
+  EXPECT_EQ(Counts(), Pair(4, 5));
+}
+
+TEST_F(ScreamFeedbackFilter, TakesItFromAnyReceiverOfAGroup) {
+  Start("239.255.7.7", true);
+  gst_pad_push(pad_.get(), From("127.0.0.2", 9));
+  EXPECT_EQ(Counts(), Pair(1, 0));
+}
+
+}  // namespace
+}  // namespace lidar::test
