@@ -50,6 +50,7 @@ class ScreamAux : public ::testing::Test {
   GstElement* element = gst_element_factory_make("screamaux", nullptr);
   Harness harness{gst_harness_new_with_element(element, "sink", "src")};
   guint16 seq = 65534;
+  guint8 extension = kExtension;  // of packets that Push() numbers
 
   void SetUp() override {
     // The name of the list's type is known once somebody used it.
@@ -73,7 +74,7 @@ class ScreamAux : public ::testing::Test {
       GstRTPBuffer rtp = GST_RTP_BUFFER_INIT;
       gst_rtp_buffer_map(buffer, GST_MAP_READWRITE, &rtp);
       const guint16 number = 0;
-      gst_rtp_buffer_add_extension_onebyte_header(&rtp, kExtension, &number, 2);
+      gst_rtp_buffer_add_extension_onebyte_header(&rtp, extension, &number, 2);
       gst_rtp_buffer_unmap(&rtp);
     }
     ASSERT_EQ(gst_harness_push(harness.get(), buffer), GST_FLOW_OK);
@@ -120,6 +121,77 @@ TEST_F(ScreamAux, ReportsAboutPacketsOfOthersAreNotBelieved) {
   EXPECT_EQ(Stat("packets-acked"), 0U);
   Tell({{0}, {1}, {2}});
   EXPECT_EQ(Stat("packets-acked"), 3U);
+}
+
+TEST_F(ScreamAux, TheSizeOfAPacketIsKnownAsLongAsAReportMayTellOfIt) {
+  for (int i = 0; i < 40; ++i) Push();
+  ASSERT_EQ(Leave(200), 40);
+  for (const guint size : {99U, 101U, 1200U}) Tell({{0, size}});
+  EXPECT_EQ(Stat("twcc-mismatched"), 3U);
+  EXPECT_EQ(Stat("packets-acked"), 0U);
+  // One wrong packet is enough.
+  Tell({{0}, {1}, {2, 99}});
+  EXPECT_EQ(Stat("twcc-mismatched"), 4U);
+  EXPECT_EQ(Stat("twcc-packets"), 0U);
+  Tell({{0, 0}, {1}});  // a session that does not tell the size
+  EXPECT_EQ(Stat("packets-acked"), 2U);
+  EXPECT_EQ(Stat("twcc-packets"), 2U);
+  Tell({{40}});  // not sent yet
+  EXPECT_EQ(Stat("twcc-mismatched"), 4U);
+}
+
+TEST_F(ScreamAux, FindsTheExtensionByItsUriHoweverCapsHaveIt) {
+  guint next = 0;
+  for (const std::string& extmap :
+       {std::string("extmap-14=(string)") + scream::kTwccUri,
+        std::string("extmap-1=(string)urn:other,extmap-14=(string)<\"\",\"") + scream::kTwccUri +
+            "\",\"\">",
+        std::string("extmap-14=(string)<\"sendrecv\",\"") + scream::kTwccUri + "\">"}) {
+    const guint64 before = Stat("packets-acked");
+    gst_harness_set_src_caps_str(harness.get(), (kRtpCaps + ("," + extmap)).c_str());
+    Push(false);
+    extension = 14;
+    Push();
+    extension = kExtension;
+    Push();  // of another extension now
+    ASSERT_EQ(Leave(), 3);
+    Tell({{next++}});
+    EXPECT_EQ(Stat("packets-acked"), before + 1) << extmap;
+  }
+  Tell({{next}});
+  EXPECT_EQ(Stat("packets-acked"), 3U);
+}
+
+TEST_F(ScreamAux, WarnsOnceOfStreamsThatPassBesideIt) {
+  GstBus* bus = gst_bus_new();
+  gst_element_set_bus(element, bus);
+  Push();
+  ASSERT_EQ(Leave(), 1);
+  for (int i = 0; i < 3; ++i) Tell({{0, 1200}});
+  EXPECT_TRUE(gst::MessagePtr(gst_bus_pop_filtered(bus, GST_MESSAGE_WARNING)));
+  EXPECT_FALSE(gst::MessagePtr(gst_bus_pop_filtered(bus, GST_MESSAGE_WARNING)));
+  gst_element_set_bus(element, nullptr);
+  gst_object_unref(bus);
+}
+
+TEST(ScreamAuxSettings, FitASessionWithTransportWideFeedback) {
+  int notified = 0;
+  const gst::ElementPtr element(
+      GST_ELEMENT(gst_object_ref_sink(gst_element_factory_make("screamaux", nullptr))));
+  const gst::ElementPtr tx(gst_bin_get_by_name(GST_BIN(element.get()), "screamtx"));
+  guint overhead = 0;
+  guint64 interval = 0;
+  gint ecn = -1;
+  g_object_get(tx.get(), "packet-overhead", &overhead, "feedback-interval", &interval, "ecn-mode",
+               &ecn, nullptr);
+  EXPECT_EQ(overhead, 20U + 8 + 10);  // IPv4, UDP and the tag of SRTP
+  EXPECT_EQ(interval, 500 * GST_MSECOND);
+  EXPECT_EQ(ecn, 0);
+  // Its estimate is that of screamtx.
+  g_signal_connect(element.get(), "notify::estimated-bitrate",
+                   G_CALLBACK(+[](GObject*, GParamSpec*, int* n) { ++*n; }), &notified);
+  g_object_notify(G_OBJECT(tx.get()), "estimated-bitrate");
+  EXPECT_EQ(notified, 1);
 }
 
 TEST_F(ScreamAux, AbsurdReportsDoNoHarm) {
@@ -201,6 +273,8 @@ TEST(ScreamAuxPads, AreNamedAfterTheSession) {
   g_object_set(element.get(), "session", 3, nullptr);
   EXPECT_TRUE(has("sink_3") && has("src_3"));
   EXPECT_FALSE(has("sink") || has("src"));
+  g_object_set(element.get(), "session", 0, nullptr);
+  EXPECT_TRUE(has("sink_0") && has("src_0"));
   g_object_set(element.get(), "session", -1, nullptr);
   EXPECT_TRUE(has("sink") && has("src"));
   EXPECT_EQ(element->numpads, 2);
