@@ -13,7 +13,7 @@ namespace {
 using Bytes = std::vector<std::uint8_t>;
 using Verdict = MessageReader::Verdict;
 
-ByteView View(const Bytes& bytes) { return {bytes.data(), bytes.size()}; }
+ByteView AsView(const Bytes& bytes) { return {bytes.data(), bytes.size()}; }
 
 class CloudMessages : public ::testing::Test {
  protected:
@@ -24,8 +24,8 @@ class CloudMessages : public ::testing::Test {
   }
   Verdict Read(std::size_t size = 24) {
     const Bytes points(size, 1);
-    cloud_.data = View(points);
-    return reader_.Read(View(cdr::WritePointCloud2(cloud_)));
+    cloud_.data = AsView(points);
+    return reader_.Read(AsView(cdr::WritePointCloud2(cloud_)));
   }
   /// A field of the caps that are new; empty where none are.
   std::string NewField(const char* name) {
@@ -40,8 +40,10 @@ class CloudMessages : public ::testing::Test {
   cdr::PointCloud2 cloud_;
   CapsPtr wanted_;
   MessageReader reader_{cdr::RosType::kPointCloud2, [this] {
+                          ++asked_;
                           return CapsPtr(wanted_ ? gst_caps_ref(wanted_.get()) : nullptr);
                         }};
+  int asked_ = 0;  // what downstream takes
 };
 
 TEST_F(CloudMessages, HaveNewCapsWhereAnythingOfThemChanges) {
@@ -59,6 +61,91 @@ TEST_F(CloudMessages, HaveNewCapsWhereAnythingOfThemChanges) {
   cloud_.layout.row_step = 36;
   ASSERT_EQ(Read(36), Verdict::kBuffer);
   EXPECT_EQ(NewField("width"), "3");
+}
+
+TEST_F(CloudMessages, AskDownstreamOnlyWhereSomethingChanged) {
+  for (int i = 0; i < 3; ++i) ASSERT_EQ(Read(), Verdict::kBuffer);
+  const int once = asked_;
+  cloud_.header.frame_id = "other";
+  cloud_.is_dense = false;
+  for (int i = 0; i < 3; ++i) ASSERT_EQ(Read(), Verdict::kBuffer);
+  EXPECT_EQ(asked_, 2 * once);
+}
+
+TEST_F(CloudMessages, AreAdaptedAnewAfterOnesThatWereRefused) {
+  ASSERT_EQ(Read(), Verdict::kBuffer);
+  wanted_.reset(gst_caps_from_string("application/x-pointcloud2,width=9"));
+  cloud_.layout.width = 3;
+  cloud_.layout.row_step = 36;
+  EXPECT_EQ(Read(36), Verdict::kNotNegotiated);
+  cloud_.layout.width = 2;
+  cloud_.layout.row_step = 24;
+  EXPECT_EQ(Read(), Verdict::kNotNegotiated);
+}
+
+TEST_F(CloudMessages, OfFieldsThatNobodyKnowsAreDamaged) {
+  for (auto& field : cloud_.layout.fields) field.datatype = 99;
+  EXPECT_EQ(Read(), Verdict::kDamaged);
+  EXPECT_NE(reader_.why(), "");
+}
+
+TEST_F(CloudMessages, MayNameAFrameThatIsNoText) {
+  cloud_.header.frame_id = "\xff";
+  ASSERT_EQ(Read(), Verdict::kBuffer);
+  EXPECT_TRUE(g_utf8_validate(NewField("frame-id").c_str(), -1, nullptr));
+}
+
+/// Reads `message` and gives the buffer and a text of its caps.
+struct Taken {
+  BufferPtr buffer;
+  std::string caps;
+};
+Taken Take(cdr::RosType type, const Bytes& message) {
+  MessageReader reader(type, [] { return CapsPtr(); });
+  if (reader.Read(AsView(message)) != Verdict::kBuffer) return {};
+  const CapsPtr caps = reader.TakeNewCaps();
+  const StringPtr text(gst_caps_to_string(caps.get()));
+  return {reader.TakeBuffer(), text.get()};
+}
+
+TEST(MotionMessages, HaveTheirStampsAndFrames) {
+  const cdr::Header header{Time{} + Duration{42}, "here"};
+  cdr::Imu imu;
+  imu.header = header;
+  const Taken sample = Take(cdr::RosType::kImu, cdr::WriteImu(imu));
+  ASSERT_TRUE(sample.buffer);
+  EXPECT_EQ(gst_lidar_buffer_get_capture_time(sample.buffer.get()), 42U);
+  EXPECT_NE(sample.caps.find("frame-id=(string)here"), std::string::npos);
+  cdr::Odometry odometry;
+  odometry.header = header;
+  odometry.child_frame_id = "there";
+  odometry.pose_covariance = CovarianceOf(GST_LIDAR_TRACKING_DEGENERATE);
+  const Taken pose = Take(cdr::RosType::kOdometry, cdr::WriteOdometry(odometry));
+  ASSERT_TRUE(pose.buffer);
+  EXPECT_EQ(gst_lidar_buffer_get_capture_time(pose.buffer.get()), 42U);
+  EXPECT_NE(pose.caps.find(" frame-id=(string)here"), std::string::npos);
+  EXPECT_NE(pose.caps.find("child-frame-id=(string)there"), std::string::npos);
+  guint8 tracking = 0;
+  gst_buffer_extract(pose.buffer.get(), 56, &tracking, 1);
+  EXPECT_EQ(tracking, GST_LIDAR_TRACKING_DEGENERATE);
+  cdr::TransformStamped first, second;
+  first.header = header;
+  second.header.stamp = Time{} + Duration{43};
+  const Taken transforms = Take(cdr::RosType::kTransforms, cdr::WriteTransforms({first, second}));
+  ASSERT_TRUE(transforms.buffer);
+  EXPECT_EQ(gst_lidar_buffer_get_capture_time(transforms.buffer.get()), 42U);
+}
+
+TEST(MotionMessages, ThatAreCutAreDamagedAndSayWhatTheyAreNot) {
+  const auto why = [](cdr::RosType type, Bytes message) {
+    message.resize(message.size() / 2);
+    MessageReader reader(type, [] { return CapsPtr(); });
+    EXPECT_EQ(reader.Read(AsView(message)), Verdict::kDamaged);
+    return reader.why();
+  };
+  EXPECT_EQ(why(cdr::RosType::kImu, cdr::WriteImu({})), "the message is truncated or is no Imu");
+  EXPECT_EQ(why(cdr::RosType::kOdometry, cdr::WriteOdometry({})),
+            "the message is truncated or is no Odometry");
 }
 
 TEST_F(CloudMessages, HaveTheirStampUnlessItIsZero) {
@@ -102,11 +189,11 @@ TEST(TransformMessages, AreDamagedWhereTheyAreCutAndEmptyWhereTheySayNothing) {
   MessageReader reader(
       cdr::RosType::kTransforms, [] { return CapsPtr(); }, true);
   Bytes message = cdr::WriteTransforms({cdr::TransformStamped{}});
-  EXPECT_EQ(reader.Read(View(message)), Verdict::kBuffer);
+  EXPECT_EQ(reader.Read(AsView(message)), Verdict::kBuffer);
   message.pop_back();
-  EXPECT_EQ(reader.Read(View(message)), Verdict::kDamaged);
+  EXPECT_EQ(reader.Read(AsView(message)), Verdict::kDamaged);
   EXPECT_EQ(reader.why(), "the message is truncated or is no TFMessage");
-  EXPECT_EQ(reader.Read(View(cdr::WriteTransforms({}))), Verdict::kEmpty);
+  EXPECT_EQ(reader.Read(AsView(cdr::WriteTransforms({}))), Verdict::kEmpty);
 }
 
 TEST(Covariances, OfPosesThatAreNotTrackedAreLarge) {

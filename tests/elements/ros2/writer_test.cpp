@@ -1,0 +1,231 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// What buffers become as messages, and what the settings become for DDS, without a network.
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+
+#include "ext/ros2/message_writer.h"
+#include "ext/ros2/ros_settings.h"
+#include "gst/common/gstlidar.h"
+#include "gst/common/refs.h"
+#include "src/cdr/motion_samples.h"
+
+namespace lidar::gst {
+namespace {
+
+using Message = std::vector<std::uint8_t>;
+
+constexpr const char* kCloud =
+    "application/x-pointcloud2,width=2,height=1,point-step=12,is-dense=true,"
+    "fields=(string)\"x:F32:0,y:F32:4,z:F32:8\"";
+
+ByteView Whole(const Message& bytes) { return {bytes.data(), bytes.size()}; }
+
+GstBuffer* Zeros(gsize size) {
+  GstBuffer* buffer = gst_buffer_new_allocate(nullptr, size, nullptr);
+  gst_buffer_memset(buffer, 0, 0, size);
+  return buffer;
+}
+
+class WrittenMessages : public ::testing::Test {
+ protected:
+  bool SetCaps(MessageWriter* writer, const std::string& text) {
+    const CapsPtr caps(gst_caps_from_string(text.c_str()));
+    return writer->SetCaps(caps.get());
+  }
+  bool Write(MessageWriter* writer, GstBuffer* buffer) {
+    const BufferPtr owner(buffer);
+    messages_.clear();
+    return writer->Write(buffer, settings_, now_, [this](const std::vector<ByteView>& pieces) {
+      Message all;
+      for (const ByteView& piece : pieces) all.insert(all.end(), piece.begin(), piece.end());
+      messages_.push_back(all);
+    });
+  }
+  cdr::Odometry WritePose(MessageWriter* writer, GstLidarTracking tracking) {
+    GstBuffer* pose = Zeros(64);
+    const guint8 byte = tracking;
+    gst_buffer_fill(pose, 56, &byte, 1);
+    EXPECT_TRUE(Write(writer, pose));
+    return cdr::ReadOdometry(Whole(messages_.at(0))).value_or(cdr::Odometry());
+  }
+
+  MessageSettings settings_;
+  Time now_ = Time{} + Duration{77};
+  std::vector<Message> messages_;
+};
+
+TEST_F(WrittenMessages, HaveTheTypeThatTheirCapsUsuallyBecome) {
+  const auto usual = [](const char* text) {
+    const CapsPtr caps(gst_caps_from_string(text));
+    return MessageWriter::UsualType(caps.get());
+  };
+  EXPECT_EQ(usual("application/x-pointcloud2"), cdr::RosType::kPointCloud2);
+  EXPECT_EQ(usual("application/x-imu"), cdr::RosType::kImu);
+  EXPECT_EQ(usual("application/x-odometry"), cdr::RosType::kOdometry);
+  EXPECT_EQ(usual("video/x-raw"), std::nullopt);
+}
+
+TEST_F(WrittenMessages, OfAnImuNeedTheFieldsThatWeKnowOrNone) {
+  MessageWriter writer(cdr::RosType::kImu);
+  EXPECT_TRUE(SetCaps(&writer, "application/x-imu"));
+  EXPECT_TRUE(SetCaps(&writer,
+                      std::string("application/x-imu,fields=(string)\"") + cdr::kImuFields + "\""));
+  EXPECT_FALSE(SetCaps(&writer, "application/x-imu,fields=(string)\"t:U64:0\""));
+}
+
+TEST_F(WrittenMessages, OfAnImuHaveTheTimesOfTheirSamples) {
+  MessageWriter writer(cdr::RosType::kImu);
+  ASSERT_TRUE(SetCaps(&writer, "application/x-imu"));
+  GstBuffer* samples = Zeros(64);
+  const guint8 time = 5;
+  gst_buffer_fill(samples, 32, &time, 1);
+  gst_lidar_buffer_set_capture_time(samples, 1'000);
+  ASSERT_TRUE(Write(&writer, samples));
+  ASSERT_EQ(messages_.size(), 2U);
+  const auto second = cdr::ReadImu(Whole(messages_[1]));
+  ASSERT_TRUE(second);
+  EXPECT_EQ(second->header.stamp, Time{} + Duration{5});
+  EXPECT_EQ(second->header.frame_id, "imu");
+  EXPECT_FALSE(Write(&writer, gst_buffer_new()));
+}
+
+TEST_F(WrittenMessages, HaveTheTimeOfTheirBufferOrThePresent) {
+  MessageWriter writer(cdr::RosType::kPointCloud2);
+  ASSERT_TRUE(SetCaps(&writer, kCloud));
+  ASSERT_TRUE(Write(&writer, Zeros(24)));
+  EXPECT_EQ(cdr::ReadPointCloud2(Whole(messages_[0]))->header.stamp, now_);
+  GstBuffer* timed = Zeros(24);
+  gst_lidar_buffer_set_capture_time(timed, 55);
+  ASSERT_TRUE(Write(&writer, timed));
+  const auto cloud = cdr::ReadPointCloud2(Whole(messages_[0]));
+  ASSERT_TRUE(cloud);
+  EXPECT_EQ(cloud->header.stamp, Time{} + Duration{55});
+  EXPECT_EQ(cloud->header.frame_id, "lidar");
+  EXPECT_TRUE(cloud->is_dense);
+}
+
+TEST_F(WrittenMessages, OfCloudsAreAsLargeAsTheirCapsSayOfOneRowAnySize) {
+  const auto written = [&](const std::string& caps, gsize size) {
+    MessageWriter writer(cdr::RosType::kPointCloud2);
+    EXPECT_TRUE(SetCaps(&writer, caps));
+    return Write(&writer, Zeros(size));
+  };
+  const std::string row =
+      "application/x-pointcloud2,width=2,height=1,point-step=12,"
+      "fields=(string)\"x:F32:0,y:F32:4,z:F32:8\"";
+  EXPECT_TRUE(written(row, 36));
+  const auto cloud = cdr::ReadPointCloud2(Whole(messages_[0]));
+  ASSERT_TRUE(cloud);
+  EXPECT_EQ(cloud->layout.width, 3U);
+  EXPECT_EQ(cloud->layout.row_step, 36U);
+  for (const gsize size : {13U, 25U, 30U, 35U}) EXPECT_FALSE(written(row, size)) << size;
+  const std::string rows =
+      "application/x-pointcloud2,width=2,height=2,point-step=12,"
+      "fields=(string)\"x:F32:0,y:F32:4,z:F32:8\"";
+  EXPECT_TRUE(written(rows, 48));
+  for (const gsize size : {24U, 49U, 72U}) EXPECT_FALSE(written(rows, size)) << size;
+  // Where the width is not known it follows from the size.
+  const std::string open =
+      "application/x-pointcloud2,height=2,point-step=12,"
+      "fields=(string)\"x:F32:0,y:F32:4,z:F32:8\"";
+  EXPECT_TRUE(written(open, 72));
+  EXPECT_EQ(cdr::ReadPointCloud2(Whole(messages_[0]))->layout.width, 3U);
+  EXPECT_FALSE(written(open, 25));
+}
+
+TEST_F(WrittenMessages, OfOdometryNameFramesBySettingElseByCapsElseAsUsual) {
+  MessageWriter writer(cdr::RosType::kOdometry);
+  ASSERT_TRUE(SetCaps(&writer, "application/x-odometry"));
+  auto pose = WritePose(&writer, GST_LIDAR_TRACKING_OK);
+  EXPECT_EQ(pose.header.frame_id, "odom");
+  EXPECT_EQ(pose.child_frame_id, "lidar");
+  ASSERT_TRUE(SetCaps(&writer, "application/x-odometry,frame-id=map,child-frame-id=base"));
+  pose = WritePose(&writer, GST_LIDAR_TRACKING_OK);
+  EXPECT_EQ(pose.header.frame_id, "map");
+  EXPECT_EQ(pose.child_frame_id, "base");
+  settings_.frames = {"earth", "os"};
+  pose = WritePose(&writer, GST_LIDAR_TRACKING_OK);
+  EXPECT_EQ(pose.header.frame_id, "earth");
+  EXPECT_EQ(pose.child_frame_id, "os");
+}
+
+TEST_F(WrittenMessages, OfPosesHaveTheVarianceOfTheSettingsWhereTheyAreTracked) {
+  MessageWriter writer(cdr::RosType::kOdometry);
+  ASSERT_TRUE(SetCaps(&writer, "application/x-odometry"));
+  settings_.position_variance = 0.25;
+  settings_.orientation_variance = 0.5;
+  for (const auto tracking : {GST_LIDAR_TRACKING_STARTED, GST_LIDAR_TRACKING_OK}) {
+    const auto pose = WritePose(&writer, tracking);
+    EXPECT_EQ(pose.pose_covariance[0], 0.25);
+    EXPECT_EQ(pose.pose_covariance[35], 0.5);
+    EXPECT_EQ(pose.twist_covariance[0], 1e6);
+  }
+  EXPECT_EQ(WritePose(&writer, GST_LIDAR_TRACKING_DEGENERATE).pose_covariance[0], 1e3);
+  EXPECT_EQ(WritePose(&writer, GST_LIDAR_TRACKING_LOST).pose_covariance[35], 1e6);
+}
+
+class RosOptions : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    const char* domain = std::getenv("ROS_DOMAIN_ID");
+    before_ = domain != nullptr ? domain : "";
+    gst_object_ref_sink(element_.get());
+  }
+  void TearDown() override { g_setenv("ROS_DOMAIN_ID", before_.c_str(), TRUE); }
+  std::optional<dds::EndpointOptions> Options() {
+    return ToOptions(element_.get(), settings_, cdr::RosType::kImu);
+  }
+  /// The domain that the variable names; -1 where it names none.
+  int DomainOf(const char* variable) {
+    g_setenv("ROS_DOMAIN_ID", variable, TRUE);
+    const auto options = Options();
+    return options ? static_cast<int>(options->domain) : -1;
+  }
+
+  ElementPtr element_{gst_element_factory_make("fakesink", "my-sink")};
+  RosSettings settings_;
+  std::string before_;
+};
+
+TEST_F(RosOptions, TakeTheDomainOfTheVariableWhereNobodySaysOtherwise) {
+  EXPECT_EQ(DomainOf(""), 0);
+  EXPECT_EQ(DomainOf("7"), 7);
+  EXPECT_EQ(DomainOf("232"), 232);
+  for (const char* bad : {"233", "-1", "7x", "x"}) EXPECT_EQ(DomainOf(bad), -1) << bad;
+  g_unsetenv("ROS_DOMAIN_ID");
+  EXPECT_EQ(Options()->domain, 0U);
+  settings_.domain_id = 0;
+  EXPECT_EQ(DomainOf("7"), 0);
+  EXPECT_EQ(DomainOf("x"), 0);  // nobody asks it
+  settings_.domain_id = 9;
+  EXPECT_EQ(DomainOf("7"), 9);
+}
+
+TEST_F(RosOptions, AreWhatTheSettingsSay) {
+  settings_.depth = 8;
+  settings_.topic = "/imu";
+  auto options = Options();
+  ASSERT_TRUE(options);
+  EXPECT_EQ(options->topic, "rt/imu");
+  EXPECT_EQ(options->type, cdr::RosType::kImu);
+  EXPECT_EQ(options->node.name, "my_sink");
+  EXPECT_EQ(options->depth, 8U);
+  EXPECT_FALSE(options->reliable);
+  EXPECT_FALSE(options->transient);
+  EXPECT_EQ(options->gid_size, 16U);
+  EXPECT_TRUE(options->tells_type_hash);
+  settings_.qos = RosQos::kReliable;
+  settings_.distro = RosDistro::kHumble;
+  settings_.node_name = "/robot/edge";
+  options = Options();
+  ASSERT_TRUE(options);
+  EXPECT_TRUE(options->reliable);
+  EXPECT_EQ(options->gid_size, 24U);
+  EXPECT_FALSE(options->tells_type_hash);
+  EXPECT_EQ(options->node.name_space, "/robot");
+  EXPECT_EQ(options->node.name, "edge");
+}
+
+}  // namespace
+}  // namespace lidar::gst
