@@ -11,82 +11,12 @@
 #include <thread>
 #include <vector>
 
-#include "gst/common/gstlidar.h"
-#include "gst/common/refs.h"
-#include "tests/support/harness.h"
+#include "tests/elements/ecnudp/ecnudp_support.h"
 
 namespace lidar::gst {
 namespace {
 
 using test::Harness;
-
-struct ObjectFree {
-  void operator()(gpointer p) const { g_object_unref(p); }
-};
-template <class T>
-using Object = std::unique_ptr<T, ObjectFree>;
-
-template <class T>
-Object<T> GetObject(GstHarness* h, const char* property) {
-  T* value = nullptr;
-  g_object_get(h->element, property, &value, nullptr);
-  return Object<T>(value);
-}
-
-guint LocalPort(GstHarness* h) {
-  const auto socket = GetObject<GSocket>(h, "used-socket");
-  if (!socket) return 0;
-  const Object<GSocketAddress> address(g_socket_get_local_address(socket.get(), nullptr));
-  return g_inet_socket_address_get_port(G_INET_SOCKET_ADDRESS(address.get()));
-}
-
-guint64 Stat(GstHarness* h, const char* field) {
-  GstStructure* stats = nullptr;
-  g_object_get(h->element, "stats", &stats, nullptr);
-  const StructurePtr owner(stats);
-  guint64 value = 0;
-  gst_structure_get_uint64(stats, field, &value);
-  return value;
-}
-
-GstBuffer* Payload(const std::string& text) {
-  GstBuffer* buffer = gst_buffer_new_allocate(nullptr, text.size(), nullptr);
-  gst_buffer_fill(buffer, 0, text.data(), text.size());
-  return buffer;
-}
-
-std::string Text(GstBuffer* buffer) {
-  std::string text(gst_buffer_get_size(buffer), '\0');
-  gst_buffer_extract(buffer, 0, text.data(), text.size());
-  return text;
-}
-
-/// A sink that is not started yet: a harness starts it at once.
-GstElement* SinkElement() {
-  GstElement* sink = gst_element_factory_make("ecnudpsink", nullptr);
-  g_object_set(sink, "sync", FALSE, "async", FALSE, nullptr);
-  return sink;
-}
-
-Harness Wrap(GstElement* sink) {
-  Harness harness(gst_harness_new_with_element(sink, "sink", nullptr));
-  gst_object_unref(sink);
-  gst_harness_set_src_caps_str(harness.get(), "application/x-rtp");
-  return harness;
-}
-
-Harness NewSink(const char* host, guint port) {
-  GstElement* sink = SinkElement();
-  g_object_set(sink, "host", host, "port", port, nullptr);
-  return Wrap(sink);
-}
-
-Harness NewSource(const char* address = nullptr) {
-  Harness src(gst_harness_new_with_padnames("ecnudpsrc", nullptr, "src"));
-  g_object_set(src->element, "port", 0, "address", address, nullptr);
-  gst_harness_play(src.get());
-  return src;
-}
 
 struct Family {
   const char* host;
@@ -343,49 +273,6 @@ TEST(EcnUdp, WorksAgainAfterEveryStateCycle) {
     ASSERT_TRUE(got) << cycle;
     ASSERT_EQ(gst_element_set_state(src->element, GST_STATE_NULL), GST_STATE_CHANGE_SUCCESS);
     EXPECT_FALSE(GetObject<GSocket>(src.get(), "used-socket"));
-  }
-}
-
-TEST(EcnUdp, AGivenSocketStaysOpenWhereAsked) {
-  Harness src(gst_harness_new_with_padnames("ecnudpsrc", nullptr, "src"));
-  const Object<GSocket> socket(
-      g_socket_new(G_SOCKET_FAMILY_IPV4, G_SOCKET_TYPE_DATAGRAM, G_SOCKET_PROTOCOL_UDP, nullptr));
-  const Object<GInetAddress> any(g_inet_address_new_loopback(G_SOCKET_FAMILY_IPV4));
-  const Object<GSocketAddress> local(g_inet_socket_address_new(any.get(), 0));
-  ASSERT_TRUE(g_socket_bind(socket.get(), local.get(), FALSE, nullptr));
-  g_object_set(src->element, "socket", socket.get(), "close-socket", FALSE, nullptr);
-  gst_harness_play(src.get());
-  gst_element_set_state(src->element, GST_STATE_NULL);
-  EXPECT_FALSE(g_socket_is_closed(socket.get()));
-  g_object_set(src->element, "close-socket", TRUE, nullptr);
-  gst_harness_play(src.get());
-  gst_element_set_state(src->element, GST_STATE_NULL);
-  EXPECT_TRUE(g_socket_is_closed(socket.get()));
-}
-
-TEST(EcnUdp, ASocketThatIsReplacedWhileItIsUsedIsTreatedAsItWasGiven) {
-  const auto bound = [] {
-    Object<GSocket> socket(
-        g_socket_new(G_SOCKET_FAMILY_IPV4, G_SOCKET_TYPE_DATAGRAM, G_SOCKET_PROTOCOL_UDP, nullptr));
-    const Object<GInetAddress> any(g_inet_address_new_loopback(G_SOCKET_FAMILY_IPV4));
-    const Object<GSocketAddress> local(g_inet_socket_address_new(any.get(), 0));
-    EXPECT_TRUE(g_socket_bind(socket.get(), local.get(), FALSE, nullptr));
-    return socket;
-  };
-  for (const char* factory : {"ecnudpsrc", "ecnudpsink"}) {
-    const ElementPtr element(gst_element_factory_make(factory, nullptr));
-    const auto first = bound();
-    const auto second = bound();
-    const auto used_between = [&](GSocket* begin, GSocket* end) {
-      g_object_set(element.get(), "socket", begin, "close-socket", FALSE, nullptr);
-      ASSERT_NE(gst_element_set_state(element.get(), GST_STATE_PAUSED), GST_STATE_CHANGE_FAILURE);
-      g_object_set(element.get(), "socket", end, nullptr);
-      gst_element_set_state(element.get(), GST_STATE_NULL);
-    };
-    used_between(first.get(), second.get());
-    EXPECT_FALSE(g_socket_is_closed(first.get())) << factory;
-    used_between(first.get(), nullptr);
-    EXPECT_FALSE(g_socket_is_closed(first.get())) << factory;
   }
 }
 

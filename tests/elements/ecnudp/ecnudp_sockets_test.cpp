@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Sockets that an application gives to ecnudpsink and ecnudpsrc.
+#include <gtest/gtest.h>
+
+#include "tests/elements/ecnudp/ecnudp_support.h"
+
+namespace lidar::gst {
+namespace {
+
+using test::Harness;
+
+/// A socket of an application.
+Object<GSocket> Bound() {
+  Object<GSocket> socket(
+      g_socket_new(G_SOCKET_FAMILY_IPV4, G_SOCKET_TYPE_DATAGRAM, G_SOCKET_PROTOCOL_UDP, nullptr));
+  const Object<GInetAddress> any(g_inet_address_new_loopback(G_SOCKET_FAMILY_IPV4));
+  const Object<GSocketAddress> local(g_inet_socket_address_new(any.get(), 0));
+  EXPECT_TRUE(g_socket_bind(socket.get(), local.get(), FALSE, nullptr));
+  return socket;
+}
+
+TEST(EcnUdpSockets, AGivenSocketStaysOpenWhereAsked) {
+  Harness src(gst_harness_new_with_padnames("ecnudpsrc", nullptr, "src"));
+  const auto socket = Bound();
+  g_object_set(src->element, "socket", socket.get(), "close-socket", FALSE, nullptr);
+  gst_harness_play(src.get());
+  gst_element_set_state(src->element, GST_STATE_NULL);
+  EXPECT_FALSE(g_socket_is_closed(socket.get()));
+  g_object_set(src->element, "close-socket", TRUE, nullptr);
+  gst_harness_play(src.get());
+  gst_element_set_state(src->element, GST_STATE_NULL);
+  EXPECT_TRUE(g_socket_is_closed(socket.get()));
+}
+
+TEST(EcnUdpSockets, ASocketThatIsReplacedWhileItIsUsedIsTreatedAsItWasGiven) {
+  for (const char* factory : {"ecnudpsrc", "ecnudpsink"}) {
+    const ElementPtr element(gst_element_factory_make(factory, nullptr));
+    const auto first = Bound();
+    const auto second = Bound();
+    const auto used_between = [&](GSocket* begin, GSocket* end) {
+      g_object_set(element.get(), "socket", begin, "close-socket", FALSE, nullptr);
+      ASSERT_NE(gst_element_set_state(element.get(), GST_STATE_PAUSED), GST_STATE_CHANGE_FAILURE);
+      g_object_set(element.get(), "socket", end, nullptr);
+      gst_element_set_state(element.get(), GST_STATE_NULL);
+    };
+    used_between(first.get(), second.get());
+    EXPECT_FALSE(g_socket_is_closed(first.get())) << factory;
+    used_between(first.get(), nullptr);
+    EXPECT_FALSE(g_socket_is_closed(first.get())) << factory;
+  }
+}
+
+}  // namespace
+}  // namespace lidar::gst

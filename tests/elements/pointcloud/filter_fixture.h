@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// pointcloudfilter, alone.
+#pragma once
+#include <gtest/gtest.h>
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "gst/common/cloud_info.h"
+#include "gst/common/gstlidar.h"
+#include "tests/support/harness.h"
+
+namespace lidar::gst {
+
+class Filter : public ::testing::Test {
+ protected:
+  /// `properties` as gst-launch has them.
+  void Start(const std::string& properties, const std::string& caps) {
+    const ElementPtr filter(gst_parse_launch(("pointcloudfilter " + properties).c_str(), nullptr));
+    h_.reset(gst_harness_new_with_element(filter.get(), "sink", "src"));
+    GstBus* bus = gst_bus_new();
+    gst_element_set_bus(h_->element, bus);
+    gst_object_unref(bus);
+    gst_harness_set_src_caps_str(h_.get(), caps.c_str());
+  }
+  std::string Error() {
+    GstBus* bus = gst_element_get_bus(h_->element);
+    const MessagePtr message(gst_bus_pop_filtered(bus, GST_MESSAGE_ERROR));
+    gst_object_unref(bus);
+    if (!message) return "";
+    GError* raw = nullptr;
+    gst_message_parse_error(message.get(), &raw, nullptr);
+    const ErrorPtr error(raw);
+    return error->message;
+  }
+  GstFlowReturn Push(const std::vector<std::uint8_t>& bytes, guint first_column = 0) {
+    GstBuffer* buffer = gst_buffer_new_memdup(bytes.data(), bytes.size());
+    GST_BUFFER_PTS(buffer) = 0;
+    GST_BUFFER_DURATION(buffer) = GST_SECOND;
+    const GstLidarSlice slice{1, 0, 2, first_column};
+    gst_lidar_buffer_set_slice(buffer, &slice);
+    gst_lidar_buffer_set_capture_time(buffer, 77);
+    return gst_harness_push(h_.get(), buffer);
+  }
+  std::optional<CloudInfo> Info() {
+    const CapsPtr caps(gst_pad_get_current_caps(h_->sinkpad));
+    return CloudInfo::FromCaps(caps.get());
+  }
+
+  test::Harness h_;
+};
+
+inline std::string CloudCaps(const std::string& fields, int step, int width, int height,
+                             const std::string& more = "") {
+  return "application/x-pointcloud2,width=" + std::to_string(width) +
+         ",height=" + std::to_string(height) + ",point-step=" + std::to_string(step) +
+         ",fields=(string)\"" + fields + "\"" + more;
+}
+
+}  // namespace lidar::gst

@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// pointcloudparse behind a source of bytes.
+#pragma once
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "gst/common/cloud_info.h"
+#include "tests/support/harness.h"
+
+namespace lidar::gst {
+
+inline constexpr const char* kKitti =
+    "application/x-pointcloud2,height=1,point-step=16,"
+    "fields=(string)\"x:F32:0,y:F32:4,z:F32:8,intensity:F32:12\",framerate=10/1";
+
+inline BufferPtr Bytes(gsize size, guint8 value = 7) {
+  BufferPtr buffer(gst_buffer_new_allocate(nullptr, size, nullptr));
+  gst_buffer_memset(buffer.get(), 0, value, size);
+  return buffer;
+}
+
+class Parse : public ::testing::Test {
+ protected:
+  /// A source of bytes, as files are.
+  void Start(const std::string& caps, const char* element = "pointcloudparse") {
+    h_.reset(gst_harness_new_parse(element));
+    gst_harness_play(h_.get());
+    gst_pad_push_event(h_->srcpad, gst_event_new_stream_start("test"));
+    const CapsPtr parsed(gst_caps_from_string(caps.c_str()));
+    gst_pad_push_event(h_->srcpad, gst_event_new_caps(parsed.get()));
+    PushSegment(GST_FORMAT_BYTES);
+  }
+  void PushSegment(GstFormat format) {
+    GstSegment segment;
+    gst_segment_init(&segment, format);
+    gst_pad_push_event(h_->srcpad, gst_event_new_segment(&segment));
+  }
+  GstFlowReturn Push(BufferPtr buffer) { return gst_pad_push(h_->srcpad, buffer.release()); }
+  BufferPtr Pull() { return BufferPtr(gst_harness_pull(h_.get())); }
+  guint Width() {
+    const CapsPtr caps(gst_pad_get_current_caps(h_->sinkpad));
+    return CloudInfo::FromCaps(caps.get())->width;
+  }
+  std::string ErrorText(GstMessageType type) {
+    GstBus* bus = gst_element_get_bus(h_->element);
+    const MessagePtr message(bus == nullptr ? nullptr : gst_bus_pop_filtered(bus, type));
+    if (bus != nullptr) gst_object_unref(bus);
+    if (!message) return "";
+    GError* raw = nullptr;
+    if (type == GST_MESSAGE_ERROR)
+      gst_message_parse_error(message.get(), &raw, nullptr);
+    else
+      gst_message_parse_warning(message.get(), &raw, nullptr);
+    const ErrorPtr error(raw);
+    return error->message;
+  }
+  void WatchMessages() {
+    GstBus* bus = gst_bus_new();
+    gst_element_set_bus(h_->element, bus);
+    gst_object_unref(bus);
+  }
+
+  test::Harness h_;
+};
+
+}  // namespace lidar::gst

@@ -1,0 +1,212 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Seeks and segments of pointcloudparse.
+#include <cstdio>
+#include <fstream>
+
+#include "gst/common/buffer_map.h"
+#include "tests/elements/pointcloud/parse_fixture.h"
+
+namespace lidar::gst {
+namespace {
+
+/// A source of bytes that can seek and is under way: two clouds come while it is told to.
+class ParseUnderWay : public Parse {
+ protected:
+  static constexpr gsize kCloud = 160;
+
+  ParseUnderWay() {
+    Start("application/x-pointcloud2,width=5,height=2,point-step=16,fields=(string)\"x:F32:0\"");
+    gst_pad_set_element_private(h_->srcpad, this);
+    gst_pad_set_event_function(h_->srcpad, Upstream);
+  }
+  void PushClouds(int count) {
+    for (int i = 0; i < count; ++i) ASSERT_EQ(Push(Bytes(kCloud)), GST_FLOW_OK);
+  }
+  static gboolean Upstream(GstPad* pad, GstObject*, GstEvent* raw) {
+    auto* self = static_cast<ParseUnderWay*>(gst_pad_get_element_private(pad));
+    const EventPtr event(raw);
+    if (GST_EVENT_TYPE(raw) != GST_EVENT_SEEK) return TRUE;
+    self->PushClouds(2);
+    gint64 start = 0;
+    GstSeekFlags flags = GST_SEEK_FLAG_NONE;
+    gst_event_parse_seek(raw, nullptr, nullptr, &flags, nullptr, &start, nullptr, nullptr);
+    if (flags & GST_SEEK_FLAG_FLUSH) {
+      gst_pad_push_event(pad, gst_event_new_flush_start());
+      gst_pad_push_event(pad, gst_event_new_flush_stop(TRUE));
+    }
+    self->PushBytesFrom(static_cast<guint64>(start), gst_event_get_seqnum(raw));
+    return TRUE;
+  }
+  void PushBytesFrom(guint64 start, guint32 seqnum) {
+    GstSegment segment;
+    gst_segment_init(&segment, GST_FORMAT_BYTES);
+    segment.start = segment.time = segment.position = start;
+    GstEvent* event = gst_event_new_segment(&segment);
+    gst_event_set_seqnum(event, seqnum);
+    gst_pad_push_event(h_->srcpad, event);
+  }
+  bool Seek(GstSeekFlags flags, gint64 start) {
+    return gst_pad_push_event(
+               h_->sinkpad, gst_event_new_seek(1, GST_FORMAT_TIME, flags, GST_SEEK_TYPE_SET, start,
+                                               GST_SEEK_TYPE_NONE, 0)) != FALSE;
+  }
+  /// When the last cloud that came is shown.
+  GstClockTime RunningTime() {
+    BufferPtr last;
+    while (BufferPtr next{gst_harness_try_pull(h_.get())}) last = std::move(next);
+    const EventPtr event(gst_pad_get_sticky_event(h_->sinkpad, GST_EVENT_SEGMENT, 0));
+    const GstSegment* segment = nullptr;
+    gst_event_parse_segment(event.get(), &segment);
+    return gst_segment_to_running_time(segment, GST_FORMAT_TIME, GST_BUFFER_PTS(last.get()));
+  }
+};
+
+TEST_F(ParseUnderWay, ASeekWithoutAFlushGoesOnWhereTheLastCloudEnded) {
+  PushClouds(3);
+  ASSERT_TRUE(Seek(GST_SEEK_FLAG_NONE, 2 * gint64{GST_SECOND}));
+  PushClouds(1);
+  EXPECT_EQ(RunningTime(), 500 * GST_MSECOND);
+  ASSERT_TRUE(Seek(GST_SEEK_FLAG_FLUSH, 2 * gint64{GST_SECOND}));
+  PushClouds(1);
+  EXPECT_EQ(RunningTime(), 0U);
+}
+
+TEST_F(ParseUnderWay, BytesFromElsewhereGoOnWhereTheLastCloudEnded) {
+  PushClouds(3);
+  PushBytesFrom(7 * kCloud, 4711);
+  PushClouds(1);
+  EXPECT_EQ(RunningTime(), 300 * GST_MSECOND);
+  gst_pad_push_event(h_->srcpad, gst_event_new_flush_start());
+  gst_pad_push_event(h_->srcpad, gst_event_new_flush_stop(FALSE));
+  PushBytesFrom(0, 4712);
+  PushClouds(1);
+  EXPECT_EQ(RunningTime(), 400 * GST_MSECOND);
+}
+
+/// A file of ten clouds at 10 Hz, each of 8 points that hold its number, in PAUSED.
+class ParseSeek : public ::testing::Test {
+ protected:
+  ParseSeek() {
+    std::ofstream file(path_, std::ios::binary);
+    for (char i = 0; i < 10; ++i) file << std::string(8 * 16, i);
+    file.close();
+    const std::string line = "filesrc location=" + path_ + " ! " + kKitti +
+                             ",width=8 ! pointcloudparse ! fakesink name=sink sync=false "
+                             "signal-handoffs=true";
+    pipeline_.reset(gst_parse_launch(line.c_str(), nullptr));
+    const ElementPtr sink(gst_bin_get_by_name(GST_BIN(pipeline_.get()), "sink"));
+    g_signal_connect(sink.get(), "handoff",
+                     G_CALLBACK(+[](GstElement*, GstBuffer* buffer, GstPad*, gpointer data) {
+                       const BufferMap map(buffer, GST_MAP_READ);
+                       auto* self = static_cast<ParseSeek*>(data);
+                       self->clouds_.push_back(map.data()[0]);
+                       self->times_.push_back(GST_BUFFER_PTS(buffer));
+                     }),
+                     this);
+    const PadPtr pad(gst_element_get_static_pad(sink.get(), "sink"));
+    gst_pad_add_probe(
+        pad.get(), GST_PAD_PROBE_TYPE_EVENT_DOWNSTREAM,
+        [](GstPad*, GstPadProbeInfo* info, gpointer data) {
+          if (GST_EVENT_TYPE(info->data) == GST_EVENT_SEGMENT_DONE)
+            gst_event_parse_segment_done(GST_EVENT(info->data), nullptr,
+                                         &static_cast<ParseSeek*>(data)->end_of_segment_);
+          return GST_PAD_PROBE_OK;
+        },
+        this, nullptr);
+    gst_element_set_state(pipeline_.get(), GST_STATE_PAUSED);
+    gst_element_get_state(pipeline_.get(), nullptr, nullptr, GST_CLOCK_TIME_NONE);
+  }
+  ~ParseSeek() override {
+    gst_element_set_state(pipeline_.get(), GST_STATE_NULL);
+    std::remove(path_.c_str());
+  }
+  bool Seek(gint flags, GstClockTime start, gint64 stop = -1, gdouble rate = 1) {
+    return gst_element_seek(pipeline_.get(), rate, GST_FORMAT_TIME,
+                            static_cast<GstSeekFlags>(flags), GST_SEEK_TYPE_SET,
+                            static_cast<gint64>(start), GST_SEEK_TYPE_SET, stop) != FALSE;
+  }
+  /// The clouds from now to the message.
+  std::vector<int> PlayTo(GstMessageType type) {
+    clouds_.clear();
+    times_.clear();
+    gst_element_set_state(pipeline_.get(), GST_STATE_PLAYING);
+    GstBus* bus = gst_element_get_bus(pipeline_.get());
+    const MessagePtr message(gst_bus_timed_pop_filtered(
+        bus, 30 * GST_SECOND, static_cast<GstMessageType>(type | GST_MESSAGE_ERROR)));
+    gst_object_unref(bus);
+    EXPECT_TRUE(message && GST_MESSAGE_TYPE(message.get()) == type);
+    gst_element_set_state(pipeline_.get(), GST_STATE_PAUSED);
+    return clouds_;
+  }
+
+  /// Running time at which the segment of now begins.
+  GstClockTime Base() {
+    const ElementPtr sink(gst_bin_get_by_name(GST_BIN(pipeline_.get()), "sink"));
+    const PadPtr pad(gst_element_get_static_pad(sink.get(), "sink"));
+    const EventPtr event(gst_pad_get_sticky_event(pad.get(), GST_EVENT_SEGMENT, 0));
+    const GstSegment* segment = nullptr;
+    gst_event_parse_segment(event.get(), &segment);
+    return segment->base;
+  }
+
+  const std::string path_ = ::testing::TempDir() + "seek.bin";
+  ElementPtr pipeline_;
+  std::vector<int> clouds_;
+  std::vector<GstClockTime> times_;
+  gint64 end_of_segment_ = -1;
+};
+
+TEST_F(ParseSeek, KnowsHowLongTheFileIsAndThatItCanBeSought) {
+  gint64 duration = 0;
+  ASSERT_TRUE(gst_element_query_duration(pipeline_.get(), GST_FORMAT_TIME, &duration));
+  EXPECT_EQ(duration, gint64{GST_SECOND});
+  const QueryPtr query(gst_query_new_seeking(GST_FORMAT_TIME));
+  ASSERT_TRUE(gst_element_query(pipeline_.get(), query.get()));
+  gboolean seekable = FALSE;
+  gint64 end = 0;
+  gst_query_parse_seeking(query.get(), nullptr, &seekable, nullptr, &end);
+  EXPECT_TRUE(seekable);
+  EXPECT_EQ(end, gint64{GST_SECOND});
+}
+
+TEST_F(ParseSeek, BeginsWithTheCloudOfTheTimeAndEndsWithThatOfTheStop) {
+  ASSERT_TRUE(Seek(GST_SEEK_FLAG_FLUSH | GST_SEEK_FLAG_ACCURATE, 300 * GST_MSECOND));
+  EXPECT_EQ(PlayTo(GST_MESSAGE_EOS), (std::vector<int>{3, 4, 5, 6, 7, 8, 9}));
+  EXPECT_EQ(times_.front(), 300 * GST_MSECOND);
+  ASSERT_TRUE(
+      Seek(GST_SEEK_FLAG_FLUSH | GST_SEEK_FLAG_KEY_UNIT, 250 * GST_MSECOND, 500 * GST_MSECOND));
+  EXPECT_EQ(PlayTo(GST_MESSAGE_EOS), (std::vector<int>{2, 3, 4}));
+}
+
+TEST_F(ParseSeek, ASegmentSeekEndsWithItsMessageAndGoesOnFromThere) {
+  ASSERT_TRUE(Seek(GST_SEEK_FLAG_FLUSH | GST_SEEK_FLAG_SEGMENT, 0, 200 * GST_MSECOND));
+  EXPECT_EQ(PlayTo(GST_MESSAGE_SEGMENT_DONE), (std::vector<int>{0, 1}));
+  ASSERT_TRUE(Seek(GST_SEEK_FLAG_SEGMENT, 800 * GST_MSECOND));
+  EXPECT_EQ(PlayTo(GST_MESSAGE_SEGMENT_DONE), (std::vector<int>{8, 9}));
+}
+
+TEST_F(ParseSeek, ASegmentEndsNoLaterThanItsStop) {
+  ASSERT_TRUE(Seek(GST_SEEK_FLAG_FLUSH | GST_SEEK_FLAG_SEGMENT, 0, 250 * GST_MSECOND));
+  EXPECT_EQ(PlayTo(GST_MESSAGE_SEGMENT_DONE), (std::vector<int>{0, 1, 2}));
+  EXPECT_EQ(end_of_segment_, gint64{250 * GST_MSECOND});
+  // What follows goes on where the segment ended, for a clock.
+  ASSERT_TRUE(Seek(GST_SEEK_FLAG_SEGMENT, 800 * GST_MSECOND));
+  EXPECT_EQ(PlayTo(GST_MESSAGE_SEGMENT_DONE), (std::vector<int>{8, 9}));
+  EXPECT_EQ(Base(), 250 * GST_MSECOND);
+}
+
+TEST_F(ParseSeek, CountsFromTheEndWhereItIsAsked) {
+  ASSERT_TRUE(gst_element_seek(pipeline_.get(), 1, GST_FORMAT_TIME, GST_SEEK_FLAG_FLUSH,
+                               GST_SEEK_TYPE_END, -200 * gint64{GST_MSECOND}, GST_SEEK_TYPE_NONE,
+                               0));
+  EXPECT_EQ(PlayTo(GST_MESSAGE_EOS), (std::vector<int>{8, 9}));
+}
+
+TEST_F(ParseSeek, RefusesToPlayBackwardsAndToEndBeforeItBegins) {
+  EXPECT_FALSE(Seek(GST_SEEK_FLAG_FLUSH, 800 * GST_MSECOND, 200 * GST_MSECOND));
+  EXPECT_FALSE(Seek(GST_SEEK_FLAG_FLUSH, 0, gint64{GST_SECOND}, -1));
+  EXPECT_EQ(PlayTo(GST_MESSAGE_EOS).size(), 10U);
+}
+
+}  // namespace
+}  // namespace lidar::gst
