@@ -6,11 +6,13 @@
 #include <string>
 #include <vector>
 
+#include "ext/nats/answers.h"
 #include "ext/nats/format_book.h"
 #include "ext/nats/jetstream.h"
 #include "ext/nats/message.h"
 #include "ext/nats/outbox.h"
 #include "ext/nats/place_book.h"
+#include "ext/nats/source_account.h"
 #include "gst/common/gstlidar.h"
 #include "tests/elements/mcap/recording.h"
 
@@ -261,6 +263,40 @@ TEST_F(NatsParts, NamesThatTheServerWouldMisreadAreRefused) {
   EXPECT_NE(CheckSubject(std::string(300, 'a')), "");
   EXPECT_EQ(CheckName("black-box_2"), "");
   for (const char* bad : {"a.b", "a b", "a*", "a/b", "a>"}) EXPECT_NE(CheckName(bad), "") << bad;
+}
+
+TEST_F(NatsParts, AnswersAreKnownByTheirWords) {
+  const auto subjects = AnswerSubjects::Make();
+  ASSERT_TRUE(subjects);
+  const auto word_of = [&](const std::string& subject) {
+    natsMsg* raw = nullptr;
+    EXPECT_EQ(natsMsg_Create(&raw, subject.c_str(), nullptr, "", 0), NATS_OK);
+    const MessagePtr answer(raw);
+    return std::string(subjects->WordOf(raw));
+  };
+  EXPECT_EQ(ToNumber(word_of(subjects->Of(17))), 17U);
+  EXPECT_EQ(word_of(subjects->Of("config")), "config");
+  EXPECT_EQ(word_of(AnswerSubjects::Make()->Of(17)), "") << "of somebody else";
+  EXPECT_EQ(word_of("17"), "");
+  EXPECT_TRUE(Covers(subjects->All(), subjects->Of(17)));
+  for (const char* text : {"", "-1", "1x", " 1", "99999999999999999999"})
+    EXPECT_FALSE(ToNumber(text)) << text;
+}
+
+TEST(SourceAccount, CountsWhatIsMissingUntilItComes) {
+  SourceAccount account;
+  EXPECT_FALSE(account.NotePlace({1, 5}, false).gap);
+  EXPECT_TRUE(account.NotePlace({1, 8}, false).gap);
+  EXPECT_EQ(account.counters().lost, 2U);
+  EXPECT_FALSE(account.NotePlace({1, 6}, false).gap);
+  EXPECT_TRUE(account.NotePlace({1, 8}, false).again);
+  EXPECT_EQ(account.counters().lost, 1U);
+  EXPECT_EQ(account.counters().late, 1U);
+  EXPECT_EQ(account.counters().again, 1U);
+  account.Reset();
+  account.NotePlace({1, 5}, true);
+  EXPECT_FALSE(account.NotePlace({1, 8}, true).gap) << "others of the group have those between";
+  EXPECT_EQ(account.counters().lost, 0U);
 }
 
 }  // namespace
