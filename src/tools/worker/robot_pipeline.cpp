@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include "src/tools/worker/robot_pipeline.h"
 
+#include <algorithm>
 #include <charconv>
 #include <cstdio>
 #include <cstring>
@@ -111,14 +112,22 @@ void RobotPipeline::Play() {
   });
 }
 
-/// The pts is when JetStream stored the message, so no clock of a robot is asked.
+/// Whether it is farther back than `rewind_`. After a pause of the server, much is stored in an
+/// instant that was captured in seconds, so both times count. A robot's clock may jump.
+bool RobotPipeline::IsOld(const Message& message) const {
+  const auto rewind = static_cast<GstClockTime>(rewind_.count());
+  const Message& now = window_.back();
+  const bool known =
+      GST_CLOCK_TIME_IS_VALID(message.captured) && GST_CLOCK_TIME_IS_VALID(now.captured);
+  const bool captured_lately =
+      known && message.captured <= now.captured && message.captured + rewind >= now.captured;
+  return message.stored + rewind < now.stored && !captured_lately;
+}
+
 GstPadProbeReturn RobotPipeline::OnMessage(GstBuffer* buffer) {
   number_ = GST_BUFFER_OFFSET(buffer);
-  const GstClockTime stored = GST_BUFFER_PTS(buffer);
-  window_.emplace_back(stored, number_);
-  const auto rewind = static_cast<GstClockTime>(rewind_.count());
-  while (window_.size() > kMaxWindow || window_.front().first + rewind < stored)
-    window_.pop_front();
+  window_.push_back({number_, GST_BUFFER_PTS(buffer), gst_lidar_buffer_get_capture_time(buffer)});
+  while (window_.size() > kMaxWindow || IsOld(window_.front())) window_.pop_front();
   return GST_PAD_PROBE_OK;
 }
 
@@ -129,14 +138,21 @@ GstPadProbeReturn RobotPipeline::OnCloud(GstBuffer* buffer) {
   if (!gst_lidar_buffer_get_slice(buffer, &slice) || slice.slice_count == 0) slice = {0, 0, 1, 0};
   // A map that begins with half a scan fits the next scan badly.
   if (!begun_ && begin_scan_ == 0 && slice.slice_index > 0) return GST_PAD_PROBE_DROP;
-  begun_ = true;
+  if (!std::exchange(begun_, true) && begin_scan_ > 0 && number_ > begin_scan_)
+    NoteLateBegin(gst_lidar_buffer_get_capture_time(buffer));
   closed_.reset();
   if (!open_ || slice.scan_id != open_->id || slice.slice_index < open_->next_index) {
     closed_ = open_;
-    open_ = Scan{slice.scan_id, 0, number_, window_.front().second};
+    open_ = Scan{slice.scan_id, 0, number_, window_.front().number};
   }
   open_->next_index = slice.slice_index + 1;
   return GST_PAD_PROBE_OK;
+}
+
+/// The pose is of a scan that odometry does not get to see.
+void RobotPipeline::NoteLateBegin(GstClockTime captured) {
+  const GstClockTime since = begin_->time;
+  late_ns_ = GST_CLOCK_TIME_IS_VALID(captured) ? captured - std::min(since, captured) : 0;
 }
 
 /// Whoever has lost its lease says nothing any more, and changes nothing.
@@ -177,6 +193,12 @@ std::vector<std::pair<std::string, gst::StructurePtr>> RobotPipeline::Stats() co
 }
 
 std::string RobotPipeline::Poll() {
+  if (const std::uint64_t late = late_ns_.exchange(0))
+    std::fprintf(
+        stderr,
+        "%s: the scan of its last pose cannot be decoded; its poses are off by what it moved "
+        "in %.2f s\n",
+        GST_OBJECT_NAME(pipeline_.get()), static_cast<double>(late) * 1e-9);
   GstBus* bus = GST_ELEMENT_BUS(pipeline_.get());
   while (const gst::MessagePtr message{gst_bus_pop(bus)}) {
     if (GST_MESSAGE_TYPE(message.get()) == GST_MESSAGE_ERROR) return MessageText(message.get());

@@ -75,11 +75,19 @@ class RobotPipeline {
     std::uint64_t from = 0;
   };
 
+  struct Message {
+    std::uint64_t number = 0;
+    GstClockTime stored = 0;  // by JetStream
+    GstClockTime captured = GST_CLOCK_TIME_NONE;
+  };
+  bool IsOld(const Message& message) const;
+
   void Watch(GstElement* element, const char* pad,
              GstPadProbeReturn (RobotPipeline::*on_buffer)(GstBuffer*));
   GstPadProbeReturn OnMessage(GstBuffer* buffer);
   GstPadProbeReturn OnCloud(GstBuffer* buffer);
   GstPadProbeReturn OnPose(GstBuffer* buffer);
+  void NoteLateBegin(GstClockTime captured);
 
   const Time made_at_;
   const std::uint64_t stream_;
@@ -91,10 +99,11 @@ class RobotPipeline {
   std::future<void> start_;
   std::atomic<std::int64_t> end_{0};
   std::atomic<bool> dropped_{false};
+  std::atomic<std::uint64_t> late_ns_{0};  // between the pose it began with and its first scan
 
   // Only the streaming thread uses what follows.
-  std::uint64_t number_ = 0;                                   // of the message that is on its way
-  std::deque<std::pair<GstClockTime, std::uint64_t>> window_;  // messages of `rewind_`
+  std::uint64_t number_ = 0;    // of the message that is on its way
+  std::deque<Message> window_;  // of `rewind_`; the last is that one
   bool begun_ = false;
   std::optional<Scan> open_;
   std::optional<Scan> closed_;  // its pose comes first

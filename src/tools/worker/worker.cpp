@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
+#include <system_error>
 #include <utility>
 
 #include "src/tools/common/event_loop.h"
@@ -184,10 +185,14 @@ void Worker::Begin(const std::string& robot, const LeaseTable::Held& held) {
 
 Worker::Pipelines::iterator Worker::End(Pipelines::iterator at) {
   at->second->SetEnd(Time{});
-  ending_[at->first] = {
-      std::async(std::launch::async,
-                 [pipeline = std::move(at->second)]() mutable { pipeline.reset(); }),
-      Now()};
+  try {
+    ending_[at->first] = {
+        std::async(std::launch::async,
+                   [pipeline = std::move(at->second)]() mutable { pipeline.reset(); }),
+        Now()};
+  } catch (const std::system_error&) {
+    Warn(at->first, "there is no thread to stop its pipeline, so all waited for it");
+  }
   return pipelines_.erase(at);
 }
 

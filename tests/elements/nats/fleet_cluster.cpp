@@ -128,6 +128,16 @@ std::size_t Missing(const std::vector<Kept>& sent, const std::vector<Kept>& stor
       sent.begin(), sent.end(), [&](const Kept& kept) { return there.count(kept.bytes) == 0; }));
 }
 
+/// How many of `stored` come behind one that was captured later.
+std::size_t OutOfOrder(const std::vector<Kept>& stored) {
+  GstClockTime newest = 0;
+  return static_cast<std::size_t>(std::count_if(stored.begin(), stored.end(), [&](const Kept& k) {
+    const bool late = k.capture_time < newest;
+    newest = std::max(newest, k.capture_time);
+    return late;
+  }));
+}
+
 class FleetCluster : public NatsTest {
  protected:
   void SetUp() override {
@@ -241,7 +251,11 @@ void FleetCluster::CountAll() {
     EXPECT_EQ(robot->sender().stat("messages-dropped"), 0U);
     EXPECT_EQ(robot->sender().stat("messages-acknowledged"), sent.size());
     // A server that has just come back replays what it has, which may not be all yet.
-    EXPECT_TRUE(WaitFor([&] { return Missing(sent, robot->Replay("fleet", "lidar")) == 0; }));
+    std::vector<Kept> stored;
+    EXPECT_TRUE(WaitFor([&] {
+      stored = robot->Replay("fleet", "lidar");
+      return Missing(sent, stored) == 0;
+    }));
     const GstClockTime last = sent.back().capture_time;
     std::vector<Kept> poses;
     EXPECT_TRUE(WaitFor([&] {
@@ -265,10 +279,12 @@ void FleetCluster::CountAll() {
     std::set<GstClockTime> times;
     for (const Kept& pose : poses) times.insert(pose.capture_time);
     std::printf(
-        "%s: %zu slices sent, acknowledged and kept; %zu scans, %zu with a pose, %zu poses twice; "
+        "%s: %zu slices sent, acknowledged and kept, %zu out of order; %zu scans, %zu with a pose, "
+        "%zu poses twice; "
         "largest jump %.2f m in %.0f m\n",
-        robot->name().c_str(), sent.size(), scans.size(), times.size(), poses.size() - times.size(),
-        LargestJump(poses), poses.empty() ? 0 : DistanceOf(poses.back()));
+        robot->name().c_str(), sent.size(), OutOfOrder(stored), scans.size(), times.size(),
+        poses.size() - times.size(), LargestJump(poses),
+        poses.empty() ? 0 : DistanceOf(poses.back()));
     EXPECT_LT(LargestJump(poses), 3);
   }
 }

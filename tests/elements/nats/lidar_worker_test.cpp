@@ -147,16 +147,19 @@ class LidarWorker : public NatsTest {
     });
     return stored;
   }
-  std::uint64_t CreationOf(const char* stream) {
-    std::uint64_t created = 0;
+  nats::StreamInfoPtr InfoOf(const char* stream) {
+    nats::StreamInfoPtr info;
     WithJetStream([&](jsCtx* js) {
       jsStreamInfo* raw = nullptr;
       EXPECT_EQ(js_GetStreamInfo(&raw, js, stream, nullptr, nullptr), NATS_OK);
-      const nats::StreamInfoPtr info(raw);
-      created = static_cast<std::uint64_t>(info->Created);
+      info.reset(raw);
     });
-    return created;
+    return info;
   }
+  std::uint64_t CreationOf(const char* stream) {
+    return static_cast<std::uint64_t>(InfoOf(stream)->Created);
+  }
+  std::uint64_t LastOf(const char* stream) { return InfoOf(stream)->State.LastSeq; }
   std::string Record() { return Newest("r1.front").text; }
 };
 
@@ -238,6 +241,35 @@ TEST_F(LidarWorker, GoesOnFromThePoseAloneWhereTheRecordIsAheadOfTheStream) {
     return record && record->progress && record->progress->stream == progress.stream &&
            record->progress->scan < progress.scan;
   })) << "the next worker is spared it";
+}
+
+TEST_F(LidarWorker, KnowsWhereToReadFromThoughTheServerHadAPause) {
+  NatsPipeline sender(
+      "lidartestsrc model=os0-32 mode=512x10 speed=10 num-buffers=176 ! lidarenc effort=0" + kSee +
+      "! natssink name=n sync=false subject=fleet.r1.lidar.front jetstream=fleet" + At());
+  sender.HoldFrom(160);
+  sender.Play();
+  ASSERT_TRUE(Eventually([&] { return sender.stat("messages-acknowledged") >= 160; }));
+  worker::PipelineSettings settings;
+  settings.connection.url = server_.url();
+  settings.rewind = milliseconds(300);
+  std::this_thread::sleep_for(settings.rewind + milliseconds(100));  // nothing is stored
+  const std::uint64_t before = LastOf("fleet");
+  sender.Hold(false);
+  EXPECT_EQ(sender.WaitForEnd(), "");
+  worker::Progress begin;
+  begin.pose = {0, 0, 0, 0, 0, 0, 1};
+  begin.stream = CreationOf("fleet");
+  begin.scan = begin.from = 1;
+  worker::RobotPipeline pipeline(settings, "r1.front", begin.stream, begin);
+  pipeline.SetEnd(Time::max());
+  pipeline.Play();
+  ASSERT_TRUE(Eventually([&] {
+    const auto progress = pipeline.progress();
+    return progress && progress->scan > before;
+  }));
+  EXPECT_LT(pipeline.progress()->from, before) << "0.3 s before the scan, by the sensor's clock";
+  EXPECT_GT(pipeline.progress()->from, before / 2);
 }
 
 TEST_F(LidarWorker, PrintsNoControlCharactersOfARecord) {

@@ -2,6 +2,7 @@
 // Pipelines with an end at NATS that are watched while they run.
 #pragma once
 #include <atomic>
+#include <cstdint>
 #include <mutex>
 
 #include "tests/elements/mcap/recording.h"
@@ -30,11 +31,16 @@ class NatsPipeline {
 
   void Play() { gst_element_set_state(pipeline_.get(), GST_STATE_PLAYING); }
   void Stop() {
-    held_ = false;
+    Hold(false);
     gst_element_set_state(pipeline_.get(), GST_STATE_NULL);
   }
   /// The next buffer stays where it is seen until this is taken back.
-  void Hold(bool on) { held_ = on; }
+  void Hold(bool on) {
+    hold_from_ = SIZE_MAX;
+    held_ = on;
+  }
+  /// As Hold(true), once `count` buffers have passed.
+  void HoldFrom(std::size_t count) { hold_from_ = count; }
   /// Ends a live source.
   void SendEos() { gst_element_send_event(pipeline_.get(), gst_event_new_eos()); }
   /// The text of the error; empty at EOS.
@@ -98,6 +104,7 @@ class NatsPipeline {
     const Kept kept = Keep(GST_PAD_PROBE_INFO_BUFFER(info));
     std::unique_lock lock(self->mutex_);
     self->buffers_.push_back(kept);
+    if (self->buffers_.size() > self->hold_from_) self->held_ = true;
     lock.unlock();
     while (self->held_) std::this_thread::sleep_for(std::chrono::milliseconds(5));
     return GST_PAD_PROBE_OK;
@@ -107,6 +114,7 @@ class NatsPipeline {
   gst::ElementPtr nats_;
   GstBus* bus_ = nullptr;
   std::atomic<bool> held_{false};
+  std::atomic<std::size_t> hold_from_{SIZE_MAX};
   mutable std::mutex mutex_;
   std::vector<Kept> buffers_;
 };
