@@ -21,17 +21,10 @@ class BitMixer {
   /// `counter_at(0 .. kCounters - 1)` are the counters of the next bit, `logit_at` gives the rest.
   template <class CounterAt, class LogitAt>
   void Ask(CounterAt&& counter_at, LogitAt&& logit_at) {
-    constexpr std::int32_t kAlways = 256;
-    Inputs inputs;
-#pragma GCC unroll 16
-    for (unsigned i = 0; i < kCounters; ++i) {
-      counters_[i] = counter_at(i);
-      inputs.Set(i, counters_[i]->Vote());
-    }
-#pragma GCC unroll 16
-    for (unsigned i = 0; i < kExtra; ++i) inputs.Set(kCounters + i, ClampLogit(logit_at(i)));
-    inputs.Set(kInputs - 1, kAlways);
-    inputs_ = inputs;
+    inputs_.packed[0] = Word<0>(counter_at, logit_at);
+    inputs_.packed[1] = Word<1>(counter_at, logit_at);
+    inputs_.packed[2] = Word<2>(counter_at, logit_at);
+    inputs_.packed[3] = Word<3>(counter_at, logit_at);
   }
   template <class CounterAt>
   void Ask(CounterAt&& counter_at) {
@@ -41,7 +34,7 @@ class BitMixer {
 
   template <class Coder>
   bool Code(bool bit, Weights* weights, Coder* coder) {
-    const auto [a, b, c, d] = inputs_.packed;
+    const auto& [a, b, c, d] = inputs_.packed;
     const std::int32_t chance = Chance(kernel_.dot(a, b, c, d, weights) >> kDotShift);
     bit = coder->Code(bit, chance);
     if constexpr (!kTeaches<Coder>) return bit;
@@ -53,7 +46,7 @@ class BitMixer {
   template <class Coder>
   bool Code(bool bit, Weights* first, Weights* second, Coder* coder) {
     static_assert(kTeaches<Coder>);
-    const auto [a, b, c, d] = inputs_.packed;
+    const auto& [a, b, c, d] = inputs_.packed;
     const Sums sums = kernel_.dots(a, b, c, d, first, second);
     const std::int32_t one = ClampLogit(sums.first >> kDotShift);
     const std::int32_t other = ClampLogit(sums.second >> kDotShift);
@@ -65,7 +58,7 @@ class BitMixer {
   }
   /// What Code() would take for the chance of a 1.
   std::int32_t ChanceBy(const Weights* first, const Weights* second) const {
-    const auto [a, b, c, d] = inputs_.packed;
+    const auto& [a, b, c, d] = inputs_.packed;
     const Sums sums = kernel_.dots(a, b, c, d, first, second);
     return Chance((ClampLogit(sums.first >> kDotShift) + ClampLogit(sums.second >> kDotShift)) >>
                   1);
@@ -73,6 +66,26 @@ class BitMixer {
 
  private:
   static constexpr unsigned kDotShift = 12;
+
+  /// Four inputs. They are put together in a register: a vector that is loaded from where single
+  /// numbers were just stored makes processors wait.
+  template <unsigned kPlace, class CounterAt, class LogitAt>
+  Kernel::Four Word(CounterAt& counter_at, LogitAt& logit_at) {
+    constexpr std::int32_t kAlways = 256;
+    Kernel::Four word = 0;
+#pragma GCC unroll 4
+    for (unsigned i = 4 * kPlace; i < 4 * kPlace + 4; ++i) {
+      std::int32_t logit = i == kInputs - 1 ? kAlways : 0;
+      if (i < kCounters) {
+        counters_[i] = counter_at(i);
+        logit = counters_[i]->Vote();
+      } else if (i < kCounters + kExtra) {
+        logit = ClampLogit(logit_at(i - kCounters));
+      }
+      word |= Kernel::Four{static_cast<std::uint16_t>(logit)} << (16 * (i % 4));
+    }
+    return word;
+  }
 
   void Learn(bool bit) {
 #pragma GCC unroll 16
