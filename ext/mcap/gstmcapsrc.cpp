@@ -301,7 +301,7 @@ bool DoSeek(GstLidarMcapSrc* self, GstEvent* event) {
   const Seek seek(event);
   {
     std::lock_guard lock(state.mutex);
-    if (!state.is_open || !seek.IsPossible()) return false;
+    if (!state.is_open || !seek.IsPossible(state.segment)) return false;
     // Each sink sends the same one upstream.
     if (std::exchange(state.last_seek, seek.seqnum()) == seek.seqnum()) return true;
   }

@@ -16,15 +16,12 @@ bool AnswerSegment(const GstSegment& s, GstQuery* query) {
 
 }  // namespace
 
-Seek::Seek(GstEvent* event) : seqnum_(gst_event_get_seqnum(event)) {
-  gst_event_parse_seek(event, &rate_, &format_, &flags_, &start_type_, &start_, &stop_type_,
-                       &stop_);
+Seek::Seek(GstEvent* event) : event_(gst_event_ref(event)) {
+  gst_event_parse_seek(event, &rate_, &format_, &flags_, nullptr, nullptr, nullptr, nullptr);
 }
 
-void Seek::ApplyTo(GstSegment* segment) const {
-  gboolean update = FALSE;
-  gst_segment_do_seek(segment, rate_, format_, flags_, start_type_, static_cast<guint64>(start_),
-                      stop_type_, static_cast<guint64>(stop_), &update);
+bool Seek::IsPossible(GstSegment segment) const {
+  return rate_ > 0 && format_ == GST_FORMAT_TIME && ApplySeek(event_.get(), &segment);
 }
 
 bool AnswerBySegment(const GstSegment& segment, GstQuery* query) {

@@ -3,6 +3,9 @@
 #pragma once
 #include <gst/gst.h>
 
+#include "gst/common/refs.h"
+#include "gst/common/seek_range.h"
+
 namespace lidar::gst {
 
 /// What a seek event asks for.
@@ -10,21 +13,17 @@ class Seek {
  public:
   explicit Seek(GstEvent* event);
 
-  /// Only forward, and by time.
-  bool IsPossible() const { return rate_ > 0 && format_ == GST_FORMAT_TIME; }
+  /// Only forward, by time, and to where there is something.
+  bool IsPossible(GstSegment segment) const;
   bool flushes() const { return (flags_ & GST_SEEK_FLAG_FLUSH) != 0; }
-  guint32 seqnum() const { return seqnum_; }
-  void ApplyTo(GstSegment* segment) const;
+  guint32 seqnum() const { return gst_event_get_seqnum(event_.get()); }
+  void ApplyTo(GstSegment* segment) const { ApplySeek(event_.get(), segment); }
 
  private:
+  EventPtr event_;
   gdouble rate_ = 1;
   GstFormat format_ = GST_FORMAT_UNDEFINED;
   GstSeekFlags flags_ = GST_SEEK_FLAG_NONE;
-  GstSeekType start_type_ = GST_SEEK_TYPE_NONE;
-  gint64 start_ = 0;
-  GstSeekType stop_type_ = GST_SEEK_TYPE_NONE;
-  gint64 stop_ = 0;
-  guint32 seqnum_;
 };
 
 /// Duration, position, seeking and segment. False where another one has to answer.

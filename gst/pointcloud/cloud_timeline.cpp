@@ -3,32 +3,9 @@
 
 #include <algorithm>
 
+#include "gst/common/seek_range.h"
+
 namespace lidar::gst {
-namespace {
-
-/// What a seek asks for, with times counted from the beginning; none where it asks for nothing that
-/// there is.
-struct SeekRange {
-  GstSeekType start_type = GST_SEEK_TYPE_NONE;
-  GstClockTime start = 0;
-  GstSeekType stop_type = GST_SEEK_TYPE_NONE;
-  GstClockTime stop = GST_CLOCK_TIME_NONE;
-
-  bool IsSound(const GstSegment& now) const {
-    const GstClockTime from = start_type == GST_SEEK_TYPE_NONE ? now.position : start;
-    const GstClockTime to = stop_type == GST_SEEK_TYPE_NONE ? now.stop : stop;
-    return GST_CLOCK_TIME_IS_VALID(from) && (!GST_CLOCK_TIME_IS_VALID(to) || from <= to);
-  }
-};
-
-GstClockTime FromBeginning(GstSeekType* type, gint64 time, const GstSegment& segment) {
-  if (*type != GST_SEEK_TYPE_END) return static_cast<GstClockTime>(time);
-  if (!GST_CLOCK_TIME_IS_VALID(segment.duration)) return GST_CLOCK_TIME_NONE;
-  *type = GST_SEEK_TYPE_SET;
-  return static_cast<GstClockTime>(MAX(static_cast<gint64>(segment.duration) + time, 0));
-}
-
-}  // namespace
 
 /// Times are rounded down, so the cloud that a time was made of would be missed by one.
 guint64 CloudTimeline::Grid::CloudAt(GstClockTime time) const {
@@ -139,11 +116,7 @@ std::optional<bool> CloudTimeline::Seek(GstPad* sinkpad, GstEvent* event) {
   gdouble rate = 1;
   GstFormat format = GST_FORMAT_UNDEFINED;
   GstSeekFlags flags = GST_SEEK_FLAG_NONE;
-  SeekRange range;
-  gint64 start = 0;
-  gint64 stop = 0;
-  gst_event_parse_seek(event, &rate, &format, &flags, &range.start_type, &start, &range.stop_type,
-                       &stop);
+  gst_event_parse_seek(event, &rate, &format, &flags, nullptr, nullptr, nullptr, nullptr);
   Sought sought;
   sought.seqnum = gst_event_get_seqnum(event);
   std::unique_lock lock(mutex_);
@@ -154,13 +127,7 @@ std::optional<bool> CloudTimeline::Seek(GstPad* sinkpad, GstEvent* event) {
   if (rate <= 0) return false;
   GstSegment& segment = sought.segment;
   if (const auto duration = Duration(sinkpad, grid)) segment.duration = *duration;
-  range.start = FromBeginning(&range.start_type, start, segment);
-  range.stop = FromBeginning(&range.stop_type, stop, segment);
-  // GStreamer takes other ranges for a mistake of the caller.
-  if (!range.IsSound(segment) ||
-      !gst_segment_do_seek(&segment, rate, format, flags, range.start_type, range.start,
-                           range.stop_type, range.stop, nullptr))
-    return false;
+  if (!ApplySeek(event, &segment)) return false;
   const guint64 first = grid.CloudAt(segment.start);
   if (flags & GST_SEEK_FLAG_KEY_UNIT)
     segment.start = segment.time = segment.position = grid.TimeOf(first);

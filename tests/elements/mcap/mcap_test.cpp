@@ -243,6 +243,22 @@ TEST_F(Mcap, SeeksByTime) {
                                 GST_SEEK_TYPE_SET, 0, GST_SEEK_TYPE_NONE, 0));
 }
 
+TEST_F(Mcap, RefusesToEndBeforeItBegins) {
+  Play(kSensor + " num-buffers=80 ! lidarenc ! mcapsink" + At("a.mcap"));
+  Pipeline p("mcapsrc" + At("a.mcap") + " ! fakesink name=see");
+  gst_element_set_state(p.get(), GST_STATE_PAUSED);
+  gst_element_get_state(p.get(), nullptr, nullptr, GST_CLOCK_TIME_NONE);
+  const auto seek = [&](GstSeekType start_type, gint64 start, GstSeekType stop_type, gint64 stop) {
+    return gst_element_seek(p.get(), 1, GST_FORMAT_TIME, GST_SEEK_FLAG_FLUSH, start_type, start,
+                            stop_type, stop);
+  };
+  constexpr auto kMs = gint64{GST_MSECOND};
+  EXPECT_FALSE(seek(GST_SEEK_TYPE_SET, 600 * kMs, GST_SEEK_TYPE_SET, 200 * kMs));
+  EXPECT_FALSE(seek(GST_SEEK_TYPE_SET, 600 * kMs, GST_SEEK_TYPE_END, -900 * kMs));
+  EXPECT_TRUE(seek(GST_SEEK_TYPE_END, -200 * kMs, GST_SEEK_TYPE_NONE, 0));
+  EXPECT_EQ(p.Run().error, "");
+}
+
 TEST_F(Mcap, ASegmentSeekEndsWithItsMessage) {
   Record(10, "", "a.mcap");
   Pipeline p("mcapsrc" + At("a.mcap") + " ! identity name=see ! fakesink");

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Seeks by time, applied to a segment only where there is something to play.
+#pragma once
+#include <gst/gst.h>
+
+#include <algorithm>
+
+namespace lidar::gst {
+
+/// What a seek asks for, with times counted from the beginning.
+struct SeekRange {
+  GstSeekType start_type = GST_SEEK_TYPE_NONE;
+  GstClockTime start = 0;
+  GstSeekType stop_type = GST_SEEK_TYPE_NONE;
+  GstClockTime stop = GST_CLOCK_TIME_NONE;
+
+  bool IsSound(const GstSegment& now) const {
+    const GstClockTime from = start_type == GST_SEEK_TYPE_NONE ? now.position : start;
+    const GstClockTime to = stop_type == GST_SEEK_TYPE_NONE ? now.stop : stop;
+    return GST_CLOCK_TIME_IS_VALID(from) && (!GST_CLOCK_TIME_IS_VALID(to) || from <= to);
+  }
+};
+
+inline GstClockTime FromBeginning(GstSeekType* type, gint64 time, const GstSegment& segment) {
+  if (*type != GST_SEEK_TYPE_END) return static_cast<GstClockTime>(time);
+  if (!GST_CLOCK_TIME_IS_VALID(segment.duration)) return GST_CLOCK_TIME_NONE;
+  *type = GST_SEEK_TYPE_SET;
+  return static_cast<GstClockTime>(
+      std::max<gint64>(static_cast<gint64>(segment.duration) + time, 0));
+}
+
+/// Moves `segment`, which is of time, to where the seek `event` wants it. False, and nothing is
+/// changed, where that is no range: GStreamer takes such for a mistake of the caller.
+inline bool ApplySeek(GstEvent* event, GstSegment* segment) {
+  gdouble rate = 1;
+  GstSeekFlags flags = GST_SEEK_FLAG_NONE;
+  SeekRange range;
+  gint64 start = 0;
+  gint64 stop = 0;
+  gst_event_parse_seek(event, &rate, nullptr, &flags, &range.start_type, &start, &range.stop_type,
+                       &stop);
+  range.start = FromBeginning(&range.start_type, start, *segment);
+  range.stop = FromBeginning(&range.stop_type, stop, *segment);
+  return range.IsSound(*segment) &&
+         gst_segment_do_seek(segment, rate, GST_FORMAT_TIME, flags, range.start_type, range.start,
+                             range.stop_type, range.stop, nullptr) != FALSE;
+}
+
+}  // namespace lidar::gst
