@@ -64,6 +64,16 @@ struct CompleteFile {
   guint64 end_time = 0;
 };
 
+/// What was played is what was written, from time 0 on.
+inline void ExpectSame(const std::vector<Kept>& read, const std::vector<Kept>& written) {
+  ASSERT_EQ(read.size(), written.size());
+  for (std::size_t i = 0; i < read.size(); ++i) {
+    EXPECT_TRUE(read[i].SameAs(written[i])) << i;
+    EXPECT_EQ(read[i].pts, written[i].pts - written[0].pts) << i;
+    EXPECT_EQ(read[i].duration, written[i].duration) << i;
+  }
+}
+
 /// What a pipeline did.
 struct Outcome {
   std::map<std::string, std::vector<Kept>> buffers;  // by the names of fakesinks and identities

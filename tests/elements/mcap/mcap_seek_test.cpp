@@ -1,0 +1,120 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Seeks and segments of mcapsrc.
+#include "tests/elements/mcap/recording.h"
+
+namespace lidar::test {
+namespace {
+
+class McapSeek : public Recording {};
+
+/// Where the playing pipeline `p` is, and how long the recording.
+std::pair<gint64, gint64> Times(const Pipeline& p) {
+  std::pair<gint64, gint64> times{-1, -1};
+  gst_element_query_position(p.get(), GST_FORMAT_TIME, &times.first);
+  gst_element_query_duration(p.get(), GST_FORMAT_TIME, &times.second);
+  return times;
+}
+
+TEST_F(McapSeek, SeeksByTime) {
+  const auto written = Record(20, "chunk-duration=300000000", "a.mcap");
+  Pipeline p("mcapsrc name=m" + At("a.mcap") + " ! fakesink name=see");
+  gst_element_set_state(p.get(), GST_STATE_PAUSED);
+  ASSERT_TRUE(p.Wait(GST_MESSAGE_ASYNC_DONE));
+  const auto length = static_cast<gint64>(written.back().pts - written.front().pts);
+  EXPECT_EQ(Times(p).second, length);
+  for (const gint64 to : {1'210 * GST_MSECOND, 50 * GST_MSECOND, gint64{0}}) {
+    p.outcome().buffers.clear();
+    ASSERT_TRUE(gst_element_seek_simple(p.get(), GST_FORMAT_TIME, GST_SEEK_FLAG_FLUSH, to));
+    ASSERT_TRUE(p.Wait(GST_MESSAGE_ASYNC_DONE));
+    EXPECT_EQ(Times(p).first, to);
+  }
+  p.outcome().buffers.clear();
+  const gint64 from = 1'210 * GST_MSECOND;
+  ASSERT_TRUE(gst_element_seek(p.get(), 2, GST_FORMAT_TIME, GST_SEEK_FLAG_FLUSH, GST_SEEK_TYPE_SET,
+                               from, GST_SEEK_TYPE_SET, from + 200 * GST_MSECOND));
+  gst_element_set_state(p.get(), GST_STATE_PLAYING);
+  ASSERT_TRUE(p.Wait(GST_MESSAGE_EOS));
+  const auto& played = p.outcome().buffers.at("see");
+  ASSERT_EQ(played.size(), 16U);  // of 12.5 ms each
+  EXPECT_GE(played.front().pts, static_cast<GstClockTime>(from));
+  EXPECT_LT(played.front().pts, static_cast<GstClockTime>(from) + 13 * GST_MSECOND);
+  EXPECT_TRUE(played.front().discont);
+  // And again, from the end.
+  p.outcome().buffers.clear();
+  ASSERT_TRUE(gst_element_seek_simple(p.get(), GST_FORMAT_TIME, GST_SEEK_FLAG_FLUSH, 0));
+  ASSERT_TRUE(p.Wait(GST_MESSAGE_EOS));
+  ExpectSame(p.outcome().buffers.at("see"), written);
+  gint64 position = 0;
+  ASSERT_TRUE(gst_element_query_position(p.Find("m").get(), GST_FORMAT_TIME, &position));
+  EXPECT_EQ(position, length);
+  // Backwards is refused.
+  EXPECT_FALSE(gst_element_seek(p.get(), -1, GST_FORMAT_TIME, GST_SEEK_FLAG_FLUSH,
+                                GST_SEEK_TYPE_SET, 0, GST_SEEK_TYPE_NONE, 0));
+}
+
+TEST_F(McapSeek, RefusesToEndBeforeItBegins) {
+  Play(kSensor + " num-buffers=80 ! lidarenc ! mcapsink" + At("a.mcap"));
+  Pipeline p("mcapsrc" + At("a.mcap") + " ! fakesink name=see");
+  gst_element_set_state(p.get(), GST_STATE_PAUSED);
+  gst_element_get_state(p.get(), nullptr, nullptr, GST_CLOCK_TIME_NONE);
+  const auto seek = [&](GstSeekType start_type, gint64 start, GstSeekType stop_type, gint64 stop) {
+    return gst_element_seek(p.get(), 1, GST_FORMAT_TIME, GST_SEEK_FLAG_FLUSH, start_type, start,
+                            stop_type, stop);
+  };
+  constexpr auto kMs = gint64{GST_MSECOND};
+  EXPECT_FALSE(seek(GST_SEEK_TYPE_SET, 600 * kMs, GST_SEEK_TYPE_SET, 200 * kMs));
+  EXPECT_FALSE(seek(GST_SEEK_TYPE_SET, 600 * kMs, GST_SEEK_TYPE_END, -900 * kMs));
+  EXPECT_TRUE(seek(GST_SEEK_TYPE_END, -200 * kMs, GST_SEEK_TYPE_NONE, 0));
+  EXPECT_EQ(p.Run().error, "");
+}
+
+TEST_F(McapSeek, ASegmentSeekEndsWithItsMessage) {
+  Record(10, "", "a.mcap");
+  Pipeline p("mcapsrc" + At("a.mcap") + " ! identity name=see ! fakesink");
+  gst_element_set_state(p.get(), GST_STATE_PAUSED);
+  ASSERT_TRUE(p.Wait(GST_MESSAGE_ASYNC_DONE));
+  p.outcome().buffers.clear();
+  const auto flags = static_cast<GstSeekFlags>(GST_SEEK_FLAG_FLUSH | GST_SEEK_FLAG_SEGMENT);
+  ASSERT_TRUE(gst_element_seek(p.get(), 1, GST_FORMAT_TIME, flags, GST_SEEK_TYPE_SET, 0,
+                               GST_SEEK_TYPE_SET, 300 * GST_MSECOND));
+  gst_element_set_state(p.get(), GST_STATE_PLAYING);
+  ASSERT_TRUE(p.Wait(GST_MESSAGE_SEGMENT_DONE));
+  EXPECT_EQ(p.outcome().segment_done, 300 * GST_MSECOND);
+  // The next segment follows without a flush, as loops do it.
+  ASSERT_TRUE(gst_element_seek(p.get(), 1, GST_FORMAT_TIME, GST_SEEK_FLAG_NONE, GST_SEEK_TYPE_SET,
+                               0, GST_SEEK_TYPE_SET, 300 * GST_MSECOND));
+  ASSERT_TRUE(p.Wait(GST_MESSAGE_EOS));
+  EXPECT_EQ(p.outcome().buffers.at("see").size(), 48U);
+}
+
+TEST_F(McapSeek, SaysHowFarOneMaySeekAndWhatIsPlayed) {
+  Record(10, "", "a.mcap");
+  Pipeline p("mcapsrc name=m" + At("a.mcap") + " ! fakesink name=see");
+  gst_element_set_state(p.get(), GST_STATE_PAUSED);
+  ASSERT_TRUE(p.Wait(GST_MESSAGE_ASYNC_DONE));
+  const gst::PadPtr pad(gst_element_get_static_pad(p.Find("m").get(), "src_0"));
+  const gint64 length = Times(p).second;
+  gboolean seekable = FALSE;
+  gint64 start = -1, stop = -1;
+  const gst::QueryPtr seeking(gst_query_new_seeking(GST_FORMAT_TIME));
+  ASSERT_TRUE(gst_pad_query(pad.get(), seeking.get()));
+  gst_query_parse_seeking(seeking.get(), nullptr, &seekable, &start, &stop);
+  EXPECT_TRUE(seekable);
+  EXPECT_EQ(start, 0);
+  EXPECT_EQ(stop, length);
+  for (const gint64 end : {gint64{-1}, gint64{500 * GST_MSECOND}}) {
+    ASSERT_TRUE(gst_element_seek(p.get(), 2, GST_FORMAT_TIME, GST_SEEK_FLAG_FLUSH,
+                                 GST_SEEK_TYPE_SET, 300 * GST_MSECOND, GST_SEEK_TYPE_SET, end));
+    ASSERT_TRUE(p.Wait(GST_MESSAGE_ASYNC_DONE));
+    gdouble rate = 0;
+    const gst::QueryPtr segment(gst_query_new_segment(GST_FORMAT_TIME));
+    ASSERT_TRUE(gst_pad_query(pad.get(), segment.get()));
+    gst_query_parse_segment(segment.get(), &rate, nullptr, &start, &stop);
+    EXPECT_EQ(rate, 2);
+    EXPECT_EQ(start, 300 * GST_MSECOND);
+    EXPECT_EQ(stop, end < 0 ? length : end);
+  }
+}
+
+}  // namespace
+}  // namespace lidar::test
