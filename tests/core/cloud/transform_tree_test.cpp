@@ -113,7 +113,7 @@ TEST_F(Tree, APoseThatIsTooLateChangesNothing) {
   ExpectNear(Place(tree_.Find("map", "odom", kStart + milliseconds(500)), {0, 0, 0}), {150, 0, 0});
   // However many there are, while newer ones come between them.
   for (int i = 0; i < 100; ++i) {
-    EXPECT_FALSE(tree_.Set("map", "odom", kStart - seconds(20), At(3), false));
+    EXPECT_FALSE(tree_.Set("map", "odom", kStart - seconds(20) + milliseconds(i), At(3), false));
     EXPECT_TRUE(tree_.Set("map", "odom", kStart + seconds(1) + milliseconds(i), At(200), false));
   }
   ExpectNear(Place(tree_.Find("map", "odom", kStart), {0, 0, 0}), {100, 0, 0});
