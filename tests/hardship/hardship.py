@@ -27,6 +27,16 @@ class Skip(Exception):
     """This machine cannot do it; the text says why."""
 
 
+def comes_true(condition):
+    """Whether it does within the time that a busy machine may take."""
+    start = time.monotonic()
+    while not condition():
+        if time.monotonic() - start > PATIENCE:
+            return False
+        time.sleep(0.1)
+    return True
+
+
 class Stream:
     """A real sender and a real receiver."""
 
@@ -178,10 +188,8 @@ def pads_that_come_and_go(_options):
     threads = stream.sender.ask()["threads"]
     stream.sender.ask("pads 30")
     rate = stream.full_rate()
-    start = time.monotonic()
-    while (more := stream.sender.ask()["threads"] - threads) > 2:
-        assert time.monotonic() - start < PATIENCE, f"{more} threads are left"
-        time.sleep(0.1)
+    ended = comes_true(lambda: stream.sender.ask()["threads"] - threads <= 2)
+    assert ended, f"{stream.sender.last['threads'] - threads} threads are left"
     stream.finish()
     return f"30 pads, then {rate:.0f} clouds/s of the stream that stayed"
 
@@ -199,10 +207,10 @@ def many_receivers(options):
     assert not victim.last["error"], victim.last["error"]
     assert threads <= 2 * count + 5, f"{threads} threads for {count} receivers"
     took = victim.ask("null")["took"]
-    assert took < 5000, f"stopping took {took} ms"
-    time.sleep(2)  # GLib ends threads without work after a while, but keeps 8 from version 2.84 on
-    left = victim.ask()["threads"] - few
-    assert left <= 8, f"{left} threads are left"
+    assert took < 1000 * PATIENCE, f"stopping took {took} ms"
+    # GLib ends threads without work after a while, but keeps 8 from version 2.84 on.
+    ended = comes_true(lambda: victim.ask()["threads"] - few <= 8)
+    assert ended, f"{victim.last['threads'] - few} threads are left"
     victim.close()
     return f"{threads} threads for {count} receivers, stopped within {took} ms"
 
@@ -218,14 +226,13 @@ def many_streams(options):
     sources = " ".join(f"lidartestsrc is-live=true model=os0-32 mode=512x10 slices-per-scan=1 num-buffers=200 ! "
                        f"lidarenc effort=0 max-error=0.2 ! rtplidarpay ssrc={n} ! net." for n in range(1, count + 1))
     sender = ends.Victim(f"screamsink name=net host=127.0.0.1 port={port} max-bitrate=20000000 {sources}")
-    time.sleep(3)
-    net = sender.ask()["net"]
+    arrived = comes_true(lambda: receiver.ask()["net"]["ssrcs"] == count)
+    assert arrived, f"{receiver.last['net']['ssrcs']:.0f} of {count} streams arrived"
+    flows = comes_true(lambda: sender.stat("net", "feedback-accepted") > 20 and sender.last["net"]["packets-sent"] > 300)
+    assert flows, sender.last["net"]
     threads = sender.last["threads"]
     assert not sender.last["error"], sender.last["error"]
     assert threads <= count + 12, f"{threads} threads for {count} streams"
-    assert net["feedback-accepted"] > 20 and net["packets-sent"] > 300, net
-    got = receiver.ask()["net"]
-    assert got["ssrcs"] == count, f"{got['ssrcs']:.0f} of {count} streams arrived"
     edge = receiver.last["threads"]
     assert edge <= 12, f"{edge} threads at the receiver"
     for end in (sender, receiver):
