@@ -1,0 +1,170 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Where payloader and depayloader begin to do something, and what they begin anew.
+#include <gtest/gtest.h>
+
+#include "tests/elements/rtplidar/slices.h"
+
+namespace lidar::test {
+namespace {
+
+class PayLimits : public ::testing::Test {
+ protected:
+  PayLimits() { gst_harness_set_src_caps_str(h_.get(), EncodedCaps().c_str()); }
+  GstFlowReturn Push(guint scan, guint index, gsize size = 100) {
+    return gst_harness_push(h_.get(), EncodedSlice(scan, index, size));
+  }
+  GstFlowReturn PushAt(guint column, guint count) {
+    GstBuffer* buffer = EncodedSlice(0, 0, 100);
+    const GstLidarSlice meta{0, 0, count, column};
+    gst_lidar_buffer_set_slice(buffer, &meta);
+    return gst_harness_push(h_.get(), buffer);
+  }
+  /// How many configs went out since the last call.
+  std::size_t Configs() {
+    std::size_t n = 0;
+    for (const Rtp& p : PullAll(h_.get())) n += p.IsConfig() ? 1U : 0U;
+    return n;
+  }
+  void Restart() {
+    gst_element_set_state(h_->element, GST_STATE_NULL);
+    gst_element_set_state(h_->element, GST_STATE_PLAYING);
+    gst_harness_push_event(h_.get(), gst_event_new_stream_start("again"));
+    gst_harness_set_src_caps_str(h_.get(), EncodedCaps().c_str());
+  }
+
+  Harness h_{gst_harness_new("rtplidarpay")};
+};
+
+TEST_F(PayLimits, TheConfigIsRepeatedOnceItsIntervalIsOver) {
+  Push(0, 0);
+  EXPECT_EQ(Configs(), 1U);
+  Push(9, 3);  // 975 ms
+  EXPECT_EQ(Configs(), 0U);
+  Push(10, 0);
+  EXPECT_EQ(Configs(), 1U);
+}
+
+TEST_F(PayLimits, TheConfigComesAgainAfterAFlushAndWhereTheSsrcChanges) {
+  g_object_set(h_->element, "config-interval", 0, nullptr);
+  Push(0, 0);
+  EXPECT_EQ(Configs(), 1U);
+  Push(0, 1);
+  EXPECT_EQ(Configs(), 0U);
+  gst_harness_push_event(h_.get(), gst_event_new_flush_start());
+  gst_harness_push_event(h_.get(), gst_event_new_flush_stop(TRUE));
+  GstSegment segment;
+  gst_segment_init(&segment, GST_FORMAT_TIME);
+  gst_harness_push_event(h_.get(), gst_event_new_segment(&segment));
+  Push(0, 2);
+  EXPECT_EQ(Configs(), 1U);
+  gst_harness_push_upstream_event(
+      h_.get(),
+      gst_event_new_custom(GST_EVENT_CUSTOM_UPSTREAM,
+                           gst_structure_new("GstRTPCollision", "ssrc", G_TYPE_UINT, 1U, nullptr)));
+  Push(0, 3);
+  EXPECT_EQ(Configs(), 1U);
+}
+
+TEST_F(PayLimits, AMetaMayBeAsLargeAsTheFormat) {
+  EXPECT_EQ(PushAt(G_MAXUINT16, 4'096), GST_FLOW_OK);
+  EXPECT_EQ(PushAt(0, 4'097), GST_FLOW_ERROR);
+  Restart();
+  EXPECT_EQ(PushAt(G_MAXUINT16 + 1U, 4'096), GST_FLOW_ERROR);
+}
+
+TEST_F(PayLimits, WhatWasCollectedGoesFirstWhereAggregationEnds) {
+  g_object_set(h_->element, "aggregate", TRUE, "config-interval", 0, nullptr);
+  Push(0, 0);
+  g_object_set(h_->element, "aggregate", FALSE, nullptr);
+  Push(0, 1);
+  const auto packets = PullAll(h_.get());
+  ASSERT_EQ(packets.size(), 3U);
+  EXPECT_EQ(packets[1].payload[15], 0);  // the slice's index
+  EXPECT_EQ(packets[2].payload[15], 1);
+}
+
+TEST_F(PayLimits, ScansAreCountedAndThoseWithoutAMetaNumbered) {
+  for (guint i = 0; i < 8; ++i) Push(i / 4, i % 4);
+  EXPECT_EQ(Stat(h_.get(), "scans-sent"), 2U);
+  for (int round = 0; round < 2; ++round) {
+    Restart();
+    PullAll(h_.get());
+    for (guint8 scan = 0; scan < 3; ++scan) {
+      GstBuffer* buffer = gst_buffer_new_allocate(nullptr, 100, nullptr);
+      gst_buffer_memset(buffer, 0, 0, 100);
+      GST_BUFFER_PTS(buffer) = scan * GST_MSECOND;
+      gst_harness_push(h_.get(), buffer);
+      EXPECT_EQ(PullAll(h_.get()).back().payload[21], scan);  // the scan's id
+    }
+    EXPECT_EQ(Stat(h_.get(), "scans-sent"), 3U);
+  }
+}
+
+TEST_F(PayLimits, EachRateOfTheTargetIsWithoutHeaders) {
+  const GstLidarTargetBitrate target{5'000'000, 42, 1'000'000, 10'000'000, 7, 8, "update"};
+  GstEvent* event = gst_lidar_event_new_target_bitrate(&target);
+  const guint32 seqnum = gst_event_get_seqnum(event);
+  gst_harness_push_upstream_event(h_.get(), event);
+  while (const gst::EventPtr seen{gst_harness_try_pull_upstream_event(h_.get())}) {
+    GstLidarTargetBitrate t{};
+    if (!gst_lidar_event_parse_target_bitrate(seen.get(), &t)) continue;
+    EXPECT_NEAR(t.max_bitrate, 2.0 * t.bitrate, 2);
+    EXPECT_LT(t.max_bitrate, 10'000'000U);
+    EXPECT_EQ(gst_event_get_seqnum(seen.get()), seqnum);
+    return;
+  }
+  ADD_FAILURE() << "no target";
+}
+
+TEST_F(PayLimits, TellsTheEncoderOfEachSliceThatAReceiverHas) {
+  for (guint i = 0; i < 80; ++i) Push(i / 4, i % 4);
+  const auto packets = PullAll(h_.get());
+  GstRTPBuffer rtp = GST_RTP_BUFFER_INIT;
+  ASSERT_TRUE(gst_rtp_buffer_map(packets[0].buffer.get(), GST_MAP_READ, &rtp));
+  GstLidarPacketsReceived received{};
+  received.receiver = 77;
+  received.ssrc = gst_rtp_buffer_get_ssrc(&rtp);
+  gst_rtp_buffer_unmap(&rtp);
+  received.count = 1;
+  received.ranges[0] = {packets.front().sequence, packets.back().sequence};
+  gst_harness_push_upstream_event(h_.get(), gst_lidar_event_new_packets_received(&received));
+  while (const gst::EventPtr seen{gst_harness_try_pull_upstream_event(h_.get())}) {
+    GstLidarSlicesReceived slices{};
+    if (!gst_lidar_event_parse_slices_received(seen.get(), &slices)) continue;
+    EXPECT_EQ(slices.receiver, 77U);
+    EXPECT_EQ(slices.count, 80U);
+    return;
+  }
+  ADD_FAILURE() << "no receipt";
+}
+
+TEST(DepayLimits, WarnsAtTheTwentiethPacketOfAnotherTypeAndAgainAfterARestart) {
+  constexpr const char* kOther =
+      "application/x-rtp,media=application,clock-rate=90000,encoding-name=X-LIDAR-DRACO,payload=97";
+  const Harness pay(gst_harness_new("rtplidarpay"));
+  gst_harness_set_src_caps_str(pay.get(), EncodedCaps().c_str());
+  for (guint i = 0; i < 30; ++i) gst_harness_push(pay.get(), EncodedSlice(i / 4, i % 4, 100));
+  const auto packets = PullAll(pay.get());
+  const Harness h(gst_harness_new("rtplidardepay"));
+  GstBus* bus = gst_bus_new();
+  gst_element_set_bus(h->element, bus);
+  gst_harness_set_src_caps_str(h.get(), kOther);
+  for (int round = 0; round < 2; ++round) {
+    for (std::size_t i = 0; i < 22; ++i) {
+      gst_harness_push(h.get(), gst_buffer_copy_deep(packets.at(i).buffer.get()));
+      const gst::MessagePtr warning(gst_bus_pop_filtered(bus, GST_MESSAGE_WARNING));
+      EXPECT_EQ(warning != nullptr, i == 19) << i;
+    }
+    EXPECT_EQ(Stat(h.get(), "packets-wrong-payload-type"), 22U);
+    gst_element_set_state(h->element, GST_STATE_READY);
+    gst_element_set_state(h->element, GST_STATE_PLAYING);
+    EXPECT_EQ(Stat(h.get(), "packets-wrong-payload-type"), 0U);
+    gst_harness_push_event(h.get(), gst_event_new_stream_start("again"));
+    gst_harness_set_src_caps_str(h.get(), kOther);
+  }
+  gst_element_set_bus(h->element, nullptr);
+  gst_object_unref(bus);
+}
+
+}  // namespace
+}  // namespace lidar::test
