@@ -137,7 +137,7 @@ GstPadProbeReturn RobotPipeline::OnCloud(GstBuffer* buffer) {
   GstLidarSlice slice{};
   if (!gst_lidar_buffer_get_slice(buffer, &slice) || slice.slice_count == 0) slice = {0, 0, 1, 0};
   // A map that begins with half a scan fits the next scan badly.
-  if (!begun_ && begin_scan_ == 0 && slice.slice_index > 0) return GST_PAD_PROBE_DROP;
+  if (!begun_ && number_ != begin_scan_ && slice.slice_index > 0) return GST_PAD_PROBE_DROP;
   if (!std::exchange(begun_, true) && begin_scan_ > 0 && number_ > begin_scan_)
     NoteLateBegin(gst_lidar_buffer_get_capture_time(buffer));
   closed_.reset();
