@@ -43,11 +43,12 @@ bool ParseTime(const std::string& line, Time* time) {
   const auto [next, failed] = std::from_chars(word.data(), word.data() + word.size(), seconds);
   double fraction = 0;
   if (failed != std::errc{}) return false;
-  if (*next == '.') {
+  const bool plain = word.find_first_of("eE") == std::string::npos;
+  if (plain && *next == '.') {
     const std::string digits = "0" + std::string(next);
     std::from_chars(digits.data(), digits.data() + digits.size(), fraction);
   } else if (*next != '\0') {
-    double whole = 0;  // 1e9, say
+    double whole = 0;  // 1.7e9, as NumPy writes it
     std::from_chars(word.data(), word.data() + word.size(), whole);
     if (std::abs(whole) > 9e9) return false;
     *time = Time{} + FromSeconds(whole);

@@ -44,6 +44,12 @@ TEST(Pose, TakesTheShorterWayRound) {
   Pose pose = Exp(MakeTwist(0, 0, 0, 0, 0, 0.2));
   pose.rotation.coeffs() *= -1;  // the same rotation
   EXPECT_LT((Log(pose) - MakeTwist(0, 0, 0, 0, 0, 0.2)).norm(), 1e-12);
+  EXPECT_NEAR(Angle(pose), 0.2, 1e-12);
+}
+
+TEST(Pose, BendsALongWayByATinyTurn) {
+  const Pose pose = Exp(MakeTwist(1e6, 0, 0, 0, 0, 5e-7));
+  EXPECT_NEAR(pose.position.y(), 0.25, 1e-6);
 }
 
 }  // namespace

@@ -49,6 +49,12 @@ TEST(TumFiles, KeepNanosecondsOfUnixTime) {
   EXPECT_LT(Angle(read[0].pose.Inverse() * written.pose), 1e-6);
 }
 
+TEST(TumFiles, HaveNineDigitsBehindThePoint) {
+  std::ostringstream out;
+  WriteTumLine(out, {Time{} + std::chrono::nanoseconds(42), At(0, 0, 0)});
+  EXPECT_EQ(out.str().rfind("0.000000042 ", 0), 0U) << out.str();
+}
+
 TEST(KittiFiles, GetTheirTimesFromThePeriod) {
   std::ostringstream out;
   WriteKittiLine(out, At(1, 2, 0.5));
@@ -118,6 +124,95 @@ TEST(TrajectoryErrors, NeedThreePosesInCommon) {
   for (StampedPose& p : later) p.time += seconds(100);
   EXPECT_FALSE(Compare(Circle(), later));
   EXPECT_FALSE(Compare({}, Circle()));
+}
+
+TEST(TrajectoryFiles, MayHaveTimesBefore1970AndPosesOfOneTime) {
+  std::string error;
+  const auto read = Read("-1.25 0 0 0 0 0 0 1\n-1.25 1 0 0 0 0 0 1\n9e9 2 0 0 0 0 0 1\n", &error);
+  ASSERT_EQ(read.size(), 3U) << error;
+  EXPECT_EQ(read[0].time, Time{} - milliseconds(1'250));
+  EXPECT_EQ(read[2].time, Time{} + seconds(9'000'000'000));
+  EXPECT_TRUE(Read("9.1e9 0 0 0 0 0 0 1\n", &error).empty());
+  const auto exponent = Read("1.7000000005e+09 0 0 0 0 0 0 1\n", &error);
+  ASSERT_EQ(exponent.size(), 1U) << error;
+  EXPECT_EQ(exponent[0].time, Time{} + milliseconds(1'700'000'000'500));
+}
+
+TEST(TrajectoryFiles, HaveRotationsOfAboutUnitLength) {
+  std::string error;
+  for (const auto& [w, good] :
+       {std::pair<const char*, bool>{"0.4", false}, {"0.6", true}, {"1.9", true}, {"2.1", false}})
+    EXPECT_EQ(!Read(std::string("1.0 0 0 0 0 0 0 ") + w + "\n", &error).empty(), good) << w;
+}
+
+TEST(KittiFiles, BeginAtZeroWhateverCommentsTheyHave) {
+  std::ostringstream out;
+  WriteKittiLine(out, At(1, 2, 0.5));
+  std::string error;
+  const Trajectory read = Read("# a comment\n" + out.str(), &error);
+  ASSERT_EQ(read.size(), 1U) << error;
+  EXPECT_EQ(read[0].time, Time{});
+}
+
+/// A straight way at 10 m/s.
+Trajectory Straight(int poses, double scale = 1) {
+  Trajectory way;
+  for (int i = 0; i < poses; ++i)
+    way.push_back({Time{} + i * milliseconds(100), At(scale * i, 0, 0)});
+  return way;
+}
+
+TEST(TrajectoryErrors, TellTheLargestBesideTheMean) {
+  const Trajectory truth = Straight(101);
+  Trajectory once_off = truth;
+  once_off[50].pose.position.y() += 1;
+  const auto error = Compare(truth, once_off);
+  ASSERT_TRUE(error);
+  EXPECT_EQ(error->poses, 101U);  // the first and the last among them
+  EXPECT_NEAR(error->ate_max_m, 1, 0.02);
+  EXPECT_NEAR(error->ate_rmse_m, 0.1, 0.01);
+  EXPECT_NEAR(error->length_m, 100, 1e-9);
+  EXPECT_TRUE(Compare(Straight(3), Straight(3)));
+  EXPECT_FALSE(Compare(Straight(2), Straight(2)));
+}
+
+TEST(TrajectoryErrors, TellTurnsInDegrees) {
+  const Trajectory truth = Straight(100);
+  Trajectory turning = truth;
+  for (std::size_t i = 0; i < turning.size(); ++i)
+    turning[i].pose = At(static_cast<double>(i), 0, 0.2 * static_cast<double>(i) * M_PI / 180);
+  const auto error = Compare(truth, turning);
+  ASSERT_TRUE(error);
+  EXPECT_NEAR(error->rpe_rmse_deg, 2, 1e-6);  // in a second
+}
+
+TEST(TrajectoryErrors, TheEndIsSeenFromTheFirstSecond) {
+  const Trajectory truth = Straight(200);
+  Trajectory estimate = Straight(200, 1.1);
+  for (StampedPose& p : estimate) p.pose = At(30, 40, 1) * p.pose;
+  const auto error = Compare(truth, estimate);
+  ASSERT_TRUE(error);
+  // The first ten poses lie over each other: 0.1 * (199 m - 4.5 m).
+  EXPECT_NEAR(error->end_error_m, 19.45, 1e-6);
+}
+
+/// A drift that grows with the way shows in the longest stretches only.
+TEST(TrajectoryErrors, DriftIsMeasuredOverUpTo800Metres) {
+  const Trajectory truth = Straight(802);
+  Trajectory bent = truth;
+  for (std::size_t i = 0; i < bent.size(); ++i) {
+    const auto way = static_cast<double>(i);
+    bent[i].pose.position.y() = std::pow(way / 100, 3);
+  }
+  const auto error = Compare(truth, bent);
+  ASSERT_TRUE(error && error->drift);
+  // The mean over all stretches of 100 m to 800 m that begin at each tenth pose.
+  double sum = 0;
+  int count = 0;
+  for (double stretch = 100; stretch <= 800; stretch += 100)
+    for (double begin = 0; begin + stretch < 802; begin += 10, ++count)
+      sum += (std::pow((begin + stretch) / 100, 3) - std::pow(begin / 100, 3)) / stretch;
+  EXPECT_NEAR(*error->drift, sum / count, 1e-9);
 }
 
 }  // namespace
