@@ -74,15 +74,18 @@ const std::array<lidar::gst::Stat<Counters>, 4> kStats = {{
 }};
 
 struct State {
-  std::mutex mutex;  // guards all but `next_pad`; never held while posting
+  std::mutex mutex;  // guards these; never held while writing, as a disk may hang
   Settings settings;
+  Counters counters;
+
+  std::mutex recording;  // guards these, is taken before `mutex`, and never held while posting
   std::unique_ptr<Recorder> recorder;
   lidar::gst::Timeline timeline;
   std::set<std::string> topics;
   std::vector<NewMessage> messages;
   bool has_slices = false;
   bool failed = false;
-  Counters counters;
+  Counters counted;  // `counters` follows
 
   guint next_pad = 0;  // under the object's lock
 };
@@ -125,9 +128,7 @@ namespace {
 lidar::gst::StructurePtr Stats(GObject* object) {
   State& state = *GST_LIDAR_MCAP_SINK(object)->state;
   std::lock_guard lock(state.mutex);
-  Counters counters = state.counters;
-  if (state.recorder) counters.chunks = state.recorder->chunks();
-  return lidar::gst::ToStructure("mcap-sink-stats", kStats, counters);
+  return lidar::gst::ToStructure("mcap-sink-stats", kStats, state.counters);
 }
 
 void PostFault(GstLidarMcapSink* self, const RecorderFault& fault) {
@@ -162,7 +163,14 @@ void PostFinished(GstLidarMcapSink* self, const std::vector<lidar::gst::Recorded
   }
 }
 
-/// Runs `work` on the recorder under the lock, and posts what comes of it without. False where the
+/// Lets `stats` see what was counted; for whoever holds `recording`.
+void TellCounters(State* state) {
+  if (state->recorder) state->counted.chunks = state->recorder->chunks();
+  std::lock_guard lock(state->mutex);
+  state->counters = state->counted;
+}
+
+/// Runs `work` on the recorder under its lock, and posts what comes of it without. False where the
 /// recording is over.
 template <class Work>
 bool WithRecorder(GstLidarMcapSink* self, Work work) {
@@ -170,16 +178,22 @@ bool WithRecorder(GstLidarMcapSink* self, Work work) {
   std::optional<RecorderFault> fault;
   std::vector<lidar::gst::RecordedFile> finished;
   {
-    std::lock_guard lock(state.mutex);
+    std::lock_guard lock(state.recording);
     if (!state.recorder || state.failed) return false;
     fault = work(&state);
     finished = state.recorder->TakeFinished();
-    state.counters.files += finished.size();
+    state.counted.files += finished.size();
     state.failed = fault.has_value();
+    TellCounters(&state);
   }
   PostFinished(self, finished);
   if (fault) PostFault(self, *fault);
   return !fault;
+}
+
+Settings SettingsOf(State* state) {
+  std::lock_guard lock(state->mutex);
+  return state->settings;
 }
 
 /// A recorder for the settings; NULL and a message where there can be none.
@@ -188,8 +202,8 @@ bool Start(GstLidarMcapSink* self) {
   std::string why = "there is no location";
   std::optional<RecorderFault> fault;
   {
-    std::lock_guard lock(state.mutex);
-    Settings s = state.settings;
+    std::lock_guard lock(state.recording);
+    Settings s = SettingsOf(&state);
     s.recorder.writer.compression = s.compression;
     s.recorder.writer.chunk_size = static_cast<std::size_t>(s.chunk_size.bytes());
     const bool limited = s.recorder.max_file_size > 0 || s.recorder.max_files > 0 ||
@@ -200,10 +214,11 @@ bool Start(GstLidarMcapSink* self) {
       names.reset();
     }
     state.timeline = {};
-    state.counters = {};
+    state.counted = {};
     state.topics.clear();
     state.has_slices = state.failed = false;
     state.recorder.reset();
+    TellCounters(&state);
     if (names) {
       state.recorder = std::make_unique<Recorder>(s.recorder, *std::move(names));
       fault = state.recorder->Check();
@@ -293,7 +308,7 @@ namespace lidar::gst {
 
 std::string McapSinkFreeTopic(GstLidarMcapSink* sink, const std::string& wanted) {
   State& state = *sink->state;
-  std::lock_guard lock(state.mutex);
+  std::lock_guard lock(state.recording);
   std::string topic = wanted;
   for (int i = 1; !state.topics.insert(topic).second; ++i) topic = wanted + "_" + std::to_string(i);
   return topic;
@@ -302,7 +317,7 @@ std::string McapSinkFreeTopic(GstLidarMcapSink* sink, const std::string& wanted)
 bool McapSinkAddChannel(GstLidarMcapSink* sink, const BufferWriter& writer,
                         const std::string& topic, const GstCaps* caps, RecordedStream* stream) {
   State& state = *sink->state;
-  std::lock_guard lock(state.mutex);
+  std::lock_guard lock(state.recording);
   if (!state.recorder) return false;
   state.topics.insert(topic);
   state.has_slices = state.has_slices || writer.type() == MessageType::kSlice;
@@ -338,8 +353,8 @@ GstFlowReturn McapSinkTake(GstLidarMcapSink* sink, BufferWriter* writer, Recorde
     for (const NewMessage& message : state->messages) {
       const mcap::MessageHeader header{stream->channel_id, stream->sequence++,
                                        log_time + message.after, message.publish_time};
-      ++state->counters.messages;
-      state->counters.bytes += message.data.size();
+      ++state->counted.messages;
+      state->counted.bytes += message.data.size();
       const ByteView data{message.data.data(), message.data.size()};
       if (auto fault = state->recorder->Add(header, data, begins_scan)) return fault;
     }
@@ -356,7 +371,7 @@ void McapSinkStreamEnded(GstLidarMcapSink* sink) {
 }
 
 void McapSinkFlushed(GstLidarMcapSink* sink) {
-  std::lock_guard lock(sink->state->mutex);
+  std::lock_guard lock(sink->state->recording);
   sink->state->timeline.Restart();
 }
 

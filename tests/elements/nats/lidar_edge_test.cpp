@@ -15,19 +15,24 @@
 namespace lidar::test {
 namespace {
 
-/// A UDP port that is free, for the moment.
-int FreePort() {
-  GSocket* socket =
-      g_socket_new(G_SOCKET_FAMILY_IPV4, G_SOCKET_TYPE_DATAGRAM, G_SOCKET_PROTOCOL_UDP, nullptr);
+/// UDP ports that are free, for the moment. No two are the same, as all are bound at once.
+std::vector<int> FreePorts(std::size_t count) {
+  std::vector<GSocket*> sockets;
+  std::vector<int> ports;
   GSocketAddress* any = g_inet_socket_address_new_from_string("127.0.0.1", 0);
-  g_socket_bind(socket, any, FALSE, nullptr);
-  GSocketAddress* bound = g_socket_get_local_address(socket, nullptr);
-  const int port = g_inet_socket_address_get_port(G_INET_SOCKET_ADDRESS(bound));
-  for (gpointer object :
-       {static_cast<gpointer>(bound), static_cast<gpointer>(any), static_cast<gpointer>(socket)})
-    g_object_unref(object);
-  return port;
+  while (ports.size() < count) {
+    sockets.push_back(
+        g_socket_new(G_SOCKET_FAMILY_IPV4, G_SOCKET_TYPE_DATAGRAM, G_SOCKET_PROTOCOL_UDP, nullptr));
+    g_socket_bind(sockets.back(), any, FALSE, nullptr);
+    GSocketAddress* bound = g_socket_get_local_address(sockets.back(), nullptr);
+    ports.push_back(g_inet_socket_address_get_port(G_INET_SOCKET_ADDRESS(bound)));
+    g_object_unref(bound);
+  }
+  g_object_unref(any);
+  for (GSocket* socket : sockets) g_object_unref(socket);
+  return ports;
 }
+int FreePort() { return FreePorts(1)[0]; }
 
 class LidarEdge : public NatsTest {
  protected:
@@ -73,6 +78,12 @@ class LidarEdge : public NatsTest {
     if (at == std::string::npos) return std::nullopt;
     return std::atof(answer->body.c_str() + at + line.size());
   }
+  /// Whether statistics come, and say that the robot's stream goes on.
+  bool GoesOn(const std::string& robot) {
+    const auto sent = [&] { return Metric("lidar_natssink_messages", robot).value_or(0); };
+    const double before = sent();
+    return Eventually([&] { return sent() > before + 16; });
+  }
   std::unique_ptr<NatsPipeline> Robot(int port, const std::string& more = "",
                                       const std::string& payloader = "rtplidarpay") {
     auto robot = std::make_unique<NatsPipeline>(
@@ -93,7 +104,7 @@ class TwoRobots : public LidarEdge {
     LidarEdge::SetUp();
     if (IsSkipped()) return;
     server_.Start();
-    for (int& port : ports_) port = FreePort();
+    ports_ = FreePorts(2);
     StartEdge(
         {{"nats", {{"url", server_.url()}, {"jetstream", "fleet"}}},
          {"robots",
@@ -101,7 +112,7 @@ class TwoRobots : public LidarEdge {
            {{"name", "r2"}, {"port", ports_[1]}, {"max-mbps", 0.1}}}}});
   }
 
-  int ports_[2] = {};
+  std::vector<int> ports_;
 };
 
 TEST_F(TwoRobots, HandsOnWhatARobotSendsAndTellsOfIt) {
@@ -166,8 +177,8 @@ class SilentServer {
 TEST_F(LidarEdge, AServerThatSaysNothingDelaysNoRobotAndNotTheEnd) {
   const SilentServer silent;
   nlohmann::json robots = nlohmann::json::array();
-  for (int i = 0; i < 60; ++i)
-    robots.push_back({{"name", "r" + std::to_string(i)}, {"port", FreePort()}});
+  for (const int port : FreePorts(60))
+    robots.push_back({{"name", "r" + std::to_string(robots.size())}, {"port", port}});
   // One after the other they would take a minute, at the beginning and at the end.
   robots.back()["record"] = server_.folder() + "/last-%05d.mcap";
   StartEdge({{"nats", {{"url", silent.url()}}}, {"robots", robots}});
@@ -226,7 +237,7 @@ TEST_F(LidarEdge, ARecordingThatFailsDoesNotEndTheStream) {
 
 TEST_F(LidarEdge, ADiskThatHangsDelaysNoOtherRobotAndNotTheEnd) {
   server_.Start();
-  const int ports[] = {FreePort(), FreePort()};
+  const auto ports = FreePorts(2);
   const std::string stuck = server_.folder() + "/stuck.mcap";  // waits for a reader for ever
   ASSERT_EQ(mkfifo(stuck.c_str(), 0600), 0);
   StartEdge(
@@ -240,7 +251,14 @@ TEST_F(LidarEdge, ADiskThatHangsDelaysNoOtherRobotAndNotTheEnd) {
   const auto r2 = Robot(ports[1]);
   EXPECT_TRUE(first->WaitForBuffers(8));
   EXPECT_TRUE(second->WaitForBuffers(8));
-  EXPECT_TRUE(Eventually([&] { return Metric("lidar_mcapsink_messages", "r2").value_or(0) > 0; }));
+  // Its file is opened with the first chunk, once that lasts for a second.
+  EXPECT_TRUE(Eventually([&] { return Metric("lidar_mcapsink_chunks", "r2").value_or(0) > 0; }));
+  const auto recorded = [&] { return Metric("lidar_mcapsink_messages", "r1"); };
+  EXPECT_TRUE(Eventually([&] {
+    const auto before = recorded();
+    return GoesOn("r1") && before.value_or(0) > 0 && recorded() == before;
+  })) << "the recorder hangs, and its robot's statistics do not";
+  EXPECT_TRUE(GoesOn("r2"));
   EXPECT_TRUE(EndsByItself());
   EXPECT_EQ(Recordings("r2"), 1U);
 }
@@ -249,7 +267,7 @@ TEST_F(LidarEdge, TakesEncryptedRobotsToAServerThatWantsCredentials) {
   const auto options = server_.OptionsForCredentials();
   if (options.empty()) GTEST_SKIP() << "openssl or python3 is not installed";
   server_.Start(options);
-  const int ports[] = {FreePort(), FreePort()};
+  const auto ports = FreePorts(2);
   const std::string key = server_.folder() + "/key";
   std::ofstream(key) << std::string(60, 'a');
   std::filesystem::permissions(key, std::filesystem::perms::owner_read);
