@@ -41,7 +41,8 @@ TEST_F(EdgeRecorder, ThatFailsAtTheEndDoesNotCutTheStreamShort) {
     edge::RemoveRecorder(pipeline_.get());
   }));
   EXPECT_GE(errors, 1);
-  EXPECT_TRUE(GST_PAD_IS_EOS(PadOf("sink").get()));
+  // The sink tells of the end before its pad knows of it.
+  EXPECT_TRUE(Eventually([&] { return GST_PAD_IS_EOS(PadOf("sink").get()); }));
 }
 
 TEST_F(EdgeRecorder, ThatFailsBehindTheEndOfTheStreamDoesNotDelayIt) {
