@@ -19,8 +19,6 @@ namespace {
 using fleet::SetConnection;
 using tools::MessageText;
 
-constexpr std::size_t kMaxWindow = 65'536;  // messages
-
 GstElement* Add(GstElement* bin, const std::string& factory) {
   return tools::AddElement(bin, factory, factory.c_str());
 }
@@ -53,9 +51,9 @@ RobotPipeline::RobotPipeline(const PipelineSettings& settings, const std::string
       stream_(stream),
       begin_(begin),
       begin_scan_(begin && begin->stream == stream ? begin->scan : 0),
-      rewind_(settings.rewind),
       decoder_(settings.decoder),
-      pipeline_(GST_ELEMENT(gst_object_ref_sink(gst_pipeline_new(robot.c_str())))) {
+      pipeline_(GST_ELEMENT(gst_object_ref_sink(gst_pipeline_new(robot.c_str())))),
+      window_(settings.rewind) {
   GstElement* bin = pipeline_.get();
   GstElement* source = Add(bin, "natssrc");
   GstElement* decoder = Add(bin, settings.decoder);
@@ -112,22 +110,11 @@ void RobotPipeline::Play() {
   });
 }
 
-/// Whether it is farther back than `rewind_`. After a pause of the server, much is stored in an
-/// instant that was captured in seconds, so both times count. A robot's clock may jump.
-bool RobotPipeline::IsOld(const Message& message) const {
-  const auto rewind = static_cast<GstClockTime>(rewind_.count());
-  const Message& now = window_.back();
-  const bool known =
-      GST_CLOCK_TIME_IS_VALID(message.captured) && GST_CLOCK_TIME_IS_VALID(now.captured);
-  const bool captured_lately =
-      known && message.captured <= now.captured && message.captured + rewind >= now.captured;
-  return message.stored + rewind < now.stored && !captured_lately;
-}
-
 GstPadProbeReturn RobotPipeline::OnMessage(GstBuffer* buffer) {
   number_ = GST_BUFFER_OFFSET(buffer);
-  window_.push_back({number_, GST_BUFFER_PTS(buffer), gst_lidar_buffer_get_capture_time(buffer)});
-  while (window_.size() > kMaxWindow || IsOld(window_.front())) window_.pop_front();
+  const GstClockTime captured = gst_lidar_buffer_get_capture_time(buffer);
+  window_.Add({number_, GST_BUFFER_PTS(buffer),
+               GST_CLOCK_TIME_IS_VALID(captured) ? std::optional(captured) : std::nullopt});
   return GST_PAD_PROBE_OK;
 }
 
@@ -143,7 +130,7 @@ GstPadProbeReturn RobotPipeline::OnCloud(GstBuffer* buffer) {
   closed_.reset();
   if (!open_ || slice.scan_id != open_->id || slice.slice_index < open_->next_index) {
     closed_ = open_;
-    open_ = Scan{slice.scan_id, 0, number_, window_.front().number};
+    open_ = Scan{slice.scan_id, 0, number_, window_.first()};
   }
   open_->next_index = slice.slice_index + 1;
   return GST_PAD_PROBE_OK;

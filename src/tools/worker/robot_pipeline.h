@@ -6,7 +6,6 @@
 
 #include <atomic>
 #include <cstdint>
-#include <deque>
 #include <future>
 #include <mutex>
 #include <optional>
@@ -19,6 +18,7 @@
 #include "gst/common/refs.h"
 #include "src/base/time.h"
 #include "src/tools/worker/lease_record.h"
+#include "src/tools/worker/rewind_window.h"
 
 namespace lidar::worker {
 
@@ -75,13 +75,6 @@ class RobotPipeline {
     std::uint64_t from = 0;
   };
 
-  struct Message {
-    std::uint64_t number = 0;
-    GstClockTime stored = 0;  // by JetStream
-    GstClockTime captured = GST_CLOCK_TIME_NONE;
-  };
-  bool IsOld(const Message& message) const;
-
   void Watch(GstElement* element, const char* pad,
              GstPadProbeReturn (RobotPipeline::*on_buffer)(GstBuffer*));
   GstPadProbeReturn OnMessage(GstBuffer* buffer);
@@ -93,7 +86,6 @@ class RobotPipeline {
   const std::uint64_t stream_;
   const std::optional<Progress> begin_;
   const std::uint64_t begin_scan_;  // 0: from now on
-  const Duration rewind_;
   const std::string decoder_;
   gst::ElementPtr pipeline_;
   std::future<void> start_;
@@ -102,8 +94,8 @@ class RobotPipeline {
   std::atomic<std::uint64_t> late_ns_{0};  // between the pose it began with and its first scan
 
   // Only the streaming thread uses what follows.
-  std::uint64_t number_ = 0;    // of the message that is on its way
-  std::deque<Message> window_;  // of `rewind_`; the last is that one
+  std::uint64_t number_ = 0;  // of the message that is on its way
+  RewindWindow window_;       // the last is that one
   bool begun_ = false;
   std::optional<Scan> open_;
   std::optional<Scan> closed_;  // its pose comes first

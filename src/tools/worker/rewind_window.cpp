@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "src/tools/worker/rewind_window.h"
+
+namespace lidar::worker {
+namespace {
+
+constexpr std::size_t kMostMessages = 65'536;
+/// Of the server. Capture times that tell of more are those of a clock that stands.
+constexpr std::uint64_t kLongestPauseNs = 60'000'000'000;
+
+/// `to` - `from`; 0 where a clock went back.
+std::uint64_t Between(std::uint64_t from, std::uint64_t to) { return to < from ? 0 : to - from; }
+
+}  // namespace
+
+/// Whether it is farther back than `rewind`. After a pause of the server, much is stored in an
+/// instant that was captured in seconds, so both times count. A robot's clock may jump.
+bool RewindWindow::IsOld(const Message& message) const {
+  const Message& now = messages_.back();
+  const std::uint64_t age_ns = Between(message.stored_ns, now.stored_ns);
+  const bool captured_lately = message.captured_ns && now.captured_ns &&
+                               *message.captured_ns <= *now.captured_ns &&
+                               *now.captured_ns - *message.captured_ns <= rewind_ns_;
+  return age_ns > rewind_ns_ && !(captured_lately && age_ns <= rewind_ns_ + kLongestPauseNs);
+}
+
+void RewindWindow::Add(const Message& message) {
+  messages_.push_back(message);
+  while (messages_.size() > kMostMessages || IsOld(messages_.front())) messages_.pop_front();
+}
+
+}  // namespace lidar::worker
