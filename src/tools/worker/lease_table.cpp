@@ -99,6 +99,11 @@ void LeaseTable::Drop(const std::string& name, Duration pause, Time now) {
   found->second.not_before = now + pause;
 }
 
+void LeaseTable::LeaveToOthers(const std::string& name, Duration least, Time now) {
+  // Others wait for the margin and hesitate, from when they saw our last write.
+  Drop(name, std::max(least, 2 * settings_.lease), now);
+}
+
 void LeaseTable::Expire(Time now) {
   for (auto& [name, robot] : robots_) {
     if (!robot.wanted) robot.pending.reset();

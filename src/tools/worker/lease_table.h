@@ -52,8 +52,11 @@ class LeaseTable {
 
   /// What is written with the next renewal.
   void SetProgress(const std::string& robot, const Progress& progress);
-  /// Gives up a robot that fails here; it is not taken again for `pause`.
+  /// Gives up a robot; it is not taken again for `pause`.
   void Drop(const std::string& robot, Duration pause, Time now);
+  /// Gives up a robot that fails here: any other worker takes it before we try again, which we do
+  /// after `least` or later.
+  void LeaveToOthers(const std::string& robot, Duration least, Time now);
   /// Ends leases that are over, and gives what to write now.
   std::vector<Write> Poll(Time now);
   /// Gives up all robots at once, and says so to whoever waits for them. Nothing is taken any more.

@@ -98,7 +98,7 @@ void Worker::CheckPlaces(const FleetWatch::News& news) {
     Progress pose = pipeline.progress().value_or(*pipeline.begin());
     pose.stream = 0;  // no stream's
     table_.SetProgress(at->first, pose);
-    at = End(at);
+    at = GiveUp(at);
   }
 }
 
@@ -126,7 +126,7 @@ void Worker::PollPipelines() {
     if (error.empty()) continue;
     Warn(robot, error);
     ++counters_.failures;
-    table_.Drop(robot, kAfterFailure, Now());
+    table_.LeaveToOthers(robot, kAfterFailure, Now());
   }
 }
 
@@ -143,9 +143,7 @@ void Worker::FollowLeases() {
       ++at;
       continue;
     }
-    Say(at->first, "given up");
-    ++counters_.given_up;
-    at = End(at);
+    at = GiveUp(at);
   }
   for (const auto& [robot, lease] : held) {
     if (pipelines_.count(robot) > 0) continue;
@@ -153,7 +151,7 @@ void Worker::FollowLeases() {
     if (last == ending_.end())
       Begin(robot, lease);
     else if (Now() - last->second.since > settings_.lease.lease)  // another worker is faster
-      table_.Drop(robot, settings_.lease.lease, Now());
+      table_.LeaveToOthers(robot, Duration{}, Now());
   }
 }
 
@@ -176,11 +174,20 @@ void Worker::Begin(const std::string& robot, const LeaseTable::Held& held) {
     pipelines_[robot] = std::move(pipeline);
   } catch (const std::exception& e) {  // the machine gives no more threads, or no files
     Warn(robot, e.what());
-    Say(robot, "given up");
     ++counters_.failures;
-    ++counters_.given_up;
-    table_.Drop(robot, kAfterFailure, Now());
+    NoteGivenUp(robot);
+    table_.LeaveToOthers(robot, kAfterFailure, Now());
   }
+}
+
+void Worker::NoteGivenUp(const std::string& robot) {
+  Say(robot, "given up");
+  ++counters_.given_up;
+}
+
+Worker::Pipelines::iterator Worker::GiveUp(Pipelines::iterator at) {
+  NoteGivenUp(at->first);
+  return End(at);
 }
 
 Worker::Pipelines::iterator Worker::End(Pipelines::iterator at) {

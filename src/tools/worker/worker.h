@@ -54,6 +54,9 @@ class Worker {
   void FollowLeases();
   void Begin(const std::string& robot, const LeaseTable::Held& held);
   void WaitForEnds();
+  void NoteGivenUp(const std::string& robot);
+  /// Ends a pipeline while we go on, and says so.
+  Pipelines::iterator GiveUp(Pipelines::iterator at);
   Pipelines::iterator End(Pipelines::iterator at);
   void Send(const std::vector<LeaseTable::Write>& writes);
 

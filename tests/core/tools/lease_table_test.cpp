@@ -210,10 +210,36 @@ TEST_F(Lease, OfARobotThatFailsHereIsLeftToOthers) {
   table_.SetRobots({"r"}, At(0));
   Time now = Pass(At(0), 400);
   table_.Poll(now + milliseconds(300));  // whose answer comes too late
-  table_.Drop("r", seconds(5), now);
+  table_.LeaveToOthers("r", seconds(5), now);
   table_.OnStored(2, 99, now);
   EXPECT_FALSE(Has("r", Pass(now, 4900)));
   EXPECT_TRUE(Has("r", Pass(now + milliseconds(4900), 200)));
+}
+
+TEST_F(Lease, OfARobotThatHangsHereGoesToAnotherWorkerThoughItHesitates) {
+  table_.SetRobots({"r"}, At(0));
+  Time now = Pass(At(0), 400);
+  ASSERT_TRUE(Has("r", now));
+  LeaseTable other({"other", seconds(1), 4});
+  other.SetRobots({"a", "b", "c"}, At(0));
+  for (std::uint64_t ms = 0; ms < 1'000; ++ms)  // has all but one that it can take
+    for (const auto& write : other.Poll(now + milliseconds(ms)))
+      other.OnStored(write.ticket, 1'000 + ms, now + milliseconds(ms));
+  now = Pass(now, 1'000);
+  other.SetRobots({"a", "b", "c", "r"}, now);
+  table_.LeaveToOthers("r", Duration{}, now);
+  // It sees our last write late.
+  now += milliseconds(100);
+  other.OnEntry("r", revision_, ParseLeaseRecord(written_.text), now);
+  std::string next;
+  for (; next.empty() && now < At(9'000); now += milliseconds(1)) {
+    for (const auto& write : other.Poll(now)) {
+      if (write.robot == "r") next = "other";
+      other.OnStored(write.ticket, write.replaces + 1'000, now);
+    }
+    if (!table_.Poll(now).empty() && next.empty()) next = "me";
+  }
+  EXPECT_EQ(next, "other");
 }
 
 TEST_F(Lease, OfARobotThatIsGoneEnds) {
