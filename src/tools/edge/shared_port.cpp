@@ -79,7 +79,7 @@ tools::FileDescriptor OpenSocket(const Address& address, bool shared) {
       socket(address.storage.ss_family, SOCK_DGRAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0));
   const int on = 1;
   const int off = 0;
-  if (address.storage.ss_family == AF_INET6)
+  if (fd && address.storage.ss_family == AF_INET6)
     setsockopt(fd.get(), IPPROTO_IPV6, IPV6_V6ONLY, &off, sizeof off);
   const bool may_bind =
       fd && (!shared || setsockopt(fd.get(), SOL_SOCKET, SO_REUSEPORT, &on, sizeof on) == 0);
