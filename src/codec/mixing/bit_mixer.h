@@ -82,7 +82,7 @@ class BitMixer {
       } else if (i < kCounters + kExtra) {
         logit = ClampLogit(logit_at(i - kCounters));
       }
-      word |= Kernel::Four{static_cast<std::uint16_t>(logit)} << (16 * (i % 4));
+      word |= Inputs::Packed(i, logit);
     }
     return word;
   }

@@ -15,8 +15,9 @@ constexpr unsigned kInputs = 16;
 struct Inputs {
   std::array<std::uint64_t, kInputs / 4> packed{};
 
-  void Set(unsigned place, std::int32_t logit) {
-    packed[place / 4] |= std::uint64_t{static_cast<std::uint16_t>(logit)} << (16 * (place % 4));
+  /// A logit in its place of a number whose other places are 0.
+  static std::uint64_t Packed(unsigned place, std::int32_t logit) {
+    return std::uint64_t{static_cast<std::uint16_t>(logit)} << (16 * (place % 4));
   }
   std::int32_t At(unsigned place) const {
     return static_cast<std::int16_t>(packed[place / 4] >> (16 * (place % 4)));

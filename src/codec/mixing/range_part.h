@@ -94,18 +94,19 @@ class RangePart {
     Keep(CentreOf(bin), mirror_ * (bin - (median_ >> 4)), azimuth);
   }
 
-  /// To try out bins with a CostMeter, from any place in a row...
+  /// Bins are tried out with a CostMeter. A row can be taken up again at any return: it goes on
+  /// from where row() was taken.
   const Row& row() const { return row_; }
   void Resume(const Row& row) { row_ = row; }
-  /// ...those of pixel `i`, where Resume() and See() between them change no cost...
+  /// Looks at pixel `i`, whose bins CostOf() then rates. Resume() and See() do not change what
+  /// they cost; the next Consider() does.
   void Consider(std::uint32_t i) {
     Look(i);
     SetContexts(i);
     asked_ = 0;
   }
   std::int32_t Predicted() const { return median_ >> 4; }
-  /// ...of which See() then keeps one. What costs more than `most` may be said to cost less, but
-  /// more than `most`.
+  /// Past `most` it stops: the answer is then too low, but still above `most`.
   std::int32_t CostOf(std::int32_t bin, std::int64_t most) {
     const std::int32_t difference = mirror_ * (bin - Predicted());
     CodeNode(difference != 0, 0);

@@ -8,6 +8,10 @@
 namespace lidar::codec::mixing {
 namespace {
 
+void Set(Inputs* inputs, unsigned place, std::int32_t logit) {
+  inputs->packed[place / 4] |= Inputs::Packed(place, logit);
+}
+
 class EachKernel : public testing::TestWithParam<const Kernel*> {
  protected:
   std::int32_t Between(std::int32_t least, std::int32_t most) {
@@ -15,7 +19,7 @@ class EachKernel : public testing::TestWithParam<const Kernel*> {
   }
   Inputs RandomInputs() {
     Inputs inputs;
-    for (unsigned i = 0; i < kInputs; ++i) inputs.Set(i, Between(-kMostLogit, kMostLogit));
+    for (unsigned i = 0; i < kInputs; ++i) Set(&inputs, i, Between(-kMostLogit, kMostLogit));
     return inputs;
   }
   Weights RandomWeights() {
@@ -33,7 +37,8 @@ std::int32_t Dot(const Kernel& kernel, const Inputs& inputs, const Weights& weig
 
 TEST(Inputs, GiveBackTheirLogits) {
   Inputs inputs;
-  for (unsigned i = 0; i < kInputs; ++i) inputs.Set(i, static_cast<std::int32_t>(i * 255) - 2'047);
+  for (unsigned i = 0; i < kInputs; ++i)
+    Set(&inputs, i, static_cast<std::int32_t>(i * 255) - 2'047);
   for (unsigned i = 0; i < kInputs; ++i)
     EXPECT_EQ(inputs.At(i), static_cast<std::int32_t>(i * 255) - 2'047);
 }
@@ -54,7 +59,7 @@ TEST_P(EachKernel, AddsUpAsTheScalarOne) {
 TEST_P(EachKernel, AddsUpTheLargestNumbers) {
   for (const std::int32_t sign : {-1, 1}) {
     Inputs inputs;
-    for (unsigned i = 0; i < kInputs; ++i) inputs.Set(i, sign * kMostLogit);
+    for (unsigned i = 0; i < kInputs; ++i) Set(&inputs, i, sign * kMostLogit);
     Weights weights;
     weights.values.fill(kMostWeight);
     EXPECT_EQ(Dot(*GetParam(), inputs, weights), Dot(kScalarKernel, inputs, weights));
