@@ -169,7 +169,8 @@ bool MakeStream(const std::string& url) {
   if (natsConnection_ConnectTo(&nc, url.c_str()) != NATS_OK) return false;
   auto js = nats::OpenJetStream(nc);
   std::string why;
-  const nats::StreamSettings settings{"bench", std::chrono::hours(1), std::uint64_t{4} << 30, 1};
+  const nats::StreamSettings settings{"bench", std::chrono::hours(1), std::uint64_t{4} << 30, 1,
+                                      ""};
   const bool made = nats::EnsureStream(js.get(), settings, {"bench.>"}, &why);
   js.reset();
   natsConnection_Destroy(nc);
