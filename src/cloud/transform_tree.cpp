@@ -113,12 +113,15 @@ bool TransformTree::Set(std::string parent, std::string child, Time at, const Fr
   if (for_good) link.history = {};
   if (!link.IsTooOld(at)) {
     link.earlier = {};
+    link.too_old = 0;
     link.history.Add(parent, sample);
     return true;
   }
   link.earlier.Add(parent, sample);
-  if (link.earlier.samples.size() < kRestart) return false;
+  // The history may hold fewer of them: it drops what is far from the newest.
+  if (++link.too_old < kRestart) return false;
   link.history = std::exchange(link.earlier, {});
+  link.too_old = 0;
   return true;
 }
 

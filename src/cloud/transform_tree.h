@@ -30,8 +30,8 @@ class TransformTree {
 
   /// Where `child` is in `parent` at a time, or for good. False where this is no pose, frames are
   /// not named or the same, or there are too many; and where the pose is older than kHistory, as
-  /// tf2 has it. After kRestart such poses, with no newer one between them, the clock went back,
-  /// and the history begins with them.
+  /// tf2 has it. kRestart such poses of a frame in a row, whatever their times and parents, mean
+  /// that the clock went back: what one history can hold of them replaces what was known.
   bool Set(std::string parent, std::string child, Time at, const FramePose& pose, bool for_good);
 
   struct Answer {
@@ -58,8 +58,9 @@ class TransformTree {
   };
   struct Link {
     bool for_good = false;
-    History history;  // never empty
-    History earlier;  // of a clock that may have gone back
+    History history;          // never empty
+    History earlier;          // of a clock that may have gone back
+    std::size_t too_old = 0;  // poses in a row
 
     bool IsTooOld(Time at) const;
   };
