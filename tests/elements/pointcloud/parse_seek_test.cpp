@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Seeks and segments of pointcloudparse.
+#include <atomic>
 #include <cstdio>
 #include <fstream>
 
@@ -107,9 +108,11 @@ class ParseSeek : public ::testing::Test {
     gst_pad_add_probe(
         pad.get(), GST_PAD_PROBE_TYPE_EVENT_DOWNSTREAM,
         [](GstPad*, GstPadProbeInfo* info, gpointer data) {
-          if (GST_EVENT_TYPE(info->data) == GST_EVENT_SEGMENT_DONE)
-            gst_event_parse_segment_done(GST_EVENT(info->data), nullptr,
-                                         &static_cast<ParseSeek*>(data)->end_of_segment_);
+          if (GST_EVENT_TYPE(info->data) == GST_EVENT_SEGMENT_DONE) {
+            gint64 end = -1;
+            gst_event_parse_segment_done(GST_EVENT(info->data), nullptr, &end);
+            static_cast<ParseSeek*>(data)->end_of_segment_ = end;
+          }
           return GST_PAD_PROBE_OK;
         },
         this, nullptr);
@@ -139,6 +142,13 @@ class ParseSeek : public ::testing::Test {
     return clouds_;
   }
 
+  /// The source posts its message before it pushes the event.
+  gint64 AwaitEndOfSegment() const {
+    const gint64 end = g_get_monotonic_time() + 30 * G_USEC_PER_SEC;
+    while (end_of_segment_ < 0 && g_get_monotonic_time() < end) g_usleep(1000);
+    return end_of_segment_;
+  }
+
   /// Running time at which the segment of now begins.
   GstClockTime Base() {
     const ElementPtr sink(gst_bin_get_by_name(GST_BIN(pipeline_.get()), "sink"));
@@ -153,7 +163,7 @@ class ParseSeek : public ::testing::Test {
   ElementPtr pipeline_;
   std::vector<int> clouds_;
   std::vector<GstClockTime> times_;
-  gint64 end_of_segment_ = -1;
+  std::atomic<gint64> end_of_segment_{-1};
 };
 
 TEST_F(ParseSeek, KnowsHowLongTheFileIsAndThatItCanBeSought) {
@@ -188,7 +198,7 @@ TEST_F(ParseSeek, ASegmentSeekEndsWithItsMessageAndGoesOnFromThere) {
 TEST_F(ParseSeek, ASegmentEndsNoLaterThanItsStop) {
   ASSERT_TRUE(Seek(GST_SEEK_FLAG_FLUSH | GST_SEEK_FLAG_SEGMENT, 0, 250 * GST_MSECOND));
   EXPECT_EQ(PlayTo(GST_MESSAGE_SEGMENT_DONE), (std::vector<int>{0, 1, 2}));
-  EXPECT_EQ(end_of_segment_, gint64{250 * GST_MSECOND});
+  EXPECT_EQ(AwaitEndOfSegment(), gint64{250 * GST_MSECOND});
   // What follows goes on where the segment ended, for a clock.
   ASSERT_TRUE(Seek(GST_SEEK_FLAG_SEGMENT, 800 * GST_MSECOND));
   EXPECT_EQ(PlayTo(GST_MESSAGE_SEGMENT_DONE), (std::vector<int>{8, 9}));
