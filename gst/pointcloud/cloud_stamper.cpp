@@ -8,32 +8,45 @@ void CloudStamper::TakeSegment(GstEvent* event) {
   const GstSegment* given = nullptr;
   gst_event_parse_segment(event, &given);
   times_given_ = given->format == GST_FORMAT_TIME;
-  segment_ = times_given_ ? std::move(owner) : timeline_.ToTime(event, &count_);
+  place_.shown = 0;
+  segment_ = times_given_ ? std::move(owner) : timeline_.ToTime(event, &place_);
 }
 
 CloudTimeline::Grid CloudStamper::Grid() const {
   return {cloud_size_, static_cast<guint64>(rate_.n), static_cast<guint64>(rate_.d)};
 }
 
+void CloudStamper::ShowGrid() {
+  CloudTimeline::Grid grid = Grid();
+  if (times_given_) grid.cloud_bytes = 0;
+  timeline_.SetGrid(grid);
+}
+
+void CloudStamper::SetRate(const Rate& rate) {
+  rate_ = rate;
+  ShowGrid();
+}
+
 void CloudStamper::SetCloudSize(gsize bytes) {
   cloud_size_ = bytes;
-  timeline_.SetGrid(times_given_ ? CloudTimeline::Grid{} : Grid());
+  ShowGrid();
 }
 
 void CloudStamper::Stamp(GstBuffer* cloud) {
   const CloudTimeline::Grid grid = Grid();
+  const guint64 number = place_.next++;
   if (!times_given_ || !GST_BUFFER_PTS_IS_VALID(cloud)) {
-    GST_BUFFER_PTS(cloud) = grid.TimeOf(count_);
+    GST_BUFFER_PTS(cloud) = grid.TimeOf(number);
     GST_BUFFER_DTS(cloud) = GST_CLOCK_TIME_NONE;
   }
-  GST_BUFFER_DURATION(cloud) = grid.TimeOf(count_ + 1) - grid.TimeOf(count_);
-  GST_BUFFER_OFFSET(cloud) = count_++;
-  GST_BUFFER_OFFSET_END(cloud) = count_;
+  GST_BUFFER_DURATION(cloud) = grid.TimeOf(number + 1) - grid.TimeOf(number);
+  GST_BUFFER_OFFSET(cloud) = number;
+  GST_BUFFER_OFFSET_END(cloud) = number + 1;
   if (!times_given_) timeline_.NotePosition(GST_BUFFER_PTS(cloud) + GST_BUFFER_DURATION(cloud));
 }
 
 void CloudStamper::Flush(bool restarts_time) {
-  count_ = 0;
+  place_ = {};
   segment_.reset();
   if (restarts_time) timeline_.RestartTime();
 }

@@ -16,9 +16,10 @@ class CloudStamper {
  public:
   CloudTimeline& timeline() { return timeline_; }
   const Rate& rate() const { return rate_; }
-  void SetRate(const Rate& rate) { rate_ = rate; }
+  /// A rate that is known.
+  void SetRate(const Rate& rate);
   /// Clouds that went, and that were left out.
-  guint64 count() const { return count_; }
+  guint64 count() const { return place_.next; }
   /// Whether upstream stamps its buffers.
   bool times_given() const { return times_given_; }
 
@@ -31,19 +32,22 @@ class CloudStamper {
   void SetCloudSize(gsize bytes);
   void Stamp(GstBuffer* cloud);
   /// A cloud that is left out keeps its place in time.
-  void LeaveOut() { ++count_; }
+  void LeaveOut() { ++place_.next; }
+  /// Whether the next cloud went before a seek that goes on from where it was.
+  bool HasGone() const { return place_.next < place_.shown; }
   void Flush(bool restarts_time);
   void Reset();
 
  private:
   CloudTimeline::Grid Grid() const;
+  void ShowGrid();
 
   CloudTimeline timeline_;
   Rate rate_;
   bool times_given_ = false;
   EventPtr segment_;
   gsize cloud_size_ = 0;
-  guint64 count_ = 0;
+  CloudTimeline::Place place_;
 };
 
 }  // namespace lidar::gst

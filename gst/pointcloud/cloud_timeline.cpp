@@ -25,21 +25,26 @@ void CloudTimeline::Reset() {
   gst_segment_init(&segment_, GST_FORMAT_TIME);
 }
 
-EventPtr CloudTimeline::ToTime(GstEvent* event, guint64* cloud) {
+EventPtr CloudTimeline::ToTime(GstEvent* event, Place* place) {
   const GstSegment* bytes = nullptr;
   gst_event_parse_segment(event, &bytes);
   const guint32 seqnum = gst_event_get_seqnum(event);
   const std::lock_guard lock(mutex_);
   const bool counts = bytes->format == GST_FORMAT_BYTES && grid_.cloud_bytes > 0;
-  if (counts) *cloud = bytes->start / grid_.cloud_bytes;
+  if (counts) place->next = bytes->start / grid_.cloud_bytes;
   // Clouds may have gone since a seek was asked for.
-  const GstClockTime gone =
-      gst_segment_to_running_time(&segment_, GST_FORMAT_TIME, segment_.position);
+  const GstClockTime end = segment_.position;
+  const GstClockTime gone = gst_segment_to_running_time(&segment_, GST_FORMAT_TIME, end);
   if (sought_ && sought_->seqnum == seqnum) {
     segment_ = sought_->segment;
+    if (sought_->goes_on) {
+      segment_.position = std::min(std::max(end, segment_.position), segment_.stop);
+      segment_.offset = segment_.position - segment_.start;
+      place->shown = grid_.CloudAt(segment_.position);
+    }
   } else {
     gst_segment_init(&segment_, GST_FORMAT_TIME);
-    if (counts) segment_.start = segment_.time = segment_.position = grid_.TimeOf(*cloud);
+    segment_.start = segment_.time = segment_.position = grid_.TimeOf(place->next);
   }
   segment_.base = gone;
   sought_.reset();
@@ -116,8 +121,10 @@ std::optional<bool> CloudTimeline::Seek(GstPad* sinkpad, GstEvent* event) {
   gdouble rate = 1;
   GstFormat format = GST_FORMAT_UNDEFINED;
   GstSeekFlags flags = GST_SEEK_FLAG_NONE;
-  gst_event_parse_seek(event, &rate, &format, &flags, nullptr, nullptr, nullptr, nullptr);
+  GstSeekType start_type = GST_SEEK_TYPE_NONE;
+  gst_event_parse_seek(event, &rate, &format, &flags, &start_type, nullptr, nullptr, nullptr);
   Sought sought;
+  sought.goes_on = start_type == GST_SEEK_TYPE_NONE && (flags & GST_SEEK_FLAG_FLUSH) == 0;
   sought.seqnum = gst_event_get_seqnum(event);
   std::unique_lock lock(mutex_);
   const Grid grid = grid_;
@@ -128,9 +135,11 @@ std::optional<bool> CloudTimeline::Seek(GstPad* sinkpad, GstEvent* event) {
   GstSegment& segment = sought.segment;
   if (const auto duration = Duration(sinkpad, grid)) segment.duration = *duration;
   if (!ApplySeek(event, &segment)) return false;
-  const guint64 first = grid.CloudAt(segment.start);
-  if (flags & GST_SEEK_FLAG_KEY_UNIT)
+  const guint64 first = grid.CloudAt(segment.position);
+  if (flags & GST_SEEK_FLAG_KEY_UNIT) {
     segment.start = segment.time = segment.position = grid.TimeOf(first);
+    segment.offset = 0;
+  }
   const bool ends = GST_CLOCK_TIME_IS_VALID(segment.stop) && segment.stop > 0;
   const guint64 past_last = ends ? grid.CloudAt(segment.stop - 1) + 1 : 0;
   if (std::max(first, past_last) > static_cast<guint64>(G_MAXINT64) / grid.cloud_bytes)

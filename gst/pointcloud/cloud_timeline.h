@@ -29,9 +29,14 @@ class CloudTimeline {
   void SetGrid(const Grid& grid);
   void Reset();
 
-  /// The segment in time for one in bytes, which goes on where the last cloud ended; `cloud`
-  /// becomes the first of it, where that is known.
-  EventPtr ToTime(GstEvent* segment, guint64* cloud);
+  /// Clouds by their numbers.
+  struct Place {
+    guint64 next = 0;   // the one that the next bytes are
+    guint64 shown = 0;  // those before have gone, though their bytes may come again
+  };
+  /// The segment in time for one in bytes, which goes on where the last cloud ended; `place`
+  /// becomes where it begins, as far as that is known.
+  EventPtr ToTime(GstEvent* segment, Place* place);
   /// SEGMENT_DONE as those behind the parser want it; takes the event.
   EventPtr EndInTime(GstEvent* done) const;
   /// A cloud has gone that ends then, or with the segment.
@@ -48,6 +53,7 @@ class CloudTimeline {
   struct Sought {
     guint32 seqnum = 0;
     GstSegment segment{};
+    bool goes_on = false;  // from where the last cloud ended
   };
 
   std::optional<GstClockTime> Duration(GstPad* sinkpad, const Grid& grid) const;

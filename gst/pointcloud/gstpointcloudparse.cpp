@@ -184,6 +184,11 @@ GstFlowReturn PushFile(GstLidarPointCloudParse* self, const BufferPtr& file) {
 }
 
 GstFlowReturn PushWhole(GstLidarPointCloudParse* self, BufferPtr buffer) {
+  CloudStamper& stamper = self->state->stamper;
+  if (stamper.HasGone()) {
+    stamper.LeaveOut();
+    return GST_FLOW_OK;
+  }
   return self->state->type ? PushFile(self, buffer) : PushCloud(self, std::move(buffer));
 }
 

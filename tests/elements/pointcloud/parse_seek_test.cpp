@@ -20,6 +20,10 @@ class ParseUnderWay : public Parse {
     gst_pad_set_element_private(h_->srcpad, this);
     gst_pad_set_event_function(h_->srcpad, Upstream);
   }
+  void PushCaps(const std::string& text) {
+    const CapsPtr caps(gst_caps_from_string(text.c_str()));
+    gst_pad_push_event(h_->srcpad, gst_event_new_caps(caps.get()));
+  }
   void PushClouds(int count) {
     for (int i = 0; i < count; ++i) ASSERT_EQ(Push(Bytes(kCloud)), GST_FLOW_OK);
   }
@@ -46,15 +50,19 @@ class ParseUnderWay : public Parse {
     gst_event_set_seqnum(event, seqnum);
     gst_pad_push_event(h_->srcpad, event);
   }
-  bool Seek(GstSeekFlags flags, gint64 start) {
-    return gst_pad_push_event(
-               h_->sinkpad, gst_event_new_seek(1, GST_FORMAT_TIME, flags, GST_SEEK_TYPE_SET, start,
-                                               GST_SEEK_TYPE_NONE, 0)) != FALSE;
+  bool Seek(GstSeekFlags flags, gint64 start, GstSeekType type = GST_SEEK_TYPE_SET) {
+    return gst_pad_push_event(h_->sinkpad, gst_event_new_seek(1, GST_FORMAT_TIME, flags, type,
+                                                              start, GST_SEEK_TYPE_NONE, 0)) !=
+           FALSE;
+  }
+  BufferPtr LastCloud() {
+    BufferPtr last;
+    while (BufferPtr next{gst_harness_try_pull(h_.get())}) last = std::move(next);
+    return last;
   }
   /// When the last cloud that came is shown.
   GstClockTime RunningTime() {
-    BufferPtr last;
-    while (BufferPtr next{gst_harness_try_pull(h_.get())}) last = std::move(next);
+    const BufferPtr last = LastCloud();
     const EventPtr event(gst_pad_get_sticky_event(h_->sinkpad, GST_EVENT_SEGMENT, 0));
     const GstSegment* segment = nullptr;
     gst_event_parse_segment(event.get(), &segment);
@@ -72,6 +80,18 @@ TEST_F(ParseUnderWay, ASeekWithoutAFlushGoesOnWhereTheLastCloudEnded) {
   EXPECT_EQ(RunningTime(), 0U);
 }
 
+TEST_F(ParseUnderWay, ASeekFromHereRepeatsNoCloud) {
+  PushClouds(3);
+  ASSERT_TRUE(Seek(GST_SEEK_FLAG_NONE, 0, GST_SEEK_TYPE_NONE));
+  EXPECT_EQ(RunningTime(), 400 * GST_MSECOND);
+  PushClouds(4);  // the bytes begin after the third again
+  EXPECT_EQ(gst_harness_buffers_in_queue(h_.get()), 2U);
+  EXPECT_EQ(RunningTime(), 600 * GST_MSECOND);
+  ASSERT_TRUE(Seek(GST_SEEK_FLAG_FLUSH, 0, GST_SEEK_TYPE_NONE));
+  PushClouds(1);
+  EXPECT_EQ(GST_BUFFER_OFFSET(LastCloud().get()), 7U);
+}
+
 TEST_F(ParseUnderWay, BytesFromElsewhereGoOnWhereTheLastCloudEnded) {
   PushClouds(3);
   PushBytesFrom(7 * kCloud, 4711);
@@ -82,6 +102,21 @@ TEST_F(ParseUnderWay, BytesFromElsewhereGoOnWhereTheLastCloudEnded) {
   PushBytesFrom(0, 4712);
   PushClouds(1);
   EXPECT_EQ(RunningTime(), 400 * GST_MSECOND);
+}
+
+TEST_F(ParseUnderWay, BuffersThatAreCloudsGoOnWhereTheLastCloudEnded) {
+  Start(kKitti);
+  PushClouds(3);
+  PushBytesFrom(0, 4711);
+  PushClouds(1);
+  EXPECT_EQ(RunningTime(), 300 * GST_MSECOND);
+  PushClouds(2);
+  EXPECT_EQ(RunningTime(), 500 * GST_MSECOND);
+  // At another rate the number of a cloud stands for another time.
+  PushCaps("application/x-pointcloud2,point-step=16,fields=(string)\"x:F32:0\",framerate=20/1");
+  PushBytesFrom(0, 4712);
+  PushClouds(2);
+  EXPECT_EQ(RunningTime(), 650 * GST_MSECOND);
 }
 
 /// A file of ten clouds at 10 Hz, each of 8 points that hold its number, in PAUSED.
