@@ -107,7 +107,7 @@ TEST_F(McapErrors, OtherStreamsAreRefusedByName) {
   // Each time it is tried.
   Pipeline p("videotestsrc num-buffers=1 ! mcapsink" + At("a.mcap"));
   for (int round = 0; round < 2; ++round) {
-    p.outcome().error.clear();
+    p.Forget();
     EXPECT_EQ(p.Run().error.rfind("Cannot be recorded", 0), 0U) << round;
   }
 }

@@ -215,7 +215,7 @@ TEST_F(Mcap, PlaysAgainAfterReady) {
   const auto written = Record(2, "", "a.mcap");
   Pipeline p("mcapsrc" + At("a.mcap") + " ! fakesink name=see");
   for (int round = 0; round < 3; ++round) {
-    p.outcome().buffers.clear();
+    p.Forget();
     gst_element_set_state(p.get(), GST_STATE_PLAYING);
     // The pad is another one each time; who linked it by its signal does so again.
     ASSERT_TRUE(p.Wait(round == 0 ? GST_MESSAGE_EOS : GST_MESSAGE_ANY));

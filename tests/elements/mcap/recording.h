@@ -7,7 +7,9 @@
 #include <algorithm>
 #include <filesystem>
 #include <map>
+#include <mutex>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "gst/common/buffer_map.h"
@@ -116,7 +118,7 @@ class Pipeline {
     Wait(until);
     TakeStats();
     gst_element_set_state(pipeline_.get(), GST_STATE_NULL);
-    return outcome_;
+    return outcome();
   }
   /// Until a number of the statistics is there; false after 30 s.
   bool AwaitStat(const char* name, guint64 least) {
@@ -142,12 +144,25 @@ class Pipeline {
     gst_object_unref(bus);
     return good;
   }
-  Outcome& outcome() { return outcome_; }
+  Outcome outcome() const {
+    const std::lock_guard lock(mutex_);
+    return outcome_;
+  }
+  /// What came up to now counts no more.
+  void Forget() {
+    const std::lock_guard lock(mutex_);
+    outcome_.buffers.clear();
+    outcome_.gaps.clear();
+    outcome_.error.clear();
+  }
 
  private:
   static void OnBuffer(GstElement* element, GstBuffer* buffer, gpointer, gpointer self) {
     const gst::StringPtr name(gst_object_get_name(GST_OBJECT(element)));
-    static_cast<Pipeline*>(self)->outcome_.buffers[name.get()].push_back(Keep(buffer));
+    auto* pipeline = static_cast<Pipeline*>(self);
+    Kept kept = Keep(buffer);
+    const std::lock_guard lock(pipeline->mutex_);
+    pipeline->outcome_.buffers[name.get()].push_back(std::move(kept));
   }
   static void OnIdentity(GstElement* element, GstBuffer* buffer, gpointer self) {
     OnBuffer(element, buffer, nullptr, self);
@@ -164,7 +179,9 @@ class Pipeline {
   }
   static GstPadProbeReturn OnEvent(GstPad* pad, GstPadProbeInfo* info, gpointer self) {
     GstEvent* event = GST_PAD_PROBE_INFO_EVENT(info);
-    Outcome& outcome = static_cast<Pipeline*>(self)->outcome_;
+    auto* pipeline = static_cast<Pipeline*>(self);
+    Outcome& outcome = pipeline->outcome_;
+    const std::lock_guard lock(pipeline->mutex_);
     const gst::StringPtr name(gst_object_get_name(GST_OBJECT_PARENT(pad)));
     if (GST_EVENT_TYPE(event) == GST_EVENT_CAPS) {
       GstCaps* caps = nullptr;
@@ -219,6 +236,7 @@ class Pipeline {
   }
 
   gst::ElementPtr pipeline_;
+  mutable std::mutex mutex_;  // guards buffers, caps and gaps: each stream has a thread
   Outcome outcome_;
 };
 
