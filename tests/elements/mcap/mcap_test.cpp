@@ -189,7 +189,7 @@ TEST_F(Mcap, ASparseStreamDoesNotHoldUpTheOthers) {
   EXPECT_EQ(played.buffers.at("see1").size(), 1U);
 }
 
-TEST_F(Mcap, EndsWhenToldToAndPlaysAllTheNextTime) {
+TEST_F(Mcap, EndsWhenToldToAndPlaysTheNextTime) {
   Record(10, "", "a.mcap");
   Pipeline p("mcapsrc name=m" + At("a.mcap") +
              " ! fakesink name=see fakesrc num-buffers=1 ! fakesink");
