@@ -13,6 +13,7 @@
 #include "gst/net/udp_socket.h"
 #include "tests/elements/ouster/live_receiver.h"
 #include "tests/elements/ouster/software_sensor.h"
+#include "tests/support/ipv6.h"
 
 namespace lidar::test {
 namespace {
@@ -44,17 +45,6 @@ bool AddEthernets() {
 // Before main, as GLib's threads inherit the namespace of the one that starts them.
 const bool kOwnNetwork = EnterOwnNetwork();
 const bool kEthernet = kOwnNetwork && AddEthernets();
-
-bool HasIpv6() {
-  GSocket* socket =
-      g_socket_new(G_SOCKET_FAMILY_IPV6, G_SOCKET_TYPE_DATAGRAM, G_SOCKET_PROTOCOL_UDP, nullptr);
-  if (socket == nullptr) return false;
-  GSocketAddress* address = g_inet_socket_address_new_from_string("::1", 0);
-  const bool bound = g_socket_bind(socket, address, FALSE, nullptr) != FALSE;
-  g_object_unref(address);
-  g_object_unref(socket);
-  return bound;
-}
 
 std::string SerialOf(const gst::MessagePtr& message) {
   const char* serial = gst_structure_get_string(gst_message_get_structure(message.get()), "serial");
