@@ -25,8 +25,8 @@ inline GstClockTime FromBeginning(GstSeekType* type, gint64 time, const GstSegme
   if (*type != GST_SEEK_TYPE_END) return static_cast<GstClockTime>(time);
   if (!GST_CLOCK_TIME_IS_VALID(segment.duration)) return GST_CLOCK_TIME_NONE;
   *type = GST_SEEK_TYPE_SET;
-  return static_cast<GstClockTime>(
-      std::max<gint64>(static_cast<gint64>(segment.duration) + time, 0));
+  const auto end = static_cast<gint64>(std::min<GstClockTime>(segment.duration, G_MAXINT64));
+  return static_cast<GstClockTime>(std::max<gint64>(end + std::min<gint64>(time, 0), 0));
 }
 
 /// Moves `segment`, which is of time, to where the seek `event` wants it. False, and nothing is
@@ -41,6 +41,8 @@ inline bool ApplySeek(GstEvent* event, GstSegment* segment) {
                        &stop);
   range.start = FromBeginning(&range.start_type, start, *segment);
   range.stop = FromBeginning(&range.stop_type, stop, *segment);
+  // As GStreamer has it.
+  if (range.start_type == GST_SEEK_TYPE_SET && start == -1) range.start = 0;
   return range.IsSound(*segment) &&
          gst_segment_do_seek(segment, rate, GST_FORMAT_TIME, flags, range.start_type, range.start,
                              range.stop_type, range.stop, nullptr) != FALSE;

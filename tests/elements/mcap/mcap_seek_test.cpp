@@ -1,5 +1,11 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Seeks and segments of mcapsrc.
+#include <condition_variable>
+#include <limits>
+#include <mutex>
+
+#include "ext/mcap/seeking.h"
+#include "gst/common/seek_range.h"
 #include "tests/elements/mcap/recording.h"
 
 namespace lidar::test {
@@ -114,6 +120,36 @@ TEST_F(McapSeek, SaysHowFarOneMaySeekAndWhatIsPlayed) {
     EXPECT_EQ(start, 300 * GST_MSECOND);
     EXPECT_EQ(stop, end < 0 ? length : end);
   }
+}
+
+gst::EventPtr NewSeek(GstSeekFlags flags, std::pair<GstSeekType, gint64> start,
+                      std::pair<GstSeekType, gint64> stop) {
+  return gst::EventPtr(gst_event_new_seek(1, GST_FORMAT_TIME, flags, start.first, start.second,
+                                          stop.first, stop.second));
+}
+
+/// A segment of ten seconds, played up to its second one.
+GstSegment PlayedSegment() {
+  GstSegment segment;
+  gst_segment_init(&segment, GST_FORMAT_TIME);
+  segment.duration = 10 * GST_SECOND;
+  segment.position = 1 * GST_SECOND;
+  return segment;
+}
+
+TEST(SeekOfAPlayer, CountsFromBothEndsAsGStreamerDoes) {
+  const auto position_of = [](GstSeekType type, gint64 start) {
+    GstSegment segment = PlayedSegment();
+    const auto event = NewSeek(GST_SEEK_FLAG_FLUSH, {type, start}, {GST_SEEK_TYPE_NONE, 0});
+    EXPECT_TRUE(gst::ApplySeek(event.get(), &segment)) << type << " " << start;
+    return segment.position;
+  };
+  constexpr gint64 kLargest = std::numeric_limits<gint64>::max();
+  EXPECT_EQ(position_of(GST_SEEK_TYPE_SET, -1), 0U);
+  EXPECT_EQ(position_of(GST_SEEK_TYPE_END, -gint64{GST_SECOND}), 9 * GST_SECOND);
+  EXPECT_EQ(position_of(GST_SEEK_TYPE_END, gint64{GST_SECOND}), 10 * GST_SECOND);
+  EXPECT_EQ(position_of(GST_SEEK_TYPE_END, kLargest), 10 * GST_SECOND);
+  EXPECT_EQ(position_of(GST_SEEK_TYPE_END, -kLargest), 0U);
 }
 
 }  // namespace
