@@ -14,6 +14,7 @@
 #include <atomic>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <utility>
 
 #include "ext/mcap/play_task.h"
@@ -278,14 +279,12 @@ void PushToAll(GstLidarMcapSrc* self, GstEvent* event) {
 }
 
 /// The task stands still and its lock is held.
-void Restart(GstLidarMcapSrc* self, const Seek& seek) {
+void Restart(GstLidarMcapSrc* self, const Seek& seek, GstSegment segment) {
   State& state = *self->state;
   Run& run = state.run;
-  GstSegment segment{};
   {
     std::lock_guard lock(state.mutex);
-    seek.ApplyTo(&state.segment);
-    segment = state.segment;
+    segment = state.segment = seek.Begun(segment, state.segment);
   }
   run.playback->Seek(run.playback->start_time() + segment.position);
   run.streams->Restart(segment, seek.seqnum());
@@ -299,9 +298,11 @@ void PushFlush(GstLidarMcapSrc* self, const Seek& seek, GstEvent* event) {
 bool DoSeek(GstLidarMcapSrc* self, GstEvent* event) {
   State& state = *self->state;
   const Seek seek(event);
+  std::optional<GstSegment> segment;
   {
     std::lock_guard lock(state.mutex);
-    if (!state.is_open || !seek.IsPossible(state.segment)) return false;
+    if (state.is_open) segment = seek.AppliedTo(state.segment);
+    if (!segment) return false;
     // Each sink sends the same one upstream.
     if (std::exchange(state.last_seek, seek.seqnum()) == seek.seqnum()) return true;
   }
@@ -313,7 +314,7 @@ bool DoSeek(GstLidarMcapSrc* self, GstEvent* event) {
     std::lock_guard lock(state.mutex);
     open = state.is_open;
   }
-  if (open) Restart(self, seek);
+  if (open) Restart(self, seek, *segment);
   if (seek.flushes()) PushFlush(self, seek, gst_event_new_flush_stop(TRUE));
   if (open) state.task.GoOn();
   g_rec_mutex_unlock(state.task.lock());

@@ -38,11 +38,11 @@ class PlayedStream {
   GstFlowReturn Push(BufferPtr buffer);
   /// Says that nothing comes before `time`, where the stream is far behind it.
   void FillUpTo(GstClockTime time, const PlaybackGroup& group);
-  /// The source was sought: a new segment begins at `start`.
-  void Restart(GstClockTime start) {
+  /// The source was sought, and plays from `position` on in a new segment.
+  void Restart(GstClockTime position) {
     needs_segment_ = true;
     discont_ = true;
-    last_ = start;
+    last_ = position;
   }
   void End(const PlaybackGroup& group, GstEvent* event);
 

@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include "ext/mcap/seeking.h"
 
+#include <algorithm>
+
+#include "gst/common/seek_range.h"
+
 namespace lidar::gst {
 namespace {
 
@@ -17,11 +21,24 @@ bool AnswerSegment(const GstSegment& s, GstQuery* query) {
 }  // namespace
 
 Seek::Seek(GstEvent* event) : event_(gst_event_ref(event)) {
-  gst_event_parse_seek(event, &rate_, &format_, &flags_, nullptr, nullptr, nullptr, nullptr);
+  gst_event_parse_seek(event, &rate_, &format_, &flags_, &start_type_, nullptr, nullptr, nullptr);
 }
 
-bool Seek::IsPossible(GstSegment segment) const {
-  return rate_ > 0 && format_ == GST_FORMAT_TIME && ApplySeek(event_.get(), &segment);
+std::optional<GstSegment> Seek::AppliedTo(GstSegment played) const {
+  if (rate_ <= 0 || format_ != GST_FORMAT_TIME || !ApplySeek(event_.get(), &played))
+    return std::nullopt;
+  return played;
+}
+
+GstSegment Seek::Begun(GstSegment made, const GstSegment& played) const {
+  if (flushes()) return made;
+  const GstClockTime gone =
+      std::min(std::max(played.position, played.start + played.offset), played.stop);
+  made.base = gst_segment_to_running_time(&played, GST_FORMAT_TIME, gone);
+  if (start_type_ != GST_SEEK_TYPE_NONE) return made;
+  made.position = std::min(std::max(gone, made.position), made.stop);
+  made.offset = made.position - made.start;
+  return made;
 }
 
 bool AnswerBySegment(const GstSegment& segment, GstQuery* query) {

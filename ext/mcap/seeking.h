@@ -3,8 +3,9 @@
 #pragma once
 #include <gst/gst.h>
 
+#include <optional>
+
 #include "gst/common/refs.h"
-#include "gst/common/seek_range.h"
 
 namespace lidar::gst {
 
@@ -13,17 +14,20 @@ class Seek {
  public:
   explicit Seek(GstEvent* event);
 
-  /// Only forward, by time, and to where there is something.
-  bool IsPossible(GstSegment segment) const;
+  /// The segment that it makes of the one that is played. Only forward, by time, and to where there
+  /// is something.
+  std::optional<GstSegment> AppliedTo(GstSegment played) const;
+  /// `made`, that segment, once nothing moves any more: `played` went on meanwhile.
+  GstSegment Begun(GstSegment made, const GstSegment& played) const;
   bool flushes() const { return (flags_ & GST_SEEK_FLAG_FLUSH) != 0; }
   guint32 seqnum() const { return gst_event_get_seqnum(event_.get()); }
-  void ApplyTo(GstSegment* segment) const { ApplySeek(event_.get(), segment); }
 
  private:
   EventPtr event_;
   gdouble rate_ = 1;
   GstFormat format_ = GST_FORMAT_UNDEFINED;
   GstSeekFlags flags_ = GST_SEEK_FLAG_NONE;
+  GstSeekType start_type_ = GST_SEEK_TYPE_NONE;
 };
 
 /// Duration, position, seeking and segment. False where another one has to answer.

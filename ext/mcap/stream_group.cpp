@@ -67,7 +67,7 @@ GstFlowReturn StreamGroup::Push(Played played) {
 void StreamGroup::Restart(const GstSegment& segment, guint32 seqnum) {
   common_.segment = segment;
   common_.seqnum = seqnum;
-  for (const auto& stream : streams_) stream->Restart(segment.start);
+  for (const auto& stream : streams_) stream->Restart(segment.position);
   gst_flow_combiner_reset(flows_.get());
 }
 

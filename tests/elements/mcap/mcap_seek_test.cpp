@@ -122,6 +122,102 @@ TEST_F(McapSeek, SaysHowFarOneMaySeekAndWhatIsPlayed) {
   }
 }
 
+/// Shows what comes to a sink after the last flush, and stops it at a time until it is opened.
+class Gate {
+ public:
+  explicit Gate(GstClockTime closed_from) : closed_from_(closed_from) {}
+
+  void Guard(GstElement* sink) {
+    const gst::PadPtr pad(gst_element_get_static_pad(sink, "sink"));
+    gst_pad_add_probe(
+        pad.get(),
+        static_cast<GstPadProbeType>(GST_PAD_PROBE_TYPE_BUFFER | GST_PAD_PROBE_TYPE_EVENT_FLUSH),
+        [](GstPad*, GstPadProbeInfo* info, gpointer self) {
+          static_cast<Gate*>(self)->Take(info);
+          return GST_PAD_PROBE_OK;
+        },
+        this, nullptr);
+  }
+  void Open() {
+    const std::lock_guard lock(mutex_);
+    closed_from_ = GST_CLOCK_TIME_NONE;
+    changed_.notify_all();
+  }
+  bool AwaitBuffer(GstClockTime pts) {
+    std::unique_lock lock(mutex_);
+    return changed_.wait_for(lock, kLimit, [&] { return !shown_.empty() && shown_.back() >= pts; });
+  }
+  std::vector<GstClockTime> shown() const {
+    const std::lock_guard lock(mutex_);
+    return shown_;
+  }
+
+ private:
+  static constexpr std::chrono::seconds kLimit{30};
+
+  void Take(GstPadProbeInfo* info) {
+    std::unique_lock lock(mutex_);
+    if ((info->type & GST_PAD_PROBE_TYPE_BUFFER) == 0) {
+      if (GST_EVENT_TYPE(info->data) == GST_EVENT_FLUSH_STOP) shown_.clear();
+      return;
+    }
+    const GstClockTime pts = GST_BUFFER_PTS(GST_PAD_PROBE_INFO_BUFFER(info));
+    shown_.push_back(pts);
+    changed_.notify_all();
+    changed_.wait_for(lock, kLimit, [&] { return pts < closed_from_; });
+  }
+
+  mutable std::mutex mutex_;  // guards what follows
+  std::condition_variable changed_;
+  GstClockTime closed_from_;
+  std::vector<GstClockTime> shown_;
+};
+
+TEST_F(McapSeek, ASeekHoldsWhereItsEndIsPlayedMeanwhile) {
+  {
+    const Harness h = RecordingTo(Path("a.mcap"));
+    const Harness busy(gst_harness_new_with_element(h->element, "sink_1", nullptr));
+    const auto slice = [](GstHarness* stream, GstClockTime pts) {
+      GstBuffer* buffer = gst_buffer_new_memdup("s", 1);
+      GST_BUFFER_PTS(buffer) = pts;
+      gst_lidar_buffer_set_capture_time(buffer, kCapture + pts);
+      gst_harness_push(stream, buffer);
+    };
+    for (GstHarness* stream : {h.get(), busy.get()})
+      gst_harness_set_src_caps_str(stream, "application/x-lidar-slice,alignment=slice");
+    slice(h.get(), 0);
+    for (guint i = 0; i < 40; ++i) slice(busy.get(), i * 10 * GST_MSECOND);
+    for (GstHarness* stream : {h.get(), busy.get()})
+      gst_harness_push_event(stream, gst_event_new_eos());
+  }
+  Gate gate(100 * GST_MSECOND);
+  Pipeline p("mcapsrc name=m" + At("a.mcap") +
+             " m.src_0 ! fakesink name=a async=false m.src_1 ! fakesink name=b async=false");
+  gate.Guard(p.Find("b").get());
+  // The flush comes to the first stream first: until it is through, the second plays on.
+  const gst::PadPtr first(gst_element_get_static_pad(p.Find("a").get(), "sink"));
+  gst_pad_add_probe(
+      first.get(), GST_PAD_PROBE_TYPE_EVENT_FLUSH,
+      [](GstPad*, GstPadProbeInfo* info, gpointer data) {
+        if (GST_EVENT_TYPE(info->data) != GST_EVENT_FLUSH_START) return GST_PAD_PROBE_OK;
+        static_cast<Gate*>(data)->Open();
+        EXPECT_TRUE(static_cast<Gate*>(data)->AwaitBuffer(300 * GST_MSECOND));
+        return GST_PAD_PROBE_OK;
+      },
+      &gate, nullptr);
+  gst_element_set_state(p.get(), GST_STATE_PLAYING);
+  ASSERT_TRUE(gate.AwaitBuffer(100 * GST_MSECOND));
+  ASSERT_TRUE(gst_element_send_event(
+      p.Find("m").get(),
+      gst_event_new_seek(1, GST_FORMAT_TIME, GST_SEEK_FLAG_FLUSH, GST_SEEK_TYPE_NONE, 0,
+                         GST_SEEK_TYPE_SET, 200 * gint64{GST_MSECOND})));
+  ASSERT_TRUE(p.Wait(GST_MESSAGE_EOS));
+  const auto shown = gate.shown();
+  ASSERT_EQ(shown.size(), 10U);
+  EXPECT_EQ(shown.front(), 100 * GST_MSECOND);
+  EXPECT_EQ(shown.back(), 190 * GST_MSECOND);
+}
+
 gst::EventPtr NewSeek(GstSeekFlags flags, std::pair<GstSeekType, gint64> start,
                       std::pair<GstSeekType, gint64> stop) {
   return gst::EventPtr(gst_event_new_seek(1, GST_FORMAT_TIME, flags, start.first, start.second,
@@ -135,6 +231,31 @@ GstSegment PlayedSegment() {
   segment.duration = 10 * GST_SECOND;
   segment.position = 1 * GST_SECOND;
   return segment;
+}
+
+TEST(SeekOfAPlayer, GoesOnFromWhatWasPlayedMeanwhile) {
+  GstSegment played = PlayedSegment();
+  const std::pair<GstSeekType, gint64> there{GST_SEEK_TYPE_SET, 5 * GST_SECOND};
+  const std::pair<GstSeekType, gint64> here{GST_SEEK_TYPE_NONE, 0};
+  for (const auto& [start, position] :
+       {std::pair<std::pair<GstSeekType, gint64>, GstClockTime>{there, 5 * GST_SECOND},
+        {here, 2 * GST_SECOND}}) {
+    const auto event =
+        NewSeek(GST_SEEK_FLAG_NONE, start, {GST_SEEK_TYPE_SET, 6 * gint64{GST_SECOND}});
+    const gst::Seek seek(event.get());
+    played.position = GST_SECOND;
+    const auto made = seek.AppliedTo(played);
+    ASSERT_TRUE(made);
+    played.position = 2 * GST_SECOND;
+    GstSegment begun = seek.Begun(*made, played);
+    EXPECT_EQ(begun.position, position);
+    EXPECT_EQ(gst_segment_to_running_time(&begun, GST_FORMAT_TIME, position), 2 * GST_SECOND);
+    // Past its end, too.
+    played.position = 7 * GST_SECOND;
+    begun = seek.Begun(*made, played);
+    EXPECT_EQ(begun.position, start == here ? GstClockTime{6 * GST_SECOND} : position);
+    EXPECT_EQ(gst_segment_to_running_time(&begun, GST_FORMAT_TIME, begun.position), 7 * GST_SECOND);
+  }
 }
 
 TEST(SeekOfAPlayer, CountsFromBothEndsAsGStreamerDoes) {
