@@ -23,14 +23,25 @@ std::string WithoutBrackets(const std::string& host) {
   return host;
 }
 
+/// Whether the machine knows a way there. Nothing is sent.
+bool HasRouteTo(GInetAddress* address) {
+  const SocketPtr socket(g_socket_new(g_inet_address_get_family(address), G_SOCKET_TYPE_DATAGRAM,
+                                      G_SOCKET_PROTOCOL_UDP, nullptr));
+  const SocketAddressPtr there(g_inet_socket_address_new(address, 9));  // any port will do
+  return socket && g_socket_connect(socket.get(), there.get(), nullptr, nullptr) != FALSE;
+}
+
+/// GLib has ::1 before 127.0.0.1 for localhost, also on a machine without IPv6.
 GInetAddress* Resolve(const std::string& host, GError** error) {
   if (GInetAddress* literal = g_inet_address_new_from_string(host.c_str())) return literal;
   std::unique_ptr<GResolver, GObjectUnref> resolver(g_resolver_get_default());
   GList* found = g_resolver_lookup_by_name(resolver.get(), host.c_str(), nullptr, error);
   if (found == nullptr) return nullptr;
-  auto* first = G_INET_ADDRESS(g_object_ref(found->data));
+  GList* best = found;
+  while (best != nullptr && !HasRouteTo(G_INET_ADDRESS(best->data))) best = best->next;
+  auto* address = G_INET_ADDRESS(g_object_ref(best != nullptr ? best->data : found->data));
   g_resolver_free_addresses(found);
-  return first;
+  return address;
 }
 
 GSocket* BoundSocket(GInetAddress* address, const UdpBind& bind, GError** error) {
