@@ -130,6 +130,7 @@ int main(int argc, char** argv) {
   gst_init(nullptr, nullptr);
   return lidar::tools::Guard("lidar-rtsp-launch", [&] {
     Serve(options);
+    gst_deinit();  // tracers tell what was left
     return 0;
   });
 }
