@@ -40,6 +40,9 @@ for script in "$root"/pipelines/*.sh; do
     demo) arguments=(--no-install --no-build --duration 6 --no-plots --output "$work/demo") ;;
     lidar-and-video | rtpbin-video) arguments=(--duration 5) ;;
     webrtc) arguments=(--part 3) ;;
+    play)
+      "$root/pipelines/record.sh" --format slices --seconds 1 --output "$work/played" >/dev/null 2>&1
+      arguments=(--to none "$work/played/rec-%05d.mcap") ;;
     record) arguments=(--scans 3 --output "$work/record") ;;
     view) arguments=(--output "$work/view") ;;
     *) arguments=(3) ;;
