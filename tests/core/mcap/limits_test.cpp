@@ -82,6 +82,15 @@ TEST(McapOfOthers, ChunksMayBeAsLargeAsTheLimitAndNoLarger) {
   }
 }
 
+/// Of a chunk of the time 5, from `at` to the end of `file`.
+ChunkIndex IndexOf(std::uint64_t at, const Bytes& file) {
+  ChunkIndex index;
+  index.start_time = index.end_time = 5;
+  index.offset = at;
+  index.size = file.size() - at;
+  return index;
+}
+
 TEST(McapOfOthers, ChecksumsMayBeLeftOut) {
   const Bytes records = ChannelWithMessage(1, 5);
   Bytes file = Begin();
@@ -89,11 +98,7 @@ TEST(McapOfOthers, ChecksumsMayBeLeftOut) {
   AppendChunk(records, 5, &file);
   Bytes summary;
   Append(Channel{1, 1, "topic 1", "cdr", {}}, &summary);
-  ChunkIndex index;
-  index.start_time = index.end_time = 5;
-  index.offset = at;
-  index.size = file.size() - at;
-  Append(index, &summary);
+  Append(IndexOf(at, file), &summary);
   Close(summary, &file);
   MemoryInput input(file);
   const FileIndex found = ReadFileIndex(&input);
@@ -110,15 +115,10 @@ TEST(McapOfOthers, ASummaryWithoutChunksOrWithoutChannelsIsNoIndex) {
     const std::uint64_t at = file.size();
     AppendChunk(ChannelWithMessage(1, 5), 5, &file);
     Bytes summary;
-    if (channels) {
+    if (channels)
       Append(Channel{1, 1, "topic 1", "cdr", {}}, &summary);
-    } else {
-      ChunkIndex index;
-      index.start_time = index.end_time = 5;
-      index.offset = at;
-      index.size = file.size() - at;
-      Append(index, &summary);
-    }
+    else
+      Append(IndexOf(at, file), &summary);
     Close(summary, &file);
     MemoryInput input(file);
     const FileIndex found = ReadFileIndex(&input);
