@@ -35,9 +35,7 @@ GstSegment Seek::Begun(GstSegment made, const GstSegment& played) const {
   const GstClockTime gone =
       std::min(std::max(played.position, played.start + played.offset), played.stop);
   made.base = gst_segment_to_running_time(&played, GST_FORMAT_TIME, gone);
-  if (start_type_ != GST_SEEK_TYPE_NONE) return made;
-  made.position = std::min(std::max(gone, made.position), made.stop);
-  made.offset = made.position - made.start;
+  if (start_type_ == GST_SEEK_TYPE_NONE) GoOnFrom(gone, &made);
   return made;
 }
 

@@ -48,4 +48,11 @@ inline bool ApplySeek(GstEvent* event, GstSegment* segment) {
                              range.stop_type, range.stop, nullptr) != FALSE;
 }
 
+/// For a seek that names no start, and that nothing flushes: goes on from where what is played
+/// ended, which went on meanwhile.
+inline void GoOnFrom(GstClockTime end, GstSegment* segment) {
+  segment->position = std::min(std::max(end, segment->position), segment->stop);
+  segment->offset = segment->position - segment->start;
+}
+
 }  // namespace lidar::gst

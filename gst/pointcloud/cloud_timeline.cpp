@@ -38,8 +38,7 @@ EventPtr CloudTimeline::ToTime(GstEvent* event, Place* place) {
   if (sought_ && sought_->seqnum == seqnum) {
     segment_ = sought_->segment;
     if (sought_->goes_on) {
-      segment_.position = std::min(std::max(end, segment_.position), segment_.stop);
-      segment_.offset = segment_.position - segment_.start;
+      GoOnFrom(end, &segment_);
       place->shown = grid_.CloudAt(segment_.position);
     }
   } else {
