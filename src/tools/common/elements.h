@@ -3,6 +3,8 @@
 #pragma once
 #include <gst/gst.h>
 
+#include <cstdio>
+#include <sstream>
 #include <stdexcept>
 #include <string>
 
@@ -26,6 +28,27 @@ inline GstElement* AddElement(GstElement* bin, const std::string& factory,
 /// An empty text leaves the default.
 inline void SetText(GstElement* element, const char* property, const std::string& value) {
   if (!value.empty()) g_object_set(element, property, value.c_str(), nullptr);
+}
+
+/// The `stats` of an element in `bin`; null where it has none, or is not there.
+inline gst::StructurePtr StatsOf(GstElement* bin, const std::string& element) {
+  const gst::ElementPtr found(gst_bin_get_by_name(GST_BIN(bin), element.c_str()));
+  GstStructure* raw = nullptr;
+  if (found && g_object_class_find_property(G_OBJECT_GET_CLASS(found.get()), "stats") != nullptr)
+    g_object_get(found.get(), "stats", &raw, nullptr);
+  return gst::StructurePtr(raw);
+}
+
+/// A line for each of the elements in `names`, which has commas between, with its statistics.
+inline void PrintStats(GstElement* bin, const std::string& names, const std::string& before = "") {
+  std::istringstream words(names);
+  for (std::string name; std::getline(words, name, ',');) {
+    const gst::StructurePtr stats = StatsOf(bin, name);
+    if (!stats) continue;
+    const gst::StringPtr text(gst_structure_to_string(stats.get()));
+    std::printf("%s%s: %s\n", before.c_str(), name.c_str(), text.get());
+  }
+  std::fflush(stdout);
 }
 
 /// What an error or a warning says, after who says it.

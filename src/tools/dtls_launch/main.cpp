@@ -8,7 +8,6 @@
 #include <cstdio>
 #include <cstdlib>
 #include <memory>
-#include <sstream>
 #include <string>
 #include <vector>
 
@@ -136,20 +135,6 @@ bool MakePipeline(const std::vector<std::string>& words, Context* context) {
   return false;
 }
 
-/// `names` has commas between.
-void PrintStats(GstElement* pipeline, const std::string& names) {
-  std::istringstream words(names);
-  for (std::string name; std::getline(words, name, ',');) {
-    const ElementPtr element(gst_bin_get_by_name(GST_BIN(pipeline), name.c_str()));
-    GstStructure* stats = nullptr;
-    if (element) g_object_get(element.get(), "stats", &stats, nullptr);
-    if (stats == nullptr) continue;
-    const StringPtr text(gst_structure_to_string(stats));
-    gst_structure_free(stats);
-    std::printf("%s: %s\n", name.c_str(), text.get());
-  }
-}
-
 /// Until EOS, an error or a signal. EOS does not get past dtlssrtpenc, whose handshake has no end.
 int Play(GstElement* pipeline, const std::string& stats) {
   bool run = true;
@@ -172,7 +157,7 @@ int Play(GstElement* pipeline, const std::string& stats) {
     std::fprintf(stderr, "%s\n", lidar::tools::MessageText(message.get()).c_str());
     result = kFailed;
   }
-  PrintStats(pipeline, stats);
+  lidar::tools::PrintStats(pipeline, stats);
   gst_element_set_state(pipeline, GST_STATE_NULL);
   gst_object_unref(bus);
   return result;

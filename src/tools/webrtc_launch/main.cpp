@@ -4,9 +4,9 @@
 #include <gst/gst.h>
 
 #include <CLI/CLI.hpp>
+#include <array>
 #include <cstdio>
 #include <memory>
-#include <sstream>
 #include <string>
 #include <vector>
 
@@ -19,7 +19,6 @@ namespace {
 using lidar::gst::ElementPtr;
 using lidar::gst::MessagePtr;
 using lidar::gst::StringPtr;
-using lidar::gst::StructurePtr;
 
 enum ExitCode { kGood = 0, kFailed = 1, kUsage = 2 };
 
@@ -176,18 +175,10 @@ void Connect(Call* call) {
 
 /// A line for each of the elements named, with their statistics.
 void PrintStats(const Call& call, gint64 start) {
-  std::istringstream words(call.options.stats);
-  for (std::string name; std::getline(words, name, ',');) {
-    const ElementPtr element(gst_bin_get_by_name(GST_BIN(call.pipeline.get()), name.c_str()));
-    GstStructure* stats = nullptr;
-    if (element) g_object_get(element.get(), "stats", &stats, nullptr);
-    const StructurePtr owner(stats);
-    if (stats == nullptr) continue;
-    const StringPtr text(gst_structure_to_string(stats));
-    std::printf("%.1f %s: %s\n", static_cast<double>(g_get_monotonic_time() - start) / 1e6,
-                name.c_str(), text.get());
-  }
-  std::fflush(stdout);
+  std::array<char, 32> time{};
+  const double elapsed_s = static_cast<double>(g_get_monotonic_time() - start) / 1e6;
+  std::snprintf(time.data(), time.size(), "%.1f ", elapsed_s);
+  lidar::tools::PrintStats(call.pipeline.get(), call.options.stats, time.data());
 }
 
 /// True where the pipeline goes on.
