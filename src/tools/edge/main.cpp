@@ -75,13 +75,9 @@ class Edge {
  private:
   void Tell(fleet::Exposition* exposition, fleet::Reporter::Reports* reports) const {
     if (shared_port_) exposition->Add("lidar_edge_stray_datagrams", "", shared_port_->strays());
-    for (const auto& receiver : receivers_) {
-      receiver->AddTo(exposition);
-      // Errors of the network may hold any bytes.
-      reports->emplace_back(
-          StatisticsSubject(config_.nats, receiver->robot()),
-          receiver->Statistics().dump(-1, ' ', false, nlohmann::json::error_handler_t::replace));
-    }
+    for (const auto& receiver : receivers_)
+      reports->emplace_back(StatisticsSubject(config_.nats, receiver->robot()),
+                            fleet::ToText(receiver->Tell(exposition)));
   }
 
   const EdgeConfig& config_;

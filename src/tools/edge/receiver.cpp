@@ -13,10 +13,10 @@
 namespace lidar::edge {
 namespace {
 
-using fleet::StatsOf;
 using gst::MessagePtr;
 using gst::StructurePtr;
 using std::chrono::seconds;
+using tools::StatsOf;
 
 constexpr std::chrono::milliseconds kPoll{100};
 constexpr seconds kFirstPause{2};  // after a failure
@@ -26,8 +26,6 @@ constexpr seconds kAfterFlood{10};
 constexpr seconds kSilence{10};  // a robot that is silent for as long is gone
 constexpr int kPatience = 3;     // seconds that a robot may be above its limit
 constexpr GstClockTime kFinish = 3 * GST_SECOND;
-
-constexpr const char* kElements[] = {"screamsrc", "rtplidardepay", "natssink", "mcapsink"};
 
 }  // namespace
 
@@ -224,25 +222,8 @@ void Receiver::Poll(Clock::time_point now) {
   if (ReadBus(now)) Watch(now);
 }
 
-nlohmann::json Receiver::Statistics() const {
+nlohmann::json Receiver::Tell(fleet::Exposition* exposition) const {
   static constexpr const char* kStates[] = {"waiting", "receiving", "resting"};
-  const Account a = account();
-  nlohmann::json out = {{"robot", robot_.name},
-                        {"sensor", robot_.sensor},
-                        {"time", g_get_real_time() * 1000},
-                        {"state", kStates[static_cast<int>(a.state)]},
-                        {"sessions", a.sessions},
-                        {"failures", a.failures},
-                        {"penalties", a.penalties},
-                        {"record-failures", a.record_failures}};
-  if (!a.last_error.empty()) out["last-error"] = a.last_error;
-  for (const char* element : kElements)
-    if (const StructurePtr stats = StatsOf(pipeline_.get(), element))
-      out[element] = fleet::ToJson(stats.get());
-  return out;
-}
-
-void Receiver::AddTo(fleet::Exposition* exposition) const {
   const Account a = account();
   const std::string labels = fleet::RobotLabels(robot_.name, robot_.sensor);
   exposition->Add("lidar_edge_receiving", labels, a.state == State::kReceiving ? 1 : 0);
@@ -250,9 +231,18 @@ void Receiver::AddTo(fleet::Exposition* exposition) const {
   exposition->Add("lidar_edge_failures", labels, static_cast<double>(a.failures));
   exposition->Add("lidar_edge_penalties", labels, static_cast<double>(a.penalties));
   exposition->Add("lidar_edge_record_failures", labels, static_cast<double>(a.record_failures));
-  for (const char* element : kElements)
-    if (const StructurePtr stats = StatsOf(pipeline_.get(), element))
-      exposition->Add(element, labels, stats.get());
+  nlohmann::json report = {{"robot", robot_.name},
+                           {"sensor", robot_.sensor},
+                           {"time", g_get_real_time() * 1000},
+                           {"state", kStates[static_cast<int>(a.state)]},
+                           {"sessions", a.sessions},
+                           {"failures", a.failures},
+                           {"penalties", a.penalties},
+                           {"record-failures", a.record_failures}};
+  if (!a.last_error.empty()) report["last-error"] = a.last_error;
+  fleet::AddStats(pipeline_.get(), {"screamsrc", "rtplidardepay", "natssink", "mcapsink"}, labels,
+                  exposition, &report);
+  return report;
 }
 
 }  // namespace lidar::edge

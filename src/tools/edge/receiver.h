@@ -34,9 +34,9 @@ class Receiver {
   void AskToEnd();
 
   const RobotConfig& robot() const { return robot_; }
-  // From any thread; neither waits for servers or disks.
-  nlohmann::json Statistics() const;
-  void AddTo(fleet::Exposition* exposition) const;
+  /// Adds its figures to `exposition`, and gives them as a report. From any thread; waits for no
+  /// server and no disk.
+  nlohmann::json Tell(fleet::Exposition* exposition) const;
 
  private:
   using Clock = std::chrono::steady_clock;

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "src/tools/common/elements.h"
+
 namespace lidar::fleet {
 namespace {
 
@@ -44,14 +46,6 @@ std::string MetricName(const std::string& element, const std::string& field) {
 }
 
 }  // namespace
-
-gst::StructurePtr StatsOf(GstElement* bin, const std::string& element) {
-  const gst::ElementPtr found(gst_bin_get_by_name(GST_BIN(bin), element.c_str()));
-  GstStructure* raw = nullptr;
-  if (found && g_object_class_find_property(G_OBJECT_GET_CLASS(found.get()), "stats") != nullptr)
-    g_object_get(found.get(), "stats", &raw, nullptr);
-  return gst::StructurePtr(raw);
-}
 
 std::string RobotLabels(const std::string& robot, const std::string& sensor) {
   return "{robot=\"" + robot + "\",sensor=\"" + sensor + "\"}";
@@ -92,6 +86,20 @@ std::string Exposition::text() const {
     for (const std::string& line : lines) out += line;
   }
   return out;
+}
+
+void AddStats(GstElement* bin, const std::vector<std::string>& elements, const std::string& labels,
+              Exposition* exposition, json* report) {
+  for (const std::string& element : elements) {
+    const gst::StructurePtr stats = tools::StatsOf(bin, element);
+    if (!stats) continue;
+    (*report)[element] = ToJson(stats.get());
+    exposition->Add(element, labels, stats.get());
+  }
+}
+
+std::string ToText(const json& report) {
+  return report.dump(-1, ' ', false, json::error_handler_t::replace);
 }
 
 }  // namespace lidar::fleet

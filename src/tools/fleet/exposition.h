@@ -8,12 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "gst/common/refs.h"
-
 namespace lidar::fleet {
-
-/// The `stats` of an element in `bin`; null where it has none, or is not there.
-gst::StructurePtr StatsOf(GstElement* bin, const std::string& element);
 
 /// As Prometheus has them. Neither name has anything that would need quotes.
 std::string RobotLabels(const std::string& robot, const std::string& sensor);
@@ -33,5 +28,13 @@ class Exposition {
  private:
   std::map<std::string, std::vector<std::string>> lines_;
 };
+
+/// Tells of those of `elements` that are in `bin`: to Prometheus under `labels`, and in `report` by
+/// their names.
+void AddStats(GstElement* bin, const std::vector<std::string>& elements, const std::string& labels,
+              Exposition* exposition, nlohmann::json* report);
+
+/// A report as one line. Errors of the network may hold any bytes: what is no UTF-8 is replaced.
+std::string ToText(const nlohmann::json& report);
 
 }  // namespace lidar::fleet

@@ -11,7 +11,6 @@
 #include "src/tools/common/elements.h"
 #include "src/tools/common/event_loop.h"
 #include "src/tools/fleet/connection.h"
-#include "src/tools/fleet/exposition.h"
 
 namespace lidar::worker {
 namespace {
@@ -170,13 +169,10 @@ std::optional<Progress> RobotPipeline::progress() const {
   return progress_;
 }
 
-std::vector<std::pair<std::string, gst::StructurePtr>> RobotPipeline::Stats() const {
-  std::vector<std::pair<std::string, gst::StructurePtr>> all;
-  for (const std::string& element :
-       {std::string("natssrc"), decoder_, std::string("lidarodometry"), std::string("natssink")})
-    if (gst::StructurePtr stats = fleet::StatsOf(pipeline_.get(), element))
-      all.emplace_back(element, std::move(stats));
-  return all;
+void RobotPipeline::AddStats(const std::string& labels, fleet::Exposition* exposition,
+                             nlohmann::json* report) const {
+  fleet::AddStats(pipeline_.get(), {"natssrc", decoder_, "lidarodometry", "natssink"}, labels,
+                  exposition, report);
 }
 
 std::string RobotPipeline::Poll() {

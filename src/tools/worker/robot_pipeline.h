@@ -17,6 +17,7 @@
 #include "gst/common/gstlidar.h"
 #include "gst/common/refs.h"
 #include "src/base/time.h"
+#include "src/tools/fleet/exposition.h"
 #include "src/tools/worker/lease_record.h"
 #include "src/tools/worker/rewind_window.h"
 
@@ -61,8 +62,9 @@ class RobotPipeline {
   bool has_dropped() const { return dropped_; }
   /// None before the first pose.
   std::optional<Progress> progress() const;
-  /// The `stats` of its elements, by their names. Waits for nobody.
-  std::vector<std::pair<std::string, gst::StructurePtr>> Stats() const;
+  /// Tells of its elements, as fleet::AddStats(). Waits for nobody.
+  void AddStats(const std::string& labels, fleet::Exposition* exposition,
+                nlohmann::json* report) const;
   /// An error that has ended it; empty: none. Prints warnings.
   std::string Poll();
 

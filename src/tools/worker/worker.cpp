@@ -221,12 +221,9 @@ void Worker::Tell(fleet::Exposition* exposition, fleet::Reporter::Reports* repor
                              {"sensor", sensor},
                              {"time", g_get_real_time() * 1000},
                              {"worker", settings_.lease.worker}};
-    for (const auto& [element, stats] : pipeline->Stats()) {
-      report[element] = fleet::ToJson(stats.get());
-      exposition->Add(element, fleet::RobotLabels(robot, sensor), stats.get());
-    }
+    pipeline->AddStats(fleet::RobotLabels(robot, sensor), exposition, &report);
     reports->emplace_back(settings_.fleet.prefix + "." + robot + ".worker." + sensor,
-                          report.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace));
+                          fleet::ToText(report));
   }
 }
 
