@@ -2,14 +2,11 @@
 // Workers and servers of a fleet are killed, one after another: a cluster of three nats-servers,
 // robots that drive, and workers that follow them. Run by hand: it takes minutes
 // (docs/results/fleet.md).
-#include <gio/gio.h>
-
 #include <cmath>
 #include <map>
 #include <tuple>
 
-#include "ext/nats/connection.h"
-#include "ext/nats/jetstream.h"
+#include "tests/elements/nats/nats_cluster.h"
 #include "tests/elements/nats/worker_process.h"
 
 namespace lidar::test {
@@ -18,7 +15,6 @@ namespace {
 using SteadyClock = std::chrono::steady_clock;
 using std::chrono::milliseconds;
 
-constexpr std::size_t kServers = 3;
 constexpr std::size_t kWorkers = 3;
 constexpr int kRobots = 4;
 constexpr int kWorkerKills = 10;
@@ -26,64 +22,6 @@ constexpr int kWorkerKills = 10;
 double SecondsSince(SteadyClock::time_point begin) {
   return std::chrono::duration<double>(SteadyClock::now() - begin).count();
 }
-
-/// True once `holds` is; clusters take their time.
-bool WaitFor(const std::function<bool()>& holds) { return Eventually(holds) || Eventually(holds); }
-
-/// A TCP port that is free, for the moment.
-int FreePort() {
-  GSocketListener* listener = g_socket_listener_new();
-  const int port = g_socket_listener_add_any_inet_port(listener, nullptr, nullptr);
-  g_socket_listener_close(listener);
-  g_object_unref(listener);
-  return port;
-}
-
-class Cluster {
- public:
-  void Start() {
-    std::string routes;
-    std::vector<std::string> addresses;
-    for (std::size_t i = 0; i < kServers; ++i) {
-      addresses.push_back("nats://127.0.0.1:" + std::to_string(FreePort()));
-      routes += (i > 0 ? "," : "") + addresses.back();
-    }
-    for (std::size_t i = 0; i < kServers; ++i)
-      servers_[i].Start({"--server_name", Name(i), "--cluster_name", "fleet", "--cluster",
-                         addresses[i], "--routes", routes});
-    nats::ConnectionSettings settings;
-    settings.url = url();
-    std::string why;
-    connection_ = nats::Connection::Open(settings, nullptr, &why);
-    ASSERT_TRUE(connection_) << why;
-    js_ = nats::OpenJetStream(connection_->get());
-  }
-  static std::string Name(std::size_t i) { return "server-" + std::to_string(i); }
-  std::string url() const {
-    std::string list;
-    for (const NatsServer& server : servers_) list += (list.empty() ? "" : ",") + server.url();
-    return list;
-  }
-  NatsServer& server(std::size_t i) { return servers_[i]; }
-  jsCtx* js() { return js_.get(); }
-  /// The leader of a stream whose copies are all there and complete; empty: it has none.
-  std::string LeaderOf(const char* stream) {
-    jsStreamInfo* raw = nullptr;
-    if (js_GetStreamInfo(&raw, js_.get(), stream, nullptr, nullptr) != NATS_OK) return "";
-    const nats::StreamInfoPtr info(raw);
-    const jsClusterInfo* cluster = info->Cluster;
-    if (cluster == nullptr || cluster->Leader == nullptr) return "";
-    if (cluster->ReplicasLen != static_cast<int>(kServers) - 1) return "";
-    for (int i = 0; i < cluster->ReplicasLen; ++i)
-      if (!cluster->Replicas[i]->Current || cluster->Replicas[i]->Offline) return "";
-    return cluster->Leader;
-  }
-
- private:
-  NatsServer servers_[kServers];
-  std::unique_ptr<nats::Connection> connection_;
-  nats::JetStreamPtr js_;
-};
 
 class Robot {
  public:

@@ -10,29 +10,11 @@
 
 #include "ext/nats/nats_ptr.h"
 #include "src/tools/common/child_process.h"
+#include "tests/elements/nats/free_ports.h"
 #include "tests/elements/nats/nats_pipeline.h"
 
 namespace lidar::test {
 namespace {
-
-/// UDP ports that are free, for the moment. No two are the same, as all are bound at once.
-std::vector<int> FreePorts(std::size_t count) {
-  std::vector<GSocket*> sockets;
-  std::vector<int> ports;
-  GSocketAddress* any = g_inet_socket_address_new_from_string("127.0.0.1", 0);
-  while (ports.size() < count) {
-    sockets.push_back(
-        g_socket_new(G_SOCKET_FAMILY_IPV4, G_SOCKET_TYPE_DATAGRAM, G_SOCKET_PROTOCOL_UDP, nullptr));
-    g_socket_bind(sockets.back(), any, FALSE, nullptr);
-    GSocketAddress* bound = g_socket_get_local_address(sockets.back(), nullptr);
-    ports.push_back(g_inet_socket_address_get_port(G_INET_SOCKET_ADDRESS(bound)));
-    g_object_unref(bound);
-  }
-  g_object_unref(any);
-  for (GSocket* socket : sockets) g_object_unref(socket);
-  return ports;
-}
-int FreePort() { return FreePorts(1)[0]; }
 
 class LidarEdge : public NatsTest {
  protected:

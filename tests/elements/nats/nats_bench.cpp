@@ -10,6 +10,7 @@
 
 #include "ext/nats/jetstream.h"
 #include "tests/elements/nats/nats_pipeline.h"
+#include "tests/elements/nats/process_figures.h"
 #include "tests/support/harness.h"
 
 namespace lidar::test {
@@ -143,24 +144,6 @@ void Send(const Options& o, const Slices& slices) {
   const double cpu = CpuSeconds(RUSAGE_SELF) - before;
   for (const Harness& sink : sinks) gst_harness_push_event(sink.get(), gst_event_new_eos());
   std::printf("natssink  %.2f %% of a core for each stream\n", 100 * cpu / o.seconds / o.streams);
-}
-
-double CpuOf(pid_t pid) {
-  std::ifstream in("/proc/" + std::to_string(pid) + "/stat");
-  std::string word;
-  double user = 0;
-  double system = 0;
-  for (int i = 0; i < 13; ++i) in >> word;
-  in >> user >> system;
-  return (user + system) / static_cast<double>(sysconf(_SC_CLK_TCK));
-}
-
-double MegabytesOf(pid_t pid) {
-  std::ifstream in("/proc/" + std::to_string(pid) + "/statm");
-  double pages = 0;
-  double resident = 0;
-  in >> pages >> resident;
-  return resident * static_cast<double>(sysconf(_SC_PAGESIZE)) * 1e-6;
 }
 
 /// One for all streams, as lidar-edge makes it.

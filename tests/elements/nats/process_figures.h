@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// What other processes cost.
+#pragma once
+#include <sys/types.h>
+#include <unistd.h>
+
+#include <fstream>
+#include <string>
+
+namespace lidar::test {
+
+/// Processor time that it took [s]; 0: it is gone.
+inline double CpuOf(pid_t pid) {
+  std::ifstream in("/proc/" + std::to_string(pid) + "/stat");
+  std::string word;
+  double user = 0;
+  double system = 0;
+  for (int i = 0; i < 13; ++i) in >> word;
+  in >> user >> system;
+  return (user + system) / static_cast<double>(sysconf(_SC_CLK_TCK));
+}
+
+/// Memory that it has [MB]; 0: it is gone.
+inline double MegabytesOf(pid_t pid) {
+  std::ifstream in("/proc/" + std::to_string(pid) + "/statm");
+  double pages = 0;
+  double resident = 0;
+  in >> pages >> resident;
+  return resident * static_cast<double>(sysconf(_SC_PAGESIZE)) * 1e-6;
+}
+
+}  // namespace lidar::test
