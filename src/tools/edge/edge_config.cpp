@@ -79,20 +79,21 @@ constexpr std::size_t kMaxSharing = 1'000;  // a program of the kernel has 4,096
 
 NatsConfig ReadNats(const json& object) {
   NatsConfig nats;
+  nats::ConnectionSettings& connection = nats.connection.emplace();
   Section s(object, "nats");
-  nats.url = "nats://localhost:4222";
-  s.Read("url", &nats.url);
-  s.Read("credentials-file", &nats.credentials_file);
-  s.Read("tls-ca-file", &nats.tls_ca_file);
-  s.Read("tls-cert-file", &nats.tls_cert_file);
-  s.Read("tls-key-file", &nats.tls_key_file);
+  s.Read("url", &connection.url);
+  s.Read("credentials-file", &connection.credentials_file);
+  s.Read("tls-ca-file", &connection.tls_ca_file);
+  s.Read("tls-cert-file", &connection.tls_cert_file);
+  s.Read("tls-key-file", &connection.tls_key_file);
   s.Read("prefix", &nats.prefix);
   s.Read("jetstream", &nats.jetstream);
+  s.ReadCount("replicas", &nats.replicas, 1, 5);
   s.ReadCount("max-age", &nats.max_age_s, 0, 366 * 86'400);
   s.ReadCount("max-bytes", &nats.max_bytes, 0, kMaxBytes);
   s.ReadCount("buffer-size", &nats.buffer_size, 65'536, 1 << 30);
   s.Finish();
-  if (nats.url.empty()) s.Fail("url", "is empty");
+  if (connection.url.empty()) s.Fail("url", "is empty");
   if (!IsWord(nats.prefix)) s.Fail("prefix", "is no word of letters, digits, - and _");
   if (!nats.jetstream.empty() && !IsWord(nats.jetstream))
     s.Fail("jetstream", "is no word of letters, digits, - and _");
@@ -210,17 +211,6 @@ EdgeConfig ParseEdgeConfig(const std::string& json_text) {
   CheckTwins(config.robots);
   CheckSharedPort(config);
   return config;
-}
-
-nats::ConnectionSettings ToConnection(const NatsConfig& nats, const std::string& name) {
-  nats::ConnectionSettings connection;
-  connection.url = nats.url;
-  connection.name = name;
-  connection.credentials_file = nats.credentials_file;
-  connection.tls_ca_file = nats.tls_ca_file;
-  connection.tls_cert_file = nats.tls_cert_file;
-  connection.tls_key_file = nats.tls_key_file;
-  return connection;
 }
 
 std::string StreamSubject(const NatsConfig& nats, const RobotConfig& robot) {

@@ -11,13 +11,10 @@
 namespace lidar::edge {
 
 struct NatsConfig {
-  std::string url;  // empty: no NATS
-  std::string credentials_file;
-  std::string tls_ca_file;
-  std::string tls_cert_file;
-  std::string tls_key_file;
+  std::optional<nats::ConnectionSettings> connection;  // none: no NATS
   std::string prefix = "fleet";  // of all subjects
   std::string jetstream;         // empty: nothing is kept
+  int replicas = 1;  // of the stream, where it is made
   std::uint64_t max_age_s = 3600;
   std::uint64_t max_bytes = 0;          // 0: no limit
   std::uint64_t buffer_size = 8 << 20;  // bytes that wait, for each robot
@@ -53,9 +50,6 @@ struct EdgeConfig {
 
 /// Throws std::runtime_error, which names the key that is wrong.
 EdgeConfig ParseEdgeConfig(const std::string& json_text);
-
-/// `name` is what the server's monitoring shows.
-nats::ConnectionSettings ToConnection(const NatsConfig& nats, const std::string& name);
 
 std::string StreamSubject(const NatsConfig& nats, const RobotConfig& robot);
 std::string StatisticsSubject(const NatsConfig& nats, const RobotConfig& robot);

@@ -54,8 +54,8 @@ class Edge {
     for (const RobotConfig& robot : config.robots)
       receivers_.push_back(std::make_unique<Receiver>(
           config, robot, robot.ssrc ? shared_port_->socket(next++) : nullptr));
-    std::optional<nats::ConnectionSettings> connection;
-    if (!config.nats.url.empty()) connection = ToConnection(config.nats, "lidar-edge");
+    std::optional<nats::ConnectionSettings> connection = config.nats.connection;
+    if (connection) connection->name = "lidar-edge";  // as the server's monitoring shows it
     statistics_.emplace(
         fleet::StatisticsSettings{config.http_address, config.http_port, config.interval_s},
         connection);

@@ -32,11 +32,11 @@ void AddNats(GstElement* pipeline, GstElement* from, const NatsConfig& nats,
   GstElement* sink = Add(pipeline, "natssink");
   g_object_set(sink, "sync", FALSE, "async", FALSE, "keep-trying", TRUE, "subject",
                StreamSubject(nats, robot).c_str(), "jetstream-subjects",
-               (nats.prefix + ".*.lidar.>").c_str(), "max-age", nats.max_age_s * GST_SECOND,
-               "max-bytes", nats.max_bytes, "buffer-size", static_cast<guint>(nats.buffer_size),
-               "drain-timeout", kDrainTimeout, nullptr);
+               (nats.prefix + ".*.lidar.>").c_str(), "replicas", static_cast<guint>(nats.replicas),
+               "max-age", nats.max_age_s * GST_SECOND, "max-bytes", nats.max_bytes, "buffer-size",
+               static_cast<guint>(nats.buffer_size), "drain-timeout", kDrainTimeout, nullptr);
   SetText(sink, "jetstream", nats.jetstream);
-  fleet::SetConnection(sink, ToConnection(nats, ""));
+  fleet::SetConnection(sink, *nats.connection);
   Link(from, sink);
 }
 
@@ -74,7 +74,7 @@ ElementPtr MakePipeline(const EdgeConfig& config, const RobotConfig& robot, GSoc
   g_object_set(tee, "allow-not-linked", TRUE, nullptr);
   Link(source, depayloader);
   Link(depayloader, tee);
-  if (!config.nats.url.empty()) AddNats(pipeline.get(), tee, config.nats, robot);
+  if (config.nats.connection) AddNats(pipeline.get(), tee, config.nats, robot);
   return pipeline;
 }
 

@@ -14,18 +14,22 @@ using edge::ParseEdgeConfig;
 TEST(EdgeConfig, TakesWhatItSaysAndDefaultsForTheRest) {
   const auto config = ParseEdgeConfig(R"({
     // comments are fine
-    "nats": {"url": "tls://a:4222,tls://b:4222", "jetstream": "fleet", "max-age": 60},
+    "nats": {"url": "tls://a:4222,tls://b:4222", "jetstream": "fleet", "replicas": 3,
+             "max-age": 60},
     "http-port": 9464,
     "robots": [{"name": "r7", "sensor": "front", "port": 5007, "srtp-key": "env:KEY"},
                {"name": "r8", "port": 5008, "record": "/r8-%05d.mcap", "record-max-files": 3}]})");
   ASSERT_EQ(config.robots.size(), 2U);
+  ASSERT_TRUE(config.nats.connection);
+  EXPECT_EQ(config.nats.connection->url, "tls://a:4222,tls://b:4222");
+  EXPECT_EQ(config.nats.replicas, 3);
   EXPECT_EQ(config.nats.max_age_s, 60U);
   EXPECT_EQ(config.robots[0].srtp_key, "env:KEY");
   EXPECT_EQ(config.robots[1].sensor, "lidar");
   EXPECT_EQ(config.robots[1].record_max_files, 3U);
   EXPECT_EQ(StreamSubject(config.nats, config.robots[0]), "fleet.r7.lidar.front");
   EXPECT_EQ(StatisticsSubject(config.nats, config.robots[1]), "fleet.r8.statistics.lidar");
-  EXPECT_TRUE(ParseEdgeConfig(R"({"robots":[{"name":"a","port":1}]})").nats.url.empty());
+  EXPECT_FALSE(ParseEdgeConfig(R"({"robots":[{"name":"a","port":1}]})").nats.connection);
 }
 
 struct WrongConfig {
@@ -71,6 +75,8 @@ INSTANTIATE_TEST_SUITE_P(
                     "port 1 has two robots"},
         WrongConfig{R"({"robots":[{"name":"a","port":1},{"name":"a","port":2}]})",
                     "a has two sensors called lidar"},
+        WrongConfig{R"({"nats":{"replicas":6},"robots":[{"name":"a","port":1}]})",
+                    "nats.replicas is no whole number from 1 to 5"},
         WrongConfig{R"({"nats":{"prefix":"a.>"},"robots":[{"name":"a","port":1}]})",
                     "nats.prefix is no word of letters, digits, - and _"}));
 
