@@ -26,6 +26,7 @@ class ChildProcess {
   ChildProcess(const ChildProcess&) = delete;
   ChildProcess& operator=(const ChildProcess&) = delete;
 
+  pid_t pid() const { return pid_; }
   int output_fd() const { return output_.get(); }
   int clouds_fd() const { return clouds_.get(); }
   /// Hands every complete line that is there to `handler`. False at the end of the output.

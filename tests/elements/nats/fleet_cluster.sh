@@ -3,6 +3,5 @@
 # Kills workers and servers of a fleet on loopback, and prints what that costs (docs/results/fleet.md). Run by
 # hand: it takes minutes, and its figures want a machine of their own.
 set -euo pipefail
-. "$(cd "$(dirname "$0")" && pwd)/../../../pipelines/environment.sh"
-ninja -C "$build" tests/elements/nats/fleet-cluster >&2
-LIDAR_WORKER=$build/src/tools/worker/lidar-worker exec "$build/tests/elements/nats/fleet-cluster"
+. "$(cd "$(dirname "$0")" && pwd)/fleet_environment.sh"
+exec "$build/tests/elements/nats/fleet-cluster" --gtest_filter='FleetCluster.*'

@@ -49,6 +49,7 @@ class WorkerProcess {
     Read();
     return std::count(lines_.begin(), lines_.end(), line) > 0;
   }
+  pid_t pid() const { return process_->pid(); }
   void Kill() { process_->Signal(SIGKILL); }
   int Stop() {
     process_->Signal(SIGTERM);
@@ -88,6 +89,33 @@ inline double LargestJump(std::vector<Kept> poses) {
     largest = std::max(largest, std::abs(step - kSpeed * gap));
   }
   return largest;
+}
+
+/// How far the last pose is behind where the robot is, which drove straight on.
+inline double BehindBy(const std::vector<Kept>& poses) {
+  const auto earlier = [](const Kept& a, const Kept& b) { return a.capture_time < b.capture_time; };
+  const auto [first, last] = std::minmax_element(poses.begin(), poses.end(), earlier);
+  if (first == poses.end()) return 0;
+  const auto time = static_cast<double>(last->capture_time - first->capture_time) * 1e-9;
+  return kSpeed * time - (DistanceOf(*last) - DistanceOf(*first));
+}
+
+/// Poses of what JetStream keeps of a robot, by one odometry from its begin to its end.
+inline std::vector<Kept> PosesInOneGo(const std::string& robot, const std::string& url) {
+  NatsPipeline player("natssrc name=n eos-at-end=true start-time=0 jetstream=fleet subject=fleet." +
+                      robot + ".lidar.front url=" + url +
+                      " ! lidardec ! lidarodometry name=o ! fakesink sync=false async=false "
+                      "o.odometry ! fakesink name=see sync=false async=false");
+  player.Play();
+  // A drive of ten minutes takes its time.
+  std::string end;
+  std::size_t before = 0;
+  do {
+    before = player.count();
+    end = player.WaitForEnd();
+  } while (end == "nothing happens" && player.count() > before);
+  EXPECT_EQ(end, "");
+  return player.buffers();
 }
 
 }  // namespace lidar::test
