@@ -12,9 +12,9 @@ namespace lidar::edge {
 
 struct NatsConfig {
   std::optional<nats::ConnectionSettings> connection;  // none: no NATS
-  std::string prefix = "fleet";  // of all subjects
-  std::string jetstream;         // empty: nothing is kept
-  int replicas = 1;  // of the stream, where it is made
+  std::string prefix = "fleet";                        // of all subjects
+  std::string jetstream;                               // empty: nothing is kept
+  int replicas = 1;                                    // of the stream, where it is made
   std::uint64_t max_age_s = 3600;
   std::uint64_t max_bytes = 0;          // 0: no limit
   std::uint64_t buffer_size = 8 << 20;  // bytes that wait, for each robot
