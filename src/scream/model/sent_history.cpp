@@ -167,6 +167,9 @@ HistoryResult SentHistory::OnFeedback(Time now, const CongestionFeedback& feedba
     if (it == sources_.end() || it->second.packets.empty()) continue;
     if (!OfBefore(now, it->second, block)) Apply(now, block, &it->second, report, summary);
   }
+  // Reports tell one stream after the other; the link carried them as they were sent.
+  std::stable_sort(summary->acked.begin(), summary->acked.end(),
+                   [](const AckedPacket& a, const AckedPacket& b) { return a.sent < b.sent; });
   if (!arrivals_known_) summary->rtt = held_;
   ExpireTails();
   DetectLoss(now, &summary->lost);

@@ -38,7 +38,7 @@ struct LostPacket : SentRecord {
 
 /// What one report brought that no earlier one had.
 struct AckSummary {
-  std::vector<AckedPacket> acked;
+  std::vector<AckedPacket> acked;  ///< in the order in which they were sent
   std::vector<LostPacket> lost;
   Time report{};  ///< when it was made, on the receiver's clock, unwrapped
   /// CE marks on packets that an earlier report had acknowledged without.

@@ -56,6 +56,19 @@ TEST_F(SentHistoryTest, KnowsWhatHasBeenInFlightForLongest) {
   EXPECT_EQ(history_.oldest_in_flight(), kStart + 4ms);
 }
 
+/// Reports tell one stream after the other.
+TEST_F(SentHistoryTest, PacketsOfSeveralStreamsComeAsTheyWereSent) {
+  for (std::uint16_t seq = 0; seq < 3; ++seq)
+    for (std::uint32_t ssrc = 1; ssrc <= 2; ++ssrc, now_ += 1ms)
+      history_.OnSent(ssrc, seq, {0, DataSize::Bytes(1000), now_, Ecn::kEct1});
+  CongestionFeedback f = Report(0, "rrr", 1);
+  f.blocks.push_back(Report(0, "rrr", 2).blocks[0]);
+  ASSERT_EQ(Apply(f), HistoryResult::kApplied);
+  ASSERT_EQ(summary_.acked.size(), 6U);
+  for (int i = 0; i < 6; ++i)
+    EXPECT_EQ(summary_.acked[static_cast<std::size_t>(i)].sent, kStart + i * 1ms);
+}
+
 TEST_F(SentHistoryTest, APacketCountsOnceHoweverOftenItIsReported) {
   Send(0, 4);
   Apply(Report(0, "rC"));
