@@ -11,7 +11,7 @@ Parameters Parameters::Draft() {
   p.rate_policer = false;
   p.undershoot_remedy = false;
   p.competing_flows = false;
-  p.extensions = {false, false, false, false, false, false, false, false,
+  p.extensions = {false, false, false, false, false, false, false, false, false,
                   false, false, false, false, false, false, false, false};
   p.pacing_catch_up = Duration{0};
   return p;

@@ -42,6 +42,8 @@ struct Extensions {
   /// Clocks that were set and callers that stood still are noticed; where the bottleneck marks, the
   /// base delay is that of the last half minute.
   bool clock_care = true;
+  /// Beside other flows, and where marking begins early, the window is as bold as theirs.
+  bool shared_link = true;
   /// Short bursts of a source that sends little measure the link.
   bool burst_probe = true;
   /// An old round trip counts for less, as does one of a source that leaves its window unused.
@@ -156,6 +158,13 @@ struct Parameters {
   double min_pacing_reserve = 0.18;
   double max_pacing_reserve = 0.35;
 
+  /// shared_link: part of the draft's growth near the inflection point beside others where nothing
+  /// marks, which is a segment of 1500 bytes a round trip...
+  double classic_growth = 1.5;
+  /// ...where marking begins early...
+  double early_growth = 0.45;
+  /// ...and part of the draft's reaction to marks, in either case.
+  double prague_backoff = 0.1;
   /// fast_start: of its growth, where losses keep to a full queue that others fill, too.
   double fast_increase_beside = 0.2;
   /// gap_recovery: of what the window allows, the target in a gap: what is queued then may be late.

@@ -61,6 +61,7 @@ void PathModel::Reset() {
   burst_.Reset();
   busy_run_.Reset();
   classic_ecn_ = ClassicEcn();
+  cross_traffic_ = CrossTraffic();
   loss_context_ = LossContext();
   loss_rate_.Reset();
   train_capacity_ = acked_peak_ = DataRate();
@@ -119,6 +120,7 @@ void PathModel::ObserveCapacity(Time now, const AckSummary& acks, Duration qdela
     loss_context_.OnAcked(packet.sent, qdelay);
     if (packet.sent >= gap_end_) classic_ecn_.OnPacket(now, qdelay, marked);
     if (marked && packet.sent >= gap_end_) marking_onset_.OnMark(qdelay);
+    cross_traffic_.Add(packet.sent, *packet.arrival, qdelay);
     busy_run_.Add({*packet.arrival, packet.size, busy, marked});
     if (const auto rate = burst_.Add({packet.sent, *packet.arrival, packet.size}))
       acked_peak_ = std::max(acked_peak_, *rate);

@@ -9,6 +9,7 @@
 #include "src/scream/model/burst_rate.h"
 #include "src/scream/model/busy_run.h"
 #include "src/scream/model/classic_ecn.h"
+#include "src/scream/model/cross_traffic.h"
 #include "src/scream/model/ecn_monitor.h"
 #include "src/scream/model/flight.h"
 #include "src/scream/model/l4s_alpha.h"
@@ -59,6 +60,7 @@ class PathModel {
   const LossRate& loss_rate() const { return loss_rate_; }
   const LossContext& loss_context() const { return loss_context_; }
   const ClassicEcn& classic_ecn() const { return classic_ecn_; }
+  const CrossTraffic& cross_traffic() const { return cross_traffic_; }
   const EcnMonitor& ecn() const { return ecn_; }
   const BusyRun& busy_run() const { return busy_run_; }
   const ArrivalTrain& train() const { return train_; }
@@ -110,6 +112,7 @@ class PathModel {
   LossRate loss_rate_{p_};
   LossContext loss_context_;
   ClassicEcn classic_ecn_;
+  CrossTraffic cross_traffic_;
   EcnMonitor ecn_{p_.ecn};
   BusyRun busy_run_;
   ArrivalTrain train_;

@@ -22,6 +22,9 @@ struct CongestionSignals {
   Duration qdelay_avg{0};
   Duration qdelay_target{0};
   double ref_wnd_delay_scale = 1;
+  /// Beyond the draft: floors of growth and reaction near the inflection point.
+  double growth_min = 0.25;
+  double backoff_min = 0.25;
   /// Beyond the draft: so much sooner than due a reaction may come, as the next report is far.
   Duration earliness{0};
   Duration s_rtt{0};

@@ -66,7 +66,7 @@ TEST(Parameters, ThePureDraftHasNoOptionalPartAndNoExtension) {
   EXPECT_FALSE(e.fast_start || e.drop_response || e.bounded_flight || e.isolated_loss ||
                e.answered_signals || e.even_alpha || e.quick_drain || e.adaptive_pacing ||
                e.feedback_timeout || e.gap_recovery || e.needed_floor || e.classic_ecn ||
-               e.brief_policer || e.clock_care || e.aged_rtt || e.burst_probe);
+               e.brief_policer || e.clock_care || e.aged_rtt || e.burst_probe || e.shared_link);
   EXPECT_EQ(p.pacing_catch_up, Duration{0});
 }
 

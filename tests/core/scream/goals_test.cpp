@@ -85,18 +85,6 @@ TEST(Goals, AShortQueueBeforeTheFirstMarkIsEnough) {
   }
 }
 
-/// Not a multiple of a classic flow's share, and not a fraction of it.
-TEST(Goals, AClassicFlowOnAShortQueueHasItsShare) {
-  for (const char* name :
-       {"cubic_fifo_5ms_20M", "cubic_fifo_10ms_20M", "cubic_fifo_2ms_50M", "cubic_fifo_5ms_50M",
-        "cubic_fifo_10ms_50M", "reno_fifo_5ms_20M", "cubic_pi2_20M"}) {
-    const Scenario s = *FindScenario(name, Parameters());
-    const ScenarioMetrics m = Measure(s, Simulate(s.config));
-    EXPECT_LE(m.beside->ratio(), 2.2) << name;
-    EXPECT_LE(m.own_loss, m.beside->their_loss + 0.01) << name;
-  }
-}
-
 TEST(Goals, ACapacityDropIsAnsweredWithinARoundTrip) {
   for (const char* name : {"frames_drop_10M_to_3M", "slices_drop_10M_to_3M"}) {
     const Scenario s = *FindScenario(name, Parameters());

@@ -42,6 +42,9 @@ const std::map<std::string, double Parameters::*> kConstants = {
     {"drop_beta", &Parameters::drop_beta},
     {"bounded_overhead", &Parameters::bounded_overhead},
     {"isolated_loss_threshold", &Parameters::isolated_loss_threshold},
+    {"classic_growth", &Parameters::classic_growth},
+    {"early_growth", &Parameters::early_growth},
+    {"prague_backoff", &Parameters::prague_backoff},
 };
 
 const std::map<std::string, bool Extensions::*> kExtensions = {
@@ -61,6 +64,7 @@ const std::map<std::string, bool Extensions::*> kExtensions = {
     {"clock_care", &Extensions::clock_care},
     {"burst_probe", &Extensions::burst_probe},
     {"aged_rtt", &Extensions::aged_rtt},
+    {"shared_link", &Extensions::shared_link},
 };
 const std::map<std::string, bool Parameters::*> kOptionalParts = {
     {"reduce_jitter", &Parameters::reduce_jitter},

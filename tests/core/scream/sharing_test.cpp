@@ -104,18 +104,28 @@ TEST(SilentStream, LeavesTheLiveOneAsItWas) {
   }
 }
 
-/// Cases whose goal is held; scream-matrix shows the others.
-class BesideCubic : public ::testing::TestWithParam<const char*> {};
+class BesideClassic : public ::testing::TestWithParam<const char*> {};
 
-TEST_P(BesideCubic, NeitherGetsMuchMoreNorLosesMuchMore) {
+TEST_P(BesideClassic, NeitherGetsMuchMoreNorLosesMuchMore) {
   const Scenario s = *FindScenario(GetParam(), Parameters());
   const ScenarioMetrics m = Measure(s, Simulate(s.config));
   EXPECT_LE(m.beside->ratio(), 2.2) << m.beside->ours_mbps << " and " << m.beside->theirs_mbps;
   EXPECT_LE(m.own_loss, m.beside->their_loss + 0.01);
 }
-INSTANTIATE_TEST_SUITE_P(Held, BesideCubic,
-                         ::testing::Values("cubic_fifo_10ms_20M", "cubic_fifo_10ms_50M",
-                                           "cubic_fifo_20ms_20M", "cubic_dualpi2_20M"));
+INSTANTIATE_TEST_SUITE_P(ShortQueues, BesideClassic,
+                         ::testing::Values("cubic_fifo_15ms_8M", "cubic_fifo_5ms_20M",
+                                           "cubic_fifo_10ms_20M", "cubic_fifo_20ms_20M",
+                                           "cubic_fifo_2ms_50M", "cubic_fifo_5ms_50M",
+                                           "cubic_fifo_10ms_50M", "reno_fifo_5ms_20M",
+                                           "cubic_pi2_20M", "cubic_dualpi2_20M"));
+
+TEST(BesidePrague, BothGetAboutTheSame) {
+  for (const char* name : {"prague_ramp_20M", "prague_dualpi2_20M"}) {
+    const Scenario s = *FindScenario(name, Parameters());
+    const ScenarioMetrics m = Measure(s, Simulate(s.config));
+    EXPECT_LE(m.beside->ratio(), 1.5) << name;
+  }
+}
 
 TEST(TwoFlows, WhoseFramesMeetShareALinkEvenly) {
   for (const char* name : {"frames_20M_two_flows", "frames_8M_rtt40"}) {
@@ -124,6 +134,13 @@ TEST(TwoFlows, WhoseFramesMeetShareALinkEvenly) {
     s.config.flows[1].start = s.config.flows[0].start + 5s;
     s.settle = 20s;
     EXPECT_GE(Measure(s, Simulate(s.config)).jain, 0.99) << name;
+  }
+}
+
+TEST(TwoFlows, ShareALinkEvenlyAtAnyPhase) {
+  for (const char* name : {"two_flows_phase_4ms", "two_flows_phase_7ms", "two_flows_phase_10ms"}) {
+    const Scenario s = *FindScenario(name, Parameters());
+    EXPECT_GE(Measure(s, Simulate(s.config)).jain, 0.98) << name;
   }
 }
 

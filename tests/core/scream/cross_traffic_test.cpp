@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// The share of others in a busy link, and how bold the window is beside them.
+#include "src/scream/model/cross_traffic.h"
+
+#include <gtest/gtest.h>
+
+#include "src/scream/response/shared_link.h"
+#include "tests/support/simulated.h"
+
+namespace lidar::scream::test {
+namespace {
+
+/// Frames of ten packets every 20 ms, 1 ms apart, and 11 ms of pause: arrivals in ticks of a
+/// report.
+class CrossTrafficTest : public ::testing::Test {
+ protected:
+  /// In front of each packet waits what others sent since the one before.
+  void Send(int frames, double others_share, Duration queue = 20ms) {
+    const double own = (1 - others_share) * 2;  // ms a packet, so that the link is full
+    for (int i = 0; i < 10 * frames; ++i) {
+      const double spacing_ms = i % 10 == 0 ? 11 : 1;
+      sent_ += FromSeconds(spacing_ms / 1e3);
+      arrival_ += FromSeconds((own + others_share * spacing_ms) / 1e3);
+      traffic_.Add(sent_, Tick(arrival_), queue);
+    }
+  }
+  static Time Tick(Time t) {
+    constexpr double kTicks = 1024;
+    return Time{} + FromSeconds(std::floor(Seconds(t.time_since_epoch()) * kTicks) / kTicks);
+  }
+
+  CrossTraffic traffic_;
+  Time sent_ = kStart, arrival_ = kStart;
+};
+
+TEST_F(CrossTrafficTest, IsNoneAloneOnALink) {
+  Send(500, 0);
+  ASSERT_TRUE(traffic_.share());
+  EXPECT_NEAR(*traffic_.share(), 0, 0.05);
+  EXPECT_FALSE(traffic_.found());
+}
+
+TEST_F(CrossTrafficTest, IsTheOthersShareOfTheLink) {
+  for (const double share : {0.4, 0.7}) {
+    traffic_ = CrossTraffic();
+    Send(500, share);
+    ASSERT_TRUE(traffic_.share());
+    EXPECT_NEAR(*traffic_.share(), share, 0.05);
+    EXPECT_TRUE(traffic_.found());
+  }
+}
+
+TEST_F(CrossTrafficTest, IsNotBelievedAtOnceAndGoesWithTheOthers) {
+  Send(100, 0.5);  // a thousand packets
+  EXPECT_FALSE(traffic_.found());
+  Send(100, 0.5);
+  EXPECT_TRUE(traffic_.found());
+  Send(1000, 0);
+  EXPECT_FALSE(traffic_.found());
+}
+
+/// On an idle link arrivals follow departures, as they do beside others.
+TEST_F(CrossTrafficTest, IsUnknownWithoutAQueue) {
+  Send(500, 1, 0ms);
+  EXPECT_FALSE(traffic_.share());
+  EXPECT_FALSE(traffic_.found());
+}
+
+TEST_F(CrossTrafficTest, IsUnknownWhilePacketsLeaveEvenly) {
+  for (int i = 0; i < 5000; ++i) {
+    sent_ += 1ms;
+    traffic_.Add(sent_, Tick(sent_ + i % 7 * 200us), 20ms);
+  }
+  EXPECT_FALSE(traffic_.share());
+}
+
+TEST_F(CrossTrafficTest, SkipsPacketsOutOfOrder) {
+  Send(500, 0.5);
+  const double before = *traffic_.share();
+  for (int i = 0; i < 100; ++i) traffic_.Add(sent_ - i * 10ms, arrival_ - i * 7ms, 20ms);
+  EXPECT_DOUBLE_EQ(*traffic_.share(), before);
+}
+
+TEST(SharedLink, ABolderWindowIsForEarlyMarksOfAnL4sQueueOnly) {
+  EXPECT_EQ(EarlyMarking(600us), 0);  // of a classic flow beside: no queue, and marks
+  EXPECT_NEAR(EarlyMarking(800us), 0.5, 1e-9);
+  EXPECT_EQ(EarlyMarking(1ms), 1);
+  EXPECT_GT(EarlyMarking(1500us), 0);
+  EXPECT_EQ(EarlyMarking(2ms), 0);
+}
+
+TEST(SharedLink, TheDraftAloneIsAsItWas) {
+  const Parameters p = Parameters::Draft();
+  const Boldness b = BesideOthers(p, PathModel(p), kStart);
+  EXPECT_EQ(b.growth, 0.25);
+  EXPECT_EQ(b.backoff, 0.25);
+}
+
+}  // namespace
+}  // namespace lidar::scream::test
