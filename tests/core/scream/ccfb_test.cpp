@@ -75,6 +75,8 @@ TEST(Ccfb, AnAmbiguousPacketIsReadAsThePeersEarlierOnes) {
   EXPECT_EQ(parser.Parse(View(ambiguous))->blocks[0].metrics.size(), 3U);
   parser.Parse(View(BuildCcfb(Report(4), NumReports::kCountMinusOne)));
   EXPECT_EQ(parser.Parse(View(ambiguous))->blocks[0].metrics.size(), 4U);
+  parser.Parse(View(BuildCcfb(Report(4))));  // another peer, or the same in another version
+  EXPECT_EQ(parser.Parse(View(ambiguous))->blocks[0].metrics.size(), 3U);
 }
 
 TEST(Ccfb, SeveralSourcesShareAPacket) {
@@ -87,6 +89,13 @@ TEST(Ccfb, SeveralSourcesShareAPacket) {
   EXPECT_EQ(parsed->blocks[1].begin_seq, 65535);
   EXPECT_EQ(parsed->blocks[1].metrics[0].ecn, Ecn::kCe);
   EXPECT_FALSE(parsed->blocks[1].metrics[1].received);
+}
+
+TEST(Ccfb, ASourceWithoutPacketsIsLeftOut) {
+  CongestionFeedback f = Report(3);
+  const Bytes without = BuildCcfb(f);
+  f.blocks.push_back({42, 7, {}});
+  EXPECT_EQ(BuildCcfb(f), without);
 }
 
 TEST(Ccfb, EveryTruncationAndEveryWrongHeaderIsRefused) {

@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include "src/scream/feedback/report_clock.h"
 #include "tests/core/scream/scenarios.h"
 #include "tests/support/simulated.h"
 
@@ -60,6 +61,64 @@ TEST(Controller, FindsTheStreamOfASource) {
   EXPECT_EQ(c.FindStream(22), b);
   EXPECT_EQ(c.FindStream(11), a);
   EXPECT_FALSE(c.FindStream(33));
+}
+
+TEST(Controller, KnowsTheSourceOfAPacketThatItSawLeaveOnly) {
+  Controller c{Parameters()};
+  const StreamId a = c.AddStream({});
+  c.AddStream({});
+  c.OnSent(kStart, a, {99, 0, DataSize::Bytes(1000), Ecn::kEct1});  // a repair packet, say
+  EXPECT_EQ(c.FindStream(99), a);
+}
+
+TEST(Controller, FollowsANewConfigurationAtOnce) {
+  Controller c{Parameters()};
+  const StreamId id = c.AddStream({1, Mbps(0.1), Mbps(1), Mbps(10)});
+  c.ConfigureStream(id, {1, Mbps(4), Mbps(1), Mbps(10)});
+  EXPECT_GE(c.target_bitrate(id), Mbps(4));
+}
+
+TEST(Controller, TellsAsOfTheLatestTimeThatItKnows) {
+  Controller c{Parameters()};
+  const StreamId id = c.AddStream({});
+  Time now = kStart;
+  for (std::uint16_t seq = 0; seq < 10; ++seq, now += 50ms)
+    c.OnSent(now, id, {1, seq, DataSize::Bytes(1000), Ecn::kEct1});
+  EXPECT_EQ(c.statistics(kStart + 100ms).sent_bitrate, c.statistics(now - 50ms).sent_bitrate);
+}
+
+TEST(Controller, SendsWithoutEcnWhereNothingMarkedComesThrough) {
+  Controller c{Parameters()};
+  const StreamId id = c.AddStream({});
+  for (std::uint16_t seq = 0; seq < 10; ++seq)
+    c.OnSent(kStart, id, {1, seq, DataSize::Bytes(1000), Ecn::kEct1});
+  for (Time now = kStart; now <= kStart + 2100ms; now += 50ms) c.OnTimer(now);
+  EXPECT_EQ(c.ecn_state(), EcnState::kSilent);
+}
+
+/// A packet is waited for no longer than a round trip, however late another one was.
+TEST(Controller, WaitsForAPacketNoLongerThanARoundTrip) {
+  Controller c{Parameters()};
+  const StreamId id = c.AddStream({});
+  for (std::uint16_t seq = 0; seq < 9; ++seq)
+    c.OnSent(kStart, id, {1, seq, DataSize::Bytes(1000), Ecn::kEct1});
+  const auto report = [&](Time now, const std::string& metrics) {
+    CongestionFeedback f;
+    f.report_timestamp = ReportClock::ToTimestamp(now);
+    f.blocks.push_back({1, 0, {}});
+    // All that arrives has done so within 10 ms.
+    for (const char m : metrics)
+      f.blocks[0].metrics.push_back({m == 'r', Ecn::kEct1, now - kStart - 10ms});
+    ASSERT_EQ(c.OnFeedback(now, f), FeedbackResult::kAccepted);
+  };
+  report(kStart + 10ms, "r-r");
+  EXPECT_EQ(c.statistics(kStart).packets_lost, 1U);
+  report(kStart + 70ms, "rrr");
+  EXPECT_EQ(c.statistics(kStart).packets_late, 1U);
+  report(kStart + 80ms, "rrr-r");
+  EXPECT_EQ(c.statistics(kStart).packets_lost, 1U);
+  report(kStart + 100ms, "rrr-rr");
+  EXPECT_EQ(c.statistics(kStart).packets_lost, 2U);
 }
 
 TEST(Controller, ImplausibleFeedbackChangesNothingAndIsCounted) {
@@ -192,6 +251,9 @@ TEST(Simulation, BleachedPacketsAreSentAsNotEct) {
   EXPECT_EQ(c.ecn_state(), EcnState::kBleached);
   c.OnQueued(now, id, {1, DataSize::Bytes(1000), true, 99});
   EXPECT_EQ(c.NextSend(now)->ecn, Ecn::kNotEct);
+  c.OnRouteChange(now);
+  EXPECT_EQ(c.ecn_state(), EcnState::kTesting);
+  EXPECT_EQ(c.NextSend(now)->ecn, Ecn::kEct1);
 }
 
 TEST(Simulation, SurvivesLostFeedback) {

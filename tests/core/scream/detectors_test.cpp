@@ -302,6 +302,15 @@ TEST(Pacer, ABurstIsFasterAndShort) {
   }
 }
 
+TEST(Pacer, ABurstIsNeverSlowerThanThePace) {
+  const Parameters p = Parameters::Draft();
+  Pacer pacer(p);
+  pacer.Update(Mbps(8), Mbps(100), 1);
+  pacer.Burst(Mbps(2), 100ms);
+  pacer.OnSent(kStart, DataSize::Bytes(1000));
+  EXPECT_EQ(pacer.next(), kStart + 1ms);
+}
+
 TEST(MediaRate, IsTheWindowOverTheRoundTripWithTheDraftsReserves) {
   const Parameters p = Parameters::Draft();
   const DataRate rate = TargetBitrate(p, {DataSize::Bytes(50000), 0.02, 40ms, 0});
@@ -340,6 +349,17 @@ TEST(CompetingFlows, TheTargetGivesWayToASteadyQueueAndComesBack) {
   EXPECT_NEAR(Milliseconds(flows.qdelay_target()), 150, 1);
   for (int i = 0; i < 300; ++i, now += 50ms) flows.Update(now, 5ms, 40ms, false);
   EXPECT_EQ(flows.qdelay_target(), p.qdelay_target_lo);
+}
+
+TEST(CompetingFlows, TheTargetFallsStepByStepWhereTheQueueVaries) {
+  Parameters p;
+  p.competing_flows = true;
+  CompetingFlows flows(p);
+  Time now = kStart;
+  for (int i = 0; i < 200; ++i, now += 50ms) flows.Update(now, 300ms, 40ms, false);
+  ASSERT_NEAR(Milliseconds(flows.qdelay_target()), 300, 1);
+  for (int i = 0; i < 12; ++i, now += 50ms) flows.Update(now, i % 2 * 300ms, 40ms, false);
+  EXPECT_LT(Milliseconds(flows.qdelay_target()), 200);
 }
 
 TEST(RoundTripTime, AnOldAverageCountsForLittle) {

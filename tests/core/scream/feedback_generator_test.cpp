@@ -141,6 +141,54 @@ TEST_F(FeedbackGeneratorTest, GapsAreReportedAsMissingAndALatePacketFillsThem) {
   EXPECT_EQ(generator_.stats().reordered, 1U);
 }
 
+TEST_F(FeedbackGeneratorTest, AReportReachesBackToTheOldestOfThoseThatCameLate) {
+  for (std::uint16_t seq = 0; seq < 100; ++seq)
+    if (seq != 10 && seq != 20) Arrive(seq, seq == 99), generator_.Take(now_);
+  Arrive(20);
+  Arrive(10, true);
+  const auto report = generator_.Take(now_);
+  ASSERT_TRUE(report);
+  EXPECT_EQ(report->blocks[0].begin_seq, 10);
+}
+
+TEST_F(FeedbackGeneratorTest, APacketFromBeforeTheFirstOneIsReportedToo) {
+  Arrive(10);
+  Arrive(9);
+  EXPECT_EQ(Received(generator_.Take(now_)->blocks[0]), (std::vector<int>{9, 10}));
+  EXPECT_EQ(generator_.stats().stale, 0U);
+}
+
+TEST_F(FeedbackGeneratorTest, CountsWhatItSendsWithAllHeaders) {
+  Begin();
+  EXPECT_EQ(generator_.stats().sent.bytes(), 28 + 12 + 8 + 4);
+}
+
+TEST_F(FeedbackGeneratorTest, OwesNothingForASourceThatItForgot) {
+  Begin();
+  for (std::uint16_t seq = 1; seq <= 10; ++seq) Arrive(seq);
+  now_ += 31s;
+  Arrive(7, true, Ecn::kEct1, 2);
+  ASSERT_EQ(generator_.Take(now_)->blocks.size(), 1U);
+  EXPECT_EQ(generator_.NextDue(), Time::max());
+}
+
+TEST_F(FeedbackGeneratorTest, OwesNothingForTheNumbersOfBeforeARestart) {
+  Begin();
+  for (std::uint16_t seq = 1; seq <= 10; ++seq) Arrive(seq);
+  Arrive(20000);
+  Arrive(20001, true);
+  ASSERT_TRUE(generator_.Take(now_));
+  EXPECT_EQ(generator_.NextDue(), Time::max());
+}
+
+TEST_F(FeedbackGeneratorTest, ReportsSixtyFourSourcesAtMost) {
+  std::set<std::uint32_t> reported;
+  for (std::uint32_t ssrc = 1; ssrc <= 70; ++ssrc) Arrive(5, true, Ecn::kEct1, ssrc);
+  while (const auto report = generator_.Take(now_))
+    for (const SsrcReport& block : report->blocks) reported.insert(block.ssrc);
+  EXPECT_EQ(reported.size(), 64U);
+}
+
 TEST_F(FeedbackGeneratorTest, SequenceNumbersWrapAround) {
   Arrive(65534);
   generator_.Take(now_);
@@ -185,6 +233,16 @@ TEST_F(FeedbackGeneratorTest, AFarJumpIsBelievedOnlyFromASecondPacket) {
   const auto report = generator_.Take(now_);
   ASSERT_TRUE(report);
   EXPECT_EQ(Received(report->blocks[0]), (std::vector<int>{40001}));
+}
+
+TEST_F(FeedbackGeneratorTest, TwoFarJumpsWithAPacketBetweenThemAreNoRestart) {
+  Begin();
+  Arrive(20000);
+  Arrive(1);
+  Arrive(20001, true);
+  Arrive(2, true);
+  EXPECT_EQ(generator_.stats().stale, 2U);
+  EXPECT_EQ(Received(generator_.Take(now_)->blocks[0]), (std::vector<int>{0, 1, 2}));
 }
 
 TEST_F(FeedbackGeneratorTest, ReportsNeverOutweighWhatWasReceived) {

@@ -158,6 +158,15 @@ TEST_F(ReferenceWindowTest, APolicerLimitsTheWindowAndLetsItGoSlowly) {
   EXPECT_NEAR(static_cast<double>(window_.max_policed_ref_wnd().bytes()), 90090, 1);
 }
 
+TEST_F(ReferenceWindowTest, LossBehindAQueueIsNoPolicer) {
+  parameters_.rate_policer = true;
+  signals_.loss_detected = true;
+  signals_.loss_rate = 0.2;
+  signals_.qdelay_avg = 15ms;
+  Factor();
+  EXPECT_EQ(window_.max_policed_ref_wnd(), DataSize::Infinite());
+}
+
 TEST(Policer, IsBelievedInForASecondAndForLongerWhereItShowsItselfAgain) {
   const Parameters p;
   Policer policer(p);

@@ -10,44 +10,11 @@
 #include "src/scream/response/isolated_loss.h"
 #include "src/scream/response/outage.h"
 #include "src/scream/response/send_window.h"
+#include "tests/core/scream/measured_path.h"
 #include "tests/support/simulated.h"
 
 namespace lidar::scream {
 namespace {
-
-constexpr Duration kRtt = 40ms;
-constexpr DataSize kPacket = DataSize::Bytes(1000);
-
-/// A path whose packets arrive `spacing` apart, `queue` later than the first one did.
-class Path {
- public:
-  explicit Path(const Parameters& parameters) : model(parameters) {
-    AckSummary first;
-    first.rtt = kRtt;
-    model.OnRoundTrip(kStart, first, DataSize::Bytes(10000));
-    Arrive(1, Duration{0}, Duration{0}, Ecn::kEct1);
-  }
-  void Arrive(int packets, Duration spacing, Duration queue, Ecn ecn) {
-    for (int i = 0; i < packets; ++i) {
-      now += spacing;
-      AckSummary acks;
-      acks.rtt = kRtt + queue;
-      model.OnRoundTrip(now, acks, DataSize::Bytes(10000));
-      AckedPacket packet;
-      packet.size = kPacket;
-      packet.ecn = Ecn::kEct1;
-      packet.arrived_ecn = ecn;
-      packet.sent = now - kRtt - queue;
-      packet.arrival = now - kRtt / 2;
-      acks.report = *packet.arrival;
-      acks.acked.push_back(packet);
-      acks.bytes_newly_acked = kPacket;
-      model.OnReport(now, acks, {DataSize::Bytes(10000), 20ms, 60ms, Time{}});
-    }
-  }
-  PathModel model;
-  Time now = kStart;
-};
 
 TEST(BurstProbe, EndsAfterThreeSecondsOrWithCongestionAndRests) {
   const Parameters p;
@@ -67,11 +34,11 @@ TEST(BurstProbe, EndsAfterThreeSecondsOrWithCongestionAndRests) {
 
 TEST(BurstProbe, IsNotNeededWhereEnoughIsKnownOrTheSourceSendsEnough) {
   const Parameters p;
-  BurstProbe probe(p);
-  for (Time now = kStart; now < kStart + 5s; now += 100ms) {
-    EXPECT_FALSE(probe.Update(now, {true, false, Mbps(20), Mbps(20)}));
-    EXPECT_FALSE(probe.Update(now, {false, false, Mbps(3), Mbps(20)}));
-    EXPECT_FALSE(probe.Update(now, {true, true, Mbps(3), Mbps(20)}));
+  for (const BurstProbe::Input& in : {BurstProbe::Input{true, false, Mbps(20), Mbps(20)},
+                                      {false, false, Mbps(3), Mbps(20)},
+                                      {true, true, Mbps(3), Mbps(20)}}) {
+    BurstProbe probe(p);
+    for (Time now = kStart; now < kStart + 5s; now += 100ms) EXPECT_FALSE(probe.Update(now, in));
   }
 }
 
@@ -107,6 +74,18 @@ TEST_F(CapacityDropTest, TakesFewMarksForALinkThatIsWellUsedUnlessTheTargetIsFar
   path_.Arrive(1, 2ms, 20ms, Ecn::kCe);
   EXPECT_FALSE(drop_.Update(path_.now, path_.model, Load(5)));
   EXPECT_TRUE(drop_.Update(path_.now, path_.model, Load(7)));
+}
+
+TEST_F(CapacityDropTest, TakesMarksOfAShortQueueForWhatTheyAre) {
+  path_.Arrive(40, 2ms, 2ms, Ecn::kCe);
+  EXPECT_FALSE(drop_.Update(path_.now, path_.model, Load(10)));
+}
+
+TEST_F(CapacityDropTest, NeverWidensTheWindow) {
+  path_.Arrive(40, 2ms, 20ms, Ecn::kCe);
+  CapacityDrop::Load load = Load(10);
+  load.ref_wnd = DataSize::Bytes(20000);  // the link's is 24,000
+  EXPECT_FALSE(drop_.Update(path_.now, path_.model, load));
 }
 
 TEST_F(CapacityDropTest, SeesNothingWhereNoPacketWaited) {
@@ -204,6 +183,14 @@ TEST_F(GapRecoveryTest, ComesBackByHalvesWhereThereIsNoBacklogToMeasureBy) {
   EXPECT_EQ(restart->window.bytes(), 38250);
 }
 
+TEST_F(GapRecoveryTest, ForgetsAGapOfWhichNothingWasSeenForThreeSeconds) {
+  FallIntoAGap();
+  path_.now += 3s;
+  path_.Arrive(2, 50ms, 0ms, Ecn::kEct1);
+  EXPECT_FALSE(Update(DataSize::Bytes(3000)));
+  EXPECT_FALSE(gaps_.in_gap());
+}
+
 TEST_F(GapRecoveryTest, TakesWhatLastsForMoreThanTenSecondsForWhatTheLinkIs) {
   FallIntoAGap();
   for (int i = 0; i < 20; ++i) {
@@ -254,6 +241,21 @@ TEST(PacingHeadroom, LeavesTheReserveAtTheEndOfAFramePeriodWithinLimits) {
   EXPECT_NEAR(PacingHeadroom(p, 100ms, 1ms), 1 / (1 - 0.18), 1e-9);
   EXPECT_NEAR(PacingHeadroom(p, 5ms, 4ms), 1 / (1 - 0.35), 1e-9);
   EXPECT_NEAR(PacingHeadroom(Parameters::Draft(), 16ms, 4ms), 1.5, 1e-9);
+}
+
+TEST(PacingReserve, IsWhatGoesUnmarkedWithinLimits) {
+  const Parameters p;
+  Path path(p);
+  EXPECT_EQ(PacingReserve(p, path.model, path.now), p.pacing_reserve);
+  path.Arrive(200, 1ms, 0ms, Ecn::kCe);
+  EXPECT_EQ(PacingReserve(p, path.model, path.now), p.shortest_pacing_reserve);
+  path.Arrive(5000, 1ms, 2ms, Ecn::kCe);
+  EXPECT_NEAR(Milliseconds(PacingReserve(p, path.model, path.now)), 1.8, 0.1);
+}
+
+TEST(TolerateLoss, IsTheDraftsUntilEcnIsSeenToWork) {
+  const Parameters p;
+  EXPECT_DOUBLE_EQ(TolerateLoss(p, PathModel(p)).loss_rate_threshold, 0.01);
 }
 
 TEST(TolerateLoss, CountsAnyLossBehindAQueueAndLittleElsewhere) {

@@ -188,6 +188,82 @@ TEST_F(SentHistoryTest, NumbersThatGoBackAreThoseOfASenderThatStartedAgain) {
   EXPECT_EQ(history_.bytes_in_flight().bytes(), 5000);
 }
 
+TEST_F(SentHistoryTest, ReportsOfBeforeARestartAreForgivenForTwoSeconds) {
+  Send(40480, 40500);
+  Send(10000, 10010);
+  now_ += 1900ms;
+  EXPECT_EQ(Apply(Report(40480, "rrrr")), HistoryResult::kNothingNew);
+  now_ += 100ms;
+  EXPECT_EQ(Apply(Report(40480, "rrrr")), HistoryResult::kImplausible);
+}
+
+TEST_F(SentHistoryTest, TheReorderingWindowIsNoLongerThanSet) {
+  history_.set_max_reordering_window(10ms);
+  Send(0, 20);
+  Apply(Report(0, "r-r"));
+  now_ += 50ms;
+  Apply(Report(0, "rrr"));
+  EXPECT_EQ(history_.reordering_window(), Duration(10ms));
+}
+
+TEST_F(SentHistoryTest, ALonePacketFarBehindIsNoRestart) {
+  Send(40480, 40500);
+  Send(10000, 10001);
+  Send(40500, 40501);
+  Send(10001, 10002);
+  EXPECT_EQ(history_.bytes_in_flight().bytes(), 21000);
+}
+
+TEST_F(SentHistoryTest, APacketThatWasOvertakenByManyOrAcknowledgedOnesDoesNotCount) {
+  Send(0, 1);
+  Send(2, 80);
+  Send(1, 2);
+  EXPECT_EQ(history_.bytes_in_flight().bytes(), 79000);
+  Send(81, 85);
+  Apply(Report(79, "r-rr"));
+  EXPECT_EQ(history_.bytes_in_flight().bytes(), 2000);
+  Send(80, 81);
+  EXPECT_EQ(history_.bytes_in_flight().bytes(), 2000);
+}
+
+TEST_F(SentHistoryTest, TheOldestInFlightMayBeOfAnySource) {
+  Send(0, 2);
+  history_.OnSent(2, 7, {0, DataSize::Bytes(1000), now_, Ecn::kEct1});
+  EXPECT_EQ(history_.oldest_in_flight(), kStart);
+}
+
+TEST_F(SentHistoryTest, AnArrivalMayBeAsMuchTooEarlyAsReportsAreCoarse) {
+  Send(0, 2);
+  now_ = kStart + 10ms;
+  CongestionFeedback f = Report(0, "r");
+  f.blocks[0].metrics[0].arrival_offset = 13ms;
+  EXPECT_EQ(Apply(f), HistoryResult::kImplausible);
+  f.blocks[0].metrics[0].arrival_offset = 12ms;
+  EXPECT_EQ(Apply(f), HistoryResult::kApplied);
+}
+
+TEST_F(SentHistoryTest, ManyPacketsOfTheLastSecondAreRemembered) {
+  for (int seq = 0; seq < 3000; ++seq, now_ += 300us)
+    history_.OnSent(1, static_cast<std::uint16_t>(seq),
+                    {0, DataSize::Bytes(1000), now_, Ecn::kEct1});
+  Apply(Report(0, std::string(3000, 'r')));
+  Send(3000, 3001);
+  EXPECT_EQ(Apply(Report(0, "C")), HistoryResult::kApplied);
+  EXPECT_EQ(summary_.late_ce, 1);
+}
+
+TEST_F(SentHistoryTest, AMissingPacketThatExpiredIsNotLost) {
+  Send(0, 20);
+  Apply(Report(0, "r-r"));
+  now_ += 20ms;
+  Apply(Report(0, "rrr-r"));  // may be as late as the second one
+  ASSERT_TRUE(summary_.lost.empty());
+  history_.Expire(now_);
+  std::vector<LostPacket> lost;
+  history_.DetectLoss(now_ + 1s, &lost);
+  EXPECT_TRUE(lost.empty());
+}
+
 TEST_F(SentHistoryTest, ARepeatedPacketIsNoRestart) {
   Send(0, 100);
   Send(40, 60);
@@ -216,6 +292,9 @@ TEST_F(SentHistoryTest, TheLostTailOfAQuietSourceDoesNotStayInFlight) {
   Apply(Report(900, std::string(199, 'r'), 2));
   EXPECT_EQ(history_.bytes_in_flight().bytes(), 1000);
   EXPECT_TRUE(summary_.lost.empty()) << "nobody knows whether it arrived";
+  Apply(Report(0, "r"));
+  ASSERT_EQ(summary_.acked.size(), 1U);
+  EXPECT_FALSE(summary_.acked[0].arrival) << "it tells nothing about the path now";
 }
 
 TEST_F(SentHistoryTest, AReorderingWindowOfManyPacketsStillFindsLosses) {

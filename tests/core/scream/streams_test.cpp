@@ -283,6 +283,44 @@ TEST_F(StreamTest, FramesAboveTheNominalSizeAreCompensated) {
   EXPECT_NEAR(stream_.frame_size_dev(), 0.1, 1e-3);
 }
 
+TEST_F(StreamTest, APauseIsNoFramePeriod) {
+  Frame(kStart, 1, 1);
+  Frame(kStart + 500ms, 1, 2);  // perhaps a pause, too
+  EXPECT_NEAR(Seconds(stream_.frame_period()), 0.068, 1e-6);
+  Frame(kStart + 3s, 1, 3);
+  EXPECT_NEAR(Seconds(stream_.frame_period()), 0.068, 1e-6);
+  Frame(kStart + 3100ms, 1, 4);
+  EXPECT_NEAR(Seconds(stream_.frame_period()), 0.0712, 1e-6);
+}
+
+TEST_F(StreamTest, ANewSourceThatSendsMarkersIsTheMedia) {
+  Frame(kStart, 2, 1);
+  EXPECT_FALSE(stream_.OnQueued(kStart, {2, DataSize::Bytes(1000), false, 7}));
+  EXPECT_TRUE(stream_.OnQueued(kStart, {2, DataSize::Bytes(1000), true, 7}));
+  EXPECT_FALSE(stream_.OnQueued(kStart, {2, DataSize::Bytes(1000), false, 8}));
+  EXPECT_TRUE(stream_.OnQueued(kStart, {2, DataSize::Bytes(1000), true, 8}));
+}
+
+TEST_F(StreamTest, ARepairPacketBeginsNoScan) {
+  stream_.OnQueued(kStart, {1, DataSize::Bytes(1000), true, 6, 6});
+  stream_.OnQueued(kStart, {2, DataSize::Bytes(1000), false, 0, 7});
+  stream_.OnQueued(kStart, {1, DataSize::Bytes(1000), true, 7, 7});
+  for (int i = 0; i < 2; ++i) stream_.OnSent(kStart, 1, DataSize::Bytes(1000));
+  EXPECT_TRUE(stream_.at_start());
+  EXPECT_EQ(stream_.LatePackets(kStart + 300ms, DataRate::Infinite()), 1U);
+}
+
+TEST_F(StreamTest, IsActiveUntilItIsKnownToBeSilent) {
+  EXPECT_TRUE(stream_.active(kStart));
+  stream_.NoteTime(kStart);
+  EXPECT_FALSE(stream_.active(kStart + 1s));
+  Frame(kStart + 1s, 2, 1);
+  stream_.OnDropped(kStart + 5s, 2);
+  EXPECT_TRUE(stream_.active(kStart + 5900ms)) << "its encoder has only just been too slow";
+  stream_.OnDropped(kStart + 6s, 0);
+  EXPECT_FALSE(stream_.active(kStart + 6s));
+}
+
 TEST_F(StreamTest, RepairPacketsOfAnotherSourceAreNoFrames) {
   Frame(kStart, 3, 1);
   stream_.OnQueued(kStart, {2, DataSize::Bytes(500), false, 77});

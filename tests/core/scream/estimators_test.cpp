@@ -1,0 +1,206 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// What the estimators forget, and what they take no account of.
+#include <gtest/gtest.h>
+
+#include "src/scream/model/ecn_monitor.h"
+#include "src/scream/model/flight.h"
+#include "src/scream/model/loss_context.h"
+#include "src/scream/model/queue_delay.h"
+#include "src/scream/model/rtt.h"
+#include "src/scream/steady_time.h"
+#include "tests/core/scream/measured_path.h"
+
+namespace lidar::scream {
+namespace {
+
+constexpr SenderState kSender{DataSize::Bytes(10000), 20ms, 60ms, Time{}};
+
+TEST(PathModel, KnowsNothingOfAnotherRoute) {
+  const Parameters p;
+  Path path(p);
+  for (int i = 0; i < 10000; ++i)  // few marks behind a long queue
+    path.Arrive(1, 1ms, 5ms + i % 20 * 1ms, i % 50 == 0 ? Ecn::kCe : Ecn::kEct1);
+  AckSummary loss;
+  loss.lost.emplace_back();
+  path.model.OnReport(path.now, loss, kSender);
+  ASSERT_TRUE(path.model.classic_ecn().found());
+  ASSERT_TRUE(path.model.L4sWorks(path.now));
+  ASSERT_GT(path.model.estimated_capacity(), DataRate());
+  ASSERT_GT(path.model.loss_rate().value(), 0);
+
+  path.model.Reset();
+  EXPECT_FALSE(path.model.classic_ecn().found());
+  EXPECT_FALSE(path.model.L4sWorks(path.now));
+  EXPECT_FALSE(path.model.MarkedLately(path.now));
+  EXPECT_EQ(path.model.ecn().state(), EcnState::kTesting);
+  EXPECT_EQ(path.model.estimated_capacity(), DataRate());
+  EXPECT_EQ(path.model.train_capacity(), DataRate());
+  EXPECT_EQ(path.model.busy_run().packets(), 0);
+  EXPECT_FALSE(path.model.train().rate());
+  EXPECT_FALSE(path.model.rtt().known());
+  EXPECT_EQ(path.model.loss_rate().value(), 0);
+  EXPECT_EQ(path.model.report_gap(), Duration{0});
+}
+
+TEST(PathModel, TheRateIsHalvedWhereClocksDriftAndWholeOnAnotherRoute) {
+  const Parameters p;
+  Path path(p);
+  for (int i = 0; i < 5000 && path.model.half_rate_until() == Time{}; ++i)
+    path.Arrive(1, 10ms, 40ms, Ecn::kEct1);
+  // Five round trips, which are longer than the 0.2 s that it is at least.
+  EXPECT_GT(path.model.half_rate_until(), path.now + 350ms);
+  EXPECT_LT(path.model.half_rate_until(), path.now + 450ms);
+  path.model.Reset();
+  EXPECT_EQ(path.model.half_rate_until(), Time{});
+}
+
+TEST(PathModel, APacketOfWhichNobodyTellsWhenItArrivedEndsABusyRun) {
+  const Parameters p;
+  Path path(p);
+  path.Arrive(10, 1ms, 20ms, Ecn::kCe);
+  ASSERT_EQ(path.model.busy_run().packets(), 10);
+  AckSummary acks;
+  acks.acked.emplace_back();
+  acks.acked.back().sent = path.now - kRtt;
+  acks.acked.back().size = kPacket;
+  path.model.OnReport(path.now, acks, kSender);
+  EXPECT_EQ(path.model.busy_run().packets(), 0);
+}
+
+TEST(PathModel, BelievesInMarksForHalfAMinute) {
+  const Parameters p;
+  Path path(p);
+  path.Arrive(1, 1ms, 3ms, Ecn::kCe);
+  EXPECT_TRUE(path.model.L4sWorks(path.now + 29s));
+  EXPECT_FALSE(path.model.L4sWorks(path.now + 30s));
+}
+
+TEST(PathModel, PacketsThatMetAGapSayNothingOfTheLinkBehindIt) {
+  const Parameters p;
+  Path path(p);
+  const Duration onset = path.model.marking_onset();
+  path.model.OnGapEnd(path.now + 1h, 5ms, 0.25);
+  EXPECT_EQ(path.model.rtt().smoothed(), kRtt) << "no shorter than the shortest";
+  EXPECT_EQ(path.model.l4s_alpha().value(), 0.25);
+  for (int i = 0; i < 10000; ++i)
+    path.Arrive(1, 1ms, 5ms + i % 20 * 1ms, i % 50 == 0 ? Ecn::kCe : Ecn::kEct1);
+  EXPECT_FALSE(path.model.classic_ecn().found());
+  EXPECT_EQ(path.model.marking_onset(), onset);
+}
+
+TEST(MaxBytesInFlight, IsThatOfTheLastTenRoundTripsAndOfThisOne) {
+  MaxBytesInFlight flight;
+  flight.Add(DataSize::Bytes(9000));
+  EXPECT_EQ(flight.longest().bytes(), 9000);
+  EXPECT_TRUE(flight.Update(kStart, 40ms));
+  EXPECT_FALSE(flight.Update(kStart + 39ms, 40ms));
+  EXPECT_EQ(flight.previous().bytes(), 9000);
+  EXPECT_EQ(flight.current().bytes(), 0);
+  for (int i = 1; i <= 9; ++i) flight.Update(kStart + i * 40ms, 40ms);
+  EXPECT_EQ(flight.longest().bytes(), 9000);
+  flight.Update(kStart + 400ms, 40ms);
+  EXPECT_EQ(flight.longest().bytes(), 0);
+}
+
+TEST(SteadyTime, GoesOnWhereTheClockOfItsCallerIsSetBack) {
+  SteadyTime clock;
+  EXPECT_EQ(clock.From(kStart), kStart);
+  EXPECT_EQ(clock.From(kStart - 1s), kStart - 1s) << "another thread's";
+  EXPECT_EQ(clock.From(kStart - 2s), kStart - 2s);
+  EXPECT_EQ(clock.From(kStart - 2001ms), kStart);
+  EXPECT_EQ(clock.From(kStart - 2s), kStart + 1ms);
+  EXPECT_EQ(clock.Peek(kStart), kStart + 2001ms);
+  EXPECT_EQ(clock.ToCaller(kStart), kStart - 2001ms);
+  EXPECT_EQ(clock.ToCaller(Time::max()), Time::max());
+}
+
+TEST(EcnMonitor, CountsUnansweredPacketsFromTheLastAnswerOn) {
+  EcnMonitor ecn(Ecn::kEct1);
+  for (int i = 0; i < 9; ++i) ecn.OnSent(kStart, Ecn::kEct1);
+  ecn.OnAcked(Ecn::kEct1, Ecn::kNotEct);
+  for (int i = 0; i < 9; ++i) ecn.OnSent(kStart + 3s, Ecn::kEct1);
+  ecn.OnTimer(kStart + 10s);
+  EXPECT_EQ(ecn.state(), EcnState::kTesting);
+  ecn.OnSent(kStart + 10s, Ecn::kEct1);
+  ecn.OnTimer(kStart + 10s);
+  EXPECT_EQ(ecn.state(), EcnState::kSilent);
+}
+
+TEST(EcnMonitor, BeginsToCountAnewOnAnotherRoute) {
+  EcnMonitor ecn(Ecn::kEct1);
+  for (int i = 0; i < 19; ++i) ecn.OnAcked(Ecn::kEct1, Ecn::kNotEct);
+  for (int i = 0; i < 9; ++i) ecn.OnSent(kStart, Ecn::kEct1);
+  ecn.Reset();
+  ecn.OnSent(kStart + 5s, Ecn::kEct1);
+  ecn.OnTimer(kStart + 10s);
+  EXPECT_EQ(ecn.state(), EcnState::kTesting);
+  ecn.OnAcked(Ecn::kEct1, Ecn::kNotEct);
+  EXPECT_EQ(ecn.state(), EcnState::kTesting);
+}
+
+TEST(LossContext, KnowsNothingOfTheFirstPackets) {
+  LossContext context;
+  const auto lose = [&context](int frame) {  // the last one of ten
+    const Time start = kStart + frame * 20ms;
+    for (int i = 0; i < 9; ++i) context.OnAcked(start + i * 1ms, i * 300us);
+    context.OnLost(start + 9ms);
+  };
+  for (int frame = 0; frame < 15; ++frame) lose(frame);
+  EXPECT_FALSE(context.AtFullQueue());
+  for (int frame = 15; frame < 40; ++frame) lose(frame);
+  EXPECT_TRUE(context.AtFullQueue());
+}
+
+TEST(QueueDelay, AWayBackThatTakesLongForAWhileIsNoClock) {
+  const Parameters p;
+  QueueDelay delay(p);
+  for (const Time now : {kStart, kStart + 1s})
+    EXPECT_TRUE(delay.Add(now, {now - 40ms, now - 20ms, 0ms, 20ms}));
+  const Time later = kStart + 6min;  // the shortest is looked for anew
+  EXPECT_TRUE(delay.Add(later, {later - 240ms, later - 220ms, 200ms, 220ms}));
+  EXPECT_TRUE(delay.Add(later, {later - 40ms, later - 20ms, 0ms, 20ms}));
+}
+
+TEST(QueueDelay, WhereMarksKeepTheQueueShortAHigherBaseIsBelievedWithinHalfAMinute) {
+  for (const bool marked : {true, false}) {
+    const Parameters p;
+    QueueDelay delay(p);
+    const auto add = [&](Time now, Duration owd) {
+      delay.Add(now, {now - 100ms, now - 100ms + owd, 0ms, 100ms - owd}, marked);
+    };
+    add(kStart, 20ms);
+    for (Time now = kStart + 1s; now <= kStart + 40s; now += 1s) add(now, 35ms);
+    EXPECT_EQ(delay.qdelay(), marked ? Duration(0ms) : Duration(15ms)) << marked;
+  }
+}
+
+TEST(QueueDelay, ASecondJumpIsSeenToo) {
+  const Parameters p;
+  QueueDelay delay(p);
+  const auto add = [&delay](Time now, Duration owd) {
+    return delay.Add(now, {now - 50ms, now - 50ms + owd, 0ms, 40ms - owd});
+  };
+  for (Time now = kStart; now < kStart + 1s; now += 100ms) EXPECT_TRUE(add(now, 20ms));
+  EXPECT_FALSE(add(kStart + 1s, -3000ms));
+  EXPECT_TRUE(add(kStart + 1100ms, -3000ms));
+  EXPECT_FALSE(add(kStart + 2s, -2000ms));
+}
+
+TEST(RoundTripTime, IsAMillisecondAtLeast) {
+  RoundTripTime rtt;
+  rtt.Add(kStart, 0ms, false);
+  EXPECT_EQ(rtt.smoothed(), Duration(1ms));
+  EXPECT_EQ(rtt.min(), Duration(1ms));
+}
+
+TEST(RoundTripTime, TheShortestIsRememberedForHalfAMinuteAtLeast) {
+  RoundTripTime rtt;
+  rtt.Add(kStart, 40ms, false);
+  rtt.Add(kStart + 31s, 80ms, false);
+  EXPECT_EQ(rtt.min(), Duration(40ms));
+  rtt.Add(kStart + 62s, 80ms, false);
+  EXPECT_EQ(rtt.min(), Duration(80ms));
+}
+
+}  // namespace
+}  // namespace lidar::scream

@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// A path of which reports tell, without a link or a sender.
+#pragma once
+#include "src/scream/model/path_model.h"
+#include "tests/support/simulated.h"
+
+namespace lidar::scream {
+
+constexpr Duration kRtt = 40ms;
+constexpr DataSize kPacket = DataSize::Bytes(1000);
+
+/// A path whose packets arrive `spacing` apart, `queue` later than the first one did.
+class Path {
+ public:
+  explicit Path(const Parameters& parameters) : model(parameters) {
+    AckSummary first;
+    first.rtt = kRtt;
+    model.OnRoundTrip(kStart, first, DataSize::Bytes(10000));
+    Arrive(1, Duration{0}, Duration{0}, Ecn::kEct1);
+  }
+  void Arrive(int packets, Duration spacing, Duration queue, Ecn ecn) {
+    for (int i = 0; i < packets; ++i) {
+      now += spacing;
+      AckSummary acks;
+      acks.rtt = kRtt + queue;
+      model.OnRoundTrip(now, acks, DataSize::Bytes(10000));
+      AckedPacket packet;
+      packet.size = kPacket;
+      packet.ecn = Ecn::kEct1;
+      packet.arrived_ecn = ecn;
+      packet.sent = now - kRtt - queue;
+      packet.arrival = now - kRtt / 2;
+      acks.report = *packet.arrival;
+      acks.acked.push_back(packet);
+      acks.bytes_newly_acked = kPacket;
+      model.OnReport(now, acks, {DataSize::Bytes(10000), 20ms, 60ms, Time{}});
+    }
+  }
+  PathModel model;
+  Time now = kStart;
+};
+
+}  // namespace lidar::scream
