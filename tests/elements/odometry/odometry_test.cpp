@@ -169,26 +169,48 @@ TEST_F(Odometry, WritesTheTrajectory) {
   std::filesystem::remove(path);
 }
 
-TEST(OdometryPads, GiveAPoseForEachScan) {
+TEST(OdometryPads, GiveThePoseOfEachScanThatItsMessageTells) {
   GError* raw = nullptr;
-  const ElementPtr pipeline(
-      gst_parse_launch((Format(kDrive, 1, 6) + " ! lidarodometry name=o ! queue ! fakesink "
-                                               "o.odometry ! queue ! appsink name=poses sync=false")
-                           .c_str(),
-                       &raw));
+  const ElementPtr pipeline(gst_parse_launch(
+      (Format(kDrive, 1, 6) +
+       " ! lidarodometry name=o initial-pose=\"9 8 7 0 0 0.6 0.8\" ! queue ! fakesink "
+       "o.odometry ! queue ! appsink name=poses sync=false")
+          .c_str(),
+      &raw));
   ASSERT_EQ(raw, nullptr);
   const ElementPtr sink(gst_bin_get_by_name(GST_BIN(pipeline.get()), "poses"));
+  GstBus* bus = gst_element_get_bus(pipeline.get());
   gst_element_set_state(pipeline.get(), GST_STATE_PLAYING);
   unsigned count = 0;
-  for (GstSample* sample = nullptr;;) {
+  for (GstSample* sample = nullptr;; ++count) {
     g_signal_emit_by_name(sink.get(), "pull-sample", &sample);
     if (sample == nullptr) break;
-    EXPECT_EQ(gst_buffer_get_size(gst_sample_get_buffer(sample)), 64U);
+    GstBuffer* buffer = gst_sample_get_buffer(sample);
+    const BufferMap map(buffer, GST_MAP_READ);
+    ASSERT_EQ(map.size(), 64U);
+    MessagePtr message;
+    do message.reset(gst_bus_timed_pop_filtered(bus, GST_SECOND, GST_MESSAGE_ELEMENT));
+    while (message && !gst_message_has_name(message.get(), "odometry"));
+    ASSERT_TRUE(message);
+    const GstStructure* told = gst_message_get_structure(message.get());
+    std::size_t offset = 0;
+    for (const char* field : {"x", "y", "z", "qx", "qy", "qz", "qw"}) {
+      gdouble value = 0, expected = 0;
+      std::memcpy(&value, map.data() + offset, sizeof value);
+      ASSERT_TRUE(gst_structure_get_double(told, field, &expected));
+      EXPECT_EQ(value, expected) << field;
+      offset += sizeof value;
+    }
+    EXPECT_EQ(map.data()[offset], count == 0 ? GST_LIDAR_TRACKING_STARTED : GST_LIDAR_TRACKING_OK);
+    guint64 time = 0;
+    gst_structure_get_uint64(told, "timestamp", &time);
+    EXPECT_EQ(gst_lidar_buffer_get_capture_time(buffer), time);
+    EXPECT_EQ(GST_BUFFER_PTS(buffer), count * 100 * GST_MSECOND);
     gst_sample_unref(sample);
-    ++count;
   }
   EXPECT_EQ(count, 6U);
   gst_element_set_state(pipeline.get(), GST_STATE_NULL);
+  gst_object_unref(bus);
 }
 
 /// Clouds made by hand.
@@ -204,11 +226,35 @@ class OddClouds : public ::testing::Test {
     h_.reset();
     gst_object_unref(bus_);
   }
-  GstFlowReturn Push(const std::vector<float>& points, GstClockTime pts) {
+  static GstBuffer* Points(const std::vector<float>& points, GstClockTime pts) {
     GstBuffer* buffer = gst_buffer_new_allocate(nullptr, points.size() * sizeof(float), nullptr);
     gst_buffer_fill(buffer, 0, points.data(), points.size() * sizeof(float));
     GST_BUFFER_PTS(buffer) = pts;
-    return gst_harness_push(h_.get(), buffer);
+    return buffer;
+  }
+  GstFlowReturn Push(const std::vector<float>& points, GstClockTime pts) {
+    return gst_harness_push(h_.get(), Points(points, pts));
+  }
+  guint64 Count(const char* name) {
+    GstStructure* stats = nullptr;
+    g_object_get(h_->element, "stats", &stats, nullptr);
+    const StructurePtr owned(stats);
+    guint64 value = G_MAXUINT64;
+    gst_structure_get_uint64(stats, name, &value);
+    return value;
+  }
+  /// Since the last call.
+  int CountWarnings() {
+    int count = 0;
+    while (const MessagePtr message{gst_bus_pop_filtered(bus_, GST_MESSAGE_WARNING)}) ++count;
+    return count;
+  }
+  /// That of the last pose; none where there is no message.
+  GstClockTime TimeOfMessage() {
+    GstClockTime time = GST_CLOCK_TIME_NONE;
+    while (const MessagePtr message{gst_bus_pop_filtered(bus_, GST_MESSAGE_ELEMENT)})
+      gst_structure_get_uint64(gst_message_get_structure(message.get()), "timestamp", &time);
+    return time;
   }
   bool HasError() {
     const MessagePtr message(gst_bus_pop_filtered(bus_, GST_MESSAGE_ERROR));
@@ -230,6 +276,96 @@ TEST_F(OddClouds, MayBeEmptyOrNotFinite) {
   EXPECT_FALSE(HasError());
 }
 
+TEST_F(OddClouds, AreCountedWhereTheyAreWholePoints) {
+  Start(kXyz);
+  Push({1, 2}, 0);
+  EXPECT_EQ(Count("scans"), 0U);
+  Push({1, 2, 3}, GST_SECOND);
+  EXPECT_EQ(Count("scans"), 1U);
+  gst_element_set_state(h_->element, GST_STATE_READY);
+  gst_element_set_state(h_->element, GST_STATE_PLAYING);
+  EXPECT_EQ(Count("scans"), 0U);
+}
+
+TEST_F(OddClouds, WereSampledAtTheirCaptureTimes) {
+  Start(kXyz);
+  GstBuffer* buffer = Points({1, 2, 3}, 0);
+  gst_lidar_buffer_set_capture_time(buffer, 1000 * GST_SECOND);
+  gst_harness_push(h_.get(), buffer);
+  EXPECT_EQ(TimeOfMessage(), 1000 * GST_SECOND + 50 * GST_MSECOND) << "the middle of the scan";
+  Push({1, 2, 3}, 1001 * GST_SECOND);
+  EXPECT_EQ(TimeOfMessage(), 1001 * GST_SECOND + 50 * GST_MSECOND);
+  g_object_set(h_->element, "post-messages", FALSE, nullptr);
+  Push({1, 2, 3}, 1002 * GST_SECOND);
+  EXPECT_EQ(TimeOfMessage(), GST_CLOCK_TIME_NONE);
+}
+
+TEST_F(OddClouds, AScanThatIsCutOffEndsWithTheStreamOrItsCapsAndNotWithAFlush) {
+  const auto push = [this](guint scan, guint index) {
+    GstBuffer* buffer = Points({1, 2, 3}, scan * GST_SECOND);
+    const GstLidarSlice slice{scan, index, 3, 0};
+    gst_lidar_buffer_set_slice(buffer, &slice);
+    gst_harness_push(h_.get(), buffer);
+  };
+  Start(kXyz);
+  push(1, 0);
+  push(2, 0);
+  EXPECT_EQ(Count("scans"), 1U) << "the next one began";
+  gst_harness_push_event(h_.get(), gst_event_new_flush_start());
+  gst_harness_push_event(h_.get(), gst_event_new_flush_stop(TRUE));
+  GstSegment segment;
+  gst_segment_init(&segment, GST_FORMAT_TIME);
+  gst_harness_push_event(h_.get(), gst_event_new_segment(&segment));
+  push(3, 0);
+  EXPECT_EQ(Count("scans"), 1U) << "nobody wants the one before the flush";
+  gst_harness_set_src_caps_str(h_.get(), (std::string(kXyz) + ",is-dense=true").c_str());
+  EXPECT_EQ(Count("scans"), 2U);
+  push(4, 1);
+  gst_harness_push_event(h_.get(), gst_event_new_eos());
+  EXPECT_EQ(Count("scans"), 3U);
+}
+
+TEST_F(OddClouds, ThatFitNothingAreLostUntilAnotherMapBegins) {
+  Start(kXyz);
+  GstClockTime time = 0;
+  const auto push = [&](float x) { Push({x, 2, 3}, time += 100 * GST_MSECOND); };
+  push(1);
+  for (int i = 0; i < 9; ++i) push(50);
+  EXPECT_EQ(Count("scans-lost"), 9U);
+  EXPECT_EQ(Count("maps"), 1U);
+  EXPECT_EQ(CountWarnings(), 1);
+  push(50);
+  EXPECT_EQ(Count("maps"), 2U);
+  push(50);
+  EXPECT_EQ(Count("scans-lost"), 10U);
+  EXPECT_EQ(CountWarnings(), 0);
+  push(1);
+  EXPECT_EQ(CountWarnings(), 1) << "it was found in between";
+}
+
+TEST_F(OddClouds, OfOnePlaneDoNotShowTheMotionAlongIt) {
+  Start(kXyz);
+  std::vector<float> plane;
+  for (int x = -20; x < 20; ++x)
+    for (int y = -20; y < 20; ++y)
+      plane.insert(plane.end(), {0.3F * static_cast<float>(x), 0.3F * static_cast<float>(y), -2});
+  for (guint64 i = 0; i < 3; ++i) Push(plane, i * 100 * GST_MSECOND);
+  EXPECT_EQ(Count("scans-degenerate"), 2U);
+  EXPECT_EQ(Count("scans-lost"), 0U);
+}
+
+TEST_F(OddClouds, GoOnWhereTheTrajectoryCannotBeWritten) {
+  h_.reset(gst_harness_new("lidarodometry"));
+  g_object_set(h_->element, "trajectory", "/dev/full", nullptr);
+  gst_element_set_state(h_->element, GST_STATE_READY);
+  gst_element_set_state(h_->element, GST_STATE_PLAYING);
+  bus_ = gst_bus_new();
+  gst_element_set_bus(h_->element, bus_);
+  gst_harness_set_src_caps_str(h_.get(), kXyz);
+  for (guint64 i = 0; i < 5; ++i) EXPECT_EQ(Push({1, 2, 3}, i * 100 * GST_MSECOND), GST_FLOW_OK);
+  EXPECT_EQ(CountWarnings(), 1);
+}
+
 TEST_F(OddClouds, MayHaveSlicesWithoutEnd) {
   Start(kXyz);
   const std::vector<float> points(3 << 20, 2);
@@ -241,12 +377,16 @@ TEST_F(OddClouds, MayHaveSlicesWithoutEnd) {
     ASSERT_EQ(gst_harness_push(h_.get(), buffer), GST_FLOW_OK);
     gst_buffer_unref(gst_harness_pull(h_.get()));
   }
-  GstStructure* stats = nullptr;
-  g_object_get(h_->element, "stats", &stats, nullptr);
-  const StructurePtr owned(stats);
-  guint64 scans = 0;
-  gst_structure_get_uint64(stats, "scans", &scans);
-  EXPECT_EQ(scans, 1U);  // the first four, as soon as they were too many
+  EXPECT_EQ(Count("scans"), 1U);  // the first four, as soon as they were too many
+}
+
+TEST_F(OddClouds, MayBeSlicesOfNoScan) {
+  Start(kXyz);
+  GstBuffer* buffer = Points({1, 2, 3}, 0);
+  const GstLidarSlice slice{7, 3, 0, 0};
+  gst_lidar_buffer_set_slice(buffer, &slice);
+  EXPECT_EQ(gst_harness_push(h_.get(), buffer), GST_FLOW_OK);
+  EXPECT_EQ(Count("scans"), 1U) << "as one without a meta";
 }
 
 TEST_F(OddClouds, NeedTimestamps) {

@@ -14,13 +14,12 @@ class Collector : public ::testing::Test {
  protected:
   /// Rows of beams, two of them where clouds are organised.
   void Prepare(guint height) {
-    CloudInfo info;
-    info.height = height;
-    info.point_step = 12;
-    info.fields = *PointFields::Parse("x:F32:0,y:F32:4,z:F32:8");
-    info.framerate_n = 10;
-    info.framerate_d = 1;
-    ASSERT_TRUE(collector_.SetInfo(info));
+    info_.height = height;
+    info_.point_step = 12;
+    info_.fields = *PointFields::Parse("x:F32:0,y:F32:4,z:F32:8");
+    info_.framerate_n = 10;
+    info_.framerate_d = 1;
+    ASSERT_TRUE(collector_.SetInfo(info_));
     height_ = height;
   }
   /// `width` columns whose points have their index, from 1 on, as x.
@@ -32,6 +31,7 @@ class Collector : public ::testing::Test {
                    4 * points.size());
   }
 
+  CloudInfo info_;
   ScanCollector collector_;
   guint height_ = 1;
 };
@@ -88,6 +88,42 @@ TEST_F(Collector, PointsWithoutAReturnAreLeftOutWithTheirTimes) {
   const auto scan = collector_.Take();
   EXPECT_EQ(scan->points.points.size(), 3U);
   EXPECT_EQ(scan->points.phases, (std::vector<float>{.5, 0, .5}));
+}
+
+TEST_F(Collector, AScanLastsAsLongAsTheFramerateSays) {
+  Prepare(2);
+  info_.framerate_n = 20;
+  ASSERT_TRUE(collector_.SetInfo(info_));
+  Add(7, 0, 1, kStart, 4);
+  EXPECT_EQ(collector_.Take()->duration, milliseconds(50));
+  info_.framerate_n = 0;  // not known
+  ASSERT_TRUE(collector_.SetInfo(info_));
+  Add(8, 0, 1, kStart, 4);
+  EXPECT_EQ(collector_.Take()->duration, milliseconds(100));
+}
+
+TEST_F(Collector, FindsTheCoordinatesBehindOtherFields) {
+  Prepare(1);
+  info_.point_step = 20;
+  info_.fields = *PointFields::Parse("t:U32:0,x:F32:4,y:F32:8,z:F32:12");
+  ASSERT_TRUE(collector_.SetInfo(info_));
+  const float points[] = {9, 1, 2, 3, 9, 8, 0, 5, 0, 8};
+  collector_.Add({1, 0, 1, 0}, kStart, reinterpret_cast<const guint8*>(points), sizeof points);
+  const auto scan = collector_.Take();
+  ASSERT_EQ(scan->points.points.size(), 2U);
+  EXPECT_EQ(scan->points.points[0], Eigen::Vector3d(1, 2, 3));
+  EXPECT_EQ(scan->points.points[1], Eigen::Vector3d(0, 5, 0)) << "on an axis";
+}
+
+TEST_F(Collector, TheNextScanHasNothingOfTheOneBefore) {
+  Prepare(2);
+  Add(7, 2, 3, kStart, 4);
+  EXPECT_TRUE(collector_.complete());
+  collector_.Take();
+  Add(8, 0, 2, kStart, 1);
+  EXPECT_FALSE(collector_.complete());
+  EXPECT_FALSE(collector_.BeginsNewScan({8, 1, 2, 0}));
+  EXPECT_EQ(collector_.Take()->points.points.size(), 2U);
 }
 
 TEST_F(Collector, NeedsPackedCoordinates) {
