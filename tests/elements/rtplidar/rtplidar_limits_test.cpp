@@ -7,6 +7,15 @@
 namespace lidar::test {
 namespace {
 
+/// As a seek does it.
+void Flush(GstHarness* h) {
+  gst_harness_push_event(h, gst_event_new_flush_start());
+  gst_harness_push_event(h, gst_event_new_flush_stop(TRUE));
+  GstSegment segment;
+  gst_segment_init(&segment, GST_FORMAT_TIME);
+  gst_harness_push_event(h, gst_event_new_segment(&segment));
+}
+
 class PayLimits : public ::testing::Test {
  protected:
   PayLimits() { gst_harness_set_src_caps_str(h_.get(), EncodedCaps().c_str()); }
@@ -50,11 +59,7 @@ TEST_F(PayLimits, TheConfigComesAgainAfterAFlushAndWhereTheSsrcChanges) {
   EXPECT_EQ(Configs(), 1U);
   Push(0, 1);
   EXPECT_EQ(Configs(), 0U);
-  gst_harness_push_event(h_.get(), gst_event_new_flush_start());
-  gst_harness_push_event(h_.get(), gst_event_new_flush_stop(TRUE));
-  GstSegment segment;
-  gst_segment_init(&segment, GST_FORMAT_TIME);
-  gst_harness_push_event(h_.get(), gst_event_new_segment(&segment));
+  Flush(h_.get());
   Push(0, 2);
   EXPECT_EQ(Configs(), 1U);
   gst_harness_push_upstream_event(
@@ -138,31 +143,102 @@ TEST_F(PayLimits, TellsTheEncoderOfEachSliceThatAReceiverHas) {
   ADD_FAILURE() << "no receipt";
 }
 
-TEST(DepayLimits, WarnsAtTheTwentiethPacketOfAnotherTypeAndAgainAfterARestart) {
-  constexpr const char* kOther =
-      "application/x-rtp,media=application,clock-rate=90000,encoding-name=X-LIDAR-DRACO,payload=97";
-  const Harness pay(gst_harness_new("rtplidarpay"));
-  gst_harness_set_src_caps_str(pay.get(), EncodedCaps().c_str());
-  for (guint i = 0; i < 30; ++i) gst_harness_push(pay.get(), EncodedSlice(i / 4, i % 4, 100));
-  const auto packets = PullAll(pay.get());
-  const Harness h(gst_harness_new("rtplidardepay"));
+TEST_F(PayLimits, AFlushForgetsWhatWasCollected) {
+  g_object_set(h_->element, "aggregate", TRUE, "config-interval", 0, nullptr);
+  Push(0, 0);
+  Flush(h_.get());
+  Push(0, 1);
+  gst_harness_push_event(h_.get(), gst_event_new_eos());
+  const auto packets = PullAll(h_.get());
+  ASSERT_EQ(packets.size(), 2U);
+  EXPECT_EQ(packets[1].payload[15], 1);  // the slice's index
+}
+
+/// Packets of a payloader, which a test may change.
+class DepayLimits : public ::testing::Test {
+ protected:
+  static std::vector<gst::BufferPtr> Packets(guint scans) {
+    const Harness pay(gst_harness_new("rtplidarpay"));
+    gst_harness_set_src_caps_str(pay.get(), EncodedCaps().c_str());
+    for (guint i = 0; i < scans * kSlices; ++i)
+      gst_harness_push(pay.get(), EncodedSlice(i / kSlices, i % kSlices, 100));
+    std::vector<gst::BufferPtr> packets;
+    while (GstBuffer* packet = gst_harness_try_pull(pay.get())) packets.emplace_back(packet);
+    return packets;
+  }
+  void SetCaps(const char* more) {
+    const std::string caps =
+        "application/x-rtp,media=application,clock-rate=90000,encoding-name=X-LIDAR-DRACO";
+    gst_harness_set_src_caps_str(h_.get(), (caps + more).c_str());
+  }
+  void Push(const gst::BufferPtr& packet, GstClockTime pts) {
+    GstBuffer* copy = gst_buffer_copy_deep(packet.get());
+    GST_BUFFER_PTS(copy) = pts;
+    gst_harness_push(h_.get(), copy);
+  }
+  /// How many slices came out since the last call.
+  std::size_t Slices() {
+    std::size_t n = 0;
+    while (const gst::BufferPtr slice{gst_harness_try_pull(h_.get())}) ++n;
+    return n;
+  }
+
+  Harness h_{gst_harness_new("rtplidardepay")};
+};
+
+TEST_F(DepayLimits, APacketOfBeforeDoesNotTurnTheTimeBack) {
+  SetCaps(",payload=96");
+  const auto stream = Packets(3), another = Packets(3);
+  for (std::size_t i = 0; i + 1 < stream.size(); ++i) Push(stream[i], 10 * GST_SECOND);
+  Push(stream.back(), GST_SECOND);
+  // The stream is not silent: a second one has to come for longer.
+  for (const auto& packet : another) Push(packet, 10 * GST_SECOND);
+  EXPECT_EQ(Slices(), 12U);
+  EXPECT_EQ(Stat(h_.get(), "sender-restarts"), 0U);
+}
+
+TEST_F(DepayLimits, ThePayloadTypeIsThatOfTheLatestCaps) {
+  SetCaps(",payload=97");
+  const auto packets = Packets(1);
+  for (const auto& packet : packets) Push(packet, 0);
+  EXPECT_EQ(Slices(), 0U);
+  SetCaps(",payload=96");
+  for (const auto& packet : packets) Push(packet, 0);
+  EXPECT_EQ(Slices(), 4U);
+}
+
+TEST_F(DepayLimits, TimeMayBeginAnewAfterAFlush) {
+  SetCaps(",payload=96");
+  for (const auto& packet : Packets(1)) Push(packet, 1000 * GST_SECOND);
+  EXPECT_EQ(Slices(), 4U);
+  Flush(h_.get());
+  auto packets = Packets(4);
+  packets.erase(packets.begin() + 2);
+  g_object_set(h_->element, "max-reorder-time", 100 * GST_MSECOND, nullptr);
+  for (const auto& packet : packets) Push(packet, GST_BUFFER_PTS(packet.get()));
+  EXPECT_EQ(Stat(h_.get(), "slices-lost"), 1U);
+  EXPECT_EQ(Slices(), 15U);
+}
+
+TEST_F(DepayLimits, WarnsAtTheTwentiethPacketOfAnotherTypeAndAgainAfterARestart) {
+  const auto packets = Packets(8);
   GstBus* bus = gst_bus_new();
-  gst_element_set_bus(h->element, bus);
-  gst_harness_set_src_caps_str(h.get(), kOther);
+  gst_element_set_bus(h_->element, bus);
+  SetCaps(",payload=97");
   for (int round = 0; round < 2; ++round) {
     for (std::size_t i = 0; i < 22; ++i) {
-      gst_harness_push(h.get(), gst_buffer_copy_deep(packets.at(i).buffer.get()));
+      Push(packets.at(i), 0);
       const gst::MessagePtr warning(gst_bus_pop_filtered(bus, GST_MESSAGE_WARNING));
       EXPECT_EQ(warning != nullptr, i == 19) << i;
     }
-    EXPECT_EQ(Stat(h.get(), "packets-wrong-payload-type"), 22U);
-    gst_element_set_state(h->element, GST_STATE_READY);
-    gst_element_set_state(h->element, GST_STATE_PLAYING);
-    EXPECT_EQ(Stat(h.get(), "packets-wrong-payload-type"), 0U);
-    gst_harness_push_event(h.get(), gst_event_new_stream_start("again"));
-    gst_harness_set_src_caps_str(h.get(), kOther);
+    EXPECT_EQ(Stat(h_.get(), "packets-wrong-payload-type"), 22U);
+    gst_element_set_state(h_->element, GST_STATE_READY);
+    gst_element_set_state(h_->element, GST_STATE_PLAYING);
+    EXPECT_EQ(Stat(h_.get(), "packets-wrong-payload-type"), 0U);
+    gst_harness_push_event(h_.get(), gst_event_new_stream_start("again"));
+    SetCaps(",payload=97");
   }
-  gst_element_set_bus(h->element, nullptr);
+  gst_element_set_bus(h_->element, nullptr);
   gst_object_unref(bus);
 }
 

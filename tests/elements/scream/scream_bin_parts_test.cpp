@@ -65,6 +65,26 @@ TEST_F(ScreamBin, TheSinkCountsWhatSrtpAdds) {
   EXPECT_EQ(Of<guint>(Child("screamtx").get(), "packet-overhead"), 28U + 10);  // the tag
 }
 
+/// Else it would begin again in the clear.
+TEST_F(ScreamBin, AKeyThatIsRefusedWhileItRunsLeavesTheOneBefore) {
+  const ElementPtr srtp(gst_element_factory_make("srtpenc", nullptr));
+  if (!srtp) GTEST_SKIP() << "srtpenc is not installed";
+  for (const char* factory : {"screamsink", "screamsrc"}) {
+    g_setenv("LIDAR_BIN_PARTS_KEY", std::string(60, '5').c_str(), TRUE);
+    Make(factory);
+    g_object_set(bin_.get(), "srtp-key", "env:LIDAR_BIN_PARTS_KEY", nullptr);
+    if (std::string(factory) == "screamsrc") g_object_set(bin_.get(), "port", 0, nullptr);
+    ASSERT_EQ(To(GST_STATE_READY), GST_STATE_CHANGE_SUCCESS);
+    g_object_set(bin_.get(), "srtp-key", "env:LIDAR_NO_SUCH_KEY", nullptr);
+    To(GST_STATE_NULL);
+    EXPECT_EQ(To(GST_STATE_READY), GST_STATE_CHANGE_SUCCESS) << factory;
+    To(GST_STATE_NULL);
+    g_unsetenv("LIDAR_BIN_PARTS_KEY");
+    EXPECT_EQ(To(GST_STATE_READY), GST_STATE_CHANGE_FAILURE) << factory << " does without a key";
+    To(GST_STATE_NULL);
+  }
+}
+
 TEST_F(ScreamBin, TheSinkSaysGoodbyeAndReportsEachSecond) {
   Make("screamsink");
   for (const OwnedElement& element : {OwnedElement(GST_ELEMENT(gst_object_ref(bin_.get()))),
@@ -150,6 +170,37 @@ TEST_F(ScreamBin, PadsOfTheSinkAreItsChildren) {
   EXPECT_EQ(removed_, "sink_1");
   EXPECT_EQ(gst_child_proxy_get_children_count(proxy), 4U);
   gst_element_release_request_pad(bin_.get(), ready.get());
+}
+
+TEST_F(ScreamBin, APadOfTheSinkIsActiveWhereTheBinIs) {
+  Make("screamsink");
+  for (const auto& [state, active] : {std::pair(GST_STATE_NULL, false),
+                                      {GST_STATE_READY, false},
+                                      {GST_STATE_PAUSED, true},
+                                      {GST_STATE_PLAYING, true}}) {
+    To(state);
+    const gst::PadPtr pad(gst_element_request_pad_simple(bin_.get(), "sink_%u"));
+    EXPECT_EQ(gst_pad_is_active(pad.get()), active) << gst_element_state_get_name(state);
+    gst_element_release_request_pad(bin_.get(), pad.get());
+  }
+}
+
+TEST_F(ScreamBin, PadsOfTheReceiverComeAndGoAtTheSource) {
+  Make("screamsrc");
+  const ElementPtr rx = Child("screamrx");
+  const auto shown = [this](const char* name) {
+    return gst::PadPtr(gst_element_get_static_pad(bin_.get(), name)) != nullptr;
+  };
+  GstPad* stream = gst_pad_new("src_7", GST_PAD_SRC);
+  GstPad* other = gst_pad_new("another", GST_PAD_SRC);
+  gst_element_add_pad(rx.get(), stream);
+  gst_element_add_pad(rx.get(), other);
+  EXPECT_TRUE(shown("src_7"));
+  EXPECT_FALSE(shown("another"));
+  gst_element_remove_pad(rx.get(), stream);
+  gst_element_remove_pad(rx.get(), other);
+  EXPECT_FALSE(shown("src_7"));
+  EXPECT_TRUE(shown("src"));
 }
 
 TEST_F(ScreamBin, StatisticsHaveWhatTheSocketsCount) {

@@ -140,6 +140,26 @@ TEST_F(ScreamAux, TheSizeOfAPacketIsKnownAsLongAsAReportMayTellOfIt) {
   EXPECT_EQ(Stat("twcc-mismatched"), 4U);
 }
 
+TEST_F(ScreamAux, TheTimesOfAReportMayReachIntoASecondPeriodOfItsClock) {
+  for (int i = 0; i < 3; ++i) Push();
+  ASSERT_EQ(Leave(), 3);
+  constexpr auto kPeriod = static_cast<guint64>(scream::kTwccPeriod.count());
+  Tell({{0, 100, false, kPeriod + GST_SECOND}, {1, 100, false, kPeriod + GST_SECOND}});
+  EXPECT_EQ(Stat("packets-acked"), 2U);
+  Tell({{2, 100, false, 2 * kPeriod + 1}});  // no report can say that
+  EXPECT_EQ(Stat("packets-acked"), 2U);
+}
+
+TEST_F(ScreamAux, NoReportReachesFurtherThanItsFormat) {
+  Push();
+  ASSERT_EQ(Leave(), 1);
+  constexpr guint kMost = scream::kMaxTwccPackets;
+  Tell({{0}, {kMost - 1}});  // which may have been sent since
+  EXPECT_EQ(Stat("twcc-mismatched"), 0U);
+  Tell({{0}, {kMost}});
+  EXPECT_EQ(Stat("twcc-mismatched"), 1U);
+}
+
 TEST_F(ScreamAux, FindsTheExtensionByItsUriHoweverCapsHaveIt) {
   guint next = 0;
   for (const std::string& extmap :
