@@ -2,19 +2,23 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Runs every gst-launch-1.0 command of the README and the docs, or of the pages named, as it is printed.
 
-A command passes where it ends with exit code 0, or still runs without an error after a few seconds.
+A command passes where it ends with exit code 0, or still runs without an error a moment after it plays.
 Windows become fakesinks, and each page has ports and a folder of its own: several run at a time.
 Commands that name a sensor by `hostname=` are left out, and said so.
 """
 import concurrent.futures
+import os
 import pathlib
 import re
+import select
 import signal
 import subprocess
 import sys
 import tempfile
+import time
 
-SECONDS = 4
+PLAYING = b"Setting pipeline to PLAYING"  # what gst-launch-1.0 prints, except with -q
+START_SECONDS, QUIET_SECONDS, PLAY_SECONDS = 30, 4, 1.5
 AT_A_TIME = 6
 FIRST_PORT, PORTS = 21000, 100  # of the first page, and from one page to the next
 
@@ -45,26 +49,41 @@ def with_ports(command, first):
     return re.sub(r"(\b(?:\w+-)?port=)(\d+)", replace, command)
 
 
+def output_for_a_while(process, quiet):
+    """What the process prints until it ends, or has played for a moment and is told to stop."""
+    output, plays = b"", False
+    until = time.monotonic() + (QUIET_SECONDS if quiet else START_SECONDS)
+    while select.select([process.stdout], [], [], max(0, until - time.monotonic()))[0]:
+        printed = os.read(process.stdout.fileno(), 65536)
+        if not printed:
+            return output
+        output += printed
+        if not plays and PLAYING in output:
+            plays = True
+            until = time.monotonic() + PLAY_SECONDS
+        if time.monotonic() > until:
+            break
+    process.send_signal(signal.SIGINT)
+    return output
+
+
 def run(command, folder, first_port):
     """None, or what went wrong."""
     shown = with_ports(command.replace("autovideosink", "fakesink"), first_port)
     process = subprocess.Popen(
         ["bash", "-c", "exec " + shown],
         cwd=folder,
-        text=True,
         stdin=subprocess.DEVNULL,
         stdout=subprocess.PIPE,
         stderr=subprocess.STDOUT,
     )
+    output = output_for_a_while(process, quiet=" -q " in shown)
     try:
-        output, _ = process.communicate(timeout=SECONDS)
+        output += process.communicate(timeout=10)[0]
     except subprocess.TimeoutExpired:
-        process.send_signal(signal.SIGINT)
-        try:
-            output, _ = process.communicate(timeout=10)
-        except subprocess.TimeoutExpired:
-            process.kill()
-            return "does not stop on SIGINT"
+        process.kill()
+        return "does not stop on SIGINT"
+    output = output.decode(errors="replace")
     bad = [
         l
         for l in output.splitlines()
