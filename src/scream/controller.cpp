@@ -155,6 +155,7 @@ void Controller::TakeGapRestart(Time now) {
   window_.Set(restart->window);
   path_.OnGapEnd(now, restart->s_rtt, restart->l4s_alpha);
   answered_.OnGapEnd(now);
+  streams_.OnGapEnd();
   fast_increase_.OnGapEnd();
   ++counters_.gaps;
 }

@@ -8,6 +8,8 @@ namespace {
 
 constexpr double kMaxRateAdjustFactor = 0.5;
 constexpr double kMaxFrameSizeDev = 0.2;
+/// A rate_adjust_factor that is none any more.
+constexpr double kNoAdjustment = 0.05;
 constexpr double kFramePeriodGain = 0.1;
 /// Longer gaps are pauses, not frame periods.
 constexpr Duration kMaxFramePeriod = 2s;
@@ -56,6 +58,12 @@ void Stream::OnFrame(Time now) {
   const double error = Seconds(media_qdelay(now) - frame_period_ / 4) / Seconds(frame_period_);
   rate_adjust_factor_ =
       std::clamp(rate_adjust_factor_ + error * p_.rate_adjust_gain, 0.0, kMaxRateAdjustFactor);
+  // A whole scan at once is a backlog of its own.
+  const bool often = frame_period_ < p_.long_frame_period;
+  if (backlog_of_gap_ && often && error < 0) {
+    rate_adjust_factor_ /= 2;
+    backlog_of_gap_ = rate_adjust_factor_ > kNoAdjustment;
+  }
   const DataSize nominal = target_bitrate_ * frame_period_;
   if (nominal.bytes() <= 0) return;
   const double deviation = std::max(0.0, (frame_size_ - nominal) / nominal);

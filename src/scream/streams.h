@@ -34,6 +34,9 @@ class Streams {
   /// Lowers targets of streams with more than a frame in their queue, so that it leaves within
   /// `backlog_drain`; not below what they need.
   void LeaveRoomForBacklogs();
+  void OnGapEnd() {
+    for (auto& [id, stream] : streams_) stream.OnGapEnd();
+  }
   // Of those that are not silent, or of all where all are.
   DataRate min_bitrate() const;
   /// The larger of what each stream needs and its minimum.

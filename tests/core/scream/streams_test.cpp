@@ -275,6 +275,32 @@ TEST_F(StreamTest, AQueueThatOutlastsTheFramePeriodLowersTheRate) {
   EXPECT_DOUBLE_EQ(stream_.rate_adjust_factor(), 0.5);
 }
 
+/// Frames of one packet: twenty wait, a gap ends, they are gone, and four more come.
+double RateAdjustFactorAfterGap(Duration period) {
+  const Parameters parameters;
+  Stream stream(parameters, {1, Mbps(0), Mbps(4), Mbps(50)});
+  Time now = kStart;
+  std::uint32_t timestamp = 0;
+  const auto frame = [&] {
+    stream.OnQueued(now, {1, DataSize::Bytes(1000), true, timestamp++});
+    now += period;
+  };
+  for (int i = 0; i < 20; ++i) frame();
+  stream.OnGapEnd();
+  stream.OnDropped(now, 20);
+  for (int i = 0; i < 4; ++i) {
+    frame();
+    stream.OnDropped(now, 1);
+  }
+  return stream.rate_adjust_factor();
+}
+
+/// The draft takes half a second for that, in which the window grows beyond the link.
+TEST(StreamAfterGap, AQueueThatIsGoneLowersTheRateNoMore) {
+  EXPECT_LT(RateAdjustFactorAfterGap(20ms), 0.05);
+  EXPECT_GT(RateAdjustFactorAfterGap(100ms), 0.4);  // whole scans
+}
+
 TEST_F(StreamTest, FramesAboveTheNominalSizeAreCompensated) {
   for (int i = 0; i < 500; ++i) {
     Frame(kStart + i * 20ms, 11, static_cast<std::uint32_t>(i));  // nominal: 10
