@@ -361,6 +361,7 @@ void Controller::OnTimer(Time now) {
 void Controller::OnRouteChange(Time now) {
   Advance(now);
   path_.Reset();
+  answered_.OnRouteChange(now_);
   gap_recovery_.Reset();
   started_ = false;
   fast_increase_.Restart();

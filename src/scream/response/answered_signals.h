@@ -23,6 +23,9 @@ class AnsweredSignals {
   /// What the path held back comes first: marks behind it are answered with the restart.
   void OnOutageEnd(Time now, Duration s_rtt) { losses_ = marks_ = now + s_rtt; }
 
+  /// What was sent on another route says nothing about this one.
+  void OnRouteChange(Time now) { losses_ = marks_ = now; }
+
   /// The queue that a gap left is no sign of congestion.
   void OnGapEnd(Time now) { losses_ = marks_ = std::max(marks_, now); }
 

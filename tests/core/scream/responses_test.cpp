@@ -286,6 +286,11 @@ TEST(AnsweredSignals, AreThoseOfPacketsSentBeforeTheReaction) {
   EXPECT_FALSE(answered.NewMark(acks));
   acks.late_ce = 1;
   EXPECT_TRUE(answered.NewMark(acks));
+  acks.late_ce = 0;
+  acks.lost.back().sent = acks.acked.back().sent = kStart + 1s;
+  EXPECT_TRUE(answered.NewLoss(acks) && answered.NewMark(acks));
+  answered.OnRouteChange(kStart + 1s + 1ms);
+  EXPECT_FALSE(answered.NewLoss(acks) || answered.NewMark(acks));
 }
 
 }  // namespace
