@@ -517,6 +517,21 @@ TEST(ArrivalTrain, APauseOfTheSourceIsNoHole) {
   EXPECT_TRUE(train.Add({kStart + 2s, DataSize::Bytes(1000), 500ms, true}));
 }
 
+TEST_F(ClassicEcnTest, IsAQueueAboveTheShortestOfTheSecondBefore) {
+  for (int second = 0; second < 30; ++second) {
+    const Duration delay = second % 2 == 0 ? 5ms : 25ms;
+    Run(1000, delay, delay, 50);
+  }
+  EXPECT_TRUE(ecn_.found());
+}
+
+TEST(BusyRun, EndsWhereArrivalsGoBack) {
+  BusyRun run;
+  Arrive(&run, kStart, 1ms, 20);
+  Arrive(&run, kStart, 1ms, 1);
+  EXPECT_EQ(run.packets(), 0);
+}
+
 TEST(BusyRun, EndsWithAPacketThatDidNotWait) {
   BusyRun run;
   const Time now = Arrive(&run, kStart, 1ms, 20);

@@ -291,6 +291,10 @@ TEST(AnsweredSignals, AreThoseOfPacketsSentBeforeTheReaction) {
   EXPECT_TRUE(answered.NewLoss(acks) && answered.NewMark(acks));
   answered.OnRouteChange(kStart + 1s + 1ms);
   EXPECT_FALSE(answered.NewLoss(acks) || answered.NewMark(acks));
+  acks.lost.back().sent = acks.acked.back().sent = kStart + 2s + 20ms;
+  answered.OnOutageEnd(kStart + 2s, kRtt);
+  answered.OnGapEnd(kStart + 2s + 10ms);
+  EXPECT_FALSE(answered.NewLoss(acks) || answered.NewMark(acks)) << "held back by the outage";
 }
 
 }  // namespace

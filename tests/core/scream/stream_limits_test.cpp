@@ -149,6 +149,13 @@ TEST_F(Limits, WhoWasIdleGetsNoCreditForIt) {
   EXPECT_NEAR(TurnsOf(b, 20), 10, 1);
 }
 
+TEST_F(Limits, TheFirstOfEqualStreamsGoesFirst) {
+  const StreamId a = Add({1, Mbps(0), Mbps(1), Mbps(100)});
+  Queue(Add({1, Mbps(0), Mbps(1), Mbps(100)}), kStart, 1);
+  Queue(a, kStart, 1);
+  EXPECT_EQ(streams_.Next(), a);
+}
+
 TEST_F(Limits, WhatAStrictStreamSendsCostsNobodyATurn) {
   const StreamId a = Add({1, Mbps(0), Mbps(1), Mbps(100)});
   const StreamId b = Add({1, Mbps(0), Mbps(1), Mbps(100)});
