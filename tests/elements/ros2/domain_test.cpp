@@ -12,7 +12,7 @@ namespace lidar::dds {
 namespace {
 
 // Of no element.
-constexpr std::uint32_t kDomain = 131;
+constexpr std::uint32_t kDomain = 231;
 
 std::unique_ptr<Domain> Join() {
   std::string why;

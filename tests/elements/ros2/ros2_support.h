@@ -116,6 +116,11 @@ class Ros2Test : public ::testing::Test {
     while (Stat(name) < least && g_get_monotonic_time() < end) g_usleep(5000);
     return Stat(name) >= least;
   }
+  bool WaitForNone(const char* name) {
+    const gint64 end = g_get_monotonic_time() + 30 * G_USEC_PER_SEC;
+    while (Stat(name) > 0 && g_get_monotonic_time() < end) g_usleep(5000);
+    return Stat(name) == 0;
+  }
   /// The text of the next warning or error, or nothing.
   std::string NextComplaint(GstClockTime timeout = 30 * GST_SECOND) {
     const gst::MessagePtr message(gst_bus_timed_pop_filtered(

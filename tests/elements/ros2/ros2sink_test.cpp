@@ -114,6 +114,16 @@ TEST_F(Ros2Sink, CostsLittleWhereNobodyListens) {
   EXPECT_EQ(Stat("messages-without-subscriber"), 0u);
 }
 
+TEST_F(Ros2Sink, SendsNothingOnceItsSubscriberIsGone) {
+  const PeerCloud cloud = TestCloud(2, 1);
+  StartWithCloudPeer(cloud);
+  peer_.reset();
+  ASSERT_TRUE(WaitForNone("subscribers"));
+  ASSERT_EQ(gst_harness_push(h_.get(), CloudBuffer(cloud)), GST_FLOW_OK);
+  EXPECT_EQ(Stat("messages"), 0u);
+  EXPECT_EQ(Stat("messages-without-subscriber"), 1u);
+}
+
 TEST_F(Ros2Sink, TellsOfSubscribersThatItsReliabilityDoesNotFit) {
   Start("ros2sink", "topic=/points sync=false qos=sensor-data");
   const PeerCloud cloud = TestCloud(2, 1);

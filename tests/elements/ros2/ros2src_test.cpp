@@ -241,8 +241,20 @@ TEST_F(Ros2Src, GoesOnAfterAPause) {
   StartWithPeer("qos=reliable");
   gst_element_set_state(h_->element, GST_STATE_PAUSED);
   gst_element_set_state(h_->element, GST_STATE_PLAYING);
+  for (int i = 0; i < 3; ++i) {
+    ASSERT_TRUE(peer_->Publish(TestCloud(2, 1)));
+    ASSERT_TRUE(Pull());
+  }
+}
+
+TEST_F(Ros2Src, APublisherThatGoesIsNoMessage) {
+  StartWithPeer("qos=reliable");
   ASSERT_TRUE(peer_->Publish(TestCloud(2, 1)));
-  EXPECT_TRUE(Pull());
+  ASSERT_TRUE(Pull());
+  peer_.reset();
+  EXPECT_TRUE(WaitForNone("publishers"));
+  EXPECT_EQ(Stat("messages"), 1u);
+  EXPECT_EQ(Stat("messages-damaged"), 0u);
 }
 
 TEST_F(Ros2Src, EndsAndFlushesWhileItWaits) {
