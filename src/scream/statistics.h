@@ -37,6 +37,7 @@ struct Statistics {
   double l4s_alpha = 0;
   double ref_wnd_delay_scale = 1;
   double loss_rate = 0;
+  double cross_traffic = 0;  ///< the part of the link that others use; 0: none was found
   DataSize max_policed_ref_wnd = DataSize::Infinite();
   // Rates, IP included
   DataRate target_bitrate;  ///< of all streams

@@ -56,7 +56,7 @@ StructurePtr StreamStats(TxState& state, const TxStream& stream, Time now) {
 
 StructurePtr ControllerStats(const scream::Statistics& statistics) {
   using S = scream::Statistics;
-  static const std::array<Stat<S>, 36> kStats = {{
+  static const std::array<Stat<S>, 37> kStats = {{
       {"target-bitrate", &S::target_bitrate},
       {"sent-bitrate", &S::sent_bitrate},
       {"acked-bitrate", &S::acked_bitrate},
@@ -71,6 +71,7 @@ StructurePtr ControllerStats(const scream::Statistics& statistics) {
       {"bytes-in-flight", &S::bytes_in_flight},
       {"l4s-alpha", &S::l4s_alpha},
       {"loss-rate", &S::loss_rate},
+      {"cross-traffic", &S::cross_traffic},
       {"queued-bytes", &S::queued},
       {"sender-queue-delay", &S::media_qdelay},
       {"ecn-state", +[](const S& s) { return scream::ToString(s.ecn_state); }},

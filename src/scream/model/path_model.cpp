@@ -181,6 +181,8 @@ void PathModel::Describe(Time now, Statistics* s) const {
   s->l4s_alpha = l4s_alpha_.value();
   s->ref_wnd_delay_scale = queue_delay_.ref_wnd_delay_scale();
   s->loss_rate = loss_rate_.value();
+  if (cross_traffic_.found())
+    s->cross_traffic = std::clamp(cross_traffic_.share().value_or(0), 0.0, 1.0);
   s->sent_bitrate = sent_rate_.Rate(now);
   s->acked_bitrate = acked_rate_.Rate(now);
   s->packets_ce = packets_ce_;

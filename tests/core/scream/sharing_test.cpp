@@ -119,11 +119,19 @@ INSTANTIATE_TEST_SUITE_P(ShortQueues, BesideClassic,
                                            "cubic_fifo_10ms_50M", "reno_fifo_5ms_20M",
                                            "cubic_pi2_20M", "cubic_dualpi2_20M"));
 
+TEST(BesideOthers, TheStatisticsTellTheirShare) {
+  const auto cross_traffic = [](const char* name) {
+    return Simulate(FindScenario(name, Parameters())->config).flows[0].statistics.cross_traffic;
+  };
+  EXPECT_NEAR(cross_traffic("prague_ramp_20M"), 0.55, 0.25);
+  EXPECT_EQ(cross_traffic("frames_20M_rtt25"), 0);
+}
+
 TEST(BesidePrague, BothGetAboutTheSame) {
   for (const char* name : {"prague_ramp_20M", "prague_dualpi2_20M"}) {
     const Scenario s = *FindScenario(name, Parameters());
-    const ScenarioMetrics m = Measure(s, Simulate(s.config));
-    EXPECT_LE(m.beside->ratio(), 1.5) << name;
+    const SimulationResult result = Simulate(s.config);
+    EXPECT_LE(Measure(s, result).beside->ratio(), 1.5) << name;
   }
 }
 
