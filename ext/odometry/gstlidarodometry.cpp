@@ -42,6 +42,7 @@ using lidar::odometry::Tracking;
 struct Settings {
   OdometrySettings odometry;
   std::string initial_pose;
+  std::string initial_velocity;
   std::string trajectory;
   bool post_messages = true;
 };
@@ -89,7 +90,7 @@ struct State {
 lidar::gst::StructurePtr ReadStats(GObject* object);
 
 using lidar::gst::At;
-const std::array<lidar::gst::Property<Settings>, 8> kProperties = {{
+const std::array<lidar::gst::Property<Settings>, 9> kProperties = {{
     {"max-range", "Points farther away are left out; also the radius of the map [m]",
      At<&Settings::odometry, &OdometrySettings::max_range_m>, 1, 1000},
     {"min-range", "Points nearer than that are left out: the vehicle itself [m]",
@@ -102,6 +103,10 @@ const std::array<lidar::gst::Property<Settings>, 8> kProperties = {{
      "Pose of the first scan, such as another lidarodometry left it: \"x y z qx qy qz qw\" [m]; "
      "NULL: the origin",
      &Settings::initial_pose},
+    {"initial-velocity",
+     "Velocity at the first scan, in the sensor's frame: \"vx vy vz wx wy wz\" [m/s, rad/s]; NULL: "
+     "found from the first two scans",
+     &Settings::initial_velocity},
     {"trajectory", "File to write the poses to, in TUM's format; NULL: none",
      &Settings::trajectory},
     {"post-messages", "Post an element message \"odometry\" for each scan",
@@ -338,6 +343,16 @@ gboolean Start(GstBaseTransform* base) {
     return FALSE;
   }
   settings.odometry.start = *start;
+  if (!settings.initial_velocity.empty()) {
+    settings.odometry.start_velocity = lidar::odometry::ParseTwist(settings.initial_velocity);
+    if (!settings.odometry.start_velocity) {
+      GST_ELEMENT_ERROR(self, RESOURCE, SETTINGS,
+                        ("The initial-velocity \"%s\" is not vx vy vz wx wy wz.",
+                         settings.initial_velocity.c_str()),
+                        (nullptr));
+      return FALSE;
+    }
+  }
   state.stream = {};
   state.stream.odometry = std::make_unique<Odometry>(settings.odometry);
   if (settings.trajectory.empty()) return TRUE;

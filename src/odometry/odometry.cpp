@@ -61,7 +61,8 @@ Odometry::Odometry(const OdometrySettings& settings)
     : settings_(settings),
       map_({settings.voxel_size_m, settings.max_range_m}),
       threshold_(settings.max_range_m),
-      pose_(settings.start) {}
+      pose_(settings.start),
+      velocity_(settings.start_velocity.value_or(Twist::Zero())) {}
 
 Pose Odometry::PredictAt(Time t) const {
   if (!last_time_) return pose_;
@@ -139,7 +140,8 @@ Estimate Odometry::OnScan(Time start, Duration duration, const TimedPoints& scan
   if (!last_time_ || broken || map_.empty()) {
     estimate.map_restarted = last_time_.has_value();
     StartMap(fine);
-    first_scan_ = scan;
+    // With its velocity known it is straight already.
+    if (last_time_ || !settings_.start_velocity) first_scan_ = scan;
     last_time_ = middle;
     last_scan_ = std::move(fine);
     estimate.pose = pose_;

@@ -18,6 +18,8 @@ struct OdometrySettings {
   double voxel_size_m = 1;   // of the map
   bool deskew = true;        // move points by when they were sampled
   Pose start;                // of the first scan
+  /// At the first scan, a second, in the sensor's frame; none: the first two scans tell.
+  std::optional<Twist> start_velocity;
   RegistrationSettings registration;
 };
 

@@ -115,6 +115,16 @@ std::optional<Pose> ParsePose(const std::string& text) {
   return good ? std::optional(pose) : std::nullopt;
 }
 
+std::optional<Twist> ParseTwist(const std::string& text) {
+  Row row;
+  Twist twist;
+  if (!ParseRow(text, &row) || row.count != static_cast<std::size_t>(twist.size()))
+    return std::nullopt;
+  for (Eigen::Index i = 0; i < twist.size(); ++i)
+    twist[i] = row.values[static_cast<std::size_t>(i)];
+  return twist.allFinite() ? std::optional(twist) : std::nullopt;
+}
+
 Trajectory ReadTrajectory(std::istream& in, Duration kitti_period, std::string* error) {
   Trajectory trajectory;
   std::string line;

@@ -25,6 +25,8 @@ void WriteKittiLine(std::ostream& out, const Pose& pose);
 
 /// Of "tx ty tz qx qy qz qw"; none where it is not that.
 std::optional<Pose> ParsePose(const std::string& text);
+/// Of "vx vy vz wx wy wz"; none where it is not that.
+std::optional<Twist> ParseTwist(const std::string& text);
 
 /// Reads a TUM file (eight columns) or a KITTI file (twelve; its poses are `kitti_period` apart).
 /// Lines that begin with # are comments. On an error the result is empty and `error` says which

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include "src/tools/worker/lease_record.h"
 
+#include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
@@ -13,6 +14,8 @@ constexpr std::size_t kMaxText = 4096;
 constexpr std::size_t kMaxName = 200;
 constexpr std::uint64_t kMaxLeaseMs = 60'000;
 constexpr double kMaxMetres = 1e9;
+constexpr double kMaxSpeed = 1e3;  // [m/s]
+constexpr std::uint64_t kLongestStepNs = 1'000'000'000;
 
 bool ReadCount(const json& object, const char* key, std::uint64_t* value) {
   const auto found = object.find(key);
@@ -33,7 +36,37 @@ bool ReadPose(const json& list, std::array<double, 7>* pose) {
   return norm > 0.9 && norm < 1.1;
 }
 
+bool IsSpeed(double value) { return std::isfinite(value) && std::abs(value) < kMaxSpeed; }
+
+/// One that makes no sense is not known.
+std::optional<std::array<double, 6>> ReadVelocity(const json& object) {
+  const auto list = object.find("velocity");
+  std::array<double, 6> velocity{};
+  if (list == object.end() || !list->is_array() || list->size() != velocity.size())
+    return std::nullopt;
+  for (std::size_t i = 0; i < velocity.size(); ++i) {
+    if (!(*list)[i].is_number()) return std::nullopt;
+    velocity[i] = (*list)[i].get<double>();
+    if (!IsSpeed(velocity[i])) return std::nullopt;
+  }
+  return velocity;
+}
+
+using Quaternion = std::array<double, 4>;  // x y z w
+
+Quaternion RotationOf(const Progress& p) { return {p.pose[3], p.pose[4], p.pose[5], p.pose[6]}; }
+
+Quaternion Inverse(const Quaternion& q) { return {-q[0], -q[1], -q[2], q[3]}; }
+
+Quaternion Product(const Quaternion& a, const Quaternion& b) {
+  return {a[3] * b[0] + a[0] * b[3] + a[1] * b[2] - a[2] * b[1],
+          a[3] * b[1] - a[0] * b[2] + a[1] * b[3] + a[2] * b[0],
+          a[3] * b[2] + a[0] * b[1] - a[1] * b[0] + a[2] * b[3],
+          a[3] * b[3] - a[0] * b[0] - a[1] * b[1] - a[2] * b[2]};
+}
+
 bool ReadProgress(const json& object, Progress* progress) {
+  progress->velocity = ReadVelocity(object);
   const auto pose = object.find("pose");
   return pose != object.end() && ReadPose(*pose, &progress->pose) &&
          ReadCount(object, "time", &progress->time) &&
@@ -44,12 +77,40 @@ bool ReadProgress(const json& object, Progress* progress) {
 
 }  // namespace
 
+std::optional<std::array<double, 6>> VelocityBetween(const Progress& before,
+                                                     const Progress& after) {
+  if (after.time <= before.time || after.time - before.time > kLongestStepNs) return std::nullopt;
+  const double seconds = static_cast<double>(after.time - before.time) * 1e-9;
+  const Quaternion begin = RotationOf(before);
+  const Quaternion turn = Product(Inverse(begin), RotationOf(after));
+  const double sine = std::hypot(turn[0], turn[1], turn[2]);
+  // Of the two quaternions of a rotation, the one that turns the shorter way.
+  const double angle = 2 * std::atan2(std::copysign(sine, turn[3]), std::abs(turn[3]));
+  // The way is seen in the frame halfway, so that it does not look like a drift in a bend.
+  Quaternion half = {turn[0], turn[1], turn[2], turn[3] + std::copysign(1.0, turn[3])};
+  const double norm =
+      std::sqrt(half[0] * half[0] + half[1] * half[1] + half[2] * half[2] + half[3] * half[3]);
+  for (double& value : half) value /= norm;
+  const Quaternion middle = Product(begin, half);
+  const Quaternion way = {after.pose[0] - before.pose[0], after.pose[1] - before.pose[1],
+                          after.pose[2] - before.pose[2], 0};
+  const Quaternion seen = Product(Product(Inverse(middle), way), middle);
+  std::array<double, 6> velocity{};
+  for (std::size_t i = 0; i < 3; ++i) {
+    velocity[i] = seen[i] / seconds;
+    velocity[i + 3] = sine > 0 ? turn[i] / sine * angle / seconds : 0;
+  }
+  if (!std::all_of(velocity.begin(), velocity.end(), IsSpeed)) return std::nullopt;
+  return velocity;
+}
+
 std::string ToJson(const LeaseRecord& record) {
   json object = {
       {"worker", record.worker},
       {"lease-ms", std::chrono::duration_cast<std::chrono::milliseconds>(record.lease).count()}};
   if (const auto& progress = record.progress) {
     object["pose"] = progress->pose;
+    if (progress->velocity) object["velocity"] = *progress->velocity;
     object["time"] = progress->time;
     object["stream"] = progress->stream;
     object["scan"] = progress->scan;

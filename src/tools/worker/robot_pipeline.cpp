@@ -22,9 +22,10 @@ GstElement* Add(GstElement* bin, const std::string& factory) {
   return tools::AddElement(bin, factory, factory.c_str());
 }
 
-std::string PoseText(const std::array<double, 7>& pose) {
+template <std::size_t count>
+std::string NumbersText(const std::array<double, count>& numbers) {
   std::string text;
-  for (const double value : pose) {
+  for (const double value : numbers) {
     char word[32];
     text.append(word, std::to_chars(word, word + sizeof word, value).ptr) += ' ';
   }
@@ -39,7 +40,10 @@ void SetOdometry(GstElement* odometry, const PipelineSettings& settings,
     gst_util_set_object_arg(G_OBJECT(odometry), name.c_str(), value.c_str());
   }
   g_object_set(odometry, "post-messages", FALSE, nullptr);
-  if (begin) g_object_set(odometry, "initial-pose", PoseText(begin->pose).c_str(), nullptr);
+  if (!begin) return;
+  g_object_set(odometry, "initial-pose", NumbersText(begin->pose).c_str(), nullptr);
+  if (begin->velocity)
+    g_object_set(odometry, "initial-velocity", NumbersText(*begin->velocity).c_str(), nullptr);
 }
 
 }  // namespace
@@ -160,6 +164,8 @@ GstPadProbeReturn RobotPipeline::OnPose(GstBuffer* buffer) {
   progress.from = scan->from;
   scan.reset();
   const std::lock_guard lock(mutex_);
+  if (progress_) progress.velocity = VelocityBetween(*progress_, progress);
+  if (!progress_ && begin_) progress.velocity = begin_->velocity;  // the pose it began with
   progress_ = progress;
   return GST_PAD_PROBE_OK;
 }

@@ -21,6 +21,7 @@ constexpr milliseconds kStep{10};
 constexpr std::chrono::seconds kAfterFailure{5};
 constexpr std::chrono::seconds kStopTimeout{1};
 constexpr std::chrono::seconds kAnswerTimeout{1};
+constexpr std::size_t kShown = 300;  // letters of a record that is damaged
 
 std::unique_ptr<nats::Connection> Connect(const WorkerSettings& settings) {
   nats::ConnectionSettings connection = settings.pipeline.connection;
@@ -74,7 +75,9 @@ void Worker::TakeNews() {
   }
   for (const FleetWatch::Entry& entry : news.entries) {
     const auto record = ParseLeaseRecord(entry.text);
-    if (!record) Warn(entry.robot, "its record is damaged; its last pose is not known");
+    if (!record)
+      Warn(entry.robot, "its record is damaged; its last pose is not known: " +
+                            tools::Printable(entry.text.substr(0, kShown)));
     table_.OnEntry(entry.robot, entry.revision, record, Now());
   }
 }

@@ -126,6 +126,19 @@ TEST(Odometry, SaysThatATunnelHidesTheMotionAndInventsNone) {
   EXPECT_GT(degenerate, 20);
 }
 
+TEST(Odometry, GoesOnAtTheVelocityThatItIsGiven) {
+  Drive drive(synth::SceneKind::kStreet, 20);
+  OdometrySettings settings;
+  settings.start_velocity = Twist::Unit(0) * 20;
+  Odometry odometry(settings);
+  const Estimate first = odometry.OnScan(drive.StartOf(0), kPeriod, drive.Scan(0));
+  EXPECT_NEAR(first.pose.position.norm(), 0, 1e-9);
+  EXPECT_NEAR(odometry.PredictAt(first.time + kPeriod).position.x(), 2, 1e-9);
+  EXPECT_NEAR(Odometry({}).PredictAt(first.time + kPeriod).position.x(), 0, 1e-9);
+  const Estimate second = odometry.OnScan(drive.StartOf(1), kPeriod, drive.Scan(1));
+  EXPECT_NEAR(second.pose.position.x(), 2, 0.1) << "the first scan is straight";
+}
+
 TEST(Odometry, KnowsWhenAScanDoesNotFit) {
   Drive street(synth::SceneKind::kStreet, 10);
   Odometry odometry({});

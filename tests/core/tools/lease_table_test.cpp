@@ -35,12 +35,45 @@ TEST(LeaseRecord, ComesBackAsItWas) {
   EXPECT_EQ(read->worker, "a-1");
   EXPECT_EQ(read->lease, milliseconds(1500));
   EXPECT_EQ(read->progress->pose, progress.pose);
+  EXPECT_FALSE(read->progress->velocity);
   EXPECT_EQ(read->progress->time, progress.time);
   EXPECT_EQ(read->progress->stream, 5U);
   EXPECT_EQ(read->progress->scan, 90U);
   EXPECT_EQ(read->progress->from, 12U);
   EXPECT_FALSE(ParseLeaseRecord(ToJson({"", milliseconds(0), std::nullopt}))->progress);
   EXPECT_EQ(ParseLeaseRecord("")->worker, "") << "a deleted key";
+}
+
+TEST(LeaseRecord, KeepsAVelocityThatMakesSense) {
+  Progress progress = Scan(90);
+  progress.pose[6] = 1;
+  progress.velocity = {10, -0.5, 0, 0, 0, 0.25};
+  EXPECT_EQ(ParseLeaseRecord(ToJson({"", {}, progress}))->progress->velocity, progress.velocity);
+  progress.velocity->at(1) = 1e5;
+  const auto read = ParseLeaseRecord(ToJson({"", {}, progress}));
+  ASSERT_TRUE(read && read->progress);
+  EXPECT_FALSE(read->progress->velocity);
+}
+
+TEST(LeaseRecord, KnowsTheVelocityBetweenTwoPoses) {
+  // A left turn of a quarter on a circle of a radius of 10 m, in half a second.
+  const double half = std::sqrt(0.5);
+  Progress before;
+  before.time = 1'000'000'000;
+  before.pose = {5, 6, 7, 0, 0, half, half};  // along y
+  Progress after;
+  after.time = 1'500'000'000;
+  after.pose = {-5, 16, 7, 0, 0, 1, 0};  // along -x
+  const auto velocity = VelocityBetween(before, after);
+  ASSERT_TRUE(velocity);
+  const std::array<double, 6> expected = {20 * std::sqrt(2), 0, 0, 0, 0, 3.14159265};
+  for (std::size_t i = 0; i < 6; ++i) EXPECT_NEAR(velocity->at(i), expected[i], 1e-6) << i;
+  for (double& value : after.pose) value = -value;
+  after.pose = {-5, 16, 7, after.pose[3], after.pose[4], after.pose[5], after.pose[6]};
+  EXPECT_NEAR(VelocityBetween(before, after)->at(5), expected[5], 1e-6) << "the same rotation";
+  EXPECT_FALSE(VelocityBetween(after, before)) << "time goes back";
+  after.time += 1'000'000'000;
+  EXPECT_FALSE(VelocityBetween(before, after)) << "too far apart";
 }
 
 TEST(LeaseRecord, IsDamagedWhereItSaysWhatCannotBe) {

@@ -3,6 +3,7 @@
 // robots that drive, and workers that follow them. Run by hand: it takes minutes
 // (docs/results/fleet.md).
 #include <cmath>
+#include <future>
 #include <map>
 #include <tuple>
 
@@ -107,6 +108,21 @@ class FleetCluster : public NatsTest {
     for (auto& worker : workers_) owned += worker->Robots().size();
     return owned == kRobots;
   }
+  /// How long it is until a leader answers for each of the streams [s].
+  double TimeToLeaders() {
+    const auto begin = SteadyClock::now();
+    jsOptions options;
+    jsOptions_Init(&options);
+    options.Wait = 100;
+    for (const char* stream : {"fleet", "KV_lidar-workers"})
+      EXPECT_TRUE(WaitFor([&] {
+        jsStreamInfo* raw = nullptr;
+        const natsStatus s = js_GetStreamInfo(&raw, cluster_.js(), stream, &options, nullptr);
+        const nats::StreamInfoPtr info(raw);
+        return s == NATS_OK;
+      }));
+    return SecondsSince(begin);
+  }
   /// How long it is until each of the robots has a pose that nobody had when it began [s].
   std::map<std::string, double> TimesToPoses(const std::set<std::string>& names) {
     const auto begin = SteadyClock::now();
@@ -171,11 +187,14 @@ void FleetCluster::KillServers() {
     std::set<std::string> all;
     for (const auto& robot : robots_) all.insert(robot->name());
     cluster_.server(i).Kill();
+    auto leaders_back = std::async(std::launch::async, [this] { return TimeToLeaders(); });
     double longest = 0;
     for (const auto& [name, time] : TimesToPoses(all)) longest = std::max(longest, time);
     ASSERT_TRUE(WaitFor([this] { return AllOwned(); }));
-    std::printf("server killed that led%s: every robot has poses again after %.2f s\n",
-                led.empty() ? " nothing" : led.c_str(), longest);
+    std::printf(
+        "server killed that led%s: slices and leases have leaders after %.2f s, every robot has "
+        "poses again after %.2f s\n",
+        led.empty() ? " nothing" : led.c_str(), leaders_back.get(), longest);
     std::this_thread::sleep_for(milliseconds(3000));
     cluster_.server(i).Restart();
   }
@@ -183,6 +202,7 @@ void FleetCluster::KillServers() {
 
 void FleetCluster::CountAll() {
   for (const auto& robot : robots_) {
+    const std::string robot_name = robot->name().substr(0, robot->name().find('.'));
     robot->sender().SendEos();
     EXPECT_EQ(robot->sender().WaitForEnd(), "");
     const auto sent = robot->sender().buffers();
@@ -219,10 +239,11 @@ void FleetCluster::CountAll() {
     std::printf(
         "%s: %zu slices sent, acknowledged and kept, %zu out of order; %zu scans, %zu with a pose, "
         "%zu poses twice; "
-        "largest jump %.2f m in %.0f m\n",
+        "largest jump %.2f m in %.0f m, behind by %.2f m, in one go by %.2f m\n",
         robot->name().c_str(), sent.size(), OutOfOrder(stored), scans.size(), times.size(),
         poses.size() - times.size(), LargestJump(poses),
-        poses.empty() ? 0 : DistanceOf(poses.back()));
+        poses.empty() ? 0 : DistanceOf(poses.back()), BehindBy(poses),
+        BehindBy(PosesInOneGo(robot_name, cluster_.url())));
     EXPECT_LT(LargestJump(poses), 3);
   }
 }

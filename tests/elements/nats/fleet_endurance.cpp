@@ -45,11 +45,6 @@ struct StoredStream {
 class FleetEndurance : public NatsTest {
  protected:
   void SetUp() override;
-  void TearDown() override {
-    if (!HasFailure()) return;
-    for (auto& worker : workers_)
-      for (const std::string& line : worker->lines()) std::printf("%s\n", line.c_str());
-  }
   void Run();
   void KillSomething();
   void KillServer(std::size_t i);
@@ -69,6 +64,7 @@ class FleetEndurance : public NatsTest {
     std::fflush(stdout);
   }
   void TellMemory();
+  void TellOfWorkers();
 
   const EnduranceOptions options_;
   std::mt19937 random_{options_.seed};
@@ -79,6 +75,7 @@ class FleetEndurance : public NatsTest {
   std::vector<std::unique_ptr<NatsPipeline>> poses_;  // of the robots with SLAM
   std::vector<std::set<guint>> stored_scans_;         // of each robot, at the end
   std::vector<std::unique_ptr<WorkerProcess>> workers_;
+  std::map<pid_t, std::size_t> lines_told_;  // of workers
   struct Down {
     double until;
     std::function<void()> restart;
@@ -91,6 +88,7 @@ class FleetEndurance : public NatsTest {
 void FleetEndurance::SetUp() {
   NatsTest::SetUp();
   if (IsSkipped()) return;
+  setvbuf(stdout, nullptr, _IOLBF, 0);  // a run of an hour is watched
   cluster_.Start();
   witness_ = std::make_unique<AckWitness>(cluster_.url(), "fleet");
   const std::vector<int> ports = FreePorts(options_.robots);
@@ -138,6 +136,14 @@ void FleetEndurance::TellMemory() {
   Say(line);
 }
 
+void FleetEndurance::TellOfWorkers() {
+  for (std::size_t i = 0; i < workers_.size(); ++i) {
+    const std::vector<std::string>& lines = workers_[i]->lines();
+    for (std::size_t& told = lines_told_[workers_[i]->pid()]; told < lines.size(); ++told)
+      Say("worker-" + std::to_string(i) + ": " + lines[told]);
+  }
+}
+
 bool FleetEndurance::ClusterIsWhole() {
   return !cluster_.LeaderOf("fleet").empty() &&
          (workers_.empty() || !cluster_.LeaderOf("KV_lidar-workers").empty());
@@ -174,6 +180,7 @@ void FleetEndurance::KillSomething() {
   } else if (part == 2) {
     auto& worker = workers_[which % workers_.size()];
     worker->Kill();
+    TellOfWorkers();
     Say("worker killed that had " + std::to_string(worker->Robots().size()) + " robots");
     ++kills_[2];
     down_.push_back({WallTime() + pause(random_), [this, &worker] { worker = NewWorker(); }});
@@ -204,6 +211,7 @@ void FleetEndurance::Run() {
     if (now >= sample_at) {
       sample_at = now + kSamplePause;
       edge_->Sample();
+      TellOfWorkers();
     }
     if (now >= memory_at) {
       memory_at = now + kMemoryPause;
