@@ -119,6 +119,19 @@ TEST_F(Odometry, RefusesAnInitialPoseThatIsNone) {
   }
 }
 
+TEST_F(Odometry, RefusesAnInitialVelocityThatIsNone) {
+  for (const char* velocity : {"1 2 3", "1 2 3 0 0 nan", "1 2 3 0 0 0 1", "x"}) {
+    const ElementPtr element(
+        GST_ELEMENT(gst_object_ref_sink(gst_element_factory_make("lidarodometry", nullptr))));
+    g_object_set(element.get(), "initial-velocity", velocity, nullptr);
+    EXPECT_EQ(gst_element_set_state(element.get(), GST_STATE_PAUSED), GST_STATE_CHANGE_FAILURE)
+        << velocity;
+    gst_element_set_state(element.get(), GST_STATE_NULL);
+  }
+  Start(1, 2, "initial-velocity=\"10 0 0 0 0 0\"");
+  EXPECT_EQ(PullAll(2).size(), 2U);
+}
+
 TEST_F(Odometry, LeavesTheCloudsAsTheyAre) {
   Harness plain(gst_harness_new_parse(Format(kDrive, 1, 2).c_str()));
   gst_harness_play(plain.get());
