@@ -233,7 +233,8 @@ std::string Course(const SimulationResult& result) {
         << " inflection " << s.ref_wnd_i.bytes() << " pace "
         << s.pace_bitrate.bits_per_second() / 1e3 << " rtt " << Milliseconds(s.s_rtt) << " queue "
         << Milliseconds(s.qdelay_avg) << " alpha " << s.l4s_alpha << " sent " << s.packets_sent
-        << " capacity " << s.estimated_capacity.bits_per_second() / 1e3 << "\n";
+        << " capacity " << s.estimated_capacity.bits_per_second() / 1e3 << " acked "
+        << s.acked_bitrate.bits_per_second() / 1e3 << " " << ToString(s.reason) << "\n";
   }
   for (const FlowResult& flow : result.flows) {
     const Statistics& s = flow.statistics;

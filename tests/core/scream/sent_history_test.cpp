@@ -100,6 +100,8 @@ TEST_F(SentHistoryTest, AMissingPacketIsLostAtOnceWhileNothingWasReordered) {
   Send(0, 5);
   Apply(Report(0, "r-r"));
   ASSERT_EQ(summary_.lost.size(), 1U);
+  EXPECT_EQ(summary_.lost[0].ssrc, 1U);
+  EXPECT_EQ(summary_.lost[0].sent, kStart + 1ms);
   EXPECT_EQ(Apply(Report(0, "r-r")), HistoryResult::kNothingNew);
 }
 
