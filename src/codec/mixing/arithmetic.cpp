@@ -45,10 +45,6 @@ constexpr Tables::Tables() {
   }
   for (std::uint32_t i = 0; i < log_mantissa.size(); ++i)
     log_mantissa[i] = static_cast<std::uint16_t>(Interpolate(kLog, i, 2) >> 8);
-  for (std::uint32_t i = 0; i < rate.size(); ++i) {
-    rate[i] = static_cast<std::uint16_t>(327'680 / (10 * i + 16));
-    confidence[i] = static_cast<std::uint16_t>(65'535 * i / (i + 4));
-  }
 }
 
 constexpr Tables kTables;

@@ -28,8 +28,6 @@ struct Tables {
   std::array<std::uint16_t, 4'096> chance{};      // of logit i - 2048
   std::array<std::int16_t, 4'096> logit{};        // of the chance 16 i + 8
   std::array<std::uint16_t, 256> log_mantissa{};  // 256 ln(1 + i / 256)
-  std::array<std::uint16_t, 256> rate{};          // of a counter after i visits, in 1/32768
-  std::array<std::uint16_t, 256> confidence{};    // of a counter after i visits, in 1/65536
 };
 extern const Tables kTables;
 
@@ -46,20 +44,29 @@ inline std::int32_t Log(std::uint32_t value) {
   return ((bits - 1) * kLog2 >> 8) + kTables.log_mantissa[mantissa >> 8];
 }
 
-constexpr unsigned kMostVisits = 255;
+/// How much a counter still learns from a bit after so many, in 1/65536.
+constexpr std::uint16_t RateAfter(unsigned bits) {
+  return static_cast<std::uint16_t>(bits == 0 ? 40'000 : kOne / (static_cast<int>(bits) + 2));
+}
 
-/// An adaptive chance that remembers how often it was used.
+/// An adaptive chance that learns the less from a bit the more it has seen; from 257 on it does so
+/// no more. Lanes hold eight of them.
 struct Counter {
+  std::uint16_t rate = RateAfter(0);
   std::uint16_t chance = kOne / 2;
-  std::uint16_t visits = 0;
 
-  /// What it has to say: its logit, the less the fewer visits it had.
-  std::int32_t Vote() const { return Logit(chance) * kTables.confidence[visits] >> 16; }
+  /// What it has to say where its logit is `logit`: the less, the less it has seen.
+  std::int32_t Vote(std::int32_t logit) const {
+    const std::int32_t sure = 65'535 - (rate + (rate >> 1));
+    return logit * 2 * (sure >> 1) >> 16;
+  }
   void Learn(bool bit) {
-    const std::int32_t target = bit ? kOne - 1 : 0;
-    chance = static_cast<std::uint16_t>(
-        chance + ((target - chance) * std::int32_t{kTables.rate[visits]} >> 15));
-    visits = static_cast<std::uint16_t>(visits + (visits < kMostVisits ? 1 : 0));
+    const std::uint32_t mirror = bit ? 65'535 : 0;
+    const std::uint32_t miss = chance ^ mirror;
+    chance = static_cast<std::uint16_t>((miss - (miss * rate >> 16)) ^ mirror);
+    // About rate / (1 + rate), which makes 1/n of it.
+    const std::uint32_t square = std::uint32_t{rate} * rate >> 16;
+    rate = static_cast<std::uint16_t>(rate - (rate * (rate - (square >> 1)) >> 16));
   }
 };
 

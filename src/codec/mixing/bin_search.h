@@ -18,10 +18,8 @@ template <class Effort>
 class BinSearch {
  public:
   /// `steps` is a buffer.
-  BinSearch(const Kernel& kernel, Model* model, std::int64_t step_mm,
-            std::vector<SearchStep>* steps)
-      : parts_{{{kernel, model, &meter_, step_mm}, {kernel, model, &meter_, step_mm}}},
-        steps_(*steps) {}
+  BinSearch(Model* model, std::int64_t step_mm, std::vector<SearchStep>* steps)
+      : parts_{{{model, &meter_, step_mm}, {model, &meter_, step_mm}}}, steps_(*steps) {}
 
   /// A row of returns, as RangePart takes it.
   struct Row {

@@ -1,30 +1,45 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Codes one bit with a mix of counters and other opinions, and lets all of them learn from it.
+// Logistic mixing: codes one bit by counters and other opinions, whose logits become one by weights
+// that learn who is right; then all of them learn.
 #pragma once
+#include <algorithm>
 #include <array>
 #include <cstdint>
 
 #include "src/codec/mixing/arithmetic.h"
 #include "src/codec/mixing/cost_meter.h"
-#include "src/codec/mixing/mixer.h"
+#include "src/codec/mixing/lanes.h"
 
 namespace lidar::codec::mixing {
 
+constexpr unsigned kInputs = 2 * kLanes;
+
+/// Of the inputs of a decision, in 1/kWeightOne.
+struct alignas(32) Weights {
+  std::array<std::int16_t, kInputs> values{};
+};
+constexpr unsigned kWeightShift = 13;
+constexpr std::int32_t kWeightOne = 1 << kWeightShift;
+
+/// How far weights move for an error `bit - chance`; it fits an int16.
+inline std::int32_t StepOf(bool bit, std::int32_t chance) {
+  constexpr std::int32_t kSpeed = 5;
+  return ((bit ? kOne : 0) - chance) * kSpeed >> 4;
+}
+
 /// For decisions that have kCounters counters and kExtra other logits: inputs of one place always
-/// mean the same.
-template <unsigned kCounters, unsigned kExtra>
+/// mean the same. The last place, of eight where they suffice, is always the same number.
+template <unsigned kCounters, unsigned kExtra, class Lanes = FastLanes>
 class BitMixer {
  public:
   static_assert(kCounters + kExtra < kInputs);
-  explicit BitMixer(const Kernel& kernel) : kernel_(kernel) {}
 
-  /// `counter_at(0 .. kCounters - 1)` are the counters of the next bit, `logit_at` gives the rest.
+  /// `counter_at(0 .. kCounters - 1)` are the counters of the next bit, each another one;
+  /// `logit_at` gives the rest.
   template <class CounterAt, class LogitAt>
   void Ask(CounterAt&& counter_at, LogitAt&& logit_at) {
-    inputs_.packed[0] = Word<0>(counter_at, logit_at);
-    inputs_.packed[1] = Word<1>(counter_at, logit_at);
-    inputs_.packed[2] = Word<2>(counter_at, logit_at);
-    inputs_.packed[3] = Word<3>(counter_at, logit_at);
+    AskEight<0>(counter_at, logit_at);
+    if constexpr (kEights > 1) AskEight<1>(counter_at, logit_at);
   }
   template <class CounterAt>
   void Ask(CounterAt&& counter_at) {
@@ -34,11 +49,10 @@ class BitMixer {
 
   template <class Coder>
   bool Code(bool bit, Weights* weights, Coder* coder) {
-    const auto& [a, b, c, d] = inputs_.packed;
-    const std::int32_t chance = Chance(kernel_.dot(a, b, c, d, weights) >> kDotShift);
+    const std::int32_t chance = Chance(LogitBy(*weights));
     bit = coder->Code(bit, chance);
     if constexpr (!kTeaches<Coder>) return bit;
-    kernel_.learn(a, b, c, d, StepOf(bit, chance), weights);
+    Teach(StepOf(bit, chance), weights);
     Learn(bit);
     return bit;
   }
@@ -46,54 +60,78 @@ class BitMixer {
   template <class Coder>
   bool Code(bool bit, Weights* first, Weights* second, Coder* coder) {
     static_assert(kTeaches<Coder>);
-    const auto& [a, b, c, d] = inputs_.packed;
-    const Sums sums = kernel_.dots(a, b, c, d, first, second);
-    const std::int32_t one = ClampLogit(sums.first >> kDotShift);
-    const std::int32_t other = ClampLogit(sums.second >> kDotShift);
+    const std::int32_t one = LogitBy(*first);
+    const std::int32_t other = LogitBy(*second);
     bit = coder->Code(bit, Chance((one + other) >> 1));
-    kernel_.learn(a, b, c, d, StepOf(bit, Chance(one)), first);
-    kernel_.learn(a, b, c, d, StepOf(bit, Chance(other)), second);
+    Teach(StepOf(bit, Chance(one)), first);
+    Teach(StepOf(bit, Chance(other)), second);
     Learn(bit);
     return bit;
   }
   /// What Code() would take for the chance of a 1.
   std::int32_t ChanceBy(const Weights* first, const Weights* second) const {
-    const auto& [a, b, c, d] = inputs_.packed;
-    const Sums sums = kernel_.dots(a, b, c, d, first, second);
-    return Chance((ClampLogit(sums.first >> kDotShift) + ClampLogit(sums.second >> kDotShift)) >>
-                  1);
+    return Chance((LogitBy(*first) + LogitBy(*second)) >> 1);
   }
 
  private:
-  static constexpr unsigned kDotShift = 12;
+  using Numbers = std::array<std::int16_t, kLanes>;
+  static constexpr unsigned kEights = kCounters + kExtra < kLanes ? 1 : 2;
+  static constexpr std::int16_t kAlways = 256;
 
-  /// Four inputs. They are put together in a register: a vector that is loaded from where single
-  /// numbers were just stored makes processors wait.
-  template <unsigned kPlace, class CounterAt, class LogitAt>
-  Kernel::Four Word(CounterAt& counter_at, LogitAt& logit_at) {
-    constexpr std::int32_t kAlways = 256;
-    Kernel::Four word = 0;
-#pragma GCC unroll 4
-    for (unsigned i = 4 * kPlace; i < 4 * kPlace + 4; ++i) {
-      std::int32_t logit = i == kInputs - 1 ? kAlways : 0;
-      if (i < kCounters) {
-        counters_[i] = counter_at(i);
-        logit = counters_[i]->Vote();
-      } else if (i < kCounters + kExtra) {
-        logit = ClampLogit(logit_at(i - kCounters));
+  static constexpr unsigned CountersOf(unsigned eight) {
+    return kCounters < eight * kLanes ? 0 : std::min(kCounters - eight * kLanes, kLanes);
+  }
+
+  template <unsigned kEight, class CounterAt, class LogitAt>
+  void AskEight(CounterAt& counter_at, LogitAt& logit_at) {
+    constexpr unsigned kFirst = kEight * kLanes;
+    constexpr unsigned kCount = CountersOf(kEight);
+    Numbers logits{};
+    Numbers rest{};
+#pragma GCC unroll 8
+    for (unsigned i = 0; i < kLanes; ++i) {
+      if (i < kCount) {
+        counters_[kFirst + i] = counter_at(kFirst + i);
+        logits[i] = static_cast<std::int16_t>(Logit(counters_[kFirst + i]->chance));
+      } else if (kFirst + i < kCounters + kExtra) {
+        rest[i] = static_cast<std::int16_t>(ClampLogit(logit_at(kFirst + i - kCounters)));
       }
-      word |= Inputs::Packed(i, logit);
     }
-    return word;
+    if (kEight + 1 == kEights) rest[kLanes - 1] = kAlways;
+    if constexpr (kCount == 0) {
+      inputs_[kEight] = Lanes::Of(rest);
+    } else {
+      known_[kEight] = Lanes::template Load<kCount>(&counters_[kFirst]);
+      inputs_[kEight] = Lanes::Votes(Lanes::Of(logits), known_[kEight]);
+      if constexpr (kCount < kLanes)
+        inputs_[kEight] = Lanes::Join(inputs_[kEight], Lanes::Of(rest));
+    }
   }
 
+  std::int32_t LogitBy(const Weights& weights) const {
+    typename Lanes::Sum sum = Lanes::Dot(inputs_[0], weights.values.data());
+    if constexpr (kEights > 1)
+      sum = Lanes::Plus(sum, Lanes::Dot(inputs_[1], weights.values.data() + kLanes));
+    return ClampLogit(Lanes::Total(sum) >> kWeightShift);
+  }
+  void Teach(std::int32_t step, Weights* weights) {
+    for (unsigned i = 0; i < kEights; ++i)
+      Lanes::Teach(inputs_[i], step, weights->values.data() + i * kLanes);
+  }
   void Learn(bool bit) {
-#pragma GCC unroll 16
-    for (unsigned i = 0; i < kCounters; ++i) counters_[i]->Learn(bit);
+    LearnEight<0>(bit);
+    if constexpr (kEights > 1) LearnEight<1>(bit);
+  }
+  template <unsigned kEight>
+  void LearnEight(bool bit) {
+    constexpr unsigned kCount = CountersOf(kEight);
+    if constexpr (kCount > 0)
+      Lanes::template Store<kCount>(Lanes::Learnt(known_[kEight], bit),
+                                    &counters_[kEight * kLanes]);
   }
 
-  const Kernel& kernel_;
-  Inputs inputs_;
+  typename Lanes::Eight inputs_[kEights];
+  typename Lanes::Counters known_[kEights];
   std::array<Counter*, kCounters> counters_{};
 };
 

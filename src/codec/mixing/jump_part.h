@@ -24,8 +24,7 @@ struct JumpContext {
 template <unsigned kUsed, class Coder>
 class JumpPart {
  public:
-  JumpPart(const Kernel& kernel, Model* model, Coder* coder)
-      : mixer_(kernel), model_(*model), coder_(*coder) {}
+  JumpPart(Model* model, Coder* coder) : model_(*model), coder_(*coder) {}
 
   static constexpr std::uint32_t kTooFar = 1U << 26;
 

@@ -19,22 +19,30 @@ struct LevelAt {
   std::int32_t residual = 0;  // -3 to 3
 };
 
-template <class Coder>
+/// Asks the first kContexts of its contexts.
+template <unsigned kContexts, class Coder>
 class LevelPart {
  public:
-  LevelPart(const Kernel& kernel, LevelModel* model, Coder* coder, unsigned bits)
-      : mixer_(kernel), model_(*model), coder_(*coder), most_((1 << bits) - 1) {}
+  LevelPart(Model* model, Coder* coder, unsigned bits, std::int64_t step_mm)
+      : counters_(model->level_counters),
+        weights_(model->level_weights),
+        coder_(*coder),
+        most_((1 << bits) - 1),
+        step_mm_(step_mm) {}
 
   struct Around {
     std::int32_t bin;  // of the return itself
     LevelAt w, ww, n, nw, ne, nn;
   };
 
+  void StartRow() { zero_run_ = 0; }
   /// Returns the level, and in `residual` what it differs from its prediction; -1 for a damaged
   /// stream.
   std::int32_t Code(std::int32_t level, const Around& around, std::int32_t* residual) {
     Look(around);
+    SetContexts(around);
     const std::int32_t difference = CodeDifference(mirror_ * (level - predicted_));
+    zero_run_ = difference == 0 ? std::min(zero_run_ + 1, 15U) : 0;
     *residual = std::clamp(difference, -3, 3) * mirror_;
     level = predicted_ + mirror_ * difference;
     return level >= 0 && level <= most_ ? level : -1;
@@ -51,47 +59,97 @@ class LevelPart {
   void Look(const Around& a) {
     const std::uint32_t west = Closeness(a.w, a.bin);
     const std::uint32_t north = Closeness(a.n, a.bin);
-    const std::uint32_t north_east = Closeness(a.ne, a.bin);
-    const std::int32_t n = a.n.bin >= 0 ? a.n.level : a.w.level;
-    const std::int32_t w = a.w.bin >= 0 ? a.w.level : n;
-    const std::int32_t nw = a.nw.bin >= 0 ? a.nw.level : n;
-    const std::int32_t ne = a.ne.bin >= 0 ? a.ne.level : n;
+    n_ = a.n.bin >= 0 ? a.n.level : a.w.level;
+    w_ = a.w.bin >= 0 ? a.w.level : n_;
+    nw_ = a.nw.bin >= 0 ? a.nw.level : n_;
+    ne_ = a.ne.bin >= 0 ? a.ne.level : n_;
     if (west == north) {
-      predicted_ = Median(w, n, nw);
+      predicted_ = Median(w_, n_, nw_);
     } else {
-      predicted_ = west > north ? w : n;
+      predicted_ = west > north ? w_ : n_;
     }
-    mirror_ = n < w ? -1 : 1;
-    const std::int32_t sum = std::abs(w - n) + std::abs(n - nw) + std::abs(ne - n) +
+    mirror_ = n_ < w_ ? -1 : 1;
+    const std::int32_t sum = std::abs(w_ - n_) + std::abs(n_ - nw_) + std::abs(ne_ - n_) +
                              2 * (std::abs(a.w.residual) + std::abs(a.n.residual));
     uneven_ = std::min(HalfOctave(static_cast<std::uint32_t>(2 * sum)), kUnevenClasses - 1);
-    const auto offset = [&](const LevelAt& at) {
-      return at.bin < 0 ? 5U : OffsetClass((at.level - predicted_) * mirror_ * kStep);
-    };
-    const auto narrow = [&](std::int32_t value) {
-      return static_cast<std::uint32_t>(std::clamp((value - predicted_) * mirror_, -7, 7) + 7);
-    };
-    const auto residual = [&](const LevelAt& at) { return ResidualClass(at.residual, mirror_); };
-    surfaces_ = (west * 3 + north) * 3 + north_east;
-    const auto height = static_cast<std::uint32_t>(predicted_ * 16 / (most_ + 1));
+    surfaces_ = (west * 3 + north) * 3 + Closeness(a.ne, a.bin);
+    event_ = w_ == n_ ? 3 : predicted_ == w_ ? 1 : predicted_ == n_ ? 2 : 0;
+  }
+
+  std::uint32_t Offset(const LevelAt& at) const {
+    return at.bin < 0 ? 5U : OffsetClass((at.level - predicted_) * mirror_ * kStep);
+  }
+  std::uint32_t Narrow(std::int32_t value) const {
+    return static_cast<std::uint32_t>(std::clamp((value - predicted_) * mirror_, -7, 7) + 7);
+  }
+  std::uint32_t Residual(const LevelAt& at) const { return ResidualClass(at.residual, mirror_); }
+  static std::uint32_t Size(const LevelAt& at) {
+    return static_cast<std::uint32_t>(std::abs(at.residual));
+  }
+  /// Of 32, whatever the bits are.
+  std::uint32_t Height(std::int32_t level) const {
+    return static_cast<std::uint32_t>(level * 32 / (most_ + 1));
+  }
+  /// Of the return against a neighbour.
+  std::uint32_t Depth(const LevelAt& at, std::int32_t bin) const {
+    return at.bin < 0 ? 3U : StepClass(std::clamp(bin - at.bin, -4, 4) * kStep);
+  }
+
+  /// Where the mean of neighbours lies that count the more the closer they are.
+  struct Weighed {
+    std::int32_t sum = 0;
+    std::int32_t count = 0;
+
+    void Add(const LevelAt& at, std::int32_t bin, std::int32_t factor) {
+      if (at.bin < 0) return;
+      constexpr std::array<std::int32_t, 3> kCloseness = {1, 4, 8};
+      const std::int32_t weight = factor * kCloseness[Closeness(at, bin)];
+      sum += weight * at.level;
+      count += weight;
+    }
+  };
+  std::uint32_t Phase(const Weighed& mean) const {
+    if (mean.count == 0) return PhaseClass(0);
+    return PhaseClass((kStep * mean.sum / mean.count - kStep * predicted_) * mirror_);
+  }
+
+  void SetContexts(const Around& a) {
+    Weighed row;
+    row.Add(a.w, a.bin, 2);
+    row.Add(a.ww, a.bin, 1);
+    Weighed above;
+    above.Add(a.n, a.bin, 2);
+    above.Add(a.nw, a.bin, 1);
+    above.Add(a.ne, a.bin, 1);
+    above.Add(a.nn, a.bin, 1);
+    const Weighed all{row.sum + above.sum, row.count + above.count};
+    const std::uint32_t mirrored = mirror_ < 0 ? 1U : 0U;
     const std::array<std::uint32_t, kLevelContexts.size()> values = {
         uneven_,
-        narrow(w) * 15 + narrow(n),
-        (residual(a.w) * 7 + residual(a.n)) * 7 + residual(a.ne),
-        surfaces_ * 36 + std::min(uneven_, 17U) * 2 + (w == n ? 1U : 0U),
-        height * 32 + std::min(uneven_, 15U) * 2 + (mirror_ < 0 ? 1U : 0U),
-        (offset(a.ne) * 11 + offset(a.nn)) * 11 + offset(a.ww)};
+        Narrow(w_) * 15 + Narrow(n_),
+        (Residual(a.w) * 7 + Residual(a.n)) * 7 + Residual(a.ne),
+        surfaces_ * 36 + std::min(uneven_, 17U) * 2 + (w_ == n_ ? 1U : 0U),
+        Height(predicted_) / 2 * 32 + std::min(uneven_, 15U) * 2 + mirrored,
+        (Offset(a.ne) * 11 + Offset(a.nn)) * 11 + Offset(a.ww),
+        Height(w_) * 32 + Height(n_),
+        (Height(predicted_) * 16 + RangeClass(CentreOf(a.bin), step_mm_)) * 2 + mirrored,
+        Narrow(nw_) * 15 + Narrow(ne_),
+        Phase(all) * 27 + surfaces_,
+        (Depth(a.w, a.bin) * 7 + Depth(a.n, a.bin)) * 15 + Narrow(predicted_ == w_ ? n_ : w_),
+        ((Residual(a.ww) * 7 + Residual(a.w)) * 7 + Residual(a.nw)) * 4 + event_,
+        ((zero_run_ * 4 + Size(a.n)) * 4 + Size(a.ne)) * 4 + event_,
+        Phase(row) * 15 + Phase(above)};
     std::uint32_t base = 0;
-    for (unsigned k = 0; k < values.size(); ++k) {
+    for (unsigned k = 0; k < kContexts; ++k) {
       contexts_[k] = kSmallNodes * (base + values[k]);
       base += kLevelContexts[k];
     }
   }
 
   bool CodeNode(bool bit, unsigned node) {
-    mixer_.Ask([&](unsigned k) { return &model_.counters[contexts_[k] + node]; });
-    return mixer_.Code(bit, &model_.weights[node * kUnevenClasses + uneven_],
-                       &model_.surface_weights[node * kSurfaces + surfaces_], &coder_);
+    mixer_.Ask([&](unsigned k) { return &counters_.small[contexts_[k] + node]; });
+    return mixer_.Code(bit, &weights_.uneven[node * kUnevenClasses + uneven_],
+                       &weights_.surfaces[node * kSurfaces + surfaces_], &coder_);
   }
 
   std::int32_t CodeDifference(std::int32_t difference) {
@@ -119,21 +177,28 @@ class LevelPart {
     return value;
   }
   bool CodeAlone(bool bit, unsigned node) {
-    Counter& counter = model_.rest[node];
+    Counter& counter = counters_.rest[node];
     bit = coder_.Code(bit, std::clamp<std::int32_t>(counter.chance, kLeastChance, kMostChance));
     counter.Learn(bit);
     return bit;
   }
 
-  BitMixer<kLevelContexts.size(), 0> mixer_;
-  LevelModel& model_;
+  BitMixer<kContexts, 0> mixer_;
+  LevelCounters& counters_;
+  LevelWeights& weights_;
   Coder& coder_;
-  std::int32_t most_;
+  const std::int32_t most_;
+  const std::int64_t step_mm_;
+  std::uint32_t zero_run_ = 0;
+
+  // Of the return.
+  std::int32_t n_ = 0, nw_ = 0, ne_ = 0, w_ = 0;
   std::int32_t predicted_ = 0;
   std::int32_t mirror_ = 1;
   std::uint32_t uneven_ = 0;
   std::uint32_t surfaces_ = 0;
-  std::array<std::uint32_t, kLevelContexts.size()> contexts_{};
+  std::uint32_t event_ = 0;
+  std::array<std::uint32_t, kContexts> contexts_{};
 };
 
 }  // namespace lidar::codec::mixing

@@ -14,8 +14,7 @@ namespace lidar::codec::mixing {
 template <unsigned kContexts, class Coder>
 class MaskPart {
  public:
-  MaskPart(const Kernel& kernel, Model* model, Coder* coder)
-      : mixer_(kernel), model_(*model), coder_(*coder) {}
+  MaskPart(Model* model, Coder* coder) : model_(*model), coder_(*coder) {}
 
   /// `above` is the first azimuth of the row.
   void StartRow(const Azimuth* above) {

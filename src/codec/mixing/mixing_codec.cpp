@@ -44,7 +44,7 @@ struct MixingCoderState {
   template <class Coder>
   bool Code(unsigned effort, const mixing::Recollection& recollection, Coder* bits) {
     mixing::Trained().CopyTo(effort, slice.step_mm, slice.level_bits, model.get());
-    return coder.Code(effort, mixing::BestKernel(), model.get(), &slice, bits,
+    return coder.Code(effort, model.get(), &slice, bits,
                       recollection.memory.pixels != nullptr ? &recollection : nullptr);
   }
 

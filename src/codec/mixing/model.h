@@ -5,7 +5,7 @@
 #include <cstdint>
 
 #include "src/codec/mixing/arithmetic.h"
-#include "src/codec/mixing/mixer.h"
+#include "src/codec/mixing/bit_mixer.h"
 
 namespace lidar::codec::mixing {
 
@@ -14,7 +14,8 @@ constexpr std::array<std::uint32_t, 6> kMaskContexts = {5'632, 4'096, 560, 4'096
 constexpr std::array<std::uint32_t, 13> kRangeContexts = {
     1'331, 1'372, 484, 512, 1'372, 1'936, 121, 120, 512, 24, 2'401, 1'024, 484};
 constexpr std::array<std::uint32_t, 3> kJumpContexts = {24, 32, 64};
-constexpr std::array<std::uint32_t, 6> kLevelContexts = {24, 225, 1'331, 1'024, 512, 1'331};
+constexpr std::array<std::uint32_t, 14> kLevelContexts = {
+    24, 225, 1'331, 1'024, 512, 1'331, 1'024, 1'024, 225, 405, 735, 1'372, 1'024, 225};
 
 /// Decisions about the small differences from a prediction: is it any, its sign, and for each sign
 /// whether it is more than 1, 2, 3.
@@ -52,17 +53,20 @@ struct BinWeights {
   std::array<Weights, kJumpNodes> jump;
 };
 /// What codes intensities.
-struct LevelModel {
-  std::array<Counter, kSmallNodes * Total(kLevelContexts)> counters;
+struct LevelCounters {
+  std::array<Counter, kSmallNodes * Total(kLevelContexts)> small;
   std::array<Counter, 512> rest;
-  std::array<Weights, kSmallNodes * kUnevenClasses> weights;
-  std::array<Weights, kSmallNodes * kSurfaces> surface_weights;
+};
+struct LevelWeights {
+  std::array<Weights, kSmallNodes * kUnevenClasses> uneven;
+  std::array<Weights, kSmallNodes * kSurfaces> surfaces;
 };
 
 struct Model {
   BinCounters counters;
   BinWeights weights;
-  LevelModel level;
+  LevelCounters level_counters;
+  LevelWeights level_weights;
 };
 
 }  // namespace lidar::codec::mixing

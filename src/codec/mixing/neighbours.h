@@ -79,6 +79,12 @@ inline std::uint32_t PhaseClass(std::int32_t phase) {
   return kClasses[static_cast<std::size_t>(std::clamp(phase, -41, 41) + 41)];
 }
 
+/// The ranges at `value` when bins are so wide.
+inline std::uint32_t RangeClass(std::int32_t value, std::int64_t step_mm) {
+  const std::int64_t mm = value * step_mm / kStep;
+  return std::min(HalfOctave(static_cast<std::uint32_t>(mm >> 7)), 15U);
+}
+
 /// Residuals between -3 and 3, as 0 to 6 in the sense of `mirror`, which is 1 or -1.
 inline std::uint32_t ResidualClass(std::int32_t residual, std::int32_t mirror) {
   return static_cast<std::uint32_t>(residual * mirror + 3);

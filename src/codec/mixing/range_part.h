@@ -44,12 +44,8 @@ class RangePart {
   };
 
   /// `step_mm` is the width of a bin.
-  RangePart(const Kernel& kernel, Model* model, Coder* coder, std::int64_t step_mm)
-      : mixer_(kernel),
-        jump_(kernel, model, coder),
-        model_(*model),
-        coder_(*coder),
-        step_mm_(step_mm) {}
+  RangePart(Model* model, Coder* coder, std::int64_t step_mm)
+      : jump_(model, coder), model_(*model), coder_(*coder), step_mm_(step_mm) {}
 
   /// `above` is the first azimuth of the row, and `north` what is known above each; it is kUnknown
   /// all along where there is nothing.
@@ -118,10 +114,7 @@ class RangePart {
   static constexpr unsigned kContexts = Effort::kRangeContexts;
   static constexpr unsigned kUsedCentres = Effort::kCentres;
 
-  std::uint32_t RangeClass(std::int32_t value) const {
-    const std::int64_t mm = value * step_mm_ / kStep;
-    return std::min(HalfOctave(static_cast<std::uint32_t>(mm >> 7)), 15U);
-  }
+  std::uint32_t RangeClass(std::int32_t value) const { return mixing::RangeClass(value, step_mm_); }
 
   /// Neighbours and prediction of pixel `i`.
   void Look(std::uint32_t i) {

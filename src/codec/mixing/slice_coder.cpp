@@ -17,6 +17,7 @@ constexpr auto kMargin = static_cast<std::ptrdiff_t>(AlignedRow<Azimuth>::kMargi
 
 /// How many of all the opinions are asked.
 struct Effort1 {
+  static constexpr unsigned kLevelContexts = 6;
   static constexpr unsigned kMaskContexts = 3;
   static constexpr unsigned kRangeContexts = 5;
   static constexpr unsigned kCentres = 0;
@@ -25,6 +26,7 @@ struct Effort1 {
   static constexpr bool kSearches = false;
 };
 struct Effort2 {
+  static constexpr unsigned kLevelContexts = mixing::kLevelContexts.size();
   static constexpr unsigned kMaskContexts = 6;
   static constexpr unsigned kRangeContexts = 10;
   static constexpr unsigned kCentres = mixing::kCentres;
@@ -46,8 +48,7 @@ bool Overran(const Coder& /*coder*/) {
 
 /// Stands where nothing is searched.
 struct NoSearch {
-  NoSearch(const Kernel& /*kernel*/, Model* /*model*/, std::int64_t /*step_mm*/,
-           std::vector<SearchStep>* /*steps*/) {}
+  NoSearch(Model* /*model*/, std::int64_t /*step_mm*/, std::vector<SearchStep>* /*steps*/) {}
 };
 
 }  // namespace
@@ -69,12 +70,12 @@ void SliceCoder::FillNorth(const Azimuth* above, std::uint32_t columns) {
 }
 
 template <class Effort, class Coder>
-bool SliceCoder::CodeBins(const Kernel& kernel, Model* model, SliceBins* slice, Coder* coder) {
-  MaskPart<Effort::kMaskContexts, Coder> mask(kernel, model, coder);
-  RangePart<Effort, Coder> range(kernel, model, coder, slice->step_mm);
+bool SliceCoder::CodeBins(Model* model, SliceBins* slice, Coder* coder) {
+  MaskPart<Effort::kMaskContexts, Coder> mask(model, coder);
+  RangePart<Effort, Coder> range(model, coder, slice->step_mm);
   constexpr bool kSearches = Effort::kSearches && !Coder::kDecodes;
   [[maybe_unused]] std::conditional_t<kSearches, BinSearch<Effort>, NoSearch> search(
-      kernel, model, slice->step_mm, &search_steps_);
+      model, slice->step_mm, &search_steps_);
   for (std::uint32_t beam = 0; beam < slice->beams; ++beam) {
     Azimuth* const above = above_.At(beam);
     const std::size_t row = std::size_t{beam} * slice->columns;
@@ -106,12 +107,12 @@ bool SliceCoder::CodeBins(const Kernel& kernel, Model* model, SliceBins* slice, 
 
 /// As CodeBins(), but pixels that know where they look are coded by that.
 template <class Effort, class Coder>
-bool SliceCoder::CodeRecalledBins(const Kernel& kernel, Model* model, SliceBins* slice,
-                                  Coder* coder, const Recollection& recollection) {
+bool SliceCoder::CodeRecalledBins(Model* model, SliceBins* slice, Coder* coder,
+                                  const Recollection& recollection) {
   using Temporal = TemporalPart<Coder>;
-  MaskPart<Temporal::kSpatialMask, Coder> mask(kernel, model, coder);
-  RangePart<Effort, Coder> range(kernel, model, coder, slice->step_mm);
-  Temporal temporal(kernel, recollection.grid, recollection.memory.model, coder);
+  MaskPart<Temporal::kSpatialMask, Coder> mask(model, coder);
+  RangePart<Effort, Coder> range(model, coder, slice->step_mm);
+  Temporal temporal(recollection.grid, recollection.memory.model, coder);
   surprises_.Reset(alignment_, slice->columns, {});
   for (std::uint32_t beam = 0; beam < slice->beams; ++beam) {
     Azimuth* const above = above_.At(beam);
@@ -154,9 +155,11 @@ bool SliceCoder::CodeRecalledBins(const Kernel& kernel, Model* model, SliceBins*
   return true;
 }
 
-template <class Coder>
-bool SliceCoder::CodeLevels(const Kernel& kernel, Model* model, SliceBins* slice, Coder* coder) {
-  LevelPart<Coder> part(kernel, &model->level, coder, slice->level_bits);
+template <class Effort, class Coder>
+bool SliceCoder::CodeLevels(Model* model, SliceBins* slice, Coder* coder) {
+  using Part = LevelPart<Effort::kLevelContexts, Coder>;
+  Part part(model, coder, slice->level_bits, slice->step_mm);
+  above_.Reset(alignment_, slice->columns, {});
   for (std::uint32_t beam = 0; beam < slice->beams; ++beam) {
     Azimuth* const above = above_.At(beam);
     const std::size_t row = std::size_t{beam} * slice->columns;
@@ -164,7 +167,8 @@ bool SliceCoder::CodeLevels(const Kernel& kernel, Model* model, SliceBins* slice
       // Bins of this pass are one more than they are, so that 0 means none.
       return LevelAt{azimuth.values[0] - 1, azimuth.level, azimuth.level_residual};
     };
-    typename LevelPart<Coder>::Around around{};
+    typename Part::Around around{};
+    part.StartRow();
     around.nw = at(above[-1]);
     for (std::uint32_t i = 0; i < slice->columns; ++i) {
       Azimuth& azimuth = above[i];
@@ -195,33 +199,27 @@ bool SliceCoder::CodeLevels(const Kernel& kernel, Model* model, SliceBins* slice
 }
 
 template <class Effort, class Coder>
-bool SliceCoder::CodeBinsOf(const Kernel& kernel, Model* model, SliceBins* slice, Coder* coder,
-                            const Recollection* recollection) {
-  return recollection != nullptr
-             ? CodeRecalledBins<Effort>(kernel, model, slice, coder, *recollection)
-             : CodeBins<Effort>(kernel, model, slice, coder);
+bool SliceCoder::CodeAll(Model* model, SliceBins* slice, Coder* coder,
+                         const Recollection* recollection) {
+  const bool coded = recollection != nullptr
+                         ? CodeRecalledBins<Effort>(model, slice, coder, *recollection)
+                         : CodeBins<Effort>(model, slice, coder);
+  if (!coded) return false;
+  return slice->level_bits == 0 || CodeLevels<Effort>(model, slice, coder);
 }
 
 template <class Coder>
-bool SliceCoder::Code(unsigned effort, const Kernel& kernel, Model* model, SliceBins* slice,
-                      Coder* coder, const Recollection* recollection) {
+bool SliceCoder::Code(unsigned effort, Model* model, SliceBins* slice, Coder* coder,
+                      const Recollection* recollection) {
   north_.resize(slice->columns + 2 * AlignedRow<Azimuth>::kMargin);
   above_.Reset(alignment_, slice->columns, {});
-  bool coded = false;
-  if (effort == 1) coded = CodeBinsOf<Effort1>(kernel, model, slice, coder, recollection);
-  if (effort == 2) coded = CodeBinsOf<Effort2>(kernel, model, slice, coder, recollection);
-  if (effort == 3) coded = CodeBinsOf<Effort3>(kernel, model, slice, coder, recollection);
-  if (!coded) return false;
-  if (slice->level_bits == 0) return true;
-  above_.Reset(alignment_, slice->columns, {});
-  return CodeLevels(kernel, model, slice, coder);
+  if (effort == 1) return CodeAll<Effort1>(model, slice, coder, recollection);
+  if (effort == 2) return CodeAll<Effort2>(model, slice, coder, recollection);
+  return CodeAll<Effort3>(model, slice, coder, recollection);
 }
 
-template bool SliceCoder::Code(unsigned, const Kernel&, Model*, SliceBins*, BinaryEncoder*,
-                               const Recollection*);
-template bool SliceCoder::Code(unsigned, const Kernel&, Model*, SliceBins*, BinaryDecoder*,
-                               const Recollection*);
-template bool SliceCoder::Code(unsigned, const Kernel&, Model*, SliceBins*, BitCounter*,
-                               const Recollection*);
+template bool SliceCoder::Code(unsigned, Model*, SliceBins*, BinaryEncoder*, const Recollection*);
+template bool SliceCoder::Code(unsigned, Model*, SliceBins*, BinaryDecoder*, const Recollection*);
+template bool SliceCoder::Code(unsigned, Model*, SliceBins*, BitCounter*, const Recollection*);
 
 }  // namespace lidar::codec::mixing

@@ -65,22 +65,21 @@ class SliceCoder {
  public:
   explicit SliceCoder(const AzimuthAlignment& alignment) : alignment_(alignment) {}
 
-  /// Codes all of `slice` at an effort from 1 on; false for a damaged stream.
+  /// Codes all of `slice` at an effort from 1 to 3; false for a damaged stream.
   template <class Coder>
-  bool Code(unsigned effort, const Kernel& kernel, Model* model, SliceBins* slice, Coder* coder,
+  bool Code(unsigned effort, Model* model, SliceBins* slice, Coder* coder,
             const Recollection* recollection = nullptr);
 
  private:
   template <class Effort, class Coder>
-  bool CodeBins(const Kernel& kernel, Model* model, SliceBins* slice, Coder* coder);
+  bool CodeBins(Model* model, SliceBins* slice, Coder* coder);
   template <class Effort, class Coder>
-  bool CodeRecalledBins(const Kernel& kernel, Model* model, SliceBins* slice, Coder* coder,
+  bool CodeRecalledBins(Model* model, SliceBins* slice, Coder* coder,
                         const Recollection& recollection);
   template <class Effort, class Coder>
-  bool CodeBinsOf(const Kernel& kernel, Model* model, SliceBins* slice, Coder* coder,
-                  const Recollection* recollection);
-  template <class Coder>
-  bool CodeLevels(const Kernel& kernel, Model* model, SliceBins* slice, Coder* coder);
+  bool CodeAll(Model* model, SliceBins* slice, Coder* coder, const Recollection* recollection);
+  template <class Effort, class Coder>
+  bool CodeLevels(Model* model, SliceBins* slice, Coder* coder);
   void FillNorth(const Azimuth* above, std::uint32_t columns);
 
   const AzimuthAlignment& alignment_;
@@ -101,11 +100,11 @@ class BitCounter {
   double bits_ = 0;
 };
 
-extern template bool SliceCoder::Code(unsigned, const Kernel&, Model*, SliceBins*, BinaryEncoder*,
+extern template bool SliceCoder::Code(unsigned, Model*, SliceBins*, BinaryEncoder*,
                                       const Recollection*);
-extern template bool SliceCoder::Code(unsigned, const Kernel&, Model*, SliceBins*, BinaryDecoder*,
+extern template bool SliceCoder::Code(unsigned, Model*, SliceBins*, BinaryDecoder*,
                                       const Recollection*);
-extern template bool SliceCoder::Code(unsigned, const Kernel&, Model*, SliceBins*, BitCounter*,
+extern template bool SliceCoder::Code(unsigned, Model*, SliceBins*, BitCounter*,
                                       const Recollection*);
 
 }  // namespace lidar::codec::mixing

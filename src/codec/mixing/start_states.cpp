@@ -12,26 +12,28 @@ namespace {
 // Logits in the table are multiples of this.
 constexpr std::int32_t kLogitStep = 160;
 constexpr std::int32_t kMostLogitSteps = 12;
-constexpr std::array<std::uint16_t, 4> kVisits = {0, 8, 16, 32};
-constexpr std::int32_t kWeightStep = 4'096;
+/// Classes of what counters have seen.
+constexpr std::array<std::uint16_t, 4> kRates = {RateAfter(0), RateAfter(8), RateAfter(16),
+                                                 RateAfter(32)};
+constexpr std::int32_t kWeightStep = 256;
 constexpr std::int32_t kMostWeightSteps = 127;
 constexpr std::int32_t kSpreadStep = 64;
-constexpr std::int32_t kFirstWeight = kOne * 3 / 10;
+constexpr std::int16_t kFirstWeight = kWeightOne * 3 / 10;
 
 std::int32_t LogitSteps(const Counter& counter) {
   const std::int32_t logit = Logit(counter.chance) + kLogitStep / 2 + kLogitStep * kMostLogitSteps;
   return std::clamp(logit / kLogitStep, 0, 2 * kMostLogitSteps) - kMostLogitSteps;
 }
-Counter FromSteps(std::int32_t steps, std::uint32_t visits_class) {
+Counter FromSteps(std::int32_t steps, std::uint32_t rate_class) {
   Counter counter;
-  if (visits_class == 0) return counter;
+  if (rate_class == 0) return counter;
   counter.chance = static_cast<std::uint16_t>(Chance(steps * kLogitStep));
-  counter.visits = kVisits[visits_class];
+  counter.rate = kRates[rate_class];
   return counter;
 }
-std::uint32_t VisitsClass(unsigned visits) {
-  std::uint32_t c = kVisits.size() - 1;
-  while (kVisits[c] > visits) --c;
+std::uint32_t RateClass(unsigned rate) {
+  std::uint32_t c = kRates.size() - 1;
+  while (kRates[c] < rate) --c;
   return c;
 }
 
@@ -62,28 +64,28 @@ class TableCoder {
   void Counters(std::array<Counter, kSize>* counters, const std::array<Counter, kSize>* before,
                 std::uint32_t place, unsigned nodes) {
     std::array<std::uint32_t, kSmallNodes> logits{};
-    std::array<std::uint32_t, kSmallNodes> visits{};
+    std::array<std::uint32_t, kSmallNodes> rates{};
     for (std::size_t i = 0; i < kSize; ++i) {
       Counter& counter = (*counters)[i];
       const std::size_t node = i % nodes;
       const Counter old = before == nullptr ? Counter{} : (*before)[i];
-      const std::uint32_t old_visits = VisitsClass(old.visits);
-      const std::uint32_t left = node == 0 ? 0 : visits[node - 1];
-      visits[node] = Number(VisitsClass(counter.visits), 2,
-                            ((place * 8 + static_cast<std::uint32_t>(node)) * 4 + old_visits) * 16 +
-                                visits[node] * 4 + left);
+      const std::uint32_t old_rate = RateClass(old.rate);
+      const std::uint32_t left = node == 0 ? 0 : rates[node - 1];
+      rates[node] = Number(RateClass(counter.rate), 2,
+                           ((place * 8 + static_cast<std::uint32_t>(node)) * 4 + old_rate) * 16 +
+                               rates[node] * 4 + left);
       std::uint32_t steps = kMostLogitSteps;
-      if (visits[node] > 0) {
+      if (rates[node] > 0) {
         const std::uint32_t nearby =
-            old_visits > 0 ? 32 + static_cast<std::uint32_t>(LogitSteps(old) + kMostLogitSteps)
-                           : logits[node];
-        steps = Number(
-            static_cast<std::uint32_t>(LogitSteps(counter) + kMostLogitSteps), 5,
-            kLogits + ((place * 8 + static_cast<std::uint32_t>(node)) * 4 + visits[node]) * 64 +
-                nearby);
+            old_rate > 0 ? 32 + static_cast<std::uint32_t>(LogitSteps(old) + kMostLogitSteps)
+                         : logits[node];
+        steps = Number(static_cast<std::uint32_t>(LogitSteps(counter) + kMostLogitSteps), 5,
+                       kLogits +
+                           ((place * 8 + static_cast<std::uint32_t>(node)) * 4 + rates[node]) * 64 +
+                           nearby);
         logits[node] = steps;
       }
-      counter = FromSteps(static_cast<std::int32_t>(steps) - kMostLogitSteps, visits[node]);
+      counter = FromSteps(static_cast<std::int32_t>(steps) - kMostLogitSteps, rates[node]);
     }
   }
 
@@ -96,7 +98,8 @@ class TableCoder {
             (set.values[i] + half + (kMostWeightSteps + 1) * kWeightStep) / kWeightStep;
         const auto bounded = static_cast<std::uint32_t>(std::clamp(steps, 1, 255));
         const std::uint32_t coded = Number(bounded, 8, kWeights + place * kInputs + i);
-        set.values[i] = (static_cast<std::int32_t>(coded) - kMostWeightSteps - 1) * kWeightStep;
+        set.values[i] = static_cast<std::int16_t>(
+            (static_cast<std::int32_t>(coded) - kMostWeightSteps - 1) * kWeightStep);
       }
     }
   }
@@ -139,13 +142,17 @@ void CodeAll(StartStates* states, Coder* coder) {
     table.WeightSets(&w.event, 2);
     table.WeightSets(&w.jump, 3);
   }
-  const LevelModel* fewer = nullptr;
-  for (LevelModel& level : states->levels) {
-    table.Counters(&level.counters, fewer ? &fewer->counters : nullptr, 4, kSmallNodes);
+  const LevelCounters* fewer = nullptr;
+  for (LevelCounters& level : states->level_counters) {
+    table.Counters(&level.small, fewer ? &fewer->small : nullptr, 4, kSmallNodes);
     table.Counters(&level.rest, fewer ? &fewer->rest : nullptr, 5, 1);
     fewer = &level;
-    table.WeightSets(&level.weights, 4);
-    table.WeightSets(&level.surface_weights, 5);
+  }
+  for (auto& of_effort : states->level_weights) {
+    for (LevelWeights& level : of_effort) {
+      table.WeightSets(&level.uneven, 4);
+      table.WeightSets(&level.surfaces, 5);
+    }
   }
 }
 
@@ -154,7 +161,7 @@ struct NoCoder {
 };
 
 template <std::size_t kSize>
-void SetAll(std::array<Weights, kSize>* sets, std::int32_t weight) {
+void SetAll(std::array<Weights, kSize>* sets, std::int16_t weight) {
   for (Weights& set : *sets) set.values.fill(weight);
 }
 
@@ -177,10 +184,12 @@ void StartStates::Reset() {
     SetAll(&w.event, kFirstWeight);
     SetAll(&w.jump, kFirstWeight);
   }
-  for (LevelModel& level : levels) {
-    level = LevelModel{};
-    SetAll(&level.weights, kFirstWeight);
-    SetAll(&level.surface_weights, kFirstWeight);
+  for (LevelCounters& level : level_counters) level = LevelCounters{};
+  for (auto& of_effort : level_weights) {
+    for (LevelWeights& level : of_effort) {
+      SetAll(&level.uneven, kFirstWeight);
+      SetAll(&level.surfaces, kFirstWeight);
+    }
   }
 }
 

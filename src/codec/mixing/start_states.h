@@ -11,7 +11,7 @@
 
 namespace lidar::codec::mixing {
 
-constexpr std::uint8_t kTableVersion = 1;
+constexpr std::uint8_t kTableVersion = 2;
 constexpr unsigned kEfforts = 3;
 
 /// Classes of the width of a bin, each with counters of its own: the last one of each [mm].
@@ -27,11 +27,12 @@ inline unsigned LevelClassOf(unsigned bits) { return bits > 6 ? 1 : 0; }
 struct StartStates {
   std::array<BinCounters, kStepClasses> counters;
   std::array<BinWeights, kEfforts> weights;
-  std::array<LevelModel, kLevelClasses> levels;
+  std::array<LevelCounters, kLevelClasses> level_counters;
+  std::array<std::array<LevelWeights, kLevelClasses>, kEfforts> level_weights;
 
-  /// Chances of a half, and weights that add up to about 1.
+  /// Chances of a half, and even weights.
   void Reset();
-  /// The nearest that a table can say, with few enough visits that a slice can still change it.
+  /// The nearest that a table can say, that has seen so little that a slice can still change it.
   void Round();
   /// Appends the table of rounded states.
   void Write(std::vector<std::uint8_t>* out) const;
@@ -42,7 +43,9 @@ struct StartStates {
   void CopyTo(unsigned effort, std::int64_t step_mm, unsigned level_bits, Model* model) const {
     model->counters = counters[StepClassOf(step_mm)];
     model->weights = weights[effort - 1];
-    if (level_bits > 0) model->level = levels[LevelClassOf(level_bits)];
+    if (level_bits == 0) return;
+    model->level_counters = level_counters[LevelClassOf(level_bits)];
+    model->level_weights = level_weights[effort - 1][LevelClassOf(level_bits)];
   }
 };
 

@@ -8,9 +8,9 @@ void TemporalModel::Reset() {
   mask.fill({});
   recalled_spread.fill(2'048);
   spatial_spread.fill(4'096);
-  constexpr std::int32_t kCounter = kOne / 4;
-  constexpr std::int32_t kRecalled = kOne * 3 / 5;
-  constexpr std::int32_t kSpatial = kOne / 10;
+  constexpr std::int16_t kCounter = kWeightOne / 4;
+  constexpr std::int16_t kRecalled = kWeightOne * 3 / 5;
+  constexpr std::int16_t kSpatial = kWeightOne / 10;
   for (Weights& set : weights) {
     set.values.fill(0);
     for (unsigned i = 0; i < kTemporalContexts.size(); ++i) set.values[i] = kCounter;

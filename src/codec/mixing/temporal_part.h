@@ -18,10 +18,8 @@ namespace lidar::codec::mixing {
 template <class Coder>
 class TemporalPart {
  public:
-  TemporalPart(const Kernel& kernel, const RangeGrid& grid, TemporalModel* model, Coder* coder)
-      : mixer_(kernel),
-        mask_mixer_(kernel),
-        grid_(grid),
+  TemporalPart(const RangeGrid& grid, TemporalModel* model, Coder* coder)
+      : grid_(grid),
         divisor_(std::uint64_t{grid.unit_mm()} * grid.parts()),
         model_(*model),
         coder_(*coder) {}

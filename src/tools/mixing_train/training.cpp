@@ -21,8 +21,8 @@ constexpr std::array<double, 6> kErrors = {0.001, 0.004, 0.01, 0.02, 0.05, 0.1};
 constexpr std::array<unsigned, mixing::kLevelClasses> kLevelBits = {5, 8};
 constexpr double kLevelError = 0.02;
 // A slice has to be able to change what others have taught.
-constexpr std::uint16_t kMostVisits = 24;
-constexpr std::uint16_t kMostJumpVisits = 48;
+constexpr std::uint16_t kLeastRate = mixing::RateAfter(24);
+constexpr std::uint16_t kLeastJumpRate = mixing::RateAfter(48);
 // Version, flags, lengths and the first byte of the payload.
 constexpr std::size_t kHeaderBytes = 13;
 
@@ -56,8 +56,8 @@ std::size_t ToBins(const Scan& scan, SliceOf slice, const MixingCase& setting, S
 }
 
 template <std::size_t kSize>
-void Cap(std::uint16_t most, std::array<mixing::Counter, kSize>* counters) {
-  for (mixing::Counter& counter : *counters) counter.visits = std::min(counter.visits, most);
+void Hasten(std::uint16_t least_rate, std::array<mixing::Counter, kSize>* counters) {
+  for (mixing::Counter& counter : *counters) counter.rate = std::max(counter.rate, least_rate);
 }
 
 /// Means of what numbers were behind each slice that changed them. So no slice weighs more than
@@ -90,7 +90,7 @@ class Walk {
   void Of(std::array<mixing::Counter, kSize>& a, const std::array<mixing::Counter, kSize>& b,
           Do&& act) {
     for (std::size_t i = 0; i < kSize; ++i, ++place_)
-      act(place_, a[i].chance, b[i].chance, a[i].visits != b[i].visits);
+      act(place_, a[i].chance, b[i].chance, a[i].rate != b[i].rate);
   }
   template <std::size_t kSize, class Do>
   void Of(std::array<mixing::Weights, kSize>& a, const std::array<mixing::Weights, kSize>& b,
@@ -109,8 +109,10 @@ class Walk {
 };
 
 template <class States>
-constexpr auto kParts = std::tuple(&States::counters, &States::rest, &States::weights,
-                                   &States::surface_weights);
+constexpr auto kParts = std::tuple(&States::small, &States::rest);
+template <>
+constexpr auto kParts<mixing::LevelWeights> = std::tuple(&mixing::LevelWeights::uneven,
+                                                         &mixing::LevelWeights::surfaces);
 template <>
 constexpr auto kParts<mixing::BinCounters> = std::tuple(&mixing::BinCounters::mask,
                                                         &mixing::BinCounters::range,
@@ -160,9 +162,8 @@ class Trainer {
     for (unsigned i = 0; i < kLevelBits.size(); ++i) {
       if (scan.intensity.empty()) break;
       ToBins(scan, slice, {1, kLevelError, kLevelBits[i], kSlices}, &bins_);
-      all().CopyTo(1, bins_.step_mm, bins_.level_bits, model_.get());
-      Run(1, &coder);
-      Keep(model_->level, &all().levels[i], &level_means_[i]);
+      for (unsigned effort = 1; effort <= mixing::kEfforts; ++effort)
+        LearnLevels(effort, i, &coder);
     }
   }
 
@@ -170,20 +171,23 @@ class Trainer {
     for (unsigned i = 0; i < mixing::kEfforts; ++i) {
       all().weights[i] = states_[i]->weights[i];
       TakeMeans(weight_means_[i], &all().weights[i]);
+      all().level_weights[i] = states_[i]->level_weights[i];
+      for (unsigned k = 0; k < mixing::kLevelClasses; ++k)
+        TakeMeans(level_weight_means_[i][k], &all().level_weights[i][k]);
     }
     for (unsigned i = 0; i < mixing::kStepClasses; ++i) {
       auto& c = all().counters[i];
       TakeMeans(counter_means_[i], &c);
-      Cap(kMostVisits, &c.mask);
-      Cap(kMostVisits, &c.range);
-      Cap(kMostJumpVisits, &c.jump);
-      Cap(kMostJumpVisits, &c.candidates);
+      Hasten(kLeastRate, &c.mask);
+      Hasten(kLeastRate, &c.range);
+      Hasten(kLeastJumpRate, &c.jump);
+      Hasten(kLeastJumpRate, &c.candidates);
     }
     for (unsigned i = 0; i < mixing::kLevelClasses; ++i) {
-      auto& level = all().levels[i];
-      TakeMeans(level_means_[i], &level);
-      Cap(kMostVisits, &level.counters);
-      Cap(kMostVisits, &level.rest);
+      auto& level = all().level_counters[i];
+      TakeMeans(level_counter_means_[i], &level);
+      Hasten(kLeastRate, &level.small);
+      Hasten(kLeastRate, &level.rest);
     }
     all().Round();
     return std::move(states_.back());
@@ -192,7 +196,7 @@ class Trainer {
  private:
   void Run(unsigned effort, mixing::SliceCoder* coder) {
     mixing::BitCounter bits;
-    coder->Code(effort, mixing::BestKernel(), model_.get(), &bins_, &bits);
+    coder->Code(effort, model_.get(), &bins_, &bits);
   }
   void LearnBins(unsigned effort, mixing::SliceCoder* coder) {
     mixing::StartStates& states = *states_[effort - 1];
@@ -204,6 +208,16 @@ class Trainer {
          effort == mixing::kEfforts ? &counter_means_[step_class] : &unused);
     Keep(model_->weights, &states.weights[effort - 1], &weight_means_[effort - 1]);
   }
+  void LearnLevels(unsigned effort, unsigned level_class, mixing::SliceCoder* coder) {
+    mixing::StartStates& states = *states_[effort - 1];
+    states.CopyTo(effort, bins_.step_mm, bins_.level_bits, model_.get());
+    Run(effort, coder);
+    Means unused;
+    Keep(model_->level_counters, &states.level_counters[level_class],
+         effort == mixing::kEfforts ? &level_counter_means_[level_class] : &unused);
+    Keep(model_->level_weights, &states.level_weights[effort - 1][level_class],
+         &level_weight_means_[effort - 1][level_class]);
+  }
   /// The last effort has all counters that the others have.
   mixing::StartStates& all() { return *states_.back(); }
 
@@ -213,7 +227,8 @@ class Trainer {
                                                   std::make_unique<mixing::StartStates>()};
   std::array<Means, mixing::kStepClasses> counter_means_;
   std::array<Means, mixing::kEfforts> weight_means_;
-  std::array<Means, mixing::kLevelClasses> level_means_;
+  std::array<Means, mixing::kLevelClasses> level_counter_means_;
+  std::array<std::array<Means, mixing::kLevelClasses>, mixing::kEfforts> level_weight_means_;
   std::unique_ptr<mixing::Model> model_ = std::make_unique<mixing::Model>();
   SliceBins bins_;
 };
@@ -243,7 +258,7 @@ double BitsPerReturn(const ScanSet& set, const MixingCase& setting,
       std::vector<std::uint8_t> payload;
       mixing::BinaryEncoder encoder(&payload);
       states.CopyTo(setting.effort, bins.step_mm, setting.level_bits, model.get());
-      coder.Code(setting.effort, mixing::BestKernel(), model.get(), &bins, &encoder);
+      coder.Code(setting.effort, model.get(), &bins, &encoder);
       encoder.Finish();
       bytes += static_cast<double>(payload.size() + kHeaderBytes);
 
@@ -252,8 +267,8 @@ double BitsPerReturn(const ScanSet& set, const MixingCase& setting,
       std::fill(decoded.levels.begin(), decoded.levels.end(), std::uint8_t{0});
       mixing::BinaryDecoder decoder({payload.data(), payload.size()});
       states.CopyTo(setting.effort, bins.step_mm, setting.level_bits, model.get());
-      if (!coder.Code(setting.effort, mixing::kScalarKernel, model.get(), &decoded, &decoder) ||
-          !decoder.AtEnd() || decoded.bins != bins.bins || decoded.levels != bins.levels) {
+      if (!coder.Code(setting.effort, model.get(), &decoded, &decoder) || !decoder.AtEnd() ||
+          decoded.bins != bins.bins || decoded.levels != bins.levels) {
         throw std::runtime_error(set.name + ": a slice did not come back as it was");
       }
     }

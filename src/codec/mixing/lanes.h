@@ -1,0 +1,249 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Eight counters, votes or weights at once, in the instructions of each kind of processor. All
+// kinds give the same numbers.
+#pragma once
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <cstring>
+
+#include "src/codec/mixing/arithmetic.h"
+
+#if defined(__x86_64__)
+#include <emmintrin.h>
+#elif defined(__aarch64__) && defined(__AARCH64EL__)
+#include <arm_neon.h>
+#endif
+
+namespace lidar::codec::mixing {
+
+constexpr unsigned kLanes = 8;
+
+/// For any processor. The others have the same functions:
+/// - Of: eight numbers. Load and Store: counters of `kCount` places, and in other lanes some that
+///   have no vote.
+/// - Votes: of counters whose logits are given. Learnt: what counters are after a bit.
+/// - Join: the numbers of two groups, each of which has zeros where the other has none.
+/// - Dot, Plus and Total: a sum of products, in parts. Teach: weight += (input step + 2^16) / 2^17,
+///   rounded down, in the bounds of an int16.
+struct PlainLanes {
+  using Eight = std::array<std::int16_t, kLanes>;
+  using Sum = std::int32_t;
+  using Counters = std::array<Counter, kLanes>;
+
+  static Eight Of(const Eight& numbers) { return numbers; }
+  template <unsigned kCount>
+  static Counters Load(const Counter* const* from) {
+    Counters counters;
+    counters.fill({0, 0});
+    for (unsigned i = 0; i < kCount; ++i) counters[i] = *from[i];
+    return counters;
+  }
+  template <unsigned kCount>
+  static void Store(const Counters& counters, Counter* const* to) {
+    for (unsigned i = 0; i < kCount; ++i) *to[i] = counters[i];
+  }
+  static Eight Votes(const Eight& logits, const Counters& counters) {
+    Eight votes;
+    for (unsigned i = 0; i < kLanes; ++i)
+      votes[i] = static_cast<std::int16_t>(counters[i].Vote(logits[i]));
+    return votes;
+  }
+  static Counters Learnt(Counters counters, bool bit) {
+    for (Counter& counter : counters) counter.Learn(bit);
+    return counters;
+  }
+  static Eight Join(const Eight& a, const Eight& b) {
+    Eight joined;
+    for (unsigned i = 0; i < kLanes; ++i) joined[i] = static_cast<std::int16_t>(a[i] | b[i]);
+    return joined;
+  }
+  static Sum Dot(const Eight& inputs, const std::int16_t* weights) {
+    Sum sum = 0;
+    for (unsigned i = 0; i < kLanes; ++i) sum += inputs[i] * weights[i];
+    return sum;
+  }
+  static Sum Plus(Sum a, Sum b) { return a + b; }
+  static std::int32_t Total(Sum sum) { return sum; }
+  static void Teach(const Eight& inputs, std::int32_t step, std::int16_t* weights) {
+    for (unsigned i = 0; i < kLanes; ++i) {
+      const std::int32_t moved = weights[i] + ((inputs[i] * step + (1 << 16)) >> 17);
+      weights[i] = static_cast<std::int16_t>(std::clamp(moved, -32'768, 32'767));
+    }
+  }
+};
+
+#if defined(__x86_64__)
+/// SSE2 belongs to every x86-64.
+struct Sse2Lanes {
+  using Eight = __m128i;
+  using Sum = __m128i;
+  struct Counters {
+    Eight rates, chances;
+  };
+
+  static Eight Of(const std::array<std::int16_t, kLanes>& n) {
+    return _mm_setr_epi16(n[0], n[1], n[2], n[3], n[4], n[5], n[6], n[7]);
+  }
+  template <unsigned kCount>
+  static Counters Load(const Counter* const* from) {
+    const __m128i zero = _mm_setzero_si128();
+    // Four rates, then four chances.
+    const __m128i low = _mm_unpacklo_epi32(Pair<kCount, 0>(from), Pair<kCount, 2>(from));
+    if constexpr (kCount <= 4)
+      return {_mm_unpacklo_epi64(low, zero), _mm_unpackhi_epi64(low, zero)};
+    const __m128i high = _mm_unpacklo_epi32(Pair<kCount, 4>(from), Pair<kCount, 6>(from));
+    return {_mm_unpacklo_epi64(low, high), _mm_unpackhi_epi64(low, high)};
+  }
+  template <unsigned kCount>
+  static void Store(const Counters& counters, Counter* const* to) {
+    StoreFour<kCount>(_mm_unpacklo_epi16(counters.rates, counters.chances), to);
+    if constexpr (kCount > 4)
+      StoreFour<kCount - 4>(_mm_unpackhi_epi16(counters.rates, counters.chances), to + 4);
+  }
+  static Eight Votes(Eight logits, const Counters& counters) {
+    const Eight doubt = _mm_add_epi16(counters.rates, _mm_srli_epi16(counters.rates, 1));
+    const Eight sure = _mm_srli_epi16(_mm_xor_si128(doubt, _mm_set1_epi16(-1)), 1);
+    return _mm_mulhi_epi16(_mm_add_epi16(logits, logits), sure);
+  }
+  static Counters Learnt(const Counters& counters, bool bit) {
+    const Eight mirror = _mm_set1_epi16(bit ? -1 : 0);
+    const Eight miss = _mm_xor_si128(counters.chances, mirror);
+    const Eight left = _mm_sub_epi16(miss, _mm_mulhi_epu16(miss, counters.rates));
+    const Eight rates = counters.rates;
+    const Eight square = _mm_mulhi_epu16(rates, rates);
+    const Eight less = _mm_mulhi_epu16(rates, _mm_sub_epi16(rates, _mm_srli_epi16(square, 1)));
+    return {_mm_sub_epi16(rates, less), _mm_xor_si128(left, mirror)};
+  }
+  static Eight Join(Eight a, Eight b) { return _mm_or_si128(a, b); }
+  static Sum Dot(Eight inputs, const std::int16_t* weights) {
+    return _mm_madd_epi16(inputs, _mm_load_si128(reinterpret_cast<const __m128i*>(weights)));
+  }
+  static Sum Plus(Sum a, Sum b) { return _mm_add_epi32(a, b); }
+  static std::int32_t Total(Sum sum) {
+    sum = _mm_add_epi32(sum, _mm_shuffle_epi32(sum, 0x4E));
+    return _mm_cvtsi128_si32(_mm_add_epi32(sum, _mm_shuffle_epi32(sum, 0xB1)));
+  }
+  static void Teach(Eight inputs, std::int32_t step, std::int16_t* weights) {
+    auto* at = reinterpret_cast<__m128i*>(weights);
+    const Eight product = _mm_mulhi_epi16(inputs, _mm_set1_epi16(static_cast<std::int16_t>(step)));
+    const Eight moves = _mm_srai_epi16(_mm_add_epi16(product, _mm_set1_epi16(1)), 1);
+    _mm_store_si128(at, _mm_adds_epi16(_mm_load_si128(at), moves));
+  }
+
+ private:
+  static __m128i LoadOne(const Counter* from) {
+    std::int32_t word;
+    std::memcpy(&word, from, sizeof word);
+    return _mm_cvtsi32_si128(word);
+  }
+  /// Two rates, then two chances.
+  template <unsigned kCount, unsigned kFirst>
+  static __m128i Pair(const Counter* const* from) {
+    __m128i first = _mm_setzero_si128();
+    __m128i second = _mm_setzero_si128();
+    if constexpr (kFirst < kCount) first = LoadOne(from[kFirst]);
+    if constexpr (kFirst + 1 < kCount) second = LoadOne(from[kFirst + 1]);
+    return _mm_unpacklo_epi16(first, second);
+  }
+  static void StoreOne(__m128i words, Counter* to) {
+    const std::int32_t word = _mm_cvtsi128_si32(words);
+    std::memcpy(static_cast<void*>(to), &word, sizeof word);
+  }
+  template <unsigned kCount>
+  static void StoreFour(__m128i words, Counter* const* to) {
+    StoreOne(words, to[0]);
+    if constexpr (kCount > 1) StoreOne(_mm_shuffle_epi32(words, 1), to[1]);
+    if constexpr (kCount > 2) StoreOne(_mm_shuffle_epi32(words, 2), to[2]);
+    if constexpr (kCount > 3) StoreOne(_mm_shuffle_epi32(words, 3), to[3]);
+  }
+};
+using FastLanes = Sse2Lanes;
+#elif defined(__aarch64__) && defined(__AARCH64EL__)
+struct NeonLanes {
+  using Eight = int16x8_t;
+  using Sum = int32x4_t;
+  struct Counters {
+    uint16x8_t rates, chances;
+  };
+
+  static Eight Of(const std::array<std::int16_t, kLanes>& n) {
+    return Eight{n[0], n[1], n[2], n[3], n[4], n[5], n[6], n[7]};
+  }
+  template <unsigned kCount>
+  static Counters Load(const Counter* const* from) {
+    const uint16x8_t low = LoadFour<kCount>(from);
+    uint16x8_t high = vdupq_n_u16(0);
+    if constexpr (kCount > 4) high = LoadFour<kCount - 4>(from + 4);
+    return {vuzp1q_u16(low, high), vuzp2q_u16(low, high)};
+  }
+  template <unsigned kCount>
+  static void Store(const Counters& counters, Counter* const* to) {
+    StoreFour<kCount>(vzip1q_u16(counters.rates, counters.chances), to);
+    if constexpr (kCount > 4)
+      StoreFour<kCount - 4>(vzip2q_u16(counters.rates, counters.chances), to + 4);
+  }
+  static Eight Votes(Eight logits, const Counters& counters) {
+    const uint16x8_t doubt = vaddq_u16(counters.rates, vshrq_n_u16(counters.rates, 1));
+    const uint16x8_t sure = vshrq_n_u16(vmvnq_u16(doubt), 1);
+    return vqdmulhq_s16(logits, vreinterpretq_s16_u16(sure));  // of twice the product
+  }
+  static Counters Learnt(const Counters& counters, bool bit) {
+    const uint16x8_t mirror = vdupq_n_u16(bit ? 0xFFFF : 0);
+    const uint16x8_t miss = veorq_u16(counters.chances, mirror);
+    const uint16x8_t left = vsubq_u16(miss, High(miss, counters.rates));
+    const uint16x8_t rates = counters.rates;
+    const uint16x8_t square = High(rates, rates);
+    const uint16x8_t less = High(rates, vsubq_u16(rates, vshrq_n_u16(square, 1)));
+    return {vsubq_u16(rates, less), veorq_u16(left, mirror)};
+  }
+  static Eight Join(Eight a, Eight b) { return vorrq_s16(a, b); }
+  static Sum Dot(Eight inputs, const std::int16_t* weights) {
+    const int16x8_t w = vld1q_s16(weights);
+    return vmlal_high_s16(vmull_s16(vget_low_s16(inputs), vget_low_s16(w)), inputs, w);
+  }
+  static Sum Plus(Sum a, Sum b) { return vaddq_s32(a, b); }
+  static std::int32_t Total(Sum sum) { return vaddvq_s32(sum); }
+  static void Teach(Eight inputs, std::int32_t step, std::int16_t* weights) {
+    const auto factor = static_cast<std::int16_t>(step);
+    const int16x4_t low = vshrn_n_s32(vmull_n_s16(vget_low_s16(inputs), factor), 16);
+    const int16x8_t product = vshrn_high_n_s32(low, vmull_high_n_s16(inputs, factor), 16);
+    vst1q_s16(weights, vqaddq_s16(vld1q_s16(weights), vrshrq_n_s16(product, 1)));
+  }
+
+ private:
+  static uint16x8_t High(uint16x8_t a, uint16x8_t b) {
+    const uint16x4_t low = vshrn_n_u32(vmull_u16(vget_low_u16(a), vget_low_u16(b)), 16);
+    return vshrn_high_n_u32(low, vmull_high_u16(a, b), 16);
+  }
+  static std::uint32_t WordOf(const Counter* from) {
+    std::uint32_t word;
+    std::memcpy(&word, from, sizeof word);
+    return word;
+  }
+  template <unsigned kCount>
+  static uint16x8_t LoadFour(const Counter* const* from) {
+    uint32x4_t words = vsetq_lane_u32(WordOf(from[0]), vdupq_n_u32(0), 0);
+    if constexpr (kCount > 1) words = vsetq_lane_u32(WordOf(from[1]), words, 1);
+    if constexpr (kCount > 2) words = vsetq_lane_u32(WordOf(from[2]), words, 2);
+    if constexpr (kCount > 3) words = vsetq_lane_u32(WordOf(from[3]), words, 3);
+    return vreinterpretq_u16_u32(words);
+  }
+  static void StoreOne(std::uint32_t word, Counter* to) {
+    std::memcpy(static_cast<void*>(to), &word, sizeof word);
+  }
+  template <unsigned kCount>
+  static void StoreFour(uint16x8_t pairs, Counter* const* to) {
+    const uint32x4_t words = vreinterpretq_u32_u16(pairs);
+    StoreOne(vgetq_lane_u32(words, 0), to[0]);
+    if constexpr (kCount > 1) StoreOne(vgetq_lane_u32(words, 1), to[1]);
+    if constexpr (kCount > 2) StoreOne(vgetq_lane_u32(words, 2), to[2]);
+    if constexpr (kCount > 3) StoreOne(vgetq_lane_u32(words, 3), to[3]);
+  }
+};
+using FastLanes = NeonLanes;
+#else
+using FastLanes = PlainLanes;
+#endif
+
+}  // namespace lidar::codec::mixing
