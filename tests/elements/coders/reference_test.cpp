@@ -154,8 +154,12 @@ TEST_F(StaticSensor, IsCodedSliceBySliceBehindATee) {
 
 TEST_F(StaticSensor, IsCodedByWhatIsThereWhateverWasLost) {
   Start();
-  for (int i = 0; i < 12; ++i) Scan([](guint packet) { return packet % 5 == 2; });
-  EXPECT_EQ(Mode(), "range-temporal1");
+  int referring = 0;  // scans whose last slice refers to another
+  for (int i = 0; i < 12; ++i) {
+    Scan([](guint packet) { return packet % 5 == 2; });
+    referring += Mode() == "range-temporal1" ? 1 : 0;
+  }
+  EXPECT_GE(referring, 3);
   EXPECT_GT(Decoded("slices"), 5 * kSlices);
   EXPECT_EQ(Decoded("slices-dropped"), 0U);
 }
