@@ -43,7 +43,7 @@ class Stream {
   double queue_compensation() const { return rate_adjust_factor_ + frame_size_dev_; }
   Duration frame_period() const { return frame_period_; }
   /// The queue that stands here came from a gap: once it is gone, it lowers the target no more.
-  void OnGapEnd() { backlog_of_gap_ = true; }
+  void OnGapEnd() { backlog_of_gap_ = !queue_.empty() || rate_adjust_factor_ > 0; }
   /// Silence counts from here on, at the latest.
   void NoteTime(Time now) { last_active_ = last_active_.value_or(now); }
   /// Has packets, or had lately.

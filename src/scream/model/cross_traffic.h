@@ -15,13 +15,23 @@ namespace lidar::scream {
 /// coarse, so it takes many packets.
 class CrossTraffic {
  public:
-  void Add(Time sent, Time arrival, Duration qdelay) {
+  /// `congested`: marks or losses show that there is a queue. Without them jitter, or a clock that
+  /// drifts, looks like one, and on an idle link arrivals follow departures as they do beside
+  /// others.
+  void Add(Time sent, Time arrival, Duration qdelay, bool congested) {
+    if (!congested) {
+      Skip(sent);
+      return;
+    }
     const auto previous = std::exchange(last_, Packet{sent, arrival});
     if (!previous || sent <= previous->sent || arrival < previous->arrival) return;
     // A packet that waited for less may have met an idle link.
     if (sent - previous->sent > kPause || arrival - previous->arrival > qdelay) return;
+    counted_ = sent;
     Count(1e3 * Seconds(sent - previous->sent), 1e3 * Seconds(arrival - previous->arrival));
   }
+  /// The next packet has no neighbour: there was a gap, or a clock was set.
+  void Break() { last_.reset(); }
   /// Stays as it was while packets leave so evenly that they tell nothing.
   bool found() const { return found_; }
   /// The others' share of the link; none while too little is known.
@@ -31,6 +41,10 @@ class CrossTraffic {
   }
 
  private:
+  void Skip(Time sent) {
+    last_.reset();
+    if (sent - counted_ > kForgotten) *this = CrossTraffic();
+  }
   struct Packet {
     Time sent{};
     Time arrival{};
@@ -58,12 +72,14 @@ class CrossTraffic {
   static constexpr double kLately = 64;
   static constexpr double kPackets = 2048;
   static constexpr int kSure = 1024;  // packets
+  static constexpr Duration kForgotten = std::chrono::seconds(10);
   static constexpr Duration kPause = std::chrono::milliseconds(15);
   /// In ms^2: arrival times of 1/1024 s leave an error of 0.1 in the share.
   static constexpr double kEvidence = 30;
   static constexpr double kFound = 0.3;
   static constexpr double kGone = 0.2;
   std::optional<Packet> last_;
+  Time counted_{};
   double mean_sent_ = 0, mean_arrived_ = 0;
   double sent_sent_ = 0, sent_arrived_ = 0;  // sums of products
   int against_ = 0;                          // packets in a row that speak against `found_`

@@ -9,6 +9,8 @@ namespace {
 
 /// So long after a mark the next sign of congestion is expected to be one too.
 constexpr Duration kMarksExpected = 30s;
+/// So long after a loss a queue that overflows may overflow again.
+constexpr Duration kLossesExpected = 10s;
 /// Reports that are no further apart than this part of a round trip need no allowance; others one
 /// of this at most.
 constexpr int kCloseReports = 5;
@@ -38,6 +40,7 @@ void PathModel::OnGapEnd(Time now, Duration s_rtt, double l4s_alpha) {
   gap_end_ = now;
   queue_delay_.ForgetQueue();
   busy_run_.Reset();
+  cross_traffic_.Break();
   train_.Reset();
   rtt_.Restore(std::max(s_rtt, rtt_.min()));
   l4s_alpha_.Restore(l4s_alpha);
@@ -80,6 +83,7 @@ void PathModel::MeasureDelays(Time now, const AckSummary& acks, const SenderStat
       continue;
     ++clock_resets_;
     busy_run_.Reset();
+    cross_traffic_.Break();
   }
   if (acks.acked.empty() || acks.acked.back().sent >= gap_end_)
     queue_delay_.Update(now, rtt_.smoothed(), sender.qdelay_target);
@@ -103,12 +107,15 @@ void PathModel::CountMarksAndLosses(Time now, const AckSummary& acks, const Send
   for (std::size_t i = 0; i < acks.lost.size(); ++i) loss_rate_.Add(true, sender.ref_wnd);
   packets_ce_ += static_cast<std::uint64_t>(marked + answered);
   if (marked + answered > 0) last_mark_ = now;
+  if (!acks.lost.empty()) last_loss_ = now;
   const Duration round = std::max({rtt_.smoothed(), p_.virtual_rtt, sender.frame_period});
   l4s_alpha_.Update(now, static_cast<int>(acks.acked.size()), marked, rtt_.smoothed(), round);
 }
 
 void PathModel::ObserveCapacity(Time now, const AckSummary& acks, Duration qdelay_target) {
   hole_in_report_ = false;
+  const bool lossy = loss_context_.AtFullQueue() && now - last_loss_ < kLossesExpected;
+  const bool congested = MarkedLately(now) || lossy;
   for (const AckedPacket& packet : acks.acked) {
     if (!packet.arrival) {  // a hole in what is known of the link
       busy_run_.Reset();
@@ -120,7 +127,8 @@ void PathModel::ObserveCapacity(Time now, const AckSummary& acks, Duration qdela
     loss_context_.OnAcked(packet.sent, qdelay);
     if (packet.sent >= gap_end_) classic_ecn_.OnPacket(now, qdelay, marked);
     if (marked && packet.sent >= gap_end_) marking_onset_.OnMark(qdelay);
-    cross_traffic_.Add(packet.sent, *packet.arrival, qdelay);
+    if (packet.sent >= gap_end_)
+      cross_traffic_.Add(packet.sent, *packet.arrival, qdelay, congested);
     busy_run_.Add({*packet.arrival, packet.size, busy, marked});
     if (const auto rate = burst_.Add({packet.sent, *packet.arrival, packet.size}))
       acked_peak_ = std::max(acked_peak_, *rate);

@@ -126,6 +126,7 @@ class PathModel {
   mutable RateMeter sent_rate_{1s};
   mutable RateMeter acked_rate_{100ms};
   std::optional<Time> last_mark_;
+  Time last_loss_{};
   Time last_report_{};
   Duration report_gap_{0};
   Time half_rate_until_{};

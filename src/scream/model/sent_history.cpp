@@ -162,6 +162,7 @@ HistoryResult SentHistory::OnFeedback(Time now, const CongestionFeedback& feedba
   if (!any_ours) return HistoryResult::kNotOurs;
   const Time report = summary->report = clock_.Unwrap(feedback.report_timestamp);
   held_.reset();
+  newest_timed_.reset();
   for (const SsrcReport& block : feedback.blocks) {
     const auto it = sources_.find(block.ssrc);
     if (it == sources_.end() || it->second.packets.empty()) continue;
@@ -229,9 +230,10 @@ void SentHistory::Acknowledge(Time now, const PacketMetric& metric, Time report,
   packet->ce = ce;
   if (ce) summary->bytes_newly_acked_ce += packet->record.size;
   if (timed) {
-    const bool last = summary->acked.empty() || packet->record.sent >= summary->acked.back().sent;
-    if (last || !summary->rtt)
+    if (packet->record.sent >= newest_timed_.value_or(packet->record.sent)) {
+      newest_timed_ = packet->record.sent;
       summary->rtt = std::max(Duration{0}, now - packet->record.sent - *metric.arrival_offset);
+    }
   }
   summary->acked.push_back(acked);
 }

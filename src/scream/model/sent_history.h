@@ -113,9 +113,10 @@ class SentHistory {
   std::map<std::uint32_t, Source> sources_;
   ReportClock clock_;
   DataSize in_flight_;
-  Time newest_acked_{};           // when it was sent
-  bool arrivals_known_ = false;   // the peer tells arrival times
-  std::optional<Duration> held_;  // of this report: the shortest round trip with holding time
+  Time newest_acked_{};               // when it was sent
+  bool arrivals_known_ = false;       // the peer tells arrival times
+  std::optional<Time> newest_timed_;  // of this report: when the newest packet with a time was sent
+  std::optional<Duration> held_;      // of this report: the shortest round trip with holding time
   Duration reordering_window_{0};
   Time last_reordering_{};
   Duration max_reordering_window_ = std::chrono::milliseconds(100);

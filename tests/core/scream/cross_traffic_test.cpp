@@ -21,7 +21,7 @@ class CrossTrafficTest : public ::testing::Test {
       const double spacing_ms = i % 10 == 0 ? 11 : 1;
       sent_ += FromSeconds(spacing_ms / 1e3);
       arrival_ += FromSeconds((own + others_share * spacing_ms) / 1e3);
-      traffic_.Add(sent_, Tick(arrival_), queue);
+      traffic_.Add(sent_, Tick(arrival_), queue, congested_);
     }
   }
   static Time Tick(Time t) {
@@ -31,6 +31,7 @@ class CrossTrafficTest : public ::testing::Test {
 
   CrossTraffic traffic_;
   Time sent_ = kStart, arrival_ = kStart;
+  bool congested_ = true;
 };
 
 TEST_F(CrossTrafficTest, IsNoneAloneOnALink) {
@@ -66,10 +67,40 @@ TEST_F(CrossTrafficTest, IsUnknownWithoutAQueue) {
   EXPECT_FALSE(traffic_.found());
 }
 
+/// Jitter, a longer route and clocks that drift look like a queue.
+TEST_F(CrossTrafficTest, IsUnknownWithoutASignOfCongestion) {
+  congested_ = false;
+  Send(500, 1);
+  EXPECT_FALSE(traffic_.share());
+  EXPECT_FALSE(traffic_.found());
+}
+
+TEST_F(CrossTrafficTest, IsForgottenTenSecondsAfterTheLastCongestion) {
+  Send(500, 0.5);
+  congested_ = false;
+  Send(400, 0.5);  // 8 s
+  EXPECT_TRUE(traffic_.found());
+  Send(200, 0.5);
+  EXPECT_FALSE(traffic_.found());
+  EXPECT_FALSE(traffic_.share());
+}
+
+TEST_F(CrossTrafficTest, TakesNoGapForOthers) {
+  Send(500, 0.5);
+  const double before = *traffic_.share();
+  for (int i = 0; i < 20; ++i) {
+    traffic_.Break();
+    arrival_ += 300ms;
+    sent_ += 5ms;
+    traffic_.Add(sent_, Tick(arrival_), 400ms, true);
+  }
+  EXPECT_DOUBLE_EQ(*traffic_.share(), before);
+}
+
 TEST_F(CrossTrafficTest, IsUnknownWhilePacketsLeaveEvenly) {
   for (int i = 0; i < 5000; ++i) {
     sent_ += 1ms;
-    traffic_.Add(sent_, Tick(sent_ + i % 7 * 200us), 20ms);
+    traffic_.Add(sent_, Tick(sent_ + i % 7 * 200us), 20ms, true);
   }
   EXPECT_FALSE(traffic_.share());
 }
@@ -77,7 +108,7 @@ TEST_F(CrossTrafficTest, IsUnknownWhilePacketsLeaveEvenly) {
 TEST_F(CrossTrafficTest, SkipsPacketsOutOfOrder) {
   Send(500, 0.5);
   const double before = *traffic_.share();
-  for (int i = 0; i < 100; ++i) traffic_.Add(sent_ - i * 10ms, arrival_ - i * 7ms, 20ms);
+  for (int i = 0; i < 100; ++i) traffic_.Add(sent_ - i * 10ms, arrival_ - i * 7ms, 20ms, true);
   EXPECT_DOUBLE_EQ(*traffic_.share(), before);
 }
 

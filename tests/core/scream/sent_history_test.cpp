@@ -56,6 +56,18 @@ TEST_F(SentHistoryTest, KnowsWhatHasBeenInFlightForLongest) {
   EXPECT_EQ(history_.oldest_in_flight(), kStart + 4ms);
 }
 
+/// Stream 2, whose packets are older, comes second.
+TEST_F(SentHistoryTest, TheRoundTripIsOfThePacketSentLast) {
+  for (const std::uint32_t ssrc : {2U, 1U}) {
+    for (std::uint16_t seq = 0; seq < 2; ++seq, now_ += 5ms)
+      history_.OnSent(ssrc, seq, {0, DataSize::Bytes(1000), now_, Ecn::kEct1});
+  }
+  CongestionFeedback f = Report(0, "rr", 1);
+  f.blocks.push_back(Report(0, "rr", 2).blocks[0]);
+  ASSERT_EQ(Apply(f), HistoryResult::kApplied);
+  EXPECT_EQ(summary_.rtt, 5ms);
+}
+
 /// Reports tell one stream after the other.
 TEST_F(SentHistoryTest, PacketsOfSeveralStreamsComeAsTheyWereSent) {
   for (std::uint16_t seq = 0; seq < 3; ++seq)

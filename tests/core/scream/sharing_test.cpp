@@ -127,6 +127,17 @@ TEST(BesideOthers, TheStatisticsTellTheirShare) {
   EXPECT_EQ(cross_traffic("frames_20M_rtt25"), 0);
 }
 
+/// An idle link delivers packets as far apart as they leave, which is what they do beside others.
+TEST(BesideOthers, NobodyIsFoundOnAnIdleLinkThatJitters) {
+  Scenario s = *FindScenario("frames_20M_jitter4", Parameters());
+  s.config.forward.path.jitter = 8ms;
+  s.config.flows[0].sources[0].stream.max_bitrate = Mbps(5);
+  for (const bool l4s : {true, false}) {
+    if (!l4s) s.config.flows[0].parameters.ecn = Ecn::kNotEct;
+    EXPECT_EQ(Simulate(s.config).flows[0].statistics.cross_traffic, 0) << l4s;
+  }
+}
+
 TEST(BesidePrague, BothGetAboutTheSame) {
   for (const char* name : {"prague_ramp_20M", "prague_dualpi2_20M"}) {
     const Scenario s = *FindScenario(name, Parameters());
