@@ -3,6 +3,7 @@
 """Runs every gst-launch-1.0 command of the README and the docs, or of the pages named, as it is printed.
 
 A command passes where it ends with exit code 0, or still runs without an error a moment after it plays.
+With -q it does not say when it plays: then it passes where it runs for some seconds without an error.
 Windows become fakesinks, and each page has ports and a folder of its own: several run at a time.
 Commands that name a sensor by `hostname=` are left out, and said so.
 """
@@ -50,13 +51,13 @@ def with_ports(command, first):
 
 
 def output_for_a_while(process, quiet):
-    """What the process prints until it ends, or has played for a moment and is told to stop."""
+    """What the process prints until it ends or is told to stop, and whether it was stopped before it played."""
     output, plays = b"", False
     until = time.monotonic() + (QUIET_SECONDS if quiet else START_SECONDS)
     while select.select([process.stdout], [], [], max(0, until - time.monotonic()))[0]:
         printed = os.read(process.stdout.fileno(), 65536)
         if not printed:
-            return output
+            return output, False
         output += printed
         if not plays and PLAYING in output:
             plays = True
@@ -64,7 +65,7 @@ def output_for_a_while(process, quiet):
         if time.monotonic() > until:
             break
     process.send_signal(signal.SIGINT)
-    return output
+    return output, not plays and not quiet
 
 
 def run(command, folder, first_port):
@@ -77,7 +78,7 @@ def run(command, folder, first_port):
         stdout=subprocess.PIPE,
         stderr=subprocess.STDOUT,
     )
-    output = output_for_a_while(process, quiet=" -q " in shown)
+    output, never_played = output_for_a_while(process, quiet=" -q " in shown)
     try:
         output += process.communicate(timeout=10)[0]
     except subprocess.TimeoutExpired:
@@ -91,6 +92,8 @@ def run(command, folder, first_port):
     ]
     if bad:
         return "\n".join(bad[:5])
+    if never_played:
+        return f"does not play within {START_SECONDS} s\n" + "\n".join(output.splitlines()[-5:])
     if process.returncode not in (0, -signal.SIGINT):
         return f"exit code {process.returncode}\n" + "\n".join(output.splitlines()[-5:])
     return None
