@@ -49,8 +49,8 @@ constexpr std::uint16_t RateAfter(unsigned bits) {
   return static_cast<std::uint16_t>(bits == 0 ? 40'000 : kOne / (static_cast<int>(bits) + 2));
 }
 
-/// An adaptive chance that learns the less from a bit the more it has seen; from 257 on it does so
-/// no more. Lanes hold eight of them.
+/// An adaptive chance that learns the less from a bit the more it has seen: its rate falls for
+/// about 300 bits, to 255. Lanes hold eight of them.
 struct Counter {
   std::uint16_t rate = RateAfter(0);
   std::uint16_t chance = kOne / 2;
