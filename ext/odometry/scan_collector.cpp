@@ -54,6 +54,7 @@ void ScanCollector::Add(const GstLidarSlice& slice, Time time, const guint8* poi
     std::memcpy(p.data(), points + i * info_.point_step + offset, sizeof p);
     if (p[0] == 0 && p[1] == 0 && p[2] == 0) continue;  // no return
     scan_.points.points.push_back(Eigen::Vector3f(p[0], p[1], p[2]).cast<double>());
+    if (organised) scan_.points.rings.push_back(static_cast<std::uint16_t>(i / width));
     if (!timed) continue;
     const float column = organised ? static_cast<float>(i % width) : 0;
     scan_.points.phases.push_back(first + column * per_column);

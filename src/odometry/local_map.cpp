@@ -55,9 +55,10 @@ LocalMap::Block* LocalMap::FindBlock(const Voxel& voxel) {
   return found == index_.end() ? nullptr : &blocks_[found->second];
 }
 
-void LocalMap::Add(const Points& points) {
+void LocalMap::Add(const Points& points, const Points& normals) {
   const auto apart = static_cast<float>(spacing_m_ * spacing_m_);
-  for (const Eigen::Vector3d& point : points) {
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const Eigen::Vector3d& point = points[i];
     const Voxel voxel = VoxelOf(point, settings_.voxel_size_m);
     Block& block = *BlockAt(voxel);
     if (block.count == kMaxPoints) continue;
@@ -66,7 +67,10 @@ void LocalMap::Add(const Points& points) {
     const bool is_new = std::none_of(block.points.cbegin(), end, [&](const Eigen::Vector3f& p) {
       return (p - inside).squaredNorm() < apart;
     });
-    if (is_new) block.points[block.count++] = inside;
+    if (!is_new) continue;
+    block.normals[block.count] = Eigen::Vector3f::Zero();
+    if (i < normals.size()) block.normals[block.count] = normals[i].cast<float>();
+    block.points[block.count++] = inside;
   }
 }
 
@@ -85,15 +89,15 @@ void LocalMap::Forget(const Eigen::Vector3d& center) {
 std::optional<LocalMap::Neighbour> LocalMap::FindNearest(const Eigen::Vector3d& point,
                                                          double reach_m) {
   const double size = settings_.voxel_size_m;
-  const Voxel own = VoxelOf(point, size);
-  const Eigen::Vector3d inside = point - CornerOf(own);
+  const Voxel home = VoxelOf(point, size);
+  const Eigen::Vector3d inside = point - CornerOf(home);
   auto best = static_cast<float>(reach_m * reach_m);
   Block* found = nullptr;
   Voxel found_step;
   std::uint32_t found_index = 0;
   const auto search = [&](const Voxel& step) {
     if (SquaredGap(inside, step, size) >= static_cast<double>(best)) return;
-    Block* block = FindBlock(own + step);
+    Block* block = FindBlock(home + step);
     if (block == nullptr) return;
     const Eigen::Vector3f from =
         (inside - Eigen::Vector3d(step.x, step.y, step.z) * size).cast<float>();
@@ -112,10 +116,13 @@ std::optional<LocalMap::Neighbour> LocalMap::FindNearest(const Eigen::Vector3d& 
       for (std::int32_t z = -1; z <= 1; ++z)
         if (x != 0 || y != 0 || z != 0) search({x, y, z});
   if (found == nullptr) return std::nullopt;
-  const Voxel voxel = own + found_step;
-  if (found->counted != found->count) UpdateNormal(voxel, found);
+  const Voxel voxel = home + found_step;
   Neighbour neighbour;
   neighbour.point = CornerOf(voxel) + found->points[found_index].cast<double>();
+  neighbour.normal = found->normals[found_index].cast<double>();
+  neighbour.has_normal = !neighbour.normal.isZero(0);
+  if (neighbour.has_normal) return neighbour;
+  if (found->counted != found->count) UpdateNormal(voxel, found);
   neighbour.has_normal = found->has_normal;
   neighbour.normal = found->normal.cast<double>();
   return neighbour;

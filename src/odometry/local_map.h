@@ -17,7 +17,7 @@ struct LocalMapSettings {
   double radius_m = 100;  // what is farther from the sensor is forgotten
 };
 
-/// Memory is bounded by the radius: each cube holds kMaxPoints points at most, of 12 bytes.
+/// Memory is bounded by the radius: each cube holds kMaxPoints points at most, of 24 bytes.
 /// Add() and FindNearest() take constant time a point, Forget() a time linear in the cubes.
 class LocalMap {
  public:
@@ -32,7 +32,9 @@ class LocalMap {
   Points Collect() const;
 
   /// Adds the points that are not close to one that is there.
-  void Add(const Points& points);
+  void Add(const Points& points) { Add(points, {}); }
+  /// `normals`, of unit length, are those of the first points; the others have none.
+  void Add(const Points& points, const Points& normals);
   /// Drops the cubes that are farther than the radius from `center`.
   void Forget(const Eigen::Vector3d& center);
 
@@ -40,7 +42,9 @@ class LocalMap {
   struct Neighbour {
     Eigen::Vector3d point;
     bool has_normal = false;
-    Eigen::Vector3d normal;  // of unit length; where the points of its cube lie on a surface
+    /// Of unit length: the one that came with the point, or that of the surface on which the points
+    /// of its cube lie.
+    Eigen::Vector3d normal;
   };
   /// The nearest point within `reach_m` of `point`; cubes next to the point's own are searched, so
   /// a reach beyond one cube finds most neighbours, not all. Normals are kept until a cube changes.
@@ -48,7 +52,8 @@ class LocalMap {
 
  private:
   struct Block {
-    std::array<Eigen::Vector3f, kMaxPoints> points;  // relative to the corner of the cube
+    std::array<Eigen::Vector3f, kMaxPoints> points;   // relative to the corner of the cube
+    std::array<Eigen::Vector3f, kMaxPoints> normals;  // that came with them; zero: none
     std::uint32_t count = 0;
     std::uint32_t counted = 0;  // as the normal was computed
     bool has_normal = false;

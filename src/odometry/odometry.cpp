@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include "src/odometry/scan_normals.h"
+
 namespace lidar::odometry {
 namespace {
 
@@ -31,15 +33,42 @@ constexpr Duration kShortestGap = milliseconds(2);
 /// Beyond this the velocity may have changed: the search reaches farther in proportion.
 constexpr Duration kUsualPeriod = milliseconds(150);
 constexpr double kWidestSearch = 3;
+/// Where the scans themselves show surfaces, neighbours without one are of little use, and what
+/// these surfaces do not hold is known to be open.
+constexpr double kSparePointWeight = 0.05;
+constexpr double kPointTurn = 0.3;
+constexpr double kLeastConstraint = 0.01;
+constexpr double kLeastBalance = 0.1;
 
-/// Every n-th point, so that at most `most` are left.
-Points Thin(Points points, std::size_t most) {
-  const std::size_t step = (points.size() + most - 1) / most;
-  if (step <= 1) return points;
-  for (std::size_t i = 0; i * step < points.size(); ++i) points[i] = points[i * step];
-  points.resize((points.size() + step - 1) / step);
-  return points;
+/// One point of each cube, and of these every n-th, so that at most `most` are left.
+Points ThinOut(const Points& points, double size_m, std::size_t most) {
+  Points kept = Downsample(points, size_m);
+  const std::size_t step = (kept.size() + most - 1) / most;
+  if (step <= 1) return kept;
+  for (std::size_t i = 0; i * step < kept.size(); ++i) kept[i] = kept[i * step];
+  kept.resize((kept.size() + step - 1) / step);
+  return kept;
 }
+
+/// How the sensor moved from when each point of a scan was sampled to the middle of the scan.
+class Sweep {
+ public:
+  Sweep(const TimedPoints& scan, const Twist& motion, bool deskew) : scan_(scan) {
+    deskew_ = deskew && scan.phases.size() == scan.points.size();
+    for (int i = 0; deskew_ && i <= kPhases; ++i)
+      moved_.push_back(Exp(motion * (double{1} * i / kPhases - 0.5)));
+  }
+  Pose MotionOf(std::size_t point) const {
+    if (!deskew_) return {};
+    const float phase = std::clamp(scan_.phases[point], 0.0F, 1.0F);
+    return moved_[static_cast<std::size_t>(phase * kPhases + 0.5F)];
+  }
+
+ private:
+  const TimedPoints& scan_;
+  bool deskew_;
+  std::vector<Pose> moved_;
+};
 
 }  // namespace
 
@@ -69,59 +98,82 @@ Pose Odometry::PredictAt(Time t) const {
   return pose_ * Exp(velocity_ * Seconds(t - *last_time_));
 }
 
-Points Odometry::SelectPoints(const TimedPoints& scan, Duration duration) const {
+/// Sensors that tell their beams show surfaces in a single scan.
+RegistrationSettings Odometry::SettingsFor(const TimedPoints& scan) const {
+  RegistrationSettings settings = settings_.registration;
+  if (!scan.HasRings()) return settings;
+  settings.spare_point_weight = kSparePointWeight;
+  settings.point_turn = kPointTurn;
+  settings.least_constraint = kLeastConstraint;
+  settings.least_balance = kLeastBalance;
+  return settings;
+}
+
+Odometry::Surface Odometry::SelectPoints(const TimedPoints& scan, Duration duration) const {
   const double nearest = settings_.min_range_m * settings_.min_range_m;
   const double farthest = settings_.max_range_m * settings_.max_range_m;
-  const bool deskew = settings_.deskew && scan.phases.size() == scan.points.size();
-  const Twist sweep = velocity_ * Seconds(duration);
-  std::vector<Pose> moved;
-  for (int i = 0; deskew && i <= kPhases; ++i)
-    moved.push_back(Exp(sweep * (double{1} * i / kPhases - 0.5)));
+  const Sweep sweep(scan, velocity_ * Seconds(duration), settings_.deskew);
   Points selected;
+  std::vector<std::size_t> origins;  // in the scan
   selected.reserve(scan.points.size());
+  origins.reserve(scan.points.size());
   for (std::size_t i = 0; i < scan.points.size(); ++i) {
     const double square = scan.points[i].squaredNorm();
     if (!(square >= nearest && square <= farthest)) continue;  // NaN is neither
-    if (!deskew) {
-      selected.push_back(scan.points[i]);
-      continue;
-    }
-    const float phase = std::clamp(scan.phases[i], 0.0F, 1.0F);
-    selected.push_back(moved[static_cast<std::size_t>(phase * kPhases + 0.5F)] * scan.points[i]);
+    selected.push_back(sweep.MotionOf(i) * scan.points[i]);
+    origins.push_back(i);
   }
-  return selected;
+  const ScanNormals normals(scan.points, scan.rings);
+  Surface fine;
+  Points rest;
+  for (const std::size_t k : FirstOfEachCube(selected, kMapGrid * settings_.voxel_size_m)) {
+    const std::size_t i = origins[k];
+    const Eigen::Vector3d normal =
+        scan.HasRings() ? normals.At(scan.points[i], scan.rings[i]) : Eigen::Vector3d::Zero();
+    if (normal.isZero(0)) {
+      rest.push_back(selected[k]);
+    } else {
+      fine.points.push_back(selected[k]);
+      fine.normals.push_back(sweep.MotionOf(i).rotation * normal);
+    }
+  }
+  fine.points.insert(fine.points.end(), rest.begin(), rest.end());
+  return fine;
 }
 
-void Odometry::StartMap(const Points& points) {
+void Odometry::AddToMap(const Surface& fine) {
+  Surface placed;
+  for (const Eigen::Vector3d& point : fine.points) placed.points.push_back(pose_ * point);
+  for (const Eigen::Vector3d& n : fine.normals) placed.normals.push_back(pose_.rotation * n);
+  map_.Add(placed.points, placed.normals);
+}
+
+void Odometry::StartMap(const Surface& fine) {
   map_ = LocalMap({settings_.voxel_size_m, settings_.max_range_m});
-  Points placed;
-  placed.reserve(points.size());
-  for (const Eigen::Vector3d& point : points) placed.push_back(pose_ * point);
-  map_.Add(placed);
+  AddToMap(fine);
   lost_scans_ = 0;
 }
 
 /// Nothing is known of the motion yet: a car may have gone farther than the fine map's cubes reach.
-Pose Odometry::GuessFirstMotion(const Points& points) const {
+Pose Odometry::GuessFirstMotion(const Points& points, const RegistrationSettings& settings) const {
   const double size = kFirstGrid * settings_.voxel_size_m;
   LocalMap coarse({size, settings_.max_range_m});
   coarse.Add(map_.Collect());
-  return Align(Downsample(points, size / 2), &coarse, pose_, size, size / 2, settings_.registration)
-      .pose;
+  return Align(Downsample(points, size / 2), &coarse, pose_, size, size / 2, settings).pose;
 }
 
 /// A scan that was skewed by an unknown motion would bend the map for good.
 void Odometry::StraightenFirstScan(Duration duration, const TimedPoints& second, Duration gap) {
-  const double grid = kMapGrid * settings_.voxel_size_m;
-  Pose found = GuessFirstMotion(Downsample(SelectPoints(second, duration), grid));
+  const RegistrationSettings settings = SettingsFor(second);
+  Pose found = GuessFirstMotion(SelectPoints(second, duration).points, settings);
   for (int round = 0; round < kFirstRounds; ++round) {
     velocity_ = Log(pose_.Inverse() * found) / Seconds(gap);
-    StartMap(Downsample(SelectPoints(*first_scan_, duration), grid));
+    StartMap(SelectPoints(*first_scan_, duration));
     // Both are straightened by the same velocity now, which makes the next one better.
-    const Points points =
-        Downsample(SelectPoints(second, duration), kAlignedGrid * settings_.voxel_size_m);
-    found = Align(Thin(points, kMostAligned), &map_, found, settings_.voxel_size_m,
-                  kKernel * settings_.voxel_size_m, settings_.registration)
+    const Points points = ThinOut(SelectPoints(second, duration).points,
+                                  kAlignedGrid * settings_.voxel_size_m, kMostAligned);
+    found = Align(points, &map_, found, settings_.voxel_size_m, kKernel * settings_.voxel_size_m,
+                  settings)
                 .pose;
   }
   first_scan_.reset();
@@ -136,41 +188,40 @@ Estimate Odometry::OnScan(Time start, Duration duration, const TimedPoints& scan
     velocity_.setZero();
     first_scan_.reset();
   }
-  Points fine = Downsample(SelectPoints(scan, duration), kMapGrid * settings_.voxel_size_m);
+  Surface fine = SelectPoints(scan, duration);
   if (!last_time_ || broken || map_.empty()) {
     estimate.map_restarted = last_time_.has_value();
     StartMap(fine);
     // With its velocity known it is straight already.
     if (last_time_ || !settings_.start_velocity) first_scan_ = scan;
     last_time_ = middle;
-    last_scan_ = std::move(fine);
+    last_scan_ = std::move(fine.points);
     estimate.pose = pose_;
     return estimate;
   }
   if (first_scan_) {
     StraightenFirstScan(duration, scan, gap);
-    fine = Downsample(SelectPoints(scan, duration), kMapGrid * settings_.voxel_size_m);
+    fine = SelectPoints(scan, duration);
   }
-  const Points aligned =
-      Thin(Downsample(fine, kAlignedGrid * settings_.voxel_size_m), kMostAligned);
+  const Points aligned = ThinOut(fine.points, kAlignedGrid * settings_.voxel_size_m, kMostAligned);
   const Pose guess = PredictAt(middle);
   const double widened = std::clamp(Seconds(gap) / Seconds(kUsualPeriod), 1.0, kWidestSearch);
   const double sigma = threshold_.sigma_m() * widened;
   const Alignment found =
-      Align(aligned, &map_, guess, kReach * sigma, kKernel * sigma, settings_.registration);
+      Align(aligned, &map_, guess, kReach * sigma, kKernel * sigma, SettingsFor(scan));
   estimate.inlier_share = found.inlier_share;
   estimate.iterations = found.iterations;
   last_time_ = middle;
   if (found.inlier_share < kLeastInliers) {
     estimate.tracking = Tracking::kLost;
     estimate.pose = pose_ = guess;
-    if (++lost_scans_ >= kLostForGood && !fine.empty()) {
+    if (++lost_scans_ >= kLostForGood && !fine.points.empty()) {
       velocity_.setZero();  // it led here
       StartMap(fine);
       first_scan_ = scan;
       estimate.map_restarted = true;
     }
-    last_scan_ = std::move(fine);
+    last_scan_ = std::move(fine.points);
     return estimate;
   }
   estimate.tracking = found.degenerate ? Tracking::kDegenerate : Tracking::kTracking;
@@ -178,12 +229,9 @@ Estimate Odometry::OnScan(Time start, Duration duration, const TimedPoints& scan
   threshold_.Add(guess.Inverse() * found.pose);
   if (gap >= kShortestGap) velocity_ = Log(pose_.Inverse() * found.pose) / Seconds(gap);
   estimate.pose = pose_ = found.pose;
-  Points placed;
-  placed.reserve(fine.size());
-  for (const Eigen::Vector3d& point : fine) placed.push_back(pose_ * point);
-  map_.Add(placed);
+  AddToMap(fine);
   map_.Forget(pose_.position);
-  last_scan_ = std::move(fine);
+  last_scan_ = std::move(fine.points);
   return estimate;
 }
 

@@ -28,6 +28,9 @@ struct TimedPoints {
   Points points;
   /// When each point was sampled, as part of the scan's duration: 0 to 1. Empty: not known.
   std::vector<float> phases;
+  /// Which beam each point is of, in any order of the beams. Empty: not known.
+  std::vector<std::uint16_t> rings;
+  bool HasRings() const { return !rings.empty() && rings.size() == points.size(); }
 };
 
 enum class Tracking {
@@ -68,9 +71,16 @@ class Odometry {
   static constexpr Duration kLongestGap = std::chrono::seconds(5);
 
  private:
-  Points SelectPoints(const TimedPoints& scan, Duration duration) const;
-  void StartMap(const Points& points);
-  Pose GuessFirstMotion(const Points& points) const;
+  /// Points in the sensor's frame at the middle of their scan, and the normals that it shows.
+  struct Surface {
+    Points points;
+    Points normals;  // of the first points; the others have none
+  };
+  RegistrationSettings SettingsFor(const TimedPoints& scan) const;
+  Surface SelectPoints(const TimedPoints& scan, Duration duration) const;
+  void AddToMap(const Surface& fine);
+  void StartMap(const Surface& fine);
+  Pose GuessFirstMotion(const Points& points, const RegistrationSettings& settings) const;
   void StraightenFirstScan(Duration duration, const TimedPoints& second, Duration gap);
 
   OdometrySettings settings_;

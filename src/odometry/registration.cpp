@@ -25,12 +25,27 @@ struct NormalEquations {
     lhs.noalias() += weight * jacobian.transpose() * jacobian;
     rhs.noalias() -= weight * jacobian.transpose() * residual;
     weights += weight;
+    ++pairs;
   }
+  void Add(double weight, const NormalEquations& other) {
+    lhs += weight * other.lhs;
+    rhs += weight * other.rhs;
+    weights += weight * other.weights;
+    pairs += other.pairs;
+  }
+  /// How much they hold each direction of a translation: the sum is 1 where all are of surfaces.
+  Eigen::Matrix3d Constraint() const { return lhs.topLeftCorner<3, 3>() / weights; }
 };
 
-NormalEquations Linearise(const Points& points, LocalMap* map, const Pose& pose, double reach_m,
-                          double kernel_m) {
-  NormalEquations sums;
+/// Neighbours of which the surface is known, and the others.
+struct Neighbours {
+  NormalEquations surfaces;
+  NormalEquations points;
+};
+
+Neighbours Linearise(const Points& points, LocalMap* map, const Pose& pose, double reach_m,
+                     double kernel_m, double point_turn) {
+  Neighbours sums;
   const Eigen::Matrix3d rotation = pose.rotation.toRotationMatrix();
   const double square = kernel_m * kernel_m;
   const auto weight_of = [square](double squared_residual) {
@@ -43,16 +58,16 @@ NormalEquations Linearise(const Points& points, LocalMap* map, const Pose& pose,
     const Eigen::Vector3d there = rotation * point + pose.position;
     const auto nearest = map->FindNearest(there, reach_m);
     if (!nearest) continue;
-    ++sums.pairs;
     const Eigen::Vector3d residual = rotation.transpose() * (there - nearest->point);
     // The residual moves with [I, -p^] in the frame of the sensor.
     jacobian.rightCols<3>() = -Skew(point);
     if (nearest->has_normal) {
       const Eigen::Vector3d normal = rotation.transpose() * nearest->normal;
       const Eigen::Matrix<double, 1, 1> distance(normal.dot(residual));
-      sums.Add(weight_of(distance.squaredNorm()), normal.transpose() * jacobian, distance);
+      sums.surfaces.Add(weight_of(distance.squaredNorm()), normal.transpose() * jacobian, distance);
     } else {
-      sums.Add(weight_of(residual.squaredNorm()), jacobian, residual);
+      jacobian.rightCols<3>() *= point_turn;
+      sums.points.Add(weight_of(residual.squaredNorm()), jacobian, residual);
     }
   }
   return sums;
@@ -60,8 +75,7 @@ NormalEquations Linearise(const Points& points, LocalMap* map, const Pose& pose,
 
 /// The directions, in the sensor's frame, that the scene does not hold, as the projection on them.
 Eigen::Matrix3d FindUnobserved(const NormalEquations& sums, const RegistrationSettings& settings) {
-  const Eigen::Matrix3d translation = sums.lhs.topLeftCorner<3, 3>() / sums.weights;
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(translation);
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(sums.Constraint());
   const Eigen::Vector3d& held = solver.eigenvalues();  // ascending
   Eigen::Matrix3d unobserved = Eigen::Matrix3d::Zero();
   for (Eigen::Index i = 0; i < 3; ++i) {
@@ -72,6 +86,15 @@ Eigen::Matrix3d FindUnobserved(const NormalEquations& sums, const RegistrationSe
   return unobserved;
 }
 
+/// What the neighbours without a surface count.
+double WeighPoints(const NormalEquations& surfaces, const RegistrationSettings& settings) {
+  if (surfaces.pairs < kLeastPairs) return settings.point_weight;
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(surfaces.Constraint(),
+                                                              Eigen::EigenvaluesOnly);
+  const bool held = solver.eigenvalues()(0) >= settings.held_by_surfaces;
+  return held ? settings.spare_point_weight : settings.point_weight;
+}
+
 }  // namespace
 
 Alignment Align(const Points& points, LocalMap* map, const Pose& guess, double reach_m,
@@ -80,8 +103,13 @@ Alignment Align(const Points& points, LocalMap* map, const Pose& guess, double r
   result.pose = guess;
   if (points.empty() || map->empty()) return result;
   Eigen::Matrix3d unobserved = Eigen::Matrix3d::Zero();  // there the guess stays
+  double point_weight = 1;
   while (result.iterations++ < settings.max_iterations) {
-    NormalEquations sums = Linearise(points, map, result.pose, reach_m, kernel_m);
+    const Neighbours found =
+        Linearise(points, map, result.pose, reach_m, kernel_m, settings.point_turn);
+    if (result.iterations == 1) point_weight = WeighPoints(found.surfaces, settings);
+    NormalEquations sums = found.surfaces;
+    sums.Add(point_weight, found.points);
     result.inlier_share = static_cast<double>(sums.pairs) / static_cast<double>(points.size());
     if (sums.pairs < kLeastPairs) return {guess, result.inlier_share, result.iterations, false};
     if (result.iterations == 1) {

@@ -9,6 +9,15 @@ namespace lidar::odometry {
 struct RegistrationSettings {
   int max_iterations = 100;
   double converged = 5e-4;  // length of the last step [m and rad]
+  /// A neighbour without a surface is seldom the same spot. What it counts against one with: where
+  /// the surfaces hold every direction,
+  double spare_point_weight = 1;
+  /// and where they leave one open.
+  double point_weight = 1;
+  /// How much of its pull turns the sensor: far off, a wrong spot turns it most.
+  double point_turn = 1;
+  /// Surfaces hold a direction that they hold by that much (0: not at all, 1: all face it).
+  double held_by_surfaces = 0.04;
   /// A direction that the surfaces hold less than this (0: not at all, 1: all face it) is not
   /// observed,
   double least_constraint = 0.04;

@@ -5,13 +5,19 @@
 
 namespace lidar::odometry {
 
-Points Downsample(const Points& points, double size_m) {
+std::vector<std::size_t> FirstOfEachCube(const Points& points, double size_m) {
   tsl::robin_set<Voxel, VoxelHash> taken;
   taken.reserve(points.size() / 4);
-  Points kept;
+  std::vector<std::size_t> kept;
   kept.reserve(points.size() / 4);
-  for (const Eigen::Vector3d& point : points)
-    if (taken.insert(VoxelOf(point, size_m)).second) kept.push_back(point);
+  for (std::size_t i = 0; i < points.size(); ++i)
+    if (taken.insert(VoxelOf(points[i], size_m)).second) kept.push_back(i);
+  return kept;
+}
+
+Points Downsample(const Points& points, double size_m) {
+  Points kept;
+  for (const std::size_t i : FirstOfEachCube(points, size_m)) kept.push_back(points[i]);
   return kept;
 }
 

@@ -39,5 +39,7 @@ inline Voxel VoxelOf(const Eigen::Vector3d& point, double size_m) {
 
 /// The first point of each cube, in the order of `points`.
 Points Downsample(const Points& points, double size_m);
+/// Their indices.
+std::vector<std::size_t> FirstOfEachCube(const Points& points, double size_m);
 
 }  // namespace lidar::odometry

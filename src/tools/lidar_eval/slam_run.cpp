@@ -52,6 +52,7 @@ odometry::TimedPoints OrganisedPoints(const Scan& scan, double range_step_m) {
     if (ranges[i] == 0) continue;
     timed.points.push_back(Eigen::Map<const Eigen::Vector3f>(&xyz[3 * i]).cast<double>());
     timed.phases.push_back(static_cast<float>(i % columns) / static_cast<float>(columns));
+    timed.rings.push_back(static_cast<std::uint16_t>(i / columns));
   }
   return timed;
 }

@@ -97,6 +97,20 @@ TEST(LocalMap, LearnsANewNormalFromNewPoints) {
   EXPECT_FALSE(map.FindNearest({0.5, 0.5, 0.5}, 1)->has_normal);
 }
 
+TEST(LocalMap, ANormalThatCameWithAPointCountsMoreThanItsCube) {
+  LocalMap map({1, 100});
+  Points floor;
+  for (double x = 0.05; x < 1; x += 0.24)
+    for (const double y : {0.05, 0.5, 0.95}) floor.emplace_back(x, y, 0.5);
+  map.Add(floor, {{0, 0.6, 0.8}});
+  const auto first = map.FindNearest(floor[0], 0.1);
+  ASSERT_TRUE(first && first->has_normal);
+  EXPECT_NEAR(first->normal.y(), 0.6, 1e-6);
+  const auto second = map.FindNearest(floor[1], 0.1);
+  ASSERT_TRUE(second && second->has_normal);
+  EXPECT_NEAR(std::abs(second->normal.z()), 1, 1e-6);
+}
+
 TEST(LocalMap, ASurfaceTakesEightPoints) {
   const Points eight = {{0.1, 0.1, 0.5}, {0.5, 0.1, 0.5}, {0.9, 0.1, 0.5}, {0.1, 0.5, 0.5},
                         {0.9, 0.5, 0.5}, {0.1, 0.9, 0.5}, {0.5, 0.9, 0.5}, {0.9, 0.9, 0.5}};

@@ -34,6 +34,7 @@ class Drive {
       timed.points.push_back(
           Eigen::Vector3f(xyz[3 * i], xyz[3 * i + 1], xyz[3 * i + 2]).cast<double>());
       timed.phases.push_back(static_cast<float>(i % kColumns) / kColumns);
+      timed.rings.push_back(static_cast<std::uint16_t>(i / kColumns));
     }
     return timed;
   }
@@ -85,6 +86,28 @@ TEST(Odometry, FollowsADriveThroughAStreet) {
   EXPECT_NEAR(error->length_m, 79, 1);
   EXPECT_LT(error->ate_rmse_m, 0.15);
   EXPECT_LT(error->rpe_rmse_m, 0.1);  // over ten metres
+}
+
+TEST(Odometry, FollowsASlowDriveThoughTheCirclesOnTheGroundMoveAlong) {
+  Drive drive(synth::SceneKind::kStreet, 5);
+  const Followed run = Follow(&drive, 30, {});
+  const auto error = Compare(run.truth, run.estimate);
+  ASSERT_TRUE(error);
+  EXPECT_NEAR(error->length_m, 14.5, 0.2);
+  EXPECT_LT(error->ate_rmse_m, 0.05);
+  EXPECT_EQ(run.tracking.back(), Tracking::kTracking);
+}
+
+TEST(Odometry, FollowsADriveOfWhichItKnowsNoBeams) {
+  Drive drive(synth::SceneKind::kStreet, 10);
+  Odometry odometry({});
+  Pose pose;
+  for (std::uint64_t i = 0; i < 20; ++i) {
+    TimedPoints scan = drive.Scan(i);
+    scan.rings.clear();
+    pose = odometry.OnScan(drive.StartOf(i), kPeriod, scan).pose;
+  }
+  EXPECT_NEAR(pose.position.norm(), 19, 0.3);
 }
 
 TEST(Odometry, IsWorseWithoutDeskewing) {
@@ -195,7 +218,8 @@ TEST(Odometry, TakesAnyPoints) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   const double inf = std::numeric_limits<double>::infinity();
   const TimedPoints bad = {{{nan, 0, 0}, {inf, 1, 1}, {1e300, 1e300, 0}, {0, 0, 0}},
-                           {0.0F, 2.0F, -1.0F, 0.5F}};
+                           {0.0F, 2.0F, -1.0F, 0.5F},
+                           {0, 65535, 1, 0}};
   for (int i = 0; i < 3; ++i) {
     const Estimate e = odometry.OnScan(Time{} + i * kPeriod, kPeriod, bad);
     EXPECT_TRUE(e.pose.position.allFinite());

@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "src/odometry/motion_threshold.h"
 
 namespace lidar::odometry {
@@ -88,6 +90,44 @@ TEST(Align, InATunnelOnlyTheMotionAlongItIsUnknown) {
   EXPECT_NEAR(found.pose.position.x(), 0.3, 0.01);
   EXPECT_NEAR(found.pose.position.y(), 0, 0.01);
   EXPECT_NEAR(found.pose.position.z(), 0, 0.01);
+}
+
+TEST(Align, TheNormalOfACircleLetsItMoveAlong) {
+  // What one beam sees of the floor stays the same wherever the sensor goes.
+  Points circle;
+  for (int i = 0; i < 200; ++i)
+    circle.emplace_back(3 * std::cos(0.03 * i), 3 * std::sin(0.03 * i), -1.5);
+  Points corner = Corner();
+  LocalMap map({1, 100});
+  Points all = circle;
+  all.insert(all.end(), corner.begin(), corner.end());
+  map.Add(all, Points(circle.size(), {0, 0, 1}));
+  const Pose truth = Moved(0.3, 0.2, 0);
+  Points seen = SeenFrom(truth, corner);
+  seen.insert(seen.end(), circle.begin(), circle.end());
+  const Alignment found = Align(seen, &map, Pose(), kReach_m, kKernel_m, {});
+  EXPECT_LT((truth.Inverse() * found.pose).position.norm(), 0.01);
+}
+
+TEST(Align, NeighboursWithoutASurfaceCountLittleWhereSurfacesHoldAllDirections) {
+  // A room, and scattered points in it that have moved.
+  Points scattered;
+  for (const double x : {-3., -1., 1., 3.})
+    for (const double y : {-3., -1., 1., 3.})
+      for (const double z : {1., 3.}) scattered.emplace_back(x, y, z);
+  Points all = Corner();
+  all.insert(all.end(), scattered.begin(), scattered.end());
+  LocalMap map = MapOf(all);
+  Points seen = Corner();
+  for (const Eigen::Vector3d& p : scattered) seen.push_back(p + Eigen::Vector3d(0, 0, 0.3));
+  const auto height = [&](double weight, double held) {
+    RegistrationSettings settings;
+    settings.spare_point_weight = weight;
+    settings.held_by_surfaces = held;
+    return std::abs(Align(seen, &map, Pose(), kReach_m, 1, settings).pose.position.z());
+  };
+  EXPECT_GT(height(1, 0.04), 10 * height(0.01, 0.04));
+  EXPECT_EQ(height(0.01, 0.9), height(1, 0.04));
 }
 
 TEST(Align, TellsThePartOfThePointsThatFit) {

@@ -48,6 +48,8 @@ TEST_F(Collector, TellsWhenEachColumnWasSampled) {
   const std::vector<float> phases = {0,   .125, .25,  .375, 0,   .125, .25,  .375,
                                      .5F, .625, .75F, .875, .5F, .625, .75F, .875};
   EXPECT_EQ(scan->points.phases, phases);
+  const std::vector<std::uint16_t> rings = {0, 0, 0, 0, 1, 1, 1, 1, 0, 0, 0, 0, 1, 1, 1, 1};
+  EXPECT_EQ(scan->points.rings, rings);
   EXPECT_EQ(scan->points.points.size(), 16U);
   EXPECT_EQ(scan->points.points[5].x(), 6);
   EXPECT_FALSE(collector_.Take());

@@ -1,0 +1,133 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "src/odometry/scan_normals.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+namespace lidar::odometry {
+namespace {
+
+constexpr int kBins = 1024;  // of azimuth, a power of two
+constexpr int kHalf = 6;     // bins to each side: two degrees
+/// Rings whose elevations differ by less give a normal of noise; by more, they see other things.
+constexpr double kLeastStep = 0.02;
+constexpr double kLargestStep = 0.14;
+constexpr float kFarthest_m = 1e4F;
+/// How far from the plane points may lie: noise and grass, and what bends over the baseline.
+constexpr float kRoughness_m = 0.05F;
+constexpr float kBend = 0.03F;
+constexpr float kMostRough_m = 0.2F;
+constexpr float kLeastSine = 0.3F;  // between the two directions that span the plane
+
+int BinOf(float x, float y) {
+  constexpr float kBinsPerRadian = kBins / 6.2831853F;
+  return static_cast<int>(std::floor(std::atan2(y, x) * kBinsPerRadian)) & (kBins - 1);
+}
+
+}  // namespace
+
+ScanNormals::ScanNormals(const Points& points, const std::vector<std::uint16_t>& rings) {
+  if (rings.size() != points.size() || rings.empty()) return;
+  const std::size_t count = std::size_t{1} + *std::max_element(rings.begin(), rings.end());
+  rings_.resize(std::min(count, kMaxRings));
+  image_.assign(rings_.size() * kBins, Eigen::Vector3f::Zero());
+  std::vector<int> seen(rings_.size());
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    if (rings[i] >= rings_.size()) continue;
+    const Eigen::Vector3f p = points[i].cast<float>();
+    const float range = p.norm();
+    if (!(range > 0 && range < kFarthest_m)) continue;
+    Ring& ring = rings_[rings[i]];
+    ring.height += static_cast<double>(p.z() / range);
+    ++seen[rings[i]];
+    image_[rings[i] * std::size_t{kBins} + static_cast<std::size_t>(BinOf(p.x(), p.y()))] = p;
+  }
+  for (std::size_t r = 0; r < rings_.size(); ++r) {
+    rings_[r].seen = seen[r] > 0;
+    if (rings_[r].seen) rings_[r].height /= seen[r];
+  }
+  FindNeighbours();
+}
+
+void ScanNormals::FindNeighbours() {
+  std::vector<int> order;
+  for (std::size_t r = 0; r < rings_.size(); ++r)
+    if (rings_[r].seen) order.push_back(static_cast<int>(r));
+  const auto height = [this](int r) { return rings_[static_cast<std::size_t>(r)].height; };
+  std::sort(order.begin(), order.end(), [&](int a, int b) { return height(a) < height(b); });
+  for (std::size_t i = 0, j = 0; i < order.size(); ++i) {
+    while (j < order.size() && height(order[j]) < height(order[i]) + kLeastStep) ++j;
+    if (j < order.size() && height(order[j]) < height(order[i]) + kLargestStep)
+      rings_[static_cast<std::size_t>(order[i])].above = order[j];
+  }
+  for (std::size_t i = order.size(), j = order.size(); i-- > 0;) {
+    while (j > 0 && height(order[j - 1]) > height(order[i]) - kLeastStep) --j;
+    if (j > 0 && height(order[j - 1]) > height(order[i]) - kLargestStep)
+      rings_[static_cast<std::size_t>(order[i])].below = order[j - 1];
+  }
+}
+
+ScanNormals::Side ScanNormals::MeanOf(int ring, int first_bin) const {
+  Side side;
+  const Eigen::Vector3f* row = &image_[static_cast<std::size_t>(ring) * kBins];
+  for (int i = 0; i < kHalf; ++i) {
+    const Eigen::Vector3f& p = row[(first_bin + i) & (kBins - 1)];
+    if (p.isZero(0)) continue;
+    side.mean += p;
+    ++side.count;
+  }
+  if (side.count > 0) side.mean /= static_cast<float>(side.count);
+  return side;
+}
+
+/// The plane of what three rings, from below, saw left and right of `bin`.
+bool ScanNormals::FitPlane(const int (&rings)[3], int bin, const Eigen::Vector3f& point,
+                           Eigen::Vector3f* normal) const {
+  Side left[3];
+  Side right[3];
+  Eigen::Vector3f across = Eigen::Vector3f::Zero();
+  Eigen::Vector3f mean = Eigen::Vector3f::Zero();
+  for (int i = 0; i < 3; ++i) {
+    if (rings[i] < 0) return false;
+    left[i] = MeanOf(rings[i], bin + 1);
+    right[i] = MeanOf(rings[i], bin - kHalf);
+    if (left[i].count == 0 || right[i].count == 0) return false;
+    across += left[i].mean - right[i].mean;
+    mean += (left[i].mean + right[i].mean) / 6;
+  }
+  const Eigen::Vector3f up = (left[2].mean + right[2].mean - left[0].mean - right[0].mean) / 2;
+  *normal = across.cross(up);
+  const float area = normal->norm();
+  if (!(area > kLeastSine * across.norm() * up.norm())) return false;
+  *normal /= area;
+  const float rough = std::min(kRoughness_m + kBend * up.norm(), kMostRough_m);
+  const auto fits = [&](const Eigen::Vector3f& p) {
+    return std::abs(normal->dot(p - mean)) <= rough;
+  };
+  for (int i = 0; i < 3; ++i)
+    if (!fits(left[i].mean) || !fits(right[i].mean)) return false;
+  return fits(point);
+}
+
+Eigen::Vector3d ScanNormals::At(const Eigen::Vector3d& point, std::uint16_t ring) const {
+  if (ring >= rings_.size() || !rings_[ring].seen) return Eigen::Vector3d::Zero();
+  const Eigen::Vector3f p = point.cast<float>();
+  const int bin = BinOf(p.x(), p.y());
+  const auto next = [this](int r, bool up) {
+    if (r < 0) return -1;
+    const Ring& at = rings_[static_cast<std::size_t>(r)];
+    return up ? at.above : at.below;
+  };
+  const int own = ring;
+  const int above = next(own, true);
+  const int below = next(own, false);
+  Eigen::Vector3f normal;
+  if (FitPlane({below, own, above}, bin, p, &normal) ||
+      FitPlane({own, above, next(above, true)}, bin, p, &normal) ||
+      FitPlane({next(below, false), below, own}, bin, p, &normal))
+    return normal.cast<double>() * (normal.dot(p) > 0 ? -1 : 1);
+  return Eigen::Vector3d::Zero();
+}
+
+}  // namespace lidar::odometry
