@@ -164,7 +164,7 @@ Pose Odometry::GuessFirstMotion(const Points& points, const RegistrationSettings
 
 /// A scan that was skewed by an unknown motion would bend the map for good.
 void Odometry::StraightenFirstScan(Duration duration, const TimedPoints& second, Duration gap) {
-  const RegistrationSettings settings = SettingsFor(second);
+  const RegistrationSettings& settings = settings_.registration;
   Pose found = GuessFirstMotion(SelectPoints(second, duration).points, settings);
   for (int round = 0; round < kFirstRounds; ++round) {
     velocity_ = Log(pose_.Inverse() * found) / Seconds(gap);
