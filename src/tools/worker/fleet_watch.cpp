@@ -195,6 +195,7 @@ void FleetWatch::ListRobots() {
   const std::lock_guard lock(mutex_);
   news_.robots = std::move(robots);
   news_.stream = static_cast<std::uint64_t>(info->Created);
+  news_.first = info->State.FirstSeq;
   news_.last = info->State.LastSeq;
   news_.asked_at = asked_at;
 }

@@ -36,6 +36,7 @@ class FleetWatch {
     std::vector<Entry> entries;
     std::optional<std::set<std::string>> robots;  // "robot.sensor"; all that there are
     std::uint64_t stream = 0;                     // that has them, as in Progress
+    std::uint64_t first = 0;                      // number of its oldest message
     std::uint64_t last = 0;                       // number of its newest message
     Time asked_at{};                              // it had them then, or later
     std::string trouble;                          // empty: none, or told already

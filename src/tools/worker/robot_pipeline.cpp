@@ -46,13 +46,19 @@ void SetOdometry(GstElement* odometry, const PipelineSettings& settings,
     g_object_set(odometry, "initial-velocity", NumbersText(*begin->velocity).c_str(), nullptr);
 }
 
+/// The velocity is that at the record's scan, so it counts only where the stream goes on from it.
+std::optional<Progress> BeginIn(std::uint64_t stream, std::optional<Progress> begin) {
+  if (begin && begin->stream != stream) begin->velocity.reset();
+  return begin;
+}
+
 }  // namespace
 
 RobotPipeline::RobotPipeline(const PipelineSettings& settings, const std::string& robot,
                              std::uint64_t stream, const std::optional<Progress>& begin)
     : made_at_(tools::Now()),
       stream_(stream),
-      begin_(begin),
+      begin_(BeginIn(stream, begin)),
       begin_scan_(begin && begin->stream == stream ? begin->scan : 0),
       decoder_(settings.decoder),
       pipeline_(GST_ELEMENT(gst_object_ref_sink(gst_pipeline_new(robot.c_str())))),
@@ -72,7 +78,7 @@ RobotPipeline::RobotPipeline(const PipelineSettings& settings, const std::string
                (begin_of_subject + ".lidar." + sensor).c_str(), nullptr);
   if (begin_scan_ > 0) g_object_set(source, "start-sequence", begin->from, nullptr);
   g_object_set(poses, "subject", (begin_of_subject + ".odometry." + sensor).c_str(), nullptr);
-  SetOdometry(odometry, settings, begin);
+  SetOdometry(odometry, settings, begin_);
   // One thread does it all, so what is on its way is always one message.
   for (GstElement* sink : {clouds, poses})
     g_object_set(sink, "sync", FALSE, "async", FALSE, nullptr);
@@ -141,6 +147,7 @@ GstPadProbeReturn RobotPipeline::OnCloud(GstBuffer* buffer) {
 
 /// The pose is of a scan that odometry does not get to see.
 void RobotPipeline::NoteLateBegin(GstClockTime captured) {
+  begun_late_ = true;
   const GstClockTime since = begin_->time;
   late_ns_ = GST_CLOCK_TIME_IS_VALID(captured) ? captured - std::min(since, captured) : 0;
 }
@@ -164,8 +171,10 @@ GstPadProbeReturn RobotPipeline::OnPose(GstBuffer* buffer) {
   progress.from = scan->from;
   scan.reset();
   const std::lock_guard lock(mutex_);
-  if (progress_) progress.velocity = VelocityBetween(*progress_, progress);
-  if (!progress_ && begin_) progress.velocity = begin_->velocity;  // the pose it began with
+  if (progress_)
+    progress.velocity = VelocityBetween(*progress_, progress);
+  else if (begin_ && !begun_late_)
+    progress.velocity = begin_->velocity;  // the pose it began with
   progress_ = progress;
   return GST_PAD_PROBE_OK;
 }

@@ -99,6 +99,7 @@ class RobotPipeline {
   std::uint64_t number_ = 0;  // of the message that is on its way
   RewindWindow window_;       // the last is that one
   bool begun_ = false;
+  bool begun_late_ = false;  // after the scan of the pose it began with
   std::optional<Scan> open_;
   std::optional<Scan> closed_;  // its pose comes first
 

@@ -71,6 +71,7 @@ void Worker::TakeNews() {
   if (news.robots) {
     table_.SetRobots(*news.robots, Now());
     NoteStream(news.stream);
+    first_ = news.first;
     CheckPlaces(news);
   }
   for (const FleetWatch::Entry& entry : news.entries) {
@@ -100,6 +101,7 @@ void Worker::CheckPlaces(const FleetWatch::News& news) {
     Warn(at->first, "its record is ahead of the stream; only its pose counts");
     Progress pose = pipeline.progress().value_or(*pipeline.begin());
     pose.stream = 0;  // no stream's
+    pose.velocity.reset();
     table_.SetProgress(at->first, pose);
     at = GiveUp(at);
   }
@@ -169,9 +171,10 @@ void Worker::Begin(const std::string& robot, const LeaseTable::Held& held) {
   Say(robot, "taken, " + from +
                  (held.last_worker.empty() ? "" : ", after " + tools::Printable(held.last_worker)));
   ++counters_.taken;
+  auto begin = held.progress;
+  if (begin && begin->scan < first_) begin->velocity.reset();  // it may have been hours ago
   try {
-    auto pipeline =
-        std::make_unique<RobotPipeline>(settings_.pipeline, robot, stream_, held.progress);
+    auto pipeline = std::make_unique<RobotPipeline>(settings_.pipeline, robot, stream_, begin);
     pipeline->SetEnd(held.until);
     pipeline->Play();
     pipelines_[robot] = std::move(pipeline);

@@ -65,6 +65,7 @@ class Worker {
   LeaseStore store_;
   LeaseTable table_;
   std::uint64_t stream_ = 0;  // as in Progress
+  std::uint64_t first_ = 0;   // number of its oldest message
   struct Counters {
     std::uint64_t taken = 0;
     std::uint64_t given_up = 0;

@@ -161,6 +161,18 @@ class LidarWorker : public NatsTest {
   }
   std::uint64_t LastOf(const char* stream) { return InfoOf(stream)->State.LastSeq; }
   std::string Record() { return Newest("r1.front").text; }
+  /// The robot drives at 10 m/s, and its record said something else.
+  void ExpectNoVelocityOfTheRecord(NatsPipeline* consumer) {
+    ASSERT_TRUE(consumer->WaitForBuffers(10));
+    EXPECT_LT(LargestJump(consumer->buffers()), 5);
+    std::optional<worker::LeaseRecord> record;
+    ASSERT_TRUE(Eventually([&] {
+      record = worker::ParseLeaseRecord(Record());
+      return record && record->progress && record->progress->time > 0;
+    })) << "it is the worker's own";
+    const auto none = std::array<double, 6>{};
+    EXPECT_GT(record->progress->velocity.value_or(none)[0], -50);
+  }
 };
 
 TEST_F(LidarWorker, GoesOnWhereOneThatIsKilledWas) {
@@ -190,6 +202,8 @@ TEST_F(LidarWorker, GoesOnWhereOneThatIsKilledWas) {
   ASSERT_TRUE(record && record->progress);
   EXPECT_EQ(record->worker, "");
   EXPECT_GT(record->progress->pose[0], 10);
+  ASSERT_TRUE(record->progress->velocity);
+  EXPECT_NEAR(record->progress->velocity->at(0), 10, 3);
 }
 
 TEST_F(LidarWorker, GivesUpWithoutAServerAndGoesOnWithIt) {
@@ -211,6 +225,7 @@ TEST_F(LidarWorker, GivesUpWithoutAServerAndGoesOnWithIt) {
 TEST_F(LidarWorker, GoesOnFromThePoseAloneInAnotherStream) {
   worker::Progress progress;
   progress.pose = {500, 0, 0, 0, 0, 0, 1};
+  progress.velocity = {-300, 0, 0, 0, 0, 0};
   progress.scan = progress.from = 1'000'000'000;
   PutRecord(worker::ToJson({"", std::chrono::seconds(1), progress}));
   NatsPipeline consumer("natssrc name=n subject=fleet.r1.odometry.front" + At() +
@@ -220,6 +235,7 @@ TEST_F(LidarWorker, GoesOnFromThePoseAloneInAnotherStream) {
   const auto worker = Worker();
   ASSERT_TRUE(consumer.WaitForBuffers(5));
   EXPECT_NEAR(DistanceOf(consumer.buffers().front()), 500, 3);
+  ExpectNoVelocityOfTheRecord(&consumer);
 }
 
 TEST_F(LidarWorker, GoesOnFromThePoseAloneWhereTheRecordIsAheadOfTheStream) {
@@ -227,6 +243,7 @@ TEST_F(LidarWorker, GoesOnFromThePoseAloneWhereTheRecordIsAheadOfTheStream) {
   ASSERT_TRUE(Eventually([&] { return robot->stat("messages-acknowledged") > 0; }));
   worker::Progress progress;
   progress.pose = {500, 0, 0, 0, 0, 0, 1};
+  progress.velocity = {-300, 0, 0, 0, 0, 0};
   progress.stream = CreationOf("fleet");
   progress.scan = progress.from = 1'000'000'000;
   PutRecord(worker::ToJson({"", std::chrono::seconds(1), progress}));
@@ -241,6 +258,29 @@ TEST_F(LidarWorker, GoesOnFromThePoseAloneWhereTheRecordIsAheadOfTheStream) {
     return record && record->progress && record->progress->stream == progress.stream &&
            record->progress->scan < progress.scan;
   })) << "the next worker is spared it";
+  ExpectNoVelocityOfTheRecord(&consumer);
+}
+
+TEST_F(LidarWorker, ForgetsTheVelocityWhereTheScanIsGone) {
+  const auto robot = Robot();
+  ASSERT_TRUE(Eventually([&] { return robot->stat("messages-acknowledged") > 20; }));
+  worker::Progress progress;
+  progress.pose = {500, 0, 0, 0, 0, 0, 1};
+  progress.velocity = {-300, 0, 0, 0, 0, 0};
+  progress.stream = CreationOf("fleet");
+  progress.scan = progress.from = 1;
+  WithJetStream([](jsCtx* js) {
+    jsOptions options;
+    jsOptions_Init(&options);
+    options.Stream.Purge.Sequence = 17;
+    EXPECT_EQ(js_PurgeStream(js, "fleet", &options, nullptr), NATS_OK);
+  });
+  PutRecord(worker::ToJson({"", std::chrono::seconds(1), progress}));
+  NatsPipeline consumer("natssrc name=n subject=fleet.r1.odometry.front" + At() +
+                        "! fakesink name=see sync=false");
+  consumer.Play();
+  const auto worker = Worker();
+  ExpectNoVelocityOfTheRecord(&consumer);
 }
 
 TEST_F(LidarWorker, KnowsWhereToReadFromThoughTheServerHadAPause) {
