@@ -13,6 +13,8 @@ namespace {
 
 constexpr std::size_t kTumColumns = 8;
 constexpr std::size_t kKittiColumns = 12;
+constexpr double kMaxSpeedMps = 1'000;
+constexpr double kMaxTurnRadPerS = 100;
 
 struct Row {
   std::array<double, kKittiColumns> values{};
@@ -122,7 +124,11 @@ std::optional<Twist> ParseTwist(const std::string& text) {
     return std::nullopt;
   for (Eigen::Index i = 0; i < twist.size(); ++i)
     twist[i] = row.values[static_cast<std::size_t>(i)];
-  return twist.allFinite() ? std::optional(twist) : std::nullopt;
+  const auto within = [&twist](Eigen::Index begin, double limit) {
+    return (twist.segment<3>(begin).array().abs() <= limit).all();  // NaN is not
+  };
+  const bool good = within(0, kMaxSpeedMps) && within(3, kMaxTurnRadPerS);
+  return good ? std::optional(twist) : std::nullopt;
 }
 
 Trajectory ReadTrajectory(std::istream& in, Duration kitti_period, std::string* error) {

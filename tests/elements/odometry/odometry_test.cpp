@@ -121,7 +121,8 @@ TEST_F(Odometry, RefusesAnInitialPoseThatIsNone) {
 }
 
 TEST_F(Odometry, RefusesAnInitialVelocityThatIsNone) {
-  for (const char* velocity : {"1 2 3", "1 2 3 0 0 nan", "1 2 3 0 0 0 1", "x"}) {
+  for (const char* velocity : {"1 2 3", "1 2 3 0 0 nan", "1 2 3 0 0 0 1", "x", "1e300 0 0 0 0 0",
+                               "0 0 -1001 0 0 0", "0 0 0 0 101 0"}) {
     const ElementPtr element(
         GST_ELEMENT(gst_object_ref_sink(gst_element_factory_make("lidarodometry", nullptr))));
     g_object_set(element.get(), "initial-velocity", velocity, nullptr);
