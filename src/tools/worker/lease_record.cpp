@@ -14,7 +14,9 @@ constexpr std::size_t kMaxText = 4096;
 constexpr std::size_t kMaxName = 200;
 constexpr std::uint64_t kMaxLeaseMs = 60'000;
 constexpr double kMaxMetres = 1e9;
-constexpr double kMaxSpeed = 1e3;  // [m/s]
+constexpr double kMaxSpeed = 1e3;     // [m/s]
+constexpr double kMaxTurnRate = 100;  // [rad/s]
+constexpr std::uint64_t kShortestStepNs = 2'000'000;
 constexpr std::uint64_t kLongestStepNs = 1'000'000'000;
 
 bool ReadCount(const json& object, const char* key, std::uint64_t* value) {
@@ -28,15 +30,22 @@ bool ReadPose(const json& list, std::array<double, 7>* pose) {
   if (!list.is_array() || list.size() != pose->size()) return false;
   for (std::size_t i = 0; i < pose->size(); ++i) {
     if (!list[i].is_number()) return false;
-    const double value = (*pose)[i] = list[i].get<double>();
-    if (!std::isfinite(value) || std::abs(value) > kMaxMetres) return false;
+    (*pose)[i] = list[i].get<double>();
   }
-  const auto& p = *pose;
-  const double norm = std::sqrt(p[3] * p[3] + p[4] * p[4] + p[5] * p[5] + p[6] * p[6]);
-  return norm > 0.9 && norm < 1.1;
+  return true;
 }
 
-bool IsSpeed(double value) { return std::isfinite(value) && std::abs(value) < kMaxSpeed; }
+bool IsPose(const std::array<double, 7>& p) {
+  const double norm = std::sqrt(p[3] * p[3] + p[4] * p[4] + p[5] * p[5] + p[6] * p[6]);
+  return std::all_of(p.begin(), p.end(), [](double v) { return std::abs(v) <= kMaxMetres; }) &&
+         norm > 0.9 && norm < 1.1;
+}
+
+/// NaN is within no bounds.
+bool IsVelocity(const std::array<double, 6>& v) {
+  return std::all_of(v.begin(), v.begin() + 3, [](double s) { return std::abs(s) <= kMaxSpeed; }) &&
+         std::all_of(v.begin() + 3, v.end(), [](double s) { return std::abs(s) <= kMaxTurnRate; });
+}
 
 /// One that makes no sense is not known.
 std::optional<std::array<double, 6>> ReadVelocity(const json& object) {
@@ -47,9 +56,8 @@ std::optional<std::array<double, 6>> ReadVelocity(const json& object) {
   for (std::size_t i = 0; i < velocity.size(); ++i) {
     if (!(*list)[i].is_number()) return std::nullopt;
     velocity[i] = (*list)[i].get<double>();
-    if (!IsSpeed(velocity[i])) return std::nullopt;
   }
-  return velocity;
+  return IsVelocity(velocity) ? std::optional(velocity) : std::nullopt;
 }
 
 using Quaternion = std::array<double, 4>;  // x y z w
@@ -72,15 +80,21 @@ bool ReadProgress(const json& object, Progress* progress) {
          ReadCount(object, "time", &progress->time) &&
          ReadCount(object, "stream", &progress->stream) &&
          ReadCount(object, "scan", &progress->scan) && ReadCount(object, "from", &progress->from) &&
-         progress->from > 0 && progress->from <= progress->scan;
+         ReadsBack(*progress);
 }
 
 }  // namespace
 
+bool ReadsBack(const Progress& progress) {
+  return IsPose(progress.pose) && progress.from > 0 && progress.from <= progress.scan;
+}
+
 std::optional<std::array<double, 6>> VelocityBetween(const Progress& before,
                                                      const Progress& after) {
-  if (after.time <= before.time || after.time - before.time > kLongestStepNs) return std::nullopt;
-  const double seconds = static_cast<double>(after.time - before.time) * 1e-9;
+  if (after.time <= before.time) return std::nullopt;
+  const std::uint64_t step_ns = after.time - before.time;
+  if (step_ns < kShortestStepNs || step_ns > kLongestStepNs) return std::nullopt;
+  const double seconds = static_cast<double>(step_ns) * 1e-9;
   const Quaternion begin = RotationOf(before);
   const Quaternion turn = Product(Inverse(begin), RotationOf(after));
   const double sine = std::hypot(turn[0], turn[1], turn[2]);
@@ -100,8 +114,7 @@ std::optional<std::array<double, 6>> VelocityBetween(const Progress& before,
     velocity[i] = seen[i] / seconds;
     velocity[i + 3] = sine > 0 ? turn[i] / sine * angle / seconds : 0;
   }
-  if (!std::all_of(velocity.begin(), velocity.end(), IsSpeed)) return std::nullopt;
-  return velocity;
+  return IsVelocity(velocity) ? std::optional(velocity) : std::nullopt;
 }
 
 std::string ToJson(const LeaseRecord& record) {

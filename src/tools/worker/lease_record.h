@@ -28,6 +28,9 @@ struct LeaseRecord {
   std::optional<Progress> progress;
 };
 
+/// False for what ParseLeaseRecord() would call damaged.
+bool ReadsBack(const Progress& progress);
+
 /// By the poses and times of two scans in a row; none where they are no such.
 std::optional<std::array<double, 6>> VelocityBetween(const Progress& before, const Progress& after);
 

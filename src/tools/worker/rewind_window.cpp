@@ -25,6 +25,7 @@ bool RewindWindow::IsOld(const Message& message) const {
 }
 
 void RewindWindow::Add(const Message& message) {
+  if (!messages_.empty() && message.number <= messages_.back().number) messages_.clear();
   messages_.push_back(message);
   while (messages_.size() > kMostMessages || IsOld(messages_.front())) messages_.pop_front();
 }

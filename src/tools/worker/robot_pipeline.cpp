@@ -170,6 +170,7 @@ GstPadProbeReturn RobotPipeline::OnPose(GstBuffer* buffer) {
   progress.scan = scan->first;
   progress.from = scan->from;
   scan.reset();
+  if (!ReadsBack(progress)) return GST_PAD_PROBE_OK;  // others could not go on from it
   const std::lock_guard lock(mutex_);
   if (progress_)
     progress.velocity = VelocityBetween(*progress_, progress);

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <deque>
 #include <functional>
 #include <memory>
@@ -53,6 +54,25 @@ TEST(LeaseRecord, KeepsAVelocityThatMakesSense) {
   const auto read = ParseLeaseRecord(ToJson({"", {}, progress}));
   ASSERT_TRUE(read && read->progress);
   EXPECT_FALSE(read->progress->velocity);
+  progress.velocity = {10, 0, 0, 0, 0, 101};
+  EXPECT_FALSE(ParseLeaseRecord(ToJson({"", {}, progress}))->progress->velocity);
+}
+
+TEST(LeaseRecord, KnowsWhatDoesNotReadBack) {
+  Progress good = Scan(90);
+  good.from = 12;
+  good.pose[6] = 1;
+  EXPECT_TRUE(ReadsBack(good));
+  for (const auto& spoil : std::vector<std::function<void(Progress*)>>{
+           [](Progress* p) { p->pose[0] = std::nan(""); },
+           [](Progress* p) { p->pose[1] = INFINITY; }, [](Progress* p) { p->pose[2] = 2e9; },
+           [](Progress* p) { p->pose[6] = 0; }, [](Progress* p) { p->from = 91; },
+           [](Progress* p) { p->from = 0; }}) {
+    Progress bad = good;
+    spoil(&bad);
+    EXPECT_FALSE(ReadsBack(bad));
+    EXPECT_FALSE(ParseLeaseRecord(ToJson({"a", milliseconds(1500), bad})));
+  }
 }
 
 TEST(LeaseRecord, KnowsTheVelocityBetweenTwoPoses) {
@@ -74,6 +94,14 @@ TEST(LeaseRecord, KnowsTheVelocityBetweenTwoPoses) {
   EXPECT_FALSE(VelocityBetween(after, before)) << "time goes back";
   after.time += 1'000'000'000;
   EXPECT_FALSE(VelocityBetween(before, after)) << "too far apart";
+  after = before;
+  after.time += 1'999'999;
+  EXPECT_FALSE(VelocityBetween(before, after)) << "too close";
+  after.time = before.time + 2'000'000;
+  EXPECT_TRUE(VelocityBetween(before, after));
+  after.pose = {5, 6, 7, 0, 0, 0, 1};
+  after.time = before.time + 10'000'000;
+  EXPECT_FALSE(VelocityBetween(before, after)) << "157 rad/s";
 }
 
 TEST(LeaseRecord, IsDamagedWhereItSaysWhatCannotBe) {

@@ -47,5 +47,15 @@ TEST_F(Rewind, GoesByStorageTimesWhereTheRobotsClockGoesBack) {
   EXPECT_EQ(Back(), 10U);
 }
 
+TEST_F(Rewind, BeginsAnewWhereTheNumbersGoBack) {
+  number_ = 1'000;
+  for (std::uint64_t ms = 0; ms < 500; ms += 100) Add(ms, ms);
+  number_ = 6;
+  Add(500, 500);
+  EXPECT_EQ(Back(), 0U);
+  Add(600, 600);
+  EXPECT_EQ(Back(), 1U);
+}
+
 }  // namespace
 }  // namespace lidar::worker
