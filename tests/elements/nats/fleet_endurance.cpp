@@ -179,6 +179,7 @@ void FleetEndurance::KillSomething() {
                      }});
   } else if (part == 2) {
     auto& worker = workers_[which % workers_.size()];
+    if (worker->is_killed()) return;
     worker->Kill();
     TellOfWorkers();
     Say("worker killed that had " + std::to_string(worker->Robots().size()) + " robots");

@@ -45,7 +45,6 @@ class Cluster {
     return list;
   }
   NatsServer& server(std::size_t i) { return servers_[i]; }
-  natsConnection* connection() { return connection_->get(); }
   jsCtx* js() { return js_.get(); }
   /// The leader of a stream whose copies are all there and complete; empty: it has none.
   std::string LeaderOf(const char* stream) {

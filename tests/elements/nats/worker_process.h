@@ -50,7 +50,11 @@ class WorkerProcess {
     return std::count(lines_.begin(), lines_.end(), line) > 0;
   }
   pid_t pid() const { return process_->pid(); }
-  void Kill() { process_->Signal(SIGKILL); }
+  void Kill() {
+    process_->Signal(SIGKILL);
+    killed_ = true;
+  }
+  bool is_killed() const { return killed_; }
   int Stop() {
     process_->Signal(SIGTERM);
     return process_->Wait();
@@ -67,6 +71,7 @@ class WorkerProcess {
   }
 
   std::unique_ptr<tools::ChildProcess> process_;
+  bool killed_ = false;
   std::vector<std::string> lines_;
   std::set<std::string> robots_;
 };
