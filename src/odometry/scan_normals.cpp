@@ -20,6 +20,12 @@ constexpr float kBend = 0.03F;
 constexpr float kMostRough_m = 0.2F;
 constexpr float kLeastSine = 0.3F;  // between the two directions that span the plane
 
+/// Not what a sensor gives for nothing: NaN, the origin, or infinity.
+bool IsReturn(const Eigen::Vector3f& p) {
+  const float range = p.norm();
+  return range > 0 && range < kFarthest_m;
+}
+
 int BinOf(float x, float y) {
   constexpr float kBinsPerRadian = kBins / 6.2831853F;
   return static_cast<int>(std::floor(std::atan2(y, x) * kBinsPerRadian)) & (kBins - 1);
@@ -36,10 +42,9 @@ ScanNormals::ScanNormals(const Points& points, const std::vector<std::uint16_t>&
   for (std::size_t i = 0; i < points.size(); ++i) {
     if (rings[i] >= rings_.size()) continue;
     const Eigen::Vector3f p = points[i].cast<float>();
-    const float range = p.norm();
-    if (!(range > 0 && range < kFarthest_m)) continue;
+    if (!IsReturn(p)) continue;
     Ring& ring = rings_[rings[i]];
-    ring.height += static_cast<double>(p.z() / range);
+    ring.height += static_cast<double>(p.z() / p.norm());
     ++seen[rings[i]];
     image_[rings[i] * std::size_t{kBins} + static_cast<std::size_t>(BinOf(p.x(), p.y()))] = p;
   }
@@ -113,6 +118,7 @@ bool ScanNormals::FitPlane(const int (&rings)[3], int bin, const Eigen::Vector3f
 Eigen::Vector3d ScanNormals::At(const Eigen::Vector3d& point, std::uint16_t ring) const {
   if (ring >= rings_.size() || !rings_[ring].seen) return Eigen::Vector3d::Zero();
   const Eigen::Vector3f p = point.cast<float>();
+  if (!IsReturn(p)) return Eigen::Vector3d::Zero();
   const int bin = BinOf(p.x(), p.y());
   const auto next = [this](int r, bool up) {
     if (r < 0) return -1;
