@@ -207,9 +207,7 @@ CongestionSignals Controller::Signals(Time now, const AckSummary& acks) const {
   s.qdelay_avg = path_.queue_delay().qdelay_avg();
   s.qdelay_target = competing_flows_.qdelay_target();
   s.ref_wnd_delay_scale = path_.queue_delay().ref_wnd_delay_scale();
-  const Boldness bold = BesideOthers(p_, path_, now);
-  s.growth_min = bold.growth;
-  s.backoff_min = bold.backoff;
+  s.boldness = BesideOthers(p_, path_, now);
   s.s_rtt = path_.rtt().smoothed();
   s.max_bytes_in_flight = path_.max_in_flight().current();
   s.max_bytes_in_flight_prev = path_.max_in_flight().previous();

@@ -103,7 +103,7 @@ double ReferenceWindow::L4sBackoff(Time now, const CongestionSignals& s, double 
   double backoff = s.l4s_alpha / 2 * UndershootScale(s);
   backoff /= std::max(1.0, Ratio(s.s_rtt, p_.virtual_rtt));
   if (s.qdelay < s.qdelay_target / 4) {
-    backoff *= std::max(s.backoff_min, scl);
+    backoff *= std::max(s.boldness.backoff, scl);
     backoff *= std::max(kScaleMin, s.ref_wnd_delay_scale);
   }
   const double rtts =
@@ -144,7 +144,7 @@ void ReferenceWindow::Increase(Time now, const CongestionSignals& s, double scl)
   double increment =
       static_cast<double>((s.bytes_newly_acked - s.bytes_newly_acked_ce).bytes()) * ref_wnd_ratio();
   increment *= std::min(1.0, Ratio(s.s_rtt, p_.virtual_rtt));
-  increment *= std::max(s.growth_min, scl);
+  increment *= std::max(s.boldness.growth, scl);
   increment *= std::max(kJitterIncreaseMin, s.ref_wnd_delay_scale);
   const double multiplicative =
       p_.mul_increase_factor * ref_wnd_ / static_cast<double>(p_.mss.bytes());

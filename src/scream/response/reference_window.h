@@ -9,6 +9,13 @@
 
 namespace lidar::scream {
 
+/// Beyond the draft: floors of growth and reaction near the inflection point, as parts of its full
+/// ones.
+struct Boldness {
+  double growth = 0.25;
+  double backoff = 0.25;
+};
+
 /// What the detectors found in one report.
 struct CongestionSignals {
   bool loss_detected = false;
@@ -22,9 +29,7 @@ struct CongestionSignals {
   Duration qdelay_avg{0};
   Duration qdelay_target{0};
   double ref_wnd_delay_scale = 1;
-  /// Beyond the draft: floors of growth and reaction near the inflection point.
-  double growth_min = 0.25;
-  double backoff_min = 0.25;
+  Boldness boldness;
   /// Beyond the draft: so much sooner than due a reaction may come, as the next report is far.
   Duration earliness{0};
   Duration s_rtt{0};

@@ -5,14 +5,9 @@
 
 #include "src/scream/model/path_model.h"
 #include "src/scream/parameters.h"
+#include "src/scream/response/reference_window.h"
 
 namespace lidar::scream {
-
-/// Floors of growth and reaction near the inflection point, as parts of the draft's full ones.
-struct Boldness {
-  double growth = 0.25;
-  double backoff = 0.25;
-};
 
 /// 1 where marking begins so early that a bolder window adds no delay to speak of. Marks without a
 /// queue are a classic flow's (RFC 9332, section 2.1): the draft is bold enough beside it.
