@@ -155,17 +155,17 @@ void Odometry::StartMap(const Surface& fine) {
 }
 
 /// Nothing is known of the motion yet: a car may have gone farther than the fine map's cubes reach.
-Pose Odometry::GuessFirstMotion(const Points& points, const RegistrationSettings& settings) const {
+Pose Odometry::GuessFirstMotion(const Points& points) const {
   const double size = kFirstGrid * settings_.voxel_size_m;
   LocalMap coarse({size, settings_.max_range_m});
   coarse.Add(map_.Collect());
-  return Align(Downsample(points, size / 2), &coarse, pose_, size, size / 2, settings).pose;
+  return Align(Downsample(points, size / 2), &coarse, pose_, size, size / 2, settings_.registration)
+      .pose;
 }
 
 /// A scan that was skewed by an unknown motion would bend the map for good.
 void Odometry::StraightenFirstScan(Duration duration, const TimedPoints& second, Duration gap) {
-  const RegistrationSettings& settings = settings_.registration;
-  Pose found = GuessFirstMotion(SelectPoints(second, duration).points, settings);
+  Pose found = GuessFirstMotion(SelectPoints(second, duration).points);
   for (int round = 0; round < kFirstRounds; ++round) {
     velocity_ = Log(pose_.Inverse() * found) / Seconds(gap);
     StartMap(SelectPoints(*first_scan_, duration));
@@ -173,7 +173,7 @@ void Odometry::StraightenFirstScan(Duration duration, const TimedPoints& second,
     const Points points = ThinOut(SelectPoints(second, duration).points,
                                   kAlignedGrid * settings_.voxel_size_m, kMostAligned);
     found = Align(points, &map_, found, settings_.voxel_size_m, kKernel * settings_.voxel_size_m,
-                  settings)
+                  settings_.registration)
                 .pose;
   }
   first_scan_.reset();

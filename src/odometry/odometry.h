@@ -80,7 +80,7 @@ class Odometry {
   Surface SelectPoints(const TimedPoints& scan, Duration duration) const;
   void AddToMap(const Surface& fine);
   void StartMap(const Surface& fine);
-  Pose GuessFirstMotion(const Points& points, const RegistrationSettings& settings) const;
+  Pose GuessFirstMotion(const Points& points) const;
   void StraightenFirstScan(Duration duration, const TimedPoints& second, Duration gap);
 
   OdometrySettings settings_;
