@@ -26,11 +26,13 @@ bool ReadCount(const json& object, const char* key, std::uint64_t* value) {
   return true;
 }
 
-bool ReadPose(const json& list, std::array<double, 7>* pose) {
-  if (!list.is_array() || list.size() != pose->size()) return false;
-  for (std::size_t i = 0; i < pose->size(); ++i) {
-    if (!list[i].is_number()) return false;
-    (*pose)[i] = list[i].get<double>();
+template <std::size_t count>
+bool ReadNumbers(const json& object, const char* key, std::array<double, count>* numbers) {
+  const auto list = object.find(key);
+  if (list == object.end() || !list->is_array() || list->size() != count) return false;
+  for (std::size_t i = 0; i < count; ++i) {
+    if (!(*list)[i].is_number()) return false;
+    (*numbers)[i] = (*list)[i].template get<double>();
   }
   return true;
 }
@@ -49,15 +51,9 @@ bool IsVelocity(const std::array<double, 6>& v) {
 
 /// One that makes no sense is not known.
 std::optional<std::array<double, 6>> ReadVelocity(const json& object) {
-  const auto list = object.find("velocity");
   std::array<double, 6> velocity{};
-  if (list == object.end() || !list->is_array() || list->size() != velocity.size())
-    return std::nullopt;
-  for (std::size_t i = 0; i < velocity.size(); ++i) {
-    if (!(*list)[i].is_number()) return std::nullopt;
-    velocity[i] = (*list)[i].get<double>();
-  }
-  return IsVelocity(velocity) ? std::optional(velocity) : std::nullopt;
+  const bool good = ReadNumbers(object, "velocity", &velocity) && IsVelocity(velocity);
+  return good ? std::optional(velocity) : std::nullopt;
 }
 
 using Quaternion = std::array<double, 4>;  // x y z w
@@ -75,8 +71,7 @@ Quaternion Product(const Quaternion& a, const Quaternion& b) {
 
 bool ReadProgress(const json& object, Progress* progress) {
   progress->velocity = ReadVelocity(object);
-  const auto pose = object.find("pose");
-  return pose != object.end() && ReadPose(*pose, &progress->pose) &&
+  return ReadNumbers(object, "pose", &progress->pose) &&
          ReadCount(object, "time", &progress->time) &&
          ReadCount(object, "stream", &progress->stream) &&
          ReadCount(object, "scan", &progress->scan) && ReadCount(object, "from", &progress->from) &&
