@@ -10,6 +10,8 @@
 #include <memory>
 #include <random>
 
+#include "tests/core/tools/scan_progress.h"
+
 namespace lidar::worker {
 namespace {
 
@@ -17,108 +19,6 @@ using std::chrono::milliseconds;
 using std::chrono::seconds;
 
 Time At(int ms) { return Time{} + milliseconds(ms); }
-
-Progress Scan(std::uint64_t number) {
-  Progress progress;
-  progress.pose = {static_cast<double>(number), 0, 0, 0, 0, 0, 1};
-  progress.scan = progress.from = number;
-  return progress;
-}
-
-TEST(LeaseRecord, ComesBackAsItWas) {
-  Progress progress = Scan(90);
-  progress.pose = {1.25, -3e6, 1e-9, 0.5, 0.5, -0.5, 0.5};
-  progress.time = 1'700'000'000'123'456'789;
-  progress.from = 12;
-  progress.stream = 5;
-  const auto read = ParseLeaseRecord(ToJson({"a-1", milliseconds(1500), progress}));
-  ASSERT_TRUE(read && read->progress);
-  EXPECT_EQ(read->worker, "a-1");
-  EXPECT_EQ(read->lease, milliseconds(1500));
-  EXPECT_EQ(read->progress->pose, progress.pose);
-  EXPECT_FALSE(read->progress->velocity);
-  EXPECT_EQ(read->progress->time, progress.time);
-  EXPECT_EQ(read->progress->stream, 5U);
-  EXPECT_EQ(read->progress->scan, 90U);
-  EXPECT_EQ(read->progress->from, 12U);
-  EXPECT_FALSE(ParseLeaseRecord(ToJson({"", milliseconds(0), std::nullopt}))->progress);
-  EXPECT_EQ(ParseLeaseRecord("")->worker, "") << "a deleted key";
-}
-
-TEST(LeaseRecord, KeepsAVelocityThatMakesSense) {
-  Progress progress = Scan(90);
-  progress.pose[6] = 1;
-  progress.velocity = {10, -0.5, 0, 0, 0, 0.25};
-  EXPECT_EQ(ParseLeaseRecord(ToJson({"", {}, progress}))->progress->velocity, progress.velocity);
-  progress.velocity->at(1) = 1e5;
-  const auto read = ParseLeaseRecord(ToJson({"", {}, progress}));
-  ASSERT_TRUE(read && read->progress);
-  EXPECT_FALSE(read->progress->velocity);
-  progress.velocity = {10, 0, 0, 0, 0, 101};
-  EXPECT_FALSE(ParseLeaseRecord(ToJson({"", {}, progress}))->progress->velocity);
-}
-
-TEST(LeaseRecord, KnowsWhatDoesNotReadBack) {
-  Progress good = Scan(90);
-  good.from = 12;
-  good.pose[6] = 1;
-  EXPECT_TRUE(ReadsBack(good));
-  for (const auto& spoil : std::vector<std::function<void(Progress*)>>{
-           [](Progress* p) { p->pose[0] = std::nan(""); },
-           [](Progress* p) { p->pose[1] = INFINITY; }, [](Progress* p) { p->pose[2] = 2e9; },
-           [](Progress* p) { p->pose[6] = 0; }, [](Progress* p) { p->from = 91; },
-           [](Progress* p) { p->from = 0; }}) {
-    Progress bad = good;
-    spoil(&bad);
-    EXPECT_FALSE(ReadsBack(bad));
-    EXPECT_FALSE(ParseLeaseRecord(ToJson({"a", milliseconds(1500), bad})));
-  }
-}
-
-TEST(LeaseRecord, KnowsTheVelocityBetweenTwoPoses) {
-  // A left turn of a quarter on a circle of a radius of 10 m, in half a second.
-  const double half = std::sqrt(0.5);
-  Progress before;
-  before.time = 1'000'000'000;
-  before.pose = {5, 6, 7, 0, 0, half, half};  // along y
-  Progress after;
-  after.time = 1'500'000'000;
-  after.pose = {-5, 16, 7, 0, 0, 1, 0};  // along -x
-  const auto velocity = VelocityBetween(before, after);
-  ASSERT_TRUE(velocity);
-  const std::array<double, 6> expected = {20 * std::sqrt(2), 0, 0, 0, 0, 3.14159265};
-  for (std::size_t i = 0; i < 6; ++i) EXPECT_NEAR(velocity->at(i), expected[i], 1e-6) << i;
-  for (double& value : after.pose) value = -value;
-  after.pose = {-5, 16, 7, after.pose[3], after.pose[4], after.pose[5], after.pose[6]};
-  EXPECT_NEAR(VelocityBetween(before, after)->at(5), expected[5], 1e-6) << "the same rotation";
-  EXPECT_FALSE(VelocityBetween(after, before)) << "time goes back";
-  after.time += 1'000'000'000;
-  EXPECT_FALSE(VelocityBetween(before, after)) << "too far apart";
-  after = before;
-  after.time += 1'999'999;
-  EXPECT_FALSE(VelocityBetween(before, after)) << "too close";
-  after.time = before.time + 2'000'000;
-  EXPECT_TRUE(VelocityBetween(before, after));
-  after.pose = {5, 6, 7, 0, 0, 0, 1};
-  after.time = before.time + 10'000'000;
-  EXPECT_FALSE(VelocityBetween(before, after)) << "157 rad/s";
-}
-
-TEST(LeaseRecord, IsDamagedWhereItSaysWhatCannotBe) {
-  const std::string begin = R"({"worker":"a","lease-ms":1000)";
-  const std::string rest = R"(,"time":1,"stream":4,"scan":5,"from":3})";
-  EXPECT_TRUE(ParseLeaseRecord(begin + R"(,"pose":[1,2,3,0,0,0,1])" + rest));
-  for (const std::string& text :
-       {std::string("x"), std::string("[]"), std::string("{}"), std::string(R"({"worker":"a"})"),
-        std::string(R"({"worker":7,"lease-ms":1})"), std::string(R"({"worker":"a","lease-ms":-1})"),
-        std::string(R"({"worker":"a","lease-ms":99999999})"), std::string(5000, '['),
-        begin + R"(,"pose":[1,2,3,0,0,0])" + rest, begin + R"(,"pose":[1,2,3,0,0,0,0])" + rest,
-        begin + R"(,"pose":[1,2,1e300,0,0,0,1])" + rest,
-        begin + R"(,"pose":[1,2,"3",0,0,0,1])" + rest,
-        begin + R"(,"pose":[1,2,3,0,0,0,1],"time":1,"stream":4,"scan":5,"from":9})",
-        begin + R"(,"pose":[1,2,3,0,0,0,1],"time":1,"stream":4,"scan":5})"})
-    EXPECT_FALSE(ParseLeaseRecord(text)) << text.substr(0, 100);
-}
 
 /// One table, with a store that answers at once.
 class Lease : public ::testing::Test {

@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+#include "src/tools/worker/lease_record.h"
+
+namespace lidar::worker {
+
+/// As far as the scan of that number, which is also that many metres ahead.
+inline Progress Scan(std::uint64_t number) {
+  Progress progress;
+  progress.pose = {static_cast<double>(number), 0, 0, 0, 0, 0, 1};
+  progress.scan = progress.from = number;
+  return progress;
+}
+
+}  // namespace lidar::worker
