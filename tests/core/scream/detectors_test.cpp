@@ -15,7 +15,6 @@
 #include "src/scream/model/queue_delay.h"
 #include "src/scream/model/rtt.h"
 #include "src/scream/pacer.h"
-#include "src/scream/response/competing_flows.h"
 #include "tests/support/simulated.h"
 
 namespace lidar::scream {
@@ -317,49 +316,6 @@ TEST(MediaRate, IsTheWindowOverTheRoundTripWithTheDraftsReserves) {
   EXPECT_NEAR(rate.bits_per_second(), 1e7 * (1000.0 / 1020) / 1.2, 1);
   const DataRate small = TargetBitrate(p, {DataSize::Bytes(3000), 1.0 / 3, 40ms, 0.3});
   EXPECT_NEAR(small.bits_per_second(), 6e5 * 0.8 * (1000.0 / 1020) / 1.5, 1);
-}
-
-TEST(CompetingFlows, LossEventsGiveHalfAsMuchAgain) {
-  Parameters p;
-  p.competing_flows = true;
-  for (const bool loss : {false, true}) {
-    CompetingFlows flows(p);
-    Time now = kStart;
-    for (int i = 0; i < 300; ++i, now += 50ms) flows.Update(now, 80ms, 40ms, loss && i > 200);
-    EXPECT_NEAR(Milliseconds(flows.qdelay_target()), loss ? 120 : 80, 1);
-  }
-}
-
-TEST(CompetingFlows, OneLossInAThousandRoundTripsIsNone) {
-  Parameters p;
-  p.competing_flows = true;
-  CompetingFlows flows(p);
-  Time now = kStart;
-  // After one event of 0.02 the rate falls below 0.002 within 114 round trips.
-  for (int i = 0; i < 400; ++i, now += 50ms) flows.Update(now, 80ms, 40ms, i == 200);
-  EXPECT_NEAR(Milliseconds(flows.qdelay_target()), 80, 1);
-}
-
-TEST(CompetingFlows, TheTargetGivesWayToASteadyQueueAndComesBack) {
-  Parameters p;
-  p.competing_flows = true;
-  CompetingFlows flows(p);
-  Time now = kStart;
-  for (int i = 0; i < 300; ++i, now += 50ms) flows.Update(now, 150ms, 40ms, false);
-  EXPECT_NEAR(Milliseconds(flows.qdelay_target()), 150, 1);
-  for (int i = 0; i < 300; ++i, now += 50ms) flows.Update(now, 5ms, 40ms, false);
-  EXPECT_EQ(flows.qdelay_target(), p.qdelay_target_lo);
-}
-
-TEST(CompetingFlows, TheTargetFallsStepByStepWhereTheQueueVaries) {
-  Parameters p;
-  p.competing_flows = true;
-  CompetingFlows flows(p);
-  Time now = kStart;
-  for (int i = 0; i < 200; ++i, now += 50ms) flows.Update(now, 300ms, 40ms, false);
-  ASSERT_NEAR(Milliseconds(flows.qdelay_target()), 300, 1);
-  for (int i = 0; i < 12; ++i, now += 50ms) flows.Update(now, i % 2 * 300ms, 40ms, false);
-  EXPECT_LT(Milliseconds(flows.qdelay_target()), 200);
 }
 
 TEST(RoundTripTime, AnOldAverageCountsForLittle) {

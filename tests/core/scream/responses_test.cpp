@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The responses beyond the draft, each by itself: capacity drop, outage, send window, pacing.
+// The responses beyond the draft, each by itself: capacity drop, outage, send window, pacing,
+// competing flows.
 #include <gtest/gtest.h>
 
 #include "src/scream/response/adaptive_pacing.h"
 #include "src/scream/response/answered_signals.h"
 #include "src/scream/response/burst_probe.h"
 #include "src/scream/response/capacity_drop.h"
+#include "src/scream/response/competing_flows.h"
 #include "src/scream/response/gap_recovery.h"
 #include "src/scream/response/isolated_loss.h"
 #include "src/scream/response/outage.h"
@@ -295,6 +297,53 @@ TEST(AnsweredSignals, AreThoseOfPacketsSentBeforeTheReaction) {
   answered.OnOutageEnd(kStart + 2s, kRtt);
   answered.OnGapEnd(kStart + 2s + 10ms);
   EXPECT_FALSE(answered.NewLoss(acks) || answered.NewMark(acks)) << "held back by the outage";
+}
+
+/// Round trips of 40 ms, one each 50 ms.
+class CompetingFlowsTest : public ::testing::Test {
+ protected:
+  CompetingFlowsTest() { parameters_.competing_flows = true; }
+  void Run(int rounds, Duration qdelay, bool loss = false) {
+    for (int i = 0; i < rounds; ++i, now_ += 50ms) flows_.Update(now_, qdelay, 40ms, loss);
+  }
+  double TargetMs() const { return Milliseconds(flows_.qdelay_target()); }
+
+  Parameters parameters_;
+  CompetingFlows flows_{parameters_};
+  Time now_ = kStart;
+};
+
+TEST_F(CompetingFlowsTest, WithoutLossTheTargetIsTheQueue) {
+  Run(300, 80ms);
+  EXPECT_NEAR(TargetMs(), 80, 1);
+}
+
+TEST_F(CompetingFlowsTest, LossEventsGiveHalfAsMuchAgain) {
+  Run(201, 80ms);
+  Run(99, 80ms, true);
+  EXPECT_NEAR(TargetMs(), 120, 1);
+}
+
+TEST_F(CompetingFlowsTest, OneLossInAThousandRoundTripsIsNone) {
+  // After one event of 0.02 the rate falls below 0.002 within 114 round trips.
+  Run(200, 80ms);
+  Run(1, 80ms, true);
+  Run(199, 80ms);
+  EXPECT_NEAR(TargetMs(), 80, 1);
+}
+
+TEST_F(CompetingFlowsTest, TheTargetGivesWayToASteadyQueueAndComesBack) {
+  Run(300, 150ms);
+  EXPECT_NEAR(TargetMs(), 150, 1);
+  Run(300, 5ms);
+  EXPECT_EQ(flows_.qdelay_target(), parameters_.qdelay_target_lo);
+}
+
+TEST_F(CompetingFlowsTest, TheTargetFallsStepByStepWhereTheQueueVaries) {
+  Run(200, 300ms);
+  ASSERT_NEAR(TargetMs(), 300, 1);
+  for (int i = 0; i < 12; ++i) Run(1, i % 2 * 300ms);
+  EXPECT_LT(TargetMs(), 200);
 }
 
 }  // namespace
