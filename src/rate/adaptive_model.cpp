@@ -15,6 +15,8 @@ constexpr std::uint32_t kFewReturns = 64;
 constexpr double kMinSlope = 0.6;
 constexpr double kMaxSlope = 1.6;
 constexpr int kBisections = 40;
+// The sum does not say what its parts are. Unbounded, the split drifts until one part is nothing.
+constexpr double kMostOffFit = 4;
 
 double X(double step_m) { return std::log2(std::max(step_m, 1e-9) / kUnitStep); }
 double N(double returns) { return std::log2(std::max(returns, 1.0) / 1000); }
@@ -107,14 +109,11 @@ Settings AdaptiveModel::Choose(const SliceFeatures& slice, double bytes,
 }
 
 void AdaptiveModel::LearnGeometry(Learned* learned, const SliceFeatures& slice, double x,
-                                  double observed) {
+                                  double observed, bool again) {
   constexpr double kGain = 0.3;
   constexpr double kNoise = 0.02;  // (log2 units)^2: a smaller move of the step teaches little
   const ModeCoefficients& mode = Mode(slice.mode);
   const double n = N(slice.returns);
-  const std::uint64_t id = std::uint64_t{slice.scan_id} << 32 | slice.slice_index;
-  const bool again = learned->last_slice == id;
-  learned->last_slice = id;
   const double error = observed - GeometryLog2(slice, kUnitStep * std::exp2(x));
   const Anchor anchor{x, observed - mode.GeometryLog2(x, n)};
   if (const auto from = learned->geometry.Predict(slice.slice_index, slice.slice_count)) {
@@ -129,11 +128,25 @@ void AdaptiveModel::LearnGeometry(Learned* learned, const SliceFeatures& slice, 
 }
 
 void AdaptiveModel::LearnIntensity(Learned* learned, const SliceFeatures& slice, double bits,
-                                   double observed) {
+                                   double observed, bool again) {
   const double residual = observed - Mode(slice.mode).IntensityLog2(bits, N(slice.returns));
   const auto from = learned->intensity.Predict(slice.slice_index, slice.slice_count);
-  learned->intensity.Observe(slice.slice_index, slice.slice_count, {bits, residual},
-                             residual - (from ? from->residual : 0));
+  if (again)
+    learned->intensity.Replace(slice.slice_index, slice.slice_count, {bits, residual});
+  else
+    learned->intensity.Observe(slice.slice_index, slice.slice_count, {bits, residual},
+                               residual - (from ? from->residual : 0));
+}
+
+double AdaptiveModel::IntensityShare(const SliceFeatures& slice, double step_m, unsigned bits,
+                                     const PredictedSize& predicted) const {
+  if (bits == 0) return 0;
+  const ModeCoefficients& mode = Mode(slice.mode);
+  const double n = N(slice.returns);
+  const double fit = std::exp2(mode.IntensityLog2(bits, n) - mode.GeometryLog2(X(step_m), n));
+  const double ratio = std::clamp(predicted.intensity_bytes / predicted.geometry_bytes,
+                                  fit / kMostOffFit, fit * kMostOffFit);
+  return ratio / (1 + ratio);
 }
 
 void AdaptiveModel::OnEncoded(const SliceFeatures& slice, const Settings& settings,
@@ -144,8 +157,9 @@ void AdaptiveModel::OnEncoded(const SliceFeatures& slice, const Settings& settin
   const double intensity =
       encoded.intensity_size
           ? std::clamp(static_cast<double>(encoded.intensity_size->bytes()), 0.0, bytes - 1)
-          : bytes * predicted.intensity_bytes / predicted.total();
+          : bytes * IntensityShare(slice, encoded.step_m, settings.intensity_bits, predicted);
   double observed = std::log2(bytes - intensity);
+  if (!std::isfinite(observed)) return;
   if (const Learned* known = LearnedOf(slice.mode); known != nullptr && last_mode_ != slice.mode)
     learned_[slice.mode] = Learned(*known);
   last_mode_ = slice.mode;
@@ -158,9 +172,12 @@ void AdaptiveModel::OnEncoded(const SliceFeatures& slice, const Settings& settin
         std::clamp(learned.thinning + 0.1 * error * kept / (kept * kept + 0.1), 0.4, 1.2);
     observed -= learned.thinning * kept;
   }
-  LearnGeometry(&learned, slice, X(encoded.step_m), observed);
+  const std::uint64_t id = std::uint64_t{slice.scan_id} << 32 | slice.slice_index;
+  const bool again = learned.last_slice == id;
+  learned.last_slice = id;
+  LearnGeometry(&learned, slice, X(encoded.step_m), observed, again);
   if (settings.intensity_bits > 0 && intensity > 0)
-    LearnIntensity(&learned, slice, settings.intensity_bits, std::log2(intensity) - kept);
+    LearnIntensity(&learned, slice, settings.intensity_bits, std::log2(intensity) - kept, again);
 }
 
 }  // namespace lidar::rate

@@ -56,8 +56,14 @@ class AdaptiveModel : public SizeModel {
   /// geometry: the scene is the same. Null where nothing was.
   const Learned* LearnedOf(const std::string& mode) const;
   double GeometryLog2(const SliceFeatures& slice, double step_m) const;
-  void LearnGeometry(Learned* learned, const SliceFeatures& slice, double x, double observed);
-  void LearnIntensity(Learned* learned, const SliceFeatures& slice, double bits, double observed);
+  /// Part of the bytes of a slice whose codec does not tell it.
+  double IntensityShare(const SliceFeatures& slice, double step_m, unsigned bits,
+                        const PredictedSize& predicted) const;
+  /// `again`: the slice was encoded and learned from before.
+  void LearnGeometry(Learned* learned, const SliceFeatures& slice, double x, double observed,
+                     bool again);
+  void LearnIntensity(Learned* learned, const SliceFeatures& slice, double bits, double observed,
+                      bool again);
 
   AdaptiveCoefficients coefficients_;
   std::map<std::string, Learned> learned_;

@@ -3,6 +3,10 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
+#include <cmath>
+#include <random>
+
 namespace lidar::rate {
 namespace {
 
@@ -66,6 +70,32 @@ TEST(AdaptiveModel, KeepsWhatItKnowsOfTheSceneWhereTheModeChangesWithinAGeometry
   EXPECT_NEAR(Bytes(model, slice) / fit, 2, 0.1);
   slice.mode = "xyz-kd6";
   EXPECT_NEAR(Bytes(model, slice) / fit, 1, 1e-6);
+}
+
+TEST(AdaptiveModel, TakesNoPartOfASliceForNothingAfterManyMovesOfTheStep) {
+  constexpr unsigned kBits = 4;
+  ModeCoefficients fit{{11, -0.5, 0, 0}};
+  fit.intensity = {9, 1};
+  AdaptiveModel model(AdaptiveCoefficients{{}, fit});
+  std::mt19937 random(1);
+  std::normal_distribution<double> noise(0, 0.1);
+  std::array<double, kSlices> scene{};  // log2 of the sizes of its slices
+  for (std::uint32_t scan = 0; scan < 2000; ++scan) {
+    for (std::uint32_t i = 0; i < kSlices; ++i) {
+      const SliceFeatures slice = Slice(scan, i);
+      scene[i] = 0.98 * scene[i] + noise(random);
+      // Each scan is encoded at one step, and then again at another.
+      for (const double step_m : {scan % 20 < 10 ? 0.001 : 0.1, 0.02}) {
+        const Settings settings{step_m, kBits, 0};
+        const double bytes = (10 / step_m + 1e3) * std::exp2(scene[i]);
+        model.OnEncoded(slice, settings,
+                        {DataSize::Bytes(static_cast<std::int64_t>(bytes)), {}, step_m, 1});
+        const PredictedSize size = model.Predict(slice, settings);
+        ASSERT_GT(size.geometry_bytes, 1e-3 * size.total()) << "scan " << scan;
+        ASSERT_GT(size.intensity_bytes, 1e-3 * size.total()) << "scan " << scan;
+      }
+    }
+  }
 }
 
 }  // namespace
