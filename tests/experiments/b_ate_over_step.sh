@@ -3,7 +3,6 @@
 # What a compression costs SLAM: trajectory error against q and against the step.
 set -euo pipefail
 . "$(dirname "$0")/common.sh" "$@"
-[ $quick = yes ] || scans=4200 # five kilometres each
 
 steps="0.01 0.02 0.04 0.1 0.2 0.5 1 2"
 bits="8 10 12 14 16 24"
@@ -20,9 +19,9 @@ measure() { # SOURCE GRID SETTING [options]
   whole=$output/b.$name.tum
   # A trajectory of the uncompressed scans is the truth where nobody knows a better one.
   if [ "$grid" = none ]; then
-    one=$(slam "$source" --scans $scans --out "$whole")
+    one=$(slam "$source" --scans $offline_scans --out "$whole")
   else
-    one=$(slam "$source" --scans $scans --out "$output/b.tum" "$@")
+    one=$(slam "$source" --scans $offline_scans --out "$output/b.tum" "$@")
     other=$("$tools/lidar-eval" ate --json "$whole" "$output/b.tum" | jq -r .ate_rmse_m)
   fi
   echo "$name,$grid,$setting,$(number .error.ate_rmse_m "$one"),$other,$(number .error.drift "$one"),$(jq -r '.degenerate / .scans' <<<"$one")"

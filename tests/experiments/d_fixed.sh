@@ -1,21 +1,28 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: LGPL-2.1-or-later
-# The same drive without adaptation: q = 16 as in the paper, and a fixed step.
+# The same drive without adaptation: Draco at q = 16 as in the paper, and lidarenc at a fixed step.
+# Draco that adapts tells the codec's part from that of the adaptation.
 set -euo pipefail
 . "$(dirname "$0")/common.sh" "$@"
 . "$here/network.sh"
 
-echo "$row_header" >"$csv"
-for run in $(seq $runs); do
-  stream c "$run"
-  stream q16 "$run" --fixed-bits 16
-  stream step2cm "$run" --fixed-step 0.02
-  for name in c q16 step2cm; do row $name "$run"; done >>"$csv"
-done
-plot <<TEXT
-set ylabel 'part of the scans that arrived whole'; set yrange [0:1.05]; set xrange [-0.5:2.5]; set boxwidth 0.6; set style fill solid
-set xtics ('adaptive' 0, 'q = 16' 1, 'step 2 cm' 2)
-plot '$csv' skip 1 using (strcol(1) eq 'c' ? 0 : strcol(1) eq 'q16' ? 1 : 2):(\$4/\$3) with boxes notitle
+streams <<TEXT
+c
+q16 $paper_codec --fixed-bits 16
+step2cm --fixed-step 0.02
+draco $paper_codec
 TEXT
-of() { echo "$(middle complete "$csv" "$1") scans whole, ATE $(middle ate_m "$csv" "$1") m, p95 capture to cloud $(middle cloud_p95_ms "$csv" "$1") ms"; }
-verdict "of $(middle scans "$csv" c): adaptive $(of c); q = 16 $(of q16); step 2 cm $(of step2cm)"
+names=(c q16 step2cm draco)
+{ echo "$row_header"; rows "${names[@]}"; } >"$csv"
+plot <<TEXT
+names = 'c q16 step2cm draco'
+set multiplot layout 1,2; set xrange [-0.6:3.6]; set yrange [0:*]; unset key
+set xtics ('adaptive' 0, 'q = 16' 1, 'step 2 cm' 2, 'Draco, adapts' 3)
+place(name) = name eq 'c' ? 0 : name eq 'q16' ? 1 : name eq 'step2cm' ? 2 : 3
+set title 'part of the scans that did not arrive whole'
+plot '$csv' skip 1 using (place(strcol(1))):(1-\$4/\$3) with points pt 7 ps 1.5
+set title 'error of the poses [m]'; set key top right inside; set logscale y; set yrange [*:*]
+plot '$csv' skip 1 using (place(strcol(1))-0.1):12 with points pt 7 ps 1.5 title 'ATE', '' skip 1 using (place(strcol(1))+0.1):14 with points pt 6 ps 1.5 title 'now, RMSE'
+TEXT
+of() { echo "$(middle complete "$csv" "$1") scans whole, ATE $(middle ate_m "$csv" "$1") m, of the pose of now $(middle now_rmse_m "$csv" "$1") m, p95 capture to cloud $(middle cloud_p95_ms "$csv" "$1") ms"; }
+verdict "of $(middle scans "$csv" c): adaptive $(of c); Draco at q = 16 $(of q16); step 2 cm $(of step2cm); adaptive Draco $(of draco)"

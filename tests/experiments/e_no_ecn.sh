@@ -5,12 +5,11 @@ set -euo pipefail
 . "$(dirname "$0")/common.sh" "$@"
 . "$here/network.sh"
 
-echo "$row_header" >"$csv"
-for run in $(seq $runs); do
-  stream c "$run"
-  stream no-ecn "$run" --no-l4s
-  for name in c no-ecn; do row $name "$run"; done >>"$csv"
-done
+streams <<TEXT
+c
+no-ecn --no-l4s
+TEXT
+{ echo "$row_header"; rows c no-ecn; } >"$csv"
 plot <<TEXT
 set xlabel 'time [s]'; set ylabel 'queue [ms]'
 plot '$output/c.1/timeline.csv' skip 1 using 1:6 with lines title 'L4S', '$output/no-ecn.1/timeline.csv' skip 1 using 1:6 with lines title 'no ECN'

@@ -5,8 +5,11 @@ set -euo pipefail
 . "$(dirname "$0")/common.sh" "$@"
 . "$here/network.sh"
 
-stream c 1
-stream q16 1 --fixed-bits 16
+runs=1
+streams <<TEXT
+c
+q16 $paper_codec --fixed-bits 16
+TEXT
 echo "name,x_m,y_m,step_m,error_m" >"$csv"
 for name in c q16; do
   "$here/figures.py" way "$output/$name.1" | sed "s/^/$name,/" >>"$csv"

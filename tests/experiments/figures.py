@@ -3,6 +3,8 @@
 """Figures of a run of the demo with --slam that take more than a line of awk.
 
 figures.py way FOLDER   x,y,step,error of each pose at the edge
+figures.py now FOLDER   error of the newest pose at the edge, moved on at its last velocity to each
+                        moment: RMSE and 95th percentile [m]
 figures.py age FOLDER   how old points and poses at the edge are, and how wrong that makes them [ms, m]
 """
 import bisect
@@ -12,6 +14,7 @@ import sys
 
 SAMPLE_S = 0.005
 PERIOD_S = 0.1  # of a scan
+WARM_UP_S = 3  # until the rate has settled
 
 
 def trajectory(path):
@@ -80,18 +83,51 @@ def lay_over(places, truth):
     return moved
 
 
-def offset_of(folder, times):
+def offset_of(folder):
     """From the time of the tables to that of the trajectories."""
-    poses = table(folder + "/poses.csv")
-    gaps = [t + PERIOD_S / 2 - p["due_s"] for t, p in zip(times, poses)]
-    return percentile(gaps, 50), poses
+    with open(folder + "/packets.csv") as file:
+        first = next(csv.DictReader(file))
+    return int(first["unix_ns"]) / 1e9 - float(first["time_s"])
+
+
+def poses_of(folder):
+    """When each pose was known, its time and its place laid over the truth."""
+    times, places = trajectory(folder + "/edge.tum")
+    truth = trajectory(folder + "/truth.tum")
+    offset = offset_of(folder)
+    places = lay_over(places, [at(*truth, t) for t in times])
+    found = []
+    for pose in table(folder + "/poses.csv"):
+        time = pose["due_s"] - PERIOD_S / 2
+        i = min(max(bisect.bisect_left(times, time + offset - PERIOD_S / 2), 0), len(times) - 1)
+        if abs(times[i] - offset - time) < PERIOD_S / 2:
+            found.append((pose["posed_s"], time, places[i]))
+    return found, truth, offset
+
+
+def now(folder):
+    poses, truth, offset = poses_of(folder)
+    errors = []
+    if len(poses) > 30:
+        end = poses[-1][0]
+        newest, time = 1, poses[1][0] + WARM_UP_S
+        while time < end:
+            while poses[newest + 1][0] <= time:
+                newest += 1
+            (_, before, a), (_, then, b) = poses[newest - 1], poses[newest]
+            steps = (time - then) / (then - before)
+            place = [y + steps * (y - x) for x, y in zip(a, b)]
+            errors.append(math.dist(place, at(*truth, time + offset)))
+            time += SAMPLE_S
+    rmse = math.sqrt(sum(e * e for e in errors) / len(errors)) if errors else float("nan")
+    print(f"{rmse:.4g},{percentile(errors, 95):.4g}")
 
 
 def way(folder):
     times, places = trajectory(folder + "/edge.tum")
     truth = trajectory(folder + "/truth.tum")
     true_places = [at(*truth, t) for t in times]
-    offset, _ = offset_of(folder, times)
+    offset = offset_of(folder)
     timeline = table(folder + "/timeline.csv")
     for t, place, true in zip(times, lay_over(places, true_places), true_places):
         i = min(max(int((t - offset) * 10), 0), len(timeline) - 1)
@@ -104,7 +140,7 @@ def way(folder):
 def ages(events, end):
     """How old the newest thing is, over time; `events` are pairs of arrival and birth."""
     events.sort()
-    newest, i, found, t = None, 0, [], events[0][0] + 3
+    newest, i, found, t = None, 0, [], events[0][0] + WARM_UP_S
     while t < end:
         while i < len(events) and events[i][0] <= t:
             newest = max(newest or 0, events[i][1])
@@ -116,9 +152,8 @@ def ages(events, end):
 
 def age(folder):
     slices = [(s["decoded_s"], s["due_s"]) for s in table(folder + "/slices.csv") if s["decoded_s"] > 0]
-    times, _ = trajectory(folder + "/edge.tum")
     truth = trajectory(folder + "/truth.tum")
-    offset, poses = offset_of(folder, times)
+    offset, poses = offset_of(folder), table(folder + "/poses.csv")
     posed = [(p["posed_s"], p["due_s"] - PERIOD_S / 2) for p in poses]
     end = min(max(slices)[0], max(posed)[0])
     points = [1000 * (t - birth) for t, birth in ages(slices, end)]
@@ -137,9 +172,9 @@ def age(folder):
 
 
 def main():
-    if len(sys.argv) != 3 or sys.argv[1] not in ("way", "age"):
+    if len(sys.argv) != 3 or sys.argv[1] not in ("way", "now", "age"):
         sys.exit(__doc__)
-    {"way": way, "age": age}[sys.argv[1]](sys.argv[2])
+    {"way": way, "now": now, "age": age}[sys.argv[1]](sys.argv[2])
 
 
 main()

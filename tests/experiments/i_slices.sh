@@ -5,8 +5,11 @@ set -euo pipefail
 . "$(dirname "$0")/common.sh" "$@"
 . "$here/network.sh"
 
-stream c 1
-stream whole 1 --slices 1
+runs=1
+streams <<TEXT
+c
+whole --slices 1
+TEXT
 echo "name,point_age_p50_ms,point_age_p95_ms,pose_age_p50_ms,pose_age_p95_ms,held_p95_m,predicted_p95_m" >"$csv"
 for pair in c:slices whole:whole; do
   "$here/figures.py" age "$output/${pair%%:*}.1" | sed "s/^/${pair##*:},/" >>"$csv"
