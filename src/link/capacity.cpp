@@ -100,6 +100,22 @@ std::optional<Capacity> Capacity::ParseTrace(std::string_view text, bool repeat,
   return c;
 }
 
+Capacity Capacity::StartingAt(Duration start) const {
+  Capacity c;
+  const Duration into = period_ > Duration{0} ? start % period_ : start;
+  c.changes_.push_back({Duration{0}, ScheduledAt(into).rate});
+  for (const Change& change : changes_)
+    if (change.at > into) c.changes_.push_back({change.at - into, change.rate});
+  if (period_ > Duration{0}) {
+    for (const Change& change : changes_)
+      if (change.at < into) c.changes_.push_back({change.at + period_ - into, change.rate});
+    c.RepeatEvery(period_);
+  }
+  for (const Outage& outage : outages_)
+    c.AddOutage(std::max(outage.from - start, Duration{0}), outage.until - start);
+  return c;
+}
+
 Capacity& Capacity::AddOutage(Duration from, Duration until) {
   if (from < until) outages_.push_back({from, until});
   last_outage_ = std::max(last_outage_, until);

@@ -24,6 +24,9 @@ class Capacity {
   /// text that is anything else; `error` then says where and why.
   static std::optional<Capacity> ParseTrace(std::string_view text, bool repeat, std::string* error);
 
+  /// The same link, from `start` on. Where it repeats, what comes before `start` comes at the end.
+  Capacity StartingAt(Duration start) const;
+
   /// A link that is down from `from` to `until`, whatever the rate said; absolute, not repeated.
   Capacity& AddOutage(Duration from, Duration until);
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // loop-matrix: runs encoder, sender and link in simulated time over traces with gaps; prints the
 // figures beside those of a sender that knew the link.
+#include <algorithm>
+#include <cstdint>
 #include <cstdio>
 #include <cstdlib>
 #include <string>
@@ -37,6 +39,7 @@ struct Options {
   lidar::scream::Parameters parameters;
   double seconds = 60;
   double rtt_ms = 40;
+  int starts = 1;
   std::string samples;
 };
 
@@ -44,12 +47,15 @@ void PrintUsage() {
   std::puts(
       "usage: loop-matrix [--trace FILE]... [--variant NAME]... [--seconds S] [--rtt "
       "MS]\n"
-      "                   [--samples CSV] [TRACE...]\n"
+      "                   [--starts N] [--samples CSV] [TRACE...]\n"
       "Simulates a LiDAR stream (1.4 to 10 Mbit/s) over traces with gaps, one line a run.\n"
       "  TRACE          a built-in trace (all by default; a drive_N is generated)\n"
       "  --trace FILE   lines of 'time_s rate_mbps'\n"
       "  --variant NAME slices, scans (whole ones), framerate and balanced (what gives below the\n"
       "                 minimum), intensity, fixed (no adaptation), frames (50/s, obeys exactly)\n"
+      "  --starts N     N runs for each line, each of another scene, that begin 7.33 s apart in "
+      "the\n"
+      "                 trace; prints means and, in brackets, the lowest and the highest\n"
       "  --samples CSV  writes the sender's state every 10 ms (of one run)\n"
       "Columns: scans captured, left out by the encoder, complete, of these in time; complete over "
       "the oracle's;\n"
@@ -83,6 +89,8 @@ bool Parse(int argc, char** argv, Options* options) {
       options->seconds = std::atof(argv[++i]);
     } else if (arg == "--rtt") {
       options->rtt_ms = std::atof(argv[++i]);
+    } else if (arg == "--starts") {
+      options->starts = std::atoi(argv[++i]);
     } else if (arg == "--samples") {
       options->samples = argv[++i];
     } else {
@@ -95,7 +103,7 @@ bool Parse(int argc, char** argv, Options* options) {
     for (const std::string& name : names) wanted = wanted || name == trace.name;
     if (wanted) options->traces.push_back(trace);
   }
-  return options->seconds > 0 && !options->traces.empty();
+  return options->seconds > 0 && options->starts > 0 && !options->traces.empty();
 }
 
 bool WriteSamples(const std::string& path, const lidar::scream::test::SimulationResult& result) {
@@ -153,6 +161,81 @@ void PrintRow(const LoopCase& c, const LoopReport& r) {
   std::fflush(stdout);
 }
 
+/// One figure over several runs.
+class Spread {
+ public:
+  void Add(double value) {
+    lowest_ = runs_ == 0 ? value : std::min(lowest_, value);
+    highest_ = runs_ == 0 ? value : std::max(highest_, value);
+    sum_ += value;
+    ++runs_;
+  }
+  std::string Text(int digits) const {
+    char text[80];
+    std::snprintf(text, sizeof text, "%.*f (%.*f..%.*f)", digits, sum_ / runs_, digits, lowest_,
+                  digits, highest_);
+    return text;
+  }
+
+ private:
+  double sum_ = 0, lowest_ = 0, highest_ = 0;
+  int runs_ = 0;
+};
+
+/// Each figure of a report that PrintSpread() shows, and the digits behind its point.
+struct Figure {
+  const char* name;
+  int digits;
+  double (*of)(const LoopReport& report, const LoopReport& fixed);
+};
+double Count(std::uint64_t n) { return static_cast<double>(n); }
+const std::vector<Figure> kFigures = {
+    {"complete", 1, [](const LoopReport& r, const LoopReport&) { return Count(r.complete); }},
+    {"of a fixed step [%]", 1,
+     [](const LoopReport& r, const LoopReport& f) {
+       return 100 * Count(r.complete) / Count(f.complete);
+     }},
+    {"in time", 1, [](const LoopReport& r, const LoopReport&) { return Count(r.in_time); }},
+    {"of a fixed step [%]", 1,
+     [](const LoopReport& r, const LoopReport& f) {
+       return 100 * Count(r.in_time) / Count(f.in_time);
+     }},
+    {"of the oracle [%]", 1,
+     [](const LoopReport& r, const LoopReport&) { return 100 * r.OfOracle(); }},
+    {"utilisation [%]", 1,
+     [](const LoopReport& r, const LoopReport&) { return 100 * r.utilisation; }},
+    {"p95 over the oracle's [ms]", 0,
+     [](const LoopReport& r, const LoopReport&) {
+       return r.capture_to_cloud_ms.p95 - r.oracle_at_mean.Latency(95);
+     }},
+    {"queue p95 [ms]", 1, [](const LoopReport& r, const LoopReport&) { return r.queue_ms.p95; }},
+    {"longest way back [s]", 2,
+     [](const LoopReport& r, const LoopReport&) { return r.recovery_s.max; }},
+};
+
+/// The run that begins `n` starts later, with another scene.
+LoopCase Start(LoopCase c, int n) {
+  constexpr auto kApart = std::chrono::milliseconds(7330);
+  c.capacity = c.capacity.StartingAt(kApart * n);
+  c.source.seed += static_cast<unsigned>(n);
+  return c;
+}
+
+void PrintSpread(const LoopCase& loop_case, int starts) {
+  std::vector<Spread> spreads(kFigures.size());
+  for (int n = 0; n < starts; ++n) {
+    LoopCase c = Start(loop_case, n);
+    const LoopReport report = RunLoop(c).report;
+    c.source.adapts = false;
+    const LoopReport fixed = RunLoop(c).report;
+    for (std::size_t i = 0; i < kFigures.size(); ++i) spreads[i].Add(kFigures[i].of(report, fixed));
+  }
+  std::printf("%s\n", loop_case.name.c_str());
+  for (std::size_t i = 0; i < kFigures.size(); ++i)
+    std::printf("    %-28s %s\n", kFigures[i].name, spreads[i].Text(kFigures[i].digits).c_str());
+  std::fflush(stdout);
+}
+
 bool Wanted(const Options& options, const Variant& variant) {
   if (options.variants.empty()) return true;
   for (const std::string& name : options.variants)
@@ -168,7 +251,7 @@ int main(int argc, char** argv) {
     PrintUsage();
     return 2;
   }
-  PrintHeader();
+  if (options.starts == 1) PrintHeader();
   for (const NamedTrace& trace : options.traces) {
     for (const Variant& variant : kVariants) {
       if (!Wanted(options, variant)) continue;
@@ -179,6 +262,10 @@ int main(int argc, char** argv) {
       loop_case.rtt = lidar::FromSeconds(options.rtt_ms / 1e3);
       loop_case.parameters = options.parameters;
       variant.apply(&loop_case);
+      if (options.starts > 1) {
+        PrintSpread(loop_case, options.starts);
+        continue;
+      }
       const LoopRun run = RunLoop(loop_case);
       PrintRow(loop_case, run.report);
       if (!options.samples.empty() && !WriteSamples(options.samples, run.simulation)) return 1;

@@ -22,6 +22,7 @@ struct Options {
   std::string samples;
   double seconds = 0;
   double frame_jitter = -1;
+  double frames_per_second = 0;
   double wakeup_ms = 0;
   double stall_ms = 0;
 };
@@ -31,6 +32,7 @@ void PrintUsage() {
       "usage: scream-matrix [--draft] [--seconds S] [--samples CSV] [SCENARIO...]\n"
       "Simulates SCReAM v2 over the scenarios (all by default) and prints one line each.\n"
       "  --seconds S    shorter (or longer) runs\n"
+      "  --frames-per-second N   of every flow of ours\n"
       "  --frame-jitter PERCENT  frame sizes vary evenly by so much\n"
       "  --wakeup-ms MS pacing wakes up late by up to so much\n"
       "  --stall-ms MS  sender and receiver stop for up to so much, once a second\n"
@@ -48,6 +50,8 @@ bool Parse(int argc, char** argv, Options* options) {
       options->samples = argv[++i];
     } else if (arg == "--frame-jitter" && i + 1 < argc) {
       options->frame_jitter = std::atof(argv[++i]) / 100;
+    } else if (arg == "--frames-per-second" && i + 1 < argc) {
+      options->frames_per_second = std::atof(argv[++i]);
     } else if (arg == "--stall-ms" && i + 1 < argc) {
       options->stall_ms = std::atof(argv[++i]);
     } else if (arg == "--wakeup-ms" && i + 1 < argc) {
@@ -121,6 +125,8 @@ int main(int argc, char** argv) {
     if (options.seconds > 0) s.config.duration = lidar::FromSeconds(options.seconds);
     for (FlowConfig& flow : s.config.flows) {
       if (options.frame_jitter >= 0) flow.sources[0].frame_jitter = options.frame_jitter;
+      if (options.frames_per_second > 0)
+        flow.sources[0].frames_per_second = options.frames_per_second;
       flow.stall = lidar::FromSeconds(options.stall_ms / 1e3);
       flow.wakeup_delay = lidar::FromSeconds(options.wakeup_ms / 1e3);
     }

@@ -33,6 +33,18 @@ TEST(Capacity, StepsThatRepeatStartAgain) {
   EXPECT_EQ(c.NextChange(3500ms), 4s);
 }
 
+TEST(Capacity, StartsAnywhereInATrace) {
+  auto c = Capacity::Steps({Mbps(8), Mbps(4), Mbps(2)}, 1s, true);
+  c.AddOutage(2s, 2500ms);
+  for (const Duration start : {0ms, 500ms, 1000ms, 2700ms, 3000ms, 7300ms}) {
+    const Capacity later = c.StartingAt(start);
+    for (Duration t{0}; t < 9s; t += 50ms)
+      EXPECT_EQ(later.RateAt(t), c.RateAt(start + t)) << Seconds(start) << " " << Seconds(t);
+    EXPECT_NEAR(later.Between(0s, 30s) / c.Between(start, start + 30s), 1, 1e-6);
+  }
+  EXPECT_EQ(Capacity::Steps({Mbps(8), Mbps(4)}, 1s).StartingAt(1500ms).RateAt(5s), Mbps(4));
+}
+
 TEST(Capacity, AGapHoldsThePacketUntilItEnds) {
   const auto c = Capacity::Steps({Mbps(8), Mbps(0), Mbps(8)}, 1s);
   EXPECT_EQ(c.Finish(999500us, Bytes(1000)), 2000500us);
