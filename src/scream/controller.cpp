@@ -156,6 +156,7 @@ void Controller::TakeGapRestart(Time now) {
   path_.OnGapEnd(now, restart->s_rtt, restart->l4s_alpha);
   answered_.OnGapEnd(now);
   streams_.OnGapEnd();
+  pacer_.OnGapEnd(now);
   fast_increase_.OnGapEnd();
   ++counters_.gaps;
 }

@@ -288,6 +288,18 @@ TEST(Pacer, CatchesUpAfterALateWakeUpButOnlyALittle) {
   EXPECT_EQ(pacer.next(), kStart + 6ms);
 }
 
+TEST(Pacer, WaitsNoLongerForWhatLeftAtTheRateOfAGap) {
+  const Parameters p;
+  Pacer pacer(p);
+  pacer.Update(DataRate::BitsPerSecond(5e4), DataRate::BitsPerSecond(10e6), 1);
+  pacer.OnSent(kStart, DataSize::Bytes(1250));
+  ASSERT_GT(pacer.next(), kStart + 100ms);
+  pacer.OnGapEnd(kStart + 20ms);
+  EXPECT_EQ(pacer.next(), kStart + 20ms);
+  pacer.OnGapEnd(kStart + 30ms);
+  EXPECT_EQ(pacer.next(), kStart + 20ms);
+}
+
 TEST(Pacer, ABurstIsFasterAndShort) {
   const Parameters p = Parameters::Draft();
   Pacer pacer(p);
