@@ -39,6 +39,11 @@ class L4sAlpha {
     delivered_ = marked_ = 0;
   }
 
+  /// As before the first packet.
+  void Reset() {
+    alpha_ = last_fraction_marked_ = 0;
+    delivered_ = marked_ = 0;
+  }
   /// Goes on from a value that was known before.
   void Restore(double alpha) { alpha_ = alpha; }
 

@@ -72,6 +72,8 @@ void PathModel::Reset() {
   half_rate_until_ = Time{};
   ecn_.Reset();
   last_mark_.reset();
+  l4s_alpha_.Reset();
+  marking_onset_ = MarkingOnset(p_.pacing_reserve);
 }
 
 void PathModel::MeasureDelays(Time now, const AckSummary& acks, const SenderState& sender) {
@@ -94,12 +96,13 @@ void PathModel::MeasureDelays(Time now, const AckSummary& acks, const SenderStat
 }
 
 void PathModel::CountMarksAndLosses(Time now, const AckSummary& acks, const SenderState& sender) {
-  int marked = acks.late_ce;
+  int marked = 0;
   int answered = 0;
+  const auto count_mark = [&](Time sent) { ++(sent >= sender.marks_answered ? marked : answered); };
+  for (const Time sent : acks.late_ce) count_mark(sent);
   acked_rate_.set_window(std::max(rtt_.smoothed(), 2 * sender.frame_period));
   for (const AckedPacket& packet : acks.acked) {
-    if (packet.arrived_ecn == Ecn::kCe)
-      ++(packet.sent >= sender.marks_answered ? marked : answered);
+    if (packet.arrived_ecn == Ecn::kCe) count_mark(packet.sent);
     ecn_.OnAcked(packet.ecn, packet.arrived_ecn);
     loss_rate_.Add(false, sender.ref_wnd);
     acked_rate_.Add(now, packet.size);

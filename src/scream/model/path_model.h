@@ -50,8 +50,7 @@ class PathModel {
   /// True at the end of a round trip.
   bool EndRoundTrip(Time now);
   void OnTimer(Time now) { ecn_.OnTimer(now); }
-  /// Another route: base delay, round trip, ECN, losses and capacity are unknown again. What is
-  /// learnt from marks stays until the next ones tell otherwise.
+  /// Another route: base delay, round trip, ECN, marks, losses and capacity are unknown again.
   void Reset();
 
   const RoundTripTime& rtt() const { return rtt_; }

@@ -174,7 +174,7 @@ HistoryResult SentHistory::OnFeedback(Time now, const CongestionFeedback& feedba
   if (!arrivals_known_) summary->rtt = held_;
   ExpireTails();
   DetectLoss(now, &summary->lost);
-  const bool nothing = summary->acked.empty() && summary->lost.empty() && summary->late_ce == 0;
+  const bool nothing = summary->acked.empty() && summary->lost.empty() && summary->late_ce.empty();
   return nothing ? HistoryResult::kNothingNew : HistoryResult::kApplied;
 }
 
@@ -202,7 +202,7 @@ void SentHistory::Acknowledge(Time now, const PacketMetric& metric, Time report,
   const bool ce = metric.ecn == Ecn::kCe;
   if (packet->state == State::kAcked) {
     if (ce && !packet->ce) {
-      ++summary->late_ce;
+      summary->late_ce.push_back(packet->record.sent);
       packet->ce = true;
     }
     return;

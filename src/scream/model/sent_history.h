@@ -41,8 +41,8 @@ struct AckSummary {
   std::vector<AckedPacket> acked;  ///< in the order in which they were sent
   std::vector<LostPacket> lost;
   Time report{};  ///< when it was made, on the receiver's clock, unwrapped
-  /// CE marks on packets that an earlier report had acknowledged without.
-  int late_ce = 0;
+  /// When the packets were sent that an earlier report had acknowledged without their CE mark.
+  std::vector<Time> late_ce;
   /// The draft's: by how much the highest acknowledged sequence numbers moved on, lost ones
   /// included.
   DataSize bytes_newly_acked;

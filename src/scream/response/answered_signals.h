@@ -37,7 +37,9 @@ class AnsweredSignals {
     const auto is_new = [this](const AckedPacket& acked) {
       return acked.arrived_ecn == Ecn::kCe && acked.sent >= marks_;
     };
-    return acks.late_ce > 0 || std::any_of(acks.acked.begin(), acks.acked.end(), is_new);
+    const auto sent_since = [this](Time sent) { return sent >= marks_; };
+    return std::any_of(acks.late_ce.begin(), acks.late_ce.end(), sent_since) ||
+           std::any_of(acks.acked.begin(), acks.acked.end(), is_new);
   }
   /// Marks of packets sent before it have had their reaction.
   Time marks() const { return marks_; }

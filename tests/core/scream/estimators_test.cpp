@@ -27,6 +27,8 @@ TEST(PathModel, KnowsNothingOfAnotherRoute) {
   ASSERT_TRUE(path.model.L4sWorks(path.now));
   ASSERT_GT(path.model.estimated_capacity(), DataRate());
   ASSERT_GT(path.model.loss_rate().value(), 0);
+  ASSERT_GT(path.model.l4s_alpha().value(), 0);
+  ASSERT_NE(path.model.marking_onset(), p.pacing_reserve);
 
   path.model.Reset();
   EXPECT_FALSE(path.model.classic_ecn().found());
@@ -39,6 +41,8 @@ TEST(PathModel, KnowsNothingOfAnotherRoute) {
   EXPECT_FALSE(path.model.train().rate());
   EXPECT_FALSE(path.model.rtt().known());
   EXPECT_EQ(path.model.loss_rate().value(), 0);
+  EXPECT_EQ(path.model.l4s_alpha().value(), 0);
+  EXPECT_EQ(path.model.marking_onset(), p.pacing_reserve);
   EXPECT_EQ(path.model.report_gap(), Duration{0});
 }
 

@@ -286,13 +286,16 @@ TEST(AnsweredSignals, AreThoseOfPacketsSentBeforeTheReaction) {
   EXPECT_TRUE(answered.NewMark(acks));
   answered.OnCapacityDrop(kStart + 1ms);
   EXPECT_FALSE(answered.NewMark(acks));
-  acks.late_ce = 1;
+  acks.late_ce = {kStart};
+  EXPECT_FALSE(answered.NewMark(acks));
+  acks.late_ce = {kStart + 1ms};
   EXPECT_TRUE(answered.NewMark(acks));
-  acks.late_ce = 0;
   acks.lost.back().sent = acks.acked.back().sent = kStart + 1s;
   EXPECT_TRUE(answered.NewLoss(acks) && answered.NewMark(acks));
   answered.OnRouteChange(kStart + 1s + 1ms);
   EXPECT_FALSE(answered.NewLoss(acks) || answered.NewMark(acks));
+  acks.late_ce = {kStart + 1s};
+  EXPECT_FALSE(answered.NewMark(acks)) << "of the old route, reported late";
   acks.lost.back().sent = acks.acked.back().sent = kStart + 2s + 20ms;
   answered.OnOutageEnd(kStart + 2s, kRtt);
   answered.OnGapEnd(kStart + 2s + 10ms);

@@ -212,6 +212,17 @@ TEST(RouteChange, KeepsTheFlowGoingAndTestsEcnAnew) {
   EXPECT_EQ(run.End().ecn_state, EcnState::kCapable);
 }
 
+/// What the old route's bottleneck marked says nothing about the new one's.
+TEST(RouteChange, LearnsMarksAnew) {
+  Scenario s = Named("slices_8M_step1ms");
+  s.config.flows[0].route_change = 15s;
+  s.config.longer_by = 30ms;
+  s.config.longer_from = 15s;
+  const Trial run(s);
+  EXPECT_GT(run.Utilisation(16500ms, 21s), 0.85);
+  EXPECT_LT(run.MaxQueueMs(15s, 21s), 15);
+}
+
 TEST(Feedback, ThatIsSlowCostsLittle) {
   Scenario s = Named("frames_8M_rtt40");
   s.config.return_delay += 150ms;

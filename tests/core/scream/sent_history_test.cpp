@@ -94,7 +94,7 @@ TEST_F(SentHistoryTest, CeOfALaterReportIsNotLost) {
   Send(0, 2);
   Apply(Report(0, "r"));
   EXPECT_EQ(Apply(Report(0, "C")), HistoryResult::kApplied);
-  EXPECT_EQ(summary_.late_ce, 1);
+  EXPECT_EQ(summary_.late_ce.size(), 1U);
   EXPECT_EQ(Apply(Report(0, "C")), HistoryResult::kNothingNew);
 }
 
@@ -263,7 +263,7 @@ TEST_F(SentHistoryTest, ManyPacketsOfTheLastSecondAreRemembered) {
   Apply(Report(0, std::string(3000, 'r')));
   Send(3000, 3001);
   EXPECT_EQ(Apply(Report(0, "C")), HistoryResult::kApplied);
-  EXPECT_EQ(summary_.late_ce, 1);
+  EXPECT_EQ(summary_.late_ce.size(), 1U);
 }
 
 TEST_F(SentHistoryTest, AMissingPacketThatExpiredIsNotLost) {
