@@ -59,6 +59,8 @@ started=$SECONDS
 # the price under a sanitizer.
 dear=(simulation programs)
 without_dear=("${dear[@]/#/--no-suite=}")
+# Tests of elements wait for half of their time, so more of them run at a time than there are cores.
+waiting=(--num-processes $((2 * $(nproc))))
 
 # A compiler's own list of headers tells ccache what to look at, so what is not there yet is not preprocessed twice.
 export CCACHE_DEPEND=${CCACHE_DEPEND:-1} CCACHE_SLOPPINESS=${CCACHE_SLOPPINESS:-pch_defines,time_macros}
@@ -106,10 +108,21 @@ start_sanitized() {
   sanitized_job=$!
   chrt --idle -p 0 "$sanitized_job"
 }
+# hurry PID: it and what it started have their share of a busy machine again.
+hurry() {
+  local child
+  chrt --other -p 0 "$1" 2>/dev/null
+  for child in $(pgrep -P "$1"); do hurry "$child"; done
+}
 # Waits for that build, or builds; 0 where it succeeded.
 sanitized_ready() {
   if [ -z "$sanitized_result" ]; then
-    if [ -n "$sanitized_job" ]; then wait "$sanitized_job"; else build_sanitized; fi
+    if [ -n "$sanitized_job" ]; then
+      hurry "$sanitized_job"
+      wait "$sanitized_job"
+    else
+      build_sanitized
+    fi
     sanitized_result=$?
   fi
   return "$sanitized_result"
@@ -139,14 +152,16 @@ disturbed='def disturbed: (.result == "TIMEOUT" or .result == "INTERRUPT" or .re
   ((.stdout // "") + (.stderr // "") | test("LeakSanitizer has encountered a fatal error") or
    (test("ERROR: AddressSanitizer|ERROR: LeakSanitizer|runtime error:|WARNING: ThreadSanitizer") | not));'
 
-# settle DIR SUITE NAME [meson options]: adds a log of meson to the totals. Failed tests run once more, one
-# by one and without a compiler beside them: many stream in real time, on a machine that others may use.
-# What they do now is what counts, and the last lines name them. Where many fail, the tree is wrong and
-# not the moment.
+# settle DIR SUITE NAME [meson options]: adds what a log of meson has of a suite to the totals. Failed tests
+# run once more, one by one and without a compiler beside them: many stream in real time, on a machine that
+# others may use. What they do now is what counts, and the last lines name them. Where many fail, the tree is
+# wrong and not the moment.
 settle() {
   local dir=$1 suite=$2 name=$3 log=$1/meson-logs/settled.json names before
   shift 3
-  results "$dir" "$name" >"$log"
+  # Names are "gst-lidar:SUITE+SUITE / TEST".
+  results "$dir" "$name" |
+    jq -c --arg suite "$suite" 'select(.name | sub("^[^:]*:"; "") | sub(" / .*"; "") | split("+") | index($suite))' >"$log"
   [ -s "$log" ] || { echo "meson left no results of $suite"; failed=$((failed + 1)); return; }
   mapfile -t names < <(jq -r "$disturbed"' select(disturbed) | .name | sub(".*(/ |:)"; "")' "$log")
   if [ "$suite" = lint ] || [ ${#names[@]} = 0 ] || [ ${#names[@]} -gt "$most_again" ]; then
@@ -157,22 +172,25 @@ settle() {
   echo "== failed, and run again alone: ${names[*]}"
   second_tries+=("${names[@]/#/$(basename "$dir"): }")
   forget "$dir" again
-  meson test -C "$dir" --no-rebuild --suite "$suite" --logbase again --num-processes 1 --print-errorlogs \
-    --timeout-multiplier 12 "$@" "${names[@]}" 2>&1 | shorten
+  meson test -C "$dir" --no-rebuild --suite "$suite" --logbase again --print-errorlogs "$@" --num-processes 1 \
+    --timeout-multiplier 12 "${names[@]}" 2>&1 | shorten
   before=$((passed + failed))
   tally < <(results "$dir" again)
   failed=$((failed + before + ${#names[@]} - passed - failed))  # what did not run
   tally < <(jq -c "$disturbed"' select(disturbed | not)' "$log")
 }
 
-# run DIR SUITE [meson options]: adds the results of one suite to the totals.
+# run DIR SUITES [meson options]: runs the tests of the suites together, and adds their results to the totals.
 run() {
-  local dir=$1 suite=$2
+  local dir=$1 suites suite chosen=()
+  read -ra suites <<<"$2"
   shift 2
-  echo "== $(basename "$dir"): $suite (${SECONDS}s)"
+  for suite in "${suites[@]}"; do chosen+=(--suite "$suite"); done
+  echo "== $(basename "$dir"): ${suites[*]} (${SECONDS}s)"
   forget "$dir" testlog
-  meson test -C "$dir" --no-rebuild --suite "$suite" --print-errorlogs --timeout-multiplier 4 "$@" 2>&1 | shorten
-  [ "$suite" = pipelines ] || settle "$dir" "$suite" testlog "$@"
+  meson test -C "$dir" --no-rebuild "${chosen[@]}" --print-errorlogs --timeout-multiplier 4 "$@" 2>&1 | shorten
+  [ "${suites[*]}" != pipelines ] || return 0
+  for suite in "${suites[@]}"; do settle "$dir" "$suite" testlog "$@"; done
 }
 
 # The pipelines stream in real time, so they run one by one. Those of the suite beside wait for most
@@ -212,6 +230,7 @@ if [ ${#suites[@]} -gt 0 ]; then
       case $suite in
         pipelines) run_pipelines "$root/build" ;;
         bench | faults | peers | browser) run "$root/build" "$suite" --num-processes 1 ;;
+        elements) run "$root/build" elements "${waiting[@]}" ;;
         *) run "$root/build" "$suite" ;;
       esac
     done
@@ -232,7 +251,7 @@ if [ "$sanitize" = yes ]; then
   export LSAN_OPTIONS="suppressions=$here/lsan.supp:print_suppressions=0"
   export UBSAN_OPTIONS="print_stacktrace=1:halt_on_error=1"
   if sanitized_ready; then
-    for suite in $sanitized; do run "$root/build-asan" "$suite" "${without_dear[@]}" --timeout-multiplier 12; done
+    run "$root/build-asan" "$sanitized" "${without_dear[@]}" "${waiting[@]}" --timeout-multiplier 12
   else
     count 1
   fi

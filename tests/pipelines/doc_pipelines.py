@@ -4,7 +4,8 @@
 
 A command passes where it ends with exit code 0, or still runs without an error a moment after it plays.
 With -q it does not say when it plays: then it passes where it runs for some seconds without an error.
-Windows become fakesinks, and each page has ports and a folder of its own: several run at a time.
+Windows become fakesinks, and each page has ports and a folder of its own: several run at a time. They leave
+the processor to what streams beside them.
 Commands that name a sensor by `hostname=` are left out, and said so.
 """
 import concurrent.futures
@@ -20,7 +21,7 @@ import time
 
 PLAYING = b"Setting pipeline to PLAYING"  # what gst-launch-1.0 prints, except with -q
 START_SECONDS, QUIET_SECONDS, PLAY_SECONDS = 30, 4, 1.5
-AT_A_TIME = 6
+AT_A_TIME = 4
 FIRST_PORT, PORTS = 21000, 100  # of the first page, and from one page to the next
 
 
@@ -118,6 +119,7 @@ def run_page(page, root, folder, first_port):
 
 
 def main():
+    os.nice(10)
     root = pathlib.Path(sys.argv[1]).resolve()
     named = [root / page for page in sys.argv[2:]]
     pages = named or [root / "README.md", *sorted((root / "docs").rglob("*.md"))]
