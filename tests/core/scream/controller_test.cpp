@@ -138,7 +138,7 @@ TEST(Controller, ImplausibleFeedbackChangesNothingAndIsCounted) {
   EXPECT_EQ(s.bytes_in_flight.bytes(), 1000);
 }
 
-TEST(Simulation, IsDeterministic) {
+TEST(WholeLoop, IsDeterministic) {
   const SimulationResult a = RunScenario("frames_8M_rtt40"), b = RunScenario("frames_8M_rtt40");
   EXPECT_EQ(a.flows[0].delivered_bytes, b.flows[0].delivered_bytes);
   EXPECT_EQ(a.packets.size(), b.packets.size());
@@ -234,7 +234,7 @@ TEST(Simulation, JitterBurstsAndReorderingCostNothing) {
   }
 }
 
-TEST(Simulation, BleachedPacketsAreSentAsNotEct) {
+TEST(Controller, BleachedPacketsAreSentAsNotEct) {
   Controller c{Parameters()};
   const StreamId id = c.AddStream({});
   Time now = kStart;
