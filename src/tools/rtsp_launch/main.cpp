@@ -108,9 +108,7 @@ void Serve(const Options& options) {
   g_main_loop_run(loop.get());
 }
 
-}  // namespace
-
-int main(int argc, char** argv) {
+Options ReadOptions(int argc, char** argv) {
   CLI::App app(
       "Serves a pipeline, written as for gst-launch-1.0, by RTSP. All viewers share it; it runs "
       "while there are any. Prints the address.");
@@ -127,8 +125,15 @@ int main(int argc, char** argv) {
       "PIPELINE: elements, properties and links, after the options; the last is called pay0");
   lidar::tools::Parse(&app, argc, argv);
   options.pipeline = app.remaining();
-  gst_init(nullptr, nullptr);
+  return options;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
   return lidar::tools::Guard("lidar-rtsp-launch", [&] {
+    const Options options = ReadOptions(argc, argv);
+    gst_init(nullptr, nullptr);
     Serve(options);
     gst_deinit();  // tracers tell what was left
     return 0;
