@@ -20,7 +20,7 @@ import tempfile
 import time
 
 PLAYING = b"Setting pipeline to PLAYING"  # what gst-launch-1.0 prints, except with -q
-START_SECONDS, QUIET_SECONDS, PLAY_SECONDS = 30, 4, 1.5
+START_SECONDS, QUIET_SECONDS, PLAY_SECONDS = 60, 4, 1.5
 AT_A_TIME = 4
 FIRST_PORT, PORTS = 21000, 100  # of the first page, and from one page to the next
 
@@ -119,7 +119,7 @@ def run_page(page, root, folder, first_port):
 
 
 def main():
-    os.nice(10)
+    os.nice(5)
     root = pathlib.Path(sys.argv[1]).resolve()
     named = [root / page for page in sys.argv[2:]]
     pages = named or [root / "README.md", *sorted((root / "docs").rglob("*.md"))]
