@@ -17,4 +17,12 @@ void BinaryEncoder::Finish() {
     out_->push_back(static_cast<std::uint8_t>(low_ >> (at - 8)));
 }
 
+void BinaryDecoder::Refill() {
+  while ((low_ ^ high_) < 1U << 24) {
+    low_ <<= 8;
+    high_ = high_ << 8 | 0xFF;
+    code_ = code_ << 8 | NextByte();
+  }
+}
+
 }  // namespace lidar::codec::mixing

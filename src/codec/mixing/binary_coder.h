@@ -46,17 +46,16 @@ class BinaryDecoder {
   }
 
   /// The first argument is for BinaryEncoder, whose twin this is.
-  bool Code(bool /*bit*/, std::int32_t chance) {
+  [[gnu::always_inline]] bool Code(bool /*bit*/, std::int32_t chance) {
     const std::uint32_t split =
         low_ + static_cast<std::uint32_t>(
                    std::uint64_t{high_ - low_} * static_cast<std::uint32_t>(chance) >> 16);
     const bool bit = code_ <= split;
-    (bit ? high_ : low_) = bit ? split : split + 1;
-    while ((low_ ^ high_) < 1U << 24) {
-      low_ <<= 8;
-      high_ = high_ << 8 | 0xFF;
-      code_ = code_ << 8 | NextByte();
-    }
+    // Without a branch, which would often be guessed wrong.
+    const std::uint32_t ones = bit ? UINT32_MAX : 0;
+    high_ ^= (high_ ^ split) & ones;
+    low_ += (split + 1 - low_) & ~ones;
+    if (__builtin_expect((low_ ^ high_) < 1U << 24, 0)) Refill();
     return bit;
   }
   /// True where bits were read that no encoder has written.
@@ -65,6 +64,7 @@ class BinaryDecoder {
   bool AtEnd() const { return next_ == end_ && !overran(); }
 
  private:
+  void Refill();
   std::uint32_t NextByte() {
     if (next_ != end_) return *next_++;
     ++missing_;

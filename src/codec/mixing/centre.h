@@ -22,7 +22,7 @@ class Centre {
 
   /// Logit of a decision on the difference from the prediction (kSmallNodes). Decisions come in the
   /// order of a value's.
-  std::int32_t Opinion(unsigned node) {
+  [[gnu::always_inline]] std::int32_t Opinion(unsigned node) {
     if (node == 0) {
       below_ = Below(-8);
       above_ = kOne - Below(8);

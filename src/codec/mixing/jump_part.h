@@ -86,15 +86,15 @@ class JumpPart {
                                                  kSecond + node * kJumpContexts[1] + c.range_class,
                                                  kThird + node * kJumpContexts[2] + gap_class};
     const Places places = PlacesOf(split);
-    mixer_.Ask([&](unsigned k) {
+    BitMixer<3 + kUsed, 0> mixer;
+    mixer.Ask([&](unsigned k) __attribute__((always_inline)) {
       if (k < 3) return &model_.counters.jump[values[k]];
       const auto place = static_cast<std::uint32_t>(places[k - 3]);
       return &model_.counters.candidates[((k - 3) * kJumpNodes + node) * kPlaces + place];
     });
-    return mixer_.Code(bit, &model_.weights.jump[node], &coder_);
+    return mixer.Code(bit, &model_.weights.jump[node], &coder_);
   }
 
-  BitMixer<3 + kUsed, 0> mixer_;
   Model& model_;
   Coder& coder_;
   const JumpContext* context_ = nullptr;

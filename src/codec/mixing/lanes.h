@@ -82,11 +82,11 @@ struct Sse2Lanes {
     Eight rates, chances;
   };
 
-  static Eight Of(const std::array<std::int16_t, kLanes>& n) {
+  [[gnu::always_inline]] static Eight Of(const std::array<std::int16_t, kLanes>& n) {
     return _mm_setr_epi16(n[0], n[1], n[2], n[3], n[4], n[5], n[6], n[7]);
   }
   template <unsigned kCount>
-  static Counters Load(const Counter* const* from) {
+  [[gnu::always_inline]] static Counters Load(const Counter* const* from) {
     const __m128i zero = _mm_setzero_si128();
     // Four rates, then four chances.
     const __m128i low = _mm_unpacklo_epi32(Pair<kCount, 0>(from), Pair<kCount, 2>(from));
@@ -96,17 +96,17 @@ struct Sse2Lanes {
     return {_mm_unpacklo_epi64(low, high), _mm_unpackhi_epi64(low, high)};
   }
   template <unsigned kCount>
-  static void Store(const Counters& counters, Counter* const* to) {
+  [[gnu::always_inline]] static void Store(const Counters& counters, Counter* const* to) {
     StoreFour<kCount>(_mm_unpacklo_epi16(counters.rates, counters.chances), to);
     if constexpr (kCount > 4)
       StoreFour<kCount - 4>(_mm_unpackhi_epi16(counters.rates, counters.chances), to + 4);
   }
-  static Eight Votes(Eight logits, const Counters& counters) {
+  [[gnu::always_inline]] static Eight Votes(Eight logits, const Counters& counters) {
     const Eight doubt = _mm_add_epi16(counters.rates, _mm_srli_epi16(counters.rates, 1));
     const Eight sure = _mm_srli_epi16(_mm_xor_si128(doubt, _mm_set1_epi16(-1)), 1);
     return _mm_mulhi_epi16(_mm_add_epi16(logits, logits), sure);
   }
-  static Counters Learnt(const Counters& counters, bool bit) {
+  [[gnu::always_inline]] static Counters Learnt(const Counters& counters, bool bit) {
     const Eight mirror = _mm_set1_epi16(bit ? -1 : 0);
     const Eight miss = _mm_xor_si128(counters.chances, mirror);
     const Eight left = _mm_sub_epi16(miss, _mm_mulhi_epu16(miss, counters.rates));
@@ -115,16 +115,16 @@ struct Sse2Lanes {
     const Eight less = _mm_mulhi_epu16(rates, _mm_sub_epi16(rates, _mm_srli_epi16(square, 1)));
     return {_mm_sub_epi16(rates, less), _mm_xor_si128(left, mirror)};
   }
-  static Eight Join(Eight a, Eight b) { return _mm_or_si128(a, b); }
-  static Sum Dot(Eight inputs, const std::int16_t* weights) {
+  [[gnu::always_inline]] static Eight Join(Eight a, Eight b) { return _mm_or_si128(a, b); }
+  [[gnu::always_inline]] static Sum Dot(Eight inputs, const std::int16_t* weights) {
     return _mm_madd_epi16(inputs, _mm_load_si128(reinterpret_cast<const __m128i*>(weights)));
   }
-  static Sum Plus(Sum a, Sum b) { return _mm_add_epi32(a, b); }
-  static std::int32_t Total(Sum sum) {
+  [[gnu::always_inline]] static Sum Plus(Sum a, Sum b) { return _mm_add_epi32(a, b); }
+  [[gnu::always_inline]] static std::int32_t Total(Sum sum) {
     sum = _mm_add_epi32(sum, _mm_shuffle_epi32(sum, 0x4E));
     return _mm_cvtsi128_si32(_mm_add_epi32(sum, _mm_shuffle_epi32(sum, 0xB1)));
   }
-  static void Teach(Eight inputs, std::int32_t step, std::int16_t* weights) {
+  [[gnu::always_inline]] static void Teach(Eight inputs, std::int32_t step, std::int16_t* weights) {
     auto* at = reinterpret_cast<__m128i*>(weights);
     const Eight product = _mm_mulhi_epi16(inputs, _mm_set1_epi16(static_cast<std::int16_t>(step)));
     const Eight moves = _mm_srai_epi16(_mm_add_epi16(product, _mm_set1_epi16(1)), 1);
@@ -132,26 +132,26 @@ struct Sse2Lanes {
   }
 
  private:
-  static __m128i LoadOne(const Counter* from) {
+  [[gnu::always_inline]] static __m128i LoadOne(const Counter* from) {
     std::int32_t word;
     std::memcpy(&word, from, sizeof word);
     return _mm_cvtsi32_si128(word);
   }
   /// Two rates, then two chances.
   template <unsigned kCount, unsigned kFirst>
-  static __m128i Pair(const Counter* const* from) {
+  [[gnu::always_inline]] static __m128i Pair(const Counter* const* from) {
     __m128i first = _mm_setzero_si128();
     __m128i second = _mm_setzero_si128();
     if constexpr (kFirst < kCount) first = LoadOne(from[kFirst]);
     if constexpr (kFirst + 1 < kCount) second = LoadOne(from[kFirst + 1]);
     return _mm_unpacklo_epi16(first, second);
   }
-  static void StoreOne(__m128i words, Counter* to) {
+  [[gnu::always_inline]] static void StoreOne(__m128i words, Counter* to) {
     const std::int32_t word = _mm_cvtsi128_si32(words);
     std::memcpy(static_cast<void*>(to), &word, sizeof word);
   }
   template <unsigned kCount>
-  static void StoreFour(__m128i words, Counter* const* to) {
+  [[gnu::always_inline]] static void StoreFour(__m128i words, Counter* const* to) {
     StoreOne(words, to[0]);
     if constexpr (kCount > 1) StoreOne(_mm_shuffle_epi32(words, 1), to[1]);
     if constexpr (kCount > 2) StoreOne(_mm_shuffle_epi32(words, 2), to[2]);
@@ -167,28 +167,28 @@ struct NeonLanes {
     uint16x8_t rates, chances;
   };
 
-  static Eight Of(const std::array<std::int16_t, kLanes>& n) {
+  [[gnu::always_inline]] static Eight Of(const std::array<std::int16_t, kLanes>& n) {
     return Eight{n[0], n[1], n[2], n[3], n[4], n[5], n[6], n[7]};
   }
   template <unsigned kCount>
-  static Counters Load(const Counter* const* from) {
+  [[gnu::always_inline]] static Counters Load(const Counter* const* from) {
     const uint16x8_t low = LoadFour<kCount>(from);
     uint16x8_t high = vdupq_n_u16(0);
     if constexpr (kCount > 4) high = LoadFour<kCount - 4>(from + 4);
     return {vuzp1q_u16(low, high), vuzp2q_u16(low, high)};
   }
   template <unsigned kCount>
-  static void Store(const Counters& counters, Counter* const* to) {
+  [[gnu::always_inline]] static void Store(const Counters& counters, Counter* const* to) {
     StoreFour<kCount>(vzip1q_u16(counters.rates, counters.chances), to);
     if constexpr (kCount > 4)
       StoreFour<kCount - 4>(vzip2q_u16(counters.rates, counters.chances), to + 4);
   }
-  static Eight Votes(Eight logits, const Counters& counters) {
+  [[gnu::always_inline]] static Eight Votes(Eight logits, const Counters& counters) {
     const uint16x8_t doubt = vaddq_u16(counters.rates, vshrq_n_u16(counters.rates, 1));
     const uint16x8_t sure = vshrq_n_u16(vmvnq_u16(doubt), 1);
     return vqdmulhq_s16(logits, vreinterpretq_s16_u16(sure));  // of twice the product
   }
-  static Counters Learnt(const Counters& counters, bool bit) {
+  [[gnu::always_inline]] static Counters Learnt(const Counters& counters, bool bit) {
     const uint16x8_t mirror = vdupq_n_u16(bit ? 0xFFFF : 0);
     const uint16x8_t miss = veorq_u16(counters.chances, mirror);
     const uint16x8_t left = vsubq_u16(miss, High(miss, counters.rates));
@@ -197,14 +197,14 @@ struct NeonLanes {
     const uint16x8_t less = High(rates, vsubq_u16(rates, vshrq_n_u16(square, 1)));
     return {vsubq_u16(rates, less), veorq_u16(left, mirror)};
   }
-  static Eight Join(Eight a, Eight b) { return vorrq_s16(a, b); }
-  static Sum Dot(Eight inputs, const std::int16_t* weights) {
+  [[gnu::always_inline]] static Eight Join(Eight a, Eight b) { return vorrq_s16(a, b); }
+  [[gnu::always_inline]] static Sum Dot(Eight inputs, const std::int16_t* weights) {
     const int16x8_t w = vld1q_s16(weights);
     return vmlal_high_s16(vmull_s16(vget_low_s16(inputs), vget_low_s16(w)), inputs, w);
   }
-  static Sum Plus(Sum a, Sum b) { return vaddq_s32(a, b); }
-  static std::int32_t Total(Sum sum) { return vaddvq_s32(sum); }
-  static void Teach(Eight inputs, std::int32_t step, std::int16_t* weights) {
+  [[gnu::always_inline]] static Sum Plus(Sum a, Sum b) { return vaddq_s32(a, b); }
+  [[gnu::always_inline]] static std::int32_t Total(Sum sum) { return vaddvq_s32(sum); }
+  [[gnu::always_inline]] static void Teach(Eight inputs, std::int32_t step, std::int16_t* weights) {
     const auto factor = static_cast<std::int16_t>(step);
     const int16x4_t low = vshrn_n_s32(vmull_n_s16(vget_low_s16(inputs), factor), 16);
     const int16x8_t product = vshrn_high_n_s32(low, vmull_high_n_s16(inputs, factor), 16);
@@ -212,28 +212,28 @@ struct NeonLanes {
   }
 
  private:
-  static uint16x8_t High(uint16x8_t a, uint16x8_t b) {
+  [[gnu::always_inline]] static uint16x8_t High(uint16x8_t a, uint16x8_t b) {
     const uint16x4_t low = vshrn_n_u32(vmull_u16(vget_low_u16(a), vget_low_u16(b)), 16);
     return vshrn_high_n_u32(low, vmull_high_u16(a, b), 16);
   }
-  static std::uint32_t WordOf(const Counter* from) {
+  [[gnu::always_inline]] static std::uint32_t WordOf(const Counter* from) {
     std::uint32_t word;
     std::memcpy(&word, from, sizeof word);
     return word;
   }
   template <unsigned kCount>
-  static uint16x8_t LoadFour(const Counter* const* from) {
+  [[gnu::always_inline]] static uint16x8_t LoadFour(const Counter* const* from) {
     uint32x4_t words = vsetq_lane_u32(WordOf(from[0]), vdupq_n_u32(0), 0);
     if constexpr (kCount > 1) words = vsetq_lane_u32(WordOf(from[1]), words, 1);
     if constexpr (kCount > 2) words = vsetq_lane_u32(WordOf(from[2]), words, 2);
     if constexpr (kCount > 3) words = vsetq_lane_u32(WordOf(from[3]), words, 3);
     return vreinterpretq_u16_u32(words);
   }
-  static void StoreOne(std::uint32_t word, Counter* to) {
+  [[gnu::always_inline]] static void StoreOne(std::uint32_t word, Counter* to) {
     std::memcpy(static_cast<void*>(to), &word, sizeof word);
   }
   template <unsigned kCount>
-  static void StoreFour(uint16x8_t pairs, Counter* const* to) {
+  [[gnu::always_inline]] static void StoreFour(uint16x8_t pairs, Counter* const* to) {
     const uint32x4_t words = vreinterpretq_u32_u16(pairs);
     StoreOne(vgetq_lane_u32(words, 0), to[0]);
     if constexpr (kCount > 1) StoreOne(vgetq_lane_u32(words, 1), to[1]);

@@ -147,9 +147,11 @@ class LevelPart {
   }
 
   bool CodeNode(bool bit, unsigned node) {
-    mixer_.Ask([&](unsigned k) { return &counters_.small[contexts_[k] + node]; });
-    return mixer_.Code(bit, &weights_.uneven[node * kUnevenClasses + uneven_],
-                       &weights_.surfaces[node * kSurfaces + surfaces_], &coder_);
+    BitMixer<kContexts, 0> mixer;
+    mixer.Ask([&](unsigned k)
+                  __attribute__((always_inline)) { return &counters_.small[contexts_[k] + node]; });
+    return mixer.Code(bit, &weights_.uneven[node * kUnevenClasses + uneven_],
+                      &weights_.surfaces[node * kSurfaces + surfaces_], &coder_);
   }
 
   std::int32_t CodeDifference(std::int32_t difference) {
@@ -183,7 +185,6 @@ class LevelPart {
     return bit;
   }
 
-  BitMixer<kContexts, 0> mixer_;
   LevelCounters& counters_;
   LevelWeights& weights_;
   Coder& coder_;

@@ -27,12 +27,13 @@ class MaskPart {
   }
 
   /// Of pixel `i`; `near_class` is the range class of what is nearest to it.
-  bool Code(bool bit, std::uint32_t i, std::uint32_t near_class) {
+  [[gnu::always_inline]] bool Code(bool bit, std::uint32_t i, std::uint32_t near_class) {
     nearby_ |= (above_[static_cast<std::ptrdiff_t>(i) + 8 - 1].returns & 1U) << 9;
     SetContexts(i, near_class);
-    mixer_.Ask([&](unsigned k) { return CounterAt(k); });
+    BitMixer<kContexts, 0> mixer;
+    mixer.Ask([&](unsigned k) __attribute__((always_inline)) { return CounterAt(k); });
     const std::uint32_t set = (west_ & 1) << 3 | (nearby_ >> 1 & 7);
-    bit = mixer_.Code(bit, &model_.weights.mask[set], &coder_);
+    bit = mixer.Code(bit, &model_.weights.mask[set], &coder_);
     Keep(bit, i);
     return bit;
   }
@@ -56,7 +57,7 @@ class MaskPart {
     nearby_ >>= 1;
   }
 
-  void SetContexts(std::uint32_t i, std::uint32_t near_class) {
+  [[gnu::always_inline]] void SetContexts(std::uint32_t i, std::uint32_t near_class) {
     // Bit 0 is two columns to the left, bit 2 is right above.
     const std::uint32_t five = nearby_ & 31;
     const std::uint32_t north = above_[i].returns;
@@ -82,7 +83,6 @@ class MaskPart {
     }
   }
 
-  BitMixer<kContexts, 0> mixer_;
   Model& model_;
   Coder& coder_;
   const Azimuth* above_ = nullptr;

@@ -95,6 +95,9 @@ inline std::uint32_t ResidualClass(std::int32_t residual, std::int32_t mirror) {
 inline std::int32_t Extrapolate(std::int32_t near, std::int32_t far) {
   const std::int64_t divisor = 2 * std::int64_t{far} - near;
   if (divisor <= 0) return near;
+  // The quotient is near + step + 2 step^2 / divisor. As a rule nobody has to divide for the last.
+  const std::int64_t step = std::int64_t{near} - far;
+  if (2 * step * step < divisor) return static_cast<std::int32_t>(near + step);
   return static_cast<std::int32_t>(
       std::min<std::int64_t>(std::int64_t{near} * far / divisor, 2 * std::int64_t{near}));
 }

@@ -68,7 +68,7 @@ class RangePart {
     row_.residual_north_west = above_[i].residual;
   }
   /// Codes the bin of pixel `i` and keeps what the azimuth learns of it; -1 for a damaged stream.
-  std::int32_t Code(std::int32_t bin, std::uint32_t i, Azimuth* azimuth) {
+  [[gnu::always_inline]] std::int32_t Code(std::int32_t bin, std::uint32_t i, Azimuth* azimuth) {
     Look(i);
     SetContexts(i);
     const std::int32_t base = median_ >> 4;
@@ -117,7 +117,7 @@ class RangePart {
   std::uint32_t RangeClass(std::int32_t value) const { return mixing::RangeClass(value, step_mm_); }
 
   /// Neighbours and prediction of pixel `i`.
-  void Look(std::uint32_t i) {
+  [[gnu::always_inline]] void Look(std::uint32_t i) {
     const Azimuth& at = above_[i];
     if (blind_) {
       n_ = nw_ = ne_ = nee_ = row_.west[0] != kUnknown ? row_.west[0] : row_.latest;
@@ -155,7 +155,7 @@ class RangePart {
   }
   std::uint32_t Residual(std::int32_t residual) const { return ResidualClass(residual, mirror_); }
 
-  void SetContexts(std::uint32_t i) {
+  [[gnu::always_inline]] void SetContexts(std::uint32_t i) {
     const Azimuth& at = above_[i];
     const std::uint32_t coarse = uneven_ / 3;
     const auto north_error = static_cast<std::uint32_t>(std::abs(std::int32_t{at.residual}));
@@ -194,7 +194,7 @@ class RangePart {
             event_};
     std::uint32_t base = 0;
     for (unsigned k = 0; k < kContexts; ++k) {
-      contexts_[k] = kSmallNodes * (base + values[k]);
+      rows_[k] = &model_.counters.range[kSmallNodes * (base + values[k])];
       base += mixing::kRangeContexts[k];
     }
     event_set_ = event_ * 16 + static_cast<std::uint32_t>(std::min(row_.zero_run, 15));
@@ -206,47 +206,51 @@ class RangePart {
     }
   }
 
-  void Ask(unsigned node) {
-    mixer_.Ask([&](unsigned k) { return &model_.counters.range[contexts_[k] + node]; },
-               [&](unsigned k) { return centres_[k].Opinion(node); });
+  using Mixer = BitMixer<kContexts, kUsedCentres>;
+  [[gnu::always_inline]] void Ask(unsigned node, Mixer* mixer) {
+    mixer->Ask(
+        [&](unsigned k) __attribute__((always_inline)) { return rows_[k] + node; },
+        [&](unsigned k) __attribute__((always_inline)) { return centres_[k].Opinion(node); });
   }
   Weights* WeightsOf(unsigned node) {
     return &model_.weights.range[node * kUnevenClasses + uneven_];
   }
   Weights* EventWeightsOf(unsigned node) { return &model_.weights.event[node * 64 + event_set_]; }
 
-  bool CodeNode(bool bit, unsigned node) {
+  [[gnu::always_inline]] bool CodeNode(bool bit, unsigned node) {
     if constexpr (!kTeaches<Coder>) {
       return coder_.Code(bit, ChanceOf(node));
     } else {
-      Ask(node);
-      if constexpr (!Effort::kEvents) return mixer_.Code(bit, WeightsOf(node), &coder_);
-      return mixer_.Code(bit, WeightsOf(node), EventWeightsOf(node), &coder_);
+      Mixer mixer;
+      Ask(node, &mixer);
+      if constexpr (!Effort::kEvents) return mixer.Code(bit, WeightsOf(node), &coder_);
+      return mixer.Code(bit, WeightsOf(node), EventWeightsOf(node), &coder_);
     }
   }
   /// For all the bins that are tried out; it is asked in the order of the nodes of each side.
   std::int32_t ChanceOf(unsigned node) {
     if ((asked_ >> node & 1) != 0) return chances_[node];
     asked_ |= 1U << node;
-    Ask(node);
-    return chances_[node] = mixer_.ChanceBy(WeightsOf(node), EventWeightsOf(node));
+    Mixer mixer;
+    Ask(node, &mixer);
+    return chances_[node] = mixer.ChanceBy(WeightsOf(node), EventWeightsOf(node));
   }
 
-  std::int32_t CodeDifference(std::int32_t difference) {
+  [[gnu::always_inline]] std::int32_t CodeDifference(std::int32_t difference) {
     return CodeNode(difference != 0, 0) ? CodeSome(difference) : 0;
   }
   /// A difference that is not 0.
-  std::int32_t CodeSome(std::int32_t difference) {
+  [[gnu::always_inline]] std::int32_t CodeSome(std::int32_t difference) {
     const bool negative = CodeNode(difference < 0, 1);
+    const std::int32_t sign = negative ? 1 : 0;
     const std::int32_t size = std::abs(difference);
     std::int32_t coded = 1;
-    while (coded < 4 && CodeNode(size > coded, static_cast<unsigned>(2 * coded + negative)))
-      ++coded;
+    while (coded < 4 && CodeNode(size > coded, static_cast<unsigned>(2 * coded + sign))) ++coded;
     if (coded == 4) {
       const auto rest = static_cast<std::uint32_t>(std::max(size - 3, 1));
       coded = 3 + static_cast<std::int32_t>(jump_.Code(rest, ContextOfJump(negative)));
     }
-    return negative ? -coded : coded;
+    return (coded ^ -sign) + sign;
   }
 
   JumpContext ContextOfJump(bool negative) const {
@@ -279,7 +283,6 @@ class RangePart {
     row_.gap = 0;
   }
 
-  BitMixer<kContexts, kUsedCentres> mixer_;
   JumpPart<Effort::kCandidates, Coder> jump_;
   Model& model_;
   Coder& coder_;
@@ -302,7 +305,7 @@ class RangePart {
   std::uint32_t gap_class_ = 0;
   std::uint32_t range_class_ = 0;
   std::uint32_t event_set_ = 0;
-  std::array<std::uint32_t, kContexts> contexts_{};
+  std::array<Counter*, kContexts> rows_{};  // of the nodes of each context
   std::array<Centre, kCentres> centres_;
   std::uint32_t asked_ = 0;  // bits of nodes, where bins are tried out
   std::array<std::int32_t, kSmallNodes> chances_{};

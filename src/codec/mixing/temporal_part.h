@@ -73,10 +73,11 @@ class TemporalPart {
     const std::array<std::uint32_t, 3> values = {
         first, kTemporalMaskContexts[0] + second,
         kTemporalMaskContexts[0] + kTemporalMaskContexts[1] + third};
-    mask_mixer_.Ask([&](unsigned k) {
+    BitMixer<kSpatialMask + kTemporalMaskContexts.size(), 0> mixer;
+    mixer.Ask([&](unsigned k) __attribute__((always_inline)) {
       return k < kSpatialMask ? mask_counters(k) : &model_.mask[values[k - kSpatialMask]];
     });
-    return mask_mixer_.Code(bit, &model_.mask_weights[(h & 7) * 2 + west], &coder_);
+    return mixer.Code(bit, &model_.mask_weights[(h & 7) * 2 + west], &coder_);
   }
 
   /// Of a pixel that Knows(). kFarAway where the bin is not near what was recalled.
@@ -163,9 +164,12 @@ class TemporalPart {
   }
 
   bool CodeNode(bool bit, unsigned node) {
-    mixer_.Ask([&](unsigned k) { return &model_.counters[contexts_[k] + node]; },
-               [&](unsigned k) { return centres_[k].Opinion(node); });
-    return mixer_.Code(bit, &model_.weights[node * kSpreadClasses + spread_class_], &coder_);
+    BitMixer<kTemporalContexts.size(), kTemporalCentres> mixer;
+    mixer.Ask(
+        [&](unsigned k)
+            __attribute__((always_inline)) { return &model_.counters[contexts_[k] + node]; },
+        [&](unsigned k) __attribute__((always_inline)) { return centres_[k].Opinion(node); });
+    return mixer.Code(bit, &model_.weights[node * kSpreadClasses + spread_class_], &coder_);
   }
 
   std::int32_t Keep(std::int32_t bin, std::int32_t difference) {
@@ -183,8 +187,6 @@ class TemporalPart {
     west_bit_ = is_return;
   }
 
-  BitMixer<kTemporalContexts.size(), kTemporalCentres> mixer_;
-  BitMixer<kSpatialMask + kTemporalMaskContexts.size(), 0> mask_mixer_;
   const RangeGrid grid_;
   const std::uint64_t divisor_;
   TemporalModel& model_;
