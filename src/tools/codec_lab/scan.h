@@ -23,6 +23,8 @@ struct Scan {
   std::vector<std::uint32_t> ranges;             // mm, beam by beam; only with geometry
   std::vector<float> xyz;                        // m; only without geometry
   std::vector<float> intensity;                  // of every range or point; may be empty
+  std::vector<std::uint16_t> rings;              // beam of every point; only without geometry
+  std::vector<float> phases;                     // when it was sampled, as part of the scan; so too
   bool organised() const { return geometry != nullptr; }
 };
 

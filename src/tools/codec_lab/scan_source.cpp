@@ -14,13 +14,16 @@
 #include "src/ouster/scan_batcher.h"
 #include "src/synth/scanner.h"
 #include "src/tools/codec_lab/cloud_file.h"
+#ifdef HAVE_MCAP
+#include "src/tools/codec_lab/cloud_recording.h"
+#endif
 
 namespace lidar::tools {
 
 const char* const kSourceHelp =
     "What to read: drive.pcap (with drive.json beside it), drive.pcap,sensor.json, cloud.bin, "
-    "cloud.pcd, cloud.ply, a folder of these, or synth:MODEL:SCENE[:COLUMNS] such as "
-    "synth:os1-64:street";
+    "cloud.pcd, cloud.ply, a folder of these, drive.mcap or drive.mcap,/topic, or "
+    "synth:MODEL:SCENE[:COLUMNS] such as synth:os1-64:street";
 
 ColumnWindow WindowOf(const Scan& scan, SliceOf slice) {
   const std::uint32_t width = scan.geometry->model.columns_per_scan / slice.count;
@@ -201,6 +204,12 @@ class CloudFiles final : public ScanStream {
   std::size_t next_ = 0;
 };
 
+#ifndef HAVE_MCAP
+std::unique_ptr<ScanStream> OpenRecording(const std::string& path, const std::string&) {
+  throw std::runtime_error(path + ": built without recordings, which need libzstd and liblz4");
+}
+#endif
+
 std::unique_ptr<ScanStream> OpenFolder(const std::string& folder) {
   std::vector<std::string> files;
   for (const auto& entry : std::filesystem::directory_iterator(folder))
@@ -222,7 +231,10 @@ std::unique_ptr<ScanStream> OpenScans(const std::string& text, const SourceOptio
     return OpenCapture(path, comma == std::string::npos
                                  ? std::filesystem::path(path).replace_extension(".json").string()
                                  : text.substr(comma + 1));
-  throw std::runtime_error(text + ": not a .pcap, .pcapng, .bin, .pcd, .ply or synth: source");
+  if (EndsWith(path, ".mcap"))
+    return OpenRecording(path, comma == std::string::npos ? "" : text.substr(comma + 1));
+  throw std::runtime_error(text +
+                           ": not a .pcap, .pcapng, .mcap, .bin, .pcd, .ply or synth: source");
 }
 
 ScanSet LoadScans(const std::string& text, const SourceOptions& options) {

@@ -38,6 +38,7 @@ class ScanStream {
   double scans_per_second() const { return scans_per_second_; }
 
  protected:
+  void SetPeriod(Duration period) { scans_per_second_ = 1 / Seconds(period); }
   Duration period() const { return FromSeconds(1 / scans_per_second_); }
 
  private:
@@ -49,10 +50,10 @@ class ScanStream {
 ///   drive.pcap,sensor.json the same with another metadata file
 ///   cloud.bin              a cloud (KITTI's x y z intensity floats)
 ///   cloud.pcd, cloud.ply   a cloud
+///   drive.mcap             the clouds of a recording; drive.mcap,/points: those of one topic
 ///   folder                 consecutive clouds in such files, by name
 ///   synth:os1-64:street    a synthetic sensor in street, tunnel, field or town; a third part is
-///   the
-///                          number of columns (1024)
+///                          the number of columns (1024)
 /// Throws std::runtime_error with a message for the user.
 std::unique_ptr<ScanStream> OpenScans(const std::string& text, const SourceOptions& options);
 /// All of them at once; at least one, or std::runtime_error.

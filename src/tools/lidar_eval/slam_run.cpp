@@ -101,6 +101,8 @@ odometry::TimedPoints PointsOf(const Scan& scan, const CodingLoss& loss) {
   } else {
     for (std::size_t i = 0; i + 2 < scan.xyz.size(); i += 3)
       timed.points.push_back(Eigen::Map<const Eigen::Vector3f>(&scan.xyz[i]).cast<double>());
+    timed.rings = scan.rings;
+    timed.phases = scan.phases;
   }
   if (loss.xyz_bits > 0) QuantizeCube(loss.xyz_bits, &timed.points);
   return timed;

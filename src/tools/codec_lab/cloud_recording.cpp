@@ -1,0 +1,204 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "src/tools/codec_lab/cloud_recording.h"
+
+#include <cmath>
+#include <fstream>
+#include <stdexcept>
+#include <utility>
+
+#include "src/cdr/coded_slice.h"
+#include "src/cdr/point_cloud2.h"
+#include "src/cdr/ros_types.h"
+#include "src/cloud/field_number.h"
+#include "src/mcap/reader.h"
+
+namespace lidar::tools {
+namespace {
+
+/// Of a scan, where stamps tell no better.
+constexpr Duration kUsualPeriod = std::chrono::milliseconds(100);
+constexpr Duration kLongestPeriod = std::chrono::seconds(1);
+constexpr std::uint32_t kMostRings = 1024;
+
+class File final : public mcap::Input {
+ public:
+  explicit File(const std::string& path) : file_(path, std::ios::binary | std::ios::ate) {
+    if (!file_) throw std::runtime_error("cannot open " + path);
+    size_ = static_cast<std::uint64_t>(file_.tellg());
+  }
+  std::uint64_t size() const override { return size_; }
+  bool Read(std::uint64_t offset, std::size_t n, std::uint8_t* to) override {
+    file_.clear();
+    file_.seekg(static_cast<std::streamoff>(offset));
+    file_.read(reinterpret_cast<char*>(to), static_cast<std::streamsize>(n));
+    return file_.good();
+  }
+
+ private:
+  std::ifstream file_;
+  std::uint64_t size_ = 0;
+};
+
+/// The topics of a file whose messages are of one schema.
+std::vector<std::string> TopicsOf(const mcap::FileIndex& index, std::string_view schema) {
+  std::vector<std::string> topics;
+  for (const auto& [id, channel] : index.channels) {
+    const auto found = index.schemas.find(channel.schema_id);
+    if (found == index.schemas.end() || found->second.name != schema) continue;
+    if (channel.message_encoding == "cdr") topics.push_back(channel.topic);
+  }
+  return topics;
+}
+
+std::string Join(const std::vector<std::string>& topics) {
+  std::string text;
+  for (const std::string& topic : topics) text += (text.empty() ? "" : ", ") + topic;
+  return text;
+}
+
+std::string ChooseTopic(const std::string& path, const std::string& wanted,
+                        const mcap::FileIndex& index) {
+  const auto clouds = TopicsOf(index, cdr::InfoOf(cdr::RosType::kPointCloud2).name);
+  const auto slices = TopicsOf(index, cdr::CodedSlice::kName);
+  if (clouds.empty() && !slices.empty())
+    throw std::runtime_error(path + ": holds coded slices, no clouds; make clouds of them: " +
+                             "gst-launch-1.0 -e mcapsrc location=" + path +
+                             " ! lidardec ! scanassembler ! mcapsink location=clouds.mcap");
+  if (clouds.empty()) throw std::runtime_error(path + ": no topic of PointCloud2 messages in it");
+  if (wanted.empty() && clouds.size() == 1) return clouds.front();
+  if (wanted.empty())
+    throw std::runtime_error(path + ": clouds of several topics; say FILE,TOPIC with one of " +
+                             Join(clouds));
+  for (const std::string& topic : clouds)
+    if (topic == wanted) return topic;
+  throw std::runtime_error(path + ": no clouds on " + wanted + "; there are on " + Join(clouds));
+}
+
+/// Where a converted point has its numbers.
+struct NumberAt {
+  const PointField* field = nullptr;
+  float Of(const std::uint8_t* point) const {
+    return static_cast<float>(ReadNumber(point + field->offset, field->type));
+  }
+};
+
+class Recording final : public ScanStream {
+ public:
+  Recording(std::string path, std::string topic, std::unique_ptr<mcap::Reader> reader)
+      : ScanStream(1 / Seconds(kUsualPeriod)),
+        path_(std::move(path)),
+        topic_(std::move(topic)),
+        reader_(std::move(reader)) {
+    next_ = ReadCloud();
+    if (!next_)
+      throw std::runtime_error(path_ + ": no cloud on " + topic_ +
+                               (why_.empty() ? "" : " that can be read: " + why_));
+    after_ = ReadCloud();
+    UpdatePeriod();
+    SetPeriod(period_);
+  }
+
+  std::optional<TimedScan> Next() override {
+    if (!next_) return std::nullopt;
+    UpdatePeriod();
+    TimedScan timed = *std::exchange(next_, std::move(after_));
+    timed.duration = period_;
+    after_ = next_ ? ReadCloud() : std::nullopt;
+    return timed;
+  }
+
+ private:
+  /// A scan ends where the next one begins, unless scans are missing.
+  void UpdatePeriod() {
+    if (!next_ || !after_) return;
+    const Duration period = after_->start - next_->start;
+    const Duration longest = known_ ? period_ * 3 / 2 : kLongestPeriod;
+    if (period <= Duration{0} || period > longest) return;
+    period_ = period;
+    known_ = true;
+  }
+
+  std::optional<TimedScan> ReadCloud() {
+    while (const auto message = reader_->Next()) {
+      const auto channel = reader_->index().channels.find(message->header.channel_id);
+      if (channel == reader_->index().channels.end() || channel->second.topic != topic_) continue;
+      const auto cloud = cdr::ReadPointCloud2(message->data, &why_);
+      if (!cloud) continue;
+      TimedScan timed;
+      timed.start = cloud->header.stamp;
+      if (timed.start == Time{})
+        timed.start += Duration{static_cast<std::int64_t>(message->header.log_time)};
+      if (TakePoints(*cloud, &timed.scan)) return timed;
+    }
+    return std::nullopt;
+  }
+
+  bool TakePoints(const cdr::PointCloud2& cloud, Scan* scan) {
+    // What it claims has to be there, before anything is allocated.
+    if (!cdr::RowStride(cloud)) {
+      why_ = "a cloud's data are not as long as its width and height say";
+      return false;
+    }
+    if (!converter_ || !(converter_->layout() == cloud.layout))
+      converter_ = cdr::PointConverter::Make(cloud.layout, {}, &why_);
+    if (!converter_) return false;
+    const PointFields& fields = converter_->points().fields;
+    if (!fields.HasPackedXyz()) {
+      why_ = "a cloud has no fields x, y and z";
+      return false;
+    }
+    bytes_.assign(converter_->size(), 0);
+    if (!converter_->Convert(cloud, bytes_.data())) return false;
+    AddPoints(cloud.layout.width, cloud.layout.height, scan);
+    return true;
+  }
+
+  /// Rows of an organised cloud are beams, and its columns are sampled one after the other.
+  void AddPoints(std::uint32_t width, std::uint32_t height, Scan* scan) const {
+    const PointFields& fields = converter_->points().fields;
+    const NumberAt x{fields.Find("x")}, y{fields.Find("y")}, z{fields.Find("z")};
+    const NumberAt intensity{fields.Find("intensity")}, ring{fields.Find("ring")};
+    const bool organised = height > 1 && height <= kMostRings;
+    const std::size_t step = converter_->points().point_step;
+    for (std::size_t i = 0; i < std::size_t{width} * height; ++i) {
+      const std::uint8_t* point = &bytes_[i * step];
+      const float xyz[3] = {x.Of(point), y.Of(point), z.Of(point)};
+      if (!std::isfinite(xyz[0]) || !std::isfinite(xyz[1]) || !std::isfinite(xyz[2])) continue;
+      if (xyz[0] == 0 && xyz[1] == 0 && xyz[2] == 0) continue;
+      scan->xyz.insert(scan->xyz.end(), xyz, xyz + 3);
+      if (intensity.field != nullptr) scan->intensity.push_back(intensity.Of(point));
+      if (organised) {
+        scan->rings.push_back(static_cast<std::uint16_t>(i / width));
+        scan->phases.push_back(static_cast<float>(i % width) / static_cast<float>(width));
+      } else if (ring.field != nullptr) {
+        const float number = ring.Of(point);
+        const bool known = number >= 0 && number < static_cast<float>(kMostRings);
+        scan->rings.push_back(known ? static_cast<std::uint16_t>(number) : std::uint16_t{0});
+      }
+    }
+  }
+
+  std::string path_;
+  std::string topic_;
+  std::unique_ptr<mcap::Reader> reader_;
+  std::optional<cdr::PointConverter> converter_;
+  std::vector<std::uint8_t> bytes_;
+  std::string why_;  // the last cloud could not be read
+  Duration period_ = kUsualPeriod;
+  bool known_ = false;
+  std::optional<TimedScan> next_;
+  std::optional<TimedScan> after_;
+};
+
+}  // namespace
+
+std::unique_ptr<ScanStream> OpenRecording(const std::string& path, const std::string& topic) {
+  std::string why;
+  auto reader = mcap::Reader::Open(std::make_unique<File>(path), &why);
+  if (!reader) throw std::runtime_error(path + ": " + why);
+  if (reader->index().empty()) throw std::runtime_error(path + ": there is no message in it");
+  const std::string chosen = ChooseTopic(path, topic, reader->index());
+  return std::make_unique<Recording>(path, chosen, std::move(reader));
+}
+
+}  // namespace lidar::tools
