@@ -94,6 +94,8 @@ struct Statistics {
   std::uint64_t messages = 0;
   std::uint16_t schemas = 0;
   std::uint32_t channels = 0;
+  std::uint32_t attachments = 0;
+  std::uint32_t metadata_records = 0;
   std::uint32_t chunks = 0;
   std::uint64_t start_time = 0;  // of all messages; 0: there are none
   std::uint64_t end_time = 0;
@@ -112,7 +114,8 @@ void Append(const Footer& footer, Bytes* out);
 void Append(const Schema& schema, Bytes* out);
 void Append(const Channel& channel, Bytes* out);
 void Append(const MessageHeader& header, ByteView data, Bytes* out);
-void Append(const ChunkHeader& header, ByteView records, Bytes* out);
+/// Sets records_size.
+void Append(ChunkHeader header, ByteView records, Bytes* out);
 void Append(const MessageIndex& index, Bytes* out);
 void Append(const ChunkIndex& index, Bytes* out);
 void Append(const Statistics& statistics, Bytes* out);
@@ -122,7 +125,6 @@ void AppendDataEnd(std::uint32_t crc, Bytes* out);
 
 /// Each reads the content of a record, which may be followed by fields of later versions. None
 /// where it is cut off.
-std::optional<Header> ParseHeader(ByteView content);
 std::optional<Footer> ParseFooter(ByteView content);
 std::optional<Schema> ParseSchema(ByteView content);
 std::optional<Channel> ParseChannel(ByteView content);
