@@ -1,15 +1,14 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include "gst/common/gstlidardecoder.h"
 
-#include <algorithm>
 #include <mutex>
 #include <optional>
 #include <utility>
-#include <vector>
 
 #include "gst/common/buffer_map.h"
 #include "gst/common/cloud_info.h"
 #include "gst/common/coder_pads.h"
+#include "gst/common/held_events.h"
 #include "gst/common/message_timer.h"
 #include "gst/common/properties.h"
 #include "gst/common/stats.h"
@@ -71,8 +70,8 @@ const std::array<lidar::gst::Stat<Counters>, 13> kStats = {{
 struct Stream {
   std::optional<CloudInfo> cloud;  // of what is given out; its size is that of the last caps
   guint max_points = 0;
-  bool has_size = false;                      // caps for `cloud` have been pushed
-  std::vector<lidar::gst::EventPtr> pending;  // sticky, to follow the first caps
+  bool has_size = false;  // caps for `cloud` have been pushed
+  lidar::gst::HeldEvents held;
   lidar::gst::MessageTimer stats_timer;
   gint64 asked_at_us = 0;  // for a slice that stands alone
   guint asked = 0;
@@ -177,11 +176,6 @@ gboolean SetCaps(GstLidarDecoder* self, GstCaps* caps) {
   return FALSE;
 }
 
-void PushPending(GstLidarDecoder* self) {
-  for (auto& event : std::exchange(self->state->stream.pending, {}))
-    gst_pad_push_event(self->state->pads.src(), event.release());
-}
-
 /// Only the data tell the size of the cloud.
 bool PushCaps(GstLidarDecoder* self, const GstLidarDecodedSlice& slice) {
   Stream& stream = self->state->stream;
@@ -193,35 +187,8 @@ bool PushCaps(GstLidarDecoder* self, const GstLidarDecodedSlice& slice) {
   GST_DEBUG_OBJECT(self, "giving %" GST_PTR_FORMAT, static_cast<gpointer>(caps.get()));
   if (!gst_pad_push_event(self->state->pads.src(), gst_event_new_caps(caps.get()))) return false;
   stream.has_size = true;
-  PushPending(self);
+  stream.held.PushTo(self->state->pads.src());
   return true;
-}
-
-/// Sticky events have their order: caps, segment, and then the others. True where `event` has to
-/// wait for caps, which come with the first slice.
-bool WaitsForCaps(GstEvent* event) {
-  return GST_EVENT_IS_SERIALIZED(event) && GST_EVENT_IS_STICKY(event) &&
-         GST_EVENT_TYPE(event) > GST_EVENT_CAPS && GST_EVENT_TYPE(event) != GST_EVENT_EOS;
-}
-
-/// As on a pad: a later event takes the place of one of its kind.
-void HoldBack(Stream* stream, GstEvent* event) {
-  const GstStructure* what = gst_event_get_structure(event);
-  const auto same = [&](const lidar::gst::EventPtr& held) {
-    return GST_EVENT_TYPE(held.get()) == GST_EVENT_TYPE(event) &&
-           (what == nullptr || gst_event_has_name(held.get(), gst_structure_get_name(what)));
-  };
-  auto& pending = stream->pending;
-  pending.erase(std::remove_if(pending.begin(), pending.end(), same), pending.end());
-  pending.emplace_back(event);
-}
-
-void OnFlush(Stream* stream) {
-  const auto is_segment = [](const auto& e) {
-    return GST_EVENT_TYPE(e.get()) == GST_EVENT_SEGMENT;
-  };
-  auto& pending = stream->pending;
-  pending.erase(std::remove_if(pending.begin(), pending.end(), is_segment), pending.end());
 }
 
 gboolean SinkEvent(GstPad* pad, GstObject* parent, GstEvent* event) {
@@ -235,19 +202,12 @@ gboolean SinkEvent(GstPad* pad, GstObject* parent, GstEvent* event) {
   }
   Stream& stream = self->state->stream;
   if (GST_EVENT_TYPE(event) == GST_EVENT_FLUSH_STOP) {
-    OnFlush(&stream);
+    stream.held.OnFlush();
     self->state->pads.set_discont(true);
   }
-  const bool has_caps = gst_pad_has_current_caps(self->state->pads.src());
-  if (!has_caps && WaitsForCaps(event)) {
-    HoldBack(&stream, event);
-    return TRUE;
-  }
-  if (!has_caps && GST_EVENT_TYPE(event) == GST_EVENT_GAP) {
-    gst_event_unref(event);  // nobody downstream knows yet what the gap is in
-    return TRUE;
-  }
-  if (GST_EVENT_TYPE(event) == GST_EVENT_EOS) PushPending(self);
+  GstPad* src = self->state->pads.src();
+  if (!gst_pad_has_current_caps(src) && stream.held.Take(event)) return TRUE;
+  if (GST_EVENT_TYPE(event) == GST_EVENT_EOS) stream.held.PushTo(src);
   return gst_pad_event_default(pad, parent, event);
 }
 

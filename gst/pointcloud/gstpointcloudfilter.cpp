@@ -14,13 +14,12 @@
 #include <algorithm>
 #include <mutex>
 #include <string_view>
-#include <utility>
-#include <vector>
 
 #include "gst/common/element_class.h"
 #include "gst/common/enum_type.h"
 #include "gst/common/frames.h"
 #include "gst/common/gstlidar.h"
+#include "gst/common/held_events.h"
 #include "gst/common/latency.h"
 #include "gst/common/properties.h"
 #include "gst/common/refused_caps.h"
@@ -123,7 +122,7 @@ struct State {
   std::unique_ptr<FilterPlan> plan;
   Counters before;  // of earlier plans
   CapsPtr pushed;
-  std::vector<lidar::gst::EventPtr> pending;  // sticky, to follow the first caps
+  lidar::gst::HeldEvents held;
   lidar::gst::RefusedCaps refused;
 };
 
@@ -187,18 +186,13 @@ bool MakePlan(GstLidarPointCloudFilter* self) {
   return state.plan != nullptr;
 }
 
-void PushPending(GstLidarPointCloudFilter* self) {
-  for (auto& event : std::exchange(self->state->pending, {}))
-    gst_pad_push_event(self->srcpad, event.release());
-}
-
 bool PushCaps(GstLidarPointCloudFilter* self) {
   State& state = *self->state;
   GstCaps* caps = state.plan->caps();
   if (state.pushed && gst_caps_is_equal(state.pushed.get(), caps)) return true;
   state.pushed.reset(gst_caps_ref(caps));
   const bool taken = gst_pad_push_event(self->srcpad, gst_event_new_caps(caps)) != FALSE;
-  PushPending(self);
+  state.held.PushTo(self->srcpad);
   return taken;
 }
 
@@ -260,20 +254,13 @@ gboolean SinkEvent(GstPad* pad, GstObject* parent, GstEvent* event) {
   const GstEventType type = GST_EVENT_TYPE(event);
   if (type == GST_EVENT_CAPS) return HandleCaps(self, event);
   if (type == GST_EVENT_FLUSH_START) state.placer.inbox().Interrupt(true);
-  if (type == GST_EVENT_EOS) PushPending(self);
+  if (type == GST_EVENT_EOS) state.held.PushTo(self->srcpad);
   if (type == GST_EVENT_FLUSH_STOP) {
-    state.pending.clear();
+    state.held.OnFlush();
     state.placer.inbox().Interrupt(false);
   }
-  // Caps come first, with the first cloud, and before them a gap means nothing.
-  if (type == GST_EVENT_GAP && !state.pushed) {
-    gst_event_unref(event);
-    return TRUE;
-  }
-  const bool waits = GST_EVENT_IS_STICKY(event) && type > GST_EVENT_CAPS && type != GST_EVENT_EOS;
-  if (state.pushed || !waits) return gst_pad_event_default(pad, parent, event);
-  state.pending.emplace_back(event);
-  return TRUE;
+  if (!state.pushed && state.held.Take(event)) return TRUE;
+  return gst_pad_event_default(pad, parent, event);
 }
 
 /// A cloud may come as much later as it waits for its transform.
@@ -329,7 +316,7 @@ GstStateChangeReturn ChangeState(GstElement* element, GstStateChange transition)
     state.caps.reset();
     state.plan.reset();
     state.pushed.reset();
-    state.pending.clear();
+    state.held.Clear();
     state.refused.Reset();
     state.before = {};
     state.placer.Clear();

@@ -11,13 +11,12 @@
  */
 #include <gst/gst.h>
 
-#include <algorithm>
 #include <mutex>
 #include <optional>
-#include <vector>
 
 #include "gst/common/buffer_map.h"
 #include "gst/common/gstlidar.h"
+#include "gst/common/held_events.h"
 #include "gst/common/properties.h"
 #include "gst/common/refs.h"
 #include "gst/common/stats.h"
@@ -62,7 +61,7 @@ struct State {
   guint attempts = 0;                       // since the last cloud that fitted
   guint models_sent = 0;                    // the model that the caps have; 0: caps are due
   bool caps_sent = false;
-  std::vector<EventPtr> waiting;  // sticky events that come behind the caps
+  HeldEvents held;
 };
 
 StructurePtr ReadStats(GObject* object);
@@ -105,8 +104,7 @@ bool PushCaps(GstLidarPointCloudOrganize* self, GstCaps* caps) {
   // A pad that flushes keeps no caps: they stay due.
   state.caps_sent = gst_pad_push_event(self->srcpad, gst_event_new_caps(caps));
   if (!state.caps_sent) return false;
-  for (EventPtr& event : state.waiting) gst_pad_push_event(self->srcpad, event.release());
-  state.waiting.clear();
+  state.held.PushTo(self->srcpad);
   return true;
 }
 
@@ -209,14 +207,6 @@ gboolean SetCaps(GstLidarPointCloudOrganize* self, GstCaps* caps) {
   return TRUE;
 }
 
-/// A flush ends what is timed; tags and the like come only once.
-void DropSegments(std::vector<EventPtr>* waiting) {
-  const auto is_segment = [](const EventPtr& e) {
-    return GST_EVENT_TYPE(e.get()) == GST_EVENT_SEGMENT;
-  };
-  waiting->erase(std::remove_if(waiting->begin(), waiting->end(), is_segment), waiting->end());
-}
-
 /// The caps wait for the first cloud, and what has to be behind them waits, too.
 gboolean SinkEvent(GstPad* pad, GstObject* parent, GstEvent* event) {
   auto* self = GST_LIDAR_POINT_CLOUD_ORGANIZE(parent);
@@ -228,18 +218,9 @@ gboolean SinkEvent(GstPad* pad, GstObject* parent, GstEvent* event) {
     gst_event_parse_caps(event, &caps);
     return SetCaps(self, caps);
   }
-  if (type == GST_EVENT_FLUSH_STOP) DropSegments(&state.waiting);
+  if (type == GST_EVENT_FLUSH_STOP) state.held.OnFlush();
   if (type == GST_EVENT_EOS && !state.caps_sent && state.caps) PushCaps(self, state.caps.get());
-  if (type == GST_EVENT_GAP && !state.caps_sent) {
-    // Nothing stands behind a gap that nobody knows the caps and the segment of.
-    gst_event_unref(event);
-    return TRUE;
-  }
-  const bool behind_caps = GST_EVENT_IS_STICKY(event) && type > GST_EVENT_CAPS;
-  if (behind_caps && type != GST_EVENT_EOS && !state.caps_sent) {
-    state.waiting.emplace_back(event);
-    return TRUE;
-  }
+  if (!state.caps_sent && state.held.Take(event)) return TRUE;
   return gst_pad_event_default(pad, parent, event);
 }
 
@@ -255,7 +236,7 @@ GstStateChangeReturn ChangeState(GstElement* element, GstStateChange transition)
     state.info.reset();
     state.caps.reset();
     state.organizer.reset();
-    state.waiting.clear();
+    state.held.Clear();
     state.caps_sent = false;
   }
   return result;

@@ -136,6 +136,22 @@ TEST_F(Filter, NoGapComesBeforeTheCaps) {
   EXPECT_EQ(names, (std::vector<std::string>{"stream-start", "caps", "segment", "gap"}));
 }
 
+TEST_F(Filter, HoldsTagsBackThroughAFlushUntilTheFirstCloud) {
+  Start("", CloudCaps("x:F32:0,y:F32:4,z:F32:8", 12, 2, 1));
+  gst_harness_push_event(h_.get(), gst_event_new_tag(gst_tag_list_new_empty()));
+  gst_harness_push_event(h_.get(), gst_event_new_flush_start());
+  gst_harness_push_event(h_.get(), gst_event_new_flush_stop(TRUE));
+  GstSegment segment;
+  gst_segment_init(&segment, GST_FORMAT_TIME);
+  gst_harness_push_event(h_.get(), gst_event_new_segment(&segment));
+  ASSERT_EQ(Push(std::vector<std::uint8_t>(24)), GST_FLOW_OK);
+  std::vector<std::string> names;
+  while (const EventPtr event{gst_harness_try_pull_event(h_.get())})
+    names.emplace_back(GST_EVENT_TYPE_NAME(event.get()));
+  EXPECT_EQ(names, (std::vector<std::string>{"stream-start", "flush-start", "flush-stop", "caps",
+                                             "tag", "segment"}));
+}
+
 TEST_F(Filter, SaysWhatIsWrong) {
   const std::string caps = CloudCaps("x:F32:0,y:F32:4,z:F32:8", 12, 1, 1);
   const std::vector<std::pair<std::string, std::string>> wrong = {

@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Sticky events of a pad whose caps come with the first buffer, as only the data tell them.
+#pragma once
+#include <algorithm>
+#include <vector>
+
+#include "gst/common/refs.h"
+
+namespace lidar::gst {
+
+/// Sticky events have their order: caps, segment, and then the others.
+class HeldEvents {
+ public:
+  /// For events before the caps. True where `event` is taken: it waits for the caps, or it is a
+  /// gap, and nobody downstream knows yet what the gap is in.
+  bool Take(GstEvent* event) {
+    const GstEventType type = GST_EVENT_TYPE(event);
+    const bool waits = GST_EVENT_IS_SERIALIZED(event) && GST_EVENT_IS_STICKY(event) &&
+                       type > GST_EVENT_CAPS && type != GST_EVENT_EOS;
+    if (waits) {
+      // As on a pad: a later event takes the place of one of its kind.
+      const GstStructure* what = gst_event_get_structure(event);
+      Drop([&](GstEvent* held) {
+        return GST_EVENT_TYPE(held) == type &&
+               (what == nullptr || gst_event_has_name(held, gst_structure_get_name(what)));
+      });
+      held_.emplace_back(event);
+    } else if (type == GST_EVENT_GAP) {
+      gst_event_unref(event);
+    }
+    return waits || type == GST_EVENT_GAP;
+  }
+
+  /// Once the caps are sent, or with an EOS without any.
+  void PushTo(GstPad* pad) {
+    for (EventPtr& event : held_) gst_pad_push_event(pad, event.release());
+    held_.clear();
+  }
+
+  /// A flush ends segments; tags and the like come only once.
+  void OnFlush() {
+    Drop([](GstEvent* held) { return GST_EVENT_TYPE(held) == GST_EVENT_SEGMENT; });
+  }
+
+  void Clear() { held_.clear(); }
+
+ private:
+  template <class Predicate>
+  void Drop(Predicate goes) {
+    held_.erase(std::remove_if(held_.begin(), held_.end(),
+                               [&](const EventPtr& held) { return goes(held.get()); }),
+                held_.end());
+  }
+
+  std::vector<EventPtr> held_;
+};
+
+}  // namespace lidar::gst
