@@ -72,12 +72,6 @@ namespace {
 
 Coder& CoderOf(GstLidarEncoder* base) { return GST_LIDAR_DRACO_ENC(base)->state->coder; }
 
-Settings Snapshot(GstLidarEncoder* base) {
-  State& state = *GST_LIDAR_DRACO_ENC(base)->state;
-  std::lock_guard lock(state.mutex);
-  return state.settings;
-}
-
 }  // namespace
 
 static gboolean gst_lidar_draco_enc_set_format(GstLidarEncoder* base,
@@ -85,7 +79,7 @@ static gboolean gst_lidar_draco_enc_set_format(GstLidarEncoder* base,
                                                gboolean with_intensity,
                                                GstLidarCodedFormat* coded) {
   Coder& coder = CoderOf(base);
-  const Settings settings = Snapshot(base);
+  const Settings settings = lidar::gst::Snapshot(*GST_LIDAR_DRACO_ENC(base)->state);
   const auto info = lidar::gst::CloudInfo::FromFormat(*cloud);
   coder = {};
   coder.format = {{info.fields, info.point_step}, info.height, info.sensor_model};
@@ -109,7 +103,7 @@ static gboolean gst_lidar_draco_enc_set_format(GstLidarEncoder* base,
 static void gst_lidar_draco_enc_load(GstLidarEncoder* base, const GstLidarRawSlice* raw,
                                      GstLidarLoadedSlice* loaded) {
   Coder& coder = CoderOf(base);
-  loaded->level = Snapshot(base).level;
+  loaded->level = lidar::gst::Snapshot(*GST_LIDAR_DRACO_ENC(base)->state).level;
   coder.encoder->Load({raw->data, raw->size}, raw->first_column, coder.with_intensity);
   coder.mode = coder.encoder->Mode(loaded->level);
   coder.max_points = static_cast<guint>(raw->size / coder.format.layout.point_step);

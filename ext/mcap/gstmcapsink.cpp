@@ -191,11 +191,6 @@ bool WithRecorder(GstLidarMcapSink* self, Work work) {
   return !fault;
 }
 
-Settings SettingsOf(State* state) {
-  std::lock_guard lock(state->mutex);
-  return state->settings;
-}
-
 /// A recorder for the settings; NULL and a message where there can be none.
 bool Start(GstLidarMcapSink* self) {
   State& state = *self->state;
@@ -203,7 +198,7 @@ bool Start(GstLidarMcapSink* self) {
   std::optional<RecorderFault> fault;
   {
     std::lock_guard lock(state.recording);
-    Settings s = SettingsOf(&state);
+    Settings s = lidar::gst::Snapshot(state);
     s.recorder.writer.compression = s.compression;
     s.recorder.writer.chunk_size = static_cast<std::size_t>(s.chunk_size.bytes());
     const bool limited = s.recorder.max_file_size > 0 || s.recorder.max_files > 0 ||

@@ -247,11 +247,7 @@ void Loop(gpointer user_data) {
   auto* self = GST_LIDAR_MCAP_SRC(user_data);
   State& state = *self->state;
   Run& run = state.run;
-  Settings settings;
-  {
-    std::lock_guard lock(state.mutex);
-    settings = state.settings;
-  }
+  const Settings settings = lidar::gst::Snapshot(state);
   if (run.streams->empty()) run.streams->ShowKnown(*run.playback, settings.topic);
   const auto item = state.end_wanted ? std::nullopt : run.playback->Next();
   if (!item) return Stop(self, GST_FLOW_EOS);

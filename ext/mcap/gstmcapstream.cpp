@@ -49,14 +49,9 @@ namespace {
 
 State& StateOf(gpointer self) { return *GST_LIDAR_MCAP_STREAM(self)->state; }
 
-StreamSettings Snapshot(State* state) {
-  std::lock_guard lock(state->mutex);
-  return state->settings;
-}
-
 gboolean SetCaps(GstBaseSink* base, GstCaps* caps) {
   State& state = StateOf(base);
-  const StreamSettings settings = Snapshot(&state);
+  const StreamSettings settings = lidar::gst::Snapshot(state);
   std::string why;
   state.writer = BufferWriter::Make(caps, settings.frame_id, &why);
   if (!state.writer) {

@@ -135,11 +135,6 @@ static const std::array<Property<NatsSinkSettings>, 16> kProperties = {{
      Stats},
 }};
 
-static NatsSinkSettings Snapshot(State& state) {
-  const std::lock_guard lock(state.mutex);
-  return state.settings;
-}
-
 static lidar::nats::PublisherSettings ToPublisher(const NatsSinkSettings& settings) {
   lidar::nats::PublisherSettings p;
   p.connection = settings.nats.connection;

@@ -138,11 +138,6 @@ lidar::gst::StructurePtr ReadStats(GObject* object) {
   return lidar::gst::ToStructure("application/x-lidar-odometry-stats", kStats, state.counters);
 }
 
-Settings Snapshot(State& state) {
-  std::lock_guard lock(state.mutex);
-  return state.settings;
-}
-
 GstLidarPose ToMeta(const Pose& pose, Tracking tracking) {
   const auto& p = pose.position;
   const auto& q = pose.rotation;
@@ -248,7 +243,7 @@ void FinishScan(GstLidarOdometry* self, GstClockTime pts) {
                  GST_TIME_ARGS(time));
   WriteTrajectory(self, estimate);
   WarnIfLost(self, estimate);
-  if (Snapshot(state).post_messages) PostMessage(self, estimate);
+  if (lidar::gst::Snapshot(state).post_messages) PostMessage(self, estimate);
   PushPose(self, estimate, pts);
 }
 
@@ -327,7 +322,7 @@ gboolean SinkEvent(GstBaseTransform* base, GstEvent* event) {
 gboolean Start(GstBaseTransform* base) {
   auto* self = GST_LIDAR_ODOMETRY(base);
   State& state = *self->state;
-  Settings settings = Snapshot(state);
+  Settings settings = lidar::gst::Snapshot(state);
   {
     std::lock_guard lock(state.mutex);
     state.counters = {};

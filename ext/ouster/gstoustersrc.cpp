@@ -63,12 +63,10 @@ static std::shared_ptr<Session> SessionOf(gpointer self) {
 
 static gboolean Start(GstBaseSrc* base) {
   State& state = StateOf(base);
-  std::unique_lock lock(state.mutex);
-  const OusterSettings settings = state.settings;
-  lock.unlock();
+  const OusterSettings settings = Snapshot(state);
   const std::shared_ptr<Session> session = Session::Create(base, settings);
   if (!session->Open()) return FALSE;
-  lock.lock();
+  const std::lock_guard lock(state.mutex);
   state.session = session;
   return TRUE;
 }

@@ -146,11 +146,6 @@ static const std::array<Property<Ros2SinkSettings>, 12> kProperties = {{
      Stats},
 }};
 
-static Ros2SinkSettings Snapshot(State& state) {
-  const std::lock_guard lock(state.mutex);
-  return state.settings;
-}
-
 static bool OpenWriter(GstLidarRos2Sink* self, const RosSettings& settings, RosType type) {
   State& state = StateOf(self);
   const auto options = ToOptions(GST_ELEMENT(self), settings, type);

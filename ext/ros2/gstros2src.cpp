@@ -156,9 +156,7 @@ static void WarnOfSmallBuffer(GstLidarRos2Src* self) {
 static gboolean Start(GstBaseSrc* base) {
   auto* self = GST_LIDAR_ROS2_SRC(base);
   State& state = StateOf(self);
-  std::unique_lock lock(state.mutex);
-  const Ros2SrcSettings settings = state.settings;
-  lock.unlock();
+  const Ros2SrcSettings settings = Snapshot(state);
   auto options = ToOptions(GST_ELEMENT(self), settings.ros, settings.type);
   if (!options) return FALSE;
   if (IsForGood(settings)) {
@@ -182,7 +180,7 @@ static gboolean Start(GstBaseSrc* base) {
                              "transient local)"
                            : "is best-effort, which qos=reliable does not take";
   state.warned_damaged = state.warned_type = state.warned_incompatible = false;
-  lock.lock();
+  const std::lock_guard lock(state.mutex);
   state.reader = std::move(reader);
   state.counters = {};
   return TRUE;

@@ -170,9 +170,7 @@ bool CheckAddress(GstElement* element, const Settings& s) {
 bool Open(GstElement* element) {
   auto* self = GST_LIDAR_FOXGLOVE_SINK(element);
   State& state = *self->state;
-  std::unique_lock lock(state.mutex);
-  const Settings s = state.settings;
-  lock.unlock();
+  const Settings s = lidar::gst::Snapshot(state);
   if (!CheckAddress(element, s)) return false;
   lidar::web::ServerConfig config;
   config.address = s.bind_address;
@@ -193,7 +191,7 @@ bool Open(GstElement* element) {
     return false;
   }
   GST_INFO_OBJECT(element, "serves on http://%s:%u/", s.bind_address.c_str(), hub->server->port());
-  lock.lock();
+  const std::lock_guard lock(state.mutex);
   state.hub = std::move(hub);
   return true;
 }

@@ -121,11 +121,7 @@ static void WarnOnce(GstLidarBitrateAdapter* self, const char* text, const char*
 /// False where there is nobody to tell, so that the event goes on upstream.
 static bool Apply(GstLidarBitrateAdapter* self, guint target_bps) {
   State& state = *self->state;
-  Settings settings;
-  {
-    const std::lock_guard lock(state.mutex);
-    settings = state.settings;
-  }
+  const Settings settings = lidar::gst::Snapshot(state);
   const ElementPtr encoder = FindEncoder(GST_BASE_TRANSFORM(self), settings);
   if (!encoder) {
     WarnOnce(self, "There is no encoder upstream whose bitrate could follow the network.",

@@ -119,11 +119,6 @@ const std::array<lidar::gst::Property<Settings>, 4> kProperties = {{
      &Settings::stats_interval, 0, 0, GST_PARAM_MUTABLE_PLAYING},
 }};
 
-Settings Snapshot(State* state) {
-  std::lock_guard lock(state->mutex);
-  return state->settings;
-}
-
 /// The cloud that slices of `caps` hold, but for its size; none where the caps contradict
 /// themselves. A file needs no more caps than its name.
 std::optional<CloudInfo> CloudOf(const GstCaps* caps) {
@@ -164,7 +159,7 @@ bool AskSubclass(GstLidarDecoder* self, GstCaps* caps, CloudInfo* cloud,
 gboolean SetCaps(GstLidarDecoder* self, GstCaps* caps) {
   Stream& stream = self->state->stream;
   stream.has_size = false;
-  stream.max_points = Snapshot(self->state).max_points;
+  stream.max_points = lidar::gst::Snapshot(*self->state).max_points;
   stream.cloud = CloudOf(caps);
   GstLidarDecodedFormat decoded{};
   decoded.refusal = "their fields lack x, y and z as F32 side by side";
@@ -282,7 +277,8 @@ GstFlowReturn Chain(GstPad*, GstObject* parent, GstBuffer* buffer) {
   if (!stream.cloud) return GST_FLOW_NOT_NEGOTIATED;
   GstLidarDecodedSlice slice;
   lidar::gst::BufferPtr output = DecodeBuffer(self, buffer, &slice);
-  stream.stats_timer.Post(GST_ELEMENT(self), Snapshot(self->state).stats_interval, Stats);
+  stream.stats_timer.Post(GST_ELEMENT(self), lidar::gst::Snapshot(*self->state).stats_interval,
+                          Stats);
   if (!output) return DropSlice(self, buffer, slice.lacks_reference != FALSE);
   if (!PushCaps(self, slice))
     return GST_PAD_IS_FLUSHING(self->state->pads.src()) ? GST_FLOW_FLUSHING

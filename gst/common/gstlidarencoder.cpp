@@ -112,14 +112,9 @@ const std::array<lidar::gst::Property<Settings>, 12> kProperties = {{
      &Settings::stats_interval, 0, 0, GST_PARAM_MUTABLE_PLAYING},
 }};
 
-Settings Snapshot(State* state) {
-  std::lock_guard lock(state->mutex);
-  return state->settings;
-}
-
 /// Asks the subclass; the caps of its slices, or null after an error message.
 lidar::gst::CapsPtr AskForCaps(GstLidarEncoder* self, GstCaps* caps, Stream* stream) {
-  const Settings settings = Snapshot(self->state);
+  const Settings settings = lidar::gst::Snapshot(*self->state);
   std::string why;
   const auto info = lidar::gst::CloudInfo::FromCaps(caps, &why);
   GstLidarCodedFormat coded{};
@@ -156,7 +151,7 @@ gboolean SetCaps(GstLidarEncoder* self, GstCaps* caps) {
   const lidar::gst::CloudInfo& info = stream.input.info();
   stream.error_report.emplace(self, info.fields, info.point_step);
   if (!stream.loop) {
-    auto model = lidar::gst::LoadModel(GST_ELEMENT(self), Snapshot(&state));
+    auto model = lidar::gst::LoadModel(GST_ELEMENT(self), lidar::gst::Snapshot(state));
     if (!model) return FALSE;
     stream.loop = std::make_unique<lidar::rate::RateLoop>(std::move(model));
   }
@@ -270,8 +265,8 @@ void CheckErrors(GstLidarEncoder* self, lidar::ByteView raw, const GstLidarSlice
   State& state = *self->state;
   const lidar::gst::CheckedSlice checked{place.scan_id, place.slice_index, result.max_error_m,
                                          result.slice.error_m, result.keep_fraction < 1};
-  const auto found = state.stream.error_report->OnSlice(Snapshot(&state).error_check, raw,
-                                                        state.stream.coder->bytes(), checked);
+  const auto found = state.stream.error_report->OnSlice(lidar::gst::Snapshot(state).error_check,
+                                                        raw, state.stream.coder->bytes(), checked);
   if (!found) return;
   std::lock_guard lock(state.mutex);
   state.stats.OnErrorCheck(found->errors, found->holds);
@@ -296,7 +291,8 @@ GstFlowReturn Chain(GstPad*, GstObject* parent, GstBuffer* buffer) {
   if (!result.skipped && result.result == CodingResult::kOutOfReach)
     stream.input.WarnOfReach(self, stream.coder->loaded().extent_m);
   if (result.encoded()) CheckErrors(self, map.view(), slice, result);
-  stream.stats_timer.Post(GST_ELEMENT(self), Snapshot(self->state).stats_interval, Stats);
+  stream.stats_timer.Post(GST_ELEMENT(self), lidar::gst::Snapshot(*self->state).stats_interval,
+                          Stats);
   return result.encoded() ? PushSlice(self, buffer, slice) : self->state->pads.LeaveOut(buffer);
 }
 

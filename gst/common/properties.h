@@ -140,6 +140,13 @@ class LockIf {
   Mutex* mutex_;
 };
 
+/// The settings of now, of an element's state as ServeProperties() needs it.
+template <class State>
+auto Snapshot(State& state) {
+  const LockIf lock(true, state.mutex);
+  return state.settings;
+}
+
 /// Installs `table` and both property methods of an element `Self` whose `state` has `settings`
 /// and a `mutex` that guards them. `changed` runs after each change, without the lock.
 template <class Self, auto& table, void (*changed)(GObject*, GParamSpec*) = NothingMore>

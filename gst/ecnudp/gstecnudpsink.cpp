@@ -164,10 +164,7 @@ static void ConfigureSocket(GSocket* socket, const SinkSettings& s) {
 static gboolean Start(GstBaseSink* base) {
   auto* self = GST_LIDAR_ECN_UDP_SINK(base);
   State& state = StateOf(self);
-  std::unique_lock lock(state.mutex);
-  const SinkSettings s = state.settings;
-  lock.unlock();
-
+  const SinkSettings s = Snapshot(state);
   SharedSocketAddress peer;
   if (!s.reply && !(peer = ResolveTarget(GST_ELEMENT(self), s.target))) return FALSE;
   const GSocketFamily family =
@@ -190,7 +187,7 @@ static gboolean Start(GstBaseSink* base) {
     return FALSE;
   }
   GST_DEBUG_OBJECT(self, "sending to %s", AddressToString(peer.get()).c_str());
-  lock.lock();
+  const std::lock_guard lock(state.mutex);
   state.used = std::move(used);
   state.peer = std::move(peer);
   state.counters = {};

@@ -121,10 +121,7 @@ static void ConfigureBuffer(GstLidarEcnUdpSrc* self, int fd, guint wanted) {
 static gboolean Start(GstBaseSrc* base) {
   auto* self = GST_LIDAR_ECN_UDP_SRC(base);
   State& state = StateOf(self);
-  std::unique_lock lock(state.mutex);
-  const SrcSettings s = state.settings;
-  lock.unlock();
-
+  const SrcSettings s = Snapshot(state);
   SocketInUse used =
       TakeSocket(s.given, [&] { return OpenListening(GST_ELEMENT(self), s.listen); });
   if (!used.socket) return FALSE;
@@ -135,7 +132,7 @@ static gboolean Start(GstBaseSrc* base) {
   state.timeout_ns = s.options.timeout.count() > 0 ? s.options.timeout.count() : -1;
   state.last_from = {};
   state.last_address.reset();
-  lock.lock();
+  const std::lock_guard lock(state.mutex);
   state.used = std::move(used);
   state.counters = {};
   return TRUE;

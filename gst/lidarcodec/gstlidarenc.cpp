@@ -114,12 +114,6 @@ namespace {
 
 Coder& CoderOf(GstLidarEncoder* base) { return GST_LIDAR_ENC(base)->state->coder; }
 
-Settings Snapshot(GstLidarEncoder* base) {
-  State& state = *GST_LIDAR_ENC(base)->state;
-  std::lock_guard lock(state.mutex);
-  return state.settings;
-}
-
 lidar::Time Now() { return lidar::Time{std::chrono::microseconds(g_get_monotonic_time())}; }
 
 /// What the last slice left is known from now on; which of several encodings was sent is known only
@@ -132,7 +126,7 @@ void KeepBlocks(Coder& coder) {
 /// Lets what is loaded refer to what the receiver has.
 void Link(GstLidarEncoder* base, const GstLidarRawSlice& raw) {
   Coder& coder = CoderOf(base);
-  const Settings settings = Snapshot(base);
+  const Settings settings = lidar::gst::Snapshot(*GST_LIDAR_ENC(base)->state);
   coder.keeper.set_key_interval(settings.key_interval);
   const bool remembers = settings.reference == Reference::kAcknowledged &&
                          coder.keeper.Begin(Now(), {raw.scan_id, raw.slice_index, raw.slice_count});
@@ -152,7 +146,7 @@ void ChooseEffort(GstLidarEncoder* base, guint columns) {
     coder.effort.OnSlice(coder.sweep, coder.encoder->returns(), coder.spent);
   coder.sweep = SweepOf(coder, columns);
   coder.spent = {};
-  const gint wanted = Snapshot(base).effort;
+  const gint wanted = lidar::gst::Snapshot(*GST_LIDAR_ENC(base)->state).effort;
   coder.automatic = wanted == kAuto;
   coder.encoder->set_effort(coder.automatic ? coder.effort.effort() : static_cast<guint>(wanted));
 }

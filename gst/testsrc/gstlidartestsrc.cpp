@@ -204,11 +204,7 @@ gboolean Stop(GstBaseSrc* base) {
 
 GstCaps* GetCaps(GstBaseSrc* base, GstCaps* filter) {
   State& state = StateOf(base);
-  Settings settings;
-  {
-    std::lock_guard lock(state.mutex);
-    settings = state.settings;
-  }
+  const Settings settings = lidar::gst::Snapshot(state);
   GstCaps* caps = SliceMaker::InfoFor(ConfigFrom(settings), OptionsFrom(settings)).ToCaps();
   if (filter != nullptr) {
     GstCaps* both = gst_caps_intersect_full(filter, caps, GST_CAPS_INTERSECT_FIRST);

@@ -156,9 +156,7 @@ static GstPadProbeReturn FilterFeedback(GstPad*, GstPadProbeInfo* info, gpointer
 /// Opens the socket for both ways and hands it to the children.
 static bool Open(GstLidarScreamSink* self) {
   State& state = *self->state;
-  std::unique_lock lock(state.mutex);
-  const SinkSettings s = state.settings;
-  lock.unlock();
+  const SinkSettings s = Snapshot(state);
   if (!HasChildren(GST_ELEMENT(self),
                    {{self->tx, "screamtx"}, {self->sink, "ecnudpsink"}, {self->src, "ecnudpsrc"}}))
     return false;
@@ -180,7 +178,7 @@ static bool Open(GstLidarScreamSink* self) {
     return false;
   const guint overhead = OverheadOf(peer.get()) + (srtp ? srtp->overhead() : 0);
   g_object_set(self->tx, "packet-overhead", overhead, nullptr);
-  lock.lock();
+  const std::lock_guard lock(state.mutex);
   state.srtp = std::move(srtp);
   state.srtp_key = s.srtp.key;
   state.used = {std::move(socket), false};

@@ -97,9 +97,7 @@ static const std::array<Property<SrcSettings>, 20> kProperties = {{
 /// Opens the socket for both ways and hands it to the children.
 static bool Open(GstLidarScreamSrc* self) {
   State& state = *self->state;
-  std::unique_lock lock(state.mutex);
-  const SrcSettings s = state.settings;
-  lock.unlock();
+  const SrcSettings s = Snapshot(state);
   if (!HasChildren(GST_ELEMENT(self),
                    {{self->src, "ecnudpsrc"}, {self->rx, "screamrx"}, {self->sink, "ecnudpsink"}}))
     return false;
@@ -113,7 +111,7 @@ static bool Open(GstLidarScreamSrc* self) {
                  {GST_ELEMENT(self), self->rx, "rtcp_src", "sink", self->sink, self->src, false},
                  &srtp))
     return false;
-  lock.lock();
+  const std::lock_guard lock(state.mutex);
   state.srtp = std::move(srtp);
   state.srtp_key = s.srtp.key;
   state.used = std::move(used);
