@@ -21,6 +21,7 @@
 #include "ext/mcap/recorder.h"
 #include "ext/mcap/timeline.h"
 #include "gst/common/caps_text.h"
+#include "gst/common/element_class.h"
 #include "gst/common/enum_type.h"
 #include "gst/common/gstlidar.h"
 #include "gst/common/properties.h"
@@ -372,9 +373,6 @@ void McapSinkFlushed(GstLidarMcapSink* sink) {
 
 }  // namespace lidar::gst
 
-static GstStaticPadTemplate sink_template =
-    GST_STATIC_PAD_TEMPLATE("sink_%u", GST_PAD_SINK, GST_PAD_REQUEST, GST_STATIC_CAPS_ANY);
-
 static void gst_lidar_mcap_sink_init(GstLidarMcapSink* self) {
   self->state = new State;
   GST_OBJECT_FLAG_SET(self, GST_ELEMENT_FLAG_SINK);
@@ -389,8 +387,8 @@ static void gst_lidar_mcap_sink_class_init(GstLidarMcapSinkClass* klass) {
   element->change_state = ChangeState;
   element->request_new_pad = RequestPad;
   element->release_pad = ReleasePad;
-  gst_element_class_add_static_pad_template(element, &sink_template);
-  gst_element_class_set_static_metadata(
-      element, "MCAP recorder", "Sink/File",
-      "Records slices, clouds, IMU samples and odometry into MCAP files", "gst-lidar");
+  lidar::gst::Describe(klass,
+                       {"MCAP recorder", "Sink/File",
+                        "Records slices, clouds, IMU samples and odometry into MCAP files"},
+                       {{"sink_%u", GST_PAD_SINK, "ANY", GST_PAD_REQUEST}});
 }

@@ -4,8 +4,8 @@
 #include <atomic>
 #include <memory>
 #include <mutex>
-#include <utility>
 
+#include "gst/common/element_class.h"
 #include "gst/common/properties.h"
 #include "gst/common/refused_caps.h"
 
@@ -108,20 +108,17 @@ GstStateChangeReturn ChangeState(GstElement* element, GstStateChange transition)
 
 }  // namespace
 
-static GstStaticPadTemplate sink_template =
-    GST_STATIC_PAD_TEMPLATE("sink", GST_PAD_SINK, GST_PAD_ALWAYS, GST_STATIC_CAPS_ANY);
-
 static void gst_lidar_mcap_stream_init(GstLidarMcapStream* self) { self->state = new State; }
 
 static void gst_lidar_mcap_stream_class_init(GstLidarMcapStreamClass* klass) {
   auto* object = G_OBJECT_CLASS(klass);
   lidar::gst::OwnState<GstLidarMcapStream, gst_lidar_mcap_stream_parent_class>(object);
   lidar::gst::ServeProperties<GstLidarMcapStream, kProperties>(object);
-  auto* element = GST_ELEMENT_CLASS(klass);
-  element->change_state = ChangeState;
-  gst_element_class_add_static_pad_template(element, &sink_template);
-  gst_element_class_set_static_metadata(element, "Stream of an MCAP recording", "Sink/File",
-                                        "Gives the buffers of one stream to mcapsink", "gst-lidar");
+  GST_ELEMENT_CLASS(klass)->change_state = ChangeState;
+  lidar::gst::Describe(
+      klass,
+      {"Stream of an MCAP recording", "Sink/File", "Gives the buffers of one stream to mcapsink"},
+      {{"sink", GST_PAD_SINK, "ANY"}});
   auto* base = GST_BASE_SINK_CLASS(klass);
   base->set_caps = SetCaps;
   base->render = Render;

@@ -2,7 +2,6 @@
 #include "ext/nats/message.h"
 
 #include <algorithm>
-#include <array>
 #include <charconv>
 #include <cmath>
 #include <string_view>

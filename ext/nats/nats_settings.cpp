@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include "ext/nats/nats_settings.h"
 
-#include <algorithm>
 #include <utility>
 
 #include "ext/nats/jetstream.h"

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cstdio>
-#include <utility>
 
 #include "gst/common/caps_text.h"
 #include "gst/common/cloud_info.h"

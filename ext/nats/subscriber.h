@@ -57,7 +57,6 @@ class Subscriber {
 
   /// The format of that id. Where it is not known, the sender is asked for it; null at a timeout.
   StreamFormat::Ptr Format(const std::string& id, std::chrono::milliseconds timeout);
-  std::uint64_t damaged_formats() const { return book_.damaged(); }
   /// Messages that came faster than they were taken.
   std::uint64_t overruns() const { return overruns_; }
 

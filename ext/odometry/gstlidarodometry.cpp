@@ -14,7 +14,6 @@
 #include <memory>
 #include <mutex>
 #include <optional>
-#include <vector>
 
 #include "ext/odometry/scan_collector.h"
 #include "gst/common/buffer_map.h"

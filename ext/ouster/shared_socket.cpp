@@ -8,9 +8,6 @@
 #include <cerrno>
 #include <map>
 #include <mutex>
-#include <utility>
-
-#include "gst/common/refs.h"
 
 namespace lidar::gst {
 namespace {

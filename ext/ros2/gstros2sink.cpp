@@ -17,6 +17,7 @@
 
 #include "ext/ros2/message_writer.h"
 #include "ext/ros2/ros_settings.h"
+#include "gst/common/element_class.h"
 #include "gst/common/enum_type.h"
 #include "gst/common/gstlidar.h"
 #include "gst/common/stats.h"
@@ -280,14 +281,10 @@ static void gst_lidar_ros2_sink_class_init(GstLidarRos2SinkClass* klass) {
   auto* object = G_OBJECT_CLASS(klass);
   ServeProperties<GstLidarRos2Sink, kProperties>(object);
   OwnState<GstLidarRos2Sink, gst_lidar_ros2_sink_parent_class>(object);
-  static GstStaticPadTemplate sink = GST_STATIC_PAD_TEMPLATE(
-      "sink", GST_PAD_SINK, GST_PAD_ALWAYS,
-      GST_STATIC_CAPS(GST_LIDAR_CLOUD_MEDIA_TYPE ";" GST_LIDAR_IMU_MEDIA_TYPE
-                                                 ";" GST_LIDAR_ODOMETRY_MEDIA_TYPE));
-  auto* element = GST_ELEMENT_CLASS(klass);
-  gst_element_class_add_static_pad_template(element, &sink);
-  gst_element_class_set_static_metadata(element, "ROS 2 sink", "Sink/Network",
-                                        "Publishes on a topic of ROS 2", "gst-lidar");
+  Describe(klass, {"ROS 2 sink", "Sink/Network", "Publishes on a topic of ROS 2"},
+           {{"sink", GST_PAD_SINK,
+             GST_LIDAR_CLOUD_MEDIA_TYPE ";" GST_LIDAR_IMU_MEDIA_TYPE
+                                        ";" GST_LIDAR_ODOMETRY_MEDIA_TYPE}});
   auto* base = GST_BASE_SINK_CLASS(klass);
   base->start = Start;
   base->stop = Stop;

@@ -18,6 +18,7 @@
 
 #include "ext/ros2/message_reader.h"
 #include "ext/ros2/ros_settings.h"
+#include "gst/common/element_class.h"
 #include "gst/common/enum_type.h"
 #include "gst/common/frames.h"
 #include "gst/common/gstlidar.h"
@@ -337,14 +338,10 @@ static void gst_lidar_ros2_src_class_init(GstLidarRos2SrcClass* klass) {
   auto* object = G_OBJECT_CLASS(klass);
   ServeProperties<GstLidarRos2Src, kProperties>(object);
   OwnState<GstLidarRos2Src, gst_lidar_ros2_src_parent_class>(object);
-  static GstStaticPadTemplate src = GST_STATIC_PAD_TEMPLATE(
-      "src", GST_PAD_SRC, GST_PAD_ALWAYS,
-      GST_STATIC_CAPS(GST_LIDAR_CLOUD_MEDIA_TYPE ";" GST_LIDAR_IMU_MEDIA_TYPE
-                                                 ";" GST_LIDAR_ODOMETRY_MEDIA_TYPE
-                                                 ";" GST_LIDAR_TF_MEDIA_TYPE));
-  auto* element = GST_ELEMENT_CLASS(klass);
-  gst_element_class_add_static_pad_template(element, &src);
-  gst_element_class_set_static_metadata(element, "ROS 2 source", "Source/Network",
-                                        "Subscribes to a topic of ROS 2", "gst-lidar");
+  Describe(
+      klass, {"ROS 2 source", "Source/Network", "Subscribes to a topic of ROS 2"},
+      {{"src", GST_PAD_SRC,
+        GST_LIDAR_CLOUD_MEDIA_TYPE ";" GST_LIDAR_IMU_MEDIA_TYPE ";" GST_LIDAR_ODOMETRY_MEDIA_TYPE
+                                   ";" GST_LIDAR_TF_MEDIA_TYPE}});
   InstallVmethods(klass);
 }

@@ -6,6 +6,7 @@
 
 #include "gst/common/buffer_map.h"
 #include "gst/common/cloud_info.h"
+#include "gst/common/element_class.h"
 #include "gst/common/gstlidar.h"
 #include "gst/common/properties.h"
 #include "gst/common/refused_caps.h"
@@ -293,11 +294,6 @@ gboolean Stop(GstBaseSink* sink) {
   return TRUE;
 }
 
-GstStaticPadTemplate sink_template = GST_STATIC_PAD_TEMPLATE(
-    "sink", GST_PAD_SINK, GST_PAD_ALWAYS,
-    GST_STATIC_CAPS(GST_LIDAR_CLOUD_MEDIA_TYPE "; " GST_LIDAR_DRACO_MEDIA_TYPE
-                                               ", geometry=xyz; " GST_LIDAR_ODOMETRY_MEDIA_TYPE));
-
 }  // namespace
 
 static void gst_lidar_foxglove_input_init(GstLidarFoxgloveInput* self) { self->state = new State; }
@@ -306,10 +302,11 @@ static void gst_lidar_foxglove_input_class_init(GstLidarFoxgloveInputClass* klas
   GST_DEBUG_CATEGORY_INIT(gst_lidar_foxglove_input_debug, "foxglovesink", 0, "Foxglove server");
   lidar::gst::OwnState<GstLidarFoxgloveInput, gst_lidar_foxglove_input_parent_class>(
       G_OBJECT_CLASS(klass));
-  auto* element = GST_ELEMENT_CLASS(klass);
-  gst_element_class_add_static_pad_template(element, &sink_template);
-  gst_element_class_set_static_metadata(element, "Foxglove input", "Sink",
-                                        "One stream of foxglovesink", "gst-lidar");
+  lidar::gst::Describe(
+      klass, {"Foxglove input", "Sink", "One stream of foxglovesink"},
+      {{"sink", GST_PAD_SINK,
+        GST_LIDAR_CLOUD_MEDIA_TYPE "; " GST_LIDAR_DRACO_MEDIA_TYPE
+                                   ", geometry=xyz; " GST_LIDAR_ODOMETRY_MEDIA_TYPE}});
   auto* sink = GST_BASE_SINK_CLASS(klass);
   sink->start = Start;
   sink->stop = Stop;

@@ -13,8 +13,8 @@
 
 #include "ext/web/foxglove_input.h"
 #include "ext/web/foxglove_pad.h"
-#include "ext/web/glib_ptr.h"
 #include "ext/web/statistics.h"
+#include "gst/common/element_class.h"
 #include "gst/common/properties.h"
 #include "gst/common/refs.h"
 #include "gst/common/stats.h"
@@ -126,11 +126,6 @@ GST_ELEMENT_REGISTER_DEFINE(foxglovesink, "foxglovesink", GST_RANK_NONE,
                             GST_TYPE_LIDAR_FOXGLOVE_SINK)
 
 namespace {
-
-GstStaticPadTemplate sink_template = GST_STATIC_PAD_TEMPLATE(
-    "sink_%u", GST_PAD_SINK, GST_PAD_REQUEST,
-    GST_STATIC_CAPS("application/x-pointcloud2; application/x-draco, geometry=xyz; "
-                    "application/x-odometry"));
 
 std::shared_ptr<Hub> HubOf(GObject* object) {
   State& state = *GST_LIDAR_FOXGLOVE_SINK(object)->state;
@@ -328,10 +323,12 @@ static void gst_lidar_foxglove_sink_class_init(GstLidarFoxgloveSinkClass* klass)
   element->change_state = ChangeState;
   element->request_new_pad = RequestPad;
   element->release_pad = ReleasePad;
-  gst_element_class_add_static_pad_template_with_gtype(element, &sink_template,
-                                                       GST_TYPE_LIDAR_FOXGLOVE_PAD);
-  gst_element_class_set_static_metadata(
-      element, "Foxglove server", "Sink/Network/PointCloud",
-      "Serves clouds, poses and statistics to browsers and to Foxglove", "gst-lidar");
+  lidar::gst::Describe(klass,
+                       {"Foxglove server", "Sink/Network/PointCloud",
+                        "Serves clouds, poses and statistics to browsers and to Foxglove"},
+                       {{"sink_%u", GST_PAD_SINK,
+                         "application/x-pointcloud2; application/x-draco, geometry=xyz; "
+                         "application/x-odometry",
+                         GST_PAD_REQUEST, GST_TYPE_LIDAR_FOXGLOVE_PAD}});
   gst_type_mark_as_plugin_api(GST_TYPE_LIDAR_FOXGLOVE_PAD, static_cast<GstPluginAPIFlags>(0));
 }

@@ -18,6 +18,7 @@ struct PadRow {
   GstPadDirection direction;
   const char* caps;
   GstPadPresence presence = GST_PAD_ALWAYS;
+  GType type = G_TYPE_NONE;  // of the pads, where GstPad is not enough
 };
 
 /// Documents an element class and installs its pad templates.
@@ -26,7 +27,10 @@ inline void Describe(gpointer klass, const ElementInfo& info,
   auto* element = GST_ELEMENT_CLASS(klass);
   for (const PadRow& pad : pads) {
     GstStaticPadTemplate row{pad.name, pad.direction, pad.presence, GST_STATIC_CAPS(pad.caps)};
-    gst_element_class_add_static_pad_template(element, &row);
+    if (pad.type == G_TYPE_NONE)
+      gst_element_class_add_static_pad_template(element, &row);
+    else
+      gst_element_class_add_static_pad_template_with_gtype(element, &row, pad.type);
   }
   gst_element_class_set_static_metadata(element, info.long_name, info.classification,
                                         info.description, "gst-lidar");

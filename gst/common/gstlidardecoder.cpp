@@ -38,10 +38,8 @@ struct Counters {
   GstLidarDecodedSlice last{0, 0, 0, 0, 0, 1, FALSE};
 };
 
-gdouble LastStep(const Counters& c) { return c.last.step; }
-gdouble LastErrorBound(const Counters& c) { return c.last.error_bound; }
-guint LastIntensityBits(const Counters& c) { return c.last.intensity_bits; }
-gdouble LastKeepFraction(const Counters& c) { return c.last.keep_fraction; }
+using lidar::gst::At;
+using LastSlice = GstLidarDecodedSlice;
 /// Of the slice decoded last, now; both clocks must tell UTC.
 guint64 AgeOf(const Counters& c) {
   if (!GST_CLOCK_TIME_IS_VALID(c.last_capture_time)) return GST_CLOCK_TIME_NONE;
@@ -57,10 +55,10 @@ const std::array<lidar::gst::Stat<Counters>, 13> kStats = {{
     {"slices-thinned", &Counters::slices_thinned},
     {"points", &Counters::points},
     {"bytes", &Counters::bytes},
-    {"step", LastStep},
-    {"error-bound", LastErrorBound},
-    {"intensity-bits", LastIntensityBits},
-    {"keep-fraction", LastKeepFraction},
+    {"step", At<&Counters::last, &LastSlice::step>},
+    {"error-bound", At<&Counters::last, &LastSlice::error_bound>},
+    {"intensity-bits", At<&Counters::last, &LastSlice::intensity_bits>},
+    {"keep-fraction", At<&Counters::last, &LastSlice::keep_fraction>},
     {"decode-time", &Counters::last_decode_time},
     {"mean-decode-time", MeanDecodeTime},
     {"age", AgeOf},

@@ -15,7 +15,6 @@
 #include <gst/net/gstnetaddressmeta.h>
 #include <netinet/in.h>
 
-#include <memory>
 #include <mutex>
 
 #include "gst/common/element_class.h"

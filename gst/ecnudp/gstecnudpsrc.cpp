@@ -17,7 +17,6 @@
 
 #include <cerrno>
 #include <deque>
-#include <memory>
 #include <mutex>
 
 #include "gst/common/element_class.h"

@@ -18,7 +18,9 @@
 
 #include "gst/common/buffer_map.h"
 #include "gst/common/cloud_info.h"
+#include "gst/common/element_class.h"
 #include "gst/common/gstlidar.h"
+#include "gst/common/properties.h"
 #include "gst/pointcloud/gstpointcloudmergepad.h"
 
 GST_DEBUG_CATEGORY_STATIC(gst_lidar_point_cloud_merge_debug);
@@ -248,11 +250,6 @@ gboolean Stop(GstAggregator* base) {
 
 }  // namespace
 
-static GstStaticPadTemplate sink_template = GST_STATIC_PAD_TEMPLATE(
-    "sink_%u", GST_PAD_SINK, GST_PAD_REQUEST, GST_STATIC_CAPS(GST_LIDAR_CLOUD_MEDIA_TYPE));
-static GstStaticPadTemplate src_template = GST_STATIC_PAD_TEMPLATE(
-    "src", GST_PAD_SRC, GST_PAD_ALWAYS, GST_STATIC_CAPS(GST_LIDAR_CLOUD_MEDIA_TYPE));
-
 static void gst_lidar_point_cloud_merge_init(GstLidarPointCloudMerge* self) {
   self->state = new State;
 }
@@ -260,18 +257,15 @@ static void gst_lidar_point_cloud_merge_init(GstLidarPointCloudMerge* self) {
 static void gst_lidar_point_cloud_merge_class_init(GstLidarPointCloudMergeClass* klass) {
   GST_DEBUG_CATEGORY_INIT(gst_lidar_point_cloud_merge_debug, "pointcloudmerge", 0,
                           "Clouds of several sensors");
-  G_OBJECT_CLASS(klass)->finalize = [](GObject* object) {
-    delete GST_LIDAR_POINT_CLOUD_MERGE(object)->state;
-    G_OBJECT_CLASS(gst_lidar_point_cloud_merge_parent_class)->finalize(object);
-  };
-  auto* element = GST_ELEMENT_CLASS(klass);
-  gst_element_class_add_static_pad_template_with_gtype(element, &sink_template,
-                                                       GST_TYPE_LIDAR_POINT_CLOUD_MERGE_PAD);
-  gst_element_class_add_static_pad_template_with_gtype(element, &src_template,
-                                                       GST_TYPE_AGGREGATOR_PAD);
-  gst_element_class_set_static_metadata(element, "Point cloud merger", "Filter/PointCloud",
-                                        "Makes one cloud of the scans of several sensors",
-                                        "gst-lidar");
+  lidar::gst::OwnState<GstLidarPointCloudMerge, gst_lidar_point_cloud_merge_parent_class>(
+      G_OBJECT_CLASS(klass));
+  lidar::gst::Describe(
+      klass,
+      {"Point cloud merger", "Filter/PointCloud",
+       "Makes one cloud of the scans of several sensors"},
+      {{"sink_%u", GST_PAD_SINK, GST_LIDAR_CLOUD_MEDIA_TYPE, GST_PAD_REQUEST,
+        GST_TYPE_LIDAR_POINT_CLOUD_MERGE_PAD},
+       {"src", GST_PAD_SRC, GST_LIDAR_CLOUD_MEDIA_TYPE, GST_PAD_ALWAYS, GST_TYPE_AGGREGATOR_PAD}});
   gst_type_mark_as_plugin_api(GST_TYPE_LIDAR_POINT_CLOUD_MERGE_PAD,
                               static_cast<GstPluginAPIFlags>(0));
   auto* aggregator = GST_AGGREGATOR_CLASS(klass);
@@ -281,8 +275,8 @@ static void gst_lidar_point_cloud_merge_class_init(GstLidarPointCloudMergeClass*
   aggregator->sink_event = SinkEvent;
   aggregator->get_next_time = NextTime;
   aggregator->stop = Stop;
-  element->request_new_pad = RequestPad;
-  element->release_pad = ReleasePad;
+  GST_ELEMENT_CLASS(klass)->request_new_pad = RequestPad;
+  GST_ELEMENT_CLASS(klass)->release_pad = ReleasePad;
 }
 
 static void gst_lidar_point_cloud_merge_child_proxy_init(gpointer iface, gpointer) {

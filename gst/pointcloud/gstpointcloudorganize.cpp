@@ -15,6 +15,7 @@
 #include <optional>
 
 #include "gst/common/buffer_map.h"
+#include "gst/common/element_class.h"
 #include "gst/common/gstlidar.h"
 #include "gst/common/held_events.h"
 #include "gst/common/properties.h"
@@ -242,22 +243,15 @@ GstStateChangeReturn ChangeState(GstElement* element, GstStateChange transition)
   return result;
 }
 
-GstStaticPadTemplate organize_sink = GST_STATIC_PAD_TEMPLATE(
-    "sink", GST_PAD_SINK, GST_PAD_ALWAYS, GST_STATIC_CAPS(GST_LIDAR_CLOUD_MEDIA_TYPE));
-GstStaticPadTemplate organize_src = GST_STATIC_PAD_TEMPLATE(
-    "src", GST_PAD_SRC, GST_PAD_ALWAYS, GST_STATIC_CAPS(GST_LIDAR_CLOUD_MEDIA_TYPE));
-
 }  // namespace
 
 static void gst_lidar_point_cloud_organize_init(GstLidarPointCloudOrganize* self) {
   self->state = new State;
-  self->sinkpad = gst_pad_new_from_static_template(&organize_sink, "sink");
+  self->sinkpad = AddPad(self, "sink");
   gst_pad_set_chain_function(self->sinkpad, Chain);
   gst_pad_set_event_function(self->sinkpad, SinkEvent);
-  gst_element_add_pad(GST_ELEMENT(self), self->sinkpad);
-  self->srcpad = gst_pad_new_from_static_template(&organize_src, "src");
+  self->srcpad = AddPad(self, "src");
   gst_pad_use_fixed_caps(self->srcpad);
-  gst_element_add_pad(GST_ELEMENT(self), self->srcpad);
 }
 
 static void gst_lidar_point_cloud_organize_class_init(GstLidarPointCloudOrganizeClass* klass) {
@@ -266,11 +260,10 @@ static void gst_lidar_point_cloud_organize_class_init(GstLidarPointCloudOrganize
   auto* object = G_OBJECT_CLASS(klass);
   ServeProperties<GstLidarPointCloudOrganize, kProperties>(object);
   OwnState<GstLidarPointCloudOrganize, gst_lidar_point_cloud_organize_parent_class>(object);
-  auto* element = GST_ELEMENT_CLASS(klass);
-  gst_element_class_add_static_pad_template(element, &organize_sink);
-  gst_element_class_add_static_pad_template(element, &organize_src);
-  gst_element_class_set_static_metadata(
-      element, "Point cloud organizer", "Filter/Analyzer/PointCloud",
-      "Finds the beams of the sensor in its clouds, and adds ranges", "gst-lidar");
-  element->change_state = ChangeState;
+  Describe(klass,
+           {"Point cloud organizer", "Filter/Analyzer/PointCloud",
+            "Finds the beams of the sensor in its clouds, and adds ranges"},
+           {{"sink", GST_PAD_SINK, GST_LIDAR_CLOUD_MEDIA_TYPE},
+            {"src", GST_PAD_SRC, GST_LIDAR_CLOUD_MEDIA_TYPE}});
+  GST_ELEMENT_CLASS(klass)->change_state = ChangeState;
 }

@@ -13,6 +13,7 @@
 
 #include <atomic>
 
+#include "gst/common/element_class.h"
 #include "gst/common/refs.h"
 #include "gst/scream/bin/common.h"
 #include "gst/scream/bin/gstscreamsinkpad.h"
@@ -53,9 +54,6 @@ static void ChildProxyInit(gpointer iface, gpointer);
 G_DEFINE_TYPE_WITH_CODE(GstLidarScreamSink, gst_lidar_scream_sink, GST_TYPE_BIN,
                         G_IMPLEMENT_INTERFACE(GST_TYPE_CHILD_PROXY, ChildProxyInit))
 GST_ELEMENT_REGISTER_DEFINE(screamsink, "screamsink", GST_RANK_NONE, GST_TYPE_LIDAR_SCREAM_SINK)
-
-static GstStaticPadTemplate sink_template = GST_STATIC_PAD_TEMPLATE(
-    "sink_%u", GST_PAD_SINK, GST_PAD_REQUEST, GST_STATIC_CAPS("application/x-rtp"));
 
 static StructurePtr Stats(GObject* object) {
   auto* self = GST_LIDAR_SCREAM_SINK(object);
@@ -301,10 +299,10 @@ static void gst_lidar_scream_sink_class_init(GstLidarScreamSinkClass* klass) {
   element->change_state = ChangeState;
   element->request_new_pad = RequestPad;
   element->release_pad = ReleasePad;
-  gst_element_class_add_static_pad_template_with_gtype(element, &sink_template,
-                                                       GST_TYPE_LIDAR_SCREAM_SINK_PAD);
-  gst_element_class_set_static_metadata(
-      element, "SCReAM network sink", "Sink/Network/RTP",
-      "Sends RTP over UDP with SCReAM v2 congestion control and L4S", "gst-lidar");
+  Describe(klass,
+           {"SCReAM network sink", "Sink/Network/RTP",
+            "Sends RTP over UDP with SCReAM v2 congestion control and L4S"},
+           {{"sink_%u", GST_PAD_SINK, "application/x-rtp", GST_PAD_REQUEST,
+             GST_TYPE_LIDAR_SCREAM_SINK_PAD}});
   gst_type_mark_as_plugin_api(GST_TYPE_LIDAR_SCREAM_SINK_PAD, static_cast<GstPluginAPIFlags>(0));
 }

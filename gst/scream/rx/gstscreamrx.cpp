@@ -12,6 +12,7 @@
  */
 #include "gst/scream/rx/gstscreamrx.h"
 
+#include "gst/common/element_class.h"
 #include "gst/common/enum_type.h"
 #include "gst/common/stats.h"
 #include "gst/scream/rx/private.h"
@@ -23,15 +24,6 @@ using namespace lidar::gst;
 
 G_DEFINE_TYPE(GstLidarScreamRx, gst_lidar_scream_rx, GST_TYPE_ELEMENT)
 GST_ELEMENT_REGISTER_DEFINE(screamrx, "screamrx", GST_RANK_NONE, GST_TYPE_LIDAR_SCREAM_RX)
-
-static GstStaticPadTemplate sink_template = GST_STATIC_PAD_TEMPLATE(
-    "sink", GST_PAD_SINK, GST_PAD_ALWAYS, GST_STATIC_CAPS("application/x-rtp"));
-static GstStaticPadTemplate src_template = GST_STATIC_PAD_TEMPLATE(
-    "src", GST_PAD_SRC, GST_PAD_ALWAYS, GST_STATIC_CAPS("application/x-rtp"));
-static GstStaticPadTemplate stream_template = GST_STATIC_PAD_TEMPLATE(
-    "src_%u", GST_PAD_SRC, GST_PAD_SOMETIMES, GST_STATIC_CAPS("application/x-rtp"));
-static GstStaticPadTemplate rtcp_template = GST_STATIC_PAD_TEMPLATE(
-    "rtcp_src", GST_PAD_SRC, GST_PAD_ALWAYS, GST_STATIC_CAPS("application/x-rtcp"));
 
 namespace lidar::gst {
 
@@ -218,28 +210,27 @@ static void SettingsChanged(GObject* object, GParamSpec*) {
   if (state.timer != nullptr) gst_clock_id_unschedule(state.timer);
 }
 
-static GstPad* AddStaticPad(GstLidarScreamRx* self, GstStaticPadTemplate* templ) {
-  GstPad* pad = gst_pad_new_from_static_template(templ, templ->name_template);
+static GstPad* AddLinkedPad(GstLidarScreamRx* self, const char* name) {
+  GstPad* pad = AddPad(self, name);
   gst_pad_set_iterate_internal_links_function(pad, LinksOf);
-  gst_element_add_pad(GST_ELEMENT(self), pad);
   return pad;
 }
 
 static void gst_lidar_scream_rx_init(GstLidarScreamRx* self) {
   self->state = new RxState;
   self->state->combiner = gst_flow_combiner_new();
-  self->sink = AddStaticPad(self, &sink_template);
+  self->sink = AddLinkedPad(self, "sink");
   gst_pad_set_chain_function(self->sink, RxChain);
   gst_pad_set_chain_list_function(self->sink, RxChainList);
   gst_pad_set_event_function(self->sink, SinkEvent);
   gst_pad_set_query_function(self->sink, SinkQuery);
   GST_PAD_SET_PROXY_CAPS(self->sink);
   GST_PAD_SET_PROXY_ALLOCATION(self->sink);
-  self->src = AddStaticPad(self, &src_template);
+  self->src = AddLinkedPad(self, "src");
   GST_PAD_SET_PROXY_CAPS(self->src);
   gst_pad_set_event_function(self->src, RxSrcEvent);
   gst_flow_combiner_add_pad(self->state->combiner, self->src);
-  self->rtcp_src = AddStaticPad(self, &rtcp_template);
+  self->rtcp_src = AddLinkedPad(self, "rtcp_src");
   gst_pad_set_activatemode_function(self->rtcp_src, RxActivateRtcp);
 }
 
@@ -256,13 +247,12 @@ static void gst_lidar_scream_rx_class_init(GstLidarScreamRxClass* klass) {
   auto* object = G_OBJECT_CLASS(klass);
   ServeProperties<GstLidarScreamRx, RxPropertyTable, SettingsChanged>(object);
   object->finalize = Finalize;
-  auto* element = GST_ELEMENT_CLASS(klass);
-  element->change_state = ChangeState;
-  gst_element_class_add_static_pad_template(element, &sink_template);
-  gst_element_class_add_static_pad_template(element, &src_template);
-  gst_element_class_add_static_pad_template(element, &stream_template);
-  gst_element_class_add_static_pad_template(element, &rtcp_template);
-  gst_element_class_set_static_metadata(element, "SCReAM receiver", "Filter/Network/RTP",
-                                        "Congestion control feedback for RTP (RFC 8888) with ECN",
-                                        "gst-lidar");
+  GST_ELEMENT_CLASS(klass)->change_state = ChangeState;
+  Describe(klass,
+           {"SCReAM receiver", "Filter/Network/RTP",
+            "Congestion control feedback for RTP (RFC 8888) with ECN"},
+           {{"sink", GST_PAD_SINK, "application/x-rtp"},
+            {"src", GST_PAD_SRC, "application/x-rtp"},
+            {"src_%u", GST_PAD_SRC, "application/x-rtp", GST_PAD_SOMETIMES},
+            {"rtcp_src", GST_PAD_SRC, "application/x-rtcp"}});
 }

@@ -28,7 +28,6 @@ class SessionNumbers {
   /// The report in an event of rtpsession; nothing for other events, or where none of it is ours.
   std::optional<scream::CongestionFeedback> OnEvent(GstEvent* event);
   const Stats& stats() const { return stats_; }
-  guint8 extension_id() const { return id_; }
 
  private:
   bool IsOurs(const GstStructure* packet) const;

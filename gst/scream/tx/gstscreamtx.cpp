@@ -16,6 +16,7 @@
 #include <cstdio>
 #include <string>
 
+#include "gst/common/element_class.h"
 #include "gst/scream/tx/private.h"
 
 GST_DEBUG_CATEGORY(gst_lidar_scream_tx_debug);
@@ -28,15 +29,6 @@ static void ChildProxyInit(gpointer iface, gpointer);
 G_DEFINE_TYPE_WITH_CODE(GstLidarScreamTx, gst_lidar_scream_tx, GST_TYPE_ELEMENT,
                         G_IMPLEMENT_INTERFACE(GST_TYPE_CHILD_PROXY, ChildProxyInit))
 GST_ELEMENT_REGISTER_DEFINE(screamtx, "screamtx", GST_RANK_NONE, GST_TYPE_LIDAR_SCREAM_TX)
-
-static GstStaticPadTemplate sink_template = GST_STATIC_PAD_TEMPLATE(
-    "sink_%u", GST_PAD_SINK, GST_PAD_REQUEST, GST_STATIC_CAPS("application/x-rtp"));
-static GstStaticPadTemplate src_template = GST_STATIC_PAD_TEMPLATE(
-    "src", GST_PAD_SRC, GST_PAD_ALWAYS, GST_STATIC_CAPS("application/x-rtp"));
-static GstStaticPadTemplate rtcp_sink_template = GST_STATIC_PAD_TEMPLATE(
-    "rtcp_sink", GST_PAD_SINK, GST_PAD_ALWAYS, GST_STATIC_CAPS("application/x-rtcp"));
-static GstStaticPadTemplate rtcp_src_template = GST_STATIC_PAD_TEMPLATE(
-    "rtcp_src", GST_PAD_SRC, GST_PAD_ALWAYS, GST_STATIC_CAPS("application/x-rtcp"));
 
 enum : guint { kSignalRouteChanged, kSignals };
 static guint signals[kSignals];
@@ -273,34 +265,21 @@ static void InstallSignals() {
       nullptr, nullptr, nullptr, G_TYPE_NONE, 0);
 }
 
-static GstPad* AddStaticPad(GstLidarScreamTx* self, GstStaticPadTemplate* templ) {
-  GstPad* pad = gst_pad_new_from_static_template(templ, templ->name_template);
+static GstPad* AddLinkedPad(GstLidarScreamTx* self, const char* name) {
+  GstPad* pad = AddPad(self, name);
   gst_pad_set_iterate_internal_links_function(pad, TxLinksOf);
-  gst_element_add_pad(GST_ELEMENT(self), pad);
   return pad;
 }
 
 static void gst_lidar_scream_tx_init(GstLidarScreamTx* self) {
   self->state = new TxState(self);
-  self->src = AddStaticPad(self, &src_template);
+  self->src = AddLinkedPad(self, "src");
   gst_pad_set_event_function(self->src, TxSrcEvent);
   gst_pad_set_query_function(self->src, TxSrcQuery);
   gst_pad_set_activatemode_function(self->src, ActivateSrc);
-  self->rtcp_sink = AddStaticPad(self, &rtcp_sink_template);
+  self->rtcp_sink = AddLinkedPad(self, "rtcp_sink");
   gst_pad_set_chain_function(self->rtcp_sink, TxRtcpChain);
-  self->rtcp_src = AddStaticPad(self, &rtcp_src_template);
-}
-
-static void InstallPads(GstElementClass* element) {
-  gst_element_class_add_static_pad_template_with_gtype(element, &sink_template,
-                                                       GST_TYPE_LIDAR_SCREAM_TX_PAD);
-  gst_element_class_add_static_pad_template(element, &src_template);
-  gst_element_class_add_static_pad_template(element, &rtcp_sink_template);
-  gst_element_class_add_static_pad_template(element, &rtcp_src_template);
-  gst_element_class_set_static_metadata(element, "SCReAM sender", "Filter/Network/RTP",
-                                        "Congestion control for RTP with SCReAM v2 and L4S",
-                                        "gst-lidar");
-  gst_type_mark_as_plugin_api(GST_TYPE_LIDAR_SCREAM_TX_PAD, static_cast<GstPluginAPIFlags>(0));
+  self->rtcp_src = AddLinkedPad(self, "rtcp_src");
 }
 
 static void gst_lidar_scream_tx_class_init(GstLidarScreamTxClass* klass) {
@@ -313,5 +292,13 @@ static void gst_lidar_scream_tx_class_init(GstLidarScreamTxClass* klass) {
   element->change_state = ChangeState;
   element->request_new_pad = RequestPad;
   element->release_pad = ReleasePad;
-  InstallPads(element);
+  Describe(
+      klass,
+      {"SCReAM sender", "Filter/Network/RTP", "Congestion control for RTP with SCReAM v2 and L4S"},
+      {{"sink_%u", GST_PAD_SINK, "application/x-rtp", GST_PAD_REQUEST,
+        GST_TYPE_LIDAR_SCREAM_TX_PAD},
+       {"src", GST_PAD_SRC, "application/x-rtp"},
+       {"rtcp_sink", GST_PAD_SINK, "application/x-rtcp"},
+       {"rtcp_src", GST_PAD_SRC, "application/x-rtcp"}});
+  gst_type_mark_as_plugin_api(GST_TYPE_LIDAR_SCREAM_TX_PAD, static_cast<GstPluginAPIFlags>(0));
 }
