@@ -29,6 +29,15 @@ std::string NameOfThisProcess() {
   return std::string(host) + "-" + std::to_string(getpid()) + "-" + std::to_string(g_random_int());
 }
 
+/// What the user typed.
+struct Options {
+  WorkerSettings worker;
+  fleet::StatisticsSettings statistics;
+  std::vector<std::string> odometry;
+  double rewind_s = Seconds(worker.pipeline.rewind);
+  int lease_ms = static_cast<int>(Milliseconds(worker.lease.lease));
+};
+
 std::vector<std::pair<std::string, std::string>> ParseProperties(
     const std::vector<std::string>& list) {
   std::vector<std::pair<std::string, std::string>> properties;
@@ -66,61 +75,72 @@ void AddStatistics(CLI::App* app, fleet::StatisticsSettings* s) {
       ->capture_default_str();
 }
 
-int Main(int argc, char** argv) {
+void AddFleet(CLI::App* app, WorkerSettings* s) {
+  app->add_option("ROBOT", s->fleet.patterns,
+                  "Robots to care for, such as r7, r7.front or '*'; * and ? are wildcards")
+      ->required();
+  app->add_option("--max-robots", s->lease.most, "Robots that it takes at a time")
+      ->check(CLI::Range(1, 10'000))
+      ->capture_default_str();
+  AddConnection(app, &s->pipeline.connection);
+  app->add_option("--prefix", s->fleet.prefix, "First word of all subjects")->capture_default_str();
+  app->add_option("--jetstream", s->fleet.stream, "Stream of JetStream that keeps the slices")
+      ->capture_default_str();
+  app->add_option("--bucket", s->fleet.bucket, "Bucket of the key-value store for leases and poses")
+      ->capture_default_str();
+  app->add_option("--replicas", s->fleet.replicas, "Servers that keep the bucket, where it is made")
+      ->check(CLI::Range(1, 5))
+      ->capture_default_str();
+}
+
+void AddWork(CLI::App* app, Options* o) {
+  app->add_option("--lease", o->lease_ms,
+                  "How long a worker may be silent before others take over [ms]")
+      ->check(CLI::Range(200, 60'000))
+      ->capture_default_str();
+  app->add_option("--decoder", o->worker.pipeline.decoder,
+                  "lidardec, or dracodec for streams of dracoenc")
+      ->capture_default_str();
+  app->add_option("--rewind", o->rewind_s,
+                  "What the decoder reads before it goes on: the key-interval of the robots' "
+                  "lidarenc, and a little [s]")
+      ->check(CLI::Range(0.0, 60.0))
+      ->capture_default_str();
+  app->add_option("--odometry", o->odometry, "Property of lidarodometry, such as voxel-size=0.5");
+}
+
+Options ParseOptions(int argc, char** argv) {
   CLI::App app(
       "Takes robots whose streams JetStream keeps, finds their poses by lidarodometry, and "
       "publishes them. Several of it share the robots: each has one worker at a time, and where a "
       "worker dies, another goes on from the last pose.");
   tools::AddVersionFlag(&app, "lidar-worker");
-  WorkerSettings s;
-  std::vector<std::string> odometry;
-  fleet::StatisticsSettings t;
-  double rewind_s = Seconds(s.pipeline.rewind);
-  int lease_ms = static_cast<int>(Milliseconds(s.lease.lease));
-  app.add_option("ROBOT", s.fleet.patterns,
-                 "Robots to care for, such as r7, r7.front or '*'; * and ? are wildcards")
-      ->required();
-  app.add_option("--max-robots", s.lease.most, "Robots that it takes at a time")
-      ->check(CLI::Range(1, 10'000))
-      ->capture_default_str();
-  AddConnection(&app, &s.pipeline.connection);
-  app.add_option("--prefix", s.fleet.prefix, "First word of all subjects")->capture_default_str();
-  app.add_option("--jetstream", s.fleet.stream, "Stream of JetStream that keeps the slices")
-      ->capture_default_str();
-  app.add_option("--bucket", s.fleet.bucket, "Bucket of the key-value store for leases and poses")
-      ->capture_default_str();
-  app.add_option("--replicas", s.fleet.replicas, "Servers that keep the bucket, where it is made")
-      ->check(CLI::Range(1, 5))
-      ->capture_default_str();
-  app.add_option("--lease", lease_ms,
-                 "How long a worker may be silent before others take over [ms]")
-      ->check(CLI::Range(200, 60'000))
-      ->capture_default_str();
-  app.add_option("--decoder", s.pipeline.decoder, "lidardec, or dracodec for streams of dracoenc")
-      ->capture_default_str();
-  app.add_option("--rewind", rewind_s,
-                 "What the decoder reads before it goes on: the key-interval of the robots' "
-                 "lidarenc, and a little [s]")
-      ->check(CLI::Range(0.0, 60.0))
-      ->capture_default_str();
-  app.add_option("--odometry", odometry, "Property of lidarodometry, such as voxel-size=0.5");
-  AddStatistics(&app, &t);
+  Options o;
+  WorkerSettings& s = o.worker;
+  AddFleet(&app, &s);
+  AddWork(&app, &o);
+  AddStatistics(&app, &o.statistics);
   tools::Parse(&app, argc, argv, [&] {
     CheckWord("--prefix", s.fleet.prefix);
     CheckWord("--jetstream", s.fleet.stream);
     CheckWord("--bucket", s.fleet.bucket);
-    s.pipeline.odometry = ParseProperties(odometry);
+    s.pipeline.odometry = ParseProperties(o.odometry);
   });
   s.pipeline.prefix = s.fleet.prefix;
   s.pipeline.stream = s.fleet.stream;
-  s.pipeline.rewind = FromSeconds(rewind_s);
-  s.lease.lease = std::chrono::milliseconds(lease_ms);
+  s.pipeline.rewind = FromSeconds(o.rewind_s);
+  s.lease.lease = std::chrono::milliseconds(o.lease_ms);
   s.lease.worker = NameOfThisProcess();
+  return o;
+}
+
+int Main(int argc, char** argv) {
+  Options o = ParseOptions(argc, argv);
   gst_init(nullptr, nullptr);
   for (const int signal : {SIGINT, SIGTERM}) std::signal(signal, [](int) { stopping = true; });
-  Worker worker(s);
-  s.pipeline.connection.name = "lidar-worker";
-  fleet::Statistics statistics(t, s.pipeline.connection);
+  Worker worker(o.worker);
+  o.worker.pipeline.connection.name = "lidar-worker";
+  fleet::Statistics statistics(o.statistics, o.worker.pipeline.connection);
   while (!stopping) {
     worker.Step();
     statistics.Poll([&](auto* exposition, auto* reports) { worker.Tell(exposition, reports); });
