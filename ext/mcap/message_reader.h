@@ -17,7 +17,7 @@ class MessageReader {
                                              const mcap::Channel& channel);
   virtual ~MessageReader() = default;
 
-  /// Of the buffers from the last Read() on; NULL where only a message can tell.
+  /// Buffers from the last Read() on have these caps; NULL where only a message can tell.
   GstCaps* caps() const { return caps_.get(); }
   /// Null for what is damaged. Any bytes may come. The buffer has no PTS.
   virtual BufferPtr Read(ByteView message) = 0;

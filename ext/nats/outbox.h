@@ -37,7 +37,7 @@ class Outbox {
   /// Forgets all: how many.
   std::size_t Clear();
 
-  /// Of the oldest that waits; null: none does.
+  /// The format of the oldest message that waits; null: none does.
   StreamFormat::Ptr NextFormat() const;
   /// Since when the oldest is in flight.
   std::optional<Clock::time_point> OldestInFlight() const;

@@ -68,7 +68,7 @@ const std::array<lidar::gst::Stat<Counters>, 8> kStats = {{
     {"inlier-share", &Counters::inlier_share},
 }};
 
-/// Of the streaming thread.
+/// Belongs to the streaming thread.
 struct Stream {
   std::optional<CloudInfo> info;
   lidar::gst::ScanCollector collector;

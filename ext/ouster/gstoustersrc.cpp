@@ -96,7 +96,7 @@ static gboolean UnlockStop(GstBaseSrc* base) {
   return TRUE;
 }
 
-/// Of a capture that can be sought; -1 else.
+/// How long a capture is that can be sought; -1 else.
 static gint64 DurationOf(GstBaseSrc* base) {
   const auto session = SessionOf(base);
   const auto duration = session ? session->duration() : std::nullopt;

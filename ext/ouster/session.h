@@ -40,7 +40,7 @@ class Session {
     ended_ = false;
     imu_.SetSegment(segment);
   }
-  /// Of all there is; none where nobody knows. Any thread may call this; it may read a file.
+  /// How long all of it is; none where nobody knows. Any thread may call this; it may read a file.
   virtual std::optional<GstClockTime> duration() { return std::nullopt; }
 
   /// Any thread may call these.

@@ -38,7 +38,7 @@ struct State {
   std::mutex mutex;  // guards the settings and the pointer
   InputSettings settings;
   std::shared_ptr<Hub> hub;
-  // Of the streaming thread.
+  // Only the streaming thread uses what follows.
   std::shared_ptr<Hub> used;  // since start
   Kind kind = Kind::kNone;
   CloudInfo info;

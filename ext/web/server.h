@@ -34,7 +34,7 @@ class Server {
   SharedTopic Open(const std::string& topic, foxglove::Schema schema);
   /// Whoever opened it last closes the channel.
   void Close(const SharedTopic& topic);
-  /// Of what waits for the server's thread, too, the newest messages stay.
+  /// The message waits for the server's thread. Where too many wait, the oldest go.
   void Publish(const SharedTopic& topic, Message message);
 
  private:

@@ -40,7 +40,7 @@ struct Counters {
 
 using lidar::gst::At;
 using LastSlice = GstLidarDecodedSlice;
-/// Of the slice decoded last, now; both clocks must tell UTC.
+/// How old the slice decoded last is now; both clocks must tell UTC.
 guint64 AgeOf(const Counters& c) {
   if (!GST_CLOCK_TIME_IS_VALID(c.last_capture_time)) return GST_CLOCK_TIME_NONE;
   const auto now = static_cast<GstClockTime>(g_get_real_time()) * GST_USECOND;

@@ -29,7 +29,7 @@ class CloudOrganizer {
   /// None where no model fits: there is nothing to put out. Else `out` has output_size() bytes.
   std::optional<Result> Organize(ByteView cloud, gdouble max_error_m, guint8* out);
 
-  /// Of what comes out; has the model once a cloud fitted.
+  /// The cloud that comes out. It has the model once a cloud fitted.
   const CloudInfo& output() const { return output_; }
   /// Counts the models that were found.
   guint models() const { return models_; }

@@ -45,7 +45,7 @@ class FilterPlan {
   BufferPtr Apply(GstBuffer* buffer, const Transform& placed = kIdentity);
   /// Those of the cloud that Apply() gave last.
   GstCaps* caps() const { return caps_.get(); }
-  /// Of that cloud, with their types and places.
+  /// The fields of that cloud, with their types and places.
   std::string fields() const { return out_.fields.ToString(); }
   std::uint64_t removed() const { return filter_->removed(); }
   /// Clouds that had no pose where one was wanted: nothing is left of them.

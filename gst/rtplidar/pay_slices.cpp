@@ -14,7 +14,8 @@ namespace lidar::gst {
 namespace {
 
 constexpr guint kClockRate = 90'000;
-// Of bytes sent, at each slice, so that the share of the headers follows the last second or so.
+// The part of the bytes sent that each slice leaves in memory: the share of the headers follows the
+// last second or so.
 constexpr gdouble kShareMemory = 0.98;
 
 /// An RTP buffer of `packet`, whose body is a part of `slice_buffer` that is not copied.

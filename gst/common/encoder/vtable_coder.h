@@ -17,7 +17,7 @@ class VtableCoder final : public rate::SliceCoder {
 
   void Load(const GstLidarRawSlice& raw);
   void set_threads(guint threads) { threads_ = threads; }
-  /// Of the last Encode().
+  /// What the last Encode() made.
   ByteView bytes() const { return {bytes_->data, bytes_->len}; }
 
   rate::LoadedSlice loaded() const override { return loaded_; }

@@ -5,7 +5,7 @@ namespace lidar::worker {
 namespace {
 
 constexpr std::size_t kMostMessages = 65'536;
-/// Of the server. Capture times that tell of more are those of a clock that stands.
+/// A server pauses no longer. Capture times that tell of more are those of a clock that stands.
 constexpr std::uint64_t kLongestPauseNs = 60'000'000'000;
 
 /// `to` - `from`; 0 where a clock went back.
