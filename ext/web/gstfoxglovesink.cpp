@@ -17,6 +17,7 @@
 #include "gst/common/element_class.h"
 #include "gst/common/properties.h"
 #include "gst/common/refs.h"
+#include "gst/common/sink_pads.h"
 #include "gst/common/stats.h"
 
 GST_DEBUG_CATEGORY_STATIC(gst_lidar_foxglove_sink_debug);
@@ -118,10 +119,8 @@ struct _GstLidarFoxgloveSink {
   State* state;
 };
 
-static void ChildProxyInit(gpointer iface, gpointer);
-
 G_DEFINE_TYPE_WITH_CODE(GstLidarFoxgloveSink, gst_lidar_foxglove_sink, GST_TYPE_BIN,
-                        G_IMPLEMENT_INTERFACE(GST_TYPE_CHILD_PROXY, ChildProxyInit))
+                        G_IMPLEMENT_INTERFACE(GST_TYPE_CHILD_PROXY, lidar::gst::ServeSinkPads))
 GST_ELEMENT_REGISTER_DEFINE(foxglovesink, "foxglovesink", GST_RANK_NONE,
                             GST_TYPE_LIDAR_FOXGLOVE_SINK)
 
@@ -247,15 +246,9 @@ GstPad* RequestPad(GstElement* element, GstPadTemplate* templ, const gchar* name
   }
   const PadPtr target(gst_element_get_static_pad(input, "sink"));
   gst_bin_add(GST_BIN(element), input);
-  auto* ghost = GST_PAD(g_object_new(GST_TYPE_LIDAR_FOXGLOVE_PAD, "name", pad_name.get(),
-                                     "direction", GST_PAD_SINK, "template", templ, nullptr));
-  gst_ghost_pad_set_target(GST_GHOST_PAD(ghost), target.get());
   gst_element_sync_state_with_parent(input);
-  if (GST_STATE(element) > GST_STATE_READY || GST_STATE_NEXT(element) > GST_STATE_READY)
-    gst_pad_set_active(ghost, TRUE);
-  gst_element_add_pad(element, ghost);
-  gst_child_proxy_child_added(GST_CHILD_PROXY(element), G_OBJECT(ghost), pad_name.get());
-  return ghost;
+  return lidar::gst::AddGhostSink(element, GST_TYPE_LIDAR_FOXGLOVE_PAD, templ, pad_name.get(),
+                                  target.get());
 }
 
 void ReleasePad(GstElement* element, GstPad* pad) {
@@ -289,28 +282,6 @@ void PropertyChanged(GObject* object, GParamSpec* spec) {
 }
 
 }  // namespace
-
-/// The pads are children, so that sink_0::topic can be set.
-static void ChildProxyInit(gpointer iface, gpointer) {
-  auto* proxy = static_cast<GstChildProxyInterface*>(iface);
-  proxy->get_children_count = [](GstChildProxy* p) -> guint {
-    GST_OBJECT_LOCK(p);
-    const guint pads = GST_ELEMENT(p)->numsinkpads;
-    GST_OBJECT_UNLOCK(p);
-    return pads;
-  };
-  proxy->get_child_by_index = [](GstChildProxy* p, guint index) -> GObject* {
-    GST_OBJECT_LOCK(p);
-    gpointer pad = g_list_nth_data(GST_ELEMENT(p)->sinkpads, index);
-    if (pad != nullptr) gst_object_ref(pad);
-    GST_OBJECT_UNLOCK(p);
-    return static_cast<GObject*>(pad);
-  };
-  proxy->get_child_by_name = [](GstChildProxy* p, const gchar* name) -> GObject* {
-    GstPad* pad = gst_element_get_static_pad(GST_ELEMENT(p), name);
-    return pad != nullptr ? G_OBJECT(pad) : nullptr;
-  };
-}
 
 static void gst_lidar_foxglove_sink_init(GstLidarFoxgloveSink* self) { self->state = new State; }
 

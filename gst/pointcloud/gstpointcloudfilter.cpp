@@ -23,6 +23,7 @@
 #include "gst/common/latency.h"
 #include "gst/common/properties.h"
 #include "gst/common/refused_caps.h"
+#include "gst/common/sink_pads.h"
 #include "gst/common/stats.h"
 #include "gst/pointcloud/filter_plan.h"
 #include "gst/pointcloud/frame_placer.h"
@@ -280,12 +281,7 @@ gboolean SrcQuery(GstPad* pad, GstObject* parent, GstQuery* query) {
 /// Queries and events of the clouds do not go to who gives transforms.
 GstIterator* LinksOf(GstPad* pad, GstObject* parent) {
   auto* self = GST_LIDAR_POINT_CLOUD_FILTER(parent);
-  GValue other = G_VALUE_INIT;
-  g_value_init(&other, GST_TYPE_PAD);
-  g_value_set_object(&other, pad == self->srcpad ? self->sinkpad : self->srcpad);
-  GstIterator* iterator = gst_iterator_new_single(GST_TYPE_PAD, &other);
-  g_value_unset(&other);
-  return iterator;
+  return lidar::gst::LinkTo(pad == self->srcpad ? self->sinkpad : self->srcpad);
 }
 
 GstPad* RequestPad(GstElement* element, GstPadTemplate* pad_template, const gchar* name,

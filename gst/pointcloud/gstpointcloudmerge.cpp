@@ -21,6 +21,7 @@
 #include "gst/common/element_class.h"
 #include "gst/common/gstlidar.h"
 #include "gst/common/properties.h"
+#include "gst/common/sink_pads.h"
 #include "gst/pointcloud/gstpointcloudmergepad.h"
 
 GST_DEBUG_CATEGORY_STATIC(gst_lidar_point_cloud_merge_debug);
@@ -62,11 +63,8 @@ struct _GstLidarPointCloudMerge {
   State* state;
 };
 
-static void gst_lidar_point_cloud_merge_child_proxy_init(gpointer iface, gpointer);
-
 G_DEFINE_TYPE_WITH_CODE(GstLidarPointCloudMerge, gst_lidar_point_cloud_merge, GST_TYPE_AGGREGATOR,
-                        G_IMPLEMENT_INTERFACE(GST_TYPE_CHILD_PROXY,
-                                              gst_lidar_point_cloud_merge_child_proxy_init))
+                        G_IMPLEMENT_INTERFACE(GST_TYPE_CHILD_PROXY, lidar::gst::ServeSinkPads))
 GST_ELEMENT_REGISTER_DEFINE(pointcloudmerge, "pointcloudmerge", GST_RANK_NONE,
                             GST_TYPE_LIDAR_POINT_CLOUD_MERGE)
 
@@ -226,21 +224,6 @@ void ReleasePad(GstElement* element, GstPad* pad) {
   GST_ELEMENT_CLASS(gst_lidar_point_cloud_merge_parent_class)->release_pad(element, pad);
 }
 
-guint ChildrenCount(GstChildProxy* proxy) {
-  GST_OBJECT_LOCK(proxy);
-  const guint count = GST_ELEMENT(proxy)->numsinkpads;
-  GST_OBJECT_UNLOCK(proxy);
-  return count;
-}
-
-GObject* ChildByIndex(GstChildProxy* proxy, guint index) {
-  GST_OBJECT_LOCK(proxy);
-  gpointer pad = g_list_nth_data(GST_ELEMENT(proxy)->sinkpads, index);
-  if (pad != nullptr) g_object_ref(pad);
-  GST_OBJECT_UNLOCK(proxy);
-  return static_cast<GObject*>(pad);
-}
-
 GstClockTime NextTime(GstAggregator* base) { return gst_aggregator_simple_get_next_time(base); }
 
 gboolean Stop(GstAggregator* base) {
@@ -277,10 +260,4 @@ static void gst_lidar_point_cloud_merge_class_init(GstLidarPointCloudMergeClass*
   aggregator->stop = Stop;
   GST_ELEMENT_CLASS(klass)->request_new_pad = RequestPad;
   GST_ELEMENT_CLASS(klass)->release_pad = ReleasePad;
-}
-
-static void gst_lidar_point_cloud_merge_child_proxy_init(gpointer iface, gpointer) {
-  auto* proxy = static_cast<GstChildProxyInterface*>(iface);
-  proxy->get_children_count = ChildrenCount;
-  proxy->get_child_by_index = ChildByIndex;
 }

@@ -15,6 +15,7 @@
 
 #include "gst/common/element_class.h"
 #include "gst/common/refs.h"
+#include "gst/common/sink_pads.h"
 #include "gst/scream/bin/common.h"
 #include "gst/scream/bin/gstscreamsinkpad.h"
 #include "gst/scream/rtp_packet.h"
@@ -214,14 +215,7 @@ static GstPad* RequestPad(GstElement* element, GstPadTemplate* templ, const gcha
   const PadPtr target(gst_element_request_pad(self->tx, inner, name, caps));
   if (!target) return nullptr;
   const StringPtr pad_name(gst_pad_get_name(target.get()));
-  auto* ghost = GST_PAD(g_object_new(GST_TYPE_LIDAR_SCREAM_SINK_PAD, "name", pad_name.get(),
-                                     "direction", GST_PAD_SINK, "template", templ, nullptr));
-  gst_ghost_pad_set_target(GST_GHOST_PAD(ghost), target.get());
-  if (GST_STATE(element) > GST_STATE_READY || GST_STATE_NEXT(element) > GST_STATE_READY)
-    gst_pad_set_active(ghost, TRUE);
-  gst_element_add_pad(element, ghost);
-  gst_child_proxy_child_added(GST_CHILD_PROXY(element), G_OBJECT(ghost), pad_name.get());
-  return ghost;
+  return AddGhostSink(element, GST_TYPE_LIDAR_SCREAM_SINK_PAD, templ, pad_name.get(), target.get());
 }
 
 static void ReleasePad(GstElement* element, GstPad* pad) {
@@ -243,20 +237,12 @@ static GstChildProxyInterface* BinChildProxy() {
 static void ChildProxyInit(gpointer iface, gpointer) {
   auto* proxy = static_cast<GstChildProxyInterface*>(iface);
   proxy->get_children_count = [](GstChildProxy* p) -> guint {
-    const guint elements = BinChildProxy()->get_children_count(p);
-    GST_OBJECT_LOCK(p);
-    const guint pads = GST_ELEMENT(p)->numsinkpads;
-    GST_OBJECT_UNLOCK(p);
-    return elements + pads;
+    return BinChildProxy()->get_children_count(p) + SinkPadCount(p);
   };
   proxy->get_child_by_index = [](GstChildProxy* p, guint index) -> GObject* {
     const guint elements = BinChildProxy()->get_children_count(p);
-    if (index < elements) return BinChildProxy()->get_child_by_index(p, index);
-    GST_OBJECT_LOCK(p);
-    gpointer pad = g_list_nth_data(GST_ELEMENT(p)->sinkpads, index - elements);
-    if (pad != nullptr) gst_object_ref(pad);
-    GST_OBJECT_UNLOCK(p);
-    return static_cast<GObject*>(pad);
+    return index < elements ? BinChildProxy()->get_child_by_index(p, index)
+                            : SinkPadAt(p, index - elements);
   };
   // GstBin's own looks at its elements only.
   proxy->get_child_by_name = [](GstChildProxy* p, const gchar* name) -> GObject* {

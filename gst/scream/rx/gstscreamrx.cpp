@@ -14,6 +14,7 @@
 
 #include "gst/common/element_class.h"
 #include "gst/common/enum_type.h"
+#include "gst/common/sink_pads.h"
 #include "gst/common/stats.h"
 #include "gst/scream/rx/private.h"
 
@@ -155,12 +156,7 @@ static gboolean SinkEvent(GstPad*, GstObject* parent, GstEvent* event) {
 static GstIterator* LinksOf(GstPad* pad, GstObject* parent) {
   auto* self = GST_LIDAR_SCREAM_RX(parent);
   if (pad == self->rtcp_src) return nullptr;
-  GValue value = G_VALUE_INIT;
-  g_value_init(&value, GST_TYPE_PAD);
-  g_value_set_object(&value, pad == self->sink ? self->src : self->sink);
-  GstIterator* it = gst_iterator_new_single(GST_TYPE_PAD, &value);
-  g_value_unset(&value);
-  return it;
+  return LinkTo(pad == self->sink ? self->src : self->sink);
 }
 
 static gboolean SinkQuery(GstPad* pad, GstObject* parent, GstQuery* query) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // What the pads of screamtx answer: queries, links, events on their way upstream.
 #include "gst/common/latency.h"
+#include "gst/common/sink_pads.h"
 #include "gst/scream/tx/private.h"
 
 namespace lidar::gst {
@@ -41,18 +42,15 @@ gboolean AnswerLatency(GstPad* pad, GstObject* parent, GstQuery* query) {
 /// RTP and RTCP do not mix: src belongs to the sink pads, rtcp_src to rtcp_sink.
 GstIterator* TxLinksOf(GstPad* pad, GstObject* parent) {
   auto* self = GST_LIDAR_SCREAM_TX(parent);
+  if (pad != self->src)
+    return LinkTo(pad == self->rtcp_sink  ? self->rtcp_src
+                  : pad == self->rtcp_src ? self->rtcp_sink
+                                          : self->src);
   GValue value = G_VALUE_INIT;
   g_value_init(&value, GST_TYPE_PAD);
-  GstIterator* links = nullptr;
-  if (pad == self->src) {
-    g_value_set_object(&value, self->rtcp_sink);
-    links = gst_iterator_filter(gst_element_iterate_sink_pads(GST_ELEMENT(self)), IsNot, &value);
-  } else {
-    g_value_set_object(&value, pad == self->rtcp_sink  ? self->rtcp_src
-                               : pad == self->rtcp_src ? self->rtcp_sink
-                                                       : self->src);
-    links = gst_iterator_new_single(GST_TYPE_PAD, &value);
-  }
+  g_value_set_object(&value, self->rtcp_sink);
+  GstIterator* links =
+      gst_iterator_filter(gst_element_iterate_sink_pads(GST_ELEMENT(self)), IsNot, &value);
   g_value_unset(&value);
   return links;
 }

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// What elements share that have several sink pads, each with properties of its own.
+#pragma once
+#include <gst/gst.h>
+
+namespace lidar::gst {
+
+/// The one pad that queries and events of another go on to. The caller owns the iterator.
+inline GstIterator* LinkTo(GstPad* pad) {
+  GValue value = G_VALUE_INIT;
+  g_value_init(&value, GST_TYPE_PAD);
+  g_value_set_object(&value, pad);
+  GstIterator* iterator = gst_iterator_new_single(GST_TYPE_PAD, &value);
+  g_value_unset(&value);
+  return iterator;
+}
+
+inline guint SinkPadCount(gpointer element) {
+  GST_OBJECT_LOCK(element);
+  const guint pads = GST_ELEMENT(element)->numsinkpads;
+  GST_OBJECT_UNLOCK(element);
+  return pads;
+}
+
+/// The caller owns a reference; null past the end.
+inline GObject* SinkPadAt(gpointer element, guint index) {
+  GST_OBJECT_LOCK(element);
+  gpointer pad = g_list_nth_data(GST_ELEMENT(element)->sinkpads, index);
+  if (pad != nullptr) gst_object_ref(pad);
+  GST_OBJECT_UNLOCK(element);
+  return static_cast<GObject*>(pad);
+}
+
+/// GstChildProxy of an element whose sink pads are its children, so that sink_0::topic can be set.
+inline void ServeSinkPads(gpointer iface, gpointer) {
+  auto* proxy = static_cast<GstChildProxyInterface*>(iface);
+  proxy->get_children_count = [](GstChildProxy* p) { return SinkPadCount(p); };
+  proxy->get_child_by_index = [](GstChildProxy* p, guint index) { return SinkPadAt(p, index); };
+  proxy->get_child_by_name = [](GstChildProxy* p, const gchar* name) {
+    return reinterpret_cast<GObject*>(gst_element_get_static_pad(GST_ELEMENT(p), name));
+  };
+}
+
+/// Adds a ghost pad of the given type for `target`, and makes it a child.
+inline GstPad* AddGhostSink(GstElement* element, GType type, GstPadTemplate* pad_template,
+                            const gchar* name, GstPad* target) {
+  auto* ghost = GST_PAD(g_object_new(type, "name", name, "direction", GST_PAD_SINK, "template",
+                                     pad_template, nullptr));
+  gst_ghost_pad_set_target(GST_GHOST_PAD(ghost), target);
+  if (GST_STATE(element) > GST_STATE_READY || GST_STATE_NEXT(element) > GST_STATE_READY)
+    gst_pad_set_active(ghost, TRUE);
+  gst_element_add_pad(element, ghost);
+  gst_child_proxy_child_added(GST_CHILD_PROXY(element), G_OBJECT(ghost), name);
+  return ghost;
+}
+
+}  // namespace lidar::gst
