@@ -213,18 +213,10 @@ const std::vector<Figure> kFigures = {
      [](const LoopReport& r, const LoopReport&) { return r.recovery_s.max; }},
 };
 
-/// The run that begins `n` starts later, with another scene.
-LoopCase Start(LoopCase c, int n) {
-  constexpr auto kApart = std::chrono::milliseconds(7330);
-  c.capacity = c.capacity.StartingAt(kApart * n);
-  c.source.seed += static_cast<unsigned>(n);
-  return c;
-}
-
 void PrintSpread(const LoopCase& loop_case, int starts) {
   std::vector<Spread> spreads(kFigures.size());
   for (int n = 0; n < starts; ++n) {
-    LoopCase c = Start(loop_case, n);
+    LoopCase c = Later(loop_case, n);
     const LoopReport report = RunLoop(c).report;
     c.source.adapts = false;
     const LoopReport fixed = RunLoop(c).report;

@@ -59,6 +59,7 @@ struct Held {
   const char* trace;
   DegradationPreference degradation = DegradationPreference::kMaintainAccuracy;
   double of_oracle = 0.98;
+  std::uint32_t slices = 8;
 };
 std::ostream& operator<<(std::ostream& out, const Held& h) { return out << h.name; }
 
@@ -67,6 +68,7 @@ class GapTrace : public ::testing::TestWithParam<Held> {};
 TEST_P(GapTrace, ScansArriveAsFromASenderThatKnewTheLink) {
   LoopCase c = Case(GetParam().trace);
   c.source.degradation = GetParam().degradation;
+  c.source.slices = GetParam().slices;
   EXPECT_GE(RunLoop(c).report.OfOracle(), GetParam().of_oracle);
 }
 INSTANTIATE_TEST_SUITE_P(
@@ -77,10 +79,38 @@ INSTANTIATE_TEST_SUITE_P(
         Held{"every_2s_balanced", "gap_100ms_every_2s", DegradationPreference::kBalanced},
         Held{"often", "gap_100ms_every_0.6s"},
         Held{"often_framerate", "gap_100ms_every_0.6s", DegradationPreference::kMaintainFramerate},
+        Held{"every_2s_scans", "gap_100ms_every_2s", DegradationPreference::kMaintainAccuracy, 0.98,
+             1},
+        Held{"often_scans", "gap_100ms_every_0.6s", DegradationPreference::kMaintainAccuracy, 0.98,
+             1},
+        Held{"drive_3_scans", "drive_3", DegradationPreference::kMaintainAccuracy, 0.97, 1},
+        Held{"drive_3_framerate", "drive_3", DegradationPreference::kMaintainFramerate, 0.97},
+        Held{"drive_3_balanced", "drive_3", DegradationPreference::kBalanced, 0.97},
         Held{"long", "gap_1s_every_10s", DegradationPreference::kMaintainAccuracy, 0.98},
         Held{"drive_1", "drive_1", DegradationPreference::kMaintainAccuracy, 0.96},
         Held{"drive_2", "drive_2", DegradationPreference::kMaintainAccuracy, 0.95},
         Held{"drive_3", "drive_3", DegradationPreference::kMaintainAccuracy, 0.97}));
+
+/// What a stream without adaptation completes, and in time. It has less on its way when a gap
+/// begins, so that the scans behind come sooner: it may be ahead by so much, and no more.
+TEST(Loop, IsHardlyBehindAFixedStepWhereverATraceBegins) {
+  constexpr int kStarts = 4;
+  for (const char* trace : {"gap_1s_every_10s", "drive_1", "drive_2", "drive_3"}) {
+    double complete = 0, in_time = 0, fixed_complete = 0, fixed_in_time = 0;
+    for (int n = 0; n < kStarts; ++n) {
+      LoopCase c = Later(Case(trace), n);
+      const LoopReport r = RunLoop(c).report;
+      c.source.adapts = false;
+      const LoopReport fixed = RunLoop(c).report;
+      complete += static_cast<double>(r.complete);
+      in_time += static_cast<double>(r.in_time);
+      fixed_complete += static_cast<double>(fixed.complete);
+      fixed_in_time += static_cast<double>(fixed.in_time);
+    }
+    EXPECT_GE(complete, 0.98 * fixed_complete) << trace;
+    EXPECT_GE(in_time, 0.98 * fixed_in_time) << trace;
+  }
+}
 
 /// The time after a gap in which the sender is not yet back at 80 % of what can be used.
 TEST(Loop, IsBackSoonAfterEveryGap) {

@@ -154,6 +154,13 @@ LoopRun RunLoop(const LoopCase& c) {
   return run;
 }
 
+LoopCase Later(LoopCase c, int n) {
+  constexpr Duration kApart = 7330ms;
+  c.capacity = c.capacity.StartingAt(kApart * n);
+  c.source.seed += static_cast<unsigned>(n);
+  return c;
+}
+
 std::vector<NamedTrace> BuiltInTraces() {
   return {Gaps("gap_100ms_every_0.6s", 100ms, 600ms),
           Gaps("gap_100ms_every_2s", 100ms, 2s),

@@ -62,6 +62,10 @@ struct LoopRun {
 
 LoopRun RunLoop(const LoopCase& loop_case);
 
+/// The same case from another place of its trace on, `n` times 7.33 s later, and of another scene.
+/// Runs over drives are chaotic: only the mean of several says something.
+LoopCase Later(LoopCase loop_case, int n);
+
 struct NamedTrace {
   std::string name;
   link::Capacity capacity;
