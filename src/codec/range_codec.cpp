@@ -25,6 +25,35 @@ RangeGrid FinerGrid(const RangeGrid& grid) {
   return {grid.unit_mm(), std::max((2 * grid.parts() + kThirds / 2) / kThirds, 1U)};
 }
 
+std::uint32_t ErrorMm(const RangeGrid& grid) {
+  return static_cast<std::uint32_t>(std::lround(1e3 * grid.error_m()));
+}
+
+/// Each return in the bin, of those that come back within the error, that is nearest to what its
+/// pixel has seen.
+RangeImage AsRecalled(const RangeImage& image, const BlockMemory& memory, const RangeGrid& grid,
+                      std::uint32_t error_mm) {
+  RangeImage chosen = image;
+  const std::uint32_t half_cell = grid.unit_mm() * PixelMemory::kPerMm / 2;
+  const std::uint32_t last = grid.BinOf(RangeGrid::kMaxRangeMm);
+  for (std::size_t i = 0; i < image.size(); ++i) {
+    if (image.ranges[i] == 0) continue;
+    const std::uint32_t range = std::min(image.ranges[i], RangeGrid::kMaxRangeMm);
+    const auto within = [&](std::uint32_t bin) {
+      const std::uint32_t back = grid.RangeOf(bin);
+      return back > 0 && (back > range ? back - range : range - back) <= error_mm;
+    };
+    const PixelMemory& p = memory.pixels[i];
+    std::uint32_t bin = grid.BinOf(range);
+    const std::uint32_t wanted =
+        p.count > 0 ? grid.BinOf((p.mean + half_cell) / PixelMemory::kPerMm) : bin;
+    while (bin < std::min(wanted, last) && within(bin + 1)) ++bin;
+    while (bin > wanted && within(bin - 1)) --bin;
+    chosen.ranges[i] = grid.RangeOf(bin);
+  }
+  return chosen;
+}
+
 }  // namespace
 
 bool RangeEncoder::Encode(const RangeImage& image, const RangeSettings& settings,
@@ -89,7 +118,7 @@ bool RangeEncoder::EncodeMixing(const RangeImage& image, const RangeSettings& se
   if (settings.effort >= mixing::kSearchingEffort && settings.grid.error_m() > 0 &&
       ChoiceSaves(image, settings.grid)) {
     mixing.grid = grid_ = FinerGrid(settings.grid);
-    mixing.error_mm = static_cast<std::uint32_t>(std::lround(1e3 * settings.grid.error_m()));
+    mixing.error_mm = ErrorMm(settings.grid);
     if (mixing_.Encode(image, mixing, &payload_)) return true;
     mixing.grid = grid_ = settings.grid;
     mixing.error_mm = 0;
@@ -118,18 +147,43 @@ double RangeEncoder::AdaptiveBits(const RangeImage& image, const RangeGrid& grid
   return 8.0 * static_cast<double>(bytes);
 }
 
-/// False where nothing can refer to the block, and so it need not be linked.
+/// False where nothing can refer to the block, and so it need not be linked. At the highest effort
+/// it is coded a second time, on a finer grid, and the smaller one is taken.
 bool RangeEncoder::EncodeLinked(const RangeImage& image, const RangeSettings& settings,
                                 BlockLink* link) {
   const BlockMemory* reference = link->reference.get();
   if (settings.kept_beams > 0 || (reference != nullptr && !reference->Fits(image))) return false;
+  if (!EncodeOn(settings.grid, 0, image, settings, link)) return false;
+  if (reference == nullptr || settings.effort < mixing::kSearchingEffort ||
+      !(settings.grid.error_m() > 0)) {
+    return true;
+  }
+  const RangeGrid finer = FinerGrid(settings.grid);
+  const std::uint32_t error_mm = ErrorMm(settings.grid);
+  std::vector<std::uint8_t> first;
+  first.swap(payload_);
+  BlockLink again{link->reference, nullptr};
+  if (EncodeOn(finer, error_mm, AsRecalled(image, *reference, finer, error_mm), settings, &again) &&
+      payload_.size() < first.size()) {
+    grid_ = finer;
+    link->left = std::move(again.left);
+  } else {
+    payload_.swap(first);
+  }
+  return true;
+}
+
+/// One payload of kTemporal; with an error the bins of `image` were chosen within that.
+bool RangeEncoder::EncodeOn(const RangeGrid& grid, std::uint32_t error_mm, const RangeImage& image,
+                            const RangeSettings& settings, BlockLink* link) {
+  const BlockMemory* reference = link->reference.get();
   RangeImage decoded = image;
   for (std::uint32_t& range : decoded.ranges) {
     if (range == 0) continue;
-    range = settings.grid.RangeOf(settings.grid.BinOf(std::min(range, RangeGrid::kMaxRangeMm)));
+    range = grid.RangeOf(grid.BinOf(std::min(range, RangeGrid::kMaxRangeMm)));
   }
-  auto left = Remember(decoded, settings.grid, reference);
-  MixingSettings mixing{settings.grid, settings.intensity, settings.effort, {}};
+  auto left = Remember(decoded, grid, reference);
+  MixingSettings mixing{grid, settings.intensity, settings.effort, {}, error_mm};
   ByteWriter writer(&payload_);
   writer.U8(reference != nullptr ? kHasReference : kStandsAlone);
   if (reference != nullptr) {

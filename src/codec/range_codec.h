@@ -52,6 +52,8 @@ class RangeEncoder {
   bool ChoiceSaves(const RangeImage& image, const RangeGrid& grid);
   double AdaptiveBits(const RangeImage& image, const RangeGrid& grid);
   bool EncodeLinked(const RangeImage& image, const RangeSettings& settings, BlockLink* link);
+  bool EncodeOn(const RangeGrid& grid, std::uint32_t error_mm, const RangeImage& image,
+                const RangeSettings& settings, BlockLink* link);
 
   AzimuthAlignment alignment_;
   const IntegerCoder* integers_;

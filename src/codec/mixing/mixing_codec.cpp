@@ -75,7 +75,7 @@ struct MixingEncoder::State : MixingCoderState {
       slice.bins[i] = is_gap ? mixing::kNoReturn : static_cast<std::int32_t>(bin);
     }
     slice.spare.clear();
-    if (settings.error_mm > 0) Spare(image, settings);
+    if (settings.error_mm > 0 && settings.memory.pixels == nullptr) Spare(image, settings);
     slice.levels.clear();
     if (slice.level_bits == 0) return true;
     std::array<std::uint8_t, 256> coarse{};

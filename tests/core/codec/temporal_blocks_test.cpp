@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cstdlib>
 #include <memory>
 #include <random>
 
@@ -66,6 +67,65 @@ TEST(Temporal, BlocksNeedTheirReferenceAndNothingElse) {
   EXPECT_TRUE(pair.Decode(pair.dependent, &decoder, &store));
   EXPECT_FALSE(decoder.lacks_reference());
   EXPECT_EQ(store.size(), 2U);
+}
+
+/// A room that is seen again and again with other noise.
+std::vector<RangeImage> NoisyScans(int count) {
+  std::vector<RangeImage> scans(static_cast<std::size_t>(count),
+                                test::GoldenImage({16, 256, 0, 1, 1}));
+  std::mt19937 random(9);
+  for (RangeImage& scan : scans) {
+    scan.intensity.clear();
+    for (std::uint32_t& range : scan.ranges)
+      if (range != 0) range += static_cast<std::uint32_t>(random() % 16 + random() % 16);
+  }
+  return scans;
+}
+
+/// Bytes of dependent blocks of such scans at an effort, the largest error [mm] that they come back
+/// with, and how many of them say that bins were chosen.
+struct Repeated {
+  std::size_t bytes = 0;
+  int error_mm = 0;
+  int chosen = 0;
+};
+Repeated Repeat(unsigned effort) {
+  const SensorModel model = test::GoldenSensor(16, 256);
+  RangeSettings settings;
+  settings.coder = RangeCoder::kMixing;
+  settings.effort = effort;
+  settings.grid = RangeGrid(1, 41);
+  RangeEncoder encoder(model);
+  RangeDecoder decoder(model);
+  BlockStore store;
+  BlockLink link;
+  Repeated r;
+  for (const RangeImage& scan : NoisyScans(8)) {
+    std::vector<std::uint8_t> bytes;
+    EXPECT_TRUE(encoder.Encode(scan, settings, &bytes, &link));
+    if (link.reference) r.bytes += bytes.size();
+    link.reference = std::move(link.left);
+    ByteReader reader(bytes.data(), bytes.size());
+    RangeImage back;
+    IntensityScale scale;
+    EXPECT_TRUE(decoder.Decode(&reader, 1U << 20, &back, &scale, &store));
+    EXPECT_EQ(decoder.error_m(), 0.02);
+    if (decoder.header().grid.parts() < settings.grid.parts()) ++r.chosen;
+    for (std::size_t i = 0; i < back.size(); ++i)
+      r.error_mm = std::max(r.error_mm, std::abs(static_cast<int>(back.ranges[i]) -
+                                                 static_cast<int>(scan.ranges[i])));
+  }
+  return r;
+}
+
+TEST(Temporal, BlocksOfTheHighestEffortChooseBinsThatWereSeenWithinTheError) {
+  const Repeated plain = Repeat(2);
+  const Repeated chosen = Repeat(3);
+  EXPECT_EQ(plain.chosen, 0);
+  EXPECT_GT(chosen.chosen, 0);
+  EXPECT_LE(plain.error_mm, 20);
+  EXPECT_LE(chosen.error_mm, 20);
+  EXPECT_LT(chosen.bytes, plain.bytes);
 }
 
 TEST(Temporal, DamagedBlocksAreRefusedOrGiveAnImageAndNeverFillTheMemory) {
