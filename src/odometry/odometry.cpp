@@ -19,6 +19,9 @@ constexpr double kFirstGrid = 4;
 /// Reach and kernel, in standard deviations of the motion's error. Section III-D.
 constexpr double kReach = 3;
 constexpr double kKernel = 1.0 / 3;
+/// Grass and gravel are as rough as that, as a part of the map's cubes: a narrower kernel sees
+/// noise.
+constexpr double kLeastKernel = 0.08;
 /// More points than that make a pose no better, only later.
 constexpr std::size_t kMostAligned = 4000;
 /// A scan of which fewer points have a neighbour does not fit.
@@ -37,8 +40,14 @@ constexpr double kWidestSearch = 3;
 /// these surfaces do not hold is known to be open.
 constexpr double kSparePointWeight = 0.05;
 constexpr double kPointTurn = 0.3;
-constexpr double kLeastConstraint = 0.01;
-constexpr double kLeastBalance = 0.1;
+constexpr double kLeastConstraint = 0.002;
+constexpr double kLeastBalance = 0.02;
+/// How far the sensor has moved or turned, before a scan enters the map anew: as a part of the
+/// map's cubes, and [rad].
+constexpr double kMapStep = 1;
+constexpr double kMapTurn = 0.09;
+/// Closer than this part of a cube to where a scan entered, its beams draw the same lines again.
+constexpr double kSameLines = 0.5;
 
 /// One point of each cube, and of these every n-th, so that at most `most` are left.
 Points ThinOut(const Points& points, double size_m, std::size_t most) {
@@ -99,10 +108,12 @@ Pose Odometry::PredictAt(Time t) const {
 }
 
 /// Sensors that tell their beams show surfaces in a single scan.
-RegistrationSettings Odometry::SettingsFor(const TimedPoints& scan) const {
+RegistrationSettings Odometry::SettingsFor(const TimedPoints& scan, const Pose& guess) const {
   RegistrationSettings settings = settings_.registration;
   if (!scan.HasRings()) return settings;
   settings.spare_point_weight = kSparePointWeight;
+  const double moved = (guess.position - entered_.position).norm();
+  if (moved < kSameLines * settings_.voxel_size_m) settings.point_weight = kSparePointWeight;
   settings.point_turn = kPointTurn;
   settings.least_constraint = kLeastConstraint;
   settings.least_balance = kLeastBalance;
@@ -146,6 +157,14 @@ void Odometry::AddToMap(const Surface& fine) {
   for (const Eigen::Vector3d& point : fine.points) placed.points.push_back(pose_ * point);
   for (const Eigen::Vector3d& n : fine.normals) placed.normals.push_back(pose_.rotation * n);
   map_.Add(placed.points, placed.normals);
+  entered_ = pose_;
+}
+
+/// Scans that enter the map at each step fill it with lines that move along with the sensor and
+/// hold it back, and every error of a pose with them.
+bool Odometry::IsFarFromTheLastInMap() const {
+  const Pose moved = entered_.Inverse() * pose_;
+  return moved.position.norm() >= kMapStep * settings_.voxel_size_m || Angle(moved) >= kMapTurn;
 }
 
 void Odometry::StartMap(const Surface& fine) {
@@ -180,59 +199,71 @@ void Odometry::StraightenFirstScan(Duration duration, const TimedPoints& second,
 }
 
 Estimate Odometry::OnScan(Time start, Duration duration, const TimedPoints& scan) {
-  Estimate estimate;
-  const Time middle = estimate.time = start + duration / 2;
+  const Time middle = start + duration / 2;
   const Duration gap = last_time_ ? middle - *last_time_ : Duration{0};
   const bool broken = last_time_ && (gap <= Duration{0} || gap > kLongestGap);
   if (broken) {
     velocity_.setZero();
     first_scan_.reset();
   }
+  const bool begins = !last_time_ || broken || map_.empty();
+  if (!begins && first_scan_) StraightenFirstScan(duration, scan, gap);
   Surface fine = SelectPoints(scan, duration);
-  if (!last_time_ || broken || map_.empty()) {
-    estimate.map_restarted = last_time_.has_value();
-    StartMap(fine);
-    // With its velocity known it is straight already.
-    if (last_time_ || !settings_.start_velocity) first_scan_ = scan;
-    last_time_ = middle;
-    last_scan_ = std::move(fine.points);
-    estimate.pose = pose_;
-    return estimate;
-  }
-  if (first_scan_) {
-    StraightenFirstScan(duration, scan, gap);
-    fine = SelectPoints(scan, duration);
-  }
+  Estimate estimate = begins ? Begin(scan, fine) : Match(middle, scan, fine);
+  last_time_ = estimate.time = middle;
+  last_scan_ = std::move(fine.points);
+  estimate.pose = pose_;
+  return estimate;
+}
+
+Estimate Odometry::Begin(const TimedPoints& scan, const Surface& fine) {
+  Estimate estimate;
+  estimate.map_restarted = last_time_.has_value();
+  StartMap(fine);
+  // With its velocity known it is straight already.
+  if (last_time_ || !settings_.start_velocity) first_scan_ = scan;
+  return estimate;
+}
+
+Estimate Odometry::Match(Time middle, const TimedPoints& scan, const Surface& fine) {
   const Points aligned = ThinOut(fine.points, kAlignedGrid * settings_.voxel_size_m, kMostAligned);
+  const Duration gap = middle - *last_time_;
   const Pose guess = PredictAt(middle);
   const double widened = std::clamp(Seconds(gap) / Seconds(kUsualPeriod), 1.0, kWidestSearch);
   const double sigma = threshold_.sigma_m() * widened;
+  const double kernel = std::max(kKernel * sigma, kLeastKernel * settings_.voxel_size_m);
   const Alignment found =
-      Align(aligned, &map_, guess, kReach * sigma, kKernel * sigma, SettingsFor(scan));
+      Align(aligned, &map_, guess, kReach * sigma, kernel, SettingsFor(scan, guess));
+  Estimate estimate;
   estimate.inlier_share = found.inlier_share;
   estimate.iterations = found.iterations;
-  last_time_ = middle;
   if (found.inlier_share < kLeastInliers) {
     estimate.tracking = Tracking::kLost;
-    estimate.pose = pose_ = guess;
-    if (++lost_scans_ >= kLostForGood && !fine.points.empty()) {
-      velocity_.setZero();  // it led here
-      StartMap(fine);
-      first_scan_ = scan;
-      estimate.map_restarted = true;
-    }
-    last_scan_ = std::move(fine.points);
+    pose_ = guess;
+    estimate.map_restarted = Lose(scan, fine);
     return estimate;
   }
   estimate.tracking = found.degenerate ? Tracking::kDegenerate : Tracking::kTracking;
-  lost_scans_ = 0;
   threshold_.Add(guess.Inverse() * found.pose);
-  if (gap >= kShortestGap) velocity_ = Log(pose_.Inverse() * found.pose) / Seconds(gap);
-  estimate.pose = pose_ = found.pose;
-  AddToMap(fine);
-  map_.Forget(pose_.position);
-  last_scan_ = std::move(fine.points);
+  Follow(found.pose, gap, fine);
   return estimate;
+}
+
+void Odometry::Follow(const Pose& found, Duration gap, const Surface& fine) {
+  lost_scans_ = 0;
+  if (gap >= kShortestGap) velocity_ = Log(pose_.Inverse() * found) / Seconds(gap);
+  pose_ = found;
+  if (IsFarFromTheLastInMap()) AddToMap(fine);
+  map_.Forget(pose_.position);
+}
+
+/// True where a new map begins.
+bool Odometry::Lose(const TimedPoints& scan, const Surface& fine) {
+  if (++lost_scans_ < kLostForGood || fine.points.empty()) return false;
+  velocity_.setZero();  // it led here
+  StartMap(fine);
+  first_scan_ = scan;
+  return true;
 }
 
 }  // namespace lidar::odometry

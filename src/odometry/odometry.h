@@ -76,17 +76,25 @@ class Odometry {
     Points points;
     Points normals;  // of the first points; the others have none
   };
-  RegistrationSettings SettingsFor(const TimedPoints& scan) const;
+  RegistrationSettings SettingsFor(const TimedPoints& scan, const Pose& guess) const;
   Surface SelectPoints(const TimedPoints& scan, Duration duration) const;
   void AddToMap(const Surface& fine);
+  bool IsFarFromTheLastInMap() const;
   void StartMap(const Surface& fine);
   Pose GuessFirstMotion(const Points& points) const;
   void StraightenFirstScan(Duration duration, const TimedPoints& second, Duration gap);
+  /// What comes of a scan: the first of a map, one that is aligned, one that fits and one that does
+  /// not. They move the pose; OnScan() does the rest.
+  Estimate Begin(const TimedPoints& scan, const Surface& fine);
+  Estimate Match(Time middle, const TimedPoints& scan, const Surface& fine);
+  void Follow(const Pose& found, Duration gap, const Surface& fine);
+  bool Lose(const TimedPoints& scan, const Surface& fine);
 
   OdometrySettings settings_;
   LocalMap map_;
   MotionThreshold threshold_;
   Pose pose_;
+  Pose entered_;                    // of the last scan that went into the map
   Twist velocity_ = Twist::Zero();  // a second, in the sensor's frame
   std::optional<Time> last_time_;
   int lost_scans_ = 0;

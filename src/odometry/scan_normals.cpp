@@ -8,7 +8,12 @@ namespace lidar::odometry {
 namespace {
 
 constexpr int kBins = 1024;  // of azimuth, a power of two
-constexpr int kHalf = 6;     // bins to each side: two degrees
+/// To each side: as far as the noise of grass needs, but not less than two degrees.
+constexpr float kSide_m = 0.6F;
+constexpr int kLeastBins = 6;
+constexpr int kMostBins = 24;
+constexpr std::size_t kSums = kBins + 1;  // of a ring
+constexpr float kBinsPerRadian = kBins / 6.2831853F;
 /// Rings whose elevations differ by less give a normal of noise; by more, they see other things.
 constexpr double kLeastStep = 0.02;
 constexpr double kLargestStep = 0.14;
@@ -26,7 +31,6 @@ bool IsReturn(const Eigen::Vector3f& p) {
 }
 
 int BinOf(float x, float y) {
-  constexpr float kBinsPerRadian = kBins / 6.2831853F;
   return static_cast<int>(std::floor(std::atan2(y, x) * kBinsPerRadian)) & (kBins - 1);
 }
 
@@ -36,7 +40,7 @@ ScanNormals::ScanNormals(const Points& points, const std::vector<std::uint16_t>&
   if (rings.size() != points.size() || rings.empty()) return;
   const std::size_t count = std::size_t{1} + *std::max_element(rings.begin(), rings.end());
   rings_.resize(std::min(count, kMaxRings));
-  image_.assign(rings_.size() * kBins, Eigen::Vector3f::Zero());
+  std::vector<Eigen::Vector3f> image(rings_.size() * kBins, Eigen::Vector3f::Zero());
   std::vector<int> seen(rings_.size());
   for (std::size_t i = 0; i < points.size(); ++i) {
     if (rings[i] >= rings_.size()) continue;
@@ -45,13 +49,14 @@ ScanNormals::ScanNormals(const Points& points, const std::vector<std::uint16_t>&
     Ring& ring = rings_[rings[i]];
     ring.height += static_cast<double>(p.z() / p.norm());
     ++seen[rings[i]];
-    image_[rings[i] * std::size_t{kBins} + static_cast<std::size_t>(BinOf(p.x(), p.y()))] = p;
+    image[rings[i] * std::size_t{kBins} + static_cast<std::size_t>(BinOf(p.x(), p.y()))] = p;
   }
   for (std::size_t r = 0; r < rings_.size(); ++r) {
     rings_[r].seen = seen[r] > 0;
     if (rings_[r].seen) rings_[r].height /= seen[r];
   }
   FindNeighbours();
+  SumUp(image);
 }
 
 void ScanNormals::FindNeighbours() {
@@ -72,31 +77,43 @@ void ScanNormals::FindNeighbours() {
   }
 }
 
-ScanNormals::Side ScanNormals::MeanOf(int ring, int first_bin) const {
-  Side side;
-  const Eigen::Vector3f* row = &image_[static_cast<std::size_t>(ring) * kBins];
-  for (int i = 0; i < kHalf; ++i) {
-    const Eigen::Vector3f& p = row[(first_bin + i) & (kBins - 1)];
-    if (p.isZero(0)) continue;
-    side.mean += p;
-    ++side.count;
+void ScanNormals::SumUp(const std::vector<Eigen::Vector3f>& image) {
+  sums_.assign(rings_.size() * kSums, Eigen::Vector4d::Zero());
+  for (std::size_t r = 0; r < rings_.size(); ++r) {
+    const Eigen::Vector3f* row = &image[r * kBins];
+    Eigen::Vector4d* sums = &sums_[r * kSums];
+    for (std::size_t i = 0; i < kBins; ++i) {
+      sums[i + 1] = sums[i];
+      if (!row[i].isZero(0)) sums[i + 1] += row[i].cast<double>().homogeneous();
+    }
   }
-  if (side.count > 0) side.mean /= static_cast<float>(side.count);
-  return side;
+}
+
+/// Of the returns of a ring in some bins, which may run over the end of the turn.
+ScanNormals::Side ScanNormals::MeanOf(int ring, int first_bin, int bins) const {
+  const Eigen::Vector4d* sums = &sums_[static_cast<std::size_t>(ring) * kSums];
+  const int first = first_bin & (kBins - 1);
+  const int end = first + bins;
+  Eigen::Vector4d sum = sums[std::min(end, kBins)] - sums[first];
+  if (end > kBins) sum += sums[end - kBins];
+  if (sum.w() < 0.5) return {};
+  return {(sum.head<3>() / sum.w()).cast<float>(), true};
 }
 
 /// The plane of what three rings, from below, saw left and right of `bin`.
 bool ScanNormals::FitPlane(const int (&rings)[3], int bin, const Eigen::Vector3f& point,
                            Eigen::Vector3f* normal) const {
+  const int bins =
+      std::clamp(static_cast<int>(kSide_m * kBinsPerRadian / point.norm()), kLeastBins, kMostBins);
   Side left[3];
   Side right[3];
   Eigen::Vector3f across = Eigen::Vector3f::Zero();
   Eigen::Vector3f mean = Eigen::Vector3f::Zero();
   for (int i = 0; i < 3; ++i) {
     if (rings[i] < 0) return false;
-    left[i] = MeanOf(rings[i], bin + 1);
-    right[i] = MeanOf(rings[i], bin - kHalf);
-    if (left[i].count == 0 || right[i].count == 0) return false;
+    left[i] = MeanOf(rings[i], bin + 1, bins);
+    right[i] = MeanOf(rings[i], bin - bins, bins);
+    if (!left[i].seen || !right[i].seen) return false;
     across += left[i].mean - right[i].mean;
     mean += (left[i].mean + right[i].mean) / 6;
   }

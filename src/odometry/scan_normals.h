@@ -30,15 +30,17 @@ class ScanNormals {
   };
   struct Side {
     Eigen::Vector3f mean = Eigen::Vector3f::Zero();
-    int count = 0;
+    bool seen = false;
   };
   void FindNeighbours();
-  Side MeanOf(int ring, int first_bin) const;
+  void SumUp(const std::vector<Eigen::Vector3f>& image);
+  Side MeanOf(int ring, int first_bin, int bins) const;
   bool FitPlane(const int (&rings)[3], int bin, const Eigen::Vector3f& point,
                 Eigen::Vector3f* normal) const;
 
   std::vector<Ring> rings_;
-  std::vector<Eigen::Vector3f> image_;  // ring by ring; zero: no return
+  /// Ring by ring: the sum and, in the last number, the count of the returns before each bin.
+  std::vector<Eigen::Vector4d> sums_;
 };
 
 }  // namespace lidar::odometry

@@ -98,6 +98,17 @@ TEST(Odometry, FollowsASlowDriveThoughTheCirclesOnTheGroundMoveAlong) {
   EXPECT_EQ(run.tracking.back(), Tracking::kTracking);
 }
 
+TEST(Odometry, FollowsASlowDriveThroughAFieldWhereLittleButTheGroundHasSurfaces) {
+  for (const double speed : {2.0, 5.0}) {
+    Drive drive(synth::SceneKind::kField, speed);
+    const Followed run = Follow(&drive, 50, {});
+    const auto error = Compare(run.truth, run.estimate);
+    ASSERT_TRUE(error);
+    EXPECT_LT(error->ate_rmse_m, 0.03 * error->length_m) << speed;
+    EXPECT_EQ(run.tracking.back(), Tracking::kTracking);
+  }
+}
+
 TEST(Odometry, FollowsADriveOfWhichItKnowsNoBeams) {
   Drive drive(synth::SceneKind::kStreet, 10);
   Odometry odometry({});
