@@ -10,8 +10,8 @@ namespace {
 constexpr int kBins = 1024;  // of azimuth, a power of two
 /// To each side: as far as the noise of grass needs, but not less than two degrees.
 constexpr float kSide_m = 0.6F;
-constexpr int kLeastBins = 6;
-constexpr int kMostBins = 24;
+constexpr float kLeastBins = 6;
+constexpr float kMostBins = 24;
 constexpr std::size_t kSums = kBins + 1;  // of a ring
 constexpr float kBinsPerRadian = kBins / 6.2831853F;
 /// Rings whose elevations differ by less give a normal of noise; by more, they see other things.
@@ -104,7 +104,7 @@ ScanNormals::Side ScanNormals::MeanOf(int ring, int first_bin, int bins) const {
 bool ScanNormals::FitPlane(const int (&rings)[3], int bin, const Eigen::Vector3f& point,
                            Eigen::Vector3f* normal) const {
   const int bins =
-      std::clamp(static_cast<int>(kSide_m * kBinsPerRadian / point.norm()), kLeastBins, kMostBins);
+      static_cast<int>(std::clamp(kSide_m * kBinsPerRadian / point.norm(), kLeastBins, kMostBins));
   Side left[3];
   Side right[3];
   Eigen::Vector3f across = Eigen::Vector3f::Zero();
