@@ -51,13 +51,15 @@ uncompressed() {
 }
 
 # row NAME RUN: one line of the table of runs.
-row_header="name,run,scans,complete,oracle,skipped,slices_lost,rate_mbps,max_error_m,cloud_p95_ms,pose_p95_ms,ate_m,ate_uncompressed_m,now_rmse_m,now_p95_m,late_p95_ms,encode_p95_ms"
+row_header="name,run,scans,complete,oracle,skipped,slices_lost,rate_mbps,max_error_m,cloud_p95_ms,pose_p95_ms,ate_m,ate_uncompressed_m,now_rmse_m,now_p95_m,pauses,late_p95_ms,encode_p95_ms"
+# pauses FOLDER: how often the edge had no pose for half a second or more.
+pauses() { awk -F, 'NR > 2 && $1 - last > 5 { ++n } { last = $1 } END { print n + 0 }' "$1/poses.csv"; }
 row() {
   jq -r --arg name "$1" --arg run "$2" --arg plain "$(uncompressed "$2")" \
-    --arg now "$("$here/figures.py" now "$output/$1.$2")" '[$name, $run, .scans_captured,
+    --arg now "$("$here/figures.py" now "$output/$1.$2")" --arg pauses "$(pauses "$output/$1.$2")" '[$name, $run, .scans_captured,
     .scans_complete, (.oracle.scans_complete // ""), .scans_skipped, .slices_lost, (.mean_rate_bps / 1e6),
     .max_error_m, .capture_to_cloud_ms.p95, .slam.capture_to_pose_ms.p95, (.slam.ate_rmse_m // ""),
-    $plain, $now, .stages_ms.capture.p95, .stages_ms.encode.p95] | join(",")' "$output/$1.$2/summary.json"
+    $plain, $now, $pauses, .stages_ms.capture.p95, .stages_ms.encode.p95] | join(",")' "$output/$1.$2/summary.json"
 }
 # rows NAME...: all their runs.
 rows() {
