@@ -359,7 +359,7 @@ void Controller::OnTimer(Time now) {
 
 void Controller::OnRouteChange(Time now) {
   Advance(now);
-  path_.Reset();
+  path_.Reset(now_);
   answered_.OnRouteChange(now_);
   gap_recovery_.Reset();
   started_ = false;

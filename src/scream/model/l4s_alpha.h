@@ -43,6 +43,7 @@ class L4sAlpha {
   void Reset() {
     alpha_ = last_fraction_marked_ = 0;
     delivered_ = marked_ = 0;
+    last_update_ = {};
   }
   /// Goes on from a value that was known before.
   void Restore(double alpha) { alpha_ = alpha; }

@@ -57,7 +57,8 @@ bool PathModel::EndRoundTrip(Time now) {
   return max_in_flight_.Update(now, std::max(p_.virtual_rtt, rtt_.smoothed()));
 }
 
-void PathModel::Reset() {
+void PathModel::Reset(Time now) {
+  route_begin_ = now;
   queue_delay_.Reset();
   rtt_.Reset();
   train_.Reset();
@@ -98,18 +99,20 @@ void PathModel::MeasureDelays(Time now, const AckSummary& acks, const SenderStat
 void PathModel::CountMarksAndLosses(Time now, const AckSummary& acks, const SenderState& sender) {
   int marked = 0;
   int answered = 0;
-  const auto count_mark = [&](Time sent) { ++(sent >= sender.marks_answered ? marked : answered); };
+  const auto count_mark = [&](Time sent) {
+    ++(sent >= sender.marks_answered ? marked : answered);
+    if (sent >= route_begin_) last_mark_ = now;
+  };
   for (const Time sent : acks.late_ce) count_mark(sent);
   acked_rate_.set_window(std::max(rtt_.smoothed(), 2 * sender.frame_period));
   for (const AckedPacket& packet : acks.acked) {
     if (packet.arrived_ecn == Ecn::kCe) count_mark(packet.sent);
-    ecn_.OnAcked(packet.ecn, packet.arrived_ecn);
+    if (packet.sent >= route_begin_) ecn_.OnAcked(packet.ecn, packet.arrived_ecn);
     loss_rate_.Add(false, sender.ref_wnd);
     acked_rate_.Add(now, packet.size);
   }
   for (std::size_t i = 0; i < acks.lost.size(); ++i) loss_rate_.Add(true, sender.ref_wnd);
   packets_ce_ += static_cast<std::uint64_t>(marked + answered);
-  if (marked + answered > 0) last_mark_ = now;
   if (!acks.lost.empty()) last_loss_ = now;
   const Duration round = std::max({rtt_.smoothed(), p_.virtual_rtt, sender.frame_period});
   l4s_alpha_.Update(now, static_cast<int>(acks.acked.size()), marked, rtt_.smoothed(), round);

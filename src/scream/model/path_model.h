@@ -50,8 +50,9 @@ class PathModel {
   /// True at the end of a round trip.
   bool EndRoundTrip(Time now);
   void OnTimer(Time now) { ecn_.OnTimer(now); }
-  /// Another route: base delay, round trip, ECN, marks, losses and capacity are unknown again.
-  void Reset();
+  /// Another route: base delay, round trip, ECN, marks, losses and capacity are unknown again. What
+  /// is told later of packets that were sent before `now` says nothing of its marks and its ECN.
+  void Reset(Time now);
 
   const RoundTripTime& rtt() const { return rtt_; }
   const QueueDelay& queue_delay() const { return queue_delay_; }
@@ -121,6 +122,7 @@ class PathModel {
   DataRate train_capacity_;
   DataRate acked_peak_;  // of averages and bursts, since the last train
   Time gap_end_{};
+  Time route_begin_{};
   MaxBytesInFlight max_in_flight_;
   mutable RateMeter sent_rate_{1s};
   mutable RateMeter acked_rate_{100ms};

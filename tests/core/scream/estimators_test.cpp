@@ -30,7 +30,7 @@ TEST(PathModel, KnowsNothingOfAnotherRoute) {
   ASSERT_GT(path.model.l4s_alpha().value(), 0);
   ASSERT_NE(path.model.marking_onset(), p.pacing_reserve);
 
-  path.model.Reset();
+  path.model.Reset(path.now);
   EXPECT_FALSE(path.model.classic_ecn().found());
   EXPECT_FALSE(path.model.L4sWorks(path.now));
   EXPECT_FALSE(path.model.MarkedLately(path.now));
@@ -46,6 +46,24 @@ TEST(PathModel, KnowsNothingOfAnotherRoute) {
   EXPECT_EQ(path.model.report_gap(), Duration{0});
 }
 
+TEST(PathModel, TakesNothingFromPacketsOfTheOldRoute) {
+  const Parameters p;
+  Path path(p);
+  path.Arrive(5, 1ms, 5ms, Ecn::kEct1);
+  path.model.Reset(path.now);
+  AckSummary late;
+  late.late_ce.push_back(path.now - 20ms);
+  path.model.OnReport(path.now, late, kSender);
+  path.Arrive(20, 1ms, 5ms, Ecn::kCe);  // the last of them was sent 25 ms before the new route
+  EXPECT_FALSE(path.model.MarkedLately(path.now));
+  EXPECT_FALSE(path.model.L4sWorks(path.now));
+  EXPECT_EQ(path.model.ecn().state(), EcnState::kTesting);
+
+  path.Arrive(100, 1ms, 5ms, Ecn::kCe);
+  EXPECT_TRUE(path.model.MarkedLately(path.now));
+  EXPECT_EQ(path.model.ecn().state(), EcnState::kCapable);
+}
+
 TEST(PathModel, TheRateIsHalvedWhereClocksDriftAndWholeOnAnotherRoute) {
   const Parameters p;
   Path path(p);
@@ -54,7 +72,7 @@ TEST(PathModel, TheRateIsHalvedWhereClocksDriftAndWholeOnAnotherRoute) {
   // Five round trips, which are longer than the 0.2 s that it is at least.
   EXPECT_GT(path.model.half_rate_until(), path.now + 350ms);
   EXPECT_LT(path.model.half_rate_until(), path.now + 450ms);
-  path.model.Reset();
+  path.model.Reset(path.now);
   EXPECT_EQ(path.model.half_rate_until(), Time{});
 }
 
