@@ -19,6 +19,7 @@ namespace {
 constexpr Duration kUsualPeriod = std::chrono::milliseconds(100);
 constexpr Duration kLongestPeriod = std::chrono::seconds(1);
 constexpr std::uint32_t kMostRings = 1024;
+constexpr std::uint64_t kLatest_ns = INT64_MAX;
 
 class File final : public mcap::Input {
  public:
@@ -110,10 +111,10 @@ class Recording final : public ScanStream {
  private:
   /// A scan ends where the next one begins, unless scans are missing.
   void UpdatePeriod() {
-    if (!next_ || !after_) return;
+    if (!next_ || !after_ || after_->start <= next_->start) return;
     const Duration period = after_->start - next_->start;
     const Duration longest = known_ ? period_ * 3 / 2 : kLongestPeriod;
-    if (period <= Duration{0} || period > longest) return;
+    if (period > longest) return;
     period_ = period;
     known_ = true;
   }
@@ -126,8 +127,13 @@ class Recording final : public ScanStream {
       if (!cloud) continue;
       TimedScan timed;
       timed.start = cloud->header.stamp;
-      if (timed.start == Time{})
+      if (timed.start == Time{}) {
+        if (message->header.log_time > kLatest_ns) {
+          why_ = "a cloud was logged after the year 2262";
+          continue;
+        }
         timed.start += Duration{static_cast<std::int64_t>(message->header.log_time)};
+      }
       if (TakePoints(*cloud, &timed.scan)) return timed;
     }
     return std::nullopt;
@@ -143,7 +149,7 @@ class Recording final : public ScanStream {
       converter_ = cdr::PointConverter::Make(cloud.layout, {}, &why_);
     if (!converter_) return false;
     const PointFields& fields = converter_->points().fields;
-    if (!fields.HasPackedXyz()) {
+    if (!fields.Find("x") || !fields.Find("y") || !fields.Find("z")) {
       why_ = "a cloud has no fields x, y and z";
       return false;
     }

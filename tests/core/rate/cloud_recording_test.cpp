@@ -124,6 +124,27 @@ TEST_F(CloudRecording, LogTimesCountWhereThereAreNoStamps) {
   EXPECT_EQ(OpenScans(Write(), {})->Next()->start, Time{} + milliseconds(700));
 }
 
+TEST_F(CloudRecording, LogTimesThatAreNoTimesAreLeftOut) {
+  const std::uint16_t points = AddTopic("/points");
+  const std::vector<TestPoint> one = {{1, 2, 3, 4}};
+  const auto message = WritePointCloud2(CloudOf(one, 1));
+  const std::uint64_t latest = INT64_MAX;
+  for (const std::uint64_t ns : {latest - 1, latest, latest + 1, latest + 2})
+    ASSERT_TRUE(writer_.Add({points, 0, ns, ns}, {message.data(), message.size()}));
+  EXPECT_EQ(LoadScans(Write(), {}).scans.size(), 2U);
+}
+
+TEST_F(CloudRecording, CoordinatesMayBeOfAnyTypeAndInAnyOrder) {
+  const double zyx[3] = {3, 2, 1};
+  cdr::PointCloud2 cloud;
+  cloud.layout.width = cloud.layout.height = 1;
+  cloud.layout.fields = {{"z", 0, 8, 1}, {"y", 8, 8, 1}, {"x", 16, 8, 1}};
+  cloud.layout.point_step = cloud.layout.row_step = sizeof zyx;
+  cloud.data = {reinterpret_cast<const std::uint8_t*>(zyx), sizeof zyx};
+  AddMessage(AddTopic("/points"), milliseconds(700), WritePointCloud2(cloud));
+  EXPECT_EQ(OpenScans(Write(), {})->Next()->scan.xyz, (std::vector<float>{1, 2, 3}));
+}
+
 TEST_F(CloudRecording, OneOfSeveralTopicsHasToBeNamed) {
   AddCloud(AddTopic("/front"), milliseconds(1000));
   AddCloud(AddTopic("/rear"), milliseconds(1050), {{9, 9, 9, 9}});
