@@ -193,12 +193,12 @@ const std::vector<Figure> kFigures = {
     {"complete", 1, [](const LoopReport& r, const LoopReport&) { return Count(r.complete); }},
     {"of a fixed step [%]", 1,
      [](const LoopReport& r, const LoopReport& f) {
-       return 100 * Count(r.complete) / Count(f.complete);
+       return 100 * Count(r.complete) / std::max(1.0, Count(f.complete));
      }},
     {"in time", 1, [](const LoopReport& r, const LoopReport&) { return Count(r.in_time); }},
     {"of a fixed step [%]", 1,
      [](const LoopReport& r, const LoopReport& f) {
-       return 100 * Count(r.in_time) / Count(f.in_time);
+       return 100 * Count(r.in_time) / std::max(1.0, Count(f.in_time));
      }},
     {"of the oracle [%]", 1,
      [](const LoopReport& r, const LoopReport&) { return 100 * r.OfOracle(); }},
