@@ -21,7 +21,7 @@ class Pacer {
   void RaiseTo(DataRate rate) { pace_bitrate_ = std::max(pace_bitrate_, rate); }
   /// A packet comes into an empty queue: the time before it gives no credit.
   void OnIdleEnd(Time now) { next_ = std::max(next_, now); }
-  /// A gap is over: what the last packet in it was to wait for is no matter any more.
+  /// A gap is over: the next packet waits no longer at the gap's rate.
   void OnGapEnd(Time now) { next_ = std::min(next_, now); }
   /// The pace goes on from when the packet was due, not from a late wake-up, up to a bound.
   void OnSent(Time now, DataSize size);

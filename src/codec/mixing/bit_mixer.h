@@ -31,7 +31,7 @@ inline std::int32_t StepOf(bool bit, std::int32_t chance) {
 /// mean the same. The last place, of eight where they suffice, is always the same number.
 ///
 /// A mixer lives for one decision. All of it is compiled into its caller, so that counters, votes
-/// and sums stay in registers: calls and members would take a quarter of the time.
+/// and sums stay in registers: with calls and members efforts 2 and 3 take 1.3 times as long.
 template <unsigned kCounters, unsigned kExtra, class Lanes = FastLanes>
 class BitMixer {
  public:
