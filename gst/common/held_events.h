@@ -2,13 +2,14 @@
 // Sticky events of a pad whose caps come with the first buffer, as only the data tell them.
 #pragma once
 #include <algorithm>
+#include <utility>
 #include <vector>
 
 #include "gst/common/refs.h"
 
 namespace lidar::gst {
 
-/// Sticky events have their order: caps, segment, and then the others.
+/// They go out behind the caps, in the order they came; a later one replaces one of its kind.
 class HeldEvents {
  public:
   /// For events before the caps. True where `event` is taken: it waits for the caps, or it is a
@@ -18,7 +19,6 @@ class HeldEvents {
     const bool waits = GST_EVENT_IS_SERIALIZED(event) && GST_EVENT_IS_STICKY(event) &&
                        type > GST_EVENT_CAPS && type != GST_EVENT_EOS;
     if (waits) {
-      // As on a pad: a later event takes the place of one of its kind.
       const GstStructure* what = gst_event_get_structure(event);
       Drop([&](GstEvent* held) {
         return GST_EVENT_TYPE(held) == type &&
@@ -31,10 +31,10 @@ class HeldEvents {
     return waits || type == GST_EVENT_GAP;
   }
 
-  /// Once the caps are sent, or with an EOS without any.
+  /// Once the caps are sent, or with an EOS without any. What is pushed may flush the pad, and come
+  /// back here.
   void PushTo(GstPad* pad) {
-    for (EventPtr& event : held_) gst_pad_push_event(pad, event.release());
-    held_.clear();
+    for (EventPtr& event : std::exchange(held_, {})) gst_pad_push_event(pad, event.release());
   }
 
   /// A flush ends segments; tags and the like come only once.

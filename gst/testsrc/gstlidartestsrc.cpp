@@ -166,8 +166,7 @@ State& StateOf(gpointer self) { return *GST_LIDAR_TEST_SRC(self)->state; }
 
 gboolean Start(GstBaseSrc* base) {
   State& state = StateOf(base);
-  std::lock_guard lock(state.mutex);
-  const Settings& settings = state.settings;
+  const Settings settings = lidar::gst::Snapshot(state);
   std::string unknown;
   if (!lidar::gst::ParseChannels(settings.channels, &unknown)) {
     GST_ELEMENT_ERROR(base, RESOURCE, SETTINGS,
@@ -176,17 +175,19 @@ gboolean Start(GstBaseSrc* base) {
                       (nullptr));
     return FALSE;
   }
+  std::unique_ptr<lidar::gst::TrajectoryLog> log;
   if (!settings.trajectory_location.empty()) {
-    state.log = std::make_unique<lidar::gst::TrajectoryLog>(settings.trajectory_location);
-    if (!state.log->ok()) {
+    log = std::make_unique<lidar::gst::TrajectoryLog>(settings.trajectory_location);
+    if (!log->ok()) {
       GST_ELEMENT_ERROR(
           base, RESOURCE, OPEN_WRITE,
           ("Cannot write the trajectory to \"%s\".", settings.trajectory_location.c_str()),
           GST_ERROR_SYSTEM);
-      state.log.reset();
       return FALSE;
     }
   }
+  std::lock_guard lock(state.mutex);
+  state.log = std::move(log);
   state.maker.emplace(ConfigFrom(settings), OptionsFrom(settings));
   state.latency = static_cast<GstClockTime>(state.maker->LongestSlice().count());
   return TRUE;

@@ -170,7 +170,7 @@ static GstPad* ReplaceGhost(GstLidarScreamAux* self, GstPad* old, const PadPtr& 
 /// Names the pads after the session that they belong to.
 static void NamePads(GstLidarScreamAux* self) {
   if (self->tx == nullptr) return;
-  const gint session = self->state->settings.session;
+  const gint session = Snapshot(*self->state).session;
   const bool named = session >= 0;
   const PadPtr sink(gst_element_get_static_pad(self->tx, "sink_0"));
   const PadPtr src(gst_element_get_static_pad(self->tx, "src"));

@@ -152,6 +152,27 @@ TEST_F(Filter, HoldsTagsBackThroughAFlushUntilTheFirstCloud) {
                                              "tag", "segment"}));
 }
 
+/// Flushes the harness in the middle of the events that come out of it.
+GstPadProbeReturn FlushAtTags(GstPad*, GstPadProbeInfo* info, gpointer harness) {
+  if (GST_EVENT_TYPE(gst_pad_probe_info_get_event(info)) != GST_EVENT_TAG) return GST_PAD_PROBE_OK;
+  gst_harness_push_event(static_cast<GstHarness*>(harness), gst_event_new_flush_start());
+  gst_harness_push_event(static_cast<GstHarness*>(harness), gst_event_new_flush_stop(TRUE));
+  return GST_PAD_PROBE_REMOVE;
+}
+
+TEST_F(Filter, MayBeFlushedByWhatItsEventsCause) {
+  Start("", CloudCaps("x:F32:0,y:F32:4,z:F32:8", 12, 2, 1));
+  gst_harness_push_event(h_.get(), gst_event_new_tag(gst_tag_list_new_empty()));
+  GstSegment segment;
+  gst_segment_init(&segment, GST_FORMAT_TIME);
+  gst_harness_push_event(h_.get(), gst_event_new_segment(&segment));
+  gst_pad_add_probe(h_->sinkpad, GST_PAD_PROBE_TYPE_EVENT_DOWNSTREAM, FlushAtTags, h_.get(),
+                    nullptr);
+  Push(std::vector<std::uint8_t>(24));
+  gst_harness_push_event(h_.get(), gst_event_new_segment(&segment));
+  EXPECT_EQ(Push(std::vector<std::uint8_t>(24)), GST_FLOW_OK);
+}
+
 TEST_F(Filter, SaysWhatIsWrong) {
   const std::string caps = CloudCaps("x:F32:0,y:F32:4,z:F32:8", 12, 1, 1);
   const std::vector<std::pair<std::string, std::string>> wrong = {
