@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// What elements share that have several sink pads, each with properties of its own.
+// Pads: what belongs together, and sink pads as children with properties of their own.
 #pragma once
-#include <gst/gst.h>
+#include "gst/common/refs.h"
 
 namespace lidar::gst {
 
@@ -37,7 +37,9 @@ inline void ServeSinkPads(gpointer iface, gpointer) {
   proxy->get_children_count = [](GstChildProxy* p) { return SinkPadCount(p); };
   proxy->get_child_by_index = [](GstChildProxy* p, guint index) { return SinkPadAt(p, index); };
   proxy->get_child_by_name = [](GstChildProxy* p, const gchar* name) {
-    return reinterpret_cast<GObject*>(gst_element_get_static_pad(GST_ELEMENT(p), name));
+    PadPtr pad(gst_element_get_static_pad(GST_ELEMENT(p), name));
+    if (pad && !GST_PAD_IS_SINK(pad.get())) pad.reset();
+    return reinterpret_cast<GObject*>(pad.release());
   };
 }
 

@@ -201,6 +201,7 @@ TEST_F(MergedByHand, PadsAreChildrenByTheirOrder) {
     EXPECT_EQ(GST_PAD_NAME(child), "sink_" + std::to_string(i));
     g_object_unref(child);
   }
+  EXPECT_EQ(gst_child_proxy_get_child_by_name(GST_CHILD_PROXY(element_.get()), "src"), nullptr);
 }
 
 }  // namespace
