@@ -108,7 +108,8 @@ start_sanitized() {
   sanitized_job=$!
   chrt --idle -p 0 "$sanitized_job"
 }
-# hurry PID: it and what it started have their share of a busy machine again.
+# hurry PID: it and what it started have their share of a busy machine again. Where only root may do that, they
+# go on with the time that others leave.
 hurry() {
   local child
   chrt --other -p 0 "$1" 2>/dev/null
@@ -172,8 +173,8 @@ settle() {
   echo "== failed, and run again alone: ${names[*]}"
   second_tries+=("${names[@]/#/$(basename "$dir"): }")
   forget "$dir" again
-  meson test -C "$dir" --no-rebuild --suite "$suite" --logbase again --print-errorlogs "$@" --num-processes 1 \
-    --timeout-multiplier 12 "${names[@]}" 2>&1 | shorten
+  meson test -C "$dir" --no-rebuild --suite "$suite" --logbase again --print-errorlogs --timeout-multiplier 12 "$@" \
+    --num-processes 1 "${names[@]}" 2>&1 | shorten
   before=$((passed + failed))
   tally < <(results "$dir" again)
   failed=$((failed + before + ${#names[@]} - passed - failed))  # what did not run
@@ -189,12 +190,14 @@ run() {
   echo "== $(basename "$dir"): ${suites[*]} (${SECONDS}s)"
   forget "$dir" testlog
   meson test -C "$dir" --no-rebuild "${chosen[@]}" --print-errorlogs --timeout-multiplier 4 "$@" 2>&1 | shorten
+  # Killed by a signal it may have left out tests.
+  [ "${PIPESTATUS[0]}" -lt 128 ] || failed=$((failed + 1))
   [ "${suites[*]}" != pipelines ] || return 0
   for suite in "${suites[@]}"; do settle "$dir" "$suite" testlog "$@"; done
 }
 
-# The pipelines stream in real time, so they run one by one. Those of the suite beside wait for most
-# of their time, so they run beside the others.
+# The pipelines stream in real time, so they run one by one. Those of the suite beside wait for much of
+# their time or are not judged by it, so they run beside the others.
 run_pipelines() {
   local dir=$1
   forget "$dir" beside
@@ -202,6 +205,7 @@ run_pipelines() {
   local beside=$!
   run "$dir" pipelines --num-processes 1
   wait "$beside"
+  [ $? -lt 128 ] || failed=$((failed + 1))
   shorten <"$dir/beside.log"
   settle "$dir" pipelines testlog
   settle "$dir" beside beside

@@ -32,7 +32,7 @@ TEST(Corpus, IsHandledFileByFile) {
   }
 }
 
-// The crowd of inputs that no corpus holds: each file cut short at a hundred lengths.
+// The crowd of inputs that no corpus holds: each file cut short at a hundred lengths at most.
 TEST(Corpus, IsHandledWhenCutShort) {
   for (const auto& entry : std::filesystem::directory_iterator(corpus)) {
     const auto bytes = Read(entry.path());
