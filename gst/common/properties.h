@@ -140,7 +140,7 @@ class LockIf {
   Mutex* mutex_;
 };
 
-/// The settings of now, of an element's state as ServeProperties() needs it.
+/// A copy of the settings, taken under the lock; `state` is as ServeProperties() needs it.
 template <class State>
 auto Snapshot(State& state) {
   const LockIf lock(true, state.mutex);

@@ -14,8 +14,7 @@ namespace lidar::gst {
 namespace {
 
 constexpr guint kClockRate = 90'000;
-// The part of the bytes sent that each slice leaves in memory: the share of the headers follows the
-// last second or so.
+// Each slice multiplies the sum of bytes by this, so the sum tells of about the last second.
 constexpr gdouble kShareMemory = 0.98;
 
 /// An RTP buffer of `packet`, whose body is a part of `slice_buffer` that is not copied.

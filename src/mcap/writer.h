@@ -73,7 +73,7 @@ class Writer {
   std::uint64_t chunk_start_ = 0;
   std::uint64_t chunk_end_ = 0;
   std::map<std::uint16_t, MessageIndex> message_indexes_;
-  std::vector<ChunkIndex> chunk_indexes_;  // a row a chunk that was written
+  std::vector<ChunkIndex> chunk_indexes_;  // one for each chunk written
   Statistics statistics_;
 };
 
