@@ -157,7 +157,8 @@ TEST_F(CloudRecording, OneOfSeveralTopicsHasToBeNamed) {
 TEST_F(CloudRecording, DamagedCloudsAreLeftOut) {
   const std::uint16_t points = AddTopic("/points");
   AddMessage(points, milliseconds(900), {0, 1, 0, 0, 1});
-  cdr::PointCloud2 huge = CloudOf({{1, 2, 3, 4}}, 1);
+  const std::vector<TestPoint> one = {{1, 2, 3, 4}};
+  cdr::PointCloud2 huge = CloudOf(one, 1);
   huge.layout.width = 1U << 30;
   AddMessage(points, milliseconds(950), WritePointCloud2(huge));
   AddCloud(points, milliseconds(1000));
