@@ -239,6 +239,42 @@ TEST(Odometry, TakesAnyPoints) {
   EXPECT_TRUE(odometry.map().empty());
 }
 
+TEST(Odometry, TakesTenMillionPoints) {
+  constexpr std::size_t kPoints = 10'000'000;
+  TimedPoints room;
+  room.points.reserve(kPoints);
+  for (std::size_t i = 0; i < kPoints; ++i) {
+    const double along = 1e-3 * static_cast<double>(i % 20'000) - 10;
+    const double across = 0.02 * static_cast<double>(i / 20'000) - 5;
+    room.points.emplace_back(along, i % 3 == 0 ? 5 : across, i % 3 == 0 ? across : -2);
+  }
+  room.phases.assign(kPoints, 0.5F);
+  Odometry odometry({});
+  for (int i = 0; i < 2; ++i)
+    EXPECT_TRUE(odometry.OnScan(Time{} + i * kPeriod, kPeriod, room).pose.position.norm() < 0.01);
+  EXPECT_LT(odometry.map().voxels(), 2'000U);
+}
+
+TEST(Odometry, FollowsADriveOfWhichSomeScansAreThinnedOut) {
+  Drive drive(synth::SceneKind::kStreet, 10);
+  Odometry odometry({});
+  Pose pose;
+  for (std::uint64_t i = 0; i < 30; ++i) {
+    const TimedPoints whole = drive.Scan(i);
+    TimedPoints thinned;
+    for (std::size_t n = 0; n < whole.points.size(); ++n) {
+      if (whole.rings[n] % (i / 5 % 3 + 1) != 0) continue;  // each beam, each second, each third
+      thinned.points.push_back(whole.points[n]);
+      thinned.phases.push_back(whole.phases[n]);
+      thinned.rings.push_back(whole.rings[n]);
+    }
+    pose = odometry.OnScan(drive.StartOf(i), kPeriod, thinned).pose;
+  }
+  const Pose way = drive.TruthAt(drive.StartOf(0) + kPeriod / 2).Inverse() *
+                   drive.TruthAt(drive.StartOf(29) + kPeriod / 2);
+  EXPECT_LT((pose.position - way.position).norm(), 0.2);
+}
+
 TEST(Odometry, FollowsWhateverTheRateOfTheScans) {
   for (const std::uint64_t every : {2U, 3U}) {  // of ten scans a second
     Drive drive(synth::SceneKind::kStreet, 8);
