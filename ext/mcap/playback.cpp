@@ -5,13 +5,13 @@
 #include <utility>
 
 #include "ext/mcap/file_names.h"
-#include "ext/mcap/input_file.h"
+#include "src/mcap/input_file.h"
 
 namespace lidar::gst {
 namespace {
 
 std::unique_ptr<mcap::Reader> OpenReader(const std::string& path, std::string* why) {
-  auto input = InputFile::Open(path, why);
+  auto input = mcap::InputFile::Open(path, why);
   return input ? mcap::Reader::Open(std::move(input), why) : nullptr;
 }
 

@@ -2,7 +2,6 @@
 #include "src/tools/codec_lab/cloud_recording.h"
 
 #include <cmath>
-#include <fstream>
 #include <stdexcept>
 #include <utility>
 
@@ -10,6 +9,7 @@
 #include "src/cdr/point_cloud2.h"
 #include "src/cdr/ros_types.h"
 #include "src/cloud/field_number.h"
+#include "src/mcap/input_file.h"
 #include "src/mcap/reader.h"
 
 namespace lidar::tools {
@@ -20,25 +20,6 @@ constexpr Duration kUsualPeriod = std::chrono::milliseconds(100);
 constexpr Duration kLongestPeriod = std::chrono::seconds(1);
 constexpr std::uint32_t kMostRings = 1024;
 constexpr std::uint64_t kLatest_ns = INT64_MAX;
-
-class File final : public mcap::Input {
- public:
-  explicit File(const std::string& path) : file_(path, std::ios::binary | std::ios::ate) {
-    if (!file_) throw std::runtime_error("cannot open " + path);
-    size_ = static_cast<std::uint64_t>(file_.tellg());
-  }
-  std::uint64_t size() const override { return size_; }
-  bool Read(std::uint64_t offset, std::size_t n, std::uint8_t* to) override {
-    file_.clear();
-    file_.seekg(static_cast<std::streamoff>(offset));
-    file_.read(reinterpret_cast<char*>(to), static_cast<std::streamsize>(n));
-    return file_.good();
-  }
-
- private:
-  std::ifstream file_;
-  std::uint64_t size_ = 0;
-};
 
 /// The topics of a file whose messages are of one schema.
 std::vector<std::string> TopicsOf(const mcap::FileIndex& index, std::string_view schema) {
@@ -200,7 +181,8 @@ class Recording final : public ScanStream {
 
 std::unique_ptr<ScanStream> OpenRecording(const std::string& path, const std::string& topic) {
   std::string why;
-  auto reader = mcap::Reader::Open(std::make_unique<File>(path), &why);
+  auto file = mcap::InputFile::Open(path, &why);
+  auto reader = file ? mcap::Reader::Open(std::move(file), &why) : nullptr;
   if (!reader) throw std::runtime_error(path + ": " + why);
   if (reader->index().empty()) throw std::runtime_error(path + ": there is no message in it");
   const std::string chosen = ChooseTopic(path, topic, reader->index());

@@ -6,9 +6,9 @@
 
 #include "src/mcap/record_input.h"
 
-namespace lidar::gst {
+namespace lidar::mcap {
 
-class InputFile : public mcap::Input {
+class InputFile : public Input {
  public:
   /// None where it cannot be opened or is no file; `why` then says so.
   static std::unique_ptr<InputFile> Open(const std::string& path, std::string* why);
@@ -27,4 +27,4 @@ class InputFile : public mcap::Input {
   const std::uint64_t size_;
 };
 
-}  // namespace lidar::gst
+}  // namespace lidar::mcap

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "ext/mcap/input_file.h"
+#include "src/mcap/input_file.h"
 
 #include <fcntl.h>
 #include <sys/stat.h>
@@ -8,7 +8,7 @@
 #include <cerrno>
 #include <system_error>
 
-namespace lidar::gst {
+namespace lidar::mcap {
 
 std::unique_ptr<InputFile> InputFile::Open(const std::string& path, std::string* why) {
   // A pipe would wait for its writer.
@@ -40,4 +40,4 @@ bool InputFile::Read(std::uint64_t offset, std::size_t n, std::uint8_t* to) {
   return true;
 }
 
-}  // namespace lidar::gst
+}  // namespace lidar::mcap
