@@ -131,10 +131,11 @@ void PathModel::ObserveCapacity(Time now, const AckSummary& acks, Duration qdela
     const Duration qdelay = *packet.arrival - packet.sent - queue_delay_.base();
     const bool busy = marked || qdelay >= BusyQdelay(now, qdelay_target);
     loss_context_.OnAcked(packet.sent, qdelay);
-    if (packet.sent >= gap_end_) classic_ecn_.OnPacket(now, qdelay, marked);
-    if (marked && packet.sent >= gap_end_) marking_onset_.OnMark(qdelay);
-    if (packet.sent >= gap_end_)
+    if (packet.sent >= gap_end_) {
+      classic_ecn_.OnPacket(now, qdelay, marked);
+      if (marked) marking_onset_.OnMark(qdelay);
       cross_traffic_.Add(packet.sent, *packet.arrival, qdelay, congested);
+    }
     busy_run_.Add({*packet.arrival, packet.size, busy, marked});
     if (const auto rate = burst_.Add({packet.sent, *packet.arrival, packet.size}))
       acked_peak_ = std::max(acked_peak_, *rate);

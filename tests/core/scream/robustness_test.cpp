@@ -201,12 +201,16 @@ TEST(Feedback, WithoutArrivalTimesStillTellsOfMarksAndRoundTrips) {
   }
 }
 
-TEST(RouteChange, KeepsTheFlowGoingAndTestsEcnAnew) {
-  Scenario s = Named("frames_8M_rtt40");
+/// From 15 s on.
+Scenario OnALongerRoute(Scenario s) {
   s.config.flows[0].route_change = 15s;
   s.config.longer_by = 30ms;
   s.config.longer_from = 15s;
-  const Trial run(s);
+  return s;
+}
+
+TEST(RouteChange, KeepsTheFlowGoingAndTestsEcnAnew) {
+  const Trial run(OnALongerRoute(Named("frames_8M_rtt40")));
   EXPECT_GT(run.Utilisation(16500ms, 18s), 0.75);
   EXPECT_LT(run.MaxQueueMs(15s, 18s), 30);
   EXPECT_EQ(run.End().ecn_state, EcnState::kCapable);
@@ -214,11 +218,7 @@ TEST(RouteChange, KeepsTheFlowGoingAndTestsEcnAnew) {
 
 /// What the old route's bottleneck marked says nothing about the new one's.
 TEST(RouteChange, LearnsMarksAnew) {
-  Scenario s = Named("slices_8M_step1ms");
-  s.config.flows[0].route_change = 15s;
-  s.config.longer_by = 30ms;
-  s.config.longer_from = 15s;
-  const Trial run(s);
+  const Trial run(OnALongerRoute(Named("slices_8M_step1ms")));
   EXPECT_GT(run.Utilisation(16500ms, 21s), 0.85);
   EXPECT_LT(run.MaxQueueMs(15s, 21s), 15);
 }
