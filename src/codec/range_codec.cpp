@@ -25,6 +25,11 @@ RangeGrid FinerGrid(const RangeGrid& grid) {
   return {grid.unit_mm(), std::max((2 * grid.parts() + kThirds / 2) / kThirds, 1U)};
 }
 
+/// At the highest effort a finer grid leaves a choice of bins within the same error.
+bool MayChoose(const RangeSettings& settings) {
+  return settings.effort >= mixing::kSearchingEffort && settings.grid.error_m() > 0;
+}
+
 std::uint32_t ErrorMm(const RangeGrid& grid) {
   return static_cast<std::uint32_t>(std::lround(1e3 * grid.error_m()));
 }
@@ -40,8 +45,7 @@ RangeImage AsRecalled(const RangeImage& image, const BlockMemory& memory, const 
     if (image.ranges[i] == 0) continue;
     const std::uint32_t range = std::min(image.ranges[i], RangeGrid::kMaxRangeMm);
     const auto within = [&](std::uint32_t bin) {
-      const std::uint32_t back = grid.RangeOf(bin);
-      return back > 0 && (back > range ? back - range : range - back) <= error_mm;
+      return grid.ComesBackWithin(error_mm, bin, range);
     };
     const PixelMemory& p = memory.pixels[i];
     std::uint32_t bin = grid.BinOf(range);
@@ -111,12 +115,10 @@ std::optional<RangeCoder> RangeEncoder::EncodePayload(const RangeImage& image,
   return RangeCoder::kAdaptive;
 }
 
-/// At the highest effort a finer grid leaves a choice of bins within the same error, where that
-/// saves bits.
+/// Chooses bins where that saves bits.
 bool RangeEncoder::EncodeMixing(const RangeImage& image, const RangeSettings& settings) {
   MixingSettings mixing{settings.grid, settings.intensity, settings.effort};
-  if (settings.effort >= mixing::kSearchingEffort && settings.grid.error_m() > 0 &&
-      ChoiceSaves(image, settings.grid)) {
+  if (MayChoose(settings) && ChoiceSaves(image, settings.grid)) {
     mixing.grid = grid_ = FinerGrid(settings.grid);
     mixing.error_mm = ErrorMm(settings.grid);
     if (mixing_.Encode(image, mixing, &payload_)) return true;
@@ -147,17 +149,14 @@ double RangeEncoder::AdaptiveBits(const RangeImage& image, const RangeGrid& grid
   return 8.0 * static_cast<double>(bytes);
 }
 
-/// False where nothing can refer to the block, and so it need not be linked. At the highest effort
-/// it is coded a second time, on a finer grid, and the smaller one is taken.
+/// False where nothing can refer to the block, and so it need not be linked. Where bins may be
+/// chosen it is coded a second time, on a finer grid, and the smaller one is taken.
 bool RangeEncoder::EncodeLinked(const RangeImage& image, const RangeSettings& settings,
                                 BlockLink* link) {
   const BlockMemory* reference = link->reference.get();
   if (settings.kept_beams > 0 || (reference != nullptr && !reference->Fits(image))) return false;
   if (!EncodeOn(settings.grid, 0, image, settings, link)) return false;
-  if (reference == nullptr || settings.effort < mixing::kSearchingEffort ||
-      !(settings.grid.error_m() > 0)) {
-    return true;
-  }
+  if (reference == nullptr || !MayChoose(settings)) return true;
   const RangeGrid finer = FinerGrid(settings.grid);
   const std::uint32_t error_mm = ErrorMm(settings.grid);
   std::vector<std::uint8_t> first;

@@ -96,9 +96,9 @@ struct MixingEncoder::State : MixingCoderState {
     for (std::size_t i = 0; i < image.size(); ++i) {
       if (slice.bins[i] < 0) continue;
       const auto within = [&](std::int32_t bin) {
-        const std::int64_t range = settings.grid.RangeOf(static_cast<std::uint32_t>(bin));
-        return range > 0 && bin <= last_bin &&
-               std::abs(range - image.ranges[i]) <= settings.error_mm;
+        return bin <= last_bin &&
+               settings.grid.ComesBackWithin(settings.error_mm, static_cast<std::uint32_t>(bin),
+                                             image.ranges[i]);
       };
       std::int32_t last = slice.bins[i];
       while (last - slice.bins[i] < kMostSpare / 2 && within(last + 1)) ++last;
