@@ -101,7 +101,6 @@ void Worker::CheckPlaces(const FleetWatch::News& news) {
     Warn(at->first, "its record is ahead of the stream; only its pose counts");
     Progress pose = pipeline.progress().value_or(*pipeline.begin());
     pose.stream = 0;  // no stream's
-    pose.velocity.reset();
     table_.SetProgress(at->first, pose);
     at = GiveUp(at);
   }
