@@ -44,6 +44,10 @@ class Drive {
     const auto [x, y, z, w] = pose.ToQuaternion();
     return {Eigen::Quaterniond(w, x, y, z), {pose.x, pose.y, pose.z}};
   }
+  /// From the middle of the first scan to that of another.
+  Pose WayTo(std::uint64_t number) const {
+    return TruthAt(StartOf(0) + kPeriod / 2).Inverse() * TruthAt(StartOf(number) + kPeriod / 2);
+  }
 
  private:
   static constexpr std::uint32_t kColumns = 512;
@@ -270,8 +274,7 @@ TEST(Odometry, FollowsADriveOfWhichSomeScansAreThinnedOut) {
     }
     pose = odometry.OnScan(drive.StartOf(i), kPeriod, thinned).pose;
   }
-  const Pose way = drive.TruthAt(drive.StartOf(0) + kPeriod / 2).Inverse() *
-                   drive.TruthAt(drive.StartOf(29) + kPeriod / 2);
+  const Pose way = drive.WayTo(29);
   EXPECT_LT((pose.position - way.position).norm(), 0.2);
 }
 
@@ -283,8 +286,7 @@ TEST(Odometry, FollowsWhateverTheRateOfTheScans) {
     for (std::uint64_t i = 0; i < 30; i += every)
       pose = odometry.OnScan(drive.StartOf(i), kPeriod, drive.Scan(i)).pose;
     const std::uint64_t last = 29 / every * every;
-    const Pose way = drive.TruthAt(drive.StartOf(0) + kPeriod / 2).Inverse() *
-                     drive.TruthAt(drive.StartOf(last) + kPeriod / 2);
+    const Pose way = drive.WayTo(last);
     EXPECT_LT((pose.position - way.position).norm(), 0.9) << every;
   }
 }
@@ -313,8 +315,7 @@ TEST(Odometry, ReachesFartherAfterAGapInWhichTheCarBraked) {
   for (std::uint64_t i = 0; i < 20; ++i) odometry.OnScan(drive.StartOf(i), kPeriod, drive.Scan(i));
   // Half a second later it has come as far as in 0.4 s before.
   const Pose found = odometry.OnScan(drive.StartOf(24), kPeriod, drive.Scan(23)).pose;
-  const Pose way = drive.TruthAt(drive.StartOf(0) + kPeriod / 2).Inverse() *
-                   drive.TruthAt(drive.StartOf(23) + kPeriod / 2);
+  const Pose way = drive.WayTo(23);
   EXPECT_LT((found.position - way.position).norm(), 0.6);
 }
 
