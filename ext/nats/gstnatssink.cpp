@@ -147,6 +147,13 @@ static lidar::nats::PublisherSettings ToPublisher(const NatsSinkSettings& settin
 }
 
 /// False after an error message.
+static bool CheckReplicas(GstLidarNatsSink* self, const NatsSinkSettings& settings) {
+  if (settings.replicas == 1 || !settings.nats.stream.empty()) return true;
+  GST_ELEMENT_ERROR(self, RESOURCE, SETTINGS, ("replicas needs jetstream."), (nullptr));
+  return false;
+}
+
+/// False after an error message.
 static bool CheckStreamSubjects(GstLidarNatsSink* self, const NatsSinkSettings& settings) {
   const std::string& pattern = settings.stream_subjects;
   const std::string& subject = settings.nats.subject;
@@ -168,7 +175,8 @@ static gboolean Start(GstBaseSink* base) {
   auto* self = GST_LIDAR_NATS_SINK(base);
   State& state = StateOf(self);
   NatsSinkSettings settings = Snapshot(state);
-  if (!CheckNatsSettings(GST_ELEMENT(self), &settings.nats) || !CheckStreamSubjects(self, settings))
+  if (!CheckNatsSettings(GST_ELEMENT(self), &settings.nats) || !CheckReplicas(self, settings) ||
+      !CheckStreamSubjects(self, settings))
     return FALSE;
   state.watch = std::make_shared<ConnectionWatch>(GST_ELEMENT(self), settings.keep_trying);
   state.format.reset();

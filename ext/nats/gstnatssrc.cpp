@@ -48,7 +48,7 @@ struct NatsSrcSettings {
   guint buffer_size = 8U << 20;
 };
 
-const std::array<Stat<SourceCounters>, 10> kStats = {{
+const std::array<Stat<SourceCounters>, 11> kStats = {{
     {"messages", &SourceCounters::messages},
     {"bytes", &SourceCounters::bytes},
     {"messages-damaged", &SourceCounters::damaged},
@@ -57,6 +57,7 @@ const std::array<Stat<SourceCounters>, 10> kStats = {{
     {"messages-again", &SourceCounters::again},
     {"messages-late", &SourceCounters::late},
     {"messages-overrun", &SourceCounters::overruns},
+    {"formats-damaged", &SourceCounters::damaged_formats},
     {"reconnects", &SourceCounters::reconnects},
     {"connected", &SourceCounters::connected},
 }};
@@ -122,7 +123,8 @@ static const std::array<Property<NatsSrcSettings>, 15> kProperties = {{
     Within<&NatsSrcSettings::nats>(NatsRows(), "tls-key-file"),
     {"stats",
      "messages, bytes [bytes], messages-damaged, messages-without-caps, messages-lost, "
-     "messages-again, messages-late, messages-overrun, reconnects, connected",
+     "messages-again, messages-late, messages-overrun, formats-damaged, "
+     "reconnects, connected",
      Stats},
 }};
 
@@ -315,7 +317,7 @@ static GstFlowReturn Create(GstPushSrc* push, GstBuffer** out) {
   while (!state.flushing) {
     Delivery delivery;
     const Subscriber::Event event = state.subscriber->Next(kPoll, &delivery);
-    state.account.NoteConnection(state.subscriber->connection(), state.subscriber->overruns());
+    state.account.NoteSubscriber(*state.subscriber);
     const GstFlowReturn flow = Handle(self, event, std::move(delivery), out);
     if (flow != GST_FLOW_CUSTOM_SUCCESS) return flow;
   }

@@ -30,11 +30,13 @@ void SourceAccount::NoteWithoutCaps() {
   ++counters_.without_caps;
 }
 
-void SourceAccount::NoteConnection(const ConnectionState& now, std::uint64_t overruns) {
+void SourceAccount::NoteSubscriber(const Subscriber& subscriber) {
+  const ConnectionState now = subscriber.connection();
   const std::lock_guard lock(mutex_);
   counters_.connected = now.connected();
   counters_.reconnects = now.connections > 0 ? now.connections - 1 : 0;
-  counters_.overruns = overruns;
+  counters_.overruns = subscriber.overruns();
+  counters_.damaged_formats = subscriber.damaged_formats();
 }
 
 void SourceAccount::NoteStop() {

@@ -4,8 +4,8 @@
 #include <cstdint>
 #include <mutex>
 
-#include "ext/nats/connection.h"
 #include "ext/nats/place_book.h"
+#include "ext/nats/subscriber.h"
 
 namespace lidar::nats {
 
@@ -18,6 +18,7 @@ struct SourceCounters {
   std::uint64_t again = 0;
   std::uint64_t late = 0;
   std::uint64_t overruns = 0;
+  std::uint64_t damaged_formats = 0;
   unsigned reconnects = 0;
   bool connected = false;
 };
@@ -31,7 +32,7 @@ class SourceAccount {
   void NoteTaken(std::size_t bytes);
   void NoteDamaged();
   void NoteWithoutCaps();
-  void NoteConnection(const ConnectionState& now, std::uint64_t overruns);
+  void NoteSubscriber(const Subscriber& subscriber);
   void NoteStop();
 
   struct Verdict {

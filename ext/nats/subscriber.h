@@ -59,6 +59,8 @@ class Subscriber {
   StreamFormat::Ptr Format(const std::string& id, std::chrono::milliseconds timeout);
   /// Messages that came faster than they were taken.
   std::uint64_t overruns() const { return overruns_; }
+  /// Formats that are none of natssink's, or damaged.
+  std::uint64_t damaged_formats() const { return book_.damaged(); }
 
  private:
   explicit Subscriber(SubscriberSettings settings) : settings_(std::move(settings)) {}

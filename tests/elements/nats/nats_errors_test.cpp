@@ -57,6 +57,7 @@ TEST_F(NatsErrors, GarbageIsCountedAndTheStreamGoesOn) {
   const auto sent = PublishSlices(16, At());
   ASSERT_TRUE(receiver.WaitForBuffers(16));
   ExpectSameStream(receiver.buffers(), sent);
+  EXPECT_EQ(receiver.stat("formats-damaged"), 2U);
 }
 
 TEST_F(NatsErrors, ABufferOfAnotherSizeThanItsCapsSayIsCounted) {
@@ -216,6 +217,7 @@ INSTANTIATE_TEST_SUITE_P(
                      "jetstream-subjects \"a.*\" does not cover a.b and a.b.config.*."},
         WrongSetting{"natssink name=n jetstream=s jetstream-subjects=>",
                      "jetstream-subjects \">\" begins with a wildcard."},
+        WrongSetting{"natssink name=n replicas=3", "replicas needs jetstream."},
         WrongSetting{"natssink name=n tls-ca-file=/none",
                      "NATS cannot be used: cannot read /none."},
         WrongSetting{"natssink name=n credentials-file=/none",
