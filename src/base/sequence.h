@@ -13,10 +13,6 @@ constexpr std::make_signed_t<U> SequenceDistance(U a, U b) {
   static_assert(std::is_unsigned_v<U>);
   return static_cast<std::make_signed_t<U>>(static_cast<U>(a - b));
 }
-template <class U>
-constexpr bool IsNewer(U a, U b) {
-  return SequenceDistance(a, b) > 0;
-}
 
 /// Extends wrapping numbers to 64 bit, each read as the nearest to the newest seen so far.
 template <class U>

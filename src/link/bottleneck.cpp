@@ -90,10 +90,6 @@ std::vector<Outcome> Bottleneck::Deliver(Time now) {
   return outcomes;
 }
 
-Duration Bottleneck::HeadSojourn(Time now) const {
-  return queue_->empty() ? Duration{0} : now - queue_->Oldest();
-}
-
 Time Bottleneck::At(Duration capacity_time) const {
   return capacity_time == Duration::max() ? Time::max() : Plus(config_.origin, capacity_time);
 }

@@ -67,9 +67,6 @@ class Bottleneck {
   std::vector<Outcome> Deliver(Time now);
 
   DataSize queued() const { return queue_->size(); }
-  std::size_t queued_packets() const { return queue_->packets(); }
-  /// How long the oldest packet has waited; 0 where the queue is empty.
-  Duration HeadSojourn(Time now) const;
   /// Counted as it happens in Deliver.
   const BottleneckStats& stats() const { return stats_; }
 

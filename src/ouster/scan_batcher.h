@@ -59,8 +59,6 @@ class ScanBatcher {
   const BatcherStats& stats() const { return stats_; }
   std::uint32_t slice_width() const { return width_; }
   std::uint32_t slices_per_scan() const { return slices_; }
-  /// Time from one column to the next [ns].
-  double column_period() const { return column_period_; }
 
  private:
   using Key = std::int64_t;  // scan number x slices per scan + slice index
@@ -107,7 +105,7 @@ class ScanBatcher {
   std::uint32_t slices_;
   std::uint32_t width_;
   std::uint32_t reorder_packets_;
-  double column_period_;
+  double column_period_;                 // time from one column to the next [ns]
   std::vector<std::uint32_t> expected_;  // columns of the window in each slice
 
   std::deque<OpenSlice> open_;  // in order of key

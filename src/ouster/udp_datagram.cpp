@@ -56,8 +56,7 @@ std::optional<UdpDatagram> ParseUdp(const IpEndpoints& addresses, ByteView bytes
   ByteReader r(bytes);
   UdpDatagram datagram;
   datagram.addresses = addresses;
-  datagram.source_port = r.Be16();
-  datagram.destination_port = r.Be16();
+  r.Skip(4);  // ports
   const std::size_t length = r.Be16();
   r.Skip(2);  // checksum: network cards fill it in after the capture, so it is often wrong
   if (!r.ok() || length < kUdpHeaderSize || length > bytes.size) return std::nullopt;

@@ -39,8 +39,6 @@ struct IpEndpoints {
 
 struct UdpDatagram {
   IpEndpoints addresses;
-  std::uint16_t source_port = 0;
-  std::uint16_t destination_port = 0;
   std::vector<std::uint8_t> payload;
 
   ByteView view() const { return {payload.data(), payload.size()}; }

@@ -55,8 +55,6 @@ void Street::AddMoving(const View& view, const Instant& now, std::vector<Shape>*
   AddWalkers(view, now, shapes);
 }
 
-double Street::oncoming_speed() { return kOncomingSpeed; }
-
 void Street::AddHouses(const View& view, float side, std::vector<Shape>* shapes) const {
   const std::uint64_t kind = kHouse + (side > 0 ? 64 : 0);
   ForEachCell(view, kBlock, kind, [&](Random random, std::int64_t index, float x) {

@@ -31,7 +31,6 @@ class Street final : public Scene {
   /// Cars on the left lane, which drive toward -x.
   void AddOncoming(const View& view, const Instant& now, std::vector<Shape>* shapes) const;
   void AddWalkers(const View& view, const Instant& now, std::vector<Shape>* shapes) const;
-  static double oncoming_speed();
 
   /// Asphalt and what is painted on it, `along` the street and `lateral` of its middle.
   static float RoadReflectivity(double along, float lateral);

@@ -23,16 +23,16 @@ class L4sAlpha {
     const bool even = p_.extensions.even_alpha;
     if (delivered_ == 0 || now - last_update_ < (even ? round : std::min(kUpdateInterval, s_rtt)))
       return;
-    last_fraction_marked_ =
+    const double fraction =
         std::min(1.0, static_cast<double>(marked_) / static_cast<double>(delivered_));
     const double slow = std::max(1.0, Seconds(round) / Seconds(kEvenRound));
     const double down =
         even ? std::min(p_.l4s_avg_g_up, p_.even_alpha_g * slow) : p_.l4s_avg_g_down;
-    const double up = even && last_fraction_marked_ < p_.even_alpha_max ? down : p_.l4s_avg_g_up;
-    if (last_fraction_marked_ >= alpha_)
-      alpha_ = up * last_fraction_marked_ + (1 - up) * alpha_;
+    const double up = even && fraction < p_.even_alpha_max ? down : p_.l4s_avg_g_up;
+    if (fraction >= alpha_)
+      alpha_ = up * fraction + (1 - up) * alpha_;
     else if (even)
-      alpha_ = down * last_fraction_marked_ + (1 - down) * alpha_;
+      alpha_ = down * fraction + (1 - down) * alpha_;
     else
       alpha_ *= 1 - down;
     last_update_ = now;
@@ -41,7 +41,7 @@ class L4sAlpha {
 
   /// As before the first packet.
   void Reset() {
-    alpha_ = last_fraction_marked_ = 0;
+    alpha_ = 0;
     delivered_ = marked_ = 0;
     last_update_ = {};
   }
@@ -49,7 +49,6 @@ class L4sAlpha {
   void Restore(double alpha) { alpha_ = alpha; }
 
   double value() const { return alpha_; }
-  double last_fraction_marked() const { return last_fraction_marked_; }
 
  private:
   static constexpr Duration kUpdateInterval = 10ms;
@@ -57,7 +56,6 @@ class L4sAlpha {
   static constexpr Duration kEvenRound = 40ms;
   const Parameters& p_;
   double alpha_ = 0;
-  double last_fraction_marked_ = 0;
   Time last_update_{};
   int delivered_ = 0;
   int marked_ = 0;

@@ -47,8 +47,8 @@ struct AckSummary {
   /// included.
   DataSize bytes_newly_acked;
   DataSize bytes_newly_acked_ce;
-  /// Of the packet sent last of those newly acknowledged, without the receiver's holding time,
-  /// unless the receiver never tells that.
+  /// The newly acknowledged packet that was sent last tells it. The receiver's holding time is not
+  /// in it, unless the receiver never tells that time.
   std::optional<Duration> rtt;
 };
 
@@ -70,7 +70,6 @@ class SentHistory {
   std::optional<Time> oldest_in_flight() const;
   /// As many packets of one SSRC are unsettled as its numbers can tell apart.
   bool full() const;
-  Duration reordering_window() const { return reordering_window_; }
   void set_max_reordering_window(Duration d) { max_reordering_window_ = d; }
   std::uint64_t foreign_blocks() const { return foreign_blocks_; }
 

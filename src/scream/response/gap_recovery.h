@@ -32,8 +32,6 @@ class GapRecovery {
   }
 
   bool in_gap() const { return last_sign_.has_value(); }
-  /// What the path carried before the gap.
-  DataRate rate_before() const { return before_ ? before_->rate : DataRate(); }
 
  private:
   struct Before {

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <numeric>
 #include <vector>
 
 namespace lidar::tools {
@@ -27,11 +26,6 @@ class Distribution {
     return static_cast<double>(*nth);
   }
   double Max() const { return Percentile(100); }
-  double Mean() const {
-    return values_.empty() ? 0
-                           : std::accumulate(values_.begin(), values_.end(), 0.0) /
-                                 static_cast<double>(values_.size());
-  }
 
  private:
   std::vector<float> values_;

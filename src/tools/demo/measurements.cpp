@@ -37,7 +37,6 @@ SenderSample ReadSample(const nlohmann::json& record) {
   s.sender_queue_ms = Pick(sender, {"sender-queue-delay", "media-qdelay"}) / 1e6;
   s.packets_dropped = static_cast<std::uint64_t>(Pick(sender, {"packets-dropped"}));
   s.step_m = Pick(encoder, {"quantization-step", "step"});
-  s.error_bound_m = Pick(encoder, {"error-bound", "max-error"});
   return s;
 }
 

@@ -6,8 +6,6 @@
 #include <string>
 #include <vector>
 
-#include "src/base/time.h"
-#include "src/link/capacity.h"
 #include "src/tools/demo/ledger.h"
 #include "src/tools/demo/run_options.h"
 
@@ -33,11 +31,10 @@ struct SenderSample {
   double bytes_in_flight = 0;
   double sender_queue_ms = 0;
   double step_m = 0;
-  double error_bound_m = 0;
   std::uint64_t packets_dropped = 0;  // by the sender's own queue
 };
 
-/// Of a `stats` record of the sender; fields that an element does not have stay 0.
+/// Reads a `stats` record of the sender. Fields that an element does not have stay 0.
 SenderSample ReadSample(const nlohmann::json& record);
 
 /// Reads the link's log. Lines that are cut off or malformed are left out.
@@ -56,7 +53,6 @@ struct Measurements {
   int bounds_seen = 0;
   nlohmann::json sender_stats;  // the last of each
   nlohmann::json receiver_stats;
-  nlohmann::json link_summary;
 
   void AddBounds(double min_bps, double max_bps);
   double Since(std::int64_t unix_ns) const {

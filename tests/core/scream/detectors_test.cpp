@@ -76,7 +76,6 @@ TEST(L4sAlpha, AttacksWithAnEighthAndDecaysWithA128th) {
   EXPECT_DOUBLE_EQ(alpha.value(), 0.5 / 8);
   alpha.Update(kStart + 10ms, 10, 0, 40ms, 40ms);
   EXPECT_DOUBLE_EQ(alpha.value(), 0.5 / 8 * 127 / 128);
-  EXPECT_DOUBLE_EQ(alpha.last_fraction_marked(), 0);
 }
 
 TEST(L4sAlpha, GathersPacketsForTenMilliseconds) {
