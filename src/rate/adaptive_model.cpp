@@ -27,6 +27,14 @@ double CubicSlope(const std::array<double, 4>& c, double x) {
   return c[1] + x * (2 * c[2] + x * 3 * c[3]);
 }
 
+void Keep(const SliceFeatures& slice, Anchor anchor, double error, bool again,
+          SliceTracker* tracker) {
+  if (again)
+    tracker->Replace(slice.slice_index, slice.slice_count, anchor);
+  else
+    tracker->Observe(slice.slice_index, slice.slice_count, anchor, error);
+}
+
 }  // namespace
 
 double ModeCoefficients::GeometryLog2(double x, double n) const {
@@ -121,21 +129,15 @@ void AdaptiveModel::LearnGeometry(Learned* learned, const SliceFeatures& slice, 
     learned->slope = std::clamp(learned->slope + kGain * error * move / (move * move + kNoise),
                                 kMinSlope, kMaxSlope);
   }
-  if (again)
-    learned->geometry.Replace(slice.slice_index, slice.slice_count, anchor);
-  else
-    learned->geometry.Observe(slice.slice_index, slice.slice_count, anchor, error);
+  Keep(slice, anchor, error, again, &learned->geometry);
 }
 
 void AdaptiveModel::LearnIntensity(Learned* learned, const SliceFeatures& slice, double bits,
                                    double observed, bool again) {
   const double residual = observed - Mode(slice.mode).IntensityLog2(bits, N(slice.returns));
   const auto from = learned->intensity.Predict(slice.slice_index, slice.slice_count);
-  if (again)
-    learned->intensity.Replace(slice.slice_index, slice.slice_count, {bits, residual});
-  else
-    learned->intensity.Observe(slice.slice_index, slice.slice_count, {bits, residual},
-                               residual - (from ? from->residual : 0));
+  const double error = residual - (from ? from->residual : 0);
+  Keep(slice, {bits, residual}, error, again, &learned->intensity);
 }
 
 double AdaptiveModel::IntensityShare(const SliceFeatures& slice, double step_m, unsigned bits,
