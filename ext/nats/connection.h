@@ -30,7 +30,7 @@ struct ConnectionState {
   unsigned disconnections = 0;
   std::uint64_t errors = 0;  // that the server told us of
   std::string last_error;    // empty: none yet
-  // Of consumers of JetStream, which the server may have lost.
+  // How often JetStream's consumers fell silent: the server may have lost them.
   unsigned missed_heartbeats = 0;
 };
 

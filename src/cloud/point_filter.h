@@ -45,7 +45,7 @@ std::optional<std::vector<double>> ParseNumbers(const std::string& text);
 /// Sixteen numbers, row by row, or x, y, z [m], roll, pitch, yaw [degrees]: turned about x, then y,
 /// then z, then moved.
 std::optional<Transform> ParseTransform(const std::string& text);
-/// Of a position and a unit quaternion x, y, z, w.
+/// `orientation` is a unit quaternion x, y, z, w.
 Transform FromPose(const std::array<double, 3>& position, const std::array<double, 4>& orientation);
 
 /// Rows of columns.

@@ -42,8 +42,8 @@ class LocalMap {
   struct Neighbour {
     Eigen::Vector3d point;
     bool has_normal = false;
-    /// Of unit length: the one that came with the point, or that of the surface on which the points
-    /// of its cube lie.
+    /// Has unit length. It came with the point, or is that of the surface on which the points of
+    /// its cube lie.
     Eigen::Vector3d normal;
   };
   /// The nearest point within `reach_m` of `point`; cubes next to the point's own are searched, so

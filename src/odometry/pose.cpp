@@ -41,7 +41,7 @@ Pose Exp(const Twist& twist) {
 }
 
 Twist Log(const Pose& pose) {
-  // Of the two quaternions of a rotation, the one that turns the shorter way.
+  // A rotation has two quaternions: this takes the one that turns the shorter way.
   const double sign = pose.rotation.w() < 0 ? -1 : 1;
   const Eigen::Vector3d axis = sign * pose.rotation.vec();
   const double sine = axis.norm();

@@ -89,7 +89,7 @@ void ScanNormals::SumUp(const std::vector<Eigen::Vector3f>& image) {
   }
 }
 
-/// Of the returns of a ring in some bins, which may run over the end of the turn.
+/// Averages the returns of a ring in some bins, which may run over the end of the turn.
 ScanNormals::Side ScanNormals::MeanOf(int ring, int first_bin, int bins) const {
   const Eigen::Vector4d* sums = &sums_[static_cast<std::size_t>(ring) * kSums];
   const int first = first_bin & (kBins - 1);

@@ -16,7 +16,8 @@ class ScanNormals {
   /// here. Points that are not finite have no normal, nor does any if there are no rings.
   ScanNormals(const Points& points, const std::vector<std::uint16_t>& rings);
 
-  /// Of unit length, toward the sensor; zero where the neighbours of that point lie on no plane.
+  /// The normal has unit length and points to the sensor. It is zero where the neighbours of the
+  /// point lie on no plane.
   Eigen::Vector3d At(const Eigen::Vector3d& point, std::uint16_t ring) const;
 
   static constexpr std::size_t kMaxRings = 1024;  // points of others are left out

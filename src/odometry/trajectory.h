@@ -23,9 +23,9 @@ void WriteTumLine(std::ostream& out, const StampedPose& pose);
 /// One line of a KITTI file: the first three rows of the 4x4 matrix. It has no time.
 void WriteKittiLine(std::ostream& out, const Pose& pose);
 
-/// Of "tx ty tz qx qy qz qw"; none where it is not that.
+/// Reads "tx ty tz qx qy qz qw"; none for any other text.
 std::optional<Pose> ParsePose(const std::string& text);
-/// Of "vx vy vz wx wy wz"; none where it is not that.
+/// Reads "vx vy vz wx wy wz"; none for any other text.
 std::optional<Twist> ParseTwist(const std::string& text);
 
 /// Reads a TUM file (eight columns) or a KITTI file (twelve; its poses are `kitti_period` apart).

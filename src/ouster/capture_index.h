@@ -22,7 +22,7 @@ class CaptureIndex {
 
   /// When the first datagram was captured; none before it was read.
   std::optional<Time> first() const { return first_; }
-  /// Of what was read: from the first datagram to the last.
+  /// From the first datagram that was read to the last.
   Duration duration() const { return first_ ? last_ - *first_ : Duration{0}; }
   /// Where a reader sees every datagram of `time` and later of what was read; none where it has to
   /// start at the front.

@@ -13,7 +13,7 @@
 namespace lidar::ouster {
 namespace {
 
-// Of classic pcap; libpcap takes pcapng for another version.
+// The version of classic pcap; libpcap takes pcapng for another one.
 constexpr int kClassicVersion = 2;
 
 /// The number of LINKTYPE_RAW differs from the DLT_ that libpcap gives for it.

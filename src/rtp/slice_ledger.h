@@ -128,7 +128,8 @@ class SliceLedger {
   SlicePosition origin_;         // the first slice
   std::uint32_t origin_count_ = 1;
   std::set<SlicePosition> skipped_before_origin_;
-  // Of the stream that this one goes on with: what follows its end is lost, and so are these.
+  // This stream may go on with an earlier one. What follows the end of that is lost, and so are
+  // those named here.
   std::optional<SlicePosition> previous_end_;
   std::set<SlicePosition> lost_before_end_;  // the last ones
   std::optional<SlicePosition> frontier_;

@@ -100,7 +100,7 @@ class Controller {
   std::size_t LatePackets(Time now, StreamId stream) const;
   /// The next time at which OnTimer() has something to do.
   Time NextTimer() const;
-  /// Of one stream, and of all. IP, UDP and RTP included.
+  /// What one stream may send, and what all may. IP, UDP and RTP are included.
   DataRate target_bitrate(StreamId stream) const;
   DataRate target_bitrate() const { return streams_.target_bitrate(); }
   /// Stream that owns `ssrc` (it was queued or sent there), for events that travel by SSRC.

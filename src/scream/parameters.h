@@ -176,7 +176,7 @@ struct Parameters {
   /// needed_floor: a little more than what is needed, as encoders round.
   double needed_margin = 1.03;
 
-  /// Of all streams together, but for their minima.
+  /// All streams together get no more, but for their minima.
   DataRate max_total_bitrate = DataRate::Infinite();
   /// Packets older than this in the sender's queue are late (see Controller::LatePackets).
   Duration max_queue_delay = 200ms;

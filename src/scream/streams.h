@@ -37,14 +37,14 @@ class Streams {
   void OnGapEnd() {
     for (auto& [id, stream] : streams_) stream.OnGapEnd();
   }
-  // Of those that are not silent, or of all where all are.
+  // These count the streams that are not silent, or all where all are.
   DataRate min_bitrate() const;
   /// The larger of what each stream needs and its minimum.
   DataRate needed_bitrate() const;
   DataRate max_bitrate() const;
   DataRate start_bitrate() const;
   DataRate target_bitrate() const;
-  /// Of the stream with the highest target.
+  /// The stream with the highest target says it.
   Duration frame_period() const;
   /// rate_adjust_factor + frame_size_dev, weighted by target.
   double queue_compensation() const;

@@ -105,7 +105,7 @@ class FaultLink {
   bool rebind_ = false;
   std::unique_ptr<link::Bottleneck> bottleneck_;  // none: no limit
 
-  // Of the thread
+  // State of the thread.
   std::map<std::uint64_t, Datagram> queued_;  // by the bottleneck's id
   std::uint64_t next_id_ = 0;
   std::atomic<std::uint16_t> receiver_port_;

@@ -72,7 +72,7 @@ ordered_json DescribeProperty(GParamSpec* spec) {
   return property;
 }
 
-/// Of the element's own classes; those of GStreamer's are documented there.
+/// Leaves out the classes of GStreamer: their properties are documented there.
 ordered_json DescribeProperties(GstElement* element) {
   ordered_json properties = ordered_json::object();
   guint count = 0;

@@ -14,7 +14,7 @@ namespace lidar::codec::mixing {
 
 constexpr unsigned kInputs = 2 * kLanes;
 
-/// Of the inputs of a decision, in 1/kWeightOne.
+/// What the inputs of a decision count, in 1/kWeightOne.
 struct alignas(32) Weights {
   std::array<std::int16_t, kInputs> values{};
 };

@@ -86,11 +86,11 @@ class LevelPart {
   static std::uint32_t Size(const LevelAt& at) {
     return static_cast<std::uint32_t>(std::abs(at.residual));
   }
-  /// Of 32, whatever the bits are.
+  /// Scales a level to 0 to 31, whatever the bits are.
   std::uint32_t Height(std::int32_t level) const {
     return static_cast<std::uint32_t>(level * 32 / (most_ + 1));
   }
-  /// Of the return against a neighbour.
+  /// Says how far the return is behind a neighbour, or before it.
   std::uint32_t Depth(const LevelAt& at, std::int32_t bin) const {
     return at.bin < 0 ? 3U : StepClass(std::clamp(bin - at.bin, -4, 4) * kStep);
   }
@@ -192,7 +192,7 @@ class LevelPart {
   const std::int64_t step_mm_;
   std::uint32_t zero_run_ = 0;
 
-  // Of the return.
+  // Set for each return.
   std::int32_t n_ = 0, nw_ = 0, ne_ = 0, w_ = 0;
   std::int32_t predicted_ = 0;
   std::int32_t mirror_ = 1;

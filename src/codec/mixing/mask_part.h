@@ -26,7 +26,7 @@ class MaskPart {
     north_west_ = above[-1].returns;
   }
 
-  /// Of pixel `i`; `near_class` is the range class of what is nearest to it.
+  /// Codes pixel `i`. `near_class` is the range class of what is nearest to it.
   [[gnu::always_inline]] bool Code(bool bit, std::uint32_t i, std::uint32_t near_class) {
     nearby_ |= (above_[static_cast<std::ptrdiff_t>(i) + 8 - 1].returns & 1U) << 9;
     SetContexts(i, near_class);

@@ -20,7 +20,8 @@ constexpr std::array<std::uint32_t, 14> kLevelContexts = {
 /// Decisions about the small differences from a prediction: is it any, its sign, and for each sign
 /// whether it is more than 1, 2, 3.
 constexpr unsigned kSmallNodes = 8;
-/// Of larger ones: 24 bits of the length, and the bits below the highest one by place and level.
+/// Larger values take 24 nodes for the length, and others for the bits below the highest one, by
+/// place and level.
 constexpr unsigned kJumpNodes = 48;
 constexpr unsigned kLengthNodes = 24;
 

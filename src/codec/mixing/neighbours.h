@@ -32,13 +32,14 @@ inline std::uint32_t HalfOctave(std::uint32_t value) {
   return 2 * bits + (value >> (bits - 1) & 1);
 }
 
-/// Of a sum of distances in 1/16 bin, 24 classes.
+/// Puts a sum of distances in 1/16 bin into one of 24 classes.
 inline std::uint32_t UnevenClass(std::uint32_t sum) {
   if (sum < 4) return sum < 1 ? 0 : 1;
   return std::min(HalfOctave(sum) - 2, 23U);
 }
 
-/// Of a difference in 1/16 bin: up to half a bin, 1, 2, 4, 10 and more, each way; 11 classes.
+/// Puts a difference in 1/16 bin into one of 11 classes: up to half a bin, 1, 2, 4, 10 bins and
+/// more, each way.
 inline std::uint32_t OffsetClass(std::int32_t difference) {
   static constexpr auto kClasses = [] {
     std::array<std::uint8_t, 323> classes{};
@@ -57,7 +58,8 @@ inline std::uint32_t OffsetClass(std::int32_t difference) {
   return kClasses[static_cast<std::size_t>(std::clamp(difference, -161, 161) + 161)];
 }
 
-/// Of a difference in 1/16 bin: up to half a bin, 1, 3 and more, each way; 7 classes.
+/// Puts a difference in 1/16 bin into one of 7 classes: up to half a bin, 1, 3 bins and more, each
+/// way.
 inline std::uint32_t StepClass(std::int32_t difference) {
   const std::int32_t size = std::abs(difference);
   const int c = (size > 7 ? 1 : 0) + (size > 23 ? 1 : 0) + (size > 56 ? 1 : 0);

@@ -288,13 +288,13 @@ class RangePart {
   Coder& coder_;
   std::int64_t step_mm_;
 
-  // Of the row.
+  // Set for each row.
   const Azimuth* above_ = nullptr;
   const std::int32_t* north_ = nullptr;
   bool blind_ = false;
   Row row_;
 
-  // Of the return.
+  // Set for each return.
   std::int32_t n_ = 0, nw_ = 0, ne_ = 0, nee_ = 0, nn_ = 0, w_ = 0, ww_ = 0, www_ = 0;
   std::int32_t other_ = kUnknown;
   std::int32_t gradient_ = 0;

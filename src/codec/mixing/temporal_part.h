@@ -80,7 +80,7 @@ class TemporalPart {
     return mixer.Code(bit, &model_.mask_weights[(h & 7) * 2 + west], &coder_);
   }
 
-  /// Of a pixel that Knows(). kFarAway where the bin is not near what was recalled.
+  /// Codes a pixel that Knows(). Returns kFarAway where the bin is not near what was recalled.
   std::int32_t CodeBin(std::int32_t bin, const Surroundings& around) {
     base_ = value_ / kStep;
     const std::int32_t phase = value_ - CentreOf(base_);
@@ -192,14 +192,14 @@ class TemporalPart {
   TemporalModel& model_;
   Coder& coder_;
 
-  // Of the row.
+  // Set for each row.
   const PixelMemory* pixels_ = nullptr;
   std::uint32_t count_ = 0;
   Surprise* above_ = nullptr;
   Surprise west_, west2_, north_west_;
   bool west_bit_ = false;
 
-  // Of the pixel.
+  // Set for each pixel.
   std::uint32_t index_ = 0;
   bool known_ = false;
   std::int32_t value_ = 0;  // that is recalled, in 1/16 bin

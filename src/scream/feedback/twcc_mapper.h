@@ -24,7 +24,7 @@ constexpr std::size_t kMaxTwccPackets = 1 << 14;
 
 struct TwccFeedback {
   std::uint16_t base_number = 0;
-  /// Of base_number, base_number + 1, ...: arrival by the receiver's clock; none: not received.
+  /// When base_number, base_number + 1, ... arrived, by the receiver's clock; none: not received.
   std::vector<std::optional<Duration>> arrivals;
 };
 

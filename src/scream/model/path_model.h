@@ -40,7 +40,7 @@ class PathModel {
 
   /// `in_flight` includes the packet.
   void OnSent(Time now, DataSize size, Ecn ecn, DataSize in_flight);
-  /// Of a report, before the rest of it. `ref_wnd` shows whether the source uses its window.
+  /// Comes before OnReport(). `ref_wnd` shows whether the source uses its window.
   void OnRoundTrip(Time now, const AckSummary& acks, DataSize ref_wnd);
   void OnReport(Time now, const AckSummary& acks, const SenderState& sender);
   /// A gap is over: what was sent before `now` met it, and says nothing about the path now.

@@ -38,7 +38,7 @@ class RoundTripTime {
 
   bool known() const { return smoothed_.has_value(); }
   Duration smoothed() const { return smoothed_.value_or(kInitial); }
-  /// Of the last one to two kMinWindow: a path may become longer for good.
+  /// Looks back one to two kMinWindow: a path may become longer for good.
   Duration min() const { return smoothed_ ? std::min(min_, previous_min_) : kInitial; }
   Duration last() const { return last_; }
 

@@ -15,7 +15,7 @@
 namespace lidar::tools {
 namespace {
 
-/// Of a scan, where stamps tell no better.
+/// How long a scan takes, where stamps tell no better.
 constexpr Duration kUsualPeriod = std::chrono::milliseconds(100);
 constexpr Duration kLongestPeriod = std::chrono::seconds(1);
 constexpr std::uint32_t kMostRings = 1024;

@@ -93,7 +93,7 @@ std::optional<std::array<double, 6>> VelocityBetween(const Progress& before,
   const Quaternion begin = RotationOf(before);
   const Quaternion turn = Product(Inverse(begin), RotationOf(after));
   const double sine = std::hypot(turn[0], turn[1], turn[2]);
-  // Of the two quaternions of a rotation, the one that turns the shorter way.
+  // A rotation has two quaternions: this takes the one that turns the shorter way.
   const double angle = 2 * std::atan2(std::copysign(sine, turn[3]), std::abs(turn[3]));
   // The way is seen in the frame halfway, so that it does not look like a drift in a bend.
   Quaternion half = {turn[0], turn[1], turn[2], turn[3] + std::copysign(1.0, turn[3])};

@@ -33,7 +33,7 @@ struct LinkTest {
   };
   /// Scans after which a receiver has said what it has; none: it says nothing.
   std::optional<std::uint32_t> delay = 2;
-  /// Of a scan; nobody moves by default.
+  /// What a scan shows; nobody moves by default.
   std::function<RangeImage(const SensorModel&, std::uint32_t scan)> scene =
       [](const SensorModel& model, std::uint32_t scan) {
         return test::RoomScan(model, 0, kColumns, scan + 1);

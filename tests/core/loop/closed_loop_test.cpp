@@ -103,7 +103,7 @@ struct Swing {
   double tone = 0;          // amplitude of the strongest sine between 0.1 and 2 Hz, of the mean
 };
 
-/// Of rates sampled every 100 ms.
+/// `rates` were sampled every 100 ms.
 Swing Measure(const std::vector<double>& rates) {
   Swing s;
   const auto n = static_cast<double>(rates.size());
@@ -135,7 +135,7 @@ std::vector<double> Targets(const scream::test::SimulationResult& result, second
   return rates;
 }
 
-/// Of what the encoder put out, scan by scan.
+/// The rates that the encoder put out, scan by scan.
 std::vector<double> Sent(const scream::test::SimulationResult& result, seconds from,
                          seconds until) {
   std::vector<double> rates;

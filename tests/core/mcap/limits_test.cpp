@@ -82,7 +82,7 @@ TEST(McapOfOthers, ChunksMayBeAsLargeAsTheLimitAndNoLarger) {
   }
 }
 
-/// Of a chunk of the time 5, from `at` to the end of `file`.
+/// The chunk is of the time 5. It goes from `at` to the end of `file`.
 ChunkIndex IndexOf(std::uint64_t at, const Bytes& file) {
   ChunkIndex index;
   index.start_time = index.end_time = 5;

@@ -97,7 +97,7 @@ TEST(SkippedSlices, AreNotLostWhereTheWordOfThemComesAfterAnOutage) {
   Sender sender;
   auto packets = sender.ScansWithout(
       20, [](std::uint32_t s, std::uint16_t i) { return s == 4 && (i == 1 || i == 2); });
-  // Of 4.3, which would have told, only one packet comes; then an outage of scans 5 to 9.
+  // Slice 4.3 would have told, but only one packet of it comes. Then scans 5 to 9 are lost.
   bool first = true;
   packets.erase(std::remove_if(packets.begin(), packets.end(),
                                [&](const Wire& w) {

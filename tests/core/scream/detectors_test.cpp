@@ -407,7 +407,7 @@ TEST(MarkingOnset, FindsTheShortestQueuesThatAreMarked) {
 /// A frame of ten packets every 20 ms, behind a queue that grows with each.
 class LossContextTest : public ::testing::Test {
  protected:
-  /// Of each frame one packet is lost.
+  /// Each frame loses one packet.
   template <class Index>
   void Lose(int frames, Index lost) {
     for (int f = 0; f < frames; ++f, now_ += 20ms) {

@@ -24,7 +24,7 @@ class Trial {
   double MaxQueueMs(Duration from, Duration until) const {
     return result_.QueueDelay(origin_ + from, origin_ + until).max;
   }
-  /// Of what was sent then.
+  /// The part of what was sent then that was lost.
   double OwnLoss(Duration from, Duration until) const {
     double sent = 0, lost = 0;
     for (const PacketLog& p : result_.packets) {

@@ -35,7 +35,7 @@ struct DropMetrics {
   double below_rate_s = 0;  ///< until the sent rate (50 ms) is below the new capacity
 };
 
-/// Of the mean flow on either side.
+/// Figures of the mean flow on either side.
 struct BesideMetrics {
   double ours_mbps = 0, theirs_mbps = 0;
   double their_loss = 0;

@@ -257,7 +257,7 @@ TEST_F(ScanTest, GoesOutToItsEndForALittleLongerOnceItHasBegun) {
   Scan(kStart, 1);
   stream_.OnSent(kStart, 1, DataSize::Bytes(1000));
   stream_.OnSent(kStart, 1, DataSize::Bytes(1000));
-  // Of the three slices that are left.
+  // Three slices are left.
   EXPECT_EQ(stream_.LatePackets(kStart + 1050ms, DataRate::Infinite()), 0U);
   EXPECT_EQ(stream_.LatePackets(kStart + 1051ms, DataRate::Infinite()), 6U);
 }

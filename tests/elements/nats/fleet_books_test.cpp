@@ -93,7 +93,7 @@ TEST_F(FleetBooks, NoticeWhatWaitedForLongerThanTheEdgeSaid) {
   stored_.erase(stored_.begin() + 20, stored_.begin() + 30);
   sessions_[0].acknowledged = 20;
   sessions_[0].waiting = 8;
-  // Of 11 slices nine are older than the last report, which told of eight.
+  // There are 11 slices. Nine are older than the last report, which told of eight.
   const RobotBooks books = Make();
   EXPECT_EQ(books.missing.not_counted, 1U);
   EXPECT_EQ(books.missing.at_kill, 10U);

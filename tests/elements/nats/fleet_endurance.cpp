@@ -164,7 +164,7 @@ void FleetEndurance::KillSomething() {
   const std::size_t part = random_() % (workers_.empty() ? 2 : 3);
   const std::size_t which = random_();
   if (part == 0) {
-    // Of three servers, two have to be there and complete.
+    // Two of the three servers have to be there and complete.
     if (ClusterIsWhole())
       KillServer(which % kServers);
     else

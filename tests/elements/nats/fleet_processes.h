@@ -81,7 +81,7 @@ class EdgeProcess {
  private:
   using Figures = std::map<std::string, std::uint64_t, std::less<>>;
 
-  /// Of lines such as: name{robot="r1",sensor="front"} 7
+  /// Reads lines such as: name{robot="r1",sensor="front"} 7
   static std::map<std::string, Figures> Parse(const std::string& text) {
     constexpr std::string_view kLabel = "{robot=\"";
     std::map<std::string, Figures> robots;

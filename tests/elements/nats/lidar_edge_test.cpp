@@ -33,7 +33,6 @@ class LidarEdge : public NatsTest {
       return metrics_port_ > 0;
     }));
   }
-  /// Of one robot.
   std::size_t Recordings(const std::string& robot) const {
     std::size_t count = 0;
     for (const auto& entry : std::filesystem::directory_iterator(server_.folder()))

@@ -52,7 +52,7 @@ class NatsPipeline {
     if (GST_MESSAGE_TYPE(message.get()) == GST_MESSAGE_EOS) return "";
     return Text(message.get(), gst_message_parse_error);
   }
-  /// Of the next warning.
+  /// The text of the next warning.
   std::string WaitForWarning() {
     const gst::MessagePtr message(gst_bus_timed_pop_filtered(
         bus_, GST_SECOND * static_cast<GstClockTime>(kPatience.count()), GST_MESSAGE_WARNING));

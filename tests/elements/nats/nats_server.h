@@ -35,7 +35,7 @@ inline bool Eventually(const std::function<bool()>& holds) {
 
 class NatsServer {
  public:
-  /// Of Debian, in a folder that the path of users may lack.
+  /// Debian has it in a folder that the path of users may lack.
   static std::string Program() {
     for (const char* path : {"/usr/sbin/nats-server", "/usr/local/bin/nats-server"})
       if (access(path, X_OK) == 0) return path;

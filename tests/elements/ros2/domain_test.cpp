@@ -11,7 +11,7 @@
 namespace lidar::dds {
 namespace {
 
-// Of no element.
+// No element uses it.
 constexpr std::uint32_t kDomain = 231;
 
 std::unique_ptr<Domain> Join() {

@@ -43,7 +43,7 @@ double CpuSeconds() {
   return seconds(usage.ru_utime) + seconds(usage.ru_stime);
 }
 
-/// Of one side.
+/// What one side counted.
 struct Report {
   unsigned taken = 0;
   unsigned wrong = 0;

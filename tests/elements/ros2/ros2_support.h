@@ -91,7 +91,7 @@ class Ros2Test : public ::testing::Test {
     if (bus_ != nullptr) gst_object_unref(bus_);
   }
   gst::BufferPtr Pull() { return gst::BufferPtr(gst_harness_pull(h_.get())); }
-  /// Of the caps that came, as text.
+  /// A field of the caps that came, as text.
   std::string Field(const char* name) {
     const gst::CapsPtr caps(gst_pad_get_current_caps(h_->sinkpad));
     const GValue* value = gst_structure_get_value(gst_caps_get_structure(caps.get(), 0), name);

@@ -47,7 +47,7 @@ TEST(RtpLidarDepay, TellsSlicesThatWereNeverSentFromLostOnes) {
     Harness pay(gst_harness_new("rtplidarpay"));
     g_object_set(pay->element, "aggregate", aggregate, nullptr);
     gst_harness_set_src_caps_str(pay.get(), EncodedCaps().c_str());
-    // Of each scan slice 1 is left out, and scan 3 altogether.
+    // Slice 1 of each scan is left out, and so is all of scan 3.
     for (guint s = 0; s < 6; ++s)
       for (guint i = 0; i < kSlices; ++i)
         if (s != 3 && i != 1) gst_harness_push(pay.get(), EncodedSlice(s, i, 200));

@@ -231,8 +231,8 @@ TEST_F(ScreamAux, AbsurdReportsDoNoHarm) {
 }
 
 TEST_F(ScreamAux, MeasuresDelayInTicksOfTheReport) {
-  // Of two packets in a report that arrive 21 ms apart the first seems to have come almost half a
-  // millisecond earlier, where times are in 1/1024 s.
+  // Two packets of a report arrive 21 ms apart. Where times are in 1/1024 s, the first seems to
+  // have come almost half a millisecond earlier.
   constexpr guint64 kTick = 250 * GST_USECOND;
   guint number = 0;
   for (int report = 0; report < 8; ++report) {
