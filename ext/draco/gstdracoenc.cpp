@@ -68,11 +68,7 @@ struct _GstLidarDracoEnc {
 G_DEFINE_TYPE(GstLidarDracoEnc, gst_lidar_draco_enc, GST_TYPE_LIDAR_ENCODER)
 GST_ELEMENT_REGISTER_DEFINE(dracoenc, "dracoenc", GST_RANK_NONE, gst_lidar_draco_enc_get_type())
 
-namespace {
-
-Coder& CoderOf(GstLidarEncoder* base) { return GST_LIDAR_DRACO_ENC(base)->state->coder; }
-
-}  // namespace
+static Coder& CoderOf(GstLidarEncoder* base) { return GST_LIDAR_DRACO_ENC(base)->state->coder; }
 
 static gboolean gst_lidar_draco_enc_set_format(GstLidarEncoder* base,
                                                const GstLidarCloudFormat* cloud,

@@ -91,9 +91,23 @@ struct State {
   guint next_pad = 0;  // under the object's lock
 };
 
-lidar::gst::StructurePtr Stats(GObject* object);
+}  // namespace
 
-const std::array<lidar::gst::Property<Settings>, 9> kProperties = {{
+struct _GstLidarMcapSink {
+  GstBin parent;
+  State* state;
+};
+
+G_DEFINE_TYPE(GstLidarMcapSink, gst_lidar_mcap_sink, GST_TYPE_BIN)
+GST_ELEMENT_REGISTER_DEFINE(mcapsink, "mcapsink", GST_RANK_NONE, GST_TYPE_LIDAR_MCAP_SINK)
+
+static lidar::gst::StructurePtr Stats(GObject* object) {
+  State& state = *GST_LIDAR_MCAP_SINK(object)->state;
+  std::lock_guard lock(state.mutex);
+  return lidar::gst::ToStructure("mcap-sink-stats", kStats, state.counters);
+}
+
+static const std::array<lidar::gst::Property<Settings>, 9> kProperties = {{
     {"location", "File to write; with a number (rec-%05d.mcap) a file after the other",
      &Settings::location},
     {"compression", "Of the chunks that get smaller by it",
@@ -114,25 +128,7 @@ const std::array<lidar::gst::Property<Settings>, 9> kProperties = {{
     {"stats", "messages, bytes, files, chunks", Stats},
 }};
 
-}  // namespace
-
-struct _GstLidarMcapSink {
-  GstBin parent;
-  State* state;
-};
-
-G_DEFINE_TYPE(GstLidarMcapSink, gst_lidar_mcap_sink, GST_TYPE_BIN)
-GST_ELEMENT_REGISTER_DEFINE(mcapsink, "mcapsink", GST_RANK_NONE, GST_TYPE_LIDAR_MCAP_SINK)
-
-namespace {
-
-lidar::gst::StructurePtr Stats(GObject* object) {
-  State& state = *GST_LIDAR_MCAP_SINK(object)->state;
-  std::lock_guard lock(state.mutex);
-  return lidar::gst::ToStructure("mcap-sink-stats", kStats, state.counters);
-}
-
-void PostFault(GstLidarMcapSink* self, const RecorderFault& fault) {
+static void PostFault(GstLidarMcapSink* self, const RecorderFault& fault) {
   const gchar* reason = g_strerror(fault.error);
   if (fault.error == ENOSPC || fault.error == EDQUOT)
     GST_ELEMENT_ERROR(self, RESOURCE, NO_SPACE_LEFT,
@@ -148,7 +144,8 @@ void PostFault(GstLidarMcapSink* self, const RecorderFault& fault) {
 }
 
 /// Tells the application of each file that is complete.
-void PostFinished(GstLidarMcapSink* self, const std::vector<lidar::gst::RecordedFile>& files) {
+static void PostFinished(GstLidarMcapSink* self,
+                         const std::vector<lidar::gst::RecordedFile>& files) {
   for (const auto& file : files) {
     const auto& s = file.statistics;
     GST_INFO_OBJECT(self, "%s is complete", file.path.c_str());
@@ -165,7 +162,7 @@ void PostFinished(GstLidarMcapSink* self, const std::vector<lidar::gst::Recorded
 }
 
 /// Lets `stats` see what was counted; for whoever holds `recording`.
-void TellCounters(State* state) {
+static void TellCounters(State* state) {
   if (state->recorder) state->counted.chunks = state->recorder->chunks();
   std::lock_guard lock(state->mutex);
   state->counters = state->counted;
@@ -174,7 +171,7 @@ void TellCounters(State* state) {
 /// Runs `work` on the recorder under its lock, and posts what comes of it without. False where the
 /// recording is over.
 template <class Work>
-bool WithRecorder(GstLidarMcapSink* self, Work work) {
+static bool WithRecorder(GstLidarMcapSink* self, Work work) {
   State& state = *self->state;
   std::optional<RecorderFault> fault;
   std::vector<lidar::gst::RecordedFile> finished;
@@ -193,7 +190,7 @@ bool WithRecorder(GstLidarMcapSink* self, Work work) {
 }
 
 /// A recorder for the settings; NULL and a message where there can be none.
-bool Start(GstLidarMcapSink* self) {
+static bool Start(GstLidarMcapSink* self) {
   State& state = *self->state;
   std::string why = "there is no location";
   std::optional<RecorderFault> fault;
@@ -228,11 +225,11 @@ bool Start(GstLidarMcapSink* self) {
   return false;
 }
 
-void Finish(GstLidarMcapSink* self) {
+static void Finish(GstLidarMcapSink* self) {
   WithRecorder(self, [](State* state) { return state->recorder->Finish(); });
 }
 
-GstStateChangeReturn ChangeState(GstElement* element, GstStateChange transition) {
+static GstStateChangeReturn ChangeState(GstElement* element, GstStateChange transition) {
   auto* self = GST_LIDAR_MCAP_SINK(element);
   if (transition == GST_STATE_CHANGE_READY_TO_PAUSED && !Start(self))
     return GST_STATE_CHANGE_FAILURE;
@@ -242,8 +239,8 @@ GstStateChangeReturn ChangeState(GstElement* element, GstStateChange transition)
   return result;
 }
 
-GstPad* RequestPad(GstElement* element, GstPadTemplate* pad_template, const gchar* wanted,
-                   const GstCaps*) {
+static GstPad* RequestPad(GstElement* element, GstPadTemplate* pad_template, const gchar* wanted,
+                          const GstCaps*) {
   auto* self = GST_LIDAR_MCAP_SINK(element);
   std::string name;
   do {
@@ -268,7 +265,7 @@ GstPad* RequestPad(GstElement* element, GstPadTemplate* pad_template, const gcha
   return nullptr;
 }
 
-void ReleasePad(GstElement* element, GstPad* pad) {
+static void ReleasePad(GstElement* element, GstPad* pad) {
   const lidar::gst::StringPtr name(gst_pad_get_name(pad));
   GstElement* stream = gst_bin_get_by_name(GST_BIN(element), name.get());
   gst_pad_set_active(pad, FALSE);
@@ -281,7 +278,7 @@ void ReleasePad(GstElement* element, GstPad* pad) {
 }
 
 /// What needs a channel of its own. The message of a cloud says its width itself.
-std::string KindOf(const GstCaps* caps, lidar::gst::MessageType type) {
+static std::string KindOf(const GstCaps* caps, lidar::gst::MessageType type) {
   const lidar::gst::CapsPtr kind(gst_caps_copy(caps));
   if (type == lidar::gst::MessageType::kCloud)
     gst_structure_remove_field(gst_caps_get_structure(kind.get(), 0), "width");
@@ -289,7 +286,7 @@ std::string KindOf(const GstCaps* caps, lidar::gst::MessageType type) {
 }
 
 /// True where every stream has ended.
-bool HaveAllEnded(GstLidarMcapSink* self) {
+static bool HaveAllEnded(GstLidarMcapSink* self) {
   bool all = true;
   GST_OBJECT_LOCK(self);
   for (GList* child = GST_BIN_CHILDREN(self); child != nullptr; child = child->next)
@@ -297,8 +294,6 @@ bool HaveAllEnded(GstLidarMcapSink* self) {
   GST_OBJECT_UNLOCK(self);
   return all;
 }
-
-}  // namespace
 
 namespace lidar::gst {
 

@@ -74,19 +74,6 @@ struct State {
   Run run;
 };
 
-lidar::gst::StructurePtr Stats(GObject* object);
-
-const std::array<lidar::gst::Property<Settings>, 3> kProperties = {{
-    {"location", "File to play; with a number (rec-%05d.mcap) all files of a recording",
-     &Settings::location},
-    {"topic", "Play this topic only; NULL: all", &Settings::topic},
-    {"stats",
-     "messages, messages-dropped, chunks-damaged, files-unclosed (which are played up to their "
-     "end),"
-     " files-unreadable",
-     Stats},
-}};
-
 }  // namespace
 
 struct _GstLidarMcapSrc {
@@ -100,21 +87,30 @@ GST_ELEMENT_REGISTER_DEFINE(mcapsrc, "mcapsrc", GST_RANK_NONE, GST_TYPE_LIDAR_MC
 static GstStaticPadTemplate src_template =
     GST_STATIC_PAD_TEMPLATE("src_%u", GST_PAD_SRC, GST_PAD_SOMETIMES, GST_STATIC_CAPS_ANY);
 
-namespace {
+static gboolean SrcEvent(GstPad* pad, GstObject* parent, GstEvent* event);
 
-gboolean SrcEvent(GstPad* pad, GstObject* parent, GstEvent* event);
-
-lidar::gst::StructurePtr Stats(GObject* object) {
+static lidar::gst::StructurePtr Stats(GObject* object) {
   State& state = *GST_LIDAR_MCAP_SRC(object)->state;
   std::lock_guard lock(state.mutex);
   return lidar::gst::ToStructure("mcap-src-stats", kStats, state.counters);
 }
 
-bool IsWanted(const Settings& settings, const std::string& topic) {
+static const std::array<lidar::gst::Property<Settings>, 3> kProperties = {{
+    {"location", "File to play; with a number (rec-%05d.mcap) all files of a recording",
+     &Settings::location},
+    {"topic", "Play this topic only; NULL: all", &Settings::topic},
+    {"stats",
+     "messages, messages-dropped, chunks-damaged, files-unclosed (which are played up to their "
+     "end),"
+     " files-unreadable",
+     Stats},
+}};
+
+static bool IsWanted(const Settings& settings, const std::string& topic) {
   return settings.topic.empty() || settings.topic == topic;
 }
 
-gboolean SrcQuery(GstPad* pad, GstObject* parent, GstQuery* query) {
+static gboolean SrcQuery(GstPad* pad, GstObject* parent, GstQuery* query) {
   State& state = *GST_LIDAR_MCAP_SRC(parent)->state;
   {
     std::lock_guard lock(state.mutex);
@@ -123,7 +119,7 @@ gboolean SrcQuery(GstPad* pad, GstObject* parent, GstQuery* query) {
   return gst_pad_query_default(pad, parent, query);
 }
 
-GstPad* NewPad(const std::string& name) {
+static GstPad* NewPad(const std::string& name) {
   GstPad* pad = gst_pad_new_from_static_template(&src_template, name.c_str());
   gst_pad_use_fixed_caps(pad);
   gst_pad_set_event_function(pad, SrcEvent);
@@ -131,7 +127,7 @@ GstPad* NewPad(const std::string& name) {
   return pad;
 }
 
-std::string TopicNames(const Playback& playback) {
+static std::string TopicNames(const Playback& playback) {
   std::string names;
   for (const auto& topic : playback.topics())
     names += (names.empty() ? "" : ", ") + topic.channel.topic + " (" + topic.schema.name + ")";
@@ -139,14 +135,14 @@ std::string TopicNames(const Playback& playback) {
 }
 
 /// True where there is something to play, as far as known before it is read.
-bool HasTopic(const Playback& playback, const Settings& settings) {
+static bool HasTopic(const Playback& playback, const Settings& settings) {
   return std::any_of(playback.topics().begin(), playback.topics().end(), [&](const auto& topic) {
     return IsWanted(settings, topic.channel.topic) &&
            lidar::gst::MessageReader::Make(topic.schema, topic.channel) != nullptr;
   });
 }
 
-bool Open(GstLidarMcapSrc* self) {
+static bool Open(GstLidarMcapSrc* self) {
   State& state = *self->state;
   Settings settings;
   {
@@ -191,7 +187,7 @@ bool Open(GstLidarMcapSrc* self) {
 }
 
 /// A seek without a flush goes on from the end.
-void PostSegmentDone(GstLidarMcapSrc* self, gint64 position) {
+static void PostSegmentDone(GstLidarMcapSrc* self, gint64 position) {
   const guint32 seqnum = self->state->run.streams->seqnum();
   {
     std::lock_guard lock(self->state->mutex);
@@ -202,7 +198,7 @@ void PostSegmentDone(GstLidarMcapSrc* self, gint64 position) {
   gst_element_post_message(GST_ELEMENT(self), message);
 }
 
-void Finish(GstLidarMcapSrc* self) {
+static void Finish(GstLidarMcapSrc* self) {
   StreamGroup& streams = *self->state->run.streams;
   streams.EndPads();
   if (!streams.has_pads() && !self->state->end_wanted)
@@ -216,7 +212,7 @@ void Finish(GstLidarMcapSrc* self) {
 }
 
 /// Posts what is an error, and stops the task.
-void Stop(GstLidarMcapSrc* self, GstFlowReturn flow) {
+static void Stop(GstLidarMcapSrc* self, GstFlowReturn flow) {
   GST_DEBUG_OBJECT(self, "stops: %s", gst_flow_get_name(flow));
   // First, so that a seek that answers the end starts it again.
   self->state->task.Pause();
@@ -226,7 +222,7 @@ void Stop(GstLidarMcapSrc* self, GstFlowReturn flow) {
   self->state->run.streams->End(gst_event_new_eos());
 }
 
-void Count(State* state, bool dropped, GstClockTime position) {
+static void Count(State* state, bool dropped, GstClockTime position) {
   std::lock_guard lock(state->mutex);
   ++state->counters.messages;
   if (dropped) ++state->counters.messages_dropped;
@@ -234,7 +230,7 @@ void Count(State* state, bool dropped, GstClockTime position) {
   state->segment.position = position;
 }
 
-GstFlowReturn PlayItem(GstLidarMcapSrc* self, const Playback::Item& item, GstClockTime pts) {
+static GstFlowReturn PlayItem(GstLidarMcapSrc* self, const Playback::Item& item, GstClockTime pts) {
   StreamGroup& streams = *self->state->run.streams;
   StreamGroup::Played played = streams.Read(item, pts);
   Count(self->state, played.buffer == nullptr, pts);
@@ -243,7 +239,7 @@ GstFlowReturn PlayItem(GstLidarMcapSrc* self, const Playback::Item& item, GstClo
   return GST_FLOW_OK;
 }
 
-void Loop(gpointer user_data) {
+static void Loop(gpointer user_data) {
   auto* self = GST_LIDAR_MCAP_SRC(user_data);
   State& state = *self->state;
   Run& run = state.run;
@@ -262,7 +258,7 @@ void Loop(gpointer user_data) {
 }
 
 /// Pads of the element, so that they can be told without touching what the task owns.
-void PushToAll(GstLidarMcapSrc* self, GstEvent* event) {
+static void PushToAll(GstLidarMcapSrc* self, GstEvent* event) {
   GST_OBJECT_LOCK(self);
   GList* pads = g_list_copy_deep(
       GST_ELEMENT(self)->srcpads,
@@ -275,7 +271,7 @@ void PushToAll(GstLidarMcapSrc* self, GstEvent* event) {
 }
 
 /// The task stands still and its lock is held.
-void Restart(GstLidarMcapSrc* self, const Seek& seek, GstSegment segment) {
+static void Restart(GstLidarMcapSrc* self, const Seek& seek, GstSegment segment) {
   State& state = *self->state;
   Run& run = state.run;
   {
@@ -286,12 +282,12 @@ void Restart(GstLidarMcapSrc* self, const Seek& seek, GstSegment segment) {
   run.streams->Restart(segment, seek.seqnum());
 }
 
-void PushFlush(GstLidarMcapSrc* self, const Seek& seek, GstEvent* event) {
+static void PushFlush(GstLidarMcapSrc* self, const Seek& seek, GstEvent* event) {
   gst_event_set_seqnum(event, seek.seqnum());
   PushToAll(self, event);
 }
 
-bool DoSeek(GstLidarMcapSrc* self, GstEvent* event) {
+static bool DoSeek(GstLidarMcapSrc* self, GstEvent* event) {
   State& state = *self->state;
   const Seek seek(event);
   std::optional<GstSegment> segment;
@@ -317,13 +313,13 @@ bool DoSeek(GstLidarMcapSrc* self, GstEvent* event) {
   return open;
 }
 
-gboolean SrcEvent(GstPad* pad, GstObject* parent, GstEvent* event) {
+static gboolean SrcEvent(GstPad* pad, GstObject* parent, GstEvent* event) {
   if (GST_EVENT_TYPE(event) != GST_EVENT_SEEK) return gst_pad_event_default(pad, parent, event);
   const lidar::gst::EventPtr owner(event);
   return DoSeek(GST_LIDAR_MCAP_SRC(parent), event);
 }
 
-gboolean SendEvent(GstElement* element, GstEvent* event) {
+static gboolean SendEvent(GstElement* element, GstEvent* event) {
   auto* self = GST_LIDAR_MCAP_SRC(element);
   const lidar::gst::EventPtr owner(event);
   if (GST_EVENT_TYPE(event) == GST_EVENT_SEEK) return DoSeek(self, event);
@@ -333,7 +329,7 @@ gboolean SendEvent(GstElement* element, GstEvent* event) {
 }
 
 /// The task is gone and the pads are inactive.
-void Close(GstLidarMcapSrc* self) {
+static void Close(GstLidarMcapSrc* self) {
   State& state = *self->state;
   {
     std::lock_guard lock(state.mutex);
@@ -348,7 +344,7 @@ void Close(GstLidarMcapSrc* self) {
   state.end_wanted = false;
 }
 
-GstStateChangeReturn ChangeState(GstElement* element, GstStateChange transition) {
+static GstStateChangeReturn ChangeState(GstElement* element, GstStateChange transition) {
   auto* self = GST_LIDAR_MCAP_SRC(element);
   State& state = *self->state;
   if (transition == GST_STATE_CHANGE_READY_TO_PAUSED && !Open(self))
@@ -371,8 +367,6 @@ GstStateChangeReturn ChangeState(GstElement* element, GstStateChange transition)
 State::State(GstLidarMcapSrc* self) : task(Loop, self) {
   gst_segment_init(&segment, GST_FORMAT_TIME);
 }
-
-}  // namespace
 
 static void gst_lidar_mcap_src_init(GstLidarMcapSrc* self) {
   self->state = new State(self);

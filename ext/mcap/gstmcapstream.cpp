@@ -45,11 +45,9 @@ struct _GstLidarMcapStream {
 
 G_DEFINE_TYPE(GstLidarMcapStream, gst_lidar_mcap_stream, GST_TYPE_BASE_SINK)
 
-namespace {
+static State& StateOf(gpointer self) { return *GST_LIDAR_MCAP_STREAM(self)->state; }
 
-State& StateOf(gpointer self) { return *GST_LIDAR_MCAP_STREAM(self)->state; }
-
-gboolean SetCaps(GstBaseSink* base, GstCaps* caps) {
+static gboolean SetCaps(GstBaseSink* base, GstCaps* caps) {
   State& state = StateOf(base);
   const StreamSettings settings = lidar::gst::Snapshot(state);
   std::string why;
@@ -69,7 +67,7 @@ gboolean SetCaps(GstBaseSink* base, GstCaps* caps) {
                                         &state.stream);
 }
 
-GstFlowReturn Render(GstBaseSink* base, GstBuffer* buffer) {
+static GstFlowReturn Render(GstBaseSink* base, GstBuffer* buffer) {
   State& state = StateOf(base);
   if (!state.writer) return GST_FLOW_NOT_NEGOTIATED;
   const GstClockTime running_time =
@@ -80,7 +78,7 @@ GstFlowReturn Render(GstBaseSink* base, GstBuffer* buffer) {
                                   running_time);
 }
 
-gboolean Event(GstBaseSink* base, GstEvent* event) {
+static gboolean Event(GstBaseSink* base, GstEvent* event) {
   State& state = StateOf(base);
   if (GST_EVENT_TYPE(event) == GST_EVENT_FLUSH_STOP) {
     state.ended = false;
@@ -94,7 +92,7 @@ gboolean Event(GstBaseSink* base, GstEvent* event) {
 }
 
 /// Each recording has channels of its own, also where the element was only READY in between.
-GstStateChangeReturn ChangeState(GstElement* element, GstStateChange transition) {
+static GstStateChangeReturn ChangeState(GstElement* element, GstStateChange transition) {
   if (transition == GST_STATE_CHANGE_READY_TO_PAUSED) {
     State& state = StateOf(element);
     state.writer.reset();
@@ -105,8 +103,6 @@ GstStateChangeReturn ChangeState(GstElement* element, GstStateChange transition)
   }
   return GST_ELEMENT_CLASS(gst_lidar_mcap_stream_parent_class)->change_state(element, transition);
 }
-
-}  // namespace
 
 static void gst_lidar_mcap_stream_init(GstLidarMcapStream* self) { self->state = new State; }
 

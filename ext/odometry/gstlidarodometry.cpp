@@ -86,10 +86,27 @@ struct State {
   Stream stream;
 };
 
-lidar::gst::StructurePtr ReadStats(GObject* object);
-
 using lidar::gst::At;
-const std::array<lidar::gst::Property<Settings>, 9> kProperties = {{
+}  // namespace
+
+G_DECLARE_FINAL_TYPE(GstLidarOdometry, gst_lidar_odometry, GST, LIDAR_ODOMETRY, GstBaseTransform)
+struct _GstLidarOdometry {
+  GstBaseTransform parent;
+  GstPad* poses;
+  State* state;
+};
+
+G_DEFINE_TYPE(GstLidarOdometry, gst_lidar_odometry, GST_TYPE_BASE_TRANSFORM)
+GST_ELEMENT_REGISTER_DEFINE(lidarodometry, "lidarodometry", GST_RANK_NONE,
+                            gst_lidar_odometry_get_type())
+
+static lidar::gst::StructurePtr ReadStats(GObject* object) {
+  State& state = *GST_LIDAR_ODOMETRY(object)->state;
+  std::lock_guard lock(state.mutex);
+  return lidar::gst::ToStructure("application/x-lidar-odometry-stats", kStats, state.counters);
+}
+
+static const std::array<lidar::gst::Property<Settings>, 9> kProperties = {{
     {"max-range", "Points farther away are left out; also the radius of the map [m]",
      At<&Settings::odometry, &OdometrySettings::max_range_m>, 1, 1000},
     {"min-range", "Points nearer than that are left out: the vehicle itself [m]",
@@ -116,28 +133,7 @@ const std::array<lidar::gst::Property<Settings>, 9> kProperties = {{
      ReadStats},
 }};
 
-}  // namespace
-
-G_DECLARE_FINAL_TYPE(GstLidarOdometry, gst_lidar_odometry, GST, LIDAR_ODOMETRY, GstBaseTransform)
-struct _GstLidarOdometry {
-  GstBaseTransform parent;
-  GstPad* poses;
-  State* state;
-};
-
-G_DEFINE_TYPE(GstLidarOdometry, gst_lidar_odometry, GST_TYPE_BASE_TRANSFORM)
-GST_ELEMENT_REGISTER_DEFINE(lidarodometry, "lidarodometry", GST_RANK_NONE,
-                            gst_lidar_odometry_get_type())
-
-namespace {
-
-lidar::gst::StructurePtr ReadStats(GObject* object) {
-  State& state = *GST_LIDAR_ODOMETRY(object)->state;
-  std::lock_guard lock(state.mutex);
-  return lidar::gst::ToStructure("application/x-lidar-odometry-stats", kStats, state.counters);
-}
-
-GstLidarPose ToMeta(const Pose& pose, Tracking tracking) {
+static GstLidarPose ToMeta(const Pose& pose, Tracking tracking) {
   const auto& p = pose.position;
   const auto& q = pose.rotation;
   return {
@@ -145,14 +141,14 @@ GstLidarPose ToMeta(const Pose& pose, Tracking tracking) {
 }
 
 /// When the first column of `buffer` was sampled: its capture time, or else its timestamp.
-std::optional<Time> SampledAt(GstBuffer* buffer) {
+static std::optional<Time> SampledAt(GstBuffer* buffer) {
   const GstClockTime captured = gst_lidar_buffer_get_capture_time(buffer);
   const GstClockTime at = GST_CLOCK_TIME_IS_VALID(captured) ? captured : GST_BUFFER_PTS(buffer);
   if (!GST_CLOCK_TIME_IS_VALID(at)) return std::nullopt;
   return Time{} + Duration{static_cast<std::int64_t>(at)};
 }
 
-void CountScan(State* state, const Estimate& estimate, GstClockTime time) {
+static void CountScan(State* state, const Estimate& estimate, GstClockTime time) {
   std::lock_guard lock(state->mutex);
   Counters& c = state->counters;
   ++c.scans;
@@ -166,7 +162,7 @@ void CountScan(State* state, const Estimate& estimate, GstClockTime time) {
 }
 
 /// A warning where tracking begins to fail: once, until it works again.
-void WarnIfLost(GstLidarOdometry* self, const Estimate& estimate) {
+static void WarnIfLost(GstLidarOdometry* self, const Estimate& estimate) {
   Stream& stream = self->state->stream;
   const bool lost = estimate.tracking == Tracking::kLost;
   if (lost && !stream.posted_lost) {
@@ -179,7 +175,7 @@ void WarnIfLost(GstLidarOdometry* self, const Estimate& estimate) {
   stream.posted_lost = lost;
 }
 
-void PostMessage(GstLidarOdometry* self, const Estimate& e) {
+static void PostMessage(GstLidarOdometry* self, const Estimate& e) {
   const GstLidarPose pose = ToMeta(e.pose, e.tracking);
   const gdouble* p = pose.position;
   const gdouble* q = pose.orientation;
@@ -196,7 +192,7 @@ void PostMessage(GstLidarOdometry* self, const Estimate& e) {
                             e.inlier_share, nullptr)));
 }
 
-void WriteTrajectory(GstLidarOdometry* self, const Estimate& estimate) {
+static void WriteTrajectory(GstLidarOdometry* self, const Estimate& estimate) {
   Stream& stream = self->state->stream;
   if (!stream.trajectory.is_open() || stream.posted_full) return;
   lidar::odometry::WriteTumLine(stream.trajectory.stream(), {estimate.time, estimate.pose});
@@ -208,7 +204,7 @@ void WriteTrajectory(GstLidarOdometry* self, const Estimate& estimate) {
 }
 
 /// One buffer for each scan: 7 doubles and the tracking, little-endian. Nobody has to link the pad.
-void PushPose(GstLidarOdometry* self, const Estimate& estimate, GstClockTime pts) {
+static void PushPose(GstLidarOdometry* self, const Estimate& estimate, GstClockTime pts) {
   if (!gst_pad_is_linked(self->poses)) return;
   const GstLidarPose pose = ToMeta(estimate.pose, estimate.tracking);
   std::array<guint64, 8> words{};
@@ -226,7 +222,7 @@ void PushPose(GstLidarOdometry* self, const Estimate& estimate, GstClockTime pts
 }
 
 /// Aligns the scan that is open, if there is one. `pts` is that of its last buffer.
-void FinishScan(GstLidarOdometry* self, GstClockTime pts) {
+static void FinishScan(GstLidarOdometry* self, GstClockTime pts) {
   State& state = *self->state;
   Stream& stream = state.stream;
   const auto scan = stream.collector.Take();
@@ -247,7 +243,8 @@ void FinishScan(GstLidarOdometry* self, GstClockTime pts) {
 }
 
 /// True where the buffer could be added to a scan.
-bool AddBuffer(GstLidarOdometry* self, GstBuffer* buffer, const GstLidarSlice& slice, Time at) {
+static bool AddBuffer(GstLidarOdometry* self, GstBuffer* buffer, const GstLidarSlice& slice,
+                      Time at) {
   Stream& stream = self->state->stream;
   const lidar::gst::BufferMap map(buffer, GST_MAP_READ);
   if (!map || map.size() % stream.info->point_step != 0) return false;
@@ -255,7 +252,7 @@ bool AddBuffer(GstLidarOdometry* self, GstBuffer* buffer, const GstLidarSlice& s
   return true;
 }
 
-GstFlowReturn TransformIp(GstBaseTransform* base, GstBuffer* buffer) {
+static GstFlowReturn TransformIp(GstBaseTransform* base, GstBuffer* buffer) {
   auto* self = GST_LIDAR_ODOMETRY(base);
   Stream& stream = self->state->stream;
   if (!stream.info || !stream.odometry) return GST_FLOW_NOT_NEGOTIATED;
@@ -281,7 +278,7 @@ GstFlowReturn TransformIp(GstBaseTransform* base, GstBuffer* buffer) {
   return GST_FLOW_OK;
 }
 
-gboolean SetCaps(GstBaseTransform* base, GstCaps* in, GstCaps*) {
+static gboolean SetCaps(GstBaseTransform* base, GstCaps* in, GstCaps*) {
   Stream& stream = GST_LIDAR_ODOMETRY(base)->state->stream;
   FinishScan(GST_LIDAR_ODOMETRY(base), GST_CLOCK_TIME_NONE);
   stream.info = CloudInfo::FromCaps(in);
@@ -292,7 +289,7 @@ gboolean SetCaps(GstBaseTransform* base, GstCaps* in, GstCaps*) {
   return FALSE;
 }
 
-gboolean SinkEvent(GstBaseTransform* base, GstEvent* event) {
+static gboolean SinkEvent(GstBaseTransform* base, GstEvent* event) {
   auto* self = GST_LIDAR_ODOMETRY(base);
   Stream& stream = self->state->stream;
   switch (GST_EVENT_TYPE(event)) {
@@ -318,7 +315,7 @@ gboolean SinkEvent(GstBaseTransform* base, GstEvent* event) {
   return GST_BASE_TRANSFORM_CLASS(gst_lidar_odometry_parent_class)->sink_event(base, event);
 }
 
-gboolean Start(GstBaseTransform* base) {
+static gboolean Start(GstBaseTransform* base) {
   auto* self = GST_LIDAR_ODOMETRY(base);
   State& state = *self->state;
   Settings settings = lidar::gst::Snapshot(state);
@@ -358,12 +355,10 @@ gboolean Start(GstBaseTransform* base) {
   return FALSE;
 }
 
-gboolean Stop(GstBaseTransform* base) {
+static gboolean Stop(GstBaseTransform* base) {
   GST_LIDAR_ODOMETRY(base)->state->stream = {};
   return TRUE;
 }
-
-}  // namespace
 
 static void gst_lidar_odometry_init(GstLidarOdometry* self) {
   self->state = new State;

@@ -46,24 +46,6 @@ struct State {
   std::atomic<guint> next_pad{0};
 };
 
-lidar::gst::StructurePtr ReadStats(GObject* object);
-
-const std::array<lidar::gst::Property<Settings>, 7> kProperties = {{
-    {"port", "TCP port; 0: one that is free, as stats tell", &Settings::port, 0, 65535},
-    {"bind-address", "Address to listen on; others than of this machine need a token",
-     &Settings::bind_address},
-    {"token", "What clients must name: http://host:port/?token=...; NULL: nothing",
-     &Settings::token},
-    {"max-clients", "How many may be connected at a time", &Settings::max_clients, 1, 1000},
-    {"max-points", "The most points of a message, of more every n-th is sent; 0: all",
-     &Settings::max_points},
-    {"sync", "Show buffers when the pipeline's clock says, not as they come", &Settings::sync},
-    {"stats",
-     "port, clients, clients-accepted, clients-refused, connections-evicted, messages-sent, "
-     "messages-dropped, bytes-sent [bytes], clouds, points-sent, scan-duration [ns], malformed",
-     ReadStats},
-}};
-
 struct Counters {
   guint port = 0;
   guint64 clients = 0;
@@ -124,15 +106,13 @@ G_DEFINE_TYPE_WITH_CODE(GstLidarFoxgloveSink, gst_lidar_foxglove_sink, GST_TYPE_
 GST_ELEMENT_REGISTER_DEFINE(foxglovesink, "foxglovesink", GST_RANK_NONE,
                             GST_TYPE_LIDAR_FOXGLOVE_SINK)
 
-namespace {
-
-std::shared_ptr<Hub> HubOf(GObject* object) {
+static std::shared_ptr<Hub> HubOf(GObject* object) {
   State& state = *GST_LIDAR_FOXGLOVE_SINK(object)->state;
   const std::lock_guard lock(state.mutex);
   return state.hub;
 }
 
-lidar::gst::StructurePtr ReadStats(GObject* object) {
+static lidar::gst::StructurePtr ReadStats(GObject* object) {
   State& state = *GST_LIDAR_FOXGLOVE_SINK(object)->state;
   Counters counters;
   {
@@ -143,8 +123,24 @@ lidar::gst::StructurePtr ReadStats(GObject* object) {
   return lidar::gst::ToStructure("application/x-foxglove-stats", kStats, counters);
 }
 
+static const std::array<lidar::gst::Property<Settings>, 7> kProperties = {{
+    {"port", "TCP port; 0: one that is free, as stats tell", &Settings::port, 0, 65535},
+    {"bind-address", "Address to listen on; others than of this machine need a token",
+     &Settings::bind_address},
+    {"token", "What clients must name: http://host:port/?token=...; NULL: nothing",
+     &Settings::token},
+    {"max-clients", "How many may be connected at a time", &Settings::max_clients, 1, 1000},
+    {"max-points", "The most points of a message, of more every n-th is sent; 0: all",
+     &Settings::max_points},
+    {"sync", "Show buffers when the pipeline's clock says, not as they come", &Settings::sync},
+    {"stats",
+     "port, clients, clients-accepted, clients-refused, connections-evicted, messages-sent, "
+     "messages-dropped, bytes-sent [bytes], clouds, points-sent, scan-duration [ns], malformed",
+     ReadStats},
+}};
+
 /// False, with an element error, where the settings would let strangers in or make no sense.
-bool CheckAddress(GstElement* element, const Settings& s) {
+static bool CheckAddress(GstElement* element, const Settings& s) {
   const lidar::web::ObjectPtr<GInetAddress> address(
       g_inet_address_new_from_string(s.bind_address.c_str()));
   if (!address) {
@@ -161,7 +157,7 @@ bool CheckAddress(GstElement* element, const Settings& s) {
   return false;
 }
 
-bool Open(GstElement* element) {
+static bool Open(GstElement* element) {
   auto* self = GST_LIDAR_FOXGLOVE_SINK(element);
   State& state = *self->state;
   const Settings s = lidar::gst::Snapshot(state);
@@ -191,7 +187,7 @@ bool Open(GstElement* element) {
 }
 
 /// Gives each input what `state` has; nothing where that is null.
-void GiveHub(GstElement* element) {
+static void GiveHub(GstElement* element) {
   const auto hub = HubOf(G_OBJECT(element));
   GstIterator* inputs = gst_bin_iterate_elements(GST_BIN(element));
   GstIteratorForeachFunction give = [](const GValue* value, gpointer data) {
@@ -204,7 +200,7 @@ void GiveHub(GstElement* element) {
   gst_iterator_free(inputs);
 }
 
-void Close(GstElement* element) {
+static void Close(GstElement* element) {
   State& state = *GST_LIDAR_FOXGLOVE_SINK(element)->state;
   std::unique_lock lock(state.mutex);
   const auto hub = std::move(state.hub);
@@ -213,7 +209,7 @@ void Close(GstElement* element) {
   GiveHub(element);
 }
 
-GstStateChangeReturn ChangeState(GstElement* element, GstStateChange change) {
+static GstStateChangeReturn ChangeState(GstElement* element, GstStateChange change) {
   if (change == GST_STATE_CHANGE_NULL_TO_READY) {
     if (!Open(element)) return GST_STATE_CHANGE_FAILURE;
     GiveHub(element);
@@ -226,7 +222,8 @@ GstStateChangeReturn ChangeState(GstElement* element, GstStateChange change) {
   return result;
 }
 
-GstPad* RequestPad(GstElement* element, GstPadTemplate* templ, const gchar* name, const GstCaps*) {
+static GstPad* RequestPad(GstElement* element, GstPadTemplate* templ, const gchar* name,
+                          const GstCaps*) {
   auto* self = GST_LIDAR_FOXGLOVE_SINK(element);
   guint number = 0;
   if (name == nullptr || sscanf(name, "sink_%u", &number) != 1)
@@ -251,7 +248,7 @@ GstPad* RequestPad(GstElement* element, GstPadTemplate* templ, const gchar* name
                                   target.get());
 }
 
-void ReleasePad(GstElement* element, GstPad* pad) {
+static void ReleasePad(GstElement* element, GstPad* pad) {
   const ElementPtr input(lidar::web::InputOf(pad));
   const StringPtr name(gst_pad_get_name(pad));
   if (input) {
@@ -267,7 +264,7 @@ void ReleasePad(GstElement* element, GstPad* pad) {
 }
 
 /// Each input renders by the clock, or at once.
-void PropertyChanged(GObject* object, GParamSpec* spec) {
+static void PropertyChanged(GObject* object, GParamSpec* spec) {
   if (g_strcmp0(spec->name, "sync") != 0) return;
   gboolean sync = FALSE;
   g_object_get(object, "sync", &sync, nullptr);
@@ -280,8 +277,6 @@ void PropertyChanged(GObject* object, GParamSpec* spec) {
       &sync);
   gst_iterator_free(inputs);
 }
-
-}  // namespace
 
 static void gst_lidar_foxglove_sink_init(GstLidarFoxgloveSink* self) { self->state = new State; }
 

@@ -89,23 +89,21 @@ struct _GstLidarDecoderState {
 
 G_DEFINE_ABSTRACT_TYPE(GstLidarDecoder, gst_lidar_decoder, GST_TYPE_ELEMENT)
 
-namespace {
-
 using State = GstLidarDecoderState;
 
-lidar::gst::StructurePtr Stats(GObject* object) {
+static lidar::gst::StructurePtr Stats(GObject* object) {
   State& state = *GST_LIDAR_DECODER(object)->state;
   std::lock_guard lock(state.mutex);
   return lidar::gst::ToStructure("lidar-decoder-stats", kStats, state.counters);
 }
 
-guint64 Age(GObject* object) {
+static guint64 Age(GObject* object) {
   State& state = *GST_LIDAR_DECODER(object)->state;
   std::lock_guard lock(state.mutex);
   return AgeOf(state.counters);
 }
 
-const std::array<lidar::gst::Property<Settings>, 4> kProperties = {{
+static const std::array<lidar::gst::Property<Settings>, 4> kProperties = {{
     {"max-points", "Slices of more points are dropped, before anything is allocated for them",
      &Settings::max_points, 1, 1U << 24},
     {"age",
@@ -119,7 +117,7 @@ const std::array<lidar::gst::Property<Settings>, 4> kProperties = {{
 
 /// The cloud that slices of `caps` hold, but for its size; none where the caps contradict
 /// themselves. A file needs no more caps than its name.
-std::optional<CloudInfo> CloudOf(const GstCaps* caps) {
+static std::optional<CloudInfo> CloudOf(const GstCaps* caps) {
   const GstStructure* s = gst_caps_get_structure(caps, 0);
   const gchar* fields = gst_structure_get_string(s, "fields");
   CloudInfo cloud;
@@ -134,8 +132,8 @@ std::optional<CloudInfo> CloudOf(const GstCaps* caps) {
 }
 
 /// Asks the subclass whether it can decode `cloud`, and takes out of it what will not come.
-bool AskSubclass(GstLidarDecoder* self, GstCaps* caps, CloudInfo* cloud,
-                 GstLidarDecodedFormat* decoded) {
+static bool AskSubclass(GstLidarDecoder* self, GstCaps* caps, CloudInfo* cloud,
+                        GstLidarDecodedFormat* decoded) {
   const std::string fields = cloud->fields.ToString();
   const lidar::gst::BufferPtr model(
       cloud->sensor_model ? lidar::gst::SensorModelToBuffer(*cloud->sensor_model) : nullptr);
@@ -154,7 +152,7 @@ bool AskSubclass(GstLidarDecoder* self, GstCaps* caps, CloudInfo* cloud,
   return true;
 }
 
-gboolean SetCaps(GstLidarDecoder* self, GstCaps* caps) {
+static gboolean SetCaps(GstLidarDecoder* self, GstCaps* caps) {
   Stream& stream = self->state->stream;
   stream.has_size = false;
   stream.max_points = lidar::gst::Snapshot(*self->state).max_points;
@@ -170,7 +168,7 @@ gboolean SetCaps(GstLidarDecoder* self, GstCaps* caps) {
 }
 
 /// Only the data tell the size of the cloud.
-bool PushCaps(GstLidarDecoder* self, const GstLidarDecodedSlice& slice) {
+static bool PushCaps(GstLidarDecoder* self, const GstLidarDecodedSlice& slice) {
   Stream& stream = self->state->stream;
   CloudInfo& cloud = *stream.cloud;
   if (stream.has_size && slice.width == cloud.width && slice.height == cloud.height) return true;
@@ -184,7 +182,7 @@ bool PushCaps(GstLidarDecoder* self, const GstLidarDecodedSlice& slice) {
   return true;
 }
 
-gboolean SinkEvent(GstPad* pad, GstObject* parent, GstEvent* event) {
+static gboolean SinkEvent(GstPad* pad, GstObject* parent, GstEvent* event) {
   auto* self = GST_LIDAR_DECODER(parent);
   if (GST_EVENT_TYPE(event) == GST_EVENT_CAPS) {
     GstCaps* caps = nullptr;
@@ -204,8 +202,8 @@ gboolean SinkEvent(GstPad* pad, GstObject* parent, GstEvent* event) {
   return gst_pad_event_default(pad, parent, event);
 }
 
-void Count(State* state, const GstLidarDecodedSlice& slice, const lidar::gst::BufferMap& in,
-           GstClockTime time, GstClockTime capture_time) {
+static void Count(State* state, const GstLidarDecodedSlice& slice, const lidar::gst::BufferMap& in,
+                  GstClockTime time, GstClockTime capture_time) {
   std::lock_guard lock(state->mutex);
   Counters& c = state->counters;
   ++c.slices;
@@ -219,8 +217,8 @@ void Count(State* state, const GstLidarDecodedSlice& slice, const lidar::gst::Bu
 }
 
 /// The decoded slice, or null where the stream is bad.
-lidar::gst::BufferPtr DecodeBuffer(GstLidarDecoder* self, GstBuffer* input,
-                                   GstLidarDecodedSlice* slice) {
+static lidar::gst::BufferPtr DecodeBuffer(GstLidarDecoder* self, GstBuffer* input,
+                                          GstLidarDecodedSlice* slice) {
   Stream& stream = self->state->stream;
   auto* klass = GST_LIDAR_DECODER_GET_CLASS(self);
   const gint64 start_us = g_get_monotonic_time();
@@ -243,7 +241,7 @@ lidar::gst::BufferPtr DecodeBuffer(GstLidarDecoder* self, GstBuffer* input,
 }
 
 /// Asks for a slice that stands alone, unless one may still be on its way.
-void AskForKeyUnit(GstLidarDecoder* self) {
+static void AskForKeyUnit(GstLidarDecoder* self) {
   constexpr gint64 kInterval = G_USEC_PER_SEC / 2;
   Stream& stream = self->state->stream;
   const gint64 now = g_get_monotonic_time();
@@ -255,7 +253,7 @@ void AskForKeyUnit(GstLidarDecoder* self) {
   gst_pad_push_event(self->state->pads.sink(), gst_event_new_custom(GST_EVENT_CUSTOM_UPSTREAM, s));
 }
 
-GstFlowReturn DropSlice(GstLidarDecoder* self, GstBuffer* input, bool lacks_reference) {
+static GstFlowReturn DropSlice(GstLidarDecoder* self, GstBuffer* input, bool lacks_reference) {
   State& state = *self->state;
   GST_WARNING_OBJECT(self, "dropping a slice that cannot be decoded: %" GST_PTR_FORMAT,
                      static_cast<gpointer>(input));
@@ -268,7 +266,7 @@ GstFlowReturn DropSlice(GstLidarDecoder* self, GstBuffer* input, bool lacks_refe
   return state.pads.LeaveOut(input);
 }
 
-GstFlowReturn Chain(GstPad*, GstObject* parent, GstBuffer* buffer) {
+static GstFlowReturn Chain(GstPad*, GstObject* parent, GstBuffer* buffer) {
   auto* self = GST_LIDAR_DECODER(parent);
   const lidar::gst::BufferPtr input(buffer);
   Stream& stream = self->state->stream;
@@ -284,7 +282,7 @@ GstFlowReturn Chain(GstPad*, GstObject* parent, GstBuffer* buffer) {
   return self->state->pads.Push(std::move(output), buffer);
 }
 
-GstStateChangeReturn ChangeState(GstElement* element, GstStateChange transition) {
+static GstStateChangeReturn ChangeState(GstElement* element, GstStateChange transition) {
   auto* self = GST_LIDAR_DECODER(element);
   State& state = *self->state;
   if (transition == GST_STATE_CHANGE_READY_TO_PAUSED) {
@@ -303,12 +301,10 @@ GstStateChangeReturn ChangeState(GstElement* element, GstStateChange transition)
 }
 
 /// The pad templates are the subclass's, so the pads come when it is known.
-void Constructed(GObject* object) {
+static void Constructed(GObject* object) {
   G_OBJECT_CLASS(gst_lidar_decoder_parent_class)->constructed(object);
   GST_LIDAR_DECODER(object)->state->pads.Create(object, Chain, SinkEvent);
 }
-
-}  // namespace
 
 static void gst_lidar_decoder_init(GstLidarDecoder* self) { self->state = new State; }
 

@@ -55,29 +55,27 @@ struct _GstLidarEncoderState {
 
 G_DEFINE_ABSTRACT_TYPE(GstLidarEncoder, gst_lidar_encoder, GST_TYPE_ELEMENT)
 
-namespace {
-
 using State = GstLidarEncoderState;
 
 /// The bitrate to keep to; 0: none.
-guint EffectiveBitrate(const State& state) {
+static guint EffectiveBitrate(const State& state) {
   return state.event_bps.value_or(state.settings.bitrate_bps);
 }
 
-guint MinBitrate(GObject* object) {
+static guint MinBitrate(GObject* object) {
   State& state = *GST_LIDAR_ENCODER(object)->state;
   std::lock_guard lock(state.mutex);
   return state.min_bitrate_bps;
 }
 
-lidar::gst::StructurePtr Stats(GObject* object) {
+static lidar::gst::StructurePtr Stats(GObject* object) {
   State& state = *GST_LIDAR_ENCODER(object)->state;
   std::lock_guard lock(state.mutex);
   return state.stats.ToStructure(EffectiveBitrate(state));
 }
 
 using Settings = EncoderSettings;
-const std::array<lidar::gst::Property<Settings>, 12> kProperties = {{
+static const std::array<lidar::gst::Property<Settings>, 12> kProperties = {{
     {"bitrate",
      "Bitrate of the encoded slices [bit/s]; 0: constant quality at the coarsest step that "
      "max-error allows. An event target-bitrate goes before it",
@@ -113,7 +111,7 @@ const std::array<lidar::gst::Property<Settings>, 12> kProperties = {{
 }};
 
 /// Asks the subclass; the caps of its slices, or null after an error message.
-lidar::gst::CapsPtr AskForCaps(GstLidarEncoder* self, GstCaps* caps, Stream* stream) {
+static lidar::gst::CapsPtr AskForCaps(GstLidarEncoder* self, GstCaps* caps, Stream* stream) {
   const Settings settings = lidar::gst::Snapshot(*self->state);
   std::string why;
   const auto info = lidar::gst::CloudInfo::FromCaps(caps, &why);
@@ -142,7 +140,7 @@ lidar::gst::CapsPtr AskForCaps(GstLidarEncoder* self, GstCaps* caps, Stream* str
   return lidar::gst::CapsPtr(coded.caps);
 }
 
-gboolean SetCaps(GstLidarEncoder* self, GstCaps* caps) {
+static gboolean SetCaps(GstLidarEncoder* self, GstCaps* caps) {
   State& state = *self->state;
   Stream& stream = state.stream;
   stream.coder.reset();
@@ -162,7 +160,7 @@ gboolean SetCaps(GstLidarEncoder* self, GstCaps* caps) {
   return gst_pad_push_event(state.pads.src(), gst_event_new_caps(encoded.get()));
 }
 
-gboolean SinkEvent(GstPad* pad, GstObject* parent, GstEvent* event) {
+static gboolean SinkEvent(GstPad* pad, GstObject* parent, GstEvent* event) {
   auto* self = GST_LIDAR_ENCODER(parent);
   if (GST_EVENT_TYPE(event) == GST_EVENT_CAPS) {
     GstCaps* caps = nullptr;
@@ -178,7 +176,7 @@ gboolean SinkEvent(GstPad* pad, GstObject* parent, GstEvent* event) {
   return gst_pad_event_default(pad, parent, event);
 }
 
-gboolean SrcEvent(GstPad* pad, GstObject* parent, GstEvent* event) {
+static gboolean SrcEvent(GstPad* pad, GstObject* parent, GstEvent* event) {
   auto* self = GST_LIDAR_ENCODER(parent);
   if (GST_LIDAR_ENCODER_GET_CLASS(self)->request_key != nullptr &&
       self->state->receivers.OnEvent(event)) {
@@ -199,7 +197,7 @@ gboolean SrcEvent(GstPad* pad, GstObject* parent, GstEvent* event) {
 }
 
 /// Sends the bounds where they have moved.
-void PushBounds(GstLidarEncoder* self) {
+static void PushBounds(GstLidarEncoder* self) {
   const auto bounds = self->state->stream.loop->controller().TakeChangedBounds();
   if (!bounds) return;
   const auto to_bps = [](DataRate r) {
@@ -216,7 +214,7 @@ void PushBounds(GstLidarEncoder* self) {
 }
 
 /// Tells the subclass what receivers have said since the last slice.
-void TellOfReceivers(GstLidarEncoder* self) {
+static void TellOfReceivers(GstLidarEncoder* self) {
   auto* klass = GST_LIDAR_ENCODER_GET_CLASS(self);
   if (klass->request_key == nullptr) return;  // nothing it sends depends on them
   const auto news = self->state->receivers.Take(self->state->pads.src());
@@ -226,7 +224,7 @@ void TellOfReceivers(GstLidarEncoder* self) {
   if (news.key_requested) klass->request_key(self);
 }
 
-LoopResult EncodeLoaded(GstLidarEncoder* self, const CloudInput::Place& place) {
+static LoopResult EncodeLoaded(GstLidarEncoder* self, const CloudInput::Place& place) {
   State& state = *self->state;
   lidar::rate::LoopSettings loop;
   std::optional<DataRate> target;
@@ -249,7 +247,8 @@ LoopResult EncodeLoaded(GstLidarEncoder* self, const CloudInput::Place& place) {
   return result;
 }
 
-GstFlowReturn PushSlice(GstLidarEncoder* self, GstBuffer* input, const GstLidarSlice& place) {
+static GstFlowReturn PushSlice(GstLidarEncoder* self, GstBuffer* input,
+                               const GstLidarSlice& place) {
   const lidar::ByteView bytes = self->state->stream.coder->bytes();
   lidar::gst::BufferPtr output(gst_buffer_new_memdup(bytes.data, bytes.size));
   // Where the input does not say, too: who counts only what arrives misses what was left out, and
@@ -260,8 +259,8 @@ GstFlowReturn PushSlice(GstLidarEncoder* self, GstBuffer* input, const GstLidarS
   return self->state->pads.Push(std::move(output), input);
 }
 
-void CheckErrors(GstLidarEncoder* self, lidar::ByteView raw, const GstLidarSlice& place,
-                 const LoopResult& result) {
+static void CheckErrors(GstLidarEncoder* self, lidar::ByteView raw, const GstLidarSlice& place,
+                        const LoopResult& result) {
   State& state = *self->state;
   const lidar::gst::CheckedSlice checked{place.scan_id, place.slice_index, result.max_error_m,
                                          result.slice.error_m, result.keep_fraction < 1};
@@ -272,7 +271,7 @@ void CheckErrors(GstLidarEncoder* self, lidar::ByteView raw, const GstLidarSlice
   state.stats.OnErrorCheck(found->errors, found->holds);
 }
 
-GstFlowReturn Chain(GstPad*, GstObject* parent, GstBuffer* buffer) {
+static GstFlowReturn Chain(GstPad*, GstObject* parent, GstBuffer* buffer) {
   auto* self = GST_LIDAR_ENCODER(parent);
   const lidar::gst::BufferPtr input(buffer);
   Stream& stream = self->state->stream;
@@ -296,7 +295,7 @@ GstFlowReturn Chain(GstPad*, GstObject* parent, GstBuffer* buffer) {
   return result.encoded() ? PushSlice(self, buffer, slice) : self->state->pads.LeaveOut(buffer);
 }
 
-GstStateChangeReturn ChangeState(GstElement* element, GstStateChange transition) {
+static GstStateChangeReturn ChangeState(GstElement* element, GstStateChange transition) {
   auto* self = GST_LIDAR_ENCODER(element);
   State& state = *self->state;
   if (transition == GST_STATE_CHANGE_READY_TO_PAUSED) {
@@ -318,14 +317,12 @@ GstStateChangeReturn ChangeState(GstElement* element, GstStateChange transition)
 }
 
 /// The pad templates are the subclass's, so the pads come when it is known.
-void Constructed(GObject* object) {
+static void Constructed(GObject* object) {
   G_OBJECT_CLASS(gst_lidar_encoder_parent_class)->constructed(object);
   State& state = *GST_LIDAR_ENCODER(object)->state;
   state.pads.Create(object, Chain, SinkEvent);
   gst_pad_set_event_function(state.pads.src(), SrcEvent);
 }
-
-}  // namespace
 
 static void gst_lidar_encoder_init(GstLidarEncoder* self) { self->state = new State; }
 

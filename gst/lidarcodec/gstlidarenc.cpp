@@ -110,21 +110,19 @@ struct _GstLidarEnc {
 G_DEFINE_TYPE(GstLidarEnc, gst_lidar_enc, GST_TYPE_LIDAR_ENCODER)
 GST_ELEMENT_REGISTER_DEFINE(lidarenc, "lidarenc", GST_RANK_NONE, gst_lidar_enc_get_type())
 
-namespace {
+static Coder& CoderOf(GstLidarEncoder* base) { return GST_LIDAR_ENC(base)->state->coder; }
 
-Coder& CoderOf(GstLidarEncoder* base) { return GST_LIDAR_ENC(base)->state->coder; }
-
-lidar::Time Now() { return lidar::Time{std::chrono::microseconds(g_get_monotonic_time())}; }
+static lidar::Time Now() { return lidar::Time{std::chrono::microseconds(g_get_monotonic_time())}; }
 
 /// What the last slice left is known from now on; which of several encodings was sent is known only
 /// when the next slice comes.
-void KeepBlocks(Coder& coder) {
+static void KeepBlocks(Coder& coder) {
   coder.keeper.OnEncoded(std::move(coder.slice.blocks));
   coder.slice.blocks.clear();
 }
 
 /// Lets what is loaded refer to what the receiver has.
-void Link(GstLidarEncoder* base, const GstLidarRawSlice& raw) {
+static void Link(GstLidarEncoder* base, const GstLidarRawSlice& raw) {
   Coder& coder = CoderOf(base);
   const Settings settings = lidar::gst::Snapshot(*GST_LIDAR_ENC(base)->state);
   coder.keeper.set_key_interval(settings.key_interval);
@@ -134,13 +132,13 @@ void Link(GstLidarEncoder* base, const GstLidarRawSlice& raw) {
 }
 
 /// How long the sensor took for `columns`.
-lidar::Duration SweepOf(const Coder& coder, guint columns) {
+static lidar::Duration SweepOf(const Coder& coder, guint columns) {
   return lidar::FromSeconds(columns /
                             (coder.scans_per_second * coder.format.sensor_model->columns_per_scan));
 }
 
 /// Learns from the slice before, and chooses for the next one.
-void ChooseEffort(GstLidarEncoder* base, guint columns) {
+static void ChooseEffort(GstLidarEncoder* base, guint columns) {
   Coder& coder = CoderOf(base);
   if (coder.automatic && coder.spent > lidar::Duration{0})
     coder.effort.OnSlice(coder.sweep, coder.encoder->returns(), coder.spent);
@@ -150,8 +148,6 @@ void ChooseEffort(GstLidarEncoder* base, guint columns) {
   coder.automatic = wanted == kAuto;
   coder.encoder->set_effort(coder.automatic ? coder.effort.effort() : static_cast<guint>(wanted));
 }
-
-}  // namespace
 
 static gboolean gst_lidar_enc_set_format(GstLidarEncoder* base, const GstLidarCloudFormat* cloud,
                                          gboolean with_intensity, GstLidarCodedFormat* coded) {

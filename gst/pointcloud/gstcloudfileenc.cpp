@@ -78,19 +78,17 @@ G_DEFINE_TYPE(GstLidarPlyEnc, gst_lidar_ply_enc, gst_lidar_cloud_file_enc_get_ty
 GST_ELEMENT_REGISTER_DEFINE(pcdenc, "pcdenc", GST_RANK_NONE, gst_lidar_pcd_enc_get_type())
 GST_ELEMENT_REGISTER_DEFINE(plyenc, "plyenc", GST_RANK_NONE, gst_lidar_ply_enc_get_type())
 
-namespace {
+static State& StateOf(gpointer self) { return *static_cast<GstLidarCloudFileEnc*>(self)->state; }
 
-State& StateOf(gpointer self) { return *static_cast<GstLidarCloudFileEnc*>(self)->state; }
-
-GstCaps* TransformCaps(GstBaseTransform* base, GstPadDirection direction, GstCaps*,
-                       GstCaps* filter) {
+static GstCaps* TransformCaps(GstBaseTransform* base, GstPadDirection direction, GstCaps*,
+                              GstCaps* filter) {
   GstPad* other = direction == GST_PAD_SINK ? base->srcpad : base->sinkpad;
   const CapsPtr caps(gst_pad_get_pad_template_caps(other));
   if (filter == nullptr) return gst_caps_ref(caps.get());
   return gst_caps_intersect_full(filter, caps.get(), GST_CAPS_INTERSECT_FIRST);
 }
 
-gboolean SetCaps(GstBaseTransform* base, GstCaps* in, GstCaps*) {
+static gboolean SetCaps(GstBaseTransform* base, GstCaps* in, GstCaps*) {
   State& state = StateOf(base);
   std::string why;
   state.info = CloudInfo::FromFrameCaps(in, &why);
@@ -102,7 +100,7 @@ gboolean SetCaps(GstBaseTransform* base, GstCaps* in, GstCaps*) {
 }
 
 /// Slices become files of their own, which is rarely what is wanted.
-void ReportSlices(GstBaseTransform* base, GstBuffer* in) {
+static void ReportSlices(GstBaseTransform* base, GstBuffer* in) {
   State& state = StateOf(base);
   GstLidarSlice slice{};
   if (state.slices_reported || !gst_lidar_buffer_get_slice(in, &slice) || slice.slice_count < 2)
@@ -114,7 +112,7 @@ void ReportSlices(GstBaseTransform* base, GstBuffer* in) {
       ("Put scanassembler in front, or slices-per-scan=1 at the source."));
 }
 
-std::string Write(GstBaseTransform* base, GstBuffer* in) {
+static std::string Write(GstBaseTransform* base, GstBuffer* in) {
   State& state = StateOf(base);
   ReportSlices(base, in);
   const lidar::gst::BufferMap map(in, GST_MAP_READ);
@@ -130,7 +128,7 @@ std::string Write(GstBaseTransform* base, GstBuffer* in) {
 }
 
 /// The size of a file is known once it is written, so this makes the whole output.
-GstFlowReturn PrepareOutput(GstBaseTransform* base, GstBuffer* in, GstBuffer** out) {
+static GstFlowReturn PrepareOutput(GstBaseTransform* base, GstBuffer* in, GstBuffer** out) {
   auto text = std::make_unique<std::string>(Write(base, in));
   if (text->empty()) {
     GST_ELEMENT_ERROR(base, STREAM, FORMAT, ("A cloud of another size than its caps say."),
@@ -145,15 +143,13 @@ GstFlowReturn PrepareOutput(GstBaseTransform* base, GstBuffer* in, GstBuffer** o
   return GST_FLOW_OK;
 }
 
-gboolean Stop(GstBaseTransform* base) {
+static gboolean Stop(GstBaseTransform* base) {
   State& state = StateOf(base);
   state.info.reset();
   state.refused.Reset();
   state.slices_reported = false;
   return TRUE;
 }
-
-}  // namespace
 
 static void gst_lidar_cloud_file_enc_init(GstLidarCloudFileEnc* self) { self->state = new State; }
 

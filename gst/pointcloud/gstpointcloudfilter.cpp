@@ -71,10 +71,49 @@ const std::array<lidar::gst::Stat<Counters>, 6> kStats = {{
     {"transforms-refused", &Counters::transforms_refused},
 }};
 
-lidar::gst::StructurePtr Stats(GObject* object);
 constexpr gint kLive = GST_PARAM_MUTABLE_PLAYING;
 
-const std::array<lidar::gst::Property<FilterSettings>, 15> kProperties = {{
+struct State {
+  std::mutex mutex;  // guards settings, changed and counters
+  FilterSettings settings;
+  bool changed = false;  // the settings, since the plan was made
+  Counters counters;
+  FramePlacer placer;
+  // Only the streaming thread uses these.
+  CapsPtr caps;  // of what comes
+  std::unique_ptr<FilterPlan> plan;
+  Counters before;  // of earlier plans
+  CapsPtr pushed;
+  lidar::gst::HeldEvents held;
+  lidar::gst::RefusedCaps refused;
+};
+
+}  // namespace
+
+struct _GstLidarPointCloudFilter {
+  GstElement parent;
+  GstPad* sinkpad;
+  GstPad* srcpad;
+  guint next_pad;  // number of the next pad for transforms
+  State* state;
+};
+
+G_DEFINE_TYPE(GstLidarPointCloudFilter, gst_lidar_point_cloud_filter, GST_TYPE_ELEMENT)
+GST_ELEMENT_REGISTER_DEFINE(pointcloudfilter, "pointcloudfilter", GST_RANK_NONE,
+                            GST_TYPE_LIDAR_POINT_CLOUD_FILTER)
+
+static lidar::gst::StructurePtr Stats(GObject* object) {
+  State& state = *GST_LIDAR_POINT_CLOUD_FILTER(object)->state;
+  const TransformInbox::Counters taken = state.placer.inbox().counters();
+  std::lock_guard lock(state.mutex);
+  Counters counters = state.counters;
+  counters.without_transform = state.placer.clouds_without();
+  counters.transforms = taken.transforms;
+  counters.transforms_refused = taken.refused;
+  return lidar::gst::ToStructure("point-cloud-filter-stats", kStats, counters);
+}
+
+static const std::array<lidar::gst::Property<FilterSettings>, 15> kProperties = {{
     {"fields", "Fields to keep, with a type where it is to be another: x,y,z,intensity:U8",
      &FilterSettings::fields, 0, 0, kLive},
     {"beam-step", "Keep every n-th row", &FilterSettings::beam_step, 1, 1024, kLive},
@@ -112,49 +151,7 @@ const std::array<lidar::gst::Property<FilterSettings>, 15> kProperties = {{
      Stats},
 }};
 
-struct State {
-  std::mutex mutex;  // guards settings, changed and counters
-  FilterSettings settings;
-  bool changed = false;  // the settings, since the plan was made
-  Counters counters;
-  FramePlacer placer;
-  // Only the streaming thread uses these.
-  CapsPtr caps;  // of what comes
-  std::unique_ptr<FilterPlan> plan;
-  Counters before;  // of earlier plans
-  CapsPtr pushed;
-  lidar::gst::HeldEvents held;
-  lidar::gst::RefusedCaps refused;
-};
-
-}  // namespace
-
-struct _GstLidarPointCloudFilter {
-  GstElement parent;
-  GstPad* sinkpad;
-  GstPad* srcpad;
-  guint next_pad;  // number of the next pad for transforms
-  State* state;
-};
-
-G_DEFINE_TYPE(GstLidarPointCloudFilter, gst_lidar_point_cloud_filter, GST_TYPE_ELEMENT)
-GST_ELEMENT_REGISTER_DEFINE(pointcloudfilter, "pointcloudfilter", GST_RANK_NONE,
-                            GST_TYPE_LIDAR_POINT_CLOUD_FILTER)
-
-namespace {
-
-lidar::gst::StructurePtr Stats(GObject* object) {
-  State& state = *GST_LIDAR_POINT_CLOUD_FILTER(object)->state;
-  const TransformInbox::Counters taken = state.placer.inbox().counters();
-  std::lock_guard lock(state.mutex);
-  Counters counters = state.counters;
-  counters.without_transform = state.placer.clouds_without();
-  counters.transforms = taken.transforms;
-  counters.transforms_refused = taken.refused;
-  return lidar::gst::ToStructure("point-cloud-filter-stats", kStats, counters);
-}
-
-void NoteChange(GObject* object, GParamSpec* spec) {
+static void NoteChange(GObject* object, GParamSpec* spec) {
   State& state = *GST_LIDAR_POINT_CLOUD_FILTER(object)->state;
   {
     std::lock_guard lock(state.mutex);
@@ -166,7 +163,7 @@ void NoteChange(GObject* object, GParamSpec* spec) {
 }
 
 /// A plan for the caps and the settings of now; false and an error where there is none.
-bool MakePlan(GstLidarPointCloudFilter* self) {
+static bool MakePlan(GstLidarPointCloudFilter* self) {
   State& state = *self->state;
   FilterSettings settings;
   {
@@ -187,7 +184,7 @@ bool MakePlan(GstLidarPointCloudFilter* self) {
   return state.plan != nullptr;
 }
 
-bool PushCaps(GstLidarPointCloudFilter* self) {
+static bool PushCaps(GstLidarPointCloudFilter* self) {
   State& state = *self->state;
   GstCaps* caps = state.plan->caps();
   if (state.pushed && gst_caps_is_equal(state.pushed.get(), caps)) return true;
@@ -197,20 +194,20 @@ bool PushCaps(GstLidarPointCloudFilter* self) {
   return taken;
 }
 
-void Count(State* state) {
+static void Count(State* state) {
   std::lock_guard lock(state->mutex);
   ++state->counters.clouds;
   state->counters.points_removed = state->before.points_removed + state->plan->removed();
   state->counters.without_pose = state->before.without_pose + state->plan->without_pose();
 }
 
-void PushGap(GstLidarPointCloudFilter* self, GstBuffer* buffer) {
+static void PushGap(GstLidarPointCloudFilter* self, GstBuffer* buffer) {
   if (self->state->pushed && GST_BUFFER_PTS_IS_VALID(buffer))
     gst_pad_push_event(self->srcpad,
                        gst_event_new_gap(GST_BUFFER_PTS(buffer), GST_BUFFER_DURATION(buffer)));
 }
 
-GstFlowReturn Chain(GstPad*, GstObject* parent, GstBuffer* raw) {
+static GstFlowReturn Chain(GstPad*, GstObject* parent, GstBuffer* raw) {
   auto* self = GST_LIDAR_POINT_CLOUD_FILTER(parent);
   State& state = *self->state;
   const BufferPtr buffer(raw);
@@ -241,7 +238,7 @@ GstFlowReturn Chain(GstPad*, GstObject* parent, GstBuffer* raw) {
   return gst_pad_push(self->srcpad, out.release());
 }
 
-gboolean HandleCaps(GstLidarPointCloudFilter* self, GstEvent* event) {
+static gboolean HandleCaps(GstLidarPointCloudFilter* self, GstEvent* event) {
   const lidar::gst::EventPtr owner(event);
   GstCaps* caps = nullptr;
   gst_event_parse_caps(event, &caps);
@@ -249,7 +246,7 @@ gboolean HandleCaps(GstLidarPointCloudFilter* self, GstEvent* event) {
   return MakePlan(self);
 }
 
-gboolean SinkEvent(GstPad* pad, GstObject* parent, GstEvent* event) {
+static gboolean SinkEvent(GstPad* pad, GstObject* parent, GstEvent* event) {
   auto* self = GST_LIDAR_POINT_CLOUD_FILTER(parent);
   State& state = *self->state;
   const GstEventType type = GST_EVENT_TYPE(event);
@@ -265,7 +262,7 @@ gboolean SinkEvent(GstPad* pad, GstObject* parent, GstEvent* event) {
 }
 
 /// A cloud may come as much later as it waits for its transform.
-gboolean SrcQuery(GstPad* pad, GstObject* parent, GstQuery* query) {
+static gboolean SrcQuery(GstPad* pad, GstObject* parent, GstQuery* query) {
   if (!gst_pad_query_default(pad, parent, query)) return FALSE;
   if (GST_QUERY_TYPE(query) != GST_QUERY_LATENCY || !lidar::gst::ReadLatency(query).live)
     return TRUE;
@@ -279,13 +276,13 @@ gboolean SrcQuery(GstPad* pad, GstObject* parent, GstQuery* query) {
 }
 
 /// Queries and events of the clouds do not go to who gives transforms.
-GstIterator* LinksOf(GstPad* pad, GstObject* parent) {
+static GstIterator* LinksOf(GstPad* pad, GstObject* parent) {
   auto* self = GST_LIDAR_POINT_CLOUD_FILTER(parent);
   return lidar::gst::LinkTo(pad == self->srcpad ? self->sinkpad : self->srcpad);
 }
 
-GstPad* RequestPad(GstElement* element, GstPadTemplate* pad_template, const gchar* name,
-                   const GstCaps*) {
+static GstPad* RequestPad(GstElement* element, GstPadTemplate* pad_template, const gchar* name,
+                          const GstCaps*) {
   auto* self = GST_LIDAR_POINT_CLOUD_FILTER(element);
   GST_OBJECT_LOCK(self);
   // A name that is asked for goes before, and the next that is not must be another.
@@ -297,11 +294,11 @@ GstPad* RequestPad(GstElement* element, GstPadTemplate* pad_template, const gcha
   return self->state->placer.inbox().AddPad(element, pad_template, chosen.c_str());
 }
 
-void ReleasePad(GstElement* element, GstPad* pad) {
+static void ReleasePad(GstElement* element, GstPad* pad) {
   GST_LIDAR_POINT_CLOUD_FILTER(element)->state->placer.inbox().ReleasePad(element, pad);
 }
 
-GstStateChangeReturn ChangeState(GstElement* element, GstStateChange transition) {
+static GstStateChangeReturn ChangeState(GstElement* element, GstStateChange transition) {
   TransformInbox& inbox = GST_LIDAR_POINT_CLOUD_FILTER(element)->state->placer.inbox();
   if (transition == GST_STATE_CHANGE_READY_TO_PAUSED) inbox.Interrupt(false);
   if (transition == GST_STATE_CHANGE_PAUSED_TO_READY) inbox.Interrupt(true);
@@ -321,8 +318,6 @@ GstStateChangeReturn ChangeState(GstElement* element, GstStateChange transition)
   }
   return result;
 }
-
-}  // namespace
 
 static void gst_lidar_point_cloud_filter_init(GstLidarPointCloudFilter* self) {
   self->state = new State;

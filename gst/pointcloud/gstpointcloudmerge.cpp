@@ -68,10 +68,8 @@ G_DEFINE_TYPE_WITH_CODE(GstLidarPointCloudMerge, gst_lidar_point_cloud_merge, GS
 GST_ELEMENT_REGISTER_DEFINE(pointcloudmerge, "pointcloudmerge", GST_RANK_NONE,
                             GST_TYPE_LIDAR_POINT_CLOUD_MERGE)
 
-namespace {
-
 /// The pads in their order; each is referenced.
-std::vector<lidar::gst::PadPtr> Pads(GstAggregator* base) {
+static std::vector<lidar::gst::PadPtr> Pads(GstAggregator* base) {
   std::vector<lidar::gst::PadPtr> pads;
   GST_OBJECT_LOCK(base);
   for (GList* pad = GST_ELEMENT(base)->sinkpads; pad != nullptr; pad = pad->next)
@@ -80,14 +78,14 @@ std::vector<lidar::gst::PadPtr> Pads(GstAggregator* base) {
   return pads;
 }
 
-GstClockTime RunningTime(GstAggregatorPad* pad, GstBuffer* buffer) {
+static GstClockTime RunningTime(GstAggregatorPad* pad, GstBuffer* buffer) {
   const GstClockTime time =
       gst_segment_to_running_time(&pad->segment, GST_FORMAT_TIME, GST_BUFFER_PTS(buffer));
   return GST_CLOCK_TIME_IS_VALID(time) ? time : 0;
 }
 
 /// What waits on each pad.
-std::vector<Head> Heads(const std::vector<lidar::gst::PadPtr>& pads) {
+static std::vector<Head> Heads(const std::vector<lidar::gst::PadPtr>& pads) {
   std::vector<Head> heads;
   for (const auto& owner : pads) {
     auto* pad = GST_AGGREGATOR_PAD(owner.get());
@@ -103,7 +101,7 @@ std::vector<Head> Heads(const std::vector<lidar::gst::PadPtr>& pads) {
 }
 
 /// Drops scans of earlier turns than the newest; true where there were any.
-bool DropOld(GstLidarPointCloudMerge* self, const std::vector<Head>& heads) {
+static bool DropOld(GstLidarPointCloudMerge* self, const std::vector<Head>& heads) {
   GstClockTime newest = 0;
   for (const Head& head : heads) newest = std::max(newest, head.time);
   bool dropped = false;
@@ -116,7 +114,7 @@ bool DropOld(GstLidarPointCloudMerge* self, const std::vector<Head>& heads) {
 }
 
 /// Slices would be merged one by one, of any two parts of the turn.
-void ReportSlices(GstLidarPointCloudMerge* self, GstBuffer* buffer) {
+static void ReportSlices(GstLidarPointCloudMerge* self, GstBuffer* buffer) {
   GstLidarSlice slice{};
   if (self->state->slices_reported || !gst_lidar_buffer_get_slice(buffer, &slice) ||
       slice.slice_count < 2)
@@ -126,7 +124,7 @@ void ReportSlices(GstLidarPointCloudMerge* self, GstBuffer* buffer) {
                       ("Put scanassembler in front of each pad."));
 }
 
-bool AddCloud(GstLidarPointCloudMerge* self, const Head& head, Merged* merged) {
+static bool AddCloud(GstLidarPointCloudMerge* self, const Head& head, Merged* merged) {
   const BufferPtr buffer(gst_aggregator_pad_pop_buffer(GST_AGGREGATOR_PAD(head.pad)));
   if (!buffer) return true;
   // What the base class makes of a GAP event.
@@ -153,8 +151,8 @@ bool AddCloud(GstLidarPointCloudMerge* self, const Head& head, Merged* merged) {
 }
 
 /// Caps of the next cloud, which has as many points as there are.
-void SetCaps(GstLidarPointCloudMerge* self, const Merged& merged,
-             const lidar::PointFields& fields) {
+static void SetCaps(GstLidarPointCloudMerge* self, const Merged& merged,
+                    const lidar::PointFields& fields) {
   CloudInfo info;
   info.fields = fields;
   info.point_step = fields.MinimumStep();
@@ -166,7 +164,7 @@ void SetCaps(GstLidarPointCloudMerge* self, const Merged& merged,
   self->state->pushed = std::move(caps);
 }
 
-GstFlowReturn Push(GstLidarPointCloudMerge* self, Merged merged) {
+static GstFlowReturn Push(GstLidarPointCloudMerge* self, Merged merged) {
   auto* base = GST_AGGREGATOR(self);
   const auto fields = lidar::PointFields::Parse(merged.fields);
   if (merged.points.empty() || !fields) return GST_FLOW_OK;
@@ -181,7 +179,7 @@ GstFlowReturn Push(GstLidarPointCloudMerge* self, Merged merged) {
   return gst_aggregator_finish_buffer(base, out);
 }
 
-GstFlowReturn Aggregate(GstAggregator* base, gboolean timeout) {
+static GstFlowReturn Aggregate(GstAggregator* base, gboolean timeout) {
   auto* self = GST_LIDAR_POINT_CLOUD_MERGE(base);
   const auto pads = Pads(base);
   const auto heads = Heads(pads);
@@ -199,7 +197,7 @@ GstFlowReturn Aggregate(GstAggregator* base, gboolean timeout) {
   return Push(self, std::move(merged));
 }
 
-gboolean SinkEvent(GstAggregator* base, GstAggregatorPad* pad, GstEvent* event) {
+static gboolean SinkEvent(GstAggregator* base, GstAggregatorPad* pad, GstEvent* event) {
   if (GST_EVENT_TYPE(event) == GST_EVENT_CAPS) {
     GstCaps* caps = nullptr;
     gst_event_parse_caps(event, &caps);
@@ -210,8 +208,8 @@ gboolean SinkEvent(GstAggregator* base, GstAggregatorPad* pad, GstEvent* event) 
 }
 
 /// Pads are children, so that sink_1::transform reaches its pad.
-GstPad* RequestPad(GstElement* element, GstPadTemplate* pad_template, const gchar* name,
-                   const GstCaps* caps) {
+static GstPad* RequestPad(GstElement* element, GstPadTemplate* pad_template, const gchar* name,
+                          const GstCaps* caps) {
   GstPad* pad = GST_ELEMENT_CLASS(gst_lidar_point_cloud_merge_parent_class)
                     ->request_new_pad(element, pad_template, name, caps);
   if (pad != nullptr)
@@ -219,19 +217,19 @@ GstPad* RequestPad(GstElement* element, GstPadTemplate* pad_template, const gcha
   return pad;
 }
 
-void ReleasePad(GstElement* element, GstPad* pad) {
+static void ReleasePad(GstElement* element, GstPad* pad) {
   gst_child_proxy_child_removed(GST_CHILD_PROXY(element), G_OBJECT(pad), GST_PAD_NAME(pad));
   GST_ELEMENT_CLASS(gst_lidar_point_cloud_merge_parent_class)->release_pad(element, pad);
 }
 
-GstClockTime NextTime(GstAggregator* base) { return gst_aggregator_simple_get_next_time(base); }
+static GstClockTime NextTime(GstAggregator* base) {
+  return gst_aggregator_simple_get_next_time(base);
+}
 
-gboolean Stop(GstAggregator* base) {
+static gboolean Stop(GstAggregator* base) {
   *GST_LIDAR_POINT_CLOUD_MERGE(base)->state = State();
   return TRUE;
 }
-
-}  // namespace
 
 static void gst_lidar_point_cloud_merge_init(GstLidarPointCloudMerge* self) {
   self->state = new State;

@@ -65,14 +65,6 @@ struct State {
   HeldEvents held;
 };
 
-StructurePtr ReadStats(GObject* object);
-
-const std::array<Property<OrganizeSettings>, 2> kProperties = {{
-    {"max-error", "Points farther than that from their beam become missing returns [m]",
-     &OrganizeSettings::max_error_m, 0.001, 1, GST_PARAM_MUTABLE_PLAYING},
-    {"stats", "clouds, clouds-dropped, points-outside, models", ReadStats},
-}};
-
 }  // namespace
 
 #define GST_TYPE_LIDAR_POINT_CLOUD_ORGANIZE (gst_lidar_point_cloud_organize_get_type())
@@ -90,17 +82,21 @@ G_DEFINE_TYPE(GstLidarPointCloudOrganize, gst_lidar_point_cloud_organize, GST_TY
 GST_ELEMENT_REGISTER_DEFINE(pointcloudorganize, "pointcloudorganize", GST_RANK_NONE,
                             GST_TYPE_LIDAR_POINT_CLOUD_ORGANIZE)
 
-namespace {
+static State& StateOf(gpointer self) { return *GST_LIDAR_POINT_CLOUD_ORGANIZE(self)->state; }
 
-State& StateOf(gpointer self) { return *GST_LIDAR_POINT_CLOUD_ORGANIZE(self)->state; }
-
-StructurePtr ReadStats(GObject* object) {
+static StructurePtr ReadStats(GObject* object) {
   State& state = StateOf(object);
   const std::lock_guard lock(state.mutex);
   return ToStructure("application/x-pointcloudorganize-stats", kStats, state.counters);
 }
 
-bool PushCaps(GstLidarPointCloudOrganize* self, GstCaps* caps) {
+static const std::array<Property<OrganizeSettings>, 2> kProperties = {{
+    {"max-error", "Points farther than that from their beam become missing returns [m]",
+     &OrganizeSettings::max_error_m, 0.001, 1, GST_PARAM_MUTABLE_PLAYING},
+    {"stats", "clouds, clouds-dropped, points-outside, models", ReadStats},
+}};
+
+static bool PushCaps(GstLidarPointCloudOrganize* self, GstCaps* caps) {
   State& state = *self->state;
   // A pad that flushes keeps no caps: they stay due.
   state.caps_sent = gst_pad_push_event(self->srcpad, gst_event_new_caps(caps));
@@ -110,7 +106,7 @@ bool PushCaps(GstLidarPointCloudOrganize* self, GstCaps* caps) {
 }
 
 /// Clouds pass as they are from now on.
-void GiveUp(GstLidarPointCloudOrganize* self, const std::string& why) {
+static void GiveUp(GstLidarPointCloudOrganize* self, const std::string& why) {
   State& state = *self->state;
   state.organizer.reset();
   state.caps_sent = false;  // they may be those of the model
@@ -121,7 +117,7 @@ void GiveUp(GstLidarPointCloudOrganize* self, const std::string& why) {
 }
 
 /// The input's caps with what was found.
-bool PushModel(GstLidarPointCloudOrganize* self) {
+static bool PushModel(GstLidarPointCloudOrganize* self) {
   State& state = *self->state;
   const CapsPtr found(state.organizer->output().ToCaps());
   const CapsPtr caps(gst_caps_copy(state.caps.get()));
@@ -134,12 +130,12 @@ bool PushModel(GstLidarPointCloudOrganize* self) {
   return true;
 }
 
-GstFlowReturn WithoutCaps(GstLidarPointCloudOrganize* self) {
+static GstFlowReturn WithoutCaps(GstLidarPointCloudOrganize* self) {
   return GST_PAD_IS_FLUSHING(self->srcpad) ? GST_FLOW_FLUSHING : GST_FLOW_NOT_NEGOTIATED;
 }
 
 /// Null where the cloud does not fit.
-BufferPtr Organize(GstLidarPointCloudOrganize* self, GstBuffer* buffer) {
+static BufferPtr Organize(GstLidarPointCloudOrganize* self, GstBuffer* buffer) {
   State& state = *self->state;
   std::unique_lock lock(state.mutex);
   const gdouble max_error_m = state.settings.max_error_m;
@@ -161,7 +157,7 @@ BufferPtr Organize(GstLidarPointCloudOrganize* self, GstBuffer* buffer) {
   return out;
 }
 
-GstFlowReturn Chain(GstPad*, GstObject* parent, GstBuffer* raw) {
+static GstFlowReturn Chain(GstPad*, GstObject* parent, GstBuffer* raw) {
   auto* self = GST_LIDAR_POINT_CLOUD_ORGANIZE(parent);
   State& state = *self->state;
   BufferPtr buffer(raw);
@@ -188,7 +184,7 @@ GstFlowReturn Chain(GstPad*, GstObject* parent, GstBuffer* raw) {
   return gst_pad_push(self->srcpad, buffer.release());
 }
 
-gboolean SetCaps(GstLidarPointCloudOrganize* self, GstCaps* caps) {
+static gboolean SetCaps(GstLidarPointCloudOrganize* self, GstCaps* caps) {
   State& state = *self->state;
   std::string why;
   state.info = CloudInfo::FromFrameCaps(caps, &why);
@@ -209,7 +205,7 @@ gboolean SetCaps(GstLidarPointCloudOrganize* self, GstCaps* caps) {
 }
 
 /// The caps wait for the first cloud, and what has to be behind them waits, too.
-gboolean SinkEvent(GstPad* pad, GstObject* parent, GstEvent* event) {
+static gboolean SinkEvent(GstPad* pad, GstObject* parent, GstEvent* event) {
   auto* self = GST_LIDAR_POINT_CLOUD_ORGANIZE(parent);
   State& state = *self->state;
   const GstEventType type = GST_EVENT_TYPE(event);
@@ -225,7 +221,7 @@ gboolean SinkEvent(GstPad* pad, GstObject* parent, GstEvent* event) {
   return gst_pad_event_default(pad, parent, event);
 }
 
-GstStateChangeReturn ChangeState(GstElement* element, GstStateChange transition) {
+static GstStateChangeReturn ChangeState(GstElement* element, GstStateChange transition) {
   State& state = StateOf(element);
   if (transition == GST_STATE_CHANGE_READY_TO_PAUSED) {
     const std::lock_guard lock(state.mutex);
@@ -242,8 +238,6 @@ GstStateChangeReturn ChangeState(GstElement* element, GstStateChange transition)
   }
   return result;
 }
-
-}  // namespace
 
 static void gst_lidar_point_cloud_organize_init(GstLidarPointCloudOrganize* self) {
   self->state = new State;

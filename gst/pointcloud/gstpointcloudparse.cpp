@@ -86,12 +86,10 @@ G_DEFINE_TYPE(GstLidarPointCloudParse, gst_lidar_point_cloud_parse, GST_TYPE_ELE
 GST_ELEMENT_REGISTER_DEFINE(pointcloudparse, "pointcloudparse", GST_RANK_NONE,
                             gst_lidar_point_cloud_parse_get_type())
 
-namespace {
-
-State& StateOf(gpointer self) { return *GST_LIDAR_POINT_CLOUD_PARSE(self)->state; }
+static State& StateOf(gpointer self) { return *GST_LIDAR_POINT_CLOUD_PARSE(self)->state; }
 
 /// Bytes of one cloud in a stream that is cut anywhere; 0 where every buffer is a cloud.
-gsize CloudSize(GstLidarPointCloudParse* self) {
+static gsize CloudSize(GstLidarPointCloudParse* self) {
   State& state = *self->state;
   if (!state.type && state.info->width > 0) return state.info->FrameSize();
   if (!state.file_size) {
@@ -103,7 +101,7 @@ gsize CloudSize(GstLidarPointCloudParse* self) {
   return *state.file_size;
 }
 
-void PushCaps(GstLidarPointCloudParse* self, guint width) {
+static void PushCaps(GstLidarPointCloudParse* self, guint width) {
   State& state = *self->state;
   if (state.out_width == width) return;
   state.out_width = width;
@@ -116,13 +114,13 @@ void PushCaps(GstLidarPointCloudParse* self, guint width) {
   gst_pad_push_event(self->srcpad, gst_event_new_caps(caps.get()));
 }
 
-void PushSegment(GstLidarPointCloudParse* self) {
+static void PushSegment(GstLidarPointCloudParse* self) {
   if (auto segment = self->state->stamper.NextSegment())
     gst_pad_push_event(self->srcpad, segment.release());
 }
 
 /// A recording that broke off leaves empty files; the rest of them counts.
-GstFlowReturn SkipEmpty(GstLidarPointCloudParse* self) {
+static GstFlowReturn SkipEmpty(GstLidarPointCloudParse* self) {
   State& state = *self->state;
   state.stamper.LeaveOut();
   state.discont = true;
@@ -133,7 +131,7 @@ GstFlowReturn SkipEmpty(GstLidarPointCloudParse* self) {
   return GST_FLOW_OK;
 }
 
-GstFlowReturn PushCloud(GstLidarPointCloudParse* self, BufferPtr buffer) {
+static GstFlowReturn PushCloud(GstLidarPointCloudParse* self, BufferPtr buffer) {
   State& state = *self->state;
   const gsize column = gsize{state.info->height} * state.info->point_step;
   const gsize size = gst_buffer_get_size(buffer.get());
@@ -156,7 +154,7 @@ GstFlowReturn PushCloud(GstLidarPointCloudParse* self, BufferPtr buffer) {
 }
 
 /// A whole PCD or PLY file.
-GstFlowReturn PushFile(GstLidarPointCloudParse* self, const BufferPtr& file) {
+static GstFlowReturn PushFile(GstLidarPointCloudParse* self, const BufferPtr& file) {
   State& state = *self->state;
   std::string why = "it cannot be mapped";
   std::optional<lidar::gst::FileBuffer> read;
@@ -183,7 +181,7 @@ GstFlowReturn PushFile(GstLidarPointCloudParse* self, const BufferPtr& file) {
   return PushCloud(self, std::move(read->buffer));
 }
 
-GstFlowReturn PushWhole(GstLidarPointCloudParse* self, BufferPtr buffer) {
+static GstFlowReturn PushWhole(GstLidarPointCloudParse* self, BufferPtr buffer) {
   CloudStamper& stamper = self->state->stamper;
   if (stamper.HasGone()) {
     stamper.LeaveOut();
@@ -193,7 +191,7 @@ GstFlowReturn PushWhole(GstLidarPointCloudParse* self, BufferPtr buffer) {
 }
 
 /// From the caps, which say more than the property where that is not set.
-void SetRate(State* state, gint n, gint d) {
+static void SetRate(State* state, gint n, gint d) {
   Rate rate{n, d};
   {
     std::lock_guard lock(state->mutex);
@@ -203,13 +201,13 @@ void SetRate(State* state, gint n, gint d) {
 }
 
 /// Files say themselves what they are.
-void GuessType(State* state, GstBuffer* buffer) {
+static void GuessType(State* state, GstBuffer* buffer) {
   const lidar::gst::BufferMap map(buffer, GST_MAP_READ);
   if (map) state->type = lidar::TypeOfCloudFile(map.view());
   if (state->type) SetRate(state, 0, 1);
 }
 
-GstFlowReturn Chain(GstPad*, GstObject* parent, GstBuffer* raw) {
+static GstFlowReturn Chain(GstPad*, GstObject* parent, GstBuffer* raw) {
   auto* self = GST_LIDAR_POINT_CLOUD_PARSE(parent);
   State& state = *self->state;
   BufferPtr buffer(raw);
@@ -241,7 +239,7 @@ GstFlowReturn Chain(GstPad*, GstObject* parent, GstBuffer* raw) {
   return flow;
 }
 
-gboolean HandleCaps(GstLidarPointCloudParse* self, GstEvent* event) {
+static gboolean HandleCaps(GstLidarPointCloudParse* self, GstEvent* event) {
   State& state = *self->state;
   const lidar::gst::EventPtr owner(event);
   GstCaps* caps = nullptr;
@@ -271,7 +269,7 @@ gboolean HandleCaps(GstLidarPointCloudParse* self, GstEvent* event) {
 }
 
 /// Drops what is left in the adapter, which is no whole cloud.
-void Drain(GstLidarPointCloudParse* self) {
+static void Drain(GstLidarPointCloudParse* self) {
   State& state = *self->state;
   const gsize left = gst_adapter_available(state.adapter.get());
   if (left > 0) {
@@ -283,7 +281,7 @@ void Drain(GstLidarPointCloudParse* self) {
   gst_adapter_clear(state.adapter.get());
 }
 
-gboolean SinkEvent(GstPad* pad, GstObject* parent, GstEvent* event) {
+static gboolean SinkEvent(GstPad* pad, GstObject* parent, GstEvent* event) {
   auto* self = GST_LIDAR_POINT_CLOUD_PARSE(parent);
   State& state = *self->state;
   switch (GST_EVENT_TYPE(event)) {
@@ -315,7 +313,7 @@ gboolean SinkEvent(GstPad* pad, GstObject* parent, GstEvent* event) {
   return gst_pad_event_default(pad, parent, event);
 }
 
-gboolean SrcEvent(GstPad* pad, GstObject* parent, GstEvent* event) {
+static gboolean SrcEvent(GstPad* pad, GstObject* parent, GstEvent* event) {
   auto* self = GST_LIDAR_POINT_CLOUD_PARSE(parent);
   if (GST_EVENT_TYPE(event) == GST_EVENT_SEEK) {
     if (const auto done = self->state->stamper.timeline().Seek(self->sinkpad, event)) {
@@ -326,13 +324,13 @@ gboolean SrcEvent(GstPad* pad, GstObject* parent, GstEvent* event) {
   return gst_pad_event_default(pad, parent, event);
 }
 
-gboolean SrcQuery(GstPad* pad, GstObject* parent, GstQuery* query) {
+static gboolean SrcQuery(GstPad* pad, GstObject* parent, GstQuery* query) {
   auto* self = GST_LIDAR_POINT_CLOUD_PARSE(parent);
   return self->state->stamper.timeline().Answer(self->sinkpad, query) ||
          gst_pad_query_default(pad, parent, query);
 }
 
-GstStateChangeReturn ChangeState(GstElement* element, GstStateChange transition) {
+static GstStateChangeReturn ChangeState(GstElement* element, GstStateChange transition) {
   const auto result = GST_ELEMENT_CLASS(gst_lidar_point_cloud_parse_parent_class)
                           ->change_state(element, transition);
   if (transition == GST_STATE_CHANGE_PAUSED_TO_READY) {
@@ -350,8 +348,6 @@ GstStateChangeReturn ChangeState(GstElement* element, GstStateChange transition)
   }
   return result;
 }
-
-}  // namespace
 
 static void gst_lidar_point_cloud_parse_init(GstLidarPointCloudParse* self) {
   self->state = new State;

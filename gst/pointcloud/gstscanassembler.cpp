@@ -26,19 +26,7 @@ namespace {
 using lidar::gst::CapsPtr;
 using lidar::gst::CloudInfo;
 using lidar::gst::ScanQueue;
-
 using Settings = lidar::gst::AssemblerSettings;
-
-lidar::gst::StructurePtr Stats(GObject* object);
-
-const std::array<lidar::gst::Property<Settings>, 2> kProperties = {{
-    {"max-wait",
-     "How long a scan waits for slices that are late, in a live pipeline [ns]; added to the "
-     "latency",
-     &Settings::max_wait, 0, static_cast<gdouble>(10 * GST_SECOND), GST_PARAM_MUTABLE_PLAYING},
-    {"stats", "Counters: scans, incomplete, late-slices, duplicate-slices, invalid-slices", Stats},
-}};
-
 using State = lidar::gst::AssemblerState;
 
 }  // namespace
@@ -56,12 +44,20 @@ G_DEFINE_TYPE(GstLidarScanAssembler, gst_lidar_scan_assembler, GST_TYPE_ELEMENT)
 GST_ELEMENT_REGISTER_DEFINE(scanassembler, "scanassembler", GST_RANK_NONE,
                             gst_lidar_scan_assembler_get_type())
 
-namespace {
+static State& StateOf(gpointer self) { return *GST_LIDAR_SCAN_ASSEMBLER(self)->state; }
 
-State& StateOf(gpointer self) { return *GST_LIDAR_SCAN_ASSEMBLER(self)->state; }
+static lidar::gst::StructurePtr Stats(GObject* object) { return StateOf(object).Stats(); }
+
+static const std::array<lidar::gst::Property<Settings>, 2> kProperties = {{
+    {"max-wait",
+     "How long a scan waits for slices that are late, in a live pipeline [ns]; added to the "
+     "latency",
+     &Settings::max_wait, 0, static_cast<gdouble>(10 * GST_SECOND), GST_PARAM_MUTABLE_PLAYING},
+    {"stats", "Counters: scans, incomplete, late-slices, duplicate-slices, invalid-slices", Stats},
+}};
 
 /// Caps of a scan: those of its slices but for the width.
-void PushCaps(GstLidarScanAssembler* self, guint width) {
+static void PushCaps(GstLidarScanAssembler* self, guint width) {
   State& state = *self->state;
   CapsPtr caps;
   lidar::gst::EventPtr segment;
@@ -78,7 +74,7 @@ void PushCaps(GstLidarScanAssembler* self, guint width) {
 }
 
 /// The streaming lock must be held, and the mutex must not.
-GstFlowReturn PushScans(GstLidarScanAssembler* self, ScanQueue::Finished* finished) {
+static GstFlowReturn PushScans(GstLidarScanAssembler* self, ScanQueue::Finished* finished) {
   GstFlowReturn flow = GST_FLOW_OK;
   for (auto& scan : *finished) {
     if (flow != GST_FLOW_OK) break;
@@ -90,7 +86,7 @@ GstFlowReturn PushScans(GstLidarScanAssembler* self, ScanQueue::Finished* finish
   return flow;
 }
 
-GstFlowReturn PushAll(GstLidarScanAssembler* self) {
+static GstFlowReturn PushAll(GstLidarScanAssembler* self) {
   ScanQueue::Finished finished;
   {
     std::lock_guard lock(self->state->mutex);
@@ -100,7 +96,7 @@ GstFlowReturn PushAll(GstLidarScanAssembler* self) {
 }
 
 /// Works out the latency that slices of such a scan cause, and posts a message when it changes.
-void UpdateLatency(GstLidarScanAssembler* self, const CloudInfo& info, guint slices) {
+static void UpdateLatency(GstLidarScanAssembler* self, const CloudInfo& info, guint slices) {
   State& state = *self->state;
   const GstClockTime scan = info.ScanDuration();
   const GstClockTime latency = slices > 1 && GST_CLOCK_TIME_IS_VALID(scan) ? scan : 0;
@@ -112,7 +108,7 @@ void UpdateLatency(GstLidarScanAssembler* self, const CloudInfo& info, guint sli
   gst_element_post_message(GST_ELEMENT(self), gst_message_new_latency(GST_OBJECT(self)));
 }
 
-void LearnUpstreamLatency(GstLidarScanAssembler* self) {
+static void LearnUpstreamLatency(GstLidarScanAssembler* self) {
   const lidar::gst::QueryPtr query(gst_query_new_latency());
   const bool answered = gst_pad_peer_query(self->sinkpad, query.get());
   std::lock_guard lock(self->state->mutex);
@@ -120,7 +116,7 @@ void LearnUpstreamLatency(GstLidarScanAssembler* self) {
 }
 
 /// A buffer that is a scan by itself.
-GstFlowReturn PassThrough(GstLidarScanAssembler* self, GstBuffer* buffer, guint width) {
+static GstFlowReturn PassThrough(GstLidarScanAssembler* self, GstBuffer* buffer, guint width) {
   GstFlowReturn flow = PushAll(self);
   if (flow != GST_FLOW_OK) {
     gst_buffer_unref(buffer);
@@ -131,7 +127,7 @@ GstFlowReturn PassThrough(GstLidarScanAssembler* self, GstBuffer* buffer, guint 
 }
 
 /// Slices that lost their meta on the way look like scans of few columns.
-void ReportMissingMeta(GstLidarScanAssembler* self, const CloudInfo& info) {
+static void ReportMissingMeta(GstLidarScanAssembler* self, const CloudInfo& info) {
   State& state = *self->state;
   if (!info.sensor_model || info.width >= info.sensor_model->columns_per_scan) return;
   if (std::exchange(state.missing_meta_reported, true)) return;
@@ -143,7 +139,7 @@ void ReportMissingMeta(GstLidarScanAssembler* self, const CloudInfo& info) {
                        "record and send RTP (rtplidarpay), which carries them."));
 }
 
-GstFlowReturn Chain(GstPad*, GstObject* parent, GstBuffer* buffer) {
+static GstFlowReturn Chain(GstPad*, GstObject* parent, GstBuffer* buffer) {
   auto* self = GST_LIDAR_SCAN_ASSEMBLER(parent);
   State& state = *self->state;
   std::optional<CloudInfo> info;
@@ -181,7 +177,7 @@ GstFlowReturn Chain(GstPad*, GstObject* parent, GstBuffer* buffer) {
   return PushScans(self, &finished);
 }
 
-void FinishDue(GstLidarScanAssembler* self, ScanQueue::Finished* finished) {
+static void FinishDue(GstLidarScanAssembler* self, ScanQueue::Finished* finished) {
   State& state = *self->state;
   std::lock_guard lock(state.mutex);
   GstClock* clock = gst_element_get_clock(GST_ELEMENT(self));
@@ -192,7 +188,7 @@ void FinishDue(GstLidarScanAssembler* self, ScanQueue::Finished* finished) {
 }
 
 /// The task of the source pad: lets scans go whose time is over.
-void TimerLoop(gpointer data) {
+static void TimerLoop(gpointer data) {
   auto* self = GST_LIDAR_SCAN_ASSEMBLER(data);
   State& state = *self->state;
   std::unique_lock lock(state.mutex);
@@ -211,13 +207,13 @@ void TimerLoop(gpointer data) {
   if (state.timer.flushing()) gst_pad_pause_task(self->srcpad);
 }
 
-void SetFlushing(GstLidarScanAssembler* self, bool flushing) {
+static void SetFlushing(GstLidarScanAssembler* self, bool flushing) {
   State& state = *self->state;
   std::lock_guard lock(state.mutex);
   state.timer.SetFlushing(flushing);
 }
 
-void TakeCaps(GstLidarScanAssembler* self, GstCaps* caps, CloudInfo&& info) {
+static void TakeCaps(GstLidarScanAssembler* self, GstCaps* caps, CloudInfo&& info) {
   State& state = *self->state;
   std::lock_guard lock(state.mutex);
   // Slices of unorganised clouds differ in width; that is no change for the scan.
@@ -227,7 +223,7 @@ void TakeCaps(GstLidarScanAssembler* self, GstCaps* caps, CloudInfo&& info) {
   state.info = std::move(info);
 }
 
-gboolean HandleCaps(GstLidarScanAssembler* self, GstEvent* event) {
+static gboolean HandleCaps(GstLidarScanAssembler* self, GstEvent* event) {
   const lidar::gst::EventPtr owner(event);
   GstCaps* caps = nullptr;
   gst_event_parse_caps(event, &caps);
@@ -252,7 +248,7 @@ gboolean HandleCaps(GstLidarScanAssembler* self, GstEvent* event) {
 }
 
 /// Caps must go before the segment. True: the event was taken, and waits for the caps.
-bool HoldSegment(GstLidarScanAssembler* self, GstEvent* event) {
+static bool HoldSegment(GstLidarScanAssembler* self, GstEvent* event) {
   State& state = *self->state;
   const GstSegment* segment = nullptr;
   gst_event_parse_segment(event, &segment);
@@ -264,7 +260,7 @@ bool HoldSegment(GstLidarScanAssembler* self, GstEvent* event) {
   return !state.caps_sent;
 }
 
-void ForgetAll(GstLidarScanAssembler* self) {
+static void ForgetAll(GstLidarScanAssembler* self) {
   State& state = *self->state;
   {
     std::lock_guard lock(state.mutex);
@@ -275,7 +271,7 @@ void ForgetAll(GstLidarScanAssembler* self) {
   SetFlushing(self, false);
 }
 
-gboolean SinkEvent(GstPad* pad, GstObject* parent, GstEvent* event) {
+static gboolean SinkEvent(GstPad* pad, GstObject* parent, GstEvent* event) {
   auto* self = GST_LIDAR_SCAN_ASSEMBLER(parent);
   State& state = *self->state;
   switch (GST_EVENT_TYPE(event)) {
@@ -313,7 +309,7 @@ gboolean SinkEvent(GstPad* pad, GstObject* parent, GstEvent* event) {
   return gst_pad_event_default(pad, parent, event);
 }
 
-gboolean SrcQuery(GstPad* pad, GstObject* parent, GstQuery* query) {
+static gboolean SrcQuery(GstPad* pad, GstObject* parent, GstQuery* query) {
   if (!gst_pad_query_default(pad, parent, query)) return FALSE;
   if (GST_QUERY_TYPE(query) != GST_QUERY_LATENCY) return TRUE;
   State& state = StateOf(parent);
@@ -323,13 +319,13 @@ gboolean SrcQuery(GstPad* pad, GstObject* parent, GstQuery* query) {
   return TRUE;
 }
 
-gboolean ActivateSource(GstPad* pad, GstObject* parent, GstPadMode, gboolean active) {
+static gboolean ActivateSource(GstPad* pad, GstObject* parent, GstPadMode, gboolean active) {
   auto* self = GST_LIDAR_SCAN_ASSEMBLER(parent);
   SetFlushing(self, active == FALSE);
   return active ? gst_pad_start_task(pad, TimerLoop, self, nullptr) : gst_pad_stop_task(pad);
 }
 
-GstStateChangeReturn ChangeState(GstElement* element, GstStateChange transition) {
+static GstStateChangeReturn ChangeState(GstElement* element, GstStateChange transition) {
   State& state = StateOf(element);
   const auto result =
       GST_ELEMENT_CLASS(gst_lidar_scan_assembler_parent_class)->change_state(element, transition);
@@ -342,13 +338,9 @@ GstStateChangeReturn ChangeState(GstElement* element, GstStateChange transition)
   return result;
 }
 
-lidar::gst::StructurePtr Stats(GObject* object) { return StateOf(object).Stats(); }
-
-void PostLatency(GObject* object, GParamSpec*) {
+static void PostLatency(GObject* object, GParamSpec*) {
   gst_element_post_message(GST_ELEMENT(object), gst_message_new_latency(GST_OBJECT(object)));
 }
-
-}  // namespace
 
 static void gst_lidar_scan_assembler_init(GstLidarScanAssembler* self) {
   self->state = new State;

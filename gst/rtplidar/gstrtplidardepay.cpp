@@ -46,19 +46,6 @@ struct Settings {
   guint64 max_reorder_time = 100 * GST_MSECOND;
 };
 
-lidar::gst::StructurePtr Stats(GObject* object);
-
-const std::array<lidar::gst::Property<Settings>, 2> kProperties = {{
-    {"max-reorder-time",
-     "How long a slice may wait for missing packets once a later slice began; no other slice waits "
-     "with it [ns]",
-     &Settings::max_reorder_time, 0, 10.0 * GST_SECOND, GST_PARAM_MUTABLE_PLAYING},
-    {"stats",
-     "Slices and scans received and missing, each counted once, beside the fields that every RTP "
-     "depayloader has",
-     Stats},
-}};
-
 /// What `stats` shows.
 struct Shown {
   ReceiverAccounts all;
@@ -132,9 +119,29 @@ G_DEFINE_TYPE(GstLidarRtpDepay, gst_lidar_rtp_depay, GST_TYPE_RTP_BASE_DEPAYLOAD
 GST_ELEMENT_REGISTER_DEFINE(rtplidardepay, "rtplidardepay", GST_RANK_SECONDARY,
                             gst_lidar_rtp_depay_get_type())
 
-namespace {
+static lidar::gst::StructurePtr Stats(GObject* object) {
+  State& state = *GST_LIDAR_RTP_DEPAY(object)->state;
+  auto stats = lidar::gst::BaseClassStats(object, gst_lidar_rtp_depay_parent_class);
+  std::lock_guard lock(state.mutex);
+  const auto all = state.receiver.accounts();
+  lidar::gst::AddStats(
+      stats.get(), kStats,
+      {all, all.packets.invalid + state.not_rtp, state.wrong_payload_type, state.not_accepted});
+  return stats;
+}
 
-GstBuffer* ToBuffer(ReceivedSlice* slice) {
+static const std::array<lidar::gst::Property<Settings>, 2> kProperties = {{
+    {"max-reorder-time",
+     "How long a slice may wait for missing packets once a later slice began; no other slice waits "
+     "with it [ns]",
+     &Settings::max_reorder_time, 0, 10.0 * GST_SECOND, GST_PARAM_MUTABLE_PLAYING},
+    {"stats",
+     "Slices and scans received and missing, each counted once, beside the fields that every RTP "
+     "depayloader has",
+     Stats},
+}};
+
+static GstBuffer* ToBuffer(ReceivedSlice* slice) {
   auto* bytes = new std::vector<std::uint8_t>(std::move(slice->bytes));
   GstBuffer* buffer = gst_buffer_new_wrapped_full(
       static_cast<GstMemoryFlags>(0), bytes->data(), bytes->size(), 0, bytes->size(), bytes,
@@ -156,7 +163,7 @@ GstBuffer* ToBuffer(ReceivedSlice* slice) {
 
 /// Sets the caps of `config`. False, and a warning the first time, where the next element does not
 /// take them: a stream of another coder must not end the pipeline, as anyone may send one.
-bool SetCapsOf(GstRTPBaseDepayload* base, const lidar::rtp::StreamConfig& config) {
+static bool SetCapsOf(GstRTPBaseDepayload* base, const lidar::rtp::StreamConfig& config) {
   State& state = *GST_LIDAR_RTP_DEPAY(base)->state;
   const CapsPtr caps(lidar::gst::StreamConfigToCaps(config));
   if (gst_pad_peer_query_accept_caps(base->srcpad, caps.get())) {
@@ -175,7 +182,7 @@ bool SetCapsOf(GstRTPBaseDepayload* base, const lidar::rtp::StreamConfig& config
 }
 
 /// Pushes the slices, those of one config as one list.
-void PushSlices(GstRTPBaseDepayload* base, std::vector<ReceivedSlice> slices) {
+static void PushSlices(GstRTPBaseDepayload* base, std::vector<ReceivedSlice> slices) {
   State& state = *GST_LIDAR_RTP_DEPAY(base)->state;
   BufferListPtr list;
   const auto flush = [&] {
@@ -199,7 +206,7 @@ void PushSlices(GstRTPBaseDepayload* base, std::vector<ReceivedSlice> slices) {
 }
 
 /// True once many packets had a wrong payload type and none the right one.
-bool CountWrongType(State& state) {
+static bool CountWrongType(State& state) {
   std::lock_guard lock(state.mutex);
   return ++state.wrong_payload_type >= kWrongTypePackets &&
          state.receiver.accounts().packets_received == 0;
@@ -207,7 +214,7 @@ bool CountWrongType(State& state) {
 
 /// False, and counted, for what is not RTP or of another payload type. The base class would post a
 /// warning for each, and a flood of garbage must not become a flood of messages.
-bool IsOurs(GstLidarRtpDepay* self, GstBuffer* buffer) {
+static bool IsOurs(GstLidarRtpDepay* self, GstBuffer* buffer) {
   State& state = *self->state;
   GstRTPBuffer rtp = GST_RTP_BUFFER_INIT;
   if (!gst_rtp_buffer_map(buffer, GST_MAP_READ, &rtp)) {
@@ -230,7 +237,7 @@ bool IsOurs(GstLidarRtpDepay* self, GstBuffer* buffer) {
 }
 
 /// Two senders with one payload type, whose streams nobody told apart: said once.
-void WarnOfRival(GstLidarRtpDepay* self, guint32 ssrc, guint32 rival) {
+static void WarnOfRival(GstLidarRtpDepay* self, guint32 ssrc, guint32 rival) {
   if (std::exchange(self->state->warned_of_rival, true)) return;
   GST_ELEMENT_WARNING(self, STREAM, WRONG_TYPE,
                       ("Two streams come in; that of SSRC %u is dropped.", rival),
@@ -238,8 +245,6 @@ void WarnOfRival(GstLidarRtpDepay* self, guint32 ssrc, guint32 rival) {
                        "gives each a pad of its own",
                        ssrc));
 }
-
-}  // namespace
 
 static GstFlowReturn gst_lidar_rtp_depay_chain(GstPad* pad, GstObject* parent, GstBuffer* buffer) {
   auto* self = GST_LIDAR_RTP_DEPAY(parent);
@@ -329,26 +334,11 @@ static GstStateChangeReturn gst_lidar_rtp_depay_change_state(GstElement* element
   return result;
 }
 
-namespace {
-
-lidar::gst::StructurePtr Stats(GObject* object) {
-  State& state = *GST_LIDAR_RTP_DEPAY(object)->state;
-  auto stats = lidar::gst::BaseClassStats(object, gst_lidar_rtp_depay_parent_class);
-  std::lock_guard lock(state.mutex);
-  const auto all = state.receiver.accounts();
-  lidar::gst::AddStats(
-      stats.get(), kStats,
-      {all, all.packets.invalid + state.not_rtp, state.wrong_payload_type, state.not_accepted});
-  return stats;
-}
-
-void TakeReorderTime(GObject* object, GParamSpec*) {
+static void TakeReorderTime(GObject* object, GParamSpec*) {
   State& state = *GST_LIDAR_RTP_DEPAY(object)->state;
   std::lock_guard lock(state.mutex);
   state.receiver.set_max_reorder_time(ReorderTime(state.settings));
 }
-
-}  // namespace
 
 static void gst_lidar_rtp_depay_init(GstLidarRtpDepay* self) {
   self->state = new State;

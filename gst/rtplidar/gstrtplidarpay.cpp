@@ -35,20 +35,6 @@ using Settings = lidar::gst::PaySettings;
 
 constexpr guint kClockRate = 90'000;
 
-lidar::gst::StructurePtr Stats(GObject* object);
-
-const std::array<lidar::gst::Property<Settings>, 3> kProperties = {{
-    {"config-interval",
-     "Time between repetitions of the stream config, by which receivers join late; 0: only before "
-     "the first slice and when it changes [s]",
-     &Settings::config_interval_s, 0, 3600, GST_PARAM_MUTABLE_PLAYING},
-    {"aggregate",
-     "Put small slices of one scan together into one packet: fewer headers, more delay (max-ptime "
-     "bounds it)",
-     &Settings::aggregate, 0, 0, GST_PARAM_MUTABLE_PLAYING},
-    {"stats", "What was sent, beside the fields that every RTP payloader has", Stats},
-}};
-
 using Counters = lidar::gst::PayCounters;
 const std::array<lidar::gst::Stat<Counters>, 7> kStats = {{
     {"scans-sent", &Counters::scans},
@@ -76,6 +62,26 @@ struct _GstLidarRtpPay {
 G_DEFINE_TYPE(GstLidarRtpPay, gst_lidar_rtp_pay, GST_TYPE_RTP_BASE_PAYLOAD)
 GST_ELEMENT_REGISTER_DEFINE(rtplidarpay, "rtplidarpay", GST_RANK_SECONDARY,
                             gst_lidar_rtp_pay_get_type())
+
+static lidar::gst::StructurePtr Stats(GObject* object) {
+  State& state = *GST_LIDAR_RTP_PAY(object)->state;
+  auto stats = lidar::gst::BaseClassStats(object, gst_lidar_rtp_pay_parent_class);
+  std::lock_guard lock(state.mutex);
+  lidar::gst::AddStats(stats.get(), kStats, state.counters);
+  return stats;
+}
+
+static const std::array<lidar::gst::Property<Settings>, 3> kProperties = {{
+    {"config-interval",
+     "Time between repetitions of the stream config, by which receivers join late; 0: only before "
+     "the first slice and when it changes [s]",
+     &Settings::config_interval_s, 0, 3600, GST_PARAM_MUTABLE_PLAYING},
+    {"aggregate",
+     "Put small slices of one scan together into one packet: fewer headers, more delay (max-ptime "
+     "bounds it)",
+     &Settings::aggregate, 0, 0, GST_PARAM_MUTABLE_PLAYING},
+    {"stats", "What was sent, beside the fields that every RTP payloader has", Stats},
+}};
 
 static GstFlowReturn gst_lidar_rtp_pay_handle_buffer(GstRTPBasePayload* base, GstBuffer* buffer) {
   const BufferPtr owner(buffer);
@@ -144,10 +150,8 @@ static gboolean gst_lidar_rtp_pay_sink_event(GstRTPBasePayload* base, GstEvent* 
   return GST_RTP_BASE_PAYLOAD_CLASS(gst_lidar_rtp_pay_parent_class)->sink_event(base, event);
 }
 
-namespace {
-
 /// The event as the encoder should see it: without what our headers take. Foreign fields stay.
-GstEvent* WithoutHeaders(GstEvent* event, gdouble share) {
+static GstEvent* WithoutHeaders(GstEvent* event, gdouble share) {
   GstStructure* s = gst_structure_copy(gst_event_get_structure(event));
   for (const char* name : {"bitrate", "min-bitrate", "max-bitrate"}) {
     guint bps = 0;
@@ -160,13 +164,11 @@ GstEvent* WithoutHeaders(GstEvent* event, gdouble share) {
 }
 
 /// A receiver asked for a start point, or the SSRC will change: it needs the config at once.
-bool WantsConfig(GstEvent* event) {
+static bool WantsConfig(GstEvent* event) {
   return GST_EVENT_TYPE(event) == GST_EVENT_CUSTOM_UPSTREAM &&
          (gst_event_has_name(event, "GstForceKeyUnit") ||
           gst_event_has_name(event, "GstRTPCollision"));
 }
-
-}  // namespace
 
 static gboolean gst_lidar_rtp_pay_src_event(GstRTPBasePayload* base, GstEvent* event) {
   State& state = *GST_LIDAR_RTP_PAY(base)->state;
@@ -229,18 +231,6 @@ static GstStateChangeReturn gst_lidar_rtp_pay_change_state(GstElement* element,
   }
   return GST_ELEMENT_CLASS(gst_lidar_rtp_pay_parent_class)->change_state(element, transition);
 }
-
-namespace {
-
-lidar::gst::StructurePtr Stats(GObject* object) {
-  State& state = *GST_LIDAR_RTP_PAY(object)->state;
-  auto stats = lidar::gst::BaseClassStats(object, gst_lidar_rtp_pay_parent_class);
-  std::lock_guard lock(state.mutex);
-  lidar::gst::AddStats(stats.get(), kStats, state.counters);
-  return stats;
-}
-
-}  // namespace
 
 static void gst_lidar_rtp_pay_init(GstLidarRtpPay* self) {
   self->state = new State;

@@ -160,11 +160,9 @@ G_DEFINE_TYPE(GstLidarTestSrc, gst_lidar_test_src, GST_TYPE_PUSH_SRC)
 GST_ELEMENT_REGISTER_DEFINE(lidartestsrc, "lidartestsrc", GST_RANK_NONE,
                             gst_lidar_test_src_get_type())
 
-namespace {
+static State& StateOf(gpointer self) { return *GST_LIDAR_TEST_SRC(self)->state; }
 
-State& StateOf(gpointer self) { return *GST_LIDAR_TEST_SRC(self)->state; }
-
-gboolean Start(GstBaseSrc* base) {
+static gboolean Start(GstBaseSrc* base) {
   State& state = StateOf(base);
   const Settings settings = lidar::gst::Snapshot(state);
   std::string unknown;
@@ -193,7 +191,7 @@ gboolean Start(GstBaseSrc* base) {
   return TRUE;
 }
 
-gboolean Stop(GstBaseSrc* base) {
+static gboolean Stop(GstBaseSrc* base) {
   State& state = StateOf(base);
   std::lock_guard lock(state.mutex);
   state.latency = GST_CLOCK_TIME_NONE;
@@ -203,7 +201,7 @@ gboolean Stop(GstBaseSrc* base) {
   return TRUE;
 }
 
-GstCaps* GetCaps(GstBaseSrc* base, GstCaps* filter) {
+static GstCaps* GetCaps(GstBaseSrc* base, GstCaps* filter) {
   State& state = StateOf(base);
   const Settings settings = lidar::gst::Snapshot(state);
   GstCaps* caps = SliceMaker::InfoFor(ConfigFrom(settings), OptionsFrom(settings)).ToCaps();
@@ -215,7 +213,7 @@ GstCaps* GetCaps(GstBaseSrc* base, GstCaps* filter) {
   return caps;
 }
 
-gboolean Query(GstBaseSrc* base, GstQuery* query) {
+static gboolean Query(GstBaseSrc* base, GstQuery* query) {
   State& state = StateOf(base);
   if (GST_QUERY_TYPE(query) == GST_QUERY_LATENCY && gst_base_src_is_live(base)) {
     std::lock_guard lock(state.mutex);
@@ -227,7 +225,7 @@ gboolean Query(GstBaseSrc* base, GstQuery* query) {
 }
 
 /// A sensor does not wait: a reader that is late by more than a scan misses what was swept.
-bool SkipWhatIsLate(GstElement* element, State* state) {
+static bool SkipWhatIsLate(GstElement* element, State* state) {
   const Duration due = state->maker->NextEnd() + state->maker->period();
   const auto now = state->pacer.Now();
   if (!now || *now < due) return false;
@@ -238,7 +236,7 @@ bool SkipWhatIsLate(GstElement* element, State* state) {
 }
 
 /// Rows that were written stay; the first one that does not fit is told, and the last.
-void LogPose(GstLidarTestSrc* self, GstClockTime capture, const lidar::synth::Pose& pose) {
+static void LogPose(GstLidarTestSrc* self, GstClockTime capture, const lidar::synth::Pose& pose) {
   State& state = *self->state;
   if (!state.log || state.log->Write(capture, pose)) return;
   state.log.reset();
@@ -247,7 +245,7 @@ void LogPose(GstLidarTestSrc* self, GstClockTime capture, const lidar::synth::Po
                       GST_ERROR_SYSTEM);
 }
 
-GstFlowReturn CreateLive(GstLidarTestSrc* self, GstBuffer** out) {
+static GstFlowReturn CreateLive(GstLidarTestSrc* self, GstBuffer** out) {
   State& state = *self->state;
   if (!state.pacer.started()) state.pacer.Start();
   const bool skipped = SkipWhatIsLate(GST_ELEMENT(self), &state);
@@ -266,7 +264,7 @@ GstFlowReturn CreateLive(GstLidarTestSrc* self, GstBuffer** out) {
   return GST_FLOW_OK;
 }
 
-GstFlowReturn Create(GstPushSrc* push, GstBuffer** out) {
+static GstFlowReturn Create(GstPushSrc* push, GstBuffer** out) {
   auto* self = GST_LIDAR_TEST_SRC(push);
   if (gst_base_src_is_live(GST_BASE_SRC(push))) return CreateLive(self, out);
   State& state = *self->state;
@@ -279,25 +277,23 @@ GstFlowReturn Create(GstPushSrc* push, GstBuffer** out) {
   return GST_FLOW_OK;
 }
 
-gboolean Unlock(GstBaseSrc* base) {
+static gboolean Unlock(GstBaseSrc* base) {
   StateOf(base).pacer.SetFlushing(true);
   return TRUE;
 }
 
-gboolean UnlockStop(GstBaseSrc* base) {
+static gboolean UnlockStop(GstBaseSrc* base) {
   StateOf(base).pacer.SetFlushing(false);
   return TRUE;
 }
 
-void ApplyLive(GObject* object, GParamSpec*) {
+static void ApplyLive(GObject* object, GParamSpec*) {
   State& state = StateOf(object);
   std::unique_lock lock(state.mutex);
   const bool live = state.settings.is_live;
   lock.unlock();
   gst_base_src_set_live(GST_BASE_SRC(object), live);
 }
-
-}  // namespace
 
 static void gst_lidar_test_src_init(GstLidarTestSrc* self) {
   self->state = new State(GST_BASE_SRC(self));

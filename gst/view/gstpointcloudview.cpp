@@ -154,13 +154,11 @@ G_DEFINE_TYPE(GstLidarPointCloudView, gst_lidar_point_cloud_view, GST_TYPE_BASE_
 GST_ELEMENT_REGISTER_DEFINE(pointcloudview, "pointcloudview", GST_RANK_NONE,
                             gst_lidar_point_cloud_view_get_type())
 
-namespace {
-
-State& StateOf(gpointer self) { return *GST_LIDAR_POINT_CLOUD_VIEW(self)->state; }
+static State& StateOf(gpointer self) { return *GST_LIDAR_POINT_CLOUD_VIEW(self)->state; }
 
 /// The caps of the other pad, with the frame rate of this one.
-GstCaps* TransformCaps(GstBaseTransform* base, GstPadDirection direction, GstCaps* caps,
-                       GstCaps* filter) {
+static GstCaps* TransformCaps(GstBaseTransform* base, GstPadDirection direction, GstCaps* caps,
+                              GstCaps* filter) {
   GstPad* other = direction == GST_PAD_SINK ? base->srcpad : base->sinkpad;
   CapsPtr pattern(gst_pad_get_pad_template_caps(other));
   CapsPtr out(gst_caps_new_empty());
@@ -174,7 +172,8 @@ GstCaps* TransformCaps(GstBaseTransform* base, GstPadDirection direction, GstCap
   return gst_caps_intersect_full(filter, out.get(), GST_CAPS_INTERSECT_FIRST);
 }
 
-GstCaps* FixateCaps(GstBaseTransform* base, GstPadDirection direction, GstCaps*, GstCaps* other) {
+static GstCaps* FixateCaps(GstBaseTransform* base, GstPadDirection direction, GstCaps*,
+                           GstCaps* other) {
   other = gst_caps_make_writable(gst_caps_truncate(other));
   if (direction == GST_PAD_SINK) {
     State& state = StateOf(base);
@@ -188,7 +187,7 @@ GstCaps* FixateCaps(GstBaseTransform* base, GstPadDirection direction, GstCaps*,
   return gst_caps_fixate(other);
 }
 
-gboolean SetCaps(GstBaseTransform* base, GstCaps* in, GstCaps* out) {
+static gboolean SetCaps(GstBaseTransform* base, GstCaps* in, GstCaps* out) {
   State& state = StateOf(base);
   std::string why = "x, y and z are not F32 side by side";
   state.info = CloudInfo::FromFrameCaps(in, &why);
@@ -209,7 +208,7 @@ gboolean SetCaps(GstBaseTransform* base, GstCaps* in, GstCaps* out) {
   return TRUE;
 }
 
-gboolean GetUnitSize(GstBaseTransform*, GstCaps* caps, gsize* size) {
+static gboolean GetUnitSize(GstBaseTransform*, GstCaps* caps, gsize* size) {
   GstVideoInfo video;
   if (gst_video_info_from_caps(&video, caps)) {
     *size = GST_VIDEO_INFO_SIZE(&video);
@@ -221,12 +220,12 @@ gboolean GetUnitSize(GstBaseTransform*, GstCaps* caps, gsize* size) {
   return TRUE;
 }
 
-gboolean TransformSize(GstBaseTransform* base, GstPadDirection direction, GstCaps*, gsize,
-                       GstCaps* other_caps, gsize* other_size) {
+static gboolean TransformSize(GstBaseTransform* base, GstPadDirection direction, GstCaps*, gsize,
+                              GstCaps* other_caps, gsize* other_size) {
   return direction == GST_PAD_SINK ? GetUnitSize(base, other_caps, other_size) : FALSE;
 }
 
-void Paint(const lidar::gst::Canvas& canvas, GstVideoFrame* frame) {
+static void Paint(const lidar::gst::Canvas& canvas, GstVideoFrame* frame) {
   const auto step = static_cast<int>(GST_VIDEO_FRAME_COMP_PSTRIDE(frame, 0));
   const auto r = static_cast<int>(GST_VIDEO_FRAME_COMP_POFFSET(frame, 0));
   const auto g = static_cast<int>(GST_VIDEO_FRAME_COMP_POFFSET(frame, 1));
@@ -246,7 +245,7 @@ void Paint(const lidar::gst::Canvas& canvas, GstVideoFrame* frame) {
 }
 
 /// Moves the map to where `in` was taken. False where its points shall not enter the map.
-bool FollowPose(GstBaseTransform* base, GstBuffer* in) {
+static bool FollowPose(GstBaseTransform* base, GstBuffer* in) {
   State& state = StateOf(base);
   if (!state.map) return false;
   GstLidarPose pose;
@@ -266,7 +265,7 @@ bool FollowPose(GstBaseTransform* base, GstBuffer* in) {
 }
 
 /// The map lives as long as it is asked for and its colours tell the same.
-lidar::gst::TrailMap* UpdateMap(State* state) {
+static lidar::gst::TrailMap* UpdateMap(State* state) {
   const Settings& settings = state->settings;
   const bool stale = state->map_colors != settings.color_by;
   if (!settings.map || stale) state->map.reset();
@@ -276,7 +275,7 @@ lidar::gst::TrailMap* UpdateMap(State* state) {
 }
 
 /// Settings that changed while a picture was drawn show in the next one.
-void ApplySettings(State* state) {
+static void ApplySettings(State* state) {
   std::lock_guard lock(state->mutex);
   if (state->changed || !state->renderer)
     state->renderer =
@@ -285,14 +284,14 @@ void ApplySettings(State* state) {
   state->changed = false;
 }
 
-void BeginPicture(State* state, const GstLidarSlice& slice, GstBuffer* in) {
+static void BeginPicture(State* state, const GstLidarSlice& slice, GstBuffer* in) {
   state->renderer->Begin();
   state->drawing = true;
   state->scan_id = slice.scan_id;
   state->pts = GST_BUFFER_PTS(in);
 }
 
-GstFlowReturn FinishPicture(GstBaseTransform* base, GstBuffer* out) {
+static GstFlowReturn FinishPicture(GstBaseTransform* base, GstBuffer* out) {
   State& state = StateOf(base);
   GstVideoFrame frame;
   if (!gst_video_frame_map(&frame, &state.video, out, GST_MAP_WRITE)) {
@@ -308,7 +307,7 @@ GstFlowReturn FinishPicture(GstBaseTransform* base, GstBuffer* out) {
 }
 
 /// A scan is a picture: slices are drawn as they come, and the last one lets it go.
-GstFlowReturn Transform(GstBaseTransform* base, GstBuffer* in, GstBuffer* out) {
+static GstFlowReturn Transform(GstBaseTransform* base, GstBuffer* in, GstBuffer* out) {
   State& state = StateOf(base);
   const lidar::gst::BufferMap bytes(in, GST_MAP_READ);
   if (!bytes || bytes.size() != state.info->FrameSize()) {
@@ -333,7 +332,8 @@ GstFlowReturn Transform(GstBaseTransform* base, GstBuffer* in, GstBuffer* out) {
   return FinishPicture(base, out);
 }
 
-gboolean TransformMeta(GstBaseTransform* base, GstBuffer* out, GstMeta* meta, GstBuffer* in) {
+static gboolean TransformMeta(GstBaseTransform* base, GstBuffer* out, GstMeta* meta,
+                              GstBuffer* in) {
   // A picture must not carry the metas of a slice.
   if (meta->info == gst_meta_get_info(GST_LIDAR_SLICE_META_NAME) ||
       meta->info == gst_meta_get_info(GST_LIDAR_POSE_META_NAME))
@@ -342,12 +342,12 @@ gboolean TransformMeta(GstBaseTransform* base, GstBuffer* out, GstMeta* meta, Gs
       ->transform_meta(base, out, meta, in);
 }
 
-gboolean SinkEvent(GstBaseTransform* base, GstEvent* event) {
+static gboolean SinkEvent(GstBaseTransform* base, GstEvent* event) {
   if (GST_EVENT_TYPE(event) == GST_EVENT_FLUSH_STOP) StateOf(base).drawing = false;
   return GST_BASE_TRANSFORM_CLASS(gst_lidar_point_cloud_view_parent_class)->sink_event(base, event);
 }
 
-gboolean Stop(GstBaseTransform* base) {
+static gboolean Stop(GstBaseTransform* base) {
   State& state = StateOf(base);
   state.drawing = false;
   state.renderer.reset();
@@ -363,13 +363,11 @@ gboolean Stop(GstBaseTransform* base) {
 }
 
 /// The next picture is drawn anew.
-void MarkChanged(GObject* object, GParamSpec*) {
+static void MarkChanged(GObject* object, GParamSpec*) {
   State& state = StateOf(object);
   std::lock_guard lock(state.mutex);
   state.changed = true;
 }
-
-}  // namespace
 
 static void gst_lidar_point_cloud_view_init(GstLidarPointCloudView* self) {
   self->state = new State;
