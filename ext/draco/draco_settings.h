@@ -5,7 +5,7 @@
 
 #include <optional>
 
-#include "src/cloud/geometry.h"
+#include "src/cloud/coded_geometry.h"
 #include "src/codec/range_header.h"
 
 namespace lidar::gst {

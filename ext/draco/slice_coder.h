@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "ext/draco/xyz_codec.h"
-#include "src/cloud/geometry.h"
+#include "src/cloud/coded_geometry.h"
 #include "src/codec/slice_decoder.h"
 #include "src/codec/slice_encoder.h"
 

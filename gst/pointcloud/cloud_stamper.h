@@ -7,7 +7,7 @@
 
 #include "gst/common/refs.h"
 #include "gst/pointcloud/cloud_timeline.h"
-#include "gst/pointcloud/rate.h"
+#include "gst/pointcloud/frame_rate.h"
 
 namespace lidar::gst {
 

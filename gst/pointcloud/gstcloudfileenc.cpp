@@ -23,7 +23,7 @@
 #include "gst/common/properties.h"
 #include "gst/common/refs.h"
 #include "gst/common/refused_caps.h"
-#include "gst/pointcloud/cloud_file.h"
+#include "gst/pointcloud/cloud_file_writer.h"
 
 GST_DEBUG_CATEGORY_STATIC(gst_lidar_cloud_file_enc_debug);
 #define GST_CAT_DEFAULT gst_lidar_cloud_file_enc_debug

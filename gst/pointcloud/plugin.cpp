@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include "gst/common/gstlidar.h"
-#include "gst/pointcloud/file_cloud.h"
+#include "gst/pointcloud/cloud_file_reader.h"
 #include "gst/pointcloud/gstpointcloudfilter.h"
 #include "gst/pointcloud/gstpointcloudmerge.h"
 

@@ -2,7 +2,7 @@
 // The residual error optimizer: how far a uniform grid can move a point, and the coarsest grid
 // that keeps to an error.
 #pragma once
-#include "src/cloud/geometry.h"
+#include "src/cloud/coded_geometry.h"
 #include "src/cloud/range_grid.h"
 
 namespace lidar::rate {

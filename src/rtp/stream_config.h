@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "src/base/byte_reader.h"
-#include "src/cloud/geometry.h"
+#include "src/cloud/coded_geometry.h"
 
 namespace lidar::rtp {
 

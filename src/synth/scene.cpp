@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include "src/synth/scene.h"
 
-#include "src/synth/scenes.h"
+#include "src/synth/scene_makers.h"
 
 namespace lidar::synth {
 

@@ -5,7 +5,7 @@
 #include <algorithm>
 
 #include "src/synth/props.h"
-#include "src/synth/scenes.h"
+#include "src/synth/scene_makers.h"
 
 namespace lidar::synth {
 namespace {

@@ -2,7 +2,7 @@
 // A town on hills: streets in two directions, curves, crossings, traffic, and a round trip.
 #include <algorithm>
 
-#include "src/synth/scenes.h"
+#include "src/synth/scene_makers.h"
 #include "src/synth/street.h"
 #include "src/synth/terrain.h"
 #include "src/synth/town_route.h"

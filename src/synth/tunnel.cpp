@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // A road tunnel: the same shell for kilometres, which is where odometry loses its way.
 #include "src/synth/props.h"
-#include "src/synth/scenes.h"
+#include "src/synth/scene_makers.h"
 
 namespace lidar::synth {
 namespace {

@@ -15,10 +15,10 @@
 #include "src/tools/common/event_loop.h"
 #include "src/tools/common/output_file.h"
 #include "src/tools/common/udp_socket.h"
-#include "src/tools/demo/comparer.h"
 #include "src/tools/demo/measurements.h"
 #include "src/tools/demo/report.h"
 #include "src/tools/demo/slam.h"
+#include "src/tools/demo/stream_comparer.h"
 #include "src/tools/demo/summary.h"
 #include "src/tools/demo/verdict.h"
 

@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
-#include "src/tools/demo/comparer.h"
+#include "src/tools/demo/stream_comparer.h"
 
 namespace lidar::demo {
 namespace {

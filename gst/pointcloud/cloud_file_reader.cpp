@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "gst/pointcloud/file_cloud.h"
+#include "gst/pointcloud/cloud_file_reader.h"
 
 #include <algorithm>
 #include <utility>
