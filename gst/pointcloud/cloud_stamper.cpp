@@ -22,7 +22,7 @@ void CloudStamper::ShowGrid() {
   timeline_.SetGrid(grid);
 }
 
-void CloudStamper::SetRate(const Rate& rate) {
+void CloudStamper::SetRate(const FrameRate& rate) {
   rate_ = rate;
   ShowGrid();
 }

@@ -15,9 +15,9 @@ namespace lidar::gst {
 class CloudStamper {
  public:
   CloudTimeline& timeline() { return timeline_; }
-  const Rate& rate() const { return rate_; }
+  const FrameRate& rate() const { return rate_; }
   /// A rate that is known.
-  void SetRate(const Rate& rate);
+  void SetRate(const FrameRate& rate);
   /// Clouds that went, and that were left out.
   guint64 count() const { return place_.next; }
   /// Whether upstream stamps its buffers.
@@ -43,7 +43,7 @@ class CloudStamper {
   void ShowGrid();
 
   CloudTimeline timeline_;
-  Rate rate_;
+  FrameRate rate_;
   bool times_given_ = false;
   EventPtr segment_;
   gsize cloud_size_ = 0;

@@ -5,21 +5,21 @@
 
 namespace lidar::gst {
 
-struct Rate {
+struct FrameRate {
   gint n = 0;  // 0: not known
   gint d = 1;
 };
 template <>
-struct Kind<Rate> {
+struct Kind<FrameRate> {
   static GType Type() { return GST_TYPE_FRACTION; }
-  static GParamSpec* Spec(const SpecArgs& a, Rate initial) {
+  static GParamSpec* Spec(const SpecArgs& a, FrameRate initial) {
     return gst_param_spec_fraction(a.name, a.name, a.blurb, 0, 1, G_MAXINT, 1, initial.n, initial.d,
                                    a.flags);
   }
-  static void Set(Rate* field, const GValue* v) {
+  static void Set(FrameRate* field, const GValue* v) {
     *field = {gst_value_get_fraction_numerator(v), gst_value_get_fraction_denominator(v)};
   }
-  static void Get(Rate value, GValue* v) { gst_value_set_fraction(v, value.n, value.d); }
+  static void Get(FrameRate value, GValue* v) { gst_value_set_fraction(v, value.n, value.d); }
 };
 
 }  // namespace lidar::gst

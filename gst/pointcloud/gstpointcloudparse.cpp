@@ -39,13 +39,13 @@ using lidar::gst::BufferPtr;
 using lidar::gst::CapsPtr;
 using lidar::gst::CloudInfo;
 using lidar::gst::CloudStamper;
-using lidar::gst::Rate;
+using lidar::gst::FrameRate;
 
 constexpr gint kDefaultRate = 10;            // scans/s where neither caps nor property say
 constexpr gsize kMaxCloud = gsize{1} << 30;  // bytes
 
 struct Settings {
-  Rate framerate;  // 0: from the caps
+  FrameRate framerate;  // 0: from the caps
 };
 
 const std::array<lidar::gst::Property<Settings>, 1> kProperties = {{
@@ -105,7 +105,7 @@ static void PushCaps(GstLidarPointCloudParse* self, guint width) {
   State& state = *self->state;
   if (state.out_width == width) return;
   state.out_width = width;
-  const Rate& rate = state.stamper.rate();
+  const FrameRate& rate = state.stamper.rate();
   CapsPtr caps(gst_caps_copy(state.caps.get()));
   gst_caps_set_simple(caps.get(), "width", G_TYPE_INT, static_cast<gint>(width), "height",
                       G_TYPE_INT, static_cast<gint>(state.info->height), "is-dense", G_TYPE_BOOLEAN,
@@ -192,12 +192,12 @@ static GstFlowReturn PushWhole(GstLidarPointCloudParse* self, BufferPtr buffer) 
 
 /// From the caps, which say more than the property where that is not set.
 static void SetRate(State* state, gint n, gint d) {
-  Rate rate{n, d};
+  FrameRate rate{n, d};
   {
     std::lock_guard lock(state->mutex);
     if (state->settings.framerate.n > 0) rate = state->settings.framerate;
   }
-  state->stamper.SetRate(rate.n > 0 ? rate : Rate{kDefaultRate, 1});
+  state->stamper.SetRate(rate.n > 0 ? rate : FrameRate{kDefaultRate, 1});
 }
 
 /// Files say themselves what they are.
@@ -247,7 +247,7 @@ static gboolean HandleCaps(GstLidarPointCloudParse* self, GstEvent* event) {
   state.type = lidar::gst::CloudFileTypeOf(caps);
   if (state.type) {
     state.info.reset();
-    Rate given;
+    FrameRate given;
     gst_structure_get_fraction(gst_caps_get_structure(caps, 0), "framerate", &given.n, &given.d);
     SetRate(&state, given.n, given.d);
     return TRUE;

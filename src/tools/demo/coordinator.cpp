@@ -72,7 +72,7 @@ class Coordinator {
   std::unique_ptr<ChildProcess> receiver_;
   std::unique_ptr<ChildProcess> link_;
   std::unique_ptr<ChildProcess> sender_;
-  std::unique_ptr<Comparer> comparer_;
+  std::unique_ptr<StreamComparer> comparer_;
   Phase phase_ = Phase::kReceiver;
   Time phase_since_;
   Time streaming_since_;
@@ -210,8 +210,8 @@ void Coordinator::Enter(Phase phase) {
       sender_ = Start({folder + "/lidar-demo", "send", SenderPipeline(o, ports_)}, "sender", true);
       Watch(sender_.get(), &Coordinator::OnSender);
       // Two returns of one place may both lie at the bound's edge.
-      comparer_ = std::make_unique<Comparer>(sender_->clouds_fd(), receiver_->clouds_fd(),
-                                             2 * ErrorBoundOf(o) + 0.01);
+      comparer_ = std::make_unique<StreamComparer>(sender_->clouds_fd(), receiver_->clouds_fd(),
+                                                   2 * ErrorBoundOf(o) + 0.01);
       break;
     case Phase::kStreaming:
       streaming_since_ = Time{Duration{m_.origin_unix_ns} - tools::UnixOffset()};

@@ -11,26 +11,26 @@ constexpr auto kPatience = std::chrono::seconds{2};
 
 }  // namespace
 
-Comparer::Comparer(int sent_fd, int received_fd, double reach_m)
+StreamComparer::StreamComparer(int sent_fd, int received_fd, double reach_m)
     : sent_fd_(sent_fd),
       received_fd_(received_fd),
       reach_m_(reach_m),
       sent_thread_([this] { ReadSent(); }),
       received_thread_([this] { ReadReceived(); }) {}
 
-Comparer::~Comparer() { Finish(); }
+StreamComparer::~StreamComparer() { Finish(); }
 
-void Comparer::Finish() {
+void StreamComparer::Finish() {
   if (sent_thread_.joinable()) sent_thread_.join();
   if (received_thread_.joinable()) received_thread_.join();
 }
 
-std::vector<Comparer::Result> Comparer::Take() {
+std::vector<StreamComparer::Result> StreamComparer::Take() {
   const std::lock_guard<std::mutex> lock(mutex_);
   return std::exchange(results_, {});
 }
 
-void Comparer::ReadSent() {
+void StreamComparer::ReadSent() {
   while (auto cloud = ReadFrame(sent_fd_)) {
     const std::lock_guard<std::mutex> lock(mutex_);
     const SliceKey key = cloud->key;
@@ -43,7 +43,7 @@ void Comparer::ReadSent() {
   arrived_.notify_one();
 }
 
-bool Comparer::TakeSent(SliceKey key, Cloud* cloud) {
+bool StreamComparer::TakeSent(SliceKey key, Cloud* cloud) {
   std::unique_lock<std::mutex> lock(mutex_);
   arrived_.wait_for(lock, kPatience, [&] { return pending_.count(key) > 0 || sent_ended_; });
   const auto found = pending_.find(key);
@@ -53,7 +53,7 @@ bool Comparer::TakeSent(SliceKey key, Cloud* cloud) {
   return true;
 }
 
-void Comparer::ReadReceived() {
+void StreamComparer::ReadReceived() {
   while (const auto received = ReadFrame(received_fd_)) {
     Cloud sent;
     if (!TakeSent(received->key, &sent)) continue;

@@ -16,13 +16,13 @@ namespace lidar::demo {
 
 /// Reads both pipes in threads of its own. Keeps at most kMaxPending sent slices: older ones were
 /// skipped or lost.
-class Comparer {
+class StreamComparer {
  public:
-  Comparer(int sent_fd, int received_fd, double reach_m);
+  StreamComparer(int sent_fd, int received_fd, double reach_m);
   /// Waits for the ends of both pipes.
-  ~Comparer();
-  Comparer(const Comparer&) = delete;
-  Comparer& operator=(const Comparer&) = delete;
+  ~StreamComparer();
+  StreamComparer(const StreamComparer&) = delete;
+  StreamComparer& operator=(const StreamComparer&) = delete;
 
   using Result = std::pair<SliceKey, Comparison>;
   /// Results since the last call.

@@ -68,7 +68,7 @@ TEST(CloudCompare, TheComparerMatchesSlicesOfTwoPipes) {
   int received[2];
   ASSERT_EQ(pipe(sent), 0);
   ASSERT_EQ(pipe(received), 0);
-  Comparer comparer(sent[0], received[0], 0.1);
+  StreamComparer comparer(sent[0], received[0], 0.1);
   const auto put = [](int fd, std::uint32_t slice, float x) {
     Cloud cloud = Organised({x, 0, 0, x, 0, 0});
     cloud.key.slice = slice;
