@@ -50,43 +50,6 @@ void slow_decoder_class_init(SlowDecoderClass* klass) {
 }
 
 using std::chrono::milliseconds;
-using worker::ParseAnswer;
-
-TEST(LeaseStore, ReadsWhatTheServerAnswers) {
-  EXPECT_EQ(ParseAnswer(R"({"stream":"KV_x","seq":17})")->revision, 17U);
-  const auto refused = ParseAnswer(
-      R"({"error":{"code":400,"err_code":10071,"description":"wrong last sequence: 5"},"seq":0})");
-  EXPECT_FALSE(refused->revision);
-  EXPECT_EQ(refused->newest, 5U);
-  EXPECT_FALSE(ParseAnswer(R"({"error":{"code":503,"err_code":10008}})")->newest);
-  for (const char* text : {"", "x", "[]", "{}", R"({"seq":-1})", R"({"seq":"1"})"})
-    EXPECT_FALSE(ParseAnswer(text)) << text;
-  EXPECT_FALSE(ParseAnswer(R"({"error":7})")->revision);
-  EXPECT_FALSE(ParseAnswer(R"({"error":{"err_code":10071,"description":7}})")->newest);
-}
-
-TEST(FleetWatch, KnowsRobotsByTheirSubjects) {
-  worker::FleetSettings settings;
-  settings.patterns = {"r?", "s1.front"};
-  EXPECT_EQ(RobotOf(settings, "fleet.r1.lidar.front"), "r1.front");
-  EXPECT_EQ(RobotOf(settings, "fleet.r1.odometry.front"), "");
-  EXPECT_EQ(RobotOf(settings, "other.r1.lidar.front"), "");
-  EXPECT_TRUE(IsWanted(settings, "r1.front"));
-  EXPECT_TRUE(IsWanted(settings, "s1.front"));
-  for (const char* name : {"", "r1", "r11.front", "s1.rear", "r1.", ".front", "r1.a.b", "r1.*"})
-    EXPECT_FALSE(IsWanted(settings, name)) << name;
-}
-
-TEST(RobotPipeline, RefusesWhatItHasNot) {
-  worker::PipelineSettings settings;
-  settings.odometry = {{"voxel-sise", "1"}};
-  EXPECT_THROW(worker::RobotPipeline(settings, "r1.front", 0, std::nullopt), std::runtime_error);
-  settings.odometry.clear();
-  settings.decoder = "nosuchdecoder";
-  EXPECT_THROW(worker::RobotPipeline(settings, "r1.front", 0, std::nullopt), std::runtime_error);
-  settings.decoder = "fakesrc";
-  EXPECT_THROW(worker::RobotPipeline(settings, "r1.front", 0, std::nullopt), std::runtime_error);
-}
 
 class LidarWorker : public NatsTest {
  protected:

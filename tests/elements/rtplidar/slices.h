@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Encoded slices without an encoder, and RTP buffers taken apart.
+// Encoded slices without an encoder, RTP buffers taken apart, and a depayloader for them.
 #pragma once
 #include <gst/check/gstharness.h>
 #include <gst/rtp/gstrtpbuffer.h>
+#include <gtest/gtest.h>
 
 #include <string>
 #include <vector>
@@ -79,6 +80,39 @@ inline guint64 Stat(GstHarness* h, const char* name) {
   guint64 value = G_MAXUINT64;
   gst_structure_get_uint64(stats, name, &value);
   return value;
+}
+
+inline constexpr const char* kRtpCaps =
+    "application/x-rtp,media=application,clock-rate=90000,encoding-name=X-LIDAR-DRACO,payload=96";
+
+/// The packets of `scans` scans.
+inline std::vector<gst::BufferPtr> Packets(guint scans, gsize size = 3'000,
+                                           bool aggregate = false) {
+  Harness h(gst_harness_new("rtplidarpay"));
+  g_object_set(h->element, "aggregate", aggregate, nullptr);
+  gst_harness_set_src_caps_str(h.get(), EncodedCaps().c_str());
+  for (guint s = 0; s < scans; ++s)
+    for (guint i = 0; i < kSlices; ++i) gst_harness_push(h.get(), EncodedSlice(s, i, size));
+  std::vector<gst::BufferPtr> packets;
+  while (GstBuffer* b = gst_harness_try_pull(h.get())) packets.emplace_back(b);
+  return packets;
+}
+
+inline Harness Depay() {
+  Harness h(gst_harness_new("rtplidardepay"));
+  gst_harness_set_src_caps_str(h.get(), kRtpCaps);
+  return h;
+}
+
+inline void Push(GstHarness* h, const std::vector<gst::BufferPtr>& packets) {
+  for (const auto& p : packets)
+    ASSERT_EQ(gst_harness_push(h, gst_buffer_copy_deep(p.get())), GST_FLOW_OK);
+}
+
+inline std::vector<gst::BufferPtr> Pull(GstHarness* h) {
+  std::vector<gst::BufferPtr> out;
+  while (GstBuffer* b = gst_harness_try_pull(h)) out.emplace_back(b);
+  return out;
 }
 
 }  // namespace lidar::test

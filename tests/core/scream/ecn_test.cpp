@@ -1,0 +1,135 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// What marks tell: alpha, whether the path carries ECN, and where its queue marks.
+#include <gtest/gtest.h>
+
+#include "src/scream/model/classic_ecn.h"
+#include "src/scream/model/ecn_monitor.h"
+#include "src/scream/model/l4s_alpha.h"
+#include "src/scream/model/marking_onset.h"
+#include "tests/support/simulated.h"
+
+namespace lidar::scream {
+namespace {
+
+TEST(L4sAlpha, AttacksWithAnEighthAndDecaysWithA128th) {
+  const Parameters p = Parameters::Draft();
+  L4sAlpha alpha(p);
+  alpha.Update(kStart, 10, 5, 40ms, 40ms);
+  EXPECT_DOUBLE_EQ(alpha.value(), 0.5 / 8);
+  alpha.Update(kStart + 10ms, 10, 0, 40ms, 40ms);
+  EXPECT_DOUBLE_EQ(alpha.value(), 0.5 / 8 * 127 / 128);
+}
+
+TEST(L4sAlpha, GathersPacketsForTenMilliseconds) {
+  const Parameters p = Parameters::Draft();
+  L4sAlpha alpha(p);
+  alpha.Update(kStart, 1, 0, 40ms, 40ms);
+  alpha.Update(kStart + 5ms, 10, 10, 40ms, 40ms);
+  EXPECT_DOUBLE_EQ(alpha.value(), 0);
+  alpha.Update(kStart + 10ms, 10, 0, 40ms, 40ms);
+  EXPECT_DOUBLE_EQ(alpha.value(), 0.5 / 8);
+}
+
+TEST(L4sAlpha, TheEvenOneAveragesARoundWithoutBiasAndStillAttacksWhenMostIsMarked) {
+  const Parameters p;
+  L4sAlpha alpha(p);
+  for (int i = 0; i < 1000; ++i) alpha.Update(kStart + i * 10ms, 10, i % 8 == 0, 20ms, 40ms);
+  EXPECT_NEAR(alpha.value(), 0.1 / 8, 0.005);
+  const double before = alpha.value();
+  alpha.Update(kStart + 11s, 0, 0, 20ms, 40ms);  // what was still to be counted
+  alpha.Update(kStart + 12s, 10, 10, 20ms, 40ms);
+  EXPECT_NEAR(alpha.value(), before + (1 - before) / 8, 0.01);
+}
+
+TEST(L4sAlpha, TheEvenOneFollowsWithinTheSameTimeWhateverTheFrameRate) {
+  const Parameters p;
+  for (const Duration round : {40ms, 100ms}) {
+    L4sAlpha alpha(p);
+    for (Duration t{0}; t <= 1300ms; t += round) alpha.Update(kStart + t, 10, 2, 20ms, round);
+    EXPECT_NEAR(alpha.value(), 0.2 * 0.64, 0.012) << Milliseconds(round);
+  }
+}
+
+TEST(EcnMonitor, StaysCapableWhileTheCodepointArrives) {
+  EcnMonitor ecn(Ecn::kEct1);
+  EXPECT_EQ(ecn.state(), EcnState::kTesting);
+  ecn.OnAcked(Ecn::kEct1, Ecn::kEct1);
+  EXPECT_EQ(ecn.state(), EcnState::kCapable);
+  EXPECT_EQ(ecn.codepoint(), Ecn::kEct1);
+}
+
+TEST(EcnMonitor, FallsBackWhenTheCodepointIsBleachedAndProbesANewRoute) {
+  EcnMonitor ecn(Ecn::kEct1);
+  for (int i = 0; i < 20; ++i) ecn.OnAcked(Ecn::kEct1, Ecn::kNotEct);
+  EXPECT_EQ(ecn.state(), EcnState::kBleached);
+  EXPECT_EQ(ecn.codepoint(), Ecn::kNotEct);
+  ecn.Reset();
+  EXPECT_EQ(ecn.codepoint(), Ecn::kEct1);
+}
+
+TEST(EcnMonitor, TakesAPathThatBleachesSomePacketsForCapable) {
+  EcnMonitor ecn(Ecn::kEct1);
+  for (int round = 0; round < 5; ++round) {
+    for (int i = 0; i < 19; ++i) ecn.OnAcked(Ecn::kEct1, Ecn::kNotEct);
+    ecn.OnAcked(Ecn::kEct1, Ecn::kCe);
+  }
+  EXPECT_EQ(ecn.state(), EcnState::kCapable);
+}
+
+TEST(EcnMonitor, FallsBackWhenNothingMarkedComesThrough) {
+  EcnMonitor ecn(Ecn::kEct1);
+  for (int i = 0; i < 10; ++i) ecn.OnSent(kStart, Ecn::kEct1);
+  ecn.OnTimer(kStart + 1900ms);
+  EXPECT_EQ(ecn.state(), EcnState::kTesting);
+  ecn.OnTimer(kStart + 2s);
+  EXPECT_EQ(ecn.state(), EcnState::kSilent);
+  EXPECT_EQ(ecn.codepoint(), Ecn::kNotEct);
+}
+
+TEST(MarkingOnset, FindsTheShortestQueuesThatAreMarked) {
+  MarkingOnset onset(4ms);
+  for (int i = 0; i < 1000; ++i) onset.OnMark(1ms + i % 10 * 1ms);
+  EXPECT_NEAR(Milliseconds(onset.value()), 4, 0.5);
+  for (int i = 0; i < 1000; ++i) onset.OnMark(1ms);
+  EXPECT_NEAR(Milliseconds(onset.value()), 1, 0.1);
+}
+
+class ClassicEcnTest : public ::testing::Test {
+ protected:
+  void Run(int packets, Duration lowest, Duration highest, int mark_every) {
+    for (int i = 0; i < packets; ++i, now_ += 1ms)
+      ecn_.OnPacket(now_, lowest + (highest - lowest) * (i % 100) / 100, i % mark_every == 0);
+  }
+  ClassicEcn ecn_;
+  Time now_ = kStart;
+};
+
+TEST_F(ClassicEcnTest, IsFewMarksBehindALongQueue) {
+  Run(10000, 5ms, 25ms, 50);
+  EXPECT_TRUE(ecn_.found());
+  Run(10000, 0ms, 3ms, 10);
+  EXPECT_FALSE(ecn_.found());
+}
+
+TEST_F(ClassicEcnTest, IsNotALongerRoute) {
+  Run(10000, 0ms, 3ms, 10);
+  Run(10000, 15ms, 18ms, 10);
+  EXPECT_FALSE(ecn_.found());
+}
+
+TEST_F(ClassicEcnTest, IsNotAQueueWithoutMarks) {
+  Run(100, 0ms, 3ms, 1);
+  Run(10000, 5ms, 25ms, 1000000);
+  EXPECT_FALSE(ecn_.found());
+}
+
+TEST_F(ClassicEcnTest, IsAQueueAboveTheShortestOfTheSecondBefore) {
+  for (int second = 0; second < 30; ++second) {
+    const Duration delay = second % 2 == 0 ? 5ms : 25ms;
+    Run(1000, delay, delay, 50);
+  }
+  EXPECT_TRUE(ecn_.found());
+}
+
+}  // namespace
+}  // namespace lidar::scream

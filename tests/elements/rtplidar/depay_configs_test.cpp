@@ -1,0 +1,130 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Stream configs that change, or that nobody here can decode.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "src/rtp/packetizer.h"
+#include "src/rtp/stream_config.h"
+#include "tests/elements/rtplidar/slices.h"
+
+namespace lidar::test {
+namespace {
+
+GstBuffer* RtpOf(const std::vector<std::uint8_t>& payload, guint32 ssrc, guint16 sequence) {
+  GstBuffer* buffer = gst_rtp_buffer_new_allocate(static_cast<guint>(payload.size()), 0, 0);
+  GstRTPBuffer rtp = GST_RTP_BUFFER_INIT;
+  gst_rtp_buffer_map(buffer, GST_MAP_WRITE, &rtp);
+  gst_rtp_buffer_set_payload_type(&rtp, 96);
+  gst_rtp_buffer_set_ssrc(&rtp, ssrc);
+  gst_rtp_buffer_set_seq(&rtp, sequence);
+  std::copy(payload.begin(), payload.end(), static_cast<guint8*>(gst_rtp_buffer_get_payload(&rtp)));
+  gst_rtp_buffer_unmap(&rtp);
+  return buffer;
+}
+
+/// A unit as the only one of its payload.
+std::vector<std::uint8_t> PayloadOf(const rtp::Unit& unit, const std::vector<std::uint8_t>& bytes) {
+  auto payload = rtp::Packetize(unit, {bytes.data(), bytes.size()}, 1'400).at(0).header;
+  payload.insert(payload.end(), bytes.begin(), bytes.end());
+  return payload;
+}
+
+std::vector<std::uint8_t> ConfigPayload(const char* fields, std::uint8_t* id) {
+  rtp::StreamConfig config;
+  config.fields = fields;
+  const auto bytes = config.Serialise();
+  rtp::Unit unit;
+  unit.unit = rtp::UnitType::kStreamConfig;
+  unit.config_id = rtp::ConfigId(bytes, std::nullopt);
+  *id = unit.config_id;
+  return PayloadOf(unit, bytes);
+}
+
+/// A config of `fields` as the packet that comes just before `next`.
+GstBuffer* ConfigBefore(GstBuffer* next, const char* fields) {
+  std::uint8_t id = 0;
+  GstRTPBuffer rtp = GST_RTP_BUFFER_INIT;
+  gst_rtp_buffer_map(next, GST_MAP_READ, &rtp);
+  GstBuffer* buffer = RtpOf(ConfigPayload(fields, &id), gst_rtp_buffer_get_ssrc(&rtp),
+                            static_cast<guint16>(gst_rtp_buffer_get_seq(&rtp) - 1));
+  gst_rtp_buffer_unmap(&rtp);
+  return buffer;
+}
+
+/// For each buffer that leaves, the fields of the caps that it leaves under.
+GstPadProbeReturn NoteFields(GstPad* pad, GstPadProbeInfo* info, gpointer data) {
+  const guint buffers = (info->type & GST_PAD_PROBE_TYPE_BUFFER_LIST) != 0
+                            ? gst_buffer_list_length(GST_PAD_PROBE_INFO_BUFFER_LIST(info))
+                            : 1;
+  const gst::CapsPtr caps(gst_pad_get_current_caps(pad));
+  const char* fields = gst_structure_get_string(gst_caps_get_structure(caps.get(), 0), "fields");
+  static_cast<std::vector<std::string>*>(data)->insert(
+      static_cast<std::vector<std::string>*>(data)->end(), buffers, fields);
+  return GST_PAD_PROBE_OK;
+}
+
+TEST(RtpLidarDepay, SlicesOfTwoConfigsInOnePacketLeaveEachUnderItsCaps) {
+  const std::vector<std::string> fields = {"x:F32:0,y:F32:4,z:F32:8",
+                                           "x:F32:0,y:F32:4,z:F32:8,range:U32:12"};
+  const Harness h = Depay();
+  std::vector<std::string> seen;
+  const gst::PadPtr src(gst_element_get_static_pad(h->element, "src"));
+  gst_pad_add_probe(
+      src.get(),
+      static_cast<GstPadProbeType>(GST_PAD_PROBE_TYPE_BUFFER | GST_PAD_PROBE_TYPE_BUFFER_LIST),
+      NoteFields, &seen, nullptr);
+  std::vector<std::uint8_t> packet = {0x20};  // an aggregate
+  for (std::uint16_t i = 0; i < 2; ++i) {
+    rtp::Unit unit;
+    gst_harness_push(h.get(), RtpOf(ConfigPayload(fields[i].c_str(), &unit.config_id), 7, i));
+    unit.slice = {1, i, 2};
+    const auto slice = PayloadOf(unit, {1, 2, 3});
+    packet.insert(packet.end(), {0, 0, 0, static_cast<std::uint8_t>(slice.size())});
+    packet.insert(packet.end(), slice.begin(), slice.end());
+  }
+  ASSERT_EQ(gst_harness_push(h.get(), RtpOf(packet, 7, 2)), GST_FLOW_OK);
+  EXPECT_EQ(seen, fields);
+}
+
+TEST(RtpLidarDepay, DropsSlicesForAnotherDecoderAndGoesOn) {
+  Harness pay(gst_harness_new("rtplidarpay"));
+  const Harness h(gst_harness_new("rtplidardepay"));
+  gst_harness_set_sink_caps_str(h.get(), GST_LIDAR_SLICE_MEDIA_TYPE);
+  gst_harness_set_src_caps_str(h.get(), kRtpCaps);
+  GstBus* bus = gst_bus_new();
+  gst_element_set_bus(h->element, bus);
+  guint scan = 0;
+  for (const char* type : {GST_LIDAR_DRACO_MEDIA_TYPE, GST_LIDAR_SLICE_MEDIA_TYPE,
+                           GST_LIDAR_DRACO_MEDIA_TYPE, GST_LIDAR_SLICE_MEDIA_TYPE}) {
+    gst_harness_set_src_caps_str(pay.get(), EncodedCaps("range", 10, type).c_str());
+    for (guint i = 0; i < kSlices; ++i) gst_harness_push(pay.get(), EncodedSlice(scan, i));
+    while (GstBuffer* b = gst_harness_try_pull(pay.get()))
+      EXPECT_EQ(gst_harness_push(h.get(), b), GST_FLOW_OK);
+    EXPECT_EQ(Pull(h.get()).size(), scan++ % 2 == 0 ? 0U : kSlices);
+  }
+  EXPECT_EQ(Stat(h.get(), "slices-not-accepted"), 2 * kSlices);
+  unsigned warnings = 0;
+  while (const gst::MessagePtr message{gst_bus_pop(bus)})
+    warnings += GST_MESSAGE_TYPE(message.get()) == GST_MESSAGE_WARNING ? 1U : 0U;
+  EXPECT_EQ(warnings, 1U);
+  gst_element_set_bus(h->element, nullptr);
+  gst_object_unref(bus);
+}
+
+class UndecodableConfigs : public ::testing::TestWithParam<const char*> {};
+TEST_P(UndecodableConfigs, AreCountedAndTheStreamGoesOn) {
+  const Harness h = Depay();
+  const auto packets = Packets(1);
+  EXPECT_EQ(gst_harness_push(h.get(), ConfigBefore(packets[0].get(), GetParam())), GST_FLOW_OK);
+  EXPECT_EQ(Stat(h.get(), "configs-damaged"), 1U);
+  EXPECT_FALSE(gst_pad_has_current_caps(h->sinkpad));
+  Push(h.get(), packets);
+  EXPECT_EQ(Pull(h.get()).size(), kSlices);
+}
+INSTANTIATE_TEST_SUITE_P(All, UndecodableConfigs,
+                         ::testing::Values("range:U32:0", "x:F64:0,y:F64:8,z:F64:16",
+                                           "x:F32:0,y:F32:4,z:F32:8,range:U32:8"));
+
+}  // namespace
+}  // namespace lidar::test

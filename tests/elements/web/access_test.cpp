@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Who reaches foxglovesink: its page, its token, its port.
+#include <gtest/gtest.h>
+
+#include "tests/elements/web/web_peer.h"
+#include "tests/support/ipv6.h"
+
+namespace lidar::test {
+namespace {
+
+TEST(FoxgloveSink, ServesItsPageAndNothingElse) {
+  Sink sink("token=secret");
+  const HttpAnswer page = HttpGet(sink.Url("http"));
+  EXPECT_EQ(page.status, 200U);
+  EXPECT_EQ(page.type, "text/html; charset=utf-8");
+  EXPECT_NE(page.policy.find("default-src 'self'"), std::string::npos);
+  EXPECT_NE(page.body.find("<title>"), std::string::npos);
+  EXPECT_EQ(HttpGet(sink.Url("http", "/etc/passwd")).status, 404U);
+  EXPECT_EQ(HttpGet(sink.Url("http", "/..%2f..%2fetc/passwd")).status, 400U);
+  EXPECT_EQ(HttpGet(sink.Url("http"), "POST").status, 405U);
+}
+
+TEST(FoxgloveSink, AdmitsOnlyWhoKnowsTheToken) {
+  Sink sink("token=secret");
+  for (const char* path : {"/", "/?token=wrong!", "/?token=", "/?token=secre", "/?token=secrets"}) {
+    Peer peer(sink.Url("ws", path), {"foxglove.sdk.v1"});
+    EXPECT_FALSE(peer.connected()) << path;
+    EXPECT_EQ(peer.status(), 401U) << path;
+  }
+  EXPECT_EQ(HttpGet(sink.Url("http", "/session")).status, 401U);
+  EXPECT_EQ(HttpGet(sink.Url("http", "/session?token=secret")).status, 200U);
+  EXPECT_TRUE(Peer(sink.Url("ws", "/?token=secret"), {"foxglove.sdk.v1"}).connected());
+  EXPECT_EQ(sink.Stat("clients-refused"), 6U);
+}
+
+TEST(FoxgloveSink, AdmitsNoMoreThanMaxClientsAtATime) {
+  Sink sink("max-clients=1");
+  {
+    const Peer first(&sink);
+    ASSERT_TRUE(first.connected());
+    const Peer second(&sink);
+    EXPECT_FALSE(second.connected());
+    EXPECT_EQ(second.status(), 503U);
+  }
+  ASSERT_TRUE(WaitUntil([&] { return sink.Stat("clients") == 0; }));
+  EXPECT_TRUE(Peer(&sink).connected());
+}
+
+/// What a start with these properties says.
+std::string ErrorOf(const std::string& properties) {
+  const gst::ElementPtr element(gst_parse_launch(("foxglovesink " + properties).c_str(), nullptr));
+  GstBus* bus = gst_bus_new();
+  gst_element_set_bus(element.get(), bus);
+  const bool failed =
+      gst_element_set_state(element.get(), GST_STATE_READY) == GST_STATE_CHANGE_FAILURE;
+  std::string text;
+  if (GstMessage* message = gst_bus_pop_filtered(bus, GST_MESSAGE_ERROR)) {
+    GError* error = nullptr;
+    gst_message_parse_error(message, &error, nullptr);
+    text = error->message;
+    g_error_free(error);
+    gst_message_unref(message);
+  }
+  EXPECT_EQ(failed, !text.empty());
+  gst_element_set_state(element.get(), GST_STATE_NULL);
+  gst_element_set_bus(element.get(), nullptr);
+  gst_object_unref(bus);
+  return text;
+}
+
+TEST(FoxgloveSink, NeedsATokenWhereOthersCanReachIt) {
+  EXPECT_NE(ErrorOf("port=0 bind-address=0.0.0.0").find("set a token"), std::string::npos);
+  EXPECT_EQ(ErrorOf("port=0 bind-address=0.0.0.0 token=t"), "");
+  if (HasIpv6()) {
+    EXPECT_EQ(ErrorOf("port=0 bind-address=::1"), "");
+  }
+  EXPECT_NE(ErrorOf("port=0 bind-address=robot").find("no address"), std::string::npos);
+}
+
+TEST(FoxgloveSink, SaysThatItsPortIsInUse) {
+  Sink sink;
+  const std::string port = std::to_string(sink.Stat("port"));
+  EXPECT_NE(ErrorOf("port=" + port).find("Cannot serve on port " + port), std::string::npos);
+}
+
+}  // namespace
+}  // namespace lidar::test
