@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // xyz geometry: clouds of any kind as plain Draco files.
 #pragma once
-#include <cstddef>
 #include <cstdint>
 #include <vector>
 

@@ -3,9 +3,7 @@
 #pragma once
 #include <gst/gst.h>
 
-#include <cstdint>
 #include <memory>
-#include <optional>
 #include <string>
 
 #include "gst/common/refs.h"

@@ -6,7 +6,6 @@
 #include <memory>
 #include <mutex>
 #include <optional>
-#include <string>
 
 #include "ext/ouster/counters.h"
 #include "ext/ouster/imu_pad.h"

@@ -2,7 +2,6 @@
 // Messages as Cyclone DDS carries them: bytes that nobody has looked into yet. So what is damaged
 // comes to us, who count it, and what we may allocate for it is ours to bound.
 #pragma once
-#include <cstdint>
 #include <memory>
 #include <vector>
 

@@ -6,8 +6,6 @@
 #include <array>
 #include <cstdint>
 #include <map>
-#include <memory>
-#include <optional>
 #include <vector>
 
 #include "gst/net/udp_socket.h"

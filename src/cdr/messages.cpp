@@ -2,7 +2,6 @@
 #include "src/cdr/messages.h"
 
 #include <algorithm>
-#include <limits>
 
 namespace lidar::cdr {
 namespace {

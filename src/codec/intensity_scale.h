@@ -2,7 +2,6 @@
 // Intensities as a few levels, and back.
 #pragma once
 #include <algorithm>
-#include <cmath>
 #include <cstdint>
 
 namespace lidar::codec {

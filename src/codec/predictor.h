@@ -2,7 +2,6 @@
 // Predicts the returns of a row from those around them that the decoder knows already.
 #pragma once
 #include <algorithm>
-#include <array>
 #include <cstdint>
 #include <cstdlib>
 #include <vector>

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // The header of one block of a slice in range geometry (docs/wire-format.md, "Encoded slices").
 #pragma once
-#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <vector>

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
-#include <cstdlib>
 
 #include "src/codec/initial_models.h"
 #include "src/codec/rans.h"

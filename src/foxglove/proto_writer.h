@@ -2,7 +2,6 @@
 // Appends fields of protobuf messages to a growing vector of bytes.
 #pragma once
 #include <cstdint>
-#include <cstring>
 #include <string_view>
 #include <vector>
 

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // One direction of a path: loss, a queue before a link of changing capacity, propagation.
 #pragma once
-#include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <queue>
@@ -9,7 +8,6 @@
 
 #include "src/base/time.h"
 #include "src/base/units.h"
-#include "src/link/aqm.h"
 #include "src/link/capacity.h"
 #include "src/link/packet.h"
 #include "src/link/path.h"

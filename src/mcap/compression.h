@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Chunks compressed by lz4 or zstd, in the frame formats that MCAP names.
 #pragma once
-#include <cstdint>
 #include <string_view>
 
 #include "src/mcap/records.h"

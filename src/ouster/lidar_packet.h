@@ -2,7 +2,6 @@
 // Reads a lidar packet, whose size is the only thing that has been checked.
 #pragma once
 #include <cstdint>
-#include <cstring>
 #include <optional>
 
 #include "src/base/byte_reader.h"

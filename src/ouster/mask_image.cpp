@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include "src/ouster/mask_image.h"
 
-#include <array>
 #include <cctype>
 
 namespace lidar::ouster {

@@ -2,7 +2,6 @@
 // Least squares for the predictors: samples of real encodings in, coefficients out.
 #pragma once
 #include <optional>
-#include <string>
 #include <vector>
 
 #include "src/rate/adaptive_model.h"

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // What gives when the target is below what the error bound needs: intensity, then scans or points.
 #pragma once
-#include <cstdint>
 #include <vector>
 
 #include "src/rate/demand_table.h"

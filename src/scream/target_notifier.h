@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Decides when a changed target bitrate is worth an event to the encoder.
 #pragma once
-#include <algorithm>
 #include <cmath>
 #include <optional>
 

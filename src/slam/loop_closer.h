@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "src/odometry/trajectory.h"
-#include "src/odometry/voxel_grid.h"
 #include "src/slam/place.h"
 
 namespace lidar::slam {

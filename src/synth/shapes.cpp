@@ -2,7 +2,6 @@
 #include "src/synth/shapes.h"
 
 #include <algorithm>
-#include <utility>
 
 namespace lidar::synth {
 namespace {

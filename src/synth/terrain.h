@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // The lie of the land under a town: hills, and a plan of straight streets that is bent into curves.
 #pragma once
-#include <cmath>
 #include <cstdint>
 
 namespace lidar::synth {

@@ -5,7 +5,6 @@
 
 #include <string>
 
-#include "src/base/units.h"
 #include "src/rate/model_file.h"
 #include "src/rate/scan_plan.h"
 

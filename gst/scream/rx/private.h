@@ -11,7 +11,6 @@
 #include <bitset>
 #include <map>
 #include <mutex>
-#include <optional>
 #include <set>
 #include <string>
 #include <utility>

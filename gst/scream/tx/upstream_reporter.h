@@ -5,7 +5,6 @@
 #include <gst/gst.h>
 
 #include <condition_variable>
-#include <mutex>
 #include <vector>
 
 #include "gst/common/refs.h"

@@ -7,9 +7,7 @@
 
 #include "src/base/byte_reader.h"
 #include "src/cloud/range_grid.h"
-#include "src/codec/azimuth_alignment.h"
 #include "src/codec/intensity_scale.h"
-#include "src/codec/mixing/model.h"
 #include "src/codec/mixing/slice_coder.h"
 #include "src/codec/range_image.h"
 

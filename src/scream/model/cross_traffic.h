@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Beyond the draft: whether other flows use the bottleneck, too.
 #pragma once
-#include <algorithm>
 #include <optional>
 #include <utility>
 

@@ -2,7 +2,6 @@
 #include "src/tools/codec_lab/measure.h"
 
 #include <algorithm>
-#include <stdexcept>
 
 #include "src/rate/paper_model.h"
 

@@ -4,11 +4,9 @@
 #include <netinet/in.h>
 #include <sys/socket.h>
 
-#include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <string>
-#include <vector>
 
 #include "src/base/byte_reader.h"
 #include "src/base/time.h"

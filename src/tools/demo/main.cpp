@@ -3,7 +3,6 @@
 #include <gst/gst.h>
 
 #include <CLI/CLI.hpp>
-#include <cstdio>
 
 #include "src/tools/common/guard.h"
 #include "src/tools/common/program.h"

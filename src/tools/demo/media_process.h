@@ -4,7 +4,6 @@
 #include <gst/gst.h>
 
 #include <functional>
-#include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>

@@ -2,7 +2,6 @@
 // The command line of `lidar-demo run`, and what it means.
 #pragma once
 #include <cstdint>
-#include <optional>
 #include <string>
 #include <vector>
 

@@ -2,7 +2,6 @@
 // Compares the clouds of both ends while they stream.
 #pragma once
 #include <condition_variable>
-#include <cstdint>
 #include <map>
 #include <mutex>
 #include <thread>

@@ -1,10 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // An odometry over all scans of a source, with what a codec does to their points.
 #pragma once
-#include <cstdint>
 #include <functional>
 #include <map>
-#include <memory>
 
 #include "src/odometry/odometry.h"
 #include "src/odometry/trajectory.h"

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // The command line of lidar-link.
 #pragma once
-#include <optional>
 #include <string>
 #include <vector>
 

@@ -2,7 +2,6 @@
 // Moves datagrams between sockets through the link model.
 #pragma once
 #include <cstdint>
-#include <memory>
 #include <optional>
 #include <vector>
 

@@ -2,7 +2,6 @@
 // lidar-trace: prints capacity traces for lidar-link and the demo.
 #include <CLI/CLI.hpp>
 #include <cstdio>
-#include <exception>
 #include <string>
 
 #include "src/link/capacity.h"

@@ -2,7 +2,6 @@
 // The packets of a sensor that is not there.
 #pragma once
 #include <cstdint>
-#include <memory>
 #include <optional>
 #include <vector>
 

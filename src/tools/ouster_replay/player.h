@@ -5,7 +5,6 @@
 #include <memory>
 #include <mutex>
 #include <optional>
-#include <string>
 
 #include "src/base/time.h"
 #include "src/tools/common/udp_socket.h"
