@@ -163,9 +163,7 @@ static void gst_lidar_draco_enc_reset(GstLidarEncoder* base) { CoderOf(base) = {
 static void gst_lidar_draco_enc_init(GstLidarDracoEnc* self) { self->state = new State; }
 
 static void gst_lidar_draco_enc_class_init(GstLidarDracoEncClass* klass) {
-  auto* object = G_OBJECT_CLASS(klass);
-  lidar::gst::OwnState<GstLidarDracoEnc, gst_lidar_draco_enc_parent_class>(object);
-  lidar::gst::ServeProperties<GstLidarDracoEnc, kProperties>(object);
+  lidar::gst::ServeState<GstLidarDracoEnc, gst_lidar_draco_enc_parent_class, kProperties>(klass);
   lidar::gst::Describe(klass,
                        {"Draco encoder", "Codec/Encoder/PointCloud",
                         "Compresses point clouds to a bitrate and within an error"},

@@ -375,9 +375,7 @@ static void gst_lidar_mcap_sink_init(GstLidarMcapSink* self) {
 
 static void gst_lidar_mcap_sink_class_init(GstLidarMcapSinkClass* klass) {
   GST_DEBUG_CATEGORY_INIT(gst_lidar_mcap_sink_debug, "mcapsink", 0, "Recordings");
-  auto* object = G_OBJECT_CLASS(klass);
-  lidar::gst::OwnState<GstLidarMcapSink, gst_lidar_mcap_sink_parent_class>(object);
-  lidar::gst::ServeProperties<GstLidarMcapSink, kProperties>(object);
+  lidar::gst::ServeState<GstLidarMcapSink, gst_lidar_mcap_sink_parent_class, kProperties>(klass);
   auto* element = GST_ELEMENT_CLASS(klass);
   element->change_state = ChangeState;
   element->request_new_pad = RequestPad;

@@ -375,9 +375,7 @@ static void gst_lidar_mcap_src_init(GstLidarMcapSrc* self) {
 
 static void gst_lidar_mcap_src_class_init(GstLidarMcapSrcClass* klass) {
   GST_DEBUG_CATEGORY_INIT(gst_lidar_mcap_src_debug, "mcapsrc", 0, "Recordings, played");
-  auto* object = G_OBJECT_CLASS(klass);
-  lidar::gst::OwnState<GstLidarMcapSrc, gst_lidar_mcap_src_parent_class>(object);
-  lidar::gst::ServeProperties<GstLidarMcapSrc, kProperties>(object);
+  lidar::gst::ServeState<GstLidarMcapSrc, gst_lidar_mcap_src_parent_class, kProperties>(klass);
   auto* element = GST_ELEMENT_CLASS(klass);
   element->change_state = ChangeState;
   element->send_event = SendEvent;

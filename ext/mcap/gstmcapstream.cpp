@@ -107,9 +107,8 @@ static GstStateChangeReturn ChangeState(GstElement* element, GstStateChange tran
 static void gst_lidar_mcap_stream_init(GstLidarMcapStream* self) { self->state = new State; }
 
 static void gst_lidar_mcap_stream_class_init(GstLidarMcapStreamClass* klass) {
-  auto* object = G_OBJECT_CLASS(klass);
-  lidar::gst::OwnState<GstLidarMcapStream, gst_lidar_mcap_stream_parent_class>(object);
-  lidar::gst::ServeProperties<GstLidarMcapStream, kProperties>(object);
+  lidar::gst::ServeState<GstLidarMcapStream, gst_lidar_mcap_stream_parent_class, kProperties>(
+      klass);
   GST_ELEMENT_CLASS(klass)->change_state = ChangeState;
   lidar::gst::Describe(
       klass,

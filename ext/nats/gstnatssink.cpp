@@ -268,9 +268,7 @@ static void gst_lidar_nats_sink_init(GstLidarNatsSink* self) { self->state = new
 
 static void gst_lidar_nats_sink_class_init(GstLidarNatsSinkClass* klass) {
   GST_DEBUG_CATEGORY_INIT(gst_lidar_nats_sink_debug, "natssink", 0, "Publisher of NATS");
-  auto* object = G_OBJECT_CLASS(klass);
-  ServeProperties<GstLidarNatsSink, kProperties>(object);
-  OwnState<GstLidarNatsSink, gst_lidar_nats_sink_parent_class>(object);
+  ServeState<GstLidarNatsSink, gst_lidar_nats_sink_parent_class, kProperties>(klass);
   Describe(klass, {"NATS sink", "Sink/Network", "Publishes a stream on a subject of NATS"},
            {{"sink", GST_PAD_SINK,
              GST_LIDAR_CLOUD_MEDIA_TYPE ";" GST_LIDAR_SLICE_MEDIA_TYPE

@@ -342,9 +342,7 @@ static void gst_lidar_nats_src_init(GstLidarNatsSrc* self) {
 
 static void gst_lidar_nats_src_class_init(GstLidarNatsSrcClass* klass) {
   GST_DEBUG_CATEGORY_INIT(gst_lidar_nats_src_debug, "natssrc", 0, "Subscription of NATS");
-  auto* object = G_OBJECT_CLASS(klass);
-  ServeProperties<GstLidarNatsSrc, kProperties, FollowSettings>(object);
-  OwnState<GstLidarNatsSrc, gst_lidar_nats_src_parent_class>(object);
+  ServeState<GstLidarNatsSrc, gst_lidar_nats_src_parent_class, kProperties, FollowSettings>(klass);
   Describe(klass, {"NATS source", "Source/Network", "Takes a stream from a subject of NATS"},
            {{"src", GST_PAD_SRC,
              GST_LIDAR_CLOUD_MEDIA_TYPE ";" GST_LIDAR_SLICE_MEDIA_TYPE

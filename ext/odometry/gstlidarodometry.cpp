@@ -370,9 +370,7 @@ static void gst_lidar_odometry_init(GstLidarOdometry* self) {
 static void gst_lidar_odometry_class_init(GstLidarOdometryClass* klass) {
   GST_DEBUG_CATEGORY_INIT(gst_lidar_odometry_debug, "lidarodometry", 0,
                           "Odometry from point clouds");
-  auto* object = G_OBJECT_CLASS(klass);
-  lidar::gst::OwnState<GstLidarOdometry, gst_lidar_odometry_parent_class>(object);
-  lidar::gst::ServeProperties<GstLidarOdometry, kProperties>(object);
+  lidar::gst::ServeState<GstLidarOdometry, gst_lidar_odometry_parent_class, kProperties>(klass);
   lidar::gst::Describe(
       klass,
       {"LiDAR odometry", "Filter/Analyzer/PointCloud",

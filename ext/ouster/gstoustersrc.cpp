@@ -229,9 +229,7 @@ static void InstallVmethods(GstLidarOusterSrcClass* klass) {
 
 static void gst_lidar_ouster_src_class_init(GstLidarOusterSrcClass* klass) {
   GST_DEBUG_CATEGORY_INIT(gst_lidar_ouster_src_debug, "ouster_src", 0, "Ouster sensors");
-  auto* object = G_OBJECT_CLASS(klass);
-  OwnState<GstLidarOusterSrc, gst_lidar_ouster_src_parent_class>(object);
-  ServeProperties<GstLidarOusterSrc, kOusterProperties>(object);
+  ServeState<GstLidarOusterSrc, gst_lidar_ouster_src_parent_class, kOusterProperties>(klass);
   Describe(klass,
            {"Ouster LiDAR source", "Source/Network",
             "Receives an Ouster sensor, or reads a capture of one"},

@@ -278,9 +278,7 @@ static void gst_lidar_ros2_sink_init(GstLidarRos2Sink* self) { self->state = new
 
 static void gst_lidar_ros2_sink_class_init(GstLidarRos2SinkClass* klass) {
   GST_DEBUG_CATEGORY_INIT(gst_lidar_ros2_sink_debug, "ros2sink", 0, "Publisher of ROS 2");
-  auto* object = G_OBJECT_CLASS(klass);
-  ServeProperties<GstLidarRos2Sink, kProperties>(object);
-  OwnState<GstLidarRos2Sink, gst_lidar_ros2_sink_parent_class>(object);
+  ServeState<GstLidarRos2Sink, gst_lidar_ros2_sink_parent_class, kProperties>(klass);
   Describe(klass, {"ROS 2 sink", "Sink/Network", "Publishes on a topic of ROS 2"},
            {{"sink", GST_PAD_SINK,
              GST_LIDAR_CLOUD_MEDIA_TYPE ";" GST_LIDAR_IMU_MEDIA_TYPE

@@ -335,9 +335,7 @@ static void InstallVmethods(GstLidarRos2SrcClass* klass) {
 
 static void gst_lidar_ros2_src_class_init(GstLidarRos2SrcClass* klass) {
   GST_DEBUG_CATEGORY_INIT(gst_lidar_ros2_src_debug, "ros2src", 0, "Subscription of ROS 2");
-  auto* object = G_OBJECT_CLASS(klass);
-  ServeProperties<GstLidarRos2Src, kProperties>(object);
-  OwnState<GstLidarRos2Src, gst_lidar_ros2_src_parent_class>(object);
+  ServeState<GstLidarRos2Src, gst_lidar_ros2_src_parent_class, kProperties>(klass);
   Describe(
       klass, {"ROS 2 source", "Source/Network", "Subscribes to a topic of ROS 2"},
       {{"src", GST_PAD_SRC,

@@ -282,9 +282,8 @@ static void gst_lidar_foxglove_sink_init(GstLidarFoxgloveSink* self) { self->sta
 
 static void gst_lidar_foxglove_sink_class_init(GstLidarFoxgloveSinkClass* klass) {
   GST_DEBUG_CATEGORY_INIT(gst_lidar_foxglove_sink_debug, "foxglovesink", 0, "Foxglove server");
-  auto* object = G_OBJECT_CLASS(klass);
-  lidar::gst::ServeProperties<GstLidarFoxgloveSink, kProperties, PropertyChanged>(object);
-  lidar::gst::OwnState<GstLidarFoxgloveSink, gst_lidar_foxglove_sink_parent_class>(object);
+  lidar::gst::ServeState<GstLidarFoxgloveSink, gst_lidar_foxglove_sink_parent_class, kProperties,
+                         PropertyChanged>(klass);
   auto* element = GST_ELEMENT_CLASS(klass);
   element->change_state = ChangeState;
   element->request_new_pad = RequestPad;

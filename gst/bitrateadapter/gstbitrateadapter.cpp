@@ -201,9 +201,8 @@ static void gst_lidar_bitrate_adapter_init(GstLidarBitrateAdapter* self) {
 static void gst_lidar_bitrate_adapter_class_init(GstLidarBitrateAdapterClass* klass) {
   GST_DEBUG_CATEGORY_INIT(gst_lidar_bitrate_adapter_debug, "bitrateadapter", 0,
                           "Encoder bitrate adapter");
-  auto* object = G_OBJECT_CLASS(klass);
-  lidar::gst::ServeProperties<GstLidarBitrateAdapter, kProperties>(object);
-  lidar::gst::OwnState<GstLidarBitrateAdapter, gst_lidar_bitrate_adapter_parent_class>(object);
+  lidar::gst::ServeState<GstLidarBitrateAdapter, gst_lidar_bitrate_adapter_parent_class,
+                         kProperties>(klass);
   lidar::gst::Describe(klass,
                        {"Encoder bitrate adapter", "Filter/Network",
                         "Sets the bitrate of the encoder before it from target-bitrate events"},

@@ -311,9 +311,7 @@ static void gst_lidar_decoder_init(GstLidarDecoder* self) { self->state = new St
 static void gst_lidar_decoder_class_init(GstLidarDecoderClass* klass) {
   GST_DEBUG_CATEGORY_INIT(gst_lidar_decoder_debug, "lidardecoder", 0, "Point-cloud decoders");
   gst_lidar_init();
-  auto* object = G_OBJECT_CLASS(klass);
-  object->constructed = Constructed;
-  lidar::gst::OwnState<GstLidarDecoder, gst_lidar_decoder_parent_class>(object);
-  lidar::gst::ServeProperties<GstLidarDecoder, kProperties>(object);
+  G_OBJECT_CLASS(klass)->constructed = Constructed;
+  lidar::gst::ServeState<GstLidarDecoder, gst_lidar_decoder_parent_class, kProperties>(klass);
   GST_ELEMENT_CLASS(klass)->change_state = ChangeState;
 }

@@ -329,9 +329,7 @@ static void gst_lidar_encoder_init(GstLidarEncoder* self) { self->state = new St
 static void gst_lidar_encoder_class_init(GstLidarEncoderClass* klass) {
   GST_DEBUG_CATEGORY_INIT(gst_lidar_encoder_debug, "lidarencoder", 0, "Point-cloud encoders");
   gst_lidar_init();
-  auto* object = G_OBJECT_CLASS(klass);
-  object->constructed = Constructed;
-  lidar::gst::OwnState<GstLidarEncoder, gst_lidar_encoder_parent_class>(object);
-  lidar::gst::ServeProperties<GstLidarEncoder, kProperties>(object);
+  G_OBJECT_CLASS(klass)->constructed = Constructed;
+  lidar::gst::ServeState<GstLidarEncoder, gst_lidar_encoder_parent_class, kProperties>(klass);
   GST_ELEMENT_CLASS(klass)->change_state = ChangeState;
 }

@@ -7,7 +7,7 @@
 //         {"mss", "Largest packet [bytes]", At<&Settings::scream, &Parameters::mss>, 100, 65535},
 //         {"stats", "packets, bytes [bytes]", Stats},  // StructurePtr Stats(GObject*)
 //     }};
-//     ServeProperties<GstLidarThing, kProperties>(object_class);
+//     ServeState<GstLidarThing, gst_lidar_thing_parent_class, kProperties>(klass);
 #pragma once
 #include <array>
 #include <string_view>
@@ -176,6 +176,14 @@ void OwnState(GObjectClass* klass) {
     delete reinterpret_cast<Self*>(object)->state;
     G_OBJECT_CLASS(parent_class)->finalize(object);
   };
+}
+
+/// Both of these, as all elements need them whose `state` is freed in no other way.
+template <class Self, gpointer& parent_class, auto& table,
+          void (*changed)(GObject*, GParamSpec*) = NothingMore>
+void ServeState(gpointer klass) {
+  OwnState<Self, parent_class>(G_OBJECT_CLASS(klass));
+  ServeProperties<Self, table, changed>(G_OBJECT_CLASS(klass));
 }
 
 }  // namespace lidar::gst

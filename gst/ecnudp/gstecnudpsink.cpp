@@ -296,9 +296,7 @@ static void InstallVmethods(GstBaseSinkClass* sink) {
 
 static void gst_lidar_ecn_udp_sink_class_init(GstLidarEcnUdpSinkClass* klass) {
   GST_DEBUG_CATEGORY_INIT(gst_lidar_ecn_udp_sink_debug, "ecnudpsink", 0, "UDP sink with ECN");
-  auto* object = G_OBJECT_CLASS(klass);
-  ServeProperties<GstLidarEcnUdpSink, kProperties>(object);
-  OwnState<GstLidarEcnUdpSink, gst_lidar_ecn_udp_sink_parent_class>(object);
+  ServeState<GstLidarEcnUdpSink, gst_lidar_ecn_udp_sink_parent_class, kProperties>(klass);
   Describe(klass,
            {"UDP sink with ECN", "Sink/Network",
             "Sends datagrams with the ECN field set for each packet"},

@@ -289,9 +289,7 @@ static void InstallVmethods(GstLidarEcnUdpSrcClass* klass) {
 
 static void gst_lidar_ecn_udp_src_class_init(GstLidarEcnUdpSrcClass* klass) {
   GST_DEBUG_CATEGORY_INIT(gst_lidar_ecn_udp_src_debug, "ecnudpsrc", 0, "UDP source with ECN");
-  auto* object = G_OBJECT_CLASS(klass);
-  ServeProperties<GstLidarEcnUdpSrc, kProperties>(object);
-  OwnState<GstLidarEcnUdpSrc, gst_lidar_ecn_udp_src_parent_class>(object);
+  ServeState<GstLidarEcnUdpSrc, gst_lidar_ecn_udp_src_parent_class, kProperties>(klass);
   Describe(klass,
            {"UDP source with ECN", "Source/Network", "Receives datagrams with their ECN field"},
            {{"src", GST_PAD_SRC, "ANY"}});

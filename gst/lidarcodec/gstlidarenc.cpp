@@ -257,9 +257,7 @@ static GstStateChangeReturn gst_lidar_enc_change_state(GstElement* element,
 static void gst_lidar_enc_init(GstLidarEnc* self) { self->state = new State; }
 
 static void gst_lidar_enc_class_init(GstLidarEncClass* klass) {
-  auto* object = G_OBJECT_CLASS(klass);
-  lidar::gst::OwnState<GstLidarEnc, gst_lidar_enc_parent_class>(object);
-  lidar::gst::ServeProperties<GstLidarEnc, kProperties>(object);
+  lidar::gst::ServeState<GstLidarEnc, gst_lidar_enc_parent_class, kProperties>(klass);
   GST_ELEMENT_CLASS(klass)->change_state = gst_lidar_enc_change_state;
   lidar::gst::Describe(
       klass,

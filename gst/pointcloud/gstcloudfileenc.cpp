@@ -156,9 +156,8 @@ static void gst_lidar_cloud_file_enc_init(GstLidarCloudFileEnc* self) { self->st
 static void gst_lidar_cloud_file_enc_class_init(GstLidarCloudFileEncClass* klass) {
   GST_DEBUG_CATEGORY_INIT(gst_lidar_cloud_file_enc_debug, "cloudfileenc", 0,
                           "Point clouds as files");
-  auto* object = G_OBJECT_CLASS(klass);
-  lidar::gst::ServeProperties<GstLidarCloudFileEnc, kProperties>(object);
-  lidar::gst::OwnState<GstLidarCloudFileEnc, gst_lidar_cloud_file_enc_parent_class>(object);
+  lidar::gst::ServeState<GstLidarCloudFileEnc, gst_lidar_cloud_file_enc_parent_class, kProperties>(
+      klass);
   gst_type_mark_as_plugin_api(gst_lidar_cloud_file_enc_get_type(), {});
   auto* transform = GST_BASE_TRANSFORM_CLASS(klass);
   transform->transform_caps = TransformCaps;

@@ -334,9 +334,8 @@ static void gst_lidar_point_cloud_filter_init(GstLidarPointCloudFilter* self) {
 static void gst_lidar_point_cloud_filter_class_init(GstLidarPointCloudFilterClass* klass) {
   GST_DEBUG_CATEGORY_INIT(gst_lidar_point_cloud_filter_debug, "pointcloudfilter", 0,
                           "Clouds, cropped and thinned");
-  auto* object = G_OBJECT_CLASS(klass);
-  lidar::gst::OwnState<GstLidarPointCloudFilter, gst_lidar_point_cloud_filter_parent_class>(object);
-  lidar::gst::ServeProperties<GstLidarPointCloudFilter, kProperties, NoteChange>(object);
+  lidar::gst::ServeState<GstLidarPointCloudFilter, gst_lidar_point_cloud_filter_parent_class,
+                         kProperties, NoteChange>(klass);
   auto* element = GST_ELEMENT_CLASS(klass);
   element->change_state = ChangeState;
   element->request_new_pad = RequestPad;

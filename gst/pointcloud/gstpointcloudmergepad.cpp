@@ -80,8 +80,6 @@ static void gst_lidar_point_cloud_merge_pad_init(GstLidarPointCloudMergePad* sel
 }
 
 static void gst_lidar_point_cloud_merge_pad_class_init(GstLidarPointCloudMergePadClass* klass) {
-  auto* object = G_OBJECT_CLASS(klass);
-  lidar::gst::OwnState<GstLidarPointCloudMergePad, gst_lidar_point_cloud_merge_pad_parent_class>(
-      object);
-  lidar::gst::ServeProperties<GstLidarPointCloudMergePad, kProperties>(object);
+  lidar::gst::ServeState<GstLidarPointCloudMergePad, gst_lidar_point_cloud_merge_pad_parent_class,
+                         kProperties>(klass);
 }

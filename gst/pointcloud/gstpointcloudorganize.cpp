@@ -251,9 +251,8 @@ static void gst_lidar_point_cloud_organize_init(GstLidarPointCloudOrganize* self
 static void gst_lidar_point_cloud_organize_class_init(GstLidarPointCloudOrganizeClass* klass) {
   GST_DEBUG_CATEGORY_INIT(gst_lidar_point_cloud_organize_debug, "pointcloudorganize", 0,
                           "Beams of organised clouds");
-  auto* object = G_OBJECT_CLASS(klass);
-  ServeProperties<GstLidarPointCloudOrganize, kProperties>(object);
-  OwnState<GstLidarPointCloudOrganize, gst_lidar_point_cloud_organize_parent_class>(object);
+  ServeState<GstLidarPointCloudOrganize, gst_lidar_point_cloud_organize_parent_class, kProperties>(
+      klass);
   Describe(klass,
            {"Point cloud organizer", "Filter/Analyzer/PointCloud",
             "Finds the beams of the sensor in its clouds, and adds ranges"},

@@ -363,9 +363,8 @@ static void gst_lidar_point_cloud_parse_init(GstLidarPointCloudParse* self) {
 static void gst_lidar_point_cloud_parse_class_init(GstLidarPointCloudParseClass* klass) {
   GST_DEBUG_CATEGORY_INIT(gst_lidar_point_cloud_parse_debug, "pointcloudparse", 0,
                           "Clouds from files");
-  auto* object = G_OBJECT_CLASS(klass);
-  lidar::gst::OwnState<GstLidarPointCloudParse, gst_lidar_point_cloud_parse_parent_class>(object);
-  lidar::gst::ServeProperties<GstLidarPointCloudParse, kProperties>(object);
+  lidar::gst::ServeState<GstLidarPointCloudParse, gst_lidar_point_cloud_parse_parent_class,
+                         kProperties>(klass);
   auto* element = GST_ELEMENT_CLASS(klass);
   element->change_state = ChangeState;
   lidar::gst::Describe(

@@ -354,9 +354,8 @@ static void gst_lidar_scan_assembler_init(GstLidarScanAssembler* self) {
 
 static void gst_lidar_scan_assembler_class_init(GstLidarScanAssemblerClass* klass) {
   GST_DEBUG_CATEGORY_INIT(gst_lidar_scan_assembler_debug, "scanassembler", 0, "Scan assembler");
-  auto* object = G_OBJECT_CLASS(klass);
-  lidar::gst::OwnState<GstLidarScanAssembler, gst_lidar_scan_assembler_parent_class>(object);
-  lidar::gst::ServeProperties<GstLidarScanAssembler, kProperties, PostLatency>(object);
+  lidar::gst::ServeState<GstLidarScanAssembler, gst_lidar_scan_assembler_parent_class, kProperties,
+                         PostLatency>(klass);
   auto* element = GST_ELEMENT_CLASS(klass);
   element->change_state = ChangeState;
   lidar::gst::Describe(

@@ -353,9 +353,8 @@ static void gst_lidar_rtp_depay_init(GstLidarRtpDepay* self) {
 static void gst_lidar_rtp_depay_class_init(GstLidarRtpDepayClass* klass) {
   GST_DEBUG_CATEGORY_INIT(gst_lidar_rtp_depay_debug, "rtplidardepay", 0,
                           "RTP depayloader for clouds");
-  auto* object = G_OBJECT_CLASS(klass);
-  lidar::gst::ServeProperties<GstLidarRtpDepay, kProperties, TakeReorderTime>(object);
-  lidar::gst::OwnState<GstLidarRtpDepay, gst_lidar_rtp_depay_parent_class>(object);
+  lidar::gst::ServeState<GstLidarRtpDepay, gst_lidar_rtp_depay_parent_class, kProperties,
+                         TakeReorderTime>(klass);
   auto* element = GST_ELEMENT_CLASS(klass);
   lidar::gst::Describe(klass,
                        {"RTP depayloader for point clouds", "Codec/Depayloader/Network/RTP",

@@ -242,9 +242,7 @@ static void gst_lidar_rtp_pay_init(GstLidarRtpPay* self) {
 
 static void gst_lidar_rtp_pay_class_init(GstLidarRtpPayClass* klass) {
   GST_DEBUG_CATEGORY_INIT(gst_lidar_rtp_pay_debug, "rtplidarpay", 0, "RTP payloader for clouds");
-  auto* object = G_OBJECT_CLASS(klass);
-  lidar::gst::ServeProperties<GstLidarRtpPay, kProperties>(object);
-  lidar::gst::OwnState<GstLidarRtpPay, gst_lidar_rtp_pay_parent_class>(object);
+  lidar::gst::ServeState<GstLidarRtpPay, gst_lidar_rtp_pay_parent_class, kProperties>(klass);
   auto* element = GST_ELEMENT_CLASS(klass);
   lidar::gst::Describe(klass,
                        {"RTP payloader for point clouds", "Codec/Payloader/Network/RTP",

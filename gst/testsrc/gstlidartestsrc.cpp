@@ -302,9 +302,8 @@ static void gst_lidar_test_src_init(GstLidarTestSrc* self) {
 
 static void gst_lidar_test_src_class_init(GstLidarTestSrcClass* klass) {
   GST_DEBUG_CATEGORY_INIT(gst_lidar_test_src_debug, "lidartestsrc", 0, "Synthetic LiDAR");
-  auto* object = G_OBJECT_CLASS(klass);
-  lidar::gst::OwnState<GstLidarTestSrc, gst_lidar_test_src_parent_class>(object);
-  lidar::gst::ServeProperties<GstLidarTestSrc, kProperties, ApplyLive>(object);
+  lidar::gst::ServeState<GstLidarTestSrc, gst_lidar_test_src_parent_class, kProperties, ApplyLive>(
+      klass);
   lidar::gst::Describe(klass,
                        {"LiDAR test source", "Source/PointCloud",
                         "A synthetic LiDAR that drives through a synthetic world"},

@@ -377,9 +377,8 @@ static void gst_lidar_point_cloud_view_init(GstLidarPointCloudView* self) {
 static void gst_lidar_point_cloud_view_class_init(GstLidarPointCloudViewClass* klass) {
   GST_DEBUG_CATEGORY_INIT(gst_lidar_point_cloud_view_debug, "pointcloudview", 0,
                           "Point clouds as video");
-  auto* object = G_OBJECT_CLASS(klass);
-  lidar::gst::OwnState<GstLidarPointCloudView, gst_lidar_point_cloud_view_parent_class>(object);
-  lidar::gst::ServeProperties<GstLidarPointCloudView, kProperties, MarkChanged>(object);
+  lidar::gst::ServeState<GstLidarPointCloudView, gst_lidar_point_cloud_view_parent_class,
+                         kProperties, MarkChanged>(klass);
   lidar::gst::Describe(
       klass, {"Point cloud view", "Converter/Video/PointCloud", "Draws point clouds as video"},
       {{"sink", GST_PAD_SINK, GST_LIDAR_CLOUD_MEDIA_TYPE},

@@ -278,9 +278,8 @@ static void gst_lidar_scream_sink_init(GstLidarScreamSink* self) {
 
 static void gst_lidar_scream_sink_class_init(GstLidarScreamSinkClass* klass) {
   GST_DEBUG_CATEGORY_INIT(gst_lidar_scream_sink_debug, "screamsink", 0, "SCReAM sink bin");
-  auto* object = G_OBJECT_CLASS(klass);
-  ServeProperties<GstLidarScreamSink, kProperties, ChangeSrtpKey<GstLidarScreamSink>>(object);
-  OwnState<GstLidarScreamSink, gst_lidar_scream_sink_parent_class>(object);
+  ServeState<GstLidarScreamSink, gst_lidar_scream_sink_parent_class, kProperties,
+             ChangeSrtpKey<GstLidarScreamSink>>(klass);
   auto* element = GST_ELEMENT_CLASS(klass);
   element->change_state = ChangeState;
   element->request_new_pad = RequestPad;

@@ -190,9 +190,8 @@ static void gst_lidar_scream_src_init(GstLidarScreamSrc* self) {
 
 static void gst_lidar_scream_src_class_init(GstLidarScreamSrcClass* klass) {
   GST_DEBUG_CATEGORY_INIT(gst_lidar_scream_src_debug, "screamsrc", 0, "SCReAM source bin");
-  auto* object = G_OBJECT_CLASS(klass);
-  ServeProperties<GstLidarScreamSrc, kProperties, ChangeSrtpKey<GstLidarScreamSrc>>(object);
-  OwnState<GstLidarScreamSrc, gst_lidar_scream_src_parent_class>(object);
+  ServeState<GstLidarScreamSrc, gst_lidar_scream_src_parent_class, kProperties,
+             ChangeSrtpKey<GstLidarScreamSrc>>(klass);
   auto* element = GST_ELEMENT_CLASS(klass);
   element->change_state = ChangeState;
   gst_element_class_add_static_pad_template(element, &src_template);

@@ -206,9 +206,8 @@ static void gst_lidar_scream_aux_init(GstLidarScreamAux* self) {
 
 static void gst_lidar_scream_aux_class_init(GstLidarScreamAuxClass* klass) {
   GST_DEBUG_CATEGORY_INIT(gst_lidar_scream_aux_debug, "screamaux", 0, "SCReAM with TWCC");
-  auto* object = G_OBJECT_CLASS(klass);
-  ServeProperties<GstLidarScreamAux, kProperties, OnPropertySet>(object);
-  OwnState<GstLidarScreamAux, gst_lidar_scream_aux_parent_class>(object);
+  ServeState<GstLidarScreamAux, gst_lidar_scream_aux_parent_class, kProperties, OnPropertySet>(
+      klass);
   auto* element = GST_ELEMENT_CLASS(klass);
   element->change_state = ChangeState;
   gst_element_class_add_static_pad_template(element, &sink_template);

@@ -284,9 +284,7 @@ static void gst_lidar_scream_tx_init(GstLidarScreamTx* self) {
 
 static void gst_lidar_scream_tx_class_init(GstLidarScreamTxClass* klass) {
   GST_DEBUG_CATEGORY_INIT(gst_lidar_scream_tx_debug, "screamtx", 0, "SCReAM v2 sender");
-  auto* object = G_OBJECT_CLASS(klass);
-  ServeProperties<GstLidarScreamTx, Rows, OnPropertySet>(object);
-  OwnState<GstLidarScreamTx, gst_lidar_scream_tx_parent_class>(object);
+  ServeState<GstLidarScreamTx, gst_lidar_scream_tx_parent_class, Rows, OnPropertySet>(klass);
   InstallSignals();
   auto* element = GST_ELEMENT_CLASS(klass);
   element->change_state = ChangeState;
