@@ -1,12 +1,16 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Elements that programs put together, and what they say on the bus.
 #pragma once
+#include <glib-unix.h>
 #include <gst/gst.h>
 
+#include <csignal>
 #include <cstdio>
 #include <sstream>
 #include <stdexcept>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "gst/common/refs.h"
 #include "src/tools/common/printable.h"
@@ -23,6 +27,29 @@ inline GstElement* AddElement(GstElement* bin, const std::string& factory,
                              " is not installed (is GST_PLUGIN_PATH set?)");
   gst_bin_add(GST_BIN(bin), element);
   return element;
+}
+
+/// The pipeline that the words of a command line describe. None, and a line on stderr, where they
+/// describe none.
+inline gst::ElementPtr ParsePipeline(const std::vector<std::string>& words) {
+  std::vector<const gchar*> argv;
+  for (const std::string& word : words) argv.push_back(word.c_str());
+  argv.push_back(nullptr);
+  GError* raw = nullptr;
+  gst::ElementPtr pipeline(gst_parse_launchv(argv.data(), &raw));
+  const gst::ErrorPtr error(raw);
+  if (error) std::fprintf(stderr, "%s\n", error->message);
+  return !error && GST_IS_BIN(pipeline.get()) ? std::move(pipeline) : nullptr;
+}
+
+/// SIGINT and SIGTERM make `*run` false, where the main context is iterated.
+inline void StopOnSignals(bool* run) {
+  const auto interrupt = [](gpointer data) -> gboolean {
+    *static_cast<bool*>(data) = false;
+    return G_SOURCE_CONTINUE;
+  };
+  g_unix_signal_add(SIGINT, interrupt, run);
+  g_unix_signal_add(SIGTERM, interrupt, run);
 }
 
 /// An empty text leaves the default.

@@ -1,13 +1,10 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // gst-launch for pipelines with DTLS-SRTP, that trusts one certificate and no other.
-#include <glib-unix.h>
 #include <gst/gst.h>
 
 #include <CLI/CLI.hpp>
-#include <csignal>
 #include <cstdio>
 #include <cstdlib>
-#include <memory>
 #include <string>
 #include <vector>
 
@@ -116,17 +113,8 @@ void Prepare(const GValue* value, gpointer data) {
 }
 
 bool MakePipeline(const std::vector<std::string>& words, Context* context) {
-  std::vector<const gchar*> argv;
-  for (const std::string& word : words) argv.push_back(word.c_str());
-  argv.push_back(nullptr);
-  GError* error = nullptr;
-  context->pipeline.reset(gst_parse_launchv(argv.data(), &error));
-  if (error != nullptr) {
-    std::fprintf(stderr, "%s\n", error->message);
-    g_error_free(error);
-    return false;
-  }
-  if (!GST_IS_BIN(context->pipeline.get())) return false;
+  context->pipeline = lidar::tools::ParsePipeline(words);
+  if (!context->pipeline) return false;
   GstIterator* elements = gst_bin_iterate_recurse(GST_BIN(context->pipeline.get()));
   gst_iterator_foreach(elements, Prepare, context);
   gst_iterator_free(elements);
@@ -138,12 +126,7 @@ bool MakePipeline(const std::vector<std::string>& words, Context* context) {
 /// Until EOS, an error or a signal. EOS does not get past dtlssrtpenc, whose handshake has no end.
 int Play(GstElement* pipeline, const std::string& stats) {
   bool run = true;
-  const auto interrupt = [](gpointer data) -> gboolean {
-    *static_cast<bool*>(data) = false;
-    return G_SOURCE_CONTINUE;
-  };
-  g_unix_signal_add(SIGINT, interrupt, &run);
-  g_unix_signal_add(SIGTERM, interrupt, &run);
+  lidar::tools::StopOnSignals(&run);
   GstBus* bus = gst_element_get_bus(pipeline);
   gst_element_set_state(pipeline, GST_STATE_PLAYING);
   int result = kGood;

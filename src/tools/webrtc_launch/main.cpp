@@ -1,12 +1,10 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // gst-launch for pipelines with two webrtcbins that call each other: does their signalling.
-#include <glib-unix.h>
 #include <gst/gst.h>
 
 #include <CLI/CLI.hpp>
 #include <array>
 #include <cstdio>
-#include <memory>
 #include <string>
 #include <vector>
 
@@ -145,17 +143,8 @@ ElementPtr WebrtcBin(GstElement* pipeline, const char* name) {
 }
 
 bool MakePipeline(Call* call) {
-  std::vector<const gchar*> argv;
-  for (const std::string& word : call->options.pipeline) argv.push_back(word.c_str());
-  argv.push_back(nullptr);
-  GError* error = nullptr;
-  call->pipeline.reset(gst_parse_launchv(argv.data(), &error));
-  if (error != nullptr) {
-    std::fprintf(stderr, "%s\n", error->message);
-    g_error_free(error);
-    return false;
-  }
-  if (!GST_IS_BIN(call->pipeline.get())) return false;
+  call->pipeline = lidar::tools::ParsePipeline(call->options.pipeline);
+  if (!call->pipeline) return false;
   call->caller = WebrtcBin(call->pipeline.get(), "caller");
   call->callee = WebrtcBin(call->pipeline.get(), "callee");
   return call->caller && call->callee;
@@ -193,12 +182,7 @@ bool Handle(GstMessage* message, int* result) {
 /// Until EOS, an error, a signal, or the duration is over; prints statistics meanwhile.
 int Play(const Call& call) {
   bool run = true;
-  const auto interrupt = [](gpointer data) -> gboolean {
-    *static_cast<bool*>(data) = false;
-    return G_SOURCE_CONTINUE;
-  };
-  g_unix_signal_add(SIGINT, interrupt, &run);
-  g_unix_signal_add(SIGTERM, interrupt, &run);
+  lidar::tools::StopOnSignals(&run);
   GstBus* bus = gst_element_get_bus(call.pipeline.get());
   gst_element_set_state(call.pipeline.get(), GST_STATE_PLAYING);
   const gint64 start = g_get_monotonic_time();
