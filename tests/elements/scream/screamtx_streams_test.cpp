@@ -14,6 +14,16 @@
 namespace lidar::test {
 namespace {
 
+/// Frame `i` of another stream, in one packet.
+void PushSmallFrame(GstHarness* stream, int i) {
+  Rtp r;
+  r.ssrc = 0x5678;
+  r.seq = static_cast<guint16>(i);
+  r.timestamp = static_cast<guint32>(i);
+  r.marker = true;
+  ASSERT_EQ(gst_harness_push(stream, NewRtp(r)), GST_FLOW_OK);
+}
+
 TEST_F(ScreamTx, SharesTheTargetByPriority) {
   g_object_set(element, "start-bitrate", 4'000'000, "min-bitrate", 10'000, nullptr);
   Start();
@@ -23,12 +33,7 @@ TEST_F(ScreamTx, SharesTheTargetByPriority) {
   g_object_set(pad.get(), "priority", 0.25, nullptr);
   for (int i = 0; i < 200; ++i) {
     PushFrame(static_cast<guint32>(i) * 900, 4);
-    Rtp r;
-    r.ssrc = 0x5678;
-    r.seq = static_cast<guint16>(i);
-    r.timestamp = static_cast<guint32>(i);
-    r.marker = true;
-    ASSERT_EQ(gst_harness_push(second.get(), NewRtp(r)), GST_FLOW_OK);
+    PushSmallFrame(second.get(), i);
     for (int k = 0; k < 2; ++k) {
       time.Advance(5 * GST_MSECOND);
       Acknowledge(i % 4 == 0 ? scream::Ecn::kCe : scream::Ecn::kEct1);
@@ -274,12 +279,7 @@ TEST_F(ScreamTx, TargetsOfAllPadsTogetherStayBelowTheTotal) {
   guint64 highest = 0;
   for (int i = 0; i < 100; ++i) {
     PushFrame(static_cast<guint32>(i) * 900, 4);
-    Rtp r;
-    r.ssrc = 0x5678;
-    r.seq = static_cast<guint16>(i);
-    r.timestamp = static_cast<guint32>(i);
-    r.marker = true;
-    ASSERT_EQ(gst_harness_push(second.get(), NewRtp(r)), GST_FLOW_OK);
+    PushSmallFrame(second.get(), i);
     for (int k = 0; k < 2; ++k) {
       time.Advance(5 * GST_MSECOND);
       Acknowledge();

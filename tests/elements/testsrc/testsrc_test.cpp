@@ -256,35 +256,31 @@ TEST(LidarTestSrc, ChannelsAreFieldsBehindTheOthers) {
   }
 }
 
-TEST(LidarTestSrc, SaysWhichChannelItDoesNotHave) {
-  const ElementPtr pipeline(
-      gst_parse_launch("lidartestsrc channels=ring,nonsense ! fakesink", nullptr));
+/// The error of a pipeline that does not start; null where it has none.
+ErrorPtr ErrorOfStart(const char* launch) {
+  const ElementPtr pipeline(gst_parse_launch(launch, nullptr));
   EXPECT_EQ(gst_element_set_state(pipeline.get(), GST_STATE_PAUSED), GST_STATE_CHANGE_FAILURE);
   GstBus* bus = gst_element_get_bus(pipeline.get());
   const MessagePtr message(gst_bus_pop_filtered(bus, GST_MESSAGE_ERROR));
   gst_object_unref(bus);
-  ASSERT_TRUE(message);
   GError* raw = nullptr;
-  gst_message_parse_error(message.get(), &raw, nullptr);
-  const ErrorPtr error(raw);
-  EXPECT_NE(std::string(error->message).find("\"nonsense\""), std::string::npos);
+  if (message) gst_message_parse_error(message.get(), &raw, nullptr);
   gst_element_set_state(pipeline.get(), GST_STATE_NULL);
+  return ErrorPtr(raw);
+}
+
+TEST(LidarTestSrc, SaysWhichChannelItDoesNotHave) {
+  const ErrorPtr error = ErrorOfStart("lidartestsrc channels=ring,nonsense ! fakesink");
+  ASSERT_TRUE(error);
+  EXPECT_NE(std::string(error->message).find("\"nonsense\""), std::string::npos);
 }
 
 TEST(LidarTestSrc, SaysWhichTrajectoryItCannotWrite) {
-  const ElementPtr pipeline(
-      gst_parse_launch("lidartestsrc trajectory-location=/nonexistent/t.tum ! fakesink", nullptr));
-  EXPECT_EQ(gst_element_set_state(pipeline.get(), GST_STATE_PAUSED), GST_STATE_CHANGE_FAILURE);
-  GstBus* bus = gst_element_get_bus(pipeline.get());
-  const MessagePtr message(gst_bus_pop_filtered(bus, GST_MESSAGE_ERROR));
-  gst_object_unref(bus);
-  ASSERT_TRUE(message);
-  GError* raw = nullptr;
-  gst_message_parse_error(message.get(), &raw, nullptr);
-  const ErrorPtr error(raw);
+  const ErrorPtr error =
+      ErrorOfStart("lidartestsrc trajectory-location=/nonexistent/t.tum ! fakesink");
+  ASSERT_TRUE(error);
   EXPECT_TRUE(g_error_matches(error.get(), GST_RESOURCE_ERROR, GST_RESOURCE_ERROR_OPEN_WRITE));
   EXPECT_NE(std::string(error->message).find("/nonexistent/t.tum"), std::string::npos);
-  gst_element_set_state(pipeline.get(), GST_STATE_NULL);
 }
 
 TEST(LidarTestSrc, RefusesCapsThatAreNotItsOwn) {

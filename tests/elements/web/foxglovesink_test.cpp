@@ -199,6 +199,15 @@ TEST(FoxgloveSink, SendsThePosesThatOdometryPutOnClouds) {
   EXPECT_EQ(peer.Next().subscription, 1U);
 }
 
+std::string UrlOf(GstElement* web) {
+  GstStructure* raw = nullptr;
+  g_object_get(web, "stats", &raw, nullptr);
+  const gst::StructurePtr stats(raw);
+  guint port = 0;
+  gst_structure_get_uint(stats.get(), "port", &port);
+  return "ws://127.0.0.1:" + std::to_string(port);
+}
+
 TEST(FoxgloveSink, TellsTheStatisticsOfThePipelineAroundIt) {
   const gst::ElementPtr pipeline(
       gst_parse_launch("lidartestsrc is-live=true mode=512x10 model=os0-32 ! tee name=t "
@@ -208,13 +217,8 @@ TEST(FoxgloveSink, TellsTheStatisticsOfThePipelineAroundIt) {
   ASSERT_TRUE(pipeline);
   const gst::ElementPtr web(gst_bin_get_by_name(GST_BIN(pipeline.get()), "web"));
   gst_element_set_state(pipeline.get(), GST_STATE_PLAYING);
-  GstStructure* raw = nullptr;
-  g_object_get(web.get(), "stats", &raw, nullptr);
-  const gst::StructurePtr stats(raw);
-  guint port = 0;
-  gst_structure_get_uint(stats.get(), "port", &port);
   {
-    Peer peer("ws://127.0.0.1:" + std::to_string(port), {"foxglove.sdk.v1"});
+    Peer peer(UrlOf(web.get()), {"foxglove.sdk.v1"});
     peer.Subscribe("/statistics", 3);
     nlohmann::json message = nlohmann::json::object();
     for (int i = 0; i < 20 && message.value("step", 0.0) <= 0; ++i)
@@ -250,13 +254,8 @@ TEST(FoxgloveSink, TellsAtTheReceiverWhatTheSenderReports) {
   report.rtt = std::chrono::milliseconds(30);
   PushTo(in.get(), {0x80, 96, 0, 1, 0, 0, 0, 0, 0, 0, 0, 7, 1, 2, 3, 4});
   PushTo(in.get(), scream::BuildSenderReport(report));
-  GstStructure* raw = nullptr;
-  g_object_get(web.get(), "stats", &raw, nullptr);
-  const gst::StructurePtr stats(raw);
-  guint port = 0;
-  gst_structure_get_uint(stats.get(), "port", &port);
   {
-    Peer peer("ws://127.0.0.1:" + std::to_string(port), {"foxglove.sdk.v1"});
+    Peer peer(UrlOf(web.get()), {"foxglove.sdk.v1"});
     peer.Subscribe("/statistics", 3);
     nlohmann::json message = nlohmann::json::object();
     for (int i = 0; i < 20 && !message.contains("rtt"); ++i)
