@@ -168,8 +168,8 @@ static void TellCounters(State* state) {
   state->counters = state->counted;
 }
 
-/// Runs `work` on the recorder under its lock, and posts what comes of it without. False where the
-/// recording is over.
+/// Runs `work` on the recorder under its lock. Posts what comes of it when the lock is free again.
+/// False where the recording is over.
 template <class Work>
 static bool WithRecorder(GstLidarMcapSink* self, Work work) {
   State& state = *self->state;

@@ -53,7 +53,7 @@ const std::array<lidar::gst::Stat<Counters>, 5> kStats = {{
     {"files-unreadable", &Counters::files_unreadable},
 }};
 
-/// Belongs to the streaming thread, and to who holds the task's lock while that stands still.
+/// Belongs to the streaming thread. While the task stands still, the holder of its lock has it.
 struct Run {
   std::unique_ptr<Playback> playback;
   std::unique_ptr<StreamGroup> streams;
@@ -214,7 +214,7 @@ static void Finish(GstLidarMcapSrc* self) {
 /// Posts what is an error, and stops the task.
 static void Stop(GstLidarMcapSrc* self, GstFlowReturn flow) {
   GST_DEBUG_OBJECT(self, "stops: %s", gst_flow_get_name(flow));
-  // First, so that a seek that answers the end starts it again.
+  // The task pauses before the end is told: a seek may answer it, and starts the task again.
   self->state->task.Pause();
   if (flow == GST_FLOW_EOS) return Finish(self);
   if (flow != GST_FLOW_NOT_LINKED && flow > GST_FLOW_EOS) return;
@@ -257,7 +257,7 @@ static void Loop(gpointer user_data) {
   if (flow != GST_FLOW_OK) Stop(self, flow);
 }
 
-/// Pads of the element, so that they can be told without touching what the task owns.
+/// Takes the pads from the element: the streams, which have them too, are the task's.
 static void PushToAll(GstLidarMcapSrc* self, GstEvent* event) {
   GST_OBJECT_LOCK(self);
   GList* pads = g_list_copy_deep(

@@ -7,8 +7,8 @@
 
 namespace lidar::gst {
 
-/// A change of state starts and stops it; in between it may be paused, and go on. Whoever pauses it
-/// and holds lock() has it stand still. From any thread.
+/// A change of state starts and stops it; in between it may be paused, and go on. It stands still
+/// while it is paused and somebody holds lock(). All may be called from any thread.
 class PlayTask {
  public:
   PlayTask(GstTaskFunction loop, gpointer data) : task_(gst_task_new(loop, data, nullptr)) {

@@ -32,7 +32,7 @@ void PlayedStream::PushStreamStart(const PlaybackGroup& group) {
   gst_pad_push_event(pad_, WithSeqnum(group, event));
 }
 
-/// Events first, then the pad: whoever links it in its signal finds them there.
+/// The events come before the pad: a handler that links it in its signal finds them there.
 bool PlayedStream::Prepare(const PlaybackGroup& group) {
   GstCaps* caps = reader_->caps();
   if (caps == nullptr) return false;

@@ -101,8 +101,8 @@ bool Publisher::Subscribe(const std::string& subject, void (Publisher::*call)(na
     *why = ErrorText(s);
     return false;
   }
-  // The callback may still run when the subscription is gone; this comes after it, but not where
-  // the server has closed the connection already.
+  // The callback may still run when the subscription is gone, and this one comes after it. Where
+  // the server has closed the connection already, this one does not come at all.
   const natsStatus told = natsSubscription_SetOnCompleteCB(
       raw, [](void* closure) { delete static_cast<Target*>(closure); }, target.get());
   if (told != NATS_OK) untold_.push_back(std::move(target));
@@ -145,7 +145,7 @@ bool Publisher::Drain(Duration timeout) {
 void Publisher::Interrupt(bool on) {
   const std::lock_guard lock(mutex_);
   interrupted_ = on;
-  if (on) ++interrupts_;  // GstBaseSink takes it back before who waits may have seen it
+  if (on) ++interrupts_;  // GstBaseSink may take it back before anyone sees it
   drained_.notify_all();
 }
 
@@ -243,7 +243,7 @@ void Publisher::RetryAfterReconnect(Lock* lock) {
   SendAllAgain();
 }
 
-/// libnats gives up a connection that the server has refused twice, so there is to be another.
+/// libnats gives up a connection that the server has refused twice: this makes another one.
 void Publisher::OpenAgain(Lock* lock) {
   if (Clock::now() < open_at_) {
     wake_.wait_until(*lock, open_at_);
@@ -311,9 +311,9 @@ bool Publisher::ConfigDue(Clock::time_point now) const {
   const StreamFormat::Ptr format = NextFormat();
   if (!format) return false;
   if (format != sent_format_) return true;
-  // What is kept is not to be filled by whoever asks.
+  // Many who ask must not fill what JetStream keeps.
   if (asked_ && now - config_at_ >= (keeps() ? kConfigInterval / 2 : kAskedInterval)) return true;
-  // A small box must not lose them before the messages that need them.
+  // Where little is kept, the caps must not go before the messages that need them.
   const std::uint64_t max_bytes = settings_.stream.max_bytes;
   const bool box_turns = keeps() && max_bytes > 0 && bytes_since_config_ > max_bytes / 4;
   return outbox_.waiting() > 0 && (box_turns || now - config_at_ >= kConfigInterval);

@@ -120,7 +120,7 @@ void ImuPad::SetCaps(const ouster::Metadata& metadata) {
   gst_pad_push_event(pad_, gst_event_new_caps(caps.get()));
 }
 
-/// Events first, then the pad: whoever links it in its signal finds them there.
+/// The events come before the pad: a handler that links it in its signal finds them there.
 void ImuPad::Prepare(const ouster::Metadata& metadata) {
   const bool first = pad_ == nullptr;
   if (first) AddPad();

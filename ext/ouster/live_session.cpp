@@ -93,7 +93,7 @@ bool LiveSession::OpenFeed() {
     auto metadata = LoadMetadata();
     if (!metadata || !SetMetadata(*std::move(metadata)) || !OpenSockets(stream()->metadata()))
       return false;
-    // Metadata from a file has no doubt of its own: the first packets tell.
+    // Only packets can show that metadata from a file is wrong, so they are waited for from now on.
     last_packet_us_ = g_get_monotonic_time();
   }
   return true;

@@ -7,7 +7,7 @@
 
 namespace lidar::dds {
 
-/// Held by who has entities in it.
+/// Whatever has entities in it holds it.
 class Domain {
  public:
   /// Null where Cyclone refuses its configuration, which may be the user's: ours is only what

@@ -54,8 +54,8 @@ cdr::Guid GuidOf(dds_entity_t entity) {
   return guid;
 }
 
-/// Whoever made the domain may let larger ones through. Of what is no cloud a hundred may wait, and
-/// thousands of transforms are less than this.
+/// The domain may let larger messages through, where another part of the process made it. A hundred
+/// messages that are no clouds may wait. Thousands of transforms are smaller than this.
 std::size_t MaxSizeOf(cdr::RosType type) {
   constexpr std::size_t kMaxSmall = std::size_t{1} << 20;
   return type == cdr::RosType::kPointCloud2 ? Domain::kMaxMessage : kMaxSmall;

@@ -15,7 +15,8 @@
 
 namespace lidar::gst {
 
-/// Whose pose in which frame a message is about; what is empty is as the caps say, or as usual.
+/// A message gives the pose of the child frame in the other. An empty name means what the caps say,
+/// or the usual one.
 struct Frames {
   std::string frame_id;
   std::string child_frame_id;

@@ -51,7 +51,7 @@ gboolean Client::OnWritable(GObject*, gpointer self) {
   return G_SOURCE_REMOVE;
 }
 
-/// A bounded part a turn: who sends without end does not keep the thread.
+/// Reads a bounded part a turn: a client that sends without end must not keep the thread.
 void Client::Read() {
   std::array<std::uint8_t, 16 * 1024> buffer;
   auto* input = G_POLLABLE_INPUT_STREAM(g_io_stream_get_input_stream(stream_.get()));
@@ -125,7 +125,7 @@ void Client::End() {
 void Client::Tick(gint64 now_us) {
   if (closed_) return;
   const bool stalled = current_ && now_us - progress_us_ > kStalled_us;
-  // Who takes a long frame can neither be asked nor answer before its end.
+  // A client that takes a long frame can neither be asked nor answer before its end.
   if (current_ && progress_us_ > heard_us_) heard_us_ = progress_us_;
   if (stalled || now_us - heard_us_ > kSilent_us) return Close(CloseCode::kGoingAway);
   if (asked_us_ != 0 || now_us - heard_us_ < kAskAfter_us) return;

@@ -105,7 +105,7 @@ SourcePtr Desk::Every(guint interval_ms, GSourceFunc function) {
 void Desk::OnHeaders(SoupServer*, SoupServerMessage* request, const char*, GHashTable*,
                      gpointer self) {
   soup_message_body_set_accumulate(soup_server_message_get_request_body(request), FALSE);
-  // Parts of files are asked for by nobody but trouble-makers.
+  // Only trouble-makers ask for parts of files.
   soup_message_headers_remove(soup_server_message_get_request_headers(request), "Range");
   const char* method = soup_server_message_get_method(request);
   if (method == SOUP_METHOD_GET || method == SOUP_METHOD_HEAD) return;

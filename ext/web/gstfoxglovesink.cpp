@@ -252,7 +252,7 @@ static void ReleasePad(GstElement* element, GstPad* pad) {
   const ElementPtr input(lidar::web::InputOf(pad));
   const StringPtr name(gst_pad_get_name(pad));
   if (input) {
-    // First, so that it wakes who waits in it and holds the pad's lock.
+    // The input stops first: this wakes a thread that waits in it and holds the pad's lock.
     gst_element_set_locked_state(input.get(), TRUE);
     gst_element_set_state(input.get(), GST_STATE_NULL);
   }

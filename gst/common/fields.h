@@ -218,7 +218,7 @@ class Field {
   Field(const EnumField<S, E>& e)
       : member_(reinterpret_cast<Member>(e.field)), type_(e.type), ops_(&kEnum<E>) {}
 
-  /// What `row` is of the struct at the path. The row lives for ever.
+  /// The field of `row`, in the struct at the end of the path. The row lives for ever.
   template <class Row, auto... path>
   Field(const Row* row, AtPath<path...>) : row_(row), ops_(&kWithin<Row, ByPath<path...>>) {}
   /// `row` is a row of the child's table; its default is that of `defaults`. Both live for ever.

@@ -251,8 +251,8 @@ static GstFlowReturn PushSlice(GstLidarEncoder* self, GstBuffer* input,
                                const GstLidarSlice& place) {
   const lidar::ByteView bytes = self->state->stream.coder->bytes();
   lidar::gst::BufferPtr output(gst_buffer_new_memdup(bytes.data, bytes.size));
-  // Where the input does not say, too: who counts only what arrives misses what was left out, and
-  // acknowledges another scan.
+  // The output says its place even where the input does not. A receiver that counts only what
+  // arrives would miss what was left out, and acknowledge another scan.
   GstLidarSlice known{};
   if (!gst_lidar_buffer_get_slice(input, &known)) gst_lidar_buffer_set_slice(output.get(), &place);
   PushBounds(self);

@@ -275,7 +275,7 @@ static gboolean SrcQuery(GstPad* pad, GstObject* parent, GstQuery* query) {
   return TRUE;
 }
 
-/// Queries and events of the clouds do not go to who gives transforms.
+/// Queries and events of the clouds do not go to the sources of transforms.
 static GstIterator* LinksOf(GstPad* pad, GstObject* parent) {
   auto* self = GST_LIDAR_POINT_CLOUD_FILTER(parent);
   return lidar::gst::LinkTo(pad == self->srcpad ? self->sinkpad : self->srcpad);
@@ -285,7 +285,7 @@ static GstPad* RequestPad(GstElement* element, GstPadTemplate* pad_template, con
                           const GstCaps*) {
   auto* self = GST_LIDAR_POINT_CLOUD_FILTER(element);
   GST_OBJECT_LOCK(self);
-  // A name that is asked for goes before, and the next that is not must be another.
+  // Whoever asks for a name gets it. A pad without one must never get a name that was given.
   guint64 number = self->next_pad;
   if (name != nullptr) g_ascii_string_to_unsigned(name + 3, 10, 0, G_MAXUINT - 1, &number, nullptr);
   self->next_pad = std::max(self->next_pad, static_cast<guint>(number) + 1);

@@ -70,7 +70,7 @@ GstFlowReturn TransformInbox::Chain(GstPad* pad, GstObject*, GstBuffer* raw) {
   return GST_FLOW_OK;
 }
 
-/// Nothing of it is for who gets the clouds.
+/// Events of transforms do not go on to where the clouds go.
 gboolean TransformInbox::Event(GstPad* pad, GstObject*, GstEvent* event) {
   const EventPtr owner(event);
   if (GST_EVENT_TYPE(event) == GST_EVENT_EOS) InboxOf(pad).SetEnded(pad, true);

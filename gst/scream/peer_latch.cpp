@@ -55,7 +55,7 @@ bool PeerLatch::IsPeer(GSocketAddress* from) const {
   return latched_ && (from == nullptr || !peer_.address || SameAddress(from, peer_.address.get()));
 }
 
-/// Where all places are taken, who has shown least and was longest silent goes.
+/// Where all places are taken, the candidate goes that has shown least and was silent for longest.
 PeerLatch::Peer& PeerLatch::CandidateOf(Time now, GSocketAddress* from) {
   for (Peer& c : candidates_)
     if (SameAddress(c.address.get(), from)) return c;

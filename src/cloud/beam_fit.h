@@ -19,8 +19,8 @@ class BeamFit {
   /// x, y and z [m] of point i stand as F32 at `xyz + i * point_step`, row by row.
   void Add(const std::uint8_t* xyz, std::size_t point_step);
 
-  /// The model that fits all that was added, whether or not it fits well: that is for who uses it
-  /// to see, point by point. None where there are too few returns, or columns do not turn evenly.
+  /// The model that fits all that was added best. Whether it fits well, its user finds out point by
+  /// point. None where there are too few returns, or columns do not turn evenly.
   std::optional<SensorModel> Fit() const;
 
  private:

@@ -40,7 +40,7 @@ struct PointFilterSettings {
   }
 };
 
-/// Numbers apart from each other by spaces or commas; none where there is anything else.
+/// Numbers with spaces or commas between them; none where there is anything else.
 std::optional<std::vector<double>> ParseNumbers(const std::string& text);
 /// Sixteen numbers, row by row, or x, y, z [m], roll, pitch, yaw [degrees]: turned about x, then y,
 /// then z, then moved.

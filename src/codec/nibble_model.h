@@ -60,7 +60,7 @@ class NibbleModel {
  public:
   /// Uniform.
   NibbleModel() : NibbleModel(UniformCounts()) {}
-  /// Proportional to `counts`, of which zeros count as a little.
+  /// Proportional to `counts`. A zero counts as a little.
   explicit NibbleModel(const std::array<std::uint16_t, kNibbles>& counts) {
     std::uint32_t total = 0;
     for (const std::uint16_t c : counts) total += c;

@@ -34,8 +34,8 @@ std::uint32_t ErrorMm(const RangeGrid& grid) {
   return static_cast<std::uint32_t>(std::lround(1e3 * grid.error_m()));
 }
 
-/// Each return in the bin, of those that come back within the error, that is nearest to what its
-/// pixel has seen.
+/// Several bins may come back within the error. Each return takes the one that is nearest to what
+/// its pixel has seen.
 RangeImage AsRecalled(const RangeImage& image, const BlockMemory& memory, const RangeGrid& grid,
                       std::uint32_t error_mm) {
   RangeImage chosen = image;
@@ -110,7 +110,7 @@ std::optional<RangeCoder> RangeEncoder::EncodePayload(const RangeImage& image,
     if (!EncodeIntegers(settings, image.columns)) return std::nullopt;
     return settings.coder;
   }
-  // It counts bins that are too many for the mixing coder.
+  // The adaptive coder takes slices whose bins are too many for the mixing coder.
   EncodeAdaptively(image.columns);
   return RangeCoder::kAdaptive;
 }
@@ -172,7 +172,7 @@ bool RangeEncoder::EncodeLinked(const RangeImage& image, const RangeSettings& se
   return true;
 }
 
-/// One payload of kTemporal; with an error the bins of `image` were chosen within that.
+/// Writes one payload of kTemporal. With an error, the bins of `image` were chosen within it.
 bool RangeEncoder::EncodeOn(const RangeGrid& grid, std::uint32_t error_mm, const RangeImage& image,
                             const RangeSettings& settings, BlockLink* link) {
   const BlockMemory* reference = link->reference.get();
@@ -197,8 +197,8 @@ bool RangeEncoder::EncodeOn(const RangeGrid& grid, std::uint32_t error_mm, const
 void RangeEncoder::CollectReturns(const RangeImage& image, const RangeSettings& settings) {
   mask_.resize(image.size());
   lists_.values.resize(image.size());
-  // BinOf(), exact below 2^28: half a part keeps the quotient from the next integer, by more than
-  // it is rounded.
+  // This is BinOf(), exact below 2^28. The half part keeps the quotient away from the next integer,
+  // by more than rounding moves it.
   const RangeGrid& grid = settings.grid;
   const double per_mm = RangeGrid::kParts / (1.0 * grid.parts() * grid.unit_mm());
   const double half_part = 0.5 / grid.parts();

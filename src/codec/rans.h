@@ -52,13 +52,13 @@ class RansEncoder {
     Writer& operator=(const Writer&) = delete;
     ~Writer() { encoder_->next_ = next_; }
 
-    /// A symbol, and the low `count` <= kMaxJointBits of `bits`, the others of which are 0.
+    /// A symbol, and the low `count` <= kMaxJointBits of `bits`. Its other bits are 0.
     [[gnu::always_inline]] void Put(unsigned lane, unsigned symbol, NibbleModel* model,
                                     std::uint32_t bits = 0, unsigned count = 0) {
       *next_++ = {model->IntervalOf(symbol), bits << 8 | count << 2 | lane};
       model->Update(symbol);
     }
-    /// The low `count` <= kMaxPlainBits of `bits`, the others of which are 0.
+    /// The low `count` <= kMaxPlainBits of `bits`. Its other bits are 0.
     void PutBits(unsigned lane, std::uint32_t bits, unsigned count) {
       *next_++ = {{0, kProbabilityOne}, bits << 8 | count << 2 | lane};
     }
@@ -77,8 +77,8 @@ class RansEncoder {
 /// Copies are cheap: a loop works on one of its own, which can live in registers.
 class RansDecoder {
  public:
-  /// `padded` is where the words are kept, with room for `ahead` calls of GetBits() past the end:
-  /// whoever calls it asks overran() at least as often as that.
+  /// `padded` keeps the words, with room for `ahead` calls of GetBits() past the end. Callers ask
+  /// overran() at least once in so many calls.
   RansDecoder(ByteView bytes, std::size_t ahead, std::vector<std::uint8_t>* padded);
 
   /// More was read than there is: the stream is damaged, and not to be read any further.

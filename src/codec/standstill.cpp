@@ -6,7 +6,7 @@
 namespace lidar::codec {
 namespace {
 
-// What a return costs of which nothing is known, as a distance.
+// What a return costs where nothing is known of it, as a distance.
 constexpr double kSurpriseSteps = 8;
 
 /// Distances cost about their logarithm.

@@ -37,7 +37,7 @@ struct NormalEquations {
   Eigen::Matrix3d Constraint() const { return lhs.topLeftCorner<3, 3>() / weights; }
 };
 
-/// Neighbours of which the surface is known, and the others.
+/// Neighbours whose surface is known, and the others.
 struct Neighbours {
   NormalEquations surfaces;
   NormalEquations points;

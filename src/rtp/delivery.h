@@ -25,7 +25,7 @@ class Delivery {
 
   /// In the order of sending.
   void OnSent(const Packet& packet);
-  /// The receiver has the packets from `first` to `last`; the slices of which it now has all.
+  /// The receiver has the packets from `first` to `last`. Returns the slices that are whole now.
   std::vector<Slice> OnReceived(std::uint32_t ssrc, std::uint16_t first, std::uint16_t last);
 
   static constexpr std::size_t kMostPackets = 8'192;

@@ -33,7 +33,7 @@ class Receiver {
   void set_max_reorder_time(Duration t);
   ReceiverAccounts accounts() const;
   std::optional<std::uint32_t> ssrc() const;
-  /// An SSRC of which many packets came beside those of the stream, and were dropped.
+  /// Another SSRC, whose many packets came beside those of the stream and were dropped.
   std::optional<std::uint32_t> rival() const { return rival_; }
 
   static constexpr unsigned kProbation = 3;          // packets

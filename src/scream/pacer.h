@@ -33,7 +33,7 @@ class Pacer {
   const Parameters& p_;
   DataRate pace_bitrate_ = DataRate::BitsPerSecond(1e6);
   DataRate burst_rate_;
-  DataSize burst_;  // of which is left
+  DataSize burst_;  // what is left of the burst
   Time next_{};
 };
 

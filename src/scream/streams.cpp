@@ -96,7 +96,7 @@ void Streams::Allocate(Time now, DataRate total) {
     if (c.needed_bitrate > floor) floor = floor + (c.needed_bitrate - floor) * need_share;
     stream.set_target_bitrate(floor);
     left = left - floor;
-    // The target allows for the queues of all: who has one bears it.
+    // The target allows for the queues of all, so each stream bears its own.
     const double weight =
         std::max(1e-6, c.priority) / (p_.target_rate_divisor + stream.queue_compensation());
     open.push_back({&stream, weight, floor, std::max(c.min_bitrate, c.max_bitrate)});
@@ -107,7 +107,7 @@ void Streams::Allocate(Time now, DataRate total) {
   Fill({others, open.end()}, left);
 }
 
-/// By weight; who reaches the maximum leaves the rest to the others. Returns what is left.
+/// Shares by weight. A stream at its maximum leaves the rest to the others. Returns what is left.
 DataRate Streams::Fill(std::vector<Share> open, DataRate left) {
   while (left.bits_per_second() > 1 && !open.empty()) {
     double weights = 0;

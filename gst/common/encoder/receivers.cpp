@@ -90,7 +90,7 @@ ReceiverEvents::News ReceiverEvents::Take(GstPad* src) {
   if (looked_at_us_ == 0 || now - looked_at_us_ >= kLookInterval) {
     looked_at_us_ = now;
     const bool had_one_way = std::exchange(one_way_, HasOneWay(src));
-    // Who was added lacks what the receiver has.
+    // A receiver that was added lacks what the other one has.
     news.key_requested = news.key_requested || (had_one_way && !one_way_);
   }
   if (!one_way_) news.received.clear();

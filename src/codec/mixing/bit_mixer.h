@@ -59,7 +59,7 @@ class BitMixer {
     Learn(bit);
     return bit;
   }
-  /// With two sets of weights, each of which learns from what it would have said alone.
+  /// Mixes by two sets of weights. Each learns from what it would have said alone.
   template <class Coder>
   [[gnu::always_inline]] bool Code(bool bit, Weights* first, Weights* second, Coder* coder) {
     static_assert(kTeaches<Coder>);

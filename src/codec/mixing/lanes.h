@@ -23,7 +23,7 @@ constexpr unsigned kLanes = 8;
 /// - Of: eight numbers. Load and Store: counters of `kCount` places, and in other lanes some that
 ///   have no vote.
 /// - Votes: of counters whose logits are given. Learnt: what counters are after a bit.
-/// - Join: the numbers of two groups, each of which has zeros where the other has none.
+/// - Join: the numbers of two groups; where one has a number, the other has zero.
 /// - Dot, Plus and Total: a sum of products, in parts. Teach: weight += (input step + 2^16) / 2^17,
 ///   rounded down, in the bounds of an int16.
 struct PlainLanes {

@@ -116,7 +116,7 @@ class RangePart {
 
   std::uint32_t RangeClass(std::int32_t value) const { return mixing::RangeClass(value, step_mm_); }
 
-  /// Neighbours and prediction of pixel `i`.
+  /// Sets the neighbours and the prediction of pixel `i`.
   [[gnu::always_inline]] void Look(std::uint32_t i) {
     const Azimuth& at = above_[i];
     if (blind_) {
@@ -227,7 +227,7 @@ class RangePart {
       return mixer.Code(bit, WeightsOf(node), EventWeightsOf(node), &coder_);
     }
   }
-  /// For all the bins that are tried out; it is asked in the order of the nodes of each side.
+  /// Serves all bins that are tried out: each node is asked once, on each side in their order.
   std::int32_t ChanceOf(unsigned node) {
     if ((asked_ >> node & 1) != 0) return chances_[node];
     asked_ |= 1U << node;
@@ -239,7 +239,7 @@ class RangePart {
   [[gnu::always_inline]] std::int32_t CodeDifference(std::int32_t difference) {
     return CodeNode(difference != 0, 0) ? CodeSome(difference) : 0;
   }
-  /// A difference that is not 0.
+  /// Codes a difference that is not 0.
   [[gnu::always_inline]] std::int32_t CodeSome(std::int32_t difference) {
     const bool negative = CodeNode(difference < 0, 1);
     const std::int32_t sign = negative ? 1 : 0;

@@ -10,18 +10,19 @@ using namespace std::chrono_literals;
 
 /// Per SSRC; less than half of the sequence numbers, so that extension stays exact.
 constexpr std::size_t kMaxPackets = 32000;
-/// Settled packets kept, so that repeated reports find them and late ones are told from lost ones;
-/// more than these only while they are younger than this.
+/// Settled packets are kept so that repeated reports find them, and late ones are told from lost
+/// ones. Beyond this number they are kept only while they are younger than this time.
 constexpr std::size_t kMaxSettled = 1024;
 constexpr Duration kKeepSettled = 1s;
-/// A number so far behind the newest at most is a packet that was overtaken before it was sent.
+/// A packet whose number is at most so far behind the newest was overtaken before it was sent.
 constexpr std::int64_t kOvertaken = 64;
-/// Numbers further behind are a new count where so many unknown ones, or known ones, come in a row.
-/// Receivers take less for reordering, so packets are not counted then until they are new again.
+/// Numbers further behind are a new count, once so many unknown or so many known ones came in a
+/// row. Receivers take less for reordering, so packets are not counted then until they are new
+/// again.
 constexpr std::int64_t kFarBehind = 3000;
 constexpr int kUnknownBehind = 2;
 constexpr int kKnownBehind = 64;
-/// Reports of the numbers of before may still come for so long.
+/// Reports of the numbers before a restart may still come for so long.
 constexpr Duration kReportsOfBefore = 2s;
 /// A packet sent so much sooner than one that was acknowledged is not waited for.
 constexpr Duration kTailWait = 1s;

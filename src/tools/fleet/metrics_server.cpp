@@ -14,7 +14,7 @@ namespace lidar::fleet {
 class MetricsServer::Impl {
  public:
   Impl(const std::string& address, int port) {
-    // Whoever connects and says nothing holds one of few threads, and not for long.
+    // A client that connects and says nothing holds one of few threads, and not for long.
     server_.new_task_queue = [] { return new httplib::ThreadPool(2); };
     server_.set_read_timeout(2, 0);
     server_.set_write_timeout(2, 0);

@@ -21,10 +21,10 @@ struct LeaseSettings {
 
 /// Leases by revisions alone. A write names the revision that it replaces, and the store refuses
 /// it where that is not the newest. An owner has a robot for `lease` from when it *sent* the write
-/// that was stored last. Who wants it waits for longer than that from when it *saw* that write, and
-/// then replaces exactly that one. So no two have a robot at once, and the clocks of machines and
-/// servers need not agree: each span of time is measured by one steady clock. Deterministic; for
-/// one thread.
+/// that was stored last. Another worker that wants it waits for longer than that, from when it
+/// *saw* that write, and then replaces exactly that one. So no two have a robot at once, and the
+/// clocks of machines and servers need not agree: each span of time is measured by one steady
+/// clock. Deterministic; for one thread.
 class LeaseTable {
  public:
   struct Write {
@@ -59,7 +59,7 @@ class LeaseTable {
   void LeaveToOthers(const std::string& robot, Duration least, Time now);
   /// Ends leases that are over, and gives what to write now.
   std::vector<Write> Poll(Time now);
-  /// Gives up all robots at once, and says so to whoever waits for them. Nothing is taken any more.
+  /// Gives up all robots at once, and tells those that wait for them. Takes no robot any more.
   std::vector<Write> HandOver(Time now);
 
   /// What is ours at `now`, whether or not it is renewed in time.
