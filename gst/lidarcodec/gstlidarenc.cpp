@@ -17,9 +17,9 @@
 
 #include "gst/common/cloud_info.h"
 #include "gst/common/element_class.h"
-#include "gst/common/enum_type.h"
 #include "gst/common/gstlidarencoder.h"
 #include "gst/common/properties.h"
+#include "gst/lidarcodec/lidarenc_settings.h"
 #include "src/codec/effort_control.h"
 #include "src/codec/slice_decoder.h"
 #include "src/codec/slice_encoder.h"
@@ -29,37 +29,7 @@ namespace {
 
 using lidar::codec::SliceResult;
 
-constexpr gint kAuto = -1;
-
-GType EffortType() {
-  static const GEnumValue values[] = {
-      {kAuto, "The highest that codes a slice in a quarter of its sweep", "auto"},
-      {0, "Fastest: adaptive rANS", "0"},
-      {1, "Mixed contexts, few", "1"},
-      {2, "Mixed contexts, more", "2"},
-      {3, "Smallest: mixed contexts, all", "3"},
-      {0, nullptr, nullptr}};
-  static const GType type = lidar::gst::RegisterEnum("GstLidarEncEffort", values);
-  return type;
-}
-
-enum class Reference : gint { kNothing, kAcknowledged };
-
-GType ReferenceType() {
-  static const GEnumValue values[] = {
-      {lidar::gst::Int(Reference::kNothing), "Every slice stands alone", "none"},
-      {lidar::gst::Int(Reference::kAcknowledged),
-       "The newest scan that the receiver has, where the sensor stands still", "auto"},
-      {0, nullptr, nullptr}};
-  static const GType type = lidar::gst::RegisterEnum("GstLidarEncReference", values);
-  return type;
-}
-
-struct Settings {
-  gint effort = kAuto;
-  Reference reference = Reference::kAcknowledged;
-  lidar::Duration key_interval = std::chrono::seconds(10);
-};
+using Settings = lidar::gst::LidarEncSettings;
 
 /// Belongs to the streaming thread.
 struct Coder {
@@ -83,21 +53,6 @@ struct State {
   Settings settings;
   Coder coder;
 };
-
-const std::array<lidar::gst::Property<Settings>, 3> kProperties = {{
-    {"effort", "How much computing slices are worth",
-     lidar::gst::EnumField<Settings>{&Settings::effort, EffortType}, 0, 0,
-     GST_PARAM_MUTABLE_PLAYING},
-    {"reference",
-     "What slices may be predicted from; what nobody acknowledges is predicted from nothing",
-     lidar::gst::EnumField<Settings, Reference>{&Settings::reference, ReferenceType}, 0, 0,
-     GST_PARAM_MUTABLE_PLAYING},
-    {"key-interval",
-     "Each sector comes at least so often as a slice that stands alone, for those who join late; "
-     "0: "
-     "only when asked for [ns]",
-     &Settings::key_interval, 0, 3600e9, GST_PARAM_MUTABLE_PLAYING},
-}};
 
 }  // namespace
 
@@ -126,7 +81,7 @@ static void Link(GstLidarEncoder* base, const GstLidarRawSlice& raw) {
   Coder& coder = CoderOf(base);
   const Settings settings = lidar::gst::Snapshot(*GST_LIDAR_ENC(base)->state);
   coder.keeper.set_key_interval(settings.key_interval);
-  const bool remembers = settings.reference == Reference::kAcknowledged &&
+  const bool remembers = settings.reference == lidar::gst::Reference::kAcknowledged &&
                          coder.keeper.Begin(Now(), {raw.scan_id, raw.slice_index, raw.slice_count});
   coder.encoder->LinkBy(remembers ? &coder.keeper : nullptr);
 }
@@ -145,7 +100,7 @@ static void ChooseEffort(GstLidarEncoder* base, guint columns) {
   coder.sweep = SweepOf(coder, columns);
   coder.spent = {};
   const gint wanted = lidar::gst::Snapshot(*GST_LIDAR_ENC(base)->state).effort;
-  coder.automatic = wanted == kAuto;
+  coder.automatic = wanted == Settings::kAutoEffort;
   coder.encoder->set_effort(coder.automatic ? coder.effort.effort() : static_cast<guint>(wanted));
 }
 
@@ -257,7 +212,7 @@ static GstStateChangeReturn gst_lidar_enc_change_state(GstElement* element,
 static void gst_lidar_enc_init(GstLidarEnc* self) { self->state = new State; }
 
 static void gst_lidar_enc_class_init(GstLidarEncClass* klass) {
-  lidar::gst::ServeState<GstLidarEnc, gst_lidar_enc_parent_class, kProperties>(klass);
+  lidar::gst::ServeState<GstLidarEnc, gst_lidar_enc_parent_class, lidar::gst::LidarEncRows>(klass);
   GST_ELEMENT_CLASS(klass)->change_state = gst_lidar_enc_change_state;
   lidar::gst::Describe(
       klass,
