@@ -18,9 +18,9 @@
 
 #include "ext/ros2/message_reader.h"
 #include "ext/ros2/ros_settings.h"
+#include "gst/common/coordinate_frames.h"
 #include "gst/common/element_class.h"
 #include "gst/common/enum_type.h"
-#include "gst/common/frames.h"
 #include "gst/common/gstlidar.h"
 #include "gst/common/refs.h"
 #include "gst/common/stats.h"

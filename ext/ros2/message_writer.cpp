@@ -2,7 +2,7 @@
 #include "ext/ros2/message_writer.h"
 
 #include "gst/common/buffer_map.h"
-#include "gst/common/frames.h"
+#include "gst/common/coordinate_frames.h"
 #include "gst/common/gstlidar.h"
 #include "gst/common/pose_covariance.h"
 #include "src/cdr/motion_samples.h"

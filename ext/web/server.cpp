@@ -6,7 +6,7 @@
 #include <future>
 #include <system_error>
 
-#include "ext/web/desk.h"
+#include "ext/web/client_service.h"
 
 namespace lidar::web {
 

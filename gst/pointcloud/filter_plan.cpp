@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "gst/common/buffer_map.h"
-#include "gst/common/frames.h"
+#include "gst/common/coordinate_frames.h"
 #include "gst/common/gstlidar.h"
 
 namespace lidar::gst {

@@ -3,7 +3,7 @@
 
 #include <utility>
 
-#include "gst/common/frames.h"
+#include "gst/common/coordinate_frames.h"
 
 namespace lidar::gst {
 

@@ -15,9 +15,9 @@
 #include <mutex>
 #include <string_view>
 
+#include "gst/common/coordinate_frames.h"
 #include "gst/common/element_class.h"
 #include "gst/common/enum_type.h"
-#include "gst/common/frames.h"
 #include "gst/common/gstlidar.h"
 #include "gst/common/held_events.h"
 #include "gst/common/latency.h"

@@ -4,7 +4,7 @@
 #include <algorithm>
 
 #include "gst/common/buffer_map.h"
-#include "gst/common/frames.h"
+#include "gst/common/coordinate_frames.h"
 #include "gst/common/gstlidar.h"
 #include "gst/common/refs.h"
 #include "src/cdr/messages.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "ext/web/desk.h"
+#include "ext/web/client_service.h"
 
 #include <algorithm>
 #include <string_view>
