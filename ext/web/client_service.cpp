@@ -59,7 +59,7 @@ std::string NewSessionId() {
 
 }  // namespace
 
-Desk::Desk(const ServerConfig& config, ServerCounters* counters)
+ClientService::ClientService(const ServerConfig& config, ServerCounters* counters)
     : config_(config),
       counters_(*counters),
       session_id_(NewSessionId()),
@@ -71,28 +71,28 @@ Desk::Desk(const ServerConfig& config, ServerCounters* counters)
       foxglove::Channel{kStatisticsId, kStatisticsTopic, foxglove::Schema::kStatistics});
   topics_[kStatisticsId] = statistics_;
   tick_ = Every(kTick_ms, [](gpointer self) -> gboolean {
-    static_cast<Desk*>(self)->Tick();
+    static_cast<ClientService*>(self)->Tick();
     return G_SOURCE_CONTINUE;
   });
   statistics_timer_ = Every(kStatistics_ms, [](gpointer self) -> gboolean {
-    static_cast<Desk*>(self)->SendStatistics();
+    static_cast<ClientService*>(self)->SendStatistics();
     return G_SOURCE_CONTINUE;
   });
 }
 
-Desk::~Desk() {
+ClientService::~ClientService() {
   for (auto& client : clients_) client->Close(CloseCode::kGoingAway);
   clients_.clear();
   soup_server_remove_handler(soup_.get(), nullptr);
   soup_server_disconnect(soup_.get());
 }
 
-std::uint16_t Desk::Listen(std::string* error) {
+std::uint16_t ClientService::Listen(std::string* error) {
   const ObjectPtr<GInetAddress> address(g_inet_address_new_from_string(config_.address.c_str()));
   return door_.Listen(address.get(), config_.port, error);
 }
 
-SourcePtr Desk::Every(guint interval_ms, GSourceFunc function) {
+SourcePtr ClientService::Every(guint interval_ms, GSourceFunc function) {
   SourcePtr source(g_timeout_source_new(interval_ms));
   g_source_set_callback(source.get(), function, this, nullptr);
   g_source_attach(source.get(), g_main_context_get_thread_default());
@@ -102,22 +102,22 @@ SourcePtr Desk::Every(guint interval_ms, GSourceFunc function) {
 // --- HTTP ---
 
 /// Nobody sends us anything that has a body.
-void Desk::OnHeaders(SoupServer*, SoupServerMessage* request, const char*, GHashTable*,
-                     gpointer self) {
+void ClientService::OnHeaders(SoupServer*, SoupServerMessage* request, const char*, GHashTable*,
+                              gpointer self) {
   soup_message_body_set_accumulate(soup_server_message_get_request_body(request), FALSE);
   // Only trouble-makers ask for parts of files.
   soup_message_headers_remove(soup_server_message_get_request_headers(request), "Range");
   const char* method = soup_server_message_get_method(request);
   if (method == SOUP_METHOD_GET || method == SOUP_METHOD_HEAD) return;
-  ++static_cast<Desk*>(self)->counters_.malformed;
+  ++static_cast<ClientService*>(self)->counters_.malformed;
   Answer(request, SOUP_STATUS_METHOD_NOT_ALLOWED, "Only GET.\n");
   soup_message_headers_replace(soup_server_message_get_response_headers(request), "Connection",
                                "close");
 }
 
-void Desk::OnRequest(SoupServer*, SoupServerMessage* request, const char* path, GHashTable* query,
-                     gpointer data) {
-  auto* self = static_cast<Desk*>(data);
+void ClientService::OnRequest(SoupServer*, SoupServerMessage* request, const char* path,
+                              GHashTable* query, gpointer data) {
+  auto* self = static_cast<ClientService*>(data);
   if (WantsWebSocket(request)) {
     if (self->Admit(request, query)) self->Upgrade(request);
   } else if (strcmp(path, "/session") == 0) {
@@ -128,7 +128,7 @@ void Desk::OnRequest(SoupServer*, SoupServerMessage* request, const char* path, 
   }
 }
 
-bool Desk::Admit(SoupServerMessage* request, GHashTable* query) {
+bool ClientService::Admit(SoupServerMessage* request, GHashTable* query) {
   if (!config_.token.empty() && !SameSecret(TokenOf(request, query), config_.token)) {
     ++counters_.clients_refused;
     Answer(request, SOUP_STATUS_UNAUTHORIZED, "The token is missing or wrong.\n");
@@ -140,7 +140,7 @@ bool Desk::Admit(SoupServerMessage* request, GHashTable* query) {
   return false;
 }
 
-void Desk::Upgrade(SoupServerMessage* request) {
+void ClientService::Upgrade(SoupServerMessage* request) {
   auto* headers = soup_server_message_get_request_headers(request);
   const char* offered = soup_message_headers_get_list(headers, "Sec-WebSocket-Protocol");
   if (offered == nullptr || *offered == 0) {
@@ -159,13 +159,13 @@ void Desk::Upgrade(SoupServerMessage* request) {
   g_signal_connect(request, "wrote-informational", G_CALLBACK(OnUpgraded), this);
 }
 
-void Desk::OnUpgraded(SoupServerMessage* request, gpointer self) {
-  static_cast<Desk*>(self)->AddClient(request);
+void ClientService::OnUpgraded(SoupServerMessage* request, gpointer self) {
+  static_cast<ClientService*>(self)->AddClient(request);
 }
 
 // --- clients ---
 
-void Desk::AddClient(SoupServerMessage* request) {
+void ClientService::AddClient(SoupServerMessage* request) {
   const auto keep = Ref(request);
   door_.Promote(request);
   ObjectPtr<GIOStream> stream(soup_server_message_steal_connection(request));
@@ -185,7 +185,7 @@ void Desk::AddClient(SoupServerMessage* request) {
 }
 
 /// It may be one of its own calls that ended the client, so it is deleted after them.
-void Desk::ForgetClient(Client* client) {
+void ClientService::ForgetClient(Client* client) {
   for (const auto& [channel, subscription] : client->subscriptions) {
     const auto topic = topics_.find(channel);
     if (topic != topics_.end()) topic->second->AddSubscribers(-1);
@@ -197,14 +197,14 @@ void Desk::ForgetClient(Client* client) {
   g_source_set_callback(
       reap_.get(),
       [](gpointer self) -> gboolean {
-        static_cast<Desk*>(self)->Reap();
+        static_cast<ClientService*>(self)->Reap();
         return G_SOURCE_REMOVE;
       },
       this, nullptr);
   g_source_attach(reap_.get(), g_main_context_get_thread_default());
 }
 
-void Desk::Reap() {
+void ClientService::Reap() {
   reap_.reset();
   CountSent();
   clients_.remove_if([this](const auto& client) {
@@ -215,7 +215,7 @@ void Desk::Reap() {
   });
 }
 
-void Desk::OnText(Client* client, const std::vector<std::uint8_t>& text) {
+void ClientService::OnText(Client* client, const std::vector<std::uint8_t>& text) {
   const Request request =
       foxglove::ParseRequest({reinterpret_cast<const char*>(text.data()), text.size()});
   switch (request.kind) {
@@ -234,7 +234,7 @@ void Desk::OnText(Client* client, const std::vector<std::uint8_t>& text) {
 }
 
 /// The newest subscription of a channel counts.
-void Desk::Subscribe(Client* client, const foxglove::Subscription& subscription) {
+void ClientService::Subscribe(Client* client, const foxglove::Subscription& subscription) {
   const auto topic = topics_.find(subscription.channel_id);
   if (topic == topics_.end() || client->closed()) return;  // it has just gone
   const bool added =
@@ -242,7 +242,7 @@ void Desk::Subscribe(Client* client, const foxglove::Subscription& subscription)
   if (added) topic->second->AddSubscribers(1);
 }
 
-void Desk::Unsubscribe(Client* client, std::uint32_t subscription_id) {
+void ClientService::Unsubscribe(Client* client, std::uint32_t subscription_id) {
   auto& all = client->subscriptions;
   const auto found = std::find_if(all.begin(), all.end(), [subscription_id](const auto& s) {
     return s.second == subscription_id;
@@ -256,7 +256,7 @@ void Desk::Unsubscribe(Client* client, std::uint32_t subscription_id) {
 
 // --- topics ---
 
-void Desk::SetTopics(const std::vector<SharedTopic>& topics) {
+void ClientService::SetTopics(const std::vector<SharedTopic>& topics) {
   std::map<std::uint32_t, SharedTopic> wanted{{kStatisticsId, statistics_}};
   std::vector<foxglove::Channel> come;
   std::vector<std::uint32_t> gone;
@@ -278,7 +278,7 @@ void Desk::SetTopics(const std::vector<SharedTopic>& topics) {
   }
 }
 
-void Desk::Deliver(std::uint32_t channel, const SharedMessage& message) {
+void ClientService::Deliver(std::uint32_t channel, const SharedMessage& message) {
   const auto topic = topics_.find(channel);
   if (topic == topics_.end()) return;  // it has just gone
   for (const auto& client : clients_) {
@@ -290,7 +290,7 @@ void Desk::Deliver(std::uint32_t channel, const SharedMessage& message) {
   CountSent();
 }
 
-void Desk::CountSent() {
+void ClientService::CountSent() {
   Client::Counters sum = gone_;
   for (const auto& client : clients_) {
     sum.messages += client->counters().messages;
@@ -300,7 +300,7 @@ void Desk::CountSent() {
   counters_.bytes_sent = sum.bytes;
 }
 
-void Desk::SendStatistics() {
+void ClientService::SendStatistics() {
   if (!statistics_->wanted() || !config_.statistics) return;
   const std::string text = config_.statistics();
   Message message;
@@ -309,7 +309,7 @@ void Desk::SendStatistics() {
   Deliver(kStatisticsId, std::make_shared<const Message>(std::move(message)));
 }
 
-void Desk::Tick() {
+void ClientService::Tick() {
   const gint64 now_us = g_get_monotonic_time();
   door_.Tick(now_us);
   counters_.connections_evicted = door_.evicted();

@@ -19,12 +19,12 @@
 namespace lidar::web {
 
 /// All calls come from one thread, whose default context runs it.
-class Desk {
+class ClientService {
  public:
-  Desk(const ServerConfig& config, ServerCounters* counters);
-  ~Desk();
-  Desk(const Desk&) = delete;
-  Desk& operator=(const Desk&) = delete;
+  ClientService(const ServerConfig& config, ServerCounters* counters);
+  ~ClientService();
+  ClientService(const ClientService&) = delete;
+  ClientService& operator=(const ClientService&) = delete;
 
   /// The port, or 0 and why not.
   std::uint16_t Listen(std::string* error);

@@ -51,13 +51,13 @@ Server::~Server() {
 void Server::Run(std::function<void(std::string)> listens) {
   pthread_setname_np(pthread_self(), "foxglovesink");
   g_main_context_push_thread_default(context_.get());
-  desk_ = std::make_unique<Desk>(config_, &counters_);
+  service_ = std::make_unique<ClientService>(config_, &counters_);
   std::string error;
-  port_ = desk_->Listen(&error);
+  port_ = service_->Listen(&error);
   const bool good = port_ != 0;
   listens(error);  // the other thread may read port_ from here on
   if (good) g_main_loop_run(loop_.get());
-  desk_.reset();
+  service_.reset();
   // What was cancelled comes to its end.
   while (g_main_context_iteration(context_.get(), FALSE)) continue;
   g_main_context_pop_thread_default(context_.get());
@@ -117,9 +117,9 @@ void Server::Collect() {
     for (const auto& [name, entry] : entries_) topics.push_back(entry.topic);
     while (auto item = inbox_.Pop()) messages.push_back(std::move(*item));
   }
-  if (!desk_) return;  // it has closed
-  desk_->SetTopics(topics);
-  for (const Outbox::Item& item : messages) desk_->Deliver(item.channel_id, item.message);
+  if (!service_) return;  // it has closed
+  service_->SetTopics(topics);
+  for (const Outbox::Item& item : messages) service_->Deliver(item.channel_id, item.message);
 }
 
 }  // namespace lidar::web

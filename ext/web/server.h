@@ -15,7 +15,7 @@
 
 namespace lidar::web {
 
-class Desk;
+class ClientService;
 
 /// The public functions may be called from any thread, and wait for no client.
 class Server {
@@ -55,7 +55,7 @@ class Server {
   ContextPtr context_;
   LoopPtr loop_;
   std::thread thread_;
-  std::unique_ptr<Desk> desk_;  // of the thread
+  std::unique_ptr<ClientService> service_;  // of the thread
 
   std::mutex mutex_;  // guards what follows; never held while anything is called
   std::map<std::string, Entry> entries_;  // by topic

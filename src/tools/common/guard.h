@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Errors of programs alike: a message, and 1 as the exit code.
+// Reports what a program throws: as a message, and by the exit code 1.
 #pragma once
 #include <cstdio>
 #include <exception>
