@@ -10,9 +10,8 @@ namespace lidar::dds {
 /// Whatever has entities in it holds it.
 class Domain {
  public:
-  /// Null where Cyclone refuses its configuration, which may be the user's: ours is only what
-  /// large messages need, and the environment variable CYCLONEDDS_URI comes after it. `why` then
-  /// says so.
+  /// Null where Cyclone refuses its configuration; `why` then says so. It may be the user's: ours
+  /// has only what large messages need, and the environment variable CYCLONEDDS_URI comes after it.
   static std::unique_ptr<Domain> Join(std::uint32_t id, std::string* why);
   ~Domain();
   Domain(const Domain&) = delete;

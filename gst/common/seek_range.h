@@ -48,8 +48,8 @@ inline bool ApplySeek(GstEvent* event, GstSegment* segment) {
                              range.stop_type, range.stop, nullptr) != FALSE;
 }
 
-/// For a seek that names no start, and that nothing flushes: goes on from where what is played
-/// ended, which went on meanwhile.
+/// Serves a seek that names no start and does not flush. Playing went on meanwhile, so the segment
+/// goes on from where that ended.
 inline void GoOnFrom(GstClockTime end, GstSegment* segment) {
   segment->position = std::min(std::max(end, segment->position), segment->stop);
   segment->offset = segment->position - segment->start;

@@ -34,8 +34,8 @@ class CloudTimeline {
     guint64 next = 0;   // the one that the next bytes are
     guint64 shown = 0;  // those before have gone, though their bytes may come again
   };
-  /// The segment in time for one in bytes, which goes on where the last cloud ended; `place`
-  /// becomes where it begins, as far as that is known.
+  /// Turns a segment in bytes into one in time, which goes on where the last cloud ended. Sets
+  /// `place` to where it begins, as far as that is known.
   EventPtr ToTime(GstEvent* segment, Place* place);
   /// SEGMENT_DONE as those behind the parser want it; takes the event.
   EventPtr EndInTime(GstEvent* done) const;

@@ -22,9 +22,9 @@ class FramePlacer {
 
   /// Clouds go to the frame `target`, or stay in theirs where it is empty.
   void SetTarget(std::string target, std::chrono::nanoseconds patience);
-  /// Finds what takes a cloud of `frame` to the target; none where there is nothing, which is
-  /// counted, and reported for `element` once until there is something. FLUSHING where a flush or
-  /// the end of the stream cut the wait short.
+  /// Finds the transform that takes a cloud of `frame` to the target. None where there is no such
+  /// transform: this is counted, and reported for `element` once until there is one. FLUSHING where
+  /// a flush or the end of the stream cut the wait short.
   GstFlowReturn Place(GstElement* element, GstBuffer* cloud, const std::string& frame,
                       std::optional<Transform>* transform);
   void Clear();

@@ -161,8 +161,8 @@ static GstBuffer* ToBuffer(ReceivedSlice* slice) {
   return buffer;
 }
 
-/// Sets the caps of `config`. False, and a warning the first time, where the next element does not
-/// take them: a stream of another coder must not end the pipeline, as anyone may send one.
+/// Sets the caps of `config`. False where the next element does not take them, with a warning the
+/// first time. That is no error: anyone may send a stream of another coder.
 static bool SetCapsOf(GstRTPBaseDepayload* base, const lidar::rtp::StreamConfig& config) {
   State& state = *GST_LIDAR_RTP_DEPAY(base)->state;
   const CapsPtr caps(lidar::gst::StreamConfigToCaps(config));

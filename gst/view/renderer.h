@@ -32,8 +32,8 @@ struct ViewSettings {
 class Renderer {
  public:
   /// With a map, which has to have a pose, scans are drawn where they were taken, over what was
-  /// seen before: from above with all of the way in the picture, in perspective from behind the
-  /// sensor, level. It must outlive the renderer.
+  /// seen before. Seen from above, all of the way is in the picture. In perspective the view is
+  /// level, from behind the sensor. The map must outlive the renderer.
   Renderer(const ViewSettings& settings, int width, int height, TrailMap* map);
 
   void Begin();

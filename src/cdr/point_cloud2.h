@@ -44,9 +44,9 @@ struct PointCloud2 {
 std::optional<PointCloud2> ReadPointCloud2(ByteView message, std::string* why = nullptr);
 std::vector<std::uint8_t> WritePointCloud2(const PointCloud2& cloud);
 
-/// Bytes from one row of its data to the next; none where the data are not as long as width, height
-/// and steps say. Many drivers leave row_step at 0 or at the size of all: packed rows are known by
-/// their size alone.
+/// Bytes from one row of its data to the next; none where the length of the data contradicts width,
+/// height and steps. Many drivers leave row_step at 0 or at the size of all. So packed rows are
+/// known by their size alone.
 std::optional<std::size_t> RowStride(const PointCloud2& cloud);
 
 /// A message in pieces, for writers that gather: the points stand between `head` and `tail`.

@@ -38,8 +38,8 @@ class PointFields {
   bool Has(std::string_view name, FieldType type) const;
   /// True where x, y and z are F32 and stand side by side, as all our elements want them.
   bool HasPackedXyz() const;
-  /// True where the fields stand one behind the other from 0 on, in any order, as decoders give
-  /// them: none overlaps another, and no room is left.
+  /// True where the fields, in any order, fill the point from 0 on without overlap or room between
+  /// them. Decoders give them so.
   bool ArePacked() const;
   /// Bytes up to the end of the last field.
   std::uint32_t MinimumStep() const;

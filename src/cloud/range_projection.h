@@ -32,8 +32,8 @@ class RangeProjection {
   /// ranges [mm], below 2^31, `ranges[beam * window.count + i]` of every beam.
   void Project(const std::uint32_t* ranges, ColumnWindow window, std::uint8_t* xyz,
                std::size_t point_step) const;
-  /// The same for one beam. `behind`, where it is not null, holds the four bytes that stand behind
-  /// z in each point: so points of 16 bytes are written whole.
+  /// The same for one beam. `behind`, where it is not null, has the four bytes to write behind z in
+  /// each point, so that points of 16 bytes are written whole.
   void ProjectBeam(std::uint32_t beam, const std::uint32_t* ranges, ColumnWindow window,
                    const std::uint32_t* behind, std::uint8_t* xyz, std::size_t point_step) const;
 

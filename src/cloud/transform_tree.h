@@ -28,10 +28,10 @@ class TransformTree {
   static constexpr Duration kHistory = std::chrono::seconds(10);
   static constexpr std::size_t kRestart = 10;  // poses
 
-  /// Where `child` is in `parent` at a time, or for good. False where this is no pose, frames are
-  /// not named or the same, or there are too many; and where the pose is older than kHistory, as
-  /// tf2 has it. kRestart such poses of a frame in a row, whatever their times and parents, mean
-  /// that the clock went back: what one history can hold of them replaces what was known.
+  /// Says where `child` is in `parent`, at a time or for good. False where this is no pose, where
+  /// frames are not named or the same, and where there are too many of them. A pose older than
+  /// kHistory is refused, too, as tf2 does. kRestart such old poses of a frame in a row mean that
+  /// the clock went back: as many as one history can hold then replace what was known.
   bool Set(std::string parent, std::string child, Time at, const FramePose& pose, bool for_good);
 
   struct Answer {

@@ -52,8 +52,8 @@ void AdaptiveCoder::Reset(const BlockShape& shape) {
   levels_.model.Reset(InitialModelsOfLevels());
 }
 
-/// Calls code_row(beam, row, first), with the index of the row's first return, for each row that
-/// has any; false where one of the calls gives that.
+/// Calls code_row(beam, row, first) for each row that has returns; `first` is the index of its
+/// first one. False as soon as a call returns false.
 template <class CodeRow>
 bool AdaptiveCoder::ForEachRow(const BlockShape& shape, CodeRow&& code_row) {
   Reset(shape);

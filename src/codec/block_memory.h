@@ -59,8 +59,8 @@ struct BlockLink {
                                       // a coder that nothing can refer to
 };
 
-/// The memory after `image`, whose ranges are those that a decoder has, by that `before` it, which
-/// may be null. The model is a new one, or that of `before`.
+/// The memory after `image`, whose ranges are those that a decoder has. `before` is the memory
+/// before it, and may be null. The model is a new one, or that of `before`.
 std::shared_ptr<BlockMemory> Remember(const RangeImage& image, const RangeGrid& grid,
                                       const BlockMemory* before);
 

@@ -55,9 +55,9 @@ class SliceEncoder {
   /// Names the coder for statistics and predictors: "range-adaptive", "range-mixing2",
   /// "range-temporal2".
   std::string Mode() const;
-  /// Lets what is loaded refer to slices that `keeper`, which has begun this one and outlives the
-  /// coding of it, knows the receiver to have, if it saves bits. Only with an effort above 0. Null:
-  /// no slice refers to any other.
+  /// Lets the loaded slice refer to those that the receiver has, if it saves bits and the effort is
+  /// above 0. `keeper` knows them, has begun this slice, and outlives its coding. Null: no slice
+  /// refers to any other.
   void LinkBy(const ReferenceKeeper* keeper);
   /// How hard the own coder tries: 0 is RangeCoder::kAdaptive, 1 to EffortControl::kHighest are
   /// kMixing, each slower and smaller than the one below. Without effect for other coders.

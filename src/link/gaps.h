@@ -25,9 +25,9 @@ struct RecoveryConfig {
   double share = 0.8;
 };
 
-/// For each gap, the time from its end until the sender first puts `share` of what the link can
-/// carry and the source can use on the link, for a tenth of a second [s]; at most 5 s, or until
-/// the next gap. Gaps that come closer than 0.2 s are left out.
+/// How long after each gap the sender was back [s]: for a tenth of a second it then puts `share` of
+/// what the link can carry and the source can use on the link. At most 5 s, or until the next gap.
+/// Gaps that come closer than 0.2 s are left out.
 std::vector<double> RecoveryAfterGaps(const Capacity& capacity,
                                       const std::vector<SentPacket>& packets,
                                       const RecoveryConfig& config);

@@ -83,8 +83,9 @@ class Odometry {
   void StartMap(const Surface& fine);
   Pose GuessFirstMotion(const Points& points) const;
   void StraightenFirstScan(Duration duration, const TimedPoints& second, Duration gap);
-  /// What comes of a scan: the first of a map, one that is aligned, one that fits and one that does
-  /// not. They move the pose; OnScan() does the rest.
+  /// Begin() takes the first scan of a map, and Match() aligns the others to it. Then Follow()
+  /// takes a scan that fits, and Lose() one that does not. They move the pose; OnScan() does the
+  /// rest.
   Estimate Begin(const TimedPoints& scan, const Surface& fine);
   Estimate Match(Time middle, const TimedPoints& scan, const Surface& fine);
   void Follow(const Pose& found, Duration gap, const Surface& fine);

@@ -25,8 +25,8 @@ std::vector<Packet> Packetize(Unit unit, ByteView bytes, std::size_t max_payload
 /// Collects small slices into one aggregation packet.
 class Aggregator {
  public:
-  /// False, and nothing done, where the unit does not fit beside those already in, or is further
-  /// than 16 bits of `rtp_ticks` (running time in 90 kHz) from the first.
+  /// False, and nothing is done, where the unit does not fit beside those already in. Nor may it be
+  /// further from the first than 16 bits of `rtp_ticks`, the running time in 90 kHz.
   bool Add(Unit unit, ByteView bytes, std::size_t max_payload, std::uint64_t rtp_ticks);
   /// The packet so far, whose RTP timestamp is the first unit's; a single unit packet if only one
   /// is in. None when empty.

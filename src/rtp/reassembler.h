@@ -63,8 +63,8 @@ class Reassembler {
   bool has_whole_slice() const { return has_whole_slice_; }
   /// Has a slice begun here?
   bool started() const { return ledger_.started(); }
-  /// Goes on where `previous`, the same stream before an outage, ended: books what the outage took,
-  /// takes over its configs and appends the slices that had waited for them.
+  /// Goes on where `previous` ended, which is the same stream before an outage. Books what the
+  /// outage took, takes over the configs, and appends the slices that had waited for them.
   void GoOn(const Reassembler& previous, std::vector<ReceivedSlice>* out);
   /// The sender of `previous` started anew, with the same SSRC. Takes over only configs that came
   /// after the last slice there: older ones may have the id of another one here.

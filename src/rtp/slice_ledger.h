@@ -64,8 +64,8 @@ class SliceLedger {
   void Settle(SlicePosition p, SliceOutcome outcome);
   /// The source never sent this slice. The word of it may come after the slice was booked as lost.
   void Skip(SlicePosition p);
-  /// A slice of this scan says which one the source had it as: between two scans that were sent
-  /// the source's numbers have gaps where scans were left out.
+  /// A slice of `scan` says the source's number of it, `id`. Between two scans that were sent,
+  /// these numbers have gaps where scans were left out.
   void BookScanId(std::int64_t scan, std::uint32_t id);
   /// The slice before `p`; none where that is before the scans that the ledger still has. Scans
   /// before the first one count as having as many slices.

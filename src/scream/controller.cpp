@@ -286,8 +286,8 @@ DataRate Controller::WindowTarget(Time now) const {
   return now < path_.half_rate_until() ? target * kDriftRateScale : target;
 }
 
-/// What encoders are asked for: less than the window allows while what they make would wait, but
-/// what they need as long as the path lives.
+/// What encoders are asked for. It is less than the window allows while their output would wait,
+/// but never less than they need, as long as the path lives.
 DataRate Controller::AskedTarget(Time now, DataRate allowed) const {
   DataRate asked = allowed;
   if (p_.extensions.gap_recovery && started_ && liveness_.Stalled(now))

@@ -94,9 +94,9 @@ class Controller {
   // Decisions
   /// Which stream may send next and when; nothing while queues are empty or the window is closed.
   std::optional<SendDecision> NextSend(Time now) const;
-  /// Packets at the head of the queue that belong to whole access units, not yet begun to be
-  /// sent, older than `max_queue_delay` (those behind them too, if they are older as well); or the
-  /// rest of one that has begun, where it is twice as old.
+  /// How many packets at the head of the queue are too late to be of use. An access unit that has
+  /// not begun to leave is late as a whole, beyond `max_queue_delay`; late ones behind it count as
+  /// well. The rest of one that has begun is late at twice that age.
   std::size_t LatePackets(Time now, StreamId stream) const;
   /// The next time at which OnTimer() has something to do.
   Time NextTimer() const;

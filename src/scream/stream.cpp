@@ -108,8 +108,8 @@ std::size_t Stream::LatePackets(Time now, DataRate rate) const {
   return static_cast<std::size_t>(unit - queue_.begin());
 }
 
-/// A frame that has begun to leave goes out to its end, for half a frame helps nobody; but the rest
-/// of one that waited kBegunStay times as long as any may is of no use either.
+/// A frame that has begun to leave goes out to its end: half a frame helps nobody. Its rest is of
+/// no use either, once it has waited kBegunStay times as long as a frame may.
 std::size_t Stream::StuckPackets(Time now) const {
   const Duration age = now - queue_.front().queued;
   if (age < kBegunStay * p_.max_queue_delay) return 0;

@@ -24,8 +24,8 @@ class Stream {
   void OnDropped(Time now, std::size_t packets);
   /// Packets at the head that nobody can use any more. `rate`: at which the queue leaves.
   /// An access unit, or a group of them as a whole, is late where its last packet would leave
-  /// max_queue_delay after the middle of its capture; the rest of one that has begun to leave,
-  /// after kBegunStay times that.
+  /// max_queue_delay after the middle of its capture. The rest of one that has begun to leave may
+  /// take kBegunStay times as long.
   std::size_t LatePackets(Time now, DataRate rate) const;
 
   bool empty() const { return queue_.empty(); }

@@ -25,8 +25,8 @@ struct TxItem {
   Time queued{};
 };
 
-/// The share of the wire's bytes that are payload of the media itself: the rest is RTP, UDP and IP
-/// headers, retransmission and FEC, which the encoder knows nothing of.
+/// Measures which share of the bytes on the wire is payload of the media itself. The encoder knows
+/// nothing of the rest: RTP, UDP and IP headers, retransmission and FEC.
 class OverheadMeter {
  public:
   void Add(gsize payload, DataSize wire) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Logistic mixing: codes one bit by counters and other opinions, whose logits become one by weights
-// that learn who is right; then all of them learn.
+// Logistic mixing: codes one bit by the opinions of counters and others. Weights that learn which
+// of them are right make one logit of all. Then the opinions learn.
 #pragma once
 #include <algorithm>
 #include <array>

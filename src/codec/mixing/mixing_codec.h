@@ -18,9 +18,9 @@ struct MixingSettings {
   IntensityScale intensity;  // 0 bits: geometry only
   unsigned effort = 2;       // 1 to 3
   mixing::Memory memory{};   // what its pixels have seen; none: the image stands alone
-  /// Above 0, at kSearchingEffort: returns take the bins that cost least of those that come back
-  /// within this error, which may be above the grid's own. With a memory the ranges are those of
-  /// bins that were chosen already.
+  /// Above 0, at kSearchingEffort: several bins of a return may come back within this error, and it
+  /// takes the one that costs least. The error may be above the grid's own. With a memory the
+  /// ranges are those of bins that were chosen already.
   std::uint32_t error_mm = 0;
 };
 

@@ -47,8 +47,8 @@ bool IsCcfb(ByteView rtcp_packet);
 std::vector<ByteView> SplitRtcp(ByteView datagram);
 
 /// Parses feedback of a peer and learns which reading of num_reports it uses. A packet whose length
-/// fits one reading only decides; where both fit (odd counts), a non-zero padding half-word is a
-/// block, and else the reading learnt last holds (kCount at first).
+/// fits one reading only decides. Where both fit (odd counts), a padding half-word that is not zero
+/// is a block; otherwise the reading learnt last holds, kCount at first.
 class CcfbParser {
  public:
   /// One RTCP packet, whole. Nothing for other packet types, versions, lengths that do not fit.

@@ -8,9 +8,9 @@
 
 namespace lidar::scream {
 
-/// While the bottleneck's queue does not run empty, our packets arrive one behind the other,
-/// however far apart they left, but for what others sent in between. So the spacing of arrivals
-/// grows with that of departures by the others' share of the link. Arrival times of reports are
+/// While the bottleneck's queue does not run empty, only what others sent in between comes between
+/// the arrivals of our packets, however far apart they left. So the spacing of arrivals grows with
+/// that of departures by the others' share of the link. Arrival times of reports are
 /// coarse, so it takes many packets.
 class CrossTraffic {
  public:

@@ -13,9 +13,9 @@ class L4sAlpha {
   explicit L4sAlpha(const Parameters& p) : p_(p) {}
 
   /// `round` is a round trip, or longer where frames come more seldom. With the extension
-  /// even_alpha the fraction is one of a whole round and the average even: from few packets the
-  /// fraction scatters, and fast attack with slow decay makes of that a bias against the smaller of
-  /// two flows.
+  /// even_alpha the fraction is that of a whole round, and rises as fast as it falls. A fraction of
+  /// few packets scatters: fast attack with slow decay would turn that into a bias against the
+  /// smaller of two flows.
   void Update(Time now, int data_units_acked, int data_units_acked_ce, Duration s_rtt,
               Duration round) {
     delivered_ += data_units_acked;

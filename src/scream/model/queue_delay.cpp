@@ -42,8 +42,8 @@ void QueueDelay::ForgetBase() {
   min_this_rtt_ = Duration::max();
 }
 
-/// A queue on the way there leaves the way back as it is, and the other way round; a clock that is
-/// set makes one of them shorter than it can be.
+/// A queue on one way leaves the other way as it is. A clock that is set makes one of them shorter
+/// than it can be.
 bool QueueDelay::Jumped(Time now, Duration owd, Duration way_back) {
   if (!p_.extensions.clock_care) return false;
   if (now - shortest_back_since_ >= kBackWindow) {

@@ -9,8 +9,8 @@
 namespace lidar::scream {
 
 /// The draft lifts the limit by a thousandth each round trip. With the extension brief_policer it
-/// is believed for a second at first, as one burst of loss is no policer; loss that comes back soon
-/// after makes the time longer.
+/// is believed for a second at first, as one burst of loss is no policer. Where loss comes back
+/// soon after, it is believed for longer.
 class Policer {
  public:
   explicit Policer(const Parameters& parameters) : p_(parameters) {}

@@ -13,8 +13,9 @@ class SendWindow {
   void OnSent(Time now) { last_sent_ = now; }
   /// Before the first packet.
   bool unused() const { return last_sent_ == Time{}; }
-  /// Bytes in flight at most. With bounded_flight few more than the window where marks work, no
-  /// more while packets keep coming back out of a queue, and as many more as are unreported.
+  /// Bytes in flight at most. With bounded_flight these are few more than the window where marks
+  /// work, and none more while packets keep coming back out of a queue. What is unreported comes on
+  /// top.
   DataSize Max(Time now, DataSize ref_wnd, const PathModel& path, Duration qdelay_target) const;
   /// When a packet of `size` may leave. A closed window lets one go at RATE_PACE_MIN, so that it
   /// does not wait for ever for feedback that was lost.

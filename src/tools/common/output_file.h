@@ -35,8 +35,8 @@ class OutputFile {
 /// Writes all of the file, or leaves none.
 void WriteFile(const std::string& path, const std::string& text);
 
-/// Throws where something that was printed could not be written; errors of a full disk stay with
-/// the stream, so asking once, at the end, is enough.
+/// Throws where something that was printed could not be written. Errors of a full disk stay with
+/// the stream, so it is enough to ask once, at the end.
 void FinishStandardOutput();
 
 /// Takes a file away that is not whole, if it is a regular one.

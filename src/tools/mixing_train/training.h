@@ -22,8 +22,8 @@ struct MixingCase {
 /// States trained on all scans of `sets`, rounded as the table has them.
 std::unique_ptr<codec::mixing::StartStates> TrainMixing(const std::vector<const ScanSet*>& sets);
 
-/// Bits a return, with everything that a block has, of real payloads that were decoded again;
-/// throws std::runtime_error where one did not come back as it was.
+/// Bits a return of real payloads, all that a block has included. Each is decoded again: throws
+/// std::runtime_error where one does not come back as it was.
 double BitsPerReturn(const ScanSet& set, const MixingCase& setting,
                      const codec::mixing::StartStates& states);
 
