@@ -9,7 +9,6 @@
 namespace {
 
 using lidar::rtp::RtpPacket;
-using lidar::rtp::Unit;
 
 constexpr std::uint8_t kOtherSsrc = 1;
 constexpr std::uint8_t kFixCrc = 2;

@@ -16,7 +16,6 @@ namespace {
 
 using lidar::gst::ElementPtr;
 using lidar::gst::MessagePtr;
-using lidar::gst::PadPtr;
 using lidar::gst::StringPtr;
 
 enum ExitCode { kGood = 0, kFailed = 1, kUsage = 2, kRefused = 3 };

@@ -11,7 +11,6 @@
 namespace lidar::rtp {
 namespace {
 
-using std::chrono::milliseconds;
 using test::DeliverAll;
 using test::kReorder;
 using test::Sender;

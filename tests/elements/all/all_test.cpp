@@ -13,8 +13,6 @@
 namespace lidar::gst {
 namespace {
 
-using PluginPtr = std::unique_ptr<GstPlugin, Unref>;
-
 /// Names of the elements that come from this project.
 std::vector<std::string> OurElements() {
   std::set<std::string> names;

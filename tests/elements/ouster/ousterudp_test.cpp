@@ -7,7 +7,6 @@
 namespace lidar::test {
 namespace {
 
-using gst::BufferMap;
 using gst::BufferPtr;
 
 const char* const kCapture = "OS-1-128_v2.3.0_1024x10_lb_n3.pcap";

@@ -10,7 +10,6 @@
 
 namespace {
 
-using lidar::gst::CapsPtr;
 using lidar::gst::ElementPtr;
 using lidar::gst::EventPtr;
 using lidar::gst::PadPtr;

@@ -13,7 +13,6 @@ namespace lidar::gst {
 namespace {
 
 using namespace std::chrono_literals;
-using test::Rtp;
 
 TEST(RtpHeader, IsReadWithItsExtensionAndSources) {
   test::Rtp r;
