@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Subjects of our own, on which the answers to messages come back, and what those of JetStream say.
+// Our own subjects, on which answers to messages come back, and what answers of JetStream say.
 #pragma once
 #include <cstdint>
 #include <optional>

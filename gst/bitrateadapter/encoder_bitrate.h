@@ -19,8 +19,8 @@ struct BitrateControl {
 /// What is known of the encoders made by `factory`; none for an unknown one.
 std::optional<BitrateControl> FindBitrateControl(const std::string& factory);
 
-/// The first element upstream of `pad` whose klass has "Encoder" in it, through elements with one
-/// input, bins included; null where there is none.
+/// The first element upstream of `pad` whose klass has "Encoder" in it; null where there is none.
+/// The way there leads through elements and bins with one input.
 ElementPtr FindEncoderUpstream(GstPad* pad);
 
 /// Sets what `control` names to `bps`, clamped to the property's range. The bitrate that was set

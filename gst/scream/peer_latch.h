@@ -16,10 +16,10 @@
 namespace lidar::gst {
 using namespace std::chrono_literals;
 
-/// One peer at a time is believed: the first that sends, until another has more to show for itself
-/// (see Standing), or as much while this one is silent. All that others send counts towards their
-/// standing and is dropped. A packet without an address (from an element that does not tell)
-/// belongs to any peer.
+/// One peer at a time is believed: the first that sends. Another takes its place when it has more
+/// to show for itself (see Standing), or as much while the first is silent. All that others send
+/// counts towards their standing and is dropped. A packet without an address (from an element that
+/// does not tell) belongs to any peer.
 class PeerLatch {
  public:
   /// A stream is this many packets after the first, each further on in its SSRC...

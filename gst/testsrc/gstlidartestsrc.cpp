@@ -235,7 +235,7 @@ static bool SkipWhatIsLate(GstElement* element, State* state) {
   return true;
 }
 
-/// Rows that were written stay; the first one that does not fit is told, and the last.
+/// Rows that were written stay. The first row that does not fit is told, and no more are written.
 static void LogPose(GstLidarTestSrc* self, GstClockTime capture, const lidar::synth::Pose& pose) {
   State& state = *self->state;
   if (!state.log || state.log->Write(capture, pose)) return;

@@ -12,8 +12,8 @@ enum class Compression { kNone, kLz4, kZstd };
 /// As a chunk names it.
 std::string_view NameOf(Compression compression);
 
-/// Replaces `out` by `bytes` compressed; false where they do not get smaller by a twentieth, so
-/// that they are better left as they are.
+/// Replaces `out` by `bytes` compressed. False where this saves less than a twentieth: then they
+/// are better left as they are.
 bool Compress(Compression compression, ByteView bytes, Bytes* out);
 
 /// Replaces `out` by exactly `size` bytes; false where the data are damaged, give more or less, or

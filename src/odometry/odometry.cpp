@@ -36,8 +36,8 @@ constexpr Duration kShortestGap = milliseconds(2);
 /// Beyond this the velocity may have changed: the search reaches farther in proportion.
 constexpr Duration kUsualPeriod = milliseconds(150);
 constexpr double kWidestSearch = 3;
-/// Where the scans themselves show surfaces, neighbours without one are of little use, and what
-/// these surfaces do not hold is known to be open.
+/// Where the scans themselves show surfaces, neighbours without one are of little use. A direction
+/// that no surface holds is then known to be open.
 constexpr double kSparePointWeight = 0.05;
 constexpr double kPointTurn = 0.3;
 constexpr double kLeastConstraint = 0.002;
@@ -160,8 +160,8 @@ void Odometry::AddToMap(const Surface& fine) {
   entered_ = pose_;
 }
 
-/// Scans that enter the map at each step fill it with lines that move along with the sensor and
-/// hold it back, and every error of a pose with them.
+/// If each scan entered the map, its lines would move along with the sensor and hold it back, and
+/// every error of a pose would enter as well.
 bool Odometry::IsFarFromTheLastInMap() const {
   const Pose moved = entered_.Inverse() * pose_;
   return moved.position.norm() >= kMapStep * settings_.voxel_size_m || Angle(moved) >= kMapTurn;

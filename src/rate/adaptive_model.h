@@ -52,8 +52,8 @@ class AdaptiveModel : public SizeModel {
     std::optional<std::uint64_t> last_slice;  // scan and sector, to know a re-encoding
   };
   const ModeCoefficients& Mode(const std::string& mode) const;
-  /// What was learned of a mode, or of the last one where the mode has just changed within a
-  /// geometry: the scene is the same. Null where nothing was.
+  /// What was learned of a mode; null where nothing was. Where the mode has just changed within a
+  /// geometry, what was learned of the last one: the scene is the same.
   const Learned* LearnedOf(const std::string& mode) const;
   double GeometryLog2(const SliceFeatures& slice, double step_m) const;
   /// Part of the bytes of a slice whose codec does not tell it.

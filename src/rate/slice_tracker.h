@@ -13,8 +13,8 @@ struct Anchor {
   double residual = 0;
 };
 
-/// Sector i of a scan looks most like sector i of the scan before; what the sectors since then
-/// had in common (a turn of the vehicle, a wrong slope) is added on top.
+/// Sector i of a scan looks most like sector i of the scan before. On top comes what the sectors
+/// since then had in common: a turn of the vehicle, a wrong slope.
 class SliceTracker {
  public:
   /// The observation to start from for a slice; none before the first one.

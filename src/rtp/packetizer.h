@@ -39,8 +39,8 @@ class Aggregator {
   std::uint64_t first_ticks_ = 0;
 };
 
-/// Numbers the scans that are sent, and tells of the slices that are missing in them: a receiver
-/// counts as lost only what was.
+/// Numbers the scans that are sent, and says which slices of them are not, so that a receiver does
+/// not count these as lost.
 class ScanCounter {
  public:
   explicit ScanCounter(std::uint32_t first) : number_(first) {}

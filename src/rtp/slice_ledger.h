@@ -77,8 +77,8 @@ class SliceLedger {
   void CloseBefore(SlicePosition limit);
   /// End of stream: all open slices up to the frontier are lost.
   void Finish();
-  /// The scans between `previous`, which is finished, and this ledger's first slice are lost, and
-  /// so is the beginning of this ledger's first scan: the same stream goes on after a long outage.
+  /// Goes on after a long outage of the same stream. `previous` is finished. The scans between it
+  /// and this ledger's first slice are lost, and so is the beginning of this ledger's first scan.
   /// The accounts of `previous` become a part of these, as word of its slices may still come.
   void Continue(const SliceLedger& previous);
 

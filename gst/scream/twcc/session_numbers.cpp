@@ -41,7 +41,7 @@ std::optional<Reported> Read(const GstStructure* s) {
   return r;
 }
 
-/// The packets of an event, if it is one of a report; no more of them than prove it too long.
+/// The packets of an event that is a report. It stops at as many as prove the report too long.
 std::vector<const GstStructure*> PacketsOf(GstEvent* event) {
   std::vector<const GstStructure*> packets;
   const GstStructure* s = gst_event_get_structure(event);

@@ -11,9 +11,9 @@ namespace {
 constexpr Duration kMarksExpected = 30s;
 /// So long after a loss a queue that overflows may overflow again.
 constexpr Duration kLossesExpected = 10s;
-/// Reports that are no further apart than this part of a round trip need no allowance; others one
-/// of this at most.
+/// Reports that are no further apart than this part of a round trip need no allowance...
 constexpr int kCloseReports = 5;
+/// ...and no gap between reports counts as longer than this.
 constexpr Duration kLongestInterval = 100ms;
 constexpr double kCapacityGain = 0.25;
 /// Packets in a row behind a queue that are no accident.

@@ -84,13 +84,13 @@ class PathModel {
   /// A packet that waited so long came out of a queue. Without marks a queue is no sign of
   /// congestion before the draft takes it for one.
   Duration BusyQdelay(Time now, Duration qdelay_target) const;
-  /// The queue is longer than `qdelay` and packets keep coming back out of it; where marks work,
-  /// marked: delay alone may be a longer path.
+  /// The queue is longer than `qdelay`, and packets keep coming back out of it. Where marks work
+  /// they have to be marked, too: delay alone may be a longer path.
   bool Queueing(Time now, Duration qdelay) const;
   /// Time between reports, on average.
   Duration report_gap() const { return report_gap_; }
-  /// Reports that are far apart, as round trips go: what arrived for so long is not reported yet
-  /// and still counts as in flight.
+  /// For how long what arrives has not been reported yet, and so still counts as in flight. 0
+  /// unless reports are far apart, as round trips go.
   Duration UnreportedTime() const;
   /// The clocks drift apart: the draft sends at half the rate until then.
   Time half_rate_until() const { return half_rate_until_; }

@@ -17,8 +17,9 @@ struct Comparison {
   Comparison& operator+=(const Comparison& o);
 };
 
-/// Clouds of one shape are compared place by place; else every point with the nearest one of the
-/// other cloud, within `reach_m`, and back. All-zero points are missing returns.
+/// Compares clouds of one shape place by place. In others it compares every point with the nearest
+/// one of the other cloud, within `reach_m`, and the other way round. All-zero points are missing
+/// returns.
 Comparison Compare(const Cloud& sent, const Cloud& received, double reach_m);
 
 }  // namespace lidar::demo

@@ -45,8 +45,8 @@ class Ledger {
   void Add(const nlohmann::json& record);
   void Add(SliceKey key, const Comparison& comparison);
 
-  /// Slices that were encoded after `settled` may still be on their way and are not counted as
-  /// lost, nor a scan captured after it as skipped.
+  /// Slices that were encoded after `settled` may still be on their way, and do not count as lost.
+  /// Nor does a scan that was captured after it count as skipped.
   ScanCounts Count(std::int64_t settled = INT64_MAX) const;
   const std::map<std::uint32_t, ScanLife>& scans() const { return scans_; }
   /// When the edge knew the pose of a scan.

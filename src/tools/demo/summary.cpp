@@ -157,8 +157,8 @@ void AddGaps(const Measurements& m, nlohmann::ordered_json* s) {
   (*s)["gaps"] = {{"count", back.count()}, {"back_after_s", Percentiles(back)}};
 }
 
-/// What a sender that knew the link could deliver: scans of the lowest bitrate that keeps the
-/// bound, and how soon at the bitrate that was put out.
+/// What a sender that knew the link could deliver: how many scans at the lowest bitrate that keeps
+/// the bound, and how soon at the bitrate that was put out.
 void AddOracle(const Measurements& m, nlohmann::ordered_json* s) {
   double bits = 0;
   for (const auto& [id, scan] : m.ledger.scans())
