@@ -9,11 +9,15 @@ import sys
 import time
 import traceback
 
-import attacks
 import ends
+import feedback
+import media
 import servers
+import srtp
+import strangers
 
 AT_ONCE = 4  # attacks mostly wait
+ATTACKS = media.ALL + strangers.ALL + feedback.ALL + srtp.ALL + servers.ALL
 
 
 @dataclasses.dataclass
@@ -73,7 +77,7 @@ def main():
     random.seed(options.seed)
     print(f"seed {options.seed}")
     recording, other = ends.record(1, 8), ends.record(2, 8)
-    chosen = [a for a in attacks.MEDIA + servers.ALL if not options.only or options.only in a.__name__.replace("_", " ")]
+    chosen = [a for a in ATTACKS if not options.only or options.only in a.__name__.replace("_", " ")]
     seconds = 8 if options.minutes else 1
     until = time.monotonic() + 60 * options.minutes
     results = []

@@ -1,0 +1,103 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""What attacks on a receiver need: an honest sender, a receiver, and what must hold after it all."""
+import random
+import struct
+import time
+
+import ends
+
+MOST_BITRATE = 20_000_000  # of senders
+MOST_PATIENCE = 30  # seconds, of a machine that others use
+MOST_GROWTH_KB = 96 * 1024  # what the queues of docs/security.md hold together
+
+
+class Bench:
+    """A receiver with an honest sender."""
+
+    def __init__(self, context, options="", start=True):
+        self.context = context
+        self.random = random.Random(context.random.random())
+        self.true_crcs = context.recording.crcs()
+        self.port = ends.free_port()
+        self.receiver = ends.Victim(ends.RECEIVER.format(port=self.port, options=options))
+        self.sender = ends.HonestSender(context.recording, self.port, start=start)
+        self.before = None
+
+    def settle(self):
+        """Until the stream runs, and its memory is known."""
+        assert self.wait_for_clouds(10) is not None, "no cloud within 10 s"
+        time.sleep(0.3)
+        self.before = self.receiver.ask()
+
+    def wait_for_clouds(self, limit, more=3):
+        """Seconds until so many more true clouds were shown."""
+        start = time.monotonic()
+        shown = self.count_true()
+        while time.monotonic() - start < limit:
+            if self.count_true() >= shown + more:
+                return time.monotonic() - start
+            time.sleep(0.02)
+        return None
+
+    def await_packets(self, count):
+        """Until so many came in: the kernel keeps a few hundred for a busy receiver."""
+        start = time.monotonic()
+        while self.receiver.ask()["net"]["packets-received"] < count:
+            assert time.monotonic() - start < 5, f"fewer than {count} packets arrived"
+            time.sleep(0.005)
+
+    def count_true(self):
+        self.receiver.ask()
+        return sum(c in self.true_crcs for c in self.receiver.shown)
+
+    def expect_flow(self, seconds=0.6, part=0.7):
+        """The receiver shows what is sent now. A busy machine has several tries."""
+        for tries in range(4):
+            sent, shown = self.sender.sent, self.count_true()
+            time.sleep(seconds)
+            sent, shown = self.sender.sent - sent, self.count_true() - shown
+            if sent > 0 and shown >= part * sent - 3:
+                return
+            time.sleep(tries)
+        raise AssertionError(f"{shown} of {sent} slices were shown")
+
+    def expect_only_true(self):
+        strange = sum(c not in self.true_crcs for c in self.receiver.shown)
+        assert strange == 0, f"{strange} slices were shown that nobody sent"
+
+    def expect_bounded(self):
+        grown = self.receiver.ask()["rss_kb"] - self.before["rss_kb"]
+        most = MOST_GROWTH_KB * (3 if self.context.sanitized else 1)
+        assert grown < most, f"memory grew by {grown} kB"
+        more = self.receiver.last["threads"] - self.before["threads"]
+        assert more <= 2, f"{more} threads were added"
+
+    def finish(self):
+        if self.before:
+            self.expect_bounded()
+        error = self.receiver.ask()["error"]
+        assert not error, f"element error: {error}"
+        if self.sender:
+            self.sender.close()
+        self.receiver.close()
+
+
+def mutate(rng, packet):
+    packet = bytearray(packet)
+    for _ in range(rng.choice((1, 1, 2, 8))):
+        what = rng.randrange(6)
+        at = rng.randrange(len(packet)) if packet else 0
+        if what == 0 and packet:
+            packet[at] ^= 1 << rng.randrange(8)
+        elif what == 1 and packet:
+            packet[at] = rng.choice((0, 1, 0x7F, 0x80, 0xFF))
+        elif what == 2:
+            del packet[at:]
+        elif what == 3:
+            packet[at:at] = rng.randbytes(rng.choice((1, 4, 100)))
+        elif what == 4 and len(packet) > 20:
+            struct.pack_into(">I", packet, rng.randrange(len(packet) - 4), rng.choice((0, 1, 0xFFFF_FFFF, 1 << 22)))
+        elif what == 5 and len(packet) > 60:
+            source = rng.randrange(len(packet) - 8)
+            packet[at:at + 8] = packet[source:source + 8]
+    return bytes(packet)

@@ -1,0 +1,191 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Attacks by somebody who writes what a receiver decodes.
+
+As all attacks they assert what docs/security.md promises, and return a line on what they saw.
+"""
+import dataclasses
+import struct
+import time
+
+import wire
+from bench import Bench, mutate
+
+
+def another_writer(context):
+    """Units of every shape, written from the document, are all shown."""
+    bench = Bench(context, start=False)
+    sender = bench.sender
+    sent = 0
+    for scan in range(40):
+        parts = []
+        for _ in range(context.recording.slices[0].count):
+            parts.append(sender.next_slice())
+            sender.sent += 1
+        payloads = [wire.config_unit(context.recording.config)] if scan % 5 == 0 else []
+        marks = [False] * len(payloads)
+        if scan % 4 == 3:  # the others are announced as skipped
+            parts = parts[:2] + [dataclasses.replace(parts[-1], skipped=(1 << (len(parts) - 3)) - 1)]
+        if scan % 4 == 2:
+            small = [dataclasses.replace(p, count=len(parts)) for p in parts]
+            for i in range(0, len(small), 2):
+                payloads.append(wire.aggregate(small[i:i + 2], [0, 1125]))
+                marks.append(True)
+        else:
+            for p in parts:
+                some = wire.slice_payloads(p, (1188, 200, 1188, 76)[scan % 4])
+                payloads += some
+                marks += [False] * (len(some) - 1) + [True]
+        sent += len(parts)
+        for payload, mark in zip(payloads, marks):
+            sender.send(sender.pack(payload, mark))
+            if len(sender.packets) % 50 == 0:
+                bench.await_packets(len(sender.packets))
+    bench.await_packets(len(sender.packets))
+    bench.wait_for_clouds(2, sent - bench.count_true())
+    depay = bench.receiver.ask()["depay"]
+    assert depay["slices-received"] == sent, f"{depay['slices-received']} of {sent} slices came"
+    assert depay["slices-lost"] + depay["slices-damaged"] + depay["packets-invalid"] == 0, depay
+    assert bench.receiver.last["clouds"] == sent, "every slice is a cloud"
+    bench.expect_only_true()
+    bench.finish()
+    return f"{sent} slices, all shown"
+
+
+def mutated_packets(context):
+    """Damaged copies, from the sender's own address and SSRC."""
+    bench = Bench(context)
+    bench.settle()
+    sent = 0
+    until = time.monotonic() + context.seconds
+    while time.monotonic() < until:
+        for packet in bench.sender.packets[-4:]:
+            for _ in range(8):
+                bench.sender.socket.sendto(mutate(bench.random, packet), bench.sender.to)
+                sent += 1
+        time.sleep(0.005)
+    assert bench.wait_for_clouds(3) is not None, "no clouds after the attack"
+    bench.expect_flow()
+    bench.expect_only_true()
+    bench.finish()
+    return f"{sent} packets"
+
+
+def repaired_slices(context):
+    """Damaged slices and configs whose CRCs are made to fit: only the decoder can refuse them."""
+    bench = Bench(context)
+    bench.settle()
+    rng, sent = bench.random, 0
+    until = time.monotonic() + context.seconds
+    while time.monotonic() < until:
+        s = bench.sender.next_slice()
+        body = mutate(rng, s.body) or b"\0"
+        forged = dataclasses.replace(s, body=body, scan_number=s.scan_number + 1)
+        payload = wire.slice_unit(forged)
+        if rng.random() < 0.2:
+            payload = wire.config_unit(mutate(rng, context.recording.config) or b"\0")
+        if len(payload) < 60_000:
+            bench.sender.send(bench.sender.pack(payload))
+        sent += 1
+        time.sleep(0.002)
+    assert bench.wait_for_clouds(5) is not None, "no clouds after the attack"
+    bench.expect_flow()
+    bench.finish()
+    dropped = bench.receiver.last["dec"]["slices-dropped"]
+    assert dropped > 0, "nothing was refused"
+    return f"{sent} units, {dropped:.0f} refused by the decoder"
+
+
+def hostile_configs(context):
+    """Configs that no decoder can take are refused where they arrive."""
+    bench = Bench(context)
+    bench.settle()
+    model = wire.sensor_model(32, 512)
+    xyz = b"x:F32:0,y:F32:4,z:F32:8"
+    hostile = [
+        wire.build_config(b"x:F64:0,y:F64:8,z:F64:16", model), wire.build_config(b"x:F32:0,y:F32:0,z:F32:0", model),
+        wire.build_config(b"range:U32:0", model), wire.build_config(xyz), wire.build_config(xyz, model, version=2),
+        wire.build_config(xyz, model, geometry=3), wire.build_config(xyz, model, coder=9),
+        wire.build_config(xyz, model, framerate=(1, 0)), wire.build_config(xyz, model[:-1]),
+        wire.build_config(xyz, b"\2" + model[1:]), wire.build_config(xyz, struct.pack("<BBHHH", 1, 0, 65535, 65535, 1)),
+        wire.build_config(b"x:F32:4294967290,y:F32:4,z:F32:8", model), wire.build_config(b"\0" * 60_000, model), b"",
+    ]
+    for n, config in enumerate(hostile * 3):
+        own_id = (n + 1) & 0xFF
+        bench.sender.send(bench.sender.pack(wire.config_unit(config, own_id)))
+        s = dataclasses.replace(bench.sender.next_slice(), config_id=own_id)
+        bench.sender.send(bench.sender.pack(wire.slice_unit(s)))
+        time.sleep(0.01)
+    assert bench.wait_for_clouds(3) is not None
+    bench.expect_flow()
+    bench.expect_only_true()
+    bench.finish()
+    depay = bench.receiver.last["depay"]
+    refused = depay["configs-damaged"] + depay["packets-invalid"]
+    assert refused >= 3 * len(hostile) - 3, f"{refused:.0f} of {3 * len(hostile)} configs were refused"
+    return f"{3 * len(hostile)} configs, {refused:.0f} refused"
+
+
+def varint(n):
+    out = b""
+    while n > 127:
+        out, n = out + bytes([n & 127 | 128]), n >> 7
+    return out + bytes([n])
+
+
+def dear_slices(context):
+    """A sensor of a million pixels, and slices of dozens of bytes that claim all of them."""
+    bench = Bench(context)
+    bench.settle()
+    beams, columns = 1024, 1024
+    fields = b"x:F32:0,y:F32:4,z:F32:8,range:U32:12"
+    config = wire.build_config(fields, wire.sensor_model(beams, columns))
+    for unit in split_unit(wire.config_unit(config), bench.sender.room):
+        bench.sender.send(bench.sender.pack(unit))
+    cpu, count = bench.receiver.ask()["cpu"], 40
+    for n in range(count):
+        payload = bytes([0x13 | (n & 1) << 2]) + b"\xff" * (20 + n)
+        block = bytes([0x34, (n & 1) << 7]) + b"".join(map(varint, (beams, 0, columns, 1, 256, len(payload))))
+        s = dataclasses.replace(bench.sender.next_slice(), body=block + payload, config_id=wire.config_id(config))
+        bench.sender.send(bench.sender.pack(wire.slice_unit(s)))
+        time.sleep(0.005)
+    time.sleep(0.3)
+    used = bench.receiver.ask()["cpu"] - cpu
+    bench.expect_flow()
+    bench.finish()
+    assert used < 0.05 * count * (4 if context.sanitized else 1), f"{1000 * used / count:.0f} ms a slice"
+    return f"{count} slices, {1000 * used / count:.1f} ms of CPU time each"
+
+
+def split_unit(unit, room):
+    """A config unit as fragments."""
+    if len(unit) <= room:
+        return [unit]
+    parts = [bytes([wire.FIRST << 5 | wire.CONFIG]) + unit[1:room]]
+    at = room
+    while at < len(unit):
+        kind = wire.MIDDLE if at + room - 2 < len(unit) else wire.LAST
+        parts.append(bytes([kind << 5 | wire.CONFIG, unit[1]]) + unit[at:at + room - 2])
+        at += room - 2
+    return parts
+
+
+def unfinished_slices(context):
+    """First fragments that announce 4 MiB each, and never end."""
+    bench = Bench(context)
+    bench.settle()
+    until, sent = time.monotonic() + context.seconds, 0
+    while time.monotonic() < until:
+        for index in range(200):
+            s = dataclasses.replace(bench.sender.next_slice(), index=index + 10, count=4096)
+            head = struct.pack(">BBII", wire.FIRST << 5 | wire.SLICE, s.config_id, 4 << 20, 0)
+            bench.sender.send(bench.sender.pack(head + s.place() + s.times() + bytes(1000), marker=False))
+            sent += 1
+        time.sleep(0.02)
+    assert bench.wait_for_clouds(5) is not None
+    bench.expect_flow()
+    bench.expect_only_true()
+    bench.finish()
+    return f"{sent} fragments"
+
+
+ALL = [another_writer, mutated_packets, repaired_slices, hostile_configs, dear_slices, unfinished_slices]

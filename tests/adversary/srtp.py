@@ -1,0 +1,85 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Attacks on ends that share a key."""
+import time
+
+import ends
+import wire
+from bench import Bench, mutate
+
+
+def path_with_key(context):
+    """Between two ends with SRTP: reads, changes and repeats packets, and shows a recording later."""
+    key = "srtp-key=" + "5a" * 30
+    bench = Bench(context, key, start=False)
+    relay = ends.Relay(bench.port)
+    rng = bench.random
+    relay.on_media = lambda packet: [mutate(rng, packet), packet, packet, rng.choice(relay.media)]
+    sender = ends.Victim(ends.SENDER.format(port=relay.port, seed=3, options=key))
+    start = time.monotonic()
+    while bench.receiver.ask()["clouds"] < 10:
+        assert time.monotonic() - start < 10, "no clouds"
+        time.sleep(0.05)
+    bench.before = bench.receiver.last
+    time.sleep(context.seconds)
+    sent = sender.ask()["pay"]["slices-sent"]
+    last = bench.receiver.ask()
+    assert last["clouds"] >= 0.7 * sent - 30, f"{last['clouds']} of {sent:.0f} slices were shown"
+    sent = sender.ask()["pay"]["slices-sent"]  # asked after the receiver: no cloud is of a later slice
+    assert last["clouds"] <= sent, f"{last['clouds']} clouds of {sent:.0f} slices: a copy was shown"
+    assert last["depay"]["slices-damaged"] == 0, last["depay"]
+    refused = last["net"]["srtp-refused"]
+    assert refused >= len(relay.media), f"{refused:.0f} of {3 * len(relay.media)} copies were refused"
+    sender.close()
+    recording = list(relay.media)
+    relay.close()
+    bench.finish()
+    later = Bench(context, key + " max-age=200000000", start=False)
+    time.sleep(0.3)
+    attacker = ends.udp_socket()
+    for n, packet in enumerate(recording):
+        attacker.sendto(packet, (ends.LOOPBACK, later.port))
+        if n % 20 == 0:
+            time.sleep(0.002)
+    time.sleep(0.2)
+    last = later.receiver.ask()
+    assert last["clouds"] == 0 and last["net"]["packets-old"] > 0, "a recording was shown as live"
+    later.finish()
+    attacker.close()
+    return f"{len(recording)} packets, {refused:.0f} copies refused, the recording too"
+
+
+def flood_with_key(context):
+    """Strangers' streams at a receiver with SRTP, before and while the sender sends."""
+    key = "srtp-key=" + "5a" * 30
+    bench = Bench(context, key, start=False)
+    stranger = ends.udp_socket()
+    to = (ends.LOOPBACK, bench.port)
+
+    def flood(packets):
+        for _ in range(packets):
+            stranger.sendto(wire.rtp(bench.random.randbytes(200), bench.random.getrandbits(16), 0,
+                                     bench.random.getrandbits(32)), to)
+
+    flood(200)
+    bench.before = bench.receiver.ask()
+    sender = ends.Victim(ends.SENDER.format(port=bench.port, seed=3, options=key))
+    start, took = time.monotonic(), None
+    while time.monotonic() - start < max(3, context.seconds):
+        flood(20)
+        time.sleep(0.01)
+        if took is None and bench.receiver.ask()["clouds"] > 0:
+            took = time.monotonic() - start
+    assert took is not None, "the sender was never let in"
+    clouds = bench.receiver.ask()["clouds"]
+    start = time.monotonic()
+    while bench.receiver.ask()["clouds"] <= clouds + 20:
+        assert time.monotonic() - start < 5, f"the stream does not go on: {bench.receiver.last['net']} {sender.ask()['net']}"
+        time.sleep(0.05)
+    sender.close()
+    bench.finish()
+    stranger.close()
+    refused = bench.receiver.last["net"]["srtp-refused"]
+    return f"{refused:.0f} packets refused; the sender was let in after {1000 * took:.0f} ms"
+
+
+ALL = [path_with_key, flood_with_key]
