@@ -21,6 +21,7 @@
 #include "ext/mcap/playback.h"
 #include "ext/mcap/seeking.h"
 #include "ext/mcap/stream_group.h"
+#include "gst/common/element_class.h"
 #include "gst/common/properties.h"
 #include "gst/common/stats.h"
 
@@ -380,8 +381,6 @@ static void gst_lidar_mcap_src_class_init(GstLidarMcapSrcClass* klass) {
   element->change_state = ChangeState;
   element->send_event = SendEvent;
   gst_element_class_add_static_pad_template(element, &src_template);
-  gst_element_class_set_static_metadata(element, "MCAP player", "Source/File",
-                                        "Plays slices, clouds, IMU samples and odometry from MCAP "
-                                        "files",
-                                        "gst-lidar");
+  lidar::gst::Describe(klass, {"MCAP player", "Source/File",
+                               "Plays slices, clouds, IMU samples and odometry from MCAP files"});
 }

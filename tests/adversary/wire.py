@@ -201,20 +201,6 @@ def ccfb(sender_ssrc, blocks, report_time):
     return struct.pack(">BBH", 0x80 | 11, 205, len(body) // 4) + body
 
 
-def parse_ccfb(packet):
-    """Blocks as in ccfb(); None where the packet is something else."""
-    if len(packet) < 12 or packet[0] & 31 != 11 or packet[1] != 205:
-        return None
-    blocks, at = [], 8
-    while at < len(packet) - 4:
-        ssrc, begin, count = struct.unpack_from(">IHH", packet, at)
-        bits = struct.unpack_from(f">{count}H", packet, at + 8)
-        blocks.append((ssrc, begin, [(bool(b & 0x8000), b >> 13 & 3, b & 0x1FFF) for b in bits]))
-        at += 8 + 2 * (count + count % 2)
-    assert at == len(packet) - 4, "the blocks do not fill the report"
-    return blocks
-
-
 def transport_number(packet, extension_id):
     """The transport-wide number in an extension of one byte (RFC 8285); None where there is none."""
     profile, words = struct.unpack_from(">HH", packet, 12) if packet[0] & 0x10 else (0, 0)

@@ -11,6 +11,7 @@
  */
 #include "gst/scream/bin/gstscreamsrc.h"
 
+#include "gst/common/element_class.h"
 #include "gst/common/refs.h"
 #include "gst/scream/bin/common.h"
 #include "gst/scream/rx/private.h"
@@ -196,7 +197,6 @@ static void gst_lidar_scream_src_class_init(GstLidarScreamSrcClass* klass) {
   element->change_state = ChangeState;
   gst_element_class_add_static_pad_template(element, &src_template);
   gst_element_class_add_static_pad_template(element, &stream_template);
-  gst_element_class_set_static_metadata(
-      element, "SCReAM network source", "Source/Network/RTP",
-      "Receives RTP over UDP and gives SCReAM v2 feedback with ECN", "gst-lidar");
+  Describe(klass, {"SCReAM network source", "Source/Network/RTP",
+                   "Receives RTP over UDP and gives SCReAM v2 feedback with ECN"});
 }

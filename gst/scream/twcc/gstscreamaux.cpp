@@ -15,6 +15,7 @@
 
 #include <mutex>
 
+#include "gst/common/element_class.h"
 #include "gst/common/properties.h"
 #include "gst/common/refs.h"
 #include "gst/scream/bin/common.h"
@@ -214,8 +215,7 @@ static void gst_lidar_scream_aux_class_init(GstLidarScreamAuxClass* klass) {
   gst_element_class_add_static_pad_template(element, &src_template);
   gst_element_class_add_static_pad_template(element, &session_sink_template);
   gst_element_class_add_static_pad_template(element, &session_src_template);
-  gst_element_class_set_static_metadata(
-      element, "SCReAM for TWCC sessions", "Filter/Network/RTP",
-      "SCReAM v2 congestion control before an rtpsession, with transport-wide feedback",
-      "gst-lidar");
+  Describe(klass,
+           {"SCReAM for TWCC sessions", "Filter/Network/RTP",
+            "SCReAM v2 congestion control before an rtpsession, with transport-wide feedback"});
 }
