@@ -47,9 +47,8 @@ struct _GstLidarDracoDec {
 G_DEFINE_TYPE(GstLidarDracoDec, gst_lidar_draco_dec, GST_TYPE_LIDAR_DECODER)
 GST_ELEMENT_REGISTER_DEFINE(dracodec, "dracodec", GST_RANK_PRIMARY, gst_lidar_draco_dec_get_type())
 
-static gboolean gst_lidar_draco_dec_set_format(GstLidarDecoder* base, GstCaps* caps,
-                                               const GstLidarCloudFormat* cloud,
-                                               GstLidarDecodedFormat* decoded) {
+static gboolean SetFormat(GstLidarDecoder* base, GstCaps* caps, const GstLidarCloudFormat* cloud,
+                          GstLidarDecodedFormat* decoded) {
   State& coder = *GST_LIDAR_DRACO_DEC(base)->state;
   const auto info = lidar::gst::CloudInfo::FromFormat(*cloud);
   const auto geometry = GeometryOf(caps);
@@ -62,8 +61,8 @@ static gboolean gst_lidar_draco_dec_set_format(GstLidarDecoder* base, GstCaps* c
   return TRUE;
 }
 
-static gboolean gst_lidar_draco_dec_decode(GstLidarDecoder* base, const guint8* data, gsize size,
-                                           guint max_points, GstLidarDecodedSlice* slice) {
+static gboolean Decode(GstLidarDecoder* base, const guint8* data, gsize size, guint max_points,
+                       GstLidarDecodedSlice* slice) {
   State& coder = *GST_LIDAR_DRACO_DEC(base)->state;
   if (!coder.decoder) coder.decoder.emplace(coder.format, coder.geometry, max_points);
   const auto shape = coder.decoder->Decode({data, size});
@@ -74,13 +73,11 @@ static gboolean gst_lidar_draco_dec_decode(GstLidarDecoder* base, const guint8* 
   return TRUE;
 }
 
-static void gst_lidar_draco_dec_write(GstLidarDecoder* base, guint8* points) {
+static void Write(GstLidarDecoder* base, guint8* points) {
   GST_LIDAR_DRACO_DEC(base)->state->decoder->Write(points);
 }
 
-static void gst_lidar_draco_dec_reset(GstLidarDecoder* base) {
-  *GST_LIDAR_DRACO_DEC(base)->state = {};
-}
+static void Reset(GstLidarDecoder* base) { *GST_LIDAR_DRACO_DEC(base)->state = {}; }
 
 static void gst_lidar_draco_dec_init(GstLidarDracoDec* self) { self->state = new State; }
 
@@ -92,8 +89,8 @@ static void gst_lidar_draco_dec_class_init(GstLidarDracoDecClass* klass) {
                        {{"sink", GST_PAD_SINK, GST_LIDAR_DRACO_MEDIA_TYPE},
                         {"src", GST_PAD_SRC, GST_LIDAR_CLOUD_MEDIA_TYPE}});
   auto* decoder = GST_LIDAR_DECODER_CLASS(klass);
-  decoder->set_format = gst_lidar_draco_dec_set_format;
-  decoder->decode = gst_lidar_draco_dec_decode;
-  decoder->write = gst_lidar_draco_dec_write;
-  decoder->reset = gst_lidar_draco_dec_reset;
+  decoder->set_format = SetFormat;
+  decoder->decode = Decode;
+  decoder->write = Write;
+  decoder->reset = Reset;
 }

@@ -70,10 +70,8 @@ GST_ELEMENT_REGISTER_DEFINE(dracoenc, "dracoenc", GST_RANK_NONE, gst_lidar_draco
 
 static Coder& CoderOf(GstLidarEncoder* base) { return GST_LIDAR_DRACO_ENC(base)->state->coder; }
 
-static gboolean gst_lidar_draco_enc_set_format(GstLidarEncoder* base,
-                                               const GstLidarCloudFormat* cloud,
-                                               gboolean with_intensity,
-                                               GstLidarCodedFormat* coded) {
+static gboolean SetFormat(GstLidarEncoder* base, const GstLidarCloudFormat* cloud,
+                          gboolean with_intensity, GstLidarCodedFormat* coded) {
   Coder& coder = CoderOf(base);
   const Settings settings = lidar::gst::Snapshot(*GST_LIDAR_DRACO_ENC(base)->state);
   const auto info = lidar::gst::CloudInfo::FromFormat(*cloud);
@@ -96,8 +94,7 @@ static gboolean gst_lidar_draco_enc_set_format(GstLidarEncoder* base,
   return TRUE;
 }
 
-static void gst_lidar_draco_enc_load(GstLidarEncoder* base, const GstLidarRawSlice* raw,
-                                     GstLidarLoadedSlice* loaded) {
+static void Load(GstLidarEncoder* base, const GstLidarRawSlice* raw, GstLidarLoadedSlice* loaded) {
   Coder& coder = CoderOf(base);
   loaded->level = lidar::gst::Snapshot(*GST_LIDAR_DRACO_ENC(base)->state).level;
   coder.encoder->Load({raw->data, raw->size}, raw->first_column, coder.with_intensity);
@@ -110,8 +107,7 @@ static void gst_lidar_draco_enc_load(GstLidarEncoder* base, const GstLidarRawSli
   loaded->mode = coder.mode.c_str();
 }
 
-static void gst_lidar_draco_enc_get_steps(GstLidarEncoder* base, gdouble max_error,
-                                          GstLidarStepRange* steps) {
+static void GetSteps(GstLidarEncoder* base, gdouble max_error, GstLidarStepRange* steps) {
   const auto& encoder = *CoderOf(base).encoder;
   const auto bound = encoder.geometry() == Geometry::kRange
                          ? lidar::rate::ErrorBound::Range(encoder.range_unit_mm())
@@ -119,14 +115,12 @@ static void gst_lidar_draco_enc_get_steps(GstLidarEncoder* base, gdouble max_err
   *steps = {bound.FinestStep(), bound.CoarsestStep(max_error), bound.step_unit()};
 }
 
-static void gst_lidar_draco_enc_thin(GstLidarEncoder* base, const guint8* kept, guint rows) {
+static void Thin(GstLidarEncoder* base, const guint8* kept, guint rows) {
   CoderOf(base).encoder->Thin(std::vector<bool>(kept, kept + rows));
 }
 
-static GstLidarEncodeResult gst_lidar_draco_enc_encode(GstLidarEncoder* base,
-                                                       const GstLidarEncodeSettings* settings,
-                                                       GByteArray* bytes,
-                                                       GstLidarCodedSlice* coded) {
+static GstLidarEncodeResult Encode(GstLidarEncoder* base, const GstLidarEncodeSettings* settings,
+                                   GByteArray* bytes, GstLidarCodedSlice* coded) {
   Coder& coder = CoderOf(base);
   coder.encoder->set_threads(settings->threads);
   const auto result = coder.encoder->Encode(
@@ -140,8 +134,8 @@ static GstLidarEncodeResult gst_lidar_draco_enc_encode(GstLidarEncoder* base,
   return GST_LIDAR_ENCODE_OK;
 }
 
-static gboolean gst_lidar_draco_enc_decode(GstLidarEncoder* base, const guint8* data, gsize size,
-                                           GArray* points, GstLidarPointOrder* order) {
+static gboolean Decode(GstLidarEncoder* base, const guint8* data, gsize size, GArray* points,
+                       GstLidarPointOrder* order) {
   Coder& coder = CoderOf(base);
   auto format = coder.format;
   format.layout = {*lidar::PointFields::Parse("x:F32:0,y:F32:4,z:F32:8,range:U32:12"),
@@ -158,7 +152,7 @@ static gboolean gst_lidar_draco_enc_decode(GstLidarEncoder* base, const guint8* 
   return TRUE;
 }
 
-static void gst_lidar_draco_enc_reset(GstLidarEncoder* base) { CoderOf(base) = {}; }
+static void Reset(GstLidarEncoder* base) { CoderOf(base) = {}; }
 
 static void gst_lidar_draco_enc_init(GstLidarDracoEnc* self) { self->state = new State; }
 
@@ -172,11 +166,11 @@ static void gst_lidar_draco_enc_class_init(GstLidarDracoEncClass* klass) {
                          GST_LIDAR_DRACO_MEDIA_TYPE
                          ", geometry = (string) { xyz, range }, alignment = (string) slice"}});
   auto* encoder = GST_LIDAR_ENCODER_CLASS(klass);
-  encoder->set_format = gst_lidar_draco_enc_set_format;
-  encoder->load = gst_lidar_draco_enc_load;
-  encoder->get_steps = gst_lidar_draco_enc_get_steps;
-  encoder->thin = gst_lidar_draco_enc_thin;
-  encoder->encode = gst_lidar_draco_enc_encode;
-  encoder->decode = gst_lidar_draco_enc_decode;
-  encoder->reset = gst_lidar_draco_enc_reset;
+  encoder->set_format = SetFormat;
+  encoder->load = Load;
+  encoder->get_steps = GetSteps;
+  encoder->thin = Thin;
+  encoder->encode = Encode;
+  encoder->decode = Decode;
+  encoder->reset = Reset;
 }

@@ -35,9 +35,8 @@ struct _GstLidarDec {
 G_DEFINE_TYPE(GstLidarDec, gst_lidar_dec, GST_TYPE_LIDAR_DECODER)
 GST_ELEMENT_REGISTER_DEFINE(lidardec, "lidardec", GST_RANK_PRIMARY, gst_lidar_dec_get_type())
 
-static gboolean gst_lidar_dec_set_format(GstLidarDecoder* base, GstCaps*,
-                                         const GstLidarCloudFormat* cloud,
-                                         GstLidarDecodedFormat* decoded) {
+static gboolean SetFormat(GstLidarDecoder* base, GstCaps*, const GstLidarCloudFormat* cloud,
+                          GstLidarDecodedFormat* decoded) {
   State& coder = *GST_LIDAR_DEC(base)->state;
   const auto info = lidar::gst::CloudInfo::FromFormat(*cloud);
   coder = {};
@@ -47,8 +46,8 @@ static gboolean gst_lidar_dec_set_format(GstLidarDecoder* base, GstCaps*,
   return info.sensor_model.has_value();
 }
 
-static gboolean gst_lidar_dec_decode(GstLidarDecoder* base, const guint8* data, gsize size,
-                                     guint max_points, GstLidarDecodedSlice* slice) {
+static gboolean Decode(GstLidarDecoder* base, const guint8* data, gsize size, guint max_points,
+                       GstLidarDecodedSlice* slice) {
   State& coder = *GST_LIDAR_DEC(base)->state;
   if (!coder.decoder) coder.decoder.emplace(coder.format, max_points);
   const auto shape = coder.decoder->Decode({data, size});
@@ -60,14 +59,13 @@ static gboolean gst_lidar_dec_decode(GstLidarDecoder* base, const guint8* data, 
   return TRUE;
 }
 
-static void gst_lidar_dec_write(GstLidarDecoder* base, guint8* points) {
+static void Write(GstLidarDecoder* base, guint8* points) {
   GST_LIDAR_DEC(base)->state->decoder->Write(points);
 }
 
-static void gst_lidar_dec_reset(GstLidarDecoder* base) { *GST_LIDAR_DEC(base)->state = {}; }
+static void Reset(GstLidarDecoder* base) { *GST_LIDAR_DEC(base)->state = {}; }
 
-static GstStateChangeReturn gst_lidar_dec_change_state(GstElement* element,
-                                                       GstStateChange transition) {
+static GstStateChangeReturn ChangeState(GstElement* element, GstStateChange transition) {
   if (transition == GST_STATE_CHANGE_NULL_TO_READY) lidar::codec::PrepareMixing();
   return GST_ELEMENT_CLASS(gst_lidar_dec_parent_class)->change_state(element, transition);
 }
@@ -76,15 +74,15 @@ static void gst_lidar_dec_init(GstLidarDec* self) { self->state = new State; }
 
 static void gst_lidar_dec_class_init(GstLidarDecClass* klass) {
   lidar::gst::OwnState<GstLidarDec, gst_lidar_dec_parent_class>(G_OBJECT_CLASS(klass));
-  GST_ELEMENT_CLASS(klass)->change_state = gst_lidar_dec_change_state;
+  GST_ELEMENT_CLASS(klass)->change_state = ChangeState;
   lidar::gst::Describe(klass,
                        {"LiDAR decoder", "Codec/Decoder/PointCloud",
                         "Decompresses the scans of a spinning sensor, safe on hostile input"},
                        {{"sink", GST_PAD_SINK, GST_LIDAR_SLICE_MEDIA_TYPE},
                         {"src", GST_PAD_SRC, GST_LIDAR_CLOUD_MEDIA_TYPE}});
   auto* decoder = GST_LIDAR_DECODER_CLASS(klass);
-  decoder->set_format = gst_lidar_dec_set_format;
-  decoder->decode = gst_lidar_dec_decode;
-  decoder->write = gst_lidar_dec_write;
-  decoder->reset = gst_lidar_dec_reset;
+  decoder->set_format = SetFormat;
+  decoder->decode = Decode;
+  decoder->write = Write;
+  decoder->reset = Reset;
 }

@@ -104,8 +104,8 @@ static void ChooseEffort(GstLidarEncoder* base, guint columns) {
   coder.encoder->set_effort(coder.automatic ? coder.effort.effort() : static_cast<guint>(wanted));
 }
 
-static gboolean gst_lidar_enc_set_format(GstLidarEncoder* base, const GstLidarCloudFormat* cloud,
-                                         gboolean with_intensity, GstLidarCodedFormat* coded) {
+static gboolean SetFormat(GstLidarEncoder* base, const GstLidarCloudFormat* cloud,
+                          gboolean with_intensity, GstLidarCodedFormat* coded) {
   Coder& coder = CoderOf(base);
   const auto info = lidar::gst::CloudInfo::FromFormat(*cloud);
   const auto effort = coder.effort;
@@ -128,8 +128,7 @@ static gboolean gst_lidar_enc_set_format(GstLidarEncoder* base, const GstLidarCl
   return TRUE;
 }
 
-static void gst_lidar_enc_load(GstLidarEncoder* base, const GstLidarRawSlice* raw,
-                               GstLidarLoadedSlice* loaded) {
+static void Load(GstLidarEncoder* base, const GstLidarRawSlice* raw, GstLidarLoadedSlice* loaded) {
   Coder& coder = CoderOf(base);
   KeepBlocks(coder);
   ChooseEffort(base, raw->width);
@@ -143,19 +142,17 @@ static void gst_lidar_enc_load(GstLidarEncoder* base, const GstLidarRawSlice* ra
   loaded->mode = coder.mode.c_str();
 }
 
-static void gst_lidar_enc_get_steps(GstLidarEncoder* base, gdouble max_error,
-                                    GstLidarStepRange* steps) {
+static void GetSteps(GstLidarEncoder* base, gdouble max_error, GstLidarStepRange* steps) {
   const auto bound = lidar::rate::ErrorBound::Range(CoderOf(base).encoder->range_unit_mm());
   *steps = {bound.FinestStep(), bound.CoarsestStep(max_error), bound.step_unit()};
 }
 
-static void gst_lidar_enc_thin(GstLidarEncoder* base, const guint8* kept, guint rows) {
+static void Thin(GstLidarEncoder* base, const guint8* kept, guint rows) {
   CoderOf(base).encoder->Thin(std::vector<bool>(kept, kept + rows));
 }
 
-static GstLidarEncodeResult gst_lidar_enc_encode(GstLidarEncoder* base,
-                                                 const GstLidarEncodeSettings* settings,
-                                                 GByteArray* bytes, GstLidarCodedSlice* coded) {
+static GstLidarEncodeResult Encode(GstLidarEncoder* base, const GstLidarEncodeSettings* settings,
+                                   GByteArray* bytes, GstLidarCodedSlice* coded) {
   Coder& coder = CoderOf(base);
   coder.encoder->set_threads(settings->threads);
   const gint64 start_us = g_get_monotonic_time();
@@ -170,8 +167,8 @@ static GstLidarEncodeResult gst_lidar_enc_encode(GstLidarEncoder* base,
   return GST_LIDAR_ENCODE_OK;
 }
 
-static gboolean gst_lidar_enc_decode(GstLidarEncoder* base, const guint8* data, gsize size,
-                                     GArray* points, GstLidarPointOrder* order) {
+static gboolean Decode(GstLidarEncoder* base, const guint8* data, gsize size, GArray* points,
+                       GstLidarPointOrder* order) {
   Coder& coder = CoderOf(base);
   if (!coder.decoder) {
     auto format = coder.format;
@@ -188,23 +185,21 @@ static gboolean gst_lidar_enc_decode(GstLidarEncoder* base, const guint8* data, 
   return TRUE;
 }
 
-static void gst_lidar_enc_reset(GstLidarEncoder* base) { CoderOf(base) = {}; }
+static void Reset(GstLidarEncoder* base) { CoderOf(base) = {}; }
 
-static void gst_lidar_enc_acknowledge(GstLidarEncoder* base, guint receiver, guint scan_id,
-                                      guint slice_index) {
+static void Acknowledge(GstLidarEncoder* base, guint receiver, guint scan_id, guint slice_index) {
   Coder& coder = CoderOf(base);
   KeepBlocks(coder);
   coder.keeper.OnAcknowledged(Now(), receiver, scan_id, slice_index);
 }
 
-static void gst_lidar_enc_request_key(GstLidarEncoder* base) {
+static void RequestKey(GstLidarEncoder* base) {
   Coder& coder = CoderOf(base);
   KeepBlocks(coder);
   coder.keeper.OnKeyRequest();
 }
 
-static GstStateChangeReturn gst_lidar_enc_change_state(GstElement* element,
-                                                       GstStateChange transition) {
+static GstStateChangeReturn ChangeState(GstElement* element, GstStateChange transition) {
   if (transition == GST_STATE_CHANGE_NULL_TO_READY) lidar::codec::PrepareMixing();
   return GST_ELEMENT_CLASS(gst_lidar_enc_parent_class)->change_state(element, transition);
 }
@@ -213,7 +208,7 @@ static void gst_lidar_enc_init(GstLidarEnc* self) { self->state = new State; }
 
 static void gst_lidar_enc_class_init(GstLidarEncClass* klass) {
   lidar::gst::ServeState<GstLidarEnc, gst_lidar_enc_parent_class, lidar::gst::LidarEncRows>(klass);
-  GST_ELEMENT_CLASS(klass)->change_state = gst_lidar_enc_change_state;
+  GST_ELEMENT_CLASS(klass)->change_state = ChangeState;
   lidar::gst::Describe(
       klass,
       {"LiDAR encoder", "Codec/Encoder/PointCloud",
@@ -222,13 +217,13 @@ static void gst_lidar_enc_class_init(GstLidarEncClass* klass) {
        {"src", GST_PAD_SRC,
         GST_LIDAR_SLICE_MEDIA_TYPE ", geometry = (string) range, alignment = (string) slice"}});
   auto* encoder = GST_LIDAR_ENCODER_CLASS(klass);
-  encoder->set_format = gst_lidar_enc_set_format;
-  encoder->load = gst_lidar_enc_load;
-  encoder->get_steps = gst_lidar_enc_get_steps;
-  encoder->thin = gst_lidar_enc_thin;
-  encoder->encode = gst_lidar_enc_encode;
-  encoder->decode = gst_lidar_enc_decode;
-  encoder->reset = gst_lidar_enc_reset;
-  encoder->acknowledge = gst_lidar_enc_acknowledge;
-  encoder->request_key = gst_lidar_enc_request_key;
+  encoder->set_format = SetFormat;
+  encoder->load = Load;
+  encoder->get_steps = GetSteps;
+  encoder->thin = Thin;
+  encoder->encode = Encode;
+  encoder->decode = Decode;
+  encoder->reset = Reset;
+  encoder->acknowledge = Acknowledge;
+  encoder->request_key = RequestKey;
 }

@@ -246,7 +246,7 @@ static void WarnOfRival(GstLidarRtpDepay* self, guint32 ssrc, guint32 rival) {
                        ssrc));
 }
 
-static GstFlowReturn gst_lidar_rtp_depay_chain(GstPad* pad, GstObject* parent, GstBuffer* buffer) {
+static GstFlowReturn Chain(GstPad* pad, GstObject* parent, GstBuffer* buffer) {
   auto* self = GST_LIDAR_RTP_DEPAY(parent);
   if (self->state->payload_type && !IsOurs(self, buffer)) {
     gst_buffer_unref(buffer);
@@ -255,16 +255,15 @@ static GstFlowReturn gst_lidar_rtp_depay_chain(GstPad* pad, GstObject* parent, G
   return self->state->base_chain(pad, parent, buffer);
 }
 
-static GstFlowReturn gst_lidar_rtp_depay_chain_list(GstPad* pad, GstObject* parent,
-                                                    GstBufferList* list) {
+static GstFlowReturn ChainList(GstPad* pad, GstObject* parent, GstBufferList* list) {
   const BufferListPtr owner(list);
   GstFlowReturn flow = GST_FLOW_OK;
   for (guint i = 0; i < gst_buffer_list_length(list) && flow == GST_FLOW_OK; ++i)
-    flow = gst_lidar_rtp_depay_chain(pad, parent, gst_buffer_ref(gst_buffer_list_get(list, i)));
+    flow = Chain(pad, parent, gst_buffer_ref(gst_buffer_list_get(list, i)));
   return flow;
 }
 
-static GstBuffer* gst_lidar_rtp_depay_process(GstRTPBaseDepayload* base, GstRTPBuffer* rtp) {
+static GstBuffer* Process(GstRTPBaseDepayload* base, GstRTPBuffer* rtp) {
   State& state = *GST_LIDAR_RTP_DEPAY(base)->state;
   const GstClockTime pts = GST_BUFFER_PTS(rtp->buffer);
   lidar::rtp::RtpPacket packet;
@@ -290,7 +289,7 @@ static GstBuffer* gst_lidar_rtp_depay_process(GstRTPBaseDepayload* base, GstRTPB
   return nullptr;
 }
 
-static gboolean gst_lidar_rtp_depay_set_caps(GstRTPBaseDepayload* base, GstCaps* caps) {
+static gboolean SetCaps(GstRTPBaseDepayload* base, GstCaps* caps) {
   State& state = *GST_LIDAR_RTP_DEPAY(base)->state;
   gint type = 0;
   state.payload_type.reset();
@@ -300,7 +299,7 @@ static gboolean gst_lidar_rtp_depay_set_caps(GstRTPBaseDepayload* base, GstCaps*
   return TRUE;
 }
 
-static gboolean gst_lidar_rtp_depay_handle_event(GstRTPBaseDepayload* base, GstEvent* event) {
+static gboolean HandleEvent(GstRTPBaseDepayload* base, GstEvent* event) {
   State& state = *GST_LIDAR_RTP_DEPAY(base)->state;
   if (GST_EVENT_TYPE(event) == GST_EVENT_EOS || GST_EVENT_TYPE(event) == GST_EVENT_FLUSH_STOP) {
     std::lock_guard lock(state.mutex);
@@ -311,10 +310,9 @@ static gboolean gst_lidar_rtp_depay_handle_event(GstRTPBaseDepayload* base, GstE
 }
 
 /// A jitterbuffer tells of lost packets; what is lost for us are slices, and those we know.
-static gboolean gst_lidar_rtp_depay_packet_lost(GstRTPBaseDepayload*, GstEvent*) { return TRUE; }
+static gboolean PacketLost(GstRTPBaseDepayload*, GstEvent*) { return TRUE; }
 
-static GstStateChangeReturn gst_lidar_rtp_depay_change_state(GstElement* element,
-                                                             GstStateChange transition) {
+static GstStateChangeReturn ChangeState(GstElement* element, GstStateChange transition) {
   State& state = *GST_LIDAR_RTP_DEPAY(element)->state;
   if (transition == GST_STATE_CHANGE_READY_TO_PAUSED) {
     std::lock_guard lock(state.mutex);
@@ -344,8 +342,8 @@ static void gst_lidar_rtp_depay_init(GstLidarRtpDepay* self) {
   self->state = new State;
   GstPad* sink = GST_RTP_BASE_DEPAYLOAD_SINKPAD(self);
   self->state->base_chain = GST_PAD_CHAINFUNC(sink);
-  gst_pad_set_chain_function(sink, gst_lidar_rtp_depay_chain);
-  gst_pad_set_chain_list_function(sink, gst_lidar_rtp_depay_chain_list);
+  gst_pad_set_chain_function(sink, Chain);
+  gst_pad_set_chain_list_function(sink, ChainList);
   // We reorder by slice; the base class must hand over whatever comes.
   g_object_set(self, "max-reorder", 0, nullptr);
 }
@@ -364,10 +362,10 @@ static void gst_lidar_rtp_depay_class_init(GstLidarRtpDepayClass* klass) {
                          "payload = (int) [ 96, 127 ], "
                          "clock-rate = (int) 90000, encoding-name = (string) X-LIDAR-DRACO"},
                         {"src", GST_PAD_SRC, GST_LIDAR_CODED_CAPS}});
-  element->change_state = gst_lidar_rtp_depay_change_state;
+  element->change_state = ChangeState;
   auto* depay = GST_RTP_BASE_DEPAYLOAD_CLASS(klass);
-  depay->set_caps = gst_lidar_rtp_depay_set_caps;
-  depay->process_rtp_packet = gst_lidar_rtp_depay_process;
-  depay->handle_event = gst_lidar_rtp_depay_handle_event;
-  depay->packet_lost = gst_lidar_rtp_depay_packet_lost;
+  depay->set_caps = SetCaps;
+  depay->process_rtp_packet = Process;
+  depay->handle_event = HandleEvent;
+  depay->packet_lost = PacketLost;
 }

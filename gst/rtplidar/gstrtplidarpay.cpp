@@ -83,7 +83,7 @@ static const std::array<lidar::gst::Property<Settings>, 3> kProperties = {{
     {"stats", "What was sent, beside the fields that every RTP payloader has", Stats},
 }};
 
-static GstFlowReturn gst_lidar_rtp_pay_handle_buffer(GstRTPBasePayload* base, GstBuffer* buffer) {
+static GstFlowReturn HandleBuffer(GstRTPBasePayload* base, GstBuffer* buffer) {
   const BufferPtr owner(buffer);
   State& state = *GST_LIDAR_RTP_PAY(base)->state;
   const GstFlowReturn flow = lidar::gst::PaySliceBuffer(base, state, buffer);
@@ -100,7 +100,7 @@ static const gchar* MediaDownstream(GstRTPBasePayload* base) {
   return any || gst_caps_can_intersect(allowed.get(), usual.get()) ? "application" : "video";
 }
 
-static gboolean gst_lidar_rtp_pay_set_caps(GstRTPBasePayload* base, GstCaps* caps) {
+static gboolean SetCaps(GstRTPBasePayload* base, GstCaps* caps) {
   State& state = *GST_LIDAR_RTP_PAY(base)->state;
   auto config = lidar::gst::StreamConfigFromCaps(caps);
   if (!config) {
@@ -125,7 +125,7 @@ static gboolean gst_lidar_rtp_pay_set_caps(GstRTPBasePayload* base, GstCaps* cap
   return gst_rtp_base_payload_set_outcaps(base, nullptr);
 }
 
-static gboolean gst_lidar_rtp_pay_sink_event(GstRTPBasePayload* base, GstEvent* event) {
+static gboolean SinkEvent(GstRTPBasePayload* base, GstEvent* event) {
   State& state = *GST_LIDAR_RTP_PAY(base)->state;
   GstLidarBitrateBounds bounds{};
   if (gst_lidar_event_parse_bitrate_bounds(event, &bounds)) {
@@ -170,7 +170,7 @@ static bool WantsConfig(GstEvent* event) {
           gst_event_has_name(event, "GstRTPCollision"));
 }
 
-static gboolean gst_lidar_rtp_pay_src_event(GstRTPBasePayload* base, GstEvent* event) {
+static gboolean SrcEvent(GstRTPBasePayload* base, GstEvent* event) {
   State& state = *GST_LIDAR_RTP_PAY(base)->state;
   GstEvent* receipt = nullptr;
   if (state.receipts.OnEvent(event, &receipt)) {
@@ -206,15 +206,14 @@ static GstClockTime HoldTime(GstRTPBasePayload* base) {
   return base->max_ptime >= 0 ? MIN(scan, static_cast<GstClockTime>(base->max_ptime)) : scan;
 }
 
-static gboolean gst_lidar_rtp_pay_src_query(GstPad* pad, GstObject* parent, GstQuery* query) {
+static gboolean SrcQuery(GstPad* pad, GstObject* parent, GstQuery* query) {
   if (!GST_LIDAR_RTP_PAY(parent)->state->base_src_query(pad, parent, query)) return FALSE;
   if (GST_QUERY_TYPE(query) != GST_QUERY_LATENCY) return TRUE;
   lidar::gst::AddLatency(query, HoldTime(GST_RTP_BASE_PAYLOAD(parent)));
   return TRUE;
 }
 
-static GstStateChangeReturn gst_lidar_rtp_pay_change_state(GstElement* element,
-                                                           GstStateChange transition) {
+static GstStateChangeReturn ChangeState(GstElement* element, GstStateChange transition) {
   State& state = *GST_LIDAR_RTP_PAY(element)->state;
   if (transition == GST_STATE_CHANGE_READY_TO_PAUSED) {
     std::lock_guard lock(state.mutex);
@@ -236,7 +235,7 @@ static void gst_lidar_rtp_pay_init(GstLidarRtpPay* self) {
   self->state = new State;
   GstPad* src = GST_RTP_BASE_PAYLOAD_SRCPAD(self);
   self->state->base_src_query = GST_PAD_QUERYFUNC(src);
-  gst_pad_set_query_function(src, gst_lidar_rtp_pay_src_query);
+  gst_pad_set_query_function(src, SrcQuery);
   self->state->receipts.Watch(src);
 }
 
@@ -252,10 +251,10 @@ static void gst_lidar_rtp_pay_class_init(GstLidarRtpPayClass* klass) {
                          "application/x-rtp, media = (string) { application, video }, "
                          "payload = (int) [ 96, 127 ], "
                          "clock-rate = (int) 90000, encoding-name = (string) X-LIDAR-DRACO"}});
-  element->change_state = gst_lidar_rtp_pay_change_state;
+  element->change_state = ChangeState;
   auto* pay = GST_RTP_BASE_PAYLOAD_CLASS(klass);
-  pay->set_caps = gst_lidar_rtp_pay_set_caps;
-  pay->handle_buffer = gst_lidar_rtp_pay_handle_buffer;
-  pay->sink_event = gst_lidar_rtp_pay_sink_event;
-  pay->src_event = gst_lidar_rtp_pay_src_event;
+  pay->set_caps = SetCaps;
+  pay->handle_buffer = HandleBuffer;
+  pay->sink_event = SinkEvent;
+  pay->src_event = SrcEvent;
 }
