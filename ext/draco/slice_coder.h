@@ -92,7 +92,7 @@ class SliceDecoder {
   /// Decodes a slice and keeps it for Write(). None for a stream that is damaged, of another
   /// sensor, or larger than max_points.
   std::optional<Shape> Decode(ByteView stream);
-  /// That of the slice decoded last. An xyz slice, which is a plain Draco file, tells nothing.
+  /// The quality of the slice decoded last. An xyz slice is a plain Draco file and tells nothing.
   Quality quality() const { return range_ ? range_->quality() : Quality{}; }
   /// Writes width * height points of the format.
   void Write(std::uint8_t* raw) const;

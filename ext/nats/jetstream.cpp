@@ -62,7 +62,7 @@ natsStatus Update(jsCtx* js, const StreamSettings& settings,
     if (std::any_of(names.begin(), names.end(),
                     [&](const char* name) { return Covers(name, subject); }))
       continue;
-    // Those of a stream must not overlap.
+    // The subjects of a stream must not overlap.
     names.erase(std::remove_if(names.begin(), names.end(),
                                [&](const char* name) { return Covers(subject, name); }),
                 names.end());

@@ -177,7 +177,7 @@ void Publisher::OnAck(natsMsg* message) {
       ++counters_.acknowledged;
     told_.clear();
   } else {
-    // Those behind it wait as well, so that the order stays.
+    // The messages behind it wait as well, so that the order stays.
     SendAllAgain();
     retry_at_ = Clock::now() + StreamPause();
   }

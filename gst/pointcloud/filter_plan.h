@@ -43,7 +43,7 @@ class FilterPlan {
   /// The filtered cloud, without metas; null where `buffer` contradicts the caps. A cloud of which
   /// nothing is left has no bytes. `placed` takes it to the target frame, where there is one.
   BufferPtr Apply(GstBuffer* buffer, const Transform& placed = kIdentity);
-  /// Those of the cloud that Apply() gave last.
+  /// The caps of the cloud that Apply() gave last.
   GstCaps* caps() const { return caps_.get(); }
   /// The fields of that cloud, with their types and places.
   std::string fields() const { return out_.fields.ToString(); }

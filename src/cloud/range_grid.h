@@ -16,7 +16,7 @@ class RangeGrid {
  public:
   static constexpr std::uint32_t kMaxCells = 65'535;
   static constexpr std::uint32_t kMaxUnitMm = 1'000;
-  /// So that sums and differences of bins fit an int32.
+  /// Up to here, sums and differences of bins fit an int32.
   static constexpr std::uint32_t kMaxRangeMm = (1U << 28) - 1;
   /// Steps are multiples of a cell by this.
   static constexpr std::uint32_t kParts = 256;

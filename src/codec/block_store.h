@@ -15,7 +15,7 @@ class BlockStore {
   /// The newest of each sector. An encoder stays below both, so that what it refers to is there.
   static constexpr std::size_t kMostOfSector = 24;
   static constexpr std::size_t kMostBytes = 64U << 20;
-  /// So many before a reference are kept, for slices that come late.
+  /// How many blocks before a reference are kept, for slices that come late.
   static constexpr std::size_t kOvertaking = 3;
 
   void Add(BlockMemoryPtr block);

@@ -10,7 +10,7 @@ constexpr Duration kWindow{1'000'000'000};
 constexpr unsigned kFewestSlices = 8;
 // Slices that may be late in a window: a busy moment of the machine is no reason to change.
 constexpr double kLatePart = 0.1;
-// So many slices in a row that take more than twice what they may end a window early.
+// A window ends early after so many slices in a row that take more than twice what they may.
 constexpr unsigned kMuchTooLate = 3;
 // A higher effort is tried where it is likely to leave some of its time.
 constexpr double kRoom = 0.75;

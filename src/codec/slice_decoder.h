@@ -39,7 +39,7 @@ class SliceDecoder {
     unsigned intensity_bits = 0;
     double keep_fraction = 1;  // part of the beams; the others were left out to save bits
   };
-  /// That of the slice decoded last.
+  /// The quality of the slice decoded last.
   const Quality& quality() const { return quality_; }
   /// Writes width * height points of the format.
   void Write(std::uint8_t* raw) const;

@@ -38,7 +38,7 @@ class BurstProbe {
     }
     return std::min(in.known * kFaster, in.wanted * kFaster);
   }
-  /// So long a burst lasts: half of it is a queue where the link is not faster than was known.
+  /// How long a burst lasts. Half of it is a queue where the link is not faster than was known.
   static constexpr Duration kBurst = std::chrono::milliseconds(8);
 
  private:

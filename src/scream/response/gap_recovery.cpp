@@ -8,7 +8,7 @@ namespace {
 
 /// A link that carries less than this part of what it did is in a gap...
 constexpr double kGapPart = 0.25;
-/// So much later a gap is no gap any more, but what the link is now.
+/// After so long a gap is no gap any more, but what the link is now.
 constexpr Duration kLongestMemory = 3s;
 constexpr Duration kLongestGap = 10s;
 /// Delay at its base...
