@@ -262,6 +262,7 @@ void Controller::UpdateTarget(Time now) {
   window_target_ = std::clamp(allowed, streams_.min_bitrate(), streams_.max_bitrate());
   pacer_.Update(window_target_, streams_.max_bitrate(),
                 PacingHeadroom(p_, streams_.frame_period(), PacingReserve(p_, path_, now)));
+  pacer_.set_ripple(PacingRipple(p_, path_));
   if (p_.extensions.quick_drain && streams_.media_qdelay(now) > streams_.frame_period())
     pacer_.RaiseTo(DrainRate(p_, now, window_.ref_wnd(), path_));
 }

@@ -2,6 +2,7 @@
 // Draft section "Packet Pacing".
 #pragma once
 #include <algorithm>
+#include <cstdint>
 
 #include "src/scream/parameters.h"
 
@@ -18,6 +19,8 @@ class Pacer {
     burst_rate_ = rate;
     burst_ = rate * length;
   }
+  /// Gaps between packets are longer and shorter by up to so much, which shows what others send.
+  void set_ripple(Duration ripple) { ripple_ = ripple; }
   void RaiseTo(DataRate rate) { pace_bitrate_ = std::max(pace_bitrate_, rate); }
   /// A packet comes into an empty queue: the time before it gives no credit.
   void OnIdleEnd(Time now) { next_ = std::max(next_, now); }
@@ -30,10 +33,19 @@ class Pacer {
   DataRate pace_bitrate() const { return pace_bitrate_; }
 
  private:
+  /// One of each two, but in an order that has no period (Thue and Morse's).
+  bool LongerGap() {
+    bool odd = false;
+    for (std::uint32_t bits = gaps_++; bits != 0; bits &= bits - 1) odd = !odd;
+    return odd;
+  }
+
   const Parameters& p_;
   DataRate pace_bitrate_ = DataRate::BitsPerSecond(1e6);
   DataRate burst_rate_;
   DataSize burst_;  // what is left of the burst
+  Duration ripple_{0};
+  std::uint32_t gaps_ = 0;
   Time next_{};
 };
 
@@ -48,7 +60,9 @@ inline void Pacer::OnSent(Time now, DataSize size) {
   const bool burst = burst_ >= size;
   if (burst) burst_ -= size;
   const DataRate rate = burst ? std::max(pace_bitrate_, burst_rate_) : pace_bitrate_;
-  next_ = std::max(next_, now - p_.pacing_catch_up) + size / rate;
+  const Duration gap = size / rate;
+  const Duration ripple = std::min(ripple_, gap / 2);
+  next_ = std::max(next_, now - p_.pacing_catch_up) + gap + (LongerGap() ? ripple : -ripple);
 }
 
 }  // namespace lidar::scream

@@ -158,13 +158,15 @@ struct Parameters {
   double min_pacing_reserve = 0.18;
   double max_pacing_reserve = 0.35;
 
-  /// shared_link: part of the draft's growth near the inflection point beside others where nothing
-  /// marks, which is a segment of 1500 bytes a round trip...
+  /// shared_link: part of the draft's growth near the inflection point beside others that have
+  /// more, where nothing marks, which is a segment of 1500 bytes a round trip...
   double classic_growth = 1.5;
   /// ...where marking begins early...
   double early_growth = 0.45;
   /// ...and part of the draft's reaction to marks, in either case.
   double prague_backoff = 0.1;
+  /// Packets leave so much sooner and later than evenly, which shows what others send.
+  Duration pacing_ripple = 300us;
   /// fast_start: of its growth, where losses keep to a full queue that others fill, too.
   double fast_increase_beside = 0.2;
   /// gap_recovery: of what the window allows, the target in a gap: what is queued then may be late.

@@ -1,61 +1,90 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Beyond the draft: whether other flows use the bottleneck, too.
+// Beyond the draft: whether other flows use the bottleneck, too, and what it carries in all.
 #pragma once
+#include <algorithm>
 #include <optional>
 #include <utility>
 
 #include "src/base/time.h"
+#include "src/base/units.h"
 
 namespace lidar::scream {
 
 /// While the bottleneck's queue does not run empty, only what others sent in between comes between
 /// the arrivals of our packets, however far apart they left. So the spacing of arrivals grows with
-/// that of departures by the others' share of the link. Arrival times of reports are
-/// coarse, so it takes many packets.
+/// that of departures by the others' share of the link. What is left of it is the time that the
+/// link takes for one of ours. The pacer lets packets leave a little unevenly for this. Arrival
+/// times of reports are coarse, so it takes many packets.
 class CrossTraffic {
  public:
+  struct Packet {
+    Time sent{};
+    Time arrival{};
+    DataSize size;
+  };
+
   /// `congested`: marks or losses show that there is a queue. Without them jitter, or a clock that
   /// drifts, looks like one, and on an idle link arrivals follow departures as they do beside
   /// others.
-  void Add(Time sent, Time arrival, Duration qdelay, bool congested) {
+  void Add(const Packet& packet, Duration qdelay, bool congested) {
     if (!congested) {
-      Skip(sent);
+      Skip(packet.sent);
       return;
     }
-    const auto previous = std::exchange(last_, Packet{sent, arrival});
-    if (!previous || sent <= previous->sent || arrival < previous->arrival) return;
-    // A packet that waited for less may have met an idle link.
-    if (sent - previous->sent > kPause || arrival - previous->arrival > qdelay) return;
-    counted_ = sent;
-    Count(1e3 * Seconds(sent - previous->sent), 1e3 * Seconds(arrival - previous->arrival));
+    // What arrived must not decide which packets count, so the one before shows the queue.
+    const double waited_ms = std::min(lately_waited_ms_, waited_ms_);
+    waited_ms_ = Ms(qdelay);
+    lately_waited_ms_ += (waited_ms_ - lately_waited_ms_) / 4;
+    const auto previous = std::exchange(last_, packet);
+    if (!previous || packet.sent <= previous->sent || packet.arrival < previous->arrival) return;
+    const double sent_ms = Ms(packet.sent - previous->sent);
+    const double arrived_ms = Ms(packet.arrival - previous->arrival);
+    spacing_ms_ += (sent_ms - spacing_ms_) / 16;
+    const bool idle = waited_ms < std::max(sent_ms, kLongestGap * spacing_ms_) + kTickMs;
+    if (idle || arrived_ms > kPauseMs) return;
+    counted_ = packet.sent;
+    Count(sent_ms, arrived_ms, static_cast<double>(packet.size.bytes()));
   }
-  /// The next packet has no neighbour: there was a gap, or a clock was set.
-  void Break() { last_.reset(); }
+  /// Arrival times of one report are rounded alike, those of two are not.
+  void BeginReport() { last_.reset(); }
   /// Stays as it was while packets leave so evenly that they tell nothing.
   bool found() const { return found_; }
-  /// The others' share of the link; none while too little is known.
+  /// The others' share of the link while we send; none while too little is known.
   std::optional<double> share() const {
     if (sent_sent_ < kEvidence) return std::nullopt;
     return sent_arrived_ / sent_sent_;
   }
+  /// What the link carries for all; as share().
+  std::optional<DataRate> link_rate() const {
+    const auto share = this->share();
+    const double own_ms = arrived_.value - share.value_or(0) * sent_.value;
+    if (!share || own_ms <= 0) return std::nullopt;
+    return DataRate::BitsPerSecond(bytes_.value * 8e3 / own_ms);
+  }
 
  private:
+  /// An average over as many packets as the sums.
+  struct Average {
+    double value = 0;
+    void Add(double x, double weight) { value += (x - value) * weight; }
+  };
+
+  static double Ms(Duration d) { return 1e3 * Seconds(d); }
   void Skip(Time sent) {
     last_.reset();
     if (sent - counted_ > kForgotten) *this = CrossTraffic();
   }
-  struct Packet {
-    Time sent{};
-    Time arrival{};
-  };
-
-  /// Against the averages of late: the spacing changes with our rate and the link's, too.
-  void Count(double sent_ms, double arrived_ms) {
-    mean_sent_ += (sent_ms - mean_sent_) / kLately;
-    mean_arrived_ += (arrived_ms - mean_arrived_) / kLately;
-    const double sent = sent_ms - mean_sent_;
+  void Count(double sent_ms, double arrived_ms, double bytes) {
+    const double weight = std::max(1 / kPackets, 1 / ++counted_packets_);
+    sent_.Add(sent_ms, weight);
+    arrived_.Add(arrived_ms, weight);
+    bytes_.Add(bytes, weight);
+    // Against the averages of late: the spacing changes with our rate and the link's, too.
+    lately_sent_.Add(sent_ms, 1 / kLately);
+    lately_arrived_.Add(arrived_ms, 1 / kLately);
+    const double sent = sent_ms - lately_sent_.value;
     sent_sent_ += sent * sent - sent_sent_ / kPackets;
-    sent_arrived_ += sent * (arrived_ms - mean_arrived_) - sent_arrived_ / kPackets;
+    sent_arrived_ += sent * (arrived_ms - lately_arrived_.value) - sent_arrived_ / kPackets;
     Decide();
   }
   /// A start, or a step of the capacity, is over before it is believed.
@@ -68,18 +97,28 @@ class CrossTraffic {
     against_ = 0;
   }
 
-  static constexpr double kLately = 64;
+  static constexpr double kLately = 8;
   static constexpr double kPackets = 2048;
   static constexpr int kSure = 1024;  // packets
   static constexpr Duration kForgotten = std::chrono::seconds(10);
-  static constexpr Duration kPause = std::chrono::milliseconds(15);
+  /// A longer one is a gap of the link, or a clock that was set.
+  static constexpr double kPauseMs = 15;
+  /// Of the pacer, on top of the average.
+  static constexpr double kLongestGap = 1.5;
+  /// Delays are too long by this on average, as arrival times are rounded.
+  static constexpr double kTickMs = 0.5;
   /// In ms^2: arrival times of 1/1024 s leave an error of 0.1 in the share.
   static constexpr double kEvidence = 30;
-  static constexpr double kFound = 0.3;
-  static constexpr double kGone = 0.2;
+  static constexpr double kFound = 0.2;
+  static constexpr double kGone = 0.15;
   std::optional<Packet> last_;
   Time counted_{};
-  double mean_sent_ = 0, mean_arrived_ = 0;
+  double waited_ms_ = 0;         // by the packet before...
+  double lately_waited_ms_ = 0;  // ...and by some before it, on average
+  double spacing_ms_ = 0;
+  double counted_packets_ = 0;
+  Average sent_, arrived_, bytes_;
+  Average lately_sent_, lately_arrived_;
   double sent_sent_ = 0, sent_arrived_ = 0;  // sums of products
   int against_ = 0;                          // packets in a row that speak against `found_`
   bool found_ = false;

@@ -40,7 +40,6 @@ void PathModel::OnGapEnd(Time now, Duration s_rtt, double l4s_alpha) {
   gap_end_ = now;
   queue_delay_.ForgetQueue();
   busy_run_.Reset();
-  cross_traffic_.Break();
   train_.Reset();
   rtt_.Restore(std::max(s_rtt, rtt_.min()));
   l4s_alpha_.Restore(l4s_alpha);
@@ -86,7 +85,6 @@ void PathModel::MeasureDelays(Time now, const AckSummary& acks, const SenderStat
       continue;
     ++clock_resets_;
     busy_run_.Reset();
-    cross_traffic_.Break();
   }
   if (acks.acked.empty() || acks.acked.back().sent >= gap_end_)
     queue_delay_.Update(now, rtt_.smoothed(), sender.qdelay_target);
@@ -122,6 +120,7 @@ void PathModel::ObserveCapacity(Time now, const AckSummary& acks, Duration qdela
   hole_in_report_ = false;
   const bool lossy = loss_context_.AtFullQueue() && now - last_loss_ < kLossesExpected;
   const bool congested = MarkedLately(now) || lossy;
+  cross_traffic_.BeginReport();
   for (const AckedPacket& packet : acks.acked) {
     if (!packet.arrival) {  // a hole in what is known of the link
       busy_run_.Reset();
@@ -134,7 +133,7 @@ void PathModel::ObserveCapacity(Time now, const AckSummary& acks, Duration qdela
     if (packet.sent >= gap_end_) {
       classic_ecn_.OnPacket(now, qdelay, marked);
       if (marked) marking_onset_.OnMark(qdelay);
-      cross_traffic_.Add(packet.sent, *packet.arrival, qdelay, congested);
+      cross_traffic_.Add({packet.sent, *packet.arrival, packet.size}, qdelay, congested);
     }
     busy_run_.Add({*packet.arrival, packet.size, busy, marked});
     if (const auto rate = burst_.Add({packet.sent, *packet.arrival, packet.size}))

@@ -2,6 +2,7 @@
 // Extension shared_link: beside other flows the window grows and gives way as theirs do.
 #pragma once
 #include <algorithm>
+#include <cmath>
 
 #include "src/scream/model/path_model.h"
 #include "src/scream/parameters.h"
@@ -9,26 +10,52 @@
 
 namespace lidar::scream {
 
+/// 1 where marking begins as late as a ramp's or without a sign of it, 0 where it begins so early
+/// that each packet of queue is marked.
+inline double LateMarking(Duration onset) {
+  constexpr Duration kEarly = 1250us, kLate = 2ms;
+  return std::clamp(Seconds(onset - kEarly) / Seconds(kLate - kEarly), 0.0, 1.0);
+}
+
 /// 1 where marking begins so early that a bolder window adds no delay to speak of. Marks without a
 /// queue are a classic flow's (RFC 9332, section 2.1): the draft is bold enough beside it.
 inline double EarlyMarking(Duration onset) {
-  constexpr Duration kCoupled = 700us, kOwn = 900us, kEarly = 1250us, kLate = 2ms;
-  if (onset < kOwn)
-    return std::clamp(Seconds(onset - kCoupled) / Seconds(kOwn - kCoupled), 0.0, 1.0);
-  return std::clamp(Seconds(kLate - onset) / Seconds(kLate - kEarly), 0.0, 1.0);
+  constexpr Duration kCoupled = 700us, kOwn = 900us;
+  const double own = std::clamp(Seconds(onset - kCoupled) / Seconds(kOwn - kCoupled), 0.0, 1.0);
+  return std::min(own, 1 - LateMarking(onset));
 }
 
+/// Packets that leave unevenly show what others send, and make as much more queue.
+inline Duration PacingRipple(const Parameters& p, const PathModel& path) {
+  if (!p.extensions.shared_link) return Duration{0};
+  return FromSeconds(Seconds(p.pacing_ripple) * LateMarking(path.marking_onset()));
+}
+
+/// From -1, clearly less than half of the link, to 1, clearly more.
+inline double AboveHalf(DataRate own, DataRate link) {
+  constexpr double kClearly = 0.05;
+  return std::clamp((own / link - 0.5) / kClearly, -1.0, 1.0);
+}
+
+/// Beside others nobody needs more than half of the link. Who has less is as bold as Prague or
+/// Cubic; who has more gives way like the gentlest. So it takes no knowledge of what the others
+/// are.
 inline Boldness BesideOthers(const Parameters& p, const PathModel& path, Time now) {
+  constexpr double kGrowth = 2;
+  /// The draft's alpha is above ours for as many marks, as it attacks faster than it decays.
+  constexpr double kGentlest = 2.5;
   Boldness b;
   if (!p.extensions.shared_link) return b;
-  const bool shared = path.cross_traffic().found();
-  if (!path.L4sWorks(now)) {
-    if (shared) b.growth = p.classic_growth;
-    return b;
-  }
-  const double early = EarlyMarking(path.marking_onset());
+  const bool l4s = path.L4sWorks(now);
+  const double early = l4s ? EarlyMarking(path.marking_onset()) : 0;
   b.growth += (p.early_growth - b.growth) * early;
-  b.backoff += (p.prague_backoff - b.backoff) * (shared ? 1 : early);
+  b.backoff += (p.prague_backoff - b.backoff) * early;
+  const auto link = path.cross_traffic().link_rate();
+  if (!path.cross_traffic().found() || !link) return b;
+  const double above = AboveHalf(path.acked_rate(now), *link);
+  const double below = (1 - above) / 2;  // 1: clearly less than half
+  b.backoff = kGentlest * std::pow(p.prague_backoff / kGentlest, below);
+  b.growth *= l4s ? std::pow(kGrowth, -above) : std::pow(p.classic_growth / b.growth, below);
   return b;
 }
 

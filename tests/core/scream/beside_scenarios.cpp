@@ -46,6 +46,19 @@ Scenario BesideWithAqm(const std::string& name, TcpKind other, AqmConfig::Kind a
   return s;
 }
 
+/// The draft alone is what the reference sends, with as many frames a second as ours.
+Scenario BesideDraft(Duration phase, const Parameters& p) {
+  Scenario s = BesideWithAqm("draft_ramp_20M_phase_" + std::to_string(phase / 1ms) + "ms",
+                             TcpKind::kCubic, AqmConfig::Kind::kRamp, p);
+  s.config.others.clear();
+  s.config.forward.delay = s.config.return_delay = 12500us;
+  s.config.flows.push_back(s.config.flows.front());
+  s.config.flows.back().parameters = Parameters::Draft();
+  s.config.flows.back().start += phase;
+  s.beside_draft = true;
+  return s;
+}
+
 /// Two of ours, whose frames never meet.
 Scenario AtPhase(Duration phase, const Parameters& p) {
   Scenario s =
@@ -74,6 +87,7 @@ std::vector<Scenario> BesideScenarios(const Parameters& p) {
   all.push_back(BesideWithAqm("prague_ramp_20M", TcpKind::kPrague, AqmConfig::Kind::kRamp, p));
   all.push_back(
       BesideWithAqm("prague_dualpi2_20M", TcpKind::kPrague, AqmConfig::Kind::kDualPi2, p));
+  for (const Duration phase : {0ms, 4ms, 7ms, 13ms}) all.push_back(BesideDraft(phase, p));
   for (const Duration phase : {4ms, 7ms, 10ms}) all.push_back(AtPhase(phase, p));
   return all;
 }

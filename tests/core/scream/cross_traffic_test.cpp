@@ -10,19 +10,22 @@
 namespace lidar::scream::test {
 namespace {
 
-/// Frames of ten packets every 20 ms, 1 ms apart, and 11 ms of pause: arrivals in ticks of a
-/// report.
+/// Frames of ten packets every 20 ms, about 1 ms apart, and a pause: arrivals in ticks of a report.
 class CrossTrafficTest : public ::testing::Test {
  protected:
-  /// In front of each packet waits what others sent since the one before.
-  void Send(int frames, double others_share, Duration queue = 20ms) {
-    const double own = (1 - others_share) * 2;  // ms a packet, so that the link is full
+  /// In front of each packet waits what others sent since the one before. `own` ms a packet.
+  void Send(int frames, double others_share, Duration queue = 20ms, double own = 0.5) {
     for (int i = 0; i < 10 * frames; ++i) {
-      const double spacing_ms = i % 10 == 0 ? 11 : 1;
+      if (i % 10 == 0) traffic_.BeginReport();
+      const double uneven_ms = (i / 10 * 7 + i) % 3 == 0 ? 1.4 : 0.8;
+      const double spacing_ms = i % 10 == 0 ? 20 - 9 : uneven_ms * spacing_;
       sent_ += FromSeconds(spacing_ms / 1e3);
       arrival_ += FromSeconds((own + others_share * spacing_ms) / 1e3);
-      traffic_.Add(sent_, Tick(arrival_), queue, congested_);
+      Add(sent_, arrival_, queue);
     }
+  }
+  void Add(Time sent, Time arrival, Duration queue) {
+    traffic_.Add({sent, Tick(arrival), DataSize::Bytes(1250)}, queue, congested_);
   }
   static Time Tick(Time t) {
     constexpr double kTicks = 1024;
@@ -32,6 +35,7 @@ class CrossTrafficTest : public ::testing::Test {
   CrossTraffic traffic_;
   Time sent_ = kStart, arrival_ = kStart;
   bool congested_ = true;
+  double spacing_ = 1;
 };
 
 TEST_F(CrossTrafficTest, IsNoneAloneOnALink) {
@@ -49,6 +53,34 @@ TEST_F(CrossTrafficTest, IsTheOthersShareOfTheLink) {
     EXPECT_NEAR(*traffic_.share(), share, 0.05);
     EXPECT_TRUE(traffic_.found());
   }
+}
+
+/// 1250 bytes in 0.5 ms.
+TEST_F(CrossTrafficTest, TellsWhatTheLinkCarriesForAll) {
+  for (const double share : {0.0, 0.4, 0.7}) {
+    traffic_ = CrossTraffic();
+    EXPECT_FALSE(traffic_.link_rate());
+    Send(500, share);
+    ASSERT_TRUE(traffic_.link_rate());
+    EXPECT_NEAR(traffic_.link_rate()->bits_per_second() / 1e6, 20, 2) << share;
+  }
+}
+
+/// Packets leave and arrive further apart when the link becomes slower.
+TEST_F(CrossTrafficTest, TakesNoStepOfTheCapacityForOthers) {
+  for (int i = 0; i < 20; ++i) {
+    const bool slow = i % 2 == 1;
+    spacing_ = slow ? 1.5 : 1;
+    Send(50, 0, 20ms, slow ? 1.5 : 0.5);
+    EXPECT_FALSE(traffic_.found()) << i;
+  }
+  EXPECT_NEAR(*traffic_.share(), 0, 0.1);
+}
+
+/// A packet that left after the one before had passed the queue found it empty, or nearly so.
+TEST_F(CrossTrafficTest, CountsNoPacketThatMayHaveMetAnIdleLink) {
+  Send(500, 1, 1500us);
+  EXPECT_FALSE(traffic_.share());
 }
 
 TEST_F(CrossTrafficTest, IsNotBelievedAtOnceAndGoesWithTheOthers) {
@@ -89,10 +121,9 @@ TEST_F(CrossTrafficTest, TakesNoGapForOthers) {
   Send(500, 0.5);
   const double before = *traffic_.share();
   for (int i = 0; i < 20; ++i) {
-    traffic_.Break();
     arrival_ += 300ms;
-    sent_ += 5ms;
-    traffic_.Add(sent_, Tick(arrival_), 400ms, true);
+    sent_ += 1ms;
+    Add(sent_, arrival_, 400ms);
   }
   EXPECT_DOUBLE_EQ(*traffic_.share(), before);
 }
@@ -100,7 +131,7 @@ TEST_F(CrossTrafficTest, TakesNoGapForOthers) {
 TEST_F(CrossTrafficTest, IsUnknownWhilePacketsLeaveEvenly) {
   for (int i = 0; i < 5000; ++i) {
     sent_ += 1ms;
-    traffic_.Add(sent_, Tick(sent_ + i % 7 * 200us), 20ms, true);
+    Add(sent_, sent_ + i % 7 * 200us, 20ms);
   }
   EXPECT_FALSE(traffic_.share());
 }
@@ -108,7 +139,7 @@ TEST_F(CrossTrafficTest, IsUnknownWhilePacketsLeaveEvenly) {
 TEST_F(CrossTrafficTest, SkipsPacketsOutOfOrder) {
   Send(500, 0.5);
   const double before = *traffic_.share();
-  for (int i = 0; i < 100; ++i) traffic_.Add(sent_ - i * 10ms, arrival_ - i * 7ms, 20ms, true);
+  for (int i = 0; i < 100; ++i) Add(sent_ - i * 10ms, arrival_ - i * 7ms, 20ms);
   EXPECT_DOUBLE_EQ(*traffic_.share(), before);
 }
 
@@ -120,11 +151,24 @@ TEST(SharedLink, ABolderWindowIsForEarlyMarksOfAnL4sQueueOnly) {
   EXPECT_EQ(EarlyMarking(2ms), 0);
 }
 
+TEST(SharedLink, HalfOfTheLinkIsEnoughBesideOthers) {
+  EXPECT_EQ(AboveHalf(Mbps(4), Mbps(20)), -1);
+  EXPECT_NEAR(AboveHalf(Mbps(10), Mbps(20)), 0, 1e-9);
+  EXPECT_NEAR(AboveHalf(Mbps(10.5), Mbps(20)), 0.5, 1e-9);
+  EXPECT_EQ(AboveHalf(Mbps(16), Mbps(20)), 1);
+}
+
+TEST(SharedLink, PacketsLeaveUnevenlyWhereThatAddsNoMarks) {
+  EXPECT_EQ(LateMarking(1ms), 0);
+  EXPECT_EQ(LateMarking(3ms), 1);
+}
+
 TEST(SharedLink, TheDraftAloneIsAsItWas) {
   const Parameters p = Parameters::Draft();
   const Boldness b = BesideOthers(p, PathModel(p), kStart);
   EXPECT_EQ(b.growth, 0.25);
   EXPECT_EQ(b.backoff, 0.25);
+  EXPECT_EQ(PacingRipple(p, PathModel(p)), Duration{0});
 }
 
 }  // namespace

@@ -220,6 +220,34 @@ TEST(Pacer, WaitsNoLongerForWhatLeftAtTheRateOfAGap) {
   EXPECT_EQ(pacer.next(), kStart + 20ms);
 }
 
+/// In pairs of a longer and a shorter one, but in no order that another flow's packets could have.
+TEST(Pacer, GapsAreUnevenByTheRippleAndEvenOnAverage) {
+  const Parameters p;
+  for (const Duration ripple : {Duration(200us), Duration(10ms)}) {
+    Pacer pacer(p);
+    pacer.OnIdleEnd(kStart);
+    pacer.set_ripple(ripple);
+    pacer.Update(Mbps(10), Mbps(100), 1);
+    const Duration even = DataSize::Bytes(1250) / Mbps(10);
+    Time due = kStart;
+    int changes = 0;
+    bool longer = false;
+    for (int i = 0; i < 64; ++i) {
+      pacer.OnSent(due, DataSize::Bytes(1250));
+      const Duration gap = pacer.next() - due;
+      EXPECT_EQ(gap > even ? gap - even : even - gap, std::min(ripple, even / 2));
+      changes += i > 0 && (gap > even) != longer;
+      longer = gap > even;
+      due = pacer.next();
+      if (i % 2 == 1) {
+        EXPECT_EQ(due - kStart, (i + 1) * even);
+      }
+    }
+    EXPECT_GT(changes, 32);
+    EXPECT_LT(changes, 63);
+  }
+}
+
 TEST(Pacer, ABurstIsFasterAndShort) {
   const Parameters p = Parameters::Draft();
   Pacer pacer(p);

@@ -90,15 +90,15 @@ BesideMetrics MeasureBeside(const Scenario& s, const SimulationResult& result) {
     return static_cast<double>(result.DeliveredBytes(from, until, static_cast<int>(flow))) * 8 /
            1e6 / Seconds(until - from);
   };
-  const std::size_t ours = result.flows.size(), theirs = result.others.size();
+  const std::size_t ours = s.beside_draft ? 1 : result.flows.size();
+  const std::size_t all = result.flows.size() + result.others.size();
   for (std::size_t i = 0; i < ours; ++i) m.ours_mbps += mbps(i) / static_cast<double>(ours);
-  for (std::size_t i = 0; i < theirs; ++i) {
-    const TcpResult& t = result.others[i];
-    m.theirs_mbps += mbps(ours + i) / static_cast<double>(theirs);
+  for (std::size_t i = ours; i < all; ++i)
+    m.theirs_mbps += mbps(i) / static_cast<double>(all - ours);
+  for (const TcpResult& t : result.others)
     m.their_loss += static_cast<double>(t.packets_lost) /
                     static_cast<double>(std::max<std::uint64_t>(1, t.packets_sent)) /
-                    static_cast<double>(theirs);
-  }
+                    static_cast<double>(all - ours);
   return m;
 }
 
@@ -228,7 +228,7 @@ ScenarioMetrics Measure(const Scenario& s, const SimulationResult& result) {
     squares += x * x;
   }
   m.jain = sum * sum / (squares * static_cast<double>(result.flows.size() + result.others.size()));
-  if (!result.others.empty()) m.beside = MeasureBeside(s, result);
+  if (!result.others.empty() || s.beside_draft) m.beside = MeasureBeside(s, result);
   m.frame_ms = Summarise(std::move(latencies));
   const double capacity = s.config.forward.capacity.RateAt(Duration{0}).bits_per_second();
   const Duration window = 100ms;

@@ -21,6 +21,7 @@ struct Scenario {
   SimulationConfig config;
   Duration settle = std::chrono::seconds(3);  ///< left out of utilisation and queue
   std::optional<Duration> drop_at;            ///< a capacity drop to look at
+  bool beside_draft = false;                  ///< only the first flow is ours
 };
 
 /// All scenarios, with these parameters at the sender.
