@@ -178,7 +178,7 @@ void OwnState(GObjectClass* klass) {
   };
 }
 
-/// Both of these, as all elements need them whose `state` is freed in no other way.
+/// Does both: OwnState() and ServeProperties(), as nearly every element needs them.
 template <class Self, gpointer& parent_class, auto& table,
           void (*changed)(GObject*, GParamSpec*) = NothingMore>
 void ServeState(gpointer klass) {
