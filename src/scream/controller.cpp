@@ -217,7 +217,7 @@ CongestionSignals Controller::Signals(Time now, const AckSummary& acks) const {
   s.bytes_newly_acked = acks.bytes_newly_acked;
   s.bytes_newly_acked_ce = std::min(acks.bytes_newly_acked_ce, acks.bytes_newly_acked);
   s.target_bitrate = window_target_;
-  s.target_bitrate_max = streams_.max_bitrate();
+  s.target_bitrate_max = WindowHoldsBursts() ? DataRate::Infinite() : streams_.max_bitrate();
   s.acked_bitrate = path_.acked_rate(now);
   return s;
 }
@@ -246,13 +246,24 @@ void Controller::StartWindow() {
   window_.Set(WindowFor(p_, streams_.start_bitrate(), path_.rtt().smoothed()));
 }
 
+/// At the maximum bitrate the window is enough for frames that leave evenly; a whole scan, and what
+/// a gap left, would go out faster.
+bool Controller::WindowHoldsBursts() const {
+  const MaxBytesInFlight& flight = path_.max_in_flight();
+  return p_.extensions.adaptive_pacing && window_.ref_wnd() < WindowAtMaxBitrate() &&
+         std::max(flight.current(), flight.previous()) > window_.ref_wnd();
+}
+
+/// What the maximum bitrate needs where its frames leave in bursts.
+DataSize Controller::WindowAtMaxBitrate() const {
+  return streams_.max_bitrate() * (path_.rtt().smoothed() + 1ms) *
+         (p_.target_rate_divisor + streams_.queue_compensation()) * p_.packet_pacing_headroom;
+}
+
 /// At the maximum bitrate the window must not drift away from what is in flight.
 void Controller::LimitWindowAtMaxBitrate() {
   if (window_target_ < streams_.max_bitrate()) return;
-  const DataSize needed = streams_.max_bitrate() * (path_.rtt().smoothed() + 1ms) *
-                          (p_.target_rate_divisor + streams_.queue_compensation()) *
-                          p_.packet_pacing_headroom;
-  window_.Limit(std::max(path_.max_in_flight().longest(), needed));
+  window_.Limit(std::max(path_.max_in_flight().longest(), WindowAtMaxBitrate()));
 }
 
 void Controller::UpdateTarget(Time now) {
@@ -261,7 +272,8 @@ void Controller::UpdateTarget(Time now) {
   if (p_.extensions.quick_drain && started_) streams_.LeaveRoomForBacklogs();
   window_target_ = std::clamp(allowed, streams_.min_bitrate(), streams_.max_bitrate());
   pacer_.Update(window_target_, streams_.max_bitrate(),
-                PacingHeadroom(p_, streams_.frame_period(), PacingReserve(p_, path_, now)));
+                PacingHeadroom(p_, streams_.frame_period(), PacingReserve(p_, path_, now)),
+                RelaxedPace(p_, path_));
   pacer_.set_ripple(PacingRipple(p_, path_));
   if (p_.extensions.quick_drain && streams_.media_qdelay(now) > streams_.frame_period())
     pacer_.RaiseTo(DrainRate(p_, now, window_.ref_wnd(), path_));

@@ -123,6 +123,8 @@ class Controller {
   CongestionSignals Signals(Time now, const AckSummary& acks) const;
   void Count(Reaction reaction);
   void StartWindow();
+  bool WindowHoldsBursts() const;
+  DataSize WindowAtMaxBitrate() const;
   void LimitWindowAtMaxBitrate();
   void UpdateTarget(Time now);
   void ProbeByBurst(Time now);

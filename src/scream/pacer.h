@@ -12,8 +12,10 @@ class Pacer {
  public:
   explicit Pacer(const Parameters& parameters) : p_(parameters) {}
 
-  /// `headroom` is PACKET_PACING_HEADROOM or what an extension makes of it.
-  void Update(DataRate target_bitrate, DataRate target_bitrate_max, double headroom);
+  /// `headroom` is PACKET_PACING_HEADROOM or what an extension makes of it. Near the maximum
+  /// pacing is relaxed, up to `relaxed_max`.
+  void Update(DataRate target_bitrate, DataRate target_bitrate_max, double headroom,
+              DataRate relaxed_max = DataRate::Infinite());
   /// The next packets leave at `rate`, for so long.
   void Burst(DataRate rate, Duration length) {
     burst_rate_ = rate;
@@ -49,11 +51,12 @@ class Pacer {
   Time next_{};
 };
 
-inline void Pacer::Update(DataRate target, DataRate max, double headroom) {
-  pace_bitrate_ = std::max(p_.rate_pace_min, target) * headroom;
+inline void Pacer::Update(DataRate target, DataRate max, double headroom, DataRate relaxed_max) {
+  const DataRate strict = std::max(p_.rate_pace_min, target) * headroom;
   const double low = p_.relaxed_pacing_limit_low;
   const double relaxed = std::min(1.0, (target / max - low) / (1 - low));
-  pace_bitrate_ = pace_bitrate_ / std::clamp(1 - relaxed, 1 / p_.max_relaxed_pacing_factor, 1.0);
+  pace_bitrate_ = strict / std::clamp(1 - relaxed, 1 / p_.max_relaxed_pacing_factor, 1.0);
+  pace_bitrate_ = std::min(pace_bitrate_, std::max(strict, relaxed_max));
 }
 
 inline void Pacer::OnSent(Time now, DataSize size) {

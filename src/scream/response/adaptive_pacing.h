@@ -24,4 +24,13 @@ inline double PacingHeadroom(const Parameters& p, Duration frame_period, Duratio
                              longest * p.min_pacing_reserve, p.max_pacing_reserve));
 }
 
+/// Near their maximum streams could leave much faster than they come: no faster than the link is
+/// known to carry, as the start of each frame would be marked.
+inline DataRate RelaxedPace(const Parameters& p, const PathModel& path) {
+  constexpr double kUnmarked = 0.9;
+  const DataRate known = path.train_capacity();
+  if (!p.extensions.adaptive_pacing || known <= DataRate()) return DataRate::Infinite();
+  return known * kUnmarked;
+}
+
 }  // namespace lidar::scream

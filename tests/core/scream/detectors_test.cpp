@@ -195,6 +195,15 @@ TEST(Pacer, RelaxesNearTheMaximumBitrate) {
   EXPECT_NEAR(pacer.pace_bitrate().bits_per_second(), 75e3, 1);
 }
 
+TEST(Pacer, RelaxesUpToWhatTheLinkCarriesAndIsNeverSlowerThanStrictPacing) {
+  const Parameters p = Parameters::Draft();
+  Pacer pacer(p);
+  pacer.Update(Mbps(5), Mbps(5), 1.5, Mbps(9));
+  EXPECT_NEAR(pacer.pace_bitrate().bits_per_second(), 9e6, 1);
+  pacer.Update(Mbps(5), Mbps(5), 1.5, Mbps(6));
+  EXPECT_NEAR(pacer.pace_bitrate().bits_per_second(), 7.5e6, 1);
+}
+
 TEST(Pacer, CatchesUpAfterALateWakeUpButOnlyALittle) {
   const Parameters p;
   Pacer pacer(p);

@@ -57,6 +57,24 @@ TEST(Standstill, ClosesTheWindowToProbes) {
   }
 }
 
+/// Whole scans of 3 Mbit/s, which is all that the stream may have, on 10 Mbit/s with short gaps.
+TEST(Standstill, LeavesABacklogThatSoonGoesToAStreamAtItsMaximum) {
+  Scenario s = *FindScenario("frames_8M_rtt40", Parameters());
+  s.config.forward.capacity = link::Capacity::Constant(Mbps(10));
+  s.config.duration = 30s;
+  for (Duration gap = 5s; gap < s.config.duration; gap += 2s)
+    s.config.forward.capacity.AddOutage(gap, gap + 100ms);
+  SourceConfig& source = s.config.flows[0].sources[0];
+  source.frames_per_second = 10;
+  source.encoder = [](DataRate) {
+    return EncodedFrame{Mbps(3) * 100ms, EncoderBounds{Mbps(3), Mbps(3)}};
+  };
+  const SimulationResult run = Simulate(s.config);
+  const Time origin = run.config.forward.origin;
+  EXPECT_LE(run.QueueDelay(origin + 2s, origin + 4900ms).p95, 5) << "no scan leaves in a burst";
+  EXPECT_LE(Summarise(run.flows[0].frame_latency_ms).p95, 150);
+}
+
 TEST(Standstill, OfMinutesCostsTheTimeItTakes) {
   for (const std::size_t sources : {1U, 2U}) {
     const SimulationResult run = Simulate(Standing(180s, sources).config);
