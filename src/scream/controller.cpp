@@ -276,7 +276,7 @@ void Controller::UpdateTarget(Time now) {
                 RelaxedPace(p_, path_));
   pacer_.set_ripple(PacingRipple(p_, path_));
   if (p_.extensions.quick_drain && streams_.media_qdelay(now) > streams_.frame_period())
-    pacer_.RaiseTo(DrainRate(p_, now, window_.ref_wnd(), path_));
+    pacer_.RaiseTo(DrainRate(p_, now, window_.ref_wnd(), history_.bytes_in_flight(), path_));
 }
 
 void Controller::ProbeByBurst(Time now) {

@@ -9,11 +9,16 @@
 namespace lidar::scream {
 
 /// The window's own rate, which the lowered target is below, but not much more than packets
-/// arrive at.
-inline DataRate DrainRate(const Parameters& p, Time now, DataSize ref_wnd, const PathModel& path) {
+/// arrive at. After a drop of the capacity the last round trips tell of a queue that is gone: what
+/// is in flight takes as long as the link needs for it.
+inline DataRate DrainRate(const Parameters& p, Time now, DataSize ref_wnd, DataSize in_flight,
+                          const PathModel& path) {
   constexpr double kMargin = 1.25;
-  return std::min(ref_wnd / path.rtt().last() / p.target_rate_divisor,
-                  path.acked_rate(now) * kMargin);
+  const DataRate link = path.train_capacity();
+  Duration rtt = path.rtt().last();
+  if (link > DataRate()) rtt = std::max(path.rtt().min(), std::min(rtt, in_flight / link));
+  return std::min(ref_wnd / rtt / p.target_rate_divisor,
+                  std::max(path.acked_rate(now) * kMargin, link));
 }
 
 }  // namespace lidar::scream

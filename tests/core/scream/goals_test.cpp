@@ -95,6 +95,16 @@ TEST(Goals, ACapacityDropIsAnsweredWithinARoundTrip) {
   }
 }
 
+/// What waits at the sender when the capacity falls fills the link as soon as its queue is gone.
+TEST(Goals, TheBacklogOfACapacityDropLeavesWithoutAPause) {
+  const auto frame_p99_ms = [](const char* name) {
+    const Scenario s = *FindScenario(name, Parameters());
+    return Measure(s, Simulate(s.config)).frame_ms.p99;
+  };
+  EXPECT_LE(frame_p99_ms("frames_steps_rtt40"), 85);
+  EXPECT_LE(frame_p99_ms("slices_steps_rtt40"), 58);
+}
+
 TEST(Goals, NinetyPercentAreReachedWithinASecondAndAHalfWithoutALongQueue) {
   const Scenario s = *FindScenario("frames_20M_rtt25", Parameters());
   const ScenarioMetrics m = Measure(s, Simulate(s.config));
