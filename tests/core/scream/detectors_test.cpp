@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The draft's constants, and the small detectors: queue delay, losses, link rate, pacing.
+// The draft's constants, and the small detectors: queue delay, losses, link rate.
 #include <gtest/gtest.h>
 
-#include "src/scream/media_rate.h"
 #include "src/scream/model/arrival_train.h"
 #include "src/scream/model/burst_rate.h"
 #include "src/scream/model/busy_run.h"
@@ -10,7 +9,6 @@
 #include "src/scream/model/loss_rate.h"
 #include "src/scream/model/queue_delay.h"
 #include "src/scream/model/rtt.h"
-#include "src/scream/pacer.h"
 #include "tests/support/simulated.h"
 
 namespace lidar::scream {
@@ -180,111 +178,6 @@ TEST(LossRate, FollowsTheDraftsFilter) {
   EXPECT_DOUBLE_EQ(rate.value(), 0.0025);
   rate.Add(false, DataSize::Bytes(1000000));
   EXPECT_DOUBLE_EQ(rate.value(), 0.0025 * (1 - 0.0005));
-}
-
-TEST(Pacer, RelaxesNearTheMaximumBitrate) {
-  const Parameters p = Parameters::Draft();
-  Pacer pacer(p);
-  pacer.Update(Mbps(4), Mbps(10), 1.5);
-  EXPECT_NEAR(pacer.pace_bitrate().bits_per_second(), 6e6, 1);
-  pacer.Update(Mbps(9), Mbps(10), 1.5);
-  EXPECT_NEAR(pacer.pace_bitrate().bits_per_second(), 27e6, 1);
-  pacer.Update(Mbps(10), Mbps(10), 1.5);
-  EXPECT_NEAR(pacer.pace_bitrate().bits_per_second(), 60e6, 1);
-  pacer.Update(Mbps(0.01), Mbps(10), 1.5);
-  EXPECT_NEAR(pacer.pace_bitrate().bits_per_second(), 75e3, 1);
-}
-
-TEST(Pacer, RelaxesUpToWhatTheLinkCarriesAndIsNeverSlowerThanStrictPacing) {
-  const Parameters p = Parameters::Draft();
-  Pacer pacer(p);
-  pacer.Update(Mbps(5), Mbps(5), 1.5, Mbps(9));
-  EXPECT_NEAR(pacer.pace_bitrate().bits_per_second(), 9e6, 1);
-  pacer.Update(Mbps(5), Mbps(5), 1.5, Mbps(6));
-  EXPECT_NEAR(pacer.pace_bitrate().bits_per_second(), 7.5e6, 1);
-}
-
-TEST(Pacer, CatchesUpAfterALateWakeUpButOnlyALittle) {
-  const Parameters p;
-  Pacer pacer(p);
-  pacer.Update(Mbps(8), Mbps(100), 1);
-  pacer.OnSent(kStart, DataSize::Bytes(1000));
-  EXPECT_EQ(pacer.next(), kStart - 4ms + 1ms);
-  for (int i = 0; i < 4; ++i) pacer.OnSent(kStart, DataSize::Bytes(1000));
-  EXPECT_EQ(pacer.next(), kStart + 1ms);
-  pacer.OnIdleEnd(kStart + 5ms);
-  pacer.OnSent(kStart + 5ms, DataSize::Bytes(1000));
-  EXPECT_EQ(pacer.next(), kStart + 6ms);
-}
-
-TEST(Pacer, WaitsNoLongerForWhatLeftAtTheRateOfAGap) {
-  const Parameters p;
-  Pacer pacer(p);
-  pacer.Update(DataRate::BitsPerSecond(5e4), DataRate::BitsPerSecond(10e6), 1);
-  pacer.OnSent(kStart, DataSize::Bytes(1250));
-  ASSERT_GT(pacer.next(), kStart + 100ms);
-  pacer.OnGapEnd(kStart + 20ms);
-  EXPECT_EQ(pacer.next(), kStart + 20ms);
-  pacer.OnGapEnd(kStart + 30ms);
-  EXPECT_EQ(pacer.next(), kStart + 20ms);
-}
-
-/// In pairs of a longer and a shorter one, but in no order that another flow's packets could have.
-TEST(Pacer, GapsAreUnevenByTheRippleAndEvenOnAverage) {
-  const Parameters p;
-  for (const Duration ripple : {Duration(200us), Duration(10ms)}) {
-    Pacer pacer(p);
-    pacer.OnIdleEnd(kStart);
-    pacer.set_ripple(ripple);
-    pacer.Update(Mbps(10), Mbps(100), 1);
-    const Duration even = DataSize::Bytes(1250) / Mbps(10);
-    Time due = kStart;
-    int changes = 0;
-    bool longer = false;
-    for (int i = 0; i < 64; ++i) {
-      pacer.OnSent(due, DataSize::Bytes(1250));
-      const Duration gap = pacer.next() - due;
-      EXPECT_EQ(gap > even ? gap - even : even - gap, std::min(ripple, even / 2));
-      changes += i > 0 && (gap > even) != longer;
-      longer = gap > even;
-      due = pacer.next();
-      if (i % 2 == 1) {
-        EXPECT_EQ(due - kStart, (i + 1) * even);
-      }
-    }
-    EXPECT_GT(changes, 32);
-    EXPECT_LT(changes, 63);
-  }
-}
-
-TEST(Pacer, ABurstIsFasterAndShort) {
-  const Parameters p = Parameters::Draft();
-  Pacer pacer(p);
-  pacer.Update(Mbps(8), Mbps(100), 1);
-  pacer.Burst(Mbps(16), 2ms);
-  Time now = kStart;
-  for (const Duration gap : {500us, 500us, 500us, 500us, 1000us, 1000us}) {
-    pacer.OnSent(now, DataSize::Bytes(1000));
-    EXPECT_EQ(pacer.next() - now, Duration(gap));
-    now = pacer.next();
-  }
-}
-
-TEST(Pacer, ABurstIsNeverSlowerThanThePace) {
-  const Parameters p = Parameters::Draft();
-  Pacer pacer(p);
-  pacer.Update(Mbps(8), Mbps(100), 1);
-  pacer.Burst(Mbps(2), 100ms);
-  pacer.OnSent(kStart, DataSize::Bytes(1000));
-  EXPECT_EQ(pacer.next(), kStart + 1ms);
-}
-
-TEST(MediaRate, IsTheWindowOverTheRoundTripWithTheDraftsReserves) {
-  const Parameters p = Parameters::Draft();
-  const DataRate rate = TargetBitrate(p, {DataSize::Bytes(50000), 0.02, 40ms, 0});
-  EXPECT_NEAR(rate.bits_per_second(), 1e7 * (1000.0 / 1020) / 1.2, 1);
-  const DataRate small = TargetBitrate(p, {DataSize::Bytes(3000), 1.0 / 3, 40ms, 0.3});
-  EXPECT_NEAR(small.bits_per_second(), 6e5 * 0.8 * (1000.0 / 1020) / 1.5, 1);
 }
 
 TEST(RoundTripTime, AnOldAverageCountsForLittle) {
