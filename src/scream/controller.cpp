@@ -155,7 +155,7 @@ void Controller::TakeGapRestart(Time now) {
   window_.Set(restart->window);
   path_.OnGapEnd(now, restart->s_rtt, restart->l4s_alpha);
   answered_.OnGapEnd(now);
-  streams_.OnGapEnd();
+  streams_.OnSuddenBacklog();
   pacer_.OnGapEnd(now);
   fast_increase_.OnGapEnd();
   ++counters_.gaps;
@@ -171,6 +171,7 @@ bool Controller::RespondToDrop(Time now) {
   window_.Set(*window * p_.drop_beta);
   window_.NoteReaction(now);
   answered_.OnCapacityDrop(now);
+  streams_.OnSuddenBacklog();
   fast_increase_.OnCongestion(now);
   ++counters_.capacity_drops;
   counters_.reason = RateReason::kDrop;

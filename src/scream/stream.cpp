@@ -60,9 +60,9 @@ void Stream::OnFrame(Time now) {
       std::clamp(rate_adjust_factor_ + error * p_.rate_adjust_gain, 0.0, kMaxRateAdjustFactor);
   // A whole scan at once is a backlog of its own.
   const bool often = frame_period_ < p_.long_frame_period;
-  if (backlog_of_gap_ && often && error < 0) {
+  if (sudden_backlog_ && often && error < 0) {
     rate_adjust_factor_ /= 2;
-    backlog_of_gap_ = rate_adjust_factor_ > kNoAdjustment;
+    sudden_backlog_ = rate_adjust_factor_ > kNoAdjustment;
   }
   const DataSize nominal = target_bitrate_ * frame_period_;
   if (nominal.bytes() <= 0) return;

@@ -42,8 +42,9 @@ class Stream {
   double frame_size_dev() const { return frame_size_dev_; }
   double queue_compensation() const { return rate_adjust_factor_ + frame_size_dev_; }
   Duration frame_period() const { return frame_period_; }
-  /// The queue that stands here came from a gap: once it is gone, it lowers the target no more.
-  void OnGapEnd() { backlog_of_gap_ = !queue_.empty() || rate_adjust_factor_ > 0; }
+  /// The queue that stands here came from a gap or a drop of the capacity: once it is gone, it
+  /// lowers the target no more.
+  void OnSuddenBacklog() { sudden_backlog_ = !queue_.empty() || rate_adjust_factor_ > 0; }
   /// Silence counts from here on, at the latest.
   void NoteTime(Time now) { last_active_ = last_active_.value_or(now); }
   /// Has packets, or had lately.
@@ -102,7 +103,7 @@ class Stream {
   bool frame_period_known_ = false;
   double rate_adjust_factor_ = 0;
   double frame_size_dev_ = 0;
-  bool backlog_of_gap_ = false;
+  bool sudden_backlog_ = false;
   StreamStatistics counters_;
 };
 

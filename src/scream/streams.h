@@ -34,8 +34,8 @@ class Streams {
   /// Lowers targets of streams with more than a frame in their queue, so that it leaves within
   /// `backlog_drain`; not below what they need.
   void LeaveRoomForBacklogs();
-  void OnGapEnd() {
-    for (auto& [id, stream] : streams_) stream.OnGapEnd();
+  void OnSuddenBacklog() {
+    for (auto& [id, stream] : streams_) stream.OnSuddenBacklog();
   }
   // These count the streams that are not silent, or all where all are.
   DataRate min_bitrate() const;

@@ -105,6 +105,12 @@ TEST(Goals, TheBacklogOfACapacityDropLeavesWithoutAPause) {
   EXPECT_LE(frame_p99_ms("slices_steps_rtt40"), 58);
 }
 
+/// Nor does it lower the target once it is gone.
+TEST(Goals, ACapacityDropIsOverOnceItsBacklogIsGone) {
+  const Scenario s = *FindScenario("slices_steps_rtt40", Parameters());
+  EXPECT_GE(Measure(s, Simulate(s.config)).utilisation, 0.907);
+}
+
 TEST(Goals, NinetyPercentAreReachedWithinASecondAndAHalfWithoutALongQueue) {
   const Scenario s = *FindScenario("frames_20M_rtt25", Parameters());
   const ScenarioMetrics m = Measure(s, Simulate(s.config));

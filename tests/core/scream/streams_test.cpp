@@ -275,8 +275,8 @@ TEST_F(StreamTest, AQueueThatOutlastsTheFramePeriodLowersTheRate) {
   EXPECT_DOUBLE_EQ(stream_.rate_adjust_factor(), 0.5);
 }
 
-/// Frames of one packet: twenty wait, a gap ends, they are gone, and four more come.
-double RateAdjustFactorAfterGap(Duration period) {
+/// Frames of one packet: twenty wait at once, they are gone, and four more come.
+double RateAdjustFactorAfterBacklog(Duration period) {
   const Parameters parameters;
   Stream stream(parameters, {1, Mbps(0), Mbps(4), Mbps(50)});
   Time now = kStart;
@@ -286,7 +286,7 @@ double RateAdjustFactorAfterGap(Duration period) {
     now += period;
   };
   for (int i = 0; i < 20; ++i) frame();
-  stream.OnGapEnd();
+  stream.OnSuddenBacklog();
   stream.OnDropped(now, 20);
   for (int i = 0; i < 4; ++i) {
     frame();
@@ -296,9 +296,9 @@ double RateAdjustFactorAfterGap(Duration period) {
 }
 
 /// The draft takes half a second for that, in which the window grows beyond the link.
-TEST(StreamAfterGap, AQueueThatIsGoneLowersTheRateNoMore) {
-  EXPECT_LT(RateAdjustFactorAfterGap(20ms), 0.05);
-  EXPECT_GT(RateAdjustFactorAfterGap(100ms), 0.4);  // whole scans
+TEST(StreamAfterSuddenBacklog, AQueueThatIsGoneLowersTheRateNoMore) {
+  EXPECT_LT(RateAdjustFactorAfterBacklog(20ms), 0.05);
+  EXPECT_GT(RateAdjustFactorAfterBacklog(100ms), 0.4);  // whole scans
 }
 
 TEST_F(StreamTest, FramesAboveTheNominalSizeAreCompensated) {
