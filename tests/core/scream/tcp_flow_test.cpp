@@ -66,7 +66,7 @@ INSTANTIATE_TEST_SUITE_P(Kinds, Greedy,
 /// A path that nothing but random loss limits.
 double MeanWindowUnderLoss(TcpKind kind, double loss, Duration rtt) {
   double sum = 0;
-  constexpr int kRuns = 4;
+  constexpr int kRuns = 2;
   for (int seed = 1; seed <= kRuns; ++seed) {
     SimulationConfig config = Path(kind, Mbps(10000), rtt);
     config.forward.loss = loss;
