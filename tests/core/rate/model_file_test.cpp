@@ -118,8 +118,8 @@ TEST(ModelFile, OfMoreThanAMegabyteIsNotEvenParsed) {
 
 TEST(ModelFile, OfDeepNestingIsRefused) {
   std::string error;
-  EXPECT_FALSE(ParseModelFile(std::string(500000, '['), &error));
-  EXPECT_FALSE(ParseModelFile(std::string(400000, '[') + std::string(400000, ']'), &error));
+  EXPECT_FALSE(ParseModelFile(std::string(200000, '['), &error));
+  EXPECT_FALSE(ParseModelFile(std::string(200000, '[') + std::string(200000, ']'), &error));
 }
 
 TEST(ModelFile, TellsWhichModelItDoesNotHave) {

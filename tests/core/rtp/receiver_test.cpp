@@ -90,8 +90,8 @@ TEST(Receiver, FollowsASenderThatRestartsWithTheSameSsrcWithoutAPause) {
 class Outage : public ::testing::TestWithParam<std::uint32_t> {};
 TEST_P(Outage, CountsEveryScanOfItOnceWhereverItBeginsAndEnds) {
   const std::uint32_t scans = GetParam();
+  const auto all = Sender().Scans(0, scans + 10);
   for (std::uint32_t cut = 0; cut < 4; ++cut) {
-    const auto all = Sender().Scans(0, scans + 10);
     std::vector<Wire> through;
     for (const Wire& w : all) {
       // Down from slice 5.cut to slice (5 + scans).cut.

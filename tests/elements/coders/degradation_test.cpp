@@ -9,7 +9,7 @@
 namespace lidar::gst {
 namespace {
 
-constexpr guint kScans = 60;
+constexpr guint kScans = 30;
 
 struct PreferenceCase {
   const char* name;
