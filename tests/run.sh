@@ -95,7 +95,7 @@ build() {
 }
 
 # clang needs half of gcc's time for code full of checks. The optimizer takes minutes all the same, so
-# only the libraries with hot loops have it. The plain build has refused real warnings.
+# only what tests run for long has it. The plain build has refused real warnings.
 build_sanitized() {
   local cache
   cache=$(command -v ccache)  # meson leaves it out where a compiler is named
