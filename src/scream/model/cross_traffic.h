@@ -99,7 +99,7 @@ class CrossTraffic {
 
   static constexpr double kLately = 8;
   static constexpr double kPackets = 2048;
-  static constexpr int kSure = 1024;  // packets
+  static constexpr int kSure = 768;  // packets
   static constexpr Duration kForgotten = std::chrono::seconds(10);
   /// A longer one is a gap of the link, or a clock that was set.
   static constexpr double kPauseMs = 15;

@@ -41,7 +41,7 @@ inline double AboveHalf(DataRate own, DataRate link) {
 /// Cubic; who has more gives way like the gentlest. So it takes no knowledge of what the others
 /// are.
 inline Boldness BesideOthers(const Parameters& p, const PathModel& path, Time now) {
-  constexpr double kGrowth = 2;
+  constexpr double kGrowth = 3;
   /// The draft's alpha is above ours for as many marks, as it attacks faster than it decays.
   constexpr double kGentlest = 2.5;
   Boldness b;

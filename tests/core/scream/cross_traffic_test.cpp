@@ -84,7 +84,7 @@ TEST_F(CrossTrafficTest, CountsNoPacketThatMayHaveMetAnIdleLink) {
 }
 
 TEST_F(CrossTrafficTest, IsNotBelievedAtOnceAndGoesWithTheOthers) {
-  Send(100, 0.5);  // a thousand packets
+  Send(50, 0.5);  // five hundred packets
   EXPECT_FALSE(traffic_.found());
   Send(100, 0.5);
   EXPECT_TRUE(traffic_.found());
