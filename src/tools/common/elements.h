@@ -38,8 +38,9 @@ inline gst::ElementPtr ParsePipeline(const std::vector<std::string>& words) {
   GError* raw = nullptr;
   gst::ElementPtr pipeline(gst_parse_launchv(argv.data(), &raw));
   const gst::ErrorPtr error(raw);
-  if (error) std::fprintf(stderr, "%s\n", error->message);
-  return !error && GST_IS_BIN(pipeline.get()) ? std::move(pipeline) : nullptr;
+  if (!error && GST_IS_BIN(pipeline.get())) return pipeline;
+  std::fprintf(stderr, "%s\n", error ? error->message : "one element alone is no pipeline");
+  return nullptr;
 }
 
 /// SIGINT and SIGTERM make `*run` false, where the main context is iterated.
