@@ -251,7 +251,8 @@ void Controller::StartWindow() {
 /// a gap left, would go out faster.
 bool Controller::WindowHoldsBursts() const {
   const MaxBytesInFlight& flight = path_.max_in_flight();
-  return p_.extensions.adaptive_pacing && window_.ref_wnd() < WindowAtMaxBitrate() &&
+  return p_.extensions.adaptive_pacing && streams_.max_bitrate() < DataRate::Infinite() &&
+         window_.ref_wnd() < WindowAtMaxBitrate() &&
          std::max(flight.current(), flight.previous()) > window_.ref_wnd();
 }
 
