@@ -41,6 +41,7 @@ class CrossTraffic {
     const double arrived_ms = Ms(packet.arrival - previous->arrival);
     spacing_ms_ += (sent_ms - spacing_ms_) / 16;
     const bool idle = waited_ms < std::max(sent_ms, kLongestGap * spacing_ms_) + kTickMs;
+    unseen_ = share() ? 0 : unseen_ + 1;
     if (idle || arrived_ms > kPauseMs) return;
     counted_ = packet.sent;
     Count(sent_ms, arrived_ms, static_cast<double>(packet.size.bytes()));
@@ -54,6 +55,9 @@ class CrossTraffic {
     if (sent_sent_ < kEvidence) return std::nullopt;
     return sent_arrived_ / sent_sent_;
   }
+  /// Behind a queue for long, and yet no share is known: either others fill it while our packets
+  /// are far apart, or reports tell too little.
+  bool unseen() const { return unseen_ >= kSure; }
   /// What the link carries for all; as share().
   std::optional<DataRate> link_rate() const {
     const auto share = this->share();
@@ -103,7 +107,7 @@ class CrossTraffic {
   static constexpr Duration kForgotten = std::chrono::seconds(10);
   /// A longer one is a gap of the link, or a clock that was set.
   static constexpr double kPauseMs = 15;
-  /// Of the pacer, on top of the average.
+  /// That the pacer leaves, in average gaps.
   static constexpr double kLongestGap = 1.5;
   /// Delays are too long by this on average, as arrival times are rounded.
   static constexpr double kTickMs = 0.5;
@@ -120,6 +124,7 @@ class CrossTraffic {
   Average sent_, arrived_, bytes_;
   Average lately_sent_, lately_arrived_;
   double sent_sent_ = 0, sent_arrived_ = 0;  // sums of products
+  int unseen_ = 0;                           // packets in a row without a share
   int against_ = 0;                          // packets in a row that speak against `found_`
   bool found_ = false;
 };

@@ -10,6 +10,7 @@ namespace {
 constexpr double kInflectionSlope = 8;
 constexpr double kInflectionMin = 0.1;
 constexpr double kScaleMin = 0.25;
+constexpr double kMostBackoff = 0.5;  // alpha / 2, where every packet is marked
 constexpr double kJitterIncreaseMin = 0.1;
 /// Round trips without congestion after which the window may have lost touch with what is in
 /// flight.
@@ -105,6 +106,7 @@ double ReferenceWindow::L4sBackoff(Time now, const CongestionSignals& s, double 
   if (s.qdelay < s.qdelay_target / 4) {
     backoff *= std::max(s.boldness.backoff, scl);
     backoff *= std::max(kScaleMin, s.ref_wnd_delay_scale);
+    backoff = std::min(backoff, kMostBackoff);
   }
   const double rtts =
       Ratio(now - last_reaction_to_congestion_time_, std::max(p_.virtual_rtt, s.s_rtt));

@@ -10,7 +10,7 @@
 namespace lidar::scream {
 
 /// Beyond the draft: floors of growth and reaction near the inflection point, as parts of its full
-/// ones.
+/// ones; above 1 a flow gives way faster than it, though never by more than half of its window.
 struct Boldness {
   double growth = 0.25;
   double backoff = 0.25;

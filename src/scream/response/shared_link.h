@@ -37,11 +37,12 @@ inline double AboveHalf(DataRate own, DataRate link) {
   return std::clamp((own / link - 0.5) / kClearly, -1.0, 1.0);
 }
 
-/// Beside others nobody needs more than half of the link. Who has less is as bold as Prague or
-/// Cubic; who has more gives way like the gentlest. So it takes no knowledge of what the others
-/// are.
+/// Beside others nobody needs more than half of the link. Who has less, or does not know, is about
+/// as bold as Prague or Cubic; who has more gives way like the gentlest. So it takes no knowledge
+/// of what the others are, or how many.
 inline Boldness BesideOthers(const Parameters& p, const PathModel& path, Time now) {
-  constexpr double kGrowth = 3;
+  constexpr double kGrowthOfLess = 1.3;  // more than Prague's, as whole scans leave pauses
+  constexpr double kGrowthOfMore = 1.0 / 3;
   /// The draft's alpha is above ours for as many marks, as it attacks faster than it decays.
   constexpr double kGentlest = 2.5;
   Boldness b;
@@ -50,12 +51,16 @@ inline Boldness BesideOthers(const Parameters& p, const PathModel& path, Time no
   const double early = l4s ? EarlyMarking(path.marking_onset()) : 0;
   b.growth += (p.early_growth - b.growth) * early;
   b.backoff += (p.prague_backoff - b.backoff) * early;
-  const auto link = path.cross_traffic().link_rate();
-  if (!path.cross_traffic().found() || !link) return b;
-  const double above = AboveHalf(path.acked_rate(now), *link);
+  const CrossTraffic& others = path.cross_traffic();
+  if (!others.found() && !(l4s && others.unseen())) return b;
+  const auto link = others.link_rate();
+  const double above = link ? AboveHalf(path.acked_rate(now), *link) : -1;
   const double below = (1 - above) / 2;  // 1: clearly less than half
   b.backoff = kGentlest * std::pow(p.prague_backoff / kGentlest, below);
-  b.growth *= l4s ? std::pow(kGrowth, -above) : std::pow(p.classic_growth / b.growth, below);
+  if (l4s)
+    b.growth *= std::pow(above < 0 ? kGrowthOfLess : kGrowthOfMore, std::abs(above));
+  else
+    b.growth *= std::pow(p.classic_growth / b.growth, below);
   return b;
 }
 

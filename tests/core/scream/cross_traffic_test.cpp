@@ -43,6 +43,7 @@ TEST_F(CrossTrafficTest, IsNoneAloneOnALink) {
   ASSERT_TRUE(traffic_.share());
   EXPECT_NEAR(*traffic_.share(), 0, 0.05);
   EXPECT_FALSE(traffic_.found());
+  EXPECT_FALSE(traffic_.unseen());
 }
 
 TEST_F(CrossTrafficTest, IsTheOthersShareOfTheLink) {
@@ -134,6 +135,7 @@ TEST_F(CrossTrafficTest, IsUnknownWhilePacketsLeaveEvenly) {
     Add(sent_, sent_ + i % 7 * 200us, 20ms);
   }
   EXPECT_FALSE(traffic_.share());
+  EXPECT_TRUE(traffic_.unseen());
 }
 
 TEST_F(CrossTrafficTest, SkipsPacketsOutOfOrder) {
@@ -161,6 +163,8 @@ TEST(SharedLink, HalfOfTheLinkIsEnoughBesideOthers) {
 TEST(SharedLink, PacketsLeaveUnevenlyWhereThatAddsNoMarks) {
   EXPECT_EQ(LateMarking(1ms), 0);
   EXPECT_EQ(LateMarking(3ms), 1);
+  const Parameters p;
+  EXPECT_GT(PacingRipple(p, PathModel(p)), 0ms);
 }
 
 TEST(SharedLink, TheDraftAloneIsAsItWas) {

@@ -143,6 +143,24 @@ double Jain(Scenario s, double frames_per_second = 50) {
   return Measure(s, Simulate(s.config)).jain;
 }
 
+/// Who joins last is slowest, and learns least of the others.
+TEST(BesideOthers, FourOfOursThatJoinOneAfterTheOtherShareAlike) {
+  Scenario s = *FindScenario("frames_20M_rtt25", Parameters());
+  for (int i = 1; i <= 3; ++i) {
+    s.config.flows.push_back(s.config.flows[0]);
+    s.config.flows.back().start += i * 5005ms;
+  }
+  s.config.duration = 100s;
+  s.settle = 40s;
+  EXPECT_GE(Measure(s, Simulate(s.config)).jain, 0.9);
+}
+
+TEST(BesidePrague, OneOfThreeGetsAThird) {
+  Scenario s = *FindScenario("prague_ramp_20M", Parameters());
+  s.config.others.push_back(s.config.others[0]);
+  EXPECT_NEAR(Measure(s, Simulate(s.config)).beside->ours_mbps, 6.7, 1.3);
+}
+
 TEST(BesidePrague, BothGetAboutTheSame) {
   for (const char* name : {"prague_ramp_20M", "prague_dualpi2_20M"})
     EXPECT_GE(Jain(*FindScenario(name, Parameters())), 0.97) << name;
@@ -153,8 +171,8 @@ TEST(BesidePrague, WholeScansGetAboutTheSame) {
   EXPECT_GE(Jain(*FindScenario("prague_ramp_20M", Parameters()), 10), 0.97);
 }
 
-/// It sends each frame at 1.5 times its rate, and reacts three times as strongly to as many marks.
-/// So it gives way to all that react as their marks ask for: 0.75 at a phase of 7 ms.
+/// It sends each frame at 1.5 times its rate, and reacts more strongly to as many marks. Without
+/// the extension the index is 0.78 at a phase of 7 ms.
 TEST(BesideTheDraft, HalfOfTheLinkIsEnough) {
   for (const char* phase : {"0ms", "4ms", "7ms", "13ms"}) {
     const std::string name = std::string("draft_ramp_20M_phase_") + phase;
