@@ -52,7 +52,7 @@ class Bench:
 
     def expect_flow(self, seconds=0.6, part=0.7):
         """The receiver shows what is sent now. A busy machine has several tries."""
-        for tries in range(4):
+        for tries in range(8):
             sent, shown = self.sender.sent, self.count_true()
             time.sleep(seconds)
             sent, shown = self.sender.sent - sent, self.count_true() - shown
