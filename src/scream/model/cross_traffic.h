@@ -41,7 +41,7 @@ class CrossTraffic {
     const double arrived_ms = Ms(packet.arrival - previous->arrival);
     spacing_ms_ += (sent_ms - spacing_ms_) / 16;
     const bool idle = waited_ms < std::max(sent_ms, kLongestGap * spacing_ms_) + kTickMs;
-    unseen_ = share() ? 0 : unseen_ + 1;
+    unseen_ = share() ? 0 : std::min(unseen_ + 1, kSure);
     if (idle || arrived_ms > kPauseMs) return;
     counted_ = packet.sent;
     Count(sent_ms, arrived_ms, static_cast<double>(packet.size.bytes()));
