@@ -8,21 +8,22 @@ import wire
 from bench import Bench
 
 
-def stranger_first(context):
-    """A stranger's packet before the sender's first, and one every 0.1 s."""
+def come_first(context, junk, before, after, pause, ask_every=1):
+    """A stranger's packets `junk(bench, n)`: those of `before` come before the sender's first, and those of `after`
+    beside its stream. Asks at each so many of them whether the sender was let in."""
     bench = Bench(context)
     bench.sender.pause()
     stranger = ends.udp_socket()
-    for n in range(3):
-        stranger.sendto(wire.rtp(b"\0\0", n * 1000, 0, 99), bench.sender.to)
-        time.sleep(0.1)
+    for n in before:
+        stranger.sendto(junk(bench, n), bench.sender.to)
+        time.sleep(pause)
     bench.sender.pause(False)
     start = time.monotonic()
     took = None
-    for n in range(int(10 * context.seconds)):
-        stranger.sendto(wire.rtp(b"\0\0", n * 1000, 0, 99), bench.sender.to)
-        time.sleep(0.1)
-        if took is None and bench.count_true() > 0:
+    for n in after:
+        stranger.sendto(junk(bench, n), bench.sender.to)
+        time.sleep(pause)
+        if took is None and n % ask_every == 0 and bench.count_true() > 0:
             took = time.monotonic() - start
     assert took is not None and took < 2, f"the sender was let in after {took} s"
     bench.settle()
@@ -31,31 +32,18 @@ def stranger_first(context):
     bench.finish()
     stranger.close()
     return f"the sender was let in after {1000 * took:.0f} ms"
+
+
+def stranger_first(context):
+    """A stranger's packet before the sender's first, and one every 0.1 s."""
+    return come_first(context, lambda _, n: wire.rtp(b"\0\0", n * 1000, 0, 99), range(3),
+                      range(int(10 * context.seconds)), 0.1)
 
 
 def stream_of_garbage(context):
     """A stranger with a whole stream that decodes to nothing is there first."""
-    bench = Bench(context)
-    bench.sender.pause()
-    stranger = ends.udp_socket()
-    for n in range(100):
-        stranger.sendto(wire.rtp(bench.random.randbytes(300), n, 0, 99), bench.sender.to)
-        time.sleep(0.005)
-    bench.sender.pause(False)
-    start = time.monotonic()
-    took = None
-    for n in range(100, 100 + int(200 * context.seconds)):
-        stranger.sendto(wire.rtp(bench.random.randbytes(300), n, 0, 99), bench.sender.to)
-        time.sleep(0.005)
-        if took is None and n % 10 == 0 and bench.count_true() > 0:
-            took = time.monotonic() - start
-    assert took is not None and took < 2, f"the sender was let in after {took} s"
-    bench.settle()
-    bench.expect_flow()
-    bench.expect_only_true()
-    bench.finish()
-    stranger.close()
-    return f"the sender was let in after {1000 * took:.0f} ms"
+    return come_first(context, lambda bench, n: wire.rtp(bench.random.randbytes(300), n, 0, 99), range(100),
+                      range(100, 100 + int(200 * context.seconds)), 0.005, ask_every=10)
 
 
 def forged_from_elsewhere(context):
