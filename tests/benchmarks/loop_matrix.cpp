@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "tests/core/loop/late_sender.h"
 #include "tests/core/loop/loop_goals.h"
 #include "tests/core/scream/parameter_options.h"
 
@@ -40,6 +41,7 @@ struct Options {
   double seconds = 60;
   double rtt_ms = 40;
   int starts = 1;
+  double late_share = -1;  // below 0: the loop itself runs
   std::string samples;
 };
 
@@ -47,7 +49,7 @@ void PrintUsage() {
   std::puts(
       "usage: loop-matrix [--trace FILE]... [--variant NAME]... [--seconds S] [--rtt "
       "MS]\n"
-      "                   [--starts N] [--samples CSV] [TRACE...]\n"
+      "                   [--starts N] [--late SHARE] [--samples CSV] [TRACE...]\n"
       "Simulates a LiDAR stream (1.4 to 10 Mbit/s) over traces with gaps, one line a run.\n"
       "  TRACE          a built-in trace (all by default; a drive_N is generated)\n"
       "  --trace FILE   lines of 'time_s rate_mbps'\n"
@@ -56,6 +58,9 @@ void PrintUsage() {
       "  --starts N     N runs for each line, each of another scene, that begin 7.33 s apart in "
       "the\n"
       "                 trace; prints means and, in brackets, the lowest and the highest\n"
+      "  --late SHARE   instead: a sender that knows what the link carries, one round trip late, "
+      "and\n"
+      "                 sends this share of it; beside one that always sends the lowest rate\n"
       "  --samples CSV  writes the sender's state every 10 ms (of one run)\n"
       "Columns: scans captured, left out by the encoder, complete, of these in time; complete over "
       "the oracle's;\n"
@@ -91,6 +96,8 @@ bool Parse(int argc, char** argv, Options* options) {
       options->rtt_ms = std::atof(argv[++i]);
     } else if (arg == "--starts") {
       options->starts = std::atoi(argv[++i]);
+    } else if (arg == "--late") {
+      options->late_share = std::atof(argv[++i]);
     } else if (arg == "--samples") {
       options->samples = argv[++i];
     } else {
@@ -228,6 +235,33 @@ void PrintSpread(const LoopCase& loop_case, int starts) {
   std::fflush(stdout);
 }
 
+/// The bound for senders that adapt.
+void PrintLate(const LoopCase& loop_case, double share, int starts) {
+  LateSenderConfig config;
+  config.duration = loop_case.duration;
+  config.rtt = loop_case.rtt;
+  Spread complete, in_time, utilisation, queue;
+  for (int n = 0; n < starts; ++n) {
+    const LoopCase c = Later(loop_case, n);
+    const LoopReport run = RunLoop(c).report;
+    config.min = lidar::DataRate::BitsPerSecond(run.min_mbps * 1e6);
+    config.max = lidar::DataRate::BitsPerSecond(run.max_mbps * 1e6);
+    config.share = share;
+    const LateSenderReport late = SendLate(c.capacity, config);
+    config.share = 0;
+    const LateSenderReport fixed = SendLate(c.capacity, config);
+    complete.Add(100 * Count(late.complete) / Count(fixed.complete));
+    in_time.Add(100 * Count(late.in_time) / Count(fixed.in_time));
+    utilisation.Add(100 * late.utilisation);
+    queue.Add(late.queue_p95_ms);
+  }
+  std::printf(
+      "%s: complete %s %% of a fixed step's, in time %s %%, utilisation %s %%, queue p95 %s ms\n",
+      loop_case.name.c_str(), complete.Text(1).c_str(), in_time.Text(1).c_str(),
+      utilisation.Text(0).c_str(), queue.Text(1).c_str());
+  std::fflush(stdout);
+}
+
 bool Wanted(const Options& options, const Variant& variant) {
   if (options.variants.empty()) return true;
   for (const std::string& name : options.variants)
@@ -243,7 +277,7 @@ int main(int argc, char** argv) {
     PrintUsage();
     return 2;
   }
-  if (options.starts == 1) PrintHeader();
+  if (options.starts == 1 && options.late_share < 0) PrintHeader();
   for (const NamedTrace& trace : options.traces) {
     for (const Variant& variant : kVariants) {
       if (!Wanted(options, variant)) continue;
@@ -254,6 +288,11 @@ int main(int argc, char** argv) {
       loop_case.rtt = lidar::FromSeconds(options.rtt_ms / 1e3);
       loop_case.parameters = options.parameters;
       variant.apply(&loop_case);
+      if (options.late_share >= 0) {
+        loop_case.name = trace.name;
+        PrintLate(loop_case, options.late_share, options.starts);
+        break;
+      }
       if (options.starts > 1) {
         PrintSpread(loop_case, options.starts);
         continue;

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// What a sender could do that knows all of a link, but one round trip late: the bound for those
+// that adapt.
+#pragma once
+#include <cstdint>
+
+#include "src/base/time.h"
+#include "src/base/units.h"
+#include "src/link/capacity.h"
+
+namespace lidar::loop {
+
+/// Slices as large as a share of the capacity that the sender knows, within what the source can do.
+struct LateSenderConfig {
+  double share = 0.8;  ///< 0: never adapts, each slice has the lowest rate
+  DataRate min;        // of the source
+  DataRate max;
+  Duration duration = std::chrono::seconds{60};
+  Duration rtt = std::chrono::milliseconds{40};
+  /// A slice that waits longer at the sender is dropped.
+  Duration max_queue_delay = std::chrono::milliseconds{200};
+  /// A scan is in time if all of its slices arrive within this.
+  Duration max_age = std::chrono::milliseconds{200};
+  std::uint32_t slices_per_scan = 8;
+  double scans_per_second = 10;
+};
+
+struct LateSenderReport {
+  std::uint64_t complete = 0;
+  std::uint64_t in_time = 0;
+  double utilisation = 0;   // of what the link can carry and the source can use
+  double queue_p95_ms = 0;  // in the network
+};
+
+/// Its window is the product of the known rate and the round trip, so a gap meets no more on the
+/// way than what fills the link.
+LateSenderReport SendLate(const link::Capacity& capacity, const LateSenderConfig& config);
+
+}  // namespace lidar::loop
