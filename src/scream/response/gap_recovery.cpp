@@ -2,6 +2,7 @@
 #include "src/scream/response/gap_recovery.h"
 
 #include <algorithm>
+#include <utility>
 
 namespace lidar::scream {
 namespace {
@@ -22,9 +23,8 @@ constexpr double kBack = 0.9;
 std::optional<GapRecovery::Restart> GapRecovery::Update(Time now, const PathModel& path,
                                                         DataSize ref_wnd, Duration qdelay_target) {
   if (!p_.extensions.gap_recovery) return std::nullopt;
-  const auto rate = path.train().rate();
-  const bool slow = before_ && rate && *rate < before_->rate * kGapPart;
-  if (path.hole_in_report() || slow) NoteSign(now);
+  if (Slow(path)) BelieveLess();
+  if (path.hole_in_report() || Slow(path)) NoteSign(now);
   if (!last_sign_) {
     const bool calm = path.queue_delay().qdelay() < path.BusyQdelay(now, qdelay_target);
     if (calm) Remember(path, ref_wnd);
@@ -38,9 +38,23 @@ std::optional<GapRecovery::Restart> GapRecovery::Update(Time now, const PathMode
   if (!window) return std::nullopt;
   Restart restart = before_->state;
   restart.window = std::max(ref_wnd, std::min(*window, before_->state.window));
+  if (!rate_now) unproven_ = restart.window;
   if (rate_now || restart.window >= before_->state.window * kBack) last_sign_.reset();
   last_restart_ = now;
   return restart;
+}
+
+bool GapRecovery::Slow(const PathModel& path) const {
+  const auto rate = path.train().rate();
+  return before_ && rate && *rate < before_->rate * kGapPart;
+}
+
+/// A step back into the old window ended behind a slow link: so much is not what it carries.
+void GapRecovery::BelieveLess() {
+  const auto tried = std::exchange(unproven_, std::nullopt);
+  if (!tried || *tried >= before_->state.window) return;
+  before_->rate = before_->rate * (*tried / before_->state.window);
+  before_->state.window = *tried;
 }
 
 void GapRecovery::NoteSign(Time now) {
@@ -49,6 +63,7 @@ void GapRecovery::NoteSign(Time now) {
 }
 
 void GapRecovery::Remember(const PathModel& path, DataSize ref_wnd) {
+  unproven_.reset();
   before_ = Before{{ref_wnd, path.rtt().smoothed(), path.l4s_alpha().value()},
                    ref_wnd / path.rtt().smoothed() / p_.target_rate_divisor};
 }

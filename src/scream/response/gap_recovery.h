@@ -38,6 +38,9 @@ class GapRecovery {
     Restart state;
     DataRate rate;
   };
+  /// The link carries next to nothing of what it did.
+  bool Slow(const PathModel& path) const;
+  void BelieveLess();
   void NoteSign(Time now);
   void Remember(const PathModel& path, DataSize ref_wnd);
   /// The window that fits what the packets behind the gap show.
@@ -50,6 +53,7 @@ class GapRecovery {
   std::optional<Time> last_sign_;  // of a gap
   Time first_sign_{};
   Time last_restart_{};
+  std::optional<DataSize> unproven_;  // the window of a step back that nothing has measured yet
 };
 
 }  // namespace lidar::scream

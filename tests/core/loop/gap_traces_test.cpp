@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/core/loop/loop_goals.h"
+#include "tests/support/simulated.h"
 
 namespace lidar::loop {
 namespace {
@@ -109,6 +110,19 @@ TEST(Loop, IsHardlyBehindAFixedStepWhereverATraceBegins) {
     }
     EXPECT_GE(complete, 0.98 * fixed_complete) << trace;
     EXPECT_GE(in_time, 0.98 * fixed_in_time) << trace;
+  }
+}
+
+/// A tenth of the capacity looks like a gap at first.
+TEST(Loop, SettlesSoonOnALinkThatStaysSlow) {
+  using link::Capacity;
+  for (const std::uint32_t slices : {1U, 8U}) {
+    LoopCase c = Case("drop");
+    c.capacity = Capacity::Steps({Mbps(20), Mbps(2), Mbps(2)}, 20s);
+    c.source.slices = slices;
+    const LoopReport r = RunLoop(c).report;
+    EXPECT_GE(r.in_time, slices > 1 ? 590U : 570U) << "of 600 scans";
+    EXPECT_LE(r.queue_ms.p95, 8);
   }
 }
 

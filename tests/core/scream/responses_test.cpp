@@ -185,6 +185,18 @@ TEST_F(GapRecoveryTest, ComesBackByHalvesWhereThereIsNoBacklogToMeasureBy) {
   EXPECT_EQ(restart->window.bytes(), 38250);
 }
 
+TEST_F(GapRecoveryTest, BelievesLessOnceAStepBackMeetsASlowLink) {
+  FallIntoAGap();
+  path_.Arrive(2, 50ms, 0ms, Ecn::kEct1);
+  ASSERT_TRUE(Update(DataSize::Bytes(3000)));  // 26500
+  path_.Arrive(8, 10ms, 100ms, Ecn::kCe);
+  EXPECT_FALSE(Update(DataSize::Bytes(3000)));
+  path_.Arrive(2, 100ms, 0ms, Ecn::kEct1);
+  const auto restart = Update(DataSize::Bytes(3000));
+  ASSERT_TRUE(restart);
+  EXPECT_EQ(restart->window.bytes(), 14750);
+}
+
 TEST_F(GapRecoveryTest, ForgetsAGapOfWhichNothingWasSeenForThreeSeconds) {
   FallIntoAGap();
   path_.now += 3s;
