@@ -187,7 +187,7 @@ void Controller::RespondToSignals(Time now, const AckSummary& acks) {
   if (reaction == Reaction::kLoss) answered_.OnLossReaction(now);
   if (reaction != Reaction::kNone) fast_increase_.OnCongestion(now);
   Count(reaction);
-  LimitWindowAtMaxBitrate();
+  if (window_target_ >= streams_.max_bitrate()) window_.Limit(source_limit().LargestWindow());
 }
 
 CongestionSignals Controller::Signals(Time now, const AckSummary& acks) const {
@@ -218,7 +218,8 @@ CongestionSignals Controller::Signals(Time now, const AckSummary& acks) const {
   s.bytes_newly_acked = acks.bytes_newly_acked;
   s.bytes_newly_acked_ce = std::min(acks.bytes_newly_acked_ce, acks.bytes_newly_acked);
   s.target_bitrate = window_target_;
-  s.target_bitrate_max = WindowHoldsBursts() ? DataRate::Infinite() : streams_.max_bitrate();
+  s.target_bitrate_max = source_limit().HoldsBurstsBack(window_.ref_wnd()) ? DataRate::Infinite()
+                                                                           : streams_.max_bitrate();
   s.acked_bitrate = path_.acked_rate(now);
   return s;
 }
@@ -245,27 +246,6 @@ void Controller::Count(Reaction reaction) {
 
 void Controller::StartWindow() {
   window_.Set(WindowFor(p_, streams_.start_bitrate(), path_.rtt().smoothed()));
-}
-
-/// At the maximum bitrate the window is enough for frames that leave evenly; a whole scan, and what
-/// a gap left, would go out faster.
-bool Controller::WindowHoldsBursts() const {
-  const MaxBytesInFlight& flight = path_.max_in_flight();
-  return p_.extensions.adaptive_pacing && streams_.max_bitrate() < DataRate::Infinite() &&
-         window_.ref_wnd() < WindowAtMaxBitrate() &&
-         std::max(flight.current(), flight.previous()) > window_.ref_wnd();
-}
-
-/// What the maximum bitrate needs where its frames leave in bursts.
-DataSize Controller::WindowAtMaxBitrate() const {
-  return streams_.max_bitrate() * (path_.rtt().smoothed() + 1ms) *
-         (p_.target_rate_divisor + streams_.queue_compensation()) * p_.packet_pacing_headroom;
-}
-
-/// At the maximum bitrate the window must not drift away from what is in flight.
-void Controller::LimitWindowAtMaxBitrate() {
-  if (window_target_ < streams_.max_bitrate()) return;
-  window_.Limit(std::max(path_.max_in_flight().longest(), WindowAtMaxBitrate()));
 }
 
 void Controller::UpdateTarget(Time now) {

@@ -19,6 +19,7 @@
 #include "src/scream/response/outage.h"
 #include "src/scream/response/reference_window.h"
 #include "src/scream/response/send_window.h"
+#include "src/scream/response/source_limit.h"
 #include "src/scream/statistics.h"
 #include "src/scream/steady_time.h"
 #include "src/scream/stream_config.h"
@@ -123,9 +124,9 @@ class Controller {
   CongestionSignals Signals(Time now, const AckSummary& acks) const;
   void Count(Reaction reaction);
   void StartWindow();
-  bool WindowHoldsBursts() const;
-  DataSize WindowAtMaxBitrate() const;
-  void LimitWindowAtMaxBitrate();
+  SourceLimit source_limit() const {
+    return {p_, path_, streams_.max_bitrate(), streams_.queue_compensation()};
+  }
   void UpdateTarget(Time now);
   void ProbeByBurst(Time now);
   void TakeGapRestart(Time now);
