@@ -4,7 +4,6 @@
 change what they stream. Streams survive, and what cannot work says so."""
 import argparse
 import concurrent.futures
-import contextlib
 import os
 import pathlib
 import resource
@@ -18,13 +17,10 @@ import traceback
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent.parent / "adversary"))
 import ends  # noqa: E402
+from machine import Skip, cpu_group, small_disk  # noqa: E402
 
 AT_ONCE = 3
 PATIENCE = 30  # seconds for what takes a moment where nothing else runs
-
-
-class Skip(Exception):
-    """This machine cannot do it; the text says why."""
 
 
 def comes_true(condition):
@@ -74,37 +70,6 @@ class Stream:
         for end in (self.sender, self.receiver):
             assert not end.ask()["error"], end.last["error"]
             end.close()
-
-
-@contextlib.contextmanager
-def cpu_group(percent):
-    """A group of processes with so much of a processor; gives what a process does to join it."""
-    name = f"lidar-hardship-{os.getpid()}"
-    v1, v2 = pathlib.Path("/sys/fs/cgroup/cpu"), pathlib.Path("/sys/fs/cgroup")
-    try:
-        if (v2 / "cgroup.controllers").exists():
-            group, limits = v2 / name, {"cpu.max": f"{percent * 1000} 100000"}
-        elif v1.exists():
-            group, limits = v1 / name, {"cpu.cfs_period_us": "100000", "cpu.cfs_quota_us": f"{percent * 1000}"}
-        else:
-            raise Skip("there is no cgroup for processor time")
-        group.mkdir()
-    except OSError as error:
-        raise Skip(f"no cgroup can be made: {error}") from None
-    try:
-        for file, value in limits.items():
-            (group / file).write_text(value)
-    except OSError as error:
-        group.rmdir()
-        raise Skip(f"the cgroup cannot be limited: {error}") from None
-    try:
-        yield group / "cgroup.procs"
-    finally:
-        for _ in range(100):
-            with contextlib.suppress(OSError):
-                group.rmdir()
-                break
-            time.sleep(0.05)
 
 
 def tenth_of_a_processor(options):
@@ -272,20 +237,6 @@ def few_files(options):
                 worked += not failed
     assert worked > 0
     return f"{told} runs said that there are too few files, {worked} worked"
-
-
-@contextlib.contextmanager
-def small_disk():
-    """A folder of 64 kB; another process may fill it."""
-    with tempfile.TemporaryDirectory() as folder:
-        mount = subprocess.run(["mount", "-t", "tmpfs", "-o", "size=64k", "none", folder], capture_output=True,
-                               text=True, check=False)
-        if mount.returncode != 0:
-            raise Skip(f"no disk can be made: {mount.stderr.strip()}")
-        try:
-            yield pathlib.Path(folder)
-        finally:
-            subprocess.run(["umount", folder], check=False)
 
 
 WRITERS = {  # elements; {file} is what they write
