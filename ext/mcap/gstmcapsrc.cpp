@@ -8,7 +8,7 @@
  * gst-launch-1.0 mcapsrc location=drive.mcap ! lidardec ! scanassembler ! fakesink
  * ]|
  */
-#include "ext/mcap/gstmcapsrc.h"
+#include <gst/gst.h>
 
 #include <algorithm>
 #include <atomic>
@@ -27,6 +27,8 @@
 
 GST_DEBUG_CATEGORY_STATIC(gst_lidar_mcap_src_debug);
 #define GST_CAT_DEFAULT gst_lidar_mcap_src_debug
+
+G_DECLARE_FINAL_TYPE(GstLidarMcapSrc, gst_lidar_mcap_src, GST, LIDAR_MCAP_SRC, GstElement)
 
 namespace {
 
@@ -83,7 +85,7 @@ struct _GstLidarMcapSrc {
 };
 
 G_DEFINE_TYPE(GstLidarMcapSrc, gst_lidar_mcap_src, GST_TYPE_ELEMENT)
-GST_ELEMENT_REGISTER_DEFINE(mcapsrc, "mcapsrc", GST_RANK_NONE, GST_TYPE_LIDAR_MCAP_SRC)
+GST_ELEMENT_REGISTER_DEFINE(mcapsrc, "mcapsrc", GST_RANK_NONE, gst_lidar_mcap_src_get_type())
 
 static GstStaticPadTemplate src_template =
     GST_STATIC_PAD_TEMPLATE("src_%u", GST_PAD_SRC, GST_PAD_SOMETIMES, GST_STATIC_CAPS_ANY);

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Registers the elements of the plugin.
 #include "ext/mcap/gstmcapsink.h"
-#include "ext/mcap/gstmcapsrc.h"
 #include "gst/common/gstlidar.h"
+
+GST_ELEMENT_REGISTER_DECLARE(mcapsrc)
 
 static gboolean plugin_init(GstPlugin* plugin) {
   gst_lidar_init();

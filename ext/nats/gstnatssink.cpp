@@ -9,7 +9,7 @@
  * gst-launch-1.0 lidartestsrc is-live=true ! lidarenc ! natssink subject=fleet.r7.lidar.front
  * ]|
  */
-#include "ext/nats/gstnatssink.h"
+#include <gst/base/gstbasesink.h>
 
 #include <memory>
 #include <mutex>
@@ -75,13 +75,14 @@ struct State {
 
 }  // namespace
 
+G_DECLARE_FINAL_TYPE(GstLidarNatsSink, gst_lidar_nats_sink, GST, LIDAR_NATS_SINK, GstBaseSink)
 struct _GstLidarNatsSink {
   GstBaseSink parent;
   State* state;
 };
 
 G_DEFINE_TYPE(GstLidarNatsSink, gst_lidar_nats_sink, GST_TYPE_BASE_SINK)
-GST_ELEMENT_REGISTER_DEFINE(natssink, "natssink", GST_RANK_NONE, GST_TYPE_LIDAR_NATS_SINK)
+GST_ELEMENT_REGISTER_DEFINE(natssink, "natssink", GST_RANK_NONE, gst_lidar_nats_sink_get_type())
 
 static State& StateOf(gpointer self) { return *GST_LIDAR_NATS_SINK(self)->state; }
 

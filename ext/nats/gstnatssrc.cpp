@@ -8,7 +8,7 @@
  * gst-launch-1.0 natssrc subject=fleet.r7.lidar.front ! lidardec ! fakesink
  * ]|
  */
-#include "ext/nats/gstnatssrc.h"
+#include <gst/base/gstpushsrc.h>
 
 #include <atomic>
 #include <memory>
@@ -84,13 +84,14 @@ struct State {
 
 }  // namespace
 
+G_DECLARE_FINAL_TYPE(GstLidarNatsSrc, gst_lidar_nats_src, GST, LIDAR_NATS_SRC, GstPushSrc)
 struct _GstLidarNatsSrc {
   GstPushSrc parent;
   State* state;
 };
 
 G_DEFINE_TYPE(GstLidarNatsSrc, gst_lidar_nats_src, GST_TYPE_PUSH_SRC)
-GST_ELEMENT_REGISTER_DEFINE(natssrc, "natssrc", GST_RANK_NONE, GST_TYPE_LIDAR_NATS_SRC)
+GST_ELEMENT_REGISTER_DEFINE(natssrc, "natssrc", GST_RANK_NONE, gst_lidar_nats_src_get_type())
 
 static State& StateOf(gpointer self) { return *GST_LIDAR_NATS_SRC(self)->state; }
 

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Registers the elements of the plugin.
-#include "ext/nats/gstnatssink.h"
-#include "ext/nats/gstnatssrc.h"
 #include "gst/common/gstlidar.h"
+
+GST_ELEMENT_REGISTER_DECLARE(natssrc)
+GST_ELEMENT_REGISTER_DECLARE(natssink)
 
 static gboolean plugin_init(GstPlugin* plugin) {
   gst_lidar_init();

@@ -9,7 +9,7 @@
  * gst-launch-1.0 lidartestsrc is-live=true ! scanassembler ! ros2sink topic=/points
  * ]|
  */
-#include "ext/ros2/gstros2sink.h"
+#include <gst/base/gstbasesink.h>
 
 #include <memory>
 #include <mutex>
@@ -92,13 +92,14 @@ struct State {
 
 }  // namespace
 
+G_DECLARE_FINAL_TYPE(GstLidarRos2Sink, gst_lidar_ros2_sink, GST, LIDAR_ROS2_SINK, GstBaseSink)
 struct _GstLidarRos2Sink {
   GstBaseSink parent;
   State* state;
 };
 
 G_DEFINE_TYPE(GstLidarRos2Sink, gst_lidar_ros2_sink, GST_TYPE_BASE_SINK)
-GST_ELEMENT_REGISTER_DEFINE(ros2sink, "ros2sink", GST_RANK_NONE, GST_TYPE_LIDAR_ROS2_SINK)
+GST_ELEMENT_REGISTER_DEFINE(ros2sink, "ros2sink", GST_RANK_NONE, gst_lidar_ros2_sink_get_type())
 
 static State& StateOf(gpointer self) { return *GST_LIDAR_ROS2_SINK(self)->state; }
 

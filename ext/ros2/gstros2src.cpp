@@ -9,7 +9,7 @@
  * gst-launch-1.0 ros2src topic=/ouster/points ! dracoenc geometry=xyz ! fakesink
  * ]|
  */
-#include "ext/ros2/gstros2src.h"
+#include <gst/base/gstpushsrc.h>
 
 #include <algorithm>
 #include <memory>
@@ -95,13 +95,14 @@ struct State {
 
 }  // namespace
 
+G_DECLARE_FINAL_TYPE(GstLidarRos2Src, gst_lidar_ros2_src, GST, LIDAR_ROS2_SRC, GstPushSrc)
 struct _GstLidarRos2Src {
   GstPushSrc parent;
   State* state;
 };
 
 G_DEFINE_TYPE(GstLidarRos2Src, gst_lidar_ros2_src, GST_TYPE_PUSH_SRC)
-GST_ELEMENT_REGISTER_DEFINE(ros2src, "ros2src", GST_RANK_NONE, GST_TYPE_LIDAR_ROS2_SRC)
+GST_ELEMENT_REGISTER_DEFINE(ros2src, "ros2src", GST_RANK_NONE, gst_lidar_ros2_src_get_type())
 
 static State& StateOf(gpointer self) { return *GST_LIDAR_ROS2_SRC(self)->state; }
 

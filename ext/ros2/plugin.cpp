@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Registers the elements of the plugin.
-#include "ext/ros2/gstros2sink.h"
-#include "ext/ros2/gstros2src.h"
 #include "gst/common/gstlidar.h"
+
+GST_ELEMENT_REGISTER_DECLARE(ros2src)
+GST_ELEMENT_REGISTER_DECLARE(ros2sink)
 
 static gboolean plugin_init(GstPlugin* plugin) {
   gst_lidar_init();

@@ -9,7 +9,7 @@
  * gst-launch-1.0 lidartestsrc is-live=true ! foxglovesink
  * ]|
  */
-#include "ext/web/gstfoxglovesink.h"
+#include <gst/gst.h>
 
 #include "ext/web/foxglove_input.h"
 #include "ext/web/foxglove_pad.h"
@@ -96,6 +96,8 @@ Counters CountersOf(const Hub& hub) {
 
 }  // namespace
 
+G_DECLARE_FINAL_TYPE(GstLidarFoxgloveSink, gst_lidar_foxglove_sink, GST, LIDAR_FOXGLOVE_SINK,
+                     GstBin)
 struct _GstLidarFoxgloveSink {
   GstBin parent;
   State* state;
@@ -104,7 +106,7 @@ struct _GstLidarFoxgloveSink {
 G_DEFINE_TYPE_WITH_CODE(GstLidarFoxgloveSink, gst_lidar_foxglove_sink, GST_TYPE_BIN,
                         G_IMPLEMENT_INTERFACE(GST_TYPE_CHILD_PROXY, lidar::gst::ServeSinkPads))
 GST_ELEMENT_REGISTER_DEFINE(foxglovesink, "foxglovesink", GST_RANK_NONE,
-                            GST_TYPE_LIDAR_FOXGLOVE_SINK)
+                            gst_lidar_foxglove_sink_get_type())
 
 static std::shared_ptr<Hub> HubOf(GObject* object) {
   State& state = *GST_LIDAR_FOXGLOVE_SINK(object)->state;

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Registers the elements of the plugin.
-#include "ext/web/gstfoxglovesink.h"
 #include "gst/common/gstlidar.h"
+
+GST_ELEMENT_REGISTER_DECLARE(foxglovesink)
 
 static gboolean plugin_init(GstPlugin* plugin) {
   gst_lidar_init();

@@ -9,7 +9,7 @@
  *   ! pointcloudfilter crop-box="-20,-20,-1,20,20,4" voxel-size=0.2 invalid=remove ! fakesink
  * ]|
  */
-#include "gst/pointcloud/gstpointcloudfilter.h"
+#include <gst/gst.h>
 
 #include <algorithm>
 #include <mutex>
@@ -90,6 +90,8 @@ struct State {
 
 }  // namespace
 
+G_DECLARE_FINAL_TYPE(GstLidarPointCloudFilter, gst_lidar_point_cloud_filter, GST,
+                     LIDAR_POINT_CLOUD_FILTER, GstElement)
 struct _GstLidarPointCloudFilter {
   GstElement parent;
   GstPad* sinkpad;
@@ -100,7 +102,7 @@ struct _GstLidarPointCloudFilter {
 
 G_DEFINE_TYPE(GstLidarPointCloudFilter, gst_lidar_point_cloud_filter, GST_TYPE_ELEMENT)
 GST_ELEMENT_REGISTER_DEFINE(pointcloudfilter, "pointcloudfilter", GST_RANK_NONE,
-                            GST_TYPE_LIDAR_POINT_CLOUD_FILTER)
+                            gst_lidar_point_cloud_filter_get_type())
 
 static lidar::gst::StructurePtr Stats(GObject* object) {
   State& state = *GST_LIDAR_POINT_CLOUD_FILTER(object)->state;

@@ -10,7 +10,7 @@
  * m.
  * ]|
  */
-#include "gst/pointcloud/gstpointcloudmerge.h"
+#include <gst/base/gstaggregator.h>
 
 #include <algorithm>
 #include <utility>
@@ -58,6 +58,8 @@ struct State {
 
 }  // namespace
 
+G_DECLARE_FINAL_TYPE(GstLidarPointCloudMerge, gst_lidar_point_cloud_merge, GST,
+                     LIDAR_POINT_CLOUD_MERGE, GstAggregator)
 struct _GstLidarPointCloudMerge {
   GstAggregator parent;
   State* state;
@@ -66,7 +68,7 @@ struct _GstLidarPointCloudMerge {
 G_DEFINE_TYPE_WITH_CODE(GstLidarPointCloudMerge, gst_lidar_point_cloud_merge, GST_TYPE_AGGREGATOR,
                         G_IMPLEMENT_INTERFACE(GST_TYPE_CHILD_PROXY, lidar::gst::ServeSinkPads))
 GST_ELEMENT_REGISTER_DEFINE(pointcloudmerge, "pointcloudmerge", GST_RANK_NONE,
-                            GST_TYPE_LIDAR_POINT_CLOUD_MERGE)
+                            gst_lidar_point_cloud_merge_get_type())
 
 /// The pads in their order; each is referenced.
 static std::vector<lidar::gst::PadPtr> Pads(GstAggregator* base) {

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include "gst/common/gstlidar.h"
 #include "gst/pointcloud/cloud_file_reader.h"
-#include "gst/pointcloud/gstpointcloudfilter.h"
-#include "gst/pointcloud/gstpointcloudmerge.h"
 
+GST_ELEMENT_REGISTER_DECLARE(pointcloudmerge)
+GST_ELEMENT_REGISTER_DECLARE(pointcloudfilter)
 GST_ELEMENT_REGISTER_DECLARE(pcdenc)
 GST_ELEMENT_REGISTER_DECLARE(plyenc)
 GST_ELEMENT_REGISTER_DECLARE(scanassembler)

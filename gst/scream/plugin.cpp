@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Plugin lidarscream: SCReAM v2 congestion control.
 #include "gst/common/gstlidar.h"
-#include "gst/scream/bin/gstscreamsink.h"
-#include "gst/scream/bin/gstscreamsrc.h"
 #include "gst/scream/rx/gstscreamrx.h"
-#include "gst/scream/twcc/gstscreamaux.h"
 #include "gst/scream/tx/gstscreamtx.h"
 
+GST_ELEMENT_REGISTER_DECLARE(screamaux)
+GST_ELEMENT_REGISTER_DECLARE(screamsrc)
+GST_ELEMENT_REGISTER_DECLARE(screamsink)
 GST_ELEMENT_REGISTER_DECLARE(bitrateadapter)
 
 static gboolean plugin_init(GstPlugin* plugin) {

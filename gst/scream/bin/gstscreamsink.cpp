@@ -9,7 +9,7 @@
  * port=5004
  * ]|
  */
-#include "gst/scream/bin/gstscreamsink.h"
+#include <gst/gst.h>
 
 #include <atomic>
 
@@ -42,6 +42,7 @@ struct State : BinState {
 
 }  // namespace
 
+G_DECLARE_FINAL_TYPE(GstLidarScreamSink, gst_lidar_scream_sink, GST, LIDAR_SCREAM_SINK, GstBin)
 struct _GstLidarScreamSink {
   GstBin parent;
   GstElement* tx;
@@ -54,7 +55,8 @@ static void ChildProxyInit(gpointer iface, gpointer);
 
 G_DEFINE_TYPE_WITH_CODE(GstLidarScreamSink, gst_lidar_scream_sink, GST_TYPE_BIN,
                         G_IMPLEMENT_INTERFACE(GST_TYPE_CHILD_PROXY, ChildProxyInit))
-GST_ELEMENT_REGISTER_DEFINE(screamsink, "screamsink", GST_RANK_NONE, GST_TYPE_LIDAR_SCREAM_SINK)
+GST_ELEMENT_REGISTER_DEFINE(screamsink, "screamsink", GST_RANK_NONE,
+                            gst_lidar_scream_sink_get_type())
 
 static StructurePtr Stats(GObject* object) {
   auto* self = GST_LIDAR_SCREAM_SINK(object);

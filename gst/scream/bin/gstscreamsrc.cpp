@@ -9,7 +9,7 @@
  * gst-launch-1.0 screamsrc port=5004 ! rtplidardepay ! lidardec ! fakesink
  * ]|
  */
-#include "gst/scream/bin/gstscreamsrc.h"
+#include <gst/gst.h>
 
 #include "gst/common/element_class.h"
 #include "gst/common/refs.h"
@@ -35,6 +35,7 @@ struct State : BinState {
 
 }  // namespace
 
+G_DECLARE_FINAL_TYPE(GstLidarScreamSrc, gst_lidar_scream_src, GST, LIDAR_SCREAM_SRC, GstBin)
 struct _GstLidarScreamSrc {
   GstBin parent;
   GstElement* src;
@@ -44,7 +45,7 @@ struct _GstLidarScreamSrc {
 };
 
 G_DEFINE_TYPE(GstLidarScreamSrc, gst_lidar_scream_src, GST_TYPE_BIN)
-GST_ELEMENT_REGISTER_DEFINE(screamsrc, "screamsrc", GST_RANK_NONE, GST_TYPE_LIDAR_SCREAM_SRC)
+GST_ELEMENT_REGISTER_DEFINE(screamsrc, "screamsrc", GST_RANK_NONE, gst_lidar_scream_src_get_type())
 
 static GstStaticPadTemplate src_template = GST_STATIC_PAD_TEMPLATE(
     "src", GST_PAD_SRC, GST_PAD_ALWAYS, GST_STATIC_CAPS("application/x-rtp"));

@@ -11,7 +11,7 @@
  * host=127.0.0.1 port=5004 sync=false async=false
  * ]|
  */
-#include "gst/scream/twcc/gstscreamaux.h"
+#include <gst/gst.h>
 
 #include <mutex>
 
@@ -48,6 +48,7 @@ struct State {
 
 }  // namespace
 
+G_DECLARE_FINAL_TYPE(GstLidarScreamAux, gst_lidar_scream_aux, GST, LIDAR_SCREAM_AUX, GstBin)
 struct _GstLidarScreamAux {
   GstBin parent;
   GstElement* tx;
@@ -57,7 +58,7 @@ struct _GstLidarScreamAux {
 };
 
 G_DEFINE_TYPE(GstLidarScreamAux, gst_lidar_scream_aux, GST_TYPE_BIN)
-GST_ELEMENT_REGISTER_DEFINE(screamaux, "screamaux", GST_RANK_NONE, GST_TYPE_LIDAR_SCREAM_AUX)
+GST_ELEMENT_REGISTER_DEFINE(screamaux, "screamaux", GST_RANK_NONE, gst_lidar_scream_aux_get_type())
 
 static GstStaticPadTemplate sink_template = GST_STATIC_PAD_TEMPLATE(
     "sink", GST_PAD_SINK, GST_PAD_ALWAYS, GST_STATIC_CAPS("application/x-rtp"));
