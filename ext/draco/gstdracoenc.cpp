@@ -14,19 +14,56 @@
 #include <vector>
 
 #include "ext/draco/draco_check.h"
-#include "ext/draco/draco_settings.h"
 #include "ext/draco/slice_coder.h"
 #include "gst/common/cloud_info.h"
 #include "gst/common/element_class.h"
+#include "gst/common/enum_type.h"
 #include "gst/common/gstlidarencoder.h"
 #include "gst/common/properties.h"
+#include "src/cloud/coded_geometry.h"
+#include "src/codec/range_header.h"
 #include "src/rate/error_bound.h"
 
 namespace {
 
+using namespace lidar::gst;
 using lidar::Geometry;
+using lidar::codec::RangeCoder;
 using lidar::codec::SliceResult;
-using Settings = lidar::gst::DracoSettings;
+
+enum class GeometryChoice : gint { kAuto, kXyz, kRange };
+
+struct DracoSettings {
+  GeometryChoice geometry = GeometryChoice::kAuto;
+  RangeCoder range_coder = RangeCoder::kResidual;
+  guint level = 7;
+
+  /// None: range where the cloud has ranges.
+  std::optional<Geometry> wanted_geometry() const {
+    if (geometry == GeometryChoice::kAuto) return std::nullopt;
+    return geometry == GeometryChoice::kRange ? Geometry::kRange : Geometry::kXyz;
+  }
+};
+
+const GEnumValue kGeometries[] = {
+    {Int(GeometryChoice::kAuto), "range where the caps carry ranges and a sensor model", "auto"},
+    {Int(GeometryChoice::kXyz), "Plain Draco files", "xyz"},
+    {Int(GeometryChoice::kRange), "Ranges of an organised scan", "range"},
+    {0, nullptr, nullptr}};
+const GEnumValue kCoders[] = {
+    {Int(RangeCoder::kDraco), "Draco, with its own delta prediction", "draco"},
+    {Int(RangeCoder::kResidual), "Prediction from neighbouring beams, then Draco", "residual"},
+    {0, nullptr, nullptr}};
+
+GType GeometryType() {
+  static const GType type = RegisterEnum("GstLidarDracoEncGeometry", kGeometries);
+  return type;
+}
+
+GType RangeCoderType() {
+  static const GType type = RegisterEnum("GstLidarDracoEncRangeCoder", kCoders);
+  return type;
+}
 
 /// Belongs to the streaming thread.
 struct Coder {
@@ -41,20 +78,18 @@ struct Coder {
 
 struct State {
   std::mutex mutex;  // guards settings
-  Settings settings;
+  DracoSettings settings;
   Coder coder;
 };
 
-const std::array<lidar::gst::Property<Settings>, 3> kProperties = {{
+const std::array<Property<DracoSettings>, 3> kProperties = {{
     {"geometry", "What is coded: ranges or coordinates",
-     lidar::gst::EnumField<Settings, lidar::gst::GeometryChoice>{&Settings::geometry,
-                                                                 lidar::gst::DracoGeometryType}},
+     EnumField<DracoSettings, GeometryChoice>{&DracoSettings::geometry, GeometryType}},
     {"range-coder", "How ranges are coded",
-     lidar::gst::EnumField<Settings, lidar::codec::RangeCoder>{&Settings::range_coder,
-                                                               lidar::gst::DracoRangeCoderType}},
+     EnumField<DracoSettings, RangeCoder>{&DracoSettings::range_coder, RangeCoderType}},
     {"compression-level",
      "Draco's compression level for xyz geometry: 0 is its sequential coder, 1-10 its kd-tree",
-     &Settings::level, 0, 10, GST_PARAM_MUTABLE_PLAYING},
+     &DracoSettings::level, 0, 10, GST_PARAM_MUTABLE_PLAYING},
 }};
 
 }  // namespace
@@ -73,8 +108,8 @@ static Coder& CoderOf(GstLidarEncoder* base) { return GST_LIDAR_DRACO_ENC(base)-
 static gboolean SetFormat(GstLidarEncoder* base, const GstLidarCloudFormat* cloud,
                           gboolean with_intensity, GstLidarCodedFormat* coded) {
   Coder& coder = CoderOf(base);
-  const Settings settings = lidar::gst::Snapshot(*GST_LIDAR_DRACO_ENC(base)->state);
-  const auto info = lidar::gst::CloudInfo::FromFormat(*cloud);
+  const DracoSettings settings = Snapshot(*GST_LIDAR_DRACO_ENC(base)->state);
+  const auto info = CloudInfo::FromFormat(*cloud);
   coder = {};
   coder.format = {{info.fields, info.point_step}, info.height, info.sensor_model};
   coder.with_intensity = with_intensity != FALSE;
@@ -96,7 +131,7 @@ static gboolean SetFormat(GstLidarEncoder* base, const GstLidarCloudFormat* clou
 
 static void Load(GstLidarEncoder* base, const GstLidarRawSlice* raw, GstLidarLoadedSlice* loaded) {
   Coder& coder = CoderOf(base);
-  loaded->level = lidar::gst::Snapshot(*GST_LIDAR_DRACO_ENC(base)->state).level;
+  loaded->level = Snapshot(*GST_LIDAR_DRACO_ENC(base)->state).level;
   coder.encoder->Load({raw->data, raw->size}, raw->first_column, coder.with_intensity);
   coder.mode = coder.encoder->Mode(loaded->level);
   coder.max_points = static_cast<guint>(raw->size / coder.format.layout.point_step);
@@ -157,14 +192,14 @@ static void Reset(GstLidarEncoder* base) { CoderOf(base) = {}; }
 static void gst_lidar_draco_enc_init(GstLidarDracoEnc* self) { self->state = new State; }
 
 static void gst_lidar_draco_enc_class_init(GstLidarDracoEncClass* klass) {
-  lidar::gst::ServeState<GstLidarDracoEnc, gst_lidar_draco_enc_parent_class, kProperties>(klass);
-  lidar::gst::Describe(klass,
-                       {"Draco encoder", "Codec/Encoder/PointCloud",
-                        "Compresses point clouds to a bitrate and within an error"},
-                       {{"sink", GST_PAD_SINK, GST_LIDAR_CLOUD_MEDIA_TYPE},
-                        {"src", GST_PAD_SRC,
-                         GST_LIDAR_DRACO_MEDIA_TYPE
-                         ", geometry = (string) { xyz, range }, alignment = (string) slice"}});
+  ServeState<GstLidarDracoEnc, gst_lidar_draco_enc_parent_class, kProperties>(klass);
+  Describe(klass,
+           {"Draco encoder", "Codec/Encoder/PointCloud",
+            "Compresses point clouds to a bitrate and within an error"},
+           {{"sink", GST_PAD_SINK, GST_LIDAR_CLOUD_MEDIA_TYPE},
+            {"src", GST_PAD_SRC,
+             GST_LIDAR_DRACO_MEDIA_TYPE
+             ", geometry = (string) { xyz, range }, alignment = (string) slice"}});
   auto* encoder = GST_LIDAR_ENCODER_CLASS(klass);
   encoder->set_format = SetFormat;
   encoder->load = Load;

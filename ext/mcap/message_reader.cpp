@@ -6,7 +6,6 @@
 #include <optional>
 #include <utility>
 
-#include "ext/mcap/sample_layout.h"
 #include "gst/common/buffer_map.h"
 #include "gst/common/cloud_info.h"
 #include "gst/common/gstlidar.h"

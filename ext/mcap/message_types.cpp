@@ -7,6 +7,7 @@
 #include "gst/common/gstlidar.h"
 #include "gst/common/refs.h"
 #include "src/cdr/coded_slice.h"
+#include "src/cdr/motion_samples.h"
 #include "src/cdr/ros_types.h"
 
 namespace lidar::gst {
@@ -164,6 +165,13 @@ std::optional<MessageType> TypeOf(const GstCaps* caps) {
   const gchar* alignment = gst_structure_get_string(s, "alignment");
   if (g_strcmp0(alignment, "slice") == 0) return MessageType::kSlice;
   return std::nullopt;
+}
+
+bool IsOurImu(const GstCaps* caps) {
+  const GstStructure* s = gst_caps_get_structure(caps, 0);
+  gint size = 0;
+  return gst_structure_get_int(s, "sample-size", &size) && size == gint{cdr::kImuSampleSize} &&
+         g_strcmp0(gst_structure_get_string(s, "fields"), cdr::kImuFields) == 0;
 }
 
 std::string_view TopicOf(MessageType type) { return InfoOf(type).topic; }

@@ -19,6 +19,8 @@ mcap::Schema SchemaOf(MessageType type);
 std::optional<MessageType> TypeOf(const mcap::Schema& schema);
 /// What buffers of `caps` become; none where they cannot be recorded.
 std::optional<MessageType> TypeOf(const GstCaps* caps);
+/// Whether samples of an IMU are of the layout that can be recorded.
+bool IsOurImu(const GstCaps* caps);
 /// Where messages of that type go unless a topic is given.
 std::string_view TopicOf(MessageType type);
 

@@ -3,16 +3,28 @@
 #pragma once
 #include <gst/base/gstbasesrc.h>
 
+#include <array>
 #include <memory>
 #include <mutex>
 #include <optional>
 
-#include "ext/ouster/counters.h"
 #include "ext/ouster/imu_pad.h"
 #include "ext/ouster/settings.h"
+#include "gst/common/stats.h"
 #include "src/ouster/sensor_stream.h"
 
 namespace lidar::gst {
+
+/// What ouster_src counts, and its property `stats`.
+struct Counters {
+  ouster::BatcherStats batcher;
+  ouster::StreamStats stream;
+  guint64 kernel_drops = 0;
+  guint reconnects = 0;
+  guint receive_buffer = 0;  // bytes
+  bool synchronised = false;
+};
+extern const std::array<Stat<Counters>, 16> kOusterStats;
 
 /// Runs in the streaming thread, except where it says otherwise. Posts its own errors.
 class Session {

@@ -9,7 +9,6 @@
 #include "gst/common/cloud_info.h"
 #include "gst/common/coder_pads.h"
 #include "gst/common/held_events.h"
-#include "gst/common/message_timer.h"
 #include "gst/common/properties.h"
 #include "gst/common/stats.h"
 

@@ -9,12 +9,10 @@
 #include "gst/common/coder_pads.h"
 #include "gst/common/encoder/cloud_input.h"
 #include "gst/common/encoder/error_report.h"
-#include "gst/common/encoder/rate_model.h"
 #include "gst/common/encoder/receivers.h"
 #include "gst/common/encoder/settings.h"
 #include "gst/common/encoder/stats.h"
 #include "gst/common/encoder/vtable_coder.h"
-#include "gst/common/message_timer.h"
 #include "gst/common/properties.h"
 #include "src/rate/rate_loop.h"
 

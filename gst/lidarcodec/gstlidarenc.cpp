@@ -10,6 +10,8 @@
  * gst-launch-1.0 lidartestsrc num-buffers=80 ! lidarenc max-error=0.02 ! lidardec ! fakesink
  * ]|
  */
+#include <array>
+#include <chrono>
 #include <mutex>
 #include <optional>
 #include <string>
@@ -17,9 +19,10 @@
 
 #include "gst/common/cloud_info.h"
 #include "gst/common/element_class.h"
+#include "gst/common/enum_type.h"
 #include "gst/common/gstlidarencoder.h"
 #include "gst/common/properties.h"
-#include "gst/lidarcodec/lidarenc_settings.h"
+#include "src/base/time.h"
 #include "src/codec/effort_control.h"
 #include "src/codec/slice_decoder.h"
 #include "src/codec/slice_encoder.h"
@@ -27,9 +30,55 @@
 
 namespace {
 
+using namespace lidar::gst;
 using lidar::codec::SliceResult;
 
-using Settings = lidar::gst::LidarEncSettings;
+enum class Reference : gint { kNothing, kAcknowledged };
+
+struct LidarEncSettings {
+  static constexpr gint kAutoEffort = -1;
+
+  gint effort = kAutoEffort;
+  Reference reference = Reference::kAcknowledged;
+  lidar::Duration key_interval = std::chrono::seconds(10);
+};
+
+GType EffortType() {
+  static const GEnumValue values[] = {
+      {LidarEncSettings::kAutoEffort, "The highest that codes a slice in a quarter of its sweep",
+       "auto"},
+      {0, "Fastest: adaptive rANS", "0"},
+      {1, "Mixed contexts, few", "1"},
+      {2, "Mixed contexts, more", "2"},
+      {3, "Smallest: mixed contexts, all", "3"},
+      {0, nullptr, nullptr}};
+  static const GType type = RegisterEnum("GstLidarEncEffort", values);
+  return type;
+}
+
+GType ReferenceType() {
+  static const GEnumValue values[] = {
+      {Int(Reference::kNothing), "Every slice stands alone", "none"},
+      {Int(Reference::kAcknowledged),
+       "The newest scan that the receiver has, where the sensor stands still", "auto"},
+      {0, nullptr, nullptr}};
+  static const GType type = RegisterEnum("GstLidarEncReference", values);
+  return type;
+}
+
+const std::array<Property<LidarEncSettings>, 3> kProperties = {{
+    {"effort", "How much computing slices are worth",
+     EnumField<LidarEncSettings>{&LidarEncSettings::effort, EffortType}, 0, 0,
+     GST_PARAM_MUTABLE_PLAYING},
+    {"reference",
+     "What slices may be predicted from; what nobody acknowledges is predicted from nothing",
+     EnumField<LidarEncSettings, Reference>{&LidarEncSettings::reference, ReferenceType}, 0, 0,
+     GST_PARAM_MUTABLE_PLAYING},
+    {"key-interval",
+     "Each sector comes at least so often as a slice that stands alone, for those who join late; "
+     "0: only when asked for [ns]",
+     &LidarEncSettings::key_interval, 0, 3600e9, GST_PARAM_MUTABLE_PLAYING},
+}};
 
 /// Belongs to the streaming thread.
 struct Coder {
@@ -50,7 +99,7 @@ struct Coder {
 
 struct State {
   std::mutex mutex;  // guards settings
-  Settings settings;
+  LidarEncSettings settings;
   Coder coder;
 };
 
@@ -79,9 +128,9 @@ static void KeepBlocks(Coder& coder) {
 /// Lets what is loaded refer to what the receiver has.
 static void Link(GstLidarEncoder* base, const GstLidarRawSlice& raw) {
   Coder& coder = CoderOf(base);
-  const Settings settings = lidar::gst::Snapshot(*GST_LIDAR_ENC(base)->state);
+  const LidarEncSettings settings = Snapshot(*GST_LIDAR_ENC(base)->state);
   coder.keeper.set_key_interval(settings.key_interval);
-  const bool remembers = settings.reference == lidar::gst::Reference::kAcknowledged &&
+  const bool remembers = settings.reference == Reference::kAcknowledged &&
                          coder.keeper.Begin(Now(), {raw.scan_id, raw.slice_index, raw.slice_count});
   coder.encoder->LinkBy(remembers ? &coder.keeper : nullptr);
 }
@@ -99,15 +148,15 @@ static void ChooseEffort(GstLidarEncoder* base, guint columns) {
     coder.effort.OnSlice(coder.sweep, coder.encoder->returns(), coder.spent);
   coder.sweep = SweepOf(coder, columns);
   coder.spent = {};
-  const gint wanted = lidar::gst::Snapshot(*GST_LIDAR_ENC(base)->state).effort;
-  coder.automatic = wanted == Settings::kAutoEffort;
+  const gint wanted = Snapshot(*GST_LIDAR_ENC(base)->state).effort;
+  coder.automatic = wanted == LidarEncSettings::kAutoEffort;
   coder.encoder->set_effort(coder.automatic ? coder.effort.effort() : static_cast<guint>(wanted));
 }
 
 static gboolean SetFormat(GstLidarEncoder* base, const GstLidarCloudFormat* cloud,
                           gboolean with_intensity, GstLidarCodedFormat* coded) {
   Coder& coder = CoderOf(base);
-  const auto info = lidar::gst::CloudInfo::FromFormat(*cloud);
+  const auto info = CloudInfo::FromFormat(*cloud);
   const auto effort = coder.effort;
   coder = {};
   coder.effort = effort;
@@ -207,9 +256,9 @@ static GstStateChangeReturn ChangeState(GstElement* element, GstStateChange tran
 static void gst_lidar_enc_init(GstLidarEnc* self) { self->state = new State; }
 
 static void gst_lidar_enc_class_init(GstLidarEncClass* klass) {
-  lidar::gst::ServeState<GstLidarEnc, gst_lidar_enc_parent_class, lidar::gst::LidarEncRows>(klass);
+  ServeState<GstLidarEnc, gst_lidar_enc_parent_class, kProperties>(klass);
   GST_ELEMENT_CLASS(klass)->change_state = ChangeState;
-  lidar::gst::Describe(
+  Describe(
       klass,
       {"LiDAR encoder", "Codec/Encoder/PointCloud",
        "Compresses the scans of a spinning sensor to a bitrate and within an error"},

@@ -5,11 +5,29 @@
 
 #include <utility>
 
+#include "gst/common/fields.h"
 #include "gst/common/refs.h"
 #include "gst/pointcloud/cloud_timeline.h"
-#include "gst/pointcloud/frame_rate.h"
 
 namespace lidar::gst {
+
+/// Clouds per second, as caps and a property have them.
+struct FrameRate {
+  gint n = 0;  // 0: not known
+  gint d = 1;
+};
+template <>
+struct Kind<FrameRate> {
+  static GType Type() { return GST_TYPE_FRACTION; }
+  static GParamSpec* Spec(const SpecArgs& a, FrameRate initial) {
+    return gst_param_spec_fraction(a.name, a.name, a.blurb, 0, 1, G_MAXINT, 1, initial.n, initial.d,
+                                   a.flags);
+  }
+  static void Set(FrameRate* field, const GValue* v) {
+    *field = {gst_value_get_fraction_numerator(v), gst_value_get_fraction_denominator(v)};
+  }
+  static void Get(FrameRate value, GValue* v) { gst_value_set_fraction(v, value.n, value.d); }
+};
 
 /// For the streaming thread, but for the timeline.
 class CloudStamper {

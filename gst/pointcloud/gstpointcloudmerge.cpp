@@ -13,6 +13,10 @@
 #include <gst/base/gstaggregator.h>
 
 #include <algorithm>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -22,16 +26,39 @@
 #include "gst/common/gstlidar.h"
 #include "gst/common/properties.h"
 #include "gst/common/sink_pads.h"
-#include "gst/pointcloud/gstpointcloudmergepad.h"
+#include "gst/pointcloud/filter_plan.h"
 
 GST_DEBUG_CATEGORY_STATIC(gst_lidar_point_cloud_merge_debug);
 #define GST_CAT_DEFAULT gst_lidar_point_cloud_merge_debug
 
+G_DECLARE_FINAL_TYPE(GstLidarPointCloudMergePad, gst_lidar_point_cloud_merge_pad, GST,
+                     LIDAR_POINT_CLOUD_MERGE_PAD, GstAggregatorPad)
+
 namespace {
 
-using lidar::gst::BufferPtr;
-using lidar::gst::CapsPtr;
-using lidar::gst::CloudInfo;
+using namespace lidar::gst;
+
+struct MergePadSettings {
+  std::string transform;
+};
+
+const std::array<Property<MergePadSettings>, 1> kPadProperties = {{
+    {"transform",
+     "From the sensor to the common frame: 16 numbers row by row, or x, y, z [m], roll, pitch, yaw "
+     "[degrees]",
+     &MergePadSettings::transform, 0, 0, GST_PARAM_MUTABLE_PLAYING},
+}};
+
+/// Where a sensor is, and its clouds as all of them are wanted.
+struct MergePadState {
+  std::mutex mutex;  // guards the settings
+  MergePadSettings settings;
+  // Only the thread that aggregates uses these.
+  CapsPtr caps;
+  std::unique_ptr<FilterPlan> plan;
+  std::string plan_transform;
+  std::string plan_fields;
+};
 
 /// Scans that are farther apart are of different turns, where clouds do not say how long one takes.
 constexpr GstClockTime kUsualScan = 100 * GST_MSECOND;
@@ -58,6 +85,59 @@ struct State {
 
 }  // namespace
 
+struct _GstLidarPointCloudMergePad {
+  GstAggregatorPad parent;
+  MergePadState* state;
+};
+
+G_DEFINE_TYPE(GstLidarPointCloudMergePad, gst_lidar_point_cloud_merge_pad, GST_TYPE_AGGREGATOR_PAD)
+
+// The functions of a pad are for the thread that aggregates.
+
+static void MergePadSetCaps(GstLidarPointCloudMergePad* pad, GstCaps* caps) {
+  pad->state->caps.reset(gst_caps_ref(caps));
+  pad->state->plan.reset();
+}
+
+/// The returns in `buffer` with `fields`, in the common frame; null where that cannot be: `why`
+/// then says so in words for a user. No fields: those of the cloud.
+static BufferPtr MergePadRead(GstLidarPointCloudMergePad* pad, GstBuffer* buffer,
+                              const std::string& fields, std::string* why) {
+  MergePadState& state = *pad->state;
+  FilterSettings settings;
+  settings.fields = fields;
+  settings.invalid = lidar::InvalidPoints::kRemove;
+  {
+    std::lock_guard lock(state.mutex);
+    settings.transform = state.settings.transform;
+  }
+  *why = "its caps are missing";
+  if (!state.caps) return nullptr;
+  if (!state.plan || state.plan_transform != settings.transform || state.plan_fields != fields) {
+    state.plan = FilterPlan::Make(settings, state.caps.get(), why);
+    state.plan_transform = settings.transform;
+    state.plan_fields = fields;
+  }
+  if (!state.plan) return nullptr;
+  *why = "a cloud has another size than its caps say";
+  return state.plan->Apply(buffer);
+}
+
+/// Fields of what MergePadRead() gives, as caps have them; none before.
+static std::optional<std::string> MergePadFields(GstLidarPointCloudMergePad* pad) {
+  if (!pad->state->plan) return std::nullopt;
+  return pad->state->plan->fields();
+}
+
+static void gst_lidar_point_cloud_merge_pad_init(GstLidarPointCloudMergePad* self) {
+  self->state = new MergePadState;
+}
+
+static void gst_lidar_point_cloud_merge_pad_class_init(GstLidarPointCloudMergePadClass* klass) {
+  ServeState<GstLidarPointCloudMergePad, gst_lidar_point_cloud_merge_pad_parent_class,
+             kPadProperties>(klass);
+}
+
 G_DECLARE_FINAL_TYPE(GstLidarPointCloudMerge, gst_lidar_point_cloud_merge, GST,
                      LIDAR_POINT_CLOUD_MERGE, GstAggregator)
 struct _GstLidarPointCloudMerge {
@@ -66,13 +146,13 @@ struct _GstLidarPointCloudMerge {
 };
 
 G_DEFINE_TYPE_WITH_CODE(GstLidarPointCloudMerge, gst_lidar_point_cloud_merge, GST_TYPE_AGGREGATOR,
-                        G_IMPLEMENT_INTERFACE(GST_TYPE_CHILD_PROXY, lidar::gst::ServeSinkPads))
+                        G_IMPLEMENT_INTERFACE(GST_TYPE_CHILD_PROXY, ServeSinkPads))
 GST_ELEMENT_REGISTER_DEFINE(pointcloudmerge, "pointcloudmerge", GST_RANK_NONE,
                             gst_lidar_point_cloud_merge_get_type())
 
 /// The pads in their order; each is referenced.
-static std::vector<lidar::gst::PadPtr> Pads(GstAggregator* base) {
-  std::vector<lidar::gst::PadPtr> pads;
+static std::vector<PadPtr> Pads(GstAggregator* base) {
+  std::vector<PadPtr> pads;
   GST_OBJECT_LOCK(base);
   for (GList* pad = GST_ELEMENT(base)->sinkpads; pad != nullptr; pad = pad->next)
     pads.emplace_back(GST_PAD(gst_object_ref(pad->data)));
@@ -87,7 +167,7 @@ static GstClockTime RunningTime(GstAggregatorPad* pad, GstBuffer* buffer) {
 }
 
 /// What waits on each pad.
-static std::vector<Head> Heads(const std::vector<lidar::gst::PadPtr>& pads) {
+static std::vector<Head> Heads(const std::vector<PadPtr>& pads) {
   std::vector<Head> heads;
   for (const auto& owner : pads) {
     auto* pad = GST_AGGREGATOR_PAD(owner.get());
@@ -135,15 +215,15 @@ static bool AddCloud(GstLidarPointCloudMerge* self, const Head& head, Merged* me
     return true;
   ReportSlices(self, buffer.get());
   std::string why;
-  const BufferPtr cloud = lidar::gst::MergePadRead(head.pad, buffer.get(), merged->fields, &why);
+  const BufferPtr cloud = MergePadRead(head.pad, buffer.get(), merged->fields, &why);
   if (!cloud) {
     GST_ELEMENT_ERROR(self, STREAM, FORMAT,
                       ("Clouds of %s cannot be merged: %s.", GST_PAD_NAME(head.pad), why.c_str()),
                       (nullptr));
     return false;
   }
-  if (merged->fields.empty()) merged->fields = lidar::gst::MergePadFields(head.pad).value_or("");
-  const lidar::gst::BufferMap map(cloud.get(), GST_MAP_READ);
+  if (merged->fields.empty()) merged->fields = MergePadFields(head.pad).value_or("");
+  const BufferMap map(cloud.get(), GST_MAP_READ);
   if (map) merged->points.insert(merged->points.end(), map.view().begin(), map.view().end());
   if (GST_CLOCK_TIME_IS_VALID(merged->time) && merged->time <= head.time) return true;
   merged->time = head.time;
@@ -203,7 +283,7 @@ static gboolean SinkEvent(GstAggregator* base, GstAggregatorPad* pad, GstEvent* 
   if (GST_EVENT_TYPE(event) == GST_EVENT_CAPS) {
     GstCaps* caps = nullptr;
     gst_event_parse_caps(event, &caps);
-    lidar::gst::MergePadSetCaps(GST_LIDAR_POINT_CLOUD_MERGE_PAD(pad), caps);
+    MergePadSetCaps(GST_LIDAR_POINT_CLOUD_MERGE_PAD(pad), caps);
   }
   return GST_AGGREGATOR_CLASS(gst_lidar_point_cloud_merge_parent_class)
       ->sink_event(base, pad, event);
@@ -240,16 +320,16 @@ static void gst_lidar_point_cloud_merge_init(GstLidarPointCloudMerge* self) {
 static void gst_lidar_point_cloud_merge_class_init(GstLidarPointCloudMergeClass* klass) {
   GST_DEBUG_CATEGORY_INIT(gst_lidar_point_cloud_merge_debug, "pointcloudmerge", 0,
                           "Clouds of several sensors");
-  lidar::gst::OwnState<GstLidarPointCloudMerge, gst_lidar_point_cloud_merge_parent_class>(
+  OwnState<GstLidarPointCloudMerge, gst_lidar_point_cloud_merge_parent_class>(
       G_OBJECT_CLASS(klass));
-  lidar::gst::Describe(
+  Describe(
       klass,
       {"Point cloud merger", "Filter/PointCloud",
        "Makes one cloud of the scans of several sensors"},
       {{"sink_%u", GST_PAD_SINK, GST_LIDAR_CLOUD_MEDIA_TYPE, GST_PAD_REQUEST,
-        GST_TYPE_LIDAR_POINT_CLOUD_MERGE_PAD},
+        gst_lidar_point_cloud_merge_pad_get_type()},
        {"src", GST_PAD_SRC, GST_LIDAR_CLOUD_MEDIA_TYPE, GST_PAD_ALWAYS, GST_TYPE_AGGREGATOR_PAD}});
-  gst_type_mark_as_plugin_api(GST_TYPE_LIDAR_POINT_CLOUD_MERGE_PAD,
+  gst_type_mark_as_plugin_api(gst_lidar_point_cloud_merge_pad_get_type(),
                               static_cast<GstPluginAPIFlags>(0));
   auto* aggregator = GST_AGGREGATOR_CLASS(klass);
   aggregator->aggregate = Aggregate;

@@ -28,7 +28,6 @@
 #include "gst/common/refused_caps.h"
 #include "gst/pointcloud/cloud_file_reader.h"
 #include "gst/pointcloud/cloud_stamper.h"
-#include "gst/pointcloud/frame_rate.h"
 
 GST_DEBUG_CATEGORY_STATIC(gst_lidar_point_cloud_parse_debug);
 #define GST_CAT_DEFAULT gst_lidar_point_cloud_parse_debug

@@ -10,25 +10,27 @@
  */
 #include <gst/base/gstpushsrc.h>
 
+#include <iomanip>
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <string>
 
 #include "gst/common/element_class.h"
 #include "gst/common/enum_type.h"
 #include "gst/common/properties.h"
 #include "gst/testsrc/live_pacer.h"
 #include "gst/testsrc/slice_maker.h"
-#include "gst/testsrc/trajectory_log.h"
+#include "src/base/row_file.h"
+#include "src/synth/geometry.h"
 
 GST_DEBUG_CATEGORY_STATIC(gst_lidar_test_src_debug);
 #define GST_CAT_DEFAULT gst_lidar_test_src_debug
 
 namespace {
 
+using namespace lidar::gst;
 using lidar::Duration;
-using lidar::gst::BufferPtr;
-using lidar::gst::SliceMaker;
 
 const GEnumValue kModels[] = {{0, "OS0, 32 beams over 90 degrees", "os0-32"},
                               {1, "OS0, 64 beams over 90 degrees", "os0-64"},
@@ -57,15 +59,15 @@ const GEnumValue kScenes[] = {{0, "A street in a town, with traffic", "street"},
                               {0, nullptr, nullptr}};
 
 GType ModelType() {
-  static const GType type = lidar::gst::RegisterEnum("GstLidarTestSrcModel", kModels);
+  static const GType type = RegisterEnum("GstLidarTestSrcModel", kModels);
   return type;
 }
 GType ModeType() {
-  static const GType type = lidar::gst::RegisterEnum("GstLidarTestSrcMode", kModes);
+  static const GType type = RegisterEnum("GstLidarTestSrcMode", kModes);
   return type;
 }
 GType SceneType() {
-  static const GType type = lidar::gst::RegisterEnum("GstLidarTestSrcScene", kScenes);
+  static const GType type = RegisterEnum("GstLidarTestSrcScene", kScenes);
   return type;
 }
 
@@ -83,13 +85,12 @@ struct Settings {
   bool is_live = false;
 };
 
-using Row = lidar::gst::Property<Settings>;
+using Row = Property<Settings>;
 const std::array<Row, 11> kProperties = {{
-    {"model", "Sensor to simulate", lidar::gst::EnumField<Settings>{&Settings::model, ModelType}},
+    {"model", "Sensor to simulate", EnumField<Settings>{&Settings::model, ModelType}},
     {"mode", "Columns of a scan x scans per second",
-     lidar::gst::EnumField<Settings>{&Settings::mode, ModeType}},
-    {"scene", "World to drive through",
-     lidar::gst::EnumField<Settings>{&Settings::scene, SceneType}},
+     EnumField<Settings>{&Settings::mode, ModeType}},
+    {"scene", "World to drive through", EnumField<Settings>{&Settings::scene, SceneType}},
     {"speed", "Speed of the sensor [m/s]", &Settings::speed_mps, 0, 100},
     {"noise", "Standard deviation of ranges on a bright target nearby [m]", &Settings::noise_m, 0,
      10},
@@ -114,6 +115,29 @@ const std::array<Row, 11> kProperties = {{
 // repeatable.
 constexpr GstClockTime kEpoch = G_GUINT64_CONSTANT(1'704'067'200) * GST_SECOND;
 
+/// Poses as a text file in the format of the TUM RGB-D benchmark, which evo and others read.
+class TrajectoryLog {
+ public:
+  /// Truncates the file. Test ok() for success.
+  explicit TrajectoryLog(const std::string& path) : file_(path) {
+    file_.stream() << std::fixed << "# timestamp tx ty tz qx qy qz qw\n" << std::flush;
+  }
+  bool ok() const { return file_.ok(); }
+  /// False where the row did not fit.
+  bool Write(GstClockTime unix_time, const lidar::synth::Pose& pose) {
+    const auto [x, y, z, w] = pose.ToQuaternion();
+    // A double does not hold the nanoseconds of a Unix time.
+    file_.stream() << unix_time / GST_SECOND << '.' << std::setfill('0') << std::setw(9)
+                   << unix_time % GST_SECOND << std::setprecision(6) << ' ' << pose.x << ' '
+                   << pose.y << ' ' << pose.z << std::setprecision(9) << ' ' << x << ' ' << y << ' '
+                   << z << ' ' << w << '\n';
+    return file_.Flush();
+  }
+
+ private:
+  lidar::RowFile file_;
+};
+
 struct State {
   explicit State(GstBaseSrc* source) : pacer(source) {}
 
@@ -122,8 +146,8 @@ struct State {
   GstClockTime latency = GST_CLOCK_TIME_NONE;  // of one slice, while started
   // Only the streaming thread uses these, between start and stop.
   std::optional<SliceMaker> maker;
-  std::unique_ptr<lidar::gst::TrajectoryLog> log;
-  lidar::gst::LivePacer pacer;
+  std::unique_ptr<TrajectoryLog> log;
+  LivePacer pacer;
 };
 
 lidar::synth::ScannerConfig ConfigFrom(const Settings& s) {
@@ -140,11 +164,11 @@ lidar::synth::ScannerConfig ConfigFrom(const Settings& s) {
 }
 
 /// Unknown channels are left out; Start refuses them.
-lidar::gst::SliceOptions OptionsFrom(const Settings& s) {
+SliceOptions OptionsFrom(const Settings& s) {
   std::string unknown;
-  lidar::gst::SliceOptions options;
+  SliceOptions options;
   options.slices_per_scan = s.slices_per_scan;
-  options.channels = lidar::gst::ParseChannels(s.channels, &unknown).value_or(options.channels);
+  options.channels = ParseChannels(s.channels, &unknown).value_or(options.channels);
   return options;
 }
 
@@ -164,18 +188,18 @@ static State& StateOf(gpointer self) { return *GST_LIDAR_TEST_SRC(self)->state; 
 
 static gboolean Start(GstBaseSrc* base) {
   State& state = StateOf(base);
-  const Settings settings = lidar::gst::Snapshot(state);
+  const Settings settings = Snapshot(state);
   std::string unknown;
-  if (!lidar::gst::ParseChannels(settings.channels, &unknown)) {
+  if (!ParseChannels(settings.channels, &unknown)) {
     GST_ELEMENT_ERROR(base, RESOURCE, SETTINGS,
                       ("There is no channel \"%s\"; there are reflectivity, signal, ring and t.",
                        unknown.c_str()),
                       (nullptr));
     return FALSE;
   }
-  std::unique_ptr<lidar::gst::TrajectoryLog> log;
+  std::unique_ptr<TrajectoryLog> log;
   if (!settings.trajectory_location.empty()) {
-    log = std::make_unique<lidar::gst::TrajectoryLog>(settings.trajectory_location);
+    log = std::make_unique<TrajectoryLog>(settings.trajectory_location);
     if (!log->ok()) {
       GST_ELEMENT_ERROR(
           base, RESOURCE, OPEN_WRITE,
@@ -203,7 +227,7 @@ static gboolean Stop(GstBaseSrc* base) {
 
 static GstCaps* GetCaps(GstBaseSrc* base, GstCaps* filter) {
   State& state = StateOf(base);
-  const Settings settings = lidar::gst::Snapshot(state);
+  const Settings settings = Snapshot(state);
   GstCaps* caps = SliceMaker::InfoFor(ConfigFrom(settings), OptionsFrom(settings)).ToCaps();
   if (filter != nullptr) {
     GstCaps* both = gst_caps_intersect_full(filter, caps, GST_CAPS_INTERSECT_FIRST);
@@ -302,12 +326,11 @@ static void gst_lidar_test_src_init(GstLidarTestSrc* self) {
 
 static void gst_lidar_test_src_class_init(GstLidarTestSrcClass* klass) {
   GST_DEBUG_CATEGORY_INIT(gst_lidar_test_src_debug, "lidartestsrc", 0, "Synthetic LiDAR");
-  lidar::gst::ServeState<GstLidarTestSrc, gst_lidar_test_src_parent_class, kProperties, ApplyLive>(
-      klass);
-  lidar::gst::Describe(klass,
-                       {"LiDAR test source", "Source/PointCloud",
-                        "A synthetic LiDAR that drives through a synthetic world"},
-                       {{"src", GST_PAD_SRC, GST_LIDAR_CLOUD_MEDIA_TYPE}});
+  ServeState<GstLidarTestSrc, gst_lidar_test_src_parent_class, kProperties, ApplyLive>(klass);
+  Describe(klass,
+           {"LiDAR test source", "Source/PointCloud",
+            "A synthetic LiDAR that drives through a synthetic world"},
+           {{"src", GST_PAD_SRC, GST_LIDAR_CLOUD_MEDIA_TYPE}});
   auto* base = GST_BASE_SRC_CLASS(klass);
   base->start = Start;
   base->stop = Stop;

@@ -2,6 +2,7 @@
 #include "gst/common/encoder/settings.h"
 
 #include "gst/common/enum_type.h"
+#include "gst/common/refs.h"
 
 namespace lidar::gst {
 namespace {
@@ -31,6 +32,32 @@ GType RateModelType() {
 GType DegradationPreferenceType() {
   static const GType type = RegisterEnum("GstLidarDegradationPreference", kPreferences);
   return type;
+}
+
+std::unique_ptr<rate::SizeModel> LoadModel(GstElement* element, const EncoderSettings& s) {
+  const auto kind = s.rate_model;
+  if (s.model_location.empty()) return rate::MakeBuiltInModel(kind);
+  gchar* text = nullptr;
+  gsize size = 0;
+  GError* failure = nullptr;
+  if (!g_file_get_contents(s.model_location.c_str(), &text, &size, &failure)) {
+    const ErrorPtr owned(failure);
+    GST_ELEMENT_ERROR(element, RESOURCE, OPEN_READ,
+                      ("Cannot read the rate model \"%s\".", s.model_location.c_str()),
+                      ("%s", failure->message));
+    return nullptr;
+  }
+  const StringPtr owned(text);
+  std::string error;
+  std::unique_ptr<rate::SizeModel> model;
+  if (const auto file = rate::ParseModelFile({text, size}, &error))
+    model = rate::MakeModel(*file, kind, &error);
+  if (!model) {
+    GST_ELEMENT_ERROR(element, RESOURCE, READ,
+                      ("The rate model \"%s\" cannot be used.", s.model_location.c_str()),
+                      ("%s", error.c_str()));
+  }
+  return model;
 }
 
 }  // namespace lidar::gst

@@ -3,10 +3,12 @@
 #pragma once
 #include <gst/gst.h>
 
+#include <memory>
 #include <string>
 
 #include "src/rate/model_file.h"
 #include "src/rate/scan_plan.h"
+#include "src/rate/size_model.h"
 
 namespace lidar::gst {
 
@@ -25,5 +27,9 @@ struct EncoderSettings {
 
 GType RateModelType();
 GType DegradationPreferenceType();
+
+/// The rate model that they ask for. Null, and an error posted by `element`, where its file cannot
+/// be read or used.
+std::unique_ptr<rate::SizeModel> LoadModel(GstElement* element, const EncoderSettings& settings);
 
 }  // namespace lidar::gst

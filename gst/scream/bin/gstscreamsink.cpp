@@ -17,7 +17,6 @@
 #include "gst/common/refs.h"
 #include "gst/common/sink_pads.h"
 #include "gst/scream/bin/common.h"
-#include "gst/scream/bin/gstscreamsinkpad.h"
 #include "gst/scream/rtp_packet.h"
 #include "gst/scream/tx/settings.h"
 
@@ -41,6 +40,30 @@ struct State : BinState {
 };
 
 }  // namespace
+
+/// The ghost of a sink pad of screamtx, with its properties.
+G_DECLARE_FINAL_TYPE(GstLidarScreamSinkPad, gst_lidar_scream_sink_pad, GST, LIDAR_SCREAM_SINK_PAD,
+                     GstGhostPad)
+struct _GstLidarScreamSinkPad {
+  GstGhostPad parent;
+};
+
+G_DEFINE_TYPE(GstLidarScreamSinkPad, gst_lidar_scream_sink_pad, GST_TYPE_GHOST_PAD)
+
+static void gst_lidar_scream_sink_pad_init(GstLidarScreamSinkPad*) {}
+
+static void gst_lidar_scream_sink_pad_class_init(GstLidarScreamSinkPadClass* klass) {
+  auto* object = G_OBJECT_CLASS(klass);
+  object->set_property = [](GObject* o, guint, const GValue* v, GParamSpec* spec) {
+    const PadPtr target(gst_ghost_pad_get_target(GST_GHOST_PAD(o)));
+    if (target) g_object_set_property(G_OBJECT(target.get()), spec->name, v);
+  };
+  object->get_property = [](GObject* o, guint, GValue* v, GParamSpec* spec) {
+    const PadPtr target(gst_ghost_pad_get_target(GST_GHOST_PAD(o)));
+    if (target) g_object_get_property(G_OBJECT(target.get()), spec->name, v);
+  };
+  InstallProperties(object, TxPadPropertyTable());
+}
 
 G_DECLARE_FINAL_TYPE(GstLidarScreamSink, gst_lidar_scream_sink, GST, LIDAR_SCREAM_SINK, GstBin)
 struct _GstLidarScreamSink {
@@ -217,7 +240,8 @@ static GstPad* RequestPad(GstElement* element, GstPadTemplate* templ, const gcha
   const PadPtr target(gst_element_request_pad(self->tx, inner, name, caps));
   if (!target) return nullptr;
   const StringPtr pad_name(gst_pad_get_name(target.get()));
-  return AddGhostSink(element, GST_TYPE_LIDAR_SCREAM_SINK_PAD, templ, pad_name.get(), target.get());
+  return AddGhostSink(element, gst_lidar_scream_sink_pad_get_type(), templ, pad_name.get(),
+                      target.get());
 }
 
 static void ReleasePad(GstElement* element, GstPad* pad) {
@@ -290,6 +314,7 @@ static void gst_lidar_scream_sink_class_init(GstLidarScreamSinkClass* klass) {
            {"SCReAM network sink", "Sink/Network/RTP",
             "Sends RTP over UDP with SCReAM v2 congestion control and L4S"},
            {{"sink_%u", GST_PAD_SINK, "application/x-rtp", GST_PAD_REQUEST,
-             GST_TYPE_LIDAR_SCREAM_SINK_PAD}});
-  gst_type_mark_as_plugin_api(GST_TYPE_LIDAR_SCREAM_SINK_PAD, static_cast<GstPluginAPIFlags>(0));
+             gst_lidar_scream_sink_pad_get_type()}});
+  gst_type_mark_as_plugin_api(gst_lidar_scream_sink_pad_get_type(),
+                              static_cast<GstPluginAPIFlags>(0));
 }

@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Command lines alike in every program: --version, and 2 as the exit code of wrong options.
+// What is alike in every program: --version, 2 as the exit code of wrong options, and 1 as that of
+// what is thrown.
 #pragma once
 #include <CLI/CLI.hpp>
+#include <cstdio>
 #include <cstdlib>
+#include <exception>
 #include <string>
 
 namespace lidar::tools {
@@ -29,6 +32,17 @@ void Parse(CLI::App* app, int argc, char** argv, Check check) {
 }
 inline void Parse(CLI::App* app, int argc, char** argv) {
   Parse(app, argc, argv, [] {});
+}
+
+/// The exit code of `run`; what it throws becomes a message.
+template <class Run>
+int Guard(const char* program, Run run) {
+  try {
+    return run();
+  } catch (const std::exception& e) {
+    std::fprintf(stderr, "%s: %s\n", program, e.what());
+    return 1;
+  }
 }
 
 }  // namespace lidar::tools

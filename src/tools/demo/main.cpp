@@ -4,7 +4,6 @@
 
 #include <CLI/CLI.hpp>
 
-#include "src/tools/common/guard.h"
 #include "src/tools/common/program.h"
 #include "src/tools/demo/coordinator.h"
 #include "src/tools/demo/ends.h"

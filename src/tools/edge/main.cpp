@@ -15,7 +15,6 @@
 #include <vector>
 
 #include "src/tools/common/bounded_end.h"
-#include "src/tools/common/guard.h"
 #include "src/tools/common/program.h"
 #include "src/tools/edge/edge_config.h"
 #include "src/tools/edge/receiver.h"

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // lidar-eval: what an error bound costs, and how well a bitrate is hit.
 
-#include "src/tools/common/guard.h"
 #include "src/tools/common/output_file.h"
 #include "src/tools/common/program.h"
 #include "src/tools/lidar_eval/commands.h"

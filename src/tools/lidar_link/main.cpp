@@ -4,8 +4,8 @@
 #include <iostream>
 
 #include "src/tools/common/event_loop.h"
-#include "src/tools/common/guard.h"
 #include "src/tools/common/output_file.h"
+#include "src/tools/common/program.h"
 #include "src/tools/lidar_link/options.h"
 #include "src/tools/lidar_link/recorder.h"
 #include "src/tools/lidar_link/relay.h"

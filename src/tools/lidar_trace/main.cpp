@@ -6,7 +6,6 @@
 
 #include "src/link/capacity.h"
 #include "src/link/trace_maker.h"
-#include "src/tools/common/guard.h"
 #include "src/tools/common/output_file.h"
 #include "src/tools/common/program.h"
 

@@ -10,7 +10,6 @@
 #include "src/tools/codec_lab/scan_source.h"
 #include "src/tools/codec_lab/slice_codec.h"
 #include "src/tools/codec_lab/training.h"
-#include "src/tools/common/guard.h"
 #include "src/tools/common/output_file.h"
 #include "src/tools/common/program.h"
 

@@ -8,7 +8,6 @@
 #include <sstream>
 
 #include "src/tools/codec_lab/scan_source.h"
-#include "src/tools/common/guard.h"
 #include "src/tools/common/output_file.h"
 #include "src/tools/common/program.h"
 #include "src/tools/mixing_train/training.h"

@@ -11,7 +11,6 @@
 #include <string>
 #include <vector>
 
-#include "src/tools/common/guard.h"
 #include "src/tools/common/program.h"
 
 namespace {

@@ -2,7 +2,7 @@
 // scream-bench: measures a network path with SCReAM v2.
 #include <gst/gst.h>
 
-#include "src/tools/common/guard.h"
+#include "src/tools/common/program.h"
 #include "src/tools/scream_bench/options.h"
 #include "src/tools/scream_bench/receiver.h"
 #include "src/tools/scream_bench/sender.h"

@@ -3,20 +3,91 @@
 
 #include <gst/rtp/gstrtpbuffer.h>
 
+#include <algorithm>
+#include <cstdint>
 #include <cstdio>
 #include <fstream>
 #include <mutex>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <stdexcept>
 
 #include "gst/common/gstlidar.h"
+#include "src/base/sequence.h"
+#include "src/base/time.h"
+#include "src/base/units.h"
+#include "src/tools/common/distribution.h"
 #include "src/tools/common/output_file.h"
-#include "src/tools/scream_bench/frame_meter.h"
 #include "src/tools/scream_bench/frame_source.h"
 #include "src/tools/scream_bench/pipeline.h"
 
 namespace lidar::tools {
 namespace {
+
+/// Ages beyond this are those of a sender whose RTP timestamps are not Unix time.
+constexpr Duration kPlausibleAge = std::chrono::seconds{60};
+
+Duration FromTicks(std::int32_t ticks) {
+  return std::chrono::nanoseconds{std::int64_t{ticks} * 1'000'000'000 /
+                                  FramePacketizer::kClockRate};
+}
+
+struct ReceivedPacket {
+  std::uint16_t sequence = 0;
+  std::uint32_t timestamp = 0;  // 90 kHz
+  bool marker = false;
+  bool is_ce = false;
+  DataSize size;          // on the wire
+  Duration unix_time{0};  // of its arrival
+};
+
+/// Age of frames: from their creation to the arrival of their last packet.
+class FrameMeter {
+ public:
+  /// The age of the frame that this packet ends, if it does.
+  std::optional<Duration> OnPacket(const ReceivedPacket& packet);
+
+  std::uint64_t packets() const { return packets_; }
+  std::uint64_t ce_packets() const { return ce_packets_; }
+  DataSize received() const { return received_; }
+  /// Packets between the oldest and the newest that never came.
+  std::uint64_t lost() const;
+  std::uint64_t frames() const { return ages_ms_.count(); }
+  /// True where the sender's clock is another, so that ages count from the youngest frame's.
+  bool is_relative() const { return offset_ != Duration{0}; }
+  const Distribution& ages_ms() const { return ages_ms_; }
+
+ private:
+  SequenceUnwrapper<std::uint16_t> sequence_;
+  std::optional<std::int64_t> first_sequence_;
+  std::uint64_t packets_ = 0;
+  std::uint64_t ce_packets_ = 0;
+  DataSize received_;
+  Duration offset_{0};
+  Distribution ages_ms_;
+};
+
+std::optional<Duration> FrameMeter::OnPacket(const ReceivedPacket& packet) {
+  const std::int64_t sequence = sequence_.Unwrap(packet.sequence);
+  first_sequence_ = std::min(first_sequence_.value_or(sequence), sequence);
+  ++packets_;
+  ce_packets_ += packet.is_ce;
+  received_ += packet.size;
+  if (!packet.marker) return std::nullopt;
+  const Duration age =
+      FromTicks(SequenceDistance(RtpTimestamp(packet.unix_time), packet.timestamp)) - offset_;
+  if (frames() == 0 && (age < Duration{0} || age > kPlausibleAge)) offset_ += age;
+  if (is_relative() && age < Duration{0}) offset_ += age;  // a younger one
+  const Duration shown = std::max(Duration{0}, frames() == 0 && is_relative() ? Duration{0} : age);
+  ages_ms_.Add(Milliseconds(shown));
+  return shown;
+}
+
+std::uint64_t FrameMeter::lost() const {
+  if (!first_sequence_) return 0;
+  const auto expected = static_cast<std::uint64_t>(*sequence_.newest() - *first_sequence_ + 1);
+  return expected > packets_ ? expected - packets_ : 0;
+}
 
 constexpr DataSize kIpUdp = DataSize::Bytes(28);
 constexpr const char* kCaps =

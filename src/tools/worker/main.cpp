@@ -10,7 +10,6 @@
 
 #include "ext/nats/jetstream.h"
 #include "src/tools/common/bounded_end.h"
-#include "src/tools/common/guard.h"
 #include "src/tools/common/program.h"
 #include "src/tools/fleet/statistics.h"
 #include "src/tools/worker/worker.h"
