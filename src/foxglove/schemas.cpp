@@ -4,7 +4,7 @@
 #include <array>
 #include <nlohmann/json.hpp>
 
-#include "src/foxglove/base64.h"
+#include "src/base/base64.h"
 #include "src/foxglove/proto_writer.h"
 
 namespace lidar::foxglove {

@@ -4,7 +4,9 @@
 #include <algorithm>
 #include <memory>
 
+#include "src/base/base64.h"
 #include "src/codec/mixing/binary_coder.h"
+#include "src/codec/start_table.h"
 
 namespace lidar::codec::mixing {
 namespace {
@@ -212,20 +214,7 @@ bool StartStates::Read(ByteView table) {
   return decoder.AtEnd();
 }
 
-std::vector<std::uint8_t> CommittedTable() {
-  std::array<std::uint8_t, 128> values{};
-  for (std::uint8_t i = 0; i < 64; ++i) values[static_cast<std::size_t>(kTableDigits[i])] = i;
-  std::vector<std::uint8_t> table;
-  table.reserve(kTableBytes + 2);
-  for (const char* at = kTableText; table.size() < kTableBytes; at += 4) {
-    unsigned bits = 0;
-    for (unsigned i = 0; i < 4; ++i) bits = bits << 6 | values[static_cast<std::size_t>(at[i])];
-    for (unsigned shift = 24; shift > 0; shift -= 8)
-      table.push_back(static_cast<std::uint8_t>(bits >> (shift - 8)));
-  }
-  table.resize(kTableBytes);
-  return table;
-}
+std::vector<std::uint8_t> CommittedTable() { return FromBase64(kTableText); }
 
 const StartStates& Trained() {
   static const std::unique_ptr<const StartStates> states = [] {

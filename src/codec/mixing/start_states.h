@@ -52,12 +52,7 @@ struct StartStates {
 /// The states of this version, from the table in the program.
 const StartStates& Trained();
 
-/// That table, three bytes in four characters (start_table.cpp).
-inline constexpr char kTableDigits[] =
-    "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-extern const char kTableText[];
-extern const std::size_t kTableBytes;
-/// As StartStates::Write() gave it.
+/// That table (start_table.txt), as StartStates::Write() gave it.
 std::vector<std::uint8_t> CommittedTable();
 
 }  // namespace lidar::codec::mixing

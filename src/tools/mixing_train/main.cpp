@@ -5,8 +5,8 @@
 #include <fstream>
 #include <iostream>
 #include <iterator>
-#include <sstream>
 
+#include "src/base/base64.h"
 #include "src/tools/codec_lab/scan_source.h"
 #include "src/tools/common/output_file.h"
 #include "src/tools/common/program.h"
@@ -33,8 +33,8 @@ Options ParseOptions(int argc, char** argv) {
       "be redistributed.");
   app.option_defaults()->always_capture_default();
   app.add_option("SOURCE", o.sources, kSourceHelp)->required();
-  app.add_option("-o,--output", o.output, "C++ file to write");
-  app.add_option("--check", o.check, "C++ file that must be what would be written");
+  app.add_option("-o,--output", o.output, "File to write");
+  app.add_option("--check", o.check, "File that must be what would be written");
   app.add_flag("--leave-one-out", o.leave_one_out,
                "Print bits a return of each source with states trained on the others");
   app.add_option("--held-out", o.held_out,
@@ -45,32 +45,13 @@ Options ParseOptions(int argc, char** argv) {
   return o;
 }
 
-/// The table as text: each character stands for six bits, and `#` is 0, so that none needs an
-/// escape.
-std::string ToSource(const std::vector<std::uint8_t>& table) {
-  std::ostringstream out;
-  out << "// SPDX-License-Identifier: LGPL-2.1-or-later\n"
-         "// Written by mixing-train: the start states of the mixing coder, which are part of its\n"
-         "// format (docs/mixing-coder.md).\n"
-         "#include \"src/codec/mixing/start_states.h\"\n\n"
-         "namespace lidar::codec::mixing {\n\n"
-         "const char kTableText[] =";
-  constexpr std::size_t kBytesPerLine = 69;
-  for (std::size_t at = 0; at < table.size(); at += kBytesPerLine) {
-    out << "\n    \"";
-    const std::size_t end = std::min(at + kBytesPerLine, table.size());
-    for (std::size_t i = at; i < end; i += 3) {
-      std::uint32_t bits = 0;
-      for (std::size_t k = 0; k < 3; ++k) bits = bits << 8 | (i + k < end ? table[i + k] : 0U);
-      for (int shift = 18; shift >= 0; shift -= 6)
-        out << codec::mixing::kTableDigits[bits >> shift & 63];
-    }
-    out << '"';
-  }
-  if (table.empty()) out << " \"\"";
-  out << ";\nconst std::size_t kTableBytes = " << table.size()
-      << ";\n\n}  // namespace lidar::codec::mixing\n";
-  return out.str();
+/// The table in base 64, in lines.
+std::string ToText(const std::vector<std::uint8_t>& table) {
+  constexpr std::size_t kLine = 92;
+  const std::string digits = Base64(table);
+  std::string text;
+  for (std::size_t at = 0; at < digits.size(); at += kLine) text += digits.substr(at, kLine) + '\n';
+  return text;
 }
 
 // With 8 slices a scan where nothing else is said.
@@ -117,12 +98,12 @@ int Run(const Options& o) {
     PrintRow(set.name + " (held out)", set, *states);
   std::vector<std::uint8_t> table;
   states->Write(&table);
-  const std::string source = ToSource(table);
-  if (!o.output.empty()) tools::WriteFile(o.output, source);
+  const std::string text = ToText(table);
+  if (!o.output.empty()) tools::WriteFile(o.output, text);
   if (!o.check.empty()) {
     std::ifstream file(o.check, std::ios::binary);
     const std::string committed{std::istreambuf_iterator<char>(file), {}};
-    if (committed != source) {
+    if (committed != text) {
       std::cerr << o.check << ": not what this training gives\n";
       return 1;
     }

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "src/base/base64.h"
 #include "src/base/byte_reader.h"
 #include "src/base/byte_writer.h"
 #include "src/base/crc.h"
@@ -203,6 +204,16 @@ TEST(RowFile, SaysWhenTheDiskIsFull) {
   EXPECT_FALSE(full.ok());
   full.Close();
   EXPECT_TRUE(std::filesystem::exists("/dev/full"));  // no regular file
+}
+
+TEST(Base64, PadsAsTheStandardSaysAndReadsLines) {
+  for (const auto& [bytes, text] : std::vector<std::pair<std::string, std::string>>{
+           {"", ""}, {"f", "Zg=="}, {"fo", "Zm8="}, {"foobar", "Zm9vYmFy"}}) {
+    const std::vector<std::uint8_t> plain(bytes.begin(), bytes.end());
+    EXPECT_EQ(Base64(plain), text);
+    EXPECT_EQ(FromBase64(text), plain);
+    EXPECT_EQ(FromBase64("\n" + text + "\n"), plain);
+  }
 }
 
 }  // namespace
