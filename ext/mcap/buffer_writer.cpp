@@ -28,8 +28,7 @@ GstClockTime CaptureTime(GstBuffer* buffer, GstClockTime otherwise) {
 
 class SliceWriter : public BufferWriter {
  public:
-  explicit SliceWriter(std::string frame_id) : frame_id_(std::move(frame_id)) {}
-  MessageType type() const override { return MessageType::kSlice; }
+  explicit SliceWriter(const std::string& frame_id) : BufferWriter(MessageType::kSlice, frame_id) {}
 
   bool Write(GstBuffer* buffer, GstClockTime log_time, std::vector<NewMessage>* out) override {
     const BufferMap map(buffer, GST_MAP_READ);
@@ -50,16 +49,12 @@ class SliceWriter : public BufferWriter {
     out->push_back({0, CaptureTime(buffer, log_time), cdr::WriteCodedSlice(slice)});
     return true;
   }
-
- private:
-  const std::string frame_id_;
 };
 
 class CloudWriter : public BufferWriter {
  public:
-  CloudWriter(CloudInfo info, std::string frame_id)
-      : info_(std::move(info)), frame_id_(std::move(frame_id)) {}
-  MessageType type() const override { return MessageType::kCloud; }
+  CloudWriter(CloudInfo info, const std::string& frame_id)
+      : BufferWriter(MessageType::kCloud, frame_id), info_(std::move(info)) {}
 
   bool Write(GstBuffer* buffer, GstClockTime log_time, std::vector<NewMessage>* out) override {
     const BufferMap map(buffer, GST_MAP_READ);
@@ -76,14 +71,12 @@ class CloudWriter : public BufferWriter {
 
  private:
   const CloudInfo info_;
-  const std::string frame_id_;
 };
 
 /// A packet of samples becomes a message each.
 class ImuWriter : public BufferWriter {
  public:
-  explicit ImuWriter(std::string frame_id) : frame_id_(std::move(frame_id)) {}
-  MessageType type() const override { return MessageType::kImu; }
+  explicit ImuWriter(const std::string& frame_id) : BufferWriter(MessageType::kImu, frame_id) {}
 
   bool Write(GstBuffer* buffer, GstClockTime, std::vector<NewMessage>* out) override {
     const BufferMap map(buffer, GST_MAP_READ);
@@ -97,15 +90,12 @@ class ImuWriter : public BufferWriter {
     }
     return true;
   }
-
- private:
-  const std::string frame_id_;
 };
 
 class OdometryWriter : public BufferWriter {
  public:
-  explicit OdometryWriter(std::string frame_id) : frame_id_(std::move(frame_id)) {}
-  MessageType type() const override { return MessageType::kOdometry; }
+  explicit OdometryWriter(const std::string& frame_id)
+      : BufferWriter(MessageType::kOdometry, frame_id) {}
 
   bool Write(GstBuffer* buffer, GstClockTime log_time, std::vector<NewMessage>* out) override {
     const BufferMap map(buffer, GST_MAP_READ);
@@ -120,9 +110,6 @@ class OdometryWriter : public BufferWriter {
     out->push_back({0, stamp, cdr::WriteOdometry(*odometry)});
     return true;
   }
-
- private:
-  const std::string frame_id_;
 };
 
 }  // namespace

@@ -5,6 +5,7 @@
 
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "ext/mcap/message_types.h"
@@ -26,9 +27,16 @@ class BufferWriter {
                                             std::string* why);
   virtual ~BufferWriter() = default;
 
-  virtual MessageType type() const = 0;
+  MessageType type() const { return type_; }
   /// Appends what `buffer`, logged at `log_time`, becomes. False where it contradicts its caps.
   virtual bool Write(GstBuffer* buffer, GstClockTime log_time, std::vector<NewMessage>* out) = 0;
+
+ protected:
+  BufferWriter(MessageType type, std::string frame_id)
+      : type_(type), frame_id_(std::move(frame_id)) {}
+
+  const MessageType type_;
+  const std::string frame_id_;
 };
 
 }  // namespace lidar::gst
