@@ -32,22 +32,16 @@ GST_DEBUG_CATEGORY_STATIC(gst_lidar_mcap_sink_debug);
 
 namespace {
 
-using lidar::gst::NewMessage;
-using lidar::gst::RecordedStream;
-using lidar::gst::Recorder;
-using lidar::gst::RecorderFault;
+using namespace lidar::gst;
 using lidar::mcap::Compression;
 
 struct Settings {
   std::string location;
-  lidar::gst::RecorderSettings recorder;
+  RecorderSettings recorder;
   Compression compression = Compression::kZstd;
   lidar::DataSize chunk_size = lidar::DataSize::Bytes(1 << 20);
 };
 
-using lidar::gst::At;
-using lidar::gst::Int;
-using lidar::gst::RecorderSettings;
 using lidar::mcap::WriterSettings;
 
 GType CompressionType() {
@@ -57,7 +51,7 @@ GType CompressionType() {
       {Int(Compression::kZstd), "The smallest files", "zstd"},
       {0, nullptr, nullptr},
   };
-  static const GType type = lidar::gst::RegisterEnum("GstLidarMcapCompression", values);
+  static const GType type = RegisterEnum("GstLidarMcapCompression", values);
   return type;
 }
 
@@ -67,7 +61,7 @@ struct Counters {
   guint64 files = 0;
   guint64 chunks = 0;
 };
-const std::array<lidar::gst::Stat<Counters>, 4> kStats = {{
+const std::array<Stat<Counters>, 4> kStats = {{
     {"messages", &Counters::messages},
     {"bytes", &Counters::bytes},
     {"files", &Counters::files},
@@ -81,7 +75,7 @@ struct State {
 
   std::mutex recording;  // guards these, is taken before `mutex`, and never held while posting
   std::unique_ptr<Recorder> recorder;
-  lidar::gst::Timeline timeline;
+  Timeline timeline;
   std::set<std::string> topics;
   std::vector<NewMessage> messages;
   bool has_slices = false;
@@ -101,17 +95,17 @@ struct _GstLidarMcapSink {
 G_DEFINE_TYPE(GstLidarMcapSink, gst_lidar_mcap_sink, GST_TYPE_BIN)
 GST_ELEMENT_REGISTER_DEFINE(mcapsink, "mcapsink", GST_RANK_NONE, GST_TYPE_LIDAR_MCAP_SINK)
 
-static lidar::gst::StructurePtr Stats(GObject* object) {
+static StructurePtr Stats(GObject* object) {
   State& state = *GST_LIDAR_MCAP_SINK(object)->state;
   std::lock_guard lock(state.mutex);
-  return lidar::gst::ToStructure("mcap-sink-stats", kStats, state.counters);
+  return ToStructure("mcap-sink-stats", kStats, state.counters);
 }
 
-static const std::array<lidar::gst::Property<Settings>, 9> kProperties = {{
+static const std::array<Property<Settings>, 9> kProperties = {{
     {"location", "File to write; with a number (rec-%05d.mcap) a file after the other",
      &Settings::location},
     {"compression", "Of the chunks that get smaller by it",
-     lidar::gst::EnumField<Settings, Compression>{&Settings::compression, CompressionType}},
+     EnumField<Settings, Compression>{&Settings::compression, CompressionType}},
     {"chunk-size", "A chunk is written once it is larger [bytes]", &Settings::chunk_size, 1024,
      1 << 26},
     {"chunk-duration", "... or once it lasts longer; what a crash costs at most [ns]",
@@ -144,8 +138,7 @@ static void PostFault(GstLidarMcapSink* self, const RecorderFault& fault) {
 }
 
 /// Tells the application of each file that is complete.
-static void PostFinished(GstLidarMcapSink* self,
-                         const std::vector<lidar::gst::RecordedFile>& files) {
+static void PostFinished(GstLidarMcapSink* self, const std::vector<RecordedFile>& files) {
   for (const auto& file : files) {
     const auto& s = file.statistics;
     GST_INFO_OBJECT(self, "%s is complete", file.path.c_str());
@@ -174,7 +167,7 @@ template <class Work>
 static bool WithRecorder(GstLidarMcapSink* self, Work work) {
   State& state = *self->state;
   std::optional<RecorderFault> fault;
-  std::vector<lidar::gst::RecordedFile> finished;
+  std::vector<RecordedFile> finished;
   {
     std::lock_guard lock(state.recording);
     if (!state.recorder || state.failed) return false;
@@ -196,12 +189,12 @@ static bool Start(GstLidarMcapSink* self) {
   std::optional<RecorderFault> fault;
   {
     std::lock_guard lock(state.recording);
-    Settings s = lidar::gst::Snapshot(state);
+    Settings s = Snapshot(state);
     s.recorder.writer.compression = s.compression;
     s.recorder.writer.chunk_size = static_cast<std::size_t>(s.chunk_size.bytes());
     const bool limited = s.recorder.max_file_size > 0 || s.recorder.max_files > 0 ||
                          s.recorder.max_file_duration > lidar::Duration{};
-    auto names = s.location.empty() ? std::nullopt : lidar::gst::FileNames::Parse(s.location, &why);
+    auto names = s.location.empty() ? std::nullopt : FileNames::Parse(s.location, &why);
     if (names && limited && !names->is_numbered()) {
       why = "several files need a number in their name, as in rec-%05d.mcap";
       names.reset();
@@ -248,13 +241,12 @@ static GstPad* RequestPad(GstElement* element, GstPadTemplate* pad_template, con
     const guint number = self->state->next_pad++;
     GST_OBJECT_UNLOCK(self);
     name = wanted != nullptr ? wanted : "sink_" + std::to_string(number);
-    if (const lidar::gst::PadPtr taken(gst_element_get_static_pad(element, name.c_str())); !taken)
-      break;
+    if (const PadPtr taken(gst_element_get_static_pad(element, name.c_str())); !taken) break;
   } while (wanted == nullptr);
   // The stream is called as its pad, so that sink_0::topic reaches it.
   GstElement* stream = gst_lidar_mcap_stream_new(self, name.c_str());
   if (!gst_bin_add(GST_BIN(self), stream)) return nullptr;
-  const lidar::gst::PadPtr target(gst_element_get_static_pad(stream, "sink"));
+  const PadPtr target(gst_element_get_static_pad(stream, "sink"));
   GstPad* pad = gst_ghost_pad_new_from_template(name.c_str(), target.get(), pad_template);
   gst_pad_set_active(pad, TRUE);
   if (gst_element_add_pad(element, pad)) {
@@ -266,7 +258,7 @@ static GstPad* RequestPad(GstElement* element, GstPadTemplate* pad_template, con
 }
 
 static void ReleasePad(GstElement* element, GstPad* pad) {
-  const lidar::gst::StringPtr name(gst_pad_get_name(pad));
+  const StringPtr name(gst_pad_get_name(pad));
   GstElement* stream = gst_bin_get_by_name(GST_BIN(element), name.get());
   gst_pad_set_active(pad, FALSE);
   gst_element_remove_pad(element, pad);
@@ -278,11 +270,11 @@ static void ReleasePad(GstElement* element, GstPad* pad) {
 }
 
 /// What needs a channel of its own. The message of a cloud says its width itself.
-static std::string KindOf(const GstCaps* caps, lidar::gst::MessageType type) {
-  const lidar::gst::CapsPtr kind(gst_caps_copy(caps));
-  if (type == lidar::gst::MessageType::kCloud)
+static std::string KindOf(const GstCaps* caps, MessageType type) {
+  const CapsPtr kind(gst_caps_copy(caps));
+  if (type == MessageType::kCloud)
     gst_structure_remove_field(gst_caps_get_structure(kind.get(), 0), "width");
-  return lidar::gst::CapsToText(kind.get());
+  return CapsToText(kind.get());
 }
 
 /// True where every stream has ended.
@@ -375,13 +367,13 @@ static void gst_lidar_mcap_sink_init(GstLidarMcapSink* self) {
 
 static void gst_lidar_mcap_sink_class_init(GstLidarMcapSinkClass* klass) {
   GST_DEBUG_CATEGORY_INIT(gst_lidar_mcap_sink_debug, "mcapsink", 0, "Recordings");
-  lidar::gst::ServeState<GstLidarMcapSink, gst_lidar_mcap_sink_parent_class, kProperties>(klass);
+  ServeState<GstLidarMcapSink, gst_lidar_mcap_sink_parent_class, kProperties>(klass);
   auto* element = GST_ELEMENT_CLASS(klass);
   element->change_state = ChangeState;
   element->request_new_pad = RequestPad;
   element->release_pad = ReleasePad;
-  lidar::gst::Describe(klass,
-                       {"MCAP recorder", "Sink/File",
-                        "Records slices, clouds, IMU samples and odometry into MCAP files"},
-                       {{"sink_%u", GST_PAD_SINK, "ANY", GST_PAD_REQUEST}});
+  Describe(klass,
+           {"MCAP recorder", "Sink/File",
+            "Records slices, clouds, IMU samples and odometry into MCAP files"},
+           {{"sink_%u", GST_PAD_SINK, "ANY", GST_PAD_REQUEST}});
 }

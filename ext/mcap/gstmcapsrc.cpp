@@ -32,9 +32,7 @@ G_DECLARE_FINAL_TYPE(GstLidarMcapSrc, gst_lidar_mcap_src, GST, LIDAR_MCAP_SRC, G
 
 namespace {
 
-using lidar::gst::Playback;
-using lidar::gst::Seek;
-using lidar::gst::StreamGroup;
+using namespace lidar::gst;
 
 struct Settings {
   std::string location;
@@ -48,7 +46,7 @@ struct Counters {
   guint64 files_unclosed = 0;
   guint64 files_unreadable = 0;
 };
-const std::array<lidar::gst::Stat<Counters>, 5> kStats = {{
+const std::array<Stat<Counters>, 5> kStats = {{
     {"messages", &Counters::messages},
     {"messages-dropped", &Counters::messages_dropped},
     {"chunks-damaged", &Counters::chunks_damaged},
@@ -73,7 +71,7 @@ struct State {
   guint32 last_seek = GST_SEQNUM_INVALID;
 
   std::atomic<bool> end_wanted{false};
-  lidar::gst::PlayTask task;
+  PlayTask task;
   Run run;
 };
 
@@ -92,13 +90,13 @@ static GstStaticPadTemplate src_template =
 
 static gboolean SrcEvent(GstPad* pad, GstObject* parent, GstEvent* event);
 
-static lidar::gst::StructurePtr Stats(GObject* object) {
+static StructurePtr Stats(GObject* object) {
   State& state = *GST_LIDAR_MCAP_SRC(object)->state;
   std::lock_guard lock(state.mutex);
-  return lidar::gst::ToStructure("mcap-src-stats", kStats, state.counters);
+  return ToStructure("mcap-src-stats", kStats, state.counters);
 }
 
-static const std::array<lidar::gst::Property<Settings>, 3> kProperties = {{
+static const std::array<Property<Settings>, 3> kProperties = {{
     {"location", "File to play; with a number (rec-%05d.mcap) all files of a recording",
      &Settings::location},
     {"topic", "Play this topic only; NULL: all", &Settings::topic},
@@ -117,7 +115,7 @@ static gboolean SrcQuery(GstPad* pad, GstObject* parent, GstQuery* query) {
   State& state = *GST_LIDAR_MCAP_SRC(parent)->state;
   {
     std::lock_guard lock(state.mutex);
-    if (lidar::gst::AnswerBySegment(state.segment, query)) return TRUE;
+    if (AnswerBySegment(state.segment, query)) return TRUE;
   }
   return gst_pad_query_default(pad, parent, query);
 }
@@ -141,7 +139,7 @@ static std::string TopicNames(const Playback& playback) {
 static bool HasTopic(const Playback& playback, const Settings& settings) {
   return std::any_of(playback.topics().begin(), playback.topics().end(), [&](const auto& topic) {
     return IsWanted(settings, topic.channel.topic) &&
-           lidar::gst::MessageReader::Make(topic.schema, topic.channel) != nullptr;
+           MessageReader::Make(topic.schema, topic.channel) != nullptr;
   });
 }
 
@@ -246,11 +244,11 @@ static void Loop(gpointer user_data) {
   auto* self = GST_LIDAR_MCAP_SRC(user_data);
   State& state = *self->state;
   Run& run = state.run;
-  const Settings settings = lidar::gst::Snapshot(state);
+  const Settings settings = Snapshot(state);
   if (run.streams->empty()) run.streams->ShowKnown(*run.playback, settings.topic);
   const auto item = state.end_wanted ? std::nullopt : run.playback->Next();
   if (!item) return Stop(self, GST_FLOW_EOS);
-  if (!IsWanted(settings, item->channel->topic) || !lidar::gst::TypeOf(*item->schema)) return;
+  if (!IsWanted(settings, item->channel->topic) || !TypeOf(*item->schema)) return;
   const std::uint64_t start = run.playback->start_time();
   const std::uint64_t log_time = std::max(item->message.header.log_time, start);
   const GstClockTime pts = std::min<guint64>(log_time - start, G_MAXINT64);
@@ -318,13 +316,13 @@ static bool DoSeek(GstLidarMcapSrc* self, GstEvent* event) {
 
 static gboolean SrcEvent(GstPad* pad, GstObject* parent, GstEvent* event) {
   if (GST_EVENT_TYPE(event) != GST_EVENT_SEEK) return gst_pad_event_default(pad, parent, event);
-  const lidar::gst::EventPtr owner(event);
+  const EventPtr owner(event);
   return DoSeek(GST_LIDAR_MCAP_SRC(parent), event);
 }
 
 static gboolean SendEvent(GstElement* element, GstEvent* event) {
   auto* self = GST_LIDAR_MCAP_SRC(element);
-  const lidar::gst::EventPtr owner(event);
+  const EventPtr owner(event);
   if (GST_EVENT_TYPE(event) == GST_EVENT_SEEK) return DoSeek(self, event);
   if (GST_EVENT_TYPE(event) != GST_EVENT_EOS) return FALSE;
   self->state->end_wanted = true;
@@ -378,11 +376,11 @@ static void gst_lidar_mcap_src_init(GstLidarMcapSrc* self) {
 
 static void gst_lidar_mcap_src_class_init(GstLidarMcapSrcClass* klass) {
   GST_DEBUG_CATEGORY_INIT(gst_lidar_mcap_src_debug, "mcapsrc", 0, "Recordings, played");
-  lidar::gst::ServeState<GstLidarMcapSrc, gst_lidar_mcap_src_parent_class, kProperties>(klass);
+  ServeState<GstLidarMcapSrc, gst_lidar_mcap_src_parent_class, kProperties>(klass);
   auto* element = GST_ELEMENT_CLASS(klass);
   element->change_state = ChangeState;
   element->send_event = SendEvent;
   gst_element_class_add_static_pad_template(element, &src_template);
-  lidar::gst::Describe(klass, {"MCAP player", "Source/File",
-                               "Plays slices, clouds, IMU samples and odometry from MCAP files"});
+  Describe(klass, {"MCAP player", "Source/File",
+                   "Plays slices, clouds, IMU samples and odometry from MCAP files"});
 }

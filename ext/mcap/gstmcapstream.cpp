@@ -11,14 +11,14 @@
 
 namespace {
 
-using lidar::gst::BufferWriter;
+using namespace lidar::gst;
 
 struct StreamSettings {
   std::string topic;
   std::string frame_id = "lidar";
 };
 
-const std::array<lidar::gst::Property<StreamSettings>, 2> kProperties = {{
+const std::array<Property<StreamSettings>, 2> kProperties = {{
     {"topic", "Where its messages go; NULL: /points, /slices, /imu or /odometry",
      &StreamSettings::topic},
     {"frame-id", "The sensor's frame, as messages name it", &StreamSettings::frame_id},
@@ -31,9 +31,9 @@ struct State {
   StreamSettings settings;
   // Only the streaming thread uses these.
   std::unique_ptr<BufferWriter> writer;
-  lidar::gst::RecordedStream stream;
+  RecordedStream stream;
   std::string topic;
-  lidar::gst::RefusedCaps refused;
+  RefusedCaps refused;
 };
 
 }  // namespace
@@ -49,7 +49,7 @@ static State& StateOf(gpointer self) { return *GST_LIDAR_MCAP_STREAM(self)->stat
 
 static gboolean SetCaps(GstBaseSink* base, GstCaps* caps) {
   State& state = StateOf(base);
-  const StreamSettings settings = lidar::gst::Snapshot(state);
+  const StreamSettings settings = Snapshot(state);
   std::string why;
   state.writer = BufferWriter::Make(caps, settings.frame_id, &why);
   if (!state.writer) {
@@ -59,12 +59,10 @@ static gboolean SetCaps(GstBaseSink* base, GstCaps* caps) {
     return FALSE;
   }
   if (state.topic.empty()) {
-    const std::string usual(lidar::gst::TopicOf(state.writer->type()));
-    state.topic =
-        settings.topic.empty() ? lidar::gst::McapSinkFreeTopic(state.sink, usual) : settings.topic;
+    const std::string usual(TopicOf(state.writer->type()));
+    state.topic = settings.topic.empty() ? McapSinkFreeTopic(state.sink, usual) : settings.topic;
   }
-  return lidar::gst::McapSinkAddChannel(state.sink, *state.writer, state.topic, caps,
-                                        &state.stream);
+  return McapSinkAddChannel(state.sink, *state.writer, state.topic, caps, &state.stream);
 }
 
 static GstFlowReturn Render(GstBaseSink* base, GstBuffer* buffer) {
@@ -74,19 +72,18 @@ static GstFlowReturn Render(GstBaseSink* base, GstBuffer* buffer) {
       base->segment.format == GST_FORMAT_TIME && GST_BUFFER_PTS_IS_VALID(buffer)
           ? gst_segment_to_running_time(&base->segment, GST_FORMAT_TIME, GST_BUFFER_PTS(buffer))
           : GST_CLOCK_TIME_NONE;
-  return lidar::gst::McapSinkTake(state.sink, state.writer.get(), &state.stream, buffer,
-                                  running_time);
+  return McapSinkTake(state.sink, state.writer.get(), &state.stream, buffer, running_time);
 }
 
 static gboolean Event(GstBaseSink* base, GstEvent* event) {
   State& state = StateOf(base);
   if (GST_EVENT_TYPE(event) == GST_EVENT_FLUSH_STOP) {
     state.ended = false;
-    lidar::gst::McapSinkFlushed(state.sink);
+    McapSinkFlushed(state.sink);
   } else if (GST_EVENT_TYPE(event) == GST_EVENT_EOS) {
     // Before the base class tells the application.
     state.ended = true;
-    lidar::gst::McapSinkStreamEnded(state.sink);
+    McapSinkStreamEnded(state.sink);
   }
   return GST_BASE_SINK_CLASS(gst_lidar_mcap_stream_parent_class)->event(base, event);
 }
@@ -107,10 +104,9 @@ static GstStateChangeReturn ChangeState(GstElement* element, GstStateChange tran
 static void gst_lidar_mcap_stream_init(GstLidarMcapStream* self) { self->state = new State; }
 
 static void gst_lidar_mcap_stream_class_init(GstLidarMcapStreamClass* klass) {
-  lidar::gst::ServeState<GstLidarMcapStream, gst_lidar_mcap_stream_parent_class, kProperties>(
-      klass);
+  ServeState<GstLidarMcapStream, gst_lidar_mcap_stream_parent_class, kProperties>(klass);
   GST_ELEMENT_CLASS(klass)->change_state = ChangeState;
-  lidar::gst::Describe(
+  Describe(
       klass,
       {"Stream of an MCAP recording", "Sink/File", "Gives the buffers of one stream to mcapsink"},
       {{"sink", GST_PAD_SINK, "ANY"}});

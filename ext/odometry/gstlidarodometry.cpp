@@ -29,9 +29,9 @@ GST_DEBUG_CATEGORY_STATIC(gst_lidar_odometry_debug);
 
 namespace {
 
+using namespace lidar::gst;
 using lidar::Duration;
 using lidar::Time;
-using lidar::gst::CloudInfo;
 using lidar::odometry::Estimate;
 using lidar::odometry::Odometry;
 using lidar::odometry::OdometrySettings;
@@ -57,7 +57,7 @@ struct Counters {
   gdouble inlier_share = 0;
 };
 
-const std::array<lidar::gst::Stat<Counters>, 8> kStats = {{
+const std::array<Stat<Counters>, 8> kStats = {{
     {"scans", &Counters::scans},
     {"scans-lost", &Counters::scans_lost},
     {"scans-degenerate", &Counters::scans_degenerate},
@@ -71,7 +71,7 @@ const std::array<lidar::gst::Stat<Counters>, 8> kStats = {{
 /// Belongs to the streaming thread.
 struct Stream {
   std::optional<CloudInfo> info;
-  lidar::gst::ScanCollector collector;
+  ScanCollector collector;
   std::unique_ptr<Odometry> odometry;
   lidar::RowFile trajectory;
   Tracking tracking = Tracking::kStarted;  // of the last scan
@@ -86,7 +86,6 @@ struct State {
   Stream stream;
 };
 
-using lidar::gst::At;
 }  // namespace
 
 G_DECLARE_FINAL_TYPE(GstLidarOdometry, gst_lidar_odometry, GST, LIDAR_ODOMETRY, GstBaseTransform)
@@ -100,13 +99,13 @@ G_DEFINE_TYPE(GstLidarOdometry, gst_lidar_odometry, GST_TYPE_BASE_TRANSFORM)
 GST_ELEMENT_REGISTER_DEFINE(lidarodometry, "lidarodometry", GST_RANK_NONE,
                             gst_lidar_odometry_get_type())
 
-static lidar::gst::StructurePtr ReadStats(GObject* object) {
+static StructurePtr ReadStats(GObject* object) {
   State& state = *GST_LIDAR_ODOMETRY(object)->state;
   std::lock_guard lock(state.mutex);
-  return lidar::gst::ToStructure("application/x-lidar-odometry-stats", kStats, state.counters);
+  return ToStructure("application/x-lidar-odometry-stats", kStats, state.counters);
 }
 
-static const std::array<lidar::gst::Property<Settings>, 9> kProperties = {{
+static const std::array<Property<Settings>, 9> kProperties = {{
     {"max-range", "Points farther away are left out; also the radius of the map [m]",
      At<&Settings::odometry, &OdometrySettings::max_range_m>, 1, 1000},
     {"min-range", "Points nearer than that are left out: the vehicle itself [m]",
@@ -238,7 +237,7 @@ static void FinishScan(GstLidarOdometry* self, GstClockTime pts) {
                  GST_TIME_ARGS(time));
   WriteTrajectory(self, estimate);
   WarnIfLost(self, estimate);
-  if (lidar::gst::Snapshot(state).post_messages) PostMessage(self, estimate);
+  if (Snapshot(state).post_messages) PostMessage(self, estimate);
   PushPose(self, estimate, pts);
 }
 
@@ -246,7 +245,7 @@ static void FinishScan(GstLidarOdometry* self, GstClockTime pts) {
 static bool AddBuffer(GstLidarOdometry* self, GstBuffer* buffer, const GstLidarSlice& slice,
                       Time at) {
   Stream& stream = self->state->stream;
-  const lidar::gst::BufferMap map(buffer, GST_MAP_READ);
+  const BufferMap map(buffer, GST_MAP_READ);
   if (!map || map.size() % stream.info->point_step != 0) return false;
   stream.collector.Add(slice, at, map.data(), map.size());
   return true;
@@ -305,7 +304,7 @@ static gboolean SinkEvent(GstBaseTransform* base, GstEvent* event) {
       break;
     case GST_EVENT_STREAM_START: {
       gst_pad_push_event(self->poses, gst_event_ref(event));
-      const lidar::gst::CapsPtr caps(gst_caps_new_empty_simple(GST_LIDAR_ODOMETRY_MEDIA_TYPE));
+      const CapsPtr caps(gst_caps_new_empty_simple(GST_LIDAR_ODOMETRY_MEDIA_TYPE));
       gst_pad_push_event(self->poses, gst_event_new_caps(caps.get()));
       break;
     }
@@ -318,7 +317,7 @@ static gboolean SinkEvent(GstBaseTransform* base, GstEvent* event) {
 static gboolean Start(GstBaseTransform* base) {
   auto* self = GST_LIDAR_ODOMETRY(base);
   State& state = *self->state;
-  Settings settings = lidar::gst::Snapshot(state);
+  Settings settings = Snapshot(state);
   {
     std::lock_guard lock(state.mutex);
     state.counters = {};
@@ -363,21 +362,20 @@ static gboolean Stop(GstBaseTransform* base) {
 static void gst_lidar_odometry_init(GstLidarOdometry* self) {
   self->state = new State;
   gst_base_transform_set_in_place(GST_BASE_TRANSFORM(self), TRUE);
-  self->poses = lidar::gst::AddPad(self, "odometry");
+  self->poses = AddPad(self, "odometry");
   gst_pad_use_fixed_caps(self->poses);
 }
 
 static void gst_lidar_odometry_class_init(GstLidarOdometryClass* klass) {
   GST_DEBUG_CATEGORY_INIT(gst_lidar_odometry_debug, "lidarodometry", 0,
                           "Odometry from point clouds");
-  lidar::gst::ServeState<GstLidarOdometry, gst_lidar_odometry_parent_class, kProperties>(klass);
-  lidar::gst::Describe(
-      klass,
-      {"LiDAR odometry", "Filter/Analyzer/PointCloud",
-       "Finds the poses of the sensor by aligning its scans to a map of what it saw"},
-      {{"sink", GST_PAD_SINK, GST_LIDAR_CLOUD_MEDIA_TYPE},
-       {"src", GST_PAD_SRC, GST_LIDAR_CLOUD_MEDIA_TYPE},
-       {"odometry", GST_PAD_SRC, GST_LIDAR_ODOMETRY_MEDIA_TYPE}});
+  ServeState<GstLidarOdometry, gst_lidar_odometry_parent_class, kProperties>(klass);
+  Describe(klass,
+           {"LiDAR odometry", "Filter/Analyzer/PointCloud",
+            "Finds the poses of the sensor by aligning its scans to a map of what it saw"},
+           {{"sink", GST_PAD_SINK, GST_LIDAR_CLOUD_MEDIA_TYPE},
+            {"src", GST_PAD_SRC, GST_LIDAR_CLOUD_MEDIA_TYPE},
+            {"odometry", GST_PAD_SRC, GST_LIDAR_ODOMETRY_MEDIA_TYPE}});
   auto* transform = GST_BASE_TRANSFORM_CLASS(klass);
   transform->start = Start;
   transform->stop = Stop;

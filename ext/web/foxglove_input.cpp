@@ -17,11 +17,10 @@ GST_DEBUG_CATEGORY_STATIC(gst_lidar_foxglove_input_debug);
 
 namespace {
 
+using namespace lidar::gst;
 using lidar::foxglove::Header;
 using lidar::foxglove::Pose;
 using lidar::foxglove::Schema;
-using lidar::gst::BufferMap;
-using lidar::gst::CloudInfo;
 using lidar::web::Hub;
 using lidar::web::InputSettings;
 using lidar::web::SharedTopic;
@@ -42,7 +41,7 @@ struct State {
   std::shared_ptr<Hub> used;  // since start
   Kind kind = Kind::kNone;
   CloudInfo info;
-  lidar::gst::RefusedCaps refused;
+  RefusedCaps refused;
   SharedTopic data;
   SharedTopic transforms;
   SharedTopic poses;
@@ -300,13 +299,11 @@ static void gst_lidar_foxglove_input_init(GstLidarFoxgloveInput* self) { self->s
 
 static void gst_lidar_foxglove_input_class_init(GstLidarFoxgloveInputClass* klass) {
   GST_DEBUG_CATEGORY_INIT(gst_lidar_foxglove_input_debug, "foxglovesink", 0, "Foxglove server");
-  lidar::gst::OwnState<GstLidarFoxgloveInput, gst_lidar_foxglove_input_parent_class>(
-      G_OBJECT_CLASS(klass));
-  lidar::gst::Describe(
-      klass, {"Foxglove input", "Sink", "One stream of foxglovesink"},
-      {{"sink", GST_PAD_SINK,
-        GST_LIDAR_CLOUD_MEDIA_TYPE "; " GST_LIDAR_DRACO_MEDIA_TYPE
-                                   ", geometry=xyz; " GST_LIDAR_ODOMETRY_MEDIA_TYPE}});
+  OwnState<GstLidarFoxgloveInput, gst_lidar_foxglove_input_parent_class>(G_OBJECT_CLASS(klass));
+  Describe(klass, {"Foxglove input", "Sink", "One stream of foxglovesink"},
+           {{"sink", GST_PAD_SINK,
+             GST_LIDAR_CLOUD_MEDIA_TYPE "; " GST_LIDAR_DRACO_MEDIA_TYPE
+                                        ", geometry=xyz; " GST_LIDAR_ODOMETRY_MEDIA_TYPE}});
   auto* sink = GST_BASE_SINK_CLASS(klass);
   sink->start = Start;
   sink->stop = Stop;

@@ -25,9 +25,7 @@ GST_DEBUG_CATEGORY_STATIC(gst_lidar_foxglove_sink_debug);
 
 namespace {
 
-using lidar::gst::ElementPtr;
-using lidar::gst::PadPtr;
-using lidar::gst::StringPtr;
+using namespace lidar::gst;
 using lidar::web::Hub;
 
 struct Settings {
@@ -61,7 +59,7 @@ struct Counters {
   guint64 malformed = 0;
 };
 
-const std::array<lidar::gst::Stat<Counters>, 12> kStats = {{
+const std::array<Stat<Counters>, 12> kStats = {{
     {"port", &Counters::port},
     {"clients", &Counters::clients},
     {"clients-accepted", &Counters::accepted},
@@ -104,7 +102,7 @@ struct _GstLidarFoxgloveSink {
 };
 
 G_DEFINE_TYPE_WITH_CODE(GstLidarFoxgloveSink, gst_lidar_foxglove_sink, GST_TYPE_BIN,
-                        G_IMPLEMENT_INTERFACE(GST_TYPE_CHILD_PROXY, lidar::gst::ServeSinkPads))
+                        G_IMPLEMENT_INTERFACE(GST_TYPE_CHILD_PROXY, ServeSinkPads))
 GST_ELEMENT_REGISTER_DEFINE(foxglovesink, "foxglovesink", GST_RANK_NONE,
                             gst_lidar_foxglove_sink_get_type())
 
@@ -114,7 +112,7 @@ static std::shared_ptr<Hub> HubOf(GObject* object) {
   return state.hub;
 }
 
-static lidar::gst::StructurePtr ReadStats(GObject* object) {
+static StructurePtr ReadStats(GObject* object) {
   State& state = *GST_LIDAR_FOXGLOVE_SINK(object)->state;
   Counters counters;
   {
@@ -122,10 +120,10 @@ static lidar::gst::StructurePtr ReadStats(GObject* object) {
     const std::lock_guard lock(state.mutex);
     if (state.hub) counters = CountersOf(*state.hub);
   }
-  return lidar::gst::ToStructure("application/x-foxglove-stats", kStats, counters);
+  return ToStructure("application/x-foxglove-stats", kStats, counters);
 }
 
-static const std::array<lidar::gst::Property<Settings>, 7> kProperties = {{
+static const std::array<Property<Settings>, 7> kProperties = {{
     {"port", "TCP port; 0: one that is free, as stats tell", &Settings::port, 0, 65535},
     {"bind-address", "Address to listen on; others than of this machine need a token",
      &Settings::bind_address},
@@ -162,7 +160,7 @@ static bool CheckAddress(GstElement* element, const Settings& s) {
 static bool Open(GstElement* element) {
   auto* self = GST_LIDAR_FOXGLOVE_SINK(element);
   State& state = *self->state;
-  const Settings s = lidar::gst::Snapshot(state);
+  const Settings s = Snapshot(state);
   if (!CheckAddress(element, s)) return false;
   lidar::web::ServerConfig config;
   config.address = s.bind_address;
@@ -246,8 +244,7 @@ static GstPad* RequestPad(GstElement* element, GstPadTemplate* templ, const gcha
   const PadPtr target(gst_element_get_static_pad(input, "sink"));
   gst_bin_add(GST_BIN(element), input);
   gst_element_sync_state_with_parent(input);
-  return lidar::gst::AddGhostSink(element, GST_TYPE_LIDAR_FOXGLOVE_PAD, templ, pad_name.get(),
-                                  target.get());
+  return AddGhostSink(element, GST_TYPE_LIDAR_FOXGLOVE_PAD, templ, pad_name.get(), target.get());
 }
 
 static void ReleasePad(GstElement* element, GstPad* pad) {
@@ -284,18 +281,18 @@ static void gst_lidar_foxglove_sink_init(GstLidarFoxgloveSink* self) { self->sta
 
 static void gst_lidar_foxglove_sink_class_init(GstLidarFoxgloveSinkClass* klass) {
   GST_DEBUG_CATEGORY_INIT(gst_lidar_foxglove_sink_debug, "foxglovesink", 0, "Foxglove server");
-  lidar::gst::ServeState<GstLidarFoxgloveSink, gst_lidar_foxglove_sink_parent_class, kProperties,
-                         PropertyChanged>(klass);
+  ServeState<GstLidarFoxgloveSink, gst_lidar_foxglove_sink_parent_class, kProperties,
+             PropertyChanged>(klass);
   auto* element = GST_ELEMENT_CLASS(klass);
   element->change_state = ChangeState;
   element->request_new_pad = RequestPad;
   element->release_pad = ReleasePad;
-  lidar::gst::Describe(klass,
-                       {"Foxglove server", "Sink/Network/PointCloud",
-                        "Serves clouds, poses and statistics to browsers and to Foxglove"},
-                       {{"sink_%u", GST_PAD_SINK,
-                         "application/x-pointcloud2; application/x-draco, geometry=xyz; "
-                         "application/x-odometry",
-                         GST_PAD_REQUEST, GST_TYPE_LIDAR_FOXGLOVE_PAD}});
+  Describe(klass,
+           {"Foxglove server", "Sink/Network/PointCloud",
+            "Serves clouds, poses and statistics to browsers and to Foxglove"},
+           {{"sink_%u", GST_PAD_SINK,
+             "application/x-pointcloud2; application/x-draco, geometry=xyz; "
+             "application/x-odometry",
+             GST_PAD_REQUEST, GST_TYPE_LIDAR_FOXGLOVE_PAD}});
   gst_type_mark_as_plugin_api(GST_TYPE_LIDAR_FOXGLOVE_PAD, static_cast<GstPluginAPIFlags>(0));
 }

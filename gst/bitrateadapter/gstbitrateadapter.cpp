@@ -27,9 +27,7 @@ GST_DEBUG_CATEGORY_STATIC(gst_lidar_bitrate_adapter_debug);
 
 namespace {
 
-using lidar::gst::BitrateControl;
-using lidar::gst::ElementPtr;
-using lidar::gst::Property;
+using namespace lidar::gst;
 
 constexpr gdouble kMaxBps = std::numeric_limits<guint>::max();
 
@@ -87,8 +85,7 @@ static const std::array<Property<Settings>, 7> kProperties = {{
 }};
 
 static ElementPtr FindEncoder(GstBaseTransform* base, const Settings& settings) {
-  if (settings.encoder.empty())
-    return lidar::gst::FindEncoderUpstream(GST_BASE_TRANSFORM_SINK_PAD(base));
+  if (settings.encoder.empty()) return FindEncoderUpstream(GST_BASE_TRANSFORM_SINK_PAD(base));
   const ElementPtr parent(GST_ELEMENT(gst_object_get_parent(GST_OBJECT(base))));
   if (!parent || !GST_IS_BIN(parent.get())) return nullptr;
   return ElementPtr(
@@ -98,8 +95,7 @@ static ElementPtr FindEncoder(GstBaseTransform* base, const Settings& settings) 
 /// What the user said, over what is known of the encoder.
 static std::optional<BitrateControl> ControlOf(GstElement* encoder, const Settings& settings) {
   GstElementFactory* factory = gst_element_get_factory(encoder);
-  auto control =
-      factory == nullptr ? std::nullopt : lidar::gst::FindBitrateControl(GST_OBJECT_NAME(factory));
+  auto control = factory == nullptr ? std::nullopt : FindBitrateControl(GST_OBJECT_NAME(factory));
   if (!settings.property.empty()) {
     if (!control || control->property != settings.property)
       control = BitrateControl{settings.property, 1, ""};
@@ -121,7 +117,7 @@ static void WarnOnce(GstLidarBitrateAdapter* self, const char* text, const char*
 /// False where there is nobody to tell, so that the event goes on upstream.
 static bool Apply(GstLidarBitrateAdapter* self, guint target_bps) {
   State& state = *self->state;
-  const Settings settings = lidar::gst::Snapshot(state);
+  const Settings settings = Snapshot(state);
   const ElementPtr encoder = FindEncoder(GST_BASE_TRANSFORM(self), settings);
   if (!encoder) {
     WarnOnce(self, "There is no encoder upstream whose bitrate could follow the network.",
@@ -131,8 +127,7 @@ static bool Apply(GstLidarBitrateAdapter* self, guint target_bps) {
   const auto control = ControlOf(encoder.get(), settings);
   const auto wanted = static_cast<guint>(target_bps * settings.fraction);
   const guint bps = std::max(std::min(wanted, settings.max_bps), settings.min_bps);
-  const auto set =
-      control ? lidar::gst::SetEncoderBitrate(encoder.get(), *control, bps) : std::nullopt;
+  const auto set = control ? SetEncoderBitrate(encoder.get(), *control, bps) : std::nullopt;
   if (!set) {
     WarnOnce(self, "The bitrate of this encoder cannot be set.",
              "Say how with the properties property and scale.");
@@ -201,12 +196,11 @@ static void gst_lidar_bitrate_adapter_init(GstLidarBitrateAdapter* self) {
 static void gst_lidar_bitrate_adapter_class_init(GstLidarBitrateAdapterClass* klass) {
   GST_DEBUG_CATEGORY_INIT(gst_lidar_bitrate_adapter_debug, "bitrateadapter", 0,
                           "Encoder bitrate adapter");
-  lidar::gst::ServeState<GstLidarBitrateAdapter, gst_lidar_bitrate_adapter_parent_class,
-                         kProperties>(klass);
-  lidar::gst::Describe(klass,
-                       {"Encoder bitrate adapter", "Filter/Network",
-                        "Sets the bitrate of the encoder before it from target-bitrate events"},
-                       {{"sink", GST_PAD_SINK, "ANY"}, {"src", GST_PAD_SRC, "ANY"}});
+  ServeState<GstLidarBitrateAdapter, gst_lidar_bitrate_adapter_parent_class, kProperties>(klass);
+  Describe(klass,
+           {"Encoder bitrate adapter", "Filter/Network",
+            "Sets the bitrate of the encoder before it from target-bitrate events"},
+           {{"sink", GST_PAD_SINK, "ANY"}, {"src", GST_PAD_SRC, "ANY"}});
   auto* transform = GST_BASE_TRANSFORM_CLASS(klass);
   transform->start = Start;
   transform->src_event = SrcEvent;

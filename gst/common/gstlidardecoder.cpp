@@ -17,7 +17,7 @@ GST_DEBUG_CATEGORY_STATIC(gst_lidar_decoder_debug);
 
 namespace {
 
-using lidar::gst::CloudInfo;
+using namespace lidar::gst;
 
 struct Settings {
   guint max_points = 1U << 20;
@@ -37,7 +37,6 @@ struct Counters {
   GstLidarDecodedSlice last{0, 0, 0, 0, 0, 1, FALSE};
 };
 
-using lidar::gst::At;
 using LastSlice = GstLidarDecodedSlice;
 /// How old the slice decoded last is now; both clocks must tell UTC.
 guint64 AgeOf(const Counters& c) {
@@ -47,7 +46,7 @@ guint64 AgeOf(const Counters& c) {
 }
 guint64 MeanDecodeTime(const Counters& c) { return c.slices > 0 ? c.decode_time / c.slices : 0; }
 
-const std::array<lidar::gst::Stat<Counters>, 13> kStats = {{
+const std::array<Stat<Counters>, 13> kStats = {{
     {"slices", &Counters::slices},
     {"slices-dropped", &Counters::slices_dropped},
     {"slices-unreferenced", &Counters::slices_unreferenced},
@@ -68,8 +67,8 @@ struct Stream {
   std::optional<CloudInfo> cloud;  // of what is given out; its size is that of the last caps
   guint max_points = 0;
   bool has_size = false;  // caps for `cloud` have been pushed
-  lidar::gst::HeldEvents held;
-  lidar::gst::MessageTimer stats_timer;
+  HeldEvents held;
+  MessageTimer stats_timer;
   gint64 asked_at_us = 0;  // for a slice that stands alone
   guint asked = 0;
 };
@@ -77,7 +76,7 @@ struct Stream {
 }  // namespace
 
 struct _GstLidarDecoderState {
-  lidar::gst::CoderPads pads;
+  CoderPads pads;
 
   std::mutex mutex;  // guards settings and counters; never held while pushing or posting
   Settings settings;
@@ -90,10 +89,10 @@ G_DEFINE_ABSTRACT_TYPE(GstLidarDecoder, gst_lidar_decoder, GST_TYPE_ELEMENT)
 
 using State = GstLidarDecoderState;
 
-static lidar::gst::StructurePtr Stats(GObject* object) {
+static StructurePtr Stats(GObject* object) {
   State& state = *GST_LIDAR_DECODER(object)->state;
   std::lock_guard lock(state.mutex);
-  return lidar::gst::ToStructure("lidar-decoder-stats", kStats, state.counters);
+  return ToStructure("lidar-decoder-stats", kStats, state.counters);
 }
 
 static guint64 Age(GObject* object) {
@@ -102,7 +101,7 @@ static guint64 Age(GObject* object) {
   return AgeOf(state.counters);
 }
 
-static const std::array<lidar::gst::Property<Settings>, 4> kProperties = {{
+static const std::array<Property<Settings>, 4> kProperties = {{
     {"max-points", "Slices of more points are dropped, before anything is allocated for them",
      &Settings::max_points, 1, 1U << 24},
     {"age",
@@ -125,7 +124,7 @@ static std::optional<CloudInfo> CloudOf(const GstCaps* caps) {
   cloud.fields = *std::move(parsed);
   cloud.point_step = cloud.fields.MinimumStep();
   gst_structure_get_fraction(s, "framerate", &cloud.framerate_n, &cloud.framerate_d);
-  cloud.sensor_model = lidar::gst::SensorModelFromStructure(s);
+  cloud.sensor_model = SensorModelFromStructure(s);
   if (cloud.sensor_model) cloud.height = static_cast<guint>(cloud.sensor_model->beams.size());
   return cloud;
 }
@@ -134,8 +133,7 @@ static std::optional<CloudInfo> CloudOf(const GstCaps* caps) {
 static bool AskSubclass(GstLidarDecoder* self, GstCaps* caps, CloudInfo* cloud,
                         GstLidarDecodedFormat* decoded) {
   const std::string fields = cloud->fields.ToString();
-  const lidar::gst::BufferPtr model(
-      cloud->sensor_model ? lidar::gst::SensorModelToBuffer(*cloud->sensor_model) : nullptr);
+  const BufferPtr model(cloud->sensor_model ? SensorModelToBuffer(*cloud->sensor_model) : nullptr);
   const GstLidarCloudFormat format{0,
                                    cloud->height,
                                    cloud->point_step,
@@ -154,7 +152,7 @@ static bool AskSubclass(GstLidarDecoder* self, GstCaps* caps, CloudInfo* cloud,
 static gboolean SetCaps(GstLidarDecoder* self, GstCaps* caps) {
   Stream& stream = self->state->stream;
   stream.has_size = false;
-  stream.max_points = lidar::gst::Snapshot(*self->state).max_points;
+  stream.max_points = Snapshot(*self->state).max_points;
   stream.cloud = CloudOf(caps);
   GstLidarDecodedFormat decoded{};
   decoded.refusal = "their fields lack x, y and z as F32 side by side";
@@ -173,7 +171,7 @@ static bool PushCaps(GstLidarDecoder* self, const GstLidarDecodedSlice& slice) {
   if (stream.has_size && slice.width == cloud.width && slice.height == cloud.height) return true;
   cloud.width = slice.width;
   cloud.height = slice.height;
-  const lidar::gst::CapsPtr caps(cloud.ToCaps());
+  const CapsPtr caps(cloud.ToCaps());
   GST_DEBUG_OBJECT(self, "giving %" GST_PTR_FORMAT, static_cast<gpointer>(caps.get()));
   if (!gst_pad_push_event(self->state->pads.src(), gst_event_new_caps(caps.get()))) return false;
   stream.has_size = true;
@@ -201,7 +199,7 @@ static gboolean SinkEvent(GstPad* pad, GstObject* parent, GstEvent* event) {
   return gst_pad_event_default(pad, parent, event);
 }
 
-static void Count(State* state, const GstLidarDecodedSlice& slice, const lidar::gst::BufferMap& in,
+static void Count(State* state, const GstLidarDecodedSlice& slice, const BufferMap& in,
                   GstClockTime time, GstClockTime capture_time) {
   std::lock_guard lock(state->mutex);
   Counters& c = state->counters;
@@ -216,21 +214,20 @@ static void Count(State* state, const GstLidarDecodedSlice& slice, const lidar::
 }
 
 /// The decoded slice, or null where the stream is bad.
-static lidar::gst::BufferPtr DecodeBuffer(GstLidarDecoder* self, GstBuffer* input,
-                                          GstLidarDecodedSlice* slice) {
+static BufferPtr DecodeBuffer(GstLidarDecoder* self, GstBuffer* input,
+                              GstLidarDecodedSlice* slice) {
   Stream& stream = self->state->stream;
   auto* klass = GST_LIDAR_DECODER_GET_CLASS(self);
   const gint64 start_us = g_get_monotonic_time();
-  const lidar::gst::BufferMap in(input, GST_MAP_READ);
+  const BufferMap in(input, GST_MAP_READ);
   *slice = {0, 1, 0, 0, 0, 1, FALSE};
   if (!in || !klass->decode(self, in.data(), in.size(), stream.max_points, slice)) return nullptr;
   const gsize points = gsize{slice->width} * slice->height;
   if (points > stream.max_points) return nullptr;
-  lidar::gst::BufferPtr output(
-      gst_buffer_new_allocate(nullptr, points * stream.cloud->point_step, nullptr));
+  BufferPtr output(gst_buffer_new_allocate(nullptr, points * stream.cloud->point_step, nullptr));
   if (!output) return nullptr;
   {
-    lidar::gst::BufferMap out(output.get(), GST_MAP_WRITE);
+    BufferMap out(output.get(), GST_MAP_WRITE);
     if (!out) return nullptr;
     klass->write(self, out.data());
   }
@@ -267,13 +264,12 @@ static GstFlowReturn DropSlice(GstLidarDecoder* self, GstBuffer* input, bool lac
 
 static GstFlowReturn Chain(GstPad*, GstObject* parent, GstBuffer* buffer) {
   auto* self = GST_LIDAR_DECODER(parent);
-  const lidar::gst::BufferPtr input(buffer);
+  const BufferPtr input(buffer);
   Stream& stream = self->state->stream;
   if (!stream.cloud) return GST_FLOW_NOT_NEGOTIATED;
   GstLidarDecodedSlice slice;
-  lidar::gst::BufferPtr output = DecodeBuffer(self, buffer, &slice);
-  stream.stats_timer.Post(GST_ELEMENT(self), lidar::gst::Snapshot(*self->state).stats_interval,
-                          Stats);
+  BufferPtr output = DecodeBuffer(self, buffer, &slice);
+  stream.stats_timer.Post(GST_ELEMENT(self), Snapshot(*self->state).stats_interval, Stats);
   if (!output) return DropSlice(self, buffer, slice.lacks_reference != FALSE);
   if (!PushCaps(self, slice))
     return GST_PAD_IS_FLUSHING(self->state->pads.src()) ? GST_FLOW_FLUSHING
@@ -311,6 +307,6 @@ static void gst_lidar_decoder_class_init(GstLidarDecoderClass* klass) {
   GST_DEBUG_CATEGORY_INIT(gst_lidar_decoder_debug, "lidardecoder", 0, "Point-cloud decoders");
   gst_lidar_init();
   G_OBJECT_CLASS(klass)->constructed = Constructed;
-  lidar::gst::ServeState<GstLidarDecoder, gst_lidar_decoder_parent_class, kProperties>(klass);
+  ServeState<GstLidarDecoder, gst_lidar_decoder_parent_class, kProperties>(klass);
   GST_ELEMENT_CLASS(klass)->change_state = ChangeState;
 }

@@ -21,33 +21,32 @@ GST_DEBUG_CATEGORY_STATIC(gst_lidar_encoder_debug);
 
 namespace {
 
+using namespace lidar::gst;
 using lidar::DataRate;
-using lidar::gst::CloudInput;
-using lidar::gst::EncoderSettings;
 using lidar::rate::CodingResult;
 using lidar::rate::LoopResult;
 
 /// Belongs to the streaming thread.
 struct Stream {
-  lidar::gst::CloudInput input;
-  std::unique_ptr<lidar::gst::VtableCoder> coder;  // null: no format yet
+  CloudInput input;
+  std::unique_ptr<VtableCoder> coder;  // null: no format yet
   std::unique_ptr<lidar::rate::RateLoop> loop;
-  std::optional<lidar::gst::ErrorReport> error_report;
-  lidar::gst::MessageTimer stats_timer;
+  std::optional<ErrorReport> error_report;
+  MessageTimer stats_timer;
 };
 
 }  // namespace
 
 struct _GstLidarEncoderState {
-  lidar::gst::CoderPads pads;
+  CoderPads pads;
 
   std::mutex mutex;  // guards settings to stats; never held while pushing, posting or notifying
   EncoderSettings settings;
   std::optional<guint> event_bps;  // from the event target-bitrate
   guint min_bitrate_bps = 0;
-  lidar::gst::EncoderStats stats;
+  EncoderStats stats;
 
-  lidar::gst::ReceiverEvents receivers;
+  ReceiverEvents receivers;
   Stream stream;
 };
 
@@ -66,14 +65,14 @@ static guint MinBitrate(GObject* object) {
   return state.min_bitrate_bps;
 }
 
-static lidar::gst::StructurePtr Stats(GObject* object) {
+static StructurePtr Stats(GObject* object) {
   State& state = *GST_LIDAR_ENCODER(object)->state;
   std::lock_guard lock(state.mutex);
   return state.stats.ToStructure(EffectiveBitrate(state));
 }
 
 using Settings = EncoderSettings;
-static const std::array<lidar::gst::Property<Settings>, 12> kProperties = {{
+static const std::array<Property<Settings>, 12> kProperties = {{
     {"bitrate",
      "Bitrate of the encoded slices [bit/s]; 0: constant quality at the coarsest step that "
      "max-error allows. An event target-bitrate goes before it",
@@ -87,13 +86,12 @@ static const std::array<lidar::gst::Property<Settings>, 12> kProperties = {{
     {"intensity-bits", "Resolution of intensities [bit]; 0: geometry only",
      &Settings::intensity_bits, 0, 8},
     {"rate-model", "Predicts the size of a slice",
-     lidar::gst::EnumField<Settings, lidar::rate::RateModel>{&Settings::rate_model,
-                                                             lidar::gst::RateModelType}},
+     EnumField<Settings, lidar::rate::RateModel>{&Settings::rate_model, RateModelType}},
     {"model-location", "File with the coefficients of the rate model; none: built-in",
      &Settings::model_location},
     {"degradation-preference", "What gives when the bitrate is below what max-error needs",
-     lidar::gst::EnumField<Settings, lidar::rate::DegradationPreference>{
-         &Settings::degradation, lidar::gst::DegradationPreferenceType},
+     EnumField<Settings, lidar::rate::DegradationPreference>{&Settings::degradation,
+                                                             DegradationPreferenceType},
      0, 0, GST_PARAM_MUTABLE_PLAYING},
     {"threads",
      "Most threads for one buffer, where the coder can divide it: more are faster, and a little "
@@ -109,16 +107,15 @@ static const std::array<lidar::gst::Property<Settings>, 12> kProperties = {{
 }};
 
 /// Asks the subclass; the caps of its slices, or null after an error message.
-static lidar::gst::CapsPtr AskForCaps(GstLidarEncoder* self, GstCaps* caps, Stream* stream) {
-  const Settings settings = lidar::gst::Snapshot(*self->state);
+static CapsPtr AskForCaps(GstLidarEncoder* self, GstCaps* caps, Stream* stream) {
+  const Settings settings = Snapshot(*self->state);
   std::string why;
-  const auto info = lidar::gst::CloudInfo::FromCaps(caps, &why);
+  const auto info = CloudInfo::FromCaps(caps, &why);
   GstLidarCodedFormat coded{};
   coded.refusal = why.c_str();
   if (info) {
     const std::string fields = info->fields.ToString();
-    const lidar::gst::BufferPtr model(
-        info->sensor_model ? lidar::gst::SensorModelToBuffer(*info->sensor_model) : nullptr);
+    const BufferPtr model(info->sensor_model ? SensorModelToBuffer(*info->sensor_model) : nullptr);
     const GstLidarCloudFormat cloud{info->width,    info->height,      info->point_step,
                                     fields.c_str(), info->framerate_n, info->framerate_d,
                                     model.get()};
@@ -135,25 +132,25 @@ static lidar::gst::CapsPtr AskForCaps(GstLidarEncoder* self, GstCaps* caps, Stre
     return nullptr;
   }
   stream->input.SetFormat(*info, coded.codes_ranges != FALSE);
-  return lidar::gst::CapsPtr(coded.caps);
+  return CapsPtr(coded.caps);
 }
 
 static gboolean SetCaps(GstLidarEncoder* self, GstCaps* caps) {
   State& state = *self->state;
   Stream& stream = state.stream;
   stream.coder.reset();
-  const lidar::gst::CapsPtr encoded = AskForCaps(self, caps, &stream);
+  const CapsPtr encoded = AskForCaps(self, caps, &stream);
   if (!encoded) return FALSE;
-  const lidar::gst::CloudInfo& info = stream.input.info();
+  const CloudInfo& info = stream.input.info();
   stream.error_report.emplace(self, info.fields, info.point_step);
   if (!stream.loop) {
-    auto model = lidar::gst::LoadModel(GST_ELEMENT(self), lidar::gst::Snapshot(state));
+    auto model = LoadModel(GST_ELEMENT(self), Snapshot(state));
     if (!model) return FALSE;
     stream.loop = std::make_unique<lidar::rate::RateLoop>(std::move(model));
   }
-  stream.coder = std::make_unique<lidar::gst::VtableCoder>(self);
+  stream.coder = std::make_unique<VtableCoder>(self);
   GST_DEBUG_OBJECT(self, "coding %" GST_PTR_FORMAT, static_cast<gpointer>(encoded.get()));
-  const lidar::gst::CapsPtr current(gst_pad_get_current_caps(state.pads.src()));
+  const CapsPtr current(gst_pad_get_current_caps(state.pads.src()));
   if (current && gst_caps_is_equal(current.get(), encoded.get())) return TRUE;
   return gst_pad_push_event(state.pads.src(), gst_event_new_caps(encoded.get()));
 }
@@ -248,7 +245,7 @@ static LoopResult EncodeLoaded(GstLidarEncoder* self, const CloudInput::Place& p
 static GstFlowReturn PushSlice(GstLidarEncoder* self, GstBuffer* input,
                                const GstLidarSlice& place) {
   const lidar::ByteView bytes = self->state->stream.coder->bytes();
-  lidar::gst::BufferPtr output(gst_buffer_new_memdup(bytes.data, bytes.size));
+  BufferPtr output(gst_buffer_new_memdup(bytes.data, bytes.size));
   // The output says its place even where the input does not. A receiver that counts only what
   // arrives would miss what was left out, and acknowledge another scan.
   GstLidarSlice known{};
@@ -260,10 +257,10 @@ static GstFlowReturn PushSlice(GstLidarEncoder* self, GstBuffer* input,
 static void CheckErrors(GstLidarEncoder* self, lidar::ByteView raw, const GstLidarSlice& place,
                         const LoopResult& result) {
   State& state = *self->state;
-  const lidar::gst::CheckedSlice checked{place.scan_id, place.slice_index, result.max_error_m,
-                                         result.slice.error_m, result.keep_fraction < 1};
-  const auto found = state.stream.error_report->OnSlice(lidar::gst::Snapshot(state).error_check,
-                                                        raw, state.stream.coder->bytes(), checked);
+  const CheckedSlice checked{place.scan_id, place.slice_index, result.max_error_m,
+                             result.slice.error_m, result.keep_fraction < 1};
+  const auto found = state.stream.error_report->OnSlice(Snapshot(state).error_check, raw,
+                                                        state.stream.coder->bytes(), checked);
   if (!found) return;
   std::lock_guard lock(state.mutex);
   state.stats.OnErrorCheck(found->errors, found->holds);
@@ -271,12 +268,12 @@ static void CheckErrors(GstLidarEncoder* self, lidar::ByteView raw, const GstLid
 
 static GstFlowReturn Chain(GstPad*, GstObject* parent, GstBuffer* buffer) {
   auto* self = GST_LIDAR_ENCODER(parent);
-  const lidar::gst::BufferPtr input(buffer);
+  const BufferPtr input(buffer);
   Stream& stream = self->state->stream;
   if (!stream.coder) return GST_FLOW_NOT_NEGOTIATED;
   const CloudInput::Place place = stream.input.PlaceOf(buffer);
   const GstLidarSlice& slice = place.slice;
-  const lidar::gst::BufferMap map(buffer, GST_MAP_READ);
+  const BufferMap map(buffer, GST_MAP_READ);
   const auto raw = stream.input.Read(self, map, slice);
   if (!raw) return GST_FLOW_ERROR;
   TellOfReceivers(self);
@@ -288,8 +285,7 @@ static GstFlowReturn Chain(GstPad*, GstObject* parent, GstBuffer* buffer) {
   if (!result.skipped && result.result == CodingResult::kOutOfReach)
     stream.input.WarnOfReach(self, stream.coder->loaded().extent_m);
   if (result.encoded()) CheckErrors(self, map.view(), slice, result);
-  stream.stats_timer.Post(GST_ELEMENT(self), lidar::gst::Snapshot(*self->state).stats_interval,
-                          Stats);
+  stream.stats_timer.Post(GST_ELEMENT(self), Snapshot(*self->state).stats_interval, Stats);
   return result.encoded() ? PushSlice(self, buffer, slice) : self->state->pads.LeaveOut(buffer);
 }
 
@@ -328,6 +324,6 @@ static void gst_lidar_encoder_class_init(GstLidarEncoderClass* klass) {
   GST_DEBUG_CATEGORY_INIT(gst_lidar_encoder_debug, "lidarencoder", 0, "Point-cloud encoders");
   gst_lidar_init();
   G_OBJECT_CLASS(klass)->constructed = Constructed;
-  lidar::gst::ServeState<GstLidarEncoder, gst_lidar_encoder_parent_class, kProperties>(klass);
+  ServeState<GstLidarEncoder, gst_lidar_encoder_parent_class, kProperties>(klass);
   GST_ELEMENT_CLASS(klass)->change_state = ChangeState;
 }

@@ -30,16 +30,15 @@ GST_DEBUG_CATEGORY_STATIC(gst_lidar_cloud_file_enc_debug);
 
 namespace {
 
-using lidar::gst::CapsPtr;
-using lidar::gst::CloudInfo;
+using namespace lidar::gst;
 
-constexpr lidar::gst::PadRow kSink{"sink", GST_PAD_SINK, GST_LIDAR_CLOUD_MEDIA_TYPE};
+constexpr PadRow kSink{"sink", GST_PAD_SINK, GST_LIDAR_CLOUD_MEDIA_TYPE};
 
 struct Settings {
   bool binary = true;
 };
 
-const std::array<lidar::gst::Property<Settings>, 1> kProperties = {{
+const std::array<Property<Settings>, 1> kProperties = {{
     {"binary", "Numbers as little-endian binary, else as text", &Settings::binary, 0, 0,
      GST_PARAM_MUTABLE_PLAYING},
 }};
@@ -49,7 +48,7 @@ struct State {
   Settings settings;
   // Only the streaming thread uses these.
   std::optional<CloudInfo> info;
-  lidar::gst::RefusedCaps refused;
+  RefusedCaps refused;
   bool slices_reported = false;
 };
 
@@ -62,7 +61,7 @@ struct GstLidarCloudFileEnc {
 };
 struct GstLidarCloudFileEncClass {
   GstBaseTransformClass parent;
-  std::string (*write)(const lidar::gst::CloudFileInput& cloud);
+  std::string (*write)(const CloudFileInput& cloud);
 };
 using GstLidarPcdEnc = GstLidarCloudFileEnc;
 using GstLidarPcdEncClass = GstLidarCloudFileEncClass;
@@ -115,9 +114,9 @@ static void ReportSlices(GstBaseTransform* base, GstBuffer* in) {
 static std::string Write(GstBaseTransform* base, GstBuffer* in) {
   State& state = StateOf(base);
   ReportSlices(base, in);
-  const lidar::gst::BufferMap map(in, GST_MAP_READ);
+  const BufferMap map(in, GST_MAP_READ);
   if (!map || map.size() != state.info->FrameSize()) return "";
-  lidar::gst::CloudFileInput cloud{&*state.info, map.data(), std::nullopt, true};
+  CloudFileInput cloud{&*state.info, map.data(), std::nullopt, true};
   const GstClockTime capture = gst_lidar_buffer_get_capture_time(in);
   if (GST_CLOCK_TIME_IS_VALID(capture)) cloud.capture_time = capture;
   {
@@ -139,7 +138,7 @@ static GstFlowReturn PrepareOutput(GstBaseTransform* base, GstBuffer* in, GstBuf
   *out = gst_buffer_new_wrapped_full(GST_MEMORY_FLAG_READONLY, owned->data(), owned->size(), 0,
                                      owned->size(), owned,
                                      [](gpointer p) { delete static_cast<std::string*>(p); });
-  lidar::gst::CopyMetadata(*out, in);
+  CopyMetadata(*out, in);
   return GST_FLOW_OK;
 }
 
@@ -156,8 +155,7 @@ static void gst_lidar_cloud_file_enc_init(GstLidarCloudFileEnc* self) { self->st
 static void gst_lidar_cloud_file_enc_class_init(GstLidarCloudFileEncClass* klass) {
   GST_DEBUG_CATEGORY_INIT(gst_lidar_cloud_file_enc_debug, "cloudfileenc", 0,
                           "Point clouds as files");
-  lidar::gst::ServeState<GstLidarCloudFileEnc, gst_lidar_cloud_file_enc_parent_class, kProperties>(
-      klass);
+  ServeState<GstLidarCloudFileEnc, gst_lidar_cloud_file_enc_parent_class, kProperties>(klass);
   gst_type_mark_as_plugin_api(gst_lidar_cloud_file_enc_get_type(), {});
   auto* transform = GST_BASE_TRANSFORM_CLASS(klass);
   transform->transform_caps = TransformCaps;
@@ -170,18 +168,17 @@ static void gst_lidar_cloud_file_enc_class_init(GstLidarCloudFileEncClass* klass
 static void gst_lidar_pcd_enc_init(GstLidarPcdEnc*) {}
 
 static void gst_lidar_pcd_enc_class_init(GstLidarPcdEncClass* klass) {
-  klass->write = lidar::gst::WritePcd;
-  lidar::gst::Describe(klass,
-                       {"PCD encoder", "Codec/Encoder/PointCloud",
-                        "Writes each cloud as a file of the Point Cloud Library"},
-                       {kSink, {"src", GST_PAD_SRC, "application/x-pcd"}});
+  klass->write = WritePcd;
+  Describe(klass,
+           {"PCD encoder", "Codec/Encoder/PointCloud",
+            "Writes each cloud as a file of the Point Cloud Library"},
+           {kSink, {"src", GST_PAD_SRC, "application/x-pcd"}});
 }
 
 static void gst_lidar_ply_enc_init(GstLidarPlyEnc*) {}
 
 static void gst_lidar_ply_enc_class_init(GstLidarPlyEncClass* klass) {
-  klass->write = lidar::gst::WritePly;
-  lidar::gst::Describe(
-      klass, {"PLY encoder", "Codec/Encoder/PointCloud", "Writes each cloud as a PLY file"},
-      {kSink, {"src", GST_PAD_SRC, "application/x-ply"}});
+  klass->write = WritePly;
+  Describe(klass, {"PLY encoder", "Codec/Encoder/PointCloud", "Writes each cloud as a PLY file"},
+           {kSink, {"src", GST_PAD_SRC, "application/x-ply"}});
 }

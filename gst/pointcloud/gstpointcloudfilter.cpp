@@ -33,14 +33,8 @@ GST_DEBUG_CATEGORY_STATIC(gst_lidar_point_cloud_filter_debug);
 
 namespace {
 
+using namespace lidar::gst;
 using lidar::InvalidPoints;
-using lidar::gst::BufferPtr;
-using lidar::gst::CapsPtr;
-using lidar::gst::FilterPlan;
-using lidar::gst::FilterSettings;
-using lidar::gst::FramePlacer;
-using lidar::gst::Int;
-using lidar::gst::TransformInbox;
 
 GType InvalidType() {
   static const GEnumValue values[] = {
@@ -50,7 +44,7 @@ GType InvalidType() {
       {Int(InvalidPoints::kRemove), "Not in the cloud, which loses its rows", "remove"},
       {0, nullptr, nullptr},
   };
-  static const GType type = lidar::gst::RegisterEnum("GstLidarInvalidPoints", values);
+  static const GType type = RegisterEnum("GstLidarInvalidPoints", values);
   return type;
 }
 
@@ -62,7 +56,7 @@ struct Counters {
   guint64 transforms = 0;
   guint64 transforms_refused = 0;
 };
-const std::array<lidar::gst::Stat<Counters>, 6> kStats = {{
+const std::array<Stat<Counters>, 6> kStats = {{
     {"clouds", &Counters::clouds},
     {"points-removed", &Counters::points_removed},
     {"clouds-without-pose", &Counters::without_pose},
@@ -84,8 +78,8 @@ struct State {
   std::unique_ptr<FilterPlan> plan;
   Counters before;  // of earlier plans
   CapsPtr pushed;
-  lidar::gst::HeldEvents held;
-  lidar::gst::RefusedCaps refused;
+  HeldEvents held;
+  RefusedCaps refused;
 };
 
 }  // namespace
@@ -104,7 +98,7 @@ G_DEFINE_TYPE(GstLidarPointCloudFilter, gst_lidar_point_cloud_filter, GST_TYPE_E
 GST_ELEMENT_REGISTER_DEFINE(pointcloudfilter, "pointcloudfilter", GST_RANK_NONE,
                             gst_lidar_point_cloud_filter_get_type())
 
-static lidar::gst::StructurePtr Stats(GObject* object) {
+static StructurePtr Stats(GObject* object) {
   State& state = *GST_LIDAR_POINT_CLOUD_FILTER(object)->state;
   const TransformInbox::Counters taken = state.placer.inbox().counters();
   std::lock_guard lock(state.mutex);
@@ -112,10 +106,10 @@ static lidar::gst::StructurePtr Stats(GObject* object) {
   counters.without_transform = state.placer.clouds_without();
   counters.transforms = taken.transforms;
   counters.transforms_refused = taken.refused;
-  return lidar::gst::ToStructure("point-cloud-filter-stats", kStats, counters);
+  return ToStructure("point-cloud-filter-stats", kStats, counters);
 }
 
-static const std::array<lidar::gst::Property<FilterSettings>, 15> kProperties = {{
+static const std::array<Property<FilterSettings>, 15> kProperties = {{
     {"fields", "Fields to keep, with a type where it is to be another: x,y,z,intensity:U8",
      &FilterSettings::fields, 0, 0, kLive},
     {"beam-step", "Keep every n-th row", &FilterSettings::beam_step, 1, 1024, kLive},
@@ -145,8 +139,7 @@ static const std::array<lidar::gst::Property<FilterSettings>, 15> kProperties = 
     {"voxel-size", "One point in each cube of this edge stays; 0: all [m]",
      &FilterSettings::voxel_size, 0, 1e3, kLive},
     {"invalid", "What becomes of points without a return, and of those that go",
-     lidar::gst::EnumField<FilterSettings, InvalidPoints>{&FilterSettings::invalid, InvalidType}, 0,
-     0, kLive},
+     EnumField<FilterSettings, InvalidPoints>{&FilterSettings::invalid, InvalidType}, 0, 0, kLive},
     {"stats",
      "clouds, points-removed, clouds-without-pose, clouds-without-transform, transforms, "
      "transforms-refused",
@@ -241,7 +234,7 @@ static GstFlowReturn Chain(GstPad*, GstObject* parent, GstBuffer* raw) {
 }
 
 static gboolean HandleCaps(GstLidarPointCloudFilter* self, GstEvent* event) {
-  const lidar::gst::EventPtr owner(event);
+  const EventPtr owner(event);
   GstCaps* caps = nullptr;
   gst_event_parse_caps(event, &caps);
   self->state->caps.reset(gst_caps_ref(caps));
@@ -266,21 +259,20 @@ static gboolean SinkEvent(GstPad* pad, GstObject* parent, GstEvent* event) {
 /// A cloud may come as much later as it waits for its transform.
 static gboolean SrcQuery(GstPad* pad, GstObject* parent, GstQuery* query) {
   if (!gst_pad_query_default(pad, parent, query)) return FALSE;
-  if (GST_QUERY_TYPE(query) != GST_QUERY_LATENCY || !lidar::gst::ReadLatency(query).live)
-    return TRUE;
+  if (GST_QUERY_TYPE(query) != GST_QUERY_LATENCY || !ReadLatency(query).live) return TRUE;
   State& state = *GST_LIDAR_POINT_CLOUD_FILTER(parent)->state;
   std::unique_lock lock(state.mutex);
   const bool waits = !state.settings.target_frame.empty();
   const auto longest = static_cast<GstClockTime>(state.settings.tf_timeout.count());
   lock.unlock();
-  if (waits) lidar::gst::AddLatency(query, longest);
+  if (waits) AddLatency(query, longest);
   return TRUE;
 }
 
 /// Queries and events of the clouds do not go to the sources of transforms.
 static GstIterator* LinksOf(GstPad* pad, GstObject* parent) {
   auto* self = GST_LIDAR_POINT_CLOUD_FILTER(parent);
-  return lidar::gst::LinkTo(pad == self->srcpad ? self->sinkpad : self->srcpad);
+  return LinkTo(pad == self->srcpad ? self->sinkpad : self->srcpad);
 }
 
 static GstPad* RequestPad(GstElement* element, GstPadTemplate* pad_template, const gchar* name,
@@ -323,11 +315,11 @@ static GstStateChangeReturn ChangeState(GstElement* element, GstStateChange tran
 
 static void gst_lidar_point_cloud_filter_init(GstLidarPointCloudFilter* self) {
   self->state = new State;
-  self->sinkpad = lidar::gst::AddPad(self, "sink");
+  self->sinkpad = AddPad(self, "sink");
   gst_pad_set_chain_function(self->sinkpad, Chain);
   gst_pad_set_event_function(self->sinkpad, SinkEvent);
   gst_pad_set_iterate_internal_links_function(self->sinkpad, LinksOf);
-  self->srcpad = lidar::gst::AddPad(self, "src");
+  self->srcpad = AddPad(self, "src");
   gst_pad_use_fixed_caps(self->srcpad);
   gst_pad_set_query_function(self->srcpad, SrcQuery);
   gst_pad_set_iterate_internal_links_function(self->srcpad, LinksOf);
@@ -336,16 +328,16 @@ static void gst_lidar_point_cloud_filter_init(GstLidarPointCloudFilter* self) {
 static void gst_lidar_point_cloud_filter_class_init(GstLidarPointCloudFilterClass* klass) {
   GST_DEBUG_CATEGORY_INIT(gst_lidar_point_cloud_filter_debug, "pointcloudfilter", 0,
                           "Clouds, cropped and thinned");
-  lidar::gst::ServeState<GstLidarPointCloudFilter, gst_lidar_point_cloud_filter_parent_class,
-                         kProperties, NoteChange>(klass);
+  ServeState<GstLidarPointCloudFilter, gst_lidar_point_cloud_filter_parent_class, kProperties,
+             NoteChange>(klass);
   auto* element = GST_ELEMENT_CLASS(klass);
   element->change_state = ChangeState;
   element->request_new_pad = RequestPad;
   element->release_pad = ReleasePad;
-  lidar::gst::Describe(
-      klass, {"Point cloud filter", "Filter/PointCloud", "Crops, thins, moves and converts clouds"},
-      {{"sink", GST_PAD_SINK, GST_LIDAR_CLOUD_MEDIA_TYPE},
-       {"src", GST_PAD_SRC, GST_LIDAR_CLOUD_MEDIA_TYPE},
-       {"tf_%u", GST_PAD_SINK, GST_LIDAR_TF_MEDIA_TYPE "; " GST_LIDAR_ODOMETRY_MEDIA_TYPE,
-        GST_PAD_REQUEST}});
+  Describe(klass,
+           {"Point cloud filter", "Filter/PointCloud", "Crops, thins, moves and converts clouds"},
+           {{"sink", GST_PAD_SINK, GST_LIDAR_CLOUD_MEDIA_TYPE},
+            {"src", GST_PAD_SRC, GST_LIDAR_CLOUD_MEDIA_TYPE},
+            {"tf_%u", GST_PAD_SINK, GST_LIDAR_TF_MEDIA_TYPE "; " GST_LIDAR_ODOMETRY_MEDIA_TYPE,
+             GST_PAD_REQUEST}});
 }

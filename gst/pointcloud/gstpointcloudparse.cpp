@@ -34,11 +34,7 @@ GST_DEBUG_CATEGORY_STATIC(gst_lidar_point_cloud_parse_debug);
 
 namespace {
 
-using lidar::gst::BufferPtr;
-using lidar::gst::CapsPtr;
-using lidar::gst::CloudInfo;
-using lidar::gst::CloudStamper;
-using lidar::gst::FrameRate;
+using namespace lidar::gst;
 
 constexpr gint kDefaultRate = 10;            // scans/s where neither caps nor property say
 constexpr gsize kMaxCloud = gsize{1} << 30;  // bytes
@@ -47,12 +43,12 @@ struct Settings {
   FrameRate framerate;  // 0: from the caps
 };
 
-const std::array<lidar::gst::Property<Settings>, 1> kProperties = {{
+const std::array<Property<Settings>, 1> kProperties = {{
     {"framerate", "Clouds per second [1/s]; 0/1: from the caps, 10/1 where they are silent",
      &Settings::framerate},
 }};
 
-using AdapterPtr = std::unique_ptr<GstAdapter, lidar::gst::Unref>;
+using AdapterPtr = std::unique_ptr<GstAdapter, Unref>;
 
 struct State {
   std::mutex mutex;  // guards the settings
@@ -66,7 +62,7 @@ struct State {
   std::optional<gsize> file_size;  // of a file that comes in pieces; 0: pieces are clouds
   bool discont = false;            // a cloud was left out
   bool empty_reported = false;
-  lidar::gst::RefusedCaps refused;
+  RefusedCaps refused;
   AdapterPtr adapter{gst_adapter_new()};
 };
 
@@ -156,15 +152,14 @@ static GstFlowReturn PushCloud(GstLidarPointCloudParse* self, BufferPtr buffer) 
 static GstFlowReturn PushFile(GstLidarPointCloudParse* self, const BufferPtr& file) {
   State& state = *self->state;
   std::string why = "it cannot be mapped";
-  std::optional<lidar::gst::FileBuffer> read;
+  std::optional<FileBuffer> read;
   if (gst_buffer_get_size(file.get()) == 0) return SkipEmpty(self);
-  if (const lidar::gst::BufferMap map(file.get(), GST_MAP_READ); map)
-    read = lidar::gst::ReadCloudFile(*state.type, map.view(), &why);
+  if (const BufferMap map(file.get(), GST_MAP_READ); map)
+    read = ReadCloudFile(*state.type, map.view(), &why);
   if (!read) {
-    GST_ELEMENT_ERROR(
-        self, STREAM, DECODE,
-        ("The %s file cannot be read: %s.", lidar::gst::NameOf(*state.type), why.c_str()),
-        ("It is number %" G_GUINT64_FORMAT ", from 1.", state.stamper.count() + 1));
+    GST_ELEMENT_ERROR(self, STREAM, DECODE,
+                      ("The %s file cannot be read: %s.", NameOf(*state.type), why.c_str()),
+                      ("It is number %" G_GUINT64_FORMAT ", from 1.", state.stamper.count() + 1));
     return GST_FLOW_ERROR;
   }
   if (!state.info || state.info->height != read->info.height ||
@@ -201,7 +196,7 @@ static void SetRate(State* state, gint n, gint d) {
 
 /// Files say themselves what they are.
 static void GuessType(State* state, GstBuffer* buffer) {
-  const lidar::gst::BufferMap map(buffer, GST_MAP_READ);
+  const BufferMap map(buffer, GST_MAP_READ);
   if (map) state->type = lidar::TypeOfCloudFile(map.view());
   if (state->type) SetRate(state, 0, 1);
 }
@@ -240,10 +235,10 @@ static GstFlowReturn Chain(GstPad*, GstObject* parent, GstBuffer* raw) {
 
 static gboolean HandleCaps(GstLidarPointCloudParse* self, GstEvent* event) {
   State& state = *self->state;
-  const lidar::gst::EventPtr owner(event);
+  const EventPtr owner(event);
   GstCaps* caps = nullptr;
   gst_event_parse_caps(event, &caps);
-  state.type = lidar::gst::CloudFileTypeOf(caps);
+  state.type = CloudFileTypeOf(caps);
   if (state.type) {
     state.info.reset();
     FrameRate given;
@@ -350,10 +345,10 @@ static GstStateChangeReturn ChangeState(GstElement* element, GstStateChange tran
 
 static void gst_lidar_point_cloud_parse_init(GstLidarPointCloudParse* self) {
   self->state = new State;
-  self->sinkpad = lidar::gst::AddPad(self, "sink");
+  self->sinkpad = AddPad(self, "sink");
   gst_pad_set_chain_function(self->sinkpad, Chain);
   gst_pad_set_event_function(self->sinkpad, SinkEvent);
-  self->srcpad = lidar::gst::AddPad(self, "src");
+  self->srcpad = AddPad(self, "src");
   gst_pad_use_fixed_caps(self->srcpad);
   gst_pad_set_event_function(self->srcpad, SrcEvent);
   gst_pad_set_query_function(self->srcpad, SrcQuery);
@@ -362,11 +357,10 @@ static void gst_lidar_point_cloud_parse_init(GstLidarPointCloudParse* self) {
 static void gst_lidar_point_cloud_parse_class_init(GstLidarPointCloudParseClass* klass) {
   GST_DEBUG_CATEGORY_INIT(gst_lidar_point_cloud_parse_debug, "pointcloudparse", 0,
                           "Clouds from files");
-  lidar::gst::ServeState<GstLidarPointCloudParse, gst_lidar_point_cloud_parse_parent_class,
-                         kProperties>(klass);
+  ServeState<GstLidarPointCloudParse, gst_lidar_point_cloud_parse_parent_class, kProperties>(klass);
   auto* element = GST_ELEMENT_CLASS(klass);
   element->change_state = ChangeState;
-  lidar::gst::Describe(
+  Describe(
       klass,
       {"Point cloud parser", "Codec/Parser/PointCloud",
        "Makes clouds of files: PCD, PLY, raw points"},

@@ -23,11 +23,9 @@ GST_DEBUG_CATEGORY_STATIC(gst_lidar_scan_assembler_debug);
 
 namespace {
 
-using lidar::gst::CapsPtr;
-using lidar::gst::CloudInfo;
-using lidar::gst::ScanQueue;
-using Settings = lidar::gst::AssemblerSettings;
-using State = lidar::gst::AssemblerState;
+using namespace lidar::gst;
+using Settings = AssemblerSettings;
+using State = AssemblerState;
 
 }  // namespace
 
@@ -46,9 +44,9 @@ GST_ELEMENT_REGISTER_DEFINE(scanassembler, "scanassembler", GST_RANK_NONE,
 
 static State& StateOf(gpointer self) { return *GST_LIDAR_SCAN_ASSEMBLER(self)->state; }
 
-static lidar::gst::StructurePtr Stats(GObject* object) { return StateOf(object).Stats(); }
+static StructurePtr Stats(GObject* object) { return StateOf(object).Stats(); }
 
-static const std::array<lidar::gst::Property<Settings>, 2> kProperties = {{
+static const std::array<Property<Settings>, 2> kProperties = {{
     {"max-wait",
      "How long a scan waits for slices that are late, in a live pipeline [ns]; added to the "
      "latency",
@@ -60,14 +58,14 @@ static const std::array<lidar::gst::Property<Settings>, 2> kProperties = {{
 static void PushCaps(GstLidarScanAssembler* self, guint width) {
   State& state = *self->state;
   CapsPtr caps;
-  lidar::gst::EventPtr segment;
+  EventPtr segment;
   {
     std::lock_guard lock(state.mutex);
     if (state.out_width == width || !state.in_caps) return;
     state.out_width = width;
     state.caps_sent = true;
     segment = std::move(state.early_segment);
-    caps = lidar::gst::ScanCaps(state.in_caps.get(), *state.info, width);
+    caps = ScanCaps(state.in_caps.get(), *state.info, width);
   }
   gst_pad_push_event(self->srcpad, gst_event_new_caps(caps.get()));
   if (segment) gst_pad_push_event(self->srcpad, segment.release());
@@ -109,10 +107,10 @@ static void UpdateLatency(GstLidarScanAssembler* self, const CloudInfo& info, gu
 }
 
 static void LearnUpstreamLatency(GstLidarScanAssembler* self) {
-  const lidar::gst::QueryPtr query(gst_query_new_latency());
+  const QueryPtr query(gst_query_new_latency());
   const bool answered = gst_pad_peer_query(self->sinkpad, query.get());
   std::lock_guard lock(self->state->mutex);
-  self->state->upstream = answered ? lidar::gst::ReadLatency(query.get()) : lidar::gst::Latency();
+  self->state->upstream = answered ? ReadLatency(query.get()) : Latency();
 }
 
 /// A buffer that is a scan by itself.
@@ -153,20 +151,20 @@ static GstFlowReturn Chain(GstPad*, GstObject* parent, GstBuffer* buffer) {
                       (nullptr));
     return GST_FLOW_NOT_NEGOTIATED;
   }
-  lidar::gst::SliceView slice{buffer, &*info, {}};
+  SliceView slice{buffer, &*info, {}};
   if (!gst_lidar_buffer_get_slice(buffer, &slice.meta)) ReportMissingMeta(self, *info);
   UpdateLatency(self, *info, slice.meta.slice_count);
   if (slice.meta.slice_count == 1) return PassThrough(self, buffer, info->width);
-  const lidar::gst::BufferPtr owner(buffer);
+  const BufferPtr owner(buffer);
   if (slice.meta.slice_index == 0 || !state.upstream) LearnUpstreamLatency(self);
   ScanQueue::Finished finished;
   {
     std::lock_guard lock(state.mutex);
     const guint64 invalid = state.queue.counters().invalid;
     const GstClockTime deadline =
-        state.upstream->live ? lidar::gst::DeadlineOf(slice, {&state.segment, state.upstream->min,
-                                                              state.settings.max_wait})
-                             : GST_CLOCK_TIME_NONE;
+        state.upstream->live
+            ? DeadlineOf(slice, {&state.segment, state.upstream->min, state.settings.max_wait})
+            : GST_CLOCK_TIME_NONE;
     state.queue.Add(slice, deadline, &finished);
     if (state.queue.counters().invalid != invalid)
       GST_WARNING_OBJECT(self, "slice %u of %u of scan %u does not fit: dropped",
@@ -217,14 +215,13 @@ static void TakeCaps(GstLidarScanAssembler* self, GstCaps* caps, CloudInfo&& inf
   State& state = *self->state;
   std::lock_guard lock(state.mutex);
   // Slices of unorganised clouds differ in width; that is no change for the scan.
-  if (!state.in_caps || !lidar::gst::SameButForWidth(caps, state.in_caps.get()))
-    state.out_width = 0;
+  if (!state.in_caps || !SameButForWidth(caps, state.in_caps.get())) state.out_width = 0;
   state.in_caps.reset(gst_caps_ref(caps));
   state.info = std::move(info);
 }
 
 static gboolean HandleCaps(GstLidarScanAssembler* self, GstEvent* event) {
-  const lidar::gst::EventPtr owner(event);
+  const EventPtr owner(event);
   GstCaps* caps = nullptr;
   gst_event_parse_caps(event, &caps);
   State& state = *self->state;
@@ -239,7 +236,7 @@ static gboolean HandleCaps(GstLidarScanAssembler* self, GstEvent* event) {
   bool scan_changes = false;
   {
     std::lock_guard lock(state.mutex);
-    scan_changes = state.info && lidar::gst::CannotMix(*state.info, *info);
+    scan_changes = state.info && CannotMix(*state.info, *info);
   }
   // Open scans were made of the old slices, so they leave with the old caps.
   if (scan_changes) PushAll(self);
@@ -314,8 +311,8 @@ static gboolean SrcQuery(GstPad* pad, GstObject* parent, GstQuery* query) {
   if (GST_QUERY_TYPE(query) != GST_QUERY_LATENCY) return TRUE;
   State& state = StateOf(parent);
   std::lock_guard lock(state.mutex);
-  if (lidar::gst::ReadLatency(query).live && state.scan_latency > 0)
-    lidar::gst::AddLatency(query, state.scan_latency + state.settings.max_wait);
+  if (ReadLatency(query).live && state.scan_latency > 0)
+    AddLatency(query, state.scan_latency + state.settings.max_wait);
   return TRUE;
 }
 
@@ -344,21 +341,21 @@ static void PostLatency(GObject* object, GParamSpec*) {
 
 static void gst_lidar_scan_assembler_init(GstLidarScanAssembler* self) {
   self->state = new State;
-  self->sinkpad = lidar::gst::AddPad(self, "sink");
+  self->sinkpad = AddPad(self, "sink");
   gst_pad_set_chain_function(self->sinkpad, Chain);
   gst_pad_set_event_function(self->sinkpad, SinkEvent);
-  self->srcpad = lidar::gst::AddPad(self, "src");
+  self->srcpad = AddPad(self, "src");
   gst_pad_set_query_function(self->srcpad, SrcQuery);
   gst_pad_set_activatemode_function(self->srcpad, ActivateSource);
 }
 
 static void gst_lidar_scan_assembler_class_init(GstLidarScanAssemblerClass* klass) {
   GST_DEBUG_CATEGORY_INIT(gst_lidar_scan_assembler_debug, "scanassembler", 0, "Scan assembler");
-  lidar::gst::ServeState<GstLidarScanAssembler, gst_lidar_scan_assembler_parent_class, kProperties,
-                         PostLatency>(klass);
+  ServeState<GstLidarScanAssembler, gst_lidar_scan_assembler_parent_class, kProperties,
+             PostLatency>(klass);
   auto* element = GST_ELEMENT_CLASS(klass);
   element->change_state = ChangeState;
-  lidar::gst::Describe(
+  Describe(
       klass,
       {"Scan assembler", "Filter/PointCloud", "Puts the slices of a LiDAR scan together again"},
       {{"sink", GST_PAD_SINK, GST_LIDAR_CLOUD_MEDIA_TYPE},

@@ -32,8 +32,6 @@
 GST_DEBUG_CATEGORY_STATIC(gst_lidar_rtp_depay_debug);
 #define GST_CAT_DEFAULT gst_lidar_rtp_depay_debug
 
-using lidar::gst::BufferListPtr;
-using lidar::gst::CapsPtr;
 using lidar::rtp::PacketAccounts;
 using lidar::rtp::ReceivedSlice;
 using lidar::rtp::Receiver;
@@ -41,6 +39,8 @@ using lidar::rtp::ReceiverAccounts;
 using lidar::rtp::SliceAccounts;
 
 namespace {
+
+using namespace lidar::gst;
 
 struct Settings {
   guint64 max_reorder_time = 100 * GST_MSECOND;
@@ -54,12 +54,12 @@ struct Shown {
   guint64 not_accepted = 0;
 };
 template <auto field>
-constexpr auto A = lidar::gst::At<&Shown::all, field>;
+constexpr auto A = At<&Shown::all, field>;
 template <auto field>
-constexpr auto S = lidar::gst::At<&Shown::all, &ReceiverAccounts::slices, field>;
+constexpr auto S = At<&Shown::all, &ReceiverAccounts::slices, field>;
 template <auto field>
-constexpr auto P = lidar::gst::At<&Shown::all, &ReceiverAccounts::packets, field>;
-const std::array<lidar::gst::Stat<Shown>, 19> kStats = {{
+constexpr auto P = At<&Shown::all, &ReceiverAccounts::packets, field>;
+const std::array<Stat<Shown>, 19> kStats = {{
     {"slices-received", S<&SliceAccounts::slices_received>},
     {"slices-lost", S<&SliceAccounts::slices_lost>},
     {"slices-damaged", S<&SliceAccounts::slices_damaged>},
@@ -119,18 +119,18 @@ G_DEFINE_TYPE(GstLidarRtpDepay, gst_lidar_rtp_depay, GST_TYPE_RTP_BASE_DEPAYLOAD
 GST_ELEMENT_REGISTER_DEFINE(rtplidardepay, "rtplidardepay", GST_RANK_SECONDARY,
                             gst_lidar_rtp_depay_get_type())
 
-static lidar::gst::StructurePtr Stats(GObject* object) {
+static StructurePtr Stats(GObject* object) {
   State& state = *GST_LIDAR_RTP_DEPAY(object)->state;
-  auto stats = lidar::gst::BaseClassStats(object, gst_lidar_rtp_depay_parent_class);
+  auto stats = BaseClassStats(object, gst_lidar_rtp_depay_parent_class);
   std::lock_guard lock(state.mutex);
   const auto all = state.receiver.accounts();
-  lidar::gst::AddStats(
+  AddStats(
       stats.get(), kStats,
       {all, all.packets.invalid + state.not_rtp, state.wrong_payload_type, state.not_accepted});
   return stats;
 }
 
-static const std::array<lidar::gst::Property<Settings>, 2> kProperties = {{
+static const std::array<Property<Settings>, 2> kProperties = {{
     {"max-reorder-time",
      "How long a slice may wait for missing packets once a later slice began; no other slice waits "
      "with it [ns]",
@@ -165,7 +165,7 @@ static GstBuffer* ToBuffer(ReceivedSlice* slice) {
 /// first time. That is no error: anyone may send a stream of another coder.
 static bool SetCapsOf(GstRTPBaseDepayload* base, const lidar::rtp::StreamConfig& config) {
   State& state = *GST_LIDAR_RTP_DEPAY(base)->state;
-  const CapsPtr caps(lidar::gst::StreamConfigToCaps(config));
+  const CapsPtr caps(StreamConfigToCaps(config));
   if (gst_pad_peer_query_accept_caps(base->srcpad, caps.get())) {
     gst_pad_set_caps(base->srcpad, caps.get());
     return true;
@@ -351,17 +351,17 @@ static void gst_lidar_rtp_depay_init(GstLidarRtpDepay* self) {
 static void gst_lidar_rtp_depay_class_init(GstLidarRtpDepayClass* klass) {
   GST_DEBUG_CATEGORY_INIT(gst_lidar_rtp_depay_debug, "rtplidardepay", 0,
                           "RTP depayloader for clouds");
-  lidar::gst::ServeState<GstLidarRtpDepay, gst_lidar_rtp_depay_parent_class, kProperties,
-                         TakeReorderTime>(klass);
+  ServeState<GstLidarRtpDepay, gst_lidar_rtp_depay_parent_class, kProperties, TakeReorderTime>(
+      klass);
   auto* element = GST_ELEMENT_CLASS(klass);
-  lidar::gst::Describe(klass,
-                       {"RTP depayloader for point clouds", "Codec/Depayloader/Network/RTP",
-                        "Gets slices of encoded clouds out of RTP"},
-                       {{"sink", GST_PAD_SINK,
-                         "application/x-rtp, media = (string) { application, video }, "
-                         "payload = (int) [ 96, 127 ], "
-                         "clock-rate = (int) 90000, encoding-name = (string) X-LIDAR-DRACO"},
-                        {"src", GST_PAD_SRC, GST_LIDAR_CODED_CAPS}});
+  Describe(klass,
+           {"RTP depayloader for point clouds", "Codec/Depayloader/Network/RTP",
+            "Gets slices of encoded clouds out of RTP"},
+           {{"sink", GST_PAD_SINK,
+             "application/x-rtp, media = (string) { application, video }, "
+             "payload = (int) [ 96, 127 ], "
+             "clock-rate = (int) 90000, encoding-name = (string) X-LIDAR-DRACO"},
+            {"src", GST_PAD_SRC, GST_LIDAR_CODED_CAPS}});
   element->change_state = ChangeState;
   auto* depay = GST_RTP_BASE_DEPAYLOAD_CLASS(klass);
   depay->set_caps = SetCaps;

@@ -26,17 +26,15 @@
 GST_DEBUG_CATEGORY_STATIC(gst_lidar_rtp_pay_debug);
 #define GST_CAT_DEFAULT gst_lidar_rtp_pay_debug
 
-using lidar::gst::BufferPtr;
-using lidar::gst::CapsPtr;
-
 namespace {
 
-using Settings = lidar::gst::PaySettings;
+using namespace lidar::gst;
+using Settings = PaySettings;
 
 constexpr guint kClockRate = 90'000;
 
-using Counters = lidar::gst::PayCounters;
-const std::array<lidar::gst::Stat<Counters>, 7> kStats = {{
+using Counters = PayCounters;
+const std::array<Stat<Counters>, 7> kStats = {{
     {"scans-sent", &Counters::scans},
     {"slices-sent", &Counters::slices},
     {"packets-sent", &Counters::packets},
@@ -46,8 +44,8 @@ const std::array<lidar::gst::Stat<Counters>, 7> kStats = {{
     {"empty-dropped", &Counters::empty},
 }};
 
-struct State : lidar::gst::PayState {
-  lidar::gst::Receipts receipts;
+struct State : PayState {
+  Receipts receipts;
   GstPadQueryFunction base_src_query = nullptr;
 };
 
@@ -63,15 +61,15 @@ G_DEFINE_TYPE(GstLidarRtpPay, gst_lidar_rtp_pay, GST_TYPE_RTP_BASE_PAYLOAD)
 GST_ELEMENT_REGISTER_DEFINE(rtplidarpay, "rtplidarpay", GST_RANK_SECONDARY,
                             gst_lidar_rtp_pay_get_type())
 
-static lidar::gst::StructurePtr Stats(GObject* object) {
+static StructurePtr Stats(GObject* object) {
   State& state = *GST_LIDAR_RTP_PAY(object)->state;
-  auto stats = lidar::gst::BaseClassStats(object, gst_lidar_rtp_pay_parent_class);
+  auto stats = BaseClassStats(object, gst_lidar_rtp_pay_parent_class);
   std::lock_guard lock(state.mutex);
-  lidar::gst::AddStats(stats.get(), kStats, state.counters);
+  AddStats(stats.get(), kStats, state.counters);
   return stats;
 }
 
-static const std::array<lidar::gst::Property<Settings>, 3> kProperties = {{
+static const std::array<Property<Settings>, 3> kProperties = {{
     {"config-interval",
      "Time between repetitions of the stream config, by which receivers join late; 0: only before "
      "the first slice and when it changes [s]",
@@ -86,15 +84,15 @@ static const std::array<lidar::gst::Property<Settings>, 3> kProperties = {{
 static GstFlowReturn HandleBuffer(GstRTPBasePayload* base, GstBuffer* buffer) {
   const BufferPtr owner(buffer);
   State& state = *GST_LIDAR_RTP_PAY(base)->state;
-  const GstFlowReturn flow = lidar::gst::PaySliceBuffer(base, state, buffer);
-  if (flow == GST_FLOW_OK) lidar::gst::UpdateBounds(base, state);
+  const GstFlowReturn flow = PaySliceBuffer(base, state, buffer);
+  if (flow == GST_FLOW_OK) UpdateBounds(base, state);
   return flow;
 }
 
 /// "video" where nothing else is taken, as in WebRTC, which has no media of its own for LiDAR.
 static const gchar* MediaDownstream(GstRTPBasePayload* base) {
-  const lidar::gst::CapsPtr allowed(gst_pad_get_allowed_caps(GST_RTP_BASE_PAYLOAD_SRCPAD(base)));
-  const lidar::gst::CapsPtr usual(
+  const CapsPtr allowed(gst_pad_get_allowed_caps(GST_RTP_BASE_PAYLOAD_SRCPAD(base)));
+  const CapsPtr usual(
       gst_caps_new_simple("application/x-rtp", "media", G_TYPE_STRING, "application", nullptr));
   const bool any = !allowed || gst_caps_is_empty(allowed.get());
   return any || gst_caps_can_intersect(allowed.get(), usual.get()) ? "application" : "video";
@@ -102,7 +100,7 @@ static const gchar* MediaDownstream(GstRTPBasePayload* base) {
 
 static gboolean SetCaps(GstRTPBasePayload* base, GstCaps* caps) {
   State& state = *GST_LIDAR_RTP_PAY(base)->state;
-  auto config = lidar::gst::StreamConfigFromCaps(caps);
+  auto config = StreamConfigFromCaps(caps);
   if (!config) {
     GST_ELEMENT_ERROR(
         base, STREAM, FORMAT, ("The caps do not describe an encoded cloud that can be sent."),
@@ -111,7 +109,7 @@ static gboolean SetCaps(GstRTPBasePayload* base, GstCaps* caps) {
          static_cast<void*>(caps)));
     return FALSE;
   }
-  lidar::gst::PushAggregate(base, state);
+  PushAggregate(base, state);
   if (state.config != config) {
     const bool first = !state.config.has_value();
     state.config = std::move(config);
@@ -131,12 +129,12 @@ static gboolean SinkEvent(GstRTPBasePayload* base, GstEvent* event) {
   if (gst_lidar_event_parse_bitrate_bounds(event, &bounds)) {
     state.bounds = bounds;
     gst_event_unref(event);
-    event = lidar::gst::BoundsWithHeaders(base, state);
+    event = BoundsWithHeaders(base, state);
   }
   switch (GST_EVENT_TYPE(event)) {
     case GST_EVENT_EOS:
     case GST_EVENT_SEGMENT:
-      lidar::gst::PushAggregate(base, state);
+      PushAggregate(base, state);
       break;
     case GST_EVENT_FLUSH_STOP: {
       state.aggregator.Take();
@@ -180,7 +178,7 @@ static gboolean SrcEvent(GstRTPBasePayload* base, GstEvent* event) {
   }
   GstLidarTargetBitrate target{};
   if (gst_lidar_event_parse_target_bitrate(event, &target)) {
-    GstEvent* out = WithoutHeaders(event, lidar::gst::SliceShare(base, state));
+    GstEvent* out = WithoutHeaders(event, SliceShare(base, state));
     gst_event_unref(event);
     event = out;
   } else if (WantsConfig(event)) {
@@ -209,7 +207,7 @@ static GstClockTime HoldTime(GstRTPBasePayload* base) {
 static gboolean SrcQuery(GstPad* pad, GstObject* parent, GstQuery* query) {
   if (!GST_LIDAR_RTP_PAY(parent)->state->base_src_query(pad, parent, query)) return FALSE;
   if (GST_QUERY_TYPE(query) != GST_QUERY_LATENCY) return TRUE;
-  lidar::gst::AddLatency(query, HoldTime(GST_RTP_BASE_PAYLOAD(parent)));
+  AddLatency(query, HoldTime(GST_RTP_BASE_PAYLOAD(parent)));
   return TRUE;
 }
 
@@ -241,16 +239,16 @@ static void gst_lidar_rtp_pay_init(GstLidarRtpPay* self) {
 
 static void gst_lidar_rtp_pay_class_init(GstLidarRtpPayClass* klass) {
   GST_DEBUG_CATEGORY_INIT(gst_lidar_rtp_pay_debug, "rtplidarpay", 0, "RTP payloader for clouds");
-  lidar::gst::ServeState<GstLidarRtpPay, gst_lidar_rtp_pay_parent_class, kProperties>(klass);
+  ServeState<GstLidarRtpPay, gst_lidar_rtp_pay_parent_class, kProperties>(klass);
   auto* element = GST_ELEMENT_CLASS(klass);
-  lidar::gst::Describe(klass,
-                       {"RTP payloader for point clouds", "Codec/Payloader/Network/RTP",
-                        "Sends slices of encoded clouds as RTP"},
-                       {{"sink", GST_PAD_SINK, GST_LIDAR_CODED_CAPS},
-                        {"src", GST_PAD_SRC,
-                         "application/x-rtp, media = (string) { application, video }, "
-                         "payload = (int) [ 96, 127 ], "
-                         "clock-rate = (int) 90000, encoding-name = (string) X-LIDAR-DRACO"}});
+  Describe(klass,
+           {"RTP payloader for point clouds", "Codec/Payloader/Network/RTP",
+            "Sends slices of encoded clouds as RTP"},
+           {{"sink", GST_PAD_SINK, GST_LIDAR_CODED_CAPS},
+            {"src", GST_PAD_SRC,
+             "application/x-rtp, media = (string) { application, video }, "
+             "payload = (int) [ 96, 127 ], "
+             "clock-rate = (int) 90000, encoding-name = (string) X-LIDAR-DRACO"}});
   element->change_state = ChangeState;
   auto* pay = GST_RTP_BASE_PAYLOAD_CLASS(klass);
   pay->set_caps = SetCaps;

@@ -30,9 +30,7 @@ GST_DEBUG_CATEGORY_STATIC(gst_lidar_point_cloud_view_debug);
 
 namespace {
 
-using lidar::gst::CapsPtr;
-using lidar::gst::CloudInfo;
-using lidar::gst::Renderer;
+using namespace lidar::gst;
 
 const GEnumValue kViews[] = {{0, "From above, x to the right", "top"},
                              {1, "As from behind the sensor", "perspective"},
@@ -45,11 +43,11 @@ const GEnumValue kColors[] = {{0, "z", "height"},
                               {0, nullptr, nullptr}};
 
 GType ViewType() {
-  static const GType type = lidar::gst::RegisterEnum("GstLidarPointCloudViewView", kViews);
+  static const GType type = RegisterEnum("GstLidarPointCloudViewView", kViews);
   return type;
 }
 GType ColorType() {
-  static const GType type = lidar::gst::RegisterEnum("GstLidarPointCloudViewColor", kColors);
+  static const GType type = RegisterEnum("GstLidarPointCloudViewColor", kColors);
   return type;
 }
 
@@ -72,14 +70,14 @@ struct Settings {
   gdouble color_max = 0;
 };
 
-using Row = lidar::gst::Property<Settings>;
+using Row = Property<Settings>;
 constexpr gdouble kFar = 10'000;
 constexpr gint kAnytime = GST_PARAM_MUTABLE_PLAYING;
 const std::array<Row, 16> kProperties = {{
-    {"view", "How the cloud is seen", lidar::gst::EnumField<Settings>{&Settings::view, ViewType}, 0,
-     0, kAnytime},
-    {"color-by", "What the colours tell",
-     lidar::gst::EnumField<Settings>{&Settings::color_by, ColorType}, 0, 0, kAnytime},
+    {"view", "How the cloud is seen", EnumField<Settings>{&Settings::view, ViewType}, 0, 0,
+     kAnytime},
+    {"color-by", "What the colours tell", EnumField<Settings>{&Settings::color_by, ColorType}, 0, 0,
+     kAnytime},
     {"map", "Draw clouds over the map that their poses make, with the way (see lidarodometry)",
      &Settings::map, 0, 0, kAnytime},
     {"width", "Width of the video where downstream leaves it open [pixels]", &Settings::width, 16,
@@ -115,9 +113,9 @@ struct State {
   bool changed = true;
   // Only the streaming thread uses these.
   std::optional<CloudInfo> info;
-  lidar::gst::RefusedCaps refused;
+  RefusedCaps refused;
   GstVideoInfo video;
-  std::optional<lidar::gst::TrailMap> map;
+  std::optional<TrailMap> map;
   gint map_colors = 0;  // the map keeps what its colours tell
   std::unique_ptr<Renderer> renderer;
   bool warned_no_pose = false;
@@ -126,11 +124,11 @@ struct State {
   GstClockTime pts = GST_CLOCK_TIME_NONE;  // of that scan
 };
 
-lidar::gst::ViewSettings ToView(const Settings& s) {
+ViewSettings ToView(const Settings& s) {
   const auto f = [](gdouble v) { return static_cast<float>(v); };
-  lidar::gst::ViewSettings view;
-  view.view = static_cast<lidar::gst::ViewKind>(s.view);
-  view.color_by = static_cast<lidar::gst::ColorBy>(s.color_by);
+  ViewSettings view;
+  view.view = static_cast<ViewKind>(s.view);
+  view.color_by = static_cast<ColorBy>(s.color_by);
   view.extent_m = f(s.extent_m);
   view.eye_m = {f(s.eye_x), f(s.eye_y), f(s.eye_z)};
   view.target_m = {f(s.target_x), f(s.target_y), f(s.target_z)};
@@ -225,7 +223,7 @@ static gboolean TransformSize(GstBaseTransform* base, GstPadDirection direction,
   return direction == GST_PAD_SINK ? GetUnitSize(base, other_caps, other_size) : FALSE;
 }
 
-static void Paint(const lidar::gst::Canvas& canvas, GstVideoFrame* frame) {
+static void Paint(const Canvas& canvas, GstVideoFrame* frame) {
   const auto step = static_cast<int>(GST_VIDEO_FRAME_COMP_PSTRIDE(frame, 0));
   const auto r = static_cast<int>(GST_VIDEO_FRAME_COMP_POFFSET(frame, 0));
   const auto g = static_cast<int>(GST_VIDEO_FRAME_COMP_POFFSET(frame, 1));
@@ -233,7 +231,7 @@ static void Paint(const lidar::gst::Canvas& canvas, GstVideoFrame* frame) {
   const int unused = step == 4 ? 6 - r - g - b : r;  // alpha or x
   auto* data = static_cast<guint8*>(GST_VIDEO_FRAME_PLANE_DATA(frame, 0));
   for (int y = 0; y < canvas.height(); ++y) {
-    const lidar::gst::Color* from = canvas.Row(y);
+    const Color* from = canvas.Row(y);
     guint8* to = data + y * GST_VIDEO_FRAME_PLANE_STRIDE(frame, 0);
     for (int x = 0; x < canvas.width(); ++x, to += step) {
       to[unused] = 255;
@@ -265,7 +263,7 @@ static bool FollowPose(GstBaseTransform* base, GstBuffer* in) {
 }
 
 /// The map lives as long as it is asked for and its colours tell the same.
-static lidar::gst::TrailMap* UpdateMap(State* state) {
+static TrailMap* UpdateMap(State* state) {
   const Settings& settings = state->settings;
   const bool stale = state->map_colors != settings.color_by;
   if (!settings.map || stale) state->map.reset();
@@ -309,7 +307,7 @@ static GstFlowReturn FinishPicture(GstBaseTransform* base, GstBuffer* out) {
 /// A scan is a picture: slices are drawn as they come, and the last one lets it go.
 static GstFlowReturn Transform(GstBaseTransform* base, GstBuffer* in, GstBuffer* out) {
   State& state = StateOf(base);
-  const lidar::gst::BufferMap bytes(in, GST_MAP_READ);
+  const BufferMap bytes(in, GST_MAP_READ);
   if (!bytes || bytes.size() != state.info->FrameSize()) {
     GST_ELEMENT_ERROR(base, STREAM, FORMAT, ("A cloud of another size than its caps say."),
                       (nullptr));
@@ -377,15 +375,14 @@ static void gst_lidar_point_cloud_view_init(GstLidarPointCloudView* self) {
 static void gst_lidar_point_cloud_view_class_init(GstLidarPointCloudViewClass* klass) {
   GST_DEBUG_CATEGORY_INIT(gst_lidar_point_cloud_view_debug, "pointcloudview", 0,
                           "Point clouds as video");
-  lidar::gst::ServeState<GstLidarPointCloudView, gst_lidar_point_cloud_view_parent_class,
-                         kProperties, MarkChanged>(klass);
-  lidar::gst::Describe(
-      klass, {"Point cloud view", "Converter/Video/PointCloud", "Draws point clouds as video"},
-      {{"sink", GST_PAD_SINK, GST_LIDAR_CLOUD_MEDIA_TYPE},
-       {"src", GST_PAD_SRC,
-        "video/x-raw, format = (string) " VIDEO_FORMATS
-        ", width = [ 16, 8192 ], height = [ 16, 8192 ], "
-        "framerate = (fraction) [ 0, max ]"}});
+  ServeState<GstLidarPointCloudView, gst_lidar_point_cloud_view_parent_class, kProperties,
+             MarkChanged>(klass);
+  Describe(klass, {"Point cloud view", "Converter/Video/PointCloud", "Draws point clouds as video"},
+           {{"sink", GST_PAD_SINK, GST_LIDAR_CLOUD_MEDIA_TYPE},
+            {"src", GST_PAD_SRC,
+             "video/x-raw, format = (string) " VIDEO_FORMATS
+             ", width = [ 16, 8192 ], height = [ 16, 8192 ], "
+             "framerate = (fraction) [ 0, max ]"}});
   auto* transform = GST_BASE_TRANSFORM_CLASS(klass);
   transform->transform_caps = TransformCaps;
   transform->fixate_caps = FixateCaps;
