@@ -211,7 +211,7 @@ static gboolean Stop(GstBaseSrc* base) {
 /// One warning, until a message is good again: a publisher that is broken sends many.
 static void NoteDamaged(GstLidarNatsSrc* self) {
   State& state = StateOf(self);
-  state.account.NoteDamaged();
+  state.account.Count(&SourceCounters::damaged);
   if (!std::exchange(state.warned_damaged, true))
     GST_ELEMENT_WARNING(self, STREAM, DECODE,
                         ("A message is none of natssink's, or damaged. Such messages are dropped "
@@ -228,7 +228,7 @@ static StreamFormat::Ptr FormatOf(GstLidarNatsSrc* self, const std::string& id) 
   if (format) return format;
   // Not for each of many: others may be good.
   if (wait) state.no_wait_until_us = g_get_monotonic_time() + kFormatPauseUs;
-  state.account.NoteWithoutCaps();
+  state.account.Count(&SourceCounters::without_caps);
   return nullptr;
 }
 
@@ -263,7 +263,8 @@ static GstFlowReturn Take(GstLidarNatsSrc* self, const Delivery& delivery, GstBu
   if (verdict.gap) GST_BUFFER_FLAG_SET(read->buffer.get(), GST_BUFFER_FLAG_DISCONT);
   SetStored(state, delivery, read->buffer.get());
   state.warned_damaged = false;
-  state.account.NoteTaken(size);
+  state.account.Count(&SourceCounters::messages);
+  state.account.Count(&SourceCounters::bytes, size);
   *out = read->buffer.release();
   return GST_FLOW_OK;
 }

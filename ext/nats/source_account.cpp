@@ -14,20 +14,9 @@ void SourceAccount::Reset() {
   counters_ = {};
 }
 
-void SourceAccount::NoteTaken(std::size_t bytes) {
+void SourceAccount::Count(std::uint64_t SourceCounters::*counter, std::uint64_t amount) {
   const std::lock_guard lock(mutex_);
-  ++counters_.messages;
-  counters_.bytes += bytes;
-}
-
-void SourceAccount::NoteDamaged() {
-  const std::lock_guard lock(mutex_);
-  ++counters_.damaged;
-}
-
-void SourceAccount::NoteWithoutCaps() {
-  const std::lock_guard lock(mutex_);
-  ++counters_.without_caps;
+  counters_.*counter += amount;
 }
 
 void SourceAccount::NoteSubscriber(const Subscriber& subscriber) {

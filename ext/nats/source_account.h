@@ -29,9 +29,7 @@ class SourceAccount {
   SourceCounters counters() const;
 
   void Reset();
-  void NoteTaken(std::size_t bytes);
-  void NoteDamaged();
-  void NoteWithoutCaps();
+  void Count(std::uint64_t SourceCounters::*counter, std::uint64_t amount = 1);
   void NoteSubscriber(const Subscriber& subscriber);
   void NoteStop();
 

@@ -12,7 +12,6 @@
 #include <gst/gst.h>
 
 #include "ext/web/foxglove_input.h"
-#include "ext/web/foxglove_pad.h"
 #include "ext/web/statistics.h"
 #include "gst/common/element_class.h"
 #include "gst/common/properties.h"
@@ -27,6 +26,9 @@ namespace {
 
 using namespace lidar::gst;
 using lidar::web::Hub;
+using lidar::web::InputSettings;
+using lidar::web::SetSettings;
+using lidar::web::SettingsOf;
 
 struct Settings {
   guint port = 8765;
@@ -92,7 +94,55 @@ Counters CountersOf(const Hub& hub) {
   return c;
 }
 
+const std::array<Property<InputSettings>, 2> kPadProperties = {{
+    {"topic",
+     "Topic of the channel; NULL: /points, /points_draco or /pose, with the number of the pad from "
+     "the second on",
+     &InputSettings::topic},
+    {"frame-id", "Frame of the clouds, or of the sensor whose poses come",
+     &InputSettings::frame_id},
+}};
+
 }  // namespace
+
+/// A sink pad: the ghost of an input, with its topic and frame.
+G_DECLARE_FINAL_TYPE(GstLidarFoxglovePad, gst_lidar_foxglove_pad, GST, LIDAR_FOXGLOVE_PAD,
+                     GstGhostPad)
+struct _GstLidarFoxglovePad {
+  GstGhostPad parent;
+};
+
+G_DEFINE_TYPE(GstLidarFoxglovePad, gst_lidar_foxglove_pad, GST_TYPE_GHOST_PAD)
+
+/// The element behind the pad, or NULL while there is none; transfer full.
+static GstElement* InputOf(GstPad* pad) {
+  const PadPtr target(gst_ghost_pad_get_target(GST_GHOST_PAD(pad)));
+  return target ? gst_pad_get_parent_element(target.get()) : nullptr;
+}
+
+static void SetPadProperty(GObject* object, guint id, const GValue* value, GParamSpec*) {
+  const ElementPtr input(InputOf(GST_PAD(object)));
+  if (!input) return;
+  InputSettings settings = SettingsOf(GST_LIDAR_FOXGLOVE_INPUT(input.get()));
+  SetProperty(settings, kPadProperties[id - 1], value);
+  SetSettings(GST_LIDAR_FOXGLOVE_INPUT(input.get()), settings);
+}
+
+static void GetPadProperty(GObject* object, guint id, GValue* value, GParamSpec*) {
+  const ElementPtr input(InputOf(GST_PAD(object)));
+  const InputSettings settings =
+      input ? SettingsOf(GST_LIDAR_FOXGLOVE_INPUT(input.get())) : InputSettings{};
+  GetProperty(settings, kPadProperties[id - 1], value);
+}
+
+static void gst_lidar_foxglove_pad_init(GstLidarFoxglovePad*) {}
+
+static void gst_lidar_foxglove_pad_class_init(GstLidarFoxglovePadClass* klass) {
+  auto* object = G_OBJECT_CLASS(klass);
+  object->set_property = SetPadProperty;
+  object->get_property = GetPadProperty;
+  InstallProperties(object, kPadProperties);
+}
 
 G_DECLARE_FINAL_TYPE(GstLidarFoxgloveSink, gst_lidar_foxglove_sink, GST, LIDAR_FOXGLOVE_SINK,
                      GstBin)
@@ -234,7 +284,7 @@ static GstPad* RequestPad(GstElement* element, GstPadTemplate* templ, const gcha
   auto* input = GST_ELEMENT(g_object_new(GST_TYPE_LIDAR_FOXGLOVE_INPUT, nullptr));
   lidar::web::InputSettings settings;
   settings.number = number;
-  lidar::web::SetSettings(GST_LIDAR_FOXGLOVE_INPUT(input), settings);
+  SetSettings(GST_LIDAR_FOXGLOVE_INPUT(input), settings);
   lidar::web::SetHub(GST_LIDAR_FOXGLOVE_INPUT(input), HubOf(G_OBJECT(element)));
   {
     const std::lock_guard lock(self->state->mutex);
@@ -244,11 +294,12 @@ static GstPad* RequestPad(GstElement* element, GstPadTemplate* templ, const gcha
   const PadPtr target(gst_element_get_static_pad(input, "sink"));
   gst_bin_add(GST_BIN(element), input);
   gst_element_sync_state_with_parent(input);
-  return AddGhostSink(element, GST_TYPE_LIDAR_FOXGLOVE_PAD, templ, pad_name.get(), target.get());
+  return AddGhostSink(element, gst_lidar_foxglove_pad_get_type(), templ, pad_name.get(),
+                      target.get());
 }
 
 static void ReleasePad(GstElement* element, GstPad* pad) {
-  const ElementPtr input(lidar::web::InputOf(pad));
+  const ElementPtr input(InputOf(pad));
   const StringPtr name(gst_pad_get_name(pad));
   if (input) {
     // The input stops first: this wakes a thread that waits in it and holds the pad's lock.
@@ -293,6 +344,6 @@ static void gst_lidar_foxglove_sink_class_init(GstLidarFoxgloveSinkClass* klass)
            {{"sink_%u", GST_PAD_SINK,
              "application/x-pointcloud2; application/x-draco, geometry=xyz; "
              "application/x-odometry",
-             GST_PAD_REQUEST, GST_TYPE_LIDAR_FOXGLOVE_PAD}});
-  gst_type_mark_as_plugin_api(GST_TYPE_LIDAR_FOXGLOVE_PAD, static_cast<GstPluginAPIFlags>(0));
+             GST_PAD_REQUEST, gst_lidar_foxglove_pad_get_type()}});
+  gst_type_mark_as_plugin_api(gst_lidar_foxglove_pad_get_type(), static_cast<GstPluginAPIFlags>(0));
 }
