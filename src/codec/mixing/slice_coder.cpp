@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include "src/codec/mixing/slice_coder.h"
 
-#include <cmath>
 #include <type_traits>
 
 #include "src/codec/mixing/bin_search.h"
@@ -52,11 +51,6 @@ struct NoSearch {
 };
 
 }  // namespace
-
-bool BitCounter::Code(bool bit, std::int32_t chance) {
-  bits_ -= std::log2((bit ? chance : kOne - chance) / double{kOne});
-  return bit;
-}
 
 void SliceCoder::FillNorth(const Azimuth* above, std::uint32_t columns) {
   const auto end = static_cast<std::ptrdiff_t>(columns) + kMargin;
@@ -220,6 +214,5 @@ bool SliceCoder::Code(unsigned effort, Model* model, SliceBins* slice, Coder* co
 
 template bool SliceCoder::Code(unsigned, Model*, SliceBins*, BinaryEncoder*, const Recollection*);
 template bool SliceCoder::Code(unsigned, Model*, SliceBins*, BinaryDecoder*, const Recollection*);
-template bool SliceCoder::Code(unsigned, Model*, SliceBins*, BitCounter*, const Recollection*);
 
 }  // namespace lidar::codec::mixing

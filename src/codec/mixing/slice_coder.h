@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// A slice of bins and levels through a binary coder: the same walk encodes, decodes and trains.
+// A slice of bins and levels through a binary coder: the same walk encodes and decodes.
 #pragma once
 #include <cstdint>
 #include <vector>
@@ -89,22 +89,9 @@ class SliceCoder {
   std::vector<SearchStep> search_steps_;
 };
 
-/// Sums up what a real coder would write.
-class BitCounter {
- public:
-  static constexpr bool kDecodes = false;
-  bool Code(bool bit, std::int32_t chance);
-  double bits() const { return bits_; }
-
- private:
-  double bits_ = 0;
-};
-
 extern template bool SliceCoder::Code(unsigned, Model*, SliceBins*, BinaryEncoder*,
                                       const Recollection*);
 extern template bool SliceCoder::Code(unsigned, Model*, SliceBins*, BinaryDecoder*,
-                                      const Recollection*);
-extern template bool SliceCoder::Code(unsigned, Model*, SliceBins*, BitCounter*,
                                       const Recollection*);
 
 }  // namespace lidar::codec::mixing

@@ -195,8 +195,9 @@ class Trainer {
 
  private:
   void Run(unsigned effort, mixing::SliceCoder* coder) {
-    mixing::BitCounter bits;
-    coder->Code(effort, model_.get(), &bins_, &bits);
+    written_.clear();
+    mixing::BinaryEncoder encoder(&written_);
+    coder->Code(effort, model_.get(), &bins_, &encoder);
   }
   void LearnBins(unsigned effort, mixing::SliceCoder* coder) {
     mixing::StartStates& states = *states_[effort - 1];
@@ -231,6 +232,7 @@ class Trainer {
   std::array<std::array<Means, mixing::kLevelClasses>, mixing::kEfforts> level_weight_means_;
   std::unique_ptr<mixing::Model> model_ = std::make_unique<mixing::Model>();
   SliceBins bins_;
+  std::vector<std::uint8_t> written_;  // of no use: the model learns from what is coded
 };
 
 }  // namespace
