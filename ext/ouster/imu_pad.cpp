@@ -7,6 +7,7 @@
 #include <memory>
 #include <utility>
 
+#include "ext/ouster/slice_buffer.h"
 #include "gst/common/gstlidar.h"
 #include "gst/common/refs.h"
 #include "src/base/byte_writer.h"
@@ -20,11 +21,6 @@ namespace {
 constexpr gint kSampleSize = 32;
 constexpr const char* kFields =
     "t:U64:0,ax:F32:8,ay:F32:12,az:F32:16,gx:F32:20,gy:F32:24,gz:F32:28";
-
-GstClockTime ToClockTime(Time time) {
-  const auto ns = time.time_since_epoch().count();
-  return ns > 0 ? static_cast<GstClockTime>(ns) : 0;
-}
 
 GstCaps* MakeCaps(const ouster::Metadata& metadata) {
   GstCaps* caps = gst_caps_new_simple(GST_LIDAR_IMU_MEDIA_TYPE, "sample-size", G_TYPE_INT,

@@ -35,7 +35,7 @@ std::optional<std::string> ReadFile(const std::string& path, std::size_t max_siz
 
 using C = Counters;
 using B = ouster::BatcherStats;
-using S = ouster::StreamStats;
+using D = ouster::StreamStats;  // of datagrams
 
 }  // namespace
 
@@ -45,10 +45,10 @@ const std::array<Stat<Counters>, 16> kOusterStats = {{
     {"packets-late", At<&C::batcher, &B::late_packets>},
     {"packets-duplicate", At<&C::batcher, &B::duplicate_packets>},
     {"packets-stray", At<&C::batcher, &B::stray_packets>},
-    {"packets-wrong-size", At<&C::stream, &S::wrong_size>},
-    {"packets-foreign", At<&C::stream, &S::foreign>},
-    {"packets-damaged", At<&C::stream, &S::damaged>},
-    {"packets-imu", At<&C::stream, &S::imu_packets>},
+    {"packets-wrong-size", At<&C::stream, &D::wrong_size>},
+    {"packets-foreign", At<&C::stream, &D::foreign>},
+    {"packets-damaged", At<&C::stream, &D::damaged>},
+    {"packets-imu", At<&C::stream, &D::imu_packets>},
     {"dropped-by-kernel", &C::kernel_drops},
     {"restarts", At<&C::batcher, &B::restarts>},
     {"reconnects", &C::reconnects},

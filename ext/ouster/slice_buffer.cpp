@@ -8,14 +8,10 @@
 #include "gst/common/gstlidar.h"
 
 namespace lidar::gst {
-namespace {
-
 GstClockTime ToClockTime(Time time) {
   const auto ns = time.time_since_epoch().count();
   return ns > 0 ? static_cast<GstClockTime>(ns) : 0;
 }
-
-}  // namespace
 
 GstCaps* CapsOf(const ouster::SensorStream& stream) {
   constexpr gint kMaxDenominator = 1000;

@@ -7,6 +7,8 @@
 
 namespace lidar::gst {
 
+/// Since the Unix epoch; 0 for a time before it.
+GstClockTime ToClockTime(Time time);
 /// transfer full
 GstCaps* CapsOf(const ouster::SensorStream& stream);
 /// Takes the points without a copy. PTS is slice.local since the Unix epoch of that clock;

@@ -12,7 +12,6 @@ namespace {
 constexpr Color kBackground{20, 23, 32};
 constexpr Color kWay{255, 176, 46};
 constexpr Color kSensor{255, 255, 255};
-constexpr float kGround = -1.9F;  // below the sensor [m]
 /// How much of its colour the map keeps, how far away it is drawn in perspective, and how many
 /// scans must have met a place before it is drawn. Fewer scans meet what moves.
 constexpr float kMapShare = 0.7F;

@@ -12,8 +12,7 @@ namespace {
 constexpr float kPi = 3.14159265F;
 constexpr Color kRing{120, 132, 158};
 constexpr Color kCar{255, 255, 255};
-constexpr float kGround = -1.9F;  // below the sensor [m]
-constexpr float kAbove = 100;     // from where the view from above looks down [m]
+constexpr float kAbove = 100;  // from where the view from above looks down [m]
 
 struct Scale {
   float low, high;

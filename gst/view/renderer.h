@@ -28,6 +28,8 @@ struct ViewSettings {
   float color_max = 0;
 };
 
+constexpr float kGround = -1.9F;  // below the sensor [m]
+
 /// One picture at a time: Begin, Draw for each slice, Finish.
 class Renderer {
  public:
