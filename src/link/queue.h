@@ -40,8 +40,16 @@ class Queue {
 class FifoQueue final : public Queue {
  public:
   explicit FifoQueue(std::unique_ptr<Aqm> aqm) : aqm_(std::move(aqm)) {}
-  void Push(const Waiting& waiting) override;
-  Leaving Pop(Time now) override;
+  void Push(const Waiting& waiting) override {
+    waiting_.push_back(waiting);
+    size_ += waiting.packet.size;
+  }
+  Leaving Pop(Time now) override {
+    const Waiting head = waiting_.front();
+    waiting_.pop_front();
+    size_ -= head.packet.size;
+    return {head, aqm_->OnDequeue(now, now - head.entered, head.packet)};
+  }
   Time Oldest() const override { return waiting_.empty() ? Time::max() : waiting_.front().entered; }
   std::size_t packets() const override { return waiting_.size(); }
   DataSize size() const override { return size_; }

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // How far a prediction by constant velocity is usually off: the reach of the search for neighbours.
 #pragma once
+#include <cmath>
+
 #include "src/odometry/pose.h"
 
 namespace lidar::odometry {
@@ -11,10 +13,19 @@ class MotionThreshold {
   explicit MotionThreshold(double max_range_m) : max_range_m_(max_range_m) {}
 
   /// `correction`: from the predicted pose to the one found, in the sensor's frame.
-  void Add(const Pose& correction);
+  void Add(const Pose& correction) {
+    // A rotation moves the farthest points most.
+    const double moved =
+        2 * max_range_m_ * std::sin(Angle(correction) / 2) + correction.position.norm();
+    if (moved <= kLeastMotion) return;
+    sum_of_squares_ += moved * moved;
+    sigma_m_ = std::sqrt(sum_of_squares_ / ++count_);
+  }
   double sigma_m() const { return sigma_m_; }
 
  private:
+  static constexpr double kLeastMotion = 0.1;  // [m]: a sensor that stands still teaches nothing
+
   double max_range_m_;
   double sum_of_squares_ = 0;
   int count_ = 0;

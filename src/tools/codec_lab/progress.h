@@ -1,12 +1,24 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // A line on standard error that shows how far long work is.
 #pragma once
+#include <unistd.h>
+
+#include <cstdio>
 #include <functional>
 #include <string>
 
 namespace lidar::tools {
 
 /// Draws only where standard error is a terminal.
-std::function<void(double)> ProgressBar(const std::string& what);
+inline std::function<void(double)> ProgressBar(const std::string& what) {
+  if (isatty(STDERR_FILENO) == 0) return [](double) {};
+  return [what, shown = -1](double done) mutable {
+    const int percent = static_cast<int>(100 * done);
+    if (percent == shown) return;
+    shown = percent;
+    std::fprintf(stderr, "\r%s %3d %%%s", what.c_str(), percent, percent >= 100 ? "\r\n" : "");
+    std::fflush(stderr);
+  };
+}
 
 }  // namespace lidar::tools
