@@ -4,22 +4,15 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
-#include <fstream>
-#include <iterator>
 #include <optional>
 #include <stdexcept>
 
 #include "src/cloud/cloud_files.h"
 #include "src/cloud/field_number.h"
+#include "src/tools/common/output_file.h"
 
 namespace lidar::tools {
 namespace {
-
-std::string ReadAll(const std::string& path) {
-  std::ifstream file(path, std::ios::binary);
-  if (!file) throw std::runtime_error("cannot open " + path);
-  return {std::istreambuf_iterator<char>(file), {}};
-}
 
 void AddPoint(const float* xyz, const float* intensity, Scan* scan) {
   if (!std::isfinite(xyz[0]) || !std::isfinite(xyz[1]) || !std::isfinite(xyz[2])) return;
@@ -60,7 +53,7 @@ bool IsCloudFile(const std::string& path) {
 }
 
 Scan ReadCloud(const std::string& path) {
-  const std::string bytes = ReadAll(path);
+  const std::string bytes = ReadFile(path);
   const ByteView view{reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size()};
   if (path.size() >= 4 && path.compare(path.size() - 4, 4, ".bin") == 0)
     return ReadBin(path, bytes);

@@ -1,19 +1,14 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include "src/tools/codec_lab/model_option.h"
 
-#include <fstream>
-#include <iterator>
 #include <stdexcept>
+
+#include "src/tools/common/output_file.h"
 
 namespace lidar::tools {
 
 rate::ModelFile LoadModelFile(const std::string& path) {
-  std::string text(rate::BuiltInModelFile());
-  if (!path.empty()) {
-    std::ifstream in(path, std::ios::binary);
-    if (!in) throw std::runtime_error("cannot open " + path);
-    text.assign(std::istreambuf_iterator<char>(in), {});
-  }
+  const std::string text = path.empty() ? std::string(rate::BuiltInModelFile()) : ReadFile(path);
   std::string error;
   auto file = rate::ParseModelFile(text, &error);
   if (!file) throw std::runtime_error(path + ": " + error);

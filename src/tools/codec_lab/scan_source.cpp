@@ -4,8 +4,6 @@
 #include <algorithm>
 #include <cstring>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <sstream>
 #include <stdexcept>
 
@@ -14,6 +12,7 @@
 #include "src/ouster/scan_batcher.h"
 #include "src/synth/scanner.h"
 #include "src/tools/codec_lab/cloud_file.h"
+#include "src/tools/common/output_file.h"
 #ifdef HAVE_MCAP
 #include "src/tools/codec_lab/cloud_recording.h"
 #endif
@@ -32,15 +31,9 @@ ColumnWindow WindowOf(const Scan& scan, SliceOf slice) {
 
 namespace {
 
-std::string ReadText(const std::string& path) {
-  std::ifstream file(path, std::ios::binary);
-  if (!file) throw std::runtime_error("cannot open " + path);
-  return {std::istreambuf_iterator<char>(file), {}};
-}
-
 ouster::Metadata ReadMetadata(const std::string& path) {
   std::string error;
-  const auto metadata = ouster::ParseMetadata(ReadText(path), &error);
+  const auto metadata = ouster::ParseMetadata(ReadFile(path), &error);
   if (!metadata) throw std::runtime_error(path + ": " + error);
   if (!metadata->pixel_angles.empty())
     throw std::runtime_error(path + ": sensors with an angle for each pixel have no beams");

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Files that programs write, and what is left of them on a full disk.
+// Files that programs read and write, and what is left of them on a full disk.
 #pragma once
 #include <fstream>
 #include <string>
@@ -31,6 +31,9 @@ class OutputFile {
   const Rest rest_;
   std::ofstream file_;
 };
+
+/// All of the file. Throws std::runtime_error where it cannot be opened.
+std::string ReadFile(const std::string& path);
 
 /// Writes all of the file, or leaves none.
 void WriteFile(const std::string& path, const std::string& text);

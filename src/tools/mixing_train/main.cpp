@@ -2,9 +2,7 @@
 // mixing-train: makes the table of start states of the mixing coder, and tells what it is worth.
 #include <CLI/CLI.hpp>
 #include <cstdio>
-#include <fstream>
 #include <iostream>
-#include <iterator>
 
 #include "src/base/base64.h"
 #include "src/tools/codec_lab/scan_source.h"
@@ -101,9 +99,7 @@ int Run(const Options& o) {
   const std::string text = ToText(table);
   if (!o.output.empty()) tools::WriteFile(o.output, text);
   if (!o.check.empty()) {
-    std::ifstream file(o.check, std::ios::binary);
-    const std::string committed{std::istreambuf_iterator<char>(file), {}};
-    if (committed != text) {
+    if (ReadFile(o.check) != text) {
       std::cerr << o.check << ": not what this training gives\n";
       return 1;
     }
