@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include "src/odometry/pose.h"
 
+#include <Eigen/LU>
 #include <cmath>
 
 namespace lidar::odometry {
@@ -49,7 +50,7 @@ Twist Log(const Pose& pose) {
   Twist twist;
   twist.tail<3>() =
       sine > kSmallAngle ? Eigen::Vector3d(axis * (angle / sine)) : Eigen::Vector3d(2 * axis);
-  twist.head<3>() = LeftJacobian(twist.tail<3>()).partialPivLu().solve(pose.position);
+  twist.head<3>() = LeftJacobian(twist.tail<3>()).inverse() * pose.position;
   return twist;
 }
 
