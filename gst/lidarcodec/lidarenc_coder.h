@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// The coder of lidarenc: one slice at a time, as hard as there is time for, and what it may refer
+// to.
+#pragma once
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "gst/common/cloud_info.h"
+#include "gst/common/gstlidarencoder.h"
+#include "src/codec/effort_control.h"
+#include "src/codec/slice_decoder.h"
+#include "src/codec/slice_encoder.h"
+
+namespace lidar::gst {
+
+/// For one thread at a time.
+class LidarEncCoder {
+ public:
+  /// False where no ranges of a sensor are in it. What was learnt of the machine stays.
+  bool SetFormat(const CloudInfo& info, bool with_intensity);
+  /// Takes the slice; without `effort` it has the one that there is time for.
+  void Load(const GstLidarRawSlice& raw, std::optional<unsigned> effort);
+  /// Lets what is loaded refer to what the receiver has, where it `remembers`.
+  void Link(const GstLidarRawSlice& raw, bool remembers, Duration key_interval);
+  /// What is loaded; good until the next slice.
+  void Describe(GstLidarLoadedSlice* loaded);
+  std::uint32_t range_unit_mm() const { return encoder_->range_unit_mm(); }
+  void Thin(const std::vector<bool>& kept) { encoder_->Thin(kept); }
+  GstLidarEncodeResult Encode(const GstLidarEncodeSettings& settings, GByteArray* bytes,
+                              GstLidarCodedSlice* coded);
+  /// As a receiver would, for the check of the error: `points` are GstLidarPoint.
+  bool Decode(ByteView stream, GArray* points);
+  void OnAcknowledged(guint receiver, guint scan_id, guint slice_index);
+  void OnKeyRequest();
+
+ private:
+  void KeepBlocks();
+  void ChooseEffort(guint columns, std::optional<unsigned> effort);
+
+  codec::CloudFormat format_;
+  double scans_per_second_ = 10;
+  std::optional<codec::SliceEncoder> encoder_;
+  std::optional<codec::SliceDecoder> decoder_;  // for Decode()
+  bool with_intensity_ = false;
+  std::string mode_;
+  codec::EncodedSlice slice_;
+  codec::ReferenceKeeper keeper_;
+
+  codec::EffortControl control_;
+  bool automatic_ = false;  // the loaded slice has the effort of `control_`
+  Duration sweep_{};        // of the loaded slice
+  Duration spent_{};        // on it, with all tries
+};
+
+}  // namespace lidar::gst
