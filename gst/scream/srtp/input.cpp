@@ -81,8 +81,9 @@ bool SrtpInput::Link(GstPad* socket, GstPad* target) {
 
 bool SrtpInput::AddKey(const SrtpKey& key) {
   Key added{0, SrtpDecoder::Create(bin_, policy_, key, exit_.get()),
+            SrtpDecoder::Create(bin_, policy_, key, exit_.get()),
             SrtpDecoder::Create(bin_, policy_, key, nullptr)};
-  if (!added.decoder || !added.trial) return false;
+  if (!added.media || !added.rtcp || !added.trial) return false;
   std::lock_guard lock(mutex_);
   added.serial = ++serial_;
   if (serial_ > 1) ++waiting_;
@@ -94,10 +95,9 @@ SrtpCounts SrtpInput::counts() const { return {received_, refused_, key_changes_
 
 void SrtpInput::Reset() {
   streams_.clear();
-  for (const Key& key : keys_) {
-    key.decoder->Clear();
-    key.trial->Clear();
-  }
+  for (const Key& key : keys_)
+    for (SrtpDecoder* decoder : {key.media.get(), key.rtcp.get(), key.trial.get()})
+      decoder->Clear();
 }
 
 SrtpInput::Head SrtpInput::HeadOf(GstBuffer* datagram) {
@@ -115,14 +115,15 @@ GstFlowReturn SrtpInput::OnDatagram(GstBuffer* datagram) {
   UpdateKeys();
   ++received_;
   const Head head = HeadOf(datagram);
-  const auto found = streams_.find(head.ssrc);
+  const auto found = streams_.find(head.stream());
   Stream* known = found != streams_.end() && found->second.known ? &found->second : nullptr;
   GstFlowReturn flow = GST_FLOW_OK;
   if (known != nullptr) {
     if (DecodeKnown(datagram, head, &flow) || flow == GST_FLOW_FLUSHING) return flow;
     ++known->failures;
   }
-  if (known == nullptr || IsLost(*known))
+  // RTCP is never lost, as it carries its index: what is behind is a recording.
+  if (known == nullptr || (!head.rtcp && IsLost(*known)))
     if (TryStranger(datagram, head, &flow) || flow == GST_FLOW_FLUSHING) return flow;
   ++refused_;
   if (known == nullptr && refused_ >= kFailuresUntilWarning) Warn();
@@ -133,7 +134,7 @@ bool SrtpInput::DecodeKnown(GstBuffer* datagram, const Head& head, GstFlowReturn
   for (std::size_t i = 0; i < keys_.size(); ++i) {
     // The key that the last packet had comes first; the others fail once for each packet.
     const std::size_t n = (in_use_ + i) % keys_.size();
-    if (keys_[n].decoder->Decode(datagram, flow)) {
+    if (keys_[n].DecoderOf(head).Decode(datagram, flow)) {
       OnPassed(head, n, 0);
       return true;
     }
@@ -146,7 +147,7 @@ bool SrtpInput::DecodeKnown(GstBuffer* datagram, const Head& head, GstFlowReturn
 /// was: what came before is a recording.
 bool SrtpInput::TryStranger(GstBuffer* datagram, const Head& head, GstFlowReturn* flow) {
   if (!allowance_.Take(g_get_monotonic_time())) return false;
-  Stream& stream = StreamOf(head.ssrc);
+  Stream& stream = StreamOf(head.stream());
   const std::uint32_t guess = stream.search.Next();
   for (std::size_t i = 0; i < keys_.size(); ++i) {
     const std::size_t n = (in_use_ + i) % keys_.size();
@@ -156,8 +157,9 @@ bool SrtpInput::TryStranger(GstBuffer* datagram, const Head& head, GstFlowReturn
     for (const std::uint32_t rollover : {base, base + guess}) {
       if (!Fits(keys_[n], datagram, head.ssrc, rollover)) continue;
       // Decoded again where its streams are, so that it is no replay once and never again.
-      keys_[n].decoder->Restart(head.ssrc, rollover);
-      if (!keys_[n].decoder->Decode(datagram, flow)) return false;
+      SrtpDecoder& decoder = keys_[n].DecoderOf(head);
+      decoder.Restart(head.ssrc, rollover);
+      if (!decoder.Decode(datagram, flow)) return false;
       OnPassed(head, n, rollover);
       return true;
     }
@@ -183,7 +185,7 @@ void SrtpInput::UpdateKeys() {
     std::lock_guard lock(mutex_);
     // A stream whose key was missing may have any rollover count under the new one.
     if (!added_.empty())
-      for (auto& [ssrc, stream] : streams_) stream.search = {};
+      for (auto& [id, stream] : streams_) stream.search = {};
     for (Key& key : added_) keys_.push_back(std::move(key));
     added_.clear();
   }
@@ -197,7 +199,7 @@ void SrtpInput::UpdateKeys() {
   newest_used_ -= std::min(newest_used_, drop);
 }
 
-SrtpInput::Stream& SrtpInput::StreamOf(std::uint32_t ssrc) {
+SrtpInput::Stream& SrtpInput::StreamOf(const StreamId& id) {
   const auto forget = [this](unsigned failures) {
     for (auto it = streams_.begin(); it != streams_.end();)
       it = it->second.known || it->second.failures > failures ? std::next(it) : streams_.erase(it);
@@ -206,13 +208,13 @@ SrtpInput::Stream& SrtpInput::StreamOf(std::uint32_t ssrc) {
   if (streams_.size() >= kMaxStreams) forget(1);
   if (streams_.size() >= kMaxStreams) forget(UINT_MAX);
   if (streams_.size() >= kMaxStreams) streams_.clear();
-  return streams_[ssrc];
+  return streams_[id];
 }
 
 /// `rollover` is that of a stream or a key that was not known before.
 void SrtpInput::OnPassed(const Head& head, std::size_t key, std::uint32_t rollover) {
   in_use_ = key;
-  Stream& stream = StreamOf(head.ssrc);
+  Stream& stream = StreamOf(head.stream());
   const std::uint64_t serial = keys_[key].serial;
   if (!stream.known || serial > stream.key || rollover > stream.rollover) {
     stream.rollover = rollover;
@@ -232,7 +234,7 @@ void SrtpInput::OnPassed(const Head& head, std::size_t key, std::uint32_t rollov
   newest_used_ = key;
   forget_old_at_ = g_get_monotonic_time() + kStragglersUs;
   ++key_changes_;
-  on_new_key_(keys_[key].decoder->key());
+  on_new_key_(keys_[key].media->key());
 }
 
 /// Nothing of it passed for so long that it may have rolled over meanwhile. Not one that still

@@ -9,6 +9,7 @@
 #include <map>
 #include <memory>
 #include <mutex>
+#include <utility>
 #include <vector>
 
 #include "gst/common/refs.h"
@@ -27,6 +28,8 @@ struct SrtpCounts {
 /// pass decoded or not at all. A new key is valid beside the old one; once a packet fits it the
 /// old one is kept for stragglers and then forgotten. A stream that nobody knows is first tried
 /// apart, only so often in a second, so that a flood of strangers costs neither time nor memory.
+/// The RTCP of an SSRC is a stream of its own: it carries its index, and so tells nothing of the
+/// rollover counter of the media.
 class SrtpInput {
  public:
   using OnNewKey = std::function<void(const SrtpKey&)>;
@@ -46,8 +49,10 @@ class SrtpInput {
   SrtpCounts counts() const;
 
  private:
+  using StreamId = std::pair<bool, std::uint32_t>;  // whether it is RTCP, and its SSRC
   /// What a datagram says of itself.
   struct Head {
+    StreamId stream() const { return {rtcp, ssrc}; }
     bool rtcp = false;
     std::uint16_t sequence = 0;  // of RTP
     std::uint32_t ssrc = 0;
@@ -75,8 +80,12 @@ class SrtpInput {
   };
   struct Key {
     std::uint64_t serial = 0;
-    std::unique_ptr<SrtpDecoder> decoder;  // of streams that are known
-    std::unique_ptr<SrtpDecoder> trial;    // of others
+    // Of media and RTCP that are known, and of others. Media that is found starts its decoder
+    // again, which would forget what RTCP had passed.
+    std::unique_ptr<SrtpDecoder> media;
+    std::unique_ptr<SrtpDecoder> rtcp;
+    std::unique_ptr<SrtpDecoder> trial;
+    SrtpDecoder& DecoderOf(const Head& head) const { return head.rtcp ? *rtcp : *media; }
   };
   /// What may be tried on strangers now.
   class Allowance {
@@ -99,7 +108,7 @@ class SrtpInput {
   void OnPassed(const Head& head, std::size_t key, std::uint32_t rollover);
   static bool IsLost(const Stream& stream);
   void Warn();
-  Stream& StreamOf(std::uint32_t ssrc);
+  Stream& StreamOf(const StreamId& id);
   void Reset();
 
   GstElement* bin_;
@@ -117,7 +126,7 @@ class SrtpInput {
   std::size_t in_use_ = 0;  // of the packet that passed last
   std::size_t newest_used_ = 0;
   gint64 forget_old_at_ = 0;  // monotonic time [us]
-  std::map<std::uint32_t, Stream> streams_;
+  std::map<StreamId, Stream> streams_;
   Allowance allowance_;
   unsigned tried_ = 0;  // strangers, since the trial decoders were cleared
   bool warned_ = false;

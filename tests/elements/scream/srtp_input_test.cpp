@@ -9,6 +9,7 @@
 
 #include "gst/scream/rtp_packet.h"
 #include "gst/scream/srtp/input.h"
+#include "src/scream/feedback/sender_report.h"
 #include "tests/elements/scream/rtp_support.h"
 
 namespace {
@@ -38,12 +39,8 @@ SrtpKey Key(std::uint8_t digit) { return SrtpKey(kPolicy.key_size, digit); }
 class Protector {
  public:
   explicit Protector(const SrtpKey& key) {
-    GstElement* encoder = gst_element_factory_make("srtpenc", nullptr);
-    const BufferPtr master(gst_buffer_new_memdup(key.data(), key.size()));
-    g_object_set(encoder, "key", master.get(), nullptr);
-    harness_.reset(gst_harness_new_with_element(encoder, "rtp_sink_0", "rtp_src_0"));
-    gst_object_unref(encoder);
-    gst_harness_set_src_caps_str(harness_.get(), "application/x-rtp");
+    harness_.reset(NewEncoder(key, "rtp"));
+    reports_.reset(NewEncoder(key, "rtcp"));
   }
   BufferPtr Protect(guint16 seq, guint32 ssrc = kSsrc) {
     test::Rtp r;
@@ -52,13 +49,32 @@ class Protector {
     r.size = 20;
     return BufferPtr(gst_harness_push_and_pull(harness_.get(), test::NewRtp(r)));
   }
+  /// RTCP of the stream, as a sender's report.
+  BufferPtr ProtectReport(guint32 ssrc = kSsrc) {
+    scream::SenderReport report;
+    report.ssrc = ssrc;
+    GstBuffer* rtcp = test::FromBytes(scream::BuildSenderReport(report));
+    return BufferPtr(gst_harness_push_and_pull(reports_.get(), rtcp));
+  }
   /// As a sender that has sent 65,536 packets more.
   void Wrap(guint32 ssrc = kSsrc) {
     for (const guint16 seq : Sequences{20'000, 40'000, 60'000, 5}) Protect(seq, ssrc);
   }
 
  private:
+  static GstHarness* NewEncoder(const SrtpKey& key, const std::string& kind) {
+    GstElement* encoder = gst_element_factory_make("srtpenc", nullptr);
+    const BufferPtr master(gst_buffer_new_memdup(key.data(), key.size()));
+    g_object_set(encoder, "key", master.get(), nullptr);
+    GstHarness* harness = gst_harness_new_with_element(encoder, (kind + "_sink_0").c_str(),
+                                                       (kind + "_src_0").c_str());
+    gst_object_unref(encoder);
+    gst_harness_set_src_caps_str(harness, ("application/x-" + kind).c_str());
+    return harness;
+  }
+
   test::Harness harness_;
+  test::Harness reports_;
 };
 
 BufferPtr Forged(guint16 seq, guint32 ssrc = kSsrc) {
@@ -186,6 +202,31 @@ TEST_F(SrtpIn, JoinsAStreamThatHasWrapped) {
   EXPECT_TRUE(Passes(sender.Protect(500)));
 }
 
+TEST_F(SrtpIn, JoinsAStreamThatHasWrappedWhoseReportsComeFirst) {
+  Protector sender(Key(5));
+  sender.Protect(5);
+  sender.Wrap();
+  int tried = 1;
+  EXPECT_TRUE(Passes(sender.ProtectReport()));
+  for (guint16 seq = 100; !Passes(sender.Protect(seq)); ++seq) {
+    EXPECT_TRUE(Passes(sender.ProtectReport()));
+    ASSERT_LE(++tried, 6);
+  }
+  // Once the media is found, its reports are still known, and no replay of them passes.
+  const BufferPtr report = sender.ProtectReport();
+  EXPECT_TRUE(Passes(report));
+  EXPECT_FALSE(Passes(report));
+  EXPECT_TRUE(Passes(sender.Protect(500)));
+}
+
+TEST_F(SrtpIn, RefusesReportsFromBeforeTheMediaWasFound) {
+  Protector sender(Key(5));
+  const BufferPtr report = sender.ProtectReport();
+  EXPECT_TRUE(Passes(report));
+  EXPECT_TRUE(Passes(sender.Protect(1)));
+  EXPECT_FALSE(Passes(report));
+}
+
 TEST_F(SrtpIn, FollowsAWrap) {
   Protector sender(Key(5));
   for (const guint16 seq : Sequences{65'500, 65'535, 0, 1, 30'000, 60'000, 2, 3})
@@ -217,6 +258,30 @@ TEST_F(SrtpIn, FindsAStreamThatWrappedInSilence) {
   for (guint16 seq = 10; !Passes(sender.Protect(seq)); ++seq) ASSERT_LT(++refused, 40);
   EXPECT_GE(refused, 19);  // before that the losses may be damage
   EXPECT_TRUE(Passes(sender.Protect(1'000)));
+}
+
+TEST_F(SrtpIn, FindsAStreamThatWrappedWhileOnlyItsReportsPassed) {
+  Protector sender(Key(5));
+  for (const guint16 seq : Sequences{40'000, 60'000, 5}) EXPECT_TRUE(Passes(sender.Protect(seq)));
+  sender.Wrap();
+  int refused = 0;
+  for (guint16 seq = 10; !Passes(sender.Protect(seq)); ++seq) {
+    ASSERT_LT(++refused, 40);
+    Wait(0.2);
+    EXPECT_TRUE(Passes(sender.ProtectReport()));
+  }
+}
+
+TEST_F(SrtpIn, NoRecordingOfAReportMovesAStreamThatFellSilent) {
+  Protector sender(Key(5));
+  const BufferPtr report = sender.ProtectReport();
+  EXPECT_TRUE(Passes(sender.Protect(1)));
+  EXPECT_TRUE(Passes(report));
+  Wait(3);
+  Forge(30);
+  for (int round = 0; round < 30; ++round) EXPECT_FALSE(Passes(report));
+  EXPECT_TRUE(Passes(sender.Protect(2)));
+  EXPECT_TRUE(Passes(sender.ProtectReport()));
 }
 
 TEST_F(SrtpIn, ForgersDoNotMakeAStreamLost) {
