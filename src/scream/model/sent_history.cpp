@@ -58,7 +58,7 @@ void SentHistory::Insert(Source* source, const Packet& packet) {
     const bool overtaken =
         packet.seq > source->highest_acked && packets.back().seq - packet.seq < kOvertaken;
     if (!overtaken || Find(source, packet.seq) != nullptr) return;
-    packets.insert(LowerBound(&packets, packet.seq), packet);
+    packets.insert(packets.begin() + FirstFrom(packets, packet.seq), packet);
   }
   in_flight_ += packet.record.size;
   Trim(source, &in_flight_);
@@ -93,9 +93,7 @@ bool SentHistory::OfBefore(Time now, const Source& source, const SsrcReport& blo
 std::optional<Time> SentHistory::oldest_in_flight() const {
   std::optional<Time> oldest;
   for (const auto& [ssrc, source] : sources_) {
-    const auto first =
-        std::upper_bound(source.packets.begin(), source.packets.end(), source.highest_acked,
-                         [](std::int64_t s, const Packet& p) { return s < p.seq; });
+    const auto first = source.packets.begin() + FirstFrom(source.packets, source.highest_acked + 1);
     if (first != source.packets.end())
       oldest = std::min(oldest.value_or(first->record.sent), first->record.sent);
   }
@@ -119,14 +117,21 @@ void SentHistory::ForgetSilentSource() {
   sources_.erase(silent);
 }
 
-std::deque<SentHistory::Packet>::iterator SentHistory::LowerBound(std::deque<Packet>* packets,
-                                                                  std::int64_t seq) {
-  return std::lower_bound(packets->begin(), packets->end(), seq,
-                          [](const Packet& p, std::int64_t s) { return p.seq < s; });
+/// How many packets are before a number. They ascend, and few numbers are left out between them, so
+/// it is mostly the distance to the first one's number, and never more.
+std::ptrdiff_t SentHistory::FirstFrom(const std::deque<Packet>& packets, std::int64_t seq) {
+  if (packets.empty() || seq <= packets.front().seq) return 0;
+  const auto distance = static_cast<std::ptrdiff_t>(
+      std::min<std::int64_t>(packets.end() - packets.begin(), seq - packets.front().seq));
+  const auto most = packets.begin() + distance;
+  if (most == packets.end() ? packets.back().seq < seq : most->seq == seq) return distance;
+  const auto first = std::lower_bound(packets.begin(), most, seq,
+                                      [](const Packet& p, std::int64_t s) { return p.seq < s; });
+  return first - packets.begin();
 }
 
 SentHistory::Packet* SentHistory::Find(Source* source, std::int64_t seq) {
-  const auto it = LowerBound(&source->packets, seq);
+  const auto it = source->packets.begin() + FirstFrom(source->packets, seq);
   return it != source->packets.end() && it->seq == seq ? &*it : nullptr;
 }
 
@@ -241,8 +246,7 @@ void SentHistory::Acknowledge(Time now, const PacketMetric& metric, Time report,
 
 void SentHistory::AdvanceHighest(Source* source, std::int64_t seq, AckSummary* summary) {
   if (seq <= source->highest_acked) return;
-  auto it = std::upper_bound(source->packets.begin(), source->packets.end(), source->highest_acked,
-                             [](std::int64_t s, const Packet& p) { return s < p.seq; });
+  auto it = source->packets.begin() + FirstFrom(source->packets, source->highest_acked + 1);
   for (; it != source->packets.end() && it->seq <= seq; ++it) {
     summary->bytes_newly_acked += it->record.size;
     in_flight_ -= it->record.size;
@@ -319,7 +323,7 @@ void SentHistory::Expire(Time before) {
 /// The lost tail of an SSRC that went quiet: nothing behind it will ever tell of it.
 void SentHistory::ExpireTails() {
   for (auto& [ssrc, source] : sources_) {
-    auto packet = LowerBound(&source.packets, source.highest_acked + 1);
+    auto packet = source.packets.begin() + FirstFrom(source.packets, source.highest_acked + 1);
     for (; packet != source.packets.end(); ++packet) {
       if (packet->record.sent + kTailWait >= newest_acked_) break;
       packet->state = State::kExpired;

@@ -2,6 +2,7 @@
 // Status update when sending and on feedback: which packets are in flight, acknowledged, marked,
 // lost.
 #pragma once
+#include <cstddef>
 #include <cstdint>
 #include <deque>
 #include <map>
@@ -98,7 +99,7 @@ class SentHistory {
   void Insert(Source* source, const Packet& packet);
   static bool OfBefore(Time now, const Source& source, const SsrcReport& block);
   void ExpireTails();
-  static std::deque<Packet>::iterator LowerBound(std::deque<Packet>* packets, std::int64_t seq);
+  static std::ptrdiff_t FirstFrom(const std::deque<Packet>& packets, std::int64_t seq);
   static Packet* Find(Source* source, std::int64_t seq);
   bool Plausible(Time now, Source* source, const SsrcReport& block) const;
   void Apply(Time now, const SsrcReport& block, Source* source, Time report, AckSummary* summary);
