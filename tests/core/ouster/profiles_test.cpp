@@ -20,7 +20,7 @@ struct Case {
   std::uint32_t pixel_bytes;  // as the SDK has it
   std::uint32_t columns = 512;
   std::uint32_t columns_per_packet = 16;
-  std::uint32_t beams = 32;
+  std::uint32_t beams = 16;
   double scans_per_second = 10;
 };
 
@@ -179,8 +179,8 @@ INSTANTIATE_TEST_SUITE_P(
         Case{Profile::kFiveWordPixel, kStd, 20},
         Case{Profile::kRng19Rfl8Sig16Nir16, HeaderType::kFusa, 12},
         Case{Profile::kRng19Rfl8Sig16Nir16, kStd, 12, 1024, 8, 128, 20},
-        Case{Profile::kRng15Rfl8Nir8, kStd, 4, 2048, 16, 128, 10},
-        Case{Profile::kRng19Rfl8Sig16Nir16, kStd, 12, 4096, 16, 64, 5},
+        Case{Profile::kRng15Rfl8Nir8, kStd, 4, 2048, 16, 32, 10},
+        Case{Profile::kRng19Rfl8Sig16Nir16, kStd, 12, 4096, 16, 16, 5},
         Case{Profile::kLegacy, kStd, 12, 1024, 1, 16, 20},
         Case{Profile::kRng15Rfl8Nir8, kStd, 4, 512, 24, 32, 10}));
 

@@ -119,7 +119,7 @@ TEST_P(AnyCoder, KeepsTheErrorWhateverTheStepAndTheBitrate) {
     CheckedCodec codec(GetParam(), "error-check=1 " + std::string(settings));
     codec.SetCaps(OrganisedInfo(model, kColumns));
     unsigned checked = 0;
-    for (guint i = 0; i < 24; ++i) {
+    for (guint i = 0; i < 16; ++i) {
       codec.Push(OrganisedBuffer(model, kColumns, {i / 8, i % 8, 8, 64 * (i % 8)}));
       while (const StructurePtr check = codec.PopCheck()) {
         EXPECT_TRUE(Holds(check.get())) << settings;

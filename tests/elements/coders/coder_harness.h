@@ -7,7 +7,9 @@
 #include <cmath>
 #include <cstring>
 #include <limits>
+#include <map>
 #include <string>
+#include <tuple>
 #include <vector>
 
 #include "gst/common/buffer_map.h"
@@ -102,9 +104,19 @@ inline CloudInfo OrganisedInfo(const SensorModel& model, guint columns) {
   return info;
 }
 
+/// Columns of the room, which is the same in each scan: made once for all of them.
+inline const std::vector<std::uint8_t>& RoomPoints(const SensorModel& model, guint first_column,
+                                                   guint columns) {
+  using Part = std::tuple<std::vector<std::uint8_t>, guint, guint>;
+  static std::map<Part, std::vector<std::uint8_t>> parts;
+  std::vector<std::uint8_t>& points = parts[{model.Serialise(), first_column, columns}];
+  if (points.empty()) points = test::RawCloud(model, test::RoomScan(model, first_column, columns));
+  return points;
+}
+
 inline GstBuffer* OrganisedBuffer(const SensorModel& model, guint columns,
                                   const GstLidarSlice& slice) {
-  const auto raw = test::RawCloud(model, test::RoomScan(model, slice.first_column, columns));
+  const auto& raw = RoomPoints(model, slice.first_column, columns);
   GstBuffer* buffer = gst_buffer_new_memdup(raw.data(), raw.size());
   gst_lidar_buffer_set_slice(buffer, &slice);
   const GstClockTime time = (slice.scan_id * 8 + slice.slice_index) * 12'500 * GST_USECOND;

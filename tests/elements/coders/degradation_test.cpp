@@ -9,7 +9,7 @@
 namespace lidar::gst {
 namespace {
 
-constexpr guint kScans = 30;
+constexpr guint kScans = 20;
 
 struct PreferenceCase {
   const char* name;
@@ -119,7 +119,7 @@ TEST_P(BelowTheMinimum, TheReceiverKnowsWhatWasLeftOut) {
   // Back above the minimum all is whole at once.
   SetTarget(h.get(), 2 * needed);
   const guint64 thinned = Counter(dec.get(), "slices-thinned");
-  EXPECT_EQ(Play(h.get(), kScans, 20), 160U);
+  EXPECT_EQ(Play(h.get(), kScans, 5), 40U);
   EXPECT_EQ(Counter(dec.get(), "slices-thinned"), thinned);
 }
 INSTANTIATE_TEST_SUITE_P(
