@@ -20,6 +20,7 @@ constexpr unsigned kFailuresUntilWarning = 20;
 // Each costs the derivation of its keys, 50 us or so.
 constexpr double kTrialsPerSecond = 500;
 constexpr unsigned kTriedUntilCleared = 64;
+constexpr unsigned kMaxGuesses = 32;  // for one packet: 2 ms or so
 
 SrtpInput* InputOf(GstPad* pad) {
   return static_cast<SrtpInput*>(gst_pad_get_element_private(pad));
@@ -143,28 +144,39 @@ bool SrtpInput::DecodeKnown(GstBuffer* datagram, const Head& head, GstFlowReturn
   return false;
 }
 
-/// RTP does not carry its rollover counter, so it is tried. One that is lost is ahead of where it
-/// was: what came before is a recording.
+/// RTP does not carry its rollover counter, so it is tried: where nobody else asks, many values for
+/// a packet, as a sender without feedback sends few.
 bool SrtpInput::TryStranger(GstBuffer* datagram, const Head& head, GstFlowReturn* flow) {
   if (!allowance_.Take(g_get_monotonic_time())) return false;
+  if (TryRollover(datagram, head, 0, flow)) return true;
+  unsigned guesses = 0;
+  do {
+    if (*flow == GST_FLOW_FLUSHING) return false;
+    const std::uint32_t guess = StreamOf(head.stream()).search.Next();
+    if (TryRollover(datagram, head, guess, flow)) return true;
+  } while (!head.rtcp && ++guesses < kMaxGuesses && allowance_.TakeSpare());
   Stream& stream = StreamOf(head.stream());
-  const std::uint32_t guess = stream.search.Next();
+  if (!stream.known) ++stream.failures;
+  return false;
+}
+
+/// One that is lost is ahead of where it was: what came before is a recording.
+bool SrtpInput::TryRollover(GstBuffer* datagram, const Head& head, std::uint32_t ahead,
+                            GstFlowReturn* flow) {
+  const Stream& stream = StreamOf(head.stream());
   for (std::size_t i = 0; i < keys_.size(); ++i) {
     const std::size_t n = (in_use_ + i) % keys_.size();
     const bool behind = stream.known && keys_[n].serial <= stream.key;
     if (stream.known && keys_[n].serial < stream.key) continue;
-    const std::uint32_t base = behind ? stream.rollover + 1 : 0;
-    for (const std::uint32_t rollover : {base, base + guess}) {
-      if (!Fits(keys_[n], datagram, head.ssrc, rollover)) continue;
-      // Decoded again where its streams are, so that it is no replay once and never again.
-      SrtpDecoder& decoder = keys_[n].DecoderOf(head);
-      decoder.Restart(head.ssrc, rollover);
-      if (!decoder.Decode(datagram, flow)) return false;
-      OnPassed(head, n, rollover);
-      return true;
-    }
+    const std::uint32_t rollover = (behind ? stream.rollover + 1 : 0) + ahead;
+    if (!Fits(keys_[n], datagram, head.ssrc, rollover)) continue;
+    // Decoded again where its streams are, so that it is no replay once and never again.
+    SrtpDecoder& decoder = keys_[n].DecoderOf(head);
+    decoder.Restart(head.ssrc, rollover);
+    if (!decoder.Decode(datagram, flow)) return false;
+    OnPassed(head, n, rollover);
+    return true;
   }
-  if (!stream.known) ++stream.failures;
   return false;
 }
 
@@ -268,6 +280,12 @@ bool SrtpInput::Allowance::Take(gint64 now_us) {
   left_ = std::min(left_ + refill, kTrialsPerSecond);
   filled_at_ = now_us;
   if (left_ < 1) return false;
+  --left_;
+  return true;
+}
+
+bool SrtpInput::Allowance::TakeSpare() {
+  if (left_ < kTrialsPerSecond / 2) return false;
   --left_;
   return true;
 }

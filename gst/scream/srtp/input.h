@@ -91,6 +91,8 @@ class SrtpInput {
   class Allowance {
    public:
     bool Take(gint64 now_us);
+    /// One more for the same packet; leaves half to others.
+    bool TakeSpare();
 
    private:
     gint64 filled_at_ = 0;
@@ -103,6 +105,7 @@ class SrtpInput {
   static Head HeadOf(GstBuffer* datagram);
   bool DecodeKnown(GstBuffer* datagram, const Head& head, GstFlowReturn* flow);
   bool TryStranger(GstBuffer* datagram, const Head& head, GstFlowReturn* flow);
+  bool TryRollover(GstBuffer* datagram, const Head& head, std::uint32_t ahead, GstFlowReturn* flow);
   bool Fits(const Key& key, GstBuffer* datagram, std::uint32_t ssrc, std::uint32_t rollover);
   void UpdateKeys();
   void OnPassed(const Head& head, std::size_t key, std::uint32_t rollover);

@@ -202,6 +202,17 @@ TEST_F(SrtpIn, JoinsAStreamThatHasWrapped) {
   EXPECT_TRUE(Passes(sender.Protect(500)));
 }
 
+TEST_F(SrtpIn, JoinsAStreamThatHasWrappedOftenAfterAFewPackets) {
+  Protector sender(Key(5));
+  sender.Protect(5);
+  for (int turns = 0; turns < 200; ++turns) sender.Wrap();
+  int tried = 0;
+  for (guint16 seq = 100; !Passes(sender.Protect(seq)); ++seq) {
+    ASSERT_LE(++tried, 11);  // three rounds, of 4, 16 and 64 values, and one of 256
+    Wait(0.2);
+  }
+}
+
 TEST_F(SrtpIn, JoinsAStreamThatHasWrappedWhoseReportsComeFirst) {
   Protector sender(Key(5));
   sender.Protect(5);
