@@ -78,7 +78,7 @@ def main():
     print(f"seed {options.seed}")
     recording, other = ends.record(1, 8), ends.record(2, 8)
     chosen = [a for a in ATTACKS if not options.only or options.only in a.__name__.replace("_", " ")]
-    seconds = 8 if options.minutes else 1
+    seconds = 8 if options.minutes else 0.5 if options.sanitized else 1
     until = time.monotonic() + 60 * options.minutes
     results = []
     while not results or time.monotonic() < until:

@@ -102,8 +102,6 @@ class Server(threading.Thread):
 def bad_server(name):
     def attack(context):
         server = Server(SERVERS[name])
-        victim = ends.Victim("fakesrc num-buffers=0 ! fakesink name=out async=false")
-        victim.close()
         victim = ends.Victim(f"ouster_src name=src hostname=127.0.0.1:{server.port} lidar-port={ends.free_port()} "
                              f"imu=false ! fakesink name=out sync=false async=false")
         start, rss = time.monotonic(), victim.last["rss_kb"]

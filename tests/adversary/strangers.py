@@ -37,13 +37,13 @@ def come_first(context, junk, before, after, pause, ask_every=1):
 def stranger_first(context):
     """A stranger's packet before the sender's first, and one every 0.1 s."""
     return come_first(context, lambda _, n: wire.rtp(b"\0\0", n * 1000, 0, 99), range(3),
-                      range(int(10 * context.seconds)), 0.1)
+                      range(int(10 * max(1, context.seconds))), 0.1)
 
 
 def stream_of_garbage(context):
     """A stranger with a whole stream that decodes to nothing is there first."""
     return come_first(context, lambda bench, n: wire.rtp(bench.random.randbytes(300), n, 0, 99), range(100),
-                      range(100, 100 + int(200 * context.seconds)), 0.005, ask_every=10)
+                      range(100, 100 + int(200 * max(1, context.seconds))), 0.005, ask_every=10)
 
 
 def forged_from_elsewhere(context):
