@@ -38,7 +38,7 @@ std::optional<GapRecovery::Restart> GapRecovery::Update(Time now, const PathMode
   if (!window) return std::nullopt;
   Restart restart = before_->state;
   restart.window = std::max(ref_wnd, std::min(*window, before_->state.window));
-  if (!rate_now) unproven_ = restart.window;
+  unproven_ = rate_now ? std::nullopt : std::optional(restart.window);
   if (rate_now || restart.window >= before_->state.window * kBack) last_sign_.reset();
   last_restart_ = now;
   return restart;
