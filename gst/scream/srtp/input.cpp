@@ -11,7 +11,7 @@ namespace {
 // The one in use, the one before and the one to come.
 constexpr std::size_t kMaxKeys = 3;
 constexpr gint64 kStragglersUs = 10 * G_USEC_PER_SEC;
-constexpr std::size_t kMaxStreams = 1'024;
+constexpr std::size_t kMaxStreams = 2'048;
 // Losses long enough to lose count of a rollover look like this; a sender without feedback is slow.
 constexpr unsigned kFailuresUntilLost = 20;
 constexpr gint64 kSilenceUntilLostUs = 2 * G_USEC_PER_SEC;
@@ -20,7 +20,7 @@ constexpr unsigned kFailuresUntilWarning = 20;
 // Each costs the derivation of its keys, 50 us or so.
 constexpr double kTrialsPerSecond = 500;
 constexpr unsigned kTriedUntilCleared = 64;
-constexpr unsigned kMaxGuesses = 32;  // for one packet: 2 ms or so
+constexpr unsigned kMaxGuesses = 32;  // for one packet: 2 ms or so for each key
 
 SrtpInput* InputOf(GstPad* pad) {
   return static_cast<SrtpInput*>(gst_pad_get_element_private(pad));
@@ -149,12 +149,13 @@ bool SrtpInput::DecodeKnown(GstBuffer* datagram, const Head& head, GstFlowReturn
 bool SrtpInput::TryStranger(GstBuffer* datagram, const Head& head, GstFlowReturn* flow) {
   if (!allowance_.Take(g_get_monotonic_time())) return false;
   if (TryRollover(datagram, head, 0, flow)) return true;
-  unsigned guesses = 0;
-  do {
+  // RTCP carries its index.
+  const unsigned guesses = head.rtcp ? 0 : kMaxGuesses;
+  for (unsigned n = 0; n < guesses && (n == 0 || allowance_.TakeSpare()); ++n) {
     if (*flow == GST_FLOW_FLUSHING) return false;
     const std::uint32_t guess = StreamOf(head.stream()).search.Next();
     if (TryRollover(datagram, head, guess, flow)) return true;
-  } while (!head.rtcp && ++guesses < kMaxGuesses && allowance_.TakeSpare());
+  }
   Stream& stream = StreamOf(head.stream());
   if (!stream.known) ++stream.failures;
   return false;
@@ -212,6 +213,7 @@ void SrtpInput::UpdateKeys() {
 }
 
 SrtpInput::Stream& SrtpInput::StreamOf(const StreamId& id) {
+  if (const auto found = streams_.find(id); found != streams_.end()) return found->second;
   const auto forget = [this](unsigned failures) {
     for (auto it = streams_.begin(); it != streams_.end();)
       it = it->second.known || it->second.failures > failures ? std::next(it) : streams_.erase(it);
@@ -258,7 +260,7 @@ bool SrtpInput::IsLost(const Stream& stream) {
 
 std::uint32_t SrtpInput::Search::Next() {
   if (left_ == 0) {
-    round_ = std::min(4 * round_, kMaxRollover);
+    round_ = round_ == kMaxRollover ? 4 : std::min(4 * round_, kMaxRollover);
     left_ = round_;
     at_ = g_random_int() % round_;
   }

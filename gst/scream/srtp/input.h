@@ -57,9 +57,9 @@ class SrtpInput {
     std::uint16_t sequence = 0;  // of RTP
     std::uint32_t ssrc = 0;
   };
-  /// Numbers from 1 on, to be tried. They come in rounds of growing length, so small ones come
-  /// again and again. Each round begins anywhere: an attacker who uses up some numbers cannot keep
-  /// one of them from coming up.
+  /// Numbers from 1 on, to be tried. They come in rounds of growing length, after the longest in
+  /// short ones again, so small ones come again and again. Each round begins anywhere: an attacker
+  /// who uses up some numbers cannot keep one of them from coming up.
   class Search {
    public:
     std::uint32_t Next();
