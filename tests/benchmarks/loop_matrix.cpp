@@ -235,7 +235,7 @@ void PrintSpread(const LoopCase& loop_case, int starts) {
   std::fflush(stdout);
 }
 
-/// The bound for senders that adapt.
+/// A yardstick for senders that adapt.
 void PrintLate(const LoopCase& loop_case, double share, int starts) {
   LateSenderConfig config;
   config.duration = loop_case.duration;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// What a sender could do that knows all of a link, but one round trip late: the bound for those
+// What a sender could do that knows all of a link, but one round trip late: a yardstick for those
 // that adapt.
 #pragma once
 #include <cstdint>

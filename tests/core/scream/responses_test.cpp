@@ -197,6 +197,21 @@ TEST_F(GapRecoveryTest, BelievesLessOnceAStepBackMeetsASlowLink) {
   EXPECT_EQ(restart->window.bytes(), 14750);
 }
 
+TEST_F(GapRecoveryTest, BelievesAsMuchAsBeforeOnceTheLinkWasMeasured) {
+  FallIntoAGap();
+  path_.Arrive(2, 50ms, 0ms, Ecn::kEct1);
+  ASSERT_TRUE(Update(DataSize::Bytes(3000)));  // 26500, which nothing has measured
+  path_.Arrive(8, 1ms, 900ms, Ecn::kCe);
+  ASSERT_TRUE(Update(DataSize::Bytes(3000)));
+  path_.Arrive(2, 50ms, 0ms, Ecn::kEct1);
+  path_.Arrive(8, 20ms, 100ms, Ecn::kCe);  // the next gap
+  EXPECT_FALSE(Update(DataSize::Bytes(3000)));
+  path_.Arrive(2, 100ms, 0ms, Ecn::kEct1);
+  const auto restart = Update(DataSize::Bytes(3000));
+  ASSERT_TRUE(restart);
+  EXPECT_EQ(restart->window.bytes(), 26500);
+}
+
 TEST_F(GapRecoveryTest, ForgetsAGapOfWhichNothingWasSeenForThreeSeconds) {
   FallIntoAGap();
   path_.now += 3s;
