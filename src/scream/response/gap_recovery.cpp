@@ -23,8 +23,9 @@ constexpr double kBack = 0.9;
 std::optional<GapRecovery::Restart> GapRecovery::Update(Time now, const PathModel& path,
                                                         DataSize ref_wnd, Duration qdelay_target) {
   if (!p_.extensions.gap_recovery) return std::nullopt;
-  if (Slow(path)) BelieveLess();
-  if (path.hole_in_report() || Slow(path)) NoteSign(now);
+  const auto rate = path.train().rate();
+  if (Slow(rate)) BelieveLess();
+  if (path.hole_in_report() || Slow(rate)) NoteSign(now);
   if (!last_sign_) {
     const bool calm = path.queue_delay().qdelay() < path.BusyQdelay(now, qdelay_target);
     if (calm) Remember(path, ref_wnd);
@@ -33,19 +34,17 @@ std::optional<GapRecovery::Restart> GapRecovery::Update(Time now, const PathMode
   if (now - *last_sign_ > kLongestMemory || now - first_sign_ > kLongestGap) before_.reset();
   if (!before_) last_sign_.reset();
   if (!last_sign_ || path.hole_in_report()) return std::nullopt;
-  const auto rate_now = path.train().rate();
-  const auto window = rate_now ? Measured(*rate_now, path) : Unproven(now, path, ref_wnd);
+  const auto window = rate ? Measured(*rate, path) : Unproven(now, path, ref_wnd);
   if (!window) return std::nullopt;
   Restart restart = before_->state;
   restart.window = std::max(ref_wnd, std::min(*window, before_->state.window));
-  unproven_ = rate_now ? std::nullopt : std::optional(restart.window);
-  if (rate_now || restart.window >= before_->state.window * kBack) last_sign_.reset();
+  unproven_ = rate ? std::nullopt : std::optional(restart.window);
+  if (rate || restart.window >= before_->state.window * kBack) last_sign_.reset();
   last_restart_ = now;
   return restart;
 }
 
-bool GapRecovery::Slow(const PathModel& path) const {
-  const auto rate = path.train().rate();
+bool GapRecovery::Slow(std::optional<DataRate> rate) const {
   return before_ && rate && *rate < before_->rate * kGapPart;
 }
 

@@ -38,8 +38,8 @@ class GapRecovery {
     Restart state;
     DataRate rate;
   };
-  /// The link carries next to nothing of what it did.
-  bool Slow(const PathModel& path) const;
+  /// `rate`, of a train of arrivals, is next to nothing of what the link carried.
+  bool Slow(std::optional<DataRate> rate) const;
   void BelieveLess();
   void NoteSign(Time now);
   void Remember(const PathModel& path, DataSize ref_wnd);
