@@ -263,8 +263,7 @@ static GstFlowReturn Take(GstLidarNatsSrc* self, const Delivery& delivery, GstBu
   if (verdict.gap) GST_BUFFER_FLAG_SET(read->buffer.get(), GST_BUFFER_FLAG_DISCONT);
   SetStored(state, delivery, read->buffer.get());
   state.warned_damaged = false;
-  state.account.Count(&SourceCounters::messages);
-  state.account.Count(&SourceCounters::bytes, size);
+  state.account.NoteTaken(size);
   *out = read->buffer.release();
   return GST_FLOW_OK;
 }

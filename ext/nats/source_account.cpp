@@ -14,9 +14,15 @@ void SourceAccount::Reset() {
   counters_ = {};
 }
 
-void SourceAccount::Count(std::uint64_t SourceCounters::*counter, std::uint64_t amount) {
+void SourceAccount::Count(std::uint64_t SourceCounters::*counter) {
   const std::lock_guard lock(mutex_);
-  counters_.*counter += amount;
+  ++(counters_.*counter);
+}
+
+void SourceAccount::NoteTaken(std::size_t bytes) {
+  const std::lock_guard lock(mutex_);
+  ++counters_.messages;
+  counters_.bytes += bytes;
 }
 
 void SourceAccount::NoteSubscriber(const Subscriber& subscriber) {

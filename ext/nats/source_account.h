@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // What a source took of a stream, and what it missed.
 #pragma once
+#include <cstddef>
 #include <cstdint>
 #include <mutex>
 
@@ -29,7 +30,8 @@ class SourceAccount {
   SourceCounters counters() const;
 
   void Reset();
-  void Count(std::uint64_t SourceCounters::*counter, std::uint64_t amount = 1);
+  void Count(std::uint64_t SourceCounters::*counter);
+  void NoteTaken(std::size_t bytes);
   void NoteSubscriber(const Subscriber& subscriber);
   void NoteStop();
 
