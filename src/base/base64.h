@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Bytes as text (RFC 4648, section 4).
 #pragma once
+#include <array>
 #include <cstdint>
 #include <string>
 #include <string_view>
@@ -28,12 +29,16 @@ inline std::string Base64(const std::vector<std::uint8_t>& bytes) {
 inline std::vector<std::uint8_t> FromBase64(std::string_view text) {
   std::vector<std::uint8_t> bytes;
   bytes.reserve(text.size() / 4 * 3);
+  constexpr std::uint8_t kNone = 64;
+  std::array<std::uint8_t, 256> digits{};
+  digits.fill(kNone);
+  for (std::uint8_t i = 0; i < kNone; ++i) digits[static_cast<std::uint8_t>(kBase64Digits[i])] = i;
   std::uint32_t bits = 0;
   unsigned known = 0;
   for (const char c : text) {
-    const std::size_t digit = kBase64Digits.find(c);
-    if (digit == kBase64Digits.npos) continue;
-    bits = bits << 6 | static_cast<std::uint32_t>(digit);
+    const std::uint8_t digit = digits[static_cast<std::uint8_t>(c)];
+    if (digit == kNone) continue;
+    bits = bits << 6 | digit;
     known += 6;
     if (known < 8) continue;
     known -= 8;
