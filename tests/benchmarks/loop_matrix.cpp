@@ -240,6 +240,8 @@ void PrintLate(const LoopCase& loop_case, double share, int starts) {
   LateSenderConfig config;
   config.duration = loop_case.duration;
   config.rtt = loop_case.rtt;
+  config.slices_per_scan = loop_case.source.slices;
+  config.scans_per_second = loop_case.source.scans_per_second;
   Spread complete, in_time, utilisation, queue;
   for (int n = 0; n < starts; ++n) {
     const LoopCase c = Later(loop_case, n);
@@ -289,7 +291,6 @@ int main(int argc, char** argv) {
       loop_case.parameters = options.parameters;
       variant.apply(&loop_case);
       if (options.late_share >= 0) {
-        loop_case.name = trace.name;
         PrintLate(loop_case, options.late_share, options.starts);
         break;
       }

@@ -4,7 +4,10 @@
 #include <algorithm>
 #include <cmath>
 #include <deque>
+#include <utility>
 #include <vector>
+
+#include "tests/core/scream/simulation.h"
 
 namespace lidar::loop {
 namespace {
@@ -41,8 +44,7 @@ class LateSender {
       report.in_time += scan.in_time == c_.slices_per_scan;
     }
     report.utilisation = carried_ / usable_;
-    std::sort(queue_ms_.begin(), queue_ms_.end());
-    if (!queue_ms_.empty()) report.queue_p95_ms = queue_ms_[queue_ms_.size() * 95 / 100];
+    report.queue_p95_ms = scream::test::Summarise(std::move(queue_ms_)).p95;
     return report;
   }
 
