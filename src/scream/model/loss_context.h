@@ -9,8 +9,9 @@
 namespace lidar::scream {
 
 /// A radio loses packets whatever the queue is; a queue that overflows loses those that meet it
-/// full. The rank of a loss is the part of recent packets that waited less than its neighbours: one
-/// half on average for random loss, near one for a full queue, however short that is.
+/// full. The rank of a loss is the part of recent pairs of packets that waited less than the two
+/// around it: one half on average for random loss, near one for a full queue, however short that
+/// is.
 class LossContext {
  public:
   void OnAcked(Time sent, Duration qdelay) {
@@ -31,24 +32,30 @@ class LossContext {
     Duration qdelay{0};
   };
 
+  Duration LongerOfPair(std::size_t second) const {
+    return std::max(recent_[second - 1].qdelay, recent_[second].qdelay);
+  }
+  /// The longer delay of the packets before and after it; past either end, of the two nearest.
   Duration QdelayAround(Time sent) const {
     const auto after = std::find_if(recent_.begin(), recent_.end(),
                                     [sent](const Packet& p) { return p.sent >= sent; });
-    Duration longest{0};
-    if (after != recent_.end()) longest = after->qdelay;
-    if (after != recent_.begin()) longest = std::max(longest, std::prev(after)->qdelay);
-    return longest;
+    const auto index = static_cast<std::size_t>(after - recent_.begin());
+    return LongerOfPair(std::clamp<std::size_t>(index, 1, recent_.size() - 1));
   }
+  /// Among pairs, as the longer of two delays is above most single ones.
   double Rank(Duration qdelay) const {
     double below = 0;
-    for (const Packet& p : recent_) below += p.qdelay < qdelay ? 1 : p.qdelay == qdelay ? 0.5 : 0;
-    return below / static_cast<double>(recent_.size());
+    for (std::size_t i = 1; i < recent_.size(); ++i) {
+      const Duration longer = LongerOfPair(i);
+      below += longer < qdelay ? 1 : longer == qdelay ? 0.5 : 0;
+    }
+    return below / static_cast<double>(recent_.size() - 1);
   }
 
   static constexpr std::size_t kRecent = 256;
   static constexpr double kGain = 1.0 / 16;
   static constexpr int kEnough = 6;
-  static constexpr double kFull = 0.72;
+  static constexpr double kFull = 0.7;
   std::deque<Packet> recent_;
   double rank_ = 0.5;
   int losses_ = 0;

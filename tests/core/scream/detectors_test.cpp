@@ -2,6 +2,7 @@
 // The draft's constants, and the small detectors: queue delay, losses, link rate.
 #include <gtest/gtest.h>
 
+#include "src/link/random.h"
 #include "src/scream/model/arrival_train.h"
 #include "src/scream/model/burst_rate.h"
 #include "src/scream/model/busy_run.h"
@@ -272,6 +273,17 @@ TEST_F(LossContextTest, KnowsRandomLossFromIt) {
   for (int i = 0; i < 50; ++i) {
     Lose(10, [](int frame) { return frame * 7 % 10; });
     EXPECT_FALSE(context_.AtFullQueue()) << i;
+  }
+}
+
+/// The longer of two delays that scatter is above most single ones.
+TEST_F(LossContextTest, KnowsRandomLossWhereDelaysScatter) {
+  link::Random random(1);
+  for (int i = 0; i < 5000; ++i, now_ += 1ms) {
+    if (i % 10 == 0) continue;
+    context_.OnAcked(now_, FromSeconds(0.003 * random.Uniform()));
+    if (i % 10 == 5) context_.OnLost(now_ - 5ms);
+    ASSERT_FALSE(context_.AtFullQueue()) << i;
   }
 }
 
