@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // scream-matrix: runs the named scenarios in simulated time and prints the table.
+#include <cstdint>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
@@ -25,6 +26,7 @@ struct Options {
   double frames_per_second = 0;
   double wakeup_ms = 0;
   double stall_ms = 0;
+  std::uint64_t seed = 1;
 };
 
 void PrintUsage() {
@@ -36,6 +38,7 @@ void PrintUsage() {
       "  --frame-jitter PERCENT  frame sizes vary evenly by so much\n"
       "  --wakeup-ms MS pacing wakes up late by up to so much\n"
       "  --stall-ms MS  sender and receiver stop for up to so much, once a second\n"
+      "  --seed N       of all that is random: losses, jitter, frame sizes, late wake-ups (1)\n"
       "  --samples CSV  writes the controller's state every 10 ms (of one scenario)");
   std::puts(kParameterUsage);
 }
@@ -56,6 +59,8 @@ bool Parse(int argc, char** argv, Options* options) {
       options->stall_ms = std::atof(argv[++i]);
     } else if (arg == "--wakeup-ms" && i + 1 < argc) {
       options->wakeup_ms = std::atof(argv[++i]);
+    } else if (arg == "--seed" && i + 1 < argc) {
+      options->seed = std::strtoull(argv[++i], nullptr, 10);
     } else if (arg == "--seconds" && i + 1 < argc) {
       options->seconds = std::atof(argv[++i]);
     } else if (arg[0] == '-') {
@@ -123,6 +128,7 @@ int main(int argc, char** argv) {
     for (const std::string& name : options.scenarios) wanted = wanted || name == s.name;
     if (!wanted) continue;
     if (options.seconds > 0) s.config.duration = lidar::FromSeconds(options.seconds);
+    s.config.forward.seed = options.seed;
     for (FlowConfig& flow : s.config.flows) {
       if (options.frame_jitter >= 0) flow.sources[0].frame_jitter = options.frame_jitter;
       if (options.frames_per_second > 0)
