@@ -108,6 +108,7 @@ void PathModel::CountMarksAndLosses(Time now, const AckSummary& acks, const Send
     if (packet.sent >= route_begin_) ecn_.OnAcked(packet.ecn, packet.arrived_ecn);
     loss_rate_.Add(false, sender.ref_wnd);
     acked_rate_.Add(now, packet.size);
+    long_acked_rate_.Add(now, packet.size);
   }
   for (std::size_t i = 0; i < acks.lost.size(); ++i) loss_rate_.Add(true, sender.ref_wnd);
   packets_ce_ += static_cast<std::uint64_t>(marked + answered);

@@ -78,6 +78,8 @@ class PathModel {
   DataRate sent_rate(Time now) const { return sent_rate_.Rate(now); }
   /// Over a round trip, or two frame periods where those are longer.
   DataRate acked_rate(Time now) const { return acked_rate_.Rate(now); }
+  /// Over a second: read when packets arrive, a shorter average leaves out pauses between frames.
+  DataRate long_acked_rate(Time now) const { return long_acked_rate_.Rate(now); }
 
   /// The path carries ECT(1), and its bottleneck has lately been one that marks it.
   bool L4sWorks(Time now) const;
@@ -126,6 +128,7 @@ class PathModel {
   MaxBytesInFlight max_in_flight_;
   mutable RateMeter sent_rate_{1s};
   mutable RateMeter acked_rate_{100ms};
+  mutable RateMeter long_acked_rate_{1s};
   std::optional<Time> last_mark_;
   Time last_loss_{};
   Time last_report_{};

@@ -33,8 +33,10 @@ inline Duration PacingRipple(const Parameters& p, const PathModel& path) {
 
 /// From -1, clearly less than half of the link, to 1, clearly more.
 inline double AboveHalf(DataRate own, DataRate link) {
+  // Less than one half, so that two of ours with half each lean to gentle: their queue stays short.
+  constexpr double kHalf = 0.49;
   constexpr double kClearly = 0.05;
-  return std::clamp((own / link - 0.5) / kClearly, -1.0, 1.0);
+  return std::clamp((own / link - kHalf) / kClearly, -1.0, 1.0);
 }
 
 /// Beside others nobody needs more than half of the link. Who has less, or does not know, is about
@@ -54,7 +56,7 @@ inline Boldness BesideOthers(const Parameters& p, const PathModel& path, Time no
   const CrossTraffic& others = path.cross_traffic();
   if (!others.found() && !(l4s && others.unseen())) return b;
   const auto link = others.link_rate();
-  const double above = link ? AboveHalf(path.acked_rate(now), *link) : -1;
+  const double above = link ? AboveHalf(path.long_acked_rate(now), *link) : -1;
   const double below = (1 - above) / 2;  // 1: clearly less than half
   b.backoff = kGentlest * std::pow(p.prague_backoff / kGentlest, below);
   if (l4s)
