@@ -41,10 +41,11 @@ class CrossTraffic {
     const double arrived_ms = Ms(packet.arrival - previous->arrival);
     spacing_ms_ += (sent_ms - spacing_ms_) / 16;
     const bool idle = waited_ms < std::max(sent_ms, kLongestGap * spacing_ms_) + kTickMs;
-    unseen_ = share() ? 0 : std::min(unseen_ + 1, kSure);
+    unseen_ = share() ? 0 : std::min(unseen_ + Weight(sent_ms), kSure);
     if (idle || arrived_ms > kPauseMs) return;
-    counted_ = packet.sent;
+    const int weight = Weight(Ms(packet.sent - std::exchange(counted_, packet.sent)));
     Count(sent_ms, arrived_ms, static_cast<double>(packet.size.bytes()));
+    Decide(weight);
   }
   /// Arrival times of one report are rounded alike, those of two are not.
   void BeginReport() { last_.reset(); }
@@ -89,13 +90,16 @@ class CrossTraffic {
     const double sent = sent_ms - lately_sent_.value;
     sent_sent_ += sent * sent - sent_sent_ / kPackets;
     sent_arrived_ += sent * (arrived_ms - lately_arrived_.value) - sent_arrived_ / kPackets;
-    Decide();
+  }
+  /// In milliseconds since the last one: where few packets tell anything, each counts for more.
+  static int Weight(double apart_ms) {
+    return static_cast<int>(std::clamp(apart_ms, 1.0, kMostWeight));
   }
   /// A start, or a step of the capacity, is over before it is believed.
-  void Decide() {
+  void Decide(int weight) {
     const auto share = this->share();
     const bool same = !share || (*share > (found_ ? kGone : kFound)) == found_;
-    against_ = same ? 0 : against_ + 1;
+    against_ = same ? 0 : against_ + weight;
     if (against_ < kSure) return;
     found_ = !found_;
     against_ = 0;
@@ -103,7 +107,8 @@ class CrossTraffic {
 
   static constexpr double kLately = 8;
   static constexpr double kPackets = 2048;
-  static constexpr int kSure = 768;  // packets
+  static constexpr int kSure = 768;  // packets, or milliseconds between them
+  static constexpr double kMostWeight = 10;
   static constexpr Duration kForgotten = std::chrono::seconds(10);
   /// A longer one is a gap of the link, or a clock that was set.
   static constexpr double kPauseMs = 15;
@@ -124,8 +129,8 @@ class CrossTraffic {
   Average sent_, arrived_, bytes_;
   Average lately_sent_, lately_arrived_;
   double sent_sent_ = 0, sent_arrived_ = 0;  // sums of products
-  int unseen_ = 0;                           // packets in a row without a share
-  int against_ = 0;                          // packets in a row that speak against `found_`
+  int unseen_ = 0;                           // in a row without a share, by weight
+  int against_ = 0;                          // in a row that speak against `found_`, by weight
   bool found_ = false;
 };
 

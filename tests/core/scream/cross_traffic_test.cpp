@@ -67,6 +67,19 @@ TEST_F(CrossTrafficTest, TellsWhatTheLinkCarriesForAll) {
   }
 }
 
+/// Two packets a report, 4 ms apart on average.
+TEST_F(CrossTrafficTest, OfASlowFlowFewerPacketsAreEnough) {
+  int packets = 0;
+  for (; packets < 768 && !traffic_.found(); ++packets) {
+    if (packets % 2 == 0) traffic_.BeginReport();
+    const Duration spacing = packets / 2 % 2 == 0 ? 3ms : 5ms;
+    sent_ += spacing;
+    arrival_ += 500us + spacing / 2;
+    Add(sent_, arrival_, 20ms);
+  }
+  EXPECT_LT(packets, 300);
+}
+
 /// Packets leave and arrive further apart when the link becomes slower.
 TEST_F(CrossTrafficTest, TakesNoStepOfTheCapacityForOthers) {
   for (int i = 0; i < 20; ++i) {

@@ -163,6 +163,23 @@ TEST(BesidePrague, OneOfThreeGetsAThird) {
   EXPECT_NEAR(Measure(s, Simulate(s.config)).beside->ours_mbps, 6.7, 1.3);
 }
 
+/// A slow flow has few packets that tell of others. It has 2 Mbit/s where each counts the same.
+TEST(BesidePrague, OneThatJoinsThreeIsNotLeftBehind) {
+  Scenario s = *FindScenario("prague_ramp_20M", Parameters());
+  s.config.others = {{TcpKind::kPrague}, {TcpKind::kPrague}, {TcpKind::kPrague}};
+  s.config.flows[0].start += 20s;
+  s.config.duration = 100s;
+  s.settle = 50s;
+  EXPECT_GE(Measure(s, Simulate(s.config)).beside->ours_mbps, 3.3);
+}
+
+/// 0.77 where each packet counts the same.
+TEST(BesidePrague, AtFewMegabitsItIsFoundAsWell) {
+  Scenario s = *FindScenario("prague_ramp_20M", Parameters());
+  s.config.forward.capacity = link::Capacity::Constant(Mbps(8));
+  EXPECT_GE(Jain(s), 0.85);
+}
+
 TEST(BesidePrague, BothGetAboutTheSame) {
   for (const char* name : {"prague_ramp_20M", "prague_dualpi2_20M"})
     EXPECT_GE(Jain(*FindScenario(name, Parameters())), 0.97) << name;
