@@ -137,7 +137,9 @@ void Coordinator::OnReceiver(const nlohmann::json& record) {
 
 void Coordinator::OnSender(const nlohmann::json& record) {
   const std::string type = record.value("type", "");
-  if (type == "bounds") m_.AddBounds(record.value("min", 0.0), record.value("max", 0.0));
+  if (type == "bounds")
+    m_.AddBounds(record.value("unix_ns", std::int64_t{0}), record.value("min", 0.0),
+                 record.value("max", 0.0));
   m_.ledger.Add(record);
   if (type != "stats") return;
   m_.sender_stats = record;
@@ -217,6 +219,7 @@ void Coordinator::Enter(Phase phase) {
       break;
     case Phase::kDraining:
       m_.ran_s = Seconds(Now() - streaming_since_);
+      m_.EndBounds((Now() + tools::UnixOffset()).time_since_epoch().count());
       sender_->Signal(SIGINT);
       break;
     case Phase::kArriving:

@@ -60,10 +60,24 @@ std::vector<LinkPacket> ReadLinkLog(const std::string& file) {
   return packets;
 }
 
-void Measurements::AddBounds(double min_bps, double max_bps) {
-  ++bounds_seen;
-  encoder_min_bps += (min_bps - encoder_min_bps) / bounds_seen;
-  encoder_max_bps = max_bps;
+void Measurements::AddBounds(std::int64_t unix_ns, double min_bps, double max_bps) {
+  EndBounds(unix_ns);
+  if (bounds.known_s == 0) {
+    encoder_min_bps = min_bps;
+    encoder_max_bps = max_bps;
+  }
+  bounds.since_unix_ns = unix_ns;
+  bounds.min_bps = min_bps;
+  bounds.max_bps = max_bps;
+}
+
+void Measurements::EndBounds(std::int64_t unix_ns) {
+  const auto held_s = static_cast<double>(unix_ns - bounds.since_unix_ns) / 1e9;
+  if (bounds.since_unix_ns == 0 || held_s <= 0) return;
+  bounds.known_s += held_s;
+  encoder_min_bps += (bounds.min_bps - encoder_min_bps) * held_s / bounds.known_s;
+  encoder_max_bps += (bounds.max_bps - encoder_max_bps) * held_s / bounds.known_s;
+  bounds.since_unix_ns = unix_ns;
 }
 
 bool Measurements::IsSteady(double time_s) const {

@@ -47,14 +47,22 @@ struct Measurements {
   Ledger ledger;
   std::vector<LinkPacket> packets;
   std::vector<SenderSample> samples;
-  // From the encoder's bitrate-bounds; 0: not known
-  double encoder_min_bps = 0;  // mean of the run
+  // From the encoder's bitrate-bounds, means over time; 0: not known. One told in a gap, of coarse
+  // slices, is a guess.
+  double encoder_min_bps = 0;
   double encoder_max_bps = 0;
-  int bounds_seen = 0;
+  /// Those told last, and since when they hold.
+  struct {
+    std::int64_t since_unix_ns = 0;
+    double min_bps = 0, max_bps = 0;
+    double known_s = 0;  // for how long the means count bounds so far
+  } bounds;
   nlohmann::json sender_stats;  // the last of each
   nlohmann::json receiver_stats;
 
-  void AddBounds(double min_bps, double max_bps);
+  /// They hold until others are told, or until the stream ends.
+  void AddBounds(std::int64_t unix_ns, double min_bps, double max_bps);
+  void EndBounds(std::int64_t unix_ns);
   double Since(std::int64_t unix_ns) const {
     return static_cast<double>(unix_ns - origin_unix_ns) / 1e9;
   }

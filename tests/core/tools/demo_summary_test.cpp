@@ -100,7 +100,10 @@ TEST(DemoSummary, UtilisationIsOfSteadyTimeAndOfWhatTheEncoderCanUse) {
   auto m = TwoSteps();
   // 3 Mbit/s all the time, and an encoder that can use up to 6.
   for (int i = 0; i < 1000; ++i) m.packets.push_back({i * 0.01, 3750, true, false, 1});
-  m.encoder_max_bps = 6e6;
+  m.AddBounds(kOrigin, 1e6, 5e6);
+  m.AddBounds(kOrigin + 9 * kSecond, 1e6, 15e6);   // a guess within a gap
+  m.AddBounds(kOrigin + 10 * kSecond, 1e6, 20e6);  // told at the end: it held for no time
+  m.EndBounds(kOrigin + 10 * kSecond);             // 6 on average
   const auto s = Summarise(m);
   EXPECT_NEAR(s["mean_rate_bps"].get<double>(), 3e6, 1);
   // Steady: 2 s of 8 and 4 s of 4 Mbit/s.
@@ -172,7 +175,7 @@ TEST(DemoSummary, APointThatAppearedFromNowhereBreaksAGuarantee) {
 /// Four scans of 2 kB a second for 10 s; what arrives of each hundred.
 Measurements Stream(int arrives) {
   auto m = TwoSteps();
-  m.AddBounds(64e3, 8e6);
+  m.AddBounds(kOrigin, 64e3, 8e6);
   for (int i = 0; i < 40; ++i) {
     for (std::uint32_t slice = 0; slice < 2; ++slice) {
       const auto scan = static_cast<std::uint32_t>(i);
