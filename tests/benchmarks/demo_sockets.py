@@ -11,6 +11,7 @@ import json
 import lzma
 import os
 import pathlib
+import shlex
 import shutil
 import subprocess
 import sys
@@ -40,6 +41,7 @@ def parse_arguments():
     parser.add_argument("--case", action="append", help=f"of {', '.join([*STEPS_AND_DRIVE, *GAPS])}; repeatable. "
                         "Without it all, or with --trace only the traces")
     parser.add_argument("--fixed-step", action="store_true", help="also without adaptation, at the same error bound")
+    parser.add_argument("--more", type=shlex.split, default=[], metavar="OPTIONS", help="of the demo, in one string: --more='--geometry xyz'")
     parser.add_argument("--max-error", type=float, default=0.05, help="[m]")
     parser.add_argument("--output", type=pathlib.Path, help="keep the reports of the runs in this folder")
     return parser.parse_args()
@@ -78,7 +80,7 @@ def source(args, folder):
 def run(args, options, duration, report):
     """The summary of one run."""
     command = [args.build / "src/tools/lidar-demo", "run", "--no-plots", "--duration", duration, "--max-error",
-               args.max_error, "--output", report, *options]
+               args.max_error, "--output", report, *options, *args.more]
     build = args.build.resolve()
     plugins = sorted({str(p.parent) for part in ("gst", "ext") for p in (build / part).rglob("libgst*.so")})
     environment = os.environ | {"GST_PLUGIN_PATH_1_0": ":".join(plugins), "GST_REGISTRY": str(build / "benchmarks.bin")}

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: LGPL-2.1-or-later
 # run_demo.sh FOLDER FILTER [options of the demo]: runs it from the build tree; its exit code must be 0 and
-# the jq FILTER true for its summary.json.
+# the jq FILTER true for its summary.json, with its stats.json as $stats[0].
 set -euo pipefail
 root=$(cd "$(dirname "$0")/../.." && pwd)
 folder=$1
@@ -16,7 +16,7 @@ if [ "$status" != 0 ]; then
   tail -n 20 "$folder"/*.log >&2
   exit 1
 fi
-jq -e "$filter" "$folder/summary.json" >/dev/null || {
+jq -e --slurpfile stats "$folder/stats.json" "$filter" "$folder/summary.json" >/dev/null || {
   echo "not true for summary.json: $filter" >&2
   jq . "$folder/summary.json" >&2
   exit 1

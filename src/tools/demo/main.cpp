@@ -3,12 +3,24 @@
 #include <gst/gst.h>
 
 #include <CLI/CLI.hpp>
+#include <random>
+#include <string>
 
 #include "src/tools/common/program.h"
 #include "src/tools/demo/coordinator.h"
 #include "src/tools/demo/ends.h"
 
 namespace {
+
+/// In the environment, so that the list of processes does not show it.
+void MakeKey() {
+  constexpr int kBytes = 16 + 14;  // key and salt
+  constexpr const char* kDigits = "0123456789abcdef";
+  std::random_device random;
+  std::string key;
+  for (int i = 0; i < 2 * kBytes; ++i) key += kDigits[random() % 16];
+  g_setenv(lidar::demo::kKeyVariable, key.c_str(), TRUE);
+}
 
 int Run(int argc, char** argv) {
   CLI::App app{"lidar-demo: streams LiDAR through a bottleneck link and measures both ends.",
@@ -26,6 +38,7 @@ int Run(int argc, char** argv) {
   lidar::tools::Parse(&app, argc, argv);
   if (run->parsed()) {
     lidar::demo::CheckRunOptions(options);
+    if (options.secure) MakeKey();
     return lidar::demo::RunDemo(options);
   }
   gst_init(nullptr, nullptr);

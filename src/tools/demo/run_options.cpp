@@ -45,6 +45,10 @@ double StepTime(const RunOptions& o) {
   return o.duration_s / static_cast<double>(o.steps_mbps.size());
 }
 
+std::string KeyOf(const RunOptions& o) {
+  return o.secure ? std::string(" srtp-key=env:") + kKeyVariable : "";
+}
+
 std::string SourceOf(const RunOptions& o) {
   const std::string common =
       " name=source is-live=true slices-per-scan=" + std::to_string(o.slices);
@@ -126,6 +130,7 @@ void AddPathOptions(CLI::App* app, RunOptions* o) {
       ->capture_default_str();
   app->add_option("--loss", o->loss_percent, "Random loss [%]")->check(CLI::Range(0.0, 100.0));
   app->add_flag("--no-l4s", o->no_l4s, "A queue of 100 ms that marks nothing, and no ECN");
+  app->add_flag("--secure", o->secure, "SRTP, with a key of this run");
 }
 
 }  // namespace
@@ -220,7 +225,7 @@ std::string SenderPipeline(const RunOptions& o, Ports ports) {
   text += " ! rtplidarpay name=payloader ! screamsink name=sender host=127.0.0.1 port=" +
           std::to_string(ports.link) + " max-bitrate=" + Bps(o.max_bitrate_mbps) +
           " start-bitrate=" + Bps(o.start_bitrate_mbps) +
-          " ecn-mode=" + (o.no_l4s ? "off" : "ect1");
+          " ecn-mode=" + (o.no_l4s ? "off" : "ect1") + KeyOf(o);
   // Without a pad it tells the statistics alone.
   if (o.view) text += " foxglovesink port=" + std::to_string(kSenderPage);
   return text;
@@ -258,7 +263,7 @@ std::string PageOf(const RunOptions& o) {
 std::string ReceiverPipeline(const RunOptions& o, Ports ports) {
   const std::string decoder = EncoderOf(o) == "dracoenc" ? "dracodec" : "lidardec";
   return "screamsrc name=receiver address=127.0.0.1 port=" + std::to_string(ports.receiver) +
-         " ! rtplidardepay name=depayloader ! " + decoder + " name=decoder ! " +
+         KeyOf(o) + " ! rtplidardepay name=depayloader ! " + decoder + " name=decoder ! " +
          (o.slam ? "" : ViewOf(o)) + "scanassembler name=assembler ! " + SlamOf(o) +
          (o.slam ? ViewOf(o) : "") + "fakesink sync=false async=false";
 }

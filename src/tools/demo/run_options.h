@@ -45,7 +45,11 @@ struct RunOptions {
   double rtt_ms = 40;
   double loss_percent = 0;
   bool no_l4s = false;
+  bool secure = false;  // SRTP, by a key of this run in the environment
 };
+
+/// The environment variable that holds the key of --secure, in hexadecimal digits.
+inline constexpr const char* kKeyVariable = "LIDAR_DEMO_SRTP_KEY";
 
 void AddRunOptions(CLI::App* app, RunOptions* options);
 /// Throws std::runtime_error with a text for the user where options contradict each other.
