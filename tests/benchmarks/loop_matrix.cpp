@@ -30,6 +30,7 @@ const std::vector<Variant> kVariants = {
      [](LoopCase* c) { c->source.degradation = DegradationPreference::kMaintainFramerate; }},
     {"balanced", [](LoopCase* c) { c->source.degradation = DegradationPreference::kBalanced; }},
     {"intensity", [](LoopCase* c) { c->source.intensity_bits = 8; }},
+    {"camera", [](LoopCase* c) { c->camera = true; }},
     {"fixed", [](LoopCase* c) { c->source.adapts = false; }},
     {"frames", [](LoopCase* c) { c->frames = true; }},
 };
@@ -54,7 +55,9 @@ void PrintUsage() {
       "  TRACE          a built-in trace (all by default; a drive_N is generated)\n"
       "  --trace FILE   lines of 'time_s rate_mbps'\n"
       "  --variant NAME slices, scans (whole ones), framerate and balanced (what gives below the\n"
-      "                 minimum), intensity, fixed (no adaptation), frames (50/s, obeys exactly)\n"
+      "                 minimum), intensity, camera (a video beside), fixed (no adaptation), "
+      "frames\n"
+      "                 (50/s, obeys exactly)\n"
       "  --starts N     N runs for each line, each of another scene, that begin 7.33 s apart in "
       "the\n"
       "                 trace; prints means and, in brackets, the lowest and the highest\n"

@@ -2,6 +2,8 @@
 // The whole loop over links with gaps, against a sender that knew the link.
 #include <gtest/gtest.h>
 
+#include <utility>
+
 #include "tests/core/loop/loop_goals.h"
 #include "tests/support/simulated.h"
 
@@ -91,6 +93,20 @@ INSTANTIATE_TEST_SUITE_P(
         Held{"drive_1", "drive_1", DegradationPreference::kMaintainAccuracy, 0.96},
         Held{"drive_2", "drive_2", DegradationPreference::kMaintainAccuracy, 0.95},
         Held{"drive_3", "drive_3", DegradationPreference::kMaintainAccuracy, 0.97}));
+
+/// A camera at half of the priority gets 1 Mbit/s at least and costs hardly any scan.
+TEST(BesideACamera, ScansArriveAsFromASenderThatKnewTheLink) {
+  const std::pair<const char*, double> goals[] = {
+      {"gap_100ms_every_0.6s", 0.98}, {"gap_1s_every_10s", 0.975}, {"drive_3", 0.97}};
+  for (const auto& [trace, of_oracle] : goals) {
+    LoopCase c = Case(trace);
+    c.camera = true;
+    const LoopRun run = RunLoop(c);
+    EXPECT_GE(run.report.OfOracle(), of_oracle) << trace;
+    const auto camera = run.simulation.DeliveredBytes(kStart, kStart + c.duration, 0, 1);
+    EXPECT_GE(static_cast<double>(camera * 8) / Seconds(c.duration), 1e6) << trace;
+  }
+}
 
 /// What a stream without adaptation completes, and in time. It has less on its way when a gap
 /// begins, so that the scans behind come sooner: it may be ahead by so much, and no more.

@@ -21,6 +21,16 @@ using scream::test::SimulationResult;
 constexpr Duration kSettle = 3s;
 constexpr Duration kBin = 100ms;
 constexpr double kFramesPerSecond = 50;
+constexpr DataRate kCameraMin = DataRate::BitsPerSecond(0.3e6);
+constexpr DataRate kCameraMax = DataRate::BitsPerSecond(4e6);
+
+scream::test::SourceConfig Camera() {
+  scream::test::SourceConfig camera;
+  camera.frames_per_second = 30;
+  camera.stream.min_bitrate = camera.stream.needed_bitrate = kCameraMin;
+  camera.stream.start_bitrate = camera.stream.max_bitrate = kCameraMax;
+  return camera;
+}
 
 scream::test::SimulationConfig ConfigOf(const LoopCase& c, LoopSource* source) {
   scream::test::SimulationConfig config;
@@ -41,17 +51,25 @@ scream::test::SimulationConfig ConfigOf(const LoopCase& c, LoopSource* source) {
   if (c.frames) return config;
   media.frames_per_second = c.source.scans_per_second * c.source.slices;
   media.encoder = [source](DataRate target) { return source->Next(target); };
+  if (c.camera) {
+    media.stream.priority = 2;
+    flow.sources.push_back(Camera());
+  }
   return config;
 }
 
 /// What the link can carry and the source can use [bit] in a time of the run.
 double Usable(const LoopCase& c, const LoopReport& report, Duration from, Duration length) {
   const double link = c.capacity.Between(from, from + length).bits();
-  return c.frames ? link : std::min(link, report.max_mbps * 1e6 * Seconds(length));
+  if (c.frames) return link;
+  const double camera = c.camera ? kCameraMax.bits_per_second() : 0;
+  return std::min(link, (report.max_mbps * 1e6 + camera) * Seconds(length));
 }
 
 void CountScans(const LoopCase& c, const SimulationResult& result, LoopReport* report) {
-  const std::vector<FrameLog>& frames = result.flows.front().frames;
+  std::vector<FrameLog> frames;  // of the LiDAR
+  for (const FrameLog& f : result.flows.front().frames)
+    if (f.source == 0) frames.push_back(f);
   const std::size_t slices = c.frames ? 1 : c.source.slices;
   const Duration max_age = link::OracleConfig{}.max_age;
   std::vector<double> latency_ms;
@@ -106,7 +124,9 @@ void MeasureRecovery(const LoopCase& c, const SimulationResult& result, LoopRepo
   for (const PacketLog& p : result.packets)
     sent.push_back({p.sent - kStart, DataSize::Bytes(p.bytes)});
   link::RecoveryConfig config{c.duration};
-  if (!c.frames) config.source_max = DataRate::BitsPerSecond(report->max_mbps * 1e6);
+  if (!c.frames)
+    config.source_max =
+        DataRate::BitsPerSecond(report->max_mbps * 1e6) + (c.camera ? kCameraMax : DataRate());
   auto times = RecoveryAfterGaps(c.capacity, sent, config);
   report->gaps = times.size();
   report->recovery_s = scream::test::Summarise(std::move(times));

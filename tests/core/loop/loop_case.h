@@ -21,6 +21,8 @@ struct LoopCase {
   SourceOptions source;
   /// Instead: frames that obey the target exactly and can use any rate, 50 a second.
   bool frames = false;
+  /// Beside the LiDAR, at half of its priority: frames that obey the target exactly.
+  bool camera = false;
   Duration duration = std::chrono::seconds(60);
   Duration rtt = std::chrono::milliseconds(40);
   link::AqmConfig::Kind aqm = link::AqmConfig::Kind::kRamp;
