@@ -2,8 +2,6 @@
 // Several streams of one controller, and several controllers, on one link.
 #include <gtest/gtest.h>
 
-#include <utility>
-
 #include "tests/core/scream/scenarios.h"
 #include "tests/support/simulated.h"
 
@@ -202,17 +200,13 @@ TEST(BesideTheDraft, HalfOfTheLinkIsEnough) {
   }
 }
 
-/// At 8 Mbit/s fewer packets show what the other sends, so a run this short may be less even: runs
-/// of 100 s have 0.99 to 1 at six phases.
 TEST(TwoFlows, WhoseFramesMeetShareALinkEvenly) {
-  const std::pair<const char*, double> goals[] = {{"frames_20M_two_flows", 0.99},
-                                                  {"frames_8M_rtt40", 0.97}};
-  for (const auto& [name, jain] : goals) {
+  for (const char* name : {"frames_20M_two_flows", "frames_8M_rtt40"}) {
     Scenario s = *FindScenario(name, Parameters());
     if (s.config.flows.size() == 1) s.config.flows.push_back(s.config.flows[0]);
     s.config.flows[1].start = s.config.flows[0].start + 5s;
     s.settle = 20s;
-    EXPECT_GE(Measure(s, Simulate(s.config)).jain, jain) << name;
+    EXPECT_GE(Measure(s, Simulate(s.config)).jain, 0.99) << name;
   }
 }
 
