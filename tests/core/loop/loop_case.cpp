@@ -58,12 +58,16 @@ scream::test::SimulationConfig ConfigOf(const LoopCase& c, LoopSource* source) {
   return config;
 }
 
+/// What the source can use, the camera included.
+DataRate SourceMax(const LoopCase& c, const LoopReport& report) {
+  if (c.frames) return DataRate::Infinite();
+  return DataRate::BitsPerSecond(report.max_mbps * 1e6) + (c.camera ? kCameraMax : DataRate());
+}
+
 /// What the link can carry and the source can use [bit] in a time of the run.
 double Usable(const LoopCase& c, const LoopReport& report, Duration from, Duration length) {
   const double link = c.capacity.Between(from, from + length).bits();
-  if (c.frames) return link;
-  const double camera = c.camera ? kCameraMax.bits_per_second() : 0;
-  return std::min(link, (report.max_mbps * 1e6 + camera) * Seconds(length));
+  return std::min(link, SourceMax(c, report).bits_per_second() * Seconds(length));
 }
 
 void CountScans(const LoopCase& c, const SimulationResult& result, LoopReport* report) {
@@ -123,11 +127,7 @@ void MeasureRecovery(const LoopCase& c, const SimulationResult& result, LoopRepo
   std::vector<link::SentPacket> sent;
   for (const PacketLog& p : result.packets)
     sent.push_back({p.sent - kStart, DataSize::Bytes(p.bytes)});
-  link::RecoveryConfig config{c.duration};
-  if (!c.frames)
-    config.source_max =
-        DataRate::BitsPerSecond(report->max_mbps * 1e6) + (c.camera ? kCameraMax : DataRate());
-  auto times = RecoveryAfterGaps(c.capacity, sent, config);
+  auto times = RecoveryAfterGaps(c.capacity, sent, {c.duration, SourceMax(c, *report)});
   report->gaps = times.size();
   report->recovery_s = scream::test::Summarise(std::move(times));
 }
