@@ -251,7 +251,7 @@ void Controller::StartWindow() {
 void Controller::UpdateTarget(Time now) {
   const DataRate allowed = WindowTarget(now);
   streams_.Allocate(now, AskedTarget(now, allowed));
-  if (p_.extensions.quick_drain && started_) streams_.LeaveRoomForBacklogs();
+  if (p_.extensions.quick_drain && started_) streams_.LeaveRoomForBacklogs(now);
   window_target_ = std::clamp(allowed, streams_.min_bitrate(), streams_.max_bitrate());
   pacer_.Update(window_target_, streams_.max_bitrate(),
                 PacingHeadroom(p_, streams_.frame_period(), PacingReserve(p_, path_, now)),

@@ -156,6 +156,13 @@ Duration Stream::media_qdelay(Time now) const {
   return queue_.empty() ? Duration{0} : now - queue_.front().queued;
 }
 
+DataSize Stream::backlog(Time now) const {
+  Duration left = frame_period_;
+  if (last_frame_ && frame_period_ >= p_.long_frame_period)
+    left = std::clamp(*last_frame_ + frame_period_ - now, Duration{0}, frame_period_);
+  return std::max(DataSize(), queued_ - target_bitrate_ * left);
+}
+
 bool Stream::active(Time now) const {
   return !queue_.empty() || !last_active_ || now - *last_active_ < kInactive;
 }

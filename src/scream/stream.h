@@ -33,6 +33,9 @@ class Stream {
   /// Nothing of the access unit at the head, or of its group, has left yet.
   bool at_start() const { return queue_.front().starts_frame && !Begun(queue_.front()); }
   DataSize queued() const { return queued_; }
+  /// What is queued beyond the frame that is leaving. Of a whole scan no more belongs here than
+  /// leaves until the next one comes.
+  DataSize backlog(Time now) const;
   /// Age of the oldest packet.
   Duration media_qdelay(Time now) const;
   bool Owns(std::uint32_t ssrc) const { return ssrcs_.count(ssrc) > 0; }

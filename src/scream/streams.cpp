@@ -129,22 +129,20 @@ DataRate Streams::Fill(std::vector<Share> open, DataRate left) {
 }
 
 /// A stream that waits for its turn behind the backlog of another one has done nothing wrong.
-void Streams::LeaveRoomForBacklogs() {
-  const auto backlog = [](const Stream& s) {
+void Streams::LeaveRoomForBacklogs(Time now) {
+  const auto wait = [](const Stream& s) {
     return s.queued() / std::max(s.target_bitrate(), DataRate::BitsPerSecond(1));
   };
   Duration longest{0};
-  for (const auto& [id, stream] : streams_) longest = std::max(longest, backlog(stream));
+  for (const auto& [id, stream] : streams_) longest = std::max(longest, wait(stream));
   for (auto& [id, stream] : streams_) {
-    if (backlog(stream) < longest / 2) continue;
+    const DataSize backlog = stream.backlog(now);
+    if (wait(stream) < longest / 2 || backlog == DataSize()) continue;
     const DataRate target = stream.target_bitrate();
-    const DataSize frame = target * stream.frame_period();
     const StreamConfig& c = stream.config();
-    if (stream.queued() <= frame) continue;
     const DataRate floor =
         std::min(target, std::max(c.min_bitrate, c.needed_bitrate * p_.needed_margin));
-    stream.set_target_bitrate(
-        std::max(floor, target - (stream.queued() - frame) / p_.backlog_drain));
+    stream.set_target_bitrate(std::max(floor, target - backlog / p_.backlog_drain));
   }
 }
 

@@ -33,7 +33,7 @@ class Streams {
   void Allocate(Time now, DataRate total);
   /// Lowers targets of streams with more than a frame in their queue, so that it leaves within
   /// `backlog_drain`; not below what they need.
-  void LeaveRoomForBacklogs();
+  void LeaveRoomForBacklogs(Time now);
   void OnSuddenBacklog() {
     for (auto& [id, stream] : streams_) stream.OnSuddenBacklog();
   }

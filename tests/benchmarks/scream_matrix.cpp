@@ -26,6 +26,7 @@ struct Options {
   double frames_per_second = 0;
   double wakeup_ms = 0;
   double stall_ms = 0;
+  double phase_ms = 0;
   std::uint64_t seed = 1;
 };
 
@@ -38,6 +39,7 @@ void PrintUsage() {
       "  --frame-jitter PERCENT  frame sizes vary evenly by so much\n"
       "  --wakeup-ms MS pacing wakes up late by up to so much\n"
       "  --stall-ms MS  sender and receiver stop for up to so much, once a second\n"
+      "  --phase-ms MS  flows of ours start so much later\n"
       "  --seed N       of all that is random: losses, jitter, frame sizes, late wake-ups (1)\n"
       "  --samples CSV  writes the controller's state every 10 ms (of one scenario)");
   std::puts(kParameterUsage);
@@ -57,6 +59,8 @@ bool Parse(int argc, char** argv, Options* options) {
       options->frames_per_second = std::atof(argv[++i]);
     } else if (arg == "--stall-ms" && i + 1 < argc) {
       options->stall_ms = std::atof(argv[++i]);
+    } else if (arg == "--phase-ms" && i + 1 < argc) {
+      options->phase_ms = std::atof(argv[++i]);
     } else if (arg == "--wakeup-ms" && i + 1 < argc) {
       options->wakeup_ms = std::atof(argv[++i]);
     } else if (arg == "--seed" && i + 1 < argc) {
@@ -133,6 +137,7 @@ int main(int argc, char** argv) {
       if (options.frame_jitter >= 0) flow.sources[0].frame_jitter = options.frame_jitter;
       if (options.frames_per_second > 0)
         flow.sources[0].frames_per_second = options.frames_per_second;
+      flow.start += lidar::FromSeconds(options.phase_ms / 1e3);
       flow.stall = lidar::FromSeconds(options.stall_ms / 1e3);
       flow.wakeup_delay = lidar::FromSeconds(options.wakeup_ms / 1e3);
     }

@@ -83,7 +83,7 @@ TEST_F(Limits, OnlyTheLongestBacklogsMakeRoom) {
   streams_.Allocate(kStart, Mbps(16));  // 8 Mbit/s each: 20,000 bytes in a frame of 20 ms
   Queue(a, kStart, 120);                // 120 ms
   Queue(b, kStart, 59);                 // 59 ms, less than half
-  streams_.LeaveRoomForBacklogs();
+  streams_.LeaveRoomForBacklogs(kStart);
   // 100,000 bytes are to leave within 200 ms: 4 Mbit/s.
   EXPECT_NEAR(Target(a), 4, 1e-3);
   EXPECT_NEAR(Target(b), 8, 1e-3);
@@ -93,15 +93,34 @@ TEST_F(Limits, AFrameIsNoBacklogAndWhatIsNeededStays) {
   const StreamId a = Add({1, Mbps(0), Mbps(1), Mbps(100)});
   streams_.Allocate(kStart, Mbps(8));
   Queue(a, kStart, 20);
-  streams_.LeaveRoomForBacklogs();
+  streams_.LeaveRoomForBacklogs(kStart);
   EXPECT_NEAR(Target(a), 8, 1e-3);
   Queue(a, kStart, 200);
-  streams_.LeaveRoomForBacklogs();
+  streams_.LeaveRoomForBacklogs(kStart);
   EXPECT_NEAR(Target(a), 0, 1e-3);
   streams_.Find(a)->Configure({1, Mbps(0), Mbps(1), Mbps(100), Mbps(3)});
   streams_.Allocate(kStart, Mbps(8));
-  streams_.LeaveRoomForBacklogs();
+  streams_.LeaveRoomForBacklogs(kStart);
   EXPECT_NEAR(Target(a), 3 * 1.03, 1e-3);
+}
+
+/// 100,000 bytes at 8 Mbit/s are a frame of 100 ms: half of it is left after 50 ms.
+TEST_F(Limits, WhatIsLeftOfAWholeScanIsABacklogWhenTheNextOneComes) {
+  const StreamId a = Add({1, Mbps(0), Mbps(1), Mbps(100)});
+  streams_.Allocate(kStart, Mbps(8));
+  Queue(a, kStart, 1, 1);
+  Queue(a, kStart + 100ms, 99, 2);
+  EXPECT_EQ(streams_.Find(a)->backlog(kStart + 100ms), DataSize());
+  EXPECT_EQ(streams_.Find(a)->backlog(kStart + 150ms), DataSize::Bytes(50'000));
+  EXPECT_EQ(streams_.Find(a)->backlog(kStart + 300ms), DataSize::Bytes(100'000));
+}
+
+TEST_F(Limits, WhatIsLeftOfAShortFrameIsNoBacklog) {
+  const StreamId a = Add({1, Mbps(0), Mbps(1), Mbps(100)});
+  streams_.Allocate(kStart, Mbps(8));
+  Queue(a, kStart, 1, 1);
+  Queue(a, kStart + 20ms, 19, 2);
+  EXPECT_EQ(streams_.Find(a)->backlog(kStart + 40ms), DataSize());
 }
 
 TEST_F(Limits, TheStreamWithTheHighestTargetSetsThePeriod) {
