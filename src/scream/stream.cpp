@@ -59,8 +59,7 @@ void Stream::OnFrame(Time now) {
   rate_adjust_factor_ =
       std::clamp(rate_adjust_factor_ + error * p_.rate_adjust_gain, 0.0, kMaxRateAdjustFactor);
   // A whole scan at once is a backlog of its own.
-  const bool often = frame_period_ < p_.long_frame_period;
-  if (sudden_backlog_ && often && error < 0) {
+  if (sudden_backlog_ && !sends_scans() && error < 0) {
     rate_adjust_factor_ /= 2;
     sudden_backlog_ = rate_adjust_factor_ > kNoAdjustment;
   }
@@ -157,10 +156,15 @@ Duration Stream::media_qdelay(Time now) const {
 }
 
 DataSize Stream::backlog(Time now) const {
-  Duration left = frame_period_;
-  if (last_frame_ && frame_period_ >= p_.long_frame_period)
-    left = std::clamp(*last_frame_ + frame_period_ - now, Duration{0}, frame_period_);
+  const Duration left =
+      sends_scans() && last_frame_
+          ? std::clamp(*last_frame_ + frame_period_ - now, Duration{0}, frame_period_)
+          : frame_period_;
   return std::max(DataSize(), queued_ - target_bitrate_ * left);
+}
+
+DataRate Stream::backlog_rate(Time now) const {
+  return backlog(now) / (sends_scans() ? frame_period_ : p_.backlog_drain);
 }
 
 bool Stream::active(Time now) const {

@@ -36,6 +36,9 @@ class Stream {
   /// What is queued beyond the frame that is leaving. Of a whole scan no more belongs here than
   /// leaves until the next one comes.
   DataSize backlog(Time now) const;
+  /// The target is to be so much lower for the backlog to leave within backlog_drain, or that of a
+  /// whole scan with the next one.
+  DataRate backlog_rate(Time now) const;
   /// Age of the oldest packet.
   Duration media_qdelay(Time now) const;
   bool Owns(std::uint32_t ssrc) const { return ssrcs_.count(ssrc) > 0; }
@@ -65,6 +68,8 @@ class Stream {
   double virtual_time = 0;
 
  private:
+  /// Frames seldom enough that each is a queue of its own.
+  bool sends_scans() const { return frame_period_ >= p_.long_frame_period; }
   struct Queued {
     DataSize size;
     Time queued{};

@@ -113,6 +113,8 @@ TEST_F(Limits, WhatIsLeftOfAWholeScanIsABacklogWhenTheNextOneComes) {
   EXPECT_EQ(streams_.Find(a)->backlog(kStart + 100ms), DataSize());
   EXPECT_EQ(streams_.Find(a)->backlog(kStart + 150ms), DataSize::Bytes(50'000));
   EXPECT_EQ(streams_.Find(a)->backlog(kStart + 300ms), DataSize::Bytes(100'000));
+  // The next scan is to be so much smaller.
+  EXPECT_NEAR(InMbps(streams_.Find(a)->backlog_rate(kStart + 150ms)), 4, 1e-3);
 }
 
 TEST_F(Limits, WhatIsLeftOfAShortFrameIsNoBacklog) {
