@@ -12,6 +12,8 @@ namespace {
 constexpr double kUnitStep = 0.01;
 // Fewer returns than this say nothing about the scene: headers are most of the bytes.
 constexpr std::uint32_t kFewReturns = 64;
+// More than this is no coding of it: as much as its points take as they are, twice.
+constexpr double kMostBytesAReturn = 64;
 constexpr double kMinSlope = 0.6;
 constexpr double kMaxSlope = 1.6;
 constexpr int kBisections = 40;
@@ -154,12 +156,12 @@ double AdaptiveModel::IntensityShare(const SliceFeatures& slice, double step_m, 
 void AdaptiveModel::OnEncoded(const SliceFeatures& slice, const Settings& settings,
                               const EncodedSize& encoded) {
   const double bytes = static_cast<double>(encoded.size.bytes());
-  if (slice.returns < kFewReturns || bytes < 2 || !(encoded.step_m > 0)) return;
+  if (slice.returns < kFewReturns || bytes < 2 || bytes > slice.returns * kMostBytesAReturn ||
+      !(encoded.step_m > 0))
+    return;
   const PredictedSize predicted = Predict(slice, {encoded.step_m, settings.intensity_bits, 0});
   const double intensity =
-      encoded.intensity_size
-          ? std::clamp(static_cast<double>(encoded.intensity_size->bytes()), 0.0, bytes - 1)
-          : bytes * IntensityShare(slice, encoded.step_m, settings.intensity_bits, predicted);
+      bytes * IntensityShare(slice, encoded.step_m, settings.intensity_bits, predicted);
   double observed = std::log2(bytes - intensity);
   if (!std::isfinite(observed)) return;
   if (const Learned* known = LearnedOf(slice.mode); known != nullptr && last_mode_ != slice.mode)

@@ -32,7 +32,6 @@ class DemandTable {
   /// same, but no more than lies between its coarsest and its finest step. One not seen yet takes
   /// anything.
   double EvenShare(std::uint32_t first, double surplus) const;
-  bool empty() const { return seen_ == 0; }
 
  private:
   std::vector<std::optional<Demand>> slices_;

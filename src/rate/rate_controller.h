@@ -57,7 +57,6 @@ class RateController {
   void SetTarget(std::optional<DataRate> target);
   /// They hold from the next slice on.
   void SetParameters(const ControllerParameters& parameters) { parameters_ = parameters; }
-  const ControllerParameters& parameters() const { return parameters_; }
 
   Decision NextSlice(const SliceFeatures& slice);
   /// Settings to encode the slice again with, or none: put it out as it is.

@@ -46,8 +46,6 @@ struct PredictedSize {
 /// What came out of the codec.
 struct EncodedSize {
   DataSize size;
-  /// Where the codec cannot tell, the sum is split as the prediction would.
-  std::optional<DataSize> intensity_size;
   double step_m = 0;         // really used
   double keep_fraction = 1;  // of the returns, after thinning
 };

@@ -379,7 +379,6 @@ Statistics Controller::statistics(Time now) const {
   s.estimated_capacity = path_.estimated_capacity();
   s.ref_wnd = window_.ref_wnd();
   s.ref_wnd_i = window_.ref_wnd_i();
-  s.max_policed_ref_wnd = window_.max_policed_ref_wnd();
   s.bytes_in_flight = history_.bytes_in_flight();
   s.foreign_blocks = history_.foreign_blocks();
   s.qdelay_target = competing_flows_.qdelay_target();

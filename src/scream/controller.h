@@ -88,16 +88,17 @@ class Controller {
   FeedbackResult OnFeedback(Time now, const CongestionFeedback& feedback);
   /// Call at NextTimer() or later; calling more often does no harm.
   void OnTimer(Time now);
-  /// The peer's address changed: forgets base delay and RTT, probes ECN anew, keeps the window
-  /// small.
+  /// The peer's address changed: forgets base delay and RTT, probes ECN anew, and starts again from
+  /// the streams' start bitrates.
   void OnRouteChange(Time now);
 
   // Decisions
-  /// Which stream may send next and when; nothing while queues are empty or the window is closed.
+  /// Which stream may send next and when: later while the window is closed, nothing while queues
+  /// are empty.
   std::optional<SendDecision> NextSend(Time now) const;
   /// How many packets at the head of the queue are too late to be of use. An access unit that has
   /// not begun to leave is late as a whole, beyond `max_queue_delay`; late ones behind it count as
-  /// well. The rest of one that has begun is late at twice that age.
+  /// well. The rest of one that has begun is late at five times that age.
   std::size_t LatePackets(Time now, StreamId stream) const;
   /// The next time at which OnTimer() has something to do.
   Time NextTimer() const;
@@ -111,7 +112,6 @@ class Controller {
   Statistics statistics(Time now) const;
   StreamStatistics stream_statistics(Time now, StreamId stream) const;
   EcnState ecn_state() const { return path_.ecn().state(); }
-  const Parameters& parameters() const { return p_; }
 
  private:
   Time Advance(Time caller_now);

@@ -28,7 +28,6 @@ struct Statistics {
   DataSize ref_wnd;
   DataSize ref_wnd_i;
   DataSize bytes_in_flight;
-  DataSize max_bytes_in_flight;
   Duration s_rtt{};
   Duration min_rtt{};
   Duration qdelay{};
@@ -38,7 +37,6 @@ struct Statistics {
   double ref_wnd_delay_scale = 1;
   double loss_rate = 0;
   double cross_traffic = 0;  ///< the part of the link that others use; 0: none was found
-  DataSize max_policed_ref_wnd = DataSize::Infinite();
   // Rates, IP included
   DataRate target_bitrate;  ///< of all streams
   DataRate pace_bitrate;
@@ -77,9 +75,6 @@ struct StreamStatistics {
   DataRate sent_bitrate;
   DataSize queued;
   Duration media_qdelay{};
-  double rate_adjust_factor = 0;
-  double frame_size_dev = 0;
-  Duration frame_period{};
   std::uint64_t packets_sent = 0;
   std::uint64_t packets_dropped = 0;
   std::uint64_t packets_lost = 0;

@@ -177,9 +177,6 @@ StreamStatistics Stream::statistics(Time now) const {
   s.sent_bitrate = sent_rate_.Rate(now);
   s.queued = queued_;
   s.media_qdelay = media_qdelay(now);
-  s.rate_adjust_factor = rate_adjust_factor_;
-  s.frame_size_dev = frame_size_dev_;
-  s.frame_period = frame_period_;
   return s;
 }
 

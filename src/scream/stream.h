@@ -60,7 +60,6 @@ class Stream {
   void set_counts(bool counts) { counts_ = counts; }
   DataRate target_bitrate() const { return target_bitrate_; }
   void set_target_bitrate(DataRate target) { target_bitrate_ = target; }
-  DataRate sent_bitrate(Time now) const { return sent_rate_.Rate(now); }
   void OnAcked(bool ce) { counters_.packets_ce += ce ? 1 : 0; }
   void OnLost() { ++counters_.packets_lost; }
   StreamStatistics statistics(Time now) const;

@@ -27,7 +27,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
                  settings.step_m <= limits.coarsest_step_m);
       const auto predicted = model->Predict(slice, settings);
       FUZZ_CHECK(std::isfinite(predicted.total()) && predicted.total() >= 0);
-      model->OnEncoded(slice, settings, {lidar::DataSize::Bytes(15'000), {}, settings.step_m, 1});
+      model->OnEncoded(slice, settings, {lidar::DataSize::Bytes(15'000), settings.step_m, 1});
       FUZZ_CHECK(std::isfinite(model->Predict(slice, settings).total()));
     }
   }

@@ -67,7 +67,6 @@ class FeedbackGenerator {
   /// Forgets everything, for a new peer.
   void Reset();
   void set_config(const FeedbackConfig& config) { config_ = config; }
-  const FeedbackConfig& config() const { return config_; }
 
   struct Stats {
     std::uint64_t packets = 0;

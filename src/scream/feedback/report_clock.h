@@ -22,7 +22,6 @@ class ReportClock {
     const std::int64_t s = units / 65536;
     return Time{Duration{s * kSecond + units % 65536 * kSecond / 65536}};
   }
-  void Reset() { unwrapper_.Reset(); }
 
  private:
   static constexpr std::int64_t kSecond = 1'000'000'000;

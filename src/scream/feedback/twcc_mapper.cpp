@@ -22,8 +22,6 @@ void AppendBlocks(std::uint32_t ssrc, const Metrics& metrics, CongestionFeedback
 
 }  // namespace
 
-void TwccMapper::Reset() { *this = TwccMapper(); }
-
 void TwccMapper::OnSent(std::uint16_t number, std::uint32_t ssrc, std::uint16_t seq) {
   const std::int64_t extended = numbers_.Peek(number);
   const std::int64_t end = first_ + static_cast<std::int64_t>(sent_.size());

@@ -35,7 +35,6 @@ class TwccMapper {
   void OnSent(std::uint16_t number, std::uint32_t ssrc, std::uint16_t seq);
   /// Numbers that were never sent, or long ago, are left out; nothing where none remains.
   std::optional<CongestionFeedback> Map(const TwccFeedback& feedback);
-  void Reset();
 
  private:
   static constexpr std::int64_t kMaxHistory = kMaxTwccPackets;

@@ -188,7 +188,6 @@ Duration PathModel::UnreportedTime() const {
 }
 
 void PathModel::Describe(Time now, Statistics* s) const {
-  s->max_bytes_in_flight = max_in_flight_.longest();
   s->s_rtt = rtt_.known() ? rtt_.smoothed() : Duration{0};
   s->min_rtt = rtt_.known() ? rtt_.min() : Duration{0};
   s->qdelay = queue_delay_.qdelay();

@@ -60,7 +60,7 @@ class SentHistory {
  public:
   void OnSent(std::uint32_t ssrc, std::uint16_t seq, const SentRecord& record);
   HistoryResult OnFeedback(Time now, const CongestionFeedback& feedback, AckSummary* summary);
-  /// Declares lost what is overdue; also to be called without feedback.
+  /// Declares lost what is overdue.
   void DetectLoss(Time now, std::vector<LostPacket>* lost);
   /// What was sent before `before` and is still unsettled no longer counts as in flight, nor ever
   /// as lost; it may still be acknowledged.

@@ -33,7 +33,7 @@ AdaptiveModel Taught() {
   AdaptiveModel model(AdaptiveCoefficients{{}, {{11, -0.5, 0, 0}}});
   for (std::uint32_t i = 0; i < kSlices; ++i) {
     const auto bytes = static_cast<std::int64_t>(Bytes(model, Slice(1, i)));
-    model.OnEncoded(Slice(1, i), kTwoCentimetres, {DataSize::Bytes(bytes), {}, 0.02, 1});
+    model.OnEncoded(Slice(1, i), kTwoCentimetres, {DataSize::Bytes(bytes), 0.02, 1});
   }
   return model;
 }
@@ -41,7 +41,7 @@ AdaptiveModel Taught() {
 TEST(AdaptiveModel, PassesASurpriseOnToTheNextSlice) {
   AdaptiveModel model = Taught();
   const double before = Bytes(model, Slice(2, 1));
-  const EncodedSize larger{DataSize::Bytes(static_cast<std::int64_t>(1.5 * before)), {}, 0.02, 1};
+  const EncodedSize larger{DataSize::Bytes(static_cast<std::int64_t>(1.5 * before)), 0.02, 1};
   model.OnEncoded(Slice(2, 0), kTwoCentimetres, larger);
   EXPECT_GT(Bytes(model, Slice(2, 1)), 1.05 * before);
 }
@@ -50,7 +50,7 @@ TEST(AdaptiveModel, LearnsFromASliceThatIsEncodedAgainAsIfItWereEncodedOnce) {
   AdaptiveModel once = Taught();
   AdaptiveModel again = Taught();
   const EncodedSize larger{
-      DataSize::Bytes(static_cast<std::int64_t>(1.5 * Bytes(once, Slice(2, 0)))), {}, 0.02, 1};
+      DataSize::Bytes(static_cast<std::int64_t>(1.5 * Bytes(once, Slice(2, 0)))), 0.02, 1};
   once.OnEncoded(Slice(2, 0), kTwoCentimetres, larger);
   for (int i = 0; i < 2; ++i) again.OnEncoded(Slice(2, 0), kTwoCentimetres, larger);
   EXPECT_NEAR(Bytes(again, Slice(2, 1)) / Bytes(once, Slice(2, 1)), 1, 1e-6);
@@ -61,7 +61,7 @@ TEST(AdaptiveModel, KeepsWhatItKnowsOfTheSceneWhereTheModeChangesWithinAGeometry
   SliceFeatures slice = Slice(1, 0);
   slice.mode = "range-adaptive";
   const double fit = Bytes(model, slice);
-  const EncodedSize larger{DataSize::Bytes(static_cast<std::int64_t>(2 * fit)), {}, 0.02, 1};
+  const EncodedSize larger{DataSize::Bytes(static_cast<std::int64_t>(2 * fit)), 0.02, 1};
   model.OnEncoded(slice, kTwoCentimetres, larger);
   slice.scan_id = 2;
   slice.mode = "range-mixing2";
@@ -89,7 +89,7 @@ TEST(AdaptiveModel, TakesNoPartOfASliceForNothingAfterManyMovesOfTheStep) {
         const Settings settings{step_m, kBits, 0};
         const double bytes = (10 / step_m + 1e3) * std::exp2(scene[i]);
         model.OnEncoded(slice, settings,
-                        {DataSize::Bytes(static_cast<std::int64_t>(bytes)), {}, step_m, 1});
+                        {DataSize::Bytes(static_cast<std::int64_t>(bytes)), step_m, 1});
         const PredictedSize size = model.Predict(slice, settings);
         ASSERT_GT(size.geometry_bytes, 1e-3 * size.total()) << "scan " << scan;
         ASSERT_GT(size.intensity_bytes, 1e-3 * size.total()) << "scan " << scan;

@@ -101,7 +101,7 @@ TEST_F(BadInput, OfTargetsThatAreNoRatesCountsAsZeroOrAsATerabit) {
 }
 
 TEST_P(BadInputOfAnyModel, OutOfTurnIsIgnored) {
-  EXPECT_FALSE(controller_.OnEncoded({DataSize::Bytes(100), std::nullopt, 0.01, 1}));
+  EXPECT_FALSE(controller_.OnEncoded({DataSize::Bytes(100), 0.01, 1}));
   EXPECT_EQ(controller_.bounds().min.bits_per_second(), 0);
   controller_.SetTarget(DataRate::BitsPerSecond(3e6));
   for (std::uint32_t i = 0; i < 100; ++i) controller_.NextSlice(codec_.Features(i, 3));
@@ -115,7 +115,7 @@ TEST_F(BadInput, OfAbsurdSizesDoesNotPoisonTheModel) {
     for (const double step : {0.0, -1.0, kNan, 0.01}) {
       const SliceFeatures f = codec_.Features(static_cast<std::uint32_t>(bytes % 1000) + 5, 0);
       controller_.NextSlice(f);
-      EncodedSize encoded{DataSize::Bytes(bytes), DataSize::Bytes(2 * bytes), step, 1};
+      EncodedSize encoded{DataSize::Bytes(bytes), step, 1};
       controller_.OnEncoded(encoded);
       controller_.OnEncoded(encoded);
     }

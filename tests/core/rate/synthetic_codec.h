@@ -56,7 +56,7 @@ class SyntheticCodec {
       return DataSize::Bytes(
           static_cast<std::int64_t>(std::isfinite(b) ? std::clamp(b, 0., 1e12) : 0));
     };
-    return {bytes(geometry + intensity), bytes(intensity), s.step_m, keep};
+    return {bytes(geometry + intensity), s.step_m, keep};
   }
 
  private:
