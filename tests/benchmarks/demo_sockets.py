@@ -25,9 +25,9 @@ GAPS = {
     "gap_100ms_every_2s": ["--gap", "0.1", "--every", "2", "--rate", "8"],
     "gap_1s_every_10s": ["--gap", "1", "--every", "10", "--rate", "8"],
 }
-HEADER = ("| link | scans captured | complete | the oracle's | of the oracle's | capture_to_cloud p95 [ms] "
+HEADER = ("| link | scans captured | complete | in time | the oracle's | of the oracle's | capture_to_cloud p95 [ms] "
           "| the oracle's | utilisation where usable | queue p95 [ms] | back at 80 % after a gap, p50 / p95 [s] |\n"
-          "|---|---|---|---|---|---|---|---|---|---|")
+          "|---|---|---|---|---|---|---|---|---|---|---|")
 
 
 def parse_arguments():
@@ -108,6 +108,7 @@ def row(name, summaries):
     backs = ", ".join("–" if b is None else f"{b[0]:.2f} / {b[1]:.2f}" for b in map(back, summaries))
     return " | ".join([
         f"| {name}", each("d", lambda s: s["scans_captured"]), each("d", lambda s: s["scans_complete"]),
+        each("d", lambda s: s["scans_in_time"]),
         joined([o["scans_complete"] for o in oracle], "d"), joined([100 * v for v in share], ".1f") + " %",
         each(".0f", lambda s: s["capture_to_cloud_ms"]["p95"]), joined([o["capture_to_cloud_ms"]["p95"] for o in oracle], ".0f"),
         each(".0f", lambda s: 100 * s["utilisation_of_usable"] if s["utilisation_of_usable"] is not None else None) + " %",

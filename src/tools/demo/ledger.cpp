@@ -71,6 +71,8 @@ ScanCounts Ledger::Count(std::int64_t settled) const {
     n.sent += sent;
     n.skipped += !sent && all([settled](const SliceLife& s) { return s.captured < settled; });
     n.complete += all([](const SliceLife& s) { return s.decoded > 0; });
+    n.in_time += all(
+        [](const SliceLife& s) { return s.decoded > 0 && Duration(s.decoded - s.due) <= kMaxAge; });
   }
   return n;
 }

@@ -7,6 +7,7 @@
 #include <optional>
 #include <vector>
 
+#include "src/base/time.h"
 #include "src/tools/demo/cloud_compare.h"
 #include "src/tools/demo/cloud_frame.h"
 
@@ -28,6 +29,9 @@ struct SliceLife {
   std::optional<Comparison> comparison;
 };
 
+/// What is older is late, as for the sender's queue (max-queue-delay of screamsink).
+constexpr Duration kMaxAge = std::chrono::milliseconds(200);
+
 using ScanLife = std::vector<SliceLife>;
 
 struct ScanCounts {
@@ -35,6 +39,7 @@ struct ScanCounts {
   std::uint64_t skipped = 0;   // of these, at least one was not encoded
   std::uint64_t sent = 0;
   std::uint64_t complete = 0;  // every slice decoded
+  std::uint64_t in_time = 0;   // of these, every slice within kMaxAge of its last column
   std::uint64_t slices_sent = 0;
   std::uint64_t slices_lost = 0;  // encoded, and not decoded
 };

@@ -35,9 +35,10 @@ int Run(int argc, char** argv) {
   auto* receive = app.add_subcommand("receive", "The receiving end (started by run)");
   for (auto* end : {send, receive})
     end->add_option("pipeline", pipeline, "As for gst-launch-1.0")->required();
-  lidar::tools::Parse(&app, argc, argv);
+  lidar::tools::Parse(&app, argc, argv, [&] {
+    if (run->parsed()) lidar::demo::CheckRunOptions(options);
+  });
   if (run->parsed()) {
-    lidar::demo::CheckRunOptions(options);
     if (options.secure) MakeKey();
     return lidar::demo::RunDemo(options);
   }

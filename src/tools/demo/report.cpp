@@ -187,9 +187,10 @@ bool DrawPlots(const Measurements& m, const std::string& folder) {
 
 void PrintTable(const nlohmann::ordered_json& s) {
   std::printf("\n");
-  PrintLine("scans captured / skipped / complete", Field(s["scans_captured"], "%.0f") + " / " +
-                                                       Field(s["scans_skipped"], "%.0f") + " / " +
-                                                       Field(s["scans_complete"], "%.0f"));
+  PrintLine("scans captured / skipped / complete",
+            Field(s["scans_captured"], "%.0f") + " / " + Field(s["scans_skipped"], "%.0f") + " / " +
+                Field(s["scans_complete"], "%.0f") + " (in time " +
+                Field(s["scans_in_time"], "%.0f") + ")");
   PrintLine("slices sent / lost",
             Field(s["slices_sent"], "%.0f") + " / " + Field(s["slices_lost"], "%.0f"));
   PrintLine("mean rate", Field(s["mean_rate_bps"], "%.2f Mbit/s", 1e-6));

@@ -153,11 +153,11 @@ void AddRunOptions(CLI::App* app, RunOptions* o) {
 
 void CheckRunOptions(const RunOptions& o) {
   CapacityOf(o);
-  if (o.steps_mbps.empty()) throw std::runtime_error("--steps needs at least one rate");
+  if (o.steps_mbps.empty()) throw CLI::ValidationError("--steps needs at least one rate");
   if (o.start_bitrate_mbps > o.max_bitrate_mbps)
-    throw std::runtime_error("--start-bitrate must not be above --max-bitrate");
+    throw CLI::ValidationError("--start-bitrate must not be above --max-bitrate");
   if (EncoderOf(o) == "lidarenc" && o.geometry == "xyz")
-    throw std::runtime_error("--geometry xyz needs --encoder dracoenc: lidarenc codes ranges");
+    throw CLI::ValidationError("--geometry xyz needs --encoder dracoenc: lidarenc codes ranges");
 }
 
 std::string EncoderOf(const RunOptions& o) {
@@ -189,7 +189,7 @@ link::Capacity CapacityOf(const RunOptions& o) {
     text << std::ifstream(o.trace).rdbuf();
     std::string error;
     auto capacity = link::Capacity::ParseTrace(text.str(), true, &error);
-    if (!capacity) throw std::runtime_error("--trace " + o.trace + ": " + error);
+    if (!capacity) throw CLI::ValidationError("--trace " + o.trace + ": " + error);
     return *capacity;
   }
   if (o.rate_mbps > 0) return link::Capacity::Constant(mbps(o.rate_mbps));

@@ -251,6 +251,7 @@ nlohmann::ordered_json Summarise(const Measurements& m) {
   s["scans_skipped"] = n.skipped;
   s["scans_sent"] = n.sent;
   s["scans_complete"] = n.complete;
+  s["scans_in_time"] = n.in_time;
   s["slices_sent"] = n.slices_sent;
   s["slices_lost"] = n.slices_lost;
   AddRates(m, &s);

@@ -10,8 +10,7 @@ namespace {
 
 constexpr double kUseful = 0.9;  // of what the oracle delivers
 constexpr double kOfSomeUse = 0.5;
-constexpr double kMostly = 0.5;                               // of the time
-constexpr Duration kMaxAge = std::chrono::milliseconds(200);  // max-queue-delay of screamsink
+constexpr double kMostly = 0.5;  // of the time
 
 template <class... Args>
 std::string Text(const char* format, Args... args) {

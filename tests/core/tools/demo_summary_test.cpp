@@ -56,6 +56,19 @@ TEST(DemoLedger, CountsScansByWhatBecameOfTheirSlices) {
   EXPECT_EQ(ledger.Count(kOrigin + kSecond / 2).slices_lost, 0U) << "it may still be on its way";
 }
 
+TEST(DemoLedger, AScanIsInTimeWhereEachSliceIsThereWithinAFifthOfASecond) {
+  Ledger ledger;
+  for (std::uint32_t slice = 0; slice < 2; ++slice) {
+    Live(&ledger, 1, slice, kOrigin);
+    Live(&ledger, 2, slice, kOrigin + kSecond);
+  }
+  // The last column is 1 ms before the capture.
+  ledger.Add(Record("decoded", 1, 1, kOrigin + 199 * kMs));
+  ledger.Add(Record("decoded", 2, 1, kOrigin + kSecond + 200 * kMs));
+  EXPECT_EQ(ledger.Count().complete, 2U);
+  EXPECT_EQ(ledger.Count().in_time, 1U);
+}
+
 TEST(DemoLedger, TakesTheRecordsOfBothEndsInAnyOrder) {
   Ledger ledger;
   for (std::uint32_t slice = 0; slice < 2; ++slice) {
