@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <cstdio>
 #include <cstdlib>
+#include <cstring>
 #include <string>
 #include <vector>
 
@@ -74,6 +75,11 @@ void PrintUsage() {
   std::puts(lidar::scream::test::kParameterUsage);
 }
 
+bool IsVariant(const std::string& name) {
+  return std::any_of(kVariants.begin(), kVariants.end(),
+                     [&](const Variant& variant) { return name == variant.name; });
+}
+
 bool Parse(int argc, char** argv, Options* options) {
   std::vector<std::string> names;
   for (int i = 1; i < argc; ++i) {
@@ -93,6 +99,7 @@ bool Parse(int argc, char** argv, Options* options) {
       options->traces.push_back(*trace);
     } else if (arg == "--variant") {
       options->variants.push_back(argv[++i]);
+      if (!IsVariant(options->variants.back())) return false;
     } else if (arg == "--seconds") {
       options->seconds = std::atof(argv[++i]);
     } else if (arg == "--rtt") {
@@ -280,7 +287,7 @@ int main(int argc, char** argv) {
   Options options;
   if (!Parse(argc, argv, &options)) {
     PrintUsage();
-    return 2;
+    return argc > 1 && std::strcmp(argv[1], "--help") == 0 ? 0 : 2;
   }
   if (options.starts == 1 && options.late_share < 0) PrintHeader();
   for (const NamedTrace& trace : options.traces) {

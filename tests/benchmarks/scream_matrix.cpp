@@ -32,7 +32,7 @@ struct Options {
 
 void PrintUsage() {
   std::puts(
-      "usage: scream-matrix [--draft] [--seconds S] [--samples CSV] [SCENARIO...]\n"
+      "usage: scream-matrix [options] [SCENARIO...]\n"
       "Simulates SCReAM v2 over the scenarios (all by default) and prints one line each.\n"
       "  --seconds S    shorter (or longer) runs\n"
       "  --frames-per-second N   of every flow of ours\n"
@@ -69,8 +69,11 @@ bool Parse(int argc, char** argv, Options* options) {
       options->seconds = std::atof(argv[++i]);
     } else if (arg[0] == '-') {
       return false;
-    } else {
+    } else if (FindScenario(arg, options->parameters)) {
       options->scenarios.push_back(arg);
+    } else {
+      std::fprintf(stderr, "scream-matrix: no scenario is called %s\n", arg.c_str());
+      return false;
     }
   }
   return true;
