@@ -35,7 +35,10 @@ bool Stream::OnQueued(Time now, const QueuedPacket& packet) {
   if (!is_media) return false;
   if (packet.group) NoteGroup(now, packet);
   media_ssrc_ = packet.ssrc;
-  if (starts_frame) frame_size_ = DataSize();
+  if (starts_frame) {
+    frame_size_ = DataSize();
+    frame_begin_ = now;
+  }
   frame_timestamp_ = packet.rtp_timestamp;
   frame_size_ += packet.size;
   if (!packet.marker) return false;
@@ -157,9 +160,8 @@ Duration Stream::media_qdelay(Time now) const {
 
 DataSize Stream::backlog(Time now) const {
   const Duration left =
-      sends_scans() && last_frame_
-          ? std::clamp(*last_frame_ + frame_period_ - now, Duration{0}, frame_period_)
-          : frame_period_;
+      sends_scans() ? std::clamp(frame_begin_ + frame_period_ - now, Duration{0}, frame_period_)
+                    : frame_period_;
   return std::max(DataSize(), queued_ - target_bitrate_ * left);
 }
 

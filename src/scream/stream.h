@@ -104,6 +104,7 @@ class Stream {
   DataSize frame_size_;
   std::optional<std::uint32_t> queued_group_, begun_group_, dropped_group_;
   Group this_group_, last_group_;
+  Time frame_begin_{};  // of the newest
   std::optional<Time> last_frame_;
   std::optional<Time> last_active_;
   Duration frame_period_ = 20ms;

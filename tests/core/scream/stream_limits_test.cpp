@@ -117,6 +117,16 @@ TEST_F(Limits, WhatIsLeftOfAWholeScanIsABacklogWhenTheNextOneComes) {
   EXPECT_NEAR(InMbps(streams_.Find(a)->backlog_rate(kStart + 150ms)), 4, 1e-3);
 }
 
+TEST_F(Limits, AScanThatIsBeingQueuedIsNoBacklogYet) {
+  const StreamId a = Add({1, Mbps(0), Mbps(1), Mbps(100)});
+  streams_.Allocate(kStart, Mbps(8));
+  Queue(a, kStart, 1, 1);
+  Queue(a, kStart + 100ms, 1, 2);
+  for (int i = 0; i < 50; ++i)
+    streams_.Find(a)->OnQueued(kStart + 200ms, {1, DataSize::Bytes(1000), false, 3});
+  EXPECT_EQ(streams_.Find(a)->backlog(kStart + 201ms), DataSize());
+}
+
 TEST_F(Limits, WhatIsLeftOfAShortFrameIsNoBacklog) {
   const StreamId a = Add({1, Mbps(0), Mbps(1), Mbps(100)});
   streams_.Allocate(kStart, Mbps(8));
