@@ -12,7 +12,7 @@ namespace {
 constexpr double kUnitStep = 0.01;
 // Fewer returns than this say nothing about the scene: headers are most of the bytes.
 constexpr std::uint32_t kFewReturns = 64;
-// More than this is no coding of it: as much as its points take as they are, twice.
+// Far more than a return takes that is not coded: such a size is a fault, and no scene.
 constexpr double kMostBytesAReturn = 64;
 constexpr double kMinSlope = 0.6;
 constexpr double kMaxSlope = 1.6;

@@ -33,11 +33,11 @@ class Stream {
   /// Nothing of the access unit at the head, or of its group, has left yet.
   bool at_start() const { return queue_.front().starts_frame && !Begun(queue_.front()); }
   DataSize queued() const { return queued_; }
-  /// What is queued beyond the frame that is leaving. Of a whole scan no more belongs here than
-  /// leaves until the next one comes.
+  /// What is queued beyond what the target carries until the next frame is due. Frames that are not
+  /// whole scans count as due a full period from now.
   DataSize backlog(Time now) const;
-  /// The target is to be so much lower for the backlog to leave within backlog_drain, or that of a
-  /// whole scan with the next one.
+  /// How much lower the target must be for the backlog to be gone: within backlog_drain, or for
+  /// whole scans within a period.
   DataRate backlog_rate(Time now) const;
   /// Age of the oldest packet.
   Duration media_qdelay(Time now) const;
@@ -68,7 +68,10 @@ class Stream {
 
  private:
   /// Frames seldom enough that each is a queue of its own.
-  bool sends_scans() const { return frame_period_ >= p_.long_frame_period; }
+  bool sends_scans() const { return frame_period_ >= kScanPeriod; }
+  /// Between the frames of film, 42 ms, and scans of 20 Hz.
+  static constexpr Duration kScanPeriod = std::chrono::milliseconds(45);
+
   struct Queued {
     DataSize size;
     Time queued{};
@@ -104,7 +107,7 @@ class Stream {
   DataSize frame_size_;
   std::optional<std::uint32_t> queued_group_, begun_group_, dropped_group_;
   Group this_group_, last_group_;
-  Time frame_begin_{};  // of the newest
+  Time frame_begin_{};  // when the first packet of the newest frame was queued
   std::optional<Time> last_frame_;
   std::optional<Time> last_active_;
   Duration frame_period_ = 20ms;

@@ -130,8 +130,8 @@ DataRate Streams::Fill(std::vector<Share> open, DataRate left) {
 
 /// A stream that waits for its turn behind the backlog of another one has done nothing wrong.
 void Streams::LeaveRoomForBacklogs(Time now) {
-  const auto wait = [](const Stream& s) {
-    return s.queued() / std::max(s.target_bitrate(), DataRate::BitsPerSecond(1));
+  const auto wait = [now](const Stream& s) {
+    return s.backlog(now) / std::max(s.target_bitrate(), DataRate::BitsPerSecond(1));
   };
   Duration longest{0};
   for (const auto& [id, stream] : streams_) longest = std::max(longest, wait(stream));

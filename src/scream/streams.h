@@ -31,8 +31,8 @@ class Streams {
   /// Minimum first, then by priority, none above its maximum; silent streams keep their minimum
   /// (unless all are silent).
   void Allocate(Time now, DataRate total);
-  /// Lowers targets of streams with more than a frame in their queue, so that it leaves within
-  /// `backlog_drain`; not below what they need.
+  /// Lowers the targets of the streams with the longest backlogs by Stream::backlog_rate(); not
+  /// below what they need.
   void LeaveRoomForBacklogs(Time now);
   void OnSuddenBacklog() {
     for (auto& [id, stream] : streams_) stream.OnSuddenBacklog();

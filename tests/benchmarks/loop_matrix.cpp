@@ -99,7 +99,10 @@ bool Parse(int argc, char** argv, Options* options) {
       options->traces.push_back(*trace);
     } else if (arg == "--variant") {
       options->variants.push_back(argv[++i]);
-      if (!IsVariant(options->variants.back())) return false;
+      if (!IsVariant(options->variants.back())) {
+        std::fprintf(stderr, "loop-matrix: no variant is called %s\n", argv[i]);
+        return false;
+      }
     } else if (arg == "--seconds") {
       options->seconds = std::atof(argv[++i]);
     } else if (arg == "--rtt") {

@@ -29,6 +29,7 @@ expect 2 "os1-64" --model os9-64
 expect 2 "no-such-file" --trace no-such-file
 expect 2 "--rate" --rate 5 --steps 1,2
 expect 2 "line 1: expected two numbers" --trace "$folder/trace.txt"
+expect 2 "lidarenc codes ranges" --geometry xyz --encoder lidarenc
 expect 2 "--start-bitrate must not be above --max-bitrate" --start-bitrate 9 --max-bitrate 8
 expect 1 "the sender ended early" --pcap "$folder/capture.pcap" --metadata "$folder/metadata.json"
 expect 0 "--duration" --help

@@ -152,7 +152,11 @@ void AddRunOptions(CLI::App* app, RunOptions* o) {
 }
 
 void CheckRunOptions(const RunOptions& o) {
-  CapacityOf(o);
+  try {
+    CapacityOf(o);
+  } catch (const std::runtime_error& e) {
+    throw CLI::ValidationError(e.what());
+  }
   if (o.steps_mbps.empty()) throw CLI::ValidationError("--steps needs at least one rate");
   if (o.start_bitrate_mbps > o.max_bitrate_mbps)
     throw CLI::ValidationError("--start-bitrate must not be above --max-bitrate");
@@ -189,7 +193,7 @@ link::Capacity CapacityOf(const RunOptions& o) {
     text << std::ifstream(o.trace).rdbuf();
     std::string error;
     auto capacity = link::Capacity::ParseTrace(text.str(), true, &error);
-    if (!capacity) throw CLI::ValidationError("--trace " + o.trace + ": " + error);
+    if (!capacity) throw std::runtime_error("--trace " + o.trace + ": " + error);
     return *capacity;
   }
   if (o.rate_mbps > 0) return link::Capacity::Constant(mbps(o.rate_mbps));

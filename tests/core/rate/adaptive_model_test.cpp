@@ -38,6 +38,19 @@ AdaptiveModel Taught() {
   return model;
 }
 
+TEST(AdaptiveModel, LearnsNothingFromASliceThatIsLargerThanItsReturnsUncoded) {
+  AdaptiveModel model = Taught();
+  const SliceFeatures slice = Slice(2, 0);
+  const double before = Bytes(model, slice);
+  const auto encoded = [&](std::int64_t bytes_a_return) {
+    return EncodedSize{DataSize::Bytes(bytes_a_return * slice.returns), 0.02, 1};
+  };
+  model.OnEncoded(slice, kTwoCentimetres, encoded(65));
+  EXPECT_DOUBLE_EQ(Bytes(model, slice), before);
+  model.OnEncoded(slice, kTwoCentimetres, encoded(63));
+  EXPECT_GT(Bytes(model, slice), 2 * before);
+}
+
 TEST(AdaptiveModel, PassesASurpriseOnToTheNextSlice) {
   AdaptiveModel model = Taught();
   const double before = Bytes(model, Slice(2, 1));

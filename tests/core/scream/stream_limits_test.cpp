@@ -115,6 +115,23 @@ TEST_F(Limits, WhatIsLeftOfAWholeScanIsABacklogWhenTheNextOneComes) {
   EXPECT_EQ(streams_.Find(a)->backlog(kStart + 300ms), DataSize::Bytes(100'000));
   // The next scan is to be so much smaller.
   EXPECT_NEAR(InMbps(streams_.Find(a)->backlog_rate(kStart + 150ms)), 4, 1e-3);
+  streams_.LeaveRoomForBacklogs(kStart + 100ms);
+  EXPECT_NEAR(Target(a), 8, 1e-3);
+  streams_.LeaveRoomForBacklogs(kStart + 150ms);
+  EXPECT_NEAR(Target(a), 4, 1e-3);
+}
+
+/// A strict stream's burst goes first.
+TEST_F(Limits, AScanThatIsLeavingIsNotTheLongestBacklog) {
+  const StreamId scans = Add({1, Mbps(0), Mbps(1), Mbps(100)});
+  const StreamId frames = Add({1, Mbps(0), Mbps(1), Mbps(100)});
+  streams_.Allocate(kStart, Mbps(16));
+  Queue(scans, kStart, 1, 1);
+  Queue(scans, kStart + 100ms, 99, 2);
+  Queue(frames, kStart + 100ms, 60);  // 40 ms beyond a frame
+  streams_.LeaveRoomForBacklogs(kStart + 101ms);
+  EXPECT_NEAR(Target(scans), 8, 1e-3);
+  EXPECT_NEAR(Target(frames), 8 - 1.6, 1e-3);
 }
 
 TEST_F(Limits, AScanThatIsBeingQueuedIsNoBacklogYet) {
