@@ -2,7 +2,6 @@
 // What a codec tells the rate controller about a slice, and how a predictor turns it into bytes.
 #pragma once
 #include <cstdint>
-#include <optional>
 #include <string>
 
 #include "src/base/units.h"

@@ -15,6 +15,8 @@ constexpr double kFramePeriodGain = 0.1;
 constexpr Duration kMaxFramePeriod = 2s;
 constexpr Duration kMinFramePeriod = 1ms;
 constexpr Duration kLikelyFramePeriod = 200ms;
+/// Between the frames of film, 42 ms, and scans of 20 Hz.
+constexpr Duration kScanPeriod = 45ms;
 /// The rest of a group that has begun to leave may wait this many times as long.
 constexpr int kBegunStay = 5;
 /// A stream without packets for so long leaves its share to the others.
@@ -157,6 +159,8 @@ void Stream::NoteGroup(Time now, const QueuedPacket& packet) {
 Duration Stream::media_qdelay(Time now) const {
   return queue_.empty() ? Duration{0} : now - queue_.front().queued;
 }
+
+bool Stream::sends_scans() const { return frame_period_ >= kScanPeriod; }
 
 DataSize Stream::backlog(Time now) const {
   const Duration left =

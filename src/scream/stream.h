@@ -68,10 +68,7 @@ class Stream {
 
  private:
   /// Frames seldom enough that each is a queue of its own.
-  bool sends_scans() const { return frame_period_ >= kScanPeriod; }
-  /// Between the frames of film, 42 ms, and scans of 20 Hz.
-  static constexpr Duration kScanPeriod = std::chrono::milliseconds(45);
-
+  bool sends_scans() const;
   struct Queued {
     DataSize size;
     Time queued{};

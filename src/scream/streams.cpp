@@ -136,13 +136,12 @@ void Streams::LeaveRoomForBacklogs(Time now) {
   Duration longest{0};
   for (const auto& [id, stream] : streams_) longest = std::max(longest, wait(stream));
   for (auto& [id, stream] : streams_) {
-    const DataRate excess = stream.backlog_rate(now);
-    if (wait(stream) < longest / 2 || excess == DataRate()) continue;
+    if (wait(stream) < longest / 2) continue;
     const DataRate target = stream.target_bitrate();
     const StreamConfig& c = stream.config();
     const DataRate floor =
         std::min(target, std::max(c.min_bitrate, c.needed_bitrate * p_.needed_margin));
-    stream.set_target_bitrate(std::max(floor, target - excess));
+    stream.set_target_bitrate(std::max(floor, target - stream.backlog_rate(now)));
   }
 }
 

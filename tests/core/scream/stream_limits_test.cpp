@@ -12,6 +12,12 @@ class Limits : public ::testing::Test {
  protected:
   StreamId Add(const StreamConfig& config) { return streams_.Add(config); }
   double Target(StreamId id) { return streams_.Find(id)->target_bitrate().bits_per_second() / 1e6; }
+  /// A target of 1000 bytes a millisecond.
+  StreamId AddAt8Mbps() {
+    const StreamId id = Add({1, Mbps(0), Mbps(1), Mbps(100)});
+    streams_.Allocate(kStart, Mbps(8));
+    return id;
+  }
   void Queue(StreamId id, Time now, int packets, std::uint32_t timestamp = 7) {
     for (int i = 0; i < packets; ++i)
       streams_.Find(id)->OnQueued(now, {1, DataSize::Bytes(1000), i + 1 == packets, timestamp});
@@ -90,8 +96,7 @@ TEST_F(Limits, OnlyTheLongestBacklogsMakeRoom) {
 }
 
 TEST_F(Limits, AFrameIsNoBacklogAndWhatIsNeededStays) {
-  const StreamId a = Add({1, Mbps(0), Mbps(1), Mbps(100)});
-  streams_.Allocate(kStart, Mbps(8));
+  const StreamId a = AddAt8Mbps();
   Queue(a, kStart, 20);
   streams_.LeaveRoomForBacklogs(kStart);
   EXPECT_NEAR(Target(a), 8, 1e-3);
@@ -106,8 +111,7 @@ TEST_F(Limits, AFrameIsNoBacklogAndWhatIsNeededStays) {
 
 /// 100,000 bytes at 8 Mbit/s are a frame of 100 ms: half of it is left after 50 ms.
 TEST_F(Limits, WhatIsLeftOfAWholeScanIsABacklogWhenTheNextOneComes) {
-  const StreamId a = Add({1, Mbps(0), Mbps(1), Mbps(100)});
-  streams_.Allocate(kStart, Mbps(8));
+  const StreamId a = AddAt8Mbps();
   Queue(a, kStart, 1, 1);
   Queue(a, kStart + 100ms, 99, 2);
   EXPECT_EQ(streams_.Find(a)->backlog(kStart + 100ms), DataSize());
@@ -121,7 +125,7 @@ TEST_F(Limits, WhatIsLeftOfAWholeScanIsABacklogWhenTheNextOneComes) {
   EXPECT_NEAR(Target(a), 4, 1e-3);
 }
 
-/// A strict stream's burst goes first.
+/// Its queue is the longest, but most of that leaves in time.
 TEST_F(Limits, AScanThatIsLeavingIsNotTheLongestBacklog) {
   const StreamId scans = Add({1, Mbps(0), Mbps(1), Mbps(100)});
   const StreamId frames = Add({1, Mbps(0), Mbps(1), Mbps(100)});
@@ -135,8 +139,7 @@ TEST_F(Limits, AScanThatIsLeavingIsNotTheLongestBacklog) {
 }
 
 TEST_F(Limits, AScanThatIsBeingQueuedIsNoBacklogYet) {
-  const StreamId a = Add({1, Mbps(0), Mbps(1), Mbps(100)});
-  streams_.Allocate(kStart, Mbps(8));
+  const StreamId a = AddAt8Mbps();
   Queue(a, kStart, 1, 1);
   Queue(a, kStart + 100ms, 1, 2);
   for (int i = 0; i < 50; ++i)
@@ -145,8 +148,7 @@ TEST_F(Limits, AScanThatIsBeingQueuedIsNoBacklogYet) {
 }
 
 TEST_F(Limits, WhatIsLeftOfAShortFrameIsNoBacklog) {
-  const StreamId a = Add({1, Mbps(0), Mbps(1), Mbps(100)});
-  streams_.Allocate(kStart, Mbps(8));
+  const StreamId a = AddAt8Mbps();
   Queue(a, kStart, 1, 1);
   Queue(a, kStart + 20ms, 19, 2);
   EXPECT_EQ(streams_.Find(a)->backlog(kStart + 40ms), DataSize());
