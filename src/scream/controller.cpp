@@ -157,7 +157,7 @@ void Controller::TakeGapRestart(Time now) {
   answered_.OnGapEnd(now);
   streams_.OnSuddenBacklog();
   pacer_.OnGapEnd(now);
-  fast_increase_.OnGapEnd();
+  fast_increase_.Restart();
   ++counters_.gaps;
 }
 
@@ -330,9 +330,19 @@ DataRate Controller::QueueRate(const Stream& stream) const {
   return all * (stream.target_bitrate() / std::max(streams_.target_bitrate(), p_.rate_pace_min));
 }
 
-std::size_t Controller::LatePackets(Time now, StreamId id) const {
+/// How long what met a gap still takes to arrive. A scan that waits for it is not late for that:
+/// the fuller the link was before, the longer the wait.
+Duration Controller::WaitBehindGap(Time now) const {
+  const auto rate = gap_recovery_.rate_before();
+  if (!p_.extensions.gap_recovery || !rate || !liveness_.Overdue(now)) return Duration{0};
+  return std::min(history_.bytes_in_flight() / *rate, p_.max_queue_delay / 2);
+}
+
+std::size_t Controller::LatePackets(Time caller_now, StreamId id) const {
   const Stream* stream = streams_.Find(id);
-  return stream == nullptr ? 0 : stream->LatePackets(clock_.Peek(now), QueueRate(*stream));
+  if (stream == nullptr) return 0;
+  const Time now = clock_.Peek(caller_now);
+  return stream->LatePackets(now - WaitBehindGap(now), QueueRate(*stream));
 }
 
 void Controller::OnTimer(Time now) {

@@ -98,7 +98,8 @@ class Controller {
   std::optional<SendDecision> NextSend(Time now) const;
   /// How many packets at the head of the queue are too late to be of use. An access unit that has
   /// not begun to leave is late as a whole, beyond `max_queue_delay`; late ones behind it count as
-  /// well. The rest of one that has begun is late at five times that age.
+  /// well. The rest of one that has begun is late at five times that age. While packets in flight
+  /// are overdue the time that they need is added, half of `max_queue_delay` at most.
   std::size_t LatePackets(Time now, StreamId stream) const;
   /// The next time at which OnTimer() has something to do.
   Time NextTimer() const;
@@ -133,6 +134,7 @@ class Controller {
   DataRate WindowTarget(Time now) const;
   bool CongestedLately() const;
   DataRate QueueRate(const Stream& stream) const;
+  Duration WaitBehindGap(Time now) const;
   DataRate AskedTarget(Time now, DataRate allowed) const;
   bool Holds(const Stream& stream, Time now) const;
   Duration Round() const;

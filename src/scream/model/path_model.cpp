@@ -127,7 +127,7 @@ void PathModel::ObserveCapacity(Time now, const AckSummary& acks, Duration qdela
       busy_run_.Reset();
       continue;
     }
-    const bool marked = packet.arrived_ecn == Ecn::kCe;
+    const bool marked = newest_marked_ = packet.arrived_ecn == Ecn::kCe;
     const Duration qdelay = *packet.arrival - packet.sent - queue_delay_.base();
     const bool busy = marked || qdelay >= BusyQdelay(now, qdelay_target);
     loss_context_.OnAcked(packet.sent, qdelay);

@@ -74,6 +74,8 @@ class PathModel {
   bool hole_in_report() const { return hole_in_report_; }
   /// Within the last round trip.
   bool MarkedLately(Time now) const { return last_mark_ && now - *last_mark_ < rtt_.min(); }
+  /// The packet that was acknowledged last came marked.
+  bool newest_marked() const { return newest_marked_; }
   const MaxBytesInFlight& max_in_flight() const { return max_in_flight_; }
   DataRate sent_rate(Time now) const { return sent_rate_.Rate(now); }
   /// Over a round trip, or two frame periods where those are longer.
@@ -130,6 +132,7 @@ class PathModel {
   mutable RateMeter acked_rate_{100ms};
   mutable RateMeter long_acked_rate_{1s};
   std::optional<Time> last_mark_;
+  bool newest_marked_ = false;
   Time last_loss_{};
   Time last_report_{};
   Duration report_gap_{0};

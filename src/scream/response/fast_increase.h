@@ -25,10 +25,8 @@ class FastIncrease {
     round_start_ = now;
     ++rounds_;
   }
-  /// As at the start of a flow.
+  /// As at the start of a flow: after a gap or an outage.
   void Restart() { starting_ = true; }
-  /// What the path was before a gap is known ground: growth need not become bold first.
-  void OnGapEnd() { rounds_ = std::max(rounds_, p_.fast_increase_rounds + kBoldRounds); }
   /// Fraction of the acknowledged bytes by which the window may grow; the less, the longer the
   /// queue.
   double growth(Duration qdelay, Duration round, bool l4s_works) const {
@@ -42,7 +40,6 @@ class FastIncrease {
   }
 
  private:
-  static constexpr int kBoldRounds = 5;
   const Parameters& p_;
   bool starting_ = true;
   int rounds_ = 0;

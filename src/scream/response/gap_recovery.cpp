@@ -12,8 +12,8 @@ constexpr double kGapPart = 0.25;
 /// After so long a gap is no gap any more, but what the link is now.
 constexpr Duration kLongestMemory = 3s;
 constexpr Duration kLongestGap = 10s;
-/// Delay at its base...
-constexpr Duration kNoQueue = 3ms;
+/// Delay at its base, but for a few packets that came together...
+constexpr Duration kNoQueue = 5ms;
 /// ...without anything to measure the link by: each round trip this part of what is missing.
 constexpr double kUnprovenPart = 0.5;
 constexpr double kBack = 0.9;
@@ -74,7 +74,8 @@ std::optional<DataSize> GapRecovery::Measured(DataRate rate, const PathModel& pa
 
 std::optional<DataSize> GapRecovery::Unproven(Time now, const PathModel& path,
                                               DataSize ref_wnd) const {
-  const bool calm = path.queue_delay().qdelay() < kNoQueue && !path.MarkedLately(now);
+  // The packet before may have been marked in the gap.
+  const bool calm = path.queue_delay().qdelay() < kNoQueue && !path.newest_marked();
   if (!calm || now - last_restart_ < path.rtt().min()) return std::nullopt;
   return ref_wnd + (before_->state.window - ref_wnd) * kUnprovenPart;
 }

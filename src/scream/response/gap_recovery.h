@@ -31,6 +31,10 @@ class GapRecovery {
     last_sign_.reset();
   }
 
+  /// What the link carried when it was last calm. None is known at first.
+  std::optional<DataRate> rate_before() const {
+    return before_ ? std::optional(before_->rate) : std::nullopt;
+  }
   bool in_gap() const { return last_sign_.has_value(); }
 
  private:

@@ -4,6 +4,7 @@
 
 #include <utility>
 
+#include "src/link/trace_maker.h"
 #include "tests/core/loop/loop_goals.h"
 #include "tests/support/simulated.h"
 
@@ -127,6 +128,32 @@ TEST(Loop, IsHardlyBehindAFixedStepWhereverATraceBegins) {
     EXPECT_GE(complete, 0.98 * fixed_complete) << trace;
     EXPECT_GE(in_time, 0.98 * fixed_in_time) << trace;
   }
+}
+
+/// What filled the link when a gap began leaves first, so the scan behind it comes later than that
+/// of a stream that sends little.
+TEST(Loop, AFullLinkCostsHardlyAScanOfAGap) {
+  link::GapTraceConfig gaps;
+  gaps.gap = 300ms;
+  gaps.every = 2070ms;  // meets scans at any phase
+  LoopCase c = Case("gaps");
+  std::string error;
+  c.capacity = *link::Capacity::ParseTrace(MakeGapTrace(gaps), true, &error);
+  const LoopReport r = RunLoop(c).report;
+  c.source.adapts = false;
+  EXPECT_GE(static_cast<double>(r.complete),
+            0.985 * static_cast<double>(RunLoop(c).report.complete));
+}
+
+TEST(Loop, ALinkThatComesBackFasterIsSoonInUse) {
+  LoopCase c = Case("faster");
+  std::vector<DataRate> rates(10, Mbps(1.7));
+  rates.insert(rates.end(), 3, Mbps(0.2));
+  rates.insert(rates.end(), 12, Mbps(12));
+  c.capacity = link::Capacity::Steps(rates, 400ms, true);
+  const LoopReport r = RunLoop(c).report;
+  EXPECT_GE(r.utilisation, 0.85);
+  EXPECT_LE(r.recovery_s.p50, 0.7);
 }
 
 /// A tenth of the capacity looks like a gap at first.

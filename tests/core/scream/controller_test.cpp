@@ -92,6 +92,59 @@ TEST(Controller, SendsWithoutEcnWhereNothingMarkedComesThrough) {
   EXPECT_EQ(c.ecn_state(), EcnState::kSilent);
 }
 
+/// A full link of 8 Mbit/s, RTT 40 ms, that stands still from `gap` on.
+class FullLink : public ::testing::Test {
+ protected:
+  FullLink() {
+    for (now_ = kStart; now_ < kStart + 2s; now_ += kTick) {
+      if (now_ >= kStart + 40ms) Report(now_ - 40ms);
+      for (int i = 0; i < kPacketsATick; ++i)
+        c_.OnSent(now_, id_, {1, seq_++, DataSize::Bytes(1000), Ecn::kEct1});
+    }
+  }
+  /// All that was sent until then has arrived half a round trip later.
+  void Report(Time sent) {
+    CongestionFeedback f;
+    f.report_timestamp = ReportClock::ToTimestamp(sent + 20ms);
+    f.blocks.push_back({1, reported_, {}});
+    const auto until = static_cast<std::uint16_t>(((sent - kStart) / kTick + 1) * kPacketsATick);
+    while (reported_ != until) {
+      f.blocks[0].metrics.push_back({true, Ecn::kEct1, 0ms});
+      ++reported_;
+    }
+    ASSERT_EQ(c_.OnFeedback(now_, f), FeedbackResult::kAccepted);
+  }
+  void QueueFrame() { c_.OnQueued(now_, id_, {1, DataSize::Bytes(1000), true, 7}); }
+
+  static constexpr Duration kTick = 10ms;
+  static constexpr int kPacketsATick = 10;
+  Controller c_{Parameters()};
+  const StreamId id_ = c_.AddStream({1, Mbps(0.1), Mbps(8), Mbps(10)});
+  Time now_ = kStart;
+  std::uint16_t seq_ = 0, reported_ = 0;
+};
+
+TEST_F(FullLink, AFrameBehindWhatMetAGapMayWaitForThatToo) {
+  QueueFrame();
+  EXPECT_EQ(c_.LatePackets(now_ + 220ms, id_), 0U);
+  EXPECT_EQ(c_.LatePackets(now_ + 260ms, id_), 1U);
+}
+
+TEST_F(FullLink, AFrameBehindNothingMayNot) {
+  Report(now_ - kTick);
+  QueueFrame();
+  EXPECT_EQ(c_.LatePackets(now_ + 200ms, id_), 0U);
+  EXPECT_EQ(c_.LatePackets(now_ + 201ms, id_), 1U);
+}
+
+TEST_F(FullLink, WaitsForAllThatIsInFlightForHalfOfTheDelayAtMost) {
+  for (int i = 0; i < 1000; ++i)
+    c_.OnSent(now_, id_, {1, seq_++, DataSize::Bytes(1000), Ecn::kEct1});
+  QueueFrame();
+  EXPECT_EQ(c_.LatePackets(now_ + 300ms, id_), 0U);
+  EXPECT_EQ(c_.LatePackets(now_ + 301ms, id_), 1U);
+}
+
 /// A packet is waited for no longer than a round trip, however late another one was.
 TEST(Controller, WaitsForAPacketNoLongerThanARoundTrip) {
   Controller c{Parameters()};

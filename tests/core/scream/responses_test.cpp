@@ -185,6 +185,14 @@ TEST_F(GapRecoveryTest, ComesBackByHalvesWhereThereIsNoBacklogToMeasureBy) {
   EXPECT_EQ(restart->window.bytes(), 38250);
 }
 
+TEST_F(GapRecoveryTest, ComesBackWithTheFirstPacketThatIsNotMarked) {
+  FallIntoAGap();
+  path_.Arrive(1, 50ms, 0ms, Ecn::kCe);  // it met the gap
+  EXPECT_FALSE(Update(DataSize::Bytes(3000)));
+  path_.Arrive(1, 5ms, 4ms, Ecn::kEct1);
+  EXPECT_TRUE(Update(DataSize::Bytes(3000)));
+}
+
 TEST_F(GapRecoveryTest, BelievesLessOnceAStepBackMeetsASlowLink) {
   FallIntoAGap();
   path_.Arrive(2, 50ms, 0ms, Ecn::kEct1);
