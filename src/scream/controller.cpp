@@ -115,6 +115,7 @@ void Controller::TakeOutageRestart(Time now) {
   const auto restart = outage_.OnFeedback(now);
   if (!restart) return;
   window_.Set(std::max(window_.ref_wnd(), *restart));
+  window_.ForgetSigns();
   answered_.OnOutageEnd(now, path_.rtt().smoothed());
   fast_increase_.Restart();
 }
@@ -153,6 +154,7 @@ void Controller::TakeGapRestart(Time now) {
       gap_recovery_.Update(now, path_, window_.ref_wnd(), competing_flows_.qdelay_target());
   if (!restart) return;
   window_.Set(restart->window);
+  window_.ForgetSigns();
   path_.OnGapEnd(now, restart->s_rtt, restart->l4s_alpha);
   answered_.OnGapEnd(now);
   streams_.OnSuddenBacklog();
@@ -330,12 +332,13 @@ DataRate Controller::QueueRate(const Stream& stream) const {
   return all * (stream.target_bitrate() / std::max(streams_.target_bitrate(), p_.rate_pace_min));
 }
 
-/// How long what met a gap still takes to arrive. A scan that waits for it is not late for that:
-/// the fuller the link was before, the longer the wait.
+/// While packets are overdue, as in a gap, a scan may be older by the time that what met the gap
+/// takes at the rate before it. What of this has arrived by now still counts.
 Duration Controller::WaitBehindGap(Time now) const {
   const auto rate = gap_recovery_.rate_before();
-  if (!p_.extensions.gap_recovery || !rate || !liveness_.Overdue(now)) return Duration{0};
-  return std::min(history_.bytes_in_flight() / *rate, p_.max_queue_delay / 2);
+  if (!rate || !liveness_.Overdue(now)) return Duration{0};
+  const MaxBytesInFlight& flight = path_.max_in_flight();
+  return std::min(std::max(flight.current(), flight.previous()) / *rate, p_.max_queue_delay / 2);
 }
 
 std::size_t Controller::LatePackets(Time caller_now, StreamId id) const {

@@ -72,6 +72,7 @@ void PathModel::Reset(Time now) {
   half_rate_until_ = Time{};
   ecn_.Reset();
   last_mark_.reset();
+  newest_marked_ = false;
   l4s_alpha_.Reset();
   marking_onset_ = MarkingOnset(p_.pacing_reserve);
 }
@@ -104,7 +105,8 @@ void PathModel::CountMarksAndLosses(Time now, const AckSummary& acks, const Send
   for (const Time sent : acks.late_ce) count_mark(sent);
   acked_rate_.set_window(std::max(rtt_.smoothed(), 2 * sender.frame_period));
   for (const AckedPacket& packet : acks.acked) {
-    if (packet.arrived_ecn == Ecn::kCe) count_mark(packet.sent);
+    newest_marked_ = packet.arrived_ecn == Ecn::kCe;
+    if (newest_marked_) count_mark(packet.sent);
     if (packet.sent >= route_begin_) ecn_.OnAcked(packet.ecn, packet.arrived_ecn);
     loss_rate_.Add(false, sender.ref_wnd);
     acked_rate_.Add(now, packet.size);
@@ -127,7 +129,7 @@ void PathModel::ObserveCapacity(Time now, const AckSummary& acks, Duration qdela
       busy_run_.Reset();
       continue;
     }
-    const bool marked = newest_marked_ = packet.arrived_ecn == Ecn::kCe;
+    const bool marked = packet.arrived_ecn == Ecn::kCe;
     const Duration qdelay = *packet.arrival - packet.sent - queue_delay_.base();
     const bool busy = marked || qdelay >= BusyQdelay(now, qdelay_target);
     loss_context_.OnAcked(packet.sent, qdelay);

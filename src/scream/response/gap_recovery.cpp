@@ -74,7 +74,7 @@ std::optional<DataSize> GapRecovery::Measured(DataRate rate, const PathModel& pa
 
 std::optional<DataSize> GapRecovery::Unproven(Time now, const PathModel& path,
                                               DataSize ref_wnd) const {
-  // The packet before may have been marked in the gap.
+  // Packets before the newest may carry marks of the gap.
   const bool calm = path.queue_delay().qdelay() < kNoQueue && !path.newest_marked();
   if (!calm || now - last_restart_ < path.rtt().min()) return std::nullopt;
   return ref_wnd + (before_->state.window - ref_wnd) * kUnprovenPart;

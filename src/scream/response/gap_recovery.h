@@ -31,7 +31,7 @@ class GapRecovery {
     last_sign_.reset();
   }
 
-  /// What the link carried when it was last calm. None is known at first.
+  /// The rate of the window that is remembered. None is at first.
   std::optional<DataRate> rate_before() const {
     return before_ ? std::optional(before_->rate) : std::nullopt;
   }

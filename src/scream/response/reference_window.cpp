@@ -79,7 +79,7 @@ void ReferenceWindow::DetectPolicer(Time now, const CongestionSignals& s) {
 
 void ReferenceWindow::NoteReaction(Time now) {
   last_reaction_to_congestion_time_ = last_congestion_detected_time_ = now;
-  loss_detected_ = data_units_marked_ = false;
+  ForgetSigns();
 }
 
 void ReferenceWindow::Reduce(Time now, Reaction reaction, const CongestionSignals& s, double scl) {
@@ -97,7 +97,7 @@ void ReferenceWindow::Reduce(Time now, Reaction reaction, const CongestionSignal
     ref_wnd_ *= p_.beta_ecn;
   ref_wnd_ = std::max(ref_wnd_, static_cast<double>(p_.min_ref_wnd.bytes()));
   last_reaction_to_congestion_time_ = now;
-  loss_detected_ = data_units_marked_ = false;
+  ForgetSigns();
 }
 
 double ReferenceWindow::L4sBackoff(Time now, const CongestionSignals& s, double scl) {

@@ -55,6 +55,8 @@ class ReferenceWindow {
   Reaction Update(Time now, const CongestionSignals& signals);
   /// Counts a reaction that was made outside: the draft's own waits its turn.
   void NoteReaction(Time now);
+  /// Marks and losses that still wait for their reaction get none.
+  void ForgetSigns() { loss_detected_ = data_units_marked_ = false; }
   /// Moves the window outside the draft's rules; never below MIN_REF_WND.
   void Set(DataSize window);
   /// Where congestion is to be expected.

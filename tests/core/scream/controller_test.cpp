@@ -92,7 +92,7 @@ TEST(Controller, SendsWithoutEcnWhereNothingMarkedComesThrough) {
   EXPECT_EQ(c.ecn_state(), EcnState::kSilent);
 }
 
-/// A full link of 8 Mbit/s, RTT 40 ms, that stands still from `gap` on.
+/// A full link of 8 Mbit/s, RTT 40 ms, that stands still from `now_` on.
 class FullLink : public ::testing::Test {
  protected:
   FullLink() {
@@ -112,6 +112,15 @@ class FullLink : public ::testing::Test {
       f.blocks[0].metrics.push_back({true, Ecn::kEct1, 0ms});
       ++reported_;
     }
+    ASSERT_EQ(c_.OnFeedback(now_, f), FeedbackResult::kAccepted);
+  }
+  /// The next `count` packets have arrived 1 ms apart, the last one half a round trip ago.
+  void ReportTrain(int count, Ecn ecn) {
+    CongestionFeedback f;
+    f.report_timestamp = ReportClock::ToTimestamp(now_ - 20ms);
+    f.blocks.push_back({1, reported_, {}});
+    for (int i = 1; i <= count; ++i) f.blocks[0].metrics.push_back({true, ecn, (count - i) * 1ms});
+    reported_ = static_cast<std::uint16_t>(reported_ + count);
     ASSERT_EQ(c_.OnFeedback(now_, f), FeedbackResult::kAccepted);
   }
   void QueueFrame() { c_.OnQueued(now_, id_, {1, DataSize::Bytes(1000), true, 7}); }
@@ -135,6 +144,37 @@ TEST_F(FullLink, AFrameBehindNothingMayNot) {
   QueueFrame();
   EXPECT_EQ(c_.LatePackets(now_ + 200ms, id_), 0U);
   EXPECT_EQ(c_.LatePackets(now_ + 201ms, id_), 1U);
+}
+
+TEST_F(FullLink, AFrameBehindFreshPacketsMayNot) {
+  Report(now_ - kTick);
+  QueueFrame();
+  const StreamId other = c_.AddStream({});
+  for (int i = 0; i < 50; ++i)
+    c_.OnSent(now_ + 190ms, other, {1, seq_++, DataSize::Bytes(1000), Ecn::kEct1});
+  EXPECT_EQ(c_.LatePackets(now_ + 200ms, id_), 0U);
+  EXPECT_EQ(c_.LatePackets(now_ + 201ms, id_), 1U);
+}
+
+TEST_F(FullLink, WaitsNoShorterOnceWhatMetAGapArrives) {
+  QueueFrame();
+  now_ += 225ms;
+  ASSERT_EQ(c_.LatePackets(now_, id_), 0U);
+  ReportTrain(16, Ecn::kEct1);
+  EXPECT_EQ(c_.LatePackets(now_, id_), 0U);
+}
+
+TEST_F(FullLink, AMarkOfAGapIsNotObeyedAfterIt) {
+  now_ += 300ms;
+  ReportTrain(1, Ecn::kCe);
+  now_ += 8ms;
+  ReportTrain(20, Ecn::kCe);
+  const Statistics restarted = c_.statistics(now_);
+  ASSERT_EQ(restarted.gaps, 1U);
+  now_ += 44ms;
+  ReportTrain(10, Ecn::kEct1);
+  EXPECT_EQ(c_.statistics(now_).ce_events, restarted.ce_events);
+  EXPECT_GE(c_.statistics(now_).ref_wnd, restarted.ref_wnd);
 }
 
 TEST_F(FullLink, WaitsForAllThatIsInFlightForHalfOfTheDelayAtMost) {

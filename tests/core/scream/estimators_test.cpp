@@ -23,6 +23,8 @@ TEST(PathModel, KnowsNothingOfAnotherRoute) {
   AckSummary loss;
   loss.lost.emplace_back();
   path.model.OnReport(path.now, loss, kSender);
+  path.Arrive(1, 1ms, 5ms, Ecn::kCe);
+  ASSERT_TRUE(path.model.newest_marked());
   ASSERT_TRUE(path.model.classic_ecn().found());
   ASSERT_TRUE(path.model.L4sWorks(path.now));
   ASSERT_GT(path.model.estimated_capacity(), DataRate());
@@ -34,6 +36,7 @@ TEST(PathModel, KnowsNothingOfAnotherRoute) {
   EXPECT_FALSE(path.model.classic_ecn().found());
   EXPECT_FALSE(path.model.L4sWorks(path.now));
   EXPECT_FALSE(path.model.MarkedLately(path.now));
+  EXPECT_FALSE(path.model.newest_marked());
   EXPECT_EQ(path.model.ecn().state(), EcnState::kTesting);
   EXPECT_EQ(path.model.estimated_capacity(), DataRate());
   EXPECT_EQ(path.model.train_capacity(), DataRate());
@@ -44,6 +47,18 @@ TEST(PathModel, KnowsNothingOfAnotherRoute) {
   EXPECT_EQ(path.model.l4s_alpha().value(), 0);
   EXPECT_EQ(path.model.marking_onset(), p.pacing_reserve);
   EXPECT_EQ(path.model.report_gap(), Duration{0});
+}
+
+TEST(PathModel, SeesTheNewestMarkWithoutAnArrivalTime) {
+  const Parameters p;
+  Path path(p);
+  path.Arrive(1, 1ms, 5ms, Ecn::kEct1);
+  AckSummary acks;
+  acks.acked.emplace_back();
+  acks.acked.back().sent = path.now;
+  acks.acked.back().arrived_ecn = Ecn::kCe;
+  path.model.OnReport(path.now, acks, kSender);
+  EXPECT_TRUE(path.model.newest_marked());
 }
 
 TEST(PathModel, TakesNothingFromPacketsOfTheOldRoute) {
