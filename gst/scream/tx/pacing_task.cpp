@@ -181,7 +181,7 @@ Time PacingTask::NextWake(Time now) const {
   for (const auto& stream : s.streams)
     if (!stream->queue.empty() && stream->live.value_or(true))
       wake = std::min(wake, now - stream->HeadAge(now) + s.settings.max_queue_delay());
-  // A late frame that has begun to leave stays: look again, but not without end.
+  // A late frame stays if it has begun to leave or waits behind a gap: look again, but not at once.
   return std::max(wake, now + std::chrono::milliseconds(1));
 }
 

@@ -71,7 +71,8 @@ const TxProperties& TxPropertyTable() {
       {"ecn-mode", "ECN codepoint of sent packets; ect1 also selects the L4S reaction",
        EnumField<S>{&S::ecn_mode, EcnModeType}},
       {"max-queue-delay",
-       "Live input older than this is dropped in whole frames, other input waits [ns]",
+       "Live input older than this, half as much again in a gap of the link, is dropped in whole "
+       "frames; other input waits [ns]",
        P<&Parameters::max_queue_delay>, 1e6, kMaxDelay},
       {"feedback-interval",
        "How seldom a healthy receiver may report; above 0 it reports at the end of frames [ns]",
