@@ -4,6 +4,7 @@
 
 A command passes where it ends with exit code 0, or still runs without an error a moment after it plays.
 With -q it does not say when it plays: then it passes where it runs for some seconds without an error.
+One that ends by itself and writes a file may take longer, as the next ones may read it.
 Windows become fakesinks, and each page has ports and a folder of its own: several run at a time. They leave
 the processor to what streams beside them.
 Commands that name a sensor by `hostname=` are left out, and said so.
@@ -20,7 +21,7 @@ import tempfile
 import time
 
 PLAYING = b"Setting pipeline to PLAYING"  # what gst-launch-1.0 prints, except with -q
-START_SECONDS, QUIET_SECONDS, PLAY_SECONDS = 60, 4, 1.5
+START_SECONDS, QUIET_SECONDS, PLAY_SECONDS, WRITE_SECONDS = 60, 4, 1.5, 30
 AT_A_TIME = 4
 FIRST_PORT, PORTS = 21000, 100  # of the first page, and from one page to the next
 
@@ -51,7 +52,7 @@ def with_ports(command, first):
     return re.sub(r"(\b(?:\w+-)?port=)(\d+)", replace, command)
 
 
-def output_for_a_while(process, quiet):
+def output_for_a_while(process, quiet, play_seconds):
     """What the process prints until it ends or is told to stop, and whether it was stopped before it played."""
     output, plays = b"", False
     until = time.monotonic() + (QUIET_SECONDS if quiet else START_SECONDS)
@@ -62,7 +63,7 @@ def output_for_a_while(process, quiet):
         output += printed
         if not plays and PLAYING in output:
             plays = True
-            until = time.monotonic() + PLAY_SECONDS
+            until = time.monotonic() + play_seconds
         if time.monotonic() > until:
             break
     process.send_signal(signal.SIGINT)
@@ -79,7 +80,10 @@ def run(command, folder, first_port):
         stdout=subprocess.PIPE,
         stderr=subprocess.STDOUT,
     )
-    output, never_played = output_for_a_while(process, quiet=" -q " in shown)
+    writes = re.search(r"num-buffers=.*sink location=", shown)
+    output, never_played = output_for_a_while(
+        process, quiet=" -q " in shown, play_seconds=WRITE_SECONDS if writes else PLAY_SECONDS
+    )
     try:
         output += process.communicate(timeout=10)[0]
     except subprocess.TimeoutExpired:
