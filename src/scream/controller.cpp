@@ -332,20 +332,12 @@ DataRate Controller::QueueRate(const Stream& stream) const {
   return all * (stream.target_bitrate() / std::max(streams_.target_bitrate(), p_.rate_pace_min));
 }
 
-/// While packets are overdue, as in a gap, a scan may be older by the time that what met the gap
-/// takes at the rate before it. What of this has arrived by now still counts.
-Duration Controller::WaitBehindGap(Time now) const {
-  const auto rate = gap_recovery_.rate_before();
-  if (!rate || !liveness_.Overdue(now)) return Duration{0};
-  const MaxBytesInFlight& flight = path_.max_in_flight();
-  return std::min(std::max(flight.current(), flight.previous()) / *rate, p_.max_queue_delay / 2);
-}
-
 std::size_t Controller::LatePackets(Time caller_now, StreamId id) const {
   const Stream* stream = streams_.Find(id);
   if (stream == nullptr) return 0;
   const Time now = clock_.Peek(caller_now);
-  return stream->LatePackets(now - WaitBehindGap(now), QueueRate(*stream));
+  const Duration behind_gap = std::min(liveness_.WaitBehindGap(now), p_.max_queue_delay / 2);
+  return stream->LatePackets(now - behind_gap, QueueRate(*stream));
 }
 
 void Controller::OnTimer(Time now) {

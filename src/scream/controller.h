@@ -134,7 +134,6 @@ class Controller {
   DataRate WindowTarget(Time now) const;
   bool CongestedLately() const;
   DataRate QueueRate(const Stream& stream) const;
-  Duration WaitBehindGap(Time now) const;
   DataRate AskedTarget(Time now, DataRate allowed) const;
   bool Holds(const Stream& stream, Time now) const;
   Duration Round() const;

@@ -23,6 +23,8 @@ class MaxBytesInFlight {
   }
   DataSize current() const { return current_; }
   DataSize previous() const { return history_.empty() ? DataSize() : history_.front(); }
+  /// In this round trip and the one before.
+  DataSize lately() const { return std::max(current_, previous()); }
   DataSize longest() const {
     DataSize max = current_;
     for (const DataSize s : history_) max = std::max(max, s);

@@ -27,6 +27,13 @@ class Liveness {
   bool Stalled(Time now) const {
     return gaps_.in_gap() || (Overdue(now) && outage_.Quiet(now) > Lateness());
   }
+  /// While packets are overdue, as in a gap: what met the gap takes so long at the rate before it.
+  /// What of this has arrived by now still counts.
+  Duration WaitBehindGap(Time now) const {
+    const auto rate = gaps_.rate_before();
+    if (!rate || !Overdue(now)) return Duration{0};
+    return path_.max_in_flight().lately() / *rate;
+  }
 
  private:
   /// Silence up to this is one of the gaps that links have.

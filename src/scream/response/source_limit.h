@@ -25,9 +25,8 @@ struct SourceLimit {
   /// At the maximum bitrate a window is enough for frames that leave evenly; a whole scan, and what
   /// a gap left, would go out faster.
   bool HoldsBurstsBack(DataSize ref_wnd) const {
-    const MaxBytesInFlight& flight = path.max_in_flight();
     return p.extensions.adaptive_pacing && max_bitrate < DataRate::Infinite() &&
-           ref_wnd < Window() && std::max(flight.current(), flight.previous()) > ref_wnd;
+           ref_wnd < Window() && path.max_in_flight().lately() > ref_wnd;
   }
 };
 

@@ -112,7 +112,7 @@ TEST(BesideACamera, ScansArriveAsFromASenderThatKnewTheLink) {
 /// What a stream without adaptation completes, and in time. It has less on its way when a gap
 /// begins, so that the scans behind come sooner: it may be ahead by so much, and no more.
 TEST(Loop, IsHardlyBehindAFixedStepWhereverATraceBegins) {
-  constexpr int kStarts = 12;
+  constexpr int kStarts = 24;
   for (const char* trace : {"gap_1s_every_10s", "drive_1", "drive_2", "drive_3"}) {
     double complete = 0, in_time = 0, fixed_complete = 0, fixed_in_time = 0;
     for (int n = 0; n < kStarts; ++n) {
@@ -126,7 +126,7 @@ TEST(Loop, IsHardlyBehindAFixedStepWhereverATraceBegins) {
       fixed_in_time += static_cast<double>(fixed.in_time);
     }
     EXPECT_GE(complete, 0.985 * fixed_complete) << trace;
-    EXPECT_GE(in_time, 0.975 * fixed_in_time) << trace;
+    EXPECT_GE(in_time, 0.98 * fixed_in_time) << trace;
   }
 }
 

@@ -104,22 +104,18 @@ class FullLink : public ::testing::Test {
   }
   /// All that was sent until then has arrived half a round trip later.
   void Report(Time sent) {
-    CongestionFeedback f;
-    f.report_timestamp = ReportClock::ToTimestamp(sent + 20ms);
-    f.blocks.push_back({1, reported_, {}});
     const auto until = static_cast<std::uint16_t>(((sent - kStart) / kTick + 1) * kPacketsATick);
-    while (reported_ != until) {
-      f.blocks[0].metrics.push_back({true, Ecn::kEct1, 0ms});
-      ++reported_;
-    }
-    ASSERT_EQ(c_.OnFeedback(now_, f), FeedbackResult::kAccepted);
+    ReportNext(static_cast<std::uint16_t>(until - reported_), Ecn::kEct1, sent + 20ms, 0ms);
   }
   /// The next `count` packets have arrived 1 ms apart, the last one half a round trip ago.
-  void ReportTrain(int count, Ecn ecn) {
+  void ReportTrain(int count, Ecn ecn) { ReportNext(count, ecn, now_ - 20ms, 1ms); }
+  /// The next `count` packets have arrived so far `apart`, the last one at `last`.
+  void ReportNext(int count, Ecn ecn, Time last, Duration apart) {
     CongestionFeedback f;
-    f.report_timestamp = ReportClock::ToTimestamp(now_ - 20ms);
+    f.report_timestamp = ReportClock::ToTimestamp(last);
     f.blocks.push_back({1, reported_, {}});
-    for (int i = 1; i <= count; ++i) f.blocks[0].metrics.push_back({true, ecn, (count - i) * 1ms});
+    for (int i = 1; i <= count; ++i)
+      f.blocks[0].metrics.push_back({true, ecn, (count - i) * apart});
     reported_ = static_cast<std::uint16_t>(reported_ + count);
     ASSERT_EQ(c_.OnFeedback(now_, f), FeedbackResult::kAccepted);
   }
