@@ -130,6 +130,8 @@ struct Parameters {
   /// ...or above this, where it was measured over less than a frame period and VIRTUAL_RTT, with
   /// fewer than half of the packets marked, or just after another reaction...
   double drop_threshold_unsure = 1.5;
+  /// ...where marks work, only if the queue grew by so many packets meanwhile...
+  double drop_growth = 3;
   /// ...after which the target is this fraction of it.
   double drop_beta = 0.9;
   /// A packet behind this much queue shows that the link is busy; without marks, this fraction of

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Beyond the draft: the capacity of a link that is visibly busy, from the spacing of arrivals.
 #pragma once
+#include <limits>
 #include <optional>
 
 #include "src/base/time.h"
@@ -13,6 +14,7 @@ namespace lidar::scream {
 class BusyRun {
  public:
   struct Arrival {
+    Time sent{};
     Time time{};
     DataSize size;
     bool busy = false;  ///< it had to wait: marked, or behind a queue
@@ -20,44 +22,53 @@ class BusyRun {
   };
 
   void Add(const Arrival& a) {
-    if (!a.busy || (start_ && a.time < last_)) {
+    if (!a.busy || (last_ && a.time < last_->time)) {
       Reset();
       return;
     }
     ++packets_;
     marked_ += a.marked ? 1 : 0;
-    if (!start_) {
-      start_ = a.time;
-    } else {
-      bytes_ += a.size;
-      if (a.time - last_ > pause_) {
-        pause_ = a.time - last_;
-        after_pause_ = a.size;
-      }
-    }
-    last_ = a.time;
+    if (last_) AddStep({a.time - last_->time, a.sent - last_->sent, a.size});
+    last_ = a;
   }
   void Reset() { *this = BusyRun(); }
 
   int packets() const { return packets_; }
   int marked() const { return marked_; }
-  Duration span() const { return start_ ? last_ - *start_ : Duration{0}; }
+  Duration span() const { return all_.arrived; }
   /// Without the longest pause: a link that stood still for a moment has not become slower. None
   /// for a run too short against the coarse arrival times of reports.
   std::optional<DataRate> capacity() const {
-    const Duration busy = span() - pause_;
+    const Duration busy = all_.arrived - pause_.arrived;
     if (packets_ < kMinPackets || busy < kMinBusy) return std::nullopt;
-    return (bytes_ - after_pause_) / busy;
+    return (all_.size - pause_.size) / busy;
+  }
+  /// By how many packets the queue grew over the run. A link that is slower than the sender
+  /// delivers packets further apart than they left. The longest pause counts on neither side.
+  double growth() const {
+    const Duration arrived = all_.arrived - pause_.arrived;
+    const Duration left = all_.left - pause_.left;
+    if (packets_ <= 2 || arrived <= left) return 0;
+    if (left <= Duration{0}) return std::numeric_limits<double>::infinity();
+    return Seconds(arrived - left) / Seconds(left) * (packets_ - 2);
   }
 
  private:
+  /// From one packet to the next: the times between arrivals and between departures.
+  struct Step {
+    Duration arrived{0}, left{0};
+    DataSize size;
+  };
+  void AddStep(const Step& step) {
+    all_ = {all_.arrived + step.arrived, all_.left + step.left, all_.size + step.size};
+    if (step.arrived > pause_.arrived) pause_ = step;
+  }
+
   static constexpr int kMinPackets = 5;
   static constexpr Duration kMinBusy = std::chrono::milliseconds(7);
-  std::optional<Time> start_;
-  Time last_{};
-  DataSize bytes_;
-  Duration pause_{0};
-  DataSize after_pause_;
+  std::optional<Arrival> last_;
+  Step all_;    // the sum
+  Step pause_;  // the longest
   int packets_ = 0;
   int marked_ = 0;
 };

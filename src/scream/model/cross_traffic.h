@@ -41,7 +41,8 @@ class CrossTraffic {
     const double arrived_ms = Ms(packet.arrival - previous->arrival);
     spacing_ms_ += (sent_ms - spacing_ms_) / 16;
     const bool idle = waited_ms < std::max(sent_ms, kLongestGap * spacing_ms_) + kTickMs;
-    unseen_ = share() ? 0 : std::min(unseen_ + Weight(sent_ms), kSure);
+    const bool alone = share().value_or(1) < kFound;
+    unseen_ = alone ? 0 : std::min(unseen_ + Weight(sent_ms), kSure);
     if (idle || arrived_ms > kPauseMs) return;
     const int weight = Weight(Ms(packet.sent - std::exchange(counted_, packet.sent)));
     Count(sent_ms, arrived_ms, static_cast<double>(packet.size.bytes()));
@@ -56,8 +57,8 @@ class CrossTraffic {
     if (sent_sent_ < kEvidence) return std::nullopt;
     return sent_arrived_ / sent_sent_;
   }
-  /// Behind a queue for long, and yet no share is known: either others fill it while our packets
-  /// are far apart, or reports tell too little.
+  /// Behind a queue for long that is not known to be ours alone: either others fill it while our
+  /// packets are far apart, so that few tell of them, or reports tell too little.
   bool unseen() const { return unseen_ >= kSure; }
   /// What the link carries for all; as share().
   std::optional<DataRate> link_rate() const {
@@ -129,7 +130,7 @@ class CrossTraffic {
   Average sent_, arrived_, bytes_;
   Average lately_sent_, lately_arrived_;
   double sent_sent_ = 0, sent_arrived_ = 0;  // sums of products
-  int unseen_ = 0;                           // in a row without a share, by weight
+  int unseen_ = 0;                           // in a row while not known to be alone, by weight
   int against_ = 0;                          // in a row that speak against `found_`, by weight
   bool found_ = false;
 };

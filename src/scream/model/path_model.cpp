@@ -138,7 +138,7 @@ void PathModel::ObserveCapacity(Time now, const AckSummary& acks, Duration qdela
       if (marked) marking_onset_.OnMark(qdelay);
       cross_traffic_.Add({packet.sent, *packet.arrival, packet.size}, qdelay, congested);
     }
-    busy_run_.Add({*packet.arrival, packet.size, busy, marked});
+    busy_run_.Add({packet.sent, *packet.arrival, packet.size, busy, marked});
     if (const auto rate = burst_.Add({packet.sent, *packet.arrival, packet.size}))
       acked_peak_ = std::max(acked_peak_, *rate);
     if (train_.Add({*packet.arrival, packet.size, qdelay, busy})) hole_in_report_ = true;

@@ -12,6 +12,8 @@ std::optional<DataSize> CapacityDrop::Update(Time now, const PathModel& path, co
   if (const auto now_carried = path.train().rate()) capacity = std::max(*capacity, *now_carried);
   if (!path.Queueing(now, path.BusyQdelay(now, load.qdelay_target))) return std::nullopt;
   if (now - last_drop_ < std::min(p_.virtual_rtt, path.rtt().smoothed())) return std::nullopt;
+  // Beside others, packets that arrive as they left may show no more than what we send.
+  if (path.L4sWorks(now) && path.busy_run().growth() < p_.drop_growth) return std::nullopt;
   const double part = Sure(now, path, load) ? p_.drop_threshold : p_.drop_threshold_unsure;
   if (*capacity * part > load.target_bitrate) return std::nullopt;
   const DataSize window = *capacity * path.rtt().min() * p_.target_rate_divisor;

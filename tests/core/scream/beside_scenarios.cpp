@@ -40,8 +40,8 @@ Scenario BesideOnFifo(TcpKind other, Duration length, double mbps, const Paramet
 }
 
 Scenario BesideWithAqm(const std::string& name, TcpKind other, AqmConfig::Kind aqm,
-                       const Parameters& p) {
-  Scenario s = Beside(name, 20, other, p);
+                       const Parameters& p, double mbps = 20) {
+  Scenario s = Beside(name, mbps, other, p);
   s.config.forward.aqm.kind = aqm;
   return s;
 }
@@ -84,7 +84,9 @@ std::vector<Scenario> BesideScenarios(const Parameters& p) {
   all.push_back(BesideWithAqm("cubic_pi2_20M", TcpKind::kCubic, AqmConfig::Kind::kPi2, p));
   all.back().config.forward.aqm.pi2.knows_l4s = false;
   all.push_back(BesideWithAqm("cubic_dualpi2_20M", TcpKind::kCubic, AqmConfig::Kind::kDualPi2, p));
-  all.push_back(BesideWithAqm("prague_ramp_20M", TcpKind::kPrague, AqmConfig::Kind::kRamp, p));
+  for (const int mbps : {4, 8, 20})
+    all.push_back(BesideWithAqm("prague_ramp_" + std::to_string(mbps) + "M", TcpKind::kPrague,
+                                AqmConfig::Kind::kRamp, p, mbps));
   all.push_back(
       BesideWithAqm("prague_dualpi2_20M", TcpKind::kPrague, AqmConfig::Kind::kDualPi2, p));
   for (const Duration phase : {0ms, 4ms, 7ms, 13ms}) all.push_back(BesideDraft(phase, p));

@@ -151,6 +151,19 @@ TEST_F(CrossTrafficTest, IsUnknownWhilePacketsLeaveEvenly) {
   EXPECT_TRUE(traffic_.unseen());
 }
 
+/// A flow that has become slow sends few packets that count, so what it knows is believed late.
+TEST_F(CrossTrafficTest, IsUnseenWhileFewPacketsTellOfAShareThatIsKnown) {
+  Send(50, 0.5);
+  ASSERT_GT(traffic_.share().value_or(0), 0.4);
+  ASSERT_FALSE(traffic_.found());
+  for (int i = 0; i < 100; ++i) {
+    Add(sent_ += 20ms, arrival_ += 20ms, 7ms);  // what left 20 ms before has passed the queue
+    Add(sent_ += 1ms, arrival_ += 1ms, 7ms);
+  }
+  EXPECT_FALSE(traffic_.found());
+  EXPECT_TRUE(traffic_.unseen());
+}
+
 TEST_F(CrossTrafficTest, SkipsPacketsOutOfOrder) {
   Send(500, 0.5);
   const double before = *traffic_.share();

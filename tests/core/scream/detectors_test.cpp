@@ -201,10 +201,10 @@ TEST(RoundTripTime, SmoothsByAnEighth) {
   EXPECT_EQ(rtt.min(), Duration(80ms));
 }
 
-/// Packets of 1000 bytes that came out of a queue `spacing` apart.
-Time Arrive(BusyRun* run, Time now, Duration spacing, int packets) {
+/// Packets of 1000 bytes that left `sent` apart and came out of a queue `spacing` apart.
+Time Arrive(BusyRun* run, Time now, Duration spacing, int packets, Duration sent = 500us) {
   for (int i = 0; i < packets; ++i, now += spacing)
-    run->Add({now, DataSize::Bytes(1000), true, true});
+    run->Add({kStart + i * sent, now, DataSize::Bytes(1000), true, true});
   return now;
 }
 
@@ -223,6 +223,27 @@ TEST(BusyRun, AMomentInWhichNothingMovedIsNoSlowness) {
   Arrive(&run, stop + 80ms, 1ms, 10);
   ASSERT_TRUE(run.capacity());
   EXPECT_NEAR(run.capacity()->bits_per_second(), 8e6, 1);
+}
+
+TEST(BusyRun, TellsByHowManyPacketsTheQueueGrew) {
+  BusyRun run;
+  EXPECT_EQ(run.growth(), 0);
+  Arrive(&run, kStart, 1ms, 2, 500us);
+  EXPECT_EQ(run.growth(), 0) << "the one gap may be a pause";
+  run.Reset();
+  Arrive(&run, kStart, 1ms, 12, 500us);
+  EXPECT_NEAR(run.growth(), 10, 1e-6);
+  run.Reset();
+  Arrive(&run, kStart, 2ms, 10, 2ms);
+  EXPECT_EQ(run.growth(), 0);
+  run.Add({kStart + 20ms, kStart + 100ms, DataSize::Bytes(1000), true, true});
+  EXPECT_EQ(run.growth(), 0) << "the longest pause counts on neither side";
+}
+
+TEST(BusyRun, GrowsWithoutBoundByPacketsThatLeftAtOnce) {
+  BusyRun run;
+  Arrive(&run, kStart, 1ms, 10, 0ms);
+  EXPECT_GT(run.growth(), 1e6);
 }
 
 TEST(BurstRate, IsThatOfPacketsThatLeftTogether) {
@@ -320,7 +341,7 @@ TEST(BusyRun, EndsWhereArrivalsGoBack) {
 TEST(BusyRun, EndsWithAPacketThatDidNotWait) {
   BusyRun run;
   const Time now = Arrive(&run, kStart, 1ms, 20);
-  run.Add({now, DataSize::Bytes(1000), false, false});
+  run.Add({kStart, now, DataSize::Bytes(1000), false, false});
   EXPECT_FALSE(run.capacity());
   EXPECT_EQ(run.packets(), 0);
 }

@@ -39,6 +39,7 @@ const std::map<std::string, double Parameters::*> kConstants = {
     {"even_alpha_max", &Parameters::even_alpha_max},
     {"fast_increase_slope", &Parameters::fast_increase_slope},
     {"drop_threshold", &Parameters::drop_threshold},
+    {"drop_growth", &Parameters::drop_growth},
     {"drop_beta", &Parameters::drop_beta},
     {"bounded_overhead", &Parameters::bounded_overhead},
     {"isolated_loss_threshold", &Parameters::isolated_loss_threshold},

@@ -49,13 +49,18 @@ class CapacityDropTest : public ::testing::Test {
   CapacityDrop::Load Load(double target_mbps) {
     return {Mbps(target_mbps), DataSize::Bytes(100000), 20ms, 60ms, kStart};
   }
+  /// Packets of 4 Mbit/s that left twice as fast, so the queue grows.
+  void HoldBack(int packets, Ecn ecn) {
+    for (int i = 0; i < packets; ++i) path_.Arrive(1, 2ms, queue_ += 1ms, ecn);
+  }
+  Duration queue_ = 10ms;
   Parameters parameters_;
   Path path_{parameters_};
   CapacityDrop drop_{parameters_};
 };
 
 TEST_F(CapacityDropTest, GivesTheWindowThatFillsTheLink) {
-  path_.Arrive(40, 2ms, 20ms, Ecn::kCe);  // 4 Mbit/s
+  HoldBack(40, Ecn::kCe);
   const auto window = drop_.Update(path_.now, path_.model, Load(10));
   ASSERT_TRUE(window);
   EXPECT_NEAR(static_cast<double>(window->bytes()), 4e6 / 8 * 0.04 * 1.2, 300);
@@ -63,17 +68,16 @@ TEST_F(CapacityDropTest, GivesTheWindowThatFillsTheLink) {
 }
 
 TEST_F(CapacityDropTest, LeavesATargetAloneThatTheLinkCarries) {
-  path_.Arrive(40, 2ms, 20ms, Ecn::kCe);
+  HoldBack(40, Ecn::kCe);
   EXPECT_FALSE(drop_.Update(path_.now, path_.model, Load(3.5)));
 }
 
 TEST_F(CapacityDropTest, TakesFewMarksForALinkThatIsWellUsedUnlessTheTargetIsFarAboveIt) {
   for (int i = 0; i < 20; ++i) {
-    path_.Arrive(1, 2ms, 20ms, Ecn::kCe);
-    path_.Arrive(1, 2ms, 20ms, Ecn::kEct1);
-    path_.Arrive(1, 2ms, 20ms, Ecn::kEct1);
+    HoldBack(1, Ecn::kCe);
+    HoldBack(2, Ecn::kEct1);
   }
-  path_.Arrive(1, 2ms, 20ms, Ecn::kCe);
+  HoldBack(1, Ecn::kCe);
   EXPECT_FALSE(drop_.Update(path_.now, path_.model, Load(5)));
   EXPECT_TRUE(drop_.Update(path_.now, path_.model, Load(7)));
 }
@@ -83,8 +87,20 @@ TEST_F(CapacityDropTest, TakesMarksOfAShortQueueForWhatTheyAre) {
   EXPECT_FALSE(drop_.Update(path_.now, path_.model, Load(10)));
 }
 
-TEST_F(CapacityDropTest, NeverWidensTheWindow) {
+/// Beside others, packets that arrive as they left show what we send, not what the link carries.
+TEST_F(CapacityDropTest, TakesItsOwnRateForNoDropWhereMarksWork) {
   path_.Arrive(40, 2ms, 20ms, Ecn::kCe);
+  EXPECT_FALSE(drop_.Update(path_.now, path_.model, Load(10)));
+}
+
+/// Where nothing marks, it is what keeps a standing queue short.
+TEST_F(CapacityDropTest, ShortensAStandingQueueThatNobodyMarks) {
+  path_.Arrive(40, 2ms, 50ms, Ecn::kEct1);
+  EXPECT_TRUE(drop_.Update(path_.now, path_.model, Load(10)));
+}
+
+TEST_F(CapacityDropTest, NeverWidensTheWindow) {
+  HoldBack(40, Ecn::kCe);
   CapacityDrop::Load load = Load(10);
   load.ref_wnd = DataSize::Bytes(20000);  // the link's is 24,000
   EXPECT_FALSE(drop_.Update(path_.now, path_.model, load));

@@ -2,6 +2,8 @@
 // Several streams of one controller, and several controllers, on one link.
 #include <gtest/gtest.h>
 
+#include <utility>
+
 #include "tests/core/scream/scenarios.h"
 #include "tests/support/simulated.h"
 
@@ -161,21 +163,33 @@ TEST(BesidePrague, OneOfThreeGetsAThird) {
   EXPECT_NEAR(Measure(s, Simulate(s.config)).beside->ours_mbps, 6.7, 1.3);
 }
 
-/// A slow flow has few packets that tell of others. It has 2 Mbit/s where each counts the same.
-TEST(BesidePrague, OneThatJoinsThreeIsNotLeftBehind) {
-  Scenario s = *FindScenario("prague_ramp_20M", Parameters());
-  s.config.others = {{TcpKind::kPrague}, {TcpKind::kPrague}, {TcpKind::kPrague}};
-  s.config.flows[0].start += 20s;
-  s.config.duration = 100s;
-  s.settle = 50s;
-  EXPECT_GE(Measure(s, Simulate(s.config)).beside->ours_mbps, 3.3);
+/// A slow flow has few packets that tell of others. Even shares are 5 and 4 Mbit/s.
+TEST(BesidePrague, OneThatJoinsThreeOrFourIsNotLeftBehind) {
+  for (const int others : {3, 4}) {
+    Scenario s = *FindScenario("prague_ramp_20M", Parameters());
+    s.config.others.assign(static_cast<std::size_t>(others), {TcpKind::kPrague});
+    s.config.flows[0].start += 20s;
+    s.config.duration = 100s;
+    s.settle = 50s;
+    EXPECT_GE(Measure(s, Simulate(s.config)).beside->ours_mbps, 15.0 / (others + 1)) << others;
+  }
 }
 
-/// 0.77 where each packet counts the same.
-TEST(BesidePrague, AtFewMegabitsItIsFoundAsWell) {
-  Scenario s = *FindScenario("prague_ramp_20M", Parameters());
-  s.config.forward.capacity = link::Capacity::Constant(Mbps(8));
-  EXPECT_GE(Jain(s), 0.85);
+/// Its packets are few and far apart, as the link's are. With frames the index is 0.64 and 0.88
+/// where every measurement of its own rate passes for a drop of the capacity.
+TEST(BesidePrague, AtFewMegabitsItGetsItsShareAsWell) {
+  const std::pair<const char*, double> even[] = {{"prague_ramp_4M", 0.92},
+                                                 {"prague_ramp_8M", 0.97}};
+  for (const auto& [name, index] : even)
+    for (const double frames_per_second : {10.0, 50.0, 80.0})
+      EXPECT_GE(Jain(*FindScenario(name, Parameters()), frames_per_second), index)
+          << name << " " << frames_per_second;
+}
+
+TEST(Alone, AFlowOfOneMegabitUsesItsLink) {
+  Scenario s = *FindScenario("frames_8M_rtt40", Parameters());
+  s.config.forward.capacity = link::Capacity::Constant(Mbps(1));
+  EXPECT_GE(Measure(s, Simulate(s.config)).utilisation, 0.93);
 }
 
 TEST(BesidePrague, BothGetAboutTheSame) {
