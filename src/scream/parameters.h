@@ -146,7 +146,8 @@ struct Parameters {
   double isolated_loss_threshold = 0.05;
   /// ...unless the packets around the loss waited as long as this.
   Duration isolated_loss_qdelay = 6ms;
-  /// even_alpha: the filter's factor, and the fraction from which on it attacks as the draft's.
+  /// even_alpha: the filter's factor, and the fraction from which on it attacks as the draft's, the
+  /// second round in a row.
   double even_alpha_g = 1.0 / 32;
   double even_alpha_max = 0.5;
   /// adaptive_pacing: a frame leaves so much sooner than its period ends, but within these

@@ -14,8 +14,8 @@ class L4sAlpha {
 
   /// `round` is a round trip, or longer where frames come more seldom. With the extension
   /// even_alpha the fraction is that of a whole round, and rises as fast as it falls. A fraction of
-  /// few packets scatters: fast attack with slow decay would turn that into a bias against the
-  /// smaller of two flows.
+  /// few packets scatters, and a step marks all packets of some rounds and none of others: fast
+  /// attack with slow decay would turn either into a bias against the smaller of two flows.
   void Update(Time now, int data_units_acked, int data_units_acked_ce, Duration s_rtt,
               Duration round) {
     delivered_ += data_units_acked;
@@ -28,7 +28,7 @@ class L4sAlpha {
     const double slow = std::max(1.0, Seconds(round) / Seconds(kEvenRound));
     const double down =
         even ? std::min(p_.l4s_avg_g_up, p_.even_alpha_g * slow) : p_.l4s_avg_g_down;
-    const double up = even && fraction < p_.even_alpha_max ? down : p_.l4s_avg_g_up;
+    const double up = even && !MostlyMarked(fraction, round) ? down : p_.l4s_avg_g_up;
     if (fraction >= alpha_)
       alpha_ = up * fraction + (1 - up) * alpha_;
     else if (even)
@@ -42,15 +42,24 @@ class L4sAlpha {
   /// As before the first packet.
   void Reset() {
     alpha_ = 0;
-    delivered_ = marked_ = 0;
+    delivered_ = marked_ = marked_rounds_ = 0;
     last_update_ = {};
   }
   /// Goes on from a value that was known before.
-  void Restore(double alpha) { alpha_ = alpha; }
+  void Restore(double alpha) {
+    alpha_ = alpha;
+    marked_rounds_ = 0;
+  }
 
   double value() const { return alpha_; }
 
  private:
+  /// Of two rounds in a row; a long one tells enough by itself.
+  bool MostlyMarked(double fraction, Duration round) {
+    marked_rounds_ = fraction < p_.even_alpha_max ? 0 : marked_rounds_ + 1;
+    return marked_rounds_ > (round < p_.long_frame_period ? 1 : 0);
+  }
+
   static constexpr Duration kUpdateInterval = 10ms;
   /// Longer rounds, as of whole scans, count for more.
   static constexpr Duration kEvenRound = 40ms;
@@ -59,6 +68,7 @@ class L4sAlpha {
   Time last_update_{};
   int delivered_ = 0;
   int marked_ = 0;
+  int marked_rounds_ = 0;  // in a row, with a fraction of even_alpha_max or more
 };
 
 }  // namespace lidar::scream

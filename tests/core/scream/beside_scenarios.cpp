@@ -87,6 +87,11 @@ std::vector<Scenario> BesideScenarios(const Parameters& p) {
   for (const int mbps : {4, 8, 20})
     all.push_back(BesideWithAqm("prague_ramp_" + std::to_string(mbps) + "M", TcpKind::kPrague,
                                 AqmConfig::Kind::kRamp, p, mbps));
+  for (const Duration threshold : {1ms, 3ms}) {
+    all.push_back(BesideWithAqm("prague_step_" + std::to_string(threshold / 1ms) + "ms_20M",
+                                TcpKind::kPrague, AqmConfig::Kind::kStep, p));
+    all.back().config.forward.aqm.high = threshold;
+  }
   all.push_back(
       BesideWithAqm("prague_dualpi2_20M", TcpKind::kPrague, AqmConfig::Kind::kDualPi2, p));
   for (const Duration phase : {0ms, 4ms, 7ms, 13ms}) all.push_back(BesideDraft(phase, p));

@@ -38,7 +38,28 @@ TEST(L4sAlpha, TheEvenOneAveragesARoundWithoutBiasAndStillAttacksWhenMostIsMarke
   const double before = alpha.value();
   alpha.Update(kStart + 11s, 0, 0, 20ms, 40ms);  // what was still to be counted
   alpha.Update(kStart + 12s, 10, 10, 20ms, 40ms);
-  EXPECT_NEAR(alpha.value(), before + (1 - before) / 8, 0.01);
+  EXPECT_LT(alpha.value(), before + 0.04) << "one round may be a step's";
+  alpha.Update(kStart + 12s + 40ms, 10, 10, 20ms, 40ms);
+  EXPECT_GT(alpha.value(), before + 0.12);
+}
+
+/// A step marks all packets of some rounds and none of the others.
+TEST(L4sAlpha, TheEvenOneTakesRoundsThatAreMarkedByTurnsForTheirShare) {
+  const Parameters p;
+  L4sAlpha alpha(p);
+  for (int i = 0; i < 1000; ++i) alpha.Update(kStart + i * 40ms, 10, i % 5 ? 0 : 10, 20ms, 40ms);
+  EXPECT_NEAR(alpha.value(), 0.2, 0.03);
+  alpha.Update(kStart + 50s, 10, 10, 20ms, 40ms);
+  alpha.Restore(0.2);
+  alpha.Update(kStart + 51s, 10, 10, 20ms, 40ms);
+  EXPECT_LT(alpha.value(), 0.24) << "what was before a gap is not in a row with what is after it";
+}
+
+TEST(L4sAlpha, TheEvenOneAttacksAtOnceWhereARoundIsLong) {
+  const Parameters p;
+  L4sAlpha alpha(p);
+  alpha.Update(kStart, 50, 40, 20ms, 100ms);
+  EXPECT_DOUBLE_EQ(alpha.value(), 0.8 / 8);
 }
 
 TEST(L4sAlpha, TheEvenOneFollowsWithinTheSameTimeWhateverTheFrameRate) {
