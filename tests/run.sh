@@ -267,11 +267,12 @@ if [ "$tsan" = yes ]; then
   export G_SLICE=always-malloc
   if build "$root/build-tsan" "core elements" -Db_sanitize=thread -Db_lundef=false -Doptimization=1 \
     -Dbenchmarks=disabled -Dtools=disabled -Dwerror=false; then
+    export LIDAR_PRELOAD=$root/build-tsan/tests/tsan/libglib-sync.so
+    with_sync=(--wrapper "$here/tsan/with_glib_sync.sh")
     # Once, so that no test is blamed for the plugins of others that the registry looks into.
-    meson test -C "$root/build-tsan" --no-rebuild common --timeout-multiplier 8 >/dev/null 2>&1
+    meson test -C "$root/build-tsan" --no-rebuild common --timeout-multiplier 8 "${with_sync[@]}" >/dev/null 2>&1
     for suite in core elements; do
-      LIDAR_PRELOAD=$root/build-tsan/tests/tsan/libglib-sync.so run "$root/build-tsan" "$suite" \
-        "${without_dear[@]}" --timeout-multiplier 20 --wrapper "$here/tsan/with_glib_sync.sh"
+      run "$root/build-tsan" "$suite" "${without_dear[@]}" --timeout-multiplier 20 "${with_sync[@]}"
     done
   else
     count 1
