@@ -5,6 +5,8 @@
 #include <glib.h>
 #include <gst/gst.h>
 
+#include <mutex>
+
 // Macros of these names would hide the functions.
 #undef g_once_init_enter
 #undef g_once_init_leave
@@ -185,11 +187,52 @@ GstMessage* gst_bus_timed_pop_filtered(GstBus* bus, GstClockTime timeout, GstMes
   GstMessage* const message = next(bus, timeout, types);
   Acquire(bus);
   if (message != nullptr) Acquire(message);
+  // Its poster drops it inside of GStreamer, unseen: so that it is never the last who has it.
+  for (int i = 0; message != nullptr && i < 100 && GST_MINI_OBJECT_REFCOUNT_VALUE(message) > 1; ++i)
+    g_usleep(1000);
   return message;
 }
 
+GstMessage* gst_bus_timed_pop(GstBus* bus, GstClockTime timeout) {
+  return gst_bus_timed_pop_filtered(bus, timeout, GST_MESSAGE_ANY);
+}
 GstMessage* gst_bus_pop_filtered(GstBus* bus, GstMessageType types) {
   return gst_bus_timed_pop_filtered(bus, 0, types);
+}
+GstMessage* gst_bus_pop(GstBus* bus) { return gst_bus_pop_filtered(bus, GST_MESSAGE_ANY); }
+
+// Main contexts: whoever dispatches a source has seen what was done before it was attached. One
+// lock is for all of them, as a function that polls is not told for which.
+static std::mutex attaching;
+
+guint g_source_attach(GSource* source, GMainContext* context) {
+  static auto* const next = Next<decltype(&g_source_attach)>("g_source_attach");
+  const std::lock_guard lock(attaching);
+  return next(source, context);
+}
+
+static gint Poll(GPollFD* fds, guint n, gint timeout) {
+  const gint ready = g_poll(fds, n, timeout);
+  const std::lock_guard lock(attaching);
+  return ready;
+}
+
+__attribute__((constructor)) static void PollInDefaultContext() {
+  g_main_context_set_poll_func(g_main_context_default(), Poll);
+}
+
+GMainContext* g_main_context_new() {
+  static auto* const next = Next<decltype(&g_main_context_new)>("g_main_context_new");
+  GMainContext* const context = next();
+  g_main_context_set_poll_func(context, Poll);
+  return context;
+}
+
+// A context with a source of high priority does not poll before it dispatches that.
+void g_main_loop_quit(GMainLoop* loop) {
+  static auto* const next = Next<decltype(&g_main_loop_quit)>("g_main_loop_quit");
+  const std::lock_guard lock(attaching);
+  next(loop);
 }
 
 gboolean g_once_init_enter(volatile void* location) {
