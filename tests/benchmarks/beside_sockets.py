@@ -3,7 +3,7 @@
 """Runs scream-bench beside a greedy flow (tcp-flow) through lidar-link, over real sockets.
 
 Prints what each got of the link, and its loss, as rows of docs/results/scream.md. A case is KIND_QUEUE_RATE: cubic_fifo_10ms_20M,
-reno_fifo_5ms_20M, prague_ramp_20M, cubic_dualpi2_20M, cubic_pi2_20M (a classic one).
+reno_fifo_5ms_20M, prague_ramp_20M, prague_step_1ms_20M, cubic_dualpi2_20M, cubic_pi2_20M (a classic one).
 """
 import argparse
 import csv
@@ -17,7 +17,8 @@ import tempfile
 import time
 
 CASES = ["cubic_fifo_15ms_8M", "cubic_fifo_5ms_20M", "cubic_fifo_10ms_20M", "cubic_fifo_5ms_50M",
-         "cubic_fifo_10ms_50M", "cubic_fifo_20ms_20M", "cubic_fifo_100ms_20M", "cubic_pi2_20M", "prague_ramp_20M"]
+         "cubic_fifo_10ms_50M", "cubic_fifo_20ms_20M", "cubic_fifo_100ms_20M", "cubic_pi2_20M", "prague_ramp_4M",
+         "prague_ramp_8M", "prague_ramp_20M", "prague_step_1ms_20M", "prague_step_3ms_20M", "prague_dualpi2_20M"]
 RTT_MS = 40
 SHORTEST_FIFO = 10 * 1500  # bytes
 START_S = 1.0  # of the other flow, after ours
@@ -35,6 +36,8 @@ def parse_case(name):
         options += ["--aqm", "none", "--queue-bytes", str(int(max(SHORTEST_FIFO, rate * length * 125)))]
     else:
         options += ["--aqm", parts[1]]
+        if parts[1] == "step":
+            options += ["--aqm-high", parts[2].removesuffix("ms")]
         if parts[1] == "pi2":  # as most that are out there: no L4S
             options.append("--aqm-classic")
     return kind, options, rate * 1e6

@@ -4,8 +4,7 @@
 
 #include <thread>
 
-#include "tests/faults/ends.h"
-#include "tests/faults/fault_link.h"
+#include "tests/faults/srtp_path.h"
 
 namespace lidar::test {
 namespace {
@@ -13,32 +12,6 @@ namespace {
 using std::chrono::milliseconds;
 using std::chrono::seconds;
 
-std::string Key(std::size_t bytes, char digit = '5') {
-  return "srtp-key=" + std::string(2 * bytes, digit);
-}
-
-struct Path {
-  explicit Path(const std::string& sink_options, const std::string& source_options)
-      : port(FreePort()),
-        link(port),
-        receiver(&sent, port, source_options),
-        sender(&sent, link.port(), sink_options) {}
-  void Play() {
-    receiver.pipeline().SetState(GST_STATE_PLAYING);
-    sender.pipeline().SetState(GST_STATE_PLAYING);
-  }
-  std::uint16_t port;
-  SentSlices sent;
-  FaultLink link;
-  ReceivingEnd receiver;
-  SendingEnd sender;
-};
-
-struct Suite {
-  const char* options;
-  std::size_t key_bytes;
-};
-class Srtp : public ::testing::TestWithParam<Suite> {};
 TEST_P(Srtp, CarriesTheStreamAndItsFeedbackHidden) {
   const std::string options = GetParam().options + std::string(" ") + Key(GetParam().key_bytes);
   Path path(options, options);
@@ -156,33 +129,6 @@ TEST(Srtp, IsJoinedAfterTheSequenceNumbersWrapped) {
   EXPECT_EQ(path.receiver.pipeline().Stat("net", "srtp-refused"), 0U);
 }
 
-/// Everything that was sent came out, and nothing else; both ends have ended.
-void ExpectNothingLost(Path* path) {
-  std::this_thread::sleep_for(milliseconds(300));
-  EXPECT_TRUE(path->sender.pipeline().Finish(seconds(5)));
-  std::this_thread::sleep_for(milliseconds(300));
-  const Accounts a = path->receiver.accounts();
-  EXPECT_EQ(a.received, path->sender.slices_sent());
-  EXPECT_EQ(a.slices(), a.received);
-  EXPECT_EQ(path->receiver.foreign(), 0U);
-  EXPECT_EQ(path->receiver.pipeline().Stat("net", "srtp-refused"), 0U);
-  EXPECT_EQ(path->sender.pipeline().Stat("net", "srtp-refused"), 0U);
-  EXPECT_EQ(path->sender.pipeline().Stat("net", "packets-lost"), 0U);
-}
-
-void SetKey(Pipeline& pipeline, const std::string& key) {
-  g_object_set(pipeline.Child("net").get(), "srtp-key", key.c_str(), nullptr);
-}
-
-/// Until the receiver has refused so many packets.
-void WaitForRefused(Path& path, std::uint64_t packets) {
-  for (int i = 0; i < 3'000; ++i) {
-    if (path.receiver.pipeline().Stat("net", "srtp-refused") >= packets) return;
-    std::this_thread::sleep_for(milliseconds(10));
-  }
-  ADD_FAILURE() << "fewer than " << packets << " packets were refused within 30 s";
-}
-
 TEST(Srtp, RollsOverWithoutALoss) {
   Path path(Key(30), Key(30));
   g_object_set(path.sender.pipeline().Child("pay").get(), "seqnum-offset", 65'450, nullptr);
@@ -190,90 +136,6 @@ TEST(Srtp, RollsOverWithoutALoss) {
   ASSERT_NE(path.receiver.NextCloud(seconds(5)), milliseconds::max());
   std::this_thread::sleep_for(seconds(3));
   ExpectNothingLost(&path);
-}
-
-TEST_P(Srtp, ChangesItsKeyWithoutALoss) {
-  const std::string options = GetParam().options + std::string(" ");
-  Path path(options + Key(GetParam().key_bytes), options + Key(GetParam().key_bytes));
-  // The rollover counter stands at 1 when the key changes, and at 0 again after.
-  g_object_set(path.sender.pipeline().Child("pay").get(), "seqnum-offset", 65'450, nullptr);
-  path.Play();
-  ASSERT_NE(path.receiver.NextCloud(seconds(5)), milliseconds::max());
-  for (const char digit : {'6', '7', '8', '9'}) {
-    const std::string key(2 * GetParam().key_bytes, digit);
-    std::this_thread::sleep_for(milliseconds(400));
-    SetKey(path.receiver.pipeline(), key);
-    std::this_thread::sleep_for(milliseconds(400));
-    SetKey(path.sender.pipeline(), key);
-  }
-  std::this_thread::sleep_for(milliseconds(500));
-  EXPECT_EQ(path.receiver.pipeline().Stat("net", "srtp-key-changes"), 4U);
-  EXPECT_EQ(path.sender.pipeline().Stat("net", "srtp-key-changes"), 4U);
-  ExpectNothingLost(&path);
-}
-
-TEST(Srtp, ChangesItsKeyWhilePacketsAreReordered) {
-  Path path(Key(30), Key(30));
-  g_object_set(path.receiver.pipeline().Child("depay").get(), "max-reorder-time",
-               guint64{GST_SECOND}, nullptr);
-  path.Play();
-  ASSERT_NE(path.receiver.NextCloud(seconds(5)), milliseconds::max());
-  Fault late;
-  late.reorder_by = 20;
-  path.link.Set(late);
-  for (const char digit : {'6', '7', '8', '9', 'a', 'b'}) {
-    SetKey(path.receiver.pipeline(), std::string(60, digit));
-    SetKey(path.sender.pipeline(), std::string(60, digit));
-    std::this_thread::sleep_for(milliseconds(500));
-  }
-  path.link.Set({});
-  std::this_thread::sleep_for(milliseconds(500));
-  EXPECT_TRUE(path.sender.pipeline().Finish(seconds(5)));
-  std::this_thread::sleep_for(milliseconds(300));
-  EXPECT_EQ(path.receiver.accounts().received, path.sender.slices_sent());
-  EXPECT_EQ(path.receiver.pipeline().Stat("net", "srtp-refused"), 0U);
-}
-
-TEST(Srtp, ASenderWithAKeyThatTheReceiverLacksIsRefusedUntilItHasIt) {
-  Path path(Key(30), Key(30));
-  path.Play();
-  ASSERT_NE(path.receiver.NextCloud(seconds(5)), milliseconds::max());
-  SetKey(path.sender.pipeline(), std::string(60, '6'));
-  std::this_thread::sleep_for(seconds(1));
-  const auto clouds = path.receiver.clouds();
-  std::this_thread::sleep_for(milliseconds(300));
-  EXPECT_EQ(path.receiver.clouds(), clouds);
-  SetKey(path.receiver.pipeline(), std::string(60, '6'));
-  EXPECT_LT(path.receiver.NextCloud(seconds(5)), seconds(3));
-}
-
-TEST(Srtp, AKeyThatIsNoneOrWasUsedBeforeChangesNothing) {
-  Path path(Key(30), Key(30));
-  path.Play();
-  ASSERT_NE(path.receiver.NextCloud(seconds(5)), milliseconds::max());
-  Pipeline& sender = path.sender.pipeline();
-  SetKey(path.receiver.pipeline(), std::string(60, '6'));
-  SetKey(sender, std::string(60, '6'));
-  std::this_thread::sleep_for(milliseconds(500));
-  for (const std::string& key : {std::string("c0ffee"), std::string(60, '5'), std::string()}) {
-    SetKey(sender, key);
-    EXPECT_EQ(sender.Messages(GST_MESSAGE_WARNING), 1U) << key;
-  }
-  SetKey(sender, std::string(60, '6'));  // the one in use is no change
-  EXPECT_EQ(sender.Messages(GST_MESSAGE_WARNING), 0U);
-  std::this_thread::sleep_for(milliseconds(500));
-  ExpectNothingLost(&path);
-}
-
-TEST(Srtp, FindsAStreamWhoseKeyItGetsLate) {
-  Path path(Key(30), Key(30));
-  g_object_set(path.sender.pipeline().Child("pay").get(), "seqnum-offset", 65'436, nullptr);
-  path.Play();
-  ASSERT_NE(path.receiver.NextCloud(seconds(5)), milliseconds::max());
-  SetKey(path.sender.pipeline(), std::string(60, '6'));
-  WaitForRefused(path, 150);  // behind the wrap: the rollover counter of the new key stands at 1
-  SetKey(path.receiver.pipeline(), std::string(60, '6'));
-  EXPECT_LT(path.receiver.NextCloud(seconds(8)), seconds(3));
 }
 
 TEST(Srtp, IsNotDelayedByForgedPacketsBeforeTheFirst) {
@@ -309,43 +171,6 @@ TEST(Srtp, ForgetsNothingForForgedPackets) {
   EXPECT_EQ(path.receiver.pipeline().Stat("depay", "packets-duplicate"), 0U);
 }
 
-TEST(Srtp, KeepsItsKeyWhereOneIsRefused) {
-  Path path(Key(30), Key(30));
-  path.Play();
-  ASSERT_NE(path.receiver.NextCloud(seconds(5)), milliseconds::max());
-  SetKey(path.sender.pipeline(), "c0ffee");
-  path.sender.pipeline().SetState(GST_STATE_NULL);
-  path.sender.pipeline().SetState(GST_STATE_PLAYING);
-  EXPECT_NE(path.receiver.NextCloud(seconds(5)), milliseconds::max());
-  // Two keys may wait for the sender; with a third the one in use would have to go.
-  for (const char digit : {'6', '7'}) SetKey(path.receiver.pipeline(), std::string(60, digit));
-  EXPECT_EQ(path.receiver.pipeline().Messages(GST_MESSAGE_WARNING), 0U);
-  SetKey(path.receiver.pipeline(), std::string(60, '8'));
-  EXPECT_EQ(path.receiver.pipeline().Messages(GST_MESSAGE_WARNING), 1U);
-  EXPECT_NE(path.receiver.NextCloud(seconds(5)), milliseconds::max());
-  SetKey(path.sender.pipeline(), std::string(60, '7'));
-  std::this_thread::sleep_for(milliseconds(300));
-  EXPECT_NE(path.receiver.NextCloud(seconds(5)), milliseconds::max());
-  EXPECT_EQ(path.receiver.pipeline().Stat("net", "srtp-refused"), 0U);
-}
-
-TEST(Srtp, ForgetsTheOldKeyAfterTheStragglers) {
-  Path path(Key(30), Key(30));
-  path.Play();
-  ASSERT_NE(path.receiver.NextCloud(seconds(5)), milliseconds::max());
-  SetKey(path.receiver.pipeline(), std::string(60, '6'));
-  SetKey(path.sender.pipeline(), std::string(60, '6'));
-  std::this_thread::sleep_for(seconds(11));
-  // A sender that still has the old key is now a stranger.
-  path.sender.pipeline().SetState(GST_STATE_NULL);
-  SetKey(path.sender.pipeline(), std::string(60, '5'));
-  path.sender.pipeline().SetState(GST_STATE_PLAYING);
-  const auto clouds = path.receiver.clouds();
-  std::this_thread::sleep_for(seconds(1));
-  EXPECT_EQ(path.receiver.clouds(), clouds);
-  EXPECT_GT(path.receiver.pipeline().Stat("net", "srtp-refused"), 20U);
-}
-
 TEST(Srtp, WorksAgainAfterReadyAndNull) {
   Path path(Key(30), Key(30));
   for (const GstState rest : {GST_STATE_READY, GST_STATE_NULL}) {
@@ -358,64 +183,6 @@ TEST(Srtp, WorksAgainAfterReadyAndNull) {
   path.Play();
   EXPECT_NE(path.receiver.NextCloud(seconds(5)), milliseconds::max());
 }
-
-TEST(Srtp, CarriesSeveralStreamsThroughAChangeOfKey) {
-  const std::uint16_t port = FreePort();
-  const std::string key = " " + Key(30) + " ";
-  std::string sources, sinks;
-  for (const char* n : {"1", "2"}) {
-    sources +=
-        std::string(" lidartestsrc is-live=true model=os0-32 mode=512x10 num-buffers=240 ! ") +
-        "dracoenc max-error=0.05 ! rtplidarpay name=pay" + n + " ssrc=" + n + " ! net.";
-    sinks += std::string(" net.src_") + n + " ! rtplidardepay name=depay" + n +
-             " ! fakesink sync=false async=false";
-  }
-  Pipeline receiver("screamsrc name=net port=" + std::to_string(port) + key +
-                    "pt-map=\"application/x-rtp-pt-map,96=(string)\\\"application/x-rtp,"
-                    "media=application,clock-rate=90000,encoding-name=X-LIDAR-DRACO\\\"\"" +
-                    sinks);
-  Pipeline sender("screamsink name=net max-bitrate=20000000 port=" + std::to_string(port) + key +
-                  sources);
-  receiver.SetState(GST_STATE_PLAYING);
-  sender.SetState(GST_STATE_PLAYING);
-  std::this_thread::sleep_for(seconds(1));
-  SetKey(receiver, std::string(60, '6'));
-  SetKey(sender, std::string(60, '6'));
-  EXPECT_TRUE(sender.AwaitEnd(seconds(30)));  // after 240 buffers
-  std::this_thread::sleep_for(milliseconds(300));
-  for (const std::string n : {"1", "2"}) {
-    EXPECT_EQ(sender.Stat(("pay" + n).c_str(), "slices-sent"), 240U);
-    EXPECT_EQ(receiver.Stat(("depay" + n).c_str(), "slices-received"), 240U);
-  }
-  EXPECT_EQ(receiver.Stat("net", "srtp-refused"), 0U);
-  EXPECT_EQ(receiver.Error() + sender.Error(), "");
-}
-
-TEST(Srtp, TakesItsKeyFromTheEnvironmentOrAFile) {
-  g_setenv("LIDAR_TEST_KEY", std::string(60, '7').c_str(), TRUE);
-  const std::string file = ::testing::TempDir() + "lidar-srtp-key";
-  ASSERT_TRUE(
-      g_file_set_contents(file.c_str(), (std::string(60, '7') + "\n").c_str(), -1, nullptr));
-  Path path("srtp-key=env:LIDAR_TEST_KEY", "srtp-key=file:" + file);
-  path.Play();
-  EXPECT_NE(path.receiver.NextCloud(seconds(5)), milliseconds::max());
-}
-
-class BadKey : public ::testing::TestWithParam<const char*> {};
-TEST_P(BadKey, IsAnErrorThatDoesNotShowIt) {
-  SentSlices sent;
-  SendingEnd sender(&sent, 5004, GetParam());
-  EXPECT_EQ(gst_element_set_state(sender.pipeline().get(), GST_STATE_PLAYING),
-            GST_STATE_CHANGE_FAILURE);
-  const std::string error = sender.pipeline().Error();
-  EXPECT_NE(error.find("SRTP cannot be used"), std::string::npos) << error;
-  EXPECT_EQ(error.find("c0ffee"), std::string::npos) << error;
-}
-INSTANTIATE_TEST_SUITE_P(All, BadKey,
-                         ::testing::Values("srtp-key=c0ffee", "srtp-key=env:NO_SUCH_VARIABLE",
-                                           "srtp-key=file:/no/such/file",
-                                           "srtp-key=c0ffee srtp-cipher=rot13",
-                                           "srtp-key=c0ffee srtp-auth=none"));
 
 }  // namespace
 }  // namespace lidar::test

@@ -1,12 +1,10 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The responses beyond the draft, each by itself: capacity drop, outage, send window, pacing,
-// competing flows.
+// The responses beyond the draft, each by itself: outage, send window, pacing, competing flows.
 #include <gtest/gtest.h>
 
 #include "src/scream/response/adaptive_pacing.h"
 #include "src/scream/response/answered_signals.h"
 #include "src/scream/response/burst_probe.h"
-#include "src/scream/response/capacity_drop.h"
 #include "src/scream/response/competing_flows.h"
 #include "src/scream/response/gap_recovery.h"
 #include "src/scream/response/isolated_loss.h"
@@ -42,73 +40,6 @@ TEST(BurstProbe, IsNotNeededWhereEnoughIsKnownOrTheSourceSendsEnough) {
     BurstProbe probe(p);
     for (Time now = kStart; now < kStart + 5s; now += 100ms) EXPECT_FALSE(probe.Update(now, in));
   }
-}
-
-class CapacityDropTest : public ::testing::Test {
- protected:
-  CapacityDrop::Load Load(double target_mbps) {
-    return {Mbps(target_mbps), DataSize::Bytes(100000), 20ms, 60ms, kStart};
-  }
-  /// Packets of 4 Mbit/s that left twice as fast, so the queue grows.
-  void HoldBack(int packets, Ecn ecn) {
-    for (int i = 0; i < packets; ++i) path_.Arrive(1, 2ms, queue_ += 1ms, ecn);
-  }
-  Duration queue_ = 10ms;
-  Parameters parameters_;
-  Path path_{parameters_};
-  CapacityDrop drop_{parameters_};
-};
-
-TEST_F(CapacityDropTest, GivesTheWindowThatFillsTheLink) {
-  HoldBack(40, Ecn::kCe);
-  const auto window = drop_.Update(path_.now, path_.model, Load(10));
-  ASSERT_TRUE(window);
-  EXPECT_NEAR(static_cast<double>(window->bytes()), 4e6 / 8 * 0.04 * 1.2, 300);
-  EXPECT_FALSE(drop_.Update(path_.now, path_.model, Load(10))) << "once a round trip";
-}
-
-TEST_F(CapacityDropTest, LeavesATargetAloneThatTheLinkCarries) {
-  HoldBack(40, Ecn::kCe);
-  EXPECT_FALSE(drop_.Update(path_.now, path_.model, Load(3.5)));
-}
-
-TEST_F(CapacityDropTest, TakesFewMarksForALinkThatIsWellUsedUnlessTheTargetIsFarAboveIt) {
-  for (int i = 0; i < 20; ++i) {
-    HoldBack(1, Ecn::kCe);
-    HoldBack(2, Ecn::kEct1);
-  }
-  HoldBack(1, Ecn::kCe);
-  EXPECT_FALSE(drop_.Update(path_.now, path_.model, Load(5)));
-  EXPECT_TRUE(drop_.Update(path_.now, path_.model, Load(7)));
-}
-
-TEST_F(CapacityDropTest, TakesMarksOfAShortQueueForWhatTheyAre) {
-  path_.Arrive(40, 2ms, 2ms, Ecn::kCe);
-  EXPECT_FALSE(drop_.Update(path_.now, path_.model, Load(10)));
-}
-
-/// Beside others, packets that arrive as they left show what we send, not what the link carries.
-TEST_F(CapacityDropTest, TakesItsOwnRateForNoDropWhereMarksWork) {
-  path_.Arrive(40, 2ms, 20ms, Ecn::kCe);
-  EXPECT_FALSE(drop_.Update(path_.now, path_.model, Load(10)));
-}
-
-/// Where nothing marks, it is what keeps a standing queue short.
-TEST_F(CapacityDropTest, ShortensAStandingQueueThatNobodyMarks) {
-  path_.Arrive(40, 2ms, 50ms, Ecn::kEct1);
-  EXPECT_TRUE(drop_.Update(path_.now, path_.model, Load(10)));
-}
-
-TEST_F(CapacityDropTest, NeverWidensTheWindow) {
-  HoldBack(40, Ecn::kCe);
-  CapacityDrop::Load load = Load(10);
-  load.ref_wnd = DataSize::Bytes(20000);  // the link's is 24,000
-  EXPECT_FALSE(drop_.Update(path_.now, path_.model, load));
-}
-
-TEST_F(CapacityDropTest, SeesNothingWhereNoPacketWaited) {
-  path_.Arrive(40, 2ms, 0ms, Ecn::kEct1);
-  EXPECT_FALSE(drop_.Update(path_.now, path_.model, Load(10)));
 }
 
 class OutageTest : public ::testing::Test {
