@@ -161,8 +161,8 @@ struct Branch {
   /// Slices that it sent.
   std::uint64_t Remove() {
     gst_element_set_state(bin, GST_STATE_PAUSED);
+    std::this_thread::sleep_for(milliseconds(200));  // a slice may be in the encoder
     const std::uint64_t sent = owner->Stat("second", "slices-sent");
-    std::this_thread::sleep_for(milliseconds(200));
     gst_element_set_state(bin, GST_STATE_NULL);
     gst_element_release_request_pad(net.get(), pad.get());
     gst_bin_remove(GST_BIN(owner->get()), bin);
