@@ -130,7 +130,7 @@ struct Parameters {
   /// ...or above this, where it was measured over less than a frame period and VIRTUAL_RTT, with
   /// fewer than half of the packets marked, or just after another reaction...
   double drop_threshold_unsure = 1.5;
-  /// ...where marks work, only if the queue grew by so many packets meanwhile...
+  /// ...where marks work, only if the wait grew by so many gaps between packets meanwhile...
   double drop_growth = 3;
   /// ...after which the target is this fraction of it.
   double drop_beta = 0.9;
@@ -146,8 +146,8 @@ struct Parameters {
   double isolated_loss_threshold = 0.05;
   /// ...unless the packets around the loss waited as long as this.
   Duration isolated_loss_qdelay = 6ms;
-  /// even_alpha: the filter's factor, and the fraction from which on it attacks as the draft's, the
-  /// second round in a row.
+  /// even_alpha: the filter's factor. Alpha attacks as the draft's does once two rounds in a row
+  /// have this fraction; one is enough where it takes long_frame_period or more.
   double even_alpha_g = 1.0 / 32;
   double even_alpha_max = 0.5;
   /// adaptive_pacing: a frame leaves so much sooner than its period ends, but within these

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Beyond the draft: the capacity of a link that is visibly busy, from the spacing of arrivals.
 #pragma once
+#include <algorithm>
 #include <limits>
 #include <optional>
 
@@ -28,8 +29,11 @@ class BusyRun {
     }
     ++packets_;
     marked_ += a.marked ? 1 : 0;
-    if (last_) AddStep({a.time - last_->time, a.sent - last_->sent, a.size});
+    // What the report before told was sent later may have overtaken it.
+    const Time sent = last_ ? std::max(a.sent, last_->sent) : a.sent;
+    if (last_) AddStep({a.time - last_->time, sent - last_->sent, a.size});
     last_ = a;
+    last_->sent = sent;
   }
   void Reset() { *this = BusyRun(); }
 
@@ -43,8 +47,9 @@ class BusyRun {
     if (packets_ < kMinPackets || busy < kMinBusy) return std::nullopt;
     return (all_.size - pause_.size) / busy;
   }
-  /// By how many packets the queue grew over the run. A link that is slower than the sender
-  /// delivers packets further apart than they left. The longest pause counts on neither side.
+  /// By how much longer the last packet waited than the first, in gaps between departures. A link
+  /// that is slower than the sender delivers packets further apart than they left. The longest
+  /// pause counts on neither side. Infinite where all left at once.
   double growth() const {
     const Duration arrived = all_.arrived - pause_.arrived;
     const Duration left = all_.left - pause_.left;

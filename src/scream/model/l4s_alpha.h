@@ -13,9 +13,9 @@ class L4sAlpha {
   explicit L4sAlpha(const Parameters& p) : p_(p) {}
 
   /// `round` is a round trip, or longer where frames come more seldom. With the extension
-  /// even_alpha the fraction is that of a whole round, and rises as fast as it falls. A fraction of
-  /// few packets scatters, and a step marks all packets of some rounds and none of others: fast
-  /// attack with slow decay would turn either into a bias against the smaller of two flows.
+  /// even_alpha the fraction is that of a whole round, and alpha rises as fast as it falls. A
+  /// fraction of few packets scatters. A step marks all packets of some rounds and none of others.
+  /// Fast attack with slow decay would turn either into a bias against the smaller of two flows.
   void Update(Time now, int data_units_acked, int data_units_acked_ce, Duration s_rtt,
               Duration round) {
     delivered_ += data_units_acked;
@@ -28,7 +28,7 @@ class L4sAlpha {
     const double slow = std::max(1.0, Seconds(round) / Seconds(kEvenRound));
     const double down =
         even ? std::min(p_.l4s_avg_g_up, p_.even_alpha_g * slow) : p_.l4s_avg_g_down;
-    const double up = even && !MostlyMarked(fraction, round) ? down : p_.l4s_avg_g_up;
+    const double up = even && !CountsAsFall(fraction, round) ? down : p_.l4s_avg_g_up;
     if (fraction >= alpha_)
       alpha_ = up * fraction + (1 - up) * alpha_;
     else if (even)
@@ -54,10 +54,12 @@ class L4sAlpha {
   double value() const { return alpha_; }
 
  private:
-  /// Of two rounds in a row; a long one tells enough by itself.
-  bool MostlyMarked(double fraction, Duration round) {
+  /// Counts the round. A step fills one round with marks, a fall of the capacity two in a row. A
+  /// long round has packets enough to tell by itself.
+  bool CountsAsFall(double fraction, Duration round) {
     marked_rounds_ = fraction < p_.even_alpha_max ? 0 : marked_rounds_ + 1;
-    return marked_rounds_ > (round < p_.long_frame_period ? 1 : 0);
+    const int enough = round < p_.long_frame_period ? 2 : 1;
+    return marked_rounds_ >= enough;
   }
 
   static constexpr Duration kUpdateInterval = 10ms;

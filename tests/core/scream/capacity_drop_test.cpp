@@ -16,8 +16,8 @@ class CapacityDropTest : public ::testing::Test {
     return {Mbps(target_mbps), DataSize::Bytes(100000), 20ms, 60ms, kStart};
   }
   /// Packets of 4 Mbit/s that left twice as fast, so the queue grows.
-  void HoldBack(int packets, Ecn ecn) {
-    for (int i = 0; i < packets; ++i) path_.Arrive(1, 2ms, queue_ += 1ms, ecn);
+  void HoldBack(int packets, Ecn ecn, Duration by = 1ms) {
+    for (int i = 0; i < packets; ++i) path_.Arrive(1, 2ms, queue_ += by, ecn);
   }
   Duration queue_ = 10ms;
   Parameters parameters_;
@@ -49,14 +49,22 @@ TEST_F(CapacityDropTest, TakesFewMarksForALinkThatIsWellUsedUnlessTheTargetIsFar
 }
 
 TEST_F(CapacityDropTest, TakesMarksOfAShortQueueForWhatTheyAre) {
-  path_.Arrive(40, 2ms, 2ms, Ecn::kCe);
-  EXPECT_FALSE(drop_.Update(path_.now, path_.model, Load(10)));
+  Duration queue{0};
+  for (int i = 0; i < 40; ++i) path_.Arrive(1, 1ms, queue += 100us, Ecn::kCe);  // up to 4 ms
+  EXPECT_FALSE(drop_.Update(path_.now, path_.model, Load(20)));
 }
 
 /// Beside others, packets that arrive as they left show what we send, not what the link carries.
 TEST_F(CapacityDropTest, TakesItsOwnRateForNoDropWhereMarksWork) {
   path_.Arrive(40, 2ms, 20ms, Ecn::kCe);
   EXPECT_FALSE(drop_.Update(path_.now, path_.model, Load(10)));
+}
+
+TEST_F(CapacityDropTest, NeedsAQueueThatGrewByThreePackets) {
+  HoldBack(40, Ecn::kCe, 100us);  // by two gaps of 1.9 ms
+  EXPECT_FALSE(drop_.Update(path_.now, path_.model, Load(10)));
+  HoldBack(30, Ecn::kCe, 100us);  // by 3.6
+  EXPECT_TRUE(drop_.Update(path_.now, path_.model, Load(10)));
 }
 
 /// Where nothing marks, it is what keeps a standing queue short.

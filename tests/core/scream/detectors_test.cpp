@@ -240,6 +240,21 @@ TEST(BusyRun, TellsByHowManyPacketsTheQueueGrew) {
   EXPECT_EQ(run.growth(), 0) << "the longest pause counts on neither side";
 }
 
+TEST(BusyRun, TakesAPauseOfTheSourceForNoGrowth) {
+  BusyRun run;
+  Arrive(&run, kStart, 1ms, 12, 500us);
+  run.Add({kStart + 36ms, kStart + 51ms, DataSize::Bytes(1000), true, true});
+  EXPECT_NEAR(run.growth(), 11, 1e-6);
+}
+
+TEST(BusyRun, APacketThatWasOvertakenMakesNoGapThatIsNegative) {
+  BusyRun run;
+  Arrive(&run, kStart + 20ms, 1ms, 10, 500us);
+  run.Add({kStart - 10ms, kStart + 31ms, DataSize::Bytes(1000), true, true});
+  EXPECT_LT(run.growth(), 15);
+  EXPECT_GT(run.growth(), 5);
+}
+
 TEST(BusyRun, GrowsWithoutBoundByPacketsThatLeftAtOnce) {
   BusyRun run;
   Arrive(&run, kStart, 1ms, 10, 0ms);

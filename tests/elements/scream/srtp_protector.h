@@ -3,6 +3,7 @@
 #pragma once
 #include <gst/check/gstharness.h>
 
+#include <cstdint>
 #include <string>
 #include <vector>
 
