@@ -187,7 +187,8 @@ GstMessage* gst_bus_timed_pop_filtered(GstBus* bus, GstClockTime timeout, GstMes
   GstMessage* const message = next(bus, timeout, types);
   Acquire(bus);
   if (message != nullptr) Acquire(message);
-  // Its poster drops it inside of GStreamer, unseen: so that it is never the last who has it.
+  // The poster drops its reference inside GStreamer, where nothing tells of it. Waiting for that
+  // makes sure that it is not the one who frees the message.
   for (int i = 0; message != nullptr && i < 100 && GST_MINI_OBJECT_REFCOUNT_VALUE(message) > 1; ++i)
     g_usleep(1000);
   return message;

@@ -29,7 +29,7 @@ class BusyRun {
     }
     ++packets_;
     marked_ += a.marked ? 1 : 0;
-    // What the report before told was sent later may have overtaken it.
+    // A packet of the report before may have overtaken it.
     const Time sent = last_ ? std::max(a.sent, last_->sent) : a.sent;
     if (last_) AddStep({a.time - last_->time, sent - last_->sent, a.size});
     last_ = a;
