@@ -10,6 +10,7 @@ sys.dont_write_bytecode = True
 import dependencies
 import packaging
 import paths
+import reference
 import versions
 
 HERE = pathlib.Path(__file__).resolve().parent
@@ -18,6 +19,7 @@ MODULES = {
     "dependencies": dependencies,
     "packaging": packaging,
     "paths": paths,
+    "reference": reference,
     "versions": versions,
 }
 
@@ -39,13 +41,49 @@ See `src/base/units.h`, `units.h`, `gst/*`, `gst<name>.cpp`, `lidar-eval --help`
     build/src/tools/eval/lidar-eval > out.csv
 """,
     "docs/elements/alpha.md": "# alpha\n\n    gst-launch-1.0 fakesrc ! \\\n        alpha ! fakesink\n\n| `speed` | how fast; see `rate=3` |\n",
-    "docs/plugins_cache.json": '{"one": {"elements": {"alpha": {"properties": {"speed": {}, "rate": {}}}}}}',
+    "docs/plugins_cache.json": """
+{"one": {"elements": {"alpha": {"description": "Turns clouds", "klass": "Filter/PointCloud",
+  "pads": {"sink": {"direction": "sink", "caps": "application/x-pointcloud2"},
+           "src": {"direction": "src", "caps": "ANY"}},
+  "properties": {"speed": {}, "rate": {}}}}}}
+""",
+    "docs/reference/elements.md": reference.HEAD
+    + """
+## Elements
+
+`gst-inspect-1.0 ELEMENT` lists every property with its range and default.
+
+### Clouds and poses
+
+| element | what it does | takes | gives | plugin |
+|---|---|---|---|---|
+| [`alpha`](../elements/alpha.md) | Turns clouds | clouds | any | `one` |
+
+## Programs
+
+`--help` lists the options of each, `--version` its release.
+
+| program | what it does |
+|---|---|
+| `lidar-eval` | measures |
+
+## Scripts
+
+They run from the source tree, as `pipelines/<name>.sh`; `--help` lists the options of each.
+
+| script | what it does |
+|---|---|
+| `turn.sh` | Turns a cloud |""",
+    "pipelines/turn.sh": "#!/usr/bin/env bash\n# SPDX\n# Turns a cloud.",
+    "tests/lint/reference.py": "",
+    "pipelines/parts.sh": "# Sourced.",
     "docs/troubleshooting.md": '# Troubleshooting\n\n### "No cloud of %s."\n',
     "mkdocs.yml": """nav:
   - architecture.md
   - troubleshooting.md
   - Elements:
       - elements/alpha.md
+  - reference/elements.md
 """,
     "CHANGELOG.md": "# Changelog\n",
     "meson.build": """
@@ -206,6 +244,8 @@ PLANTED = [
     ),
     ("paths", "docs/troubleshooting.md", '### "No such cloud."', 'nobody says "No such cloud."'),
     ("paths", "docs/more.md", "# More", "docs/more.md is not in the site"),
+    ("reference", "docs/reference/elements.md", "", "docs/reference/elements.md is not what"),
+    ("reference", "pipelines/new.sh", "#!/bin/sh\n# SPDX\n# New.", "is not what the tree has"),
     ("links", "README.md", "[gone](docs/gone.md)", "no such file: docs/gone.md"),
     (
         "packaging",
