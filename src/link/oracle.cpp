@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <deque>
+#include <optional>
 
 namespace lidar::link {
 namespace {
@@ -85,6 +86,34 @@ class Sender {
   OracleResult result_;
 };
 
+/// When each link is free again.
+class FreeLinks {
+ public:
+  explicit FreeLinks(const std::vector<Capacity>& links)
+      : links_(links), free_(links.size(), Duration{0}), ends_(links.size()) {}
+
+  /// When the slice made at `now` is whole, where a link makes it until `deadline`.
+  std::optional<Duration> Send(Duration now, Duration deadline, DataSize size, Bonding bonding) {
+    for (std::size_t i = 0; i < links_.size(); ++i)
+      ends_[i] = links_[i].Finish(std::max(now, free_[i]), size);
+    const auto first = std::min_element(ends_.begin(), ends_.end());
+    if (first == ends_.end() || *first > deadline) return std::nullopt;
+    const auto best = static_cast<std::size_t>(first - ends_.begin());
+    for (std::size_t i = 0; i < links_.size(); ++i)
+      if (i == best || (bonding == Bonding::kOnEach && ends_[i] <= deadline)) free_[i] = ends_[i];
+    return *first;
+  }
+
+ private:
+  const std::vector<Capacity>& links_;
+  std::vector<Duration> free_;
+  std::vector<Duration> ends_;  // of the slice, on each link
+};
+
+bool IsEmpty(const OracleConfig& c) {
+  return !(c.rate > DataRate{}) || !(c.scans_per_second > 0) || c.slices_per_scan == 0;
+}
+
 }  // namespace
 
 double OracleResult::Latency(double percent) const {
@@ -95,12 +124,35 @@ double OracleResult::Latency(double percent) const {
 }
 
 OracleResult AskOracle(const Capacity& capacity, const OracleConfig& config) {
-  if (!(config.rate > DataRate{}) || !(config.scans_per_second > 0) || config.slices_per_scan == 0)
-    return {};
+  if (IsEmpty(config)) return {};
   Sender sender(config);
   for (Duration t{0}; t < config.duration; t += kTick)
     sender.Step(Seconds(t), capacity.RateAt(t).bits_per_second() * config.share * Seconds(kTick));
   return sender.Finish();
+}
+
+OracleResult AskOracleOfLinks(const std::vector<Capacity>& links, const OracleConfig& config,
+                              Bonding bonding) {
+  if (IsEmpty(config)) return {};
+  OracleResult result;
+  result.scans = static_cast<std::uint64_t>(Seconds(config.duration) * config.scans_per_second);
+  const double period = 1 / (config.scans_per_second * config.slices_per_scan);
+  const DataSize size = config.rate * FromSeconds(period);
+  FreeLinks free(links);
+  for (std::uint64_t scan = 0; scan < result.scans; ++scan) {
+    std::uint32_t whole = 0;
+    for (std::uint32_t i = 0; i < config.slices_per_scan; ++i) {
+      const Duration now =
+          FromSeconds(static_cast<double>(scan * config.slices_per_scan + i) * period);
+      const auto end = free.Send(now, now + config.max_age, size, bonding);
+      if (!end) continue;
+      ++whole;
+      result.latency_ms.push_back(Milliseconds(*end - now) + Milliseconds(config.rtt) / 2);
+    }
+    result.complete += whole == config.slices_per_scan;
+  }
+  std::sort(result.latency_ms.begin(), result.latency_ms.end());
+  return result;
 }
 
 }  // namespace lidar::link

@@ -32,4 +32,15 @@ struct OracleResult {
 
 OracleResult AskOracle(const Capacity& capacity, const OracleConfig& config);
 
+/// Where a sender that knows several links puts a slice.
+enum class Bonding {
+  kWhereWholeFirst,
+  kOnEach,  // that makes it in time
+};
+/// The same over several links at once: slices that no link makes within `max_age` are dropped, and
+/// a scan counts where all its slices arrive. The results of one link differ from AskOracle(),
+/// which finishes what has begun to leave.
+OracleResult AskOracleOfLinks(const std::vector<Capacity>& links, const OracleConfig& config,
+                              Bonding bonding = Bonding::kWhereWholeFirst);
+
 }  // namespace lidar::link

@@ -71,5 +71,61 @@ TEST(Oracle, AskedForNothingDeliversNothing) {
   EXPECT_EQ(AskOracle(Capacity::Constant(DataRate::Infinite()), config).complete, 600U);
 }
 
+Capacity Trace(const std::string& text) {
+  std::string error;
+  return *Capacity::ParseTrace(text, false, &error);
+}
+
+OracleConfig TenSeconds(double mbps) {
+  OracleConfig config;
+  config.rate = Mbps(mbps);
+  config.duration = 10s;
+  return config;
+}
+
+TEST(OracleOfLinks, SecondLinkBridgesTheGapsOfTheFirst) {
+  GapTraceConfig gaps;
+  gaps.gap = 1s;
+  gaps.every = 10s;
+  std::string error;
+  const auto first = *Capacity::ParseTrace(MakeGapTrace(gaps), true, &error);
+  OracleConfig config;
+  config.rate = Mbps(1.4);
+  const OracleResult one = AskOracleOfLinks({first}, config);
+  EXPECT_LT(one.complete, 560U);
+  const OracleResult two = AskOracleOfLinks({first, first.StartingAt(5s)}, config);
+  EXPECT_EQ(two.complete, two.scans);
+  EXPECT_NEAR(two.Latency(99), 22, 1);
+}
+
+TEST(OracleOfLinks, LinksThatStandStillTogetherHelpNot) {
+  const Capacity gap = Trace("0 8\n2 0\n3 8");
+  const OracleResult one = AskOracleOfLinks({gap}, TenSeconds(1.4));
+  const OracleResult two = AskOracleOfLinks({gap, gap}, TenSeconds(1.4));
+  EXPECT_LT(one.complete, 93U);
+  EXPECT_LE(two.complete, one.complete + 1);
+}
+
+TEST(OracleOfLinks, AddsCapacitiesWhereEachSliceGoesOneWay) {
+  const std::vector<Capacity> links(2, Trace("0 1.2"));
+  EXPECT_EQ(AskOracleOfLinks(links, TenSeconds(2)).complete, 100U);
+  EXPECT_LT(AskOracleOfLinks(links, TenSeconds(2), Bonding::kOnEach).complete, 100U)
+      << "each link alone carries 1.2 of 2 Mbit/s";
+}
+
+TEST(OracleOfLinks, IsNoWorseThanTheBestLinkWhereOthersAreDead) {
+  const Capacity good = Trace("0 8"), dead = Trace("0 0");
+  const OracleResult four = AskOracleOfLinks({dead, good, dead, dead}, TenSeconds(1.4));
+  const OracleResult one = AskOracleOfLinks({good}, TenSeconds(1.4));
+  EXPECT_EQ(four.complete, one.complete);
+  EXPECT_EQ(four.latency_ms, one.latency_ms);
+}
+
+TEST(OracleOfLinks, WithoutLinksOrSlicesDeliversNothing) {
+  EXPECT_EQ(AskOracleOfLinks({}, TenSeconds(1)).complete, 0U);
+  EXPECT_EQ(AskOracleOfLinks({}, TenSeconds(1)).scans, 100U);
+  EXPECT_EQ(AskOracleOfLinks({Trace("0 8")}, {}).scans, 0U);
+}
+
 }  // namespace
 }  // namespace lidar::link
