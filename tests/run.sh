@@ -189,7 +189,7 @@ run() {
   for suite in "${suites[@]}"; do chosen+=(--suite "$suite"); done
   echo "== $(basename "$dir"): ${suites[*]} (${SECONDS}s)"
   forget "$dir" testlog
-  meson test -C "$dir" --no-rebuild "${chosen[@]}" --print-errorlogs --timeout-multiplier 4 "$@" 2>&1 | shorten
+  meson test -C "$dir" --no-rebuild "${chosen[@]}" --print-errorlogs "$@" 2>&1 | shorten
   # Killed by a signal it may have left out tests.
   [ "${PIPESTATUS[0]}" -lt 128 ] || failed=$((failed + 1))
   [ "${suites[*]}" != pipelines ] || return 0
@@ -201,7 +201,7 @@ run() {
 run_pipelines() {
   local dir=$1
   forget "$dir" beside
-  meson test -C "$dir" --no-rebuild --suite beside --logbase beside --print-errorlogs --timeout-multiplier 4 >"$dir/beside.log" 2>&1 &
+  meson test -C "$dir" --no-rebuild --suite beside --logbase beside --print-errorlogs >"$dir/beside.log" 2>&1 &
   local beside=$!
   run "$dir" pipelines --num-processes 1
   wait "$beside"
@@ -250,29 +250,20 @@ if [ "$tidy" = yes ]; then
 fi
 
 if [ "$sanitize" = yes ]; then
-  # Fast DDS deletes some of its objects by another size than they were made with.
-  export ASAN_OPTIONS="suppressions=$here/asan.supp:detect_leaks=1:abort_on_error=0:detect_odr_violation=1:new_delete_type_mismatch=0"
-  export LSAN_OPTIONS="suppressions=$here/lsan.supp:print_suppressions=0"
-  export UBSAN_OPTIONS="print_stacktrace=1:halt_on_error=1"
   if sanitized_ready; then
-    run "$root/build-asan" "$sanitized" "${without_dear[@]}" "${waiting[@]}" --timeout-multiplier 12
+    run "$root/build-asan" "$sanitized" "${without_dear[@]}" "${waiting[@]}"
   else
     count 1
   fi
 fi
 
 if [ "$tsan" = yes ]; then
-  # GLib's locks are its own, so ThreadSanitizer is told of them; its slices would mix threads' memory.
-  export TSAN_OPTIONS="suppressions=$here/tsan.supp:halt_on_error=0:exitcode=66"
-  export G_SLICE=always-malloc
   if build "$root/build-tsan" "core elements" -Db_sanitize=thread -Db_lundef=false -Doptimization=1 \
     -Dbenchmarks=disabled -Dtools=disabled -Dwerror=false; then
-    export LIDAR_PRELOAD=$root/build-tsan/tests/tsan/libglib-sync.so
-    with_sync=(--wrapper "$here/tsan/with_glib_sync.sh")
     # Once, so that no test is blamed for the plugins of others that the registry looks into.
-    meson test -C "$root/build-tsan" --no-rebuild common --timeout-multiplier 8 "${with_sync[@]}" >/dev/null 2>&1
+    meson test -C "$root/build-tsan" --no-rebuild common >/dev/null 2>&1
     for suite in core elements; do
-      run "$root/build-tsan" "$suite" "${without_dear[@]}" --timeout-multiplier 20 "${with_sync[@]}"
+      run "$root/build-tsan" "$suite" "${without_dear[@]}"
     done
   else
     count 1
