@@ -9,16 +9,24 @@
 
 namespace lidar::tools {
 
-/// To be called when the end begins: after `seconds` the process is gone, with a word and with 0.
-inline void BoundTheEnd(unsigned seconds) {
-  std::signal(SIGALRM, [](int) {
-    constexpr char kText[] = ": not all has ended in time; ending all the same\n";
-    const char* const name = program_invocation_short_name;
-    [[maybe_unused]] auto written = write(STDERR_FILENO, name, std::strlen(name));
-    written = write(STDERR_FILENO, kText, sizeof kText - 1);
-    _exit(0);
-  });
-  alarm(seconds);
-}
+/// While it lives the end of the program has begun: after `seconds` the process ends with a message
+/// and with 0. Once all has ended, the exit of the process is not bounded: a sanitizer looks for
+/// leaks there, which takes long on a busy machine.
+class BoundedEnd {
+ public:
+  explicit BoundedEnd(unsigned seconds) {
+    std::signal(SIGALRM, [](int) {
+      constexpr char kText[] = ": not all has ended in time; ending all the same\n";
+      const char* const name = program_invocation_short_name;
+      [[maybe_unused]] auto written = write(STDERR_FILENO, name, std::strlen(name));
+      written = write(STDERR_FILENO, kText, sizeof kText - 1);
+      _exit(0);
+    });
+    alarm(seconds);
+  }
+  ~BoundedEnd() { alarm(0); }
+  BoundedEnd(const BoundedEnd&) = delete;
+  BoundedEnd& operator=(const BoundedEnd&) = delete;
+};
 
 }  // namespace lidar::tools

@@ -98,9 +98,10 @@ int Main(int argc, char** argv) {
   if (check) return 0;
   gst_init(nullptr, nullptr);
   for (const int signal : {SIGINT, SIGTERM}) std::signal(signal, [](int) { stopping = true; });
-  Edge edge(config);
-  edge.Run();
-  tools::BoundTheEnd(kEndSeconds);
+  std::optional<Edge> edge(std::in_place, config);
+  edge->Run();
+  const tools::BoundedEnd bounded(kEndSeconds);
+  edge.reset();
   return 0;
 }
 

@@ -137,15 +137,18 @@ int Main(int argc, char** argv) {
   Options o = ParseOptions(argc, argv);
   gst_init(nullptr, nullptr);
   for (const int signal : {SIGINT, SIGTERM}) std::signal(signal, [](int) { stopping = true; });
-  Worker worker(o.worker);
+  std::optional<Worker> worker(std::in_place, o.worker);
   o.worker.pipeline.connection.name = "lidar-worker";
-  fleet::Statistics statistics(o.statistics, o.worker.pipeline.connection);
+  std::optional<fleet::Statistics> statistics(std::in_place, o.statistics,
+                                              o.worker.pipeline.connection);
   while (!stopping) {
-    worker.Step();
-    statistics.Poll([&](auto* exposition, auto* reports) { worker.Tell(exposition, reports); });
+    worker->Step();
+    statistics->Poll([&](auto* exposition, auto* reports) { worker->Tell(exposition, reports); });
   }
-  tools::BoundTheEnd(kEndSeconds);
-  worker.HandOver();
+  const tools::BoundedEnd bounded(kEndSeconds);
+  worker->HandOver();
+  statistics.reset();
+  worker.reset();
   return 0;
 }
 
