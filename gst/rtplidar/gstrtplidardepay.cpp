@@ -26,6 +26,7 @@
 #include "gst/common/stats.h"
 #include "gst/rtplidar/base_stats.h"
 #include "gst/rtplidar/config_caps.h"
+#include "src/base/allowance.h"
 #include "src/rtp/ntp_time.h"
 #include "src/rtp/receiver.h"
 
@@ -52,6 +53,7 @@ struct Shown {
   guint64 invalid = 0;
   guint64 wrong_payload_type = 0;
   guint64 not_accepted = 0;
+  guint64 format_changes = 0;
 };
 template <auto field>
 constexpr auto A = At<&Shown::all, field>;
@@ -59,7 +61,7 @@ template <auto field>
 constexpr auto S = At<&Shown::all, &ReceiverAccounts::slices, field>;
 template <auto field>
 constexpr auto P = At<&Shown::all, &ReceiverAccounts::packets, field>;
-const std::array<Stat<Shown>, 19> kStats = {{
+const std::array<Stat<Shown>, 20> kStats = {{
     {"slices-received", S<&SliceAccounts::slices_received>},
     {"slices-lost", S<&SliceAccounts::slices_lost>},
     {"slices-damaged", S<&SliceAccounts::slices_damaged>},
@@ -73,6 +75,7 @@ const std::array<Stat<Shown>, 19> kStats = {{
     {"packets-invalid", &Shown::invalid},
     {"packets-wrong-payload-type", &Shown::wrong_payload_type},
     {"slices-not-accepted", &Shown::not_accepted},
+    {"slices-changing-format", &Shown::format_changes},
     {"packets-duplicate", P<&PacketAccounts::duplicate>},
     {"packets-late", P<&PacketAccounts::late>},
     {"configs-received", A<&ReceiverAccounts::configs_received>},
@@ -83,6 +86,11 @@ const std::array<Stat<Shown>, 19> kStats = {{
 
 // So many packets of another payload type, and none of ours, are no accident.
 constexpr guint64 kWrongTypePackets = 20;
+
+// Each change costs all that follows far more than the few bytes of a slice: new caps of up to
+// 200 kB as text, an event in each queue, a channel of a recording, a message of NATS.
+constexpr int kFormatChanges = 8;
+constexpr lidar::Duration kFormatChangePeriod = std::chrono::seconds(1);
 
 lidar::Duration ReorderTime(const Settings& s) {
   return lidar::Duration{static_cast<gint64>(s.max_reorder_time)};
@@ -95,11 +103,15 @@ struct State {
   guint64 not_rtp = 0;
   guint64 wrong_payload_type = 0;
   guint64 not_accepted = 0;
+  guint64 format_changes = 0;
 
   // The rest belongs to the streaming thread.
   std::optional<gint> payload_type;                        // of the caps
   std::shared_ptr<const lidar::rtp::StreamConfig> config;  // of the caps on the src pad
+  std::shared_ptr<const lidar::rtp::StreamConfig> asked;   // what the next element last answered to
+  lidar::Allowance changes{kFormatChanges, kFormatChangePeriod};
   bool warned_of_coder = false;
+  bool warned_of_changes = false;
   bool warned_of_type = false;
   bool warned_of_rival = false;
   lidar::Time now;
@@ -124,9 +136,9 @@ static StructurePtr Stats(GObject* object) {
   auto stats = BaseClassStats(object, gst_lidar_rtp_depay_parent_class);
   std::lock_guard lock(state.mutex);
   const auto all = state.receiver.accounts();
-  AddStats(
-      stats.get(), kStats,
-      {all, all.packets.invalid + state.not_rtp, state.wrong_payload_type, state.not_accepted});
+  AddStats(stats.get(), kStats,
+           {all, all.packets.invalid + state.not_rtp, state.wrong_payload_type, state.not_accepted,
+            state.format_changes});
   return stats;
 }
 
@@ -181,6 +193,23 @@ static bool SetCapsOf(GstRTPBaseDepayload* base, const lidar::rtp::StreamConfig&
   return false;
 }
 
+/// False, and counted, where the stream changes its format more often than any sender needs to.
+static bool MayChangeTo(GstRTPBaseDepayload* base,
+                        const std::shared_ptr<const lidar::rtp::StreamConfig>& config) {
+  State& state = *GST_LIDAR_RTP_DEPAY(base)->state;
+  if (state.asked == config || state.changes.Take(state.now)) return true;
+  {
+    std::lock_guard lock(state.mutex);
+    ++state.format_changes;
+  }
+  if (std::exchange(state.warned_of_changes, true)) return false;
+  GST_ELEMENT_WARNING(base, STREAM, FORMAT,
+                      ("The stream changes its format more than once a second. Slices of another "
+                       "format than the last are dropped meanwhile; look at its sender."),
+                      (nullptr));
+  return false;
+}
+
 /// Pushes the slices, those of one config as one list.
 static void PushSlices(GstRTPBaseDepayload* base, std::vector<ReceivedSlice> slices) {
   State& state = *GST_LIDAR_RTP_DEPAY(base)->state;
@@ -190,7 +219,9 @@ static void PushSlices(GstRTPBaseDepayload* base, std::vector<ReceivedSlice> sli
   };
   for (ReceivedSlice& slice : slices) {
     if (state.config != slice.config) {
+      if (!MayChangeTo(base, slice.config)) continue;
       flush();
+      state.asked = slice.config;
       // What was refused is asked again: a flush refuses, too.
       state.config = SetCapsOf(base, *slice.config) ? slice.config : nullptr;
     }
@@ -317,10 +348,13 @@ static GstStateChangeReturn ChangeState(GstElement* element, GstStateChange tran
   if (transition == GST_STATE_CHANGE_READY_TO_PAUSED) {
     std::lock_guard lock(state.mutex);
     state.receiver = Receiver(ReorderTime(state.settings));
-    state.not_rtp = state.wrong_payload_type = state.not_accepted = 0;
+    state.not_rtp = state.wrong_payload_type = state.not_accepted = state.format_changes = 0;
     state.warned_of_coder = state.warned_of_type = state.warned_of_rival = false;
+    state.warned_of_changes = false;
     state.payload_type.reset();
     state.config.reset();
+    state.asked.reset();
+    state.changes = {kFormatChanges, kFormatChangePeriod};
     state.now = {};
   }
   const auto result =

@@ -87,6 +87,44 @@ TEST(RtpLidarDepay, SlicesOfTwoConfigsInOnePacketLeaveEachUnderItsCaps) {
   EXPECT_EQ(seen, fields);
 }
 
+/// An aggregate of `slices` slices whose formats take turns; their configs went before.
+std::vector<std::uint8_t> TakingTurns(const std::vector<std::uint8_t>& ids, std::uint32_t scan,
+                                      std::uint16_t slices) {
+  std::vector<std::uint8_t> packet = {0x20};
+  for (std::uint16_t i = 0; i < slices; ++i) {
+    rtp::Unit unit;
+    unit.config_id = ids[i % ids.size()];
+    unit.slice = {scan, i, slices};
+    const auto slice = PayloadOf(unit, {1, 2, 3});
+    packet.insert(packet.end(), {0, 0, 0, static_cast<std::uint8_t>(slice.size())});
+    packet.insert(packet.end(), slice.begin(), slice.end());
+  }
+  return packet;
+}
+
+TEST(RtpLidarDepay, ChangesCapsNoMoreThanOnceASecondForAStreamThatTakesTurns) {
+  const Harness h = Depay();
+  std::vector<std::uint8_t> ids(2);
+  const char* fields[] = {"x:F32:0,y:F32:4,z:F32:8", "x:F32:0,y:F32:4,z:F32:8,range:U32:12"};
+  std::uint16_t sequence = 0;
+  for (std::size_t i = 0; i < ids.size(); ++i)
+    gst_harness_push(h.get(), RtpOf(ConfigPayload(fields[i], &ids[i]), 7, sequence++));
+  guint64 changes = 0;
+  std::size_t pushed = 0;
+  for (std::uint32_t scan = 0; scan < 100; ++scan) {  // 10 s
+    GstBuffer* packet = RtpOf(TakingTurns(ids, scan, 32), 7, sequence++);
+    GST_BUFFER_PTS(packet) = scan * 100 * GST_MSECOND;
+    ASSERT_EQ(gst_harness_push(h.get(), packet), GST_FLOW_OK);
+    pushed += Pull(h.get()).size();
+    while (const gst::EventPtr event{gst_harness_try_pull_event(h.get())})
+      changes += GST_EVENT_TYPE(event.get()) == GST_EVENT_CAPS ? 1U : 0U;
+  }
+  EXPECT_GE(changes, 8U);
+  EXPECT_LE(changes, 18U) << "8 at once, then one a second";
+  EXPECT_GE(pushed, 1'600U) << "the slices of one format pass";
+  EXPECT_EQ(pushed + Stat(h.get(), "slices-changing-format"), 3'200U) << "each is counted";
+}
+
 TEST(RtpLidarDepay, DropsSlicesForAnotherDecoderAndGoesOn) {
   Harness pay(gst_harness_new("rtplidarpay"));
   const Harness h(gst_harness_new("rtplidardepay"));

@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// How often something may happen: some times at once, and more as time passes.
+#pragma once
+#include "src/base/time.h"
+
+namespace lidar {
+
+class Allowance {
+ public:
+  /// `most` at once; each that was taken comes back after `period`.
+  Allowance(int most, Duration period) : most_(most), period_(period) {}
+
+  /// False where none is left at `now`. Times must not go back; where they do, none comes back.
+  bool Take(Time now) {
+    if (taken_ == 0) since_ = now;
+    if (now > since_) {
+      const auto back = (now - since_) / period_;
+      taken_ = back < taken_ ? taken_ - static_cast<int>(back) : 0;
+      since_ = taken_ == 0 ? now : since_ + back * period_;
+    }
+    if (taken_ == most_) return false;
+    ++taken_;
+    return true;
+  }
+
+ private:
+  int most_;
+  Duration period_;
+  int taken_ = 0;
+  Time since_{};  // when the last came back
+};
+
+}  // namespace lidar
