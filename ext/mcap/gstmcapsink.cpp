@@ -300,21 +300,28 @@ std::string McapSinkFreeTopic(GstLidarMcapSink* sink, const std::string& wanted)
 bool McapSinkAddChannel(GstLidarMcapSink* sink, const BufferWriter& writer,
                         const std::string& topic, const GstCaps* caps, RecordedStream* stream) {
   State& state = *sink->state;
-  std::lock_guard lock(state.recording);
+  std::unique_lock lock(state.recording);
   if (!state.recorder) return false;
   state.topics.insert(topic);
   state.has_slices = state.has_slices || writer.type() == MessageType::kSlice;
-  std::string kind = KindOf(caps, writer.type());
-  if (stream->channel_id != 0 && stream->kind == kind) return true;
-  stream->kind = std::move(kind);
+  // A stream that returns to caps it had goes on in their channel.
+  const auto [known, is_new] = stream->channels.try_emplace(KindOf(caps, writer.type()));
+  stream->channel_id = known->second;
+  if (!is_new) return true;
   mcap::Catalogue& catalogue = state.recorder->catalogue();
   mcap::Channel channel;
   channel.schema_id = catalogue.AddSchema(SchemaOf(writer.type()));
   channel.topic = topic;
   channel.message_encoding = "cdr";
   channel.metadata = {{kCapsKey, CapsToText(caps)}, {kQosKey, ""}};
-  stream->channel_id = catalogue.AddChannel(std::move(channel));
-  return stream->channel_id != 0;
+  stream->channel_id = known->second = catalogue.AddChannel(std::move(channel));
+  if (stream->channel_id != 0) return true;
+  stream->channels.erase(known);
+  lock.unlock();
+  GST_ELEMENT_ERROR(sink, STREAM, FORMAT,
+                    ("The caps of \"%s\" change too often for one recording.", topic.c_str()),
+                    ("What was recorded before is complete."));
+  return false;
 }
 
 GstFlowReturn McapSinkTake(GstLidarMcapSink* sink, BufferWriter* writer, RecordedStream* stream,

@@ -3,6 +3,7 @@
 #pragma once
 #include <gst/gst.h>
 
+#include <map>
 #include <string>
 
 #include "ext/mcap/buffer_writer.h"
@@ -19,7 +20,7 @@ namespace lidar::gst {
 struct RecordedStream {
   std::uint16_t channel_id = 0;
   std::uint32_t sequence = 0;
-  std::string kind;  // what its channel was made for
+  std::map<std::string, std::uint16_t> channels;  // by what each was made for
 };
 
 /// For the streams of the sink, from their threads. Errors are posted on the sink.

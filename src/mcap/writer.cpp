@@ -6,9 +6,13 @@
 #include <utility>
 
 #include "src/base/crc.h"
+#include "src/mcap/record_input.h"
 
 namespace lidar::mcap {
 namespace {
+
+/// Some room stays for the schemas.
+constexpr std::size_t kMaxChannels = kMaxCatalogue / 4 * 3;
 
 ByteView View(const Bytes& bytes) { return {bytes.data(), bytes.size()}; }
 
@@ -41,6 +45,10 @@ std::uint16_t Catalogue::AddSchema(const Schema& schema) {
 
 std::uint16_t Catalogue::AddChannel(Channel channel) {
   if (channels.size() == std::numeric_limits<std::uint16_t>::max()) return 0;
+  Bytes record;
+  Append(channel, &record);
+  if (channel_bytes_ + record.size() > kMaxChannels) return 0;
+  channel_bytes_ += record.size();
   channel.id = static_cast<std::uint16_t>(channels.size() + 1);
   channels.push_back(std::move(channel));
   return channels.back().id;

@@ -19,14 +19,18 @@ struct WriterSettings {
 };
 
 /// The schemas and channels of a recording, which may have several files.
-struct Catalogue {
+class Catalogue {
+ public:
   std::vector<Schema> schemas;
   std::vector<Channel> channels;
 
   /// The id of the schema of that name, which is added where it is missing.
   std::uint16_t AddSchema(const Schema& schema);
-  /// The id of the new channel; 0 where there are 65,535 of them.
+  /// The id of the new channel; 0 where there are 65,535 of them, or a reader would refuse more.
   std::uint16_t AddChannel(Channel channel);
+
+ private:
+  std::size_t channel_bytes_ = 0;
 };
 
 /// One file. Each chunk holds the schemas and channels that it uses, so it can be read alone.

@@ -270,5 +270,16 @@ TEST(Mcap, ThereAreAsManyChannelsAsNumbersForThem) {
   for (int more = 0; more < 2; ++more) EXPECT_EQ(catalogue.AddChannel({}), 0);
 }
 
+TEST(McapWriter, ChannelsTakeNoMoreThanAReaderTakes) {
+  Catalogue catalogue;
+  Channel large;
+  large.topic = "/t";
+  large.metadata = {{"caps", std::string(100'000, 'x')}};
+  std::uint16_t channels = 0;
+  while (channels < 1'000 && catalogue.AddChannel(large) != 0) ++channels;
+  EXPECT_GE(channels, 50);
+  EXPECT_LE(channels, 80) << "8 MiB in all";
+}
+
 }  // namespace
 }  // namespace lidar::mcap

@@ -98,6 +98,24 @@ TEST_F(McapContent, SlicesHaveRunningTimesAsLogTimesAndCaptureTimesAsTheirOwn) {
   EXPECT_EQ(messages[2].header.publish_time, messages[2].header.log_time);
 }
 
+TEST_F(McapContent, AStreamThatTakesTurnsBetweenItsCapsHasAChannelForEach) {
+  const Harness h = RecordingTo(Path("a.mcap"));
+  const std::string other = std::string(kSlices) + ", framerate=(fraction)20/1";
+  gst_harness_play(h.get());
+  for (guint8 i = 0; i < 100; ++i) {
+    gst_harness_set_src_caps_str(h.get(), i % 2 == 0 ? kSlices : other.c_str());
+    EXPECT_EQ(gst_harness_push(h.get(), Slice(i, i, kCapture)), GST_FLOW_OK);
+  }
+  End(h.get());
+  std::ifstream file(Path("a.mcap"), std::ios::binary);
+  const auto reader = mcap::test::Open({std::istreambuf_iterator<char>(file), {}});
+  ASSERT_TRUE(reader);
+  EXPECT_EQ(reader->index().channels.size(), 2U);
+  std::map<std::uint16_t, int> messages;
+  while (const auto message = reader->Next()) ++messages[message->header.channel_id];
+  EXPECT_EQ(messages, (std::map<std::uint16_t, int>{{1, 50}, {2, 50}}));
+}
+
 TEST_F(McapContent, BuffersOfNoKnownTimeAreOfNow) {
   const auto before = static_cast<std::uint64_t>(g_get_real_time()) * 1'000;
   const auto messages = Write(kSlices, {Slice(1, 0, GST_CLOCK_TIME_NONE)});
