@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <charconv>
 #include <filesystem>
-#include <system_error>
 
 namespace lidar::gst {
 namespace {
@@ -70,15 +69,17 @@ std::string FileNames::Folder() const {
   return folder.empty() ? "." : folder.string();
 }
 
-std::vector<std::pair<std::uint32_t, std::string>> FileNames::Existing() const {
+std::vector<std::pair<std::uint32_t, std::string>> FileNames::Existing(
+    std::error_code* failed) const {
   std::vector<std::pair<std::uint32_t, std::string>> files;
-  std::error_code failed;
+  failed->clear();
   if (!is_numbered_) {
-    if (fs::exists(before_, failed)) files.emplace_back(0, before_);
+    if (fs::exists(before_, *failed)) files.emplace_back(0, before_);
     return files;
   }
   const std::string prefix = fs::path(before_).filename().string();
-  for (fs::directory_iterator i(Folder(), failed), end; !failed && i != end; i.increment(failed)) {
+  for (fs::directory_iterator i(Folder(), *failed), end; !*failed && i != end;
+       i.increment(*failed)) {
     const std::string name = i->path().filename().string();
     if (name.size() <= prefix.size() + after_.size() || name.compare(0, prefix.size(), prefix) != 0)
       continue;

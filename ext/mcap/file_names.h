@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <system_error>
 #include <utility>
 #include <vector>
 
@@ -19,8 +20,9 @@ class FileNames {
   std::string Name(std::uint32_t number) const;
   /// The folder that the files are in.
   std::string Folder() const;
-  /// The files that are there, by their numbers. Without a number, the one of that name.
-  std::vector<std::pair<std::uint32_t, std::string>> Existing() const;
+  /// The files that are there, by their numbers. Without a number, the one of that name. `failed`
+  /// says where they cannot be known.
+  std::vector<std::pair<std::uint32_t, std::string>> Existing(std::error_code* failed) const;
 
  private:
   std::string before_;  // what stands before and after the number

@@ -14,7 +14,8 @@ OutputFile::~OutputFile() {
 }
 
 bool OutputFile::Open() {
-  fd_ = open(path_.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
+  const int existing = existing_ == Existing::kKeep ? O_EXCL : O_TRUNC;
+  fd_ = open(path_.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC | existing, 0666);
   opening_failed_ = fd_ < 0;
   if (opening_failed_) error_ = errno;
   return !opening_failed_;

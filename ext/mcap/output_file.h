@@ -11,8 +11,11 @@ namespace lidar::gst {
 
 class OutputFile {
  public:
+  /// What is there already is replaced where the user has named it, and stays where we have.
+  enum class Existing { kReplace, kKeep };
   /// Nothing happens to the disk yet. `sync`: each piece is on the disk before Append() returns.
-  OutputFile(std::string path, bool sync) : path_(std::move(path)), sync_(sync) {}
+  OutputFile(std::string path, bool sync, Existing existing)
+      : path_(std::move(path)), sync_(sync), existing_(existing) {}
   ~OutputFile();
   OutputFile(const OutputFile&) = delete;
   OutputFile& operator=(const OutputFile&) = delete;
@@ -34,6 +37,7 @@ class OutputFile {
 
   const std::string path_;
   const bool sync_;
+  const Existing existing_;
   int fd_ = -1;
   std::uint64_t size_ = 0;
   int error_ = 0;

@@ -20,8 +20,10 @@ std::unique_ptr<mcap::Reader> OpenReader(const std::string& path, std::string* w
 std::unique_ptr<Playback> Playback::Open(const std::string& location, std::string* why) {
   const auto names = FileNames::Parse(location, why);
   if (!names) return nullptr;
-  const auto existing = names->Existing();
+  std::error_code failed;
+  const auto existing = names->Existing(&failed);
   if (existing.empty()) *why = "there is no such file";
+  if (failed && failed != std::errc::no_such_file_or_directory) *why = failed.message();
   std::unique_ptr<Playback> playback(new Playback);
   for (const auto& [number, path] : existing) {
     const auto reader = OpenReader(path, why);

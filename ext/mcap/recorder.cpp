@@ -11,7 +11,7 @@ namespace lidar::gst {
 Recorder::Recorder(const RecorderSettings& settings, FileNames names)
     : settings_(settings), names_(std::move(names)) {
   // A recording of yesterday stays: the pieces go on behind it.
-  const auto existing = names_.Existing();
+  const auto existing = names_.Existing(&listing_failed_);
   if (!names_.is_numbered() || existing.empty()) return;
   next_number_ = existing.back().first + 1;
   if (settings_.max_files > 0)
@@ -19,6 +19,7 @@ Recorder::Recorder(const RecorderSettings& settings, FileNames names)
 }
 
 std::optional<RecorderFault> Recorder::Check() const {
+  if (listing_failed_) return RecorderFault{names_.Folder(), listing_failed_.value(), true};
   const std::string path = names_.Name(next_number_);
   struct stat status {};
   const bool exists = stat(path.c_str(), &status) == 0;
@@ -51,7 +52,9 @@ void Recorder::RemoveOldFiles() {
 
 void Recorder::BeginFile() {
   RemoveOldFiles();
-  file_ = std::make_unique<OutputFile>(names_.Name(next_number_++), settings_.sync);
+  using Existing = OutputFile::Existing;
+  file_ = std::make_unique<OutputFile>(names_.Name(next_number_++), settings_.sync,
+                                       names_.is_numbered() ? Existing::kKeep : Existing::kReplace);
   if (settings_.max_files > 0) files_.push_back(file_->path());
   writer_ = std::make_unique<mcap::Writer>(
       settings_.writer, &catalogue_, [file = file_.get()](ByteView v) { return file->Append(v); });

@@ -5,6 +5,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <system_error>
 #include <utility>
 #include <vector>
 
@@ -63,6 +64,7 @@ class Recorder {
   const RecorderSettings settings_;
   const FileNames names_;
   mcap::Catalogue catalogue_;
+  std::error_code listing_failed_;
   std::uint32_t next_number_ = 0;
   std::unique_ptr<OutputFile> file_;
   std::unique_ptr<mcap::Writer> writer_;

@@ -64,7 +64,7 @@ TEST_F(McapErrors, WhatDoesNotFitIsTakenBackAndTheFileGoesOn) {
   const auto view = [](const std::string& text) {
     return ByteView{reinterpret_cast<const std::uint8_t*>(text.data()), text.size()};
   };
-  gst::OutputFile file(Path("a"), true);
+  gst::OutputFile file(Path("a"), true, gst::OutputFile::Existing::kKeep);
   {
     const SmallDisk disk(100);
     EXPECT_TRUE(file.Append(view(std::string(40, 'a'))));

@@ -3,15 +3,33 @@
 #include "ext/mcap/recorder.h"
 
 #include <gtest/gtest.h>
+#include <sys/resource.h>
 #include <unistd.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <filesystem>
 
 namespace lidar::gst {
 namespace {
 
 namespace fs = std::filesystem;
+
+/// No file can be opened while it lives.
+class NoDescriptors {
+ public:
+  NoDescriptors() {
+    getrlimit(RLIMIT_NOFILE, &before_);
+    const rlimit limit{0, before_.rlim_max};
+    setrlimit(RLIMIT_NOFILE, &limit);
+  }
+  ~NoDescriptors() { setrlimit(RLIMIT_NOFILE, &before_); }
+  NoDescriptors(const NoDescriptors&) = delete;
+  NoDescriptors& operator=(const NoDescriptors&) = delete;
+
+ private:
+  rlimit before_{};
+};
 
 class Pieces : public ::testing::Test {
  protected:
@@ -108,6 +126,32 @@ TEST_F(Pieces, AFileWithoutANumberIsOne) {
   EXPECT_EQ(fault->error, EEXIST);
 }
 
+TEST_F(Pieces, AreNotWrittenOverWhereTheFolderCannotBeListed) {
+  const auto yesterday = Make({});
+  Add(yesterday.get(), 1, true);
+  EXPECT_FALSE(yesterday->Finish());
+  std::unique_ptr<Recorder> recorder;
+  {
+    const NoDescriptors none;
+    recorder = Make({});
+  }
+  const auto fault = recorder->Check();
+  ASSERT_TRUE(fault);
+  EXPECT_EQ(fault->error, EMFILE);
+}
+
+TEST_F(Pieces, AreNotWrittenOverWhereAnotherProgramIsFaster) {
+  const auto ours = Make({});
+  const auto other = Make({});
+  for (Recorder* recorder : {ours.get(), other.get()}) Add(recorder, 1, true);
+  EXPECT_FALSE(ours->Finish());
+  const auto before = fs::file_size(folder_ + "/r00.mcap");
+  const auto fault = other->Finish();
+  ASSERT_TRUE(fault);
+  EXPECT_EQ(fault->error, EEXIST);
+  EXPECT_EQ(fs::file_size(folder_ + "/r00.mcap"), before);
+}
+
 TEST_F(Pieces, NamesHaveOneNumber) {
   std::string why;
   const auto name = [&](const char* location, std::uint32_t number) {
@@ -132,7 +176,9 @@ TEST_F(Pieces, OnlyNamesThatItWouldGiveAreItsFiles) {
     EXPECT_FALSE(other->Finish());
   }
   std::string why;
-  const auto existing = FileNames::Parse(folder_ + "/r%02d.mcap", &why)->Existing();
+  std::error_code failed;
+  const auto existing = FileNames::Parse(folder_ + "/r%02d.mcap", &why)->Existing(&failed);
+  EXPECT_FALSE(failed);
   ASSERT_EQ(existing.size(), 2U);
   EXPECT_EQ(existing[0].first, 0U);
   EXPECT_EQ(existing[1].first, 12U);
