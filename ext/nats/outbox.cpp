@@ -12,13 +12,27 @@ std::size_t Outbox::SizeOf(const Outgoing& item) {
   return gst_buffer_get_size(item.buffer.get()) + kOverhead;
 }
 
-std::size_t Outbox::Push(Outgoing item) {
+/// A format may be larger than all the messages that need it.
+void Outbox::Count(const Outgoing& item) {
   bytes_ += SizeOf(item);
+  if (item.format && ++formats_[item.format] == 1) bytes_ += item.format->memory();
+}
+
+void Outbox::Uncount(const Outgoing& item) {
+  bytes_ -= SizeOf(item);
+  const auto format = formats_.find(item.format);
+  if (format == formats_.end() || --format->second > 0) return;
+  bytes_ -= item.format->memory();
+  formats_.erase(format);
+}
+
+std::size_t Outbox::Push(Outgoing item) {
+  Count(item);
   const std::uint64_t number = item.number;
   waiting_.emplace(number, std::move(item));
   std::size_t dropped = 0;
   for (; bytes_ > max_bytes_ && !waiting_.empty(); ++dropped) {
-    bytes_ -= SizeOf(waiting_.begin()->second);
+    Uncount(waiting_.begin()->second);
     waiting_.erase(waiting_.begin());
   }
   return dropped;
@@ -36,7 +50,7 @@ std::optional<Outgoing> Outbox::Take(Clock::time_point now) {
 bool Outbox::Remove(std::uint64_t number) {
   const auto found = in_flight_.find(number);
   if (found == in_flight_.end()) return false;
-  bytes_ -= SizeOf(found->second.item);
+  Uncount(found->second.item);
   in_flight_.erase(found);
   return true;
 }
@@ -59,6 +73,7 @@ std::size_t Outbox::Clear() {
   const std::size_t count = waiting_.size() + in_flight_.size();
   waiting_.clear();
   in_flight_.clear();
+  formats_.clear();
   bytes_ = 0;
   return count;
 }

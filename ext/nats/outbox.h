@@ -53,11 +53,14 @@ class Outbox {
     Clock::time_point at;
   };
   static std::size_t SizeOf(const Outgoing& item);
+  void Count(const Outgoing& item);
+  void Uncount(const Outgoing& item);
 
   const std::size_t max_bytes_;
   std::map<std::uint64_t, Outgoing> waiting_;
   std::map<std::uint64_t, Sent> in_flight_;
-  std::size_t bytes_ = 0;  // of both
+  std::map<StreamFormat::Ptr, std::size_t> formats_;  // messages of each in both
+  std::size_t bytes_ = 0;                             // of all three
 };
 
 }  // namespace lidar::nats

@@ -24,6 +24,8 @@ class StreamFormat {
   const std::string& text() const { return text_; }
   /// 16 hexadecimal digits, which depend on the text alone.
   const std::string& id() const { return id_; }
+  /// About what it takes [bytes]: the caps hold again what the text says.
+  std::size_t memory() const { return 2 * text_.size(); }
   /// True where a buffer of these caps may have `size` bytes.
   bool Fits(std::size_t size) const;
 

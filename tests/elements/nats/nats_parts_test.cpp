@@ -197,6 +197,29 @@ TEST_F(NatsParts, TheOutboxDropsTheOldestThatWait) {
   EXPECT_EQ(box.in_flight(), 1U);  // what is with the server stays
 }
 
+TEST_F(NatsParts, TheOutboxCountsTheFormatsOfWhatWaits) {
+  Outbox box(1'000'000);
+  std::vector<std::weak_ptr<const StreamFormat>> formats;
+  std::size_t dropped = 0;
+  for (std::uint64_t i = 0; i < 200; ++i) {
+    std::string why;
+    const std::string text =
+        kSliceCaps + std::string(", note=(string)") + std::string(50'000, 'a') + std::to_string(i);
+    const gst::CapsPtr caps(gst_caps_from_string(text.c_str()));
+    const auto format = StreamFormat::FromCaps(caps.get(), &why);
+    ASSERT_TRUE(format) << why;
+    formats.push_back(format);
+    dropped += box.Push({i, Bytes(10), format});
+    EXPECT_LE(box.bytes(), 1'000'000U);
+  }
+  const auto kept = std::count_if(formats.begin(), formats.end(),
+                                  [](const auto& format) { return !format.expired(); });
+  EXPECT_LE(kept, 20) << "of 50 kB each, and their caps";
+  EXPECT_EQ(dropped, 200 - box.waiting());
+  while (const auto item = box.Take({})) box.Remove(item->number);
+  EXPECT_EQ(box.bytes(), 0U);
+}
+
 TEST_F(NatsParts, TheOutboxSendsAgainInOrder) {
   Outbox box(1'000'000);
   for (std::uint64_t i = 0; i < 6; ++i) box.Push(Item(i, 10));
