@@ -14,7 +14,11 @@ using gst::ElementPtr;
 using gst::PadPtr;
 using tools::SetText;
 
-constexpr guint kRecordQueue = 8U << 20;  // bytes that wait for a slow disk
+// What waits for a slow disk. The number bounds what tiny buffers cost beside their bytes, and the
+// time bounds the events between them.
+constexpr guint kRecordQueue = 8U << 20;  // bytes
+constexpr guint kRecordQueueBuffers = 16'384;
+constexpr GstClockTime kRecordQueueTime = 30 * GST_SECOND;
 constexpr GstClockTime kDrainTimeout = GST_SECOND;
 constexpr const char* kRecorder = "recorder";
 
@@ -84,8 +88,8 @@ void AddRecorder(GstElement* pipeline, const RobotConfig& robot) {
   // A disk that is slow costs the recording, and nothing else.
   GstElement* queue = Add(recorder, "queue");
   gst_util_set_object_arg(G_OBJECT(queue), "leaky", "downstream");
-  g_object_set(queue, "max-size-buffers", 0, "max-size-time", guint64{0}, "max-size-bytes",
-               kRecordQueue, nullptr);
+  g_object_set(queue, "max-size-buffers", kRecordQueueBuffers, "max-size-time", kRecordQueueTime,
+               "max-size-bytes", kRecordQueue, nullptr);
   GstElement* sink = Add(recorder, "mcapsink");
   g_object_set(sink, "location", robot.record.c_str(), "max-file-size", robot.record_max_file_size,
                "max-files", static_cast<guint>(robot.record_max_files), nullptr);
