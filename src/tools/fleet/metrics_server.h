@@ -1,23 +1,58 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Serves the newest statistics to Prometheus, on /metrics.
 #pragma once
+#include <atomic>
+#include <chrono>
+#include <cstddef>
+#include <list>
 #include <memory>
+#include <mutex>
 #include <string>
+#include <thread>
+
+#include "src/tools/common/file_descriptor.h"
 
 namespace lidar::fleet {
 
+/// One thread serves all connections, and waits for none of them. A client that says nothing, or
+/// little, is cut off after two seconds, or once too many others have come.
 class MetricsServer {
  public:
+  static constexpr std::size_t kMaxConnections = 32;
+
   /// Port 0: any. Throws std::runtime_error where the port is taken.
   MetricsServer(const std::string& address, int port);
   ~MetricsServer();
+  MetricsServer(const MetricsServer&) = delete;
+  MetricsServer& operator=(const MetricsServer&) = delete;
 
-  int port() const;
+  int port() const { return port_; }
   void Publish(std::string text);
 
  private:
-  class Impl;
-  std::unique_ptr<Impl> impl_;
+  using Clock = std::chrono::steady_clock;
+  struct Connection {
+    tools::FileDescriptor socket;
+    Clock::time_point until;  // cut off then
+    std::string request;
+    std::string answer;  // empty: the request is not complete
+    std::size_t sent = 0;
+  };
+
+  void Run();
+  void Accept();
+  bool GoesOn(Connection* connection);
+  bool Receive(Connection* connection);
+  std::string AnswerTo(const std::string& request);
+
+  tools::FileDescriptor listener_;
+  tools::FileDescriptor wake_;  // an eventfd
+  int port_ = 0;
+  std::list<Connection> connections_;  // oldest first; the thread's alone
+  std::mutex mutex_;                   // guards text_
+  std::shared_ptr<const std::string> text_ = std::make_shared<std::string>();
+  std::atomic<bool> ending_{false};
+  std::thread thread_;
 };
 
 }  // namespace lidar::fleet

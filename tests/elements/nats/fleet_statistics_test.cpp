@@ -1,10 +1,15 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // What the programs of a fleet tell of themselves.
+#include <arpa/inet.h>
+#include <sys/socket.h>
+
 #include <nlohmann/json.hpp>
 
 #include "ext/nats/jetstream.h"
+#include "src/tools/common/file_descriptor.h"
 #include "src/tools/common/printable.h"
 #include "src/tools/fleet/exposition.h"
+#include "src/tools/fleet/metrics_server.h"
 #include "src/tools/fleet/reporter.h"
 #include "tests/elements/nats/nats_server.h"
 
@@ -36,6 +41,61 @@ TEST(Printable, IsALineThatGivesATerminalNoOrders) {
   EXPECT_EQ(tools::Printable("\xff\xc3"), "\\xff\\xc3") << "no UTF-8";
   EXPECT_EQ(tools::Printable("\u009b"), "\\xc2\\x9b") << "begins an order in some terminals";
   EXPECT_EQ(tools::Printable(""), "");
+}
+
+/// Clients that connect to a port and say as much as `request`.
+std::vector<tools::FileDescriptor> Clients(int port, std::size_t count,
+                                           const std::string& request) {
+  std::vector<tools::FileDescriptor> clients;
+  sockaddr_in address{};
+  address.sin_family = AF_INET;
+  address.sin_port = htons(static_cast<std::uint16_t>(port));
+  address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+  for (std::size_t i = 0; i < count; ++i) {
+    clients.emplace_back(socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0));
+    EXPECT_EQ(connect(clients.back().get(), reinterpret_cast<sockaddr*>(&address), sizeof address),
+              0);
+    send(clients.back().get(), request.data(), request.size(), MSG_NOSIGNAL);
+  }
+  return clients;
+}
+
+/// All that comes until the server closes the connection.
+std::string Received(int fd) {
+  std::string text;
+  char bytes[1'024];
+  for (ssize_t n; (n = recv(fd, bytes, sizeof bytes, 0)) > 0;)
+    text.append(bytes, static_cast<std::size_t>(n));
+  return text;
+}
+
+TEST(FleetMetrics, AreServedWhileHundredsOfClientsAreSilent) {
+  fleet::MetricsServer server("127.0.0.1", 0);
+  server.Publish("lidar_edge_x 1\n");
+  for (const char* part : {"", "GET /metrics HTTP/1.1\r\n"}) {
+    const auto silent = Clients(server.port(), 300, part);
+    const auto asking = Clients(server.port(), 1, "GET /metrics HTTP/1.1\r\n\r\n");
+    const std::string answer = Received(asking[0].get());
+    EXPECT_EQ(answer.substr(0, 15), "HTTP/1.1 200 OK");
+    EXPECT_EQ(answer.substr(answer.find("\r\n\r\n") + 4), "lidar_edge_x 1\n");
+    for (std::size_t i = 0; i < silent.size() - fleet::MetricsServer::kMaxConnections; ++i)
+      EXPECT_EQ(Received(silent[i].get()), "") << "made room";
+  }
+}
+
+TEST(FleetMetrics, CutOffWhoSaysNothingOrTooMuch) {
+  fleet::MetricsServer server("127.0.0.1", 0);
+  for (const auto& request : {std::string(), std::string(100'000, 'x')})
+    EXPECT_EQ(Received(Clients(server.port(), 1, request)[0].get()), "");
+  const auto lost = Clients(server.port(), 1, "GET / HTTP/1.1\r\n\r\n");
+  EXPECT_EQ(Received(lost[0].get()).substr(0, 12), "HTTP/1.1 404");
+}
+
+TEST(FleetMetrics, ALargeTextArrivesWhole) {
+  fleet::MetricsServer server("127.0.0.1", 0);
+  server.Publish(std::string(5'000'000, 'x'));
+  const auto asking = Clients(server.port(), 1, "GET /metrics HTTP/1.0\r\n\r\n");
+  EXPECT_GT(Received(asking[0].get()).size(), 5'000'000U);
 }
 
 using FleetReporter = NatsTest;
