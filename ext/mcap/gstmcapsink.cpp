@@ -20,7 +20,6 @@
 #include "ext/mcap/gstmcapstream.h"
 #include "ext/mcap/recorder.h"
 #include "ext/mcap/timeline.h"
-#include "gst/common/caps_text.h"
 #include "gst/common/element_class.h"
 #include "gst/common/enum_type.h"
 #include "gst/common/gstlidar.h"
@@ -270,11 +269,13 @@ static void ReleasePad(GstElement* element, GstPad* pad) {
 }
 
 /// What needs a channel of its own. The message of a cloud says its width itself.
-static std::string KindOf(const GstCaps* caps, MessageType type) {
-  const CapsPtr kind(gst_caps_copy(caps));
+static std::string KindOf(lidar::ScalarCaps caps, MessageType type) {
+  auto& fields = caps.fields;
   if (type == MessageType::kCloud)
-    gst_structure_remove_field(gst_caps_get_structure(kind.get(), 0), "width");
-  return CapsToText(kind.get());
+    fields.erase(std::remove_if(fields.begin(), fields.end(),
+                                [](const auto& field) { return field.name == "width"; }),
+                 fields.end());
+  return caps.ToText().value_or("");
 }
 
 /// True where every stream has ended.
@@ -298,7 +299,7 @@ std::string McapSinkFreeTopic(GstLidarMcapSink* sink, const std::string& wanted)
 }
 
 bool McapSinkAddChannel(GstLidarMcapSink* sink, const BufferWriter& writer,
-                        const std::string& topic, const GstCaps* caps, RecordedStream* stream) {
+                        const std::string& topic, const ScalarCaps& caps, RecordedStream* stream) {
   State& state = *sink->state;
   std::unique_lock lock(state.recording);
   if (!state.recorder) return false;
@@ -313,7 +314,7 @@ bool McapSinkAddChannel(GstLidarMcapSink* sink, const BufferWriter& writer,
   channel.schema_id = catalogue.AddSchema(SchemaOf(writer.type()));
   channel.topic = topic;
   channel.message_encoding = "cdr";
-  channel.metadata = {{kCapsKey, CapsToText(caps)}, {kQosKey, ""}};
+  channel.metadata = {{kCapsKey, caps.ToText().value_or("")}, {kQosKey, ""}};
   stream->channel_id = known->second = catalogue.AddChannel(std::move(channel));
   if (stream->channel_id != 0) return true;
   stream->channels.erase(known);

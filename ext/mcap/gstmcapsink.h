@@ -7,6 +7,7 @@
 #include <string>
 
 #include "ext/mcap/buffer_writer.h"
+#include "src/base/scalar_caps.h"
 
 G_BEGIN_DECLS
 #define GST_TYPE_LIDAR_MCAP_SINK (gst_lidar_mcap_sink_get_type())
@@ -25,7 +26,7 @@ struct RecordedStream {
 
 /// For the streams of the sink, from their threads. Errors are posted on the sink.
 bool McapSinkAddChannel(GstLidarMcapSink* sink, const BufferWriter& writer,
-                        const std::string& topic, const GstCaps* caps, RecordedStream* stream);
+                        const std::string& topic, const ScalarCaps& caps, RecordedStream* stream);
 /// `running_time` may be GST_CLOCK_TIME_NONE.
 GstFlowReturn McapSinkTake(GstLidarMcapSink* sink, BufferWriter* writer, RecordedStream* stream,
                            GstBuffer* buffer, GstClockTime running_time);

@@ -5,6 +5,7 @@
 #include <memory>
 #include <mutex>
 
+#include "gst/common/caps_text.h"
 #include "gst/common/element_class.h"
 #include "gst/common/properties.h"
 #include "gst/common/refused_caps.h"
@@ -52,7 +53,9 @@ static gboolean SetCaps(GstBaseSink* base, GstCaps* caps) {
   const StreamSettings settings = Snapshot(state);
   std::string why;
   state.writer = BufferWriter::Make(caps, settings.frame_id, &why);
-  if (!state.writer) {
+  const auto scalar = state.writer ? ToScalarCaps(caps, &why) : std::nullopt;
+  if (!scalar) {
+    state.writer.reset();
     if (state.refused.Note(caps))
       GST_ELEMENT_ERROR(state.sink, STREAM, WRONG_TYPE, ("Cannot be recorded: %s.", why.c_str()),
                         ("%" GST_PTR_FORMAT, static_cast<gpointer>(caps)));
@@ -62,7 +65,7 @@ static gboolean SetCaps(GstBaseSink* base, GstCaps* caps) {
     const std::string usual(TopicOf(state.writer->type()));
     state.topic = settings.topic.empty() ? McapSinkFreeTopic(state.sink, usual) : settings.topic;
   }
-  return McapSinkAddChannel(state.sink, *state.writer, state.topic, caps, &state.stream);
+  return McapSinkAddChannel(state.sink, *state.writer, state.topic, *scalar, &state.stream);
 }
 
 static GstFlowReturn Render(GstBaseSink* base, GstBuffer* buffer) {

@@ -142,7 +142,7 @@ std::unique_ptr<MessageReader> MessageReader::Make(const mcap::Schema& schema,
   const auto type = TypeOf(schema);
   if (!type || channel.message_encoding != "cdr") return nullptr;
   const auto text = channel.metadata.find(kCapsKey);
-  CapsPtr caps(text == channel.metadata.end() ? nullptr : CapsFromText(text->second, *type));
+  CapsPtr caps = text == channel.metadata.end() ? nullptr : CapsOfType(text->second, *type);
   switch (*type) {
     case MessageType::kCloud:
       return std::make_unique<CloudReader>(std::move(caps));

@@ -2,6 +2,7 @@
 #include "ext/mcap/message_types.h"
 
 #include <array>
+#include <utility>
 
 #include "gst/common/caps_text.h"
 #include "gst/common/gstlidar.h"
@@ -176,9 +177,9 @@ bool IsOurImu(const GstCaps* caps) {
 
 std::string_view TopicOf(MessageType type) { return InfoOf(type).topic; }
 
-GstCaps* CapsFromText(const std::string& text, MessageType type) {
-  CapsPtr caps = FixedCapsFromText(text);
-  return caps && TypeOf(caps.get()) == type ? caps.release() : nullptr;
+CapsPtr CapsOfType(const std::string& text, MessageType type) {
+  CapsPtr caps = CapsFromText(text);
+  return caps && TypeOf(caps.get()) == type ? std::move(caps) : nullptr;
 }
 
 }  // namespace lidar::gst

@@ -7,6 +7,7 @@
 #include <string>
 #include <string_view>
 
+#include "gst/common/refs.h"
 #include "src/mcap/records.h"
 
 namespace lidar::gst {
@@ -24,9 +25,9 @@ bool IsOurImu(const GstCaps* caps);
 /// Where messages of that type go unless a topic is given.
 std::string_view TopicOf(MessageType type);
 
-/// Caps from the metadata of a channel. NULL where `text` comes from elsewhere and is not the fixed
-/// caps of `type`.
-GstCaps* CapsFromText(const std::string& text, MessageType type);
+/// Caps from the metadata of a channel, which anybody may have written. Null where `text` is not
+/// the caps of `type`.
+CapsPtr CapsOfType(const std::string& text, MessageType type);
 
 /// The entries of a channel's metadata.
 constexpr const char* kCapsKey = "gst_caps";

@@ -5,16 +5,14 @@ namespace lidar::nats {
 namespace {
 
 constexpr std::size_t kMaxFormats = 16;
-constexpr std::size_t kMaxText = 128 << 10;  // a sensor model of 512 beams takes 30 kB
 
 }  // namespace
 
 void FormatBook::Note(std::string_view subject, std::string_view text) {
   const std::string id(subject.substr(subject.rfind('.') + 1));
   if (Find(id)) return;
-  const StreamFormat::Ptr format = IsFormatId(id) && text.size() <= kMaxText
-                                       ? StreamFormat::FromText(std::string(text))
-                                       : nullptr;
+  const StreamFormat::Ptr format =
+      IsFormatId(id) ? StreamFormat::FromText(std::string(text)) : nullptr;
   if (!format || format->id() != id) {
     ++damaged_;
     return;

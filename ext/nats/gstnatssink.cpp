@@ -271,10 +271,7 @@ static void gst_lidar_nats_sink_class_init(GstLidarNatsSinkClass* klass) {
   GST_DEBUG_CATEGORY_INIT(gst_lidar_nats_sink_debug, "natssink", 0, "Publisher of NATS");
   ServeState<GstLidarNatsSink, gst_lidar_nats_sink_parent_class, kProperties>(klass);
   Describe(klass, {"NATS sink", "Sink/Network", "Publishes a stream on a subject of NATS"},
-           {{"sink", GST_PAD_SINK,
-             GST_LIDAR_CLOUD_MEDIA_TYPE ";" GST_LIDAR_SLICE_MEDIA_TYPE
-                                        ";" GST_LIDAR_DRACO_MEDIA_TYPE ";" GST_LIDAR_IMU_MEDIA_TYPE
-                                        ";" GST_LIDAR_ODOMETRY_MEDIA_TYPE}});
+           {{"sink", GST_PAD_SINK, "ANY"}});
   auto* base = GST_BASE_SINK_CLASS(klass);
   base->start = Start;
   base->stop = Stop;

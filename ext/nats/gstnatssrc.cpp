@@ -345,10 +345,7 @@ static void gst_lidar_nats_src_class_init(GstLidarNatsSrcClass* klass) {
   GST_DEBUG_CATEGORY_INIT(gst_lidar_nats_src_debug, "natssrc", 0, "Subscription of NATS");
   ServeState<GstLidarNatsSrc, gst_lidar_nats_src_parent_class, kProperties, FollowSettings>(klass);
   Describe(klass, {"NATS source", "Source/Network", "Takes a stream from a subject of NATS"},
-           {{"src", GST_PAD_SRC,
-             GST_LIDAR_CLOUD_MEDIA_TYPE ";" GST_LIDAR_SLICE_MEDIA_TYPE
-                                        ";" GST_LIDAR_DRACO_MEDIA_TYPE ";" GST_LIDAR_IMU_MEDIA_TYPE
-                                        ";" GST_LIDAR_ODOMETRY_MEDIA_TYPE}});
+           {{"src", GST_PAD_SRC, "ANY"}});
   auto* src = GST_BASE_SRC_CLASS(klass);
   src->start = Start;
   src->stop = Stop;

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <utility>
 
 #include "gst/common/caps_text.h"
 #include "gst/common/cloud_info.h"
@@ -41,21 +42,21 @@ StreamFormat::Ptr StreamFormat::FromCaps(GstCaps* caps, std::string* why) {
     format->multiple_ = static_cast<std::size_t>(size);
   } else if (gst_structure_has_name(s, GST_LIDAR_ODOMETRY_MEDIA_TYPE)) {
     format->size_ = kPoseSize;
-  } else if ((!gst_structure_has_name(s, GST_LIDAR_SLICE_MEDIA_TYPE) &&
-              !gst_structure_has_name(s, GST_LIDAR_DRACO_MEDIA_TYPE)) ||
-             g_strcmp0(gst_structure_get_string(s, "alignment"), "slice") != 0) {
+  } else if (g_strcmp0(gst_structure_get_string(s, "alignment"), "slice") != 0) {
     *why = std::string("clouds, coded slices, IMU samples and odometry can be published, and no ") +
            gst_structure_get_name(s);
     return nullptr;
   }
+  auto text = gst::CapsToText(caps, why);
+  if (!text) return nullptr;
   format->caps_.reset(gst_caps_ref(caps));
-  format->text_ = gst::CapsToText(caps);
+  format->text_ = *std::move(text);
   format->id_ = IdOf(format->text_);
   return format;
 }
 
 StreamFormat::Ptr StreamFormat::FromText(const std::string& text) {
-  const gst::CapsPtr caps = gst::FixedCapsFromText(text);
+  const gst::CapsPtr caps = gst::CapsFromText(text);
   if (!caps) return nullptr;
   std::string why;
   const Ptr read = FromCaps(caps.get(), &why);

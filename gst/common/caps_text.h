@@ -1,37 +1,115 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Caps as text, and back from text that anybody may have written.
+// Caps as text, and back from text that anybody may have written. GStreamer's own parser never gets
+// such text: each level of nesting doubles its time.
 #pragma once
 #include <gst/gst.h>
 
-#include <algorithm>
+#include <optional>
 #include <string>
+#include <string_view>
+#include <type_traits>
+#include <utility>
 
+#include "gst/common/buffer_map.h"
 #include "gst/common/refs.h"
+#include "src/base/scalar_caps.h"
 
 namespace lidar::gst {
+namespace caps_text {
 
-inline std::string CapsToText(const GstCaps* caps) {
-  const StringPtr text(gst_caps_to_string(caps));
-  return text.get();
+/// None for a value of another type.
+inline std::optional<ScalarCaps::Value> ToScalar(const GValue* value) {
+  using Value = ScalarCaps::Value;
+  const GType type = G_VALUE_TYPE(value);
+  if (type == G_TYPE_BOOLEAN) return Value(g_value_get_boolean(value) != FALSE);
+  if (type == G_TYPE_INT) return Value(std::int32_t{g_value_get_int(value)});
+  if (type == G_TYPE_UINT) return Value(std::uint32_t{g_value_get_uint(value)});
+  if (type == G_TYPE_INT64) return Value(std::int64_t{g_value_get_int64(value)});
+  if (type == G_TYPE_UINT64) return Value(std::uint64_t{g_value_get_uint64(value)});
+  if (type == G_TYPE_FLOAT) return Value(g_value_get_float(value));
+  if (type == G_TYPE_DOUBLE) return Value(g_value_get_double(value));
+  if (type == GST_TYPE_FRACTION)
+    return Value(ScalarCaps::Fraction{gst_value_get_fraction_numerator(value),
+                                      gst_value_get_fraction_denominator(value)});
+  if (type == G_TYPE_STRING && g_value_get_string(value) != nullptr)
+    return Value(std::string(g_value_get_string(value)));
+  if (type != GST_TYPE_BUFFER || gst_value_get_buffer(value) == nullptr) return std::nullopt;
+  const BufferMap map(gst_value_get_buffer(value), GST_MAP_READ);
+  if (!map) return std::nullopt;
+  return Value(ScalarCaps::Bytes(map.view().begin(), map.view().end()));
 }
 
-/// Null where `text` is not the fixed caps of one stream in the system's memory.
-inline CapsPtr FixedCapsFromText(const std::string& text) {
-  // GStreamer's parser recurses with each bracket; only the names of fields are lists in ours.
-  constexpr std::ptrdiff_t kMaxNesting = 1024;
-  constexpr std::size_t kMaxSize = 1U << 20;  // a sensor model of 512 beams takes 30 kB
-  const auto is_plain = [](char c) { return c >= ' ' && c <= '~'; };
-  const auto nests = [](char c) { return c == '{' || c == '<' || c == '['; };
-  if (text.empty() || text.size() > kMaxSize ||
-      std::count_if(text.begin(), text.end(), nests) > kMaxNesting ||
-      !std::all_of(text.begin(), text.end(), is_plain))
-    return nullptr;
-  CapsPtr caps(gst_caps_from_string(text.c_str()));
-  if (!caps || gst_caps_get_size(caps.get()) != 1 || !gst_caps_is_fixed(caps.get()) ||
-      !gst_caps_features_is_equal(gst_caps_get_features(caps.get(), 0),
+inline void SetScalar(GstStructure* s, const gchar* name, const ScalarCaps::Value& value) {
+  std::visit(
+      [&](const auto& v) {
+        using T = std::decay_t<decltype(v)>;
+        const auto set = [&](GType type, auto... parts) {
+          gst_structure_set(s, name, type, parts..., nullptr);
+        };
+        if constexpr (std::is_same_v<T, std::string>) set(G_TYPE_STRING, v.c_str());
+        if constexpr (std::is_same_v<T, bool>) set(G_TYPE_BOOLEAN, gboolean{v});
+        if constexpr (std::is_same_v<T, std::int32_t>) set(G_TYPE_INT, gint{v});
+        if constexpr (std::is_same_v<T, std::uint32_t>) set(G_TYPE_UINT, guint{v});
+        if constexpr (std::is_same_v<T, std::int64_t>) set(G_TYPE_INT64, gint64{v});
+        if constexpr (std::is_same_v<T, std::uint64_t>) set(G_TYPE_UINT64, guint64{v});
+        if constexpr (std::is_same_v<T, float>) set(G_TYPE_FLOAT, gdouble{v});
+        if constexpr (std::is_same_v<T, double>) set(G_TYPE_DOUBLE, gdouble{v});
+        if constexpr (std::is_same_v<T, ScalarCaps::Fraction>)
+          set(GST_TYPE_FRACTION, gint{v.numerator}, gint{v.denominator});
+        if constexpr (std::is_same_v<T, ScalarCaps::Bytes>) {
+          const BufferPtr buffer(v.empty() ? gst_buffer_new()
+                                           : gst_buffer_new_memdup(v.data(), v.size()));
+          set(GST_TYPE_BUFFER, buffer.get());
+        }
+      },
+      value);
+}
+
+}  // namespace caps_text
+
+/// None where `caps` are not those of one stream in the system's memory with scalar fields: `why`
+/// then says so in words for a user.
+inline std::optional<ScalarCaps> ToScalarCaps(const GstCaps* caps, std::string* why = nullptr) {
+  std::string ignored;
+  std::string& reason = why != nullptr ? *why : ignored;
+  reason = "they are not those of one stream in the system's memory";
+  if (gst_caps_is_any(caps) || gst_caps_get_size(caps) != 1 ||
+      !gst_caps_features_is_equal(gst_caps_get_features(caps, 0),
                                   GST_CAPS_FEATURES_MEMORY_SYSTEM_MEMORY))
-    return nullptr;
+    return std::nullopt;
+  const GstStructure* s = gst_caps_get_structure(caps, 0);
+  ScalarCaps scalar;
+  scalar.media_type = gst_structure_get_name(s);
+  for (gint i = 0; i < gst_structure_n_fields(s); ++i) {
+    const gchar* name = gst_structure_nth_field_name(s, static_cast<guint>(i));
+    auto value = caps_text::ToScalar(gst_structure_get_value(s, name));
+    if (!value) {
+      reason = std::string("the field ") + name + " is no string, number, fraction, flag or buffer";
+      return std::nullopt;
+    }
+    scalar.fields.push_back({name, *std::move(value)});
+  }
+  if (!scalar.ToText(&reason)) return std::nullopt;
+  return scalar;
+}
+
+inline CapsPtr FromScalarCaps(const ScalarCaps& scalar) {
+  CapsPtr caps(gst_caps_new_empty_simple(scalar.media_type.c_str()));
+  GstStructure* s = gst_caps_get_structure(caps.get(), 0);
+  for (const auto& field : scalar.fields) caps_text::SetScalar(s, field.name.c_str(), field.value);
   return caps;
+}
+
+/// None where CapsFromText() would not take it: `why` then says so in words for a user.
+inline std::optional<std::string> CapsToText(const GstCaps* caps, std::string* why = nullptr) {
+  const auto scalar = ToScalarCaps(caps, why);
+  return scalar ? scalar->ToText() : std::nullopt;
+}
+
+/// Null where `text` is not caps of scalar fields. They are fixed.
+inline CapsPtr CapsFromText(std::string_view text) {
+  const auto scalar = ScalarCaps::Parse(text);
+  return scalar ? FromScalarCaps(*scalar) : nullptr;
 }
 
 }  // namespace lidar::gst

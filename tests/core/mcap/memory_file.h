@@ -72,10 +72,13 @@ class FileMaker {
         }) {}
   std::uint16_t AddChannel(const std::string& topic) {
     Channel channel;
-    channel.schema_id = catalogue_.AddSchema({0, "pkg/msg/" + topic, "ros2msg", "uint8[] data"});
     channel.topic = topic;
     channel.message_encoding = "cdr";
     channel.metadata = {{"caps", "of " + topic}};
+    return AddChannel({0, "pkg/msg/" + topic, "ros2msg", "uint8[] data"}, std::move(channel));
+  }
+  std::uint16_t AddChannel(Schema schema, Channel channel) {
+    channel.schema_id = catalogue_.AddSchema(std::move(schema));
     return catalogue_.AddChannel(std::move(channel));
   }
   bool Add(std::uint16_t channel, std::uint64_t time, const std::string& data) {

@@ -6,7 +6,9 @@
 #include <csignal>
 #include <fstream>
 
+#include "ext/mcap/message_types.h"
 #include "ext/mcap/output_file.h"
+#include "tests/core/mcap/memory_file.h"
 #include "tests/elements/mcap/recording.h"
 
 namespace lidar::test {
@@ -129,6 +131,41 @@ TEST_F(McapErrors, APlayerSaysWhyItCannotPlay) {
   Record(1, "", "a.mcap");
   EXPECT_EQ(PlayError("topic=/other" + At("a.mcap")),
             "\"" + Path("a.mcap") + "\" holds nothing that can be played.");
+}
+
+TEST_F(McapErrors, NestedCapsOfAStrangersChannelAreRefusedAtOnce) {
+  std::string caps = "application/x-lidar-slice, alignment=(string)slice, a=";
+  while (caps.size() < 569) caps += "[[ a, b={";  // GStreamer's parser doubles its time with each
+  mcap::test::FileMaker maker(mcap::WriterSettings{});
+  mcap::Channel channel;
+  channel.topic = "/slices";
+  channel.message_encoding = "cdr";
+  channel.metadata = {{gst::kCapsKey, caps}};
+  ASSERT_TRUE(maker.Add(
+      maker.AddChannel(gst::SchemaOf(gst::MessageType::kSlice), std::move(channel)), 1, "x"));
+  ASSERT_TRUE(maker.writer().Finish());
+  std::ofstream(Path("a.mcap"), std::ios::binary)
+      .write(reinterpret_cast<const char*>(maker.file().data()),
+             static_cast<std::streamsize>(maker.file().size()));
+  EXPECT_EQ(PlayError(At("a.mcap")),
+            "\"" + Path("a.mcap") + "\" holds nothing that can be played.");
+}
+
+TEST_F(McapErrors, CapsThatCouldNotBePlayedAreNotRecorded) {
+  const Harness h = RecordingTo(Path("a.mcap"));
+  GstBus* bus = gst_bus_new();
+  gst_element_set_bus(h->element, bus);
+  gst_harness_set_src_caps_str(h.get(), "application/x-voxels,alignment=slice,levels=(int)<1,2>");
+  const gst::MessagePtr message(gst_bus_pop_filtered(bus, GST_MESSAGE_ERROR));
+  ASSERT_TRUE(message);
+  GError* raw = nullptr;
+  gst_message_parse_error(message.get(), &raw, nullptr);
+  const gst::ErrorPtr error(raw);
+  EXPECT_STREQ(error->message,
+               "Cannot be recorded: the field levels is no string, number, fraction, flag or "
+               "buffer.");
+  gst_element_set_bus(h->element, nullptr);
+  gst_object_unref(bus);
 }
 
 TEST_F(McapErrors, APipelineThatIsStoppedLeavesACompleteFile) {

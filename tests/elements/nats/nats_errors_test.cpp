@@ -50,6 +50,9 @@ TEST_F(NatsErrors, GarbageIsCountedAndTheStreamGoesOn) {
       "0123456789abcdef",
       "application/x-odometry");
   stranger.Publish("lidar.config.x", std::string(500'000, '{'));
+  std::string nested = "application/x-lidar-slice, alignment=(string)slice, a=";
+  while (nested.size() < 569) nested += "[[ a, b={";
+  stranger.Publish("lidar.config.0000000000000000", nested);
   stranger.Publish("lidar.get-config", std::string(1'000, 'x'));
   stranger.Flush();
   EXPECT_TRUE(Eventually([&] { return receiver.stat("messages-damaged") == 5; }));
@@ -57,7 +60,7 @@ TEST_F(NatsErrors, GarbageIsCountedAndTheStreamGoesOn) {
   const auto sent = PublishSlices(16, At());
   ASSERT_TRUE(receiver.WaitForBuffers(16));
   ExpectSameStream(receiver.buffers(), sent);
-  EXPECT_EQ(receiver.stat("formats-damaged"), 2U);
+  EXPECT_EQ(receiver.stat("formats-damaged"), 3U);
 }
 
 TEST_F(NatsErrors, ABufferOfAnotherSizeThanItsCapsSayIsCounted) {

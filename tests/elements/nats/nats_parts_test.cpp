@@ -164,6 +164,31 @@ TEST_F(NatsParts, TextOfStrangersMakesNoFormat) {
     EXPECT_FALSE(StreamFormat::FromText(text)) << text.substr(0, 80);
 }
 
+TEST_F(NatsParts, ACoderThatNobodyHereKnowsHasAFormat) {
+  const std::string text =
+      "application/x-voxels, alignment=(string)slice, fields=(string)\"x:F32:0\\,y:F32:4\", "
+      "levels=(uint)7";
+  std::string why;
+  const auto format = FormatOf(text.c_str(), &why);
+  ASSERT_TRUE(format) << why;
+  EXPECT_EQ(format->text(), text);
+  const auto back = StreamFormat::FromText(text);
+  ASSERT_TRUE(back);
+  EXPECT_TRUE(gst_caps_is_equal(back->caps(), format->caps()));
+  EXPECT_FALSE(FormatOf("application/x-voxels, levels=(uint)7", &why));  // whole scans?
+  EXPECT_FALSE(FormatOf("application/x-voxels, alignment=slice, levels=(uint)<1,2>", &why));
+  EXPECT_EQ(why, "the field levels is no string, number, fraction, flag or buffer");
+}
+
+TEST_F(NatsParts, NestedTextIsRefusedAtOnce) {
+  std::string text = std::string(kSliceCaps) + ", a=";
+  while (text.size() < 569) text += "[[ a, b={";  // GStreamer's parser doubles its time with each
+  FormatBook book;
+  book.Note("a.config.0000000000000000", text);
+  EXPECT_EQ(book.damaged(), 1U);
+  EXPECT_FALSE(StreamFormat::FromText(text));
+}
+
 TEST_F(NatsParts, TheBookKeepsTheNewestFormatsAndCountsWhatIsDamaged) {
   FormatBook book;
   std::vector<std::string> ids;

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Caps of one stream whose fields are scalars, and their text: a bounded part of GStreamer's syntax
+// (docs/wire-format.md), which takes linear time whatever the text is.
+#pragma once
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+namespace lidar {
+
+struct ScalarCaps {
+  struct Fraction {
+    std::int32_t numerator = 0;
+    std::int32_t denominator = 1;
+    bool operator==(const Fraction& o) const {
+      return numerator == o.numerator && denominator == o.denominator;
+    }
+  };
+  using Bytes = std::vector<std::uint8_t>;
+  using Value = std::variant<std::string, bool, std::int32_t, std::uint32_t, std::int64_t,
+                             std::uint64_t, float, double, Fraction, Bytes>;
+  struct Field {
+    std::string name;
+    Value value;
+    bool operator==(const Field& o) const { return name == o.name && value == o.value; }
+  };
+
+  static constexpr std::size_t kMaxFields = 64;
+  static constexpr std::size_t kMaxName = 64;          // of a field, and of the media type [bytes]
+  static constexpr std::size_t kMaxText = 128U << 10;  // [bytes]
+
+  std::string media_type;
+  std::vector<Field> fields;
+
+  /// None for text outside of the grammar.
+  static std::optional<ScalarCaps> Parse(std::string_view text);
+  /// The text, as GStreamer would write it. None where Parse() would not take it: `why` then says
+  /// what is wrong, for a user.
+  std::optional<std::string> ToText(std::string* why = nullptr) const;
+
+  /// Null where there is no such field.
+  const Value* Find(std::string_view name) const;
+  bool operator==(const ScalarCaps& o) const {
+    return media_type == o.media_type && fields == o.fields;
+  }
+};
+
+}  // namespace lidar

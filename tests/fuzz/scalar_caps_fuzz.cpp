@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Text of caps that anybody may have written.
+#include "src/base/scalar_caps.h"
+#include "tests/fuzz/fuzz.h"
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  using lidar::ScalarCaps;
+  const auto caps = ScalarCaps::Parse(lidar::fuzz::Text(data, size));
+  if (!caps) return 0;
+  FUZZ_CHECK(caps->fields.size() <= ScalarCaps::kMaxFields);
+  const auto text = caps->ToText();
+  // Escapes may make the text longer than what it was read from.
+  if (!text) {
+    FUZZ_CHECK(4 * size > ScalarCaps::kMaxText);
+    return 0;
+  }
+  FUZZ_CHECK(ScalarCaps::Parse(*text) == caps);
+  return 0;
+}
