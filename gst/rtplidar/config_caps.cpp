@@ -1,16 +1,19 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include "gst/rtplidar/config_caps.h"
 
+#include <algorithm>
 #include <cstring>
+#include <iterator>
+#include <utility>
 
 #include "gst/common/buffer_map.h"
+#include "gst/common/caps_text.h"
 #include "gst/common/gstlidar.h"
 #include "gst/common/refs.h"
 
 namespace lidar::gst {
 namespace {
 
-/// A coder of your own needs a row here and a number in rtp::Coder.
 struct CoderName {
   rtp::Coder coder;
   const gchar* media_type;
@@ -31,15 +34,12 @@ bool ReadModel(const GstStructure* s, rtp::StreamConfig* config) {
   return true;
 }
 
-}  // namespace
-
-std::optional<rtp::StreamConfig> StreamConfigFromCaps(const GstCaps* caps) {
-  const GstStructure* s = gst_caps_get_structure(caps, 0);
+/// None where a field is missing or does not fit into its place.
+std::optional<rtp::StreamConfig> NumberedConfig(rtp::Coder coder, const GstStructure* s) {
   const gchar* fields = gst_structure_get_string(s, "fields");
   const gchar* geometry = gst_structure_get_string(s, "geometry");
   rtp::StreamConfig config;
-  for (const CoderName& name : kCoders)
-    if (gst_structure_has_name(s, name.media_type)) config.coder = name.coder;
+  config.coder = coder;
   if (fields == nullptr || std::strlen(fields) > 0xFFFF || !ReadModel(s, &config))
     return std::nullopt;
   config.fields = fields;
@@ -50,12 +50,37 @@ std::optional<rtp::StreamConfig> StreamConfigFromCaps(const GstCaps* caps) {
     config.framerate_n = static_cast<std::uint32_t>(n);
     config.framerate_d = static_cast<std::uint32_t>(d);
   }
+  return config;
+}
+
+std::optional<rtp::StreamConfig> NamedConfig(const GstCaps* caps, std::string* why) {
+  auto scalar = ToScalarCaps(caps, why);
+  if (!scalar) return std::nullopt;
+  rtp::StreamConfig config;
+  config.coder = rtp::Coder::kNamed;
+  config.caps = *std::move(scalar);
+  *why = "only slices travel, and their caps have alignment=slice";
+  return config;
+}
+
+}  // namespace
+
+std::optional<rtp::StreamConfig> StreamConfigFromCaps(const GstCaps* caps, std::string* why) {
+  const GstStructure* s = gst_caps_get_structure(caps, 0);
+  const auto* known = std::find_if(std::begin(kCoders), std::end(kCoders), [&](const auto& name) {
+    return gst_structure_has_name(s, name.media_type);
+  });
+  const bool numbered = known != std::end(kCoders);
+  *why = "need packed fields with x, y and z as F32, and a sensor-model with geometry=range";
+  const auto config = numbered ? NumberedConfig(known->coder, s) : NamedConfig(caps, why);
+  if (!config) return std::nullopt;
   // What goes out must be what a receiver takes.
-  const auto bytes = config.Serialise();
+  const auto bytes = config->Serialise();
   return rtp::StreamConfig::Parse({bytes.data(), bytes.size()});
 }
 
 GstCaps* StreamConfigToCaps(const rtp::StreamConfig& config) {
+  if (config.coder == rtp::Coder::kNamed) return FromScalarCaps(config.caps).release();
   const bool range = config.geometry == Geometry::kRange;
   const gchar* media_type = GST_LIDAR_DRACO_MEDIA_TYPE;
   for (const CoderName& name : kCoders)

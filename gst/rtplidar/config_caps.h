@@ -4,20 +4,14 @@
 #include <gst/gst.h>
 
 #include <optional>
+#include <string>
 
-#include "gst/common/gstlidar.h"
 #include "src/rtp/stream_config.h"
-
-/// What can be sent: the slices of each coder.
-#define GST_LIDAR_CODED_CAPS                                                             \
-  GST_LIDAR_SLICE_MEDIA_TYPE                                                             \
-  ", alignment = (string) slice, geometry = (string) range; " GST_LIDAR_DRACO_MEDIA_TYPE \
-  ", alignment = (string) slice, geometry = (string) { xyz, range }"
 
 namespace lidar::gst {
 
-/// None where a field is missing, does not parse, or contradicts another.
-std::optional<rtp::StreamConfig> StreamConfigFromCaps(const GstCaps* caps);
+/// None where a receiver would not take the config: `why` then says so in words for a user.
+std::optional<rtp::StreamConfig> StreamConfigFromCaps(const GstCaps* caps, std::string* why);
 /// transfer full
 GstCaps* StreamConfigToCaps(const rtp::StreamConfig& config);
 

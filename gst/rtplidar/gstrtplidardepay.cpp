@@ -173,6 +173,20 @@ static GstBuffer* ToBuffer(ReceivedSlice* slice) {
   return buffer;
 }
 
+/// Says what the next element does not take.
+static void WarnOfCoder(GstRTPBaseDepayload* base, const GstCaps* caps) {
+  const GstStructure* s = gst_caps_get_structure(caps, 0);
+  const std::string type = gst_structure_get_name(s);
+  const std::string decoder = type == GST_LIDAR_SLICE_MEDIA_TYPE   ? "lidardec"
+                              : type == GST_LIDAR_DRACO_MEDIA_TYPE ? "dracodec"
+                                                                   : "a decoder of " + type;
+  GST_ELEMENT_WARNING(base, STREAM, WRONG_TYPE,
+                      ("The slices of this stream are for %s, and the next element does not take "
+                       "them. They are dropped.",
+                       decoder.c_str()),
+                      ("caps are %" GST_PTR_FORMAT, static_cast<const void*>(caps)));
+}
+
 /// Sets the caps of `config`. False where the next element does not take them, with a warning the
 /// first time. That is no error: anyone may send a stream of another coder.
 static bool SetCapsOf(GstRTPBaseDepayload* base, const lidar::rtp::StreamConfig& config) {
@@ -184,12 +198,7 @@ static bool SetCapsOf(GstRTPBaseDepayload* base, const lidar::rtp::StreamConfig&
   }
   if (state.warned_of_coder || GST_PAD_IS_FLUSHING(base->srcpad)) return false;
   state.warned_of_coder = true;
-  const bool own = config.coder == lidar::rtp::Coder::kLidar;
-  GST_ELEMENT_WARNING(base, STREAM, WRONG_TYPE,
-                      ("The slices of this stream are for %s, and the next element does not take "
-                       "them. They are dropped.",
-                       own ? "lidardec" : "dracodec"),
-                      ("caps are %" GST_PTR_FORMAT, static_cast<void*>(caps.get())));
+  WarnOfCoder(base, caps.get());
   return false;
 }
 
@@ -395,7 +404,7 @@ static void gst_lidar_rtp_depay_class_init(GstLidarRtpDepayClass* klass) {
              "application/x-rtp, media = (string) { application, video }, "
              "payload = (int) [ 96, 127 ], "
              "clock-rate = (int) 90000, encoding-name = (string) X-LIDAR-DRACO"},
-            {"src", GST_PAD_SRC, GST_LIDAR_CODED_CAPS}});
+            {"src", GST_PAD_SRC, "ANY"}});
   element->change_state = ChangeState;
   auto* depay = GST_RTP_BASE_DEPAYLOAD_CLASS(klass);
   depay->set_caps = SetCaps;

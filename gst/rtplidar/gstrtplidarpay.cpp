@@ -58,8 +58,8 @@ struct _GstLidarRtpPay {
 };
 
 G_DEFINE_TYPE(GstLidarRtpPay, gst_lidar_rtp_pay, GST_TYPE_RTP_BASE_PAYLOAD)
-GST_ELEMENT_REGISTER_DEFINE(rtplidarpay, "rtplidarpay", GST_RANK_SECONDARY,
-                            gst_lidar_rtp_pay_get_type())
+// No rank: what looks for the payloader of a video would find that this one takes everything.
+GST_ELEMENT_REGISTER_DEFINE(rtplidarpay, "rtplidarpay", GST_RANK_NONE, gst_lidar_rtp_pay_get_type())
 
 static StructurePtr Stats(GObject* object) {
   State& state = *GST_LIDAR_RTP_PAY(object)->state;
@@ -100,13 +100,13 @@ static const gchar* MediaDownstream(GstRTPBasePayload* base) {
 
 static gboolean SetCaps(GstRTPBasePayload* base, GstCaps* caps) {
   State& state = *GST_LIDAR_RTP_PAY(base)->state;
-  auto config = StreamConfigFromCaps(caps);
+  std::string why;
+  auto config = StreamConfigFromCaps(caps, &why);
   if (!config) {
     GST_ELEMENT_ERROR(
-        base, STREAM, FORMAT, ("The caps do not describe an encoded cloud that can be sent."),
-        ("need packed fields with x, y and z as F32, and a sensor-model with geometry=range: "
-         "%" GST_PTR_FORMAT,
-         static_cast<void*>(caps)));
+        base, STREAM, FORMAT,
+        ("The caps do not describe an encoded cloud that can be sent: %s.", why.c_str()),
+        ("caps are %" GST_PTR_FORMAT, static_cast<void*>(caps)));
     return FALSE;
   }
   PushAggregate(base, state);
@@ -244,7 +244,7 @@ static void gst_lidar_rtp_pay_class_init(GstLidarRtpPayClass* klass) {
   Describe(klass,
            {"RTP payloader for point clouds", "Codec/Payloader/Network/RTP",
             "Sends slices of encoded clouds as RTP"},
-           {{"sink", GST_PAD_SINK, GST_LIDAR_CODED_CAPS},
+           {{"sink", GST_PAD_SINK, "ANY"},
             {"src", GST_PAD_SRC,
              "application/x-rtp, media = (string) { application, video }, "
              "payload = (int) [ 96, 127 ], "

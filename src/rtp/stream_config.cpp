@@ -1,7 +1,11 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include "src/rtp/stream_config.h"
 
+#include <algorithm>
+#include <iterator>
+#include <string_view>
 #include <tuple>
+#include <utility>
 
 #include "src/base/byte_writer.h"
 #include "src/base/crc.h"
@@ -15,6 +19,26 @@ constexpr std::uint8_t kVersion = 1;
 // A fraction of GStreamer's caps is two gint.
 constexpr std::uint32_t kMaxFraction = 0x7FFF'FFFF;
 
+constexpr std::uint8_t kNamedCoder = 0xFF;  // in place of coder and geometry
+
+/// What the elements of this set put out: coders with a number, then streams that are no slices.
+constexpr std::string_view kOwnTypes[] = {"application/x-draco",       "application/x-lidar-slice",
+                                          "application/x-pointcloud2", "application/x-imu",
+                                          "application/x-odometry",    "application/x-tf"};
+
+std::optional<StreamConfig> ParseNamed(ByteView text) {
+  auto caps = ScalarCaps::Parse({reinterpret_cast<const char*>(text.data), text.size});
+  if (!caps || std::find(std::begin(kOwnTypes), std::end(kOwnTypes), caps->media_type) !=
+                   std::end(kOwnTypes))
+    return std::nullopt;
+  const auto* alignment = std::get_if<std::string>(caps->Find("alignment"));
+  if (alignment == nullptr || *alignment != "slice") return std::nullopt;
+  StreamConfig config;
+  config.coder = Coder::kNamed;
+  config.caps = *std::move(caps);
+  return config;
+}
+
 bool IsKnown(Coder coder, Geometry geometry) {
   if (coder == Coder::kLidar) return geometry == Geometry::kRange;
   return coder == Coder::kDraco && geometry <= Geometry::kRange;
@@ -26,6 +50,12 @@ std::vector<std::uint8_t> StreamConfig::Serialise() const {
   std::vector<std::uint8_t> bytes;
   ByteWriter w(&bytes);
   w.U8(kVersion);
+  if (coder == Coder::kNamed) {
+    w.U8(kNamedCoder);
+    const std::string text = caps.ToText().value_or("");
+    w.Bytes({reinterpret_cast<const std::uint8_t*>(text.data()), text.size()});
+    return bytes;
+  }
   w.U8(static_cast<std::uint8_t>(static_cast<unsigned>(coder) << 4 |
                                  static_cast<unsigned>(geometry)));
   w.Be32(framerate_n);
@@ -42,6 +72,7 @@ std::optional<StreamConfig> StreamConfig::Parse(ByteView bytes) {
   StreamConfig c;
   const std::uint8_t version = r.U8();
   const std::uint8_t coder_and_geometry = r.U8();
+  if (version == kVersion && coder_and_geometry == kNamedCoder) return ParseNamed(r.Rest());
   c.coder = static_cast<Coder>(coder_and_geometry >> 4);
   c.geometry = static_cast<Geometry>(coder_and_geometry & 15);
   c.framerate_n = r.Be32();
@@ -64,8 +95,9 @@ std::optional<StreamConfig> StreamConfig::Parse(ByteView bytes) {
 }
 
 bool StreamConfig::operator==(const StreamConfig& o) const {
-  return std::tie(coder, geometry, framerate_n, framerate_d, fields, sensor_model) ==
-         std::tie(o.coder, o.geometry, o.framerate_n, o.framerate_d, o.fields, o.sensor_model);
+  return std::tie(coder, geometry, framerate_n, framerate_d, fields, sensor_model, caps) ==
+         std::tie(o.coder, o.geometry, o.framerate_n, o.framerate_d, o.fields, o.sensor_model,
+                  o.caps);
 }
 
 std::uint8_t ConfigId(const std::vector<std::uint8_t>& config,

@@ -7,15 +7,18 @@
 #include <vector>
 
 #include "src/base/byte_reader.h"
+#include "src/base/scalar_caps.h"
 #include "src/cloud/coded_geometry.h"
 
 namespace lidar::rtp {
 
-/// Which coder made the slices; the numbers are part of the format.
-enum class Coder : std::uint8_t { kDraco = 0, kLidar = 1 };
+/// Which coder made the slices; the numbers are part of the format. Coders without a number of
+/// their own are known by their caps.
+enum class Coder : std::uint8_t { kDraco = 0, kLidar = 1, kNamed = 15 };
 
 struct StreamConfig {
   Coder coder = Coder::kDraco;
+  ScalarCaps caps;  // of kNamed, which has nothing else
   Geometry geometry = Geometry::kXyz;
   std::uint32_t framerate_n = 0;  // scans/s; 0/1: not known
   std::uint32_t framerate_d = 1;
@@ -25,6 +28,7 @@ struct StreamConfig {
   std::vector<std::uint8_t> Serialise() const;
   /// None for another version or coder, a wrong length, or a sensor model that does not parse; and
   /// for fields that no decoder gives. Decoders give x, y and z as F32 side by side, all packed.
+  /// None for caps that are not slices of a coder without a number.
   static std::optional<StreamConfig> Parse(ByteView bytes);
   bool operator==(const StreamConfig& o) const;
   bool operator!=(const StreamConfig& o) const { return !(*this == o); }

@@ -221,6 +221,42 @@ TEST(StreamConfig, IsRefusedOfACoderThatNobodyHas) {
   }
 }
 
+std::optional<StreamConfig> ParseNamed(const std::string& text) {
+  std::vector<std::uint8_t> bytes = {1, 255};
+  bytes.insert(bytes.end(), text.begin(), text.end());
+  return StreamConfig::Parse({bytes.data(), bytes.size()});
+}
+
+TEST(StreamConfig, OfACoderWithoutANumberNamesItsCaps) {
+  const auto config = ParseNamed("application/x-voxels, alignment=(string)slice, levels=(uint)7");
+  ASSERT_TRUE(config);
+  EXPECT_EQ(config->coder, Coder::kNamed);
+  EXPECT_EQ(config->caps.media_type, "application/x-voxels");
+  EXPECT_EQ(*config->caps.Find("levels"), ScalarCaps::Value(7U));
+  const auto bytes = config->Serialise();
+  EXPECT_EQ(bytes[0], 1);
+  EXPECT_EQ(bytes[1], 255);
+  EXPECT_EQ(StreamConfig::Parse({bytes.data(), bytes.size()}), config);
+  EXPECT_FALSE(*config == test::SmallConfig());
+  EXPECT_FALSE(*config ==
+               ParseNamed("application/x-voxels, alignment=(string)slice, levels=(uint)8"));
+}
+
+class OtherNamedCaps : public ::testing::TestWithParam<const char*> {};
+TEST_P(OtherNamedCaps, AreRefused) { EXPECT_FALSE(ParseNamed(GetParam())); }
+INSTANTIATE_TEST_SUITE_P(
+    All, OtherNamedCaps,
+    ::testing::Values("", "video/x-raw, alignment=(string)slice", "application/x-voxels",
+                      "application/x-voxels, alignment=(string)scan",
+                      "application/x-voxels, alignment=(int)1",
+                      "application/x-voxels, alignment=(string)slice, a=(int)[ 1, 2 ]",
+                      "application/x-draco, alignment=(string)slice",
+                      "application/x-lidar-slice, alignment=(string)slice",
+                      "application/x-pointcloud2, alignment=(string)slice",
+                      "application/x-imu, alignment=(string)slice",
+                      "application/x-odometry, alignment=(string)slice",
+                      "application/x-tf, alignment=(string)slice"));
+
 TEST(ConfigId, ComesFromTheContentAndNeverRepeatsForAnother) {
   const auto a = test::SmallConfig().Serialise();
   const std::uint8_t id = ConfigId(a, std::nullopt);

@@ -150,6 +150,59 @@ TEST(RtpLidarDepay, DropsSlicesForAnotherDecoderAndGoesOn) {
   gst_object_unref(bus);
 }
 
+constexpr const char* kVoxels =
+    "application/x-voxels, alignment=(string)slice, fields=(string)\"x:F32:0\\,y:F32:4\", "
+    "framerate=(fraction)10/1, sensor-model=(buffer)0102ff, levels=(uint)7, loss=(double)0.25, "
+    "dense=(boolean)true";
+
+/// Packets of `scans` scans of a coder that nobody here knows.
+std::vector<gst::BufferPtr> PacketsOfVoxels(guint scans) {
+  Harness pay(gst_harness_new("rtplidarpay"));
+  gst_harness_set_src_caps_str(pay.get(), kVoxels);
+  for (guint s = 0; s < scans; ++s)
+    for (guint i = 0; i < kSlices; ++i)
+      EXPECT_EQ(gst_harness_push(pay.get(), EncodedSlice(s, i)), GST_FLOW_OK);
+  return Pull(pay.get());
+}
+
+TEST(RtpLidarDepay, SlicesOfACoderThatNobodyHereKnowsComeWithTheirCaps) {
+  const Harness h = Depay();
+  Push(h.get(), PacketsOfVoxels(2));
+  const auto slices = Pull(h.get());
+  ASSERT_EQ(slices.size(), 2 * kSlices);
+  const gst::BufferPtr sent(EncodedSlice(1, 3));
+  const gst::BufferMap a(slices.back().get(), GST_MAP_READ);
+  const gst::BufferMap b(sent.get(), GST_MAP_READ);
+  EXPECT_TRUE(std::equal(a.view().begin(), a.view().end(), b.view().begin(), b.view().end()));
+  const gst::CapsPtr wanted(gst_caps_from_string(kVoxels));
+  const gst::CapsPtr caps(gst_pad_get_current_caps(h->sinkpad));
+  EXPECT_TRUE(gst_caps_is_equal(caps.get(), wanted.get()))
+      << gst::StringPtr(gst_caps_to_string(caps.get())).get();
+}
+
+TEST(RtpLidarDepay, SaysOnceThatTheDecoderDoesNotKnowTheCoder) {
+  const Harness h(gst_harness_new("rtplidardepay"));
+  gst_harness_set_sink_caps_str(h.get(), GST_LIDAR_SLICE_MEDIA_TYPE);
+  gst_harness_set_src_caps_str(h.get(), kRtpCaps);
+  GstBus* bus = gst_bus_new();
+  gst_element_set_bus(h->element, bus);
+  Push(h.get(), PacketsOfVoxels(3));
+  EXPECT_TRUE(Pull(h.get()).empty());
+  EXPECT_EQ(Stat(h.get(), "slices-not-accepted"), 3 * kSlices);
+  std::vector<std::string> warnings;
+  while (const gst::MessagePtr message{gst_bus_pop_filtered(bus, GST_MESSAGE_WARNING)}) {
+    GError* raw = nullptr;
+    gst_message_parse_warning(message.get(), &raw, nullptr);
+    const gst::ErrorPtr warning(raw);
+    warnings.emplace_back(warning->message);
+  }
+  EXPECT_EQ(warnings, std::vector<std::string>{
+                          "The slices of this stream are for a decoder of application/x-voxels, "
+                          "and the next element does not take them. They are dropped."});
+  gst_element_set_bus(h->element, nullptr);
+  gst_object_unref(bus);
+}
+
 class UndecodableConfigs : public ::testing::TestWithParam<const char*> {};
 TEST_P(UndecodableConfigs, AreCountedAndTheStreamGoesOn) {
   const Harness h = Depay();

@@ -234,18 +234,24 @@ TEST(RtpLidarPay, AddsItsHeadersToTheBoundsOfTheEncoder) {
   EXPECT_NEAR(seen.back().nominal_bitrate * share, 2e6, 0.06e6);
 }
 
-TEST(RtpLidarPay, RefusesCapsThatNoReceiverCouldUse) {
+class CapsThatNoReceiverCouldUse : public ::testing::TestWithParam<const char*> {};
+TEST_P(CapsThatNoReceiverCouldUse, AreRefused) {
   const Harness h(gst_harness_new("rtplidarpay"));
   gst_harness_push_event(h.get(), gst_event_new_stream_start("test"));
-  const gst::CapsPtr caps(
-      gst_caps_from_string("application/x-draco,alignment=slice,geometry=range,"
-                           "fields=(string)\"x:F32:0,y:F32:4,z:F32:8,range:U32:12\""));
+  const gst::CapsPtr caps(gst_caps_from_string(GetParam()));
   gst_harness_push_event(h.get(), gst_event_new_caps(caps.get()));
   GstSegment segment;
   gst_segment_init(&segment, GST_FORMAT_TIME);
   gst_harness_push_event(h.get(), gst_event_new_segment(&segment));
   EXPECT_EQ(gst_harness_push(h.get(), EncodedSlice(0, 0)), GST_FLOW_NOT_NEGOTIATED);
 }
+INSTANTIATE_TEST_SUITE_P(
+    All, CapsThatNoReceiverCouldUse,
+    ::testing::Values("application/x-draco,alignment=slice,geometry=range,"
+                      "fields=(string)\"x:F32:0,y:F32:4,z:F32:8,range:U32:12\"",
+                      "application/x-voxels", "application/x-voxels,alignment=scan",
+                      "application/x-voxels,alignment=slice,n=(int)<1,2>",
+                      "application/x-pointcloud2,alignment=slice", "video/x-raw,alignment=slice"));
 
 TEST(RtpLidarPay, RefusesMetasOutOfRangeAndMtusWithoutRoom) {
   {
