@@ -3,4 +3,4 @@
 # Every C++ file is as clang-format leaves it.
 set -euo pipefail
 cd "$1"
-find src gst ext tests -name '*.cpp' -o -name '*.h' | xargs "$2" --dry-run -Werror
+find src gst ext tests docs/examples -name '*.cpp' -o -name '*.h' | xargs "$2" --dry-run -Werror

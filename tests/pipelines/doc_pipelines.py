@@ -7,6 +7,7 @@ With -q it does not say when it plays: then it passes where it runs for some sec
 One that ends by itself and writes a file may take longer, as the next ones may read it.
 Windows become fakesinks, and each page has ports and a folder of its own: several run at a time. They leave
 the processor to what streams beside them.
+The examples bring elements of their own, and have a test of their own.
 Commands that name a sensor by `hostname=` are left out, and said so.
 """
 import concurrent.futures
@@ -126,7 +127,10 @@ def main():
     os.nice(5)
     root = pathlib.Path(sys.argv[1]).resolve()
     named = [root / page for page in sys.argv[2:]]
-    pages = named or [root / "README.md", *sorted((root / "docs").rglob("*.md"))]
+    pages = named or [
+        root / "README.md",
+        *(p for p in sorted((root / "docs").rglob("*.md")) if "examples" not in p.parts),
+    ]
     ran, failed = 0, 0
     with tempfile.TemporaryDirectory() as parent:
         folders = [pathlib.Path(parent) / str(number) for number in range(len(pages))]

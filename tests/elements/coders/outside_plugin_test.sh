@@ -1,27 +1,101 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: LGPL-2.1-or-later
-# A plugin outside of this tree builds with what is installed, and works: headers, pkg-config, library.
-# Usage: outside_plugin_test.sh SOURCE_ROOT BUILD_ROOT
+# The folder docs/examples/coder, copied, builds with what is installed: headers, pkg-config, library. What its
+# encoder makes comes through each transport to its decoder, and nothing between them knows the coder.
+# Usage: outside_plugin_test.sh SOURCE_ROOT BUILD_ROOT; LIDAR_EDGE names the program.
 set -euo pipefail
 source=$1
 build=$2
 . "$source/tests/support/installed.sh"
-
-cp "$source/tests/elements/coders/example_coder.cpp" "$work/"
+# shellcheck disable=SC2154  # of installed.sh
 cd "$work"
-# shellcheck disable=SC2086
-c++ -std=c++17 -O1 -shared -fPIC -DEXAMPLE_PLUGIN -DPACKAGE='"lidarexample"' example_coder.cpp \
-  -o libgstlidarexample.so $flags
+
+cp -r "$source/docs/examples/coder" coder
+if ! { PKG_CONFIG_PATH=$work meson setup -Dwerror=true coder/build coder && ninja -C coder/build; } >log 2>&1; then
+  cat log >&2
+  exit 1
+fi
 echo '#include <gst/lidar/gstlidarcloudinfo.h>
 #include <gst/lidar/gstlidardecoder.h>
 #include <gst/lidar/gstlidarencoder.h>' >header.c
-# shellcheck disable=SC2086
+# shellcheck disable=SC2086,SC2154
 cc -std=c99 -Wall -Wextra -Wno-unused-parameter -Werror -fsyntax-only header.c $flags
 
-export GST_PLUGIN_PATH_1_0=$work:$build/gst/testsrc
+GST_PLUGIN_PATH_1_0=$work/coder/build:$(find "$build/gst" "$build/ext" -name 'libgst*.so' -printf '%h\n' | sort -u | paste -sd:)
+export GST_PLUGIN_PATH_1_0
 gst-inspect-1.0 exampleenc >inspected
 for property in bitrate max-error min-bitrate degradation-preference error-check stats stats-interval; do
   grep -q "^  $property *:" inspected || { echo "exampleenc has no $property" >&2; exit 1; }
 done
-gst-launch-1.0 -q lidartestsrc num-buffers=16 model=os1-32 mode=512x10 ! exampleenc ! exampledec ! filesink location=out
-[ -s out ] || { echo "nothing came out" >&2; exit 1; }
+
+play=(timeout 60 gst-launch-1.0 -q)
+# Ports that were free a moment ago, of UDP and TCP.
+mapfile -t ports < <(python3 -c 'import socket
+sockets = [socket.socket(type=kind) for kind in (socket.SOCK_DGRAM, socket.SOCK_STREAM)]
+for s in sockets: s.bind(("127.0.0.1", 0)); print(s.getsockname()[1])')
+# 40 slices, each point of which the decoder gives back.
+encoder='lidartestsrc model=os1-32 mode=512x10 num-buffers=40 ! exampleenc max-error=0.02'
+decoder='exampledec ! filesink async=false location'
+# shellcheck disable=SC2086
+"${play[@]}" $encoder ! $decoder=direct
+[ "$(stat -c %s direct)" -gt 500000 ] || { echo "the decoder gave too little" >&2; exit 1; }
+
+# Every slice comes, and each point within twice the bound of where it is without a network: the controller may
+# choose finer or coarser steps.
+same() {
+  python3 - direct "$1" <<'END' || { echo "$1 is not what was sent" >&2; exit 1; }
+import array, sys
+direct, through = (array.array("f", open(path, "rb").read()) for path in sys.argv[1:])
+assert len(direct) == len(through), (len(direct), len(through))
+assert max(abs(a - b) for a, b in zip(direct, through)) < 2 * 0.02
+END
+}
+
+children=()
+trap 'kill "${children[@]}" 2>/dev/null; wait; rm -rf "$work"' EXIT
+# Runs a program beside what follows, once a command says that it is ready.
+start() {
+  "${@:2}" >output 2>&1 &
+  children+=($!)
+  until eval "$1"; do kill -0 $! || { cat output >&2; exit 1; }; sleep 0.05; done
+}
+
+# What is not live waits in the sender's queue, and nothing is left out.
+send="rtplidarpay ! screamsink host=127.0.0.1 port=${ports[0]} start-bitrate=20000000"
+bound() { grep -q "$(printf ':%04X ' "${ports[0]}")" /proc/net/udp; }
+# shellcheck disable=SC2086
+start bound "${play[@]}" screamsrc address=127.0.0.1 port="${ports[0]}" eos-on-bye=true ! rtplidardepay ! $decoder=scream
+# shellcheck disable=SC2086
+"${play[@]}" $encoder ! $send
+wait "${children[-1]}"
+same scream
+
+has() { gst-inspect-1.0 "$1" >/dev/null 2>&1; }
+# shellcheck disable=SC2086
+if has mcapsink; then
+  "${play[@]}" $encoder ! mcapsink location=drive.mcap
+  "${play[@]}" mcapsrc location=drive.mcap ! $decoder=mcap
+  cmp direct mcap
+fi
+
+server=$(PATH=$PATH:/usr/sbin:/usr/local/bin command -v nats-server || true)
+# shellcheck disable=SC2086
+if [ -n "$server" ] && has natssink; then
+  start "grep -q 'Server is ready' output" "$server" -a 127.0.0.1 -p "${ports[1]}" -js -sd "$work/store"
+  at="url=nats://127.0.0.1:${ports[1]} subject=robot jetstream=box"
+  "${play[@]}" $encoder ! natssink $at
+  "${play[@]}" natssrc $at start-time=0 eos-at-end=true ! $decoder=nats
+  cmp direct nats
+fi
+
+# The file is complete once the robot's goodbye has come.
+closed() { [ "$(tail -c 8 "$1" 2>/dev/null | tr -d '\0' | tail -c +2 | head -c 5)" = MCAP0 ]; }
+# shellcheck disable=SC2086
+if [ -n "${LIDAR_EDGE:-}" ] && has mcapsink; then
+  echo '{"http-port": 0, "robots": [{"name": "r1", "port": '"${ports[0]}"', "record": "'"$work"'/edge-%05d.mcap"}]}' >edge.json
+  start 'grep -q http output' "$LIDAR_EDGE" edge.json
+  "${play[@]}" $encoder ! $send
+  until closed edge-00000.mcap; do kill -0 "${children[-1]}"; sleep 0.05; done
+  "${play[@]}" mcapsrc location=edge-00000.mcap ! $decoder=edge
+  same edge
+fi

@@ -44,6 +44,10 @@ static gboolean get_difference(const guint8** at, const guint8* end, gint64* dif
   return FALSE;
 }
 
+static gfloat middle_of(gint64 cell, gfloat step) {
+  return (static_cast<gfloat>(cell) + 0.5F) * step;
+}
+
 // exampledec decodes with this, and the encoder to check its own errors. Any bytes may come.
 static gboolean decode_slice(const guint8* data, gsize size, guint max_points,
                              std::vector<GstLidarPoint>* points) {
@@ -63,8 +67,9 @@ static gboolean decode_slice(const guint8* data, gsize size, guint max_points,
       if (!get_difference(&at, end, &difference)) return FALSE;
       c += difference;
     }
-    const auto middle = [&](gint64 c) { return (static_cast<gfloat>(c) + 0.5F) * header.step; };
-    points->push_back({middle(cell[0]), middle(cell[1]), middle(cell[2]), 0});
+    const GstLidarPoint point = {middle_of(cell[0], header.step), middle_of(cell[1], header.step),
+                                 middle_of(cell[2], header.step), 0};
+    points->push_back(point);
   }
   return header.points > 0 && at == end;
 }
@@ -74,7 +79,6 @@ struct ExampleEnc {
   gint x_offset;                               // bytes
   guint point_step;                            // bytes
   std::vector<std::array<gfloat, 3>>* points;  // of the slice that is loaded
-  gfloat origin[3];
 };
 using ExampleEncClass = GstLidarEncoderClass;
 GType example_enc_get_type();
@@ -251,13 +255,13 @@ static void example_dec_class_init(ExampleDecClass* klass) {
   klass->write = example_dec_write;
 }
 
-gboolean example_coder_register(GstPlugin* plugin);
+gboolean example_coder_register(GstPlugin* plugin);  // not static: our tests call it, too
 gboolean example_coder_register(GstPlugin* plugin) {
   return gst_element_register(plugin, "exampleenc", GST_RANK_NONE, example_enc_get_type()) &&
          gst_element_register(plugin, "exampledec", GST_RANK_NONE, example_dec_get_type());
 }
 
-#ifdef EXAMPLE_PLUGIN
+// lidarexample is the name of the library, too: libgstlidarexample.so.
+#define PACKAGE "lidarexample"
 GST_PLUGIN_DEFINE(GST_VERSION_MAJOR, GST_VERSION_MINOR, lidarexample, "A coder of clouds",
                   example_coder_register, "1.0", "LGPL", "lidarexample", "https://example.org")
-#endif
