@@ -5,7 +5,7 @@ set -uo pipefail
 here=$(cd "$(dirname "$0")" && pwd)
 root=$(cd "$here/../.." && pwd)
 failed=0
-for rule in dependencies.py packaging.py paths.py reference.py versions.py links.sh widths.sh; do
+for rule in dependencies.py packaging.py pages.py paths.py reference.py versions.py links.sh widths.sh; do
   "$here/$rule" "$root" || failed=1
 done
 exit $failed

@@ -9,6 +9,7 @@ import tempfile
 sys.dont_write_bytecode = True
 import dependencies
 import packaging
+import pages
 import paths
 import reference
 import versions
@@ -18,13 +19,17 @@ SCRIPTS = {"links": HERE / "links.sh", "widths": HERE / "widths.sh"}
 MODULES = {
     "dependencies": dependencies,
     "packaging": packaging,
+    "pages": pages,
     "paths": paths,
     "reference": reference,
     "versions": versions,
 }
 
 SOUND = {
-    "docs/architecture.md": """
+    "docs/architecture.md": """# Architecture
+
+*Explanation.*
+
 | folder | what | may use | libraries |
 |---|---|---|---|
 | `src/base` | units | – | liblzma |
@@ -40,7 +45,7 @@ See `src/base/units.h`, `units.h`, `gst/*`, `gst<name>.cpp`, `lidar-eval --help`
 
     build/src/tools/eval/lidar-eval > out.csv
 """,
-    "docs/elements/alpha.md": "# alpha\n\n    gst-launch-1.0 fakesrc ! \\\n        alpha ! fakesink\n\n| `speed` | how fast; see `rate=3` |\n",
+    "docs/elements/alpha.md": "# alpha\n\n*Reference.*\n\n    gst-launch-1.0 fakesrc ! \\\n        alpha ! fakesink\n\n| `speed` | how fast; see `rate=3` |\n",
     "docs/plugins_cache.json": """
 {"one": {"elements": {"alpha": {"description": "Turns clouds", "klass": "Filter/PointCloud",
   "pads": {"sink": {"direction": "sink", "caps": "application/x-pointcloud2"},
@@ -77,7 +82,7 @@ They run from the source tree, as `pipelines/<name>.sh`; `--help` lists the opti
     "pipelines/turn.sh": "#!/usr/bin/env bash\n# SPDX\n# Turns a cloud.",
     "tests/lint/reference.py": "",
     "pipelines/parts.sh": "# Sourced.",
-    "docs/troubleshooting.md": '# Troubleshooting\n\n### "No cloud of %s."\n',
+    "docs/troubleshooting.md": '# Troubleshooting\n\n*How-to.*\n\n### "No cloud of %s."\n',
     "mkdocs.yml": """nav:
   - architecture.md
   - troubleshooting.md
@@ -246,6 +251,13 @@ PLANTED = [
     ("paths", "docs/more.md", "# More", "docs/more.md is not in the site"),
     ("reference", "docs/reference/elements.md", "", "docs/reference/elements.md is not what"),
     ("reference", "pipelines/new.sh", "#!/bin/sh\n# SPDX\n# New.", "is not what the tree has"),
+    ("pages", "docs/a.md", "# A\n\nText.", "docs/a.md:3: is it *Tutorial.*"),
+    (
+        "pages",
+        "docs/results/a.md",
+        "# A\n\n*Reference.*\n\n*Commit 1234567, 2026-01-01*\n\n| a |\n|---|\n\n## B\n\n| a |",
+        "docs/results/a.md:12: no *Commit",
+    ),
     ("links", "README.md", "[gone](docs/gone.md)", "no such file: docs/gone.md"),
     (
         "packaging",

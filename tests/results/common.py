@@ -1,0 +1,90 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""What the modules of this folder share: the build, the sources, commands and Markdown."""
+import csv
+import datetime
+import functools
+import os
+import pathlib
+import re
+import subprocess
+import tempfile
+
+HERE = pathlib.Path(__file__).resolve().parent
+ROOT = HERE.parent.parent
+DATA = ROOT / "tests/data/ouster"
+SOURCES = {
+    "OS0-32": f"{DATA}/OS-0-32-U1_v2.2.0_1024x10.pcap",
+    "OS1-128": f"{DATA}/OS-1-128_v2.3.0_1024x10_lb_n3.pcap,{DATA}/OS-1-128_v2.3.0_1024x10.json",
+    "OS0-128": f"{DATA}/OS-0-128-U1_v2.3.0_1024x10.pcap",
+    "OS1-32, first generation": f"{DATA}/OS-1-32-G_v2.1.1_1024x10.pcap",
+}
+build = ROOT / "build"
+
+
+def use(folder, captures):
+    """Takes the build tree `folder`, and more sources by their names."""
+    global build
+    build = pathlib.Path(folder).resolve()
+    if not (build / "build.ninja").exists():
+        raise SystemExit(f"There is no build in {build}: meson setup build && ninja -C build")
+    SOURCES.update(captures)
+
+
+def program(name):
+    found = [path for path in build.rglob(name) if path.is_file() and os.access(path, os.X_OK)]
+    if not found:
+        raise SystemExit(f"{build} has no {name}: ninja -C {build}")
+    return str(found[0])
+
+
+@functools.lru_cache
+def environment():
+    """The plugins and programs of the build tree first, with a registry of their own."""
+    plugins = {str(path.parent) for part in ("gst", "ext") for path in (build / part).rglob("libgst*.so")}
+    programs = {str(path.parent) for path in (build / "src").rglob("ouster-replay")}
+    return {
+        **os.environ,
+        "GST_PLUGIN_PATH_1_0": ":".join(sorted(plugins)),
+        "GST_REGISTRY": str(build / "results-registry.bin"),
+        "PATH": ":".join([*programs, os.environ["PATH"]]),
+        "BUILD_DIR": str(build),
+    }
+
+
+def run(*command, **options):
+    """What a command prints. It runs in the project's folder."""
+    options = {"env": environment(), "cwd": ROOT, "check": True, **options}
+    words = [str(word) for word in command]
+    return subprocess.run(words, stdout=subprocess.PIPE, text=True, **options).stdout
+
+
+def lidar_eval(*arguments):
+    return run(program("lidar-eval"), *arguments)
+
+
+def rate_distortion(source, *arguments):
+    """Rows of `lidar-eval rd` for one source: coding, error bound's step, errors, bits, bitrate."""
+    with tempfile.NamedTemporaryFile(suffix=".csv") as file:
+        lidar_eval("rd", source, *arguments, "--csv", file.name)
+        with open(file.name) as table:
+            return list(csv.DictReader(table))
+
+
+def table(head, rows):
+    lines = ["| " + " | ".join(head) + " |", "|" + "---|" * len(head)]
+    return "\n".join(lines + ["| " + " | ".join(str(cell) for cell in row) + " |" for row in rows])
+
+
+def as_printed(text):
+    """Tables that a command has printed; whatever else it says becomes code."""
+    lines = [line for line in text.splitlines() if line.startswith("|")]
+    return "\n".join(lines) if lines else "```\n" + text.strip() + "\n```"
+
+
+def provenance():
+    """Commit, date and machine, for the head of a table."""
+    commit = run("git", "rev-parse", "--short", "HEAD").strip()
+    cpu = re.search(r"model name\s*: (.*)", pathlib.Path("/proc/cpuinfo").read_text())
+    model = cpu[1].strip() if cpu else os.uname().machine
+    today = datetime.date.today().isoformat()
+    return f"Commit {commit}, {today}, {os.cpu_count()} cores of {model}, load {os.getloadavg()[1]:.0f}"

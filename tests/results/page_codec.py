@@ -1,0 +1,90 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Tables of docs/results/codec.md."""
+import json
+import re
+
+import common
+
+MODES = {
+    "effort 0": "range-adaptive",
+    "effort 1": "range-mixing1",
+    "effort 2": "range-mixing2",
+    "effort 3": "range-mixing3",
+    "Draco, sequential, on our ranges": "range-draco",
+    "Draco, sequential, on x, y and z": "xyz-sequential",
+    "Draco, kd-tree, on x, y and z": "xyz-kd6",
+}
+CODERS = {"effort 0": 3, "effort 1": 11, "effort 2": 12, "effort 3": 13, "residual": 2, "draco": 1}
+
+
+def sizes():
+    """Bits a return of every coder, within 2 and 5 cm."""
+    columns = {}
+    for source, path in common.SOURCES.items():
+        rows = common.rate_distortion(
+            path, "--modes", ",".join(MODES.values()), "--slices", "8", "--errors", "0.02,0.05"
+        )
+        for row in rows:
+            mode = row["coding"].split(",")[0]
+            columns.setdefault((source, mode), []).append(float(row["bits_per_return"]))
+    body = [
+        [name] + [" / ".join(f"{bits:.2f}" for bits in columns[source, mode]) for source in common.SOURCES]
+        for name, mode in MODES.items()
+    ]
+    return common.table(["bits a return", *common.SOURCES], body)
+
+
+def r_min():
+    """Mbit/s at 10 scans/s that a bound needs, whole scans and 8 slices."""
+    body = []
+    for source in ("OS0-32", "OS1-128"):
+        rows = common.rate_distortion(
+            common.SOURCES[source], "--modes", ",".join(MODES.values()), "--slices", "1,8", "--errors", "0.02,0.05"
+        )
+        for error in (0.02, 0.05):
+            cells = []
+            for mode in [*MODES.values()][:4] + ["xyz-kd6"]:
+                steps = sorted({float(r["step_m"]) for r in rows if r["coding"].startswith(mode + ",")})
+                step = steps[0 if error == 0.02 else -1]
+                found = [r for r in rows if r["coding"].startswith(mode + ",") and float(r["step_m"]) == step]
+                cells.append(" / ".join(f"{float(r['bitrate_bps']) / 1e6:.2f}" for r in found))
+            body.append([f"{source}, {100 * error:.0f} cm", *cells])
+    return common.table(["Mbit/s", *[*MODES][:4], "Draco, kd-tree"], body)
+
+
+def benchmark(pattern):
+    text = common.run(
+        common.program("codec-benchmark"),
+        f"--benchmark_filter={pattern}",
+        "--benchmark_format=json",
+        "--benchmark_min_time=0.2",
+    )
+    return {row["name"]: row for row in json.loads(text)["benchmarks"]}
+
+
+def speed():
+    """Million returns a second of CPU time, encode and decode, within 2 cm."""
+    rows = benchmark(r"(En|De)code/range/source:[01]/slices:[18]/.*intensity:0$")
+    body = []
+    for name, coder in CODERS.items():
+        cells = []
+        for source in (0, 1):
+            for slices in (1, 8):
+                case = f"range/source:{source}/slices:{slices}/coder:{coder}/error_mm:20/intensity:0"
+                both = [rows.get(f"{way}/{case}") for way in ("Encode", "Decode")]
+                speeds = [f"{row['returns/s'] / 1e6:.3g}" if row else "–" for row in both]
+                cells.append(" / ".join(speeds))
+        body.append([name, *cells])
+    head = ["million returns/s", "OS0-32, whole", "OS0-32, 8 slices", "OS1-128, whole", "OS1-128, 8 slices"]
+    return common.table(head, body)
+
+
+def static():
+    """Bits a return of a sensor that stands still."""
+    text = common.lidar_eval("static", "synth:os1-64:street", "--errors", "0.02", "--scans", "60")
+    rows = re.findall(r"^ +([123]) +20 +([\d.]+) +([\d.]+) +([\d.]+) +(\d+) %", text, re.M)
+    head = ["effort", "without references", "with, all 60 scans", "second half", "slices that refer"]
+    return common.table(head, [[*row[:4], row[4] + " %"] for row in rows])
+
+
+TABLES = {"sizes": sizes, "r_min": r_min, "static": static, "speed": speed}
