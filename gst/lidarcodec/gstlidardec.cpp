@@ -14,6 +14,7 @@
 #include "gst/common/element_class.h"
 #include "gst/common/gstlidardecoder.h"
 #include "gst/common/properties.h"
+#include "src/codec/cloud/cloud_decoder.h"
 #include "src/codec/slice_decoder.h"
 
 namespace {
@@ -21,7 +22,9 @@ namespace {
 /// Belongs to the streaming thread.
 struct State {
   lidar::codec::CloudFormat format;
-  std::optional<lidar::codec::SliceDecoder> decoder;
+  bool has_points = false;                                 // in place of ranges
+  std::optional<lidar::codec::SliceDecoder> decoder;       // of ranges,
+  std::optional<lidar::codec::cloud::CloudDecoder> cloud;  // or of points
 };
 
 }  // namespace
@@ -35,20 +38,36 @@ struct _GstLidarDec {
 G_DEFINE_TYPE(GstLidarDec, gst_lidar_dec, GST_TYPE_LIDAR_DECODER)
 GST_ELEMENT_REGISTER_DEFINE(lidardec, "lidardec", GST_RANK_PRIMARY, gst_lidar_dec_get_type())
 
-static gboolean SetFormat(GstLidarDecoder* base, GstCaps*, const GstLidarCloudFormat* cloud,
+static gboolean SetFormat(GstLidarDecoder* base, GstCaps* caps, const GstLidarCloudFormat* cloud,
                           GstLidarDecodedFormat* decoded) {
   State& coder = *GST_LIDAR_DEC(base)->state;
   const auto info = lidar::gst::CloudInfo::FromFormat(*cloud);
   coder = {};
   coder.format = {{info.fields, info.point_step}, info.height, info.sensor_model};
-  decoded->refusal = "they lack a sensor-model";
-  decoded->is_organised = TRUE;
-  return info.sensor_model.has_value();
+  const gchar* geometry = gst_structure_get_string(gst_caps_get_structure(caps, 0), "geometry");
+  coder.has_points = g_strcmp0(geometry, "xyz") == 0;
+  decoded->refusal = "with geometry=range they lack a sensor-model";
+  decoded->is_organised = !coder.has_points;
+  return coder.has_points || info.sensor_model.has_value();
+}
+
+static gboolean DecodePoints(State* state, lidar::ByteView stream, guint max_points,
+                             GstLidarDecodedSlice* slice) {
+  if (!state->cloud) state->cloud.emplace(max_points);
+  const auto& decoder = *state->cloud;
+  if (!state->cloud->Decode(stream)) return FALSE;
+  slice->width = static_cast<guint>(decoder.cloud().size());
+  slice->height = 1;
+  slice->step = decoder.step_m();
+  slice->error_bound = decoder.error_m();
+  slice->intensity_bits = decoder.intensity_bits();
+  return TRUE;
 }
 
 static gboolean Decode(GstLidarDecoder* base, const guint8* data, gsize size, guint max_points,
                        GstLidarDecodedSlice* slice) {
   State& coder = *GST_LIDAR_DEC(base)->state;
+  if (coder.has_points) return DecodePoints(&coder, {data, size}, max_points, slice);
   if (!coder.decoder) coder.decoder.emplace(coder.format, max_points);
   const auto shape = coder.decoder->Decode({data, size});
   slice->lacks_reference = !shape && coder.decoder->lacks_reference();
@@ -60,7 +79,9 @@ static gboolean Decode(GstLidarDecoder* base, const guint8* data, gsize size, gu
 }
 
 static void Write(GstLidarDecoder* base, guint8* points) {
-  GST_LIDAR_DEC(base)->state->decoder->Write(points);
+  const State& coder = *GST_LIDAR_DEC(base)->state;
+  if (coder.decoder) return coder.decoder->Write(points);
+  lidar::codec::WriteXyz(coder.cloud->cloud(), coder.format.layout, points);
 }
 
 static void Reset(GstLidarDecoder* base) { *GST_LIDAR_DEC(base)->state = {}; }
@@ -77,7 +98,7 @@ static void gst_lidar_dec_class_init(GstLidarDecClass* klass) {
   GST_ELEMENT_CLASS(klass)->change_state = ChangeState;
   lidar::gst::Describe(klass,
                        {"LiDAR decoder", "Codec/Decoder/PointCloud",
-                        "Decompresses the scans of a spinning sensor, safe on hostile input"},
+                        "Decompresses what lidarenc makes, safe on hostile input"},
                        {{"sink", GST_PAD_SINK, GST_LIDAR_SLICE_MEDIA_TYPE},
                         {"src", GST_PAD_SRC, GST_LIDAR_CLOUD_MEDIA_TYPE}});
   auto* decoder = GST_LIDAR_DECODER_CLASS(klass);

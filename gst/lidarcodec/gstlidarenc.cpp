@@ -2,9 +2,10 @@
 /**
  * SECTION:element-lidarenc
  *
- * Encodes the scans of a spinning sensor slice by slice, to a bitrate and within an error: ranges,
- * predicted from neighbouring beams and coded as small as the machine has time for
- * (docs/wire-format.md).
+ * Encodes clouds slice by slice, to a bitrate and within an error, as small as the machine has time
+ * for. Organised scans with a sensor model are ranges, predicted from neighbouring beams
+ * (docs/wire-format.md); other clouds are cells in a tree, and the order of their points is lost
+ * (docs/cloud-coder.md).
  *
  * |[
  * gst-launch-1.0 lidartestsrc num-buffers=80 ! lidarenc max-error=0.02 ! lidardec ! fakesink
@@ -29,15 +30,26 @@ namespace {
 
 using namespace lidar::gst;
 
+enum class GeometryChoice : gint { kAuto, kXyz };
 enum class Reference : gint { kNothing, kAcknowledged };
 
 struct LidarEncSettings {
   static constexpr gint kAutoEffort = -1;
 
+  GeometryChoice geometry = GeometryChoice::kAuto;
   gint effort = kAutoEffort;
   Reference reference = Reference::kAcknowledged;
   lidar::Duration key_interval = std::chrono::seconds(10);
 };
+
+GType GeometryType() {
+  static const GEnumValue values[] = {
+      {Int(GeometryChoice::kAuto), "range where the caps carry ranges and a sensor model", "auto"},
+      {Int(GeometryChoice::kXyz), "Points in any order", "xyz"},
+      {0, nullptr, nullptr}};
+  static const GType type = RegisterEnum("GstLidarEncGeometry", values);
+  return type;
+}
 
 GType EffortType() {
   static const GEnumValue values[] = {
@@ -62,7 +74,9 @@ GType ReferenceType() {
   return type;
 }
 
-const std::array<Property<LidarEncSettings>, 3> kProperties = {{
+const std::array<Property<LidarEncSettings>, 4> kProperties = {{
+    {"geometry", "What is coded: ranges or points",
+     EnumField<LidarEncSettings, GeometryChoice>{&LidarEncSettings::geometry, GeometryType}},
     {"effort", "How much computing slices are worth",
      EnumField<LidarEncSettings>{&LidarEncSettings::effort, EffortType}, 0, 0,
      GST_PARAM_MUTABLE_PLAYING},
@@ -98,15 +112,17 @@ static LidarEncCoder& CoderOf(GstLidarEncoder* base) { return GST_LIDAR_ENC(base
 static gboolean SetFormat(GstLidarEncoder* base, const GstLidarCloudFormat* cloud,
                           gboolean with_intensity, GstLidarCodedFormat* coded) {
   coded->refusal =
-      "lidarenc needs a field range:U32 and a sensor-model with as many beams and at least as many "
-      "columns; dracoenc takes other clouds";
-  const auto info = CloudInfo::FromFormat(*cloud);
+      "lidarenc needs x, y and z as F32 side by side, or a field range:U32 and a sensor-model";
+  const LidarEncSettings settings = Snapshot(*GST_LIDAR_ENC(base)->state);
+  auto info = CloudInfo::FromFormat(*cloud);
+  if (settings.geometry == GeometryChoice::kXyz) info.sensor_model.reset();
   if (!CoderOf(base).SetFormat(info, with_intensity != FALSE)) return FALSE;
-  const auto kept = lidar::codec::KeptFields(info.fields, with_intensity != FALSE, true);
+  const bool ranges = CoderOf(base).codes_ranges();
+  const auto kept = lidar::codec::KeptFields(info.fields, with_intensity != FALSE, ranges);
   coded->caps =
       gst_lidar_coded_caps_new(GST_LIDAR_SLICE_MEDIA_TYPE, kept.ToString().c_str(), cloud);
-  gst_caps_set_simple(coded->caps, "geometry", G_TYPE_STRING, "range", nullptr);
-  coded->codes_ranges = TRUE;
+  gst_caps_set_simple(coded->caps, "geometry", G_TYPE_STRING, ranges ? "range" : "xyz", nullptr);
+  coded->codes_ranges = ranges;
   return TRUE;
 }
 
@@ -120,7 +136,7 @@ static void Load(GstLidarEncoder* base, const GstLidarRawSlice* raw, GstLidarLoa
 }
 
 static void GetSteps(GstLidarEncoder* base, gdouble max_error, GstLidarStepRange* steps) {
-  const auto bound = lidar::rate::ErrorBound::Range(CoderOf(base).range_unit_mm());
+  const auto bound = CoderOf(base).Bound();
   *steps = {bound.FinestStep(), bound.CoarsestStep(max_error), bound.step_unit()};
 }
 
@@ -135,7 +151,7 @@ static GstLidarEncodeResult Encode(GstLidarEncoder* base, const GstLidarEncodeSe
 
 static gboolean Decode(GstLidarEncoder* base, const guint8* data, gsize size, GArray* points,
                        GstLidarPointOrder* order) {
-  *order = GST_LIDAR_ORDER_PIXELS;
+  *order = CoderOf(base).codes_ranges() ? GST_LIDAR_ORDER_PIXELS : GST_LIDAR_ORDER_ANY;
   return CoderOf(base).Decode({data, size}, points);
 }
 
@@ -157,13 +173,13 @@ static void gst_lidar_enc_init(GstLidarEnc* self) { self->state = new State; }
 static void gst_lidar_enc_class_init(GstLidarEncClass* klass) {
   ServeState<GstLidarEnc, gst_lidar_enc_parent_class, kProperties>(klass);
   GST_ELEMENT_CLASS(klass)->change_state = ChangeState;
-  Describe(
-      klass,
-      {"LiDAR encoder", "Codec/Encoder/PointCloud",
-       "Compresses the scans of a spinning sensor to a bitrate and within an error"},
-      {{"sink", GST_PAD_SINK, GST_LIDAR_CLOUD_MEDIA_TYPE},
-       {"src", GST_PAD_SRC,
-        GST_LIDAR_SLICE_MEDIA_TYPE ", geometry = (string) range, alignment = (string) slice"}});
+  Describe(klass,
+           {"LiDAR encoder", "Codec/Encoder/PointCloud",
+            "Compresses the clouds of any LiDAR to a bitrate and within an error"},
+           {{"sink", GST_PAD_SINK, GST_LIDAR_CLOUD_MEDIA_TYPE},
+            {"src", GST_PAD_SRC,
+             GST_LIDAR_SLICE_MEDIA_TYPE
+             ", geometry = (string) { range, xyz }, alignment = (string) slice"}});
   auto* encoder = GST_LIDAR_ENCODER_CLASS(klass);
   encoder->set_format = SetFormat;
   encoder->load = Load;

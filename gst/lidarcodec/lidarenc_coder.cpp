@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include "gst/lidarcodec/lidarenc_coder.h"
 
+#include <algorithm>
+
 namespace lidar::gst {
 namespace {
 
@@ -17,13 +19,25 @@ bool LidarEncCoder::SetFormat(const CloudInfo& info, bool with_intensity) {
   format_ = {{info.fields, info.point_step}, info.height, info.sensor_model};
   with_intensity_ = with_intensity;
   encoder_ = codec::SliceEncoder::Create(format_);
-  return encoder_ && info.width <= info.sensor_model->columns_per_scan;
+  if (encoder_ && info.width > info.sensor_model->columns_per_scan) encoder_.reset();
+  if (!encoder_) cloud_ = codec::cloud::CloudEncoder::Create(format_.layout);
+  return encoder_ || cloud_;
+}
+
+rate::ErrorBound LidarEncCoder::Bound() const {
+  return encoder_ ? rate::ErrorBound::Range(encoder_->range_unit_mm()) : rate::ErrorBound::Xyz();
+}
+
+void LidarEncCoder::Thin(const std::vector<bool>& kept) {
+  encoder_ ? encoder_->Thin(kept) : cloud_->Thin(kept);
 }
 
 void LidarEncCoder::Load(const GstLidarRawSlice& raw, std::optional<unsigned> effort) {
   KeepBlocks();
-  ChooseEffort(raw.width, effort);
-  encoder_->Load({raw.data, raw.size}, raw.first_column, with_intensity_);
+  ChooseEffort(raw, effort);
+  const ByteView points{raw.data, raw.size};
+  encoder_ ? encoder_->Load(points, raw.first_column, with_intensity_)
+           : cloud_->Load(points, with_intensity_);
 }
 
 /// What the last slice left is known from now on; which of several encodings was sent is known only
@@ -34,15 +48,20 @@ void LidarEncCoder::KeepBlocks() {
 }
 
 /// Learns from the slice before, and chooses for the next one.
-void LidarEncCoder::ChooseEffort(guint columns, std::optional<unsigned> effort) {
-  if (automatic_ && spent_ > Duration{0}) control_.OnSlice(sweep_, encoder_->returns(), spent_);
-  sweep_ = FromSeconds(columns / (scans_per_second_ * format_.sensor_model->columns_per_scan));
+void LidarEncCoder::ChooseEffort(const GstLidarRawSlice& raw, std::optional<unsigned> effort) {
+  if (automatic_ && spent_ > Duration{0}) control_.OnSlice(sweep_, returns(), spent_);
+  const double part = encoder_
+                          ? static_cast<double>(raw.width) / format_.sensor_model->columns_per_scan
+                          : 1.0 / std::max(raw.slice_count, 1U);
+  sweep_ = FromSeconds(part / scans_per_second_);
   spent_ = {};
   automatic_ = !effort;
-  encoder_->set_effort(effort.value_or(control_.effort()));
+  const unsigned chosen = effort.value_or(control_.effort());
+  encoder_ ? encoder_->set_effort(chosen) : cloud_->set_effort(chosen);
 }
 
 void LidarEncCoder::Link(const GstLidarRawSlice& raw, bool remembers, Duration key_interval) {
+  if (!encoder_) return;
   keeper_.set_key_interval(key_interval);
   const bool begun =
       remembers && keeper_.Begin(Now(), {raw.scan_id, raw.slice_index, raw.slice_count});
@@ -50,20 +69,20 @@ void LidarEncCoder::Link(const GstLidarRawSlice& raw, bool remembers, Duration k
 }
 
 void LidarEncCoder::Describe(GstLidarLoadedSlice* loaded) {
-  mode_ = encoder_->Mode();
-  loaded->returns = static_cast<guint>(encoder_->returns());
-  loaded->extent = encoder_->extent_m();
-  loaded->rows = static_cast<guint>(encoder_->rows());
-  loaded->has_intensity = encoder_->has_intensity();
+  mode_ = encoder_ ? encoder_->Mode() : cloud_->Mode();
+  loaded->returns = static_cast<guint>(returns());
+  loaded->extent = encoder_ ? encoder_->extent_m() : cloud_->extent_m();
+  loaded->rows = static_cast<guint>(encoder_ ? encoder_->rows() : cloud_->returns());
+  loaded->has_intensity = encoder_ ? encoder_->has_intensity() : cloud_->has_intensity();
   loaded->mode = mode_.c_str();
 }
 
 GstLidarEncodeResult LidarEncCoder::Encode(const GstLidarEncodeSettings& settings,
                                            GByteArray* bytes, GstLidarCodedSlice* coded) {
-  encoder_->set_threads(settings.threads);
+  const codec::SliceSettings slice{settings.max_error, settings.step, settings.intensity_bits};
   const Time start = Now();
-  const auto result =
-      encoder_->Encode({settings.max_error, settings.step, settings.intensity_bits}, &slice_);
+  if (encoder_) encoder_->set_threads(settings.threads);
+  const auto result = encoder_ ? encoder_->Encode(slice, &slice_) : cloud_->Encode(slice, &slice_);
   spent_ += Now() - start + std::chrono::microseconds(1);
   if (result == codec::SliceResult::kEmpty) return GST_LIDAR_ENCODE_EMPTY;
   if (result == codec::SliceResult::kOutOfReach) return GST_LIDAR_ENCODE_OUT_OF_REACH;
@@ -73,10 +92,17 @@ GstLidarEncodeResult LidarEncCoder::Encode(const GstLidarEncodeSettings& setting
 }
 
 bool LidarEncCoder::Decode(ByteView stream, GArray* points) {
+  auto format = format_;
+  format.layout = {*PointFields::Parse("x:F32:0,y:F32:4,z:F32:8,range:U32:12"),
+                   sizeof(GstLidarPoint)};
+  if (!encoder_) {
+    codec::cloud::CloudDecoder decoder(static_cast<std::uint32_t>(returns()));
+    if (!decoder.Decode(stream)) return false;
+    g_array_set_size(points, static_cast<guint>(decoder.cloud().size()));
+    codec::WriteXyz(decoder.cloud(), format.layout, reinterpret_cast<guint8*>(points->data));
+    return true;
+  }
   if (!decoder_) {
-    auto format = format_;
-    format.layout = {*PointFields::Parse("x:F32:0,y:F32:4,z:F32:8,range:U32:12"),
-                     sizeof(GstLidarPoint)};
     decoder_.emplace(format, format.height * format.sensor_model->columns_per_scan);
   }
   for (const auto& block : keeper_.references()) decoder_->Know(block);

@@ -8,16 +8,20 @@
 
 #include "gst/common/cloud_info.h"
 #include "gst/common/gstlidarencoder.h"
+#include "src/codec/cloud/cloud_decoder.h"
+#include "src/codec/cloud/cloud_encoder.h"
 #include "src/codec/effort_control.h"
 #include "src/codec/slice_decoder.h"
 #include "src/codec/slice_encoder.h"
+#include "src/rate/error_bound.h"
 
 namespace lidar::gst {
 
 /// For one thread at a time.
 class LidarEncCoder {
  public:
-  /// False where no ranges of a sensor are in it. What was learnt of the machine stays.
+  /// False where it has neither ranges of a sensor nor points. What was learnt of the machine
+  /// stays.
   bool SetFormat(const CloudInfo& info, bool with_intensity);
   /// Takes the slice; without `effort` it has the one that there is time for.
   void Load(const GstLidarRawSlice& raw, std::optional<unsigned> effort);
@@ -25,8 +29,10 @@ class LidarEncCoder {
   void Link(const GstLidarRawSlice& raw, bool remembers, Duration key_interval);
   /// What is loaded; good until the next slice.
   void Describe(GstLidarLoadedSlice* loaded);
-  std::uint32_t range_unit_mm() const { return encoder_->range_unit_mm(); }
-  void Thin(const std::vector<bool>& kept) { encoder_->Thin(kept); }
+  /// Whether slices are ranges of a sensor; else they are points in any order.
+  bool codes_ranges() const { return encoder_.has_value(); }
+  rate::ErrorBound Bound() const;
+  void Thin(const std::vector<bool>& kept);
   GstLidarEncodeResult Encode(const GstLidarEncodeSettings& settings, GByteArray* bytes,
                               GstLidarCodedSlice* coded);
   /// As a receiver would, for the check of the error: `points` are GstLidarPoint.
@@ -36,12 +42,14 @@ class LidarEncCoder {
 
  private:
   void KeepBlocks();
-  void ChooseEffort(guint columns, std::optional<unsigned> effort);
+  void ChooseEffort(const GstLidarRawSlice& raw, std::optional<unsigned> effort);
+  std::size_t returns() const { return encoder_ ? encoder_->returns() : cloud_->returns(); }
 
   codec::CloudFormat format_;
   double scans_per_second_ = 10;
-  std::optional<codec::SliceEncoder> encoder_;
-  std::optional<codec::SliceDecoder> decoder_;  // for Decode()
+  std::optional<codec::SliceEncoder> encoder_;       // of ranges,
+  std::optional<codec::cloud::CloudEncoder> cloud_;  // or of points
+  std::optional<codec::SliceDecoder> decoder_;       // for Decode()
   bool with_intensity_ = false;
   std::string mode_;
   codec::EncodedSlice slice_;

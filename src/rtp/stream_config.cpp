@@ -40,8 +40,7 @@ std::optional<StreamConfig> ParseNamed(ByteView text) {
 }
 
 bool IsKnown(Coder coder, Geometry geometry) {
-  if (coder == Coder::kLidar) return geometry == Geometry::kRange;
-  return coder == Coder::kDraco && geometry <= Geometry::kRange;
+  return coder <= Coder::kLidar && geometry <= Geometry::kRange;
 }
 
 }  // namespace

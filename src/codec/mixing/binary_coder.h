@@ -28,6 +28,8 @@ class BinaryEncoder {
     }
     return bit;
   }
+  /// Never, other than its twin.
+  static constexpr bool overran() { return false; }
   /// Writes as many bytes as tell the last interval from others: a decoder reads zeros behind them.
   void Finish();
 

@@ -7,6 +7,7 @@ namespace lidar::tools {
 
 void AddBoundsCommand(CLI::App* app);
 void AddRateDistortionCommand(CLI::App* app);
+void AddCloudsCommand(CLI::App* app);
 void AddStaticCommand(CLI::App* app);
 void AddTrackCommand(CLI::App* app);
 void AddPredictCommand(CLI::App* app);

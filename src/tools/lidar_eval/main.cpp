@@ -13,6 +13,7 @@ int main(int argc, char** argv) {
   app.require_subcommand(1);
   lidar::tools::AddBoundsCommand(&app);
   lidar::tools::AddRateDistortionCommand(&app);
+  lidar::tools::AddCloudsCommand(&app);
   lidar::tools::AddStaticCommand(&app);
   lidar::tools::AddPredictCommand(&app);
   lidar::tools::AddTrackCommand(&app);

@@ -36,6 +36,7 @@ inline void PrintTo(const CoderCase& c, std::ostream* out) { *out << c.name; }
 
 // What effort=auto takes depends on the load of the machine, and so do the sizes.
 constexpr CoderCase kLidar{"lidar", "lidarenc effort=1", "lidardec"};
+constexpr CoderCase kLidarXyz{"lidar_xyz", "lidarenc effort=0 geometry=xyz", "lidardec", true};
 constexpr CoderCase kDraco{"draco", "dracoenc", "dracodec"};
 constexpr CoderCase kDracoXyz{"draco_xyz", "dracoenc geometry=xyz", "dracodec", true};
 
@@ -52,6 +53,7 @@ inline std::vector<CoderCase> RangeCoders() {
 /// Those that we install.
 inline std::vector<CoderCase> OurCoders() {
   std::vector<CoderCase> coders = RangeCoders();
+  coders.push_back(kLidarXyz);
 #ifdef HAVE_DRACO
   coders.push_back(kDracoXyz);
 #endif

@@ -216,12 +216,11 @@ TEST_P(RefusedCaps, GiveAnErrorThatSaysWhatIsMissing) {
   gst_element_set_bus(h->element, nullptr);
   gst_object_unref(bus);
 }
-constexpr const char* kXyzCaps =
-    "application/x-pointcloud2,width=4,height=1,point-step=12,fields=(string)\"x:F32:0,y:F32:4,"
-    "z:F32:8\"";
 INSTANTIATE_TEST_SUITE_P(
     Lidar, RefusedCaps,
-    ::testing::Values(std::pair("lidarenc", kXyzCaps),
+    ::testing::Values(std::pair("lidarenc",
+                                "application/x-pointcloud2,width=4,height=1,point-step=12,"
+                                "fields=(string)\"x:F32:0,z:F32:4,y:F32:8\""),
                       std::pair("lidarenc",
                                 "application/x-pointcloud2,width=4,point-step=4,"
                                 "fields=(string)\"x:F32:0\""),
@@ -229,6 +228,9 @@ INSTANTIATE_TEST_SUITE_P(
                                 "application/x-lidar-slice,geometry=(string)range,"
                                 "fields=(string)\"x:F32:0,y:F32:4,z:F32:8\"")));
 #ifdef HAVE_DRACO
+constexpr const char* kXyzCaps =
+    "application/x-pointcloud2,width=4,height=1,point-step=12,fields=(string)\"x:F32:0,y:F32:4,"
+    "z:F32:8\"";
 INSTANTIATE_TEST_SUITE_P(
     Draco, RefusedCaps,
     ::testing::Values(std::pair("dracoenc geometry=range", kXyzCaps),

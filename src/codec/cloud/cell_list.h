@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Points as counts of occupied cells of a cubic grid.
+#pragma once
+#include <array>
+#include <cstdint>
+#include <vector>
+
+namespace lidar::codec::cloud {
+
+/// A grid has 2^depth cells along each axis. Its middle, where the sensor is, is a corner of eight.
+constexpr unsigned kMostDepth = 21;
+
+using CellPosition = std::array<std::uint32_t, 3>;  // from 0 to 2^depth - 1
+
+/// Cells in the order of their Morton codes, each once.
+struct CellList {
+  unsigned depth = 1;
+  std::vector<std::uint64_t> codes;
+  std::vector<std::uint32_t> counts;  // of points; at least 1
+
+  /// Points come cell by cell.
+  void AddPoint(std::uint64_t code) {
+    if (codes.empty() || codes.back() != code) {
+      codes.push_back(code);
+      counts.push_back(0);
+    }
+    ++counts.back();
+  }
+  void Clear() {
+    codes.clear();
+    counts.clear();
+  }
+};
+
+/// Every third bit of a Morton code: 21 bits to 63.
+inline std::uint64_t SpreadBits(std::uint64_t v) {
+  v &= 0x1FFFFF;
+  v = (v | v << 32) & 0x1F00000000FFFF;
+  v = (v | v << 16) & 0x1F0000FF0000FF;
+  v = (v | v << 8) & 0x100F00F00F00F00F;
+  v = (v | v << 4) & 0x10C30C30C30C30C3;
+  v = (v | v << 2) & 0x1249249249249249;
+  return v;
+}
+inline std::uint32_t GatherBits(std::uint64_t v) {
+  v &= 0x1249249249249249;
+  v = (v | v >> 2) & 0x10C30C30C30C30C3;
+  v = (v | v >> 4) & 0x100F00F00F00F00F;
+  v = (v | v >> 8) & 0x1F0000FF0000FF;
+  v = (v | v >> 16) & 0x1F00000000FFFF;
+  v = (v | v >> 32) & 0x1FFFFF;
+  return static_cast<std::uint32_t>(v);
+}
+inline std::uint64_t MortonCode(const CellPosition& p) {
+  return SpreadBits(p[0]) | SpreadBits(p[1]) << 1 | SpreadBits(p[2]) << 2;
+}
+inline CellPosition PositionOf(std::uint64_t code) {
+  return {GatherBits(code), GatherBits(code >> 1), GatherBits(code >> 2)};
+}
+
+}  // namespace lidar::codec::cloud

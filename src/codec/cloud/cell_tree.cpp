@@ -1,0 +1,347 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "src/codec/cloud/cell_tree.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "src/codec/mixing/binary_coder.h"
+
+namespace lidar::codec::cloud {
+namespace {
+
+using mixing::BinaryDecoder;
+using mixing::BinaryEncoder;
+using mixing::BitLength;
+using mixing::BitMixer;
+using mixing::Counter;
+using mixing::Weights;
+
+constexpr std::uint32_t kTable = 1U << 16;
+constexpr std::uint32_t kCountNodes = 64;
+
+std::uint32_t Hash(std::uint64_t value) {
+  return static_cast<std::uint32_t>(value * 0x9E3779B97F4A7C15U >> 48);
+}
+
+/// Of the cell at `p` of a grid of 2^depth cells along each axis, in half cells from the middle.
+struct Direction {
+  Direction(const CellPosition& p, unsigned depth) {
+    const auto at = [&](unsigned k) {
+      return 2 * static_cast<std::int64_t>(p[k]) + 1 - (std::int64_t{1} << depth);
+    };
+    const std::int64_t x = at(0);
+    const std::int64_t y = at(1);
+    z = at(2);
+    rho = static_cast<std::int64_t>(std::sqrt(static_cast<double>(x * x + y * y)));
+  }
+  /// Tangent of the elevation in 1/parts, within +-limit.
+  std::int64_t Tangent(std::int64_t parts, std::int64_t limit) const {
+    return std::clamp(z * parts / std::max<std::int64_t>(rho, 1), -limit, limit);
+  }
+  std::uint32_t RangeClass() const {
+    const auto r = static_cast<std::uint64_t>(std::max(rho, z < 0 ? -z : z));
+    const auto bits = static_cast<unsigned>(64 - __builtin_clzll(r | 1));
+    const std::uint64_t next = bits > 1 ? r >> (bits - 2) & 1 : 0;
+    return static_cast<std::uint32_t>(2 * bits + next);
+  }
+  std::int64_t rho = 0;
+  std::int64_t z = 0;
+};
+
+enum State : std::uint8_t { kEmpty = 0, kOccupied = 1, kUnknown = 2 };
+
+/// Where the children lie among their surroundings.
+constexpr std::array<unsigned, 8> kChildAt = {21, 22, 25, 26, 37, 38, 41, 42};
+
+/// Which neighbours of a node touch a child.
+constexpr std::array<std::uint32_t, 8> NodesByChild() {
+  std::array<std::uint32_t, 8> nodes{};
+  for (unsigned child = 0; child < 8; ++child)
+    for (unsigned i = 0; i < 27; ++i) {
+      const auto touches = [](unsigned side, unsigned bit) { return side == 1 || side == 2 * bit; };
+      if (touches(i % 3, child & 1) && touches(i / 3 % 3, child >> 1 & 1) &&
+          touches(i / 9, child >> 2))
+        nodes[child] |= 1U << i;
+    }
+  return nodes;
+}
+constexpr std::array<std::uint32_t, 8> kNodesBy = NodesByChild();
+
+/// What is known of the 26 cells about one.
+struct Tally {
+  explicit Tally(const std::uint8_t* cell) {
+    for (int i = 0; i < 27; ++i) {
+      const int dx = i % 3 - 1;
+      const int dy = i / 3 % 3 - 1;
+      const int dz = i / 9 - 1;
+      const unsigned sides = (dx != 0 ? 1U : 0U) + (dy != 0 ? 1U : 0U) + (dz != 0 ? 1U : 0U);
+      if (sides == 0) continue;
+      const std::uint32_t state = cell[dx + 4 * dy + 16 * dz];
+      const std::uint32_t on = state == kOccupied ? 1 : 0;
+      mask |= on << i;
+      if (dz == 0) layer = layer * 3 + state;
+      if (sides == 1) {
+        faces = faces * 3 + state;
+        faces_on += on;
+      } else if (sides == 2) {
+        edges_on += on;
+        edges_open += state == kUnknown ? 1 : 0;
+      } else {
+        corners_on += on;
+      }
+    }
+  }
+  std::uint32_t mask = 0;   // which are occupied
+  std::uint32_t faces = 0;  // states of the six
+  std::uint32_t layer = 0;  // states of the eight of the same height
+  std::uint32_t faces_on = 0;
+  std::uint32_t edges_on = 0;
+  std::uint32_t edges_open = 0;
+  std::uint32_t corners_on = 0;
+};
+
+}  // namespace
+
+struct CellTree::Model {
+  Model() {
+    for (auto* set : {&first, &second, &count_weights}) {
+      for (Weights& w : *set) {
+        w.values.fill(mixing::kWeightOne / 4);
+      }
+    }
+  }
+  std::array<std::array<Counter, kTable>, kContexts> counters{};
+  std::array<Weights, 1024> first;
+  std::array<Weights, 1024> second;
+  std::array<std::array<Counter, kTable>, 3> counts{};
+  std::array<Weights, 1024> count_weights;
+};
+
+/// The cells about the children of a node, 4 x 4 x 4: those from 1 to 2 are the children.
+struct CellTree::Surroundings {
+  static constexpr unsigned At(unsigned x, unsigned y, unsigned z) { return x + 4 * y + 16 * z; }
+  std::array<std::uint8_t, 64> cells{};
+  std::uint32_t nodes = 0;  // which of the 26 neighbours of the node are occupied
+};
+
+CellTree::CellTree() = default;
+CellTree::CellTree(CellTree&&) noexcept = default;
+CellTree& CellTree::operator=(CellTree&&) noexcept = default;
+CellTree::~CellTree() = default;
+
+void CellTree::FillLevels(const CellList& cells) {
+  levels_[cells.depth].codes = cells.codes;
+  for (unsigned d = cells.depth; d-- > 0;) {
+    levels_[d].codes.clear();
+    levels_[d].occupancy.clear();
+    for (const std::uint64_t code : levels_[d + 1].codes) {
+      if (levels_[d].codes.empty() || levels_[d].codes.back() != code >> 3) {
+        levels_[d].codes.push_back(code >> 3);
+        levels_[d].occupancy.push_back(0);
+      }
+      levels_[d].occupancy.back() =
+          static_cast<std::uint8_t>(levels_[d].occupancy.back() | 1U << (code & 7));
+    }
+  }
+}
+
+/// Fills the cells of neighbours that are coded already; of the others only that they are there.
+void CellTree::Look(const Place& place, Surroundings* around) const {
+  constexpr std::uint64_t kOneEach = NodeMap::kStepX + NodeMap::kStepY + NodeMap::kStepZ;
+  const std::uint64_t corner = NodeMap::KeyOf(place.position) - kOneEach;
+  const auto& occupancy = levels_[place.depth - 1].occupancy;
+  *around = {};
+  for (unsigned i = 0; i < 27; ++i) {
+    const unsigned dx = i % 3;
+    const unsigned dy = i / 3 % 3;
+    const unsigned dz = i / 9;
+    if (i == 13) continue;
+    const std::uint32_t index =
+        map_.Find(corner + dx * NodeMap::kStepX + dy * NodeMap::kStepY + dz * NodeMap::kStepZ);
+    if (index == NodeMap::kAbsent) continue;
+    around->nodes |= 1U << i;
+    const bool known = index < place.node;
+    const unsigned children = known ? occupancy[index] : 0xFF;
+    const State state = known ? kOccupied : kUnknown;
+    for (unsigned child = 0; child < 8; ++child) {
+      const unsigned x = 2 * dx + (child & 1) - 1;
+      const unsigned y = 2 * dy + (child >> 1 & 1) - 1;
+      const unsigned z = 2 * dz + (child >> 2) - 1;
+      // What is not next to a child of the node wraps past 3.
+      if ((children >> child & 1) != 0 && x < 4 && y < 4 && z < 4)
+        around->cells[Surroundings::At(x, y, z)] = state;
+    }
+  }
+}
+
+template <class Coder>
+std::uint8_t CellTree::CodeNode(std::uint8_t occupancy, const Place& place, Coder* coder) {
+  Surroundings around;
+  Look(place, &around);
+  const unsigned level = std::min(place.to_leaves, 7U);
+  for (const unsigned at : kChildAt) around.cells[at] = kUnknown;
+  unsigned coded = 0;
+  unsigned ones = 0;
+  for (unsigned child = 0; child < 8; ++child) {
+    const unsigned at = kChildAt[child];
+    if (child == 7 && ones == 0) {
+      coded |= 0x80;
+      break;
+    }
+    Tally tally(around.cells.data() + at);
+    const CellPosition cell = {2 * place.position[0] + (child & 1),
+                               2 * place.position[1] + (child >> 1 & 1),
+                               2 * place.position[2] + (child >> 2)};
+    const Direction direction(cell, place.depth);
+    const std::uint32_t range = direction.RangeClass();
+    const std::uint32_t some = std::min(ones, 3U);
+    const std::int64_t parts = std::int64_t{1} << std::min(range / 2 + 1, 11U);
+    const auto tangent = static_cast<std::uint64_t>(direction.Tangent(parts, 4'095) + 4'096);
+    const std::array<std::uint32_t, kContexts> contexts = {
+        (level * 8 + child) * 256 + coded,
+        (tally.faces * 2 + (ones > 0 ? 1 : 0)) * 8 + level,
+        Hash(((((std::uint64_t{tally.edges_on} * 16 + tally.edges_open) * 16 + tally.corners_on) *
+                   8 +
+               tally.faces_on) *
+                  4 +
+              some) *
+                 8 +
+             level),
+        Hash((std::uint64_t{tally.mask} * 2 + (level == 0 ? 1 : 0)) * 4 + some),
+        Hash((tangent * 64 + range) * 4 + some),
+        (range * 4 + some) * 64 + tally.faces_on * 8 + std::min(tally.edges_on, 7U),
+        Hash(((std::uint64_t{place.parent} * 8 + child) * 256 + coded) * 8 + level),
+        Hash(((std::uint64_t{around.nodes} & kNodesBy[child]) * 8 + child) * 4 + some),
+        Hash((std::uint64_t{tally.layer} * 2 + (level == 0 ? 1 : 0)) * 4 + some)};
+    BitMixer<kContexts, 0> mixer;
+    mixer.Ask([&](unsigned k)
+                  __attribute__((always_inline)) { return &model_->counters[k][contexts[k]]; });
+    const bool bit = mixer.Code(
+        (occupancy >> child & 1) != 0, &model_->first[(level * 4 + some) * 8 + child],
+        &model_->second[(tally.faces_on * 8 + std::min(tally.edges_on, 7U)) * 8 + level], coder);
+    around.cells[at] = bit ? kOccupied : kEmpty;
+    if (!bit) continue;
+    coded |= 1U << child;
+    ++ones;
+  }
+  return static_cast<std::uint8_t>(coded);
+}
+
+template <class Coder>
+bool CellTree::CodeLevel(unsigned depth, unsigned leaf_depth, const CellLimits& limits,
+                         Coder* coder) {
+  Level& level = levels_[depth];
+  Level& next = levels_[depth + 1];
+  map_.Reset(level.codes.size());
+  for (std::uint32_t i = 0; i < level.codes.size(); ++i)
+    map_.Add(NodeMap::KeyOf(PositionOf(level.codes[i])), i);
+  nodes_ += level.codes.size();
+  if (nodes_ > limits.nodes) return false;
+  if constexpr (Coder::kDecodes) {
+    level.occupancy.resize(level.codes.size());
+    next.codes.clear();
+  }
+  std::size_t parent = 0;
+  for (std::uint32_t i = 0; i < level.codes.size(); ++i) {
+    const std::uint64_t code = level.codes[i];
+    Place place{PositionOf(code), i, depth + 1, leaf_depth - depth - 1, 0};
+    if (depth > 0) {
+      const Level& above = levels_[depth - 1];
+      while (above.codes[parent] != code >> 3) ++parent;
+      place.parent = above.occupancy[parent];
+    }
+    const std::uint8_t coded = CodeNode(level.occupancy[i], place, coder);
+    if constexpr (!Coder::kDecodes) continue;
+    level.occupancy[i] = coded;
+    for (unsigned child = 0; child < 8; ++child)
+      if ((coded >> child & 1) != 0) next.codes.push_back(code << 3 | child);
+    if (coder->overran() || next.codes.size() > limits.points) return false;
+  }
+  return true;
+}
+
+/// What is like the count of a cell.
+struct CellTree::CountContext {
+  std::uint32_t last = 0;   // of the cell before
+  std::uint32_t mean = 0;   // of neighbours, in halves
+  std::uint32_t range = 0;  // class
+};
+
+template <class Coder>
+std::uint32_t CellTree::CodeCount(std::uint32_t count, const CountContext& context, Coder* coder) {
+  const auto octave = [](std::uint32_t v) {
+    const auto bits = static_cast<std::uint32_t>(BitLength(v));
+    return v < 4 ? v : 2 * bits + (v >> (bits - 2) & 1) - 2;
+  };
+  const std::uint32_t last = octave(context.last);
+  const std::uint32_t mean = octave(context.mean);
+  const auto code = [&](bool bit, std::uint32_t node) {
+    const std::array<std::uint32_t, 3> at = {
+        Hash((std::uint64_t{node} * 64 + last) * 64 + mean),
+        Hash((std::uint64_t{node} * 64 + context.range) * 8 + std::min(mean / 2, 7U)),
+        Hash(std::uint64_t{node} * 64 + mean)};
+    BitMixer<3, 0> mixer;
+    mixer.Ask([&](unsigned k) __attribute__((always_inline)) { return &model_->counts[k][at[k]]; });
+    return mixer.Code(bit, &model_->count_weights[node], coder);
+  };
+  // Small ones one by one; the rest as in an Exp-Golomb code.
+  constexpr std::uint32_t kSmall = 12;
+  std::uint32_t value = 1;
+  while (value < kSmall && code(count > value, value)) ++value;
+  if (value < kSmall) return value;
+  const std::uint32_t rest = count - kSmall + 1;
+  constexpr unsigned kMostLength = 28;
+  unsigned length = 0;
+  const auto wanted = static_cast<unsigned>(BitLength(rest) - 1);
+  while (length < kMostLength && code(length < wanted, 16 + length)) ++length;
+  value = 1;
+  for (unsigned place = length; place-- > 0;)
+    value = value << 1 | (code((rest >> place & 1) != 0, 64 + 32 * length + place) ? 1U : 0U);
+  return value + kSmall - 1;
+}
+
+template <class Coder>
+bool CellTree::CodeCounts(CellList* cells, const CellLimits& limits, Coder* coder) {
+  const std::size_t size = cells->codes.size();
+  if constexpr (Coder::kDecodes) cells->counts.assign(size, 0);
+  map_.Reset(size);
+  std::uint64_t sum = 0;
+  CountContext context;
+  for (std::uint32_t i = 0; i < size; ++i) {
+    const CellPosition p = PositionOf(cells->codes[i]);
+    const std::uint64_t key = NodeMap::KeyOf(p);
+    std::uint32_t known = 0;
+    std::uint64_t counted = 0;
+    for (const std::uint64_t step : {NodeMap::kStepX, NodeMap::kStepY, NodeMap::kStepZ}) {
+      const std::uint32_t there = map_.Find(key - step);
+      if (there == NodeMap::kAbsent) continue;
+      ++known;
+      counted += cells->counts[there];
+    }
+    context.mean = known == 0 ? 0 : static_cast<std::uint32_t>(2 * counted / known);
+    context.range = Direction(p, cells->depth).RangeClass();
+    const std::uint32_t count = CodeCount(cells->counts[i], context, coder);
+    cells->counts[i] = context.last = count;
+    map_.Add(key, i);
+    sum += count;
+    if (coder->overran() || sum > limits.points) return false;
+  }
+  return sum == limits.points;
+}
+
+template <class Coder>
+bool CellTree::Code(CellList* cells, const CellLimits& limits, Coder* coder) {
+  model_ = std::make_unique<Model>();
+  nodes_ = 0;
+  levels_[0].codes.assign(1, 0);
+  if constexpr (!Coder::kDecodes) FillLevels(*cells);
+  for (unsigned depth = 0; depth < cells->depth; ++depth)
+    if (!CodeLevel(depth, cells->depth, limits, coder)) return false;
+  if constexpr (Coder::kDecodes) cells->codes = levels_[cells->depth].codes;
+  return CodeCounts(cells, limits, coder);
+}
+
+template bool CellTree::Code(CellList*, const CellLimits&, BinaryEncoder*);
+template bool CellTree::Code(CellList*, const CellLimits&, BinaryDecoder*);
+
+}  // namespace lidar::codec::cloud

@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Codes occupied cells and their counts: an octree, level by level, every bit by mixed contexts.
+#pragma once
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "src/codec/cloud/cell_list.h"
+#include "src/codec/cloud/node_map.h"
+#include "src/codec/mixing/bit_mixer.h"
+
+namespace lidar::codec::cloud {
+
+/// What bounds the work of a decoder.
+struct CellLimits {
+  std::size_t points = 0;  // exactly so many
+  std::size_t nodes = 0;   // of all levels
+};
+
+/// Keeps its buffers between clouds.
+class CellTree {
+ public:
+  CellTree();
+  CellTree(CellTree&&) noexcept;
+  CellTree& operator=(CellTree&&) noexcept;
+  ~CellTree();
+
+  /// Codes all of `cells`, which a decoder fills but for `depth`. False for a damaged stream.
+  template <class Coder>
+  bool Code(CellList* cells, const CellLimits& limits, Coder* coder);
+  /// How many nodes the last Code() visited.
+  std::size_t nodes() const { return nodes_; }
+
+ private:
+  static constexpr unsigned kContexts = 9;
+  struct Model;
+  struct Surroundings;
+  struct CountContext;
+  /// A node and where it is.
+  struct Place {
+    CellPosition position;
+    std::uint32_t node = 0;   // of its level
+    unsigned depth = 0;       // of its children
+    unsigned to_leaves = 0;   // from its children
+    std::uint8_t parent = 0;  // occupancy of its parent
+  };
+  struct Level {
+    std::vector<std::uint64_t> codes;
+    std::vector<std::uint8_t> occupancy;  // of the children
+  };
+
+  void FillLevels(const CellList& cells);
+  template <class Coder>
+  bool CodeLevel(unsigned depth, unsigned leaf_depth, const CellLimits& limits, Coder* coder);
+  template <class Coder>
+  std::uint8_t CodeNode(std::uint8_t occupancy, const Place& place, Coder* coder);
+  template <class Coder>
+  bool CodeCounts(CellList* cells, const CellLimits& limits, Coder* coder);
+  template <class Coder>
+  std::uint32_t CodeCount(std::uint32_t count, const CountContext& context, Coder* coder);
+  void Look(const Place& place, Surroundings* around) const;
+
+  std::unique_ptr<Model> model_;
+  std::array<Level, kMostDepth + 1> levels_;
+  NodeMap map_;
+  std::size_t nodes_ = 0;
+};
+
+}  // namespace lidar::codec::cloud

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Decodes what CloudEncoder encodes; any bytes give a cloud or nothing.
+#pragma once
+#include <cstdint>
+#include <vector>
+
+#include "src/base/byte_reader.h"
+#include "src/codec/cloud/cell_tree.h"
+#include "src/codec/cloud/cloud_header.h"
+#include "src/codec/cloud_io.h"
+
+namespace lidar::codec::cloud {
+
+/// For one thread at a time.
+class CloudDecoder {
+ public:
+  explicit CloudDecoder(std::uint32_t max_points) : max_points_(max_points) {}
+
+  /// False, with the cloud undefined, for a stream that is damaged, of another version, or of more
+  /// than max_points.
+  bool Decode(ByteView stream);
+  /// The points decoded last: cell by cell, the cells in the order of their Morton codes, then
+  /// those too far away for cells.
+  const XyzCloud& cloud() const { return cloud_; }
+  double step_m() const { return static_cast<double>(header_.grid.step_m); }
+  double error_m() const { return header_.grid.error_m(); }
+  unsigned intensity_bits() const { return header_.intensity.bits(); }
+
+ private:
+  bool DecodeCells(ByteView stream, std::size_t slice_bytes);
+  bool ReadFarPoints(ByteReader* reader);
+
+  std::uint32_t max_points_;
+  CloudHeader header_;
+  CellTree tree_;
+  CellList cells_;
+  XyzCloud cloud_;
+};
+
+}  // namespace lidar::codec::cloud

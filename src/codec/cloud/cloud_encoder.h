@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Encodes clouds without a sensor model, whatever the order of their points.
+#pragma once
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "src/codec/cloud/cell_cover.h"
+#include "src/codec/cloud/cell_tree.h"
+#include "src/codec/cloud/cloud_header.h"
+#include "src/codec/cloud_io.h"
+#include "src/codec/slice_encoder.h"
+
+namespace lidar::codec::cloud {
+
+/// One stream, so one format. For one thread at a time.
+class CloudEncoder {
+ public:
+  /// None where `layout` lacks x, y and z as F32 side by side.
+  static std::optional<CloudEncoder> Create(const CloudLayout& layout);
+
+  /// Takes the points that are finite and not all zero, for Encode().
+  void Load(ByteView raw, bool with_intensity);
+  /// What is loaded has so many.
+  std::size_t returns() const { return cloud_.size(); }
+  /// Longest side of the points' box [m].
+  double extent_m() const;
+  bool has_intensity() const { return !cloud_.intensity.empty(); }
+  /// Names the coder for statistics and predictors.
+  std::string Mode() const { return "xyz-cloud" + std::to_string(effort_); }
+  /// 0: every point has its own cell; from 1 on they share few; at EffortControl::kHighest both are
+  /// tried.
+  void set_effort(unsigned effort) { effort_ = effort; }
+  /// Forgets all but `kept` of the loaded points.
+  void Thin(const std::vector<bool>& kept);
+
+  /// Encodes what is loaded, as often as wanted.
+  SliceResult Encode(const SliceSettings& settings, EncodedSlice* slice);
+
+ private:
+  explicit CloudEncoder(CloudLayout layout) : layout_(std::move(layout)) {}
+  void SortOut(const CellGrid& grid, unsigned* depth);
+  std::size_t EncodeCells(const CloudHeader& header, bool few, std::vector<std::uint8_t>* out);
+  std::size_t EncodeSmallest(const CloudHeader& header);
+  void WriteFarPoints(const IntensityScale& scale, std::vector<std::uint8_t>* out) const;
+  std::vector<std::uint8_t> LevelsOf(const IntensityScale& scale);
+
+  CloudLayout layout_;
+  unsigned effort_ = 1;
+  XyzCloud cloud_;
+  std::vector<Point> near_;              // on the grid
+  std::vector<std::uint32_t> near_ids_;  // of cloud_
+  std::vector<std::uint32_t> far_ids_;
+  CoveredPoints covered_;
+  CellTree tree_;
+  std::vector<std::uint8_t> stream_;
+};
+
+}  // namespace lidar::codec::cloud

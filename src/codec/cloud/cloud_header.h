@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// What stands before the bits of a coded cloud (docs/cloud-coder.md).
+#pragma once
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "src/base/byte_reader.h"
+#include "src/codec/cloud/cell_cover.h"
+#include "src/codec/intensity_scale.h"
+
+namespace lidar::codec::cloud {
+
+struct CloudHeader {
+  IntensityScale intensity;      // 0 bits: geometry only
+  std::uint32_t points = 0;      // in cells
+  std::uint32_t far_points = 0;  // past the largest grid
+  CellGrid grid;
+  unsigned depth = 1;
+  std::uint32_t stream_size = 0;  // bytes of the cells
+
+  void Write(std::vector<std::uint8_t>* out) const;
+  /// None for another version and for numbers that no encoder writes.
+  static std::optional<CloudHeader> Read(ByteReader* reader);
+};
+
+/// A slice of so many bytes has no more nodes than this. A node costs a decoder a microsecond, and
+/// may cost its sender a hundredth of a bit.
+constexpr std::size_t MostNodes(std::size_t slice_bytes) {
+  constexpr std::size_t kFree = 4'096;
+  constexpr std::size_t kNodesPerByte = 64;
+  return kFree + kNodesPerByte * slice_bytes;
+}
+
+}  // namespace lidar::codec::cloud

@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Codes the intensities of points that come cell by cell.
+#pragma once
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "src/codec/cloud/cell_list.h"
+#include "src/codec/cloud/node_map.h"
+
+namespace lidar::codec::cloud {
+
+/// Codes `levels` of `bits`, 1 to 8, one for each point of `cells`; within a cell they rise. False
+/// for a damaged stream.
+template <class Coder>
+bool CodeLevels(const CellList& cells, unsigned bits, std::vector<std::uint8_t>* levels,
+                Coder* coder);
+
+}  // namespace lidar::codec::cloud

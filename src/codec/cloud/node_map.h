@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Finds the nodes of one level of a tree by their positions.
+#pragma once
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "src/codec/cloud/cell_list.h"
+
+namespace lidar::codec::cloud {
+
+/// An open hash table that is never more than half full.
+class NodeMap {
+ public:
+  static constexpr std::uint32_t kAbsent = UINT32_MAX;
+
+  void Reset(std::size_t nodes) {
+    unsigned bits = 4;
+    while (std::size_t{1} << bits < 2 * nodes) ++bits;
+    shift_ = 64 - bits;
+    slots_.assign(std::size_t{1} << bits, {0, kAbsent});
+  }
+  void Add(std::uint64_t key, std::uint32_t index) {
+    std::size_t at = SlotOf(key);
+    while (slots_[at].index != kAbsent) at = (at + 1) & (slots_.size() - 1);
+    slots_[at] = {key, index};
+  }
+  std::uint32_t Find(std::uint64_t key) const {
+    for (std::size_t at = SlotOf(key);; at = (at + 1) & (slots_.size() - 1)) {
+      if (slots_[at].index == kAbsent || slots_[at].key == key) return slots_[at].index;
+    }
+  }
+
+  static constexpr std::uint64_t kStepX = std::uint64_t{1} << 44;
+  static constexpr std::uint64_t kStepY = std::uint64_t{1} << 22;
+  static constexpr std::uint64_t kStepZ = 1;
+  /// One more than a position, so that its neighbours have keys of their own.
+  static std::uint64_t KeyOf(const CellPosition& p) {
+    return (p[0] + 1) * kStepX + (p[1] + 1) * kStepY + (p[2] + 1) * kStepZ;
+  }
+
+ private:
+  struct Slot {
+    std::uint64_t key;
+    std::uint32_t index;
+  };
+  std::size_t SlotOf(std::uint64_t key) const {
+    return static_cast<std::size_t>(key * 0x9E3779B97F4A7C15U >> shift_);
+  }
+
+  std::vector<Slot> slots_;
+  unsigned shift_ = 60;
+};
+
+}  // namespace lidar::codec::cloud

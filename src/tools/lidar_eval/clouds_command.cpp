@@ -1,0 +1,140 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// lidar-eval clouds: clouds without a sensor model, ours beside Draco.
+#include <algorithm>
+#include <cstdio>
+#include <ctime>
+#include <memory>
+#include <random>
+
+#include "src/cloud/nearest_point.h"
+#include "src/codec/cloud/cloud_decoder.h"
+#include "src/codec/cloud/cloud_encoder.h"
+#include "src/tools/codec_lab/measure.h"
+#include "src/tools/codec_lab/scan_source.h"
+#include "src/tools/lidar_eval/commands.h"
+
+namespace lidar::tools {
+namespace {
+
+struct CloudsOptions {
+  std::vector<std::string> sources;
+  SourceOptions source;
+  std::vector<double> errors = {0.02, 0.05};
+  std::vector<unsigned> efforts = {0, 1, 2, 3};
+  bool shuffle = false;
+};
+
+/// Of all scans of a source at one setting.
+struct CloudCost {
+  std::size_t points = 0;
+  std::size_t bytes = 0;
+  double largest_error_m = 0;
+  double encode_s = 0;
+  double decode_s = 0;
+};
+
+double CpuSeconds() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }
+
+/// The largest distance from a point of one cloud to the nearest of the other, both ways.
+double LargestGap(const std::vector<float>& a, const std::vector<float>& b) {
+  double largest = 0;
+  for (const auto& [from, to] : {std::pair(&a, &b), std::pair(&b, &a)}) {
+    const NearestPoint nearest(*to);
+    for (std::size_t i = 0; i + 2 < from->size(); i += 3)
+      largest = std::max(largest, nearest.DistanceFrom(&(*from)[i]));
+  }
+  return largest;
+}
+
+std::vector<float> PointsOf(const Scan& scan) {
+  if (!scan.organised()) return scan.xyz;
+  throw std::runtime_error("the source is organised: take rd for it");
+}
+
+void Shuffle(std::vector<float>* xyz) {
+  std::mt19937 random(1);
+  for (std::size_t i = xyz->size() / 3; i > 1; --i)
+    std::swap_ranges(xyz->begin() + static_cast<std::ptrdiff_t>(3 * (i - 1)),
+                     xyz->begin() + static_cast<std::ptrdiff_t>(3 * i),
+                     xyz->begin() + static_cast<std::ptrdiff_t>(3 * (random() % i)));
+}
+
+void AddCost(const std::vector<float>& xyz, double error_m, unsigned effort, CloudCost* cost) {
+  const codec::CloudLayout layout = {*PointFields::Parse("x:F32:0,y:F32:4,z:F32:8"), 12};
+  auto encoder = codec::cloud::CloudEncoder::Create(layout);
+  encoder->set_effort(effort);
+  const double start = CpuSeconds();
+  encoder->Load({reinterpret_cast<const std::uint8_t*>(xyz.data()), 4 * xyz.size()}, false);
+  codec::EncodedSlice slice;
+  if (encoder->Encode({error_m, 0, 0}, &slice) != codec::SliceResult::kEncoded)
+    throw std::runtime_error("the cloud cannot be encoded");
+  const double encoded = CpuSeconds();
+  codec::cloud::CloudDecoder decoder(static_cast<std::uint32_t>(slice.returns));
+  if (!decoder.Decode({slice.bytes.data(), slice.bytes.size()}) ||
+      decoder.cloud().size() != slice.returns)
+    throw std::runtime_error("the slice cannot be decoded");
+  cost->encode_s += encoded - start;
+  cost->decode_s += CpuSeconds() - encoded;
+  cost->points += slice.returns;
+  cost->bytes += slice.bytes.size();
+  cost->largest_error_m = std::max(cost->largest_error_m, LargestGap(xyz, decoder.cloud().xyz));
+}
+
+/// The smallest of Draco's coders.
+void PrintDraco(const ScanSet& set, double error_m) {
+  double best = 0;
+  for (const char* mode : {"xyz-sequential", "xyz-kd0", "xyz-kd6"}) {
+    const double step = rate::ErrorBound::Xyz().CoarsestStep(error_m);
+    const auto m = Measure(set, ModeNamed(mode), {step, 0, 0, 1});
+    if (m && (best <= 0 || m->bits_per_return < best)) best = m->bits_per_return;
+  }
+  std::printf("  %5.0f mm  Draco     %7.3f\n", 1e3 * error_m, best);
+}
+
+void Evaluate(ScanSet set, const CloudsOptions& o) {
+  std::size_t points = 0;
+  for (Scan& scan : set.scans) {
+    if (o.shuffle) Shuffle(&scan.xyz);
+    points += PointsOf(scan).size() / 3;
+  }
+  std::printf("%s: %zu scans, %zu points%s\n", set.name.c_str(), set.scans.size(), points,
+              o.shuffle ? ", shuffled" : "");
+  std::printf("  %8s  %-8s  %7s %10s %9s %9s\n", "error", "coder", "bits a", "largest", "encode",
+              "decode");
+  std::printf("  %8s  %-8s  %7s %10s %9s %9s\n", "", "", "point", "error [mm]", "[ns/pt]",
+              "[ns/pt]");
+  for (const double error_m : o.errors) {
+    PrintDraco(set, error_m);
+    for (const unsigned effort : o.efforts) {
+      CloudCost cost;
+      for (const Scan& scan : set.scans) AddCost(PointsOf(scan), error_m, effort, &cost);
+      const auto each = 1 / static_cast<double>(cost.points);
+      std::printf("  %5.0f mm  effort %u  %7.3f %10.3f %9.0f %9.0f\n", 1e3 * error_m, effort,
+                  8 * each * static_cast<double>(cost.bytes), 1e3 * cost.largest_error_m,
+                  1e9 * each * cost.encode_s, 1e9 * each * cost.decode_s);
+    }
+  }
+}
+
+}  // namespace
+
+void AddCloudsCommand(CLI::App* app) {
+  auto o = std::make_shared<CloudsOptions>();
+  CLI::App* command = app->add_subcommand(
+      "clouds", "What clouds without a sensor model take, beside Draco; geometry only");
+  command->option_defaults()->always_capture_default();
+  command->add_option("SOURCE", o->sources, kSourceHelp)->required();
+  command->add_option("--errors", o->errors, "Largest errors [m], comma-separated")
+      ->delimiter(',')
+      ->check(CLI::Range(1e-4, 10.0));
+  command->add_option("--efforts", o->efforts, "Efforts of lidarenc, comma-separated")
+      ->delimiter(',')
+      ->check(CLI::Range(0, 3));
+  command->add_flag("--shuffle", o->shuffle, "Put the points into a random order first");
+  command->add_option("--scans", o->source.max_scans, "Scans to read of each source");
+  command->callback([o] {
+    for (const std::string& source : o->sources) Evaluate(LoadScans(source, o->source), *o);
+  });
+}
+
+}  // namespace lidar::tools
