@@ -48,11 +48,12 @@ struct NatsSrcSettings {
   guint buffer_size = 8U << 20;
 };
 
-const std::array<Stat<SourceCounters>, 11> kStats = {{
+const std::array<Stat<SourceCounters>, 12> kStats = {{
     {"messages", &SourceCounters::messages},
     {"bytes", &SourceCounters::bytes},
     {"messages-damaged", &SourceCounters::damaged},
     {"messages-without-caps", &SourceCounters::without_caps},
+    {"messages-not-accepted", &SourceCounters::not_accepted},
     {"messages-lost", &SourceCounters::lost},
     {"messages-again", &SourceCounters::again},
     {"messages-late", &SourceCounters::late},
@@ -79,6 +80,7 @@ struct State {
   std::optional<guint64> first;  // when JetStream stored the first message
   gint64 no_wait_until_us = 0;   // unknown caps are not waited for
   bool warned_damaged = false;
+  bool warned_of_caps = false;
   bool at_end = false;
 };
 
@@ -123,7 +125,8 @@ static const std::array<Property<NatsSrcSettings>, 15> kProperties = {{
     Within<&NatsSrcSettings::nats>(NatsRows(), "tls-cert-file"),
     Within<&NatsSrcSettings::nats>(NatsRows(), "tls-key-file"),
     {"stats",
-     "messages, bytes [bytes], messages-damaged, messages-without-caps, messages-lost, "
+     "messages, bytes [bytes], messages-damaged, messages-without-caps, "
+     "messages-not-accepted, messages-lost, "
      "messages-again, messages-late, messages-overrun, formats-damaged, "
      "reconnects, connected",
      Stats},
@@ -174,7 +177,7 @@ static void ForgetStream(State& state) {
   state.account.Reset();
   state.first.reset();
   state.no_wait_until_us = 0;
-  state.warned_damaged = false;
+  state.warned_damaged = state.warned_of_caps = false;
   state.at_end = false;
 }
 
@@ -239,6 +242,27 @@ static void SetStored(State& state, const Delivery& delivery, GstBuffer* buffer)
   GST_BUFFER_PTS(buffer) = *delivery.stored - std::min(*state.first, *delivery.stored);
 }
 
+/// False where the next element does not take the caps: the message is dropped and counted, with a
+/// warning the first time. That is no error: anyone may publish what another coder made.
+static bool SetFormat(GstLidarNatsSrc* self, const StreamFormat::Ptr& format) {
+  State& state = StateOf(self);
+  GstPad* pad = GST_BASE_SRC_PAD(self);
+  if (gst_pad_peer_query_accept_caps(pad, format->caps()) &&
+      gst_base_src_set_caps(GST_BASE_SRC(self), format->caps())) {
+    state.format = format;
+    return true;
+  }
+  if (GST_PAD_IS_FLUSHING(pad)) return false;
+  state.account.Count(&SourceCounters::not_accepted);
+  if (!std::exchange(state.warned_of_caps, true))
+    GST_ELEMENT_WARNING(self, STREAM, WRONG_TYPE,
+                        ("The subject carries %s, which the next element does not take. Such "
+                         "messages are dropped and counted.",
+                         gst_structure_get_name(gst_caps_get_structure(format->caps(), 0))),
+                        ("caps are %" GST_PTR_FORMAT, static_cast<gpointer>(format->caps())));
+  return false;
+}
+
 /// OK where there is a buffer, CUSTOM_SUCCESS where the message has none.
 static GstFlowReturn Take(GstLidarNatsSrc* self, const Delivery& delivery, GstBuffer** out) {
   State& state = StateOf(self);
@@ -254,10 +278,7 @@ static GstFlowReturn Take(GstLidarNatsSrc* self, const Delivery& delivery, GstBu
     NoteDamaged(self);
     return GST_FLOW_CUSTOM_SUCCESS;
   }
-  if (format != state.format) {
-    if (!gst_base_src_set_caps(GST_BASE_SRC(self), format->caps())) return GST_FLOW_NOT_NEGOTIATED;
-    state.format = format;
-  }
+  if (format != state.format && !SetFormat(self, format)) return GST_FLOW_CUSTOM_SUCCESS;
   const auto verdict = state.account.NotePlace(read->place, !state.now.nats.queue_group.empty());
   if (verdict.again) return GST_FLOW_CUSTOM_SUCCESS;
   if (verdict.gap) GST_BUFFER_FLAG_SET(read->buffer.get(), GST_BUFFER_FLAG_DISCONT);

@@ -15,6 +15,7 @@ struct SourceCounters {
   std::uint64_t bytes = 0;
   std::uint64_t damaged = 0;
   std::uint64_t without_caps = 0;
+  std::uint64_t not_accepted = 0;
   std::uint64_t lost = 0;
   std::uint64_t again = 0;
   std::uint64_t late = 0;

@@ -17,6 +17,7 @@
 #include "gst/common/latency.h"
 #include "gst/common/properties.h"
 #include "gst/common/refs.h"
+#include "gst/common/refused_caps.h"
 #include "gst/common/stats.h"
 #include "gst/rtplidar/base_stats.h"
 #include "gst/rtplidar/config_caps.h"
@@ -46,6 +47,7 @@ const std::array<Stat<Counters>, 7> kStats = {{
 
 struct State : PayState {
   Receipts receipts;
+  RefusedCaps refused;
   GstPadQueryFunction base_src_query = nullptr;
 };
 
@@ -103,6 +105,7 @@ static gboolean SetCaps(GstRTPBasePayload* base, GstCaps* caps) {
   std::string why;
   auto config = StreamConfigFromCaps(caps, &why);
   if (!config) {
+    if (!state.refused.Note(caps)) return FALSE;
     GST_ELEMENT_ERROR(
         base, STREAM, FORMAT,
         ("The caps do not describe an encoded cloud that can be sent: %s.", why.c_str()),
@@ -219,6 +222,7 @@ static GstStateChangeReturn ChangeState(GstElement* element, GstStateChange tran
     state.recent_slice_bytes = state.recent_payload_bytes = 0;
     state.config_due = true;
     state.config.reset();
+    state.refused.Reset();
     state.config_sent_at = GST_CLOCK_TIME_NONE;
     state.scans = lidar::rtp::ScanCounter(g_random_int());
     state.last_scan.reset();

@@ -295,7 +295,7 @@ std::optional<std::string> ScalarCaps::ToText(std::string* why) const {
     if (why != nullptr) *why = reason;
     return std::nullopt;
   };
-  if (!IsMediaType(media_type)) return refuse(media_type + " is no application/x-...");
+  if (!IsMediaType(media_type)) return refuse(media_type + " does not begin with application/x-");
   if (fields.size() > kMaxFields)
     return refuse("more than " + std::to_string(kMaxFields) + " fields");
   std::string text = media_type;

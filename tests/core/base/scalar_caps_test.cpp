@@ -118,7 +118,7 @@ TEST(ScalarCaps, WhatCannotBeWrittenSaysWhy) {
     EXPECT_FALSE(caps.ToText(&reason));
     return reason;
   };
-  EXPECT_EQ(why("video/x-raw", {"n", 1}), "video/x-raw is no application/x-...");
+  EXPECT_EQ(why("video/x-raw", {"n", 1}), "video/x-raw does not begin with application/x-");
   EXPECT_EQ(why("application/x-a", {"a:b", 1}), "the name of the field a:b is not plain");
   EXPECT_EQ(why("application/x-a", {"n", std::numeric_limits<double>::infinity()}),
             "n is not finite");

@@ -63,6 +63,28 @@ TEST_F(NatsErrors, GarbageIsCountedAndTheStreamGoesOn) {
   EXPECT_EQ(receiver.stat("formats-damaged"), 3U);
 }
 
+TEST_F(NatsErrors, WhatTheNextElementDoesNotTakeIsSaidOnceAndTheStreamGoesOn) {
+  server_.Start();
+  NatsPipeline receiver("natssrc name=n" + At() + "! lidardec ! fakesink name=see sync=false");
+  receiver.Play();
+  const std::string caps = "application/x-voxels, alignment=(string)slice";
+  std::string why;
+  const gst::CapsPtr voxels(gst_caps_from_string(caps.c_str()));
+  const auto format = nats::StreamFormat::FromCaps(voxels.get(), &why);
+  ASSERT_TRUE(format) << why;
+  Stranger stranger(server_.url());
+  stranger.Publish(("lidar.config." + format->id()).c_str(), caps);
+  for (const char* place : {"1 0", "1 1"})
+    stranger.Publish("lidar", "x", {{"Lidar-Caps", format->id()}, {"Lidar-Place", place}});
+  stranger.Flush();
+  EXPECT_EQ(receiver.WaitForWarning(),
+            "The subject carries application/x-voxels, which the next element does not take. Such "
+            "messages are dropped and counted.");
+  EXPECT_TRUE(Eventually([&] { return receiver.stat("messages-not-accepted") == 2; }));
+  PublishSlices(8, At());
+  EXPECT_TRUE(receiver.WaitForBuffers(8));
+}
+
 TEST_F(NatsErrors, ABufferOfAnotherSizeThanItsCapsSayIsCounted) {
   server_.Start();
   NatsPipeline receiver("natssrc name=n" + At() + "! fakesink name=see sync=false");

@@ -235,8 +235,10 @@ TEST(RtpLidarPay, AddsItsHeadersToTheBoundsOfTheEncoder) {
 }
 
 class CapsThatNoReceiverCouldUse : public ::testing::TestWithParam<const char*> {};
-TEST_P(CapsThatNoReceiverCouldUse, AreRefused) {
+TEST_P(CapsThatNoReceiverCouldUse, AreRefusedWithOneError) {
   const Harness h(gst_harness_new("rtplidarpay"));
+  GstBus* bus = gst_bus_new();
+  gst_element_set_bus(h->element, bus);
   gst_harness_push_event(h.get(), gst_event_new_stream_start("test"));
   const gst::CapsPtr caps(gst_caps_from_string(GetParam()));
   gst_harness_push_event(h.get(), gst_event_new_caps(caps.get()));
@@ -244,6 +246,10 @@ TEST_P(CapsThatNoReceiverCouldUse, AreRefused) {
   gst_segment_init(&segment, GST_FORMAT_TIME);
   gst_harness_push_event(h.get(), gst_event_new_segment(&segment));
   EXPECT_EQ(gst_harness_push(h.get(), EncodedSlice(0, 0)), GST_FLOW_NOT_NEGOTIATED);
+  EXPECT_TRUE(gst::MessagePtr(gst_bus_pop_filtered(bus, GST_MESSAGE_ERROR)));
+  EXPECT_FALSE(gst::MessagePtr(gst_bus_pop_filtered(bus, GST_MESSAGE_ERROR)));  // no second
+  gst_element_set_bus(h->element, nullptr);
+  gst_object_unref(bus);
 }
 INSTANTIATE_TEST_SUITE_P(
     All, CapsThatNoReceiverCouldUse,
