@@ -95,7 +95,8 @@ typedef enum {
 typedef enum {
   GST_LIDAR_ORDER_PIXELS = 0, /* as many points as the raw slice has, at their places */
   GST_LIDAR_ORDER_KEPT = 1,   /* the raw points that are finite and not all zero, in their order */
-  GST_LIDAR_ORDER_ANY = 2     /* those in any order: errors are distances to the nearest point */
+  GST_LIDAR_ORDER_ANY = 2     /* those in any order, one for several where they may merge: errors
+                                 are distances to the nearest point */
 } GstLidarPointOrder;
 
 struct _GstLidarEncoder {

@@ -78,11 +78,13 @@ std::vector<float> ReturnsOf(ByteView raw, const PointFields& fields, std::uint3
   return returns;
 }
 
+/// `may_merge`: a point may stand for several.
 PointErrors CompareClouds(const std::vector<float>& before, const std::vector<float>& after,
-                          bool in_order) {
+                          bool in_order, bool may_merge) {
   Distances distances;
   for (const float coordinate : before) distances.OnCoordinate(static_cast<double>(coordinate));
-  const std::size_t missing = (before.size() - std::min(before.size(), after.size())) / 3;
+  const std::size_t fewer = (before.size() - std::min(before.size(), after.size())) / 3;
+  const std::size_t missing = may_merge && !after.empty() ? 0 : fewer;
   distances.AddMissing(missing);
   if (in_order && before.size() == after.size()) {
     for (std::size_t i = 0; i < before.size(); i += 3)
@@ -106,15 +108,16 @@ PointErrors CompareClouds(const std::vector<float>& before, const std::vector<fl
 
 std::optional<PointErrors> MeasureErrors(ByteView raw, const PointFields& fields,
                                          std::uint32_t point_step,
-                                         const std::vector<DecodedPoint>& decoded,
-                                         PointOrder order) {
+                                         const std::vector<DecodedPoint>& decoded, PointOrder order,
+                                         bool thinned) {
   if (order == PointOrder::kPixels) return ComparePixels(raw, fields, point_step, decoded);
   if (!fields.HasPackedXyz()) return std::nullopt;
   std::vector<float> after;
   after.reserve(3 * decoded.size());
   for (const DecodedPoint& p : decoded)
     after.insert(after.end(), p.position.begin(), p.position.end());
-  return CompareClouds(ReturnsOf(raw, fields, point_step), after, order == PointOrder::kKept);
+  return CompareClouds(ReturnsOf(raw, fields, point_step), after, order == PointOrder::kKept,
+                       order == PointOrder::kAny && !thinned);
 }
 
 }  // namespace lidar

@@ -29,15 +29,16 @@ struct DecodedPoint {
 enum class PointOrder {
   kPixels,  // the one at the same place
   kKept,    // the same one of those that are returns
-  kAny,     // the nearest one; errors are distances in both directions
+  kAny,     // the nearest one, also of several; errors are distances in both directions
 };
 
 /// The distances between the points of `raw`, which is whole points, and those that it was decoded
-/// to. Pixels without positions are compared by range. None where pixels are not as many, or where
-/// there is nothing to compare.
+/// to. Pixels without positions are compared by range. `thinned`: points were left out on purpose,
+/// so fewer are missing, not merged with others. None where pixels are not as many, or where there
+/// is nothing to compare.
 std::optional<PointErrors> MeasureErrors(ByteView raw, const PointFields& fields,
                                          std::uint32_t point_step,
-                                         const std::vector<DecodedPoint>& decoded,
-                                         PointOrder order);
+                                         const std::vector<DecodedPoint>& decoded, PointOrder order,
+                                         bool thinned = false);
 
 }  // namespace lidar

@@ -21,7 +21,7 @@ bool ErrorReport::IsDue(guint every) {
   return true;
 }
 
-std::optional<PointErrors> ErrorReport::Measure(ByteView raw, ByteView coded) {
+std::optional<PointErrors> ErrorReport::Measure(ByteView raw, ByteView coded, bool thinned) {
   g_array_set_size(points_.get(), 0);
   auto order = GST_LIDAR_ORDER_ANY;
   if (!GST_LIDAR_ENCODER_GET_CLASS(encoder_)->decode(encoder_, coded.data, coded.size,
@@ -33,7 +33,7 @@ std::optional<PointErrors> ErrorReport::Measure(ByteView raw, ByteView coded) {
     const auto& p = g_array_index(points_.get(), GstLidarPoint, i);
     decoded[i] = {{p.x, p.y, p.z}, p.range};
   }
-  return MeasureErrors(raw, fields_, point_step_, decoded, static_cast<PointOrder>(order));
+  return MeasureErrors(raw, fields_, point_step_, decoded, static_cast<PointOrder>(order), thinned);
 }
 
 void ErrorReport::Warn(const CheckedSlice& slice, const std::optional<PointErrors>& errors) {
@@ -65,7 +65,7 @@ void ErrorReport::Post(const CheckedSlice& slice, const Outcome& outcome) {
 std::optional<ErrorReport::Outcome> ErrorReport::OnSlice(guint every, ByteView raw, ByteView coded,
                                                          const CheckedSlice& slice) {
   if (!IsDue(every)) return std::nullopt;
-  const auto errors = Measure(raw, coded);
+  const auto errors = Measure(raw, coded, slice.thinned);
   const bool holds = errors && errors->max_m <= slice.max_error_m + errors->rounding_m &&
                      (slice.thinned || errors->missing == 0);
   if (!holds && !warned_) Warn(slice, errors);

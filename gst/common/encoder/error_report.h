@@ -38,7 +38,7 @@ class ErrorReport {
     void operator()(GArray* points) const { g_array_unref(points); }
   };
   bool IsDue(guint every);
-  std::optional<PointErrors> Measure(ByteView raw, ByteView coded);
+  std::optional<PointErrors> Measure(ByteView raw, ByteView coded, bool thinned);
   void Warn(const CheckedSlice& slice, const std::optional<PointErrors>& errors);
   void Post(const CheckedSlice& slice, const Outcome& outcome);
 

@@ -30,9 +30,9 @@ std::vector<std::uint8_t> Raw(const std::vector<DecodedPoint>& points) {
 }
 
 PointErrors Measure(const std::vector<DecodedPoint>& before, const std::vector<DecodedPoint>& after,
-                    PointOrder order) {
+                    PointOrder order, bool thinned = false) {
   const auto raw = Raw(before);
-  const auto errors = MeasureErrors({raw.data(), raw.size()}, kXyz, 12, after, order);
+  const auto errors = MeasureErrors({raw.data(), raw.size()}, kXyz, 12, after, order, thinned);
   EXPECT_TRUE(errors);
   return errors.value_or(PointErrors{});
 }
@@ -55,16 +55,37 @@ TEST_P(AnyOrder, SeesOneStrayPointInEitherCloud) {
 
 TEST(PointErrors, CountPointsThatAreGone) {
   const auto cloud = Lattice();
+  const std::vector<DecodedPoint> fewer(cloud.begin(), cloud.end() - 2);
   for (const PointOrder order : {PointOrder::kKept, PointOrder::kAny}) {
-    const PointErrors errors = Measure(cloud, {cloud.begin(), cloud.end() - 2}, order);
+    const PointErrors errors = Measure(cloud, fewer, order, true);
     EXPECT_EQ(errors.missing, 2U);
     EXPECT_EQ(errors.points, 498U);
     EXPECT_EQ(errors.max_m, 0);
   }
+  EXPECT_EQ(Measure(cloud, fewer, PointOrder::kKept).missing, 2U);
   auto gap = cloud;
   gap[7] = {};
   EXPECT_EQ(Measure(cloud, gap, PointOrder::kPixels).missing, 1U);
   EXPECT_EQ(Measure(gap, cloud, PointOrder::kPixels).missing, 1U);
+}
+
+TEST(PointErrors, OfMergedPointsAreDistancesToTheOneThatStandsForThem) {
+  auto cloud = Lattice();
+  const auto merged = cloud;
+  auto twin = cloud[99];
+  twin.position[1] += 0.25F;
+  cloud.push_back(twin);
+  const PointErrors errors = Measure(cloud, merged, PointOrder::kAny);
+  EXPECT_EQ(errors.missing, 0U);
+  EXPECT_EQ(errors.points, 501U);
+  EXPECT_DOUBLE_EQ(errors.max_m, 0.25);
+  EXPECT_NEAR(errors.mean_m, 0.25 / 501, 1e-12);
+}
+
+TEST(PointErrors, OfAPointThatIsGoneIsTheDistanceToTheNextOneWhereTheyMayMerge) {
+  const auto cloud = Lattice();
+  const PointErrors errors = Measure(cloud, {cloud.begin(), cloud.end() - 1}, PointOrder::kAny);
+  EXPECT_DOUBLE_EQ(errors.max_m, 2);
 }
 
 TEST(PointErrors, AreNotConfusedByAnotherOrder) {

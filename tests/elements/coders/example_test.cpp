@@ -2,6 +2,10 @@
 // What the base classes do for a coder that they do not know.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <tuple>
+#include <vector>
+
 #include "gst/common/gstlidardecoder.h"
 #include "gst/common/gstlidarencoder.h"
 #include "tests/elements/coders/checked_codec.h"
@@ -51,6 +55,39 @@ TEST_F(ExampleCoder, HasItsErrorsMeasured) {
     EXPECT_GT(largest, 0.02);
     EXPECT_LT(largest, 0.03);
   }
+  EXPECT_EQ(codec.Warnings(), 0U);
+}
+
+TEST_F(ExampleCoder, MayMergePointsWithinTheBound) {
+  CheckedCodec codec(kExample, "error-check=1 max-error=0.5");
+  codec.SetCaps(OrganisedInfo(Sensor(), 64));
+  const ElementPtr enc(gst_bin_get_by_name(GST_BIN(codec.harness()->element), "enc"));
+  GstLidarEncoderClass* klass = GST_LIDAR_ENCODER_GET_CLASS(enc.get());
+  static gboolean (*decode)(GstLidarEncoder*, const guint8*, gsize, GArray*, GstLidarPointOrder*);
+  decode = klass->decode;
+  // Of points in one cell, the first stands for all, as in a coder of voxels.
+  klass->decode = [](GstLidarEncoder* base, const guint8* data, gsize size, GArray* points,
+                     GstLidarPointOrder* order) -> gboolean {
+    if (!decode(base, data, size, points, order)) return FALSE;
+    const auto* first = reinterpret_cast<const GstLidarPoint*>(points->data);
+    std::vector<GstLidarPoint> all(first, first + points->len);
+    const auto key = [](const GstLidarPoint& p) { return std::tie(p.x, p.y, p.z); };
+    std::sort(all.begin(), all.end(),
+              [&](const auto& a, const auto& b) { return key(a) < key(b); });
+    all.erase(std::unique(all.begin(), all.end(),
+                          [&](const auto& a, const auto& b) { return key(a) == key(b); }),
+              all.end());
+    EXPECT_LT(all.size(), points->len);
+    g_array_set_size(points, 0);
+    g_array_append_vals(points, all.data(), static_cast<guint>(all.size()));
+    *order = GST_LIDAR_ORDER_ANY;
+    return TRUE;
+  };
+  EXPECT_TRUE(codec.Push(Slice(0)));
+  klass->decode = decode;
+  const StructurePtr check = codec.PopCheck();
+  ASSERT_TRUE(check);
+  EXPECT_TRUE(Holds(check.get()));
   EXPECT_EQ(codec.Warnings(), 0U);
 }
 
