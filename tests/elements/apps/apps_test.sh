@@ -23,3 +23,16 @@ done
 [ $python != none ] || { echo "there is no python3-gst-1.0 or python3-numpy"; exit 77; }
 "$python" "$source/tests/elements/apps/cloud_to_numpy.py" "$pipeline" >"$work/python"
 diff "$work/cpp" "$work/python"
+
+# Neither waits for a pipeline that cannot be made, or whose source fails.
+fails() {
+  local status=0
+  timeout 20 "$@" >"$work/said" 2>&1 || status=$?
+  [ $status = 1 ] && grep -qE 'nosuch|Resource not found' "$work/said" && return
+  echo "$*: status $status, and it says: $(cat "$work/said")" >&2
+  exit 1
+}
+for broken in "nosuch ! scanassembler" "filesrc location=/nowhere.pcd ! pointcloudparse"; do
+  fails "$work/nearest_point" "$broken"
+  fails "$python" "$source/tests/elements/apps/cloud_to_numpy.py" "$broken"
+done

@@ -34,12 +34,23 @@ def capture_time_of(sample):
     return meta.timestamp if meta else None
 
 
+def samples_of(pipeline):
+    """The samples of the appsink until the end; an error ends the program."""
+    sink, bus = pipeline.get_by_name("sink"), pipeline.get_bus()
+    pipeline.set_state(Gst.State.PLAYING)
+    while True:
+        if sample := sink.emit("try-pull-sample", 100 * Gst.MSECOND):
+            yield sample
+        elif message := bus.pop_filtered(Gst.MessageType.ERROR):
+            sys.exit(message.parse_error().gerror.message)
+        elif sink.get_property("eos"):
+            return
+
+
 def main(source):
     Gst.init(None)
     pipeline = Gst.parse_launch(source + " ! appsink name=sink sync=false")
-    sink = pipeline.get_by_name("sink")
-    pipeline.set_state(Gst.State.PLAYING)
-    while sample := sink.emit("pull-sample"):
+    for sample in samples_of(pipeline):
         cloud = cloud_of(sample)
         ranges = np.linalg.norm([cloud["x"], cloud["y"], cloud["z"]], axis=0)
         nearest = ranges[ranges > 0].min()

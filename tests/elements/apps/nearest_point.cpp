@@ -34,21 +34,48 @@ static void show(GstSample* sample) {
   gst_lidar_cloud_unmap(&cloud);
 }
 
+/// Shows what comes until the end. False, and said, where an element fails: then no sample comes.
+static bool show_all(GstElement* pipeline) {
+  GstElement* sink = gst_bin_get_by_name(GST_BIN(pipeline), "sink");
+  GstBus* bus = gst_element_get_bus(pipeline);
+  GstMessage* failure = nullptr;
+  gst_element_set_state(pipeline, GST_STATE_PLAYING);
+  for (bool ended = false; !ended;) {
+    GstSample* sample = gst_app_sink_try_pull_sample(GST_APP_SINK(sink), 100 * GST_MSECOND);
+    if (sample != nullptr) {
+      show(sample);
+      gst_sample_unref(sample);
+      continue;
+    }
+    failure = gst_bus_pop_filtered(bus, GST_MESSAGE_ERROR);
+    ended = failure != nullptr || gst_app_sink_is_eos(GST_APP_SINK(sink));
+  }
+  if (failure != nullptr) {
+    GError* error = nullptr;
+    gst_message_parse_error(failure, &error, nullptr);
+    std::fprintf(stderr, "%s\n", error->message);
+    g_error_free(error);
+    gst_message_unref(failure);
+  }
+  gst_element_set_state(pipeline, GST_STATE_NULL);
+  gst_object_unref(bus);
+  gst_object_unref(sink);
+  return failure == nullptr;
+}
+
 int main(int argc, char** argv) {
   gst_init(&argc, &argv);
   gst_lidar_init();
   const std::string source = argc > 1 ? argv[1] : "";
+  GError* error = nullptr;
   GstElement* pipeline =
-      gst_parse_launch((source + " ! appsink name=sink sync=false").c_str(), nullptr);
-  if (pipeline == nullptr) return 1;
-  GstElement* sink = gst_bin_get_by_name(GST_BIN(pipeline), "sink");
-  gst_element_set_state(pipeline, GST_STATE_PLAYING);
-  while (GstSample* sample = gst_app_sink_pull_sample(GST_APP_SINK(sink))) {
-    show(sample);
-    gst_sample_unref(sample);
+      gst_parse_launch((source + " ! appsink name=sink sync=false").c_str(), &error);
+  // With an error there may be a pipeline all the same, of the elements that were found.
+  const bool ended = error == nullptr && show_all(pipeline);
+  if (error != nullptr) {
+    std::fprintf(stderr, "%s\n", error->message);
+    g_error_free(error);
   }
-  gst_element_set_state(pipeline, GST_STATE_NULL);
-  gst_object_unref(sink);
-  gst_object_unref(pipeline);
-  return 0;
+  if (pipeline != nullptr) gst_object_unref(pipeline);
+  return ended ? 0 : 1;
 }
