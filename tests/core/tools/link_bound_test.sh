@@ -5,7 +5,7 @@ set -euo pipefail
 trace=$1
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
-"$trace" --gap 1 --every 10 --duration 20 >"$folder/gaps.txt"
+"$trace" --gap 1 --every 10 --duration 180 >"$folder/gaps.txt"
 table=$("$trace" --rate 1.4 --duration 60 --bound "$folder/gaps.txt" --bound "$folder/gaps.txt@5")
 whole() { awk -v row="$1" 'index($0, row) == 1 { print $(NF - 3) }' <<<"$table"; }
 [[ $(whole "all, where whole first") == 100.00 ]] || { echo "two links lose scans: $table"; exit 1; }
