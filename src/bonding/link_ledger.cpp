@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "src/bonding/link_ledger.h"
+
+#include <algorithm>
+
+namespace lidar::bonding {
+
+std::uint16_t LinkLedger::OnSent(Time now, PacketId id) {
+  if (sources_.count(id.ssrc) == 0 && sources_.size() >= kMaxSources) ForgetSilentSource();
+  Source& source = sources_[id.ssrc];
+  const std::int64_t number = source.end();
+  source.packets.push_back({id.seq, now});
+  source.numbers[id.seq] = number;
+  Trim(&source);
+  return static_cast<std::uint16_t>(number);
+}
+
+void LinkLedger::ForgetSilentSource() {
+  sources_.erase(std::min_element(sources_.begin(), sources_.end(), [](auto& a, auto& b) {
+    return a.second.packets.back().sent < b.second.packets.back().sent;
+  }));
+}
+
+void LinkLedger::Trim(Source* source) {
+  if (source->packets.size() <= kMaxPackets) return;
+  const auto named = source->numbers.find(source->packets.front().seq);
+  if (named != source->numbers.end() && named->second == source->first)
+    source->numbers.erase(named);
+  source->packets.pop_front();
+  ++source->first;
+  source->waiting = std::max(source->waiting, source->first);
+}
+
+/// False where it tells of what was never sent here.
+bool LinkLedger::Translate(const Source& source, const scream::SsrcReport& block,
+                           scream::SsrcReport* own) {
+  std::vector<std::pair<std::int64_t, const scream::PacketMetric*>> arrived;
+  for (std::size_t i = 0; i < block.metrics.size(); ++i) {
+    if (!block.metrics[i].received) continue;
+    const auto found = source.numbers.find(static_cast<std::uint16_t>(block.begin_seq + i));
+    if (found == source.numbers.end()) return false;
+    arrived.emplace_back(found->second, &block.metrics[i]);
+  }
+  own->ssrc = block.ssrc;
+  if (arrived.empty()) return true;
+  const auto [first, last] = std::minmax_element(arrived.begin(), arrived.end());
+  own->begin_seq = static_cast<std::uint16_t>(first->first);
+  own->metrics.resize(static_cast<std::size_t>(last->first - first->first) + 1);
+  for (const auto& [number, metric] : arrived)
+    own->metrics[static_cast<std::size_t>(number - first->first)] = *metric;
+  return true;
+}
+
+void LinkLedger::Settle(const scream::SsrcReport& own, Source* source, Report* report) {
+  if (own.metrics.empty()) return;
+  // Numbers of this block lie within one turn of 16 bit, as kMaxPackets is less.
+  const std::int64_t begin =
+      source->end() - static_cast<std::uint16_t>(source->end() - own.begin_seq);
+  for (std::size_t i = 0; i < own.metrics.size(); ++i) {
+    Packet& packet = source->At(begin + static_cast<std::int64_t>(i));
+    if (!own.metrics[i].received || packet.settled) continue;
+    packet.settled = true;
+    report->arrived.push_back({own.ssrc, packet.seq});
+  }
+  const std::int64_t end = begin + static_cast<std::int64_t>(own.metrics.size());
+  for (; source->waiting < end; ++source->waiting) {
+    Packet& packet = source->At(source->waiting);
+    if (!packet.settled) report->missing.push_back({own.ssrc, packet.seq});
+  }
+}
+
+std::optional<LinkLedger::Report> LinkLedger::OnFeedback(
+    const scream::CongestionFeedback& feedback) {
+  Report report;
+  report.feedback = feedback;
+  report.feedback.blocks.clear();
+  for (const scream::SsrcReport& block : feedback.blocks) {
+    const auto source = sources_.find(block.ssrc);
+    scream::SsrcReport own;
+    if (source == sources_.end()) {
+      report.feedback.blocks.push_back(block);  // the controller counts foreign blocks
+      continue;
+    }
+    if (!Translate(source->second, block, &own)) return std::nullopt;
+    if (!own.metrics.empty()) report.feedback.blocks.push_back(std::move(own));
+  }
+  for (const scream::SsrcReport& own : report.feedback.blocks) {
+    const auto source = sources_.find(own.ssrc);
+    if (source != sources_.end()) Settle(own, &source->second, &report);
+  }
+  return report;
+}
+
+std::optional<Time> LinkLedger::waiting_since() const {
+  std::optional<Time> since;
+  for (const auto& [ssrc, source] : sources_) {
+    if (source.waiting >= source.end()) continue;
+    const Time sent = source.packets[static_cast<std::size_t>(source.waiting - source.first)].sent;
+    since = std::min(since.value_or(sent), sent);
+  }
+  return since;
+}
+
+}  // namespace lidar::bonding

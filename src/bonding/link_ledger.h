@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// What left over one link, in that order, and what its receiver's reports say of it.
+#pragma once
+#include <cstdint>
+#include <deque>
+#include <map>
+#include <optional>
+#include <unordered_map>
+#include <vector>
+
+#include "src/base/time.h"
+#include "src/bonding/packet_id.h"
+#include "src/scream/feedback/ccfb.h"
+
+namespace lidar::bonding {
+
+/// A link carries some of the packets, and copies of old ones behind newer ones. A controller that
+/// counted by RTP sequence numbers would see losses and repetitions, so each SSRC gets numbers of
+/// the link's own, without gaps, in the order in which the packets leave. Reports come in RTP
+/// sequence numbers and are given in those of the link.
+class LinkLedger {
+ public:
+  /// Older packets are forgotten; a report that still tells of them is implausible.
+  static constexpr std::size_t kMaxPackets = 8192;
+  static constexpr std::size_t kMaxSources = 64;
+
+  struct Report {
+    scream::CongestionFeedback feedback;  // in the link's numbers
+    std::vector<PacketId> arrived;        // for the first time
+    std::vector<PacketId> missing;        // overtaken by what arrived: once for each
+  };
+
+  /// The packet's number on this link.
+  std::uint16_t OnSent(Time now, PacketId id);
+  /// None where a packet arrived that never left over this link.
+  std::optional<Report> OnFeedback(const scream::CongestionFeedback& feedback);
+  /// When the packet left of which nothing was heard for longest, neither of it nor of a later one.
+  std::optional<Time> waiting_since() const;
+
+ private:
+  struct Packet {
+    std::uint16_t seq = 0;
+    Time sent{};
+    bool settled = false;  // arrived, or missing
+  };
+  struct Source {
+    std::deque<Packet> packets;                               // of first, first + 1, ...
+    std::int64_t first = 0;                                   // number of packets.front()
+    std::int64_t waiting = 0;                                 // of the first that may still arrive
+    std::unordered_map<std::uint16_t, std::int64_t> numbers;  // by RTP sequence number
+
+    std::int64_t end() const { return first + static_cast<std::int64_t>(packets.size()); }
+    Packet& At(std::int64_t number) { return packets[static_cast<std::size_t>(number - first)]; }
+  };
+
+  void ForgetSilentSource();
+  static void Trim(Source* source);
+  static bool Translate(const Source& source, const scream::SsrcReport& block,
+                        scream::SsrcReport* own);
+  static void Settle(const scream::SsrcReport& own, Source* source, Report* report);
+
+  std::map<std::uint32_t, Source> sources_;
+};
+
+}  // namespace lidar::bonding

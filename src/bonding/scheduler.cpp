@@ -1,0 +1,255 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "src/bonding/scheduler.h"
+
+#include <algorithm>
+
+namespace lidar::bonding {
+namespace {
+
+using namespace std::chrono_literals;
+
+/// A round trip before one was measured.
+constexpr Duration kUnknownRtt = 100ms;
+/// A report that is later than the round trip by so much met a gap: receivers report at each
+/// slice's end, and a machine is a little late.
+constexpr Duration kReportMargin = 20ms;
+/// A link is left for another that is better by so much, so that slices do not swap for nothing.
+constexpr Duration kWorthLeaving = 5ms;
+/// A link has room for copies while its FIFO is gone in this time.
+constexpr Duration kRoom = 25ms;
+/// The encoder's target leaves a link that has been in a gap for so long.
+constexpr Duration kDead = 100ms;
+/// Round trips that differ by so much are alike.
+constexpr Duration kNear = 50ms;
+/// Before a rate is known.
+constexpr DataRate kUnknownRate = DataRate::BitsPerSecond(1e6);
+/// Entries are kept for receipts that come late.
+constexpr Duration kMemory = 2s;
+
+}  // namespace
+
+Scheduler::Scheduler(std::size_t links, Method method, TargetRule rule)
+    : method_(method), rule_(rule), links_(std::clamp<std::size_t>(links, 1, kMaxLinks)) {}
+
+Scheduler::Entry* Scheduler::Find(PacketId id) {
+  const auto found = packets_.find(id.key());
+  return found == packets_.end() ? nullptr : &found->second;
+}
+
+const Scheduler::Entry* Scheduler::Find(PacketId id) const {
+  const auto found = packets_.find(id.key());
+  return found == packets_.end() ? nullptr : &found->second;
+}
+
+Duration Scheduler::Rtt(const Link& link) {
+  return link.path.rtt > Duration{0} ? link.path.rtt : kUnknownRtt;
+}
+
+/// How long a link has been in a gap is how much longer it is expected to be.
+Duration Scheduler::WholeIn(std::size_t link, Time now, DataSize size) const {
+  const Link& l = links_[link];
+  if (!l.usable) return Duration::max() / 2;
+  const DataRate rate = l.path.rate > DataRate{} ? l.path.rate : kUnknownRate;
+  const auto since = l.ledger.waiting_since();
+  const Duration gap = InGap(now, link) && since ? now - *since : Duration{0};
+  return std::min((l.queued + size) / rate, Duration{10s}) + Rtt(l) / 2 + gap;
+}
+
+std::size_t Scheduler::Best(Time now, DataSize size, LinkSet among) const {
+  std::size_t best = kMaxLinks;
+  Duration least{};
+  for (std::size_t i = 0; i < links_.size(); ++i) {
+    if (!among[i]) continue;
+    Duration whole = WholeIn(i, now, size);
+    if (i != slice_first_) whole += kWorthLeaving;
+    if (best != kMaxLinks && whole >= least) continue;
+    best = i;
+    least = whole;
+  }
+  return best;
+}
+
+bool Scheduler::InGap(Time now, std::size_t link) const {
+  const Link& l = links_[link];
+  const auto since = l.ledger.waiting_since();
+  return !l.usable || (since && now - *since > Rtt(l) + kReportMargin);
+}
+
+bool Scheduler::Settled(Time now) const {
+  return std::all_of(links_.begin(), links_.end(), [now](const Link& l) {
+    return l.unsettled_since && now - *l.unsettled_since > kUnsettled;
+  });
+}
+
+/// The links beside the best one that the next slice goes to.
+LinkSet Scheduler::CopiesOf(Time now, DataSize slice) const {
+  LinkSet links;
+  const bool probe = since_probe_ == 0;
+  const bool all = method_ == Method::kAdaptive && rule_ == TargetRule::kBetter && !Settled(now);
+  for (std::size_t i = 0; i < links_.size(); ++i) {
+    const Link& l = links_[i];
+    const DataRate rate = l.path.rate > DataRate{} ? l.path.rate : kUnknownRate;
+    const bool room = (l.queued + slice) / rate < kRoom && !InGap(now, i);
+    if (method_ == Method::kBroadcast || probe || (all && room)) links.set(i);
+  }
+  return links;
+}
+
+void Scheduler::Assign(std::size_t link, Entry* entry) {
+  entry->assigned.set(link);
+  entry->waits.set(link);
+  links_[link].queued += entry->size;
+}
+
+LinkSet Scheduler::OnPacket(Time now, const Packet& packet) {
+  Forget(now);
+  LookAtGaps(now);
+  if (slice_ != packet.slice) {
+    slice_ = packet.slice;
+    last_slice_size_ = std::max(slice_size_, packet.size);
+    slice_size_ = {};
+    LinkSet all;
+    for (std::size_t i = 0; i < links_.size(); ++i) all.set(i);
+    slice_first_ = Best(now, last_slice_size_, all);
+    slice_links_ = CopiesOf(now, last_slice_size_);
+    slice_links_.set(slice_first_);
+    since_probe_ = (since_probe_ + 1) % kProbeEvery;
+  }
+  slice_size_ += packet.size;
+  if (packets_.count(packet.id.key()) > 0) return slice_links_;  // sent again by the payloader
+  Entry entry;
+  entry.size = packet.size;
+  entry.made = now;
+  entry.first = slice_first_;
+  entry.expected = now + WholeIn(slice_first_, now, last_slice_size_) +
+                   Rtt(links_[slice_first_]) / 2 + kReportMargin;
+  for (std::size_t i = 0; i < links_.size(); ++i) {
+    if (!slice_links_[i]) continue;
+    Assign(i, &entry);
+    ++(i == slice_first_ ? links_[i].counters.packets : links_[i].counters.copies);
+    if (!links_[i].unsettled_since) links_[i].unsettled_since = now;
+  }
+  order_.push_back(packet.id);
+  packets_.emplace(packet.id.key(), entry);
+  return slice_links_;
+}
+
+void Scheduler::Forget(Time now) {
+  while (!order_.empty()) {
+    const auto found = packets_.find(order_.front().key());
+    if (order_.size() < kMaxPackets && now - found->second.made < kMemory) return;
+    for (std::size_t i = 0; i < links_.size(); ++i)
+      if (found->second.waits[i]) links_[i].queued -= found->second.size;
+    packets_.erase(found);
+    order_.pop_front();
+  }
+}
+
+void Scheduler::LookAtGaps(Time now) {
+  for (std::size_t i = 0; i < links_.size(); ++i) {
+    Link& link = links_[i];
+    const bool gap = InGap(now, i);
+    if (gap && !link.was_in_gap) ++link.counters.gaps;
+    if (gap) link.unsettled_since = now;
+    link.was_in_gap = gap;
+  }
+}
+
+/// Every link that has it leaves it waiting.
+bool Scheduler::Overdue(Time now, const Entry& entry) const {
+  if (entry.missing || now > entry.expected) return true;
+  for (std::size_t i = 0; i < links_.size(); ++i)
+    if (entry.assigned[i] && !InGap(now, i)) return false;
+  return true;
+}
+
+std::vector<Scheduler::Copy> Scheduler::TakeCopies(Time now) {
+  std::vector<Copy> copies;
+  Forget(now);
+  LookAtGaps(now);
+  for (auto id = order_.rbegin(); id != order_.rend(); ++id) {
+    Entry& entry = packets_[id->key()];
+    if (now - entry.made > kMaxAge) break;
+    if (entry.arrived || !Overdue(now, entry)) continue;
+    LinkSet others;
+    for (std::size_t i = 0; i < links_.size(); ++i)
+      if (!entry.assigned[i] && !InGap(now, i)) others.set(i);
+    if (others.none()) continue;
+    const std::size_t link = Best(now, entry.size, others);
+    copies.push_back({*id, link});
+    Assign(link, &entry);
+    ++links_[link].counters.copies;
+    entry.missing = false;
+    entry.expected = now + WholeIn(link, now, entry.size) + Rtt(links_[link]) / 2 + kReportMargin;
+  }
+  std::reverse(copies.begin(), copies.end());  // the oldest first
+  return copies;
+}
+
+bool Scheduler::Wants(Time now, std::size_t link, PacketId id) const {
+  const Entry* entry = Find(id);
+  if (entry == nullptr) return true;
+  const bool copy = entry->first != link;
+  return !entry->arrived && !(copy && now - entry->made > kMaxAge);
+}
+
+std::uint16_t Scheduler::OnSent(Time now, std::size_t link, PacketId id) {
+  Link& l = links_[link];
+  if (Entry* entry = Find(id); entry != nullptr && entry->waits[link]) {
+    entry->waits.reset(link);
+    l.queued -= entry->size;
+  }
+  return l.ledger.OnSent(now, id);
+}
+
+void Scheduler::OnDropped(Time, std::size_t link, PacketId id) {
+  Entry* entry = Find(id);
+  if (entry == nullptr || !entry->waits[link]) return;
+  entry->waits.reset(link);
+  links_[link].queued -= entry->size;
+  if (entry->arrived) ++links_[link].counters.cancelled;
+}
+
+std::optional<scream::CongestionFeedback> Scheduler::OnFeedback(
+    Time now, std::size_t link, const scream::CongestionFeedback& feedback) {
+  auto report = links_[link].ledger.OnFeedback(feedback);
+  if (!report) return std::nullopt;
+  links_[link].last_feedback = now;
+  for (const PacketId id : report->arrived) {
+    Entry* entry = Find(id);
+    if (entry == nullptr || entry->arrived) continue;
+    entry->arrived = true;
+    if (entry->first != link) ++links_[link].counters.saved;
+  }
+  for (const PacketId id : report->missing)
+    if (Entry* entry = Find(id); entry != nullptr) entry->missing = true;
+  return std::move(report->feedback);
+}
+
+void Scheduler::SetUsable(Time now, std::size_t link, bool usable) {
+  Link& l = links_[link];
+  if (usable && !l.usable) l.unsettled_since = now;
+  l.usable = usable;
+}
+
+bool Scheduler::IsDead(Time now, const Link& link) {
+  const auto since = link.ledger.waiting_since();
+  return !link.usable || (since && now - *since > Rtt(link) + kDead);
+}
+
+DataRate Scheduler::Target(Time now, const std::vector<DataRate>& targets) const {
+  const bool any_works =
+      std::any_of(links_.begin(), links_.end(), [now](const Link& l) { return !IsDead(now, l); });
+  Duration nearest = Duration::max();
+  for (const Link& l : links_)
+    if (!any_works || !IsDead(now, l)) nearest = std::min(nearest, Rtt(l));
+  DataRate sum, best;
+  for (std::size_t i = 0; i < links_.size(); ++i) {
+    if (any_works && IsDead(now, links_[i])) continue;
+    sum = sum + targets[i];
+    if (Rtt(links_[i]) - nearest <= kNear) best = std::max(best, targets[i]);
+  }
+  return rule_ == TargetRule::kSum && any_works ? sum : best;
+}
+
+}  // namespace lidar::bonding

@@ -1,0 +1,151 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Sends one stream over several links: which packet goes where, and what goes twice.
+#pragma once
+#include <array>
+#include <cstdint>
+#include <deque>
+#include <optional>
+#include <unordered_map>
+#include <vector>
+
+#include "src/base/time.h"
+#include "src/base/units.h"
+#include "src/bonding/link_ledger.h"
+#include "src/bonding/packet_id.h"
+
+namespace lidar::bonding {
+
+enum class Method {
+  /// Copies of what waits, and while links are not settled of all that has room. Where targets are
+  /// summed up there is none to spare, so that only what waits is copied.
+  kAdaptive,
+  kBroadcast,  ///< a copy on every link
+  kBackup,     ///< copies of what waits only
+};
+/// What the encoder is asked for.
+enum class TargetRule {
+  /// What the better of the links that work carries; one whose packets take much longer than those
+  /// of the nearest is none of them.
+  kBetter,
+  kSum,
+};
+
+/// What a link's congestion control knows of it.
+struct PathView {
+  DataRate rate;   // that it lets out now
+  Duration rtt{};  // smoothed; 0: not known yet
+};
+
+struct LinkCounters {
+  std::uint64_t packets = 0;  // that were assigned to it first
+  std::uint64_t copies = 0;
+  std::uint64_t cancelled = 0;  // that were not sent, as another link had brought them
+  std::uint64_t saved = 0;      // that arrived by it only, or first, though they left by another
+  std::uint64_t gaps = 0;
+};
+
+/// Above one congestion control a link. Each link has a FIFO of its own at the caller. Packets stay
+/// there in the order in which OnPacket() and TakeCopies() assign them; before one leaves, Wants()
+/// is asked. Events with their time in, decisions out: no clock, no lock.
+///
+///  - A slice goes where it will be whole first: queue and size over rate, and half a round trip.
+///  - A link is in a gap where reports of what left are overdue. What was assigned to it and has
+///    not arrived is copied to the best other link at once; so is what was lost, and what takes
+///    longer than was foreseen.
+///  - While a link is not settled (it started, or was in a gap, within kUnsettled), every slice is
+///    copied to each link that has room. Otherwise one slice in kProbeEvery is, so that all links
+///    stay known.
+///  - What arrived on one link is not sent on another any more, nor is a copy older than kMaxAge.
+class Scheduler {
+ public:
+  static constexpr Duration kMaxAge = std::chrono::milliseconds(200);
+  static constexpr Duration kUnsettled = std::chrono::seconds(3);
+  static constexpr int kProbeEvery = 8;
+  static constexpr std::size_t kMaxPackets = 8192;
+
+  Scheduler(std::size_t links, Method method, TargetRule rule = TargetRule::kBetter);
+
+  struct Packet {
+    PacketId id;
+    DataSize size;
+    std::uint32_t slice = 0;  // packets of one access unit share it, as their RTP timestamp
+  };
+  /// Where a new packet goes. The best link is always one.
+  LinkSet OnPacket(Time now, const Packet& packet);
+  struct Copy {
+    PacketId id;
+    std::size_t link;
+  };
+  /// What is to be queued once more; call it at least each kTick while anything is on the way.
+  std::vector<Copy> TakeCopies(Time now);
+  static constexpr Duration kTick = std::chrono::milliseconds(10);
+
+  // Of the FIFO of a link.
+  /// Whether the packet at its head is still of use there.
+  bool Wants(Time now, std::size_t link, PacketId id) const;
+  /// The packet leaves; under this number the link's congestion control is to know it.
+  std::uint16_t OnSent(Time now, std::size_t link, PacketId id);
+  /// It was thrown away: it is late, or Wants() said no.
+  void OnDropped(Time now, std::size_t link, PacketId id);
+
+  /// A report of the link's receiver, given in the link's numbers; none where it cannot be.
+  std::optional<scream::CongestionFeedback> OnFeedback(Time now, std::size_t link,
+                                                       const scream::CongestionFeedback& feedback);
+  void OnPath(std::size_t link, const PathView& path) { links_[link].path = path; }
+  /// Packets cannot leave by the link at all, or can again.
+  void SetUsable(Time now, std::size_t link, bool usable);
+
+  bool InGap(Time now, std::size_t link) const;
+  /// Of what links may send each, what the encoder may.
+  DataRate Target(Time now, const std::vector<DataRate>& targets) const;
+  std::size_t links() const { return links_.size(); }
+  const LinkCounters& counters(std::size_t link) const { return links_[link].counters; }
+
+ private:
+  struct Link {
+    LinkLedger ledger;
+    PathView path;
+    DataSize queued;  // assigned, and neither sent nor dropped
+    bool usable = true;
+    bool was_in_gap = false;
+    Time last_feedback{};
+    std::optional<Time> unsettled_since;  // with the first packet, and with each gap
+    LinkCounters counters;
+  };
+  struct Entry {
+    DataSize size;
+    Time made{};
+    Time expected{};  // to be known as arrived
+    std::size_t first = 0;
+    LinkSet assigned, waits;  // waits: in the FIFO
+    bool arrived = false;
+    bool missing = false;
+  };
+
+  Entry* Find(PacketId id);
+  const Entry* Find(PacketId id) const;
+  void Forget(Time now);
+  void Assign(std::size_t link, Entry* entry);
+  void LookAtGaps(Time now);
+  bool Overdue(Time now, const Entry& entry) const;
+  Duration WholeIn(std::size_t link, Time now, DataSize size) const;
+  std::size_t Best(Time now, DataSize size, LinkSet among) const;
+  LinkSet CopiesOf(Time now, DataSize slice) const;
+  bool Settled(Time now) const;
+  static Duration Rtt(const Link& link);
+  static bool IsDead(Time now, const Link& link);
+
+  const Method method_;
+  const TargetRule rule_;
+  std::vector<Link> links_;
+  std::deque<PacketId> order_;
+  std::unordered_map<std::uint64_t, Entry> packets_;
+  // The slice that comes now.
+  std::optional<std::uint32_t> slice_;
+  DataSize slice_size_, last_slice_size_;
+  LinkSet slice_links_;
+  std::size_t slice_first_ = 0;
+  int since_probe_ = 0;
+};
+
+}  // namespace lidar::bonding

@@ -1,0 +1,270 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "tests/core/bonding/bonded_run.h"
+
+#include <algorithm>
+#include <deque>
+#include <map>
+#include <memory>
+
+#include "src/scream/controller.h"
+#include "src/scream/feedback/feedback_generator.h"
+#include "src/scream/target_notifier.h"
+#include "tests/support/simulated.h"
+
+namespace lidar::bonding::test {
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr Duration kStep = 500us;
+constexpr std::int64_t kMaxPacket = 1240;
+constexpr std::uint32_t kStreamSsrc = 7;
+constexpr Duration kInTime = 200ms;
+
+struct WirePacket {
+  std::uint16_t seq = 0;
+  std::size_t slice = 0;
+  DataSize size;
+  bool marker = false;
+  std::uint32_t scan = 0;
+};
+
+struct SliceLog {
+  Time made{};
+  int packets = 0;
+  int arrived = 0;
+  Time whole{};
+};
+
+/// One link: FIFO, congestion control, path and receiver.
+class SimLink {
+ public:
+  SimLink(const LinkConfig& config, std::size_t index, std::uint64_t seed)
+      : config_(config), index_(index), bottleneck_(PathOf(config, seed)) {
+    scream::StreamConfig stream;
+    stream.start_bitrate = DataRate::BitsPerSecond(4e6);
+    stream.max_bitrate = DataRate::BitsPerSecond(100e6);
+    stream_ = controller_.AddStream(config_of_stream_ = stream);
+  }
+
+  void Configure(const scream::test::EncoderBounds& bounds) {
+    scream::StreamConfig c = config_of_stream_;
+    if (bounds.max > DataRate{}) c.max_bitrate = std::min(c.max_bitrate, bounds.max);
+    c.min_bitrate = std::min(c.min_bitrate, c.max_bitrate);
+    c.needed_bitrate = std::clamp(bounds.min, c.min_bitrate, c.max_bitrate);
+    c.start_bitrate = std::clamp(c.start_bitrate, c.needed_bitrate, c.max_bitrate);
+    controller_.ConfigureStream(stream_, c);
+  }
+
+  void Queue(Time now, const WirePacket& packet) {
+    fifo_.push_back(packet);
+    controller_.OnQueued(now, stream_,
+                         {kStreamSsrc, packet.size, packet.marker,
+                          static_cast<std::uint32_t>(packet.slice), packet.scan});
+  }
+
+  /// Packets that arrive by `now`, each once a copy.
+  template <class Arrive>
+  void Step(Time now, Scheduler* scheduler, Arrive arrive) {
+    for (link::Outcome& o : bottleneck_.Deliver(now))
+      if (o.delivered()) behind_.emplace(o.arrival, o);
+    for (; !behind_.empty() && behind_.begin()->first <= now; behind_.erase(behind_.begin())) {
+      const link::Outcome& o = behind_.begin()->second;
+      const WirePacket& p = wire_[o.packet.id];
+      generator_.OnPacket(o.arrival, {kStreamSsrc, p.seq, static_cast<scream::Ecn>(o.packet.ecn),
+                                      p.marker, p.size});
+      arrive(p, o.arrival);
+    }
+    while (auto report = generator_.Take(now)) reports_.emplace(now + config_.rtt / 2, *report);
+    for (; !reports_.empty() && reports_.begin()->first <= now; reports_.erase(reports_.begin()))
+      if (const auto own = scheduler->OnFeedback(now, index_, reports_.begin()->second))
+        controller_.OnFeedback(now, *own);
+    if (controller_.NextTimer() <= now) controller_.OnTimer(now);
+    const scream::Statistics s = controller_.statistics(now);
+    scheduler->OnPath(index_, {s.s_rtt > Duration{0} ? s.ref_wnd / s.s_rtt : DataRate{}, s.s_rtt});
+  }
+
+  void Send(Time now, Scheduler* scheduler) {
+    Drop(now, controller_.LatePackets(now, stream_), scheduler);
+    for (;;) {
+      while (!fifo_.empty() && !scheduler->Wants(now, index_, {kStreamSsrc, fifo_.front().seq}))
+        Drop(now, 1, scheduler);
+      const auto d = controller_.NextSend(now);
+      if (!d || d->time > now) return;
+      const WirePacket p = fifo_.front();
+      fifo_.pop_front();
+      const std::uint16_t number = scheduler->OnSent(now, index_, {kStreamSsrc, p.seq});
+      controller_.OnSent(now, stream_, {kStreamSsrc, number, p.size, d->ecn});
+      bytes_ += p.size.bytes();
+      bottleneck_.Enqueue(now, {p.size, static_cast<link::Ecn>(d->ecn), wire_.size()});
+      wire_.push_back(p);
+    }
+  }
+
+  DataRate target() const { return controller_.target_bitrate(stream_); }
+  std::int64_t bytes() const { return bytes_; }
+
+ private:
+  static link::BottleneckConfig PathOf(const LinkConfig& c, std::uint64_t seed) {
+    link::BottleneckConfig path;
+    path.origin = kStart;
+    path.capacity = c.capacity;
+    path.delay = c.rtt / 2;
+    path.loss = c.loss;
+    path.seed = seed;
+    return path;
+  }
+
+  void Drop(Time now, std::size_t packets, Scheduler* scheduler) {
+    if (packets == 0) return;
+    for (std::size_t i = 0; i < packets; ++i) {
+      scheduler->OnDropped(now, index_, {kStreamSsrc, fifo_.front().seq});
+      fifo_.pop_front();
+    }
+    controller_.OnDropped(now, stream_, packets);
+  }
+
+  LinkConfig config_;
+  std::size_t index_;
+  link::Bottleneck bottleneck_;
+  scream::Controller controller_{scream::Parameters{}};
+  scream::StreamConfig config_of_stream_;
+  scream::StreamId stream_ = 0;
+  scream::FeedbackGenerator generator_;
+  std::deque<WirePacket> fifo_;
+  std::vector<WirePacket> wire_;
+  std::multimap<Time, link::Outcome> behind_;
+  std::multimap<Time, scream::CongestionFeedback> reports_;
+  std::int64_t bytes_ = 0;
+};
+
+class BondedRun {
+ public:
+  explicit BondedRun(const RunConfig& config)
+      : config_(config),
+        scheduler_(config.links.size(), config.method, config.rule),
+        source_(config.source) {
+    for (std::size_t i = 0; i < config.links.size(); ++i)
+      links_.push_back(std::make_unique<SimLink>(config.links[i], i, 10 + i));
+    told_ = Target(kStart);
+  }
+
+  RunResult Run() {
+    const Duration period =
+        FromSeconds(1 / (config_.source.scans_per_second * config_.source.slices));
+    Time next = kStart;
+    for (Time now = kStart; now < kStart + config_.duration + 1s; now += kStep) {
+      for (std::size_t i = 0; i < links_.size(); ++i) StepLink(now, i);
+      TellEncoder(now);
+      if (now >= next && now < kStart + config_.duration) {
+        MakeSlice(now);
+        next += period;
+      }
+      for (const Scheduler::Copy& copy : scheduler_.TakeCopies(now))
+        links_[copy.link]->Queue(now, packets_[copy.id.seq]);
+      for (auto& link : links_) link->Send(now, &scheduler_);
+    }
+    return Finish();
+  }
+
+ private:
+  void StepLink(Time now, std::size_t i) {
+    const LinkConfig& c = config_.links[i];
+    const Duration t = now - kStart;
+    scheduler_.SetUsable(now, i, t < c.unusable_from || t >= c.unusable_until);
+    links_[i]->Step(now, &scheduler_, [this](const WirePacket& p, Time at) { Arrive(p, at); });
+  }
+
+  void Arrive(const WirePacket& p, Time at) {
+    if (seen_[p.slice * 65536 + p.seq]) return;
+    seen_[p.slice * 65536 + p.seq] = true;
+    SliceLog& slice = slices_[p.slice];
+    if (++slice.arrived == slice.packets) slice.whole = at;
+  }
+
+  DataRate Target(Time now) const {
+    std::vector<DataRate> targets;
+    for (const auto& link : links_) targets.push_back(link->target());
+    return scheduler_.Target(now, targets);
+  }
+
+  void TellEncoder(Time now) {
+    const DataRate target = Target(now);
+    if (!notifier_.ShouldNotify(now, target)) return;
+    told_ = target;
+    result_.targets.push_back({now - kStart, target});
+  }
+
+  void MakeSlice(Time now) {
+    const scream::test::EncodedFrame frame = source_.Next(told_);
+    if (frame.bounds)
+      for (auto& link : links_) link->Configure(*frame.bounds);
+    SliceLog log;
+    log.made = now;
+    result_.media_bytes += frame.size.bytes();
+    for (std::int64_t left = frame.size.bytes(); left > 0; left -= kMaxPacket) {
+      WirePacket p;
+      p.seq = seq_++;
+      p.slice = slices_.size();
+      p.size = DataSize::Bytes(std::clamp<std::int64_t>(left, 60, kMaxPacket));
+      p.marker = left <= kMaxPacket;
+      p.scan = frame.group.value_or(0);
+      packets_[p.seq] = p;
+      ++log.packets;
+      const LinkSet links = scheduler_.OnPacket(
+          now, {{kStreamSsrc, p.seq}, p.size, static_cast<std::uint32_t>(p.slice)});
+      for (std::size_t i = 0; i < links_.size(); ++i)
+        if (links[i]) links_[i]->Queue(now, p);
+    }
+    slices_.push_back(log);
+  }
+
+  RunResult Finish() {
+    const std::size_t per_scan = config_.source.slices;
+    for (std::size_t i = 0; i + per_scan <= slices_.size(); i += per_scan) {
+      bool in_time = true;
+      double age = 0;
+      for (std::size_t k = i; k < i + per_scan; ++k) {
+        const SliceLog& s = slices_[k];
+        const bool whole = s.packets > 0 && s.arrived == s.packets;
+        const double ms = whole ? Milliseconds(s.whole - s.made) : 1e9;
+        if (whole) result_.latency_ms.push_back(ms);
+        age = std::max(age, ms);
+        in_time = in_time && whole && s.whole - s.made <= kInTime + config_.links[0].rtt / 2;
+      }
+      ++result_.scans;
+      result_.in_time += in_time;
+      result_.scan_age_ms.push_back(age);
+    }
+    std::sort(result_.latency_ms.begin(), result_.latency_ms.end());
+    for (std::size_t i = 0; i < links_.size(); ++i) {
+      result_.link_bytes.push_back(links_[i]->bytes());
+      result_.counters.push_back(scheduler_.counters(i));
+    }
+    return std::move(result_);
+  }
+
+  RunConfig config_;
+  Scheduler scheduler_;
+  loop::LoopSource source_;
+  std::vector<std::unique_ptr<SimLink>> links_;
+  std::vector<SliceLog> slices_;
+  std::map<std::uint16_t, WirePacket> packets_;
+  std::map<std::size_t, bool> seen_;
+  std::uint16_t seq_ = 65000;
+  scream::TargetNotifier notifier_;
+  DataRate told_;
+  RunResult result_;
+};
+
+}  // namespace
+
+double RunResult::Latency(double percent) const {
+  if (latency_ms.empty()) return 0;
+  const auto i = static_cast<std::size_t>(percent / 100 * static_cast<double>(latency_ms.size()));
+  return latency_ms[std::min(i, latency_ms.size() - 1)];
+}
+
+RunResult Simulate(const RunConfig& config) { return BondedRun(config).Run(); }
+
+}  // namespace lidar::bonding::test

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// A stream over several simulated links: a controller each, the scheduler above them.
+#pragma once
+#include <functional>
+#include <vector>
+
+#include "src/bonding/scheduler.h"
+#include "src/link/bottleneck.h"
+#include "tests/core/loop/loop_source.h"
+
+namespace lidar::bonding::test {
+
+struct LinkConfig {
+  link::Capacity capacity = link::Capacity::Constant(DataRate::BitsPerSecond(8e6));
+  Duration rtt = std::chrono::milliseconds(40);
+  double loss = 0;
+  /// The scheduler is told that packets cannot leave, within this time of the run.
+  Duration unusable_from = Duration::max(), unusable_until = Duration::max();
+};
+
+struct RunConfig {
+  std::vector<LinkConfig> links;
+  Duration duration = std::chrono::seconds(60);
+  Method method = Method::kAdaptive;
+  TargetRule rule = TargetRule::kBetter;
+  loop::SourceOptions source;
+};
+
+struct RunResult {
+  std::uint64_t scans = 0;
+  std::uint64_t in_time = 0;             // whole within 0.2 s of the capture of each slice
+  std::vector<double> latency_ms;        // of slices that arrive whole, sorted
+  std::vector<double> scan_age_ms;       // of each scan's last slice to be whole; 1e9: never
+  std::int64_t media_bytes = 0;          // that the encoder put out, headers included
+  std::vector<std::int64_t> link_bytes;  // that left by each link
+  struct Target {
+    Duration time;
+    DataRate rate;
+  };
+  std::vector<Target> targets;  // that the encoder was asked for
+  std::vector<LinkCounters> counters;
+
+  double Share() const { return static_cast<double>(in_time) / static_cast<double>(scans); }
+  double Latency(double percent) const;
+};
+
+RunResult Simulate(const RunConfig& config);
+
+}  // namespace lidar::bonding::test

@@ -1,0 +1,154 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// A stream over simulated links, held against what a sender that knew them could deliver.
+#include "tests/core/bonding/bonded_run.h"
+
+#include <gtest/gtest.h>
+
+#include "src/link/oracle.h"
+#include "src/link/trace_maker.h"
+#include "tests/support/simulated.h"
+
+namespace lidar::bonding::test {
+namespace {
+
+using namespace std::chrono_literals;
+
+link::Capacity Constant(double mbps) { return link::Capacity::Constant(Mbps(mbps)); }
+
+link::Capacity Drive(std::uint64_t seed) {
+  link::DriveTraceConfig config;
+  config.seed = seed;
+  std::string error;
+  return *link::Capacity::ParseTrace(link::MakeDriveTrace(config), true, &error);
+}
+
+/// At the coarsest step: r_min, whatever the links carry.
+RunConfig AtNeed(std::vector<LinkConfig> links) {
+  RunConfig config;
+  config.links = std::move(links);
+  config.source.adapts = false;
+  return config;
+}
+
+RunConfig Adaptive(std::vector<LinkConfig> links) {
+  RunConfig config = AtNeed(std::move(links));
+  config.source.adapts = true;
+  return config;
+}
+
+double Sent(const RunResult& r) {
+  std::int64_t bytes = 0;
+  for (const std::int64_t b : r.link_bytes) bytes += b;
+  return static_cast<double>(bytes) / static_cast<double>(r.media_bytes);
+}
+
+TEST(TwoLinkRun, ReachesTheBoundOverGeneratedDrives) {
+  double sum = 0;
+  for (std::uint64_t seed = 1; seed <= 19; seed += 2) {
+    const RunConfig config = AtNeed({{Drive(seed)}, {Drive(seed + 1)}});
+    const RunResult run = Simulate(config);
+    link::OracleConfig oracle;
+    oracle.duration = config.duration;
+    oracle.rate = DataSize::Bytes(run.media_bytes) / config.duration;
+    const auto bound =
+        link::AskOracleOfLinks({config.links[0].capacity, config.links[1].capacity}, oracle);
+    const double share = static_cast<double>(run.in_time) / static_cast<double>(bound.complete);
+    sum += share;
+    EXPECT_GE(share, 0.99) << "seeds " << seed;
+    EXPECT_LE(run.Latency(95), bound.Latency(95) + 15) << "seeds " << seed;
+  }
+  EXPECT_GE(sum / 10, 0.995);
+}
+
+TEST(TwoLinkRun, LosesNothingWhereTheBetterLinkDiesAndComesBack) {
+  LinkConfig better{Constant(10)};
+  better.capacity.AddOutage(20s, 40s);
+  const RunConfig config = AtNeed({better, {Constant(2)}});
+  const RunResult run = Simulate(config);
+  EXPECT_EQ(run.in_time, run.scans);
+  const RunResult alone = Simulate(AtNeed({better}));
+  EXPECT_LT(alone.in_time, alone.scans - 190);
+}
+
+TEST(TwoLinkRun, TargetFollowsTheOtherLinkWithinThreeTenthsOfASecond) {
+  LinkConfig better{Constant(10)};
+  better.capacity.AddOutage(20s, 40s);
+  const RunResult run = Simulate(Adaptive({better, {Constant(3)}}));
+  DataRate before, after;
+  for (const RunResult::Target& t : run.targets) {
+    if (t.time <= 20s) before = t.rate;
+    if (t.time <= 20300ms) after = t.rate;
+  }
+  EXPECT_GT(before, Mbps(8));
+  EXPECT_LT(after, Mbps(3.5));
+}
+
+TEST(TwoLinkRun, TakesALinkBackWithinASecond) {
+  LinkConfig better{Constant(10)};
+  better.capacity.AddOutage(20s, 40s);
+  const RunResult run = Simulate(Adaptive({better, {Constant(2)}}));
+  DataRate back;
+  for (const RunResult::Target& t : run.targets)
+    if (t.time > 40s && t.time <= 41s) back = std::max(back, t.rate);
+  EXPECT_GT(back, Mbps(3));
+}
+
+struct Pair {
+  const char* name;
+  LinkConfig better, other;
+};
+class UnequalLinks : public testing::TestWithParam<Pair> {};
+
+TEST_P(UnequalLinks, AreNeverWorseThanTheBetterOneAlone) {
+  const Pair& p = GetParam();
+  const RunResult both = Simulate(Adaptive({p.better, p.other}));
+  const RunResult alone = Simulate(Adaptive({p.better}));
+  EXPECT_GE(both.in_time, alone.in_time);
+  EXPECT_LE(both.Latency(95), alone.Latency(95) + 2);
+  const RunResult reversed = Simulate(Adaptive({p.other, p.better}));
+  EXPECT_GE(reversed.in_time + 1, alone.in_time) << "the worse one is named first";
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Pairs, UnequalLinks,
+    testing::Values(Pair{"round_trips", {Constant(10), 20ms}, {Constant(10), 150ms}},
+                    Pair{"capacities", {Constant(10)}, {Constant(1)}},
+                    Pair{"loss", {Constant(10)}, {Constant(10), 40ms, 0.02}}),
+    [](const auto& pair) { return pair.param.name; });
+
+TEST(TwoLinkRun, SendsLittleTwiceOnLinksThatAreSettled) {
+  RunConfig config = AtNeed({{Constant(20)}, {Constant(20)}});
+  const double adaptive = Sent(Simulate(config));
+  config.method = Method::kBroadcast;
+  const double broadcast = Sent(Simulate(config));
+  EXPECT_NEAR(broadcast, 2, 0.01);
+  EXPECT_LE(adaptive, 0.6 * broadcast);
+}
+
+TEST(TwoLinkRun, OneLinkOfFourIsEnough) {
+  LinkConfig dead{Constant(8)};
+  dead.capacity.AddOutage(0s, 1h);
+  const RunResult run = Simulate(AtNeed({dead, dead, {Constant(8)}, dead}));
+  EXPECT_EQ(run.in_time, run.scans);
+  EXPECT_LT(run.Latency(99), 60);
+}
+
+TEST(TwoLinkRun, GoesOnWhereALinkHasNoRoute) {
+  LinkConfig none{Constant(8)};
+  none.unusable_from = 0s;
+  none.unusable_until = 30s;
+  const RunResult run = Simulate(AtNeed({none, {Constant(8)}}));
+  EXPECT_EQ(run.in_time, run.scans);
+}
+
+TEST(TwoLinkRun, SumsWhatLinksCarryWhereItIsAskedFor) {
+  RunConfig config = Adaptive({{Constant(4)}, {Constant(4)}});
+  const RunResult better = Simulate(config);
+  config.rule = TargetRule::kSum;
+  const RunResult sum = Simulate(config);
+  EXPECT_GT(sum.media_bytes, better.media_bytes * 6 / 5);
+  EXPECT_GE(static_cast<double>(sum.in_time), 0.95 * static_cast<double>(sum.scans));
+}
+
+}  // namespace
+}  // namespace lidar::bonding::test

@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "src/bonding/link_ledger.h"
+
+#include <gtest/gtest.h>
+
+#include "tests/support/simulated.h"
+
+namespace lidar::bonding {
+namespace {
+
+using namespace std::chrono_literals;
+using scream::CongestionFeedback;
+
+constexpr std::uint32_t kSsrc = 9;
+
+/// A report of `seq`, `seq` + 1, ...: which of them arrived.
+CongestionFeedback ReportOf(std::uint16_t seq, const std::vector<bool>& arrived,
+                            std::uint32_t ssrc = kSsrc) {
+  CongestionFeedback feedback;
+  scream::SsrcReport block{ssrc, seq, {}};
+  for (const bool a : arrived) block.metrics.push_back({a, scream::Ecn::kEct1, std::nullopt});
+  feedback.blocks.push_back(block);
+  return feedback;
+}
+
+TEST(LinkLedger, NumbersPacketsInTheOrderInWhichTheyLeave) {
+  LinkLedger ledger;
+  EXPECT_EQ(ledger.OnSent(kStart, {kSsrc, 65535}), 0);
+  EXPECT_EQ(ledger.OnSent(kStart, {kSsrc, 4}), 1);
+  EXPECT_EQ(ledger.OnSent(kStart, {kSsrc, 2}), 2) << "a copy of an older packet";
+  EXPECT_EQ(ledger.OnSent(kStart, {kSsrc + 1, 2}), 0) << "another SSRC";
+}
+
+TEST(LinkLedger, GivesReportsInItsNumbers) {
+  LinkLedger ledger;
+  ledger.OnSent(kStart, {kSsrc, 100});
+  ledger.OnSent(kStart, {kSsrc, 103});
+  ledger.OnSent(kStart, {kSsrc, 101});
+  const auto report = ledger.OnFeedback(ReportOf(100, {true, true, false, false}));
+  ASSERT_TRUE(report);
+  ASSERT_EQ(report->feedback.blocks.size(), 1U);
+  const scream::SsrcReport& block = report->feedback.blocks.front();
+  EXPECT_EQ(block.begin_seq, 0);
+  ASSERT_EQ(block.metrics.size(), 3U);
+  EXPECT_TRUE(block.metrics[0].received);
+  EXPECT_FALSE(block.metrics[1].received);
+  EXPECT_TRUE(block.metrics[2].received);
+  EXPECT_EQ(report->arrived, (std::vector<PacketId>{{kSsrc, 100}, {kSsrc, 101}}));
+  EXPECT_EQ(report->missing, (std::vector<PacketId>{{kSsrc, 103}}));
+  EXPECT_FALSE(ledger.waiting_since());
+}
+
+TEST(LinkLedger, TellsOnceWhatArrivedAndWhatIsMissing) {
+  LinkLedger ledger;
+  for (std::uint16_t seq = 1; seq <= 3; ++seq) ledger.OnSent(kStart, {kSsrc, seq});
+  ledger.OnFeedback(ReportOf(1, {true, false, true}));
+  const auto again = ledger.OnFeedback(ReportOf(1, {true, false, true}));
+  ASSERT_TRUE(again);
+  EXPECT_TRUE(again->arrived.empty());
+  EXPECT_TRUE(again->missing.empty());
+  const auto late = ledger.OnFeedback(ReportOf(1, {true, true, true}));
+  EXPECT_EQ(late->arrived, (std::vector<PacketId>{{kSsrc, 2}}));
+}
+
+TEST(LinkLedger, RefusesWholeWhatTellsOfAPacketThatWentAnotherWay) {
+  LinkLedger ledger;
+  ledger.OnSent(kStart, {kSsrc, 1});
+  EXPECT_FALSE(ledger.OnFeedback(ReportOf(1, {true, true})));
+  EXPECT_EQ(ledger.waiting_since(), kStart) << "nothing of it was taken";
+  const auto foreign = ledger.OnFeedback(ReportOf(1, {true}, kSsrc + 1));
+  ASSERT_TRUE(foreign);
+  EXPECT_EQ(foreign->feedback.blocks.size(), 1U) << "for the controller to count";
+  EXPECT_TRUE(foreign->arrived.empty());
+}
+
+TEST(LinkLedger, WaitsForWhatLeftFirst) {
+  LinkLedger ledger;
+  EXPECT_FALSE(ledger.waiting_since());
+  ledger.OnSent(kStart, {kSsrc, 1});
+  ledger.OnSent(kStart + 10ms, {kSsrc, 2});
+  EXPECT_EQ(ledger.waiting_since(), kStart);
+  ledger.OnFeedback(ReportOf(1, {true}));
+  EXPECT_EQ(ledger.waiting_since(), kStart + 10ms);
+}
+
+TEST(LinkLedger, ForgetsTheOldestOfManyAndGoesRoundTheNumbers) {
+  LinkLedger ledger;
+  std::uint16_t seq = 0;
+  for (int i = 0; i < 200000; ++i) {
+    const std::uint16_t number = ledger.OnSent(kStart + i * 1us, {kSsrc, seq});
+    EXPECT_EQ(number, static_cast<std::uint16_t>(i));
+    if (i % 1000 == 999) {
+      const auto report = ledger.OnFeedback(ReportOf(seq, {true}));
+      ASSERT_TRUE(report) << i;
+      EXPECT_EQ(report->feedback.blocks.front().begin_seq, number);
+      EXPECT_EQ(report->missing.size(), 999U);
+    }
+    ++seq;
+  }
+  EXPECT_FALSE(ledger.OnFeedback(ReportOf(static_cast<std::uint16_t>(seq - 9000), {true})));
+  for (std::uint32_t ssrc = 0; ssrc < 1000; ++ssrc) ledger.OnSent(kStart + 1s, {ssrc, 1});
+  EXPECT_TRUE(ledger.OnFeedback(ReportOf(1, {true}, 999)));
+}
+
+}  // namespace
+}  // namespace lidar::bonding

@@ -1,0 +1,211 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "src/bonding/scheduler.h"
+
+#include <gtest/gtest.h>
+
+#include "tests/support/simulated.h"
+
+namespace lidar::bonding {
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr std::uint32_t kMedia = 9;
+constexpr DataSize kSize = DataSize::Bytes(1200);
+
+LinkSet SetOf(std::initializer_list<std::size_t> links) {
+  LinkSet set;
+  for (const std::size_t link : links) set.set(link);
+  return set;
+}
+
+scream::CongestionFeedback Arrived(std::uint16_t seq) {
+  scream::CongestionFeedback feedback;
+  feedback.blocks.push_back({kMedia, seq, {{true, scream::Ecn::kEct1, std::nullopt}}});
+  return feedback;
+}
+
+/// Two links of 8 Mbit/s and 40 ms; each packet is a slice.
+class TwoLinks : public testing::Test {
+ protected:
+  TwoLinks() { SetPaths({Mbps(8), 40ms}, {Mbps(8), 40ms}); }
+
+  void SetPaths(const PathView& a, const PathView& b) {
+    scheduler_.OnPath(0, a);
+    scheduler_.OnPath(1, b);
+  }
+
+  /// A packet that leaves at once wherever it goes.
+  LinkSet Packet() {
+    const PacketId id{kMedia, ++seq_};
+    const LinkSet links = scheduler_.OnPacket(now_, {id, kSize, seq_});
+    for (std::size_t i = 0; i < 2; ++i)
+      if (links[i]) scheduler_.OnSent(now_, i, id);
+    return links;
+  }
+
+  /// Both links work for so long; the round trip takes no time.
+  void Work(Duration time, Duration period = 12500us) {
+    for (const Time end = now_ + time; now_ < end; now_ += period) {
+      const LinkSet links = Packet();
+      for (std::size_t i = 0; i < 2; ++i)
+        if (links[i]) scheduler_.OnFeedback(now_, i, Arrived(seq_));
+    }
+  }
+
+  /// Until links are settled, and the next slice is none that keeps a link known.
+  void Settle() {
+    Work(4s);
+    LinkSet links;
+    do {
+      links = Packet();
+      for (std::size_t i = 0; i < 2; ++i)
+        if (links[i]) scheduler_.OnFeedback(now_, i, Arrived(seq_));
+    } while (links.count() < 2);
+  }
+
+  Scheduler scheduler_{2, Method::kAdaptive};
+  Time now_ = kStart;
+  std::uint16_t seq_ = 0;
+};
+
+TEST_F(TwoLinks, CopiesAllWhileLinksAreNewAndOneOfEightLater) {
+  EXPECT_EQ(Packet(), SetOf({0, 1}));
+  Work(4s);
+  int copies = 0;
+  for (int i = 0; i < 80; ++i) {
+    const LinkSet links = Packet();
+    EXPECT_TRUE(links[0]);
+    copies += links[1];
+    for (std::size_t k = 0; k < 2; ++k)
+      if (links[k]) scheduler_.OnFeedback(now_, k, Arrived(seq_));
+    now_ += 12500us;
+  }
+  EXPECT_EQ(copies, 10);
+}
+
+TEST_F(TwoLinks, SendsASliceWhereItIsWholeFirst) {
+  Settle();
+  SetPaths({Mbps(8), 40ms}, {Mbps(8), 20ms});
+  EXPECT_EQ(Packet(), SetOf({1})) << "by 10 ms sooner";
+  // What waits in the FIFO of the nearer one makes it the later one.
+  const std::uint32_t slice = ++seq_;
+  for (int i = 0; i < 30; ++i) scheduler_.OnPacket(now_, {{kMedia, ++seq_}, kSize, slice});
+  EXPECT_EQ(Packet(), SetOf({0}));
+}
+
+TEST_F(TwoLinks, CopiesAtOnceWhatWaitsBehindAGap) {
+  Settle();
+  Packet();
+  const std::uint16_t waits = seq_;
+  EXPECT_TRUE(scheduler_.TakeCopies(now_ + 40ms).empty());
+  const auto copies = scheduler_.TakeCopies(now_ + 61ms);
+  ASSERT_EQ(copies.size(), 1U);
+  EXPECT_EQ(copies[0].id.seq, waits);
+  EXPECT_EQ(copies[0].link, 1U);
+  EXPECT_TRUE(scheduler_.InGap(now_ + 61ms, 0));
+  EXPECT_TRUE(scheduler_.TakeCopies(now_ + 62ms).empty()) << "once";
+}
+
+TEST_F(TwoLinks, LeavesALinkInAGapAndComesBackWithItsFirstReport) {
+  Settle();
+  Packet();
+  const std::uint16_t waits = seq_;
+  now_ += 61ms;
+  EXPECT_EQ(Packet(), SetOf({1}));
+  scheduler_.OnFeedback(now_, 1, Arrived(seq_));
+  scheduler_.OnFeedback(now_, 0, Arrived(waits));
+  EXPECT_FALSE(scheduler_.InGap(now_, 0));
+  EXPECT_EQ(Packet(), SetOf({0, 1})) << "not settled again";
+}
+
+TEST_F(TwoLinks, CopiesWhatWasLost) {
+  Settle();
+  Packet();
+  const std::uint16_t lost = seq_;
+  Packet();
+  scheduler_.OnFeedback(now_, 0, Arrived(seq_));
+  const auto copies = scheduler_.TakeCopies(now_);
+  ASSERT_EQ(copies.size(), 1U);
+  EXPECT_EQ(copies[0].id.seq, lost);
+}
+
+TEST_F(TwoLinks, SendsNothingThatArrivedOnTheOtherLink) {
+  const PacketId id{kMedia, 1};
+  ASSERT_EQ(scheduler_.OnPacket(now_, {id, kSize, 1}), SetOf({0, 1}));
+  EXPECT_TRUE(scheduler_.Wants(now_, 0, id));
+  scheduler_.OnSent(now_, 1, id);
+  scheduler_.OnFeedback(now_, 1, Arrived(1));
+  EXPECT_FALSE(scheduler_.Wants(now_, 0, id));
+  scheduler_.OnDropped(now_, 0, id);
+  EXPECT_EQ(scheduler_.counters(0).cancelled, 1U);
+  EXPECT_EQ(scheduler_.counters(1).saved, 1U);
+}
+
+TEST_F(TwoLinks, DropsCopiesThatAreLateButNotTheFirst) {
+  const PacketId id{kMedia, 1};
+  scheduler_.OnPacket(now_, {id, kSize, 1});
+  EXPECT_TRUE(scheduler_.Wants(now_ + 201ms, 0, id));
+  EXPECT_FALSE(scheduler_.Wants(now_ + 201ms, 1, id));
+}
+
+TEST_F(TwoLinks, AsksForWhatTheBetterOneCarriesUntilThatIsDead) {
+  const std::vector<DataRate> targets{Mbps(10), Mbps(3)};
+  Settle();
+  EXPECT_EQ(scheduler_.Target(now_, targets), Mbps(10));
+  Packet();
+  scheduler_.OnFeedback(now_, 1, Arrived(seq_));
+  EXPECT_EQ(scheduler_.Target(now_ + 100ms, targets), Mbps(10));
+  EXPECT_EQ(scheduler_.Target(now_ + 150ms, targets), Mbps(3));
+  scheduler_.SetUsable(now_, 0, false);
+  EXPECT_EQ(scheduler_.Target(now_, targets), Mbps(3));
+  scheduler_.SetUsable(now_, 1, false);
+  EXPECT_EQ(scheduler_.Target(now_, targets), Mbps(10)) << "nothing is known";
+}
+
+TEST_F(TwoLinks, AsksForNoMoreThanTheNearOneCarriesWhereTheOtherIsFar) {
+  SetPaths({Mbps(8), 20ms}, {Mbps(10), 150ms});
+  EXPECT_EQ(scheduler_.Target(now_, {Mbps(8), Mbps(10)}), Mbps(8));
+}
+
+TEST_F(TwoLinks, RefusesForgedReports) {
+  Packet();
+  EXPECT_FALSE(scheduler_.OnFeedback(now_, 0, Arrived(77)));
+  EXPECT_TRUE(scheduler_.InGap(now_ + 1s, 0));
+}
+
+TEST(Scheduler, SumsUpTargetsOfLinksThatWork) {
+  Scheduler scheduler(2, Method::kAdaptive, TargetRule::kSum);
+  EXPECT_EQ(scheduler.Target(kStart, {Mbps(10), Mbps(3)}), Mbps(13));
+  scheduler.SetUsable(kStart, 0, false);
+  EXPECT_EQ(scheduler.Target(kStart, {Mbps(10), Mbps(3)}), Mbps(3));
+}
+
+TEST(Scheduler, BroadcastsEveryPacketAndBacksUpOnlyWhatWaits) {
+  Scheduler broadcast(3, Method::kBroadcast), backup(3, Method::kBackup);
+  for (std::uint16_t seq = 1; seq < 8; ++seq) {
+    EXPECT_EQ(broadcast.OnPacket(kStart, {{kMedia, seq}, kSize, seq}), SetOf({0, 1, 2}));
+    const LinkSet links = backup.OnPacket(kStart, {{kMedia, seq}, kSize, seq});
+    EXPECT_EQ(links.count(), seq == 1 ? 3U : 1U) << "the first of eight keeps links known";
+  }
+}
+
+TEST(Scheduler, KeepsAllPacketsOfASliceTogether) {
+  Scheduler scheduler(2, Method::kBackup);
+  scheduler.OnPacket(kStart, {{kMedia, 1}, kSize, 1});
+  const LinkSet first = scheduler.OnPacket(kStart, {{kMedia, 2}, kSize, 2});
+  for (std::uint16_t seq = 3; seq < 90; ++seq)
+    EXPECT_EQ(scheduler.OnPacket(kStart, {{kMedia, seq}, kSize, 2}), first);
+}
+
+TEST(Scheduler, KeepsBoundedMemory) {
+  Scheduler scheduler(4, Method::kBroadcast);
+  for (int i = 0; i < 300000; ++i)
+    scheduler.OnPacket(
+        kStart, {{kMedia, static_cast<std::uint16_t>(i)}, kSize, static_cast<std::uint32_t>(i)});
+  EXPECT_LE(scheduler.TakeCopies(kStart + 150ms).size(), 4 * Scheduler::kMaxPackets);
+  EXPECT_TRUE(scheduler.TakeCopies(kStart + 10s).empty());
+}
+
+}  // namespace
+}  // namespace lidar::bonding
