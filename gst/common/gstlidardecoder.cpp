@@ -10,6 +10,7 @@
 #include "gst/common/coder_pads.h"
 #include "gst/common/held_events.h"
 #include "gst/common/properties.h"
+#include "gst/common/refused_caps.h"
 #include "gst/common/stats.h"
 
 GST_DEBUG_CATEGORY_STATIC(gst_lidar_decoder_debug);
@@ -68,6 +69,7 @@ struct Stream {
   guint max_points = 0;
   bool has_size = false;  // caps for `cloud` have been pushed
   HeldEvents held;
+  RefusedCaps refused;
   MessageTimer stats_timer;
   gint64 asked_at_us = 0;  // for a slice that stands alone
   guint asked = 0;
@@ -156,8 +158,12 @@ static gboolean SetCaps(GstLidarDecoder* self, GstCaps* caps) {
   stream.cloud = CloudOf(caps);
   GstLidarDecodedFormat decoded{};
   decoded.refusal = "their fields lack x, y and z as F32 side by side";
-  if (stream.cloud && AskSubclass(self, caps, &*stream.cloud, &decoded)) return TRUE;
+  if (stream.cloud && AskSubclass(self, caps, &*stream.cloud, &decoded)) {
+    stream.refused.Reset();
+    return TRUE;
+  }
   stream.cloud.reset();
+  if (!stream.refused.Note(caps)) return FALSE;
   GST_ELEMENT_ERROR(self, STREAM, FORMAT,
                     ("The caps of this stream cannot be decoded: %s.", decoded.refusal),
                     ("caps are %" GST_PTR_FORMAT, static_cast<gpointer>(caps)));

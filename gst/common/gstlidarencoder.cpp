@@ -14,6 +14,7 @@
 #include "gst/common/encoder/stats.h"
 #include "gst/common/encoder/vtable_coder.h"
 #include "gst/common/properties.h"
+#include "gst/common/refused_caps.h"
 #include "src/rate/rate_loop.h"
 
 GST_DEBUG_CATEGORY_STATIC(gst_lidar_encoder_debug);
@@ -32,6 +33,7 @@ struct Stream {
   std::unique_ptr<VtableCoder> coder;  // null: no format yet
   std::unique_ptr<lidar::rate::RateLoop> loop;
   std::optional<ErrorReport> error_report;
+  RefusedCaps refused;
   MessageTimer stats_timer;
 };
 
@@ -127,10 +129,12 @@ static CapsPtr AskForCaps(GstLidarEncoder* self, GstCaps* caps, Stream* stream) 
     }
   }
   if (coded.caps == nullptr) {
+    if (!stream->refused.Note(caps)) return nullptr;
     GST_ELEMENT_ERROR(self, STREAM, FORMAT, ("This cloud cannot be encoded: %s.", coded.refusal),
                       ("caps are %" GST_PTR_FORMAT, static_cast<gpointer>(caps)));
     return nullptr;
   }
+  stream->refused.Reset();
   stream->input.SetFormat(*info, coded.codes_ranges != FALSE);
   return CapsPtr(coded.caps);
 }

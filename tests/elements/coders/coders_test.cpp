@@ -198,7 +198,7 @@ TEST_P(AnyCoder, ScansBeforeAndAfterAFlushAreTwo) {
 }
 
 class RefusedCaps : public ::testing::TestWithParam<std::pair<const char*, const char*>> {};
-TEST_P(RefusedCaps, GiveAnErrorThatSaysWhatIsMissing) {
+TEST_P(RefusedCaps, GiveOneErrorThatSaysWhatIsMissing) {
   const auto [launch, text] = GetParam();
   const Harness h(gst_harness_new_parse(launch));
   GstBus* bus = gst_bus_new();
@@ -213,6 +213,9 @@ TEST_P(RefusedCaps, GiveAnErrorThatSaysWhatIsMissing) {
   gst_message_parse_error(message.get(), &error, nullptr);
   EXPECT_TRUE(g_error_matches(error, GST_STREAM_ERROR, GST_STREAM_ERROR_FORMAT));
   g_error_free(error);
+  // GStreamer offers them again with each buffer.
+  gst_harness_push_event(h.get(), gst_event_new_caps(caps.get()));
+  EXPECT_FALSE(MessagePtr(gst_bus_pop_filtered(bus, GST_MESSAGE_ERROR)));
   gst_element_set_bus(h->element, nullptr);
   gst_object_unref(bus);
 }
