@@ -26,6 +26,12 @@ constexpr std::string_view kOwnTypes[] = {"application/x-draco",       "applicat
                                           "application/x-pointcloud2", "application/x-imu",
                                           "application/x-odometry",    "application/x-tf"};
 
+/// True for what decoders give.
+bool AreDecodable(const std::string& fields) {
+  const auto parsed = PointFields::Parse(fields);
+  return parsed && parsed->HasPackedXyz() && parsed->ArePacked();
+}
+
 std::optional<StreamConfig> ParseNamed(ByteView text) {
   auto caps = ScalarCaps::Parse({reinterpret_cast<const char*>(text.data), text.size});
   if (!caps || std::find(std::begin(kOwnTypes), std::end(kOwnTypes), caps->media_type) !=
@@ -33,6 +39,8 @@ std::optional<StreamConfig> ParseNamed(ByteView text) {
     return std::nullopt;
   const auto* alignment = std::get_if<std::string>(caps->Find("alignment"));
   if (alignment == nullptr || *alignment != "slice") return std::nullopt;
+  const auto* fields = std::get_if<std::string>(caps->Find("fields"));
+  if (fields != nullptr && !AreDecodable(*fields)) return std::nullopt;
   StreamConfig config;
   config.coder = Coder::kNamed;
   config.caps = *std::move(caps);
@@ -86,8 +94,7 @@ std::optional<StreamConfig> StreamConfig::Parse(ByteView bytes) {
   }
   c.fields.assign(fields.begin(), fields.end());
   c.sensor_model.assign(model.begin(), model.end());
-  const auto parsed = PointFields::Parse(c.fields);
-  if (!parsed || !parsed->HasPackedXyz() || !parsed->ArePacked()) return std::nullopt;
+  if (!AreDecodable(c.fields)) return std::nullopt;
   if (!model.empty() && !SensorModel::Parse(model)) return std::nullopt;
   if (c.geometry == Geometry::kRange && model.empty()) return std::nullopt;
   return c;

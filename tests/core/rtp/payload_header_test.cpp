@@ -250,6 +250,7 @@ INSTANTIATE_TEST_SUITE_P(
                       "application/x-voxels, alignment=(string)scan",
                       "application/x-voxels, alignment=(int)1",
                       "application/x-voxels, alignment=(string)slice, a=(int)[ 1, 2 ]",
+                      "application/x-voxels, alignment=(string)slice, fields=(string)\"x:F32:0\"",
                       "application/x-draco, alignment=(string)slice",
                       "application/x-lidar-slice, alignment=(string)slice",
                       "application/x-pointcloud2, alignment=(string)slice",

@@ -151,7 +151,8 @@ TEST(RtpLidarDepay, DropsSlicesForAnotherDecoderAndGoesOn) {
 }
 
 constexpr const char* kVoxels =
-    "application/x-voxels, alignment=(string)slice, fields=(string)\"x:F32:0\\,y:F32:4\", "
+    "application/x-voxels, alignment=(string)slice, "
+    "fields=(string)\"x:F32:0\\,y:F32:4\\,z:F32:8\", "
     "framerate=(fraction)10/1, sensor-model=(buffer)0102ff, levels=(uint)7, loss=(double)0.25, "
     "dense=(boolean)true";
 
