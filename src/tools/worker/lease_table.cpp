@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <functional>
+#include <tuple>
+#include <utility>
 
 namespace lidar::worker {
 namespace {
@@ -12,6 +14,11 @@ constexpr int kRenewals = 4;  // in the time of a lease
 constexpr int kMargin = 20;
 /// A worker that has all it can take hesitates for this part of a lease, so that others go first.
 constexpr double kHesitation = 0.3;
+/// A sensor without progress for as long leaves its place to one that waits.
+constexpr Duration kIdle = std::chrono::seconds(30);
+
+/// The robot of an entry, which is a robot or one of its sensors.
+std::string NameOf(const std::string& entry) { return entry.substr(0, entry.find('.')); }
 
 }  // namespace
 
@@ -88,7 +95,10 @@ void LeaseTable::OnRefused(std::uint64_t ticket, std::optional<std::uint64_t> ne
 
 void LeaseTable::SetProgress(const std::string& name, const Progress& progress) {
   const auto found = robots_.find(name);
-  if (found != robots_.end() && found->second.held) found->second.record.progress = progress;
+  if (found == robots_.end() || !found->second.held) return;
+  const auto& before = found->second.record.progress;
+  found->second.moved = found->second.moved || !before || before->scan != progress.scan;
+  found->second.record.progress = progress;
 }
 
 void LeaseTable::Drop(const std::string& name, Duration pause, Time now) {
@@ -112,29 +122,73 @@ void LeaseTable::Expire(Time now) {
   }
 }
 
-std::map<std::string, LeaseTable::Robot>::iterator LeaseTable::Choose(Time now) {
-  std::size_t held = 0;
-  for (const auto& [name, robot] : robots_) {
-    if (!robot.held && robot.pending) return robots_.end();  // one at a time
-    if (robot.held) ++held;
-  }
-  if (held >= settings_.most) return robots_.end();
+std::map<std::string, std::size_t> LeaseTable::Places() const {
+  std::map<std::string, std::size_t> places;
+  for (const auto& [name, robot] : robots_)
+    if (robot.held) ++places[NameOf(name)];
+  return places;
+}
+
+LeaseTable::Robots::iterator LeaseTable::Choose(const std::map<std::string, std::size_t>& places,
+                                                std::size_t held, Time now) {
   const auto hesitation =
       FromSeconds(kHesitation * Seconds(settings_.lease) * static_cast<double>(held) /
                   static_cast<double>(settings_.most));
   auto best = robots_.end();
-  std::size_t best_rank = 0;
+  // The fewest places of its robot, then what was tried the least. Each worker has an order of its
+  // own for the rest, so that two seldom want the same one.
+  std::tuple<std::size_t, std::uint64_t, std::size_t> best_rank;
   for (auto at = robots_.begin(); at != robots_.end(); ++at) {
     const Robot& robot = at->second;
     const bool free =
         robot.wanted && !robot.held && now >= robot.not_before && now >= robot.free_at + hesitation;
-    // Each worker has an order of its own, so that two seldom want the same one.
-    const std::size_t rank = std::hash<std::string>()(settings_.worker + "/" + at->first);
-    if (!free || (best != robots_.end() && rank > best_rank)) continue;
+    if (!free) continue;
+    const auto has = places.find(NameOf(at->first));
+    const std::tuple rank(has == places.end() ? 0 : has->second, robot.tries,
+                          std::hash<std::string>()(settings_.worker + "/" + at->first));
+    if (best != robots_.end() && rank >= best_rank) continue;
     best = at;
     best_rank = rank;
   }
   return best;
+}
+
+bool LeaseTable::MakeRoom(const std::map<std::string, std::size_t>& places,
+                          const std::string& waiting, Time now) {
+  const auto places_of = [&](const std::string& name) {
+    const auto has = places.find(NameOf(name));
+    return has == places.end() ? std::size_t{0} : has->second;
+  };
+  auto worst = robots_.end();
+  for (auto at = robots_.begin(); at != robots_.end(); ++at) {
+    if (!at->second.held) continue;
+    const auto rank = std::make_pair(places_of(at->first), now - at->second.moved_at);
+    if (worst == robots_.end() ||
+        rank > std::make_pair(places_of(worst->first), now - worst->second.moved_at))
+      worst = at;
+  }
+  if (worst == robots_.end()) return false;
+  // One place less must leave it as many as the other then has, or both would change for ever.
+  const bool unfair = places_of(worst->first) >= places_of(waiting) + 2;
+  const auto idle = std::find_if(robots_.begin(), robots_.end(), [&](const auto& item) {
+    return item.second.held && now - item.second.moved_at > kIdle;
+  });
+  if (!unfair && idle == robots_.end()) return false;
+  LeaveToOthers(unfair ? worst->first : idle->first, Duration{}, now);
+  return true;
+}
+
+LeaseTable::Robots::iterator LeaseTable::Next(Time now) {
+  std::size_t held = 0;
+  for (auto& [name, robot] : robots_) {
+    if (!robot.held && robot.pending) return robots_.end();  // one at a time
+    if (robot.held) ++held;
+    if (std::exchange(robot.moved, false)) robot.moved_at = now;
+  }
+  const auto places = Places();
+  const auto chosen = Choose(places, held, now);
+  if (chosen == robots_.end() || held < settings_.most) return chosen;
+  return MakeRoom(places, chosen->first, now) ? chosen : robots_.end();
 }
 
 LeaseTable::Write LeaseTable::Send(const std::string& name, Robot* robot, const std::string& worker,
@@ -151,8 +205,10 @@ std::vector<LeaseTable::Write> LeaseTable::Poll(Time now) {
   for (auto& [name, robot] : robots_)
     if (robot.held && !robot.pending && now >= robot.renew_at)
       writes.push_back(Send(name, &robot, settings_.worker, now));
-  const auto chosen = Choose(now);
+  const auto chosen = Next(now);
   if (chosen != robots_.end()) {
+    ++chosen->second.tries;
+    chosen->second.moved = true;
     chosen->second.last_worker = chosen->second.record.worker;
     writes.push_back(Send(chosen->first, &chosen->second, settings_.worker, now));
   }

@@ -25,6 +25,10 @@ struct LeaseSettings {
 /// *saw* that write, and then replaces exactly that one. So no two have a robot at once, and the
 /// clocks of machines and servers need not agree: each span of time is measured by one steady
 /// clock. Deterministic; for one thread.
+///
+/// An entry is a sensor, "r7" or "r7.front", and whoever publishes for a robot can make up any
+/// number of sensors. So robots share the places of a worker evenly, whatever their sensors are; a
+/// sensor that makes no progress leaves its place to one that waits.
 class LeaseTable {
  public:
   struct Write {
@@ -87,18 +91,29 @@ class LeaseTable {
     Time renew_at{};
     std::string last_worker;
     std::optional<Pending> pending;
+    Time moved_at{};  // when it was taken, or progressed last
+    bool moved = false;
+    std::uint64_t tries = 0;  // how often we took it
   };
+  using Robots = std::map<std::string, Robot>;
 
   Robot* FindPending(std::uint64_t ticket);
   bool IsHeld(const Robot& robot, Time now) const { return robot.held && now < robot.until; }
   void NoteFree(Robot* robot, bool damaged, Time now) const;
   void Expire(Time now);
-  /// The robot to take now; end() for none.
-  std::map<std::string, Robot>::iterator Choose(Time now);
+  /// How many places each robot has, by its name.
+  std::map<std::string, std::size_t> Places() const;
+  /// The robot to take now, where there is room; end() for none.
+  Robots::iterator Choose(const std::map<std::string, std::size_t>& places, std::size_t held,
+                          Time now);
+  /// Gives up a place that `waiting` has more right to.
+  bool MakeRoom(const std::map<std::string, std::size_t>& places, const std::string& waiting,
+                Time now);
+  Robots::iterator Next(Time now);
   Write Send(const std::string& name, Robot* robot, const std::string& worker, Time now);
 
   const LeaseSettings settings_;
-  std::map<std::string, Robot> robots_;
+  Robots robots_;
   std::uint64_t next_ticket_ = 1;
   bool ending_ = false;
 };

@@ -102,6 +102,39 @@ TEST_F(Lease, IsHandedOverWithWhatIsKnown) {
   EXPECT_TRUE(table_.HeldAt(Pass(now, 2000)).empty());
 }
 
+TEST_F(Lease, OfARobotWithMadeUpSensorsLeavesPlacesToOthers) {
+  std::set<std::string> robots;
+  for (int i = 0; i < 40; ++i) robots.insert("r7.s" + std::to_string(i));
+  table_.SetRobots(robots, At(0));
+  Time now = Pass(At(0), 3'000);
+  EXPECT_EQ(table_.HeldAt(now).size(), 4U);
+  robots.insert({"r8.front", "r9.front"});
+  table_.SetRobots(robots, now);
+  now = Pass(now, 3'000);
+  EXPECT_TRUE(Has("r8.front", now));
+  EXPECT_TRUE(Has("r9.front", now));
+  const auto before = table_.HeldAt(now);
+  EXPECT_EQ(before.size(), 4U);
+  now = Pass(now, 10'000);
+  for (const auto& [name, held] : table_.HeldAt(now)) EXPECT_EQ(before.count(name), 1U) << name;
+}
+
+TEST_F(Lease, OfASensorWithoutProgressEndsWhereAnotherWaits) {
+  table_.SetRobots({"a", "b", "c", "d"}, At(0));
+  Time now = Pass(At(0), 3'000);
+  const auto work = [&](int ms) {
+    for (std::uint64_t scan = 1; ms > 0; ms -= 100) {
+      for (const char* live : {"a", "b", "c"}) table_.SetProgress(live, Scan(++scan));
+      now = Pass(now, 100);
+    }
+  };
+  work(60'000);
+  EXPECT_TRUE(Has("d", now)) << "nobody waits";
+  table_.SetRobots({"a", "b", "c", "d", "e"}, now);
+  work(5'000);
+  for (const char* robot : {"a", "b", "c", "e"}) EXPECT_TRUE(Has(robot, now)) << robot;
+}
+
 TEST_F(Lease, IsLostToWhoeverWritesInItsPlace) {
   table_.SetRobots({"r"}, At(0));
   const Time now = Pass(At(0), 400);
