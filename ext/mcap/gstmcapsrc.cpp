@@ -71,6 +71,7 @@ struct State {
   guint32 last_seek = GST_SEQNUM_INVALID;
 
   std::atomic<bool> end_wanted{false};
+  std::atomic<bool> stopping{false};  // a chunk that is being read is the last
   PlayTask task;
   Run run;
 };
@@ -152,7 +153,10 @@ static bool Open(GstLidarMcapSrc* self) {
     state.counters = {};
   }
   std::string why = "there is no location";
-  auto playback = settings.location.empty() ? nullptr : Playback::Open(settings.location, &why);
+  state.stopping = false;
+  auto playback = settings.location.empty()
+                      ? nullptr
+                      : Playback::Open(settings.location, &state.stopping, &why);
   if (!playback) {
     GST_ELEMENT_ERROR(self, RESOURCE, OPEN_READ,
                       ("Cannot play \"%s\": %s.", settings.location.c_str(), why.c_str()),
@@ -168,8 +172,11 @@ static bool Open(GstLidarMcapSrc* self) {
     return false;
   }
   if (playback->unclosed_files() > 0)
-    GST_INFO_OBJECT(self, "%" G_GUINT64_FORMAT " files were not closed",
-                    playback->unclosed_files());
+    GST_ELEMENT_WARNING(self, STREAM, DEMUX,
+                        ("%" G_GUINT64_FORMAT " files of the recording break off, or are being "
+                         "written. They are played up to their last whole chunk.",
+                         playback->unclosed_files()),
+                        (nullptr));
   if (playback->unreadable_files() > 0)
     GST_ELEMENT_WARNING(self, RESOURCE, READ,
                         ("%" G_GUINT64_FORMAT " files of the recording cannot be read.",
@@ -199,11 +206,34 @@ static void PostSegmentDone(GstLidarMcapSrc* self, gint64 position) {
   gst_element_post_message(GST_ELEMENT(self), message);
 }
 
+/// Says what of the recording did not come.
+static void TellOfDamage(GstLidarMcapSrc* self) {
+  State& state = *self->state;
+  Counters counters;
+  {
+    std::lock_guard lock(state.mutex);
+    // A last chunk that is damaged is followed by no message that could tell.
+    state.counters.chunks_damaged = state.run.playback->damaged_chunks();
+    counters = state.counters;
+  }
+  if (state.end_wanted || state.stopping) return;
+  const bool nothing = counters.messages == counters.messages_dropped;
+  if (!state.run.streams->has_pads() || (nothing && counters.chunks_damaged > 0))
+    GST_ELEMENT_ERROR(self, STREAM, DEMUX, ("No message of the recording can be read."),
+                      ("damaged: %" G_GUINT64_FORMAT " chunks, %" G_GUINT64_FORMAT " messages",
+                       counters.chunks_damaged, counters.messages_dropped));
+  else if (counters.chunks_damaged > 0 || counters.messages_dropped > 0)
+    GST_ELEMENT_WARNING(self, STREAM, DEMUX,
+                        ("The recording is damaged: %" G_GUINT64_FORMAT
+                         " chunks and %" G_GUINT64_FORMAT " messages are left out.",
+                         counters.chunks_damaged, counters.messages_dropped),
+                        (nullptr));
+}
+
 static void Finish(GstLidarMcapSrc* self) {
   StreamGroup& streams = *self->state->run.streams;
   streams.EndPads();
-  if (!streams.has_pads() && !self->state->end_wanted)
-    GST_ELEMENT_ERROR(self, STREAM, DEMUX, ("No message of the recording can be read."), (nullptr));
+  TellOfDamage(self);
   const GstSegment& segment = streams.segment();
   if ((segment.flags & GST_SEGMENT_FLAG_SEGMENT) == 0) return streams.End(gst_event_new_eos());
   const auto position =
@@ -350,7 +380,10 @@ static GstStateChangeReturn ChangeState(GstElement* element, GstStateChange tran
   State& state = *self->state;
   if (transition == GST_STATE_CHANGE_READY_TO_PAUSED && !Open(self))
     return GST_STATE_CHANGE_FAILURE;
-  if (transition == GST_STATE_CHANGE_PAUSED_TO_READY) state.task.Stop();
+  if (transition == GST_STATE_CHANGE_PAUSED_TO_READY) {
+    state.stopping = true;
+    state.task.Stop();
+  }
   const auto result =
       GST_ELEMENT_CLASS(gst_lidar_mcap_src_parent_class)->change_state(element, transition);
   if (transition == GST_STATE_CHANGE_READY_TO_PAUSED && result != GST_STATE_CHANGE_FAILURE) {

@@ -18,6 +18,8 @@ namespace lidar::gst {
 namespace {
 
 constexpr guint kMaxSlices = 4'096;
+/// Points of a byte become points of twelve and more, so the message alone bounds too little.
+constexpr gsize kMaxCloud = gsize{256} << 20;  // bytes
 
 void SetCaptureTime(const cdr::Header& header, GstBuffer* buffer) {
   const gint64 ns = header.stamp.time_since_epoch().count();
@@ -61,6 +63,7 @@ class CloudReader : public MessageReader {
     if (!cloud || cloud->layout.width == 0 || cloud->layout.height == 0 ||
         !cdr::RowStride(*cloud) || !Follow(*cloud))
       return nullptr;
+    if (converter_->size() > kMaxCloud) return nullptr;
     BufferPtr buffer(gst_buffer_new_allocate(nullptr, converter_->size(), nullptr));
     BufferMap map(buffer.get(), GST_MAP_WRITE);
     if (!map) return nullptr;

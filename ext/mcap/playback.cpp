@@ -10,23 +10,25 @@
 namespace lidar::gst {
 namespace {
 
-std::unique_ptr<mcap::Reader> OpenReader(const std::string& path, std::string* why) {
-  auto input = mcap::InputFile::Open(path, why);
+std::unique_ptr<mcap::Reader> OpenReader(const std::string& path,
+                                         const std::atomic<bool>* cancelled, std::string* why) {
+  auto input = mcap::InputFile::Open(path, why, cancelled);
   return input ? mcap::Reader::Open(std::move(input), why) : nullptr;
 }
 
 }  // namespace
 
-std::unique_ptr<Playback> Playback::Open(const std::string& location, std::string* why) {
+std::unique_ptr<Playback> Playback::Open(const std::string& location,
+                                         const std::atomic<bool>* cancelled, std::string* why) {
   const auto names = FileNames::Parse(location, why);
   if (!names) return nullptr;
   std::error_code failed;
   const auto existing = names->Existing(&failed);
   if (existing.empty()) *why = "there is no such file";
   if (failed && failed != std::errc::no_such_file_or_directory) *why = failed.message();
-  std::unique_ptr<Playback> playback(new Playback);
+  std::unique_ptr<Playback> playback(new Playback(cancelled));
   for (const auto& [number, path] : existing) {
-    const auto reader = OpenReader(path, why);
+    const auto reader = OpenReader(path, cancelled, why);
     if (reader != nullptr && !reader->index().empty()) {
       playback->Add(path, reader->index());
       continue;
@@ -43,11 +45,9 @@ void Playback::Add(const std::string& path, const mcap::FileIndex& index) {
   unclosed_files_ += index.complete ? 0 : 1;
   files_.push_back({path, index.start_time(), index.end_time()});
   for (const auto& [id, channel] : index.channels) {
-    const bool known =
-        std::any_of(topics_.begin(), topics_.end(),
-                    [&, &c = channel](const Topic& t) { return t.channel.topic == c.topic; });
     const auto schema = index.schemas.find(channel.schema_id);
-    if (!known && schema != index.schemas.end()) topics_.push_back({schema->second, channel});
+    if (schema != index.schemas.end() && names_.insert(channel.topic).second)
+      topics_.push_back({schema->second, channel});
   }
 }
 
@@ -69,7 +69,7 @@ bool Playback::OpenNextFile() {
     const File& file = files_[next_file_++];
     std::string why;
     if (file.end_time < from_) continue;
-    reader_ = OpenReader(file.path, &why);
+    reader_ = OpenReader(file.path, cancelled_, &why);
     if (reader_ == nullptr) {
       ++unreadable_files_;
       continue;

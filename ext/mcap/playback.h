@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // The files of a recording as one.
 #pragma once
+#include <atomic>
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -25,8 +27,10 @@ class Playback {
   };
 
   /// Opens the files that `location` names, which may have a number. None where nothing can be
-  /// read; `why` then says so in words for a user.
-  static std::unique_ptr<Playback> Open(const std::string& location, std::string* why);
+  /// read; `why` then says so in words for a user. Nothing more is read once `cancelled`, which
+  /// outlives the playback, is true.
+  static std::unique_ptr<Playback> Open(const std::string& location,
+                                        const std::atomic<bool>* cancelled, std::string* why);
 
   /// Log times [ns].
   std::uint64_t start_time() const { return start_time_; }
@@ -43,6 +47,7 @@ class Playback {
   std::optional<Item> Next();
 
  private:
+  explicit Playback(const std::atomic<bool>* cancelled) : cancelled_(cancelled) {}
   struct File {
     std::string path;
     std::uint64_t start_time = 0;
@@ -52,7 +57,9 @@ class Playback {
   void Add(const std::string& path, const mcap::FileIndex& index);
   bool OpenNextFile();
 
+  const std::atomic<bool>* const cancelled_;
   std::vector<File> files_;
+  std::set<std::string> names_;  // of topics_
   std::vector<Topic> topics_;
   std::uint64_t start_time_ = 0;
   std::uint64_t end_time_ = 0;

@@ -23,10 +23,11 @@ bool StreamGroup::has_pads() const {
                      [](const auto& stream) { return stream->is_added(); });
 }
 
-/// The stream of `topic`, which is made where it is missing.
+/// The stream of `topic`, which is made where it is missing. Null where there are too many.
 PlayedStream* StreamGroup::StreamOf(const std::string& topic) {
   for (const auto& stream : streams_)
     if (stream->topic() == topic) return stream.get();
+  if (streams_.size() == kMaxStreams) return nullptr;
   GstPad* pad = new_pad_("src_" + std::to_string(streams_.size()));
   gst_object_ref_sink(pad);
   streams_.push_back(std::make_unique<PlayedStream>(element_, pad, topic));
@@ -40,6 +41,7 @@ void StreamGroup::ShowKnown(const Playback& playback, const std::string& topic) 
     if (!topic.empty() && topic != channel.topic) continue;
     if (!MessageReader::Make(schema, channel)) continue;
     PlayedStream* stream = StreamOf(channel.topic);
+    if (stream == nullptr) break;
     all = stream->Follow(schema, channel) && stream->Prepare(common_) && all;
   }
   if (all) EndPads();
@@ -51,7 +53,7 @@ void StreamGroup::EndPads() {
 
 StreamGroup::Played StreamGroup::Read(const Playback::Item& item, GstClockTime pts) {
   Played played{StreamOf(item.channel->topic), nullptr};
-  if (played.stream->Follow(*item.schema, *item.channel))
+  if (played.stream != nullptr && played.stream->Follow(*item.schema, *item.channel))
     played.buffer = played.stream->Read(item.message.data, pts);
   if (played.buffer && !played.stream->Prepare(common_)) played.buffer.reset();
   return played;

@@ -34,7 +34,8 @@ class StreamGroup {
   void ShowKnown(const Playback& playback, const std::string& topic);
   /// Says once that there come no more.
   void EndPads();
-  /// A message for its pad; no buffer where it is damaged or its caps are not known.
+  /// A message for its pad; no buffer where it is damaged, its caps are not known, or there are
+  /// more topics than pads.
   struct Played {
     PlayedStream* stream = nullptr;
     BufferPtr buffer;
@@ -49,6 +50,8 @@ class StreamGroup {
 
  private:
   PlayedStream* StreamOf(const std::string& topic);
+  /// Each topic costs a pad and a thread behind it.
+  static constexpr std::size_t kMaxStreams = 256;
 
   struct FreeCombiner {
     void operator()(GstFlowCombiner* p) const { gst_flow_combiner_free(p); }

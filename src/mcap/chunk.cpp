@@ -44,7 +44,9 @@ std::optional<ChunkHeader> ReadChunkHeader(Input* input, const RecordPlace& reco
 bool ReadChunk(Input* input, const ChunkPlace& chunk, Bytes* records) {
   if (chunk.is_run) return ReadRun(input, chunk, records);
   const auto record = RecordAt(input, chunk.offset);
-  const auto header = record ? ReadHeader(input, *record) : std::nullopt;
+  // What an index says of its size must be true, as chunks are told apart by it.
+  const bool fits = record && record->end() - chunk.offset <= chunk.size;
+  const auto header = fits ? ReadHeader(input, *record) : std::nullopt;
   if (!header || header->chunk.records_size > 2 * kMaxChunk) return false;
   Bytes stored(static_cast<std::size_t>(header->chunk.records_size));
   if (!input->Read(record->content + header->size, stored.size(), stored.data())) return false;

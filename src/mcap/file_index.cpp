@@ -51,6 +51,19 @@ void AddChunk(const Input& input, const Record& record, FileIndex* index) {
   index->chunks.push_back({chunk->start_time, chunk->end_time, chunk->offset, chunk->size, false});
 }
 
+/// Chunks that share bytes would let a small file ask for any amount of work.
+void DropOverlaps(std::vector<ChunkPlace>* chunks) {
+  std::stable_sort(chunks->begin(), chunks->end(),
+                   [](const ChunkPlace& a, const ChunkPlace& b) { return a.offset < b.offset; });
+  std::uint64_t end = 0;
+  const auto overlaps = [&](const ChunkPlace& chunk) {
+    if (chunk.offset < end) return true;
+    end = chunk.offset + chunk.size;
+    return false;
+  };
+  chunks->erase(std::remove_if(chunks->begin(), chunks->end(), overlaps), chunks->end());
+}
+
 }  // namespace
 
 std::uint64_t FileIndex::start_time() const {
@@ -95,6 +108,7 @@ FileIndex ReadFileIndex(Input* input) {
   // Others may leave the indexes out.
   if (index.chunks.empty() || index.channels.empty()) index = ScanFile(input);
   index.complete = true;
+  DropOverlaps(&index.chunks);
   std::stable_sort(
       index.chunks.begin(), index.chunks.end(),
       [](const ChunkPlace& a, const ChunkPlace& b) { return a.start_time < b.start_time; });

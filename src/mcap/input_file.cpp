@@ -10,7 +10,8 @@
 
 namespace lidar::mcap {
 
-std::unique_ptr<InputFile> InputFile::Open(const std::string& path, std::string* why) {
+std::unique_ptr<InputFile> InputFile::Open(const std::string& path, std::string* why,
+                                           const std::atomic<bool>* cancelled) {
   // A pipe would wait for its writer.
   const int fd = open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
   if (fd < 0) {
@@ -20,7 +21,7 @@ std::unique_ptr<InputFile> InputFile::Open(const std::string& path, std::string*
   struct stat status {};
   const bool is_file = fstat(fd, &status) == 0 && S_ISREG(status.st_mode);
   std::unique_ptr<InputFile> file(
-      new InputFile(fd, is_file ? static_cast<std::uint64_t>(status.st_size) : 0));
+      new InputFile(fd, is_file ? static_cast<std::uint64_t>(status.st_size) : 0, cancelled));
   if (is_file) return file;
   *why = "it is no file";
   return nullptr;
@@ -29,6 +30,7 @@ std::unique_ptr<InputFile> InputFile::Open(const std::string& path, std::string*
 InputFile::~InputFile() { close(fd_); }
 
 bool InputFile::Read(std::uint64_t offset, std::size_t n, std::uint8_t* to) {
+  if (cancelled_ != nullptr && *cancelled_) return false;
   while (n > 0) {
     const ssize_t got = pread(fd_, to, n, static_cast<off_t>(offset));
     if (got < 0 && errno == EINTR) continue;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // A file to be read anywhere.
 #pragma once
+#include <atomic>
 #include <memory>
 #include <string>
 
@@ -10,8 +11,10 @@ namespace lidar::mcap {
 
 class InputFile : public Input {
  public:
-  /// None where it cannot be opened or is no file; `why` then says so.
-  static std::unique_ptr<InputFile> Open(const std::string& path, std::string* why);
+  /// None where it cannot be opened or is no file; `why` then says so. Nothing can be read any more
+  /// once `cancelled`, which outlives the file, is true.
+  static std::unique_ptr<InputFile> Open(const std::string& path, std::string* why,
+                                         const std::atomic<bool>* cancelled = nullptr);
   ~InputFile() override;
   InputFile(const InputFile&) = delete;
   InputFile& operator=(const InputFile&) = delete;
@@ -21,10 +24,12 @@ class InputFile : public Input {
   bool Read(std::uint64_t offset, std::size_t n, std::uint8_t* to) override;
 
  private:
-  InputFile(int fd, std::uint64_t size) : fd_(fd), size_(size) {}
+  InputFile(int fd, std::uint64_t size, const std::atomic<bool>* cancelled)
+      : fd_(fd), size_(size), cancelled_(cancelled) {}
 
   const int fd_;
   const std::uint64_t size_;
+  const std::atomic<bool>* const cancelled_;
 };
 
 }  // namespace lidar::mcap

@@ -109,6 +109,38 @@ TEST(McapOfOthers, ChecksumsMayBeLeftOut) {
   EXPECT_EQ(reader->damaged_chunks(), 0U);
 }
 
+TEST(McapOfOthers, AChunkIsReadOnceHoweverOftenItIsIndexed) {
+  Bytes file = Begin();
+  const std::uint64_t at = file.size();
+  AppendChunk(ChannelWithMessage(1, 5), 5, &file);
+  Bytes summary;
+  Append(Channel{1, 1, "topic 1", "cdr", {}}, &summary);
+  ChunkIndex index = IndexOf(at, file);
+  for (std::uint64_t i = 0; i < 60; ++i) {
+    index.start_time = i % 6;
+    Append(index, &summary);
+  }
+  // One that begins within it, and one that hides how long it is.
+  ChunkIndex inside = IndexOf(at + 9, file);
+  Append(inside, &summary);
+  Close(summary, &file);
+  const auto reader = Open(file);
+  EXPECT_EQ(reader->index().chunks.size(), 1U);
+  EXPECT_EQ(Times(reader.get()), (std::vector<std::uint64_t>{5}));
+
+  Bytes liar = Begin();
+  AppendChunk(ChannelWithMessage(1, 5), 5, &liar);
+  summary.clear();
+  Append(Channel{1, 1, "topic 1", "cdr", {}}, &summary);
+  index = IndexOf(at, liar);
+  index.size = 10;
+  Append(index, &summary);
+  Close(summary, &liar);
+  const auto lied_to = Open(liar);
+  EXPECT_TRUE(Times(lied_to.get()).empty());
+  EXPECT_EQ(lied_to->damaged_chunks(), 1U);
+}
+
 TEST(McapOfOthers, ASummaryWithoutChunksOrWithoutChannelsIsNoIndex) {
   for (const bool channels : {false, true}) {
     Bytes file = Begin();

@@ -1,8 +1,12 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Recordings in pieces, those that broke off, and those that are damaged.
 #include <fstream>
+#include <future>
 #include <random>
 
+#include "ext/mcap/message_types.h"
+#include "src/mcap/compression.h"
+#include "src/mcap/record_input.h"
 #include "tests/elements/mcap/recording.h"
 
 namespace lidar::test {
@@ -103,6 +107,7 @@ TEST_F(McapFiles, AFileThatBrokeOffPlaysUpToItsLastChunk) {
     }
     EXPECT_EQ(played.error, "");
     EXPECT_EQ(played.stats.at("files-unclosed"), 1U);
+    EXPECT_NE(played.warning.find("break off"), std::string::npos) << played.warning;
     const auto& read = played.buffers.at("see");
     EXPECT_EQ(read.size() % 16, 0U);  // two scans a chunk
     EXPECT_GE(read.size() + 32, written.size() * part / 11);
@@ -131,12 +136,79 @@ TEST_F(McapFiles, AChunkThatIsDamagedCostsItselfAndIsCounted) {
   const auto played = PlayFile("b.mcap");
   EXPECT_EQ(played.error, "");
   EXPECT_EQ(played.stats.at("chunks-damaged"), 1U);
+  EXPECT_EQ(played.warning, "The recording is damaged: 1 chunks and 0 messages are left out.");
   EXPECT_LT(played.buffers.at("see").size(), 32U);
   EXPECT_GE(played.buffers.at("see").size(), 16U);
   // The same in two pieces of a recording.
   WriteFile("b-0.mcap", damaged);
   WriteFile("b-1.mcap", damaged);
   EXPECT_EQ(PlayFile("b-%d.mcap").stats.at("chunks-damaged"), 2U);
+}
+
+TEST_F(McapFiles, WhereAllOrTheLastIsDamagedThePlayerSaysSo) {
+  Record(4, "compression=none", "a.mcap");
+  std::string damaged = ReadFile("a.mcap");
+  damaged[damaged.size() / 2] = static_cast<char>(damaged[damaged.size() / 2] ^ 1);
+  WriteFile("b.mcap", damaged);
+  EXPECT_EQ(PlayFile("b.mcap").error, "No message of the recording can be read.");
+  Record(4, "chunk-duration=100000000 compression=none", "c.mcap");
+  damaged = ReadFile("c.mcap");
+  const std::size_t last = damaged.size() * 4 / 5;
+  damaged[last] = static_cast<char>(damaged[last] ^ 1);
+  WriteFile("d.mcap", damaged);
+  const auto played = PlayFile("d.mcap");
+  EXPECT_EQ(played.stats.at("chunks-damaged"), 1U);
+  EXPECT_NE(played.warning, "");
+}
+
+/// A recording whose chunks of zeros take a while each, and hold nothing to play.
+void WriteBombs(const std::string& path, int chunks) {
+  mcap::Bytes file(mcap::kMagic.begin(), mcap::kMagic.end());
+  mcap::Bytes records;
+  mcap::Schema schema = gst::SchemaOf(gst::MessageType::kSlice);
+  schema.id = 1;
+  Append(schema, &records);
+  const char* caps = "application/x-lidar-slice,alignment=(string)slice";
+  Append(mcap::Channel{1, 1, "/slices", "cdr", {{gst::kCapsKey, caps}}}, &records);
+  const mcap::Bytes catalogue = records;
+  records.resize(mcap::kMaxChunk);
+  mcap::Bytes bomb;
+  const ByteView view{records.data(), records.size()};
+  ASSERT_TRUE(mcap::Compress(mcap::Compression::kZstd, view, &bomb));
+  mcap::Bytes summary = catalogue;
+  for (int i = 0; i < chunks; ++i) {
+    mcap::ChunkIndex index;
+    index.end_time = index.start_time = 1 + static_cast<std::uint64_t>(i);
+    index.offset = file.size();
+    Append(
+        mcap::ChunkHeader{index.start_time, index.end_time, records.size(), 0, "zstd", bomb.size()},
+        {bomb.data(), bomb.size()}, &file);
+    index.size = file.size() - index.offset;
+    Append(index, &summary);
+  }
+  mcap::AppendDataEnd(0, &file);
+  const std::uint64_t start = file.size();
+  file.insert(file.end(), summary.begin(), summary.end());
+  Append(mcap::Footer{start, 0, 0}, &file);
+  file.insert(file.end(), mcap::kMagic.begin(), mcap::kMagic.end());
+  std::ofstream(path, std::ios::binary)
+      .write(reinterpret_cast<const char*>(file.data()), static_cast<std::streamsize>(file.size()));
+}
+
+TEST_F(McapFiles, ThatTakeLongToReadDoNotDelayAStop) {
+  WriteBombs(Path("bombs.mcap"), 100);
+  Pipeline p("mcapsrc name=m" + At("bombs.mcap") + " ! fakesink");
+  // It tells of its pads, and then it reads.
+  std::promise<void> pads;
+  g_signal_connect(p.Find("m").get(), "no-more-pads",
+                   G_CALLBACK(+[](GstElement*, std::promise<void>* told) { told->set_value(); }),
+                   &pads);
+  gst_element_set_state(p.get(), GST_STATE_PLAYING);
+  pads.get_future().wait();
+  const gint64 begin = g_get_monotonic_time();
+  gst_element_set_state(p.get(), GST_STATE_NULL);
+  // Of the hundred one is being read, which takes about a tenth of a second.
+  EXPECT_LT(g_get_monotonic_time() - begin, 5 * G_TIME_SPAN_SECOND);
 }
 
 TEST_F(McapFiles, DamageAnywhereIsSurvived) {
