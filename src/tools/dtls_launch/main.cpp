@@ -3,9 +3,10 @@
 #include <gst/gst.h>
 
 #include <CLI/CLI.hpp>
+#include <atomic>
 #include <cstdio>
-#include <cstdlib>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "gst/common/refs.h"
@@ -27,12 +28,30 @@ struct Options {
   std::vector<std::string> pipeline;
 };
 
-struct Context {
+struct Certificates {
   std::string own;   // certificate and private key, PEM
   std::string peer;  // the certificate to trust, without line breaks
-  ElementPtr pipeline;
-  unsigned dtls_elements = 0;
 };
+
+/// One handshake, and what comes of it. Threads of the pipeline set the flags.
+struct Session {
+  explicit Session(const Certificates& c) : certificates(c) {}
+  ~Session() {
+    if (pipeline) gst_element_set_state(pipeline.get(), GST_STATE_NULL);
+  }
+  Session(const Session&) = delete;
+  Session& operator=(const Session&) = delete;
+
+  const Certificates& certificates;
+  unsigned dtls_elements = 0;
+  std::atomic<bool> refused{false};
+  std::atomic<bool> has_keys{false};
+  ElementPtr pipeline;
+};
+
+constexpr GstClockTime kPoll = 100 * GST_MSECOND;
+// Between handshakes: whoever sends what is none makes us begin anew as often, and no more.
+constexpr gulong kPauseUs = 200'000;
 
 /// What is between the lines that begin and end the first certificate, without white space.
 std::string CertificateIn(const std::string& pem) {
@@ -62,20 +81,29 @@ bool ReadPem(const std::string& path, const char* must_have, std::string* pem) {
   return false;
 }
 
-/// Comes in the handshake, before there are keys: with the process everything ends that could
-/// send to a stranger or believe one.
-void OnPeerCertificate(GObject* dtls, GParamSpec*, Context* context) {
+/// Comes in the handshake, before there are keys. Nothing gets past the flag from then on.
+void OnPeerCertificate(GObject* dtls, GParamSpec*, Session* session) {
   gchar* pem = nullptr;
   g_object_get(dtls, "peer-pem", &pem, nullptr);
   const StringPtr owner(pem);
-  if (pem != nullptr && CertificateIn(pem) == context->peer) return;
-  std::fprintf(stderr, "REFUSED: the peer's certificate is not the one to trust.\n");
-  std::fflush(nullptr);
-  std::_Exit(kRefused);
+  if (pem == nullptr || CertificateIn(pem) != session->certificates.peer) session->refused = true;
+}
+
+/// A stranger's packets end here: the rest of the handshake as well as what its keys would protect.
+void DropOnceRefused(GstElement* decoder, Session* session) {
+  GstPad* pad = gst_element_get_static_pad(decoder, "sink");
+  gst_pad_add_probe(
+      pad, static_cast<GstPadProbeType>(GST_PAD_PROBE_TYPE_BUFFER | GST_PAD_PROBE_TYPE_BUFFER_LIST),
+      [](GstPad*, GstPadProbeInfo*, gpointer data) {
+        return static_cast<Session*>(data)->refused ? GST_PAD_PROBE_DROP : GST_PAD_PROBE_OK;
+      },
+      session, nullptr);
+  gst_object_unref(pad);
 }
 
 /// srtpenc would encrypt with a random key that nobody knows, until the handshake gives it one.
-void HoldUntilThereIsAKey(GstElement* encoder) {
+void HoldUntilThereIsAKey(GstElement* encoder, Session* session) {
+  g_object_set_data(G_OBJECT(encoder), "session", session);
   GstIterator* pads = gst_element_iterate_sink_pads(encoder);
   gst_iterator_foreach(
       pads,
@@ -87,63 +115,129 @@ void HoldUntilThereIsAKey(GstElement* encoder) {
                                          GST_PAD_PROBE_TYPE_BUFFER_LIST),
             [](GstPad*, GstPadProbeInfo*, gpointer) { return GST_PAD_PROBE_OK; }, nullptr, nullptr);
         g_object_set_data(G_OBJECT(pad), "hold", GSIZE_TO_POINTER(probe));
-        g_signal_connect_object(data, "on-key-set", G_CALLBACK(+[](GstPad* held, GstElement*) {
-                                  const auto id =
-                                      GPOINTER_TO_SIZE(g_object_steal_data(G_OBJECT(held), "hold"));
-                                  if (id != 0) gst_pad_remove_probe(held, id);
-                                }),
-                                pad, G_CONNECT_SWAPPED);
+        g_signal_connect_object(
+            data, "on-key-set", G_CALLBACK(+[](GstPad* held, GstElement* has_key) {
+              const auto* of =
+                  static_cast<Session*>(g_object_get_data(G_OBJECT(has_key), "session"));
+              if (of->refused) return;
+              const auto id = GPOINTER_TO_SIZE(g_object_steal_data(G_OBJECT(held), "hold"));
+              if (id != 0) gst_pad_remove_probe(held, id);
+            }),
+            pad, G_CONNECT_SWAPPED);
       },
       encoder);
   gst_iterator_free(pads);
 }
 
 void Prepare(const GValue* value, gpointer data) {
-  auto* context = static_cast<Context*>(data);
+  auto* session = static_cast<Session*>(data);
   auto* element = GST_ELEMENT(g_value_get_object(value));
   const GstElementFactory* factory = gst_element_get_factory(element);
   const std::string name = factory != nullptr ? GST_OBJECT_NAME(factory) : "";
   if (name == "dtlsdec") {
-    ++context->dtls_elements;
-    g_object_set(element, "pem", context->own.c_str(), nullptr);
-    g_signal_connect(element, "notify::peer-pem", G_CALLBACK(OnPeerCertificate), context);
+    ++session->dtls_elements;
+    g_object_set(element, "pem", session->certificates.own.c_str(), nullptr);
+    g_signal_connect(element, "notify::peer-pem", G_CALLBACK(OnPeerCertificate), session);
+    g_signal_connect_swapped(element, "on-key-received",
+                             G_CALLBACK(+[](Session* s) { s->has_keys = !s->refused; }), session);
   }
-  if (name == "dtlssrtpenc") HoldUntilThereIsAKey(element);
+  if (name == "dtlssrtpdec") DropOnceRefused(element, session);
+  if (name == "dtlssrtpenc") HoldUntilThereIsAKey(element, session);
 }
 
-bool MakePipeline(const std::vector<std::string>& words, Context* context) {
-  context->pipeline = lidar::tools::ParsePipeline(words);
-  if (!context->pipeline) return false;
-  GstIterator* elements = gst_bin_iterate_recurse(GST_BIN(context->pipeline.get()));
-  gst_iterator_foreach(elements, Prepare, context);
+bool MakePipeline(const std::vector<std::string>& words, Session* session) {
+  session->pipeline = lidar::tools::ParsePipeline(words);
+  if (!session->pipeline) return false;
+  GstIterator* elements = gst_bin_iterate_recurse(GST_BIN(session->pipeline.get()));
+  gst_iterator_foreach(elements, Prepare, session);
   gst_iterator_free(elements);
-  if (context->dtls_elements > 0) return true;
+  if (session->dtls_elements > 0) return true;
   std::fprintf(stderr, "The pipeline has no dtlssrtpdec; use gst-launch-1.0 for others.\n");
   return false;
 }
 
-/// Until EOS, an error or a signal. EOS does not get past dtlssrtpenc, whose handshake has no end.
-int Play(GstElement* pipeline, const std::string& stats) {
-  bool run = true;
-  lidar::tools::StopOnSignals(&run);
-  GstBus* bus = gst_element_get_bus(pipeline);
-  gst_element_set_state(pipeline, GST_STATE_PLAYING);
-  int result = kGood;
-  while (run) {
+/// True for the elements that shake hands, and those within them.
+bool IsOfDtls(GstObject* source) {
+  for (GstObject* o = source; o != nullptr; o = GST_OBJECT_PARENT(o)) {
+    const GstElementFactory* factory =
+        GST_IS_ELEMENT(o) ? gst_element_get_factory(GST_ELEMENT(o)) : nullptr;
+    if (factory != nullptr && g_str_has_prefix(GST_OBJECT_NAME(factory), "dtls")) return true;
+  }
+  return false;
+}
+
+enum class End { kOver, kFailed, kNoHandshake };
+
+/// Until EOS, an error, or `*run` is false. EOS does not get past dtlssrtpenc, whose handshake has
+/// no end.
+End Play(Session* session, const bool* run, std::string* why) {
+  GstBus* bus = GST_ELEMENT_BUS(session->pipeline.get());
+  gst_element_set_state(session->pipeline.get(), GST_STATE_PLAYING);
+  while (*run && !session->refused) {
     g_main_context_iteration(nullptr, FALSE);
     const MessagePtr message(gst_bus_timed_pop_filtered(
-        bus, 100 * GST_MSECOND, static_cast<GstMessageType>(GST_MESSAGE_EOS | GST_MESSAGE_ERROR)));
+        bus, kPoll, static_cast<GstMessageType>(GST_MESSAGE_EOS | GST_MESSAGE_ERROR)));
     if (!message) continue;
-    run = false;
-    if (GST_MESSAGE_TYPE(message.get()) != GST_MESSAGE_ERROR) continue;
-    std::fprintf(stderr, "%s\n", lidar::tools::MessageText(message.get()).c_str());
-    result = kFailed;
+    if (GST_MESSAGE_TYPE(message.get()) == GST_MESSAGE_EOS) return End::kOver;
+    if (session->refused) break;
+    *why = lidar::tools::MessageText(message.get());
+    return IsOfDtls(GST_MESSAGE_SRC(message.get())) ? End::kNoHandshake : End::kFailed;
   }
-  lidar::tools::PrintStats(pipeline, stats);
-  gst_element_set_state(pipeline, GST_STATE_NULL);
-  gst_object_unref(bus);
-  return result;
+  *why = "REFUSED: the peer's certificate is not the one to trust.";
+  return session->refused ? End::kNoHandshake : End::kOver;
 }
+
+/// Sessions one after the other: what strangers send costs a handshake, and never the program.
+class Sessions {
+ public:
+  Sessions(const Options& options, const Certificates& certificates)
+      : options_(options), certificates_(certificates) {
+    lidar::tools::StopOnSignals(&run_);
+  }
+
+  int Run() {
+    while (true) {
+      Session session(certificates_);
+      if (!MakePipeline(options_.pipeline, &session)) return kUsage;
+      std::string why;
+      const End end = Play(&session, &run_, &why);
+      refused_ = refused_ || session.refused;
+      if (session.has_keys) had_keys_ = true;
+      if (end == End::kNoHandshake) {
+        Tell(session, why);
+      } else {
+        lidar::tools::PrintStats(session.pipeline.get(), options_.stats);
+        if (end == End::kOver) return Result();
+        std::fprintf(stderr, "%s\n", why.c_str());
+        return kFailed;
+      }
+      g_usleep(kPauseUs);
+    }
+  }
+
+ private:
+  /// Each reason once, until it goes well: strangers must not fill a log.
+  void Tell(const Session& session, const std::string& why) {
+    if (session.has_keys) told_.clear();
+    if (std::exchange(told_, why) == why) return;
+    std::fprintf(stderr, "%s Waiting for another handshake.\n", why.c_str());
+    std::fflush(stderr);
+  }
+
+  int Result() const {
+    if (had_keys_) return kGood;
+    if (refused_) return kRefused;
+    std::fprintf(stderr, "No handshake was completed: is the other end there?\n");
+    return kFailed;
+  }
+
+  const Options& options_;
+  const Certificates& certificates_;
+  bool run_ = true;
+  bool refused_ = false;
+  bool had_keys_ = false;
+  std::string told_;
+};
 
 }  // namespace
 
@@ -151,7 +245,8 @@ int main(int argc, char** argv) {
   CLI::App app(
       "Runs a pipeline, written as for gst-launch-1.0, whose dtlssrtpdec and dtlssrtpenc have a "
       "certificate of ours and trust one of the peer.\n"
-      "Ends with 3 where the peer has another one: before there are keys, so nothing was sent.");
+      "A peer with another one is refused before there are keys, and the next handshake is waited "
+      "for. Ends with 3 where none but such came.");
   lidar::tools::AddVersionFlag(&app, "lidar-dtls-launch");
   Options options;
   app.add_option("--certificate", options.certificate, "Our certificate and private key, PEM")
@@ -164,16 +259,14 @@ int main(int argc, char** argv) {
   app.footer("PIPELINE: elements, properties and links, after the options");
   lidar::tools::Parse(&app, argc, argv);
   options.pipeline = app.remaining();
-  Context context;
+  Certificates certificates;
   std::string peer;
-  if (!ReadPem(options.certificate, "PRIVATE KEY", &context.own) ||
+  if (!ReadPem(options.certificate, "PRIVATE KEY", &certificates.own) ||
       !ReadPem(options.peer_certificate, "CERTIFICATE", &peer))
     return kUsage;
-  context.peer = CertificateIn(peer);
+  certificates.peer = CertificateIn(peer);
   gst_init(nullptr, nullptr);
-  if (!MakePipeline(options.pipeline, &context)) return kUsage;
-  const int result = Play(context.pipeline.get(), options.stats);
-  context.pipeline.reset();
+  const int result = Sessions(options, certificates).Run();
   gst_deinit();
   return result;
 }
