@@ -139,6 +139,18 @@ struct Callbacks {
 
 }  // namespace
 
+std::string WithoutUser(const std::string& urls) {
+  std::string text;
+  for (const std::string& url : SplitUrls(urls)) {
+    const auto scheme = url.find("://");
+    const auto begin = scheme == url.npos ? 0 : scheme + 3;
+    const auto user = url.rfind('@');
+    if (!text.empty()) text += ", ";
+    text += user == url.npos ? url : url.substr(0, begin) + url.substr(user + 1);
+  }
+  return text;
+}
+
 std::string ErrorText(natsStatus status) {
   natsStatus last = NATS_OK;
   const char* words = nats_GetLastError(&last);

@@ -3,6 +3,7 @@
 #pragma once
 #include <nats/nats.h>
 
+#include <chrono>
 #include <cstdint>
 #include <functional>
 #include <memory>
@@ -66,6 +67,11 @@ class Connection {
   StatisticsPtr statistics_;  // of reconnects(), which is asked for each message
   natsConnection* nc_ = nullptr;
 };
+
+/// A server that is away for as long is told of.
+constexpr std::chrono::seconds kAbsence{2};
+/// URLs for a user to read: without what is secret in them.
+std::string WithoutUser(const std::string& urls);
 
 /// The words of libnats for `status`, with what it knows beside.
 std::string ErrorText(natsStatus status);

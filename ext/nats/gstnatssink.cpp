@@ -246,11 +246,31 @@ static GstFlowReturn Render(GstBaseSink* base, GstBuffer* buffer) {
   return GST_FLOW_OK;
 }
 
+/// What the server does not have at the end is lost with the stop. Where it has nothing at all, the
+/// stream was for nobody, which must not look like success.
+static void TellOfUnsent(GstBaseSink* base, const Publisher& publisher, bool keeps_trying) {
+  const PublisherCounters counters = publisher.counters();
+  const auto lost = guint64{counters.waiting + counters.dropped};
+  if (counters.messages == 0 && !keeps_trying)
+    GST_ELEMENT_ERROR(
+        base, RESOURCE, WRITE,
+        ("None of %" G_GUINT64_FORMAT " messages reached a NATS server. Start one, or set url.",
+         lost),
+        (nullptr));
+  else
+    GST_ELEMENT_WARNING(base, RESOURCE, WRITE,
+                        ("At the end the NATS server does not have %" G_GUINT64_FORMAT
+                         " messages. A longer drain-timeout waits for it.",
+                         lost),
+                        (nullptr));
+}
+
 static gboolean OnEvent(GstBaseSink* base, GstEvent* event) {
   if (GST_EVENT_TYPE(event) == GST_EVENT_EOS) {
     const auto publisher = PublisherOf(base);
-    if (publisher && !publisher->Drain(Snapshot(StateOf(base)).drain_timeout))
-      GST_WARNING_OBJECT(base, "at EOS the server does not have everything yet");
+    const NatsSinkSettings settings = Snapshot(StateOf(base));
+    if (publisher && publisher->Drain(settings.drain_timeout) == Publisher::Drained::kTimeout)
+      TellOfUnsent(base, *publisher, settings.keep_trying);
   }
   return GST_BASE_SINK_CLASS(gst_lidar_nats_sink_parent_class)->event(base, event);
 }

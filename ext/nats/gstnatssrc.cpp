@@ -79,8 +79,10 @@ struct State {
   Delivery delivery;             // of the buffer that was pushed last
   std::optional<guint64> first;  // when JetStream stored the first message
   gint64 no_wait_until_us = 0;   // unknown caps are not waited for
+  gint64 here_at_us = 0;         // when there was a server last, or it began
   bool warned_damaged = false;
   bool warned_of_caps = false;
+  bool warned_absent = false;
   bool at_end = false;
 };
 
@@ -177,7 +179,8 @@ static void ForgetStream(State& state) {
   state.account.Reset();
   state.first.reset();
   state.no_wait_until_us = 0;
-  state.warned_damaged = state.warned_of_caps = false;
+  state.here_at_us = g_get_monotonic_time();
+  state.warned_damaged = state.warned_of_caps = state.warned_absent = false;
   state.at_end = false;
 }
 
@@ -331,6 +334,22 @@ static GstFlowReturn Handle(GstLidarNatsSrc* self, Subscriber::Event event, Deli
   return state.at_end ? GST_FLOW_EOS : flow;
 }
 
+/// One warning, until there is a server again.
+static void NoteAbsence(State& state) {
+  const lidar::nats::ConnectionState connection = state.subscriber->connection();
+  const gint64 now = g_get_monotonic_time();
+  if (connection.connected()) {
+    state.here_at_us = now;
+    state.warned_absent = false;
+  } else if (!connection.closed &&
+             now - state.here_at_us > std::chrono::microseconds(lidar::nats::kAbsence).count() &&
+             !std::exchange(state.warned_absent, true)) {
+    state.watch->Warn("No NATS server answers at " +
+                      lidar::nats::WithoutUser(state.now.nats.connection.url) +
+                      "; it is tried again.");
+  }
+}
+
 static GstFlowReturn Create(GstPushSrc* push, GstBuffer** out) {
   auto* self = GST_LIDAR_NATS_SRC(push);
   State& state = StateOf(self);
@@ -340,6 +359,7 @@ static GstFlowReturn Create(GstPushSrc* push, GstBuffer** out) {
     Delivery delivery;
     const Subscriber::Event event = state.subscriber->Next(kPoll, &delivery);
     state.account.NoteSubscriber(*state.subscriber);
+    NoteAbsence(state);
     const GstFlowReturn flow = Handle(self, event, std::move(delivery), out);
     if (flow != GST_FLOW_CUSTOM_SUCCESS) return flow;
   }

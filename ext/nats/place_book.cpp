@@ -9,6 +9,8 @@ namespace {
 
 constexpr std::size_t kMaxRuns = 8;
 constexpr std::size_t kMaxSpans = 256;  // of a run
+/// No stream loses more at once, days of it: so large a jump is somebody's invention.
+constexpr std::uint64_t kMaxMissing = 100'000'000;
 
 }  // namespace
 
@@ -31,6 +33,7 @@ PlaceBook::Verdict PlaceBook::Note(const Place& place) {
   verdict.late = behind != spans.end();
   verdict.fills_gap = verdict.late && span != spans.end();
   if (!verdict.late && span != spans.end()) verdict.missing = n - span->second - 1;
+  if (verdict.missing > kMaxMissing) verdict.missing = 0;
   // Beside what is there, or alone.
   if (span != spans.end() && span->second + 1 == n)
     span->second = n;

@@ -131,15 +131,15 @@ void Publisher::Add(gst::BufferPtr buffer, const StreamFormat::Ptr& format) {
   wake_.notify_all();
 }
 
-bool Publisher::Drain(Duration timeout) {
+Publisher::Drained Publisher::Drain(Duration timeout) {
   Lock lock(mutex_);
   draining_ = true;
   wake_.notify_all();
   const unsigned before = interrupts_;
-  drained_.wait_for(lock, timeout, [&] {
-    return !draining_ || interrupted_ || interrupts_ != before || stopping_;
-  });
-  return !std::exchange(draining_, false);
+  const auto interrupted = [&] { return interrupted_ || interrupts_ != before || stopping_; };
+  drained_.wait_for(lock, timeout, [&] { return !draining_ || interrupted(); });
+  if (!std::exchange(draining_, false)) return Drained::kAll;
+  return interrupted() ? Drained::kInterrupted : Drained::kTimeout;
 }
 
 void Publisher::Interrupt(bool on) {
@@ -205,9 +205,12 @@ void Publisher::Step(Lock* lock) {
   NoteConnection(state);
   if (settings_.keep_trying && (!connection_ || state.closed)) return OpenAgain(lock);
   if (!state.connected()) {
+    if (!state.closed && Clock::now() - here_at_ > kAbsence)
+      Tell(lock, "No NATS server answers at " + WithoutUser(settings_.connection.url));
     wake_.wait_for(*lock, kPatrol);
     return;
   }
+  here_at_ = Clock::now();
   RetryAfterReconnect(lock);
   if (stopping_) return;
   const auto now = Clock::now();

@@ -63,8 +63,9 @@ class Publisher : public std::enable_shared_from_this<Publisher> {
 
   /// Never waits.
   void Add(gst::BufferPtr buffer, const StreamFormat::Ptr& format);
-  /// Waits until all is sent and, with JetStream, acknowledged. False at a timeout or Interrupt().
-  bool Drain(Duration timeout);
+  enum class Drained { kAll, kTimeout, kInterrupted };
+  /// Waits until all is sent and, with JetStream, acknowledged.
+  Drained Drain(Duration timeout);
   void Interrupt(bool on);
 
   PublisherCounters counters() const;
@@ -130,8 +131,9 @@ class Publisher : public std::enable_shared_from_this<Publisher> {
   StreamFormat::Ptr sent_format_;  // the last that went out
   Clock::time_point config_at_{};  // when it did
   std::uint64_t bytes_since_config_ = 0;
-  Clock::time_point retry_at_{};  // not before: the stream is not there
-  Clock::time_point open_at_{};   // not before: the server has refused us
+  Clock::time_point retry_at_{};              // not before: the stream is not there
+  Clock::time_point open_at_{};               // not before: the server has refused us
+  Clock::time_point here_at_ = Clock::now();  // when there was a server last, or we began
   Backoff refusals_{std::chrono::seconds(1), std::chrono::seconds(16)};
   unsigned connections_before_ = 0;  // of the connections that were
   std::uint64_t errors_before_ = 0;

@@ -117,6 +117,29 @@ TEST_F(NatsErrors, ABufferThatTheServerDoesNotTakeIsCounted) {
   EXPECT_EQ(sender.stat("messages-too-large"), 8U);
 }
 
+TEST_F(NatsErrors, AServerThatIsNotThereIsToldOfByBothEnds) {
+  const std::string away = " url=nats://me:s3cret@127.0.0.1:1 ";
+  for (const std::string& pipeline :
+       {"natssrc name=n" + away + "! fakesink name=see",
+        kLive + "! lidarenc" + kSee + "! natssink name=n drain-timeout=100000000" + away}) {
+    NatsPipeline p(pipeline);
+    p.Play();
+    const std::string warning = p.WaitForWarning();
+    EXPECT_EQ(warning.rfind("No NATS server answers at nats://127.0.0.1:1; ", 0), 0U) << warning;
+  }
+}
+
+TEST_F(NatsErrors, AStreamThatReachesNoServerEndsWithAnError) {
+  NatsPipeline sender(kQuick + "num-buffers=8 ! lidarenc" + kSee +
+                      "! natssink name=n sync=false drain-timeout=100000000 "
+                      "url=nats://127.0.0.1:1");
+  sender.Play();
+  EXPECT_EQ(sender.WaitForEnd(),
+            "None of 8 messages reached a NATS server. Start one, or set url.");
+  sender.Stop();
+  EXPECT_EQ(sender.stat("messages-dropped"), 8U) << "at the stop";
+}
+
 TEST_F(NatsErrors, AWrongTokenIsAnErrorAndTheRightOneIsTaken) {
   server_.Start({"--auth", "s3cret"});
   for (const std::string end : {" ! fakesink name=see", ""}) {
