@@ -41,6 +41,22 @@ TEST(ReferenceKeeper, LetsOldSlicesGoWhereTheyAreTooLargeAndRemembersNewOnes) {
   EXPECT_GT(keeper.bytes(), ReferenceKeeper::kMostBytes / 4);
 }
 
+TEST(ReferenceKeeper, ForgetsSlicesThatAreNeverAcknowledgedOnceALaterOneIs) {
+  const BlockMemoryPtr block = Block(1024);
+  ASSERT_GT(200 * block->bytes(), ReferenceKeeper::kMostBytes);
+  ReferenceKeeper keeper;
+  keeper.set_key_interval({});
+  keeper.OnAcknowledged(Time{0s}, kOneReceiver, 0, UINT32_MAX);
+  for (std::uint32_t scan = 1; scan <= 400; ++scan) {
+    const Time now{scan * 100ms};
+    ASSERT_TRUE(keeper.Begin(now, {scan, 0, 1})) << scan;
+    if (scan > 2) ASSERT_TRUE(keeper.HasReference()) << scan;
+    keeper.OnEncoded({block});
+    if (scan % 2 == 0) keeper.OnAcknowledged(now, kOneReceiver, scan, 0);
+    ASSERT_LE(keeper.bytes(), 3 * block->bytes()) << scan;
+  }
+}
+
 TEST(ReferenceKeeper, RefersToNoSliceWhoseNameCameTwice) {
   for (const bool twice : {false, true}) {
     ReferenceKeeper keeper;

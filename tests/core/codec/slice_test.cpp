@@ -131,6 +131,15 @@ TEST(RangeSlices, ShrinkWithEveryEffort) {
                                              "range-mixing3"}));
 }
 
+TEST(IntensityScale, IsTheSmallestThatHoldsTheLargestIntensity) {
+  const std::pair<float, FullScale> cases[] = {
+      {0.0F, FullScale::kOne},      {1.0F, FullScale::kOne},    {1.5F, FullScale::kByte},
+      {254.0F, FullScale::kByte},   {255.0F, FullScale::kByte}, {256.0F, FullScale::kWord},
+      {65'535.0F, FullScale::kWord}};
+  for (const auto& [largest, full] : cases)
+    EXPECT_EQ(IntensityScale::Fitting(largest), full) << largest;
+}
+
 /// Two blocks of a slice, the second of which begins at `second` and has `bits` of intensity.
 std::vector<std::uint8_t> TwoBlocks(std::uint32_t second, unsigned bits) {
   const SensorModel model = test::RoomSensor();

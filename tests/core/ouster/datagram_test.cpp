@@ -99,7 +99,10 @@ TEST(Datagrams, ComeOutOfEveryKindOfFrame) {
   sll2.insert(sll2.end(), v6.begin(), v6.end());
   Bytes loopback(4);
   loopback.insert(loopback.end(), v4.begin(), v4.end());
+  Bytes offloaded = v4;  // captured before the network card filled in the length
+  offloaded[2] = offloaded[3] = 0;
   const std::vector<std::pair<LinkType, Bytes>> frames = {
+      {LinkType::kIpv4, offloaded},
       {LinkType::kEthernet, Ethernet(v4, 0x0800)},
       {LinkType::kEthernet, Ethernet(v6, 0x86dd)},
       {LinkType::kEthernet, Ethernet(v4, 0x0800, 2)},

@@ -85,6 +85,26 @@ TEST(AdaptiveModel, KeepsWhatItKnowsOfTheSceneWhereTheModeChangesWithinAGeometry
   EXPECT_NEAR(Bytes(model, slice) / fit, 1, 1e-6);
 }
 
+TEST(AdaptiveModel, KnowsFromThinnedScansWhatTheIntensityOfAWholeOneTakes) {
+  ModeCoefficients fit{{11, -0.5, 0, 0}};
+  fit.intensity = {9, 1};
+  AdaptiveModel model(AdaptiveCoefficients{{}, fit});
+  const Settings settings{0.02, 4, 0};
+  const PredictedSize whole = model.Predict(Slice(0, 0), settings);
+  constexpr double kKept = 1.0 / 16;
+  for (std::uint32_t scan = 0; scan < 30; ++scan) {
+    for (std::uint32_t i = 0; i < kSlices; ++i) {
+      EncodedSize encoded{DataSize::Bytes(static_cast<std::int64_t>(kKept * whole.total())), 0.02,
+                          1};
+      encoded.keep_fraction = kKept;
+      model.OnEncoded(Slice(scan, i), settings, encoded);
+    }
+  }
+  const PredictedSize learned = model.Predict(Slice(30, 0), settings);
+  EXPECT_GT(learned.intensity_bytes, whole.intensity_bytes / 2);
+  EXPECT_LT(learned.intensity_bytes, whole.intensity_bytes * 2);
+}
+
 TEST(AdaptiveModel, TakesNoPartOfASliceForNothingAfterManyMovesOfTheStep) {
   constexpr unsigned kBits = 4;
   ModeCoefficients fit{{11, -0.5, 0, 0}};

@@ -310,6 +310,25 @@ TEST_P(Tracking, LowersTheIntensityBeforeItSkips) {
   EXPECT_GE(bits, 4U);
 }
 
+TEST(RateController, TellsOfBoundsOfWhichOnlyTheMaximumHasMoved) {
+  SyntheticCodec::Parameters standing;
+  standing.drift = 0;
+  Stream run(standing);
+  for (std::uint32_t i = 0; i < 30; ++i) run.One(i, 4e6);
+  while (run.controller.TakeChangedBounds()) {
+  }
+  const RateBounds before = run.controller.bounds();
+  ControllerParameters finer = Parameters();
+  finer.limits.finest_step_m /= 4;
+  run.controller.SetParameters(finer);
+  run.One(30, 4e6);
+  const auto told = run.controller.TakeChangedBounds();
+  ASSERT_TRUE(told);
+  EXPECT_GT(told->max.bits_per_second(), 1.1 * before.max.bits_per_second());
+  EXPECT_NEAR(told->min / before.min, 1, 0.03);
+  EXPECT_NEAR(told->nominal / before.nominal, 1, 0.03);
+}
+
 TEST(RateController, SpendsWhatSlicesWithoutReturnsLeave) {
   SyntheticCodec::Parameters p;
   p.noise = 0;

@@ -43,6 +43,17 @@ TEST(ScanPlan, SkipsOnlyWhenMoreThanATenthOfAScanIsOwed) {
   EXPECT_TRUE(PlanScan(in, DegradationPreference::kMaintainAccuracy).skip);
 }
 
+TEST(ScanPlan, ThinsToASixteenthAtMostAndSkipsBelow) {
+  ScanPlanInputs in = Inputs(60.0 / 8, 0);
+  ScanPlan plan = PlanScan(in, DegradationPreference::kMaintainFramerate);
+  EXPECT_DOUBLE_EQ(plan.keep_fraction, 1.0 / 8);
+  EXPECT_FALSE(plan.skip);
+  in.budget = 60.0 / 50;
+  plan = PlanScan(in, DegradationPreference::kMaintainFramerate);
+  EXPECT_DOUBLE_EQ(plan.keep_fraction, 1.0 / 16);
+  EXPECT_TRUE(plan.skip);
+}
+
 TEST(ThinningPattern, KeepsTheShareEvenlyAndNeverNothing) {
   EXPECT_EQ(ThinningPattern(6, 0.5), (std::vector<bool>{false, true, false, true, false, true}));
   EXPECT_EQ(ThinningPattern(3, 0.01), (std::vector<bool>{false, true, false}));

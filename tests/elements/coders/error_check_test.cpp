@@ -61,6 +61,19 @@ TEST_P(EitherCoder, ReportsTheDistancesThatATestMeasuresInRangeGeometry) {
   EXPECT_EQ(codec.Warnings(), 0U);
 }
 
+TEST_P(EitherCoder, ChecksAtOnceWhereMoreIsToBeCheckedThanBefore) {
+  const SensorModel model = test::RoomSensor();
+  CheckedCodec codec(GetParam(), "error-check=10000");
+  codec.SetCaps(OrganisedInfo(model, 64));
+  for (guint i = 0; i < 4; ++i) codec.Push(OrganisedBuffer(model, 64, {0, i, 8, 64 * i}));
+  while (codec.PopCheck()) {
+  }
+  const ElementPtr enc(gst_bin_get_by_name(GST_BIN(codec.harness()->element), "enc"));
+  g_object_set(enc.get(), "error-check", 1, nullptr);
+  for (guint i = 4; i < 6; ++i) codec.Push(OrganisedBuffer(model, 64, {0, i, 8, 64 * i}));
+  EXPECT_TRUE(codec.PopCheck());
+}
+
 #ifdef HAVE_DRACO
 CloudInfo PlainInfo(guint points) {
   CloudInfo info;

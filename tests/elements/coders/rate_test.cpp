@@ -47,6 +47,73 @@ TEST_P(EitherCoder, KeepsToATargetBitrateThatComesFromDownstream) {
   EXPECT_EQ(CountGaps(h.get()), 0U);
 }
 
+guint StatOf(GstHarness* h, const char* name) {
+  const ElementPtr enc(gst_bin_get_by_name(GST_BIN(h->element), "enc"));
+  const StructurePtr stats(StatsOf(enc.get()));
+  guint value = 0;
+  EXPECT_TRUE(gst_structure_get_uint(stats.get(), name, &value)) << name;
+  return value;
+}
+
+void SetTarget(GstHarness* h, guint bps) {
+  const GstLidarTargetBitrate target{bps, 0, 0, 0, 0, 0, "update"};
+  gst_harness_push_upstream_event(h, gst_lidar_event_new_target_bitrate(&target));
+}
+
+TEST_P(EitherCoder, SendsNextToNothingWhereTheTargetBitrateIsZero) {
+  const SensorModel model = test::RoomSensor();
+  const Harness h = Encoder(GetParam());
+  SetCaps(h.get(), OrganisedInfo(model, 64));
+  SetTarget(h.get(), 0);
+  const auto sizes = ScanSizes(h.get(), model, 20);
+  EXPECT_EQ(std::count(sizes.begin() + 2, sizes.end(), gsize{0}), 18);
+}
+
+TEST_P(EitherCoder, ForgetsTheTargetBitrateOfTheRunBefore) {
+  const SensorModel model = test::RoomSensor();
+  const Harness h = Encoder(GetParam(), "bitrate=3000000");
+  SetCaps(h.get(), OrganisedInfo(model, 64));
+  SetTarget(h.get(), 640'000);
+  ScanSizes(h.get(), model, 1);
+  EXPECT_EQ(StatOf(h.get(), "target-bitrate"), 640'000U);
+  ASSERT_EQ(gst_element_set_state(h->element, GST_STATE_NULL), GST_STATE_CHANGE_SUCCESS);
+  gst_harness_play(h.get());
+  gst_harness_push_event(h.get(), gst_event_new_stream_start("again"));
+  SetCaps(h.get(), OrganisedInfo(model, 64));
+  ScanSizes(h.get(), model, 1);
+  EXPECT_EQ(StatOf(h.get(), "target-bitrate"), 3'000'000U);
+}
+
+TEST_P(EitherCoder, TellsItsBitrateFromTheFirstScanOn) {
+  const SensorModel model = test::RoomSensor();
+  const Harness h = Encoder(GetParam());
+  SetCaps(h.get(), OrganisedInfo(model, 64));
+  const auto sizes = ScanSizes(h.get(), model, 2);
+  // A scan is counted with the next: ten in a second.
+  EXPECT_NEAR(StatOf(h.get(), "bitrate"), 80.0 * static_cast<double>(sizes[0]),
+              0.2 * 80 * static_cast<double>(sizes[0]));
+}
+
+TEST_P(EitherCoder, MarksTheFirstSliceBehindAFlush) {
+  const SensorModel model = test::RoomSensor();
+  const Harness h = Encoder(GetParam());
+  SetCaps(h.get(), OrganisedInfo(model, 64));
+  const auto next = [&](guint i) {
+    const BufferPtr slice(
+        gst_harness_push_and_pull(h.get(), OrganisedBuffer(model, 64, {0, i, 8, 64 * i})));
+    return GST_BUFFER_IS_DISCONT(slice.get());
+  };
+  next(0);
+  EXPECT_FALSE(next(1));
+  gst_harness_push_event(h.get(), gst_event_new_flush_start());
+  gst_harness_push_event(h.get(), gst_event_new_flush_stop(TRUE));
+  GstSegment segment;
+  gst_segment_init(&segment, GST_FORMAT_TIME);
+  gst_harness_push_event(h.get(), gst_event_new_segment(&segment));
+  EXPECT_TRUE(next(2));
+  EXPECT_FALSE(next(3));
+}
+
 TEST_P(EitherCoder, TellsDownstreamWhatItsErrorBoundNeeds) {
   const SensorModel model = test::RoomSensor();
   const Harness h = Encoder(GetParam());

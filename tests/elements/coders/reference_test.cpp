@@ -74,6 +74,15 @@ class StaticSensor : public ::testing::Test {
     gst_element_sync_state_with_parent(dec.get());
   }
 
+  /// A second branch behind the tee `t`.
+  void AddBranch() {
+    GstElement* sink = gst_element_factory_make("fakesink", nullptr);
+    g_object_set(sink, "sync", FALSE, "async", FALSE, nullptr);
+    gst_bin_add(GST_BIN(sender_->element), sink);
+    gst_element_sync_state_with_parent(sink);
+    ASSERT_TRUE(gst_element_link(Get("t", sender_).get(), sink));
+  }
+
   bool acknowledges_ = true;
 
  private:
@@ -151,6 +160,15 @@ TEST_F(StaticSensor, IsCodedSliceBySliceBehindATee) {
   Start("", "tee name=t t. ! fakesink sync=false async=false t. ! ");
   Scans(4);
   EXPECT_EQ(Mode(), "range-mixing1");
+}
+
+TEST_F(StaticSensor, IsCodedSliceBySliceOnceABranchOfATeeIsAdded) {
+  Start("", "tee name=t ! ");
+  Scans(4);
+  ASSERT_EQ(Mode(), "range-temporal1");
+  AddBranch();
+  Scan();
+  EXPECT_EQ(Mode(), "range-mixing1") << "the new branch has none of what was sent before";
 }
 
 TEST_F(StaticSensor, IsCodedByWhatIsThereWhateverWasLost) {

@@ -262,7 +262,8 @@ TEST(OusterSeek, TakesTheImuAlongOnce) {
   WatchSink(pipeline.get(), "samples", &samples);
   gst_element_set_state(pipeline.get(), GST_STATE_PLAYING);
   AwaitEnd(pipeline.get());
-  const guint all = static_cast<guint>(samples.times.size());
+  const std::vector<GstClockTime> first_pass = samples.times;
+  const auto all = static_cast<guint>(first_pass.size());
   const GstClockTime middle = 150 * GST_MSECOND;
   ASSERT_TRUE(gst_element_seek_simple(pipeline.get(), GST_FORMAT_TIME, GST_SEEK_FLAG_FLUSH,
                                       static_cast<gint64>(middle)));
@@ -274,6 +275,9 @@ TEST(OusterSeek, TakesTheImuAlongOnce) {
   }
   EXPECT_NEAR(static_cast<double>(samples.times.size()), all / 2.0, 2.0);
   EXPECT_GE(samples.times.front(), middle);
+  // Their times are those of the first pass.
+  ASSERT_LE(samples.times.size(), first_pass.size());
+  EXPECT_TRUE(std::equal(samples.times.rbegin(), samples.times.rend(), first_pass.rbegin()));
   gst_element_set_state(pipeline.get(), GST_STATE_NULL);
 }
 

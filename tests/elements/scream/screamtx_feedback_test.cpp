@@ -193,9 +193,19 @@ TEST_F(ScreamTx, PassesForeignRtcpAndKeepsItsOwn) {
   const auto ccfb = scream::BuildCcfb(ours);
   auto compound = receiver_report;
   compound.insert(compound.end(), ccfb.begin(), ccfb.end());
-  ASSERT_EQ(gst_harness_push(rtcp.get(), FromBytes(compound)), GST_FLOW_OK);
+  // rtpbin behind it computes round trips from the time, and knows the sender by the address.
+  GstBuffer* datagram = FromBytes(compound);
+  GST_BUFFER_PTS(datagram) = 7 * GST_SECOND;
+  const std::unique_ptr<GSocketAddress, gst::GObjectUnref> peer(
+      g_inet_socket_address_new_from_string("192.0.2.1", 5005));
+  gst_buffer_add_net_address_meta(datagram, peer.get());
+  ASSERT_EQ(gst_harness_push(rtcp.get(), datagram), GST_FLOW_OK);
   const BufferPtr out(gst_harness_pull(rtcp.get()));
   EXPECT_EQ(ToBytes(out.get()), receiver_report);
+  EXPECT_EQ(GST_BUFFER_PTS(out.get()), 7 * GST_SECOND);
+  const GstNetAddressMeta* meta = gst_buffer_get_net_address_meta(out.get());
+  ASSERT_TRUE(meta);
+  EXPECT_EQ(meta->addr, peer.get());
 
   ours.blocks[0].ssrc = 0x9999;  // of another sender behind us
   const auto theirs = scream::BuildCcfb(ours);
