@@ -9,8 +9,9 @@ usage() {
   cat <<EOF
 Usage: tests/mutate.sh [--quick | --check] [--folder DIR] [NAME...]
 
-Each tests/mutants/NAME.patch is a bug of a line or two. It is applied to a copy of the tree, what
-changed is built, and the suites core and elements run until a test fails. The line "Tests:" of a
+Each tests/mutants/NAME.patch is a bug of a line or two. tests/plant.py finds the code it changes,
+wherever that stands, in a copy of the tree; what changed is built, and the suites core and elements
+run until a test fails. The line "Tests:" of a
 patch names the tests that are meant to notice it; they run first.
 
   --quick         run only the tests that the patches name
@@ -46,14 +47,7 @@ for name in "${names[@]-*}"; do
 done
 
 if [ "$check" = yes ]; then
-  stale=0
-  for patch in "${patches[@]}"; do
-    patch -d "$root" -p1 --fuzz=2 -s -f --dry-run <"$patch" >/dev/null 2>&1 && continue
-    echo "$(basename "$patch" .patch) does not apply"
-    stale=$((stale + 1))
-  done
-  echo "$stale of ${#patches[@]} do not apply"
-  [ "$stale" = 0 ]
+  "$here/plant.py" --check "$root" "${patches[@]}"
   exit
 fi
 
@@ -79,7 +73,7 @@ restore() {
   local file
   while IFS= read -r file; do
     cp "$root/$file" "$tree/$file" || return 1
-  done < <(sed -n 's|^+++ b/||p' "$1")
+  done <"$folder/planted"
 }
 
 compile() {
@@ -115,8 +109,7 @@ first_failure() {
 try_patch() {
   local patch=$1 tests failed wanted
   tests=$(sed -n 's/^Tests: //p;/^---/q' "$patch")
-  patch -d "$tree" -p1 --fuzz=2 -s -f --dry-run <"$patch" >/dev/null 2>&1 || { echo "DOES NOT APPLY"; return; }
-  patch -d "$tree" -p1 --fuzz=2 -s -f --no-backup-if-mismatch <"$patch" >/dev/null
+  "$here/plant.py" "$tree" "$patch" >"$folder/planted" 2>/dev/null || { echo "DOES NOT FIT"; return; }
   if [ -n "$tests" ]; then
     # shellcheck disable=SC2086
     mapfile -t wanted < <(targets $tests)
@@ -146,7 +139,7 @@ fi
 noticed=0
 for patch in "${patches[@]}"; do
   outcome=$(try_patch "$patch")
-  restore "$patch" || exit 2
+  restore || exit 2
   printf '%-36s %s\n' "$(basename "$patch" .patch)" "$outcome"
   case $outcome in noticed*) noticed=$((noticed + 1)) ;; esac
 done

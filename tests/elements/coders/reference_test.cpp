@@ -167,6 +167,7 @@ TEST_F(StaticSensor, IsCodedSliceBySliceOnceABranchOfATeeIsAdded) {
   Scans(4);
   ASSERT_EQ(Mode(), "range-temporal1");
   AddBranch();
+  g_usleep(G_USEC_PER_SEC / 10);  // so often the encoder looks at what is behind it
   Scan();
   EXPECT_EQ(Mode(), "range-mixing1") << "the new branch has none of what was sent before";
 }
