@@ -216,10 +216,10 @@ count() { if [ "$1" = 0 ]; then passed=$((passed + 1)); else failed=$((failed + 
 
 [ "$install" = no ] || "$here/install.sh" || exit 1
 case $install,${suites[*]} in
-  yes,browser | yes,peers) "$here/install.sh" "$here/${suites[*]}/packages.txt" || exit 1 ;;
+  yes,browser | yes,peers) "$here/install.sh" "$here/system/${suites[*]}/packages.txt" || exit 1 ;;
 esac
 if [ "$install" = yes ] && [ "${suites[*]}" = browser ]; then
-  for folder in "$root/ext/web/page" "$here/browser"; do
+  for folder in "$root/ext/web/page" "$here/system/browser"; do
     # Newer npm refuses a lock file without the optional packages of all platforms; what it has still
     # says which versions are taken.
     (cd "$folder" && { npm ci --silent --no-audit --no-fund || npm install --no-save --silent --no-audit --no-fund; }) ||

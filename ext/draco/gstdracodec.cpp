@@ -12,10 +12,10 @@
 #include <optional>
 
 #include "ext/draco/slice_coder.h"
-#include "gst/common/cloud_info.h"
 #include "gst/common/element_class.h"
-#include "gst/common/gstlidardecoder.h"
 #include "gst/common/properties.h"
+#include "gst/lidar/cloud_info.h"
+#include "gst/lidar/gstlidardecoder.h"
 
 namespace {
 

@@ -15,11 +15,11 @@
 
 #include "ext/draco/draco_check.h"
 #include "ext/draco/slice_coder.h"
-#include "gst/common/cloud_info.h"
 #include "gst/common/element_class.h"
 #include "gst/common/enum_type.h"
-#include "gst/common/gstlidarencoder.h"
 #include "gst/common/properties.h"
+#include "gst/lidar/cloud_info.h"
+#include "gst/lidar/gstlidarencoder.h"
 #include "src/cloud/coded_geometry.h"
 #include "src/codec/range_header.h"
 #include "src/rate/error_bound.h"

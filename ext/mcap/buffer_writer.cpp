@@ -5,9 +5,9 @@
 #include <utility>
 
 #include "gst/common/buffer_map.h"
-#include "gst/common/cloud_info.h"
-#include "gst/common/gstlidar.h"
 #include "gst/common/pose_covariance.h"
+#include "gst/lidar/cloud_info.h"
+#include "gst/lidar/gstlidar.h"
 #include "src/cdr/coded_slice.h"
 #include "src/cdr/motion_samples.h"
 #include "src/cdr/point_cloud2.h"

@@ -22,9 +22,9 @@
 #include "ext/mcap/timeline.h"
 #include "gst/common/element_class.h"
 #include "gst/common/enum_type.h"
-#include "gst/common/gstlidar.h"
 #include "gst/common/properties.h"
 #include "gst/common/stats.h"
+#include "gst/lidar/gstlidar.h"
 
 GST_DEBUG_CATEGORY_STATIC(gst_lidar_mcap_sink_debug);
 #define GST_CAT_DEFAULT gst_lidar_mcap_sink_debug

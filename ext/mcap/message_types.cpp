@@ -5,8 +5,8 @@
 #include <utility>
 
 #include "gst/common/caps_text.h"
-#include "gst/common/gstlidar.h"
 #include "gst/common/refs.h"
+#include "gst/lidar/gstlidar.h"
 #include "src/cdr/coded_slice.h"
 #include "src/cdr/motion_samples.h"
 #include "src/cdr/ros_types.h"

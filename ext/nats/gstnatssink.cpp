@@ -18,9 +18,9 @@
 #include "ext/nats/nats_settings.h"
 #include "ext/nats/publisher.h"
 #include "gst/common/element_class.h"
-#include "gst/common/gstlidar.h"
 #include "gst/common/refused_caps.h"
 #include "gst/common/stats.h"
+#include "gst/lidar/gstlidar.h"
 
 GST_DEBUG_CATEGORY_STATIC(gst_lidar_nats_sink_debug);
 #define GST_CAT_DEFAULT gst_lidar_nats_sink_debug

@@ -20,8 +20,8 @@
 #include "ext/nats/source_account.h"
 #include "ext/nats/subscriber.h"
 #include "gst/common/element_class.h"
-#include "gst/common/gstlidar.h"
 #include "gst/common/stats.h"
+#include "gst/lidar/gstlidar.h"
 
 GST_DEBUG_CATEGORY_STATIC(gst_lidar_nats_src_debug);
 #define GST_CAT_DEFAULT gst_lidar_nats_src_debug

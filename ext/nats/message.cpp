@@ -8,7 +8,7 @@
 
 #include "ext/nats/stream_format.h"
 #include "gst/common/buffer_map.h"
-#include "gst/common/gstlidar.h"
+#include "gst/lidar/gstlidar.h"
 
 namespace lidar::nats {
 namespace {

@@ -6,8 +6,8 @@
 #include <utility>
 
 #include "gst/common/caps_text.h"
-#include "gst/common/cloud_info.h"
-#include "gst/common/gstlidar.h"
+#include "gst/lidar/cloud_info.h"
+#include "gst/lidar/gstlidar.h"
 #include "src/base/crc.h"
 
 namespace lidar::nats {

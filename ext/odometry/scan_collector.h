@@ -3,8 +3,8 @@
 #pragma once
 #include <optional>
 
-#include "gst/common/cloud_info.h"
-#include "gst/common/gstlidar.h"
+#include "gst/lidar/cloud_info.h"
+#include "gst/lidar/gstlidar.h"
 #include "src/odometry/odometry.h"
 
 namespace lidar::gst {

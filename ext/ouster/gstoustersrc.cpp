@@ -20,8 +20,8 @@
 #include "ext/ouster/session.h"
 #include "ext/ouster/settings.h"
 #include "gst/common/element_class.h"
-#include "gst/common/gstlidar.h"
 #include "gst/common/properties.h"
+#include "gst/lidar/gstlidar.h"
 
 GST_DEBUG_CATEGORY(gst_lidar_ouster_src_debug);
 #define GST_CAT_DEFAULT gst_lidar_ouster_src_debug

@@ -8,8 +8,8 @@
 #include <utility>
 
 #include "ext/ouster/slice_buffer.h"
-#include "gst/common/gstlidar.h"
 #include "gst/common/refs.h"
+#include "gst/lidar/gstlidar.h"
 #include "src/base/byte_writer.h"
 #include "src/ouster/imu_packet.h"
 

@@ -2,7 +2,7 @@
 // Registers the elements of the plugin.
 #include <curl/curl.h>
 
-#include "gst/common/gstlidar.h"
+#include "gst/lidar/gstlidar.h"
 
 GST_ELEMENT_REGISTER_DECLARE(ouster_src)
 

@@ -4,8 +4,8 @@
 #include <utility>
 #include <vector>
 
-#include "gst/common/cloud_info.h"
-#include "gst/common/gstlidar.h"
+#include "gst/lidar/cloud_info.h"
+#include "gst/lidar/gstlidar.h"
 
 namespace lidar::gst {
 GstClockTime ToClockTime(Time time) {

@@ -5,10 +5,10 @@
 #include <vector>
 
 #include "gst/common/buffer_map.h"
-#include "gst/common/cloud_info.h"
 #include "gst/common/coordinate_frames.h"
-#include "gst/common/gstlidar.h"
 #include "gst/common/pose_covariance.h"
+#include "gst/lidar/cloud_info.h"
+#include "gst/lidar/gstlidar.h"
 #include "src/cdr/motion_samples.h"
 
 namespace lidar::gst {

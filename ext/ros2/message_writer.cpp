@@ -3,8 +3,8 @@
 
 #include "gst/common/buffer_map.h"
 #include "gst/common/coordinate_frames.h"
-#include "gst/common/gstlidar.h"
 #include "gst/common/pose_covariance.h"
+#include "gst/lidar/gstlidar.h"
 #include "src/cdr/motion_samples.h"
 
 namespace lidar::gst {

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "gst/common/cloud_info.h"
+#include "gst/lidar/cloud_info.h"
 #include "src/cdr/messages.h"
 #include "src/cdr/point_cloud2.h"
 #include "src/cdr/ros_types.h"

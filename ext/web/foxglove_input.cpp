@@ -5,11 +5,11 @@
 #include <optional>
 
 #include "gst/common/buffer_map.h"
-#include "gst/common/cloud_info.h"
 #include "gst/common/element_class.h"
-#include "gst/common/gstlidar.h"
 #include "gst/common/properties.h"
 #include "gst/common/refused_caps.h"
+#include "gst/lidar/cloud_info.h"
+#include "gst/lidar/gstlidar.h"
 #include "src/foxglove/messages.h"
 
 GST_DEBUG_CATEGORY_STATIC(gst_lidar_foxglove_input_debug);

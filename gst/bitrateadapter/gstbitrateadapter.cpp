@@ -19,8 +19,8 @@
 
 #include "gst/bitrateadapter/encoder_bitrate.h"
 #include "gst/common/element_class.h"
-#include "gst/common/gstlidar.h"
 #include "gst/common/properties.h"
+#include "gst/lidar/gstlidar.h"
 
 GST_DEBUG_CATEGORY_STATIC(gst_lidar_bitrate_adapter_debug);
 #define GST_CAT_DEFAULT gst_lidar_bitrate_adapter_debug

@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "gst/common/gstlidar.h"
+#include "gst/lidar/gstlidar.h"
 
 namespace lidar::gst {
 

@@ -19,9 +19,9 @@
 
 #include "gst/common/element_class.h"
 #include "gst/common/enum_type.h"
-#include "gst/common/gstlidar.h"
 #include "gst/common/properties.h"
 #include "gst/common/stats.h"
+#include "gst/lidar/gstlidar.h"
 #include "gst/net/udp_batch.h"
 #include "gst/net/udp_element.h"
 

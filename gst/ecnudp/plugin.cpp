@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Plugin ecnudp: UDP with the ECN field set and read.
-#include "gst/common/gstlidar.h"
+#include "gst/lidar/gstlidar.h"
 
 GST_ELEMENT_REGISTER_DECLARE(ecnudpsrc)
 GST_ELEMENT_REGISTER_DECLARE(ecnudpsink)

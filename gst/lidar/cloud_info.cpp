@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "gst/common/cloud_info.h"
+#include "gst/lidar/cloud_info.h"
 
 #include <utility>
 

@@ -6,7 +6,7 @@
 #include <optional>
 #include <string>
 
-#include "gst/common/gstlidarcloud.h"
+#include "gst/lidar/gstlidarcloud.h"
 #include "src/cloud/point_fields.h"
 #include "src/cloud/sensor_model.h"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "gst/common/gstlidarcloud.h"
+#include "gst/lidar/gstlidarcloud.h"
 
 #include "src/cloud/point_fields.h"
 

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "gst/common/gstlidarcloudinfo.h"
+#include "gst/lidar/gstlidarcloudinfo.h"
 
 #include <cmath>
 #include <cstring>
 #include <limits>
 
-#include "gst/common/cloud_info.h"
+#include "gst/lidar/cloud_info.h"
 
 namespace {
 

@@ -1,17 +1,17 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "gst/common/gstlidardecoder.h"
+#include "gst/lidar/gstlidardecoder.h"
 
 #include <mutex>
 #include <optional>
 #include <utility>
 
 #include "gst/common/buffer_map.h"
-#include "gst/common/cloud_info.h"
 #include "gst/common/coder_pads.h"
 #include "gst/common/held_events.h"
 #include "gst/common/properties.h"
 #include "gst/common/refused_caps.h"
 #include "gst/common/stats.h"
+#include "gst/lidar/cloud_info.h"
 
 GST_DEBUG_CATEGORY_STATIC(gst_lidar_decoder_debug);
 #define GST_CAT_DEFAULT gst_lidar_decoder_debug

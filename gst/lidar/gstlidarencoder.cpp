@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "gst/common/gstlidarencoder.h"
+#include "gst/lidar/gstlidarencoder.h"
 
 #include <memory>
 #include <mutex>
@@ -7,14 +7,14 @@
 #include <string>
 
 #include "gst/common/coder_pads.h"
-#include "gst/common/encoder/cloud_input.h"
-#include "gst/common/encoder/error_report.h"
-#include "gst/common/encoder/receivers.h"
-#include "gst/common/encoder/settings.h"
-#include "gst/common/encoder/stats.h"
-#include "gst/common/encoder/vtable_coder.h"
 #include "gst/common/properties.h"
 #include "gst/common/refused_caps.h"
+#include "gst/lidar/encoder/cloud_input.h"
+#include "gst/lidar/encoder/error_report.h"
+#include "gst/lidar/encoder/receivers.h"
+#include "gst/lidar/encoder/settings.h"
+#include "gst/lidar/encoder/stats.h"
+#include "gst/lidar/encoder/vtable_coder.h"
 #include "src/rate/rate_loop.h"
 
 GST_DEBUG_CATEGORY_STATIC(gst_lidar_encoder_debug);

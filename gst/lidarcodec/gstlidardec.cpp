@@ -10,10 +10,10 @@
  */
 #include <optional>
 
-#include "gst/common/cloud_info.h"
 #include "gst/common/element_class.h"
-#include "gst/common/gstlidardecoder.h"
 #include "gst/common/properties.h"
+#include "gst/lidar/cloud_info.h"
+#include "gst/lidar/gstlidardecoder.h"
 #include "src/codec/cloud/cloud_decoder.h"
 #include "src/codec/slice_decoder.h"
 

@@ -17,11 +17,11 @@
 #include <optional>
 #include <vector>
 
-#include "gst/common/cloud_info.h"
 #include "gst/common/element_class.h"
 #include "gst/common/enum_type.h"
-#include "gst/common/gstlidarencoder.h"
 #include "gst/common/properties.h"
+#include "gst/lidar/cloud_info.h"
+#include "gst/lidar/gstlidarencoder.h"
 #include "gst/lidarcodec/lidarenc_coder.h"
 #include "src/base/time.h"
 #include "src/rate/error_bound.h"

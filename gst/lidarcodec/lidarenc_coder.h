@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "gst/common/cloud_info.h"
-#include "gst/common/gstlidarencoder.h"
+#include "gst/lidar/cloud_info.h"
+#include "gst/lidar/gstlidarencoder.h"
 #include "src/codec/cloud/cloud_decoder.h"
 #include "src/codec/cloud/cloud_encoder.h"
 #include "src/codec/effort_control.h"

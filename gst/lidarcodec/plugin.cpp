@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // The plugin lidarcodec: our own coder of spinning sensors' scans.
-#include "gst/common/gstlidar.h"
+#include "gst/lidar/gstlidar.h"
 
 GST_ELEMENT_REGISTER_DECLARE(lidardec)
 GST_ELEMENT_REGISTER_DECLARE(lidarenc)

@@ -7,7 +7,7 @@
 
 #include "gst/common/buffer_map.h"
 #include "gst/common/coordinate_frames.h"
-#include "gst/common/gstlidar.h"
+#include "gst/lidar/gstlidar.h"
 
 namespace lidar::gst {
 namespace {

@@ -7,8 +7,8 @@
 #include <optional>
 #include <string>
 
-#include "gst/common/cloud_info.h"
 #include "gst/common/refs.h"
+#include "gst/lidar/cloud_info.h"
 #include "src/base/time.h"
 #include "src/cdr/point_cloud2.h"
 #include "src/cloud/point_filter.h"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "gst/common/gstlidar.h"
-#include "gst/pointcloud/cloud_file_reader.h"
+#include "gst/lidar/gstlidar.h"
+#include "gst/pointcloud/parse/cloud_file_reader.h"
 
 GST_ELEMENT_REGISTER_DECLARE(pointcloudmerge)
 GST_ELEMENT_REGISTER_DECLARE(pointcloudfilter)

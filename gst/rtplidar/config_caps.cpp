@@ -8,8 +8,8 @@
 
 #include "gst/common/buffer_map.h"
 #include "gst/common/caps_text.h"
-#include "gst/common/gstlidar.h"
 #include "gst/common/refs.h"
+#include "gst/lidar/gstlidar.h"
 
 namespace lidar::gst {
 namespace {

@@ -20,10 +20,10 @@
 #include <utility>
 
 #include "gst/common/element_class.h"
-#include "gst/common/gstlidar.h"
 #include "gst/common/properties.h"
 #include "gst/common/refs.h"
 #include "gst/common/stats.h"
+#include "gst/lidar/gstlidar.h"
 #include "gst/rtplidar/base_stats.h"
 #include "gst/rtplidar/config_caps.h"
 #include "src/base/allowance.h"

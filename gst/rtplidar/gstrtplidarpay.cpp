@@ -13,12 +13,12 @@
 #include <mutex>
 
 #include "gst/common/element_class.h"
-#include "gst/common/gstlidar.h"
 #include "gst/common/latency.h"
 #include "gst/common/properties.h"
 #include "gst/common/refs.h"
 #include "gst/common/refused_caps.h"
 #include "gst/common/stats.h"
+#include "gst/lidar/gstlidar.h"
 #include "gst/rtplidar/base_stats.h"
 #include "gst/rtplidar/config_caps.h"
 #include "gst/rtplidar/pay_slices.h"

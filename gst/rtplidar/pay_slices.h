@@ -7,7 +7,7 @@
 #include <optional>
 #include <vector>
 
-#include "gst/common/gstlidar.h"
+#include "gst/lidar/gstlidar.h"
 #include "src/rtp/packetizer.h"
 #include "src/rtp/stream_config.h"
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // The plugin rtplidar: clouds over RTP.
-#include "gst/common/gstlidar.h"
+#include "gst/lidar/gstlidar.h"
 
 GST_ELEMENT_REGISTER_DECLARE(rtplidarpay)
 GST_ELEMENT_REGISTER_DECLARE(rtplidardepay)

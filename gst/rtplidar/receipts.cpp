@@ -3,7 +3,7 @@
 
 #include <gst/rtp/gstrtpbuffer.h>
 
-#include "gst/common/gstlidar.h"
+#include "gst/lidar/gstlidar.h"
 
 namespace lidar::gst {
 

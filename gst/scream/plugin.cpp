@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Plugin lidarscream: SCReAM v2 congestion control.
-#include "gst/common/gstlidar.h"
+#include "gst/lidar/gstlidar.h"
 #include "gst/scream/rx/gstscreamrx.h"
 #include "gst/scream/tx/gstscreamtx.h"
 

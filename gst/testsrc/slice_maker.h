@@ -6,8 +6,8 @@
 #include <string_view>
 #include <vector>
 
-#include "gst/common/cloud_info.h"
 #include "gst/common/refs.h"
+#include "gst/lidar/cloud_info.h"
 #include "src/synth/scanner.h"
 
 namespace lidar::gst {

@@ -6,7 +6,7 @@
 #include <cstring>
 #include <optional>
 
-#include "gst/common/cloud_info.h"
+#include "gst/lidar/cloud_info.h"
 #include "gst/view/canvas.h"
 #include "gst/view/cloud_reader.h"
 #include "gst/view/trail_map.h"

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "gst/common/gstlidar.h"
+#include "gst/lidar/gstlidar.h"
 
 namespace lidar::gst {
 

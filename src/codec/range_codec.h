@@ -7,14 +7,14 @@
 
 #include "src/base/byte_reader.h"
 #include "src/cloud/sensor_model.h"
-#include "src/codec/adaptive_coder.h"
 #include "src/codec/azimuth_alignment.h"
 #include "src/codec/block_store.h"
 #include "src/codec/integer_coder.h"
-#include "src/codec/mask_coder.h"
 #include "src/codec/mixing/mixing_codec.h"
 #include "src/codec/range_header.h"
 #include "src/codec/range_image.h"
+#include "src/codec/rans/adaptive_coder.h"
+#include "src/codec/rans/mask_coder.h"
 
 namespace lidar::codec {
 

@@ -2,8 +2,8 @@
 // Scenarios of one link with flows of others.
 #include <utility>
 
-#include "tests/core/scream/scenarios.h"
-#include "tests/support/simulated.h"
+#include "src/sim/scenarios.h"
+#include "src/sim/simulated_time.h"
 
 namespace lidar::scream::test {
 namespace {

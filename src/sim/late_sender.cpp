@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "tests/core/loop/late_sender.h"
+#include "src/sim/late_sender.h"
 
 #include <algorithm>
 #include <cmath>
@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "tests/core/scream/simulation.h"
+#include "src/sim/simulation.h"
 
 namespace lidar::loop {
 namespace {

@@ -10,8 +10,8 @@
 #include "src/link/capacity.h"
 #include "src/link/oracle.h"
 #include "src/scream/parameters.h"
-#include "tests/core/loop/loop_source.h"
-#include "tests/core/scream/simulation.h"
+#include "src/sim/loop_source.h"
+#include "src/sim/simulation.h"
 
 namespace lidar::loop {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "tests/core/loop/loop_goals.h"
+#include "src/sim/loop_goals.h"
 
 #include <cstdio>
 

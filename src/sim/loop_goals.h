@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "tests/core/loop/loop_case.h"
+#include "src/sim/loop_case.h"
 
 namespace lidar::loop {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "tests/core/loop/loop_source.h"
+#include "src/sim/loop_source.h"
 
 #include "src/rate/model_file.h"
 

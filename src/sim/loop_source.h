@@ -5,8 +5,8 @@
 #include <optional>
 
 #include "src/rate/rate_controller.h"
-#include "tests/core/rate/synthetic_codec.h"
-#include "tests/core/scream/simulation.h"
+#include "src/sim/simulation.h"
+#include "src/sim/synthetic_codec.h"
 
 namespace lidar::loop {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "tests/core/scream/parameter_options.h"
+#include "src/sim/parameter_options.h"
 
 #include <cstdlib>
 #include <map>

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "tests/core/scream/scenarios.h"
+#include "src/sim/scenarios.h"
 
 #include <algorithm>
 #include <cstdlib>
 
-#include "tests/support/simulated.h"
+#include "src/sim/simulated_time.h"
 
 namespace lidar::scream::test {
 namespace {

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "tests/core/scream/simulation.h"
+#include "src/sim/simulation.h"
 
 namespace lidar::scream::test {
 

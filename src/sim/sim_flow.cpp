@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "tests/core/scream/sim_flow.h"
+#include "src/sim/sim_flow.h"
 
 #include <algorithm>
 

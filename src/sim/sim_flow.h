@@ -9,7 +9,7 @@
 
 #include "src/link/bottleneck.h"
 #include "src/scream/target_notifier.h"
-#include "tests/core/scream/simulation.h"
+#include "src/sim/simulation.h"
 
 namespace lidar::scream::test {
 

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "tests/core/scream/simulation.h"
+#include "src/sim/simulation.h"
 
 #include <algorithm>
 #include <map>
 #include <memory>
 
-#include "tests/core/scream/sim_flow.h"
-#include "tests/core/scream/tcp_flow.h"
+#include "src/sim/sim_flow.h"
+#include "src/sim/tcp_flow.h"
 
 namespace lidar::scream::test {
 

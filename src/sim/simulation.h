@@ -9,7 +9,7 @@
 #include "src/link/bottleneck.h"
 #include "src/scream/controller.h"
 #include "src/scream/feedback/feedback_generator.h"
-#include "tests/core/scream/tcp_window.h"
+#include "src/sim/tcp_window.h"
 
 namespace lidar::scream::test {
 

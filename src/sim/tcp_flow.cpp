@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "tests/core/scream/tcp_flow.h"
+#include "src/sim/tcp_flow.h"
 
 #include <algorithm>
 

@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "src/link/bottleneck.h"
-#include "tests/core/scream/sim_flow.h"
-#include "tests/core/scream/tcp_sender.h"
+#include "src/sim/sim_flow.h"
+#include "src/sim/tcp_sender.h"
 
 namespace lidar::scream::test {
 

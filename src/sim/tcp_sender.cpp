@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "tests/core/scream/tcp_sender.h"
+#include "src/sim/tcp_sender.h"
 
 #include <algorithm>
 

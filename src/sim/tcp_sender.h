@@ -7,7 +7,7 @@
 #include <memory>
 
 #include "src/base/time.h"
-#include "tests/core/scream/tcp_window.h"
+#include "src/sim/tcp_window.h"
 
 namespace lidar::scream::test {
 

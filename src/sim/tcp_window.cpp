@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "tests/core/scream/tcp_window.h"
+#include "src/sim/tcp_window.h"
 
 #include <algorithm>
 #include <cmath>

@@ -5,8 +5,8 @@
 
 #include <cstdlib>
 
-#include "gst/common/cloud_info.h"
 #include "gst/common/refs.h"
+#include "gst/lidar/cloud_info.h"
 #include "tests/benchmarks/capture_scans.h"
 
 namespace lidar::bench {

@@ -106,8 +106,8 @@ if [ "$only" != web ]; then
   measure_small_buffer
 fi
 if [ "$only" != ros2 ]; then
-  if [ -d "$root/tests/browser/node_modules" ] && [ -x "${CHROMIUM:-/usr/bin/chromium}" ]; then
-    node "$root/tests/browser/measure.mjs"
+  if [ -d "$root/tests/system/browser/node_modules" ] && [ -x "${CHROMIUM:-/usr/bin/chromium}" ]; then
+    node "$root/tests/system/browser/measure.mjs"
   else
     printf '\nfoxglovesink is left out: tests/run.sh --suite browser installs what it needs.\n'
   fi

@@ -9,9 +9,9 @@
 #include <string>
 #include <vector>
 
-#include "tests/core/loop/late_sender.h"
-#include "tests/core/loop/loop_goals.h"
-#include "tests/core/scream/parameter_options.h"
+#include "src/sim/late_sender.h"
+#include "src/sim/loop_goals.h"
+#include "src/sim/parameter_options.h"
 
 namespace {
 

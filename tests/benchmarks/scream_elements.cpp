@@ -7,8 +7,8 @@
 #include <memory>
 #include <vector>
 
-#include "gst/common/gstlidar.h"
 #include "gst/common/refs.h"
+#include "gst/lidar/gstlidar.h"
 #include "src/base/byte_writer.h"
 #include "src/scream/feedback/ccfb.h"
 

@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "tests/core/scream/parameter_options.h"
-#include "tests/core/scream/scenarios.h"
+#include "src/sim/parameter_options.h"
+#include "src/sim/scenarios.h"
 
 namespace {
 

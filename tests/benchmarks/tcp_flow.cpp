@@ -8,9 +8,9 @@
 
 #include "src/base/byte_reader.h"
 #include "src/base/byte_writer.h"
+#include "src/sim/tcp_sender.h"
 #include "src/tools/common/event_loop.h"
 #include "src/tools/common/udp_socket.h"
-#include "tests/core/scream/tcp_sender.h"
 
 namespace {
 

@@ -9,7 +9,7 @@
 #include "ext/nats/message.h"
 #include "ext/nats/place_book.h"
 #include "ext/nats/stream_format.h"
-#include "gst/common/gstlidar.h"
+#include "gst/lidar/gstlidar.h"
 #include "tests/fuzz/fuzz.h"
 
 namespace {

@@ -48,7 +48,7 @@ def symbols(root):
     page = "debian/libgstlidar-1.0-0.symbols"
     listed = set(re.findall(r"^ (gst_\w+)@", (root / page).read_text(), re.M))
     declared = set()
-    for header in sorted((root / "gst/common").glob("gst*.h")):
+    for header in sorted((root / "gst/lidar").glob("gst*.h")):
         text = header.read_text()
         declared |= set(re.findall(r"^GST_LIDAR_API [^;(]*?\b(gst_\w+)\(", text, re.M))
     for name in sorted(declared - listed):

@@ -35,9 +35,10 @@ SOUND = {
 | `src/base` | units | – | liblzma |
 | `src/cloud` | clouds | base | – |
 | `src/tools/*` | programs | src, `gst/common`, `src/tools/common` | all |
-| `gst/common` | metas | base | GStreamer |
+| `gst/lidar` | metas | – | GStreamer |
+| `gst/common` | helpers | base | GStreamer |
 | `gst/net` | sockets | – | GStreamer, POSIX |
-| `gst/*` | plugins | src, `gst/common`, `gst/net` | GStreamer |
+| `gst/*` | plugins | src, `gst/lidar`, `gst/common`, `gst/net` | GStreamer |
 | `ext/draco` | Draco | src, `gst/common` | GStreamer, Draco |
 | `tests` | tests | all | all |
 
@@ -112,12 +113,13 @@ purposes = {
     "debian/gst.install": "usr/lib/*/gstreamer-1.0/libgstone.so\n",
     "debian/libgstlidar-1.0-0.symbols": " gst_lidar_init@Base 0.1.0\n",
     "tests/packages.txt": "g++\nlibdraco-dev\nlibgtest-dev\nliblzma-dev # for models\n",
-    "gst/common/gstlidar.h": "#include <gst/gst.h>\nGST_LIDAR_API void gst_lidar_init(void);\n",
+    "gst/lidar/gstlidar.h": "#include <gst/gst.h>\nGST_LIDAR_API void gst_lidar_init(void);\n",
     "src/tools/eval/main.cpp": '#include "src/cloud/cloud.h"\n#include "src/tools/common/loop.h"\n',
     "gst/common/meta.h": '#include <gst/gst.h>\n#include "src/base/units.h"\n',
     "gst/net/socket.h": "#include <sys/socket.h>\n",
     "gst/alpha/alpha.cpp": """
 #include "gst/common/meta.h"
+#include "gst/lidar/gstlidar.h"
 #include "gst/net/socket.h"
 const char* kPort = "lidar-port";
 const char* kWarning = "No cloud of %s.";
@@ -191,6 +193,12 @@ PLANTED = [
         "gst/common/a.h",
         '#include "gst/net/socket.h"',
         "gst/common must not use gst/net",
+    ),
+    (
+        "dependencies",
+        "gst/common/a.h",
+        "#include <gst/lidar/gstlidar.h>",
+        "gst/common must not use gst/lidar",
     ),
     ("dependencies", "gst/alpha/a.h", '#include "gst/beta/b.h"', "gst/* must not use gst/beta"),
     ("dependencies", "gst/alpha/a.h", '#include "ext/draco/d.h"', "gst/* must not use ext/draco"),
@@ -274,11 +282,11 @@ PLANTED = [
     ("packaging", "src/tools/eval/meson.build", "", "nothing installs lidar-eval"),
     (
         "packaging",
-        "gst/common/gstcloud.h",
+        "gst/lidar/gstcloud.h",
         "GST_LIDAR_API const char* gst_lidar_name(int);",
         "no line for gst_lidar_name",
     ),
-    ("packaging", "gst/common/gstlidar.h", "", "nobody declares gst_lidar_init"),
+    ("packaging", "gst/lidar/gstlidar.h", "", "nobody declares gst_lidar_init"),
     ("packaging", "tests/packages.txt", "libnats-dev", "Build-Depends lacks libnats-dev"),
     (
         "versions",

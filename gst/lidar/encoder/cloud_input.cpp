@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "gst/common/encoder/cloud_input.h"
+#include "gst/lidar/encoder/cloud_input.h"
 
 #include <utility>
 

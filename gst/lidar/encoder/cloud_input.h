@@ -4,8 +4,8 @@
 #include <optional>
 
 #include "gst/common/buffer_map.h"
-#include "gst/common/cloud_info.h"
-#include "gst/common/gstlidarencoder.h"
+#include "gst/lidar/cloud_info.h"
+#include "gst/lidar/gstlidarencoder.h"
 #include "src/cloud/range_check.h"
 #include "src/rate/rate_loop.h"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "gst/common/encoder/error_report.h"
+#include "gst/lidar/encoder/error_report.h"
 
 #include <vector>
 

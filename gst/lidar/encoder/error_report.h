@@ -4,7 +4,7 @@
 #include <memory>
 #include <optional>
 
-#include "gst/common/gstlidarencoder.h"
+#include "gst/lidar/gstlidarencoder.h"
 #include "src/base/byte_reader.h"
 #include "src/cloud/point_errors.h"
 #include "src/cloud/point_fields.h"

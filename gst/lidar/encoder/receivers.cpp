@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "gst/common/encoder/receivers.h"
+#include "gst/lidar/encoder/receivers.h"
 
 #include <utility>
 

@@ -6,7 +6,7 @@
 #include <mutex>
 #include <vector>
 
-#include "gst/common/gstlidar.h"
+#include "gst/lidar/gstlidar.h"
 
 namespace lidar::gst {
 

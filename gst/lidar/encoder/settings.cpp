@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "gst/common/encoder/settings.h"
+#include "gst/lidar/encoder/settings.h"
 
 #include "gst/common/enum_type.h"
 #include "gst/common/refs.h"

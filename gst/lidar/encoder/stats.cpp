@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "gst/common/encoder/stats.h"
+#include "gst/lidar/encoder/stats.h"
 
 #include <algorithm>
 

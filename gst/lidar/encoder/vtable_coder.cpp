@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "gst/common/encoder/vtable_coder.h"
+#include "gst/lidar/encoder/vtable_coder.h"
 
 #include <cmath>
 

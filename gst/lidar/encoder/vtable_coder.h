@@ -4,7 +4,7 @@
 #include <memory>
 #include <vector>
 
-#include "gst/common/gstlidarencoder.h"
+#include "gst/lidar/gstlidarencoder.h"
 #include "src/base/byte_reader.h"
 #include "src/rate/slice_coder.h"
 

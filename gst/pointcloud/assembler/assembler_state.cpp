@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "gst/pointcloud/assembler_state.h"
+#include "gst/pointcloud/assembler/assembler_state.h"
 
 #include "gst/common/stats.h"
 

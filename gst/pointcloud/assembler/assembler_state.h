@@ -6,12 +6,12 @@
 #include <mutex>
 #include <optional>
 
-#include "gst/common/cloud_info.h"
 #include "gst/common/latency.h"
 #include "gst/common/refs.h"
 #include "gst/common/refused_caps.h"
-#include "gst/pointcloud/deadline_timer.h"
-#include "gst/pointcloud/scan_queue.h"
+#include "gst/lidar/cloud_info.h"
+#include "gst/pointcloud/assembler/deadline_timer.h"
+#include "gst/pointcloud/assembler/scan_queue.h"
 
 namespace lidar::gst {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "gst/pointcloud/deadline_timer.h"
+#include "gst/pointcloud/assembler/deadline_timer.h"
 
 namespace lidar::gst {
 

@@ -15,8 +15,8 @@
 
 #include "gst/common/element_class.h"
 #include "gst/common/properties.h"
-#include "gst/pointcloud/assembler_state.h"
-#include "gst/pointcloud/scan_caps.h"
+#include "gst/pointcloud/assembler/assembler_state.h"
+#include "gst/pointcloud/assembler/scan_caps.h"
 
 GST_DEBUG_CATEGORY_STATIC(gst_lidar_scan_assembler_debug);
 #define GST_CAT_DEFAULT gst_lidar_scan_assembler_debug

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "gst/pointcloud/scan_builder.h"
+#include "gst/pointcloud/assembler/scan_builder.h"
 
 #include <cstring>
 

@@ -3,8 +3,8 @@
 #pragma once
 #include <vector>
 
-#include "gst/common/cloud_info.h"
 #include "gst/common/refs.h"
+#include "gst/lidar/cloud_info.h"
 
 namespace lidar::gst {
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // From the caps of slices to those of the scans made of them.
 #pragma once
-#include "gst/common/cloud_info.h"
 #include "gst/common/refs.h"
-#include "gst/pointcloud/scan_builder.h"
+#include "gst/lidar/cloud_info.h"
+#include "gst/pointcloud/assembler/scan_builder.h"
 
 namespace lidar::gst {
 

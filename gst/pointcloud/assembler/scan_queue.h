@@ -5,7 +5,7 @@
 #include <optional>
 #include <vector>
 
-#include "gst/pointcloud/scan_builder.h"
+#include "gst/pointcloud/assembler/scan_builder.h"
 
 namespace lidar::gst {
 

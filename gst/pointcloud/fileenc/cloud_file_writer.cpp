@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "gst/pointcloud/cloud_file_writer.h"
+#include "gst/pointcloud/fileenc/cloud_file_writer.h"
 
 #include <array>
 #include <charconv>

@@ -5,7 +5,7 @@
 #include <optional>
 #include <string>
 
-#include "gst/common/cloud_info.h"
+#include "gst/lidar/cloud_info.h"
 
 namespace lidar::gst {
 

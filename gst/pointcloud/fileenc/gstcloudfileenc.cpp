@@ -19,11 +19,11 @@
 
 #include "gst/common/buffer_map.h"
 #include "gst/common/element_class.h"
-#include "gst/common/gstlidar.h"
 #include "gst/common/properties.h"
 #include "gst/common/refs.h"
 #include "gst/common/refused_caps.h"
-#include "gst/pointcloud/cloud_file_writer.h"
+#include "gst/lidar/gstlidar.h"
+#include "gst/pointcloud/fileenc/cloud_file_writer.h"
 
 GST_DEBUG_CATEGORY_STATIC(gst_lidar_cloud_file_enc_debug);
 #define GST_CAT_DEFAULT gst_lidar_cloud_file_enc_debug

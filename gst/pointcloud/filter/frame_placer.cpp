@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "gst/pointcloud/frame_placer.h"
+#include "gst/pointcloud/filter/frame_placer.h"
 
 #include <utility>
 

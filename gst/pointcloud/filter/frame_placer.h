@@ -8,7 +8,7 @@
 #include <optional>
 #include <string>
 
-#include "gst/pointcloud/transform_inbox.h"
+#include "gst/pointcloud/filter/transform_inbox.h"
 
 namespace lidar::gst {
 

@@ -18,15 +18,15 @@
 #include "gst/common/coordinate_frames.h"
 #include "gst/common/element_class.h"
 #include "gst/common/enum_type.h"
-#include "gst/common/gstlidar.h"
 #include "gst/common/held_events.h"
 #include "gst/common/latency.h"
 #include "gst/common/properties.h"
 #include "gst/common/refused_caps.h"
 #include "gst/common/sink_pads.h"
 #include "gst/common/stats.h"
+#include "gst/lidar/gstlidar.h"
+#include "gst/pointcloud/filter/frame_placer.h"
 #include "gst/pointcloud/filter_plan.h"
-#include "gst/pointcloud/frame_placer.h"
 
 GST_DEBUG_CATEGORY_STATIC(gst_lidar_point_cloud_filter_debug);
 #define GST_CAT_DEFAULT gst_lidar_point_cloud_filter_debug

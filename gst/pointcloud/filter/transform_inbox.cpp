@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "gst/pointcloud/transform_inbox.h"
+#include "gst/pointcloud/filter/transform_inbox.h"
 
 #include <algorithm>
 
 #include "gst/common/buffer_map.h"
 #include "gst/common/coordinate_frames.h"
-#include "gst/common/gstlidar.h"
 #include "gst/common/refs.h"
+#include "gst/lidar/gstlidar.h"
 #include "src/cdr/messages.h"
 #include "src/cdr/motion_samples.h"
 

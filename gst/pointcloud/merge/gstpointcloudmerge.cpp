@@ -21,11 +21,11 @@
 #include <vector>
 
 #include "gst/common/buffer_map.h"
-#include "gst/common/cloud_info.h"
 #include "gst/common/element_class.h"
-#include "gst/common/gstlidar.h"
 #include "gst/common/properties.h"
 #include "gst/common/sink_pads.h"
+#include "gst/lidar/cloud_info.h"
+#include "gst/lidar/gstlidar.h"
 #include "gst/pointcloud/filter_plan.h"
 
 GST_DEBUG_CATEGORY_STATIC(gst_lidar_point_cloud_merge_debug);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "gst/pointcloud/cloud_organizer.h"
+#include "gst/pointcloud/organize/cloud_organizer.h"
 
 #include <cmath>
 #include <cstring>

@@ -6,7 +6,7 @@
 #include <optional>
 #include <string>
 
-#include "gst/common/cloud_info.h"
+#include "gst/lidar/cloud_info.h"
 #include "src/base/byte_reader.h"
 #include "src/cloud/beam_fit.h"
 #include "src/cloud/range_projection.h"

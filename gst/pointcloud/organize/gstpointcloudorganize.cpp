@@ -16,12 +16,12 @@
 
 #include "gst/common/buffer_map.h"
 #include "gst/common/element_class.h"
-#include "gst/common/gstlidar.h"
 #include "gst/common/held_events.h"
 #include "gst/common/properties.h"
 #include "gst/common/refs.h"
 #include "gst/common/stats.h"
-#include "gst/pointcloud/cloud_organizer.h"
+#include "gst/lidar/gstlidar.h"
+#include "gst/pointcloud/organize/cloud_organizer.h"
 
 GST_DEBUG_CATEGORY_STATIC(gst_lidar_point_cloud_organize_debug);
 #define GST_CAT_DEFAULT gst_lidar_point_cloud_organize_debug

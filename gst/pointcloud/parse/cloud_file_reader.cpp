@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "gst/pointcloud/cloud_file_reader.h"
+#include "gst/pointcloud/parse/cloud_file_reader.h"
 
 #include <algorithm>
 #include <utility>
 
 #include "gst/common/buffer_map.h"
-#include "gst/common/gstlidar.h"
+#include "gst/lidar/gstlidar.h"
 #include "src/cdr/point_cloud2.h"
 
 namespace lidar::gst {

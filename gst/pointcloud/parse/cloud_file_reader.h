@@ -6,8 +6,8 @@
 #include <optional>
 #include <string>
 
-#include "gst/common/cloud_info.h"
 #include "gst/common/refs.h"
+#include "gst/lidar/cloud_info.h"
 #include "src/cloud/cloud_files.h"
 
 namespace lidar::gst {

@@ -7,7 +7,7 @@
 
 #include "gst/common/fields.h"
 #include "gst/common/refs.h"
-#include "gst/pointcloud/cloud_timeline.h"
+#include "gst/pointcloud/parse/cloud_timeline.h"
 
 namespace lidar::gst {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "gst/pointcloud/cloud_timeline.h"
+#include "gst/pointcloud/parse/cloud_timeline.h"
 
 #include <algorithm>
 

@@ -21,13 +21,13 @@
 #include <utility>
 
 #include "gst/common/buffer_map.h"
-#include "gst/common/cloud_info.h"
 #include "gst/common/element_class.h"
 #include "gst/common/properties.h"
 #include "gst/common/refs.h"
 #include "gst/common/refused_caps.h"
-#include "gst/pointcloud/cloud_file_reader.h"
-#include "gst/pointcloud/cloud_stamper.h"
+#include "gst/lidar/cloud_info.h"
+#include "gst/pointcloud/parse/cloud_file_reader.h"
+#include "gst/pointcloud/parse/cloud_stamper.h"
 
 GST_DEBUG_CATEGORY_STATIC(gst_lidar_point_cloud_parse_debug);
 #define GST_CAT_DEFAULT gst_lidar_point_cloud_parse_debug

@@ -15,9 +15,9 @@
 #include <string>
 #include <utility>
 
-#include "gst/common/gstlidar.h"
 #include "gst/common/properties.h"
 #include "gst/common/refs.h"
+#include "gst/lidar/gstlidar.h"
 #include "gst/scream/peer_latch.h"
 #include "gst/scream/rtp_packet.h"
 #include "gst/scream/rx/gstscreamrx.h"

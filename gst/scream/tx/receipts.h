@@ -3,8 +3,8 @@
 #pragma once
 #include <vector>
 
-#include "gst/common/gstlidar.h"
 #include "gst/common/refs.h"
+#include "gst/lidar/gstlidar.h"
 #include "src/scream/feedback/ccfb.h"
 
 namespace lidar::gst {

@@ -6,8 +6,8 @@
 #include <deque>
 #include <optional>
 
-#include "gst/common/gstlidar.h"
 #include "gst/common/refs.h"
+#include "gst/lidar/gstlidar.h"
 #include "gst/scream/rtp_packet.h"
 #include "gst/scream/tx/gstscreamtxpad.h"
 #include "gst/scream/tx/receipts.h"

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "src/codec/adaptive_coder.h"
+#include "src/codec/rans/adaptive_coder.h"
 
 #include <algorithm>
 #include <cstring>
 
-#include "src/codec/initial_models.h"
+#include "src/codec/rans/initial_models.h"
 
 namespace lidar::codec {
 namespace {

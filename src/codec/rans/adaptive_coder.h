@@ -6,10 +6,10 @@
 
 #include "src/cloud/range_grid.h"
 #include "src/codec/integer_coder.h"
-#include "src/codec/mask_coder.h"
-#include "src/codec/predictor.h"
 #include "src/codec/range_image.h"
-#include "src/codec/symbol_model.h"
+#include "src/codec/rans/mask_coder.h"
+#include "src/codec/rans/predictor.h"
+#include "src/codec/rans/symbol_model.h"
 
 namespace lidar::codec {
 

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "src/codec/initial_models.h"
+#include "src/codec/rans/initial_models.h"
 
 namespace lidar::codec {
 namespace {
 
 using Counts = std::array<std::uint16_t, kNibbles>;
 
-#include "src/codec/initial_counts.inc"
+#include "src/codec/rans/initial_counts.inc"
 
 std::array<NibbleModel, kContexts> ModelsOf(const std::array<Counts, kContexts>& counts) {
   std::array<NibbleModel, kContexts> models;

@@ -3,8 +3,8 @@
 #pragma once
 #include <array>
 
-#include "src/codec/nibble_model.h"
-#include "src/codec/predictor.h"
+#include "src/codec/rans/nibble_model.h"
+#include "src/codec/rans/predictor.h"
 
 namespace lidar::codec {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "src/codec/mask_coder.h"
+#include "src/codec/rans/mask_coder.h"
 
 #include <algorithm>
 

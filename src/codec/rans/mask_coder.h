@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "src/codec/azimuth_alignment.h"
-#include "src/codec/nibble_model.h"
-#include "src/codec/rans.h"
+#include "src/codec/rans/nibble_model.h"
+#include "src/codec/rans/rans.h"
 
 namespace lidar::codec {
 

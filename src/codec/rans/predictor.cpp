@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "src/codec/predictor.h"
+#include "src/codec/rans/predictor.h"
 
 namespace lidar::codec {
 

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "src/codec/azimuth_alignment.h"
-#include "src/codec/rans.h"
+#include "src/codec/rans/rans.h"
 
 namespace lidar::codec {
 

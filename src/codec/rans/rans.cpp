@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "src/codec/rans.h"
+#include "src/codec/rans/rans.h"
 
 #include <algorithm>
 

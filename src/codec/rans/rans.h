@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "src/base/byte_reader.h"
-#include "src/codec/nibble_model.h"
+#include "src/codec/rans/nibble_model.h"
 
 namespace lidar::codec {
 

@@ -5,8 +5,8 @@
 #include <array>
 #include <cstdint>
 
-#include "src/codec/initial_models.h"
-#include "src/codec/rans.h"
+#include "src/codec/rans/initial_models.h"
+#include "src/codec/rans/rans.h"
 
 namespace lidar::codec {
 

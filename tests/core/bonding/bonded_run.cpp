@@ -9,7 +9,7 @@
 #include "src/scream/controller.h"
 #include "src/scream/feedback/feedback_generator.h"
 #include "src/scream/target_notifier.h"
-#include "tests/support/simulated.h"
+#include "src/sim/simulated_time.h"
 
 namespace lidar::bonding::test {
 namespace {

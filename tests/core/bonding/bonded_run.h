@@ -6,7 +6,7 @@
 
 #include "src/bonding/scheduler.h"
 #include "src/link/bottleneck.h"
-#include "tests/core/loop/loop_source.h"
+#include "src/sim/loop_source.h"
 
 namespace lidar::bonding::test {
 

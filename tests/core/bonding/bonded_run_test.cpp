@@ -6,7 +6,7 @@
 
 #include "src/link/oracle.h"
 #include "src/link/trace_maker.h"
-#include "tests/support/simulated.h"
+#include "src/sim/simulated_time.h"
 
 namespace lidar::bonding::test {
 namespace {

@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "src/link/bottleneck.h"
-#include "tests/support/simulated.h"
+#include "src/sim/simulated_time.h"
 
 namespace lidar::link {
 namespace {

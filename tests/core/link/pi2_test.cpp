@@ -7,7 +7,7 @@
 #include <cmath>
 
 #include "src/link/bottleneck.h"
-#include "tests/support/simulated.h"
+#include "src/sim/simulated_time.h"
 
 namespace lidar::link {
 namespace {

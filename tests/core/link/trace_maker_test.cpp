@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "src/link/capacity.h"
-#include "tests/support/simulated.h"
+#include "src/sim/simulated_time.h"
 
 namespace lidar::link {
 namespace {

@@ -12,8 +12,8 @@
 
 #include "src/rate/model_file.h"
 #include "src/rate/rate_controller.h"
-#include "tests/core/rate/synthetic_codec.h"
-#include "tests/core/scream/simulation.h"
+#include "src/sim/simulation.h"
+#include "src/sim/synthetic_codec.h"
 
 namespace lidar {
 namespace {

@@ -5,8 +5,8 @@
 #include <utility>
 
 #include "src/link/trace_maker.h"
-#include "tests/core/loop/loop_goals.h"
-#include "tests/support/simulated.h"
+#include "src/sim/loop_goals.h"
+#include "src/sim/simulated_time.h"
 
 namespace lidar::loop {
 namespace {

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "tests/core/loop/late_sender.h"
+#include "src/sim/late_sender.h"
 
 #include <gtest/gtest.h>
 
-#include "tests/support/simulated.h"
+#include "src/sim/simulated_time.h"
 
 namespace lidar::loop {
 namespace {

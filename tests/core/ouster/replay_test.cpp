@@ -6,7 +6,7 @@
 #include <map>
 
 #include "src/ouster/sensor_stream.h"
-#include "src/tools/ouster_replay/synth_stream.h"
+#include "src/tools/bench/ouster_replay/synth_stream.h"
 
 namespace lidar::tools {
 namespace {

@@ -7,7 +7,7 @@
 
 #include "src/rate/model_file.h"
 #include "src/rate/rate_controller.h"
-#include "tests/core/rate/synthetic_codec.h"
+#include "src/sim/synthetic_codec.h"
 
 namespace lidar::rate {
 namespace {

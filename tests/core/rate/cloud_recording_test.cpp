@@ -12,7 +12,7 @@
 #include "src/cdr/coded_slice.h"
 #include "src/cdr/point_cloud2.h"
 #include "src/mcap/writer.h"
-#include "src/tools/codec_lab/scan_source.h"
+#include "src/tools/lab/codec_lab/scan_source.h"
 
 namespace lidar::tools {
 namespace {

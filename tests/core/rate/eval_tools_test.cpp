@@ -10,11 +10,11 @@
 #include <limits>
 #include <stdexcept>
 
-#include "src/tools/codec_lab/cloud_file.h"
-#include "src/tools/codec_lab/measure.h"
-#include "src/tools/codec_lab/model_option.h"
-#include "src/tools/codec_lab/scan_source.h"
-#include "src/tools/codec_lab/tracking.h"
+#include "src/tools/lab/codec_lab/cloud_file.h"
+#include "src/tools/lab/codec_lab/measure.h"
+#include "src/tools/lab/codec_lab/model_option.h"
+#include "src/tools/lab/codec_lab/scan_source.h"
+#include "src/tools/lab/codec_lab/tracking.h"
 
 namespace lidar::tools {
 namespace {

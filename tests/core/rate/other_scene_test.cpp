@@ -5,10 +5,10 @@
 #include <cmath>
 
 #include "src/rate/model_fit.h"
-#include "src/tools/codec_lab/measure.h"
-#include "src/tools/codec_lab/scan_source.h"
-#include "src/tools/codec_lab/tracking.h"
-#include "src/tools/codec_lab/training.h"
+#include "src/tools/lab/codec_lab/measure.h"
+#include "src/tools/lab/codec_lab/scan_source.h"
+#include "src/tools/lab/codec_lab/tracking.h"
+#include "src/tools/lab/codec_lab/training.h"
 
 namespace lidar::tools {
 namespace {

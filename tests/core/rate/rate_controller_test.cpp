@@ -8,7 +8,7 @@
 #include <numeric>
 
 #include "src/rate/model_file.h"
-#include "tests/core/rate/synthetic_codec.h"
+#include "src/sim/synthetic_codec.h"
 
 namespace lidar::rate {
 namespace {

@@ -93,7 +93,7 @@ std::vector<std::uint8_t> Count(std::size_t size, std::uint8_t first) {
   return bytes;
 }
 
-// The bytes below were made by tests/adversary/wire.py, which knows the document alone.
+// The bytes below were made by tests/system/adversary/wire.py, which knows the document alone.
 
 TEST(GoldenUnits, AreThoseOfAnotherWriter) {
   const auto bytes = Count(30, 1);

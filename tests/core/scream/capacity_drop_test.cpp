@@ -4,8 +4,8 @@
 
 #include <gtest/gtest.h>
 
+#include "src/sim/simulated_time.h"
 #include "tests/core/scream/measured_path.h"
-#include "tests/support/simulated.h"
 
 namespace lidar::scream {
 namespace {

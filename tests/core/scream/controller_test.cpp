@@ -5,8 +5,8 @@
 #include <gtest/gtest.h>
 
 #include "src/scream/feedback/report_clock.h"
-#include "tests/core/scream/scenarios.h"
-#include "tests/support/simulated.h"
+#include "src/sim/scenarios.h"
+#include "src/sim/simulated_time.h"
 
 namespace lidar::scream::test {
 namespace {

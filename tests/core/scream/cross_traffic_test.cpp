@@ -5,7 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "src/scream/response/shared_link.h"
-#include "tests/support/simulated.h"
+#include "src/sim/simulated_time.h"
 
 namespace lidar::scream::test {
 namespace {

@@ -10,7 +10,7 @@
 #include "src/scream/model/loss_rate.h"
 #include "src/scream/model/queue_delay.h"
 #include "src/scream/model/rtt.h"
-#include "tests/support/simulated.h"
+#include "src/sim/simulated_time.h"
 
 namespace lidar::scream {
 namespace {

@@ -6,7 +6,7 @@
 #include "src/scream/model/ecn_monitor.h"
 #include "src/scream/model/l4s_alpha.h"
 #include "src/scream/model/marking_onset.h"
-#include "tests/support/simulated.h"
+#include "src/sim/simulated_time.h"
 
 namespace lidar::scream {
 namespace {

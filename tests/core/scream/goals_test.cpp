@@ -2,7 +2,7 @@
 // What the extensions are for: the scenarios of the matrix and what must be reached in each.
 #include <gtest/gtest.h>
 
-#include "tests/core/scream/scenarios.h"
+#include "src/sim/scenarios.h"
 
 namespace lidar::scream::test {
 namespace {

@@ -2,7 +2,7 @@
 // A path of which reports tell, without a link or a sender.
 #pragma once
 #include "src/scream/model/path_model.h"
-#include "tests/support/simulated.h"
+#include "src/sim/simulated_time.h"
 
 namespace lidar::scream {
 

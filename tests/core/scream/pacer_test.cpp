@@ -4,7 +4,7 @@
 
 #include "src/scream/media_rate.h"
 #include "src/scream/pacer.h"
-#include "tests/support/simulated.h"
+#include "src/sim/simulated_time.h"
 
 namespace lidar::scream {
 namespace {

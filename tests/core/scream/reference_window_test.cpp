@@ -6,7 +6,7 @@
 
 #include <cmath>
 
-#include "tests/support/simulated.h"
+#include "src/sim/simulated_time.h"
 
 namespace lidar::scream {
 namespace {

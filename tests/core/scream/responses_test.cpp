@@ -10,8 +10,8 @@
 #include "src/scream/response/isolated_loss.h"
 #include "src/scream/response/outage.h"
 #include "src/scream/response/send_window.h"
+#include "src/sim/simulated_time.h"
 #include "tests/core/scream/measured_path.h"
-#include "tests/support/simulated.h"
 
 namespace lidar::scream {
 namespace {

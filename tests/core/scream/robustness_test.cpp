@@ -2,8 +2,8 @@
 // What breaks on the way of a running flow, and how soon it is forgotten.
 #include <gtest/gtest.h>
 
-#include "tests/core/scream/scenarios.h"
-#include "tests/support/simulated.h"
+#include "src/sim/scenarios.h"
+#include "src/sim/simulated_time.h"
 
 namespace lidar::scream::test {
 namespace {

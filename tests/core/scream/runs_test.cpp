@@ -7,8 +7,8 @@
 #include <fstream>
 #include <sstream>
 
-#include "tests/core/scream/scenarios.h"
-#include "tests/support/simulated.h"
+#include "src/sim/scenarios.h"
+#include "src/sim/simulated_time.h"
 
 namespace lidar::scream::test {
 namespace {

@@ -4,8 +4,8 @@
 
 #include <utility>
 
-#include "tests/core/scream/scenarios.h"
-#include "tests/support/simulated.h"
+#include "src/sim/scenarios.h"
+#include "src/sim/simulated_time.h"
 
 namespace lidar::scream::test {
 namespace {

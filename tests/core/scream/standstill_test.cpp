@@ -2,8 +2,8 @@
 // A link that stands still, and what else may happen in that time.
 #include <gtest/gtest.h>
 
-#include "tests/core/scream/scenarios.h"
-#include "tests/support/simulated.h"
+#include "src/sim/scenarios.h"
+#include "src/sim/simulated_time.h"
 
 namespace lidar::scream::test {
 namespace {

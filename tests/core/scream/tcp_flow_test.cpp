@@ -5,8 +5,8 @@
 
 #include <cmath>
 
-#include "tests/core/scream/simulation.h"
-#include "tests/support/simulated.h"
+#include "src/sim/simulated_time.h"
+#include "src/sim/simulation.h"
 
 namespace lidar::scream::test {
 namespace {

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "src/tools/demo/cloud_compare.h"
+#include "src/tools/bench/demo/cloud_compare.h"
 
 #include <gtest/gtest.h>
 #include <unistd.h>
 
-#include "src/tools/demo/stream_comparer.h"
+#include "src/tools/bench/demo/stream_comparer.h"
 
 namespace lidar::demo {
 namespace {

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <gtest/gtest.h>
 
-#include "src/tools/demo/measurements.h"
-#include "src/tools/demo/summary.h"
-#include "src/tools/demo/verdict.h"
+#include "src/tools/bench/demo/measurements.h"
+#include "src/tools/bench/demo/summary.h"
+#include "src/tools/bench/demo/verdict.h"
 
 namespace lidar::demo {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "src/tools/worker/lease_table.h"
+#include "src/tools/apps/worker/lease_table.h"
 
 #include <gtest/gtest.h>
 

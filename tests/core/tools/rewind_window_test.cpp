@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "src/tools/worker/rewind_window.h"
+#include "src/tools/apps/worker/rewind_window.h"
 
 #include <gtest/gtest.h>
 

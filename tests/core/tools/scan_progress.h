@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
-#include "src/tools/worker/lease_record.h"
+#include "src/tools/apps/worker/lease_record.h"
 
 namespace lidar::worker {
 

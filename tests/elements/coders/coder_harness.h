@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "gst/common/buffer_map.h"
-#include "gst/common/cloud_info.h"
+#include "gst/lidar/cloud_info.h"
 #include "tests/core/codec/test_clouds.h"
 #include "tests/elements/coders/example_coder.h"
 #include "tests/support/harness.h"

@@ -6,8 +6,8 @@
 #include <tuple>
 #include <vector>
 
-#include "gst/common/gstlidardecoder.h"
-#include "gst/common/gstlidarencoder.h"
+#include "gst/lidar/gstlidardecoder.h"
+#include "gst/lidar/gstlidarencoder.h"
 #include "tests/elements/coders/checked_codec.h"
 
 namespace lidar::gst {

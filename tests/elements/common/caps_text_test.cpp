@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "gst/common/gstlidar.h"
+#include "gst/lidar/gstlidar.h"
 
 namespace lidar::gst {
 namespace {

@@ -3,11 +3,11 @@
 
 #include <cmath>
 
-#include "gst/common/cloud_info.h"
-#include "gst/common/gstlidar.h"
-#include "gst/common/gstlidarcloudinfo.h"
 #include "gst/common/latency.h"
 #include "gst/common/refs.h"
+#include "gst/lidar/cloud_info.h"
+#include "gst/lidar/gstlidar.h"
+#include "gst/lidar/gstlidarcloudinfo.h"
 
 namespace lidar::gst {
 namespace {

@@ -6,8 +6,8 @@
 #include <memory>
 #include <string>
 
-#include "gst/common/gstlidar.h"
 #include "gst/common/refs.h"
+#include "gst/lidar/gstlidar.h"
 #include "tests/support/harness.h"
 
 namespace lidar::gst {

@@ -13,8 +13,8 @@
 #include <vector>
 
 #include "gst/common/buffer_map.h"
-#include "gst/common/gstlidar.h"
 #include "gst/common/refs.h"
+#include "gst/lidar/gstlidar.h"
 #include "tests/support/harness.h"
 
 namespace lidar::test {

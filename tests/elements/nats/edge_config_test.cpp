@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // lidar-edge: its configuration.
-#include "src/tools/edge/edge_config.h"
+#include "src/tools/apps/edge/edge_config.h"
 
 #include <gtest/gtest.h>
 

@@ -22,7 +22,7 @@ for ((i = 0; i < robots; i++)); do
 done
 printf '{"http-port": 0, "interval": 0.5, "nats": {"url": "%s", "jetstream": "fleet"}, "robots": [%s]}' \
   "$url" "$(IFS=,; echo "${list[*]}")" >"$folder/edge.json"
-"$build/src/tools/edge/lidar-edge" "$folder/edge.json" >"$folder/out" 2>"$folder/err" &
+"$build/src/tools/apps/edge/lidar-edge" "$folder/edge.json" >"$folder/out" 2>"$folder/err" &
 until metrics=$(sed -n "s/^metrics //p" "$folder/out" 2>/dev/null) && [ -n "$metrics" ]; do sleep 0.1; done
 
 # The sum over all robots.

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // lidar-edge: a recorder that fails harms nothing beside it.
-#include "src/tools/edge/pipeline.h"
+#include "src/tools/apps/edge/pipeline.h"
 #include "tests/elements/nats/nats_server.h"
 
 namespace lidar::test {

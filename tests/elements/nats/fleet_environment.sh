@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 # Sourced by the scripts that run a fleet: builds it, and says where its programs are.
 . "$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)/../../../pipelines/environment.sh"
-ninja -C "$build" tests/elements/nats/fleet-cluster src/tools/edge/lidar-edge src/tools/worker/lidar-worker >&2
-export LIDAR_EDGE=$build/src/tools/edge/lidar-edge LIDAR_WORKER=$build/src/tools/worker/lidar-worker
+ninja -C "$build" tests/elements/nats/fleet-cluster src/tools/apps/edge/lidar-edge src/tools/apps/worker/lidar-worker >&2
+export LIDAR_EDGE=$build/src/tools/apps/edge/lidar-edge LIDAR_WORKER=$build/src/tools/apps/worker/lidar-worker

@@ -6,11 +6,11 @@
 #include <nlohmann/json.hpp>
 
 #include "ext/nats/jetstream.h"
+#include "src/tools/apps/fleet/exposition.h"
+#include "src/tools/apps/fleet/metrics_server.h"
+#include "src/tools/apps/fleet/reporter.h"
 #include "src/tools/common/file_descriptor.h"
 #include "src/tools/common/printable.h"
-#include "src/tools/fleet/exposition.h"
-#include "src/tools/fleet/metrics_server.h"
-#include "src/tools/fleet/reporter.h"
 #include "tests/elements/nats/nats_server.h"
 
 namespace lidar::test {

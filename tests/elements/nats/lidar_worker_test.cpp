@@ -8,11 +8,11 @@
 
 #include "ext/nats/connection.h"
 #include "ext/nats/jetstream.h"
-#include "src/tools/worker/fleet_watch.h"
-#include "src/tools/worker/lease_record.h"
-#include "src/tools/worker/lease_store.h"
-#include "src/tools/worker/robot_pipeline.h"
-#include "src/tools/worker/worker.h"
+#include "src/tools/apps/worker/fleet_watch.h"
+#include "src/tools/apps/worker/lease_record.h"
+#include "src/tools/apps/worker/lease_store.h"
+#include "src/tools/apps/worker/robot_pipeline.h"
+#include "src/tools/apps/worker/worker.h"
 #include "tests/elements/nats/worker_process.h"
 
 namespace lidar::test {

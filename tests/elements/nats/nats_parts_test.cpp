@@ -13,7 +13,7 @@
 #include "ext/nats/outbox.h"
 #include "ext/nats/place_book.h"
 #include "ext/nats/source_account.h"
-#include "gst/common/gstlidar.h"
+#include "gst/lidar/gstlidar.h"
 #include "tests/elements/mcap/recording.h"
 
 namespace lidar::nats {

@@ -2,9 +2,9 @@
 // The parts of lidar-worker that need no server.
 #include <gtest/gtest.h>
 
-#include "src/tools/worker/fleet_watch.h"
-#include "src/tools/worker/lease_store.h"
-#include "src/tools/worker/robot_pipeline.h"
+#include "src/tools/apps/worker/fleet_watch.h"
+#include "src/tools/apps/worker/lease_store.h"
+#include "src/tools/apps/worker/robot_pipeline.h"
 
 namespace lidar::test {
 namespace {

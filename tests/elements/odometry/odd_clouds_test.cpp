@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "gst/common/gstlidar.h"
+#include "gst/lidar/gstlidar.h"
 #include "tests/support/harness.h"
 
 namespace lidar::gst {

@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "gst/common/buffer_map.h"
-#include "gst/common/gstlidar.h"
+#include "gst/lidar/gstlidar.h"
 #include "tests/support/harness.h"
 
 namespace lidar::gst {

@@ -12,9 +12,9 @@
 #include <vector>
 
 #include "gst/common/buffer_map.h"
-#include "gst/common/cloud_info.h"
-#include "gst/common/gstlidar.h"
 #include "gst/common/refs.h"
+#include "gst/lidar/cloud_info.h"
+#include "gst/lidar/gstlidar.h"
 #include "src/ouster/metadata.h"
 #include "src/ouster/pcap_reader.h"
 #include "tests/support/harness.h"

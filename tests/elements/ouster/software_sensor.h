@@ -6,11 +6,11 @@
 #include <string>
 #include <thread>
 
+#include "src/tools/bench/ouster_replay/http_api.h"
+#include "src/tools/bench/ouster_replay/options.h"
+#include "src/tools/bench/ouster_replay/player.h"
+#include "src/tools/bench/ouster_replay/sensor.h"
 #include "src/tools/common/event_loop.h"
-#include "src/tools/ouster_replay/http_api.h"
-#include "src/tools/ouster_replay/options.h"
-#include "src/tools/ouster_replay/player.h"
-#include "src/tools/ouster_replay/sensor.h"
 
 namespace lidar::test {
 

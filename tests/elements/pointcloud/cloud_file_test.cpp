@@ -7,7 +7,7 @@
 #include <sstream>
 
 #include "gst/common/buffer_map.h"
-#include "gst/common/cloud_info.h"
+#include "gst/lidar/cloud_info.h"
 #include "tests/support/harness.h"
 
 namespace lidar::gst {

@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "gst/common/cloud_info.h"
-#include "gst/common/gstlidar.h"
+#include "gst/lidar/cloud_info.h"
+#include "gst/lidar/gstlidar.h"
 #include "tests/support/harness.h"
 
 namespace lidar::gst {

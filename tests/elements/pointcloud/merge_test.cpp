@@ -4,7 +4,7 @@
 
 #include <cstring>
 
-#include "gst/common/gstlidar.h"
+#include "gst/lidar/gstlidar.h"
 #include "tests/elements/mcap/recording.h"
 #include "tests/support/harness.h"
 

@@ -5,7 +5,7 @@
 
 #include <string>
 
-#include "gst/common/cloud_info.h"
+#include "gst/lidar/cloud_info.h"
 #include "tests/support/harness.h"
 
 namespace lidar::gst {

@@ -4,8 +4,8 @@
 
 #include "ext/ros2/message_reader.h"
 #include "gst/common/buffer_map.h"
-#include "gst/common/gstlidar.h"
 #include "gst/common/pose_covariance.h"
+#include "gst/lidar/gstlidar.h"
 
 namespace lidar::gst {
 namespace {

@@ -6,8 +6,8 @@
 
 #include "ext/ros2/message_writer.h"
 #include "ext/ros2/ros_settings.h"
-#include "gst/common/gstlidar.h"
 #include "gst/common/refs.h"
+#include "gst/lidar/gstlidar.h"
 #include "src/cdr/motion_samples.h"
 
 namespace lidar::gst {

@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "gst/common/buffer_map.h"
-#include "gst/common/cloud_info.h"
-#include "gst/common/gstlidar.h"
+#include "gst/lidar/cloud_info.h"
+#include "gst/lidar/gstlidar.h"
 #include "src/cloud/sensor_model.h"
 #include "tests/support/harness.h"
 

@@ -5,7 +5,7 @@
 
 #include <string>
 
-#include "gst/common/gstlidar.h"
+#include "gst/lidar/gstlidar.h"
 #include "tests/support/harness.h"
 
 namespace {

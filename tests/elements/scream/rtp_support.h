@@ -11,8 +11,8 @@
 #include <string>
 #include <vector>
 
-#include "gst/common/gstlidar.h"
 #include "gst/common/refs.h"
+#include "gst/lidar/gstlidar.h"
 #include "src/rtp/payload_header.h"
 #include "src/scream/feedback/ccfb.h"
 #include "tests/support/harness.h"

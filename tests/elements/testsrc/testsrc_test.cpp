@@ -8,7 +8,7 @@
 #include <sstream>
 
 #include "gst/common/buffer_map.h"
-#include "gst/common/cloud_info.h"
+#include "gst/lidar/cloud_info.h"
 #include "src/cloud/range_projection.h"
 #include "tests/support/harness.h"
 

@@ -9,7 +9,7 @@
 #include <limits>
 
 #include "gst/common/buffer_map.h"
-#include "gst/common/cloud_info.h"
+#include "gst/lidar/cloud_info.h"
 #include "gst/view/trail_map.h"
 #include "tests/support/harness.h"
 

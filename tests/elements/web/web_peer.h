@@ -10,8 +10,8 @@
 #include <string>
 #include <vector>
 
-#include "gst/common/gstlidar.h"
 #include "gst/common/refs.h"
+#include "gst/lidar/gstlidar.h"
 #include "src/base/byte_reader.h"
 #include "tests/support/harness.h"
 

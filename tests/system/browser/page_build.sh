@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 # The committed page is what its sources build.
 set -euo pipefail
-page=$(cd "$(dirname "$0")/../../ext/web/page" && pwd)
+page=$(cd "$(dirname "$0")/../../../ext/web/page" && pwd)
 [ -d "$page/node_modules" ] || { echo "run npm ci in ext/web/page first"; exit 77; }
 built=$(mktemp -d)
 trap 'rm -rf "$built"' EXIT

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Makes the pictures of the documentation: node tests/browser/screenshot.mjs FOLDER
+// Makes the pictures of the documentation: node tests/system/browser/screenshot.mjs FOLDER
 // The page looks at a whole way: robot, a link that changes, edge.
 import { spawn } from 'node:child_process';
 import path from 'node:path';

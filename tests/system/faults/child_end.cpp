@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "tests/faults/child_end.h"
+#include "tests/system/faults/child_end.h"
 
 #include <unistd.h>
 

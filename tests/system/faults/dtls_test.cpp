@@ -4,8 +4,8 @@
 
 #include <thread>
 
-#include "tests/faults/ends.h"
-#include "tests/faults/fault_link.h"
+#include "tests/system/faults/ends.h"
+#include "tests/system/faults/fault_link.h"
 
 namespace lidar::test {
 namespace {

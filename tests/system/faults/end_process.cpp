@@ -10,8 +10,8 @@
 #include <sstream>
 #include <string>
 
-#include "tests/faults/ends.h"
-#include "tests/faults/stepped_clock.h"
+#include "tests/system/faults/ends.h"
+#include "tests/system/faults/stepped_clock.h"
 
 namespace {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "tests/faults/ends.h"
+#include "tests/system/faults/ends.h"
 
 #include <sys/resource.h>
 #include <unistd.h>

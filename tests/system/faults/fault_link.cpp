@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "tests/faults/fault_link.h"
+#include "tests/system/faults/fault_link.h"
 
 #include <arpa/inet.h>
 #include <poll.h>

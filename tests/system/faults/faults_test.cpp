@@ -9,7 +9,7 @@
 #include <functional>
 #include <thread>
 
-#include "tests/faults/fixture.h"
+#include "tests/system/faults/fixture.h"
 
 namespace lidar::test {
 namespace {

@@ -7,7 +7,7 @@
 #include <ostream>
 
 #include "src/link/trace_maker.h"
-#include "tests/faults/fixture.h"
+#include "tests/system/faults/fixture.h"
 
 namespace lidar::test {
 namespace {

@@ -5,9 +5,9 @@
 #include <cstdio>
 #include <thread>
 
-#include "tests/faults/child_end.h"
-#include "tests/faults/ends.h"
-#include "tests/faults/fault_link.h"
+#include "tests/system/faults/child_end.h"
+#include "tests/system/faults/ends.h"
+#include "tests/system/faults/fault_link.h"
 
 namespace lidar::test {
 namespace {

@@ -13,8 +13,8 @@
 #include <string>
 #include <thread>
 
-#include "tests/faults/ends.h"
-#include "tests/faults/fault_link.h"
+#include "tests/system/faults/ends.h"
+#include "tests/system/faults/fault_link.h"
 
 namespace {
 

@@ -4,7 +4,7 @@
 
 #include <thread>
 
-#include "tests/faults/srtp_path.h"
+#include "tests/system/faults/srtp_path.h"
 
 namespace lidar::test {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "tests/faults/stepped_clock.h"
+#include "tests/system/faults/stepped_clock.h"
 
 #include <sys/socket.h>
 #include <sys/syscall.h>

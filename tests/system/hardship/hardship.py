@@ -218,7 +218,7 @@ FEW_FILES = {
 
 def few_files(options):
     """ulimit -n from what a process has up to what it needs: an error that says so, or it works."""
-    data = pathlib.Path(__file__).resolve().parent.parent / "data" / "ouster"
+    data = pathlib.Path(__file__).resolve().parents[2] / "data" / "ouster"
     told = worked = 0
     with tempfile.TemporaryDirectory() as folder:
         for name, pipeline in FEW_FILES.items():
@@ -303,7 +303,7 @@ def read_only_disk(_options):
 def programs_on_a_full_disk(options):
     """Command-line programs exit with an error that names the file, and leave nothing empty."""
     tools = pathlib.Path(options.tools)
-    data = pathlib.Path(__file__).resolve().parent.parent / "data" / "ouster"
+    data = pathlib.Path(__file__).resolve().parents[2] / "data" / "ouster"
     capture = data / "OS-0-32-U1_v2.2.0_1024x10.pcap"
     rd = ["rd", str(capture), "--scans", "1", "--errors", "0.1", "--slices", "1"]
     commands = {  # program, arguments, and a word of the error
@@ -356,7 +356,7 @@ def run(hardship, options):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--victim", required=True, help="the program tests/adversary/victim")
+    parser.add_argument("--victim", required=True, help="the program tests/system/adversary/victim")
     parser.add_argument("--tools", default="", help="the folder of the command-line programs")
     parser.add_argument("--seconds", type=float, default=2, help="of each hardship")
     parser.add_argument("--stop-seconds", type=float, default=2, help="for which a process is stopped")

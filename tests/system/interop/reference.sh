@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 # Runs our sender against the receiver of EricssonResearch/scream and the other way round, through lidar-link.
 #
-#   tests/interop/reference.sh FOLDER [BUILD]
+#   tests/system/interop/reference.sh FOLDER [BUILD]
 #
 # FOLDER has scream_bw_test_tx and scream_bw_test_rx (SCREAM_REFERENCE names it too). Without it the test is
 # skipped (exit 77). Needs root: the reference's sender binds the port that it sends to, so it runs in a
@@ -10,7 +10,7 @@
 set -euo pipefail
 here=$(cd "$(dirname "$0")" && pwd)
 folder=${1:-${SCREAM_REFERENCE:-}}
-build=${2:-${BUILD:-$here/../../build}}
+build=${2:-${BUILD:-$here/../../../build}}
 if [ -z "$folder" ] || [ ! -x "$folder/scream_bw_test_tx" ] || [ ! -x "$folder/scream_bw_test_rx" ]; then
   echo "skipped: give the folder of scream_bw_test_tx and scream_bw_test_rx (EricssonResearch/scream, cmake)"
   exit 77
@@ -21,7 +21,7 @@ if [ "$(id -u)" != 0 ]; then
 fi
 figures=$(mktemp)
 trap 'rm -f "$figures"' EXIT
-python3 "$here/../benchmarks/scream_sockets.py" frames_8M_rtt40 --build "$build" --reference "$folder" --seconds "${SECONDS_EACH:-25}" \
+python3 "$here/../../benchmarks/scream_sockets.py" frames_8M_rtt40 --build "$build" --reference "$folder" --seconds "${SECONDS_EACH:-25}" \
   --port-offset 2000 --peers ours-ours,ours-reference,reference-reference,reference-ours --json "$figures"
 python3 - "$figures" <<'PYTHON'
 import json

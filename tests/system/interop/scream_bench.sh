@@ -3,7 +3,7 @@
 # Runs scream-bench against itself: IPv4 and IPv6, feedback to the media's source and to a port that is named; either end
 # stops on SIGINT with its summary.
 #
-#   tests/interop/scream_bench.sh BUILD PORT
+#   tests/system/interop/scream_bench.sh BUILD PORT
 set -euo pipefail
 build=$1 port=$2
 folder=$(mktemp -d)

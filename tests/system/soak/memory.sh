@@ -3,7 +3,7 @@
 # Runs the demo and looks each second at how much memory its processes have of their own; fails where an end or the
 # link has grown since the first minute. Usage: memory.sh [MINUTES [OPTIONS OF THE DEMO]]
 set -euo pipefail
-root=$(cd "$(dirname "$0")/../.." && pwd)
+root=$(cd "$(dirname "$0")/../../.." && pwd)
 seconds=$((60 * ${1:-4}))
 [ $# = 0 ] || shift
 allowed=1024 # KiB: pages that the allocator had not touched before

@@ -3,7 +3,7 @@
 # Streams for hours, encrypted, through a drive with gaps and random faults; each minute a line, and what must
 # hold is checked.
 set -euo pipefail
-root=$(cd "$(dirname "$0")/../.." && pwd)
+root=$(cd "$(dirname "$0")/../../.." && pwd)
 build=${BUILD_DIR:-$root/build}
 
 minutes=0
@@ -17,7 +17,7 @@ while [ $# -gt 0 ]; do
     --seed) seed=$2; shift ;;
     --no-srtp) cipher=plain ;;
     --no-gaps) gaps=no ;;
-    *) echo "Usage: tests/soak/run.sh --hours N | --minutes N [--seed S] [--no-srtp] [--no-gaps]" >&2
+    *) echo "Usage: tests/system/soak/run.sh --hours N | --minutes N [--seed S] [--no-srtp] [--no-gaps]" >&2
        [ "$1" = --help ] && exit 0 || exit 2 ;;
   esac
   shift
@@ -37,4 +37,4 @@ if [ "$gaps" = yes ]; then
   link=("$build/src/tools/lidar-link" "$trace")
 fi
 echo "seed $seed"
-"$build/tests/faults/soak" "$minutes" "$seed" "$cipher" "${link[@]}"
+"$build/tests/system/faults/soak" "$minutes" "$seed" "$cipher" "${link[@]}"

@@ -4,7 +4,7 @@
 # that was allocated in a function of ours. Valgrind slows them thirtyfold, so the sensor is a small one.
 set -euo pipefail
 command -v valgrind >/dev/null || { echo "Install valgrind." >&2; exit 1; }
-source "$(dirname "$0")/../../pipelines/environment.sh"
+source "$(dirname "$0")/../../../pipelines/environment.sh"
 port=${PORT:-5484}
 seconds=${1:-20}
 work=$(mktemp -d)

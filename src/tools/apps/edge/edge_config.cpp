@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "src/tools/edge/edge_config.h"
+#include "src/tools/apps/edge/edge_config.h"
 
 #include <algorithm>
 #include <charconv>

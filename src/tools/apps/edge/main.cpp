@@ -14,12 +14,12 @@
 #include <thread>
 #include <vector>
 
+#include "src/tools/apps/edge/edge_config.h"
+#include "src/tools/apps/edge/receiver.h"
+#include "src/tools/apps/edge/shared_port.h"
+#include "src/tools/apps/fleet/statistics.h"
 #include "src/tools/common/bounded_end.h"
 #include "src/tools/common/program.h"
-#include "src/tools/edge/edge_config.h"
-#include "src/tools/edge/receiver.h"
-#include "src/tools/edge/shared_port.h"
-#include "src/tools/fleet/statistics.h"
 
 namespace lidar::edge {
 namespace {

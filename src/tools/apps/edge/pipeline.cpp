@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "src/tools/edge/pipeline.h"
+#include "src/tools/apps/edge/pipeline.h"
 
 #include <stdexcept>
 #include <string>
 
+#include "src/tools/apps/fleet/connection.h"
 #include "src/tools/common/elements.h"
-#include "src/tools/fleet/connection.h"
 
 namespace lidar::edge {
 namespace {

@@ -7,7 +7,7 @@
 #include <functional>
 
 #include "gst/common/refs.h"
-#include "src/tools/edge/edge_config.h"
+#include "src/tools/apps/edge/edge_config.h"
 
 namespace lidar::edge {
 

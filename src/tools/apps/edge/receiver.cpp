@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "src/tools/edge/receiver.h"
+#include "src/tools/apps/edge/receiver.h"
 
 #include <algorithm>
 #include <cstdio>
 #include <exception>
 #include <nlohmann/json.hpp>
 
+#include "src/tools/apps/edge/pipeline.h"
+#include "src/tools/apps/edge/shared_port.h"
 #include "src/tools/common/elements.h"
-#include "src/tools/edge/pipeline.h"
-#include "src/tools/edge/shared_port.h"
 
 namespace lidar::edge {
 namespace {

@@ -15,8 +15,8 @@
 
 #include "gst/common/refs.h"
 #include "src/base/backoff.h"
-#include "src/tools/edge/edge_config.h"
-#include "src/tools/fleet/exposition.h"
+#include "src/tools/apps/edge/edge_config.h"
+#include "src/tools/apps/fleet/exposition.h"
 
 namespace lidar::edge {
 

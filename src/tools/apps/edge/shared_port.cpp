@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "src/tools/edge/shared_port.h"
+#include "src/tools/apps/edge/shared_port.h"
 
 #include <linux/filter.h>
 #include <linux/sock_diag.h>

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "src/tools/edge/edge_config.h"
+#include "src/tools/apps/edge/edge_config.h"
 
 namespace lidar::edge {
 

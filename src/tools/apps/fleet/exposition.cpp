@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "src/tools/fleet/exposition.h"
+#include "src/tools/apps/fleet/exposition.h"
 
 #include <algorithm>
 #include <charconv>

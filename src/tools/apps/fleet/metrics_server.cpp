@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "src/tools/fleet/metrics_server.h"
+#include "src/tools/apps/fleet/metrics_server.h"
 
 #include <netdb.h>
 #include <poll.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "src/tools/fleet/statistics.h"
+#include "src/tools/apps/fleet/statistics.h"
 
 #include <sys/resource.h>
 #include <unistd.h>

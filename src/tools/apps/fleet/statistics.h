@@ -7,9 +7,9 @@
 
 #include "ext/nats/connection.h"
 #include "src/base/time.h"
-#include "src/tools/fleet/exposition.h"
-#include "src/tools/fleet/metrics_server.h"
-#include "src/tools/fleet/reporter.h"
+#include "src/tools/apps/fleet/exposition.h"
+#include "src/tools/apps/fleet/metrics_server.h"
+#include "src/tools/apps/fleet/reporter.h"
 
 namespace lidar::fleet {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "src/tools/worker/fleet_watch.h"
+#include "src/tools/apps/worker/fleet_watch.h"
 
 #include <glib.h>
 
@@ -8,8 +8,8 @@
 #include <utility>
 
 #include "ext/nats/jetstream.h"
+#include "src/tools/apps/worker/lease_store.h"
 #include "src/tools/common/event_loop.h"
-#include "src/tools/worker/lease_store.h"
 
 namespace lidar::worker {
 namespace {

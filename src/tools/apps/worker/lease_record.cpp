@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "src/tools/worker/lease_record.h"
+#include "src/tools/apps/worker/lease_record.h"
 
 #include <algorithm>
 #include <cmath>

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "src/base/time.h"
-#include "src/tools/worker/lease_record.h"
+#include "src/tools/apps/worker/lease_record.h"
 
 namespace lidar::worker {
 

@@ -9,10 +9,10 @@
 #include <string>
 
 #include "ext/nats/jetstream.h"
+#include "src/tools/apps/fleet/statistics.h"
+#include "src/tools/apps/worker/worker.h"
 #include "src/tools/common/bounded_end.h"
 #include "src/tools/common/program.h"
-#include "src/tools/fleet/statistics.h"
-#include "src/tools/worker/worker.h"
 
 namespace lidar::worker {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "src/tools/worker/robot_pipeline.h"
+#include "src/tools/apps/worker/robot_pipeline.h"
 
 #include <algorithm>
 #include <charconv>
@@ -8,9 +8,9 @@
 #include <stdexcept>
 
 #include "gst/common/buffer_map.h"
+#include "src/tools/apps/fleet/connection.h"
 #include "src/tools/common/elements.h"
 #include "src/tools/common/event_loop.h"
-#include "src/tools/fleet/connection.h"
 
 namespace lidar::worker {
 namespace {

@@ -14,12 +14,12 @@
 #include <vector>
 
 #include "ext/nats/connection.h"
-#include "gst/common/gstlidar.h"
 #include "gst/common/refs.h"
+#include "gst/lidar/gstlidar.h"
 #include "src/base/time.h"
-#include "src/tools/fleet/exposition.h"
-#include "src/tools/worker/lease_record.h"
-#include "src/tools/worker/rewind_window.h"
+#include "src/tools/apps/fleet/exposition.h"
+#include "src/tools/apps/worker/lease_record.h"
+#include "src/tools/apps/worker/rewind_window.h"
 
 namespace lidar::worker {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "src/tools/worker/worker.h"
+#include "src/tools/apps/worker/worker.h"
 
 #include <algorithm>
 #include <cstdio>

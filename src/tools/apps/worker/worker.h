@@ -8,12 +8,12 @@
 #include <vector>
 
 #include "ext/nats/connection.h"
-#include "src/tools/fleet/exposition.h"
-#include "src/tools/fleet/reporter.h"
-#include "src/tools/worker/fleet_watch.h"
-#include "src/tools/worker/lease_store.h"
-#include "src/tools/worker/lease_table.h"
-#include "src/tools/worker/robot_pipeline.h"
+#include "src/tools/apps/fleet/exposition.h"
+#include "src/tools/apps/fleet/reporter.h"
+#include "src/tools/apps/worker/fleet_watch.h"
+#include "src/tools/apps/worker/lease_store.h"
+#include "src/tools/apps/worker/lease_table.h"
+#include "src/tools/apps/worker/robot_pipeline.h"
 
 namespace lidar::worker {
 

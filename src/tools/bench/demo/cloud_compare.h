@@ -3,7 +3,7 @@
 #pragma once
 #include <cstdint>
 
-#include "src/tools/demo/cloud_frame.h"
+#include "src/tools/bench/demo/cloud_frame.h"
 
 namespace lidar::demo {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "src/tools/demo/cloud_frame.h"
+#include "src/tools/bench/demo/cloud_frame.h"
 
 #include <unistd.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "src/tools/demo/coordinator.h"
+#include "src/tools/bench/demo/coordinator.h"
 
 #include <sys/stat.h>
 
@@ -10,16 +10,16 @@
 #include <memory>
 #include <stdexcept>
 
+#include "src/tools/bench/demo/measurements.h"
+#include "src/tools/bench/demo/report.h"
+#include "src/tools/bench/demo/slam.h"
+#include "src/tools/bench/demo/stream_comparer.h"
+#include "src/tools/bench/demo/summary.h"
+#include "src/tools/bench/demo/verdict.h"
 #include "src/tools/common/child_process.h"
 #include "src/tools/common/event_loop.h"
 #include "src/tools/common/output_file.h"
 #include "src/tools/common/udp_socket.h"
-#include "src/tools/demo/measurements.h"
-#include "src/tools/demo/report.h"
-#include "src/tools/demo/slam.h"
-#include "src/tools/demo/stream_comparer.h"
-#include "src/tools/demo/summary.h"
-#include "src/tools/demo/verdict.h"
 
 namespace lidar::demo {
 namespace {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Runs sender, link and receiver, shows a line each second, writes the report.
 #pragma once
-#include "src/tools/demo/run_options.h"
+#include "src/tools/bench/demo/run_options.h"
 
 namespace lidar::demo {
 

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "src/tools/demo/ends.h"
+#include "src/tools/bench/demo/ends.h"
 
 #include <cmath>
 #include <initializer_list>
 #include <memory>
 #include <vector>
 
-#include "gst/common/gstlidar.h"
 #include "gst/common/structure_json.h"
-#include "src/tools/demo/media_process.h"
+#include "gst/lidar/gstlidar.h"
+#include "src/tools/bench/demo/media_process.h"
 
 namespace lidar::demo {
 namespace {

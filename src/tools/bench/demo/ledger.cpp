@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "src/tools/demo/ledger.h"
+#include "src/tools/bench/demo/ledger.h"
 
 #include <algorithm>
 

@@ -6,9 +6,9 @@
 #include <random>
 #include <string>
 
+#include "src/tools/bench/demo/coordinator.h"
+#include "src/tools/bench/demo/ends.h"
 #include "src/tools/common/program.h"
-#include "src/tools/demo/coordinator.h"
-#include "src/tools/demo/ends.h"
 
 namespace {
 

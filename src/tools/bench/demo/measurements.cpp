@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "src/tools/demo/measurements.h"
+#include "src/tools/bench/demo/measurements.h"
 
 #include <cstdio>
 #include <cstring>

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "src/tools/demo/ledger.h"
-#include "src/tools/demo/run_options.h"
+#include "src/tools/bench/demo/ledger.h"
+#include "src/tools/bench/demo/run_options.h"
 
 namespace lidar::demo {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "src/tools/demo/media_process.h"
+#include "src/tools/bench/demo/media_process.h"
 
 #include <glib-unix.h>
 #include <unistd.h>
@@ -13,7 +13,7 @@
 #include <utility>
 
 #include "gst/common/buffer_map.h"
-#include "gst/common/cloud_info.h"
+#include "gst/lidar/cloud_info.h"
 
 namespace lidar::demo {
 namespace {

@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "gst/common/refs.h"
+#include "src/tools/bench/demo/cloud_frame.h"
 #include "src/tools/common/async_writer.h"
-#include "src/tools/demo/cloud_frame.h"
 
 namespace lidar::demo {
 

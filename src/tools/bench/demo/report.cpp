@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "src/tools/demo/report.h"
+#include "src/tools/bench/demo/report.h"
 
 #include <algorithm>
 #include <cmath>

@@ -4,7 +4,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "src/tools/demo/measurements.h"
+#include "src/tools/bench/demo/measurements.h"
 
 namespace lidar::demo {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "src/tools/demo/run_options.h"
+#include "src/tools/bench/demo/run_options.h"
 
 #include <CLI/CLI.hpp>
 #include <cmath>

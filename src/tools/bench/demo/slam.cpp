@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "src/tools/demo/slam.h"
+#include "src/tools/bench/demo/slam.h"
 
 #include <algorithm>
 #include <cstdio>

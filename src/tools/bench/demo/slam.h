@@ -3,7 +3,7 @@
 #pragma once
 #include <nlohmann/json.hpp>
 
-#include "src/tools/demo/measurements.h"
+#include "src/tools/bench/demo/measurements.h"
 
 namespace lidar::demo {
 

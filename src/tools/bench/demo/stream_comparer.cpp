@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "src/tools/demo/stream_comparer.h"
+#include "src/tools/bench/demo/stream_comparer.h"
 
 #include <chrono>
 

@@ -8,8 +8,8 @@
 #include <utility>
 #include <vector>
 
-#include "src/tools/demo/cloud_compare.h"
-#include "src/tools/demo/cloud_frame.h"
+#include "src/tools/bench/demo/cloud_compare.h"
+#include "src/tools/bench/demo/cloud_frame.h"
 
 namespace lidar::demo {
 

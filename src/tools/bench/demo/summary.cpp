@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "src/tools/demo/summary.h"
+#include "src/tools/bench/demo/summary.h"
 
 #include <algorithm>
 #include <cstdio>
 #include <limits>
 
 #include "src/link/gaps.h"
+#include "src/tools/bench/demo/verdict.h"
 #include "src/tools/common/distribution.h"
-#include "src/tools/demo/verdict.h"
 
 namespace lidar::demo {
 namespace {

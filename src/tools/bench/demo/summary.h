@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "src/tools/demo/measurements.h"
+#include "src/tools/bench/demo/measurements.h"
 
 namespace lidar::demo {
 

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "src/link/oracle.h"
-#include "src/tools/demo/measurements.h"
+#include "src/tools/bench/demo/measurements.h"
 
 namespace lidar::demo {
 

@@ -3,12 +3,12 @@
 #include <cstdio>
 #include <iostream>
 
+#include "src/tools/bench/lidar_link/options.h"
+#include "src/tools/bench/lidar_link/recorder.h"
+#include "src/tools/bench/lidar_link/relay.h"
 #include "src/tools/common/event_loop.h"
 #include "src/tools/common/output_file.h"
 #include "src/tools/common/program.h"
-#include "src/tools/lidar_link/options.h"
-#include "src/tools/lidar_link/recorder.h"
-#include "src/tools/lidar_link/relay.h"
 
 namespace lidar::tools {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "src/tools/lidar_link/options.h"
+#include "src/tools/bench/lidar_link/options.h"
 
 #include <CLI/CLI.hpp>
 #include <fstream>

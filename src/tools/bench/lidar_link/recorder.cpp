@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "src/tools/lidar_link/recorder.h"
+#include "src/tools/bench/lidar_link/recorder.h"
 
 #include <cinttypes>
 #include <cstdio>

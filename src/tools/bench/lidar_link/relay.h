@@ -6,10 +6,10 @@
 #include <vector>
 
 #include "src/link/bottleneck.h"
+#include "src/tools/bench/lidar_link/options.h"
+#include "src/tools/bench/lidar_link/recorder.h"
 #include "src/tools/common/event_loop.h"
 #include "src/tools/common/udp_socket.h"
-#include "src/tools/lidar_link/options.h"
-#include "src/tools/lidar_link/recorder.h"
 
 namespace lidar::tools {
 

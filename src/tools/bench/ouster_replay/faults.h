@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "src/tools/ouster_replay/packet_stream.h"
+#include "src/tools/bench/ouster_replay/packet_stream.h"
 
 namespace lidar::tools {
 

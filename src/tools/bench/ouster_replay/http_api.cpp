@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "src/tools/ouster_replay/http_api.h"
+#include "src/tools/bench/ouster_replay/http_api.h"
 
 #include <httplib.h>
 

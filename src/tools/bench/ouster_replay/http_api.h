@@ -5,7 +5,7 @@
 #include <memory>
 #include <string>
 
-#include "src/tools/ouster_replay/sensor.h"
+#include "src/tools/bench/ouster_replay/sensor.h"
 
 namespace lidar::tools {
 

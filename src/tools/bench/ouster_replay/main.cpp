@@ -8,15 +8,15 @@
 
 #include "src/ouster/metadata_writer.h"
 #include "src/ouster/pcap_writer.h"
+#include "src/tools/bench/ouster_replay/http_api.h"
+#include "src/tools/bench/ouster_replay/options.h"
+#include "src/tools/bench/ouster_replay/pcap_stream.h"
+#include "src/tools/bench/ouster_replay/player.h"
+#include "src/tools/bench/ouster_replay/sensor.h"
+#include "src/tools/bench/ouster_replay/synth_stream.h"
 #include "src/tools/common/event_loop.h"
 #include "src/tools/common/output_file.h"
 #include "src/tools/common/program.h"
-#include "src/tools/ouster_replay/http_api.h"
-#include "src/tools/ouster_replay/options.h"
-#include "src/tools/ouster_replay/pcap_stream.h"
-#include "src/tools/ouster_replay/player.h"
-#include "src/tools/ouster_replay/sensor.h"
-#include "src/tools/ouster_replay/synth_stream.h"
 
 namespace lidar::tools {
 namespace {

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "src/tools/ouster_replay/options.h"
+#include "src/tools/bench/ouster_replay/options.h"
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstdlib>
 #include <map>
 
+#include "src/tools/bench/ouster_replay/faults.h"
 #include "src/tools/common/program.h"
-#include "src/tools/ouster_replay/faults.h"
 
 namespace lidar::tools {
 namespace {

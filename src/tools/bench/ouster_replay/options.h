@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "src/tools/ouster_replay/synth_stream.h"
+#include "src/tools/bench/ouster_replay/synth_stream.h"
 
 namespace lidar::tools {
 

@@ -3,7 +3,7 @@
 #pragma once
 #include <string>
 
-#include "src/tools/ouster_replay/packet_stream.h"
+#include "src/tools/bench/ouster_replay/packet_stream.h"
 
 namespace lidar::tools {
 

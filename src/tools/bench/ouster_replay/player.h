@@ -7,11 +7,11 @@
 #include <optional>
 
 #include "src/base/time.h"
+#include "src/tools/bench/ouster_replay/faults.h"
+#include "src/tools/bench/ouster_replay/options.h"
+#include "src/tools/bench/ouster_replay/packet_stream.h"
+#include "src/tools/bench/ouster_replay/sensor.h"
 #include "src/tools/common/udp_socket.h"
-#include "src/tools/ouster_replay/faults.h"
-#include "src/tools/ouster_replay/options.h"
-#include "src/tools/ouster_replay/packet_stream.h"
-#include "src/tools/ouster_replay/sensor.h"
 
 namespace lidar::tools {
 

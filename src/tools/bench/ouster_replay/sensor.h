@@ -8,7 +8,7 @@
 #include <string>
 
 #include "src/ouster/metadata.h"
-#include "src/tools/ouster_replay/faults.h"
+#include "src/tools/bench/ouster_replay/faults.h"
 
 namespace lidar::tools {
 

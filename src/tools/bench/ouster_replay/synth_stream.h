@@ -6,7 +6,7 @@
 
 #include "src/ouster/packet_writer.h"
 #include "src/synth/scanner.h"
-#include "src/tools/ouster_replay/packet_stream.h"
+#include "src/tools/bench/ouster_replay/packet_stream.h"
 
 namespace lidar::tools {
 

@@ -8,7 +8,7 @@
 
 #include "gst/common/refs.h"
 #include "src/base/units.h"
-#include "src/tools/scream_bench/options.h"
+#include "src/tools/bench/scream_bench/options.h"
 
 namespace lidar::tools {
 

@@ -2,10 +2,10 @@
 // scream-bench: measures a network path with SCReAM v2.
 #include <gst/gst.h>
 
+#include "src/tools/bench/scream_bench/options.h"
+#include "src/tools/bench/scream_bench/receiver.h"
+#include "src/tools/bench/scream_bench/sender.h"
 #include "src/tools/common/program.h"
-#include "src/tools/scream_bench/options.h"
-#include "src/tools/scream_bench/receiver.h"
-#include "src/tools/scream_bench/sender.h"
 
 int main(int argc, char** argv) {
   const auto options = lidar::tools::ParseBenchOptions(argc, argv);

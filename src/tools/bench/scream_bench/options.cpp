@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "src/tools/scream_bench/options.h"
+#include "src/tools/bench/scream_bench/options.h"
 
 #include <CLI/CLI.hpp>
 #include <map>

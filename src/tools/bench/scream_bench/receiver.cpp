@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "src/tools/scream_bench/receiver.h"
+#include "src/tools/bench/scream_bench/receiver.h"
 
 #include <gst/rtp/gstrtpbuffer.h>
 
@@ -12,14 +12,14 @@
 #include <optional>
 #include <stdexcept>
 
-#include "gst/common/gstlidar.h"
+#include "gst/lidar/gstlidar.h"
 #include "src/base/sequence.h"
 #include "src/base/time.h"
 #include "src/base/units.h"
+#include "src/tools/bench/scream_bench/frame_source.h"
+#include "src/tools/bench/scream_bench/pipeline.h"
 #include "src/tools/common/distribution.h"
 #include "src/tools/common/output_file.h"
-#include "src/tools/scream_bench/frame_source.h"
-#include "src/tools/scream_bench/pipeline.h"
 
 namespace lidar::tools {
 namespace {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // scream-bench rx.
 #pragma once
-#include "src/tools/scream_bench/options.h"
+#include "src/tools/bench/scream_bench/options.h"
 
 namespace lidar::tools {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "src/tools/scream_bench/sender.h"
+#include "src/tools/bench/scream_bench/sender.h"
 
 #include <gst/app/gstappsrc.h>
 
@@ -11,10 +11,10 @@
 #include <stdexcept>
 #include <thread>
 
-#include "gst/common/gstlidar.h"
+#include "gst/lidar/gstlidar.h"
+#include "src/tools/bench/scream_bench/frame_source.h"
+#include "src/tools/bench/scream_bench/pipeline.h"
 #include "src/tools/common/output_file.h"
-#include "src/tools/scream_bench/frame_source.h"
-#include "src/tools/scream_bench/pipeline.h"
 
 namespace lidar::tools {
 namespace {

@@ -3,7 +3,7 @@
 #pragma once
 #include <string>
 
-#include "src/tools/codec_lab/scan.h"
+#include "src/tools/lab/codec_lab/scan.h"
 
 namespace lidar::tools {
 

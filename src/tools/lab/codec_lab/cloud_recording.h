@@ -4,7 +4,7 @@
 #include <memory>
 #include <string>
 
-#include "src/tools/codec_lab/scan_source.h"
+#include "src/tools/lab/codec_lab/scan_source.h"
 
 namespace lidar::tools {
 

@@ -3,7 +3,7 @@
 #pragma once
 #include <optional>
 
-#include "src/tools/codec_lab/slice_codec.h"
+#include "src/tools/lab/codec_lab/slice_codec.h"
 
 namespace lidar::tools {
 

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "src/ouster/metadata.h"
-#include "src/tools/codec_lab/scan.h"
+#include "src/tools/lab/codec_lab/scan.h"
 
 namespace lidar::tools {
 

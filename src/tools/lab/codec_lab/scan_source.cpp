@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "src/tools/codec_lab/scan_source.h"
+#include "src/tools/lab/codec_lab/scan_source.h"
 
 #include <algorithm>
 #include <cstring>
@@ -11,10 +11,10 @@
 #include "src/ouster/pcap_reader.h"
 #include "src/ouster/scan_batcher.h"
 #include "src/synth/scanner.h"
-#include "src/tools/codec_lab/cloud_file.h"
 #include "src/tools/common/output_file.h"
+#include "src/tools/lab/codec_lab/cloud_file.h"
 #ifdef HAVE_MCAP
-#include "src/tools/codec_lab/cloud_recording.h"
+#include "src/tools/lab/codec_lab/cloud_recording.h"
 #endif
 
 namespace lidar::tools {

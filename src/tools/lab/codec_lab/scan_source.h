@@ -8,7 +8,7 @@
 
 #include "src/base/time.h"
 #include "src/synth/geometry.h"
-#include "src/tools/codec_lab/scan.h"
+#include "src/tools/lab/codec_lab/scan.h"
 
 namespace lidar::tools {
 

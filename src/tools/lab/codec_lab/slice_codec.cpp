@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "src/tools/codec_lab/slice_codec.h"
+#include "src/tools/lab/codec_lab/slice_codec.h"
 
 #include <algorithm>
 #include <cmath>

@@ -11,7 +11,7 @@
 #include "ext/draco/slice_coder.h"
 #include "src/rate/error_bound.h"
 #include "src/rate/size_model.h"
-#include "src/tools/codec_lab/scan.h"
+#include "src/tools/lab/codec_lab/scan.h"
 
 namespace lidar::tools {
 

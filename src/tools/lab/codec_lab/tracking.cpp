@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "src/tools/codec_lab/tracking.h"
+#include "src/tools/lab/codec_lab/tracking.h"
 
 #include <algorithm>
 #include <cmath>

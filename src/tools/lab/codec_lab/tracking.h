@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "src/rate/rate_controller.h"
-#include "src/tools/codec_lab/slice_codec.h"
+#include "src/tools/lab/codec_lab/slice_codec.h"
 
 namespace lidar::tools {
 

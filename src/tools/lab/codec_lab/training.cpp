@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "src/tools/codec_lab/training.h"
+#include "src/tools/lab/codec_lab/training.h"
 
 #include <algorithm>
 #include <cmath>
 #include <random>
 
-#include "src/tools/codec_lab/slice_codec.h"
+#include "src/tools/lab/codec_lab/slice_codec.h"
 
 namespace lidar::tools {
 namespace {

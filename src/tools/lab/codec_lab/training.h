@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "src/rate/model_fit.h"
-#include "src/tools/codec_lab/scan.h"
+#include "src/tools/lab/codec_lab/scan.h"
 
 namespace lidar::tools {
 

@@ -6,10 +6,10 @@
 #include <numeric>
 #include <string>
 
-#include "src/codec/adaptive_coder.h"
 #include "src/codec/intensity_scale.h"
-#include "src/tools/codec_lab/scan_source.h"
+#include "src/codec/rans/adaptive_coder.h"
 #include "src/tools/common/output_file.h"
+#include "src/tools/lab/codec_lab/scan_source.h"
 
 namespace lidar::tools {
 namespace {
@@ -121,7 +121,8 @@ void Run(const std::string& folder) {
 
 int main(int argc, char** argv) {
   if (argc != 2) {
-    std::fputs("usage: codec-tables tests/data/ouster >src/codec/initial_counts.inc\n", stderr);
+    std::fputs("usage: codec-tables tests/data/ouster >src/codec/rans/initial_counts.inc\n",
+               stderr);
     return 2;
   }
   try {

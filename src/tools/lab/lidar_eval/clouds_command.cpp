@@ -9,9 +9,9 @@
 #include "src/cloud/nearest_point.h"
 #include "src/codec/cloud/cloud_decoder.h"
 #include "src/codec/cloud/cloud_encoder.h"
-#include "src/tools/codec_lab/measure.h"
-#include "src/tools/codec_lab/scan_source.h"
-#include "src/tools/lidar_eval/commands.h"
+#include "src/tools/lab/codec_lab/measure.h"
+#include "src/tools/lab/codec_lab/scan_source.h"
+#include "src/tools/lab/lidar_eval/commands.h"
 
 namespace lidar::tools {
 namespace {

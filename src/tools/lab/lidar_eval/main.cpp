@@ -3,7 +3,7 @@
 
 #include "src/tools/common/output_file.h"
 #include "src/tools/common/program.h"
-#include "src/tools/lidar_eval/commands.h"
+#include "src/tools/lab/lidar_eval/commands.h"
 
 int main(int argc, char** argv) {
   CLI::App app("Measures the codec and the rate control on captures, clouds and synthetic drives.",

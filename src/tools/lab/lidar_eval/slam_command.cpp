@@ -7,11 +7,11 @@
 #include <nlohmann/json.hpp>
 
 #include "src/odometry/trajectory_error.h"
-#include "src/tools/codec_lab/plot.h"
-#include "src/tools/codec_lab/progress.h"
 #include "src/tools/common/output_file.h"
-#include "src/tools/lidar_eval/commands.h"
-#include "src/tools/lidar_eval/slam_run.h"
+#include "src/tools/lab/codec_lab/plot.h"
+#include "src/tools/lab/codec_lab/progress.h"
+#include "src/tools/lab/lidar_eval/commands.h"
+#include "src/tools/lab/lidar_eval/slam_run.h"
 
 namespace lidar::tools {
 namespace {

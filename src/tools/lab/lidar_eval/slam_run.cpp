@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "src/tools/lidar_eval/slam_run.h"
+#include "src/tools/lab/lidar_eval/slam_run.h"
 
 #include <algorithm>
 #include <cmath>

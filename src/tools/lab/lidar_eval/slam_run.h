@@ -6,7 +6,7 @@
 
 #include "src/odometry/odometry.h"
 #include "src/odometry/trajectory.h"
-#include "src/tools/codec_lab/scan_source.h"
+#include "src/tools/lab/codec_lab/scan_source.h"
 
 namespace lidar::tools {
 

@@ -8,9 +8,9 @@
 #include "src/codec/effort_control.h"
 #include "src/codec/slice_decoder.h"
 #include "src/codec/slice_encoder.h"
-#include "src/tools/codec_lab/scan_source.h"
-#include "src/tools/codec_lab/slice_codec.h"
-#include "src/tools/lidar_eval/commands.h"
+#include "src/tools/lab/codec_lab/scan_source.h"
+#include "src/tools/lab/codec_lab/slice_codec.h"
+#include "src/tools/lab/lidar_eval/commands.h"
 
 namespace lidar::tools {
 namespace {

@@ -5,10 +5,10 @@
 #include <stdexcept>
 
 #include "src/ouster/metadata_writer.h"
-#include "src/tools/codec_lab/packet_recording.h"
-#include "src/tools/codec_lab/scan_source.h"
 #include "src/tools/common/output_file.h"
-#include "src/tools/lidar_eval/commands.h"
+#include "src/tools/lab/codec_lab/packet_recording.h"
+#include "src/tools/lab/codec_lab/scan_source.h"
+#include "src/tools/lab/lidar_eval/commands.h"
 
 namespace lidar::tools {
 namespace {

@@ -4,12 +4,12 @@
 #include <map>
 #include <memory>
 
-#include "src/tools/codec_lab/measure.h"
-#include "src/tools/codec_lab/model_option.h"
-#include "src/tools/codec_lab/plot.h"
-#include "src/tools/codec_lab/scan_source.h"
-#include "src/tools/codec_lab/tracking.h"
-#include "src/tools/lidar_eval/commands.h"
+#include "src/tools/lab/codec_lab/measure.h"
+#include "src/tools/lab/codec_lab/model_option.h"
+#include "src/tools/lab/codec_lab/plot.h"
+#include "src/tools/lab/codec_lab/scan_source.h"
+#include "src/tools/lab/codec_lab/tracking.h"
+#include "src/tools/lab/lidar_eval/commands.h"
 
 namespace lidar::tools {
 namespace {

@@ -6,12 +6,12 @@
 #include <map>
 
 #include "src/rate/model_file.h"
-#include "src/tools/codec_lab/progress.h"
-#include "src/tools/codec_lab/scan_source.h"
-#include "src/tools/codec_lab/slice_codec.h"
-#include "src/tools/codec_lab/training.h"
 #include "src/tools/common/output_file.h"
 #include "src/tools/common/program.h"
+#include "src/tools/lab/codec_lab/progress.h"
+#include "src/tools/lab/codec_lab/scan_source.h"
+#include "src/tools/lab/codec_lab/slice_codec.h"
+#include "src/tools/lab/codec_lab/training.h"
 
 namespace lidar::tools {
 namespace {

@@ -5,10 +5,10 @@
 #include <iostream>
 
 #include "src/base/base64.h"
-#include "src/tools/codec_lab/scan_source.h"
 #include "src/tools/common/output_file.h"
 #include "src/tools/common/program.h"
-#include "src/tools/mixing_train/training.h"
+#include "src/tools/lab/codec_lab/scan_source.h"
+#include "src/tools/lab/mixing_train/training.h"
 
 namespace lidar::tools {
 namespace {

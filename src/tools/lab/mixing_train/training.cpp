@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "src/tools/mixing_train/training.h"
+#include "src/tools/lab/mixing_train/training.h"
 
 #include <algorithm>
 #include <array>

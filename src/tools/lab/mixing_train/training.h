@@ -7,7 +7,7 @@
 
 #include "src/codec/mixing/slice_coder.h"
 #include "src/codec/mixing/start_states.h"
-#include "src/tools/codec_lab/scan.h"
+#include "src/tools/lab/codec_lab/scan.h"
 
 namespace lidar::tools {
 

@@ -4,7 +4,7 @@
 # and without their descriptions. Skipped where there is no compiler of types.
 set -euo pipefail
 here=$(cd "$(dirname "$0")" && pwd)
-root=$(cd "$here/../../.." && pwd)
+root=$(cd "$here/../../../.." && pwd)
 . "$root/pipelines/environment.sh"
 folder=$(mktemp -d)
 running=()

@@ -4,7 +4,7 @@
 # cannot install it.
 set -euo pipefail
 here=$(cd "$(dirname "$0")" && pwd)
-root=$(cd "$here/../../.." && pwd)
+root=$(cd "$here/../../../.." && pwd)
 . "$root/pipelines/environment.sh"
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
