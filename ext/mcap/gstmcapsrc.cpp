@@ -15,6 +15,8 @@
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <set>
+#include <string>
 #include <utility>
 
 #include "ext/mcap/play_task.h"
@@ -242,6 +244,24 @@ static void Finish(GstLidarMcapSrc* self) {
   streams.End(gst_event_new_segment_done(GST_FORMAT_TIME, position));
 }
 
+/// The media types of the pads, each once.
+static std::string MediaTypes(GstLidarMcapSrc* self) {
+  std::set<std::string> types;
+  gst_element_foreach_src_pad(
+      GST_ELEMENT(self),
+      [](GstElement*, GstPad* pad, gpointer to) -> gboolean {
+        const CapsPtr caps(gst_pad_get_current_caps(pad));
+        if (caps)
+          static_cast<std::set<std::string>*>(to)->insert(
+              gst_structure_get_name(gst_caps_get_structure(caps.get(), 0)));
+        return TRUE;
+      },
+      &types);
+  std::string text;
+  for (const std::string& type : types) text += (text.empty() ? "" : ", ") + type;
+  return text;
+}
+
 /// Posts what is an error, and stops the task.
 static void Stop(GstLidarMcapSrc* self, GstFlowReturn flow) {
   GST_DEBUG_OBJECT(self, "stops: %s", gst_flow_get_name(flow));
@@ -249,7 +269,13 @@ static void Stop(GstLidarMcapSrc* self, GstFlowReturn flow) {
   self->state->task.Pause();
   if (flow == GST_FLOW_EOS) return Finish(self);
   if (flow != GST_FLOW_NOT_LINKED && flow > GST_FLOW_EOS) return;
-  GST_ELEMENT_FLOW_ERROR(self, flow);
+  if (flow == GST_FLOW_NOT_LINKED)
+    GST_ELEMENT_ERROR(self, STREAM, WRONG_TYPE,
+                      ("The next element takes nothing of what the recording holds: %s.",
+                       MediaTypes(self).c_str()),
+                      (nullptr));
+  else
+    GST_ELEMENT_FLOW_ERROR(self, flow);
   self->state->run.streams->End(gst_event_new_eos());
 }
 

@@ -151,6 +151,13 @@ TEST_F(McapErrors, NestedCapsOfAStrangersChannelAreRefusedAtOnce) {
             "\"" + Path("a.mcap") + "\" holds nothing that can be played.");
 }
 
+TEST_F(McapErrors, APlayerSaysWhatTheNextElementDoesNotTake) {
+  Record(1, "", "a.mcap");
+  EXPECT_EQ(Play("mcapsrc" + At("a.mcap") + " ! pointcloudview ! fakesink").error,
+            "The next element takes nothing of what the recording holds: "
+            "application/x-lidar-slice.");
+}
+
 TEST_F(McapErrors, CapsThatCouldNotBePlayedAreNotRecorded) {
   const Harness h = RecordingTo(Path("a.mcap"));
   GstBus* bus = gst_bus_new();
