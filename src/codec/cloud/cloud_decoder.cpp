@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "src/codec/cloud/beam_section.h"
 #include "src/codec/cloud/level_tree.h"
 #include "src/codec/mixing/binary_coder.h"
 
@@ -19,6 +20,11 @@ bool CloudDecoder::Decode(ByteView stream) {
       std::size_t{header_.far_points} * (3 * sizeof(float) + (intensity_bits() > 0 ? 1 : 0));
   if (far_size > reader.remaining()) return false;
   ByteReader far(reader.Bytes(far_size));
+  const std::size_t others = std::size_t{header_.points} + header_.far_points;
+  if (header_.has_beams &&
+      !DecodeBeamSection(&reader, max_points_ - others, header_.intensity, &cloud_)) {
+    return false;
+  }
   const ByteView cells = reader.Bytes(header_.stream_size);
   if (!reader.ok()) return false;
   const ByteView filler = reader.Rest();
@@ -32,7 +38,7 @@ bool CloudDecoder::DecodeCells(ByteView stream, std::size_t slice_bytes) {
   cells_.Clear();
   cells_.depth = header_.depth;
   if (!tree_.Code(&cells_, {header_.points, MostNodes(slice_bytes)}, &decoder)) return false;
-  cloud_.xyz.reserve(3 * std::size_t{header_.points});
+  cloud_.xyz.reserve(cloud_.xyz.size() + 3 * std::size_t{header_.points});
   for (std::size_t i = 0; i < cells_.codes.size(); ++i) {
     const Point middle = header_.grid.Middle(PositionOf(cells_.codes[i]), header_.depth);
     for (std::uint32_t k = 0; k < cells_.counts[i]; ++k)

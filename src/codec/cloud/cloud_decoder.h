@@ -19,8 +19,8 @@ class CloudDecoder {
   /// False, with the cloud undefined, for a stream that is damaged, of another version, or of more
   /// than max_points.
   bool Decode(ByteView stream);
-  /// The points decoded last: cell by cell, the cells in the order of their Morton codes, then
-  /// those too far away for cells.
+  /// The points decoded last: those of beams, beam by beam and column by column; cell by cell, the
+  /// cells in the order of their Morton codes, then those too far away for cells.
   const XyzCloud& cloud() const { return cloud_; }
   double step_m() const { return static_cast<double>(header_.grid.step_m); }
   double error_m() const { return header_.grid.error_m(); }

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <utility>
 
 #include "src/base/byte_writer.h"
@@ -26,6 +27,44 @@ IntensityScale ScaleOf(const XyzCloud& cloud, unsigned bits) {
   if (cloud.intensity.empty()) return {};
   const float largest = *std::max_element(cloud.intensity.begin(), cloud.intensity.end());
   return {IntensityScale::Fitting(largest), bits};
+}
+
+/// Shares the error between ranges and azimuths so that the cloud should be smallest. None where
+/// the image would be too large.
+std::optional<PixelErrors> CheapestErrors(const std::vector<Sighting>& sightings,
+                                          const BeamTable& table, double error_m) {
+  // Bits of what fits no pixel, of a further return, and of a residual.
+  constexpr double kRestBits = 10;
+  constexpr double kExtraBits = 6;
+  constexpr double kResidualBits = 0.8;
+  PixelErrors best;
+  double least = 0;
+  PixelList list;
+  for (const double part : {1.0, 0.95, 0.9, -0.95, -0.85}) {
+    PixelErrors errors;
+    errors.error_m = error_m;
+    errors.range_m = std::abs(part) * error_m;
+    if (part < 0) {
+      // A tenth is left for what integers round off.
+      const double tangent_m = 0.9 * std::sqrt(1 - part * part) * error_m;
+      errors.tangent_um = std::max(static_cast<std::uint32_t>(1e6 * tangent_m), 1U);
+    }
+    if (!FillPixels(sightings, table, errors, 0, &list)) return std::nullopt;
+    const double bits = kRestBits * static_cast<double>(list.rest.size()) +
+                        kExtraBits * static_cast<double>(list.extras.size()) +
+                        static_cast<double>(list.returns) *
+                            ((part < 0 ? kResidualBits : 0) - std::log2(std::abs(part)));
+    if (best.error_m > 0 && bits >= least) continue;
+    best = errors;
+    least = bits;
+  }
+  return best;
+}
+
+/// Where points lie closer together than cells, cells are cheaper than ranges.
+std::vector<double> NearestLimits(unsigned effort, double error_m) {
+  if (effort < EffortControl::kHighest) return {50 * error_m};
+  return {0, 30 * error_m, 60 * error_m, 120 * error_m};
 }
 
 }  // namespace
@@ -64,24 +103,25 @@ void CloudEncoder::Thin(const std::vector<bool>& kept) {
 }
 
 /// Parts points that the grid can hold from those that are too far away.
-void CloudEncoder::SortOut(const CellGrid& grid, unsigned* depth) {
+void CloudEncoder::SortOut(CloudHeader* header) {
   near_.clear();
-  near_ids_.clear();
+  levels_.clear();
   far_ids_.clear();
-  *depth = 1;
+  const IntensityScale fine(header->intensity.full(), kFineIntensityBits);
   for (std::uint32_t i = 0; i < cloud_.size(); ++i) {
     const Point point = {cloud_.xyz[3 * i], cloud_.xyz[3 * i + 1], cloud_.xyz[3 * i + 2]};
     float farthest = 0;
     for (const float v : point) farthest = std::max(farthest, std::abs(v));
-    const unsigned needed = grid.DepthFor(static_cast<double>(farthest));
-    if (needed > kMostDepth || !grid.Holds(point)) {
+    const unsigned needed = header->grid.DepthFor(static_cast<double>(farthest));
+    if (needed > kMostDepth || !header->grid.Holds(point)) {
       far_ids_.push_back(i);
       continue;
     }
-    *depth = std::max(*depth, needed);
+    header->depth = std::max(header->depth, needed);
     near_.push_back(point);
-    near_ids_.push_back(i);
+    if (header->intensity.bits() > 0) levels_.push_back(fine.LevelOf(cloud_.intensity[i]));
   }
+  header->far_points = static_cast<std::uint32_t>(far_ids_.size());
 }
 
 void CloudEncoder::WriteFarPoints(const IntensityScale& scale,
@@ -93,64 +133,108 @@ void CloudEncoder::WriteFarPoints(const IntensityScale& scale,
   }
 }
 
-/// Cell by cell, rising within each.
-std::vector<std::uint8_t> CloudEncoder::LevelsOf(const IntensityScale& scale) {
-  std::vector<std::uint8_t> levels;
-  for (const std::uint32_t i : covered_.order)
-    levels.push_back(scale.LevelOf(cloud_.intensity[near_ids_[i]]));
-  auto first = levels.begin();
-  for (const std::uint32_t count : covered_.cells.counts) {
-    std::sort(first, first + count);
-    first += count;
-  }
-  return levels;
-}
-
-/// Returns how many nodes the tree has.
-std::size_t CloudEncoder::EncodeCells(const CloudHeader& header, bool few,
-                                      std::vector<std::uint8_t>* out) {
-  out->clear();
-  (few ? CoverByFewCells : CoverByOwnCells)(near_, header.grid, header.depth, &covered_);
-  mixing::BinaryEncoder encoder(out);
-  tree_.Code(&covered_.cells, {near_.size(), SIZE_MAX}, &encoder);
-  if (header.intensity.bits() > 0) {
-    auto levels = LevelsOf(header.intensity);
+void CloudEncoder::CodeCells(const std::vector<Point>& points,
+                             const std::vector<std::uint32_t>& ids, bool few,
+                             Candidate* candidate) {
+  const CloudHeader& header = candidate->header;
+  (few ? CoverByFewCells : CoverByOwnCells)(points, header.grid, header.depth, &covered_);
+  candidate->cells.clear();
+  mixing::BinaryEncoder encoder(&candidate->cells);
+  tree_.Code(&covered_.cells, {points.size(), SIZE_MAX}, &encoder);
+  if (!levels_.empty()) {
+    std::vector<std::uint8_t> levels;
+    for (const std::uint32_t i : covered_.order)
+      levels.push_back(header.intensity.Coarsen(levels_[ids[i]]));
+    auto first = levels.begin();
+    for (const std::uint32_t count : covered_.cells.counts) {
+      std::sort(first, first + count);
+      first += count;
+    }
     CodeLevels(covered_.cells, header.intensity.bits(), &levels, &encoder);
   }
   encoder.Finish();
-  return tree_.nodes();
+  candidate->nodes = tree_.nodes();
 }
 
-/// Fewer cells have more various counts: which is smaller depends on the cloud.
-std::size_t CloudEncoder::EncodeSmallest(const CloudHeader& header) {
-  stream_.clear();
-  if (near_.empty()) return 0;
-  const bool few = effort_ > 0 && near_.size() <= kMostToChoose;
-  const std::size_t nodes = EncodeCells(header, few, &stream_);
-  if (!few || effort_ < EffortControl::kHighest) return nodes;
-  std::vector<std::uint8_t> other;
-  const std::size_t other_nodes = EncodeCells(header, false, &other);
-  if (other.size() >= stream_.size()) return nodes;
-  stream_.swap(other);
-  return other_nodes;
+/// Codes the points of near_ with these indices. Fewer cells have more various counts: which is
+/// smaller depends on the cloud.
+void CloudEncoder::EncodeCells(const std::vector<std::uint32_t>& ids, Candidate* candidate) {
+  candidate->header.points = static_cast<std::uint32_t>(ids.size());
+  if (ids.empty()) return;
+  std::vector<Point> points;
+  points.reserve(ids.size());
+  for (const std::uint32_t i : ids) points.push_back(near_[i]);
+  const bool few = effort_ > 0 && points.size() <= kMostToChoose;
+  CodeCells(points, ids, few, candidate);
+  if (!few || effort_ < EffortControl::kHighest) return;
+  Candidate other;
+  other.header = candidate->header;
+  CodeCells(points, ids, false, &other);
+  if (other.cells.size() >= candidate->cells.size()) return;
+  candidate->cells.swap(other.cells);
+  candidate->nodes = other.nodes;
+}
+
+/// False where most points lie in no pixel.
+bool CloudEncoder::EncodeBeams(const BeamTable& table, const PixelErrors& errors, double nearest_m,
+                               Candidate* candidate) {
+  if (!FillPixels(sightings_, table, errors, nearest_m, &pixels_)) return false;
+  candidate->header.has_beams = true;
+  const PointLevels levels{levels_.empty() ? nullptr : &levels_, candidate->header.intensity};
+  if (pixels_.returns < near_.size() / 4 ||
+      !EncodeBeamSection(table, errors, levels, effort_, &pixels_, &candidate->beams)) {
+    return false;
+  }
+  EncodeCells(pixels_.rest, candidate);
+  return true;
+}
+
+CloudEncoder::Candidate CloudEncoder::EncodeSmallest(const CloudHeader& header, double error_m) {
+  Candidate best;
+  best.header = header;
+  bool found = false;
+  sightings_.clear();
+  for (const Point& point : near_) sightings_.emplace_back(point);
+  const auto table = FindBeams(sightings_);
+  const auto errors = table ? CheapestErrors(sightings_, *table, error_m) : std::nullopt;
+  if (errors) {
+    for (const double nearest_m : NearestLimits(effort_, error_m)) {
+      Candidate candidate;
+      candidate.header = header;
+      if (!EncodeBeams(*table, *errors, nearest_m, &candidate)) continue;
+      if (!found || candidate.size() < best.size()) best = std::move(candidate);
+      found = true;
+    }
+  }
+  if (found && effort_ < EffortControl::kHighest) return best;
+  Candidate cells;
+  cells.header = header;
+  std::vector<std::uint32_t> all(near_.size());
+  std::iota(all.begin(), all.end(), 0U);
+  EncodeCells(all, &cells);
+  return found && best.size() <= cells.size() ? best : cells;
+}
+
+void CloudEncoder::Write(const Candidate& candidate, EncodedSlice* slice) const {
+  CloudHeader header = candidate.header;
+  header.stream_size = static_cast<std::uint32_t>(candidate.cells.size());
+  header.Write(&slice->bytes);
+  WriteFarPoints(header.intensity, &slice->bytes);
+  for (const auto* part : {&candidate.beams, &candidate.cells})
+    slice->bytes.insert(slice->bytes.end(), part->begin(), part->end());
+  while (candidate.nodes > MostNodes(slice->bytes.size())) slice->bytes.push_back(0);
 }
 
 SliceResult CloudEncoder::Encode(const SliceSettings& settings, EncodedSlice* slice) {
   *slice = {};
   if (cloud_.size() == 0 || cloud_.size() > kMostPoints) return SliceResult::kEmpty;
   CloudHeader header;
-  header.grid = CellGrid::ForError(ErrorOf(settings));
+  const double error_m = ErrorOf(settings);
+  header.grid = CellGrid::ForError(error_m);
   if (header.grid.error_m() > settings.max_error_m) return SliceResult::kOutOfReach;
   header.intensity = ScaleOf(cloud_, settings.intensity_bits);
-  SortOut(header.grid, &header.depth);
-  header.points = static_cast<std::uint32_t>(near_.size());
-  header.far_points = static_cast<std::uint32_t>(far_ids_.size());
-  const std::size_t nodes = EncodeSmallest(header);
-  header.stream_size = static_cast<std::uint32_t>(stream_.size());
-  header.Write(&slice->bytes);
-  WriteFarPoints(header.intensity, &slice->bytes);
-  slice->bytes.insert(slice->bytes.end(), stream_.begin(), stream_.end());
-  while (nodes > MostNodes(slice->bytes.size())) slice->bytes.push_back(0);
+  SortOut(&header);
+  Write(EncodeSmallest(header, header.grid.error_m()), slice);
   slice->returns = cloud_.size();
   slice->step_m = static_cast<double>(header.grid.step_m);
   slice->error_m = header.grid.error_m();

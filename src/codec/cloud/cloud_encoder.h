@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "src/codec/cloud/beam_section.h"
 #include "src/codec/cloud/cell_cover.h"
 #include "src/codec/cloud/cell_tree.h"
 #include "src/codec/cloud/cloud_header.h"
@@ -29,8 +30,8 @@ class CloudEncoder {
   bool has_intensity() const { return !cloud_.intensity.empty(); }
   /// Names the coder for statistics and predictors.
   std::string Mode() const { return "xyz-cloud" + std::to_string(effort_); }
-  /// 0: every point has its own cell; from 1 on they share few; at EffortControl::kHighest both are
-  /// tried.
+  /// How much is tried: at 0 every point that no beam sees has its own cell, from 1 on points share
+  /// few, and at EffortControl::kHighest all ways are tried.
   void set_effort(unsigned effort) { effort_ = effort; }
   /// Forgets all but `kept` of the loaded points.
   void Thin(const std::vector<bool>& kept);
@@ -40,21 +41,35 @@ class CloudEncoder {
 
  private:
   explicit CloudEncoder(CloudLayout layout) : layout_(std::move(layout)) {}
-  void SortOut(const CellGrid& grid, unsigned* depth);
-  std::size_t EncodeCells(const CloudHeader& header, bool few, std::vector<std::uint8_t>* out);
-  std::size_t EncodeSmallest(const CloudHeader& header);
+  /// A way of coding what is loaded.
+  struct Candidate {
+    CloudHeader header;
+    std::vector<std::uint8_t> beams;  // the section
+    std::vector<std::uint8_t> cells;  // the stream
+    std::size_t nodes = 0;
+
+    std::size_t size() const { return beams.size() + cells.size(); }
+  };
+  void SortOut(CloudHeader* header);
+  void EncodeCells(const std::vector<std::uint32_t>& ids, Candidate* candidate);
+  void CodeCells(const std::vector<Point>& points, const std::vector<std::uint32_t>& ids, bool few,
+                 Candidate* candidate);
+  bool EncodeBeams(const BeamTable& table, const PixelErrors& errors, double nearest_m,
+                   Candidate* candidate);
+  Candidate EncodeSmallest(const CloudHeader& header, double error_m);
+  void Write(const Candidate& candidate, EncodedSlice* slice) const;
   void WriteFarPoints(const IntensityScale& scale, std::vector<std::uint8_t>* out) const;
-  std::vector<std::uint8_t> LevelsOf(const IntensityScale& scale);
 
   CloudLayout layout_;
   unsigned effort_ = 1;
   XyzCloud cloud_;
-  std::vector<Point> near_;              // on the grid
-  std::vector<std::uint32_t> near_ids_;  // of cloud_
+  std::vector<Point> near_;           // on the grid
+  std::vector<std::uint8_t> levels_;  // of near_, at full resolution; empty: geometry only
   std::vector<std::uint32_t> far_ids_;
+  std::vector<Sighting> sightings_;  // of near_
   CoveredPoints covered_;
   CellTree tree_;
-  std::vector<std::uint8_t> stream_;
+  PixelList pixels_;
 };
 
 }  // namespace lidar::codec::cloud

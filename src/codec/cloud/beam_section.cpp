@@ -1,0 +1,215 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "src/codec/cloud/beam_section.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "src/codec/block_store.h"
+#include "src/codec/cloud/pixel_part.h"
+#include "src/codec/mixing/binary_coder.h"
+#include "src/codec/range_codec.h"
+#include "src/codec/varint.h"
+
+namespace lidar::codec::cloud {
+namespace {
+
+/// What the range coder needs: beams that look where they are, column by column.
+SensorModel ModelOf(const BeamTable& table) {
+  SensorModel model;
+  model.columns_per_scan = table.columns();
+  model.beams.resize(table.rows());
+  return model;
+}
+
+std::vector<std::int32_t> BinsOf(const RangeImage& image, const RangeGrid& grid) {
+  std::vector<std::int32_t> bins;
+  bins.reserve(image.size());
+  for (const std::uint32_t range : image.ranges)
+    bins.push_back(range == 0 ? -1 : static_cast<std::int32_t>(grid.BinOf(range)));
+  return bins;
+}
+
+/// Costs little to find: the guess whose residuals are short.
+ResidualGuess BestGuess(const RangeImage& image, std::uint32_t tangent_um,
+                        const std::vector<std::int32_t>& residuals) {
+  std::array<double, kResidualGuesses> costs{};
+  std::vector<std::int32_t> of_column(image.columns, 0);
+  for (std::uint32_t beam = 0; beam < image.beams; ++beam) {
+    std::array<std::int32_t, 2> last{};
+    for (std::uint32_t column = 0; column < image.columns; ++column) {
+      const std::size_t pixel = std::size_t{beam} * image.columns + column;
+      if (image.ranges[pixel] == 0) continue;
+      const double width = ResidualWidth(tangent_um, image.ranges[pixel]);
+      const std::array<std::int32_t, kResidualGuesses> guesses = {of_column[column], last[0],
+                                                                  last[1]};
+      for (unsigned k = 0; k < kResidualGuesses; ++k)
+        costs[k] += std::log2(1 + std::abs(residuals[pixel] - guesses[k]) / width);
+      last = {residuals[pixel], last[0]};
+      of_column[column] = residuals[pixel];
+    }
+  }
+  const auto best = std::min_element(costs.begin(), costs.end()) - costs.begin();
+  return static_cast<ResidualGuess>(best);
+}
+
+RangeSettings SettingsOf(const PixelErrors& errors, const PointLevels& levels, unsigned effort,
+                         const RangeImage& image) {
+  RangeSettings settings;
+  settings.coder = effort > 0 ? RangeCoder::kMixing : RangeCoder::kAdaptive;
+  settings.effort = effort;
+  settings.grid = RangeGrid::ForError(errors.range_m, CommonUnit(image.ranges, 1));
+  if (levels.levels != nullptr) settings.intensity = levels.scale;
+  return settings;
+}
+
+std::vector<ExtraBin> ExtraBins(const PixelList& list, const std::vector<std::int32_t>& bins,
+                                const RangeGrid& grid, const PointLevels& levels) {
+  std::vector<ExtraBin> extras;
+  for (const ExtraReturn& e : list.extras) {
+    const auto bin = static_cast<std::int32_t>(grid.BinOf(e.range_mm));
+    std::uint8_t level = 0;
+    if (levels.levels != nullptr) level = levels.scale.Coarsen((*levels.levels)[e.point]);
+    extras.push_back({e.pixel, bin - bins[e.pixel], level});
+  }
+  return extras;
+}
+
+}  // namespace
+
+bool EncodeBeamSection(const BeamTable& table, const PixelErrors& errors, const PointLevels& levels,
+                       unsigned effort, PixelList* list, std::vector<std::uint8_t>* out) {
+  RangeImage& image = list->image;
+  const SensorModel model = ModelOf(table);
+  if (levels.levels != nullptr) {
+    image.intensity.assign(image.size(), 0);
+    for (std::size_t i = 0; i < image.size(); ++i)
+      if (image.ranges[i] != 0) image.intensity[i] = (*levels.levels)[list->points[i]];
+  }
+  std::vector<std::uint8_t> block;
+  RangeEncoder encoder(model);
+  if (!encoder.Encode(image, SettingsOf(errors, levels, effort, image), &block)) return false;
+  // What follows is coded by the ranges that come back.
+  RangeImage decoded;
+  RangeDecoder decoder(model);
+  IntensityScale scale;
+  ByteReader reader(block.data(), block.size());
+  if (!decoder.Decode(&reader, kMostPixels, &decoded, &scale)) return false;
+  const RangeGrid grid = decoder.header().grid;
+  const auto bins = BinsOf(decoded, grid);
+  auto extras = ExtraBins(*list, bins, grid, levels);
+
+  ResidualSettings residuals{errors.tangent_um, ResidualGuess::kColumn};
+  std::vector<std::uint8_t> stream;
+  mixing::BinaryEncoder bits(&stream);
+  if (residuals.tangent_um > 0) {
+    residuals.guess = BestGuess(decoded, residuals.tangent_um, list->residuals);
+    CodeResiduals(decoded, residuals, &list->residuals, &bits);
+  }
+  if (!extras.empty()) CodeExtras(bins, image.columns, scale.bits(), extras.size(), &extras, &bits);
+  bits.Finish();
+
+  ByteWriter writer(out);
+  table.Write(&writer);
+  WriteVarint(residuals.tangent_um, &writer);
+  writer.U8(static_cast<std::uint8_t>(residuals.guess));
+  writer.Bytes({block.data(), block.size()});
+  WriteVarint(static_cast<std::uint32_t>(extras.size()), &writer);
+  WriteVarint(static_cast<std::uint32_t>(stream.size()), &writer);
+  writer.Bytes({stream.data(), stream.size()});
+  return true;
+}
+
+namespace {
+
+/// A section as it comes out of its bytes.
+struct DecodedSection {
+  BeamTable table;
+  ResidualSettings settings;
+  RangeGrid grid;
+  IntensityScale scale;
+  RangeImage image;
+  std::vector<std::int32_t> residuals;
+  std::vector<ExtraBin> extras;
+  std::size_t returns = 0;
+};
+
+bool DecodeImage(ByteReader* reader, DecodedSection* section) {
+  auto table = BeamTable::Read(reader);
+  bool ok = true;
+  section->settings.tangent_um = ReadVarint(reader, &ok);
+  const unsigned guess = reader->U8();
+  if (!table || !ok || !reader->ok() || guess >= kResidualGuesses) return false;
+  section->settings.guess = static_cast<ResidualGuess>(guess);
+  section->table = *std::move(table);
+  RangeDecoder decoder(ModelOf(section->table));
+  BlockStore nothing;
+  RangeImage& image = section->image;
+  if (!decoder.Decode(reader, kMostPixels, &image, &section->scale, &nothing) ||
+      image.first_column + image.columns > section->table.columns()) {
+    return false;
+  }
+  section->grid = decoder.header().grid;
+  section->returns = image.size() - static_cast<std::size_t>(
+                                        std::count(image.ranges.begin(), image.ranges.end(), 0U));
+  return true;
+}
+
+bool DecodeRest(ByteReader* reader, std::size_t max_points, DecodedSection* section) {
+  bool ok = true;
+  const std::size_t extras = ReadVarint(reader, &ok);
+  const ByteView stream = reader->Bytes(ReadVarint(reader, &ok));
+  if (!ok || !reader->ok() || section->returns + extras > max_points) return false;
+  mixing::BinaryDecoder bits(stream);
+  section->residuals.assign(section->image.size(), 0);
+  if (section->settings.tangent_um > 0 &&
+      !CodeResiduals(section->image, section->settings, &section->residuals, &bits)) {
+    return false;
+  }
+  if (extras > 0 && !CodeExtras(BinsOf(section->image, section->grid), section->image.columns,
+                                section->scale.bits(), extras, &section->extras, &bits)) {
+    return false;
+  }
+  return section->extras.size() == extras && bits.AtEnd();
+}
+
+/// False where a range is none.
+bool AppendPixel(const DecodedSection& section, std::size_t pixel, std::uint32_t range_mm,
+                 std::uint8_t level, XyzCloud* cloud) {
+  if (range_mm == 0 || range_mm > RangeGrid::kMaxRangeMm) return false;
+  const auto beam = static_cast<std::uint32_t>(pixel / section.image.columns);
+  const std::uint32_t column =
+      section.image.first_column + static_cast<std::uint32_t>(pixel % section.image.columns);
+  const std::int32_t azimuth = section.table.AzimuthOf(beam, column) + section.residuals[pixel];
+  const Point point = section.table.At(beam, azimuth, range_mm);
+  cloud->xyz.insert(cloud->xyz.end(), point.begin(), point.end());
+  if (section.scale.bits() > 0) cloud->intensity.push_back(section.scale.ValueOf(level));
+  return true;
+}
+
+}  // namespace
+
+bool DecodeBeamSection(ByteReader* reader, std::size_t max_points, const IntensityScale& scale,
+                       XyzCloud* cloud) {
+  DecodedSection section;
+  if (!DecodeImage(reader, &section) || section.scale.bits() != scale.bits() ||
+      section.scale.full() != scale.full() || !DecodeRest(reader, max_points, &section)) {
+    return false;
+  }
+  const RangeImage& image = section.image;
+  auto extra = section.extras.begin();
+  const auto last_bin = static_cast<std::int64_t>(section.grid.BinOf(RangeGrid::kMaxRangeMm));
+  for (std::size_t i = 0; i < image.size(); ++i) {
+    if (image.ranges[i] == 0) continue;
+    const std::uint8_t level = image.intensity.empty() ? std::uint8_t{0} : image.intensity[i];
+    if (!AppendPixel(section, i, image.ranges[i], level, cloud)) return false;
+    for (; extra != section.extras.end() && extra->pixel == i; ++extra) {
+      const std::int64_t bin = std::int64_t{section.grid.BinOf(image.ranges[i])} + extra->bin;
+      if (bin < 0 || bin > last_bin) return false;
+      const std::uint32_t range = section.grid.RangeOf(static_cast<std::uint32_t>(bin));
+      if (!AppendPixel(section, i, range, extra->level, cloud)) return false;
+    }
+  }
+  return true;
+}
+
+}  // namespace lidar::codec::cloud

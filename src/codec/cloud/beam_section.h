@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// The part of a coded cloud that beams see: an image of ranges, and what it leaves open.
+#pragma once
+#include <cstdint>
+#include <vector>
+
+#include "src/base/byte_reader.h"
+#include "src/codec/cloud/beam_table.h"
+#include "src/codec/cloud/pixel_list.h"
+#include "src/codec/cloud_io.h"
+#include "src/codec/intensity_scale.h"
+
+namespace lidar::codec::cloud {
+
+/// Levels of the points of a list, at full resolution; null: geometry only.
+struct PointLevels {
+  const std::vector<std::uint8_t>* levels = nullptr;
+  IntensityScale scale;  // what they become
+};
+
+/// Appends the section; false where the range coder refuses the image.
+bool EncodeBeamSection(const BeamTable& table, const PixelErrors& errors, const PointLevels& levels,
+                       unsigned effort, PixelList* list, std::vector<std::uint8_t>* out);
+
+/// Appends the points of the section that `reader` comes to, beam by beam, columns in order, and
+/// returns of a pixel one after the other. False, with the cloud undefined, for a section that is
+/// damaged or of more than `max_points`.
+bool DecodeBeamSection(ByteReader* reader, std::size_t max_points, const IntensityScale& scale,
+                       XyzCloud* cloud);
+
+}  // namespace lidar::codec::cloud

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Points by the pixels of a sensor's image, and those that fit none.
+#pragma once
+#include <cstdint>
+#include <vector>
+
+#include "src/codec/cloud/beam_table.h"
+#include "src/codec/range_image.h"
+
+namespace lidar::codec::cloud {
+
+/// A second or later return of a pixel.
+struct ExtraReturn {
+  std::uint32_t pixel = 0;  // rising
+  std::uint32_t range_mm = 0;
+  std::uint32_t point = 0;  // index
+};
+
+/// How exactly pixels are to come back.
+struct PixelErrors {
+  double error_m = 0;            // of the whole
+  double range_m = 0;            // of ranges
+  std::uint32_t tangent_um = 0;  // of azimuths; 0: those of the columns will do
+};
+
+struct PixelList {
+  RangeImage image;
+  std::vector<std::uint32_t> points;    // index of each pixel's first return
+  std::vector<std::int32_t> residuals;  // of each pixel's azimuth
+  std::vector<ExtraReturn> extras;
+  std::vector<std::uint32_t> rest;  // indices of the points that fit no pixel
+  std::size_t returns = 0;          // in pixels
+};
+
+/// The width of a class of residuals, in units, so that no azimuth is off by more than
+/// `tangent_um` at `range_mm`.
+inline std::int32_t ResidualWidth(std::uint32_t tangent_um, std::uint32_t range_mm) {
+  // 2 2^22 / (2000 pi)
+  const std::uint64_t width = std::uint64_t{tangent_um} * 1'335 / (range_mm == 0 ? 1 : range_mm);
+  return static_cast<std::int32_t>(width < 1 ? 1 : width > kTurn ? kTurn : width);
+}
+
+/// An image has at most so many pixels, returns or not.
+constexpr std::size_t kMostPixels = 1U << 20;
+
+/// Points nearer than `nearest_m` are left to the rest. False where the image would be too large.
+bool FillPixels(const std::vector<Sighting>& points, const BeamTable& table,
+                const PixelErrors& errors, double nearest_m, PixelList* list);
+
+}  // namespace lidar::codec::cloud

@@ -1,0 +1,223 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "src/codec/cloud/pixel_part.h"
+
+#include <algorithm>
+#include <array>
+#include <memory>
+
+#include "src/codec/mixing/binary_coder.h"
+#include "src/codec/mixing/bit_mixer.h"
+
+namespace lidar::codec::cloud {
+namespace {
+
+using mixing::BitLength;
+using mixing::BitMixer;
+using mixing::Counter;
+using mixing::Weights;
+
+/// Signed integers by contexts: is it 0, its sign, how long, and the rest of its digits.
+template <unsigned kContexts>
+class NumberModel {
+ public:
+  static constexpr std::uint32_t kNodes = 128;
+  static constexpr std::uint32_t kValues = 512;  // of a context
+  static constexpr std::int32_t kTooLarge = 1 << 26;
+  using Contexts = std::array<std::uint32_t, kContexts>;
+
+  NumberModel() {
+    for (Weights& w : weights_) w.values.fill(mixing::kWeightOne / 3);
+  }
+
+  /// kTooLarge for a damaged stream.
+  template <class Coder>
+  std::int32_t Code(std::int32_t number, const Contexts& contexts, Coder* coder) {
+    if (!CodeBit(number != 0, 0, contexts, coder)) return 0;
+    const bool negative = CodeBit(number < 0, 1, contexts, coder);
+    const auto size = static_cast<std::uint32_t>(negative ? -number : number);
+    // As in an Exp-Golomb code.
+    const auto wanted = static_cast<unsigned>(BitLength(size | 1) - 1);
+    unsigned length = 0;
+    while (CodeBit(length < wanted, (negative ? 32 : 2) + length, contexts, coder))
+      if (++length == 26) return kTooLarge;
+    std::uint32_t value = 1;
+    for (unsigned place = length; place-- > 0;) {
+      const bool top = place + 1 == length;
+      const std::uint32_t node = 64 + (top ? length : 32 + place);
+      value = value << 1 | (CodeBit((size >> place & 1) != 0, node, contexts, coder) ? 1U : 0U);
+    }
+    const auto result = static_cast<std::int32_t>(value);
+    return negative ? -result : result;
+  }
+  template <class Coder>
+  bool CodeBit(bool bit, std::uint32_t node, const Contexts& contexts, Coder* coder) {
+    BitMixer<kContexts, 0> mixer;
+    mixer.Ask([&](unsigned k) __attribute__((always_inline)) {
+      return &counters_[k][(contexts[k] % kValues) * kNodes + node];
+    });
+    return mixer.Code(bit, &weights_[node], coder);
+  }
+
+ private:
+  std::array<std::array<Counter, kValues * kNodes>, kContexts> counters_{};
+  std::array<Weights, kNodes> weights_{};
+};
+
+std::int32_t RoundedQuotient(std::int32_t number, std::int32_t width) {
+  return (number >= 0 ? number + width / 2 : number - width / 2) / width;
+}
+
+constexpr std::int32_t kUnknownResidual = INT32_MIN;
+
+/// The last residuals of a beam and of each column.
+struct ResidualHistory {
+  std::int32_t last = 0;
+  std::int32_t before = 0;
+  std::int32_t quotient = 0;
+};
+
+}  // namespace
+
+template <class Coder>
+bool CodeResiduals(const RangeImage& image, const ResidualSettings& settings,
+                   std::vector<std::int32_t>* residuals, Coder* coder) {
+  const auto model = std::make_unique<NumberModel<4>>();
+  std::vector<std::int32_t> of_column(image.columns, kUnknownResidual);
+  for (std::uint32_t beam = 0; beam < image.beams; ++beam) {
+    ResidualHistory row;
+    for (std::uint32_t column = 0; column < image.columns; ++column) {
+      const std::size_t pixel = std::size_t{beam} * image.columns + column;
+      if (image.ranges[pixel] == 0) continue;
+      const std::int32_t width = ResidualWidth(settings.tangent_um, image.ranges[pixel]);
+      const bool has_column = of_column[column] != kUnknownResidual;
+      const std::int32_t above = has_column ? of_column[column] : row.last;
+      const std::array<std::int32_t, kResidualGuesses> guesses = {above, row.last, row.before};
+      const auto chosen = static_cast<std::size_t>(settings.guess);
+      const std::int32_t guess = guesses[chosen];
+      const auto away = [&](std::size_t other) {
+        const std::int32_t q =
+            RoundedQuotient(guesses[(chosen + other) % kResidualGuesses] - guess, width);
+        return static_cast<std::uint32_t>(std::clamp(q, -3, 3) + 3);
+      };
+      const auto wide =
+          static_cast<std::uint32_t>(std::min(BitLength(static_cast<std::uint32_t>(width)), 15));
+      const auto size = static_cast<std::uint32_t>(std::min(std::abs(row.quotient), 3));
+      const std::array<std::uint32_t, 4> contexts = {wide * 8 + size * 2 + (has_column ? 1 : 0),
+                                                     away(1) * 7 + away(2), wide * 7 + away(1),
+                                                     wide * 7 + away(2)};
+      const std::int32_t quotient =
+          model->Code(RoundedQuotient((*residuals)[pixel] - guess, width), contexts, coder);
+      const std::int64_t back = guess + std::int64_t{quotient} * width;
+      if (coder->overran() || back < -kTurn || back > kTurn) return false;
+      (*residuals)[pixel] = of_column[column] = static_cast<std::int32_t>(back);
+      row = {static_cast<std::int32_t>(back), row.last, quotient};
+    }
+  }
+  return true;
+}
+
+namespace {
+
+template <class Coder>
+class ExtraCoder {
+ public:
+  ExtraCoder(const std::vector<std::int32_t>& bins, std::uint32_t columns, unsigned level_bits,
+             Coder* coder)
+      : bins_(bins),
+        columns_(columns),
+        level_bits_(level_bits),
+        coder_(*coder),
+        above_(columns, 0) {}
+
+  /// False for a damaged stream.
+  bool Code(std::size_t limit, std::vector<ExtraBin>* extras) {
+    std::size_t at = 0;
+    for (std::uint32_t pixel = 0; pixel < bins_.size(); ++pixel) {
+      StartPixel(pixel);
+      if (bins_[pixel] < 0) continue;
+      std::uint32_t count = 0;
+      for (; CodeMore(at < extras->size() && (*extras)[at].pixel == pixel, count); ++count, ++at) {
+        if (at == limit) return false;
+        if constexpr (Coder::kDecodes) extras->push_back({pixel, 0, 0});
+        CodeReturn(pixel, &(*extras)[at]);
+        if (coder_.overran() || last_ == Model::kTooLarge) return false;
+      }
+      left_ = above_[pixel % columns_] = count > 0 ? 1 : 0;
+      if (coder_.overran()) return false;
+    }
+    return at == extras->size();
+  }
+
+ private:
+  using Model = NumberModel<3>;
+
+  static std::uint32_t LengthOf(std::int32_t v) {
+    return static_cast<std::uint32_t>(BitLength(static_cast<std::uint32_t>(std::abs(v))));
+  }
+  std::uint32_t JumpFrom(std::uint32_t pixel, std::uint32_t distance) const {
+    if (pixel < distance || bins_[pixel - distance] < 0) return 3;
+    const std::int32_t size = std::abs(bins_[pixel] - bins_[pixel - distance]);
+    return size < 3 ? 0 : size < 16 ? 1 : 2;
+  }
+  void StartPixel(std::uint32_t pixel) {
+    const std::uint32_t column = pixel % columns_;
+    if (column == 0) left_ = 0;
+    if (bins_[pixel] < 0) {
+      left_ = above_[column] = 0;
+      return;
+    }
+    jumps_ = JumpFrom(pixel, 1) * 4 + JumpFrom(pixel, columns_);
+    nearby_ = left_ * 2 + above_[column];
+  }
+  bool CodeMore(bool more, std::uint32_t count) {
+    return counts_->CodeBit(more, std::min(count, 3U), {nearby_ * 16 + jumps_, nearby_, jumps_},
+                            &coder_);
+  }
+  void CodeReturn(std::uint32_t pixel, ExtraBin* extra) {
+    const std::uint32_t sign = last_ < 0 ? 1U : 0U;
+    const typename Model::Contexts contexts = {LengthOf(last_) * 2 + sign, LengthOf(bins_[pixel]),
+                                               jumps_};
+    extra->bin = last_ = distances_->Code(extra->bin, contexts, &coder_);
+    std::uint32_t node = 1;
+    for (unsigned bit = level_bits_; bit-- > 0;) {
+      const bool is_set = levels_->CodeBit((extra->level >> bit & 1) != 0, node % Model::kNodes,
+                                           {node, 0, 1}, &coder_);
+      node = node << 1 | (is_set ? 1U : 0U);
+    }
+    extra->level = static_cast<std::uint8_t>(node - (1U << level_bits_));
+  }
+
+  const std::vector<std::int32_t>& bins_;
+  std::uint32_t columns_;
+  unsigned level_bits_;
+  Coder& coder_;
+  std::unique_ptr<Model> counts_ = std::make_unique<Model>();
+  std::unique_ptr<Model> distances_ = std::make_unique<Model>();
+  std::unique_ptr<Model> levels_ = std::make_unique<Model>();
+  std::vector<std::uint8_t> above_;  // of each column: had the last pixel further returns?
+  std::uint32_t left_ = 0;
+  std::uint32_t nearby_ = 0;
+  std::uint32_t jumps_ = 0;
+  std::int32_t last_ = 0;
+};
+
+}  // namespace
+
+template <class Coder>
+bool CodeExtras(const std::vector<std::int32_t>& bins, std::uint32_t columns, unsigned level_bits,
+                std::size_t limit, std::vector<ExtraBin>* extras, Coder* coder) {
+  return ExtraCoder<Coder>(bins, columns, level_bits, coder).Code(limit, extras);
+}
+
+using mixing::BinaryDecoder;
+using mixing::BinaryEncoder;
+template bool CodeResiduals(const RangeImage&, const ResidualSettings&, std::vector<std::int32_t>*,
+                            BinaryEncoder*);
+template bool CodeResiduals(const RangeImage&, const ResidualSettings&, std::vector<std::int32_t>*,
+                            BinaryDecoder*);
+template bool CodeExtras(const std::vector<std::int32_t>&, std::uint32_t, unsigned, std::size_t,
+                         std::vector<ExtraBin>*, BinaryEncoder*);
+template bool CodeExtras(const std::vector<std::int32_t>&, std::uint32_t, unsigned, std::size_t,
+                         std::vector<ExtraBin>*, BinaryDecoder*);
+
+}  // namespace lidar::codec::cloud

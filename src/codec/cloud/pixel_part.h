@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Codes what an image of first returns leaves open: how far each azimuth is from its column, and
+// the further returns of a pixel.
+#pragma once
+#include <cstdint>
+#include <vector>
+
+#include "src/codec/cloud/pixel_list.h"
+
+namespace lidar::codec::cloud {
+
+/// What the residual of a pixel is first compared with.
+enum class ResidualGuess : std::uint8_t { kColumn = 0, kLast = 1, kBeforeLast = 2 };
+constexpr unsigned kResidualGuesses = 3;
+
+/// What comes back of a pixel's azimuth.
+struct ResidualSettings {
+  std::uint32_t tangent_um = 0;
+  ResidualGuess guess = ResidualGuess::kColumn;
+};
+
+/// Codes the residuals of all pixels that have a range in `image`, which are the ranges that come
+/// back; `residuals` become those that come back. False for a damaged stream.
+template <class Coder>
+bool CodeResiduals(const RangeImage& image, const ResidualSettings& settings,
+                   std::vector<std::int32_t>* residuals, Coder* coder);
+
+/// A further return, by the bins of the image's grid.
+struct ExtraBin {
+  std::uint32_t pixel = 0;
+  std::int32_t bin = 0;  // less that of the pixel's first return
+  std::uint8_t level = 0;
+};
+/// Codes the further returns of `bins`, the bins of all pixels (-1: no return), of which there are
+/// as many as `limit` or fewer. False for a damaged stream.
+template <class Coder>
+bool CodeExtras(const std::vector<std::int32_t>& bins, std::uint32_t columns, unsigned level_bits,
+                std::size_t limit, std::vector<ExtraBin>* extras, Coder* coder);
+
+}  // namespace lidar::codec::cloud
