@@ -94,7 +94,7 @@ def run(command, folder, first_port):
     bad = [
         l
         for l in output.splitlines()
-        if re.search(r"ERROR|CRITICAL|WARNING: erroneous|could not link", l)
+        if re.search(r"ERROR|CRITICAL|WARNING: erroneous|could not link|construction is invalid", l)
     ]
     if bad:
         return "\n".join(bad[:5])
