@@ -4,6 +4,8 @@
 As all attacks they assert what docs/security.md promises, and return a line on what they saw.
 """
 import dataclasses
+import pathlib
+import re
 import struct
 import time
 
@@ -132,6 +134,12 @@ def varint(n):
     return out + bytes([n])
 
 
+def table_version():
+    """What the payloads of the mixing coder begin with."""
+    source = pathlib.Path(__file__).parents[2] / "src/codec/mixing/start_states.h"
+    return int(re.search(r"kTableVersion = (\d+)", source.read_text(encoding="utf-8"))[1])
+
+
 def dear_slices(context):
     """A sensor of a million pixels, and slices of dozens of bytes that claim all of them."""
     bench = Bench(context)
@@ -143,7 +151,8 @@ def dear_slices(context):
         bench.sender.send(bench.sender.pack(unit))
     cpu, count = bench.receiver.ask()["cpu"], 40
     for n in range(count):
-        payload = bytes([0x13 | (n & 1) << 2]) + b"\xff" * (20 + n)
+        # A version of yesterday would be refused before it costs anything.
+        payload = bytes([table_version() << 4 | 3 | (n & 1) << 2]) + b"\xff" * (20 + n)
         block = bytes([0x34, (n & 1) << 7]) + b"".join(map(varint, (beams, 0, columns, 1, 256, len(payload))))
         s = dataclasses.replace(bench.sender.next_slice(), body=block + payload, config_id=wire.config_id(config))
         bench.sender.send(bench.sender.pack(wire.slice_unit(s)))
