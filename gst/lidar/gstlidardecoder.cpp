@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include "gst/lidar/gstlidardecoder.h"
 
+#include <ctime>
 #include <mutex>
 #include <optional>
 #include <utility>
@@ -12,6 +13,7 @@
 #include "gst/common/refused_caps.h"
 #include "gst/common/stats.h"
 #include "gst/lidar/cloud_info.h"
+#include "src/base/load_budget.h"
 
 GST_DEBUG_CATEGORY_STATIC(gst_lidar_decoder_debug);
 #define GST_CAT_DEFAULT gst_lidar_decoder_debug
@@ -22,6 +24,7 @@ using namespace lidar::gst;
 
 struct Settings {
   guint max_points = 1U << 20;
+  gdouble max_decode_load = 0;
   lidar::Duration stats_interval{};
 };
 
@@ -29,6 +32,7 @@ struct Counters {
   guint64 slices = 0;
   guint64 slices_dropped = 0;
   guint64 slices_unreferenced = 0;  // of those
+  guint64 slices_over_load = 0;     // of those
   guint64 slices_thinned = 0;
   guint64 points = 0;  // missing returns included
   guint64 bytes = 0;
@@ -47,10 +51,11 @@ guint64 AgeOf(const Counters& c) {
 }
 guint64 MeanDecodeTime(const Counters& c) { return c.slices > 0 ? c.decode_time / c.slices : 0; }
 
-const std::array<Stat<Counters>, 13> kStats = {{
+const std::array<Stat<Counters>, 14> kStats = {{
     {"slices", &Counters::slices},
     {"slices-dropped", &Counters::slices_dropped},
     {"slices-unreferenced", &Counters::slices_unreferenced},
+    {"slices-over-load", &Counters::slices_over_load},
     {"slices-thinned", &Counters::slices_thinned},
     {"points", &Counters::points},
     {"bytes", &Counters::bytes},
@@ -71,6 +76,8 @@ struct Stream {
   HeldEvents held;
   RefusedCaps refused;
   MessageTimer stats_timer;
+  lidar::LoadBudget load;
+  bool warned_of_load = false;
   gint64 asked_at_us = 0;  // for a slice that stands alone
   guint asked = 0;
 };
@@ -103,9 +110,13 @@ static guint64 Age(GObject* object) {
   return AgeOf(state.counters);
 }
 
-static const std::array<Property<Settings>, 4> kProperties = {{
+static const std::array<Property<Settings>, 5> kProperties = {{
     {"max-points", "Slices of more points are dropped, before anything is allocated for them",
      &Settings::max_points, 1, 1U << 24},
+    {"max-decode-load",
+     "Processor time that decoding may take, as a part of one processor; slices beyond it are "
+     "dropped; 0: no limit",
+     &Settings::max_decode_load, 0, 1, GST_PARAM_MUTABLE_PLAYING},
     {"age",
      "Time since the newest slice was sampled, where the clocks of sensor and receiver are "
      "synchronised; 2^64 - 1: not known [ns]",
@@ -268,14 +279,43 @@ static GstFlowReturn DropSlice(GstLidarDecoder* self, GstBuffer* input, bool lac
   return state.pads.LeaveOut(input);
 }
 
+static lidar::Duration ThreadTime() {
+  timespec t{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
+  return std::chrono::seconds(t.tv_sec) + std::chrono::nanoseconds(t.tv_nsec);
+}
+
+/// False, and counted, where the slices before cost more than max-decode-load. Whoever writes
+/// slices can make each byte of them cost microseconds.
+static bool MayDecode(GstLidarDecoder* self, gdouble max_load) {
+  State& state = *self->state;
+  const lidar::Time now{std::chrono::microseconds(g_get_monotonic_time())};
+  if (max_load <= 0 || state.stream.load.Allows(max_load, now)) return true;
+  {
+    std::lock_guard lock(state.mutex);
+    ++state.counters.slices_over_load;
+  }
+  if (!std::exchange(state.stream.warned_of_load, true))
+    GST_ELEMENT_WARNING(self, STREAM, DECODE,
+                        ("Decoding this stream takes more than max-decode-load=%g of a processor. "
+                         "Slices are dropped; raise it, or look at the sender.",
+                         max_load),
+                        (nullptr));
+  return false;
+}
+
 static GstFlowReturn Chain(GstPad*, GstObject* parent, GstBuffer* buffer) {
   auto* self = GST_LIDAR_DECODER(parent);
   const BufferPtr input(buffer);
   Stream& stream = self->state->stream;
   if (!stream.cloud) return GST_FLOW_NOT_NEGOTIATED;
+  const Settings settings = Snapshot(*self->state);
+  if (!MayDecode(self, settings.max_decode_load)) return DropSlice(self, buffer, false);
   GstLidarDecodedSlice slice;
+  const lidar::Duration before = ThreadTime();
   BufferPtr output = DecodeBuffer(self, buffer, &slice);
-  stream.stats_timer.Post(GST_ELEMENT(self), Snapshot(*self->state).stats_interval, Stats);
+  stream.load.Spend(ThreadTime() - before);
+  stream.stats_timer.Post(GST_ELEMENT(self), settings.stats_interval, Stats);
   if (!output) return DropSlice(self, buffer, slice.lacks_reference != FALSE);
   if (!PushCaps(self, slice))
     return GST_PAD_IS_FLUSHING(self->state->pads.src()) ? GST_FLOW_FLUSHING

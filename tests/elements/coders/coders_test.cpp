@@ -157,6 +157,35 @@ TEST_P(EitherCoder, GivesTheSameCloudWithMoreThreads) {
   EXPECT_EQ(clouds[0], clouds[1]);
 }
 
+TEST_P(AnyCoder, DropsWhatTakesMoreProcessorTimeThanAllowed) {
+  const SensorModel model = test::RoomSensor();
+  const Harness h = Codec(GetParam());
+  GstBus* bus = gst_bus_new();
+  gst_element_set_bus(h->element, bus);
+  SetCaps(h.get(), OrganisedInfo(model, 64));
+  const ElementPtr dec(gst_bin_get_by_name(GST_BIN(h->element), "dec"));
+  const auto push = [&](guint scan) {
+    for (guint i = 0; i < 8; ++i)
+      gst_harness_push(h.get(), OrganisedBuffer(model, 64, {scan, i, 8, 64 * i}));
+  };
+  push(0);
+  EXPECT_EQ(Counter(dec.get(), "slices-over-load"), 0U);
+  g_object_set(dec.get(), "max-decode-load", 1e-6, nullptr);
+  push(1);
+  push(2);
+  EXPECT_GE(Counter(dec.get(), "slices-over-load"), 15U) << "a microsecond a second";
+  EXPECT_EQ(Counter(dec.get(), "slices-dropped"), Counter(dec.get(), "slices-over-load"));
+  unsigned warnings = 0;
+  while (const MessagePtr message{gst_bus_pop(bus)})
+    warnings += GST_MESSAGE_TYPE(message.get()) == GST_MESSAGE_WARNING ? 1U : 0U;
+  EXPECT_EQ(warnings, 1U);
+  g_object_set(dec.get(), "max-decode-load", 0.0, nullptr);
+  push(3);
+  EXPECT_EQ(Counter(dec.get(), "slices-dropped"), Counter(dec.get(), "slices-over-load"));
+  gst_element_set_bus(h->element, nullptr);
+  gst_object_unref(bus);
+}
+
 TEST_P(AnyCoder, SurvivesFlushEosAndStateCycles) {
   const SensorModel model = test::RoomSensor();
   const Harness h = Codec(GetParam());

@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// How much processor time a piece of work may take in the long run.
+#pragma once
+#include <algorithm>
+#include <optional>
+
+#include "src/base/time.h"
+
+namespace lidar {
+
+class LoadBudget {
+ public:
+  /// What was not used is kept for as long.
+  static constexpr Duration kKept = std::chrono::seconds(1);
+
+  /// False while more was spent than `load` (processor time by time) gave up to `now`. Times must
+  /// not go back.
+  bool Allows(double load, Time now) {
+    if (last_) saved_ += FromSeconds(load * Seconds(now - *last_));
+    last_ = now;
+    saved_ = std::min(saved_, FromSeconds(load * Seconds(kKept)));
+    return saved_ >= Duration{};
+  }
+  void Spend(Duration processor_time) { saved_ -= processor_time; }
+
+ private:
+  Duration saved_{};  // negative: owed
+  std::optional<Time> last_;
+};
+
+}  // namespace lidar
