@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Tables of docs/results/security.md that a single command measures."""
+import json
 import re
 
 import common
@@ -18,4 +19,19 @@ def srtp():
     return text.splitlines()[0].capitalize() + "\n\n" + common.table(head, body)
 
 
-TABLES = {"srtp": srtp}
+def robot():
+    """lidar-edge beside a robot whose slices take turns between two formats."""
+    text = common.run(common.ROOT / "tests/system/adversary/hostile_robot.py", common.build, "--seconds", 60)
+    without, beside = (json.loads(line) for line in text.splitlines())
+    rows = [
+        ["sent by that robot", f"{without['sent_mb']} MB", f"{beside['sent_mb']} MB"],
+        ["most memory of lidar-edge", f"{without['memory_mb']} MB", f"{beside['memory_mb']} MB"],
+        ["slices of the two others: received", f"{without['received']:.0f}", f"{beside['received']:.0f}"],
+        ["slices of the two others: lost", f"{without['lost']:.0f}", f"{beside['lost']:.0f}"],
+        ["slices of that robot: dropped, counted", "0", f"{beside['dropped']:.0f}"],
+        ["time to stop", f"{without['stop_s']} s", f"{beside['stop_s']} s"],
+    ]
+    return common.table(["", "without it", "beside it"], rows)
+
+
+TABLES = {"robot": robot, "srtp": srtp}
