@@ -9,3 +9,6 @@ fi
 plugins=$(find "$build/gst" "$build/ext" -name 'libgst*.so' -printf '%h\n' | sort -u | paste -sd:)
 export GST_PLUGIN_PATH_1_0=$plugins${GST_PLUGIN_PATH_1_0:+:$GST_PLUGIN_PATH_1_0}
 export GST_REGISTRY=$build/pipelines-registry.bin
+
+# launch PIPELINE...: gst-launch-1.0 becomes this process. Its progress is not shown; its warnings are, which -q would hide.
+launch() { exec gst-launch-1.0 "$@" > >(grep --line-buffered '^WARNING' >&2); }

@@ -66,4 +66,4 @@ else
       sink+=(! multifilesink location="$output/scan%06d.${to%-text}") ;;
   esac
 fi
-gst-launch-1.0 -q -e mcapsrc location="$location" topic="$topic" ! queue ! "${decode[@]}" ! "${sink[@]}"
+launch -e mcapsrc location="$location" topic="$topic" ! queue ! "${decode[@]}" ! "${sink[@]}"

@@ -15,7 +15,8 @@ DIR/trajectory.tum.
   SOURCE          what gst-launch-1.0 understands as a source of clouds
                   (default "lidartestsrc model=os1-128"), for example "ouster_src hostname=os1.local"
   --format F      slices: MCAP of compressed slices; clouds: MCAP of whole scans, for ROS 2 and
-                  Foxglove; pcd, pcd-text, ply, ply-text, or bin: the bytes of the buffer (default pcd)
+                  Foxglove; pcd, pcd-text, ply, ply-text, or bin: the bytes of the buffer (default slices;
+                  with --scans pcd)
   --scans N       with files, how many (default 10)
   --seconds N     with MCAP, for how long (default 10)
   --encoder E     with slices, the encoder (default "lidarenc max-error=0.02")
@@ -29,11 +30,11 @@ scans=10
 seconds=10
 piece=300
 encoder="lidarenc max-error=0.02"
-format=pcd
+format=
 output=record-output
 while [ $# -gt 0 ]; do
   case $1 in
-    --scans) count "$@"; scans=$2; shift ;;
+    --scans) count "$@"; scans=$2; format=${format:-pcd}; shift ;;
     --seconds) number "$@"; seconds=$2; shift ;;
     --piece) count "$@"; piece=$2; shift ;;
     --encoder) text "$@"; encoder=$2; shift ;;
@@ -49,6 +50,7 @@ done
 
 read -ra words <<<"$source"
 into_files=yes
+format=${format:-slices}
 case $format in
   slices) into_files=no; read -ra stage <<<"$encoder" ;;
   clouds) into_files=no; stage=(scanassembler) ;;
@@ -63,22 +65,28 @@ mkdir -p "$output"
 case $source in lidartestsrc*) words+=("trajectory-location=$output/trajectory.tum") ;; esac
 
 if [ $into_files = yes ]; then
-  gst-launch-1.0 -q -e "${words[@]}" ! scanassembler ! identity eos-after="$((scans + 1))" \
-    ! "${stage[@]}" ! multifilesink location="$output/scan%06d.${format%-text}"
+  (launch -e "${words[@]}" ! scanassembler ! identity eos-after="$((scans + 1))" \
+    ! "${stage[@]}" ! multifilesink location="$output/scan%06d.${format%-text}")
 else
   # The synthetic sensor is to take its time, as others do.
   case $source in lidartestsrc*) words+=(is-live=true) ;; esac
-  rm -f "$output/rec-00000.mcap"
-  gst-launch-1.0 -q -e "${words[@]}" ! queue ! "${stage[@]}" \
+  pieces() { find "$output" -name 'rec-*.mcap' | wc -l; }
+  before=$(pieces)
+  launch -e "${words[@]}" ! queue ! "${stage[@]}" \
     ! mcapsink location="$output/rec-%05d.mcap" max-file-duration="${piece}000000000" &
   recorder=$!
   trap 'kill -INT $recorder 2>/dev/null || true' INT TERM
   # The time counts from the first scan on; starting takes a slow machine seconds.
-  until [ -e "$output/rec-00000.mcap" ] || ! kill -0 $recorder 2>/dev/null; do sleep 0.05; done
+  SECONDS=0 told=no
+  until [ "$(pieces)" -gt "$before" ] || ! kill -0 $recorder 2>/dev/null; do
+    sleep 0.05
+    [ $told = yes ] || [ $SECONDS -lt 10 ] || { echo "No scan has come for 10 s; waiting for the first." >&2; told=yes; }
+  done
   sleep "$seconds" &
   wait -n || true
   kill -INT $recorder 2>/dev/null || true
   kill $! 2>/dev/null || true
   wait $recorder
+  [ "$(pieces)" -gt "$before" ] || { echo "Nothing was recorded: no scan has come." >&2; exit 1; }
 fi
 ls "$output"

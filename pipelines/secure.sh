@@ -33,8 +33,8 @@ gst-launch-1.0 screamsrc port="$port" srtp-key=env:LIDAR_SRTP_KEY ! rtplidardepa
   identity silent=false ! fakesink sync=false -v >"$log" 2>&1 &
 receiver=$!
 sleep 1
-gst-launch-1.0 -q lidartestsrc is-live=true num-buffers=$((seconds * 80)) ! lidarenc max-error=0.05 ! rtplidarpay ! \
-  screamsink host=127.0.0.1 port="$port" srtp-key=env:LIDAR_SRTP_KEY
+(launch lidartestsrc is-live=true num-buffers=$((seconds * 80)) ! lidarenc max-error=0.05 ! rtplidarpay ! \
+  screamsink host=127.0.0.1 port="$port" srtp-key=env:LIDAR_SRTP_KEY)
 sleep 1
 clouds=$(grep -c 'chain.*identity' "$log" || true)
 echo "sent $((seconds * 80)) slices over SRTP, $clouds came out"

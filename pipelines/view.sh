@@ -48,5 +48,5 @@ for view in top perspective range; do
   pictures+=(views. ! queue ! pointcloudview "view=$view" ! pngenc snapshot=false ! multifilesink "location=$output/$view.png")
 done
 # shellcheck disable=SC2086
-gst-launch-1.0 -q $source ! scanassembler ! identity eos-after="$((scan + 1))" ! tee name=views "${pictures[@]}"
+(launch $source ! scanassembler ! identity eos-after="$((scan + 1))" ! tee name=views "${pictures[@]}")
 ls "$output"/top.png "$output"/perspective.png "$output"/range.png

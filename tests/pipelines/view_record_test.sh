@@ -48,6 +48,17 @@ if gst-inspect-1.0 mcapsink >/dev/null 2>&1; then
       --output "$folder/$format" "$small"
     check "$format come in pieces" [ -s "$folder/$format/rec-00001.mcap" ]
   done
+  count_pieces() { find "$folder/slices" -name 'rec-*.mcap' | wc -l; }
+  pieces=$(count_pieces) first=$(md5sum "$folder/slices/rec-00000.mcap")
+  check "record.sh records beside what is there" "$root/pipelines/record.sh" --seconds 1 --output "$folder/slices" "$small"
+  check "and adds a file" [ "$(count_pieces)" -gt "$pieces" ]
+  check "and leaves the others" [ "$(md5sum "$folder/slices/rec-00000.mcap")" = "$first" ]
+  fails() { ! "$@"; }
+  check "record.sh fails where nothing comes" fails "$root/pipelines/record.sh" --seconds 1 --output "$folder/none" \
+    "lidartestsrc num-buffers=0 model=os1-32"
+  head -c -1000 "$folder/slices/rec-00000.mcap" >"$folder/cut.mcap"
+  says() { local text=$1; shift; "$@" 2>&1 | grep -q "$text"; }
+  check "play.sh says that a file broke off" says "break off" "$root/pipelines/play.sh" --to none "$folder/cut.mcap"
   check "play.sh plays slices to files" "$root/pipelines/play.sh" --to pcd --output "$folder/played" \
     "$folder/slices/rec-%05d.mcap"
   check "play.sh plays clouds to files" "$root/pipelines/play.sh" --to ply --topic /points --decoder none \
