@@ -136,7 +136,7 @@ def varint(n):
 
 def table_version():
     """What the payloads of the mixing coder begin with."""
-    source = pathlib.Path(__file__).parents[2] / "src/codec/mixing/start_states.h"
+    source = pathlib.Path(__file__).parents[3] / "src/codec/mixing/start_states.h"
     return int(re.search(r"kTableVersion = (\d+)", source.read_text(encoding="utf-8"))[1])
 
 
