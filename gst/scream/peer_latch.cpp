@@ -52,7 +52,58 @@ PeerLatch::Standing PeerLatch::Peer::standing(Time now) const {
 }
 
 bool PeerLatch::IsPeer(GSocketAddress* from) const {
-  return latched_ && (from == nullptr || !peer_.address || SameAddress(from, peer_.address.get()));
+  if (!latched_) return false;
+  if (from == nullptr || !peer_.address || SameAddress(from, peer_.address.get())) return true;
+  return std::any_of(links_.begin(), links_.end(),
+                     [from](const Link& l) { return SameAddress(from, l.address.get()); });
+}
+
+PeerLatch::Link* PeerLatch::LinkOf(GSocketAddress* from) {
+  for (Link& link : links_)
+    if (SameAddress(from, link.address.get())) return &link;
+  return nullptr;
+}
+
+Time PeerLatch::LastHeard() const {
+  Time last = peer_.at;
+  for (const Link& link : links_) last = std::max(last, link.at);
+  return last;
+}
+
+/// Where the first link is silent, the one that sends takes its place: strangers find no silent
+/// peer.
+PeerLatch::Verdict PeerLatch::OnLinkPacket(Time now, const Packet& packet, Link* link) {
+  link->at = now;
+  if (now - peer_.at >= kSilence) {
+    std::swap(link->address, peer_.address);
+    link->at = peer_.at;
+    peer_.Add(now, packet);
+  }
+  NoteCopies(packet);
+  return Verdict::kAccepted;
+}
+
+/// A packet of the peer: candidates that sent it before have sent a copy.
+void PeerLatch::NoteCopies(const Packet& packet) {
+  if (packet.digest == 0) return;
+  digests_.Add(packet.digest);
+  for (Peer& c : candidates_)
+    if (c.digests.Take(packet.digest)) ++c.copies;
+}
+
+/// Takes a place among the links; that of one which is silent where all are taken.
+bool PeerLatch::Join(Time now, Peer* candidate) {
+  if (links_.size() + 1 >= kMaxLinks) {
+    const auto oldest = std::min_element(links_.begin(), links_.end(),
+                                         [](const Link& a, const Link& b) { return a.at < b.at; });
+    if (now - oldest->at < kSilence) return false;
+    links_.erase(oldest);
+  }
+  links_.push_back({std::move(candidate->address), now});
+  candidates_.erase(std::remove_if(candidates_.begin(), candidates_.end(),
+                                   [](const Peer& c) { return c.address == nullptr; }),
+                    candidates_.end());
+  return true;
 }
 
 /// Where all places are taken, the candidate goes that has shown least and was silent for longest.
@@ -83,7 +134,7 @@ bool PeerLatch::Wins(const Peer& candidate, Time now) const {
   if (candidate.went_on < kProbation) return false;
   const Standing shown = candidate.standing(now);
   if (!IsSilent(now)) return shown > peer_.standing(now);
-  const bool needs_slices = peer_.has_slices && now - peer_.at < kLongSilence;
+  const bool needs_slices = peer_.has_slices && now - LastHeard() < kLongSilence;
   return shown >= (needs_slices ? Standing::kSlices : Standing::kStream);
 }
 
@@ -97,6 +148,8 @@ void PeerLatch::Promote(Time now, Peer candidate) {
   }
   while (known_.size() > kMostSources) known_.erase(known_.begin());
   candidate.has_slices = candidate.has_slices || candidate.is_known;
+  links_.clear();
+  digests_ = {};
   peer_ = std::move(candidate);
   candidates_.erase(std::remove_if(candidates_.begin(), candidates_.end(),
                                    [](const Peer& c) { return c.address == nullptr; }),
@@ -104,17 +157,25 @@ void PeerLatch::Promote(Time now, Peer candidate) {
 }
 
 PeerLatch::Verdict PeerLatch::OnPacket(Time now, const Packet& packet) {
+  if (packet.from != nullptr && !links_.empty())
+    if (Link* link = LinkOf(packet.from)) return OnLinkPacket(now, packet, link);
   if (!latched_ || IsPeer(packet.from)) {
     latched_ = true;
     // The next packet then compares by pointer.
     if (packet.from != nullptr && packet.from != peer_.address.get())
       peer_.address = Ref(packet.from);
     peer_.Add(now, packet);
+    NoteCopies(packet);
     return Verdict::kAccepted;
   }
   Peer& candidate = CandidateOf(now, packet.from);
   candidate.is_known = candidate.is_known || IsKnown(now, packet);
   candidate.Add(now, packet);
+  if (packet.digest != 0 && digests_.Take(packet.digest))
+    ++candidate.copies;
+  else if (packet.digest != 0)
+    candidate.digests.Add(packet.digest);
+  if (candidate.copies >= kCopies && Join(now, &candidate)) return Verdict::kAccepted;
   if (!Wins(candidate, now)) return Verdict::kForeign;
   Promote(now, std::move(candidate));
   return Verdict::kMoved;

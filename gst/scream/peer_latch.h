@@ -16,10 +16,33 @@
 namespace lidar::gst {
 using namespace std::chrono_literals;
 
+/// The latest digests of packets; each is found once.
+template <std::size_t size>
+class Digests {
+ public:
+  void Add(std::uint64_t digest) { values_[next_++ % size] = digest; }
+  bool Take(std::uint64_t digest) {
+    for (std::uint64_t& value : values_) {
+      if (value != digest) continue;
+      value = 0;
+      return true;
+    }
+    return false;
+  }
+
+ private:
+  std::array<std::uint64_t, size> values_{};
+  std::size_t next_ = 0;
+};
+
 /// One peer at a time is believed: the first that sends. Another takes its place when it has more
 /// to show for itself (see Standing), or as much while the first is silent. All that others send
 /// counts towards their standing and is dropped. A packet without an address (from an element that
 /// does not tell) belongs to any peer.
+///
+/// A peer may send over several links. An address joins it by copies: kCopies packets that are
+/// equal, byte for byte, to packets that the peer sent. Only who sees the packets can send those.
+/// The peer goes on over the other links where one falls silent.
 class PeerLatch {
  public:
   /// A stream is this many packets after the first, each further on in its SSRC...
@@ -33,6 +56,9 @@ class PeerLatch {
   /// SSRCs of a peer that fell silent are known for so long.
   static constexpr Duration kMemory = 10min;
   static constexpr std::size_t kMaxCandidates = 64;
+  /// So many copies make an address a link of the peer.
+  static constexpr int kCopies = 4;
+  static constexpr std::size_t kMaxLinks = 4;
 
   /// What a peer has shown, in the order of its weight.
   enum class Standing {
@@ -50,7 +76,8 @@ class PeerLatch {
     GSocketAddress* from = nullptr;  // NULL: not told
     std::uint32_t ssrc = 0;
     std::uint16_t seq = 0;
-    ByteView lidar{};  // the payload, where it is a LiDAR payload
+    ByteView lidar{};          // the payload, where it is a LiDAR payload
+    std::uint64_t digest = 0;  // of all its bytes, where WantsDigest() says so
   };
 
   Verdict OnPacket(Time now, const Packet& packet);
@@ -58,6 +85,12 @@ class PeerLatch {
   bool IsPeer(GSocketAddress* from) const;
   /// True where OnPacket() has no use for the payload of what comes from there.
   bool HasShownSlices(GSocketAddress* from) const { return peer_.has_slices && IsPeer(from); }
+  /// True where copies may come to light: somebody else sends too.
+  bool WantsDigest(GSocketAddress* from) const {
+    return !candidates_.empty() || !links_.empty() || !IsPeer(from);
+  }
+  /// Links of the peer, the first one included.
+  std::size_t links() const { return latched_ ? 1 + links_.size() : 0; }
   /// NULL before the first packet, or where no packet had an address; not owned by the caller.
   GSocketAddress* peer() const { return peer_.address.get(); }
   void Reset() { *this = PeerLatch(); }
@@ -78,13 +111,27 @@ class PeerLatch {
     bool has_slices = false;
     bool is_known = false;
     rtp::UnitCheck check;
+    Digests<64> digests;  // of what the peer has not sent yet
+    int copies = 0;
 
     void Add(Time now, const Packet& packet);
     Standing standing(Time now) const;
   };
 
+  /// A link beside the first.
+  struct Link {
+    SocketAddressPtr address;
+    Time at{};
+  };
+
+  Link* LinkOf(GSocketAddress* from);
+  Verdict OnLinkPacket(Time now, const Packet& packet, Link* link);
+  void NoteCopies(const Packet& packet);
+  bool Join(Time now, Peer* candidate);
   Peer& CandidateOf(Time now, GSocketAddress* from);
-  bool IsSilent(Time now) const { return now - peer_.at >= kSilence; }
+  /// When a packet came last, by any link.
+  Time LastHeard() const;
+  bool IsSilent(Time now) const { return now - LastHeard() >= kSilence; }
   bool IsKnown(Time now, const Packet& packet) const;
   bool Wins(const Peer& candidate, Time now) const;
   void Promote(Time now, Peer candidate);
@@ -92,7 +139,9 @@ class PeerLatch {
   bool latched_ = false;
   Peer peer_;
   std::vector<Peer> candidates_;
-  Sources known_;  // of peers that had shown slices and fell silent
+  std::vector<Link> links_;
+  Digests<512> digests_;  // of what the peer sent
+  Sources known_;         // of peers that had shown slices and fell silent
 };
 
 }  // namespace lidar::gst

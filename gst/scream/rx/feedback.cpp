@@ -27,7 +27,7 @@ void StartStream(GstLidarScreamRx* self) {
 }
 
 void Wait(RxState& state, RxLock& lock, Time now) {
-  const Time until = std::min(state.generator.NextDue(), now + kIdle);
+  const Time until = std::min(state.reports.NextDue(), now + kIdle);
   if (until <= now) return;
   GstClockID id = gst_clock_new_single_shot_id(
       state.clock, static_cast<GstClockTime>(until.time_since_epoch().count()));
@@ -40,11 +40,11 @@ void Wait(RxState& state, RxLock& lock, Time now) {
   gst_clock_id_unref(id);
 }
 
-/// RTCP as a buffer that names the peer, for a sink that replies.
-GstBuffer* ToBuffer(const RxState& state, const std::vector<std::uint8_t>& bytes) {
+/// RTCP as a buffer that names the address it goes to, for a sink that replies.
+GstBuffer* ToBuffer(GSocketAddress* to, const std::vector<std::uint8_t>& bytes) {
   GstBuffer* buffer = gst_buffer_new_allocate(nullptr, bytes.size(), nullptr);
   gst_buffer_fill(buffer, 0, bytes.data(), bytes.size());
-  if (state.latch.peer() != nullptr) gst_buffer_add_net_address_meta(buffer, state.latch.peer());
+  if (to != nullptr) gst_buffer_add_net_address_meta(buffer, to);
   return buffer;
 }
 
@@ -55,15 +55,15 @@ GstBuffer* NextPacket(GstLidarScreamRx* self, Time now) {
     const guint32 ssrc = *state.key_requests.begin();
     state.key_requests.erase(state.key_requests.begin());
     GST_DEBUG_OBJECT(self, "asking for a key unit of %08x", ssrc);
-    return ToBuffer(state, BuildKeyRequest(state.own_ssrc, ssrc));
+    return ToBuffer(state.latch.peer(), BuildKeyRequest(state.own_ssrc, ssrc));
   }
-  const auto report = state.generator.Take(now);
+  const auto report = state.reports.Take(now);
   if (!report) return nullptr;
-  GST_LOG_OBJECT(self, "reporting %" G_GSIZE_FORMAT " SSRCs", report->blocks.size());
+  GST_LOG_OBJECT(self, "reporting %" G_GSIZE_FORMAT " SSRCs", report->feedback.blocks.size());
   const auto reading = state.settings.num_reports == kNumReportsEricsson
                            ? scream::NumReports::kCountMinusOne
                            : scream::NumReports::kCount;
-  return ToBuffer(state, scream::BuildCcfb(*report, reading));
+  return ToBuffer(report->to, scream::BuildCcfb(report->feedback, reading));
 }
 
 void Run(gpointer data) {
@@ -77,7 +77,7 @@ void Run(gpointer data) {
   }
   if (state.settings_changed) {
     state.settings_changed = false;
-    state.generator.set_config(ToConfig(state.settings, state.own_ssrc));
+    state.reports.set_config(ToConfig(state.settings, state.own_ssrc));
   }
   const Time now = RxNow(state);
   GstBuffer* buffer = NextPacket(self, now);
@@ -96,7 +96,7 @@ void Run(gpointer data) {
 }  // namespace
 
 void WakeFeedback(RxState& state) {
-  if (state.timer != nullptr && state.generator.NextDue() < state.waits_until)
+  if (state.timer != nullptr && state.reports.NextDue() < state.waits_until)
     gst_clock_id_unschedule(state.timer);
 }
 

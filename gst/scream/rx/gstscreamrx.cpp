@@ -47,16 +47,38 @@ constexpr auto F = At<&Shown::feedback, field>;
 template <auto field>
 constexpr auto O = At<&Shown::own, field>;
 
+/// What came by each link of the peer.
+static void AddLinkStats(const LinkReports& reports, GstStructure* stats) {
+  using S = LinkReports::LinkStats;
+  using G = scream::FeedbackGenerator::Stats;
+  static const std::array<Stat<S>, 4> kStats = {{
+      {"address", &S::address},
+      {"packets-received", At<&S::feedback, &G::packets>},
+      {"bytes-received", At<&S::feedback, &G::received>},
+      {"packets-ce", At<&S::feedback, &G::ce_packets>},
+  }};
+  GValue links = G_VALUE_INIT;
+  gst_value_array_init(&links, 0);
+  for (const S& link : reports.stats()) {
+    GValue value = G_VALUE_INIT;
+    g_value_init(&value, GST_TYPE_STRUCTURE);
+    g_value_take_boxed(&value, ToStructure("link", kStats, link).release());
+    gst_value_array_append_and_take_value(&links, &value);
+  }
+  gst_structure_take_value(stats, "links", &links);
+}
+
 static StructurePtr Stats(GObject* object) {
   using S = scream::FeedbackGenerator::Stats;
   using C = RxCounters;
-  static const std::array<Stat<Shown>, 15> kStats = {{
+  static const std::array<Stat<Shown>, 16> kStats = {{
       {"packets-received", F<&S::packets>},
       {"bytes-received", F<&S::received>},
       {"packets-ce", F<&S::ce_packets>},
       {"packets-lost", F<&S::lost>},
       {"packets-reordered", F<&S::reordered>},
       {"packets-duplicate", F<&S::duplicates>},
+      {"packets-copies", O<&C::copies>},
       {"packets-stale", F<&S::stale>},
       {"packets-foreign", O<&C::foreign>},
       {"malformed", O<&C::malformed>},
@@ -69,9 +91,10 @@ static StructurePtr Stats(GObject* object) {
   }};
   RxState& state = *GST_LIDAR_SCREAM_RX(object)->state;
   const RxLock lock(state.mutex);
-  Shown shown{state.generator.stats(), state.counters};
+  Shown shown{state.reports.Sum(), state.counters};
   shown.own.ssrcs = static_cast<guint>(state.ssrcs.size());
   StructurePtr stats = ToStructure("application/x-screamrx-stats", kStats, shown);
+  if (state.latch.links() > 1) AddLinkStats(state.reports, stats.get());
   state.sender.AddStats(state.clock != nullptr ? RxNow(state) : Time{}, stats.get());
   return stats;
 }
@@ -173,8 +196,9 @@ static void Prepare(RxState& state) {
   RxLock lock(state.mutex);
   if (state.clock == nullptr) state.clock = gst_system_clock_obtain();
   state.own_ssrc = state.settings.ssrc != 0 ? state.settings.ssrc : g_random_int() | 1;
-  state.generator = lidar::scream::FeedbackGenerator(ToConfig(state.settings, state.own_ssrc));
+  state.reports.Reset(ToConfig(state.settings, state.own_ssrc));
   state.latch.Reset();
+  state.seen = {};
   NoteLidarTypes(state);
   state.ssrcs.clear();
   state.key_requests.clear();

@@ -48,12 +48,22 @@ ByteView PayloadOf(const BufferMap& map, const RtpHeader& header) {
   return {map.data() + header.header_size, map.size() - header.header_size};
 }
 
+/// Never 0. Who cannot see a packet cannot make another of the same digest.
+std::uint64_t DigestOf(const BufferMap& map) {
+  std::uint64_t digest = 14695981039346656037U;  // FNV-1a
+  for (const std::uint8_t byte : map.view()) digest = (digest ^ byte) * 1099511628211U;
+  return digest | 1;
+}
+
 PeerLatch::Verdict Judge(RxState& state, Time now, GstBuffer* buffer, const RtpHeader& header) {
-  PeerLatch::Packet packet{SourceOf(buffer), header.ssrc, header.seq, {}};
-  if (!state.lidar_types[header.payload_type] || state.latch.HasShownSlices(packet.from))
-    return state.latch.OnPacket(now, packet);
+  PeerLatch::Packet packet{SourceOf(buffer), header.ssrc, header.seq, {}, 0};
+  const bool wants_lidar =
+      state.lidar_types[header.payload_type] && !state.latch.HasShownSlices(packet.from);
+  const bool wants_digest = state.latch.WantsDigest(packet.from);
+  if (!wants_lidar && !wants_digest) return state.latch.OnPacket(now, packet);
   const BufferMap map(buffer, GST_MAP_READ);
-  packet.lidar = PayloadOf(map, header);
+  if (wants_lidar) packet.lidar = PayloadOf(map, header);
+  if (wants_digest && map) packet.digest = DigestOf(map);
   return state.latch.OnPacket(now, packet);
 }
 
@@ -97,7 +107,8 @@ bool Account(GstLidarScreamRx* self, const Clocks& clocks, GstBuffer* buffer,
   }
   if (verdict == PeerLatch::Verdict::kMoved) {
     ++state.counters.moves;
-    state.generator.Reset();
+    state.reports.Reset(ToConfig(state.settings, state.own_ssrc));
+    state.seen = {};
     state.sender.Reset();
     state.ssrcs.clear();
     GST_INFO_OBJECT(self, "the media now comes from %s",
@@ -113,11 +124,15 @@ bool Account(GstLidarScreamRx* self, const Clocks& clocks, GstBuffer* buffer,
   packet.marker = header.marker;
   packet.size = DataSize::Bytes(static_cast<std::int64_t>(gst_buffer_get_size(buffer))) +
                 state.settings.packet_overhead;
-  state.generator.OnPacket(ArrivalTime(clocks, arrival), packet);
+  state.reports.OnPacket(SourceOf(buffer), ArrivalTime(clocks, arrival), packet);
   // One that is alive comes back with its next packet.
   if (state.ssrcs.size() >= kMaxSsrcs) state.ssrcs.erase(state.ssrcs.begin());
   state.ssrcs[header.ssrc] = clocks.now;
-  return true;
+  const bool is_new = state.seen.Add(header.ssrc, header.seq);
+  if (is_new || state.latch.links() < 2) return true;
+  ++state.counters.copies;
+  WakeFeedback(state);
+  return false;
 }
 
 enum class Fate { kPass, kDrop, kEnd };

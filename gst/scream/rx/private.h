@@ -2,7 +2,7 @@
 // The inside of screamrx: its state, and the functions its files share.
 //
 // Threads: the sink pad's streaming thread looks at packets and passes them; the task on rtcp_src
-// sends reports when the generator says. One mutex guards the state; nobody holds it while pushing
+// sends reports when they are due. One mutex guards the state; nobody holds it while pushing
 // or waiting.
 #pragma once
 #include <gst/base/gstflowcombiner.h>
@@ -21,6 +21,7 @@
 #include "gst/scream/peer_latch.h"
 #include "gst/scream/rtp_packet.h"
 #include "gst/scream/rx/gstscreamrx.h"
+#include "gst/scream/rx/link_reports.h"
 #include "gst/scream/rx/sender_view.h"
 #include "src/scream/feedback/feedback_generator.h"
 
@@ -49,6 +50,7 @@ struct RxCounters {
   guint64 malformed = 0;
   guint64 old = 0;
   guint64 moves = 0;
+  guint64 copies = 0;
   guint64 goodbyes = 0;
   guint ssrcs = 0;
 };
@@ -56,8 +58,9 @@ struct RxCounters {
 struct RxState {
   std::mutex mutex;
   RxSettings settings;
-  scream::FeedbackGenerator generator;
+  LinkReports reports;
   PeerLatch latch;
+  SeenPackets seen;
   std::bitset<128> lidar_types;                           // payload types that are LiDAR
   std::set<std::pair<std::string, guint32>> old_streams;  // by address and SSRC: older than max-age
   std::map<guint32, Time> ssrcs;                          // of the peer, and when each sent last

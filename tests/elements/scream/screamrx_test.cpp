@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // screamrx under a test clock: what it reports, to whom, and whom it believes.
+#include <set>
+
 #include "gst/scream/key_request.h"
 #include "src/rtp/ntp_time.h"
 #include "tests/elements/scream/screamrx_fixture.h"
@@ -105,6 +107,32 @@ TEST_F(ScreamRx, AnswersTheLatchedPeer) {
   const GstNetAddressMeta* meta = gst_buffer_get_net_address_meta(raw.get());
   ASSERT_TRUE(meta != nullptr);
   EXPECT_EQ(g_inet_socket_address_get_port(G_INET_SOCKET_ADDRESS(meta->addr)), 4711);
+}
+
+TEST_F(ScreamRx, PassesOnceWhatCameByTwoLinksAndAnswersBoth) {
+  Start();
+  guint passed = 0;
+  for (guint16 seq = 0; seq < 20; ++seq) {
+    Rtp r;
+    r.seq = seq;
+    r.marker = true;
+    ASSERT_EQ(Push(r, GST_LIDAR_ECN_ECT1, "10.0.0.1", 4711), GST_FLOW_OK);
+    ++passed;
+    ASSERT_EQ(Push(r, GST_LIDAR_ECN_ECT1, "10.1.0.1", 4712), GST_FLOW_OK);
+    time.Advance(20 * GST_MSECOND);
+  }
+  EXPECT_EQ(Passed(), passed);
+  std::set<guint16> answered;
+  while (gst_harness_buffers_in_queue(rtcp.get()) > 0) {
+    BufferPtr raw;
+    Report(&raw);
+    const GstNetAddressMeta* meta = gst_buffer_get_net_address_meta(raw.get());
+    answered.insert(g_inet_socket_address_get_port(G_INET_SOCKET_ADDRESS(meta->addr)));
+  }
+  EXPECT_EQ(answered, (std::set<guint16>{4711, 4712}));
+  // The first copies only proved that the second address is a link.
+  EXPECT_EQ(Stats(element)["packets-foreign"], 3U);
+  EXPECT_EQ(Stats(element)["packets-copies"], 17U);
 }
 
 TEST_F(ScreamRx, DropsWhatAStrangerSends) {

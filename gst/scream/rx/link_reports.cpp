@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "gst/scream/rx/link_reports.h"
+
+#include <algorithm>
+
+#include "src/base/sequence.h"
+
+namespace lidar::gst {
+
+void LinkReports::Reset(const scream::FeedbackConfig& config) {
+  config_ = config;
+  links_.clear();
+}
+
+void LinkReports::set_config(const scream::FeedbackConfig& config) {
+  config_ = config;
+  for (Link& link : links_) link.generator.set_config(config);
+}
+
+LinkReports::Link& LinkReports::LinkOf(GSocketAddress* from) {
+  for (Link& link : links_) {
+    if (from != nullptr && link.address && !SameAddress(from, link.address.get())) continue;
+    // The next packet then compares by pointer.
+    if (from != nullptr && from != link.address.get())
+      link.address.reset(G_SOCKET_ADDRESS(g_object_ref(from)));
+    return link;
+  }
+  if (links_.size() >= kMaxLinks)
+    links_.erase(std::min_element(links_.begin(), links_.end(),
+                                  [](const Link& a, const Link& b) { return a.last < b.last; }));
+  Link link;
+  if (from != nullptr) link.address.reset(G_SOCKET_ADDRESS(g_object_ref(from)));
+  link.generator = scream::FeedbackGenerator(config_);
+  links_.push_back(std::move(link));
+  return links_.back();
+}
+
+void LinkReports::OnPacket(GSocketAddress* from, Time arrival,
+                           const scream::ReceivedPacket& packet) {
+  Link& link = LinkOf(from);
+  link.last = arrival;
+  link.generator.OnPacket(arrival, packet);
+}
+
+Time LinkReports::NextDue() const {
+  Time due = Time::max();
+  for (const Link& link : links_) due = std::min(due, link.generator.NextDue());
+  return due;
+}
+
+std::optional<LinkReports::Report> LinkReports::Take(Time now) {
+  for (Link& link : links_)
+    if (auto feedback = link.generator.Take(now))
+      return Report{std::move(*feedback), link.address.get()};
+  return std::nullopt;
+}
+
+std::vector<LinkReports::LinkStats> LinkReports::stats() const {
+  std::vector<LinkStats> stats;
+  for (const Link& link : links_)
+    stats.push_back({AddressToString(link.address.get()), link.generator.stats()});
+  return stats;
+}
+
+scream::FeedbackGenerator::Stats LinkReports::Sum() const {
+  scream::FeedbackGenerator::Stats sum;
+  for (const Link& link : links_) {
+    const scream::FeedbackGenerator::Stats& s = link.generator.stats();
+    sum.packets += s.packets;
+    sum.ce_packets += s.ce_packets;
+    sum.duplicates += s.duplicates;
+    sum.reordered += s.reordered;
+    sum.stale += s.stale;
+    sum.lost += s.lost;
+    sum.reports += s.reports;
+    sum.received += s.received;
+    sum.sent += s.sent;
+  }
+  return sum;
+}
+
+bool SeenPackets::Add(std::uint32_t ssrc, std::uint16_t seq) {
+  const auto found = sources_.find(ssrc);
+  if (found == sources_.end()) {
+    if (sources_.size() >= kMaxSources) sources_.erase(sources_.begin());
+    Source& source = sources_[ssrc];
+    source.newest = seq;
+    source.seen.set(seq % kWindow);
+    return true;
+  }
+  Source& source = found->second;
+  const int ahead = SequenceDistance(seq, source.newest);
+  if (ahead <= -kWindow) return true;
+  if (ahead >= kWindow) source.seen.reset();
+  for (int i = 1; i <= std::min(ahead, kWindow); ++i)
+    source.seen.reset(static_cast<std::uint16_t>(source.newest + i) % kWindow);
+  if (ahead > 0) source.newest = seq;
+  if (source.seen[seq % kWindow]) return false;
+  source.seen.set(seq % kWindow);
+  return true;
+}
+
+}  // namespace lidar::gst

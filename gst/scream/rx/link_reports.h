@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Feedback for each link of the peer, and what came by more than one of them.
+#pragma once
+#include <gio/gio.h>
+
+#include <bitset>
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "gst/net/udp_socket.h"
+#include "src/base/time.h"
+#include "src/scream/feedback/feedback_generator.h"
+
+namespace lidar::gst {
+
+/// A link's reports tell of what came by it. The first link may have no address.
+class LinkReports {
+ public:
+  /// Of links that are silent, the oldest gives its place to a new one.
+  static constexpr std::size_t kMaxLinks = 4;
+
+  struct Report {
+    scream::CongestionFeedback feedback;
+    GSocketAddress* to;  // not owned; NULL where it is not known
+  };
+
+  /// Forgets everything.
+  void Reset(const scream::FeedbackConfig& config);
+  void set_config(const scream::FeedbackConfig& config);
+  void OnPacket(GSocketAddress* from, Time arrival, const scream::ReceivedPacket& packet);
+  Time NextDue() const;
+  std::optional<Report> Take(Time now);
+
+  struct LinkStats {
+    std::string address;
+    scream::FeedbackGenerator::Stats feedback;
+  };
+  std::vector<LinkStats> stats() const;
+  /// Of all links.
+  scream::FeedbackGenerator::Stats Sum() const;
+
+ private:
+  struct Link {
+    SocketAddressPtr address;
+    scream::FeedbackGenerator generator;
+    Time last{};
+  };
+  Link& LinkOf(GSocketAddress* from);
+
+  scream::FeedbackConfig config_;
+  std::vector<Link> links_;
+};
+
+/// Which packets came already, over whatever link. What is so old that it cannot be told, passes.
+class SeenPackets {
+ public:
+  static constexpr int kWindow = 4096;
+  static constexpr std::size_t kMaxSources = 64;
+
+  /// False for one that was here before.
+  bool Add(std::uint32_t ssrc, std::uint16_t seq);
+
+ private:
+  struct Source {
+    std::uint16_t newest = 0;
+    std::bitset<kWindow> seen;
+  };
+  std::map<std::uint32_t, Source> sources_;
+};
+
+}  // namespace lidar::gst

@@ -1,0 +1,164 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// A peer of several links: who becomes one, what each hears, and what came twice.
+#include <gtest/gtest.h>
+
+#include "gst/scream/peer_latch.h"
+#include "gst/scream/rx/link_reports.h"
+#include "tests/elements/scream/rtp_support.h"
+
+namespace lidar::test {
+namespace {
+
+using namespace std::chrono_literals;
+using gst::LinkReports;
+using gst::PeerLatch;
+using gst::SeenPackets;
+using LinkAddress = std::unique_ptr<GSocketAddress, gst::GObjectUnref>;
+using Verdict = PeerLatch::Verdict;
+
+struct PeerLinks : ::testing::Test {
+  /// Packets of one SSRC are equal where their numbers are.
+  Verdict Send(const LinkAddress& from, std::uint16_t number, std::uint64_t salt = 1) {
+    return latch.OnPacket(now, {from.get(), 1, number, {}, number * 1000003U + salt});
+  }
+  /// Each packet over both links, 10 ms apart.
+  void SendBoth(const LinkAddress& sooner, const LinkAddress& later, int packets) {
+    for (int i = 0; i < packets; ++i, ++seq, now += 10ms) {
+      Send(sooner, seq);
+      Send(later, seq);
+    }
+  }
+
+  LinkAddress first{Address("10.0.0.1", 5000)};
+  LinkAddress second{Address("10.1.0.1", 5000)};
+  LinkAddress thief{Address("10.2.0.1", 5000)};
+  PeerLatch latch;
+  Time now{1s};
+  std::uint16_t seq = 65530;
+};
+
+TEST_F(PeerLinks, CopiesMakeAnAddressALink) {
+  SendBoth(first, second, PeerLatch::kCopies - 1);
+  EXPECT_EQ(latch.links(), 1U);
+  SendBoth(first, second, 1);
+  EXPECT_EQ(latch.links(), 2U);
+  EXPECT_TRUE(latch.IsPeer(second.get()));
+  EXPECT_EQ(Send(second, seq), Verdict::kAccepted);
+}
+
+TEST_F(PeerLinks, CopiesThatComeBeforeTheirOriginalsCountToo) {
+  Send(first, seq++);
+  SendBoth(second, first, PeerLatch::kCopies);
+  EXPECT_EQ(Send(second, seq), Verdict::kAccepted);
+  EXPECT_EQ(latch.links(), 2U);
+}
+
+TEST_F(PeerLinks, AStrangerWithTheSameSsrcAndNumbersStaysOne) {
+  for (int i = 0; i < 1000; ++i, ++seq, now += 10ms) {
+    EXPECT_EQ(Send(first, seq), Verdict::kAccepted);
+    EXPECT_EQ(Send(thief, seq, 2), Verdict::kForeign) << "other bytes";
+  }
+  EXPECT_EQ(latch.links(), 1U);
+}
+
+TEST_F(PeerLinks, OneCopySentAgainAndAgainIsOne) {
+  Send(first, seq);
+  for (int i = 0; i < 100; ++i) EXPECT_EQ(Send(thief, seq), Verdict::kForeign);
+  EXPECT_EQ(latch.links(), 1U);
+}
+
+TEST_F(PeerLinks, ThePeerGoesOnOverTheOtherLinkAndNoStrangerTakesItsPlace) {
+  SendBoth(first, second, 10);
+  for (int i = 0; i < 1000; ++i, ++seq, now += 10ms) {
+    EXPECT_EQ(Send(second, seq), Verdict::kAccepted);
+    EXPECT_EQ(Send(thief, seq, 2), Verdict::kForeign);
+  }
+  EXPECT_TRUE(gst::SameAddress(latch.peer(), second.get())) << "it is answered there";
+  EXPECT_EQ(Send(first, seq), Verdict::kAccepted) << "and back";
+}
+
+TEST_F(PeerLinks, WhoeverTakesThePlaceOfASilentPeerHasNoneOfItsLinks) {
+  SendBoth(first, second, 10);
+  now += 10s;
+  for (int i = 0; i < 10; ++i, ++seq, now += 10ms) Send(thief, seq, 2);
+  EXPECT_TRUE(latch.IsPeer(thief.get()));
+  EXPECT_FALSE(latch.IsPeer(second.get()));
+  EXPECT_EQ(latch.links(), 1U);
+}
+
+TEST_F(PeerLinks, AreFewAndASilentOneGivesItsPlaceToANewOne) {
+  Send(first, seq++);
+  for (int host = 1; host < 200; ++host) {
+    const LinkAddress other(Address(("10.3.0." + std::to_string(host)).c_str(), 5000));
+    SendBoth(first, other, 6);
+    EXPECT_LE(latch.links(), PeerLatch::kMaxLinks);
+    now += 600ms;
+    Send(first, seq++);
+  }
+  const LinkAddress newest(Address("10.3.0.199", 5000));
+  EXPECT_TRUE(latch.IsPeer(newest.get()));
+  EXPECT_TRUE(latch.IsPeer(first.get()));
+}
+
+TEST(LinkReports, TellEachLinkWhatCameByIt) {
+  const LinkAddress a(Address("10.0.0.1", 5000)), b(Address("10.1.0.1", 5000));
+  LinkReports reports;
+  reports.Reset({});
+  Time now{1s};
+  for (std::uint16_t seq = 0; seq < 40; ++seq, now += 1ms)
+    reports.OnPacket(seq % 4 == 0 ? b.get() : a.get(), now,
+                     {7, seq, scream::Ecn::kEct1, true, DataSize::Bytes(1200)});
+  int from_a = 0, from_b = 0;
+  while (const auto report = reports.Take(now)) {
+    const bool is_b = gst::SameAddress(report->to, b.get());
+    const scream::SsrcReport& block = report->feedback.blocks.at(0);
+    for (std::size_t i = 0; i < block.metrics.size(); ++i) {
+      const auto seq = static_cast<std::uint16_t>(block.begin_seq + i);
+      EXPECT_EQ(block.metrics[i].received, (seq % 4 == 0) == is_b) << seq;
+      (is_b ? from_b : from_a) += block.metrics[i].received;
+    }
+  }
+  EXPECT_EQ(from_a, 30);
+  EXPECT_EQ(from_b, 10);
+  EXPECT_EQ(reports.Sum().packets, 40U);
+  EXPECT_EQ(reports.stats().size(), 2U);
+}
+
+TEST(LinkReports, KeepFewLinksWhereAddressesChangeAllTheTime) {
+  LinkReports reports;
+  reports.Reset({});
+  Time now{1s};
+  for (int host = 1; host < 250; ++host, now += 1s) {
+    const LinkAddress a(Address(("10.0.0." + std::to_string(host)).c_str(), 5000));
+    reports.OnPacket(a.get(), now, {7, 1, scream::Ecn::kEct1, true, DataSize::Bytes(1200)});
+  }
+  EXPECT_EQ(reports.stats().size(), LinkReports::kMaxLinks);
+}
+
+TEST(SeenPackets, PassEachPacketOnceInWhateverOrder) {
+  SeenPackets seen;
+  for (const int number : {65534, 65535, 1, 0, 300, 2}) {
+    const auto seq = static_cast<std::uint16_t>(number);
+    EXPECT_TRUE(seen.Add(7, seq)) << seq;
+    EXPECT_FALSE(seen.Add(7, seq)) << seq;
+  }
+  EXPECT_TRUE(seen.Add(8, 300)) << "of another SSRC";
+}
+
+TEST(SeenPackets, ASenderThatStartsAgainIsNotKeptOut) {
+  SeenPackets seen;
+  for (int seq = 20000; seq < 30000; ++seq)
+    EXPECT_TRUE(seen.Add(7, static_cast<std::uint16_t>(seq)));
+  for (int seq = 0; seq < 60000; ++seq) {
+    const bool near = seq >= 30000 - SeenPackets::kWindow && seq < 30000;
+    EXPECT_TRUE(near || seen.Add(7, static_cast<std::uint16_t>(seq))) << seq;
+  }
+}
+
+TEST(SeenPackets, ForgetOneOfManySsrcs) {
+  SeenPackets seen;
+  for (std::uint32_t ssrc = 0; ssrc < 100000; ++ssrc) EXPECT_TRUE(seen.Add(ssrc, 1));
+}
+
+}  // namespace
+}  // namespace lidar::test
