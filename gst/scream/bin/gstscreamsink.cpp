@@ -12,11 +12,15 @@
 #include <gst/gst.h>
 
 #include <atomic>
+#include <functional>
+#include <memory>
+#include <vector>
 
 #include "gst/common/element_class.h"
 #include "gst/common/refs.h"
 #include "gst/common/sink_pads.h"
 #include "gst/scream/bin/common.h"
+#include "gst/scream/bond/sink_links.h"
 #include "gst/scream/rtp_packet.h"
 #include "gst/scream/tx/settings.h"
 
@@ -31,17 +35,19 @@ struct SinkSettings {
   UdpTarget target;
   bool strict_feedback = true;
   SrtpSettings srtp;
+  BondSettings bond;
 };
 
 struct State : BinState {
   SinkSettings settings;
   SharedSocketAddress peer;
+  std::shared_ptr<SinkLinks> links;  // where there are several
   std::atomic<guint64> foreign{0};
 };
 
 }  // namespace
 
-/// The ghost of a sink pad of screamtx, with its properties.
+/// The ghost of a sink pad of screamtx, or of one on each link, with its properties.
 G_DECLARE_FINAL_TYPE(GstLidarScreamSinkPad, gst_lidar_scream_sink_pad, GST, LIDAR_SCREAM_SINK_PAD,
                      GstGhostPad)
 struct _GstLidarScreamSinkPad {
@@ -52,15 +58,23 @@ G_DEFINE_TYPE(GstLidarScreamSinkPad, gst_lidar_scream_sink_pad, GST_TYPE_GHOST_P
 
 static void gst_lidar_scream_sink_pad_init(GstLidarScreamSinkPad*) {}
 
+static std::vector<PadPtr> TxPadsOf(GObject* ghost) {
+  PadPtr target(gst_ghost_pad_get_target(GST_GHOST_PAD(ghost)));
+  if (target && GST_IS_LIDAR_SCREAM_BOND(GST_OBJECT_PARENT(target.get())))
+    return BondedPads(target.get());
+  std::vector<PadPtr> pads;
+  if (target) pads.push_back(std::move(target));
+  return pads;
+}
+
 static void gst_lidar_scream_sink_pad_class_init(GstLidarScreamSinkPadClass* klass) {
   auto* object = G_OBJECT_CLASS(klass);
   object->set_property = [](GObject* o, guint, const GValue* v, GParamSpec* spec) {
-    const PadPtr target(gst_ghost_pad_get_target(GST_GHOST_PAD(o)));
-    if (target) g_object_set_property(G_OBJECT(target.get()), spec->name, v);
+    for (const PadPtr& pad : TxPadsOf(o)) g_object_set_property(G_OBJECT(pad.get()), spec->name, v);
   };
   object->get_property = [](GObject* o, guint, GValue* v, GParamSpec* spec) {
-    const PadPtr target(gst_ghost_pad_get_target(GST_GHOST_PAD(o)));
-    if (target) g_object_get_property(G_OBJECT(target.get()), spec->name, v);
+    const auto pads = TxPadsOf(o);
+    if (!pads.empty()) g_object_get_property(G_OBJECT(pads.front().get()), spec->name, v);
   };
   InstallProperties(object, TxPadPropertyTable());
 }
@@ -88,8 +102,11 @@ static StructurePtr Stats(GObject* object) {
   gst_structure_set(stats.get(), "feedback-foreign-address", G_TYPE_UINT64,
                     self->state->foreign.load(), nullptr);
   CopyStat(self->sink, "send-errors", stats.get());
-  const std::lock_guard lock(self->state->mutex);
+  std::unique_lock lock(self->state->mutex);
   AddSrtpStats(self->state->srtp.get(), stats.get());
+  const std::shared_ptr<SinkLinks> links = self->state->links;
+  lock.unlock();
+  if (links) links->AddStats(stats.get());
   return stats;
 }
 
@@ -116,7 +133,7 @@ static Property<SinkSettings> OfTx(const char* name) {
                              ChildOf<GstLidarScreamSink, &GstLidarScreamSink::tx>, &TxDefaults());
 }
 
-static const std::array<Property<SinkSettings>, 21> kProperties = {{
+static const std::array<Property<SinkSettings>, 24> kProperties = {{
     Within<&SinkSettings::target>(UdpTargetRows(), "host"),
     Within<&SinkSettings::target>(UdpTargetRows(), "port"),
     Within<&SinkSettings::target>(UdpTargetRows(), "bind-address"),
@@ -139,6 +156,9 @@ static const std::array<Property<SinkSettings>, 21> kProperties = {{
     {"estimated-bitrate", "Target of all streams together, IP included; notifies [bit/s]",
      Estimate},
     {"stats", "Statistics; bitrates in bit/s, times in ns", Stats},
+    Within<&SinkSettings::bond>(BondRows(), "bonding-addresses"),
+    Within<&SinkSettings::bond>(BondRows(), "bonding-method"),
+    Within<&SinkSettings::bond>(BondRows(), "bonding-target"),
     Within<&SinkSettings::srtp>(SrtpRows(), "srtp-key"),
     Within<&SinkSettings::srtp>(SrtpRows(), "srtp-cipher"),
     Within<&SinkSettings::srtp>(SrtpRows(), "srtp-auth"),
@@ -177,18 +197,77 @@ static GstPadProbeReturn FilterFeedback(GstPad*, GstPadProbeInfo* info, gpointer
   return GST_PAD_PROBE_DROP;
 }
 
+/// The pads of the bin, and those that they stand for.
+static void ForEachGhost(GstLidarScreamSink* self, const std::function<PadPtr(GstPad*)>& retarget) {
+  GST_OBJECT_LOCK(self);
+  GList* pads = g_list_copy_deep(
+      GST_ELEMENT(self)->sinkpads,
+      [](gconstpointer p, gpointer) -> gpointer { return gst_object_ref(const_cast<gpointer>(p)); },
+      nullptr);
+  GST_OBJECT_UNLOCK(self);
+  for (GList* p = pads; p != nullptr; p = p->next) {
+    const PadPtr target(gst_ghost_pad_get_target(GST_GHOST_PAD(p->data)));
+    if (!target) continue;
+    gst_ghost_pad_set_target(GST_GHOST_PAD(p->data), nullptr);
+    const PadPtr next = retarget(target.get());
+    gst_ghost_pad_set_target(GST_GHOST_PAD(p->data), next.get());
+  }
+  g_list_free_full(pads, gst_object_unref);
+}
+
+/// Puts a bond between the pads and a screamtx for each link.
+static void Bond(GstLidarScreamSink* self, const std::vector<OpenLink>& open,
+                 const BondSettings& settings) {
+  auto links = std::make_shared<SinkLinks>(
+      GST_ELEMENT(self), SinkLinks::Chain{self->tx, self->sink, self->src}, open, settings);
+  ForEachGhost(self,
+               [&](GstPad* tx_pad) { return PadPtr(GST_PAD(gst_object_ref(links->Add(tx_pad)))); });
+  const std::lock_guard lock(self->state->mutex);
+  self->state->links = std::move(links);
+}
+
+static void Unbond(GstLidarScreamSink* self) {
+  std::unique_lock lock(self->state->mutex);
+  const std::shared_ptr<SinkLinks> links = std::move(self->state->links);
+  lock.unlock();
+  if (links) ForEachGhost(self, [&](GstPad* sink) { return links->Remove(sink); });
+}
+
+/// The target of a single link, or the first of several, which `links` names then. False after an
+/// element error.
+static bool FindTarget(GstLidarScreamSink* self, SinkSettings* s, std::vector<OpenLink>* links,
+                       OpenLink* first) {
+  if (s->bond.addresses.empty()) {
+    first->peer = ResolveTarget(GST_ELEMENT(self), s->target);
+    if (!first->peer) return false;
+    first->socket =
+        OpenSending(GST_ELEMENT(self), s->target, g_socket_address_get_family(first->peer.get()));
+    return first->socket != nullptr;
+  }
+  *links = OpenLinks(GST_ELEMENT(self), s->bond.addresses);
+  if (links->empty()) return false;
+  if (links->size() > 1 && !s->srtp.key.empty()) {
+    GST_ELEMENT_ERROR(self, RESOURCE, SETTINGS, ("srtp-key works on one link only"),
+                      ("leave out srtp-key or bonding-addresses; a VPN encrypts several links"));
+    return false;
+  }
+  *first = links->front();
+  s->target = first->address.target;
+  return true;
+}
+
 /// Opens the socket for both ways and hands it to the children.
 static bool Open(GstLidarScreamSink* self) {
   State& state = *self->state;
-  const SinkSettings s = Snapshot(state);
+  SinkSettings s = Snapshot(state);
   if (!HasChildren(GST_ELEMENT(self),
                    {{self->tx, "screamtx"}, {self->sink, "ecnudpsink"}, {self->src, "ecnudpsrc"}}))
     return false;
-  SharedSocketAddress peer = ResolveTarget(GST_ELEMENT(self), s.target);
-  if (!peer) return false;
-  SharedSocket socket =
-      OpenSending(GST_ELEMENT(self), s.target, g_socket_address_get_family(peer.get()));
-  if (!socket) return false;
+  std::vector<OpenLink> links;
+  OpenLink first;
+  if (!FindTarget(self, &s, &links, &first)) return false;
+  SharedSocketAddress peer = first.peer;
+  SharedSocket socket = first.socket;
   GInetAddress* host = g_inet_socket_address_get_address(G_INET_SOCKET_ADDRESS(peer.get()));
   // As resolved here: a name may stand for several addresses.
   const StringPtr literal(g_inet_address_to_string(host));
@@ -202,6 +281,7 @@ static bool Open(GstLidarScreamSink* self) {
     return false;
   const guint overhead = OverheadOf(peer.get()) + (srtp ? srtp->overhead() : 0);
   g_object_set(self->tx, "packet-overhead", overhead, nullptr);
+  if (links.size() > 1) Bond(self, links, s.bond);
   const std::lock_guard lock(state.mutex);
   state.srtp = std::move(srtp);
   state.srtp_key = s.srtp.key;
@@ -212,6 +292,7 @@ static bool Open(GstLidarScreamSink* self) {
 }
 
 static void Close(GstLidarScreamSink* self) {
+  Unbond(self);
   CloseBin(*self->state, {self->sink, self->src}, false);
   const std::lock_guard lock(self->state->mutex);
   self->state->peer.reset();
@@ -240,14 +321,21 @@ static GstPad* RequestPad(GstElement* element, GstPadTemplate* templ, const gcha
   const PadPtr target(gst_element_request_pad(self->tx, inner, name, caps));
   if (!target) return nullptr;
   const StringPtr pad_name(gst_pad_get_name(target.get()));
+  std::unique_lock lock(self->state->mutex);
+  const std::shared_ptr<SinkLinks> links = self->state->links;
+  lock.unlock();
   return AddGhostSink(element, gst_lidar_scream_sink_pad_get_type(), templ, pad_name.get(),
-                      target.get());
+                      links ? links->Add(target.get()) : target.get());
 }
 
 static void ReleasePad(GstElement* element, GstPad* pad) {
   auto* self = GST_LIDAR_SCREAM_SINK(element);
-  const PadPtr target(gst_ghost_pad_get_target(GST_GHOST_PAD(pad)));
+  PadPtr target(gst_ghost_pad_get_target(GST_GHOST_PAD(pad)));
   gst_ghost_pad_set_target(GST_GHOST_PAD(pad), nullptr);
+  std::unique_lock lock(self->state->mutex);
+  const std::shared_ptr<SinkLinks> links = self->state->links;
+  lock.unlock();
+  if (links && target) target = links->Remove(target.get());
   if (target) gst_element_release_request_pad(self->tx, target.get());
   const StringPtr name(gst_pad_get_name(pad));
   gst_child_proxy_child_removed(GST_CHILD_PROXY(element), G_OBJECT(pad), name.get());

@@ -51,11 +51,22 @@ void TakeKeyRequest(GstLidarScreamTx* self, ByteView packet) {
   state.reporter.Evaluate(TxNow(state));
 }
 
+/// A link's controller counts by numbers of its own.
+scream::FeedbackResult GiveToController(TxState& state, Time now,
+                                        const scream::CongestionFeedback& report) {
+  if (!state.link) return state.controller->OnFeedback(now, report);
+  const auto own = state.link->OnFeedback(now, report);
+  if (!own) return scream::FeedbackResult::kImplausible;
+  const auto result = state.controller->OnFeedback(now, *own);
+  state.link->OnPath(state.controller->statistics(now));
+  return result;
+}
+
 /// False where the report is not about us. With the lock held.
 bool Take(GstLidarScreamTx* self, const scream::CongestionFeedback& report, GSocketAddress* from) {
   TxState& state = *self->state;
   const Time now = TxNow(state);
-  const auto result = state.controller->OnFeedback(now, report);
+  const auto result = GiveToController(state, now, report);
   if (result == scream::FeedbackResult::kNotOurs) return false;
   GST_LOG_OBJECT(self, "feedback: %s", ToString(result));
   if (result != scream::FeedbackResult::kImplausible) state.reporter.OnFeedback();

@@ -44,6 +44,11 @@ void SettingsChanged(GstLidarScreamTx* self) {
   self->state->pacing.OnSettings();
 }
 
+void TxSetLink(GstLidarScreamTx* tx, std::shared_ptr<TxLink> link) {
+  const TxLock lock(tx->state->mutex);
+  tx->state->link = std::move(link);
+}
+
 TxStream* FindStream(TxState& state, scream::StreamId id) {
   for (auto& stream : state.streams)
     if (stream->id == id) return stream.get();

@@ -130,10 +130,23 @@ void PacingTask::DropLate(TxStream& stream, Time now) {
     }
     if (frame != it->header.timestamp) ++stream.counters.frames_dropped;
     frame = it->header.timestamp;
+    if (state().link) state().link->OnDropped(now, it->header.ssrc, it->header.seq);
     it = stream.queue.erase(it);
     --late;
   }
   if (stream.is_video) stream.key_unit_due = true;
+}
+
+/// What another link has brought meanwhile.
+void PacingTask::DropUnwanted(TxStream& stream, Time now) {
+  TxState& s = state();
+  while (!stream.queue.empty() && stream.queue.front().buffer) {
+    const RtpHeader header = stream.queue.front().header;
+    if (s.link->Wants(now, header.ssrc, header.seq)) return;
+    s.link->OnDropped(now, header.ssrc, header.seq);
+    s.controller->OnDropped(now, stream.id, 1);
+    stream.queue.pop_front();
+  }
 }
 
 /// Takes the first packet of `stream`, which the controller chose, and accounts for it.
@@ -142,7 +155,9 @@ BufferPtr PacingTask::TakePacket(TxStream& stream, scream::Ecn ecn, Time now) {
   TxItem item = std::move(stream.queue.front());
   stream.queue.pop_front();
   s.reporter.OnSent(now);
-  s.controller->OnSent(now, stream.id, {item.header.ssrc, item.header.seq, item.size, ecn});
+  const RtpHeader& header = item.header;
+  const guint16 seq = s.link ? s.link->OnSent(now, header.ssrc, header.seq) : header.seq;
+  s.controller->OnSent(now, stream.id, {header.ssrc, seq, item.size, ecn});
   if (s.settings.ecn_mode != kEcnOff) {
     GstBuffer* buffer = gst_buffer_make_writable(item.buffer.release());
     gst_lidar_buffer_set_ecn(buffer, static_cast<GstLidarEcn>(ecn), GST_CLOCK_TIME_NONE);
@@ -153,6 +168,8 @@ BufferPtr PacingTask::TakePacket(TxStream& stream, scream::Ecn ecn, Time now) {
 
 void PacingTask::CollectPackets(Time now, Batch* batch) {
   while (batch->packets.size() < kMaxBatch) {
+    if (state().link)
+      for (auto& stream : state().streams) DropUnwanted(*stream, now);
     const auto decision = state().controller->NextSend(now);
     if (!decision || decision->time > now) return;
     TxStream* stream = FindStream(state(), decision->stream);

@@ -52,6 +52,7 @@ class PacingTask {
   void Round(TxLock& lock);
   Batch NextBatch(Time now);
   void DropLate(TxStream& stream, Time now);
+  void DropUnwanted(TxStream& stream, Time now);
   BufferPtr TakePacket(TxStream& stream, scream::Ecn ecn, Time now);
   void CollectPackets(Time now, Batch* batch);
   bool Drained(Time now);

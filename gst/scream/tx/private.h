@@ -21,6 +21,7 @@
 #include "gst/scream/feedback_peer.h"
 #include "gst/scream/tx/entry_gate.h"
 #include "gst/scream/tx/gstscreamtx.h"
+#include "gst/scream/tx/link.h"
 #include "gst/scream/tx/pacing_task.h"
 #include "gst/scream/tx/sender_reports.h"
 #include "gst/scream/tx/settings.h"
@@ -47,6 +48,7 @@ struct TxState {
   scream::CcfbParser parser;
   FeedbackPeer feedback_peer;
   guint64 malformed_rtcp = 0;
+  std::shared_ptr<TxLink> link;  // where there are several
 
   EntryGate gate;
   StreamMerger merger;

@@ -1,0 +1,395 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "gst/scream/bond/bond.h"
+
+#include <algorithm>
+#include <cmath>
+#include <condition_variable>
+#include <deque>
+#include <memory>
+#include <mutex>
+#include <unordered_map>
+
+#include "gst/common/sink_pads.h"
+#include "gst/lidar/gstlidar.h"
+#include "gst/scream/rtp_packet.h"
+#include "gst/scream/tx/link.h"
+
+namespace lidar::gst {
+
+using bonding::PacketId;
+using bonding::Scheduler;
+
+constexpr DataSize kHeaders = DataSize::Bytes(28);  // UDP and IP
+constexpr double kWorthTelling = 0.02;              // of a target
+
+struct BondStream {
+  GstPad* sink = nullptr;
+  std::vector<GstPad*> srcs;                   // by link
+  std::vector<GstLidarTargetBitrate> targets;  // that the links told
+  std::vector<std::string> reasons;            // of these
+  guint told = 0;                              // to the encoder [bit/s]
+};
+
+struct Kept {
+  BufferPtr buffer;
+  BondStream* stream;
+};
+
+/// Shared with the links, which may outlive the element by a call.
+struct BondShared {
+  BondShared(std::size_t links, lidar::bonding::Method method, lidar::bonding::TargetRule rule)
+      : scheduler(links, method, rule) {}
+  ~BondShared() { gst_object_unref(clock); }
+
+  Time Now() const { return Time{Duration{static_cast<std::int64_t>(gst_clock_get_time(clock))}}; }
+
+  std::mutex mutex;
+  GstClock* clock = gst_system_clock_obtain();  // as of the links
+  Scheduler scheduler;
+  std::unordered_map<std::uint64_t, Kept> kept;
+  std::deque<std::pair<Time, std::uint64_t>> order;
+};
+
+class BondLink : public TxLink {
+ public:
+  BondLink(std::shared_ptr<BondShared> bond, std::size_t index)
+      : bond_(std::move(bond)), index_(index) {}
+
+  bool Wants(Time now, guint32 ssrc, guint16 seq) override {
+    const std::lock_guard lock(bond_->mutex);
+    return bond_->scheduler.Wants(now, index_, {ssrc, seq});
+  }
+  guint16 OnSent(Time now, guint32 ssrc, guint16 seq) override {
+    const std::lock_guard lock(bond_->mutex);
+    return bond_->scheduler.OnSent(now, index_, {ssrc, seq});
+  }
+  void OnDropped(Time now, guint32 ssrc, guint16 seq) override {
+    const std::lock_guard lock(bond_->mutex);
+    bond_->scheduler.OnDropped(now, index_, {ssrc, seq});
+  }
+  std::optional<lidar::scream::CongestionFeedback> OnFeedback(
+      Time now, const lidar::scream::CongestionFeedback& report) override {
+    const std::lock_guard lock(bond_->mutex);
+    return bond_->scheduler.OnFeedback(now, index_, report);
+  }
+  void OnPath(const lidar::scream::Statistics& s) override {
+    const std::lock_guard lock(bond_->mutex);
+    const bool known = s.s_rtt > Duration{0};
+    bond_->scheduler.OnPath(index_, {known ? s.ref_wnd / s.s_rtt : DataRate{}, s.s_rtt});
+  }
+
+ private:
+  std::shared_ptr<BondShared> bond_;
+  std::size_t index_;
+};
+
+struct BondState {
+  std::shared_ptr<BondShared> shared;
+  std::vector<GstLidarScreamTx*> links;
+  std::vector<std::unique_ptr<BondStream>> streams;  // guarded by shared->mutex
+  std::vector<std::unique_ptr<BondStream>> removed;  // a link may still be telling a target
+  guint next_pad = 0;
+  std::condition_variable wake;
+  bool stop = false;
+  GThread* thread = nullptr;
+};
+
+}  // namespace lidar::gst
+
+using namespace lidar::gst;
+using lidar::DataRate;
+using lidar::DataSize;
+using lidar::Duration;
+using lidar::Time;
+
+struct _GstLidarScreamBond {
+  GstElement parent;
+  lidar::gst::BondState* state;
+};
+
+G_DEFINE_TYPE(GstLidarScreamBond, gst_lidar_scream_bond, GST_TYPE_ELEMENT)
+
+static GstStaticPadTemplate bond_sink_template = GST_STATIC_PAD_TEMPLATE(
+    "sink_%u", GST_PAD_SINK, GST_PAD_SOMETIMES, GST_STATIC_CAPS("application/x-rtp"));
+static GstStaticPadTemplate bond_src_template = GST_STATIC_PAD_TEMPLATE(
+    "src_%u_%u", GST_PAD_SRC, GST_PAD_SOMETIMES, GST_STATIC_CAPS("application/x-rtp"));
+
+static BondStream& StreamOf(GstPad* pad) {
+  return *static_cast<BondStream*>(gst_pad_get_element_private(pad));
+}
+
+static BondState& BondOf(gpointer self) { return *GST_LIDAR_SCREAM_BOND(self)->state; }
+
+/// Keeps a packet for as long as a copy of it may be of use.
+static void Keep(BondShared& shared, Time now, PacketId id, GstBuffer* buffer, BondStream* stream) {
+  while (!shared.order.empty() && (now - shared.order.front().first > Scheduler::kMaxAge ||
+                                   shared.order.size() >= Scheduler::kMaxPackets)) {
+    shared.kept.erase(shared.order.front().second);
+    shared.order.pop_front();
+  }
+  const bool fresh =
+      shared.kept.insert_or_assign(id.key(), Kept{BufferPtr(gst_buffer_ref(buffer)), stream})
+          .second;
+  if (fresh) shared.order.emplace_back(now, id.key());
+}
+
+static lidar::bonding::LinkSet Schedule(BondShared& shared, GstBuffer* buffer, BondStream* stream) {
+  const auto header = ReadRtpHeader(buffer);
+  if (!header) return 1;  // for the first link to count
+  const Time now = shared.Now();
+  const PacketId id{header->ssrc, header->seq};
+  const auto size = static_cast<std::int64_t>(gst_buffer_get_size(buffer));
+  const std::lock_guard lock(shared.mutex);
+  Keep(shared, now, id, buffer, stream);
+  const std::uint32_t slice = header->timestamp ^ header->ssrc;
+  return shared.scheduler.OnPacket(now, {id, DataSize::Bytes(size) + kHeaders, slice});
+}
+
+/// A link that fails stops the stream where no other takes the packet.
+static GstFlowReturn BondChain(GstPad* pad, GstObject* parent, GstBuffer* buffer) {
+  const BufferPtr owner(buffer);
+  BondStream& stream = StreamOf(pad);
+  const auto links = Schedule(*BondOf(parent).shared, buffer, &stream);
+  GstFlowReturn best = GST_FLOW_ERROR;
+  for (std::size_t i = 0; i < stream.srcs.size(); ++i)
+    if (links[i]) best = std::max(best, gst_pad_push(stream.srcs[i], gst_buffer_ref(buffer)));
+  return best;
+}
+
+static gboolean BondSinkEvent(GstPad* pad, GstObject*, GstEvent* event) {
+  const EventPtr owner(event);
+  gboolean taken = FALSE;
+  for (GstPad* src : StreamOf(pad).srcs)
+    taken = gst_pad_push_event(src, gst_event_ref(event)) || taken;
+  return taken;
+}
+
+/// The combined target of a stream, where the encoder has not heard of it. With the lock held.
+static EventPtr DueTarget(BondShared& shared, BondStream& stream) {
+  std::vector<DataRate> rates;
+  for (const GstLidarTargetBitrate& t : stream.targets)
+    rates.push_back(DataRate::BitsPerSecond(t.bitrate));
+  const double bps = shared.scheduler.Target(shared.Now(), rates).bits_per_second();
+  if (bps <= 0 ||
+      std::abs(bps / std::max(1.0, static_cast<double>(stream.told)) - 1) < kWorthTelling)
+    return nullptr;
+  stream.told = static_cast<guint>(bps);
+  std::size_t nearest = 0;
+  for (std::size_t i = 1; i < rates.size(); ++i)
+    if (std::abs(rates[i].bits_per_second() - bps) <
+        std::abs(rates[nearest].bits_per_second() - bps))
+      nearest = i;
+  GstLidarTargetBitrate target = stream.targets[nearest];
+  target.bitrate = stream.told;
+  target.reason = stream.reasons[nearest].c_str();
+  return EventPtr(gst_lidar_event_new_target_bitrate(&target));
+}
+
+/// Targets are combined; all else goes on as it is.
+static gboolean BondSrcEvent(GstPad* pad, GstObject* parent, GstEvent* event) {
+  BondStream& stream = StreamOf(pad);
+  GstLidarTargetBitrate target{};
+  if (!gst_lidar_event_parse_target_bitrate(event, &target))
+    return gst_pad_push_event(stream.sink, event);
+  const EventPtr owner(event);
+  BondShared& shared = *BondOf(parent).shared;
+  EventPtr due;
+  {
+    const std::lock_guard lock(shared.mutex);
+    for (std::size_t i = 0; i < stream.srcs.size(); ++i) {
+      if (stream.srcs[i] != pad) continue;
+      stream.reasons[i] = target.reason != nullptr ? target.reason : "update";
+      stream.targets[i] = target;
+    }
+    due = DueTarget(shared, stream);
+  }
+  return due ? gst_pad_push_event(stream.sink, due.release()) : TRUE;
+}
+
+static GstIterator* BondLinksOf(GstPad* pad, GstObject*) {
+  BondStream& stream = StreamOf(pad);
+  return LinkTo(pad == stream.sink ? stream.srcs.front() : stream.sink);
+}
+
+struct BondWork {
+  std::vector<std::pair<PadPtr, BufferPtr>> copies;
+  std::vector<std::pair<PadPtr, EventPtr>> targets;
+};
+
+/// With the lock held.
+static BondWork TakeWork(BondState& state) {
+  BondShared& shared = *state.shared;
+  BondWork work;
+  for (const Scheduler::Copy& copy : shared.scheduler.TakeCopies(shared.Now())) {
+    const auto kept = shared.kept.find(copy.id.key());
+    if (kept == shared.kept.end()) continue;
+    work.copies.emplace_back(PadPtr(GST_PAD(gst_object_ref(kept->second.stream->srcs[copy.link]))),
+                             BufferPtr(gst_buffer_ref(kept->second.buffer.get())));
+  }
+  for (const auto& stream : state.streams)
+    if (stream->told != 0)
+      if (EventPtr due = DueTarget(shared, *stream))
+        work.targets.emplace_back(PadPtr(GST_PAD(gst_object_ref(stream->sink))), std::move(due));
+  return work;
+}
+
+static gpointer BondRun(gpointer data) {
+  BondState& state = *static_cast<BondState*>(data);
+  std::unique_lock lock(state.shared->mutex);
+  while (!state.stop) {
+    BondWork work = TakeWork(state);
+    lock.unlock();
+    for (auto& [pad, buffer] : work.copies) gst_pad_push(pad.get(), buffer.release());
+    for (auto& [pad, event] : work.targets) gst_pad_push_event(pad.get(), event.release());
+    work = {};
+    lock.lock();
+    state.wake.wait_for(lock, Scheduler::kTick, [&] { return state.stop; });
+  }
+  return nullptr;
+}
+
+static bool StartThread(GstLidarScreamBond* self) {
+  BondState& state = *self->state;
+  state.stop = false;
+  GError* error = nullptr;
+  state.thread = g_thread_try_new("screambond", BondRun, &state, &error);
+  const ErrorPtr owner(error);
+  if (state.thread != nullptr) return true;
+  GST_ELEMENT_ERROR(self, RESOURCE, FAILED, ("No thread can be made: %s", error->message),
+                    ("screamsink needs one to send copies over another link"));
+  return false;
+}
+
+static void StopThread(BondState& state) {
+  if (state.thread == nullptr) return;
+  {
+    const std::lock_guard lock(state.shared->mutex);
+    state.stop = true;
+    state.wake.notify_one();
+  }
+  g_thread_join(state.thread);
+  state.thread = nullptr;
+  const std::lock_guard lock(state.shared->mutex);
+  state.shared->kept.clear();
+  state.shared->order.clear();
+}
+
+static GstStateChangeReturn BondChangeState(GstElement* element, GstStateChange change) {
+  auto* self = GST_LIDAR_SCREAM_BOND(element);
+  if (change == GST_STATE_CHANGE_READY_TO_PAUSED && !StartThread(self))
+    return GST_STATE_CHANGE_FAILURE;
+  const GstStateChangeReturn result =
+      GST_ELEMENT_CLASS(gst_lidar_scream_bond_parent_class)->change_state(element, change);
+  if (change == GST_STATE_CHANGE_PAUSED_TO_READY) StopThread(*self->state);
+  return result;
+}
+
+static void gst_lidar_scream_bond_init(GstLidarScreamBond* self) { self->state = new BondState; }
+
+static void BondFinalize(GObject* object) {
+  delete GST_LIDAR_SCREAM_BOND(object)->state;
+  G_OBJECT_CLASS(gst_lidar_scream_bond_parent_class)->finalize(object);
+}
+
+static void gst_lidar_scream_bond_class_init(GstLidarScreamBondClass* klass) {
+  G_OBJECT_CLASS(klass)->finalize = BondFinalize;
+  auto* element = GST_ELEMENT_CLASS(klass);
+  element->change_state = BondChangeState;
+  gst_element_class_add_static_pad_template(element, &bond_sink_template);
+  gst_element_class_add_static_pad_template(element, &bond_src_template);
+  gst_element_class_set_static_metadata(element, "SCReAM bond", "Filter/Network/RTP",
+                                        "Sends a stream over several links", "gst-lidar");
+}
+
+namespace lidar::gst {
+
+GstLidarScreamBond* NewBond(const std::vector<GstLidarScreamTx*>& links, bonding::Method method,
+                            bonding::TargetRule rule) {
+  auto* bond = GST_LIDAR_SCREAM_BOND(
+      g_object_new(GST_TYPE_LIDAR_SCREAM_BOND, "name", "screambond", nullptr));
+  BondState& state = *bond->state;
+  state.shared = std::make_shared<BondShared>(links.size(), method, rule);
+  state.links = links;
+  for (std::size_t i = 0; i < links.size(); ++i)
+    TxSetLink(links[i], std::make_shared<BondLink>(state.shared, i));
+  return bond;
+}
+
+void BondRelease(GstLidarScreamBond* bond) {
+  for (GstLidarScreamTx* tx : bond->state->links) TxSetLink(tx, nullptr);
+  bond->state->links.clear();
+}
+
+GstPad* BondAddStream(GstLidarScreamBond* bond, const std::vector<GstPad*>& tx_pads) {
+  BondState& state = *bond->state;
+  auto stream = std::make_unique<BondStream>();
+  const std::string number = std::to_string(state.next_pad++);
+  const auto add = [&](GstStaticPadTemplate* pad_template, const std::string& name) {
+    GstPad* pad = gst_pad_new_from_static_template(pad_template, name.c_str());
+    gst_pad_set_element_private(pad, stream.get());
+    gst_pad_set_iterate_internal_links_function(pad, BondLinksOf);
+    return pad;
+  };
+  stream->sink = add(&bond_sink_template, "sink_" + number);
+  GST_PAD_SET_PROXY_CAPS(stream->sink);
+  gst_pad_set_chain_function(stream->sink, BondChain);
+  gst_pad_set_event_function(stream->sink, BondSinkEvent);
+  for (std::size_t i = 0; i < tx_pads.size(); ++i) {
+    GstPad* src = add(&bond_src_template, "src_" + number + "_" + std::to_string(i));
+    gst_pad_set_event_function(src, BondSrcEvent);
+    stream->srcs.push_back(src);
+  }
+  stream->targets.resize(tx_pads.size());
+  stream->reasons.resize(tx_pads.size());
+  BondStream* made = stream.get();
+  {
+    const std::lock_guard lock(state.shared->mutex);
+    state.streams.push_back(std::move(stream));
+  }
+  const bool active = GST_STATE(bond) > GST_STATE_READY;
+  for (std::size_t i = 0; i < tx_pads.size(); ++i) {
+    if (active) gst_pad_set_active(made->srcs[i], TRUE);
+    gst_element_add_pad(GST_ELEMENT(bond), made->srcs[i]);
+    gst_pad_link(made->srcs[i], tx_pads[i]);
+  }
+  if (active) gst_pad_set_active(made->sink, TRUE);
+  gst_element_add_pad(GST_ELEMENT(bond), made->sink);
+  return made->sink;
+}
+
+void BondRemoveStream(GstLidarScreamBond* bond, GstPad* sink) {
+  BondState& state = *bond->state;
+  BondStream* stream = &StreamOf(sink);
+  gst_pad_set_active(sink, FALSE);
+  std::unique_ptr<BondStream> gone;
+  {
+    const std::lock_guard lock(state.shared->mutex);
+    for (auto it = state.shared->kept.begin(); it != state.shared->kept.end();)
+      it = it->second.stream == stream ? state.shared->kept.erase(it) : std::next(it);
+    for (auto& s : state.streams)
+      if (s.get() == stream) gone = std::move(s);
+    state.streams.erase(std::remove(state.streams.begin(), state.streams.end(), nullptr),
+                        state.streams.end());
+  }
+  for (GstPad* src : stream->srcs) {
+    gst_pad_set_active(src, FALSE);
+    if (const PadPtr peer{gst_pad_get_peer(src)}) gst_pad_unlink(src, peer.get());
+    gst_element_remove_pad(GST_ELEMENT(bond), src);
+  }
+  gst_element_remove_pad(GST_ELEMENT(bond), sink);
+  state.removed.push_back(std::move(gone));
+}
+
+std::vector<PadPtr> BondedPads(GstPad* sink) {
+  std::vector<PadPtr> pads;
+  for (GstPad* src : StreamOf(sink).srcs) pads.emplace_back(gst_pad_get_peer(src));
+  return pads;
+}
+
+BondLinkStats BondStats(GstLidarScreamBond* bond, std::size_t link) {
+  BondShared& shared = *bond->state->shared;
+  const std::lock_guard lock(shared.mutex);
+  return {shared.scheduler.counters(link), shared.scheduler.InGap(shared.Now(), link)};
+}
+
+}  // namespace lidar::gst

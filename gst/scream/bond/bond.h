@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// The inside of screamsink where a stream goes over several links.
+//
+//     sink_%u ── Scheduler ──▶ src_0 ── screamtx ── ecnudpsink
+//                        └───▶ src_1 ── screamtx ── ecnudpsink
+//
+// Threads: streaming threads push packets where the scheduler says; a thread of its own pushes
+// copies, and tells encoders the target. One mutex guards the scheduler and what is kept for
+// copies; nobody holds it while pushing. The screamtx call in with their own lock held.
+#pragma once
+#include <gst/gst.h>
+
+#include <string>
+#include <vector>
+
+#include "gst/common/refs.h"
+#include "gst/scream/tx/gstscreamtx.h"
+#include "src/bonding/scheduler.h"
+
+G_BEGIN_DECLS
+#define GST_TYPE_LIDAR_SCREAM_BOND (gst_lidar_scream_bond_get_type())
+G_DECLARE_FINAL_TYPE(GstLidarScreamBond, gst_lidar_scream_bond, GST, LIDAR_SCREAM_BOND, GstElement)
+G_END_DECLS
+
+namespace lidar::gst {
+
+/// A bond above `links`, one screamtx each; floating. It stays in charge of them until
+/// BondRelease().
+GstLidarScreamBond* NewBond(const std::vector<GstLidarScreamTx*>& links, bonding::Method method,
+                            bonding::TargetRule rule);
+/// The links are on their own again. Below READY.
+void BondRelease(GstLidarScreamBond* bond);
+/// A sink pad, linked to a pad of each link: `tx_pads` in the order of the links.
+GstPad* BondAddStream(GstLidarScreamBond* bond, const std::vector<GstPad*>& tx_pads);
+/// Takes it away; the pads of the links remain.
+void BondRemoveStream(GstLidarScreamBond* bond, GstPad* sink);
+/// The pads of the links behind a sink pad of a bond.
+std::vector<PadPtr> BondedPads(GstPad* sink);
+
+struct BondLinkStats {
+  bonding::LinkCounters counters;
+  bool in_gap = false;
+};
+BondLinkStats BondStats(GstLidarScreamBond* bond, std::size_t link);
+
+}  // namespace lidar::gst

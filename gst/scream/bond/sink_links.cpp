@@ -1,0 +1,234 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "gst/scream/bond/sink_links.h"
+
+#include <sys/socket.h>
+
+#include <cerrno>
+
+#include "gst/common/enum_type.h"
+#include "gst/scream/bin/common.h"
+#include "gst/scream/rtp_packet.h"
+#include "gst/scream/tx/gstscreamtxpad.h"
+
+namespace lidar::gst {
+namespace {
+
+using bonding::Method;
+using bonding::TargetRule;
+
+GType BondMethodType() {
+  static const GEnumValue values[] = {
+      {Int(Method::kAdaptive), "Copies of what waits, and of all after a gap", "adaptive"},
+      {Int(Method::kBroadcast), "Every packet on every link", "broadcast"},
+      {Int(Method::kBackup), "Copies of what waits only", "backup"},
+      {0, nullptr, nullptr}};
+  static const GType type = RegisterEnum("GstLidarScreamBondMethod", values);
+  return type;
+}
+
+GType BondTargetType() {
+  static const GEnumValue values[] = {
+      {Int(TargetRule::kBetter), "What the better link carries", "better"},
+      {Int(TargetRule::kSum), "What all links carry together", "sum"},
+      {0, nullptr, nullptr}};
+  static const GType type = RegisterEnum("GstLidarScreamBondTarget", values);
+  return type;
+}
+
+/// Needs no privileges since Linux 5.7. False with errno set.
+bool BindToInterface(GSocket* socket, const std::string& interface) {
+  return setsockopt(g_socket_get_fd(socket), SOL_SOCKET, SO_BINDTODEVICE, interface.c_str(),
+                    static_cast<socklen_t>(interface.size())) == 0;
+}
+
+/// Without a socket, and with the reason, where it does not open.
+OpenLink Open(const BondAddress& address, std::string* why) {
+  OpenLink link{address, nullptr, nullptr};
+  GError* error = nullptr;
+  link.peer.reset(ResolveUdpAddress(address.target.host, address.target.port, &error),
+                  GObjectUnref{});
+  if (link.peer) {
+    const GSocketFamily family = g_socket_address_get_family(link.peer.get());
+    link.socket.reset(OpenUdpSocket({address.target.bind_address, 0, family, false}, &error),
+                      GObjectUnref{});
+  }
+  const ErrorPtr owner(error);
+  if (error != nullptr) *why = error->message;
+  if (error != nullptr || address.interface.empty()) return link;
+  if (BindToInterface(link.socket.get(), address.interface)) return link;
+  *why = "interface \"" + address.interface + "\": " + g_strerror(errno);
+  link.socket.reset();
+  return link;
+}
+
+/// Takes feedback from the link's peer only.
+GstPadProbeReturn DropStrangers(GstPad*, GstPadProbeInfo* info, gpointer peer) {
+  const auto is_peer = [peer](GstBuffer* buffer) {
+    GSocketAddress* from = SourceOf(buffer);
+    return from != nullptr && SameAddress(from, G_SOCKET_ADDRESS(peer));
+  };
+  if ((GST_PAD_PROBE_INFO_TYPE(info) & GST_PAD_PROBE_TYPE_BUFFER) != 0)
+    return is_peer(GST_PAD_PROBE_INFO_BUFFER(info)) ? GST_PAD_PROBE_OK : GST_PAD_PROBE_DROP;
+  GstBufferList* list = gst_buffer_list_make_writable(GST_PAD_PROBE_INFO_BUFFER_LIST(info));
+  for (guint i = gst_buffer_list_length(list); i-- > 0;)
+    if (!is_peer(gst_buffer_list_get(list, i))) gst_buffer_list_remove(list, i, 1);
+  info->data = list;
+  return gst_buffer_list_length(list) > 0 ? GST_PAD_PROBE_OK : GST_PAD_PROBE_DROP;
+}
+
+/// Gives `to` what was set of `from`, an object of the same class.
+void CopyProperties(GObject* from, GObject* to) {
+  guint n = 0;
+  GParamSpec** specs = g_object_class_list_properties(G_OBJECT_GET_CLASS(from), &n);
+  for (guint i = 0; i < n; ++i) {
+    if (specs[i]->owner_type != G_OBJECT_TYPE(from) ||
+        (specs[i]->flags & G_PARAM_READWRITE) != G_PARAM_READWRITE)
+      continue;
+    GValue value = G_VALUE_INIT;
+    g_value_init(&value, specs[i]->value_type);
+    g_object_get_property(from, specs[i]->name, &value);
+    g_object_set_property(to, specs[i]->name, &value);
+    g_value_unset(&value);
+  }
+  g_free(specs);
+}
+
+GstElement* NewChild(GstElement* bin, const char* factory, std::size_t index) {
+  GstElement* child = gst_element_factory_make(factory, (factory + std::to_string(index)).c_str());
+  gst_bin_add(GST_BIN(bin), child);
+  return child;
+}
+
+void RemoveChild(GstElement* bin, GstElement* child) {
+  gst_element_set_state(child, GST_STATE_NULL);
+  gst_bin_remove(GST_BIN(bin), child);
+}
+
+}  // namespace
+
+const std::array<Property<BondSettings>, 3>& BondRows() {
+  using S = BondSettings;
+  static const std::array<Property<BondSettings>, 3> rows = {{
+      {"bonding-addresses",
+       "Links to send over, HOST:PORT@INTERFACE or HOST:PORT@LOCAL-ADDRESS with commas between, "
+       "instead of host, port and bind-address; empty for one link",
+       &S::addresses},
+      {"bonding-method", "What goes over several links at once",
+       EnumField<S>{&S::method, BondMethodType}},
+      {"bonding-target", "What encoders are asked for", EnumField<S>{&S::target, BondTargetType}},
+  }};
+  return rows;
+}
+
+std::vector<OpenLink> OpenLinks(GstElement* bin, const std::string& addresses) {
+  std::string why;
+  const auto parsed = ParseBondAddresses(addresses, &why);
+  if (!parsed) {
+    GST_ELEMENT_ERROR(bin, RESOURCE, SETTINGS, ("bonding-addresses: %s", why.c_str()), (nullptr));
+    return {};
+  }
+  std::vector<OpenLink> links;
+  for (const BondAddress& address : *parsed) {
+    OpenLink link = Open(address, &why);
+    if (link.socket) {
+      links.push_back(std::move(link));
+      continue;
+    }
+    GST_ELEMENT_WARNING(bin, RESOURCE, OPEN_WRITE,
+                        ("The link %s cannot be used: %s", address.text.c_str(), why.c_str()),
+                        ("it is left out until the element starts again"));
+  }
+  if (links.empty())
+    GST_ELEMENT_ERROR(bin, RESOURCE, OPEN_WRITE, ("No link can be used: %s", why.c_str()),
+                      ("bonding-addresses %s", addresses.c_str()));
+  return links;
+}
+
+SinkLinks::SinkLinks(GstElement* bin, const Chain& first, const std::vector<OpenLink>& links,
+                     const BondSettings& settings)
+    : bin_(bin), chains_{first}, links_(links) {
+  for (std::size_t i = 1; i < links.size(); ++i) AddLink(links[i]);
+  std::vector<GstLidarScreamTx*> senders;
+  for (const Chain& chain : chains_) senders.push_back(GST_LIDAR_SCREAM_TX(chain.tx));
+  bond_ = NewBond(senders, static_cast<Method>(settings.method),
+                  static_cast<TargetRule>(settings.target));
+  gst_bin_add(GST_BIN(bin), GST_ELEMENT(bond_));
+}
+
+void SinkLinks::AddLink(const OpenLink& link) {
+  const std::size_t index = chains_.size();
+  const Chain chain{NewChild(bin_, "screamtx", index), NewChild(bin_, "ecnudpsink", index),
+                    NewChild(bin_, "ecnudpsrc", index)};
+  CopyProperties(G_OBJECT(chains_[0].tx), G_OBJECT(chain.tx));
+  g_object_set(chain.tx, "packet-overhead", OverheadOf(link.peer.get()), nullptr);
+  gint dscp = -1;
+  g_object_get(chains_[0].sink, "qos-dscp", &dscp, nullptr);
+  GInetAddress* host = g_inet_socket_address_get_address(G_INET_SOCKET_ADDRESS(link.peer.get()));
+  const StringPtr literal(g_inet_address_to_string(host));
+  g_object_set(chain.sink, "sync", FALSE, "async", FALSE, "qos-dscp", dscp, "host", literal.get(),
+               "port", link.address.target.port, nullptr);
+  GiveSocket(chain.sink, link.socket.get());
+  GiveSocket(chain.src, link.socket.get());
+  gst_element_link_pads(chain.tx, "src", chain.sink, "sink");
+  gst_element_link_pads(chain.src, "src", chain.tx, "rtcp_sink");
+  const PadPtr feedback(gst_element_get_static_pad(chain.src, "src"));
+  gst_pad_add_probe(
+      feedback.get(),
+      static_cast<GstPadProbeType>(GST_PAD_PROBE_TYPE_BUFFER | GST_PAD_PROBE_TYPE_BUFFER_LIST),
+      DropStrangers, g_object_ref(link.peer.get()), g_object_unref);
+  chains_.push_back(chain);
+}
+
+SinkLinks::~SinkLinks() {
+  BondRelease(bond_);
+  RemoveChild(bin_, GST_ELEMENT(bond_));
+  for (std::size_t i = 1; i < chains_.size(); ++i)
+    for (GstElement* child : {chains_[i].tx, chains_[i].sink, chains_[i].src})
+      RemoveChild(bin_, child);
+  for (std::size_t i = 1; i < links_.size(); ++i) g_socket_close(links_[i].socket.get(), nullptr);
+}
+
+GstPad* SinkLinks::Add(GstPad* tx_pad) {
+  std::vector<GstPad*> pads{tx_pad};
+  const StringPtr name(gst_pad_get_name(tx_pad));
+  for (std::size_t i = 1; i < chains_.size(); ++i) {
+    GstPad* pad = gst_element_request_pad_simple(chains_[i].tx, name.get());
+    CopyProperties(G_OBJECT(tx_pad), G_OBJECT(pad));
+    pads.push_back(pad);
+  }
+  GstPad* sink = BondAddStream(bond_, pads);
+  for (std::size_t i = 1; i < pads.size(); ++i) gst_object_unref(pads[i]);
+  return sink;
+}
+
+PadPtr SinkLinks::Remove(GstPad* sink) {
+  std::vector<PadPtr> pads = BondedPads(sink);
+  BondRemoveStream(bond_, sink);
+  for (std::size_t i = 1; i < pads.size(); ++i)
+    gst_element_release_request_pad(chains_[i].tx, pads[i].get());
+  return std::move(pads.front());
+}
+
+void SinkLinks::AddStats(GstStructure* stats) const {
+  GValue array = G_VALUE_INIT;
+  gst_value_array_init(&array, 0);
+  for (std::size_t i = 0; i < chains_.size(); ++i) {
+    StructurePtr link = StatsOf(chains_[i].tx);
+    const BondLinkStats bond = BondStats(bond_, i);
+    gst_structure_set(link.get(), "link", G_TYPE_STRING, links_[i].address.text.c_str(), "in-gap",
+                      G_TYPE_BOOLEAN, static_cast<gboolean>(bond.in_gap), "link-gaps",
+                      G_TYPE_UINT64, static_cast<guint64>(bond.counters.gaps), "packets-first",
+                      G_TYPE_UINT64, static_cast<guint64>(bond.counters.packets), "packets-copies",
+                      G_TYPE_UINT64, static_cast<guint64>(bond.counters.copies), "copies-cancelled",
+                      G_TYPE_UINT64, static_cast<guint64>(bond.counters.cancelled), "packets-saved",
+                      G_TYPE_UINT64, static_cast<guint64>(bond.counters.saved), nullptr);
+    CopyStat(chains_[i].sink, "send-errors", link.get());
+    GValue value = G_VALUE_INIT;
+    g_value_init(&value, GST_TYPE_STRUCTURE);
+    g_value_take_boxed(&value, link.release());
+    gst_value_array_append_and_take_value(&array, &value);
+  }
+  gst_structure_take_value(stats, "links", &array);
+}
+
+}  // namespace lidar::gst

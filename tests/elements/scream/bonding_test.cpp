@@ -1,0 +1,210 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// screamsink over several links to one screamsrc, over loopback sockets.
+#include <gtest/gtest.h>
+
+#include "gst/scream/bond/addresses.h"
+#include "tests/elements/scream/pipeline.h"
+#include "tests/elements/scream/rtp_support.h"
+
+namespace lidar::test {
+namespace {
+
+using gst::ParseBondAddresses;
+using gst::StructurePtr;
+
+const std::string kBondedAudio =
+    "audiotestsrc name=src num-buffers=150 samplesperbuffer=441 is-live=true ! "
+    "audio/x-raw,rate=44100,channels=1,format=S16BE ! rtpL16pay ! ";
+
+/// A screamsrc of raw audio on a free port, and what comes out of it.
+struct BondReceiver {
+  BondReceiver()
+      : pipeline(
+            "screamsrc name=in port=0 caps=\"application/x-rtp,media=audio,encoding-name=L16,"
+            "clock-rate=44100,channels=1,payload=96\" ! fakesink name=out sync=false "
+            "signal-handoffs=true") {
+    const ElementPtr out = pipeline.Get("out");
+    g_signal_connect(out.get(), "handoff",
+                     G_CALLBACK(+[](GstElement*, GstBuffer*, GstPad*, guint* n) { ++*n; }),
+                     &passed);
+    pipeline.Play();
+    GSocket* socket = nullptr;
+    g_object_get(pipeline.Get("in").get(), "used-socket", &socket, nullptr);
+    GSocketAddress* address = g_socket_get_local_address(socket, nullptr);
+    port = std::to_string(g_inet_socket_address_get_port(G_INET_SOCKET_ADDRESS(address)));
+    g_object_unref(address);
+    g_object_unref(socket);
+  }
+  guint passed = 0;
+  Pipeline pipeline;
+  std::string port;
+};
+
+std::string Bonded(const std::string& addresses, const std::string& more = "") {
+  return kBondedAudio + "screamsink name=out bonding-addresses=\"" + addresses + "\" " + more;
+}
+
+/// Of each element of the array `links` in `stats`.
+std::vector<guint64> OfLinks(GstElement* element, const char* field) {
+  GstStructure* raw = nullptr;
+  g_object_get(element, "stats", &raw, nullptr);
+  const StructurePtr stats(raw);
+  std::vector<guint64> values;
+  const GValue* links = gst_structure_get_value(stats.get(), "links");
+  for (guint i = 0; links != nullptr && i < gst_value_array_get_size(links); ++i) {
+    guint64 value = 0;
+    const GValue* link = gst_value_array_get_value(links, i);
+    EXPECT_TRUE(gst_structure_get_uint64(gst_value_get_structure(link), field, &value)) << field;
+    values.push_back(value);
+  }
+  return values;
+}
+
+bool Warns(Pipeline& pipeline, const char* text) {
+  const auto types =
+      static_cast<GstMessageType>(GST_MESSAGE_WARNING | GST_MESSAGE_ERROR | GST_MESSAGE_EOS);
+  const MessagePtr message = pipeline.Wait(types);
+  if (!message || GST_MESSAGE_TYPE(message.get()) == GST_MESSAGE_EOS) return false;
+  GError* error = nullptr;
+  GST_MESSAGE_TYPE(message.get()) == GST_MESSAGE_WARNING
+      ? gst_message_parse_warning(message.get(), &error, nullptr)
+      : gst_message_parse_error(message.get(), &error, nullptr);
+  const ErrorPtr owner(error);
+  EXPECT_NE(std::string(error->message).find(text), std::string::npos) << error->message;
+  return true;
+}
+
+TEST(Bonding, EachPacketPassesOnceOverTwoLinks) {
+  BondReceiver receiver;
+  const std::string to = "127.0.0.1:" + receiver.port;
+  Pipeline sender(Bonded(to + "@127.0.0.1, " + to + "@127.0.0.2"));
+  sender.Play();
+  EXPECT_TRUE(sender.Ends());
+  EXPECT_TRUE(receiver.pipeline.Ends());
+  EXPECT_EQ(receiver.passed, 150U);
+  const ElementPtr out = sender.Get("out"), in = receiver.pipeline.Get("in");
+  const auto accepted = OfLinks(out.get(), "feedback-accepted");
+  ASSERT_EQ(accepted.size(), 2U);
+  EXPECT_GT(accepted[0], 10U);
+  EXPECT_GT(accepted[1], 10U);
+  EXPECT_EQ(OfLinks(out.get(), "feedback-ignored"), (std::vector<guint64>{0, 0}));
+  const auto received = OfLinks(in.get(), "packets-received");
+  ASSERT_EQ(received.size(), 2U);
+  EXPECT_EQ(received[0] + received[1] - Stats(in.get())["packets-copies"], 150U);
+}
+
+TEST(Bonding, BroadcastsWhereAskedTo) {
+  BondReceiver receiver;
+  const std::string to = "127.0.0.1:" + receiver.port;
+  Pipeline sender(Bonded(to + "@127.0.0.1," + to + "@127.0.0.2", "bonding-method=broadcast"));
+  sender.Play();
+  EXPECT_TRUE(sender.Ends());
+  EXPECT_TRUE(receiver.pipeline.Ends());
+  EXPECT_EQ(receiver.passed, 150U);
+  const auto first = OfLinks(sender.Get("out").get(), "packets-first");
+  const auto copies = OfLinks(sender.Get("out").get(), "packets-copies");
+  EXPECT_EQ(first[0] + first[1], 150U);
+  EXPECT_EQ(copies[0] + copies[1], 150U);
+}
+
+TEST(Bonding, GoesOnWhereTheFirstLinkAndAnotherAreDead) {
+  BondReceiver receiver;
+  const std::string to = "127.0.0.1:" + receiver.port;
+  Pipeline sender(Bonded("127.0.0.1:9@127.0.0.1," + to + "@127.0.0.2,127.0.0.1:9@127.0.0.3"));
+  sender.Play();
+  EXPECT_TRUE(sender.Ends());
+  EXPECT_TRUE(receiver.pipeline.Ends());
+  EXPECT_EQ(receiver.passed, 150U);
+}
+
+TEST(Bonding, LeavesOutALinkWithoutItsInterfaceAndSaysSo) {
+  BondReceiver receiver;
+  const std::string to = "127.0.0.1:" + receiver.port;
+  Pipeline sender(Bonded(to + "@none0," + to + "@lo"));
+  sender.Play();
+  EXPECT_TRUE(Warns(sender, "none0"));
+  EXPECT_TRUE(sender.Ends());
+  EXPECT_TRUE(receiver.pipeline.Ends());
+  EXPECT_EQ(receiver.passed, 150U);
+  EXPECT_TRUE(OfLinks(sender.Get("out").get(), "packets-sent").empty()) << "one link";
+}
+
+TEST(Bonding, FailsWhereNoLinkCanBeUsed) {
+  Pipeline sender(Bonded("127.0.0.1:5004@none0,127.0.0.1:5004@none1"));
+  sender.Play();
+  EXPECT_TRUE(Warns(sender, "none0"));
+  EXPECT_TRUE(Warns(sender, "none1"));
+  EXPECT_TRUE(Warns(sender, "No link"));
+}
+
+TEST(Bonding, RefusesAKeyThatItWouldUseTwice) {
+  Pipeline sender(Bonded("127.0.0.1:5004@127.0.0.1,127.0.0.1:5004@127.0.0.2",
+                         "srtp-key=" + std::string(60, '5')));
+  sender.Play();
+  EXPECT_TRUE(Warns(sender, "srtp-key"));
+}
+
+TEST(Bonding, StartsAgainAndWithOneLink) {
+  BondReceiver receiver;
+  const std::string to = "127.0.0.1:" + receiver.port;
+  Pipeline sender(Bonded(to + "@127.0.0.1," + to + "@127.0.0.2"));
+  const ElementPtr out = sender.Get("out");
+  g_object_set(sender.Get("src").get(), "num-buffers", 5, nullptr);
+  for (int i = 0; i < 3; ++i) {
+    gst_element_set_state(out.get(), GST_STATE_READY);
+    EXPECT_EQ(GST_BIN_NUMCHILDREN(out.get()), 7);
+    gst_element_set_state(out.get(), GST_STATE_NULL);
+    EXPECT_EQ(GST_BIN_NUMCHILDREN(out.get()), 3);
+  }
+  g_object_set(out.get(), "bonding-addresses", (to + "@127.0.0.1").c_str(), nullptr);
+  sender.Play();
+  EXPECT_TRUE(sender.Ends());
+  EXPECT_TRUE(receiver.pipeline.Ends());
+  EXPECT_EQ(receiver.passed, 5U);
+}
+
+TEST(Bonding, GivesPadsTheirShareOnEachLink) {
+  Pipeline sender(Bonded("127.0.0.1:9@127.0.0.1,127.0.0.1:9@127.0.0.2", "sink_0::priority=3"));
+  const ElementPtr out = sender.Get("out");
+  gst_element_set_state(out.get(), GST_STATE_READY);
+  const gst::PadPtr pad(gst_element_get_static_pad(out.get(), "sink_0"));
+  for (const char* name : {"screamtx", "screamtx1"}) {
+    const ElementPtr tx(gst_bin_get_by_name(GST_BIN(out.get()), name));
+    const gst::PadPtr tx_pad(gst_element_get_static_pad(tx.get(), "sink_0"));
+    gdouble priority = 0;
+    g_object_get(tx_pad.get(), "priority", &priority, nullptr);
+    EXPECT_EQ(priority, 3) << name;
+    g_object_set(pad.get(), "max-bitrate", 2'000'000U, nullptr);
+    guint max = 0;
+    g_object_get(tx_pad.get(), "max-bitrate", &max, nullptr);
+    EXPECT_EQ(max, 2'000'000U) << name;
+  }
+}
+
+TEST(BondAddresses, AreHostPortAndWhatPacketsLeaveBy) {
+  std::string error;
+  const auto links =
+      ParseBondAddresses("edge:5004@wwan0, [2001:db8::1]:7@2001:db8::2,10.0.0.1:9", &error);
+  ASSERT_TRUE(links) << error;
+  ASSERT_EQ(links->size(), 3U);
+  EXPECT_EQ((*links)[0].target.host, "edge");
+  EXPECT_EQ((*links)[0].target.port, 5004U);
+  EXPECT_EQ((*links)[0].interface, "wwan0");
+  EXPECT_EQ((*links)[1].target.host, "[2001:db8::1]");
+  EXPECT_EQ((*links)[1].target.bind_address, "2001:db8::2");
+  EXPECT_EQ((*links)[2].interface + (*links)[2].target.bind_address, "");
+}
+
+TEST(BondAddresses, RefuseAllElseWithAWord) {
+  for (const char* text :
+       {"", ",", "edge", "edge:", "edge:0", "edge:65536", "edge:99999999999999999999", "edge:5004@",
+        ":5004", "2001:db8::1:7", "edge:5004@averyveryverylonginterface", "a:1,a:1", "a:1, a:1",
+        "a:1,b:1,c:1,d:1,e:1", "a:1,,b:1", "edge:5004:wwan0", "edge:-1"}) {
+    std::string error;
+    EXPECT_FALSE(ParseBondAddresses(text, &error)) << text;
+    EXPECT_FALSE(error.empty()) << text;
+  }
+}
+
+}  // namespace
+}  // namespace lidar::test
