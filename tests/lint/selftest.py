@@ -13,6 +13,7 @@ import pages
 import paths
 import reference
 import versions
+import words
 
 HERE = pathlib.Path(__file__).resolve().parent
 SCRIPTS = {"links": HERE / "links.sh", "widths": HERE / "widths.sh"}
@@ -23,6 +24,7 @@ MODULES = {
     "paths": paths,
     "reference": reference,
     "versions": versions,
+    "words": words,
 }
 
 SOUND = {
@@ -308,6 +310,9 @@ PLANTED = [
     ),
     ("versions", "tests/core/a.h", "g_aligned_alloc", "is of GLib 2.72"),
     ("versions", "meson.build", "", "GStreamer: no lower bound in meson.build"),
+    ("words", "src/base/a.h", "// None where it is empty.", 'a comment begins with "None"'),
+    ("words", "gst/alpha/a.h", "int a = 1;  // In the order of b.", 'a comment begins with "In"'),
+    ("words", "src/base/a.h", "constexpr int kLong = 1;", "kLong says nothing by itself"),
     ("widths", "docs/a.md", "word " * 21, "docs/a.md:1: wider"),
     ("widths", "tests/data/a.md", "word " * 21, "tests/data/a.md:1: wider"),
 ]
