@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include "ext/ouster/session.h"
 
+#include <unistd.h>
+
+#include <cerrno>
 #include <fstream>
 #include <utility>
 
@@ -76,6 +79,13 @@ std::optional<ouster::Metadata> Session::LoadMetadata() {
     return std::nullopt;
   }
   const auto text = ReadFile(path, ouster::Metadata::kMaxJsonSize);
+  if (!text && settings_.from_file() && access(settings_.location.c_str(), R_OK) != 0) {
+    GST_ELEMENT_ERROR(
+        element_, RESOURCE, NOT_FOUND,
+        ("Cannot read the capture %s: %s", settings_.location.c_str(), g_strerror(errno)),
+        (nullptr));
+    return std::nullopt;
+  }
   if (!text) {
     GST_ELEMENT_ERROR(element_, RESOURCE, NOT_FOUND, ("Cannot read the metadata %s", path.c_str()),
                       ("set the property metadata to the sensor's JSON file"));

@@ -86,6 +86,8 @@ const std::array<Stat<Shown>, 20> kStats = {{
 
 // So many packets of another payload type, and none of ours, are no accident.
 constexpr guint64 kWrongTypePackets = 20;
+// Nor are so many that cannot be read, before the first that can.
+constexpr guint64 kUnreadablePackets = 20;
 
 // Each change costs all that follows far more than the few bytes of a slice: new caps of up to
 // 200 kB as text, an event in each queue, a channel of a recording, a message of NATS.
@@ -114,6 +116,7 @@ struct State {
   bool warned_of_changes = false;
   bool warned_of_type = false;
   bool warned_of_rival = false;
+  bool readable = false;  // something was, or a warning said that nothing is
   lidar::Time now;
   GstPadChainFunction base_chain = nullptr;
 };
@@ -286,6 +289,15 @@ static void WarnOfRival(GstLidarRtpDepay* self, guint32 ssrc, guint32 rival) {
                        ssrc));
 }
 
+/// True once where many packets came and none of them could be read. For whoever holds the lock.
+static bool IsUnreadable(State& state) {
+  if (state.readable) return false;
+  const ReceiverAccounts all = state.receiver.accounts();
+  const bool unreadable = all.packets.invalid >= kUnreadablePackets;
+  state.readable = unreadable || all.slices.slices_received > 0 || all.configs_received > 0;
+  return unreadable && all.slices.slices_received == 0 && all.configs_received == 0;
+}
+
 static GstFlowReturn Chain(GstPad* pad, GstObject* parent, GstBuffer* buffer) {
   auto* self = GST_LIDAR_RTP_DEPAY(parent);
   if (self->state->payload_type && !IsOurs(self, buffer)) {
@@ -318,11 +330,18 @@ static GstBuffer* Process(GstRTPBaseDepayload* base, GstRTPBuffer* rtp) {
   packet.arrival = state.now;
   std::vector<ReceivedSlice> slices;
   std::optional<std::uint32_t> rival;
+  bool unreadable = false;
   {
     std::lock_guard lock(state.mutex);
     slices = state.receiver.Push(packet);
     rival = state.receiver.rival();
+    unreadable = IsUnreadable(state);
   }
+  if (unreadable)
+    GST_ELEMENT_WARNING(base, STREAM, DECODE,
+                        ("None of the packets can be read: they are no LiDAR stream, or encrypted. "
+                         "Where the sender has an srtp-key, set the same at screamsrc."),
+                        (nullptr));
   if (rival && *rival == packet.ssrc)
     WarnOfRival(GST_LIDAR_RTP_DEPAY(base), *state.receiver.ssrc(), *rival);
   PushSlices(base, std::move(slices));
@@ -359,7 +378,7 @@ static GstStateChangeReturn ChangeState(GstElement* element, GstStateChange tran
     state.receiver = Receiver(ReorderTime(state.settings));
     state.not_rtp = state.wrong_payload_type = state.not_accepted = state.format_changes = 0;
     state.warned_of_coder = state.warned_of_type = state.warned_of_rival = false;
-    state.warned_of_changes = false;
+    state.warned_of_changes = state.readable = false;
     state.payload_type.reset();
     state.config.reset();
     state.asked.reset();

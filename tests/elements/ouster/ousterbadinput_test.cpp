@@ -55,6 +55,7 @@ INSTANTIATE_TEST_SUITE_P(
         BadInput{"", "None of hostname"},
         BadInput{"location=/nowhere.pcap metadata=@crc_test.json", "No such file"},
         BadInput{"location=@crc_test.pcap metadata=/nowhere.json", "Cannot read the metadata"},
+        BadInput{"location=/nowhere.pcap", "Cannot read the capture /nowhere.pcap: No such file"},
         BadInput{"location=@README.md metadata=@crc_test.json", "unknown file format"},
         BadInput{"location=@ metadata=@crc_test.json", "s a directory"},
         BadInput{"location=@crc_test.pcap metadata=@README.md", "not a JSON object"},

@@ -204,6 +204,26 @@ TEST(RtpLidarDepay, SaysOnceThatTheDecoderDoesNotKnowTheCoder) {
   gst_object_unref(bus);
 }
 
+TEST(RtpLidarDepay, SaysOnceThatNothingCanBeRead) {
+  const Harness h = Depay();
+  GstBus* bus = gst_bus_new();
+  gst_element_set_bus(h->element, bus);
+  for (std::uint16_t i = 0; i < 60; ++i) {  // as good as random
+    std::vector<std::uint8_t> bytes(200);
+    for (std::size_t k = 0; k < bytes.size(); ++k)
+      bytes[k] = static_cast<std::uint8_t>((i * 7'919U + k * 104'729U) >> 3);
+    bytes[0] = 0xFF;
+    gst_harness_push(h.get(), RtpOf(bytes, 7, i));
+  }
+  unsigned warnings = 0;
+  while (const gst::MessagePtr message{gst_bus_pop(bus)})
+    warnings += GST_MESSAGE_TYPE(message.get()) == GST_MESSAGE_WARNING ? 1U : 0U;
+  EXPECT_EQ(warnings, 1U);
+  EXPECT_EQ(Stat(h.get(), "packets-invalid"), 60U);
+  gst_element_set_bus(h->element, nullptr);
+  gst_object_unref(bus);
+}
+
 class UndecodableConfigs : public ::testing::TestWithParam<const char*> {};
 TEST_P(UndecodableConfigs, AreCountedAndTheStreamGoesOn) {
   const Harness h = Depay();

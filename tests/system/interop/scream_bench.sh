@@ -37,6 +37,11 @@ assert float(rows[-1]["rtt_ms"]) > 0, "no feedback"
 PYTHON
 }
 
+# Nobody answers: that is no success.
+status=0
+"$build/src/tools/scream-bench" tx --host 127.0.0.1 --port "$port" --duration 1 >/dev/null 2>"$folder/tx.err" || status=$?
+[ $status = 1 ] && grep -q "Nobody has answered" "$folder/tx.err" || { echo "tx without rx: exit code $status"; cat "$folder/tx.err"; exit 1; }
+
 check "IPv4" 127.0.0.1 "" "" sender
 check "IPv6" ::1 "--frame-jitter 20 --fps 30" "" receiver
 check "feedback to a port that is named" 127.0.0.1 "--bind-address 127.0.0.1 --bind-port $((port + 1)) --ecn off" "--feedback 127.0.0.1:$((port + 1))" sender

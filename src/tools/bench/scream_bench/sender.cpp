@@ -206,7 +206,11 @@ int Sender::Run() {
   stop_ = true;
   const double seconds = started_ == Duration{0} ? 0 : Seconds(UnixNow() - started_);
   Finish(last.get(), seconds);
-  return result;
+  const bool unheard =
+      Number(last.get(), "packets-sent") > 0 && Number(last.get(), "feedback-accepted") == 0;
+  if (result != 0 || !unheard) return result;
+  std::fprintf(stderr, "Nobody has answered: is \"scream-bench rx\" there, and does UDP pass?\n");
+  return 1;
 }
 
 }  // namespace
