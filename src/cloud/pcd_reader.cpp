@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // PCD 0.7 and before: text, binary, and binary by LZF.
+#include <lzf.h>
+
 #include <algorithm>
 #include <cstring>
 #include <limits>
 
 #include "src/cloud/cloud_file_parts.h"
 #include "src/cloud/cloud_files.h"
-#include "src/cloud/lzf.h"
 
 namespace lidar {
 namespace {
@@ -100,6 +101,20 @@ bool SetSize(const PcdHeader& h, FileCloud* cloud, std::string* why) {
   cloud->width = static_cast<std::uint32_t>(width);
   cloud->height = static_cast<std::uint32_t>(height);
   return true;
+}
+
+/// A back reference of three bytes gives 264: no data can give more than that.
+constexpr std::size_t kMostPerByte = 88;
+
+/// Exactly `size` bytes; none where the data are damaged or give another size.
+std::optional<std::vector<std::uint8_t>> DecompressLzf(ByteView data, std::size_t size) {
+  // The library reads a first byte without a look whether there is one.
+  if (data.size == 0 || size / kMostPerByte > data.size) return std::nullopt;
+  std::vector<std::uint8_t> out(size);
+  if (lzf_decompress(data.data, static_cast<unsigned>(data.size), out.data(),
+                     static_cast<unsigned>(size)) != size)
+    return std::nullopt;
+  return out;
 }
 
 /// In a compressed file each number of all points stands before the next number of them.

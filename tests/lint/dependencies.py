@@ -12,6 +12,7 @@ import sys
 LIBRARIES = {
     "liblzma": ("lzma",),
     "liblz4": ("lz4",),
+    "liblzf": ("lzf",),
     "libzstd": ("zstd",),
     "nlohmann_json": ("nlohmann/",),
     "libpcap": ("pcap/", "pcap."),

@@ -8,7 +8,6 @@
 #include <random>
 
 #include "src/base/byte_writer.h"
-#include "src/cloud/lzf.h"
 
 namespace lidar {
 namespace {
@@ -86,6 +85,24 @@ TEST(Pcd, CompressedIsRead) {
   EXPECT_FALSE(Pcd(PcdHeader("binary_compressed") + Text(sizes) + lzf));
   sizes[4] = 32;
   EXPECT_FALSE(Pcd(PcdHeader("binary_compressed") + Text(sizes) + lzf.substr(0, 20)));
+}
+
+TEST(Pcd, CompressedPointsRepeatWhatCameBefore) {
+  // A literal zero, then 79 bytes from one byte back.
+  const std::vector<std::uint8_t> lzf = {0, 0, 7 << 5, 70, 0};
+  const auto file = [&lzf](std::uint32_t size) {
+    std::vector<std::uint8_t> bytes;
+    ByteWriter w(&bytes);
+    w.Le32(size);
+    w.Le32(80);
+    bytes.insert(bytes.end(), lzf.begin(), lzf.end());
+    return PcdHeader("binary_compressed", 5) + Text(bytes);
+  };
+  const auto cloud = Pcd(file(5));
+  ASSERT_TRUE(cloud);
+  EXPECT_EQ(cloud->points, std::vector<std::uint8_t>(80));
+  EXPECT_FALSE(Pcd(file(4)));
+  EXPECT_FALSE(Pcd(file(0)));
 }
 
 TEST(Pcd, RowsStayRowsAndNanStaysNan) {
@@ -205,14 +222,6 @@ TEST(CloudFiles, DamageIsSurvived) {
     for (const auto& cloud : {Pcd(file), Ply(file)})
       ASSERT_TRUE(!cloud || cloud->points.size() <= 100 * file.size());
   }
-}
-
-TEST(Lzf, RepeatsWhatCameBefore) {
-  // "abc", then 3 bytes from 3 back, then 9 + 5 from 1 back.
-  const std::string data = {'\x02', 'a', 'b', 'c', '\x20', '\x02', '\xE0', '\x05', '\x00'};
-  const auto out = DecompressLzf(View(data), 20);
-  ASSERT_TRUE(out);
-  EXPECT_EQ(std::string(out->begin(), out->end()), "abcabc" + std::string(14, 'c'));
 }
 
 }  // namespace
