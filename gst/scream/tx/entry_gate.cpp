@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include "gst/scream/tx/entry_gate.h"
 
-#include "gst/scream/tx/private.h"
-
 namespace lidar::gst {
 namespace {
 
@@ -30,16 +28,16 @@ void EntryGate::Set(bool open, GstFlowReturn flow) {
   changed_.notify_all();
 }
 
-void EntryGate::Close(TxState& state) {
+void EntryGate::Close(const TxStreams& streams) {
   Set(false, GST_FLOW_FLUSHING);
-  for (auto& stream : state.streams) Release(*stream);
+  for (const auto& stream : streams) Release(*stream);
 }
 
-void EntryGate::set_playing(TxState& state, bool playing) {
+void EntryGate::set_playing(const TxStreams& streams, bool playing) {
   playing_ = playing;
   changed_.notify_all();
   if (playing) return;
-  for (auto& stream : state.streams) Release(*stream);
+  for (const auto& stream : streams) Release(*stream);
 }
 
 void EntryGate::Release(TxStream& stream) {
@@ -53,19 +51,18 @@ GstFlowReturn EntryGate::Check(const TxStream& stream) const {
   return flow_;
 }
 
-void EntryGate::Wait(TxLock& lock, GstElement* element, TxState& state, TxStream& stream,
+void EntryGate::Wait(TxLock& lock, GstElement* element, Duration max_age, TxStream& stream,
                      GstBuffer* first) {
-  WaitForRoom(lock, state, stream);
+  WaitForRoom(lock, max_age, stream);
   WaitForTime(lock, element, stream, first);
 }
 
 /// Before we play there is room for what a sink needs to preroll.
-void EntryGate::WaitForRoom(TxLock& lock, TxState& state, const TxStream& stream) {
-  const Duration limit = state.settings.max_queue_delay();
+void EntryGate::WaitForRoom(TxLock& lock, Duration max_age, const TxStream& stream) {
   changed_.wait(lock, [&] {
     if (Check(stream) != GST_FLOW_OK) return true;
     if (!playing_) return stream.queue.empty();
-    return stream.HeadAge(TxNow(state)) < limit;
+    return stream.HeadAge(TimeOf(clock_)) < max_age;
   });
 }
 

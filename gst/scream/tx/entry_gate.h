@@ -10,7 +10,6 @@
 
 namespace lidar::gst {
 
-struct TxState;
 using TxLock = std::unique_lock<std::mutex>;
 
 /// Live input enters at once. Other input waits, each stream in its own thread, for its time on the
@@ -18,15 +17,17 @@ using TxLock = std::unique_lock<std::mutex>;
 /// give it up.
 class EntryGate {
  public:
+  explicit EntryGate(GstClock* clock) : clock_(clock) {}
+
   /// Chain functions may queue.
   void Open() { Set(true, GST_FLOW_OK); }
   /// Nobody waits or queues any more; chain functions return FLUSHING.
-  void Close(TxState& state);
+  void Close(const TxStreams& streams);
   /// Chain functions return `flow`, that of what is downstream.
   void set_flow(GstFlowReturn flow) { Set(open_, flow); }
   GstFlowReturn flow() const { return flow_; }
   bool open() const { return open_; }
-  void set_playing(TxState& state, bool playing);
+  void set_playing(const TxStreams& streams, bool playing);
   /// Packets have left.
   void OnRoom() { changed_.notify_all(); }
   /// The thread of `stream` shall go, if it waits here.
@@ -34,14 +35,17 @@ class EntryGate {
 
   /// What the chain function of `stream` is to return before it may queue.
   GstFlowReturn Check(const TxStream& stream) const;
-  /// Returns once `first` may enter.
-  void Wait(TxLock& lock, GstElement* element, TxState& state, TxStream& stream, GstBuffer* first);
+  /// Returns once `first` may enter; the queue of `stream` is full while its head is older than
+  /// `max_age`.
+  void Wait(TxLock& lock, GstElement* element, Duration max_age, TxStream& stream,
+            GstBuffer* first);
 
  private:
   void Set(bool open, GstFlowReturn flow);
-  void WaitForRoom(TxLock& lock, TxState& state, const TxStream& stream);
+  void WaitForRoom(TxLock& lock, Duration max_age, const TxStream& stream);
   void WaitForTime(TxLock& lock, GstElement* element, TxStream& stream, GstBuffer* first);
 
+  GstClock* clock_;  // not owned
   std::condition_variable changed_;
   bool open_ = false;
   bool playing_ = false;

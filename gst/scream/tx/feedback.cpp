@@ -69,7 +69,7 @@ bool Take(GstLidarScreamTx* self, const scream::CongestionFeedback& report, GSoc
   const auto result = GiveToController(state, now, report);
   if (result == scream::FeedbackResult::kNotOurs) return false;
   GST_LOG_OBJECT(self, "feedback: %s", ToString(result));
-  if (result != scream::FeedbackResult::kImplausible) state.reporter.OnFeedback();
+  if (result != scream::FeedbackResult::kImplausible) state.reporter.notices().watch().OnFeedback();
   if (result == scream::FeedbackResult::kAccepted && state.feedback_peer.OnFeedback(now, from)) {
     GST_INFO_OBJECT(self, "feedback comes from a new address: a new path");
     state.controller->OnRouteChange(now);

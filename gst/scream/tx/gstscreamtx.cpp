@@ -35,9 +35,7 @@ static guint signals[kSignals];
 
 namespace lidar::gst {
 
-Time TxNow(const TxState& state) {
-  return Time{Duration{static_cast<std::int64_t>(gst_clock_get_time(state.clock))}};
-}
+Time TxNow(const TxState& state) { return TimeOf(state.clock); }
 
 void SettingsChanged(GstLidarScreamTx* self) {
   const TxLock lock(self->state->mutex);
@@ -173,19 +171,19 @@ static void Prepare(TxState& state) {
   }
   state.merger = {};
   state.pacing.ForgetEnd();
-  state.reporter.Reset(TxNow(state));
+  state.reporter.notices().Reset(*state.controller, TxNow(state));
   state.malformed_rtcp = 0;
 }
 
 static void BeforeChange(TxState& state, GstStateChange change) {
   const TxLock lock(state.mutex);
   if (change == GST_STATE_CHANGE_PAUSED_TO_READY) {
-    state.gate.Close(state);
+    state.gate.Close(state.streams);
     state.pacing.Wake();
   } else if (change == GST_STATE_CHANGE_PAUSED_TO_PLAYING) {
-    state.gate.set_playing(state, true);
+    state.gate.set_playing(state.streams, true);
   } else if (change == GST_STATE_CHANGE_PLAYING_TO_PAUSED) {
-    state.gate.set_playing(state, false);
+    state.gate.set_playing(state.streams, false);
   }
 }
 
@@ -209,7 +207,7 @@ static gboolean ActivateSrc(GstPad*, GstObject* parent, GstPadMode mode, gboolea
   if (mode != GST_PAD_MODE_PUSH) return FALSE;
   {
     const TxLock lock(state.mutex);
-    active ? state.gate.Open() : state.gate.Close(state);
+    active ? state.gate.Open() : state.gate.Close(state.streams);
     state.pacing.Wake();
   }
   return active ? state.pacing.Start() : state.pacing.Stop();
@@ -224,7 +222,7 @@ static StructurePtr Stats(GObject* tx) {
 static guint Estimate(GObject* tx) {
   TxState& state = StateOf(tx);
   const TxLock lock(state.mutex);
-  return state.reporter.estimated_bps();
+  return state.reporter.notices().estimated_bps();
 }
 
 static const auto& Rows() {

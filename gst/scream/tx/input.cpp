@@ -46,7 +46,7 @@ void Enqueue(TxState& state, TxStream& stream, BufferPtr buffer, Time now) {
                              {header->ssrc, item.size, header->marker, header->timestamp, scan});
   stream.queue.push_back(std::move(item));
   ++stream.counters.packets_queued;
-  state.reporter.OnInput(now);
+  state.reporter.notices().watch().OnInput(now);
 }
 
 /// Asks upstream once a stream.
@@ -67,7 +67,8 @@ GstFlowReturn Queue(GstLidarScreamTx* self, GstPad* pad, GstBuffer* first, Take 
   TxStream& stream = *PadStream(pad);
   const bool live = KnownLive(state, stream, pad);
   TxLock lock(state.mutex);
-  if (!live) state.gate.Wait(lock, GST_ELEMENT(self), state, stream, first);
+  if (!live)
+    state.gate.Wait(lock, GST_ELEMENT(self), state.settings.max_queue_delay(), stream, first);
   const GstFlowReturn flow = state.gate.Check(stream);
   if (flow != GST_FLOW_OK) return flow;
   take(state, stream, TxNow(state));
@@ -97,7 +98,7 @@ void OnCaps(GstLidarScreamTx* self, GstPad* pad, TxStream& stream, GstEvent* eve
     stream.is_video = g_strcmp0(gst_structure_get_string(s, "media"), "video") == 0;
     const gchar* encoding = gst_structure_get_string(s, "encoding-name");
     stream.wants_receipts = encoding != nullptr && g_str_has_prefix(encoding, "X-LIDAR");
-    start = state.reporter.FirstTarget(stream, TxNow(state));
+    if (state.controller) start = FirstTarget(stream, *state.controller, TxNow(state));
     Push(stream, gst_event_ref(event));
     state.pacing.Wake();
   }

@@ -111,7 +111,7 @@ PacingTask::Batch PacingTask::NextBatch(Time now) {
   if (batch.packets.empty())
     batch.end = Drained(now);
   else
-    batch.report = s.reports.Take(s, now);
+    batch.report = s.reports.Take(s.settings.report_interval, s.streams, *s.controller, now);
   if (batch.end) batch.goodbyes = Goodbyes(s);
   return batch;
 }
@@ -154,7 +154,7 @@ BufferPtr PacingTask::TakePacket(TxStream& stream, scream::Ecn ecn, Time now) {
   TxState& s = state();
   TxItem item = std::move(stream.queue.front());
   stream.queue.pop_front();
-  s.reporter.OnSent(now);
+  s.reporter.notices().watch().OnSent(now);
   const RtpHeader& header = item.header;
   const guint16 seq = s.link ? s.link->OnSent(now, header.ssrc, header.seq) : header.seq;
   s.controller->OnSent(now, stream.id, {header.ssrc, seq, item.size, ecn});

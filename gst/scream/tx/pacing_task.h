@@ -13,6 +13,8 @@
 
 namespace lidar::gst {
 
+struct TxState;
+
 /// Start(), Stop() and Pause() are called without the element's lock, the rest with it. The task
 /// pushes without it.
 class PacingTask {

@@ -43,14 +43,14 @@ struct TxState {
   GstClock* clock = gst_system_clock_obtain();
   TxSettings settings;
   std::optional<scream::Controller> controller;  // from the first READY to PAUSED on
-  std::vector<std::unique_ptr<TxStream>> streams;
+  TxStreams streams;
   guint next_pad = 0;
   scream::CcfbParser parser;
   FeedbackPeer feedback_peer;
   guint64 malformed_rtcp = 0;
   std::shared_ptr<TxLink> link;  // where there are several
 
-  EntryGate gate;
+  EntryGate gate{clock};
   StreamMerger merger;
   PacingTask pacing;
   SenderReports reports;

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 
-#include "gst/scream/tx/private.h"
 #include "src/scream/feedback/sender_report.h"
 
 namespace lidar::gst {
@@ -35,16 +34,16 @@ std::uint32_t Milliseconds(Time time) {
 
 }  // namespace
 
-std::vector<std::uint8_t> SenderReports::Take(const TxState& state, Time now) {
-  const Duration interval = state.settings.report_interval;
+std::vector<std::uint8_t> SenderReports::Take(Duration interval, const TxStreams& streams,
+                                              const scream::Controller& controller, Time now) {
   if (interval <= Duration{0}) return {};
   if (!last_) last_ = now;
   if (now - *last_ < std::max(interval, kMinInterval)) return {};
-  const auto known = std::find_if(state.streams.begin(), state.streams.end(),
+  const auto known = std::find_if(streams.begin(), streams.end(),
                                   [](const auto& stream) { return stream->ssrc.has_value(); });
-  if (known == state.streams.end()) return {};
+  if (known == streams.end()) return {};
   last_ = now;
-  scream::SenderReport report = ReportOf(state.controller->statistics(now));
+  scream::SenderReport report = ReportOf(controller.statistics(now));
   report.ssrc = *(*known)->ssrc;
   report.time_ms = Milliseconds(now);
   return scream::BuildSenderReport(report);

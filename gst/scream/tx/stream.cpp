@@ -17,6 +17,10 @@ Duration TxStream::HeadAge(Time now) const {
   return Duration{0};
 }
 
+Time TimeOf(GstClock* clock) {
+  return Time{Duration{static_cast<std::int64_t>(gst_clock_get_time(clock))}};
+}
+
 scream::StreamConfig MakeConfig(const TxStream& stream, const TxPadSettings& pad,
                                 const TxSettings& element) {
   double min = pad.min_bps != 0 ? pad.min_bps : element.min_bps;

@@ -4,7 +4,9 @@
 #include <gst/gst.h>
 
 #include <deque>
+#include <memory>
 #include <optional>
+#include <vector>
 
 #include "gst/common/refs.h"
 #include "gst/lidar/gstlidar.h"
@@ -89,6 +91,10 @@ struct TxStream {
   Duration HeadAge(Time now) const;
 };
 
+using TxStreams = std::vector<std::unique_ptr<TxStream>>;
+
+/// What the controller calls time, on the system's clock.
+Time TimeOf(GstClock* clock);
 /// What the controller gets for a stream: the pad's settings, else the element's, within the
 /// encoder's bounds, which are without overhead.
 scream::StreamConfig MakeConfig(const TxStream& stream, const TxPadSettings& pad,

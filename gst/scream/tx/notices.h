@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// What screamtx reports to the application: the estimate, changes of ECN and feedback, warnings.
+#pragma once
+#include <gst/gst.h>
+
+#include <utility>
+#include <vector>
+
+#include "gst/common/refs.h"
+#include "gst/scream/tx/feedback_watch.h"
+#include "src/scream/controller.h"
+#include "src/scream/target_notifier.h"
+
+namespace lidar::gst {
+
+/// Called with the element's lock, but for Post().
+class Notices {
+ public:
+  /// What to post, without the lock.
+  struct Batch {
+    std::vector<MessagePtr> messages;
+    bool estimate = false;
+    bool stats = false;  // the caller adds the message
+    bool silence = false;
+    bool unheeded = false;
+  };
+
+  /// For a new controller.
+  void Reset(const scream::Controller& controller, Time now);
+  FeedbackWatch& watch() { return watch_; }
+  /// A target reached no encoder.
+  void OnUnheeded() { unheeded_ = true; }
+  guint estimated_bps() const { return estimated_bps_; }
+
+  /// Compares the state with what was posted last; true if something is due.
+  bool Evaluate(const scream::Controller& controller, Duration stats_interval, Time now);
+  bool due() const;
+  /// `most_dropped`: frames of the stream that lost most.
+  Batch Take(GstObject* element, guint64 most_dropped);
+  /// When Evaluate() finds statistics due.
+  Time next_stats() const { return next_stats_; }
+
+  static void Post(GstElement* element, GstPad* src, Batch batch);
+
+ private:
+  /// A warning is posted once.
+  class Once {
+   public:
+    bool operator()(bool wanted) { return wanted && !std::exchange(done_, true); }
+
+   private:
+    bool done_ = false;
+  };
+  MessagePtr EcnMessage(GstObject* element);
+  MessagePtr FeedbackMessage(GstObject* element);
+
+  scream::TargetNotifier notifier_;
+  guint estimated_bps_ = 0;
+  bool estimate_due_ = false;
+  Time next_stats_{};
+  bool stats_due_ = false;
+  scream::EcnState ecn_ = scream::EcnState::kOff;
+  scream::EcnState ecn_posted_ = scream::EcnState::kOff;
+  FeedbackWatch watch_;
+  bool silence_posted_ = false;
+  bool unheeded_ = false;
+  Once warn_of_silence_;
+  Once warn_of_unheeded_;
+};
+
+}  // namespace lidar::gst

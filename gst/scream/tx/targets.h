@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// What screamtx sends to the encoder of a stream: bitrates, key units, and receipts of packets.
+#pragma once
+#include <gst/gst.h>
+
+#include <vector>
+
+#include "gst/common/refs.h"
+#include "gst/scream/tx/stream.h"
+#include "src/scream/controller.h"
+
+namespace lidar::gst {
+
+/// An event that leaves upstream by a sink pad.
+struct PadEvent {
+  PadPtr pad;
+  EventPtr event;
+  bool is_target = false;
+};
+
+/// Compares `stream` with what its encoder was sent last; true if something is due.
+bool EvaluateTargets(TxStream& stream, const scream::Controller& controller, bool key_unit_on_loss,
+                     Time now);
+bool TargetsAreDue(const TxStream& stream, Time now);
+/// Appends the events that are due.
+void TakeTargets(TxStream& stream, const scream::Controller& controller, Time now,
+                 std::vector<PadEvent>* events);
+/// The first target of `stream`; null after that.
+EventPtr FirstTarget(TxStream& stream, const scream::Controller& controller, Time now);
+
+}  // namespace lidar::gst
