@@ -9,11 +9,12 @@
 namespace lidar::link {
 
 struct PathConfig {
-  Duration jitter{0};          // extra delay, uniform between 0 and this; keeps the order
+  Duration jitter{0};          // extra delay between 0 and this; keeps the order
   Duration burst_interval{0};  // packets come out only at multiples of this; 0: at once
   double reorder = 0;          // probability to be held back by reorder_delay, past later ones
   Duration reorder_delay = std::chrono::milliseconds{5};
   double duplicate = 0;  // probability to arrive twice
+  int jitter_draws = 1;  // of which `jitter` is the mean: 1 is uniform, 3 nearly a Gaussian
 };
 
 class Path {
@@ -22,7 +23,9 @@ class Path {
 
   /// Arrival of a packet that would arrive at `t` on an ideal path; `t` not decreasing.
   Time Arrival(Time t) {
-    if (config_.jitter > Duration{0}) t += FromSeconds(Seconds(config_.jitter) * random_.Uniform());
+    if (config_.jitter > Duration{0})
+      for (int i = 0; i < config_.jitter_draws; ++i)
+        t += FromSeconds(Seconds(config_.jitter) * random_.Uniform() / config_.jitter_draws);
     if (config_.burst_interval > Duration{0}) {
       const auto phase = t.time_since_epoch() % config_.burst_interval;
       if (phase > Duration{0}) t += config_.burst_interval - phase;

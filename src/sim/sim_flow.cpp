@@ -64,8 +64,8 @@ Flow::SourceState* Flow::Owner(StreamId stream) {
 }
 
 Time Flow::NextEvent(Time now) {
-  Time next = std::min(Back(controller_->NextTimer(), sender_offset_),
-                       Back(generator_.NextDue(), receiver_offset_));
+  Time next =
+      std::min(Back(controller_->NextTimer(), sender_offset_), FromReceiver(generator_.NextDue()));
   for (const SourceState& source : sources_) next = std::min(next, source.next_frame);
   if (const auto wake = Wake(now)) next = std::min(next, *wake);
   if (!reports_.empty()) next = std::min(next, reports_.begin()->first);
@@ -93,8 +93,7 @@ void Flow::Happen(Time now) {
   }
 }
 
-void Flow::Step(Time now, const SimulationConfig& sim, link::Random* loss,
-                std::vector<WirePacket>* wire, link::Bottleneck* link) {
+void Flow::Step(Time now, const SimulationConfig& sim, link::Random* loss, Network* network) {
   if (Stalled(now)) return;
   Happen(now);
   TellEncoders(now);
@@ -108,11 +107,11 @@ void Flow::Step(Time now, const SimulationConfig& sim, link::Random* loss,
   if (controller_->NextTimer() <= ToSender(now)) controller_->OnTimer(ToSender(now));
   TellEncoders(now);
   DropLate(now);
-  Send(now, wire, link);
-  Report(now, sim, loss);
+  Send(now, network);
+  Report(now, sim, loss, network);
 }
 
-void Flow::Report(Time now, const SimulationConfig& sim, link::Random* loss) {
+void Flow::Report(Time now, const SimulationConfig& sim, link::Random* loss, Network* network) {
   const Duration t = now - config_.start;
   const bool outage = t >= sim.return_outage_from && t < sim.return_outage_until;
   while (auto report = generator_.Take(ToReceiver(now))) {
@@ -122,12 +121,24 @@ void Flow::Report(Time now, const SimulationConfig& sim, link::Random* loss) {
         for (PacketMetric& metric : block.metrics) metric.arrival_offset.reset();
     auto bytes = BuildCcfb(*report);
     result_.feedback_bytes += static_cast<std::int64_t>(bytes.size()) + kIpUdp;
-    if (!loss->Chance(sim.return_loss) && !outage)
-      reports_.emplace(now + sim.return_delay, std::move(bytes));
+    if (loss->Chance(sim.return_loss) || outage) continue;
+    if (config_.return_route.empty()) {
+      reports_.emplace(now + sim.return_delay + config_.access_delay, std::move(bytes));
+      continue;
+    }
+    WirePacket packet;
+    packet.flow = index_;
+    packet.size = DataSize::Bytes(static_cast<std::int64_t>(bytes.size()) + kIpUdp);
+    packet.report = std::move(bytes);
+    network->Send(now, link::Ecn::kNotEct, config_.return_route, std::move(packet));
   }
 }
 
 void Flow::OnArrival(const WirePacket& packet, const link::Outcome& outcome) {
+  if (!packet.report.empty()) {
+    if (outcome.delivered()) reports_.emplace(outcome.arrival, packet.report);
+    return;
+  }
   ++result_.packets_sent;
   if (outcome.fate == link::Fate::kLost) ++result_.packets_random_lost;
   if (!outcome.delivered() && outcome.fate != link::Fate::kLost) ++result_.packets_congestion_lost;
@@ -185,6 +196,7 @@ void Flow::MakeFrame(Time now, std::size_t index) {
   source.next_frame = since_start + period > std::min(config_.stop_after, config.stop_at)
                           ? Time::max()
                           : source.next_frame + period;
+  if (since_start >= config.pause_from && since_start < config.pause_until) return;
   const EncodedFrame encoded = Encode(now, index);
   const DataSize size = encoded.size;
   FrameLog frame;
@@ -268,7 +280,7 @@ void Flow::DropLate(Time now) {
   }
 }
 
-void Flow::Send(Time now, std::vector<WirePacket>* wire, link::Bottleneck* link) {
+void Flow::Send(Time now, Network* network) {
   for (auto wake = Wake(now); wake && *wake <= now; wake = Wake(now)) {
     const auto d = controller_->NextSend(ToSender(now));
     SourceState* source = Owner(d->stream);
@@ -276,8 +288,7 @@ void Flow::Send(Time now, std::vector<WirePacket>* wire, link::Bottleneck* link)
     source->queue.pop_front();
     source->queued.pop_front();
     controller_->OnSent(ToSender(now), d->stream, {packet.ssrc, packet.seq, packet.size, d->ecn});
-    link->Enqueue(now, {packet.size, static_cast<link::Ecn>(d->ecn), wire->size()});
-    wire->push_back(packet);
+    network->Send(now, static_cast<link::Ecn>(d->ecn), config_.route, packet);
   }
 }
 

@@ -7,30 +7,20 @@
 #include <optional>
 #include <vector>
 
-#include "src/link/bottleneck.h"
 #include "src/scream/target_notifier.h"
+#include "src/sim/network.h"
 #include "src/sim/simulation.h"
 
 namespace lidar::scream::test {
-
-struct WirePacket {
-  int flow = 0;
-  int source = 0;
-  std::uint32_t ssrc = 0;
-  std::uint16_t seq = 0;
-  std::size_t frame = 0;  // of the flow
-  bool marker = false;
-  DataSize size;
-};
 
 class Flow {
  public:
   Flow(const FlowConfig& config, int index, std::uint64_t seed);
 
   Time NextEvent(Time now);
-  void Step(Time now, const SimulationConfig& sim, link::Random* loss,
-            std::vector<WirePacket>* wire, link::Bottleneck* link);
+  void Step(Time now, const SimulationConfig& sim, link::Random* loss, Network* network);
   void OnArrival(const WirePacket& packet, const link::Outcome& outcome);
+  Duration access_delay() const { return config_.access_delay; }
   FlowResult Finish(Time now);
   Statistics statistics(Time now) const { return controller_->statistics(ToSender(now)); }
   std::vector<DataRate> targets() const;
@@ -52,7 +42,15 @@ class Flow {
   void Happen(Time now);
   /// Clocks of the two ends, which may be set in the course of the run.
   Time ToSender(Time t) const { return t + sender_offset_; }
-  Time ToReceiver(Time t) const { return t + receiver_offset_; }
+  Time ToReceiver(Time t) const {
+    return t + receiver_offset_ + FromSeconds(Seconds(t - config_.start) * config_.receiver_drift);
+  }
+  Time FromReceiver(Time t) const {
+    if (t == Time::max()) return t;
+    const double d = config_.receiver_drift;
+    const Time set_right = t - receiver_offset_;
+    return set_right - FromSeconds(Seconds(set_right - config_.start) * d / (1 + d));
+  }
   static Time Back(Time t, Duration offset) { return t == Time::max() ? t : t - offset; }
   std::optional<Time> Wake(Time now);
   bool Stalled(Time now);
@@ -62,8 +60,8 @@ class Flow {
   void TellEncoders(Time now);
   void DropLate(Time now);
   std::size_t StuckPackets(const SourceState& source, Time now) const;
-  void Send(Time now, std::vector<WirePacket>* wire, link::Bottleneck* link);
-  void Report(Time now, const SimulationConfig& sim, link::Random* loss);
+  void Send(Time now, Network* network);
+  void Report(Time now, const SimulationConfig& sim, link::Random* loss, Network* network);
   SourceState* Owner(StreamId stream);
 
   FlowConfig config_;

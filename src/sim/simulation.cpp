@@ -26,7 +26,7 @@ class Simulation {
   explicit Simulation(const SimulationConfig& config)
       : config_(config),
         origin_(config.forward.origin),
-        link_(config.forward),
+        network_(config),
         report_loss_(config.forward.seed + 77),
         next_sample_(origin_) {
     int index = 0;
@@ -41,8 +41,8 @@ class Simulation {
     const Time end = origin_ + config_.duration;
     for (Time now = origin_; now <= end; now = std::max(NextEvent(now), now + Duration{1})) {
       Deliver(now);
-      for (auto& flow : flows_) flow->Step(now, config_, &report_loss_, &wire_, &link_);
-      for (auto& other : others_) other->Step(now, &wire_, &link_);
+      for (auto& flow : flows_) flow->Step(now, config_, &report_loss_, &network_);
+      for (auto& other : others_) other->Step(now, &network_);
       if (now >= next_sample_) TakeSamples(now);
     }
     for (auto& flow : flows_) result_.flows.push_back(flow->Finish(end));
@@ -52,9 +52,12 @@ class Simulation {
 
  private:
   void Deliver(Time now) {
-    for (link::Outcome& o : link_.Deliver(now)) {
+    for (link::Outcome& o : network_.Deliver(now)) {
+      const WirePacket& packet = network_.packet(o.packet.id);
       if (o.arrival - origin_ > config_.longer_from) o.arrival += config_.longer_by;
-      const Duration sent = o.sent - origin_;
+      if (const auto i = static_cast<std::size_t>(packet.flow); i < flows_.size())
+        o.arrival += flows_[i]->access_delay();
+      const Duration sent = packet.sent - origin_;
       const bool burst = sent >= config_.loss_from && sent < config_.loss_until;
       if (burst && o.packet.id % 3 != 0) o.fate = link::Fate::kLost;
       behind_.emplace(o.arrival, o);
@@ -64,14 +67,15 @@ class Simulation {
   }
 
   void Arrive(const link::Outcome& o) {
-    const WirePacket& p = wire_[o.packet.id];
+    const WirePacket& p = network_.packet(o.packet.id);
     const auto flow = static_cast<std::size_t>(p.flow);
     if (flow < flows_.size())
       flows_[flow]->OnArrival(p, o);
     else
       others_[flow - flows_.size()]->OnArrival(p, o, config_.return_delay);
-    result_.packets.push_back({o.sent, o.arrival, Milliseconds(o.sojourn), p.flow, p.source,
-                               p.size.bytes(), o.delivered()});
+    if (p.report.empty())
+      result_.packets.push_back({p.sent, o.arrival, Milliseconds(p.sojourn), p.flow, p.source,
+                                 p.size.bytes(), o.delivered()});
   }
 
   void TakeSamples(Time now) {
@@ -83,7 +87,7 @@ class Simulation {
   }
 
   Time NextEvent(Time now) {
-    Time next = std::min(link_.NextEventTime(), next_sample_);
+    Time next = std::min(network_.NextEventTime(), next_sample_);
     if (!behind_.empty()) next = std::min(next, behind_.begin()->first);
     for (auto& flow : flows_) next = std::min(next, flow->NextEvent(now));
     for (auto& other : others_) next = std::min(next, other->NextEvent(now));
@@ -92,10 +96,9 @@ class Simulation {
 
   const SimulationConfig& config_;
   Time origin_;
-  link::Bottleneck link_;
+  Network network_;
   link::Random report_loss_;
   Time next_sample_;
-  std::vector<WirePacket> wire_;
   std::multimap<Time, link::Outcome> behind_;  // the bottleneck, on the longer way
   std::vector<std::unique_ptr<Flow>> flows_;
   std::vector<std::unique_ptr<TcpFlow>> others_;

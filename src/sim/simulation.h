@@ -33,6 +33,8 @@ struct SourceConfig {
   StreamConfig stream;
   double frames_per_second = 50;
   Duration stop_at = kNever;
+  /// No frame within this time of the flow.
+  Duration pause_from = kNever, pause_until = kNever;
   double frame_jitter = 0;  ///< frame sizes vary evenly by up to this fraction
   /// Scales what the encoder puts out against its target, over time since the flow's start.
   std::function<double(Duration)> obedience;
@@ -40,9 +42,17 @@ struct SourceConfig {
   std::function<EncodedFrame(DataRate)> encoder;
 };
 
+/// Links of a simulation that packets pass one after the other, by index.
+using Route = std::vector<std::size_t>;
+
 /// Times are since the flow's start.
 struct FlowConfig {
   Parameters parameters;
+  Route route{0};
+  /// Links that the reports pass; without any they need `return_delay`.
+  Route return_route;
+  /// In addition to that of the links, each way.
+  Duration access_delay{0};
   std::vector<SourceConfig> sources{1};
   FeedbackConfig feedback;
   Time start{};
@@ -64,10 +74,17 @@ struct FlowConfig {
   /// Clocks are set by so much.
   Duration clock_jump = kNever;
   Duration sender_jump{0}, receiver_jump{0};
+  double receiver_drift = 0;  ///< its clock is too fast by this part
   /// The machine stops for up to this, on average so often; packets still arrive.
   Duration stall{0};
   Duration stall_every = std::chrono::seconds(1);
   Duration wakeup_delay{0};  ///< the pacing thread wakes up late by up to this
+};
+
+/// Files that a flow sends one after the other, each over a new connection.
+struct FileConfig {
+  DataSize shortest, longest;  ///< any size between them is as likely
+  Duration mean_pause{0};      ///< exponentially distributed
 };
 
 /// A greedy flow of somebody else, from `start` of the run on.
@@ -76,10 +93,14 @@ struct TcpConfig {
   Duration start{0};
   link::Ecn ecn = link::Ecn::kNotEct;  ///< of Reno and Cubic; Prague sends ECT(1)
   double slow_start_threshold = 1e9;   ///< [packets]
+  Duration stop = kNever;
+  Route route = {0};
+  std::optional<FileConfig> files = std::nullopt;  ///< instead of one transfer without an end
 };
 
 struct SimulationConfig {
-  link::BottleneckConfig forward;  ///< its delay is the way there
+  link::BottleneckConfig forward;                  ///< link 0; its delay is the way there
+  std::vector<link::BottleneckConfig> more_links;  ///< 1, 2, ...
   Duration return_delay{0};
   double return_loss = 0;
   /// Two of three packets sent within this time of the run are lost.
@@ -102,7 +123,7 @@ Percentiles Summarise(std::vector<double> values);
 
 struct PacketLog {
   Time sent{}, arrival{};
-  double sojourn_ms = 0;
+  double sojourn_ms = 0;  ///< in all queues
   int flow = 0;
   int source = 0;
   std::int64_t bytes = 0;
@@ -141,8 +162,9 @@ struct FlowResult {
 
 struct TcpResult {
   std::int64_t delivered_bytes = 0;
+  std::vector<double> file_s;  ///< what each file took
   std::uint64_t packets_sent = 0, packets_lost = 0;
-  double mean_window = 0;  ///< [packets]
+  double mean_window = 0;  ///< [packets], of a transfer without an end
 };
 
 struct SimulationResult {

@@ -2,6 +2,7 @@
 #include "src/sim/tcp_flow.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace lidar::scream::test {
 namespace {
@@ -14,33 +15,68 @@ TcpFlow::TcpFlow(const TcpConfig& config, int index, Time origin)
     : config_(config),
       index_(index),
       start_(origin + config.start),
+      stop_(config.stop == kNever ? Time::max() : origin + config.stop),
       sender_(config.kind, start_, config.slow_start_threshold),
-      integrated_(start_) {}
+      random_(static_cast<std::uint64_t>(index) + 1),
+      integrated_(start_) {
+  if (config.files) BeginFile();
+}
+
+/// The sender of a file that has yet to begin.
+void TcpFlow::BeginFile() {
+  const double pause = -std::log(1 - random_.Uniform()) * Seconds(config_.files->mean_pause);
+  start_ += FromSeconds(pause);
+  const auto shortest = static_cast<double>(config_.files->shortest.bytes());
+  const auto longest = static_cast<double>(config_.files->longest.bytes());
+  file_packets_ =
+      static_cast<std::size_t>(std::ceil((shortest + (longest - shortest) * random_.Uniform()) /
+                                         static_cast<double>(kPacket.bytes())));
+  acked_ = 0;
+  sender_ = TcpSender(config_.kind, start_, config_.slow_start_threshold);
+  ++connection_;
+}
+
+void TcpFlow::EndFile(Time now) {
+  result_.file_s.push_back(Seconds(now - start_));
+  start_ = now;
+  BeginFile();
+}
+
+bool TcpFlow::MoreToSend(Time now) const {
+  return now < stop_ && acked_ + sender_.outstanding() < file_packets_;
+}
 
 Time TcpFlow::NextEvent(Time now) const {
   if (now < start_) return start_;
-  const Time next = std::max(now, sender_.NextEvent());
+  const Time next = std::max(now, MoreToSend(now) ? sender_.NextEvent() : sender_.Timeout());
   return acks_.empty() ? next : std::min(next, acks_.front().arrival);
 }
 
-void TcpFlow::Step(Time now, std::vector<WirePacket>* wire, link::Bottleneck* link) {
+void TcpFlow::Step(Time now, Network* network) {
   if (now < start_) return;
   Integrate(now);
-  for (; !acks_.empty() && acks_.front().arrival <= now; acks_.pop_front())
-    sender_.OnAck(now, acks_.front().id, acks_.front().ce);
+  for (; !acks_.empty() && acks_.front().arrival <= now; acks_.pop_front()) {
+    const Ack& ack = acks_.front();
+    if (ack.connection != connection_) continue;
+    const std::size_t before = sender_.outstanding();
+    sender_.OnAck(now, ack.id, ack.ce);
+    if (before > sender_.outstanding()) ++acked_;
+    if (acked_ >= file_packets_) EndFile(now);
+  }
+  if (now < start_) return;  // the pause behind a file
   sender_.OnTimer(now);
-  while (sender_.MaySend(now)) SendOne(now, wire, link);
+  while (MoreToSend(now) && sender_.MaySend(now)) SendOne(now, network);
 }
 
-void TcpFlow::SendOne(Time now, std::vector<WirePacket>* wire, link::Bottleneck* link) {
+void TcpFlow::SendOne(Time now, Network* network) {
   WirePacket packet;
+  packet.source = connection_;
   packet.flow = index_;
   packet.frame = sender_.SendPacket(now);
   packet.size = kPacket;
   ++result_.packets_sent;
   const auto ecn = config_.kind == TcpKind::kPrague ? link::Ecn::kEct1 : config_.ecn;
-  link->Enqueue(now, {packet.size, ecn, wire->size()});
-  wire->push_back(packet);
+  network->Send(now, ecn, config_.route, packet);
 }
 
 void TcpFlow::OnArrival(const WirePacket& packet, const link::Outcome& outcome,
@@ -50,8 +86,8 @@ void TcpFlow::OnArrival(const WirePacket& packet, const link::Outcome& outcome,
     return;
   }
   result_.delivered_bytes += packet.size.bytes();
-  acks_.push_back(
-      {outcome.arrival + return_delay, packet.frame, outcome.packet.ecn == link::Ecn::kCe});
+  acks_.push_back({outcome.arrival + return_delay, packet.frame,
+                   outcome.packet.ecn == link::Ecn::kCe, packet.source});
 }
 
 /// Adds the time since the last step to the mean of the window.

@@ -27,6 +27,9 @@ class TcpSender {
   void OnTimer(Time now);
 
   double window() const { return control_->window; }
+  std::size_t outstanding() const { return outstanding_; }
+  /// When nothing more comes back for what was sent.
+  Time Timeout() const;
 
  private:
   struct InFlight {
@@ -38,7 +41,6 @@ class TcpSender {
   void Grow(Time now, Duration rtt, std::uint64_t id, bool ce);
   void DetectLoss(std::uint64_t acked);
   void MeasureRtt(Duration rtt);
-  Time Timeout() const;
 
   TcpKind kind_;
   std::unique_ptr<TcpWindow> control_;
