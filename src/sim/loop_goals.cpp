@@ -40,6 +40,19 @@ double FramesQueueGoal(const std::string& name) {
 
 }  // namespace
 
+LoopGoals GoalsOf(const LoopCase& c) {
+  LoopGoals goals;
+  if (Contains(c.name, "gap_")) {
+    goals.of_oracle = 100 * kCompleteOverGaps;
+    goals.back_s = kRecovery_s;
+    return goals;
+  }
+  goals.of_oracle = 100 * kCompleteOverDrives;
+  goals.utilisation = 100 * kUtilisation;
+  goals.latency_over_oracle_ms = kLatencyOverOracle_ms;
+  return goals;
+}
+
 std::vector<GoalResult> CheckGoals(const LoopCase& c, const LoopReport& r) {
   std::vector<GoalResult> goals;
   if (c.frames) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // What the loop is to reach over links with gaps.
 #pragma once
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -13,6 +14,17 @@ struct GoalResult {
   std::string text;  // "complete 98.1 % of the oracle's, 97 % wanted"
   bool holds = false;
 };
+
+/// What the mean of runs from several starts is to reach.
+struct LoopGoals {
+  double of_oracle = 0;                 ///< complete scans [%]
+  double of_fixed = 98.5;               ///< complete scans [%]
+  double in_time_of_fixed = 98;         ///< [%]
+  std::optional<double> utilisation{};  ///< [%]
+  std::optional<double> latency_over_oracle_ms{};
+  std::optional<double> back_s{};
+};
+LoopGoals GoalsOf(const LoopCase& loop_case);
 
 /// The goals of this kind of run; those of a trace with gaps where it has any.
 std::vector<GoalResult> CheckGoals(const LoopCase& loop_case, const LoopReport& report);

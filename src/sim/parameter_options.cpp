@@ -76,16 +76,6 @@ const std::map<std::string, bool Parameters::*> kOptionalParts = {
     {"competing_flows", &Parameters::competing_flows},
 };
 
-bool Switch(const std::string& name, bool on, Parameters* parameters) {
-  if (const auto it = kExtensions.find(name); it != kExtensions.end())
-    parameters->extensions.*it->second = on;
-  else if (const auto part = kOptionalParts.find(name); part != kOptionalParts.end())
-    parameters->*part->second = on;
-  else
-    return false;
-  return true;
-}
-
 /// NAME=VALUE
 bool Set(const std::string& text, Parameters* parameters) {
   const std::size_t equals = text.find('=');
@@ -96,6 +86,25 @@ bool Set(const std::string& text, Parameters* parameters) {
 }
 
 }  // namespace
+
+std::vector<std::string> SwitchNames() {
+  const Parameters usual;
+  std::vector<std::string> names;
+  for (const auto& [name, member] : kExtensions) names.push_back(name);
+  for (const auto& [name, member] : kOptionalParts)
+    if (usual.*member) names.push_back(name);
+  return names;
+}
+
+bool Switch(const std::string& name, bool on, Parameters* parameters) {
+  if (const auto it = kExtensions.find(name); it != kExtensions.end())
+    parameters->extensions.*it->second = on;
+  else if (const auto part = kOptionalParts.find(name); part != kOptionalParts.end())
+    parameters->*part->second = on;
+  else
+    return false;
+  return true;
+}
 
 int TakeParameterOption(int argc, char** argv, int i, Parameters* parameters) {
   const std::string arg = argv[i];

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Options of the matrix programs that turn the sender's parameters.
 #pragma once
+#include <string>
+#include <vector>
+
 #include "src/scream/parameters.h"
 
 namespace lidar::scream::test {
@@ -11,6 +14,11 @@ constexpr const char* kParameterUsage =
     "  --set NAME=V   turns a constant (after --draft)\n"
     "  --with PART, --without PART\n"
     "                 switches an optional part of the draft or an extension";
+
+/// The extensions, and the optional parts of the draft that are on.
+std::vector<std::string> SwitchNames();
+/// False where nothing is called so.
+bool Switch(const std::string& name, bool on, Parameters* parameters);
 
 /// How many arguments from argv[i] on it took: 0 where they are no such option, -1 where they are
 /// wrong.

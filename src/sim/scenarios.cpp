@@ -191,6 +191,7 @@ std::vector<Scenario> Scenarios(const Parameters& p) {
   for (const Scenario& s : ChangingScenarios(p)) all.push_back(s);
   for (const Scenario& s : PathScenarios(fast, slow, p)) all.push_back(s);
   for (const Scenario& s : BesideScenarios(p)) all.push_back(s);
+  for (const Scenario& s : EventScenarios(p)) all.push_back(s);
   return all;
 }
 

@@ -26,6 +26,8 @@ struct Scenario {
 
 /// All scenarios, with these parameters at the sender.
 std::vector<Scenario> Scenarios(const Parameters& parameters);
+/// Policers, silence, clocks: what happens in the course of a run.
+std::vector<Scenario> EventScenarios(const Parameters& parameters);
 /// Ours beside flows of others, and beside one of ours at other phases.
 std::vector<Scenario> BesideScenarios(const Parameters& parameters);
 std::optional<Scenario> FindScenario(const std::string& name, const Parameters& parameters);
