@@ -16,11 +16,6 @@ constexpr Duration kHousekeeping = 50ms;
 /// A caller that comes so much too late stood still, or its clock was set.
 constexpr Duration kStandstill = 500ms;
 constexpr double kDriftRateScale = 0.5;
-/// A source that sends less than this part of its target says nothing about the link...
-constexpr double kUnusedTarget = 0.85;
-/// ...which need not be known beyond this multiple of the streams' maximum.
-constexpr double kProbeRoom = 1.2;
-constexpr Duration kQuietQueue = 3ms;
 /// So long after a sign of congestion the window is about what the link carries.
 constexpr Duration kCongestedLately = 300ms;
 
@@ -36,7 +31,6 @@ Time Controller::Advance(Time caller_now) {
     history_.Expire(now_);
     outage_.Restart(now_);
     gap_recovery_.Reset();
-    path_.OnStandstill(now_);
     last_housekeeping_ = now_;
   }
   return now_;
@@ -59,10 +53,7 @@ void Controller::OnQueued(Time now, StreamId id, const QueuedPacket& packet) {
   now = Advance(now);
   Stream* stream = streams_.Find(id);
   if (stream == nullptr) return;
-  if (streams_.empty()) {
-    pacer_.OnIdleEnd(now);
-    ProbeByBurst(now);
-  }
+  if (streams_.empty()) pacer_.OnIdleEnd(now);
   if (stream->empty()) streams_.OnQueued(stream);
   if (stream->OnQueued(now, packet)) UpdateTarget(now);
 }
@@ -121,17 +112,15 @@ void Controller::TakeOutageRestart(Time now) {
 }
 
 void Controller::MeasurePath(Time now, const AckSummary& acks) {
-  path_.OnRoundTrip(now, acks, window_.ref_wnd());
+  path_.OnRoundTrip(now, acks);
   history_.set_max_reordering_window(path_.rtt().smoothed());
   if (!started_ && path_.rtt().known()) {
     started_ = true;
     StartWindow();
   }
-  path_.OnReport(now, acks,
-                 {window_.ref_wnd(), streams_.frame_period(), competing_flows_.qdelay_target(),
-                  answered_.marks()});
-  competing_flows_.Update(now, path_.queue_delay().qdelay(), path_.rtt().smoothed(),
-                          !acks.lost.empty());
+  path_.OnReport(
+      now, acks,
+      {window_.ref_wnd(), streams_.frame_period(), p_.qdelay_target_lo, answered_.marks()});
 }
 
 void Controller::CountAcks(const AckSummary& acks) {
@@ -146,12 +135,11 @@ void Controller::CountAcks(const AckSummary& acks) {
 void Controller::Respond(Time now, const AckSummary& acks) {
   if (!RespondToDrop(now)) RespondToSignals(now, acks);
   TakeGapRestart(now);
-  if (path_.EndRoundTrip(now)) window_.RelaxPolicer(now);
+  path_.EndRoundTrip(now);
 }
 
 void Controller::TakeGapRestart(Time now) {
-  const auto restart =
-      gap_recovery_.Update(now, path_, window_.ref_wnd(), competing_flows_.qdelay_target());
+  const auto restart = gap_recovery_.Update(now, path_, window_.ref_wnd(), p_.qdelay_target_lo);
   if (!restart) return;
   window_.Set(restart->window);
   window_.ForgetSigns();
@@ -164,10 +152,10 @@ void Controller::TakeGapRestart(Time now) {
 }
 
 bool Controller::RespondToDrop(Time now) {
-  const auto window = capacity_drop_.Update(
-      now, path_,
-      {window_target_, window_.ref_wnd(), streams_.frame_period(), competing_flows_.qdelay_target(),
-       window_.last_reaction_to_congestion_time()});
+  const auto window =
+      capacity_drop_.Update(now, path_,
+                            {window_target_, window_.ref_wnd(), streams_.frame_period(),
+                             p_.qdelay_target_lo, window_.last_reaction_to_congestion_time()});
   if (!window) return false;
   window_.SetInflection(*window);
   window_.Set(*window * p_.drop_beta);
@@ -209,7 +197,7 @@ CongestionSignals Controller::Signals(Time now, const AckSummary& acks) const {
   s.is_l4s = p_.ecn == Ecn::kEct1 && !(p_.extensions.classic_ecn && path_.classic_ecn().found());
   s.qdelay = path_.queue_delay().qdelay();
   s.qdelay_avg = path_.queue_delay().qdelay_avg();
-  s.qdelay_target = competing_flows_.qdelay_target();
+  s.qdelay_target = p_.qdelay_target_lo;
   s.ref_wnd_delay_scale = path_.queue_delay().ref_wnd_delay_scale();
   s.boldness = BesideOthers(p_, path_, now);
   s.s_rtt = path_.rtt().smoothed();
@@ -263,17 +251,6 @@ void Controller::UpdateTarget(Time now) {
     pacer_.RaiseTo(DrainRate(p_, now, window_.ref_wnd(), history_.bytes_in_flight(), path_));
 }
 
-void Controller::ProbeByBurst(Time now) {
-  const bool unused = path_.sent_rate(now) < streams_.target_bitrate() * kUnusedTarget;
-  BurstProbe::Input in;
-  in.limited = started_ && (unused || window_target_ >= streams_.max_bitrate());
-  in.congested = CongestedLately() || outage_.active() || gap_recovery_.in_gap() ||
-                 path_.queue_delay().qdelay() > kQuietQueue;
-  in.known = path_.estimated_capacity();
-  in.wanted = streams_.max_bitrate() * kProbeRoom;
-  if (const auto rate = burst_probe_.Update(now, in)) pacer_.Burst(*rate, BurstProbe::kBurst);
-}
-
 DataRate Controller::WindowTarget(Time now) const {
   if (!started_) return streams_.start_bitrate();
   // Through an outage the round trip is as long as nothing has come back.
@@ -303,10 +280,9 @@ std::optional<SendDecision> Controller::NextSend(Time caller_now) const {
   const auto id = streams_.Next();
   if (!id) return std::nullopt;
   const Stream& stream = *streams_.Find(*id);
-  const DataSize max =
-      Holds(stream, std::max(now_, clock_.Peek(caller_now)))
-          ? DataSize()
-          : send_window_.Max(now_, window_.ref_wnd(), path_, competing_flows_.qdelay_target());
+  const DataSize max = Holds(stream, std::max(now_, clock_.Peek(caller_now)))
+                           ? DataSize()
+                           : send_window_.Max(now_, window_.ref_wnd(), path_, p_.qdelay_target_lo);
   const Time opens = send_window_.Opens(stream.head_size(), history_.bytes_in_flight(), max);
   return SendDecision{clock_.ToCaller(std::max(pacer_.next(), opens)), *id,
                       path_.ecn().codepoint()};
@@ -386,7 +362,7 @@ Statistics Controller::statistics(Time now) const {
   s.ref_wnd_i = window_.ref_wnd_i();
   s.bytes_in_flight = history_.bytes_in_flight();
   s.foreign_blocks = history_.foreign_blocks();
-  s.qdelay_target = competing_flows_.qdelay_target();
+  s.qdelay_target = p_.qdelay_target_lo;
   s.target_bitrate = streams_.target_bitrate();
   s.pace_bitrate = pacer_.pace_bitrate();
   s.queued = streams_.queued();

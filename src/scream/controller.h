@@ -10,9 +10,7 @@
 #include "src/scream/pacer.h"
 #include "src/scream/parameters.h"
 #include "src/scream/response/answered_signals.h"
-#include "src/scream/response/burst_probe.h"
 #include "src/scream/response/capacity_drop.h"
-#include "src/scream/response/competing_flows.h"
 #include "src/scream/response/fast_increase.h"
 #include "src/scream/response/gap_recovery.h"
 #include "src/scream/response/liveness.h"
@@ -129,7 +127,6 @@ class Controller {
     return {p_, path_, streams_.max_bitrate(), streams_.queue_compensation()};
   }
   void UpdateTarget(Time now);
-  void ProbeByBurst(Time now);
   void TakeGapRestart(Time now);
   DataRate WindowTarget(Time now) const;
   bool CongestedLately() const;
@@ -144,13 +141,11 @@ class Controller {
   Streams streams_{p_};
   SentHistory history_;
   PathModel path_{p_};
-  CompetingFlows competing_flows_{p_};
   ReferenceWindow window_{p_};
   FastIncrease fast_increase_{p_};
   CapacityDrop capacity_drop_{p_};
   AnsweredSignals answered_{p_};
   Outage outage_{p_};
-  BurstProbe burst_probe_{p_};
   GapRecovery gap_recovery_{p_};
   const Liveness liveness_{history_, path_, outage_, gap_recovery_};
   SendWindow send_window_{p_};

@@ -16,11 +16,6 @@ class Pacer {
   /// pacing is relaxed, up to `relaxed_max`.
   void Update(DataRate target_bitrate, DataRate target_bitrate_max, double headroom,
               DataRate relaxed_max = DataRate::Infinite());
-  /// The next packets leave at `rate`, for so long.
-  void Burst(DataRate rate, Duration length) {
-    burst_rate_ = rate;
-    burst_ = rate * length;
-  }
   /// Gaps between packets are longer and shorter by up to so much, which shows what others send.
   void set_ripple(Duration ripple) { ripple_ = ripple; }
   void RaiseTo(DataRate rate) { pace_bitrate_ = std::max(pace_bitrate_, rate); }
@@ -44,8 +39,6 @@ class Pacer {
 
   const Parameters& p_;
   DataRate pace_bitrate_ = DataRate::BitsPerSecond(1e6);
-  DataRate burst_rate_;
-  DataSize burst_;  // what is left of the burst
   Duration ripple_{0};
   std::uint32_t gaps_ = 0;
   Time next_{};
@@ -60,10 +53,7 @@ inline void Pacer::Update(DataRate target, DataRate max, double headroom, DataRa
 }
 
 inline void Pacer::OnSent(Time now, DataSize size) {
-  const bool burst = burst_ >= size;
-  if (burst) burst_ -= size;
-  const DataRate rate = burst ? std::max(pace_bitrate_, burst_rate_) : pace_bitrate_;
-  const Duration gap = size / rate;
+  const Duration gap = size / pace_bitrate_;
   const Duration ripple = std::min(ripple_, gap / 2);
   next_ = std::max(next_, now - p_.pacing_catch_up) + gap + (LongerGap() ? ripple : -ripple);
 }

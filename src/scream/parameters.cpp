@@ -8,11 +8,9 @@ Parameters Parameters::Draft() {
   p.reduce_jitter = false;
   p.clock_drift = false;
   p.link_layer_loss = false;
-  p.rate_policer = false;
   p.undershoot_remedy = false;
-  p.competing_flows = false;
-  p.extensions = {false, false, false, false, false, false, false, false, false,
-                  false, false, false, false, false, false, false, false};
+  p.extensions = {false, false, false, false, false, false, false,
+                  false, false, false, false, false, false, false};
   p.pacing_catch_up = Duration{0};
   return p;
 }

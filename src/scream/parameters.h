@@ -37,17 +37,11 @@ struct Extensions {
   bool needed_floor = true;
   /// Marks of a queue that marks ECT(1) like ECT(0) have the reaction that it expects.
   bool classic_ecn = true;
-  /// A policer is believed in for a second, and for longer where it shows itself again.
-  bool brief_policer = true;
   /// Clocks that were set and callers that stood still are noticed; where the bottleneck marks, the
   /// base delay is that of the last half minute.
   bool clock_care = true;
   /// Beside other flows, and where marking begins early, the window is as bold as theirs.
   bool shared_link = true;
-  /// Short bursts of a source that sends little measure the link.
-  bool burst_probe = true;
-  /// An old round trip counts for less, as does one of a source that leaves its window unused.
-  bool aged_rtt = true;
 };
 
 struct Parameters {
@@ -59,7 +53,6 @@ struct Parameters {
 
   // Network congestion control
   Duration qdelay_target_lo = 60ms;
-  Duration qdelay_target_hi = 400ms;
   DataSize min_ref_wnd = DataSize::Bytes(3000);
   double bytes_in_flight_head_room = 1.5;
   double beta_loss = 0.7;
@@ -97,21 +90,14 @@ struct Parameters {
   bool clock_drift = true;
   double qdelay_min_avg_alpha = 1.0 / 256;
 
-  // Optional: link-layer losses and rate policers
+  // Optional: link-layer losses
   bool link_layer_loss = true;
   double loss_rate_threshold = 0.01;
-  bool rate_policer = true;
-  double loss_rate_threshold_policer = 0.1;
-  double beta_loss_policer = 0.9;
-  double policed_ref_wnd_recovery = 0.001;
 
   // Optional: undershoot
   bool undershoot_remedy = true;
   double acked_bitrate_margin = 0.8;
   double backoff_scale_low_target_rate = 0.25;
-
-  // Optional: competing flows
-  bool competing_flows = false;
 
   // Extensions
   /// fast_start: growth by this fraction of the acknowledged bytes at most...

@@ -61,19 +61,14 @@ const std::map<std::string, bool Extensions::*> kExtensions = {
     {"gap_recovery", &Extensions::gap_recovery},
     {"needed_floor", &Extensions::needed_floor},
     {"classic_ecn", &Extensions::classic_ecn},
-    {"brief_policer", &Extensions::brief_policer},
     {"clock_care", &Extensions::clock_care},
-    {"burst_probe", &Extensions::burst_probe},
-    {"aged_rtt", &Extensions::aged_rtt},
     {"shared_link", &Extensions::shared_link},
 };
 const std::map<std::string, bool Parameters::*> kOptionalParts = {
     {"reduce_jitter", &Parameters::reduce_jitter},
     {"clock_drift", &Parameters::clock_drift},
     {"link_layer_loss", &Parameters::link_layer_loss},
-    {"rate_policer", &Parameters::rate_policer},
     {"undershoot_remedy", &Parameters::undershoot_remedy},
-    {"competing_flows", &Parameters::competing_flows},
 };
 
 /// NAME=VALUE

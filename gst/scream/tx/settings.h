@@ -38,7 +38,7 @@ struct TxSettings {
 
   Duration max_queue_delay() const { return parameters.max_queue_delay; }
 };
-using TxProperties = std::array<Property<TxSettings>, 52>;
+using TxProperties = std::array<Property<TxSettings>, 48>;
 const TxProperties& TxPropertyTable();
 
 /// What the controller works with: `pure_draft` undoes what was set of the draft's constants.

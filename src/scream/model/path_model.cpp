@@ -31,9 +31,9 @@ void PathModel::OnSent(Time now, DataSize size, Ecn ecn, DataSize in_flight) {
   ecn_.OnSent(now, ecn);
 }
 
-void PathModel::OnRoundTrip(Time now, const AckSummary& acks, DataSize ref_wnd) {
+void PathModel::OnRoundTrip(Time now, const AckSummary& acks) {
   if (!acks.rtt || (!acks.acked.empty() && acks.acked.back().sent < gap_end_)) return;
-  rtt_.Add(now, *acks.rtt, p_.extensions.aged_rtt && SourceLimited(ref_wnd));
+  rtt_.Add(now, *acks.rtt);
 }
 
 void PathModel::OnGapEnd(Time now, Duration s_rtt, double l4s_alpha) {
@@ -52,8 +52,8 @@ void PathModel::OnReport(Time now, const AckSummary& acks, const SenderState& se
   MeasureReports(now, acks, sender.ref_wnd);
 }
 
-bool PathModel::EndRoundTrip(Time now) {
-  return max_in_flight_.Update(now, std::max(p_.virtual_rtt, rtt_.smoothed()));
+void PathModel::EndRoundTrip(Time now) {
+  max_in_flight_.Update(now, std::max(p_.virtual_rtt, rtt_.smoothed()));
 }
 
 void PathModel::Reset(Time now) {
@@ -61,7 +61,6 @@ void PathModel::Reset(Time now) {
   queue_delay_.Reset();
   rtt_.Reset();
   train_.Reset();
-  burst_.Reset();
   busy_run_.Reset();
   classic_ecn_ = ClassicEcn();
   cross_traffic_ = CrossTraffic();
@@ -139,8 +138,6 @@ void PathModel::ObserveCapacity(Time now, const AckSummary& acks, Duration qdela
       cross_traffic_.Add({packet.sent, *packet.arrival, packet.size}, qdelay, congested);
     }
     busy_run_.Add({packet.sent, *packet.arrival, packet.size, busy, marked});
-    if (const auto rate = burst_.Add({packet.sent, *packet.arrival, packet.size}))
-      acked_peak_ = std::max(acked_peak_, *rate);
     if (train_.Add({*packet.arrival, packet.size, qdelay, busy})) hole_in_report_ = true;
   }
   for (const LostPacket& packet : acks.lost) loss_context_.OnLost(packet.sent);
@@ -162,12 +159,6 @@ void PathModel::MeasureReports(Time now, const AckSummary& acks, DataSize ref_wn
   const Duration gap = std::min(now - std::exchange(last_report_, now), kLongestInterval);
   const double weight = std::min(1.0, acks.bytes_newly_acked / ref_wnd);
   report_gap_ += FromSeconds(Seconds(gap - report_gap_) * weight);
-}
-
-bool PathModel::SourceLimited(DataSize ref_wnd) const {
-  return std::max(max_in_flight_.current(), max_in_flight_.previous()) *
-             p_.bytes_in_flight_head_room <
-         ref_wnd;
 }
 
 bool PathModel::L4sWorks(Time now) const {

@@ -6,7 +6,6 @@
 #include <optional>
 
 #include "src/scream/model/arrival_train.h"
-#include "src/scream/model/burst_rate.h"
 #include "src/scream/model/busy_run.h"
 #include "src/scream/model/classic_ecn.h"
 #include "src/scream/model/cross_traffic.h"
@@ -40,15 +39,12 @@ class PathModel {
 
   /// `in_flight` includes the packet.
   void OnSent(Time now, DataSize size, Ecn ecn, DataSize in_flight);
-  /// Comes before OnReport(). `ref_wnd` shows whether the source uses its window.
-  void OnRoundTrip(Time now, const AckSummary& acks, DataSize ref_wnd);
+  /// Comes before OnReport().
+  void OnRoundTrip(Time now, const AckSummary& acks);
   void OnReport(Time now, const AckSummary& acks, const SenderState& sender);
   /// A gap is over: what was sent before `now` met it, and says nothing about the path now.
   void OnGapEnd(Time now, Duration s_rtt, double l4s_alpha);
-  /// The sender stood still, or its clock was set.
-  void OnStandstill(Time now) { rtt_.OnStandstill(now); }
-  /// True at the end of a round trip.
-  bool EndRoundTrip(Time now);
+  void EndRoundTrip(Time now);
   void OnTimer(Time now) { ecn_.OnTimer(now); }
   /// Another route: base delay, round trip, ECN, marks, losses and capacity are unknown again. What
   /// is told later of packets that were sent before `now` says nothing of its marks and its ECN.
@@ -107,10 +103,9 @@ class PathModel {
   void ObserveCapacity(Time now, const AckSummary& acks, Duration qdelay_target);
   void EstimateCapacity(Time now);
   void MeasureReports(Time now, const AckSummary& acks, DataSize ref_wnd);
-  bool SourceLimited(DataSize ref_wnd) const;
 
   const Parameters& p_;
-  RoundTripTime rtt_{p_.extensions.aged_rtt};
+  RoundTripTime rtt_;
   QueueDelay queue_delay_{p_};
   L4sAlpha l4s_alpha_{p_};
   LossRate loss_rate_{p_};
@@ -120,11 +115,10 @@ class PathModel {
   EcnMonitor ecn_{p_.ecn};
   BusyRun busy_run_;
   ArrivalTrain train_;
-  BurstRate burst_;
   MarkingOnset marking_onset_{p_.pacing_reserve};
   bool hole_in_report_ = false;
   DataRate train_capacity_;
-  DataRate acked_peak_;  // of averages and bursts, since the last train
+  DataRate acked_peak_;  // of averages, since the last train
   Time gap_end_{};
   Time route_begin_{};
   MaxBytesInFlight max_in_flight_;

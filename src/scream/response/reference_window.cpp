@@ -31,11 +31,6 @@ double ReferenceWindow::ref_wnd_ratio() const {
   return std::min(1.0, static_cast<double>(p_.mss.bytes()) / ref_wnd_);
 }
 
-DataSize ReferenceWindow::max_policed_ref_wnd() const {
-  return std::isinf(policer_.max()) ? DataSize::Infinite()
-                                    : DataSize::Bytes(static_cast<std::int64_t>(policer_.max()));
-}
-
 double ReferenceWindow::InflectionScale(double slope) const {
   const double scl = (ref_wnd_ - ref_wnd_i_) / ref_wnd_i_ * slope;
   return std::clamp(scl * scl, kInflectionMin, 1.0);
@@ -56,10 +51,7 @@ Reaction ReferenceWindow::Detect(Time now, const CongestionSignals& s) {
   if (data_units_marked_ || (loss_detected_ && !isolated)) last_congestion_detected_time_ = now;
   if (now - last_reaction_to_congestion_time_ + s.earliness < std::min(p_.virtual_rtt, s.s_rtt))
     return Reaction::kNone;
-  if (std::exchange(loss_detected_, false)) {
-    DetectPolicer(now, s);
-    if (LossCounts(s)) return Reaction::kLoss;
-  }
+  if (std::exchange(loss_detected_, false) && LossCounts(s)) return Reaction::kLoss;
   if (data_units_marked_) return Reaction::kCe;
   if (s.qdelay_avg > s.qdelay_target / 2) return Reaction::kVirtualCe;
   return Reaction::kNone;
@@ -69,12 +61,6 @@ Reaction ReferenceWindow::Detect(Time now, const CongestionSignals& s) {
 bool ReferenceWindow::LossCounts(const CongestionSignals& s) const {
   return !p_.link_layer_loss || s.loss_rate > s.loss_rate_threshold || s.queue_at_loss ||
          s.qdelay_avg > s.qdelay_target / 4;
-}
-
-void ReferenceWindow::DetectPolicer(Time now, const CongestionSignals& s) {
-  if (p_.rate_policer && s.loss_rate > p_.loss_rate_threshold_policer &&
-      s.qdelay_avg < s.qdelay_target / 4)
-    policer_.OnLoss(now, ref_wnd_);
 }
 
 void ReferenceWindow::NoteReaction(Time now) {
@@ -162,7 +148,6 @@ void ReferenceWindow::Increase(Time now, const CongestionSignals& s, double scl)
     ref_wnd_ = next;
     ref_wnd_i_update_allowed_ = true;
   }
-  if (p_.rate_policer) ref_wnd_ = std::min(ref_wnd_, policer_.max());
   ref_wnd_ = std::max(ref_wnd_, static_cast<double>(p_.min_ref_wnd.bytes()));
 }
 

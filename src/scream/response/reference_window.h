@@ -5,7 +5,6 @@
 #include <utility>
 
 #include "src/scream/parameters.h"
-#include "src/scream/response/policer.h"
 
 namespace lidar::scream {
 
@@ -62,13 +61,10 @@ class ReferenceWindow {
   /// Where congestion is to be expected.
   void SetInflection(DataSize window) { ref_wnd_i_ = static_cast<double>(window.bytes()); }
   void Limit(DataSize max) { Set(std::min(max, ref_wnd())); }
-  /// Once an RTT: lifts the policer's limit a little.
-  void RelaxPolicer(Time now) { policer_.Relax(now); }
 
   DataSize ref_wnd() const { return DataSize::Bytes(static_cast<std::int64_t>(ref_wnd_)); }
   DataSize ref_wnd_i() const { return DataSize::Bytes(static_cast<std::int64_t>(ref_wnd_i_)); }
   double ref_wnd_ratio() const;
-  DataSize max_policed_ref_wnd() const;
   Time last_reaction_to_congestion_time() const { return last_reaction_to_congestion_time_; }
   Time last_congestion_detected_time() const { return last_congestion_detected_time_; }
 
@@ -77,7 +73,6 @@ class ReferenceWindow {
   double FastIncrement(const CongestionSignals& s, double scl) const;
   Reaction Detect(Time now, const CongestionSignals& s);
   bool LossCounts(const CongestionSignals& s) const;
-  void DetectPolicer(Time now, const CongestionSignals& s);
   void Reduce(Time now, Reaction reaction, const CongestionSignals& s, double scl);
   double L4sBackoff(Time now, const CongestionSignals& s, double scl);
   double VirtualBackoff(const CongestionSignals& s) const;
@@ -88,7 +83,6 @@ class ReferenceWindow {
   double ref_wnd_;
   double ref_wnd_i_ = 1;
   bool ref_wnd_i_update_allowed_ = true;
-  Policer policer_{p_};
   bool loss_detected_ = false;      // since the last reaction
   bool data_units_marked_ = false;  // since the last reaction
   Time last_congestion_detected_time_{};

@@ -281,26 +281,6 @@ TEST(Simulation, AnObstinateEncoderDoesNotFillTheNetworkQueue) {
   EXPECT_LT(m.frame_ms.p95, 100);
 }
 
-/// A still scene on a link of 20 Mbit/s: 3 Mbit/s say nothing about it, their bursts do.
-TEST(Simulation, ASourceThatSendsLittleMeasuresTheLinkByItsBursts) {
-  for (const double needs : {0.3, 1.0}) {
-    Scenario s = *FindScenario("frames_20M_rtt25", Parameters());
-    SourceConfig& source = s.config.flows[0].sources[0];
-    source.stream.max_bitrate = needs < 1 ? Mbps(20) : Mbps(8);
-    source.frames_per_second = 25;
-    source.encoder = [](DataRate) { return EncodedFrame{DataSize::Bytes(18000), {}}; };
-    if (needs == 1)
-      source.encoder = [](DataRate) { return EncodedFrame{DataSize::Bytes(39000), {}}; };
-    const SimulationResult result = Simulate(s.config);
-    const Statistics end = result.flows[0].statistics;
-    const double wanted = needs < 1 ? 12e6 : 9e6;
-    EXPECT_GT(end.estimated_capacity.bits_per_second(), wanted) << needs;
-    EXPECT_LT(end.estimated_capacity.bits_per_second(), 22e6) << needs;
-    EXPECT_LT(Measure(s, result).queue_ms.p99, 5) << needs;
-    EXPECT_LT(end.target_bitrate.bits_per_second(), 1.1e7) << needs;
-  }
-}
-
 TEST(Simulation, AStepMarkerAndAPairOfQueuesAreUsedToo) {
   for (const char* name : {"frames_8M_step1ms", "frames_20M_dualpi2"}) {
     const Scenario s = *FindScenario(name, Parameters());

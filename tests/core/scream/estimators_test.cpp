@@ -225,17 +225,17 @@ TEST(QueueDelay, ASecondJumpIsSeenToo) {
 
 TEST(RoundTripTime, IsAMillisecondAtLeast) {
   RoundTripTime rtt;
-  rtt.Add(kStart, 0ms, false);
+  rtt.Add(kStart, 0ms);
   EXPECT_EQ(rtt.smoothed(), Duration(1ms));
   EXPECT_EQ(rtt.min(), Duration(1ms));
 }
 
 TEST(RoundTripTime, TheShortestIsRememberedForHalfAMinuteAtLeast) {
   RoundTripTime rtt;
-  rtt.Add(kStart, 40ms, false);
-  rtt.Add(kStart + 31s, 80ms, false);
+  rtt.Add(kStart, 40ms);
+  rtt.Add(kStart + 31s, 80ms);
   EXPECT_EQ(rtt.min(), Duration(40ms));
-  rtt.Add(kStart + 62s, 80ms, false);
+  rtt.Add(kStart + 62s, 80ms);
   EXPECT_EQ(rtt.min(), Duration(80ms));
 }
 

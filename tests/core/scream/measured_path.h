@@ -15,7 +15,7 @@ class Path {
   explicit Path(const Parameters& parameters) : model(parameters) {
     AckSummary first;
     first.rtt = kRtt;
-    model.OnRoundTrip(kStart, first, DataSize::Bytes(10000));
+    model.OnRoundTrip(kStart, first);
     Arrive(1, Duration{0}, Duration{0}, Ecn::kEct1);
   }
   void Arrive(int packets, Duration spacing, Duration queue, Ecn ecn) {
@@ -23,7 +23,7 @@ class Path {
       now += spacing;
       AckSummary acks;
       acks.rtt = kRtt + queue;
-      model.OnRoundTrip(now, acks, DataSize::Bytes(10000));
+      model.OnRoundTrip(now, acks);
       AckedPacket packet;
       packet.size = kPacket;
       packet.ecn = Ecn::kEct1;

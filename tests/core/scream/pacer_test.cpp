@@ -84,28 +84,6 @@ TEST(Pacer, GapsAreUnevenByTheRippleAndEvenOnAverage) {
   }
 }
 
-TEST(Pacer, ABurstIsFasterAndShort) {
-  const Parameters p = Parameters::Draft();
-  Pacer pacer(p);
-  pacer.Update(Mbps(8), Mbps(100), 1);
-  pacer.Burst(Mbps(16), 2ms);
-  Time now = kStart;
-  for (const Duration gap : {500us, 500us, 500us, 500us, 1000us, 1000us}) {
-    pacer.OnSent(now, DataSize::Bytes(1000));
-    EXPECT_EQ(pacer.next() - now, Duration(gap));
-    now = pacer.next();
-  }
-}
-
-TEST(Pacer, ABurstIsNeverSlowerThanThePace) {
-  const Parameters p = Parameters::Draft();
-  Pacer pacer(p);
-  pacer.Update(Mbps(8), Mbps(100), 1);
-  pacer.Burst(Mbps(2), 100ms);
-  pacer.OnSent(kStart, DataSize::Bytes(1000));
-  EXPECT_EQ(pacer.next(), kStart + 1ms);
-}
-
 TEST(MediaRate, IsTheWindowOverTheRoundTripWithTheDraftsReserves) {
   const Parameters p = Parameters::Draft();
   const DataRate rate = TargetBitrate(p, {DataSize::Bytes(50000), 0.02, 40ms, 0});

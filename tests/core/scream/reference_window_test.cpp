@@ -148,43 +148,6 @@ TEST_F(ReferenceWindowTest, LinkLayerLossIsSparedUntilTheRateOrTheQueueGrows) {
   EXPECT_NEAR(Factor(), 0.7, 1e-4);
 }
 
-TEST_F(ReferenceWindowTest, APolicerLimitsTheWindowAndLetsItGoSlowly) {
-  parameters_.rate_policer = true;
-  signals_.loss_detected = true;
-  signals_.loss_rate = 0.2;
-  Factor();
-  EXPECT_EQ(window_.max_policed_ref_wnd().bytes(), 90000);
-  window_.RelaxPolicer(now_);
-  EXPECT_NEAR(static_cast<double>(window_.max_policed_ref_wnd().bytes()), 90090, 1);
-}
-
-TEST_F(ReferenceWindowTest, LossBehindAQueueIsNoPolicer) {
-  parameters_.rate_policer = true;
-  signals_.loss_detected = true;
-  signals_.loss_rate = 0.2;
-  signals_.qdelay_avg = 15ms;
-  Factor();
-  EXPECT_EQ(window_.max_policed_ref_wnd(), DataSize::Infinite());
-}
-
-TEST(Policer, IsBelievedInForASecondAndForLongerWhereItShowsItselfAgain) {
-  const Parameters p;
-  Policer policer(p);
-  Time now = kStart;
-  for (const Duration believed : {1s, 4s, 16s, 64s, 64s}) {
-    policer.OnLoss(now, 100000);
-    policer.Relax(now += believed - 1ms);
-    EXPECT_NEAR(policer.max(), 90090, 1) << Seconds(believed);
-    policer.Relax(now += 1ms);
-    EXPECT_TRUE(std::isinf(policer.max()));
-    now += 1s;
-  }
-  now += 300s;
-  policer.OnLoss(now, 100000);
-  policer.Relax(now + 1s);
-  EXPECT_TRUE(std::isinf(policer.max())) << "another one";
-}
-
 TEST_F(ReferenceWindowTest, ReactsLessWhereTheTargetHasFallenAlready) {
   parameters_.undershoot_remedy = true;
   signals_.data_units_marked = true;

@@ -1,11 +1,9 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The responses beyond the draft, each by itself: outage, send window, pacing, competing flows.
+// The responses beyond the draft, each by itself: outage, send window, pacing.
 #include <gtest/gtest.h>
 
 #include "src/scream/response/adaptive_pacing.h"
 #include "src/scream/response/answered_signals.h"
-#include "src/scream/response/burst_probe.h"
-#include "src/scream/response/competing_flows.h"
 #include "src/scream/response/gap_recovery.h"
 #include "src/scream/response/isolated_loss.h"
 #include "src/scream/response/outage.h"
@@ -15,32 +13,6 @@
 
 namespace lidar::scream {
 namespace {
-
-TEST(BurstProbe, EndsAfterThreeSecondsOrWithCongestionAndRests) {
-  const Parameters p;
-  BurstProbe probe(p);
-  BurstProbe::Input in{true, false, Mbps(3), Mbps(20)};
-  EXPECT_FALSE(probe.Update(kStart - 2s, in)) << "the target may be rising";
-  ASSERT_TRUE(probe.Update(kStart, in));
-  EXPECT_NEAR(probe.Update(kStart + 2900ms, in)->bits_per_second(), 6e6, 1);
-  EXPECT_FALSE(probe.Update(kStart + 3s, in));
-  EXPECT_FALSE(probe.Update(kStart + 12s, in));
-  EXPECT_TRUE(probe.Update(kStart + 13s, in));
-  in.congested = true;
-  EXPECT_FALSE(probe.Update(kStart + 13100ms, in));
-  in.congested = false;
-  EXPECT_FALSE(probe.Update(kStart + 14s, in));
-}
-
-TEST(BurstProbe, IsNotNeededWhereEnoughIsKnownOrTheSourceSendsEnough) {
-  const Parameters p;
-  for (const BurstProbe::Input& in : {BurstProbe::Input{true, false, Mbps(20), Mbps(20)},
-                                      {false, false, Mbps(3), Mbps(20)},
-                                      {true, true, Mbps(3), Mbps(20)}}) {
-    BurstProbe probe(p);
-    for (Time now = kStart; now < kStart + 5s; now += 100ms) EXPECT_FALSE(probe.Update(now, in));
-  }
-}
 
 class OutageTest : public ::testing::Test {
  protected:
@@ -282,53 +254,6 @@ TEST(AnsweredSignals, AreThoseOfPacketsSentBeforeTheReaction) {
   answered.OnOutageEnd(kStart + 2s, kRtt);
   answered.OnGapEnd(kStart + 2s + 10ms);
   EXPECT_FALSE(answered.NewLoss(acks) || answered.NewMark(acks)) << "held back by the outage";
-}
-
-/// Round trips of 40 ms, one each 50 ms.
-class CompetingFlowsTest : public ::testing::Test {
- protected:
-  CompetingFlowsTest() { parameters_.competing_flows = true; }
-  void Run(int rounds, Duration qdelay, bool loss = false) {
-    for (int i = 0; i < rounds; ++i, now_ += 50ms) flows_.Update(now_, qdelay, 40ms, loss);
-  }
-  double TargetMs() const { return Milliseconds(flows_.qdelay_target()); }
-
-  Parameters parameters_;
-  CompetingFlows flows_{parameters_};
-  Time now_ = kStart;
-};
-
-TEST_F(CompetingFlowsTest, WithoutLossTheTargetIsTheQueue) {
-  Run(300, 80ms);
-  EXPECT_NEAR(TargetMs(), 80, 1);
-}
-
-TEST_F(CompetingFlowsTest, LossEventsGiveHalfAsMuchAgain) {
-  Run(201, 80ms);
-  Run(99, 80ms, true);
-  EXPECT_NEAR(TargetMs(), 120, 1);
-}
-
-TEST_F(CompetingFlowsTest, OneLossInAThousandRoundTripsIsNone) {
-  // After one event of 0.02 the rate falls below 0.002 within 114 round trips.
-  Run(200, 80ms);
-  Run(1, 80ms, true);
-  Run(199, 80ms);
-  EXPECT_NEAR(TargetMs(), 80, 1);
-}
-
-TEST_F(CompetingFlowsTest, TheTargetGivesWayToASteadyQueueAndComesBack) {
-  Run(300, 150ms);
-  EXPECT_NEAR(TargetMs(), 150, 1);
-  Run(300, 5ms);
-  EXPECT_EQ(flows_.qdelay_target(), parameters_.qdelay_target_lo);
-}
-
-TEST_F(CompetingFlowsTest, TheTargetFallsStepByStepWhereTheQueueVaries) {
-  Run(200, 300ms);
-  ASSERT_NEAR(TargetMs(), 300, 1);
-  for (int i = 0; i < 12; ++i) Run(1, i % 2 * 300ms);
-  EXPECT_LT(TargetMs(), 200);
 }
 
 }  // namespace

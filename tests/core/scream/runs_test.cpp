@@ -166,7 +166,6 @@ SimulationConfig LittleBesideCubic() {
 
 SimulationConfig BesideCubic() {
   Parameters parameters;
-  parameters.competing_flows = true;
   parameters.ecn = Ecn::kNotEct;
   SimulationConfig config = Named("cubic_fifo_100ms_20M", parameters);
   config.duration = 20s;
