@@ -3,8 +3,8 @@
 #pragma once
 #include <vector>
 
-#include "src/sim/loop_case.h"
 #include "src/sim/figures.h"
+#include "src/sim/loop_case.h"
 
 namespace lidar::loop {
 

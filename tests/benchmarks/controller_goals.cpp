@@ -11,8 +11,8 @@
 #include <thread>
 #include <vector>
 
-#include "src/sim/loop_figures.h"
 #include "src/sim/figures.h"
+#include "src/sim/loop_figures.h"
 #include "src/sim/parameter_options.h"
 
 namespace {
@@ -22,6 +22,7 @@ using namespace lidar::scream::test;
 
 struct Options {
   std::vector<std::string> cases;
+  std::string group;  // what names of cases begin with
   Parameters parameters;
   int starts = 12;
   bool all_figures = false;
@@ -38,6 +39,7 @@ void PrintUsage() {
   std::puts(
       "usage: controller-goals [options] [CASE...]\n"
       "Simulates all cases, or these, and prints each goal: the figure, the goal, met or missed.\n"
+      "  --group TEXT only cases whose names begin so: rfc, gap_, drive_, event_, ...\n"
       "  --figures    prints every figure, with a goal or without\n"
       "  --ablation   switches off each part of the controller, and the whole (draft), and prints\n"
       "               where that is worse or better\n"
@@ -55,6 +57,8 @@ bool Parse(int argc, char** argv, Options* options) {
       options->all_figures = true;
     } else if (arg == "--ablation") {
       options->ablation = true;
+    } else if (arg == "--group" && i + 1 < argc) {
+      options->group = argv[++i];
     } else if (arg == "--starts" && i + 1 < argc) {
       options->starts = std::atoi(argv[++i]);
     } else if (arg[0] == '-') {
@@ -107,6 +111,9 @@ std::vector<Case> Cases(const Options& options) {
   AddMatrix(&all);
   AddRmcat(WiredCases, &all);
   AddRmcat(WirelessCases, &all);
+  all.erase(std::remove_if(all.begin(), all.end(),
+                           [&](const Case& c) { return c.name.rfind(options.group, 0) != 0; }),
+            all.end());
   if (options.cases.empty()) return all;
   std::vector<Case> wanted;
   for (const std::string& name : options.cases) {

@@ -1,0 +1,46 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Tables of docs/results/rmcat.md: the test cases of RFC 8867 and RFC 8869 in simulated time."""
+import re
+
+import common
+
+COLUMNS = {
+    "utilisation [%]": ("util %", 0),
+    "media [Mbit/s]": ("Mbit/s a flow", 2),
+    "queue p95 [ms]": ("queue p95 [ms]", 0),
+    "frame p95 [ms]": ("frame p95 [ms]", 0),
+    "own loss [%]": ("loss %", 2),
+    "frames dropped [%]": ("dropped %", 1),
+    "Jain's index": ("Jain", 2),
+    "variation of the rate": ("variation", 2),
+    "others [Mbit/s]": ("others' Mbit/s", 2),
+}
+
+
+def figures(*options):
+    """Case to its figures, and those of them that miss a goal."""
+    found = {}
+    text = common.run(f"{common.build}/tests/benchmarks/controller-goals", "--figures", "--group", "rfc", *options)
+    for case, figure, value, goal in re.findall(r"^(rfc\S+) +(.+?) +(-?[\d.]+)( +[<>].*)?$", text, re.M):
+        found.setdefault(case, {})[figure] = (float(value), goal.endswith("MISSED"))
+    return found
+
+
+def rmcat():
+    """Ours beside the draft alone; a goal of ours that is missed is bold."""
+    body = []
+    ours, draft = figures(), figures("--draft")
+    for case in ours:
+        for name, of in ((f"`{case}`", ours[case]), ("the draft alone", draft[case])):
+            row = [name]
+            for figure, (_, digits) in COLUMNS.items():
+                if figure not in of:
+                    row.append("–")
+                    continue
+                value, missed = of[figure]
+                row.append(f"**{value:.{digits}f}**" if missed and of is ours[case] else f"{value:.{digits}f}")
+            body.append(row)
+    return common.table(["case", *(head for head, _ in COLUMNS.values())], body)
+
+
+TABLES = {"rmcat": rmcat}
