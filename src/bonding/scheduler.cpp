@@ -81,10 +81,22 @@ bool Scheduler::Settled(Time now) const {
   });
 }
 
+bool Scheduler::Proving(Time now) const {
+  return now - start_.value_or(now) < kProving &&
+         std::any_of(links_.begin(), links_.end(), [](const Link& l) { return !l.has_reported; });
+}
+
+bool Scheduler::AwaitsArrivals(Time now) const {
+  return std::any_of(order_.rbegin(), order_.rend(), [&](PacketId id) {
+    const Entry* entry = Find(id);
+    return !entry->arrived && now - entry->made <= kMaxAge;
+  });
+}
+
 /// The links beside the best one that the next slice goes to.
 LinkSet Scheduler::CopiesOf(Time now, DataSize slice) const {
   LinkSet links;
-  const bool probe = since_probe_ == 0;
+  const bool probe = since_probe_ == 0 || Proving(now);
   const bool all = method_ == Method::kAdaptive && rule_ == TargetRule::kBetter && !Settled(now);
   for (std::size_t i = 0; i < links_.size(); ++i) {
     const Link& l = links_[i];
@@ -102,6 +114,7 @@ void Scheduler::Assign(std::size_t link, Entry* entry) {
 }
 
 LinkSet Scheduler::OnPacket(Time now, const Packet& packet) {
+  start_ = start_.value_or(now);
   Forget(now);
   LookAtGaps(now);
   if (slice_ != packet.slice) {
@@ -211,10 +224,10 @@ void Scheduler::OnDropped(Time, std::size_t link, PacketId id) {
 }
 
 std::optional<scream::CongestionFeedback> Scheduler::OnFeedback(
-    Time now, std::size_t link, const scream::CongestionFeedback& feedback) {
+    Time, std::size_t link, const scream::CongestionFeedback& feedback) {
   auto report = links_[link].ledger.OnFeedback(feedback);
   if (!report) return std::nullopt;
-  links_[link].last_feedback = now;
+  links_[link].has_reported = true;
   for (const PacketId id : report->arrived) {
     Entry* entry = Find(id);
     if (entry == nullptr || entry->arrived) continue;

@@ -53,13 +53,16 @@ struct LinkCounters {
 ///    not arrived is copied to the best other link at once; so is what was lost, and what takes
 ///    longer than was foreseen.
 ///  - While a link is not settled (it started, or was in a gap, within kUnsettled), every slice is
-///    copied to each link that has room. Otherwise one slice in kProbeEvery is, so that all links
+///    copied to each link that has room; in the first kProving, until all links have reported, to
+///    each, as the receiver takes what comes by one link only, and learns by copies of the others.
+///    Otherwise one slice in kProbeEvery is, so that all links
 ///    stay known.
 ///  - What arrived on one link is not sent on another any more, nor is a copy older than kMaxAge.
 class Scheduler {
  public:
   static constexpr Duration kMaxAge = std::chrono::milliseconds(200);
   static constexpr Duration kUnsettled = std::chrono::seconds(3);
+  static constexpr Duration kProving = std::chrono::seconds(1);
   static constexpr int kProbeEvery = 8;
   static constexpr std::size_t kMaxPackets = 8192;
 
@@ -96,6 +99,8 @@ class Scheduler {
   void SetUsable(Time now, std::size_t link, bool usable);
 
   bool InGap(Time now, std::size_t link) const;
+  /// Whether a packet may still arrive that has not.
+  bool AwaitsArrivals(Time now) const;
   /// Of what links may send each, what the encoder may.
   DataRate Target(Time now, const std::vector<DataRate>& targets) const;
   std::size_t links() const { return links_.size(); }
@@ -108,7 +113,7 @@ class Scheduler {
     DataSize queued;  // assigned, and neither sent nor dropped
     bool usable = true;
     bool was_in_gap = false;
-    Time last_feedback{};
+    bool has_reported = false;
     std::optional<Time> unsettled_since;  // with the first packet, and with each gap
     LinkCounters counters;
   };
@@ -132,12 +137,14 @@ class Scheduler {
   std::size_t Best(Time now, DataSize size, LinkSet among) const;
   LinkSet CopiesOf(Time now, DataSize slice) const;
   bool Settled(Time now) const;
+  bool Proving(Time now) const;
   static Duration Rtt(const Link& link);
   static bool IsDead(Time now, const Link& link);
 
   const Method method_;
   const TargetRule rule_;
   std::vector<Link> links_;
+  std::optional<Time> start_;  // of the first packet
   std::deque<PacketId> order_;
   std::unordered_map<std::uint64_t, Entry> packets_;
   // The slice that comes now.

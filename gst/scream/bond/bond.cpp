@@ -156,8 +156,17 @@ static GstFlowReturn BondChain(GstPad* pad, GstObject* parent, GstBuffer* buffer
   return best;
 }
 
-static gboolean BondSinkEvent(GstPad* pad, GstObject*, GstEvent* event) {
+/// The first goodbye ends the receiver, so it waits for what may still arrive by another link.
+static void AwaitArrivals(BondState& state) {
+  BondShared& shared = *state.shared;
+  std::unique_lock lock(shared.mutex);
+  while (!state.stop && shared.scheduler.AwaitsArrivals(shared.Now()))
+    state.wake.wait_for(lock, Scheduler::kTick);
+}
+
+static gboolean BondSinkEvent(GstPad* pad, GstObject* parent, GstEvent* event) {
   const EventPtr owner(event);
+  if (GST_EVENT_TYPE(event) == GST_EVENT_EOS) AwaitArrivals(BondOf(parent));
   gboolean taken = FALSE;
   for (GstPad* src : StreamOf(pad).srcs)
     taken = gst_pad_push_event(src, gst_event_ref(event)) || taken;

@@ -185,9 +185,36 @@ TEST(Scheduler, BroadcastsEveryPacketAndBacksUpOnlyWhatWaits) {
   Scheduler broadcast(3, Method::kBroadcast), backup(3, Method::kBackup);
   for (std::uint16_t seq = 1; seq < 8; ++seq) {
     EXPECT_EQ(broadcast.OnPacket(kStart, {{kMedia, seq}, kSize, seq}), SetOf({0, 1, 2}));
-    const LinkSet links = backup.OnPacket(kStart, {{kMedia, seq}, kSize, seq});
+    const Time now = seq == 1 ? kStart : kStart + 2s;  // all links are used at first
+    const LinkSet links = backup.OnPacket(now, {{kMedia, seq}, kSize, seq});
     EXPECT_EQ(links.count(), seq == 1 ? 3U : 1U) << "the first of eight keeps links known";
   }
+}
+
+TEST(Scheduler, SendsAllOnEachLinkUntilTheReceiverKnowsThem) {
+  Scheduler scheduler(2, Method::kAdaptive);
+  std::uint16_t seq = 0;
+  for (; seq < 40; ++seq)  // more than links of an unknown rate have room for
+    EXPECT_EQ(scheduler.OnPacket(kStart, {{kMedia, seq}, kSize, seq}), SetOf({0, 1}));
+  scheduler.OnSent(kStart, 0, {kMedia, 1});
+  scheduler.OnFeedback(kStart, 0, Arrived(1));
+  EXPECT_EQ(scheduler.OnPacket(kStart, {{kMedia, seq}, kSize, seq}), SetOf({0, 1}));
+  scheduler.OnSent(kStart, 1, {kMedia, 1});
+  scheduler.OnFeedback(kStart, 1, Arrived(1));
+  int alone = 0;
+  while (++seq < 60) alone += scheduler.OnPacket(kStart, {{kMedia, seq}, kSize, seq}).count() == 1;
+  EXPECT_GT(alone, 10) << "there is no room for copies";
+}
+
+TEST(Scheduler, AwaitsArrivalsWhileTheyAreOfUse) {
+  Scheduler scheduler(2, Method::kAdaptive);
+  EXPECT_FALSE(scheduler.AwaitsArrivals(kStart));
+  scheduler.OnPacket(kStart, {{kMedia, 1}, kSize, 1});
+  EXPECT_TRUE(scheduler.AwaitsArrivals(kStart + 200ms));
+  EXPECT_FALSE(scheduler.AwaitsArrivals(kStart + 201ms));
+  scheduler.OnSent(kStart, 1, {kMedia, 1});
+  scheduler.OnFeedback(kStart, 1, Arrived(1));
+  EXPECT_FALSE(scheduler.AwaitsArrivals(kStart));
 }
 
 TEST(Scheduler, KeepsAllPacketsOfASliceTogether) {
