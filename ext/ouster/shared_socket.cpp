@@ -36,7 +36,7 @@ GSocket* OpenSocket(const SocketPlace& place, GError** error) {
     if (!JoinMulticast(socket.get(), place.group, place.interface, error)) return nullptr;
     OnlyJoinedGroups(socket.get());
   }
-  UdpBatchReceiver::Prepare(g_socket_get_fd(socket.get()));
+  net::AskForInfo(g_socket_get_fd(socket.get()));
   return socket.release();
 }
 
@@ -60,7 +60,7 @@ class SharedSocket {
     SharedSocket& shared = *slot;
     std::lock_guard lock_socket(shared.mutex_);
     if (shared.readers_.empty() || reader->queue_bytes_ > shared.granted_buffer_)
-      shared.granted_buffer_ = SetReceiveBuffer(shared.fd(), reader->queue_bytes_);
+      shared.granted_buffer_ = net::SetReceiveBuffer(shared.fd(), reader->queue_bytes_);
     shared.readers_.push_back(reader);
     reader->granted_buffer_ = shared.granted_buffer_;
     reader->drops_before_ = shared.kernel_drops_;

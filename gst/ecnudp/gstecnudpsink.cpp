@@ -15,6 +15,7 @@
 #include <gst/net/gstnetaddressmeta.h>
 #include <netinet/in.h>
 
+#include <cerrno>
 #include <mutex>
 
 #include "gst/common/element_class.h"
@@ -157,7 +158,9 @@ static void ConfigureSocket(GSocket* socket, const SinkSettings& s) {
   if (s.buffer_size > 0)
     g_socket_set_option(socket, SOL_SOCKET, SO_SNDBUF, static_cast<gint>(s.buffer_size), nullptr);
   g_socket_set_multicast_ttl(socket, static_cast<guint>(s.ttl_mc));
-  SendMulticastFrom(socket, s.multicast_iface);
+  if (!s.multicast_iface.empty() &&
+      !lidar::net::SendMulticastFrom(g_socket_get_fd(socket), s.multicast_iface))
+    GST_WARNING("cannot send multicast from %s: %s", s.multicast_iface.c_str(), g_strerror(errno));
 }
 
 static gboolean Start(GstBaseSink* base) {

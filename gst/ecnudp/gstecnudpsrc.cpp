@@ -108,7 +108,7 @@ static const std::array<Property<SrcSettings>, 11> kProperties = {{
 }};
 
 static void ConfigureBuffer(GstLidarEcnUdpSrc* self, int fd, guint wanted) {
-  const guint granted = SetReceiveBuffer(fd, wanted > 0 ? wanted : kDefaultBuffer);
+  const guint granted = lidar::net::SetReceiveBuffer(fd, wanted > 0 ? wanted : kDefaultBuffer);
   GST_DEBUG_OBJECT(self, "receive buffer of %u bytes", granted);
   if (wanted == 0 || granted >= wanted) return;
   GST_ELEMENT_WARNING(
@@ -125,7 +125,7 @@ static gboolean Start(GstBaseSrc* base) {
       TakeSocket(s.given, [&] { return OpenListening(GST_ELEMENT(self), s.listen); });
   if (!used.socket) return FALSE;
   const int fd = g_socket_get_fd(used.socket.get());
-  UdpBatchReceiver::Prepare(fd);
+  lidar::net::AskForInfo(fd);
   ConfigureBuffer(self, fd, s.options.buffer_size);
   state.wake.Clear();
   state.timeout_ns = s.options.timeout.count() > 0 ? s.options.timeout.count() : -1;

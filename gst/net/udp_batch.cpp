@@ -4,34 +4,8 @@
 #include <poll.h>
 
 #include <cerrno>
-#include <cstring>
-#include <ctime>
 
 namespace lidar::gst {
-namespace {
-
-bool IsIpv6(const NativeAddress& address) {
-  if (address.storage.ss_family != AF_INET6) return false;
-  sockaddr_in6 v6{};
-  std::memcpy(&v6, &address.storage, sizeof v6);
-  return !IN6_IS_ADDR_V4MAPPED(&v6.sin6_addr);
-}
-
-template <class T>
-T Payload(cmsghdr* c) {
-  T value{};
-  std::memcpy(&value, CMSG_DATA(c), sizeof value);
-  return value;
-}
-
-void Enable(int fd, int level, int name) {
-  const int on = 1;
-  // An option of the other address family fails, and is not needed then.
-  if (setsockopt(fd, level, name, &on, sizeof on) != 0) return;
-}
-
-}  // namespace
-
 UdpBatchSender::UdpBatchSender() : messages_(kCapacity), headers_(kCapacity) {}
 
 bool UdpBatchSender::Map(Message& m, GstBuffer* buffer) {
@@ -67,17 +41,7 @@ bool UdpBatchSender::Add(GstBuffer* buffer, guint8 tos, const NativeAddress& to)
   h.msg_namelen = m.to.length;
   h.msg_iov = m.iov.data();
   h.msg_iovlen = m.memories;
-  h.msg_control = m.control.data();
-  h.msg_controllen = m.control.size();
-  m.control.fill(0);
-  cmsghdr* c = CMSG_FIRSTHDR(&h);
-  // A mapped address leaves through the IPv4 stack, which reads only its own option.
-  const bool v6 = IsIpv6(to);
-  c->cmsg_level = v6 ? IPPROTO_IPV6 : IPPROTO_IP;
-  c->cmsg_type = v6 ? IPV6_TCLASS : IP_TOS;
-  c->cmsg_len = CMSG_LEN(sizeof(int));
-  const int value = tos;
-  std::memcpy(CMSG_DATA(c), &value, sizeof value);
+  net::SetTos(tos, to, &m.control, &h);
   ++count_;
   return true;
 }
@@ -123,13 +87,6 @@ void UdpBatchSender::Clear() {
 UdpBatchReceiver::UdpBatchReceiver()
     : arena_(kCapacity * kMaxDatagram), slots_(kCapacity), headers_(kCapacity) {}
 
-void UdpBatchReceiver::Prepare(int fd) {
-  Enable(fd, IPPROTO_IP, IP_RECVTOS);
-  Enable(fd, IPPROTO_IPV6, IPV6_RECVTCLASS);
-  Enable(fd, SOL_SOCKET, SO_TIMESTAMPNS);
-  Enable(fd, SOL_SOCKET, SO_RXQ_OVFL);
-}
-
 int UdpBatchReceiver::Receive(int fd, const std::function<void(const ReceivedDatagram&)>& consume) {
   for (std::size_t i = 0; i < kCapacity; ++i) {
     Slot& slot = slots_[i];
@@ -157,19 +114,10 @@ ReceivedDatagram UdpBatchReceiver::Read(std::size_t i) {
   d.data = &arena_[i * kMaxDatagram];
   d.size = headers_[i].msg_len;
   d.from = &slot.from;
-  for (cmsghdr* c = CMSG_FIRSTHDR(&h); c != nullptr; c = CMSG_NXTHDR(&h, c)) {
-    if (c->cmsg_level == IPPROTO_IP && c->cmsg_type == IP_TOS) {
-      d.tos = Payload<guint8>(c);  // one byte, unlike its IPv6 sister
-    } else if (c->cmsg_level == IPPROTO_IPV6 && c->cmsg_type == IPV6_TCLASS) {
-      d.tos = static_cast<guint8>(Payload<int>(c));
-    } else if (c->cmsg_level == SOL_SOCKET && c->cmsg_type == SCM_TIMESTAMPNS) {
-      const auto t = Payload<timespec>(c);
-      d.arrival =
-          static_cast<GstClockTime>(t.tv_sec) * GST_SECOND + static_cast<GstClockTime>(t.tv_nsec);
-    } else if (c->cmsg_level == SOL_SOCKET && c->cmsg_type == SO_RXQ_OVFL) {
-      kernel_drops_ = Payload<guint32>(c);
-    }
-  }
+  const net::DatagramInfo info = net::ReadInfo(&h);
+  d.tos = info.tos;
+  if (info.arrival) d.arrival = static_cast<GstClockTime>(info.arrival->count());
+  kernel_drops_ = info.overflow.value_or(kernel_drops_);
   return d;
 }
 

@@ -2,7 +2,6 @@
 // Many datagrams a system call, each with its own ECN codepoint (sendmmsg, recvmmsg and cmsg).
 #pragma once
 #include <gst/gst.h>
-#include <netinet/in.h>
 #include <sys/uio.h>
 
 #include <array>
@@ -46,7 +45,7 @@ class UdpBatchSender {
     guint memories = 0;
     GstBuffer* merged = nullptr;  // mapped as a whole: more than kMaxMemories pieces
     NativeAddress to;
-    alignas(cmsghdr) std::array<char, CMSG_SPACE(sizeof(int))> control;
+    net::TosControl control;
   };
 
   bool Map(Message& m, GstBuffer* buffer);
@@ -72,9 +71,8 @@ class UdpBatchReceiver {
   static constexpr std::size_t kMaxDatagram = 65536;
 
   UdpBatchReceiver();
-  /// Asks the kernel for ECN, arrival time and overflow count of each datagram.
-  static void Prepare(int fd);
-  /// Hands what is there to `consume`, without waiting; the number, or -1 with errno set.
+  /// Hands what is there to `consume`, without waiting; the number, or -1 with errno set. `fd` was
+  /// given to net::AskForInfo().
   int Receive(int fd, const std::function<void(const ReceivedDatagram&)>& consume);
   /// Datagrams the kernel dropped because the socket's buffer was full, since it was opened.
   guint kernel_drops() const { return kernel_drops_; }

@@ -2,7 +2,6 @@
 #include "gst/net/udp_socket.h"
 
 #include <net/if.h>
-#include <netinet/in.h>
 #include <poll.h>
 #include <sys/eventfd.h>
 #include <unistd.h>
@@ -55,10 +54,6 @@ GSocket* BoundSocket(GInetAddress* address, const UdpBind& bind, GError** error)
 }
 
 }  // namespace
-
-bool NativeAddress::operator==(const NativeAddress& o) const {
-  return length == o.length && std::memcmp(&storage, &o.storage, length) == 0;
-}
 
 NativeAddress ToNative(GSocketAddress* address, GSocketFamily family) {
   NativeAddress native;
@@ -150,20 +145,6 @@ bool JoinMulticast(GSocket* socket, const std::string& group, const std::string&
                                        error) != FALSE;
 }
 
-void SendMulticastFrom(GSocket* socket, const std::string& interface) {
-  const unsigned index = interface.empty() ? 0 : if_nametoindex(interface.c_str());
-  if (index == 0) return;
-  const int v6_index = static_cast<int>(index);
-  ip_mreqn v4{};
-  v4.imr_ifindex = v6_index;
-  const int fd = g_socket_get_fd(socket);
-  const bool v6 = g_socket_get_family(socket) == G_SOCKET_FAMILY_IPV6;
-  const int failed =
-      v6 ? setsockopt(fd, IPPROTO_IPV6, IPV6_MULTICAST_IF, &v6_index, sizeof v6_index)
-         : setsockopt(fd, IPPROTO_IP, IP_MULTICAST_IF, &v4, sizeof v4);
-  if (failed != 0) g_warning("cannot send multicast from %s", interface.c_str());
-}
-
 std::string AddressToString(GSocketAddress* address) {
   if (address == nullptr) return "(none)";
   gchar* text = g_socket_connectable_to_string(G_SOCKET_CONNECTABLE(address));
@@ -196,19 +177,6 @@ WakeFd::Outcome WakeFd::Wait(int fd, short events, gint64 timeout_ns) const {
   if (ready < 0) return errno == EINTR ? Outcome::kReady : Outcome::kError;
   if (fds[0].revents != 0) return Outcome::kWoken;
   return ready == 0 ? Outcome::kTimeout : Outcome::kReady;
-}
-
-guint SetReceiveBuffer(int fd, guint bytes) {
-  const int size = static_cast<int>(bytes);
-  // The forced form needs CAP_NET_ADMIN.
-  if (bytes > 0 && setsockopt(fd, SOL_SOCKET, SO_RCVBUFFORCE, &size, sizeof size) != 0 &&
-      setsockopt(fd, SOL_SOCKET, SO_RCVBUF, &size, sizeof size) != 0) {
-    return 0;
-  }
-  int granted = 0;
-  socklen_t length = sizeof granted;
-  if (getsockopt(fd, SOL_SOCKET, SO_RCVBUF, &granted, &length) != 0) return 0;
-  return static_cast<guint>(granted / 2);  // the kernel doubles it for its own bookkeeping
 }
 
 }  // namespace lidar::gst

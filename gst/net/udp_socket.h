@@ -2,12 +2,15 @@
 // UDP sockets: opening, addresses, and a file descriptor that wakes a thread that waits for one.
 #pragma once
 #include <gio/gio.h>
-#include <sys/socket.h>
 
 #include <memory>
 #include <string>
 
+#include "gst/net/datagram.h"
+
 namespace lidar::gst {
+
+using net::NativeAddress;
 
 struct GObjectUnref {
   void operator()(gpointer p) const {
@@ -16,18 +19,6 @@ struct GObjectUnref {
 };
 using SocketPtr = std::unique_ptr<GSocket, GObjectUnref>;
 using SocketAddressPtr = std::unique_ptr<GSocketAddress, GObjectUnref>;
-
-/// A socket address as the kernel takes it.
-struct NativeAddress {
-  sockaddr_storage storage{};
-  socklen_t length = 0;
-
-  const sockaddr* get() const { return reinterpret_cast<const sockaddr*>(&storage); }
-  sockaddr* get() { return reinterpret_cast<sockaddr*>(&storage); }
-  bool valid() const { return length != 0; }
-  bool operator==(const NativeAddress& o) const;
-  bool operator!=(const NativeAddress& o) const { return !(*this == o); }
-};
 
 /// For a socket of `family`: an IPv4 address becomes a mapped one on an IPv6 socket. Invalid where
 /// the address does not fit the family.
@@ -55,14 +46,8 @@ GSocket* OpenUdpSocket(const UdpBind& bind, GError** error);
 /// Joins `group` on the interface of that name (empty: the kernel's choice).
 bool JoinMulticast(GSocket* socket, const std::string& group, const std::string& interface,
                    GError** error);
-/// Multicast leaves by the interface of that name; nothing happens where there is none.
-void SendMulticastFrom(GSocket* socket, const std::string& interface);
 /// "host:port" for messages and logs.
 std::string AddressToString(GSocketAddress* address);
-
-/// The largest receive buffer up to `bytes` that the kernel grants (0: what it is); its size, or 0
-/// where it fails.
-guint SetReceiveBuffer(int fd, guint bytes);
 
 /// Wakes poll() in another thread until it is cleared.
 class WakeFd {

@@ -21,34 +21,6 @@ constexpr std::size_t kControlSize = 256;
   throw std::runtime_error(what + ": " + std::strerror(errno));
 }
 
-void SetFlag(int fd, int level, int option) {
-  const int on = 1;
-  if (setsockopt(fd, level, option, &on, sizeof on) != 0) Fail("cannot set a socket option");
-}
-
-/// The value of a control message that may be one byte (IPv4) or an int (IPv6).
-std::uint8_t TosOf(const cmsghdr* c) {
-  if (c->cmsg_len >= CMSG_LEN(sizeof(int))) {
-    int value = 0;
-    std::memcpy(&value, CMSG_DATA(c), sizeof value);
-    return static_cast<std::uint8_t>(value);
-  }
-  return *CMSG_DATA(c);
-}
-
-void ReadControl(msghdr* message, Datagram* datagram) {
-  for (cmsghdr* c = CMSG_FIRSTHDR(message); c != nullptr; c = CMSG_NXTHDR(message, c)) {
-    if ((c->cmsg_level == IPPROTO_IP && c->cmsg_type == IP_TOS) ||
-        (c->cmsg_level == IPPROTO_IPV6 && c->cmsg_type == IPV6_TCLASS)) {
-      datagram->tos = TosOf(c);
-    } else if (c->cmsg_level == SOL_SOCKET && c->cmsg_type == SO_TIMESTAMPNS) {
-      timespec t{};
-      std::memcpy(&t, CMSG_DATA(c), sizeof t);
-      datagram->kernel_time = std::chrono::seconds{t.tv_sec} + std::chrono::nanoseconds{t.tv_nsec};
-    }
-  }
-}
-
 struct HostPort {
   std::string host;
   std::string port;
@@ -65,23 +37,13 @@ HostPort Split(const std::string& text, const std::string& default_host) {
 
 }  // namespace
 
-bool Address::IsIpv4() const {
-  if (storage.ss_family == AF_INET) return true;
-  const auto* v6 = reinterpret_cast<const sockaddr_in6*>(&storage);
-  return storage.ss_family == AF_INET6 && IN6_IS_ADDR_V4MAPPED(&v6->sin6_addr);
-}
-
-std::string Address::ToString() const {
+std::string ToString(const Address& address) {
   char host[NI_MAXHOST] = "";
   char port[NI_MAXSERV] = "";
-  getnameinfo(reinterpret_cast<const sockaddr*>(&storage), length, host, sizeof host, port,
-              sizeof port, NI_NUMERICHOST | NI_NUMERICSERV);
-  const bool brackets = storage.ss_family == AF_INET6;
+  getnameinfo(address.get(), address.length, host, sizeof host, port, sizeof port,
+              NI_NUMERICHOST | NI_NUMERICSERV);
+  const bool brackets = address.storage.ss_family == AF_INET6;
   return (brackets ? "[" : "") + std::string(host) + (brackets ? "]:" : ":") + port;
-}
-
-bool operator==(const Address& a, const Address& b) {
-  return a.length == b.length && std::memcmp(&a.storage, &b.storage, a.length) == 0;
 }
 
 Address ResolveAddress(const std::string& text, const std::string& default_host) {
@@ -103,42 +65,27 @@ Address ResolveAddress(const std::string& text, const std::string& default_host)
 UdpSocket::UdpSocket(int family)
     : fd_(socket(family, SOCK_DGRAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0)) {
   if (!fd_) Fail("cannot open a UDP socket");
-  SetFlag(fd(), IPPROTO_IP, IP_RECVTOS);
-  if (family == AF_INET6) SetFlag(fd(), IPPROTO_IPV6, IPV6_RECVTCLASS);
-  SetFlag(fd(), SOL_SOCKET, SO_TIMESTAMPNS);
+  net::AskForInfo(fd());
   // The kernel may grant less; that costs packets only in bursts.
-  setsockopt(fd(), SOL_SOCKET, SO_RCVBUF, &kSocketBuffer, sizeof kSocketBuffer);
+  net::SetReceiveBuffer(fd(), kSocketBuffer);
   setsockopt(fd(), SOL_SOCKET, SO_SNDBUF, &kSocketBuffer, sizeof kSocketBuffer);
 }
 
 UdpSocket UdpSocket::Bind(const Address& local) {
   UdpSocket s(local.storage.ss_family);
-  if (bind(s.fd(), reinterpret_cast<const sockaddr*>(&local.storage), local.length) != 0)
-    Fail("cannot listen on " + local.ToString());
+  if (bind(s.fd(), local.get(), local.length) != 0) Fail("cannot listen on " + ToString(local));
   return s;
 }
 
 UdpSocket UdpSocket::Connect(const Address& remote) {
   UdpSocket s(remote.storage.ss_family);
-  if (connect(s.fd(), reinterpret_cast<const sockaddr*>(&remote.storage), remote.length) != 0)
-    Fail("cannot reach " + remote.ToString());
+  if (connect(s.fd(), remote.get(), remote.length) != 0) Fail("cannot reach " + ToString(remote));
   s.peer_ = remote;
   return s;
 }
 
 void UdpSocket::SendMulticastFrom(const std::string& interface) {
-  const int index = static_cast<int>(if_nametoindex(interface.c_str()));
-  if (index == 0) Fail("there is no interface " + interface);
-  ip_mreqn v4{};
-  v4.imr_ifindex = index;
-  sockaddr_storage local{};
-  socklen_t length = sizeof local;
-  getsockname(fd(), reinterpret_cast<sockaddr*>(&local), &length);
-  // The option for IPv4 is accepted on a socket of IPv6, where it does nothing.
-  const int failed = local.ss_family == AF_INET6
-                         ? setsockopt(fd(), IPPROTO_IPV6, IPV6_MULTICAST_IF, &index, sizeof index)
-                         : setsockopt(fd(), IPPROTO_IP, IP_MULTICAST_IF, &v4, sizeof v4);
-  if (failed != 0) Fail("cannot send multicast from " + interface);
+  if (!net::SendMulticastFrom(fd(), interface)) Fail("cannot send multicast from " + interface);
 }
 
 int UdpSocket::LocalPort() const {
@@ -168,16 +115,17 @@ void UdpSocket::ReceiveAll(const std::function<void(const Datagram&)>& handler) 
     if (size < 0 && (errno == ECONNREFUSED || errno == EINTR)) continue;
     if (size < 0) return;
     from.length = message.msg_namelen;
-    Datagram datagram{{payload, static_cast<std::size_t>(size)}, &from};
-    ReadControl(&message, &datagram);
-    handler(datagram);
+    const net::DatagramInfo info = net::ReadInfo(&message);
+    handler({{payload, static_cast<std::size_t>(size)},
+             &from,
+             info.tos,
+             info.arrival.value_or(Duration{0})});
   }
 }
 
 bool UdpSocket::Send(ByteView payload, std::uint8_t tos, const Address* to) {
-  const bool v4 = (to != nullptr ? *to : peer_).IsIpv4();
   iovec part{const_cast<std::uint8_t*>(payload.data), payload.size};
-  alignas(cmsghdr) char control[CMSG_SPACE(sizeof(int))] = {};
+  net::TosControl control;
   msghdr message{};
   if (to != nullptr) {
     message.msg_name = const_cast<sockaddr_storage*>(&to->storage);
@@ -185,14 +133,7 @@ bool UdpSocket::Send(ByteView payload, std::uint8_t tos, const Address* to) {
   }
   message.msg_iov = &part;
   message.msg_iovlen = 1;
-  message.msg_control = control;
-  message.msg_controllen = sizeof control;
-  cmsghdr* c = CMSG_FIRSTHDR(&message);
-  c->cmsg_level = v4 ? IPPROTO_IP : IPPROTO_IPV6;
-  c->cmsg_type = v4 ? IP_TOS : IPV6_TCLASS;
-  c->cmsg_len = CMSG_LEN(sizeof(int));
-  const int value = tos;
-  std::memcpy(CMSG_DATA(c), &value, sizeof value);
+  net::SetTos(tos, to != nullptr ? *to : peer_, &control, &message);
   ssize_t sent = 0;
   do {
     sent = sendmsg(fd(), &message, MSG_NOSIGNAL);

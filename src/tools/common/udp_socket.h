@@ -1,29 +1,19 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // UDP sockets that read and write the ECN bits and know when the kernel got a packet.
 #pragma once
-#include <netinet/in.h>
-#include <sys/socket.h>
-
 #include <cstdint>
 #include <functional>
 #include <string>
 
+#include "gst/net/datagram.h"
 #include "src/base/byte_reader.h"
 #include "src/base/time.h"
 #include "src/tools/common/file_descriptor.h"
 
 namespace lidar::tools {
 
-struct Address {
-  sockaddr_storage storage{};
-  socklen_t length = 0;
-
-  bool valid() const { return length > 0; }
-  /// The four-byte kind of address, also where it is mapped into IPv6.
-  bool IsIpv4() const;
-  std::string ToString() const;
-};
-bool operator==(const Address& a, const Address& b);
+using Address = net::NativeAddress;
+std::string ToString(const Address& address);
 
 /// "HOST:PORT", "[IPV6]:PORT" or "PORT" (then `default_host`). Throws std::runtime_error with a
 /// text for the user.

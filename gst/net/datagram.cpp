@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "gst/net/datagram.h"
+
+#include <net/if.h>
+
+#include <cerrno>
+#include <cstring>
+#include <ctime>
+
+namespace lidar::net {
+namespace {
+
+template <class T>
+T Payload(cmsghdr* c) {
+  T value{};
+  std::memcpy(&value, CMSG_DATA(c), sizeof value);
+  return value;
+}
+
+void Enable(int fd, int level, int name) {
+  const int on = 1;
+  // An option of the other address family fails, and is not needed then.
+  if (setsockopt(fd, level, name, &on, sizeof on) != 0) return;
+}
+
+}  // namespace
+
+bool NativeAddress::IsIpv4() const {
+  if (storage.ss_family != AF_INET6) return storage.ss_family == AF_INET;
+  sockaddr_in6 v6{};
+  std::memcpy(&v6, &storage, sizeof v6);
+  return IN6_IS_ADDR_V4MAPPED(&v6.sin6_addr);
+}
+
+bool NativeAddress::operator==(const NativeAddress& o) const {
+  return length == o.length && std::memcmp(&storage, &o.storage, length) == 0;
+}
+
+void AskForInfo(int fd) {
+  Enable(fd, IPPROTO_IP, IP_RECVTOS);
+  Enable(fd, IPPROTO_IPV6, IPV6_RECVTCLASS);
+  Enable(fd, SOL_SOCKET, SO_TIMESTAMPNS);
+  Enable(fd, SOL_SOCKET, SO_RXQ_OVFL);
+}
+
+DatagramInfo ReadInfo(msghdr* received) {
+  DatagramInfo info;
+  for (cmsghdr* c = CMSG_FIRSTHDR(received); c != nullptr; c = CMSG_NXTHDR(received, c)) {
+    if (c->cmsg_level == IPPROTO_IP && c->cmsg_type == IP_TOS) {
+      info.tos = Payload<std::uint8_t>(c);  // one byte, unlike its IPv6 sister
+    } else if (c->cmsg_level == IPPROTO_IPV6 && c->cmsg_type == IPV6_TCLASS) {
+      info.tos = static_cast<std::uint8_t>(Payload<int>(c));
+    } else if (c->cmsg_level == SOL_SOCKET && c->cmsg_type == SCM_TIMESTAMPNS) {
+      const auto t = Payload<timespec>(c);
+      info.arrival = std::chrono::seconds{t.tv_sec} + std::chrono::nanoseconds{t.tv_nsec};
+    } else if (c->cmsg_level == SOL_SOCKET && c->cmsg_type == SO_RXQ_OVFL) {
+      info.overflow = Payload<std::uint32_t>(c);
+    }
+  }
+  return info;
+}
+
+void SetTos(std::uint8_t tos, const NativeAddress& to, TosControl* control, msghdr* message) {
+  *control = {};
+  message->msg_control = control->bytes;
+  message->msg_controllen = sizeof control->bytes;
+  cmsghdr* c = CMSG_FIRSTHDR(message);
+  // A mapped address leaves through the IPv4 stack, which reads only its own option.
+  const bool v4 = to.IsIpv4();
+  c->cmsg_level = v4 ? IPPROTO_IP : IPPROTO_IPV6;
+  c->cmsg_type = v4 ? IP_TOS : IPV6_TCLASS;
+  c->cmsg_len = CMSG_LEN(sizeof(int));
+  const int value = tos;
+  std::memcpy(CMSG_DATA(c), &value, sizeof value);
+}
+
+bool SendMulticastFrom(int fd, const std::string& interface) {
+  const int index = static_cast<int>(if_nametoindex(interface.c_str()));
+  if (index == 0) return false;
+  sockaddr_storage local{};
+  socklen_t length = sizeof local;
+  if (getsockname(fd, reinterpret_cast<sockaddr*>(&local), &length) != 0) return false;
+  ip_mreqn v4{};
+  v4.imr_ifindex = index;
+  // A socket of IPv6 accepts the option for IPv4, which does nothing there.
+  return (local.ss_family == AF_INET6
+              ? setsockopt(fd, IPPROTO_IPV6, IPV6_MULTICAST_IF, &index, sizeof index)
+              : setsockopt(fd, IPPROTO_IP, IP_MULTICAST_IF, &v4, sizeof v4)) == 0;
+}
+
+unsigned SetReceiveBuffer(int fd, unsigned bytes) {
+  const int size = static_cast<int>(bytes);
+  // The forced form needs CAP_NET_ADMIN.
+  if (bytes > 0 && setsockopt(fd, SOL_SOCKET, SO_RCVBUFFORCE, &size, sizeof size) != 0 &&
+      setsockopt(fd, SOL_SOCKET, SO_RCVBUF, &size, sizeof size) != 0) {
+    return 0;
+  }
+  int granted = 0;
+  socklen_t length = sizeof granted;
+  if (getsockopt(fd, SOL_SOCKET, SO_RCVBUF, &granted, &length) != 0) return 0;
+  return static_cast<unsigned>(granted / 2);  // the kernel doubles it for its own bookkeeping
+}
+
+}  // namespace lidar::net

@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// What every UDP socket here asks of the kernel: ECN bits and the time of arrival with each
+// datagram.
+#pragma once
+#include <netinet/in.h>
+#include <sys/socket.h>
+
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include "src/base/time.h"
+
+namespace lidar::net {
+
+/// A socket address as the kernel takes it.
+struct NativeAddress {
+  sockaddr_storage storage{};
+  socklen_t length = 0;
+
+  const sockaddr* get() const { return reinterpret_cast<const sockaddr*>(&storage); }
+  sockaddr* get() { return reinterpret_cast<sockaddr*>(&storage); }
+  bool valid() const { return length != 0; }
+  /// An IPv4 address, also where it is mapped into IPv6.
+  bool IsIpv4() const;
+  bool operator==(const NativeAddress& o) const;
+  bool operator!=(const NativeAddress& o) const { return !(*this == o); }
+};
+
+/// What the kernel adds to a datagram.
+struct DatagramInfo {
+  std::uint8_t tos = 0;             // DSCP and ECN
+  std::optional<Duration> arrival;  // since the Unix epoch
+  std::optional<std::uint32_t>
+      overflow;  // datagrams that found the buffer full, since the socket opened
+};
+
+/// Asks the kernel for all of DatagramInfo with each datagram.
+void AskForInfo(int fd);
+DatagramInfo ReadInfo(msghdr* received);
+
+/// Room for the control message that SetTos() writes.
+struct TosControl {
+  alignas(cmsghdr) char bytes[CMSG_SPACE(sizeof(int))] = {};
+};
+/// `message` goes to `to` with `tos`, which stands in `control` until it is sent.
+void SetTos(std::uint8_t tos, const NativeAddress& to, TosControl* control, msghdr* message);
+
+/// Multicast leaves by the interface of that name. False with errno set where that cannot be.
+bool SendMulticastFrom(int fd, const std::string& interface);
+
+/// The largest receive buffer up to `bytes` that the kernel grants (0: what it is); its size, or 0
+/// where it fails.
+unsigned SetReceiveBuffer(int fd, unsigned bytes);
+
+}  // namespace lidar::net
