@@ -48,7 +48,7 @@ void FileSession::Seek(const GstSegment& segment) {
 
 /// Moves to where the slice of the target begins.
 GstFlowReturn FileSession::GoToTarget() {
-  // By as much, the sensor's clock may run away from that of the capture.
+  // Margin by which the sensor's clock may run away from that of the capture.
   constexpr Duration kLead = std::chrono::seconds(1);
   // The scan before, too: its packets may be out of order.
   skip_to_ = *target_ - 2 * stream()->metadata().scan_period();

@@ -30,7 +30,7 @@ namespace {
 
 using namespace lidar::gst;
 
-// Until the sensor is known: what a slice is at 10 and at 20 scans/s.
+// The guess until the sensor is known: a slice at 10 and at 20 scans/s.
 constexpr GstClockTime kUsualSlice = 12'500 * GST_USECOND;
 
 struct State {

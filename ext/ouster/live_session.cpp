@@ -87,7 +87,7 @@ bool LiveSession::Open() {
   return OpenFeed() && OpenLink();
 }
 
-/// Where the metadata is in a file: the sockets need no answer of the sensor.
+/// Sockets of a stream whose metadata is in a file need no answer of the sensor.
 bool LiveSession::OpenFeed() {
   if (settings().hostname.empty() || !settings().metadata.empty()) {
     auto metadata = LoadMetadata();
@@ -260,7 +260,7 @@ bool LiveSession::TakeMetadata(ouster::Metadata metadata) {
 void LiveSession::HandleNewInitId(ByteView payload, const ouster::Arrival& arrival) {
   const gint64 now = g_get_monotonic_time();
   if (new_init_id_us_ == 0) new_init_id_us_ = now;
-  // Without a serial number it may be another sensor on this port, while ours goes on.
+  // A sensor without a serial number may be another one on this port, while ours goes on.
   const bool may_be_another = stream()->metadata().serial == 0;
   if ((link_ || may_be_another) && now - new_init_id_us_ < kWaitForMetadataUs) return Ask();
   new_init_id_us_ = 0;

@@ -49,7 +49,7 @@ std::optional<PcapFeed::Packet> PcapFeed::Next() {
 }
 
 bool PcapFeed::Reposition(Time first, std::optional<std::int64_t> offset) {
-  // From the front, too: after an error, the reader reads no more.
+  // Starts from the front, too: after an error the reader reads no more.
   if (!reader_->Rewind() || (offset && !reader_->GoTo(*offset))) return false;
   first_ = last_ = first;
   error_.clear();

@@ -20,7 +20,8 @@ namespace {
 // 8 bit a pixel and a header: more than the largest scan has.
 constexpr std::size_t kMaxMaskSize = 32U << 20;
 
-/// None for what cannot be read; only the start of a file that is larger than `max_size`.
+/// Returns nothing for what cannot be read; only the start of a file that is larger than
+/// `max_size`.
 std::optional<std::string> ReadFile(const std::string& path, std::size_t max_size) {
   constexpr std::size_t kPiece = 1U << 16;
   std::ifstream file(path, std::ios::binary);

@@ -14,7 +14,7 @@ namespace {
 
 constexpr gsize kSmallestQueue = 1U << 20;  // bytes
 
-/// Without this, a socket gets the groups that others on the machine joined, too.
+/// Keeps out the groups that others on the machine joined.
 void OnlyJoinedGroups(GSocket* socket) {
   const int off = 0;
   const int fd = g_socket_get_fd(socket);

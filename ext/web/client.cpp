@@ -109,7 +109,7 @@ bool Client::Send(Outbox::Item item, std::size_t depth) {
 
 void Client::Close(CloseCode code) {
   if (closed_) return;
-  // Between two frames the peer can be told; within one it could not read it.
+  // The peer can be told between two frames; it could not read it within one.
   if (!current_ || current_->sent == 0) WriteSome({foxglove::CloseFrame(code), nullptr, 0});
   End();
 }

@@ -101,7 +101,7 @@ SourcePtr ClientService::Every(guint interval_ms, GSourceFunc function) {
 
 // --- HTTP ---
 
-/// Nobody sends us anything that has a body.
+/// No request that is served has a body.
 void ClientService::OnHeaders(SoupServer*, SoupServerMessage* request, const char*, GHashTable*,
                               gpointer self) {
   soup_message_body_set_accumulate(soup_server_message_get_request_body(request), FALSE);

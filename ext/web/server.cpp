@@ -33,7 +33,7 @@ std::unique_ptr<Server> Server::Start(ServerConfig config, std::string* error) {
 
 Server::~Server() {
   if (!thread_.joinable()) return;
-  // In the context, so that it comes after the loop has begun.
+  // Runs in the context, so that it comes after the loop has begun.
   GSource* quit = g_idle_source_new();
   g_source_set_priority(quit, G_PRIORITY_HIGH);
   g_source_set_callback(

@@ -30,7 +30,7 @@ void Collect(GstElement* element, json* all);
 
 void CollectChildren(GstBin* bin, json* all) {
   GstIterator* children = gst_bin_iterate_elements(bin);
-  // Where children come and go meanwhile, the next message is whole again.
+  // The next message is whole again if children come and go meanwhile.
   gst_iterator_foreach(
       children,
       [](const GValue* child, gpointer out) {

@@ -23,7 +23,7 @@ constexpr std::size_t kPhases = 64;
 
 }  // namespace
 
-/// From above, all of the way is in the picture, x to the right. In perspective the picture turns
+/// The view from above shows all of the way, x to the right. In perspective the picture turns
 /// with the sensor, but does not tilt with it.
 void Renderer::FrameMap() {
   const Rigid pose = map_->PoseAfter(0);
@@ -103,7 +103,7 @@ void Renderer::DrawMap() {
 void Renderer::DrawWay() {
   const bool top = settings_.view == ViewKind::kTop;
   const int width = std::max(2, canvas_.width() / 320);
-  // From above the way lies over everything; in perspective on the road.
+  // The way lies over everything from above, and on the road in perspective.
   const auto end = [&](const std::array<float, 3>& place) -> std::optional<Canvas::End> {
     Vec p = ToPicture(place);
     p.z += kGround + 0.3F;

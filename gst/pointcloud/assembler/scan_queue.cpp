@@ -60,7 +60,7 @@ void ScanQueue::Add(const SliceView& slice, GstClockTime deadline, Finished* fin
   }
   if (!open->builder.complete()) return;
   const guint id = open->builder.scan_id();
-  // Nothing older is worth the wait once a whole scan is there.
+  // Older scans are not worth the wait once a whole scan is there.
   while (newest_left_ != id) FinishFront(finished);
 }
 

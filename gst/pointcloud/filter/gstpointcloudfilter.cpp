@@ -279,7 +279,7 @@ static GstPad* RequestPad(GstElement* element, GstPadTemplate* pad_template, con
                           const GstCaps*) {
   auto* self = GST_LIDAR_POINT_CLOUD_FILTER(element);
   GST_OBJECT_LOCK(self);
-  // Whoever asks for a name gets it. A pad without one must never get a name that was given.
+  // A requested name is kept. A pad without one must never get a name that was given.
   guint64 number = self->next_pad;
   if (name != nullptr) g_ascii_string_to_unsigned(name + 3, 10, 0, G_MAXUINT - 1, &number, nullptr);
   self->next_pad = std::max(self->next_pad, static_cast<guint>(number) + 1);

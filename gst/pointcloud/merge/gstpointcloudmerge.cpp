@@ -49,7 +49,7 @@ const std::array<Property<MergePadSettings>, 1> kPadProperties = {{
      &MergePadSettings::transform, 0, 0, GST_PARAM_MUTABLE_PLAYING},
 }};
 
-/// Where a sensor is, and its clouds as all of them are wanted.
+/// Pose of a sensor, and its clouds in the common form.
 struct MergePadState {
   std::mutex mutex;  // guards the settings
   MergePadSettings settings;

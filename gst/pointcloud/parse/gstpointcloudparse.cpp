@@ -184,7 +184,7 @@ static GstFlowReturn PushWhole(GstLidarPointCloudParse* self, BufferPtr buffer) 
   return self->state->type ? PushFile(self, buffer) : PushCloud(self, std::move(buffer));
 }
 
-/// From the caps, which say more than the property where that is not set.
+/// Taken from the caps, which say more than the property where that is not set.
 static void SetRate(State* state, gint n, gint d) {
   FrameRate rate{n, d};
   {

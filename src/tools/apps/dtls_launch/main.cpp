@@ -33,7 +33,7 @@ struct Certificates {
   std::string peer;  // the certificate to trust, without line breaks
 };
 
-/// One handshake, and what comes of it. Threads of the pipeline set the flags.
+/// A handshake, and what comes of it. Threads of the pipeline set the flags.
 struct Session {
   explicit Session(const Certificates& c) : certificates(c) {}
   ~Session() {

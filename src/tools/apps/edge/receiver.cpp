@@ -117,7 +117,7 @@ void Receiver::Rest(Clock::time_point now, Duration pause, const std::string& wh
   Say(why);
 }
 
-/// Where the recorder has failed, another one is tried later, and the stream goes on meanwhile.
+/// If the recorder has failed, another one is tried later, and the stream goes on meanwhile.
 void Receiver::Record(Clock::time_point now) {
   if (robot_.record.empty() || recording_ || now < record_at_) return;
   recording_ = true;

@@ -104,7 +104,7 @@ SharedPort::SharedPort(const std::string& address, std::uint16_t port,
     if (socket == nullptr) Fail("a socket cannot be used");
     sockets_.emplace_back(socket);
     const int fd = owner.Release();
-    // Nobody reads it until its robot's session begins.
+    // The socket stays unread until its robot's session begins.
     if (!Attach(fd, SO_ATTACH_FILTER, kNothing)) Fail("a socket takes no filter");
     if (i == 0 && !Attach(fd, SO_ATTACH_REUSEPORT_CBPF, ChooseBySsrc(ranges)))
       Fail(std::string("the kernel does not tell ") + std::to_string(ranges.size()) +

@@ -106,7 +106,7 @@ void OnCandidateOfCallee(GstElement*, guint line, gchar* text, Call* call) {
   g_signal_emit_by_name(call->caller.get(), "add-ice-candidate", line, candidate.c_str());
 }
 
-/// Behind a relay the callee learns the caller's address from what comes through it.
+/// The callee behind a relay learns the caller's address from what comes through it.
 void OnCandidateOfCaller(GstElement*, guint line, gchar* text, Call* call) {
   if (call->options.relay == 0)
     g_signal_emit_by_name(call->callee.get(), "add-ice-candidate", line, text);
@@ -179,7 +179,7 @@ bool Handle(GstMessage* message, int* result) {
   return false;
 }
 
-/// Until EOS, an error, a signal, or the duration is over; prints statistics meanwhile.
+/// Runs until EOS, an error, a signal, or the duration is over; prints statistics meanwhile.
 int Play(const Call& call) {
   bool run = true;
   lidar::tools::StopOnSignals(&run);

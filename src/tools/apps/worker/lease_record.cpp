@@ -49,7 +49,7 @@ bool IsVelocity(const std::array<double, 6>& v) {
          std::all_of(v.begin() + 3, v.end(), [](double s) { return std::abs(s) <= kMaxTurnRate; });
 }
 
-/// One that makes no sense is not known.
+/// A velocity that makes no sense counts as unknown.
 std::optional<std::array<double, 6>> ReadVelocity(const json& object) {
   std::array<double, 6> velocity{};
   const bool good = ReadNumbers(object, "velocity", &velocity) && IsVelocity(velocity);

@@ -38,7 +38,7 @@ void LeaseStore::Write(std::uint64_t ticket, const std::string& key, std::uint64
                      text.data(), static_cast<int>(text.size())) != NATS_OK)
     return;
   const MessagePtr message(raw);
-  // Without the header it would replace anything.
+  // The header keeps it from replacing anything else.
   if (natsMsgHeader_Set(raw, kReplaces, std::to_string(replaces).c_str()) != NATS_OK) return;
   natsConnection_PublishMsg(connection_, raw);
 }
@@ -51,7 +51,7 @@ std::optional<LeaseStore::Answer> LeaseStore::NextAnswer(std::chrono::millisecon
   const auto ticket = nats::ToNumber(subjects_->WordOf(raw));
   auto answer =
       ParseAnswer({natsMsg_GetData(raw), static_cast<std::size_t>(natsMsg_GetDataLength(raw))});
-  // Whoever has no JetStream, or no bucket yet, refuses as well.
+  // A server without JetStream, or without a bucket yet, refuses as well.
   if (!answer) answer.emplace();
   answer->ticket = ticket.value_or(0);
   return answer;

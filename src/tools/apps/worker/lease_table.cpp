@@ -38,7 +38,7 @@ void LeaseTable::SetRobots(const std::set<std::string>& robots, Time now) {
   }
 }
 
-/// From when on others may have a robot whose entry was just seen.
+/// Time from which others may have a robot whose entry was just seen.
 void LeaseTable::NoteFree(Robot* robot, bool damaged, Time now) const {
   const LeaseRecord& record = robot->record;
   const bool nobody = !damaged && (record.worker.empty() || record.worker == settings_.worker);
@@ -168,7 +168,7 @@ bool LeaseTable::MakeRoom(const std::map<std::string, std::size_t>& places,
       worst = at;
   }
   if (worst == robots_.end()) return false;
-  // One place less must leave it as many as the other then has, or both would change for ever.
+  // A place less must leave it as many as the other then has, or both would change for ever.
   const bool unfair = places_of(worst->first) >= places_of(waiting) + 2;
   const auto idle = std::find_if(robots_.begin(), robots_.end(), [&](const auto& item) {
     return item.second.held && now - item.second.moved_at > kIdle;

@@ -79,7 +79,7 @@ RobotPipeline::RobotPipeline(const PipelineSettings& settings, const std::string
   if (begin_scan_ > 0) g_object_set(source, "start-sequence", begin->from, nullptr);
   g_object_set(poses, "subject", (begin_of_subject + ".odometry." + sensor).c_str(), nullptr);
   SetOdometry(odometry, settings, begin_);
-  // One thread does it all, so what is on its way is always one message.
+  // A single thread does it all, so one message is on its way at a time.
   for (GstElement* sink : {clouds, poses})
     g_object_set(sink, "sync", FALSE, "async", FALSE, nullptr);
   if (!gst_element_link_many(source, decoder, odometry, clouds, nullptr) ||
@@ -152,7 +152,7 @@ void RobotPipeline::NoteLateBegin(GstClockTime captured) {
   late_ns_ = GST_CLOCK_TIME_IS_VALID(captured) ? captured - std::min(since, captured) : 0;
 }
 
-/// Whoever has lost its lease says nothing any more, and changes nothing.
+/// A worker without its lease publishes and changes nothing any more.
 GstPadProbeReturn RobotPipeline::OnPose(GstBuffer* buffer) {
   std::optional<Scan>& scan = closed_ ? closed_ : open_;
   const gst::BufferMap map(buffer, GST_MAP_READ);

@@ -243,7 +243,7 @@ void Coordinator::CheckLimit() {
   failure_ = std::string("gave up waiting for ") + kWaitingFor[static_cast<int>(phase_)];
 }
 
-/// Nothing is missing, or what is missing has had the time to come: the link may be in a gap.
+/// All is there, or what is missing has had the time to come: the link may be in a gap.
 bool Coordinator::AllArrived() const {
   const Duration waited = Now() - phase_since_;
   return waited >= kArrivalLimit || (waited >= kTick && m_.ledger.Count().slices_lost == 0);

@@ -32,7 +32,7 @@ nlohmann::json Record(const char* type, GstBuffer* buffer) {
           {"unix_ns", UnixNow()}};
 }
 
-/// Between a buffer that enters an element and the one that leaves it in the same thread.
+/// Time between a buffer that enters an element and the one that leaves it in the same thread.
 struct Stopwatch {
   std::int64_t entered = 0;
 };

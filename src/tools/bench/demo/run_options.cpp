@@ -230,7 +230,7 @@ std::string SenderPipeline(const RunOptions& o, Ports ports) {
           std::to_string(ports.link) + " max-bitrate=" + Bps(o.max_bitrate_mbps) +
           " start-bitrate=" + Bps(o.start_bitrate_mbps) +
           " ecn-mode=" + (o.no_l4s ? "off" : "ect1") + KeyOf(o);
-  // Without a pad it tells the statistics alone.
+  // A sink without a pad serves the statistics alone.
   if (o.view) text += " foxglovesink port=" + std::to_string(kSenderPage);
   return text;
 }

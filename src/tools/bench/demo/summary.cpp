@@ -107,7 +107,7 @@ nlohmann::ordered_json Utilisation(const Measurements& m, double source_max_bps)
   return used / offered;
 }
 
-/// On the wire; infinite where it is not known.
+/// Rate on the wire; infinite where it is not known.
 double SourceMax(const Measurements& m) {
   return m.encoder_max_bps > 0 ? m.encoder_max_bps * WireShare(m)
                                : std::numeric_limits<double>::infinity();

@@ -32,7 +32,7 @@ ouster::Metadata LoadMetadata(const std::string& path) {
   return *std::move(metadata);
 }
 
-/// Nothing for 0.
+/// Empty for 0.
 void SetSerial(std::uint64_t serial, ouster::Metadata* metadata) {
   if (serial == 0) return;
   metadata->serial = serial;

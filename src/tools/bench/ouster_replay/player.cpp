@@ -53,7 +53,7 @@ void Player::RunEvents(Time now) {
   }
 }
 
-/// From an address of the destination's family.
+/// Sends from an address of the destination's family.
 void Player::SetDestination(const Sensor::Destination& to) {
   lidar_address_ = ResolveAddress(to.host + ":" + std::to_string(to.lidar_port), to.host);
   imu_address_ = ResolveAddress(to.host + ":" + std::to_string(to.imu_port), to.host);

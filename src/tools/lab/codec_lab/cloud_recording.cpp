@@ -56,7 +56,7 @@ std::string ChooseTopic(const std::string& path, const std::string& wanted,
   throw std::runtime_error(path + ": no clouds on " + wanted + "; there are on " + Join(clouds));
 }
 
-/// Where a converted point has its numbers.
+/// Places of the numbers in a converted point.
 struct NumberAt {
   const PointField* field = nullptr;
   float Of(const std::uint8_t* point) const {

@@ -195,7 +195,7 @@ std::optional<Distortion> SliceCodec::Errors(const CodingMode& mode,
   if (!EncodeBytes(xyz ? ModeNamed("xyz-sequential") : mode, {settings.step_m, 0, 0}, 1))
     return std::nullopt;
   constexpr std::uint32_t kMaxPoints = 1U << 26;
-  // Past a number of bits the codec takes the kd-tree all the same.
+  // The codec takes the kd-tree past a number of bits all the same.
   const ByteView bytes{encoded_.bytes.data(), encoded_.bytes.size()};
   if (xyz && draco::CheckDraco(bytes, kMaxPoints).value().is_kd_tree) return std::nullopt;
   draco::SliceDecoder decoder(format_, mode.geometry, kMaxPoints);

@@ -82,7 +82,7 @@ void CountCapture(const ScanSet& set, Counts* sum) {
   }
 }
 
-/// In a thousand, and nothing is impossible.
+/// Share in a thousand, and never zero.
 std::string Frequencies(const std::array<std::uint64_t, codec::kNibbles>& counts) {
   const auto all = std::accumulate(counts.begin(), counts.end(), std::uint64_t{0});
   std::string text;

@@ -24,7 +24,7 @@ struct CloudsOptions {
   bool shuffle = false;
 };
 
-/// Of all scans of a source at one setting.
+/// Sums over all scans of a source at one setting.
 struct CloudCost {
   std::size_t points = 0;
   std::size_t bytes = 0;
