@@ -40,8 +40,8 @@ class XyzSliceEncoder {
 /// codec::SliceEncoder with another geometry and other coders. For one thread at a time.
 class SliceEncoder {
  public:
-  /// None where `format` cannot be coded in that geometry; no geometry takes kRange where it can
-  /// be.
+  /// Returns nothing where `format` cannot be coded in that geometry; no geometry takes kRange
+  /// where it can be.
   static std::optional<SliceEncoder> Create(const codec::CloudFormat& format,
                                             std::optional<Geometry> geometry,
                                             codec::RangeCoder coder = codec::RangeCoder::kAdaptive);

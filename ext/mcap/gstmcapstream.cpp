@@ -84,7 +84,7 @@ static gboolean Event(GstBaseSink* base, GstEvent* event) {
     state.ended = false;
     McapSinkFlushed(state.sink);
   } else if (GST_EVENT_TYPE(event) == GST_EVENT_EOS) {
-    // Before the base class tells the application.
+    // Called before the base class tells the application.
     state.ended = true;
     McapSinkStreamEnded(state.sink);
   }

@@ -156,7 +156,7 @@ std::unique_ptr<MessageReader> MessageReader::Make(const mcap::Schema& schema,
     case MessageType::kSlice:
       break;
   }
-  // Without caps nobody could decode the slices.
+  // Slices without caps could not be decoded.
   return caps ? std::make_unique<SliceReader>(std::move(caps)) : nullptr;
 }
 

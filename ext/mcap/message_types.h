@@ -16,13 +16,13 @@ enum class MessageType { kCloud, kImu, kOdometry, kSlice };
 
 /// Schema of the messages of that type, without an id.
 mcap::Schema SchemaOf(MessageType type);
-/// None for a schema that is none of ours.
+/// Returns nothing for a schema that is none of ours.
 std::optional<MessageType> TypeOf(const mcap::Schema& schema);
 /// What buffers of `caps` become; none where they cannot be recorded.
 std::optional<MessageType> TypeOf(const GstCaps* caps);
 /// Whether samples of an IMU are of the layout that can be recorded.
 bool IsOurImu(const GstCaps* caps);
-/// Where messages of that type go unless a topic is given.
+/// Topic of messages of that type unless another is given.
 std::string_view TopicOf(MessageType type);
 
 /// Caps from the metadata of a channel, which anybody may have written. Null where `text` is not

@@ -13,7 +13,7 @@ class OutputFile {
  public:
   /// What is there already is replaced where the user has named it, and stays where we have.
   enum class Existing { kReplace, kKeep };
-  /// Nothing happens to the disk yet. `sync`: each piece is on the disk before Append() returns.
+  /// The disk is untouched yet. `sync`: each piece is on the disk before Append() returns.
   OutputFile(std::string path, bool sync, Existing existing)
       : path_(std::move(path)), sync_(sync), existing_(existing) {}
   ~OutputFile();

@@ -65,7 +65,7 @@ class Playback {
   std::uint64_t end_time_ = 0;
   std::uint64_t unclosed_files_ = 0;
   std::uint64_t unreadable_files_ = 0;
-  // Where it is.
+  // Place in the file.
   std::uint64_t from_ = 0;
   std::size_t next_file_ = 0;
   std::unique_ptr<mcap::Reader> reader_;

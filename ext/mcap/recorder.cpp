@@ -32,7 +32,7 @@ std::optional<RecorderFault> Recorder::Fault() const {
   return RecorderFault{file_->path(), file_->error(), file_->opening_failed()};
 }
 
-/// At the limit with the next scan; an eighth beyond it with any message.
+/// The file ends at its limit if a scan begins here, otherwise at 9/8 of it.
 bool Recorder::IsOver(std::uint64_t log_time, bool begins_scan) const {
   const auto over = [&](std::uint64_t value, std::uint64_t limit) {
     return limit > 0 && value >= (begins_scan ? limit : limit + limit / 8);

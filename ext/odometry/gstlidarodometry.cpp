@@ -202,7 +202,7 @@ static void WriteTrajectory(GstLidarOdometry* self, const Estimate& estimate) {
                       (nullptr));
 }
 
-/// One buffer for each scan: 7 doubles and the tracking, little-endian. Nobody has to link the pad.
+/// A buffer for each scan: 7 doubles and the tracking, little-endian. Nobody has to link the pad.
 static void PushPose(GstLidarOdometry* self, const Estimate& estimate, GstClockTime pts) {
   if (!gst_pad_is_linked(self->poses)) return;
   const GstLidarPose pose = ToMeta(estimate.pose, estimate.tracking);

@@ -18,8 +18,8 @@ struct HttpResponse {
 /// size and time. Used by one thread, except Cancel().
 class HttpClient {
  public:
-  /// None and `error` unless `host` is a name or address, with an optional port and scheme:
-  /// "os1.local", "[fe80::1%25eth0]", "192.0.2.7:8080", "https://os1.local".
+  /// Returns nothing and sets `error` unless `host` is a name or address, with an optional port and
+  /// scheme: "os1.local", "[fe80::1%25eth0]", "192.0.2.7:8080", "https://os1.local".
   static std::unique_ptr<HttpClient> Create(const std::string& host, std::string* error);
   ~HttpClient();
   HttpClient(const HttpClient&) = delete;

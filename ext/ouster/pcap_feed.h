@@ -25,7 +25,7 @@ class PcapFeed {
     ouster::Sender sender{};
     bool starts_over = false;  // the first one of another round
   };
-  /// None at the end, or where the file is damaged: error() then says so.
+  /// Returns nothing at the end, or where the file is damaged: error() then says so.
   std::optional<Packet> Next();
   /// Next() goes on at `offset` of the file, or at its front, with times that count from `first`.
   /// False where the file is gone. Not while looping.

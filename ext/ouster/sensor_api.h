@@ -28,7 +28,7 @@ class SensorApi {
   /// True where nothing (more) has to change. `sleep` waits about a second; false: stop.
   bool Configure(const OusterSettings& settings, const std::function<bool()>& sleep,
                  ApiError* error);
-  /// Where the sensor sends its packets, "192.0.2.1:7502"; empty where it does not say.
+  /// Destination of the sensor's packets, "192.0.2.1:7502"; empty where it does not say.
   std::string Destination();
 
  private:

@@ -66,7 +66,7 @@ class Session {
   virtual GstFlowReturn Poll() = 0;
   virtual void AddCounters(Counters*) const {}
 
-  /// None after an error was posted.
+  /// Returns nothing after an error was posted.
   std::optional<ouster::Metadata> LoadMetadata();
   /// Takes the sensor as described from now on; false after an error was posted.
   bool SetMetadata(ouster::Metadata metadata);

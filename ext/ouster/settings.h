@@ -55,7 +55,7 @@ struct OusterSettings {
   /// UDP is always live; a file is when the user says so.
   bool live() const { return location.empty() || is_live; }
   bool from_file() const { return !location.empty(); }
-  /// Where the metadata is: beside the capture, unless the user says otherwise. Empty: not known.
+  /// Place of the metadata: beside the capture, unless the user says otherwise. Empty: not known.
   std::string MetadataPath() const;
 };
 
@@ -64,7 +64,7 @@ StructurePtr OusterStats(GObject* source);
 
 extern const std::array<Property<OusterSettings>, 31> kOusterProperties;
 
-/// None and `error`, in words for a user, where a property makes no sense.
+/// Returns nothing and sets `error`, in words for a user, where a property makes no sense.
 std::optional<ouster::StreamOptions> ToStreamOptions(const OusterSettings& settings,
                                                      std::string* error);
 

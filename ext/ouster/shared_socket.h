@@ -30,7 +30,7 @@ struct SocketPlace {
 
 class SharedSocket;
 
-/// One of a socket's readers; every reader gets every datagram, in the order of their arrival. The
+/// A reader of a socket; every reader gets every datagram, in the order of their arrival. The
 /// reader that calls Receive() first takes the datagrams off the socket and leaves copies for the
 /// others. So no thread is needed in between, and a socket with one reader copies nothing. One
 /// thread uses a reader.
@@ -45,7 +45,7 @@ class SocketReader {
   SocketReader(const SocketReader&) = delete;
   SocketReader& operator=(const SocketReader&) = delete;
 
-  /// To wait for: readable while something may be there for Receive().
+  /// Descriptor to wait for: readable while something may be there for Receive().
   int socket_fd() const;
   int queue_fd() const { return queued_.fd(); }
   /// Hands over what is there; false with errno where the socket failed.

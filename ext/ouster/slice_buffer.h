@@ -7,7 +7,7 @@
 
 namespace lidar::gst {
 
-/// Since the Unix epoch; 0 for a time before it.
+/// Time since the Unix epoch; 0 for a time before it.
 GstClockTime ToClockTime(Time time);
 /// transfer full
 GstCaps* CapsOf(const ouster::SensorStream& stream);

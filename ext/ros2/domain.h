@@ -7,7 +7,7 @@
 
 namespace lidar::dds {
 
-/// Whatever has entities in it holds it.
+/// Each owner of entities in it holds it.
 class Domain {
  public:
   /// Null where Cyclone refuses its configuration; `why` then says so. It may be the user's: ours

@@ -58,10 +58,10 @@ class Reader : public Node {
   };
   /// Blocks until there is something to say. Only one thread may wait.
   Event Wait();
-  /// From any thread: Wait() returns at once until Wake(false).
+  /// Callable from any thread: Wait() returns at once until Wake(false).
   void Wake(bool on);
 
-  /// After kMessage; null where somebody's node went, which is a message, too.
+  /// Set after kMessage; null where somebody's node went, which is a message, too.
   MessagePtr Take();
   const std::string& other_type() const { return other_type_; }
   /// Messages that DDS knows to be missing, and publishers that are there.

@@ -209,7 +209,7 @@ static gboolean SetCaps(GstBaseSink* base, GstCaps* caps) {
   return FALSE;
 }
 
-/// One warning, until a message gets through: a subscriber that hangs would make many.
+/// A single warning, until a message gets through: a subscriber that hangs would make many.
 static void NoteResult(GstLidarRos2Sink* self, Writer::Result result, gsize bytes) {
   State& state = StateOf(self);
   const bool sent = result == Writer::Result::kSent;
@@ -255,7 +255,7 @@ static GstFlowReturn Render(GstBaseSink* base, GstBuffer* buffer) {
   const Time now = Time{} + Duration{g_get_real_time() * 1000};
   auto last = Writer::Result::kSent;
   const auto publish = [&](const auto& pieces) {
-    // One wait a buffer: one for each of many samples would keep the element from stopping.
+    // A single wait a buffer: one for each of many samples would keep the element from stopping.
     if (last == Writer::Result::kTimeout)
       NoteResult(self, last, 0);
     else

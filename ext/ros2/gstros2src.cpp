@@ -112,7 +112,7 @@ static std::shared_ptr<Reader> ReaderOf(gpointer self) {
   return state.reader;
 }
 
-/// With what DDS counts itself.
+/// Adds what DDS counts itself.
 static Counters CountersNow(GObject* object) {
   State& state = StateOf(object);
   const auto reader = ReaderOf(object);
@@ -206,7 +206,7 @@ static void Count(GstLidarRos2Src* self, guint64 Counters::*counter, guint64 amo
   state.counters.*counter += amount;
 }
 
-/// One warning: whoever is in the network can bring any number of publishers.
+/// A single warning: anyone in the network can add publishers.
 static void NoteOtherType(GstLidarRos2Src* self, const Reader& reader) {
   Count(self, &Counters::other_types);
   if (std::exchange(StateOf(self).warned_type, true)) return;
@@ -225,7 +225,7 @@ static void NoteIncompatible(GstLidarRos2Src* self) {
                       ("use qos=sensor-data where it is best-effort"));
 }
 
-/// One warning, until a message is good again: a publisher that is broken sends many.
+/// A single warning, until a message is good again: a publisher that is broken sends many.
 static void NoteDamaged(GstLidarRos2Src* self, const std::string& why) {
   State& state = StateOf(self);
   Count(self, &Counters::damaged);

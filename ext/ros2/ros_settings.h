@@ -27,7 +27,7 @@ GType RosQosType();
 GType RosDistroType();
 const std::array<Property<RosSettings>, 6>& RosRows();
 
-/// None after an error message that names the setting that is wrong.
+/// Returns nothing after an error message that names the setting that is wrong.
 std::optional<dds::EndpointOptions> ToOptions(GstElement* element, const RosSettings& settings,
                                               cdr::RosType type);
 

@@ -35,7 +35,7 @@ class Client {
   void SendText(const std::string& text);
   /// True where an older message gave way to this one.
   bool Send(Outbox::Item item, std::size_t depth);
-  /// Nothing of the channel is sent any more.
+  /// The channel's messages are no longer sent.
   void Forget(std::uint32_t channel) { outbox_.Forget(channel); }
   /// Sends the close frame, if the peer takes it, and ends the connection.
   void Close(foxglove::CloseCode code);

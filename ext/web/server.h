@@ -20,7 +20,7 @@ class ClientService;
 /// The public functions may be called from any thread, and wait for no client.
 class Server {
  public:
-  /// None where the server cannot listen; `error` then says why, in words for a user.
+  /// Returns nothing where the server cannot listen; `error` then says why, in words for a user.
   static std::unique_ptr<Server> Start(ServerConfig config, std::string* error);
   /// Ends all connections.
   ~Server();
@@ -32,7 +32,7 @@ class Server {
 
   /// The channel `topic`, which several may share. None where it has another schema.
   SharedTopic Open(const std::string& topic, foxglove::Schema schema);
-  /// Whoever opened it last closes the channel.
+  /// The last pad that opened the channel closes it.
   void Close(const SharedTopic& topic);
   /// The message waits for the server's thread. Where too many wait, the oldest go.
   void Publish(const SharedTopic& topic, Message message);

@@ -11,7 +11,7 @@
 
 namespace lidar::web {
 
-/// One message, as all clients get it.
+/// A message, as all clients get it.
 struct Message {
   std::uint64_t unix_ns = 0;
   std::vector<std::uint8_t> payload;

@@ -17,7 +17,7 @@
 namespace lidar::gst {
 namespace caps_text {
 
-/// None for a value of another type.
+/// Returns nothing for a value of another type.
 inline std::optional<ScalarCaps::Value> ToScalar(const GValue* value) {
   using Value = ScalarCaps::Value;
   const GType type = G_VALUE_TYPE(value);
@@ -67,8 +67,8 @@ inline void SetScalar(GstStructure* s, const gchar* name, const ScalarCaps::Valu
 
 }  // namespace caps_text
 
-/// None where `caps` are not those of one stream in the system's memory with scalar fields: `why`
-/// then says so in words for a user.
+/// Returns nothing where `caps` are not those of one stream in the system's memory with scalar
+/// fields: `why` then says so in words for a user.
 inline std::optional<ScalarCaps> ToScalarCaps(const GstCaps* caps, std::string* why = nullptr) {
   std::string ignored;
   std::string& reason = why != nullptr ? *why : ignored;
@@ -100,7 +100,7 @@ inline CapsPtr FromScalarCaps(const ScalarCaps& scalar) {
   return caps;
 }
 
-/// None where CapsFromText() would not take it: `why` then says so in words for a user.
+/// Returns nothing where CapsFromText() would not take it: `why` then says so in words for a user.
 inline std::optional<std::string> CapsToText(const GstCaps* caps, std::string* why = nullptr) {
   const auto scalar = ToScalarCaps(caps, why);
   return scalar ? scalar->ToText() : std::nullopt;

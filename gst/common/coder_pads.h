@@ -33,10 +33,10 @@ class CoderPads {
     return gst_pad_push(src_, output.release());
   }
 
-  /// Nothing comes of `input`: downstream should not wait for it.
+  /// `input` gives no output: downstream should not wait for it.
   GstFlowReturn LeaveOut(GstBuffer* input) {
     discont_ = true;
-    // Before the first caps nobody downstream knows what the gap is in.
+    // A gap before the first caps means nothing downstream.
     if (GST_BUFFER_PTS_IS_VALID(input) && gst_pad_has_current_caps(src_))
       gst_pad_push_event(src_,
                          gst_event_new_gap(GST_BUFFER_PTS(input), GST_BUFFER_DURATION(input)));

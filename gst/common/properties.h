@@ -16,7 +16,7 @@
 
 namespace lidar::gst {
 
-/// One property; the default is the field's initialiser. A function of the object makes it
+/// A property; the default is the field's initialiser. A function of the object makes it
 /// read-only.
 template <class Settings>
 struct Property {

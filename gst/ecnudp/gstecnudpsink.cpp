@@ -221,7 +221,8 @@ static Marking CurrentMarking(State& state) {
   return {dscp, static_cast<guint8>(s.ecn), s.reply};
 }
 
-/// One warning for each new kind of error: a path that is down for a while must not end the stream.
+/// A single warning for each new kind of error: a path that is down for a while must not end the
+/// stream.
 static void WarnOnce(GstLidarEcnUdpSink* self, const UdpBatchSender::Result& result) {
   State& state = StateOf(self);
   if (result.last_errno == 0) {

@@ -218,8 +218,8 @@ static GstFlowReturn ReceiveBatch(GstLidarEcnUdpSrc* self) {
   }
 }
 
-/// One buffer at a time: GstBaseSrc 1.22 takes lists, but where it is stopped or ended while it
-/// holds one, it releases a buffer that is not there.
+/// A single buffer at a time: GstBaseSrc 1.22 takes lists, but where it is stopped or ended while
+/// it holds one, it releases a buffer that is not there.
 static GstFlowReturn Create(GstPushSrc* push, GstBuffer** out) {
   auto* self = GST_LIDAR_ECN_UDP_SRC(push);
   State& state = StateOf(self);
@@ -247,7 +247,7 @@ static GstCaps* GetCaps(GstBaseSrc* base, GstCaps* filter) {
   return gst_caps_intersect_full(filter, caps.get(), GST_CAPS_INTERSECT_FIRST);
 }
 
-/// One fixed form of what downstream takes, or none where it takes anything.
+/// A fixed form of what downstream takes, or none where it takes anything.
 static GstCaps* FixateForPeer(const GstCaps* peer) {
   if (gst_caps_is_any(peer) || gst_caps_is_empty(peer)) return nullptr;
   GstCaps* caps = gst_caps_truncate(gst_caps_copy(peer));

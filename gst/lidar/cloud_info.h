@@ -23,9 +23,9 @@ struct CloudInfo {
   gint framerate_d = 1;
   std::optional<SensorModel> sensor_model;
 
-  /// None where the caps are of another type, big-endian, or contradict themselves: fields past
-  /// point-step, a sensor model that does not parse or has another height, too large a frame. `why`
-  /// then says which, in words for a user.
+  /// Returns nothing where the caps are of another type, big-endian, or contradict themselves:
+  /// fields past point-step, a sensor model that does not parse or has another height, too large a
+  /// frame. `why` then says which, in words for a user.
   GST_LIDAR_API static std::optional<CloudInfo> FromCaps(const GstCaps* caps,
                                                          std::string* why = nullptr);
   /// As FromCaps(), of caps that fix the width as well.
@@ -47,7 +47,7 @@ struct CloudInfo {
 
 /// A sensor model as the value of the caps field `sensor-model`; transfer full.
 GST_LIDAR_API GstBuffer* SensorModelToBuffer(const SensorModel& model);
-/// From the caps field `sensor-model` of `structure`, of whatever media type.
+/// Reads the caps field `sensor-model` of `structure`, of whatever media type.
 GST_LIDAR_API std::optional<SensorModel> SensorModelFromStructure(const GstStructure* structure);
 
 }  // namespace lidar::gst

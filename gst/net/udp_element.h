@@ -22,14 +22,14 @@ inline GType GTypeOf<GSocketAddress>() {
   return G_TYPE_SOCKET_ADDRESS;
 }
 
-/// Where datagrams are received.
+/// Local address of the datagrams.
 struct UdpListen {
   std::string address;
   guint port = 5004;
   std::string multicast_group;
   std::string multicast_iface;
 };
-/// Where datagrams go, and from where.
+/// Destination and source of the datagrams.
 struct UdpTarget {
   std::string host = "127.0.0.1";
   guint port = 5004;

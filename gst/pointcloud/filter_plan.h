@@ -35,8 +35,8 @@ struct FilterSettings {
 
 class FilterPlan {
  public:
-  /// None where the settings are wrong, or not to be done with clouds of `caps`; `why` then says so
-  /// in words for a user.
+  /// Returns nothing where the settings are wrong, or not to be done with clouds of `caps`; `why`
+  /// then says so in words for a user.
   static std::unique_ptr<FilterPlan> Make(const FilterSettings& settings, const GstCaps* caps,
                                           std::string* why);
 

@@ -34,7 +34,7 @@ bool ReadModel(const GstStructure* s, rtp::StreamConfig* config) {
   return true;
 }
 
-/// None where a field is missing or does not fit into its place.
+/// Returns nothing where a field is missing or does not fit into its place.
 std::optional<rtp::StreamConfig> NumberedConfig(rtp::Coder coder, const GstStructure* s) {
   const gchar* fields = gst_structure_get_string(s, "fields");
   const gchar* geometry = gst_structure_get_string(s, "geometry");

@@ -53,7 +53,7 @@ bool Receipts::OnEvent(GstEvent* event, GstEvent** upstream) {
       slices.slices[slices.count++] = {slice.scan_id, slice.index};
     }
   }
-  // Without any slice, too: the encoder has to know of every receiver.
+  // Sent without any slice, too: the encoder counts the receivers.
   *upstream = gst_lidar_event_new_slices_received(&slices);
   return true;
 }

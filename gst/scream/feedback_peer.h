@@ -12,7 +12,7 @@ namespace lidar::gst {
 
 class FeedbackPeer {
  public:
-  /// After this silence of the old address another one is the peer's.
+  /// Silence of the old address after which another one is the peer's.
   static constexpr Duration kSilence = std::chrono::milliseconds(500);
 
   /// Takes the source of feedback that was accepted; it may be NULL. True where the peer has moved.

@@ -106,7 +106,7 @@ bool PeerLatch::Join(Time now, Peer* candidate) {
   return true;
 }
 
-/// Where all places are taken, the candidate goes that has shown least and was silent for longest.
+/// If all places are taken, the candidate goes that has shown least and was silent for longest.
 PeerLatch::Peer& PeerLatch::CandidateOf(Time now, GSocketAddress* from) {
   for (Peer& c : candidates_)
     if (SameAddress(c.address.get(), from)) return c;

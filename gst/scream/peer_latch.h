@@ -35,10 +35,10 @@ class Digests {
   std::size_t next_ = 0;
 };
 
-/// One peer at a time is believed: the first that sends. Another takes its place when it has more
-/// to show for itself (see Standing), or as much while the first is silent. All that others send
-/// counts towards their standing and is dropped. A packet without an address (from an element that
-/// does not tell) belongs to any peer.
+/// A single peer is accepted at a time: the first that sends. Another takes its place when it has
+/// more to show for itself (see Standing), or as much while the first is silent. All that others
+/// send counts towards their standing and is dropped. A packet without an address (from an element
+/// that does not tell) belongs to any peer.
 ///
 /// A peer may send over several links. An address joins it by copies: kCopies packets that are
 /// equal, byte for byte, to packets that the peer sent. Only who sees the packets can send those.
@@ -51,7 +51,7 @@ class PeerLatch {
   static constexpr Duration kStreamTime = 1s;
   /// A believed peer without packets for so long is silent.
   static constexpr Duration kSilence = 500ms;
-  /// After this silence a stream is enough to follow a peer that had shown slices.
+  /// Silence after which a stream is enough to follow a peer that had shown slices.
   static constexpr Duration kLongSilence = 5s;
   /// SSRCs of a peer that fell silent are known for so long.
   static constexpr Duration kMemory = 10min;

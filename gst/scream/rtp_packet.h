@@ -21,7 +21,7 @@ struct RtpHeader {
   gsize header_size = 12;  // CSRCs and extension included
 };
 
-/// None where `buffer` is too short or of another version.
+/// Returns nothing where `buffer` is too short or of another version.
 std::optional<RtpHeader> ReadRtpHeader(GstBuffer* buffer);
 
 /// True for a datagram on an RTP port that is RTCP (RFC 5761: packet types 192 to 223).
@@ -33,7 +33,7 @@ std::vector<std::uint8_t> BuildBye(const std::vector<guint32>& ssrcs);
 /// The SSRCs that say goodbye in a compound RTCP datagram.
 std::vector<guint32> ParseBye(ByteView datagram);
 
-/// Where the buffer came from, or NULL; the buffer's.
+/// Sender of the buffer, or NULL; the buffer owns it.
 GSocketAddress* SourceOf(GstBuffer* buffer);
 
 }  // namespace lidar::gst

@@ -19,7 +19,7 @@ struct ChannelName {
   std::string_view name;
   FieldType type;
 };
-// In the order of Channel; names and types are those of ouster_src.
+// Ordered as Channel; names and types are those of ouster_src.
 constexpr std::array<ChannelName, 4> kChannels = {{{"reflectivity", FieldType::kU16},
                                                    {"signal", FieldType::kU16},
                                                    {"ring", FieldType::kU16},

@@ -8,7 +8,7 @@
 
 namespace lidar::gst {
 
-/// One field of a point as a number.
+/// A field of a point as a number.
 class FieldReader {
  public:
   explicit FieldReader(const PointField& field) : field_(field) {}

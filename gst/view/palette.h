@@ -5,9 +5,9 @@
 
 namespace lidar::gst {
 
-/// From cold to warm for 0 .. 1; what lies outside gets the colour of the end.
+/// Colours from cold to warm for 0 .. 1; what lies outside gets the colour of the end.
 Color Spectrum(float t);
-/// From slate to warm white, for brightness.
+/// Colours from slate to warm white, for brightness.
 Color Glow(float t);
 
 /// `part` of the way from `a` to `b`.

@@ -30,11 +30,11 @@ struct ViewSettings {
 
 constexpr float kGround = -1.9F;  // below the sensor [m]
 
-/// One picture at a time: Begin, Draw for each slice, Finish.
+/// Draws a picture at a time: Begin, Draw for each slice, Finish.
 class Renderer {
  public:
-  /// With a map, which has to have a pose, scans are drawn where they were taken, over what was
-  /// seen before. Seen from above, all of the way is in the picture. In perspective the view is
+  /// If there is a map, which has to have a pose, scans are drawn where they were taken, over what
+  /// was seen before. Seen from above, all of the way is in the picture. In perspective the view is
   /// level, from behind the sensor. The map must outlive the renderer.
   Renderer(const ViewSettings& settings, int width, int height, TrailMap* map);
 

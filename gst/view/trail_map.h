@@ -23,7 +23,7 @@ struct Rigid {
   float heading() const;  // [rad]
 };
 
-/// One point a cube. Memory is bounded: where there are too many cubes, they grow, and the way
+/// Keeps a point a cube. Memory is bounded: where there are too many cubes, they grow, and the way
 /// keeps every second place.
 class TrailMap {
  public:
@@ -38,7 +38,7 @@ class TrailMap {
 
   /// The pose of the sensor at `seconds`; the velocity is the one since the pose before.
   void MoveTo(const GstLidarPose& pose, double seconds);
-  /// Where the sensor is, `later_s` after the last pose.
+  /// Place of the sensor, `later_s` after the last pose.
   Rigid PoseAfter(double later_s) const;
   bool has_pose() const { return poses_ > 0; }
 

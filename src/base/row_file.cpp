@@ -22,7 +22,7 @@ RowFile& RowFile::operator=(RowFile&& other) noexcept {
   return *this;
 }
 
-/// Nothing but a regular file is ever taken away.
+/// Only a regular file is ever removed.
 void RowFile::Close() {
   if (!file_.is_open()) return;
   file_.close();

@@ -17,7 +17,7 @@ using Fraction = ScalarCaps::Fraction;
 using Bytes = ScalarCaps::Bytes;
 
 constexpr std::string_view kPrefix = "application/x-";
-// In the order of Value.
+// Types, ordered as Value.
 constexpr std::array<std::string_view, std::variant_size_v<Value>> kTypeNames = {
     "string",  "boolean", "int",    "uint",     "gint64",
     "guint64", "float",   "double", "fraction", "buffer"};
@@ -258,7 +258,7 @@ void AppendValue(const Value& value, std::string* text) {
       value);
 }
 
-/// None where there is nothing wrong.
+/// Returns nothing if all is well.
 std::optional<std::string> WrongIn(const Value& value) {
   if (const auto* text = std::get_if<std::string>(&value))
     if (!IsPrintable(*text)) return "has characters that cannot be printed";

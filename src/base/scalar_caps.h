@@ -36,7 +36,7 @@ struct ScalarCaps {
   std::string media_type;
   std::vector<Field> fields;
 
-  /// None for text outside of the grammar.
+  /// Returns nothing for text outside of the grammar.
   static std::optional<ScalarCaps> Parse(std::string_view text);
   /// The text, as GStreamer would write it. None where Parse() would not take it: `why` then says
   /// what is wrong, for a user.

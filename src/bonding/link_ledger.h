@@ -32,7 +32,7 @@ class LinkLedger {
 
   /// The packet's number on this link.
   std::uint16_t OnSent(Time now, PacketId id);
-  /// None where a packet arrived that never left over this link.
+  /// Returns nothing where a packet arrived that never left over this link.
   std::optional<Report> OnFeedback(const scream::CongestionFeedback& feedback);
   /// When the packet left of which nothing was heard for longest, neither of it nor of a later one.
   std::optional<Time> waiting_since() const;

@@ -21,7 +21,7 @@ constexpr Duration kRoom = 25ms;
 constexpr Duration kDead = 100ms;
 /// Round trips that differ by so much are alike.
 constexpr Duration kNear = 50ms;
-/// Before a rate is known.
+/// The share before a rate is known.
 constexpr DataRate kUnknownRate = DataRate::BitsPerSecond(1e6);
 /// Entries are kept for receipts that come late.
 constexpr Duration kMemory = 2s;

@@ -40,7 +40,7 @@ struct PointCloud2 {
   bool is_dense = false;
 };
 
-/// None where `message` is no such message; `why` then says so in words for a user.
+/// Returns nothing where `message` is no such message; `why` then says so in words for a user.
 std::optional<PointCloud2> ReadPointCloud2(ByteView message, std::string* why = nullptr);
 std::vector<std::uint8_t> WritePointCloud2(const PointCloud2& cloud);
 
@@ -70,12 +70,12 @@ RosLayout ToRosLayout(const PointLayout& points, std::uint32_t width, std::uint3
 /// Turns the points of messages of one layout into little-endian points in packed rows.
 class PointConverter {
  public:
-  /// With `wanted` the points get just that, converted where a field's type is another. Without it
-  /// they keep their fields; only x, y and z become F32 side by side, as all our elements want
-  /// them. A field of n elements becomes n fields a[0], a[1], ... A field is padding where it has
-  /// no usable name, a name that came before, a type unknown to us or more than kMaxFields
-  /// elements. None where the layout contradicts itself, is too large, or lacks a wanted field;
-  /// `why` then says which.
+  /// `wanted` gives the points just those fields, converted where a field's type is another.
+  /// Without it they keep their fields; only x, y and z become F32 side by side, as all our
+  /// elements want them. A field of n elements becomes n fields a[0], a[1], ... A field is padding
+  /// where it has no usable name, a name that came before, a type unknown to us or more than
+  /// kMaxFields elements. None where the layout contradicts itself, is too large, or lacks a wanted
+  /// field; `why` then says which.
   static std::optional<PointConverter> Make(const RosLayout& layout,
                                             const std::optional<PointLayout>& wanted = {},
                                             std::string* why = nullptr);

@@ -13,7 +13,7 @@ namespace lidar {
 
 enum class CloudFileType { kPcd, kPly };
 
-/// By how `file` begins; a few hundred bytes of it are enough.
+/// Judges by how `file` begins; a few hundred bytes of it are enough.
 std::optional<CloudFileType> TypeOfCloudFile(ByteView file);
 
 struct FileCloud {
@@ -26,8 +26,8 @@ struct FileCloud {
   std::vector<std::uint8_t> points;
 };
 
-/// None where the file is damaged or of a kind that we do not read; `why` then says so in words for
-/// a user. What it claims is believed only as far as its bytes go.
+/// Returns nothing where the file is damaged or of a kind that we do not read; `why` then says so
+/// in words for a user. What it claims is believed only as far as its bytes go.
 std::optional<FileCloud> ReadPcd(ByteView file, std::string* why);
 std::optional<FileCloud> ReadPly(ByteView file, std::string* why);
 

@@ -38,7 +38,7 @@ struct PcdHeader {
   std::optional<std::uint64_t> capture_time;
 };
 
-/// None where there is no line DATA.
+/// Returns nothing where there is no line DATA.
 std::optional<PcdHeader> ReadPcdHeader(cloud_file::Lines* lines) {
   PcdHeader header;
   while (const auto words = lines->Next()) {
@@ -117,7 +117,7 @@ std::optional<std::vector<std::uint8_t>> DecompressLzf(ByteView data, std::size_
   return out;
 }
 
-/// In a compressed file each number of all points stands before the next number of them.
+/// Compressed files hold each number of all points before the next number of them.
 bool ReadCompressed(ByteView rest, const std::vector<FileField>& fields, FileCloud* cloud,
                     std::string* why) {
   ByteReader r(rest);

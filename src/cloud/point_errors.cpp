@@ -21,7 +21,7 @@ class Distances {
     sum_ += metres;
     errors_.max_m = std::max(errors_.max_m, metres);
   }
-  /// From a decoded point that stands for no other one.
+  /// Error of a decoded point that stands for no other one.
   void AddBack(double metres) { errors_.max_m = std::max(errors_.max_m, metres); }
   void AddMissing(std::uint64_t points) { errors_.missing += points; }
   void OnCoordinate(double metres) { largest_ = std::max(largest_, std::abs(metres)); }
@@ -94,7 +94,7 @@ PointErrors CompareClouds(const std::vector<float>& before, const std::vector<fl
   const NearestPoint original(before);
   for (std::size_t i = 0; i < after.size(); i += 3) {
     const double distance = original.DistanceFrom(&after[i]);
-    // Where points were left out, no point that is there stands for them.
+    // No decoded point stands for points that were left out.
     missing > 0 ? distances.Add(distance) : distances.AddBack(distance);
   }
   if (missing > 0) return distances.Take();

@@ -21,7 +21,7 @@ enum class InvalidPoints {
   kRemove,  // they are not in the cloud, which loses its rows
 };
 
-/// In the order in which it is done.
+/// The steps, in the order in which they are done.
 struct PointFilterSettings {
   std::uint32_t beam_step = 1;    // every n-th row
   std::uint32_t column_step = 1;  // every n-th column, as the scan counts them
@@ -66,7 +66,8 @@ struct FilteredCloud {
 
 class PointFilter {
  public:
-  /// None where the settings need x, y and z as F32 side by side, and `fields` lack them.
+  /// Returns nothing where the settings need x, y and z as F32 side by side, and `fields` lack
+  /// them.
   static std::optional<PointFilter> Make(const PointFilterSettings& settings,
                                          const PointFields& fields, std::uint32_t point_step);
 

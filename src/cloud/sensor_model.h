@@ -30,8 +30,8 @@ struct SensorModel {
 
   /// The caps field `sensor-model` (docs/wire-format.md): little-endian, versioned.
   std::vector<std::uint8_t> Serialise() const;
-  /// None for a newer version, a wrong length, more than kMaxBeams or kMaxColumns, or numbers
-  /// that are not finite.
+  /// Returns nothing for a newer version, a wrong length, more than kMaxBeams or kMaxColumns, or
+  /// numbers that are not finite.
   static std::optional<SensorModel> Parse(ByteView bytes);
 
   static constexpr std::uint32_t kMaxBeams = 1024;

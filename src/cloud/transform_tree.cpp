@@ -16,11 +16,11 @@ using Position = std::array<double, 3>;
 
 /// What tf2 takes for a unit quaternion.
 constexpr double kUnitTolerance = 0.01;
-/// Beyond the moon nobody drives, and sums stay finite [m].
+/// No robot is farther away than the moon; sums stay finite [m].
 constexpr double kFarthest = 1e9;
 /// Frames above each other; more are a circle.
 constexpr std::size_t kMaxDepth = 64;
-/// Above this cosine two orientations are so near that a straight line between them will do.
+/// Orientations above this cosine are so near that a straight line between them will do.
 constexpr double kNear = 0.9995;
 
 /// ROS 1 wrote frames with a slash.

@@ -40,7 +40,7 @@ class TransformTree {
     bool may_come = false;               // a later pose can make one
     Time newest{};                       // of the frame that the later pose is missing of
   };
-  /// At a time between two poses they are interpolated. Without a time the newest of each count.
+  /// Poses are interpolated between two times. Without a time the newest of each count.
   Answer Find(const std::string& target, const std::string& source, std::optional<Time> at) const;
 
   std::size_t frames() const { return links_.size(); }

@@ -49,7 +49,7 @@ struct BlockMemory {
   }
   std::size_t bytes() const { return sizeof *this + pixels.size() * sizeof(PixelMemory); }
 };
-/// Nobody changes one that others may see.
+/// A memory that others may see is never changed.
 using BlockMemoryPtr = std::shared_ptr<const BlockMemory>;
 
 /// How a block hangs together with others.

@@ -52,7 +52,7 @@ void EffortControl::Reconsider(double cost) {
   ++effort_;
 }
 
-/// In the first window after a raise. What the machine does beside must not spoil it for long.
+/// The first window after a raise. What the machine does beside must not spoil it for long.
 void EffortControl::LearnRatio(double cost) {
   if (cost_below_ > 0 && cost > 0) {
     double& ratio = levels_[effort_].ratio;

@@ -25,7 +25,7 @@ RangeGrid FinerGrid(const RangeGrid& grid) {
   return {grid.unit_mm(), std::max((2 * grid.parts() + kThirds / 2) / kThirds, 1U)};
 }
 
-/// At the highest effort a finer grid leaves a choice of bins within the same error.
+/// A finer grid at the highest effort leaves a choice of bins within the same error.
 bool MayChoose(const RangeSettings& settings) {
   return settings.effort >= mixing::kSearchingEffort && settings.grid.error_m() > 0;
 }
@@ -283,7 +283,7 @@ double RangeDecoder::error_m() const {
   return was_chosen ? 1e-3 * mixing_.error_mm() : header_.grid.error_m();
 }
 
-/// With a store, `left` is what the block leaves for it.
+/// If there is a store, `left` is what the block leaves for it.
 bool RangeDecoder::DecodeLinked(const RangeHeader& header, ByteView payload, BlockStore* store,
                                 RangeImage* image, std::shared_ptr<BlockMemory>* left) {
   ByteReader reader(payload);
@@ -347,7 +347,7 @@ bool RangeDecoder::DecodeIntegers(const RangeHeader& header, ByteView mask, Byte
 
 void RangeDecoder::Scatter(RangeImage* image) {
   image->ranges.resize(image->size());
-  // One more, which is read but not used where the last pixels have no return.
+  // An extra entry, which is read but not used where the last pixels have no return.
   lists_.values.push_back(0);
   lists_.levels.push_back(0);
   std::size_t next = 0;

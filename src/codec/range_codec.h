@@ -72,7 +72,7 @@ class RangeEncoder {
 /// Decodes blocks of one sensor; any bytes give an image or false.
 class RangeDecoder {
  public:
-  /// Without `integers`, blocks of coders that are not our own are refused.
+  /// If `integers` is missing, blocks of coders that are not our own are refused.
   explicit RangeDecoder(const SensorModel& model, const IntegerCoder* integers = nullptr)
       : alignment_(model), integers_(integers), mixing_(model) {}
 

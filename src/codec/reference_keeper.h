@@ -20,7 +20,7 @@ struct SliceName {
   std::uint32_t count = 1;
 };
 
-/// Without acknowledgements, or with those of more than one receiver, there is nothing to refer to.
+/// There is nothing to refer to without acknowledgements, or with those of several receivers.
 /// All calls name the time; it never goes back. For one thread at a time.
 class ReferenceKeeper {
  public:
@@ -48,7 +48,7 @@ class ReferenceKeeper {
   /// Bytes of all that is remembered.
   std::size_t bytes() const { return bytes_; }
 
-  /// Below those of BlockStore, for slices that came in another order.
+  /// Lower than those of BlockStore, for slices that came in another order.
   static constexpr std::size_t kMostOfSlice = 20;
   static constexpr std::size_t kMostBytes = 48U << 20;
   /// A receiver that acknowledges nothing for so long is gone.
@@ -59,7 +59,7 @@ class ReferenceKeeper {
     std::uint32_t scan_id = 0;
     std::vector<BlockMemoryPtr> blocks;
   };
-  /// One sector of all scans.
+  /// A sector of all scans.
   struct Slot {
     std::deque<Sent> sent;                  // since the reference, the oldest first
     std::vector<BlockMemoryPtr> reference;  // empty: none

@@ -33,11 +33,11 @@ enum class SliceResult {
   kOutOfReach,  // no grid meets max_error_m
 };
 
-/// One stream, so one format. For one thread at a time.
+/// A stream, and so a format. For one thread at a time.
 class SliceEncoder {
  public:
-  /// None where `format` has no ranges. `integers` is needed for coders that are not our own, and
-  /// must outlive the encoder.
+  /// Returns nothing where `format` has no ranges. `integers` is needed for coders that are not our
+  /// own, and must outlive the encoder.
   static std::optional<SliceEncoder> Create(const CloudFormat& format,
                                             RangeCoder coder = RangeCoder::kAdaptive,
                                             const IntegerCoder* integers = nullptr);

@@ -11,7 +11,7 @@
 
 namespace lidar::foxglove {
 
-/// Where and when something was seen.
+/// The place and time at which something was seen.
 struct Header {
   std::uint64_t unix_ns = 0;
   std::string frame_id;

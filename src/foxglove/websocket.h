@@ -48,7 +48,7 @@ class MessageReader {
 
   /// Keeps what no message was made of yet: take all messages before you append more.
   void Append(ByteView bytes);
-  /// None where more bytes are needed, and for ever after an error.
+  /// Returns nothing where more bytes are needed, and for ever after an error.
   std::optional<ClientMessage> Next();
   /// Why the connection has to be closed.
   std::optional<CloseCode> error() const { return error_; }

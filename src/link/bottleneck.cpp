@@ -47,7 +47,7 @@ Bottleneck::Bottleneck(const BottleneckConfig& config)
 
 bool Bottleneck::Full(Time now, DataSize size) {
   const DataRate rate = config_.capacity.RateAt(now - config_.origin);
-  // In a gap of the capacity the last limit stands: a real buffer does not shrink to nothing.
+  // The last limit stands in a gap of the capacity: a real buffer does not shrink to nothing.
   if (config_.limit.time < Duration::max() && rate > DataRate{} && rate < DataRate::Infinite())
     limit_ = std::min(config_.limit.bytes, rate * config_.limit.time);
   // A packet that finds the queue empty is taken, however small the limit.
@@ -99,7 +99,7 @@ void Bottleneck::Advance(Time now) {
     const Time start = std::max(free_at_, queue_->Oldest());
     if (start > now) return;
     if (config_.capacity.RateAt(start - config_.origin) <= DataRate{}) {
-      // Nothing leaves the queue in a gap, so the head's sojourn goes on.
+      // The queue keeps its packets in a gap, so the head's sojourn goes on.
       free_at_ = At(config_.capacity.NextChange(start - config_.origin));
       continue;
     }

@@ -32,7 +32,7 @@ struct OracleResult {
 
 OracleResult AskOracle(const Capacity& capacity, const OracleConfig& config);
 
-/// Where a sender that knows several links puts a slice.
+/// The links that carry a slice, of several that the sender knows.
 enum class Bonding {
   kWhereWholeFirst,
   kOnEach,  // that makes it in time

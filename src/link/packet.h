@@ -24,7 +24,7 @@ enum class Fate : std::uint8_t {
   kAqmDropped  // an AQM that signals packets without ECN by dropping them
 };
 
-/// One packet at the end of its way. `sojourn` runs from the arrival in the queue to the start of
+/// A packet at the end of its way. `sojourn` runs from the arrival in the queue to the start of
 /// transmission; where the packet was dropped, to the drop.
 struct Outcome {
   Packet packet;  // with the ECN bits it left with

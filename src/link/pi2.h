@@ -38,7 +38,7 @@ class PiController {
   bool started_ = false;
 };
 
-/// One queue for all. Classic packets are marked (ECT(0)) or dropped with p'^2. ECT(1) is marked
+/// A single queue. Classic packets are marked (ECT(0)) or dropped with p'^2. ECT(1) is marked
 /// with k p', or with p'^2 where the queue does not know L4S.
 std::unique_ptr<Aqm> Pi2Aqm(const Pi2Config& config, Random random);
 

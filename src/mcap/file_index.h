@@ -37,7 +37,7 @@ struct FileIndex {
 /// not there.
 FileIndex ReadFileIndex(Input* input);
 
-/// By looking through the records from the first on, up to the first that is cut off.
+/// Looks through the records from the first on, up to the first that is cut off.
 FileIndex ScanFile(Input* input);
 
 }  // namespace lidar::mcap

@@ -22,7 +22,7 @@ constexpr std::uint64_t kMaxChunk = std::uint64_t{128} << 20;    // bytes, uncom
 constexpr std::uint64_t kMaxSummary = std::uint64_t{64} << 20;   // bytes
 constexpr std::uint64_t kMaxCatalogue = std::uint64_t{8} << 20;  // bytes of schemas and channels
 
-/// Where a record stands in the file.
+/// Place of a record in the file.
 struct RecordPlace {
   Op op = Op::kHeader;
   std::uint64_t content = 0;  // offset

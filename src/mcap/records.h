@@ -101,7 +101,7 @@ struct Statistics {
   std::uint64_t end_time = 0;
   std::map<std::uint16_t, std::uint64_t> messages_of;  // by channel
 };
-/// Where the records of one kind stand in the summary.
+/// Place of the records of one kind in the summary.
 struct SummaryOffset {
   Op group = Op::kHeader;
   std::uint64_t start = 0;
@@ -135,7 +135,7 @@ std::optional<ChunkHeader> ParseChunkHeader(ByteView content, std::size_t* heade
 std::optional<ChunkIndex> ParseChunkIndex(ByteView content);
 std::optional<Statistics> ParseStatistics(ByteView content);
 
-/// One record of a run of them.
+/// A record of a run of them.
 struct Record {
   Op op;
   ByteView content;

@@ -33,7 +33,7 @@ class Catalogue {
   std::size_t channel_bytes_ = 0;
 };
 
-/// One file. Each chunk holds the schemas and channels that it uses, so it can be read alone.
+/// A file. Each chunk holds the schemas and channels that it uses, so it can be read alone.
 class Writer {
  public:
   /// Appends to the file, all or nothing. False where that failed.

@@ -22,10 +22,10 @@ class CaptureIndex {
 
   /// When the first datagram was captured; none before it was read.
   std::optional<Time> first() const { return first_; }
-  /// From the first datagram that was read to the last.
+  /// Time from the first datagram that was read to the last.
   Duration duration() const { return first_ ? last_ - *first_ : Duration{0}; }
-  /// Where a reader sees every datagram of `time` and later of what was read; none where it has to
-  /// start at the front.
+  /// The place from which a reader sees every datagram of `time` and later of what was read; none
+  /// where it has to start at the front.
   std::optional<std::int64_t> OffsetBefore(Duration time) const;
 
  private:

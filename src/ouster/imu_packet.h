@@ -11,15 +11,15 @@
 
 namespace lidar::ouster {
 
-/// In the IMU's frame; Metadata::imu_to_sensor leads to the sensor's.
+/// Values in the IMU's frame; Metadata::imu_to_sensor leads to the sensor's.
 struct ImuSample {
   std::uint64_t timestamp = 0;              // ns of the sensor's clock
   std::array<float, 3> acceleration{};      // m/s^2
   std::array<float, 3> angular_velocity{};  // rad/s
 };
 
-/// None unless `bytes` are exactly one IMU packet. Samples that the sensor marks as invalid are
-/// left out.
+/// Returns nothing unless `bytes` are exactly one IMU packet. Samples that the sensor marks as
+/// invalid are left out.
 std::optional<std::vector<ImuSample>> ParseImuPacket(ByteView bytes, const Metadata& metadata);
 
 }  // namespace lidar::ouster

@@ -16,7 +16,7 @@ struct PacketHeader {
   std::uint64_t serial = 0;   // 0: the packet does not say
 };
 
-/// One measurement block.
+/// A measurement block.
 struct PacketColumn {
   std::uint64_t timestamp = 0;  // ns of the sensor's clock
   std::uint32_t measurement_id = 0;
@@ -52,7 +52,7 @@ class ChannelReader {
 /// A view; the bytes must outlive it.
 class LidarPacket {
  public:
-  /// None unless `bytes` are exactly one packet of `format`.
+  /// Returns nothing unless `bytes` are exactly one packet of `format`.
   static std::optional<LidarPacket> Parse(ByteView bytes, const PacketFormat& format);
 
   const PacketHeader& header() const { return header_; }

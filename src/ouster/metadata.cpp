@@ -33,7 +33,7 @@ class Document {
     const json* v = Find(section, key);
     return v != nullptr && v->is_string() ? v->get<std::string>() : std::string();
   }
-  /// None where the key is missing or no number within [0, max].
+  /// Returns nothing where the key is missing or no number within [0, max].
   std::optional<double> Number(const char* section, const char* key, double max) const {
     const json* v = Find(section, key);
     if (v == nullptr || !v->is_number()) return std::nullopt;
@@ -216,7 +216,7 @@ class Builder {
     return true;
   }
 
-  /// One angle a beam, or one list a beam with an angle a column.
+  /// An angle a beam, or a list a beam with an angle a column.
   bool ReadAngleList(const char* key, std::vector<float>* angles, bool* per_pixel) {
     const json* list = document_.Find(kBeams, key);
     const std::string name = std::string("beam_intrinsics.") + key;

@@ -7,7 +7,7 @@
 
 namespace lidar::ouster {
 
-/// In the sections of firmware 2.0 and later; ParseMetadata reads it back.
+/// Writes the sections of firmware 2.0 and later; ParseMetadata reads it back.
 std::string WriteMetadata(const Metadata& metadata);
 
 }  // namespace lidar::ouster

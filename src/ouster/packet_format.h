@@ -71,7 +71,7 @@ struct PixelLayout {
 };
 
 std::string_view ToString(Profile profile);
-/// None for a profile that this table does not know.
+/// Returns nothing for a profile that this table does not know.
 std::optional<Profile> ProfileFromString(std::string_view name);
 std::string_view ToString(Channel channel);
 PixelLayout LayoutOf(Profile profile);

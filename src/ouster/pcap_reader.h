@@ -22,14 +22,14 @@ class PcapReader {
     UdpDatagram datagram;
     Time time;  // of the capture, since the Unix epoch
   };
-  /// None at the end of the file, or where it is damaged: error() then says so.
+  /// Returns nothing at the end of the file, or where it is damaged: error() then says so.
   std::optional<Captured> Next();
   /// Empty unless the file ended in the middle of a packet or is damaged.
   const std::string& error() const { return error_; }
   /// Back to the first packet; false where the file is gone.
   bool Rewind();
 
-  /// Where in the file the next frame begins, for GoTo() of any reader of this file; none in
+  /// Place of the next frame in the file, for GoTo() of any reader of this file; none in
   /// pcapng, whose frames mean nothing without the blocks before them.
   std::optional<std::int64_t> Offset() const;
   /// False where that fails; the place is then not known.

@@ -25,7 +25,7 @@ class PcapWriter {
   /// An Ethernet frame with IPv4, however large. False where the disk is full, or the payload is
   /// larger than UDP can carry.
   bool Write(Time captured, std::uint16_t port, ByteView payload);
-  /// To be called at the end; false where the disk is full. A capture that is not closed well is
+  /// Call this at the end; false where the disk is full. A capture that is not closed well is
   /// taken away.
   bool Close();
 

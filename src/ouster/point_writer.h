@@ -51,7 +51,7 @@ std::optional<std::vector<Sector>> ParseSectors(std::string_view text);
 /// return).
 class PointWriter {
  public:
-  /// None and `error` where the profile lacks something that the options ask for.
+  /// Returns nothing and sets `error` where the profile lacks something that the options ask for.
   static std::optional<PointWriter> Create(const Metadata& metadata, const PointOptions& options,
                                            std::string* error);
 

@@ -175,7 +175,7 @@ ScanBatcher::Key ScanBatcher::NextExpected() const {
 bool ScanBatcher::IsReady(const OpenSlice& open) const {
   if (open.later_packets >= reorder_packets_) return true;
   if (open.seen < expected_[static_cast<std::size_t>(open.key % slices_)]) return false;
-  // Where slices before it are missing altogether, their packets may still be on the way.
+  // If slices before it are missing altogether, their packets may still be on the way.
   return open.key <= NextExpected() || open.packets >= reorder_packets_;
 }
 

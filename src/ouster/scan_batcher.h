@@ -13,7 +13,7 @@
 
 namespace lidar::ouster {
 
-/// One azimuth sector of a scan, beam by beam. Columns that are outside the sensor's window or were
+/// An azimuth sector of a scan, beam by beam. Columns that are outside the sensor's window or were
 /// lost are missing returns, so the width is always the same.
 struct Slice {
   std::uint32_t scan_id = 0;  // counts scans, across restarts of the sensor

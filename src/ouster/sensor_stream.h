@@ -69,7 +69,7 @@ class SensorStream {
   /// Only kNewInitId asks for something: the packet was left out. Refresh the metadata, or call
   /// AcceptNewInitId() and push the packet again.
   PacketVerdict Push(ByteView payload, const Arrival& arrival);
-  /// To be called after kNewInitId. From now on packets with that init id are taken: the sensor
+  /// Call this after kNewInitId. From now on packets with that init id are taken: the sensor
   /// restarted.
   void AcceptNewInitId() { metadata_.init_id = refused_init_id_; }
   std::optional<TimedSlice> Pop();

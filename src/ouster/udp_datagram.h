@@ -75,8 +75,8 @@ class IpReassembler {
 
 class UdpExtractor {
  public:
-  /// None for a frame that is no UDP, is damaged or cut short, or is a fragment whose datagram is
-  /// not complete. `time`: of the capture.
+  /// Returns nothing for a frame that is no UDP, is damaged or cut short, or is a fragment whose
+  /// datagram is not complete. `time`: of the capture.
   std::optional<UdpDatagram> Extract(LinkType link, ByteView frame, Time time = {});
 
  private:

@@ -19,8 +19,8 @@ struct ModelFile {
   std::optional<PaperCoefficients> paper;
 };
 
-/// None for anything but a sound file of this or an earlier version; `error` then says, in words
-/// for a user, what is wrong.
+/// Returns nothing for anything but a sound file of this or an earlier version; `error` then says,
+/// in words for a user, what is wrong.
 std::optional<ModelFile> ParseModelFile(std::string_view json, std::string* error);
 std::string WriteModelFile(const ModelFile& file);
 

@@ -53,7 +53,7 @@ void FitIntensity(const Samples& all, ModeCoefficients* mode) {
   std::copy_if(all.begin(), all.end(), std::back_inserter(samples), [](const Sample* s) {
     return s->settings.intensity_bits > 0 && s->intensity_bytes > 1;
   });
-  // Without a sample: half a bit a return and bit, to be corrected by the first slice.
+  // The model without a sample: half a bit a return and bit, to be corrected by the first slice.
   mode->intensity = {std::log2(1000 / 16.0), 1};
   mode->intensity_returns = 1;
   if (samples.size() < kMinSamples) return;

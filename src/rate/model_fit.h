@@ -9,7 +9,7 @@
 
 namespace lidar::rate {
 
-/// One slice, encoded once.
+/// A slice, encoded once.
 struct Sample {
   SliceFeatures slice;
   Settings settings;
@@ -18,7 +18,7 @@ struct Sample {
   unsigned source = 0;  // which capture or scene: cross-validation leaves out whole sources
 };
 
-/// One cubic for each mode. None where a mode has fewer than kMinSamples or its sizes do not fall
+/// A cubic for each mode. None where a mode has fewer than kMinSamples or its sizes do not fall
 /// with the step.
 std::optional<AdaptiveCoefficients> FitAdaptive(const std::vector<Sample>& samples);
 /// The paper's regression. None with fewer than kMinSamples.

@@ -39,7 +39,7 @@ enum class CodingResult {
   kOutOfReach,  // no grid of this coder keeps to the error
 };
 
-/// One stream. The coder keeps the bytes; the loop wants to know only how many they are.
+/// A stream. The coder keeps the bytes; the loop wants to know only how many they are.
 class SliceCoder {
  public:
   virtual ~SliceCoder() = default;

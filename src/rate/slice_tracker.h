@@ -7,7 +7,7 @@
 
 namespace lidar::rate {
 
-/// One observation: at log step `x` the log size was `residual` above the fit.
+/// An observation: at log step `x` the log size was `residual` above the fit.
 struct Anchor {
   double x = 0;
   double residual = 0;

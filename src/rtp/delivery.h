@@ -23,7 +23,7 @@ class Delivery {
     bool ends_slice = false;
   };
 
-  /// In the order of sending.
+  /// Packets in the order of sending.
   void OnSent(const Packet& packet);
   /// The receiver has the packets from `first` to `last`. Returns the slices that are whole now.
   std::vector<Slice> OnReceived(std::uint32_t ssrc, std::uint16_t first, std::uint16_t last);

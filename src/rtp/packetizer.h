@@ -9,7 +9,7 @@
 
 namespace lidar::rtp {
 
-/// One RTP payload: `header`, then `body_size` bytes of the unit from `body_offset`, so that the
+/// A RTP payload: `header`, then `body_size` bytes of the unit from `body_offset`, so that the
 /// caller need not copy the unit.
 struct Packet {
   std::vector<std::uint8_t> header;

@@ -42,7 +42,7 @@ struct SliceId {
   std::uint16_t count = 1;  // slices of the scan
 };
 
-/// On the first packet of a slice.
+/// Fields of the first packet of a slice.
 struct SliceInfo {
   std::uint32_t scan_id = 0;  // the source's, which has gaps where scans were skipped
   std::uint16_t first_column = 0;
@@ -55,7 +55,7 @@ struct SliceInfo {
   static constexpr std::uint32_t kUnknownDuration = 0xFFFF'FFFF;
 };
 
-/// One unit, or a fragment of one, as found in a packet.
+/// A unit, or a fragment of one, as found in a packet.
 struct Unit {
   PacketType type = PacketType::kSingle;
   UnitType unit = UnitType::kSlice;

@@ -51,7 +51,7 @@ void Receiver::Dispatch(const RtpPacket& packet, const std::vector<Unit>& units,
     return;
   }
   if (packet.ssrc != active_->ssrc) NoteRival(packet.ssrc);
-  // After a gap all that a sender in need put out comes at once: slices far apart.
+  // All that a sender in need put out comes at once: slices far apart.
   if (packet.ssrc == active_->ssrc && candidate_ && !GoesOnWithCandidate(packet, units) &&
       candidate_->reassembler.has_whole_slice() && CandidateGoesOn(packet.arrival)) {
     Promote(packet.arrival, out);
@@ -62,7 +62,7 @@ void Receiver::Dispatch(const RtpPacket& packet, const std::vector<Unit>& units,
   if (CandidateHasWon(packet.arrival)) Promote(packet.arrival, out);
 }
 
-/// Whoever forges SSRCs makes us forget the counts, and no more.
+/// Too many SSRCs reset the counts; forged ones can do nothing else.
 void Receiver::NoteRival(std::uint32_t ssrc) {
   if (rivals_.size() >= kMaxRivals && rivals_.count(ssrc) == 0) rivals_.clear();
   if (++rivals_[ssrc] >= kRivalPackets) rival_ = ssrc;

@@ -13,7 +13,7 @@
 
 namespace lidar::rtp {
 
-/// Where a slice stands in its stream; `scan` is the unwrapped scan number.
+/// Place of a slice in its stream; `scan` is the unwrapped scan number.
 struct SlicePosition {
   std::int64_t scan = 0;
   std::uint32_t index = 0;

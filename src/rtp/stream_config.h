@@ -26,9 +26,9 @@ struct StreamConfig {
   std::vector<std::uint8_t> sensor_model;  // serialised and checked; empty: none
 
   std::vector<std::uint8_t> Serialise() const;
-  /// None for another version or coder, a wrong length, or a sensor model that does not parse; and
-  /// for fields that no decoder gives. Decoders give x, y and z as F32 side by side, all packed.
-  /// None for caps that are not slices of a coder without a number.
+  /// Returns nothing for another version or coder, a wrong length, or a sensor model that does not
+  /// parse; and for fields that no decoder gives. Decoders give x, y and z as F32 side by side, all
+  /// packed. None for caps that are not slices of a coder without a number.
   static std::optional<StreamConfig> Parse(ByteView bytes);
   bool operator==(const StreamConfig& o) const;
   bool operator!=(const StreamConfig& o) const { return !(*this == o); }

@@ -9,7 +9,7 @@
 
 namespace lidar::loop {
 
-/// One goal of a run, and what came of it.
+/// A goal of a run, and what came of it.
 struct GoalResult {
   std::string text;  // "complete 98.1 % of the oracle's, 97 % wanted"
   bool holds = false;

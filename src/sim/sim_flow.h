@@ -26,7 +26,7 @@ class Flow {
   std::vector<DataRate> targets() const;
 
  private:
-  /// One encoder, its stream and its queue.
+  /// An encoder, its stream and its queue.
   struct SourceState {
     StreamId stream = 0;
     std::uint32_t ssrc = 0;

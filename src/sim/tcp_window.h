@@ -17,7 +17,7 @@ enum class TcpKind {
 class TcpWindow {
  public:
   virtual ~TcpWindow() = default;
-  /// One packet was acknowledged in congestion avoidance.
+  /// A packet was acknowledged in congestion avoidance.
   virtual void OnAck(Time now, Duration rtt, bool ce) = 0;
   /// Packets were lost; once a round trip.
   virtual void OnLoss() = 0;

@@ -24,7 +24,7 @@ constexpr std::size_t kLeastGround = 30;
 
 using Density = Place::Density;
 
-/// In place, along rows and then along columns.
+/// Works in place, along rows and then along columns.
 void Transform(Density* map, bool forward) {
   Eigen::FFT<float> fft;
   Eigen::VectorXcf in(Place::kCells);

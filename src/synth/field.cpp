@@ -153,7 +153,7 @@ void Field::AddMoving(const View& view, const Instant& now, std::vector<Shape>* 
 }
 
 bool Field::IntersectGround(const View&, const Ray& ray, Random* noise, Hit* hit) const {
-  // By symmetry the ray runs on the side it heads for; behind the middle it is mirrored.
+  // The ray runs, by symmetry, on the side it heads for; behind the middle it is mirrored.
   const float toward = ray.direction.y >= 0 ? 1.0F : -1.0F;
   const float rate = std::max(std::abs(ray.direction.y), 1e-6F);
   for (int half = 0; half < 2; ++half) {

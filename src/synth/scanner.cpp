@@ -83,7 +83,7 @@ Scanner::Column Scanner::MakeColumn(std::uint64_t scan, std::uint32_t column) co
   Column c;
   c.index = column;
   c.rotation = pose.ToRotation();
-  // Where the beams of this column begin, in the sensor frame: a point less its way.
+  // Origin of this column's beams, in the sensor frame: a point less its way.
   const Vec3 at_1m = ToVec(projection_.Point(0, column, 1000));
   const Vec3 origin = at_1m - (1.0F - beam_origin_m_) * ToVec(projection_.Direction(0, column));
   c.origin = Vec3{static_cast<float>(pose.x - view_.anchor_x),
@@ -111,7 +111,7 @@ SectorIndex::Arc Scanner::ArcOf(std::uint64_t scan, std::uint32_t first, std::ui
       high = std::max(high, offset);
     }
   }
-  // Between the two columns the pose moves by a little, too.
+  // The pose moves between the two columns by a little, too.
   constexpr float kSlack = 0.02F;
   const float from = start + low - kSlack;
   return {from < 0 ? from + 4 : from, high - low + 2 * kSlack};
@@ -155,7 +155,7 @@ Scanner::Pixel Scanner::Measure(const Hit& hit, Random* noise) const {
   constexpr float kDropout = 0.998F;
   constexpr float kPhotons = 40;  // of an echo at the limit of detection
   const float range = hit.distance + beam_origin_m_;
-  // Against a target of 10 % at the range where nine pulses in ten come back.
+  // Reference: a target of 10 % at the range where nine pulses in ten come back.
   const float signal = hit.reflectivity * hit.cosine * signal_scale_ / (range * range);
   const std::uint64_t bits = noise->Bits();
   const float chance = kDropout * signal * signal / (signal * signal + 0.11F);
@@ -209,7 +209,7 @@ std::vector<Hit> Scanner::TraceColumn(std::uint64_t scan, std::uint32_t index) {
   return hits;
 }
 
-/// Where an edge lies within the beam, its two echoes run into one: the range lies between.
+/// If an edge lies within the beam, its two echoes run into one: the range lies between.
 Hit Scanner::MixWith(const Hit& beside, Hit hit, Random* noise) const {
   constexpr float kPulse = 1.0F;  // echoes farther apart than that are told apart [m]
   constexpr float kSurface = 0.15F;

@@ -43,7 +43,7 @@ class Scene {
   };
   virtual void AddMoving(const View& view, const Instant& now,
                          std::vector<Shape>* shapes) const = 0;
-  /// Where the ground is dear, rays that rather meet something else ask for it last.
+  /// If the ground is dear, rays that rather meet something else ask for it last.
   virtual bool GroundFirst(const Ray&) const { return true; }
   /// Ground and whatever else never ends; true where it is met nearer than hit->distance.
   virtual bool IntersectGround(const View& view, const Ray& ray, Random* noise, Hit* hit) const = 0;

@@ -75,7 +75,8 @@ bool EnterCabin(Vec3 half, const Ray& r, Span* span) {
          span->in > kNearest;
 }
 
-/// Where the ray enters the infinite cylinder u^2 + v^2 = radius^2, then its caps at |w| = half.
+/// Finds where the ray enters the infinite cylinder u^2 + v^2 = radius^2, then its caps at |w| =
+/// half.
 struct Axes {
   float ou, ov, ow;
   float du, dv, dw;

@@ -107,7 +107,7 @@ void Street::AddFurniture(const View& view, float side, std::vector<Shape>* shap
 }
 
 void Street::AddOwnLane(const View& view, const Instant& now, std::vector<Shape>* shapes) const {
-  // One car ahead and one behind, whose distance breathes.
+  // A car ahead and another behind, whose distance breathes.
   struct Follower {
     double gap, breath, period_s;
   };
@@ -126,7 +126,7 @@ void Street::AddOwnLane(const View& view, const Instant& now, std::vector<Shape>
 }
 
 void Street::AddOncoming(const View& view, const Instant& now, std::vector<Shape>* shapes) const {
-  // In its own frame the column stands still, so its cells do.
+  // The column stands still in its own frame, so its cells do.
   View column = view;
   const double shift = kOncomingSpeed * now.time_s;
   column.anchor_x = view.anchor_x + shift;

@@ -75,7 +75,7 @@ class Terrain {
     Height HeightAt(float x, float y) const {
       return {hill_x_.At(x) + hill_y_.At(y), hill_x_.SlopeAt(x), hill_y_.SlopeAt(y)};
     }
-    /// Where the plan has that point, relative to the anchor's own coordinates.
+    /// Place of that point on the plan, relative to the anchor's own coordinates.
     float PlanU(float x, float y) const { return x - bend_y_.At(y); }
     float PlanV(float x, float y) const { return y - bend_x_.At(x); }
     static constexpr float curvature() {  // of the ground, at most [1/m]

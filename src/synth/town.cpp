@@ -29,7 +29,7 @@ struct Line {
   }
 };
 
-/// Where on the plan a point is, from the nearest crossing.
+/// Place of a point on the plan, from the nearest crossing.
 struct OnPlan {
   float u, v;
   bool road() const { return std::abs(u) < kStreetHalfRoad || std::abs(v) < kStreetHalfRoad; }

@@ -21,7 +21,7 @@ class Route {
     double bank = 0;      // rise to the left
     double distance = 0;  // driven since the start [m]
   };
-  /// Where a car is that wants to drive at `speed_mps` and slows down for corners.
+  /// Place of a car that wants to drive at `speed_mps` and slows down for corners.
   virtual Place At(double seconds) const = 0;
 };
 

@@ -25,10 +25,10 @@ class CloudInput {
   };
   /// The next buffer. One without a meta is a scan of one slice.
   Place PlaceOf(GstBuffer* buffer);
-  /// After a flush the next slice starts a scan.
+  /// The next slice after a flush starts a scan.
   void ForgetScan() { scan_id_.reset(); }
 
-  /// None after an error message: the buffer does not hold the cloud of its caps.
+  /// Returns nothing after an error message: the buffer does not hold the cloud of its caps.
   std::optional<GstLidarRawSlice> Read(GstLidarEncoder* encoder, const BufferMap& map,
                                        const GstLidarSlice& slice);
   /// Warns, once, that a cloud whose box is so long [m] was left out.

@@ -14,7 +14,7 @@
 
 namespace lidar::gst {
 
-/// None where the buffer has none. Differences of these times do not overflow.
+/// Returns nothing where the buffer has none. Differences of these times do not overflow.
 std::optional<Time> CaptureTimeOf(GstBuffer* buffer);
 
 /// For any number of threads.

@@ -16,8 +16,8 @@ namespace lidar::gst {
 /// Clouds of one layout. The points that come out stand exactly where range and beam put them.
 class CloudOrganizer {
  public:
-  /// None where the layout has no rows of beams, no x, y and z as F32 side by side, or no room for
-  /// a range; `why` then says which.
+  /// Returns nothing where the layout has no rows of beams, no x, y and z as F32 side by side, or
+  /// no room for a range; `why` then says which.
   static std::optional<CloudOrganizer> Create(const CloudInfo& info, std::string* why);
 
   struct Result {
@@ -34,7 +34,8 @@ class CloudOrganizer {
   /// Counts the models that were found.
   guint models() const { return models_; }
 
-  /// One of so many returns may stand elsewhere: rain on the lens, and what a driver made up.
+  /// Share of returns, 1 in this many, that may stand elsewhere: rain on the lens, and what a
+  /// driver made up.
   static constexpr guint64 kMostOutside = 100;
 
  private:

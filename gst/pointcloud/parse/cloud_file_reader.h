@@ -20,8 +20,8 @@ struct FileBuffer {
   CloudInfo info;  // of the cloud; width 0: it is empty
   BufferPtr buffer;
 };
-/// None where `file` cannot be read; `why` then says so in words for a user. x, y and z become F32
-/// side by side, numbers little-endian.
+/// Returns nothing where `file` cannot be read; `why` then says so in words for a user. x, y and z
+/// become F32 side by side, numbers little-endian.
 std::optional<FileBuffer> ReadCloudFile(CloudFileType type, ByteView file, std::string* why);
 
 /// Lets typefind know both.

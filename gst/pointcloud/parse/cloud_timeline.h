@@ -46,7 +46,7 @@ class CloudTimeline {
 
   /// True where the query has its answer. `sinkpad` is where the bytes come in.
   bool Answer(GstPad* sinkpad, GstQuery* query) const;
-  /// None where the seek is not for us; else whether upstream has done it.
+  /// Returns nothing where the seek is not for us; else whether upstream has done it.
   std::optional<bool> Seek(GstPad* sinkpad, GstEvent* event);
 
  private:

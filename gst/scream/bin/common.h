@@ -15,7 +15,7 @@
 
 namespace lidar::gst {
 
-/// From READY to NULL. Guarded by `mutex`, which nobody holds while a child works.
+/// Valid from READY to NULL. Guarded by `mutex`, which is free while a child works.
 struct BinState {
   std::mutex mutex;
   SocketInUse used;

@@ -146,7 +146,7 @@ static void OnPadAdded(GstElement*, GstPad* pad, GstElement* bin) {
   GstPadTemplate* templ = gst_element_class_get_pad_template(GST_ELEMENT_GET_CLASS(bin), "src_%u");
   GstPad* ghost = gst_ghost_pad_new_from_template(name.get(), pad, templ);
   gst_pad_set_active(ghost, TRUE);
-  // With its events before anybody sees the pad: gst-launch links by caps.
+  // The events come before the pad is seen: gst-launch links by caps.
   gst_pad_sticky_events_foreach(
       pad,
       [](GstPad*, GstEvent** event, gpointer to) -> gboolean {

@@ -11,7 +11,7 @@
 namespace lidar::gst {
 namespace {
 
-// Whoever forges SSRCs makes a pad with each; a sender that restarts makes one each time.
+// Each SSRC makes a pad, be it forged or of a sender that restarts.
 constexpr std::size_t kMaxRoutes = 1'024;
 
 bool IsLidar(const GstCaps* caps) {
@@ -28,7 +28,7 @@ CapsPtr CapsOfValue(const GValue* value) {
   return nullptr;
 }
 
-/// With the marker bit, these read as RTCP (RFC 5761, section 4).
+/// Payload types that read as RTCP with the marker bit (RFC 5761, section 4).
 constexpr bool CollidesWithRtcp(unsigned type) { return type >= 64 && type <= 95; }
 
 /// What is wrong with one field of pt-map, in words; NULL where nothing is.

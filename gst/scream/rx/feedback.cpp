@@ -108,7 +108,7 @@ gboolean RxSrcEvent(GstPad* pad, GstObject* parent, GstEvent* event) {
   const EventPtr owner(event);
   RxState& state = *GST_LIDAR_SCREAM_RX(parent)->state;
   const RxLock lock(state.mutex);
-  // By which pad an SSRC leaves, only the streaming thread knows; to ask for all does no harm.
+  // Only the streaming thread knows the pad of an SSRC; asking for all does no harm.
   for (const auto& [ssrc, last] : state.ssrcs) state.key_requests.insert(ssrc);
   if (state.timer != nullptr) gst_clock_id_unschedule(state.timer);
   return state.ssrcs.empty() ? FALSE : TRUE;

@@ -87,7 +87,7 @@ bool IsOld(RxState& state, GstClockTime unix_now, GstBuffer* buffer, const RtpHe
     return false;
   const BufferMap map(buffer, GST_MAP_READ);
   const auto begins_old = BeginsOld(state, unix_now, PayloadOf(map, header));
-  // With the address, or whoever sends a recording under the peer's SSRC would silence the peer.
+  // The address counts, or a recording sent under the peer's SSRC would silence the peer.
   const std::pair stream(AddressToString(SourceOf(buffer)), header.ssrc);
   if (!begins_old) return state.old_streams.count(stream) > 0;
   if (!*begins_old) state.old_streams.erase(stream);
@@ -125,7 +125,7 @@ bool Account(GstLidarScreamRx* self, const Clocks& clocks, GstBuffer* buffer,
   packet.size = DataSize::Bytes(static_cast<std::int64_t>(gst_buffer_get_size(buffer))) +
                 state.settings.packet_overhead;
   state.reports.OnPacket(SourceOf(buffer), ArrivalTime(clocks, arrival), packet);
-  // One that is alive comes back with its next packet.
+  // A stream that is alive comes back with its next packet.
   if (state.ssrcs.size() >= kMaxSsrcs) state.ssrcs.erase(state.ssrcs.begin());
   state.ssrcs[header.ssrc] = clocks.now;
   const bool is_new = state.seen.Add(header.ssrc, header.seq);

@@ -8,7 +8,7 @@
 namespace lidar::gst {
 namespace {
 
-// After such a silence another clock may count.
+// Silence after which another clock may count.
 constexpr Duration kClockKept = std::chrono::seconds(10);
 
 struct Shown {

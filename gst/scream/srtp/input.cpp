@@ -161,7 +161,7 @@ bool SrtpInput::TryStranger(GstBuffer* datagram, const Head& head, GstFlowReturn
   return false;
 }
 
-/// One that is lost is ahead of where it was: what came before is a recording.
+/// A stream that was lost is ahead of its old place: anything before it is a recording.
 bool SrtpInput::TryRollover(GstBuffer* datagram, const Head& head, std::uint32_t ahead,
                             GstFlowReturn* flow) {
   const Stream& stream = StreamOf(head.stream());
@@ -251,7 +251,7 @@ void SrtpInput::OnPassed(const Head& head, std::size_t key, std::uint32_t rollov
   on_new_key_(keys_[key].media->key());
 }
 
-/// Nothing of it passed for so long that it may have rolled over meanwhile. Not one that still
+/// A stream of which no packet passed for so long that it may have rolled over. Not one that still
 /// passes, whatever a forger adds.
 bool SrtpInput::IsLost(const Stream& stream) {
   return stream.failures >= kFailuresUntilLost &&

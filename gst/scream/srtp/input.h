@@ -42,7 +42,8 @@ class SrtpInput {
 
   /// Takes the two pads, that are not linked. False where they do not fit.
   bool Link(GstPad* socket, GstPad* target);
-  /// From any thread. False where the srtp plugin is missing. Of four keys the oldest goes.
+  /// Callable from any thread. False where the srtp plugin is missing. Of four keys the oldest
+  /// goes.
   bool AddKey(const SrtpKey& key);
   /// Keys that no packet has fitted yet, newer than the one in use.
   std::size_t waiting_keys() const { return waiting_; }
@@ -80,7 +81,7 @@ class SrtpInput {
   };
   struct Key {
     std::uint64_t serial = 0;
-    // Of media and RTCP that are known, and of others. Media that is found starts its decoder
+    // Tries of known media and RTCP, and of others. Media that is found starts its decoder
     // again, which would forget what RTCP had passed.
     std::unique_ptr<SrtpDecoder> media;
     std::unique_ptr<SrtpDecoder> rtcp;
@@ -91,7 +92,7 @@ class SrtpInput {
   class Allowance {
    public:
     bool Take(gint64 now_us);
-    /// One more for the same packet; leaves half to others.
+    /// Takes another try for the same packet, if more than half of the allowance is left.
     bool TakeSpare();
 
    private:

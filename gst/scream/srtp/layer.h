@@ -15,7 +15,7 @@
 
 namespace lidar::gst {
 
-/// Where the layer goes: pads of the bin's children, linked plainly.
+/// Places of the layer: pads of the bin's children, linked plainly.
 struct SrtpLinks {
   GstElement* bin;
   GstElement* sender;         // screamtx or screamrx

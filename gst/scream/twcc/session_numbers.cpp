@@ -47,7 +47,7 @@ std::vector<const GstStructure*> PacketsOf(GstEvent* event) {
   const GstStructure* s = gst_event_get_structure(event);
   if (s == nullptr || !gst_structure_has_name(s, kEvent)) return packets;
   const GValue* list = gst_structure_get_value(s, "packets");
-  // By name: GLib calls the type deprecated, and rtpsession uses it.
+  // Found by name: GLib calls the type deprecated, and rtpsession uses it.
   if (list == nullptr || !G_VALUE_HOLDS(list, g_type_from_name("GValueArray"))) return packets;
   const auto* array = static_cast<const GValueArray*>(g_value_get_boxed(list));
   for (guint i = 0; array != nullptr && i < array->n_values; ++i)

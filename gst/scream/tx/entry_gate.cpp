@@ -57,7 +57,7 @@ void EntryGate::Wait(TxLock& lock, GstElement* element, Duration max_age, TxStre
   WaitForTime(lock, element, stream, first);
 }
 
-/// Before we play there is room for what a sink needs to preroll.
+/// There is room before PLAYING for what a sink needs to preroll.
 void EntryGate::WaitForRoom(TxLock& lock, Duration max_age, const TxStream& stream) {
   changed_.wait(lock, [&] {
     if (Check(stream) != GST_FLOW_OK) return true;

@@ -21,7 +21,7 @@ class EntryGate {
 
   /// Chain functions may queue.
   void Open() { Set(true, GST_FLOW_OK); }
-  /// Nobody waits or queues any more; chain functions return FLUSHING.
+  /// Ends all waits and queues; chain functions return FLUSHING.
   void Close(const TxStreams& streams);
   /// Chain functions return `flow`, that of what is downstream.
   void set_flow(GstFlowReturn flow) { Set(open_, flow); }

@@ -8,7 +8,7 @@
 namespace lidar::gst {
 namespace {
 
-// One may fall to an outage.
+// A report may fall to an outage.
 constexpr guint64 kFramesUntilWarning = 20;
 
 /// Host and port of the sink behind `src`, where they are to be found.

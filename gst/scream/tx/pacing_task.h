@@ -23,7 +23,7 @@ class PacingTask {
 
   bool Start();
   bool Stop();
-  /// Until the next Start(), after what downstream said.
+  /// Holds until the next Start(), after downstream's answer.
   void Pause(GstFlowReturn flow);
 
   /// The task looks again at what it waits for.

@@ -69,7 +69,7 @@ struct _GstLidarScreamTx {
 
 namespace lidar::gst {
 
-// With the lock held, but for TxNow().
+// Call these with the lock held, but for TxNow().
 
 /// Monotonic; what the controller calls time.
 Time TxNow(const TxState& state);

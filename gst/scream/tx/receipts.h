@@ -9,7 +9,7 @@
 
 namespace lidar::gst {
 
-/// With the element's lock held.
+/// Call with the element's lock held.
 class PacketReceipts {
  public:
   void Add(guint receiver, const scream::SsrcReport& report);

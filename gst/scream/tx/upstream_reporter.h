@@ -14,7 +14,7 @@ namespace lidar::gst {
 
 struct TxState;
 
-/// Whoever changes what the controller knows calls Evaluate(), which finds out what is due; a
+/// Evaluate() follows each change of the controller's state, and finds out what is due; a
 /// thread of its own sends it. Start() and Stop() are called without the element's lock, the rest
 /// with it. The thread sends without it.
 class UpstreamReporter {

@@ -53,7 +53,7 @@ struct BeamTable {
   Point At(std::uint32_t beam, std::int32_t azimuth, std::uint32_t range_mm) const;
 
   void Write(ByteWriter* writer) const;
-  /// None for numbers that no encoder writes.
+  /// Returns nothing for numbers that no encoder writes.
   static std::optional<BeamTable> Read(ByteReader* reader);
 };
 
@@ -62,7 +62,7 @@ inline std::int32_t Wrapped(std::int32_t angle) {
   return ((angle + kTurn / 2) & (kTurn - 1)) - kTurn / 2;
 }
 
-/// None where most points lie on no beam.
+/// Returns nothing where most points lie on no beam.
 std::optional<BeamTable> FindBeams(const std::vector<Sighting>& points);
 
 }  // namespace lidar::codec::cloud

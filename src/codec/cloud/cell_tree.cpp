@@ -23,7 +23,8 @@ std::uint32_t Hash(std::uint64_t value) {
   return static_cast<std::uint32_t>(value * 0x9E3779B97F4A7C15U >> 48);
 }
 
-/// Of the cell at `p` of a grid of 2^depth cells along each axis, in half cells from the middle.
+/// Direction of the cell at `p` of a grid of 2^depth cells along each axis, in half cells from the
+/// middle.
 struct Direction {
   Direction(const CellPosition& p, unsigned depth) {
     const auto at = [&](unsigned k) {
@@ -50,7 +51,7 @@ struct Direction {
 
 enum State : std::uint8_t { kEmpty = 0, kOccupied = 1, kUnknown = 2 };
 
-/// Where the children lie among their surroundings.
+/// Places of the children among their surroundings.
 constexpr std::array<unsigned, 8> kChildAt = {21, 22, 25, 26, 37, 38, 41, 42};
 
 /// Which neighbours of a node touch a child.

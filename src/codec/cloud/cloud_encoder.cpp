@@ -61,7 +61,7 @@ std::optional<PixelErrors> CheapestErrors(const std::vector<Sighting>& sightings
   return best;
 }
 
-/// Where points lie closer together than cells, cells are cheaper than ranges.
+/// If points lie closer together than cells, cells are cheaper than ranges.
 std::vector<double> NearestLimits(unsigned effort, double error_m) {
   if (effort < EffortControl::kHighest) return {50 * error_m};
   return {0, 30 * error_m, 60 * error_m, 120 * error_m};

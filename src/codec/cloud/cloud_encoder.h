@@ -15,10 +15,10 @@
 
 namespace lidar::codec::cloud {
 
-/// One stream, so one format. For one thread at a time.
+/// A stream, and so a format. For one thread at a time.
 class CloudEncoder {
  public:
-  /// None where `layout` lacks x, y and z as F32 side by side.
+  /// Returns nothing where `layout` lacks x, y and z as F32 side by side.
   static std::optional<CloudEncoder> Create(const CloudLayout& layout);
 
   /// Takes the points that are finite and not all zero, for Encode().

@@ -22,7 +22,7 @@ struct CloudHeader {
   std::uint32_t stream_size = 0;  // bytes of the cells
 
   void Write(std::vector<std::uint8_t>* out) const;
-  /// None for another version and for numbers that no encoder writes.
+  /// Returns nothing for another version and for numbers that no encoder writes.
   static std::optional<CloudHeader> Read(ByteReader* reader);
 };
 

@@ -64,7 +64,7 @@ struct Counter {
     const std::uint32_t mirror = bit ? 65'535 : 0;
     const std::uint32_t miss = chance ^ mirror;
     chance = static_cast<std::uint16_t>((miss - (miss * rate >> 16)) ^ mirror);
-    // About rate / (1 + rate), which makes 1/n of it.
+    // Becomes about rate / (1 + rate), which makes 1/n of it.
     const std::uint32_t square = std::uint32_t{rate} * rate >> 16;
     rate = static_cast<std::uint16_t>(rate - (rate * (rate - (square >> 1)) >> 16));
   }

@@ -107,7 +107,7 @@ class BinSearch {
     return a.bin == b.bin && parts_[a.way].row().west[0] == parts_[b.way].row().west[0];
   }
 
-  /// One step on the ways of the trials.
+  /// A step on the ways of the trials.
   void Go(const Azimuth& above) {
     const std::array<typename Part::Row, kMostWays> before = {parts_[0].row(), parts_[1].row()};
     std::array<typename Part::Row, kMostWays> after;

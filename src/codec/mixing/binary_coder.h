@@ -53,7 +53,7 @@ class BinaryDecoder {
         low_ + static_cast<std::uint32_t>(
                    std::uint64_t{high_ - low_} * static_cast<std::uint32_t>(chance) >> 16);
     const bool bit = code_ <= split;
-    // Without a branch, which would often be guessed wrong.
+    // Has no branch, which would often be guessed wrong.
     const std::uint32_t ones = bit ? UINT32_MAX : 0;
     high_ ^= (high_ ^ split) & ones;
     low_ += (split + 1 - low_) & ~ones;

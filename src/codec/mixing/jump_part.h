@@ -58,7 +58,7 @@ class JumpPart {
   };
   using Places = std::array<std::int32_t, kUsed>;
 
-  /// Where each candidate lies in the interval: 0 for one in the other direction, else 1 to 11.
+  /// Places of the candidates in the interval: 0 for one in the other direction, else 1 to 11.
   Places PlacesOf(const Split& split) const {
     const auto middle = static_cast<std::int32_t>(split.middle);
     const auto half = static_cast<std::int32_t>(split.half);

@@ -95,7 +95,7 @@ class LevelPart {
     return at.bin < 0 ? 3U : StepClass(std::clamp(bin - at.bin, -4, 4) * kStep);
   }
 
-  /// Where the mean of neighbours lies that count the more the closer they are.
+  /// Place of the mean of neighbours that count the more the closer they are.
   struct Weighed {
     std::int32_t sum = 0;
     std::int32_t count = 0;

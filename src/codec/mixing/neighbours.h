@@ -16,7 +16,7 @@ constexpr std::int32_t kUnknown = 0;
 
 inline std::int32_t CentreOf(std::int32_t bin) { return kStep * bin + kStep / 2; }
 
-/// One direction, as the beams above have seen it.
+/// A direction, as the beams above have seen it.
 struct Azimuth {
   std::array<std::int32_t, 3> values{};  // the last returns, newest first
   std::int8_t residual = 0;              // of the beam above, between -3 and 3
@@ -66,7 +66,7 @@ inline std::uint32_t StepClass(std::int32_t difference) {
   return static_cast<std::uint32_t>(difference < 0 ? 3 - c : 3 + c);
 }
 
-/// Where the mean of the neighbours lies against the prediction, in 1/16 bin; 15 classes.
+/// Place of the neighbours' mean against the prediction, in 1/16 bin; 15 classes.
 inline std::uint32_t PhaseClass(std::int32_t phase) {
   static constexpr auto kClasses = [] {
     constexpr std::array<int, 14> kEnds = {-41, -25, -17, -13, -9, -5, -2, 1, 4, 8, 12, 16, 24, 40};

@@ -102,7 +102,7 @@ class RangePart {
     asked_ = 0;
   }
   std::int32_t Predicted() const { return median_ >> 4; }
-  /// Past `most` it stops: the answer is then too low, but still above `most`.
+  /// Stops past `most`: the answer is then too low, but still above `most`.
   std::int32_t CostOf(std::int32_t bin, std::int64_t most) {
     const std::int32_t difference = mirror_ * (bin - Predicted());
     CodeNode(difference != 0, 0);

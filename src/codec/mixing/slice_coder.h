@@ -57,7 +57,7 @@ struct SearchStep {
   std::uint32_t before;  // place of the step before, from 1 on; 0: none
 };
 
-/// From this effort on an encoder can choose between bins.
+/// Lowest effort at which an encoder can choose between bins.
 constexpr unsigned kSearchingEffort = 3;
 
 /// Keeps its buffers between slices.

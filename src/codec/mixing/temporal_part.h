@@ -33,7 +33,7 @@ class TemporalPart {
     north_west_ = above[-1];
     west_bit_ = false;
   }
-  /// To be called for each pixel, before anything else.
+  /// Call this for each pixel, before anything else.
   void Look(std::uint32_t i) {
     const PixelMemory& p = pixels_[i];
     constexpr std::uint64_t kScale = std::uint64_t{kStep} * RangeGrid::kParts / PixelMemory::kPerMm;

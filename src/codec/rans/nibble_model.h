@@ -53,7 +53,7 @@ inline constexpr Rates kRates;
 
 }  // namespace detail
 
-/// After F. Giesen, "Mixing discrete probability distributions" (2015): the cumulative
+/// See F. Giesen, "Mixing discrete probability distributions" (2015): the cumulative
 /// distribution moves towards one that has nearly all of its mass on the symbol seen. Every symbol
 /// keeps a probability above zero, because both ends of each step are strictly increasing.
 class NibbleModel {

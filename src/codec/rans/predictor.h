@@ -59,7 +59,7 @@ struct RowReturns {
   RowLanes lanes;
 };
 
-/// One channel (ranges or intensities) of a slice, row by row. The neighbours of a return are the
+/// A channel (ranges or intensities) of a slice, row by row. The neighbours of a return are the
 /// one to its left in its lane, W, and N and NE in the nearest beams above that have a return at
 /// their azimuths; NW is the N of W. The prediction is the median of W, N and W + N - NW (the MED
 /// predictor of LOCO-I), which follows planes and keeps to one side of an edge.
@@ -99,7 +99,7 @@ class RowPredictor {
     for (unsigned lane = 0; lane < kRansLanes; ++lane) {
       const std::size_t start = lane < lanes.lanes ? lanes.Start(lane) : 0;
       west[lane] = kBlind ? latest_ : row[start].north;
-      // Nothing is known here, so the context is that of the largest errors.
+      // No neighbour is known here, so the context is that of the largest errors.
       error[lane] = kBlind ? std::int32_t{detail::ContextTable::kMost} : 0;
     }
     ForEachInTurns(

@@ -57,7 +57,8 @@ void RansEncoder::Finish(std::vector<std::uint8_t>* out) {
 }
 
 RansDecoder::RansDecoder(ByteView bytes, std::size_t ahead, std::vector<std::uint8_t>* padded) {
-  // Behind the end: the states of the shortest stream there is, and the words that are read ahead.
+  // Bytes behind the end: the states of the shortest stream there is, and the words that are read
+  // ahead.
   constexpr std::size_t kStates = 1 + kRansLanes * kRansStateBytes;
   padded->assign(bytes.size + kStates + (ahead + 2) * sizeof(std::uint32_t), 0);
   if (bytes.size > 0) std::memcpy(padded->data(), bytes.data, bytes.size);

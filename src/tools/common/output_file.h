@@ -21,7 +21,7 @@ class OutputFile {
 
   bool is_open() const { return file_.is_open(); }
   std::ostream& stream() { return file_; }
-  /// To be called at the end: a full disk shows up here.
+  /// Call this at the end: a full disk shows up here.
   void Close();
 
  private:

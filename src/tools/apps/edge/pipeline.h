@@ -18,7 +18,7 @@ gst::ElementPtr MakePipeline(const EdgeConfig& config, const RobotConfig& robot,
 /// Makes a recorder and lets it run with the pipeline. What fails in it stays in it, and is told on
 /// the bus. Throws std::runtime_error where an element is missing.
 void AddRecorder(GstElement* pipeline, const RobotConfig& robot);
-/// Nothing happens where there is none.
+/// Does nothing if there is none.
 void RemoveRecorder(GstElement* pipeline);
 /// Whether the message is of the recorder.
 bool IsFromRecorder(GstMessage* message);

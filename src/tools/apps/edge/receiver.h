@@ -56,7 +56,7 @@ class Receiver {
   void Begin(Clock::time_point now);
   void End();
   void Finish();
-  /// Nothing comes in for as long.
+  /// The robot is shut out for as long.
   void Rest(Clock::time_point now, Duration pause, const std::string& why);
   void Record(Clock::time_point now);
   bool ReadBus(Clock::time_point now);

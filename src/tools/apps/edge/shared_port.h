@@ -26,7 +26,8 @@ class SharedPort {
   struct Unref {
     void operator()(GSocket* socket) const { g_object_unref(socket); }
   };
-  // In the order in which they were bound, by which the kernel knows them. The first is for strays.
+  // Sockets in the order in which they were bound, by which the kernel knows them. The first is for
+  // strays.
   std::vector<std::unique_ptr<GSocket, Unref>> sockets_;
 };
 

@@ -14,7 +14,7 @@
 
 namespace lidar::fleet {
 
-/// One thread serves all connections, and waits for none of them. A client that says nothing, or
+/// A thread serves all connections, and waits for none of them. A client that says nothing, or
 /// little, is cut off after two seconds, or once too many others have come.
 class MetricsServer {
  public:

@@ -22,7 +22,7 @@ struct StatisticsSettings {
 /// For one thread.
 class Statistics {
  public:
-  /// Without `connection` NATS is told nothing. Prints where Prometheus finds it. Throws
+  /// If `connection` is missing, NATS gets nothing. Prints where Prometheus finds it. Throws
   /// std::runtime_error where the port is taken.
   Statistics(const StatisticsSettings& settings,
              const std::optional<nats::ConnectionSettings>& connection);

@@ -31,12 +31,12 @@ struct LeaseRecord {
 /// False for what ParseLeaseRecord() would call damaged.
 bool ReadsBack(const Progress& progress);
 
-/// By the poses and times of two scans in a row; none where they are no such.
+/// Velocity by the poses and times of two scans in a row; none where they are no such.
 std::optional<std::array<double, 6>> VelocityBetween(const Progress& before, const Progress& after);
 
 std::string ToJson(const LeaseRecord& record);
-/// None for what is damaged. Anything may come. An empty text is a record that says nothing, as is
-/// that of a deleted key.
+/// Returns nothing for what is damaged. Anything may come. An empty text is a record that says
+/// nothing, as is that of a deleted key.
 std::optional<LeaseRecord> ParseLeaseRecord(std::string_view text);
 
 }  // namespace lidar::worker

@@ -20,7 +20,7 @@ class RewindWindow {
 
   explicit RewindWindow(Duration rewind) : rewind_ns_(static_cast<std::uint64_t>(rewind.count())) {}
 
-  /// Where the number goes back, it begins anew.
+  /// The window begins anew if the number goes back.
   void Add(const Message& message);
   /// Number of the first; there has to be one.
   std::uint64_t first() const { return messages_.front().number; }

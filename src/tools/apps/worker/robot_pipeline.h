@@ -51,7 +51,7 @@ class RobotPipeline {
   /// Poses go out before this time alone, whatever becomes of the thread that would stop them.
   void SetEnd(Time end) { end_ = end.time_since_epoch().count(); }
   std::uint64_t stream() const { return stream_; }
-  /// Where it was to begin.
+  /// Place at which it was to begin.
   const std::optional<Progress>& begin() const { return begin_; }
   /// True where it waits for a scan behind `last`, the newest message that the stream had when it
   /// was asked at `asked_at`: a record that says so is wrong.
@@ -60,7 +60,7 @@ class RobotPipeline {
   }
   /// True once a pose came after the end.
   bool has_dropped() const { return dropped_; }
-  /// None before the first pose.
+  /// Returns nothing before the first pose.
   std::optional<Progress> progress() const;
   /// Tells of its elements, as fleet::AddStats(). Waits for nobody.
   void AddStats(const std::string& labels, fleet::Exposition* exposition,

@@ -47,11 +47,11 @@ struct Measurements {
   Ledger ledger;
   std::vector<LinkPacket> packets;
   std::vector<SenderSample> samples;
-  // From the encoder's bitrate-bounds, means over time; 0: not known. One told in a gap, of coarse
+  // The encoder's bitrate-bounds, means over time; 0: not known. One told in a gap, of coarse
   // slices, is a guess.
   double encoder_min_bps = 0;
   double encoder_max_bps = 0;
-  /// Those told last, and since when they hold.
+  /// The latest bitrate bounds, and since when they hold.
   struct {
     std::int64_t since_unix_ns = 0;
     double min_bps = 0, max_bps = 0;

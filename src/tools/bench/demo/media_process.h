@@ -37,7 +37,7 @@ class MediaProcess {
   /// Calls `handler` at this interval, in the main loop, and once more before the pipeline stops.
   void Every(guint interval_ms, std::function<void()> handler);
 
-  /// One record on standard output.
+  /// A record on standard output.
   void Write(const nlohmann::json& record);
   void Write(const Cloud& cloud);
   /// When the pipeline's clock shows, or showed, the running time of `pts`, in UnixNow's time.

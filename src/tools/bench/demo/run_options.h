@@ -72,7 +72,7 @@ struct Ports {
   int link = 0;
   int receiver = 0;
 };
-/// Where --view serves its page; empty without it.
+/// Address of the page of --view; empty without it.
 std::string PageOf(const RunOptions& options);
 std::string SenderPipeline(const RunOptions& options, Ports ports);
 std::string ReceiverPipeline(const RunOptions& options, Ports ports);

@@ -15,7 +15,7 @@
 
 namespace lidar::tools {
 
-/// One packet as it left or was dropped.
+/// A packet as it left or was dropped.
 struct PacketRecord {
   link::Outcome outcome;
   link::Ecn ecn_in = link::Ecn::kNotEct;

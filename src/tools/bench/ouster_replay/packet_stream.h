@@ -24,9 +24,9 @@ class PacketStream {
     std::uint32_t init_id = 0;
     std::uint64_t sensor_time_ns = 0;  // of the first column
   };
-  /// From the first packet again, as after a boot.
+  /// Starts from the first packet again, as after a boot.
   virtual void Restart(const Start& start) = 0;
-  /// In order of `due`; none at the end.
+  /// Packets in order of `due`; none at the end.
   virtual std::optional<OutPacket> Next() = 0;
 };
 

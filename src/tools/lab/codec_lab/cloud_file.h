@@ -7,7 +7,7 @@
 
 namespace lidar::tools {
 
-/// By how the name ends.
+/// Judges by how the name ends.
 bool IsCloudFile(const std::string& path);
 /// Points that are all zero or not finite are left out. Throws std::runtime_error.
 Scan ReadCloud(const std::string& path);

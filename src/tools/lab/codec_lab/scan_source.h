@@ -33,7 +33,7 @@ class ScanStream {
  public:
   explicit ScanStream(double scans_per_second) : scans_per_second_(scans_per_second) {}
   virtual ~ScanStream() = default;
-  /// None at the end. Throws std::runtime_error with a message for the user.
+  /// Returns nothing at the end. Throws std::runtime_error with a message for the user.
   virtual std::optional<TimedScan> Next() = 0;
   double scans_per_second() const { return scans_per_second_; }
 

@@ -48,8 +48,8 @@ class SliceCodec {
   rate::SliceFeatures Features(const CodingMode& mode);
   rate::ErrorBound Bound(const CodingMode& mode);
 
-  /// None where the slice is empty or the codec refuses the step. `keep_fraction` thins beams, or
-  /// points of a cloud without order.
+  /// Returns nothing where the slice is empty or the codec refuses the step. `keep_fraction` thins
+  /// beams, or points of a cloud without order.
   std::optional<rate::EncodedSize> Encode(const CodingMode& mode, const rate::Settings& settings,
                                           double keep_fraction = 1);
   /// Distances between the points and their decoded points. None where Encode() would be, and for

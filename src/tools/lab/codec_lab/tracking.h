@@ -35,7 +35,7 @@ struct TrackOptions {
   bool open_loop = false;
 };
 
-/// One scan, as it went.
+/// A scan, as it went.
 struct TrackedScan {
   double target_bps = 0;
   double sent_bps = 0;

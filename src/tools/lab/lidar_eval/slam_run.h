@@ -33,7 +33,7 @@ struct SlamResult {
   // How far the loss moved the points
   double mean_point_error_m = 0;
   double max_point_error_m = 0;
-  // With close_loops
+  // Set with close_loops
   odometry::Trajectory closed;  // the estimate without the drift between loops
   std::size_t closures = 0;
   std::size_t local_maps = 0;

@@ -11,7 +11,7 @@
 
 namespace lidar::tools {
 
-/// One setting of the coder.
+/// A setting of the coder.
 struct MixingCase {
   unsigned effort = 2;
   double error_m = 0.02;
