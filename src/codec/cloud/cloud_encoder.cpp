@@ -31,8 +31,13 @@ IntensityScale ScaleOf(const XyzCloud& cloud, unsigned bits) {
 
 /// Shares the error between ranges and azimuths so that the cloud should be smallest. None where
 /// the image would be too large.
-std::optional<PixelErrors> CheapestErrors(const std::vector<Sighting>& sightings,
-                                          const BeamTable& table, double error_m) {
+std::optional<PixelErrors> CheapestErrors(const std::vector<Sighting>& all, const BeamTable& table,
+                                          double error_m) {
+  // A part of the points tells as much.
+  constexpr std::size_t kSample = 16'384;
+  std::vector<Sighting> sightings;
+  const std::size_t stride = all.size() / kSample + 1;
+  for (std::size_t i = 0; i < all.size(); i += stride) sightings.push_back(all[i]);
   // Bits of what fits no pixel, of a further return, and of a residual.
   constexpr double kRestBits = 10;
   constexpr double kExtraBits = 6;
