@@ -105,7 +105,7 @@ class OdometryWriter : public BufferWriter {
     const GstClockTime stamp = CaptureTime(buffer, log_time);
     odometry->header = HeaderOf(stamp, "odom");
     odometry->child_frame_id = frame_id_;
-    odometry->pose_covariance = CovarianceOf(tracking);
+    odometry->pose_covariance = CovarianceOf(tracking, odometry->pose_covariance);
     odometry->twist_covariance = NoVelocity();
     out->push_back({0, stamp, cdr::WriteOdometry(*odometry)});
     return true;

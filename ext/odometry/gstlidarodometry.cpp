@@ -11,6 +11,7 @@
  */
 #include <gst/base/gstbasetransform.h>
 
+#include <cmath>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -174,6 +175,11 @@ static void WarnIfLost(GstLidarOdometry* self, const Estimate& estimate) {
   stream.posted_lost = lost;
 }
 
+/// How far a vector of that covariance is off as a rule.
+static gdouble Deviation(const Eigen::Matrix3d& covariance) {
+  return std::sqrt(covariance.trace());
+}
+
 static void PostMessage(GstLidarOdometry* self, const Estimate& e) {
   const GstLidarPose pose = ToMeta(e.pose, e.tracking);
   const gdouble* p = pose.position;
@@ -182,13 +188,15 @@ static void PostMessage(GstLidarOdometry* self, const Estimate& e) {
       GST_ELEMENT(self),
       gst_message_new_element(
           GST_OBJECT(self),
-          gst_structure_new("odometry", "timestamp", G_TYPE_UINT64,
-                            static_cast<guint64>(e.time.time_since_epoch().count()), "x",
-                            G_TYPE_DOUBLE, p[0], "y", G_TYPE_DOUBLE, p[1], "z", G_TYPE_DOUBLE, p[2],
-                            "qx", G_TYPE_DOUBLE, q[0], "qy", G_TYPE_DOUBLE, q[1], "qz",
-                            G_TYPE_DOUBLE, q[2], "qw", G_TYPE_DOUBLE, q[3], "tracking",
-                            G_TYPE_STRING, ToString(e.tracking), "inlier-share", G_TYPE_DOUBLE,
-                            e.inlier_share, nullptr)));
+          gst_structure_new(
+              "odometry", "timestamp", G_TYPE_UINT64,
+              static_cast<guint64>(e.time.time_since_epoch().count()), "x", G_TYPE_DOUBLE, p[0],
+              "y", G_TYPE_DOUBLE, p[1], "z", G_TYPE_DOUBLE, p[2], "qx", G_TYPE_DOUBLE, q[0], "qy",
+              G_TYPE_DOUBLE, q[1], "qz", G_TYPE_DOUBLE, q[2], "qw", G_TYPE_DOUBLE, q[3], "tracking",
+              G_TYPE_STRING, ToString(e.tracking), "inlier-share", G_TYPE_DOUBLE, e.inlier_share,
+              "position-deviation", G_TYPE_DOUBLE, Deviation(e.covariance.topLeftCorner<3, 3>()),
+              "orientation-deviation", G_TYPE_DOUBLE,
+              Deviation(e.covariance.bottomRightCorner<3, 3>()), nullptr)));
 }
 
 static void WriteTrajectory(GstLidarOdometry* self, const Estimate& estimate) {
@@ -202,17 +210,20 @@ static void WriteTrajectory(GstLidarOdometry* self, const Estimate& estimate) {
                       (nullptr));
 }
 
-/// A buffer for each scan: 7 doubles and the tracking, little-endian. Nobody has to link the pad.
+/// One buffer for each scan: 7 doubles, the tracking, and the covariance in 36 doubles,
+/// little-endian. Nobody has to link the pad.
 static void PushPose(GstLidarOdometry* self, const Estimate& estimate, GstClockTime pts) {
   if (!gst_pad_is_linked(self->poses)) return;
   const GstLidarPose pose = ToMeta(estimate.pose, estimate.tracking);
-  std::array<guint64, 8> words{};
-  for (std::size_t i = 0; i < 7; ++i) {
-    const gdouble value = i < 3 ? pose.position[i] : pose.orientation[i - 3];
+  std::array<guint64, 44> words{};
+  const auto put = [&words](std::size_t i, gdouble value) {
     std::memcpy(&words[i], &value, sizeof value);
     words[i] = GUINT64_TO_LE(words[i]);
-  }
+  };
+  for (std::size_t i = 0; i < 7; ++i) put(i, i < 3 ? pose.position[i] : pose.orientation[i - 3]);
   words[7] = GUINT64_TO_LE(static_cast<guint64>(pose.tracking));
+  for (Eigen::Index i = 0; i < 36; ++i)
+    put(8 + static_cast<std::size_t>(i), estimate.covariance(i / 6, i % 6));
   GstBuffer* buffer = gst_buffer_new_memdup(words.data(), sizeof words);
   GST_BUFFER_PTS(buffer) = pts;
   gst_lidar_buffer_set_capture_time(

@@ -118,10 +118,13 @@ bool MessageWriter::WritePose(ByteView bytes, const Publish& publish) {
   if (!pose) return false;
   pose->header = HeaderOf(stamp_, kOdometryFrame);
   pose->child_frame_id = ChildFrame();
-  pose->pose_covariance = CovarianceOf(tracking);
+  pose->pose_covariance = CovarianceOf(tracking, pose->pose_covariance);
   pose->twist_covariance = NoVelocity();
-  if (tracking <= GST_LIDAR_TRACKING_OK)
+  const bool wanted = wanted_.position_variance > 0 || wanted_.orientation_variance > 0;
+  if (wanted && tracking <= GST_LIDAR_TRACKING_OK) {
+    pose->pose_covariance = {};
     SetVariances(wanted_.position_variance, wanted_.orientation_variance, &pose->pose_covariance);
+  }
   if (type_ == cdr::RosType::kOdometry) {
     publish({View(cdr::WriteOdometry(*pose))});
   } else {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The covariances of nav_msgs/msg/Odometry, where all that is known is whether a pose is tracked.
+// The covariances of nav_msgs/msg/Odometry, which also say whether a pose is tracked.
 #pragma once
 #include <array>
 #include <cstddef>
@@ -20,9 +20,10 @@ inline void SetVariances(double position, double orientation, Covariance* covari
 }
 
 /// ROS has no word for the tracking, which is a GstLidarTracking. Zeros say that a covariance is
-/// not known.
-inline Covariance CovarianceOf(std::uint64_t tracking) {
+/// not known. `measured` is that of a tracked pose.
+inline Covariance CovarianceOf(std::uint64_t tracking, const Covariance& measured = {}) {
   Covariance covariance{};
+  if (tracking <= GST_LIDAR_TRACKING_OK) return measured;
   if (tracking == GST_LIDAR_TRACKING_DEGENERATE)
     SetVariances(kDegenerateVariance, kDegenerateVariance, &covariance);
   if (tracking >= GST_LIDAR_TRACKING_LOST)

@@ -37,16 +37,21 @@ std::vector<std::uint8_t> WritePose(const Odometry& odometry, std::uint64_t trac
   for (const double v : odometry.position) w.LeF64(v);
   for (const double v : odometry.orientation) w.LeF64(v);
   w.Le64(tracking);
+  const auto& covariance = odometry.pose_covariance;
+  if (std::any_of(covariance.begin(), covariance.end(), [](double v) { return v != 0; }))
+    for (const double v : covariance) w.LeF64(v);
   return bytes;
 }
 
 std::optional<Odometry> ReadPose(ByteView bytes, std::uint64_t* tracking) {
-  if (bytes.size != kPoseSize) return std::nullopt;
+  if (bytes.size != kPoseSize && bytes.size != kPoseSizeWithCovariance) return std::nullopt;
   ByteReader r(bytes);
   Odometry odometry;
   for (double& v : odometry.position) v = r.LeF64();
   for (double& v : odometry.orientation) v = r.LeF64();
   *tracking = r.Le64();
+  if (r.remaining() > 0)
+    for (double& v : odometry.pose_covariance) v = r.LeF64();
   return odometry;
 }
 

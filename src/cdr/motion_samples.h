@@ -13,17 +13,20 @@ namespace lidar::cdr {
 inline constexpr const char* kImuFields =
     "t:U64:0,ax:F32:8,ay:F32:12,az:F32:16,gx:F32:20,gy:F32:24,gz:F32:28";
 inline constexpr std::size_t kImuSampleSize = 32;
-/// Seven doubles and an integer.
+/// Seven doubles and an integer; then, where it is known, the covariance in 36 doubles.
 inline constexpr std::size_t kPoseSize = 64;
+inline constexpr std::size_t kPoseSizeWithCovariance = kPoseSize + 36 * 8;
 
 std::vector<std::uint8_t> WriteImuSample(const Imu& imu);
 /// As many messages as `bytes` have samples, with no orientation and no frame; none where a sample
 /// is cut.
 std::vector<Imu> ReadImuSamples(ByteView bytes);
 
-/// Position [m], orientation x, y, z, w and how sure the pose is, which messages do not say.
+/// Position [m], orientation x, y, z, w, how sure the pose is, which messages do not say, and the
+/// covariance of the pose unless it is zero.
 std::vector<std::uint8_t> WritePose(const Odometry& odometry, std::uint64_t tracking);
-/// The pose, with neither time nor frames; none where `bytes` are of another size.
+/// The pose, with neither time nor frames, and its covariance, or zeros where it is not known; none
+/// where `bytes` are of another size.
 std::optional<Odometry> ReadPose(ByteView bytes, std::uint64_t* tracking);
 
 }  // namespace lidar::cdr

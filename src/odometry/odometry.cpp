@@ -31,6 +31,17 @@ constexpr int kFirstRounds = 4;
 /// Times within a sweep at which the motion is computed.
 constexpr int kPhases = 1024;
 constexpr int kLostForGood = 10;  // scans
+/// A map to which fewer scans have fitted may stand on a wrong first motion: it is not held on to.
+constexpr int kTrustedMap = 3;
+/// Of the search where nothing is known of the motion [m].
+constexpr double kWidestSigma = 2;
+/// No vehicle changes its velocity faster [m/s^2, rad/s^2]; the first motion and an alignment may
+/// be off by so many cubes.
+constexpr double kMostAcceleration = 30;
+constexpr double kMostTurnAcceleration = 30;
+constexpr double kSlack = 0.3;
+/// A point that fits, as a part of the map's cubes.
+constexpr double kFit = 0.2;
 /// Scans closer than that tell nothing of the velocity.
 constexpr Duration kShortestGap = milliseconds(2);
 /// Beyond this the velocity may have changed: the search reaches farther in proportion.
@@ -110,6 +121,7 @@ Pose Odometry::PredictAt(Time t) const {
 /// Sensors that tell their beams show surfaces in a single scan.
 RegistrationSettings Odometry::SettingsFor(const TimedPoints& scan, const Pose& guess) const {
   RegistrationSettings settings = settings_.registration;
+  settings.fit_m = kFit * settings_.voxel_size_m;
   if (!scan.HasRings()) return settings;
   settings.spare_point_weight = kSparePointWeight;
   const double moved = (guess.position - entered_.position).norm();
@@ -158,6 +170,7 @@ void Odometry::AddToMap(const Surface& fine) {
   for (const Eigen::Vector3d& n : fine.normals) placed.normals.push_back(pose_.rotation * n);
   map_.Add(placed.points, placed.normals);
   entered_ = pose_;
+  confidence_.EnterMap();
 }
 
 /// If each scan entered the map, its lines would move along with the sensor and hold it back, and
@@ -170,7 +183,7 @@ bool Odometry::IsFarFromTheLastInMap() const {
 void Odometry::StartMap(const Surface& fine) {
   map_ = LocalMap({settings_.voxel_size_m, settings_.max_range_m});
   AddToMap(fine);
-  lost_scans_ = 0;
+  lost_scans_ = fitting_scans_ = 0;
 }
 
 /// Nothing is known of the motion yet: a car may have gone farther than the fine map's cubes reach.
@@ -213,6 +226,7 @@ Estimate Odometry::OnScan(Time start, Duration duration, const TimedPoints& scan
   last_time_ = estimate.time = middle;
   last_scan_ = std::move(fine.points);
   estimate.pose = pose_;
+  estimate.covariance = CovarianceInMap();
   return estimate;
 }
 
@@ -220,50 +234,92 @@ Estimate Odometry::Begin(const TimedPoints& scan, const Surface& fine) {
   Estimate estimate;
   estimate.map_restarted = last_time_.has_value();
   StartMap(fine);
+  confidence_.ForgetVelocity();
   // With its velocity known it is straight already.
-  if (last_time_ || !settings_.start_velocity) first_scan_ = scan;
+  const bool known = !last_time_ && settings_.start_velocity;
+  if (known) {
+    confidence_.SetVelocityKnown();
+  } else {
+    first_scan_ = scan;
+  }
   return estimate;
 }
 
-Estimate Odometry::Match(Time middle, const TimedPoints& scan, const Surface& fine) {
+/// A scan that does not fit within the usual reach is searched as far as at the start.
+Alignment Odometry::AlignFrom(const Pose& guess, Duration gap, const TimedPoints& scan,
+                              const Surface& fine) {
   const Points aligned = ThinOut(fine.points, kAlignedGrid * settings_.voxel_size_m, kMostAligned);
-  const Duration gap = middle - *last_time_;
-  const Pose guess = PredictAt(middle);
+  const RegistrationSettings settings = SettingsFor(scan, guess);
+  const auto align = [&](double sigma) {
+    const double kernel = std::max(kKernel * sigma, kLeastKernel * settings_.voxel_size_m);
+    return Align(aligned, &map_, guess, kReach * sigma, kernel, settings);
+  };
   const double widened = std::clamp(Seconds(gap) / Seconds(kUsualPeriod), 1.0, kWidestSearch);
   const double sigma = threshold_.sigma_m() * widened;
-  const double kernel = std::max(kKernel * sigma, kLeastKernel * settings_.voxel_size_m);
-  const Alignment found =
-      Align(aligned, &map_, guess, kReach * sigma, kernel, SettingsFor(scan, guess));
+  const Alignment found = align(sigma);
+  if (found.inlier_share >= kLeastInliers || sigma >= kWidestSigma) return found;
+  return align(kWidestSigma);
+}
+
+/// A scan fits if its points do, and if a vehicle can have moved like that.
+bool Odometry::Fits(const Alignment& found, const Pose& guess, Duration gap) const {
+  if (found.inlier_share < kLeastInliers) return false;
+  if (fitting_scans_ == 0) return true;  // the first motion may be anything
+  const Pose correction = guess.Inverse() * found.pose;
+  const double square = Seconds(gap) * Seconds(gap);
+  return correction.position.norm() <=
+             kMostAcceleration * square + kSlack * settings_.voxel_size_m &&
+         Angle(correction) <= kMostTurnAcceleration * square;
+}
+
+Estimate Odometry::Match(Time middle, const TimedPoints& scan, const Surface& fine) {
+  const Duration gap = middle - *last_time_;
+  const Pose guess = PredictAt(middle);
+  confidence_.Predict(pose_.Inverse() * guess, gap);
+  const Alignment found = AlignFrom(guess, gap, scan, fine);
   Estimate estimate;
   estimate.inlier_share = found.inlier_share;
   estimate.iterations = found.iterations;
-  if (found.inlier_share < kLeastInliers) {
+  if (!Fits(found, guess, gap)) {
     estimate.tracking = Tracking::kLost;
     pose_ = guess;
-    estimate.map_restarted = Lose(scan, fine);
+    Lose(scan, fine, &estimate);
     return estimate;
   }
   estimate.tracking = found.degenerate ? Tracking::kDegenerate : Tracking::kTracking;
   threshold_.Add(guess.Inverse() * found.pose);
-  Follow(found.pose, gap, fine);
+  Follow(found, guess, gap, fine);
   return estimate;
 }
 
-void Odometry::Follow(const Pose& found, Duration gap, const Surface& fine) {
+void Odometry::Follow(const Alignment& found, const Pose& guess, Duration gap,
+                      const Surface& fine) {
   lost_scans_ = 0;
-  if (gap >= kShortestGap) velocity_ = Log(pose_.Inverse() * found) / Seconds(gap);
-  pose_ = found;
+  ++fitting_scans_;
+  confidence_.Observe(found.information, found.unobserved, Log(guess.Inverse() * found.pose));
+  if (gap >= kShortestGap) velocity_ = Log(pose_.Inverse() * found.pose) / Seconds(gap);
+  pose_ = found.pose;
   if (IsFarFromTheLastInMap()) AddToMap(fine);
   map_.Forget(pose_.position);
 }
 
-/// True where a new map begins.
-bool Odometry::Lose(const TimedPoints& scan, const Surface& fine) {
-  if (++lost_scans_ < kLostForGood || fine.points.empty()) return false;
+/// A new map begins where the old one is of no use any more.
+void Odometry::Lose(const TimedPoints& scan, const Surface& fine, Estimate* estimate) {
+  ++lost_scans_;
+  const bool untried = fitting_scans_ < kTrustedMap;
+  if ((!untried && lost_scans_ < kLostForGood) || fine.points.empty()) return;
   velocity_.setZero();  // it led here
+  if (untried) estimate->tracking = Tracking::kStarted;
+  estimate->map_restarted = true;
   StartMap(fine);
+  confidence_.ForgetVelocity();
   first_scan_ = scan;
-  return true;
+}
+
+Matrix6 Odometry::CovarianceInMap() const {
+  Matrix6 turn = Matrix6::Zero();
+  turn.topLeftCorner<3, 3>() = turn.bottomRightCorner<3, 3>() = pose_.rotation.toRotationMatrix();
+  return turn * confidence_.covariance() * turn.transpose();
 }
 
 }  // namespace lidar::odometry

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "src/base/time.h"
+#include "src/odometry/confidence.h"
 #include "src/odometry/local_map.h"
 #include "src/odometry/motion_threshold.h"
 #include "src/odometry/registration.h"
@@ -34,7 +35,7 @@ struct TimedPoints {
 };
 
 enum class Tracking {
-  kStarted,  // the first scan: the map begins here
+  kStarted,  // the map begins here: the first scan, or a start beside a map that did not fit
   kTracking,
   kDegenerate,  // the scene does not show the motion along one direction; the velocity is kept
                 // there
@@ -49,6 +50,8 @@ struct Estimate {
   double inlier_share = 0;
   int iterations = 0;
   bool map_restarted = false;  // after being lost for too long
+  /// Of the error since the first scan: x, y, z [m], and turns about the axes of the map [rad].
+  Matrix6 covariance = Matrix6::Zero();
 };
 
 /// KISS-ICP (Vizzo et al., 2023): constant velocity, voxel grids, adaptive threshold, robust ICP
@@ -88,8 +91,12 @@ class Odometry {
   /// rest.
   Estimate Begin(const TimedPoints& scan, const Surface& fine);
   Estimate Match(Time middle, const TimedPoints& scan, const Surface& fine);
-  void Follow(const Pose& found, Duration gap, const Surface& fine);
-  bool Lose(const TimedPoints& scan, const Surface& fine);
+  Alignment AlignFrom(const Pose& guess, Duration gap, const TimedPoints& scan,
+                      const Surface& fine);
+  bool Fits(const Alignment& found, const Pose& guess, Duration gap) const;
+  void Follow(const Alignment& found, const Pose& guess, Duration gap, const Surface& fine);
+  void Lose(const TimedPoints& scan, const Surface& fine, Estimate* estimate);
+  Matrix6 CovarianceInMap() const;
 
   OdometrySettings settings_;
   LocalMap map_;
@@ -98,7 +105,9 @@ class Odometry {
   Pose entered_;                    // of the last scan that went into the map
   Twist velocity_ = Twist::Zero();  // a second, in the sensor's frame
   std::optional<Time> last_time_;
+  Confidence confidence_;
   int lost_scans_ = 0;
+  int fitting_scans_ = 0;  // of this map, the first one left out
   Points last_scan_;
   /// The scan that began the map, until the velocity is known that straightens it.
   std::optional<TimedPoints> first_scan_;

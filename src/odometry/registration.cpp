@@ -3,21 +3,23 @@
 
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
+#include <algorithm>
 
 namespace lidar::odometry {
 namespace {
 
-using Matrix6 = Eigen::Matrix<double, 6, 6>;
-
 constexpr std::size_t kLeastPairs = 20;  // fewer than that say nothing
 /// Holds the guess along a direction that the scene does not show, against all points of a scan.
 constexpr double kHold = 1e6;
+/// No map is more exact than that, whatever its points say [m].
+constexpr double kLeastSpread = 0.01;
 
 /// The sums of one Gauss-Newton step, for a motion of the sensor in its own frame.
 struct NormalEquations {
   Matrix6 lhs = Matrix6::Zero();
   Twist rhs = Twist::Zero();
   double weights = 0;
+  double squares = 0;  // of the residuals, weighted
   std::size_t pairs = 0;
 
   template <class Jacobian, class Residual>
@@ -25,12 +27,14 @@ struct NormalEquations {
     lhs.noalias() += weight * jacobian.transpose() * jacobian;
     rhs.noalias() -= weight * jacobian.transpose() * residual;
     weights += weight;
+    squares += weight * residual.squaredNorm();
     ++pairs;
   }
   void Add(double weight, const NormalEquations& other) {
     lhs += weight * other.lhs;
     rhs += weight * other.rhs;
     weights += weight * other.weights;
+    squares += weight * other.squares;
     pairs += other.pairs;
   }
   /// How much they hold each direction of a translation: the sum is 1 where all are of surfaces.
@@ -41,10 +45,11 @@ struct NormalEquations {
 struct Neighbours {
   NormalEquations surfaces;
   NormalEquations points;
+  std::size_t fitting = 0;
 };
 
 Neighbours Linearise(const Points& points, LocalMap* map, const Pose& pose, double reach_m,
-                     double kernel_m, double point_turn) {
+                     double kernel_m, const RegistrationSettings& settings) {
   Neighbours sums;
   const Eigen::Matrix3d rotation = pose.rotation.toRotationMatrix();
   const double square = kernel_m * kernel_m;
@@ -64,9 +69,11 @@ Neighbours Linearise(const Points& points, LocalMap* map, const Pose& pose, doub
     if (nearest->has_normal) {
       const Eigen::Vector3d normal = rotation.transpose() * nearest->normal;
       const Eigen::Matrix<double, 1, 1> distance(normal.dot(residual));
+      if (distance.norm() <= settings.fit_m) ++sums.fitting;
       sums.surfaces.Add(weight_of(distance.squaredNorm()), normal.transpose() * jacobian, distance);
     } else {
-      jacobian.rightCols<3>() *= point_turn;
+      jacobian.rightCols<3>() *= settings.point_turn;
+      if (residual.norm() <= settings.fit_m) ++sums.fitting;
       sums.points.Add(weight_of(residual.squaredNorm()), jacobian, residual);
     }
   }
@@ -95,6 +102,10 @@ double WeighPoints(const NormalEquations& surfaces, const RegistrationSettings& 
   return held ? settings.spare_point_weight : settings.point_weight;
 }
 
+Matrix6 InformationOf(const NormalEquations& sums) {
+  return sums.lhs / std::max(sums.squares / sums.weights, kLeastSpread * kLeastSpread);
+}
+
 }  // namespace
 
 Alignment Align(const Points& points, LocalMap* map, const Pose& guess, double reach_m,
@@ -102,23 +113,22 @@ Alignment Align(const Points& points, LocalMap* map, const Pose& guess, double r
   Alignment result;
   result.pose = guess;
   if (points.empty() || map->empty()) return result;
-  Eigen::Matrix3d unobserved = Eigen::Matrix3d::Zero();  // there the guess stays
   double point_weight = 1;
   while (result.iterations++ < settings.max_iterations) {
-    const Neighbours found =
-        Linearise(points, map, result.pose, reach_m, kernel_m, settings.point_turn);
+    const Neighbours found = Linearise(points, map, result.pose, reach_m, kernel_m, settings);
     if (result.iterations == 1) point_weight = WeighPoints(found.surfaces, settings);
     NormalEquations sums = found.surfaces;
     sums.Add(point_weight, found.points);
-    result.inlier_share = static_cast<double>(sums.pairs) / static_cast<double>(points.size());
-    if (sums.pairs < kLeastPairs) return {guess, result.inlier_share, result.iterations, false};
+    result.inlier_share = static_cast<double>(found.fitting) / static_cast<double>(points.size());
+    if (sums.pairs < kLeastPairs) return {guess, result.inlier_share, result.iterations};
     if (result.iterations == 1) {
-      unobserved = FindUnobserved(sums, settings);
-      result.degenerate = !unobserved.isZero();
+      result.unobserved = FindUnobserved(sums, settings);
+      result.degenerate = !result.unobserved.isZero();
     }
-    sums.lhs.topLeftCorner<3, 3>() += kHold * sums.weights * unobserved;
+    result.information = InformationOf(sums);
+    sums.lhs.topLeftCorner<3, 3>() += kHold * sums.weights * result.unobserved;
     const Twist step = sums.lhs.ldlt().solve(sums.rhs);
-    if (!step.allFinite()) return {guess, 0, result.iterations, false};
+    if (!step.allFinite()) return {guess, 0, result.iterations};
     result.pose = result.pose * Exp(step);
     if (step.norm() < settings.converged) break;
   }

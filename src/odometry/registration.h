@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Robust ICP: the pose from which the map explains a scan.
 #pragma once
+#include "src/odometry/confidence.h"
 #include "src/odometry/local_map.h"
 #include "src/odometry/pose.h"
 
@@ -23,14 +24,21 @@ struct RegistrationSettings {
   double least_constraint = 0.04;
   /// nor is one that they hold less than this part of the next one: the length of a tunnel.
   double least_balance = 0.3;
+  /// A point fits that lies so near to its surface, or to its neighbour. It does not grow with the
+  /// reach, so a wide search does not make a scan fit.
+  double fit_m = 0.2;
 };
 
 struct Alignment {
   Pose pose;
-  double inlier_share = 0;  // part of the points with a neighbour within reach
+  double inlier_share = 0;  // part of the points that fit
   int iterations = 0;
   /// The scene does not show the motion along some direction; the guess is kept there.
   bool degenerate = false;
+  /// The projection on those directions, in the sensor's frame.
+  Eigen::Matrix3d unobserved = Eigen::Matrix3d::Zero();
+  /// Of a motion of the sensor in its own frame, if the errors of the points are independent.
+  Matrix6 information = Matrix6::Zero();
 };
 
 /// Aligns `points` of the sensor's frame to `map`, from `guess`, as KISS-ICP does (Vizzo et al.,

@@ -50,8 +50,22 @@ TEST(Poses, HavePositionOrientationAndTracking) {
   EXPECT_EQ(back->position, o.position);
   EXPECT_EQ(back->orientation, o.orientation);
   EXPECT_EQ(tracking, 3U);
+  EXPECT_EQ(back->pose_covariance, o.pose_covariance);
   expected.push_back(0);
   EXPECT_FALSE(ReadPose(View(expected), &tracking));
+}
+
+TEST(Poses, BringTheirCovarianceWhereItIsKnown) {
+  Odometry o;
+  for (std::size_t i = 0; i < 36; ++i) o.pose_covariance[i] = 0.5 + static_cast<double>(i);
+  Bytes bytes = WritePose(o, 1);
+  EXPECT_EQ(bytes.size(), kPoseSizeWithCovariance);
+  std::uint64_t tracking = 0;
+  const auto back = ReadPose(View(bytes), &tracking);
+  ASSERT_TRUE(back);
+  EXPECT_EQ(back->pose_covariance, o.pose_covariance);
+  bytes.pop_back();
+  EXPECT_FALSE(ReadPose(View(bytes), &tracking));
 }
 
 }  // namespace

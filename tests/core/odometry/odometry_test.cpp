@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <limits>
 
 #include "src/odometry/trajectory_error.h"
@@ -19,7 +20,8 @@ constexpr Duration kPeriod = milliseconds(100);
 /// A car with a sensor of 32 beams.
 class Drive {
  public:
-  Drive(synth::SceneKind scene, double speed_mps) : scanner_(Config(scene, speed_mps)) {}
+  Drive(synth::SceneKind scene, double speed_mps, std::uint64_t seed = 0)
+      : scanner_(Config(scene, speed_mps, seed)) {}
 
   TimedPoints Scan(std::uint64_t number) {
     synth::Returns returns;
@@ -51,15 +53,16 @@ class Drive {
 
  private:
   static constexpr std::uint32_t kColumns = 512;
-  static synth::ScannerConfig Config(synth::SceneKind scene, double speed_mps) {
+  static synth::ScannerConfig Config(synth::SceneKind scene, double speed_mps, std::uint64_t seed) {
     synth::ScannerConfig config;
     config.sensor = *synth::MakeSensor("os0-32", kColumns);
     config.scene = scene;
     config.speed_mps = speed_mps;
+    config.seed = seed;
     return config;
   }
   synth::Scanner scanner_;
-  RangeProjection projection_{Config({}, 0).sensor.model};
+  RangeProjection projection_{Config({}, 0, 0).sensor.model};
 };
 
 /// Poses of `scans` scans, of which those in `missing` do not come.
@@ -67,6 +70,7 @@ struct Followed {
   Trajectory truth;
   Trajectory estimate;
   std::vector<Tracking> tracking;
+  std::vector<double> deviation_m;
 };
 Followed Follow(Drive* drive, std::uint64_t scans, const OdometrySettings& settings,
                 const std::vector<std::uint64_t>& missing = {}) {
@@ -78,6 +82,7 @@ Followed Follow(Drive* drive, std::uint64_t scans, const OdometrySettings& setti
     run.truth.push_back({e.time, drive->TruthAt(e.time)});
     run.estimate.push_back({e.time, e.pose});
     run.tracking.push_back(e.tracking);
+    run.deviation_m.push_back(std::sqrt(e.covariance.topLeftCorner<3, 3>().trace()));
   }
   return run;
 }
@@ -175,6 +180,67 @@ TEST(Odometry, GoesOnAtTheVelocityThatItIsGiven) {
   EXPECT_NEAR(Odometry({}).PredictAt(first.time + kPeriod).position.x(), 0, 1e-9);
   const Estimate second = odometry.OnScan(drive.StartOf(1), kPeriod, drive.Scan(1));
   EXPECT_NEAR(second.pose.position.x(), 2, 0.1) << "the first scan is straight";
+}
+
+/// How far the last pose is off, against where the first one was.
+double EndError(const Followed& run) {
+  const Pose way = run.truth.front().pose.Inverse() * run.truth.back().pose;
+  const Pose found = run.estimate.front().pose.Inverse() * run.estimate.back().pose;
+  return (way.position - found.position).norm();
+}
+
+TEST(Odometry, LosesNoStartInOpenCountry) {
+  for (const std::uint64_t seed : {11U, 22U}) {
+    Drive drive(synth::SceneKind::kField, 7, seed);
+    const Followed run = Follow(&drive, 12, {});
+    EXPECT_EQ(std::count(run.tracking.begin() + 1, run.tracking.end(), Tracking::kTracking), 11)
+        << seed;
+  }
+}
+
+TEST(Odometry, StartsAfreshBesideAMapToWhichNothingHasFitted) {
+  Drive street(synth::SceneKind::kStreet, 10);
+  Odometry odometry({});
+  TimedPoints elsewhere = street.Scan(0);
+  for (Eigen::Vector3d& point : elsewhere.points) point.z() += 40;
+  odometry.OnScan(street.StartOf(0), kPeriod, elsewhere);
+  const Estimate fresh = odometry.OnScan(street.StartOf(1), kPeriod, street.Scan(1));
+  EXPECT_EQ(fresh.tracking, Tracking::kStarted);
+  EXPECT_TRUE(fresh.map_restarted);
+  const Estimate next = odometry.OnScan(street.StartOf(2), kPeriod, street.Scan(2));
+  EXPECT_EQ(next.tracking, Tracking::kTracking);
+  EXPECT_NEAR((next.pose.position - fresh.pose.position).norm(), 1, 0.1);
+}
+
+TEST(Odometry, SaysHowFarItMayBeOff) {
+  for (const auto scene :
+       {synth::SceneKind::kStreet, synth::SceneKind::kField, synth::SceneKind::kTunnel}) {
+    Drive drive(scene, 8);
+    const Followed run = Follow(&drive, 30, {});
+    EXPECT_LT(EndError(run), 3 * run.deviation_m.back());
+    const double most = scene == synth::SceneKind::kTunnel ? 60 : 2;  // of 23 m
+    EXPECT_LT(run.deviation_m.back(), most);
+  }
+}
+
+TEST(Odometry, IsLessSureOfWhatItDoesNotSee) {
+  Drive street(synth::SceneKind::kStreet, 8);
+  Drive tunnel(synth::SceneKind::kTunnel, 8);
+  EXPECT_GT(Follow(&tunnel, 20, {}).deviation_m.back(),
+            10 * Follow(&street, 20, {}).deviation_m.back());
+}
+
+TEST(Odometry, IsLostWhereAVehicleCannotHaveMovedLikeThat) {
+  Drive street(synth::SceneKind::kStreet, 10);
+  Odometry odometry({});
+  for (std::uint64_t i = 0; i < 10; ++i)
+    odometry.OnScan(street.StartOf(i), kPeriod, street.Scan(i));
+  const Pose before = odometry.PredictAt(street.StartOf(10) + kPeriod / 2);
+  TimedPoints aside = street.Scan(10);
+  for (Eigen::Vector3d& point : aside.points) point.y() += 1;
+  const Estimate lost = odometry.OnScan(street.StartOf(10), kPeriod, aside);
+  EXPECT_EQ(lost.tracking, Tracking::kLost);
+  EXPECT_LT((lost.pose.position - before.position).norm(), 1e-9);
 }
 
 TEST(Odometry, KnowsWhenAScanDoesNotFit) {

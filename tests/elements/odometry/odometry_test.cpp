@@ -202,7 +202,7 @@ TEST(OdometryPads, GiveThePoseOfEachScanThatItsMessageTells) {
     if (sample == nullptr) break;
     GstBuffer* buffer = gst_sample_get_buffer(sample);
     const BufferMap map(buffer, GST_MAP_READ);
-    ASSERT_EQ(map.size(), 64U);
+    ASSERT_EQ(map.size(), 44 * 8U);
     MessagePtr message;
     do message.reset(gst_bus_timed_pop_filtered(bus, GST_SECOND, GST_MESSAGE_ELEMENT));
     while (message && !gst_message_has_name(message.get(), "odometry"));

@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "src/odometry/confidence.h"
+
+#include <Eigen/LU>
+#include <algorithm>
+
+namespace lidar::odometry {
+namespace {
+
+/// Standard deviations of a vehicle's motion: of its velocity before it is known, and of its
+/// acceleration. Translation [m/s, m/s^2], then rotation [rad/s, rad/s^2].
+constexpr double kSpeed = 15;
+constexpr double kTurn = 0.5;
+constexpr double kAcceleration = 2;
+constexpr double kTurnAcceleration = 1;
+/// Points next to each other see the same bump, so errors of points are not independent.
+constexpr double kFirstScale = 30;
+constexpr double kLeastScale = 1;
+/// How much of a correction's square is taken for the error of an alignment: most of it is the
+/// vehicle's. So chosen that a drift of one direction stays within three standard deviations.
+constexpr double kShareOfCorrection = 1.0 / 2000;
+constexpr double kScaleMemory = 0.95;
+
+// Where the parts of the joint error begin.
+constexpr Eigen::Index kMap = 0;
+constexpr Eigen::Index kPose = 6;
+constexpr Eigen::Index kVelocity = 12;
+
+Twist Spread(double translation, double rotation) {
+  Twist variances;
+  variances << Eigen::Vector3d::Constant(translation * translation),
+      Eigen::Vector3d::Constant(rotation * rotation);
+  return variances;
+}
+
+}  // namespace
+
+Matrix6 Adjoint(const Pose& pose) {
+  Matrix6 adjoint = Matrix6::Zero();
+  const Eigen::Matrix3d rotation = pose.rotation.toRotationMatrix();
+  adjoint.topLeftCorner<3, 3>() = adjoint.bottomRightCorner<3, 3>() = rotation;
+  adjoint.topRightCorner<3, 3>() = Skew(pose.position) * rotation;
+  return adjoint;
+}
+
+Confidence::Confidence() : scale_(kFirstScale) { ForgetVelocity(); }
+
+Matrix6 Confidence::covariance() const {
+  const Eigen::Matrix<double, 6, 18> both =
+      joint_.middleRows<6>(kMap) + joint_.middleRows<6>(kPose);
+  return both.middleCols<6>(kMap) + both.middleCols<6>(kPose);
+}
+
+void Confidence::ForgetVelocity() {
+  EnterMap();
+  joint_.middleRows<6>(kVelocity).setZero();
+  joint_.middleCols<6>(kVelocity).setZero();
+  joint_.diagonal().segment<6>(kVelocity) = Spread(kSpeed, kTurn);
+  velocity_known_ = false;
+}
+
+void Confidence::SetVelocityKnown() {
+  joint_.diagonal().segment<6>(kVelocity) = Spread(kAcceleration, kTurnAcceleration);
+  velocity_known_ = true;
+}
+
+void Confidence::Predict(const Pose& motion, Duration gap) {
+  const double t = Seconds(gap);
+  Joint step = Joint::Identity();
+  step.block<6, 6>(kMap, kMap) = step.block<6, 6>(kPose, kPose) = Adjoint(motion.Inverse());
+  step.block<6, 6>(kPose, kVelocity) = t * Matrix6::Identity();
+  joint_ = step * joint_ * step.transpose();
+  const Twist spread = Spread(kAcceleration, kTurnAcceleration);
+  joint_.diagonal().segment<6>(kPose) += spread * (t * t * t * t / 4);
+  joint_.diagonal().segment<6>(kVelocity) += spread * (t * t);
+  joint_.block<6, 6>(kPose, kVelocity).diagonal() += spread * (t * t * t / 2);
+  joint_.block<6, 6>(kVelocity, kPose).diagonal() += spread * (t * t * t / 2);
+}
+
+void Confidence::Observe(const Matrix6& information, const Eigen::Matrix3d& unobserved,
+                         const Twist& correction) {
+  if (velocity_known_) {
+    const double seen = kShareOfCorrection * correction.dot(information * correction);
+    scale_ = std::max(kLeastScale, kScaleMemory * scale_ + (1 - kScaleMemory) * seen);
+  }
+  velocity_known_ = true;
+  const Matrix6 told = information / scale_;
+  const Matrix6 pose = joint_.block<6, 6>(kPose, kPose);
+  Eigen::Matrix<double, 18, 6> gain =
+      joint_.middleCols<6>(kPose) * (Matrix6::Identity() + told * pose).inverse();
+  // An alignment corrects neither the map nor what it does not see, so Joseph's form is needed.
+  const Eigen::Matrix3d observed = Eigen::Matrix3d::Identity() - unobserved;
+  gain.middleRows<6>(kMap).setZero();
+  gain.middleRows<3>(kPose) = observed * gain.middleRows<3>(kPose).eval();
+  gain.middleRows<3>(kVelocity) = observed * gain.middleRows<3>(kVelocity).eval();
+  Joint left = Joint::Identity();
+  left.middleCols<6>(kPose) -= gain * told;
+  joint_ = left * joint_ * left.transpose() + gain * told * gain.transpose();
+  joint_ = (joint_ + joint_.transpose().eval()) / 2;
+}
+
+void Confidence::EnterMap() {
+  Joint step = Joint::Identity();
+  step.block<6, 6>(kMap, kPose).setIdentity();
+  step.block<6, 6>(kPose, kPose).setZero();
+  joint_ = step * joint_ * step.transpose();
+}
+
+}  // namespace lidar::odometry
