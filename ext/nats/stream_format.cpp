@@ -14,7 +14,9 @@ namespace lidar::nats {
 namespace {
 
 constexpr std::size_t kIdSize = 16;
-constexpr std::size_t kPoseSize = 64;  // bytes, as lidarodometry has it
+// Of lidarodometry: a pose with its tracking, without and with a covariance [bytes].
+constexpr std::size_t kPoseSize = 64;
+constexpr std::size_t kPoseSizeWithCovariance = kPoseSize + 36 * sizeof(double);
 
 std::string IdOf(const std::string& text) {
   const ByteView bytes{reinterpret_cast<const std::uint8_t*>(text.data()), text.size()};
@@ -42,6 +44,7 @@ StreamFormat::Ptr StreamFormat::FromCaps(GstCaps* caps, std::string* why) {
     format->multiple_ = static_cast<std::size_t>(size);
   } else if (gst_structure_has_name(s, GST_LIDAR_ODOMETRY_MEDIA_TYPE)) {
     format->size_ = kPoseSize;
+    format->longer_size_ = kPoseSizeWithCovariance;
   } else if (g_strcmp0(gst_structure_get_string(s, "alignment"), "slice") != 0) {
     *why = std::string("clouds, coded slices, IMU samples and odometry can be published, and no ") +
            gst_structure_get_name(s);
@@ -67,12 +70,14 @@ StreamFormat::Ptr StreamFormat::FromText(const std::string& text) {
   format->text_ = text;
   format->id_ = IdOf(text);
   format->size_ = read->size_;
+  format->longer_size_ = read->longer_size_;
   format->multiple_ = read->multiple_;
   return format;
 }
 
 bool StreamFormat::Fits(std::size_t size) const {
-  return size > 0 && (size_ == 0 || size == size_) && size % multiple_ == 0;
+  const bool known = size_ == 0 || size == size_ || size == longer_size_;
+  return size > 0 && known && size % multiple_ == 0;
 }
 
 bool IsFormatId(const std::string& text) {

@@ -33,8 +33,9 @@ class StreamFormat {
   gst::CapsPtr caps_;
   std::string text_;
   std::string id_;
-  std::size_t size_ = 0;      // of a buffer [bytes]; 0: any
-  std::size_t multiple_ = 1;  // a buffer has a multiple of these [bytes]
+  std::size_t size_ = 0;         // of a buffer [bytes]; 0: any
+  std::size_t longer_size_ = 0;  // of a buffer that says more [bytes]; 0: none does
+  std::size_t multiple_ = 1;     // a buffer has a multiple of these [bytes]
 };
 
 /// True for what FromText() takes as an id.

@@ -79,7 +79,7 @@ class WorkerProcess {
 /// Metres from the origin.
 inline double DistanceOf(const Kept& pose) {
   double p[3] = {};
-  if (pose.bytes.size() == 64) std::memcpy(p, pose.bytes.data(), sizeof p);
+  if (pose.bytes.size() >= 64) std::memcpy(p, pose.bytes.data(), sizeof p);
   return std::hypot(p[0], p[1], p[2]);
 }
 

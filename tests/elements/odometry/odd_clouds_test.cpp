@@ -128,19 +128,33 @@ TEST_F(OddClouds, AScanThatIsCutOffEndsWithTheStreamOrItsCapsAndNotWithAFlush) {
 TEST_F(OddClouds, ThatFitNothingAreLostUntilAnotherMapBegins) {
   Start(kXyz);
   GstClockTime time = 0;
-  const auto push = [&](float x) { Push({x, 2, 3}, time += 100 * GST_MSECOND); };
-  push(1);
-  for (int i = 0; i < 9; ++i) push(50);
+  const auto push = [&](const std::vector<float>& points) {
+    Push(points, time += 100 * GST_MSECOND);
+  };
+  std::vector<float> corner;
+  for (int a = -20; a < 20; ++a) {
+    for (int b = -20; b < 20; ++b) {
+      const float u = 0.5F * static_cast<float>(a);
+      const float v = 0.5F * static_cast<float>(b);
+      corner.insert(corner.end(), {u, v, -2, u, 10, v, 10, u, v});
+    }
+  }
+  const std::vector<float> elsewhere = {50, 2, 3};
+  for (int i = 0; i < 4; ++i) push(corner);
+  EXPECT_EQ(Count("scans-lost"), 0U);
+  for (int i = 0; i < 9; ++i) push(elsewhere);
   EXPECT_EQ(Count("scans-lost"), 9U);
   EXPECT_EQ(Count("maps"), 1U);
   EXPECT_EQ(CountWarnings(), 1);
-  push(50);
+  push(elsewhere);
+  EXPECT_EQ(Count("scans-lost"), 10U);
   EXPECT_EQ(Count("maps"), 2U);
-  push(50);
+  push(elsewhere);
+  EXPECT_EQ(Count("maps"), 2U) << "it fits the new map";
+  push(corner);
+  EXPECT_EQ(Count("maps"), 3U) << "a map that one scan has fitted is not held on to";
   EXPECT_EQ(Count("scans-lost"), 10U);
   EXPECT_EQ(CountWarnings(), 0);
-  push(1);
-  EXPECT_EQ(CountWarnings(), 1) << "it was found in between";
 }
 
 TEST_F(OddClouds, OfOnePlaneDoNotShowTheMotionAlongIt) {
