@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Clouds from the files of the Point Cloud Library (PCD) and of Stanford (PLY). Any bytes may come.
+// Clouds from files: PCD (Point Cloud Library), PLY (Stanford), LAS (ASPRS) and KITTI's. Any bytes
+// may come.
 #pragma once
 #include <cstdint>
 #include <optional>
@@ -11,9 +12,10 @@
 
 namespace lidar {
 
-enum class CloudFileType { kPcd, kPly };
+enum class CloudFileType { kPcd, kPly, kLas, kKitti };
 
-/// Judges by how `file` begins; a few hundred bytes of it are enough.
+/// Judges by how `file` begins; a few hundred bytes of it are enough. A file of KITTI's has no
+/// header: plausible points are one.
 std::optional<CloudFileType> TypeOfCloudFile(ByteView file);
 
 struct FileCloud {
@@ -30,5 +32,12 @@ struct FileCloud {
 /// in words for a user. What it claims is believed only as far as its bytes go.
 std::optional<FileCloud> ReadPcd(ByteView file, std::string* why);
 std::optional<FileCloud> ReadPly(ByteView file, std::string* why);
+/// LAS 1.0 to 1.4, point formats 0 to 10, uncompressed. x, y and z are as the file has them, or,
+/// where a point lies more than 16 km off, relative to the least of each in whole metres: F32 has
+/// no millimetres beyond that.
+std::optional<FileCloud> ReadLas(ByteView file, std::string* why);
+/// x, y, z and intensity as F32, of KITTI's sequences and what was made after them.
+std::optional<FileCloud> ReadKitti(ByteView file, std::string* why);
+std::optional<FileCloud> ReadCloud(CloudFileType type, ByteView file, std::string* why);
 
 }  // namespace lidar

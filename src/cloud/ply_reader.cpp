@@ -111,15 +111,4 @@ std::optional<FileCloud> ReadPly(ByteView file, std::string* why) {
   return cloud;
 }
 
-std::optional<CloudFileType> TypeOfCloudFile(ByteView file) {
-  const std::string_view text(reinterpret_cast<const char*>(file.data),
-                              std::min<std::size_t>(file.size, 512));
-  const auto begins = [&](std::string_view with) { return text.substr(0, with.size()) == with; };
-  if (begins("ply\n") || begins("ply\r\n")) return CloudFileType::kPly;
-  if (begins("# .PCD") || begins("#.PCD") ||
-      (begins("VERSION") && text.find("\nFIELDS") != std::string_view::npos))
-    return CloudFileType::kPcd;
-  return std::nullopt;
-}
-
 }  // namespace lidar

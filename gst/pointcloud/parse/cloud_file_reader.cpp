@@ -2,7 +2,6 @@
 #include "gst/pointcloud/parse/cloud_file_reader.h"
 
 #include <algorithm>
-#include <utility>
 
 #include "gst/common/buffer_map.h"
 #include "gst/lidar/gstlidar.h"
@@ -11,12 +10,16 @@
 namespace lidar::gst {
 namespace {
 
-constexpr const char* kPcdMediaType = "application/x-pcd";
-constexpr const char* kPlyMediaType = "application/x-ply";
-
-const char* MediaTypeOf(CloudFileType type) {
-  return type == CloudFileType::kPcd ? kPcdMediaType : kPlyMediaType;
-}
+struct FileKind {
+  CloudFileType type;
+  const char* name;
+  const char* media_type;  // NULL: such files are found by their points, as raw ones are
+  const char* extension;
+};
+constexpr FileKind kFileKinds[] = {{CloudFileType::kPcd, "PCD", "application/x-pcd", "pcd"},
+                                   {CloudFileType::kPly, "PLY", "application/x-ply", "ply"},
+                                   {CloudFileType::kLas, "LAS", "application/vnd.las", "las"},
+                                   {CloudFileType::kKitti, "KITTI", nullptr, nullptr}};
 
 /// As messages of ROS have it, whose converter does the rest.
 cdr::RosLayout LayoutOf(const FileCloud& file) {
@@ -33,7 +36,7 @@ cdr::RosLayout LayoutOf(const FileCloud& file) {
 }
 
 void Find(GstTypeFind* find, gpointer user_data) {
-  const auto wanted = static_cast<CloudFileType>(GPOINTER_TO_INT(user_data));
+  const auto& wanted = *static_cast<const FileKind*>(user_data);
   guint64 length = gst_type_find_get_length(find);
   if (length == 0) length = 512;
   // A short file has fewer bytes than one would like to see.
@@ -42,8 +45,8 @@ void Find(GstTypeFind* find, gpointer user_data) {
     const guint8* data = gst_type_find_peek(find, 0, size);
     if (data == nullptr) continue;
     const auto type = TypeOfCloudFile({data, size});
-    if (type != wanted) return;
-    const CapsPtr caps(gst_caps_new_empty_simple(MediaTypeOf(wanted)));
+    if (type != wanted.type) return;
+    const CapsPtr caps(gst_caps_new_empty_simple(wanted.media_type));
     return gst_type_find_suggest(find, GST_TYPE_FIND_MAXIMUM, caps.get());
   }
 }
@@ -52,15 +55,19 @@ void Find(GstTypeFind* find, gpointer user_data) {
 
 std::optional<CloudFileType> CloudFileTypeOf(const GstCaps* caps) {
   const GstStructure* s = gst_caps_get_structure(caps, 0);
-  if (gst_structure_has_name(s, kPcdMediaType)) return CloudFileType::kPcd;
-  if (gst_structure_has_name(s, kPlyMediaType)) return CloudFileType::kPly;
+  for (const FileKind& kind : kFileKinds)
+    if (kind.media_type != nullptr && gst_structure_has_name(s, kind.media_type)) return kind.type;
   return std::nullopt;
 }
 
-const char* NameOf(CloudFileType type) { return type == CloudFileType::kPcd ? "PCD" : "PLY"; }
+const char* NameOf(CloudFileType type) {
+  for (const FileKind& kind : kFileKinds)
+    if (kind.type == type) return kind.name;
+  return "";
+}
 
 std::optional<FileBuffer> ReadCloudFile(CloudFileType type, ByteView file, std::string* why) {
-  const auto cloud = type == CloudFileType::kPcd ? ReadPcd(file, why) : ReadPly(file, why);
+  const auto cloud = ReadCloud(type, file, why);
   if (!cloud) return std::nullopt;
   FileBuffer read;
   read.info.width = cloud->width;
@@ -87,13 +94,12 @@ std::optional<FileBuffer> ReadCloudFile(CloudFileType type, ByteView file, std::
 
 gboolean RegisterCloudFileTypes(GstPlugin* plugin) {
   bool registered = true;
-  const std::pair<CloudFileType, const char*> types[] = {{CloudFileType::kPcd, "pcd"},
-                                                         {CloudFileType::kPly, "ply"}};
-  for (const auto& [type, extension] : types) {
-    const CapsPtr caps(gst_caps_new_empty_simple(MediaTypeOf(type)));
+  for (const FileKind& kind : kFileKinds) {
+    if (kind.media_type == nullptr) continue;
+    const CapsPtr caps(gst_caps_new_empty_simple(kind.media_type));
     registered =
-        gst_type_find_register(plugin, MediaTypeOf(type), GST_RANK_SECONDARY, Find, extension,
-                               caps.get(), GINT_TO_POINTER(static_cast<gint>(type)), nullptr) &&
+        gst_type_find_register(plugin, kind.media_type, GST_RANK_SECONDARY, Find, kind.extension,
+                               caps.get(), const_cast<FileKind*>(&kind), nullptr) &&
         registered;
   }
   return registered;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// PCD and PLY files as clouds of ours.
+// Files of points as clouds of ours.
 #pragma once
 #include <gst/gst.h>
 
@@ -24,7 +24,7 @@ struct FileBuffer {
 /// become F32 side by side, numbers little-endian.
 std::optional<FileBuffer> ReadCloudFile(CloudFileType type, ByteView file, std::string* why);
 
-/// Lets typefind know both.
+/// Lets typefind know those that have a header.
 gboolean RegisterCloudFileTypes(GstPlugin* plugin);
 
 }  // namespace lidar::gst

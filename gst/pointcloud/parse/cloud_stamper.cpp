@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include "gst/pointcloud/parse/cloud_stamper.h"
 
+#include "gst/lidar/gstlidar.h"
+
 namespace lidar::gst {
 
 void CloudStamper::TakeSegment(GstEvent* event) {
@@ -40,9 +42,18 @@ void CloudStamper::Stamp(GstBuffer* cloud) {
     GST_BUFFER_DTS(cloud) = GST_CLOCK_TIME_NONE;
   }
   GST_BUFFER_DURATION(cloud) = grid.TimeOf(number + 1) - grid.TimeOf(number);
+  StampCapture(cloud);
   GST_BUFFER_OFFSET(cloud) = number;
   GST_BUFFER_OFFSET_END(cloud) = number + 1;
   if (!times_given_) timeline_.NotePosition(GST_BUFFER_PTS(cloud) + GST_BUFFER_DURATION(cloud));
+}
+
+void CloudStamper::StampCapture(GstBuffer* cloud) {
+  if (GST_CLOCK_TIME_IS_VALID(gst_lidar_buffer_get_capture_time(cloud))) return;
+  const auto pts = static_cast<GstClockTimeDiff>(GST_BUFFER_PTS(cloud));
+  if (!unix_offset_) unix_offset_ = g_get_real_time() * GstClockTimeDiff{GST_USECOND} - pts;
+  const GstClockTimeDiff time = *unix_offset_ + pts;
+  if (time >= 0) gst_lidar_buffer_set_capture_time(cloud, static_cast<GstClockTime>(time));
 }
 
 void CloudStamper::Flush(bool restarts_time) {
@@ -55,6 +66,7 @@ void CloudStamper::Reset() {
   Flush(true);
   timeline_.Reset();
   times_given_ = false;
+  unix_offset_.reset();
   cloud_size_ = 0;
 }
 

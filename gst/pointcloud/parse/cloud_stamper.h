@@ -3,6 +3,7 @@
 #pragma once
 #include <gst/gst.h>
 
+#include <optional>
 #include <utility>
 
 #include "gst/common/fields.h"
@@ -48,6 +49,7 @@ class CloudStamper {
   /// Clouds are all of one size, in bytes; 0: they are not. Seeks and queries are ours where they
   /// are, and come as bytes.
   void SetCloudSize(gsize bytes);
+  /// A cloud without a capture time gets one, as if its sensor had begun when the first cloud came.
   void Stamp(GstBuffer* cloud);
   /// A cloud that is left out keeps its place in time.
   void LeaveOut() { ++place_.next; }
@@ -59,12 +61,14 @@ class CloudStamper {
  private:
   CloudTimeline::Grid Grid() const;
   void ShowGrid();
+  void StampCapture(GstBuffer* cloud);
 
   CloudTimeline timeline_;
   FrameRate rate_;
   bool times_given_ = false;
   EventPtr segment_;
   gsize cloud_size_ = 0;
+  std::optional<GstClockTimeDiff> unix_offset_;  // from timestamps to capture times
   CloudTimeline::Place place_;
 };
 

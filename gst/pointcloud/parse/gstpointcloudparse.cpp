@@ -2,13 +2,12 @@
 /**
  * SECTION:element-pointcloudparse
  *
- * Makes clouds of files, PCD, PLY or raw: the width from the size, a TIME segment, stamps from the
- * frame rate.
+ * Makes clouds of files, PCD, PLY, LAS, KITTI's or raw: the width from the size, a TIME segment,
+ * stamps and capture times from the frame rate.
  *
  * |[
- * gst-launch-1.0 multifilesrc location=%06d.bin caps='application/x-pointcloud2,height=1,
- * point-step=16,fields=(string)"x:F32:0,y:F32:4,z:F32:8,intensity:F32:12",framerate=10/1'
- * ! pointcloudparse ! fakesink
+ * gst-launch-1.0 multifilesrc location=%06d.bin ! pointcloudparse framerate=10/1 ! fakesink
+ * sync=true
  * ]|
  */
 #include <gst/gst.h>
@@ -148,7 +147,7 @@ static GstFlowReturn PushCloud(GstLidarPointCloudParse* self, BufferPtr buffer) 
   return gst_pad_push(self->srcpad, out);
 }
 
-/// A whole PCD or PLY file.
+/// A whole file that says what it is.
 static GstFlowReturn PushFile(GstLidarPointCloudParse* self, const BufferPtr& file) {
   State& state = *self->state;
   std::string why = "it cannot be mapped";
@@ -209,9 +208,9 @@ static GstFlowReturn Chain(GstPad*, GstObject* parent, GstBuffer* raw) {
   if (!state.info && !state.type) {
     if (state.refused.noted()) return GST_FLOW_NOT_NEGOTIATED;
     GST_ELEMENT_ERROR(self, CORE, NEGOTIATION, ("The caps of the cloud are missing."),
-                      ("It is neither PCD nor PLY, so give application/x-pointcloud2 with "
-                       "point-step and fields to the source (caps property of multifilesrc, or a "
-                       "caps filter)."));
+                      ("It is neither PCD, PLY, LAS nor KITTI's, so give "
+                       "application/x-pointcloud2 with point-step and fields to the source (caps "
+                       "property of multifilesrc, or a caps filter)."));
     return GST_FLOW_NOT_NEGOTIATED;
   }
   const gsize cloud = CloudSize(self);
@@ -363,7 +362,8 @@ static void gst_lidar_point_cloud_parse_class_init(GstLidarPointCloudParseClass*
   Describe(
       klass,
       {"Point cloud parser", "Codec/Parser/PointCloud",
-       "Makes clouds of files: PCD, PLY, raw points"},
-      {{"sink", GST_PAD_SINK, GST_LIDAR_CLOUD_MEDIA_TYPE "; application/x-pcd; application/x-ply"},
+       "Makes clouds of files: PCD, PLY, LAS, KITTI, raw points"},
+      {{"sink", GST_PAD_SINK,
+        GST_LIDAR_CLOUD_MEDIA_TYPE "; application/x-pcd; application/x-ply; application/vnd.las"},
        {"src", GST_PAD_SRC, GST_LIDAR_CLOUD_MEDIA_TYPE}});
 }

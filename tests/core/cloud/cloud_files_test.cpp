@@ -201,7 +201,153 @@ TEST(Ply, SaysWhyItCannotBeRead) {
   }
 }
 
+/// A LAS file of two points; `x` in units of `scale` from `offset`.
+struct Las {
+  std::uint8_t minor = 2;
+  std::uint8_t format = 1;
+  std::uint16_t step = 28;
+  std::uint32_t points = 2;
+  double scale = 0.001;
+  double offset = 0;
+  std::int32_t x = 1500;
+
+  std::string File() const {
+    std::vector<std::uint8_t> bytes;
+    ByteWriter w(&bytes);
+    const auto skip = [&](std::size_t to) { bytes.resize(to); };
+    for (const char c : {'L', 'A', 'S', 'F'}) w.U8(static_cast<std::uint8_t>(c));
+    skip(24);
+    w.U8(1);
+    w.U8(minor);
+    skip(94);
+    const std::uint16_t header = minor == 4 ? 375 : 227;
+    w.Le16(header);
+    w.Le32(header);
+    w.Le32(0);
+    w.U8(format);
+    w.Le16(step);
+    w.Le32(minor == 4 ? 0 : points);
+    skip(131);
+    for (int k = 0; k < 3; ++k) w.LeF64(scale);
+    for (int k = 0; k < 3; ++k) w.LeF64(offset);
+    skip(247);
+    if (minor == 4) w.Le64(points);
+    skip(header);
+    for (std::uint32_t i = 0; i < 2; ++i) {
+      const std::size_t begin = bytes.size();
+      w.Le32(static_cast<std::uint32_t>(x));
+      w.Le32(2000 + i);
+      w.Le32(static_cast<std::uint32_t>(-250));
+      w.Le16(77);
+      skip(begin + step);
+    }
+    return Text(bytes);
+  }
+};
+
+std::optional<FileCloud> ReadLasFile(const std::string& file, std::string* why = nullptr) {
+  std::string ignored;
+  return ReadLas(View(file), why != nullptr ? why : &ignored);
+}
+
+float FloatAt(const FileCloud& cloud, std::size_t offset) {
+  float v = 0;
+  std::memcpy(&v, cloud.points.data() + offset, sizeof v);
+  return v;
+}
+
+TEST(Las, RecordsOfAllFormatsAreRead) {
+  constexpr std::uint16_t kSteps[] = {20, 28, 26, 34, 57, 63, 30, 36, 38, 59, 67};
+  constexpr std::size_t kFields[] = {7, 8, 10, 11, 8, 11, 8, 11, 12, 8, 12};
+  for (std::uint8_t format = 0; format <= 10; ++format) {
+    Las las;
+    las.minor = format >= 6 ? 4 : 2;
+    las.format = format;
+    las.step = static_cast<std::uint16_t>(kSteps[format] + format % 3);  // extra bytes, too
+    const auto cloud = ReadLasFile(las.File());
+    ASSERT_TRUE(cloud) << int{format};
+    EXPECT_EQ(cloud->width, 2U);
+    EXPECT_EQ(cloud->point_step, las.step);
+    EXPECT_EQ(cloud->fields.size(), kFields[format]) << int{format};
+    for (const PointField& f : cloud->fields)
+      EXPECT_LE(f.offset + SizeOf(f.type), kSteps[format]) << f.name;
+    EXPECT_EQ(FloatAt(*cloud, 0), 1.5F);
+    EXPECT_EQ(FloatAt(*cloud, las.step + 4U), 2.001F);
+    EXPECT_EQ(FloatAt(*cloud, 8), -0.25F);
+    EXPECT_EQ(cloud->points[12], 77);
+    las.step = static_cast<std::uint16_t>(kSteps[format] - 1);
+    EXPECT_FALSE(ReadLasFile(las.File())) << int{format};
+  }
+}
+
+TEST(Las, PointsOnAMapKeepTheirMillimetres) {
+  Las las;
+  las.offset = 5'400'000;
+  const auto cloud = ReadLasFile(las.File());
+  ASSERT_TRUE(cloud);
+  EXPECT_EQ(FloatAt(*cloud, 0), 0.5F);  // from 5,400,001
+  EXPECT_NEAR(FloatAt(*cloud, 28 + 4), 0.001F, 1e-6);
+  EXPECT_EQ(FloatAt(*cloud, 8), 0.75F);
+}
+
+TEST(Las, SaysWhyItCannotBeRead) {
+  const auto with = [](auto change) {
+    Las las;
+    change(las);
+    return las.File();
+  };
+  const std::vector<std::pair<std::string, std::string>> bad = {
+      {"LASF", "its header is cut off"},
+      {with([](Las& l) { l.minor = 5; }), "it is no LAS 1.0 to 1.4"},
+      {with([](Las& l) { l.format = 0x81; }), "its points are compressed (LAZ): write them as LAS"},
+      {with([](Las& l) { l.format = 11; }),
+       "its point format is unknown, or its records are too short for it"},
+      {with([](Las& l) { l.scale = std::nan(""); }), "its scale or offset is no number"},
+      {with([](Las& l) { l.points = 3; }), "the file ends before its last point"},
+      {with([](Las& l) { l.points = 2'000'000'000; }), "the cloud is larger than 1 GiB"},
+  };
+  for (const auto& [file, reason] : bad) {
+    std::string why;
+    EXPECT_FALSE(ReadLasFile(file, &why));
+    EXPECT_EQ(why, reason);
+  }
+}
+
+std::string Floats(const std::vector<float>& values) {
+  std::vector<std::uint8_t> bytes;
+  ByteWriter w(&bytes);
+  for (const float v : values) w.LeF32(v);
+  return Text(bytes);
+}
+
+TEST(Kitti, IsKnownByPlausiblePoints) {
+  const std::vector<float> point = {70.5F, -3.25F, -1.7F, 0.5F};
+  EXPECT_EQ(TypeOfCloudFile(View(Floats(point))), CloudFileType::kKitti);
+  EXPECT_EQ(TypeOfCloudFile(View(Floats({0, 0, 0, 0}))), std::nullopt);
+  EXPECT_EQ(TypeOfCloudFile(View(std::string(64, 'a'))), std::nullopt);
+  for (const auto& [at, bad] :
+       std::vector<std::pair<std::size_t, float>>{{0, 1e6F}, {1, 1e-41F}, {2, NAN}, {3, -1}}) {
+    std::vector<float> points = point;
+    points.insert(points.end(), point.begin(), point.end());
+    points[4 + at] = bad;
+    EXPECT_EQ(TypeOfCloudFile(View(Floats(points))), std::nullopt) << at;
+  }
+}
+
+TEST(Kitti, IsRead) {
+  std::string why;
+  const auto cloud = ReadKitti(View(Floats({1, 2, 3, 4, 5, 6, 7, 8})), &why);
+  ASSERT_TRUE(cloud);
+  EXPECT_EQ(cloud->width, 2U);
+  EXPECT_EQ(cloud->point_step, 16U);
+  EXPECT_EQ(cloud->fields[3], (PointField{"intensity", FieldType::kF32, 12}));
+  EXPECT_EQ(FloatAt(*cloud, 28), 8);
+  EXPECT_FALSE(ReadKitti(View(std::string(17, 'a')), &why));
+  EXPECT_EQ(why, "its size is no multiple of 16 bytes");
+}
+
 TEST(CloudFiles, AreKnownByHowTheyBegin) {
+  EXPECT_EQ(TypeOfCloudFile(View("LASF")), CloudFileType::kLas);
   EXPECT_EQ(TypeOfCloudFile(View(PcdHeader("ascii"))), CloudFileType::kPcd);
   EXPECT_EQ(TypeOfCloudFile(View("VERSION .7\nFIELDS x y z\n")), CloudFileType::kPcd);
   EXPECT_EQ(TypeOfCloudFile(View("ply\r\nformat")), CloudFileType::kPly);
@@ -215,11 +361,11 @@ TEST(CloudFiles, DamageIsSurvived) {
       PcdHeader("ascii") + "1 -2.5 2.5e-1 0 0 7\n 4 5\t6 0 0 65535",
       PcdHeader("binary") + Text(TwoPoints()),
       PcdHeader("binary_compressed") + std::string(60, '\x21'),
-      PlyHeader("ascii") + "1 2 3 4\n5 6 7 8\n3 0 1 1\n"};
+      PlyHeader("ascii") + "1 2 3 4\n5 6 7 8\n3 0 1 1\n", Las().File()};
   for (int round = 0; round < 4'000; ++round) {
     std::string file = files[static_cast<std::size_t>(round) % files.size()];
     for (int i = 0; i < 3; ++i) file[random() % file.size()] = static_cast<char>(random());
-    for (const auto& cloud : {Pcd(file), Ply(file)})
+    for (const auto& cloud : {Pcd(file), Ply(file), ReadLasFile(file)})
       ASSERT_TRUE(!cloud || cloud->points.size() <= 100 * file.size());
   }
 }

@@ -73,11 +73,60 @@ TEST_F(FileParse, CloudsOfOtherSizesFollowEachOther) {
   EXPECT_NE(read.warning, "");  // of the empty one
 }
 
+TEST_F(FileParse, AFolderPlaysAtTheRateThatIsAskedFor) {
+  for (int i = 0; i < 3; ++i) {
+    std::ofstream file(Path("00" + std::to_string(i) + ".bin"), std::ios::binary);
+    for (int k = 0; k < 40 * (i + 1); ++k) {
+      const float value = 1.5F;
+      file.write(reinterpret_cast<const char*>(&value), sizeof value);
+    }
+  }
+  const auto read = Play("multifilesrc" + At("%03d.bin") +
+                         " ! pointcloudparse framerate=20/1 ! fakesink sync=true name=see");
+  EXPECT_EQ(read.error, "");
+  EXPECT_NE(read.caps.at("see").find("intensity:F32:12"), std::string::npos);
+  const auto& out = read.buffers.at("see");
+  ASSERT_EQ(out.size(), 3U);
+  for (std::size_t i = 0; i < 3; ++i) {
+    EXPECT_EQ(out[i].bytes.size(), 160 * (i + 1));
+    EXPECT_EQ(out[i].pts, i * 50 * GST_MSECOND);
+    EXPECT_EQ(out[i].capture_time, out[0].capture_time + out[i].pts);
+  }
+  EXPECT_GT(out[0].capture_time, kCapture);  // now, or close to it
+}
+
+TEST_F(FileParse, LasKeepsIntensityAndTime) {
+  std::string file(227 + 2 * 28, '\0');
+  file.replace(0, 4, "LASF");
+  const auto put = [&](std::size_t at, auto value) {
+    std::memcpy(file.data() + at, &value, sizeof value);
+  };
+  put(24, std::uint16_t{0x0201});
+  put(96, std::uint32_t{227});
+  put(104, std::uint8_t{1});
+  put(105, std::uint16_t{28});
+  put(107, std::uint32_t{2});
+  for (std::size_t k = 0; k < 3; ++k) put(131 + 8 * k, 0.5);
+  put(227, std::int32_t{7});
+  std::ofstream(Path("a.las"), std::ios::binary) << file;
+  const auto read = Play("filesrc" + At("a.las") + " ! pointcloudparse ! fakesink name=see");
+  EXPECT_EQ(read.error, "");
+  ASSERT_EQ(read.buffers.at("see").size(), 1U);
+  EXPECT_NE(read.caps.at("see").find("intensity:U16:12"), std::string::npos);
+  EXPECT_NE(read.caps.at("see").find("gps_time:F64:20"), std::string::npos);
+  float x = 0;
+  std::memcpy(&x, read.buffers.at("see")[0].bytes.data(), sizeof x);
+  EXPECT_EQ(x, 3.5F);
+}
+
 TEST_F(FileParse, ADamagedFileIsAnErrorThatSaysWhy) {
   std::ofstream(Path("a.ply")) << "ply\nformat ascii 1.0\nelement vertex 2\nproperty float x\n"
                                   "end_header\n1\n";
   EXPECT_EQ(Play("filesrc" + At("a.ply") + " ! pointcloudparse ! fakesink").error,
             "The PLY file cannot be read: the file ends before its last point.");
+  std::ofstream(Path("a.las")) << "LASF";
+  EXPECT_EQ(Play("filesrc" + At("a.las") + " ! pointcloudparse ! fakesink").error,
+            "The LAS file cannot be read: its header is cut off.");
   std::ofstream(Path("a.txt")) << "neither";
   EXPECT_EQ(Play("filesrc" + At("a.txt") + " ! pointcloudparse ! fakesink").error,
             "The caps of the cloud are missing.");
