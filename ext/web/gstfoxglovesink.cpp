@@ -288,8 +288,10 @@ static GstPad* RequestPad(GstElement* element, GstPadTemplate* templ, const gcha
   lidar::web::SetHub(GST_LIDAR_FOXGLOVE_INPUT(input), HubOf(G_OBJECT(element)));
   {
     const std::lock_guard lock(self->state->mutex);
-    // A pipeline need not have data for each pad of its viewer before it plays.
-    g_object_set(input, "sync", self->state->settings.sync, "async", FALSE, nullptr);
+    // A pipeline need not have data for each pad of its viewer before it plays. A viewer shows what
+    // comes late at once: to wait for a deadline would block a source without buffer.
+    g_object_set(input, "sync", self->state->settings.sync, "async", FALSE, "processing-deadline",
+                 guint64{0}, nullptr);
   }
   const PadPtr target(gst_element_get_static_pad(input, "sink"));
   gst_bin_add(GST_BIN(element), input);

@@ -3,6 +3,7 @@
 
 #include <array>
 
+#include "gst/common/latency.h"
 #include "src/scream/feedback/sender_report.h"
 #include "tests/elements/web/web_peer.h"
 #include "tests/support/proto_reader.h"
@@ -283,6 +284,22 @@ TEST(FoxgloveSink, TellsClientsOfPadsThatComeAndGo) {
   }
   EXPECT_TRUE(WaitUntil([&] { return peer.channels.count("/pose_7") == 0; }));
   EXPECT_EQ(peer.channels.count("/points"), 1U);
+}
+
+TEST(FoxgloveSink, AsksASourceWithoutBufferForNone) {
+  const gst::ElementPtr pipeline(gst_parse_launch(
+      "appsrc is-live=true min-latency=0 max-latency=0 caps=" GST_LIDAR_ODOMETRY_MEDIA_TYPE
+      " ! foxglovesink port=0",
+      nullptr));
+  ASSERT_TRUE(pipeline);
+  gst_element_set_state(pipeline.get(), GST_STATE_PLAYING);
+  const gst::QueryPtr query(gst_query_new_latency());
+  EXPECT_TRUE(gst_element_query(pipeline.get(), query.get()));
+  EXPECT_EQ(gst::ReadLatency(query.get()).min, 0U);
+  const std::unique_ptr<GstBus, gst::Unref> bus(gst_element_get_bus(pipeline.get()));
+  const gst::MessagePtr warning(gst_bus_pop_filtered(bus.get(), GST_MESSAGE_WARNING));
+  EXPECT_EQ(warning, nullptr);
+  gst_element_set_state(pipeline.get(), GST_STATE_NULL);
 }
 
 TEST(FoxgloveSink, RefusesOneTopicForTwoKindsOfMessages) {
