@@ -140,6 +140,20 @@ static GstStateChangeReturn ChangeState(GstElement* element, GstStateChange chan
   return result;
 }
 
+/// Replaces the general error of a source that stops because no pad is linked: it does not name what to link.
+static void HandleMessage(GstBin* bin, GstMessage* message) {
+  auto* self = GST_LIDAR_SCREAM_SRC(bin);
+  const PadPtr src(gst_element_get_static_pad(GST_ELEMENT(bin), "src"));
+  if (GST_MESSAGE_TYPE(message) == GST_MESSAGE_ERROR &&
+      GST_MESSAGE_SRC(message) == GST_OBJECT(self->src) && !gst_pad_is_linked(src.get())) {
+    gst_message_unref(message);
+    GST_ELEMENT_ERROR(bin, CORE, PAD, ("No element takes the stream, which is application/x-rtp."),
+                      ("link a depayloader, such as rtplidardepay"));
+    return;
+  }
+  GST_BIN_CLASS(gst_lidar_scream_src_parent_class)->handle_message(bin, message);
+}
+
 static void OnPadAdded(GstElement*, GstPad* pad, GstElement* bin) {
   const StringPtr name(gst_pad_get_name(pad));
   if (!g_str_has_prefix(name.get(), "src_")) return;
@@ -196,6 +210,7 @@ static void gst_lidar_scream_src_class_init(GstLidarScreamSrcClass* klass) {
              ChangeSrtpKey<GstLidarScreamSrc>>(klass);
   auto* element = GST_ELEMENT_CLASS(klass);
   element->change_state = ChangeState;
+  GST_BIN_CLASS(klass)->handle_message = HandleMessage;
   gst_element_class_add_static_pad_template(element, &src_template);
   gst_element_class_add_static_pad_template(element, &stream_template);
   Describe(klass, {"SCReAM network source", "Source/Network/RTP",

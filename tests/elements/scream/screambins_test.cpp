@@ -297,6 +297,22 @@ TEST(ScreamBins, SeveralStreamsShareOnePath) {
   EXPECT_EQ(Stats(receiver.in.get())["packets-lost"], 0U);
 }
 
+TEST(ScreamBins, AStreamThatNoElementTakesIsAnErrorThatNamesTheDepayloader) {
+  Pipeline receiver("screamsrc name=in port=0 ! lidardec ! fakesink");  // linked when a pad fits
+  receiver.Play();
+  Pipeline sender(kAudio + Sink(PortOf(receiver.Get("in").get())));
+  sender.Play();
+  const MessagePtr message = receiver.Wait(GST_MESSAGE_ERROR);
+  ASSERT_TRUE(message);
+  GError* error = nullptr;
+  gchar* hint = nullptr;
+  gst_message_parse_error(message.get(), &error, &hint);
+  const ErrorPtr owner(error);
+  const StringPtr owned_hint(hint);
+  EXPECT_STREQ(error->message, "No element takes the stream, which is application/x-rtp.");
+  EXPECT_NE(std::string(hint).find("rtplidardepay"), std::string::npos);
+}
+
 TEST(ScreamBins, APortInUseIsAnErrorThatNamesIt) {
   Receiver receiver(kAudioCaps);
   Pipeline second("screamsrc address=0.0.0.0 port=" + std::to_string(receiver.port) +
