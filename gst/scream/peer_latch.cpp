@@ -119,6 +119,18 @@ PeerLatch::Peer& PeerLatch::CandidateOf(Time now, GSocketAddress* from) {
   return candidates_.back();
 }
 
+void PeerLatch::Remember(const Peer& peer) {
+  if (!peer.has_slices) return;
+  for (const auto& [ssrc, source] : peer.sources) known_[ssrc] = source;
+}
+
+void PeerLatch::Restart() {
+  PeerLatch next;
+  Remember(peer_);
+  next.known_ = std::move(known_);
+  *this = std::move(next);
+}
+
 /// Whether the packet goes on with an SSRC of a peer that is silent. While the believed peer sends,
 /// its SSRCs are its own.
 bool PeerLatch::IsKnown(Time now, const Packet& packet) const {
@@ -140,8 +152,7 @@ bool PeerLatch::Wins(const Peer& candidate, Time now) const {
 
 /// What fell silent stays known; what was outweighed while it sent is forgotten.
 void PeerLatch::Promote(Time now, Peer candidate) {
-  if (IsSilent(now) && peer_.has_slices)
-    for (const auto& [ssrc, source] : peer_.sources) known_[ssrc] = source;
+  if (IsSilent(now)) Remember(peer_);
   for (auto it = known_.begin(); it != known_.end();) {
     const bool old = now - it->second.at > kMemory || candidate.sources.count(it->first) > 0;
     it = old ? known_.erase(it) : std::next(it);
@@ -160,7 +171,10 @@ PeerLatch::Verdict PeerLatch::OnPacket(Time now, const Packet& packet) {
   if (packet.from != nullptr && !links_.empty())
     if (Link* link = LinkOf(packet.from)) return OnLinkPacket(now, packet, link);
   if (!latched_ || IsPeer(packet.from)) {
-    latched_ = true;
+    if (!std::exchange(latched_, true) && IsKnown(now, packet)) {
+      peer_.is_known = peer_.has_slices = true;
+      known_.erase(packet.ssrc);
+    }
     // The next packet then compares by pointer.
     if (packet.from != nullptr && packet.from != peer_.address.get())
       peer_.address = Ref(packet.from);

@@ -93,7 +93,8 @@ class PeerLatch {
   std::size_t links() const { return latched_ ? 1 + links_.size() : 0; }
   /// NULL before the first packet, or where no packet had an address; not owned by the caller.
   GSocketAddress* peer() const { return peer_.address.get(); }
-  void Reset() { *this = PeerLatch(); }
+  /// Begins a session. The SSRCs whose slices came out whole stay known from the one before.
+  void Restart();
 
  private:
   /// How far an SSRC has come.
@@ -132,6 +133,7 @@ class PeerLatch {
   /// When a packet came last, by any link.
   Time LastHeard() const;
   bool IsSilent(Time now) const { return now - LastHeard() >= kSilence; }
+  void Remember(const Peer& peer);
   bool IsKnown(Time now, const Packet& packet) const;
   bool Wins(const Peer& candidate, Time now) const;
   void Promote(Time now, Peer candidate);

@@ -197,7 +197,7 @@ static void Prepare(RxState& state) {
   if (state.clock == nullptr) state.clock = gst_system_clock_obtain();
   state.own_ssrc = state.settings.ssrc != 0 ? state.settings.ssrc : g_random_int() | 1;
   state.reports.Reset(ToConfig(state.settings, state.own_ssrc));
-  state.latch.Reset();
+  state.latch.Restart();
   state.seen = {};
   NoteLidarTypes(state);
   state.ssrcs.clear();

@@ -169,7 +169,7 @@ TEST_F(Latch, AStreamWithGapsIsAStream) {
 
 TEST_F(Latch, FollowsASenderThatMovesWithAnyNumberOfInterleavedStreams) {
   for (std::uint32_t streams : {1U, 2U, 3U, 16U}) {
-    latch.Reset();
+    latch = PeerLatch();
     std::uint16_t seq = 0;
     for (; seq < 100; ++seq, now += 20ms)
       for (std::uint32_t s = 0; s < streams; ++s) Send(robot, s, seq);
@@ -235,6 +235,22 @@ TEST_F(Latch, AnSsrcIsKnownForMinutesAndNotForEver) {
   now += PeerLatch::kMemory;
   Stream(thief, 9, 20, 20, true);
   EXPECT_FALSE(Stream(robot, 1, 150, 20));
+}
+
+TEST_F(Latch, TheSenderComesBackWhenAnotherBeganTheNextSession) {
+  Stream(robot, 1, 0, 100, true);
+  latch.Restart();
+  now += 1s;
+  EXPECT_FALSE(Stream(thief, 9, 0, 100, true));
+  EXPECT_TRUE(Stream(robot, 1, 150, 6));
+  EXPECT_FALSE(Stream(thief, 9, 100, 40, true));
+}
+
+TEST_F(Latch, AKnownSsrcIsNotKnownTwiceInTheNextSession) {
+  Stream(robot, 1, 0, 100, true);
+  latch.Restart();
+  Stream(robot, 1, 100, 100);  // a sender with that SSRC begins, and goes on
+  EXPECT_FALSE(Stream(thief, 1, 150, 20, true));
 }
 
 TEST_F(Latch, AnSsrcThatWentBackBeginsAnewAfterAWhile) {
