@@ -140,7 +140,8 @@ static GstStateChangeReturn ChangeState(GstElement* element, GstStateChange chan
   return result;
 }
 
-/// Replaces the general error of a source that stops because no pad is linked: it does not name what to link.
+/// Replaces the general error of a source that stops because no pad is linked: it does not name
+/// what to link.
 static void HandleMessage(GstBin* bin, GstMessage* message) {
   auto* self = GST_LIDAR_SCREAM_SRC(bin);
   const PadPtr src(gst_element_get_static_pad(GST_ELEMENT(bin), "src"));
