@@ -2,7 +2,7 @@
 /**
  * SECTION:element-lidartestsrc
  *
- * A spinning LiDAR that drives through a synthetic world: the videotestsrc of point clouds.
+ * A LiDAR that drives through a synthetic world: the videotestsrc of point clouds.
  *
  * |[
  * gst-launch-1.0 lidartestsrc is-live=true model=os1-64 ! fakesink dump=false
@@ -41,6 +41,10 @@ const GEnumValue kModels[] = {{0, "OS0, 32 beams over 90 degrees", "os0-32"},
                               {6, "OS2, 32 beams over 21 degrees", "os2-32"},
                               {7, "OS2, 64 beams over 21 degrees", "os2-64"},
                               {8, "OS2, 128 beams over 21 degrees", "os2-128"},
+                              {9, "Velodyne VLP-16, as its driver publishes it", "vlp-16"},
+                              {10, "Hesai XT32, as its driver publishes it", "xt32"},
+                              {11, "Hesai AT128, as its driver publishes it", "at128"},
+                              {12, "Livox Mid-360, as its driver publishes it", "mid-360"},
                               {0, nullptr, nullptr}};
 const GEnumValue kModes[] = {
     {0, "512 columns, 10 scans/s", "512x10"},   {1, "512 columns, 20 scans/s", "512x20"},
@@ -88,7 +92,7 @@ struct Settings {
 using Row = Property<Settings>;
 const std::array<Row, 11> kProperties = {{
     {"model", "Sensor to simulate", EnumField<Settings>{&Settings::model, ModelType}},
-    {"mode", "Columns of a scan x scans per second",
+    {"mode", "Columns of a scan x scans per second, of an Ouster",
      EnumField<Settings>{&Settings::mode, ModeType}},
     {"scene", "World to drive through", EnumField<Settings>{&Settings::scene, SceneType}},
     {"speed", "Speed of the sensor [m/s]", &Settings::speed_mps, 0, 100},
@@ -99,10 +103,11 @@ const std::array<Row, 11> kProperties = {{
      &Settings::seed, 0, G_MAXUINT},
     {"slices-per-scan",
      "Buffers a scan is cut into, rounded down to a divisor of the columns (1 = whole scans, 0 = "
-     "automatic: a sweep of about 12.5 ms)",
+     "automatic: a sweep of about 12.5 ms of an Ouster, whole scans of others)",
      &Settings::slices_per_scan, 0, 4096},
     {"channels",
-     "Extra fields of a point, comma-separated: reflectivity, signal, ring, t (ns since "
+     "Extra fields of a point of an Ouster, comma-separated: reflectivity, signal, ring, t (ns "
+     "since "
      "the slice's first column)",
      &Settings::channels},
     {"trajectory-location",
@@ -151,10 +156,17 @@ struct State {
 };
 
 lidar::synth::ScannerConfig ConfigFrom(const Settings& s) {
-  const Mode mode = kModeValues[static_cast<std::size_t>(s.mode)];
   lidar::synth::ScannerConfig config;
-  config.sensor = *lidar::synth::MakeSensor(kModels[s.model].value_nick, mode.columns);
-  config.period = Duration(std::chrono::seconds(1)) / mode.scans_per_second;
+  const char* model = kModels[s.model].value_nick;
+  int scans_per_second = lidar::synth::Firing::kScansPerSecond;
+  if (const auto* firing = lidar::synth::FindFiring(model)) {
+    config.sensor = lidar::synth::MakeSensor(*firing);
+  } else {
+    const Mode mode = kModeValues[static_cast<std::size_t>(s.mode)];
+    config.sensor = *lidar::synth::MakeSensor(model, mode.columns);
+    scans_per_second = mode.scans_per_second;
+  }
+  config.period = Duration(std::chrono::seconds(1)) / scans_per_second;
   config.scene = static_cast<lidar::synth::SceneKind>(s.scene);
   config.speed_mps = s.speed_mps;
   config.noise_m = s.noise_m;
@@ -197,6 +209,14 @@ static gboolean Start(GstBaseSrc* base) {
                       (nullptr));
     return FALSE;
   }
+  const char* model = kModels[settings.model].value_nick;
+  if (!settings.channels.empty() && lidar::synth::FindFiring(model) != nullptr) {
+    GST_ELEMENT_ERROR(
+        base, RESOURCE, SETTINGS,
+        ("The model %s has the fields that its driver publishes: leave channels out.", model),
+        (nullptr));
+    return FALSE;
+  }
   std::unique_ptr<TrajectoryLog> log;
   if (!settings.trajectory_location.empty()) {
     log = std::make_unique<TrajectoryLog>(settings.trajectory_location);
@@ -235,6 +255,13 @@ static GstCaps* GetCaps(GstBaseSrc* base, GstCaps* filter) {
     caps = both;
   }
   return caps;
+}
+
+/// Caps come with each buffer where each has its own.
+static gboolean Negotiate(GstBaseSrc* base) {
+  const auto& maker = StateOf(base).maker;
+  if (maker && maker->OwnInfo() != nullptr) return TRUE;
+  return GST_BASE_SRC_CLASS(gst_lidar_test_src_parent_class)->negotiate(base);
 }
 
 static gboolean Query(GstBaseSrc* base, GstQuery* query) {
@@ -277,7 +304,7 @@ static GstFlowReturn CreateLive(GstLidarTestSrc* self, GstBuffer** out) {
   const Duration end = state.maker->NextEnd();
   const lidar::synth::Pose pose = state.maker->NextPose();
   // Cast beforehand, so that the slice leaves when its last column is sampled and not later.
-  BufferPtr buffer = state.maker->Make();
+  BufferPtr buffer = state.maker->Make(state.pacer.ToUnixTime(begin));
   const GstFlowReturn flow = state.pacer.WaitUntil(end);
   if (flow != GST_FLOW_OK) return flow;
   GST_BUFFER_PTS(buffer.get()) = state.pacer.ToRunningTime(begin);
@@ -288,17 +315,31 @@ static GstFlowReturn CreateLive(GstLidarTestSrc* self, GstBuffer** out) {
   return GST_FLOW_OK;
 }
 
-static GstFlowReturn Create(GstPushSrc* push, GstBuffer** out) {
-  auto* self = GST_LIDAR_TEST_SRC(push);
-  if (gst_base_src_is_live(GST_BASE_SRC(push))) return CreateLive(self, out);
+static GstFlowReturn CreateAtOnce(GstLidarTestSrc* self, GstBuffer** out) {
   State& state = *self->state;
   const lidar::synth::Pose pose = state.maker->NextPose();
-  BufferPtr buffer = state.maker->Make();
-  const GstClockTime capture = kEpoch + GST_BUFFER_PTS(buffer.get());
+  const GstClockTime capture = kEpoch + static_cast<GstClockTime>(state.maker->NextTime().count());
+  BufferPtr buffer = state.maker->Make(capture);
   gst_lidar_buffer_set_capture_time(buffer.get(), capture);
   LogPose(self, capture, pose);
   *out = buffer.release();
   return GST_FLOW_OK;
+}
+
+/// Rows that differ in width have caps of their own.
+static GstFlowReturn Create(GstPushSrc* push, GstBuffer** out) {
+  auto* self = GST_LIDAR_TEST_SRC(push);
+  const bool live = gst_base_src_is_live(GST_BASE_SRC(push));
+  const CloudInfo* info = self->state->maker->OwnInfo();
+  for (;;) {
+    const GstFlowReturn flow = live ? CreateLive(self, out) : CreateAtOnce(self, out);
+    if (flow != GST_FLOW_OK || info == nullptr) return flow;
+    if (info->width > 0) break;
+    gst_clear_buffer(out);  // drivers publish no empty cloud
+  }
+  const CapsPtr caps(info->ToCaps());
+  return gst_base_src_set_caps(GST_BASE_SRC(push), caps.get()) ? GST_FLOW_OK
+                                                               : GST_FLOW_NOT_NEGOTIATED;
 }
 
 static gboolean Unlock(GstBaseSrc* base) {
@@ -335,6 +376,7 @@ static void gst_lidar_test_src_class_init(GstLidarTestSrcClass* klass) {
   base->start = Start;
   base->stop = Stop;
   base->get_caps = GetCaps;
+  base->negotiate = Negotiate;
   base->query = Query;
   base->unlock = Unlock;
   base->unlock_stop = UnlockStop;

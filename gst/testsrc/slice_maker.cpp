@@ -27,6 +27,7 @@ constexpr std::array<ChannelName, 4> kChannels = {{{"reflectivity", FieldType::k
 
 std::uint32_t SlicesOf(const synth::ScannerConfig& config, std::uint32_t requested) {
   const SensorModel& model = config.sensor.model;
+  if (config.sensor.firing != nullptr) requested = std::max(requested, 1U);
   return SlicesPerScan(requested, {model.columns_per_scan,
                                    static_cast<std::uint32_t>(model.beams.size()), config.period});
 }
@@ -62,6 +63,10 @@ SliceMaker::SliceMaker(const synth::ScannerConfig& config, const SliceOptions& o
       projection_(config.sensor.model),
       slices_(SlicesOf(config, options.slices_per_scan)),
       width_(config.sensor.model.columns_per_scan / slices_) {
+  if (config.sensor.firing != nullptr) {
+    driver_.emplace(*config.sensor.firing);
+    return;
+  }
   const CloudInfo info = InfoFor(config, options);
   point_step_ = info.point_step;
   for (const Channel channel : options.channels) {
@@ -71,6 +76,7 @@ SliceMaker::SliceMaker(const synth::ScannerConfig& config, const SliceOptions& o
 }
 
 CloudInfo SliceMaker::InfoFor(const synth::ScannerConfig& config, const SliceOptions& options) {
+  if (config.sensor.firing != nullptr) return DriverCloud::InfoFor(*config.sensor.firing);
   const SensorModel& model = config.sensor.model;
   CloudInfo info;
   info.width = model.columns_per_scan / SlicesOf(config, options.slices_per_scan);
@@ -135,19 +141,29 @@ void SliceMaker::WriteExtra(const Extra& extra, guint8* points) const {
   }
 }
 
-BufferPtr SliceMaker::Make() {
+BufferPtr SliceMaker::MakePixels() const {
+  BufferPtr buffer(
+      gst_buffer_new_allocate(nullptr, returns_.range_mm.size() * point_step_, nullptr));
+  BufferMap map(buffer.get(), GST_MAP_WRITE);
+  // Gaps between the fields are zero, so that the same seed gives the same bytes.
+  if (!extras_.empty()) std::memset(map.data(), 0, map.size());
+  WritePoints(map.data());
+  return buffer;
+}
+
+BufferPtr SliceMaker::MakeRow(GstClockTime begin) {
+  const Duration column = scanner_.ColumnTime(scan_, 1) - scanner_.ColumnTime(scan_, 0);
+  const auto& row =
+      driver_->Write(returns_, scanner_.rays(), {scan_, {FirstColumn(), width_}, begin, column});
+  return BufferPtr(gst_buffer_new_memdup(row.data(), row.size()));
+}
+
+BufferPtr SliceMaker::Make(GstClockTime unix_begin) {
   const ColumnWindow window{FirstColumn(), width_};
   const Duration begin = NextTime();
   const Duration end = NextEnd();
   scanner_.Cast(scan_, window, &returns_);
-  BufferPtr buffer(
-      gst_buffer_new_allocate(nullptr, returns_.range_mm.size() * point_step_, nullptr));
-  {
-    BufferMap map(buffer.get(), GST_MAP_WRITE);
-    // Gaps between the fields are zero, so that the same seed gives the same bytes.
-    if (!extras_.empty()) std::memset(map.data(), 0, map.size());
-    WritePoints(map.data());
-  }
+  BufferPtr buffer = driver_ ? MakeRow(unix_begin) : MakePixels();
   const GstLidarSlice slice{static_cast<guint>(scan_), slice_, slices_, window.first};
   gst_lidar_buffer_set_slice(buffer.get(), &slice);
   GST_BUFFER_PTS(buffer.get()) = ToGst(begin);

@@ -8,6 +8,7 @@
 
 #include "gst/common/refs.h"
 #include "gst/lidar/cloud_info.h"
+#include "gst/testsrc/driver_cloud.h"
 #include "src/synth/scanner.h"
 
 namespace lidar::gst {
@@ -19,7 +20,7 @@ enum class Channel { kReflectivity, kSignal, kRing, kTime };
 std::optional<std::vector<Channel>> ParseChannels(std::string_view text, std::string* unknown);
 
 struct SliceOptions {
-  std::uint32_t slices_per_scan = 0;
+  std::uint32_t slices_per_scan = 0;  // automatic; of a sensor with a firing table: whole scans
   std::vector<Channel> channels;
 };
 
@@ -28,7 +29,8 @@ class SliceMaker {
  public:
   SliceMaker(const synth::ScannerConfig& config, const SliceOptions& options);
 
-  /// Caps of the slices of such a source.
+  /// Caps of the slices of such a source. One with a firing table does not fix the width: each
+  /// slice has its own.
   static CloudInfo InfoFor(const synth::ScannerConfig& config, const SliceOptions& options);
 
   /// When the first column of the next slice is sampled.
@@ -38,8 +40,11 @@ class SliceMaker {
   synth::Pose NextPose() const { return scanner_.trajectory().At(NextTime()); }
   Duration LongestSlice() const;
   Duration period() const { return period_; }
-  /// Casts the next slice into a buffer with PTS, duration and slice meta.
-  BufferPtr Make();
+  /// Casts the next slice into a buffer with PTS, duration and slice meta. `begin` is NextTime()
+  /// since 1970.
+  BufferPtr Make(GstClockTime begin);
+  /// Caps of the slice that was made last, where each has its own; width 0: nothing returned.
+  const CloudInfo* OwnInfo() const { return driver_ ? &driver_->info() : nullptr; }
   /// Goes on with the first slice of the scan that is being swept at `time`.
   void SkipTo(Duration time);
 
@@ -49,6 +54,8 @@ class SliceMaker {
     std::size_t offset;
   };
 
+  BufferPtr MakePixels() const;
+  BufferPtr MakeRow(GstClockTime begin);
   void WritePoints(guint8* points) const;
   void WriteExtra(const Extra& extra, guint8* points) const;
   std::uint32_t FirstColumn() const { return slice_ * width_; }
@@ -60,6 +67,7 @@ class SliceMaker {
   std::uint32_t width_;  // columns of a slice
   std::size_t point_step_;
   std::vector<Extra> extras_;
+  std::optional<DriverCloud> driver_;
   std::uint64_t scan_ = 0;
   std::uint32_t slice_ = 0;
   synth::Returns returns_;

@@ -35,33 +35,26 @@ Vec3 OnTheRim(Vec3 axis, float turn) {
   return (1 / std::sqrt(Dot(rim, rim))) * rim;
 }
 
-Vec3 ToVec(const std::array<float, 3>& a) { return {a[0], a[1], a[2]}; }
-
-float BeamOrigin(const SensorModel& m) {
-  return static_cast<float>(std::hypot(m.beam_to_lidar_x_m, m.beam_to_lidar_z_m));
-}
-
 }  // namespace
 
 Scanner::Scanner(const ScannerConfig& config)
     : config_(config),
-      projection_(config.sensor.model),
-      beam_origin_m_(BeamOrigin(config.sensor.model)),
+      rays_(config.sensor),
       reach_m_(static_cast<float>(config.sensor.max_range_m)),
       signal_scale_(static_cast<float>(10 * config.sensor.range_of_10_percent_m *
                                        config.sensor.range_of_10_percent_m)),
       gauss_(MakeGaussTable()),
       scene_(Scene::Make(config.scene, config.seed)),
       trajectory_(scene_->Lane(config.speed_mps)),
-      chunk_columns_(std::max(
-          1U, static_cast<std::uint32_t>(projection_.columns() * kChunk / config.period))) {
+      chunk_columns_(
+          std::max(1U, static_cast<std::uint32_t>(rays_.columns() * kChunk / config.period))) {
   view_.radius = reach_m_ + static_cast<float>(kAnchorStep);
   MoveAnchor(0, 0);
 }
 
 Duration Scanner::ColumnTime(std::uint64_t scan, std::uint32_t column) const {
   return config_.period * static_cast<std::int64_t>(scan) +
-         config_.period * std::int64_t{column} / std::int64_t{projection_.columns()};
+         config_.period * std::int64_t{column} / std::int64_t{rays_.columns()};
 }
 
 void Scanner::MoveAnchor(double x, double y) {
@@ -83,12 +76,9 @@ Scanner::Column Scanner::MakeColumn(std::uint64_t scan, std::uint32_t column) co
   Column c;
   c.index = column;
   c.rotation = pose.ToRotation();
-  // Origin of this column's beams, in the sensor frame: a point less its way.
-  const Vec3 at_1m = ToVec(projection_.Point(0, column, 1000));
-  const Vec3 origin = at_1m - (1.0F - beam_origin_m_) * ToVec(projection_.Direction(0, column));
   c.origin = Vec3{static_cast<float>(pose.x - view_.anchor_x),
                   static_cast<float>(pose.y - view_.anchor_y), static_cast<float>(pose.z)} +
-             c.rotation * origin;
+             c.rotation * rays_.Origin(column);
   c.age_s = static_cast<float>(Seconds(time - chunk_time_));
   c.key = Mix(Mix(config_.seed + scan * 0x10001) + column);
   return c;
@@ -100,8 +90,8 @@ SectorIndex::Arc Scanner::ArcOf(std::uint64_t scan, std::uint32_t first, std::ui
   float start = -1;
   for (const std::uint32_t column : {first, last}) {
     const Column c = MakeColumn(scan, column);
-    for (std::uint32_t beam = 0; beam < projection_.beams(); ++beam) {
-      const Vec3 d = c.rotation * ToVec(projection_.Direction(beam, column));
+    for (std::uint32_t beam = 0; beam < rays_.beams(); ++beam) {
+      const Vec3 d = c.rotation * rays_.Direction(scan, beam, column);
       const float angle = PseudoAngle(d.x, d.y);
       if (start < 0) start = angle;
       float offset = angle - start;
@@ -119,7 +109,7 @@ SectorIndex::Arc Scanner::ArcOf(std::uint64_t scan, std::uint32_t first, std::ui
 
 void Scanner::BeginChunk(std::uint64_t scan, std::uint32_t chunk) {
   const std::uint32_t first = chunk * chunk_columns_;
-  const std::uint32_t last = std::min(first + chunk_columns_, projection_.columns()) - 1;
+  const std::uint32_t last = std::min(first + chunk_columns_, rays_.columns()) - 1;
   chunk_time_ = ColumnTime(scan, first);
   const Pose pose = trajectory_.At(chunk_time_);
   MoveAnchor(pose.x, pose.y);
@@ -154,7 +144,7 @@ Hit Scanner::Trace(const Ray& ray, float age_s, Random* noise) const {
 Scanner::Pixel Scanner::Measure(const Hit& hit, Random* noise) const {
   constexpr float kDropout = 0.998F;
   constexpr float kPhotons = 40;  // of an echo at the limit of detection
-  const float range = hit.distance + beam_origin_m_;
+  const float range = hit.distance + rays_.origin_m();
   // Reference: a target of 10 % at the range where nine pulses in ten come back.
   const float signal = hit.reflectivity * hit.cosine * signal_scale_ / (range * range);
   const std::uint64_t bits = noise->Bits();
@@ -201,9 +191,9 @@ std::vector<Hit> Scanner::TraceColumn(std::uint64_t scan, std::uint32_t index) {
   BeginChunk(scan, index / chunk_columns_);
   const Column column = MakeColumn(scan, index);
   std::vector<Hit> hits;
-  for (std::uint32_t beam = 0; beam < projection_.beams(); ++beam) {
+  for (std::uint32_t beam = 0; beam < rays_.beams(); ++beam) {
     Random noise(column.key + beam);
-    const Vec3 direction = column.rotation * ToVec(projection_.Direction(beam, index));
+    const Vec3 direction = column.rotation * rays_.Direction(scan, beam, index);
     hits.push_back(Trace(MakeRay(column.origin, direction), column.age_s, &noise));
   }
   return hits;
@@ -215,7 +205,7 @@ Hit Scanner::MixWith(const Hit& beside, Hit hit, Random* noise) const {
   constexpr float kSurface = 0.15F;
   const float apart = std::abs(beside.distance - hit.distance);
   if (!(apart > kSurface && apart < kPulse)) return hit;
-  const float pitch = 6.2831853F / static_cast<float>(projection_.columns());
+  const float pitch = 6.2831853F / static_cast<float>(rays_.columns());
   Random edge(noise->Bits());
   if (!edge.Chance(std::min(1.0F, 2 * kHalfDivergence / pitch))) return hit;
   const float share = edge.Uniform();
@@ -225,7 +215,7 @@ Hit Scanner::MixWith(const Hit& beside, Hit hit, Random* noise) const {
 }
 
 void Scanner::Cast(std::uint64_t scan, ColumnWindow window, Returns* returns) {
-  const std::uint32_t beams = projection_.beams();
+  const std::uint32_t beams = rays_.beams();
   returns->range_mm.resize(std::size_t{beams} * window.count);
   returns->reflectivity.resize(returns->range_mm.size());
   returns->signal.resize(returns->range_mm.size());
@@ -243,7 +233,7 @@ void Scanner::Cast(std::uint64_t scan, ColumnWindow window, Returns* returns) {
     const Column column = MakeColumn(scan, index);
     for (std::uint32_t beam = 0; beam < beams; ++beam) {
       Random noise(column.key + beam);
-      const Vec3 direction = column.rotation * ToVec(projection_.Direction(beam, index));
+      const Vec3 direction = column.rotation * rays_.Direction(scan, beam, index);
       Hit hit = Trace(MakeRay(column.origin, direction), column.age_s, &noise);
       if (config_.mixed_pixels) {
         const Hit traced = hit;

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// A spinning LiDAR on a car that drives through a synthetic scene.
+// A LiDAR on a car that drives through a synthetic scene.
 #pragma once
 #include <cstdint>
 #include <memory>
 #include <vector>
 
 #include "src/base/time.h"
-#include "src/cloud/range_projection.h"
+#include "src/synth/rays.h"
 #include "src/synth/scene.h"
 #include "src/synth/sector_index.h"
 #include "src/synth/sensors.h"
@@ -46,6 +46,7 @@ class Scanner {
   void Cast(std::uint64_t scan, ColumnWindow window, Returns* returns);
   /// When column `column` of that turn is sampled, after the start.
   Duration ColumnTime(std::uint64_t scan, std::uint32_t column) const;
+  const Rays& rays() const { return rays_; }
   const Trajectory& trajectory() const { return trajectory_; }
 
  private:
@@ -77,8 +78,7 @@ class Scanner {
   Echoes MeasureBoth(const Column& column, Vec3 direction, const Hit& center, Random* noise) const;
 
   ScannerConfig config_;
-  RangeProjection projection_;
-  float beam_origin_m_;
+  Rays rays_;
   float reach_m_;
   float signal_scale_;
   std::vector<float> gauss_;

@@ -82,4 +82,16 @@ std::optional<Sensor> MakeSensor(std::string_view name, std::uint32_t columns) {
   return std::nullopt;
 }
 
+Sensor MakeSensor(const Firing& firing) {
+  Sensor sensor;
+  sensor.min_range_m = firing.min_range_m;
+  sensor.max_range_m = firing.max_range_m;
+  sensor.range_of_10_percent_m = firing.range_of_10_percent_m;
+  sensor.firing = &firing;
+  sensor.model.columns_per_scan = firing.columns;
+  sensor.model.range_unit_mm = firing.range_unit_mm;
+  sensor.model.beams.resize(firing.lasers);
+  return sensor;
+}
+
 }  // namespace lidar::synth

@@ -1,17 +1,19 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Spinning sensors after Ouster's data sheets and captures.
+// Sensors after data sheets, manuals and captures.
 #pragma once
 #include <cstdint>
 #include <optional>
 #include <string_view>
 
 #include "src/cloud/sensor_model.h"
+#include "src/synth/firing.h"
 
 namespace lidar::synth {
 
 /// A sensor as built: its beams, and how far it sees.
 struct Sensor {
-  SensorModel model;
+  SensorModel model;               // of one with a firing table no more than the size of its scans
+  const Firing* firing = nullptr;  // null: an Ouster, which the model describes
   double min_range_m = 0;
   double max_range_m = 0;
   double range_of_10_percent_m =
@@ -21,5 +23,6 @@ struct Sensor {
 /// "os0-32" ... "os2-128", with 512, 1024, 2048 or 4096 columns; none for any other. Every unit of
 /// a model has the same small errors of its beams.
 std::optional<Sensor> MakeSensor(std::string_view name, std::uint32_t columns);
+Sensor MakeSensor(const Firing& firing);
 
 }  // namespace lidar::synth

@@ -275,6 +275,12 @@ TEST(LidarTestSrc, SaysWhichChannelItDoesNotHave) {
   EXPECT_NE(std::string(error->message).find("\"nonsense\""), std::string::npos);
 }
 
+TEST(LidarTestSrc, TakesNoChannelsWhereADriverChoosesTheFields) {
+  const ErrorPtr error = ErrorOfStart("lidartestsrc model=xt32 channels=signal ! fakesink");
+  ASSERT_TRUE(error);
+  EXPECT_NE(std::string(error->message).find("leave channels out"), std::string::npos);
+}
+
 TEST(LidarTestSrc, SaysWhichTrajectoryItCannotWrite) {
   const ErrorPtr error =
       ErrorOfStart("lidartestsrc trajectory-location=/nonexistent/t.tum ! fakesink");

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Sensors of other makers as tables: where their lasers look, and when they fire.
+#pragma once
+#include <cstdint>
+#include <string_view>
+
+namespace lidar::synth {
+
+/// How the maker's ROS driver lays a point out, in one row and the order of firing, without what
+/// did not return.
+struct DriverLayout {
+  std::string_view fields;  // as in caps of clouds
+  double timestamp_unit_s;  // of the field `timestamp`
+};
+
+/// Lasers fire one after the other in columns; columns follow each other at a constant rate. Angles
+/// are degrees, azimuths clockwise from x.
+struct Firing {
+  std::string_view name;
+  std::uint32_t lasers;
+  std::uint32_t banks;         // laser i of firing has the ring i / banks of bank i % banks
+  double first_elevation;      // of ring 0
+  double elevation_step;       // from one ring to the next
+  double bank_azimuth;         // from one bank to the next
+  double laser_delay_ns;       // from one laser to the next
+  std::uint32_t columns;       // of a scan
+  double first_azimuth, view;  // a sweep begins there, and spans that
+  double sweeps;               // of a scan; where it is no whole number, scans do not repeat
+  double swing, swings;        // elevations swing by +- so much, so often in a scan
+  double azimuth_unit;         // of what the sensor reports; 0: none
+  std::uint32_t range_unit_mm;
+  double min_range_m, max_range_m, range_of_10_percent_m;
+  DriverLayout layout;
+
+  static constexpr int kScansPerSecond = 10;
+
+  std::uint32_t RingOf(std::uint32_t laser) const {
+    return laser % banks * (lasers / banks) + laser / banks;
+  }
+  double ElevationOf(std::uint32_t laser) const {
+    return first_elevation + elevation_step * RingOf(laser);
+  }
+};
+
+/// "vlp-16", "xt32", "at128" or "mid-360"; null for any other.
+const Firing* FindFiring(std::string_view name);
+
+}  // namespace lidar::synth

@@ -1,0 +1,157 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Models whose clouds are those of their makers' ROS drivers.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstring>
+#include <set>
+
+#include "gst/common/buffer_map.h"
+#include "gst/lidar/cloud_info.h"
+#include "src/synth/firing.h"
+#include "tests/support/harness.h"
+
+namespace lidar::gst {
+namespace {
+
+using synth::Firing;
+using test::Harness;
+
+class DriverModel : public ::testing::TestWithParam<const char*> {
+ protected:
+  DriverModel()
+      : firing_(*synth::FindFiring(GetParam())),
+        h_(gst_harness_new_parse(
+            (std::string("lidartestsrc num-buffers=2 scene=tunnel model=") + GetParam()).c_str())) {
+    gst_harness_play(h_.get());
+  }
+  void Pull() {
+    cloud_.reset(gst_harness_pull(h_.get()));
+    const CapsPtr caps(gst_pad_get_current_caps(h_->sinkpad));
+    info_ = *CloudInfo::FromFrameCaps(caps.get());
+    const BufferMap map(cloud_.get(), GST_MAP_READ);
+    bytes_.assign(map.data(), map.data() + map.size());
+  }
+  template <class T>
+  T At(std::size_t point, const char* field) const {
+    T value;
+    std::memcpy(&value, bytes_.data() + point * info_.point_step + info_.fields.Find(field)->offset,
+                sizeof value);
+    return value;
+  }
+  std::uint32_t RingAt(std::size_t point) const {
+    return info_.fields.Find("ring") != nullptr ? At<std::uint16_t>(point, "ring")
+                                                : At<std::uint8_t>(point, "line");
+  }
+  /// Since the first column of the scan [s].
+  double TimeAt(std::size_t point) const {
+    if (info_.fields.Find("time") != nullptr) return static_cast<double>(At<float>(point, "time"));
+    const auto begin =
+        static_cast<double>(gst_lidar_buffer_get_capture_time(cloud_.get())) / GST_SECOND;
+    return At<double>(point, "timestamp") * firing_.layout.timestamp_unit_s - begin;
+  }
+  struct Polar {
+    double range_m, azimuth_deg, elevation_deg;
+  };
+  Polar PolarAt(std::size_t point) const {
+    const auto x = static_cast<double>(At<float>(point, "x"));
+    const auto y = static_cast<double>(At<float>(point, "y"));
+    const auto z = static_cast<double>(At<float>(point, "z"));
+    constexpr double kDegrees = 180 / 3.14159265358979;
+    return {std::sqrt(x * x + y * y + z * z), std::atan2(-y, x) * kDegrees,
+            std::atan2(z, std::hypot(x, y)) * kDegrees};
+  }
+
+  const Firing& firing_;
+  Harness h_;
+  BufferPtr cloud_;
+  CloudInfo info_;
+  std::vector<guint8> bytes_;
+};
+
+TEST_P(DriverModel, PublishesOneRowOfReturnsInTheDriversLayout) {
+  for (guint scan = 0; scan < 2; ++scan) {
+    Pull();
+    EXPECT_EQ(info_.fields.ToString(), firing_.layout.fields);
+    EXPECT_EQ(info_.height, 1U);
+    EXPECT_FALSE(info_.sensor_model);
+    EXPECT_EQ(bytes_.size(), info_.FrameSize());
+    EXPECT_LE(info_.width, firing_.lasers * firing_.columns);
+    EXPECT_GT(info_.width, firing_.lasers * firing_.columns / 2);
+    EXPECT_EQ(GST_BUFFER_PTS(cloud_.get()), scan * 100 * GST_MSECOND);
+    GstLidarSlice slice{};
+    ASSERT_TRUE(gst_lidar_buffer_get_slice(cloud_.get(), &slice));
+    EXPECT_EQ(slice.slice_count, 1U);
+  }
+}
+
+TEST_P(DriverModel, FiresEveryLaserInTurnOverTheWholeScan) {
+  Pull();
+  std::set<std::uint32_t> rings;
+  // An F64 of seconds since 1970 ends at a quarter of a microsecond.
+  const double slack = 5e-7;
+  for (std::size_t i = 0; i < info_.width; ++i) {
+    rings.insert(RingAt(i));
+    ASSERT_LT(RingAt(i), firing_.lasers);
+    if (i == 0) continue;
+    ASSERT_GE(TimeAt(i), TimeAt(i - 1) - slack) << i;
+  }
+  EXPECT_EQ(rings.size(), firing_.lasers);
+  EXPECT_NEAR(TimeAt(0), 0, 0.002);
+  EXPECT_NEAR(TimeAt(info_.width - 1), 0.1, 0.002);
+}
+
+TEST_P(DriverModel, PointsLieWhereTheTableSays) {
+  Pull();
+  for (std::size_t i = 0; i < info_.width; i += 7) {
+    const Polar p = PolarAt(i);
+    const double ring_elevation = firing_.first_elevation + firing_.elevation_step * RingAt(i);
+    ASSERT_NEAR(p.elevation_deg, ring_elevation, firing_.swing + 1e-3) << i;
+    const double units = p.range_m * 1000 / firing_.range_unit_mm;
+    ASSERT_NEAR(units, std::round(units), 0.02) << i;
+    if (firing_.azimuth_unit > 0) {
+      const double steps = p.azimuth_deg / firing_.azimuth_unit;
+      ASSERT_NEAR(steps, std::round(steps), 0.01) << i;
+    }
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(All, DriverModel, ::testing::Values("vlp-16", "xt32", "at128", "mid-360"));
+
+TEST(DriverModels, ScansOfAMid360DoNotRepeat) {
+  // It stands still, and sees without noise.
+  Harness h(gst_harness_new_parse("lidartestsrc model=mid-360 speed=0 noise=0 num-buffers=2"));
+  gst_harness_play(h.get());
+  std::set<std::array<float, 3>> first;
+  for (int scan = 0; scan < 2; ++scan) {
+    const BufferPtr cloud(gst_harness_pull(h.get()));
+    const BufferMap map(cloud.get(), GST_MAP_READ);
+    std::size_t again = 0;
+    for (std::size_t at = 0; at < map.size(); at += 26) {
+      std::array<float, 3> p;
+      std::memcpy(p.data(), map.data() + at, sizeof p);
+      if (scan == 0)
+        first.insert(p);
+      else
+        again += first.count(p);
+    }
+    EXPECT_LT(again, 10U);
+  }
+}
+
+TEST(DriverModels, SlicesCoverTheScanOnce) {
+  guint points[2] = {0, 0};
+  for (const guint slices : {1U, 8U}) {
+    Harness h(gst_harness_new_parse(
+        ("lidartestsrc model=xt32 slices-per-scan=" + std::to_string(slices)).c_str()));
+    gst_harness_play(h.get());
+    for (guint i = 0; i < slices; ++i) {
+      const BufferPtr slice(gst_harness_pull(h.get()));
+      points[slices > 1] += static_cast<guint>(gst_buffer_get_size(slice.get()) / 26);
+    }
+  }
+  EXPECT_EQ(points[0], points[1]);
+}
+
+}  // namespace
+}  // namespace lidar::gst
