@@ -8,6 +8,7 @@
 #include <random>
 
 #include "src/codec/range_codec.h"
+#include "src/codec/slice_links.h"
 #include "tests/core/codec/golden.h"
 
 namespace lidar::codec {
@@ -67,6 +68,28 @@ TEST(Temporal, BlocksNeedTheirReferenceAndNothingElse) {
   EXPECT_TRUE(pair.Decode(pair.dependent, &decoder, &store));
   EXPECT_FALSE(decoder.lacks_reference());
   EXPECT_EQ(store.size(), 2U);
+}
+
+TEST(SliceLinks, AreTheNamesThatBlocksHaveForDecoders) {
+  const Pair pair;
+  const auto key = LinksOf({pair.key.data(), pair.key.size()});
+  ASSERT_TRUE(key && key->size() == 1);
+  EXPECT_FALSE(key->front().reference);
+  const auto dependent = LinksOf({pair.dependent.data(), pair.dependent.size()});
+  ASSERT_TRUE(dependent && dependent->size() == 1);
+  EXPECT_EQ(dependent->front().reference, key->front().crc);
+  std::vector<std::uint8_t> both = pair.key;
+  both.insert(both.end(), pair.dependent.begin(), pair.dependent.end());
+  EXPECT_EQ(LinksOf({both.data(), both.size()})->size(), 2U);
+}
+
+TEST(SliceLinks, OfDamagedBytesAreNone) {
+  const Pair pair;
+  for (std::size_t size = 0; size < pair.dependent.size(); ++size)
+    ASSERT_FALSE(LinksOf({pair.dependent.data(), size})) << size;
+  std::vector<std::uint8_t> longer = pair.dependent;
+  longer.push_back(0);
+  EXPECT_FALSE(LinksOf({longer.data(), longer.size()}));
 }
 
 /// A room that is seen again and again with other noise.

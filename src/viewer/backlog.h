@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Slices that nobody has decoded yet: what a decoder that begins late needs to follow the stream.
+#pragma once
+#include <cstddef>
+#include <list>
+
+#include "src/viewer/feed.h"
+
+namespace lidar::viewer {
+
+/// An encoder refers to ever newer slices of a place: where it refers to one that stands alone, all
+/// of that place before it are needed no more.
+class Backlog {
+ public:
+  explicit Backlog(std::size_t most_bytes) : most_bytes_(most_bytes) {}
+
+  /// Forgets what is needed no more, and the oldest above the bound.
+  void Push(SharedSlice slice);
+  /// The oldest; null where there is none.
+  SharedSlice Pop();
+
+  bool empty() const { return slices_.empty(); }
+  std::size_t size() const { return slices_.size(); }
+  /// It soon has to forget what is needed: a decoder should read it.
+  bool is_full() const { return bytes_ > most_bytes_ / 2; }
+  /// The slice is of one of the two newest scans, and still worth showing.
+  bool IsRecent(const Slice& slice) const {
+    return slice.id.scan == newest_ || slice.id.scan == before_;
+  }
+
+ private:
+  using Iterator = std::list<SharedSlice>::iterator;
+  Iterator Erase(Iterator slice);
+  void EraseBefore(const Slice& key);
+  const Slice* ReferenceOf(const Slice& slice) const;
+
+  const std::size_t most_bytes_;
+  std::list<SharedSlice> slices_;
+  std::size_t bytes_ = 0;
+  std::uint32_t newest_ = 0;
+  std::uint32_t before_ = 0;
+};
+
+}  // namespace lidar::viewer

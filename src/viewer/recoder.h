@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Codes decoded slices anew, so that each stands alone.
+#pragma once
+#include <optional>
+#include <vector>
+
+#include "src/codec/slice_decoder.h"
+#include "src/codec/slice_encoder.h"
+
+namespace lidar::viewer {
+
+/// A slice that refers to no other needs more bits on the same grid. The grid gets coarser until
+/// the stream is about as large as the robot's. For one thread at a time.
+class Recoder {
+ public:
+  /// None where `format` has no ranges.
+  static std::optional<Recoder> Create(const codec::CloudFormat& format);
+
+  /// What a decoder gave: its points, as they lie in memory, and what they were.
+  struct Decoded {
+    ByteView points;
+    codec::SliceDecoder::Shape shape;
+    codec::SliceDecoder::Quality quality;
+    std::size_t coded_size = 0;  // bytes
+  };
+  /// False where it cannot be coded.
+  bool Encode(const Decoded& slice, std::vector<std::uint8_t>* out);
+  /// The width of the grid, in those of the robot's.
+  double coarseness() const { return coarseness_; }
+
+ private:
+  Recoder(codec::SliceEncoder encoder) : encoder_(std::move(encoder)) {}
+  void Adapt(std::size_t coded, std::size_t recoded);
+
+  codec::SliceEncoder encoder_;
+  double coarseness_ = 1;
+  double coded_ = 0;  // bytes, averaged over about a scan
+  double recoded_ = 0;
+};
+
+}  // namespace lidar::viewer

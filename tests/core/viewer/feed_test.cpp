@@ -1,0 +1,135 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "src/viewer/feed.h"
+
+#include <gtest/gtest.h>
+
+namespace lidar::viewer {
+namespace {
+
+constexpr std::uint32_t kSlices = 2;
+
+/// Named by its scan and place; refers to the same place `back` scans before, 0: to nothing.
+SharedSlice Own(std::uint32_t scan, std::uint32_t index, std::uint32_t back) {
+  auto slice = std::make_shared<Slice>();
+  slice->id = {scan, index};
+  slice->count = kSlices;
+  codec::BlockName name{scan * 10 + index, std::nullopt};
+  if (back > 0) name.reference = (scan - back) * 10 + index;
+  slice->blocks = {name};
+  slice->size = DataSize::Bytes(1000);
+  return slice;
+}
+SharedSlice Recoded(std::uint32_t scan, std::uint32_t index) {
+  auto slice = std::make_shared<Slice>();
+  slice->id = {scan, index};
+  slice->is_recoded = true;
+  slice->size = DataSize::Bytes(1000);
+  return slice;
+}
+
+/// What was sent, as "3.1" for the robot's and "3.1r" for a re-coded slice.
+class Stream {
+ public:
+  void Add(SharedSlice slice) { recent_.Add(std::move(slice)); }
+  std::string Take(Feed* feed, bool acknowledge = true) {
+    std::string text;
+    now_ += std::chrono::milliseconds(10);
+    for (const SharedSlice& slice : feed->Take(now_, recent_)) {
+      text += std::to_string(slice->id.scan) + "." + std::to_string(slice->id.index) +
+              (slice->is_recoded ? "r " : " ");
+      if (acknowledge) feed->OnDrawn(now_ + std::chrono::milliseconds(5), slice->id);
+    }
+    return text;
+  }
+  void Wait(Duration time) { now_ += time; }
+
+ private:
+  RecentScans recent_;
+  Time now_{};
+};
+
+TEST(Feed, GivesTheRobotsOwnSlicesAsTheyCome) {
+  Stream stream;
+  Feed feed{DataRate()};
+  stream.Add(Own(1, 0, 0));
+  EXPECT_EQ(stream.Take(&feed), "1.0 ");
+  stream.Add(Own(1, 1, 0));
+  EXPECT_EQ(stream.Take(&feed), "1.1 ");
+  stream.Add(Own(2, 0, 1));
+  EXPECT_EQ(stream.Take(&feed), "2.0 ");
+  EXPECT_EQ(stream.Take(&feed), "");
+  EXPECT_FALSE(feed.wants_recoded());
+}
+
+TEST(Feed, GivesRecodedSlicesUntilTheRobotsStandAlone) {
+  Stream stream;
+  Feed feed{DataRate()};
+  stream.Add(Own(5, 0, 1));
+  EXPECT_EQ(stream.Take(&feed), "");
+  EXPECT_TRUE(feed.wants_recoded());
+  stream.Add(Recoded(5, 0));
+  EXPECT_EQ(stream.Take(&feed), "5.0r ");
+  stream.Add(Own(6, 0, 1));
+  stream.Add(Own(7, 0, 0));
+  stream.Add(Recoded(6, 0));  // in time still, but of a scan that was never begun
+  EXPECT_EQ(stream.Take(&feed), "7.0 ");
+  EXPECT_FALSE(feed.wants_recoded());
+  stream.Add(Own(8, 0, 1));
+  EXPECT_EQ(stream.Take(&feed), "8.0 ");
+}
+
+TEST(Feed, FinishesAScanBesideTheNext) {
+  Stream stream;
+  Feed feed{DataRate()};
+  stream.Add(Own(5, 0, 1));
+  stream.Add(Own(5, 1, 1));
+  stream.Take(&feed);
+  stream.Add(Own(6, 0, 1));
+  stream.Add(Recoded(5, 1));
+  EXPECT_EQ(stream.Take(&feed), "5.1r ");
+  stream.Add(Recoded(6, 0));
+  stream.Add(Recoded(5, 0));
+  EXPECT_EQ(stream.Take(&feed), "5.0r 6.0r ");
+}
+
+TEST(Feed, SkipsWholeScansOfAViewerThatIsSlow) {
+  Stream stream;
+  Feed feed{DataRate()};
+  for (std::uint32_t scan = 1; scan <= 5; ++scan) {
+    stream.Add(Own(scan, 0, 0));
+    stream.Add(Own(scan, 1, 0));
+    const std::string sent = stream.Take(&feed, false);
+    EXPECT_EQ(sent.empty(), scan > Pace::kFirstScans) << scan;
+  }
+  EXPECT_EQ(feed.scans_skipped(), 2U);
+  feed.OnDrawn(Time{std::chrono::milliseconds(60)}, {2, 1});
+  EXPECT_EQ(stream.Take(&feed), "5.0 5.1 ");
+  // What the scans in between would have brought is not there.
+  stream.Add(Own(6, 0, 2));
+  EXPECT_EQ(stream.Take(&feed), "");
+  EXPECT_TRUE(feed.wants_recoded());
+}
+
+TEST(Feed, GivesSlicesThatStandAloneToAViewerThatLacksSomething) {
+  Stream stream;
+  Feed feed{DataRate()};
+  stream.Add(Own(1, 0, 0));
+  stream.Take(&feed);
+  feed.OnLacksReference();
+  stream.Add(Own(2, 0, 1));
+  stream.Add(Recoded(2, 0));
+  EXPECT_EQ(stream.Take(&feed), "2.0r ");
+}
+
+TEST(RecentScans, AreTwoWithABoundedNumberOfSlices) {
+  RecentScans recent;
+  for (std::uint32_t scan = 0; scan < 5; ++scan)
+    for (std::uint32_t i = 0; i < 5000; ++i) recent.Add(Own(scan, i, 0));
+  recent.Add(Recoded(1, 0));
+  ASSERT_EQ(recent.scans().size(), 2U);
+  EXPECT_EQ(recent.scans().front().number, 3U);
+  EXPECT_LE(recent.scans().back().slices.size(), 1024U);
+}
+
+}  // namespace
+}  // namespace lidar::viewer
