@@ -90,6 +90,12 @@ std::vector<guint32> ParseBye(ByteView datagram) {
   return ssrcs;
 }
 
+std::uint64_t DigestOf(ByteView packet) {
+  std::uint64_t digest = 14695981039346656037U;  // FNV-1a
+  for (const std::uint8_t byte : packet) digest = (digest ^ byte) * 1099511628211U;
+  return digest | 1;
+}
+
 GSocketAddress* SourceOf(GstBuffer* buffer) {
   const GstNetAddressMeta* meta = gst_buffer_get_net_address_meta(buffer);
   return meta == nullptr ? nullptr : meta->addr;

@@ -33,6 +33,9 @@ std::vector<std::uint8_t> BuildBye(const std::vector<guint32>& ssrcs);
 /// The SSRCs that say goodbye in a compound RTCP datagram.
 std::vector<guint32> ParseBye(ByteView datagram);
 
+/// Never 0. A sender that cannot see a packet cannot make another of the same digest.
+std::uint64_t DigestOf(ByteView packet);
+
 /// Sender of the buffer, or NULL; the buffer owns it.
 GSocketAddress* SourceOf(GstBuffer* buffer);
 

@@ -23,14 +23,17 @@ void GiveSocket(GstElement* child, GSocket* socket) {
   g_object_set(child, "socket", socket, "close-socket", FALSE, nullptr);
 }
 
-void CloseBin(BinState& state, std::initializer_list<GstElement*> children, bool close_given) {
+void EndSrtp(BinState& state) {
   std::unique_lock lock(state.mutex);
-  std::shared_ptr<SrtpLayer> srtp = std::move(state.srtp);
-  lock.unlock();
-  srtp.reset();  // takes its elements out of the bin
+  const std::shared_ptr<SrtpLayer> srtp = std::move(state.srtp);
+  lock.unlock();  // before the last reference goes
+}
+
+void CloseBin(BinState& state, std::initializer_list<GstElement*> children, bool close_given) {
+  EndSrtp(state);
   for (GstElement* child : children)
     if (child != nullptr) GiveSocket(child, nullptr);
-  lock.lock();
+  const std::lock_guard lock(state.mutex);
   state.used.Close(close_given);
 }
 

@@ -33,6 +33,8 @@ struct Child {
 bool HasChildren(GstElement* bin, std::initializer_list<Child> children);
 /// Gives `socket` to a child that does not own it.
 void GiveSocket(GstElement* child, GSocket* socket);
+/// Takes its elements out of the bin.
+void EndSrtp(BinState& state);
 /// Takes the socket from the children, ends SRTP and closes the socket. A socket of the user is
 /// closed only where the user asked for that.
 void CloseBin(BinState& state, std::initializer_list<GstElement*> children, bool close_given);

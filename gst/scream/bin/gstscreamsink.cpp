@@ -246,14 +246,25 @@ static bool FindTarget(GstLidarScreamSink* self, SinkSettings* s, std::vector<Op
   }
   *links = OpenLinks(GST_ELEMENT(self), s->bond.addresses);
   if (links->empty()) return false;
-  if (links->size() > 1 && !s->srtp.key.empty()) {
-    GST_ELEMENT_ERROR(self, RESOURCE, SETTINGS, ("srtp-key works on one link only"),
-                      ("leave out srtp-key or bonding-addresses; a VPN encrypts several links"));
-    return false;
-  }
   *first = links->front();
   s->target = first->address.target;
   return true;
+}
+
+static std::shared_ptr<SinkLinks> LinksOf(GstLidarScreamSink* self) {
+  const std::lock_guard lock(self->state->mutex);
+  return self->state->links;
+}
+
+static std::vector<SrtpPlace> SrtpPlacesOf(GstLidarScreamSink* self) {
+  std::vector<SrtpPlace> places;
+  const std::shared_ptr<SinkLinks> links = LinksOf(self);
+  const auto add = [&](const SinkLinks::Chain& c) {
+    places.push_back({c.tx, "src", "rtcp_sink", c.sink, c.src});
+  };
+  if (!links) add({self->tx, self->sink, self->src});
+  for (std::size_t i = 0; links && i < links->chains().size(); ++i) add(links->chains()[i]);
+  return places;
 }
 
 /// Opens the socket for both ways and hands it to the children.
@@ -274,14 +285,14 @@ static bool Open(GstLidarScreamSink* self) {
   g_object_set(self->sink, "host", literal.get(), "port", s.target.port, nullptr);
   GiveSocket(self->sink, socket.get());
   GiveSocket(self->src, socket.get());
-  std::shared_ptr<SrtpLayer> srtp;
-  if (!StartSrtp(s.srtp,
-                 {GST_ELEMENT(self), self->tx, "src", "rtcp_sink", self->sink, self->src, true},
-                 &srtp))
-    return false;
-  const guint overhead = OverheadOf(peer.get()) + (srtp ? srtp->overhead() : 0);
-  g_object_set(self->tx, "packet-overhead", overhead, nullptr);
   if (links.size() > 1) Bond(self, links, s.bond);
+  std::shared_ptr<SrtpLayer> srtp;
+  if (!StartSrtp(s.srtp, {GST_ELEMENT(self), true, SrtpPlacesOf(self)}, &srtp)) return false;
+  // Over several links packets are protected before they come to screamtx.
+  const bool adds = srtp && links.size() < 2;
+  const guint overhead = OverheadOf(peer.get()) + (adds ? srtp->overhead() : 0);
+  g_object_set(self->tx, "packet-overhead", overhead, nullptr);
+  if (srtp && !adds) LinksOf(self)->Protect(srtp);
   const std::lock_guard lock(state.mutex);
   state.srtp = std::move(srtp);
   state.srtp_key = s.srtp.key;
@@ -292,6 +303,7 @@ static bool Open(GstLidarScreamSink* self) {
 }
 
 static void Close(GstLidarScreamSink* self) {
+  EndSrtp(*self->state);
   Unbond(self);
   CloseBin(*self->state, {self->sink, self->src}, false);
   const std::lock_guard lock(self->state->mutex);
@@ -321,9 +333,7 @@ static GstPad* RequestPad(GstElement* element, GstPadTemplate* templ, const gcha
   const PadPtr target(gst_element_request_pad(self->tx, inner, name, caps));
   if (!target) return nullptr;
   const StringPtr pad_name(gst_pad_get_name(target.get()));
-  std::unique_lock lock(self->state->mutex);
-  const std::shared_ptr<SinkLinks> links = self->state->links;
-  lock.unlock();
+  const std::shared_ptr<SinkLinks> links = LinksOf(self);
   return AddGhostSink(element, gst_lidar_scream_sink_pad_get_type(), templ, pad_name.get(),
                       links ? links->Add(target.get()) : target.get());
 }
@@ -332,9 +342,7 @@ static void ReleasePad(GstElement* element, GstPad* pad) {
   auto* self = GST_LIDAR_SCREAM_SINK(element);
   PadPtr target(gst_ghost_pad_get_target(GST_GHOST_PAD(pad)));
   gst_ghost_pad_set_target(GST_GHOST_PAD(pad), nullptr);
-  std::unique_lock lock(self->state->mutex);
-  const std::shared_ptr<SinkLinks> links = self->state->links;
-  lock.unlock();
+  const std::shared_ptr<SinkLinks> links = LinksOf(self);
   if (links && target) target = links->Remove(target.get());
   if (target) gst_element_release_request_pad(self->tx, target.get());
   const StringPtr name(gst_pad_get_name(pad));

@@ -109,9 +109,10 @@ static bool Open(GstLidarScreamSrc* self) {
   GiveSocket(self->src, used.socket.get());
   GiveSocket(self->sink, used.socket.get());
   std::shared_ptr<SrtpLayer> srtp;
-  if (!StartSrtp(s.srtp,
-                 {GST_ELEMENT(self), self->rx, "rtcp_src", "sink", self->sink, self->src, false},
-                 &srtp))
+  if (!StartSrtp(
+          s.srtp,
+          {GST_ELEMENT(self), false, {{self->rx, "rtcp_src", "sink", self->sink, self->src}}},
+          &srtp))
     return false;
   const std::lock_guard lock(state.mutex);
   state.srtp = std::move(srtp);

@@ -45,6 +45,7 @@ struct BondShared {
 
   std::mutex mutex;
   GstClock* clock = gst_system_clock_obtain();  // as of the links
+  std::shared_ptr<SrtpLayer> srtp;              // set below READY
   Scheduler scheduler;
   std::unordered_map<std::uint64_t, Kept> kept;
   std::deque<std::pair<Time, std::uint64_t>> order;
@@ -72,6 +73,7 @@ class BondLink : public TxLink {
     const std::lock_guard lock(bond_->mutex);
     return bond_->scheduler.OnFeedback(now, index_, report);
   }
+  gsize trailer() const override { return bond_->srtp ? bond_->srtp->overhead() : 0; }
   void OnPath(const lidar::scream::Statistics& s) override {
     const std::lock_guard lock(bond_->mutex);
     const bool known = s.s_rtt > Duration{0};
@@ -147,12 +149,15 @@ static lidar::bonding::LinkSet Schedule(BondShared& shared, GstBuffer* buffer, B
 
 /// A link that fails stops the stream where no other takes the packet.
 static GstFlowReturn BondChain(GstPad* pad, GstObject* parent, GstBuffer* buffer) {
-  const BufferPtr owner(buffer);
+  BufferPtr packet(buffer);
   BondStream& stream = StreamOf(pad);
-  const auto links = Schedule(*BondOf(parent).shared, buffer, &stream);
+  BondShared& shared = *BondOf(parent).shared;
+  if (shared.srtp) packet = shared.srtp->Protect(packet.release());
+  if (!packet) return GST_FLOW_OK;
+  const auto links = Schedule(shared, packet.get(), &stream);
   GstFlowReturn best = GST_FLOW_ERROR;
   for (std::size_t i = 0; i < stream.srcs.size(); ++i)
-    if (links[i]) best = std::max(best, gst_pad_push(stream.srcs[i], gst_buffer_ref(buffer)));
+    if (links[i]) best = std::max(best, gst_pad_push(stream.srcs[i], gst_buffer_ref(packet.get())));
   return best;
 }
 
@@ -324,9 +329,14 @@ GstLidarScreamBond* NewBond(const std::vector<GstLidarScreamTx*>& links, bonding
   return bond;
 }
 
+void BondProtect(GstLidarScreamBond* bond, std::shared_ptr<SrtpLayer> layer) {
+  bond->state->shared->srtp = std::move(layer);
+}
+
 void BondRelease(GstLidarScreamBond* bond) {
   for (GstLidarScreamTx* tx : bond->state->links) TxSetLink(tx, nullptr);
   bond->state->links.clear();
+  bond->state->shared->srtp.reset();
 }
 
 GstPad* BondAddStream(GstLidarScreamBond* bond, const std::vector<GstPad*>& tx_pads) {

@@ -10,10 +10,12 @@
 #pragma once
 #include <gst/gst.h>
 
+#include <memory>
 #include <string>
 #include <vector>
 
 #include "gst/common/refs.h"
+#include "gst/scream/srtp/layer.h"
 #include "gst/scream/tx/gstscreamtx.h"
 #include "src/bonding/scheduler.h"
 
@@ -28,6 +30,8 @@ namespace lidar::gst {
 /// BondRelease().
 GstLidarScreamBond* NewBond(const std::vector<GstLidarScreamTx*>& links, bonding::Method method,
                             bonding::TargetRule rule);
+/// RTP is protected before it goes to a link, so that all send the same bytes. Below READY.
+void BondProtect(GstLidarScreamBond* bond, std::shared_ptr<SrtpLayer> layer);
 /// The links are on their own again. Below READY.
 void BondRelease(GstLidarScreamBond* bond);
 /// A sink pad, linked to a pad of each link: `tx_pads` in the order of the links.

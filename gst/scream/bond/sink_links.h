@@ -10,6 +10,7 @@
 #include "gst/common/properties.h"
 #include "gst/scream/bond/addresses.h"
 #include "gst/scream/bond/bond.h"
+#include "gst/scream/srtp/layer.h"
 
 namespace lidar::gst {
 
@@ -50,6 +51,10 @@ class SinkLinks {
   GstPad* Add(GstPad* tx_pad);
   /// Takes it away; the first link's pad remains, and is returned.
   PadPtr Remove(GstPad* sink);
+  /// By link.
+  const std::vector<Chain>& chains() const { return chains_; }
+  /// Packets are protected before they come to the links.
+  void Protect(std::shared_ptr<SrtpLayer> layer) { BondProtect(bond_, std::move(layer)); }
   /// The array `links` of `stats`.
   void AddStats(GstStructure* stats) const;
 

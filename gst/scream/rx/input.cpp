@@ -48,13 +48,6 @@ ByteView PayloadOf(const BufferMap& map, const RtpHeader& header) {
   return {map.data() + header.header_size, map.size() - header.header_size};
 }
 
-/// Never 0. Who cannot see a packet cannot make another of the same digest.
-std::uint64_t DigestOf(const BufferMap& map) {
-  std::uint64_t digest = 14695981039346656037U;  // FNV-1a
-  for (const std::uint8_t byte : map.view()) digest = (digest ^ byte) * 1099511628211U;
-  return digest | 1;
-}
-
 PeerLatch::Verdict Judge(RxState& state, Time now, GstBuffer* buffer, const RtpHeader& header) {
   PeerLatch::Packet packet{SourceOf(buffer), header.ssrc, header.seq, {}, 0};
   const bool wants_lidar =
@@ -63,7 +56,7 @@ PeerLatch::Verdict Judge(RxState& state, Time now, GstBuffer* buffer, const RtpH
   if (!wants_lidar && !wants_digest) return state.latch.OnPacket(now, packet);
   const BufferMap map(buffer, GST_MAP_READ);
   if (wants_lidar) packet.lidar = PayloadOf(map, header);
-  if (wants_digest && map) packet.digest = DigestOf(map);
+  if (wants_digest && map) packet.digest = DigestOf(map.view());
   return state.latch.OnPacket(now, packet);
 }
 

@@ -3,18 +3,26 @@
 
 namespace lidar::gst {
 
+namespace {
+
+// A sender's links take turns, and what waited behind a gap of one comes late.
+constexpr guint kReplayWindow = 4'096;  // packets
+
+}  // namespace
+
 std::unique_ptr<SrtpDecoder> SrtpDecoder::Create(GstElement* bin, const SrtpPolicy& policy,
-                                                 SrtpKey key, GstPad* exit) {
+                                                 SrtpKey key) {
   GstElement* element = gst_element_factory_make("srtpdec", nullptr);
   if (element == nullptr) return nullptr;
+  g_object_set(element, "replay-window-size", kReplayWindow, nullptr);
   gst_element_set_locked_state(element, TRUE);
   gst_bin_add(GST_BIN(bin), element);
-  return std::unique_ptr<SrtpDecoder>(new SrtpDecoder(bin, element, policy, std::move(key), exit));
+  return std::unique_ptr<SrtpDecoder>(new SrtpDecoder(bin, element, policy, std::move(key)));
 }
 
 SrtpDecoder::SrtpDecoder(GstElement* bin, GstElement* element, const SrtpPolicy& policy,
-                         SrtpKey key, GstPad* exit)
-    : bin_(bin), element_(element), exit_(exit), policy_(policy), key_(std::move(key)) {
+                         SrtpKey key)
+    : bin_(bin), element_(element), policy_(policy), key_(std::move(key)) {
   g_signal_connect(element_, "request-key",
                    G_CALLBACK(+[](GstElement*, guint ssrc, gpointer self) -> GstCaps* {
                      return static_cast<SrtpDecoder*>(self)->CapsFor(ssrc);
@@ -37,10 +45,8 @@ PadPtr SrtpDecoder::NewRelay(const char* source) {
   PadPtr pad(GST_PAD(gst_object_ref_sink(gst_pad_new("relay", GST_PAD_SINK))));
   gst_pad_set_element_private(pad.get(), this);
   gst_pad_set_chain_function(pad.get(), [](GstPad* p, GstObject*, GstBuffer* buffer) {
-    auto* self = static_cast<SrtpDecoder*>(gst_pad_get_element_private(p));
-    self->passed_ = true;
-    if (self->exit_ == nullptr) gst_buffer_unref(buffer);
-    return self->flow_ = self->exit_ == nullptr ? GST_FLOW_OK : gst_pad_push(self->exit_, buffer);
+    static_cast<SrtpDecoder*>(gst_pad_get_element_private(p))->out_.reset(buffer);
+    return GST_FLOW_OK;
   });
   gst_pad_set_event_function(pad.get(), [](GstPad*, GstObject*, GstEvent* event) -> gboolean {
     gst_event_unref(event);
@@ -61,13 +67,11 @@ void SrtpDecoder::Start() {
   gst_pad_send_event(sink_.get(), gst_event_new_segment(&segment));
 }
 
-bool SrtpDecoder::Decode(GstBuffer* datagram, GstFlowReturn* flow) {
+BufferPtr SrtpDecoder::Decode(GstBuffer* datagram) {
   if (!gst_pad_has_current_caps(sink_.get())) Start();
-  passed_ = false;
   // It decodes in place, and frees a buffer that others hold too.
-  const GstFlowReturn result = gst_pad_chain(sink_.get(), gst_buffer_copy_deep(datagram));
-  *flow = passed_ ? flow_ : result;
-  return passed_;
+  gst_pad_chain(sink_.get(), gst_buffer_copy_deep(datagram));
+  return std::move(out_);
 }
 
 void SrtpDecoder::Restart(std::uint32_t ssrc, std::uint32_t rollover) {

@@ -17,18 +17,17 @@ namespace lidar::gst {
 /// it datagrams.
 class SrtpDecoder {
  public:
-  /// Null where the srtp plugin is missing. What it decodes is pushed from `exit`; without one it
-  /// only says whether the key fits.
-  static std::unique_ptr<SrtpDecoder> Create(GstElement* bin, const SrtpPolicy& policy, SrtpKey key,
-                                             GstPad* exit);
+  /// Null where the srtp plugin is missing.
+  static std::unique_ptr<SrtpDecoder> Create(GstElement* bin, const SrtpPolicy& policy,
+                                             SrtpKey key);
   ~SrtpDecoder();
   SrtpDecoder(const SrtpDecoder&) = delete;
   SrtpDecoder& operator=(const SrtpDecoder&) = delete;
 
   const SrtpKey& key() const { return key_; }
-  /// Whether `datagram` is RTP or RTCP by this key and no replay. If so it has been pushed
-  /// decoded, and `flow` is what came of that. Leaves `datagram` alone.
-  bool Decode(GstBuffer* datagram, GstFlowReturn* flow);
+  /// `datagram` decoded, where it is RTP or RTCP by this key and no replay; else NULL. Leaves
+  /// `datagram` alone.
+  BufferPtr Decode(GstBuffer* datagram);
   /// Forgets all of `ssrc` but this guess of its rollover counter.
   void Restart(std::uint32_t ssrc, std::uint32_t rollover);
   /// Forgets every stream. The only way to get memory back from srtpdec while it runs: in
@@ -36,23 +35,20 @@ class SrtpDecoder {
   void Clear();
 
  private:
-  SrtpDecoder(GstElement* bin, GstElement* element, const SrtpPolicy& policy, SrtpKey key,
-              GstPad* exit);
+  SrtpDecoder(GstElement* bin, GstElement* element, const SrtpPolicy& policy, SrtpKey key);
   PadPtr NewRelay(const char* source);
   void Start();
   GstCaps* CapsFor(std::uint32_t ssrc) const;
 
   GstElement* bin_;
   GstElement* element_;  // of the bin
-  GstPad* exit_;
   SrtpPolicy policy_;
   SrtpKey key_;
   PadPtr sink_;
   PadPtr rtp_;  // take what comes out
   PadPtr rtcp_;
   std::map<std::uint32_t, std::uint32_t> rollovers_;  // guesses past 0
-  bool passed_ = false;                               // the datagram in work came out
-  GstFlowReturn flow_ = GST_FLOW_OK;
+  BufferPtr out_;                                     // of the datagram in work
 };
 
 }  // namespace lidar::gst

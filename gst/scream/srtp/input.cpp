@@ -81,9 +81,8 @@ bool SrtpInput::Link(GstPad* socket, GstPad* target) {
 }
 
 bool SrtpInput::AddKey(const SrtpKey& key) {
-  Key added{0, SrtpDecoder::Create(bin_, policy_, key, exit_.get()),
-            SrtpDecoder::Create(bin_, policy_, key, exit_.get()),
-            SrtpDecoder::Create(bin_, policy_, key, nullptr)};
+  Key added{0, SrtpDecoder::Create(bin_, policy_, key), SrtpDecoder::Create(bin_, policy_, key),
+            SrtpDecoder::Create(bin_, policy_, key)};
   if (!added.media || !added.rtcp || !added.trial) return false;
   std::lock_guard lock(mutex_);
   added.serial = ++serial_;
@@ -92,10 +91,11 @@ bool SrtpInput::AddKey(const SrtpKey& key) {
   return true;
 }
 
-SrtpCounts SrtpInput::counts() const { return {received_, refused_, key_changes_}; }
+SrtpCounts SrtpInput::counts() const { return {received_, refused_, copied_, key_changes_}; }
 
 void SrtpInput::Reset() {
   streams_.clear();
+  copies_.Clear();
   for (const Key& key : keys_)
     for (SrtpDecoder* decoder : {key.media.get(), key.rtcp.get(), key.trial.get()})
       decoder->Clear();
@@ -116,54 +116,62 @@ GstFlowReturn SrtpInput::OnDatagram(GstBuffer* datagram) {
   UpdateKeys();
   ++received_;
   const Head head = HeadOf(datagram);
-  const auto found = streams_.find(head.stream());
-  Stream* known = found != streams_.end() && found->second.known ? &found->second : nullptr;
-  GstFlowReturn flow = GST_FLOW_OK;
-  if (known != nullptr) {
-    if (DecodeKnown(datagram, head, &flow) || flow == GST_FLOW_FLUSHING) return flow;
-    ++known->failures;
+  if (!head.rtcp) copies_.OnArrival(datagram);
+  if (BufferPtr copy = head.rtcp ? nullptr : copies_.Take(datagram)) {
+    ++copied_;
+    return gst_pad_push(exit_.get(), copy.release());
   }
-  // RTCP is never lost, as it carries its index: what is behind is a recording.
-  if (known == nullptr || (!head.rtcp && IsLost(*known)))
-    if (TryStranger(datagram, head, &flow) || flow == GST_FLOW_FLUSHING) return flow;
+  if (BufferPtr decoded = Decode(datagram, head)) {
+    if (!head.rtcp) copies_.OnPassed(datagram, decoded.get());
+    return gst_pad_push(exit_.get(), decoded.release());
+  }
   ++refused_;
-  if (known == nullptr && refused_ >= kFailuresUntilWarning) Warn();
+  const auto found = streams_.find(head.stream());
+  const bool known = found != streams_.end() && found->second.known;
+  if (!known && refused_ >= kFailuresUntilWarning) Warn();
   return GST_FLOW_OK;
 }
 
-bool SrtpInput::DecodeKnown(GstBuffer* datagram, const Head& head, GstFlowReturn* flow) {
+BufferPtr SrtpInput::Decode(GstBuffer* datagram, const Head& head) {
+  const auto found = streams_.find(head.stream());
+  const bool known = found != streams_.end() && found->second.known;
+  if (known) {
+    if (BufferPtr decoded = DecodeKnown(datagram, head)) return decoded;
+    ++found->second.failures;
+  }
+  // RTCP is never lost, as it carries its index: what is behind is a recording.
+  if (!known || (!head.rtcp && IsLost(found->second))) return TryStranger(datagram, head);
+  return nullptr;
+}
+
+BufferPtr SrtpInput::DecodeKnown(GstBuffer* datagram, const Head& head) {
   for (std::size_t i = 0; i < keys_.size(); ++i) {
     // The key that the last packet had comes first; the others fail once for each packet.
     const std::size_t n = (in_use_ + i) % keys_.size();
-    if (keys_[n].DecoderOf(head).Decode(datagram, flow)) {
-      OnPassed(head, n, 0);
-      return true;
-    }
-    if (*flow == GST_FLOW_FLUSHING) return false;
+    BufferPtr decoded = keys_[n].DecoderOf(head).Decode(datagram);
+    if (!decoded) continue;
+    OnPassed(head, n, 0);
+    return decoded;
   }
-  return false;
+  return nullptr;
 }
 
 /// RTP does not carry its rollover counter, so it is tried: where nobody else asks, many values for
 /// a packet, as a sender without feedback sends few.
-bool SrtpInput::TryStranger(GstBuffer* datagram, const Head& head, GstFlowReturn* flow) {
-  if (!allowance_.Take(g_get_monotonic_time())) return false;
-  if (TryRollover(datagram, head, 0, flow)) return true;
+BufferPtr SrtpInput::TryStranger(GstBuffer* datagram, const Head& head) {
+  if (!allowance_.Take(g_get_monotonic_time())) return nullptr;
+  BufferPtr decoded = TryRollover(datagram, head, 0);
   // RTCP carries its index.
   const unsigned guesses = head.rtcp ? 0 : kMaxGuesses;
-  for (unsigned n = 0; n < guesses && (n == 0 || allowance_.TakeSpare()); ++n) {
-    if (*flow == GST_FLOW_FLUSHING) return false;
-    const std::uint32_t guess = StreamOf(head.stream()).search.Next();
-    if (TryRollover(datagram, head, guess, flow)) return true;
-  }
+  for (unsigned n = 0; !decoded && n < guesses && (n == 0 || allowance_.TakeSpare()); ++n)
+    decoded = TryRollover(datagram, head, StreamOf(head.stream()).search.Next());
   Stream& stream = StreamOf(head.stream());
-  if (!stream.known) ++stream.failures;
-  return false;
+  if (!decoded && !stream.known) ++stream.failures;
+  return decoded;
 }
 
 /// A stream that was lost is ahead of its old place: anything before it is a recording.
-bool SrtpInput::TryRollover(GstBuffer* datagram, const Head& head, std::uint32_t ahead,
-                            GstFlowReturn* flow) {
+BufferPtr SrtpInput::TryRollover(GstBuffer* datagram, const Head& head, std::uint32_t ahead) {
   const Stream& stream = StreamOf(head.stream());
   for (std::size_t i = 0; i < keys_.size(); ++i) {
     const std::size_t n = (in_use_ + i) % keys_.size();
@@ -174,11 +182,11 @@ bool SrtpInput::TryRollover(GstBuffer* datagram, const Head& head, std::uint32_t
     // Decoded again where its streams are, so that it is no replay once and never again.
     SrtpDecoder& decoder = keys_[n].DecoderOf(head);
     decoder.Restart(head.ssrc, rollover);
-    if (!decoder.Decode(datagram, flow)) return false;
-    OnPassed(head, n, rollover);
-    return true;
+    BufferPtr decoded = decoder.Decode(datagram);
+    if (decoded) OnPassed(head, n, rollover);
+    return decoded;
   }
-  return false;
+  return nullptr;
 }
 
 bool SrtpInput::Fits(const Key& key, GstBuffer* datagram, std::uint32_t ssrc,
@@ -187,9 +195,8 @@ bool SrtpInput::Fits(const Key& key, GstBuffer* datagram, std::uint32_t ssrc,
     for (const Key& k : keys_) k.trial->Clear();
     tried_ = 0;
   }
-  GstFlowReturn flow = GST_FLOW_OK;
   key.trial->Restart(ssrc, rollover);
-  return key.trial->Decode(datagram, &flow);
+  return key.trial->Decode(datagram) != nullptr;
 }
 
 void SrtpInput::UpdateKeys() {

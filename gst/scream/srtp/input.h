@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "gst/common/refs.h"
+#include "gst/scream/srtp/copies.h"
 #include "gst/scream/srtp/decoder.h"
 #include "gst/scream/srtp/key.h"
 
@@ -21,6 +22,7 @@ namespace lidar::gst {
 struct SrtpCounts {
   std::uint64_t received = 0;  // datagrams
   std::uint64_t refused = 0;   // wrong key, replayed, damaged or not protected
+  std::uint64_t copies = 0;    // by another link of the sender
   std::uint64_t key_changes = 0;
 };
 
@@ -104,9 +106,10 @@ class SrtpInput {
   void InstallExit();
   GstFlowReturn OnDatagram(GstBuffer* datagram);
   static Head HeadOf(GstBuffer* datagram);
-  bool DecodeKnown(GstBuffer* datagram, const Head& head, GstFlowReturn* flow);
-  bool TryStranger(GstBuffer* datagram, const Head& head, GstFlowReturn* flow);
-  bool TryRollover(GstBuffer* datagram, const Head& head, std::uint32_t ahead, GstFlowReturn* flow);
+  BufferPtr Decode(GstBuffer* datagram, const Head& head);
+  BufferPtr DecodeKnown(GstBuffer* datagram, const Head& head);
+  BufferPtr TryStranger(GstBuffer* datagram, const Head& head);
+  BufferPtr TryRollover(GstBuffer* datagram, const Head& head, std::uint32_t ahead);
   bool Fits(const Key& key, GstBuffer* datagram, std::uint32_t ssrc, std::uint32_t rollover);
   void UpdateKeys();
   void OnPassed(const Head& head, std::size_t key, std::uint32_t rollover);
@@ -131,6 +134,7 @@ class SrtpInput {
   std::size_t newest_used_ = 0;
   gint64 forget_old_at_ = 0;  // monotonic time [us]
   std::map<StreamId, Stream> streams_;
+  SrtpCopies copies_;
   Allowance allowance_;
   unsigned tried_ = 0;  // strangers, since the trial decoders were cleared
   bool warned_ = false;
@@ -138,6 +142,7 @@ class SrtpInput {
   std::atomic<std::size_t> waiting_{0};
   std::atomic<std::uint64_t> received_{0};
   std::atomic<std::uint64_t> refused_{0};
+  std::atomic<std::uint64_t> copied_{0};
   std::atomic<std::uint64_t> key_changes_{0};
 };
 

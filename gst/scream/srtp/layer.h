@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// SRTP and SRTCP between the SCReAM elements and the socket of a bin, by the stock srtp plugin.
+// SRTP and SRTCP between the SCReAM elements and the sockets of a bin, by the stock srtp plugin.
 #pragma once
 #include <gst/gst.h>
 
@@ -7,57 +7,64 @@
 #include <memory>
 #include <mutex>
 #include <string>
+#include <vector>
 
 #include "gst/common/properties.h"
 #include "gst/common/refs.h"
+#include "gst/scream/srtp/encoder.h"
 #include "gst/scream/srtp/input.h"
 #include "gst/scream/srtp/key.h"
 
 namespace lidar::gst {
 
-/// Places of the layer: pads of the bin's children, linked plainly.
-struct SrtpLinks {
-  GstElement* bin;
+/// Pads of the bin's children, linked plainly: where the layer goes.
+struct SrtpPlace {
   GstElement* sender;         // screamtx or screamrx
   const char* out;            // its pad towards the socket
   const char* in;             // its pad from the socket
   GstElement* socket_sink;    // ecnudpsink
   GstElement* socket_source;  // ecnudpsrc
-  bool sends_media;           // out is RTP and in RTCP; else the other way round
+};
+struct SrtpPlaces {
+  GstElement* bin;
+  bool sends_media;
+  std::vector<SrtpPlace> links;
 };
 
-/// Lives from READY to NULL of its bin. Every SSRC has the one key.
+/// Lives from READY to NULL of its bin. Every SSRC has the one key. What leaves by `out` is
+/// protected there, but for RTP where there are several links: that was protected once for all of
+/// them, by Protect(). Each link's input has replay windows of its own.
 class SrtpLayer {
  public:
   /// Null and `error` where the key, the cipher or the srtp plugin is not usable.
-  static std::unique_ptr<SrtpLayer> Create(const SrtpSettings& settings, const SrtpLinks& links,
+  static std::unique_ptr<SrtpLayer> Create(const SrtpSettings& settings, const SrtpPlaces& places,
                                            std::string* error);
   ~SrtpLayer();
   SrtpLayer(const SrtpLayer&) = delete;
   SrtpLayer& operator=(const SrtpLayer&) = delete;
 
-  SrtpCounts counts() const { return input_->counts(); }
+  /// Of all inputs.
+  SrtpCounts counts() const;
   /// Bytes that it adds to each RTP packet.
   unsigned overhead() const { return policy_.overhead; }
+  BufferPtr Protect(GstBuffer* packet) { return encoder_->Protect(packet); }
   /// Takes the key that `source` names beside the one in use. The end that sends media uses it at
   /// once; the end that answers does once the media does. False and `error` where it is no key or
   /// was used before.
   bool ChangeKey(const std::string& source, std::string* error);
 
  private:
-  SrtpLayer(const SrtpPolicy& policy, const SrtpLinks& links);
-  bool MakeEncoder(const SrtpKey& key);
+  SrtpLayer(const SrtpPolicy& policy, const SrtpPlaces& places);
+  bool AddKey(const SrtpKey& key);
   bool Link();
-  bool LinkMedia(GstPad* source, GstPad* socket);
-  void EncodeWith(const SrtpKey& key);
+  bool IsDone(GstBuffer* packet) const;
+  static GstPadProbeReturn OnOut(GstPad* pad, GstPadProbeInfo* info, gpointer self);
 
   SrtpPolicy policy_;
-  SrtpLinks links_;
-  GstElement* enc_ = nullptr;  // of the bin
-  PadPtr out_rtcp_;            // takes RTCP out of what screamtx sends, to the encoder
-  gulong out_probe_ = 0;
-  PadPtr out_relay_;  // from the encoder to the socket
-  std::unique_ptr<SrtpInput> input_;
+  SrtpPlaces places_;
+  std::unique_ptr<SrtpEncoder> encoder_;
+  std::vector<std::unique_ptr<SrtpInput>> inputs_;  // by link
+  std::vector<gulong> probes_;                      // by link
 
   std::mutex mutex_;                 // guards digests_
   std::deque<std::string> digests_;  // of the keys so far
@@ -66,7 +73,7 @@ class SrtpLayer {
 /// srtp-key (write-only), srtp-cipher and srtp-auth.
 const std::array<Property<SrtpSettings>, 3>& SrtpRows();
 /// Makes the layer where `settings` ask for one; false, and an error on the bus, where it cannot.
-bool StartSrtp(const SrtpSettings& settings, const SrtpLinks& links,
+bool StartSrtp(const SrtpSettings& settings, const SrtpPlaces& places,
                std::shared_ptr<SrtpLayer>* layer);
 /// Gives a layer that runs its new key; a warning on the bus and false where it cannot.
 bool TakeSrtpKey(GstElement* bin, SrtpLayer* layer, const std::string& key);

@@ -20,13 +20,13 @@ const std::array<Property<SrtpSettings>, 3>& SrtpRows() {
   return rows;
 }
 
-bool StartSrtp(const SrtpSettings& settings, const SrtpLinks& links,
+bool StartSrtp(const SrtpSettings& settings, const SrtpPlaces& places,
                std::shared_ptr<SrtpLayer>* layer) {
   if (settings.key.empty()) return true;
   std::string error;
-  *layer = SrtpLayer::Create(settings, links, &error);
+  *layer = SrtpLayer::Create(settings, places, &error);
   if (*layer) return true;
-  GST_ELEMENT_ERROR(links.bin, RESOURCE, SETTINGS, ("SRTP cannot be used: %s.", error.c_str()),
+  GST_ELEMENT_ERROR(places.bin, RESOURCE, SETTINGS, ("SRTP cannot be used: %s.", error.c_str()),
                     (nullptr));
   return false;
 }
@@ -40,9 +40,10 @@ bool TakeSrtpKey(GstElement* bin, SrtpLayer* layer, const std::string& key) {
 }
 
 void AddSrtpStats(const SrtpLayer* layer, GstStructure* stats) {
-  static const std::array<Stat<SrtpCounts>, 3> kStats = {{
+  static const std::array<Stat<SrtpCounts>, 4> kStats = {{
       {"srtp-received", &SrtpCounts::received},
       {"srtp-refused", &SrtpCounts::refused},
+      {"srtp-copies", &SrtpCounts::copies},
       {"srtp-key-changes", &SrtpCounts::key_changes},
   }};
   if (layer != nullptr) AddStats(stats, kStats, layer->counts());

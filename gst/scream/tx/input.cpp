@@ -41,7 +41,8 @@ void Enqueue(TxState& state, TxStream& stream, BufferPtr buffer, Time now) {
   if (!stream.ssrc) stream.ssrc = header->ssrc;
   if (!stream.payload_type) stream.payload_type = header->payload_type;
   const bool media = *stream.ssrc == header->ssrc && *stream.payload_type == header->payload_type;
-  stream.overhead.Add(media ? size - header->header_size : 0, item.size);
+  const gsize headers = header->header_size + (state.link ? state.link->trailer() : 0);
+  stream.overhead.Add(media && size > headers ? size - headers : 0, item.size);
   state.controller->OnQueued(now, stream.id,
                              {header->ssrc, item.size, header->marker, header->timestamp, scan});
   stream.queue.push_back(std::move(item));

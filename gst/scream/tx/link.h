@@ -25,6 +25,8 @@ class TxLink {
   /// A report in these numbers; none where it tells of what this link never sent.
   virtual std::optional<scream::CongestionFeedback> OnFeedback(
       Time now, const scream::CongestionFeedback& report) = 0;
+  /// Bytes at the end of each packet that are no media.
+  virtual gsize trailer() const = 0;
   /// What the controller made of the last report.
   virtual void OnPath(const scream::Statistics& statistics) = 0;
 };

@@ -2,6 +2,8 @@
 // screamsink over several links to one screamsrc, over loopback sockets.
 #include <gtest/gtest.h>
 
+#include <atomic>
+
 #include "gst/scream/bond/addresses.h"
 #include "tests/elements/scream/pipeline.h"
 #include "tests/elements/scream/rtp_support.h"
@@ -18,15 +20,16 @@ const std::string kBondedAudio =
 
 /// A screamsrc of raw audio on a free port, and what comes out of it.
 struct BondReceiver {
-  BondReceiver()
-      : pipeline(
-            "screamsrc name=in port=0 caps=\"application/x-rtp,media=audio,encoding-name=L16,"
-            "clock-rate=44100,channels=1,payload=96\" ! fakesink name=out sync=false "
-            "signal-handoffs=true") {
+  explicit BondReceiver(const std::string& options = "")
+      : pipeline("screamsrc name=in port=0 " + options +
+                 " caps=\"application/x-rtp,media=audio,encoding-name=L16,"
+                 "clock-rate=44100,channels=1,payload=96\" ! fakesink name=out sync=false "
+                 "signal-handoffs=true") {
     const ElementPtr out = pipeline.Get("out");
-    g_signal_connect(out.get(), "handoff",
-                     G_CALLBACK(+[](GstElement*, GstBuffer*, GstPad*, guint* n) { ++*n; }),
-                     &passed);
+    g_signal_connect(
+        out.get(), "handoff",
+        G_CALLBACK(+[](GstElement*, GstBuffer*, GstPad*, std::atomic<guint>* n) { ++*n; }),
+        &passed);
     pipeline.Play();
     GSocket* socket = nullptr;
     g_object_get(pipeline.Get("in").get(), "used-socket", &socket, nullptr);
@@ -35,7 +38,7 @@ struct BondReceiver {
     g_object_unref(address);
     g_object_unref(socket);
   }
-  guint passed = 0;
+  std::atomic<guint> passed{0};
   Pipeline pipeline;
   std::string port;
 };
@@ -137,11 +140,52 @@ TEST(Bonding, FailsWhereNoLinkCanBeUsed) {
   EXPECT_TRUE(Warns(sender, "No link"));
 }
 
-TEST(Bonding, RefusesAKeyThatItWouldUseTwice) {
-  Pipeline sender(Bonded("127.0.0.1:5004@127.0.0.1,127.0.0.1:5004@127.0.0.2",
-                         "srtp-key=" + std::string(60, '5')));
+class BondedSrtp : public ::testing::TestWithParam<const char*> {};
+
+TEST_P(BondedSrtp, EachPacketPassesOnceAndEachLinkIsHeardOf) {
+  BondReceiver receiver(GetParam());
+  const std::string to = "127.0.0.1:" + receiver.port;
+  Pipeline sender(Bonded(to + "@127.0.0.1," + to + "@127.0.0.2",
+                         std::string("bonding-method=broadcast ") + GetParam()));
+  const ElementPtr out = sender.Get("out"), in = receiver.pipeline.Get("in");
+  g_object_set(out.get(), "sender-report-interval", guint64{100'000'000}, nullptr);
   sender.Play();
-  EXPECT_TRUE(Warns(sender, "srtp-key"));
+  EXPECT_TRUE(sender.Ends());
+  EXPECT_TRUE(receiver.pipeline.Ends());
+  EXPECT_EQ(receiver.passed, 150U);
+  const auto accepted = OfLinks(out.get(), "feedback-accepted");
+  ASSERT_EQ(accepted.size(), 2U);
+  EXPECT_GT(accepted[0], 10U);
+  EXPECT_GT(accepted[1], 10U);
+  EXPECT_EQ(OfLinks(out.get(), "packets-lost"), (std::vector<guint64>{0, 0}));
+  EXPECT_EQ(Stats(out.get())["srtp-refused"], 0U);
+  EXPECT_LE(Stats(in.get())["srtp-refused"], 5U) << "copies from before a second address sent";
+  EXPECT_GT(Stats(in.get())["srtp-copies"], 100U);
+  EXPECT_GT(Stats(in.get())["packets-copies"], 100U);
+  EXPECT_EQ(Stats(in.get())["goodbyes"], 1U);
+}
+INSTANTIATE_TEST_SUITE_P(Ciphers, BondedSrtp,
+                         ::testing::Values("srtp-key=555555555555555555555555555555555555555555555"
+                                           "555555555555555",
+                                           "srtp-cipher=aes-128-gcm srtp-key=555555555555555555555"
+                                           "55555555555555555555555555555555555"));
+
+TEST(Bonding, TakesANewKeyWithoutAGap) {
+  const std::string old_key = std::string(60, '5'), new_key = std::string(60, '6');
+  BondReceiver receiver("srtp-key=" + old_key);
+  const std::string to = "127.0.0.1:" + receiver.port;
+  Pipeline sender(Bonded(to + "@127.0.0.1," + to + "@127.0.0.2", "srtp-key=" + old_key));
+  sender.Play();
+  const ElementPtr out = sender.Get("out"), in = receiver.pipeline.Get("in");
+  while (receiver.passed < 40) g_usleep(10'000);
+  g_object_set(in.get(), "srtp-key", new_key.c_str(), nullptr);
+  g_object_set(out.get(), "srtp-key", new_key.c_str(), nullptr);
+  EXPECT_TRUE(sender.Ends());
+  EXPECT_TRUE(receiver.pipeline.Ends());
+  EXPECT_EQ(receiver.passed, 150U);
+  EXPECT_EQ(Stats(out.get())["srtp-key-changes"], 1U);
+  EXPECT_EQ(Stats(in.get())["srtp-key-changes"], 1U);
+  EXPECT_EQ(Stats(out.get())["srtp-refused"], 0U);
 }
 
 TEST(Bonding, StartsAgainAndWithOneLink) {

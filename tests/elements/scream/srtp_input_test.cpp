@@ -346,6 +346,59 @@ TEST_F(SrtpIn, IsNotStoppedWhileItMayDecode) {
   EXPECT_TRUE(Passes(first));
 }
 
+/// The datagram as it comes from another host.
+BufferPtr From(const char* host, const BufferPtr& datagram) {
+  BufferPtr copy(gst_buffer_copy_deep(datagram.get()));
+  test::SetSource(copy.get(), host, 9);
+  return copy;
+}
+
+TEST_F(SrtpIn, PassesACopyOnceFromEachAddress) {
+  Protector sender(Key(5));
+  EXPECT_TRUE(Passes(From("10.0.0.1", sender.Protect(1))));
+  EXPECT_TRUE(Passes(From("10.0.0.2", sender.Protect(2))));  // from here on, several send
+  const BufferPtr third = sender.Protect(3);
+  EXPECT_TRUE(Passes(From("10.0.0.1", third)));
+  EXPECT_TRUE(Passes(From("10.0.0.2", third)));
+  for (const char* host : {"10.0.0.1", "10.0.0.2"}) EXPECT_FALSE(Passes(From(host, third)));
+  EXPECT_EQ(input_->counts().copies, 1U);
+  EXPECT_EQ(input_->counts().refused, 2U);
+}
+
+TEST_F(SrtpIn, PassesNothingThatOnlyLooksLikeACopy) {
+  Protector sender(Key(5));
+  Passes(From("10.0.0.1", sender.Protect(1)));
+  Passes(From("10.0.0.2", sender.Protect(2)));
+  const BufferPtr third = sender.Protect(3);
+  EXPECT_TRUE(Passes(From("10.0.0.1", third)));
+  const BufferPtr changed = From("10.0.0.2", third);
+  const guint8 byte = 0xff;
+  gst_buffer_fill(changed.get(), gst_buffer_get_size(changed.get()) - 1, &byte, 1);
+  EXPECT_FALSE(Passes(changed));
+  EXPECT_FALSE(Passes(From("10.0.0.2", Forged(3))));
+  EXPECT_EQ(input_->counts().copies, 0U);
+}
+
+TEST_F(SrtpIn, TakesWhatComesLateByALinkBehindAGap) {
+  Protector sender(Key(5));
+  std::vector<BufferPtr> waiting;
+  for (guint16 seq = 1; seq <= 50; ++seq) waiting.push_back(sender.Protect(seq));
+  for (guint16 seq = 51; seq <= 1'000; ++seq)
+    EXPECT_TRUE(Passes(From("10.0.0.1", sender.Protect(seq)))) << seq;
+  for (const BufferPtr& datagram : waiting) EXPECT_TRUE(Passes(From("10.0.0.2", datagram)));
+}
+
+TEST_F(SrtpIn, RemembersSoManyCopiesOnly) {
+  Protector sender(Key(5));
+  Passes(From("10.0.0.1", sender.Protect(1)));
+  Passes(From("10.0.0.2", sender.Protect(2)));
+  const BufferPtr old = sender.Protect(3);
+  EXPECT_TRUE(Passes(From("10.0.0.1", old)));
+  for (guint16 seq = 4; seq <= 3 + SrtpCopies::kMaxDatagrams; ++seq)
+    EXPECT_TRUE(Passes(From("10.0.0.1", sender.Protect(seq))));
+  EXPECT_FALSE(Passes(From("10.0.0.2", old)));
+}
+
 TEST_F(SrtpIn, OfFourKeysTheOldestGoes) {
   for (const std::uint8_t digit : SrtpKey{6, 7, 8}) EXPECT_TRUE(input_->AddKey(Key(digit)));
   Protector oldest(Key(5));

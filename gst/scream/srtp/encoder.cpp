@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "gst/scream/srtp/encoder.h"
+
+#include <string>
+
+#include "gst/scream/rtp_packet.h"
+
+namespace lidar::gst {
+namespace {
+
+// Links take turns, and a copy of an old packet may leave behind many new ones.
+constexpr guint kWindow = 4'096;  // packets
+
+}  // namespace
+
+std::unique_ptr<SrtpEncoder> SrtpEncoder::Create(GstElement* bin, const SrtpPolicy& policy,
+                                                 const SrtpKey& key) {
+  GstElement* element = gst_element_factory_make("srtpenc", nullptr);
+  if (element == nullptr) return nullptr;
+  for (const char* name : {"rtp-cipher", "rtcp-cipher"})
+    gst_util_set_object_arg(G_OBJECT(element), name, policy.cipher.c_str());
+  gst_util_set_object_arg(G_OBJECT(element), "rtp-auth", policy.auth.c_str());
+  gst_util_set_object_arg(G_OBJECT(element), "rtcp-auth", policy.rtcp_auth.c_str());
+  g_object_set(element, "allow-repeat-tx", FALSE, "replay-window-size", kWindow, nullptr);
+  gst_element_set_locked_state(element, TRUE);
+  gst_bin_add(GST_BIN(bin), element);
+  std::unique_ptr<SrtpEncoder> encoder(new SrtpEncoder(bin, element));
+  encoder->SetKey(key);
+  gst_element_set_state(element, GST_STATE_PLAYING);
+  return encoder;
+}
+
+SrtpEncoder::SrtpEncoder(GstElement* bin, GstElement* element) : bin_(bin), element_(element) {
+  rtp_ = NewWay("rtp");
+  rtcp_ = NewWay("rtcp");
+}
+
+SrtpEncoder::~SrtpEncoder() {
+  gst_element_set_state(element_, GST_STATE_NULL);
+  gst_bin_remove(GST_BIN(bin_), element_);  // unlinks its pads
+  for (const Way* way : {&rtp_, &rtcp_}) gst_pad_set_active(way->relay.get(), FALSE);
+}
+
+SrtpEncoder::Way SrtpEncoder::NewWay(const std::string& kind) {
+  Way way;
+  way.sink.reset(gst_element_request_pad_simple(element_, (kind + "_sink_0").c_str()));
+  way.relay.reset(GST_PAD(gst_object_ref_sink(gst_pad_new(kind.c_str(), GST_PAD_SINK))));
+  GstPad* relay = way.relay.get();
+  gst_pad_set_element_private(relay, this);
+  gst_pad_set_chain_function(relay, [](GstPad* pad, GstObject*, GstBuffer* buffer) {
+    static_cast<SrtpEncoder*>(gst_pad_get_element_private(pad))->out_.reset(buffer);
+    return GST_FLOW_OK;
+  });
+  gst_pad_set_event_function(relay, [](GstPad*, GstObject*, GstEvent* event) -> gboolean {
+    gst_event_unref(event);
+    return TRUE;
+  });
+  GST_PAD_SET_ACCEPT_TEMPLATE(relay);  // caps change with the key
+  gst_pad_set_active(relay, TRUE);
+  const PadPtr source(gst_element_get_static_pad(element_, (kind + "_src_0").c_str()));
+  gst_pad_link(source.get(), relay);
+  return way;
+}
+
+void SrtpEncoder::SetKey(const SrtpKey& key) {
+  const BufferPtr buffer(gst_buffer_new_memdup(key.data(), key.size()));
+  const std::lock_guard lock(mutex_);
+  g_object_set(element_, "key", buffer.get(), nullptr);
+}
+
+BufferPtr SrtpEncoder::Protect(GstBuffer* packet) {
+  const bool rtcp = IsRtcp(packet);
+  GstPad* sink = (rtcp ? rtcp_ : rtp_).sink.get();
+  const std::lock_guard lock(mutex_);
+  if (!gst_pad_has_current_caps(sink)) {
+    GstSegment segment;
+    gst_segment_init(&segment, GST_FORMAT_TIME);
+    const CapsPtr caps(
+        gst_caps_new_empty_simple(rtcp ? "application/x-rtcp" : "application/x-rtp"));
+    gst_pad_send_event(sink, gst_event_new_stream_start("srtp"));
+    gst_pad_send_event(sink, gst_event_new_caps(caps.get()));
+    gst_pad_send_event(sink, gst_event_new_segment(&segment));
+  }
+  gst_pad_chain(sink, packet);
+  return std::move(out_);
+}
+
+}  // namespace lidar::gst
