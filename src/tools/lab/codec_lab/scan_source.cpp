@@ -13,6 +13,7 @@
 #include "src/synth/scanner.h"
 #include "src/tools/common/output_file.h"
 #include "src/tools/lab/codec_lab/cloud_file.h"
+#include "src/tools/lab/codec_lab/kitti_sequence.h"
 #ifdef HAVE_MCAP
 #include "src/tools/lab/codec_lab/cloud_recording.h"
 #endif
@@ -21,7 +22,7 @@ namespace lidar::tools {
 
 const char* const kSourceHelp =
     "What to read: drive.pcap (with drive.json beside it), drive.pcap,sensor.json, cloud.bin, "
-    "cloud.pcd, cloud.ply, a folder of these, drive.mcap or drive.mcap,/topic, or "
+    "cloud.pcd, cloud.ply, a folder of these, drive.mcap or drive.mcap,/topic, kitti:FOLDER, or "
     "synth:MODEL:SCENE[:COLUMNS] such as synth:os1-64:street";
 
 ColumnWindow WindowOf(const Scan& scan, SliceOf slice) {
@@ -30,6 +31,8 @@ ColumnWindow WindowOf(const Scan& scan, SliceOf slice) {
 }
 
 namespace {
+
+constexpr std::string_view kKitti = "kitti:";
 
 ouster::Metadata ReadMetadata(const std::string& path) {
   std::string error;
@@ -128,7 +131,7 @@ class SyntheticDrive final : public ScanStream {
     TimedScan timed;
     timed.start = Time{} + start;
     timed.duration = period();
-    timed.truth = scanner_.trajectory().At(start);
+    timed.truth = scanner_.trajectory().At(start + timed.duration / 2);
     timed.scan.geometry = geometry_;
     timed.scan.ranges = std::move(returns.range_mm);
     timed.scan.intensity.assign(returns.reflectivity.begin(), returns.reflectivity.end());
@@ -214,8 +217,14 @@ std::unique_ptr<ScanStream> OpenFolder(const std::string& folder) {
 
 }  // namespace
 
+std::optional<std::string> KittiFolderOf(const std::string& text) {
+  if (text.rfind(kKitti, 0) != 0) return std::nullopt;
+  return text.substr(kKitti.size());
+}
+
 std::unique_ptr<ScanStream> OpenScans(const std::string& text, const SourceOptions& options) {
   if (text.rfind("synth:", 0) == 0) return OpenSynthetic(text, options);
+  if (const auto folder = KittiFolderOf(text)) return OpenKittiSequence(*folder);
   const std::size_t comma = text.find(',');
   const std::string path = text.substr(0, comma);
   if (std::filesystem::is_directory(path)) return OpenFolder(path);
@@ -226,8 +235,8 @@ std::unique_ptr<ScanStream> OpenScans(const std::string& text, const SourceOptio
                                  : text.substr(comma + 1));
   if (EndsWith(path, ".mcap"))
     return OpenRecording(path, comma == std::string::npos ? "" : text.substr(comma + 1));
-  throw std::runtime_error(text +
-                           ": not a .pcap, .pcapng, .mcap, .bin, .pcd, .ply or synth: source");
+  throw std::runtime_error(
+      text + ": not a .pcap, .pcapng, .mcap, .bin, .pcd, .ply, kitti: or synth: source");
 }
 
 ScanSet LoadScans(const std::string& text, const SourceOptions& options) {

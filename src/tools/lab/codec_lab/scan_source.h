@@ -25,7 +25,7 @@ struct TimedScan {
   Scan scan;
   Time start{};  // of the first column
   Duration duration{};
-  std::optional<synth::Pose> truth;  // of the sensor at `start`, where the source knows it
+  std::optional<synth::Pose> truth;  // in the middle, where the source knows it
 };
 
 /// Scans one after the other, read or computed as they are asked for: a drive may be of any length.
@@ -51,11 +51,14 @@ class ScanStream {
 ///   cloud.bin              a cloud (KITTI's x y z intensity floats)
 ///   cloud.pcd, cloud.ply   a cloud
 ///   drive.mcap             the clouds of a recording; drive.mcap,/points: those of one topic
+///   kitti:FOLDER           a sequence of KITTI's odometry benchmark
 ///   folder                 consecutive clouds in such files, by name
 ///   synth:os1-64:street    a synthetic sensor in street, tunnel, field or town; a third part is
 ///                          the number of columns (1024)
 /// Throws std::runtime_error with a message for the user.
 std::unique_ptr<ScanStream> OpenScans(const std::string& text, const SourceOptions& options);
+/// The folder that kitti:FOLDER names.
+std::optional<std::string> KittiFolderOf(const std::string& text);
 /// All of them at once; at least one, or std::runtime_error.
 ScanSet LoadScans(const std::string& text, const SourceOptions& options);
 std::vector<ScanSet> LoadAllScans(const std::vector<std::string>& texts,

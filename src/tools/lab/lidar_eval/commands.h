@@ -15,5 +15,6 @@ void AddToPcapCommand(CLI::App* app);
 // Only where there is odometry.
 void AddSlamCommand(CLI::App* app);
 void AddAteCommand(CLI::App* app);
+void AddToKittiCommand(CLI::App* app);
 
 }  // namespace lidar::tools

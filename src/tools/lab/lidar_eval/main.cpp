@@ -21,6 +21,7 @@ int main(int argc, char** argv) {
 #ifdef HAVE_ODOMETRY
   lidar::tools::AddSlamCommand(&app);
   lidar::tools::AddAteCommand(&app);
+  lidar::tools::AddToKittiCommand(&app);
 #endif
   return lidar::tools::Guard("lidar-eval", [&] {
     lidar::tools::Parse(&app, argc, argv);  // runs the command

@@ -11,7 +11,8 @@
 #include "src/tools/lab/codec_lab/plot.h"
 #include "src/tools/lab/codec_lab/progress.h"
 #include "src/tools/lab/lidar_eval/commands.h"
-#include "src/tools/lab/lidar_eval/slam_run.h"
+#include "src/tools/lab/lidar_eval/kitti_truth.h"
+#include "src/tools/lab/lidar_eval/scan_arguments.h"
 
 namespace lidar::tools {
 namespace {
@@ -21,8 +22,7 @@ using odometry::Trajectory;
 using odometry::TrajectoryError;
 
 struct SlamArguments {
-  std::string source;
-  SourceOptions read;
+  ScanArguments scans;
   SlamOptions slam;
   std::string out;
   std::string truth;
@@ -38,6 +38,7 @@ struct AteArguments {
 };
 
 Trajectory Load(const std::string& path, double kitti_rate) {
+  if (const auto folder = KittiFolderOf(path)) return ReadKittiTruth(*folder);
   std::ifstream file(path);
   if (!file) throw std::runtime_error("cannot open " + path);
   std::string error;
@@ -97,40 +98,65 @@ void PrintRun(const SlamResult& r) {
               at(0.95), r.map_voxels);
 }
 
+/// What the user names, or else what the source knows.
+Trajectory FindTruth(const SlamArguments& a, const SlamResult& r, double scans_per_second) {
+  if (!a.truth.empty()) return Load(a.truth, scans_per_second);
+  return KittiFolderOf(a.scans.source) ? Load(a.scans.source, scans_per_second) : r.truth;
+}
+
+nlohmann::ordered_json ToJson(const Calibration& c) {
+  return {{"mean_m", c.mean_m},
+          {"within_1_sigma", c.within_1_sigma},
+          {"within_3_sigma", c.within_3_sigma},
+          {"width", c.width}};
+}
+
+void Print(const Calibration& c) {
+  std::printf(
+      "  deviation %.3f m in the mean; error within one of it %.0f %%, within three %.1f %%\n",
+      c.mean_m, 100 * c.within_1_sigma, 100 * c.within_3_sigma);
+}
+
 void RunSlamCommand(const SlamArguments& a) {
-  const auto scans = OpenScans(a.source, a.read);
+  const std::string& source = a.scans.source;
+  const auto scans = OpenScans(a.scans);
   SlamOptions options = a.slam;
-  options.max_scans = a.read.max_scans;
+  options.loss = a.scans.loss;
+  options.max_scans = a.scans.read.max_scans;
   const auto bar = ProgressBar("slam");
   const SlamResult r = RunSlam(scans.get(), options, [&](std::size_t done) {
     if (options.max_scans > 0)
       bar(static_cast<double>(done) / static_cast<double>(options.max_scans));
   });
-  if (r.estimate.empty()) throw std::runtime_error(a.source + ": no scan in it");
+  if (r.estimate.empty()) throw std::runtime_error(source + ": no scan in it");
   if (!a.out.empty()) Save(a.out, options.close_loops ? r.closed : r.estimate, a.kitti);
-  const Trajectory truth = a.truth.empty() ? r.truth : Load(a.truth, scans->scans_per_second());
+  const Trajectory truth = FindTruth(a, r, scans->scans_per_second());
   const auto error = Compare(truth, r.estimate);
   const auto closed = Compare(truth, r.closed);
   if (a.json) {
-    nlohmann::ordered_json j = {{"source", a.source},
+    nlohmann::ordered_json j = {{"source", source},
                                 {"scans", r.estimate.size()},
                                 {"tracked", CountOf(r, Tracking::kTracking)},
                                 {"degenerate", CountOf(r, Tracking::kDegenerate)},
                                 {"lost", CountOf(r, Tracking::kLost)},
                                 {"maps", r.maps},
+                                {"lost_at_start", r.lost_at_start},
+                                {"cpu_ms_median", r.cpu_ms[(r.cpu_ms.size() - 1) / 2]},
                                 {"cpu_ms_p95", r.cpu_ms[(r.cpu_ms.size() - 1) * 95 / 100]},
                                 {"mean_point_error_m", r.mean_point_error_m},
                                 {"max_point_error_m", r.max_point_error_m}};
     if (error) j["error"] = ToJson(*error);
+    if (const auto c = Calibrate(r, truth)) j["deviation"] = ToJson(*c);
     if (options.close_loops)
       j["loop_closure"] = {{"local_maps", r.local_maps}, {"closures", r.closures}};
     if (closed) j["loop_closure"]["error"] = ToJson(*closed);
     std::cout << j.dump(2) << '\n';
     return;
   }
-  std::printf("%s\n", a.source.c_str());
+  std::printf("%s\n", source.c_str());
   PrintRun(r);
   if (error) Print(*error);
+  if (const auto c = Calibrate(r, truth)) Print(*c);
   if (!options.close_loops) return;
   std::printf("With %zu loops closed between %zu local maps\n", r.closures, r.local_maps);
   if (closed) Print(*closed);
@@ -152,30 +178,13 @@ void RunAteCommand(const AteArguments& a) {
 
 void AddSlamCommand(CLI::App* app) {
   auto a = std::make_shared<SlamArguments>();
-  a->read.max_scans = 0;
   CLI::App* command = app->add_subcommand("slam", "The way of the sensor, from its scans");
   command->option_defaults()->always_capture_default();
-  command->add_option("SOURCE", a->source, kSourceHelp)->required();
-  command->add_option("--scans", a->read.max_scans, "Scans to read; 0: all");
-  command->add_option("--speed", a->read.speed_mps, "Of synthetic drives [m/s]");
-  command->add_option("--seed", a->read.seed, "Of synthetic drives");
-  command->add_option("--noise", a->read.noise_m, "Of synthetic ranges, standard deviation [m]")
-      ->check(CLI::Range(0.0, 10.0));
-  command->add_flag("--mixed-pixels", a->read.mixed_pixels,
-                    "Synthetic ranges at edges lie between the two surfaces");
+  AddScanOptions(command, &a->scans);
   command->add_option("--out", a->out, "Write the trajectory to this file, in TUM's format");
   command->add_flag("--kitti", a->kitti, "Write it in KITTI's format");
   command->add_option("--truth", a->truth,
                       "Compare with this trajectory (TUM or KITTI); synthetic drives bring theirs");
-  command
-      ->add_option("--step", a->slam.loss.range_step_m,
-                   "Put ranges on a grid of this step first, as lidarenc does [m]")
-      ->check(CLI::Range(0.0, 10.0));
-  command
-      ->add_option("--xyz-bits", a->slam.loss.xyz_bits,
-                   "Put points on a grid of so many bits over their cube first, as the paper "
-                   "does; 0: no")
-      ->check(CLI::Range(0U, 30U));
   command->add_option("--voxel-size", a->slam.odometry.voxel_size_m, "Of the map [m]")
       ->check(CLI::Range(0.05, 20.0));
   command->add_option("--max-range", a->slam.odometry.max_range_m, "Of points, and of the map [m]")
@@ -191,7 +200,8 @@ void AddAteCommand(CLI::App* app) {
   CLI::App* command =
       app->add_subcommand("ate", "How far a trajectory is from the true one: ATE, RPE, drift");
   command->option_defaults()->always_capture_default();
-  command->add_option("TRUTH", a->truth, "Trajectory in TUM's or KITTI's format")->required();
+  command->add_option("TRUTH", a->truth, "Trajectory in TUM's or KITTI's format, or kitti:FOLDER")
+      ->required();
   command->add_option("ESTIMATE", a->estimate, "Another")->required();
   command->add_option("--kitti-rate", a->kitti_rate, "Poses a second of KITTI files")
       ->check(CLI::Range(0.01, 1000.0));

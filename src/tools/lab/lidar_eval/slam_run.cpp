@@ -14,10 +14,7 @@
 namespace lidar::tools {
 namespace {
 
-odometry::Pose ToPose(const synth::Pose& pose) {
-  const auto [x, y, z, w] = pose.ToQuaternion();
-  return {Eigen::Quaterniond(w, x, y, z), {pose.x, pose.y, pose.z}};
-}
+constexpr std::size_t kStart = 20;  // scans
 
 /// The grid that Draco lays over the cube of the cloud.
 void QuantizeCube(unsigned bits, odometry::Points* points) {
@@ -94,6 +91,40 @@ struct PointErrors {
 
 }  // namespace
 
+odometry::Pose TrueMiddle(const TimedScan& scan) {
+  const synth::Pose& pose = *scan.truth;
+  const auto [x, y, z, w] = pose.ToQuaternion();
+  return {Eigen::Quaterniond(w, x, y, z), {pose.x, pose.y, pose.z}};
+}
+
+std::optional<Calibration> Calibrate(const SlamResult& r, const odometry::Trajectory& truth) {
+  if (truth.empty() || truth.front().time > r.estimate.front().time ||
+      truth.back().time < r.estimate.back().time || r.estimate.size() < 2)
+    return std::nullopt;
+  Calibration c;
+  double errors = 0;
+  double deviations = 0;
+  const odometry::Pose first = InterpolateAt(truth, r.estimate.front().time);
+  const odometry::Pose first_found = r.estimate.front().pose;
+  for (std::size_t i = 1; i < r.estimate.size(); ++i) {
+    const odometry::Pose way = first.Inverse() * InterpolateAt(truth, r.estimate[i].time);
+    const odometry::Pose found = first_found.Inverse() * r.estimate[i].pose;
+    const double error = (way.position - found.position).norm();
+    const double deviation = r.deviation_m[i];
+    c.mean_m += deviation;
+    c.within_1_sigma += error <= deviation ? 1 : 0;
+    c.within_3_sigma += error <= 3 * deviation ? 1 : 0;
+    errors += error * error;
+    deviations += deviation * deviation;
+  }
+  const auto count = static_cast<double>(r.estimate.size() - 1);
+  c.mean_m /= count;
+  c.within_1_sigma /= count;
+  c.within_3_sigma /= count;
+  c.width = errors > 0 ? std::sqrt(deviations / errors) : 0;
+  return c;
+}
+
 odometry::TimedPoints PointsOf(const Scan& scan, const CodingLoss& loss) {
   odometry::TimedPoints timed;
   if (scan.organised()) {
@@ -126,9 +157,11 @@ SlamResult RunSlam(ScanStream* scans, const SlamOptions& options,
     result.cpu_ms.push_back(1e3 * static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC);
     result.estimate.push_back({e.time, e.pose});
     if (closer) closer->AddScan(result.estimate.back(), odometry.last_scan());
+    result.deviation_m.push_back(std::sqrt(e.covariance.topLeftCorner<3, 3>().trace()));
     ++result.tracking[e.tracking];
+    if (done < kStart && e.tracking == odometry::Tracking::kLost) ++result.lost_at_start;
     if (e.map_restarted || e.tracking == odometry::Tracking::kStarted) ++result.maps;
-    if (timed->truth) result.truth.push_back({timed->start, ToPose(*timed->truth)});
+    if (timed->truth) result.truth.push_back({e.time, TrueMiddle(*timed)});
     progress(done + 1);
   }
   result.mean_point_error_m = errors.count > 0 ? errors.sum_m / errors.count : 0;

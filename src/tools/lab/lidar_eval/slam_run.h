@@ -25,10 +25,12 @@ struct SlamOptions {
 
 struct SlamResult {
   odometry::Trajectory estimate;
-  odometry::Trajectory truth;  // empty where the source knows none
+  odometry::Trajectory truth;       // empty where the source knows none
+  std::vector<double> deviation_m;  // of each estimate, as the odometry has it
   std::map<odometry::Tracking, std::size_t> tracking;
-  std::vector<double> cpu_ms;  // of each scan, ascending
-  std::size_t map_voxels = 0;  // at the end
+  std::size_t lost_at_start = 0;  // of the first twenty scans
+  std::vector<double> cpu_ms;     // of each scan, ascending
+  std::size_t map_voxels = 0;     // at the end
   std::size_t maps = 0;
   // How far the loss moved the points
   double mean_point_error_m = 0;
@@ -42,6 +44,19 @@ struct SlamResult {
 /// Calls progress() with the number of scans done.
 SlamResult RunSlam(ScanStream* scans, const SlamOptions& options,
                    const std::function<void(std::size_t)>& progress);
+
+/// How the errors of the positions compare with the deviations that the odometry has.
+struct Calibration {
+  double mean_m = 0;  // of the deviations
+  double within_1_sigma = 0;
+  double within_3_sigma = 0;
+  double width = 0;  // the deviations as a multiple of the errors, both root mean squares
+};
+/// None where `truth` does not cover the estimate.
+std::optional<Calibration> Calibrate(const SlamResult& result, const odometry::Trajectory& truth);
+
+/// Where the sensor was in the middle of a scan of which that is known.
+odometry::Pose TrueMiddle(const TimedScan& scan);
 
 /// The returns of a scan after `loss`, with their phase in the sweep where it is known.
 odometry::TimedPoints PointsOf(const Scan& scan, const CodingLoss& loss);

@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// What a network or a poorer sensor takes of the scans of a source.
+#pragma once
+#include <memory>
+
+#include "src/tools/lab/codec_lab/scan_source.h"
+
+namespace lidar::tools {
+
+struct ScanFaults {
+  double lost_share = 0;    // of the scans, three at a time
+  double gap_s = 0;         // once, ten seconds after the first scan
+  unsigned every_beam = 1;  // 2: half of the beams
+  bool any() const { return lost_share > 0 || gap_s > 0 || every_beam > 1; }
+};
+
+/// The scans of `scans` that are left. Deterministic.
+std::unique_ptr<ScanStream> WithFaults(std::unique_ptr<ScanStream> scans, const ScanFaults& faults);
+
+}  // namespace lidar::tools

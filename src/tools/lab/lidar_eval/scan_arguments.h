@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// What slam and to-kitti take of a source, and what they do to it.
+#pragma once
+#include <CLI/CLI.hpp>
+#include <memory>
+#include <string>
+
+#include "src/tools/lab/codec_lab/scan_faults.h"
+#include "src/tools/lab/lidar_eval/slam_run.h"
+
+namespace lidar::tools {
+
+struct ScanArguments {
+  std::string source;
+  SourceOptions read;
+  ScanFaults faults;
+  CodingLoss loss;
+};
+
+void AddScanOptions(CLI::App* command, ScanArguments* arguments);
+std::unique_ptr<ScanStream> OpenScans(const ScanArguments& arguments);
+
+}  // namespace lidar::tools
