@@ -12,7 +12,7 @@ SYNTHETIC = {
     "OS1-64 field": "synth:os1-64:field",
 }
 SCENES = ("tunnel", "street", "field")
-MODES = ("range-adaptive", "xyz-sequential", "xyz-kd0", "xyz-kd6")
+MODES = ("range-adaptive", "xyz-sequential", "xyz-kd6")
 BITS = (3, 4, 5, 6, 7, 8)
 
 
@@ -56,8 +56,8 @@ def predict():
             for mode in MODES:
                 cells = re.search(rf"^ +{mode} .*", text, re.M)[0].split()
                 means = [cell for cell in cells[2:] if cell != "%"][::2]
-                body.append([scene, mode] + [mean + " %" for mean in means])
-    return common.table(["scene", "mode", "paper's model", "ours, as fitted", "ours, corrected"], body)
+                body.append([scene, mode, *means])
+    return common.table(["scene", "mode", "paper's model [%]", "ours, as fitted", "ours, corrected"], body)
 
 
 def followed(source, *options):
@@ -70,19 +70,13 @@ def followed(source, *options):
 
 
 def track():
-    """How closely targets are followed, at a bound of 2 cm."""
+    """How closely targets are followed by 8 slices a scan, at a bound of 2 cm."""
     body = []
     for name, source in {**SYNTHETIC, **common.SOURCES}.items():
-        for what, options in {
-            "8 slices": (),
-            "whole scans": ("--slices", 1),
-        }.items():
-            row = followed(source, *options)
-            body.append([
-                name, what, f"{row['steady'][0]} / {row['steady'][1]} %", f"{row['walk'][0]} / {row['walk'][1]} %",
-                f"{row['jump'][0]} / {row['jump'][2]} %", f"{row['walk'][-1]} %",
-            ])
-    head = ["source", "geometry", "steady mean / p95", "walk mean / p95", "jump mean / furthest over", "r_min off"]
+        row = followed(source)
+        cells = [row["steady"][0], row["steady"][1], row["walk"][0], row["walk"][1], row["jump"][0], row["jump"][2], row["walk"][-1]]
+        body.append([name, *cells])
+    head = ["[%]", "steady: mean", "p95", "walk: mean", "p95", "jump: mean", "furthest over", "r_min off"]
     return common.table(head, body)
 
 
@@ -98,15 +92,14 @@ def below():
 
 
 def r_min():
-    """The bitrate that a bound needs, beside the paper's setting."""
+    """The bitrate of geometry that a bound needs, whole scans, beside the paper's setting."""
     body = []
     for source in ("OS0-32", "OS1-128"):
-        for what, options in {"geometry, whole scans": (), "5-bit intensity, 8 slices": ("--intensity-bits", 5, "--slices", 8)}.items():
-            text = common.lidar_eval("bounds", common.SOURCES[source], "--errors", "0.02,0.05", *options)
-            for line in re.findall(r"^ +\d+ mm +automatic.*", text, re.M):
-                bound, q, coder = re.match(r" +(\d+ mm).*q = (\d+), ([\w-]+)", line).groups()
-                rates = re.findall(r"([\d.]+) Mbit/s", line)
-                body.append([f"{source}, {what}", bound, f"{rates[0]} (q = {q}, {coder})", rates[1], rates[2]])
+        text = common.lidar_eval("bounds", common.SOURCES[source], "--errors", "0.02,0.05")
+        for line in re.findall(r"^ +\d+ mm +automatic.*", text, re.M):
+            bound, q, coder = re.match(r" +(\d+ mm).*q = (\d+), ([\w-]+)", line).groups()
+            rates = re.findall(r"([\d.]+) Mbit/s", line)
+            body.append([source, bound, f"{rates[0]} (q = {q}, {coder})", rates[1], rates[2]])
     return common.table(["Mbit/s", "bound", "paper: best level", "xyz, continuous step", "range"], body)
 
 
