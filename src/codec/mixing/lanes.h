@@ -13,6 +13,8 @@
 #include <emmintrin.h>
 #elif defined(__aarch64__) && defined(__AARCH64EL__)
 #include <arm_neon.h>
+#elif defined(__wasm_simd128__)
+#include <wasm_simd128.h>
 #endif
 
 namespace lidar::codec::mixing {
@@ -242,6 +244,89 @@ struct NeonLanes {
   }
 };
 using FastLanes = NeonLanes;
+#elif defined(__wasm_simd128__)
+struct WasmLanes {
+  using Eight = v128_t;
+  using Sum = v128_t;
+  struct Counters {
+    Eight rates, chances;
+  };
+
+  [[gnu::always_inline]] static Eight Of(const std::array<std::int16_t, kLanes>& n) {
+    return wasm_i16x8_make(n[0], n[1], n[2], n[3], n[4], n[5], n[6], n[7]);
+  }
+  template <unsigned kCount>
+  [[gnu::always_inline]] static Counters Load(const Counter* const* from) {
+    const v128_t low = LoadFour<kCount>(from);
+    v128_t high = wasm_i16x8_const_splat(0);
+    if constexpr (kCount > 4) high = LoadFour<kCount - 4>(from + 4);
+    return {wasm_i16x8_shuffle(low, high, 0, 2, 4, 6, 8, 10, 12, 14),
+            wasm_i16x8_shuffle(low, high, 1, 3, 5, 7, 9, 11, 13, 15)};
+  }
+  template <unsigned kCount>
+  [[gnu::always_inline]] static void Store(const Counters& counters, Counter* const* to) {
+    const v128_t &rates = counters.rates, &chances = counters.chances;
+    StoreFour<kCount>(wasm_i16x8_shuffle(rates, chances, 0, 8, 1, 9, 2, 10, 3, 11), to);
+    if constexpr (kCount > 4)
+      StoreFour<kCount - 4>(wasm_i16x8_shuffle(rates, chances, 4, 12, 5, 13, 6, 14, 7, 15), to + 4);
+  }
+  [[gnu::always_inline]] static Eight Votes(Eight logits, const Counters& counters) {
+    const Eight doubt = wasm_i16x8_add(counters.rates, wasm_u16x8_shr(counters.rates, 1));
+    const Eight sure = wasm_u16x8_shr(wasm_v128_not(doubt), 1);
+    return SignedHigh(wasm_i16x8_add(logits, logits), sure);
+  }
+  [[gnu::always_inline]] static Counters Learnt(const Counters& counters, bool bit) {
+    const Eight mirror = wasm_i16x8_splat(bit ? -1 : 0);
+    const Eight miss = wasm_v128_xor(counters.chances, mirror);
+    const Eight left = wasm_i16x8_sub(miss, High(miss, counters.rates));
+    const Eight rates = counters.rates;
+    const Eight square = High(rates, rates);
+    const Eight less = High(rates, wasm_i16x8_sub(rates, wasm_u16x8_shr(square, 1)));
+    return {wasm_i16x8_sub(rates, less), wasm_v128_xor(left, mirror)};
+  }
+  [[gnu::always_inline]] static Eight Join(Eight a, Eight b) { return wasm_v128_or(a, b); }
+  [[gnu::always_inline]] static Sum Dot(Eight inputs, const std::int16_t* weights) {
+    return wasm_i32x4_dot_i16x8(inputs, wasm_v128_load(weights));
+  }
+  [[gnu::always_inline]] static Sum Plus(Sum a, Sum b) { return wasm_i32x4_add(a, b); }
+  [[gnu::always_inline]] static std::int32_t Total(Sum sum) {
+    sum = wasm_i32x4_add(sum, wasm_i32x4_shuffle(sum, sum, 2, 3, 0, 1));
+    return wasm_i32x4_extract_lane(sum, 0) + wasm_i32x4_extract_lane(sum, 1);
+  }
+  [[gnu::always_inline]] static void Teach(Eight inputs, std::int32_t step, std::int16_t* weights) {
+    const Eight product = SignedHigh(inputs, wasm_i16x8_splat(static_cast<std::int16_t>(step)));
+    const Eight moves = wasm_i16x8_shr(wasm_i16x8_add(product, wasm_i16x8_const_splat(1)), 1);
+    wasm_v128_store(weights, wasm_i16x8_add_sat(wasm_v128_load(weights), moves));
+  }
+
+ private:
+  /// The upper halves of 32-bit products.
+  [[gnu::always_inline]] static v128_t Upper(v128_t low, v128_t high) {
+    return wasm_i16x8_shuffle(low, high, 1, 3, 5, 7, 9, 11, 13, 15);
+  }
+  [[gnu::always_inline]] static v128_t High(v128_t a, v128_t b) {
+    return Upper(wasm_u32x4_extmul_low_u16x8(a, b), wasm_u32x4_extmul_high_u16x8(a, b));
+  }
+  [[gnu::always_inline]] static v128_t SignedHigh(v128_t a, v128_t b) {
+    return Upper(wasm_i32x4_extmul_low_i16x8(a, b), wasm_i32x4_extmul_high_i16x8(a, b));
+  }
+  template <unsigned kCount>
+  [[gnu::always_inline]] static v128_t LoadFour(const Counter* const* from) {
+    v128_t words = wasm_v128_load32_zero(from[0]);
+    if constexpr (kCount > 1) words = wasm_v128_load32_lane(from[1], words, 1);
+    if constexpr (kCount > 2) words = wasm_v128_load32_lane(from[2], words, 2);
+    if constexpr (kCount > 3) words = wasm_v128_load32_lane(from[3], words, 3);
+    return words;
+  }
+  template <unsigned kCount>
+  [[gnu::always_inline]] static void StoreFour(v128_t pairs, Counter* const* to) {
+    wasm_v128_store32_lane(to[0], pairs, 0);
+    if constexpr (kCount > 1) wasm_v128_store32_lane(to[1], pairs, 1);
+    if constexpr (kCount > 2) wasm_v128_store32_lane(to[2], pairs, 2);
+    if constexpr (kCount > 3) wasm_v128_store32_lane(to[3], pairs, 3);
+  }
+};
+using FastLanes = WasmLanes;
 #else
 using FastLanes = PlainLanes;
 #endif

@@ -9,6 +9,8 @@
 #include <emmintrin.h>
 #elif defined(__aarch64__)
 #include <arm_neon.h>
+#elif defined(__wasm_simd128__)
+#include <wasm_simd128.h>
 #endif
 
 namespace lidar::codec {
@@ -94,6 +96,12 @@ class NibbleModel {
     const uint16x8_t up_to_slot = vaddq_u16(vcleq_s16(vld1q_s16(start_.data()), v),
                                             vcleq_s16(vld1q_s16(start_.data() + 8), v));
     return static_cast<std::uint16_t>(-vaddvq_u16(up_to_slot)) - 1U;
+#elif defined(__wasm_simd128__)
+    const v128_t v = wasm_i16x8_splat(static_cast<std::int16_t>(slot));
+    const v128_t low = wasm_i16x8_gt(wasm_v128_load(start_.data()), v);
+    const v128_t high = wasm_i16x8_gt(wasm_v128_load(start_.data() + 8), v);
+    const std::uint32_t above = wasm_i8x16_bitmask(wasm_i8x16_narrow_i16x8(low, high));
+    return static_cast<unsigned>(__builtin_ctz(above | 0x10000U)) - 1U;
 #else
     unsigned s = start_[8] <= static_cast<int>(slot) ? 8U : 0U;
     s += start_[s + 4] <= static_cast<int>(slot) ? 4U : 0U;

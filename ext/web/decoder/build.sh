@@ -1,0 +1,28 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: LGPL-2.1-or-later
+# Builds the decoder of the page as WebAssembly, by Debian's clang: build.sh [FILE]
+set -euo pipefail
+cd "$(dirname "$0")/../../.."
+to=$(realpath -m "${1:-ext/web/decoder/lidar_decoder.wasm}")
+objects=$(mktemp -d)
+trap 'rm -rf "$objects"' EXIT
+
+mkdir -p "$objects/src/codec"
+template=$(<src/codec/mixing/start_table.h.in)
+echo "${template/@TABLE@/$(<src/codec/mixing/start_table.txt)}" > "$objects/src/codec/start_table.h"
+
+# Loops over bits and points; the rest is compiled for its size.
+fast=(src/cloud/range_projection src/codec/mixing/{binary_coder,mixing_codec,slice_coder}
+  src/codec/rans/{adaptive_coder,mask_coder,predictor,rans} src/codec/cloud/{beam_section,cell_tree,level_tree,pixel_part})
+small=(src/cloud/{point_fields,sensor_model}
+  src/codec/{azimuth_alignment,block_memory,block_store,cloud_io,range_codec,range_header,slice_decoder}
+  src/codec/rans/initial_models src/codec/mixing/{arithmetic,start_states}
+  src/codec/cloud/{beam_table,cell_cover,cloud_decoder,cloud_header,pixel_list} ext/web/decoder/{crc,decoder})
+flags=(--target=wasm32-wasi -msimd128 -std=c++17 -fno-exceptions -fno-rtti -DNDEBUG -ffp-contract=off
+  -fvisibility=hidden -ffunction-sections -fdata-sections -I. "-I$objects")
+compile() { printf '%s\n' "${@:2}" | xargs -P 2 -I{} sh -c "clang++ ${flags[*]} $1 -c {}.cpp -o $objects/\$(echo {} | tr / _).o"; }
+compile -O2 "${fast[@]}"
+compile -Oz "${small[@]}"
+# The stack is below all else, so that an overflow traps.
+clang++ "${flags[@]}" -mexec-model=reactor -Wl,-z,stack-size=1048576,--stack-first,--strip-all,--gc-sections \
+  -Wl,--max-memory=536870912 "$objects"/*.o -o "$to"

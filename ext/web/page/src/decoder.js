@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// The slices of one stream to points, by ext/web/decoder as WebAssembly. Each decoder has an instance
+// of its own, so that damage that traps costs one stream its references, and nothing else.
+
+export const POINT_FLOATS = 6; // x, y, z, intensity, beam, range: as fields.js has it
+const DAMAGED = -1;
+const LACKS_REFERENCE = -2;
+
+export class Decoder {
+  /** `module`: the compiled lidar_decoder.wasm; `model`: bytes of the sensor model, none for points. */
+  constructor(module, model, maxPoints = 1 << 20) {
+    Object.assign(this, { module, model, maxPoints });
+    this.start();
+  }
+
+  start() {
+    this.wasm = new WebAssembly.Instance(this.module, {}).exports;
+    const { wasm, model } = this;
+    wasm._initialize();
+    const at = wasm.allocate(model.length);
+    this.bytes(at, model.length).set(model);
+    this.decoder = wasm.open(at, model.length, this.maxPoints);
+    wasm.release(at);
+    if (this.decoder === 0) throw new Error('the sensor model is damaged');
+  }
+
+  bytes(at, size) {
+    return new Uint8Array(this.wasm.memory.buffer, at, size);
+  }
+
+  /**
+   * {points, step, error, has} of a slice, whose `points` are a view until the next one; or
+   * {lacksReference} where there are none.
+   */
+  decode(slice) {
+    const result = this.run(slice);
+    if (result !== 0) return { points: null, lacksReference: result === LACKS_REFERENCE };
+    const at = this.wasm.slice(this.decoder);
+    const words = new Uint32Array(this.wasm.memory.buffer, at, 6);
+    const [, , step, error] = new Float32Array(this.wasm.memory.buffer, at, 6);
+    return {
+      points: new Float32Array(this.wasm.memory.buffer, words[1], words[0] * POINT_FLOATS),
+      step,
+      error,
+      has: { intensity: words[4] !== 0, beam: words[5] !== 0 },
+    };
+  }
+
+  run(slice) {
+    try {
+      const input = this.wasm.input(this.decoder, slice.length);
+      if (input === 0) return DAMAGED;
+      this.bytes(input, slice.length).set(slice);
+      return this.wasm.decode(this.decoder);
+    } catch {
+      this.start(); // its memory is in no known state
+      return DAMAGED;
+    }
+  }
+
+  /** All pixels of the last slice, 20 bytes each: for tests. */
+  raw() {
+    return this.bytes(this.wasm.raw(this.decoder), this.wasm.raw_count(this.decoder) * 20);
+  }
+}

@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// The decoder of the page against that of this machine, over the streams of decoder_cases.
+import assert from 'node:assert/strict';
+import { execFileSync } from 'node:child_process';
+import { readFileSync } from 'node:fs';
+import { test } from 'node:test';
+import { gzipSync } from 'node:zlib';
+import { Decoder } from '../../../ext/web/page/src/decoder.js';
+
+const MOST_MOVED_M = 1e-6;
+const wasm = readFileSync(new URL('../../../ext/web/decoder/lidar_decoder.wasm', import.meta.url));
+const module = new WebAssembly.Module(wasm);
+
+function* streams() {
+  const folder = (path) => new URL(`../../${path}`, import.meta.url).pathname;
+  const args = [folder('core/codec/golden'), folder('fuzz/corpus')];
+  const all = execFileSync(process.env.DECODER_CASES, args, { maxBuffer: 2 ** 30 });
+  let at = 0;
+  const number = () => all.readUInt32LE((at += 4) - 4);
+  const bytes = (size = number()) => all.subarray(at, (at += size));
+  while (at < all.length) {
+    const stream = { name: bytes().toString(), model: bytes(), slices: [] };
+    for (let left = number(); left > 0; --left)
+      stream.slices.push({ coded: bytes(), result: number() | 0, raw: bytes(number() * 20) });
+    yield stream;
+  }
+}
+
+/** How far coordinates differ; all else is the same. */
+function compare(raw, expected, where) {
+  assert.equal(raw.length, expected.length, where);
+  const [a, b] = [raw, expected].map((v) => new DataView(v.buffer, v.byteOffset, v.byteLength));
+  let moved = 0;
+  for (let at = 0; at < raw.length; at += 20) {
+    for (const axis of [0, 4, 8])
+      moved = Math.max(moved, Math.abs(a.getFloat32(at + axis, true) - b.getFloat32(at + axis, true)));
+    assert.equal(a.getFloat32(at + 12, true), b.getFloat32(at + 12, true), where);
+    assert.equal(a.getUint32(at + 16, true), b.getUint32(at + 16, true), where);
+  }
+  return moved;
+}
+
+test('slices of every kind, good and damaged, give what lidardec gives', () => {
+  let [slices, good, points, moved, traps] = [0, 0, 0, 0, 0];
+  for (const stream of streams()) {
+    const decoder = new Decoder(module, stream.model, 1 << 17);
+    const { wasm: first } = decoder;
+    stream.slices.forEach(({ coded, result, raw }, i) => {
+      const where = `${stream.name}, slice ${i}`;
+      const decoded = decoder.decode(coded);
+      assert.equal(decoded.points ? 0 : decoded.lacksReference ? -2 : -1, result, where);
+      slices += 1;
+      if (!decoded.points) return;
+      good += 1;
+      points += decoded.points.length / 6;
+      moved = Math.max(moved, compare(decoder.raw(), raw, where));
+    });
+    traps += decoder.wasm === first ? 0 : 1;
+  }
+  console.log(`${slices} slices, ${good} of them good, ${points} points, ${moved} m at most apart`);
+  assert.ok(good > 100 && good < slices);
+  assert.equal(traps, 0);
+  assert.ok(moved <= MOST_MOVED_M);
+});
+
+test('a sensor model that is damaged is refused', () => {
+  for (const model of [new Uint8Array(1), new Uint8Array(90).fill(255)])
+    assert.throws(() => new Decoder(module, model), /sensor model/);
+});
+
+test('the decoder is a small file that asks for nothing', () => {
+  assert.deepEqual(WebAssembly.Module.imports(module), []);
+  assert.ok(gzipSync(wasm, { level: 9 }).length < 300_000);
+});
