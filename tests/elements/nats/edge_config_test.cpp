@@ -32,6 +32,13 @@ TEST(EdgeConfig, TakesWhatItSaysAndDefaultsForTheRest) {
   EXPECT_FALSE(ParseEdgeConfig(R"({"robots":[{"name":"a","port":1}]})").nats.connection);
 }
 
+TEST(EdgeConfig, TheStreamMayBeAsSmallAsWhatAllRobotsMaySend) {
+  const auto config = ParseEdgeConfig(
+      R"({"nats":{"url":"a","jetstream":"b","max-bytes":150000000,"max-age":60},
+          "robots":[{"name":"a","port":1,"max-mbps":12},{"name":"b","port":2,"max-mbps":8}]})");
+  EXPECT_EQ(config.nats.max_bytes, 150'000'000U);
+}
+
 struct WrongConfig {
   const char* text;
   const char* message;
@@ -75,6 +82,14 @@ INSTANTIATE_TEST_SUITE_P(
                     "port 1 has two robots"},
         WrongConfig{R"({"robots":[{"name":"a","port":1},{"name":"a","port":2}]})",
                     "a has two sensors called lidar"},
+        WrongConfig{R"({"nats":{"url":"a","jetstream":"b","max-bytes":1000},
+                        "robots":[{"name":"a","port":1}]})",
+                    "nats.max-bytes is for all robots, so a needs max-mbps"},
+        WrongConfig{R"({"nats":{"url":"a","jetstream":"b","max-bytes":149999999,"max-age":60},
+                        "robots":[{"name":"a","port":1,"max-mbps":12},
+                                  {"name":"b","port":2,"max-mbps":8}]})",
+                    "nats.max-bytes holds less than what all robots may send in max-age: "
+                    "150000000 bytes"},
         WrongConfig{R"({"nats":{"replicas":6},"robots":[{"name":"a","port":1}]})",
                     "nats.replicas is no whole number from 1 to 5"},
         WrongConfig{R"({"nats":{"prefix":"a.>"},"robots":[{"name":"a","port":1}]})",

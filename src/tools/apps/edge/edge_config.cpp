@@ -189,6 +189,25 @@ void CheckSharedPort(const EdgeConfig& config) {
                                " share an ssrc");
 }
 
+/// The stream of JetStream drops its oldest messages, whoever sent them. So it must hold what all
+/// robots may send in the time that it is for.
+void CheckShares(const EdgeConfig& config) {
+  const NatsConfig& nats = config.nats;
+  if (nats.jetstream.empty() || nats.max_bytes == 0) return;
+  double mbps = 0;
+  for (const RobotConfig& robot : config.robots) {
+    if (robot.max_mbps == 0)
+      throw std::runtime_error("nats.max-bytes is for all robots, so " + robot.name +
+                               " needs max-mbps");
+    mbps += robot.max_mbps;
+  }
+  const double needed = mbps * 125'000 * static_cast<double>(nats.max_age_s);
+  if (nats.max_age_s == 0 || needed > static_cast<double>(nats.max_bytes))
+    throw std::runtime_error(
+        "nats.max-bytes holds less than what all robots may send in max-age: " +
+        std::to_string(static_cast<std::uint64_t>(needed)) + " bytes");
+}
+
 }  // namespace
 
 EdgeConfig ParseEdgeConfig(const std::string& json_text) {
@@ -210,6 +229,7 @@ EdgeConfig ParseEdgeConfig(const std::string& json_text) {
     config.robots.push_back(ReadRobot((*robots)[i], i));
   CheckTwins(config.robots);
   CheckSharedPort(config);
+  CheckShares(config);
   return config;
 }
 

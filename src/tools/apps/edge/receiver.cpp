@@ -2,9 +2,11 @@
 #include "src/tools/apps/edge/receiver.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <exception>
 #include <nlohmann/json.hpp>
+#include <utility>
 
 #include "src/tools/apps/edge/pipeline.h"
 #include "src/tools/apps/edge/shared_port.h"
@@ -22,9 +24,8 @@ constexpr std::chrono::milliseconds kPoll{100};
 constexpr seconds kFirstPause{2};  // after a failure
 constexpr seconds kLongestPause{64};
 constexpr seconds kHealthy{10};  // a session of that age is none that fails at once
-constexpr seconds kAfterFlood{10};
 constexpr seconds kSilence{10};  // a robot that is silent for as long is gone
-constexpr int kPatience = 3;     // seconds that a robot may be above its limit
+constexpr double kCredit = 3;    // seconds at its limit that a robot may be ahead of it
 constexpr GstClockTime kFinish = 3 * GST_SECOND;
 
 }  // namespace
@@ -88,7 +89,6 @@ void Receiver::Begin(Clock::time_point now) {
   began_at_ = now;
   watch_at_.reset();
   bytes_ = 0;
-  fast_seconds_ = 0;
   if (socket_ != nullptr) ShutSocket(socket_, false);
   // An error is read from the bus.
   gst_element_set_state(pipeline_.get(), GST_STATE_PLAYING);
@@ -188,11 +188,24 @@ guint64 Receiver::BytesReceived() const {
   return bytes;
 }
 
+/// A robot that is too far ahead of `max-mbps` is shut out until it is not ahead any more: what it
+/// sends in a long time stays below the limit, whatever it does.
+void Receiver::Charge(Clock::time_point now, double bytes) {
+  const double limit = robot_.max_mbps * 125'000;  // bytes a second
+  const auto passed = std::chrono::duration<double>(now - std::exchange(charged_at_, now));
+  ahead_ = std::max(0.0, ahead_ - limit * passed.count()) + bytes;
+  if (ahead_ <= kCredit * limit) return;
+  Update([](Account* a) { ++a->penalties; });
+  const std::chrono::duration<double> pause(ahead_ / limit);
+  char why[96];
+  std::snprintf(why, sizeof why, "the robot sends more than max-mbps, and is shut out for %.0f s",
+                std::ceil(pause.count()));
+  Rest(now, std::chrono::duration_cast<Duration>(pause), why);
+}
+
 /// Once a second: is the robot there, and does it keep to its limit?
 void Receiver::Watch(Clock::time_point now) {
   if (watch_at_ && now < *watch_at_) return;
-  const bool first = !watch_at_.has_value();
-  const double passed = first ? 1 : 1 + std::chrono::duration<double>(now - *watch_at_).count();
   watch_at_ = now + seconds(1);
   const guint64 bytes = BytesReceived();
   const guint64 more = bytes - std::min(bytes_, bytes);
@@ -205,12 +218,7 @@ void Receiver::Watch(Clock::time_point now) {
   } else if (state_ == State::kReceiving && now - heard_at_ > kSilence) {
     return Rest(now, seconds(0), "the robot is gone");
   }
-  const double mbps = static_cast<double>(more) * 8e-6 / passed;
-  const bool fast = robot_.max_mbps > 0 && mbps > robot_.max_mbps;
-  fast_seconds_ = fast ? fast_seconds_ + 1 : 0;
-  if (fast_seconds_ < kPatience) return;
-  Update([](Account* a) { ++a->penalties; });
-  Rest(now, kAfterFlood, "the robot sends more than max-mbps, and is shut out for a while");
+  if (robot_.max_mbps > 0) Charge(now, static_cast<double>(more));
 }
 
 void Receiver::Poll(Clock::time_point now) {

@@ -63,6 +63,7 @@ class Receiver {
   bool NoteError(Clock::time_point now, GstMessage* message);
   void NoteRecordFailure(Clock::time_point now, const std::string& why);
   void Watch(Clock::time_point now);
+  void Charge(Clock::time_point now, double bytes);
   guint64 BytesReceived() const;
   Account account() const;
   template <class Change>
@@ -83,7 +84,8 @@ class Receiver {
   bool recording_ = false;
   Clock::time_point record_at_{};  // when it began, or is to begin
   guint64 bytes_ = 0;              // when the rate was last taken
-  int fast_seconds_ = 0;
+  double ahead_ = 0;               // bytes above max-mbps, over all sessions
+  Clock::time_point charged_at_{};
   Backoff failures_;
   Backoff record_failures_;
 
