@@ -45,6 +45,12 @@ struct Kept {
   }
 };
 
+inline void PrintTo(const Kept& kept, std::ostream* out) {
+  *out << kept.bytes.size() << " bytes, captured at " << kept.capture_time << ", scan "
+       << kept.slice.scan_id << ", slice " << kept.slice.slice_index << " of "
+       << kept.slice.slice_count << " from column " << kept.slice.first_column;
+}
+
 inline Kept Keep(GstBuffer* buffer) {
   Kept kept;
   const gst::BufferMap map(buffer, GST_MAP_READ);

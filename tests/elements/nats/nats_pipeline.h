@@ -135,7 +135,8 @@ inline std::vector<Kept> PublishSlices(int count, const std::string& where) {
 inline void ExpectSameStream(const std::vector<Kept>& got, const std::vector<Kept>& sent) {
   ASSERT_EQ(got.size(), sent.size());
   for (std::size_t i = 0; i < got.size(); ++i) {
-    EXPECT_TRUE(got[i].SameAs(sent[i])) << i;
+    EXPECT_TRUE(got[i].SameAs(sent[i])) << i << ": " << ::testing::PrintToString(got[i])
+                                        << "; sent " << ::testing::PrintToString(sent[i]);
     EXPECT_EQ(got[i].duration, sent[i].duration) << i;
   }
 }
