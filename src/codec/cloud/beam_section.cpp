@@ -6,6 +6,7 @@
 
 #include "src/codec/block_store.h"
 #include "src/codec/cloud/pixel_part.h"
+#include "src/codec/effort_control.h"
 #include "src/codec/mixing/binary_coder.h"
 #include "src/codec/range_codec.h"
 #include "src/codec/varint.h"
@@ -40,7 +41,7 @@ ResidualGuess BestGuess(const RangeImage& image, std::uint32_t tangent_um,
       const std::size_t pixel = std::size_t{beam} * image.columns + column;
       if (image.ranges[pixel] == 0) continue;
       const double width = ResidualWidth(tangent_um, image.ranges[pixel]);
-      const std::array<std::int32_t, kResidualGuesses> guesses = {of_column[column], last[0],
+      const std::array<std::int32_t, kResidualGuesses> guesses = {0, of_column[column], last[0],
                                                                   last[1]};
       for (unsigned k = 0; k < kResidualGuesses; ++k)
         costs[k] += std::log2(1 + std::abs(residuals[pixel] - guesses[k]) / width);
@@ -74,9 +75,29 @@ std::vector<ExtraBin> ExtraBins(const PixelList& list, const std::vector<std::in
   return extras;
 }
 
+/// The ranges of `image` that a decoder of the block has.
+bool ComeBack(const RangeImage& image, const RangeSettings& settings,
+              const std::vector<std::uint8_t>& block, const SensorModel& model, RangeImage* decoded,
+              RangeGrid* grid) {
+  if (settings.effort < EffortControl::kHighest) {
+    *grid = settings.grid;
+    *decoded = image;
+    for (std::uint32_t& range : decoded->ranges)
+      if (range != 0) range = grid->RangeOf(grid->BinOf(range));
+    return true;
+  }
+  // Bins may have been chosen.
+  RangeDecoder decoder(model);
+  IntensityScale scale;
+  ByteReader reader(block.data(), block.size());
+  if (!decoder.Decode(&reader, kMostPixels, decoded, &scale)) return false;
+  *grid = decoder.header().grid;
+  return true;
+}
+
 }  // namespace
 
-bool EncodeBeamSection(const BeamTable& table, const PixelErrors& errors, const PointLevels& levels,
+bool EncodeBeamSection(BeamTable table, const PixelErrors& errors, const PointLevels& levels,
                        unsigned effort, PixelList* list, std::vector<std::uint8_t>* out) {
   RangeImage& image = list->image;
   const SensorModel model = ModelOf(table);
@@ -87,25 +108,25 @@ bool EncodeBeamSection(const BeamTable& table, const PixelErrors& errors, const 
   }
   std::vector<std::uint8_t> block;
   RangeEncoder encoder(model);
-  if (!encoder.Encode(image, SettingsOf(errors, levels, effort, image), &block)) return false;
+  const RangeSettings settings = SettingsOf(errors, levels, effort, image);
+  if (!encoder.Encode(image, settings, &block)) return false;
   // What follows is coded by the ranges that come back.
   RangeImage decoded;
-  RangeDecoder decoder(model);
-  IntensityScale scale;
-  ByteReader reader(block.data(), block.size());
-  if (!decoder.Decode(&reader, kMostPixels, &decoded, &scale)) return false;
-  const RangeGrid grid = decoder.header().grid;
+  RangeGrid grid;
+  if (!ComeBack(image, settings, block, model, &decoded, &grid)) return false;
   const auto bins = BinsOf(decoded, grid);
   auto extras = ExtraBins(*list, bins, grid, levels);
 
-  ResidualSettings residuals{errors.tangent_um, ResidualGuess::kColumn};
+  ResidualSettings residuals{errors.tangent_um, ResidualGuess::kNone};
   std::vector<std::uint8_t> stream;
   mixing::BinaryEncoder bits(&stream);
+  if (table.grains > 0) CodePlaces(&table, &bits);
   if (residuals.tangent_um > 0) {
     residuals.guess = BestGuess(decoded, residuals.tangent_um, list->residuals);
     CodeResiduals(decoded, residuals, &list->residuals, &bits);
   }
-  if (!extras.empty()) CodeExtras(bins, image.columns, scale.bits(), extras.size(), &extras, &bits);
+  if (!extras.empty())
+    CodeExtras(bins, image.columns, settings.intensity.bits(), extras.size(), &extras, &bits);
   bits.Finish();
 
   ByteWriter writer(out);
@@ -160,6 +181,7 @@ bool DecodeRest(ByteReader* reader, std::size_t max_points, DecodedSection* sect
   const ByteView stream = reader->Bytes(ReadVarint(reader, &ok));
   if (!ok || !reader->ok() || section->returns + extras > max_points) return false;
   mixing::BinaryDecoder bits(stream);
+  if (section->table.grains > 0 && !CodePlaces(&section->table, &bits)) return false;
   section->residuals.assign(section->image.size(), 0);
   if (section->settings.tangent_um > 0 &&
       !CodeResiduals(section->image, section->settings, &section->residuals, &bits)) {

@@ -19,7 +19,7 @@ struct PointLevels {
 };
 
 /// Appends the section; false where the range coder refuses the image.
-bool EncodeBeamSection(const BeamTable& table, const PixelErrors& errors, const PointLevels& levels,
+bool EncodeBeamSection(BeamTable table, const PixelErrors& errors, const PointLevels& levels,
                        unsigned effort, PixelList* list, std::vector<std::uint8_t>* out);
 
 /// Appends the points of the section that `reader` comes to, beam by beam, columns in order, and

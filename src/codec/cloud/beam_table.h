@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Where the beams of a spinning sensor look, found in the points of its clouds.
 #pragma once
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
@@ -22,47 +23,83 @@ constexpr double kRadians = 2 * M_PI / kTurn;
 struct Sighting {
   explicit Sighting(const Point& point);
   double range_m;
-  double rho_m;          // of it, along the ground
-  double elevation;      // in units
+  double rho_m;  // of it, along the ground
+  double z_m;
   std::int32_t azimuth;  // counter-clockwise, below kTurn
 };
 
+/// A beam sees points of a line in the plane of `rho` and z, and of a column each turn: at the
+/// azimuth of the column, which the beam passes at a distance.
 struct BeamTable {
+  static constexpr std::uint32_t kMostPeriod = 4;
   struct Beam {
     std::int32_t elevation = 0;
-    std::int32_t offset = 0;  // azimuth of column 0
+    std::int32_t offset = 0;                         // azimuth of column 0
+    std::int32_t height_um = 0;                      // of the line above the origin
+    std::int32_t side_um = 0;                        // how far it passes the origin, to the left
+    std::array<std::int32_t, kMostPeriod> swings{};  // of every `period` columns, in turn
+    std::uint32_t delay = 0;  // columns that the beam is late; below columns()
   };
   static constexpr std::uint32_t kParts = 256;
   static constexpr std::uint32_t kMostBeams = 1'024;
   static constexpr std::uint32_t kMostColumns = 16'384;
+  static constexpr std::int32_t kMostOffsetUm = 1'000'000;
+  static constexpr std::uint32_t kMostGrains = 1U << 18;
+  /// Swings are multiples of it: 0.0014 degrees.
+  static constexpr std::int32_t kSwingUnit = 16;
 
-  std::uint32_t turn = 0;   // columns of a turn, in 1/kParts
-  std::vector<Beam> beams;  // top to bottom
+  std::uint32_t turn = 0;             // columns of a turn, in 1/kParts
+  std::uint32_t period = 1;           // of the swings, which are 0 where it is 1
+  std::vector<Beam> beams;            // top to bottom
+  std::uint32_t grains = 0;           // of a turn; 0: the columns are even
+  std::vector<std::uint32_t> places;  // of the columns, in grains, rising
 
   std::uint32_t columns() const { return (turn + kParts - 1) / kParts; }
   std::uint32_t rows() const { return static_cast<std::uint32_t>(beams.size()); }
+  bool has_offsets() const;
+  /// Which of the places a beam has in a column.
+  std::uint32_t FiringOf(std::uint32_t beam, std::uint32_t column) const {
+    column += beams[beam].delay;
+    return column >= columns() ? column - columns() : column;
+  }
   /// Azimuths are not wrapped.
   std::int32_t AzimuthOf(std::uint32_t beam, std::uint32_t column) const {
-    const std::uint64_t angle = std::uint64_t{column} * kParts * kTurn / turn;
-    return beams[beam].offset + static_cast<std::int32_t>(angle);
+    column = FiringOf(beam, column);
+    const std::uint64_t angle = places.empty() ? std::uint64_t{column} * kParts * kTurn / turn
+                                               : std::uint64_t{places[column]} * kTurn / grains;
+    std::int32_t azimuth = beams[beam].offset + static_cast<std::int32_t>(angle);
+    if (period > 1) azimuth += beams[beam].swings[column % period];
+    return azimuth;
   }
-  /// The column whose azimuth is nearest.
-  std::uint32_t ColumnOf(std::uint32_t beam, std::int32_t azimuth) const;
-  /// The beam whose elevation is nearest.
-  std::uint32_t BeamOf(double elevation) const;
   Point At(std::uint32_t beam, std::int32_t azimuth, std::uint32_t range_mm) const;
 
+  /// Without the places.
   void Write(ByteWriter* writer) const;
-  /// Returns nothing for numbers that no encoder writes.
+  /// Returns nothing for numbers that no encoder writes. Where there are grains, places are all 0.
   static std::optional<BeamTable> Read(ByteReader* reader);
+};
+
+/// What a beam that passes the origin adds to the azimuth of a point.
+inline double SideAngle(const BeamTable::Beam& beam, double rho_m) {
+  return beam.side_um == 0 ? 0 : 1e-6 * beam.side_um / std::max(rho_m, 1e-3) / kRadians;
+}
+
+/// Finds the columns of azimuths.
+class ColumnFinder {
+ public:
+  explicit ColumnFinder(const BeamTable& table);
+  /// The column whose azimuth is nearest.
+  std::uint32_t ColumnOf(std::uint32_t beam, std::int32_t azimuth) const;
+
+ private:
+  static constexpr unsigned kShift = kTurnBits - 14;  // to buckets
+  const BeamTable& table_;
+  std::vector<std::uint16_t> buckets_;  // the first column at or behind each
 };
 
 /// From -kTurn / 2 to kTurn / 2.
 inline std::int32_t Wrapped(std::int32_t angle) {
   return ((angle + kTurn / 2) & (kTurn - 1)) - kTurn / 2;
 }
-
-/// Returns nothing where most points lie on no beam.
-std::optional<BeamTable> FindBeams(const std::vector<Sighting>& points);
 
 }  // namespace lidar::codec::cloud

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "src/base/byte_writer.h"
+#include "src/codec/cloud/beam_columns.h"
 #include "src/codec/cloud/level_tree.h"
 #include "src/codec/effort_control.h"
 #include "src/codec/mixing/binary_coder.h"

@@ -2,7 +2,10 @@
 #include "src/codec/cloud/pixel_list.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
+
+#include "src/codec/cloud/beam_locator.h"
 
 namespace lidar::codec::cloud {
 namespace {
@@ -15,25 +18,101 @@ struct Placed {
   std::uint32_t point;
 };
 
+/// How far a point is from its beam and column [m].
+struct Distances {
+  double along = 0;
+  double up = 0;
+  double side = 0;
+};
+
 /// What coordinates round off, as PointErrors::rounding_m has it.
 double Rounding(double range_m) {
   return 4 * static_cast<double>(std::numeric_limits<float>::epsilon()) * range_m;
 }
 
-/// Whether a point comes back within the error, with its residual or without.
-bool Fits(const Sighting& s, const Placed& p, double elevation_off, const PixelErrors& e,
-          bool with_residual) {
-  const double range_off = e.range_m + std::abs(1e-3 * p.range_mm - s.range_m);
-  const double up = std::abs(elevation_off) * kRadians * s.range_m;
-  // The range that comes back makes the class. Half of it counts, and what integers round off.
-  const double back_mm = std::max(p.range_mm - 1e3 * e.range_m - 1, 1.0);
-  const std::int32_t width = ResidualWidth(e.tangent_um, static_cast<std::uint32_t>(back_mm));
-  const double units =
-      with_residual ? 0.5 * width + 1 : std::abs(static_cast<double>(p.residual)) + 0.5;
-  const double side = units * kRadians * s.rho_m;
-  const double most = e.error_m + Rounding(s.range_m);
-  return range_off * range_off + up * up + side * side <= most * most;
+bool Within(const Distances& off, double error_m, double range_m) {
+  const double most = error_m + Rounding(range_m);
+  return off.along * off.along + off.up * off.up + off.side * off.side <= most * most;
 }
+
+/// Places points in the image of a table.
+class Placer {
+ public:
+  Placer(const std::vector<Sighting>& points, const BeamTable& table, const PixelErrors& errors)
+      : points_(points),
+        table_(table),
+        errors_(errors),
+        locator_(table),
+        finder_(table),
+        half_step_(
+            static_cast<std::int32_t>(std::uint64_t{kTurn} * BeamTable::kParts / table.turn / 2) +
+            1) {}
+
+  /// False where it fits no pixel.
+  bool Place(std::uint32_t point, Placed* placed) const {
+    const Sighting& s = points_[point];
+    const BeamLocator::Found found = locator_.Find(s);
+    constexpr double kFarthest = 1e5;
+    if (!(found.along_m >= 1e-3 && found.along_m < kFarthest)) return false;
+    const BeamTable::Beam& beam = table_.beams[found.beam];
+    const std::int32_t azimuth = AzimuthBy(beam, s);
+    const std::uint32_t column = finder_.ColumnOf(found.beam, azimuth);
+    *placed = {found.beam * table_.columns() + column,
+               static_cast<std::uint32_t>(std::lround(1e3 * found.along_m)),
+               Wrapped(azimuth - table_.AzimuthOf(found.beam, column)), point};
+    if (placed->range_mm == 0) return false;
+    Distances off;
+    off.along = errors_.range_m + std::abs(1e-3 * placed->range_mm - found.along_m);
+    off.up = std::abs(found.above_m) + 0.5 * kRadians * s.range_m;
+    double units = std::abs(static_cast<double>(placed->residual)) + 0.5;
+    if (errors_.tangent_um > 0) {
+      if (std::abs(placed->residual) > half_step_) return false;
+      units = 0.5 * WidthAt(placed->range_mm) + 1;
+    }
+    off.side = units * kRadians * s.rho_m + SideError(beam, s.rho_m);
+    return Within(off, errors_.error_m, s.range_m);
+  }
+  /// Whether a point comes back where the first return of its pixel is, at its own range.
+  bool FitsDirection(const Placed& placed, std::int32_t residual, std::uint32_t range_mm) const {
+    const Sighting& s = points_[placed.point];
+    const std::uint32_t row = placed.pixel / table_.columns();
+    const BeamLocator::Found found = locator_.On(row, s);
+    Distances off;
+    off.along = errors_.range_m + std::abs(1e-3 * placed.range_mm - found.along_m);
+    off.up = std::abs(found.above_m) + 0.5 * kRadians * s.range_m;
+    double units = std::abs(static_cast<double>(placed.residual)) + 0.5;
+    if (errors_.tangent_um > 0)
+      units =
+          std::abs(static_cast<double>(placed.residual - residual)) + 0.5 * WidthAt(range_mm) + 1;
+    off.side = units * kRadians * s.rho_m + SideError(table_.beams[row], s.rho_m);
+    return Within(off, errors_.error_m, s.range_m);
+  }
+
+ private:
+  static std::int32_t AzimuthBy(const BeamTable::Beam& beam, const Sighting& s) {
+    if (beam.side_um == 0) return s.azimuth;
+    const auto angle = static_cast<std::int32_t>(std::lround(SideAngle(beam, s.rho_m)));
+    return (s.azimuth - angle) & (kTurn - 1);
+  }
+  /// The class of a residual is that of the range that comes back.
+  double WidthAt(std::uint32_t range_mm) const {
+    const double back_mm = std::max(range_mm - 1e3 * errors_.range_m - 1, 1.0);
+    return ResidualWidth(errors_.tangent_um, static_cast<std::uint32_t>(back_mm));
+  }
+  /// What the range that comes back makes of the angle at which the beam passes the origin.
+  double SideError(const BeamTable::Beam& beam, double rho_m) const {
+    if (beam.side_um == 0) return 0;
+    const double off = errors_.range_m + 1e-3;
+    return 1e-6 * std::abs(beam.side_um) * off / std::max(rho_m - off, 1e-3);
+  }
+
+  const std::vector<Sighting>& points_;
+  const BeamTable& table_;
+  const PixelErrors& errors_;
+  BeamLocator locator_;
+  ColumnFinder finder_;
+  std::int32_t half_step_;
+};
 
 /// The image has the columns that see something, and pixels become its own.
 bool PlaceImage(const BeamTable& table, std::vector<Placed>* placed, PixelList* list) {
@@ -47,9 +126,8 @@ bool PlaceImage(const BeamTable& table, std::vector<Placed>* placed, PixelList* 
   RangeImage& image = list->image;
   image.beams = table.rows();
   image.columns = first <= last ? last - first + 1 : 1;
-  image.first_column = first;
+  image.first_column = first <= last ? first : 0;
   if (image.size() > kMostPixels) return false;
-  for (Placed& p : *placed) p.pixel = p.pixel / turn * image.columns + p.pixel % turn - first;
   image.ranges.assign(image.size(), 0);
   list->points.assign(image.size(), 0);
   list->residuals.assign(image.size(), 0);
@@ -60,27 +138,16 @@ bool PlaceImage(const BeamTable& table, std::vector<Placed>* placed, PixelList* 
 
 bool FillPixels(const std::vector<Sighting>& points, const BeamTable& table,
                 const PixelErrors& errors, double nearest_m, PixelList* list) {
-  *list = {};
-  const std::int32_t half_step =
-      static_cast<std::int32_t>(std::uint64_t{kTurn} * BeamTable::kParts / table.turn / 2) + 1;
+  list->image = {};
+  list->extras.clear();
+  list->rest.clear();
+  list->returns = 0;
+  const Placer placer(points, table, errors);
   std::vector<Placed> placed;
+  placed.reserve(points.size());
   for (std::uint32_t i = 0; i < points.size(); ++i) {
-    const Sighting& s = points[i];
-    constexpr double kFarthest = 1e5;
-    if (s.range_m < std::max(nearest_m, 1e-3) || s.range_m > kFarthest) {
-      list->rest.push_back(i);
-      continue;
-    }
-    const std::uint32_t beam = table.BeamOf(s.elevation);
-    const std::uint32_t column = table.ColumnOf(beam, s.azimuth);
-    const std::int32_t residual = Wrapped(s.azimuth - table.AzimuthOf(beam, column));
-    const Placed p = {beam * table.columns() + column,
-                      static_cast<std::uint32_t>(std::lround(1e3 * s.range_m)), residual, i};
-    const double off = s.elevation - table.beams[beam].elevation;
-    const bool fits = errors.tangent_um > 0
-                          ? std::abs(residual) <= half_step && Fits(s, p, off, errors, true)
-                          : Fits(s, p, off, errors, false);
-    if (fits && p.range_mm > 0) {
+    Placed p{};
+    if (points[i].range_m >= nearest_m && placer.Place(i, &p)) {
       placed.push_back(p);
     } else {
       list->rest.push_back(i);
@@ -88,26 +155,28 @@ bool FillPixels(const std::vector<Sighting>& points, const BeamTable& table,
   }
   if (!PlaceImage(table, &placed, list)) return false;
   RangeImage& image = list->image;
-  std::stable_sort(placed.begin(), placed.end(),
-                   [](const Placed& a, const Placed& b) { return a.pixel < b.pixel; });
+  std::vector<Placed> further;
+  const auto pixel_of = [&](const Placed& p) {
+    return p.pixel / table.columns() * image.columns + p.pixel % table.columns() -
+           image.first_column;
+  };
   for (const Placed& p : placed) {
-    if (image.ranges[p.pixel] == 0) {
-      image.ranges[p.pixel] = p.range_mm;
-      list->residuals[p.pixel] = p.residual;
-      list->points[p.pixel] = p.point;
-      ++list->returns;
+    const std::uint32_t pixel = pixel_of(p);
+    if (image.ranges[pixel] != 0) {
+      further.push_back(p);
       continue;
     }
-    // It comes back in the direction of the pixel's first return.
-    const Sighting& s = points[p.point];
-    Placed there = p;
-    const std::int32_t width = ResidualWidth(errors.tangent_um, image.ranges[p.pixel]);
-    there.residual = errors.tangent_um > 0
-                         ? std::abs(p.residual - list->residuals[p.pixel]) + (width + 1) / 2 + 1
-                         : p.residual;
-    const double off = s.elevation - table.beams[p.pixel / image.columns].elevation;
-    if (Fits(s, there, off, errors, false)) {
-      list->extras.push_back({p.pixel, p.range_mm, p.point});
+    image.ranges[pixel] = p.range_mm;
+    list->residuals[pixel] = p.residual;
+    list->points[pixel] = p.point;
+    ++list->returns;
+  }
+  std::stable_sort(further.begin(), further.end(),
+                   [](const Placed& a, const Placed& b) { return a.pixel < b.pixel; });
+  for (const Placed& p : further) {
+    const std::uint32_t pixel = pixel_of(p);
+    if (placer.FitsDirection(p, list->residuals[pixel], image.ranges[pixel])) {
+      list->extras.push_back({pixel, p.range_mm, p.point});
     } else {
       list->rest.push_back(p.point);
     }

@@ -79,6 +79,30 @@ struct ResidualHistory {
 }  // namespace
 
 template <class Coder>
+bool CodePlaces(BeamTable* table, Coder* coder) {
+  const auto model = std::make_unique<NumberModel<3>>();
+  const auto usual =
+      static_cast<std::int32_t>(std::uint64_t{table->grains} * BeamTable::kParts / table->turn);
+  constexpr std::uint32_t kLongest = 31;
+  std::int64_t place = -usual;
+  std::array<std::uint32_t, 2> last = {8, 8};
+  std::uint32_t run = 0;  // of equal numbers
+  for (std::uint32_t& coded : table->places) {
+    const std::array<std::uint32_t, 3> contexts = {last[0], last[0] * 16 + last[1],
+                                                   run * 16 + last[0]};
+    const auto number =
+        model->Code(static_cast<std::int32_t>(coded - (place + usual)), contexts, coder);
+    place += usual + number;
+    if (coder->overran() || number < -usual || place < 0 || place >= table->grains) return false;
+    coded = static_cast<std::uint32_t>(place);
+    const auto near = static_cast<std::uint32_t>(std::clamp(number, -7, 7) + 8);
+    run = near == last[0] ? std::min(run + 1, kLongest) : 0;
+    last = {near, last[0]};
+  }
+  return true;
+}
+
+template <class Coder>
 bool CodeResiduals(const RangeImage& image, const ResidualSettings& settings,
                    std::vector<std::int32_t>* residuals, Coder* coder) {
   const auto model = std::make_unique<NumberModel<4>>();
@@ -91,7 +115,7 @@ bool CodeResiduals(const RangeImage& image, const ResidualSettings& settings,
       const std::int32_t width = ResidualWidth(settings.tangent_um, image.ranges[pixel]);
       const bool has_column = of_column[column] != kUnknownResidual;
       const std::int32_t above = has_column ? of_column[column] : row.last;
-      const std::array<std::int32_t, kResidualGuesses> guesses = {above, row.last, row.before};
+      const std::array<std::int32_t, kResidualGuesses> guesses = {0, above, row.last, row.before};
       const auto chosen = static_cast<std::size_t>(settings.guess);
       const std::int32_t guess = guesses[chosen];
       const auto away = [&](std::size_t other) {
@@ -211,6 +235,8 @@ bool CodeExtras(const std::vector<std::int32_t>& bins, std::uint32_t columns, un
 
 using mixing::BinaryDecoder;
 using mixing::BinaryEncoder;
+template bool CodePlaces(BeamTable*, BinaryEncoder*);
+template bool CodePlaces(BeamTable*, BinaryDecoder*);
 template bool CodeResiduals(const RangeImage&, const ResidualSettings&, std::vector<std::int32_t>*,
                             BinaryEncoder*);
 template bool CodeResiduals(const RangeImage&, const ResidualSettings&, std::vector<std::int32_t>*,

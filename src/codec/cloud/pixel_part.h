@@ -10,14 +10,18 @@
 namespace lidar::codec::cloud {
 
 /// What the residual of a pixel is first compared with.
-enum class ResidualGuess : std::uint8_t { kColumn = 0, kLast = 1, kBeforeLast = 2 };
-constexpr unsigned kResidualGuesses = 3;
+enum class ResidualGuess : std::uint8_t { kNone = 0, kColumn = 1, kLast = 2, kBeforeLast = 3 };
+constexpr unsigned kResidualGuesses = 4;
 
 /// What comes back of a pixel's azimuth.
 struct ResidualSettings {
   std::uint32_t tangent_um = 0;
-  ResidualGuess guess = ResidualGuess::kColumn;
+  ResidualGuess guess = ResidualGuess::kNone;
 };
+
+/// Codes the places of a table's columns; false for a damaged stream.
+template <class Coder>
+bool CodePlaces(BeamTable* table, Coder* coder);
 
 /// Codes the residuals of all pixels that have a range in `image`, which are the ranges that come
 /// back; `residuals` become those that come back. False for a damaged stream.

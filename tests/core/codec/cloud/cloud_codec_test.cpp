@@ -9,6 +9,7 @@
 
 #include "src/cloud/cloud_files.h"
 #include "src/cloud/nearest_point.h"
+#include "src/codec/cloud/beam_columns.h"
 #include "src/codec/cloud/cloud_decoder.h"
 #include "src/codec/cloud/cloud_encoder.h"
 
@@ -169,6 +170,68 @@ TEST(BeamTable, FindsTheBeamsAndColumnsOfASensor) {
     EXPECT_EQ(again->beams[i].offset, table->beams[i].offset);
   }
 }
+
+/// How a sensor differs from one whose beams meet, and fire at even steps.
+struct UnevenSensor {
+  const char* name;
+  double height_m = 0;      // of the beams above the origin, the upper half at twice as much
+  double side_m = 0;        // how far beams pass the origin, left and right in turn
+  double rounding_deg = 0;  // of azimuths
+  double jitter_deg = 0;    // of all beams of a firing
+  double swing_deg = 0;     // of every fourth beam's third firings
+  int ahead = 0;            // firings that the beams are ahead, in turn
+};
+std::ostream& operator<<(std::ostream& out, const UnevenSensor& s) { return out << s.name; }
+
+/// What it sees of a room from 16 beams and 900 firings, 0.39 degrees apart.
+PlainPoints UnevenScan(const UnevenSensor& sensor) {
+  std::mt19937 random(3);
+  PlainPoints points;
+  for (int firing = 0; firing < 900; ++firing) {
+    const double jitter =
+        1e-3 * (static_cast<double>(random() % 2'001) - 1'000) * sensor.jitter_deg;
+    const double encoder = std::fmod(0.39 * firing + jitter, 360);
+    if (encoder < 0 || 0.39 * firing >= 360) continue;
+    for (int beam = 0; beam < 16; ++beam) {
+      const double swing = beam % 4 == 3 && firing % 3 == 2 ? sensor.swing_deg : 0;
+      double degrees = encoder + swing;
+      if (sensor.rounding_deg > 0)
+        degrees = sensor.rounding_deg * std::round(degrees / sensor.rounding_deg);
+      const double azimuth =
+          (degrees + 0.39 * (beam % 3 * sensor.ahead) + 0.013 * beam) * M_PI / 180;
+      const double elevation = (2.0 * beam - 15) * M_PI / 180;
+      const double wall =
+          std::min(20 / std::abs(std::cos(azimuth)), 13 / std::abs(std::sin(azimuth)));
+      const double rho = wall + 0.3 * (firing / 40 % 3);
+      const double turned = azimuth + (beam % 2 == 0 ? 1 : -1) * sensor.side_m / rho;
+      const double height = sensor.height_m * (beam < 8 ? 1 : 2);
+      points.push_back({static_cast<float>(rho * std::cos(turned)),
+                        static_cast<float>(rho * std::sin(turned)),
+                        static_cast<float>(height + rho * std::tan(elevation)),
+                        static_cast<float>(points.size() % 256)});
+    }
+  }
+  return points;
+}
+
+class UnevenClouds : public ::testing::TestWithParam<UnevenSensor> {};
+TEST_P(UnevenClouds, ComeBackFromTheirBeamsInFewBits) {
+  PlainPoints points = UnevenScan(GetParam());
+  std::shuffle(points.begin(), points.end(), std::mt19937(5));
+  for (const unsigned effort : {1U, 3U}) {
+    const Coded coded = RoundTrip(points, {0.02, 0, 0}, effort);
+    EXPECT_EQ(coded.slice.bytes[0], 0x11);  // it has beams
+    EXPECT_EQ(coded.cloud.size(), points.size());
+    EXPECT_LE(LargestDistance(points, coded.cloud), 0.02 + 1e-5);
+    EXPECT_LE(BitsPerPoint(coded), 2.3);
+  }
+}
+INSTANTIATE_TEST_SUITE_P(All, UnevenClouds,
+                         ::testing::Values(UnevenSensor{"Heights", 0.1, 0, 0, 0, 0, 0},
+                                           UnevenSensor{"Sides", 0.1, 0.026, 0.2, 0, 0, 7},
+                                           UnevenSensor{"Jitter", 0, 0, 0.01, 0.03, 0, 5},
+                                           UnevenSensor{"Swings", 0, 0, 0.01, 0.03, 0.15, 0}),
+                         [](const auto& sensor) { return std::string(sensor.param.name); });
 
 TEST(BeamTable, FindsNoneInACloudWithoutBeams) {
   std::mt19937 random(4);

@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "src/codec/cloud/beam_columns.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "src/codec/cloud/beam_lines.h"
+#include "src/codec/cloud/column_places.h"
+#include "src/codec/cloud/column_step.h"
+
+namespace lidar::codec::cloud {
+namespace {
+
+constexpr double kCovered = 0.6;  // part of all points
+
+std::vector<BeamAzimuths> AzimuthsOf(const std::vector<Sighting>& points, const FoundBeams& found) {
+  std::vector<BeamAzimuths> all;
+  for (const FoundBeam& beam : found.beams) {
+    BeamAzimuths& azimuths = all.emplace_back();
+    for (const std::uint32_t i : beam.points)
+      azimuths.push_back({points[i].azimuth, static_cast<float>(points[i].rho_m)});
+    std::sort(azimuths.begin(), azimuths.end(),
+              [](const BeamAzimuth& a, const BeamAzimuth& b) { return a.azimuth < b.azimuth; });
+  }
+  return all;
+}
+
+/// Takes what the beam adds from its azimuths.
+void StraightenBeam(const BeamTable::Beam& beam, BeamAzimuths* azimuths) {
+  for (BeamAzimuth& a : *azimuths) {
+    const double angle = SideAngle(beam, static_cast<double>(a.rho_m));
+    a.azimuth = (a.azimuth - static_cast<std::int32_t>(std::lround(angle))) & (kTurn - 1);
+  }
+}
+
+std::optional<BeamTable> FindColumns(const FoundBeams& found, bool passing,
+                                     std::vector<BeamAzimuths> azimuths) {
+  const std::int32_t usual = UsualStep(azimuths);
+  if (usual == 0) return std::nullopt;
+  double step = MeanStep(azimuths, usual);
+  if (step <= 0) return std::nullopt;
+  BeamTable table;
+  table.turn = TurnOf(step);
+  const double quantum = passing ? QuantumOf(azimuths, usual, step) : step;
+  for (std::size_t i = 0; i < found.beams.size(); ++i) {
+    const BeamLine& line = found.beams[i].line;
+    BeamTable::Beam beam;
+    beam.elevation = static_cast<std::int32_t>(std::lround(std::atan(line.tangent) / kRadians));
+    if (passing) {
+      beam.height_um = static_cast<std::int32_t>(std::lround(1e6 * line.height_m));
+      beam.side_um = SideOf(azimuths[i], quantum).side_um;
+      StraightenBeam(beam, &azimuths[i]);
+    }
+    table.beams.push_back(beam);
+  }
+  const bool is_exact = quantum == step;
+  if (!is_exact && FindRoundedPlaces(azimuths, quantum, &table)) {
+    Recentre(azimuths, &table);
+    return table;
+  }
+  table.turn = TurnOf(AlignedStep(azimuths, step));
+  if (table.columns() == 0 || table.columns() > BeamTable::kMostColumns) return std::nullopt;
+  step = static_cast<double>(kTurn) * BeamTable::kParts / table.turn;
+  for (std::size_t i = 0; i < found.beams.size(); ++i) {
+    const double phase = is_exact ? PhaseAt(azimuths[i], step) : MeanPhase(azimuths[i], step);
+    table.beams[i].offset = static_cast<std::int32_t>(std::lround(phase * step)) & (kTurn - 1);
+  }
+  FindPlaces(azimuths, step, &table);
+  FindSwings(azimuths, &table);
+  return table;
+}
+
+}  // namespace
+
+std::optional<BeamTable> FindBeams(const std::vector<Sighting>& points) {
+  const auto good = [&](const FoundBeams& found, double part) {
+    return !found.beams.empty() && found.beams.size() <= BeamTable::kMostBeams &&
+           static_cast<double>(found.points) >= part * static_cast<double>(points.size());
+  };
+  constexpr double kClearly = 0.9;
+  const FoundBeams meeting = FindMeetingBeams(points);
+  if (good(meeting, kClearly)) return FindColumns(meeting, false, AzimuthsOf(points, meeting));
+  const FoundBeams passing = FindPassingBeams(points);
+  if (good(passing, kCovered) && passing.points > meeting.points)
+    return FindColumns(passing, true, AzimuthsOf(points, passing));
+  if (!good(meeting, kCovered)) return std::nullopt;
+  return FindColumns(meeting, false, AzimuthsOf(points, meeting));
+}
+
+}  // namespace lidar::codec::cloud

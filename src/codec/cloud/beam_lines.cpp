@@ -1,0 +1,228 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "src/codec/cloud/beam_lines.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace lidar::codec::cloud {
+namespace {
+
+/// Elevations of one beam, in units: those of neighbours are further apart.
+constexpr double kGap = 60;         // 0.005 degrees
+constexpr double kWidest = 350;     // 0.03 degrees
+constexpr std::size_t kFewest = 8;  // points
+
+struct Seen {
+  double elevation;
+  std::uint32_t point;
+};
+
+// Lines are first looked for on a grid of heights and tangents.
+constexpr double kMostHeight = 0.5;  // [m]
+constexpr double kHeightStep = 0.01;
+constexpr double kMostTangent = 1.5;
+constexpr double kTangentStep = 0.0004;
+constexpr auto kTangents = static_cast<std::size_t>(2 * kMostTangent / kTangentStep);
+constexpr std::size_t kWindow = 125;  // tangents that have one height
+constexpr std::size_t kWindows = kTangents / kWindow;
+constexpr double kNearest = 1;  // [m]
+
+using Histogram = std::vector<std::uint32_t>;
+
+/// Where a line of this height through the point is in a histogram; kTangents: nowhere.
+std::size_t ClassOf(const Sighting& s, double height_m, double classes_per_tangent) {
+  const double tangent = (s.z_m - height_m) / s.rho_m;
+  if (std::abs(tangent) >= kMostTangent) return SIZE_MAX;
+  return static_cast<std::size_t>((tangent + kMostTangent) * classes_per_tangent);
+}
+
+/// The height at which the tangents of each window are the sharpest.
+std::vector<double> SharpestHeights(const std::vector<Sighting>& points) {
+  std::vector<double> heights(kWindows, 0);
+  std::vector<double> best(kWindows, 0);
+  constexpr std::size_t kSample = 40'000;
+  const std::size_t stride = points.size() / kSample + 1;
+  for (double height = -kMostHeight; height <= kMostHeight; height += kHeightStep) {
+    Histogram histogram(kTangents + 1, 0);
+    for (std::size_t i = 0; i < points.size(); i += stride) {
+      if (points[i].rho_m < kNearest) continue;
+      const std::size_t at = ClassOf(points[i], height, 1 / kTangentStep);
+      if (at < kTangents) ++histogram[at];
+    }
+    for (std::size_t w = 0; w < kWindows; ++w) {
+      double sharpness = 0;
+      for (std::size_t i = w * kWindow; i < (w + 1) * kWindow; ++i)
+        sharpness += static_cast<double>(histogram[i]) * static_cast<double>(histogram[i]);
+      if (sharpness <= best[w]) continue;
+      best[w] = sharpness;
+      heights[w] = height;
+    }
+  }
+  return heights;
+}
+
+/// Peaks of the tangents, each window by its height.
+std::vector<BeamLine> FirstLines(const std::vector<Sighting>& points) {
+  constexpr std::size_t kFiner = 2;
+  constexpr double kPerTangent = kFiner / kTangentStep;
+  constexpr std::size_t kReach = 7;  // 0.0014, 0.08 degrees
+  const std::vector<double> heights = SharpestHeights(points);
+  std::vector<double> histogram(kFiner * kTangents + 1, 0);
+  for (const Sighting& s : points) {
+    if (s.rho_m < kNearest) continue;
+    std::size_t last = SIZE_MAX;
+    for (std::size_t w = 0; w < kWindows; ++w) {
+      if (w > 0 && heights[w] == heights[w - 1]) continue;
+      const std::size_t at = ClassOf(s, heights[w], kPerTangent);
+      if (at >= kFiner * kTangents || at == last) continue;
+      const std::size_t window = std::min(at / (kFiner * kWindow), kWindows - 1);
+      if (heights[window] != heights[w]) continue;
+      last = at;
+      histogram[at] += 1;
+    }
+  }
+  std::vector<double> smooth(histogram.size(), 0);
+  for (std::size_t i = 2; i + 2 < histogram.size(); ++i)
+    smooth[i] = histogram[i - 2] + 2 * histogram[i - 1] + 3 * histogram[i] + 2 * histogram[i + 1] +
+                histogram[i + 2];
+  std::vector<BeamLine> lines;
+  for (std::size_t i = smooth.size() - kReach; i-- > kReach;) {
+    if (smooth[i] < 9 * 4) continue;
+    const auto around = smooth.begin() + static_cast<std::ptrdiff_t>(i);
+    if (smooth[i] < *std::max_element(around - kReach, around + kReach + 1)) continue;
+    const double tangent = (static_cast<double>(i) + 0.5) / kPerTangent - kMostTangent;
+    if (!lines.empty() && lines.back().tangent - tangent < kReach / kPerTangent) continue;
+    lines.push_back({tangent, heights[std::min(i / (kFiner * kWindow), kWindows - 1)]});
+  }
+  return lines;
+}
+
+/// Gives each point to the line that is nearest, if it is as near as `reach_m`.
+void Assign(const std::vector<Sighting>& points, double reach_m, FoundBeams* found) {
+  auto& beams = found->beams;
+  for (FoundBeam& beam : beams) beam.points.clear();
+  found->points = 0;
+  if (beams.empty()) return;
+  const double height = beams[beams.size() / 2].line.height_m;
+  for (std::uint32_t i = 0; i < points.size(); ++i) {
+    const Sighting& s = points[i];
+    const double tangent = (s.z_m - height) / std::max(s.rho_m, 1e-3);
+    const auto below =
+        std::lower_bound(beams.begin(), beams.end(), tangent,
+                         [](const FoundBeam& b, double t) { return b.line.tangent > t; });
+    // Heights differ, so lines may be nearer than their tangents say.
+    constexpr std::ptrdiff_t kAround = 4;
+    const std::ptrdiff_t at = below - beams.begin();
+    const auto size = static_cast<std::ptrdiff_t>(beams.size());
+    FoundBeam* nearest = nullptr;
+    double least = reach_m;
+    for (std::ptrdiff_t k = std::max<std::ptrdiff_t>(at - kAround, 0);
+         k < std::min(at + kAround, size); ++k) {
+      FoundBeam& beam = beams[static_cast<std::size_t>(k)];
+      const double off = std::abs(beam.line.Above(s));
+      if (off >= least) continue;
+      least = off;
+      nearest = &beam;
+    }
+    if (nearest == nullptr) continue;
+    nearest->points.push_back(i);
+    ++found->points;
+  }
+}
+
+/// The line of least squares; its height stays where the points do not say it.
+void Refit(const std::vector<Sighting>& points, FoundBeam* beam) {
+  constexpr double kPrior = 0.01;  // points' worth of a square metre
+  const auto n = static_cast<double>(beam->points.size());
+  double rho = 0;
+  double z = 0;
+  for (const std::uint32_t i : beam->points) {
+    rho += points[i].rho_m / n;
+    z += points[i].z_m / n;
+  }
+  double square = 0;
+  double product = 0;
+  for (const std::uint32_t i : beam->points) {
+    const double away = points[i].rho_m - rho;
+    square += away * away;
+    product += away * (points[i].z_m - z);
+  }
+  // The prior is the tangent from the old height to the middle of the points.
+  const double old = (z - beam->line.height_m) / std::max(rho, 1e-3);
+  const double weight = kPrior * n;
+  beam->line.tangent = (product + weight * old) / (square + weight);
+  beam->line.height_m = z - beam->line.tangent * rho;
+}
+
+std::vector<Sighting> Others(const std::vector<Sighting>& points, const FoundBeams& found) {
+  std::vector<bool> is_taken(points.size(), false);
+  for (const FoundBeam& beam : found.beams)
+    for (const std::uint32_t i : beam.points) is_taken[i] = true;
+  std::vector<Sighting> others;
+  for (std::size_t i = 0; i < points.size(); ++i)
+    if (!is_taken[i]) others.push_back(points[i]);
+  return others;
+}
+
+/// Drops beams of fewer points, and sorts the others.
+void DropWeakBeams(std::size_t fewest, FoundBeams* found) {
+  auto& beams = found->beams;
+  beams.erase(std::remove_if(beams.begin(), beams.end(),
+                             [&](const FoundBeam& b) {
+                               return b.points.size() < fewest ||
+                                      std::abs(b.line.height_m) > 2 * kMostHeight;
+                             }),
+              beams.end());
+  std::sort(beams.begin(), beams.end(),
+            [](const FoundBeam& a, const FoundBeam& b) { return a.line.tangent > b.line.tangent; });
+}
+
+}  // namespace
+
+FoundBeams FindMeetingBeams(const std::vector<Sighting>& points) {
+  std::vector<Seen> seen;
+  seen.reserve(points.size());
+  for (std::uint32_t i = 0; i < points.size(); ++i)
+    seen.push_back({std::atan2(points[i].z_m, points[i].rho_m) / kRadians, i});
+  std::sort(seen.begin(), seen.end(),
+            [](const Seen& a, const Seen& b) { return a.elevation > b.elevation; });
+  FoundBeams found;
+  for (std::size_t first = 0; first < seen.size();) {
+    std::size_t end = first + 1;
+    while (end < seen.size() && seen[end - 1].elevation - seen[end].elevation < kGap) ++end;
+    const bool narrow = seen[first].elevation - seen[end - 1].elevation < kWidest;
+    if (narrow && end - first >= kFewest) {
+      FoundBeam beam;
+      beam.line.tangent = std::tan(seen[first + (end - first) / 2].elevation * kRadians);
+      for (std::size_t i = first; i < end; ++i) beam.points.push_back(seen[i].point);
+      found.points += beam.points.size();
+      found.beams.push_back(std::move(beam));
+    }
+    first = end;
+  }
+  return found;
+}
+
+FoundBeams FindPassingBeams(const std::vector<Sighting>& points) {
+  FoundBeams found;
+  for (const BeamLine& line : FirstLines(points)) found.beams.push_back({line, {}});
+  // Lines between two heights are found once the others are gone.
+  for (const double reach_m : {0.04, 0.02}) {
+    Assign(points, reach_m, &found);
+    for (FoundBeam& beam : found.beams)
+      if (beam.points.size() >= kFewest) Refit(points, &beam);
+  }
+  Assign(points, 0.02, &found);
+  for (const BeamLine& line : FirstLines(Others(points, found))) found.beams.push_back({line, {}});
+  DropWeakBeams(0, &found);
+  for (const double reach_m : {0.04, 0.03, 0.02, 0.012, 0.008, 0.005, 0.004, 0.003}) {
+    Assign(points, reach_m, &found);
+    DropWeakBeams(kFewest, &found);
+    for (FoundBeam& beam : found.beams) Refit(points, &beam);
+  }
+  Assign(points, 0.003, &found);
+  DropWeakBeams(kFewest, &found);
+  return found;
+}
+
+}  // namespace lidar::codec::cloud

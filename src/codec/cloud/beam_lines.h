@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Finds the beams of a cloud: points that lie on few lines in the plane of rho and z.
+#pragma once
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "src/codec/cloud/beam_table.h"
+
+namespace lidar::codec::cloud {
+
+/// z = height_m + tangent rho
+struct BeamLine {
+  double tangent = 0;
+  double height_m = 0;
+
+  /// How far a point lies above the line.
+  double Above(const Sighting& s) const {
+    return (s.z_m - height_m - tangent * s.rho_m) / std::sqrt(1 + tangent * tangent);
+  }
+};
+
+struct FoundBeam {
+  BeamLine line;
+  std::vector<std::uint32_t> points;  // indices
+};
+
+struct FoundBeams {
+  std::vector<FoundBeam> beams;  // top to bottom
+  std::size_t points = 0;        // of all beams
+};
+
+/// Beams that meet in the origin: their elevations are exact.
+FoundBeams FindMeetingBeams(const std::vector<Sighting>& points);
+/// Beams that pass the origin at up to 0.5 m.
+FoundBeams FindPassingBeams(const std::vector<Sighting>& points);
+
+}  // namespace lidar::codec::cloud

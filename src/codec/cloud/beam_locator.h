@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Finds the beam that sees a point.
+#pragma once
+#include <cstdint>
+#include <vector>
+
+#include "src/codec/cloud/beam_table.h"
+
+namespace lidar::codec::cloud {
+
+class BeamLocator {
+ public:
+  struct Found {
+    std::uint32_t beam = 0;
+    double along_m = 0;  // of the beam
+    double above_m = 0;  // how far the point is above it
+  };
+
+  explicit BeamLocator(const BeamTable& table);
+
+  /// The beam that is nearest.
+  Found Find(const Sighting& s) const {
+    const double tangent = (s.z_m - middle_height_m_) / std::max(s.rho_m, 1e-6);
+    const std::uint32_t guess = buckets_[BucketOf(tangent)];
+    const std::uint32_t first = guess < around_ ? 0 : guess - around_;
+    const std::uint32_t end =
+        std::min(guess + around_ + 2, static_cast<std::uint32_t>(lines_.size()));
+    Found best = On(first, s);
+    for (std::uint32_t i = first + 1; i < end; ++i) {
+      const Found found = On(i, s);
+      if (std::abs(found.above_m) < std::abs(best.above_m)) best = found;
+    }
+    return best;
+  }
+  Found On(std::uint32_t beam, const Sighting& s) const {
+    const Line& line = lines_[beam];
+    const double z = s.z_m - line.height_m;
+    return {beam, s.rho_m * line.cosine + z * line.sine, z * line.cosine - s.rho_m * line.sine};
+  }
+
+ private:
+  struct Line {
+    double cosine;
+    double sine;
+    double height_m;
+  };
+  static constexpr std::uint32_t kBuckets = 8'192;
+
+  /// From 1 to -1, for all tangents.
+  static double Squeezed(double tangent) { return tangent / (1 + std::abs(tangent)); }
+  static std::uint32_t BucketOf(double tangent) {
+    return static_cast<std::uint32_t>((1 - Squeezed(tangent)) * (0.4999 * kBuckets));
+  }
+
+  std::vector<Line> lines_;
+  double middle_height_m_ = 0;
+  std::uint32_t around_ = 0;            // beams that may be nearer than the one by the tangent
+  std::vector<std::uint16_t> buckets_;  // the last beam above each
+};
+
+}  // namespace lidar::codec::cloud
