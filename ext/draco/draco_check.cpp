@@ -11,15 +11,37 @@ constexpr std::uint8_t kMajor = 2;
 constexpr std::uint8_t kMinor = 3;
 constexpr std::uint8_t kPointCloud = 0;
 constexpr std::uint8_t kKdTree = 1;
-constexpr std::uint8_t kMaxAttributes = 8;
+constexpr std::uint16_t kMetadata = 0x8000;  // flag
+constexpr std::uint8_t kMaxEntries = 16;     // of metadata
 constexpr std::uint8_t kMaxComponents = 4;
 constexpr std::uint8_t kMaxDataType = 11;
 constexpr std::uint8_t kMaxKdLevel = 6;
 constexpr std::uint32_t kMaxBitLength = 32;
 
-bool CheckAttributes(ByteReader* reader) {
+/// Numbers of metadata are variable-length; those that are plausible have one byte.
+std::optional<std::uint8_t> Short(ByteReader* reader) {
+  const std::uint8_t number = reader->U8();
+  if (number >= 0x80) return std::nullopt;
+  return number;
+}
+
+/// libdraco follows metadata within metadata as deep as they go.
+bool SkipMetadata(ByteReader* reader) {
+  const auto of_attributes = Short(reader);
+  const auto entries = Short(reader);
+  if (of_attributes != 0 || !entries || *entries > kMaxEntries) return false;
+  for (std::uint8_t i = 0; i < *entries; ++i) {
+    reader->Skip(reader->U8());  // name
+    const auto size = Short(reader);
+    if (!size) return false;
+    reader->Skip(*size);
+  }
+  return Short(reader) == 0;  // further metadata
+}
+
+bool CheckAttributes(ByteReader* reader, std::uint32_t max_attributes) {
   const std::uint8_t count = reader->U8();
-  if (count == 0 || count > kMaxAttributes) return false;
+  if (count == 0 || count > max_attributes) return false;
   for (std::uint8_t i = 0; i < count; ++i) {
     reader->Skip(1);  // what the attribute means
     const std::uint8_t data_type = reader->U8();
@@ -44,7 +66,7 @@ bool CheckKdTree(ByteReader* reader, std::uint32_t points) {
 
 }  // namespace
 
-std::optional<DracoSummary> CheckDraco(ByteView stream, std::uint32_t max_points) {
+std::optional<DracoSummary> CheckDraco(ByteView stream, const DracoLimits& limits) {
   ByteReader reader(stream);
   const ByteView magic = reader.Bytes(sizeof kMagic);
   if (!reader.ok() || std::memcmp(magic.data, kMagic, sizeof kMagic) != 0) return std::nullopt;
@@ -53,15 +75,16 @@ std::optional<DracoSummary> CheckDraco(ByteView stream, std::uint32_t max_points
   const std::uint8_t type = reader.U8();
   const std::uint8_t method = reader.U8();
   const std::uint16_t flags = reader.Le16();
+  const bool has_metadata = limits.metadata && flags == kMetadata;
+  if (has_metadata ? !SkipMetadata(&reader) : flags != 0) return std::nullopt;
   DracoSummary summary;
   summary.points = reader.Le32();
   summary.is_kd_tree = method == kKdTree;
   const std::uint8_t decoders = reader.U8();
-  // Flags would announce metadata, which we never write.
-  if (major != kMajor || minor != kMinor || type != kPointCloud || method > kKdTree || flags != 0 ||
-      summary.points == 0 || summary.points > max_points || decoders != 1 ||
-      !CheckAttributes(&reader) || (summary.is_kd_tree && !CheckKdTree(&reader, summary.points)) ||
-      !reader.ok()) {
+  if (major != kMajor || minor != kMinor || type != kPointCloud || method > kKdTree ||
+      summary.points == 0 || summary.points > limits.max_points || decoders != 1 ||
+      !CheckAttributes(&reader, limits.max_attributes) ||
+      (summary.is_kd_tree && !CheckKdTree(&reader, summary.points)) || !reader.ok()) {
     return std::nullopt;
   }
   return summary;

@@ -13,8 +13,14 @@ struct DracoSummary {
   bool is_kd_tree = false;
 };
 
+struct DracoLimits {
+  std::uint32_t max_points = 0;
+  std::uint32_t max_attributes = 8;
+  bool metadata = false;  // of the cloud: a few entries, none within another
+};
+
 /// What the stream says of itself, where it is a point cloud that libdraco decodes in bounded time
 /// and memory; none otherwise. Passing does not mean that the stream is undamaged.
-std::optional<DracoSummary> CheckDraco(ByteView stream, std::uint32_t max_points);
+std::optional<DracoSummary> CheckDraco(ByteView stream, const DracoLimits& limits);
 
 }  // namespace lidar::draco

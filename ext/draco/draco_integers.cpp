@@ -65,7 +65,7 @@ bool DracoIntegers::Encode(const codec::IntegerLists& lists, bool delta,
 
 bool DracoIntegers::Decode(ByteView stream, std::uint32_t count, bool has_levels,
                            codec::IntegerLists* lists) const {
-  const auto summary = CheckDraco(stream, count);
+  const auto summary = CheckDraco(stream, {count});
   if (!summary || summary->points != count || summary->is_kd_tree) return false;
   try {
     ::draco::DecoderBuffer buffer;

@@ -182,7 +182,7 @@ static gboolean Decode(GstLidarEncoder* base, const guint8* data, gsize size, GA
   coder.decoder->Write(reinterpret_cast<guint8*>(points->data));
   *order = GST_LIDAR_ORDER_PIXELS;
   if (coder.encoder->geometry() == Geometry::kRange) return TRUE;
-  const auto summary = lidar::draco::CheckDraco({data, size}, coder.max_points);
+  const auto summary = lidar::draco::CheckDraco({data, size}, {coder.max_points});
   *order = summary && !summary->is_kd_tree ? GST_LIDAR_ORDER_KEPT : GST_LIDAR_ORDER_ANY;
   return TRUE;
 }

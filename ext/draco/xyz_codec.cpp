@@ -184,7 +184,7 @@ bool EncodeXyz(const XyzCloud& cloud, const XyzSettings& settings, std::vector<s
 
 bool DecodeXyz(ByteView stream, std::uint32_t max_points, XyzCloud* cloud) {
   cloud->Clear();
-  const auto summary = CheckDraco(stream, max_points);
+  const auto summary = CheckDraco(stream, {max_points});
   if (!summary) return false;
   try {
     ::draco::DecoderBuffer buffer;

@@ -58,7 +58,7 @@ cdr::Guid GuidOf(dds_entity_t entity) {
 /// messages that are no clouds may wait. Thousands of transforms are smaller than this.
 std::size_t MaxSizeOf(cdr::RosType type) {
   constexpr std::size_t kMaxSmall = std::size_t{1} << 20;
-  return type == cdr::RosType::kPointCloud2 ? Domain::kMaxMessage : kMaxSmall;
+  return cdr::IsCloud(type) ? Domain::kMaxMessage : kMaxSmall;
 }
 
 struct TopicName {

@@ -39,11 +39,22 @@ GType SinkTypeType() {
   static const GEnumValue kValues[] = {
       {kAutoType, "PointCloud2, Imu or Odometry, as the caps say", "auto"},
       {Int(RosType::kPointCloud2), "sensor_msgs/msg/PointCloud2", "pointcloud2"},
+      {Int(RosType::kCompressedCloud), "point_cloud_interfaces/msg/CompressedPointCloud2",
+       "compressed"},
       {Int(RosType::kImu), "sensor_msgs/msg/Imu", "imu"},
       {Int(RosType::kOdometry), "nav_msgs/msg/Odometry", "odometry"},
       {Int(RosType::kTransforms), "tf2_msgs/msg/TFMessage", "tf"},
       {0, nullptr, nullptr}};
   static const GType type = RegisterEnum("GstLidarRos2SinkType", kValues);
+  return type;
+}
+
+GType CompressionType() {
+  static const GEnumValue kValues[] = {{Int(CloudCompression::kDraco), "Draco", "draco"},
+                                       {Int(CloudCompression::kZlib), "zlib", "zlib"},
+                                       {Int(CloudCompression::kZstd), "Zstandard", "zstd"},
+                                       {0, nullptr, nullptr}};
+  static const GType type = RegisterEnum("GstLidarRos2Compression", kValues);
   return type;
 }
 
@@ -57,6 +68,7 @@ RosSettings SinkDefaults() {
 struct Ros2SinkSettings {
   RosSettings ros = SinkDefaults();
   gint type = kAutoType;
+  CloudCompression compression = CloudCompression::kZstd;
   MessageSettings messages;
 };
 
@@ -120,10 +132,13 @@ static StructurePtr Stats(GObject* object) {
   return ToStructure("application/x-ros2sink-stats", kStats, counters);
 }
 
-static const std::array<Property<Ros2SinkSettings>, 12> kProperties = {{
+static const std::array<Property<Ros2SinkSettings>, 13> kProperties = {{
     Within<&Ros2SinkSettings::ros>(RosRows(), "topic"),
     {"type", "What the topic holds",
      EnumField<Ros2SinkSettings>{&Ros2SinkSettings::type, SinkTypeType}},
+    {"compression", "Of type=compressed, as the plugin of point_cloud_transport of the same name",
+     EnumField<Ros2SinkSettings, CloudCompression>{&Ros2SinkSettings::compression,
+                                                   CompressionType}},
     Within<&Ros2SinkSettings::ros>(RosRows(), "domain-id"),
     Within<&Ros2SinkSettings::ros>(RosRows(), "node-name"),
     Within<&Ros2SinkSettings::ros>(RosRows(), "qos"),
@@ -261,7 +276,10 @@ static GstFlowReturn Render(GstBaseSink* base, GstBuffer* buffer) {
     else
       last = PublishMessage(self, writer.get(), pieces);
   };
-  const bool published = state.messages->Write(buffer, Snapshot(state).messages, now, publish);
+  const Ros2SinkSettings settings = Snapshot(state);
+  MessageSettings wanted = settings.messages;
+  wanted.compression = settings.compression;
+  const bool published = state.messages->Write(buffer, wanted, now, publish);
   if (published) return GST_FLOW_OK;
   {
     const std::lock_guard lock(state.mutex);

@@ -38,6 +38,9 @@ using Verdict = MessageReader::Verdict;
 GType SrcTypeType() {
   static const GEnumValue kValues[] = {
       {Int(RosType::kPointCloud2), "sensor_msgs/msg/PointCloud2", "pointcloud2"},
+      {Int(RosType::kCompressedCloud), "point_cloud_interfaces/msg/CompressedPointCloud2",
+       "compressed"},
+      {Int(RosType::kLivox), "livox_ros_driver2/msg/CustomMsg", "livox"},
       {Int(RosType::kImu), "sensor_msgs/msg/Imu", "imu"},
       {Int(RosType::kOdometry), "nav_msgs/msg/Odometry", "odometry"},
       {Int(RosType::kTransforms), "tf2_msgs/msg/TFMessage", "tf"},
@@ -173,7 +176,7 @@ static gboolean Start(GstBaseSrc* base) {
                       (nullptr));
     return FALSE;
   }
-  if (settings.type == RosType::kPointCloud2) WarnOfSmallBuffer(self);
+  if (lidar::cdr::IsCloud(settings.type)) WarnOfSmallBuffer(self);
   state.messages = std::make_unique<MessageReader>(
       settings.type, [base] { return CapsPtr(gst_pad_get_allowed_caps(GST_BASE_SRC_PAD(base))); },
       IsForGood(settings));

@@ -4,6 +4,7 @@
 #include <utility>
 #include <vector>
 
+#include "ext/ros2/cloud_compression.h"
 #include "gst/common/buffer_map.h"
 #include "gst/common/coordinate_frames.h"
 #include "gst/common/pose_covariance.h"
@@ -33,7 +34,7 @@ std::optional<cdr::PointLayout> WantedPoints(const GstCaps* caps) {
   return cdr::PointLayout{*std::move(fields), std::max(least, static_cast<guint>(MAX(step, 0)))};
 }
 
-BufferPtr ToBuffer(const std::vector<std::uint8_t>& bytes) {
+BufferPtr Copied(const std::vector<std::uint8_t>& bytes) {
   return BufferPtr(gst_buffer_new_memdup(bytes.data(), bytes.size()));
 }
 
@@ -43,6 +44,10 @@ MessageReader::Verdict MessageReader::Read(ByteView message) {
   switch (type_) {
     case cdr::RosType::kPointCloud2:
       return ReadCloud(message);
+    case cdr::RosType::kLivox:
+      return ReadLivox(message);
+    case cdr::RosType::kCompressedCloud:
+      return ReadCompressed(message);
     case cdr::RosType::kImu:
       return ReadImu(message);
     case cdr::RosType::kOdometry:
@@ -102,24 +107,38 @@ MessageReader::Verdict MessageReader::Adapt(const cdr::PointCloud2& cloud) {
 
 MessageReader::Verdict MessageReader::ReadCloud(ByteView message) {
   const auto cloud = cdr::ReadPointCloud2(message, &why_);
-  if (!cloud) return Verdict::kDamaged;
-  if (cloud->layout.width == 0 || cloud->layout.height == 0) return Verdict::kEmpty;
-  const bool same = converter_ && converter_->layout() == cloud->layout &&
-                    is_dense_ == cloud->is_dense && frame_id_ == cloud->header.frame_id;
-  if (!cdr::RowStride(*cloud)) {
+  return cloud ? ToBuffer(*cloud) : Verdict::kDamaged;
+}
+
+MessageReader::Verdict MessageReader::ReadLivox(ByteView message) {
+  const auto made = cdr::ReadLivox(message, &why_);
+  return made ? ToBuffer(made->cloud) : Verdict::kDamaged;
+}
+
+MessageReader::Verdict MessageReader::ReadCompressed(ByteView message) {
+  const auto compressed = cdr::ReadCompressedCloud(message, &why_);
+  const auto made = compressed ? Decompress(*compressed, &why_) : std::nullopt;
+  return made ? ToBuffer(made->cloud) : Verdict::kDamaged;
+}
+
+MessageReader::Verdict MessageReader::ToBuffer(const cdr::PointCloud2& cloud) {
+  if (cloud.layout.width == 0 || cloud.layout.height == 0) return Verdict::kEmpty;
+  const bool same = converter_ && converter_->layout() == cloud.layout &&
+                    is_dense_ == cloud.is_dense && frame_id_ == cloud.header.frame_id;
+  if (!cdr::RowStride(cloud)) {
     why_ = "its data are not as long as width, height and steps say";
     return Verdict::kDamaged;
   }
   if (!same) {
-    const Verdict verdict = Adapt(*cloud);
+    const Verdict verdict = Adapt(cloud);
     if (verdict != Verdict::kBuffer) return verdict;
   }
   buffer_.reset(gst_buffer_new_allocate(nullptr, converter_->size(), nullptr));
   {
     BufferMap map(buffer_.get(), GST_MAP_WRITE);
-    if (!map || !converter_->Convert(*cloud, map.data())) return Verdict::kDamaged;
+    if (!map || !converter_->Convert(cloud, map.data())) return Verdict::kDamaged;
   }
-  SetStamp(cloud->header.stamp);
+  SetStamp(cloud.header.stamp);
   return Verdict::kBuffer;
 }
 
@@ -133,7 +152,7 @@ MessageReader::Verdict MessageReader::ReadImu(ByteView message) {
                                    static_cast<gint>(cdr::kImuSampleSize), "fields", G_TYPE_STRING,
                                    cdr::kImuFields, GST_LIDAR_FRAME_ID, G_TYPE_STRING,
                                    ToText(imu->header.frame_id).c_str(), nullptr));
-  buffer_ = ToBuffer(cdr::WriteImuSample(*imu));
+  buffer_ = Copied(cdr::WriteImuSample(*imu));
   SetStamp(imu->header.stamp);
   return SetCaps(std::move(caps));
 }
@@ -148,7 +167,7 @@ MessageReader::Verdict MessageReader::ReadOdometry(ByteView message) {
                                    ToText(odometry->header.frame_id).c_str(),
                                    GST_LIDAR_CHILD_FRAME_ID, G_TYPE_STRING,
                                    ToText(odometry->child_frame_id).c_str(), nullptr));
-  buffer_ = ToBuffer(cdr::WritePose(*odometry, TrackingOf(odometry->pose_covariance)));
+  buffer_ = Copied(cdr::WritePose(*odometry, TrackingOf(odometry->pose_covariance)));
   SetStamp(odometry->header.stamp);
   return SetCaps(std::move(caps));
 }

@@ -40,6 +40,9 @@ class MessageReader {
 
  private:
   Verdict ReadCloud(ByteView message);
+  Verdict ReadLivox(ByteView message);
+  Verdict ReadCompressed(ByteView message);
+  Verdict ToBuffer(const cdr::PointCloud2& cloud);
   Verdict ReadImu(ByteView message);
   Verdict ReadOdometry(ByteView message);
   Verdict ReadTransforms(ByteView message);

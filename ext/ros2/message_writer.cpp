@@ -18,6 +18,7 @@ std::string TextOf(const GstStructure* s, const char* field) {
 const char* MediaTypeOf(cdr::RosType type) {
   switch (type) {
     case cdr::RosType::kPointCloud2:
+    case cdr::RosType::kCompressedCloud:
       return GST_LIDAR_CLOUD_MEDIA_TYPE;
     case cdr::RosType::kImu:
       return GST_LIDAR_IMU_MEDIA_TYPE;
@@ -49,7 +50,7 @@ bool MessageWriter::SetCaps(const GstCaps* caps) {
     why_ = std::string("samples must have the fields ") + cdr::kImuFields;
     return fields == nullptr || std::string_view(fields) == cdr::kImuFields;
   }
-  if (type_ != cdr::RosType::kPointCloud2) return true;
+  if (!cdr::IsCloud(type_)) return true;
   auto info = CloudInfo::FromCaps(caps, &why_);
   if (!info) return false;
   info_ = *std::move(info);
@@ -68,6 +69,7 @@ bool MessageWriter::Write(GstBuffer* buffer, const MessageSettings& settings, Ti
                : now;
   switch (type_) {
     case cdr::RosType::kPointCloud2:
+    case cdr::RosType::kCompressedCloud:
       return WriteCloud(map.view(), publish);
     case cdr::RosType::kImu:
       return WriteImu(map.view(), publish);
@@ -98,8 +100,19 @@ bool MessageWriter::WriteCloud(ByteView points, const Publish& publish) {
   cloud.layout = layout_;
   cloud.data = points;
   cloud.is_dense = info_.is_dense;
-  const cdr::PointCloud2Frame frame = cdr::FramePointCloud2(cloud);
-  publish({View(frame.head), points, View(frame.tail)});
+  return PublishCloud(cloud, publish);
+}
+
+bool MessageWriter::PublishCloud(const cdr::PointCloud2& cloud, const Publish& publish) const {
+  if (type_ == cdr::RosType::kPointCloud2) {
+    const cdr::PointCloud2Frame frame = cdr::FramePointCloud2(cloud);
+    publish({View(frame.head), cloud.data, View(frame.tail)});
+    return true;
+  }
+  std::vector<std::uint8_t> packed;
+  const auto compressed = Compress(wanted_.compression, cloud, &packed);
+  if (!compressed) return false;
+  publish({View(cdr::WriteCompressedCloud(*compressed))});
   return true;
 }
 

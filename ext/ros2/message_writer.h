@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "ext/ros2/cloud_compression.h"
 #include "gst/lidar/cloud_info.h"
 #include "src/cdr/messages.h"
 #include "src/cdr/point_cloud2.h"
@@ -25,6 +26,7 @@ struct Frames {
 /// What messages say that buffers do not.
 struct MessageSettings {
   Frames frames;
+  CloudCompression compression = CloudCompression::kZstd;  // of CompressedPointCloud2
   // Tracked poses have these; 0: not known.
   double position_variance = 0;     // m^2
   double orientation_variance = 0;  // rad^2
@@ -51,6 +53,7 @@ class MessageWriter {
 
  private:
   bool WriteCloud(ByteView points, const Publish& publish);
+  bool PublishCloud(const cdr::PointCloud2& cloud, const Publish& publish) const;
   bool WriteImu(ByteView samples, const Publish& publish);
   bool WritePose(ByteView bytes, const Publish& publish);
   cdr::Header HeaderOf(Time stamp, const char* usual_frame) const;

@@ -36,6 +36,13 @@ class CdrReader {
   bool Bool() { return U8() != 0; }
   std::uint32_t U32() { return static_cast<std::uint32_t>(Unsigned(4)); }
   std::int32_t I32() { return static_cast<std::int32_t>(U32()); }
+  std::uint64_t U64() { return Unsigned(8); }
+  float F32() {
+    const std::uint32_t bits = U32();
+    float value = 0;
+    std::memcpy(&value, &bits, sizeof value);
+    return value;
+  }
   double F64() {
     const std::uint64_t bits = Unsigned(8);
     double value = 0;

@@ -24,6 +24,14 @@ class CdrWriter {
     writer_.Le32(v);
   }
   void I32(std::int32_t v) { U32(static_cast<std::uint32_t>(v)); }
+  void U64(std::uint64_t v) {
+    Align(8);
+    writer_.Le64(v);
+  }
+  void F32(float v) {
+    Align(4);
+    writer_.LeF32(v);
+  }
   void F64(double v) {
     Align(8);
     writer_.LeF64(v);

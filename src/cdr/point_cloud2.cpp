@@ -40,6 +40,31 @@ void WriteFields(const std::vector<RosField>& fields, CdrWriter* w) {
   }
 }
 
+PointCloud2 ReadCloud(CdrReader* r) {
+  PointCloud2 cloud;
+  cloud.header = ReadHeader(r);
+  cloud.layout.height = r->U32();
+  cloud.layout.width = r->U32();
+  cloud.layout.fields = ReadFields(r);
+  cloud.layout.is_bigendian = r->Bool();
+  cloud.layout.point_step = r->U32();
+  cloud.layout.row_step = r->U32();
+  cloud.data = r->Octets();
+  cloud.is_dense = r->Bool();
+  return cloud;
+}
+
+/// All up to the points.
+void WriteHead(const PointCloud2& cloud, CdrWriter* w) {
+  WriteHeader(cloud.header, w);
+  w->U32(cloud.layout.height);
+  w->U32(cloud.layout.width);
+  WriteFields(cloud.layout.fields, w);
+  w->Bool(cloud.layout.is_bigendian);
+  w->U32(cloud.layout.point_step);
+  w->U32(cloud.layout.row_step);
+}
+
 }  // namespace
 
 bool operator==(const RosField& a, const RosField& b) { return Tie(a) == Tie(b); }
@@ -47,18 +72,19 @@ bool operator==(const RosLayout& a, const RosLayout& b) { return Tie(a) == Tie(b
 
 std::optional<PointCloud2> ReadPointCloud2(ByteView message, std::string* why) {
   CdrReader r(message);
-  PointCloud2 cloud;
-  cloud.header = ReadHeader(&r);
-  cloud.layout.height = r.U32();
-  cloud.layout.width = r.U32();
-  cloud.layout.fields = ReadFields(&r);
-  cloud.layout.is_bigendian = r.Bool();
-  cloud.layout.point_step = r.U32();
-  cloud.layout.row_step = r.U32();
-  cloud.data = r.Octets();
-  cloud.is_dense = r.Bool();
+  PointCloud2 cloud = ReadCloud(&r);
   if (r.ok()) return cloud;
   if (why != nullptr) *why = "the message is truncated or is no PointCloud2";
+  return std::nullopt;
+}
+
+std::optional<CompressedCloud> ReadCompressedCloud(ByteView message, std::string* why) {
+  CdrReader r(message);
+  CompressedCloud compressed;
+  compressed.cloud = ReadCloud(&r);
+  compressed.format = r.Text();
+  if (r.ok()) return compressed;
+  if (why != nullptr) *why = "the message is truncated or is no CompressedPointCloud2";
   return std::nullopt;
 }
 
@@ -75,13 +101,7 @@ std::optional<std::size_t> RowStride(const PointCloud2& cloud) {
 PointCloud2Frame FramePointCloud2(const PointCloud2& cloud) {
   PointCloud2Frame frame;
   CdrWriter w(&frame.head);
-  WriteHeader(cloud.header, &w);
-  w.U32(cloud.layout.height);
-  w.U32(cloud.layout.width);
-  WriteFields(cloud.layout.fields, &w);
-  w.Bool(cloud.layout.is_bigendian);
-  w.U32(cloud.layout.point_step);
-  w.U32(cloud.layout.row_step);
+  WriteHead(cloud, &w);
   w.U32(static_cast<std::uint32_t>(cloud.data.size));
   frame.tail.push_back(cloud.is_dense ? 1 : 0);
   return frame;
@@ -93,6 +113,16 @@ std::vector<std::uint8_t> WritePointCloud2(const PointCloud2& cloud) {
   out.reserve(out.size() + cloud.data.size + frame.tail.size());
   out.insert(out.end(), cloud.data.begin(), cloud.data.end());
   out.insert(out.end(), frame.tail.begin(), frame.tail.end());
+  return out;
+}
+
+std::vector<std::uint8_t> WriteCompressedCloud(const CompressedCloud& compressed) {
+  std::vector<std::uint8_t> out;
+  CdrWriter w(&out);
+  WriteHead(compressed.cloud, &w);
+  w.Octets(compressed.cloud.data);
+  w.Bool(compressed.cloud.is_dense);
+  w.Text(compressed.format);
   return out;
 }
 

@@ -44,6 +44,23 @@ struct PointCloud2 {
 std::optional<PointCloud2> ReadPointCloud2(ByteView message, std::string* why = nullptr);
 std::vector<std::uint8_t> WritePointCloud2(const PointCloud2& cloud);
 
+/// A cloud whose points stand in no message.
+struct MadeCloud {
+  PointCloud2 cloud;  // whose data are `points`
+  std::vector<std::uint8_t> points;
+};
+/// livox_ros_driver2/msg/CustomMsg, as the PointCloud2 that the same driver publishes of it: x, y,
+/// z, intensity, tag, line, and timestamp as F64 [ns since 1970]. Returns nothing as above.
+std::optional<MadeCloud> ReadLivox(ByteView message, std::string* why = nullptr);
+
+/// point_cloud_interfaces/msg/CompressedPointCloud2
+struct CompressedCloud {
+  PointCloud2 cloud;   // whose data are compressed
+  std::string format;  // "draco", "zlib", "zstd"
+};
+std::optional<CompressedCloud> ReadCompressedCloud(ByteView message, std::string* why = nullptr);
+std::vector<std::uint8_t> WriteCompressedCloud(const CompressedCloud& compressed);
+
 /// Bytes from one row of its data to the next; none where the length of the data contradicts width,
 /// height and steps. Many drivers leave row_step at 0 or at the size of all. So packed rows are
 /// known by their size alone.

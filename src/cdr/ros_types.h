@@ -6,7 +6,7 @@
 
 namespace lidar::cdr {
 
-enum class RosType { kPointCloud2, kImu, kOdometry, kTransforms };
+enum class RosType { kPointCloud2, kImu, kOdometry, kTransforms, kLivox, kCompressedCloud };
 
 struct RosTypeInfo {
   RosType type;
@@ -15,7 +15,7 @@ struct RosTypeInfo {
   std::string_view hash;      // REP 2016, version 1; from ROS 2 Iron on
 };
 
-constexpr std::array<RosTypeInfo, 4> kRosTypes = {{
+constexpr std::array<RosTypeInfo, 6> kRosTypes = {{
     {RosType::kPointCloud2, "sensor_msgs/msg/PointCloud2", "sensor_msgs::msg::dds_::PointCloud2_",
      "RIHS01_9198cabf7da3796ae6fe19c4cb3bdd3525492988c70522628af5daa124bae2b5"},
     {RosType::kImu, "sensor_msgs/msg/Imu", "sensor_msgs::msg::dds_::Imu_",
@@ -24,7 +24,18 @@ constexpr std::array<RosTypeInfo, 4> kRosTypes = {{
      "RIHS01_3cc97dc7fb7502f8714462c526d369e35b603cfc34d946e3f2eda2766dfec6e0"},
     {RosType::kTransforms, "tf2_msgs/msg/TFMessage", "tf2_msgs::msg::dds_::TFMessage_",
      "RIHS01_e369d0f05a23ae52508854b66f6aa0437f3449d652e8cbf22d5abe85d020f087"},
+    {RosType::kLivox, "livox_ros_driver2/msg/CustomMsg", "livox_ros_driver2::msg::dds_::CustomMsg_",
+     "RIHS01_2eb17e5e35bf5a2d6cd079f3c57f33abf95e5bf7d71b42cddc05daace73d815a"},
+    {RosType::kCompressedCloud, "point_cloud_interfaces/msg/CompressedPointCloud2",
+     "point_cloud_interfaces::msg::dds_::CompressedPointCloud2_",
+     "RIHS01_4b38df4932a156a54c53e80a7f34e54e2966b20e54a4d14ded34a165a389c0c1"},
 }};
+
+/// Messages of these hold many points.
+constexpr bool IsCloud(RosType type) {
+  return type == RosType::kPointCloud2 || type == RosType::kLivox ||
+         type == RosType::kCompressedCloud;
+}
 
 constexpr const RosTypeInfo& InfoOf(RosType type) {
   return kRosTypes[static_cast<std::size_t>(type)];

@@ -72,6 +72,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t siz
   CheckComesBack<Odometry>(data, ReadOdometry, WriteOdometry);
   CheckComesBack<Transforms>(data, ReadTransforms, WriteTransforms);
   CheckTree(data);
+  if (const auto made = ReadLivox(data))
+    FUZZ_CHECK(made->points.size() == std::size_t{26} * made->cloud.layout.width);
   CheckComesBack<CodedSlice>(data, ReadCodedSlice, WriteCodedSlice);
   return 0;
 }

@@ -14,6 +14,7 @@ LIBRARIES = {
     "liblz4": ("lz4",),
     "liblzf": ("lzf",),
     "libzstd": ("zstd",),
+    "zlib": ("zlib",),
     "nlohmann_json": ("nlohmann/",),
     "libpcap": ("pcap/", "pcap."),
     "Eigen": ("Eigen/", "unsupported/Eigen/"),

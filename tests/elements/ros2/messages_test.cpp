@@ -5,6 +5,7 @@
 #include "ext/ros2/message_reader.h"
 #include "gst/common/buffer_map.h"
 #include "gst/common/pose_covariance.h"
+#include "gst/lidar/cloud_info.h"
 #include "gst/lidar/gstlidar.h"
 
 namespace lidar::gst {
@@ -96,6 +97,112 @@ TEST_F(CloudMessages, MayNameAFrameThatIsNoText) {
   ASSERT_EQ(Read(), Verdict::kBuffer);
   EXPECT_TRUE(g_utf8_validate(NewField("frame-id").c_str(), -1, nullptr));
 }
+
+/// A cloud as a driver publishes it.
+struct Driver {
+  const char* name;
+  std::uint32_t width, height;
+  std::vector<cdr::RosField> fields;  // its own, behind x, y and z
+  std::uint32_t point_step;
+  bool is_dense;
+  const char* caps;  // of the fields
+};
+class DriverClouds : public ::testing::TestWithParam<Driver> {};
+
+constexpr std::uint8_t kU8 = 2, kU16 = 4, kU32 = 6, kF32 = 7, kF64 = 8;
+
+/// Two points, all bytes different.
+TEST_P(DriverClouds, KeepTheirFields) {
+  const Driver& d = GetParam();
+  cdr::PointCloud2 cloud;
+  cloud.header = {Time{} + Duration{5}, "lidar"};
+  cloud.layout.width = d.width;
+  cloud.layout.height = d.height;
+  cloud.layout.fields = {{"x", 0, kF32, 1}, {"y", 4, kF32, 1}, {"z", 8, kF32, 1}};
+  cloud.layout.fields.insert(cloud.layout.fields.end(), d.fields.begin(), d.fields.end());
+  cloud.layout.point_step = d.point_step;
+  cloud.layout.row_step = d.width * d.point_step;
+  cloud.is_dense = d.is_dense;
+  Bytes points(std::size_t{d.width} * d.height * d.point_step);
+  for (std::size_t i = 0; i < points.size(); ++i) points[i] = static_cast<std::uint8_t>(i);
+  cloud.data = AsView(points);
+  MessageReader reader(cdr::RosType::kPointCloud2, [] { return CapsPtr(); });
+  ASSERT_EQ(reader.Read(AsView(cdr::WritePointCloud2(cloud))), Verdict::kBuffer);
+  const CapsPtr caps = reader.TakeNewCaps();
+  const auto info = CloudInfo::FromFrameCaps(caps.get());
+  ASSERT_TRUE(info);
+  EXPECT_EQ(info->fields.ToString(), d.caps);
+  EXPECT_EQ(info->point_step, d.point_step);
+  EXPECT_EQ(info->height, d.height);
+  const BufferPtr buffer = reader.TakeBuffer();
+  const BufferMap map(buffer.get(), GST_MAP_READ);
+  EXPECT_EQ(Bytes(map.view().begin(), map.view().end()), points);
+}
+
+constexpr const char* kRingAndTimestamp =
+    "x:F32:0,y:F32:4,z:F32:8,intensity:F32:12,ring:U16:16,timestamp:F64:18";
+INSTANTIATE_TEST_SUITE_P(
+    Makers, DriverClouds,
+    ::testing::Values(
+        Driver{"Hesai",
+               2,
+               1,
+               {{"intensity", 12, kF32, 1}, {"ring", 16, kU16, 1}, {"timestamp", 18, kF64, 1}},
+               26,
+               false,
+               kRingAndTimestamp},
+        Driver{"RoboSense",
+               2,
+               2,
+               {{"intensity", 12, kF32, 1}, {"ring", 16, kU16, 1}, {"timestamp", 18, kF64, 1}},
+               26,
+               false,
+               kRingAndTimestamp},
+        Driver{"Velodyne",
+               2,
+               1,
+               {{"intensity", 12, kF32, 1}, {"ring", 16, kU16, 1}, {"time", 18, kF32, 1}},
+               22,
+               true,
+               "x:F32:0,y:F32:4,z:F32:8,intensity:F32:12,ring:U16:16,time:F32:18"},
+        Driver{"Livox",
+               2,
+               1,
+               {{"intensity", 12, kF32, 1},
+                {"tag", 16, kU8, 1},
+                {"line", 17, kU8, 1},
+                {"timestamp", 18, kF64, 1}},
+               26,
+               true,
+               "x:F32:0,y:F32:4,z:F32:8,intensity:F32:12,tag:U8:16,line:U8:17,timestamp:F64:18"},
+        Driver{"Nebula",
+               2,
+               1,
+               {{"intensity", 12, kU8, 1},
+                {"return_type", 13, kU8, 1},
+                {"channel", 14, kU16, 1},
+                {"azimuth", 16, kF32, 1},
+                {"elevation", 20, kF32, 1},
+                {"distance", 24, kF32, 1},
+                {"time_stamp", 28, kU32, 1}},
+               32,
+               true,
+               "x:F32:0,y:F32:4,z:F32:8,intensity:U8:12,return_type:U8:13,channel:U16:14,"
+               "azimuth:F32:16,elevation:F32:20,distance:F32:24,time_stamp:U32:28"},
+        Driver{"Ouster",
+               2,
+               2,
+               {{"intensity", 16, kF32, 1},
+                {"t", 20, kU32, 1},
+                {"reflectivity", 24, kU16, 1},
+                {"ring", 26, kU16, 1},
+                {"ambient", 28, kU16, 1},
+                {"range", 32, kU32, 1}},
+               48,
+               true,
+               "x:F32:0,y:F32:4,z:F32:8,intensity:F32:16,t:U32:20,reflectivity:U16:24,"
+               "ring:U16:26,ambient:U16:28,range:U32:32"}),
+    [](const auto& made) { return made.param.name; });
 
 /// Reads `message` and gives the buffer and a text of its caps.
 struct Taken {

@@ -54,6 +54,37 @@ TEST_F(Ros2Src, TakesCloudsOfFastDdsWithStampFrameAndFields) {
   EXPECT_EQ(Stat("bytes"), 0u);
 }
 
+TEST_F(Ros2Src, TakesMessagesOfLivox) {
+  Start("ros2src", "topic=/points type=livox qos=reliable");
+  peer_ = std::make_unique<FastPeer>(TestDomain());
+  peer_->Advertise<PeerBytes>("rt/points", "livox_ros_driver2::msg::dds_::CustomMsg_",
+                              Qos::kReliable);
+  ASSERT_TRUE(peer_->WaitForMatch(kPatience));
+  ASSERT_TRUE(WaitForStat("publishers", 1));
+  constexpr std::uint32_t kPoints = 20'000;
+  std::vector<std::uint8_t> message;
+  cdr::CdrWriter w(&message);
+  cdr::WriteHeader(
+      {Time{} + Duration{1'700'000'000 * Duration(std::chrono::seconds(1)).count()}, "livox_frame"},
+      &w);
+  w.U64(1'700'000'000'000'000'000);
+  w.U32(kPoints);
+  w.U32(0);
+  w.U32(kPoints);
+  for (std::uint32_t i = 0; i < kPoints; ++i) {
+    w.U32(5'000 * i);
+    for (int axis = 0; axis < 3; ++axis) w.F32(static_cast<float>(i));
+    for (int k = 0; k < 3; ++k) w.U8(1);
+  }
+  ASSERT_TRUE(peer_->Publish(PeerBytes{message}));
+  const BufferPtr buffer = Pull();
+  ASSERT_TRUE(buffer);
+  EXPECT_EQ(gst_buffer_get_size(buffer.get()), 26U * kPoints);
+  EXPECT_EQ(gst_lidar_buffer_get_capture_time(buffer.get()), 1'700'000'000 * GST_SECOND);
+  EXPECT_EQ(Field("frame-id"), "livox_frame");
+  EXPECT_EQ(Field("width"), "20000");
+}
+
 TEST_F(Ros2Src, FollowsCloudsThatChangeTheirLayout) {
   StartWithPeer("qos=reliable");
   for (const std::uint32_t width : {7u, 7u, 3u}) {

@@ -197,7 +197,7 @@ std::optional<Distortion> SliceCodec::Errors(const CodingMode& mode,
   constexpr std::uint32_t kMaxPoints = 1U << 26;
   // The codec takes the kd-tree past a number of bits all the same.
   const ByteView bytes{encoded_.bytes.data(), encoded_.bytes.size()};
-  if (xyz && draco::CheckDraco(bytes, kMaxPoints).value().is_kd_tree) return std::nullopt;
+  if (xyz && draco::CheckDraco(bytes, {kMaxPoints}).value().is_kd_tree) return std::nullopt;
   draco::SliceDecoder decoder(format_, mode.geometry, kMaxPoints);
   const auto shape = decoder.Decode(bytes);
   if (!shape) throw std::runtime_error("a slice does not decode");

@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Points of any fields as Draco files, each field an attribute, as ROS's
+// draco_point_cloud_transport has them.
+#pragma once
+#include <cstdint>
+#include <vector>
+
+#include "src/base/byte_reader.h"
+#include "src/cloud/point_fields.h"
+
+namespace lidar::draco {
+
+/// Numbers of one type side by side.
+struct FieldOfPoints {
+  FieldType type;
+  std::uint32_t offset;  // bytes from the start of the point
+  std::uint32_t count;
+  bool is_position;
+};
+
+struct FieldLayout {
+  std::vector<FieldOfPoints> fields;
+  std::uint32_t point_step = 0;  // bytes
+
+  static constexpr std::size_t kMaxFields = 64;
+};
+
+/// Rounds nothing and keeps the order of points. False where there is no point to code, or a field
+/// ends past the point.
+bool EncodeFields(ByteView points, const FieldLayout& layout, std::vector<std::uint8_t>* out);
+
+/// Whole points of the layout, zero between the fields. False where the stream is damaged, has more
+/// than `max_points`, or attributes that are not the layout's fields.
+bool DecodeFields(ByteView stream, const FieldLayout& layout, std::uint32_t max_points,
+                  std::vector<std::uint8_t>* points);
+
+}  // namespace lidar::draco

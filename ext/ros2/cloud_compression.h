@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Points of CompressedPointCloud2, packed as the plugins of ROS's point_cloud_transport pack them.
+#pragma once
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "src/cdr/point_cloud2.h"
+
+namespace lidar::gst {
+
+enum class CloudCompression { kDraco, kZlib, kZstd };
+
+/// How messages call it.
+const char* NameOf(CloudCompression compression);
+
+/// Returns nothing where the format is not known here or the data are damaged; `why` then says so.
+/// No more memory is taken than the layout's points need, at most 256 MiB.
+std::optional<cdr::MadeCloud> Decompress(const cdr::CompressedCloud& compressed, std::string* why);
+
+/// Packs the points without loss. Returns nothing where the compression is not built in, or takes
+/// no such cloud. The result's data are `packed`.
+std::optional<cdr::CompressedCloud> Compress(CloudCompression compression,
+                                             const cdr::PointCloud2& cloud,
+                                             std::vector<std::uint8_t>* packed);
+
+}  // namespace lidar::gst
