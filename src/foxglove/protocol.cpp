@@ -5,6 +5,8 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
+#include "src/base/base64.h"
+
 namespace lidar::foxglove {
 namespace {
 
@@ -61,7 +63,36 @@ Request ParseUnsubscribe(const json& message) {
   return request;
 }
 
+void PutLe(std::uint64_t value, unsigned bytes, std::uint8_t* out) {
+  for (unsigned i = 0; i < bytes; ++i) out[i] = static_cast<std::uint8_t>(value >> 8 * i);
+}
+
+/// `{"op":"drawn","subscriptionId":7,"scan":1234,"slice":5}`; lacksReference has no slice.
+Request ParseOfSlices(const json& message, Request::Kind kind) {
+  const auto subscription = Id(message, "subscriptionId");
+  const auto scan = Id(message, "scan");
+  const auto slice = Id(message, "slice");
+  if (!subscription) return Malformed("the number subscriptionId is missing");
+  if (kind == Request::Kind::kDrawn && (!scan || !slice))
+    return Malformed("drawn needs the numbers scan and slice");
+  Request request;
+  request.kind = kind;
+  request.subscription = *subscription;
+  request.slice = {scan.value_or(0), slice.value_or(0)};
+  return request;
+}
+
 }  // namespace
+
+std::string DescribeSlices(const SliceStreamInfo& stream) {
+  return json{{"geometry", stream.has_ranges ? "range" : "xyz"},
+              {"fields", stream.fields},
+              {"framerate", {stream.framerate_n, stream.framerate_d}},
+              {"sensorModel", Base64(stream.sensor_model)},
+              {"frameId", stream.frame_id},
+              {"clouds", stream.clouds}}
+      .dump(-1, ' ', false, json::error_handler_t::replace);
+}
 
 std::string ServerInfo(const std::string& name, const std::string& session_id) {
   return json{{"op", "serverInfo"},
@@ -77,12 +108,13 @@ std::string Advertise(const std::vector<Channel>& channels) {
   json list = json::array();
   for (const Channel& channel : channels) {
     const SchemaText schema = TextOf(channel.schema);
+    const bool is_slice = channel.schema == Schema::kSlice;
     list.push_back({{"id", channel.id},
                     {"topic", channel.topic},
                     {"encoding", schema.encoding},
                     {"schemaName", schema.name},
                     {"schemaEncoding", schema.language},
-                    {"schema", schema.text}});
+                    {"schema", is_slice ? channel.stream : schema.text}});
   }
   return json{{"op", "advertise"}, {"channels", list}}.dump(-1, ' ', false,
                                                             json::error_handler_t::replace);
@@ -105,6 +137,8 @@ Request ParseRequest(std::string_view text) {
   if (op == message.end() || !op->is_string()) return Malformed("the object has no \"op\"");
   if (*op == "subscribe") return ParseSubscribe(message);
   if (*op == "unsubscribe") return ParseUnsubscribe(message);
+  if (*op == "drawn") return ParseOfSlices(message, Request::Kind::kDrawn);
+  if (*op == "lacksReference") return ParseOfSlices(message, Request::Kind::kLacksReference);
   Request request;
   request.kind = Request::Kind::kUnsupported;
   return request;
@@ -113,9 +147,19 @@ Request ParseRequest(std::string_view text) {
 MessageHead HeadOf(std::uint32_t subscription_id, std::uint64_t unix_ns) {
   constexpr std::uint8_t kMessageData = 1;
   MessageHead head{kMessageData};
-  for (unsigned i = 0; i < 4; ++i)
-    head[1 + i] = static_cast<std::uint8_t>(subscription_id >> 8 * i);
-  for (unsigned i = 0; i < 8; ++i) head[5 + i] = static_cast<std::uint8_t>(unix_ns >> 8 * i);
+  PutLe(subscription_id, 4, &head[1]);
+  PutLe(unix_ns, 8, &head[5]);
+  return head;
+}
+
+SliceHead HeadOfSlice(const SliceInfo& slice, std::uint64_t sent_unix_ns) {
+  constexpr std::uint8_t kVersion = 1;
+  SliceHead head{kVersion, static_cast<std::uint8_t>(slice.is_recoded ? 1 : 0)};
+  PutLe(slice.name.index, 2, &head[2]);
+  PutLe(slice.count, 2, &head[4]);
+  PutLe(slice.name.scan, 4, &head[8]);
+  PutLe(slice.first_column, 4, &head[12]);
+  PutLe(sent_unix_ns, 8, &head[16]);
   return head;
 }
 

@@ -20,7 +20,20 @@ struct Channel {
   std::uint32_t id = 0;
   std::string topic;
   Schema schema = Schema::kPointCloud;
+  std::string stream = {};  // of kSlice: what a decoder has to know, DescribeSlices()
 };
+
+/// What a viewer has to know of a stream before its first slice.
+struct SliceStreamInfo {
+  bool has_ranges = false;  // else points without order
+  std::string fields;       // of the decoded points, packed
+  int framerate_n = 0;      // scans/s; 0/1: not known
+  int framerate_d = 1;
+  std::vector<std::uint8_t> sensor_model;  // docs/wire-format.md; empty without ranges
+  std::string frame_id;
+  std::string clouds;  // topic of the same stream, decoded
+};
+std::string DescribeSlices(const SliceStreamInfo& stream);
 
 std::string ServerInfo(const std::string& name, const std::string& session_id);
 std::string Advertise(const std::vector<Channel>& channels);
@@ -33,6 +46,12 @@ struct Subscription {
   std::uint32_t channel_id = 0;
 };
 
+/// A scan, and the place in it.
+struct SliceName {
+  std::uint32_t scan = 0;
+  std::uint32_t index = 0;
+};
+
 /// What a client asks for.
 struct Request {
   enum class Kind {
@@ -40,10 +59,14 @@ struct Request {
     kUnsupported,  // an operation that we offer nobody
     kSubscribe,
     kUnsubscribe,
+    kDrawn,           // the viewer has drawn `slice`, and all that came before it
+    kLacksReference,  // its decoder lacks a slice
   };
   Kind kind = Kind::kMalformed;
   std::vector<Subscription> subscriptions;
   std::vector<std::uint32_t> unsubscribed;  // ids of subscriptions
+  std::uint32_t subscription = 0;           // that `slice` came by
+  SliceName slice;
   std::string error;
 };
 /// `text` may be anything.
@@ -52,5 +75,15 @@ Request ParseRequest(std::string_view text);
 /// The bytes before the payload of a message: opcode, subscription and time [ns since 1970].
 using MessageHead = std::array<std::uint8_t, 13>;
 MessageHead HeadOf(std::uint32_t subscription_id, std::uint64_t unix_ns);
+
+/// The bytes between that and a slice.
+struct SliceInfo {
+  SliceName name;
+  std::uint32_t count = 1;  // of the scan's slices
+  std::uint32_t first_column = 0;
+  bool is_recoded = false;
+};
+using SliceHead = std::array<std::uint8_t, 24>;
+SliceHead HeadOfSlice(const SliceInfo& slice, std::uint64_t sent_unix_ns);
 
 }  // namespace lidar::foxglove

@@ -195,6 +195,8 @@ SchemaText TextOf(Schema schema) {
       return protobuf("foxglove.PoseInFrame");
     case Schema::kFrameTransform:
       return protobuf("foxglove.FrameTransform");
+    case Schema::kSlice:
+      return {"lidar.Slice", "lidar-slice", "json", ""};
     case Schema::kStatistics:
       break;
   }

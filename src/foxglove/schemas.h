@@ -8,13 +8,20 @@
 namespace lidar::foxglove {
 
 /// What a channel carries.
-enum class Schema { kPointCloud, kCompressedPointCloud, kPose, kFrameTransform, kStatistics };
+enum class Schema {
+  kPointCloud,
+  kCompressedPointCloud,
+  kPose,
+  kFrameTransform,
+  kStatistics,
+  kSlice,  // as the robot coded it, for our own page
+};
 
 struct SchemaText {
   const char* name;      // "foxglove.PointCloud"
-  const char* encoding;  // of the messages: "protobuf" or "json"
-  const char* language;  // of the schema: "protobuf" or "jsonschema"
-  std::string text;      // base64 where the language is protobuf
+  const char* encoding;  // of the messages: "protobuf", "json" or "lidar-slice"
+  const char* language;  // of the schema: "protobuf", "jsonschema", or "json": the stream itself
+  std::string text;      // base64 where the language is protobuf; empty where each stream has one
 };
 SchemaText TextOf(Schema schema);
 

@@ -24,6 +24,47 @@ TEST(Advertise, TellsSchemaAndEncodingOfEachChannel) {
   EXPECT_TRUE(schema["properties"].contains("target_bitrate"));
 }
 
+TEST(Advertise, TellsWhatAStreamOfSlicesIs) {
+  SliceStreamInfo stream;
+  stream.has_ranges = true;
+  stream.fields = "x:F32:0,y:F32:4,z:F32:8";
+  stream.framerate_n = 10;
+  stream.sensor_model = {1, 2, 3};
+  stream.frame_id = "os1";
+  stream.clouds = "/points";
+  Channel channel{3, "/points/slices", Schema::kSlice, DescribeSlices(stream)};
+  const auto text = json::parse(Advertise({channel}))["channels"][0];
+  EXPECT_EQ(text["schemaName"], "lidar.Slice");
+  EXPECT_EQ(text["encoding"], "lidar-slice");
+  EXPECT_EQ(text["schemaEncoding"], "json");
+  EXPECT_EQ(json::parse(text["schema"].get<std::string>()),
+            json::parse(R"({"geometry":"range","fields":"x:F32:0,y:F32:4,z:F32:8",
+              "framerate":[10,1],"sensorModel":"AQID","frameId":"os1","clouds":"/points"})"));
+}
+
+TEST(SliceHead, HasTheLayoutOfThePage) {
+  const SliceHead head = HeadOfSlice({{0x01020304, 5}, 16, 1023, true}, 0x0807060504030201);
+  const SliceHead expected = {1,    1, 5, 0, 16, 0, 0, 0, 4, 3, 2, 1,
+                              0xFF, 3, 0, 0, 1,  2, 3, 4, 5, 6, 7, 8};
+  EXPECT_EQ(head, expected);
+}
+
+TEST(Requests, SayWhatAViewerHasDrawnAndLacks) {
+  const Request drawn =
+      ParseRequest(R"({"op":"drawn","subscriptionId":7,"scan":4294967295,"slice":5})");
+  ASSERT_EQ(drawn.kind, Kind::kDrawn);
+  EXPECT_EQ(drawn.subscription, 7U);
+  EXPECT_EQ(drawn.slice.scan, 4294967295U);
+  EXPECT_EQ(drawn.slice.index, 5U);
+  const Request lacks = ParseRequest(R"({"op":"lacksReference","subscriptionId":7})");
+  ASSERT_EQ(lacks.kind, Kind::kLacksReference);
+  EXPECT_EQ(lacks.subscription, 7U);
+  for (const char* bad :
+       {R"({"op":"drawn","subscriptionId":7,"scan":1})", R"({"op":"drawn","scan":1,"slice":1})",
+        R"({"op":"lacksReference"})", R"({"op":"drawn","subscriptionId":7,"scan":-1,"slice":1})"})
+    EXPECT_EQ(ParseRequest(bad).kind, Kind::kMalformed) << bad;
+}
+
 TEST(ServerInfo, SurvivesANameThatIsNoText) {
   EXPECT_EQ(json::parse(ServerInfo("\xff", "id"))["op"], "serverInfo");
 }
