@@ -99,6 +99,20 @@ std::optional<CloudInfo> CloudInfo::FromFrameCaps(const GstCaps* caps, std::stri
   return std::nullopt;
 }
 
+std::optional<CloudInfo> CloudInfo::FromCodedCaps(const GstCaps* caps) {
+  const GstStructure* s = gst_caps_get_structure(caps, 0);
+  const gchar* fields = gst_structure_get_string(s, "fields");
+  CloudInfo cloud;
+  auto parsed = PointFields::Parse(fields != nullptr ? fields : "x:F32:0,y:F32:4,z:F32:8");
+  if (!parsed || !parsed->HasPackedXyz()) return std::nullopt;
+  cloud.fields = *std::move(parsed);
+  cloud.point_step = cloud.fields.MinimumStep();
+  gst_structure_get_fraction(s, "framerate", &cloud.framerate_n, &cloud.framerate_d);
+  cloud.sensor_model = SensorModelFromStructure(s);
+  if (cloud.sensor_model) cloud.height = static_cast<guint>(cloud.sensor_model->beams.size());
+  return cloud;
+}
+
 CloudInfo CloudInfo::FromFormat(const GstLidarCloudFormat& format) {
   CloudInfo info;
   info.width = format.width;

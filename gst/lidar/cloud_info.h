@@ -31,6 +31,10 @@ struct CloudInfo {
   /// As FromCaps(), of caps that fix the width as well.
   GST_LIDAR_API static std::optional<CloudInfo> FromFrameCaps(const GstCaps* caps,
                                                               std::string* why = nullptr);
+  /// The cloud that slices of coded caps hold, packed, but for its width; none where the caps
+  /// contradict themselves or lack x, y and z as F32 side by side. A file needs no more caps than
+  /// its name.
+  GST_LIDAR_API static std::optional<CloudInfo> FromCodedCaps(const GstCaps* caps);
   /// What a coder was given by its base class, which has checked it.
   GST_LIDAR_API static CloudInfo FromFormat(const GstLidarCloudFormat& format);
   /// transfer full

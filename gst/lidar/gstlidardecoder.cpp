@@ -126,22 +126,6 @@ static const std::array<Property<Settings>, 5> kProperties = {{
      &Settings::stats_interval, 0, 0, GST_PARAM_MUTABLE_PLAYING},
 }};
 
-/// The cloud that slices of `caps` hold, but for its size; none where the caps contradict
-/// themselves. A file needs no more caps than its name.
-static std::optional<CloudInfo> CloudOf(const GstCaps* caps) {
-  const GstStructure* s = gst_caps_get_structure(caps, 0);
-  const gchar* fields = gst_structure_get_string(s, "fields");
-  CloudInfo cloud;
-  auto parsed = lidar::PointFields::Parse(fields != nullptr ? fields : "x:F32:0,y:F32:4,z:F32:8");
-  if (!parsed || !parsed->HasPackedXyz()) return std::nullopt;
-  cloud.fields = *std::move(parsed);
-  cloud.point_step = cloud.fields.MinimumStep();
-  gst_structure_get_fraction(s, "framerate", &cloud.framerate_n, &cloud.framerate_d);
-  cloud.sensor_model = SensorModelFromStructure(s);
-  if (cloud.sensor_model) cloud.height = static_cast<guint>(cloud.sensor_model->beams.size());
-  return cloud;
-}
-
 /// Asks the subclass whether it can decode `cloud`, and takes out of it what will not come.
 static bool AskSubclass(GstLidarDecoder* self, GstCaps* caps, CloudInfo* cloud,
                         GstLidarDecodedFormat* decoded) {
@@ -166,7 +150,7 @@ static gboolean SetCaps(GstLidarDecoder* self, GstCaps* caps) {
   Stream& stream = self->state->stream;
   stream.has_size = false;
   stream.max_points = Snapshot(*self->state).max_points;
-  stream.cloud = CloudOf(caps);
+  stream.cloud = CloudInfo::FromCodedCaps(caps);
   GstLidarDecodedFormat decoded{};
   decoded.refusal = "their fields lack x, y and z as F32 side by side";
   if (stream.cloud && AskSubclass(self, caps, &*stream.cloud, &decoded)) {
