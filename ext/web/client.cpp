@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include "ext/web/client.h"
 
+#include <algorithm>
 #include <array>
 
 namespace lidar::web {
@@ -107,6 +108,21 @@ bool Client::Send(Outbox::Item item, std::size_t depth) {
   return dropped;
 }
 
+void Client::SendSlice(std::uint32_t channel, std::uint32_t subscription,
+                       SharedSliceMessage slice) {
+  if (closed_) return;
+  slices_.push_back({channel, subscription, std::move(slice)});
+  Write();
+}
+
+void Client::Forget(std::uint32_t channel) {
+  outbox_.Forget(channel);
+  const auto gone = std::remove_if(slices_.begin(), slices_.end(), [channel](const auto& waiting) {
+    return waiting.channel == channel;
+  });
+  slices_.erase(gone, slices_.end());
+}
+
 void Client::Close(CloseCode code) {
   if (closed_) return;
   // The peer can be told between two frames; it could not read it within one.
@@ -134,26 +150,50 @@ void Client::Tick(gint64 now_us) {
 }
 
 /// Makes the next frame the current one. Control frames come before data.
-bool Client::TakeNext() {
+bool Client::TakeNext() { return TakeControl() || TakeSlice() || TakeMessage(); }
+
+bool Client::TakeControl() {
   if (pong_) {
     current_ = Outgoing{std::move(*pong_), nullptr, 0};
     pong_.reset();
     return true;
   }
-  if (!controls_.empty()) {
-    current_ = Outgoing{std::move(controls_.front()), nullptr, 0};
-    controls_.pop_front();
-    return true;
-  }
+  if (controls_.empty()) return false;
+  current_ = Outgoing{std::move(controls_.front()), nullptr, 0};
+  controls_.pop_front();
+  return true;
+}
+
+bool Client::TakeSlice() {
+  if (slices_.empty()) return false;
+  const WaitingSlice next = std::move(slices_.front());
+  slices_.pop_front();
+  const SliceMessage& slice = *next.slice;
+  const auto now_ns = static_cast<std::uint64_t>(g_get_real_time()) * 1000;
+  const auto about = foxglove::HeadOfSlice(
+      {{slice.id.scan, slice.id.index}, slice.count, slice.first_column, slice.is_recoded}, now_ns);
+  Begin(foxglove::HeadOf(next.subscription, slice.unix_ns), {about.data(), about.size()},
+        {next.slice, &slice.payload});
+  return true;
+}
+
+bool Client::TakeMessage() {
   auto item = outbox_.Pop();
   if (!item) return false;
-  Outgoing out;
-  out.body = std::move(item->message);
-  const auto head = foxglove::HeadOf(item->subscription_id, out.body->unix_ns);
-  foxglove::AppendFrameHeader(Opcode::kBinary, head.size() + out.body->payload.size(), &out.head);
-  out.head.insert(out.head.end(), head.begin(), head.end());
-  current_ = std::move(out);
+  Begin(foxglove::HeadOf(item->subscription_id, item->message->unix_ns), {},
+        {item->message, &item->message->payload});
   return true;
+}
+
+void Client::Begin(const foxglove::MessageHead& head, ByteView more,
+                   std::shared_ptr<const std::vector<std::uint8_t>> body) {
+  Outgoing out;
+  const std::size_t size = head.size() + more.size + body->size();
+  foxglove::AppendFrameHeader(Opcode::kBinary, size, &out.head);
+  out.head.insert(out.head.end(), head.begin(), head.end());
+  out.head.insert(out.head.end(), more.begin(), more.end());
+  out.body = std::move(body);
+  current_ = std::move(out);
 }
 
 std::size_t Client::WriteSome(const Outgoing& out) {
@@ -163,7 +203,7 @@ std::size_t Client::WriteSome(const Outgoing& out) {
   if (head_left > 0) vectors[n++] = {out.head.data() + out.sent, head_left};
   if (out.body) {
     const std::size_t done = out.sent - (out.head.size() - head_left);
-    vectors[n++] = {out.body->payload.data() + done, out.body->payload.size() - done};
+    vectors[n++] = {out.body->data() + done, out.body->size() - done};
   }
   auto* output = G_POLLABLE_OUTPUT_STREAM(g_io_stream_get_output_stream(stream_.get()));
   gsize written = 0;

@@ -35,8 +35,10 @@ class Client {
   void SendText(const std::string& text);
   /// True where an older message gave way to this one.
   bool Send(Outbox::Item item, std::size_t depth);
+  /// Slices wait in order, and are bounded by their sender.
+  void SendSlice(std::uint32_t channel, std::uint32_t subscription, SharedSliceMessage slice);
   /// The channel's messages are no longer sent.
-  void Forget(std::uint32_t channel) { outbox_.Forget(channel); }
+  void Forget(std::uint32_t channel);
   /// Sends the close frame, if the peer takes it, and ends the connection.
   void Close(foxglove::CloseCode code);
   bool closed() const { return closed_; }
@@ -51,9 +53,14 @@ class Client {
  private:
   struct Outgoing {
     std::vector<std::uint8_t> head;
-    SharedMessage body;  // may be null
+    std::shared_ptr<const std::vector<std::uint8_t>> body;  // null: a control frame
     std::size_t sent = 0;
-    std::size_t Size() const { return head.size() + (body ? body->payload.size() : 0); }
+    std::size_t Size() const { return head.size() + (body ? body->size() : 0); }
+  };
+  struct WaitingSlice {
+    std::uint32_t channel = 0;
+    std::uint32_t subscription = 0;
+    SharedSliceMessage slice;
   };
   static gboolean OnReadable(GObject*, gpointer self);
   static gboolean OnWritable(GObject*, gpointer self);
@@ -62,6 +69,11 @@ class Client {
   void SendFrame(std::vector<std::uint8_t> frame);
   void Write();
   bool TakeNext();
+  bool TakeControl();
+  bool TakeSlice();
+  bool TakeMessage();
+  void Begin(const foxglove::MessageHead& head, ByteView more,
+             std::shared_ptr<const std::vector<std::uint8_t>> body);
   /// Bytes written; 0 where the peer takes no more, or after an error, which closes.
   std::size_t WriteSome(const Outgoing& out);
   void WaitForRoom();
@@ -74,6 +86,7 @@ class Client {
   foxglove::MessageReader reader_;
   std::deque<std::vector<std::uint8_t>> controls_;
   std::optional<std::vector<std::uint8_t>> pong_;  // only the newest ping needs an answer
+  std::deque<WaitingSlice> slices_;
   Outbox outbox_;
   std::optional<Outgoing> current_;
   Counters counters_;

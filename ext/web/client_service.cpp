@@ -64,7 +64,8 @@ ClientService::ClientService(const ServerConfig& config, ServerCounters* counter
       counters_(*counters),
       session_id_(NewSessionId()),
       soup_(soup_server_new("server-header", "gst-lidar", nullptr)),
-      door_(soup_.get(), kMaxWaiting) {
+      door_(soup_.get(), kMaxWaiting),
+      slices_(config.max_bitrate) {
   soup_server_add_early_handler(soup_.get(), nullptr, OnHeaders, this, nullptr);
   soup_server_add_handler(soup_.get(), nullptr, OnRequest, this, nullptr);
   statistics_ = std::make_shared<Topic>(
@@ -209,6 +210,7 @@ void ClientService::Reap() {
   CountSent();
   clients_.remove_if([this](const auto& client) {
     if (!client->closed()) return false;
+    slices_.Forget(client.get());
     gone_.messages += client->counters().messages;
     gone_.bytes += client->counters().bytes;
     return true;
@@ -225,6 +227,9 @@ void ClientService::OnText(Client* client, const std::vector<std::uint8_t>& text
     case Request::Kind::kUnsubscribe:
       for (const auto id : request.unsubscribed) Unsubscribe(client, id);
       return;
+    case Request::Kind::kDrawn:
+    case Request::Kind::kLacksReference:
+      return slices_.OnRequest(client, request);
     case Request::Kind::kUnsupported:
       return client->SendText(foxglove::ErrorStatus("This server does not offer that operation."));
     case Request::Kind::kMalformed:
@@ -240,6 +245,8 @@ void ClientService::Subscribe(Client* client, const foxglove::Subscription& subs
   const bool added =
       client->subscriptions.insert_or_assign(subscription.channel_id, subscription.id).second;
   if (added) topic->second->AddSubscribers(1);
+  if (topic->second->channel().schema == foxglove::Schema::kSlice)
+    slices_.Subscribe(client, topic->second, subscription.id);
 }
 
 void ClientService::Unsubscribe(Client* client, std::uint32_t subscription_id) {
@@ -249,6 +256,7 @@ void ClientService::Unsubscribe(Client* client, std::uint32_t subscription_id) {
   });
   if (found == all.end()) return;
   client->Forget(found->first);
+  slices_.Unsubscribe(client, found->first);
   const auto topic = topics_.find(found->first);
   if (topic != topics_.end()) topic->second->AddSubscribers(-1);
   all.erase(found);
@@ -266,6 +274,7 @@ void ClientService::SetTopics(const std::vector<SharedTopic>& topics) {
   }
   for (const auto& [id, topic] : topics_)
     if (wanted.count(id) == 0) gone.push_back(id);
+  for (const auto id : gone) slices_.ForgetChannel(id);
   topics_ = std::move(wanted);
   if (come.empty() && gone.empty()) return;
   for (const auto& client : clients_) {
@@ -290,6 +299,11 @@ void ClientService::Deliver(std::uint32_t channel, const SharedMessage& message)
   CountSent();
 }
 
+void ClientService::DeliverSlice(std::uint32_t channel, const SharedSliceMessage& slice) {
+  slices_.Deliver(channel, slice);
+  CountSent();
+}
+
 void ClientService::CountSent() {
   Client::Counters sum = gone_;
   for (const auto& client : clients_) {
@@ -298,9 +312,11 @@ void ClientService::CountSent() {
   }
   counters_.messages_sent = sum.messages;
   counters_.bytes_sent = sum.bytes;
+  counters_.scans_skipped = slices_.scans_skipped();
 }
 
 void ClientService::SendStatistics() {
+  slices_.Tick();
   if (!statistics_->wanted() || !config_.statistics) return;
   const std::string text = config_.statistics();
   Message message;

@@ -14,6 +14,7 @@
 #include "ext/web/front_door.h"
 #include "ext/web/glib_ptr.h"
 #include "ext/web/server_config.h"
+#include "ext/web/slice_service.h"
 #include "ext/web/topic.h"
 
 namespace lidar::web {
@@ -31,6 +32,7 @@ class ClientService {
   /// Tells clients of what came and went.
   void SetTopics(const std::vector<SharedTopic>& topics);
   void Deliver(std::uint32_t channel, const SharedMessage& message);
+  void DeliverSlice(std::uint32_t channel, const SharedSliceMessage& slice);
 
  private:
   static void OnHeaders(SoupServer*, SoupServerMessage*, const char*, GHashTable*, gpointer self);
@@ -62,6 +64,7 @@ class ClientService {
   Client::Counters gone_;  // of the clients that have left
   std::map<std::uint32_t, SharedTopic> topics_;
   SharedTopic statistics_;  // always there
+  SliceService slices_;
   SourcePtr reap_;
   SourcePtr tick_;
   SourcePtr statistics_timer_;

@@ -4,6 +4,7 @@
 #include <mutex>
 #include <optional>
 
+#include "ext/web/slice_stream.h"
 #include "gst/common/buffer_map.h"
 #include "gst/common/element_class.h"
 #include "gst/common/properties.h"
@@ -31,7 +32,7 @@ constexpr const char* kPoses = "/pose";
 /// A scan has no more slices in our streams; each has a transform.
 constexpr guint kMaxDepth = 64;
 
-enum class Kind { kNone, kCloud, kDraco, kOdometry };
+enum class Kind { kNone, kCloud, kDraco, kOdometry, kSlices };
 
 struct State {
   std::mutex mutex;  // guards the settings and the pointer
@@ -42,6 +43,7 @@ struct State {
   Kind kind = Kind::kNone;
   CloudInfo info;
   RefusedCaps refused;
+  std::unique_ptr<lidar::web::SliceStream> slices;  // of kSlices, which has no other topic
   SharedTopic data;
   SharedTopic transforms;
   SharedTopic poses;
@@ -81,6 +83,7 @@ namespace {
 State& StateOf(gpointer self) { return *GST_LIDAR_FOXGLOVE_INPUT(self)->state; }
 
 void CloseTopics(State* state) {
+  state->slices.reset();
   for (SharedTopic* topic : {&state->data, &state->transforms, &state->poses}) {
     if (*topic && state->used) state->used->server->Close(*topic);
     topic->reset();
@@ -118,6 +121,7 @@ Kind KindOf(GstCaps* caps, std::optional<CloudInfo>* info, std::string* why) {
   const GstStructure* s = gst_caps_get_structure(caps, 0);
   if (gst_structure_has_name(s, GST_LIDAR_DRACO_MEDIA_TYPE)) return Kind::kDraco;
   if (gst_structure_has_name(s, GST_LIDAR_ODOMETRY_MEDIA_TYPE)) return Kind::kOdometry;
+  if (gst_structure_has_name(s, GST_LIDAR_SLICE_MEDIA_TYPE)) return Kind::kSlices;
   *info = CloudInfo::FromFrameCaps(caps, why);
   if (!*info) return Kind::kNone;
   if ((*info)->fields.HasPackedXyz()) return Kind::kCloud;
@@ -134,7 +138,20 @@ guint64 ScanDurationOf(GstCaps* caps) {
   return gst_util_uint64_scale_int(GST_SECOND, d, n);
 }
 
-bool OpenTopics(GstBaseSink* sink, Kind kind) {
+bool OpenSlices(GstBaseSink* sink, const InputSettings& settings, const GstCaps* caps) {
+  State& state = StateOf(sink);
+  Hub& hub = *state.used;
+  std::string why;
+  state.slices = lidar::web::SliceStream::Open(
+      hub.server.get(), caps, {TopicName(settings, "/points"), settings.frame_id, hub.max_points},
+      {hub.points, hub.malformed}, &why);
+  if (state.slices) return true;
+  GST_ELEMENT_ERROR(sink, STREAM, FORMAT, ("Not the caps of slices to show: %s.", why.c_str()),
+                    ("%" GST_PTR_FORMAT, static_cast<gconstpointer>(caps)));
+  return false;
+}
+
+bool OpenTopics(GstBaseSink* sink, Kind kind, const GstCaps* caps) {
   State& state = StateOf(sink);
   const InputSettings settings = lidar::web::SettingsOf(GST_LIDAR_FOXGLOVE_INPUT(sink));
   switch (kind) {
@@ -145,6 +162,8 @@ bool OpenTopics(GstBaseSink* sink, Kind kind) {
                        &state.data);
     case Kind::kOdometry:
       return OpenPoses(sink, TopicName(settings, kPoses));
+    case Kind::kSlices:
+      return OpenSlices(sink, settings, caps);
     case Kind::kNone:
       break;
   }
@@ -165,9 +184,10 @@ gboolean SetCaps(GstBaseSink* sink, GstCaps* caps) {
   }
   if (info) state.info = std::move(*info);
   if (kind != Kind::kOdometry) state.used->scan_duration = ScanDurationOf(caps);
-  if (kind == state.kind) return TRUE;  // slices of another width
+  // Clouds of another width need no other channel; coded slices are another stream.
+  if (kind == state.kind && kind != Kind::kSlices) return TRUE;
   CloseTopics(&state);
-  const bool good = OpenTopics(sink, kind);
+  const bool good = OpenTopics(sink, kind, caps);
   if (!good) CloseTopics(&state);
   state.kind = good ? kind : Kind::kNone;
   return good;
@@ -238,6 +258,19 @@ bool RenderDraco(State* state, const Header& header, const BufferMap& map) {
   return true;
 }
 
+bool RenderSlice(State* state, const Header& header, GstBuffer* buffer, const BufferMap& map) {
+  ++state->used->clouds;
+  GstLidarSlice slice;
+  gst_lidar_buffer_get_slice(buffer, &slice);
+  lidar::web::SliceMessage message;
+  message.id = {slice.scan_id, slice.slice_index};
+  message.count = slice.slice_count;
+  message.first_column = slice.first_column;
+  message.unix_ns = header.unix_ns;
+  message.payload.assign(map.data(), map.data() + map.size());
+  return state->slices->Push(std::move(message));
+}
+
 /// Position and orientation as seven doubles, and the tracking.
 bool RenderOdometry(State* state, const Header& header, const BufferMap& map) {
   lidar::ByteReader in(map.view());
@@ -268,11 +301,12 @@ GstFlowReturn Render(GstBaseSink* sink, GstBuffer* buffer) {
   if (map && map.size() > 0) {
     if (state.kind == Kind::kCloud) good = RenderCloud(&state, header, map);
     if (state.kind == Kind::kDraco) good = RenderDraco(&state, header, map);
+    if (state.kind == Kind::kSlices) good = RenderSlice(&state, header, buffer, map);
     if (state.kind == Kind::kOdometry) good = RenderOdometry(&state, header, map);
   }
   if (!good) {
     ++state.used->malformed;
-    GST_WARNING_OBJECT(sink, "a buffer of another size than its caps say");
+    GST_WARNING_OBJECT(sink, "a buffer that is damaged, or of another size than its caps say");
   }
   return GST_FLOW_OK;
 }
@@ -303,7 +337,8 @@ static void gst_lidar_foxglove_input_class_init(GstLidarFoxgloveInputClass* klas
   Describe(klass, {"Foxglove input", "Sink", "One stream of foxglovesink"},
            {{"sink", GST_PAD_SINK,
              GST_LIDAR_CLOUD_MEDIA_TYPE "; " GST_LIDAR_DRACO_MEDIA_TYPE
-                                        ", geometry=xyz; " GST_LIDAR_ODOMETRY_MEDIA_TYPE}});
+                                        ", geometry=xyz; " GST_LIDAR_ODOMETRY_MEDIA_TYPE
+                                        "; " GST_LIDAR_SLICE_MEDIA_TYPE}});
   auto* sink = GST_BASE_SINK_CLASS(klass);
   sink->start = Start;
   sink->stop = Stop;

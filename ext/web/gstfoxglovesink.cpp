@@ -36,6 +36,7 @@ struct Settings {
   std::string token;
   guint max_clients = 8;
   guint max_points = 0;
+  guint max_bitrate = 0;
   bool sync = true;
 };
 
@@ -55,13 +56,14 @@ struct Counters {
   guint64 sent = 0;
   guint64 dropped = 0;
   guint64 bytes = 0;
+  guint64 skipped = 0;
   guint64 clouds = 0;
   guint64 points = 0;
   guint64 scan_duration = 0;
   guint64 malformed = 0;
 };
 
-const std::array<Stat<Counters>, 12> kStats = {{
+const std::array<Stat<Counters>, 13> kStats = {{
     {"port", &Counters::port},
     {"clients", &Counters::clients},
     {"clients-accepted", &Counters::accepted},
@@ -70,6 +72,7 @@ const std::array<Stat<Counters>, 12> kStats = {{
     {"messages-sent", &Counters::sent},
     {"messages-dropped", &Counters::dropped},
     {"bytes-sent", &Counters::bytes},
+    {"scans-skipped", &Counters::skipped},
     {"clouds", &Counters::clouds},
     {"points-sent", &Counters::points},
     {"scan-duration", &Counters::scan_duration},
@@ -87,6 +90,7 @@ Counters CountersOf(const Hub& hub) {
   c.sent = server.messages_sent;
   c.dropped = server.messages_dropped;
   c.bytes = server.bytes_sent;
+  c.skipped = server.scans_skipped;
   c.clouds = hub.clouds;
   c.points = hub.points;
   c.scan_duration = hub.scan_duration;
@@ -173,7 +177,7 @@ static StructurePtr ReadStats(GObject* object) {
   return ToStructure("application/x-foxglove-stats", kStats, counters);
 }
 
-static const std::array<Property<Settings>, 7> kProperties = {{
+static const std::array<Property<Settings>, 8> kProperties = {{
     {"port", "TCP port; 0: one that is free, as stats tell", &Settings::port, 0, 65535},
     {"bind-address", "Address to listen on; others than of this machine need a token",
      &Settings::bind_address},
@@ -182,10 +186,14 @@ static const std::array<Property<Settings>, 7> kProperties = {{
     {"max-clients", "How many may be connected at a time", &Settings::max_clients, 1, 1000},
     {"max-points", "The most points of a message, of more every n-th is sent; 0: all",
      &Settings::max_points},
+    {"max-bitrate",
+     "What the coded slices of a viewer may take at most; it gets fewer scans; 0: no limit [bit/s]",
+     &Settings::max_bitrate},
     {"sync", "Show buffers when the pipeline's clock says, not as they come", &Settings::sync},
     {"stats",
      "port, clients, clients-accepted, clients-refused, connections-evicted, messages-sent, "
-     "messages-dropped, bytes-sent [bytes], clouds, points-sent, scan-duration [ns], malformed",
+     "messages-dropped, bytes-sent [bytes], scans-skipped, clouds, points-sent, scan-duration "
+     "[ns], malformed",
      ReadStats},
 }};
 
@@ -217,6 +225,7 @@ static bool Open(GstElement* element) {
   config.port = static_cast<std::uint16_t>(s.port);
   config.token = s.token;
   config.max_clients = s.max_clients;
+  config.max_bitrate = lidar::DataRate::BitsPerSecond(s.max_bitrate);
   config.name = "gst-lidar";
   // The server ends before the element does.
   config.statistics = [element] { return lidar::web::StatisticsOf(element); };
@@ -345,7 +354,7 @@ static void gst_lidar_foxglove_sink_class_init(GstLidarFoxgloveSinkClass* klass)
             "Serves clouds, poses and statistics to browsers and to Foxglove"},
            {{"sink_%u", GST_PAD_SINK,
              "application/x-pointcloud2; application/x-draco, geometry=xyz; "
-             "application/x-odometry",
+             "application/x-odometry; application/x-lidar-slice",
              GST_PAD_REQUEST, gst_lidar_foxglove_pad_get_type()}});
   gst_type_mark_as_plugin_api(gst_lidar_foxglove_pad_get_type(), static_cast<GstPluginAPIFlags>(0));
 }

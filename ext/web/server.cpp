@@ -9,6 +9,12 @@
 #include "ext/web/client_service.h"
 
 namespace lidar::web {
+namespace {
+
+/// Some scans of several streams, where the thread is held up.
+constexpr std::size_t kMostSlices = 1024;
+
+}  // namespace
 
 Server::Server(ServerConfig config)
     : config_(std::move(config)),
@@ -63,13 +69,16 @@ void Server::Run(std::function<void(std::string)> listens) {
   g_main_context_pop_thread_default(context_.get());
 }
 
-SharedTopic Server::Open(const std::string& name, foxglove::Schema schema) {
+SharedTopic Server::Open(const std::string& name, foxglove::Schema schema, std::string stream) {
   if (name == kStatisticsTopic) return nullptr;
   const std::lock_guard lock(mutex_);
   Entry& entry = entries_[name];
-  if (entry.topic && entry.users > 0 && entry.topic->channel().schema != schema) return nullptr;
+  const bool shared = entry.topic && entry.users > 0;
+  if (shared && (entry.topic->channel().schema != schema || schema == foxglove::Schema::kSlice))
+    return nullptr;
   if (entry.users++ == 0)
-    entry.topic = std::make_shared<Topic>(foxglove::Channel{next_id_++, name, schema});
+    entry.topic =
+        std::make_shared<Topic>(foxglove::Channel{next_id_++, name, schema, std::move(stream)});
   WakeLocked();
   return entry.topic;
 }
@@ -93,6 +102,17 @@ void Server::Publish(const SharedTopic& topic, Message message) {
   WakeLocked();
 }
 
+void Server::PublishSlice(const SharedTopic& topic, SharedSliceMessage slice) {
+  if (!topic->wanted()) return;
+  const std::lock_guard lock(mutex_);
+  slices_.emplace_back(topic->channel().id, std::move(slice));
+  if (slices_.size() > kMostSlices) {
+    slices_.pop_front();
+    ++counters_.messages_dropped;
+  }
+  WakeLocked();
+}
+
 void Server::WakeLocked() {
   if (wake_pending_) return;
   wake_pending_ = true;
@@ -111,15 +131,18 @@ gboolean Server::OnWake(gpointer self) {
 void Server::Collect() {
   std::vector<SharedTopic> topics;
   std::vector<Outbox::Item> messages;
+  std::deque<std::pair<std::uint32_t, SharedSliceMessage>> slices;
   {
     const std::lock_guard lock(mutex_);
     wake_pending_ = false;
     for (const auto& [name, entry] : entries_) topics.push_back(entry.topic);
     while (auto item = inbox_.Pop()) messages.push_back(std::move(*item));
+    slices.swap(slices_);
   }
   if (!service_) return;  // it has closed
   service_->SetTopics(topics);
   for (const Outbox::Item& item : messages) service_->Deliver(item.channel_id, item.message);
+  for (const auto& [channel, slice] : slices) service_->DeliverSlice(channel, slice);
 }
 
 }  // namespace lidar::web

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // A server of Foxglove's WebSocket protocol and of its own page, in a thread of its own.
 #pragma once
+#include <deque>
 #include <functional>
 #include <map>
 #include <memory>
@@ -30,12 +31,14 @@ class Server {
   std::uint16_t port() const { return port_; }
   const ServerCounters& counters() const { return counters_; }
 
-  /// The channel `topic`, which several may share. None where it has another schema.
-  SharedTopic Open(const std::string& topic, foxglove::Schema schema);
+  /// The channel `topic`, which several may share, but for one of slices: `stream` describes those.
+  /// None where it has another schema.
+  SharedTopic Open(const std::string& topic, foxglove::Schema schema, std::string stream = {});
   /// The last pad that opened the channel closes it.
   void Close(const SharedTopic& topic);
   /// The message waits for the server's thread. Where too many wait, the oldest go.
   void Publish(const SharedTopic& topic, Message message);
+  void PublishSlice(const SharedTopic& topic, SharedSliceMessage slice);
 
  private:
   struct Entry {
@@ -58,8 +61,9 @@ class Server {
   std::unique_ptr<ClientService> service_;  // of the thread
 
   std::mutex mutex_;  // guards what follows; never held while anything is called
-  std::map<std::string, Entry> entries_;  // by topic
-  Outbox inbox_;                          // for the thread
+  std::map<std::string, Entry> entries_;                             // by topic
+  Outbox inbox_;                                                     // for the thread
+  std::deque<std::pair<std::uint32_t, SharedSliceMessage>> slices_;  // the same, by channel
   std::uint32_t next_id_ = 1;
   bool wake_pending_ = false;
 };

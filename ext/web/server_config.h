@@ -6,6 +6,8 @@
 #include <functional>
 #include <string>
 
+#include "src/base/units.h"
+
 namespace lidar::web {
 
 /// The channel of ServerConfig::statistics.
@@ -16,6 +18,7 @@ struct ServerConfig {
   std::uint16_t port = 0;  // 0: one that is free
   std::string token;       // empty: everybody may come
   unsigned max_clients = 8;
+  DataRate max_bitrate;                     // of the slices of a viewer; 0: no limit
   std::string name;                         // as clients show it
   std::function<std::string()> statistics;  // JSON; called in the server's thread
 };
@@ -29,6 +32,7 @@ struct ServerCounters {
   Count messages_sent{0};
   Count messages_dropped{0};  // a slow client gets a newer one instead
   Count bytes_sent{0};
+  Count scans_skipped{0};        // a slow viewer of slices gets a newer one instead
   Count malformed{0};            // requests and messages that nobody of this protocol sends
   Count connections_evicted{0};  // were silent for long, or too many
 };

@@ -3,11 +3,14 @@
 #pragma once
 #include <atomic>
 #include <cstdint>
+#include <functional>
 #include <memory>
+#include <mutex>
 #include <utility>
 #include <vector>
 
 #include "src/foxglove/protocol.h"
+#include "src/viewer/feed.h"
 
 namespace lidar::web {
 
@@ -18,6 +21,14 @@ struct Message {
 };
 using SharedMessage = std::shared_ptr<const Message>;
 
+/// A coded slice, as it goes to viewers.
+struct SliceMessage final : viewer::Slice {
+  std::uint64_t unix_ns = 0;
+  std::uint32_t first_column = 0;
+  std::vector<std::uint8_t> payload;
+};
+using SharedSliceMessage = std::shared_ptr<const SliceMessage>;
+
 class Topic {
  public:
   explicit Topic(foxglove::Channel channel) : channel_(std::move(channel)) {}
@@ -27,12 +38,34 @@ class Topic {
   void set_depth(std::size_t depth) { depth_ = depth > 0 ? depth : 1; }
   /// Whether anybody listens: else a message need not be made.
   bool wanted() const { return subscribers_ > 0; }
-  void AddSubscribers(int n) { subscribers_ += n; }
+  void AddSubscribers(int n) {
+    subscribers_ += n;
+    if (n > 0) TellOfWish();
+  }
+  /// Of slices: whether a viewer needs some that stand alone.
+  bool wants_recoded() const { return wants_recoded_; }
+  void set_wants_recoded(bool wanted) {
+    if (wants_recoded_.exchange(wanted) != wanted && wanted) TellOfWish();
+  }
+  /// The server's thread calls `tell` when somebody begins to want something. Null: nobody does any
+  /// more.
+  void set_on_wish(std::function<void()> tell) {
+    const std::lock_guard lock(mutex_);
+    on_wish_ = std::move(tell);
+  }
 
  private:
+  void TellOfWish() {
+    const std::lock_guard lock(mutex_);
+    if (on_wish_) on_wish_();
+  }
+
   const foxglove::Channel channel_;
+  std::mutex mutex_;
+  std::function<void()> on_wish_;
   std::atomic<std::size_t> depth_{1};
   std::atomic<int> subscribers_{0};
+  std::atomic<bool> wants_recoded_{false};
 };
 using SharedTopic = std::shared_ptr<Topic>;
 

@@ -61,7 +61,7 @@ class Pace {
   void LearnDelay(Time now, Duration delay, bool alone);
   void LearnRate(Time now, DataRate rate);
 
-  const DataRate max_bitrate_;
+  DataRate max_bitrate_;
   DataSize credit_;  // of max_bitrate; negative: overdrawn
   Time filled_{};
   std::deque<Sent> sent_;  // unacknowledged, in order

@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// A stream of coded slices: offered as it is, and decoded in a thread of its own where somebody
+// needs that.
+#pragma once
+#include <condition_variable>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <thread>
+
+#include "ext/web/server.h"
+#include "gst/lidar/cloud_info.h"
+#include "src/viewer/backlog.h"
+
+namespace lidar::web {
+
+class SliceStream {
+ public:
+  struct Settings {
+    std::string topic;     // of the decoded clouds; slices have it with kSlicesEnding
+    std::string frame_id;  // of both
+    guint max_points = 0;  // of a decoded message; 0: no limit
+  };
+  struct Counters {
+    std::atomic<guint64>& points;     // of decoded clouds that were sent to somebody
+    std::atomic<guint64>& malformed;  // slices that cannot be decoded
+  };
+  /// Offers both channels. None, and why, where the caps are not those of slices to decode, or
+  /// another stream has a topic. `server` and what `counters` name outlive the stream.
+  static std::unique_ptr<SliceStream> Open(Server* server, const GstCaps* caps, Settings settings,
+                                           Counters counters, std::string* why);
+  /// Takes back the channels.
+  ~SliceStream();
+  SliceStream(const SliceStream&) = delete;
+  SliceStream& operator=(const SliceStream&) = delete;
+
+  /// From the streaming thread. False for a slice that no decoder takes.
+  bool Push(SliceMessage slice);
+
+  static constexpr const char* kSlicesEnding = "/slices";
+
+ private:
+  class Decoding;
+
+  SliceStream(Server* server, Settings settings, Counters counters);
+  bool OpenTopics(const GstCaps* caps, const gst::CloudInfo& info, std::string* why);
+  void Wake();
+  void Run();
+  void Publish(const SliceMessage& slice, bool recodes);
+  /// Whether slices are to be decoded now. With the lock.
+  bool IsWanted();
+
+  Server* const server_;
+  const Settings settings_;
+  const Counters counters_;
+  SharedTopic slices_;
+  SharedTopic clouds_;
+  bool has_ranges_ = false;
+  std::unique_ptr<Decoding> decoding_;  // of the thread
+
+  std::mutex mutex_;  // guards what follows
+  std::condition_variable change_;
+  viewer::Backlog backlog_;
+  gint64 recoded_wanted_us_ = 0;  // last time
+  bool recodes_ = false;          // that is not long ago
+  bool stopping_ = false;
+  std::thread thread_;
+};
+
+}  // namespace lidar::web

@@ -1,0 +1,277 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Coded slices: to viewers as they are, decoded for others, re-coded for those that came late.
+#include <gtest/gtest.h>
+
+#include "src/base/base64.h"
+#include "src/codec/slice_decoder.h"
+#include "src/codec/slice_links.h"
+#include "tests/elements/web/web_peer.h"
+#include "tests/support/proto_reader.h"
+
+namespace lidar::test {
+namespace {
+
+constexpr guint kSlices = 4;  // a scan
+
+gst::CapsPtr CapsOf(GstHarness* harness) {
+  return gst::CapsPtr(gst_pad_get_current_caps(harness->sinkpad));
+}
+
+/// A sensor that stands still, and a coder that hears that each slice arrives: it refers to them.
+class Robot {
+ public:
+  explicit Robot(const char* coder = "lidarenc effort=2") {
+    clouds_.reset(gst_harness_new_parse(
+        "lidartestsrc model=os0-32 mode=512x10 slices-per-scan=4 speed=0 num-buffers=400"));
+    gst_harness_play(clouds_.get());
+    coder_.reset(gst_harness_new_parse(coder));
+  }
+  gst::BufferPtr Next() {
+    GstBuffer* cloud = gst_harness_pull(clouds_.get());
+    if (!has_caps_) gst_harness_set_src_caps(coder_.get(), CapsOf(clouds_.get()).release());
+    has_caps_ = true;
+    EXPECT_EQ(gst_harness_push(coder_.get(), cloud), GST_FLOW_OK);
+    gst::BufferPtr slice(gst_harness_pull(coder_.get()));
+    GstLidarSlice name;
+    gst_lidar_buffer_get_slice(slice.get(), &name);
+    GstLidarSlicesReceived received{};
+    received.receiver = 1;
+    received.count = 1;
+    received.slices[0] = {name.scan_id, name.slice_index};
+    gst_harness_push_upstream_event(coder_.get(), gst_lidar_event_new_slices_received(&received));
+    return slice;
+  }
+  gst::CapsPtr caps() { return CapsOf(coder_.get()); }
+
+ private:
+  Harness clouds_;
+  Harness coder_;
+  bool has_caps_ = false;
+};
+
+/// The header of a slice, as the page reads it.
+struct SliceReader {
+  explicit SliceReader(const Received& received)
+      : in(reinterpret_cast<const std::uint8_t*>(received.payload.data()),
+           received.payload.size()) {
+    version = in.U8();
+    flags = in.U8();
+    index = in.Le16();
+    count = in.Le16();
+    in.Skip(2);
+    scan = in.Le32();
+    first_column = in.Le32();
+    sent_ns = in.Le64();
+    slice = in.Rest();
+  }
+  ByteReader in;
+  unsigned version = 0;
+  unsigned flags = 0;
+  std::uint32_t index = 0;
+  std::uint32_t count = 0;
+  std::uint32_t scan = 0;
+  std::uint32_t first_column = 0;
+  std::uint64_t sent_ns = 0;
+  ByteView slice;
+};
+
+/// A page: decodes what comes, and acknowledges it.
+class Viewer {
+ public:
+  explicit Viewer(Sink* sink) : peer(sink) {
+    peer.Subscribe("/points/slices", 9);
+    const auto stream =
+        nlohmann::json::parse(peer.channels["/points/slices"]["schema"].get<std::string>());
+    fields_ = stream["fields"];
+    const auto bytes = FromBase64(stream["sensorModel"].get<std::string>());
+    const auto model = SensorModel::Parse({bytes.data(), bytes.size()});
+    EXPECT_TRUE(model);
+    const auto fields = PointFields::Parse(fields_);
+    format_ = {
+        {*fields, fields->MinimumStep()}, static_cast<std::uint32_t>(model->beams.size()), *model};
+    decoder_.emplace(format_, 1U << 20);
+  }
+  /// The next slice; it decodes.
+  void Draw(bool acknowledge = true) {
+    last = peer.Next();
+    const SliceReader slice(last);
+    EXPECT_TRUE(decoder_->Decode(slice.slice)) << slice.scan << "." << slice.index;
+    if (slice.flags == 0) ++own;
+    if (slice.flags == 1) ++recoded;
+    if (acknowledge) Acknowledge(slice.scan, slice.index);
+  }
+  void Acknowledge(std::uint32_t scan, std::uint32_t index) {
+    peer.SendText(
+        nlohmann::json{{"op", "drawn"}, {"subscriptionId", 9}, {"scan", scan}, {"slice", index}}
+            .dump());
+  }
+
+  Peer peer;
+  Received last;
+  unsigned own = 0;
+  unsigned recoded = 0;
+
+ private:
+  std::string fields_;
+  codec::CloudFormat format_;
+  std::optional<codec::SliceDecoder> decoder_;
+};
+
+struct Edge {
+  Robot robot;
+  Sink sink;
+  bool has_caps = false;
+
+  explicit Edge(const std::string& properties = "") : sink(properties) {}
+  std::string Push() {
+    gst::BufferPtr buffer = robot.Next();
+    if (!has_caps) gst_harness_set_src_caps(sink.harness(), robot.caps().release());
+    has_caps = true;
+    GstMapInfo map;
+    gst_buffer_map(buffer.get(), &map, GST_MAP_READ);
+    std::string bytes(reinterpret_cast<const char*>(map.data), map.size);
+    gst_buffer_unmap(buffer.get(), &map);
+    EXPECT_EQ(gst_harness_push(sink.harness(), buffer.release()), GST_FLOW_OK);
+    return bytes;
+  }
+  /// What the element has asked the robot for.
+  guint key_requests() {
+    guint n = 0;
+    while (const gst::EventPtr event{gst_harness_try_pull_upstream_event(sink.harness())})
+      if (gst_event_has_name(event.get(), "GstForceKeyUnit")) ++n;
+    return n;
+  }
+  void PushScans(guint n) {
+    for (guint i = 0; i < n * kSlices; ++i) Push();
+  }
+};
+
+TEST(Slices, GoToAViewerAsTheyAre) {
+  Edge edge;
+  const std::string first = edge.Push();
+  Viewer viewer(&edge.sink);
+  EXPECT_EQ(viewer.peer.channels["/points/slices"]["schemaName"], "lidar.Slice");
+  EXPECT_EQ(viewer.peer.channels["/points"]["schemaName"], "foxglove.PointCloud");
+  std::uint64_t bytes = 0;
+  for (guint i = 1; i < 10 * kSlices; ++i) {
+    const std::string pushed = edge.Push();
+    viewer.Draw();
+    const SliceReader slice(viewer.last);
+    EXPECT_EQ(slice.version, 1U);
+    EXPECT_EQ(slice.scan, i / kSlices);
+    EXPECT_EQ(slice.index, i % kSlices);
+    EXPECT_EQ(slice.count, kSlices);
+    EXPECT_EQ(slice.first_column, i % kSlices * 128);
+    EXPECT_GE(slice.sent_ns, viewer.last.unix_ns);
+    if (slice.flags == 0) {
+      EXPECT_EQ(std::string(slice.slice.begin(), slice.slice.end()), pushed);
+    }
+    bytes += pushed.size();
+  }
+  // The first slice of all came before the viewer.
+  EXPECT_GE(viewer.own, 10 * kSlices - 10 - 1);
+  EXPECT_LT(edge.sink.Stat("bytes-sent"), bytes * 11 / 10 + 8192);
+  EXPECT_EQ(edge.sink.Stat("points-sent"), 0U);
+  EXPECT_EQ(edge.key_requests(), 0U);
+}
+
+TEST(Slices, AreRecodedForAViewerThatComesLate) {
+  Edge edge;
+  edge.PushScans(5);
+  Viewer viewer(&edge.sink);
+  for (guint i = 0; i < 3 * kSlices; ++i) {
+    edge.Push();
+    viewer.Draw();
+  }
+  EXPECT_EQ(viewer.own, 0U);
+  EXPECT_EQ(viewer.recoded, 3 * kSlices);
+  EXPECT_EQ(edge.key_requests(), 0U);
+}
+
+TEST(Slices, AreDecodedForOthersWhileSomebodySubscribes) {
+  Edge edge;
+  edge.PushScans(3);
+  EXPECT_EQ(edge.sink.Stat("points-sent"), 0U);
+  Peer foxglove(&edge.sink);
+  foxglove.Subscribe("/points", 4);
+  edge.Push();
+  Received cloud = foxglove.Next();
+  const ProtoMessage message(
+      {reinterpret_cast<const std::uint8_t*>(cloud.payload.data()), cloud.payload.size()});
+  ASSERT_TRUE(message.whole());
+  EXPECT_GT(message.Text(6).size(), 1000U);
+  EXPECT_GT(edge.sink.Stat("points-sent"), 100U);
+}
+
+TEST(Slices, OfNewestScansGoToAViewerThatFallsBehind) {
+  Edge edge;
+  edge.Push();
+  Viewer viewer(&edge.sink);
+  for (guint i = 1; i < 2 * kSlices; ++i) {
+    edge.Push();
+    viewer.Draw(false);
+  }
+  edge.PushScans(19);
+  const std::uint32_t newest = 20;
+  viewer.peer.Sync();
+  EXPECT_TRUE(viewer.peer.received.empty());
+  EXPECT_GE(edge.sink.Stat("scans-skipped"), 15U);
+  viewer.Acknowledge(1, kSlices - 1);
+  for (guint i = 0; i < kSlices; ++i) viewer.Draw();
+  EXPECT_EQ(SliceReader(viewer.last).scan, newest);
+}
+
+TEST(Slices, AfterALackStandAlone) {
+  Edge edge;
+  edge.Push();
+  Viewer viewer(&edge.sink);
+  viewer.peer.SendText(R"({"op":"lacksReference","subscriptionId":9})");
+  viewer.peer.Sync();
+  for (guint i = 0; i < 2 * kSlices; ++i) {
+    edge.Push();
+    viewer.Draw();
+  }
+  viewer.peer.SendText(R"({"op":"lacksReference","subscriptionId":9})");
+  viewer.peer.Sync();
+  const unsigned before = viewer.recoded;
+  for (guint i = 0; i < kSlices; ++i) {
+    edge.Push();
+    viewer.Draw();
+  }
+  EXPECT_EQ(viewer.recoded, before + kSlices);
+}
+
+TEST(Slices, ThatAreDamagedAreCountedAndGoToNobody) {
+  Edge edge;
+  edge.Push();
+  Viewer viewer(&edge.sink);
+  gst_harness_push(edge.sink.harness(), gst_buffer_new_memdup("damaged", 7));
+  EXPECT_EQ(edge.sink.Stat("malformed"), 1U);
+  edge.Push();
+  viewer.Draw();
+  EXPECT_EQ(SliceReader(viewer.last).index, 1U);
+}
+
+TEST(Slices, OfAnotherStreamHaveAnotherChannel) {
+  Edge edge;
+  edge.Push();
+  Viewer viewer(&edge.sink);
+  const auto id = viewer.peer.channels["/points/slices"]["id"].get<int>();
+  gst::CapsPtr caps(gst_caps_make_writable(edge.robot.caps().release()));
+  gst_caps_set_simple(caps.get(), "framerate", GST_TYPE_FRACTION, 20, 1, nullptr);
+  gst_harness_set_src_caps(edge.sink.harness(), caps.release());
+  EXPECT_TRUE(WaitUntil([&] {
+    const auto found = viewer.peer.channels.find("/points/slices");
+    return found != viewer.peer.channels.end() && found->second["id"] != id;
+  }));
+}
+
+TEST(Slices, WithoutASensorModelAreRefused) {
+  Sink sink;
+  gst_harness_set_src_caps_str(sink.harness(), "application/x-lidar-slice,geometry=range");
+  EXPECT_EQ(gst_harness_push(sink.harness(), gst_buffer_new_memdup("slice", 5)),
+            GST_FLOW_NOT_NEGOTIATED);
+}
+
+}  // namespace
+}  // namespace lidar::test
