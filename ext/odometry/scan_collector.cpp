@@ -2,8 +2,10 @@
 #include "ext/odometry/scan_collector.h"
 
 #include <array>
-#include <cstring>
 #include <utility>
+
+#include "src/cloud/field_number.h"
+#include "src/cloud/point_math.h"
 
 namespace lidar::gst {
 namespace {
@@ -16,6 +18,13 @@ constexpr std::size_t kMaxPoints = std::size_t{1} << 22;
 
 bool ScanCollector::SetInfo(const CloudInfo& info) {
   info_ = info;
+  const auto copied = [](const PointField* field) {
+    return field != nullptr ? std::optional(*field) : std::nullopt;
+  };
+  time_ = copied(TimeFieldOf(info.fields));
+  const PointField* ring = info.fields.Find("ring");
+  ring_ = copied(ring != nullptr ? ring : info.fields.Find("channel"));
+  if (ring_ && ring_->type != FieldType::kU8 && ring_->type != FieldType::kU16) ring_.reset();
   return info.fields.HasPackedXyz();
 }
 
@@ -39,26 +48,46 @@ void ScanCollector::Add(const GstLidarSlice& slice, Time time, const guint8* poi
   if (!open_) Open(slice, time);
   next_index_ = slice.slice_index + 1;
   count_ = slice.slice_count;
-  const gsize count = size / info_.point_step;
-  const gsize width = count / info_.height;
-  // Only an organised cloud tells in which column a point was sampled.
+  const PointsInMemory memory{points, size / info_.point_step, info_.point_step,
+                              info_.fields.Find("x")->offset};
+  const std::vector<float> phases = PhasesOf(slice, memory);
+  const gsize width = memory.count / info_.height;
   const bool organised = info_.height > 1 && width > 0;
-  const bool timed = organised || slice.slice_count > 1;
-  const auto slices = static_cast<float>(slice.slice_count);
-  const float first = static_cast<float>(slice.slice_index) / slices;
-  const float per_column = organised ? 1 / (static_cast<float>(width) * slices) : 0;
-  const guint32 offset = info_.fields.Find("x")->offset;
-  scan_.points.points.reserve(scan_.points.points.size() + count);
-  for (gsize i = 0; i < count; ++i) {
-    std::array<float, 3> p;
-    std::memcpy(p.data(), points + i * info_.point_step + offset, sizeof p);
+  scan_.points.points.reserve(scan_.points.points.size() + memory.count);
+  for (gsize i = 0; i < memory.count; ++i) {
+    const guint8* point = points + i * memory.step;
+    const std::array<float, 3> p = PositionAt(point + memory.xyz_offset);
     if (p[0] == 0 && p[1] == 0 && p[2] == 0) continue;  // no return
     scan_.points.points.push_back(Eigen::Vector3f(p[0], p[1], p[2]).cast<double>());
-    if (organised) scan_.points.rings.push_back(static_cast<std::uint16_t>(i / width));
-    if (!timed) continue;
-    const float column = organised ? static_cast<float>(i % width) : 0;
-    scan_.points.phases.push_back(first + column * per_column);
+    if (organised)
+      scan_.points.rings.push_back(static_cast<std::uint16_t>(i / width));
+    else if (ring_)
+      scan_.points.rings.push_back(
+          static_cast<std::uint16_t>(ReadNumber(point + ring_->offset, ring_->type, false)));
+    if (!phases.empty()) scan_.points.phases.push_back(phases[i]);
   }
+}
+
+/// The phases of all points in the scan. A time field says more than the column, and that more than
+/// the slice; empty where there is none of them.
+std::vector<float> ScanCollector::PhasesOf(const GstLidarSlice& slice,
+                                           const PointsInMemory& points) const {
+  const auto slices = static_cast<float>(slice.slice_count);
+  const float first = static_cast<float>(slice.slice_index) / slices;
+  const auto scan_s = std::chrono::duration<double>(scan_.duration).count();
+  if (time_) {
+    std::vector<float> phases = SecondsOf(*time_, points, scan_s / slice.slice_count);
+    for (float& phase : phases) phase = first + phase / static_cast<float>(scan_s);
+    if (!phases.empty()) return phases;
+  }
+  const gsize width = points.count / info_.height;
+  const bool organised = info_.height > 1 && width > 0;
+  if (!organised && slice.slice_count == 1) return {};
+  std::vector<float> phases(points.count, first);
+  if (!organised) return phases;
+  const float per_column = 1 / (static_cast<float>(width) * slices);
+  for (gsize i = 0; i < points.count; ++i) phases[i] += static_cast<float>(i % width) * per_column;
+  return phases;
 }
 
 std::optional<CollectedScan> ScanCollector::Take() {

@@ -2,7 +2,9 @@
 // Gathers the points of a scan from its slices, with their phases in the sweep.
 #pragma once
 #include <optional>
+#include <vector>
 
+#include "ext/odometry/point_times.h"
 #include "gst/lidar/cloud_info.h"
 #include "gst/lidar/gstlidar.h"
 #include "src/odometry/odometry.h"
@@ -34,8 +36,10 @@ class ScanCollector {
 
  private:
   void Open(const GstLidarSlice& slice, Time time);
+  std::vector<float> PhasesOf(const GstLidarSlice& slice, const PointsInMemory& points) const;
 
   CloudInfo info_;
+  std::optional<PointField> time_, ring_;  // where points have them
   CollectedScan scan_;
   bool open_ = false;
   guint scan_id_ = 0;

@@ -93,6 +93,30 @@ TEST_F(Odometry, PutsThePoseOnEveryScan) {
   EXPECT_EQ(CountMessages("odometry"), 20U);
 }
 
+/// How far the last 10 of 20 scans of a drive of 10 m/s lead.
+double DriveOf(const std::string& model, const char* deskew) {
+  const Harness h(gst_harness_new_parse(
+      ("lidartestsrc speed=10 num-buffers=20 model=" + model + " ! lidarodometry deskew=" + deskew)
+          .c_str()));
+  gst_harness_play(h.get());
+  GstLidarPose middle{};
+  GstLidarPose last{};
+  for (int i = 0; i < 20; ++i) {
+    const BufferPtr scan(gst_harness_pull(h.get()));
+    EXPECT_TRUE(gst_lidar_buffer_get_pose(scan.get(), &last));
+    if (i == 9) middle = last;
+  }
+  for (int k = 0; k < 3; ++k) last.position[k] -= middle.position[k];
+  return Distance(last);
+}
+
+TEST_F(Odometry, FollowsCloudsOfDriversByTheTimesOfTheirPoints) {
+  EXPECT_NEAR(DriveOf("vlp-16", "true"), 10, 0.1);
+  EXPECT_NEAR(DriveOf("xt32", "true"), 10, 0.1);
+  EXPECT_NEAR(DriveOf("mid-360", "true"), 10, 0.1);
+  EXPECT_GT(std::abs(DriveOf("mid-360", "false") - 10), 0.2);
+}
+
 TEST_F(Odometry, BeginsAtItsInitialPose) {
   // A quarter turn to the left: who drives along x goes along y.
   Start(1, 10, "initial-pose=\"100 20 3 0 0 0.70710678 0.70710678\"");

@@ -3,6 +3,10 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <cstring>
+#include <type_traits>
+
 namespace lidar::gst {
 namespace {
 
@@ -68,6 +72,86 @@ TEST_F(Collector, OfPointsInNoOrderOnlyTheSliceTellsTheTime) {
   EXPECT_EQ(collector_.Take()->points.phases, (std::vector<float>{.25, .25}));
   Add(8, 0, 1, kStart, 2);
   EXPECT_TRUE(collector_.Take()->points.phases.empty());
+}
+
+/// Four points, 25 ms apart, with a time field.
+template <class T>
+std::vector<float> PhasesWith(const char* field, const std::vector<T>& times,
+                              const GstLidarSlice& slice = {7, 0, 1, 0}) {
+  CloudInfo info;
+  info.fields.Add("x", FieldType::kF32).Add("y", FieldType::kF32).Add("z", FieldType::kF32);
+  const bool is_float = std::is_floating_point_v<T>;
+  info.fields.Add(field, sizeof(T) == 8 ? FieldType::kF64
+                         : is_float     ? FieldType::kF32
+                                        : FieldType::kU32);
+  info.point_step = info.fields.MinimumStep();
+  info.framerate_n = 10;
+  ScanCollector collector;
+  EXPECT_TRUE(collector.SetInfo(info));
+  std::vector<guint8> bytes(info.point_step * times.size());
+  for (std::size_t i = 0; i < times.size(); ++i) {
+    const float x = 1;
+    std::memcpy(bytes.data() + i * info.point_step, &x, sizeof x);
+    std::memcpy(bytes.data() + i * info.point_step + 12, &times[i], sizeof times[i]);
+  }
+  collector.Add(slice, kStart, bytes.data(), bytes.size());
+  return collector.Take()->points.phases;
+}
+
+void ExpectQuarters(const std::vector<float>& phases) {
+  ASSERT_EQ(phases.size(), 4U);
+  for (std::size_t i = 0; i < 4; ++i) EXPECT_NEAR(phases[i], 0.25 * static_cast<double>(i), 1e-5);
+}
+
+TEST(PointTimes, AreTakenAsTheDriversGiveThem) {
+  // Ouster and Nebula [ns since the cloud], Velodyne [s], which ends at the cloud's time.
+  ExpectQuarters(PhasesWith<guint32>("t", {0, 25'000'000, 50'000'000, 75'000'000}));
+  ExpectQuarters(PhasesWith<guint32>("time_stamp", {9, 25'000'009, 50'000'009, 75'000'009}));
+  ExpectQuarters(PhasesWith<float>("time", {-0.075F, -0.05F, -0.025F, 0}));
+  // Hesai and RoboSense [s since 1970], Livox [ns since 1970], a sensor without a clock [us].
+  constexpr double kNow = 1'700'000'000;
+  ExpectQuarters(PhasesWith<double>("timestamp", {kNow, kNow + .025, kNow + .05, kNow + .075}));
+  ExpectQuarters(PhasesWith<double>(
+      "timestamp", {1e9 * kNow, 1e9 * kNow + 25e6, 1e9 * kNow + 50e6, 1e9 * kNow + 75e6}));
+  ExpectQuarters(PhasesWith<double>("timestamp", {4e6, 4e6 + 25e3, 4e6 + 50e3, 4e6 + 75e3}));
+}
+
+TEST(PointTimes, CountWithinTheirSlice) {
+  const auto phases =
+      PhasesWith<guint32>("t", {0, 12'500'000, 25'000'000, 37'500'000}, {7, 1, 2, 0});
+  ASSERT_EQ(phases.size(), 4U);
+  EXPECT_NEAR(phases[0], 0.5, 1e-5);
+  EXPECT_NEAR(phases[3], 0.875, 1e-5);
+}
+
+TEST(PointTimes, ThatMakeNoSweepAreLeftOut) {
+  EXPECT_TRUE(PhasesWith<guint32>("t", {0, 0, 0, 0}).empty());
+  EXPECT_TRUE(PhasesWith<double>("timestamp", {0, 1.7e9, 1.7e9, 1.7e9}).empty());
+  EXPECT_TRUE(PhasesWith<double>("timestamp", {std::nan(""), 1e300, -1e300, 0}).empty());
+  EXPECT_TRUE(PhasesWith<float>("intensity", {0, .025F, .05F, .075F}).empty());
+}
+
+TEST(PointTimes, MayGoBack) {
+  const auto phases = PhasesWith<float>("time", {0.05F, 0, 0.075F, 0.025F});
+  ASSERT_EQ(phases.size(), 4U);
+  EXPECT_NEAR(phases[0], 0.5, 1e-5);
+  EXPECT_NEAR(phases[1], 0, 1e-5);
+}
+
+TEST(Rings, OfCloudsOfOneRowComeFromTheirField) {
+  for (const char* name : {"ring", "channel"}) {
+    CloudInfo info;
+    info.fields.Add("x", FieldType::kF32).Add("y", FieldType::kF32).Add("z", FieldType::kF32);
+    info.fields.Add(name, FieldType::kU16);
+    info.point_step = 14;
+    ScanCollector collector;
+    ASSERT_TRUE(collector.SetInfo(info));
+    std::vector<guint8> bytes(28, 1);
+    bytes[12] = 3;
+    bytes[13] = 0;
+    collector.Add({7, 0, 1, 0}, kStart, bytes.data(), bytes.size());
+    EXPECT_EQ(collector.Take()->points.rings, (std::vector<std::uint16_t>{3, 0x0101}));
+  }
 }
 
 TEST_F(Collector, ANewScanBeginsWithItsIdOrWithASliceThatCameAlready) {

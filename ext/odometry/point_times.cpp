@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "ext/odometry/point_times.h"
+
+#include <algorithm>
+#include <limits>
+
+#include "src/cloud/field_number.h"
+#include "src/cloud/point_math.h"
+
+namespace lidar::gst {
+namespace {
+
+// The least of a unit is above the most of the next, a thousandth of it.
+constexpr double kShortestPart = 0.01;  // of a sweep
+constexpr double kLongestPart = 4;
+
+/// 0: the samples last as long in no unit.
+double UnitFor(double span, double sweep_s) {
+  for (const double unit : {1.0, 1e-3, 1e-6, 1e-9}) {
+    const double part = span * unit / sweep_s;
+    if (part >= kShortestPart && part <= kLongestPart) return unit;
+  }
+  return 0;
+}
+
+}  // namespace
+
+const PointField* TimeFieldOf(const PointFields& fields) {
+  for (const char* name : {"t", "time", "timestamp", "time_stamp", "offset_time"})
+    if (const PointField* field = fields.Find(name)) return field;
+  return nullptr;
+}
+
+std::vector<float> SecondsOf(const PointField& field, const PointsInMemory& points,
+                             double sweep_s) {
+  std::vector<double> times(points.count);
+  double first = std::numeric_limits<double>::infinity();
+  double last = -first;
+  for (std::size_t i = 0; i < points.count; ++i) {
+    const std::uint8_t* point = points.bytes + i * points.step;
+    times[i] = ReadNumber(point + field.offset, field.type, false);
+    // What is no return often has no time, either.
+    if (!IsReturn(PositionAt(point + points.xyz_offset))) continue;
+    first = std::min(first, times[i]);
+    last = std::max(last, times[i]);
+  }
+  const double unit = UnitFor(last - first, sweep_s);
+  if (!(unit > 0)) return {};
+  std::vector<float> seconds(points.count);
+  std::transform(times.begin(), times.end(), seconds.begin(), [&](double time) {
+    // A point that is no return may have anything.
+    return time > first ? static_cast<float>((std::min(time, last) - first) * unit) : 0.0F;
+  });
+  return seconds;
+}
+
+}  // namespace lidar::gst
