@@ -15,7 +15,7 @@ constexpr const char* kParameterUsage =
     "  --with PART, --without PART\n"
     "                 switches an optional part of the draft or an extension";
 
-/// The extensions, and the optional parts of the draft that are on.
+/// The extensions and the optional parts of the draft.
 std::vector<std::string> SwitchNames();
 /// False where nothing is called so.
 bool Switch(const std::string& name, bool on, Parameters* parameters);

@@ -133,7 +133,7 @@ static Property<SinkSettings> OfTx(const char* name) {
                              ChildOf<GstLidarScreamSink, &GstLidarScreamSink::tx>, &TxDefaults());
 }
 
-static const std::array<Property<SinkSettings>, 24> kProperties = {{
+static const std::array<Property<SinkSettings>, 25> kProperties = {{
     Within<&SinkSettings::target>(UdpTargetRows(), "host"),
     Within<&SinkSettings::target>(UdpTargetRows(), "port"),
     Within<&SinkSettings::target>(UdpTargetRows(), "bind-address"),
@@ -153,6 +153,7 @@ static const std::array<Property<SinkSettings>, 24> kProperties = {{
     OfTx("send-bye"),
     OfTx("sender-report-interval"),
     OfTx("key-unit-on-loss"),
+    OfTx("tuning"),
     {"estimated-bitrate", "Target of all streams together, IP included; notifies [bit/s]",
      Estimate},
     {"stats", "Statistics; bitrates in bit/s, times in ns", Stats},

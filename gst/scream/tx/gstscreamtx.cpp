@@ -155,6 +155,16 @@ static void ReleasePad(GstElement* element, GstPad* pad) {
   gst_child_proxy_child_removed(GST_CHILD_PROXY(element), G_OBJECT(pad), name.get());
 }
 
+/// False after an element error.
+static bool TakesTuning(GstElement* element) {
+  lidar::scream::Parameters parameters;
+  const TxSettings settings = Snapshot(StateOf(element));
+  const std::string wrong = ReadTuning(settings.tuning.get(), &parameters);
+  if (wrong.empty()) return true;
+  GST_ELEMENT_ERROR(element, RESOURCE, SETTINGS, ("tuning: %s", wrong.c_str()), (nullptr));
+  return false;
+}
+
 /// A new controller, and streams that have seen nothing.
 static void Prepare(TxState& state) {
   TxLock lock(state.mutex);
@@ -191,6 +201,7 @@ static GstStateChangeReturn ChangeState(GstElement* element, GstStateChange chan
   TxState& state = StateOf(element);
   const bool up = change == GST_STATE_CHANGE_READY_TO_PAUSED;
   if (up) {
+    if (!TakesTuning(element)) return GST_STATE_CHANGE_FAILURE;
     Prepare(state);
     if (!state.reporter.Start()) return GST_STATE_CHANGE_FAILURE;
   }

@@ -183,7 +183,7 @@ void PacingTask::CollectPackets(Time now, Batch* batch) {
 bool PacingTask::Drained(Time now) {
   TxState& s = state();
   if (!AllEnded(s) || end_sent_) return false;
-  if (!end_deadline_) end_deadline_ = now + 2 * s.settings.max_queue_delay();
+  if (!end_deadline_) end_deadline_ = now + 2 * s.settings.max_queue_delay;
   if (!AllSent(s) && now < *end_deadline_) return false;
   for (auto& stream : s.streams) ClearQueue(s, *stream, now);
   end_sent_ = true;
@@ -197,7 +197,7 @@ Time PacingTask::NextWake(Time now) const {
   if (end_deadline_ && !end_sent_) wake = std::min(wake, *end_deadline_);
   for (const auto& stream : s.streams)
     if (!stream->queue.empty() && stream->live.value_or(true))
-      wake = std::min(wake, now - stream->HeadAge(now) + s.settings.max_queue_delay());
+      wake = std::min(wake, now - stream->HeadAge(now) + s.settings.max_queue_delay);
   // A late frame stays if it has begun to leave or waits behind a gap: look again, but not at once.
   return std::max(wake, now + std::chrono::milliseconds(1));
 }

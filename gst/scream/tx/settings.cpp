@@ -1,7 +1,11 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include "gst/scream/tx/settings.h"
 
+#include <optional>
+#include <sstream>
+
 #include "gst/common/enum_type.h"
+#include "src/scream/tuning.h"
 
 namespace lidar::gst {
 namespace {
@@ -9,13 +13,6 @@ namespace {
 constexpr gdouble kMaxBps = 4294967295.0;
 constexpr gdouble kMaxDelay = 60e9;
 constexpr gint kLive = GST_PARAM_MUTABLE_PLAYING;
-
-using scream::Extensions;
-using scream::Parameters;
-template <auto field>
-constexpr auto P = At<&TxSettings::parameters, field>;
-template <auto field>
-constexpr auto X = At<&TxSettings::parameters, &Parameters::extensions, field>;
 
 scream::Ecn ToEcn(gint mode) {
   switch (mode) {
@@ -26,6 +23,22 @@ scream::Ecn ToEcn(gint mode) {
     default:
       return scream::Ecn::kNotEct;
   }
+}
+
+/// The value of a number or a boolean; none for anything else.
+std::optional<gdouble> NumberOf(const GValue* v) {
+  if (G_VALUE_HOLDS_BOOLEAN(v)) return g_value_get_boolean(v) != FALSE ? 1 : 0;
+  GValue number = G_VALUE_INIT;
+  g_value_init(&number, G_TYPE_DOUBLE);
+  if (G_VALUE_HOLDS_STRING(v) || !g_value_transform(v, &number)) return std::nullopt;
+  return g_value_get_double(&number);
+}
+
+std::string RangeOf(const scream::Tunable& t) {
+  if (t.is_switch()) return "true or false";
+  std::ostringstream text;
+  text << "numbers from " << t.min << " to " << t.max;
+  return text.str();
 }
 
 }  // namespace
@@ -73,10 +86,10 @@ const TxProperties& TxPropertyTable() {
       {"max-queue-delay",
        "Live input older than this, half as much again in a gap of the link, is dropped in whole "
        "frames; other input waits [ns]",
-       P<&Parameters::max_queue_delay>, 1e6, kMaxDelay},
+       &S::max_queue_delay, 1e6, kMaxDelay},
       {"feedback-interval",
        "How seldom a healthy receiver may report; above 0 it reports at the end of frames [ns]",
-       P<&Parameters::feedback_interval>, 0, kMaxDelay},
+       &S::feedback_interval, 0, kMaxDelay},
       {"stats-interval", "Time between element messages with the statistics; 0 for none [ns]",
        &S::stats_interval, 0, static_cast<gdouble>(G_MAXINT64), kLive},
       {"packet-overhead", "UDP and IP header of a packet on the wire [bytes]", &S::packet_overhead,
@@ -92,75 +105,34 @@ const TxProperties& TxPropertyTable() {
        &S::key_unit_on_loss, 0, 0, kLive},
       {"pure-draft", "Exactly the draft: its constants, no optional part, no extension",
        &S::pure_draft},
-      {"qdelay-target-lo", "QDELAY_TARGET_LO [ns]", P<&Parameters::qdelay_target_lo>, 1e6,
-       kMaxDelay},
-      {"min-ref-wnd", "MIN_REF_WND [bytes]", P<&Parameters::min_ref_wnd>, 100, 1e6},
-      {"bytes-in-flight-head-room", "BYTES_IN_FLIGHT_HEAD_ROOM",
-       P<&Parameters::bytes_in_flight_head_room>, 1, 10},
-      {"beta-loss", "BETA_LOSS: window scale on loss", P<&Parameters::beta_loss>, 0.1, 1},
-      {"beta-ecn", "BETA_ECN: window scale on classic CE", P<&Parameters::beta_ecn>, 0.1, 1},
-      {"mss", "MSS: largest packet [bytes]", P<&Parameters::mss>, 100, 65535},
-      {"post-congestion-delay-rtt", "POST_CONGESTION_DELAY_RTT [round trips]",
-       P<&Parameters::post_congestion_delay_rtt>, 0, 10000},
-      {"mul-increase-factor", "MUL_INCREASE_FACTOR", P<&Parameters::mul_increase_factor>, 0, 1},
-      {"virtual-rtt", "VIRTUAL_RTT [ns]", P<&Parameters::virtual_rtt>, 1e6, kMaxDelay},
-      {"l4s-avg-g-up", "L4S_AVG_G_UP", P<&Parameters::l4s_avg_g_up>, 0, 1},
-      {"l4s-avg-g-down", "L4S_AVG_G_DOWN", P<&Parameters::l4s_avg_g_down>, 0, 1},
-      {"ref-wnd-overhead-min", "REF_WND_OVERHEAD_MIN", P<&Parameters::ref_wnd_overhead_min>, 1, 10},
-      {"ref-wnd-overhead-max", "REF_WND_OVERHEAD_MAX", P<&Parameters::ref_wnd_overhead_max>, 1, 20},
-      {"rate-pace-min", "RATE_PACE_MIN [bit/s]", P<&Parameters::rate_pace_min>, 1000, kMaxBps},
-      {"packet-pacing-headroom", "PACKET_PACING_HEADROOM", P<&Parameters::packet_pacing_headroom>,
-       1, 10},
-      {"max-relaxed-pacing-factor", "MAX_RELAXED_PACING_FACTOR",
-       P<&Parameters::max_relaxed_pacing_factor>, 1, 100},
-      {"relaxed-pacing-limit-low", "RELAXED_PACING_LIMIT_LOW",
-       P<&Parameters::relaxed_pacing_limit_low>, 0, 1},
-      {"rate-adjust-gain", "RATE_ADJUST_GAIN", P<&Parameters::rate_adjust_gain>, 0, 1},
-      {"target-rate-divisor", "Divisor of window over round trip that gives the target",
-       P<&Parameters::target_rate_divisor>, 1, 4},
-      {"reduce-jitter", "Optional part: smaller window where the delay jitters",
-       P<&Parameters::reduce_jitter>},
-      {"clock-drift", "Optional part: follow the drift between the clocks",
-       P<&Parameters::clock_drift>},
-      {"link-layer-loss", "Optional part: tolerate losses of the link layer",
-       P<&Parameters::link_layer_loss>},
-      {"undershoot-remedy", "Optional part: back off less where the encoder undershoots",
-       P<&Parameters::undershoot_remedy>},
-      {"fast-start", "Beyond the draft: grow by what was acknowledged until congestion shows",
-       X<&Extensions::fast_start>},
-      {"drop-response", "Beyond the draft: follow a capacity drop within one round trip",
-       X<&Extensions::drop_response>},
-      {"bounded-flight", "Beyond the draft: bytes in flight stay near the window under marking",
-       X<&Extensions::bounded_flight>},
-      {"isolated-loss", "Beyond the draft: do not obey loss without other signs of congestion",
-       X<&Extensions::isolated_loss>},
-      {"quick-drain", "Beyond the draft: a backlog leaves at the window's rate after a drop",
-       X<&Extensions::quick_drain>},
-      {"answered-signals",
-       "Beyond the draft: signs of congestion from before a reduction are not obeyed again",
-       X<&Extensions::answered_signals>},
-      {"even-alpha", "Beyond the draft: the marked fraction is averaged evenly over rounds",
-       X<&Extensions::even_alpha>},
-      {"adaptive-pacing", "Beyond the draft: pacing headroom follows the frame period",
-       X<&Extensions::adaptive_pacing>},
-      {"feedback-timeout", "Beyond the draft: the window decays without feedback",
-       X<&Extensions::feedback_timeout>},
-      {"gap-recovery", "Beyond the draft: after a gap of the link the window is what it was before",
-       X<&Extensions::gap_recovery>},
-      {"needed-floor",
-       "Beyond the draft: encoders are asked for what their bounds need while the path lives",
-       X<&Extensions::needed_floor>},
-      {"classic-ecn", "Beyond the draft: find queues that mark ECT(1) like ECT(0), and react so",
-       X<&Extensions::classic_ecn>},
+      {"tuning",
+       "Constants and switches of the controller by name, as tuning,beta-loss=0.6; an unknown one "
+       "is an error at the start",
+       &S::tuning},
   }};
   return table;
 }
 
+std::string ReadTuning(const GstStructure* tuning, scream::Parameters* parameters) {
+  const int n = tuning != nullptr ? gst_structure_n_fields(tuning) : 0;
+  for (int i = 0; i < n; ++i) {
+    const std::string name = gst_structure_nth_field_name(tuning, static_cast<guint>(i));
+    const scream::Tunable* tunable = scream::FindTunable(name);
+    if (tunable == nullptr) return "\"" + name + "\" is none of " + scream::TunableNames();
+    const auto value = NumberOf(gst_structure_get_value(tuning, name.c_str()));
+    if (!value || !tunable->Set(*value, parameters))
+      return "\"" + name + "\" takes " + RangeOf(*tunable);
+  }
+  return {};
+}
+
 scream::Parameters ToParameters(const TxSettings& s) {
-  scream::Parameters p = s.pure_draft ? scream::Parameters::Draft() : s.parameters;
+  scream::Parameters p;
+  ReadTuning(s.tuning.get(), &p);
+  if (s.pure_draft) p = scream::Parameters::Draft();
   p.ecn = ToEcn(s.ecn_mode);
-  p.max_queue_delay = s.max_queue_delay();
-  p.feedback_interval = s.parameters.feedback_interval;
+  p.max_queue_delay = s.max_queue_delay;
+  p.feedback_interval = s.feedback_interval;
   if (s.max_total_bps > 0) p.max_total_bitrate = DataRate::BitsPerSecond(s.max_total_bps);
   return p;
 }

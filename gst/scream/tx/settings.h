@@ -3,6 +3,8 @@
 #pragma once
 #include <gst/gst.h>
 
+#include <string>
+
 #include "gst/common/properties.h"
 #include "src/scream/controller.h"
 
@@ -34,14 +36,17 @@ struct TxSettings {
   bool send_bye = false;
   bool key_unit_on_loss = false;
   bool pure_draft = false;
-  scream::Parameters parameters;  // but for ecn, which ecn_mode says
-
-  Duration max_queue_delay() const { return parameters.max_queue_delay; }
+  Duration max_queue_delay = scream::Parameters().max_queue_delay;
+  Duration feedback_interval{};
+  SharedStructure tuning;
 };
-using TxProperties = std::array<Property<TxSettings>, 48>;
+using TxProperties = std::array<Property<TxSettings>, 14>;
 const TxProperties& TxPropertyTable();
 
-/// What the controller works with: `pure_draft` undoes what was set of the draft's constants.
+/// Sets what `tuning` names, which may be NULL. Returns what is wrong with it; empty if nothing is.
+std::string ReadTuning(const GstStructure* tuning, scream::Parameters* parameters);
+
+/// What the controller works with: `pure_draft` undoes `tuning`.
 scream::Parameters ToParameters(const TxSettings& settings);
 
 }  // namespace lidar::gst

@@ -7,6 +7,7 @@
 #include "gst/scream/peer_latch.h"
 #include "gst/scream/rtp_packet.h"
 #include "gst/scream/tx/settings.h"
+#include "src/scream/tuning.h"
 #include "tests/elements/scream/rtp_support.h"
 
 namespace lidar::gst {
@@ -308,40 +309,48 @@ TEST_F(Latch, FeedbackFromAnotherAddressIsANewPathOnceTheOldOneIsSilent) {
   EXPECT_TRUE(peer.OnFeedback(now - 1h, robot.get()));  // the clock was set back
 }
 
-struct Switch {
-  const char* property;
-  bool scream::Extensions::*extension;
-};
-class ExtensionSwitch : public ::testing::TestWithParam<Switch> {};
-TEST_P(ExtensionSwitch, TurnsItsExtensionOffAndNoOther) {
+TxSettings Tuned(const char* tuning) {
   TxSettings settings;
-  GValue off = G_VALUE_INIT;
-  g_value_init(&off, G_TYPE_BOOLEAN);
-  int found = 0;
-  for (const auto& row : TxPropertyTable()) {
-    if (std::string(row.name) != GetParam().property) continue;
-    SetProperty(settings, row, &off);
-    ++found;
-  }
-  ASSERT_EQ(found, 1);
-  scream::Extensions e = ToParameters(settings).extensions;
-  EXPECT_FALSE(e.*GetParam().extension);
-  e.*GetParam().extension = true;
-  EXPECT_TRUE(e.fast_start && e.drop_response && e.bounded_flight && e.isolated_loss &&
-              e.quick_drain && e.answered_signals && e.even_alpha && e.adaptive_pacing &&
-              e.feedback_timeout);
+  settings.tuning.reset(gst_structure_from_string(tuning, nullptr), gst_structure_free);
+  return settings;
 }
-INSTANTIATE_TEST_SUITE_P(
-    All, ExtensionSwitch,
-    ::testing::Values(Switch{"fast-start", &scream::Extensions::fast_start},
-                      Switch{"drop-response", &scream::Extensions::drop_response},
-                      Switch{"bounded-flight", &scream::Extensions::bounded_flight},
-                      Switch{"isolated-loss", &scream::Extensions::isolated_loss},
-                      Switch{"quick-drain", &scream::Extensions::quick_drain},
-                      Switch{"answered-signals", &scream::Extensions::answered_signals},
-                      Switch{"even-alpha", &scream::Extensions::even_alpha},
-                      Switch{"adaptive-pacing", &scream::Extensions::adaptive_pacing},
-                      Switch{"feedback-timeout", &scream::Extensions::feedback_timeout}));
+
+TEST(Tuning, SetsWhatItNamesAndNothingElse) {
+  const scream::Parameters usual;
+  for (const scream::Tunable& t : scream::Tunables()) {
+    const double other = t.Get(usual) == t.max ? t.min : t.max;
+    const std::string text = "tuning," + std::string(t.name) + "=" + std::to_string(other);
+    const scream::Parameters p = ToParameters(Tuned(text.c_str()));
+    for (const scream::Tunable& u : scream::Tunables())
+      EXPECT_EQ(u.Get(p), &u == &t ? other : u.Get(usual)) << text << " " << u.name;
+  }
+}
+
+TEST(Tuning, TakesNumbersAndSwitchesAsUsersWriteThem) {
+  const auto p = ToParameters(Tuned("tuning,beta-loss=0.6,mss=1200,fast-start=false"));
+  EXPECT_EQ(p.beta_loss, 0.6);
+  EXPECT_EQ(p.mss, DataSize::Bytes(1200));
+  EXPECT_FALSE(p.extensions.fast_start);
+}
+
+TEST(Tuning, IsUndoneByThePureDraft) {
+  TxSettings settings = Tuned("tuning,beta-loss=0.6");
+  settings.pure_draft = true;
+  EXPECT_EQ(ToParameters(settings).beta_loss, scream::Parameters().beta_loss);
+}
+
+TEST(Tuning, SaysWhatIsWrong) {
+  const auto wrong = [](const char* tuning) {
+    scream::Parameters p;
+    return ReadTuning(Tuned(tuning).tuning.get(), &p);
+  };
+  EXPECT_EQ(wrong("tuning,beta-loss=0.6"), "");
+  EXPECT_NE(wrong("tuning,beta=0.6").find("\"beta\" is none of qdelay-target-lo, min-ref-wnd,"),
+            std::string::npos);
+  EXPECT_EQ(wrong("tuning,beta-loss=1.5"), "\"beta-loss\" takes numbers from 0.1 to 1");
+  EXPECT_EQ(wrong("tuning,beta-loss=much"), "\"beta-loss\" takes numbers from 0.1 to 1");
+  EXPECT_EQ(wrong("tuning,fast-start=2"), "\"fast-start\" takes true or false");
+}
 
 }  // namespace
 }  // namespace lidar::gst

@@ -337,6 +337,18 @@ TEST(ScreamBins, AnUnknownHostIsAnErrorThatNamesIt) {
   EXPECT_NE(std::string(debug).find("no-such-host.invalid"), std::string::npos);
 }
 
+TEST(ScreamBins, AnUnknownNameInTuningIsAnErrorThatListsTheNames) {
+  Pipeline sender(kAudio + "screamsink tuning=tuning,beta-los=0.6");
+  sender.Play();
+  const MessagePtr message = sender.Wait(GST_MESSAGE_ERROR);
+  ASSERT_TRUE(message);
+  GError* error = nullptr;
+  gst_message_parse_error(message.get(), &error, nullptr);
+  const ErrorPtr owner(error);
+  EXPECT_NE(std::string(error->message).find("\"beta-los\" is none of"), std::string::npos);
+  EXPECT_NE(std::string(error->message).find("beta-loss"), std::string::npos);
+}
+
 TEST(ScreamBins, AreNeitherSinkNorSourceWithTheirBackChannel) {
   const ElementPtr sink(gst_element_factory_make("screamsink", nullptr));
   const ElementPtr source(gst_element_factory_make("screamsrc", nullptr));

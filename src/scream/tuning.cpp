@@ -1,0 +1,145 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "src/scream/tuning.h"
+
+#include <algorithm>
+#include <cmath>
+#include <type_traits>
+
+namespace lidar::scream {
+namespace {
+
+constexpr double kMinute = 60e9;
+constexpr double kGbps = 4e9;
+
+template <class T>
+void Assign(double value, T* field) {
+  if constexpr (std::is_same_v<T, Duration>)
+    *field = Duration{std::llround(value)};
+  else if constexpr (std::is_same_v<T, DataSize>)
+    *field = DataSize::Bytes(std::llround(value));
+  else if constexpr (std::is_same_v<T, DataRate>)
+    *field = DataRate::BitsPerSecond(value);
+  else if constexpr (std::is_same_v<T, bool>)
+    *field = value != 0;
+  else
+    *field = static_cast<T>(value);
+}
+
+template <class T>
+double Number(T field) {
+  if constexpr (std::is_same_v<T, Duration>)
+    return static_cast<double>(field.count());
+  else if constexpr (std::is_same_v<T, DataSize>)
+    return static_cast<double>(field.bytes());
+  else if constexpr (std::is_same_v<T, DataRate>)
+    return field.bits_per_second();
+  else
+    return static_cast<double>(field);
+}
+
+/// The field of `p`, a Parameters or a const one, to which `member` points.
+template <class P, class Owner, class T>
+auto& FieldOf(P& p, T Owner::*member) {
+  if constexpr (std::is_same_v<Owner, Extensions>)
+    return p.extensions.*member;
+  else
+    return p.*member;
+}
+
+}  // namespace
+
+bool Tunable::Set(double value, Parameters* parameters) const {
+  if (!(value >= min && value <= max)) return false;
+  std::visit([&](auto m) { Assign(value, &FieldOf(*parameters, m)); }, member);
+  return true;
+}
+
+double Tunable::Get(const Parameters& parameters) const {
+  return std::visit([&](auto m) { return Number(FieldOf(parameters, m)); }, member);
+}
+
+const std::vector<Tunable>& Tunables() {
+  using P = Parameters;
+  using X = Extensions;
+  static const std::vector<Tunable> all = {
+      {"qdelay-target-lo", &P::qdelay_target_lo, 1e6, kMinute},
+      {"min-ref-wnd", &P::min_ref_wnd, 100, 1e6},
+      {"bytes-in-flight-head-room", &P::bytes_in_flight_head_room, 1, 10},
+      {"beta-loss", &P::beta_loss, 0.1, 1},
+      {"beta-ecn", &P::beta_ecn, 0.1, 1},
+      {"mss", &P::mss, 100, 65535},
+      {"post-congestion-delay-rtt", &P::post_congestion_delay_rtt, 0, 10000},
+      {"mul-increase-factor", &P::mul_increase_factor},
+      {"virtual-rtt", &P::virtual_rtt, 1e6, kMinute},
+      {"l4s-avg-g-up", &P::l4s_avg_g_up},
+      {"l4s-avg-g-down", &P::l4s_avg_g_down},
+      {"ref-wnd-overhead-min", &P::ref_wnd_overhead_min, 1, 10},
+      {"ref-wnd-overhead-max", &P::ref_wnd_overhead_max, 1, 20},
+      {"rate-pace-min", &P::rate_pace_min, 1000, kGbps},
+      {"packet-pacing-headroom", &P::packet_pacing_headroom, 1, 10},
+      {"max-relaxed-pacing-factor", &P::max_relaxed_pacing_factor, 1, 100},
+      {"relaxed-pacing-limit-low", &P::relaxed_pacing_limit_low},
+      {"rate-adjust-gain", &P::rate_adjust_gain},
+      {"frame-size-dev-alpha", &P::frame_size_dev_alpha},
+      {"target-rate-divisor", &P::target_rate_divisor, 1, 4},
+      {"loss-rate-threshold", &P::loss_rate_threshold},
+      {"reduce-jitter", &P::reduce_jitter},
+      {"clock-drift", &P::clock_drift},
+      {"link-layer-loss", &P::link_layer_loss},
+      {"undershoot-remedy", &P::undershoot_remedy},
+      {"fast-start", &X::fast_start},
+      {"fast-increase-max", &P::fast_increase_max},
+      {"fast-increase-step", &P::fast_increase_step},
+      {"fast-increase-step-unmarked", &P::fast_increase_step_unmarked},
+      {"fast-increase-slope", &P::fast_increase_slope, 0, 100},
+      {"fast-increase-beside", &P::fast_increase_beside},
+      {"drop-response", &X::drop_response},
+      {"drop-threshold", &P::drop_threshold, 0.1, 10},
+      {"drop-growth", &P::drop_growth, 0, 100},
+      {"drop-beta", &P::drop_beta, 0.1, 1},
+      {"busy-qdelay-unmarked", &P::busy_qdelay_unmarked},
+      {"bounded-flight", &X::bounded_flight},
+      {"bounded-overhead", &P::bounded_overhead, 0.5, 10},
+      {"open-overhead", &P::open_overhead, 0.5, 10},
+      {"isolated-loss", &X::isolated_loss},
+      {"isolated-loss-threshold", &P::isolated_loss_threshold},
+      {"quick-drain", &X::quick_drain},
+      {"answered-signals", &X::answered_signals},
+      {"even-alpha", &X::even_alpha},
+      {"even-alpha-g", &P::even_alpha_g},
+      {"even-alpha-max", &P::even_alpha_max},
+      {"adaptive-pacing", &X::adaptive_pacing},
+      {"min-pacing-reserve", &P::min_pacing_reserve},
+      {"max-pacing-reserve", &P::max_pacing_reserve, 0, 0.9},
+      {"onset-reserve", &P::onset_reserve},
+      {"feedback-timeout", &X::feedback_timeout},
+      {"gap-recovery", &X::gap_recovery},
+      {"stall-share", &P::stall_share},
+      {"link-may-be-faster", &P::link_may_be_faster, 1, 100},
+      {"needed-floor", &X::needed_floor},
+      {"needed-margin", &P::needed_margin, 1, 2},
+      {"classic-ecn", &X::classic_ecn},
+      {"clock-care", &X::clock_care},
+      {"shared-link", &X::shared_link},
+      {"classic-growth", &P::classic_growth, 0, 10},
+      {"early-growth", &P::early_growth, 0, 10},
+      {"prague-backoff", &P::prague_backoff, 0, 10},
+  };
+  return all;
+}
+
+const Tunable* FindTunable(std::string_view name) {
+  std::string hyphens(name);
+  std::replace(hyphens.begin(), hyphens.end(), '_', '-');
+  for (const Tunable& t : Tunables())
+    if (t.name == hyphens) return &t;
+  return nullptr;
+}
+
+std::string TunableNames() {
+  std::string names;
+  for (const Tunable& t : Tunables()) names += (names.empty() ? "" : ", ") + std::string(t.name);
+  return names;
+}
+
+}  // namespace lidar::scream
