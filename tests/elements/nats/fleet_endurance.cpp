@@ -66,7 +66,7 @@ class FleetEndurance : public NatsTest {
   void TellMemory();
   void TellOfWorkers();
 
-  const EnduranceOptions options_;
+  const EnduranceOptions options_{};
   std::mt19937 random_{options_.seed};
   Cluster cluster_;
   std::unique_ptr<AckWitness> witness_;
