@@ -197,11 +197,11 @@ run() {
 }
 
 # The pipelines stream in real time, so they run one by one. Those of the suite beside wait for much of
-# their time or are not judged by it, so they run beside the others.
+# their time or are not judged by it, so they run beside the others, with what time those leave.
 run_pipelines() {
   local dir=$1
   forget "$dir" beside
-  meson test -C "$dir" --no-rebuild --suite beside --logbase beside --print-errorlogs >"$dir/beside.log" 2>&1 &
+  nice -n 10 meson test -C "$dir" --no-rebuild --suite beside --logbase beside --print-errorlogs >"$dir/beside.log" 2>&1 &
   local beside=$!
   run "$dir" pipelines --num-processes 1
   wait "$beside"
