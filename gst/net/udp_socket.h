@@ -19,6 +19,10 @@ struct GObjectUnref {
 };
 using SocketPtr = std::unique_ptr<GSocket, GObjectUnref>;
 using SocketAddressPtr = std::unique_ptr<GSocketAddress, GObjectUnref>;
+/// Another reference to `address`, which may be NULL.
+inline SocketAddressPtr RefAddress(GSocketAddress* address) {
+  return SocketAddressPtr(address != nullptr ? G_SOCKET_ADDRESS(g_object_ref(address)) : nullptr);
+}
 
 /// For a socket of `family`: an IPv4 address becomes a mapped one on an IPv6 socket. Invalid where
 /// the address does not fit the family.

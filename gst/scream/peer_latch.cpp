@@ -20,10 +20,6 @@ bool GoesOn(std::uint16_t seq, std::uint16_t next_seq, int max_gap) {
   return distance >= 0 && distance < max_gap;
 }
 
-SocketAddressPtr Ref(GSocketAddress* address) {
-  return SocketAddressPtr(address != nullptr ? G_SOCKET_ADDRESS(g_object_ref(address)) : nullptr);
-}
-
 }  // namespace
 
 void PeerLatch::Peer::Add(Time now, const Packet& packet) {
@@ -115,7 +111,7 @@ PeerLatch::Peer& PeerLatch::CandidateOf(Time now, GSocketAddress* from) {
         candidates_.begin(), candidates_.end(), [now](const Peer& a, const Peer& b) {
           return std::pair(a.standing(now), a.at) < std::pair(b.standing(now), b.at);
         }));
-  candidates_.emplace_back().address = Ref(from);
+  candidates_.emplace_back().address = RefAddress(from);
   return candidates_.back();
 }
 
@@ -177,7 +173,7 @@ PeerLatch::Verdict PeerLatch::OnPacket(Time now, const Packet& packet) {
     }
     // The next packet then compares by pointer.
     if (packet.from != nullptr && packet.from != peer_.address.get())
-      peer_.address = Ref(packet.from);
+      peer_.address = RefAddress(packet.from);
     peer_.Add(now, packet);
     NoteCopies(packet);
     return Verdict::kAccepted;

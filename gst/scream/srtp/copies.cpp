@@ -15,17 +15,13 @@ std::uint64_t KeyOf(const RtpHeader& header) {
   return std::uint64_t{header.ssrc} << 16 | header.seq;
 }
 
-SocketAddressPtr Ref(GSocketAddress* address) {
-  return SocketAddressPtr(G_SOCKET_ADDRESS(g_object_ref(address)));
-}
-
 }  // namespace
 
 void SrtpCopies::OnArrival(GstBuffer* datagram) {
   GSocketAddress* from = SourceOf(datagram);
   if (several_ || from == nullptr || from == last_.get()) return;
   several_ = last_ != nullptr && !SameAddress(from, last_.get());
-  last_ = Ref(from);
+  last_ = RefAddress(from);
 }
 
 void SrtpCopies::OnPassed(GstBuffer* datagram, GstBuffer* decoded) {
@@ -38,7 +34,7 @@ void SrtpCopies::OnPassed(GstBuffer* datagram, GstBuffer* decoded) {
   if (!fresh) return;
   at->second.digest = DigestOf(map.view());
   at->second.decoded.reset(gst_buffer_ref(decoded));
-  at->second.addresses.push_back(Ref(from));
+  at->second.addresses.push_back(RefAddress(from));
   order_.push_back(at->first);
   bytes_ += gst_buffer_get_size(decoded);
   while (order_.size() > kMaxDatagrams || bytes_ > kMaxBytes) {
@@ -61,7 +57,7 @@ BufferPtr SrtpCopies::Take(GstBuffer* datagram) {
   if (was_here || passed.addresses.size() >= kMaxAddresses) return nullptr;
   const BufferMap map(datagram, GST_MAP_READ);
   if (!map || DigestOf(map.view()) != passed.digest) return nullptr;
-  passed.addresses.push_back(Ref(from));
+  passed.addresses.push_back(RefAddress(from));
   BufferPtr copy(gst_buffer_new());
   gst_buffer_copy_into(copy.get(), datagram, GST_BUFFER_COPY_METADATA, 0, kAll);
   gst_buffer_copy_into(copy.get(), passed.decoded.get(), GST_BUFFER_COPY_MEMORY, 0, kAll);
