@@ -43,41 +43,50 @@ bool BeamTable::has_offsets() const {
 }
 
 ColumnFinder::ColumnFinder(const BeamTable& table) : table_(table) {
-  if (table.places.empty()) return;
-  std::uint32_t column = 0;
-  for (std::uint32_t i = 0; i < 1U << (kTurnBits - kShift); ++i) {
-    const std::uint64_t azimuth = std::uint64_t{i} << kShift;
-    while (column < table.columns() &&
-           std::uint64_t{table.places[column]} * kTurn / table.grains < azimuth)
-      ++column;
-    buckets_.push_back(static_cast<std::uint16_t>(column));
+  for (const std::uint32_t place : table.places)
+    angles_.push_back(static_cast<std::int32_t>(std::uint64_t{place} * kTurn / table.grains));
+  if (angles_.empty()) return;
+  std::uint32_t place = 0;
+  for (std::int32_t i = 0; i < 1 << (kTurnBits - kShift); ++i) {
+    while (place < table.columns() && angles_[place] < i << kShift) ++place;
+    buckets_.push_back(static_cast<std::uint16_t>(place));
   }
 }
 
 std::uint32_t ColumnFinder::ColumnOf(std::uint32_t beam, std::int32_t azimuth) const {
-  const auto away = static_cast<std::uint32_t>((azimuth - table_.beams[beam].offset) & (kTurn - 1));
+  const BeamTable::Beam& b = table_.beams[beam];
+  const std::int32_t away = (azimuth - b.offset) & (kTurn - 1);
   const std::uint32_t columns = table_.columns();
-  std::uint32_t column;
-  if (table_.places.empty()) {
-    const std::uint64_t parts =
-        std::uint64_t{away} * table_.turn + std::uint64_t{kTurn} * BeamTable::kParts / 2;
-    column = static_cast<std::uint32_t>(parts >> (kTurnBits + 8));
-    if (column >= columns) column = 0;
-    if (table_.period == 1) return column;
-  } else {
-    column = buckets_[away >> kShift] + columns - table_.beams[beam].delay;
+  if (angles_.empty() && table_.period == 1) {
+    const std::uint64_t parts = std::uint64_t{static_cast<std::uint32_t>(away)} * table_.turn;
+    const std::uint64_t half = std::uint64_t{kTurn} * BeamTable::kParts / 2;
+    const auto column = static_cast<std::uint32_t>((parts + half) >> (kTurnBits + 8));
+    return column >= columns ? 0 : column;
   }
+  std::uint32_t first =
+      angles_.empty()
+          ? static_cast<std::uint32_t>(
+                std::uint64_t{static_cast<std::uint32_t>(away)} * table_.turn >> (kTurnBits + 8))
+          : buckets_[static_cast<std::uint32_t>(away) >> kShift];
+  // A bucket holds less than one column.
+  const std::uint32_t around = table_.period > 1 ? 2 : 1;
+  first += columns - around;
   std::uint32_t best = 0;
   std::int32_t least = kTurn;
-  constexpr std::uint32_t kAround = 2;
-  for (std::uint32_t step = 0; step <= 2 * kAround; ++step) {
-    const std::uint32_t near = (column + columns + step - kAround) % columns;
-    const std::int32_t off = std::abs(Wrapped(azimuth - table_.AzimuthOf(beam, near)));
+  for (std::uint32_t step = 0; step <= 2 * around; ++step) {
+    std::uint32_t firing = first + step;
+    while (firing >= columns) firing -= columns;
+    std::int32_t at = angles_.empty()
+                          ? static_cast<std::int32_t>(std::uint64_t{firing} * BeamTable::kParts *
+                                                      kTurn / table_.turn)
+                          : angles_[firing];
+    if (table_.period > 1) at += b.swings[firing % table_.period];
+    const std::int32_t off = std::abs(Wrapped(away - at));
     if (off >= least) continue;
     least = off;
-    best = near;
+    best = firing;
   }
-  return best;
+  return best >= b.delay ? best - b.delay : best + columns - b.delay;
 }
 
 Point BeamTable::At(std::uint32_t beam, std::int32_t azimuth, std::uint32_t range_mm) const {

@@ -94,7 +94,8 @@ class ColumnFinder {
  private:
   static constexpr unsigned kShift = kTurnBits - 14;  // to buckets
   const BeamTable& table_;
-  std::vector<std::uint16_t> buckets_;  // the first column at or behind each
+  std::vector<std::int32_t> angles_;    // of the places
+  std::vector<std::uint16_t> buckets_;  // the first place at or behind each
 };
 
 /// From -kTurn / 2 to kTurn / 2.

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <queue>
 #include <utility>
 
 #include "src/codec/cloud/node_map.h"
@@ -15,13 +14,14 @@ namespace {
 /// floats round off.
 constexpr double kRoom = 1e-4;
 
+double HalfOf(unsigned depth) { return static_cast<double>(std::uint64_t{1} << (depth - 1)); }
+
 CellPosition OwnCell(const Point& point, const CellGrid& grid, unsigned depth) {
-  const double half = std::ldexp(1.0, static_cast<int>(depth) - 1);
+  const double half = HalfOf(depth);
+  const double step = static_cast<double>(grid.step_m);
   CellPosition cell;
-  for (unsigned k = 0; k < 3; ++k) {
-    const double at = std::floor(static_cast<double>(point[k]) / static_cast<double>(grid.step_m));
-    cell[k] = static_cast<std::uint32_t>(at + half);
-  }
+  for (unsigned k = 0; k < 3; ++k)
+    cell[k] = static_cast<std::uint32_t>(std::floor(static_cast<double>(point[k]) / step) + half);
   return cell;
 }
 
@@ -78,13 +78,32 @@ class Choices {
   }
 
  private:
+  /// Of the cells around only those on the side of the point can be near enough.
   void AddPoint(const Point& point, const CellGrid& grid, unsigned depth) {
     const CellPosition own = OwnCell(point, grid, depth);
+    AddChoice(own);
+    const Point middle = grid.Middle(own, depth);
+    std::array<double, 3> off{};  // squares, in cells
+    std::array<double, 3> beside{};
+    CellPosition side = own;
+    for (unsigned k = 0; k < 3; ++k) {
+      const double away = (static_cast<double>(point[k]) - static_cast<double>(middle[k])) /
+                          static_cast<double>(grid.step_m);
+      side[k] = away < 0 ? own[k] - 1 : own[k] + 1;
+      off[k] = away * away;
+      beside[k] = (1 - std::abs(away)) * (1 - std::abs(away));
+    }
+    // What floats round off decides beyond this.
+    constexpr double kNever = 0.7515;
     const double bound = grid.error_m() * grid.error_m();
-    for (unsigned i = 0; i < 27; ++i) {
-      const CellPosition cell = {own[0] + i % 3 - 1, own[1] + i / 3 % 3 - 1, own[2] + i / 9 - 1};
-      constexpr unsigned kOwn = 13;
-      if (i == kOwn || SquareDistance(point, grid.Middle(cell, depth)) <= bound) AddChoice(cell);
+    for (unsigned i = 1; i < 8; ++i) {
+      const double square = ((i & 1) != 0 ? beside[0] : off[0]) +
+                            ((i & 2) != 0 ? beside[1] : off[1]) +
+                            ((i & 4) != 0 ? beside[2] : off[2]);
+      if (square > kNever) continue;
+      const CellPosition cell = {(i & 1) != 0 ? side[0] : own[0], (i & 2) != 0 ? side[1] : own[1],
+                                 (i & 4) != 0 ? side[2] : own[2]};
+      if (SquareDistance(point, grid.Middle(cell, depth)) <= bound) AddChoice(cell);
     }
   }
   void AddChoice(const CellPosition& cell) {
@@ -122,7 +141,7 @@ double CellGrid::error_m() const {
 }
 
 Point CellGrid::Middle(const CellPosition& cell, unsigned depth) const {
-  const double half = std::ldexp(1.0, static_cast<int>(depth) - 1);
+  const double half = HalfOf(depth);
   Point point;
   for (unsigned k = 0; k < 3; ++k)
     point[k] = static_cast<float>((static_cast<double>(cell[k]) - half + 0.5) *
@@ -133,8 +152,12 @@ Point CellGrid::Middle(const CellPosition& cell, unsigned depth) const {
 unsigned CellGrid::DepthFor(double farthest_m) const {
   const double steps = farthest_m / static_cast<double>(step_m) + 2;
   unsigned depth = 1;
-  while (depth <= kMostDepth && std::ldexp(1.0, static_cast<int>(depth) - 1) < steps) ++depth;
+  while (depth <= kMostDepth && HalfOf(depth) < steps) ++depth;
   return depth;
+}
+
+bool CellGrid::Reaches(double farthest_m) const {
+  return farthest_m / static_cast<double>(step_m) + 2 <= HalfOf(kMostDepth);
 }
 
 bool CellGrid::Holds(const Point& point) const {
@@ -161,10 +184,13 @@ void CoverByOwnCells(const std::vector<Point>& points, const CellGrid& grid, uns
 void CoverByFewCells(const std::vector<Point>& points, const CellGrid& grid, unsigned depth,
                      CoveredPoints* covered) {
   Choices choices(points, grid, depth);
-  using Candidate = std::pair<std::uint32_t, std::uint32_t>;  // points, cell
-  std::vector<Candidate> heap;
-  for (std::uint32_t i = 0; i < choices.codes().size(); ++i) heap.emplace_back(choices.left(i), i);
-  std::priority_queue<Candidate> queue({}, std::move(heap));
+  // Cells by how many points they may take, lists from the back; counts only fall.
+  std::vector<std::vector<std::uint32_t>> queues;
+  for (std::uint32_t i = 0; i < choices.codes().size(); ++i) {
+    const std::uint32_t count = choices.left(i);
+    if (count >= queues.size()) queues.resize(count + 1);
+    queues[count].push_back(i);
+  }
   struct Taken {
     std::uint64_t code;
     std::size_t first;  // of its points
@@ -172,15 +198,18 @@ void CoverByFewCells(const std::vector<Point>& points, const CellGrid& grid, uns
   };
   std::vector<Taken> taken;
   std::vector<std::uint32_t> order;
-  while (!queue.empty()) {
-    const auto [count, cell] = queue.top();
-    queue.pop();
-    const std::uint32_t left = choices.left(cell);
-    if (left > 0 && left < count) queue.push({left, cell});
-    if (left == 0 || left < count) continue;
-    const std::size_t first = order.size();
-    choices.Take(cell, &order);
-    taken.push_back({choices.codes()[cell], first, order.size()});
+  order.reserve(points.size());
+  for (std::size_t count = queues.size(); count-- > 1;) {
+    while (!queues[count].empty()) {
+      const std::uint32_t cell = queues[count].back();
+      queues[count].pop_back();
+      const std::uint32_t left = choices.left(cell);
+      if (left > 0 && left < count) queues[left].push_back(cell);
+      if (left < count) continue;
+      const std::size_t first = order.size();
+      choices.Take(cell, &order);
+      taken.push_back({choices.codes()[cell], first, order.size()});
+    }
   }
   std::sort(taken.begin(), taken.end(),
             [](const Taken& a, const Taken& b) { return a.code < b.code; });

@@ -27,6 +27,8 @@ struct CellGrid {
   Point Middle(const CellPosition& cell, unsigned depth) const;
   /// The depth of a tree that holds all coordinates up to `farthest_m`; above kMostDepth for none.
   unsigned DepthFor(double farthest_m) const;
+  /// Whether some depth holds all coordinates up to `farthest_m`.
+  bool Reaches(double farthest_m) const;
   /// Whether floats are fine enough, so far away, for the error. The point is in reach of some
   /// depth.
   bool Holds(const Point& point) const;

@@ -7,7 +7,6 @@
 #include <utility>
 
 #include "src/base/byte_writer.h"
-#include "src/codec/cloud/beam_columns.h"
 #include "src/codec/cloud/level_tree.h"
 #include "src/codec/effort_control.h"
 #include "src/codec/mixing/binary_coder.h"
@@ -32,13 +31,10 @@ IntensityScale ScaleOf(const XyzCloud& cloud, unsigned bits) {
 
 /// Shares the error between ranges and azimuths so that the cloud should be smallest. None where
 /// the image would be too large.
-std::optional<PixelErrors> CheapestErrors(const std::vector<Sighting>& all, const BeamTable& table,
-                                          double error_m) {
+std::optional<PixelErrors> CheapestErrors(PlacedCloud cloud, double error_m) {
   // A part of the points tells as much.
   constexpr std::size_t kSample = 16'384;
-  std::vector<Sighting> sightings;
-  const std::size_t stride = all.size() / kSample + 1;
-  for (std::size_t i = 0; i < all.size(); i += stride) sightings.push_back(all[i]);
+  cloud.stride = cloud.points->size() / kSample + 1;
   // Bits of what fits no pixel, of a further return, and of a residual.
   constexpr double kRestBits = 10;
   constexpr double kExtraBits = 6;
@@ -55,7 +51,7 @@ std::optional<PixelErrors> CheapestErrors(const std::vector<Sighting>& all, cons
       const double tangent_m = 0.9 * std::sqrt(1 - part * part) * error_m;
       errors.tangent_um = std::max(static_cast<std::uint32_t>(1e6 * tangent_m), 1U);
     }
-    if (!FillPixels(sightings, table, errors, 0, &list)) return std::nullopt;
+    if (!FillPixels(cloud, errors, 0, &list)) return std::nullopt;
     const double bits = kRestBits * static_cast<double>(list.rest.size()) +
                         kExtraBits * static_cast<double>(list.extras.size()) +
                         static_cast<double>(list.returns) *
@@ -114,19 +110,20 @@ void CloudEncoder::SortOut(CloudHeader* header) {
   levels_.clear();
   far_ids_.clear();
   const IntensityScale fine(header->intensity.full(), kFineIntensityBits);
+  float most = 0;
   for (std::uint32_t i = 0; i < cloud_.size(); ++i) {
     const Point point = {cloud_.xyz[3 * i], cloud_.xyz[3 * i + 1], cloud_.xyz[3 * i + 2]};
     float farthest = 0;
     for (const float v : point) farthest = std::max(farthest, std::abs(v));
-    const unsigned needed = header->grid.DepthFor(static_cast<double>(farthest));
-    if (needed > kMostDepth || !header->grid.Holds(point)) {
+    if (!header->grid.Reaches(static_cast<double>(farthest)) || !header->grid.Holds(point)) {
       far_ids_.push_back(i);
       continue;
     }
-    header->depth = std::max(header->depth, needed);
+    most = std::max(most, farthest);
     near_.push_back(point);
     if (header->intensity.bits() > 0) levels_.push_back(fine.LevelOf(cloud_.intensity[i]));
   }
+  header->depth = std::max(header->depth, header->grid.DepthFor(static_cast<double>(most)));
   header->far_points = static_cast<std::uint32_t>(far_ids_.size());
 }
 
@@ -184,7 +181,7 @@ void CloudEncoder::EncodeCells(const std::vector<std::uint32_t>& ids, Candidate*
 /// False where most points lie in no pixel.
 bool CloudEncoder::EncodeBeams(const BeamTable& table, const PixelErrors& errors, double nearest_m,
                                Candidate* candidate) {
-  if (!FillPixels(sightings_, table, errors, nearest_m, &pixels_)) return false;
+  if (!FillPixels({&sightings_, &placed_, &table}, errors, nearest_m, &pixels_)) return false;
   candidate->header.has_beams = true;
   const PointLevels levels{levels_.empty() ? nullptr : &levels_, candidate->header.intensity};
   if (pixels_.returns < near_.size() / 4 ||
@@ -201,8 +198,9 @@ CloudEncoder::Candidate CloudEncoder::EncodeSmallest(const CloudHeader& header, 
   bool found = false;
   sightings_.clear();
   for (const Point& point : near_) sightings_.emplace_back(point);
-  const auto table = FindBeams(sightings_);
-  const auto errors = table ? CheapestErrors(sightings_, *table, error_m) : std::nullopt;
+  const BeamTable* table = keeper_.Place(sightings_, &placed_);
+  const auto errors =
+      table != nullptr ? CheapestErrors({&sightings_, &placed_, table}, error_m) : std::nullopt;
   if (errors) {
     for (const double nearest_m : NearestLimits(effort_, error_m)) {
       Candidate candidate;

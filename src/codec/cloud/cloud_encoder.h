@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "src/codec/cloud/beam_keeper.h"
 #include "src/codec/cloud/beam_section.h"
 #include "src/codec/cloud/cell_cover.h"
 #include "src/codec/cloud/cell_tree.h"
@@ -67,6 +68,8 @@ class CloudEncoder {
   std::vector<std::uint8_t> levels_;  // of near_, at full resolution; empty: geometry only
   std::vector<std::uint32_t> far_ids_;
   std::vector<Sighting> sightings_;  // of near_
+  std::vector<PlacedPoint> placed_;  // the same
+  BeamKeeper keeper_;
   CoveredPoints covered_;
   CellTree tree_;
   PixelList pixels_;

@@ -72,6 +72,16 @@ void SetPlaces(const std::vector<double>& places, BeamTable* table) {
   }
 }
 
+/// Column 0 of all beams looks ahead.
+void AlignDelays(BeamTable* table) {
+  for (BeamTable::Beam& beam : table->beams) {
+    const auto offset = static_cast<std::uint32_t>(beam.offset);
+    const std::uint64_t ahead = std::uint64_t{kTurn - offset} * table->grains / kTurn;
+    const auto at = std::lower_bound(table->places.begin(), table->places.end(), ahead);
+    beam.delay = static_cast<std::uint32_t>(at - table->places.begin()) % table->columns();
+  }
+}
+
 /// Beams of one firing look ahead and behind, and what is uneven is that of the firing.
 class DelaySearch {
  public:
@@ -171,8 +181,8 @@ class DelaySearch {
     for (std::size_t b = 0; b < beams_.size(); ++b) {
       const auto offset = static_cast<std::int32_t>(std::lround(fits_[b].offset + least));
       table_.beams[b].offset = offset & (kTurn - 1);
-      table_.beams[b].delay = static_cast<std::uint32_t>(FiringAt(0, fits_[b].delay));
     }
+    AlignDelays(&table_);
   }
 
   const std::vector<BeamAzimuths>& beams_;
@@ -265,13 +275,8 @@ class RoundedColumns {
       const double azimuth = (delays_[b] + phases_[b]) / grains_ * kTurn;
       const auto offset = static_cast<std::int32_t>(std::lround(azimuth)) & (kTurn - 1);
       table->beams[b].offset = offset;
-      // Its column 0 looks ahead, as those of the others do.
-      const std::uint64_t ahead =
-          std::uint64_t{kTurn - static_cast<std::uint32_t>(offset)} * grains_ / kTurn;
-      const auto at = std::lower_bound(table->places.begin(), table->places.end(), ahead);
-      table->beams[b].delay =
-          static_cast<std::uint32_t>(at - table->places.begin()) % table->columns();
     }
+    AlignDelays(table);
     return true;
   }
 
@@ -338,6 +343,85 @@ Swing FindSwing(const BeamAzimuths& azimuths, std::uint32_t beam, const BeamTabl
   return swing;
 }
 
+bool Swings(const BeamTable::Beam& beam) { return beam.swings != BeamTable::Beam{}.swings; }
+
+/// Even columns begin elsewhere, or come faster.
+bool UpdateEvenColumns(const std::vector<StraightAzimuth>& azimuths, BeamTable* table) {
+  constexpr std::size_t kSample = 2'048;
+  constexpr std::size_t kParts = 16;
+  std::vector<BeamAzimuths> parts(kParts);
+  const std::size_t stride = azimuths.size() / kSample + 1;
+  std::size_t next = 0;
+  for (std::size_t i = 0; i < azimuths.size(); i += stride)
+    parts[next++ % kParts].push_back({azimuths[i].azimuth, 1});
+  const double step =
+      AlignedStep(parts, static_cast<double>(kTurn) * BeamTable::kParts / table->turn);
+  BeamAzimuths all;
+  for (const BeamAzimuths& part : parts) all.insert(all.end(), part.begin(), part.end());
+  if (all.empty()) return false;
+  table->turn = TurnOf(step);
+  const auto shift = static_cast<std::int32_t>(std::lround(PhaseAt(all, step) * step));
+  for (BeamTable::Beam& beam : table->beams) beam.offset = (beam.offset + shift) & (kTurn - 1);
+  return table->columns() > 0 && table->columns() <= BeamTable::kMostColumns;
+}
+
+/// Grains of which many points say that a firing is there; each by itself.
+std::vector<std::uint32_t> VotedPlaces(const std::vector<StraightAzimuth>& azimuths,
+                                       const BeamTable& table) {
+  std::vector<std::uint32_t> votes(table.grains, 0);
+  std::size_t all = 0;
+  for (const StraightAzimuth& a : azimuths) {
+    if (table.period > 1 && Swings(table.beams[a.beam])) continue;
+    const std::uint64_t grain =
+        (std::uint64_t{static_cast<std::uint32_t>(a.azimuth)} * table.grains + kTurn / 2) / kTurn;
+    ++votes[grain == table.grains ? 0 : grain];
+    ++all;
+  }
+  const std::size_t fewest = all / table.places.size() / 8 + 1;
+  const double step = static_cast<double>(table.grains) * BeamTable::kParts / table.turn;
+  std::vector<std::uint32_t> places;
+  for (std::uint32_t i = 0; i < table.grains; ++i) {
+    if (votes[i] < fewest) continue;
+    if (!places.empty() && i - places.back() < 0.5 * step) {
+      if (votes[i] > votes[places.back()]) places.back() = i;
+      continue;
+    }
+    // Firings that saw nothing are between.
+    const std::uint32_t last = places.empty() ? 0 : places.back();
+    const auto gap = static_cast<std::uint32_t>(std::lround((i - last) / step));
+    for (std::uint32_t k = 1; k < gap; ++k) places.push_back(last + (i - last) * k / gap);
+    places.push_back(i);
+  }
+  return places;
+}
+
+/// Turns the swings to the firings that now are those of each.
+void TurnSwings(const std::vector<StraightAzimuth>& azimuths, BeamTable* table) {
+  BeamTable best = *table;
+  double least = 0;
+  for (std::uint32_t turn = 0; turn < table->period; ++turn) {
+    BeamTable turned = *table;
+    for (BeamTable::Beam& beam : turned.beams)
+      std::rotate(beam.swings.begin(), beam.swings.begin() + turn,
+                  beam.swings.begin() + table->period);
+    const ColumnFinder finder(turned);
+    double sum = 0;
+    std::size_t counted = 0;
+    for (std::size_t i = 0; i < azimuths.size() && counted < 2'000; i += 7) {
+      const StraightAzimuth& a = azimuths[i];
+      if (!Swings(table->beams[a.beam])) continue;
+      const std::int32_t azimuth = a.azimuth + table->beams[a.beam].offset;
+      const std::uint32_t column = finder.ColumnOf(a.beam, azimuth);
+      sum += std::min(std::abs(Wrapped(azimuth - turned.AzimuthOf(a.beam, column))), 512);
+      ++counted;
+    }
+    if (turn > 0 && sum >= least) continue;
+    least = sum;
+    best = std::move(turned);
+  }
+  *table = std::move(best);
+}
+
 }  // namespace
 
 void Recentre(const std::vector<BeamAzimuths>& beams, BeamTable* table) {
@@ -400,6 +484,18 @@ void FindSwings(const std::vector<BeamAzimuths>& beams, BeamTable* table) {
 
 bool FindRoundedPlaces(const std::vector<BeamAzimuths>& beams, double quantum, BeamTable* table) {
   return RoundedColumns(beams, quantum).Find(table);
+}
+
+bool UpdateColumns(const std::vector<StraightAzimuth>& azimuths, BeamTable* table) {
+  if (table->grains == 0) return UpdateEvenColumns(azimuths, table);
+  std::vector<std::uint32_t> places = VotedPlaces(azimuths, *table);
+  if (places.size() < table->places.size() / 2 || places.size() > BeamTable::kMostColumns)
+    return false;
+  table->turn = static_cast<std::uint32_t>(places.size()) * BeamTable::kParts;
+  table->places = std::move(places);
+  AlignDelays(table);
+  if (table->period > 1) TurnSwings(azimuths, table);
+  return true;
 }
 
 }  // namespace lidar::codec::cloud

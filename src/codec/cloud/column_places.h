@@ -17,4 +17,12 @@ bool FindRoundedPlaces(const std::vector<BeamAzimuths>& beams, double quantum, B
 /// Finds beams that see points at uneven steps, again and again.
 void FindSwings(const std::vector<BeamAzimuths>& beams, BeamTable* table);
 
+/// An azimuth less the offset of its beam.
+struct StraightAzimuth {
+  std::int32_t azimuth;
+  std::uint32_t beam;
+};
+/// Moves the columns to where those of the next cloud are. False where they cannot be found so.
+bool UpdateColumns(const std::vector<StraightAzimuth>& azimuths, BeamTable* table);
+
 }  // namespace lidar::codec::cloud

@@ -4,19 +4,10 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-
-#include "src/codec/cloud/beam_locator.h"
+#include <utility>
 
 namespace lidar::codec::cloud {
 namespace {
-
-/// A point on its beam.
-struct Placed {
-  std::uint32_t pixel;
-  std::uint32_t range_mm;
-  std::int32_t residual;
-  std::uint32_t point;
-};
 
 /// How far a point is from its beam and column [m].
 struct Distances {
@@ -35,64 +26,49 @@ bool Within(const Distances& off, double error_m, double range_m) {
   return off.along * off.along + off.up * off.up + off.side * off.side <= most * most;
 }
 
-/// Places points in the image of a table.
-class Placer {
+/// Whether points come back within the error.
+class PixelCheck {
  public:
-  Placer(const std::vector<Sighting>& points, const BeamTable& table, const PixelErrors& errors)
-      : points_(points),
-        table_(table),
+  PixelCheck(const PlacedCloud& cloud, const PixelErrors& errors)
+      : points_(*cloud.points),
+        placed_(*cloud.placed),
+        table_(*cloud.table),
         errors_(errors),
-        locator_(table),
-        finder_(table),
         half_step_(
-            static_cast<std::int32_t>(std::uint64_t{kTurn} * BeamTable::kParts / table.turn / 2) +
+            static_cast<std::int32_t>(std::uint64_t{kTurn} * BeamTable::kParts / table_.turn / 2) +
             1) {}
 
-  /// False where it fits no pixel.
-  bool Place(std::uint32_t point, Placed* placed) const {
-    const Sighting& s = points_[point];
-    const BeamLocator::Found found = locator_.Find(s);
+  /// As the first return of its pixel.
+  bool Fits(std::size_t point) const {
+    const PlacedPoint& p = placed_[point];
     constexpr double kFarthest = 1e5;
-    if (!(found.along_m >= 1e-3 && found.along_m < kFarthest)) return false;
-    const BeamTable::Beam& beam = table_.beams[found.beam];
-    const std::int32_t azimuth = AzimuthBy(beam, s);
-    const std::uint32_t column = finder_.ColumnOf(found.beam, azimuth);
-    *placed = {found.beam * table_.columns() + column,
-               static_cast<std::uint32_t>(std::lround(1e3 * found.along_m)),
-               Wrapped(azimuth - table_.AzimuthOf(found.beam, column)), point};
-    if (placed->range_mm == 0) return false;
-    Distances off;
-    off.along = errors_.range_m + std::abs(1e-3 * placed->range_mm - found.along_m);
-    off.up = std::abs(found.above_m) + 0.5 * kRadians * s.range_m;
-    double units = std::abs(static_cast<double>(placed->residual)) + 0.5;
+    if (!(p.along_m >= 1e-3 && p.along_m < kFarthest)) return false;
     if (errors_.tangent_um > 0) {
-      if (std::abs(placed->residual) > half_step_) return false;
-      units = 0.5 * WidthAt(placed->range_mm) + 1;
+      if (std::abs(p.residual) > half_step_) return false;
+      return Fits(point, 0.5 * WidthAt(RangeMm(p)) + 1);
     }
-    off.side = units * kRadians * s.rho_m + SideError(beam, s.rho_m);
-    return Within(off, errors_.error_m, s.range_m);
+    return Fits(point, std::abs(static_cast<double>(p.residual)) + 0.5);
   }
-  /// Whether a point comes back where the first return of its pixel is, at its own range.
-  bool FitsDirection(const Placed& placed, std::int32_t residual, std::uint32_t range_mm) const {
-    const Sighting& s = points_[placed.point];
-    const std::uint32_t row = placed.pixel / table_.columns();
-    const BeamLocator::Found found = locator_.On(row, s);
-    Distances off;
-    off.along = errors_.range_m + std::abs(1e-3 * placed.range_mm - found.along_m);
-    off.up = std::abs(found.above_m) + 0.5 * kRadians * s.range_m;
-    double units = std::abs(static_cast<double>(placed.residual)) + 0.5;
-    if (errors_.tangent_um > 0)
-      units =
-          std::abs(static_cast<double>(placed.residual - residual)) + 0.5 * WidthAt(range_mm) + 1;
-    off.side = units * kRadians * s.rho_m + SideError(table_.beams[row], s.rho_m);
-    return Within(off, errors_.error_m, s.range_m);
+  /// Where the first return of its pixel comes back, at its own range.
+  bool FitsWith(std::size_t point, std::int32_t residual, std::uint32_t range_mm) const {
+    const PlacedPoint& p = placed_[point];
+    if (errors_.tangent_um == 0) return Fits(point);
+    const double off = std::abs(static_cast<double>(p.residual - residual));
+    return Fits(point, off + 0.5 * WidthAt(range_mm) + 1);
+  }
+  static std::uint32_t RangeMm(const PlacedPoint& p) {
+    return static_cast<std::uint32_t>(1e3 * p.along_m + 0.5);
   }
 
  private:
-  static std::int32_t AzimuthBy(const BeamTable::Beam& beam, const Sighting& s) {
-    if (beam.side_um == 0) return s.azimuth;
-    const auto angle = static_cast<std::int32_t>(std::lround(SideAngle(beam, s.rho_m)));
-    return (s.azimuth - angle) & (kTurn - 1);
+  bool Fits(std::size_t point, double units) const {
+    const PlacedPoint& p = placed_[point];
+    const Sighting& s = points_[point];
+    Distances off;
+    off.along = errors_.range_m + std::abs(1e-3 * RangeMm(p) - p.along_m);
+    off.up = std::abs(p.above_m) + 0.5 * kRadians * s.range_m;
+    off.side = units * kRadians * s.rho_m + SideError(table_.beams[p.beam], s.rho_m);
+    return Within(off, errors_.error_m, s.range_m);
   }
   /// The class of a residual is that of the range that comes back.
   double WidthAt(std::uint32_t range_mm) const {
@@ -107,21 +83,20 @@ class Placer {
   }
 
   const std::vector<Sighting>& points_;
+  const std::vector<PlacedPoint>& placed_;
   const BeamTable& table_;
   const PixelErrors& errors_;
-  BeamLocator locator_;
-  ColumnFinder finder_;
   std::int32_t half_step_;
 };
 
-/// The image has the columns that see something, and pixels become its own.
-bool PlaceImage(const BeamTable& table, std::vector<Placed>* placed, PixelList* list) {
-  const std::uint32_t turn = table.columns();
-  std::uint32_t first = turn - 1;
+/// The image has the columns that see something.
+bool PlaceImage(const BeamTable& table, const std::vector<PlacedPoint>& placed,
+                const std::vector<std::uint32_t>& fitting, PixelList* list) {
+  std::uint32_t first = table.columns() - 1;
   std::uint32_t last = 0;
-  for (const Placed& p : *placed) {
-    first = std::min(first, p.pixel % turn);
-    last = std::max(last, p.pixel % turn);
+  for (const std::uint32_t i : fitting) {
+    first = std::min(first, placed[i].column);
+    last = std::max(last, placed[i].column);
   }
   RangeImage& image = list->image;
   image.beams = table.rows();
@@ -136,49 +111,45 @@ bool PlaceImage(const BeamTable& table, std::vector<Placed>* placed, PixelList* 
 
 }  // namespace
 
-bool FillPixels(const std::vector<Sighting>& points, const BeamTable& table,
-                const PixelErrors& errors, double nearest_m, PixelList* list) {
-  list->image = {};
+bool FillPixels(const PlacedCloud& cloud, const PixelErrors& errors, double nearest_m,
+                PixelList* list) {
+  const std::vector<PlacedPoint>& placed = *cloud.placed;
+  list->image.intensity.clear();
   list->extras.clear();
   list->rest.clear();
   list->returns = 0;
-  const Placer placer(points, table, errors);
-  std::vector<Placed> placed;
-  placed.reserve(points.size());
-  for (std::uint32_t i = 0; i < points.size(); ++i) {
-    Placed p{};
-    if (points[i].range_m >= nearest_m && placer.Place(i, &p)) {
-      placed.push_back(p);
-    } else {
-      list->rest.push_back(i);
-    }
+  const PixelCheck check(cloud, errors);
+  std::vector<std::uint32_t> fitting;
+  fitting.reserve(placed.size() / cloud.stride + 1);
+  for (std::size_t i = 0; i < placed.size(); i += cloud.stride) {
+    const bool fits = (*cloud.points)[i].range_m >= nearest_m && check.Fits(i) &&
+                      PixelCheck::RangeMm(placed[i]) > 0;
+    (fits ? fitting : list->rest).push_back(static_cast<std::uint32_t>(i));
   }
-  if (!PlaceImage(table, &placed, list)) return false;
+  if (!PlaceImage(*cloud.table, placed, fitting, list)) return false;
   RangeImage& image = list->image;
-  std::vector<Placed> further;
-  const auto pixel_of = [&](const Placed& p) {
-    return p.pixel / table.columns() * image.columns + p.pixel % table.columns() -
-           image.first_column;
+  const auto pixel_of = [&](std::uint32_t point) {
+    const PlacedPoint& p = placed[point];
+    return p.beam * image.columns + p.column - image.first_column;
   };
-  for (const Placed& p : placed) {
-    const std::uint32_t pixel = pixel_of(p);
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> further;  // pixel, point
+  for (const std::uint32_t i : fitting) {
+    const std::uint32_t pixel = pixel_of(i);
     if (image.ranges[pixel] != 0) {
-      further.push_back(p);
+      further.emplace_back(pixel, i);
       continue;
     }
-    image.ranges[pixel] = p.range_mm;
-    list->residuals[pixel] = p.residual;
-    list->points[pixel] = p.point;
+    image.ranges[pixel] = PixelCheck::RangeMm(placed[i]);
+    list->residuals[pixel] = placed[i].residual;
+    list->points[pixel] = i;
     ++list->returns;
   }
-  std::stable_sort(further.begin(), further.end(),
-                   [](const Placed& a, const Placed& b) { return a.pixel < b.pixel; });
-  for (const Placed& p : further) {
-    const std::uint32_t pixel = pixel_of(p);
-    if (placer.FitsDirection(p, list->residuals[pixel], image.ranges[pixel])) {
-      list->extras.push_back({pixel, p.range_mm, p.point});
+  std::sort(further.begin(), further.end());
+  for (const auto& [pixel, point] : further) {
+    if (check.FitsWith(point, list->residuals[pixel], image.ranges[pixel])) {
+      list->extras.push_back({pixel, PixelCheck::RangeMm(placed[point]), point});
     } else {
-      list->rest.push_back(p.point);
+      list->rest.push_back(point);
     }
   }
   return true;

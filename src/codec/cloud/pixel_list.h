@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "src/codec/cloud/beam_keeper.h"
 #include "src/codec/cloud/beam_table.h"
 #include "src/codec/range_image.h"
 
@@ -43,8 +44,16 @@ inline std::int32_t ResidualWidth(std::uint32_t tangent_um, std::uint32_t range_
 /// An image has at most so many pixels, returns or not.
 constexpr std::size_t kMostPixels = 1U << 20;
 
+/// What a cloud is in the beams of a table.
+struct PlacedCloud {
+  const std::vector<Sighting>* points;
+  const std::vector<PlacedPoint>* placed;
+  const BeamTable* table;
+  std::size_t stride = 1;  // only every so manieth point counts
+};
+
 /// Points nearer than `nearest_m` are left to the rest. False where the image would be too large.
-bool FillPixels(const std::vector<Sighting>& points, const BeamTable& table,
-                const PixelErrors& errors, double nearest_m, PixelList* list);
+bool FillPixels(const PlacedCloud& cloud, const PixelErrors& errors, double nearest_m,
+                PixelList* list);
 
 }  // namespace lidar::codec::cloud

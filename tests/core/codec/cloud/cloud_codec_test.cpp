@@ -233,6 +233,48 @@ INSTANTIATE_TEST_SUITE_P(All, UnevenClouds,
                                            UnevenSensor{"Swings", 0, 0, 0.01, 0.03, 0.15, 0}),
                          [](const auto& sensor) { return std::string(sensor.param.name); });
 
+/// The bits a point of clouds that one encoder takes one after the other.
+std::vector<double> BitsOfStream(const std::vector<PlainPoints>& clouds) {
+  auto encoder = CloudEncoder::Create(PlainLayout());
+  std::vector<double> bits;
+  for (const PlainPoints& points : clouds) {
+    encoder->Load(BytesOf(points), false);
+    Coded coded;
+    EXPECT_EQ(encoder->Encode({0.02, 0, 0}, &coded.slice), SliceResult::kEncoded);
+    CloudDecoder decoder(kMaxPoints);
+    EXPECT_TRUE(decoder.Decode({coded.slice.bytes.data(), coded.slice.bytes.size()}));
+    EXPECT_LE(LargestDistance(points, decoder.cloud()), 0.02 + 1e-5);
+    bits.push_back(BitsPerPoint(coded));
+  }
+  return bits;
+}
+
+PlainPoints Turned(PlainPoints points, double degrees) {
+  for (auto& p : points) {
+    const double x = static_cast<double>(p[0]);
+    const double y = static_cast<double>(p[1]);
+    const double a = degrees * M_PI / 180;
+    p[0] = static_cast<float>(x * std::cos(a) - y * std::sin(a));
+    p[1] = static_cast<float>(x * std::sin(a) + y * std::cos(a));
+  }
+  return points;
+}
+
+TEST_P(UnevenClouds, StayAsSmallAsTheColumnsMove) {
+  const PlainPoints points = UnevenScan(GetParam());
+  const auto bits = BitsOfStream({points, Turned(points, 0.4), Turned(points, 7)});
+  EXPECT_LE(bits[1], 1.05 * bits[0]);
+  EXPECT_LE(bits[2], 1.05 * bits[0]);
+}
+
+TEST(CloudCodec, FindsTheBeamsOfASensorThatTakesTheOthersPlace) {
+  const PlainPoints first = SpinningScan(0);
+  const PlainPoints second = UnevenScan({"", 0.1, 0.026, 0.2, 0, 0, 7});
+  const auto bits = BitsOfStream({first, second, first});
+  EXPECT_LE(bits[1], 2.3);
+  EXPECT_LE(bits[2], 1.01 * bits[0]);
+}
+
 TEST(BeamTable, FindsNoneInACloudWithoutBeams) {
   std::mt19937 random(4);
   std::vector<Sighting> sightings;

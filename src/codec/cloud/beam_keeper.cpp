@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "src/codec/cloud/beam_keeper.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "src/codec/cloud/beam_columns.h"
+#include "src/codec/cloud/beam_locator.h"
+#include "src/codec/cloud/column_places.h"
+
+namespace lidar::codec::cloud {
+namespace {
+
+constexpr unsigned kLongestPause = 64;
+
+void PlaceOnBeams(const std::vector<Sighting>& points, const BeamTable& table,
+                  std::vector<PlacedPoint>* placed) {
+  const BeamLocator locator(table);
+  const bool has_sides = table.has_offsets();
+  placed->resize(points.size());
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const Sighting& s = points[i];
+    const BeamLocator::Found found = locator.Find(s);
+    const BeamTable::Beam& beam = table.beams[found.beam];
+    std::int32_t azimuth = s.azimuth - beam.offset;
+    if (has_sides) azimuth -= static_cast<std::int32_t>(std::lround(SideAngle(beam, s.rho_m)));
+    PlacedPoint& p = (*placed)[i];
+    p.along_m = found.along_m;
+    p.above_m = found.above_m;
+    p.azimuth = azimuth & (kTurn - 1);
+    p.beam = found.beam;
+  }
+}
+
+void PlaceInColumns(const BeamTable& table, std::vector<PlacedPoint>* placed) {
+  const ColumnFinder finder(table);
+  for (PlacedPoint& p : *placed) {
+    const std::int32_t azimuth = p.azimuth + table.beams[p.beam].offset;
+    p.column = finder.ColumnOf(p.beam, azimuth);
+    p.residual = Wrapped(azimuth - table.AzimuthOf(p.beam, p.column));
+  }
+}
+
+/// The part of the points that lie near their pixels.
+double FitOf(const std::vector<Sighting>& points, const std::vector<PlacedPoint>& placed) {
+  constexpr double kNear = 0.01;  // [m]
+  std::size_t near = 0;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const double side = placed[i].residual * kRadians * points[i].rho_m;
+    if (placed[i].above_m * placed[i].above_m + side * side < kNear * kNear) ++near;
+  }
+  return points.empty() ? 0 : static_cast<double>(near) / static_cast<double>(points.size());
+}
+
+}  // namespace
+
+/// False where they do not fit as they did.
+bool BeamKeeper::PlaceByOld(const std::vector<Sighting>& points, std::vector<PlacedPoint>* placed) {
+  constexpr double kAlike = 0.97;
+  PlaceOnBeams(points, *table_, placed);
+  PlaceInColumns(*table_, placed);
+  if (table_->grains == 0 && FitOf(points, *placed) >= kAlike * fit_) return true;
+  std::vector<StraightAzimuth> straight;
+  straight.reserve(placed->size());
+  for (const PlacedPoint& p : *placed) straight.push_back({p.azimuth, p.beam});
+  if (!UpdateColumns(straight, &*table_)) return false;
+  PlaceOnBeams(points, *table_, placed);
+  PlaceInColumns(*table_, placed);
+  return FitOf(points, *placed) >= kAlike * fit_;
+}
+
+const BeamTable* BeamKeeper::Place(const std::vector<Sighting>& points,
+                                   std::vector<PlacedPoint>* placed) {
+  if (table_ && PlaceByOld(points, placed)) return &*table_;
+  if (!table_ && pause_ > 0) {
+    --pause_;
+    return nullptr;
+  }
+  table_ = FindBeams(points);
+  if (!table_) {
+    pause_ = next_pause_;
+    next_pause_ = std::min(2 * next_pause_, kLongestPause);
+    return nullptr;
+  }
+  next_pause_ = 1;
+  PlaceOnBeams(points, *table_, placed);
+  PlaceInColumns(*table_, placed);
+  fit_ = FitOf(points, *placed);
+  return &*table_;
+}
+
+}  // namespace lidar::codec::cloud
