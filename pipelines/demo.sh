@@ -28,6 +28,8 @@ not, or the run failed; 2: wrong use; 3: all held, but not half of what the link
   pipelines/demo.sh                               a synthetic drive, capacity in steps
   pipelines/demo.sh --drive                       the same over a 5G-like link with handover gaps
   pipelines/demo.sh --drive --pcap drive.pcap     a capture, over such a link
+  pipelines/demo.sh --scans velodyne/             a folder of scans: PCD, PLY, LAS, KITTI
+  pipelines/demo.sh --model mid-360               a sensor of another maker
 
   --no-install   do not install Debian packages
   --no-build     take build/ as it is

@@ -43,6 +43,7 @@ void CloudStamper::Stamp(GstBuffer* cloud) {
   }
   GST_BUFFER_DURATION(cloud) = grid.TimeOf(number + 1) - grid.TimeOf(number);
   StampCapture(cloud);
+  NumberScan(cloud, number);
   GST_BUFFER_OFFSET(cloud) = number;
   GST_BUFFER_OFFSET_END(cloud) = number + 1;
   if (!times_given_) timeline_.NotePosition(GST_BUFFER_PTS(cloud) + GST_BUFFER_DURATION(cloud));
@@ -54,6 +55,13 @@ void CloudStamper::StampCapture(GstBuffer* cloud) {
   if (!unix_offset_) unix_offset_ = g_get_real_time() * GstClockTimeDiff{GST_USECOND} - pts;
   const GstClockTimeDiff time = *unix_offset_ + pts;
   if (time >= 0) gst_lidar_buffer_set_capture_time(cloud, static_cast<GstClockTime>(time));
+}
+
+void CloudStamper::NumberScan(GstBuffer* cloud, guint64 number) {
+  GstLidarSlice slice{};
+  if (gst_lidar_buffer_get_slice(cloud, &slice)) return;
+  slice = {static_cast<guint>(number), 0, 1, 0};
+  gst_lidar_buffer_set_slice(cloud, &slice);
 }
 
 void CloudStamper::Flush(bool restarts_time) {

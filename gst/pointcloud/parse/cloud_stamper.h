@@ -50,6 +50,7 @@ class CloudStamper {
   /// are, and come as bytes.
   void SetCloudSize(gsize bytes);
   /// A cloud without a capture time gets one, as if its sensor had begun when the first cloud came.
+  /// One that is no slice becomes a scan with its number.
   void Stamp(GstBuffer* cloud);
   /// A cloud that is left out keeps its place in time.
   void LeaveOut() { ++place_.next; }
@@ -62,6 +63,7 @@ class CloudStamper {
   CloudTimeline::Grid Grid() const;
   void ShowGrid();
   void StampCapture(GstBuffer* cloud);
+  static void NumberScan(GstBuffer* cloud, guint64 number);
 
   CloudTimeline timeline_;
   FrameRate rate_;

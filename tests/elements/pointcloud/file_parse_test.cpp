@@ -91,6 +91,8 @@ TEST_F(FileParse, AFolderPlaysAtTheRateThatIsAskedFor) {
     EXPECT_EQ(out[i].bytes.size(), 160 * (i + 1));
     EXPECT_EQ(out[i].pts, i * 50 * GST_MSECOND);
     EXPECT_EQ(out[i].capture_time, out[0].capture_time + out[i].pts);
+    EXPECT_EQ(out[i].slice.scan_id, i);
+    EXPECT_EQ(out[i].slice.slice_count, 1U);
   }
   EXPECT_GT(out[0].capture_time, kCapture);  // now, or close to it
 }

@@ -12,6 +12,7 @@
 
 #include "src/tools/bench/demo/measurements.h"
 #include "src/tools/bench/demo/report.h"
+#include "src/tools/bench/demo/scan_folder.h"
 #include "src/tools/bench/demo/slam.h"
 #include "src/tools/bench/demo/stream_comparer.h"
 #include "src/tools/bench/demo/summary.h"
@@ -108,6 +109,7 @@ Coordinator::Coordinator(const RunOptions& options) {
   if (mkdir(options.output.c_str(), 0777) != 0 && errno != EEXIST)
     throw std::runtime_error("cannot make the folder " + options.output);
   RemoveReport(options.output);
+  if (!options.scans.empty()) LinkScans(options.scans, options.output);
   if (options.drive) tools::WriteFile(options.output + "/trace.txt", DriveTraceOf(options));
   ports_ = {FreePort(), FreePort()};
 }

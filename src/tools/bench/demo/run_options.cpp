@@ -8,6 +8,7 @@
 #include <stdexcept>
 
 #include "src/link/trace_maker.h"
+#include "src/tools/bench/demo/scan_folder.h"
 
 namespace lidar::demo {
 namespace {
@@ -55,17 +56,28 @@ std::string SourceOf(const RunOptions& o) {
   if (!o.pcap.empty())
     return "ouster_src location=" + Quoted(o.pcap) +
            (o.metadata.empty() ? "" : " metadata=" + Quoted(o.metadata)) + " loop=true" + common;
+  if (!o.scans.empty())
+    return "multifilesrc loop=true location=" + Quoted(ScansPattern(o.output)) +
+           " ! pointcloudparse framerate=10/1 ! identity sync=true name=source";
   return "lidartestsrc model=" + o.model + " mode=" + o.mode + " scene=" + o.scene +
          " speed=" + Number(o.speed_mps) + " seed=" + std::to_string(o.seed) +
          (o.slam ? " trajectory-location=" + Quoted(o.output + "/truth.tum") : "") + common;
 }
 
+/// Only an Ouster's clouds have them.
+bool HasRanges(const RunOptions& o) {
+  if (o.geometry == "xyz" || !o.scans.empty()) return false;
+  return !o.pcap.empty() || o.model.rfind("os", 0) == 0;
+}
+
 void AddSourceOptions(CLI::App* app, RunOptions* o) {
-  app->add_option("--model", o->model, "Synthetic sensor: os0-32 ... os2-128")
+  app->add_option("--model", o->model,
+                  "Synthetic sensor: os0-32 ... os2-128, vlp-16, xt32, at128, mid-360")
       ->check(CLI::IsMember({"os0-32", "os0-64", "os0-128", "os1-32", "os1-64", "os1-128", "os2-32",
-                             "os2-64", "os2-128"}))
+                             "os2-64", "os2-128", "vlp-16", "xt32", "at128", "mid-360"}))
       ->capture_default_str();
-  app->add_option("--mode", o->mode, "Columns x scans/s: 512x10, 1024x10, 1024x20, 2048x10")
+  app->add_option("--mode", o->mode,
+                  "Of an Ouster, columns x scans/s: 512x10, 1024x10, 1024x20, 2048x10")
       ->capture_default_str();
   app->add_option("--scene", o->scene, "Synthetic world: street, tunnel, field, town")
       ->capture_default_str();
@@ -75,6 +87,10 @@ void AddSourceOptions(CLI::App* app, RunOptions* o) {
       ->capture_default_str();
   auto* pcap = app->add_option("--pcap", o->pcap, "Stream an Ouster capture, over and over")
                    ->check(CLI::ExistingFile);
+  app->add_option("--scans", o->scans,
+                  "Stream a folder of scans, over and over, 10 a second: PCD, PLY, LAS or KITTI")
+      ->check(CLI::ExistingDirectory)
+      ->excludes(pcap);
   app->add_option("--metadata", o->metadata,
                   "Sensor metadata of --pcap (JSON), where it does not lie beside it")
       ->check(CLI::ExistingFile)
@@ -177,7 +193,7 @@ double FixedStepOf(const RunOptions& o) {
 double ErrorBoundOf(const RunOptions& o) {
   const double step = FixedStepOf(o);
   // A uniform grid: half a step along the beam, or half the diagonal of a cube.
-  if (step > 0) return o.geometry == "xyz" ? step * std::sqrt(3) / 2 : step / 2;
+  if (step > 0) return HasRanges(o) ? step / 2 : step * std::sqrt(3) / 2;
   return o.max_error_m;
 }
 
@@ -206,7 +222,8 @@ std::string DriveTraceOf(const RunOptions& o) {
   link::DriveTraceConfig config;
   config.seed = o.seed;
   config.duration = FromSeconds(o.duration_s + kDriveTail_s);
-  const double mean = o.pcap.empty() ? kDriveMbps : kDriveOfCaptureMbps;
+  const bool recorded = !o.pcap.empty() || !o.scans.empty();
+  const double mean = recorded ? kDriveOfCaptureMbps : kDriveMbps;
   config.mean = DataRate::BitsPerSecond((o.rate_mbps > 0 ? o.rate_mbps : mean) * 1e6);
   return MakeDriveTrace(config);
 }

@@ -28,6 +28,7 @@ struct RunOptions {
   bool slam = false;  // the edge follows the sensor
   bool view = false;  // both ends show themselves to browsers
   std::string pcap;
+  std::string scans;  // a folder
   std::string metadata;
   // Encoder
   std::string encoder;  // empty: the one for the geometry
