@@ -37,6 +37,14 @@ Client::Client(ObjectPtr<GIOStream> stream, Handlers handlers)
 Client::~Client() {
   readable_.reset();
   writable_.reset();
+  // TLS would wait until a peer that takes nothing has room for its goodbye.
+  if (G_IS_TLS_CONNECTION(stream_.get())) {
+    GIOStream* base = nullptr;
+    g_object_get(stream_.get(), "base-io-stream", &base, nullptr);
+    const ObjectPtr<GIOStream> owner(base);
+    g_socket_shutdown(g_socket_connection_get_socket(G_SOCKET_CONNECTION(base)), TRUE, TRUE,
+                      nullptr);
+  }
   g_io_stream_close(stream_.get(), nullptr, nullptr);
 }
 

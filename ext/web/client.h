@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "ext/web/glib_ptr.h"
+#include "ext/web/grant.h"
 #include "ext/web/outbox.h"
 #include "src/foxglove/websocket.h"
 
@@ -46,6 +47,8 @@ class Client {
   /// Once a second: asks for a sign of life, and closes where none came or nothing was taken.
   void Tick(gint64 now_us);
 
+  /// What its token allows; kept by the owner.
+  Grant grant;
   /// Subscription ids by channel; kept by the owner.
   std::map<std::uint32_t, std::uint32_t> subscriptions;
   const Counters& counters() const { return counters_; }

@@ -15,27 +15,8 @@ using foxglove::Request;
 constexpr std::uint32_t kStatisticsId = 0;
 constexpr guint kTick_ms = 1000;
 constexpr guint kStatistics_ms = 250;
-/// A browser has six at a time.
-constexpr std::size_t kMaxWaiting = 32;
-
-/// Takes as long whatever the texts are, so that time does not tell how much of a token was right.
-bool SameSecret(std::string_view a, std::string_view b) {
-  unsigned difference = a.size() == b.size() ? 0 : 1;
-  for (std::size_t i = 0; i < a.size() && !b.empty(); ++i)
-    difference |= static_cast<unsigned>(a[i] ^ b[i % b.size()]);
-  return difference == 0;
-}
-
-std::string_view TokenOf(SoupServerMessage* request, GHashTable* query) {
-  const auto* in_query =
-      query != nullptr ? static_cast<const char*>(g_hash_table_lookup(query, "token")) : nullptr;
-  if (in_query != nullptr) return in_query;
-  constexpr std::string_view kBearer = "Bearer ";
-  const char* header = soup_message_headers_get_one(
-      soup_server_message_get_request_headers(request), "Authorization");
-  const std::string_view text = header != nullptr ? header : "";
-  return text.substr(0, kBearer.size()) == kBearer ? text.substr(kBearer.size()) : "";
-}
+/// Under which a request keeps what its client may have.
+constexpr const char* kGrant = "grant";
 
 void Answer(SoupServerMessage* request, guint status, const char* text) {
   soup_server_message_set_status(request, status, nullptr);
@@ -63,8 +44,10 @@ ClientService::ClientService(const ServerConfig& config, ServerCounters* counter
     : config_(config),
       counters_(*counters),
       session_id_(NewSessionId()),
+      admission_(config),
+      certificate_(config.certificate, config.private_key),
       soup_(soup_server_new("server-header", "gst-lidar", nullptr)),
-      door_(soup_.get(), kMaxWaiting),
+      door_(soup_.get(), certificate_.is_wanted() ? &certificate_ : nullptr, {}),
       slices_(config.max_bitrate) {
   soup_server_add_early_handler(soup_.get(), nullptr, OnHeaders, this, nullptr);
   soup_server_add_handler(soup_.get(), nullptr, OnRequest, this, nullptr);
@@ -89,6 +72,8 @@ ClientService::~ClientService() {
 }
 
 std::uint16_t ClientService::Listen(std::string* error) {
+  if (certificate_.is_wanted() && !certificate_.Load(error)) return 0;
+  if (certificate_.IsOver() && config_.warn) config_.warn("The certificate has run out.");
   const ObjectPtr<GInetAddress> address(g_inet_address_new_from_string(config_.address.c_str()));
   return door_.Listen(address.get(), config_.port, error);
 }
@@ -120,7 +105,11 @@ void ClientService::OnRequest(SoupServer*, SoupServerMessage* request, const cha
                               GHashTable* query, gpointer data) {
   auto* self = static_cast<ClientService*>(data);
   if (WantsWebSocket(request)) {
-    if (self->Admit(request, query)) self->Upgrade(request);
+    auto grant = self->Admit(request, query);
+    if (!grant) return;
+    g_object_set_data_full(G_OBJECT(request), kGrant, new Grant(*std::move(grant)),
+                           [](gpointer g) { delete static_cast<Grant*>(g); });
+    self->Upgrade(request);
   } else if (strcmp(path, "/session") == 0) {
     // A page cannot read why its WebSocket was refused: it asks here.
     if (self->Admit(request, query)) Answer(request, SOUP_STATUS_OK, "welcome\n");
@@ -129,16 +118,17 @@ void ClientService::OnRequest(SoupServer*, SoupServerMessage* request, const cha
   }
 }
 
-bool ClientService::Admit(SoupServerMessage* request, GHashTable* query) {
-  if (!config_.token.empty() && !SameSecret(TokenOf(request, query), config_.token)) {
-    ++counters_.clients_refused;
-    Answer(request, SOUP_STATUS_UNAUTHORIZED, "The token is missing or wrong.\n");
-    return false;
+std::optional<Grant> ClientService::Admit(SoupServerMessage* request, GHashTable* query) {
+  Admission::Refusal refusal;
+  auto grant = admission_.Check(request, query, &refusal);
+  if (grant && counters_.clients >= config_.max_clients) {
+    refusal = {SOUP_STATUS_SERVICE_UNAVAILABLE, "Too many clients are connected.\n"};
+    grant.reset();
   }
-  if (counters_.clients < config_.max_clients) return true;
+  if (grant) return grant;
   ++counters_.clients_refused;
-  Answer(request, SOUP_STATUS_SERVICE_UNAVAILABLE, "Too many clients are connected.\n");
-  return false;
+  Answer(request, refusal.status, refusal.text);
+  return std::nullopt;
 }
 
 void ClientService::Upgrade(SoupServerMessage* request) {
@@ -177,12 +167,22 @@ void ClientService::AddClient(SoupServerMessage* request) {
   handlers.on_closed = [this](Client* c) { ForgetClient(c); };
   clients_.push_back(std::make_unique<Client>(std::move(stream), std::move(handlers)));
   Client* client = clients_.back().get();
+  client->grant = *static_cast<const Grant*>(g_object_get_data(G_OBJECT(request), kGrant));
   ++counters_.clients_accepted;
   ++counters_.clients;
   client->SendText(foxglove::ServerInfo(config_.name, session_id_));
   std::vector<foxglove::Channel> channels;
   for (const auto& [id, topic] : topics_) channels.push_back(topic->channel());
-  client->SendText(foxglove::Advertise(channels));
+  Advertise(client, channels);
+}
+
+/// The channels that it may have.
+void ClientService::Advertise(Client* client, std::vector<foxglove::Channel> channels) {
+  const auto barred = std::remove_if(
+      channels.begin(), channels.end(),
+      [client](const foxglove::Channel& channel) { return !client->grant.Allows(channel.topic); });
+  channels.erase(barred, channels.end());
+  if (!channels.empty()) client->SendText(foxglove::Advertise(channels));
 }
 
 /// It may be one of its own calls that ended the client, so it is deleted after them.
@@ -242,6 +242,7 @@ void ClientService::OnText(Client* client, const std::vector<std::uint8_t>& text
 void ClientService::Subscribe(Client* client, const foxglove::Subscription& subscription) {
   const auto topic = topics_.find(subscription.channel_id);
   if (topic == topics_.end() || client->closed()) return;  // it has just gone
+  if (!client->grant.Allows(topic->second->channel().topic)) return;
   const bool added =
       client->subscriptions.insert_or_assign(subscription.channel_id, subscription.id).second;
   if (added) topic->second->AddSubscribers(1);
@@ -283,7 +284,7 @@ void ClientService::SetTopics(const std::vector<SharedTopic>& topics) {
       client->Forget(id);
     }
     if (!gone.empty()) client->SendText(foxglove::Unadvertise(gone));
-    if (!come.empty()) client->SendText(foxglove::Advertise(come));
+    Advertise(client.get(), come);
   }
 }
 
@@ -325,11 +326,23 @@ void ClientService::SendStatistics() {
   Deliver(kStatisticsId, std::make_shared<const Message>(std::move(message)));
 }
 
+/// Connections that come from now on have the new one.
+void ClientService::RenewCertificate() {
+  std::string why;
+  if (!certificate_.is_wanted() || certificate_.Renew(&why) || !config_.warn) return;
+  config_.warn("The renewed certificate cannot be read, the old one stays: " + why);
+}
+
 void ClientService::Tick() {
   const gint64 now_us = g_get_monotonic_time();
   door_.Tick(now_us);
   counters_.connections_evicted = door_.evicted();
-  for (const auto& client : clients_) client->Tick(now_us);
+  RenewCertificate();
+  const gint64 now_s = g_get_real_time() / G_USEC_PER_SEC;
+  for (const auto& client : clients_) {
+    client->Tick(now_us);
+    if (client->grant.IsOver(now_s)) client->Close(CloseCode::kTokenOver);
+  }
   CountSent();
 }
 

@@ -10,6 +10,8 @@
 #include <string>
 #include <vector>
 
+#include "ext/web/admission.h"
+#include "ext/web/certificate.h"
 #include "ext/web/client.h"
 #include "ext/web/front_door.h"
 #include "ext/web/glib_ptr.h"
@@ -39,11 +41,13 @@ class ClientService {
   static void OnRequest(SoupServer*, SoupServerMessage*, const char* path, GHashTable* query,
                         gpointer self);
   static void OnUpgraded(SoupServerMessage*, gpointer self);
-  /// Whether there is room, and the token is right; else the answer is made.
-  bool Admit(SoupServerMessage* request, GHashTable* query);
+  /// What the request may have; none where the answer is made.
+  std::optional<Grant> Admit(SoupServerMessage* request, GHashTable* query);
   void Upgrade(SoupServerMessage* request);
   void AddClient(SoupServerMessage* request);
+  void RenewCertificate();
 
+  void Advertise(Client* client, std::vector<foxglove::Channel> channels);
   void OnText(Client* client, const std::vector<std::uint8_t>& text);
   void Subscribe(Client* client, const foxglove::Subscription& subscription);
   void Unsubscribe(Client* client, std::uint32_t subscription_id);
@@ -58,6 +62,8 @@ class ClientService {
   const ServerConfig& config_;
   ServerCounters& counters_;
   const std::string session_id_;
+  Admission admission_;
+  Certificate certificate_;
   ObjectPtr<SoupServer> soup_;
   FrontDoor door_;
   std::list<std::unique_ptr<Client>> clients_;

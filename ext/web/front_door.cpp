@@ -15,10 +15,23 @@ constexpr int kBacklog = 128;
 /// What the kernel may hold unsent: data that waits there gets old, and cannot give way.
 constexpr gint kUnsentBytes = 128 * 1024;
 
+std::string AddressOf(GSocketAddress* peer) {
+  if (!G_IS_INET_SOCKET_ADDRESS(peer)) return "";
+  gchar* text =
+      g_inet_address_to_string(g_inet_socket_address_get_address(G_INET_SOCKET_ADDRESS(peer)));
+  std::string copy = text;
+  g_free(text);
+  return copy;
+}
+
 }  // namespace
 
-FrontDoor::FrontDoor(SoupServer* server, std::size_t max_waiting)
-    : server_(server), max_waiting_(max_waiting), service_(g_socket_service_new()) {
+FrontDoor::FrontDoor(SoupServer* server, Certificate* certificate, Limits limits)
+    : server_(server),
+      certificate_(certificate),
+      limits_(limits),
+      handshakes_([this](auto* connection, auto* secure) { Enter(connection, secure); }),
+      service_(g_socket_service_new()) {
   g_socket_service_stop(service_.get());
   g_socket_listener_set_backlog(G_SOCKET_LISTENER(service_.get()), kBacklog);
   g_signal_connect(service_.get(), "incoming", G_CALLBACK(OnIncoming), this);
@@ -61,19 +74,44 @@ void FrontDoor::OnGone(gpointer data, GObject*) {
 }
 
 void FrontDoor::Accept(GSocketConnection* connection) {
-  GSocketAddress* local = g_socket_connection_get_local_address(connection, nullptr);
   GSocketAddress* remote = g_socket_connection_get_remote_address(connection, nullptr);
-  const ObjectPtr<GSocketAddress> local_owner(local);
   ObjectPtr<GSocketAddress> peer(remote);
-  if (local == nullptr || remote == nullptr) return;  // it has left already
+  if (remote == nullptr) return;  // it has left already
   GSocket* socket = g_socket_connection_get_socket(connection);
   g_socket_set_option(socket, IPPROTO_TCP, TCP_NODELAY, 1, nullptr);
   g_socket_set_option(socket, IPPROTO_TCP, TCP_NOTSENT_LOWAT, kUnsentBytes, nullptr);
-  if (waiting_.size() >= max_waiting_) Evict(&waiting_.front());
-  waiting_.push_back({this, connection, std::move(peer), g_get_monotonic_time()});
+  std::string address = AddressOf(remote);
+  MakeRoom(address);
+  waiting_.push_back(
+      {this, connection, std::move(peer), std::move(address), g_get_monotonic_time()});
   g_object_weak_ref(G_OBJECT(connection), OnGone, &waiting_.back());
+  if (certificate_ != nullptr)
+    handshakes_.Begin(Ref(connection), certificate_->get());
+  else
+    Enter(connection, G_IO_STREAM(connection));
+}
+
+/// Whoever opens many connections ends his own.
+void FrontDoor::MakeRoom(const std::string& address) {
+  const auto is_his = [&address](const Visitor& v) { return v.address == address; };
+  const auto his =
+      static_cast<std::size_t>(std::count_if(waiting_.begin(), waiting_.end(), is_his));
+  if (his >= limits_.of_an_address)
+    Evict(&*std::find_if(waiting_.begin(), waiting_.end(), is_his));
+  else if (waiting_.size() >= limits_.all)
+    Evict(&waiting_.front());
+}
+
+/// The server reads requests from `stream`.
+void FrontDoor::Enter(GSocketConnection* connection, GIOStream* stream) {
+  const auto visitor =
+      std::find_if(waiting_.begin(), waiting_.end(),
+                   [connection](const Visitor& v) { return v.connection == connection; });
+  if (visitor == waiting_.end()) return;
+  const ObjectPtr<GSocketAddress> local(g_socket_connection_get_local_address(connection, nullptr));
+  if (!local) return;  // it has left already
   GError* error = nullptr;
-  soup_server_accept_iostream(server_, G_IO_STREAM(connection), local, remote, &error);
+  soup_server_accept_iostream(server_, stream, local.get(), visitor->peer.get(), &error);
   const GErrorPtr owner(error);
 }
 
@@ -96,6 +134,7 @@ void FrontDoor::Promote(SoupServerMessage* request) {
 }
 
 void FrontDoor::Tick(gint64 now_us) {
+  handshakes_.Tick(now_us);
   while (!waiting_.empty() && now_us - waiting_.front().since_us > kLongest_us)
     Evict(&waiting_.front());
 }

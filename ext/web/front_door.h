@@ -1,20 +1,28 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Accepts connections for a SoupServer, and keeps few of those that say nothing.
+// Accepts connections for a SoupServer, with TLS where there is a certificate, and keeps few of
+// those that say nothing.
 #pragma once
 #include <libsoup/soup.h>
 
 #include <list>
 #include <string>
 
+#include "ext/web/certificate.h"
 #include "ext/web/glib_ptr.h"
+#include "ext/web/handshakes.h"
 
 namespace lidar::web {
 
 /// Lives in the server's thread.
 class FrontDoor {
  public:
-  /// At most `max_waiting` connections that are no WebSocket stay open; the oldest give way.
-  FrontDoor(SoupServer* server, std::size_t max_waiting);
+  /// Of connections that are no WebSocket, so many stay open; the oldest give way.
+  struct Limits {
+    std::size_t all = 1000;
+    std::size_t of_an_address = 32;  // a browser has six at a time
+  };
+  /// `certificate` may be null, and outlives the door.
+  FrontDoor(SoupServer* server, Certificate* certificate, Limits limits);
   ~FrontDoor();
   FrontDoor(const FrontDoor&) = delete;
   FrontDoor& operator=(const FrontDoor&) = delete;
@@ -32,15 +40,20 @@ class FrontDoor {
     FrontDoor* door = nullptr;
     GSocketConnection* connection = nullptr;  // not owned: a weak reference
     ObjectPtr<GSocketAddress> peer;
+    std::string address;
     gint64 since_us = 0;
   };
   static gboolean OnIncoming(GSocketService*, GSocketConnection*, GObject*, gpointer self);
   static void OnGone(gpointer visitor, GObject*);
   void Accept(GSocketConnection* connection);
+  void Enter(GSocketConnection* connection, GIOStream* stream);
+  void MakeRoom(const std::string& address);
   void Evict(Visitor* visitor);
 
   SoupServer* const server_;
-  const std::size_t max_waiting_;
+  Certificate* const certificate_;
+  const Limits limits_;
+  Handshakes handshakes_;
   ObjectPtr<GSocketService> service_;
   std::list<Visitor> waiting_;  // the oldest first
   guint64 evicted_ = 0;

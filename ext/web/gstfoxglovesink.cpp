@@ -34,6 +34,10 @@ struct Settings {
   guint port = 8765;
   std::string bind_address = "127.0.0.1";
   std::string token;
+  std::string token_secret;
+  std::string allowed_origins;
+  std::string tls_certificate;
+  std::string tls_private_key;
   guint max_clients = 8;
   guint max_points = 0;
   guint max_bitrate = 0;
@@ -177,12 +181,22 @@ static StructurePtr ReadStats(GObject* object) {
   return ToStructure("application/x-foxglove-stats", kStats, counters);
 }
 
-static const std::array<Property<Settings>, 8> kProperties = {{
+static const std::array<Property<Settings>, 12> kProperties = {{
     {"port", "TCP port; 0: one that is free, as stats tell", &Settings::port, 0, 65535},
     {"bind-address", "Address to listen on; others than of this machine need a token",
      &Settings::bind_address},
     {"token", "What clients must name: http://host:port/?token=...; NULL: nothing",
      &Settings::token},
+    {"token-secret",
+     "Secret, of 32 bytes at least, of tokens that are JSON Web Tokens signed by HS256; they need "
+     "exp, and may have topics",
+     &Settings::token_secret},
+    {"allowed-origins",
+     "Sites whose pages need no token, beside the own page: https://app.foxglove.dev,...",
+     &Settings::allowed_origins},
+    {"tls-certificate", "PEM file of a certificate and its chain, for HTTPS; NULL: HTTP",
+     &Settings::tls_certificate},
+    {"tls-private-key", "PEM file of the certificate's key", &Settings::tls_private_key},
     {"max-clients", "How many may be connected at a time", &Settings::max_clients, 1, 1000},
     {"max-points", "The most points of a message, of more every n-th is sent; 0: all",
      &Settings::max_points},
@@ -207,7 +221,8 @@ static bool CheckAddress(GstElement* element, const Settings& s) {
                       ("bind-address takes an IPv4 or IPv6 address"));
     return false;
   }
-  if (g_inet_address_get_is_loopback(address.get()) || !s.token.empty()) return true;
+  const bool has_token = !s.token.empty() || !s.token_secret.empty();
+  if (g_inet_address_get_is_loopback(address.get()) || has_token) return true;
   GST_ELEMENT_ERROR(
       element, RESOURCE, SETTINGS,
       ("The address %s can be reached from other machines: set a token.", s.bind_address.c_str()),
@@ -215,31 +230,55 @@ static bool CheckAddress(GstElement* element, const Settings& s) {
   return false;
 }
 
-static bool Open(GstElement* element) {
-  auto* self = GST_LIDAR_FOXGLOVE_SINK(element);
-  State& state = *self->state;
-  const Settings s = Snapshot(state);
-  if (!CheckAddress(element, s)) return false;
+/// False, with an element error, where they could not protect anything.
+static bool CheckSecrets(GstElement* element, const Settings& s) {
+  constexpr std::size_t kShortest = 32;  // RFC 7518, section 3.2
+  const char* wrong = nullptr;
+  if (!s.token_secret.empty() && s.token_secret.size() < kShortest)
+    wrong = "token-secret has less than 32 bytes.";
+  if (s.tls_certificate.empty() != s.tls_private_key.empty())
+    wrong = "tls-certificate and tls-private-key need each other.";
+  if (wrong == nullptr) return true;
+  GST_ELEMENT_ERROR(element, RESOURCE, SETTINGS, ("%s", wrong), (nullptr));
+  return false;
+}
+
+static lidar::web::ServerConfig ConfigOf(GstElement* element, const Settings& s) {
   lidar::web::ServerConfig config;
   config.address = s.bind_address;
   config.port = static_cast<std::uint16_t>(s.port);
   config.token = s.token;
+  config.token_secret = s.token_secret;
+  config.allowed_origins = s.allowed_origins;
+  config.certificate = s.tls_certificate;
+  config.private_key = s.tls_private_key;
   config.max_clients = s.max_clients;
   config.max_bitrate = lidar::DataRate::BitsPerSecond(s.max_bitrate);
   config.name = "gst-lidar";
   // The server ends before the element does.
   config.statistics = [element] { return lidar::web::StatisticsOf(element); };
+  config.warn = [element](const std::string& text) {
+    GST_ELEMENT_WARNING(element, RESOURCE, SETTINGS, ("%s", text.c_str()), (nullptr));
+  };
+  return config;
+}
+
+static bool Open(GstElement* element) {
+  State& state = *GST_LIDAR_FOXGLOVE_SINK(element)->state;
+  const Settings s = Snapshot(state);
+  if (!CheckAddress(element, s) || !CheckSecrets(element, s)) return false;
   auto hub = std::make_shared<Hub>();
   hub->max_points = s.max_points;
   std::string error;
-  hub->server = lidar::web::Server::Start(std::move(config), &error);
+  hub->server = lidar::web::Server::Start(ConfigOf(element, s), &error);
   if (!hub->server) {
     GST_ELEMENT_ERROR(element, RESOURCE, OPEN_READ_WRITE,
                       ("Cannot serve on port %u of %s.", s.port, s.bind_address.c_str()),
                       ("%s", error.c_str()));
     return false;
   }
-  GST_INFO_OBJECT(element, "serves on http://%s:%u/", s.bind_address.c_str(), hub->server->port());
+  GST_INFO_OBJECT(element, "serves on http%s://%s:%u/", s.tls_certificate.empty() ? "" : "s",
+                  s.bind_address.c_str(), hub->server->port());
   const std::lock_guard lock(state.mutex);
   state.hub = std::move(hub);
   return true;

@@ -15,8 +15,14 @@ inline constexpr const char* kStatisticsTopic = "/statistics";
 
 struct ServerConfig {
   std::string address = "127.0.0.1";
-  std::uint16_t port = 0;  // 0: one that is free
-  std::string token;       // empty: everybody may come
+  std::uint16_t port = 0;    // 0: one that is free
+  std::string token;         // with the next one empty, too, everybody may come
+  std::string token_secret;  // of signed tokens; empty: there are none
+  std::string
+      allowed_origins;      // of pages that need no token, beside the own: "https://a,https://b"
+  std::string certificate;  // PEM file of it and its chain; empty: no TLS
+  std::string private_key;  // PEM file
+  std::function<void(std::string)> warn;  // what a user should know; from the server's thread
   unsigned max_clients = 8;
   DataRate max_bitrate;                     // of the slices of a viewer; 0: no limit
   std::string name;                         // as clients show it

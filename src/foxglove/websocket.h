@@ -25,6 +25,7 @@ enum class CloseCode : std::uint16_t {
   kGoingAway = 1001,
   kProtocolError = 1002,
   kTooLarge = 1009,
+  kTokenOver = 4401,  // ours: the client needs a new token
 };
 
 /// Appends the header of a final frame of the server with a payload of `size` bytes.

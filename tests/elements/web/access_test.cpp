@@ -77,6 +77,45 @@ TEST(FoxgloveSink, NeedsATokenWhereOthersCanReachIt) {
   EXPECT_NE(ErrorOf("port=0 bind-address=robot").find("no address"), std::string::npos);
 }
 
+TEST(FoxgloveSink, RefusesSecretsThatCannotProtect) {
+  EXPECT_NE(ErrorOf("port=0 token-secret=short").find("32 bytes"), std::string::npos);
+  EXPECT_NE(ErrorOf("port=0 tls-certificate=a.pem").find("need each other"), std::string::npos);
+  EXPECT_EQ(ErrorOf("port=0 bind-address=0.0.0.0 token-secret=" + std::string(32, 's')), "");
+}
+
+struct Asks {
+  const char* origin;
+  bool enters;
+};
+class Origins : public ::testing::TestWithParam<Asks> {};
+TEST_P(Origins, OfOtherSitesNeedATokenOrToBeAllowed) {
+  Sink open("allowed-origins=https://a.example,https://app.foxglove.dev");
+  Peer peer(open.Url("ws"), {"foxglove.sdk.v1"}, GetParam().origin);
+  EXPECT_EQ(peer.connected(), GetParam().enters);
+  if (!GetParam().enters) {
+    EXPECT_EQ(peer.status(), 403U);
+  }
+  Sink guarded("token=secret");
+  EXPECT_TRUE(Peer(guarded.Url("ws", "/?token=secret"), {"foxglove.sdk.v1"}, GetParam().origin)
+                  .connected());
+}
+INSTANTIATE_TEST_SUITE_P(All, Origins,
+                         ::testing::Values(Asks{nullptr, true}, Asks{"http://127.0.0.1:1", true},
+                                           Asks{"https://app.foxglove.dev", true},
+                                           Asks{"https://app.foxglove.dev.evil.example", false},
+                                           Asks{"http://evil.example", false},
+                                           Asks{"http://127.0.0.1.evil.example:8765", false},
+                                           Asks{"null", false}));
+
+TEST(FoxgloveSink, StopsListeningToAnAddressThatGuessesTokens) {
+  Sink sink("token=secret");
+  for (int i = 0; i < 10; ++i)
+    EXPECT_EQ(HttpGet(sink.Url("http", "/session?token=no")).status, 401U);
+  EXPECT_EQ(HttpGet(sink.Url("http", "/session?token=no")).status, 429U);
+  EXPECT_EQ(HttpGet(sink.Url("http", "/session?token=secret")).status, 429U);
+  EXPECT_EQ(HttpGet(sink.Url("http")).status, 200U);
+}
+
 TEST(FoxgloveSink, SaysThatItsPortIsInUse) {
   Sink sink;
   const std::string port = std::to_string(sink.Stat("port"));

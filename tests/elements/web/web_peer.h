@@ -80,6 +80,13 @@ inline bool WaitUntil(const std::function<bool()>& done) {
   return true;
 }
 
+/// Certificates of tests are signed by nobody.
+inline void AcceptCertificates(SoupMessage* message) {
+  g_signal_connect(message, "accept-certificate",
+                   G_CALLBACK(+[](SoupMessage*, GTlsCertificate*, int, gpointer) { return TRUE; }),
+                   nullptr);
+}
+
 /// One answer over HTTP.
 struct HttpAnswer {
   guint status = 0;
@@ -90,6 +97,7 @@ struct HttpAnswer {
 inline HttpAnswer HttpGet(const std::string& url, const char* method = "GET") {
   SoupSession* session = soup_session_new();
   SoupMessage* message = soup_message_new(method, url.c_str());
+  AcceptCertificates(message);
   GError* error = nullptr;
   GBytes* body = nullptr;
   bool done = false;
@@ -135,12 +143,14 @@ struct Received {
 /// A client in the default context, which WaitUntil runs.
 class Peer {
  public:
-  Peer(const std::string& url, std::vector<const char*> protocols) : session_(soup_session_new()) {
+  Peer(const std::string& url, std::vector<const char*> protocols, const char* origin = nullptr)
+      : session_(soup_session_new()) {
     soup_session_add_feature_by_type(session_, SOUP_TYPE_WEBSOCKET_EXTENSION_MANAGER);
     protocols.push_back(nullptr);
     message_ = soup_message_new("GET", url.c_str());
+    AcceptCertificates(message_);
     soup_session_websocket_connect_async(
-        session_, message_, nullptr, const_cast<char**>(protocols.data()), G_PRIORITY_DEFAULT,
+        session_, message_, origin, const_cast<char**>(protocols.data()), G_PRIORITY_DEFAULT,
         nullptr,
         [](GObject* source, GAsyncResult* result, gpointer self) {
           static_cast<Peer*>(self)->Connected(SOUP_SESSION(source), result);
@@ -162,6 +172,13 @@ class Peer {
 
   bool connected() const { return connection_ != nullptr; }
   bool closed() const { return closed_; }
+  gushort close_code() const { return soup_websocket_connection_get_close_code(connection_); }
+  std::string certificate() const {
+    gchar* name = nullptr;
+    g_object_get(soup_message_get_tls_peer_certificate(message_), "subject-name", &name, nullptr);
+    const gst::StringPtr owner(name);
+    return name != nullptr ? name : "";
+  }
   guint status() const { return soup_message_get_status(message_); }
   std::string protocol() const { return soup_websocket_connection_get_protocol(connection_); }
   bool compressed() const {

@@ -1,0 +1,133 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "ext/web/admission.h"
+
+#include <algorithm>
+
+#include "ext/web/glib_ptr.h"
+
+namespace lidar::web {
+namespace {
+
+constexpr std::size_t kMostAddresses = 1024;
+
+std::string_view HeaderOf(SoupServerMessage* request, const char* name) {
+  const char* text =
+      soup_message_headers_get_one(soup_server_message_get_request_headers(request), name);
+  return text != nullptr ? text : "";
+}
+
+std::string_view TokenOf(SoupServerMessage* request, GHashTable* query) {
+  const auto* in_query =
+      query != nullptr ? static_cast<const char*>(g_hash_table_lookup(query, "token")) : nullptr;
+  if (in_query != nullptr) return in_query;
+  constexpr std::string_view kBearer = "Bearer ";
+  const std::string_view text = HeaderOf(request, "Authorization");
+  return text.substr(0, kBearer.size()) == kBearer ? text.substr(kBearer.size()) : "";
+}
+
+/// The peer, or whom a proxy on this machine speaks for.
+std::string AddressOf(SoupServerMessage* request) {
+  auto* peer = soup_server_message_get_remote_address(request);
+  if (peer == nullptr || !G_IS_INET_SOCKET_ADDRESS(peer)) return "";
+  GInetAddress* address = g_inet_socket_address_get_address(G_INET_SOCKET_ADDRESS(peer));
+  const std::string_view forwarded = HeaderOf(request, "X-Forwarded-For");
+  if (g_inet_address_get_is_loopback(address) && !forwarded.empty()) {
+    const auto comma = forwarded.rfind(',');
+    const auto begin = comma == std::string_view::npos ? 0 : comma + 1;
+    return std::string(forwarded.substr(begin, 64));
+  }
+  gchar* text = g_inet_address_to_string(address);
+  std::string copy = text;
+  g_free(text);
+  return copy;
+}
+
+/// "robot:8765" of "https://robot:8765".
+std::string_view WithoutScheme(std::string_view origin) {
+  const auto slashes = origin.find("://");
+  return slashes == std::string_view::npos ? origin : origin.substr(slashes + 3);
+}
+
+std::string_view WithoutPort(std::string_view host) {
+  const auto colon = host.rfind(':');
+  const bool is_port = colon != std::string_view::npos && host.back() != ']';
+  return is_port ? host.substr(0, colon) : host;
+}
+
+bool Lists(std::string_view list, std::string_view item) {
+  while (!list.empty()) {
+    const auto comma = std::min(list.find(','), list.size());
+    if (list.substr(0, comma) == item) return true;
+    list.remove_prefix(std::min(comma + 1, list.size()));
+  }
+  return false;
+}
+
+/// A name could be that of another site, which its owner lets point here.
+bool IsNoName(std::string_view host) {
+  if (host.size() > 2 && host.front() == '[') host = host.substr(1, host.size() - 2);
+  return host.empty() || host == "localhost" || g_hostname_is_ip_address(std::string(host).c_str());
+}
+
+/// Whether the page that asks is this server's own, or one of `allowed`. What is no browser has no
+/// origin.
+bool IsOwnPage(SoupServerMessage* request, const std::string& allowed) {
+  const std::string_view origin = HeaderOf(request, "Origin");
+  if (!origin.empty() && Lists(allowed, origin)) return true;
+  const std::string_view host = WithoutPort(HeaderOf(request, "Host"));
+  if (!IsNoName(host)) return false;
+  return origin.empty() || WithoutPort(WithoutScheme(origin)) == host;
+}
+
+}  // namespace
+
+/// A token that is right opens for pages of any origin: no browser adds it by itself.
+std::optional<Grant> Admission::Check(SoupServerMessage* request, GHashTable* query,
+                                      Refusal* refusal) {
+  if (!HasToken()) {
+    if (IsOwnPage(request, config_.allowed_origins)) return Grant{};
+    *refusal = {SOUP_STATUS_FORBIDDEN,
+                "Pages of other sites and other names of this host need a token, or "
+                "allowed-origins.\n"};
+    return std::nullopt;
+  }
+  const std::string address = AddressOf(request);
+  const gint64 now_us = g_get_monotonic_time();
+  if (WrongOf(address, now_us) + 1 > kWrongTokens) {
+    *refusal = {429, "Too many wrong tokens came from this address: wait a minute.\n"};
+    return std::nullopt;
+  }
+  const std::string_view token = TokenOf(request, query);
+  auto grant = GrantFor(token);
+  if (grant) return grant;
+  if (!token.empty()) NoteWrong(address, now_us);
+  *refusal = {SOUP_STATUS_UNAUTHORIZED,
+              token.empty() ? "A token is needed.\n" : "The token is wrong, or has run out.\n"};
+  return std::nullopt;
+}
+
+std::optional<Grant> Admission::GrantFor(std::string_view token) const {
+  if (!config_.token.empty() && SameSecret(token, config_.token)) return Grant{};
+  if (config_.token_secret.empty()) return std::nullopt;
+  return ReadSignedToken(token, config_.token_secret, g_get_real_time() / G_USEC_PER_SEC);
+}
+
+double Admission::WrongOf(const std::string& address, gint64 now_us) const {
+  const auto found = wrong_.find(address);
+  if (found == wrong_.end()) return 0;
+  const double forgiven =
+      static_cast<double>(now_us - found->second.at_us) / static_cast<double>(kForgive_us);
+  return std::max(found->second.count - forgiven, 0.0);
+}
+
+/// The address that was wrong longest ago gives way.
+void Admission::NoteWrong(const std::string& address, gint64 now_us) {
+  const double count = WrongOf(address, now_us) + 1;
+  wrong_[address] = {count, now_us};
+  if (wrong_.size() <= kMostAddresses) return;
+  wrong_.erase(std::min_element(wrong_.begin(), wrong_.end(), [](const auto& a, const auto& b) {
+    return a.second.at_us < b.second.at_us;
+  }));
+}
+
+}  // namespace lidar::web

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// The server's certificate and key, read again when their files are renewed.
+#pragma once
+#include <gio/gio.h>
+
+#include <functional>
+#include <string>
+
+#include "ext/web/glib_ptr.h"
+
+namespace lidar::web {
+
+class Certificate {
+ public:
+  /// PEM files; the first may hold the chain.
+  Certificate(std::string file, std::string key_file)
+      : file_(std::move(file)), key_file_(std::move(key_file)) {}
+
+  bool is_wanted() const { return !file_.empty(); }
+  /// False, and why, where the files are no certificate and its key.
+  bool Load(std::string* why);
+  /// Now and then. Where the files have changed, reads them; where they are bad, keeps what it has
+  /// and returns false, and why, once.
+  bool Renew(std::string* why);
+  GTlsCertificate* get() const { return certificate_.get(); }
+  /// The certificate has run out.
+  bool IsOver() const;
+
+ private:
+  /// Says which files those are.
+  std::string Stamp() const;
+
+  const std::string file_;
+  const std::string key_file_;
+  std::string stamp_;
+  ObjectPtr<GTlsCertificate> certificate_;
+};
+
+}  // namespace lidar::web

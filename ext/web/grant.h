@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// What a token allows, and tokens that say it themselves.
+#pragma once
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace lidar::web {
+
+/// Takes as long whatever the texts are, so that time does not tell how much of one was right.
+bool SameSecret(std::string_view a, std::string_view b);
+
+struct Grant {
+  std::optional<std::int64_t> expires_s;           // of Unix time
+  std::optional<std::vector<std::string>> topics;  // none: all; "/r7/*" is all below /r7
+
+  bool IsOver(std::int64_t now_s) const { return expires_s && now_s >= *expires_s; }
+  bool Allows(std::string_view topic) const;
+};
+
+/// Reads a JSON Web Token (RFC 7519) signed by HS256 with `secret`. It needs the claim `exp`, and
+/// may have `nbf` and `topics`, an array of texts. None for one that is damaged, signed otherwise,
+/// over, or not yet valid.
+std::optional<Grant> ReadSignedToken(std::string_view token, std::string_view secret,
+                                     std::int64_t now_s);
+
+}  // namespace lidar::web

@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "ext/web/handshakes.h"
+
+#include <algorithm>
+
+namespace lidar::web {
+namespace {
+
+/// GIO has ten threads at hand.
+constexpr int kAtOnce = 8;
+constexpr int kOfAnAddress = 3;
+constexpr gint64 kLongest_us = 10 * gint64{G_USEC_PER_SEC};
+
+std::string AddressOf(GSocketConnection* connection) {
+  const ObjectPtr<GSocketAddress> peer(g_socket_connection_get_remote_address(connection, nullptr));
+  if (!peer || !G_IS_INET_SOCKET_ADDRESS(peer.get())) return "";
+  gchar* text = g_inet_address_to_string(
+      g_inet_socket_address_get_address(G_INET_SOCKET_ADDRESS(peer.get())));
+  std::string copy = text;
+  g_free(text);
+  return copy;
+}
+
+}  // namespace
+
+/// What still runs ends without its owner.
+Handshakes::~Handshakes() {
+  for (const EntryPtr& entry : entries_) {
+    entry->owner = nullptr;
+    entry->readable.reset();
+    g_cancellable_cancel(entry->cancel.get());
+  }
+}
+
+void Handshakes::Begin(ObjectPtr<GSocketConnection> connection, GTlsCertificate* certificate) {
+  auto entry = std::make_shared<Entry>();
+  entry->owner = this;
+  entry->address = AddressOf(connection.get());
+  entry->connection = std::move(connection);
+  entry->certificate = Ref(certificate);
+  entry->cancel.reset(g_cancellable_new());
+  entry->readable.reset(g_socket_create_source(
+      g_socket_connection_get_socket(entry->connection.get()), G_IO_IN, nullptr));
+  g_source_set_callback(entry->readable.get(), G_SOURCE_FUNC(OnReadable), entry.get(), nullptr);
+  g_source_attach(entry->readable.get(), g_main_context_get_thread_default());
+  entries_.push_back(std::move(entry));
+}
+
+gboolean Handshakes::OnReadable(GSocket*, GIOCondition, gpointer data) {
+  auto* entry = static_cast<Entry*>(data);
+  entry->is_ready = true;
+  Handshakes* owner = entry->owner;
+  entry->readable.reset();
+  owner->StartMore();
+  return G_SOURCE_REMOVE;
+}
+
+bool Handshakes::HasTurn(const Entry& entry) const {
+  if (!entry.is_ready || entry.secure) return false;
+  int running = 0;
+  int of_address = 0;
+  for (const EntryPtr& other : entries_) {
+    if (!other->secure) continue;
+    ++running;
+    if (other->address == entry.address) ++of_address;
+  }
+  return running < kAtOnce && of_address < kOfAnAddress;
+}
+
+void Handshakes::StartMore() {
+  const std::list<EntryPtr> all = entries_;
+  for (const EntryPtr& entry : all)
+    if (HasTurn(*entry)) Start(entry);
+}
+
+void Handshakes::Start(const EntryPtr& entry) {
+  entry->since_us = g_get_monotonic_time();
+  entry->secure.reset(g_tls_server_connection_new(G_IO_STREAM(entry->connection.get()),
+                                                  entry->certificate.get(), nullptr));
+  if (!entry->secure) return Finish(entry, false);
+  // A browser that leaves says so by ending the connection.
+  g_tls_connection_set_require_close_notify(G_TLS_CONNECTION(entry->secure.get()), FALSE);
+  g_tls_connection_handshake_async(G_TLS_CONNECTION(entry->secure.get()), G_PRIORITY_DEFAULT,
+                                   entry->cancel.get(), OnShaken, new EntryPtr(entry));
+}
+
+void Handshakes::OnShaken(GObject* stream, GAsyncResult* result, gpointer data) {
+  const std::unique_ptr<EntryPtr> entry(static_cast<EntryPtr*>(data));
+  const bool good = g_tls_connection_handshake_finish(G_TLS_CONNECTION(stream), result, nullptr);
+  if ((*entry)->owner != nullptr) (*entry)->owner->Finish(*entry, good);
+}
+
+void Handshakes::Finish(const EntryPtr& entry, bool is_secure) {
+  const EntryPtr keep = entry;
+  entries_.remove(keep);
+  if (is_secure)
+    done_(keep->connection.get(), keep->secure.get());
+  else
+    g_socket_shutdown(g_socket_connection_get_socket(keep->connection.get()), TRUE, TRUE, nullptr);
+  StartMore();
+}
+
+void Handshakes::Tick(gint64 now_us) {
+  const std::list<EntryPtr> all = entries_;
+  for (const EntryPtr& entry : all)
+    if (entry->secure && now_us - entry->since_us > kLongest_us)
+      g_cancellable_cancel(entry->cancel.get());
+}
+
+}  // namespace lidar::web

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// TLS handshakes, few at a time: each holds a thread of GIO while its peer is slow.
+#pragma once
+#include <functional>
+#include <list>
+#include <memory>
+#include <string>
+
+#include "ext/web/glib_ptr.h"
+
+namespace lidar::web {
+
+/// Lives in the server's thread, whose context is its thread's default.
+class Handshakes {
+ public:
+  using Done = std::function<void(GSocketConnection*, GIOStream* secure)>;
+  /// `done` gets each connection whose handshake succeeds. The others are closed.
+  explicit Handshakes(Done done) : done_(std::move(done)) {}
+  ~Handshakes();
+  Handshakes(const Handshakes&) = delete;
+  Handshakes& operator=(const Handshakes&) = delete;
+
+  /// Waits for the first byte of the peer, and for its turn.
+  void Begin(ObjectPtr<GSocketConnection> connection, GTlsCertificate* certificate);
+  /// Once a second: ends those that take too long.
+  void Tick(gint64 now_us);
+
+ private:
+  struct Entry {
+    Handshakes* owner = nullptr;  // null: it has gone
+    ObjectPtr<GSocketConnection> connection;
+    ObjectPtr<GTlsCertificate> certificate;
+    ObjectPtr<GIOStream> secure;  // once it runs
+    ObjectPtr<GCancellable> cancel;
+    SourcePtr readable;
+    std::string address;
+    bool is_ready = false;
+    gint64 since_us = 0;  // it runs
+  };
+  using EntryPtr = std::shared_ptr<Entry>;
+  static gboolean OnReadable(GSocket*, GIOCondition, gpointer entry);
+  static void OnShaken(GObject* stream, GAsyncResult* result, gpointer entry);
+  void StartMore();
+  void Start(const EntryPtr& entry);
+  void Finish(const EntryPtr& entry, bool is_secure);
+  bool HasTurn(const Entry& entry) const;
+
+  const Done done_;
+  std::list<EntryPtr> entries_;  // the oldest first
+};
+
+}  // namespace lidar::web

@@ -1,0 +1,132 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// HTTPS and WSS by the element itself.
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <filesystem>
+
+#include "tests/elements/web/web_peer.h"
+
+namespace lidar::test {
+namespace {
+
+namespace fs = std::filesystem;
+
+class Tls : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    std::string name = (fs::temp_directory_path() / "web-tls-XXXXXX").string();
+    folder_ = mkdtemp(name.data());
+    if (!Make("robot")) GTEST_SKIP() << "openssl is not installed";
+  }
+  void TearDown() override { fs::remove_all(folder_); }
+
+  /// A certificate of that name, in place of what was there.
+  bool Make(const std::string& name, const char* days = "2") {
+    const std::string make =
+        "cd " + folder_.string() +
+        " && openssl req -x509 -newkey ec -pkeyopt ec_paramgen_curve:prime256v1 -nodes "
+        "-keyout new-key.pem -out new.pem -subj /CN=" +
+        name + " -days " + days + " 2>/dev/null && mv new-key.pem key.pem && mv new.pem cert.pem";
+    return std::system(make.c_str()) == 0;
+  }
+  std::string Properties() {
+    return "tls-certificate=" + (folder_ / "cert.pem").string() +
+           " tls-private-key=" + (folder_ / "key.pem").string();
+  }
+
+  fs::path folder_;
+};
+
+TEST_F(Tls, ServesThePageAndItsSockets) {
+  Sink sink(Properties());
+  sink.SetCloudCaps();
+  EXPECT_EQ(HttpGet(sink.Url("https")).status, 200U);
+  Peer peer(sink.Url("wss"), {"foxglove.sdk.v1"});
+  ASSERT_TRUE(peer.connected());
+  EXPECT_EQ(peer.certificate(), "CN=robot");
+  peer.Subscribe("/points", 1);
+  for (int i = 0; i < 10; ++i) {
+    sink.PushCloud(1);
+    EXPECT_EQ(peer.Next().subscription, 1U);
+  }
+}
+
+TEST_F(Tls, CarriesCloudsOfMegabytes) {
+  constexpr guint kColumns = 200'000;
+  Sink sink(Properties());
+  sink.SetCloudCaps(kColumns);
+  Peer peer(sink.Url("wss"), {"foxglove.sdk.v1"});
+  peer.Subscribe("/points", 1);
+  for (int i = 0; i < 3; ++i) {
+    sink.PushCloud(1, kColumns);
+    EXPECT_GT(peer.Next().payload.size(), kColumns * 16U);
+  }
+}
+
+TEST_F(Tls, TakesARenewedCertificateForNewConnections) {
+  Sink sink(Properties());
+  Peer old(sink.Url("wss"), {"foxglove.sdk.v1"});
+  EXPECT_EQ(old.certificate(), "CN=robot");
+  ASSERT_TRUE(Make("renewed"));
+  EXPECT_TRUE(WaitUntil([&] {
+    Peer peer(sink.Url("wss"), {"foxglove.sdk.v1"});
+    return peer.connected() && peer.certificate() == "CN=renewed";
+  }));
+  EXPECT_FALSE(old.closed());
+}
+
+TEST_F(Tls, KeepsACertificateWhoseRenewalIsDamaged) {
+  Sink sink(Properties());
+  GstBus* bus = gst_bus_new();
+  gst_element_set_bus(sink.element(), bus);
+  ASSERT_EQ(std::system(("echo damaged > " + (folder_ / "cert.pem").string()).c_str()), 0);
+  gst::MessagePtr warning;
+  EXPECT_TRUE(WaitUntil([&] {
+    warning.reset(gst_bus_pop_filtered(bus, GST_MESSAGE_WARNING));
+    return warning != nullptr;
+  }));
+  EXPECT_EQ(HttpGet(sink.Url("https")).status, 200U);
+  gst_element_set_bus(sink.element(), nullptr);
+  gst_object_unref(bus);
+}
+
+TEST_F(Tls, LetsSilentConnectionsHoldUpNobody) {
+  Sink sink(Properties());
+  std::vector<GSocketConnection*> silent;
+  GSocketClient* client = g_socket_client_new();
+  for (int i = 0; i < 20; ++i) {
+    silent.push_back(g_socket_client_connect_to_host(
+        client, "127.0.0.1", static_cast<guint16>(sink.Stat("port")), nullptr, nullptr));
+    // The first byte of a handshake that never goes on.
+    if (i < 2)
+      g_output_stream_write(g_io_stream_get_output_stream(G_IO_STREAM(silent.back())), "\x16", 1,
+                            nullptr, nullptr);
+  }
+  g_object_unref(client);
+  EXPECT_EQ(HttpGet(sink.Url("https")).status, 200U);
+  EXPECT_NE(HttpGet(sink.Url("http")).status, 200U);
+  for (GSocketConnection* connection : silent) g_object_unref(connection);
+}
+
+TEST_F(Tls, SaysWhatIsWrongWithItsFiles) {
+  const std::string missing = "tls-certificate=" + (folder_ / "none.pem").string() +
+                              " tls-private-key=" + (folder_ / "key.pem").string();
+  const gst::ElementPtr element(
+      gst_parse_launch(("foxglovesink port=0 " + missing).c_str(), nullptr));
+  GstBus* bus = gst_bus_new();
+  gst_element_set_bus(element.get(), bus);
+  EXPECT_EQ(gst_element_set_state(element.get(), GST_STATE_READY), GST_STATE_CHANGE_FAILURE);
+  const gst::MessagePtr message(gst_bus_pop_filtered(bus, GST_MESSAGE_ERROR));
+  ASSERT_TRUE(message);
+  gchar* debug = nullptr;
+  gst_message_parse_error(message.get(), nullptr, &debug);
+  EXPECT_NE(std::string(debug).find("none.pem"), std::string::npos) << debug;
+  g_free(debug);
+  gst_element_set_state(element.get(), GST_STATE_NULL);
+  gst_element_set_bus(element.get(), nullptr);
+  gst_object_unref(bus);
+}
+
+}  // namespace
+}  // namespace lidar::test
