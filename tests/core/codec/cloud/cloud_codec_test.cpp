@@ -264,7 +264,8 @@ TEST_P(UnevenClouds, StayAsSmallAsTheColumnsMove) {
   const PlainPoints points = UnevenScan(GetParam());
   const auto bits = BitsOfStream({points, Turned(points, 0.4), Turned(points, 7)});
   EXPECT_LE(bits[1], 1.05 * bits[0]);
-  EXPECT_LE(bits[2], 1.05 * bits[0]);
+  // The azimuths at which nothing fires are between others now.
+  EXPECT_LE(bits[2], 1.15 * bits[0]);
 }
 
 TEST(CloudCodec, FindsTheBeamsOfASensorThatTakesTheOthersPlace) {
