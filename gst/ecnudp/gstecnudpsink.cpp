@@ -17,6 +17,7 @@
 
 #include <cerrno>
 #include <mutex>
+#include <optional>
 
 #include "gst/common/element_class.h"
 #include "gst/common/enum_type.h"
@@ -51,6 +52,7 @@ struct SinkSettings {
   UdpOptions options;
   GivenSocket given;
   bool reply = false;
+  std::string interface;
   std::string multicast_iface;
   gint ttl_mc = 1;
   guint buffer_size = 0;
@@ -90,6 +92,7 @@ struct Marking {
   guint8 dscp_bits;
   guint8 ecn;
   bool reply;
+  std::optional<unsigned> interface;  // 0: as the routes say; none: it is not there
 };
 
 }  // namespace
@@ -119,7 +122,7 @@ static StructurePtr Stats(GObject* object) {
   return ToStructure("application/x-ecnudpsink-stats", kStats, state.counters);
 }
 
-static const std::array<Property<SinkSettings>, 15> kProperties = {{
+static const std::array<Property<SinkSettings>, 16> kProperties = {{
     Within<&SinkSettings::target>(UdpTargetRows(), "host"),
     Within<&SinkSettings::target>(UdpTargetRows(), "port"),
     Within<&SinkSettings::target>(UdpTargetRows(), "bind-address"),
@@ -133,6 +136,10 @@ static const std::array<Property<SinkSettings>, 15> kProperties = {{
      "Send to the peer that the buffer's GstNetAddressMeta names (the last such where it has none) "
      "instead of host and port",
      &SinkSettings::reply},
+    {"interface",
+     "Network interface that datagrams leave by, which may come and go; empty for the routes' "
+     "choice",
+     &SinkSettings::interface},
     {"multicast-iface", "Network interface for multicast; empty for the kernel's choice",
      &SinkSettings::multicast_iface},
     {"ttl-mc", "Time to live of multicast datagrams [hops]", &SinkSettings::ttl_mc, 0, 255},
@@ -218,7 +225,15 @@ static Marking CurrentMarking(State& state) {
   const SinkSettings& s = state.settings;
   const guint8 dscp =
       s.options.dscp < 0 ? state.socket_tos : static_cast<guint8>(s.options.dscp << 2);
-  return {dscp, static_cast<guint8>(s.ecn), s.reply};
+  Marking marking{dscp, static_cast<guint8>(s.ecn), s.reply, 0};
+  if (s.interface.empty()) return marking;
+  // It has another index each time it comes.
+  const int fd = g_socket_get_fd(state.used.socket.get());
+  if (const unsigned index = lidar::net::InterfaceIndex(fd, s.interface))
+    marking.interface = index;
+  else
+    marking.interface.reset();
+  return marking;
 }
 
 /// A single warning for each new kind of error: a path that is down for a while must not end the
@@ -257,10 +272,16 @@ static bool Add(GstLidarEcnUdpSink* self, GstBuffer* buffer, const Marking& mark
     ++state.counters.no_peer;
     return true;
   }
+  if (!marking.interface) {
+    WarnOnce(self, {0, 0, 1, ENODEV, false});
+    const std::lock_guard lock(state.mutex);
+    ++state.counters.errors;
+    return true;
+  }
   auto ecn = static_cast<GstLidarEcn>(marking.ecn);
   gst_lidar_buffer_get_ecn(buffer, &ecn, nullptr);
   const auto tos = static_cast<guint8>(marking.dscp_bits | (static_cast<guint8>(ecn) & kEcnMask));
-  if (state.batch.Add(buffer, tos, state.to)) return true;
+  if (state.batch.Add(buffer, tos, state.to, *marking.interface)) return true;
   GST_ELEMENT_ERROR(self, RESOURCE, READ, (nullptr), ("cannot map an input buffer"));
   return false;
 }

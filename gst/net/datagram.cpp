@@ -2,6 +2,7 @@
 #include "gst/net/datagram.h"
 
 #include <net/if.h>
+#include <sys/ioctl.h>
 
 #include <cerrno>
 #include <cstring>
@@ -21,6 +22,18 @@ void Enable(int fd, int level, int name) {
   const int on = 1;
   // An option of the other address family fails, and is not needed then.
   if (setsockopt(fd, level, name, &on, sizeof on) != 0) return;
+}
+
+/// Writes a control message behind `used` bytes of them; the bytes then.
+template <class Value>
+std::size_t Append(SendControl* control, std::size_t used, int level, int type,
+                   const Value& value) {
+  auto* c = reinterpret_cast<cmsghdr*>(control->bytes + used);
+  c->cmsg_level = level;
+  c->cmsg_type = type;
+  c->cmsg_len = CMSG_LEN(sizeof value);
+  std::memcpy(CMSG_DATA(c), &value, sizeof value);
+  return used + CMSG_SPACE(sizeof value);
 }
 
 }  // namespace
@@ -60,18 +73,32 @@ DatagramInfo ReadInfo(msghdr* received) {
   return info;
 }
 
-void SetTos(std::uint8_t tos, const NativeAddress& to, TosControl* control, msghdr* message) {
+void SetControl(std::uint8_t tos, const NativeAddress& to, unsigned interface, SendControl* control,
+                msghdr* message) {
   *control = {};
-  message->msg_control = control->bytes;
-  message->msg_controllen = sizeof control->bytes;
-  cmsghdr* c = CMSG_FIRSTHDR(message);
-  // A mapped address leaves through the IPv4 stack, which reads only its own option.
+  // A mapped address leaves through the IPv4 stack, which reads only its own options.
   const bool v4 = to.IsIpv4();
-  c->cmsg_level = v4 ? IPPROTO_IP : IPPROTO_IPV6;
-  c->cmsg_type = v4 ? IP_TOS : IPV6_TCLASS;
-  c->cmsg_len = CMSG_LEN(sizeof(int));
+  const int level = v4 ? IPPROTO_IP : IPPROTO_IPV6;
   const int value = tos;
-  std::memcpy(CMSG_DATA(c), &value, sizeof value);
+  std::size_t used = Append(control, 0, level, v4 ? IP_TOS : IPV6_TCLASS, value);
+  if (interface != 0 && v4) {
+    in_pktinfo info{};
+    info.ipi_ifindex = static_cast<int>(interface);
+    used = Append(control, used, level, IP_PKTINFO, info);
+  } else if (interface != 0) {
+    in6_pktinfo info{};
+    info.ipi6_ifindex = interface;
+    used = Append(control, used, level, IPV6_PKTINFO, info);
+  }
+  message->msg_control = control->bytes;
+  message->msg_controllen = used;
+}
+
+unsigned InterfaceIndex(int fd, const std::string& name) {
+  ifreq request{};
+  if (name.size() >= sizeof request.ifr_name) return 0;
+  std::memcpy(request.ifr_name, name.c_str(), name.size());
+  return ioctl(fd, SIOCGIFINDEX, &request) == 0 ? static_cast<unsigned>(request.ifr_ifindex) : 0;
 }
 
 bool SendMulticastFrom(int fd, const std::string& interface) {

@@ -39,12 +39,17 @@ struct DatagramInfo {
 void AskForInfo(int fd);
 DatagramInfo ReadInfo(msghdr* received);
 
-/// Room for the control message that SetTos() writes.
-struct TosControl {
-  alignas(cmsghdr) char bytes[CMSG_SPACE(sizeof(int))] = {};
+/// Room for the control messages that SetControl() writes.
+struct SendControl {
+  alignas(cmsghdr) char bytes[CMSG_SPACE(sizeof(int)) + CMSG_SPACE(sizeof(in6_pktinfo))] = {};
 };
-/// `message` goes to `to` with `tos`, which stands in `control` until it is sent.
-void SetTos(std::uint8_t tos, const NativeAddress& to, TosControl* control, msghdr* message);
+/// `message` goes to `to` with `tos`, by the interface of that index (0: as the routes say), which
+/// needs no privileges. Both stand in `control` until it is sent.
+void SetControl(std::uint8_t tos, const NativeAddress& to, unsigned interface, SendControl* control,
+                msghdr* message);
+
+/// Index of the interface of that name in the socket's network; 0 where it is not there.
+unsigned InterfaceIndex(int fd, const std::string& name);
 
 /// Multicast leaves by the interface of that name. False with errno set where that cannot be.
 bool SendMulticastFrom(int fd, const std::string& interface);

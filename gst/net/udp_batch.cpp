@@ -31,7 +31,8 @@ bool UdpBatchSender::Map(Message& m, GstBuffer* buffer) {
   return true;
 }
 
-bool UdpBatchSender::Add(GstBuffer* buffer, guint8 tos, const NativeAddress& to) {
+bool UdpBatchSender::Add(GstBuffer* buffer, guint8 tos, const NativeAddress& to,
+                         unsigned interface) {
   Message& m = messages_[count_];
   if (!Map(m, buffer)) return false;
   m.to = to;
@@ -41,7 +42,7 @@ bool UdpBatchSender::Add(GstBuffer* buffer, guint8 tos, const NativeAddress& to)
   h.msg_namelen = m.to.length;
   h.msg_iov = m.iov.data();
   h.msg_iovlen = m.memories;
-  net::SetTos(tos, to, &m.control, &h);
+  net::SetControl(tos, to, interface, &m.control, &h);
   ++count_;
   return true;
 }

@@ -32,8 +32,9 @@ class UdpBatchSender {
   UdpBatchSender& operator=(const UdpBatchSender&) = delete;
 
   bool full() const { return count_ == kCapacity; }
-  /// `tos`: the DSCP and ECN bits of the IP header. False where the buffer cannot be mapped.
-  bool Add(GstBuffer* buffer, guint8 tos, const NativeAddress& to);
+  /// `tos`: the DSCP and ECN bits of the IP header; `interface`: index of that to leave by, or 0.
+  /// False where the buffer cannot be mapped.
+  bool Add(GstBuffer* buffer, guint8 tos, const NativeAddress& to, unsigned interface = 0);
   /// Sends all, waiting for the socket where it must, and forgets them.
   Result Flush(int fd, const WakeFd& wake);
 
@@ -45,7 +46,7 @@ class UdpBatchSender {
     guint memories = 0;
     GstBuffer* merged = nullptr;  // mapped as a whole: more than kMaxMemories pieces
     NativeAddress to;
-    net::TosControl control;
+    net::SendControl control;
   };
 
   bool Map(Message& m, GstBuffer* buffer);

@@ -56,6 +56,10 @@ Duration Scheduler::WholeIn(std::size_t link, Time now, DataSize size) const {
 }
 
 std::size_t Scheduler::Best(Time now, DataSize size, LinkSet among) const {
+  LinkSet known;
+  for (std::size_t i = 0; i < links_.size(); ++i)
+    if (links_[i].usable && links_[i].has_reported) known.set(i);
+  if ((among & known).any()) among &= known;
   std::size_t best = kMaxLinks;
   Duration least{};
   for (std::size_t i = 0; i < links_.size(); ++i) {
@@ -81,9 +85,8 @@ bool Scheduler::Settled(Time now) const {
   });
 }
 
-bool Scheduler::Proving(Time now) const {
-  return now - start_.value_or(now) < kProving &&
-         std::any_of(links_.begin(), links_.end(), [](const Link& l) { return !l.has_reported; });
+bool Scheduler::Proves(Time now, const Link& link) {
+  return !link.has_reported && now - link.usable_since.value_or(now) < kProving;
 }
 
 bool Scheduler::AwaitsArrivals(Time now) const {
@@ -96,13 +99,14 @@ bool Scheduler::AwaitsArrivals(Time now) const {
 /// The links beside the best one that the next slice goes to.
 LinkSet Scheduler::CopiesOf(Time now, DataSize slice) const {
   LinkSet links;
-  const bool probe = since_probe_ == 0 || Proving(now);
+  const bool probe = since_probe_ == 0;
   const bool all = method_ == Method::kAdaptive && rule_ == TargetRule::kBetter && !Settled(now);
   for (std::size_t i = 0; i < links_.size(); ++i) {
     const Link& l = links_[i];
+    if (!l.usable) continue;
     const DataRate rate = l.path.rate > DataRate{} ? l.path.rate : kUnknownRate;
     const bool room = (l.queued + slice) / rate < kRoom && !InGap(now, i);
-    if (method_ == Method::kBroadcast || probe || (all && room)) links.set(i);
+    if (method_ == Method::kBroadcast || probe || Proves(now, l) || (all && room)) links.set(i);
   }
   return links;
 }
@@ -114,7 +118,6 @@ void Scheduler::Assign(std::size_t link, Entry* entry) {
 }
 
 LinkSet Scheduler::OnPacket(Time now, const Packet& packet) {
-  start_ = start_.value_or(now);
   Forget(now);
   LookAtGaps(now);
   if (slice_ != packet.slice) {
@@ -141,6 +144,7 @@ LinkSet Scheduler::OnPacket(Time now, const Packet& packet) {
     Assign(i, &entry);
     ++(i == slice_first_ ? links_[i].counters.packets : links_[i].counters.copies);
     if (!links_[i].unsettled_since) links_[i].unsettled_since = now;
+    if (!links_[i].usable_since) links_[i].usable_since = now;
   }
   order_.push_back(packet.id);
   packets_.emplace(packet.id.key(), entry);
@@ -241,7 +245,10 @@ std::optional<scream::CongestionFeedback> Scheduler::OnFeedback(
 
 void Scheduler::SetUsable(Time now, std::size_t link, bool usable) {
   Link& l = links_[link];
-  if (usable && !l.usable) l.unsettled_since = now;
+  if (usable && !l.usable) {
+    l.unsettled_since = l.usable_since = now;
+    l.has_reported = false;
+  }
   l.usable = usable;
 }
 

@@ -53,10 +53,11 @@ struct LinkCounters {
 ///    not arrived is copied to the best other link at once; so is what was lost, and what takes
 ///    longer than was foreseen.
 ///  - While a link is not settled (it started, or was in a gap, within kUnsettled), every slice is
-///    copied to each link that has room; in the first kProving, until all links have reported, to
-///    each, as the receiver takes what comes by one link only, and learns by copies of the others.
-///    Otherwise one slice in kProbeEvery is, so that all links
+///    copied to each link that has room. Otherwise one slice in kProbeEvery is, so that all links
 ///    stay known.
+///  - A link proves itself while it has not reported since it was first used, or became usable: the
+///    receiver learns of a link by copies only. For kProving it gets a copy of everything, and no
+///    packet is its own where another link has reported.
 ///  - What arrived on one link is not sent on another any more, nor is a copy older than kMaxAge.
 class Scheduler {
  public:
@@ -104,6 +105,8 @@ class Scheduler {
   /// Of what links may send each, what the encoder may.
   DataRate Target(Time now, const std::vector<DataRate>& targets) const;
   std::size_t links() const { return links_.size(); }
+  bool usable(std::size_t link) const { return links_[link].usable; }
+  bool has_reported(std::size_t link) const { return links_[link].has_reported; }
   const LinkCounters& counters(std::size_t link) const { return links_[link].counters; }
 
  private:
@@ -113,7 +116,8 @@ class Scheduler {
     DataSize queued;  // assigned, and neither sent nor dropped
     bool usable = true;
     bool was_in_gap = false;
-    bool has_reported = false;
+    bool has_reported = false;            // since it is usable
+    std::optional<Time> usable_since;     // with the first packet, and with each return
     std::optional<Time> unsettled_since;  // with the first packet, and with each gap
     LinkCounters counters;
   };
@@ -137,14 +141,13 @@ class Scheduler {
   std::size_t Best(Time now, DataSize size, LinkSet among) const;
   LinkSet CopiesOf(Time now, DataSize slice) const;
   bool Settled(Time now) const;
-  bool Proving(Time now) const;
+  static bool Proves(Time now, const Link& link);
   static Duration Rtt(const Link& link);
   static bool IsDead(Time now, const Link& link);
 
   const Method method_;
   const TargetRule rule_;
   std::vector<Link> links_;
-  std::optional<Time> start_;  // of the first packet
   std::deque<PacketId> order_;
   std::unordered_map<std::uint64_t, Entry> packets_;
   // The slice that comes now.

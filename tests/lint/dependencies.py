@@ -34,6 +34,7 @@ LIBRARIES = {
         "arpa/",
         "net/",
         "linux/",
+        "ifaddrs.h",
         "netdb.h",
         "poll.h",
         "unistd.h",

@@ -234,22 +234,21 @@ static void Unbond(GstLidarScreamSink* self) {
   if (links) ForEachGhost(self, [&](GstPad* sink) { return links->Remove(sink); });
 }
 
-/// The target of a single link, or the first of several, which `links` names then. False after an
-/// element error.
-static bool FindTarget(GstLidarScreamSink* self, SinkSettings* s, std::vector<OpenLink>* links,
-                       OpenLink* first) {
-  if (s->bond.addresses.empty()) {
-    first->peer = ResolveTarget(GST_ELEMENT(self), s->target);
-    if (!first->peer) return false;
-    first->socket =
-        OpenSending(GST_ELEMENT(self), s->target, g_socket_address_get_family(first->peer.get()));
-    return first->socket != nullptr;
+/// The only link, or the first of several, which `links` has then. No socket after an element
+/// error.
+static OpenLink OpenFirst(GstLidarScreamSink* self, const SinkSettings& s,
+                          std::vector<OpenLink>* links) {
+  OpenLink first;
+  if (s.bond.addresses.empty()) {
+    first.address.target = s.target;
+    first.peer = ResolveTarget(GST_ELEMENT(self), s.target);
+    if (first.peer)
+      first.socket =
+          OpenSending(GST_ELEMENT(self), s.target, g_socket_address_get_family(first.peer.get()));
+    return first;
   }
-  *links = OpenLinks(GST_ELEMENT(self), s->bond.addresses);
-  if (links->empty()) return false;
-  *first = links->front();
-  s->target = first->address.target;
-  return true;
+  *links = OpenLinks(GST_ELEMENT(self), s.bond.addresses);
+  return links->empty() ? first : links->front();
 }
 
 static std::shared_ptr<SinkLinks> LinksOf(GstLidarScreamSink* self) {
@@ -271,19 +270,20 @@ static std::vector<SrtpPlace> SrtpPlacesOf(GstLidarScreamSink* self) {
 /// Opens the socket for both ways and hands it to the children.
 static bool Open(GstLidarScreamSink* self) {
   State& state = *self->state;
-  SinkSettings s = Snapshot(state);
+  const SinkSettings s = Snapshot(state);
   if (!HasChildren(GST_ELEMENT(self),
                    {{self->tx, "screamtx"}, {self->sink, "ecnudpsink"}, {self->src, "ecnudpsrc"}}))
     return false;
   std::vector<OpenLink> links;
-  OpenLink first;
-  if (!FindTarget(self, &s, &links, &first)) return false;
+  const OpenLink first = OpenFirst(self, s, &links);
   SharedSocketAddress peer = first.peer;
   SharedSocket socket = first.socket;
+  if (!socket) return false;
   GInetAddress* host = g_inet_socket_address_get_address(G_INET_SOCKET_ADDRESS(peer.get()));
   // As resolved here: a name may stand for several addresses.
   const StringPtr literal(g_inet_address_to_string(host));
-  g_object_set(self->sink, "host", literal.get(), "port", s.target.port, nullptr);
+  g_object_set(self->sink, "host", literal.get(), "port", first.address.target.port, "interface",
+               first.address.interface.c_str(), nullptr);
   GiveSocket(self->sink, socket.get());
   GiveSocket(self->src, socket.get());
   if (links.size() > 1) Bond(self, links, s.bond);
@@ -309,6 +309,14 @@ static void Close(GstLidarScreamSink* self) {
   CloseBin(*self->state, {self->sink, self->src}, false);
   const std::lock_guard lock(self->state->mutex);
   self->state->peer.reset();
+}
+
+static void HandleMessage(GstBin* bin, GstMessage* message) {
+  auto* self = GST_LIDAR_SCREAM_SINK(bin);
+  const std::shared_ptr<SinkLinks> links =
+      GST_MESSAGE_TYPE(message) == GST_MESSAGE_WARNING ? LinksOf(self) : nullptr;
+  if (links && links->IsNoNews(GST_MESSAGE_SRC(message))) return gst_message_unref(message);
+  GST_BIN_CLASS(gst_lidar_scream_sink_parent_class)->handle_message(bin, message);
 }
 
 static GstStateChangeReturn ChangeState(GstElement* element, GstStateChange change) {
@@ -407,6 +415,7 @@ static void gst_lidar_scream_sink_class_init(GstLidarScreamSinkClass* klass) {
   element->change_state = ChangeState;
   element->request_new_pad = RequestPad;
   element->release_pad = ReleasePad;
+  GST_BIN_CLASS(klass)->handle_message = HandleMessage;
   Describe(klass,
            {"SCReAM network sink", "Sink/Network/RTP",
             "Sends RTP over UDP with SCReAM v2 congestion control and L4S"},

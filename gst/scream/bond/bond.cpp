@@ -21,6 +21,7 @@ using bonding::Scheduler;
 
 constexpr DataSize kHeaders = DataSize::Bytes(28);  // UDP and IP
 constexpr double kWorthTelling = 0.02;              // of a target
+constexpr Duration kWatchEvery = std::chrono::milliseconds(100);
 
 struct BondStream {
   GstPad* sink = nullptr;
@@ -91,6 +92,7 @@ struct BondState {
   std::vector<std::unique_ptr<BondStream>> streams;  // guarded by shared->mutex
   std::vector<std::unique_ptr<BondStream>> removed;  // a link may still be telling a target
   guint next_pad = 0;
+  std::function<void()> watch;
   std::condition_variable wake;
   bool stop = false;
   GThread* thread = nullptr;
@@ -250,9 +252,14 @@ static BondWork TakeWork(BondState& state) {
 static gpointer BondRun(gpointer data) {
   BondState& state = *static_cast<BondState*>(data);
   std::unique_lock lock(state.shared->mutex);
+  Time watch_at{};
   while (!state.stop) {
     BondWork work = TakeWork(state);
     lock.unlock();
+    if (const Time now = state.shared->Now(); state.watch && now >= watch_at) {
+      watch_at = now + kWatchEvery;
+      state.watch();
+    }
     for (auto& [pad, buffer] : work.copies) gst_pad_push(pad.get(), buffer.release());
     for (auto& [pad, event] : work.targets) gst_pad_push_event(pad.get(), event.release());
     work = {};
@@ -337,6 +344,7 @@ void BondRelease(GstLidarScreamBond* bond) {
   for (GstLidarScreamTx* tx : bond->state->links) TxSetLink(tx, nullptr);
   bond->state->links.clear();
   bond->state->shared->srtp.reset();
+  bond->state->watch = nullptr;
 }
 
 GstPad* BondAddStream(GstLidarScreamBond* bond, const std::vector<GstPad*>& tx_pads) {
@@ -405,10 +413,21 @@ std::vector<PadPtr> BondedPads(GstPad* sink) {
   return pads;
 }
 
+void BondSetUsable(GstLidarScreamBond* bond, std::size_t link, bool usable) {
+  BondShared& shared = *bond->state->shared;
+  const std::lock_guard lock(shared.mutex);
+  shared.scheduler.SetUsable(shared.Now(), link, usable);
+}
+
+void BondSetWatch(GstLidarScreamBond* bond, std::function<void()> watch) {
+  bond->state->watch = std::move(watch);
+}
+
 BondLinkStats BondStats(GstLidarScreamBond* bond, std::size_t link) {
   BondShared& shared = *bond->state->shared;
   const std::lock_guard lock(shared.mutex);
-  return {shared.scheduler.counters(link), shared.scheduler.InGap(shared.Now(), link)};
+  return {shared.scheduler.counters(link), shared.scheduler.usable(link),
+          shared.scheduler.InGap(shared.Now(), link), shared.scheduler.has_reported(link)};
 }
 
 }  // namespace lidar::gst

@@ -10,6 +10,7 @@
 #pragma once
 #include <gst/gst.h>
 
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -41,9 +42,16 @@ void BondRemoveStream(GstLidarScreamBond* bond, GstPad* sink);
 /// The pads of the links behind a sink pad of a bond.
 std::vector<PadPtr> BondedPads(GstPad* sink);
 
+/// Packets cannot leave by a link at all, or can again.
+void BondSetUsable(GstLidarScreamBond* bond, std::size_t link, bool usable);
+/// What the bond's thread calls each 0.1 s while it runs, without a lock. Below READY.
+void BondSetWatch(GstLidarScreamBond* bond, std::function<void()> watch);
+
 struct BondLinkStats {
   bonding::LinkCounters counters;
+  bool usable = true;
   bool in_gap = false;
+  bool has_reported = false;
 };
 BondLinkStats BondStats(GstLidarScreamBond* bond, std::size_t link);
 

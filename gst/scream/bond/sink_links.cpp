@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include "gst/scream/bond/sink_links.h"
 
-#include <sys/socket.h>
-
-#include <cerrno>
+#include <algorithm>
 
 #include "gst/common/enum_type.h"
 #include "gst/scream/bin/common.h"
@@ -35,15 +33,12 @@ GType BondTargetType() {
   return type;
 }
 
-/// Needs no privileges since Linux 5.7. False with errno set.
-bool BindToInterface(GSocket* socket, const std::string& interface) {
-  return setsockopt(g_socket_get_fd(socket), SOL_SOCKET, SO_BINDTODEVICE, interface.c_str(),
-                    static_cast<socklen_t>(interface.size())) == 0;
-}
+// A link whose packets failed is tried again after so long.
+constexpr gint64 kRetryUs = 1 * G_USEC_PER_SEC;
 
-/// Without a socket, and with the reason, where it does not open.
+/// Without a socket, and with the reason, where the name is not found or none opens.
 OpenLink Open(const BondAddress& address, std::string* why) {
-  OpenLink link{address, nullptr, nullptr};
+  OpenLink link{address, nullptr, nullptr, true};
   GError* error = nullptr;
   link.peer.reset(ResolveUdpAddress(address.target.host, address.target.port, &error),
                   GObjectUnref{});
@@ -54,11 +49,11 @@ OpenLink Open(const BondAddress& address, std::string* why) {
   }
   const ErrorPtr owner(error);
   if (error != nullptr) *why = error->message;
-  if (error != nullptr || address.interface.empty()) return link;
-  if (BindToInterface(link.socket.get(), address.interface)) return link;
-  *why = "interface \"" + address.interface + "\": " + g_strerror(errno);
-  link.socket.reset();
   return link;
+}
+
+GSocketFamily FamilyOf(const OpenLink& link) {
+  return g_socket_address_get_family(link.peer.get());
 }
 
 /// Takes feedback from the link's peer only.
@@ -127,32 +122,72 @@ std::vector<OpenLink> OpenLinks(GstElement* bin, const std::string& addresses) {
     GST_ELEMENT_ERROR(bin, RESOURCE, SETTINGS, ("bonding-addresses: %s", why.c_str()), (nullptr));
     return {};
   }
+  const Interfaces now = Interfaces::Now();
   std::vector<OpenLink> links;
+  bool any_usable = false;
   for (const BondAddress& address : *parsed) {
     OpenLink link = Open(address, &why);
-    if (link.socket) {
-      links.push_back(std::move(link));
-      continue;
-    }
-    GST_ELEMENT_WARNING(bin, RESOURCE, OPEN_WRITE,
-                        ("The link %s cannot be used: %s", address.text.c_str(), why.c_str()),
-                        ("it is left out until the element starts again"));
+    if (link.socket) why = now.Lacks(address, FamilyOf(link));
+    link.usable = link.socket && why.empty();
+    any_usable = any_usable || link.usable;
+    if (!link.usable)
+      GST_ELEMENT_WARNING(
+          bin, RESOURCE, OPEN_WRITE,
+          ("The link %s cannot be used: %s", address.text.c_str(), why.c_str()),
+          (link.socket ? "it is used once it can be" : "it is left out until the next start"));
+    if (link.socket) links.push_back(std::move(link));
   }
-  if (links.empty())
-    GST_ELEMENT_ERROR(bin, RESOURCE, OPEN_WRITE, ("No link can be used: %s", why.c_str()),
-                      ("bonding-addresses %s", addresses.c_str()));
-  return links;
+  if (any_usable) return links;
+  GST_ELEMENT_ERROR(bin, RESOURCE, OPEN_WRITE, ("No link can be used: %s", why.c_str()),
+                    ("bonding-addresses %s", addresses.c_str()));
+  return {};
 }
 
 SinkLinks::SinkLinks(GstElement* bin, const Chain& first, const std::vector<OpenLink>& links,
                      const BondSettings& settings)
-    : bin_(bin), chains_{first}, links_(links) {
+    : bin_(bin), chains_{first}, links_(links), health_(links.size()) {
   for (std::size_t i = 1; i < links.size(); ++i) AddLink(links[i]);
   std::vector<GstLidarScreamTx*> senders;
   for (const Chain& chain : chains_) senders.push_back(GST_LIDAR_SCREAM_TX(chain.tx));
   bond_ = NewBond(senders, static_cast<Method>(settings.method),
                   static_cast<TargetRule>(settings.target));
+  for (std::size_t i = 0; i < links.size(); ++i) BondSetUsable(bond_, i, links[i].usable);
+  BondSetWatch(bond_, [this] { Watch(); });
   gst_bin_add(GST_BIN(bin), GST_ELEMENT(bond_));
+}
+
+void SinkLinks::Watch() {
+  const Interfaces now = Interfaces::Now();
+  for (std::size_t i = 0; i < links_.size(); ++i) {
+    std::string trouble = now.Lacks(links_[i].address, FamilyOf(links_[i]));
+    if (Fails(i) && trouble.empty()) trouble = "its packets cannot leave";
+    if (links_[i].usable != trouble.empty()) Change(i, trouble);
+  }
+}
+
+bool SinkLinks::Fails(std::size_t link) {
+  Health& health = health_[link];
+  const Health before = health;
+  const StructurePtr stats = StatsOf(chains_[link].sink);
+  gst_structure_get(stats.get(), "packets-sent", G_TYPE_UINT64, &health.sent, "send-errors",
+                    G_TYPE_UINT64, &health.errors, nullptr);
+  const gint64 now = g_get_monotonic_time();
+  if (health.errors > before.errors && health.sent == before.sent) health.failed_us = now;
+  return health.failed_us != 0 && now - health.failed_us < kRetryUs;
+}
+
+void SinkLinks::Change(std::size_t link, const std::string& trouble) {
+  const bool usable = trouble.empty();
+  links_[link].usable = usable;
+  if (usable) health_[link].failed_us = 0;
+  BondSetUsable(bond_, link, usable);
+  gst_element_post_message(
+      bin_, gst_message_new_element(
+                GST_OBJECT(bin_),
+                gst_structure_new("scream-link-changed", "link", G_TYPE_STRING,
+                                  links_[link].address.text.c_str(), "usable", G_TYPE_BOOLEAN,
+                                  static_cast<gboolean>(usable), "reason", G_TYPE_STRING,
+                                  usable ? "it can be used again" : trouble.c_str(), nullptr)));
 }
 
 void SinkLinks::AddLink(const OpenLink& link) {
@@ -166,7 +201,8 @@ void SinkLinks::AddLink(const OpenLink& link) {
   GInetAddress* host = g_inet_socket_address_get_address(G_INET_SOCKET_ADDRESS(link.peer.get()));
   const StringPtr literal(g_inet_address_to_string(host));
   g_object_set(chain.sink, "sync", FALSE, "async", FALSE, "qos-dscp", dscp, "host", literal.get(),
-               "port", link.address.target.port, nullptr);
+               "port", link.address.target.port, "interface", link.address.interface.c_str(),
+               nullptr);
   GiveSocket(chain.sink, link.socket.get());
   GiveSocket(chain.src, link.socket.get());
   gst_element_link_pads(chain.tx, "src", chain.sink, "sink");
@@ -186,6 +222,17 @@ SinkLinks::~SinkLinks() {
     for (GstElement* child : {chains_[i].tx, chains_[i].sink, chains_[i].src})
       RemoveChild(bin_, child);
   for (std::size_t i = 1; i < links_.size(); ++i) g_socket_close(links_[i].socket.get(), nullptr);
+}
+
+bool SinkLinks::IsNoNews(GstObject* warns) const {
+  bool is_tx = false, other_was_heard = false;
+  for (std::size_t i = 0; i < chains_.size(); ++i) {
+    if (GST_OBJECT(chains_[i].sink) == warns) return true;
+    const bool its = GST_OBJECT(chains_[i].tx) == warns;
+    is_tx = is_tx || its;
+    other_was_heard = other_was_heard || (!its && BondStats(bond_, i).has_reported);
+  }
+  return is_tx && other_was_heard;
 }
 
 GstPad* SinkLinks::Add(GstPad* tx_pad) {
@@ -215,13 +262,14 @@ void SinkLinks::AddStats(GstStructure* stats) const {
   for (std::size_t i = 0; i < chains_.size(); ++i) {
     StructurePtr link = StatsOf(chains_[i].tx);
     const BondLinkStats bond = BondStats(bond_, i);
-    gst_structure_set(link.get(), "link", G_TYPE_STRING, links_[i].address.text.c_str(), "in-gap",
-                      G_TYPE_BOOLEAN, static_cast<gboolean>(bond.in_gap), "link-gaps",
-                      G_TYPE_UINT64, static_cast<guint64>(bond.counters.gaps), "packets-first",
-                      G_TYPE_UINT64, static_cast<guint64>(bond.counters.packets), "packets-copies",
-                      G_TYPE_UINT64, static_cast<guint64>(bond.counters.copies), "copies-cancelled",
-                      G_TYPE_UINT64, static_cast<guint64>(bond.counters.cancelled), "packets-saved",
-                      G_TYPE_UINT64, static_cast<guint64>(bond.counters.saved), nullptr);
+    gst_structure_set(link.get(), "link", G_TYPE_STRING, links_[i].address.text.c_str(), "usable",
+                      G_TYPE_BOOLEAN, static_cast<gboolean>(bond.usable), "in-gap", G_TYPE_BOOLEAN,
+                      static_cast<gboolean>(bond.in_gap), "link-gaps", G_TYPE_UINT64,
+                      static_cast<guint64>(bond.counters.gaps), "packets-first", G_TYPE_UINT64,
+                      static_cast<guint64>(bond.counters.packets), "packets-copies", G_TYPE_UINT64,
+                      static_cast<guint64>(bond.counters.copies), "copies-cancelled", G_TYPE_UINT64,
+                      static_cast<guint64>(bond.counters.cancelled), "packets-saved", G_TYPE_UINT64,
+                      static_cast<guint64>(bond.counters.saved), nullptr);
     CopyStat(chains_[i].sink, "send-errors", link.get());
     GValue value = G_VALUE_INIT;
     g_value_init(&value, GST_TYPE_STRUCTURE);

@@ -10,6 +10,7 @@
 #include "gst/common/properties.h"
 #include "gst/scream/bond/addresses.h"
 #include "gst/scream/bond/bond.h"
+#include "gst/scream/bond/interfaces.h"
 #include "gst/scream/srtp/layer.h"
 
 namespace lidar::gst {
@@ -26,13 +27,13 @@ struct OpenLink {
   BondAddress address;
   SharedSocket socket;
   SharedSocketAddress peer;
+  bool usable = true;
 };
-/// The links of `addresses` whose sockets open; a warning names each other one. Empty after an
-/// element error, where none does or the text is wrong.
+/// The links of `addresses` whose names are found and whose sockets open; a warning names each that
+/// cannot carry packets now. Empty after an element error, where none can or the text is wrong.
 std::vector<OpenLink> OpenLinks(GstElement* bin, const std::string& addresses);
 
 /// What stands between the pads of a bin and the network: the bond, and the elements of each link.
-/// The first link has the bin's own.
 class SinkLinks {
  public:
   struct Chain {
@@ -53,18 +54,33 @@ class SinkLinks {
   PadPtr Remove(GstPad* sink);
   /// By link.
   const std::vector<Chain>& chains() const { return chains_; }
+  /// Whether a warning of that element tells nothing: scream-link-changed tells of what cannot be
+  /// sent, and a silent link is none of the user's business where another one works.
+  bool IsNoNews(GstObject* warns) const;
   /// Packets are protected before they come to the links.
   void Protect(std::shared_ptr<SrtpLayer> layer) { BondProtect(bond_, std::move(layer)); }
   /// The array `links` of `stats`.
   void AddStats(GstStructure* stats) const;
 
  private:
+  /// What a link's socket has sent, and not sent.
+  struct Health {
+    guint64 sent = 0;
+    guint64 errors = 0;
+    gint64 failed_us = 0;  // monotonic time
+  };
   void AddLink(const OpenLink& link);
+  /// Looks for links that vanished or came back.
+  void Watch();
+  /// Whether packets failed, and none left, since the last look, or lately.
+  bool Fails(std::size_t link);
+  void Change(std::size_t link, const std::string& trouble);
 
   GstElement* bin_;
   GstLidarScreamBond* bond_ = nullptr;  // the bin's
   std::vector<Chain> chains_;
   std::vector<OpenLink> links_;
+  std::vector<Health> health_;  // of the bond's thread
 };
 
 }  // namespace lidar::gst

@@ -125,7 +125,7 @@ void UdpSocket::ReceiveAll(const std::function<void(const Datagram&)>& handler) 
 
 bool UdpSocket::Send(ByteView payload, std::uint8_t tos, const Address* to) {
   iovec part{const_cast<std::uint8_t*>(payload.data), payload.size};
-  net::TosControl control;
+  net::SendControl control;
   msghdr message{};
   if (to != nullptr) {
     message.msg_name = const_cast<sockaddr_storage*>(&to->storage);
@@ -133,7 +133,7 @@ bool UdpSocket::Send(ByteView payload, std::uint8_t tos, const Address* to) {
   }
   message.msg_iov = &part;
   message.msg_iovlen = 1;
-  net::SetTos(tos, to != nullptr ? *to : peer_, &control, &message);
+  net::SetControl(tos, to != nullptr ? *to : peer_, 0, &control, &message);
   ssize_t sent = 0;
   do {
     sent = sendmsg(fd(), &message, MSG_NOSIGNAL);

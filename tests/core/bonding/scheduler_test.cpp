@@ -174,6 +174,29 @@ TEST_F(TwoLinks, RefusesForgedReports) {
   EXPECT_TRUE(scheduler_.InGap(now_ + 1s, 0));
 }
 
+TEST_F(TwoLinks, SendsNothingByALinkThatCannotBeUsed) {
+  Settle();
+  scheduler_.SetUsable(now_, 0, false);
+  for (int i = 0; i < 20; ++i) EXPECT_EQ(Packet(), SetOf({1}));
+}
+
+TEST_F(TwoLinks, GivesALinkThatCameBackCopiesOnlyUntilItsFirstReport) {
+  Settle();
+  scheduler_.SetUsable(now_, 0, false);
+  for (int i = 0; i < 20; ++i) {
+    Packet();
+    scheduler_.OnFeedback(now_, 1, Arrived(seq_));
+  }
+  scheduler_.SetUsable(now_, 0, true);
+  SetPaths({Mbps(80), 20ms}, {Mbps(8), 40ms});
+  const std::uint64_t own = scheduler_.counters(0).packets;
+  for (int i = 0; i < 20; ++i) EXPECT_EQ(Packet(), SetOf({0, 1}));
+  EXPECT_EQ(scheduler_.counters(0).packets, own);
+  scheduler_.OnFeedback(now_, 0, Arrived(seq_));
+  Packet();
+  EXPECT_GT(scheduler_.counters(0).packets, own) << "it is the better one";
+}
+
 TEST(Scheduler, SumsUpTargetsOfLinksThatWork) {
   Scheduler scheduler(2, Method::kAdaptive, TargetRule::kSum);
   EXPECT_EQ(scheduler.Target(kStart, {Mbps(10), Mbps(3)}), Mbps(13));

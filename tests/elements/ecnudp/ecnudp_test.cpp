@@ -140,6 +140,19 @@ int ReceiveTos(int fd) {
   return -1;
 }
 
+TEST_P(Loopback, PacketsLeaveByTheInterfaceAndByNoOther) {
+  const Harness src = NewSource(GetParam().address);
+  const Harness sink = NewSink(GetParam().host, LocalPort(src.get()));
+  g_object_set(sink->element, "interface", "none0", nullptr);
+  EXPECT_EQ(gst_harness_push(sink.get(), Payload("lost")), GST_FLOW_OK);
+  EXPECT_EQ(Stat(sink.get(), "send-errors"), 1U);
+  g_object_set(sink->element, "interface", "lo", nullptr);
+  EXPECT_EQ(gst_harness_push(sink.get(), Payload("sent")), GST_FLOW_OK);
+  const BufferPtr got(gst_harness_pull(src.get()));
+  ASSERT_TRUE(got);
+  EXPECT_EQ(Text(got.get()), "sent");
+}
+
 TEST(EcnUdpSink, KeepsTheDscpBesideTheEcnBits) {
   const Object<GInetAddress> loopback(g_inet_address_new_loopback(G_SOCKET_FAMILY_IPV4));
   const Object<GSocketAddress> local(g_inet_socket_address_new(loopback.get(), 0));

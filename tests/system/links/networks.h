@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// A robot and an edge in network namespaces of their own, with Ethernets between them.
+#pragma once
+#include <string>
+
+namespace lidar::test {
+
+class Networks {
+ public:
+  /// False where the user may not make networks, or iproute2 is missing.
+  bool Create();
+  ~Networks();
+
+  /// The calling thread, and those that it starts, are there from now on.
+  void EnterRobot() const;
+  void EnterEdge() const;
+  /// Ethernet `n`: the robot's interface rN with 10.9.N.`host`, the edge's eN with 10.9.N.1.
+  void Connect(int n, int host = 2) const;
+  void Disconnect(int n) const;
+  /// Runs a command in the robot's network; fails the test where it fails.
+  void Robot(const std::string& command) const;
+
+ private:
+  int robot_ = -1;
+  int edge_ = -1;
+  int before_ = -1;
+};
+
+}  // namespace lidar::test
