@@ -26,7 +26,6 @@ LIBRARIES = {
     "libsoup": ("libsoup/",),
     "libnats": ("nats/",),
     "CLI11": ("CLI/",),
-    "cpp-httplib": ("httplib",),
     "GStreamer": ("gst/", "glib", "gio/", "gmodule"),
     "POSIX": (
         "sys/",

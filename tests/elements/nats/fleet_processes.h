@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // The parts of a fleet that can be killed, and what they tell until then.
 #pragma once
-#include <httplib.h>
-
 #include <csignal>
 #include <cstdlib>
 #include <map>
@@ -19,6 +17,7 @@
 #include "src/tools/common/child_process.h"
 #include "tests/elements/nats/fleet_books.h"
 #include "tests/elements/nats/fleet_robots.h"
+#include "tests/elements/nats/http_get.h"
 #include "tests/elements/nats/nats_server.h"
 
 namespace lidar::test {
@@ -66,10 +65,9 @@ class EdgeProcess {
   /// Reads what it tells.
   void Sample() {
     if (!is_up()) return;
-    httplib::Client client("127.0.0.1", port_);
-    const auto answer = client.Get("/metrics");
-    if (!answer || answer->status != 200) return;
-    for (const auto& [robot, figures] : Parse(answer->body)) Note(robot, figures);
+    const auto answer = HttpGet("127.0.0.1:" + std::to_string(port_), "/metrics");
+    if (!answer) return;
+    for (const auto& [robot, figures] : Parse(*answer)) Note(robot, figures);
   }
   std::uint64_t WaitingNow() const {
     std::uint64_t waiting = 0;

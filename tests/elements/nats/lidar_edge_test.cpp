@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // lidar-edge: robots that come and go.
 #include <gio/gio.h>
-#include <httplib.h>
 #include <sys/stat.h>
 
 #include <csignal>
@@ -11,6 +10,7 @@
 #include "ext/nats/nats_ptr.h"
 #include "src/tools/common/child_process.h"
 #include "tests/elements/nats/free_ports.h"
+#include "tests/elements/nats/http_get.h"
 #include "tests/elements/nats/nats_pipeline.h"
 
 namespace lidar::test {
@@ -49,15 +49,17 @@ class LidarEdge : public NatsTest {
     program_->Signal(SIGTERM);
     return Eventually([this] { return program_->Ended(); }) && program_->Wait() == 0;
   }
+  std::optional<std::string> Metrics() const {
+    return HttpGet("127.0.0.1:" + std::to_string(metrics_port_), "/metrics");
+  }
   /// None where it is not told.
   std::optional<double> Metric(const std::string& name, const std::string& robot) {
-    httplib::Client client("127.0.0.1", metrics_port_);
-    const auto answer = client.Get("/metrics");
-    if (!answer || answer->status != 200) return std::nullopt;
+    const auto answer = Metrics();
+    if (!answer) return std::nullopt;
     const std::string line = "\n" + name + "{robot=\"" + robot + "\",sensor=\"lidar\"} ";
-    const auto at = answer->body.find(line);
+    const auto at = answer->find(line);
     if (at == std::string::npos) return std::nullopt;
-    return std::atof(answer->body.c_str() + at + line.size());
+    return std::atof(answer->c_str() + at + line.size());
   }
   /// Whether statistics come, and say that the robot's stream goes on.
   bool GoesOn(const std::string& robot) {
@@ -318,11 +320,11 @@ TEST_F(LidarEdge, RobotsOnOnePortAreToldApartBySsrcAndKey) {
   EXPECT_EQ(Metric("lidar_edge_sessions", "r2"), 1);
   EXPECT_EQ(Metric("lidar_edge_failures", "r2"), 0);
   EXPECT_GT(r1->stat("feedback-accepted"), 0U) << "reports come back from the port";
-  const auto answer = httplib::Client("127.0.0.1", metrics_port_).Get("/metrics");
+  const auto answer = Metrics();
   ASSERT_TRUE(answer);
-  const auto at = answer->body.find("\nlidar_edge_stray_datagrams ");
+  const auto at = answer->find("\nlidar_edge_stray_datagrams ");
   ASSERT_NE(at, std::string::npos);
-  EXPECT_GT(std::atof(answer->body.c_str() + at + 28), 0);
+  EXPECT_GT(std::atof(answer->c_str() + at + 28), 0);
 }
 
 }  // namespace

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // lidar-worker: robots that change hands.
 #include <gst/base/gstbasetransform.h>
-#include <httplib.h>
 
 #include <cmath>
 #include <nlohmann/json.hpp>
@@ -13,6 +12,7 @@
 #include "src/tools/apps/worker/lease_store.h"
 #include "src/tools/apps/worker/robot_pipeline.h"
 #include "src/tools/apps/worker/worker.h"
+#include "tests/elements/nats/http_get.h"
 #include "tests/elements/nats/worker_process.h"
 
 namespace lidar::test {
@@ -305,13 +305,13 @@ TEST_F(LidarWorker, TellsOfItsRobots) {
   std::string address;
   ASSERT_TRUE(Eventually([&] {
     for (const std::string& line : worker.lines())
-      if (line.rfind("metrics ", 0) == 0) address = line.substr(8, line.rfind('/') - 8);
+      if (line.rfind("metrics http://", 0) == 0) address = line.substr(15, line.rfind('/') - 15);
     return !address.empty();
   }));
-  const auto answer = httplib::Client(address).Get("/metrics");
+  const auto answer = HttpGet(address, "/metrics");
   ASSERT_TRUE(answer);
-  EXPECT_NE(answer->body.find("\nlidar_worker_robots 1\n"), std::string::npos) << answer->body;
-  EXPECT_NE(answer->body.find("\nlidar_natssink_messages{robot=\"r1\",sensor=\"front\"} "),
+  EXPECT_NE(answer->find("\nlidar_worker_robots 1\n"), std::string::npos) << *answer;
+  EXPECT_NE(answer->find("\nlidar_natssink_messages{robot=\"r1\",sensor=\"front\"} "),
             std::string::npos);
   reports.reset();
   natsConnection_Destroy(raw);

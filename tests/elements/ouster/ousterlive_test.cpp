@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // ouster_src and a sensor in software, over real sockets: finding, configuring, losing and finding
 // it again.
-#include <httplib.h>
-
+#include <atomic>
 #include <cstdio>
 #include <fstream>
 
 #include "src/ouster/scan_batcher.h"
+#include "src/tools/bench/ouster_replay/http_server.h"
 #include "tests/elements/ouster/live_receiver.h"
 #include "tests/elements/ouster/software_sensor.h"
 
@@ -305,29 +305,17 @@ TEST(OusterLive, TheCaptureTimeOfASensorOnPtpIsTrueUtc) {
 /// A server that is no sensor.
 class Impostor {
  public:
-  explicit Impostor(httplib::Server::Handler handler) {
-    server_.Get(".*", std::move(handler));
-    port_ = server_.bind_to_any_port("127.0.0.1");
-    thread_ = std::thread([this] { server_.listen_after_bind(); });
-    while (!server_.is_running()) g_usleep(1000);
-  }
-  ~Impostor() {
-    server_.stop();
-    thread_.join();
-  }
-  Impostor(const Impostor&) = delete;
-  Impostor& operator=(const Impostor&) = delete;
-  std::string host() const { return "127.0.0.1:" + std::to_string(port_); }
+  explicit Impostor(tools::HttpServer::Handler handler)
+      : server_("127.0.0.1", 0, std::move(handler)) {}
+  std::string host() const { return "127.0.0.1:" + std::to_string(server_.port()); }
 
  private:
-  httplib::Server server_;
-  int port_ = 0;
-  std::thread thread_;
+  tools::HttpServer server_;
 };
 
 TEST(OusterLive, MetadataThatMakesNoSenseIsAClearError) {
-  const Impostor impostor([](const httplib::Request&, httplib::Response& response) {
-    response.set_content(R"({"lidar_data_format": {"columns_per_packet": 0}})", "application/json");
+  const Impostor impostor([](const tools::HttpRequest&) {
+    return tools::HttpReply{200, R"({"lidar_data_format": {"columns_per_packet": 0}})", {}};
   });
   const std::string error =
       RunToEnd("ouster_src reconnect=false hostname=" + impostor.host() + " ! fakesink");
@@ -336,9 +324,12 @@ TEST(OusterLive, MetadataThatMakesNoSenseIsAClearError) {
 
 TEST(OusterLive, FollowsNoRedirect) {
   std::atomic<int> visits{0};
-  const Impostor target([&](const httplib::Request&, httplib::Response&) { ++visits; });
-  const Impostor impostor([&](const httplib::Request&, httplib::Response& response) {
-    response.set_redirect("http://" + target.host() + "/");
+  const Impostor target([&](const tools::HttpRequest&) {
+    ++visits;
+    return tools::HttpReply{};
+  });
+  const Impostor impostor([&](const tools::HttpRequest&) {
+    return tools::HttpReply{302, {}, "http://" + target.host() + "/"};
   });
   Receiver receiver(impostor.host(), "reconnect=false");
   const std::string error = receiver.AwaitError();
@@ -346,12 +337,9 @@ TEST(OusterLive, FollowsNoRedirect) {
   EXPECT_EQ(visits, 0);
 }
 
-TEST(OusterLive, AnAnswerWithoutEndIsCutOff) {
-  const Impostor impostor([](const httplib::Request&, httplib::Response& response) {
-    response.set_content_provider("application/json", [](std::size_t, httplib::DataSink& sink) {
-      const std::string blanks(1 << 20, ' ');
-      return sink.write(blanks.data(), blanks.size());
-    });
+TEST(OusterLive, AnAnswerOfMoreThanAMebibyteIsCutOff) {
+  const Impostor impostor([](const tools::HttpRequest&) {
+    return tools::HttpReply{200, std::string(16U << 20, ' '), {}};
   });
   Receiver receiver(impostor.host(), "reconnect=false");
   const std::string error = receiver.AwaitError();

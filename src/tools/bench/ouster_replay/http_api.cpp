@@ -1,33 +1,34 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include "src/tools/bench/ouster_replay/http_api.h"
 
-#include <httplib.h>
-
-#include <chrono>
-#include <optional>
-#include <thread>
+#include <map>
 #include <utility>
 
-#include "src/tools/common/http_listener.h"
+#include "src/tools/bench/ouster_replay/http_server.h"
 
 namespace lidar::tools {
 namespace {
 
-using httplib::Request;
-using httplib::Response;
 using nlohmann::json;
 
-constexpr const char* kJson = "application/json";
+HttpReply Ok(std::string text = "{}") { return {200, std::move(text), {}}; }
 
-void Fail(Response* response, int status, const std::string& why) {
-  response->status = status;
-  response->set_content(json{{"error", {{"title", why}}}}.dump(), kJson);
+HttpReply Failure(int status, const std::string& why) {
+  return {status, json{{"error", {{"title", why}}}}.dump(), {}};
 }
 
-bool Flag(const Request& request, const char* name) {
-  const std::string value = request.get_param_value(name);
+std::string Parameter(const HttpRequest& request, const char* name) {
+  const auto found = request.query.find(name);
+  return found != request.query.end() ? found->second : "";
+}
+
+bool Flag(const HttpRequest& request, const char* name) {
+  const std::string value = Parameter(request, name);
   return value == "true" || value == "True" || value == "1";
 }
+
+/// Paths of our own work whatever faults the sensor has.
+bool IsSensorPath(const HttpRequest& request) { return request.path.rfind("/replay/", 0) != 0; }
 
 /// "key value", the value being JSON or a bare word.
 json ParseArguments(const std::string& text) {
@@ -45,93 +46,78 @@ class HttpApi::Impl {
  public:
   Impl(const Options& options, Sensor* sensor, std::function<std::string()> stats)
       : sensor_(*sensor), stats_(std::move(stats)) {
-    AddFaults();
-    AddMetadata();
+    routes_["GET /api/v1/sensor/metadata"] = [this](const HttpRequest&) {
+      return Ok(sensor_.MetadataJson());
+    };
     if (options.old_firmware)
       AddCommands();
     else
       AddConfig();
     AddReplay();
-    listener_.emplace(&server_, options.address, options.port);
+    server_ = std::make_unique<HttpServer>(
+        options.address, options.port, [this](const HttpRequest& r) { return Handle(r); },
+        [this](const HttpRequest& r) {
+          return IsSensorPath(r) ? static_cast<unsigned>(sensor_.faults().http_delay_ms) : 0U;
+        });
   }
-  int port() const { return listener_->port(); }
+  int port() const { return server_->port(); }
 
  private:
-  void AddFaults() {
-    server_.set_pre_routing_handler([this](const Request& request, Response& response) {
-      if (request.path.rfind("/replay/", 0) == 0)
-        return httplib::Server::HandlerResponse::Unhandled;
-      const Faults faults = sensor_.faults();
-      std::this_thread::sleep_for(std::chrono::milliseconds(faults.http_delay_ms));
-      if (faults.http_status == 0) return httplib::Server::HandlerResponse::Unhandled;
-      Fail(&response, faults.http_status, "as requested");
-      return httplib::Server::HandlerResponse::Handled;
-    });
+  HttpReply Handle(const HttpRequest& request) {
+    const int status = sensor_.faults().http_status;
+    if (IsSensorPath(request) && status != 0) return Failure(status, "as requested");
+    const auto route = routes_.find(request.method + " " + request.path);
+    return route != routes_.end() ? route->second(request) : Failure(404, "no such path");
   }
 
-  void AddMetadata() {
-    server_.Get("/api/v1/sensor/metadata", [this](const Request&, Response& response) {
-      response.set_content(sensor_.MetadataJson(), kJson);
-    });
-  }
-
-  void Set(const json& config, const Sensor::Change& change, const Request& request,
-           Response* response) {
-    const std::string error = sensor_.SetConfig(config, change, request.remote_addr);
-    if (error.empty())
-      response->set_content("{}", kJson);
-    else
-      Fail(response, 400, error);
+  static HttpReply OkUnless(const std::string& error) {
+    return error.empty() ? Ok() : Failure(400, error);
   }
 
   void AddConfig() {
-    server_.Get("/api/v1/sensor/config", [this](const Request& request, Response& response) {
-      response.set_content(sensor_.ConfigJson(Flag(request, "staging")), kJson);
-    });
-    server_.Post("/api/v1/sensor/config", [this](const Request& request, Response& response) {
-      Set(json::parse(request.body, nullptr, false),
-          {Flag(request, "staging"), Flag(request, "reinit")}, request, &response);
-    });
+    routes_["GET /api/v1/sensor/config"] = [this](const HttpRequest& request) {
+      return Ok(sensor_.ConfigJson(Flag(request, "staging")));
+    };
+    routes_["POST /api/v1/sensor/config"] = [this](const HttpRequest& request) {
+      return OkUnless(sensor_.SetConfig(json::parse(request.body, nullptr, false),
+                                        {Flag(request, "staging"), Flag(request, "reinit")},
+                                        request.peer));
+    };
   }
 
   void AddCommands() {
-    const std::string base = "/api/v1/sensor/cmd/";
-    server_.Get(base + "get_config_param", [this](const Request& request, Response& response) {
-      response.set_content(sensor_.ConfigJson(request.get_param_value("args") == "staged"), kJson);
-    });
-    server_.Get(base + "set_config_param", [this](const Request& request, Response& response) {
-      Set(ParseArguments(request.get_param_value("args")), {true, false}, request, &response);
-    });
-    server_.Get(base + "set_udp_dest_auto", [this](const Request& request, Response& response) {
-      Set({{"udp_dest", "@auto"}}, {true, false}, request, &response);
-    });
-    server_.Get(base + "reinitialize", [this](const Request&, Response& response) {
+    const std::string base = "GET /api/v1/sensor/cmd/";
+    routes_[base + "get_config_param"] = [this](const HttpRequest& request) {
+      return Ok(sensor_.ConfigJson(Parameter(request, "args") == "staged"));
+    };
+    routes_[base + "set_config_param"] = [this](const HttpRequest& request) {
+      return OkUnless(sensor_.SetConfig(ParseArguments(Parameter(request, "args")), {true, false},
+                                        request.peer));
+    };
+    routes_[base + "set_udp_dest_auto"] = [this](const HttpRequest& request) {
+      return OkUnless(sensor_.SetConfig({{"udp_dest", "@auto"}}, {true, false}, request.peer));
+    };
+    routes_[base + "reinitialize"] = [this](const HttpRequest&) {
       sensor_.Restart();
-      response.set_content("{}", kJson);
-    });
+      return Ok();
+    };
   }
 
   void AddReplay() {
-    server_.Get("/replay/stats", [this](const Request&, Response& response) {
-      response.set_content(stats_(), kJson);
-    });
-    server_.Post("/replay/restart", [this](const Request&, Response& response) {
+    routes_["GET /replay/stats"] = [this](const HttpRequest&) { return Ok(stats_()); };
+    routes_["POST /replay/restart"] = [this](const HttpRequest&) {
       sensor_.Restart();
-      response.set_content("{}", kJson);
-    });
-    server_.Post("/replay/faults", [this](const Request& request, Response& response) {
-      const std::string error = sensor_.MergeFaults(json::parse(request.body, nullptr, false));
-      if (error.empty())
-        response.set_content("{}", kJson);
-      else
-        Fail(&response, 400, error);
-    });
+      return Ok();
+    };
+    routes_["POST /replay/faults"] = [this](const HttpRequest& request) {
+      return OkUnless(sensor_.MergeFaults(json::parse(request.body, nullptr, false)));
+    };
   }
 
   Sensor& sensor_;
   std::function<std::string()> stats_;
-  httplib::Server server_;
-  std::optional<HttpListener> listener_;  // the last, so that it ends first
+  std::map<std::string, HttpServer::Handler> routes_;  // by method and path
+  std::unique_ptr<HttpServer> server_;                 // the last, so that it ends first
 };
 
 HttpApi::HttpApi(const Options& options, Sensor* sensor, std::function<std::string()> stats)

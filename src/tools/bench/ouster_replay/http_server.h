@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Serves HTTP from a thread of its own.
+#pragma once
+#include <functional>
+#include <map>
+#include <memory>
+#include <string>
+
+namespace lidar::tools {
+
+struct HttpRequest {
+  std::string method;
+  std::string path;
+  std::string body;
+  std::string peer;  // address of the client
+  std::map<std::string, std::string> query;
+};
+
+struct HttpReply {
+  int status = 200;
+  std::string json;
+  std::string location;  // of a redirect
+};
+
+/// Listens from its making to its end. Both functions are called from its thread.
+class HttpServer {
+ public:
+  using Handler = std::function<HttpReply(const HttpRequest&)>;
+  /// How long a request waits before it is handled [ms]; others go on meanwhile.
+  using Delay = std::function<unsigned(const HttpRequest&)>;
+
+  /// Port 0: any that is free. Throws std::runtime_error where the port cannot be had.
+  HttpServer(const std::string& address, int port, Handler handler, Delay delay = nullptr);
+  ~HttpServer();
+  HttpServer(const HttpServer&) = delete;
+  HttpServer& operator=(const HttpServer&) = delete;
+
+  int port() const;
+
+ private:
+  class Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace lidar::tools
