@@ -25,9 +25,7 @@
 #include "gst/common/stats.h"
 #include "gst/lidar/gstlidar.h"
 #include "gst/rtplidar/base_stats.h"
-#include "gst/rtplidar/config_caps.h"
-#include "src/base/allowance.h"
-#include "src/rtp/ntp_time.h"
+#include "gst/rtplidar/slice_output.h"
 #include "src/rtp/receiver.h"
 
 GST_DEBUG_CATEGORY_STATIC(gst_lidar_rtp_depay_debug);
@@ -89,31 +87,22 @@ constexpr guint64 kWrongTypePackets = 20;
 // Nor are so many that cannot be read, before the first that can.
 constexpr guint64 kUnreadablePackets = 20;
 
-// Each change costs all that follows far more than the few bytes of a slice: new caps of up to
-// 200 kB as text, an event in each queue, a channel of a recording, a message of NATS.
-constexpr int kFormatChanges = 8;
-constexpr lidar::Duration kFormatChangePeriod = std::chrono::seconds(1);
-
 lidar::Duration ReorderTime(const Settings& s) {
   return lidar::Duration{static_cast<gint64>(s.max_reorder_time)};
 }
 
 struct State {
+  explicit State(GstRTPBaseDepayload* self) : output(self) {}
+
   std::mutex mutex;  // guards all above the line; never held while pushing
   Settings settings;
   Receiver receiver{ReorderTime(Settings{})};
   guint64 not_rtp = 0;
   guint64 wrong_payload_type = 0;
-  guint64 not_accepted = 0;
-  guint64 format_changes = 0;
 
   // The rest belongs to the streaming thread.
-  std::optional<gint> payload_type;                        // of the caps
-  std::shared_ptr<const lidar::rtp::StreamConfig> config;  // of the caps on the src pad
-  std::shared_ptr<const lidar::rtp::StreamConfig> asked;   // what the next element last answered to
-  lidar::Allowance changes{kFormatChanges, kFormatChangePeriod};
-  bool warned_of_coder = false;
-  bool warned_of_changes = false;
+  SliceOutput output;
+  std::optional<gint> payload_type;  // of the caps
   bool warned_of_type = false;
   bool warned_of_rival = false;
   bool readable = false;  // something was, or a warning said that nothing is
@@ -140,8 +129,8 @@ static StructurePtr Stats(GObject* object) {
   std::lock_guard lock(state.mutex);
   const auto all = state.receiver.accounts();
   AddStats(stats.get(), kStats,
-           {all, all.packets.invalid + state.not_rtp, state.wrong_payload_type, state.not_accepted,
-            state.format_changes});
+           {all, all.packets.invalid + state.not_rtp, state.wrong_payload_type,
+            state.output.not_accepted(), state.output.format_changes()});
   return stats;
 }
 
@@ -155,98 +144,6 @@ static const std::array<Property<Settings>, 2> kProperties = {{
      "depayloader has",
      Stats},
 }};
-
-static GstBuffer* ToBuffer(ReceivedSlice* slice) {
-  auto* bytes = new std::vector<std::uint8_t>(std::move(slice->bytes));
-  GstBuffer* buffer = gst_buffer_new_wrapped_full(
-      static_cast<GstMemoryFlags>(0), bytes->data(), bytes->size(), 0, bytes->size(), bytes,
-      [](gpointer p) { delete static_cast<std::vector<std::uint8_t>*>(p); });
-  if (slice->pts) {
-    GST_BUFFER_PTS(buffer) = static_cast<GstClockTime>(slice->pts->time_since_epoch().count());
-  }
-  if (slice->info.duration_ns != lidar::rtp::SliceInfo::kUnknownDuration)
-    GST_BUFFER_DURATION(buffer) = slice->info.duration_ns;
-  const GstLidarSlice meta{slice->info.scan_id, slice->id.index, slice->id.count,
-                           slice->info.first_column};
-  gst_lidar_buffer_set_slice(buffer, &meta);
-  if (slice->info.capture_ntp != 0)
-    gst_lidar_buffer_set_capture_time(buffer, lidar::rtp::FromNtp(slice->info.capture_ntp));
-  if (slice->discont) GST_BUFFER_FLAG_SET(buffer, GST_BUFFER_FLAG_DISCONT);
-  if (slice->id.index + 1 == slice->id.count) GST_BUFFER_FLAG_SET(buffer, GST_BUFFER_FLAG_MARKER);
-  return buffer;
-}
-
-/// Says what the next element does not take.
-static void WarnOfCoder(GstRTPBaseDepayload* base, const GstCaps* caps) {
-  const GstStructure* s = gst_caps_get_structure(caps, 0);
-  const std::string type = gst_structure_get_name(s);
-  const std::string decoder = type == GST_LIDAR_SLICE_MEDIA_TYPE   ? "lidardec"
-                              : type == GST_LIDAR_DRACO_MEDIA_TYPE ? "dracodec"
-                                                                   : "a decoder of " + type;
-  GST_ELEMENT_WARNING(base, STREAM, WRONG_TYPE,
-                      ("The slices of this stream are for %s, and the next element does not take "
-                       "them. They are dropped.",
-                       decoder.c_str()),
-                      ("caps are %" GST_PTR_FORMAT, static_cast<const void*>(caps)));
-}
-
-/// Sets the caps of `config`. False where the next element does not take them, with a warning the
-/// first time. That is no error: anyone may send a stream of another coder.
-static bool SetCapsOf(GstRTPBaseDepayload* base, const lidar::rtp::StreamConfig& config) {
-  State& state = *GST_LIDAR_RTP_DEPAY(base)->state;
-  const CapsPtr caps(StreamConfigToCaps(config));
-  if (gst_pad_peer_query_accept_caps(base->srcpad, caps.get())) {
-    gst_pad_set_caps(base->srcpad, caps.get());
-    return true;
-  }
-  if (state.warned_of_coder || GST_PAD_IS_FLUSHING(base->srcpad)) return false;
-  state.warned_of_coder = true;
-  WarnOfCoder(base, caps.get());
-  return false;
-}
-
-/// False, and counted, where the stream changes its format more often than any sender needs to.
-static bool MayChangeTo(GstRTPBaseDepayload* base,
-                        const std::shared_ptr<const lidar::rtp::StreamConfig>& config) {
-  State& state = *GST_LIDAR_RTP_DEPAY(base)->state;
-  if (state.asked == config || state.changes.Take(state.now)) return true;
-  {
-    std::lock_guard lock(state.mutex);
-    ++state.format_changes;
-  }
-  if (std::exchange(state.warned_of_changes, true)) return false;
-  GST_ELEMENT_WARNING(base, STREAM, FORMAT,
-                      ("The stream changes its format more than once a second. Slices of another "
-                       "format than the last are dropped meanwhile; look at its sender."),
-                      (nullptr));
-  return false;
-}
-
-/// Pushes the slices, those of one config as one list.
-static void PushSlices(GstRTPBaseDepayload* base, std::vector<ReceivedSlice> slices) {
-  State& state = *GST_LIDAR_RTP_DEPAY(base)->state;
-  BufferListPtr list;
-  const auto flush = [&] {
-    if (list) gst_rtp_base_depayload_push_list(base, list.release());
-  };
-  for (ReceivedSlice& slice : slices) {
-    if (state.config != slice.config) {
-      if (!MayChangeTo(base, slice.config)) continue;
-      flush();
-      state.asked = slice.config;
-      // What was refused is asked again: a flush refuses, too.
-      state.config = SetCapsOf(base, *slice.config) ? slice.config : nullptr;
-    }
-    if (!state.config) {
-      std::lock_guard lock(state.mutex);
-      ++state.not_accepted;
-      continue;
-    }
-    if (!list) list.reset(gst_buffer_list_new());
-    gst_buffer_list_add(list.get(), ToBuffer(&slice));
-  }
-  flush();
-}
 
 /// True once many packets had a wrong payload type and none the right one.
 static bool CountWrongType(State& state) {
@@ -344,7 +241,7 @@ static GstBuffer* Process(GstRTPBaseDepayload* base, GstRTPBuffer* rtp) {
                         (nullptr));
   if (rival && *rival == packet.ssrc)
     WarnOfRival(GST_LIDAR_RTP_DEPAY(base), *state.receiver.ssrc(), *rival);
-  PushSlices(base, std::move(slices));
+  state.output.Push(std::move(slices), state.now);
   return nullptr;
 }
 
@@ -376,13 +273,10 @@ static GstStateChangeReturn ChangeState(GstElement* element, GstStateChange tran
   if (transition == GST_STATE_CHANGE_READY_TO_PAUSED) {
     std::lock_guard lock(state.mutex);
     state.receiver = Receiver(ReorderTime(state.settings));
-    state.not_rtp = state.wrong_payload_type = state.not_accepted = state.format_changes = 0;
-    state.warned_of_coder = state.warned_of_type = state.warned_of_rival = false;
-    state.warned_of_changes = state.readable = false;
+    state.not_rtp = state.wrong_payload_type = 0;
+    state.warned_of_type = state.warned_of_rival = state.readable = false;
     state.payload_type.reset();
-    state.config.reset();
-    state.asked.reset();
-    state.changes = {kFormatChanges, kFormatChangePeriod};
+    state.output.Reset();
     state.now = {};
   }
   const auto result =
@@ -401,7 +295,7 @@ static void TakeReorderTime(GObject* object, GParamSpec*) {
 }
 
 static void gst_lidar_rtp_depay_init(GstLidarRtpDepay* self) {
-  self->state = new State;
+  self->state = new State(GST_RTP_BASE_DEPAYLOAD(self));
   GstPad* sink = GST_RTP_BASE_DEPAYLOAD_SINKPAD(self);
   self->state->base_chain = GST_PAD_CHAINFUNC(sink);
   gst_pad_set_chain_function(sink, Chain);

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Gives received slices to the next element, in the caps of their stream config.
+#pragma once
+#include <gst/rtp/gstrtpbasedepayload.h>
+
+#include <atomic>
+#include <memory>
+#include <vector>
+
+#include "src/base/allowance.h"
+#include "src/rtp/receiver.h"
+
+namespace lidar::gst {
+
+/// Used by the streaming thread, but for the counts.
+class SliceOutput {
+ public:
+  explicit SliceOutput(GstRTPBaseDepayload* element) : element_(element) {}
+
+  /// Pushes the slices, those of one config as one list. Drops those of a coder that the next
+  /// element does not take, and of formats that change too often; each is a warning once.
+  void Push(std::vector<rtp::ReceivedSlice> slices, Time now);
+  /// Begins anew, counts included. The caller holds the element's lock.
+  void Reset();
+
+  guint64 not_accepted() const { return not_accepted_; }
+  guint64 format_changes() const { return format_changes_; }
+
+ private:
+  using Config = std::shared_ptr<const rtp::StreamConfig>;
+
+  bool MayChangeTo(const Config& config, Time now);
+  bool SetCapsOf(const rtp::StreamConfig& config);
+
+  // Each change costs all that follows far more than the few bytes of a slice: new caps of up to
+  // 200 kB as text, an event in each queue, a channel of a recording, a message of NATS.
+  static constexpr int kFormatChanges = 8;
+  static constexpr Duration kFormatChangePeriod = std::chrono::seconds(1);
+
+  GstRTPBaseDepayload* element_;
+  Config config_;  // of the caps on the src pad
+  Config asked_;   // what the next element last answered to
+  Allowance changes_{kFormatChanges, kFormatChangePeriod};
+  bool warned_of_coder_ = false;
+  bool warned_of_changes_ = false;
+  std::atomic<guint64> not_accepted_{0};
+  std::atomic<guint64> format_changes_{0};
+};
+
+}  // namespace lidar::gst
