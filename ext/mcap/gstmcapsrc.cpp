@@ -15,10 +15,10 @@
 #include <memory>
 #include <mutex>
 #include <optional>
-#include <set>
 #include <string>
 #include <utility>
 
+#include "ext/mcap/play_messages.h"
 #include "ext/mcap/play_task.h"
 #include "ext/mcap/playback.h"
 #include "ext/mcap/seeking.h"
@@ -131,13 +131,6 @@ static GstPad* NewPad(const std::string& name) {
   return pad;
 }
 
-static std::string TopicNames(const Playback& playback) {
-  std::string names;
-  for (const auto& topic : playback.topics())
-    names += (names.empty() ? "" : ", ") + topic.channel.topic + " (" + topic.schema.name + ")";
-  return names.empty() ? "none" : names;
-}
-
 /// True where there is something to play, as far as known before it is read.
 static bool HasTopic(const Playback& playback, const Settings& settings) {
   return std::any_of(playback.topics().begin(), playback.topics().end(), [&](const auto& topic) {
@@ -166,24 +159,10 @@ static bool Open(GstLidarMcapSrc* self) {
     return false;
   }
   if (!HasTopic(*playback, settings)) {
-    GST_ELEMENT_ERROR(
-        self, STREAM, WRONG_TYPE,
-        ("\"%s\" holds nothing that can be played.", settings.location.c_str()),
-        ("wanted: %s; topics: %s", settings.topic.empty() ? "any" : settings.topic.c_str(),
-         TopicNames(*playback).c_str()));
+    PostNothingToPlay(GST_ELEMENT(self), *playback, settings.location, settings.topic);
     return false;
   }
-  if (playback->unclosed_files() > 0)
-    GST_ELEMENT_WARNING(self, STREAM, DEMUX,
-                        ("%" G_GUINT64_FORMAT " files of the recording break off, or are being "
-                         "written. They are played up to their last whole chunk.",
-                         playback->unclosed_files()),
-                        (nullptr));
-  if (playback->unreadable_files() > 0)
-    GST_ELEMENT_WARNING(self, RESOURCE, READ,
-                        ("%" G_GUINT64_FORMAT " files of the recording cannot be read.",
-                         playback->unreadable_files()),
-                        ("the last one: %s", why.c_str()));
+  WarnOfFiles(GST_ELEMENT(self), *playback, why);
   const guint64 span = playback->end_time() - playback->start_time();
   std::lock_guard lock(state.mutex);
   state.counters.files_unclosed = playback->unclosed_files();
@@ -219,17 +198,8 @@ static void TellOfDamage(GstLidarMcapSrc* self) {
     counters = state.counters;
   }
   if (state.end_wanted || state.stopping) return;
-  const bool nothing = counters.messages == counters.messages_dropped;
-  if (!state.run.streams->has_pads() || (nothing && counters.chunks_damaged > 0))
-    GST_ELEMENT_ERROR(self, STREAM, DEMUX, ("No message of the recording can be read."),
-                      ("damaged: %" G_GUINT64_FORMAT " chunks, %" G_GUINT64_FORMAT " messages",
-                       counters.chunks_damaged, counters.messages_dropped));
-  else if (counters.chunks_damaged > 0 || counters.messages_dropped > 0)
-    GST_ELEMENT_WARNING(self, STREAM, DEMUX,
-                        ("The recording is damaged: %" G_GUINT64_FORMAT
-                         " chunks and %" G_GUINT64_FORMAT " messages are left out.",
-                         counters.chunks_damaged, counters.messages_dropped),
-                        (nullptr));
+  PostDamage(GST_ELEMENT(self), {counters.messages, counters.messages_dropped,
+                                 counters.chunks_damaged, state.run.streams->has_pads()});
 }
 
 static void Finish(GstLidarMcapSrc* self) {
@@ -244,24 +214,6 @@ static void Finish(GstLidarMcapSrc* self) {
   streams.End(gst_event_new_segment_done(GST_FORMAT_TIME, position));
 }
 
-/// The media types of the pads, each once.
-static std::string MediaTypes(GstLidarMcapSrc* self) {
-  std::set<std::string> types;
-  gst_element_foreach_src_pad(
-      GST_ELEMENT(self),
-      [](GstElement*, GstPad* pad, gpointer to) -> gboolean {
-        const CapsPtr caps(gst_pad_get_current_caps(pad));
-        if (caps)
-          static_cast<std::set<std::string>*>(to)->insert(
-              gst_structure_get_name(gst_caps_get_structure(caps.get(), 0)));
-        return TRUE;
-      },
-      &types);
-  std::string text;
-  for (const std::string& type : types) text += (text.empty() ? "" : ", ") + type;
-  return text;
-}
-
 /// Posts what is an error, and stops the task.
 static void Stop(GstLidarMcapSrc* self, GstFlowReturn flow) {
   GST_DEBUG_OBJECT(self, "stops: %s", gst_flow_get_name(flow));
@@ -270,10 +222,7 @@ static void Stop(GstLidarMcapSrc* self, GstFlowReturn flow) {
   if (flow == GST_FLOW_EOS) return Finish(self);
   if (flow != GST_FLOW_NOT_LINKED && flow > GST_FLOW_EOS) return;
   if (flow == GST_FLOW_NOT_LINKED)
-    GST_ELEMENT_ERROR(self, STREAM, WRONG_TYPE,
-                      ("The next element takes nothing of what the recording holds: %s.",
-                       MediaTypes(self).c_str()),
-                      (nullptr));
+    PostNotTaken(GST_ELEMENT(self));
   else
     GST_ELEMENT_FLOW_ERROR(self, flow);
   self->state->run.streams->End(gst_event_new_eos());

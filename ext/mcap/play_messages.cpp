@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "ext/mcap/play_messages.h"
+
+#include <set>
+
+#include "gst/common/refs.h"
+
+namespace lidar::gst {
+namespace {
+
+std::string TopicNames(const Playback& playback) {
+  std::string names;
+  for (const auto& topic : playback.topics())
+    names += (names.empty() ? "" : ", ") + topic.channel.topic + " (" + topic.schema.name + ")";
+  return names.empty() ? "none" : names;
+}
+
+/// The media types of the pads, each once.
+std::string MediaTypes(GstElement* element) {
+  std::set<std::string> types;
+  gst_element_foreach_src_pad(
+      element,
+      [](GstElement*, GstPad* pad, gpointer to) -> gboolean {
+        const CapsPtr caps(gst_pad_get_current_caps(pad));
+        if (caps)
+          static_cast<std::set<std::string>*>(to)->insert(
+              gst_structure_get_name(gst_caps_get_structure(caps.get(), 0)));
+        return TRUE;
+      },
+      &types);
+  std::string text;
+  for (const std::string& type : types) text += (text.empty() ? "" : ", ") + type;
+  return text;
+}
+
+}  // namespace
+
+void PostNothingToPlay(GstElement* element, const Playback& playback, const std::string& location,
+                       const std::string& topic) {
+  GST_ELEMENT_ERROR(element, STREAM, WRONG_TYPE,
+                    ("\"%s\" holds nothing that can be played.", location.c_str()),
+                    ("wanted: %s; topics: %s", topic.empty() ? "any" : topic.c_str(),
+                     TopicNames(playback).c_str()));
+}
+
+void WarnOfFiles(GstElement* element, const Playback& playback, const std::string& why) {
+  if (playback.unclosed_files() > 0)
+    GST_ELEMENT_WARNING(element, STREAM, DEMUX,
+                        ("%" G_GUINT64_FORMAT " files of the recording break off, or are being "
+                         "written. They are played up to their last whole chunk.",
+                         playback.unclosed_files()),
+                        (nullptr));
+  if (playback.unreadable_files() > 0)
+    GST_ELEMENT_WARNING(element, RESOURCE, READ,
+                        ("%" G_GUINT64_FORMAT " files of the recording cannot be read.",
+                         playback.unreadable_files()),
+                        ("the last one: %s", why.c_str()));
+}
+
+void PostDamage(GstElement* element, const PlayedCounts& counts) {
+  const bool nothing = counts.messages == counts.messages_dropped;
+  if (!counts.has_pads || (nothing && counts.chunks_damaged > 0))
+    GST_ELEMENT_ERROR(element, STREAM, DEMUX, ("No message of the recording can be read."),
+                      ("damaged: %" G_GUINT64_FORMAT " chunks, %" G_GUINT64_FORMAT " messages",
+                       counts.chunks_damaged, counts.messages_dropped));
+  else if (counts.chunks_damaged > 0 || counts.messages_dropped > 0)
+    GST_ELEMENT_WARNING(element, STREAM, DEMUX,
+                        ("The recording is damaged: %" G_GUINT64_FORMAT
+                         " chunks and %" G_GUINT64_FORMAT " messages are left out.",
+                         counts.chunks_damaged, counts.messages_dropped),
+                        (nullptr));
+}
+
+void PostNotTaken(GstElement* element) {
+  GST_ELEMENT_ERROR(element, STREAM, WRONG_TYPE,
+                    ("The next element takes nothing of what the recording holds: %s.",
+                     MediaTypes(element).c_str()),
+                    (nullptr));
+}
+
+}  // namespace lidar::gst
