@@ -13,9 +13,6 @@ namespace lidar::cdr {
 inline constexpr const char* kImuFields =
     "t:U64:0,ax:F32:8,ay:F32:12,az:F32:16,gx:F32:20,gy:F32:24,gz:F32:28";
 inline constexpr std::size_t kImuSampleSize = 32;
-/// Seven doubles and an integer; then, where it is known, the covariance in 36 doubles.
-inline constexpr std::size_t kPoseSize = 64;
-inline constexpr std::size_t kPoseSizeWithCovariance = kPoseSize + 36 * 8;
 
 std::vector<std::uint8_t> WriteImuSample(const Imu& imu);
 /// As many messages as `bytes` have samples, with no orientation and no frame; none where a sample

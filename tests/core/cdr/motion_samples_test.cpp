@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "src/base/byte_writer.h"
+#include "src/base/pose_bytes.h"
 
 namespace lidar::cdr {
 namespace {
