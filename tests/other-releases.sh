@@ -73,7 +73,7 @@ install_packages() {
   grep '^not in' "$output/install.log" || true
 }
 
-# A cross build has tools of this machine, and libraries of the other. foxglovesink is left out.
+# A cross build has tools of this machine, and libraries of the other. foxglovesink and ouster-replay are left out.
 install_for_arm64() {
   local package foreign=()
   for package in "${packages[@]}"; do
