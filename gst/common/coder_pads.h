@@ -49,6 +49,15 @@ class CoderPads {
   bool discont_ = false;
 };
 
+/// Forgets the stream of a coder that goes to READY: for its base class, once its pads are
+/// inactive.
+template <class Coder, class Class>
+void EndStream(Coder* coder, const Class* klass) {
+  coder->state->stream = {};
+  coder->state->pads.set_discont(false);
+  if (klass->reset != nullptr) klass->reset(coder);
+}
+
 /// Statistics as element messages.
 class MessageTimer {
  public:

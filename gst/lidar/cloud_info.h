@@ -28,14 +28,14 @@ struct CloudInfo {
   /// frame. `why` then says which, in words for a user.
   GST_LIDAR_API static std::optional<CloudInfo> FromCaps(const GstCaps* caps,
                                                          std::string* why = nullptr);
-  /// As FromCaps(), of caps that fix the width as well.
+  /// FromCaps() for caps that fix the width as well.
   GST_LIDAR_API static std::optional<CloudInfo> FromFrameCaps(const GstCaps* caps,
                                                               std::string* why = nullptr);
-  /// The cloud that slices of coded caps hold, packed, but for its width; none where the caps
-  /// contradict themselves or lack x, y and z as F32 side by side. A file needs no more caps than
-  /// its name.
+  /// The cloud of slices of coded caps, packed, without its width; returns nothing if the caps
+  /// contradict themselves or lack x, y and z as F32 side by side. The caps of a file may be its
+  /// media type alone.
   GST_LIDAR_API static std::optional<CloudInfo> FromCodedCaps(const GstCaps* caps);
-  /// What a coder was given by its base class, which has checked it.
+  /// Converts what a base class gave its coder; it is checked already.
   GST_LIDAR_API static CloudInfo FromFormat(const GstLidarCloudFormat& format);
   /// transfer full
   GST_LIDAR_API GstCaps* ToCaps() const;
@@ -51,7 +51,7 @@ struct CloudInfo {
 
 /// A sensor model as the value of the caps field `sensor-model`; transfer full.
 GST_LIDAR_API GstBuffer* SensorModelToBuffer(const SensorModel& model);
-/// Reads the caps field `sensor-model` of `structure`, of whatever media type.
+/// Reads the caps field `sensor-model` of `structure`, of any media type.
 GST_LIDAR_API std::optional<SensorModel> SensorModelFromStructure(const GstStructure* structure);
 
 }  // namespace lidar::gst

@@ -10,7 +10,7 @@ void RegisterMeta(const char* name) {
     gst_meta_register_custom(name, no_tags, nullptr, nullptr, nullptr);
 }
 
-/// The structure of `buffer`'s meta of that name, which is added where it is missing.
+/// The structure of `buffer`'s meta of that name; adds the meta if it is missing.
 GstStructure* WritableMeta(GstBuffer* buffer, const char* name) {
   GstCustomMeta* meta = gst_buffer_get_custom_meta(buffer, name);
   if (meta == nullptr) meta = gst_buffer_add_custom_meta(buffer, name);
@@ -148,7 +148,7 @@ gboolean gst_lidar_event_parse_target_bitrate(GstEvent* event, GstLidarTargetBit
 
 namespace {
 
-/// A list of pairs of numbers, one after the other.
+/// Writes pairs of numbers as a flat list.
 void SetPairs(GstStructure* s, const char* name, guint count, guint (*number)(gconstpointer, guint),
               gconstpointer data) {
   GValue list = G_VALUE_INIT;
@@ -162,7 +162,7 @@ void SetPairs(GstStructure* s, const char* name, guint count, guint (*number)(gc
   gst_structure_take_value(s, name, &list);
 }
 
-/// False where there is no such list, or another. Takes no more than GST_LIDAR_MAX_RECEIVED.
+/// Reads such a list, GST_LIDAR_MAX_RECEIVED pairs at most. Returns false if it is malformed.
 gboolean GetPairs(const GstStructure* s, const char* name, guint* count,
                   void (*take)(gpointer, guint, guint, guint), gpointer data) {
   const GValue* list = gst_structure_get_value(s, name);

@@ -9,7 +9,7 @@
 
 namespace {
 
-/// Calls `use` with a value of the C++ type that `type` stands for.
+/// Calls `use` with a value of the C++ type of `type`.
 template <class Use>
 auto WithType(GstLidarFieldType type, Use use) {
   switch (type) {

@@ -31,10 +31,10 @@ struct Settings {
 struct Counters {
   guint64 slices = 0;
   guint64 slices_dropped = 0;
-  guint64 slices_unreferenced = 0;  // of those
-  guint64 slices_over_load = 0;     // of those
+  guint64 slices_unreferenced = 0;  // of the dropped ones
+  guint64 slices_over_load = 0;     // of the dropped ones
   guint64 slices_thinned = 0;
-  guint64 points = 0;  // missing returns included
+  guint64 points = 0;  // includes missing returns
   guint64 bytes = 0;
   GstClockTime decode_time = 0;
   GstClockTime last_decode_time = 0;
@@ -43,7 +43,7 @@ struct Counters {
 };
 
 using LastSlice = GstLidarDecodedSlice;
-/// How old the slice decoded last is now; both clocks must tell UTC.
+/// Age of the slice decoded last; both clocks must be UTC.
 guint64 AgeOf(const Counters& c) {
   if (!GST_CLOCK_TIME_IS_VALID(c.last_capture_time)) return GST_CLOCK_TIME_NONE;
   const auto now = static_cast<GstClockTime>(g_get_real_time()) * GST_USECOND;
@@ -70,15 +70,15 @@ const std::array<Stat<Counters>, 14> kStats = {{
 
 /// Belongs to the streaming thread.
 struct Stream {
-  std::optional<CloudInfo> cloud;  // of what is given out; its size is that of the last caps
+  std::optional<CloudInfo> cloud;  // of the output; its size is that of the last caps
   guint max_points = 0;
-  bool has_size = false;  // caps for `cloud` have been pushed
+  bool has_size = false;  // the caps of `cloud` have been pushed
   HeldEvents held;
   RefusedCaps refused;
   MessageTimer stats_timer;
   lidar::LoadBudget load;
   bool warned_of_load = false;
-  gint64 asked_at_us = 0;  // for a slice that stands alone
+  gint64 asked_at_us = 0;  // last request for a slice that stands alone
   guint asked = 0;
 };
 
@@ -126,7 +126,7 @@ static const std::array<Property<Settings>, 5> kProperties = {{
      &Settings::stats_interval, 0, 0, GST_PARAM_MUTABLE_PLAYING},
 }};
 
-/// Asks the subclass whether it can decode `cloud`, and takes out of it what will not come.
+/// Asks the subclass whether it can decode `cloud`, and removes the fields that it does not give.
 static bool AskSubclass(GstLidarDecoder* self, GstCaps* caps, CloudInfo* cloud,
                         GstLidarDecodedFormat* decoded) {
   const std::string fields = cloud->fields.ToString();
@@ -165,7 +165,7 @@ static gboolean SetCaps(GstLidarDecoder* self, GstCaps* caps) {
   return FALSE;
 }
 
-/// Only the data tell the size of the cloud.
+/// Pushes caps when the data of a slice give the cloud's size.
 static bool PushCaps(GstLidarDecoder* self, const GstLidarDecodedSlice& slice) {
   Stream& stream = self->state->stream;
   CloudInfo& cloud = *stream.cloud;
@@ -214,7 +214,7 @@ static void Count(State* state, const GstLidarDecodedSlice& slice, const BufferM
   if (slice.keep_fraction < 1) ++c.slices_thinned;
 }
 
-/// The decoded slice, or null where the stream is bad.
+/// The decoded slice, or null if its bytes are bad.
 static BufferPtr DecodeBuffer(GstLidarDecoder* self, GstBuffer* input,
                               GstLidarDecodedSlice* slice) {
   Stream& stream = self->state->stream;
@@ -237,7 +237,7 @@ static BufferPtr DecodeBuffer(GstLidarDecoder* self, GstBuffer* input,
   return output;
 }
 
-/// Asks for a slice that stands alone, unless one may still be on its way.
+/// Asks for a slice that stands alone, unless the last request may still be answered.
 static void AskForKeyUnit(GstLidarDecoder* self) {
   constexpr gint64 kInterval = G_USEC_PER_SEC / 2;
   Stream& stream = self->state->stream;
@@ -269,8 +269,8 @@ static lidar::Duration ThreadTime() {
   return std::chrono::seconds(t.tv_sec) + std::chrono::nanoseconds(t.tv_nsec);
 }
 
-/// False, and counted, where the slices before cost more than max-decode-load. Whoever writes
-/// slices can make each byte of them cost microseconds.
+/// Returns false, and counts the slice, if earlier ones cost more than max-decode-load: a hostile
+/// sender can make each byte cost microseconds.
 static bool MayDecode(GstLidarDecoder* self, gdouble max_load) {
   State& state = *self->state;
   const lidar::Time now{std::chrono::microseconds(g_get_monotonic_time())};
@@ -316,16 +316,12 @@ static GstStateChangeReturn ChangeState(GstElement* element, GstStateChange tran
   }
   const auto result =
       GST_ELEMENT_CLASS(gst_lidar_decoder_parent_class)->change_state(element, transition);
-  if (transition == GST_STATE_CHANGE_PAUSED_TO_READY) {
-    state.stream = {};
-    state.pads.set_discont(false);
-    auto* klass = GST_LIDAR_DECODER_GET_CLASS(self);
-    if (klass->reset != nullptr) klass->reset(self);
-  }
+  if (transition == GST_STATE_CHANGE_PAUSED_TO_READY)
+    EndStream(self, GST_LIDAR_DECODER_GET_CLASS(self));
   return result;
 }
 
-/// The pad templates are the subclass's, so the pads come when it is known.
+/// Makes the pads from the templates of the subclass, which are not known before.
 static void Constructed(GObject* object) {
   G_OBJECT_CLASS(gst_lidar_decoder_parent_class)->constructed(object);
   GST_LIDAR_DECODER(object)->state->pads.Create(object, Chain, SinkEvent);

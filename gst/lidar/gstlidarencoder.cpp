@@ -44,7 +44,7 @@ struct _GstLidarEncoderState {
 
   std::mutex mutex;  // guards settings to stats; never held while pushing, posting or notifying
   EncoderSettings settings;
-  std::optional<guint> event_bps;  // from the event target-bitrate
+  std::optional<guint> event_bps;  // of the last target-bitrate event
   guint min_bitrate_bps = 0;
   EncoderStats stats;
 
@@ -56,7 +56,7 @@ G_DEFINE_ABSTRACT_TYPE(GstLidarEncoder, gst_lidar_encoder, GST_TYPE_ELEMENT)
 
 using State = GstLidarEncoderState;
 
-/// The bitrate to keep to; 0: none.
+/// The bitrate to keep; 0: no limit.
 static guint EffectiveBitrate(const State& state) {
   return state.event_bps.value_or(state.settings.bitrate_bps);
 }
@@ -108,7 +108,7 @@ static const std::array<Property<Settings>, 12> kProperties = {{
      &Settings::stats_interval, 0, 0, GST_PARAM_MUTABLE_PLAYING},
 }};
 
-/// Asks the subclass; the caps of its slices, or null after an error message.
+/// The caps of the subclass's slices, or null after an error message.
 static CapsPtr AskForCaps(GstLidarEncoder* self, GstCaps* caps, Stream* stream) {
   const Settings settings = Snapshot(*self->state);
   std::string why;
@@ -195,7 +195,7 @@ static gboolean SrcEvent(GstPad* pad, GstObject* parent, GstEvent* event) {
   return TRUE;
 }
 
-/// Sends the bounds where they have moved.
+/// Sends the bounds if they moved.
 static void PushBounds(GstLidarEncoder* self) {
   const auto bounds = self->state->stream.loop->controller().TakeChangedBounds();
   if (!bounds) return;
@@ -212,10 +212,10 @@ static void PushBounds(GstLidarEncoder* self) {
   gst_pad_push_event(self->state->pads.src(), gst_lidar_event_new_bitrate_bounds(&event));
 }
 
-/// Tells the subclass what receivers have said since the last slice.
+/// Passes receipts since the last slice to the subclass.
 static void TellOfReceivers(GstLidarEncoder* self) {
   auto* klass = GST_LIDAR_ENCODER_GET_CLASS(self);
-  if (klass->request_key == nullptr) return;  // nothing it sends depends on them
+  if (klass->request_key == nullptr) return;  // its slices refer to no others
   const auto news = self->state->receivers.Take(self->state->pads.src());
   if (klass->acknowledge != nullptr)
     for (const auto& slice : news.received)
@@ -250,8 +250,8 @@ static GstFlowReturn PushSlice(GstLidarEncoder* self, GstBuffer* input,
                                const GstLidarSlice& place) {
   const lidar::ByteView bytes = self->state->stream.coder->bytes();
   BufferPtr output(gst_buffer_new_memdup(bytes.data, bytes.size));
-  // The output says its place even where the input does not. A receiver that counts only what
-  // arrives would miss what was left out, and acknowledge another scan.
+  // The output has its place in the scan even if the input has none: a receiver could not count
+  // what was left out, and would acknowledge another scan.
   GstLidarSlice known{};
   if (!gst_lidar_buffer_get_slice(input, &known)) gst_lidar_buffer_set_slice(output.get(), &place);
   PushBounds(self);
@@ -305,16 +305,12 @@ static GstStateChangeReturn ChangeState(GstElement* element, GstStateChange tran
   }
   const auto result =
       GST_ELEMENT_CLASS(gst_lidar_encoder_parent_class)->change_state(element, transition);
-  if (transition == GST_STATE_CHANGE_PAUSED_TO_READY) {
-    state.stream = {};
-    state.pads.set_discont(false);
-    auto* klass = GST_LIDAR_ENCODER_GET_CLASS(self);
-    if (klass->reset != nullptr) klass->reset(self);
-  }
+  if (transition == GST_STATE_CHANGE_PAUSED_TO_READY)
+    EndStream(self, GST_LIDAR_ENCODER_GET_CLASS(self));
   return result;
 }
 
-/// The pad templates are the subclass's, so the pads come when it is known.
+/// Makes the pads from the templates of the subclass, which are not known before.
 static void Constructed(GObject* object) {
   G_OBJECT_CLASS(gst_lidar_encoder_parent_class)->constructed(object);
   State& state = *GST_LIDAR_ENCODER(object)->state;

@@ -50,7 +50,7 @@ void CloudInput::CheckRanges(GstLidarEncoder* encoder, ByteView raw, guint first
   warned_of_ranges_ = true;
   GST_ELEMENT_WARNING(encoder, STREAM, ENCODE,
                       ("The points of this cloud are not where its ranges and its sensor-model put "
-                       "them, and ranges are what is sent. Use dracoenc geometry=xyz."),
+                       "them, and ranges are what is sent. Set geometry=xyz."),
                       ("the point of beam %u, column %u is %f m away", found->beam, found->column,
                        found->distance_m));
 }

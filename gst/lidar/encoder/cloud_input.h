@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The clouds that come to an encoder: their place in the stream, and what is wrong with them.
+// Checks the clouds that come to an encoder, and finds their place in the stream.
 #pragma once
 #include <optional>
 
@@ -11,10 +11,10 @@
 
 namespace lidar::gst {
 
-/// For the streaming thread. What it finds wrong, it posts as a message of the encoder.
+/// Belongs to the streaming thread. Posts faults of clouds as messages of the encoder.
 class CloudInput {
  public:
-  /// `codes_ranges`: points come back from ranges, so positions that contradict them are told of.
+  /// `codes_ranges`: warns of positions that contradict the ranges, which are coded.
   void SetFormat(const CloudInfo& info, bool codes_ranges);
   const CloudInfo& info() const { return info_; }
 
@@ -23,12 +23,12 @@ class CloudInput {
     rate::SlicePlace in_stream;
     bool starts_scan = false;
   };
-  /// The next buffer. One without a meta is a scan of one slice.
+  /// The place of the next buffer. A buffer without a meta is a scan of one slice.
   Place PlaceOf(GstBuffer* buffer);
   /// The next slice after a flush starts a scan.
   void ForgetScan() { scan_id_.reset(); }
 
-  /// Returns nothing after an error message: the buffer does not hold the cloud of its caps.
+  /// Returns nothing after an error message if the buffer does not hold the cloud of its caps.
   std::optional<GstLidarRawSlice> Read(GstLidarEncoder* encoder, const BufferMap& map,
                                        const GstLidarSlice& slice);
   /// Warns, once, that a cloud whose box is so long [m] was left out.
@@ -39,7 +39,7 @@ class CloudInput {
 
   CloudInfo info_;
   std::optional<RangeCheck> range_check_;
-  std::optional<guint> scan_id_;  // of the last slice
+  std::optional<guint> scan_id_;  // scan of the last slice
   guint scans_without_meta_ = 0;
   bool warned_of_reach_ = false;
   bool warned_of_ranges_ = false;

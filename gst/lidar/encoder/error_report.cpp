@@ -46,7 +46,7 @@ void ErrorReport::Warn(const CheckedSlice& slice, const std::optional<PointError
   GST_ELEMENT_WARNING(
       encoder_, STREAM, ENCODE,
       ("Points came back farther from where they were than max-error. If the cloud was moved after "
-       "the sensor, encode coordinates (dracoenc geometry=xyz); else report it."),
+       "the sensor, set geometry=xyz; else report it."),
       ("slice %u of scan %u: %f m where %f m are allowed; %" G_GUINT64_FORMAT " points missing",
        slice.slice_index, slice.scan_id, errors->max_m, slice.max_error_m, errors->missing));
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Messages of an encoder about the point errors that it measured.
+// Measures the point errors of an encoder, and posts them.
 #pragma once
 #include <memory>
 #include <optional>
@@ -14,13 +14,13 @@ namespace lidar::gst {
 struct CheckedSlice {
   guint scan_id = 0;
   guint slice_index = 0;
-  double max_error_m = 0;  // what was asked for
-  double bound_m = 0;      // what the step of the grid promises
-  bool thinned = false;    // points were left out on purpose
+  double max_error_m = 0;  // the user's bound
+  double bound_m = 0;      // the bound by the grid's step
+  bool thinned = false;    // the encoder left out beams
 };
 
-/// Decodes every n-th slice again, and posts its real errors as lidar-error-check. A warning
-/// tells of the first of several that break max_error_m. For the streaming thread.
+/// Decodes every n-th slice again, and posts its real errors as lidar-error-check. The first of
+/// several that break max_error_m gives a warning. Belongs to the streaming thread.
 class ErrorReport {
  public:
   struct Outcome {
@@ -29,7 +29,7 @@ class ErrorReport {
   };
 
   ErrorReport(GstLidarEncoder* encoder, const PointFields& fields, guint point_step);
-  /// `raw` became `coded`. None where this slice is not one of every `every` (0: of none).
+  /// Compares `raw` with `coded` in every `every`-th slice (0: never); returns nothing in others.
   std::optional<Outcome> OnSlice(guint every, ByteView raw, ByteView coded,
                                  const CheckedSlice& slice);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// What receivers say of the slices of an encoder, until its streaming thread takes it over.
+// Keeps what receivers report of an encoder's slices until its streaming thread takes it.
 #pragma once
 #include <gst/gst.h>
 
@@ -10,11 +10,11 @@
 
 namespace lidar::gst {
 
-/// True where what leaves by `src` reaches one place at most: no element behind it has two outputs
-/// for it. What a second place lacks, nobody would tell.
+/// True if data of `src` reach one place at most: no element downstream has two outputs for them. A
+/// second place would not report what it lacks.
 bool HasOneWay(GstPad* src);
 
-/// Events come in any thread; Take() is for the streaming thread.
+/// Events come in any thread; the streaming thread calls Take().
 class ReceiverEvents {
  public:
   struct Slice {
@@ -26,10 +26,10 @@ class ReceiverEvents {
     std::vector<Slice> received;
     bool key_requested = false;
   };
-  /// False for other events; `event` stays the caller's.
+  /// Returns false for other events; the caller keeps `event`.
   bool OnEvent(GstEvent* event);
   void Forget();
-  /// All since the last time; nothing is received where there are several ways behind `src`.
+  /// All reports since the last call; empty if `src` leads to several places.
   News Take(GstPad* src);
 
  private:
@@ -38,7 +38,7 @@ class ReceiverEvents {
   std::mutex mutex_;  // guards news_
   News news_;
   // The rest belongs to the streaming thread.
-  gint64 looked_at_us_ = 0;  // the way behind
+  gint64 looked_at_us_ = 0;  // last look at the elements downstream
   bool one_way_ = false;
 };
 

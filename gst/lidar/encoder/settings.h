@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// What a user sets of any encoder.
+// The properties of every encoder.
 #pragma once
 #include <gst/gst.h>
 
@@ -28,8 +28,8 @@ struct EncoderSettings {
 GType RateModelType();
 GType DegradationPreferenceType();
 
-/// The rate model that they ask for. Null, and an error posted by `element`, where its file cannot
-/// be read or used.
+/// The rate model of the settings. Returns null after an error of `element` if its file cannot be
+/// read or used.
 std::unique_ptr<rate::SizeModel> LoadModel(GstElement* element, const EncoderSettings& settings);
 
 }  // namespace lidar::gst

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// What an encoder counts.
+// Counters of an encoder.
 #pragma once
 #include <gst/gst.h>
 
@@ -13,7 +13,7 @@ class EncoderStats {
  public:
   void OnScan(double scans_per_second);
   void OnSlice(const rate::LoopResult& result, GstClockTime encode_time);
-  /// `holds`: the errors are within max-error.
+  /// `holds`: all errors are within max-error.
   void OnErrorCheck(const PointErrors& errors, bool holds);
   StructurePtr ToStructure(guint target_bps) const;
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The methods of an encoder's class as the rate loop sees a coder.
+// Adapts the methods of an encoder's class to the rate loop's coder.
 #pragma once
 #include <memory>
 #include <vector>
@@ -10,14 +10,14 @@
 
 namespace lidar::gst {
 
-/// For the streaming thread of `encoder`, which owns it.
+/// `encoder` owns it; its streaming thread uses it.
 class VtableCoder final : public rate::SliceCoder {
  public:
   explicit VtableCoder(GstLidarEncoder* encoder);
 
   void Load(const GstLidarRawSlice& raw);
   void set_threads(guint threads) { threads_ = threads; }
-  /// What the last Encode() made.
+  /// The bytes of the last Encode().
   ByteView bytes() const { return {bytes_->data, bytes_->len}; }
 
   rate::LoadedSlice loaded() const override { return loaded_; }
