@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Our own subjects, on which answers to messages come back, and what answers of JetStream say.
+// Subjects that answers to our messages come back on, and the meaning of JetStream's answers.
 #pragma once
 #include <cstdint>
 #include <optional>
@@ -14,13 +14,13 @@ namespace lidar::nats {
 /// Each message names one of them, which ends with a word of the sender's.
 class AnswerSubjects {
  public:
-  /// None where memory is short.
+  /// Returns nothing if memory is short.
   static std::optional<AnswerSubjects> Make();
 
   std::string Of(const std::string& word) const { return prefix_ + word; }
   std::string Of(std::uint64_t number) const { return Of(std::to_string(number)); }
   std::string All() const { return prefix_ + "*"; }
-  /// What an answer is to; empty where it is none.
+  /// The word of the message that is answered; empty if `subject` is no answer's.
   std::string_view WordOf(natsMsg* answer) const;
 
  private:
@@ -31,7 +31,7 @@ class AnswerSubjects {
 /// All of `text` as a number.
 std::optional<std::uint64_t> ToNumber(std::string_view text);
 
-/// Why JetStream did not store a message; empty: it did.
+/// The reason why JetStream did not store a message; empty if it did.
 std::string ErrorOfAck(natsMsg* answer);
 
 }  // namespace lidar::nats

@@ -14,7 +14,7 @@ namespace lidar::nats {
 namespace {
 
 constexpr std::int64_t kReconnectWaitMs = 250;
-constexpr std::int64_t kReconnectJitterMs = 250;  // a fleet does not come back in one instant
+constexpr std::int64_t kReconnectJitterMs = 250;  // spreads the reconnects of a fleet
 constexpr std::int64_t kPingIntervalMs = 2'000;
 constexpr int kMaxPingsOut = 2;
 constexpr std::chrono::seconds kCloseTimeout{5};
@@ -27,7 +27,7 @@ std::vector<std::string> SplitUrls(const std::string& list) {
   return urls;
 }
 
-/// What is wrong with the files that the settings name; empty: nothing.
+/// The fault of the files that the settings name; empty if there is none.
 std::string CheckFiles(const ConnectionSettings& s) {
   for (const std::string* path :
        {&s.credentials_file, &s.tls_ca_file, &s.tls_cert_file, &s.tls_key_file})
@@ -65,9 +65,9 @@ natsStatus SetPace(natsOptions* o) {
   if (s == NATS_OK) s = natsOptions_SetPingInterval(o, kPingIntervalMs);
   if (s == NATS_OK) s = natsOptions_SetMaxPingsOut(o, kMaxPingsOut);
   if (s == NATS_OK) s = natsOptions_SetWriteDeadline(o, Connection::kWriteTimeoutMs);
-  // Its flusher would wait a millisecond for more to send.
+  // The flusher of libnats would wait a millisecond for more to send.
   if (s == NATS_OK) s = natsOptions_SetSendAsap(o, true);
-  // What it held back would be stored before what was lost with the connection.
+  // Messages that libnats held back would be stored before those lost with the connection.
   if (s == NATS_OK) s = natsOptions_SetReconnectBufSize(o, 0);
   return s;
 }
@@ -78,7 +78,7 @@ struct Connection::Shared {
   std::mutex mutex;  // guards all but `changed`; never held while that runs
   std::condition_variable ended;
   ConnectionState state;
-  bool over = false;  // no callback comes any more
+  bool over = false;  // the last callback came
   Changed changed;
 
   template <class Change>
@@ -112,7 +112,7 @@ struct Callbacks {
     Of(closure).Update([](ConnectionState* s) { ++s->disconnections; });
   }
   static void OnError(natsConnection* nc, natsSubscription*, natsStatus error, void* closure) {
-    // Consumers count what they were too slow for themselves.
+    // Slow consumers count their own losses.
     if (error == NATS_SLOW_CONSUMER || error == NATS_MISMATCH) return;
     if (error == NATS_MISSED_HEARTBEAT)
       return Of(closure).Update([](ConnectionState* s) { ++s->missed_heartbeats; });

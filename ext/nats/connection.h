@@ -14,8 +14,8 @@
 namespace lidar::nats {
 
 struct ConnectionSettings {
-  std::string url = "nats://localhost:4222";  // more than one: with commas between them
-  std::string name;                           // as the server's monitoring shows it
+  std::string url = "nats://localhost:4222";  // several have commas between them
+  std::string name;                           // shown by the server's monitoring
   std::string credentials_file;
   std::string token;
   std::string tls_ca_file;
@@ -26,11 +26,11 @@ struct ConnectionSettings {
 struct ConnectionState {
   bool connected() const { return connections > disconnections && !closed; }
 
-  bool closed = false;       // for good: the server refuses us
-  unsigned connections = 0;  // made so far
+  bool closed = false;       // for good, as the server refuses us
+  unsigned connections = 0;  // how many were made so far
   unsigned disconnections = 0;
-  std::uint64_t errors = 0;  // that the server told us of
-  std::string last_error;    // empty: none yet
+  std::uint64_t errors = 0;  // reports of the server
+  std::string last_error;    // the latest report, or empty
   // How often JetStream's consumers fell silent: the server may have lost them.
   unsigned missed_heartbeats = 0;
 };
@@ -38,12 +38,12 @@ struct ConnectionState {
 class Connection {
  public:
   /// `changed` runs in threads of libnats, at each change of the state until the destructor
-  /// returns. Null, and `why`, where the settings are wrong. A server that is away is none: it is
-  /// tried until it is there.
+  /// returns. Returns null, and `why`, if the settings are wrong. A server that is away is no
+  /// error: the connection tries it until it is there.
   using Changed = std::function<void(const ConnectionState&)>;
   static std::unique_ptr<Connection> Open(const ConnectionSettings& settings, Changed changed,
                                           std::string* why);
-  /// Waits for a connect or a write that is under way: kConnectTimeoutMs, kWriteTimeoutMs.
+  /// Waits for a connect (kConnectTimeoutMs) or a write (kWriteTimeoutMs) that is under way.
   ~Connection();
   Connection(const Connection&) = delete;
   Connection& operator=(const Connection&) = delete;
@@ -51,7 +51,8 @@ class Connection {
   natsConnection* get() const { return nc_; }
   /// Never waits for the network.
   ConnectionState state() const;
-  /// How often it was made anew: known before anything can be sent on the new one. For one thread.
+  /// Counts how often the connection was made anew, before anything can be sent on the new one. One
+  /// thread calls it.
   std::uint64_t reconnects() const;
 
   static constexpr std::int64_t kConnectTimeoutMs = 1'000;
@@ -63,17 +64,17 @@ class Connection {
   explicit Connection(SharedPtr shared) : shared_(std::move(shared)) {}
   natsStatus Connect(natsOptions* options);
 
-  const SharedPtr shared_;    // with the callbacks, which may outlive this by a moment
-  StatisticsPtr statistics_;  // of reconnects(), which is asked for each message
+  const SharedPtr shared_;    // shared with callbacks, which may outlive this object
+  StatisticsPtr statistics_;  // kept, as reconnects() reads it for each message
   natsConnection* nc_ = nullptr;
 };
 
-/// A server that is away for as long is told of.
+/// A server that is away for as long gives a warning.
 constexpr std::chrono::seconds kAbsence{2};
-/// URLs for a user to read: without what is secret in them.
+/// The URLs without their secrets, for messages to users.
 std::string WithoutUser(const std::string& urls);
 
-/// The words of libnats for `status`, with what it knows beside.
+/// The text of libnats for `status`, and its last error.
 std::string ErrorText(natsStatus status);
 
 }  // namespace lidar::nats

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The formats that a receiver was told of, the newest few.
+// The newest formats that senders published.
 #pragma once
 #include <cstdint>
 #include <deque>
@@ -12,9 +12,9 @@ namespace lidar::nats {
 
 class FormatBook {
  public:
-  /// `subject` ends with the id. What is damaged is counted.
+  /// Takes a format; `subject` ends with its id. Damaged ones are counted.
   void Note(std::string_view subject, std::string_view text);
-  /// Null where it is not known.
+  /// Returns null if the format is not known.
   StreamFormat::Ptr Find(const std::string& id) const;
   std::uint64_t damaged() const { return damaged_; }
 

@@ -62,8 +62,8 @@ const std::array<Stat<PublisherCounters>, 12> kStats = {{
 struct State {
   std::mutex mutex;  // guards all to the next comment; never held while waiting or posting
   NatsSinkSettings settings;
-  std::shared_ptr<Publisher> publisher;  // between start and stop
-  PublisherCounters last;                // of the publisher that was
+  std::shared_ptr<Publisher> publisher;  // exists from start to stop
+  PublisherCounters last;                // of the publisher before
   guint64 refused = 0;
 
   // Only start, stop and the streaming thread use what follows.
@@ -147,14 +147,14 @@ static lidar::nats::PublisherSettings ToPublisher(const NatsSinkSettings& settin
   return p;
 }
 
-/// False after an error message.
+/// Returns false after an error message.
 static bool CheckReplicas(GstLidarNatsSink* self, const NatsSinkSettings& settings) {
   if (settings.replicas == 1 || !settings.nats.stream.empty()) return true;
   GST_ELEMENT_ERROR(self, RESOURCE, SETTINGS, ("replicas needs jetstream."), (nullptr));
   return false;
 }
 
-/// False after an error message.
+/// Returns false after an error message.
 static bool CheckStreamSubjects(GstLidarNatsSink* self, const NatsSinkSettings& settings) {
   const std::string& pattern = settings.stream_subjects;
   const std::string& subject = settings.nats.subject;
@@ -246,8 +246,8 @@ static GstFlowReturn Render(GstBaseSink* base, GstBuffer* buffer) {
   return GST_FLOW_OK;
 }
 
-/// What the server does not have at the end is lost with the stop. Where it has nothing at all, the
-/// stream was for nobody, which must not look like success.
+/// Warns of messages that the server does not have at the end. If it has none, that is an error:
+/// the whole stream was lost.
 static void TellOfUnsent(GstBaseSink* base, const Publisher& publisher, bool keeps_trying) {
   const PublisherCounters counters = publisher.counters();
   const auto lost = guint64{counters.waiting + counters.dropped};

@@ -36,8 +36,8 @@ using lidar::nats::StreamFormat;
 using lidar::nats::Subscriber;
 using std::chrono::milliseconds;
 
-constexpr milliseconds kPoll{100};          // how late a change of state may be seen
-constexpr milliseconds kFormatWait{1'000};  // for caps that nobody told us yet
+constexpr milliseconds kPoll{100};          // longest delay of a change of state
+constexpr milliseconds kFormatWait{1'000};  // longest wait for unknown caps
 constexpr gint64 kFormatPauseUs = 5'000'000;
 
 struct NatsSrcSettings {
@@ -71,15 +71,15 @@ struct State {
   std::atomic<bool> flushing{false};
 
   // Only start, stop and the streaming thread use what follows.
-  NatsSrcSettings now;  // as it was at start
+  NatsSrcSettings now;  // the settings of this run
   std::unique_ptr<Subscriber> subscriber;
   std::shared_ptr<ConnectionWatch> watch;
   StreamFormat::Ptr format;
-  std::string trouble;           // that was told
+  std::string trouble;           // the one that was reported
   Delivery delivery;             // of the buffer that was pushed last
-  std::optional<guint64> first;  // when JetStream stored the first message
-  gint64 no_wait_until_us = 0;   // unknown caps are not waited for
-  gint64 here_at_us = 0;         // when there was a server last, or it began
+  std::optional<guint64> first;  // time at which JetStream stored the first message
+  gint64 no_wait_until_us = 0;   // until then no message waits for its caps
+  gint64 here_at_us = 0;         // last time of a server, at first the start
   bool warned_damaged = false;
   bool warned_of_caps = false;
   bool warned_absent = false;
@@ -134,7 +134,7 @@ static const std::array<Property<NatsSrcSettings>, 15> kProperties = {{
      Stats},
 }};
 
-/// What JetStream kept comes as fast as it is wanted, with times of its own.
+/// Kept messages come as fast as downstream takes them, so the source is not live.
 static void FollowSettings(GObject* object, GParamSpec*) {
   State& state = StateOf(object);
   std::unique_lock lock(state.mutex);
@@ -157,7 +157,7 @@ static lidar::nats::SubscriberSettings ToSubscriber(const NatsSrcSettings& setti
   return s;
 }
 
-/// False after an error message.
+/// Returns false after an error message.
 static bool CheckSettings(GstLidarNatsSrc* self, NatsSrcSettings* settings) {
   if (!CheckNatsSettings(GST_ELEMENT(self), &settings->nats)) return false;
   const NatsSettings& nats = settings->nats;
@@ -214,7 +214,7 @@ static gboolean Stop(GstBaseSrc* base) {
   return TRUE;
 }
 
-/// One warning, until a message is good again: a publisher that is broken sends many.
+/// Warns once until a message is good again, as a broken publisher sends many.
 static void NoteDamaged(GstLidarNatsSrc* self) {
   State& state = StateOf(self);
   state.account.Count(&SourceCounters::damaged);
@@ -225,14 +225,14 @@ static void NoteDamaged(GstLidarNatsSrc* self) {
                         (nullptr));
 }
 
-/// Null after the message was dropped and counted.
+/// Returns null after it dropped and counted the message.
 static StreamFormat::Ptr FormatOf(GstLidarNatsSrc* self, const std::string& id) {
   State& state = StateOf(self);
   if (state.format && state.format->id() == id) return state.format;
   const bool wait = g_get_monotonic_time() >= state.no_wait_until_us;
   StreamFormat::Ptr format = state.subscriber->Format(id, wait ? kFormatWait : milliseconds{});
   if (format) return format;
-  // Not for each of many: others may be good.
+  // Other messages may be good, so they do not each wait.
   if (wait) state.no_wait_until_us = g_get_monotonic_time() + kFormatPauseUs;
   state.account.Count(&SourceCounters::without_caps);
   return nullptr;
@@ -245,8 +245,8 @@ static void SetStored(State& state, const Delivery& delivery, GstBuffer* buffer)
   GST_BUFFER_PTS(buffer) = *delivery.stored - std::min(*state.first, *delivery.stored);
 }
 
-/// False where the next element does not take the caps: the message is dropped and counted, with a
-/// warning the first time. That is no error: anyone may publish what another coder made.
+/// Returns false after it dropped and counted a message whose caps the next element does not take,
+/// with a warning the first time. That is no error: anyone may publish another coder's stream.
 static bool SetFormat(GstLidarNatsSrc* self, const StreamFormat::Ptr& format) {
   State& state = StateOf(self);
   GstPad* pad = GST_BASE_SRC_PAD(self);
@@ -266,7 +266,7 @@ static bool SetFormat(GstLidarNatsSrc* self, const StreamFormat::Ptr& format) {
   return false;
 }
 
-/// OK where there is a buffer, CUSTOM_SUCCESS where the message has none.
+/// Returns CUSTOM_SUCCESS if the message gives no buffer.
 static GstFlowReturn Take(GstLidarNatsSrc* self, const Delivery& delivery, GstBuffer** out) {
   State& state = StateOf(self);
   std::optional<ReadMessage> read = lidar::nats::Read(delivery.message.get());
@@ -312,7 +312,7 @@ static GstFlowReturn Handle(GstLidarNatsSrc* self, Subscriber::Event event, Deli
   const bool eos_at_end = state.now.eos_at_end;
   switch (event) {
     case Subscriber::Event::kClosed:
-      // The watch may be about to say so, but the base class would be faster.
+      // The base class would post a less clear error than the watch, which may come later.
       state.watch->PostRefused(state.subscriber->connection());
       return GST_FLOW_ERROR;
     case Subscriber::Event::kEmpty:
@@ -334,7 +334,7 @@ static GstFlowReturn Handle(GstLidarNatsSrc* self, Subscriber::Event event, Deli
   return state.at_end ? GST_FLOW_EOS : flow;
 }
 
-/// One warning, until there is a server again.
+/// Warns once until a server is there again.
 static void NoteAbsence(State& state) {
   const lidar::nats::ConnectionState connection = state.subscriber->connection();
   const gint64 now = g_get_monotonic_time();
@@ -353,7 +353,7 @@ static void NoteAbsence(State& state) {
 static GstFlowReturn Create(GstPushSrc* push, GstBuffer** out) {
   auto* self = GST_LIDAR_NATS_SRC(push);
   State& state = StateOf(self);
-  Acknowledge(state);  // downstream has had it
+  Acknowledge(state);  // of the buffer before, which downstream returned from
   if (state.at_end) return GST_FLOW_EOS;
   while (!state.flushing) {
     Delivery delivery;

@@ -10,7 +10,7 @@ namespace lidar::nats {
 namespace {
 
 constexpr std::size_t kMaxName = 64;
-constexpr std::int64_t kDuplicatesNs = 120'000'000'000;  // as the server has it
+constexpr std::int64_t kDuplicatesNs = 120'000'000'000;  // the server's default
 
 std::vector<std::string> Words(const std::string& subject) {
   std::vector<std::string> words;
@@ -32,7 +32,7 @@ std::string Explain(natsStatus status, jsErrCode code) {
 void SetLimits(const StreamSettings& settings, jsStreamConfig* config) {
   config->MaxAge = AgeNs(settings);
   config->MaxBytes = SizeLimit(settings);
-  // A window for duplicates that is longer than what is kept would be refused.
+  // The server refuses a window for duplicates that is longer than max_age.
   config->Duplicates = config->MaxAge > 0 ? std::min(config->MaxAge, kDuplicatesNs) : kDuplicatesNs;
 }
 
@@ -52,7 +52,7 @@ natsStatus Add(jsCtx* js, const StreamSettings& settings, const std::vector<std:
   return js_AddStream(nullptr, js, &config, nullptr, code);
 }
 
-/// Other sinks keep their subjects in the same stream, so theirs stay.
+/// Adds to the subjects of the stream: other sinks keep theirs in it.
 natsStatus Update(jsCtx* js, const StreamSettings& settings,
                   const std::vector<std::string>& subjects, const jsStreamConfig& now,
                   jsErrCode* code) {
@@ -105,7 +105,7 @@ bool EnsureStream(jsCtx* js, const StreamSettings& settings,
                   const std::vector<std::string>& subjects, std::string* why) {
   jsErrCode code{};
   natsStatus status = AddOrUpdate(js, settings, subjects, &code);
-  // Another sink of the stream was faster.
+  // Another sink has made the stream meanwhile.
   if (code == JSStreamNameExistErr) status = AddOrUpdate(js, settings, subjects, &code);
   if (status != NATS_OK) *why = Explain(status, code);
   return status == NATS_OK;

@@ -26,7 +26,7 @@ constexpr guint kMaxSlices = 4'096;
 constexpr std::size_t kMaxHeader = 512;
 constexpr std::size_t kMaxSubject = 200;
 
-/// Numbers with blanks between them.
+/// Writes numbers with blanks between them.
 class NumberWriter {
  public:
   template <class T>
@@ -66,7 +66,7 @@ class NumberReader {
   bool first_ = true;
 };
 
-/// Collects the first failure.
+/// Remembers the first failure of several calls.
 class HeaderWriter {
  public:
   explicit HeaderWriter(natsMsg* message) : message_(message) {}
@@ -104,7 +104,7 @@ void WriteMetas(GstBuffer* buffer, HeaderWriter* headers) {
   if (GST_BUFFER_FLAG_IS_SET(buffer, GST_BUFFER_FLAG_DISCONT)) headers->Set(kDiscont, "1");
 }
 
-/// None where the header is missing; empty where it is too long to be ours.
+/// Returns nothing if the header is missing, and empty text if it is too long.
 std::optional<std::string_view> Header(natsMsg* message, const char* name) {
   const char* value = nullptr;
   if (natsMsgHeader_Get(message, name, &value) != NATS_OK || value == nullptr) return std::nullopt;
@@ -112,7 +112,7 @@ std::optional<std::string_view> Header(natsMsg* message, const char* name) {
   return text.size() <= kMaxHeader ? text : std::string_view();
 }
 
-/// False where the header is there and is no time.
+/// Returns false if the header exists and is no time.
 bool ReadTime(natsMsg* message, const char* name, GstClockTime* time) {
   const auto text = Header(message, name);
   if (!text) return true;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Buffers as messages of NATS: their bytes, and headers that say what a buffer has beside them.
+// Buffers as messages of NATS: their bytes, and their metas as headers.
 #pragma once
 #include <gst/gst.h>
 
@@ -12,9 +12,9 @@
 
 namespace lidar::nats {
 
-/// Where a message stands in what one sink sends from start to stop.
+/// The place of a message in what one sink sends from start to stop.
 struct Place {
-  std::uint64_t run = 0;  // a number of that time alone
+  std::uint64_t run = 0;  // random, differs from start to start
   std::uint64_t number = 0;
 };
 
@@ -24,19 +24,19 @@ struct ReadMessage {
   gst::BufferPtr buffer;  // without PTS
 };
 
-/// Subjects beside that of a stream.
+/// The two further subjects of a stream.
 std::string ConfigSubject(const std::string& subject, const std::string& format_id);
 std::string AskSubject(const std::string& subject);
-/// What is wrong with `subject`; empty: nothing.
+/// The fault of `subject`; empty if there is none.
 std::string CheckSubject(const std::string& subject);
 
-/// As the header Nats-Msg-Id and Lidar-Place have it.
+/// The text of the headers Nats-Msg-Id and Lidar-Place.
 std::string PlaceText(const Place& place);
 
-/// A message that goes to `subject`; `reply` may be NULL. Null where memory is short.
+/// A message to `subject`; `reply` may be NULL. Returns null if memory is short.
 MessagePtr WriteMessage(const std::string& subject, const char* reply, const std::string& format_id,
                         const Place& place, GstBuffer* buffer);
-/// None for what is damaged. Any message may come.
+/// Reads any message; returns nothing if it is damaged.
 std::optional<ReadMessage> Read(natsMsg* message);
 
 }  // namespace lidar::nats

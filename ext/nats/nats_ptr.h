@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Owners of what libnats hands out.
+// Owning pointers of libnats' types.
 #pragma once
 #include <nats/nats.h>
 

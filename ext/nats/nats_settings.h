@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// What natssink and natssrc have in common: how they reach a server, and what they tell of it.
+// Settings and messages that natssink and natssrc share.
 #pragma once
 #include <gst/gst.h>
 
@@ -22,11 +22,11 @@ struct NatsSettings {
 
 const std::array<Property<NatsSettings>, 8>& NatsRows();
 
-/// With the element's name. False after an error message that names the setting that is wrong.
+/// Fills in the element's name. Returns false after an error message that names the wrong setting.
 bool CheckNatsSettings(GstElement* element, NatsSettings* settings);
 
-/// Posts what becomes of a connection: the message nats-connection-changed, warnings where the
-/// server complains, and an error where it refuses us.
+/// Posts the state of a connection: nats-connection-changed, warnings if the server complains, an
+/// error if it refuses us.
 class ConnectionWatch {
  public:
   /// `keeps_trying`: a server that refuses us is a warning.
@@ -36,11 +36,11 @@ class ConnectionWatch {
   void Note(const nats::ConnectionState& state);
   void Warn(const std::string& text);
   void PostRefused(const nats::ConnectionState& state);
-  /// Nothing is posted any more: the element stops by itself.
+  /// Ends all posting, as the element stops.
   void Silence();
 
  private:
-  const ElementPtr element_;  // threads of libnats may still be here when it stops
+  const ElementPtr element_;  // owned, as threads of libnats may outlive its stop
   const bool keeps_trying_;
   std::mutex mutex_;
   bool silent_ = false;

@@ -6,13 +6,13 @@
 
 namespace lidar::nats {
 
-/// With what headers and metas of a small message take.
+/// Size of a message, headers and metas included.
 std::size_t Outbox::SizeOf(const Outgoing& item) {
   constexpr std::size_t kOverhead = 512;
   return gst_buffer_get_size(item.buffer.get()) + kOverhead;
 }
 
-/// A format may be larger than all the messages that need it.
+/// Formats count, too: one may be larger than all its messages.
 void Outbox::Count(const Outgoing& item) {
   bytes_ += SizeOf(item);
   if (item.format && ++formats_[item.format] == 1) bytes_ += item.format->memory();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// What waits to be sent, and what was sent and waits for its acknowledgement, in bounded memory.
+// Messages that wait to be sent or for their acknowledgement, in bounded memory.
 #pragma once
 #include <chrono>
 #include <cstdint>
@@ -17,29 +17,29 @@ struct Outgoing {
   StreamFormat::Ptr format;
 };
 
-/// Used under the lock of its owner.
+/// The owner's lock guards it.
 class Outbox {
  public:
   using Clock = std::chrono::steady_clock;
 
   explicit Outbox(std::size_t max_bytes) : max_bytes_(max_bytes) {}
 
-  /// Drops the oldest that wait where it is full: how many.
+  /// Drops the oldest that wait if it is full; returns how many.
   std::size_t Push(Outgoing item);
 
-  /// The oldest that waits. It is in flight from now on, until Remove() or Retry().
+  /// Takes the oldest that waits: it is in flight until Remove() or Retry().
   std::optional<Outgoing> Take(Clock::time_point now);
-  /// False where `number` is not in flight.
+  /// Returns false if `number` is not in flight.
   bool Remove(std::uint64_t number);
-  /// What is in flight waits again, and goes first: how many.
+  /// Lets what is in flight wait again, before all others; returns how many.
   std::size_t Retry(std::uint64_t number);
   std::size_t RetryAll();
-  /// Forgets all: how many.
+  /// Forgets all; returns how many.
   std::size_t Clear();
 
-  /// The format of the oldest message that waits; null: none does.
+  /// The format of the oldest message that waits, or null.
   StreamFormat::Ptr NextFormat() const;
-  /// Since when the oldest is in flight.
+  /// The time since which the oldest is in flight.
   std::optional<Clock::time_point> OldestInFlight() const;
 
   std::size_t waiting() const { return waiting_.size(); }
@@ -59,8 +59,8 @@ class Outbox {
   const std::size_t max_bytes_;
   std::map<std::uint64_t, Outgoing> waiting_;
   std::map<std::uint64_t, Sent> in_flight_;
-  std::map<StreamFormat::Ptr, std::size_t> formats_;  // messages of each in both
-  std::size_t bytes_ = 0;                             // of all three
+  std::map<StreamFormat::Ptr, std::size_t> formats_;  // how many messages have each
+  std::size_t bytes_ = 0;                             // of messages and formats
 };
 
 }  // namespace lidar::nats

@@ -9,7 +9,7 @@ namespace {
 
 constexpr std::size_t kMaxRuns = 8;
 constexpr std::size_t kMaxSpans = 256;  // of a run
-/// No stream loses more at once, days of it: so large a jump is somebody's invention.
+/// Larger jumps, days of a stream, are taken for damage.
 constexpr std::uint64_t kMaxMissing = 100'000'000;
 
 }  // namespace
@@ -26,7 +26,7 @@ PlaceBook::Verdict PlaceBook::Note(const Place& place) {
   Spans& spans = SpansOf(place.run);
   const std::uint64_t n = place.number;
   Verdict verdict;
-  auto behind = spans.upper_bound(n);  // the first span that begins behind it
+  auto behind = spans.upper_bound(n);  // the first span that begins after n
   auto span = behind == spans.begin() ? spans.end() : std::prev(behind);
   verdict.again = span != spans.end() && n <= span->second;
   if (verdict.again) return verdict;
@@ -34,7 +34,7 @@ PlaceBook::Verdict PlaceBook::Note(const Place& place) {
   verdict.fills_gap = verdict.late && span != spans.end();
   if (!verdict.late && span != spans.end()) verdict.missing = n - span->second - 1;
   if (verdict.missing > kMaxMissing) verdict.missing = 0;
-  // Beside what is there, or alone.
+  // The number extends a neighbour, or is a span of its own.
   if (span != spans.end() && span->second + 1 == n)
     span->second = n;
   else

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Which messages of a stream came, so that none is taken twice.
+// Remembers which messages of a stream came, so that each is taken once.
 #pragma once
 #include <cstdint>
 #include <deque>
@@ -12,12 +12,12 @@ namespace lidar::nats {
 class PlaceBook {
  public:
   struct Verdict {
-    bool again = false;         // it came before
-    bool late = false;          // one behind it came before
-    bool fills_gap = false;     // it was counted in `missing`
+    bool again = false;         // the same message came before
+    bool late = false;          // a later message came before
+    bool fills_gap = false;     // an earlier `missing` counted it
     std::uint64_t missing = 0;  // numbers between it and the newest before it
   };
-  /// Notes it. Memory is bounded, so one that is very old may seem new.
+  /// Notes a message. Memory is bounded, so a very old one may seem new.
   Verdict Note(const Place& place);
 
  private:

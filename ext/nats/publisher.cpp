@@ -15,11 +15,11 @@ constexpr std::chrono::milliseconds kAskedInterval{
 constexpr std::chrono::milliseconds kStreamRetry{500};  // the longest
 constexpr gint kMinStreamRetryMs = 50;
 constexpr std::chrono::milliseconds kAckTimeout{5'000};
-constexpr std::chrono::milliseconds kPatrol{500};  // how late an unanswered message may be seen
-constexpr const char* kConfigReply = "config";     // where others have their number
+constexpr std::chrono::milliseconds kPatrol{500};  // between looks for unanswered messages
+constexpr const char* kConfigReply = "config";     // in place of a message's number
 constexpr std::size_t kMaxInFlight = 256;          // messages
 
-/// Sinks that change one stream at a time undo each other's work, so each waits for another time.
+/// Random, so that sinks do not change one stream at the same time.
 std::chrono::milliseconds StreamPause() {
   return std::chrono::milliseconds(
       g_random_int_range(kMinStreamRetryMs, static_cast<gint>(kStreamRetry.count())));
@@ -145,7 +145,7 @@ Publisher::Drained Publisher::Drain(Duration timeout) {
 void Publisher::Interrupt(bool on) {
   const std::lock_guard lock(mutex_);
   interrupted_ = on;
-  if (on) ++interrupts_;  // GstBaseSink may take it back before anyone sees it
+  if (on) ++interrupts_;  // counted, as GstBaseSink may reset the flag before the thread looks
   drained_.notify_all();
 }
 
@@ -237,7 +237,7 @@ void Publisher::NoteConnection(const ConnectionState& state) {
   refusals_.Reset();
 }
 
-/// What was on its way goes before what waits, so that it is stored in order.
+/// Sends what was on its way before what waits, so that all is stored in order.
 void Publisher::RetryAfterReconnect(Lock* lock) {
   lock->unlock();
   const std::uint64_t reconnects = connection_->reconnects();  // may wait for a write
@@ -273,8 +273,8 @@ void Publisher::OpenAgain(Lock* lock) {
 void Publisher::SendAllAgain() {
   counters_.resent += outbox_.RetryAll();
   stream_ready_ = false;
-  sent_format_.reset();        // the caps go again as well,
-  config_unanswered_ = false;  // so nobody answers those that went
+  sent_format_.reset();        // the caps go again as well
+  config_unanswered_ = false;  // and those before get no answer
 }
 
 void Publisher::RetryUnanswered(Clock::time_point now) {
@@ -304,7 +304,7 @@ void Publisher::PrepareStream(Lock* lock) {
   if (!ready) Tell(lock, "The stream " + settings_.stream.name + " cannot be made: " + why);
 }
 
-/// The caps of what goes next, or went last.
+/// The caps of the next message, or of the last one.
 StreamFormat::Ptr Publisher::NextFormat() const {
   const StreamFormat::Ptr waiting = outbox_.NextFormat();
   return waiting ? waiting : format_;
@@ -314,9 +314,9 @@ bool Publisher::ConfigDue(Clock::time_point now) const {
   const StreamFormat::Ptr format = NextFormat();
   if (!format) return false;
   if (format != sent_format_) return true;
-  // Many who ask must not fill what JetStream keeps.
+  // Requests must not fill what JetStream keeps.
   if (asked_ && now - config_at_ >= (keeps() ? kConfigInterval / 2 : kAskedInterval)) return true;
-  // Where little is kept, the caps must not go before the messages that need them.
+  // If JetStream keeps little, caps must not be dropped before the messages that need them.
   const std::uint64_t max_bytes = settings_.stream.max_bytes;
   const bool box_turns = keeps() && max_bytes > 0 && bytes_since_config_ > max_bytes / 4;
   return outbox_.waiting() > 0 && (box_turns || now - config_at_ >= kConfigInterval);

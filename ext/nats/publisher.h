@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Sends buffers to NATS in a thread of its own, so that nobody waits for the network.
+// Sends buffers to NATS in a thread of its own, so that no caller waits for the network.
 #pragma once
 #include <chrono>
 #include <condition_variable>
@@ -26,7 +26,7 @@ struct PublisherSettings {
   std::string subject;
   StreamSettings stream;
   std::size_t max_buffered = 8U << 20;  // bytes
-  // A server that refuses us, and settings that are wrong, are tried again: later they may be good.
+  // Refusals and wrong settings are tried again, as they may be mended later.
   bool keep_trying = false;
 };
 
@@ -45,20 +45,20 @@ struct PublisherCounters {
   bool connected = false;
 };
 
-/// All run without a lock, in threads of libnats and of the publisher.
+/// Called without a lock, by threads of libnats and of the publisher.
 struct PublisherEvents {
   Connection::Changed connection;
-  /// Something keeps messages from being sent or kept; each reason once, until it goes well again.
+  /// Messages cannot be sent or kept; called once a reason, until they can again.
   std::function<void(const std::string& why)> trouble;
 };
 
 class Publisher : public std::enable_shared_from_this<Publisher> {
  public:
-  /// Null, and `why`, where the settings are wrong. With `keep_trying` it does not wait for the
-  /// network.
+  /// Returns null, and `why`, if the settings are wrong. With `keep_trying` it does not wait for
+  /// the network.
   static std::shared_ptr<Publisher> Start(const PublisherSettings& settings, PublisherEvents events,
                                           std::string* why);
-  /// Nothing runs any more when it returns; what was not sent is counted as dropped.
+  /// Ends all threads; counts what was not sent as dropped.
   void Stop();
 
   /// Never waits.
@@ -112,13 +112,13 @@ class Publisher : public std::enable_shared_from_this<Publisher> {
   const PublisherSettings settings_;
   const PublisherEvents events_;
   const std::uint64_t run_;
-  const std::optional<AnswerSubjects> answers_;  // none: memory is short, so nothing starts
-  // The thread's, while there is one.
-  std::unique_ptr<Connection> connection_;  // null: not yet, or refused
+  const std::optional<AnswerSubjects> answers_;  // missing if memory is short; then nothing starts
+  // The publisher's thread owns these while it runs.
+  std::unique_ptr<Connection> connection_;  // null before the first, and after a refusal
   JetStreamPtr js_;
   SubscriptionPtr asks_;
   SubscriptionPtr acks_;
-  std::vector<std::unique_ptr<Target>> untold_;  // of subscriptions that nobody tells the end of
+  std::vector<std::unique_ptr<Target>> untold_;  // of subscriptions without an end callback
   std::thread thread_;
 
   mutable std::mutex mutex_;  // guards what follows; never held while sending or calling events_
@@ -128,18 +128,18 @@ class Publisher : public std::enable_shared_from_this<Publisher> {
   PublisherCounters counters_;
   std::uint64_t next_number_ = 0;
   StreamFormat::Ptr format_;       // of the newest buffer
-  StreamFormat::Ptr sent_format_;  // the last that went out
-  Clock::time_point config_at_{};  // when it did
+  StreamFormat::Ptr sent_format_;  // published last
+  Clock::time_point config_at_{};  // time of that
   std::uint64_t bytes_since_config_ = 0;
-  Clock::time_point retry_at_{};              // not before: the stream is not there
-  Clock::time_point open_at_{};               // not before: the server has refused us
-  Clock::time_point here_at_ = Clock::now();  // when there was a server last, or we began
+  Clock::time_point retry_at_{};              // earliest next try to make the stream
+  Clock::time_point open_at_{};               // earliest next connect after a refusal
+  Clock::time_point here_at_ = Clock::now();  // last time of a server, at first the start
   Backoff refusals_{std::chrono::seconds(1), std::chrono::seconds(16)};
-  unsigned connections_before_ = 0;  // of the connections that were
+  unsigned connections_before_ = 0;  // of earlier Connection objects
   std::uint64_t errors_before_ = 0;
-  unsigned connections_ = 0;      // that were seen
-  std::uint64_t reconnects_ = 0;  // of this connection, that were seen
-  std::string told_;              // the trouble that is known
+  unsigned connections_ = 0;      // of this one, as handled
+  std::uint64_t reconnects_ = 0;  // of this one, as handled
+  std::string told_;              // the trouble that was reported last
   bool asked_ = false;
   bool config_unanswered_ = false;
   bool stream_ready_ = false;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// What a source took of a stream, and what it missed.
+// Counts what a source took of a stream, and what it missed.
 #pragma once
 #include <cstddef>
 #include <cstdint>
@@ -25,7 +25,7 @@ struct SourceCounters {
   bool connected = false;
 };
 
-/// One thread notes, and any may read.
+/// One thread notes; any thread reads.
 class SourceAccount {
  public:
   SourceCounters counters() const;
@@ -37,10 +37,10 @@ class SourceAccount {
   void NoteStop();
 
   struct Verdict {
-    bool again = false;  // the message came before: JetStream saw no acknowledgement of it
-    bool gap = false;    // something before it is missing
+    bool again = false;  // came before, and JetStream saw no acknowledgement
+    bool gap = false;    // messages before it are missing
   };
-  /// `shared`: others of a queue group get messages, too, so what is missing here is not lost.
+  /// `shared`: a queue group shares the stream, so what is missing here is not lost.
   Verdict NotePlace(const Place& place, bool shared);
 
  private:

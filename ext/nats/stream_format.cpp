@@ -9,14 +9,12 @@
 #include "gst/lidar/cloud_info.h"
 #include "gst/lidar/gstlidar.h"
 #include "src/base/crc.h"
+#include "src/base/pose_bytes.h"
 
 namespace lidar::nats {
 namespace {
 
 constexpr std::size_t kIdSize = 16;
-// Of lidarodometry: a pose with its tracking, without and with a covariance [bytes].
-constexpr std::size_t kPoseSize = 64;
-constexpr std::size_t kPoseSizeWithCovariance = kPoseSize + 36 * sizeof(double);
 
 std::string IdOf(const std::string& text) {
   const ByteView bytes{reinterpret_cast<const std::uint8_t*>(text.data()), text.size()};

@@ -10,21 +10,21 @@
 
 namespace lidar::nats {
 
-/// Never changes once it is made, so threads share it.
+/// Immutable, so threads share it.
 class StreamFormat {
  public:
   using Ptr = std::shared_ptr<const StreamFormat>;
 
-  /// Null where streams of `caps` do not travel; `why` then says so in words for a user.
+  /// Returns null, and `why` for a user, if streams of `caps` do not travel.
   static Ptr FromCaps(GstCaps* caps, std::string* why);
-  /// From text that came over the network; null where it is not what FromCaps() sends.
+  /// Reads text of the network; returns null if FromCaps() cannot have sent it.
   static Ptr FromText(const std::string& text);
 
   GstCaps* caps() const { return caps_.get(); }
   const std::string& text() const { return text_; }
-  /// 16 hexadecimal digits, which depend on the text alone.
+  /// CRC of the text, 16 hexadecimal digits.
   const std::string& id() const { return id_; }
-  /// About what it takes [bytes]: the caps hold again what the text says.
+  /// Estimated memory [bytes]: the caps hold the content of the text again.
   std::size_t memory() const { return 2 * text_.size(); }
   /// True where a buffer of these caps may have `size` bytes.
   bool Fits(std::size_t size) const;
@@ -34,11 +34,11 @@ class StreamFormat {
   std::string text_;
   std::string id_;
   std::size_t size_ = 0;         // of a buffer [bytes]; 0: any
-  std::size_t longer_size_ = 0;  // of a buffer that says more [bytes]; 0: none does
-  std::size_t multiple_ = 1;     // a buffer has a multiple of these [bytes]
+  std::size_t longer_size_ = 0;  // of a pose with its covariance [bytes]; 0: no pose
+  std::size_t multiple_ = 1;     // divides the size of a buffer [bytes]
 };
 
-/// True for what FromText() takes as an id.
+/// True for 16 hexadecimal digits.
 bool IsFormatId(const std::string& text);
 
 }  // namespace lidar::nats

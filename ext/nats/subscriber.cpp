@@ -22,7 +22,7 @@ constexpr int kMaxPendingConfigBytes = 1 << 20;
 constexpr std::int64_t kSecondNs = 1'000'000'000;
 constexpr std::int64_t kAckWaitNs = 2 * kSecondNs;
 constexpr std::int64_t kMaxUnacknowledged = 32;  // messages; more would wait here past kAckWaitNs
-constexpr int kMaxPendingUnacknowledged = 256;   // where somebody else made the consumer
+constexpr int kMaxPendingUnacknowledged = 256;   // of consumers that others made
 
 /// libnats 3.4 writes .012 s as .12 s, so such times become the whole second before them.
 std::int64_t SafeTime(std::uint64_t time) {
@@ -44,7 +44,7 @@ std::unique_ptr<Subscriber> Subscriber::Open(const SubscriberSettings& settings,
     if (!self->js_) status = NATS_NO_MEMORY;
   } else {
     status = self->SubscribeLive();
-    // Whoever publishes once this is open is heard, where the server is there.
+    // The subscription is at the server before a caller can publish.
     if (self->connection_->state().connected())
       natsConnection_FlushTimeout(self->connection_->get(), Connection::kConnectTimeoutMs);
   }
@@ -54,7 +54,7 @@ std::unique_ptr<Subscriber> Subscriber::Open(const SubscriberSettings& settings,
 }
 
 Subscriber::~Subscriber() {
-  // A socket that closes with messages unread takes back what it sent.
+  // A socket that closes with unread messages loses what it sent.
   if (connection_ && acknowledges() && connection_->state().connected())
     natsConnection_FlushTimeout(connection_->get(), Connection::kConnectTimeoutMs);
 }
@@ -93,7 +93,7 @@ void Subscriber::SetStart(jsConsumerConfig* config) const {
   }
 }
 
-/// A consumer that goes with this subscriber. It is made anew from where the last one ended.
+/// Makes a consumer that ends with this subscriber, from where the last one ended.
 natsStatus Subscriber::SubscribeOwn(jsErrCode* code) {
   jsSubOptions options;
   jsSubOptions_Init(&options);
@@ -130,7 +130,7 @@ natsStatus Subscriber::AddDurable(jsErrCode* code) {
   return js_AddConsumer(nullptr, js_.get(), settings_.stream.c_str(), &config, nullptr, code);
 }
 
-/// The consumer stays on the server, so this binds to it and deletes nothing.
+/// Binds to a consumer that stays on the server; deletes nothing.
 natsStatus Subscriber::SubscribeDurable(jsErrCode* code) {
   jsConsumerInfo* raw_info = nullptr;
   natsStatus s = js_GetConsumerInfo(&raw_info, js_.get(), settings_.stream.c_str(),
@@ -148,7 +148,7 @@ natsStatus Subscriber::SubscribeDurable(jsErrCode* code) {
   s = js_SubscribeSync(&raw, js_.get(), settings_.subject.c_str(), nullptr, &options, code);
   messages_.reset(raw);
   if (s != NATS_OK) return s;
-  // What goes beyond comes again, as nobody acknowledges it. A message must fit.
+  // Messages beyond the limit come again, unacknowledged. One message must fit.
   const std::int64_t largest = natsConnection_GetMaxPayload(connection_->get());
   const auto bytes = std::max<std::int64_t>(settings_.max_pending, 2 * largest);
   return natsSubscription_SetPendingLimits(
@@ -202,7 +202,7 @@ Subscriber::Event Subscriber::Renew() {
   natsSubscription_GetConsumerInfo(&raw, messages_.get(), nullptr, nullptr);
   const ConsumerInfoPtr info(raw);
   if (!info || info->Delivered.Consumer != 0) return Event::kNothing;
-  // Where it begins, in case that it is made anew before anything came.
+  // The consumer may be made anew before a message came: it then begins here.
   if (!acknowledges()) last_stored_ = info->Delivered.Stream;
   return info->NumPending == 0 ? Event::kEmpty : Event::kNothing;
 }
@@ -215,7 +215,7 @@ void Subscriber::CountOverruns() {
   dropped_ = dropped;
 }
 
-/// What came out of order makes the consumer begin anew behind what came last.
+/// A message out of order makes the consumer begin anew after the last good one.
 Subscriber::Event Subscriber::NoteStored(Delivery* delivery) {
   jsMsgMetaData* raw = nullptr;
   if (natsMsg_GetMetaData(&raw, delivery->message.get()) != NATS_OK) return Event::kNothing;
@@ -262,7 +262,7 @@ void Subscriber::Acknowledge(natsMsg* message) { natsMsg_Ack(message, nullptr); 
 
 void Subscriber::TakeFormats(milliseconds wait) {
   natsMsg* raw = nullptr;
-  // Whoever sends them faster than they are read must not keep the thread here.
+  // A flood of formats must not keep the thread here.
   for (int left = kMaxPendingConfigs;
        left > 0 && configs_ &&
        natsSubscription_NextMsg(&raw, configs_.get(), wait.count()) == NATS_OK;

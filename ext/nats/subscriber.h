@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Takes messages of one stream from NATS: as they come, or as JetStream kept them.
+// Takes messages of one stream from NATS, live or kept by JetStream.
 #pragma once
 #include <chrono>
 #include <cstdint>
@@ -16,15 +16,15 @@ namespace lidar::nats {
 struct SubscriberSettings {
   ConnectionSettings connection;
   std::string subject;
-  std::string queue_group;                  // empty: every message comes
-  std::string stream;                       // of JetStream; empty: what is sent from now on
-  std::string durable;                      // consumer; empty: one of this subscriber's own
-  std::optional<std::uint64_t> start_time;  // [ns since 1970]; none: what is stored from now on
-  std::uint64_t start_sequence = 0;         // of the first message, before start_time; 0: none
-  int max_pending = 8 << 20;                // bytes that wait, without JetStream
+  std::string queue_group;                  // empty: no sharing
+  std::string stream;                       // of JetStream; empty: live
+  std::string durable;                      // consumer; empty: a temporary one
+  std::optional<std::uint64_t> start_time;  // [ns since 1970]; missing: now
+  std::uint64_t start_sequence = 0;         // replaces start_time; 0: does not
+  int max_pending = 8 << 20;                // bytes that may wait, if live
 };
 
-/// A message, and what JetStream says of it.
+/// A message and its place in JetStream.
 struct Delivery {
   MessagePtr message;
   std::optional<std::uint64_t> stored;  // when [ns since 1970]
@@ -35,7 +35,7 @@ struct Delivery {
 /// Used by one thread.
 class Subscriber {
  public:
-  /// Null, and `why`, where the settings are wrong.
+  /// Returns null, and `why`, if the settings are wrong.
   static std::unique_ptr<Subscriber> Open(const SubscriberSettings& settings,
                                           Connection::Changed changed, std::string* why);
   /// Waits until the server has the acknowledgements, for kConnectTimeoutMs at most.
@@ -43,23 +43,23 @@ class Subscriber {
 
   enum class Event {
     kMessage,
-    kNothing,  // in this time
-    kEmpty,    // JetStream has nothing, now that it was asked for the first time
-    kTrouble,  // trouble(), which goes on
-    kClosed,   // for good
+    kNothing,  // no message in this time
+    kEmpty,    // JetStream has no message at the first request
+    kTrouble,  // trouble() says which; it goes on
+    kClosed,   // the connection is gone for good
   };
   Event Next(std::chrono::milliseconds timeout, Delivery* delivery);
   const std::string& trouble() const { return trouble_; }
   ConnectionState connection() const { return connection_->state(); }
-  /// For a durable consumer: the message need not come again.
+  /// Acknowledges a message of a durable consumer: it does not come again.
   void Acknowledge(natsMsg* message);
   bool acknowledges() const { return !settings_.durable.empty(); }
 
-  /// The format of that id. Where it is not known, the sender is asked for it; null at a timeout.
+  /// The format of that id. Asks the sender for an unknown one; returns null at a timeout.
   StreamFormat::Ptr Format(const std::string& id, std::chrono::milliseconds timeout);
-  /// Messages that came faster than they were taken.
+  /// Counts messages that came faster than they were taken.
   std::uint64_t overruns() const { return overruns_; }
-  /// Formats that are none of natssink's, or damaged.
+  /// Counts formats that are damaged or no natssink's.
   std::uint64_t damaged_formats() const { return book_.damaged(); }
 
  private:
@@ -81,19 +81,19 @@ class Subscriber {
   const SubscriberSettings settings_;
   std::unique_ptr<Connection> connection_;
   JetStreamPtr js_;
-  SubscriptionPtr messages_;  // after those that they need
+  SubscriptionPtr messages_;  // declared after the connection that it needs
   SubscriptionPtr configs_;
   FormatBook book_;
   std::string trouble_;
-  std::chrono::steady_clock::time_point renew_at_{};  // not before
-  unsigned connections_ = 0;                          // as the subscriptions know them
+  std::chrono::steady_clock::time_point renew_at_{};  // earliest next renewal
+  unsigned connections_ = 0;                          // at the last renewal
   unsigned missed_heartbeats_ = 0;
-  bool stale_ = false;             // the consumer missed something
-  std::uint64_t last_stored_ = 0;  // number in the stream of what came last
-  std::uint64_t last_number_ = 0;  // of the consumer
+  bool stale_ = false;             // the consumer missed a message
+  std::uint64_t last_stored_ = 0;  // number of the last message in the stream
+  std::uint64_t last_number_ = 0;  // its number at the consumer
   bool began_ = false;
   std::uint64_t overruns_ = 0;
-  std::int64_t dropped_ = 0;  // by the subscription there is
+  std::int64_t dropped_ = 0;  // by the present subscription
 };
 
 }  // namespace lidar::nats
