@@ -13,15 +13,15 @@ namespace {
 using odometry::Points;
 using odometry::Pose;
 
-/// How well the odometry knows the motion from scan to scan, and the closures theirs.
+/// Standard deviations of the motion from scan to scan, and of closures.
 constexpr double kStep_m = 0.02;
 constexpr double kStep_rad = 0.002;
 constexpr double kClosure_m = 0.05;
 constexpr double kClosure_rad = 0.002;
-/// A closure that is off by more than that when all are considered is wrong.
+/// A closure that misses the solved poses by more is wrong.
 constexpr double kContradiction_m = 1.5;
 constexpr double kContradiction_rad = 0.05;
-/// Points of two maps that are the same are that near; farther than kOverlap one map has nothing
+/// Largest distance of points of two maps that are the same; beyond kOverlap one map is empty
 /// there.
 constexpr double kSame_m = 0.4;
 constexpr double kOverlap_m = 2;
@@ -81,7 +81,7 @@ void LoopCloser::AddScan(const odometry::StampedPose& pose, const Points& points
 void LoopCloser::EndMap() {
   if (map_begin_ >= way_.size()) return;
   LocalMap map;
-  // The scan at half the way, so that both ends of the map are near it.
+  // The scan at half the way is near both ends of the map.
   const double half = (driven_m_[map_begin_] + driven_m_.back()) / 2;
   const auto middle = std::lower_bound(driven_m_.begin() + static_cast<std::ptrdiff_t>(map_begin_),
                                        driven_m_.end(), half);
@@ -96,7 +96,7 @@ void LoopCloser::EndMap() {
   map_begin_ = way_.size();
 }
 
-/// Near enough for what the odometry may be off by, and not one of the maps just before.
+/// True if the odometry's drift may hide a loop here, and the map is none of those just before.
 bool LoopCloser::MayBeTheSame(const LocalMap& a, const LocalMap& b) const {
   const double between = b.way_m - a.way_m;
   if (between < 3 * settings_.local_map_m) return false;

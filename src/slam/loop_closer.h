@@ -12,39 +12,38 @@
 namespace lidar::slam {
 
 struct LoopSettings {
-  double local_map_m = 40;    // way that one covers
-  double voxel_size_m = 0.5;  // its points are that far apart
-  /// How far the odometry may be off: loops are looked for there.
+  double local_map_m = 40;    // length of way in one local map
+  double voxel_size_m = 0.5;  // distance of its points
+  /// Largest drift of the odometry, within which loops are searched.
   double drift_m = 10;
   double drift_share = 0.04;  // of the way between
   double heading_range_rad = 0.25;
   double least_score = 0.3;
   double least_distinct = 1.3;
-  double least_overlap = 0.35;  // part of the points that both maps have
-  double least_fit = 0.6;       // part of these that lie on each other
+  double least_overlap = 0.35;  // part of the points in both maps
+  double least_fit = 0.6;       // part of those that lie on each other
 };
 
-/// Two places of the way that are the same.
+/// Two scans at the same place.
 struct Closure {
   std::size_t from = 0;  // scans, in the order they were added
   std::size_t to = 0;
-  odometry::Pose pose;  // of `to` seen from `from`
+  odometry::Pose pose;  // pose of `to` in the frame of `from`
   double score = 0;
   double overlap = 0;
   double fit = 0;
 };
 
-/// The closure that `poses` contradict most, where one is off by more than it may; else
-/// closures.size().
+/// Index of the closure that `poses` contradict most; closures.size() if all are within bounds.
 std::size_t FindWorst(const std::vector<Closure>& closures,
                       const std::vector<odometry::Pose>& poses);
 
-/// For drives of some kilometres: every local map is kept, a megabyte each. Deterministic.
+/// Keeps every local map, a megabyte each, so drives may have some kilometres. Deterministic.
 class LoopCloser {
  public:
   explicit LoopCloser(const LoopSettings& settings) : settings_(settings) {}
 
-  /// A scan in the sensor's frame, and where the odometry says it was taken.
+  /// Takes a scan in the sensor's frame, and its pose by the odometry.
   void AddScan(const odometry::StampedPose& pose, const odometry::Points& points);
   /// Looks for loops, and returns the way without the drift between them. The first pose stays.
   odometry::Trajectory Close();
@@ -54,7 +53,7 @@ class LoopCloser {
  private:
   struct LocalMap {
     std::size_t key = 0;  // the scan in whose frame the points are
-    double way_m = 0;     // driven until there
+    double way_m = 0;     // length of way before it
     odometry::Points points;
     std::unique_ptr<Place> place;
   };

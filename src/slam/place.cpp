@@ -16,10 +16,10 @@ using odometry::Pose;
 
 constexpr double kGroundCell = 2;     // [m]
 constexpr int kGroundCells = 64;      // along each side
-constexpr double kAboveGround = 0.7;  // what is lower is ground [m]
-constexpr float kMostDense = 8;       // a wall counts no more than that
+constexpr double kAboveGround = 0.7;  // height of ground at most [m]
+constexpr float kMostDense = 8;       // bound of a cell, for walls
 constexpr double kYawStep = 0.035;    // two degrees
-constexpr int kElsewhere = 6;         // cells from the best place
+constexpr int kElsewhere = 6;         // least distance of another peak [cells]
 constexpr std::size_t kLeastGround = 30;
 
 using Density = Place::Density;
@@ -53,7 +53,7 @@ void Transform(Density* map, bool forward) {
 int CellOf(double c) { return static_cast<int>(std::floor(c)) + Place::kCells / 2; }
 bool IsCell(int i) { return i >= 0 && i < Place::kCells; }
 
-/// Counts what stands in each cell, turned by `yaw`.
+/// Counts the points above ground in each cell, turned by `yaw`.
 Density Count(const Points& standing, double yaw) {
   Eigen::ArrayXXf counts = Eigen::ArrayXXf::Zero(Place::kCells, Place::kCells);
   const double c = std::cos(yaw);
@@ -78,7 +78,7 @@ int Signed(Eigen::Index i) {
   return static_cast<int>(i < Place::kCells / 2 ? i : i - Place::kCells);
 }
 
-/// The best peak of a correlation, and the best value that is not beside it.
+/// The best peak of a correlation, and the best value kElsewhere from it.
 std::pair<Peak, float> FindPeak(const Density& correlation) {
   Eigen::ArrayXXf real = correlation.real();
   Peak peak;
@@ -94,7 +94,7 @@ std::pair<Peak, float> FindPeak(const Density& correlation) {
   return {peak, real.maxCoeff()};
 }
 
-/// Raises and tilts b so that its ground meets that of a. False where they share none.
+/// Raises and tilts b so that its ground meets a's. Returns false if they share none.
 bool MeetGround(const Place& a, const Place& b, Pose* pose) {
   for (int round = 0; round < 3; ++round) {
     Eigen::Matrix3d lhs = 1e-3 * Eigen::Matrix3d::Identity();

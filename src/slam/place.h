@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// What a place looks like from above, and how two looks at a place lie to each other.
+// Density maps of places from above, and the pose between two of them.
 #pragma once
 #include <Eigen/Core>
 #include <optional>
@@ -9,7 +9,7 @@
 namespace lidar::slam {
 
 /// The density map of KISS-SLAM (Guadagnino et al., 2025): how much stands on each square metre.
-/// Flat ground counts nothing, so it may be seen or not.
+/// Flat ground counts 0, so it does not matter whether it was seen.
 class Place {
  public:
   /// `points` around the middle of the place, z up but for a slope; what is farther than kRadius is
@@ -24,13 +24,13 @@ class Place {
   const odometry::Points& standing() const { return standing_; }
   const odometry::Points& ground() const { return ground_; }
 
-  /// The lowest point near (x, y), NaN where there is none.
+  /// The lowest point near (x, y), or NaN.
   float LowestAt(double x, double y) const;
 
  private:
   Density spectrum_;
   double energy_ = 0;          // the sum of the squares of the map
-  odometry::Points standing_;  // what the map counts
+  odometry::Points standing_;  // the points above ground
   odometry::Points ground_;    // the lowest points
   Eigen::ArrayXXf lowest_;
 };

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Poses that are held together by relative ones, and the poses that fit these best.
+// Finds the poses that fit relative poses best.
 #pragma once
 #include <vector>
 
@@ -16,8 +16,8 @@ struct Edge {
   double sigma_rad = 0.005;
 };
 
-/// Changes all poses but the first, by Ceres. False where it found no solution; the poses are what
-/// they were, then.
+/// Changes all poses but the first, by Ceres. Returns false, and leaves the poses, if it finds no
+/// solution.
 bool Optimise(const std::vector<Edge>& edges, std::vector<odometry::Pose>* poses);
 
 }  // namespace lidar::slam
