@@ -40,6 +40,7 @@ function plainFiles() {
 export default defineConfig({
   base: './',
   plugins: [plainFiles()],
+  worker: { format: 'es', rollupOptions: { output: { entryFileNames: 'slice_worker.js' } } },
   build: {
     target: 'es2020',
     assetsInlineLimit: 0,

@@ -92,7 +92,7 @@ test('mouse and keys orbit, pause holds, a snapshot is saved', limits, async () 
     await sleep(700);
     return (await look(page)).sum === held.sum;
   });
-  const [download] = await Promise.all([page.waitForEvent('download'), page.click('#snapshot')]);
+  const [download] = await Promise.all([page.waitForEvent('download'), page.keyboard.press('s')]);
   assert.match(download.suggestedFilename(), /^gst-lidar-.*\.png$/);
   assert.deepEqual(complaints, []);
   await context.close();
@@ -111,13 +111,13 @@ test('charts advance with the statistics of the pipeline', limits, async () => {
     const shown = await page.$$eval('.chart:not([hidden]) h2', (all) =>
       all.map((h) => h.firstChild.textContent),
     );
-    return shown.length === 6 && shown;
+    return shown.length === 7 && shown;
   });
-  assert.deepEqual(titles, ['Bitrate', 'Delay', 'Window', 'Precision', 'Losses', 'To this page']);
+  assert.deepEqual(titles, ['Age of the cloud', 'Bitrate', 'Delay', 'Window', 'Precision', 'Losses', 'To this page']);
   const samples = () => page.evaluate(() => window.lidarPage.charts.samples);
   const before = await samples();
   await until('more samples', async () => (await samples()) >= before + 8);
-  assert.ok((await page.$$('.chart:not([hidden]) canvas')).length === 6);
+  assert.ok((await page.$$('.chart:not([hidden]) canvas')).length === 7);
   await until('a map', () => page.evaluate(() => window.lidarPage.scene.map.count > 1000));
   assert.equal(await page.isDisabled('#follow'), false);
   assert.deepEqual(complaints, []);
@@ -229,6 +229,18 @@ test('it fits a phone, follows the theme, and the keyboard reaches all of it', l
   await isLive(page);
   assert.equal(await page.getAttribute('html', 'data-theme'), 'light');
   assert.ok(await page.evaluate(() => document.documentElement.scrollWidth <= innerWidth));
+  const covered = () =>
+    page.evaluate(() => {
+      const area = ({ width, height }) => width * height;
+      const over = [...document.querySelectorAll('nav > div, #legend')].map((e) => area(e.getBoundingClientRect()));
+      return over.reduce((a, b) => a + b) / area(document.getElementById('scene').getBoundingClientRect());
+    });
+  await page.click('#panel');
+  assert.ok((await covered()) < 0.2, `${await covered()} of the scene is covered`);
+  await page.click('#panel');
+  const heights = await page.$$eval('.always button', (all) => all.map((b) => b.getBoundingClientRect().height));
+  assert.ok(heights.every((height) => height >= 48));
+  await page.click('#more');
   const reached = new Set();
   for (let i = 0; i < 20; ++i) {
     await page.keyboard.press('Tab');

@@ -2,13 +2,21 @@
 // Charts of the last minute: a chart a question, shown where its numbers exist.
 import uPlot from 'uplot';
 import 'uplot/dist/uPlot.min.css';
+import { number, t } from './text.js';
 
 const KEPT_S = 60;
 const MBIT = 1e-6;
 const KB = 1e-3;
+const QUIET_SHARE = 2.5; // of the others' height: a quiet line may leave the picture, not flatten it
+const LINKS = [0, 1, 2];
 
-/** Members of lidar.Statistics, and what the page measures itself (`received`). */
+/** Members of lidar.Statistics, and what the page measures itself (`received`, `age`). */
 const CHARTS = [
+  {
+    title: 'Age of the cloud',
+    unit: 'ms',
+    series: [{ key: 'age', label: 'drawn', scale: 1000 }],
+  },
   {
     title: 'Bitrate',
     unit: 'Mbit/s',
@@ -30,7 +38,7 @@ const CHARTS = [
     title: 'Window',
     unit: 'kB',
     series: [
-      { key: 'ref_wnd', label: 'ref_wnd', scale: KB, quiet: true },
+      { key: 'ref_wnd', label: 'allowed in flight', scale: KB, quiet: true },
       { key: 'bytes_in_flight', label: 'in flight', scale: KB },
     ],
   },
@@ -57,13 +65,35 @@ const CHARTS = [
     unit: 'Mbit/s',
     series: [{ key: 'received', label: 'received', scale: MBIT }],
   },
+  {
+    title: 'Links',
+    unit: 'Mbit/s',
+    series: LINKS.map((i) => ({ key: `link_${i}_sent`, name: `link_${i}`, label: 'link', scale: MBIT })),
+  },
+  {
+    title: 'Links',
+    unit: 'ms',
+    series: LINKS.map((i) => ({ key: `link_${i}_rtt`, name: `link_${i}`, label: 'link' })),
+  },
 ];
 
 const show = (value, whole) => {
   if (value === null || value === undefined) return '–';
-  if (whole || value >= 100) return Math.round(value).toLocaleString('en');
-  return value >= 10 ? value.toFixed(1) : value.toFixed(2);
+  if (whole || value >= 100) return number(value);
+  return number(value, value >= 10 ? 1 : 2);
 };
+
+/** The links of a sender over several, beside its other members. */
+export function linksOf(message) {
+  const members = {};
+  const sender = Object.values(message.elements ?? {}).find((e) => e.links?.length > 1);
+  sender?.links.forEach((link, i) => {
+    members[`link_${i}`] = String(link.link ?? i + 1);
+    members[`link_${i}_sent`] = link.sent_bitrate;
+    members[`link_${i}_rtt`] = link.rtt === undefined ? undefined : link.rtt * 1e-6;
+  });
+  return members;
+}
 
 class Chart {
   constructor(config, parent) {
@@ -72,12 +102,13 @@ class Chart {
     this.element = document.createElement('section');
     this.element.className = 'chart';
     this.element.hidden = true;
-    this.element.innerHTML = `<h2>${config.title}<span>${config.unit}</span></h2>
+    this.element.innerHTML = `<h2>${t(config.title)}<span>${t(config.unit)}</span></h2>
       <dl></dl><div class="plot" role="img"></div>`;
     this.list = this.element.querySelector('dl');
     this.values = config.series.map((series, i) => {
       const item = document.createElement('div');
-      item.innerHTML = `<dt><i data-line="${i}"${series.quiet ? ' data-quiet' : ''}></i>${series.label}</dt><dd>–</dd>`;
+      item.innerHTML = `<dt><i data-line="${i}"${series.quiet ? ' data-quiet' : ''}></i><span></span></dt><dd>–</dd>`;
+      item.querySelector('span').textContent = t(series.label);
       this.list.append(item);
       return item;
     });
@@ -98,11 +129,13 @@ class Chart {
     this.values.forEach((item, i) => {
       item.hidden = this.data[i + 1].every((n) => n === null);
       item.querySelector('dd').textContent = show(numbers[i], this.config.whole);
+      const { name } = this.config.series[i];
+      if (name && message[name]) item.querySelector('span').textContent = message[name];
     });
     this.plotElement.setAttribute(
       'aria-label',
-      `${this.config.title}: ` +
-        this.config.series.map((s, i) => `${s.label} ${show(numbers[i])}`).join(', '),
+      `${t(this.config.title)}: ` +
+        this.config.series.map((s, i) => `${t(s.label)} ${show(numbers[i])}`).join(', '),
     );
   }
 
@@ -113,6 +146,18 @@ class Chart {
       this.plot.setSize({ width: this.plotElement.clientWidth, height: this.plot.height });
     this.now = now;
     this.plot.setData(this.data);
+  }
+
+  /** The upper end of the axis: of what is not quiet, and of as much of the rest as that bears. */
+  top() {
+    const most = (quiet) =>
+      this.config.series.reduce((all, series, i) => {
+        if (!!series.quiet !== quiet) return all;
+        return this.data[i + 1].reduce((m, v) => Math.max(m, v ?? 0), all);
+      }, 0);
+    const loud = most(false);
+    const top = loud > 0 ? Math.max(loud, Math.min(most(true), QUIET_SHARE * loud)) : most(true);
+    return top > 0 ? top * 1.15 : 1;
   }
 
   make(style) {
@@ -135,17 +180,23 @@ class Chart {
     this.plot = new uPlot(
       {
         width: this.plotElement.clientWidth,
-        height: 92,
+        height: 108,
         legend: { show: false },
         cursor: { show: false },
         padding: [8, 4, 8, 0],
         scales: {
           x: { time: false, range: () => [this.now - KEPT_S, this.now] },
-          y: { range: (_, low, high) => [0, high > 0 ? high * 1.15 : 1] },
+          y: { range: () => [0, this.top()] },
         },
         axes: [
-          { ...axis, show: false },
-          { ...axis, size: 38, space: 26, gap: 4, values: (_, v) => v.map((n) => n.toLocaleString('en')) },
+          {
+            ...axis,
+            size: 18,
+            gap: 2,
+            splits: () => [this.now - KEPT_S + 4, this.now - KEPT_S / 2, this.now - 1],
+            values: () => [`−${KEPT_S} s`, `−${KEPT_S / 2} s`, '0'],
+          },
+          { ...axis, size: 42, space: 26, gap: 4, values: (_, v) => v.map((n) => number(n, n % 1 ? 1 : 0)) },
         ],
         series: [{}, ...lines],
       },

@@ -1,15 +1,32 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The connection to a server: subscribes to what the page understands, and comes back after a loss.
+// The connection to a server: subscribes to what the page wants of it, and comes back after a loss.
 import { FoxgloveClient } from '@foxglove/ws-protocol';
 
 const RETRY_FIRST_MS = 500;
 const RETRY_MOST_MS = 5000;
 const PROTOCOLS = ['foxglove.sdk.v1', 'foxglove.websocket.v1'];
+const EXPIRED = 4401; // how the server closes the socket of an old token
+const REFUSALS = { 401: 'refused', 403: 'foreign', 429: 'limited', 503: 'full' };
+const FINAL = ['refused', 'expired']; // a new token has to come
+
+/** The socket is in the folder of the page, which may be behind a proxy. */
+function socketAddress(host, token) {
+  const url = new URL('.', location.href);
+  if (host !== location.host) {
+    url.host = host;
+    url.pathname = '/';
+  }
+  url.protocol = url.protocol === 'https:' ? 'wss:' : 'ws:';
+  url.hash = '';
+  url.search = token ? `?token=${encodeURIComponent(token)}` : '';
+  return url;
+}
 
 export class Connection {
   /**
-   * `on.state(state)`: connecting, open, lost, refused (the token) or full;
-   * `on.message(channel, bytes)`; `wanted(channel)` says what to subscribe to.
+   * `on.state(state)`: connecting, open, lost, or why the server refuses; `on.message(channel, bytes,
+   * nanoseconds)`; `on.channels(list)` of all that are offered; `on.dropped(channel)` of one that was
+   * subscribed to; `wanted(list)` picks those to subscribe to.
    */
   constructor(host, token, on, wanted) {
     Object.assign(this, { host, token, on, wanted });
@@ -17,45 +34,62 @@ export class Connection {
     this.open();
   }
 
-  get secure() {
-    return location.protocol === 'https:' ? 's' : '';
-  }
-
-  get query() {
-    return this.token ? `?token=${encodeURIComponent(this.token)}` : '';
-  }
-
   open() {
     this.on.state('connecting');
-    const socket = new WebSocket(`ws${this.secure}://${this.host}/${this.query}`, PROTOCOLS);
-    const client = new FoxgloveClient({ ws: socket });
-    const channels = new Map(); // by subscription
+    this.offered = new Map(); // channels by id
+    this.subscriptions = new Map(); // channels by subscription
+    this.socket = new WebSocket(socketAddress(this.host, this.token), PROTOCOLS);
+    const client = new FoxgloveClient({ ws: this.socket });
     client.on('open', () => {
       this.retry = RETRY_FIRST_MS;
       this.on.state('open');
     });
     client.on('error', () => {}); // a close follows
     client.on('advertise', (list) => {
-      for (const channel of list.filter(this.wanted))
-        channels.set(client.subscribe(channel.id), channel);
+      for (const channel of list) this.offered.set(channel.id, channel);
+      this.choose();
     });
     client.on('unadvertise', (ids) => {
-      for (const [id, channel] of channels) if (ids.includes(channel.id)) channels.delete(id);
+      for (const id of ids) this.offered.delete(id);
+      this.choose();
     });
-    client.on('message', ({ subscriptionId, data }) => {
-      const channel = channels.get(subscriptionId);
+    client.on('message', ({ subscriptionId, timestamp, data }) => {
+      const channel = this.subscriptions.get(subscriptionId);
       if (!channel) return;
-      this.on.message(channel, new Uint8Array(data.buffer, data.byteOffset, data.byteLength));
+      this.on.message(channel, new Uint8Array(data.buffer, data.byteOffset, data.byteLength), timestamp);
     });
-    client.on('close', () => this.closed());
+    client.on('close', (event) => this.closed(event?.code));
     this.client = client;
   }
 
-  async closed() {
+  /** Subscribes to what is wanted now, and to nothing else. */
+  choose() {
+    const list = [...this.offered.values()];
+    this.on.channels?.(list);
+    const wanted = new Set(this.wanted(list));
+    for (const [id, channel] of this.subscriptions) {
+      if (wanted.delete(channel)) continue;
+      this.subscriptions.delete(id);
+      this.client.unsubscribe(id);
+      this.on.dropped?.(channel);
+    }
+    for (const channel of wanted) this.subscriptions.set(this.client.subscribe(channel.id), channel);
+  }
+
+  /** An operation of our own, about the subscription to `channel`. */
+  tell(op, channel, rest = {}) {
+    if (this.socket.readyState !== WebSocket.OPEN) return;
+    for (const [subscriptionId, known] of this.subscriptions)
+      if (known === channel) this.socket.send(JSON.stringify({ op, subscriptionId, ...rest }));
+  }
+
+  async closed(code) {
+    for (const channel of this.subscriptions.values()) this.on.dropped?.(channel);
+    this.subscriptions.clear();
     this.on.state('lost');
-    const status = await this.why();
-    if (status === 401) return this.on.state('refused'); // a new token has to come
-    if (status === 503) this.on.state('full');
+    const state = code === EXPIRED ? 'expired' : REFUSALS[await this.why()];
+    if (state) this.on.state(state);
+    if (FINAL.includes(state)) return;
     setTimeout(() => this.open(), this.retry);
     this.retry = Math.min(this.retry * 1.6, RETRY_MOST_MS);
   }
@@ -64,7 +98,8 @@ export class Connection {
   async why() {
     if (this.host !== location.host) return 0;
     try {
-      return (await fetch(`session${this.query}`, { cache: 'no-store' })).status;
+      const query = this.token ? `?token=${encodeURIComponent(this.token)}` : '';
+      return (await fetch(`session${query}`, { cache: 'no-store' })).status;
     } catch {
       return 0;
     }

@@ -1,18 +1,25 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Puts the page together: what comes from the server goes to the scene and the charts.
 import './style.css';
-import { Charts } from './charts.js';
+import { Charts, linksOf } from './charts.js';
+import { chooseChannels, robotsOf } from './channels.js';
+import { nowSeconds } from './clock.js';
 import { Connection } from './connection.js';
 import { fromDraco, unpack } from './fields.js';
 import { Poses } from './poses.js';
 import { Scene } from './scene.js';
+import { Slices } from './slices.js';
+import { number, t, translate } from './text.js';
 import { buildTools } from './tools.js';
-import { compressedCloud, frameTransform, pointCloud } from './wire.js';
+import { Video } from './video.js';
+import { compressedCloud, compressedVideo, frameTransform, pointCloud } from './wire.js';
 
 const STALLED_MS = 2000;
 const SLOW_DRAW_MS = 250;
 const BUSY_MS = 100;
+const MOST_AGE_S = 60; // an older cloud rather has a clock that is wrong
 
+translate(document);
 const page = {
   state: 'connecting',
   paused: false,
@@ -20,13 +27,17 @@ const page = {
   clouds: 0, // since the last count
   points: 0,
   bytes: 0,
+  age: null, // [s] of the cloud drawn last
   received: {}, // by schema, since the start
   spanS: 0.1,
+  robot: '',
   charts: new Charts(document.getElementById('charts')),
   scene: new Scene(document.getElementById('scene')),
   poses: new Poses(),
+  video: new Video(document.getElementById('video')),
 };
 const tools = buildTools(page);
+page.slices = new Slices({ points: addSlice }, () => page.connection);
 
 // --- clouds ---
 
@@ -49,7 +60,8 @@ function decodeDraco(cloud) {
   draco.postMessage({ id: page.dracoId, data }, [data]);
 }
 
-function addCloud({ time, frame }, { points, has }) {
+/** `ageOf(time)` of clouds whose server says when it sent them. */
+function addCloud({ time, frame, place, ageOf }, { points, has }) {
   page.quietMs = 0;
   ++page.clouds;
   page.points += points.length / 6;
@@ -57,7 +69,15 @@ function addCloud({ time, frame }, { points, has }) {
   tools.learn(points, has);
   const matrix = page.poses.at(frame, time);
   tools.hasPoses(matrix !== null);
-  page.scene.add(points, time, matrix);
+  page.scene.add(points, time, matrix, place);
+  page.newest = { time, ageOf: ageOf ?? ((captured) => nowSeconds() - captured) };
+}
+
+function addSlice(stream, header, decoded) {
+  const [scans, seconds] = stream.about.framerate ?? [0, 1];
+  if (scans > 0 && !page.paused) page.spanS = seconds / scans;
+  const ageOf = (captured) => stream.clock.ageOf(captured);
+  addCloud({ time: header.captured, frame: stream.about.frameId, place: header, ageOf }, decoded);
 }
 
 function onStatistics(message) {
@@ -65,7 +85,7 @@ function onStatistics(message) {
   const sink = Object.values(message.elements ?? {}).find((e) => e.factory === 'foxglovesink');
   if (sink?.scan_duration > 0 && !page.paused) page.spanS = sink.scan_duration * 1e-9;
   tools.setSpan();
-  page.charts.add({ ...message, received: page.receivedBps });
+  page.charts.add({ ...message, ...linksOf(message), received: page.receivedBps, age: page.age });
 }
 
 const handlers = {
@@ -74,34 +94,29 @@ const handlers = {
     addCloud(cloud, unpack(cloud));
   },
   'foxglove.CompressedPointCloud': (bytes) => decodeDraco(compressedCloud(bytes)),
+  'foxglove.CompressedVideo': (bytes) => page.video.add(compressedVideo(bytes)),
   'foxglove.FrameTransform': (bytes) => page.poses.add(frameTransform(bytes)),
+  'lidar.Slice': (bytes, channel, nanoseconds) => page.slices.add(channel, bytes, nanoseconds),
   'lidar.Statistics': (bytes) => onStatistics(JSON.parse(new TextDecoder().decode(bytes))),
 };
 
 // --- states ---
 
-const STATES = {
-  connecting: ['Connecting', ''],
-  live: ['Live', ''],
-  stalled: ['No clouds', 'Connected, but no cloud has come for two seconds.'],
-  lost: ['Connection lost', 'The server does not answer. Trying again.'],
-  refused: ['Not admitted', 'The token is missing or wrong.'],
-  full: ['Server is full', 'Too many viewers are connected. Trying again.'],
-};
+const TELLING = ['stalled', 'lost', 'refused', 'expired', 'foreign', 'limited', 'full'];
 
 function setState(state) {
   page.state = state;
   document.body.dataset.state = state;
-  const [name, text] = STATES[state];
-  document.querySelector('#state span').textContent = page.paused ? `${name}, paused` : name;
+  document.querySelector('#state span').textContent = page.paused ? `${t(state)}, ${t('paused')}` : t(state);
   const notice = document.getElementById('notice');
-  notice.hidden = text === '';
-  notice.textContent = text;
+  notice.hidden = !TELLING.includes(state);
+  notice.textContent = notice.hidden ? '' : t(`${state}_text`);
 }
 page.showState = () => setState(page.state);
 
 function checkFlow() {
   if (page.state !== 'live' && page.state !== 'stalled') return;
+  if (page.paused) page.quietMs = 0;
   const quiet = page.quietMs > STALLED_MS;
   if (quiet !== (page.state === 'stalled')) setState(quiet ? 'stalled' : 'live');
 }
@@ -114,9 +129,9 @@ function countSecond() {
   page.receivedBps = (page.bytes * 8) / seconds;
   const perSecond = Math.round(page.points / seconds);
   const live = page.state === 'live';
-  document.getElementById('facts').textContent = live
-    ? `${perSecond.toLocaleString('en')} points/s · ${(page.receivedBps * 1e-6).toFixed(1)} Mbit/s`
-    : '';
+  const age = page.age === null ? [] : [`${number(page.age * 1000)} ms ${t('old')}`];
+  const facts = [`${number(page.receivedBps * 1e-6, 1)} Mbit/s ${t('to_page')}`, `${number(perSecond)} pt/s`];
+  document.getElementById('facts').textContent = live ? age.concat(facts).join(' · ') : '';
   page.bytes = page.points = page.clouds = 0;
 }
 
@@ -133,11 +148,17 @@ function tokenOf() {
   return given;
 }
 
-function askForToken() {
+function askForToken(state) {
   const dialog = document.getElementById('entry');
-  dialog.showModal();
+  const wrong = document.getElementById('wrong');
+  const input = document.getElementById('token');
+  wrong.hidden = !sessionStorage.getItem('token');
+  wrong.textContent = t(`${state}_text`);
+  input.setAttribute('aria-invalid', !wrong.hidden);
+  if (!dialog.open) dialog.showModal();
+  input.select();
   dialog.onclose = () => {
-    sessionStorage.setItem('token', document.getElementById('token').value);
+    sessionStorage.setItem('token', input.value);
     connect();
   };
 }
@@ -149,18 +170,29 @@ function connect() {
       if (state === 'lost') page.poses.clear();
       if (state === 'connecting' && page.state !== 'connecting') return; // still lost
       setState(state === 'open' ? 'live' : state);
-      if (state === 'refused') askForToken();
+      if (state === 'refused' || state === 'expired') askForToken(state);
     },
-    message: (channel, bytes) => {
+    channels: (list) => tools.setRobots(robotsOf(list)),
+    message: (channel, bytes, nanoseconds) => {
       page.bytes += bytes.length;
       const received = (page.received[channel.schemaName] ??= { messages: 0, bytes: 0 });
       ++received.messages;
       received.bytes += bytes.length;
-      handlers[channel.schemaName](bytes);
+      handlers[channel.schemaName](bytes, channel, nanoseconds);
     },
+    dropped: (channel) => page.slices.close(channel),
   };
-  page.connection = new Connection(location.host, tokenOf(), on, (c) => c.schemaName in handlers);
+  const wanted = (list) =>
+    chooseChannels(list, { known: handlers, robot: page.robot, idle: document.hidden, paused: page.paused });
+  page.connection = new Connection(location.host, tokenOf(), on, wanted);
 }
+
+// A page that nobody sees or that holds its picture costs no network.
+page.choose = () => page.connection?.choose();
+document.addEventListener('visibilitychange', () => {
+  page.quietMs = 0;
+  page.choose();
+});
 
 /** Statistics of another pipeline, such as the sender's: ?also=robot:8765. */
 function connectOthers() {
@@ -169,16 +201,26 @@ function connectOthers() {
       state: () => {},
       message: (_, bytes) => onStatistics(JSON.parse(new TextDecoder().decode(bytes))),
     };
-    new Connection(host, '', on, (c) => c.schemaName === 'lidar.Statistics');
+    new Connection(host, '', on, (list) => list.filter((c) => c.schemaName === 'lidar.Statistics'));
   }
 }
 
 // --- the loop ---
 
+/** What the server paces by, and the age that a viewer sees. */
+function afterDrawing() {
+  page.slices.drawn();
+  if (!page.newest) return;
+  const age = page.newest.ageOf(page.newest.time);
+  page.age = age >= 0 && age < MOST_AGE_S ? age : null;
+  page.newest = null;
+}
+
 let drawn = 0;
 let drawnCharts = 0;
 function frame(now) {
   page.scene.draw();
+  afterDrawing();
   // Where the browser itself was busy, clouds may have come that it has not told of yet.
   page.quietMs += Math.min(now - drawn, BUSY_MS);
   drawn = now;

@@ -1,14 +1,17 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Colours of numbers: for dark and for light grounds, and the same in the scene and its legend.
 
-/** From cold to warm; equal steps of the number look equal. */
+/**
+ * Lightness rises with the number, from blue to yellow: colour-blind people, and prints without
+ * colour, show the same order.
+ */
 const dark = {
-  spectrum: ['#3b4cc0', '#2f86d6', '#27b3b0', '#6ccf7f', '#d8d85c', '#f6a24a', '#e8604c'],
+  spectrum: ['#3d4fa8', '#3a73b4', '#3697b0', '#45b79b', '#86d079', '#cfe25f', '#fff4a8'],
   glow: ['#33415c', '#56708f', '#8ea3b5', '#c9c6b8', '#fff3d6'],
   fade: ['#ffffff', '#7fd6e0', '#2f86d6', '#2a3f78', '#232c45'],
 };
 const light = {
-  spectrum: ['#2b2f8f', '#1f63ad', '#0d8286', '#3a9150', '#9a8a10', '#c66a12', '#b3302c'],
+  spectrum: ['#2a1a5e', '#2f3f8f', '#1f5f94', '#14807f', '#3f9a5c', '#8fa52e', '#c99f1e'],
   glow: ['#b9c0c9', '#8f9aa8', '#657286', '#3f4a60', '#141a2b'],
   fade: ['#0b1a33', '#1f5c8f', '#5b93bd', '#a3bfd4', '#ccd8e2'],
 };

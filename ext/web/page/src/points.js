@@ -5,11 +5,13 @@ import { FLOATS } from './fields.js';
 import { MODES, rampOf, texels } from './palette.js';
 
 const CAPACITY = 1 << 19; // two scans of the largest sensors
-const STRIDE = FLOATS + 1; // and the time
+export const STRIDE = FLOATS + 1; // and the time
+const FOR_EVER_S = 1e6;
+export const NO_CLIP = 1e6;
 
 const vertexShader = `
 attribute vec4 rest;   // intensity, beam, range, time
-uniform float now, span, mode, low, high, scale;
+uniform float now, span, hidden, mode, low, high, scale, floor, ceiling;
 varying float vValue, vFresh, vSize;
 void main() {
   float age = now - rest.w;
@@ -19,7 +21,8 @@ void main() {
   if (mode > 0.5 && mode < 1.5) vValue = sqrt(vValue);
   vFresh = clamp(1.0 - age / span, 0.0, 1.0);
   vec4 view = modelViewMatrix * vec4(position, 1.0);
-  gl_Position = age < -1e-4 || age > span ? vec4(2.0, 2.0, 2.0, 1.0) : projectionMatrix * view;
+  bool isOut = age < -1e-4 || age > hidden || position.z < floor || position.z > ceiling;
+  gl_Position = isOut ? vec4(2.0, 2.0, 2.0, 1.0) : projectionMatrix * view;
   vSize = clamp(scale / -view.z, 1.6, 6.0);
   gl_PointSize = vSize;
 }`;
@@ -40,6 +43,7 @@ void main() {
 export class FreshPoints {
   constructor() {
     this.data = new Float32Array(CAPACITY * STRIDE);
+    this.isTrail = false;
     this.buffer = new THREE.InterleavedBuffer(this.data, STRIDE).setUsage(THREE.DynamicDrawUsage);
     const geometry = new THREE.BufferGeometry();
     geometry.setAttribute('position', new THREE.InterleavedBufferAttribute(this.buffer, 3, 0));
@@ -48,7 +52,10 @@ export class FreshPoints {
     ramp.magFilter = ramp.minFilter = THREE.LinearFilter;
     this.uniforms = {
       now: { value: 0 },
-      span: { value: 0.1 },
+      span: { value: 0.1 }, // until a point has lost its glow
+      hidden: { value: 0.1 }, // until it is not drawn any more
+      floor: { value: -NO_CLIP },
+      ceiling: { value: NO_CLIP },
       mode: { value: 0 },
       low: { value: -2 },
       high: { value: 6 },
@@ -75,7 +82,8 @@ export class FreshPoints {
 
   clear() {
     this.next = 0;
-    this.batches = []; // {start, count, stamp}, the oldest first
+    this.batches = []; // {start, count, stamp, place}, the oldest first
+    this.scan = this.scanBefore = undefined; // of slices
     this.epoch = null; // times are floats: from here on
     this.latest = 0;
     for (const part of this.parts) part.geometry.setDrawRange(0, 0);
@@ -86,8 +94,11 @@ export class FreshPoints {
     return this.parts.reduce((sum, part) => sum + part.geometry.drawRange.count, 0);
   }
 
-  /** `points` as fields.js has them, at `time`, moved by `matrix` where there is one. */
-  add(points, time, matrix) {
+  /**
+   * `points` as fields.js has them, at `time`, moved by `matrix` where there is one. Slices have a
+   * `place`, {scan, slice, slices}: they stay until the next of that place comes.
+   */
+  add(points, time, matrix, place = null) {
     const count = Math.min(points.length / FLOATS, CAPACITY);
     if (this.epoch === null || time - this.epoch > 3600 || time < this.epoch) {
       this.clear();
@@ -113,16 +124,26 @@ export class FreshPoints {
     }
     this.markDirty(start, count);
     this.next = (start + count) % CAPACITY;
-    this.batches.push({ start, count, stamp });
+    this.batches.push({ start, count, stamp, place });
+    if (place && place.scan !== this.scan) [this.scanBefore, this.scan] = [this.scan, place.scan];
+    this.applySpan(place !== null);
     this.forget();
   }
 
-  /** Drops batches that are too old, or overwritten. */
+  /** Whether something newer stands where `batch` was. */
+  isOver({ stamp, place }) {
+    if (!place || this.isTrail) return stamp < this.latest - this.uniforms.hidden.value;
+    if (place.scan === this.scan) return false;
+    const newest = this.batches[this.batches.length - 1].place;
+    if (place.scan !== this.scanBefore || !newest) return true;
+    return (place.slice + 1) * newest.slices <= (newest.slice + 1) * place.slices;
+  }
+
+  /** Drops batches that are over, or overwritten. */
   forget() {
     const { batches } = this;
     let held = batches.reduce((sum, batch) => sum + batch.count, 0);
-    const oldest = this.latest - this.uniforms.span.value;
-    while (batches.length > 1 && (held > CAPACITY || batches[0].stamp < oldest))
+    while (batches.length > 1 && (held > CAPACITY || this.isOver(batches[0])))
       held -= batches.shift().count;
     const start = batches.length ? batches[0].start : 0;
     const first = Math.min(held, CAPACITY - start);
@@ -136,6 +157,36 @@ export class FreshPoints {
     this.buffer.addUpdateRange(start * STRIDE, (end - start) * STRIDE);
     if (start + count > CAPACITY) this.buffer.addUpdateRange(0, (start + count - CAPACITY) * STRIDE);
     this.buffer.needsUpdate = true;
+  }
+
+  /** Calls `visit(offset in data)` for each point that is drawn. */
+  each(visit) {
+    const { floor, ceiling } = this.uniforms;
+    for (const { start, count } of this.batches) {
+      for (let i = 0; i < count; ++i) {
+        const at = ((start + i) % CAPACITY) * STRIDE;
+        const z = this.data[at + 2];
+        if (z >= floor.value && z <= ceiling.value) visit(at);
+      }
+    }
+  }
+
+  /** The drawn point nearest to `[x, y]` of a picture of `width` and `height`, within `reach`. */
+  nearest(camera, { width, height }, [x, y], reach) {
+    const e = new THREE.Matrix4().multiplyMatrices(camera.projectionMatrix, camera.matrixWorldInverse).elements;
+    const { data } = this;
+    let [best, found] = [reach * reach, null];
+    this.each((at) => {
+      const [px, py, pz] = [data[at], data[at + 1], data[at + 2]];
+      const w = e[3] * px + e[7] * py + e[11] * pz + e[15];
+      if (w <= 0) return;
+      const dx = ((e[0] * px + e[4] * py + e[8] * pz + e[12]) / w + 1) * 0.5 * width - x;
+      const dy = (1 - (e[1] * px + e[5] * py + e[9] * pz + e[13]) / w) * 0.5 * height - y;
+      if (dx * dx + dy * dy >= best) return;
+      best = dx * dx + dy * dy;
+      found = [px, py, pz];
+    });
+    return found;
   }
 
   /** After each frame. */
@@ -156,9 +207,21 @@ export class FreshPoints {
     this.uniforms.high.value = high;
   }
 
-  /** How long a point stays [s]. */
-  setSpan(span) {
+  /** How long a point without a place stays [s], and in a trail every point. */
+  setSpan(span, isTrail) {
     this.uniforms.span.value = span;
+    this.isTrail = isTrail;
+    this.applySpan(this.batches[this.batches.length - 1]?.place);
+  }
+
+  applySpan(hasPlaces) {
+    this.uniforms.hidden.value = hasPlaces && !this.isTrail ? FOR_EVER_S : this.uniforms.span.value;
+  }
+
+  /** Only points between these heights [m] are drawn. */
+  setClip(floor, ceiling) {
+    this.uniforms.floor.value = floor;
+    this.uniforms.ceiling.value = ceiling;
   }
 
   update() {

@@ -4,6 +4,7 @@ import * as THREE from 'three';
 import { OrbitControls } from 'three/examples/jsm/controls/OrbitControls.js';
 import { WorldMap } from './map.js';
 import { FreshPoints } from './points.js';
+import { Ruler } from './ruler.js';
 
 const RINGS_M = [10, 20, 30, 40, 50];
 const HOME = new THREE.Vector3(-27, -9, 24);
@@ -52,7 +53,8 @@ export class Scene {
     this.fresh = new FreshPoints();
     this.map = new WorldMap();
     this.rings = rings();
-    this.scene.add(this.map.object, this.rings, this.fresh.object);
+    this.ruler = new Ruler(this.fresh, this.camera, canvas);
+    this.scene.add(this.map.object, this.rings, this.fresh.object, this.ruler.object);
     this.sensor = new THREE.Vector3();
     this.follow = true;
     this.frames = 0;
@@ -90,6 +92,7 @@ export class Scene {
       line.material.opacity = 0.8;
     }
     this.map.setColors(colors.map, colors.accent);
+    this.ruler.setColor(colors.text);
     this.fresh.setColors(mode, isDark);
     this.dirty = true;
   }
@@ -117,8 +120,8 @@ export class Scene {
     this.dirty = true;
   }
 
-  add(points, time, matrix) {
-    this.fresh.add(points, time, matrix);
+  add(points, time, matrix, place) {
+    this.fresh.add(points, time, matrix, place);
     if (matrix) {
       this.moveSensor(matrix);
       this.map.add(points, matrix);
@@ -145,14 +148,36 @@ export class Scene {
     this.dirty = true;
   }
 
-  /** Draws where something has changed. */
+  /** Looks from above. */
+  lookDown() {
+    const { target } = this.controls;
+    const height = this.camera.position.distanceTo(target);
+    this.camera.position.set(target.x - 1e-3 * height, target.y, target.z + height);
+    this.controls.update();
+    this.dirty = true;
+  }
+
+  /** Camera and target from the sensor, as numbers; setting them puts both there. */
+  get pose() {
+    const { position } = this.camera;
+    return [position, this.controls.target].flatMap((v) => v.clone().sub(this.sensor).toArray());
+  }
+
+  set pose(numbers) {
+    this.camera.position.fromArray(numbers, 0).add(this.sensor);
+    this.controls.target.fromArray(numbers, 3).add(this.sensor);
+    this.controls.update();
+    this.dirty = true;
+  }
+
+  /** Draws where something has changed; true where it has. */
   draw() {
     // As long at any frame rate: where one takes a second, the camera would turn on for minutes.
     const now = performance.now();
     this.controls.dampingFactor = 1 - Math.exp((this.drawnAt - now) / DAMPING_MS);
     this.drawnAt = now;
     this.controls.update();
-    if (!this.dirty) return;
+    if (!this.dirty) return false;
     this.dirty = false;
     this.rings.position.copy(this.sensor);
     this.rings.position.z += this.ground;
@@ -161,6 +186,7 @@ export class Scene {
     this.fresh.drawn();
     this.map.drawn();
     ++this.frames;
+    return true;
   }
 
   /** The picture as a PNG. */

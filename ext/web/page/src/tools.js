@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The controls: colours, camera, pause, snapshot, charts, theme; each has a key.
+// The controls: colours, camera, ruler, clip, pause, charts, theme; and the address that keeps them.
 import { FLOATS } from './fields.js';
 import { MODES, rampOf, texels } from './palette.js';
+import { NO_CLIP } from './points.js';
+import { number, t } from './text.js';
 
 const TRAIL_S = 1;
+const SHARE_MS = 400; // until a change is in the address
 const NARROW = '(max-width: 760px)';
 
 const byId = (id) => document.getElementById(id);
@@ -33,22 +36,29 @@ class Tools {
     this.learned = 0;
     this.makeColors();
     this.makeButtons();
+    this.makeClip();
+    this.makeRuler();
     matchMedia('(prefers-color-scheme: dark)').addEventListener('change', () => this.applyTheme());
     this.setPanel(!matchMedia(NARROW).matches);
     this.applyTheme();
     addEventListener('keydown', (event) => this.onKey(event));
+    this.readAddress();
+    page.scene.controls.addEventListener('end', () => this.share());
   }
 
   // --- colours ---
 
   makeColors() {
     const group = byId('colors');
-    for (const [mode, { label }] of Object.entries(MODES)) {
+    for (const mode of Object.keys(MODES)) {
       const button = document.createElement('button');
-      button.textContent = label;
+      button.textContent = t(mode);
       button.dataset.mode = mode;
       button.setAttribute('role', 'radio');
-      button.onclick = () => this.setMode(mode);
+      button.onclick = () => {
+        this.setMode(mode);
+        this.share();
+      };
       group.append(button);
     }
     group.addEventListener('keydown', (event) => {
@@ -78,10 +88,10 @@ class Tools {
     const [low, high] = this.scales[this.mode];
     this.page.scene.fresh.setScale(low, high);
     this.page.scene.dirty = true;
-    const { label, unit } = MODES[this.mode];
+    const { unit } = MODES[this.mode];
     const legend = byId('legend');
-    legend.querySelector('figcaption').textContent = label + (unit ? ` [${unit}]` : '');
-    const round = (v) => (Math.abs(v) < 10 && v % 1 ? v.toFixed(1) : Math.round(v).toLocaleString('en'));
+    legend.querySelector('figcaption').textContent = t(this.mode) + (unit ? ` [${unit}]` : '');
+    const round = (v) => number(v, Math.abs(v) < 10 && v % 1 ? 1 : 0);
     [low, high].forEach((v, i) => (legend.querySelectorAll('span')[i].textContent = round(v)));
     const context = legend.querySelector('canvas').getContext('2d');
     const pixels = texels(rampOf(this.mode, this.isDark));
@@ -125,7 +135,7 @@ class Tools {
   setSpan() {
     const trail = byId('trail').getAttribute('aria-pressed') === 'true';
     const span = trail ? TRAIL_S : this.page.spanS * 0.995;
-    this.page.scene.fresh.setSpan(span);
+    this.page.scene.fresh.setSpan(span, trail);
     this.scales.age[1] = Math.round(span * 1000);
     if (this.mode === 'age') this.applyScale();
     this.page.scene.dirty = true;
@@ -161,15 +171,111 @@ class Tools {
         this.toggle('trail', !this.isOn('trail'));
         this.setSpan();
       },
+      measure: () => page.scene.ruler.turn(this.toggle('measure', !this.isOn('measure'))),
+      top: () => page.scene.lookDown(),
       pause: () => {
         page.paused = this.toggle('pause', !this.isOn('pause'));
+        page.choose();
         page.showState();
       },
       snapshot: () => this.snapshot(),
       panel: () => this.setPanel(!this.isOn('panel')),
+      more: () => this.setSheet(document.body.dataset.sheet === 'closed'),
       theme: () => this.nextTheme(),
     };
-    for (const [id, action] of Object.entries(actions)) byId(id).onclick = action;
+    for (const [id, action] of Object.entries(actions)) byId(id).onclick = () => {
+        action();
+        this.share();
+      };
+  }
+
+  // --- ruler and clip ---
+
+  makeRuler() {
+    const text = byId('distance');
+    this.page.scene.ruler.onChange = ({ points, distance, rise }) => {
+      this.page.scene.dirty = true;
+      text.hidden = !this.isOn('measure');
+      if (distance !== null) text.textContent = `${number(distance, 2)} m  (Δz ${number(rise, 2)} m)`;
+      else text.textContent = t(points.length ? 'measure_second' : 'measure_first');
+    };
+  }
+
+  makeClip() {
+    const inputs = [byId('clip_low'), byId('clip_high')];
+    this.clip = inputs;
+    for (const input of inputs) {
+      input.oninput = () => this.applyClip();
+      input.onchange = () => this.share();
+    }
+    this.applyClip();
+  }
+
+  /** The ends of the sliders stand for no clip. */
+  applyClip() {
+    const [low, high] = this.clip.map((input) => Number(input.value));
+    const isEnd = [low <= Number(this.clip[0].min), high >= Number(this.clip[1].max)];
+    this.page.scene.fresh.setClip(isEnd[0] ? -NO_CLIP : low, isEnd[1] ? NO_CLIP : high);
+    this.page.scene.dirty = true;
+    [low, high].forEach((value, i) => {
+      this.clip[i].parentElement.querySelector('output').textContent = isEnd[i] ? '–' : number(value, 1);
+    });
+  }
+
+  // --- robots ---
+
+  setRobots(robots) {
+    const select = byId('robot');
+    select.hidden = robots.length < 2;
+    if (`${robots}` === `${this.robots}`) return;
+    this.robots = robots;
+    select.replaceChildren(...robots.map((name) => new Option(name, name)));
+    if (robots.includes(this.page.robot)) select.value = this.page.robot;
+    select.onchange = () => {
+      this.page.robot = select.value;
+      this.page.scene.clear();
+      this.page.choose();
+      this.share();
+    };
+  }
+
+  // --- the address ---
+
+  /** Puts into the address what another viewer needs to see the same. */
+  share() {
+    clearTimeout(this.sharing);
+    this.sharing = setTimeout(() => {
+      const [low, high] = this.clip;
+      const settings = {
+        color: this.mode === 'height' ? null : this.mode,
+        robot: this.page.robot || null,
+        trail: this.isOn('trail') ? 1 : null,
+        from: low.value === low.min ? null : low.value,
+        to: high.value === high.max ? null : high.value,
+        camera: this.page.scene.pose.map((v) => v.toFixed(1)).join(),
+      };
+      const kept = Object.entries(settings).filter(([, value]) => value !== null);
+      const url = new URL(location.href);
+      url.hash = new URLSearchParams(kept);
+      history.replaceState(null, '', url);
+    }, SHARE_MS);
+  }
+
+  readAddress() {
+    const settings = new URLSearchParams(location.hash.slice(1));
+    if (settings.get('color') in MODES) this.setMode(settings.get('color'));
+    this.page.robot = settings.get('robot') ?? '';
+    if (settings.get('trail')) this.toggle('trail', true);
+    if (settings.get('from')) this.clip[0].value = settings.get('from');
+    if (settings.get('to')) this.clip[1].value = settings.get('to');
+    this.applyClip();
+    const camera = (settings.get('camera') ?? '').split(',').map(Number);
+    if (camera.length === 6 && camera.every(Number.isFinite)) this.page.scene.pose = camera;
+  }
+
+  setSheet(open) {
+    byId('more').setAttribute('aria-expanded', open);
+    document.body.dataset.sheet = open ? 'open' : 'closed';
   }
 
   setPanel(open) {
@@ -187,7 +293,7 @@ class Tools {
   }
 
   onKey(event) {
-    if (event.ctrlKey || event.metaKey || event.altKey || event.target.tagName === 'INPUT') return;
+    if (event.ctrlKey || event.metaKey || event.altKey || ['INPUT', 'SELECT'].includes(event.target.tagName)) return;
     const inScene = event.target === byId('scene') || event.target === document.body;
     const { scene } = this.page;
     const moves = {
@@ -204,7 +310,7 @@ class Tools {
       return scene.nudge(...moves[event.key]);
     }
     if (inScene && event.key === '0') return scene.home();
-    const buttons = { f: 'follow', m: 'map', t: 'trail', s: 'snapshot', c: 'panel', d: 'theme' };
+    const buttons = { f: 'follow', m: 'map', t: 'trail', s: 'snapshot', c: 'panel', d: 'theme', r: 'measure', o: 'top' };
     const id = inScene && event.key === ' ' ? 'pause' : buttons[event.key.toLowerCase()];
     if (!id || byId(id).disabled) return;
     event.preventDefault();
@@ -238,7 +344,7 @@ class Tools {
       series: [color('accent'), color('second'), color('third')],
     };
     this.page.scene.setTheme(
-      { ground: color('ground'), line: color('line'), accent: color('accent'), map: color('map') },
+      { ground: color('ground'), text: color('text'), line: color('line'), accent: color('accent'), map: color('map') },
       this.mode,
       this.isDark,
     );

@@ -97,6 +97,16 @@ export function compressedCloud(bytes) {
   };
 }
 
+/** foxglove.CompressedVideo: one access unit. */
+export function compressedVideo(bytes) {
+  const m = collect(bytes, { 1: 'time', 3: 'data', 4: 'format' });
+  return {
+    time: seconds(m.time),
+    format: m.format ? utf8.decode(m.format) : '',
+    data: m.data ?? new Uint8Array(),
+  };
+}
+
 /** foxglove.FrameTransform. */
 export function frameTransform(bytes) {
   const m = collect(bytes, { 1: 'time', 2: 'parent', 3: 'child', 4: 'translation', 5: 'rotation' });

@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Streams of slices as the robot coded them: what comes, what the worker makes of it, and what the
+// server is told of it.
+import { Clock } from './clock.js';
+
+const HEADER = 24;
+const VERSION = 1;
+const NO_REFERENCE_MS = 1000; // between two complaints
+
+/** A module of one function, whose only instruction is of SIMD. */
+const SIMD = [0, 97, 115, 109, 1, 0, 0, 0, 1, 5, 1, 96, 0, 1, 123, 3, 2, 1, 0, 10, 10, 1, 8, 0, 65, 0, 253, 15, 253, 98, 11];
+
+export const canDecode = () => typeof Worker === 'function' && WebAssembly.validate(new Uint8Array(SIMD));
+
+const fromBase64 = (text) => Uint8Array.from(atob(text), (c) => c.charCodeAt(0));
+
+/** The header of a message, or null where this page does not know it. */
+export function readHeader(bytes) {
+  if (bytes.length < HEADER) return null;
+  const view = new DataView(bytes.buffer, bytes.byteOffset, HEADER);
+  if (view.getUint8(0) !== VERSION) return null;
+  return {
+    recoded: (view.getUint8(1) & 1) !== 0,
+    slice: view.getUint16(2, true),
+    slices: view.getUint16(4, true),
+    scan: view.getUint32(8, true),
+    sent: Number(view.getBigUint64(16, true)) * 1e-9,
+  };
+}
+
+class Stream {
+  constructor(id, channel, about) {
+    Object.assign(this, { id, channel, about });
+    this.clock = new Clock();
+    this.waiting = new Map(); // headers of slices that the worker has
+    this.newest = null; // that has come from there
+    this.told = null; // the server
+    this.complained = 0;
+  }
+}
+
+export class Slices {
+  /** `on.points(stream, header, decoded)`; `connection()` gives the one that streams come by. */
+  constructor(on, connection) {
+    Object.assign(this, { on, connection });
+    this.streams = new Map(); // by channel
+    this.ids = 0;
+    this.damaged = 0;
+  }
+
+  open(channel) {
+    const about = JSON.parse(channel.schema);
+    const stream = new Stream(++this.ids, channel, about);
+    this.streams.set(channel, stream);
+    if (!this.worker) {
+      this.worker = new Worker(new URL('./slice_worker.js', import.meta.url), { type: 'module' });
+      this.worker.onmessage = ({ data }) => this.decoded(data);
+    }
+    const model = about.geometry === 'range' ? fromBase64(about.sensorModel) : new Uint8Array();
+    this.worker.postMessage({ open: stream.id, model });
+    return stream;
+  }
+
+  close(channel) {
+    const stream = this.streams.get(channel);
+    if (!stream) return;
+    this.streams.delete(channel);
+    this.worker.postMessage({ close: stream.id });
+  }
+
+  /** A message of `channel`; `captured` in nanoseconds. */
+  add(channel, bytes, captured) {
+    const header = readHeader(bytes);
+    if (!header) return;
+    const stream = this.streams.get(channel) ?? this.open(channel);
+    header.captured = Number(captured) * 1e-9;
+    header.came = stream.clock.arrived(header.sent);
+    const id = ++this.ids;
+    stream.waiting.set(id, header);
+    const offset = bytes.byteOffset + HEADER;
+    this.worker.postMessage({ stream: stream.id, id, data: bytes.buffer, offset }, [bytes.buffer]);
+  }
+
+  decoded({ stream: id, id: slice, ...result }) {
+    const stream = [...this.streams.values()].find((s) => s.id === id);
+    const header = stream?.waiting.get(slice);
+    if (!header) return; // the stream has ended
+    stream.waiting.delete(slice);
+    stream.newest = header;
+    if (result.points) return this.on.points(stream, header, result);
+    ++this.damaged;
+    const now = performance.now();
+    if (!result.lacksReference || now - stream.complained < NO_REFERENCE_MS) return;
+    stream.complained = now;
+    this.connection().tell('lacksReference', stream.channel);
+  }
+
+  /** The page has drawn all that has come so far. */
+  drawn() {
+    for (const stream of this.streams.values()) {
+      const { newest } = stream;
+      if (newest === stream.told) continue;
+      stream.told = newest;
+      this.connection().tell('drawn', stream.channel, { scan: newest.scan, slice: newest.slice });
+    }
+  }
+}

@@ -1,0 +1,174 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Slices that the page decodes itself, and what it tells the server of them.
+import assert from 'node:assert/strict';
+import { after, before, test } from 'node:test';
+import { FakeServer, jsonChannel, recordSlices, sliceChannel } from './fake_server.mjs';
+import { freePort, openBrowser, openPage, sleep, until } from './support.mjs';
+
+const limits = { timeout: 240_000 };
+let browser;
+let recorded;
+
+before(async () => {
+  recorded = recordSlices();
+  browser = await openBrowser();
+}, limits);
+after(() => browser?.close());
+
+const points = (page) => page.evaluate(() => window.lidarPage.scene.fresh.count);
+
+async function open(channels, { rest = '', options = {}, server: how = {} } = {}) {
+  const port = await freePort();
+  const server = await FakeServer.start(port, channels, how);
+  const { page, context, complaints } = await openPage(browser, `http://127.0.0.1:${port}/${rest}`, options);
+  const close = async () => {
+    await context.close();
+    await server.stop();
+  };
+  return { server, page, complaints, close };
+}
+
+const acknowledged = (server) => server.told.filter((m) => m.op === 'drawn').at(-1);
+
+test('slices are decoded and drawn, and the page says which', limits, async () => {
+  const clouds = { ...jsonChannel(1, '/points', 'foxglove.PointCloud'), encoding: 'protobuf' };
+  const { server, page, complaints, close } = await open([clouds, sliceChannel(2, '/points', recorded)]);
+  await until('a subscription', () => server.subscribed.has(2));
+  assert.ok(!server.subscribed.has(1), 'clouds come, too');
+  for (let i = 0; i < 16; ++i) server.sendSlice(2, recorded, i, 70);
+  await until('acknowledgements', () => acknowledged(server)?.scan === 1 && acknowledged(server)?.slice === 7);
+  assert.ok((await points(page)) > 1000);
+  const age = await page.evaluate(() => window.lidarPage.age);
+  assert.ok(age > 0.07 && age < 30, `${age} s old`);
+  assert.deepEqual(complaints, []);
+  await close();
+});
+
+test('a whole scan stays, however few come', limits, async () => {
+  const { server, page, close } = await open([sliceChannel(2, '/points', recorded)]);
+  await until('a subscription', () => server.subscribed.has(2));
+  for (let i = 0; i < 8; ++i) server.sendSlice(2, recorded, i);
+  await until('a scan', () => acknowledged(server)?.slice === 7);
+  const whole = await points(page);
+  // The next that comes is four scans later; half of it replaces half.
+  for (let i = 32; i < 36; ++i) server.sendSlice(2, recorded, i);
+  await until('half a scan', () => acknowledged(server)?.scan === 4 && acknowledged(server)?.slice === 3);
+  const mixed = await points(page);
+  assert.ok(Math.abs(mixed - whole) < 0.2 * whole, `${whole} points, then ${mixed}`);
+  await close();
+});
+
+test('damage costs slices, and what lacks a reference is asked for once a second', limits, async () => {
+  const cut = { ...recorded, coded: recorded.coded.map((slice) => slice.subarray(0, slice.length / 2)) };
+  const { server, page, complaints, close } = await open([sliceChannel(2, '/points', recorded)]);
+  await until('a subscription', () => server.subscribed.has(2));
+  for (let i = 0; i < 8; ++i) server.sendSlice(2, cut, i);
+  await until('acknowledgements', () => acknowledged(server)?.slice === 7);
+  assert.equal(await page.evaluate(() => window.lidarPage.slices.damaged), 8);
+  for (let i = 8; i < 16; ++i) server.sendSlice(2, recorded, i);
+  await until('points', async () => (await points(page)) > 1000);
+  assert.deepEqual(complaints, []);
+  await close();
+});
+
+test('a sensor model that is damaged leaves the page alive', limits, async () => {
+  const broken = { ...recorded, about: { ...recorded.about, sensorModel: 'AAAA' } };
+  const { server, complaints, close } = await open([sliceChannel(2, '/points', broken)]);
+  await until('a subscription', () => server.subscribed.has(2));
+  server.sendSlice(2, recorded, 0);
+  await until('an acknowledgement', () => acknowledged(server));
+  assert.deepEqual(complaints, []);
+  await close();
+});
+
+test('one robot of a fleet is shown, and the address keeps which', limits, async () => {
+  const channels = [sliceChannel(1, '/r7/points', recorded), sliceChannel(2, '/r8/points', recorded)];
+  const { server, page, complaints, close } = await open(channels, { rest: '#robot=r8&color=range' });
+  await until('a subscription', () => server.subscribed.has(2));
+  assert.ok(!server.subscribed.has(1));
+  assert.equal(await page.getAttribute('[data-mode=range]', 'aria-checked'), 'true');
+  await page.selectOption('#robot', 'r7');
+  await until('the other', () => server.subscribed.has(1) && !server.subscribed.has(2));
+  await until('the address', () => page.url().includes('robot=r7'));
+  assert.deepEqual(complaints, []);
+  await close();
+});
+
+test('a page that is paused takes no slices', limits, async () => {
+  const { server, page, close } = await open([sliceChannel(2, '/points', recorded)]);
+  await until('a subscription', () => server.subscribed.has(2));
+  await page.click('#pause');
+  await until('none', () => !server.subscribed.has(2));
+  await page.click('#pause');
+  await until('a subscription', () => server.subscribed.has(2));
+  await close();
+});
+
+test('statistics of two links are two lines, and a fast link flattens nothing', limits, async () => {
+  const { server, page, complaints, close } = await open([jsonChannel(1, '/statistics', 'lidar.Statistics')]);
+  await until('a subscription', () => server.subscribed.has(1));
+  const link = (name, sent, rtt) => ({ link: name, sent_bitrate: sent, rtt });
+  const message = {
+    estimated_capacity: 118e6, target_bitrate: 4.2e6, sent_bitrate: 4.1e6,
+    elements: { tx: { links: [link('wwan0', 3e6, 40e6), link('wwan1', 1e6, 60e6)] } },
+  };
+  server.send(1, Buffer.from(JSON.stringify(message)));
+  const shown = await until('links', () =>
+    page.$$eval('.chart:not([hidden])', (all) => all.map((c) => c.innerText).filter((s) => s.includes('wwan1'))),
+  );
+  assert.equal(shown.length, 2);
+  assert.match(shown[0], /wwan0\s+3\.00/);
+  const top = await page.evaluate(() => {
+    const chart = window.lidarPage.charts.charts.find((c) => c.config.title === 'Bitrate');
+    return chart.top();
+  });
+  assert.ok(top < 13, `${top} Mbit/s high`);
+  assert.deepEqual(complaints, []);
+  await close();
+});
+
+test('a wrong token is said to be wrong', limits, async () => {
+  const { page, close } = await open([], { server: { token: 'right' } });
+  await until('the dialog', () => page.isVisible('#entry'));
+  assert.ok(!(await page.isVisible('#wrong')));
+  await page.fill('#token', 'other');
+  await page.keyboard.press('Enter');
+  await until('the refusal', () => page.isVisible('#wrong'));
+  assert.match(await page.textContent('#wrong'), /wrong/);
+  await close();
+});
+
+test('the page speaks German', limits, async () => {
+  const { page, complaints, close } = await open([], { options: { locale: 'de-DE' } });
+  assert.equal(await page.getAttribute('html', 'lang'), 'de');
+  assert.equal(await page.textContent('[data-mode=height]'), 'Höhe');
+  assert.deepEqual(complaints, []);
+  await close();
+});
+
+test('the distance between two points is measured, and heights are clipped', limits, async () => {
+  const { server, page, complaints, close } = await open([sliceChannel(2, '/points', recorded)]);
+  await until('a subscription', () => server.subscribed.has(2));
+  for (let i = 0; i < 8; ++i) server.sendSlice(2, recorded, i);
+  await until('a scan', () => acknowledged(server)?.slice === 7);
+  await page.click('#more');
+  await page.click('#measure');
+  const places = await page.evaluate(() => {
+    const { fresh, camera, canvas, sensor } = window.lidarPage.scene;
+    const { width, height } = canvas.getBoundingClientRect();
+    const seen = [];
+    fresh.each((at) => {
+      const p = sensor.clone().fromArray(fresh.data, at).project(camera);
+      if (Math.abs(p.x) < 0.5 && Math.abs(p.y) < 0.4) seen.push([((p.x + 1) / 2) * width, ((1 - p.y) / 2) * height]);
+    });
+    return [seen[0], seen.at(-1)];
+  });
+  for (const [x, y] of places) await page.mouse.click(x, y);
+  await until('a distance', async () => /\d m/.test(await page.textContent('#distance')));
+  await page.fill('#clip_high', '-1');
+  await sleep(600);
+  assert.match(page.url(), /to=-1/);
+  assert.match(await page.textContent('.clip'), /-1\.0|−1\.0/);
+  assert.deepEqual(complaints, []);
+  await close();
+});
