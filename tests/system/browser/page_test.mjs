@@ -136,6 +136,25 @@ test('Draco clouds are decoded in the page', limits, async () => {
   await pipeline.stop();
 });
 
+test('slices go to the page as the robot coded them', limits, async () => {
+  const port = await freePort();
+  const pipeline = await Pipeline.start(`${SENSOR} ! lidarenc ! foxglovesink port=${port}`, port);
+  const { page, context, complaints } = await openPage(browser, address(port));
+  await isLive(page);
+  await until('points', async () => (await look(page)).drawn > 1000);
+  const read = () => page.evaluate(() => ({ ...window.lidarPage.received, age: window.lidarPage.age }));
+  const before = (await read())['lidar.Slice'].messages;
+  // The server goes on only where scans are acknowledged.
+  await until('ten more scans', async () => (await read())['lidar.Slice'].messages > before + 80);
+  const now = await read();
+  assert.equal(now['foxglove.PointCloud'], undefined, 'decoded clouds come, too');
+  assert.ok(now.age > 0 && now.age < 30, `${now.age} s old`);
+  assert.equal(await page.evaluate(() => window.lidarPage.slices.damaged), 0);
+  assert.deepEqual(complaints, []);
+  await context.close();
+  await pipeline.stop();
+});
+
 test('the page comes back when the server does', limits, async () => {
   const port = await freePort();
   const way = `${SENSOR} ! foxglovesink port=${port}`;
