@@ -7,7 +7,6 @@ GST_ELEMENT_REGISTER_DECLARE(pointcloudfilter)
 GST_ELEMENT_REGISTER_DECLARE(pcdenc)
 GST_ELEMENT_REGISTER_DECLARE(plyenc)
 GST_ELEMENT_REGISTER_DECLARE(scanassembler)
-GST_ELEMENT_REGISTER_DECLARE(pointcloudorganize)
 GST_ELEMENT_REGISTER_DECLARE(pointcloudparse)
 
 static gboolean plugin_init(GstPlugin* plugin) {
@@ -15,7 +14,6 @@ static gboolean plugin_init(GstPlugin* plugin) {
   return GST_ELEMENT_REGISTER(pcdenc, plugin) && GST_ELEMENT_REGISTER(plyenc, plugin) &&
          GST_ELEMENT_REGISTER(pointcloudfilter, plugin) &&
          GST_ELEMENT_REGISTER(pointcloudmerge, plugin) &&
-         GST_ELEMENT_REGISTER(pointcloudorganize, plugin) &&
          GST_ELEMENT_REGISTER(pointcloudparse, plugin) &&
          GST_ELEMENT_REGISTER(scanassembler, plugin) && lidar::gst::RegisterCloudFileTypes(plugin);
 }

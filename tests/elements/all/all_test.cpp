@@ -133,13 +133,13 @@ std::string NameOf(const ::testing::TestParamInfo<std::string>& info) {
 // The registry is there only after gst_init, so the elements are named here; the test below keeps
 // the list whole.
 const std::vector<std::string> kElements = {
-    "bitrateadapter",  "lidarenc",       "lidardec",      "dracodec",      "dracoenc",
-    "ecnudpsink",      "ecnudpsrc",      "foxglovesink",  "lidarodometry", "lidartestsrc",
-    "mcapsink",        "mcapsrc",        "natssink",      "natssrc",       "pointcloudfilter",
-    "pointcloudmerge", "ouster_src",     "pcdenc",        "plyenc",        "pointcloudorganize",
-    "pointcloudparse", "pointcloudview", "rtplidardepay", "ros2sink",      "ros2src",
-    "rtplidarpay",     "scanassembler",  "screamaux",     "screamrx",      "screamsink",
-    "screamsrc",       "screamtx"};
+    "bitrateadapter",  "lidarenc",      "lidardec",     "dracodec",      "dracoenc",
+    "ecnudpsink",      "ecnudpsrc",     "foxglovesink", "lidarodometry", "lidartestsrc",
+    "mcapsink",        "mcapsrc",       "natssink",     "natssrc",       "pointcloudfilter",
+    "pointcloudmerge", "ouster_src",    "pcdenc",       "plyenc",        "pointcloudparse",
+    "pointcloudview",  "rtplidardepay", "ros2sink",     "ros2src",       "rtplidarpay",
+    "scanassembler",   "screamaux",     "screamrx",     "screamsink",    "screamsrc",
+    "screamtx"};
 
 std::vector<std::string> Built() {
   gst_init(nullptr, nullptr);
