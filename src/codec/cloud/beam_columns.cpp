@@ -54,8 +54,8 @@ std::optional<BeamTable> FindColumns(const FoundBeams& found, bool passing,
     }
     table.beams.push_back(beam);
   }
-  const bool is_exact = quantum == step;
-  if (!is_exact && FindRoundedPlaces(azimuths, quantum, &table)) {
+  const bool is_exact = quantum > 0.8 * step;
+  if (!is_exact && FindRoundedPlaces(azimuths, quantum, step, &table)) {
     Recentre(azimuths, &table);
     return table;
   }

@@ -63,26 +63,26 @@ bool BeamKeeper::PlaceByOld(const std::vector<Sighting>& points, std::vector<Pla
   std::vector<StraightAzimuth> straight;
   straight.reserve(placed->size());
   for (const PlacedPoint& p : *placed) straight.push_back({p.azimuth, p.beam});
-  if (!UpdateColumns(straight, &*table_)) return false;
+  const bool updated = UpdateColumns(straight, &*table_);
   PlaceOnBeams(points, *table_, placed);
   PlaceInColumns(*table_, placed);
+  if (!updated) return false;
   return FitOf(points, *placed) >= kAlike * fit_;
 }
 
 const BeamTable* BeamKeeper::Place(const std::vector<Sighting>& points,
                                    std::vector<PlacedPoint>* placed) {
-  if (table_ && PlaceByOld(points, placed)) return &*table_;
-  if (!table_ && pause_ > 0) {
-    --pause_;
-    return nullptr;
+  if (table_ && PlaceByOld(points, placed)) {
+    fails_ = 0;
+    return &*table_;
   }
+  ++fails_;
+  constexpr unsigned kAtFirst = 4;
+  const bool is_power = (fails_ & (fails_ - 1)) == 0;
+  if (fails_ > kAtFirst && !is_power && fails_ % kLongestPause != 0)
+    return table_ ? &*table_ : nullptr;
   table_ = FindBeams(points);
-  if (!table_) {
-    pause_ = next_pause_;
-    next_pause_ = std::min(2 * next_pause_, kLongestPause);
-    return nullptr;
-  }
-  next_pause_ = 1;
+  if (!table_) return nullptr;
   PlaceOnBeams(points, *table_, placed);
   PlaceInColumns(*table_, placed);
   fit_ = FitOf(points, *placed);

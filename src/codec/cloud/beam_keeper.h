@@ -22,7 +22,8 @@ struct PlacedPoint {
 class BeamKeeper {
  public:
   /// Places the points of a cloud in the beams of the clouds before if they fit, else in those that
-  /// it finds. Returns null where it finds none.
+  /// it finds. Returns null where it finds none. It looks for others less and less often while none
+  /// fit.
   const BeamTable* Place(const std::vector<Sighting>& points, std::vector<PlacedPoint>* placed);
 
  private:
@@ -30,8 +31,7 @@ class BeamKeeper {
 
   std::optional<BeamTable> table_;
   double fit_ = 0;      // part of the points that are near their pixels
-  unsigned pause_ = 0;  // clouds until beams are looked for again
-  unsigned next_pause_ = 1;
+  unsigned fails_ = 0;  // clouds in a row that did not fit
 };
 
 }  // namespace lidar::codec::cloud

@@ -177,6 +177,28 @@ void DropWeakBeams(std::size_t fewest, FoundBeams* found) {
             [](const FoundBeam& a, const FoundBeam& b) { return a.line.tangent > b.line.tangent; });
 }
 
+/// Beams that were found twice become one.
+void MergeTwins(const std::vector<Sighting>& points, double reach_m, FoundBeams* found) {
+  auto& beams = found->beams;
+  for (std::size_t i = 1; i < beams.size();) {
+    constexpr double kMostApart = 0.005;  // of tangents
+    FoundBeam both = beams[i - 1].points.size() > beams[i].points.size() ? beams[i - 1] : beams[i];
+    both.points = beams[i - 1].points;
+    both.points.insert(both.points.end(), beams[i].points.begin(), beams[i].points.end());
+    Refit(points, &both);
+    const auto near = std::count_if(both.points.begin(), both.points.end(), [&](std::uint32_t p) {
+      return std::abs(both.line.Above(points[p])) < reach_m;
+    });
+    if (beams[i - 1].line.tangent - beams[i].line.tangent > kMostApart ||
+        static_cast<double>(near) < 0.95 * static_cast<double>(both.points.size())) {
+      ++i;
+      continue;
+    }
+    beams[i - 1] = std::move(both);
+    beams.erase(beams.begin() + static_cast<std::ptrdiff_t>(i));
+  }
+}
+
 }  // namespace
 
 FoundBeams FindMeetingBeams(const std::vector<Sighting>& points) {
@@ -220,6 +242,7 @@ FoundBeams FindPassingBeams(const std::vector<Sighting>& points) {
     DropWeakBeams(kFewest, &found);
     for (FoundBeam& beam : found.beams) Refit(points, &beam);
   }
+  MergeTwins(points, 0.003, &found);
   Assign(points, 0.003, &found);
   DropWeakBeams(kFewest, &found);
   return found;

@@ -2,6 +2,7 @@
 #include "src/codec/cloud/cloud_encoder.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numeric>
 #include <utility>
@@ -63,11 +64,10 @@ std::optional<PixelErrors> CheapestErrors(PlacedCloud cloud, double error_m) {
   return best;
 }
 
-/// If points lie closer together than cells, cells are cheaper than ranges.
-std::vector<double> NearestLimits(unsigned effort, double error_m) {
-  if (effort < EffortControl::kHighest) return {50 * error_m};
-  return {0, 30 * error_m, 60 * error_m, 120 * error_m};
-}
+/// If points lie closer together than cells, cells are cheaper than ranges: up to so many errors
+/// from the sensor.
+constexpr double kUsualReach = 50;
+constexpr std::array<double, 8> kReaches = {0, 15, 25, 35, kUsualReach, 70, 100, 150};
 
 }  // namespace
 
@@ -192,6 +192,31 @@ bool CloudEncoder::EncodeBeams(const BeamTable& table, const PixelErrors& errors
   return true;
 }
 
+/// Codes the beams as each effort does; what is near goes to cells up to where the lowest has
+/// least.
+bool CloudEncoder::EncodeBeamsInAllWays(const BeamTable& table, const PixelErrors& errors,
+                                        Candidate* best) {
+  const unsigned effort = effort_;
+  const CloudHeader header = best->header;
+  bool found = false;
+  const auto attempt = [&](unsigned lower, double reach) {
+    Candidate candidate;
+    candidate.header = header;
+    effort_ = lower;
+    const bool coded = EncodeBeams(table, errors, reach * errors.error_m, &candidate);
+    effort_ = effort;
+    if (!coded || (found && candidate.size() >= best->size())) return false;
+    *best = std::move(candidate);
+    found = true;
+    return true;
+  };
+  double cheapest = kUsualReach;
+  for (const double reach : kReaches)
+    if (attempt(1, reach)) cheapest = reach;
+  for (unsigned lower = 2; lower <= effort; ++lower) attempt(lower, cheapest);
+  return found;
+}
+
 CloudEncoder::Candidate CloudEncoder::EncodeSmallest(const CloudHeader& header, double error_m) {
   Candidate best;
   best.header = header;
@@ -202,13 +227,9 @@ CloudEncoder::Candidate CloudEncoder::EncodeSmallest(const CloudHeader& header, 
   const auto errors =
       table != nullptr ? CheapestErrors({&sightings_, &placed_, table}, error_m) : std::nullopt;
   if (errors) {
-    for (const double nearest_m : NearestLimits(effort_, error_m)) {
-      Candidate candidate;
-      candidate.header = header;
-      if (!EncodeBeams(*table, *errors, nearest_m, &candidate)) continue;
-      if (!found || candidate.size() < best.size()) best = std::move(candidate);
-      found = true;
-    }
+    found = effort_ < EffortControl::kHighest
+                ? EncodeBeams(*table, *errors, kUsualReach * error_m, &best)
+                : EncodeBeamsInAllWays(*table, *errors, &best);
   }
   if (found && effort_ < EffortControl::kHighest) return best;
   Candidate cells;

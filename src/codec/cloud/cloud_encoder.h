@@ -57,6 +57,7 @@ class CloudEncoder {
                  Candidate* candidate);
   bool EncodeBeams(const BeamTable& table, const PixelErrors& errors, double nearest_m,
                    Candidate* candidate);
+  bool EncodeBeamsInAllWays(const BeamTable& table, const PixelErrors& errors, Candidate* best);
   Candidate EncodeSmallest(const CloudHeader& header, double error_m);
   void Write(const Candidate& candidate, EncodedSlice* slice) const;
   void WriteFarPoints(const IntensityScale& scale, std::vector<std::uint8_t>* out) const;

@@ -72,6 +72,23 @@ void SetPlaces(const std::vector<double>& places, BeamTable* table) {
   }
 }
 
+/// Adds the firings that saw nothing.
+std::vector<std::uint32_t> WithGapsFilled(const std::vector<std::uint32_t>& places, double step,
+                                          std::uint32_t grains) {
+  std::vector<std::uint32_t> filled;
+  const auto fill_to = [&](std::uint32_t end) {
+    const std::uint32_t last = filled.empty() ? 0 : filled.back();
+    const auto gap = static_cast<std::uint32_t>(std::lround((end - last) / step));
+    for (std::uint32_t k = 1; k < gap; ++k) filled.push_back(last + (end - last) * k / gap);
+  };
+  for (const std::uint32_t place : places) {
+    fill_to(place);
+    filled.push_back(place);
+  }
+  fill_to(grains);
+  return filled;
+}
+
 /// Column 0 of all beams looks ahead.
 void AlignDelays(BeamTable* table) {
   for (BeamTable::Beam& beam : table->beams) {
@@ -195,8 +212,10 @@ class DelaySearch {
 
 class RoundedColumns {
  public:
-  RoundedColumns(const std::vector<BeamAzimuths>& beams, double quantum)
-      : beams_(beams), grains_(static_cast<std::uint32_t>(std::lround(kTurn / quantum))) {
+  RoundedColumns(const std::vector<BeamAzimuths>& beams, double quantum, double step)
+      : beams_(beams),
+        step_(step),
+        grains_(static_cast<std::uint32_t>(std::lround(kTurn / quantum))) {
     votes_.assign(grains_, 0);
   }
   /// False where the beams do not agree.
@@ -255,7 +274,9 @@ class RoundedColumns {
   bool Fill(BeamTable* table) const {
     std::uint64_t all = 0;
     for (const int v : votes_) all += static_cast<std::uint64_t>(v);
-    const double mean = static_cast<double>(all) / grains_;
+    const auto seen = grains_ - std::count(votes_.begin(), votes_.end(), 0);
+    const double mean =
+        static_cast<double>(all) / static_cast<double>(std::max<std::int64_t>(seen, 1));
     table->places.clear();
     std::uint64_t taken = 0;
     for (std::uint32_t i = 0; i < grains_; ++i) {
@@ -263,13 +284,12 @@ class RoundedColumns {
       taken += static_cast<std::uint64_t>(votes_[i]);
       table->places.push_back(i);
     }
-    const bool agrees = static_cast<double>(taken) > 0.9 * static_cast<double>(all) &&
-                        static_cast<double>(table->places.size()) < 0.8 * grains_;
-    if (!agrees) {
+    if (static_cast<double>(taken) < 0.9 * static_cast<double>(all)) {
       table->places.clear();
       return false;
     }
     table->grains = grains_;
+    table->places = WithGapsFilled(table->places, step_ / kTurn * grains_, grains_);
     table->turn = static_cast<std::uint32_t>(table->places.size()) * BeamTable::kParts;
     for (std::uint32_t b = 0; b < table->rows(); ++b) {
       const double azimuth = (delays_[b] + phases_[b]) / grains_ * kTurn;
@@ -281,6 +301,7 @@ class RoundedColumns {
   }
 
   const std::vector<BeamAzimuths>& beams_;
+  double step_;
   std::uint32_t grains_;
   std::vector<int> votes_;
   std::vector<std::vector<std::uint32_t>> grains_of_;
@@ -386,13 +407,9 @@ std::vector<std::uint32_t> VotedPlaces(const std::vector<StraightAzimuth>& azimu
       if (votes[i] > votes[places.back()]) places.back() = i;
       continue;
     }
-    // Firings that saw nothing are between.
-    const std::uint32_t last = places.empty() ? 0 : places.back();
-    const auto gap = static_cast<std::uint32_t>(std::lround((i - last) / step));
-    for (std::uint32_t k = 1; k < gap; ++k) places.push_back(last + (i - last) * k / gap);
     places.push_back(i);
   }
-  return places;
+  return WithGapsFilled(places, step, table.grains);
 }
 
 /// Turns the swings to the firings that now are those of each.
@@ -482,8 +499,9 @@ void FindSwings(const std::vector<BeamAzimuths>& beams, BeamTable* table) {
   *table = std::move(best);
 }
 
-bool FindRoundedPlaces(const std::vector<BeamAzimuths>& beams, double quantum, BeamTable* table) {
-  return RoundedColumns(beams, quantum).Find(table);
+bool FindRoundedPlaces(const std::vector<BeamAzimuths>& beams, double quantum, double step,
+                       BeamTable* table) {
+  return RoundedColumns(beams, quantum, step).Find(table);
 }
 
 bool UpdateColumns(const std::vector<StraightAzimuth>& azimuths, BeamTable* table) {

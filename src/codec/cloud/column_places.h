@@ -13,7 +13,8 @@ void Recentre(const std::vector<BeamAzimuths>& beams, BeamTable* table);
 void FindPlaces(const std::vector<BeamAzimuths>& beams, double step, BeamTable* table);
 /// The same for beams whose azimuths a sensor rounds to multiples of an angle, which is about as
 /// large as a step: all see the same multiples, each later or earlier. False where they do not.
-bool FindRoundedPlaces(const std::vector<BeamAzimuths>& beams, double quantum, BeamTable* table);
+bool FindRoundedPlaces(const std::vector<BeamAzimuths>& beams, double quantum, double step,
+                       BeamTable* table);
 /// Finds beams that see points at uneven steps, again and again.
 void FindSwings(const std::vector<BeamAzimuths>& beams, BeamTable* table);
 

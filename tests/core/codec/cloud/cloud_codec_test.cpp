@@ -268,6 +268,29 @@ TEST_P(UnevenClouds, StayAsSmallAsTheColumnsMove) {
   EXPECT_LE(bits[2], 1.15 * bits[0]);
 }
 
+// As lidarenc cuts a turn into slices.
+TEST_P(UnevenClouds, KeepTheirBeamsFromSliceToSlice) {
+  const PlainPoints points = UnevenScan(GetParam());
+  constexpr std::size_t kSlices = 4;
+  std::vector<PlainPoints> slices(kSlices);
+  for (const auto& p : points) {
+    const double turns = static_cast<double>(std::atan2(p[1], p[0])) / (2 * M_PI) + 0.5;
+    slices[std::min(static_cast<std::size_t>(turns * kSlices), kSlices - 1)].push_back(p);
+  }
+  for (const double bits : BitsOfStream(slices)) EXPECT_LE(bits, 5.2);
+}
+
+TEST(CloudCodec, TakesNoMoreAtAHigherEffort) {
+  for (const PlainPoints& points : {SpinningScan(0), SpinningScan(0.1), ScanOf("vlp16")}) {
+    double last = 1e9;
+    for (const unsigned effort : {1U, 2U, 3U}) {
+      const double bits = BitsPerPoint(RoundTrip(points, {0.02, 0, 0}, effort));
+      EXPECT_LE(bits, 1.005 * last);
+      last = bits;
+    }
+  }
+}
+
 TEST(CloudCodec, FindsTheBeamsOfASensorThatTakesTheOthersPlace) {
   const PlainPoints first = SpinningScan(0);
   const PlainPoints second = UnevenScan({"", 0.1, 0.026, 0.2, 0, 0, 7});
