@@ -42,10 +42,12 @@ function look(page) {
   });
 }
 
-test('points are drawn and move, in every colour', limits, async () => {
+// With a graphics card, and without.
+for (const by of ['webgl', 'raster'])
+test(`points are drawn by ${by} and move, in every colour`, limits, async () => {
   const port = await freePort();
   const pipeline = await Pipeline.start(`${SENSOR} ! foxglovesink port=${port}`, port);
-  const { page, context, complaints } = await openPage(browser, address(port));
+  const { page, context, complaints } = await openPage(browser, address(port, `?draw=${by}`));
   const hosts = new Set();
   page.on('request', (request) => hosts.add(new URL(request.url()).host));
   await page.reload();

@@ -76,6 +76,7 @@ function addCloud({ time, frame, place, ageOf }, { points, has }) {
 function addSlice(stream, header, decoded) {
   const [scans, seconds] = stream.about.framerate ?? [0, 1];
   if (scans > 0 && !page.paused) page.spanS = seconds / scans;
+  page.quality = { step: decoded.step, error_bound: decoded.error };
   const ageOf = (captured) => stream.clock.ageOf(captured);
   addCloud({ time: header.captured, frame: stream.about.frameId, place: header, ageOf }, decoded);
 }
@@ -85,7 +86,7 @@ function onStatistics(message) {
   const sink = Object.values(message.elements ?? {}).find((e) => e.factory === 'foxglovesink');
   if (sink?.scan_duration > 0 && !page.paused) page.spanS = sink.scan_duration * 1e-9;
   tools.setSpan();
-  page.charts.add({ ...message, ...linksOf(message), received: page.receivedBps, age: page.age });
+  page.charts.add({ ...page.quality, ...message, ...linksOf(message), received: page.receivedBps, age: page.age });
 }
 
 const handlers = {

@@ -159,6 +159,12 @@ export class FreshPoints {
     this.buffer.needsUpdate = true;
   }
 
+  /** [[from, count]] in the ring, which may go over its end. */
+  spans(start, count) {
+    const first = Math.min(count, CAPACITY - start);
+    return first < count ? [[start, first], [0, count - first]] : [[start, count]];
+  }
+
   /** Calls `visit(offset in data)` for each point that is drawn. */
   each(visit) {
     const { floor, ceiling } = this.uniforms;

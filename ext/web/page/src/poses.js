@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Where each frame was: the newest transforms, found by their time.
+// Where each frame was and is: the newest transforms, and between and behind them what steady motion
+// gives, since slices come before the pose of their scan.
 import { Matrix4, Quaternion, Vector3 } from 'three';
 
 const KEPT = 256;
+const MOST_AHEAD_S = 0.5;
+const ONE = new Vector3(1, 1, 1);
 
 export class Poses {
   constructor() {
@@ -12,25 +15,30 @@ export class Poses {
   add({ time, child, position, rotation }) {
     if (!this.frames.has(child)) this.frames.set(child, []);
     const list = this.frames.get(child);
-    const matrix = new Matrix4().compose(
-      new Vector3(...position),
-      new Quaternion(...rotation).normalize(),
-      new Vector3(1, 1, 1),
-    );
-    list.push({ time, matrix });
+    if (list.length > 0 && time <= list[list.length - 1].time) return;
+    list.push({
+      time,
+      position: new Vector3(...position),
+      rotation: new Quaternion(...rotation).normalize(),
+    });
     if (list.length > KEPT) list.shift();
   }
 
-  /** The transform nearest in time, or null where the frame has none. */
+  /** The transform at a time, or null where the frame has none. */
   at(frame, time) {
     const list = this.frames.get(frame);
     if (!list?.length) return null;
-    let best = list[list.length - 1];
-    for (let i = list.length - 1; i >= 0; --i) {
-      if (Math.abs(list[i].time - time) > Math.abs(best.time - time)) break;
-      best = list[i];
-    }
-    return best.matrix;
+    let i = list.length - 1;
+    while (i > 1 && list[i - 1].time > time) --i;
+    const b = list[i];
+    const a = list[Math.max(i - 1, 0)];
+    const until = Math.min(time, b.time + MOST_AHEAD_S);
+    const share = b.time > a.time ? Math.max((until - a.time) / (b.time - a.time), 0) : 1;
+    return new Matrix4().compose(
+      a.position.clone().lerp(b.position, share),
+      a.rotation.clone().slerp(b.rotation, share),
+      ONE,
+    );
   }
 
   clear() {

@@ -4,6 +4,7 @@ import * as THREE from 'three';
 import { OrbitControls } from 'three/examples/jsm/controls/OrbitControls.js';
 import { WorldMap } from './map.js';
 import { FreshPoints } from './points.js';
+import { isSoftware, Raster } from './raster.js';
 import { Ruler } from './ruler.js';
 
 const RINGS_M = [10, 20, 30, 40, 50];
@@ -42,7 +43,9 @@ function rings() {
 export class Scene {
   constructor(canvas) {
     this.canvas = canvas;
-    this.renderer = new THREE.WebGLRenderer({ canvas, powerPreference: 'high-performance' });
+    // three.js would ask for a picture that the browser has to blend with what is behind it.
+    const context = canvas.getContext('webgl2', { alpha: false, antialias: false, powerPreference: 'high-performance' });
+    this.renderer = new THREE.WebGLRenderer({ canvas, context });
     this.scene = new THREE.Scene();
     this.camera = new THREE.PerspectiveCamera(55, 1, 0.1, 2000);
     this.camera.up.set(0, 0, 1);
@@ -54,7 +57,14 @@ export class Scene {
     this.map = new WorldMap();
     this.rings = rings();
     this.ruler = new Ruler(this.fresh, this.camera, canvas);
-    this.scene.add(this.map.object, this.rings, this.fresh.object, this.ruler.object);
+    this.scene.add(this.rings, this.ruler.object);
+    const asked = new URLSearchParams(location.search).get('draw'); // raster or webgl
+    if (asked === 'raster' || (asked !== 'webgl' && isSoftware(this.renderer.getContext()))) {
+      this.raster = new Raster();
+      this.scene.add(this.raster.object, this.map.line);
+    } else {
+      this.scene.add(this.map.object, this.fresh.object);
+    }
     this.sensor = new THREE.Vector3();
     this.follow = true;
     this.frames = 0;
@@ -81,6 +91,7 @@ export class Scene {
     // A tall window sees as much to the sides.
     this.camera.fov = w < h ? 80 : 55;
     this.camera.updateProjectionMatrix();
+    this.raster?.resize(this.canvas.width, this.canvas.height);
     this.fresh.uniforms.scale.value = (h * this.renderer.getPixelRatio()) / 13;
     this.dirty = true;
   }
@@ -93,8 +104,13 @@ export class Scene {
     }
     this.map.setColors(colors.map, colors.accent);
     this.ruler.setColor(colors.text);
-    this.fresh.setColors(mode, isDark);
+    this.setColors(mode, isDark);
     this.dirty = true;
+  }
+
+  setColors(mode, isDark) {
+    this.fresh.setColors(mode, isDark);
+    this.raster?.setColors(mode, isDark, this.scene.background);
   }
 
   /** The sensor has moved; the camera goes with it where it follows. */
@@ -107,6 +123,11 @@ export class Scene {
     }
     this.sensor.copy(at);
     this.rings.quaternion.setFromRotationMatrix(matrix);
+    this.dirty = true;
+  }
+
+  showMap(on) {
+    this.map.object.visible = this.map.line.visible = on;
     this.dirty = true;
   }
 
@@ -182,6 +203,10 @@ export class Scene {
     this.rings.position.copy(this.sensor);
     this.rings.position.z += this.ground;
     this.fresh.update();
+    if (this.raster) {
+      this.camera.updateMatrixWorld();
+      this.raster.draw(this.fresh, this.map, this.camera);
+    }
     this.renderer.render(this.scene, this.camera);
     this.fresh.drawn();
     this.map.drawn();

@@ -80,7 +80,7 @@ class Tools {
       button.tabIndex = chosen ? 0 : -1;
       button.disabled = this.known[button.dataset.mode] === false;
     }
-    this.page.scene.fresh.setColors(mode, this.isDark);
+    this.page.scene.setColors(mode, this.isDark);
     this.applyScale();
   }
 
@@ -163,10 +163,7 @@ class Tools {
     byId('map').disabled = byId('follow').disabled = true;
     const actions = {
       follow: () => page.scene.setFollow(this.toggle('follow', !this.isOn('follow'))),
-      map: () => {
-        page.scene.map.object.visible = this.toggle('map', !this.isOn('map'));
-        page.scene.dirty = true;
-      },
+      map: () => page.scene.showMap(this.toggle('map', !this.isOn('map'))),
       trail: () => {
         this.toggle('trail', !this.isOn('trail'));
         this.setSpan();

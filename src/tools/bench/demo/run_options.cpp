@@ -267,11 +267,11 @@ std::string SlamOf(const RunOptions& o) {
          Quoted(o.output + "/map.png") + " posed. ! queue ! ";
 }
 
-/// A branch for the page, which may lose clouds and holds up nobody.
+/// A branch for the page, which decodes by itself, may lose slices and holds up nobody.
 std::string ViewOf(const RunOptions& o) {
   if (!o.view) return "";
-  return "tee name=viewed ! queue leaky=downstream max-size-buffers=64 ! foxglovesink sync=false "
-         "port=" +
+  return "tee name=viewed ! queue leaky=downstream max-size-buffers=64 ! foxglovesink name=page "
+         "sync=false port=" +
          std::to_string(kReceiverPage) + " viewed. ! queue ! ";
 }
 
@@ -284,9 +284,10 @@ std::string PageOf(const RunOptions& o) {
 std::string ReceiverPipeline(const RunOptions& o, Ports ports) {
   const std::string decoder = EncoderOf(o) == "dracoenc" ? "dracodec" : "lidardec";
   return "screamsrc name=receiver address=127.0.0.1 port=" + std::to_string(ports.receiver) +
-         KeyOf(o) + " ! rtplidardepay name=depayloader ! " + decoder + " name=decoder ! " +
-         (o.slam ? "" : ViewOf(o)) + "scanassembler name=assembler ! " + SlamOf(o) +
-         (o.slam ? ViewOf(o) : "") + "fakesink sync=false async=false";
+         KeyOf(o) + " ! rtplidardepay name=depayloader ! " + ViewOf(o) + decoder +
+         " name=decoder ! scanassembler name=assembler ! " + SlamOf(o) +
+         "fakesink sync=false async=false" +
+         (o.view && o.slam ? " odometry.odometry ! queue ! page." : "");
 }
 
 std::vector<std::string> LinkArguments(const RunOptions& o, Ports ports) {
