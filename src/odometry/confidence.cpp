@@ -13,13 +13,8 @@ constexpr double kSpeed = 15;
 constexpr double kTurn = 0.5;
 constexpr double kAcceleration = 2;
 constexpr double kTurnAcceleration = 1;
-/// Points next to each other see the same bump, so errors of points are not independent.
-constexpr double kFirstScale = 30;
-constexpr double kLeastScale = 1;
-/// How much of a correction's square is taken for the error of an alignment: most of it is the
-/// vehicle's. So chosen that a drift of one direction stays within three standard deviations.
-constexpr double kShareOfCorrection = 1.0 / 2000;
-constexpr double kScaleMemory = 0.95;
+/// Of a pose [m^2, rad^2]: two scans of the same time shall not divide by zero.
+constexpr double kLeastVariance = 1e-8;
 
 // Where the parts of the joint error begin.
 constexpr Eigen::Index kMap = 0;
@@ -43,7 +38,7 @@ Matrix6 Adjoint(const Pose& pose) {
   return adjoint;
 }
 
-Confidence::Confidence() : scale_(kFirstScale) { ForgetVelocity(); }
+Confidence::Confidence() { ForgetVelocity(); }
 
 Matrix6 Confidence::covariance() const {
   const Eigen::Matrix<double, 6, 18> both =
@@ -56,12 +51,10 @@ void Confidence::ForgetVelocity() {
   joint_.middleRows<6>(kVelocity).setZero();
   joint_.middleCols<6>(kVelocity).setZero();
   joint_.diagonal().segment<6>(kVelocity) = Spread(kSpeed, kTurn);
-  velocity_known_ = false;
 }
 
 void Confidence::SetVelocityKnown() {
   joint_.diagonal().segment<6>(kVelocity) = Spread(kAcceleration, kTurnAcceleration);
-  velocity_known_ = true;
 }
 
 void Confidence::Predict(const Pose& motion, Duration gap) {
@@ -69,23 +62,16 @@ void Confidence::Predict(const Pose& motion, Duration gap) {
   Joint step = Joint::Identity();
   step.block<6, 6>(kMap, kMap) = step.block<6, 6>(kPose, kPose) = Adjoint(motion.Inverse());
   step.block<6, 6>(kPose, kVelocity) = t * Matrix6::Identity();
+  // A pose tells the mean velocity since the one before, so that is what changes.
+  joint_.diagonal().segment<6>(kVelocity) += Spread(kAcceleration, kTurnAcceleration) * (t * t);
   joint_ = step * joint_ * step.transpose();
-  const Twist spread = Spread(kAcceleration, kTurnAcceleration);
-  joint_.diagonal().segment<6>(kPose) += spread * (t * t * t * t / 4);
-  joint_.diagonal().segment<6>(kVelocity) += spread * (t * t);
-  joint_.block<6, 6>(kPose, kVelocity).diagonal() += spread * (t * t * t / 2);
-  joint_.block<6, 6>(kVelocity, kPose).diagonal() += spread * (t * t * t / 2);
 }
 
-void Confidence::Observe(const Matrix6& information, const Eigen::Matrix3d& unobserved,
-                         const Twist& correction) {
-  if (velocity_known_) {
-    const double seen = kShareOfCorrection * correction.dot(information * correction);
-    scale_ = std::max(kLeastScale, kScaleMemory * scale_ + (1 - kScaleMemory) * seen);
-  }
-  velocity_known_ = true;
-  const Matrix6 told = information / scale_;
+Twist Confidence::Observe(const Matrix6& information, const Eigen::Matrix3d& unobserved,
+                          const Twist& correction) {
+  const Matrix6 told = information / kPointsOfOne;
   const Matrix6 pose = joint_.block<6, 6>(kPose, kPose);
+  const Twist accelerated = joint_.block<6, 6>(kVelocity, kPose) * (PoseInformation() * correction);
   Eigen::Matrix<double, 18, 6> gain =
       joint_.middleCols<6>(kPose) * (Matrix6::Identity() + told * pose).inverse();
   // An alignment corrects neither the map nor what it does not see, so Joseph's form is needed.
@@ -97,6 +83,12 @@ void Confidence::Observe(const Matrix6& information, const Eigen::Matrix3d& unob
   left.middleCols<6>(kPose) -= gain * told;
   joint_ = left * joint_ * left.transpose() + gain * told * gain.transpose();
   joint_ = (joint_ + joint_.transpose().eval()) / 2;
+  return accelerated;
+}
+
+Matrix6 Confidence::PoseInformation() const {
+  const Matrix6 pose = joint_.block<6, 6>(kPose, kPose);
+  return (pose + kLeastVariance * Matrix6::Identity()).inverse();
 }
 
 void Confidence::EnterMap() {

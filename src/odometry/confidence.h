@@ -21,12 +21,17 @@ class Confidence {
   void Predict(const Pose& motion, Duration gap);
   /// A scan was aligned. `information`: what it says of the pose if errors of its points are
   /// independent. `unobserved`: the projection on the directions along which the prediction stays.
-  /// `correction`: from the predicted pose to the one found.
-  void Observe(const Matrix6& information, const Eigen::Matrix3d& unobserved,
-               const Twist& correction);
+  /// `correction`: from the predicted pose to the one found. Returns what it makes of the velocity.
+  Twist Observe(const Matrix6& information, const Eigen::Matrix3d& unobserved,
+                const Twist& correction);
   /// The map grows from the present pose on.
   void EnterMap();
 
+  /// Of the pose against the map.
+  Matrix6 PoseInformation() const;
+  /// Points next to each other see the same bump: so many say as much as one whose error is
+  /// independent of the others'.
+  static constexpr double kPointsOfOne = 12;
   /// Of the pose since the first one, in the sensor's frame.
   Matrix6 covariance() const;
 
@@ -35,8 +40,6 @@ class Confidence {
   using Joint = Eigen::Matrix<double, 18, 18>;
 
   Joint joint_ = Joint::Zero();
-  double scale_;  // of the errors of alignment, against independent points
-  bool velocity_known_ = false;
 };
 
 /// What a motion of the sensor makes of an error before it.

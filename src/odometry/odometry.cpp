@@ -2,6 +2,7 @@
 #include "src/odometry/odometry.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "src/odometry/scan_normals.h"
 
@@ -42,8 +43,6 @@ constexpr double kMostTurnAcceleration = 30;
 constexpr double kSlack = 0.3;
 /// A point that fits, as a part of the map's cubes.
 constexpr double kFit = 0.2;
-/// Scans closer than that tell nothing of the velocity.
-constexpr Duration kShortestGap = milliseconds(2);
 /// Beyond this the velocity may have changed: the search reaches farther in proportion.
 constexpr Duration kUsualPeriod = milliseconds(150);
 constexpr double kWidestSearch = 3;
@@ -60,13 +59,12 @@ constexpr double kMapTurn = 0.09;
 /// Closer than this part of a cube to where a scan entered, its beams draw the same lines again.
 constexpr double kSameLines = 0.5;
 
-/// One point of each cube, and of these every n-th, so that at most `most` are left.
-Points ThinOut(const Points& points, double size_m, std::size_t most) {
-  Points kept = Downsample(points, size_m);
-  const std::size_t step = (kept.size() + most - 1) / most;
-  if (step <= 1) return kept;
-  for (std::size_t i = 0; i * step < kept.size(); ++i) kept[i] = kept[i * step];
-  kept.resize((kept.size() + step - 1) / step);
+/// At most `most` of them, evenly over all.
+Points PickEvenly(const Points& points, std::size_t most) {
+  if (points.size() <= most) return points;
+  Points kept;
+  kept.reserve(most);
+  for (std::size_t i = 0; i < most; ++i) kept.push_back(points[i * points.size() / most]);
   return kept;
 }
 
@@ -132,6 +130,11 @@ RegistrationSettings Odometry::SettingsFor(const TimedPoints& scan, const Pose& 
   return settings;
 }
 
+/// What is aligned of a scan.
+Points Odometry::ThinOut(const Points& fine) const {
+  return PickEvenly(Downsample(fine, kAlignedGrid * settings_.voxel_size_m), kMostAligned);
+}
+
 Odometry::Surface Odometry::SelectPoints(const TimedPoints& scan, Duration duration) const {
   const double nearest = settings_.min_range_m * settings_.min_range_m;
   const double farthest = settings_.max_range_m * settings_.max_range_m;
@@ -184,6 +187,7 @@ void Odometry::StartMap(const Surface& fine) {
   map_ = LocalMap({settings_.voxel_size_m, settings_.max_range_m});
   AddToMap(fine);
   lost_scans_ = fitting_scans_ = 0;
+  lost_for_ = Duration{0};
 }
 
 /// Nothing is known of the motion yet: a car may have gone farther than the fine map's cubes reach.
@@ -202,8 +206,7 @@ void Odometry::StraightenFirstScan(Duration duration, const TimedPoints& second,
     velocity_ = Log(pose_.Inverse() * found) / Seconds(gap);
     StartMap(SelectPoints(*first_scan_, duration));
     // Both are straightened by the same velocity now, which makes the next one better.
-    const Points points = ThinOut(SelectPoints(second, duration).points,
-                                  kAlignedGrid * settings_.voxel_size_m, kMostAligned);
+    const Points points = ThinOut(SelectPoints(second, duration).points);
     found = Align(points, &map_, found, settings_.voxel_size_m, kKernel * settings_.voxel_size_m,
                   settings_.registration)
                 .pose;
@@ -248,11 +251,12 @@ Estimate Odometry::Begin(const TimedPoints& scan, const Surface& fine) {
 /// A scan that does not fit within the usual reach is searched as far as at the start.
 Alignment Odometry::AlignFrom(const Pose& guess, Duration gap, const TimedPoints& scan,
                               const Surface& fine) {
-  const Points aligned = ThinOut(fine.points, kAlignedGrid * settings_.voxel_size_m, kMostAligned);
+  const Points aligned = ThinOut(fine.points);
   const RegistrationSettings settings = SettingsFor(scan, guess);
   const auto align = [&](double sigma) {
     const double kernel = std::max(kKernel * sigma, kLeastKernel * settings_.voxel_size_m);
-    return Align(aligned, &map_, guess, kReach * sigma, kernel, settings);
+    const Prediction prediction{guess, confidence_.PoseInformation()};
+    return Align(aligned, &map_, prediction, kReach * sigma, kernel, settings);
   };
   const double widened = std::clamp(Seconds(gap) / Seconds(kUsualPeriod), 1.0, kWidestSearch);
   const double sigma = threshold_.sigma_m() * widened;
@@ -266,7 +270,7 @@ bool Odometry::Fits(const Alignment& found, const Pose& guess, Duration gap) con
   if (found.inlier_share < kLeastInliers) return false;
   if (fitting_scans_ == 0) return true;  // the first motion may be anything
   const Pose correction = guess.Inverse() * found.pose;
-  const double square = Seconds(gap) * Seconds(gap);
+  const double square = std::pow(Seconds(gap + lost_for_), 2);
   return correction.position.norm() <=
              kMostAcceleration * square + kSlack * settings_.voxel_size_m &&
          Angle(correction) <= kMostTurnAcceleration * square;
@@ -283,21 +287,22 @@ Estimate Odometry::Match(Time middle, const TimedPoints& scan, const Surface& fi
   if (!Fits(found, guess, gap)) {
     estimate.tracking = Tracking::kLost;
     pose_ = guess;
+    lost_for_ += gap;
     Lose(scan, fine, &estimate);
     return estimate;
   }
   estimate.tracking = found.degenerate ? Tracking::kDegenerate : Tracking::kTracking;
   threshold_.Add(guess.Inverse() * found.pose);
-  Follow(found, guess, gap, fine);
+  Follow(found, guess, fine);
   return estimate;
 }
 
-void Odometry::Follow(const Alignment& found, const Pose& guess, Duration gap,
-                      const Surface& fine) {
+void Odometry::Follow(const Alignment& found, const Pose& guess, const Surface& fine) {
   lost_scans_ = 0;
+  lost_for_ = Duration{0};
   ++fitting_scans_;
-  confidence_.Observe(found.information, found.unobserved, Log(guess.Inverse() * found.pose));
-  if (gap >= kShortestGap) velocity_ = Log(pose_.Inverse() * found.pose) / Seconds(gap);
+  velocity_ +=
+      confidence_.Observe(found.information, found.unobserved, Log(guess.Inverse() * found.pose));
   pose_ = found.pose;
   if (IsFarFromTheLastInMap()) AddToMap(fine);
   map_.Forget(pose_.position);

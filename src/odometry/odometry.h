@@ -81,6 +81,7 @@ class Odometry {
   };
   RegistrationSettings SettingsFor(const TimedPoints& scan, const Pose& guess) const;
   Surface SelectPoints(const TimedPoints& scan, Duration duration) const;
+  Points ThinOut(const Points& fine) const;
   void AddToMap(const Surface& fine);
   bool IsFarFromTheLastInMap() const;
   void StartMap(const Surface& fine);
@@ -94,7 +95,7 @@ class Odometry {
   Alignment AlignFrom(const Pose& guess, Duration gap, const TimedPoints& scan,
                       const Surface& fine);
   bool Fits(const Alignment& found, const Pose& guess, Duration gap) const;
-  void Follow(const Alignment& found, const Pose& guess, Duration gap, const Surface& fine);
+  void Follow(const Alignment& found, const Pose& guess, const Surface& fine);
   void Lose(const TimedPoints& scan, const Surface& fine, Estimate* estimate);
   Matrix6 CovarianceInMap() const;
 
@@ -107,6 +108,7 @@ class Odometry {
   std::optional<Time> last_time_;
   Confidence confidence_;
   int lost_scans_ = 0;
+  Duration lost_for_{};    // a vehicle may change its velocity meanwhile
   int fitting_scans_ = 0;  // of this map, the first one left out
   Points last_scan_;
   /// The scan that began the map, until the velocity is known that straightens it.

@@ -102,14 +102,16 @@ double WeighPoints(const NormalEquations& surfaces, const RegistrationSettings& 
   return held ? settings.spare_point_weight : settings.point_weight;
 }
 
-Matrix6 InformationOf(const NormalEquations& sums) {
-  return sums.lhs / std::max(sums.squares / sums.weights, kLeastSpread * kLeastSpread);
+/// Of the residuals.
+double VarianceOf(const NormalEquations& sums) {
+  return std::max(sums.squares / sums.weights, kLeastSpread * kLeastSpread);
 }
 
 }  // namespace
 
-Alignment Align(const Points& points, LocalMap* map, const Pose& guess, double reach_m,
+Alignment Align(const Points& points, LocalMap* map, const Prediction& prediction, double reach_m,
                 double kernel_m, const RegistrationSettings& settings) {
+  const Pose& guess = prediction.pose;
   Alignment result;
   result.pose = guess;
   if (points.empty() || map->empty()) return result;
@@ -125,7 +127,11 @@ Alignment Align(const Points& points, LocalMap* map, const Pose& guess, double r
       result.unobserved = FindUnobserved(sums, settings);
       result.degenerate = !result.unobserved.isZero();
     }
-    result.information = InformationOf(sums);
+    const double variance = VarianceOf(sums);
+    result.information = sums.lhs / variance;
+    const Matrix6 hold = variance * Confidence::kPointsOfOne * prediction.information;
+    sums.lhs += hold;
+    sums.rhs -= hold * Log(guess.Inverse() * result.pose);
     sums.lhs.topLeftCorner<3, 3>() += kHold * sums.weights * result.unobserved;
     const Twist step = sums.lhs.ldlt().solve(sums.rhs);
     if (!step.allFinite()) return {guess, 0, result.iterations};

@@ -29,6 +29,13 @@ struct RegistrationSettings {
   double fit_m = 0.2;
 };
 
+/// What is known of the pose before the points are looked at.
+struct Prediction {
+  Pose pose;
+  /// Of its error, a motion of the sensor in its own frame.
+  Matrix6 information = Matrix6::Zero();
+};
+
 struct Alignment {
   Pose pose;
   double inlier_share = 0;  // part of the points that fit
@@ -45,8 +52,13 @@ struct Alignment {
 /// 2023, section III-D): neighbours within `reach_m`, residuals weighted by the Geman-McClure
 /// kernel of scale `kernel_m`. It differs where the map has a surface: there the distance from the
 /// surface counts, so that a wall does not hold a motion along it, and a step takes fewer
-/// iterations.
-Alignment Align(const Points& points, LocalMap* map, const Pose& guess, double reach_m,
+/// iterations. Along what the points hold weakly, the prediction holds the pose.
+Alignment Align(const Points& points, LocalMap* map, const Prediction& prediction, double reach_m,
                 double kernel_m, const RegistrationSettings& settings);
+/// The same where only a pose to begin with is known.
+inline Alignment Align(const Points& points, LocalMap* map, const Pose& guess, double reach_m,
+                       double kernel_m, const RegistrationSettings& settings) {
+  return Align(points, map, Prediction{guess, Matrix6::Zero()}, reach_m, kernel_m, settings);
+}
 
 }  // namespace lidar::odometry

@@ -64,16 +64,39 @@ TEST(Confidence, FallsWithoutScans) {
   EXPECT_GT(Variance(confidence, 0), 10 * before);
 }
 
-TEST(Confidence, FallsWherePredictionsAreOff) {
-  const auto after = [](double off) {
-    Confidence confidence;
-    for (int i = 0; i < 100; ++i) {
-      confidence.Predict({}, kPeriod);
-      confidence.Observe(1e4 * Matrix6::Identity(), kNothing, Twist::Constant(off));
-    }
-    return Variance(confidence, 0);
-  };
-  EXPECT_GT(after(1), 10 * after(0.01));
+TEST(Confidence, GivesTheVelocityAllOfACorrectionWhereItIsNotKnownYet) {
+  Confidence confidence;
+  confidence.Predict({}, kPeriod);
+  const Twist found = Twist::Unit(0) * 1.2;
+  const Twist accelerated = confidence.Observe(1e6 * Matrix6::Identity(), kNothing, found);
+  EXPECT_NEAR(accelerated(0), 12, 0.1);
+  EXPECT_NEAR(accelerated.tail<5>().norm(), 0, 1e-9);
+}
+
+TEST(Confidence, GivesTheVelocityLessOfWhatScansSayWeakly) {
+  Confidence confidence;
+  Matrix6 weak = 1e6 * Matrix6::Identity();
+  weak(0, 0) = 100;
+  Twist accelerated;
+  for (int i = 0; i < 50; ++i) {
+    confidence.Predict({}, kPeriod);
+    accelerated = confidence.Observe(weak, kNothing, Twist::Constant(0.01));
+  }
+  EXPECT_LT(accelerated(0), 0.5 * accelerated(1));
+  EXPECT_LT(accelerated(1), 0.1 + 1e-6) << "a correction over its time, and no more";
+}
+
+TEST(Confidence, TakesTwoScansOfTheSameTime) {
+  Confidence confidence;
+  for (int i = 0; i < 3; ++i) {
+    confidence.Predict({}, Duration{0});
+    EXPECT_TRUE(confidence.PoseInformation().allFinite());
+    const Twist accelerated =
+        confidence.Observe(1e6 * Matrix6::Identity(), kNothing, Twist::Constant(1));
+    EXPECT_TRUE(accelerated.allFinite());
+    confidence.EnterMap();
+  }
+  EXPECT_TRUE(confidence.covariance().allFinite());
 }
 
 TEST(Confidence, KeepsWhatThePoseIsOffWhereAMapBegins) {
