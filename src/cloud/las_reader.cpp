@@ -16,7 +16,7 @@ using Vector = std::array<double, 3>;
 
 constexpr std::size_t kHeader10 = 227;  // bytes of versions 1.0 to 1.2
 constexpr std::size_t kHeader14 = 375;
-constexpr double kFarthest = 16'384;  // F32 tells millimetres apart up to here [m]
+constexpr double kFineReach = 16'384;  // F32 tells millimetres apart up to here [m]
 
 /// Offsets in a record; 0: the format has no such field.
 struct PointFormat {
@@ -115,7 +115,7 @@ Vector OriginOf(ByteView records, const LasHeader& h) {
       farthest = std::max(farthest, std::abs(p[k]));
     }
   }
-  if (farthest <= kFarthest) return {};
+  if (farthest <= kFineReach) return {};
   for (double& v : least) v = std::floor(v);
   return least;
 }

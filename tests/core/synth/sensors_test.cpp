@@ -43,6 +43,21 @@ INSTANTIATE_TEST_SUITE_P(
                       Expected{"os2-32", 32, 21.2}, Expected{"os2-64", 64, 21.2},
                       Expected{"os2-128", 128, 21.2}));
 
+TEST(Firings, FollowTheManuals) {
+  const auto first = [](const char* name) {
+    const Firing& firing = *FindFiring(name);
+    std::vector<double> elevations;
+    for (std::uint32_t laser = 0; laser < 4; ++laser)
+      elevations.push_back(firing.ElevationOf(laser));
+    return elevations;
+  };
+  EXPECT_EQ(first("vlp-16"), (std::vector<double>{-15, 1, -13, 3}));
+  EXPECT_EQ(first("xt32"), (std::vector<double>{15, 14, 13, 12}));
+  EXPECT_EQ(FindFiring("vlp-16")->RingOf(1), 8U);
+  EXPECT_NEAR(FindFiring("at128")->ElevationOf(127), -12.9, 1e-9);
+  EXPECT_EQ(FindFiring("vlp-32"), nullptr);
+}
+
 TEST(MakeSensor, KnowsNoOthers) {
   for (const char* name : {"", "os1", "os1-", "os1-16", "os3-64", "os1_64", "os1-64x", "OS1-64"})
     EXPECT_FALSE(MakeSensor(name, 1024)) << name;
