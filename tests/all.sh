@@ -11,6 +11,7 @@ steps=(
   "faults|root|tests/run.sh --no-install --suite faults"
   "peers|npm|tests/run.sh --no-install --suite peers"
   "browser|npm|tests/run.sh --suite browser"
+  "viewers|nginx, Caddy|tests/run.sh --suite viewers"
   "tsan|-|tests/run.sh --no-install --suite lint --tsan"
   "tidy|-|tests/tidy.sh"
   "fuzz|-|tests/fuzz/run.sh --minutes MINUTES --jobs 2"

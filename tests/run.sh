@@ -13,7 +13,8 @@ Usage: tests/run.sh [--suite NAME] [--no-install] [--no-sanitize] [--tsan]
                   fuzz, and core without long simulations and programs, under AddressSanitizer and
                   UBSan), or one that runs by name only: faults (eight minutes of broken networks and
                   SRTP, for an idle machine), peers (npm's MCAP, Cyclone DDS with its own types),
-                  browser (foxglovesink's page in Chromium)
+                  browser (foxglovesink's page in Chromium), viewers (it behind nginx, Caddy and
+                  slow links, for an idle machine)
   --no-install    do not install Debian packages
   --no-sanitize   leave out the sanitizer build
   --tsan          also run core (without the same) and elements under ThreadSanitizer
@@ -32,7 +33,7 @@ while [ $# -gt 0 ]; do
       [ $# -ge 2 ] || { usage >&2; exit 2; }
       case $2 in
         sanitize) suites=() ;;
-        lint | core | elements | pipelines | fuzz | bench | faults | peers | browser) suites=("$2"); sanitize=no ;;
+        lint | core | elements | pipelines | fuzz | bench | faults | peers | browser | viewers) suites=("$2"); sanitize=no ;;
         *) echo "No suite is called '$2'." >&2; usage >&2; exit 2 ;;
       esac
       shift ;;
@@ -233,7 +234,7 @@ count() { if [ "$1" = 0 ]; then passed=$((passed + 1)); else failed=$((failed + 
 
 [ "$install" = no ] || "$here/install.sh" || exit 1
 case $install,${suites[*]} in
-  yes,browser | yes,peers) "$here/install.sh" "$here/system/${suites[*]}/packages.txt" || exit 1 ;;
+  yes,browser | yes,peers | yes,viewers) "$here/install.sh" "$here/system/${suites[*]}/packages.txt" || exit 1 ;;
 esac
 if [ "$install" = yes ] && [ "${suites[*]}" = browser ]; then
   for folder in "$root/ext/web/page" "$here/system/browser"; do
@@ -250,7 +251,7 @@ if [ ${#suites[@]} -gt 0 ]; then
     for suite in "${suites[@]}"; do
       case $suite in
         pipelines) run_pipelines "$root/build" ;;
-        bench | faults | peers | browser) run "$root/build" "$suite" --num-processes 1 ;;
+        bench | faults | peers | browser | viewers) run "$root/build" "$suite" --num-processes 1 ;;
         elements) run "$root/build" elements "${waiting[@]}" ;;
         *) run "$root/build" "$suite" ;;
       esac
