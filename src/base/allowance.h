@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// How often something may happen: some times at once, and more as time passes.
+// A token bucket: some events at once, and more as time passes.
 #pragma once
 #include "src/base/time.h"
 
@@ -7,10 +7,10 @@ namespace lidar {
 
 class Allowance {
  public:
-  /// `most` at once; each that was taken comes back after `period`.
+  /// Holds `most` tokens; a token that was taken comes back after `period`.
   Allowance(int most, Duration period) : most_(most), period_(period) {}
 
-  /// False where none is left at `now`. Times must not go back; where they do, none comes back.
+  /// Returns false if no token is left at `now`. If times go back, no token comes back.
   bool Take(Time now) {
     if (taken_ == 0) since_ = now;
     if (now > since_) {
@@ -27,7 +27,7 @@ class Allowance {
   int most_;
   Duration period_;
   int taken_ = 0;
-  Time since_{};  // when the last came back
+  Time since_{};  // time at which the last token came back
 };
 
 }  // namespace lidar

@@ -11,13 +11,13 @@ class Backoff {
  public:
   Backoff(Duration first, Duration most) : first_(first), most_(most), next_(first) {}
 
-  /// How long to wait before the next attempt.
+  /// Pause before the next attempt.
   Duration Next() {
     const Duration pause = next_;
     next_ = std::min(2 * next_, most_);
     return pause;
   }
-  /// It went well.
+  /// Begins anew after a success.
   void Reset() { next_ = first_; }
 
  private:

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// How much processor time a piece of work may take in the long run.
+// Bounds the processor time of a piece of work in the long run.
 #pragma once
 #include <algorithm>
 #include <optional>
@@ -10,11 +10,11 @@ namespace lidar {
 
 class LoadBudget {
  public:
-  /// What was not used is kept for as long.
+  /// Unused time is kept for this period.
   static constexpr Duration kKept = std::chrono::seconds(1);
 
-  /// False while more was spent than `load` (processor time by time) gave up to `now`. Times must
-  /// not go back.
+  /// Returns false while more was spent than `load`, processor time over time, allows up to `now`.
+  /// Times must not go back.
   bool Allows(double load, Time now) {
     if (last_) saved_ += FromSeconds(load * Seconds(now - *last_));
     last_ = now;
@@ -24,7 +24,7 @@ class LoadBudget {
   void Spend(Duration processor_time) { saved_ -= processor_time; }
 
  private:
-  Duration saved_{};  // negative: owed
+  Duration saved_{};  // negative: overspent
   std::optional<Time> last_;
 };
 

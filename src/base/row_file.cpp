@@ -22,7 +22,7 @@ RowFile& RowFile::operator=(RowFile&& other) noexcept {
   return *this;
 }
 
-/// Only a regular file is ever removed.
+/// True for a regular file: others, such as /dev/full, are never removed.
 void RowFile::Close() {
   if (!file_.is_open()) return;
   file_.close();

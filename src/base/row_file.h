@@ -6,21 +6,21 @@
 
 namespace lidar {
 
-/// Rows that were written stay, whatever happens then; a file without any is taken away.
+/// Rows that were written stay after a failure; a file without rows is removed.
 class RowFile {
  public:
   RowFile() = default;
-  /// Truncates the file, or makes it. Numbers are written as in C. Test ok() for success.
+  /// Truncates or makes the file; ok() says whether that worked. Numbers are written as in C.
   explicit RowFile(const std::string& path);
   ~RowFile() { Close(); }
   RowFile(RowFile&& other) noexcept;
   RowFile& operator=(RowFile&& other) noexcept;
 
   bool is_open() const { return file_.is_open(); }
-  /// False where the file cannot be written, or not any more.
+  /// Returns false if a write failed.
   bool ok() const { return file_.is_open() && file_.good(); }
   std::ostream& stream() { return file_; }
-  /// False where something did not fit.
+  /// Returns false if not all was written.
   bool Flush() { return static_cast<bool>(file_.flush()); }
   void Close();
 

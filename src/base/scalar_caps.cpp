@@ -24,7 +24,7 @@ constexpr std::array<std::string_view, std::variant_size_v<Value>> kTypeNames = 
 
 bool IsLetter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); }
 bool IsDigit(char c) { return c >= '0' && c <= '9'; }
-/// What stands in a text without quotes.
+/// True for characters that need no quotes.
 bool IsBare(char c) {
   return IsLetter(c) || IsDigit(c) || std::string_view("_-+/:.").find(c) != std::string_view::npos;
 }
@@ -42,7 +42,7 @@ bool IsMediaType(std::string_view text) {
          IsName(text.substr(kPrefix.size()));
 }
 
-/// Bytes of the character of UTF-8 that `text` begins with; 0 where that is none.
+/// Length of the UTF-8 character that `text` begins with; 0 if there is none.
 std::size_t SizeOfCharacter(std::string_view text) {
   const auto byte = [&](std::size_t i) { return static_cast<std::uint8_t>(text[i]); };
   if (byte(0) < 0x80) return 1;
@@ -136,7 +136,7 @@ std::optional<Value> ParseValue(std::size_t type, std::string_view text,
   return kParsers[type](text);
 }
 
-/// Takes the text apart from the front. After a failure it has nothing left.
+/// Parses the text from the front; empty after a failure.
 class Reader {
  public:
   explicit Reader(std::string_view text) : text_(text) {}
@@ -159,7 +159,7 @@ class Reader {
     text_.remove_prefix(size);
     return taken;
   }
-  /// What stands behind the opening quote.
+  /// The text after the opening quote, up to the closing one.
   std::optional<std::string> TakeQuoted() {
     std::string out;
     while (!Take('"')) {

@@ -42,7 +42,7 @@ struct ScalarCaps {
   /// what is wrong, for a user.
   std::optional<std::string> ToText(std::string* why = nullptr) const;
 
-  /// Null where there is no such field.
+  /// Returns null if there is no such field.
   const Value* Find(std::string_view name) const;
   bool operator==(const ScalarCaps& o) const {
     return media_type == o.media_type && fields == o.fields;
