@@ -26,7 +26,7 @@ Time Controller::Advance(Time caller_now) {
   const Time now = clock_.From(caller_now);
   const Duration silence = now - now_;  // of the caller: with data in flight it has to come often
   now_ = std::max(now_, now);
-  if (p_.extensions.clock_care && silence > kHousekeeping + kStandstill &&
+  if (p_.extensions.evidence && silence > kHousekeeping + kStandstill &&
       history_.bytes_in_flight().bytes() > 0) {
     history_.Expire(now_);
     outage_.Restart(now_);
@@ -107,7 +107,8 @@ void Controller::TakeOutageRestart(Time now) {
   if (!restart) return;
   window_.Set(std::max(window_.ref_wnd(), *restart));
   window_.ForgetSigns();
-  answered_.OnOutageEnd(now, path_.rtt().smoothed());
+  // What the path held back comes first: marks behind it are answered with the restart.
+  path_.evidence().BeginAt(now + path_.rtt().smoothed());
   fast_increase_.Restart();
 }
 
@@ -118,9 +119,7 @@ void Controller::MeasurePath(Time now, const AckSummary& acks) {
     started_ = true;
     StartWindow();
   }
-  path_.OnReport(
-      now, acks,
-      {window_.ref_wnd(), streams_.frame_period(), p_.qdelay_target_lo, answered_.marks()});
+  path_.OnReport(now, acks, {window_.ref_wnd(), streams_.frame_period(), p_.qdelay_target_lo});
 }
 
 void Controller::CountAcks(const AckSummary& acks) {
@@ -144,7 +143,6 @@ void Controller::TakeGapRestart(Time now) {
   window_.Set(restart->window);
   window_.ForgetSigns();
   path_.OnGapEnd(now, restart->s_rtt, restart->l4s_alpha);
-  answered_.OnGapEnd(now);
   streams_.OnSuddenBacklog();
   pacer_.OnGapEnd(now);
   fast_increase_.Restart();
@@ -160,7 +158,7 @@ bool Controller::RespondToDrop(Time now) {
   window_.SetInflection(*window);
   window_.Set(*window * p_.drop_beta);
   window_.NoteReaction(now);
-  answered_.OnCapacityDrop(now);
+  if (p_.extensions.evidence) path_.evidence().OnDropReaction(now);
   streams_.OnSuddenBacklog();
   fast_increase_.OnCongestion(now);
   ++counters_.capacity_drops;
@@ -174,7 +172,7 @@ void Controller::RespondToSignals(Time now, const AckSummary& acks) {
   if (streams_.media_qdelay(now) <= streams_.frame_period() || !CongestedLately())
     fast_increase_.Update(now, Round());
   const Reaction reaction = window_.Update(now, signals);
-  if (reaction == Reaction::kLoss) answered_.OnLossReaction(now);
+  if (reaction == Reaction::kLoss && p_.extensions.evidence) path_.evidence().OnLossReaction(now);
   if (reaction != Reaction::kNone) fast_increase_.OnCongestion(now);
   Count(reaction);
   if (window_target_ >= streams_.max_bitrate()) window_.Limit(source_limit().LargestWindow());
@@ -183,18 +181,18 @@ void Controller::RespondToSignals(Time now, const AckSummary& acks) {
 CongestionSignals Controller::Signals(Time now, const AckSummary& acks) const {
   const LossTolerance tolerance = TolerateLoss(p_, path_);
   CongestionSignals s;
-  s.loss_detected = answered_.NewLoss(acks);
-  s.data_units_marked = answered_.NewMark(acks);
+  s.loss_detected = path_.evidence().NewLoss(acks);
+  s.data_units_marked = path_.evidence().NewMark(acks);
   s.loss_rate = path_.loss_rate().value();
   s.loss_rate_threshold = tolerance.loss_rate_threshold;
   s.queue_at_loss = tolerance.queue_at_loss;
-  if (p_.extensions.fast_start)
+  if (p_.extensions.capacity)
     s.fast_growth =
         fast_increase_.growth(path_.queue_delay().qdelay(), Round(), path_.L4sWorks(now)) *
         (path_.loss_context().AtFullQueue() ? p_.fast_increase_beside : 1);
-  if (p_.extensions.even_alpha) s.earliness = path_.UnreportedTime() / 2;
+  if (p_.extensions.capacity) s.earliness = path_.UnreportedTime() / 2;
   s.l4s_alpha = path_.l4s_alpha().value();
-  s.is_l4s = p_.ecn == Ecn::kEct1 && !(p_.extensions.classic_ecn && path_.classic_ecn().found());
+  s.is_l4s = p_.ecn == Ecn::kEct1 && !(p_.extensions.company && path_.classic_ecn().found());
   s.qdelay = path_.queue_delay().qdelay();
   s.qdelay_avg = path_.queue_delay().qdelay_avg();
   s.qdelay_target = p_.qdelay_target_lo;
@@ -241,13 +239,13 @@ void Controller::StartWindow() {
 void Controller::UpdateTarget(Time now) {
   const DataRate allowed = WindowTarget(now);
   streams_.Allocate(now, AskedTarget(now, allowed));
-  if (p_.extensions.quick_drain && started_) streams_.LeaveRoomForBacklogs(now);
+  if (p_.extensions.capacity && started_) streams_.LeaveRoomForBacklogs(now);
   window_target_ = std::clamp(allowed, streams_.min_bitrate(), streams_.max_bitrate());
   pacer_.Update(window_target_, streams_.max_bitrate(),
                 PacingHeadroom(p_, streams_.frame_period(), PacingReserve(p_, path_, now)),
                 RelaxedPace(p_, path_));
   pacer_.set_ripple(PacingRipple(p_, path_));
-  if (p_.extensions.quick_drain && streams_.media_qdelay(now) > streams_.frame_period())
+  if (p_.extensions.capacity && streams_.media_qdelay(now) > streams_.frame_period())
     pacer_.RaiseTo(DrainRate(p_, now, window_.ref_wnd(), history_.bytes_in_flight(), path_));
 }
 
@@ -264,9 +262,8 @@ DataRate Controller::WindowTarget(Time now) const {
 /// but never less than they need, as long as the path lives.
 DataRate Controller::AskedTarget(Time now, DataRate allowed) const {
   DataRate asked = allowed;
-  if (p_.extensions.gap_recovery && started_ && liveness_.Stalled(now))
-    asked = asked * p_.stall_share;
-  if (p_.extensions.needed_floor && liveness_.Alive(now))
+  if (p_.extensions.gaps && started_ && liveness_.Stalled(now)) asked = asked * p_.stall_share;
+  if (p_.extensions.gaps && liveness_.Alive(now))
     asked = std::max(asked, streams_.needed_bitrate() * p_.needed_margin);
   return std::min(asked, streams_.max_bitrate());
 }
@@ -291,7 +288,7 @@ std::optional<SendDecision> Controller::NextSend(Time caller_now) const {
 /// Nothing is begun into a link that stands still: it would wait where it cannot be dropped.
 bool Controller::Holds(const Stream& stream, Time now) const {
   const bool stalled =
-      p_.extensions.gap_recovery && started_ && liveness_.Overdue(now) && liveness_.Stalled(now);
+      p_.extensions.gaps && started_ && liveness_.Overdue(now) && liveness_.Stalled(now);
   return history_.full() || (stalled && stream.at_start());
 }
 
@@ -336,7 +333,6 @@ void Controller::OnTimer(Time now) {
 void Controller::OnRouteChange(Time now) {
   Advance(now);
   path_.Reset(now_);
-  answered_.OnRouteChange(now_);
   gap_recovery_.Reset();
   started_ = false;
   fast_increase_.Restart();

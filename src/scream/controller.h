@@ -9,7 +9,6 @@
 #include "src/scream/model/sent_history.h"
 #include "src/scream/pacer.h"
 #include "src/scream/parameters.h"
-#include "src/scream/response/answered_signals.h"
 #include "src/scream/response/capacity_drop.h"
 #include "src/scream/response/fast_increase.h"
 #include "src/scream/response/gap_recovery.h"
@@ -144,7 +143,6 @@ class Controller {
   ReferenceWindow window_{p_};
   FastIncrease fast_increase_{p_};
   CapacityDrop capacity_drop_{p_};
-  AnsweredSignals answered_{p_};
   Outage outage_{p_};
   GapRecovery gap_recovery_{p_};
   const Liveness liveness_{history_, path_, outage_, gap_recovery_};

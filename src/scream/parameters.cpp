@@ -9,8 +9,7 @@ Parameters Parameters::Draft() {
   p.clock_drift = false;
   p.link_layer_loss = false;
   p.undershoot_remedy = false;
-  p.extensions = {false, false, false, false, false, false, false,
-                  false, false, false, false, false, false, false};
+  p.extensions = {false, false, false, false};
   p.pacing_catch_up = Duration{0};
   return p;
 }

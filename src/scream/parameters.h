@@ -8,40 +8,19 @@
 namespace lidar::scream {
 using namespace std::chrono_literals;
 
-/// Parts that the draft does not have. `docs/scream.md` argues each; all off is the pure draft.
+/// What the draft does not have, in four parts. `docs/scream.md` argues each; all off is the pure
+/// draft.
 struct Extensions {
-  /// Start-up grows the window by what was acknowledged until the first sign of congestion.
-  bool fast_start = true;
-  /// On a capacity drop the window follows the acknowledged rate within one round trip.
-  bool drop_response = true;
-  /// While packets come back marked, bytes in flight stay near the window.
-  bool bounded_flight = true;
-  /// Loss without marks, delay or a loss rate beyond random is repaired, not obeyed.
-  bool isolated_loss = true;
-  /// A backlog in the sender's queue leaves at the window's rate, and stops to hold the target down
-  /// as soon as it is gone.
-  bool quick_drain = true;
-  /// Losses (and, after a capacity drop, marks) of packets that were on the way when the window
-  /// was reduced for them are no new congestion.
-  bool answered_signals = true;
-  /// The fraction of marked packets is taken over a whole round and averaged evenly.
-  bool even_alpha = true;
-  /// Pacing headroom follows the frame period, so that a slow frame rate does not build a queue.
-  bool adaptive_pacing = true;
-  /// Without feedback the window decays to its minimum, and jumps back once the path returns.
-  bool feedback_timeout = true;
-  /// After a time in which the link carried next to nothing the window is what it was before.
-  bool gap_recovery = true;
-  /// What the streams need is asked of the encoders while the path gives a sign of life, whatever
-  /// the window is; bytes in flight and pacing stay the window's.
-  bool needed_floor = true;
-  /// Marks of a queue that marks ECT(1) like ECT(0) have the reaction that it expects.
-  bool classic_ecn = true;
-  /// Clocks that were set and callers that stood still are noticed; where the bottleneck marks, the
-  /// base delay is that of the last half minute.
-  bool clock_care = true;
-  /// Beside other flows, and where marking begins early, the window is as bold as theirs.
-  bool shared_link = true;
+  /// The window grows up to what the link is measured to carry, frames leave no faster, and a fall
+  /// of the capacity is answered at once.
+  bool capacity = true;
+  /// A sign of congestion is answered once, a lone loss is no sign, and clocks that are set and
+  /// callers that stand still are noticed.
+  bool evidence = true;
+  /// A gap of the link is sat out, and left with the window that it was met with.
+  bool gaps = true;
+  /// Beside other flows the window is as bold as theirs.
+  bool company = true;
 };
 
 struct Parameters {
@@ -100,7 +79,7 @@ struct Parameters {
   double backoff_scale_low_target_rate = 0.25;
 
   // Extensions
-  /// fast_start: growth by this fraction of the acknowledged bytes at most...
+  /// Growth beyond the draft's is by this fraction of the acknowledged bytes at most...
   double fast_increase_max = 0.5;
   /// ...reached by steps of this, one for each round without congestion...
   double fast_increase_step = 0.03;
@@ -111,7 +90,7 @@ struct Parameters {
   Duration fast_increase_qdelay = 5ms;
   /// Slope of the growth above the inflection point (the draft's is 8).
   double fast_increase_slope = 3;
-  /// drop_response: a target above this part of the measured capacity shows a drop...
+  /// A fall of the capacity: a target above this part of the measured capacity shows a drop...
   double drop_threshold = 0.9;
   /// ...or above this, where it was measured over less than a frame period and VIRTUAL_RTT, with
   /// fewer than half of the packets marked, or just after another reaction...
@@ -124,19 +103,19 @@ struct Parameters {
   /// qdelay_target.
   Duration busy_qdelay = 5ms;
   double busy_qdelay_unmarked = 0.45;
-  /// bounded_flight: bytes in flight over ref_wnd while most packets come back marked.
+  /// Bytes in flight over ref_wnd while most packets come back marked.
   double bounded_overhead = 1.0;
   /// ...and while they do not.
   double open_overhead = 1.2;
-  /// isolated_loss: tolerated loss rate where the path carries ECT(1)...
+  /// Tolerated loss rate where the path carries ECT(1)...
   double isolated_loss_threshold = 0.05;
   /// ...unless the packets around the loss waited as long as this.
   Duration isolated_loss_qdelay = 6ms;
-  /// even_alpha: the filter's factor. Alpha attacks as the draft's does once two rounds in a row
+  /// The factor of l4s_alpha's filter. Alpha attacks as the draft's does once two rounds in a row
   /// have this fraction; one is enough where it takes long_frame_period or more.
   double even_alpha_g = 1.0 / 32;
   double even_alpha_max = 0.5;
-  /// adaptive_pacing: a frame leaves so much sooner than its period ends, but within these
+  /// Pacing: a frame leaves so much sooner than its period ends, but within these
   /// fractions of it. As much queue comes and goes with each frame where the link is full.
   Duration pacing_reserve = 4ms;
   /// Where marks work, this part of the queue at which marking begins, if that is less...
@@ -147,7 +126,7 @@ struct Parameters {
   double min_pacing_reserve = 0.18;
   double max_pacing_reserve = 0.35;
 
-  /// shared_link: part of the draft's growth near the inflection point beside others that have
+  /// Beside others: part of the draft's growth near the inflection point beside others that have
   /// more, where nothing marks, which is a segment of 1500 bytes a round trip...
   double classic_growth = 1.5;
   /// ...where marking begins early...
@@ -156,15 +135,15 @@ struct Parameters {
   double prague_backoff = 0.1;
   /// Packets leave so much sooner and later than evenly, which shows what others send.
   Duration pacing_ripple = 300us;
-  /// fast_start: of its growth, where losses keep to a full queue that others fill, too.
+  /// The part of its growth, where losses keep to a full queue that others fill, too.
   double fast_increase_beside = 0.2;
-  /// gap_recovery: of what the window allows, the target in a gap: what is queued then may be late.
+  /// The target in a gap, as a part of what the window allows: what is queued then may be late.
   double stall_share = 0.6;
-  /// quick_drain: the time in which a backlog is to be gone, by a lower target.
+  /// The time in which a backlog is to be gone, by a lower target.
   Duration backlog_drain = 200ms;
   /// So much of a late wake-up is caught up (the draft's pacing has no such term).
   Duration pacing_catch_up = 4ms;
-  /// needed_floor: a little more than what is needed, as encoders round.
+  /// A little more than what is needed, as encoders round.
   double needed_margin = 1.03;
 
   /// All streams together get no more, but for their minima.

@@ -13,14 +13,14 @@ class L4sAlpha {
   explicit L4sAlpha(const Parameters& p) : p_(p) {}
 
   /// `round` is a round trip, or longer where frames come more seldom. With the extension
-  /// even_alpha the fraction is that of a whole round, and alpha rises as fast as it falls. A
+  /// capacity the fraction is that of a whole round, and alpha rises as fast as it falls. A
   /// fraction of few packets scatters. A step marks all packets of some rounds and none of others.
   /// Fast attack with slow decay would turn either into a bias against the smaller of two flows.
   void Update(Time now, int data_units_acked, int data_units_acked_ce, Duration s_rtt,
               Duration round) {
     delivered_ += data_units_acked;
     marked_ += data_units_acked_ce;
-    const bool even = p_.extensions.even_alpha;
+    const bool even = p_.extensions.capacity;
     if (delivered_ == 0 || now - last_update_ < (even ? round : std::min(kUpdateInterval, s_rtt)))
       return;
     const double fraction =

@@ -32,12 +32,11 @@ void PathModel::OnSent(Time now, DataSize size, Ecn ecn, DataSize in_flight) {
 }
 
 void PathModel::OnRoundTrip(Time now, const AckSummary& acks) {
-  if (!acks.rtt || (!acks.acked.empty() && acks.acked.back().sent < gap_end_)) return;
-  rtt_.Add(now, *acks.rtt);
+  if (acks.rtt && evidence_.Counts(acks)) rtt_.Add(now, *acks.rtt);
 }
 
 void PathModel::OnGapEnd(Time now, Duration s_rtt, double l4s_alpha) {
-  gap_end_ = now;
+  evidence_.BeginAt(now);
   queue_delay_.ForgetQueue();
   busy_run_.Reset();
   train_.Reset();
@@ -57,7 +56,7 @@ void PathModel::EndRoundTrip(Time now) {
 }
 
 void PathModel::Reset(Time now) {
-  route_begin_ = now;
+  evidence_.BeginAt(now);
   queue_delay_.Reset();
   rtt_.Reset();
   train_.Reset();
@@ -78,7 +77,7 @@ void PathModel::Reset(Time now) {
 
 void PathModel::MeasureDelays(Time now, const AckSummary& acks, const SenderState& sender) {
   const Duration excess = rtt_.last() - rtt_.min();
-  const bool recent = p_.extensions.clock_care && L4sWorks(now);
+  const bool recent = p_.extensions.evidence && L4sWorks(now);
   for (const AckedPacket& packet : acks.acked) {
     if (!packet.arrival) continue;
     if (queue_delay_.Add(now, {packet.sent, *packet.arrival, excess, now - acks.report}, recent))
@@ -86,8 +85,7 @@ void PathModel::MeasureDelays(Time now, const AckSummary& acks, const SenderStat
     ++clock_resets_;
     busy_run_.Reset();
   }
-  if (acks.acked.empty() || acks.acked.back().sent >= gap_end_)
-    queue_delay_.Update(now, rtt_.smoothed(), sender.qdelay_target);
+  if (evidence_.Counts(acks)) queue_delay_.Update(now, rtt_.smoothed(), sender.qdelay_target);
   if (queue_delay_.TakeDriftReset()) {
     ++clock_resets_;
     half_rate_until_ = now + std::max(5 * rtt_.smoothed(), kShortestHalfRate);
@@ -98,15 +96,15 @@ void PathModel::CountMarksAndLosses(Time now, const AckSummary& acks, const Send
   int marked = 0;
   int answered = 0;
   const auto count_mark = [&](Time sent) {
-    ++(sent >= sender.marks_answered ? marked : answered);
-    if (sent >= route_begin_) last_mark_ = now;
+    ++(evidence_.MarkCounts(sent) ? marked : answered);
+    if (evidence_.Counts(sent)) last_mark_ = now;
   };
   for (const Time sent : acks.late_ce) count_mark(sent);
   acked_rate_.set_window(std::max(rtt_.smoothed(), 2 * sender.frame_period));
   for (const AckedPacket& packet : acks.acked) {
     newest_marked_ = packet.arrived_ecn == Ecn::kCe;
     if (newest_marked_) count_mark(packet.sent);
-    if (packet.sent >= route_begin_) ecn_.OnAcked(packet.ecn, packet.arrived_ecn);
+    if (evidence_.Counts(packet.sent)) ecn_.OnAcked(packet.ecn, packet.arrived_ecn);
     loss_rate_.Add(false, sender.ref_wnd);
     acked_rate_.Add(now, packet.size);
     long_acked_rate_.Add(now, packet.size);
@@ -132,7 +130,7 @@ void PathModel::ObserveCapacity(Time now, const AckSummary& acks, Duration qdela
     const Duration qdelay = *packet.arrival - packet.sent - queue_delay_.base();
     const bool busy = marked || qdelay >= BusyQdelay(now, qdelay_target);
     loss_context_.OnAcked(packet.sent, qdelay);
-    if (packet.sent >= gap_end_) {
+    if (evidence_.Counts(packet.sent)) {
       classic_ecn_.OnPacket(now, qdelay, marked);
       if (marked) marking_onset_.OnMark(qdelay);
       cross_traffic_.Add({packet.sent, *packet.arrival, packet.size}, qdelay, congested);

@@ -10,6 +10,7 @@
 #include "src/scream/model/classic_ecn.h"
 #include "src/scream/model/cross_traffic.h"
 #include "src/scream/model/ecn_monitor.h"
+#include "src/scream/model/evidence.h"
 #include "src/scream/model/flight.h"
 #include "src/scream/model/l4s_alpha.h"
 #include "src/scream/model/loss_context.h"
@@ -29,7 +30,6 @@ struct SenderState {
   DataSize ref_wnd;
   Duration frame_period{0};
   Duration qdelay_target{0};
-  Time marks_answered{};  ///< marks of packets sent before it have had their reaction
 };
 
 /// The estimators of one path. It decides nothing: the responses ask it.
@@ -42,14 +42,16 @@ class PathModel {
   /// Comes before OnReport().
   void OnRoundTrip(Time now, const AckSummary& acks);
   void OnReport(Time now, const AckSummary& acks, const SenderState& sender);
-  /// A gap is over: what was sent before `now` met it, and says nothing about the path now.
+  /// A gap is over: what was sent before `now` met it.
   void OnGapEnd(Time now, Duration s_rtt, double l4s_alpha);
   void EndRoundTrip(Time now);
   void OnTimer(Time now) { ecn_.OnTimer(now); }
-  /// Another route: base delay, round trip, ECN, marks, losses and capacity are unknown again. What
-  /// is told later of packets that were sent before `now` says nothing of its marks and its ECN.
+  /// Another route: base delay, round trip, ECN, marks, losses and capacity are unknown again.
   void Reset(Time now);
 
+  /// What was sent before some moment counts no more.
+  Evidence& evidence() { return evidence_; }
+  const Evidence& evidence() const { return evidence_; }
   const RoundTripTime& rtt() const { return rtt_; }
   const QueueDelay& queue_delay() const { return queue_delay_; }
   const L4sAlpha& l4s_alpha() const { return l4s_alpha_; }
@@ -119,8 +121,7 @@ class PathModel {
   bool hole_in_report_ = false;
   DataRate train_capacity_;
   DataRate acked_peak_;  // of averages, since the last train
-  Time gap_end_{};
-  Time route_begin_{};
+  Evidence evidence_;
   MaxBytesInFlight max_in_flight_;
   mutable RateMeter sent_rate_{1s};
   mutable RateMeter acked_rate_{100ms};

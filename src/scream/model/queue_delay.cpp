@@ -45,7 +45,7 @@ void QueueDelay::ForgetBase() {
 /// A queue on one way leaves the other way as it is. A clock that is set makes one of them shorter
 /// than it can be.
 bool QueueDelay::Jumped(Time now, Duration owd, Duration way_back) {
-  if (!p_.extensions.clock_care) return false;
+  if (!p_.extensions.evidence) return false;
   if (now - shortest_back_since_ >= kBackWindow) {
     previous_shortest_back_ = std::exchange(shortest_back_, std::nullopt);
     shortest_back_since_ = now;

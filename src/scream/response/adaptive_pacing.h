@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Extension adaptive_pacing: pacing headroom that follows the frame period.
+// Extension capacity: pacing headroom that follows the frame period.
 #pragma once
 #include <algorithm>
 
@@ -18,7 +18,7 @@ inline Duration PacingReserve(const Parameters& p, const PathModel& path, Time n
 /// PACKET_PACING_HEADROOM, or so much that a frame leaves `reserve` before its period ends: as
 /// much queue comes and goes with each frame where the link is full.
 inline double PacingHeadroom(const Parameters& p, Duration frame_period, Duration reserve) {
-  if (!p.extensions.adaptive_pacing) return p.packet_pacing_headroom;
+  if (!p.extensions.capacity) return p.packet_pacing_headroom;
   const double longest = std::min(1.0, Seconds(frame_period) / Seconds(p.long_frame_period));
   return 1 / (1 - std::clamp(Seconds(reserve) / Seconds(frame_period),
                              longest * p.min_pacing_reserve, p.max_pacing_reserve));
@@ -29,7 +29,7 @@ inline double PacingHeadroom(const Parameters& p, Duration frame_period, Duratio
 inline DataRate RelaxedPace(const Parameters& p, const PathModel& path) {
   constexpr double kUnmarked = 0.9;
   const DataRate known = path.train_capacity();
-  if (!p.extensions.adaptive_pacing || known <= DataRate()) return DataRate::Infinite();
+  if (!p.extensions.capacity || known <= DataRate()) return DataRate::Infinite();
   return known * kUnmarked;
 }
 

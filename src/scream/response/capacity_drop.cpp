@@ -7,7 +7,7 @@ namespace lidar::scream {
 
 std::optional<DataSize> CapacityDrop::Update(Time now, const PathModel& path, const Load& load) {
   auto capacity = path.busy_run().capacity();
-  if (!p_.extensions.drop_response || !capacity) return std::nullopt;
+  if (!p_.extensions.capacity || !capacity) return std::nullopt;
   // What left the queue last counts for more than a time in which it stood.
   if (const auto now_carried = path.train().rate()) capacity = std::max(*capacity, *now_carried);
   if (!path.Queueing(now, path.BusyQdelay(now, load.qdelay_target))) return std::nullopt;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Extension drop_response: a link that turns out to carry much less gets no more at once.
+// Extension capacity: a link that turns out to carry much less gets no more at once.
 #pragma once
 #include <optional>
 

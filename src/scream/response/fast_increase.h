@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Beyond the draft: multiplicative growth from the start, and again after rounds without
+// Extension capacity: multiplicative growth from the start, and again after rounds without
 // congestion.
 #pragma once
 #include <algorithm>

@@ -22,7 +22,7 @@ constexpr double kBack = 0.9;
 
 std::optional<GapRecovery::Restart> GapRecovery::Update(Time now, const PathModel& path,
                                                         DataSize ref_wnd, Duration qdelay_target) {
-  if (!p_.extensions.gap_recovery) return std::nullopt;
+  if (!p_.extensions.gaps) return std::nullopt;
   const auto rate = path.train().rate();
   if (Slow(rate)) BelieveLess();
   if (path.hole_in_report() || Slow(rate)) NoteSign(now);

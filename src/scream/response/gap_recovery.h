@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Extension gap_recovery: what the path was before a gap is what it is after it.
+// Extension gaps: what the path was before a gap is what it is after it.
 #pragma once
 #include <optional>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Extension isolated_loss: how much loss is taken for the radio's and not for congestion.
+// Extension evidence: how much loss is taken for the radio's and not for congestion.
 #pragma once
 #include <algorithm>
 
@@ -15,7 +15,7 @@ struct LossTolerance {
 
 inline LossTolerance TolerateLoss(const Parameters& p, const PathModel& path) {
   LossTolerance tolerance{p.loss_rate_threshold, false};
-  if (!p.extensions.isolated_loss) return tolerance;
+  if (!p.extensions.evidence) return tolerance;
   tolerance.queue_at_loss =
       path.queue_delay().qdelay() > p.isolated_loss_qdelay || path.loss_context().AtFullQueue();
   if (p.ecn == Ecn::kEct1 && path.ecn().state() == EcnState::kCapable)

@@ -18,7 +18,7 @@ std::optional<DataSize> Outage::OnTimer(Time now, DataSize ref_wnd, Duration s_r
                                         Duration frame_period) {
   const Duration expected = std::max(2 * frame_period, 2 * p_.feedback_interval);
   const Duration timeout = 2 * s_rtt + std::max(kOutage, expected);
-  if (!p_.extensions.feedback_timeout) return std::nullopt;
+  if (!p_.extensions.gaps) return std::nullopt;
   if (now - std::max(last_feedback_, last_timeout_) <= timeout) return std::nullopt;
   last_timeout_ = now;
   if (!window_before_) window_before_ = ref_wnd;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Extension feedback_timeout: silence of the receiver, and the way back after it.
+// Extension gaps: silence of the receiver, and the way back after it.
 #pragma once
 #include <optional>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Extension quick_drain: how fast a backlog of the sender's queue leaves.
+// Extension capacity: how fast a backlog of the sender's queue leaves.
 #pragma once
 #include <algorithm>
 

@@ -47,7 +47,7 @@ Reaction ReferenceWindow::Update(Time now, const CongestionSignals& signals) {
 }
 
 Reaction ReferenceWindow::Detect(Time now, const CongestionSignals& s) {
-  const bool isolated = p_.extensions.isolated_loss && !LossCounts(s);
+  const bool isolated = p_.extensions.evidence && !LossCounts(s);
   if (data_units_marked_ || (loss_detected_ && !isolated)) last_congestion_detected_time_ = now;
   if (now - last_reaction_to_congestion_time_ + s.earliness < std::min(p_.virtual_rtt, s.s_rtt))
     return Reaction::kNone;

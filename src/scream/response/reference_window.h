@@ -20,8 +20,8 @@ struct CongestionSignals {
   bool loss_detected = false;
   bool data_units_marked = false;
   double loss_rate = 0;
-  double loss_rate_threshold = 0;  ///< LOSS_RATE_THRESHOLD, or what isolated_loss makes of it
-  bool queue_at_loss = false;      ///< isolated_loss: packets around the loss had waited
+  double loss_rate_threshold = 0;  ///< LOSS_RATE_THRESHOLD, or more
+  bool queue_at_loss = false;      ///< packets around the loss had waited
   double l4s_alpha = 0;
   bool is_l4s = true;  ///< marks are L4S marks, not classic ECN
   Duration qdelay{0};
@@ -41,7 +41,7 @@ struct CongestionSignals {
   DataRate target_bitrate;
   DataRate target_bitrate_max;
   DataRate acked_bitrate;
-  double fast_growth = 0;  ///< fast_start: fraction of the acknowledged bytes to grow by
+  double fast_growth = 0;  ///< fraction of the acknowledged bytes to grow by
 };
 
 enum class Reaction { kNone, kLoss, kCe, kVirtualCe };

@@ -9,7 +9,7 @@ DataSize SendWindow::Max(Time now, DataSize ref_wnd, const PathModel& path,
                          Duration qdelay_target) const {
   double overhead = p_.ref_wnd_overhead_min + (p_.ref_wnd_overhead_max - p_.ref_wnd_overhead_min) *
                                                   path.queue_delay().ref_wnd_delay_scale();
-  if (p_.extensions.bounded_flight) {
+  if (p_.extensions.capacity) {
     if (path.L4sWorks(now)) overhead = std::min(overhead, p_.open_overhead);
     if (path.Queueing(now, 2 * path.BusyQdelay(now, qdelay_target))) overhead = p_.bounded_overhead;
     overhead *= 1 + Seconds(path.UnreportedTime()) / Seconds(path.rtt().smoothed());

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The draft's send window, and the extension bounded_flight.
+// The draft's send window, and what the extension capacity makes of it.
 #pragma once
 #include "src/scream/model/path_model.h"
 #include "src/scream/parameters.h"
@@ -13,7 +13,7 @@ class SendWindow {
   void OnSent(Time now) { last_sent_ = now; }
   /// Before the first packet.
   bool unused() const { return last_sent_ == Time{}; }
-  /// Bytes in flight at most. With bounded_flight these are few more than the window where marks
+  /// Bytes in flight at most. With the extension these are few more than the window where marks
   /// work, and none more while packets keep coming back out of a queue. What is unreported comes on
   /// top.
   DataSize Max(Time now, DataSize ref_wnd, const PathModel& path, Duration qdelay_target) const;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Extension shared_link: beside other flows the window grows and gives way as theirs do.
+// Extension company: beside other flows the window grows and gives way as theirs do.
 #pragma once
 #include <algorithm>
 #include <cmath>
@@ -27,7 +27,7 @@ inline double EarlyMarking(Duration onset) {
 
 /// Packets that leave unevenly show what others send, and make as much more queue.
 inline Duration PacingRipple(const Parameters& p, const PathModel& path) {
-  if (!p.extensions.shared_link) return Duration{0};
+  if (!p.extensions.company) return Duration{0};
   return FromSeconds(Seconds(p.pacing_ripple) * LateMarking(path.marking_onset()));
 }
 
@@ -48,7 +48,7 @@ inline Boldness BesideOthers(const Parameters& p, const PathModel& path, Time no
   /// The draft's alpha is above ours for as many marks, as it attacks faster than it decays.
   constexpr double kGentlest = 2.5;
   Boldness b;
-  if (!p.extensions.shared_link) return b;
+  if (!p.extensions.company) return b;
   const bool l4s = path.L4sWorks(now);
   const double early = l4s ? EarlyMarking(path.marking_onset()) : 0;
   b.growth += (p.early_growth - b.growth) * early;

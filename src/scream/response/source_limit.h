@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Beyond the draft: the window where the streams' maximum, and not the link, limits what is sent.
+// Extension capacity: the window where the streams' maximum, and not the link, limits what is sent.
 #pragma once
 #include <algorithm>
 
@@ -25,7 +25,7 @@ struct SourceLimit {
   /// At the maximum bitrate a window is enough for frames that leave evenly; a whole scan, and what
   /// a gap left, would go out faster.
   bool HoldsBurstsBack(DataSize ref_wnd) const {
-    return p.extensions.adaptive_pacing && max_bitrate < DataRate::Infinite() &&
+    return p.extensions.capacity && max_bitrate < DataRate::Infinite() &&
            ref_wnd < Window() && path.max_in_flight().lately() > ref_wnd;
   }
 };

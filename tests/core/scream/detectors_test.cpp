@@ -51,10 +51,7 @@ TEST(Parameters, ThePureDraftHasNoOptionalPartAndNoExtension) {
   const Parameters p = Parameters::Draft();
   EXPECT_FALSE(p.reduce_jitter || p.clock_drift || p.link_layer_loss || p.undershoot_remedy);
   const Extensions& e = p.extensions;
-  EXPECT_FALSE(e.fast_start || e.drop_response || e.bounded_flight || e.isolated_loss ||
-               e.answered_signals || e.even_alpha || e.quick_drain || e.adaptive_pacing ||
-               e.feedback_timeout || e.gap_recovery || e.needed_floor || e.classic_ecn ||
-               e.clock_care || e.shared_link);
+  EXPECT_FALSE(e.capacity || e.evidence || e.gaps || e.company);
   EXPECT_EQ(p.pacing_catch_up, Duration{0});
 }
 

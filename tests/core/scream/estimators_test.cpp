@@ -13,7 +13,7 @@
 namespace lidar::scream {
 namespace {
 
-constexpr SenderState kSender{DataSize::Bytes(10000), 20ms, 60ms, Time{}};
+constexpr SenderState kSender{DataSize::Bytes(10000), 20ms, 60ms};
 
 TEST(PathModel, KnowsNothingOfAnotherRoute) {
   const Parameters p;

@@ -2,8 +2,8 @@
 // The responses beyond the draft, each by itself: outage, send window, pacing.
 #include <gtest/gtest.h>
 
+#include "src/scream/model/evidence.h"
 #include "src/scream/response/adaptive_pacing.h"
-#include "src/scream/response/answered_signals.h"
 #include "src/scream/response/gap_recovery.h"
 #include "src/scream/response/isolated_loss.h"
 #include "src/scream/response/outage.h"
@@ -225,35 +225,42 @@ TEST(TolerateLoss, CountsAnyLossBehindAQueueAndLittleElsewhere) {
   EXPECT_DOUBLE_EQ(TolerateLoss(Parameters::Draft(), path.model).loss_rate_threshold, 0.01);
 }
 
-TEST(AnsweredSignals, AreThoseOfPacketsSentBeforeTheReaction) {
-  const Parameters p;
-  AnsweredSignals answered(p);
+TEST(Evidence, IsOfPacketsSentSinceTheReaction) {
+  Evidence evidence;
   AckSummary acks;
   acks.lost.emplace_back();
   acks.lost.back().sent = kStart;
   acks.acked.emplace_back();
   acks.acked.back().sent = kStart;
   acks.acked.back().arrived_ecn = Ecn::kCe;
-  EXPECT_TRUE(answered.NewLoss(acks) && answered.NewMark(acks));
-  answered.OnLossReaction(kStart + 1ms);
-  EXPECT_FALSE(answered.NewLoss(acks));
-  EXPECT_TRUE(answered.NewMark(acks));
-  answered.OnCapacityDrop(kStart + 1ms);
-  EXPECT_FALSE(answered.NewMark(acks));
+  EXPECT_TRUE(evidence.NewLoss(acks) && evidence.NewMark(acks));
+  evidence.OnLossReaction(kStart + 1ms);
+  EXPECT_FALSE(evidence.NewLoss(acks));
+  EXPECT_TRUE(evidence.NewMark(acks));
+  evidence.OnDropReaction(kStart + 1ms);
+  EXPECT_FALSE(evidence.NewMark(acks));
   acks.late_ce = {kStart};
-  EXPECT_FALSE(answered.NewMark(acks));
+  EXPECT_FALSE(evidence.NewMark(acks));
   acks.late_ce = {kStart + 1ms};
-  EXPECT_TRUE(answered.NewMark(acks));
-  acks.lost.back().sent = acks.acked.back().sent = kStart + 1s;
-  EXPECT_TRUE(answered.NewLoss(acks) && answered.NewMark(acks));
-  answered.OnRouteChange(kStart + 1s + 1ms);
-  EXPECT_FALSE(answered.NewLoss(acks) || answered.NewMark(acks));
-  acks.late_ce = {kStart + 1s};
-  EXPECT_FALSE(answered.NewMark(acks)) << "of the old route, reported late";
-  acks.lost.back().sent = acks.acked.back().sent = kStart + 2s + 20ms;
-  answered.OnOutageEnd(kStart + 2s, kRtt);
-  answered.OnGapEnd(kStart + 2s + 10ms);
-  EXPECT_FALSE(answered.NewLoss(acks) || answered.NewMark(acks)) << "held back by the outage";
+  EXPECT_TRUE(evidence.NewMark(acks));
+  EXPECT_TRUE(evidence.Counts(acks)) << "its delay is that of the link still";
+}
+
+TEST(Evidence, BeginsAnewBehindAnOutageAndNoSoonerForAGapInIt) {
+  Evidence evidence;
+  AckSummary acks;
+  acks.lost.emplace_back();
+  acks.acked.emplace_back();
+  acks.acked.back().arrived_ecn = Ecn::kCe;
+  acks.lost.back().sent = acks.acked.back().sent = kStart + 20ms;
+  EXPECT_TRUE(evidence.NewLoss(acks) && evidence.NewMark(acks) && evidence.Counts(acks));
+  evidence.BeginAt(kStart + kRtt);
+  evidence.BeginAt(kStart + 10ms);
+  EXPECT_FALSE(evidence.NewLoss(acks) || evidence.NewMark(acks) || evidence.Counts(acks));
+  acks.late_ce = {kStart + 20ms};
+  EXPECT_FALSE(evidence.NewMark(acks)) << "reported late";
+  acks.lost.back().sent = acks.acked.back().sent = kStart + kRtt;
+  EXPECT_TRUE(evidence.NewLoss(acks) && evidence.NewMark(acks) && evidence.Counts(acks));
 }
 
 }  // namespace

@@ -83,7 +83,7 @@ SimulationConfig Outages() {
 SimulationConfig SeldomReports() {
   Parameters parameters;
   parameters.feedback_interval = 300ms;
-  parameters.extensions.gap_recovery = false;
+  parameters.extensions.gaps = false;
   SimulationConfig config = Named("frames10_8M_rtt40", parameters);
   config.forward.capacity.AddOutage(6s, 7500ms);
   config.flows[0].feedback.report_on_ce_change = false;

@@ -327,10 +327,10 @@ TEST(Tuning, SetsWhatItNamesAndNothingElse) {
 }
 
 TEST(Tuning, TakesNumbersAndSwitchesAsUsersWriteThem) {
-  const auto p = ToParameters(Tuned("tuning,beta-loss=0.6,mss=1200,fast-start=false"));
+  const auto p = ToParameters(Tuned("tuning,beta-loss=0.6,mss=1200,capacity=false"));
   EXPECT_EQ(p.beta_loss, 0.6);
   EXPECT_EQ(p.mss, DataSize::Bytes(1200));
-  EXPECT_FALSE(p.extensions.fast_start);
+  EXPECT_FALSE(p.extensions.capacity);
 }
 
 TEST(Tuning, IsUndoneByThePureDraft) {
@@ -349,7 +349,7 @@ TEST(Tuning, SaysWhatIsWrong) {
             std::string::npos);
   EXPECT_EQ(wrong("tuning,beta-loss=1.5"), "\"beta-loss\" takes numbers from 0.1 to 1");
   EXPECT_EQ(wrong("tuning,beta-loss=much"), "\"beta-loss\" takes numbers from 0.1 to 1");
-  EXPECT_EQ(wrong("tuning,fast-start=2"), "\"fast-start\" takes true or false");
+  EXPECT_EQ(wrong("tuning,capacity=2"), "\"capacity\" takes true or false");
 }
 
 }  // namespace

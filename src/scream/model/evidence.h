@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// The time before which nothing that was sent proves anything.
+#pragma once
+#include <algorithm>
+
+#include "src/scream/model/sent_history.h"
+
+namespace lidar::scream {
+
+/// A packet that met a gap, an outage or another route says nothing about the path now: neither its
+/// marks, its loss, its delay nor its round trip count. A packet that was on the way at a reaction
+/// is no reason for another one.
+class Evidence {
+ public:
+  void BeginAt(Time time) {
+    begin_ = std::max(begin_, time);
+    OnDropReaction(begin_);
+  }
+  /// The window follows a fall of the capacity.
+  void OnDropReaction(Time now) {
+    marks_ = std::max(marks_, now);
+    OnLossReaction(now);
+  }
+  void OnLossReaction(Time now) { losses_ = std::max(losses_, now); }
+
+  bool Counts(Time sent) const { return sent >= begin_; }
+  bool MarkCounts(Time sent) const { return sent >= marks_; }
+  /// The newest packet of the report counts, or it has none.
+  bool Counts(const AckSummary& acks) const {
+    return acks.acked.empty() || Counts(acks.acked.back().sent);
+  }
+  bool NewLoss(const AckSummary& acks) const {
+    return std::any_of(acks.lost.begin(), acks.lost.end(),
+                       [this](const LostPacket& lost) { return lost.sent >= losses_; });
+  }
+  bool NewMark(const AckSummary& acks) const {
+    const auto is_new = [this](const AckedPacket& acked) {
+      return acked.arrived_ecn == Ecn::kCe && MarkCounts(acked.sent);
+    };
+    return std::any_of(acks.late_ce.begin(), acks.late_ce.end(),
+                       [this](Time sent) { return MarkCounts(sent); }) ||
+           std::any_of(acks.acked.begin(), acks.acked.end(), is_new);
+  }
+
+ private:
+  // The later ones are never before the earlier ones.
+  Time begin_{}, marks_{}, losses_{};
+};
+
+}  // namespace lidar::scream
