@@ -25,8 +25,8 @@ struct SourceLimit {
   /// At the maximum bitrate a window is enough for frames that leave evenly; a whole scan, and what
   /// a gap left, would go out faster.
   bool HoldsBurstsBack(DataSize ref_wnd) const {
-    return p.extensions.capacity && max_bitrate < DataRate::Infinite() &&
-           ref_wnd < Window() && path.max_in_flight().lately() > ref_wnd;
+    return p.extensions.capacity && max_bitrate < DataRate::Infinite() && ref_wnd < Window() &&
+           path.max_in_flight().lately() > ref_wnd;
   }
 };
 
