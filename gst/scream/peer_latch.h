@@ -91,6 +91,10 @@ class PeerLatch {
   }
   /// Links of the peer, the first one included.
   std::size_t links() const { return latched_ ? 1 + links_.size() : 0; }
+  /// Address of link `n`, not owned by the caller; as peer() for 0.
+  GSocketAddress* link(std::size_t n) const {
+    return n == 0 ? peer() : links_[n - 1].address.get();
+  }
   /// NULL before the first packet, or where no packet had an address; not owned by the caller.
   GSocketAddress* peer() const { return peer_.address.get(); }
   /// Begins a session. The SSRCs whose slices came out whole stay known from the one before.

@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include "gst/scream/bond/bond.h"
 
+#include <gst/video/video.h>
+
 #include <algorithm>
 #include <cmath>
 #include <condition_variable>
 #include <deque>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <unordered_map>
 
 #include "gst/common/sink_pads.h"
@@ -21,6 +24,8 @@ using bonding::Scheduler;
 
 constexpr DataSize kHeaders = DataSize::Bytes(28);  // UDP and IP
 constexpr double kWorthTelling = 0.02;              // of a target
+// A link's own interval between key units is longer.
+constexpr Duration kKeyUnitInterval = std::chrono::milliseconds(400);
 constexpr Duration kWatchEvery = std::chrono::milliseconds(100);
 
 struct BondStream {
@@ -29,6 +34,7 @@ struct BondStream {
   std::vector<GstLidarTargetBitrate> targets;  // that the links told
   std::vector<std::string> reasons;            // of these
   guint told = 0;                              // to the encoder [bit/s]
+  std::optional<Time> key_unit_at;             // when the encoder was asked for one
 };
 
 struct Kept {
@@ -201,9 +207,23 @@ static EventPtr DueTarget(BondShared& shared, BondStream& stream) {
   return EventPtr(gst_lidar_event_new_target_bitrate(&target));
 }
 
+/// Receivers ask for a key unit over each link; the encoder hears of it once.
+static bool IsRepeatedRequest(BondShared& shared, BondStream& stream, GstEvent* event) {
+  if (!gst_video_event_is_force_key_unit(event)) return false;
+  const Time now = shared.Now();
+  const std::lock_guard lock(shared.mutex);
+  if (stream.key_unit_at && now - *stream.key_unit_at < kKeyUnitInterval) return true;
+  stream.key_unit_at = now;
+  return false;
+}
+
 /// Targets are combined; all else goes on as it is.
 static gboolean BondSrcEvent(GstPad* pad, GstObject* parent, GstEvent* event) {
   BondStream& stream = StreamOf(pad);
+  if (IsRepeatedRequest(*BondOf(parent).shared, stream, event)) {
+    gst_event_unref(event);
+    return TRUE;
+  }
   GstLidarTargetBitrate target{};
   if (!gst_lidar_event_parse_target_bitrate(event, &target))
     return gst_pad_push_event(stream.sink, event);

@@ -52,10 +52,11 @@ GstBuffer* ToBuffer(GSocketAddress* to, const std::vector<std::uint8_t>& bytes) 
 GstBuffer* NextPacket(GstLidarScreamRx* self, Time now) {
   RxState& state = *self->state;
   if (!state.key_requests.empty()) {
-    const guint32 ssrc = *state.key_requests.begin();
+    const auto [ssrc, link] = *state.key_requests.begin();
     state.key_requests.erase(state.key_requests.begin());
     GST_DEBUG_OBJECT(self, "asking for a key unit of %08x", ssrc);
-    return ToBuffer(state.latch.peer(), BuildKeyRequest(state.own_ssrc, ssrc));
+    GSocketAddress* to = link < state.latch.links() ? state.latch.link(link) : state.latch.peer();
+    return ToBuffer(to, BuildKeyRequest(state.own_ssrc, ssrc));
   }
   const auto report = state.reports.Take(now);
   if (!report) return nullptr;
@@ -109,7 +110,10 @@ gboolean RxSrcEvent(GstPad* pad, GstObject* parent, GstEvent* event) {
   RxState& state = *GST_LIDAR_SCREAM_RX(parent)->state;
   const RxLock lock(state.mutex);
   // Only the streaming thread knows the pad of an SSRC; asking for all does no harm.
-  for (const auto& [ssrc, last] : state.ssrcs) state.key_requests.insert(ssrc);
+  // A link in a gap would lose it.
+  for (const auto& [ssrc, last] : state.ssrcs)
+    for (std::size_t i = 0; i < std::max<std::size_t>(state.latch.links(), 1); ++i)
+      state.key_requests.emplace(ssrc, i);
   if (state.timer != nullptr) gst_clock_id_unschedule(state.timer);
   return state.ssrcs.empty() ? FALSE : TRUE;
 }

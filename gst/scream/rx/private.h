@@ -75,7 +75,8 @@ struct RxState {
   GstClockID timer = nullptr;  // not owned
   Time waits_until{};
   bool rtcp_started = false;
-  std::set<guint32> key_requests;  // SSRCs of which somebody downstream needs a key unit
+  // SSRCs of which somebody downstream needs a key unit, and the links that have not asked yet.
+  std::set<std::pair<guint32, std::size_t>> key_requests;
 
   // Only the streaming thread uses what follows
   bool eos = false;

@@ -2,6 +2,7 @@
 // screamrx under a test clock: what it reports, to whom, and whom it believes.
 #include <set>
 
+#include "gst/net/udp_socket.h"
 #include "gst/scream/key_request.h"
 #include "src/rtp/ntp_time.h"
 #include "tests/elements/scream/screamrx_fixture.h"
@@ -20,6 +21,27 @@ TEST_F(ScreamRx, CarriesTheWishForAKeyUnitToTheSender) {
   ASSERT_TRUE(packet);
   EXPECT_EQ(ToBytes(packet.get()), gst::BuildKeyRequest(77, 0x1234));
   EXPECT_EQ(Passed(), 1U);
+}
+
+TEST_F(ScreamRx, CarriesTheWishForAKeyUnitOverEachLink) {
+  g_object_set(element, "ssrc", 77, nullptr);
+  Start();
+  for (guint16 seq = 1; seq < 8; ++seq) {
+    Rtp r;
+    r.seq = seq;
+    for (const char* host : {"10.0.0.1", "10.0.0.2"}) Push(r, GST_LIDAR_ECN_ECT1, host);
+  }
+  GstStructure* wish = gst_structure_new_empty("GstForceKeyUnit");
+  ASSERT_TRUE(gst_harness_push_upstream_event(
+      rtp.get(), gst_event_new_custom(GST_EVENT_CUSTOM_UPSTREAM, wish)));
+  std::set<std::string> asked;
+  for (int packets = 0; packets < 20 && asked.size() < 2; ++packets) {
+    const BufferPtr packet(gst_harness_pull(rtcp.get()));
+    ASSERT_TRUE(packet);
+    if (ToBytes(packet.get()) != gst::BuildKeyRequest(77, 0x1234)) continue;
+    asked.insert(gst::AddressToString(gst::SourceOf(packet.get())));
+  }
+  EXPECT_EQ(asked, (std::set<std::string>{"10.0.0.1:5000", "10.0.0.2:5000"}));
 }
 
 TEST_F(ScreamRx, ReportsEachPacketOfAFrameAtItsMarker) {
