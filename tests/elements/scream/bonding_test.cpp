@@ -158,6 +158,44 @@ TEST(Bonding, StartsAgainAndWithOneLink) {
   EXPECT_EQ(receiver.passed, 5U);
 }
 
+/// RTP datagrams that a sender of fixed audio puts on the wire.
+std::vector<std::string> Datagrams(const std::string& sink_options, const std::string& to_suffix) {
+  GSocket* socket =
+      g_socket_new(G_SOCKET_FAMILY_IPV4, G_SOCKET_TYPE_DATAGRAM, G_SOCKET_PROTOCOL_UDP, nullptr);
+  GSocketAddress* any = g_inet_socket_address_new_from_string("127.0.0.1", 0);
+  EXPECT_TRUE(g_socket_bind(socket, any, FALSE, nullptr));
+  g_object_unref(any);
+  GSocketAddress* local = g_socket_get_local_address(socket, nullptr);
+  const std::string port =
+      std::to_string(g_inet_socket_address_get_port(G_INET_SOCKET_ADDRESS(local)));
+  g_object_unref(local);
+  g_socket_set_timeout(socket, 5);
+  Pipeline sender(
+      "audiotestsrc num-buffers=20 samplesperbuffer=441 ! "
+      "audio/x-raw,rate=44100,channels=1,format=S16BE ! rtpL16pay ssrc=7 seqnum-offset=65530 "
+      "timestamp-offset=9 perfect-rtptime=true ! screamsink sender-report-interval=0 " +
+      sink_options + port + to_suffix);
+  sender.Play();
+  EXPECT_TRUE(sender.Ends());
+  std::vector<std::string> datagrams;
+  for (;;) {
+    char bytes[2'000];
+    const gssize n = g_socket_receive(socket, bytes, sizeof bytes, nullptr, nullptr);
+    const auto type = static_cast<guint8>(bytes[1]);
+    if (n < 2 || (type >= 192 && type < 224)) break;  // its goodbye
+    datagrams.emplace_back(bytes, static_cast<std::size_t>(n));
+  }
+  g_object_unref(socket);
+  return datagrams;
+}
+
+TEST(Bonding, OneLinkSendsTheSameBytesAsWithoutBonding) {
+  const auto plain = Datagrams("host=127.0.0.1 port=", "");
+  EXPECT_EQ(plain.size(), 20U);
+  EXPECT_TRUE(Datagrams("bonding-addresses=127.0.0.1:", "@127.0.0.1") == plain);
+  EXPECT_TRUE(Datagrams("bonding-addresses=127.0.0.1:", "@lo") == plain);
+}
+
 TEST(Bonding, GivesPadsTheirShareOnEachLink) {
   Pipeline sender(Bonded("127.0.0.1:9@127.0.0.1,127.0.0.1:9@127.0.0.2", "sink_0::priority=3"));
   const ElementPtr out = sender.Get("out");
