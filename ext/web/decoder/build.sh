@@ -11,13 +11,13 @@ mkdir -p "$objects/src/codec"
 template=$(<src/codec/mixing/start_table.h.in)
 echo "${template/@TABLE@/$(<src/codec/mixing/start_table.txt)}" > "$objects/src/codec/start_table.h"
 
-# Loops over bits and points; the rest is compiled for its size.
+# Loops over bits and points; the rest is compiled for its size. The linker drops what encodes.
 fast=(src/cloud/range_projection src/codec/mixing/{binary_coder,mixing_codec,slice_coder}
   src/codec/rans/{adaptive_coder,mask_coder,predictor,rans} src/codec/cloud/{beam_section,cell_tree,level_tree,pixel_part})
-small=(src/cloud/{point_fields,sensor_model}
-  src/codec/{azimuth_alignment,block_memory,block_store,cloud_io,range_codec,range_header,slice_decoder}
-  src/codec/rans/initial_models src/codec/mixing/{arithmetic,start_states}
-  src/codec/cloud/{beam_table,cell_cover,cloud_decoder,cloud_header,pixel_list} ext/web/decoder/{crc,decoder})
+small=(src/cloud/{point_fields,sensor_model} ext/web/decoder/{crc,decoder})
+for file in src/codec/*.cpp src/codec/{rans,mixing,cloud}/*.cpp; do
+  case " ${fast[*]} $file" in *" ${file%.cpp} "* | *_encoder.cpp) ;; *) small+=("${file%.cpp}") ;; esac
+done
 flags=(--target=wasm32-wasi -msimd128 -std=c++17 -fno-exceptions -fno-rtti -DNDEBUG -ffp-contract=off
   -fvisibility=hidden -ffunction-sections -fdata-sections -I. "-I$objects")
 compile() { printf '%s\n' "${@:2}" | xargs -P 2 -I{} sh -c "clang++ ${flags[*]} $1 -c {}.cpp -o $objects/\$(echo {} | tr / _).o"; }

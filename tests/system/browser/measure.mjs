@@ -12,6 +12,8 @@ import { freePort, openBrowser, openPage, Pipeline, sleep, until } from './suppo
 const SECONDS = Number(process.env.WAIT_S ?? 20);
 const TICKS = 100; // a second, of /proc
 const CODERS = { raw: '', 'Draco at 2 cm': '! dracoenc geometry=xyz max-error=0.02' };
+const PAGE_CODERS = { ...CODERS, 'slices at 2 cm': '! lidarenc max-error=0.02' };
+const CLOUDS = ['lidar.Slice', 'foxglove.PointCloud', 'foxglove.CompressedPointCloud'];
 const SCANS = 10; // that are played again and again
 const FIELDS = 'x:F32:0,y:F32:4,z:F32:8,intensity:F32:12,range:U32:16';
 
@@ -33,10 +35,11 @@ function record(folder, width) {
   const line =
     `lidartestsrc model=os1-128 mode=${width}x10 slices-per-scan=1 speed=5 num-buffers=${SCANS} ` +
     `! multifilesink location=${files}`;
-  execFileSync('gst-launch-1.0', ['-q', ...line.split(' ')]);
+  const output = execFileSync('gst-launch-1.0', ['-v', ...line.split(' ')], { encoding: 'utf8' });
+  const model = /sensor-model=\(buffer\)([0-9a-f]+)/.exec(output)[1];
   return (
     `multifilesrc location=${files} loop=true stop-index=${SCANS - 1} caps=application/x-pointcloud2,` +
-    `width=${width},height=128,point-step=20,fields=(string)"${FIELDS}",framerate=10/1 ` +
+    `width=${width},height=128,point-step=20,fields=(string)"${FIELDS}",framerate=10/1,sensor-model=(buffer)${model} ` +
     '! pointcloudparse ! identity sync=true'
   );
 }
@@ -88,24 +91,55 @@ async function measureClient(name, width, source, coder) {
   await pipeline.stop();
 }
 
+/** CPU time so far of the threads of that name in all of the browser [s]. */
+function browserCpu(thread) {
+  const isOurs = (pid) => {
+    try {
+      return /^\d+$/.test(pid) && readFileSync(`/proc/${pid}/cmdline`, 'utf8').includes('--type=renderer');
+    } catch {
+      return false; // it has ended
+    }
+  };
+  return readdirSync('/proc').filter(isOurs).reduce((sum, pid) => sum + cpuOf(pid, thread), 0);
+}
+
+/** Notes, in the page, the age of each cloud that was drawn, and tasks that held up its main thread. */
+function observe() {
+  const seen = { ages: [], longest: 0, last: null };
+  window.measured = seen;
+  new PerformanceObserver((list) => {
+    for (const { duration } of list.getEntries()) seen.longest = Math.max(seen.longest, duration);
+  }).observe({ type: 'longtask' });
+  setInterval(() => {
+    const { age } = window.lidarPage;
+    if (age !== null && age !== seen.last) seen.ages.push((seen.last = age));
+  }, 10);
+}
+
 /** The page in a headless browser, where software draws. */
 async function measurePage(browser, name, width, source, coder) {
   const { port, pipeline } = await start(source, coder);
   const { page, context } = await openPage(browser, `http://127.0.0.1:${port}/`);
   const read = () =>
-    page.evaluate(() => {
+    page.evaluate((schemas) => {
       const { scene, received } = window.lidarPage;
-      const clouds = received['foxglove.PointCloud'] ?? received['foxglove.CompressedPointCloud'];
-      return { frames: scene.frames, points: scene.fresh.count, at: performance.now(), messages: clouds.messages };
-    });
+      const clouds = schemas.map((schema) => received[schema]).find(Boolean);
+      return { ...window.measured, ...clouds, frames: scene.frames, points: scene.fresh.count, at: performance.now() };
+    }, CLOUDS);
   await until('a picture', () => page.evaluate(() => window.lidarPage.scene.fresh.count > 0));
+  await sleep(3000); // compilers, and what else a page does once
+  await page.evaluate(observe);
   const before = await read();
+  const cpu = browserCpu('DedicatedWorker');
   await sleep(SECONDS * 1000);
   const now = await read();
-  const rate = (count) => ((count * 1000) / (now.at - before.at)).toFixed(1);
+  const worker = browserCpu('DedicatedWorker') - cpu;
+  const rate = (what, digits = 1) => (((now[what] - before[what]) * 1000) / (now.at - before.at)).toFixed(digits);
+  const ages = now.ages.sort((a, b) => a - b);
   row([
-    `${width}x10`, name, now.points, `${rate(now.messages - before.messages)} scans/s`,
-    `${rate(now.frames - before.frames)} frames/s`,
+    `${width}x10`, name, now.points, `${rate('messages')} scans/s`, `${rate('frames')} frames/s`,
+    `${((rate('bytes', 0) * 8) / 1e6).toFixed(1)} Mbit/s`, `${((100 * worker) / SECONDS).toFixed(0)} %`,
+    `${now.longest.toFixed(0)} ms`, `${(1000 * (ages[Math.floor(0.95 * ages.length)] ?? NaN)).toFixed(0)} ms`,
   ]);
   await context.close();
   await pipeline.stop();
@@ -114,9 +148,9 @@ async function measurePage(browser, name, width, source, coder) {
 const folder = mkdtempSync(path.join(os.tmpdir(), 'lidar-measure-'));
 try {
   const sources = new Map([1024, 2048].map((width) => [width, record(folder, width)]));
-  const each = async (measure) => {
+  const each = async (measure, coders) => {
     for (const [width, source] of sources)
-      for (const [name, coder] of Object.entries(CODERS)) await measure(name, width, source, coder);
+      for (const [name, coder] of Object.entries(coders)) await measure(name, width, source, coder);
   };
   console.log(`\n\`foxglovesink\` to a program of npm's \`@foxglove/ws-protocol\`, ${SECONDS} s each.\n`);
   row([
@@ -124,12 +158,15 @@ try {
     'server thread, CPU per scan', 'latency, mean', 'latency, max',
   ]);
   row(Array(9).fill('---'));
-  await each(measureClient);
+  await each(measureClient, CODERS);
   const browser = await openBrowser();
   console.log(`\nThe page in Chromium ${browser.version()}, headless, drawn by software.\n`);
-  row(['OS1-128', 'stream', 'points of a picture', 'taken', 'drawn']);
-  row(Array(5).fill('---'));
-  await each((...of) => measurePage(browser, ...of));
+  row([
+    'OS1-128', 'stream', 'points of a picture', 'taken', 'drawn', 'downlink', 'worker, of a core',
+    'longest task of the main thread', 'sink to picture, p95',
+  ]);
+  row(Array(9).fill('---'));
+  await each((...of) => measurePage(browser, ...of), PAGE_CODERS);
   await browser.close();
 } finally {
   await Pipeline.stopAll();

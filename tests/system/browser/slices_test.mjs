@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Slices that the page decodes itself, and what it tells the server of them.
 import assert from 'node:assert/strict';
+import { readFileSync } from 'node:fs';
+import { createRequire } from 'node:module';
 import { after, before, test } from 'node:test';
 import { FakeServer, jsonChannel, recordSlices, sliceChannel } from './fake_server.mjs';
 import { freePort, openBrowser, openPage, sleep, until } from './support.mjs';
@@ -170,5 +172,41 @@ test('the distance between two points is measured, and heights are clipped', lim
   assert.match(page.url(), /to=-1/);
   assert.match(await page.textContent('.clip'), /-1\.0|−1\.0/);
   assert.deepEqual(complaints, []);
+  await close();
+});
+
+const axe = readFileSync(createRequire(import.meta.url).resolve('axe-core/axe.min.js'), 'utf8');
+
+/** What axe has against the page as it is, by rule. */
+async function violations(page) {
+  await page.evaluate(axe);
+  const { violations: found } = await page.evaluate(() => window.axe.run());
+  return found.map(({ id, nodes }) => `${id}: ${nodes.map((node) => node.target).join(' ')}`);
+}
+
+const VIEWS = {
+  'a desk, dark': { viewport: { width: 1280, height: 800 }, colorScheme: 'dark' },
+  'a phone, light': { viewport: { width: 390, height: 780 }, colorScheme: 'light' },
+};
+for (const [name, options] of Object.entries(VIEWS)) {
+  test(`axe finds nothing: ${name}`, limits, async () => {
+    const channels = [sliceChannel(1, '/r7/points', recorded), sliceChannel(2, '/r8/points', recorded)];
+    channels.push(jsonChannel(3, '/statistics', 'lidar.Statistics'));
+    const { server, page, close } = await open(channels, { options });
+    await until('a subscription', () => server.subscribed.has(1));
+    for (let i = 0; i < 8; ++i) server.sendSlice(1, recorded, i);
+    server.send(3, Buffer.from(JSON.stringify({ target_bitrate: 4e6, sent_bitrate: 3e6, elements: {} })));
+    await page.click('#more');
+    if (await page.evaluate(() => document.body.dataset.panel === 'closed')) await page.click('#panel');
+    await until('a chart', () => page.isVisible('.chart:not([hidden])'));
+    assert.deepEqual(await violations(page), []);
+    await close();
+  });
+}
+
+test('axe finds nothing: the question for a token', limits, async () => {
+  const { page, close } = await open([], { server: { token: 'right' } });
+  await until('the dialog', () => page.isVisible('#entry'));
+  assert.deepEqual(await violations(page), []);
   await close();
 });
