@@ -16,6 +16,7 @@
 #include <mutex>
 #include <optional>
 
+#include "ext/odometry/imu_input.h"
 #include "ext/odometry/scan_collector.h"
 #include "gst/common/buffer_map.h"
 #include "gst/common/element_class.h"
@@ -51,6 +52,7 @@ struct Counters {
   guint64 scans = 0;
   guint64 scans_lost = 0;
   guint64 scans_degenerate = 0;
+  guint64 scans_with_imu = 0;
   guint64 maps = 0;
   guint64 scan_time = 0;  // of the last scan
   guint64 longest_scan_time = 0;
@@ -58,10 +60,11 @@ struct Counters {
   gdouble inlier_share = 0;
 };
 
-const std::array<Stat<Counters>, 8> kStats = {{
+const std::array<Stat<Counters>, 9> kStats = {{
     {"scans", &Counters::scans},
     {"scans-lost", &Counters::scans_lost},
     {"scans-degenerate", &Counters::scans_degenerate},
+    {"scans-with-imu", &Counters::scans_with_imu},
     {"maps", &Counters::maps},
     {"scan-time", &Counters::scan_time},
     {"longest-scan-time", &Counters::longest_scan_time},
@@ -85,6 +88,7 @@ struct State {
   Settings settings;
   Counters counters;
   Stream stream;
+  ImuInput imu;
 };
 
 }  // namespace
@@ -128,7 +132,8 @@ static const std::array<Property<Settings>, 9> kProperties = {{
     {"post-messages", "Post an element message \"odometry\" for each scan",
      &Settings::post_messages, 0, 0, GST_PARAM_MUTABLE_PLAYING},
     {"stats",
-     "scans, scans-lost, scans-degenerate, maps, scan-time [ns], longest-scan-time [ns], "
+     "scans, scans-lost, scans-degenerate, scans-with-imu, maps, scan-time [ns], longest-scan-time "
+     "[ns], "
      "map-voxels, inlier-share",
      ReadStats},
 }};
@@ -154,6 +159,7 @@ static void CountScan(State* state, const Estimate& estimate, GstClockTime time)
   ++c.scans;
   if (estimate.tracking == Tracking::kLost) ++c.scans_lost;
   if (estimate.tracking == Tracking::kDegenerate) ++c.scans_degenerate;
+  if (estimate.turn_measured) ++c.scans_with_imu;
   if (estimate.map_restarted || estimate.tracking == Tracking::kStarted) ++c.maps;
   c.scan_time = time;
   c.longest_scan_time = MAX(c.longest_scan_time, time);
@@ -238,6 +244,7 @@ static void FinishScan(GstLidarOdometry* self, GstClockTime pts) {
   const auto scan = stream.collector.Take();
   if (!scan) return;
   const gint64 begin_us = g_get_monotonic_time();
+  for (const TurnSample& turn : state.imu.Take()) stream.odometry->OnTurn(turn.time, turn.rate);
   const Estimate estimate = stream.odometry->OnScan(scan->start, scan->duration, scan->points);
   const auto time = static_cast<GstClockTime>(g_get_monotonic_time() - begin_us) * GST_USECOND;
   stream.tracking = estimate.tracking;
@@ -355,6 +362,7 @@ static gboolean Start(GstBaseTransform* base) {
     }
   }
   state.stream = {};
+  state.imu.Clear();
   state.stream.odometry = std::make_unique<Odometry>(settings.odometry);
   if (settings.trajectory.empty()) return TRUE;
   state.stream.trajectory = lidar::RowFile(settings.trajectory);
@@ -368,6 +376,44 @@ static gboolean Start(GstBaseTransform* base) {
 static gboolean Stop(GstBaseTransform* base) {
   GST_LIDAR_ODOMETRY(base)->state->stream = {};
   return TRUE;
+}
+
+static GstFlowReturn ImuChain(GstPad* pad, GstObject* parent, GstBuffer* buffer) {
+  const BufferPtr owned(buffer);
+  const BufferMap map(buffer, GST_MAP_READ);
+  if (!map || !GST_LIDAR_ODOMETRY(parent)->state->imu.Add(map.view()))
+    GST_WARNING_OBJECT(pad, "a buffer that is no samples as its caps have them");
+  return GST_FLOW_OK;
+}
+
+/// The samples go no farther, nor do their events.
+static gboolean ImuEvent(GstPad*, GstObject* parent, GstEvent* event) {
+  const EventPtr owned(event);
+  if (GST_EVENT_TYPE(event) != GST_EVENT_CAPS) return TRUE;
+  GstCaps* caps = nullptr;
+  gst_event_parse_caps(event, &caps);
+  if (GST_LIDAR_ODOMETRY(parent)->state->imu.SetCaps(caps)) return TRUE;
+  GST_ELEMENT_ERROR(
+      parent, STREAM, FORMAT,
+      ("The samples of the IMU are not as ouster_src, ros2src and mcapsrc give them."),
+      ("%" GST_PTR_FORMAT, static_cast<gpointer>(caps)));
+  return FALSE;
+}
+
+static GstPad* RequestPad(GstElement* element, GstPadTemplate* pad_template, const gchar*,
+                          const GstCaps*) {
+  const PadPtr there(gst_element_get_static_pad(element, "imu"));
+  if (there) return nullptr;
+  GstPad* pad = gst_pad_new_from_template(pad_template, "imu");
+  gst_pad_set_chain_function(pad, ImuChain);
+  gst_pad_set_event_function(pad, ImuEvent);
+  gst_element_add_pad(element, pad);
+  return pad;
+}
+
+static void ReleasePad(GstElement* element, GstPad* pad) {
+  gst_pad_set_active(pad, FALSE);
+  gst_element_remove_pad(element, pad);
 }
 
 static void gst_lidar_odometry_init(GstLidarOdometry* self) {
@@ -386,7 +432,10 @@ static void gst_lidar_odometry_class_init(GstLidarOdometryClass* klass) {
             "Finds the poses of the sensor by aligning its scans to a map of what it saw"},
            {{"sink", GST_PAD_SINK, GST_LIDAR_CLOUD_MEDIA_TYPE},
             {"src", GST_PAD_SRC, GST_LIDAR_CLOUD_MEDIA_TYPE},
-            {"odometry", GST_PAD_SRC, GST_LIDAR_ODOMETRY_MEDIA_TYPE}});
+            {"odometry", GST_PAD_SRC, GST_LIDAR_ODOMETRY_MEDIA_TYPE},
+            {"imu", GST_PAD_SINK, GST_LIDAR_IMU_MEDIA_TYPE, GST_PAD_REQUEST}});
+  GST_ELEMENT_CLASS(klass)->request_new_pad = RequestPad;
+  GST_ELEMENT_CLASS(klass)->release_pad = ReleasePad;
   auto* transform = GST_BASE_TRANSFORM_CLASS(klass);
   transform->start = Start;
   transform->stop = Stop;

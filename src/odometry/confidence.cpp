@@ -13,6 +13,8 @@ constexpr double kSpeed = 15;
 constexpr double kTurn = 0.5;
 constexpr double kAcceleration = 2;
 constexpr double kTurnAcceleration = 1;
+/// A gyroscope's error, noise and scale together, as such an acceleration [rad/s^2].
+constexpr double kTurnDrift = 0.2;
 /// Of a pose [m^2, rad^2]: two scans of the same time shall not divide by zero.
 constexpr double kLeastVariance = 1e-8;
 
@@ -57,13 +59,14 @@ void Confidence::SetVelocityKnown() {
   joint_.diagonal().segment<6>(kVelocity) = Spread(kAcceleration, kTurnAcceleration);
 }
 
-void Confidence::Predict(const Pose& motion, Duration gap) {
+void Confidence::Predict(const Pose& motion, Duration gap, bool turn_measured) {
   const double t = Seconds(gap);
   Joint step = Joint::Identity();
   step.block<6, 6>(kMap, kMap) = step.block<6, 6>(kPose, kPose) = Adjoint(motion.Inverse());
   step.block<6, 6>(kPose, kVelocity) = t * Matrix6::Identity();
   // A pose tells the mean velocity since the one before, so that is what changes.
-  joint_.diagonal().segment<6>(kVelocity) += Spread(kAcceleration, kTurnAcceleration) * (t * t);
+  joint_.diagonal().segment<6>(kVelocity) +=
+      Spread(kAcceleration, turn_measured ? kTurnDrift : kTurnAcceleration) * (t * t);
   joint_ = step * joint_ * step.transpose();
 }
 

@@ -17,8 +17,8 @@ class Confidence {
   /// The velocity is not known; what the pose is off stays.
   void ForgetVelocity();
   void SetVelocityKnown();
-  /// The sensor went on by `motion` as its velocity has it.
-  void Predict(const Pose& motion, Duration gap);
+  /// The sensor went on by `motion` as its velocity has it, or a gyroscope the turn of it.
+  void Predict(const Pose& motion, Duration gap, bool turn_measured = false);
   /// A scan was aligned. `information`: what it says of the pose if errors of its points are
   /// independent. `unobserved`: the projection on the directions along which the prediction stays.
   /// `correction`: from the predicted pose to the one found. Returns what it makes of the velocity.

@@ -31,6 +31,8 @@ constexpr double kLeastInliers = 0.3;
 constexpr int kFirstRounds = 4;
 /// Times within a sweep at which the motion is computed.
 constexpr int kPhases = 1024;
+/// A turn is steady for so long, where its course is known.
+constexpr Duration kTurnStep = milliseconds(100);
 constexpr int kLostForGood = 10;  // scans
 /// A map to which fewer scans have fitted may stand on a wrong first motion: it is not held on to.
 constexpr int kTrustedMap = 3;
@@ -71,20 +73,18 @@ Points PickEvenly(const Points& points, std::size_t most) {
 /// How the sensor moved from when each point of a scan was sampled to the middle of the scan.
 class Sweep {
  public:
-  Sweep(const TimedPoints& scan, const Twist& motion, bool deskew) : scan_(scan) {
-    deskew_ = deskew && scan.phases.size() == scan.points.size();
-    for (int i = 0; deskew_ && i <= kPhases; ++i)
-      moved_.push_back(Exp(motion * (double{1} * i / kPhases - 0.5)));
+  /// `moved`: at kPhases + 1 times of the sweep; empty: the scan is straight.
+  Sweep(const TimedPoints& scan, std::vector<Pose> moved) : scan_(scan), moved_(std::move(moved)) {
+    if (scan.phases.size() != scan.points.size()) moved_.clear();
   }
   Pose MotionOf(std::size_t point) const {
-    if (!deskew_) return {};
+    if (moved_.empty()) return {};
     const float phase = std::clamp(scan_.phases[point], 0.0F, 1.0F);
     return moved_[static_cast<std::size_t>(phase * kPhases + 0.5F)];
   }
 
  private:
   const TimedPoints& scan_;
-  bool deskew_;
   std::vector<Pose> moved_;
 };
 
@@ -111,9 +111,35 @@ Odometry::Odometry(const OdometrySettings& settings)
       pose_(settings.start),
       velocity_(settings.start_velocity.value_or(Twist::Zero())) {}
 
+std::optional<Eigen::Quaterniond> Odometry::KnownTurn(Time from, Time to) const {
+  if (!turns_.trusted()) return std::nullopt;
+  if (from <= to) return turns_.Between(from, to);
+  const auto back = turns_.Between(to, from);
+  return back ? std::optional(back->conjugate()) : std::nullopt;
+}
+
+Pose Odometry::MotionBetween(Time from, Time to) const {
+  Pose motion;
+  for (Time at = from; at != to;) {
+    const Time end = at < to ? std::min(at + kTurnStep, to) : std::max(at - kTurnStep, to);
+    Twist step = velocity_ * Seconds(end - at);
+    if (const auto turn = KnownTurn(at, end))
+      step.tail<3>() = Log({*turn, Eigen::Vector3d::Zero()}).tail<3>();
+    motion = motion * Exp(step);
+    at = end;
+  }
+  return motion;
+}
+
 Pose Odometry::PredictAt(Time t) const {
-  if (!last_time_) return pose_;
-  return pose_ * Exp(velocity_ * Seconds(t - *last_time_));
+  return last_time_ ? pose_ * MotionBetween(*last_time_, t) : pose_;
+}
+
+std::vector<Pose> Odometry::SweepAround(Time middle, Duration duration) const {
+  std::vector<Pose> moved;
+  for (int i = 0; settings_.deskew && i <= kPhases; ++i)
+    moved.push_back(MotionBetween(middle, middle + duration * (2 * i - kPhases) / (2 * kPhases)));
+  return moved;
 }
 
 /// Sensors that tell their beams show surfaces in a single scan.
@@ -135,10 +161,11 @@ Points Odometry::ThinOut(const Points& fine) const {
   return PickEvenly(Downsample(fine, kAlignedGrid * settings_.voxel_size_m), kMostAligned);
 }
 
-Odometry::Surface Odometry::SelectPoints(const TimedPoints& scan, Duration duration) const {
+Odometry::Surface Odometry::SelectPoints(const TimedPoints& scan, Time middle,
+                                         Duration duration) const {
   const double nearest = settings_.min_range_m * settings_.min_range_m;
   const double farthest = settings_.max_range_m * settings_.max_range_m;
-  const Sweep sweep(scan, velocity_ * Seconds(duration), settings_.deskew);
+  const Sweep sweep(scan, SweepAround(middle, duration));
   Points selected;
   std::vector<std::size_t> origins;  // in the scan
   selected.reserve(scan.points.size());
@@ -200,13 +227,14 @@ Pose Odometry::GuessFirstMotion(const Points& points) const {
 }
 
 /// A scan that was skewed by an unknown motion would bend the map for good.
-void Odometry::StraightenFirstScan(Duration duration, const TimedPoints& second, Duration gap) {
-  Pose found = GuessFirstMotion(SelectPoints(second, duration).points);
+void Odometry::StraightenFirstScan(Duration duration, const TimedPoints& second, Time middle) {
+  const Duration gap = middle - *last_time_;
+  Pose found = GuessFirstMotion(SelectPoints(second, middle, duration).points);
   for (int round = 0; round < kFirstRounds; ++round) {
     velocity_ = Log(pose_.Inverse() * found) / Seconds(gap);
-    StartMap(SelectPoints(*first_scan_, duration));
+    StartMap(SelectPoints(*first_scan_, *last_time_, duration));
     // Both are straightened by the same velocity now, which makes the next one better.
-    const Points points = ThinOut(SelectPoints(second, duration).points);
+    const Points points = ThinOut(SelectPoints(second, middle, duration).points);
     found = Align(points, &map_, found, settings_.voxel_size_m, kKernel * settings_.voxel_size_m,
                   settings_.registration)
                 .pose;
@@ -223,8 +251,8 @@ Estimate Odometry::OnScan(Time start, Duration duration, const TimedPoints& scan
     first_scan_.reset();
   }
   const bool begins = !last_time_ || broken || map_.empty();
-  if (!begins && first_scan_) StraightenFirstScan(duration, scan, gap);
-  Surface fine = SelectPoints(scan, duration);
+  if (!begins && first_scan_) StraightenFirstScan(duration, scan, middle);
+  Surface fine = SelectPoints(scan, middle, duration);
   Estimate estimate = begins ? Begin(scan, fine) : Match(middle, scan, fine);
   last_time_ = estimate.time = middle;
   last_scan_ = std::move(fine.points);
@@ -279,11 +307,13 @@ bool Odometry::Fits(const Alignment& found, const Pose& guess, Duration gap) con
 Estimate Odometry::Match(Time middle, const TimedPoints& scan, const Surface& fine) {
   const Duration gap = middle - *last_time_;
   const Pose guess = PredictAt(middle);
-  confidence_.Predict(pose_.Inverse() * guess, gap);
+  const auto turn = KnownTurn(*last_time_, middle);
+  confidence_.Predict(pose_.Inverse() * guess, gap, turn.has_value());
   const Alignment found = AlignFrom(guess, gap, scan, fine);
   Estimate estimate;
   estimate.inlier_share = found.inlier_share;
   estimate.iterations = found.iterations;
+  estimate.turn_measured = turn.has_value();
   if (!Fits(found, guess, gap)) {
     estimate.tracking = Tracking::kLost;
     pose_ = guess;
@@ -293,14 +323,19 @@ Estimate Odometry::Match(Time middle, const TimedPoints& scan, const Surface& fi
   }
   estimate.tracking = found.degenerate ? Tracking::kDegenerate : Tracking::kTracking;
   threshold_.Add(guess.Inverse() * found.pose);
-  Follow(found, guess, fine);
+  Follow(found, guess, middle, fine);
   return estimate;
 }
 
-void Odometry::Follow(const Alignment& found, const Pose& guess, const Surface& fine) {
+void Odometry::Follow(const Alignment& found, const Pose& guess, Time middle, const Surface& fine) {
   lost_scans_ = 0;
   lost_for_ = Duration{0};
   ++fitting_scans_;
+  const Duration gap = middle - *last_time_;
+  turns_.Teach(*last_time_, middle, (pose_.Inverse() * found.pose).rotation,
+               Exp(velocity_ * Seconds(gap)).rotation);
+  if (const auto turn = KnownTurn(*last_time_, middle))
+    velocity_.tail<3>() = Log({*turn, Eigen::Vector3d::Zero()}).tail<3>() / Seconds(gap);
   velocity_ +=
       confidence_.Observe(found.information, found.unobserved, Log(guess.Inverse() * found.pose));
   pose_ = found.pose;

@@ -10,6 +10,7 @@
 #include "src/odometry/local_map.h"
 #include "src/odometry/motion_threshold.h"
 #include "src/odometry/registration.h"
+#include "src/odometry/turn_history.h"
 
 namespace lidar::odometry {
 
@@ -49,6 +50,7 @@ struct Estimate {
   Tracking tracking = Tracking::kStarted;
   double inlier_share = 0;
   int iterations = 0;
+  bool turn_measured = false;  // by the gyroscope
   bool map_restarted = false;  // after being lost for too long
   /// Of the error since the first scan: x, y, z [m], and turns about the axes of the map [rad].
   Matrix6 covariance = Matrix6::Zero();
@@ -65,7 +67,11 @@ class Odometry {
   /// gap of more than kLongestGap, begins a new map at the last pose. Points that are not finite or
   /// out of range are left out.
   Estimate OnScan(Time start, Duration duration, const TimedPoints& scan);
-  /// Where the sensor is expected at `t`, by constant velocity.
+  /// What a gyroscope says of the sensor at `time`: its angular velocity in the sensor's frame
+  /// [rad/s], without gravity or bias in mind. Samples may come before or after the scans of their
+  /// time; those that are there when a scan comes straighten it and foretell its orientation.
+  void OnTurn(Time time, const Eigen::Vector3d& rate) { turns_.Add(time, rate); }
+  /// Where the sensor is expected at `t`, by constant velocity, and by the gyroscope where it is.
   Pose PredictAt(Time t) const;
 
   const LocalMap& map() const { return map_; }
@@ -80,13 +86,18 @@ class Odometry {
     Points normals;  // of the first points; the others have none
   };
   RegistrationSettings SettingsFor(const TimedPoints& scan, const Pose& guess) const;
-  Surface SelectPoints(const TimedPoints& scan, Duration duration) const;
+  /// How the sensor moves from one time to another, seen from where it is at the first.
+  Pose MotionBetween(Time from, Time to) const;
+  /// The gyroscope's turn where it is trusted and has samples.
+  std::optional<Eigen::Quaterniond> KnownTurn(Time from, Time to) const;
+  std::vector<Pose> SweepAround(Time middle, Duration duration) const;
+  Surface SelectPoints(const TimedPoints& scan, Time middle, Duration duration) const;
   Points ThinOut(const Points& fine) const;
   void AddToMap(const Surface& fine);
   bool IsFarFromTheLastInMap() const;
   void StartMap(const Surface& fine);
   Pose GuessFirstMotion(const Points& points) const;
-  void StraightenFirstScan(Duration duration, const TimedPoints& second, Duration gap);
+  void StraightenFirstScan(Duration duration, const TimedPoints& second, Time middle);
   /// Begin() takes the first scan of a map, and Match() aligns the others to it. Then Follow()
   /// takes a scan that fits, and Lose() one that does not. They move the pose; OnScan() does the
   /// rest.
@@ -95,7 +106,7 @@ class Odometry {
   Alignment AlignFrom(const Pose& guess, Duration gap, const TimedPoints& scan,
                       const Surface& fine);
   bool Fits(const Alignment& found, const Pose& guess, Duration gap) const;
-  void Follow(const Alignment& found, const Pose& guess, const Surface& fine);
+  void Follow(const Alignment& found, const Pose& guess, Time middle, const Surface& fine);
   void Lose(const TimedPoints& scan, const Surface& fine, Estimate* estimate);
   Matrix6 CovarianceInMap() const;
 
@@ -107,6 +118,7 @@ class Odometry {
   Twist velocity_ = Twist::Zero();  // a second, in the sensor's frame
   std::optional<Time> last_time_;
   Confidence confidence_;
+  TurnHistory turns_;
   int lost_scans_ = 0;
   Duration lost_for_{};    // a vehicle may change its velocity meanwhile
   int fitting_scans_ = 0;  // of this map, the first one left out

@@ -6,6 +6,7 @@
 
 #include <cmath>
 #include <limits>
+#include <random>
 
 #include "src/odometry/trajectory_error.h"
 #include "src/synth/scanner.h"
@@ -140,6 +141,63 @@ TEST(Odometry, DoesNotWanderWhereLittleButTheGroundHoldsManyBeams) {
   ASSERT_TRUE(error);
   EXPECT_LT(error->ate_rmse_m, 0.07);
   EXPECT_LT(error->rpe_rmse_m, 0.065);
+}
+
+/// A gyroscope as data sheets have them, or one whose axes are turned about the vertical.
+void AddTurns(const Drive& drive, Time from, Time to, double axes_rad, Odometry* odometry) {
+  constexpr Duration kStep = milliseconds(10);
+  const Eigen::Vector3d bias(0.01, -0.01, 0.005);
+  std::minstd_rand random(7);
+  std::normal_distribution<double> noise(0, 0.005);
+  for (Time t = from; t < to; t += kStep) {
+    const Pose turn = drive.TruthAt(t - kStep / 2).Inverse() * drive.TruthAt(t + kStep / 2);
+    Eigen::Vector3d rate = Log(turn).tail<3>() / Seconds(kStep) + bias;
+    for (double& r : rate) r += noise(random);
+    odometry->OnTurn(t, Eigen::AngleAxisd(axes_rad, Eigen::Vector3d::UnitZ()) * rate);
+  }
+}
+
+/// Through the corners of a town, or over the bumps of a field.
+struct GyroRun {
+  double ate_m = 0;
+  std::size_t lost = 0;
+};
+GyroRun FollowWithGyro(Drive* drive, std::uint64_t scans, bool gaps, bool gyro,
+                       double axes_rad = 0) {
+  Odometry odometry({});
+  Trajectory truth;
+  Trajectory estimate;
+  GyroRun run;
+  for (std::uint64_t i = 0; i < scans; ++i) {
+    const Time start = drive->StartOf(i);
+    if (gyro) AddTurns(*drive, start, start + kPeriod, axes_rad, &odometry);
+    if (gaps && i % 30 >= 20) continue;  // a second in three
+    const Estimate e = odometry.OnScan(start, kPeriod, drive->Scan(i));
+    run.lost += e.tracking == Tracking::kLost ? 1 : 0;
+    truth.push_back({e.time, drive->TruthAt(e.time)});
+    estimate.push_back({e.time, e.pose});
+  }
+  const auto error = Compare(truth, estimate);
+  run.ate_m = error ? error->ate_rmse_m : 1e9;
+  return run;
+}
+
+TEST(Odometry, FollowsCornersAndBumpsOverGapsOfASecondByAGyroscope) {
+  for (const auto scene : {synth::SceneKind::kTown, synth::SceneKind::kField}) {
+    Drive drive(scene, 12, 3);
+    const GyroRun smooth = FollowWithGyro(&drive, 80, false, false);
+    const GyroRun gaps = FollowWithGyro(&drive, 80, true, true);
+    EXPECT_LE(gaps.ate_m, 1.2 * smooth.ate_m);
+    EXPECT_EQ(gaps.lost, 0U);
+  }
+}
+
+TEST(Odometry, IsNotMisledByAGyroscopeWhoseAxesAreTurned) {
+  Drive drive(synth::SceneKind::kTown, 12, 3);
+  const GyroRun without = FollowWithGyro(&drive, 40, false, false);
+  const GyroRun turned = FollowWithGyro(&drive, 40, false, true, 1.6);
+  EXPECT_LE(turned.ate_m, 2 * without.ate_m + 0.01);
+  EXPECT_EQ(turned.lost, 0U);
 }
 
 TEST(Odometry, FollowsADriveOfWhichItKnowsNoBeams) {

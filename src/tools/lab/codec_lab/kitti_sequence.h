@@ -17,7 +17,7 @@ namespace lidar::tools {
 /// The scans of `folder`. Throws std::runtime_error with a message for the user.
 std::unique_ptr<ScanStream> OpenKittiSequence(const std::string& folder);
 
-/// Of times.txt, which has to ascend. Throws std::runtime_error.
+/// The times of times.txt, which have to ascend. Throws std::runtime_error.
 std::vector<Time> ReadKittiTimes(const std::string& folder);
 
 /// The beam of each point of a cloud that lists one beam after the other, each from straight ahead

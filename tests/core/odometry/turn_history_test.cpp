@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "src/odometry/turn_history.h"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+
+namespace lidar::odometry {
+namespace {
+
+using std::chrono::milliseconds;
+using std::chrono::seconds;
+
+constexpr Duration kStep = milliseconds(10);
+constexpr Duration kScan = milliseconds(100);
+
+Eigen::Quaterniond Turn(double yaw) {
+  return Eigen::Quaterniond(Eigen::AngleAxisd(yaw, Eigen::Vector3d::UnitZ()));
+}
+double YawOf(const Eigen::Quaterniond& turn) {
+  return Log({turn, Eigen::Vector3d::Zero()}).tail<3>().z();
+}
+void AddSteadyTurn(Time from, Time to, double rate, TurnHistory* turns) {
+  for (Time t = from; t <= to; t += kStep) turns->Add(t, {0, 0, rate});
+}
+/// Ten scans of a turn of one radian a second, each twice as fast as the last velocity has it.
+void TeachTurns(double measured, TurnHistory* turns) {
+  AddSteadyTurn(Time{}, Time{} + seconds(1), measured, turns);
+  for (int i = 0; i < 10; ++i)
+    turns->Teach(Time{} + i * kScan, Time{} + (i + 1) * kScan, Turn(0.1), Turn(0.05));
+}
+
+TEST(TurnHistory, AddsUpATurn) {
+  TurnHistory turns;
+  AddSteadyTurn(Time{}, Time{} + seconds(1), 0.5, &turns);
+  const auto turn = turns.Between(Time{} + milliseconds(203), Time{} + milliseconds(707));
+  ASSERT_TRUE(turn);
+  EXPECT_NEAR(YawOf(*turn), 0.252, 1e-9);
+}
+
+TEST(TurnHistory, KnowsNothingBeforeOrAfterItsSamplesOrOverAGap) {
+  TurnHistory turns;
+  EXPECT_FALSE(turns.Between(Time{}, Time{} + kScan));
+  AddSteadyTurn(Time{} + seconds(1), Time{} + seconds(2), 1, &turns);
+  AddSteadyTurn(Time{} + milliseconds(2100), Time{} + seconds(3), 1, &turns);
+  EXPECT_FALSE(turns.Between(Time{}, Time{} + seconds(2)));
+  EXPECT_FALSE(turns.Between(Time{} + seconds(2), Time{} + seconds(4)));
+  EXPECT_FALSE(turns.Between(Time{} + milliseconds(1900), Time{} + milliseconds(2200)));
+  EXPECT_TRUE(turns.Between(Time{} + milliseconds(2200), Time{} + milliseconds(3040)))
+      << "the samples of the last slice may be on their way";
+}
+
+TEST(TurnHistory, DropsTimesThatRepeatOrGoBackAndFollowsANewClock) {
+  TurnHistory turns;
+  AddSteadyTurn(Time{} + seconds(100), Time{} + seconds(101), 1, &turns);
+  turns.Add(Time{} + seconds(101), {0, 0, 9});
+  turns.Add(Time{} + milliseconds(100'500), {0, 0, 9});
+  EXPECT_NEAR(YawOf(*turns.Between(Time{} + seconds(100), Time{} + seconds(101))), 1, 1e-9);
+  AddSteadyTurn(Time{}, Time{} + seconds(1), 2, &turns);
+  EXPECT_NEAR(YawOf(*turns.Between(Time{}, Time{} + seconds(1))), 2, 1e-9);
+  EXPECT_FALSE(turns.Between(Time{} + seconds(100), Time{} + seconds(101)));
+}
+
+TEST(TurnHistory, DropsWhatNoGyroscopeMeasures) {
+  TurnHistory turns;
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  turns.Add(Time{}, {nan, 0, 0});
+  turns.Add(Time{} + kStep, {0, 0, 1e9});
+  EXPECT_FALSE(turns.Between(Time{}, Time{} + kStep));
+}
+
+TEST(TurnHistory, TrustsAGyroscopeThatForetellsTurns) {
+  TurnHistory turns;
+  EXPECT_FALSE(turns.trusted());
+  TeachTurns(1, &turns);
+  EXPECT_TRUE(turns.trusted());
+}
+
+TEST(TurnHistory, DoesNotTrustTurnedAxesOrWrongUnits) {
+  TurnHistory upside_down;
+  TeachTurns(-1, &upside_down);
+  EXPECT_FALSE(upside_down.trusted());
+  TurnHistory degrees;
+  TeachTurns(57.3 / 2, &degrees);
+  EXPECT_FALSE(degrees.trusted());
+}
+
+TEST(TurnHistory, LearnsItsBias) {
+  TurnHistory turns;
+  AddSteadyTurn(Time{}, Time{} + seconds(10), 0.03, &turns);
+  for (int i = 0; i < 99; ++i)
+    turns.Teach(Time{} + i * kScan, Time{} + (i + 1) * kScan, Turn(0), Turn(0));
+  EXPECT_NEAR(turns.bias().z(), 0.03, 0.001);
+  EXPECT_NEAR(YawOf(*turns.Between(Time{}, Time{} + seconds(1))), 0, 0.001);
+}
+
+TEST(TurnHistory, KeepsTenSeconds) {
+  TurnHistory turns;
+  AddSteadyTurn(Time{}, Time{} + seconds(30), 1, &turns);
+  EXPECT_TRUE(turns.Between(Time{} + seconds(21), Time{} + seconds(30)));
+  EXPECT_FALSE(turns.Between(Time{} + seconds(19), Time{} + seconds(30)));
+}
+
+}  // namespace
+}  // namespace lidar::odometry
