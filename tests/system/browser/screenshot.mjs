@@ -18,7 +18,8 @@ const relay = spawn(
 const way =
   `lidartestsrc is-live=true model=os1-64 speed=8 ! queue ! lidarenc max-error=0.05 ! rtplidarpay ` +
   `! screamsink host=127.0.0.1 port=${link} start-bitrate=3000000 ` +
-  `screamsrc port=${rtp} ! rtplidardepay ! lidardec ! queue ! lidarodometry ! foxglovesink port=${port}`;
+  `screamsrc port=${rtp} ! rtplidardepay ! tee name=coded ! queue ! foxglovesink name=web port=${port} ` +
+  `coded. ! queue ! lidardec ! lidarodometry name=poses ! fakesink poses.odometry ! queue ! web.`;
 const pipeline = await Pipeline.start(way, port);
 const browser = await openBrowser();
 const shots = [
