@@ -19,6 +19,9 @@ SOURCES = {
     "OS1-32, first generation": f"{DATA}/OS-1-32-G_v2.1.1_1024x10.pcap",
 }
 build = ROOT / "build"
+LIDARS = ROOT / "tests/data/lidars"
+# One row, without a sensor model.
+CLOUDS = {"AT128": f"{LIDARS}/at128.pcd", "VLP-16": f"{LIDARS}/vlp16.pcd"}
 
 
 def use(folder, captures):
@@ -27,7 +30,8 @@ def use(folder, captures):
     build = pathlib.Path(folder).resolve()
     if not (build / "build.ninja").exists():
         raise SystemExit(f"There is no build in {build}: meson setup build && ninja -C build")
-    SOURCES.update(captures)
+    for name, path in captures.items():
+        (CLOUDS if path.endswith((".pcd", ".bin")) else SOURCES)[name] = path
 
 
 def program(name):

@@ -3,9 +3,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <complex>
 #include <utility>
 
 #include "src/codec/cloud/beam_lines.h"
+#include "src/codec/cloud/beam_locator.h"
 #include "src/codec/cloud/column_places.h"
 #include "src/codec/cloud/column_step.h"
 
@@ -31,6 +33,27 @@ void StraightenBeam(const BeamTable::Beam& beam, BeamAzimuths* azimuths) {
   for (BeamAzimuth& a : *azimuths) {
     const double angle = SideAngle(beam, static_cast<double>(a.rho_m));
     a.azimuth = (a.azimuth - static_cast<std::int32_t>(std::lround(angle))) & (kTurn - 1);
+  }
+}
+
+/// Sensors measure whole millimetres, or several, from some place of their own.
+void FindReaches(const std::vector<Sighting>& points, const FoundBeams& found, BeamTable* table) {
+  constexpr double kClear = 0.8;  // of 1
+  const BeamLocator locator(*table);
+  for (const double unit_mm : {8.0, 5.0, 4.0, 2.0, 1.0}) {
+    std::vector<std::complex<double>> phases(table->rows());
+    double aligned = 0;
+    for (std::uint32_t b = 0; b < table->rows(); ++b) {
+      for (const std::uint32_t i : found.beams[b].points)
+        phases[b] += std::polar(1.0, 2e3 * M_PI * locator.On(b, points[i]).along_m / unit_mm);
+      aligned += std::abs(phases[b]);
+    }
+    if (aligned < kClear * static_cast<double>(found.points)) continue;
+    for (std::uint32_t b = 0; b < table->rows(); ++b) {
+      const double reach_um = 1e3 * unit_mm * std::arg(phases[b]) / (2 * M_PI);
+      table->beams[b].reach_um = static_cast<std::int32_t>(std::lround(reach_um));
+    }
+    return;
   }
 }
 
@@ -82,8 +105,11 @@ std::optional<BeamTable> FindBeams(const std::vector<Sighting>& points) {
   const FoundBeams meeting = FindMeetingBeams(points);
   if (good(meeting, kClearly)) return FindColumns(meeting, false, AzimuthsOf(points, meeting));
   const FoundBeams passing = FindPassingBeams(points);
-  if (good(passing, kCovered) && passing.points > meeting.points)
-    return FindColumns(passing, true, AzimuthsOf(points, passing));
+  if (good(passing, kCovered) && passing.points > meeting.points) {
+    auto table = FindColumns(passing, true, AzimuthsOf(points, passing));
+    if (table) FindReaches(points, passing, &*table);
+    return table;
+  }
   if (!good(meeting, kCovered)) return std::nullopt;
   return FindColumns(meeting, false, AzimuthsOf(points, meeting));
 }

@@ -9,7 +9,8 @@ namespace lidar::codec::cloud {
 BeamLocator::BeamLocator(const BeamTable& table) {
   for (const BeamTable::Beam& beam : table.beams) {
     const double elevation = beam.elevation * kRadians;
-    lines_.push_back({std::cos(elevation), std::sin(elevation), 1e-6 * beam.height_um});
+    lines_.push_back(
+        {std::cos(elevation), std::sin(elevation), 1e-6 * beam.height_um, 1e-6 * beam.reach_um});
     middle_height_m_ += lines_.back().height_m / static_cast<double>(table.rows());
   }
   constexpr std::uint32_t kAround = 3;

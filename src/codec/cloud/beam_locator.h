@@ -35,7 +35,8 @@ class BeamLocator {
   Found On(std::uint32_t beam, const Sighting& s) const {
     const Line& line = lines_[beam];
     const double z = s.z_m - line.height_m;
-    return {beam, s.rho_m * line.cosine + z * line.sine, z * line.cosine - s.rho_m * line.sine};
+    return {beam, s.rho_m * line.cosine + z * line.sine - line.reach_m,
+            z * line.cosine - s.rho_m * line.sine};
   }
 
  private:
@@ -43,6 +44,7 @@ class BeamLocator {
     double cosine;
     double sine;
     double height_m;
+    double reach_m;
   };
   static constexpr std::uint32_t kBuckets = 8'192;
 

@@ -24,7 +24,8 @@ std::int32_t ReadSigned(ByteReader* reader, bool* ok) {
 /// Flags of a table.
 constexpr unsigned kOffsetsFlag = 1;
 constexpr unsigned kGrainsFlag = 2;
-constexpr unsigned kPeriodShift = 2;  // one less, of the bits behind
+constexpr unsigned kReachesFlag = 4;
+constexpr unsigned kPeriodShift = 3;  // one less, of the bits behind
 
 }  // namespace
 
@@ -89,9 +90,13 @@ std::uint32_t ColumnFinder::ColumnOf(std::uint32_t beam, std::int32_t azimuth) c
   return best >= b.delay ? best - b.delay : best + columns - b.delay;
 }
 
+bool BeamTable::has_reaches() const {
+  return std::any_of(beams.begin(), beams.end(), [](const Beam& b) { return b.reach_um != 0; });
+}
+
 Point BeamTable::At(std::uint32_t beam, std::int32_t azimuth, std::uint32_t range_mm) const {
   const Beam& b = beams[beam];
-  const double range = 1e-3 * range_mm;
+  const double range = 1e-3 * range_mm + 1e-6 * b.reach_um;
   const double elevation = b.elevation * kRadians;
   const double rho = range * std::cos(elevation);
   const double angle = ((azimuth & (kTurn - 1)) + SideAngle(b, rho)) * kRadians;
@@ -103,7 +108,8 @@ void BeamTable::Write(ByteWriter* writer) const {
   const bool offsets = has_offsets();
   WriteVarint(turn, writer);
   WriteVarint(rows(), writer);
-  writer->U8(static_cast<std::uint8_t>((offsets ? kOffsetsFlag : 0) |
+  const bool reaches = has_reaches();
+  writer->U8(static_cast<std::uint8_t>((offsets ? kOffsetsFlag : 0) | (reaches ? kReachesFlag : 0) |
                                        (grains == 0 ? 0 : kGrainsFlag) |
                                        (period - 1) << kPeriodShift));
   if (grains > 0) WriteVarint(grains, writer);
@@ -118,6 +124,7 @@ void BeamTable::Write(ByteWriter* writer) const {
       WriteSigned(beam.side_um - last.side_um, writer);
       last = beam;
     }
+    if (reaches) WriteSigned(beam.reach_um, writer);
     if (grains > 0) WriteVarint(beam.delay, writer);
     for (std::uint32_t i = 0; i < period && period > 1; ++i)
       WriteSigned(beam.swings[i] / kSwingUnit, writer);
@@ -150,7 +157,9 @@ std::optional<BeamTable> BeamTable::Read(ByteReader* reader) {
       beam.height_um += ReadSigned(reader, &ok);
       beam.side_um += ReadSigned(reader, &ok);
     }
-    bool fits = std::max(std::abs(beam.height_um), std::abs(beam.side_um)) <= kMostOffsetUm;
+    if ((flags & kReachesFlag) != 0) beam.reach_um = ReadSigned(reader, &ok);
+    bool fits = std::max({std::abs(beam.height_um), std::abs(beam.side_um),
+                          std::abs(beam.reach_um)}) <= kMostOffsetUm;
     if (table.grains > 0) beam.delay = ReadVarint(reader, &ok);
     fits = fits && beam.delay < table.columns();
     for (std::uint32_t k = 0; k < table.period && table.period > 1; ++k) {

@@ -38,6 +38,7 @@ struct BeamTable {
     std::int32_t height_um = 0;                      // of the line above the origin
     std::int32_t side_um = 0;                        // how far it passes the origin, to the left
     std::array<std::int32_t, kMostPeriod> swings{};  // of every `period` columns, in turn
+    std::int32_t reach_um = 0;                       // of range 0 along the beam
     std::uint32_t delay = 0;  // columns that the beam is late; below columns()
   };
   static constexpr std::uint32_t kParts = 256;
@@ -57,6 +58,7 @@ struct BeamTable {
   std::uint32_t columns() const { return (turn + kParts - 1) / kParts; }
   std::uint32_t rows() const { return static_cast<std::uint32_t>(beams.size()); }
   bool has_offsets() const;
+  bool has_reaches() const;
   /// Which of the places a beam has in a column.
   std::uint32_t FiringOf(std::uint32_t beam, std::uint32_t column) const {
     column += beams[beam].delay;

@@ -43,10 +43,13 @@ std::optional<PixelErrors> CheapestErrors(PlacedCloud cloud, double error_m) {
   PixelErrors best;
   double least = 0;
   PixelList list;
+  if (!FillPixels(cloud, {error_m, 0, 0}, 0, &list)) return std::nullopt;
+  const std::uint32_t unit_mm = CommonUnit(list.image.ranges, 1);
   for (const double part : {1.0, 0.95, 0.9, -0.95, -0.85}) {
     PixelErrors errors;
     errors.error_m = error_m;
-    errors.range_m = std::abs(part) * error_m;
+    const auto grid = RangeGrid::ForError(std::abs(part) * error_m, unit_mm);
+    errors.range_m = grid.error_m();
     if (part < 0) {
       // A tenth is left for what integers round off.
       const double tangent_m = 0.9 * std::sqrt(1 - part * part) * error_m;
@@ -56,7 +59,7 @@ std::optional<PixelErrors> CheapestErrors(PlacedCloud cloud, double error_m) {
     const double bits = kRestBits * static_cast<double>(list.rest.size()) +
                         kExtraBits * static_cast<double>(list.extras.size()) +
                         static_cast<double>(list.returns) *
-                            ((part < 0 ? kResidualBits : 0) - std::log2(std::abs(part)));
+                            ((part < 0 ? kResidualBits : 0) - std::log2(grid.step_m()));
     if (best.error_m > 0 && bits >= least) continue;
     best = errors;
     least = bits;

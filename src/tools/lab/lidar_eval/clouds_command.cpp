@@ -47,9 +47,28 @@ double LargestGap(const std::vector<float>& a, const std::vector<float>& b) {
   return largest;
 }
 
+/// As a driver publishes them: column by column, without missing returns and ranges.
 std::vector<float> PointsOf(const Scan& scan) {
   if (!scan.organised()) return scan.xyz;
-  throw std::runtime_error("the source is organised: take rd for it");
+  const RangeProjection& projection = scan.geometry->projection;
+  std::vector<float> xyz;
+  for (std::uint32_t column = 0; column < projection.columns(); ++column)
+    for (std::uint32_t beam = 0; beam < projection.beams(); ++beam) {
+      const std::uint32_t range = scan.ranges[std::size_t{beam} * projection.columns() + column];
+      if (range == 0) continue;
+      const auto point = projection.Point(beam, column, range);
+      xyz.insert(xyz.end(), point.begin(), point.end());
+    }
+  return xyz;
+}
+
+/// Takes the scans' ranges and models from them.
+void Flatten(ScanSet* set) {
+  for (Scan& scan : set->scans) {
+    Scan flat;
+    flat.xyz = PointsOf(scan);
+    scan = std::move(flat);
+  }
 }
 
 void Shuffle(std::vector<float>* xyz) {
@@ -113,10 +132,11 @@ void PrintDraco(const ScanSet& set, double error_m) {
 }
 
 void Evaluate(ScanSet set, const CloudsOptions& o) {
+  Flatten(&set);
   std::size_t points = 0;
   for (Scan& scan : set.scans) {
     if (o.shuffle) Shuffle(&scan.xyz);
-    points += PointsOf(scan).size() / 3;
+    points += scan.xyz.size() / 3;
   }
   std::printf("%s: %zu scans, %zu points%s\n", set.name.c_str(), set.scans.size(), points,
               o.shuffle ? ", shuffled" : "");
@@ -129,8 +149,7 @@ void Evaluate(ScanSet set, const CloudsOptions& o) {
     for (const unsigned effort : o.efforts) {
       CloudCost cost;
       CloudCoders coders(effort);
-      for (const Scan& scan : set.scans)
-        AddCost(PointsOf(scan), error_m, o.repeats, &coders, &cost);
+      for (const Scan& scan : set.scans) AddCost(scan.xyz, error_m, o.repeats, &coders, &cost);
       const auto each = 1 / static_cast<double>(cost.points);
       std::printf("  %5.0f mm  effort %u  %7.3f %10.3f %9.0f %9.0f\n", 1e3 * error_m, effort,
                   8 * each * static_cast<double>(cost.bytes), 1e3 * cost.largest_error_m,
@@ -144,7 +163,7 @@ void Evaluate(ScanSet set, const CloudsOptions& o) {
 void AddCloudsCommand(CLI::App* app) {
   auto o = std::make_shared<CloudsOptions>();
   CLI::App* command = app->add_subcommand(
-      "clouds", "What clouds without a sensor model take, beside Draco; geometry only");
+      "clouds", "What clouds take without a sensor model, beside Draco; geometry only");
   command->option_defaults()->always_capture_default();
   command->add_option("SOURCE", o->sources, kSourceHelp)->required();
   command->add_option("--errors", o->errors, "Largest errors [m], comma-separated")
