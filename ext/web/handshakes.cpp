@@ -9,7 +9,7 @@ namespace {
 /// GIO has ten threads at hand.
 constexpr int kAtOnce = 8;
 constexpr int kOfAnAddress = 3;
-constexpr gint64 kLongest_us = 10 * gint64{G_USEC_PER_SEC};
+constexpr gint64 kLongestHandshake_us = 10 * gint64{G_USEC_PER_SEC};
 
 std::string AddressOf(GSocketConnection* connection) {
   const ObjectPtr<GSocketAddress> peer(g_socket_connection_get_remote_address(connection, nullptr));
@@ -103,7 +103,7 @@ void Handshakes::Finish(const EntryPtr& entry, bool is_secure) {
 void Handshakes::Tick(gint64 now_us) {
   const std::list<EntryPtr> all = entries_;
   for (const EntryPtr& entry : all)
-    if (entry->secure && now_us - entry->since_us > kLongest_us)
+    if (entry->secure && now_us - entry->since_us > kLongestHandshake_us)
       g_cancellable_cancel(entry->cancel.get());
 }
 

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "ext/draco/slice_coder.h"
+#include "src/codec/slice_links.h"
 #include "tests/fuzz/fuzz.h"
 
 namespace {
@@ -44,6 +45,9 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   for (int i = 0; i < 2; ++i) {
     const auto shape = decoder.Decode({data + 1, size - 1});
     if (!shape) continue;
+    if (geometry == Geometry::kRange) {
+      FUZZ_CHECK(lidar::codec::LinksOf({data + 1, size - 1}).has_value());
+    }
     const std::size_t points = std::size_t{shape->width} * shape->height;
     FUZZ_CHECK(points > 0 && points <= kMaxPoints);
     std::vector<std::uint8_t> raw(points * format.layout.point_step);

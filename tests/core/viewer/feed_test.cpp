@@ -6,13 +6,13 @@
 namespace lidar::viewer {
 namespace {
 
-constexpr std::uint32_t kSlices = 2;
+constexpr std::uint32_t kPlaces = 2;
 
 /// Named by its scan and place; refers to the same place `back` scans before, 0: to nothing.
 SharedSlice Own(std::uint32_t scan, std::uint32_t index, std::uint32_t back) {
   auto slice = std::make_shared<Slice>();
   slice->id = {scan, index};
-  slice->count = kSlices;
+  slice->count = kPlaces;
   codec::BlockName name{scan * 10 + index, std::nullopt};
   if (back > 0) name.reference = (scan - back) * 10 + index;
   slice->blocks = {name};

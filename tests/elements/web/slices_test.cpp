@@ -11,7 +11,7 @@
 namespace lidar::test {
 namespace {
 
-constexpr guint kSlices = 4;  // a scan
+constexpr guint kScanSlices = 4;  // a scan
 
 gst::CapsPtr CapsOf(GstHarness* harness) {
   return gst::CapsPtr(gst_pad_get_current_caps(harness->sinkpad));
@@ -142,7 +142,7 @@ struct Edge {
     return n;
   }
   void PushScans(guint n) {
-    for (guint i = 0; i < n * kSlices; ++i) Push();
+    for (guint i = 0; i < n * kScanSlices; ++i) Push();
   }
 };
 
@@ -153,15 +153,15 @@ TEST(Slices, GoToAViewerAsTheyAre) {
   EXPECT_EQ(viewer.peer.channels["/points/slices"]["schemaName"], "lidar.Slice");
   EXPECT_EQ(viewer.peer.channels["/points"]["schemaName"], "foxglove.PointCloud");
   std::uint64_t bytes = 0;
-  for (guint i = 1; i < 10 * kSlices; ++i) {
+  for (guint i = 1; i < 10 * kScanSlices; ++i) {
     const std::string pushed = edge.Push();
     viewer.Draw();
     const SliceReader slice(viewer.last);
     EXPECT_EQ(slice.version, 1U);
-    EXPECT_EQ(slice.scan, i / kSlices);
-    EXPECT_EQ(slice.index, i % kSlices);
-    EXPECT_EQ(slice.count, kSlices);
-    EXPECT_EQ(slice.first_column, i % kSlices * 128);
+    EXPECT_EQ(slice.scan, i / kScanSlices);
+    EXPECT_EQ(slice.index, i % kScanSlices);
+    EXPECT_EQ(slice.count, kScanSlices);
+    EXPECT_EQ(slice.first_column, i % kScanSlices * 128);
     EXPECT_GE(slice.sent_ns, viewer.last.unix_ns);
     if (slice.flags == 0) {
       EXPECT_EQ(std::string(slice.slice.begin(), slice.slice.end()), pushed);
@@ -169,7 +169,7 @@ TEST(Slices, GoToAViewerAsTheyAre) {
     bytes += pushed.size();
   }
   // The first slice of all came before the viewer.
-  EXPECT_GE(viewer.own, 10 * kSlices - 10 - 1);
+  EXPECT_GE(viewer.own, 10 * kScanSlices - 10 - 1);
   EXPECT_LT(edge.sink.Stat("bytes-sent"), bytes * 11 / 10 + 8192);
   EXPECT_EQ(edge.sink.Stat("points-sent"), 0U);
   EXPECT_EQ(edge.key_requests(), 0U);
@@ -179,12 +179,12 @@ TEST(Slices, AreRecodedForAViewerThatComesLate) {
   Edge edge;
   edge.PushScans(5);
   Viewer viewer(&edge.sink);
-  for (guint i = 0; i < 3 * kSlices; ++i) {
+  for (guint i = 0; i < 3 * kScanSlices; ++i) {
     edge.Push();
     viewer.Draw();
   }
   EXPECT_EQ(viewer.own, 0U);
-  EXPECT_EQ(viewer.recoded, 3 * kSlices);
+  EXPECT_EQ(viewer.recoded, 3 * kScanSlices);
   EXPECT_EQ(edge.key_requests(), 0U);
 }
 
@@ -207,7 +207,7 @@ TEST(Slices, OfNewestScansGoToAViewerThatFallsBehind) {
   Edge edge;
   edge.Push();
   Viewer viewer(&edge.sink);
-  for (guint i = 1; i < 2 * kSlices; ++i) {
+  for (guint i = 1; i < 2 * kScanSlices; ++i) {
     edge.Push();
     viewer.Draw(false);
   }
@@ -216,9 +216,35 @@ TEST(Slices, OfNewestScansGoToAViewerThatFallsBehind) {
   viewer.peer.Sync();
   EXPECT_TRUE(viewer.peer.received.empty());
   EXPECT_GE(edge.sink.Stat("scans-skipped"), 15U);
-  viewer.Acknowledge(1, kSlices - 1);
-  for (guint i = 0; i < kSlices; ++i) viewer.Draw();
+  viewer.Acknowledge(1, kScanSlices - 1);
+  for (guint i = 0; i < kScanSlices; ++i) viewer.Draw();
   EXPECT_EQ(SliceReader(viewer.last).scan, newest);
+}
+
+TEST(Slices, TakeNoMoreThanMaxBitrate) {
+  Edge edge("max-bitrate=1");
+  edge.Push();
+  Viewer viewer(&edge.sink);
+  for (guint i = 1; i < kScanSlices; ++i) {
+    edge.Push();
+    viewer.Draw();
+  }
+  // The scan that has begun has spent the bits of hours.
+  edge.PushScans(5);
+  viewer.peer.Sync();
+  EXPECT_TRUE(viewer.peer.received.empty());
+  EXPECT_GE(edge.sink.Stat("scans-skipped"), 3U);
+}
+
+TEST(Slices, HaveTheTopicOfTheirRobot) {
+  Edge edge("sink_0::topic=/r7/points");
+  edge.Push();
+  Peer peer(&edge.sink);
+  peer.Channel("/r7/points/slices");
+  const auto stream =
+      nlohmann::json::parse(peer.channels["/r7/points/slices"]["schema"].get<std::string>());
+  EXPECT_EQ(stream["clouds"], "/r7/points");
+  peer.Channel("/r7/points");
 }
 
 TEST(Slices, AfterALackStandAlone) {
@@ -227,18 +253,18 @@ TEST(Slices, AfterALackStandAlone) {
   Viewer viewer(&edge.sink);
   viewer.peer.SendText(R"({"op":"lacksReference","subscriptionId":9})");
   viewer.peer.Sync();
-  for (guint i = 0; i < 2 * kSlices; ++i) {
+  for (guint i = 0; i < 2 * kScanSlices; ++i) {
     edge.Push();
     viewer.Draw();
   }
   viewer.peer.SendText(R"({"op":"lacksReference","subscriptionId":9})");
   viewer.peer.Sync();
   const unsigned before = viewer.recoded;
-  for (guint i = 0; i < kSlices; ++i) {
+  for (guint i = 0; i < kScanSlices; ++i) {
     edge.Push();
     viewer.Draw();
   }
-  EXPECT_EQ(viewer.recoded, before + kSlices);
+  EXPECT_EQ(viewer.recoded, before + kScanSlices);
 }
 
 TEST(Slices, ThatAreDamagedAreCountedAndGoToNobody) {
