@@ -14,7 +14,7 @@ namespace {
 using std::chrono::milliseconds;
 
 constexpr Duration kScan = milliseconds(100);
-constexpr std::uint32_t kSlices = 8;
+constexpr std::uint32_t kSlicesOfScan = 8;
 constexpr Duration kFrame = milliseconds(16);
 
 constexpr DataRate Mbps(double n) { return DataRate::BitsPerSecond(1e6 * n); }
@@ -49,7 +49,7 @@ class Viewer {
     from_ = now_;
   }
 
-  double ScansPerSecond() const { return drawn_ / kSlices / Seconds(now_ - from_); }
+  double ScansPerSecond() const { return drawn_ / kSlicesOfScan / Seconds(now_ - from_); }
   double AgeP95() {
     if (ages_.empty()) return 1e9;
     std::sort(ages_.begin(), ages_.end());
@@ -64,15 +64,15 @@ class Viewer {
     Time captured;
     Time at;  // arrives
   };
-  /// The sensor gives a slice each kScan / kSlices; a scan that has begun is sent to its end.
+  /// The sensor gives a slice each kScan / kSlicesOfScan; a scan that has begun is sent to its end.
   void Sample() {
     if (now_ >= next_) {
-      if (index_ == kSlices) {
+      if (index_ == kSlicesOfScan) {
         index_ = 0;
         ++scan_;
         taken_ = false;
       }
-      next_ += kScan / kSlices;
+      next_ += kScan / kSlicesOfScan;
       ++index_;
       if (taken_) Send(index_ - 1);
     }
@@ -81,9 +81,9 @@ class Viewer {
     for (std::uint32_t i = 0; i < index_; ++i) Send(i);
   }
   void Send(std::uint32_t index) {
-    const DataSize size = kStream * (kScan / kSlices);
+    const DataSize size = kStream * (kScan / kSlicesOfScan);
     free_ = std::max(free_, now_) + size / link_.capacity;
-    const Time captured = next_ - kScan / kSlices * (index_ - index);
+    const Time captured = next_ - kScan / kSlicesOfScan * (index_ - index);
     path_.push({{scan_, index}, captured, free_ + link_.one_way});
     pace_.OnSent(now_, {scan_, index}, size);
     sent_ += size;
