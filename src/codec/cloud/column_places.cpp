@@ -43,14 +43,14 @@ double ResidualBits(const std::vector<BeamAzimuths>& beams, const BeamTable& tab
 
 /// Follows the columns around the turn, as fast as they come.
 std::vector<double> FollowColumns(const std::vector<std::int32_t>& sample, double step) {
-  constexpr std::size_t kFewest = 4;
+  constexpr std::size_t kFewestInColumn = 4;
   std::vector<double> places;
   std::size_t first = 0;
   for (double next = 0; next < kTurn - step / 2; next += step) {
     while (first < sample.size() && sample[first] < next - 0.45 * step) ++first;
     std::size_t end = first;
     while (end < sample.size() && sample[end] < next + 0.45 * step) ++end;
-    if (end - first >= kFewest) {
+    if (end - first >= kFewestInColumn) {
       const double off = sample[first + (end - first) / 2] - next;
       next += off;
       step += off / 32;
