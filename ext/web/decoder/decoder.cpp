@@ -10,6 +10,7 @@
 
 #include "src/codec/cloud/cloud_decoder.h"
 #include "src/codec/slice_decoder.h"
+#include "src/codec/slice_links.h"
 
 namespace {
 
@@ -29,6 +30,13 @@ struct Slice {
   float error_m = 0;
   std::uint32_t has_intensity = 0;
   std::uint32_t has_beam = 0;
+};
+
+/// A block of a slice that others may refer to.
+struct Link {
+  std::uint32_t name = 0;
+  std::uint32_t needs = 0;  // the name of another
+  std::uint32_t has_needs = 0;
 };
 
 /// As fields.js has it.
@@ -75,6 +83,15 @@ class Decoder {
     return ranges_ ? DecodeRanges() : DecodeCloud();
   }
   const Slice& slice() const { return slice_; }
+  /// Reads how the input hangs together with other slices; how many links it has.
+  std::uint32_t FindLinks() {
+    links_.clear();
+    const auto blocks = ranges_ ? codec::LinksOf({input_.data(), input_.size()}) : std::nullopt;
+    for (const codec::BlockName& block : blocks.value_or(std::vector<codec::BlockName>()))
+      links_.push_back({block.crc, block.reference.value_or(0), block.reference.has_value()});
+    return static_cast<std::uint32_t>(links_.size());
+  }
+  const Link* links() const { return links_.data(); }
   const RawPoint* raw() const { return raw_.data(); }
   std::uint32_t raw_count() const { return static_cast<std::uint32_t>(raw_.size()); }
 
@@ -130,6 +147,7 @@ class Decoder {
   std::vector<std::uint8_t> input_;
   std::vector<RawPoint> raw_;
   std::vector<Point> points_;
+  std::vector<Link> links_;
   Slice slice_;
 };
 
@@ -154,6 +172,9 @@ EXPORT(input) std::uint8_t* Input(Decoder* decoder, std::uint32_t size) {
   return decoder->Input(size);
 }
 EXPORT(decode) std::int32_t Decode(Decoder* decoder) { return decoder->Decode(); }
+/// How many links the input has; they are at `links`.
+EXPORT(find_links) std::uint32_t FindLinks(Decoder* decoder) { return decoder->FindLinks(); }
+EXPORT(links) const void* Links(const Decoder* decoder) { return decoder->links(); }
 EXPORT(slice) const Slice* SliceOf(const Decoder* decoder) { return &decoder->slice(); }
 /// All pixels of the last slice, for tests.
 EXPORT(raw) const void* Raw(const Decoder* decoder) { return decoder->raw(); }

@@ -6,6 +6,7 @@ import { readFileSync } from 'node:fs';
 import { test } from 'node:test';
 import { gzipSync } from 'node:zlib';
 import { Decoder } from '../../../ext/web/page/src/decoder.js';
+import { History, Player } from '../../../ext/web/page/src/history.js';
 
 const MOST_MOVED_M = 1e-6;
 const wasm = readFileSync(new URL('../../../ext/web/decoder/lidar_decoder.wasm', import.meta.url));
@@ -61,6 +62,25 @@ test('slices of every kind, good and damaged, give what lidardec gives', () => {
   assert.ok(good > 100 && good < slices);
   assert.equal(traps, 0);
   assert.ok(moved <= MOST_MOVED_M);
+});
+
+test('a history of slices that refer to others shows each as it was', async () => {
+  const stream = [...streams()].find(({ name }) => name === 'room at effort 3');
+  const decoder = new Decoder(module, stream.model);
+  const history = new History(1e9);
+  const live = stream.slices.map(({ coded: bytes }, i) => {
+    const points = decoder.decode(bytes).points.slice();
+    const header = { scan: i >> 1, slice: i & 1 };
+    history.add({ captured: i, header, bytes, source: decoder, links: decoder.links(bytes) });
+    return points;
+  });
+  assert.ok(history.slices.filter(({ links }) => links.some(({ needs }) => needs !== null)).length >= 3);
+  for (const at of [5, 2, 4, 1]) {
+    const player = new Player(history, () => new Decoder(module, stream.model), () => {});
+    const { slices } = await player.show(at);
+    for (const { slice, decoded } of slices) assert.deepEqual(decoded.points, live[slice.captured]);
+    assert.deepEqual(slices.at(-1).slice.captured, at);
+  }
 });
 
 test('a sensor model that is damaged is refused', () => {

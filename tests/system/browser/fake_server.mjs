@@ -109,7 +109,7 @@ export class FakeServer {
     head.writeUInt16LE(slices, 4);
     head.writeUInt32LE(Math.floor(i / slices), 8);
     head.writeBigUInt64LE(now(), 16);
-    return this.send(channel, Buffer.concat([head, coded[i % coded.length]]), now() - BigInt(age) * NS);
+    return this.send(channel, Buffer.concat([head, coded[i % coded.length]]), now() - BigInt(Math.round(age * 1e6)));
   }
 
   stop() {

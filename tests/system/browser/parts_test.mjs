@@ -3,6 +3,7 @@
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
 import { Clock, nowSeconds } from '../../../ext/web/page/src/clock.js';
+import { History, Player } from '../../../ext/web/page/src/history.js';
 import { Poses } from '../../../ext/web/page/src/poses.js';
 import { readHeader } from '../../../ext/web/page/src/slices.js';
 
@@ -19,6 +20,84 @@ test('a frame is where steady motion takes it', () => {
   assert.ok(Math.abs(at(10.3)[12] - 3) < 1e-6);
   assert.ok(Math.abs(at(10.3)[1] - Math.sin(0.3)) < 1e-6);
   assert.ok(at(99)[12] < 8, 'it leaves for ever where poses end');
+});
+
+test('a server that comes back brings poses of its own', () => {
+  const poses = new Poses();
+  poses.add(pose(10, 5, 0));
+  poses.end();
+  assert.equal(poses.at('lidar', 10.1), null);
+  poses.add(pose(11, 0, 0));
+  const x = (time) => poses.at('lidar', time).elements[12];
+  assert.deepEqual([x(10), x(10.9), x(11.2)], [5, 0, 0]);
+  poses.end();
+  poses.add(pose(3, 7, 0)); // a recording
+  assert.equal(x(3), 7);
+});
+
+/** Slice `i` of scans of two at 10 Hz; it needs the one of its place before, but for the first of each `period` scans. */
+function coded(i, { period = 5, size = 100, source = 'a' } = {}) {
+  const scan = i >> 1;
+  const link = { name: i, needs: scan % period === 0 ? null : i - 2 };
+  return { captured: 100 + 0.05 * i, header: { scan, slice: i & 1 }, bytes: { length: size, i }, links: [link], source };
+}
+
+/** A decoder that knows what it has been given; slices that lack something have no points. */
+class Decoder {
+  constructor(slices) {
+    Object.assign(this, { slices, known: new Set(), decoded: 0 });
+  }
+  decode({ i }) {
+    ++this.decoded;
+    const [{ name, needs }] = this.slices[i].links;
+    if (needs !== null && !this.known.has(needs)) return { points: null };
+    this.known.add(name);
+    return { points: [i] };
+  }
+}
+
+const filled = (slices, mostBytes = 1e9) => {
+  const history = new History(mostBytes);
+  for (const slice of slices) history.add(slice);
+  return history;
+};
+const shown = ({ slices }) => slices.map(({ decoded }) => decoded.points[0]);
+
+test('a history is bounded, and begins with what can be shown', () => {
+  const history = filled(Array.from({ length: 40 }, (_, i) => coded(i)), 2450);
+  assert.ok(history.bytes <= 2450);
+  assert.deepEqual(history.slices.map(({ bytes }) => bytes.i), Array.from({ length: 20 }, (_, i) => 20 + i));
+  assert.deepEqual(history.span, [101, 100 + 39 * 0.05]);
+});
+
+test('any time of a history is shown, by what it needs', async () => {
+  const slices = Array.from({ length: 40 }, (_, i) => coded(i));
+  const history = filled(slices);
+  const decoders = [];
+  const player = new Player(history, () => decoders[decoders.push(new Decoder(slices)) - 1], () => {});
+  const first = await player.show(slices[17].captured + 0.01);
+  assert.deepEqual([first.jumped, shown(first), first.next], [true, [14, 15, 16, 17], slices[18].captured]);
+  assert.equal(decoders[0].decoded, 8); // from 10 on
+  const on = await player.show(slices[19].captured);
+  assert.deepEqual([on.jumped, shown(on)], [false, [18, 19]]);
+  const back = await player.show(slices[3].captured);
+  assert.deepEqual([back.jumped, shown(back)], [true, [0, 1, 2, 3]]);
+  assert.equal((await player.show(999)).next, null);
+});
+
+test('who asks for another time waits for no older one', async () => {
+  const slices = Array.from({ length: 400 }, (_, i) => coded(i, { period: 1000 }));
+  const history = filled(slices);
+  const slow = new Decoder(slices);
+  const decode = slow.decode.bind(slow);
+  slow.decode = (bytes) => {
+    for (const end = performance.now() + 5; performance.now() < end; ) continue;
+    return decode(bytes);
+  };
+  let asked = 0;
+  const player = new Player(history, () => slow, () => ++asked);
+  assert.equal(await player.show(120, () => asked < 2), null);
+  assert.ok(slow.decoded < 100);
 });
 
 test('ages leave out how far apart the clocks are', () => {

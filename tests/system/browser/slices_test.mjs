@@ -15,7 +15,11 @@ before(async () => {
   recorded = recordSlices();
   browser = await openBrowser();
 }, limits);
-after(() => browser?.close());
+const closings = new Set(); // of tests that failed, which would keep Node waiting
+after(async () => {
+  await browser?.close();
+  for (const stop of closings) await stop();
+});
 
 const points = (page) => page.evaluate(() => window.lidarPage.scene.fresh.count);
 
@@ -23,9 +27,12 @@ async function open(channels, { rest = '', options = {}, server: how = {} } = {}
   const port = await freePort();
   const server = await FakeServer.start(port, channels, how);
   const { page, context, complaints } = await openPage(browser, `http://127.0.0.1:${port}/${rest}`, options);
+  const stop = () => server.stop();
+  closings.add(stop);
   const close = async () => {
+    closings.delete(stop);
     await context.close();
-    await server.stop();
+    await stop();
   };
   return { server, page, complaints, close };
 }
@@ -103,6 +110,41 @@ test('a page that is paused takes no slices', limits, async () => {
   await until('none', () => !server.subscribed.has(2));
   await page.click('#pause');
   await until('a subscription', () => server.subscribed.has(2));
+  await close();
+});
+
+const shownAt = (page) => page.evaluate(() => window.lidarPage.scene.fresh.epoch + window.lidarPage.scene.fresh.latest);
+
+test('the page goes back into what it got, and returns to live', limits, async () => {
+  const { server, page, complaints, close } = await open([sliceChannel(2, '/points', recorded)]);
+  await until('a subscription', () => server.subscribed.has(2));
+  assert.ok(!(await page.isVisible('#timeline')));
+  const slices = 400; // 5 s
+  for (let i = 0; i < slices; ++i) server.sendSlice(2, recorded, i, (slices - i) * 12.5);
+  await until('a timeline', () => page.isVisible('#timeline'));
+  await until('all', () => acknowledged(server)?.scan === 49 && acknowledged(server)?.slice === 7);
+  const [end, whole] = [await shownAt(page), await points(page)];
+  await page.click('#pause');
+  await page.fill('#timeline input', '-3');
+  await until('the picture', async () => Math.abs((await shownAt(page)) - end + 3) < 0.2);
+  assert.ok(Math.abs((await points(page)) - whole) < 0.2 * whole, 'the scan is not whole');
+  assert.equal(await page.textContent('#state span'), 'Recorded, paused');
+  assert.match(await page.textContent('#timeline output'), /^3\.0 s ago/);
+  await page.fill('#timeline input', '-4');
+  await until('an earlier one', async () => Math.abs((await shownAt(page)) - end + 4) < 0.2);
+  // It plays on, while what is new comes and is acknowledged.
+  await page.click('#pause');
+  await until('a subscription', () => server.subscribed.has(2));
+  for (let i = 400; i < 408; ++i) server.sendSlice(2, recorded, i);
+  await until('acknowledgements', () => acknowledged(server)?.scan === 50);
+  const before = await shownAt(page);
+  await until('the next scans', async () => (await shownAt(page)) > before + 0.3);
+  assert.equal(await page.textContent('#state span'), 'Recorded');
+  await page.click('#live');
+  assert.equal(await page.textContent('#state span'), 'Live');
+  for (let i = 408; i < 416; ++i) server.sendSlice(2, recorded, i);
+  await until('what is new', async () => (await shownAt(page)) > end + 0.01);
+  assert.deepEqual(complaints, []);
   await close();
 });
 
@@ -194,11 +236,12 @@ for (const [name, options] of Object.entries(VIEWS)) {
     channels.push(jsonChannel(3, '/statistics', 'lidar.Statistics'));
     const { server, page, close } = await open(channels, { options });
     await until('a subscription', () => server.subscribed.has(1));
-    for (let i = 0; i < 8; ++i) server.sendSlice(1, recorded, i);
+    for (let i = 0; i < 160; ++i) server.sendSlice(1, recorded, i, 2000 - 12.5 * i);
     server.send(3, Buffer.from(JSON.stringify({ target_bitrate: 4e6, sent_bitrate: 3e6, elements: {} })));
     await page.click('#more');
     if (await page.evaluate(() => document.body.dataset.panel === 'closed')) await page.click('#panel');
     await until('a chart', () => page.isVisible('.chart:not([hidden])'));
+    await until('a timeline', () => page.isVisible('#timeline'));
     assert.deepEqual(await violations(page), []);
     await close();
   });

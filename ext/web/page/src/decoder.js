@@ -46,12 +46,25 @@ export class Decoder {
     };
   }
 
+  /** The blocks of a slice that others may refer to: [{name, needs}], `needs` null in one that stands alone. */
+  links(slice) {
+    const count = this.put(slice) ? this.wasm.find_links(this.decoder) : 0;
+    const words = new Uint32Array(this.wasm.memory.buffer, this.wasm.links(this.decoder), 3 * count);
+    return Array.from({ length: count }, (_, i) => ({
+      name: words[3 * i],
+      needs: words[3 * i + 2] !== 0 ? words[3 * i + 1] : null,
+    }));
+  }
+
+  put(slice) {
+    const input = this.wasm.input(this.decoder, slice.length);
+    if (input !== 0) this.bytes(input, slice.length).set(slice);
+    return input !== 0;
+  }
+
   run(slice) {
     try {
-      const input = this.wasm.input(this.decoder, slice.length);
-      if (input === 0) return DAMAGED;
-      this.bytes(input, slice.length).set(slice);
-      return this.wasm.decode(this.decoder);
+      return this.put(slice) ? this.wasm.decode(this.decoder) : DAMAGED;
     } catch {
       this.start(); // its memory is in no known state
       return DAMAGED;

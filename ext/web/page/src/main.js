@@ -9,7 +9,8 @@ import { fromDraco, unpack } from './fields.js';
 import { Poses } from './poses.js';
 import { Scene } from './scene.js';
 import { Slices } from './slices.js';
-import { number, t, translate } from './text.js';
+import { language, number, t, translate } from './text.js';
+import { Timeline } from './timeline.js';
 import { buildTools } from './tools.js';
 import { Video } from './video.js';
 import { compressedCloud, compressedVideo, frameTransform, pointCloud } from './wire.js';
@@ -37,7 +38,15 @@ const page = {
   video: new Video(document.getElementById('video')),
 };
 const tools = buildTools(page);
-page.slices = new Slices({ points: addSlice }, () => page.connection);
+page.slices = new Slices(
+  { points: addSlice, picture: showPicture, span: (span) => (page.timeline.span = span) },
+  () => page.connection,
+);
+page.timeline = new Timeline(document.getElementById('timeline'), {
+  ask: (time) => page.slices.show(time),
+  past: showTime,
+  live: showTime,
+});
 
 // --- clouds ---
 
@@ -61,25 +70,55 @@ function decodeDraco(cloud) {
 }
 
 /** `ageOf(time)` of clouds whose server says when it sent them. */
-function addCloud({ time, frame, place, ageOf }, { points, has }) {
+function addCloud(cloud, decoded) {
   page.quietMs = 0;
   ++page.clouds;
-  page.points += points.length / 6;
-  if (page.paused) return;
-  tools.learn(points, has);
-  const matrix = page.poses.at(frame, time);
-  tools.hasPoses(matrix !== null);
-  page.scene.add(points, time, matrix, place);
+  page.points += decoded.points.length / 6;
+  if (page.paused || page.timeline.isPast) return;
+  show(cloud, decoded);
+  const { time, ageOf } = cloud;
   page.newest = { time, ageOf: ageOf ?? ((captured) => nowSeconds() - captured) };
 }
 
-function addSlice(stream, header, decoded) {
-  const [scans, seconds] = stream.about.framerate ?? [0, 1];
+function show({ time, frame, place }, { points, has }) {
+  tools.learn(points, has);
+  const matrix = page.poses.at(frame, time);
+  tools.hasPoses(matrix !== null);
+  page.scene.add(points, time, matrix, place, !page.timeline.isPast);
+}
+
+const placed = (about, header) => ({ time: header.captured, frame: about.frameId, place: header });
+
+function addSlice(about, header, decoded, clock) {
+  const [scans, seconds] = about.framerate ?? [0, 1];
   if (scans > 0 && !page.paused) page.spanS = seconds / scans;
   page.quality = { step: decoded.step, error_bound: decoded.error };
-  const ageOf = (captured) => stream.clock.ageOf(captured);
-  addCloud({ time: header.captured, frame: stream.about.frameId, place: header, ageOf }, decoded);
+  addCloud({ ...placed(about, header), ageOf: (captured) => clock.ageOf(captured) }, decoded);
 }
+
+// --- what was ---
+
+function showPicture(picture) {
+  if (!page.timeline.answered(picture, page.paused)) return;
+  if (picture.jumped) page.scene.fresh.clear();
+  for (const { stream, header, ...decoded } of picture.slices) show(placed(page.slices.abouts[stream], header), decoded);
+  page.scene.dirty = true;
+}
+
+/** The picture of another time is to come. */
+function showTime() {
+  const { isPast } = page.timeline;
+  if (!isPast) page.scene.fresh.clear();
+  page.age = null;
+  document.body.dataset.time = isPast ? 'past' : 'live';
+  setState(page.state);
+}
+
+page.forget = () => {
+  page.slices.forget();
+  page.timeline.forget();
+  page.scene.clear();
+};
 
 function onStatistics(message) {
   page.statistics = message;
@@ -108,7 +147,9 @@ const TELLING = ['stalled', 'lost', 'refused', 'expired', 'foreign', 'limited', 
 function setState(state) {
   page.state = state;
   document.body.dataset.state = state;
-  document.querySelector('#state span').textContent = page.paused ? `${t(state)}, ${t('paused')}` : t(state);
+  document.body.toggleAttribute('data-paused', page.paused);
+  const what = t(page.timeline.isPast ? 'past' : state);
+  document.querySelector('#state span').textContent = page.paused ? `${what}, ${t('paused')}` : what;
   const notice = document.getElementById('notice');
   notice.hidden = !TELLING.includes(state);
   notice.textContent = notice.hidden ? '' : t(`${state}_text`);
@@ -131,6 +172,7 @@ function countSecond() {
   const perSecond = Math.round(page.points / seconds);
   const live = page.state === 'live';
   const age = page.age === null ? [] : [`${number(page.age * 1000)} ms ${t('old')}`];
+  if (page.timeline.isPast) age.push(new Date(page.timeline.at * 1000).toLocaleTimeString(language));
   const facts = [`${number(page.receivedBps * 1e-6, 1)} Mbit/s ${t('to_page')}`, `${number(perSecond)} pt/s`];
   document.getElementById('facts').textContent = live ? age.concat(facts).join(' · ') : '';
   page.bytes = page.points = page.clouds = 0;
@@ -168,7 +210,7 @@ function connect() {
   const on = {
     state: (state) => {
       if (state === 'open') page.quietMs = 0;
-      if (state === 'lost') page.poses.clear();
+      if (state === 'lost') page.poses.end();
       if (state === 'connecting' && page.state !== 'connecting') return; // still lost
       setState(state === 'open' ? 'live' : state);
       if (state === 'refused' || state === 'expired') askForToken(state);
@@ -220,6 +262,7 @@ function afterDrawing() {
 let drawn = 0;
 let drawnCharts = 0;
 function frame(now) {
+  page.timeline.tick((now - drawn) / 1000, page.paused);
   page.scene.draw();
   afterDrawing();
   // Where the browser itself was busy, clouds may have come that it has not told of yet.
@@ -228,6 +271,7 @@ function frame(now) {
   if (now - drawnCharts > SLOW_DRAW_MS) {
     drawnCharts = now;
     page.charts.draw(tools.style());
+    page.timeline.update();
     checkFlow();
   }
   requestAnimationFrame(frame);

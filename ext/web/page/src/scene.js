@@ -141,11 +141,12 @@ export class Scene {
     this.dirty = true;
   }
 
-  add(points, time, matrix, place) {
+  /** What `isNew` joins the map. */
+  add(points, time, matrix, place, isNew) {
     this.fresh.add(points, time, matrix, place);
     if (matrix) {
       this.moveSensor(matrix);
-      this.map.add(points, matrix);
+      if (isNew) this.map.add(points, matrix);
     }
     this.dirty = true;
   }

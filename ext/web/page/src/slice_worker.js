@@ -1,34 +1,74 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Decodes slices beside the page: {open, model} and {close} of a stream, and {stream, data, offset}
-// in; {stream, id, points, step, error, has} or {stream, id, lacksReference} out.
+// Decodes slices beside the page: {open, model} and {close} of a stream, {stream, header, data,
+// offset} and {show} of a time in; {stream, header, span} with points, step, error and has, or with
+// lacksReference, and {picture} out. `show` is null where nothing is to be shown again.
 import { Decoder } from './decoder.js';
+import { History, Player } from './history.js';
 
-const module = WebAssembly.compileStreaming(fetch(new URL('lidar_decoder.wasm', self.location.href)));
-const decoders = new Map(); // null for a sensor model that is damaged
+const MOST_BYTES = 64 << 20; // of coded slices: four minutes of 2 Mbit/s
 
-async function open(stream, model) {
+const compiled = WebAssembly.compileStreaming(fetch(new URL('lidar_decoder.wasm', self.location.href)));
+let module = null;
+const sources = new Map(); // {id, model, decoder}
+const history = new History(MOST_BYTES);
+const pause = () => new Promise((done) => setTimeout(done));
+const player = new Player(history, ({ model }) => new Decoder(module, model), pause);
+
+async function open(id, model) {
+  const source = { id, model, decoder: null };
+  sources.set(id, source);
   try {
-    decoders.set(stream, new Decoder(await module, model));
+    module ??= await compiled;
+    source.decoder = new Decoder(module, model);
   } catch {
-    decoders.set(stream, null);
+    // The sensor model is damaged: there is no decoder.
   }
 }
 
-function decode({ stream, id, data, offset }) {
-  const decoder = decoders.get(stream);
-  if (!decoder) return postMessage({ stream, id, points: null, lacksReference: false });
-  const slice = decoder.decode(new Uint8Array(data, offset));
+function decode({ stream, header, data, offset }) {
+  const source = sources.get(stream);
+  const answer = { stream, header, points: null, lacksReference: false };
+  if (!source?.decoder) return postMessage(answer);
+  const bytes = new Uint8Array(data, offset);
+  const slice = source.decoder.decode(bytes);
   // What leaves is a copy: the decoder writes the next slice to the same place.
   const points = slice.points?.slice() ?? null;
-  postMessage({ ...slice, stream, id, points }, points ? [points.buffer] : []);
+  if (points)
+    history.add({ captured: header.captured, header, bytes, source, links: source.decoder.links(bytes) });
+  postMessage({ ...answer, ...slice, points, span: history.span }, points ? [points.buffer] : []);
+}
+
+function forget() {
+  history.clear();
+  player.stop();
+}
+
+let wanted = null; // time
+let isShowing = false;
+async function show(time) {
+  wanted = time;
+  if (time === null) player.stop();
+  if (isShowing) return;
+  isShowing = true;
+  while (wanted !== null) {
+    const now = wanted;
+    const picture = await player.show(now, () => wanted === now);
+    if (!picture) continue;
+    const slices = picture.slices.map(({ slice: { source, header }, decoded }) => ({ stream: source.id, header, ...decoded }));
+    postMessage({ picture: { ...picture, time: now, slices } }, slices.map(({ points }) => points.buffer));
+    if (wanted === now) wanted = null;
+  }
+  isShowing = false;
 }
 
 // One after the other: a decoder may still be on its way.
 let last = Promise.resolve();
 onmessage = ({ data: message }) => {
+  if (message.show !== undefined) return void show(message.show);
   last = last.then(() => {
     if (message.open !== undefined) return open(message.open, message.model);
-    if (message.close !== undefined) return decoders.delete(message.close);
+    if (message.close !== undefined) return sources.delete(message.close);
+    if (message.forget) return forget();
     return decode(message);
   });
 };

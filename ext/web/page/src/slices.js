@@ -32,7 +32,6 @@ class Stream {
   constructor(id, channel, about) {
     Object.assign(this, { id, channel, about });
     this.clock = new Clock();
-    this.waiting = new Map(); // headers of slices that the worker has
     this.newest = null; // that has come from there
     this.told = null; // the server
     this.complained = 0;
@@ -40,17 +39,21 @@ class Stream {
 }
 
 export class Slices {
-  /** `on.points(stream, header, decoded)`; `connection()` gives the one that streams come by. */
+  /**
+   * `on.points(about, header, decoded, clock)` of slices as they come; `on.picture(picture)` of what
+   * was asked for by show(), and `on.span([from, to])` of the times that can be; `connection()` gives
+   * the one that streams come by.
+   */
   constructor(on, connection) {
     Object.assign(this, { on, connection });
     this.streams = new Map(); // by channel
-    this.ids = 0;
+    this.abouts = []; // by the id of the stream, also of those that have ended
     this.damaged = 0;
   }
 
   open(channel) {
     const about = JSON.parse(channel.schema);
-    const stream = new Stream(++this.ids, channel, about);
+    const stream = new Stream(this.abouts.push(about) - 1, channel, about);
     this.streams.set(channel, stream);
     if (!this.worker) {
       this.worker = new Worker(new URL('./slice_worker.js', import.meta.url), { type: 'module' });
@@ -74,25 +77,33 @@ export class Slices {
     if (!header) return;
     const stream = this.streams.get(channel) ?? this.open(channel);
     header.captured = Number(captured) * 1e-9;
-    header.came = stream.clock.arrived(header.sent);
-    const id = ++this.ids;
-    stream.waiting.set(id, header);
+    stream.clock.arrived(header.sent);
     const offset = bytes.byteOffset + HEADER;
-    this.worker.postMessage({ stream: stream.id, id, data: bytes.buffer, offset }, [bytes.buffer]);
+    this.worker.postMessage({ stream: stream.id, header, data: bytes.buffer, offset }, [bytes.buffer]);
   }
 
-  decoded({ stream: id, id: slice, ...result }) {
+  decoded({ picture, span, stream: id, header, ...result }) {
+    if (picture) return this.on.picture(picture);
+    if (span) this.on.span(span);
     const stream = [...this.streams.values()].find((s) => s.id === id);
-    const header = stream?.waiting.get(slice);
-    if (!header) return; // the stream has ended
-    stream.waiting.delete(slice);
+    if (!stream) return; // it has ended
     stream.newest = header;
-    if (result.points) return this.on.points(stream, header, result);
+    if (result.points) return this.on.points(stream.about, header, result, stream.clock);
     ++this.damaged;
     const now = performance.now();
     if (!result.lacksReference || now - stream.complained < NO_REFERENCE_MS) return;
     stream.complained = now;
     this.connection().tell('lacksReference', stream.channel);
+  }
+
+  /** Asks for the picture at a capture time; null: for no more. */
+  show(time) {
+    this.worker?.postMessage({ show: time });
+  }
+
+  /** What came so far is not to be shown again. */
+  forget() {
+    this.worker?.postMessage({ forget: true });
   }
 
   /** The page has drawn all that has come so far. */

@@ -177,6 +177,10 @@ class Tools {
       },
       snapshot: () => this.snapshot(),
       panel: () => this.setPanel(!this.isOn('panel')),
+      live: () => {
+        if (page.paused) byId('pause').click();
+        page.timeline.live();
+      },
       more: () => this.setSheet(document.body.dataset.sheet === 'closed'),
       theme: () => this.nextTheme(),
     };
@@ -230,7 +234,7 @@ class Tools {
     if (robots.includes(this.page.robot)) select.value = this.page.robot;
     select.onchange = () => {
       this.page.robot = select.value;
-      this.page.scene.clear();
+      this.page.forget();
       this.page.choose();
       this.share();
     };
@@ -307,7 +311,7 @@ class Tools {
       return scene.nudge(...moves[event.key]);
     }
     if (inScene && event.key === '0') return scene.home();
-    const buttons = { f: 'follow', m: 'map', t: 'trail', s: 'snapshot', c: 'panel', d: 'theme', r: 'measure', o: 'top' };
+    const buttons = { f: 'follow', m: 'map', t: 'trail', s: 'snapshot', c: 'panel', d: 'theme', r: 'measure', o: 'top', l: 'live' };
     const id = inScene && event.key === ' ' ? 'pause' : buttons[event.key.toLowerCase()];
     if (!id || byId(id).disabled) return;
     event.preventDefault();
