@@ -13,10 +13,13 @@ import pathlib
 import re
 import shlex
 import signal
-import socket
 import subprocess
+import sys
 import tempfile
 import time
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
+from ports import free_port  # noqa: E402
 
 MAX_AGE_NS = 200_000_000
 SETTLE_S = 3.0  # of a run: scans of its start do not count
@@ -39,12 +42,6 @@ def parse_arguments():
     parser.add_argument("--more", default="", help="properties of screamsink, in one string")
     parser.add_argument("--output", type=pathlib.Path, help="keep what the ends print in this folder")
     return parser.parse_args()
-
-
-def free_port():
-    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as s:
-        s.bind(("127.0.0.1", 0))
-        return s.getsockname()[1]
 
 
 def traces(args, folder):

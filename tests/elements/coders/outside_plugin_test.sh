@@ -29,10 +29,7 @@ for property in bitrate max-error min-bitrate degradation-preference error-check
 done
 
 play=(timeout 60 gst-launch-1.0 -q)
-# Ports that were free a moment ago, of UDP and TCP.
-mapfile -t ports < <(python3 -c 'import socket
-sockets = [socket.socket(type=kind) for kind in (socket.SOCK_DGRAM, socket.SOCK_STREAM)]
-for s in sockets: s.bind(("127.0.0.1", 0)); print(s.getsockname()[1])')
+mapfile -t ports < <(python3 "$source/tests/support/ports.py" udp tcp)
 # 40 slices, each point of which the decoder gives back.
 encoder='lidartestsrc model=os1-32 mode=512x10 num-buffers=40 ! exampleenc max-error=0.02'
 decoder='exampledec ! filesink async=false location'
@@ -95,7 +92,11 @@ if [ -n "${LIDAR_EDGE:-}" ] && has mcapsink; then
   echo '{"http-port": 0, "robots": [{"name": "r1", "port": '"${ports[0]}"', "record": "'"$work"'/edge-%05d.mcap"}]}' >edge.json
   start 'grep -q http output' "$LIDAR_EDGE" edge.json
   "${play[@]}" $encoder ! $send
-  until closed edge-00000.mcap; do kill -0 "${children[-1]}"; sleep 0.05; done
+  for _ in {1..600}; do
+    if closed edge-00000.mcap; then break; fi
+    sleep 0.1
+  done
+  closed edge-00000.mcap || { ls -l edge-* >&2; cat output >&2; exit 1; }
   "${play[@]}" mcapsrc location=edge-00000.mcap ! $decoder=edge
   same edge
 fi

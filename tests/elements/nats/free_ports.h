@@ -1,38 +1,37 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Ports of the loopback interface that nobody has.
+// Ports of the loopback interface for programs that are told theirs.
 #pragma once
 #include <gio/gio.h>
 
+#include <memory>
+#include <random>
+#include <set>
 #include <vector>
 
 namespace lidar::test {
 
-/// UDP ports that are free, for the moment. No two are the same, as all are bound at once.
-inline std::vector<int> FreePorts(std::size_t count) {
-  std::vector<GSocket*> sockets;
-  std::vector<int> ports;
-  GSocketAddress* any = g_inet_socket_address_new_from_string("127.0.0.1", 0);
-  while (ports.size() < count) {
-    sockets.push_back(
-        g_socket_new(G_SOCKET_FAMILY_IPV4, G_SOCKET_TYPE_DATAGRAM, G_SOCKET_PROTOCOL_UDP, nullptr));
-    g_socket_bind(sockets.back(), any, FALSE, nullptr);
-    GSocketAddress* bound = g_socket_get_local_address(sockets.back(), nullptr);
-    ports.push_back(g_inet_socket_address_get_port(G_INET_SOCKET_ADDRESS(bound)));
-    g_object_unref(bound);
+/// A port that is free, below those that the kernel hands out until the program has bound it.
+inline int FreePort(GSocketType type = G_SOCKET_TYPE_DATAGRAM) {
+  using Object = std::unique_ptr<void, decltype(&g_object_unref)>;
+  std::random_device random;
+  std::uniform_int_distribution<guint> ports(10000, 32767);
+  while (true) {
+    const guint port = ports(random);
+    const Object address(g_inet_socket_address_new_from_string("127.0.0.1", port), g_object_unref);
+    const Object socket(
+        g_socket_new(G_SOCKET_FAMILY_IPV4, type, G_SOCKET_PROTOCOL_DEFAULT, nullptr),
+        g_object_unref);
+    if (g_socket_bind(G_SOCKET(socket.get()), G_SOCKET_ADDRESS(address.get()), FALSE, nullptr))
+      return static_cast<int>(port);
   }
-  g_object_unref(any);
-  for (GSocket* socket : sockets) g_object_unref(socket);
-  return ports;
 }
-inline int FreePort() { return FreePorts(1)[0]; }
+inline int FreeTcpPort() { return FreePort(G_SOCKET_TYPE_STREAM); }
 
-/// A TCP port that is free, for the moment.
-inline int FreeTcpPort() {
-  GSocketListener* listener = g_socket_listener_new();
-  const int port = g_socket_listener_add_any_inet_port(listener, nullptr, nullptr);
-  g_socket_listener_close(listener);
-  g_object_unref(listener);
-  return port;
+/// UDP ports, no two the same.
+inline std::vector<int> FreePorts(std::size_t count) {
+  std::set<int> ports;
+  while (ports.size() < count) ports.insert(FreePort());
+  return {ports.begin(), ports.end()};
 }
 
 }  // namespace lidar::test

@@ -3,15 +3,20 @@
 import dataclasses
 import json
 import os
+import pathlib
 import random
 import select
 import socket
 import subprocess
+import sys
 import threading
 import time
 import zlib
 
 import wire
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "support"))
+from ports import free_port  # noqa: E402,F401
 
 LOOPBACK = "127.0.0.1"
 RECEIVER = ("screamsrc name=net address=127.0.0.1 port={port} {options} ! rtplidardepay name=depay ! "
@@ -34,11 +39,6 @@ def udp_socket(port=0):
     s.setsockopt(socket.IPPROTO_IP, socket.IP_RECVTOS if hasattr(socket, "IP_RECVTOS") else 13, 1)
     s.bind((LOOPBACK, port))
     return s
-
-
-def free_port():
-    with udp_socket() as s:
-        return s.getsockname()[1]
 
 
 class Victim:

@@ -1,22 +1,21 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """A robot, and the edge that its viewers look at, each a process of GStreamer's."""
 import os
+import pathlib
 import socket
 import subprocess
+import sys
 import time
 
-
-def free_port(kind=socket.SOCK_STREAM):
-    with socket.socket(socket.AF_INET, kind) as s:
-        s.bind(("127.0.0.1", 0))
-        return s.getsockname()[1]
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "support"))
+from ports import free_port  # noqa: E402
 
 
 class Edge:
     """Serves a synthetic sensor over SCReAM to viewers at `port`."""
 
     def __init__(self, model="os1-64", coder="", mbit=2, sink=""):
-        self.port, media = free_port(), free_port(socket.SOCK_DGRAM)
+        self.port, media = free_port("tcp"), free_port()
         self.edge = self.launch(f"screamsrc port={media} ! rtplidardepay ! foxglovesink port={self.port} {sink}")
         self.robot = self.launch(
             f"lidartestsrc is-live=true model={model} mode=1024x10 ! lidarenc {coder} ! rtplidarpay "

@@ -14,7 +14,8 @@ import sys
 import tempfile
 import time
 
-from edge import Edge, free_port
+from edge import Edge
+from ports import free_port
 from viewer import Viewer
 
 ROOT = pathlib.Path(__file__).resolve().parents[3]
@@ -70,7 +71,7 @@ def wait_for(port):
 
 
 def try_proxy(make, folder, edge):
-    port = free_port()
+    port = free_port("tcp")
     process = subprocess.Popen(make(folder, port, edge.port), cwd=folder, stderr=subprocess.DEVNULL, env={
         "HOME": str(folder), "PATH": "/usr/sbin:/usr/bin:/sbin:/bin"})
     try:

@@ -8,6 +8,7 @@
 #include <cstdio>
 #include <fstream>
 #include <memory>
+#include <random>
 #include <stdexcept>
 
 #include "src/tools/bench/demo/measurements.h"
@@ -84,10 +85,18 @@ class Coordinator {
   std::string failure_;
 };
 
-/// A port that is free now.
+/// A port that is free, below those that the kernel hands out until a child has bound it.
 int FreePort() {
-  const auto socket = tools::UdpSocket::Bind(tools::ResolveAddress("127.0.0.1:0", ""));
-  return socket.LocalPort();
+  std::random_device random;
+  std::uniform_int_distribution<int> ports(10000, 32767);
+  for (int tries = 1;; ++tries) {
+    const std::string address = "127.0.0.1:" + std::to_string(ports(random));
+    try {
+      return tools::UdpSocket::Bind(tools::ResolveAddress(address, "")).LocalPort();
+    } catch (const std::exception&) {
+      if (tries == 100) throw;
+    }
+  }
 }
 
 std::string Tail(const std::string& file) {
