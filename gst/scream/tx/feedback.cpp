@@ -74,6 +74,7 @@ bool Take(GstLidarScreamTx* self, const scream::CongestionFeedback& report, GSoc
     GST_INFO_OBJECT(self, "feedback comes from a new address: a new path");
     state.controller->OnRouteChange(now);
   }
+  if (result == scream::FeedbackResult::kAccepted) state.pacing.OnAccepted(now);
   // Transport-wide feedback names no receiver, and its packets may still be dropped behind it.
   if (result == scream::FeedbackResult::kAccepted && report.sender_ssrc != 0)
     KeepReceipts(state, report);

@@ -11,7 +11,8 @@ namespace lidar::gst {
 namespace {
 
 constexpr std::size_t kMaxBatch = 64;
-constexpr int kByeCopies = 3;  // the network may lose one
+constexpr Duration kSilence = std::chrono::seconds(1);  // of a receiver that is gone
+constexpr int kByeCopies = 3;                           // the network may lose one
 
 bool AllEnded(const TxState& state) {
   return !state.streams.empty() && std::all_of(state.streams.begin(), state.streams.end(),
@@ -177,6 +178,12 @@ void PacingTask::CollectPackets(Time now, Batch* batch) {
     if (stream == nullptr || stream->queue.empty() || !stream->queue.front().buffer) return;
     batch->packets.push_back(TakePacket(*stream, decision->ecn, now));
   }
+}
+
+void PacingTask::OnAccepted(Time now) {
+  const auto waits = [](const auto& stream) { return !stream->live.value_or(true); };
+  if (end_deadline_ && std::any_of(state().streams.begin(), state().streams.end(), waits))
+    end_deadline_ = now + std::max(kSilence, 2 * state().settings.max_queue_delay);
 }
 
 /// True once everything has left, or after as long as a frame that has begun to leave may take.

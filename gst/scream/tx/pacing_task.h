@@ -36,6 +36,8 @@ class PacingTask {
     settings_changed_ = true;
     Wake();
   }
+  /// A receiver took packets: an end behind input that waits has time.
+  void OnAccepted(Time now);
   /// The stream begins anew: its end is to come.
   void ForgetEnd();
 

@@ -95,6 +95,30 @@ TEST_F(ScreamTx, EosDoesNotWaitForAPathThatIsGone) {
   EXPECT_TRUE(byes.empty());
 }
 
+TEST_F(ScreamTx, EosOfInputThatIsNotLiveWaitsForASlowReceiver) {
+  g_object_set(element, "max-queue-delay", guint64{100 * GST_MSECOND}, nullptr);
+  Start();
+  static const GstPadQueryFunction before = GST_PAD_QUERYFUNC(rtp->srcpad);
+  const auto not_live = [](GstPad* pad, GstObject* parent, GstQuery* query) {
+    const gboolean answered = before(pad, parent, query);
+    if (GST_QUERY_TYPE(query) == GST_QUERY_LATENCY)
+      gst_query_set_latency(query, FALSE, 0, GST_CLOCK_TIME_NONE);
+    return answered;
+  };
+  gst_pad_set_query_function(rtp->srcpad, not_live);
+  PushFrame(0, 5000);
+  gst_harness_push_event(rtp.get(), gst_event_new_eos());
+  bool ended = false;
+  for (int i = 0; i < 100 && !ended; ++i) {
+    time.Advance(150 * GST_MSECOND);
+    Acknowledge();
+    ended = HasEos();
+  }
+  EXPECT_TRUE(ended);
+  Collect();
+  EXPECT_EQ(sent.size(), 5000U);
+}
+
 TEST_F(ScreamTx, AFlushForgetsTheQueueAndItGoesOn) {
   Start();
   PushFrame(0, 100);
