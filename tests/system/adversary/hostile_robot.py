@@ -22,6 +22,7 @@ import media
 import wire
 
 MOST_MBPS = 2
+BLACK_BOX = {"record-max-file-size": 20_000_000, "record-max-files": 3}
 
 
 def hostile_packets():
@@ -41,8 +42,8 @@ def hostile_packets():
 
 class Edge:
     def __init__(self, build, folder, ports):
-        robots = [{"name": f"r{i}", "port": port, "record": f"{folder}/r{i}-%05d.mcap", "max-mbps": 100 if i else MOST_MBPS}
-                  for i, port in enumerate(ports)]
+        robots = [{"name": f"r{i}", "port": port, "record": f"{folder}/r{i}-%05d.mcap", "max-mbps": 100 if i else MOST_MBPS,
+                   **BLACK_BOX} for i, port in enumerate(ports)]
         config = pathlib.Path(folder) / "edge.json"
         config.write_text(json.dumps({"http-port": 0, "interval": 0.5, "robots": robots}))
         program = next(p for p in build.rglob("lidar-edge") if p.is_file() and os.access(p, os.X_OK))
@@ -66,10 +67,11 @@ class Edge:
         return time.monotonic() - begin
 
 
-def honest_robot(port):
-    return subprocess.Popen(
-        ["gst-launch-1.0", "-q", *f"lidartestsrc is-live=true model=os0-32 mode=512x10 ! lidarenc effort=0 ! rtplidarpay ! "
-         f"screamsink host=127.0.0.1 port={port}".split()], stdout=subprocess.DEVNULL)
+def honest_robots(ports):
+    """One sensor is coded once and sent as many robots, each with its own SCReAM."""
+    source = "lidartestsrc is-live=true model=os0-32 mode=512x10 ! lidarenc effort=0 ! tee name=t"
+    branches = [f"t. ! queue ! rtplidarpay ! screamsink host=127.0.0.1 port={port}" for port in ports]
+    return subprocess.Popen(["gst-launch-1.0", "-q", *" ".join([source, *branches]).split()], stdout=subprocess.DEVNULL)
 
 
 def run(args, hostile):
@@ -77,9 +79,8 @@ def run(args, hostile):
         ports = [ends.free_port() for _ in range(1 + args.others)]
         edge = Edge(args.build, folder, ports)
         stack.callback(edge.process.kill)
-        robots = [honest_robot(port) for port in ports[1:]]
-        for robot in robots:
-            stack.callback(robot.kill)
+        others = honest_robots(ports[1:])
+        stack.callback(others.kill)
         socket = stack.enter_context(ends.udp_socket())
         end, sent = time.monotonic() + args.seconds, 0
         for packet in hostile_packets():
@@ -98,9 +99,8 @@ def run(args, hostile):
             "lost": sum(edge.metric("lidar_rtplidardepay_slices_lost", name) for name in names),
             "dropped": edge.metric("lidar_rtplidardepay_slices_changing_format", "r0"),
         }
-        for robot in robots:
-            robot.send_signal(signal.SIGINT)
-            robot.wait(20)
+        others.send_signal(signal.SIGINT)
+        others.wait(20)
         figures["stop_s"] = round(edge.stop(), 2)
         return figures
 
@@ -109,7 +109,7 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("build", type=pathlib.Path)
     parser.add_argument("--seconds", type=float, default=60)
-    parser.add_argument("--others", type=int, default=2, help="robots beside it")
+    parser.add_argument("--others", type=int, default=19, help="robots beside it")
     args = parser.parse_args()
     args.build = args.build.resolve()
     for hostile in (False, True):
