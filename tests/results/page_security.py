@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Tables of docs/results/security.md that a single command measures."""
+import itertools
 import json
 import re
 
@@ -34,4 +35,33 @@ def robot():
     return common.table(["", "without it", "beside it"], rows)
 
 
-TABLES = {"robot": robot, "srtp": srtp}
+def script(name, *arguments):
+    """The lines of JSON that a script of the adversary prints. It ends with 1 where a goal is missed, which shows."""
+    text = common.run(common.ROOT / "tests/system/adversary" / name, common.build, *arguments, check=False)
+    return [json.loads(line) for line in text.splitlines()]
+
+
+def growth():
+    """Many connections, topics, robots, sensors and formats, and a recording of bombs."""
+    body = []
+    for kind, runs in itertools.groupby(script("growth.py"), key=lambda run: run["kind"]):
+        runs = list(runs)
+        numbers = " / ".join(f"{run['count']:,}" for run in runs)
+        body.append([kind, numbers, " / ".join(f"{run['cpu_s']:.2f}" for run in runs),
+                     max(run["memory_mb"] for run in runs), f"{runs[-1]['told']:.0f}", max(run["stop_s"] for run in runs)])
+    return common.table(["of a stranger", "number", "processor time [s]", "most memory [MB]", "told", "longest stop [s]"], body)
+
+
+def decoding():
+    """What a byte costs each decoder at worst, and a stream of such bytes."""
+    text = common.run(common.program("decode-cost"), 20)
+    body = [re.match(r"(.*): ([\d.]+) us a byte, at worst ([\d.]+), a slice of (\d+) bytes in ([\d.]+) ms", line).groups()
+            for line in text.splitlines()]
+    free, bounded = script("decode_load.py")
+    return common.table(["coder", "slices as coded [us a byte]", "dearest found", "that slice [bytes]", "[ms]"], body) + (
+        f"\n\nA robot that sends the mixing coder's dearest bytes at {free['sent_mbps']:.0f} Mbit/s takes "
+        f"{free['processor']:.2f} of a processor at `lidardec`, {bounded['processor']:.2f} with "
+        f"`max-decode-load={bounded['load']}`, the socket included: {bounded['over']:.0f} slices are dropped and counted.")
+
+
+TABLES = {"robot": robot, "growth": growth, "decoding": decoding, "srtp": srtp}

@@ -36,6 +36,17 @@ TEST(FleetWatch, KnowsRobotsByTheirSubjects) {
     EXPECT_FALSE(IsWanted(settings, name)) << name;
 }
 
+TEST(FleetWatch, FollowsSomeSensorsOfARobotAndEachOtherRobot) {
+  std::set<std::string> all = {"r6.front", "r8.front"};
+  for (int i = 0; i < 65'000; ++i) all.insert("r7.s" + std::to_string(i));
+  const auto kept = worker::WithinBounds(all);
+  EXPECT_EQ(kept.size(), worker::kMostSensors + 2);
+  EXPECT_EQ(kept.count("r6.front") + kept.count("r8.front"), 2U);
+  all.clear();
+  for (int i = 0; i < 65'000; ++i) all.insert("r" + std::to_string(i) + ".front");
+  EXPECT_EQ(worker::WithinBounds(all).size(), worker::kMostRobots);
+}
+
 TEST(RobotPipeline, RefusesWhatItHasNot) {
   worker::PipelineSettings settings;
   settings.odometry = {{"voxel-sise", "1"}};

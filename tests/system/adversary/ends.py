@@ -45,6 +45,7 @@ class Victim:
     """The program `victim` with a pipeline; the attribute `last` is its last report."""
 
     program = None  # set once by the main program
+    longest_stop = 0  # of all that were closed [s]
 
     def __init__(self, pipeline, **process):
         env = dict(os.environ)
@@ -81,6 +82,12 @@ class Victim:
         finally:
             self.process.stdout.close()
         assert code == 0, f"the pipeline ended with exit code {code}"
+
+    def timed_close(self):
+        """Seconds until the process is gone."""
+        begin = time.monotonic()
+        self.close()
+        return time.monotonic() - begin
 
 
 @dataclasses.dataclass

@@ -140,21 +140,28 @@ def table_version():
     return int(re.search(r"kTableVersion = (\d+)", source.read_text(encoding="utf-8"))[1])
 
 
+DEAR_BEAMS, DEAR_COLUMNS = 64, 300  # as many pixels as the mixing coder takes of a payload of 60 bytes
+DEAR_CONFIG = wire.build_config(b"x:F32:0,y:F32:4,z:F32:8,range:U32:12", wire.sensor_model(DEAR_BEAMS, DEAR_COLUMNS))
+
+
+def dear_slice(n):
+    """Dozens of bytes that claim as many pixels as they may."""
+    # A version of yesterday would be refused before it costs anything.
+    payload = bytes([table_version() << 4 | 3 | (n & 1) << 2]) + b"\xff" * (60 + n % 4)
+    block = bytes([0x34, (n & 1) << 7]) + b"".join(map(varint, (DEAR_BEAMS, 0, DEAR_COLUMNS, 1, 256, len(payload))))
+    return wire.Slice(block + payload, wire.config_id(DEAR_CONFIG), n, 0, 1, n)
+
+
 def dear_slices(context):
-    """A sensor of a million pixels, and slices of dozens of bytes that claim all of them."""
+    """Slices that cost as much processor time as bytes of the mixing coder can."""
     bench = Bench(context)
     bench.settle()
-    beams, columns = 1024, 1024
-    fields = b"x:F32:0,y:F32:4,z:F32:8,range:U32:12"
-    config = wire.build_config(fields, wire.sensor_model(beams, columns))
-    for unit in split_unit(wire.config_unit(config), bench.sender.room):
+    for unit in split_unit(wire.config_unit(DEAR_CONFIG), bench.sender.room):
         bench.sender.send(bench.sender.pack(unit))
     cpu, count = bench.receiver.ask()["cpu"], 40
     for n in range(count):
-        # A version of yesterday would be refused before it costs anything.
-        payload = bytes([table_version() << 4 | 3 | (n & 1) << 2]) + b"\xff" * (20 + n)
-        block = bytes([0x34, (n & 1) << 7]) + b"".join(map(varint, (beams, 0, columns, 1, 256, len(payload))))
-        s = dataclasses.replace(bench.sender.next_slice(), body=block + payload, config_id=wire.config_id(config))
+        dear = dear_slice(n)
+        s = dataclasses.replace(bench.sender.next_slice(), body=dear.body, config_id=dear.config_id)
         bench.sender.send(bench.sender.pack(wire.slice_unit(s)))
         time.sleep(0.005)
     time.sleep(0.3)

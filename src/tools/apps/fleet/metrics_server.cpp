@@ -93,7 +93,9 @@ void MetricsServer::Run() {
     const auto now = Clock::now();
     std::size_t i = 2;
     for (auto c = connections_.begin(); c != connections_.end(); ++i) {
-      const bool stays = now < c->until && (fds[i].revents == 0 || GoesOn(&*c));
+      const bool in_time = now < c->until;
+      if (!in_time) ++cut_;
+      const bool stays = in_time && (fds[i].revents == 0 || GoesOn(&*c));
       c = stays ? std::next(c) : connections_.erase(c);
     }
     if (fds[1].revents != 0) Accept();
@@ -106,12 +108,16 @@ void MetricsServer::Accept() {
       accept4(listener_.get(), nullptr, nullptr, SOCK_CLOEXEC | SOCK_NONBLOCK));
   if (!socket && !MustWait()) {
     // No descriptor is left: the listener stays readable, so without a pause this would spin.
+    cut_ += connections_.size();
     connections_.clear();
     pollfd wake{wake_.get(), POLLIN, 0};
     poll(&wake, 1, static_cast<int>(kPatrol.count()));
   }
   if (!socket) return;
-  if (connections_.size() == kMaxConnections) connections_.pop_front();
+  if (connections_.size() == kMaxConnections) {
+    connections_.pop_front();
+    ++cut_;
+  }
   connections_.push_back({std::move(socket), Clock::now() + kPatience, "", "", 0});
 }
 

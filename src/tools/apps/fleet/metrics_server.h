@@ -4,6 +4,7 @@
 #include <atomic>
 #include <chrono>
 #include <cstddef>
+#include <cstdint>
 #include <list>
 #include <memory>
 #include <mutex>
@@ -27,6 +28,8 @@ class MetricsServer {
   MetricsServer& operator=(const MetricsServer&) = delete;
 
   int port() const { return port_; }
+  /// Connections that were ended before they had an answer.
+  std::uint64_t cut() const { return cut_; }
   void Publish(std::string text);
 
  private:
@@ -49,7 +52,8 @@ class MetricsServer {
   tools::FileDescriptor wake_;  // an eventfd
   int port_ = 0;
   std::list<Connection> connections_;  // oldest first; the thread's alone
-  std::mutex mutex_;                   // guards text_
+  std::atomic<std::uint64_t> cut_{0};
+  std::mutex mutex_;  // guards text_
   std::shared_ptr<const std::string> text_ = std::make_shared<std::string>();
   std::atomic<bool> ending_{false};
   std::thread thread_;

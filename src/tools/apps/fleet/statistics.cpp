@@ -49,7 +49,9 @@ void Statistics::Poll(const Collect& collect) {
   AddProcess(&exposition);
   collect(&exposition, &reports);
   if (reporter_) reporter_->Publish(std::move(reports));
-  if (metrics_) metrics_->Publish(exposition.text());
+  if (!metrics_) return;
+  exposition.Add("lidar_http_connections_cut", "", static_cast<double>(metrics_->cut()));
+  metrics_->Publish(exposition.text());
 }
 
 }  // namespace lidar::fleet

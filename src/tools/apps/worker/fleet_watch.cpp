@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <map>
 #include <utility>
 
 #include "ext/nats/jetstream.h"
@@ -39,6 +40,17 @@ bool IsWanted(const FleetSettings& settings, const std::string& name) {
     return g_pattern_match_simple(pattern.c_str(), robot.c_str()) != FALSE ||
            g_pattern_match_simple(pattern.c_str(), name.c_str()) != FALSE;
   });
+}
+
+std::set<std::string> WithinBounds(const std::set<std::string>& all) {
+  std::map<std::string, std::size_t> sensors;  // of each robot
+  std::set<std::string> kept;
+  for (const std::string& name : all) {
+    const std::string robot = name.substr(0, name.find('.'));
+    if (sensors.size() == kMostRobots && sensors.count(robot) == 0) continue;
+    if (++sensors[robot] <= kMostSensors) kept.insert(name);
+  }
+  return kept;
 }
 
 std::string RobotOf(const FleetSettings& settings, const std::string& subject) {
@@ -185,15 +197,22 @@ void FleetWatch::ListRobots() {
     return Tell(s == NATS_NOT_FOUND
                     ? "there is no stream " + settings_.stream + " yet"
                     : "the stream " + settings_.stream + " says nothing: " + nats::ErrorText(s));
-  if (!stale_) Tell("");
-  std::set<std::string> robots;
+  std::set<std::string> all;
   const jsStreamStateSubjects* subjects = info->State.Subjects;
   for (int i = 0; subjects != nullptr && i < subjects->Count; ++i) {
     const std::string robot = RobotOf(settings_, subjects->List[i].Subject);
-    if (IsWanted(settings_, robot)) robots.insert(robot);
+    if (IsWanted(settings_, robot)) all.insert(robot);
   }
+  auto robots = WithinBounds(all);
+  const std::size_t left_out = all.size() - robots.size();
+  if (left_out > 0)
+    Tell("sensors are left out: a robot may have " + std::to_string(kMostSensors) +
+         ", and a worker follows " + std::to_string(kMostRobots) + " robots");
+  else if (!stale_)
+    Tell("");
   const std::lock_guard lock(mutex_);
   news_.robots = std::move(robots);
+  news_.left_out = left_out;
   news_.stream = static_cast<std::uint64_t>(info->Created);
   news_.first = info->State.FirstSeq;
   news_.last = info->State.LastSeq;

@@ -34,7 +34,8 @@ class FleetWatch {
   };
   struct News {
     std::vector<Entry> entries;
-    std::optional<std::set<std::string>> robots;  // "robot.sensor"; all that there are
+    std::optional<std::set<std::string>> robots;  // "robot.sensor"; all within the bounds
+    std::size_t left_out = 0;                     // beyond them
     std::uint64_t stream = 0;                     // that has them, as in Progress
     std::uint64_t first = 0;                      // number of its oldest message
     std::uint64_t last = 0;                       // number of its newest message
@@ -82,6 +83,11 @@ class FleetWatch {
 
 /// Whether `name` is a "robot.sensor" that fits a pattern.
 bool IsWanted(const FleetSettings& settings, const std::string& name);
+/// Whoever publishes for a robot can make up sensors, so a robot has no more than these.
+constexpr std::size_t kMostSensors = 16;
+constexpr std::size_t kMostRobots = 4'096;
+/// Leaves the first robots, and the first sensors of each, in the order of their names.
+std::set<std::string> WithinBounds(const std::set<std::string>& all);
 /// "robot.sensor" of the subject of a stream; empty where it is none.
 std::string RobotOf(const FleetSettings& settings, const std::string& subject);
 

@@ -29,7 +29,13 @@ LeaseTable::Robot* LeaseTable::FindPending(std::uint64_t ticket) {
 }
 
 void LeaseTable::SetRobots(const std::set<std::string>& robots, Time now) {
-  for (auto& [name, robot] : robots_) robot.wanted = robots.count(name) > 0;
+  for (auto at = robots_.begin(); at != robots_.end();) {
+    Robot& robot = at->second;
+    robot.wanted = robots.count(at->first) > 0;
+    // Entries of the bucket come once.
+    const bool is_known = robot.revision > 0 || robot.doubted_since || robot.held || robot.pending;
+    at = robot.wanted || is_known ? std::next(at) : robots_.erase(at);
+  }
   for (const std::string& name : robots) {
     const auto [at, is_new] = robots_.try_emplace(name);
     at->second.wanted = true;

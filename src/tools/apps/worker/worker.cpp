@@ -70,6 +70,7 @@ void Worker::TakeNews() {
   if (!news.trouble.empty()) std::fprintf(stderr, "%s\n", tools::Printable(news.trouble).c_str());
   if (news.robots) {
     table_.SetRobots(*news.robots, Now());
+    left_out_ = news.left_out;
     NoteStream(news.stream);
     first_ = news.first;
     CheckPlaces(news);
@@ -217,6 +218,7 @@ void Worker::Tell(fleet::Exposition* exposition, fleet::Reporter::Reports* repor
   exposition->Add("lidar_worker_robots", "", static_cast<double>(pipelines_.size()));
   exposition->Add("lidar_worker_robots_taken", "", static_cast<double>(counters_.taken));
   exposition->Add("lidar_worker_robots_given_up", "", static_cast<double>(counters_.given_up));
+  exposition->Add("lidar_worker_sensors_left_out", "", static_cast<double>(left_out_));
   exposition->Add("lidar_worker_failures", "", static_cast<double>(counters_.failures));
   for (const auto& [name, pipeline] : pipelines_) {
     const auto dot = name.find('.');

@@ -71,6 +71,7 @@ class Worker {
     std::uint64_t given_up = 0;
     std::uint64_t failures = 0;  // of pipelines
   } counters_;
+  std::size_t left_out_ = 0;  // sensors beyond the bounds of FleetWatch
   Pipelines pipelines_;
   /// Pipelines that stop, which may take a while: others must not wait for it.
   std::map<std::string, Ending> ending_;
