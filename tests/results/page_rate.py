@@ -118,4 +118,18 @@ def intensity():
     return common.table(["intensity-bits", *common.SOURCES], body)
 
 
-TABLES = {"distortion": distortion, "predict": predict, "track": track, "below": below, "r_min": r_min, "intensity": intensity}
+def loop():
+    """Rate controller and SCReAM in simulated time: what swings over a constant link."""
+    body = []
+    for parameter, slices in enumerate(("whole scans", "8 slices")):
+        text = common.run(
+            common.program("core_loop_test"), f"--gtest_filter=*OnAConstantLinkStandsStill/{parameter}"
+        )
+        for line in re.findall(r"^(?:target|sent), .* tone .*", text, re.M):
+            what = line.split(" mean ")[0].strip()
+            body.append([slices, what, *re.findall(r"[\d.]+(?= Mbit/s| %)", line)])
+    head = ["", "", "mean [Mbit/s]", "deviation [%]", "peak to peak in 10 s", "strongest sine, 0.1 to 2 Hz"]
+    return common.table(head, body)
+
+
+TABLES = {"distortion": distortion, "predict": predict, "track": track, "below": below, "r_min": r_min, "loop": loop, "intensity": intensity}
