@@ -48,12 +48,12 @@ See `src/base/units.h`, `units.h`, `gst/*`, `gst<name>.cpp`, `lidar-eval --help`
 
     build/src/tools/eval/lidar-eval > out.csv
 """,
-    "docs/elements/alpha.md": "# alpha\n\n*Reference.*\n\n    gst-launch-1.0 fakesrc ! \\\n        alpha ! fakesink\n\n| `speed` | how fast; see `rate=3` |\n",
+    "docs/elements/alpha.md": "# alpha\n\n*Reference.*\n\n    gst-launch-1.0 fakesrc ! \\\n        alpha ! fakesink\n",
     "docs/plugins_cache.json": """
 {"one": {"elements": {"alpha": {"description": "Turns clouds", "klass": "Filter/PointCloud",
   "pads": {"sink": {"direction": "sink", "caps": "application/x-pointcloud2"},
            "src": {"direction": "src", "caps": "ANY"}},
-  "properties": {"speed": {}, "rate": {}}}}}}
+  "properties": {"speed": {"blurb": "How fast"}}}}}}
 """,
     "docs/reference/elements.md": reference.HEAD
     + """
@@ -242,7 +242,7 @@ PLANTED = [
     (
         "paths",
         "docs/elements/alpha.md",
-        "# alpha\n\n`speed`, `rate`\n\n    gst-launch-1.0 alphabet ! fakesink\n",
+        "# alpha\n\n    gst-launch-1.0 alphabet ! fakesink\n",
         "docs/elements/alpha.md: no pipeline with alpha",
     ),
     (
@@ -255,7 +255,7 @@ PLANTED = [
         "paths",
         "docs/plugins_cache.json",
         '{"one": {"elements": {"alpha": {"properties": {"speeds": {}}}}}}',
-        "docs/elements/alpha.md: no word on property speeds",
+        "alpha: no blurb of property speeds",
     ),
     ("paths", "docs/troubleshooting.md", '### "No such cloud."', 'nobody says "No such cloud."'),
     ("paths", "docs/more.md", "# More", "docs/more.md is not in the site"),
