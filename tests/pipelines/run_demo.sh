@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: LGPL-2.1-or-later
-# run_demo.sh FOLDER FILTER [options of the demo]: runs it from the build tree; its exit code must be 0 and
-# the jq FILTER true for its summary.json, with its stats.json as $stats[0].
+# run_demo.sh FOLDER FILTER [options of the demo]: runs it from the build tree. Its guarantees must hold
+# (exit code 0, or 3 if little arrived, as on a busy machine), and the jq FILTER must be true for its
+# summary.json, with its stats.json as $stats[0].
 set -euo pipefail
 root=$(cd "$(dirname "$0")/../.." && pwd)
 folder=$1
@@ -11,7 +12,7 @@ rm -rf "$folder"
 
 status=0
 BUILD_DIR=$MESON_BUILD_ROOT "$root/pipelines/demo.sh" --no-install --no-build --output "$folder" "$@" | tee "$folder.log" || status=$?
-if [ "$status" != 0 ]; then
+if [ "$status" != 0 ] && [ "$status" != 3 ]; then
   echo "demo.sh ended with $status" >&2
   tail -n 20 "$folder"/*.log >&2
   exit 1
