@@ -55,19 +55,19 @@ def media(pads, direction):
 def element_tables(root):
     cache = json.loads((root / "docs/plugins_cache.json").read_text())
     elements = {
-        name: (plugin, element)
-        for plugin, content in cache.items()
+        name: element
+        for content in cache.values()
         for name, element in content.get("elements", {}).items()
     }
     for heading, pattern in KINDS.items():
         rows = [
             f"| [`{name}`](../elements/{name}.md) | {element['description']} "
-            f"| {media(element['pads'], 'sink')} | {media(element['pads'], 'src')} | `{plugin}` |"
-            for name, (plugin, element) in sorted(elements.items())
+            f"| {media(element['pads'], 'sink')} | {media(element['pads'], 'src')} |"
+            for name, element in sorted(elements.items())
             if re.match(pattern, element["klass"])
         ]
         if rows:
-            head = "| element | what it does | takes | gives | plugin |\n|---|---|---|---|---|"
+            head = "| element | what it does | takes | gives |\n|---|---|---|---|"
             yield "\n".join([f"### {heading}\n", head, *rows])
 
 

@@ -63,9 +63,9 @@ See `src/base/units.h`, `units.h`, `gst/*`, `gst<name>.cpp`, `lidar-eval --help`
 
 ### Clouds and poses
 
-| element | what it does | takes | gives | plugin |
-|---|---|---|---|---|
-| [`alpha`](../elements/alpha.md) | Turns clouds | clouds | any | `one` |
+| element | what it does | takes | gives |
+|---|---|---|---|
+| [`alpha`](../elements/alpha.md) | Turns clouds | clouds | any |
 
 ## Programs
 
