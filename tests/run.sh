@@ -52,8 +52,6 @@ sanitized_job=
 sanitized_result=
 passed=0
 failed=0
-second_tries=()
-most_again=6
 started=$SECONDS
 
 # Long simulations and command-line programs run the code of the other tests again, at many times
@@ -62,6 +60,8 @@ dear=(simulation programs)
 without_dear=("${dear[@]/#/--no-suite=}")
 # Tests of elements wait for half of their time, so more of them run at a time than there are cores.
 waiting=(--num-processes $((2 * $(nproc))))
+# A time limit is for tests that hang: a busy machine only takes longer.
+patient=(--timeout-multiplier 6)
 
 # A compiler's own list of headers tells ccache what to look at, so what is not there yet is not preprocessed twice.
 export CCACHE_DEPEND=${CCACHE_DEPEND:-1} CCACHE_SLOPPINESS=${CCACHE_SLOPPINESS:-pch_defines,time_macros}
@@ -148,38 +148,14 @@ tally() {
   failed=$((failed + bad))
 }
 
-# What a moment may have caused: not what a sanitizer found, though its check for leaks fails by itself
-# where a thread ends meanwhile.
-disturbed='def disturbed: (.result == "TIMEOUT" or .result == "INTERRUPT" or .result == "FAIL") and
-  ((.stdout // "") + (.stderr // "") | test("LeakSanitizer has encountered a fatal error") or
-   (test("ERROR: AddressSanitizer|ERROR: LeakSanitizer|runtime error:|WARNING: ThreadSanitizer") | not));'
-
-# settle DIR SUITE NAME [meson options]: adds what a log of meson has of a suite to the totals. Failed tests
-# run once more, one by one and without a compiler beside them: many stream in real time, on a machine that
-# others may use. What they do now is what counts, and the last lines name them. Where many fail, the tree is
-# wrong and not the moment.
+# settle DIR SUITE NAME: adds what a log of meson has of a suite to the totals.
 settle() {
-  local dir=$1 suite=$2 name=$3 log=$1/meson-logs/settled.json names before
-  shift 3
+  local log=$1/meson-logs/settled.json
   # Names are "gst-lidar:SUITE+SUITE / TEST".
-  results "$dir" "$name" |
-    jq -c --arg suite "$suite" 'select(.name | sub("^[^:]*:"; "") | sub(" / .*"; "") | split("+") | index($suite))' >"$log"
-  [ -s "$log" ] || { echo "meson left no results of $suite"; failed=$((failed + 1)); return; }
-  mapfile -t names < <(jq -r "$disturbed"' select(disturbed) | .name | sub(".*(/ |:)"; "")' "$log")
-  if [ "$suite" = lint ] || [ ${#names[@]} = 0 ] || [ ${#names[@]} -gt "$most_again" ]; then
-    tally <"$log"
-    return
-  fi
-  [ -z "$sanitized_job" ] || sanitized_ready
-  echo "== failed, and run again alone: ${names[*]}"
-  second_tries+=("${names[@]/#/$(basename "$dir"): }")
-  forget "$dir" again
-  meson test -C "$dir" --no-rebuild --suite "$suite" --logbase again --print-errorlogs --timeout-multiplier 12 "$@" \
-    --num-processes 1 "${names[@]}" 2>&1 | shorten
-  before=$((passed + failed))
-  tally < <(results "$dir" again)
-  failed=$((failed + before + ${#names[@]} - passed - failed))  # what did not run
-  tally < <(jq -c "$disturbed"' select(disturbed | not)' "$log")
+  results "$1" "$3" |
+    jq -c --arg suite "$2" 'select(.name | sub("^[^:]*:"; "") | sub(" / .*"; "") | split("+") | index($suite))' >"$log"
+  [ -s "$log" ] || { echo "meson left no results of $2"; failed=$((failed + 1)); return; }
+  tally <"$log"
 }
 
 # run DIR SUITES [meson options]: runs the tests of the suites together, and adds their results to the totals.
@@ -190,11 +166,11 @@ run() {
   for suite in "${suites[@]}"; do chosen+=(--suite "$suite"); done
   echo "== $(basename "$dir"): ${suites[*]} (${SECONDS}s)"
   forget "$dir" testlog
-  meson test -C "$dir" --no-rebuild "${chosen[@]}" --print-errorlogs "$@" 2>&1 | shorten
+  meson test -C "$dir" --no-rebuild "${patient[@]}" "${chosen[@]}" --print-errorlogs "$@" 2>&1 | shorten
   # Killed by a signal it may have left out tests.
   [ "${PIPESTATUS[0]}" -lt 128 ] || failed=$((failed + 1))
   [ "${suites[*]}" != pipelines ] || return 0
-  for suite in "${suites[@]}"; do settle "$dir" "$suite" testlog "$@"; done
+  for suite in "${suites[@]}"; do settle "$dir" "$suite" testlog; done
 }
 
 # The pipelines stream in real time, so they run one by one. Those of the suite beside wait for much of
@@ -202,7 +178,8 @@ run() {
 run_pipelines() {
   local dir=$1
   forget "$dir" beside
-  nice -n 10 meson test -C "$dir" --no-rebuild --suite beside --logbase beside --print-errorlogs >"$dir/beside.log" 2>&1 &
+  nice -n 10 meson test -C "$dir" --no-rebuild "${patient[@]}" --suite beside --logbase beside --print-errorlogs \
+    >"$dir/beside.log" 2>&1 &
   local beside=$!
   run "$dir" pipelines --num-processes 1
   wait "$beside"
@@ -216,7 +193,7 @@ run_pipelines() {
 run_sanitized() {
   local dir=$1 rest
   forget "$dir" rest
-  meson test -C "$dir" --no-rebuild --suite core --suite fuzz --logbase rest --print-errorlogs --timeout-multiplier 6 \
+  meson test -C "$dir" --no-rebuild --suite core --suite fuzz --logbase rest --print-errorlogs "${patient[@]}" \
     "${without_dear[@]}" >"$dir/rest.log" 2>&1 &
   rest=$!
   chrt --idle -p 0 "$rest"
@@ -225,8 +202,8 @@ run_sanitized() {
   wait "$rest"
   [ $? -lt 128 ] || failed=$((failed + 1))
   shorten <"$dir/rest.log"
-  settle "$dir" core rest "${without_dear[@]}"
-  settle "$dir" fuzz rest "${without_dear[@]}"
+  settle "$dir" core rest
+  settle "$dir" fuzz rest
 }
 
 # The outcome of a step that is no meson test.
@@ -289,6 +266,5 @@ if [ "$tsan" = yes ]; then
 fi
 
 echo "== $((SECONDS - started)) s"
-[ ${#second_tries[@]} = 0 ] || printf 'a second try for %s\n' "${second_tries[@]}"
 echo "$passed passed, $failed failed"
 [ "$failed" = 0 ] && [ "$passed" -gt 0 ]
