@@ -16,20 +16,6 @@ HEAD = """# Elements, programs, scripts
 
 *Reference. `tests/lint/reference.py . --write` makes this page; edit the code that it reads.*
 """
-MEDIA = {
-    "application/x-pointcloud2": "clouds",
-    "application/x-lidar-slice": "slices",
-    "application/x-draco": "Draco",
-    "application/x-imu": "IMU",
-    "application/x-odometry": "poses",
-    "application/x-tf": "transforms",
-    "application/x-rtp": "RTP",
-    "application/x-rtcp": "RTCP",
-    "application/x-pcd": "PCD",
-    "application/x-ply": "PLY",
-    "video/x-raw": "video",
-    "ANY": "any",
-}
 # Kinds of elements: how their classes begin, and the heading of each.
 KINDS = {
     "Sources": "Source/",
@@ -41,17 +27,6 @@ KINDS = {
 }
 
 
-def media(pads, direction):
-    """What the pads of one direction carry, in words."""
-    types = [
-        MEDIA.get(part.split(",")[0].strip(), part.split(",")[0].strip())
-        for pad in pads.values()
-        if pad["direction"] == direction
-        for part in re.split(r"; ", pad["caps"])
-    ]
-    return ", ".join(dict.fromkeys(types)) or "–"
-
-
 def element_tables(root):
     cache = json.loads((root / "docs/plugins_cache.json").read_text())
     elements = {
@@ -61,13 +36,12 @@ def element_tables(root):
     }
     for heading, pattern in KINDS.items():
         rows = [
-            f"| [`{name}`](../elements/{name}.md) | {element['description']} "
-            f"| {media(element['pads'], 'sink')} | {media(element['pads'], 'src')} |"
+            f"| [`{name}`](../elements/{name}.md) | {element['description']} |"
             for name, element in sorted(elements.items())
             if re.match(pattern, element["klass"])
         ]
         if rows:
-            head = "| element | what it does | takes | gives |\n|---|---|---|---|"
+            head = "| element | what it does |\n|---|---|"
             yield "\n".join([f"### {heading}\n", head, *rows])
 
 
@@ -106,7 +80,7 @@ def page(root):
     return f"""{HEAD}
 ## Elements
 
-`gst-inspect-1.0 ELEMENT` lists every property with its range and default.
+`gst-inspect-1.0 ELEMENT` lists its pads, and every property with its range and default.
 
 {elements}
 

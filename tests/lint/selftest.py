@@ -59,13 +59,13 @@ See `src/base/units.h`, `units.h`, `gst/*`, `gst<name>.cpp`, `lidar-eval --help`
     + """
 ## Elements
 
-`gst-inspect-1.0 ELEMENT` lists every property with its range and default.
+`gst-inspect-1.0 ELEMENT` lists its pads, and every property with its range and default.
 
 ### Clouds and poses
 
-| element | what it does | takes | gives |
-|---|---|---|---|
-| [`alpha`](../elements/alpha.md) | Turns clouds | clouds | any |
+| element | what it does |
+|---|---|
+| [`alpha`](../elements/alpha.md) | Turns clouds |
 
 ## Programs
 
