@@ -8,6 +8,7 @@
 
 #include "src/codec/cloud/beam_lines.h"
 #include "src/codec/cloud/beam_locator.h"
+#include "src/codec/cloud/column_drift.h"
 #include "src/codec/cloud/column_places.h"
 #include "src/codec/cloud/column_step.h"
 
@@ -94,6 +95,24 @@ std::optional<BeamTable> FindColumns(const FoundBeams& found, bool passing,
   return table;
 }
 
+std::optional<BeamTable> FindBentColumns(const FoundBeams& found,
+                                         const std::vector<BeamAzimuths>& azimuths) {
+  constexpr std::int32_t kUnit = BeamTable::kBentElevation;
+  const std::int32_t usual = UsualStep(azimuths);
+  const double step = usual == 0 ? 0 : MeanStep(azimuths, usual);
+  if (step <= 0) return std::nullopt;
+  BeamTable table;
+  table.bends = true;
+  for (const FoundBeam& f : found.beams) {
+    BeamTable::Beam beam;
+    const double elevation = std::atan(f.line.tangent) / kRadians;
+    beam.elevation = kUnit * static_cast<std::int32_t>(std::lround(elevation / kUnit));
+    table.beams.push_back(beam);
+  }
+  if (!FindDriftingPlaces(azimuths, step, &table)) return std::nullopt;
+  return table;
+}
+
 }  // namespace
 
 std::optional<BeamTable> FindBeams(const std::vector<Sighting>& points) {
@@ -103,6 +122,10 @@ std::optional<BeamTable> FindBeams(const std::vector<Sighting>& points) {
   };
   constexpr double kClearly = 0.9;
   const FoundBeams meeting = FindMeetingBeams(points);
+  // A beam that bends looks like several where elevations are rounded.
+  const FoundBeams bending = FindBendingBeams(points);
+  if (good(bending, kClearly) && 2 * bending.beams.size() < meeting.beams.size())
+    return FindBentColumns(bending, AzimuthsOf(points, bending));
   if (good(meeting, kClearly)) return FindColumns(meeting, false, AzimuthsOf(points, meeting));
   const FoundBeams passing = FindPassingBeams(points);
   if (good(passing, kCovered) && passing.points > meeting.points) {

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <complex>
 
 #include "src/codec/cloud/beam_columns.h"
 #include "src/codec/cloud/beam_locator.h"
@@ -27,6 +28,12 @@ void PlaceOnBeams(const std::vector<Sighting>& points, const BeamTable& table,
     PlacedPoint& p = (*placed)[i];
     p.along_m = found.along_m;
     p.above_m = found.above_m;
+    if (table.bends) {
+      const double angle = std::atan2(found.above_m, found.along_m);
+      p.bend = static_cast<std::int32_t>(std::lround(angle / kRadians));
+      p.along_m = std::hypot(found.along_m, found.above_m);
+      p.above_m = 0;
+    }
     p.azimuth = azimuth & (kTurn - 1);
     p.beam = found.beam;
   }
@@ -52,6 +59,16 @@ double FitOf(const std::vector<Sighting>& points, const std::vector<PlacedPoint>
   return points.empty() ? 0 : static_cast<double>(near) / static_cast<double>(points.size());
 }
 
+/// Turns all beams to where most points lie between columns.
+void ShiftColumns(const std::vector<PlacedPoint>& placed, BeamTable* table) {
+  const double columns = 2 * M_PI * table->turn / BeamTable::kParts / kTurn;
+  std::complex<double> phases;
+  for (const PlacedPoint& p : placed) phases += std::polar(1.0, columns * p.residual);
+  const double units = std::arg(phases) / columns / BeamTable::kBentOffset;
+  const std::int32_t shift = BeamTable::kBentOffset * static_cast<std::int32_t>(std::lround(units));
+  for (BeamTable::Beam& beam : table->beams) beam.offset = (beam.offset + shift) & (kTurn - 1);
+}
+
 }  // namespace
 
 /// False where they do not fit as they did.
@@ -59,7 +76,14 @@ bool BeamKeeper::PlaceByOld(const std::vector<Sighting>& points, std::vector<Pla
   constexpr double kAlike = 0.97;
   PlaceOnBeams(points, *table_, placed);
   PlaceInColumns(*table_, placed);
-  if (table_->grains == 0 && FitOf(points, *placed) >= kAlike * fit_) return true;
+  if ((table_->grains == 0 || table_->bends) && FitOf(points, *placed) >= kAlike * fit_)
+    return true;
+  if (table_->bends) {
+    ShiftColumns(*placed, &*table_);
+    PlaceOnBeams(points, *table_, placed);
+    PlaceInColumns(*table_, placed);
+    return FitOf(points, *placed) >= kAlike * fit_;
+  }
   std::vector<StraightAzimuth> straight;
   straight.reserve(placed->size());
   for (const PlacedPoint& p : *placed) straight.push_back({p.azimuth, p.beam});

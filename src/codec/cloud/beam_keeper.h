@@ -15,6 +15,7 @@ struct PlacedPoint {
   double above_m = 0;         // how far the point is above it
   std::int32_t azimuth = 0;   // without what the beam's side adds, less its offset
   std::int32_t residual = 0;  // how far that is from the column's
+  std::int32_t bend = 0;      // where beams bend, how far its elevation is above the beam's
   std::uint32_t beam = 0;
   std::uint32_t column = 0;
 };

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 
 namespace lidar::codec::cloud {
 namespace {
@@ -199,6 +200,73 @@ void MergeTwins(const std::vector<Sighting>& points, double reach_m, FoundBeams*
   }
 }
 
+/// Beams that bend are peaks of the elevations.
+class BendingBeams {
+ public:
+  explicit BendingBeams(const std::vector<Sighting>& points) : points_(points) {
+    for (const Sighting& s : points)
+      classes_.push_back((std::atan2(s.z_m, s.rho_m) / kRadians + kTurn / 4.0) / kClass + kReach);
+  }
+  FoundBeams Find() {
+    FindPeaks();
+    FoundBeams found;
+    found.beams.resize(peaks_.size());
+    for (std::uint32_t i = 0; i < points_.size() && !peaks_.empty(); ++i) {
+      const std::size_t nearest = NearestPeak(classes_[i]);
+      if (std::abs(peaks_[nearest] - classes_[i]) > kMostAway) continue;
+      found.beams[nearest].points.push_back(i);
+      ++found.points;
+    }
+    for (FoundBeam& beam : found.beams) beam.line.tangent = MiddleOf(beam.points);
+    DropWeakBeams(kFewest, &found);
+    return found;
+  }
+
+ private:
+  static constexpr double kClass = 58;  // 0.005 degrees
+  static constexpr std::size_t kReach = 12;
+  static constexpr double kMostAway = 40;
+  static constexpr auto kClasses = static_cast<std::size_t>(kTurn / 2 / kClass) + 2 * kReach;
+
+  void FindPeaks() {
+    std::vector<double> smooth(kClasses + kReach, 0);
+    for (const double at : classes_)
+      for (std::size_t i = 0; i <= kReach; ++i) {
+        smooth[static_cast<std::size_t>(at) - i] += static_cast<double>(kReach - i);
+        smooth[static_cast<std::size_t>(at) + i] += static_cast<double>(kReach - i);
+      }
+    for (std::size_t i = kClasses; i-- > kReach;) {
+      const auto around = smooth.begin() + static_cast<std::ptrdiff_t>(i);
+      const auto at = static_cast<double>(i);
+      if (smooth[i] < static_cast<double>(kFewest * kReach) ||
+          smooth[i] < *std::max_element(around - kReach, around + kReach) ||
+          (!peaks_.empty() && peaks_.back() - at < static_cast<double>(kReach))) {
+        continue;
+      }
+      peaks_.push_back(at + 0.5);
+    }
+  }
+  std::size_t NearestPeak(double at) const {
+    const auto below = std::lower_bound(peaks_.begin(), peaks_.end(), at, std::greater<>());
+    const auto i = static_cast<std::size_t>(below - peaks_.begin());
+    if (i == 0) return 0;
+    return i == peaks_.size() || peaks_[i - 1] - at < at - peaks_[i] ? i - 1 : i;
+  }
+  /// The tangent of the middle point.
+  double MiddleOf(std::vector<std::uint32_t> beam) const {
+    if (beam.empty()) return 0;
+    const auto middle = beam.begin() + static_cast<std::ptrdiff_t>(beam.size() / 2);
+    std::nth_element(beam.begin(), middle, beam.end(),
+                     [&](std::uint32_t a, std::uint32_t b) { return classes_[a] < classes_[b]; });
+    const Sighting& s = points_[*middle];
+    return s.z_m / std::max(s.rho_m, 1e-6);
+  }
+
+  const std::vector<Sighting>& points_;
+  std::vector<double> classes_;  // of the points' elevations
+  std::vector<double> peaks_;    // falling
+};
+
 }  // namespace
 
 FoundBeams FindMeetingBeams(const std::vector<Sighting>& points) {
@@ -223,6 +291,10 @@ FoundBeams FindMeetingBeams(const std::vector<Sighting>& points) {
     first = end;
   }
   return found;
+}
+
+FoundBeams FindBendingBeams(const std::vector<Sighting>& points) {
+  return BendingBeams(points).Find();
 }
 
 FoundBeams FindPassingBeams(const std::vector<Sighting>& points) {

@@ -34,5 +34,7 @@ struct FoundBeams {
 FoundBeams FindMeetingBeams(const std::vector<Sighting>& points);
 /// Beams that pass the origin at up to 0.5 m.
 FoundBeams FindPassingBeams(const std::vector<Sighting>& points);
+/// Beams that meet in the origin and bend: peaks of the elevations.
+FoundBeams FindBendingBeams(const std::vector<Sighting>& points);
 
 }  // namespace lidar::codec::cloud

@@ -95,6 +95,19 @@ bool ComeBack(const RangeImage& image, const RangeSettings& settings,
   return true;
 }
 
+/// Codes them as near as the settings ask for, if they do.
+void EncodeResiduals(const RangeImage& image, ResidualSettings* settings,
+                     std::vector<std::int32_t>* residuals, mixing::BinaryEncoder* bits) {
+  if (settings->tangent_um == 0) return;
+  settings->guess = BestGuess(image, settings->tangent_um, *residuals);
+  CodeResiduals(image, *settings, residuals, bits);
+}
+
+void WriteSettings(const ResidualSettings& settings, ByteWriter* writer) {
+  WriteVarint(settings.tangent_um, writer);
+  writer->U8(static_cast<std::uint8_t>(settings.guess));
+}
+
 }  // namespace
 
 bool EncodeBeamSection(BeamTable table, const PixelErrors& errors, const PointLevels& levels,
@@ -117,22 +130,21 @@ bool EncodeBeamSection(BeamTable table, const PixelErrors& errors, const PointLe
   const auto bins = BinsOf(decoded, grid);
   auto extras = ExtraBins(*list, bins, grid, levels);
 
-  ResidualSettings residuals{errors.tangent_um, ResidualGuess::kNone};
+  ResidualSettings azimuths{errors.tangent_um, ResidualGuess::kNone};
+  ResidualSettings elevations{errors.bend_um, ResidualGuess::kNone};
   std::vector<std::uint8_t> stream;
   mixing::BinaryEncoder bits(&stream);
   if (table.grains > 0) CodePlaces(&table, &bits);
-  if (residuals.tangent_um > 0) {
-    residuals.guess = BestGuess(decoded, residuals.tangent_um, list->residuals);
-    CodeResiduals(decoded, residuals, &list->residuals, &bits);
-  }
+  EncodeResiduals(decoded, &azimuths, &list->residuals, &bits);
+  EncodeResiduals(decoded, &elevations, &list->bends, &bits);
   if (!extras.empty())
     CodeExtras(bins, image.columns, settings.intensity.bits(), extras.size(), &extras, &bits);
   bits.Finish();
 
   ByteWriter writer(out);
   table.Write(&writer);
-  WriteVarint(residuals.tangent_um, &writer);
-  writer.U8(static_cast<std::uint8_t>(residuals.guess));
+  WriteSettings(azimuths, &writer);
+  if (table.bends) WriteSettings(elevations, &writer);
   writer.Bytes({block.data(), block.size()});
   WriteVarint(static_cast<std::uint32_t>(extras.size()), &writer);
   WriteVarint(static_cast<std::uint32_t>(stream.size()), &writer);
@@ -145,22 +157,39 @@ namespace {
 /// A section as it comes out of its bytes.
 struct DecodedSection {
   BeamTable table;
-  ResidualSettings settings;
+  ResidualSettings azimuths;
+  ResidualSettings elevations;
   RangeGrid grid;
   IntensityScale scale;
   RangeImage image;
   std::vector<std::int32_t> residuals;
+  std::vector<std::int32_t> bends;
+  std::vector<BeamTable::Slope> slopes;  // of the beams
   std::vector<ExtraBin> extras;
   std::size_t returns = 0;
 };
 
+bool ReadSettings(ByteReader* reader, ResidualSettings* settings) {
+  bool ok = true;
+  settings->tangent_um = ReadVarint(reader, &ok);
+  const unsigned guess = reader->U8();
+  settings->guess = static_cast<ResidualGuess>(guess);
+  return ok && reader->ok() && guess < kResidualGuesses;
+}
+
+/// Residuals are 0 where the settings ask for none.
+bool DecodeResiduals(const RangeImage& image, const ResidualSettings& settings,
+                     std::vector<std::int32_t>* residuals, mixing::BinaryDecoder* bits) {
+  residuals->assign(image.size(), 0);
+  return settings.tangent_um == 0 || CodeResiduals(image, settings, residuals, bits);
+}
+
 bool DecodeImage(ByteReader* reader, DecodedSection* section) {
   auto table = BeamTable::Read(reader);
-  bool ok = true;
-  section->settings.tangent_um = ReadVarint(reader, &ok);
-  const unsigned guess = reader->U8();
-  if (!table || !ok || !reader->ok() || guess >= kResidualGuesses) return false;
-  section->settings.guess = static_cast<ResidualGuess>(guess);
+  if (!table || !ReadSettings(reader, &section->azimuths) ||
+      (table->bends && !ReadSettings(reader, &section->elevations))) {
+    return false;
+  }
   section->table = *std::move(table);
   RangeDecoder decoder(ModelOf(section->table));
   BlockStore nothing;
@@ -182,9 +211,8 @@ bool DecodeRest(ByteReader* reader, std::size_t max_points, DecodedSection* sect
   if (!ok || !reader->ok() || section->returns + extras > max_points) return false;
   mixing::BinaryDecoder bits(stream);
   if (section->table.grains > 0 && !CodePlaces(&section->table, &bits)) return false;
-  section->residuals.assign(section->image.size(), 0);
-  if (section->settings.tangent_um > 0 &&
-      !CodeResiduals(section->image, section->settings, &section->residuals, &bits)) {
+  if (!DecodeResiduals(section->image, section->azimuths, &section->residuals, &bits) ||
+      !DecodeResiduals(section->image, section->elevations, &section->bends, &bits)) {
     return false;
   }
   if (extras > 0 && !CodeExtras(BinsOf(section->image, section->grid), section->image.columns,
@@ -202,7 +230,11 @@ bool AppendPixel(const DecodedSection& section, std::size_t pixel, std::uint32_t
   const std::uint32_t column =
       section.image.first_column + static_cast<std::uint32_t>(pixel % section.image.columns);
   const std::int32_t azimuth = section.table.AzimuthOf(beam, column) + section.residuals[pixel];
-  const Point point = section.table.At(beam, azimuth, range_mm);
+  const BeamTable::Slope slope =
+      section.table.bends
+          ? BeamTable::Slope(section.table.beams[beam].elevation + section.bends[pixel])
+          : section.slopes[beam];
+  const Point point = section.table.At(beam, azimuth, slope, range_mm);
   cloud->xyz.insert(cloud->xyz.end(), point.begin(), point.end());
   if (section.scale.bits() > 0) cloud->intensity.push_back(section.scale.ValueOf(level));
   return true;
@@ -217,6 +249,8 @@ bool DecodeBeamSection(ByteReader* reader, std::size_t max_points, const Intensi
       section.scale.full() != scale.full() || !DecodeRest(reader, max_points, &section)) {
     return false;
   }
+  for (const BeamTable::Beam& beam : section.table.beams)
+    section.slopes.emplace_back(beam.elevation);
   const RangeImage& image = section.image;
   auto extra = section.extras.begin();
   const auto last_bin = static_cast<std::int64_t>(section.grid.BinOf(RangeGrid::kMaxRangeMm));

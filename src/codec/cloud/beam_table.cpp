@@ -25,7 +25,8 @@ std::int32_t ReadSigned(ByteReader* reader, bool* ok) {
 constexpr unsigned kOffsetsFlag = 1;
 constexpr unsigned kGrainsFlag = 2;
 constexpr unsigned kReachesFlag = 4;
-constexpr unsigned kPeriodShift = 3;  // one less, of the bits behind
+constexpr unsigned kPeriodShift = 3;  // one less
+constexpr unsigned kBendsFlag = 32;
 
 }  // namespace
 
@@ -94,14 +95,14 @@ bool BeamTable::has_reaches() const {
   return std::any_of(beams.begin(), beams.end(), [](const Beam& b) { return b.reach_um != 0; });
 }
 
-Point BeamTable::At(std::uint32_t beam, std::int32_t azimuth, std::uint32_t range_mm) const {
+Point BeamTable::At(std::uint32_t beam, std::int32_t azimuth, const Slope& slope,
+                    std::uint32_t range_mm) const {
   const Beam& b = beams[beam];
   const double range = 1e-3 * range_mm + 1e-6 * b.reach_um;
-  const double elevation = b.elevation * kRadians;
-  const double rho = range * std::cos(elevation);
+  const double rho = range * slope.cosine;
   const double angle = ((azimuth & (kTurn - 1)) + SideAngle(b, rho)) * kRadians;
   return {static_cast<float>(rho * std::cos(angle)), static_cast<float>(rho * std::sin(angle)),
-          static_cast<float>(range * std::sin(elevation) + 1e-6 * b.height_um)};
+          static_cast<float>(range * slope.sine + 1e-6 * b.height_um)};
 }
 
 void BeamTable::Write(ByteWriter* writer) const {
@@ -111,13 +112,21 @@ void BeamTable::Write(ByteWriter* writer) const {
   const bool reaches = has_reaches();
   writer->U8(static_cast<std::uint8_t>((offsets ? kOffsetsFlag : 0) | (reaches ? kReachesFlag : 0) |
                                        (grains == 0 ? 0 : kGrainsFlag) |
-                                       (period - 1) << kPeriodShift));
+                                       (period - 1) << kPeriodShift | (bends ? kBendsFlag : 0)));
   if (grains > 0) WriteVarint(grains, writer);
   std::int32_t above = kTurn / 4;
+  std::int32_t left = 0;
   Beam last;
   for (const Beam& beam : beams) {
-    WriteVarint(static_cast<std::uint32_t>(above - beam.elevation), writer);
-    WriteVarint(static_cast<std::uint32_t>(beam.offset), writer);
+    const std::int32_t below = above - beam.elevation;
+    if (bends) {
+      WriteVarint(static_cast<std::uint32_t>(below / kBentElevation), writer);
+      WriteSigned(Wrapped(beam.offset - left) / kBentOffset, writer);
+      left = beam.offset;
+    } else {
+      WriteVarint(static_cast<std::uint32_t>(below), writer);
+      WriteVarint(static_cast<std::uint32_t>(beam.offset), writer);
+    }
     above = beam.elevation;
     if (offsets) {
       WriteSigned(beam.height_um - last.height_um, writer);
@@ -125,7 +134,7 @@ void BeamTable::Write(ByteWriter* writer) const {
       last = beam;
     }
     if (reaches) WriteSigned(beam.reach_um, writer);
-    if (grains > 0) WriteVarint(beam.delay, writer);
+    if (grains > 0 && !bends) WriteVarint(beam.delay, writer);
     for (std::uint32_t i = 0; i < period && period > 1; ++i)
       WriteSigned(beam.swings[i] / kSwingUnit, writer);
   }
@@ -137,7 +146,8 @@ std::optional<BeamTable> BeamTable::Read(ByteReader* reader) {
   table.turn = ReadVarint(reader, &ok);
   const std::uint32_t rows = ReadVarint(reader, &ok);
   const unsigned flags = reader->U8();
-  table.period = (flags >> kPeriodShift) + 1;
+  table.bends = (flags & kBendsFlag) != 0;
+  table.period = ((flags & ~kBendsFlag) >> kPeriodShift) + 1;
   if (!ok || table.turn < kParts || table.turn > kMostColumns * kParts || rows == 0 ||
       rows > kMostBeams || table.period > kMostPeriod) {
     return std::nullopt;
@@ -150,9 +160,14 @@ std::optional<BeamTable> BeamTable::Read(ByteReader* reader) {
   std::int64_t elevation = kTurn / 4;
   Beam beam;
   for (std::uint32_t i = 0; i < rows; ++i) {
-    elevation -= ReadVarint(reader, &ok);
+    elevation -= std::int64_t{ReadVarint(reader, &ok)} * (table.bends ? kBentElevation : 1);
     beam.elevation = static_cast<std::int32_t>(elevation);
-    beam.offset = static_cast<std::int32_t>(ReadVarint(reader, &ok));
+    if (table.bends) {
+      const std::int64_t offset = beam.offset + std::int64_t{ReadSigned(reader, &ok)} * kBentOffset;
+      beam.offset = static_cast<std::int32_t>(offset & (kTurn - 1));
+    } else {
+      beam.offset = static_cast<std::int32_t>(ReadVarint(reader, &ok));
+    }
     if ((flags & kOffsetsFlag) != 0) {
       beam.height_um += ReadSigned(reader, &ok);
       beam.side_um += ReadSigned(reader, &ok);
@@ -160,7 +175,7 @@ std::optional<BeamTable> BeamTable::Read(ByteReader* reader) {
     if ((flags & kReachesFlag) != 0) beam.reach_um = ReadSigned(reader, &ok);
     bool fits = std::max({std::abs(beam.height_um), std::abs(beam.side_um),
                           std::abs(beam.reach_um)}) <= kMostOffsetUm;
-    if (table.grains > 0) beam.delay = ReadVarint(reader, &ok);
+    if (table.grains > 0 && !table.bends) beam.delay = ReadVarint(reader, &ok);
     fits = fits && beam.delay < table.columns();
     for (std::uint32_t k = 0; k < table.period && table.period > 1; ++k) {
       const std::int32_t swing = ReadSigned(reader, &ok);

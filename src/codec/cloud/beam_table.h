@@ -29,7 +29,8 @@ struct Sighting {
 };
 
 /// A beam sees points of a line in the plane of `rho` and z, and of a column each turn: at the
-/// azimuth of the column, which the beam passes at a distance.
+/// azimuth of the column, which the beam passes at a distance. Where beams bend, the elevation is
+/// that of the line only nearly.
 struct BeamTable {
   static constexpr std::uint32_t kMostPeriod = 4;
   struct Beam {
@@ -48,12 +49,16 @@ struct BeamTable {
   static constexpr std::uint32_t kMostGrains = 1U << 18;
   /// Swings are multiples of it: 0.0014 degrees.
   static constexpr std::int32_t kSwingUnit = 16;
+  /// Units of the elevations and offsets of beams that bend: each point says the rest.
+  static constexpr std::int32_t kBentElevation = 128;
+  static constexpr std::int32_t kBentOffset = 32;
 
   std::uint32_t turn = 0;             // columns of a turn, in 1/kParts
   std::uint32_t period = 1;           // of the swings, which are 0 where it is 1
   std::vector<Beam> beams;            // top to bottom
   std::uint32_t grains = 0;           // of a turn; 0: the columns are even
   std::vector<std::uint32_t> places;  // of the columns, in grains, rising
+  bool bends = false;                 // each point has an elevation of its own
 
   std::uint32_t columns() const { return (turn + kParts - 1) / kParts; }
   std::uint32_t rows() const { return static_cast<std::uint32_t>(beams.size()); }
@@ -73,7 +78,15 @@ struct BeamTable {
     if (period > 1) azimuth += beams[beam].swings[column % period];
     return azimuth;
   }
-  Point At(std::uint32_t beam, std::int32_t azimuth, std::uint32_t range_mm) const;
+  /// The direction of an elevation.
+  struct Slope {
+    explicit Slope(std::int32_t elevation)
+        : cosine(std::cos(elevation * kRadians)), sine(std::sin(elevation * kRadians)) {}
+    double cosine;
+    double sine;
+  };
+  Point At(std::uint32_t beam, std::int32_t azimuth, const Slope& slope,
+           std::uint32_t range_mm) const;
 
   /// Without the places.
   void Write(ByteWriter* writer) const;

@@ -30,36 +30,37 @@ IntensityScale ScaleOf(const XyzCloud& cloud, unsigned bits) {
   return {IntensityScale::Fitting(largest), bits};
 }
 
-/// Shares the error between ranges and azimuths so that the cloud should be smallest. None where
-/// the image would be too large.
-std::optional<PixelErrors> CheapestErrors(PlacedCloud cloud, double error_m) {
+/// Shares the error between ranges and azimuths so that the cloud should be smallest.
+PixelErrors CheapestErrors(PlacedCloud cloud, double error_m) {
   // A part of the points tells as much.
-  constexpr std::size_t kSample = 16'384;
+  constexpr std::size_t kSample = 8'192;
   cloud.stride = cloud.points->size() / kSample + 1;
-  // Bits of what fits no pixel, of a further return, and of a residual.
+  // Bits of what fits no pixel, and of a residual.
   constexpr double kRestBits = 10;
-  constexpr double kExtraBits = 6;
   constexpr double kResidualBits = 0.8;
+  const bool bends = cloud.table->bends;
+  const std::uint32_t unit_mm =
+      CommonUnit(FittingRanges(cloud, {error_m, 0, 0, bends ? 1U : 0U}), 1);
+  const auto all = static_cast<double>(cloud.points->size() / cloud.stride);
   PixelErrors best;
   double least = 0;
-  PixelList list;
-  if (!FillPixels(cloud, {error_m, 0, 0}, 0, &list)) return std::nullopt;
-  const std::uint32_t unit_mm = CommonUnit(list.image.ranges, 1);
   for (const double part : {1.0, 0.95, 0.9, -0.95, -0.85}) {
+    // Beams that bend need residuals.
+    if (bends && part > 0) continue;
     PixelErrors errors;
     errors.error_m = error_m;
     const auto grid = RangeGrid::ForError(std::abs(part) * error_m, unit_mm);
     errors.range_m = grid.error_m();
     if (part < 0) {
       // A tenth is left for what integers round off.
-      const double tangent_m = 0.9 * std::sqrt(1 - part * part) * error_m;
-      errors.tangent_um = std::max(static_cast<std::uint32_t>(1e6 * tangent_m), 1U);
+      const double both_m = 0.9 * std::sqrt(error_m * error_m - errors.range_m * errors.range_m);
+      const double each_m = bends ? both_m / std::sqrt(2.0) : both_m;
+      errors.tangent_um = std::max(static_cast<std::uint32_t>(1e6 * each_m), 1U);
+      if (bends) errors.bend_um = errors.tangent_um;
     }
-    if (!FillPixels(cloud, errors, 0, &list)) return std::nullopt;
-    const double bits = kRestBits * static_cast<double>(list.rest.size()) +
-                        kExtraBits * static_cast<double>(list.extras.size()) +
-                        static_cast<double>(list.returns) *
-                            ((part < 0 ? kResidualBits : 0) - std::log2(grid.step_m()));
+    const auto fitting = static_cast<double>(CountFitting(cloud, errors));
+    const double bits = kRestBits * (all - fitting) +
+                        fitting * ((part < 0 ? kResidualBits : 0) - std::log2(grid.step_m()));
     if (best.error_m > 0 && bits >= least) continue;
     best = errors;
     least = bits;
@@ -227,12 +228,11 @@ CloudEncoder::Candidate CloudEncoder::EncodeSmallest(const CloudHeader& header, 
   sightings_.clear();
   for (const Point& point : near_) sightings_.emplace_back(point);
   const BeamTable* table = keeper_.Place(sightings_, &placed_);
-  const auto errors =
-      table != nullptr ? CheapestErrors({&sightings_, &placed_, table}, error_m) : std::nullopt;
-  if (errors) {
+  if (table != nullptr) {
+    const PixelErrors errors = CheapestErrors({&sightings_, &placed_, table}, error_m);
     found = effort_ < EffortControl::kHighest
-                ? EncodeBeams(*table, *errors, kUsualReach * error_m, &best)
-                : EncodeBeamsInAllWays(*table, *errors, &best);
+                ? EncodeBeams(*table, errors, kUsualReach * error_m, &best)
+                : EncodeBeamsInAllWays(*table, errors, &best);
   }
   if (found && effort_ < EffortControl::kHighest) return best;
   Candidate cells;

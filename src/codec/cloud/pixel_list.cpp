@@ -45,35 +45,51 @@ class PixelCheck {
     if (!(p.along_m >= 1e-3 && p.along_m < kFarthest)) return false;
     if (errors_.tangent_um > 0) {
       if (std::abs(p.residual) > half_step_) return false;
-      return Fits(point, 0.5 * WidthAt(RangeMm(p)) + 1);
+      return Fits(point, {HalfWidth(errors_.tangent_um, RangeMm(p)), OwnBend(p)});
     }
-    return Fits(point, std::abs(static_cast<double>(p.residual)) + 0.5);
+    return Fits(point, {std::abs(static_cast<double>(p.residual)) + 0.5, OwnBend(p)});
   }
-  /// Where the first return of its pixel comes back, at its own range.
-  bool FitsWith(std::size_t point, std::int32_t residual, std::uint32_t range_mm) const {
+  /// As a further return: in the direction of `first`, the first return of its pixel.
+  bool FitsWith(std::size_t point, std::size_t first) const {
     const PlacedPoint& p = placed_[point];
-    if (errors_.tangent_um == 0) return Fits(point);
-    const double off = std::abs(static_cast<double>(p.residual - residual));
-    return Fits(point, off + 0.5 * WidthAt(range_mm) + 1);
+    const PlacedPoint& other = placed_[first];
+    const auto apart = [](std::int32_t a, std::int32_t b) {
+      return std::abs(static_cast<double>(a) - b);
+    };
+    Angles off{std::abs(static_cast<double>(p.residual)) + 0.5, 0.5};
+    if (errors_.tangent_um > 0)
+      off.azimuth =
+          apart(p.residual, other.residual) + HalfWidth(errors_.tangent_um, RangeMm(other));
+    if (errors_.bend_um > 0)
+      off.elevation = apart(p.bend, other.bend) + HalfWidth(errors_.bend_um, RangeMm(other));
+    return Fits(point, off);
   }
   static std::uint32_t RangeMm(const PlacedPoint& p) {
     return static_cast<std::uint32_t>(1e3 * p.along_m + 0.5);
   }
 
  private:
-  bool Fits(std::size_t point, double units) const {
+  /// How far a point may come back from its own, in units.
+  struct Angles {
+    double azimuth;
+    double elevation;
+  };
+  double OwnBend(const PlacedPoint& p) const {
+    return errors_.bend_um > 0 ? HalfWidth(errors_.bend_um, RangeMm(p)) : 0.5;
+  }
+  bool Fits(std::size_t point, const Angles& angles) const {
     const PlacedPoint& p = placed_[point];
     const Sighting& s = points_[point];
     Distances off;
     off.along = errors_.range_m + std::abs(1e-3 * RangeMm(p) - p.along_m);
-    off.up = std::abs(p.above_m) + 0.5 * kRadians * s.range_m;
-    off.side = units * kRadians * s.rho_m + SideError(table_.beams[p.beam], s.rho_m);
+    off.up = std::abs(p.above_m) + angles.elevation * kRadians * s.range_m;
+    off.side = angles.azimuth * kRadians * s.rho_m + SideError(table_.beams[p.beam], s.rho_m);
     return Within(off, errors_.error_m, s.range_m);
   }
-  /// The class of a residual is that of the range that comes back.
-  double WidthAt(std::uint32_t range_mm) const {
+  /// What rounding a residual adds. Its class is that of the range that comes back.
+  double HalfWidth(std::uint32_t tangent_um, std::uint32_t range_mm) const {
     const double back_mm = std::max(range_mm - 1e3 * errors_.range_m - 1, 1.0);
-    return ResidualWidth(errors_.tangent_um, static_cast<std::uint32_t>(back_mm));
+    return 0.5 * ResidualWidth(tangent_um, static_cast<std::uint32_t>(back_mm)) + 1;
   }
   /// What the range that comes back makes of the angle at which the beam passes the origin.
   double SideError(const BeamTable::Beam& beam, double rho_m) const {
@@ -106,10 +122,27 @@ bool PlaceImage(const BeamTable& table, const std::vector<PlacedPoint>& placed,
   image.ranges.assign(image.size(), 0);
   list->points.assign(image.size(), 0);
   list->residuals.assign(image.size(), 0);
+  list->bends.assign(image.size(), 0);
   return true;
 }
 
 }  // namespace
+
+std::size_t CountFitting(const PlacedCloud& cloud, const PixelErrors& errors) {
+  const PixelCheck check(cloud, errors);
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < cloud.placed->size(); i += cloud.stride)
+    if (check.Fits(i)) ++count;
+  return count;
+}
+
+std::vector<std::uint32_t> FittingRanges(const PlacedCloud& cloud, const PixelErrors& errors) {
+  const PixelCheck check(cloud, errors);
+  std::vector<std::uint32_t> ranges;
+  for (std::size_t i = 0; i < cloud.placed->size(); i += cloud.stride)
+    if (check.Fits(i)) ranges.push_back(PixelCheck::RangeMm((*cloud.placed)[i]));
+  return ranges;
+}
 
 bool FillPixels(const PlacedCloud& cloud, const PixelErrors& errors, double nearest_m,
                 PixelList* list) {
@@ -141,12 +174,13 @@ bool FillPixels(const PlacedCloud& cloud, const PixelErrors& errors, double near
     }
     image.ranges[pixel] = PixelCheck::RangeMm(placed[i]);
     list->residuals[pixel] = placed[i].residual;
+    list->bends[pixel] = placed[i].bend;
     list->points[pixel] = i;
     ++list->returns;
   }
   std::sort(further.begin(), further.end());
   for (const auto& [pixel, point] : further) {
-    if (check.FitsWith(point, list->residuals[pixel], image.ranges[pixel])) {
+    if (check.FitsWith(point, list->points[pixel])) {
       list->extras.push_back({pixel, PixelCheck::RangeMm(placed[point]), point});
     } else {
       list->rest.push_back(point);

@@ -22,12 +22,14 @@ struct PixelErrors {
   double error_m = 0;            // of the whole
   double range_m = 0;            // of ranges
   std::uint32_t tangent_um = 0;  // of azimuths; 0: those of the columns will do
+  std::uint32_t bend_um = 0;     // of elevations; 0: beams do not bend
 };
 
 struct PixelList {
   RangeImage image;
   std::vector<std::uint32_t> points;    // index of each pixel's first return
   std::vector<std::int32_t> residuals;  // of each pixel's azimuth
+  std::vector<std::int32_t> bends;      // of each pixel's elevation
   std::vector<ExtraReturn> extras;
   std::vector<std::uint32_t> rest;  // indices of the points that fit no pixel
   std::size_t returns = 0;          // in pixels
@@ -52,6 +54,10 @@ struct PlacedCloud {
   std::size_t stride = 1;  // only every so manieth point counts
 };
 
+/// How many of the points are in a pixel.
+std::size_t CountFitting(const PlacedCloud& cloud, const PixelErrors& errors);
+/// The ranges of these, in mm.
+std::vector<std::uint32_t> FittingRanges(const PlacedCloud& cloud, const PixelErrors& errors);
 /// Points nearer than `nearest_m` are left to the rest. False where the image would be too large.
 bool FillPixels(const PlacedCloud& cloud, const PixelErrors& errors, double nearest_m,
                 PixelList* list);

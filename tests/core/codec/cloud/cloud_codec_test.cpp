@@ -106,8 +106,9 @@ TEST_P(SensorClouds, ComeBackWithinTheErrorInFewBits) {
 }
 INSTANTIATE_TEST_SUITE_P(
     All, SensorClouds,
-    ::testing::Values(SensorCase{"at128", 0, 4.6, 2.25}, SensorCase{"at128", 3, 4.6, 2.0},
-                      SensorCase{"vlp16", 0, 3.8, 2.1}, SensorCase{"vlp16", 3, 3.8, 2.0}),
+    ::testing::Values(SensorCase{"at128", 0, 4.2, 3.0}, SensorCase{"at128", 1, 3.4, 2.12},
+                      SensorCase{"at128", 3, 3.13, 1.95}, SensorCase{"vlp16", 0, 3.8, 2.1},
+                      SensorCase{"vlp16", 3, 3.8, 2.0}),
     [](const auto& c) { return std::string(c.param.name) + std::to_string(c.param.effort); });
 
 /// What a sensor of 16 beams and 450 columns sees of a room, each azimuth off by up to
@@ -281,6 +282,55 @@ TEST_P(UnevenClouds, KeepTheirBeamsFromSliceToSlice) {
   for (const double bits : BitsOfStream(slices)) EXPECT_LE(bits, 6);
 }
 
+/// What 12 beams of an oscillating mirror see: they bend, a bit more the lower they are, and their
+/// steps of 0.2 degrees are up to 2 % shorter. The scan is turned by `turn_deg`.
+PlainPoints BendingScan(double turn_deg) {
+  const auto rounded = [](double degrees) { return std::round(100 * degrees) * 0.01 * M_PI / 180; };
+  PlainPoints points;
+  for (int column = -300; column < 300; ++column) {
+    const double degrees = 0.2 * column - 0.4 * std::cos(0.01 * column);
+    for (int beam = 0; beam < 12; ++beam) {
+      const double azimuth = rounded(degrees + 0.07 * (beam % 3) + turn_deg);
+      const double bend = 1e-6 * column * column * (1 + 0.1 * beam);
+      const double elevation = rounded(8 - 0.8 * beam + bend);
+      const double range = 0.004 * std::round(2'500 / std::cos(0.003 * column)) + 4 * (beam % 2);
+      const double rho = range * std::cos(elevation);
+      points.push_back({static_cast<float>(rho * std::cos(azimuth)),
+                        static_cast<float>(rho * std::sin(azimuth)),
+                        static_cast<float>(range * std::sin(elevation)),
+                        static_cast<float>(points.size() % 256)});
+    }
+  }
+  std::shuffle(points.begin(), points.end(), std::mt19937(5));
+  return points;
+}
+
+TEST(BeamTable, FindsBeamsThatBend) {
+  std::vector<Sighting> sightings;
+  for (const auto& p : BendingScan(0)) sightings.emplace_back(Point{p[0], p[1], p[2]});
+  const auto table = FindBeams(sightings);
+  ASSERT_TRUE(table);
+  EXPECT_TRUE(table->bends);
+  EXPECT_EQ(table->rows(), 12U);
+  std::vector<std::uint8_t> bytes;
+  ByteWriter writer(&bytes);
+  table->Write(&writer);
+  ByteReader reader(bytes.data(), bytes.size());
+  const auto again = BeamTable::Read(&reader);
+  ASSERT_TRUE(again);
+  EXPECT_TRUE(again->bends);
+  for (std::uint32_t i = 0; i < 12; ++i) {
+    EXPECT_EQ(again->beams[i].elevation, table->beams[i].elevation);
+    EXPECT_EQ(again->beams[i].offset, table->beams[i].offset);
+  }
+}
+
+// A mirror does not stop where it did.
+TEST(CloudCodec, KeepsBeamsThatBendFromScanToScan) {
+  for (const double bits : BitsOfStream({BendingScan(0), BendingScan(0.07), BendingScan(3)}))
+    EXPECT_LE(bits, 1.2);
+}
+
 TEST(CloudCodec, TakesNoMoreAtAHigherEffort) {
   for (const PlainPoints& points : {SpinningScan(0), SpinningScan(0.1), ScanOf("vlp16")}) {
     double last = 1e9;
@@ -380,7 +430,7 @@ TEST(CloudCodec, TakesCloudsThatCostNextToNothing) {
 class DamagedClouds : public ::testing::TestWithParam<bool> {};
 TEST_P(DamagedClouds, GiveACloudWithinTheLimitsOrNone) {
   PlainPoints points = GetParam() ? SpinningScan(0.1) : ScanOf("at128");
-  if (!GetParam()) points.resize(2'000);
+  if (!GetParam()) points.resize(4'000);
   points.push_back({1e30F, 1, 2, 3});
   const auto bytes = RoundTrip(points, {0.02, 0, 4}, 1).slice.bytes;
   const auto most = static_cast<std::uint32_t>(points.size());

@@ -1,0 +1,164 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "src/codec/cloud/column_drift.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <numeric>
+
+namespace lidar::codec::cloud {
+namespace {
+
+constexpr std::size_t kSectors = 360;
+constexpr std::uint32_t kGrains = 36'000;  // 0.01 degrees
+constexpr double kGrain = static_cast<double>(kTurn) / kGrains;
+constexpr double kSector = static_cast<double>(kTurn) / kSectors;
+
+/// The middle of the widest gap between points.
+std::int32_t WidestGap(const std::vector<BeamAzimuths>& beams) {
+  std::vector<std::int32_t> all;
+  for (const BeamAzimuths& azimuths : beams)
+    for (const BeamAzimuth& a : azimuths) all.push_back(a.azimuth);
+  std::sort(all.begin(), all.end());
+  std::int32_t last = all.back() - kTurn;
+  std::int32_t widest = 0;
+  std::int32_t middle = 0;
+  for (const std::int32_t azimuth : all) {
+    if (azimuth - last > widest) {
+      widest = azimuth - last;
+      middle = last + widest / 2;
+    }
+    last = azimuth;
+  }
+  return middle & (kTurn - 1);
+}
+
+/// How far columns are from even ones, by sectors.
+class Drift {
+ public:
+  bool known(double azimuth) const { return counts_[SectorOf(azimuth)] > 0; }
+  void Add(double azimuth, double drift) {
+    sums_[SectorOf(azimuth)] += drift;
+    ++counts_[SectorOf(azimuth)];
+  }
+  double MeanAt(double azimuth) const {
+    const std::size_t sector = SectorOf(azimuth);
+    return counts_[sector] == 0 ? 0 : sums_[sector] / static_cast<double>(counts_[sector]);
+  }
+  /// All sectors; an unknown one has the drift of the known one before, or behind.
+  std::vector<double> Curve() const {
+    std::vector<double> curve(kSectors);
+    double last = 0;
+    for (std::size_t i = kSectors; i-- > 0;)
+      if (counts_[i] > 0) last = sums_[i] / static_cast<double>(counts_[i]);
+    for (std::size_t i = 0; i < kSectors; ++i) {
+      if (counts_[i] > 0) last = sums_[i] / static_cast<double>(counts_[i]);
+      curve[i] = last;
+    }
+    return Smooth(curve);
+  }
+
+ private:
+  static std::vector<double> Smooth(const std::vector<double>& curve) {
+    constexpr std::size_t kAround = 3;
+    std::vector<double> smooth;
+    for (std::size_t i = 0; i < kSectors; ++i) {
+      const std::size_t begin = i < kAround ? 0 : i - kAround;
+      const std::size_t end = std::min(i + kAround + 1, kSectors);
+      double sum = 0;
+      for (std::size_t k = begin; k < end; ++k) sum += curve[k];
+      smooth.push_back(sum / static_cast<double>(end - begin));
+    }
+    return smooth;
+  }
+  static std::size_t SectorOf(double azimuth) {
+    return std::min(static_cast<std::size_t>(azimuth / kSector), kSectors - 1);
+  }
+  std::vector<double> sums_ = std::vector<double>(kSectors, 0);
+  std::vector<std::size_t> counts_ = std::vector<std::size_t>(kSectors, 0);
+};
+
+/// A point's azimuth, and how far it is from an even column.
+struct Drifted {
+  double azimuth;
+  double drift;
+};
+
+/// Follows the columns of a beam from point to point, over gaps as other beams do.
+std::vector<Drifted> FollowBeam(const BeamAzimuths& azimuths, std::int32_t first, double step,
+                                const Drift& known) {
+  std::vector<double> sorted;
+  for (const BeamAzimuth& a : azimuths) sorted.push_back((a.azimuth - first) & (kTurn - 1));
+  std::sort(sorted.begin(), sorted.end());
+  std::vector<Drifted> followed;
+  for (const double azimuth : sorted) {
+    double expected = 0;
+    if (!followed.empty()) {
+      const Drifted& last = followed.back();
+      expected = last.drift;
+      if (azimuth - last.azimuth > kSector && known.known(azimuth) && known.known(last.azimuth))
+        expected += known.MeanAt(azimuth) - known.MeanAt(last.azimuth);
+    }
+    const double column = std::round((azimuth - expected) / step);
+    followed.push_back({azimuth, azimuth - column * step});
+  }
+  return followed;
+}
+
+double MedianOf(std::vector<double> values) {
+  if (values.empty()) return 0;
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+std::int32_t RoundedOffset(double offset) {
+  constexpr std::int32_t kUnit = BeamTable::kBentOffset;
+  return kUnit * static_cast<std::int32_t>(std::lround(offset / kUnit)) & (kTurn - 1);
+}
+
+bool SetPlaces(const Drift& drift, double step, BeamTable* table) {
+  const std::vector<double> curve = drift.Curve();
+  const auto at = [&](double azimuth) {
+    const double sector = std::clamp(azimuth / kSector - 0.5, 0.0, kSectors - 1.001);
+    const auto below = static_cast<std::size_t>(sector);
+    return curve[below] + (sector - static_cast<double>(below)) * (curve[below + 1] - curve[below]);
+  };
+  table->places.clear();
+  for (double even = 0; even < kTurn; even += step) {
+    const double place = (even + at(even) - curve[0]) / kTurn * kGrains;
+    const auto grain = static_cast<std::uint32_t>(std::lround(std::max(place, 0.0)));
+    if (grain >= kGrains) break;
+    table->places.push_back(std::max(grain, table->places.empty() ? 0 : table->places.back()));
+  }
+  table->grains = kGrains;
+  table->turn = static_cast<std::uint32_t>(table->places.size()) * BeamTable::kParts;
+  for (BeamTable::Beam& beam : table->beams) beam.offset = RoundedOffset(beam.offset + curve[0]);
+  return table->columns() > 0 && table->columns() <= BeamTable::kMostColumns;
+}
+
+}  // namespace
+
+bool FindDriftingPlaces(const std::vector<BeamAzimuths>& beams, double step, BeamTable* table) {
+  const std::int32_t first = WidestGap(beams);
+  // Equal steps cost nothing.
+  step = std::max(std::round(step / kGrain), 1.0) * kGrain;
+  std::vector<std::size_t> order(beams.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::sort(order.begin(), order.end(),
+            [&](std::size_t a, std::size_t b) { return beams[a].size() > beams[b].size(); });
+  Drift drift;
+  for (const std::size_t b : order) {
+    const std::vector<Drifted> followed = FollowBeam(beams[b], first, step, drift);
+    std::vector<double> away;
+    for (const Drifted& d : followed)
+      if (drift.known(d.azimuth)) away.push_back(d.drift - drift.MeanAt(d.azimuth));
+    const double offset = MedianOf(std::move(away));
+    for (const Drifted& d : followed) drift.Add(d.azimuth, d.drift - offset);
+    const double phase = offset - step * std::floor(offset / step);
+    table->beams[b].offset = first + static_cast<std::int32_t>(std::lround(phase));
+  }
+  return SetPlaces(drift, step, table);
+}
+
+}  // namespace lidar::codec::cloud

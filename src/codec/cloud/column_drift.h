@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Finds columns whose step changes slowly with the azimuth, as those of oscillating mirrors do.
+#pragma once
+#include <vector>
+
+#include "src/codec/cloud/beam_table.h"
+#include "src/codec/cloud/column_step.h"
+
+namespace lidar::codec::cloud {
+
+/// Places of all columns, and the offsets of all beams. False where the columns are too many.
+bool FindDriftingPlaces(const std::vector<BeamAzimuths>& beams, double step, BeamTable* table);
+
+}  // namespace lidar::codec::cloud
