@@ -49,9 +49,9 @@ struct Direction {
   std::int64_t z = 0;
 };
 
-enum State : std::uint8_t { kEmpty = 0, kOccupied = 1, kUnknown = 2 };
-
-/// Places of the children among their surroundings.
+/// The cells about the children of a node, 4 x 4 x 4: the one at (x, y, z) is bit x + 4 y + 16 z,
+/// and children are those from 1 to 2.
+using CellBits = std::uint64_t;
 constexpr std::array<unsigned, 8> kChildAt = {21, 22, 25, 26, 37, 38, 41, 42};
 
 /// Which neighbours of a node touch a child.
@@ -68,32 +68,91 @@ constexpr std::array<std::uint32_t, 8> NodesByChild() {
 }
 constexpr std::array<std::uint32_t, 8> kNodesBy = NodesByChild();
 
-/// What is known of the 26 cells about one.
-struct Tally {
-  explicit Tally(const std::uint8_t* cell) {
-    for (int i = 0; i < 27; ++i) {
-      const int dx = i % 3 - 1;
-      const int dy = i / 3 % 3 - 1;
-      const int dz = i / 9 - 1;
-      const unsigned sides = (dx != 0 ? 1U : 0U) + (dy != 0 ? 1U : 0U) + (dz != 0 ? 1U : 0U);
-      if (sides == 0) continue;
-      const std::uint32_t state = cell[dx + 4 * dy + 16 * dz];
-      const std::uint32_t on = state == kOccupied ? 1 : 0;
-      mask |= on << i;
-      if (dz == 0) layer = layer * 3 + state;
-      if (sides == 1) {
-        faces = faces * 3 + state;
-        faces_on += on;
-      } else if (sides == 2) {
-        edges_on += on;
-        edges_open += state == kUnknown ? 1 : 0;
-      } else {
-        corners_on += on;
+/// Children of a node, the first of them at bit 0.
+constexpr std::array<CellBits, 256> SpreadChildren() {
+  std::array<CellBits, 256> spread{};
+  for (unsigned children = 0; children < 256; ++children)
+    for (unsigned child = 0; child < 8; ++child)
+      if ((children >> child & 1) != 0) spread[children] |= CellBits{1} << (kChildAt[child] - 21);
+  return spread;
+}
+constexpr std::array<CellBits, 256> kSpread = SpreadChildren();
+
+/// A neighbour of a node: how far its children are from its own, and which are next to those.
+struct Neighbour {
+  int shift = 0;
+  unsigned inside = 0;
+};
+constexpr std::array<Neighbour, 27> Neighbours() {
+  std::array<Neighbour, 27> all{};
+  for (int i = 0; i < 27; ++i) {
+    const int first[3] = {2 * (i % 3) - 1, 2 * (i / 3 % 3) - 1, 2 * (i / 9) - 1};
+    all[static_cast<unsigned>(i)].shift = first[0] + 4 * first[1] + 16 * first[2];
+    for (unsigned child = 0; child < 8; ++child) {
+      bool inside = true;
+      for (unsigned k = 0; k < 3; ++k) {
+        const int at = first[k] + static_cast<int>(child >> k & 1);
+        inside = inside && at >= 0 && at < 4;
       }
+      if (inside) all[static_cast<unsigned>(i)].inside |= 1U << child;
     }
   }
+  return all;
+}
+constexpr std::array<Neighbour, 27> kNeighbours = Neighbours();
+
+/// Numbers of which each bit is a digit in base 3, the lowest bit the lowest digit, or the highest.
+template <unsigned kDigits>
+constexpr std::array<std::uint32_t, 1U << kDigits> Base3(bool lowest_first) {
+  std::array<std::uint32_t, 1U << kDigits> numbers{};
+  for (unsigned bits = 0; bits < 1U << kDigits; ++bits)
+    for (unsigned k = kDigits; k-- > 0;)
+      numbers[bits] = numbers[bits] * 3 + (bits >> (lowest_first ? k : kDigits - 1 - k) & 1);
+  return numbers;
+}
+constexpr auto kFaces3 = Base3<6>(true);
+constexpr auto kLayer3 = Base3<8>(false);
+
+/// The 27 cells about one, x fastest: bit 13 is itself.
+std::uint32_t About(CellBits cells, unsigned at) {
+  const CellBits from = cells >> (at - 21);
+  const auto plane = [&](unsigned z) {
+    const auto bits = static_cast<std::uint32_t>(from >> 16 * z);
+    return (bits & 7) | (bits >> 1 & 0x38) | (bits >> 2 & 0x1C0);
+  };
+  return plane(0) | plane(1) << 9 | plane(2) << 18;
+}
+std::uint32_t FacesOf(std::uint32_t about) {
+  return (about >> 4 & 1) << 5 | (about >> 10 & 1) << 4 | (about >> 12 & 1) << 3 |
+         (about >> 14 & 1) << 2 | (about >> 16 & 1) << 1 | (about >> 22 & 1);
+}
+std::uint32_t LayerOf(std::uint32_t about) { return (about >> 9 & 15) | (about >> 14 & 15) << 4; }
+
+std::uint32_t Ones(std::uint32_t bits) {
+  bits -= bits >> 1 & 0x55555555;
+  bits = (bits & 0x33333333) + (bits >> 2 & 0x33333333);
+  return ((bits + (bits >> 4)) & 0x0F0F0F0F) * 0x01010101 >> 24;
+}
+
+/// What is known of the 26 cells about one.
+struct Tally {
+  static constexpr std::uint32_t kItself = 1U << 13;
+
+  Tally(CellBits occupied, CellBits unknown, unsigned at) : mask(About(occupied, at) & ~kItself) {
+    constexpr std::uint32_t kCornersOfPlane = 0x145;
+    constexpr std::uint32_t kEdgesOfPlane = 0xAA;
+    constexpr std::uint32_t kAllCorners = kCornersOfPlane | kCornersOfPlane << 18;
+    constexpr std::uint32_t kAllEdges = kEdgesOfPlane | kCornersOfPlane << 9 | kEdgesOfPlane << 18;
+    const std::uint32_t open = About(unknown, at);
+    faces = kFaces3[FacesOf(mask)] + 2 * kFaces3[FacesOf(open)];
+    layer = kLayer3[LayerOf(mask)] + 2 * kLayer3[LayerOf(open)];
+    faces_on = Ones(FacesOf(mask));
+    edges_on = Ones(mask & kAllEdges);
+    edges_open = Ones(open & kAllEdges);
+    corners_on = Ones(mask & kAllCorners);
+  }
   std::uint32_t mask = 0;   // which are occupied
-  std::uint32_t faces = 0;  // states of the six
+  std::uint32_t faces = 0;  // states of the six: 0 empty, 1 occupied, 2 unknown
   std::uint32_t layer = 0;  // states of the eight of the same height
   std::uint32_t faces_on = 0;
   std::uint32_t edges_on = 0;
@@ -118,10 +177,9 @@ struct CellTree::Model {
   std::array<Weights, 1024> count_weights;
 };
 
-/// The cells about the children of a node, 4 x 4 x 4: those from 1 to 2 are the children.
 struct CellTree::Surroundings {
-  static constexpr unsigned At(unsigned x, unsigned y, unsigned z) { return x + 4 * y + 16 * z; }
-  std::array<std::uint8_t, 64> cells{};
+  CellBits occupied = 0;
+  CellBits unknown = 0;
   std::uint32_t nodes = 0;  // which of the 26 neighbours of the node are occupied
 };
 
@@ -162,17 +220,12 @@ void CellTree::Look(const Place& place, Surroundings* around) const {
     if (index == NodeMap::kAbsent) continue;
     around->nodes |= 1U << i;
     const bool known = index < place.node;
-    const unsigned children = known ? occupancy[index] : 0xFF;
-    const State state = known ? kOccupied : kUnknown;
-    for (unsigned child = 0; child < 8; ++child) {
-      const unsigned x = 2 * dx + (child & 1) - 1;
-      const unsigned y = 2 * dy + (child >> 1 & 1) - 1;
-      const unsigned z = 2 * dz + (child >> 2) - 1;
-      // What is not next to a child of the node wraps past 3.
-      if ((children >> child & 1) != 0 && x < 4 && y < 4 && z < 4)
-        around->cells[Surroundings::At(x, y, z)] = state;
-    }
+    const unsigned children = (known ? occupancy[index] : 0xFFU) & kNeighbours[i].inside;
+    const int shift = kNeighbours[i].shift;
+    const CellBits bits = shift < 0 ? kSpread[children] >> -shift : kSpread[children] << shift;
+    (known ? around->occupied : around->unknown) |= bits;
   }
+  around->unknown |= kSpread[0xFF] << kChildAt[0];
 }
 
 template <class Coder>
@@ -180,7 +233,6 @@ std::uint8_t CellTree::CodeNode(std::uint8_t occupancy, const Place& place, Code
   Surroundings around;
   Look(place, &around);
   const unsigned level = std::min(place.to_leaves, 7U);
-  for (const unsigned at : kChildAt) around.cells[at] = kUnknown;
   unsigned coded = 0;
   unsigned ones = 0;
   for (unsigned child = 0; child < 8; ++child) {
@@ -189,7 +241,7 @@ std::uint8_t CellTree::CodeNode(std::uint8_t occupancy, const Place& place, Code
       coded |= 0x80;
       break;
     }
-    Tally tally(around.cells.data() + at);
+    const Tally tally(around.occupied, around.unknown, at);
     const CellPosition cell = {2 * place.position[0] + (child & 1),
                                2 * place.position[1] + (child >> 1 & 1),
                                2 * place.position[2] + (child >> 2)};
@@ -220,8 +272,9 @@ std::uint8_t CellTree::CodeNode(std::uint8_t occupancy, const Place& place, Code
     const bool bit = mixer.Code(
         (occupancy >> child & 1) != 0, &model_->first[(level * 4 + some) * 8 + child],
         &model_->second[(tally.faces_on * 8 + std::min(tally.edges_on, 7U)) * 8 + level], coder);
-    around.cells[at] = bit ? kOccupied : kEmpty;
+    around.unknown &= ~(CellBits{1} << at);
     if (!bit) continue;
+    around.occupied |= CellBits{1} << at;
     coded |= 1U << child;
     ++ones;
   }
