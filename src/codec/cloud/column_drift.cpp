@@ -10,8 +10,8 @@ namespace lidar::codec::cloud {
 namespace {
 
 constexpr std::size_t kSectors = 360;
-constexpr std::uint32_t kGrains = 36'000;  // 0.01 degrees
-constexpr double kGrain = static_cast<double>(kTurn) / kGrains;
+constexpr std::uint32_t kDriftGrains = 36'000;  // 0.01 degrees
+constexpr double kDriftGrain = static_cast<double>(kTurn) / kDriftGrains;
 constexpr double kSector = static_cast<double>(kTurn) / kSectors;
 
 /// The middle of the widest gap between points.
@@ -126,12 +126,12 @@ bool SetPlaces(const Drift& drift, double step, BeamTable* table) {
   };
   table->places.clear();
   for (double even = 0; even < kTurn; even += step) {
-    const double place = (even + at(even) - curve[0]) / kTurn * kGrains;
+    const double place = (even + at(even) - curve[0]) / kTurn * kDriftGrains;
     const auto grain = static_cast<std::uint32_t>(std::lround(std::max(place, 0.0)));
-    if (grain >= kGrains) break;
+    if (grain >= kDriftGrains) break;
     table->places.push_back(std::max(grain, table->places.empty() ? 0 : table->places.back()));
   }
-  table->grains = kGrains;
+  table->grains = kDriftGrains;
   table->turn = static_cast<std::uint32_t>(table->places.size()) * BeamTable::kParts;
   for (BeamTable::Beam& beam : table->beams) beam.offset = RoundedOffset(beam.offset + curve[0]);
   return table->columns() > 0 && table->columns() <= BeamTable::kMostColumns;
@@ -142,7 +142,7 @@ bool SetPlaces(const Drift& drift, double step, BeamTable* table) {
 bool FindDriftingPlaces(const std::vector<BeamAzimuths>& beams, double step, BeamTable* table) {
   const std::int32_t first = WidestGap(beams);
   // Equal steps cost nothing.
-  step = std::max(std::round(step / kGrain), 1.0) * kGrain;
+  step = std::max(std::round(step / kDriftGrain), 1.0) * kDriftGrain;
   std::vector<std::size_t> order(beams.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
   std::sort(order.begin(), order.end(),
