@@ -83,7 +83,7 @@ struct Neighbour {
   int shift = 0;
   unsigned inside = 0;
 };
-constexpr std::array<Neighbour, 27> Neighbours() {
+constexpr std::array<Neighbour, 27> FindNeighbours() {
   std::array<Neighbour, 27> all{};
   for (int i = 0; i < 27; ++i) {
     const int first[3] = {2 * (i % 3) - 1, 2 * (i / 3 % 3) - 1, 2 * (i / 9) - 1};
@@ -99,7 +99,7 @@ constexpr std::array<Neighbour, 27> Neighbours() {
   }
   return all;
 }
-constexpr std::array<Neighbour, 27> kNeighbours = Neighbours();
+constexpr std::array<Neighbour, 27> kNeighbours = FindNeighbours();
 
 /// Numbers of which each bit is a digit in base 3, the lowest bit the lowest digit, or the highest.
 template <unsigned kDigits>
