@@ -29,6 +29,7 @@ def robot():
         ["most memory of lidar-edge", f"{without['memory_mb']} MB", f"{beside['memory_mb']} MB"],
         ["slices of the 19 others: received", f"{without['received']:.0f}", f"{beside['received']:.0f}"],
         ["slices of the 19 others: lost", f"{without['lost']:.0f}", f"{beside['lost']:.0f}"],
+        ["packets of theirs: lost", f"{without['packets_lost']:.0f}", f"{beside['packets_lost']:.0f}"],
         ["slices of that robot: dropped, counted", "0", f"{beside['dropped']:.0f}"],
         ["time to stop", f"{without['stop_s']} s", f"{beside['stop_s']} s"],
     ]

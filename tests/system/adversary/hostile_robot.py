@@ -97,6 +97,7 @@ def run(args, hostile):
             "memory_mb": round(edge.memory_mb()),
             "received": sum(edge.metric("lidar_rtplidardepay_slices_received", name) for name in names),
             "lost": sum(edge.metric("lidar_rtplidardepay_slices_lost", name) for name in names),
+            "packets_lost": sum(edge.metric("lidar_screamsrc_packets_lost", name) for name in names),
             "dropped": edge.metric("lidar_rtplidardepay_slices_changing_format", "r0"),
         }
         others.send_signal(signal.SIGINT)
