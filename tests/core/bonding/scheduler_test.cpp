@@ -107,6 +107,23 @@ TEST_F(TwoLinks, CopiesAtOnceWhatWaitsBehindAGap) {
   EXPECT_TRUE(scheduler_.TakeCopies(now_ + 62ms).empty()) << "once";
 }
 
+TEST_F(TwoLinks, CopiesNothingThatIsTooOld) {
+  Settle();
+  Packet();
+  EXPECT_TRUE(scheduler_.TakeCopies(now_ + Scheduler::kMaxAge + 1ms).empty());
+}
+
+TEST_F(TwoLinks, ForgetsWhatWaitsForALinkInTheEnd) {
+  Settle();
+  SetPaths({Mbps(8), 40ms}, {Mbps(8), 20ms});
+  const std::uint32_t slice = ++seq_;
+  for (int i = 0; i < 30; ++i) scheduler_.OnPacket(now_, {{kMedia, ++seq_}, kSize, slice});
+  EXPECT_FALSE(Packet()[1]);
+  scheduler_.OnFeedback(now_, 0, Arrived(seq_));
+  now_ += 3s;
+  EXPECT_TRUE(Packet()[1]);
+}
+
 TEST_F(TwoLinks, LeavesALinkInAGapAndComesBackWithItsFirstReport) {
   Settle();
   Packet();

@@ -256,6 +256,12 @@ float FloatAt(const FileCloud& cloud, std::size_t offset) {
   return v;
 }
 
+std::uint32_t OffsetOf(const FileCloud& cloud, const std::string& field) {
+  for (const PointField& f : cloud.fields)
+    if (f.name == field) return f.offset;
+  return 0;
+}
+
 TEST(Las, RecordsOfAllFormatsAreRead) {
   constexpr std::uint16_t kSteps[] = {20, 28, 26, 34, 57, 63, 30, 36, 38, 59, 67};
   constexpr std::size_t kFields[] = {7, 8, 10, 11, 8, 11, 8, 11, 12, 8, 12};
@@ -275,6 +281,9 @@ TEST(Las, RecordsOfAllFormatsAreRead) {
     EXPECT_EQ(FloatAt(*cloud, las.step + 4U), 2.001F);
     EXPECT_EQ(FloatAt(*cloud, 8), -0.25F);
     EXPECT_EQ(cloud->points[12], 77);
+    const bool is_long = format >= 6;
+    EXPECT_EQ(OffsetOf(*cloud, "classification"), is_long ? 16U : 15U) << int{format};
+    EXPECT_EQ(OffsetOf(*cloud, "point_source_id"), is_long ? 20U : 18U) << int{format};
     las.step = static_cast<std::uint16_t>(kSteps[format] - 1);
     EXPECT_FALSE(ReadLasFile(las.File())) << int{format};
   }

@@ -55,6 +55,20 @@ TEST(Confidence, FallsWithTheWayAlongWhatIsNotSeen) {
   EXPECT_LT(std::sqrt(Variance(confidence, 1)), 1);
 }
 
+TEST(Confidence, OfATurnFallsLessWhereAGyroscopeMeasuresIt) {
+  const auto turn = [](bool measured) {
+    Confidence confidence;
+    for (int i = 0; i < 20; ++i) {
+      confidence.Predict({}, kPeriod, measured);
+      confidence.Observe(1e4 * Matrix6::Identity(), kNothing, Twist::Zero());
+      if (i == 0) confidence.SetVelocityKnown();
+    }
+    for (int i = 0; i < 10; ++i) confidence.Predict({}, kPeriod, measured);
+    return Variance(confidence, 5);
+  };
+  EXPECT_LT(turn(true), turn(false) / 2);
+}
+
 TEST(Confidence, FallsWithoutScans) {
   Confidence confidence;
   confidence.Predict({}, kPeriod);

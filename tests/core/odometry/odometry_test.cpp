@@ -312,6 +312,17 @@ TEST(Odometry, IsLessSureOfWhatItDoesNotSee) {
             10 * Follow(&street, 20, {}).deviation_m.back());
 }
 
+TEST(Odometry, TellsItsErrorInTheAxesOfTheMap) {
+  Drive tunnel(synth::SceneKind::kTunnel, 8);
+  OdometrySettings turned;
+  turned.start.rotation = Eigen::AngleAxisd(M_PI / 2, Eigen::Vector3d::UnitZ());
+  Odometry odometry(turned);
+  Estimate estimate;
+  for (std::uint64_t i = 0; i < 10; ++i)
+    estimate = odometry.OnScan(tunnel.StartOf(i), kPeriod, tunnel.Scan(i));
+  EXPECT_GT(estimate.covariance(1, 1), 10 * estimate.covariance(0, 0)) << "along the tunnel";
+}
+
 TEST(Odometry, IsLostWhereAVehicleCannotHaveMovedLikeThat) {
   Drive street(synth::SceneKind::kStreet, 10);
   Odometry odometry({});
@@ -336,7 +347,9 @@ TEST(Odometry, KnowsWhenAScanDoesNotFit) {
   const Estimate lost = odometry.OnScan(street.StartOf(10), kPeriod, elsewhere);
   EXPECT_EQ(lost.tracking, Tracking::kLost);
   EXPECT_LT((lost.pose.position - before.position).norm(), 1.0);
-  const Estimate found = odometry.OnScan(street.StartOf(11), kPeriod, street.Scan(11));
+  const Estimate later = odometry.OnScan(street.StartOf(11), kPeriod, elsewhere);
+  EXPECT_GT(later.covariance(0, 0), 1.5 * lost.covariance(0, 0));
+  const Estimate found = odometry.OnScan(street.StartOf(12), kPeriod, street.Scan(12));
   EXPECT_EQ(found.tracking, Tracking::kTracking);
 }
 

@@ -78,6 +78,22 @@ TEST(Feed, GivesRecodedSlicesUntilTheRobotsStandAlone) {
   EXPECT_EQ(stream.Take(&feed), "8.0 ");
 }
 
+TEST(Feed, ForgetsWhatTheDecoderForgot) {
+  Stream stream;
+  Feed feed{DataRate()};
+  std::uint32_t scan = 1;
+  for (; scan <= 2'100; ++scan) {
+    for (std::uint32_t index = 0; index < kPlaces; ++index) stream.Add(Own(scan, index, 0));
+    ASSERT_NE(stream.Take(&feed), "");
+  }
+  stream.Add(Own(scan, 0, 2'000));
+  EXPECT_NE(stream.Take(&feed), "");
+  ++scan;
+  stream.Add(Own(scan, 0, 2'101));
+  EXPECT_EQ(stream.Take(&feed), "");
+  EXPECT_TRUE(feed.wants_recoded());
+}
+
 TEST(Feed, FinishesAScanBesideTheNext) {
   Stream stream;
   Feed feed{DataRate()};

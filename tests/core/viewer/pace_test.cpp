@@ -200,6 +200,23 @@ TEST(Pace, KeepsMaxBitrate) {
   EXPECT_NEAR(viewer.Sent(), 1e6, 0.03e6);
 }
 
+TEST(Pace, SavesNoBitsOfAPause) {
+  Pace pace{Mbps(1)};
+  const auto sent_at = [&](milliseconds at) {
+    const Time now = Time{at};
+    DataSize sent;
+    for (std::uint32_t scan = 0; scan < 1'000 && pace.MayBegin(now); ++scan) {
+      pace.OnSent(now, {scan, 0}, DataSize::Bytes(1000));
+      pace.OnDrawn(now, {scan, 0});
+      sent += DataSize::Bytes(1000);
+    }
+    return sent;
+  };
+  sent_at(milliseconds(1'000));
+  EXPECT_LE(sent_at(milliseconds(60'000)), DataSize::Bytes(13'500))
+      << "a tenth of a second, and one";
+}
+
 TEST(Pace, PassesOverAcknowledgementsOfWhatItHasNotSent) {
   Pace pace{DataRate()};
   pace.OnDrawn(Time{}, {7, 7});

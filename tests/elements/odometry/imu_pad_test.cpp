@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "ext/odometry/imu_input.h"
 #include "gst/lidar/gstlidar.h"
 #include "src/cdr/motion_samples.h"
 #include "tests/support/harness.h"
@@ -78,6 +79,34 @@ class ImuPad : public ::testing::Test {
   PadPtr imu_;
   std::vector<BufferPtr> scans_;
 };
+
+/// A quarter of a turn about the vertical, as row-major transforms have it.
+CapsPtr TurnedCaps() {
+  CapsPtr caps(gst_caps_new_simple(GST_LIDAR_IMU_MEDIA_TYPE, "sample-size", G_TYPE_INT, 32,
+                                   "fields", G_TYPE_STRING, cdr::kImuFields, nullptr));
+  GValue list = G_VALUE_INIT;
+  g_value_init(&list, GST_TYPE_ARRAY);
+  for (const double v : {0., -1., 0., 0., 1., 0., 0., 0., 0., 0., 1., 0., 0., 0., 0., 1.}) {
+    GValue number = G_VALUE_INIT;
+    g_value_init(&number, G_TYPE_DOUBLE);
+    g_value_set_double(&number, v);
+    gst_value_array_append_and_take_value(&list, &number);
+  }
+  gst_structure_take_value(gst_caps_get_structure(caps.get(), 0), "imu-to-sensor", &list);
+  return caps;
+}
+
+TEST(ImuInput, TurnsRatesAsTheImuIsMounted) {
+  ImuInput input;
+  ASSERT_TRUE(input.SetCaps(TurnedCaps().get()));
+  cdr::Imu imu;
+  imu.angular_velocity = {1, 0, 0.5};
+  const auto sample = cdr::WriteImuSample(imu);
+  ASSERT_TRUE(input.Add({sample.data(), sample.size()}));
+  const auto turns = input.Take();
+  ASSERT_EQ(turns.size(), 1U);
+  EXPECT_LT((turns[0].rate - Eigen::Vector3d(0, 1, 0.5)).norm(), 1e-6) << turns[0].rate;
+}
 
 TEST_F(ImuPad, UsesSamplesThatAgreeWithTheScans) {
   ASSERT_TRUE(Describe(cdr::kImuFields));

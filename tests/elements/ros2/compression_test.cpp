@@ -70,6 +70,26 @@ TEST_P(CompressedClouds, ComeBackAsTheyWere) {
   EXPECT_EQ(gst_lidar_buffer_get_capture_time(buffer.get()), 1'700'000'000'000'000'005U);
 }
 
+TEST_P(CompressedClouds, MayHaveRowsWithPadding) {
+  if (GetParam() == CloudCompression::kDraco) GTEST_SKIP() << "Draco has points, and no rows";
+  cloud_.layout.height = 2;
+  cloud_.layout.width = kRow / 2;
+  cloud_.layout.row_step = kStep * kRow / 2 + 6;
+  Bytes padded;
+  for (std::uint32_t row = 0; row < 2; ++row) {
+    const auto begin = points_.begin() + row * kStep * kRow / 2;
+    padded.insert(padded.end(), begin, begin + kStep * kRow / 2);
+    padded.resize(padded.size() + 6);
+  }
+  cloud_.data = ViewOf(padded);
+  Bytes packed;
+  std::string why;
+  const auto made = Decompress(*Compress(GetParam(), cloud_, &packed), &why);
+  ASSERT_TRUE(made) << why;
+  EXPECT_EQ(made->points, padded);
+  EXPECT_EQ(cdr::RowStride(made->cloud), cloud_.layout.row_step);
+}
+
 TEST_P(CompressedClouds, AreWhatTheSinkPublishes) {
   MessageWriter writer(cdr::RosType::kCompressedCloud);
   const CapsPtr caps(gst_caps_from_string(
@@ -181,6 +201,12 @@ TEST_F(Transport, DracoMayHaveMetadataAndLeaveDoublesOut) {
   EXPECT_EQ(made->cloud.layout.width, kRow - 1);
   EXPECT_TRUE(cdr::RowStride(made->cloud));
   EXPECT_EQ(made->points, without);
+  compressed.cloud.layout.height = 2;
+  compressed.cloud.layout.width = kRow / 2;
+  const auto of_rows = Decompress(compressed, &why);
+  ASSERT_TRUE(of_rows) << why;
+  EXPECT_EQ(of_rows->cloud.layout.height, 1U);
+  EXPECT_EQ(of_rows->cloud.layout.width, kRow - 1);
 }
 
 TEST_F(Transport, OthersAreRefused) {

@@ -85,6 +85,32 @@ TEST_F(ScreamBin, AKeyThatIsRefusedWhileItRunsLeavesTheOneBefore) {
   }
 }
 
+TEST_F(ScreamBin, AKeyThatWasInUseIsRefusedAndSoIsAThirdThatWaits) {
+  const ElementPtr srtp(gst_element_factory_make("srtpenc", nullptr));
+  if (!srtp) GTEST_SKIP() << "srtpenc is not installed";
+  const auto refuses = [this](char digit) {
+    GstBus* bus = gst_bus_new();
+    gst_element_set_bus(bin_.get(), bus);
+    g_object_set(bin_.get(), "srtp-key", std::string(60, digit).c_str(), nullptr);
+    const MessagePtr warning(gst_bus_pop_filtered(bus, GST_MESSAGE_WARNING));
+    gst_element_set_bus(bin_.get(), nullptr);
+    gst_object_unref(bus);
+    return warning != nullptr;
+  };
+  for (const char* factory : {"screamsink", "screamsrc"}) {
+    const bool receives = std::string(factory) == "screamsrc";
+    Make(factory);
+    g_object_set(bin_.get(), "srtp-key", std::string(60, '5').c_str(), nullptr);
+    if (receives) g_object_set(bin_.get(), "port", 0, nullptr);
+    ASSERT_EQ(To(GST_STATE_READY), GST_STATE_CHANGE_SUCCESS);
+    EXPECT_FALSE(refuses('6')) << factory;
+    EXPECT_FALSE(refuses('7')) << factory;
+    EXPECT_TRUE(refuses('6')) << factory << ": it was in use";
+    EXPECT_EQ(refuses('8'), receives) << factory << ": two wait for the sender already";
+    To(GST_STATE_NULL);
+  }
+}
+
 TEST_F(ScreamBin, TheSinkSaysGoodbyeAndReportsEachSecond) {
   Make("screamsink");
   for (const OwnedElement& element : {OwnedElement(GST_ELEMENT(gst_object_ref(bin_.get()))),

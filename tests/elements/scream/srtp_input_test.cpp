@@ -399,6 +399,19 @@ TEST_F(SrtpIn, RemembersSoManyCopiesOnly) {
   EXPECT_FALSE(Passes(From("10.0.0.2", old)));
 }
 
+TEST_F(SrtpIn, RemembersSoManyBytesOfCopiesOnly) {
+  constexpr guint kLarge = 9'000;
+  Protector sender(Key(5));
+  Passes(From("10.0.0.1", sender.Protect(1)));
+  Passes(From("10.0.0.2", sender.Protect(2)));
+  const BufferPtr old = sender.Protect(3);
+  EXPECT_TRUE(Passes(From("10.0.0.1", old)));
+  constexpr auto kCount = static_cast<guint16>(SrtpCopies::kMaxBytes / kLarge + 2);
+  for (guint16 seq = 4; seq <= 4 + kCount; ++seq)
+    EXPECT_TRUE(Passes(From("10.0.0.1", sender.Protect(seq, kSsrc, kLarge))));
+  EXPECT_FALSE(Passes(From("10.0.0.2", old)));
+}
+
 TEST_F(SrtpIn, OfFourKeysTheOldestGoes) {
   for (const std::uint8_t digit : SrtpKey{6, 7, 8}) EXPECT_TRUE(input_->AddKey(Key(digit)));
   Protector oldest(Key(5));

@@ -26,11 +26,11 @@ class Protector {
     harness_.reset(NewEncoder(key, "rtp"));
     reports_.reset(NewEncoder(key, "rtcp"));
   }
-  BufferPtr Protect(guint16 seq, guint32 ssrc = kSsrc) {
+  BufferPtr Protect(guint16 seq, guint32 ssrc = kSsrc, guint size = 20) {
     test::Rtp r;
     r.seq = seq;
     r.ssrc = ssrc;
-    r.size = 20;
+    r.size = size;
     return BufferPtr(gst_harness_push_and_pull(harness_.get(), test::NewRtp(r)));
   }
   /// RTCP of the stream, as a sender's report.

@@ -15,8 +15,11 @@ namespace {
 /// A connection that says what it likes, and blocks where it reads.
 class RawClient {
  public:
-  explicit RawClient(Sink* sink) {
+  explicit RawClient(Sink* sink, const char* from = "127.0.0.1") {
     GSocketClient* client = g_socket_client_new();
+    GSocketAddress* address = g_inet_socket_address_new_from_string(from, 0);
+    g_socket_client_set_local_address(client, address);
+    g_object_unref(address);
     connection_ = g_socket_client_connect_to_host(
         client, "127.0.0.1", static_cast<guint16>(sink->Stat("port")), nullptr, nullptr);
     g_object_unref(client);
@@ -235,6 +238,16 @@ TEST(SilentConnections, ByTheThousandGiveWayToThoseThatAsk) {
   peer.Subscribe("/points", 1);
   sink.PushCloud(1);
   EXPECT_EQ(peer.Next().subscription, 1U);
+}
+
+TEST(SilentConnections, OfOneAddressGiveWayToNoneOfAnother) {
+  Sink sink;
+  RawClient first(&sink, "127.0.0.2");
+  std::vector<RawClient> silent;
+  for (std::size_t i = 0; i < 60; ++i) silent.emplace_back(&sink);
+  EXPECT_TRUE(WaitUntil([&] { return sink.Stat("connections-evicted") >= 25; }));
+  first.Send("GET /nothing HTTP/1.1\r\nHost: localhost\r\n\r\n");
+  EXPECT_EQ(first.ReadAll(8), "HTTP/1.1");
 }
 
 struct Nonsense {

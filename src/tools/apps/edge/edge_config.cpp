@@ -194,6 +194,8 @@ void CheckSharedPort(const EdgeConfig& config) {
 void CheckShares(const EdgeConfig& config) {
   const NatsConfig& nats = config.nats;
   if (nats.jetstream.empty() || nats.max_bytes == 0) return;
+  if (nats.max_age_s == 0)
+    throw std::runtime_error("nats.max-bytes needs max-age: what is kept for good fills any room");
   double mbps = 0;
   for (const RobotConfig& robot : config.robots) {
     if (robot.max_mbps == 0)
@@ -202,7 +204,7 @@ void CheckShares(const EdgeConfig& config) {
     mbps += robot.max_mbps;
   }
   const double needed = mbps * 125'000 * static_cast<double>(nats.max_age_s);
-  if (nats.max_age_s == 0 || needed > static_cast<double>(nats.max_bytes))
+  if (needed > static_cast<double>(nats.max_bytes))
     throw std::runtime_error(
         "nats.max-bytes holds less than what all robots may send in max-age: " +
         std::to_string(static_cast<std::uint64_t>(needed)) + " bytes");

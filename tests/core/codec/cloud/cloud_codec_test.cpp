@@ -8,6 +8,7 @@
 #include <limits>
 #include <random>
 
+#include "src/base/byte_writer.h"
 #include "src/cloud/cloud_files.h"
 #include "src/cloud/nearest_point.h"
 #include "src/codec/cloud/beam_columns.h"
@@ -413,6 +414,25 @@ TEST(CloudCodec, KeepsPointsThatNoGridHoldsAsTheyAre) {
   EXPECT_EQ(std::vector<float>(coded.cloud.xyz.begin() + 3, coded.cloud.xyz.end()),
             (std::vector<float>{1e30F, 1, 2, -5e9F, 5e9F, 7}));
   EXPECT_EQ(coded.cloud.intensity, (std::vector<float>{100, 200, 50}));
+}
+
+TEST(CloudCodec, RefusesFarPointsWithoutAPlaceAndBytesBehindTheEnd) {
+  const auto decodes = [](float x, std::vector<std::uint8_t> behind) {
+    CloudHeader header;
+    header.far_points = 1;
+    header.grid.step_m = 0.02F;
+    std::vector<std::uint8_t> bytes;
+    header.Write(&bytes);
+    ByteWriter writer(&bytes);
+    for (const float v : {x, 1.F, 2.F}) writer.LeF32(v);
+    bytes.insert(bytes.end(), behind.begin(), behind.end());
+    return CloudDecoder(8).Decode({bytes.data(), bytes.size()});
+  };
+  EXPECT_TRUE(decodes(1e30F, {}));
+  EXPECT_FALSE(decodes(std::numeric_limits<float>::infinity(), {}));
+  EXPECT_FALSE(decodes(std::numeric_limits<float>::quiet_NaN(), {}));
+  EXPECT_TRUE(decodes(1e30F, {0, 0}));
+  EXPECT_FALSE(decodes(1e30F, {0, 1}));
 }
 
 TEST(CloudCodec, TakesCloudsThatCostNextToNothing) {
