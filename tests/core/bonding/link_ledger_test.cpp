@@ -31,6 +31,15 @@ TEST(LinkLedger, NumbersPacketsInTheOrderInWhichTheyLeave) {
   EXPECT_EQ(ledger.OnSent(kStart, {kSsrc + 1, 2}), 0) << "another SSRC";
 }
 
+TEST(LinkLedger, WaitsSinceTheOldestOfAllSources) {
+  LinkLedger ledger;
+  ledger.OnSent(kStart, {kSsrc, 1});
+  ledger.OnSent(kStart + 5ms, {kSsrc + 1, 1});
+  EXPECT_EQ(ledger.waiting_since(), kStart);
+  ledger.OnFeedback(ReportOf(1, {true}));
+  EXPECT_EQ(ledger.waiting_since(), kStart + 5ms);
+}
+
 TEST(LinkLedger, GivesReportsInItsNumbers) {
   LinkLedger ledger;
   ledger.OnSent(kStart, {kSsrc, 100});

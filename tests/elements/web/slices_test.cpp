@@ -42,6 +42,12 @@ class Robot {
     return slice;
   }
   gst::CapsPtr caps() { return CapsOf(coder_.get()); }
+  /// The next slices stand alone.
+  void AskForKey() {
+    gst_harness_push_upstream_event(
+        coder_.get(), gst_event_new_custom(GST_EVENT_CUSTOM_UPSTREAM,
+                                           gst_structure_new_empty("GstForceKeyUnit")));
+  }
 
  private:
   Harness clouds_;
@@ -201,6 +207,18 @@ TEST(Slices, AreDecodedForOthersWhileSomebodySubscribes) {
   ASSERT_TRUE(message.whole());
   EXPECT_GT(message.Text(6).size(), 1000U);
   EXPECT_GT(edge.sink.Stat("points-sent"), 100U);
+}
+
+TEST(Slices, WhoseReferenceNeverCameAreNotDamaged) {
+  Edge edge;
+  for (guint i = 0; i < kScanSlices; ++i) edge.robot.Next();
+  edge.PushScans(1);
+  Peer foxglove(&edge.sink);
+  foxglove.Subscribe("/points", 4);
+  edge.robot.AskForKey();
+  edge.PushScans(1);
+  EXPECT_TRUE(WaitUntil([&] { return edge.sink.Stat("points-sent") > 0; }));
+  EXPECT_EQ(edge.sink.Stat("malformed"), 0U);
 }
 
 TEST(Slices, OfNewestScansGoToAViewerThatFallsBehind) {

@@ -61,7 +61,7 @@ def table(results):
         runs = [good for n, good, _ in results if n == name]
         print(f"{name.replace('_', ' '):36} {len(runs):4}  {sum(runs):4}")
     broken = sum(not good for _, good, _ in results)
-    print(f"{len(results)} attacks, {broken} broke a promise")
+    print(f"{len(results)} attacks, {broken} broke a promise; the longest stop took {ends.Victim.longest_stop:.2f} s")
     return broken
 
 

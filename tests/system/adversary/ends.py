@@ -73,9 +73,11 @@ class Victim:
         return self.ask()[element].get(name, 0)
 
     def close(self):
+        begin = time.monotonic()
         self.process.stdin.close()
         try:
             code = self.process.wait(20)
+            Victim.longest_stop = max(Victim.longest_stop, time.monotonic() - begin)
         except subprocess.TimeoutExpired:
             self.process.kill()
             raise AssertionError("the pipeline did not end within 20 s") from None

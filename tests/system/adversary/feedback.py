@@ -66,6 +66,25 @@ def forged_feedback(context):
     return f"{sent} reports, none believed"
 
 
+def feedback_at_line_rate(context):
+    """Reports from another address, as many as a socket takes."""
+    bench = SenderBench()
+    media = wire.parse_rtp(bench.receiver.packets[-1])
+    report = wire.ccfb(9, [(media.ssrc, media.sequence, [(False, 0, 0)] * 50)], time.time())
+    before, cpu = bench.net(), bench.sender.last["cpu"]
+    sent, until = 0, time.monotonic() + context.seconds
+    while time.monotonic() < until:
+        for _ in range(100):
+            bench.stranger.sendto(report, bench.receiver.sender)
+        sent += 100
+    net = bench.net()
+    foreign = net["feedback-foreign-address"] - before["feedback-foreign-address"]
+    used = (bench.sender.last["cpu"] - cpu) / max(foreign, 1)
+    assert foreign > 0 and net["packets-lost"] == before["packets-lost"], net
+    bench.finish(context)
+    return f"{sent / context.seconds:.0f} reports a second, {foreign / sent:.0%} read, {1e6 * used:.1f} us each, none believed"
+
+
 def hostile_feedback(context):
     """The receiver itself reports nonsense."""
     bench = SenderBench()
@@ -131,4 +150,4 @@ def hostile_twcc(context):
     return f"{sent} reports, {net['twcc-mismatched']:.0f} mismatched"
 
 
-ALL = [forged_feedback, hostile_feedback, hostile_twcc]
+ALL = [forged_feedback, feedback_at_line_rate, hostile_feedback, hostile_twcc]

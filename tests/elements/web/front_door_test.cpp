@@ -1,0 +1,126 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// What lets connections in, by a clock of the test's own.
+#include "ext/web/front_door.h"
+
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <vector>
+
+#include "ext/web/handshakes.h"
+#include "ext/web/slice_service.h"
+#include "tests/elements/web/web_peer.h"
+
+namespace lidar::web {
+namespace {
+
+constexpr gint64 kSecond_us = G_USEC_PER_SEC;
+
+/// A client's end of a connection to a port of this machine.
+ObjectPtr<GSocketConnection> Connect(guint16 port, const char* from = "127.0.0.1") {
+  const ObjectPtr<GSocketClient> client(g_socket_client_new());
+  const ObjectPtr<GSocketAddress> address(g_inet_socket_address_new_from_string(from, 0));
+  g_socket_client_set_local_address(client.get(), address.get());
+  return ObjectPtr<GSocketConnection>(
+      g_socket_client_connect_to_host(client.get(), "127.0.0.1", port, nullptr, nullptr));
+}
+
+/// The other end has ended the connection.
+bool HasEnded(const ObjectPtr<GSocketConnection>& connection) {
+  GSocket* socket = g_socket_connection_get_socket(connection.get());
+  return (g_socket_condition_check(socket, G_IO_IN) & G_IO_IN) != 0;
+}
+
+TEST(FrontDoor, EndsAfterAMinuteWhatAsksForNothing) {
+  const ObjectPtr<SoupServer> server(
+      SOUP_SERVER(g_object_new(SOUP_TYPE_SERVER, "server-header", "test", nullptr)));
+  FrontDoor door(server.get(), nullptr, {});
+  const ObjectPtr<GInetAddress> address(g_inet_address_new_from_string("127.0.0.1"));
+  std::string error;
+  const guint16 port = door.Listen(address.get(), 0, &error);
+  ASSERT_NE(port, 0) << error;
+  const auto silent = Connect(port);
+  ASSERT_TRUE(silent);
+  const gint64 begin = g_get_monotonic_time();
+  // It counts from when the door saw it, which may be a while after.
+  EXPECT_TRUE(test::WaitUntil([&] {
+    door.Tick(begin + 55 * kSecond_us);
+    EXPECT_EQ(door.evicted(), 0U);
+    door.Tick(g_get_monotonic_time() + 61 * kSecond_us);
+    return door.evicted() == 1;
+  }));
+  EXPECT_TRUE(test::WaitUntil([&] { return HasEnded(silent); }));
+}
+
+/// Peers that begin a handshake and say no more.
+class TwoAddresses : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    std::string name = (std::filesystem::temp_directory_path() / "web-handshakes-XXXXXX").string();
+    folder_ = mkdtemp(name.data());
+    const std::string make = "cd " + folder_ +
+                             " && openssl req -x509 -newkey ec -pkeyopt "
+                             "ec_paramgen_curve:prime256v1 -nodes -keyout key.pem -out cert.pem "
+                             "-subj /CN=x -days 2 2>/dev/null";
+    if (std::system(make.c_str()) != 0) GTEST_SKIP() << "openssl is not installed";
+    certificate_.reset(g_tls_certificate_new_from_files((folder_ + "/cert.pem").c_str(),
+                                                        (folder_ + "/key.pem").c_str(), nullptr));
+    listener_.reset(g_socket_listener_new());
+    port_ = g_socket_listener_add_any_inet_port(listener_.get(), nullptr, nullptr);
+  }
+  void TearDown() override { std::filesystem::remove_all(folder_); }
+
+  void Begin(const char* from) {
+    peers_.push_back(Connect(port_, from));
+    ASSERT_TRUE(peers_.back());
+    g_output_stream_write(g_io_stream_get_output_stream(G_IO_STREAM(peers_.back().get())), "\x16",
+                          1, nullptr, nullptr);
+    handshakes_.Begin(ObjectPtr<GSocketConnection>(
+                          g_socket_listener_accept(listener_.get(), nullptr, nullptr, nullptr)),
+                      certificate_.get());
+  }
+  std::size_t Ended() const {
+    return static_cast<std::size_t>(std::count_if(peers_.begin(), peers_.end(), HasEnded));
+  }
+  /// All that run take too long now.
+  void EndThoseThatRun() { handshakes_.Tick(g_get_monotonic_time() + 11 * kSecond_us); }
+
+  std::string folder_;
+  ObjectPtr<GTlsCertificate> certificate_;
+  ObjectPtr<GSocketListener> listener_;
+  guint16 port_ = 0;
+  Handshakes handshakes_{[](GSocketConnection*, GIOStream*) {}};
+  std::vector<ObjectPtr<GSocketConnection>> peers_;
+};
+
+TEST_F(TwoAddresses, ShareTheTurnsOfHandshakesAndEachEndBeginsAnother) {
+  for (int i = 0; i < 9; ++i) Begin("127.0.0.2");
+  Begin("127.0.0.1");
+  // Those that are there are seen before a round ends.
+  for (int i = 0; i < 50; ++i) g_main_context_iteration(nullptr, FALSE);
+  EndThoseThatRun();
+  EXPECT_TRUE(test::WaitUntil([this] { return HasEnded(peers_.back()); }))
+      << "three of the other address run, and this one";
+  EXPECT_LE(Ended(), 4U);
+  EXPECT_TRUE(test::WaitUntil([this] {
+    EndThoseThatRun();
+    return Ended() == peers_.size();
+  }));
+}
+
+TEST(SliceService, WantsNothingRecodedOnceTheLastViewerLeft) {
+  foxglove::Channel channel;
+  channel.id = 7;
+  const auto topic = std::make_shared<Topic>(channel);
+  SliceService service{DataRate()};
+  alignas(Client) std::byte nobody[sizeof(Client)];  // a key; it is sent nothing
+  auto* client = reinterpret_cast<Client*>(nobody);
+  service.Subscribe(client, topic, 1);
+  topic->set_wants_recoded(true);
+  service.Unsubscribe(client, 7);
+  EXPECT_FALSE(topic->wants_recoded());
+}
+
+}  // namespace
+}  // namespace lidar::web
