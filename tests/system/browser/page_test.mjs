@@ -127,6 +127,24 @@ test('charts advance with the statistics of the pipeline', limits, async () => {
   await pipeline.stop();
 });
 
+test('two links are shown by both ends', limits, async () => {
+  const [port, also, rtp] = [await freePort(), await freePort(), await freePort()];
+  const links = [1, 2].map((i) => `127.0.0.1:${rtp}@127.0.0.${i}`).join();
+  const edge = await Pipeline.start(`screamsrc port=${rtp} ! rtplidardepay ! foxglovesink port=${port}`, port);
+  const robot = await Pipeline.start(
+    `${SENSOR} ! queue ! lidarenc ! rtplidarpay ! screamsink bonding-addresses=${links} foxglovesink port=${also}`, also);
+  const named = (page, name) => until(name, () =>
+    page.$$eval('.chart:not([hidden])', (all, what) => all.filter((c) => c.innerText.includes(what)).length, name));
+  for (const [rest, name, charts] of [['', '127.0.0.2:', 1], [`?also=127.0.0.1:${also}`, '127.0.0.2', 3]]) {
+    const { page, context, complaints } = await openPage(browser, address(port, rest));
+    await until(`${charts} charts`, async () => (await named(page, name)) === charts);
+    assert.deepEqual(complaints, []);
+    await context.close();
+  }
+  await robot.stop();
+  await edge.stop();
+});
+
 test('Draco clouds are decoded in the page', limits, async () => {
   const port = await freePort();
   const way = `${SENSOR} ! dracoenc geometry=xyz max-error=0.02 ! foxglovesink port=${port}`;

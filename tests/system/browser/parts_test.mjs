@@ -4,6 +4,7 @@ import assert from 'node:assert/strict';
 import { test } from 'node:test';
 import { Clock, nowSeconds } from '../../../ext/web/page/src/clock.js';
 import { History, Player } from '../../../ext/web/page/src/history.js';
+import { Links } from '../../../ext/web/page/src/links.js';
 import { Poses } from '../../../ext/web/page/src/poses.js';
 import { readHeader } from '../../../ext/web/page/src/slices.js';
 
@@ -98,6 +99,18 @@ test('who asks for another time waits for no older one', async () => {
   const player = new Player(history, () => slow, () => ++asked);
   assert.equal(await player.show(120, () => asked < 2), null);
   assert.ok(slow.decoded < 100);
+});
+
+test('a receiver tells of links, too, as long as no sender does', () => {
+  const links = new Links();
+  const got = (...bytes) => ({ elements: { rx: { links: bytes.map((b, i) => ({ address: `10.0.0.${i}:9`, bytes_received: b })) } } });
+  assert.equal(links.of(got(0, 0), 10).link_0_bitrate, undefined);
+  const now = links.of(got(125_000, 25_000), 10.5);
+  assert.deepEqual([now.link_0.name, now.link_0_bitrate, now.link_1_bitrate], ['10.0.0.0:9', 2e6, 4e5]);
+  const sender = { elements: { tx: { links: [1e6, 2e6].map((sent_bitrate) => ({ sent_bitrate, usable: false })) } } };
+  assert.deepEqual(links.of(sender, 11).link_1, { name: '2', state: 'unusable' });
+  assert.deepEqual(links.of(got(130_000, 25_000), 11.1), {});
+  assert.deepEqual(links.of({}, 12), {});
 });
 
 test('ages leave out how far apart the clocks are', () => {

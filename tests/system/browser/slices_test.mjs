@@ -151,17 +151,20 @@ test('the page goes back into what it got, and returns to live', limits, async (
 test('statistics of two links are two lines, and a fast link flattens nothing', limits, async () => {
   const { server, page, complaints, close } = await open([jsonChannel(1, '/statistics', 'lidar.Statistics')]);
   await until('a subscription', () => server.subscribed.has(1));
-  const link = (name, sent, rtt) => ({ link: name, sent_bitrate: sent, rtt });
+  const link = (name, sent, rtt, rest) =>
+    ({ link: `edge:5004@${name}`, sent_bitrate: sent, rtt, queue_delay: rtt / 10, usable: true, in_gap: false, ...rest });
   const message = {
     estimated_capacity: 118e6, target_bitrate: 4.2e6, sent_bitrate: 4.1e6,
-    elements: { tx: { links: [link('wwan0', 3e6, 40e6), link('wwan1', 1e6, 60e6)] } },
+    elements: { tx: { links: [link('wwan0', 3e6, 40e6), link('wwan1', 1e6, 60e6, { in_gap: true })] } },
   };
   server.send(1, Buffer.from(JSON.stringify(message)));
   const shown = await until('links', () =>
     page.$$eval('.chart:not([hidden])', (all) => all.map((c) => c.innerText).filter((s) => s.includes('wwan1'))),
   );
-  assert.equal(shown.length, 2);
-  assert.match(shown[0], /wwan0\s+3\.00/);
+  assert.equal(shown.length, 3);
+  assert.match(shown[0], /wwan0\s+3\.00\s+wwan1 \(in a gap\)\s+1\.00/);
+  assert.match(shown[1], /wwan0\s+40\.0\s+wwan1 \(in a gap\)\s+60\.0/);
+  assert.match(shown[2], /wwan0\s+4\.00\s+wwan1 \(in a gap\)\s+6\.00/);
   const top = await page.evaluate(() => {
     const chart = window.lidarPage.charts.charts.find((c) => c.config.title === 'Bitrate');
     return chart.top();

@@ -2,15 +2,22 @@
 // Charts of the last minute: a chart a question, shown where its numbers exist.
 import uPlot from 'uplot';
 import 'uplot/dist/uPlot.min.css';
+import { MOST_LINKS } from './links.js';
 import { number, t } from './text.js';
 
 const KEPT_S = 60;
 const MBIT = 1e-6;
 const KB = 1e-3;
 const QUIET_SHARE = 2.5; // of the others' height: a quiet line may leave the picture, not flatten it
-const LINKS = [0, 1, 2];
+const LINKS = Array.from({ length: MOST_LINKS }, (_, i) => i);
 
-/** Members of lidar.Statistics, and what the page measures itself (`received`, `age`). */
+const ofLinks = (title, unit, what, scale = 1) => ({
+  title,
+  unit,
+  series: LINKS.map((i) => ({ key: `link_${i}_${what}`, link: `link_${i}`, label: 'link', scale })),
+});
+
+/** Members of lidar.Statistics, and what the page measures itself (`received`, `age`, `link_0`). */
 const CHARTS = [
   {
     title: 'Age of the cloud',
@@ -65,16 +72,9 @@ const CHARTS = [
     unit: 'Mbit/s',
     series: [{ key: 'received', label: 'received', scale: MBIT }],
   },
-  {
-    title: 'Links',
-    unit: 'Mbit/s',
-    series: LINKS.map((i) => ({ key: `link_${i}_sent`, name: `link_${i}`, label: 'link', scale: MBIT })),
-  },
-  {
-    title: 'Links',
-    unit: 'ms',
-    series: LINKS.map((i) => ({ key: `link_${i}_rtt`, name: `link_${i}`, label: 'link' })),
-  },
+  ofLinks('Links', 'Mbit/s', 'bitrate', MBIT),
+  ofLinks('Round trip of links', 'ms', 'rtt'),
+  ofLinks('Queue of links', 'ms', 'queue'),
 ];
 
 const show = (value, whole) => {
@@ -82,18 +82,6 @@ const show = (value, whole) => {
   if (whole || value >= 100) return number(value);
   return number(value, value >= 10 ? 1 : 2);
 };
-
-/** The links of a sender over several, beside its other members. */
-export function linksOf(message) {
-  const members = {};
-  const sender = Object.values(message.elements ?? {}).find((e) => e.links?.length > 1);
-  sender?.links.forEach((link, i) => {
-    members[`link_${i}`] = String(link.link ?? i + 1);
-    members[`link_${i}_sent`] = link.sent_bitrate;
-    members[`link_${i}_rtt`] = link.rtt === undefined ? undefined : link.rtt * 1e-6;
-  });
-  return members;
-}
 
 class Chart {
   constructor(config, parent) {
@@ -129,8 +117,8 @@ class Chart {
     this.values.forEach((item, i) => {
       item.hidden = this.data[i + 1].every((n) => n === null);
       item.querySelector('dd').textContent = show(numbers[i], this.config.whole);
-      const { name } = this.config.series[i];
-      if (name && message[name]) item.querySelector('span').textContent = message[name];
+      const link = message[this.config.series[i].link];
+      if (link) item.querySelector('span').textContent = link.state ? `${link.name} (${t(link.state)})` : link.name;
     });
     this.plotElement.setAttribute(
       'aria-label',

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Puts the page together: what comes from the server goes to the scene and the charts.
 import './style.css';
-import { Charts, linksOf } from './charts.js';
+import { Charts } from './charts.js';
 import { chooseChannels, robotsOf } from './channels.js';
 import { nowSeconds } from './clock.js';
 import { Connection } from './connection.js';
 import { fromDraco, unpack } from './fields.js';
+import { Links } from './links.js';
 import { Poses } from './poses.js';
 import { Scene } from './scene.js';
 import { Slices } from './slices.js';
@@ -35,6 +36,7 @@ const page = {
   charts: new Charts(document.getElementById('charts')),
   scene: new Scene(document.getElementById('scene')),
   poses: new Poses(),
+  links: new Links(),
   video: new Video(document.getElementById('video')),
 };
 const tools = buildTools(page);
@@ -125,7 +127,8 @@ function onStatistics(message) {
   const sink = Object.values(message.elements ?? {}).find((e) => e.factory === 'foxglovesink');
   if (sink?.scan_duration > 0 && !page.paused) page.spanS = sink.scan_duration * 1e-9;
   tools.setSpan();
-  page.charts.add({ ...page.quality, ...message, ...linksOf(message), received: page.receivedBps, age: page.age });
+  const links = page.links.of(message, nowSeconds());
+  page.charts.add({ ...page.quality, ...message, ...links, received: page.receivedBps, age: page.age });
 }
 
 const handlers = {

@@ -342,7 +342,7 @@ class Tools {
     this.colors = {
       muted: color('muted'),
       line: color('line'),
-      series: [color('accent'), color('second'), color('third')],
+      series: ['accent', 'second', 'third', 'fourth'].map(color),
     };
     this.page.scene.setTheme(
       { ground: color('ground'), text: color('text'), line: color('line'), accent: color('accent'), map: color('map') },
