@@ -262,10 +262,11 @@ test('two viewers see it; a stalled one slows neither them nor the pipeline', li
 
 test('it fits a phone, follows the theme, and the keyboard reaches all of it', limits, async () => {
   const port = await freePort();
-  const pipeline = await Pipeline.start(`${SENSOR} ! foxglovesink port=${port}`, port);
+  const pipeline = await Pipeline.start(`${SENSOR} ! lidarenc ! foxglovesink port=${port}`, port);
   const phone = { viewport: { width: 390, height: 780 }, colorScheme: 'light' };
   const { page, context, complaints } = await openPage(browser, address(port), phone);
   await isLive(page);
+  await until('a timeline', () => page.evaluate(() => !document.getElementById('timeline').hidden));
   assert.equal(await page.getAttribute('html', 'data-theme'), 'light');
   assert.ok(await page.evaluate(() => document.documentElement.scrollWidth <= innerWidth));
   const covered = () =>
@@ -277,6 +278,9 @@ test('it fits a phone, follows the theme, and the keyboard reaches all of it', l
   await page.click('#panel');
   assert.ok((await covered()) < 0.2, `${await covered()} of the scene is covered`);
   await page.click('#panel');
+  await page.click('#pause'); // brings the timeline
+  assert.ok((await covered()) < 0.25, `${await covered()} of the scene is covered`);
+  await page.click('#pause');
   const heights = await page.$$eval('.always button', (all) => all.map((b) => b.getBoundingClientRect().height));
   assert.ok(heights.every((height) => height >= 48));
   await page.click('#more');

@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Slices that the page decodes itself, and what it tells the server of them.
 import assert from 'node:assert/strict';
-import { readFileSync } from 'node:fs';
+import { execFileSync } from 'node:child_process';
+import { mkdtempSync, readdirSync, readFileSync, rmSync } from 'node:fs';
 import { createRequire } from 'node:module';
+import os from 'node:os';
+import path from 'node:path';
 import { after, before, test } from 'node:test';
 import { FakeServer, jsonChannel, recordSlices, sliceChannel } from './fake_server.mjs';
 import { freePort, openBrowser, openPage, sleep, until } from './support.mjs';
@@ -92,12 +95,13 @@ test('a sensor model that is damaged leaves the page alive', limits, async () =>
 
 test('one robot of a fleet is shown, and the address keeps which', limits, async () => {
   const channels = [sliceChannel(1, '/r7/points', recorded), sliceChannel(2, '/r8/points', recorded)];
+  channels.push(jsonChannel(3, '/r7/camera', 'foxglove.CompressedVideo'));
   const { server, page, complaints, close } = await open(channels, { rest: '#robot=r8&color=range' });
   await until('a subscription', () => server.subscribed.has(2));
-  assert.ok(!server.subscribed.has(1));
+  assert.ok(!server.subscribed.has(1) && !server.subscribed.has(3));
   assert.equal(await page.getAttribute('[data-mode=range]', 'aria-checked'), 'true');
   await page.selectOption('#robot', 'r7');
-  await until('the other', () => server.subscribed.has(1) && !server.subscribed.has(2));
+  await until('the other', () => server.subscribed.has(1) && server.subscribed.has(3) && !server.subscribed.has(2));
   await until('the address', () => page.url().includes('robot=r7'));
   assert.deepEqual(complaints, []);
   await close();
@@ -113,7 +117,7 @@ test('a page that is paused takes no slices', limits, async () => {
   await close();
 });
 
-const shownAt = (page) => page.evaluate(() => window.lidarPage.scene.fresh.epoch + window.lidarPage.scene.fresh.latest);
+const shownAt = (page) => page.evaluate(() => window.lidarPage.scene.fresh.time);
 
 test('the page goes back into what it got, and returns to live', limits, async () => {
   const { server, page, complaints, close } = await open([sliceChannel(2, '/points', recorded)]);
@@ -147,6 +151,51 @@ test('the page goes back into what it got, and returns to live', limits, async (
   assert.deepEqual(complaints, []);
   await close();
 });
+
+/** Frames that a coder makes of a picture that changes, each a file. */
+function recordVideo(coder) {
+  const folder = mkdtempSync(path.join(os.tmpdir(), 'lidar-video-'));
+  const line = `videotestsrc num-buffers=12 pattern=ball ! video/x-raw,width=160,height=120 ! ${coder} ! multifilesink location=${folder}/%05d.bin`;
+  execFileSync('gst-launch-1.0', line.split(' '));
+  const frames = readdirSync(folder).sort().map((file) => readFileSync(path.join(folder, file)));
+  rmSync(folder, { recursive: true });
+  return frames;
+}
+
+/** foxglove.CompressedVideo. */
+function videoMessage(format, data, ms) {
+  const varint = (v) => (v < 128 ? [v] : [(v & 127) | 128, ...varint(Math.floor(v / 128))]);
+  const bytes = (field, content) => Buffer.concat([Buffer.from([(field << 3) | 2, ...varint(content.length)]), content]);
+  const time = Buffer.from([8, ...varint(Math.floor(ms / 1000)), 16, ...varint(Math.floor((ms % 1000) * 1e6))]);
+  return Buffer.concat([bytes(1, time), bytes(3, data), bytes(4, Buffer.from(format))]);
+}
+
+const CAMERAS = {
+  vp8: 'vp8enc keyframe-max-dist=4 deadline=1',
+  h264: 'openh264enc gop-size=4 ! video/x-h264,stream-format=byte-stream,alignment=au',
+};
+for (const [format, coder] of Object.entries(CAMERAS)) {
+  test(`a camera is shown beside the cloud, in time with it: ${format}`, limits, async () => {
+    const frames = recordVideo(coder);
+    const camera = { ...jsonChannel(3, '/camera', 'foxglove.CompressedVideo'), encoding: 'protobuf' };
+    const { server, page, complaints, close } = await open([sliceChannel(2, '/points', recorded), camera]);
+    await until('subscriptions', () => server.subscribed.has(2) && server.subscribed.has(3));
+    for (let i = 0; i < 8; ++i) server.sendSlice(2, recorded, i, 80);
+    await until('a scan', () => acknowledged(server)?.slice === 7);
+    const time = (await shownAt(page)) * 1000;
+    frames.slice(0, 3).forEach((data, i) => server.send(3, videoMessage(format, data, time + 30 * (i - 1))));
+    const shown = () => page.evaluate(() => window.lidarPage.video.shown);
+    await until('the picture of that time', async () => Math.abs((await shown()) * 1000 - time) < 2);
+    assert.equal(await page.evaluate(() => window.lidarPage.video.held.length), 1);
+    assert.ok(await page.isVisible('#video'));
+    server.sendSlice(2, recorded, 8);
+    await until('the next', async () => (await shown()) * 1000 > time + 20);
+    for (const data of frames.slice(3)) server.send(3, videoMessage(format, data, time + 900));
+    await until('few are held', () => page.evaluate(() => window.lidarPage.video.held.length <= 4));
+    assert.deepEqual(complaints, []);
+    await close();
+  });
+}
 
 test('statistics of two links are two lines, and a fast link flattens nothing', limits, async () => {
   const { server, page, complaints, close } = await open([jsonChannel(1, '/statistics', 'lidar.Statistics')]);
@@ -182,6 +231,47 @@ test('a wrong token is said to be wrong', limits, async () => {
   await page.keyboard.press('Enter');
   await until('the refusal', () => page.isVisible('#wrong'));
   assert.match(await page.textContent('#wrong'), /wrong/);
+  await close();
+});
+
+test('a token that expires is asked for anew', limits, async () => {
+  const { server, page, close } = await open([], { rest: '?token=short', server: { token: 'short' } });
+  await until('the page is live', async () => (await page.textContent('#state span')) === 'Live');
+  server.token = 'long';
+  server.client.close(4401);
+  await until('the dialog', () => page.isVisible('#wrong'));
+  assert.match(await page.textContent('#wrong'), /expired/);
+  assert.equal(await page.textContent('#state span'), 'Token expired');
+  await page.fill('#token', 'long');
+  await page.keyboard.press('Enter');
+  await until('the page is live', async () => (await page.textContent('#state span')) === 'Live');
+  await close();
+});
+
+test('a hidden page takes nothing', limits, async () => {
+  const channels = [sliceChannel(2, '/points', recorded), jsonChannel(3, '/statistics', 'lidar.Statistics')];
+  const { server, page, close } = await open(channels);
+  await until('subscriptions', () => server.subscribed.size === 2);
+  const hide = (hidden) =>
+    page.evaluate((value) => {
+      Object.defineProperty(document, 'hidden', { value, configurable: true });
+      document.dispatchEvent(new Event('visibilitychange'));
+    }, hidden);
+  await hide(true);
+  await until('none', () => server.subscribed.size === 0);
+  await hide(false);
+  await until('subscriptions', () => server.subscribed.size === 2);
+  await close();
+});
+
+test('the header says how old the cloud is, and which rate it shows', limits, async () => {
+  const { server, page, close } = await open([sliceChannel(2, '/points', recorded)]);
+  await until('a subscription', () => server.subscribed.has(2));
+  let i = 0;
+  await until('facts', async () => {
+    server.sendSlice(2, recorded, i++, 90);
+    return /^\d+ ms old · \d+\.\d Mbit\/s to this page · [\d,]+ pt\/s$/.test(await page.textContent('#facts'));
+  });
   await close();
 });
 

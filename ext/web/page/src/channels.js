@@ -30,13 +30,14 @@ export function chooseChannels(list, { known, robot, idle, paused }) {
   if (idle) return [];
   const robots = robotsOf(list);
   const chosen = robots.includes(robot) ? robot : robots[0];
+  const isOthers = ({ topic }) => robotOf(topic) !== chosen && robots.includes(robotOf(topic));
   const decodes = canDecode();
   const coded = new Set(decodes ? list.filter((c) => c.schemaName === SLICES).map(cloudTopic) : []);
   return list.filter((channel) => {
-    if (!(channel.schemaName in known)) return false;
+    if (!(channel.schemaName in known) || isOthers(channel)) return false;
     const topic = cloudTopic(channel);
     if (topic === null) return true;
-    if (paused || (robots.length > 0 && robotOf(topic) !== chosen)) return false;
+    if (paused) return false;
     return channel.schemaName === SLICES ? decodes : !coded.has(topic);
   });
 }

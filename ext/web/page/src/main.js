@@ -120,6 +120,7 @@ page.forget = () => {
   page.slices.forget();
   page.timeline.forget();
   page.scene.clear();
+  page.video.clear();
 };
 
 function onStatistics(message) {
@@ -267,6 +268,7 @@ let drawnCharts = 0;
 function frame(now) {
   page.timeline.tick((now - drawn) / 1000, page.paused);
   page.scene.draw();
+  if (!page.timeline.isPast) page.video.draw(page.scene.fresh.time);
   afterDrawing();
   // Where the browser itself was busy, clouds may have come that it has not told of yet.
   page.quietMs += Math.min(now - drawn, BUSY_MS);

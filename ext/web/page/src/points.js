@@ -94,6 +94,11 @@ export class FreshPoints {
     return this.parts.reduce((sum, part) => sum + part.geometry.drawRange.count, 0);
   }
 
+  /** Capture time of the newest [s]; null where there is none. */
+  get time() {
+    return this.epoch === null ? null : this.epoch + this.latest;
+  }
+
   /**
    * `points` as fields.js has them, at `time`, moved by `matrix` where there is one. Slices have a
    * `place`, {scan, slice, slices}: they stay until the next of that place comes.

@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The camera beside the cloud: frames of foxglove.CompressedVideo, decoded by WebCodecs.
+// The camera beside the cloud: frames of foxglove.CompressedVideo, decoded by WebCodecs, and shown
+// when the cloud of their time is.
 
 const CODECS = { h264: 'avc1.42E01F', vp8: 'vp8' };
 const MOST_WAITING = 8;
+const MOST_HELD = 4; // pictures: a decoder has few
+const FAR_S = 1; // rather another clock
 
 /** Whether an H.264 access unit (Annex B) begins anew, or a VP8 frame does. */
 export function isKey(format, data) {
@@ -17,13 +20,21 @@ export class Video {
     this.canvas = canvas;
     this.context = canvas.getContext('2d');
     this.format = null;
+    this.held = []; // decoded pictures, the oldest first
+  }
+
+  /** Another robot is to be shown. */
+  clear() {
+    this.canvas.hidden = true;
+    this.held.splice(0).forEach((picture) => picture.close());
+    this.needsKey = true;
   }
 
   start(format) {
     this.format = format;
     this.needsKey = true;
     this.decoder = new VideoDecoder({
-      output: (frame) => this.show(frame),
+      output: (picture) => this.held.push(picture),
       error: () => (this.format = null), // the next key frame starts anew
     });
     this.decoder.configure({ codec: CODECS[format], optimizeForLatency: true });
@@ -44,12 +55,24 @@ export class Video {
     this.decoder.decode(new EncodedVideoChunk({ type: key ? 'key' : 'delta', timestamp, data }));
   }
 
-  show(frame) {
+  /** Shows the newest picture that is no later than the cloud of `time` [s]; any, where there is none. */
+  draw(time) {
+    const ahead = (picture) => picture.timestamp * 1e-6 - time;
+    const isDue = (picture) => time === null || ahead(picture) <= 0 || ahead(picture) > FAR_S;
+    let due = this.held.findLastIndex(isDue);
+    due = Math.max(due, this.held.length - 1 - MOST_HELD);
+    if (due < 0) return;
+    const old = this.held.splice(0, due + 1);
+    this.show(old[due]);
+    old.forEach((picture) => picture.close());
+  }
+
+  show(picture) {
     const { canvas } = this;
     canvas.hidden = false;
-    if (canvas.width !== frame.displayWidth) canvas.width = frame.displayWidth;
-    if (canvas.height !== frame.displayHeight) canvas.height = frame.displayHeight;
-    this.context.drawImage(frame, 0, 0);
-    frame.close();
+    if (canvas.width !== picture.displayWidth) canvas.width = picture.displayWidth;
+    if (canvas.height !== picture.displayHeight) canvas.height = picture.displayHeight;
+    this.context.drawImage(picture, 0, 0);
+    this.shown = picture.timestamp * 1e-6;
   }
 }
