@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Tables of docs/results/ecosystem.md, as tests/benchmarks/ecosystem.sh and the viewers of tests/system print them."""
+"""Tables of docs/results/ecosystem.md, as tests/benchmarks/ecosystem.sh and tests/system print them."""
 import common
 
 
@@ -12,4 +12,8 @@ def viewers():
     return common.run(common.ROOT / "tests/system/viewers/measure.py").strip()
 
 
-TABLES = {"ros2": lambda: part("ros2"), "web": lambda: part("web"), "viewers": viewers}
+def page():
+    return common.run("node", common.ROOT / "tests/system/browser/measure_page.mjs").strip()
+
+
+TABLES = {"ros2": lambda: part("ros2"), "web": lambda: part("web"), "page": page, "viewers": viewers}

@@ -3,10 +3,10 @@
 import assert from 'node:assert/strict';
 import { execFileSync } from 'node:child_process';
 import { mkdtempSync, readdirSync, readFileSync, rmSync } from 'node:fs';
-import { createRequire } from 'node:module';
 import os from 'node:os';
 import path from 'node:path';
 import { after, before, test } from 'node:test';
+import { audit } from './axe.mjs';
 import { FakeServer, jsonChannel, recordSlices, sliceChannel } from './fake_server.mjs';
 import { freePort, openBrowser, openPage, sleep, until } from './support.mjs';
 
@@ -310,14 +310,8 @@ test('the distance between two points is measured, and heights are clipped', lim
   await close();
 });
 
-const axe = readFileSync(createRequire(import.meta.url).resolve('axe-core/axe.min.js'), 'utf8');
-
 /** What axe has against the page as it is, by rule. */
-async function violations(page) {
-  await page.evaluate(axe);
-  const { violations: found } = await page.evaluate(() => window.axe.run());
-  return found.map(({ id, nodes }) => `${id}: ${nodes.map((node) => node.target).join(' ')}`);
-}
+const violations = async (page) => (await audit(page)).violations;
 
 const VIEWS = {
   'a desk, dark': { viewport: { width: 1280, height: 800 }, colorScheme: 'dark' },

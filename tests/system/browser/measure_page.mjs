@@ -1,0 +1,144 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// What the page costs and shows in a headless Chromium, where software draws it, as Markdown tables
+// of docs/results/ecosystem.md.
+import { mkdtempSync, readdirSync, readFileSync, rmSync } from 'node:fs';
+import os from 'node:os';
+import path from 'node:path';
+import { audit } from './axe.mjs';
+import { CODERS, cpuOf, eachStream, head, row, SECONDS, start } from './measuring.mjs';
+import { freePort, openBrowser, openPage, Pipeline, sleep, until } from './support.mjs';
+
+const SETTLED_MS = 3000; // compilers, and what else a page does once
+const CLOUDS = ['lidar.Slice', 'foxglove.PointCloud', 'foxglove.CompressedPointCloud'];
+const LONG_MS = 50; // tasks of which a browser tells
+
+const p95 = (values) => values.sort((a, b) => a - b)[Math.floor(0.95 * values.length)] ?? NaN;
+const ms = (seconds) => `${(1000 * seconds).toFixed(0)} ms`;
+
+/** CPU time so far of the threads of that name in all of the browser [s]. */
+function browserCpu(thread) {
+  const isOurs = (pid) => {
+    try {
+      return /^\d+$/.test(pid) && readFileSync(`/proc/${pid}/cmdline`, 'utf8').includes('--type=renderer');
+    } catch {
+      return false; // it has ended
+    }
+  };
+  return readdirSync('/proc').filter(isOurs).reduce((sum, pid) => sum + cpuOf(pid, thread), 0);
+}
+
+/**
+ * In the page: turns the camera, so that there is always something to draw, and notes tasks that held
+ * up the main thread, and of each slice when it was captured, sent, decoded and drawn.
+ */
+function observe(turns) {
+  const seen = { slices: [], longest: 0, blocked: 0 };
+  window.measured = seen;
+  const { scene, slices } = window.lidarPage;
+  scene.controls.autoRotate = turns;
+  new PerformanceObserver((list) => {
+    for (const { duration } of list.getEntries()) {
+      seen.longest = Math.max(seen.longest, duration);
+      ++seen.blocked;
+    }
+  }).observe({ type: 'longtask' });
+  const now = () => (performance.timeOrigin + performance.now()) / 1000;
+  const { points } = slices.on;
+  let waiting = [];
+  slices.on.points = (about, header, ...rest) => {
+    waiting.push({ captured: header.captured, sent: header.sent, decoded: now() });
+    return points(about, header, ...rest);
+  };
+  // What is drawn in a frame is on the screen when the next begins.
+  let drawn = [];
+  const draw = scene.draw.bind(scene);
+  scene.draw = () => {
+    seen.slices.push(...drawn.map((slice) => ({ ...slice, drawn: now() })));
+    drawn = waiting;
+    waiting = [];
+    return draw();
+  };
+}
+
+const read = (page) =>
+  page.evaluate((schemas) => {
+    const { scene, received } = window.lidarPage;
+    const clouds = schemas.map((schema) => received[schema]).find(Boolean);
+    return { ...window.measured, ...clouds, frames: scene.frames, points: scene.fresh.count, at: performance.now() };
+  }, CLOUDS);
+
+/** What the page does in SECONDS: `before` and `now`, and the processor time of its workers [s]. */
+async function watch(page, turns) {
+  await until('a picture', () => page.evaluate(() => window.lidarPage.scene.fresh.count > 0));
+  await sleep(SETTLED_MS);
+  await page.evaluate(observe, turns);
+  const before = await read(page);
+  const cpu = browserCpu('DedicatedWorker');
+  await sleep(SECONDS * 1000);
+  const now = await read(page);
+  const worker = browserCpu('DedicatedWorker') - cpu;
+  return { now, worker, rate: (what) => ((now[what] - before[what]) * 1000) / (now.at - before.at) };
+}
+
+async function measureStream(browser, name, width, source, coder) {
+  const { port, pipeline } = await start(source, coder);
+  const { page, context } = await openPage(browser, `http://127.0.0.1:${port}/`);
+  const { now, worker, rate } = await watch(page, true);
+  row([
+    `${width}x10`, name, now.points, `${rate('messages').toFixed(1)} scans/s`, `${(rate('bytes') * 8e-6).toFixed(1)} Mbit/s`,
+    `${rate('frames').toFixed(1)} frames/s`, `${((100 * worker) / SECONDS).toFixed(0)} %`,
+    now.blocked > 0 ? `${now.blocked}, ${now.longest.toFixed(0)} ms at most` : 'none',
+  ]);
+  await context.close();
+  await pipeline.stop();
+}
+
+/** From a robot by SCReAM to the screen. */
+async function measureAge(browser, model) {
+  const [port, rtp] = [await freePort(), await freePort()];
+  const pipeline = await Pipeline.start(
+    `lidartestsrc is-live=true model=${model} speed=5 ! queue ! lidarenc ! rtplidarpay ! screamsink host=127.0.0.1 port=${rtp} ` +
+      `screamsrc port=${rtp} ! rtplidardepay ! foxglovesink port=${port}`, port);
+  const { page, context } = await openPage(browser, `http://127.0.0.1:${port}/`);
+  const { now, rate } = await watch(page, false);
+  const age = (what) => ms(p95(now.slices.map((slice) => slice[what] - slice.captured)));
+  row([model.toUpperCase(), `${rate('frames').toFixed(1)} frames/s`, age('sent'), age('decoded'), age('drawn')]);
+  await context.close();
+  await pipeline.stop();
+}
+
+async function measureAxe(browser, name, options) {
+  const port = await freePort();
+  const way = `lidartestsrc is-live=true model=os0-32 mode=512x10 ! lidarenc ! foxglovesink port=${port}`;
+  const pipeline = await Pipeline.start(way, port);
+  const { page, context } = await openPage(browser, `http://127.0.0.1:${port}/`, options);
+  await until('a timeline', () => page.evaluate(() => !document.getElementById('timeline').hidden));
+  await page.click('#more');
+  const { violations, passes } = await audit(page);
+  row([name, passes.length, violations.length > 0 ? violations.join('; ') : 0]);
+  await context.close();
+  await pipeline.stop();
+}
+
+const folder = mkdtempSync(path.join(os.tmpdir(), 'lidar-measure-'));
+const browser = await openBrowser();
+try {
+  console.log(`Chromium ${browser.version()}, headless, drawn by software; the camera turns.\n`);
+  head([
+    'OS1-128', 'stream', 'points of a picture', 'taken', 'downlink', 'drawn', 'workers, of a core',
+    `tasks of the main thread above ${LONG_MS} ms`,
+  ]);
+  const coders = { ...CODERS, 'slices at 2 cm': '! lidarenc max-error=0.02' };
+  await eachStream(folder, coders, (...of) => measureStream(browser, ...of));
+  console.log('\nFrom capture by SCReAM over loopback, p95 of all slices; drawn is when the next frame begins.\n');
+  head(['sensor', 'drawn', 'sent by `foxglovesink`', 'decoded in the page', 'drawn']);
+  await measureAge(browser, 'os1-64');
+  console.log('\naxe:\n');
+  head(['page', 'rules that hold', 'violations']);
+  await measureAxe(browser, 'desk, dark', { colorScheme: 'dark' });
+  await measureAxe(browser, 'phone, light', { viewport: { width: 390, height: 780 }, colorScheme: 'light' });
+} finally {
+  await browser.close();
+  await Pipeline.stopAll();
+  rmSync(folder, { recursive: true });
+}
