@@ -19,7 +19,7 @@ steps=(
   "hardship|root|tests/system/hardship/run.sh"
   "leaks|-|tests/leaks.sh"
   "memory|-|tests/system/soak/memory.sh MINUTES"
-  "soak|root|tests/system/soak/run.sh --minutes MINUTES"
+  "soak|root|tests/system/soak/run.sh --minutes SOAK"
   "interop|root, the reference|tests/system/interop/reference.sh"
   "experiments|-|tests/experiments/run.sh --quick"
   "mutants|-|tests/mutate.sh --quick"
@@ -36,7 +36,8 @@ Usage: tests/all.sh [options]
 
   --only LIST    steps to run, as in "run,fuzz"
   --skip LIST    steps to leave out
-  --minutes N    for each fuzz target, the adversary, memory and soak (default 2)
+  --minutes N    for each fuzz target, the adversary and memory (default 2)
+  --soak N       minutes of soak (default 120)
   --output DIR   a log for each step (default: build-all)
   --list         print the steps, what they need and their commands
 
@@ -49,10 +50,11 @@ fail() { echo "tests/all.sh: $*" >&2; exit 2; }
 only=
 skip=
 minutes=2
+soak=120
 output=$root/build-all
 while [ $# -gt 0 ]; do
   case $1 in
-    --only | --skip | --minutes | --output)
+    --only | --skip | --minutes | --soak | --output)
       [ $# -ge 2 ] || fail "$1 wants a value"
       declare "${1#--}=$2"
       shift ;;
@@ -62,7 +64,9 @@ while [ $# -gt 0 ]; do
   esac
   shift
 done
-[[ $minutes =~ ^[1-9][0-9]*$ ]] || fail "--minutes wants a whole number above zero, not \"$minutes\""
+for name in minutes soak; do
+  [[ ${!name} =~ ^[1-9][0-9]*$ ]] || fail "--$name wants a whole number above zero, not \"${!name}\""
+done
 for name in ${only//,/ } ${skip//,/ }; do
   printf '%s\n' "${steps[@]%%|*}" | grep -qxF -- "$name" || fail "there is no step $name"
 done
@@ -97,7 +101,7 @@ for step in "${steps[@]}"; do
   [ -z "$lacking" ] || { row "$name" skipped 0 "needs $lacking"; continue; }
   began=$SECONDS
   # shellcheck disable=SC2086
-  if (cd "$root" && exec ${command//MINUTES/$minutes}) >"$output/$name.log" 2>&1 </dev/null; then
+  if (cd "$root" && exec $(sed "s/MINUTES/$minutes/; s/SOAK/$soak/" <<<"$command")) >"$output/$name.log" 2>&1 </dev/null; then
     result=ok
   else
     result=FAILED

@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Each page of docs says what kind it is, and each table of results where and when it was measured."""
+"""Each page of docs says what kind it is, each table of results where and when it was measured, and a column
+"held by" names tests that there are."""
 import pathlib
 import re
 import sys
@@ -26,8 +27,32 @@ def headless_tables(text):
         before = line
 
 
+def tests_of(root):
+    """Suites, tests as Suite.Name, and what scripts of tests/system call their attacks."""
+    names = set()
+    for path in (root / "tests").rglob("*"):
+        if path.suffix == ".cpp":
+            for suite, name in re.findall(r"^TEST(?:_F|_P)?\(\s*(\w+),\s*(\w+)\)", path.read_text(), re.M):
+                names |= {suite, f"{suite}.{name}"}
+        elif path.suffix == ".py" and path.parent.name == "adversary":
+            names |= {path.name, *re.findall(r"^def (\w+)\(context\)", path.read_text(), re.M)}
+    return names
+
+
+def unknown_tests(text, known):
+    """Lines of tables with a last column "held by", and what they name that is no test."""
+    held = False
+    for number, line in enumerate(text.splitlines(), 1):
+        cells = line.strip("|").split("|") if line.startswith("|") else []
+        held = bool(cells) and (held or cells[-1].strip() == "held by")
+        for name in re.findall(r"`([\w.]+)`", cells[-1]) if held else []:
+            if (name[0].isupper() or "_" in name) and name not in known:
+                yield number, name
+
+
 def check(root):
     docs = root / "docs"
+    known = tests_of(root)
     problems = []
     for path in sorted(docs.rglob("*.md")):
         page = path.relative_to(docs).as_posix()
@@ -37,6 +62,7 @@ def check(root):
             problems.append(f"docs/{page}:3: is it *Tutorial.*, *How-to.*, *Reference.* or *Explanation.*?")
         if page.startswith("results/") and page not in FREE:
             problems += [f"docs/{page}:{n}: no *Commit ...* above this table" for n in headless_tables(text)]
+        problems += [f"docs/{page}:{n}: no test is called {name}" for n, name in unknown_tests(text, known)]
     return problems
 
 

@@ -268,6 +268,12 @@ PLANTED = [
         "# A\n\n*Reference.*\n\n*Commit 1234567, 2026-01-01*\n\n| a |\n|---|\n\n## B\n\n| a |",
         "docs/results/a.md:12: no *Commit",
     ),
+    (
+        "pages",
+        "docs/a.md",
+        "# A\n\n*Reference.*\n\n| a | held by |\n|---|---|\n| b | `Suite.IsGone` |",
+        "docs/a.md:7: no test is called Suite.IsGone",
+    ),
     ("links", "README.md", "[gone](docs/gone.md)", "no such file: docs/gone.md"),
     (
         "packaging",

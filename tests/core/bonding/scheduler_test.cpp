@@ -107,6 +107,19 @@ TEST_F(TwoLinks, CopiesAtOnceWhatWaitsBehindAGap) {
   EXPECT_TRUE(scheduler_.TakeCopies(now_ + 62ms).empty()) << "once";
 }
 
+TEST_F(TwoLinks, CopiesTheOldestFirst) {
+  Settle();
+  const std::uint32_t slice = ++seq_;
+  for (int i = 0; i < 3; ++i) {
+    const PacketId id{kMedia, ++seq_};
+    scheduler_.OnPacket(now_, {id, kSize, slice});
+    scheduler_.OnSent(now_, 0, id);
+  }
+  const auto copies = scheduler_.TakeCopies(now_ + 61ms);
+  ASSERT_EQ(copies.size(), 3U);
+  for (std::uint16_t i = 0; i < 3; ++i) EXPECT_EQ(copies[i].id.seq, seq_ - 2 + i);
+}
+
 TEST_F(TwoLinks, CopiesNothingThatIsTooOld) {
   Settle();
   Packet();

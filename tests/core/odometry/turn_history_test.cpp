@@ -94,6 +94,14 @@ TEST(TurnHistory, LearnsItsBias) {
   EXPECT_NEAR(YawOf(*turns.Between(Time{}, Time{} + seconds(1))), 0, 0.001);
 }
 
+TEST(TurnHistory, BelievesNoBiasThatNoGyroscopeHas) {
+  TurnHistory turns;
+  AddSteadyTurn(Time{}, Time{} + seconds(10), 1, &turns);
+  for (int i = 0; i < 99; ++i)
+    turns.Teach(Time{} + i * kScan, Time{} + (i + 1) * kScan, Turn(0), Turn(0));
+  EXPECT_LE(turns.bias().norm(), 0.2 + 1e-9);
+}
+
 TEST(TurnHistory, KeepsTenSeconds) {
   TurnHistory turns;
   AddSteadyTurn(Time{}, Time{} + seconds(30), 1, &turns);

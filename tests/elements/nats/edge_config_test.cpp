@@ -78,6 +78,9 @@ INSTANTIATE_TEST_SUITE_P(
                     "robots[0].max-mbps is out of range"},
         WrongConfig{R"({"robots":[{"name":"a","port":1,"record":"a.mcap","record-max-files":2}]})",
                     "robots[0].record has no number such as %05d, which limits for files need"},
+        WrongConfig{
+            R"({"robots":[{"name":"a","port":1,"record":"a.mcap","record-max-file-size":9000}]})",
+            "robots[0].record has no number such as %05d, which limits for files need"},
         WrongConfig{R"({"robots":[{"name":"a","port":1},{"name":"b","port":1}]})",
                     "port 1 has two robots"},
         WrongConfig{R"({"robots":[{"name":"a","port":1,"record":"x.mcap"},

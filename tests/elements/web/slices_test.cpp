@@ -211,7 +211,7 @@ TEST(Slices, AreDecodedForOthersWhileSomebodySubscribes) {
 
 TEST(Slices, WhoseReferenceNeverCameAreNotDamaged) {
   Edge edge;
-  for (guint i = 0; i < kScanSlices; ++i) edge.robot.Next();
+  for (guint i = 0; i < 5 * kScanSlices; ++i) edge.robot.Next();
   edge.PushScans(1);
   Peer foxglove(&edge.sink);
   foxglove.Subscribe("/points", 4);

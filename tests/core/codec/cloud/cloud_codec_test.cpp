@@ -435,6 +435,22 @@ TEST(CloudCodec, RefusesFarPointsWithoutAPlaceAndBytesBehindTheEnd) {
   EXPECT_FALSE(decodes(1e30F, {0, 1}));
 }
 
+TEST(CloudHeader, IsRefusedWithADepthThatNoEncoderWrites) {
+  const auto is_read = [](unsigned depth) {
+    CloudHeader header;
+    header.points = 1;
+    header.grid.step_m = 0.02F;
+    header.depth = depth;
+    std::vector<std::uint8_t> bytes;
+    header.Write(&bytes);
+    ByteReader reader(bytes.data(), bytes.size());
+    return CloudHeader::Read(&reader).has_value();
+  };
+  EXPECT_TRUE(is_read(1));
+  EXPECT_FALSE(is_read(0));
+  EXPECT_FALSE(is_read(255));
+}
+
 TEST(CloudCodec, TakesCloudsThatCostNextToNothing) {
   // Many points in one place, and a cube full of them.
   const PlainPoints one(1U << 18, {1, 2, 3, 0});
