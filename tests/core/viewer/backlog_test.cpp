@@ -61,6 +61,13 @@ TEST(Backlog, SaysWhenItIsFullAndStaysBounded) {
   EXPECT_EQ(backlog.Pop()->id.scan, 1001 - kept);
 }
 
+TEST(Backlog, MakesRoomForALargeSliceByAsManySmallOnesAsItTakes) {
+  Backlog backlog(10'000);
+  for (std::uint32_t scan = 1; scan <= 7; ++scan) backlog.Push(Make(scan, 0, scan == 1 ? 0 : 1));
+  backlog.Push(Make(8, 0, 1, 6'000));
+  EXPECT_EQ(PopAll(&backlog), "6.0 7.0 8.0 ");
+}
+
 TEST(Backlog, KnowsWhatIsStillWorthShowing) {
   Backlog backlog(1U << 20);
   for (std::uint32_t scan = 7; scan <= 9; ++scan) backlog.Push(Make(scan, 0, 0));

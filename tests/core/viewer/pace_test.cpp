@@ -200,6 +200,15 @@ TEST(Pace, KeepsMaxBitrate) {
   EXPECT_NEAR(viewer.Sent(), 1e6, 0.03e6);
 }
 
+TEST(Pace, WaitsForAViewerThatOwesALittleForLong) {
+  Pace pace{DataRate()};
+  pace.OnSent(Time{milliseconds(10)}, {1, 0}, DataSize::Bytes(100'000));
+  pace.OnDrawn(Time{milliseconds(30)}, {1, 0});
+  pace.OnSent(Time{milliseconds(110)}, {2, 0}, DataSize::Bytes(10));
+  EXPECT_TRUE(pace.MayBegin(Time{milliseconds(500)}));
+  EXPECT_FALSE(pace.MayBegin(Time{milliseconds(110)} + Pace::kPatience + milliseconds(1)));
+}
+
 TEST(Pace, SavesNoBitsOfAPause) {
   Pace pace{Mbps(1)};
   const auto sent_at = [&](milliseconds at) {

@@ -201,6 +201,9 @@ TEST_F(Transport, DracoMayHaveMetadataAndLeaveDoublesOut) {
   EXPECT_EQ(made->cloud.layout.width, kRow - 1);
   EXPECT_TRUE(cdr::RowStride(made->cloud));
   EXPECT_EQ(made->points, without);
+  compressed.cloud.layout.is_bigendian = true;
+  EXPECT_FALSE(Decompress(compressed, &why)) << "Draco has numbers in the order of the machine";
+  compressed.cloud.layout.is_bigendian = false;
   compressed.cloud.layout.height = 2;
   compressed.cloud.layout.width = kRow / 2;
   const auto of_rows = Decompress(compressed, &why);

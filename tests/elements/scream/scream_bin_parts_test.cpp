@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // How screamsink and screamsrc set up what is in them, mostly without a packet.
+#include <glib/gstdio.h>
 #include <gtest/gtest.h>
 
 #include <memory>
@@ -109,6 +110,22 @@ TEST_F(ScreamBin, AKeyThatWasInUseIsRefusedAndSoIsAThirdThatWaits) {
     EXPECT_EQ(refuses('8'), receives) << factory << ": two wait for the sender already";
     To(GST_STATE_NULL);
   }
+}
+
+TEST_F(ScreamBin, AKeyInAFileMayEndWithANewline) {
+  const ElementPtr srtp(gst_element_factory_make("srtpenc", nullptr));
+  if (!srtp) GTEST_SKIP() << "srtpenc is not installed";
+  gchar* name = nullptr;
+  const int fd = g_file_open_tmp("lidar-key-XXXXXX", &name, nullptr);
+  ASSERT_GE(fd, 0);
+  g_close(fd, nullptr);
+  const std::string path = name;
+  g_free(name);
+  g_file_set_contents(path.c_str(), (std::string(60, '5') + "\r\n").c_str(), -1, nullptr);
+  Make("screamsink");
+  g_object_set(bin_.get(), "srtp-key", ("file:" + path).c_str(), nullptr);
+  EXPECT_EQ(To(GST_STATE_READY), GST_STATE_CHANGE_SUCCESS);
+  g_unlink(path.c_str());
 }
 
 TEST_F(ScreamBin, TheSinkSaysGoodbyeAndReportsEachSecond) {

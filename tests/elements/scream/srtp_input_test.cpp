@@ -365,6 +365,17 @@ TEST_F(SrtpIn, PassesACopyOnceFromEachAddress) {
   EXPECT_EQ(input_->counts().refused, 2U);
 }
 
+TEST_F(SrtpIn, PassesCopiesFromAsManyAddressesAsASenderMayHave) {
+  Protector sender(Key(5));
+  Passes(From("10.0.0.1", sender.Protect(1)));
+  Passes(From("10.0.0.2", sender.Protect(2)));
+  const BufferPtr third = sender.Protect(3);
+  std::size_t passed = 0;
+  for (int host = 1; host <= 20; ++host)
+    passed += Passes(From(("10.0.0." + std::to_string(host)).c_str(), third)) ? 1U : 0U;
+  EXPECT_EQ(passed, SrtpCopies::kMaxAddresses);
+}
+
 TEST_F(SrtpIn, PassesNothingThatOnlyLooksLikeACopy) {
   Protector sender(Key(5));
   Passes(From("10.0.0.1", sender.Protect(1)));

@@ -21,6 +21,7 @@ using std::chrono::steady_clock;
 constexpr milliseconds kPoll{50};
 constexpr milliseconds kRenewInterval{200};
 constexpr milliseconds kListInterval{1'000};
+constexpr int kListPause = 5;  // times what a list takes
 constexpr std::int64_t kHeartbeatNs = 500'000'000;
 constexpr int kMaxValueSize = 4'096;
 constexpr const char* kSeparator = ".lidar.";
@@ -147,8 +148,10 @@ void FleetWatch::Step() {
     missed_heartbeats_ = state.missed_heartbeats;
   }
   if (now >= list_at_) {
-    list_at_ = now + kListInterval;
     ListRobots();
+    // A list of many robots takes a while, and a stop waits for it.
+    const auto took = steady_clock::now() - now;
+    list_at_ = now + std::max<steady_clock::duration>(kListInterval, kListPause * took);
   }
   if (!entries_) {
     std::this_thread::sleep_for(kPoll);
