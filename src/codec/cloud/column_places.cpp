@@ -150,7 +150,7 @@ class DelaySearch {
     return off - kTurn * std::round(off / kTurn);
   }
   Fit FitOf(std::size_t b, std::int32_t delay) const {
-    constexpr std::size_t kSample = 200;
+    constexpr std::size_t kSample = 120;
     const std::size_t stride = beams_[b].size() / kSample + 1;
     const double rough = -delay * static_cast<double>(kTurn) / static_cast<double>(size_);
     std::vector<double> offs;
@@ -253,20 +253,34 @@ class RoundedColumns {
     const auto size = static_cast<std::int32_t>(grains_);
     return static_cast<std::uint32_t>((static_cast<std::int32_t>(grain) - delay + size) % size);
   }
+  /// Some of the points say which delays are worth asking all of them.
   std::int32_t BestDelay(std::uint32_t beam) const {
     constexpr std::int32_t kMost = 160;
+    constexpr std::size_t kSample = 256;
+    std::array<std::uint64_t, 2 * kMost + 1> rough{};
+    for (std::int32_t i = 0; i <= 2 * kMost; ++i)
+      rough[static_cast<std::size_t>(i)] = VotesFor(beam, i - kMost, kSample);
+    const std::uint64_t fewest = *std::max_element(rough.begin(), rough.end()) / 10 * 9;
     std::int32_t best = 0;
     std::uint64_t most = 0;
     for (std::int32_t i = 0; i <= 2 * kMost; ++i) {
       const std::int32_t delay = (i & 1) != 0 ? -(i + 1) / 2 : i / 2;
-      std::uint64_t sum = 0;
-      for (const std::uint32_t grain : grains_of_[beam])
-        sum += static_cast<std::uint64_t>(std::min(votes_[At(grain, delay)], 8));
+      if (rough[static_cast<std::size_t>(delay + kMost)] < fewest) continue;
+      const std::uint64_t sum = VotesFor(beam, delay, SIZE_MAX);
       if (sum <= most) continue;
       most = sum;
       best = delay;
     }
     return best;
+  }
+  /// The votes where about so many of the points are.
+  std::uint64_t VotesFor(std::uint32_t beam, std::int32_t delay, std::size_t sample) const {
+    const std::vector<std::uint32_t>& grains = grains_of_[beam];
+    const std::size_t stride = grains.size() / sample + 1;
+    std::uint64_t sum = 0;
+    for (std::size_t i = 0; i < grains.size(); i += stride)
+      sum += static_cast<std::uint64_t>(std::min(votes_[At(grains[i], delay)], 8));
+    return sum;
   }
   void Vote(std::uint32_t beam, int vote) {
     for (const std::uint32_t grain : grains_of_[beam]) votes_[At(grain, delays_[beam])] += vote;
