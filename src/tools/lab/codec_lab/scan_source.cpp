@@ -116,6 +116,40 @@ std::unique_ptr<ScanStream> OpenCapture(const std::string& pcap, const std::stri
                                    std::move(reader));
 }
 
+/// A sensor that fires by a table: clouds, in the order of firing.
+class SyntheticFirings final : public ScanStream {
+ public:
+  explicit SyntheticFirings(const synth::ScannerConfig& config)
+      : ScanStream(1 / Seconds(config.period)),
+        columns_(config.sensor.model.columns_per_scan),
+        scanner_(config) {}
+
+  std::optional<TimedScan> Next() override {
+    synth::Returns returns;
+    scanner_.Cast(next_, {0, columns_}, &returns);
+    TimedScan timed;
+    timed.start = Time{} + scanner_.ColumnTime(next_, 0);
+    timed.duration = period();
+    const synth::Rays& rays = scanner_.rays();
+    for (std::uint32_t column = 0; column < columns_; ++column)
+      for (std::uint32_t beam = 0; beam < rays.beams(); ++beam) {
+        const std::uint32_t range = returns.range_mm[std::size_t{beam} * columns_ + column];
+        if (range == 0) continue;
+        const float range_m = 1e-3F * static_cast<float>(range);
+        const synth::Vec3 direction = rays.Direction(next_, beam, column);
+        timed.scan.xyz.insert(timed.scan.xyz.end(), {range_m * direction.x, range_m * direction.y,
+                                                     range_m * direction.z});
+      }
+    ++next_;
+    return timed;
+  }
+
+ private:
+  std::uint32_t columns_;
+  synth::Scanner scanner_;
+  std::uint64_t next_ = 0;
+};
+
 class SyntheticDrive final : public ScanStream {
  public:
   explicit SyntheticDrive(const synth::ScannerConfig& config)
@@ -154,8 +188,13 @@ std::unique_ptr<ScanStream> OpenSynthetic(const std::string& text, const SourceO
   synth::ScannerConfig config;
   const unsigned long columns =
       parts.size() == 4 ? std::strtoul(parts[3].c_str(), nullptr, 10) : 1024;
-  const auto sensor = synth::MakeSensor(parts[1], static_cast<std::uint32_t>(columns));
-  if (!sensor) throw std::runtime_error(text + ": no such sensor, os0-32 to os2-128 are");
+  const synth::Firing* firing = synth::FindFiring(parts[1]);
+  const auto sensor = firing != nullptr
+                          ? synth::MakeSensor(*firing)
+                          : synth::MakeSensor(parts[1], static_cast<std::uint32_t>(columns));
+  if (!sensor)
+    throw std::runtime_error(
+        text + ": no such sensor; os0-32 to os2-128, vlp-16, xt32, at128 and mid-360 are");
   config.sensor = *sensor;
   if (parts[2] == "street")
     config.scene = synth::SceneKind::kStreet;
@@ -173,6 +212,7 @@ std::unique_ptr<ScanStream> OpenSynthetic(const std::string& text, const SourceO
   config.seed = options.seed;
   config.noise_m = options.noise_m;
   config.mixed_pixels = options.mixed_pixels;
+  if (firing != nullptr) return std::make_unique<SyntheticFirings>(config);
   return std::make_unique<SyntheticDrive>(config);
 }
 
