@@ -14,7 +14,7 @@ MODES = {
     "Draco, sequential, on x, y and z": "xyz-sequential",
     "Draco, kd-tree, on x, y and z": "xyz-kd6",
 }
-CODERS = {"effort 0": 3, "effort 1": 11, "effort 2": 12, "effort 3": 13, "residual": 2, "draco": 1}
+CODERS = {"effort 0": 3, "effort 1": 11, "effort 2": 12, "effort 3": 13}
 
 
 def sizes():
@@ -32,24 +32,6 @@ def sizes():
         for name, mode in MODES.items()
     ]
     return common.table(["bits a return", *common.SOURCES], body)
-
-
-def r_min():
-    """Mbit/s at 10 scans/s that a bound needs, whole scans and 8 slices."""
-    body = []
-    for source in ("OS0-32", "OS1-128"):
-        rows = common.rate_distortion(
-            common.SOURCES[source], "--modes", ",".join(MODES.values()), "--slices", "1,8", "--errors", "0.02,0.05"
-        )
-        for error in (0.02, 0.05):
-            cells = []
-            for mode in [*MODES.values()][:4] + ["xyz-kd6"]:
-                steps = sorted({float(r["step_m"]) for r in rows if r["coding"].startswith(mode + ",")})
-                step = steps[0 if error == 0.02 else -1]
-                found = [r for r in rows if r["coding"].startswith(mode + ",") and float(r["step_m"]) == step]
-                cells.append(" / ".join(f"{float(r['bitrate_bps']) / 1e6:.2f}" for r in found))
-            body.append([f"{source}, {100 * error:.0f} cm", *cells])
-    return common.table(["Mbit/s", *[*MODES][:4], "Draco, kd-tree"], body)
 
 
 def benchmark(pattern):
@@ -133,4 +115,4 @@ def clouds():
     return common.table(head, body)
 
 
-TABLES = {"clouds": clouds, "sizes": sizes, "r_min": r_min, "static": static, "speed": speed}
+TABLES = {"clouds": clouds, "sizes": sizes, "static": static, "speed": speed}
