@@ -109,9 +109,9 @@ void Client::SendFrame(std::vector<std::uint8_t> frame) {
   Write();
 }
 
-bool Client::Send(Outbox::Item item, std::size_t depth) {
-  if (closed_) return false;
-  const bool dropped = outbox_.Push(std::move(item), depth);
+std::size_t Client::Send(Outbox::Item item, std::size_t depth) {
+  if (closed_) return 0;
+  const std::size_t dropped = outbox_.Push(std::move(item), depth);
   Write();
   return dropped;
 }

@@ -34,8 +34,10 @@ class Client {
 
   /// Control texts wait in order; a client that lets too many wait is closed.
   void SendText(const std::string& text);
-  /// True where an older message gave way to this one.
-  bool Send(Outbox::Item item, std::size_t depth);
+  /// How many messages gave way, this one included.
+  std::size_t Send(Outbox::Item item, std::size_t depth);
+  /// The channel's next message does not come here.
+  void Skip(std::uint32_t channel) { outbox_.Skip(channel); }
   /// Slices wait in order, and are bounded by their sender.
   void SendSlice(std::uint32_t channel, std::uint32_t subscription, SharedSliceMessage slice);
   /// The channel's messages are no longer sent.

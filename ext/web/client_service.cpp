@@ -291,11 +291,18 @@ void ClientService::SetTopics(const std::vector<SharedTopic>& topics) {
 void ClientService::Deliver(std::uint32_t channel, const SharedMessage& message) {
   const auto topic = topics_.find(channel);
   if (topic == topics_.end()) return;  // it has just gone
+  const bool is_video = topic->second->channel().schema == foxglove::Schema::kCompressedVideo;
   for (const auto& client : clients_) {
     const auto found = client->subscriptions.find(channel);
     if (found == client->subscriptions.end()) continue;
-    if (client->Send({channel, found->second, message}, topic->second->depth()))
+    // Video would take the room of the slices that a slow link lacks.
+    if (is_video && slices_.IsLate(client.get())) {
+      client->Skip(channel);
       ++counters_.messages_dropped;
+      continue;
+    }
+    counters_.messages_dropped +=
+        client->Send({channel, found->second, message}, topic->second->depth());
   }
   CountSent();
 }

@@ -29,10 +29,13 @@ using lidar::web::SharedTopic;
 constexpr const char* kFixedFrame = "odom";
 constexpr const char* kTransforms = "/tf";
 constexpr const char* kPoses = "/pose";
+constexpr const char* kCamera = "/camera";
+/// Frames that may wait: a quarter of a second of most cameras.
+constexpr std::size_t kVideoDepth = 8;
 /// A scan has no more slices in our streams; each has a transform.
 constexpr guint kMaxDepth = 64;
 
-enum class Kind { kNone, kCloud, kDraco, kOdometry, kSlices };
+enum class Kind { kNone, kCloud, kDraco, kOdometry, kSlices, kH264, kVp8 };
 
 struct State {
   std::mutex mutex;  // guards the settings and the pointer
@@ -122,12 +125,16 @@ Kind KindOf(GstCaps* caps, std::optional<CloudInfo>* info, std::string* why) {
   if (gst_structure_has_name(s, GST_LIDAR_DRACO_MEDIA_TYPE)) return Kind::kDraco;
   if (gst_structure_has_name(s, GST_LIDAR_ODOMETRY_MEDIA_TYPE)) return Kind::kOdometry;
   if (gst_structure_has_name(s, GST_LIDAR_SLICE_MEDIA_TYPE)) return Kind::kSlices;
+  if (gst_structure_has_name(s, "video/x-h264")) return Kind::kH264;
+  if (gst_structure_has_name(s, "video/x-vp8")) return Kind::kVp8;
   *info = CloudInfo::FromFrameCaps(caps, why);
   if (!*info) return Kind::kNone;
   if ((*info)->fields.HasPackedXyz()) return Kind::kCloud;
   *why = "x, y and z are not F32 side by side";
   return Kind::kNone;
 }
+
+bool IsVideo(Kind kind) { return kind == Kind::kH264 || kind == Kind::kVp8; }
 
 /// Coded caps have a framerate, too.
 guint64 ScanDurationOf(GstCaps* caps) {
@@ -136,6 +143,13 @@ guint64 ScanDurationOf(GstCaps* caps) {
   if (!gst_structure_get_fraction(gst_caps_get_structure(caps, 0), "framerate", &n, &d) || n <= 0)
     return 0;
   return gst_util_uint64_scale_int(GST_SECOND, d, n);
+}
+
+bool OpenVideo(GstBaseSink* sink, const std::string& name) {
+  State& state = StateOf(sink);
+  if (!OpenTopic(sink, name, Schema::kCompressedVideo, &state.data)) return false;
+  state.data->set_depth(kVideoDepth);
+  return true;
 }
 
 bool OpenSlices(GstBaseSink* sink, const InputSettings& settings, const GstCaps* caps) {
@@ -164,6 +178,9 @@ bool OpenTopics(GstBaseSink* sink, Kind kind, const GstCaps* caps) {
       return OpenPoses(sink, TopicName(settings, kPoses));
     case Kind::kSlices:
       return OpenSlices(sink, settings, caps);
+    case Kind::kH264:
+    case Kind::kVp8:
+      return OpenVideo(sink, TopicName(settings, kCamera));
     case Kind::kNone:
       break;
   }
@@ -183,7 +200,7 @@ gboolean SetCaps(GstBaseSink* sink, GstCaps* caps) {
     return FALSE;
   }
   if (info) state.info = std::move(*info);
-  if (kind != Kind::kOdometry) state.used->scan_duration = ScanDurationOf(caps);
+  if (kind != Kind::kOdometry && !IsVideo(kind)) state.used->scan_duration = ScanDurationOf(caps);
   // Clouds of another width need no other channel; coded slices are another stream.
   if (kind == state.kind && kind != Kind::kSlices) return TRUE;
   CloseTopics(&state);
@@ -193,10 +210,22 @@ gboolean SetCaps(GstBaseSink* sink, GstCaps* caps) {
   return good;
 }
 
-guint64 TimeOf(GstBuffer* buffer) {
+/// How long ago the clock of the pipeline was at the buffer's timestamp; 0: not known.
+guint64 AgeOf(GstBaseSink* sink, GstBuffer* buffer) {
+  const guint64 running_time =
+      gst_segment_to_running_time(&sink->segment, GST_FORMAT_TIME, GST_BUFFER_PTS(buffer));
+  const std::unique_ptr<GstClock, Unref> clock(gst_element_get_clock(GST_ELEMENT(sink)));
+  if (!clock || !GST_CLOCK_TIME_IS_VALID(running_time)) return 0;
+  const guint64 then = gst_element_get_base_time(GST_ELEMENT(sink)) + running_time;
+  const guint64 now = gst_clock_get_time(clock.get());
+  return now > then ? now - then : 0;
+}
+
+/// The capture time, or the time at which the buffer was due.
+guint64 TimeOf(GstBaseSink* sink, GstBuffer* buffer) {
   const GstClockTime captured = gst_lidar_buffer_get_capture_time(buffer);
   if (GST_CLOCK_TIME_IS_VALID(captured)) return captured;
-  return static_cast<guint64>(g_get_real_time()) * GST_USECOND;
+  return static_cast<guint64>(g_get_real_time()) * GST_USECOND - AgeOf(sink, buffer);
 }
 
 Pose PoseOf(const GstLidarPose& meta) {
@@ -271,6 +300,17 @@ bool RenderSlice(State* state, const Header& header, GstBuffer* buffer, const Bu
   return state->slices->Push(std::move(message));
 }
 
+/// A client whose link has room for no frame goes on with the next key frame.
+bool RenderVideo(State* state, const Header& header, GstBuffer* buffer, const BufferMap& map) {
+  const char* format = state->kind == Kind::kVp8 ? "vp8" : "h264";
+  const bool is_delta = GST_BUFFER_FLAG_IS_SET(buffer, GST_BUFFER_FLAG_DELTA_UNIT);
+  if (!state->data->wanted()) return true;
+  state->used->server->Publish(
+      state->data,
+      {header.unix_ns, lidar::foxglove::EncodeVideo(header, map.view(), format), is_delta});
+  return true;
+}
+
 /// Position and orientation as seven doubles, and the tracking.
 bool RenderOdometry(State* state, const Header& header, const BufferMap& map) {
   lidar::ByteReader in(map.view());
@@ -286,14 +326,15 @@ bool RenderOdometry(State* state, const Header& header, const BufferMap& map) {
 void LearnDepth(State* state, GstBuffer* buffer) {
   GstLidarSlice slice;
   gst_lidar_buffer_get_slice(buffer, &slice);
-  if (state->data) state->data->set_depth(CLAMP(slice.slice_count, 1, kMaxDepth));
+  if (state->data && !IsVideo(state->kind))
+    state->data->set_depth(CLAMP(slice.slice_count, 1, kMaxDepth));
 }
 
 GstFlowReturn Render(GstBaseSink* sink, GstBuffer* buffer) {
   State& state = StateOf(sink);
   if (!state.used || state.kind == Kind::kNone) return GST_FLOW_NOT_NEGOTIATED;
   LearnDepth(&state, buffer);
-  const Header header{TimeOf(buffer),
+  const Header header{TimeOf(sink, buffer),
                       lidar::web::SettingsOf(GST_LIDAR_FOXGLOVE_INPUT(sink)).frame_id};
   if (state.kind != Kind::kOdometry) PublishPoseOfCloud(sink, buffer, header);
   const BufferMap map(buffer, GST_MAP_READ);
@@ -303,6 +344,7 @@ GstFlowReturn Render(GstBaseSink* sink, GstBuffer* buffer) {
     if (state.kind == Kind::kDraco) good = RenderDraco(&state, header, map);
     if (state.kind == Kind::kSlices) good = RenderSlice(&state, header, buffer, map);
     if (state.kind == Kind::kOdometry) good = RenderOdometry(&state, header, map);
+    if (IsVideo(state.kind)) good = RenderVideo(&state, header, buffer, map);
   }
   if (!good) {
     ++state.used->malformed;
@@ -334,11 +376,13 @@ static void gst_lidar_foxglove_input_init(GstLidarFoxgloveInput* self) { self->s
 static void gst_lidar_foxglove_input_class_init(GstLidarFoxgloveInputClass* klass) {
   GST_DEBUG_CATEGORY_INIT(gst_lidar_foxglove_input_debug, "foxglovesink", 0, "Foxglove server");
   OwnState<GstLidarFoxgloveInput, gst_lidar_foxglove_input_parent_class>(G_OBJECT_CLASS(klass));
-  Describe(klass, {"Foxglove input", "Sink", "One stream of foxglovesink"},
-           {{"sink", GST_PAD_SINK,
-             GST_LIDAR_CLOUD_MEDIA_TYPE "; " GST_LIDAR_DRACO_MEDIA_TYPE
-                                        ", geometry=xyz; " GST_LIDAR_ODOMETRY_MEDIA_TYPE
-                                        "; " GST_LIDAR_SLICE_MEDIA_TYPE}});
+  Describe(
+      klass, {"Foxglove input", "Sink", "One stream of foxglovesink"},
+      {{"sink", GST_PAD_SINK,
+        GST_LIDAR_CLOUD_MEDIA_TYPE
+        "; " GST_LIDAR_DRACO_MEDIA_TYPE ", geometry=xyz; " GST_LIDAR_ODOMETRY_MEDIA_TYPE
+        "; " GST_LIDAR_SLICE_MEDIA_TYPE "; video/x-h264, stream-format=byte-stream, alignment=au; "
+        "video/x-vp8"}});
   auto* sink = GST_BASE_SINK_CLASS(klass);
   sink->start = Start;
   sink->stop = Stop;

@@ -104,10 +104,11 @@ Counters CountersOf(const Hub& hub) {
 
 const std::array<Property<InputSettings>, 2> kPadProperties = {{
     {"topic",
-     "Topic of the channel; NULL: /points, /points_draco or /pose, with the number of the pad from "
+     "Topic of the channel; NULL: /points, /points_draco, /pose or /camera, with the number of the "
+     "pad from "
      "the second on",
      &InputSettings::topic},
-    {"frame-id", "Frame of the clouds, or of the sensor whose poses come",
+    {"frame-id", "Frame of the clouds or pictures, or of the sensor whose poses come",
      &InputSettings::frame_id},
 }};
 
@@ -393,7 +394,8 @@ static void gst_lidar_foxglove_sink_class_init(GstLidarFoxgloveSinkClass* klass)
             "Serves clouds, poses and statistics to browsers and to Foxglove"},
            {{"sink_%u", GST_PAD_SINK,
              "application/x-pointcloud2; application/x-draco, geometry=xyz; "
-             "application/x-odometry; application/x-lidar-slice",
+             "application/x-odometry; application/x-lidar-slice; "
+             "video/x-h264, stream-format=byte-stream, alignment=au; video/x-vp8",
              GST_PAD_REQUEST, gst_lidar_foxglove_pad_get_type()}});
   gst_type_mark_as_plugin_api(gst_lidar_foxglove_pad_get_type(), static_cast<GstPluginAPIFlags>(0));
 }

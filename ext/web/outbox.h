@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <deque>
 #include <optional>
+#include <set>
 
 #include "ext/web/topic.h"
 
@@ -18,13 +19,16 @@ class Outbox {
     SharedMessage message;
   };
 
-  /// True where an older message of the channel gave way: `depth` of them are kept.
-  bool Push(Item item, std::size_t depth) {
+  /// How many messages of the channel gave way, this one included: `depth` of them are kept. What
+  /// continues a message that gave way does so, too.
+  std::size_t Push(Item item, std::size_t depth) {
     const std::uint32_t channel = item.channel_id;
+    if (!item.message->continues)
+      whole_.insert(channel);
+    else if (whole_.count(channel) == 0)
+      return 1;
     items_.push_back(std::move(item));
-    if (Count(channel) <= depth) return false;
-    items_.erase(Find(channel));
-    return true;
+    return Count(channel) > depth ? DropOldest(channel) : 0;
   }
   std::optional<Item> Pop() {
     if (items_.empty()) return std::nullopt;
@@ -32,11 +36,23 @@ class Outbox {
     items_.pop_front();
     return item;
   }
+  /// A message of the channel goes elsewhere: what continues it gives way.
+  void Skip(std::uint32_t channel) { whole_.erase(channel); }
   void Forget(std::uint32_t channel) {
+    Skip(channel);
     while (Count(channel) > 0) items_.erase(Find(channel));
   }
 
  private:
+  std::size_t DropOldest(std::uint32_t channel) {
+    std::size_t dropped = 0;
+    for (auto it = Find(channel); it != items_.end(); it = Find(channel), ++dropped) {
+      if (dropped > 0 && !it->message->continues) return dropped;
+      items_.erase(it);
+    }
+    Skip(channel);
+    return dropped;
+  }
   std::deque<Item>::iterator Find(std::uint32_t channel) {
     return std::find_if(items_.begin(), items_.end(),
                         [channel](const Item& i) { return i.channel_id == channel; });
@@ -48,6 +64,7 @@ class Outbox {
   }
 
   std::deque<Item> items_;
+  std::set<std::uint32_t> whole_;  // channels whose last message was not dropped
 };
 
 }  // namespace lidar::web

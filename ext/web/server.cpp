@@ -87,7 +87,10 @@ void Server::Close(const SharedTopic& topic) {
   const std::lock_guard lock(mutex_);
   const auto found = entries_.find(topic->channel().topic);
   if (found == entries_.end() || found->second.topic != topic) return;
-  if (--found->second.users == 0) entries_.erase(found);
+  if (--found->second.users == 0) {
+    inbox_.Forget(topic->channel().id);
+    entries_.erase(found);
+  }
   WakeLocked();
 }
 
@@ -97,8 +100,8 @@ void Server::Publish(const SharedTopic& topic, Message message) {
   const std::lock_guard lock(mutex_);
   const auto found = entries_.find(topic->channel().topic);
   if (found == entries_.end() || found->second.topic != topic) return;
-  if (inbox_.Push({topic->channel().id, 0, std::move(shared)}, topic->depth()))
-    ++counters_.messages_dropped;
+  counters_.messages_dropped +=
+      inbox_.Push({topic->channel().id, 0, std::move(shared)}, topic->depth());
   WakeLocked();
 }
 

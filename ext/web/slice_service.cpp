@@ -52,6 +52,13 @@ void SliceService::OnRequest(Client* client, const foxglove::Request& request) {
   }
 }
 
+bool SliceService::IsLate(Client* client) const {
+  return std::any_of(streams_.begin(), streams_.end(), [client](const auto& s) {
+    const auto viewer = s.second.viewers.find(client);
+    return viewer != s.second.viewers.end() && viewer->second.feed.IsLate(Now());
+  });
+}
+
 void SliceService::Tick() {
   for (auto& [channel, stream] : streams_) ServeAll(&stream);
 }

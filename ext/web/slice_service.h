@@ -25,6 +25,9 @@ class SliceService {
   /// Now and then: what waits for time to pass.
   void Tick();
 
+  /// The client has not drawn in time what it got: its link has no room.
+  bool IsLate(Client* client) const;
+
   /// Scans that viewers were too slow for.
   std::uint64_t scans_skipped() const { return scans_skipped_; }
 

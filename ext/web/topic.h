@@ -18,6 +18,7 @@ namespace lidar::web {
 struct Message {
   std::uint64_t unix_ns = 0;
   std::vector<std::uint8_t> payload;
+  bool continues = false;  // worthless without the message before it: a frame that is no key frame
 };
 using SharedMessage = std::shared_ptr<const Message>;
 

@@ -147,6 +147,17 @@ std::vector<std::uint8_t> EncodeDracoCloud(const Header& header, ByteView draco)
   return bytes;
 }
 
+std::vector<std::uint8_t> EncodeVideo(const Header& header, ByteView frame, const char* format) {
+  std::vector<std::uint8_t> bytes;
+  bytes.reserve(frame.size + 128);
+  ProtoWriter out(&bytes);
+  WriteTime(out, header.unix_ns);
+  out.String(2, header.frame_id);
+  out.Bytes(3, frame);
+  out.String(4, format);
+  return bytes;
+}
+
 std::vector<std::uint8_t> EncodePose(const Header& header, const Pose& pose) {
   std::vector<std::uint8_t> bytes;
   ProtoWriter out(&bytes);

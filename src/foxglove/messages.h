@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// What channels carry, as protobuf: clouds, poses and transforms.
+// What channels carry, as protobuf: clouds, video, poses and transforms.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -44,6 +44,8 @@ EncodedCloud EncodePointCloud(const Header& header, const PointsView& points,
                               std::uint32_t max_points);
 /// foxglove.CompressedPointCloud of a Draco file.
 std::vector<std::uint8_t> EncodeDracoCloud(const Header& header, ByteView draco);
+/// foxglove.CompressedVideo of one frame; `format` is "h264" (Annex B) or "vp8".
+std::vector<std::uint8_t> EncodeVideo(const Header& header, ByteView frame, const char* format);
 /// foxglove.PoseInFrame.
 std::vector<std::uint8_t> EncodePose(const Header& header, const Pose& pose);
 /// foxglove.FrameTransform: `pose` is that of `child` in the frame of the header.

@@ -78,6 +78,11 @@ const std::vector<Message> kMessages = {
       {"pose", 3, Type::kMessage, kPose},
       {"data", 4, Type::kBytes},
       {"format", 5, Type::kString}}},
+    {"CompressedVideo",
+     {{"timestamp", 1, Type::kMessage, kTimestamp},
+      {"frame_id", 2, Type::kString},
+      {"data", 3, Type::kBytes},
+      {"format", 4, Type::kString}}},
     {"PoseInFrame",
      {{"timestamp", 1, Type::kMessage, kTimestamp},
       {"frame_id", 2, Type::kString},
@@ -191,6 +196,8 @@ SchemaText TextOf(Schema schema) {
       return protobuf("foxglove.PointCloud");
     case Schema::kCompressedPointCloud:
       return protobuf("foxglove.CompressedPointCloud");
+    case Schema::kCompressedVideo:
+      return protobuf("foxglove.CompressedVideo");
     case Schema::kPose:
       return protobuf("foxglove.PoseInFrame");
     case Schema::kFrameTransform:

@@ -11,6 +11,7 @@ namespace lidar::foxglove {
 enum class Schema {
   kPointCloud,
   kCompressedPointCloud,
+  kCompressedVideo,
   kPose,
   kFrameTransform,
   kStatistics,

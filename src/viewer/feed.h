@@ -56,6 +56,8 @@ class Feed {
   /// The viewer's decoder lacks something: it gets slices that stand alone.
   void OnLacksReference();
 
+  /// What it got takes too long for the next scan to begin.
+  bool IsLate(Time now) const { return pace_.IsLate(now); }
   /// It waits for the re-coded form of a slice.
   bool wants_recoded() const { return wants_recoded_; }
   /// Scans that the pace left out.

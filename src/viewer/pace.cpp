@@ -18,9 +18,13 @@ bool Pace::MayBegin(Time now) {
   if (max_bitrate_ > DataRate() && credit_ < DataSize()) return false;
   if (sent_.empty()) return true;
   if (!shortest_) return begun_ < kFirstScans;
-  if (now - sent_.front().at > kPatience) return false;
-  if (now - shortest_at_ > kDelayMemory) return false;
-  return unacknowledged_ / rate() <= *shortest_ + kSlack;
+  return now - shortest_at_ <= kDelayMemory && !IsLate(now);
+}
+
+bool Pace::IsLate(Time now) const {
+  if (sent_.empty()) return false;
+  if (now - sent_.front().at > kPatience) return true;
+  return shortest_ && unacknowledged_ / rate() > *shortest_ + kSlack;
 }
 
 void Pace::OnSent(Time now, SliceId slice, DataSize size) {

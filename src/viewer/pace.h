@@ -25,6 +25,8 @@ class Pace {
   explicit Pace(DataRate max_bitrate) : max_bitrate_(max_bitrate) {}
 
   bool MayBegin(Time now);
+  /// What is not acknowledged takes too long.
+  bool IsLate(Time now) const;
   void OnSent(Time now, SliceId slice, DataSize size);
   /// The viewer has drawn the slice, and all that was sent before it.
   void OnDrawn(Time now, SliceId slice);

@@ -144,6 +144,16 @@ TEST(PointCloud, WithoutAReturnIsEmpty) {
   EXPECT_EQ(Parse(encoded.message).Text(6), "");
 }
 
+TEST(Video, CarriesTheFrameAsItIs) {
+  const std::vector<std::uint8_t> frame = {0, 0, 0, 1, 0x65};
+  const ProtoMessage video =
+      Parse(EncodeVideo({kTime_ns, "camera"}, {frame.data(), frame.size()}, "h264"));
+  ExpectTime(video);
+  EXPECT_EQ(video.Text(2), "camera");
+  EXPECT_EQ(video.Text(3), std::string(frame.begin(), frame.end()));
+  EXPECT_EQ(video.Text(4), "h264");
+}
+
 TEST(DracoCloud, CarriesTheFileAsItIs) {
   const std::vector<std::uint8_t> file = {'D', 'R', 'A', 'C', 'O'};
   const ProtoMessage cloud =
@@ -180,8 +190,8 @@ TEST(Schemas, DescribeEachMessageAndWhatItNeeds) {
   EXPECT_EQ(file.Text(12), "proto3");
   std::vector<std::string> names;
   for (std::size_t i = 0; i < file.Count(4); ++i) names.push_back(file.Message(4, i).Text(1));
-  for (const Schema schema : {Schema::kPointCloud, Schema::kCompressedPointCloud, Schema::kPose,
-                              Schema::kFrameTransform}) {
+  for (const Schema schema : {Schema::kPointCloud, Schema::kCompressedPointCloud,
+                              Schema::kCompressedVideo, Schema::kPose, Schema::kFrameTransform}) {
     const SchemaText text = TextOf(schema);
     const std::string name = std::string(text.name).substr(sizeof "foxglove." - 1);
     EXPECT_NE(std::find(names.begin(), names.end(), name), names.end()) << name;

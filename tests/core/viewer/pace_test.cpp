@@ -194,6 +194,22 @@ TEST(Pace, GivesTwoScansToAViewerThatAcknowledgesNothing) {
   EXPECT_EQ(scans, Pace::kFirstScans);
 }
 
+TEST(Pace, IsLateWhereWhatWasSentTakesTooLong) {
+  Pace pace{DataRate()};
+  Time now{};
+  EXPECT_FALSE(pace.IsLate(now));
+  // A kilobyte in 10 ms.
+  pace.OnSent(now, {1, 0}, DataSize::Bytes(1000));
+  pace.OnDrawn(now += milliseconds(10), {1, 0});
+  pace.OnSent(now, {2, 0}, DataSize::Bytes(10'000));
+  EXPECT_FALSE(pace.IsLate(now));
+  pace.OnSent(now, {2, 1}, DataSize::Bytes(2000));
+  EXPECT_TRUE(pace.IsLate(now));
+  pace.OnDrawn(now += milliseconds(10), {2, 0});
+  EXPECT_FALSE(pace.IsLate(now));
+  EXPECT_TRUE(pace.IsLate(now + Pace::kPatience + milliseconds(1)));
+}
+
 TEST(Pace, KeepsMaxBitrate) {
   Viewer viewer({Mbps(100), milliseconds(1)}, Mbps(1));
   viewer.Run(std::chrono::seconds(20));

@@ -6,8 +6,9 @@
 namespace lidar::web {
 namespace {
 
-Outbox::Item Of(std::uint32_t channel, std::uint32_t number) {
+Outbox::Item Of(std::uint32_t channel, std::uint32_t number, bool continues = false) {
   auto message = std::make_shared<Message>();
+  message->continues = continues;
   message->unix_ns = number;
   return {channel, 10 * channel, message};
 }
@@ -40,6 +41,36 @@ TEST(Outbox, TheOldestOfAChannelGivesWayAndNoOther) {
   EXPECT_FALSE(outbox.Push(Of(1, 4), 1));
   EXPECT_TRUE(outbox.Push(Of(1, 5), 1));
   EXPECT_EQ(Drain(&outbox), (std::vector<std::uint64_t>{5}));
+}
+
+TEST(Outbox, DropsWhatContinuesAMessageThatGaveWay) {
+  Outbox outbox;
+  EXPECT_EQ(outbox.Push(Of(1, 0, true), 3), 1U);  // the client came in the middle
+  for (std::uint32_t i = 1; i <= 3; ++i) EXPECT_EQ(outbox.Push(Of(1, i, i > 1), 3), 0U);
+  EXPECT_EQ(outbox.Push(Of(2, 9), 3), 0U);
+  EXPECT_EQ(outbox.Push(Of(1, 4, true), 3), 4U);
+  EXPECT_EQ(outbox.Push(Of(1, 5, true), 3), 1U);
+  EXPECT_EQ(outbox.Push(Of(1, 6), 3), 0U);
+  EXPECT_EQ(outbox.Push(Of(1, 7, true), 3), 0U);
+  EXPECT_EQ(Drain(&outbox), (std::vector<std::uint64_t>{9, 6, 7}));
+}
+
+TEST(Outbox, KeepsANewBeginningWhereTheOldOneGivesWay) {
+  Outbox outbox;
+  for (std::uint32_t i = 1; i <= 4; ++i) outbox.Push(Of(1, i, i != 1 && i != 3), 4);
+  EXPECT_EQ(outbox.Push(Of(1, 5, true), 4), 2U);
+  EXPECT_EQ(Drain(&outbox), (std::vector<std::uint64_t>{3, 4, 5}));
+}
+
+TEST(Outbox, TakesNothingThatContinuesWhatWentElsewhere) {
+  Outbox outbox;
+  outbox.Push(Of(1, 1), 4);
+  outbox.Skip(1);
+  EXPECT_EQ(outbox.Push(Of(1, 2, true), 4), 1U);
+  EXPECT_EQ(Drain(&outbox), (std::vector<std::uint64_t>{1}));
+  outbox.Push(Of(1, 3), 4);
+  outbox.Forget(1);
+  EXPECT_EQ(outbox.Push(Of(1, 4, true), 4), 1U);
 }
 
 TEST(Outbox, ForgetsAChannel) {

@@ -254,6 +254,39 @@ TEST(Slices, TakeNoMoreThanMaxBitrate) {
   EXPECT_GE(edge.sink.Stat("scans-skipped"), 3U);
 }
 
+TEST(Slices, GoBeforeTheCameraOfAViewerThatFallsBehind) {
+  Edge edge;
+  edge.Push();
+  Harness camera(gst_harness_new_with_element(edge.sink.element(), "sink_1", nullptr));
+  gst_harness_set_src_caps_str(camera.get(), "video/x-vp8");
+  const auto frames = [&] {
+    return edge.sink.Stat("messages-sent") + edge.sink.Stat("messages-dropped");
+  };
+  const auto push_frame = [&] {
+    const guint64 before = frames();
+    gst_harness_push(camera.get(), gst_buffer_new_memdup("key", 3));
+    EXPECT_TRUE(WaitUntil([&] { return frames() > before; }));
+  };
+  Viewer viewer(&edge.sink);
+  viewer.peer.Subscribe("/camera_1", 5);
+  edge.Push();
+  viewer.Draw();
+  viewer.peer.Sync();
+  push_frame();
+  EXPECT_EQ(viewer.peer.Next().subscription, 5U);
+  edge.Push();
+  viewer.Draw(false);
+  ASSERT_TRUE(WaitUntil([&] {
+    push_frame();
+    return edge.sink.Stat("messages-dropped") > 0;
+  }));
+  viewer.Acknowledge(0, 2);
+  viewer.peer.Sync();
+  viewer.peer.received.clear();
+  push_frame();
+  EXPECT_EQ(viewer.peer.Next().subscription, 5U);
+}
+
 TEST(Slices, HaveTheTopicOfTheirRobot) {
   Edge edge("sink_0::topic=/r7/points");
   edge.Push();
