@@ -20,18 +20,22 @@ bool Certificate::Load(std::string* why) {
     return false;
   }
   certificate_ = std::move(fresh);
+  has_noticed_ = false;
   return true;
 }
 
 bool Certificate::Renew(std::string* why) { return Stamp() == stamp_ || Load(why); }
 
-bool Certificate::IsOver() const {
-  GDateTime* until =
-      certificate_ ? g_tls_certificate_get_not_valid_after(certificate_.get()) : nullptr;
-  if (until == nullptr) return false;
-  const bool is_over = g_date_time_to_unix(until) < g_get_real_time() / G_USEC_PER_SEC;
-  g_date_time_unref(until);
-  return is_over;
+std::string Certificate::NoticeOfEnd(std::int64_t now_s) {
+  using Date = std::unique_ptr<GDateTime, decltype(&g_date_time_unref)>;
+  if (!certificate_ || has_noticed_) return "";
+  const Date end(g_tls_certificate_get_not_valid_after(certificate_.get()), g_date_time_unref);
+  if (!end || g_date_time_to_unix(end.get()) > now_s) return "";
+  has_noticed_ = true;
+  const Date utc(g_date_time_to_utc(end.get()), g_date_time_unref);
+  const std::unique_ptr<gchar, decltype(&g_free)> text(
+      g_date_time_format(utc.get(), "%Y-%m-%d %H:%M UTC"), g_free);
+  return "The certificate " + file_ + " ran out on " + text.get() + ": browsers refuse it.";
 }
 
 std::string Certificate::Stamp() const {

@@ -3,7 +3,7 @@
 #pragma once
 #include <gio/gio.h>
 
-#include <functional>
+#include <cstdint>
 #include <string>
 
 #include "ext/web/glib_ptr.h"
@@ -23,8 +23,8 @@ class Certificate {
   /// and returns false, and why, once.
   bool Renew(std::string* why);
   GTlsCertificate* get() const { return certificate_.get(); }
-  /// The certificate has run out.
-  bool IsOver() const;
+  /// What a user should know of a certificate that has run out, once; else empty.
+  std::string NoticeOfEnd(std::int64_t now_s);
 
  private:
   /// Says which files those are.
@@ -33,6 +33,7 @@ class Certificate {
   const std::string file_;
   const std::string key_file_;
   std::string stamp_;
+  bool has_noticed_ = false;
   ObjectPtr<GTlsCertificate> certificate_;
 };
 

@@ -15,7 +15,7 @@ using foxglove::Request;
 constexpr std::uint32_t kStatisticsId = 0;
 constexpr guint kTick_ms = 1000;
 constexpr guint kStatistics_ms = 250;
-/// Under which a request keeps what its client may have.
+/// A request keeps under it what its client may have.
 constexpr const char* kGrant = "grant";
 
 void Answer(SoupServerMessage* request, guint status, const char* text) {
@@ -73,7 +73,7 @@ ClientService::~ClientService() {
 
 std::uint16_t ClientService::Listen(std::string* error) {
   if (certificate_.is_wanted() && !certificate_.Load(error)) return 0;
-  if (certificate_.IsOver() && config_.warn) config_.warn("The certificate has run out.");
+  WarnOfEnd();
   const ObjectPtr<GInetAddress> address(g_inet_address_new_from_string(config_.address.c_str()));
   return door_.Listen(address.get(), config_.port, error);
 }
@@ -336,8 +336,15 @@ void ClientService::SendStatistics() {
 /// Connections that come from now on have the new one.
 void ClientService::RenewCertificate() {
   std::string why;
-  if (!certificate_.is_wanted() || certificate_.Renew(&why) || !config_.warn) return;
-  config_.warn("The renewed certificate cannot be read, the old one stays: " + why);
+  if (!certificate_.is_wanted()) return;
+  if (!certificate_.Renew(&why) && config_.warn)
+    config_.warn("The renewed certificate cannot be read, the old one stays: " + why);
+  WarnOfEnd();
+}
+
+void ClientService::WarnOfEnd() {
+  const std::string notice = certificate_.NoticeOfEnd(g_get_real_time() / G_USEC_PER_SEC);
+  if (!notice.empty() && config_.warn) config_.warn(notice);
 }
 
 void ClientService::Tick() {

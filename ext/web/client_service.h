@@ -46,6 +46,7 @@ class ClientService {
   void Upgrade(SoupServerMessage* request);
   void AddClient(SoupServerMessage* request);
   void RenewCertificate();
+  void WarnOfEnd();
 
   void Advertise(Client* client, std::vector<foxglove::Channel> channels);
   void OnText(Client* client, const std::vector<std::uint8_t>& text);
