@@ -13,6 +13,8 @@ using foxglove::Opcode;
 /// A subscription is a hundred bytes.
 constexpr std::size_t kMaxClientMessage = 64 * 1024;
 constexpr std::size_t kMaxControls = 64;
+/// Two scans have no more: 1024 each.
+constexpr std::size_t kMaxSlices = 2048;
 constexpr gint64 kSecond_us = G_USEC_PER_SEC;
 constexpr gint64 kAskAfter_us = 10 * kSecond_us;
 constexpr gint64 kSilent_us = 30 * kSecond_us;
@@ -119,6 +121,7 @@ std::size_t Client::Send(Outbox::Item item, std::size_t depth) {
 void Client::SendSlice(std::uint32_t channel, std::uint32_t subscription,
                        SharedSliceMessage slice) {
   if (closed_) return;
+  if (slices_.size() >= kMaxSlices) return End();
   slices_.push_back({channel, subscription, std::move(slice)});
   Write();
 }

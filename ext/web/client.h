@@ -38,7 +38,8 @@ class Client {
   std::size_t Send(Outbox::Item item, std::size_t depth);
   /// The channel's next message does not come here.
   void Skip(std::uint32_t channel) { outbox_.Skip(channel); }
-  /// Slices wait in order, and are bounded by their sender.
+  /// Slices wait in order. Their sender gives more only where earlier ones are drawn, so a client
+  /// that lets too many wait has lied, and is closed.
   void SendSlice(std::uint32_t channel, std::uint32_t subscription, SharedSliceMessage slice);
   /// The channel's messages are no longer sent.
   void Forget(std::uint32_t channel);
