@@ -91,7 +91,7 @@ void FrontDoor::Accept(GSocketConnection* connection) {
     Enter(connection, G_IO_STREAM(connection));
 }
 
-/// Whoever opens many connections ends his own.
+/// An address that opens many connections ends its own.
 void FrontDoor::MakeRoom(const std::string& address) {
   const auto is_his = [&address](const Visitor& v) { return v.address == address; };
   const auto his =
@@ -121,6 +121,7 @@ void FrontDoor::Evict(Visitor* visitor) {
   g_object_weak_unref(G_OBJECT(connection), OnGone, visitor);
   g_socket_shutdown(g_socket_connection_get_socket(connection), TRUE, TRUE, nullptr);
   waiting_.remove_if([visitor](const Visitor& v) { return &v == visitor; });
+  handshakes_.Forget(connection);
   ++evicted_;
 }
 

@@ -2,6 +2,7 @@
 #include "ext/web/handshakes.h"
 
 #include <algorithm>
+#include <map>
 
 namespace lidar::web {
 namespace {
@@ -10,6 +11,8 @@ namespace {
 constexpr int kAtOnce = 8;
 constexpr int kOfAnAddress = 3;
 constexpr gint64 kLongestHandshake_us = 10 * gint64{G_USEC_PER_SEC};
+/// A round trip of a poor link.
+constexpr gint64 kLongestWhileOthersWait_us = gint64{G_USEC_PER_SEC};
 
 std::string AddressOf(GSocketConnection* connection) {
   const ObjectPtr<GSocketAddress> peer(g_socket_connection_get_remote_address(connection, nullptr));
@@ -55,22 +58,31 @@ gboolean Handshakes::OnReadable(GSocket*, GIOCondition, gpointer data) {
   return G_SOURCE_REMOVE;
 }
 
-bool Handshakes::HasTurn(const Entry& entry) const {
-  if (!entry.is_ready || entry.secure) return false;
-  int running = 0;
-  int of_address = 0;
-  for (const EntryPtr& other : entries_) {
-    if (!other->secure) continue;
-    ++running;
-    if (other->address == entry.address) ++of_address;
+Handshakes::EntryPtr Handshakes::Next() const {
+  std::map<std::string, int> all;
+  std::map<std::string, int> running;
+  for (const EntryPtr& entry : entries_) {
+    ++all[entry->address];
+    if (entry->secure) ++running[entry->address];
   }
-  return running < kAtOnce && of_address < kOfAnAddress;
+  EntryPtr next;
+  for (const EntryPtr& entry : entries_) {
+    if (!entry->is_ready || entry->secure || running[entry->address] >= kOfAnAddress) continue;
+    if (!next || all[entry->address] < all[next->address]) next = entry;
+  }
+  return next;
 }
 
 void Handshakes::StartMore() {
-  const std::list<EntryPtr> all = entries_;
-  for (const EntryPtr& entry : all)
-    if (HasTurn(*entry)) Start(entry);
+  const auto running = [this] {
+    return std::count_if(entries_.begin(), entries_.end(),
+                         [](const EntryPtr& entry) { return entry->secure != nullptr; });
+  };
+  while (running() < kAtOnce) {
+    const EntryPtr next = Next();
+    if (!next) return;
+    Start(next);
+  }
 }
 
 void Handshakes::Start(const EntryPtr& entry) {
@@ -100,10 +112,22 @@ void Handshakes::Finish(const EntryPtr& entry, bool is_secure) {
   StartMore();
 }
 
+void Handshakes::Forget(GSocketConnection* connection) {
+  const auto found = std::find_if(entries_.begin(), entries_.end(), [&](const EntryPtr& entry) {
+    return entry->connection.get() == connection;
+  });
+  if (found == entries_.end()) return;
+  if ((*found)->secure)
+    g_cancellable_cancel((*found)->cancel.get());
+  else
+    entries_.erase(found);
+}
+
 void Handshakes::Tick(gint64 now_us) {
   const std::list<EntryPtr> all = entries_;
+  const gint64 longest_us = Next() ? kLongestWhileOthersWait_us : kLongestHandshake_us;
   for (const EntryPtr& entry : all)
-    if (entry->secure && now_us - entry->since_us > kLongestHandshake_us)
+    if (entry->secure && now_us - entry->since_us > longest_us)
       g_cancellable_cancel(entry->cancel.get());
 }
 

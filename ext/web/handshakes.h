@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// TLS handshakes, few at a time: each holds a thread of GIO while its peer is slow.
+// TLS handshakes, few at a time: each holds a thread of GIO while its peer is slow. The address
+// with the fewest connections has the next turn, so a thousand that stop half-way hold up their
+// own.
 #pragma once
 #include <functional>
 #include <list>
@@ -22,6 +24,8 @@ class Handshakes {
 
   /// Waits for the first byte of the peer, and for its turn.
   void Begin(ObjectPtr<GSocketConnection> connection, GTlsCertificate* certificate);
+  /// The connection has been shut down.
+  void Forget(GSocketConnection* connection);
   /// Once a second: ends those that take too long.
   void Tick(gint64 now_us);
 
@@ -41,9 +45,10 @@ class Handshakes {
   static gboolean OnReadable(GSocket*, GIOCondition, gpointer entry);
   static void OnShaken(GObject* stream, GAsyncResult* result, gpointer entry);
   void StartMore();
+  /// The entry whose turn it is; null where nobody waits.
+  EntryPtr Next() const;
   void Start(const EntryPtr& entry);
   void Finish(const EntryPtr& entry, bool is_secure);
-  bool HasTurn(const Entry& entry) const;
 
   const Done done_;
   std::list<EntryPtr> entries_;  // the oldest first

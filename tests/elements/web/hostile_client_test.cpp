@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Clients that read nothing, say nothing or talk nonsense: the pipeline must not notice.
 #include <gtest/gtest.h>
-#include <sys/resource.h>
 
 #include <algorithm>
 
 #include "src/foxglove/websocket.h"
+#include "tests/elements/web/many_files.h"
 #include "tests/elements/web/web_peer.h"
 #include "tests/support/proto_reader.h"
 
@@ -201,26 +201,6 @@ TEST(SlowClient, MissesWholeScansButNoSliceOfThoseThatItGets) {
     EXPECT_EQ(got[got.size() - i], static_cast<int>(40 * kSlices - i));
 }
 
-/// This process holds both ends of its connections.
-class ManyFiles {
- public:
-  explicit ManyFiles(rlim_t wanted) {
-    getrlimit(RLIMIT_NOFILE, &before_);
-    rlimit limit = before_;
-    limit.rlim_cur = std::max(limit.rlim_cur, std::min(wanted, limit.rlim_max));
-    setrlimit(RLIMIT_NOFILE, &limit);
-    granted_ = limit.rlim_cur;
-  }
-  ~ManyFiles() { setrlimit(RLIMIT_NOFILE, &before_); }
-  ManyFiles(const ManyFiles&) = delete;
-  ManyFiles& operator=(const ManyFiles&) = delete;
-  rlim_t granted() const { return granted_; }
-
- private:
-  rlimit before_{};
-  rlim_t granted_ = 0;
-};
-
 TEST(SilentConnections, ByTheThousandGiveWayToThoseThatAsk) {
   const ManyFiles files(4096);
   const std::size_t count = files.granted() >= 4096 ? 2000 : 200;
@@ -249,6 +229,37 @@ TEST(SilentConnections, OfOneAddressGiveWayToNoneOfAnother) {
   first.Send("GET /nothing HTTP/1.1\r\nHost: localhost\r\n\r\n");
   EXPECT_EQ(first.ReadAll(8), "HTTP/1.1");
 }
+
+struct Named {
+  const char* host;
+  const char* status;
+};
+class HostName : public ::testing::TestWithParam<Named> {};
+/// The owner of a name can let it point to 127.0.0.1, and his page is then of the same origin.
+TEST_P(HostName, OfAnotherSiteReadsNothing) {
+  Sink sink;
+  for (const std::string request : {"GET /session HTTP/1.1\r\n", "GET / HTTP/1.1\r\n"}) {
+    RawClient client(&sink);
+    const bool is_socket = request.find("session") == std::string::npos;
+    const std::string host = GetParam().host;
+    client.Send(request + "Host: " + host + "\r\nOrigin: http://" + host + "\r\n" +
+                (is_socket ? "Upgrade: websocket\r\nConnection: Upgrade\r\n"
+                             "Sec-WebSocket-Key: dGhlIHNhbXBsZSBub25jZQ==\r\n"
+                             "Sec-WebSocket-Version: 13\r\n"
+                             "Sec-WebSocket-Protocol: foxglove.sdk.v1\r\n\r\n"
+                           : "\r\n"));
+    const std::string status = client.ReadAll(12).substr(9);
+    EXPECT_EQ(status,
+              is_socket && GetParam().status == std::string("200") ? "101" : GetParam().status);
+  }
+}
+INSTANTIATE_TEST_SUITE_P(All, HostName,
+                         ::testing::Values(Named{"127.0.0.1:8765", "200"}, Named{"[::1]", "200"},
+                                           Named{"localhost:1", "200"},
+                                           Named{"evil.example", "403"},
+                                           Named{"127.0.0.1.evil.example:8765", "403"},
+                                           Named{"localhost.evil.example", "403"},
+                                           Named{"0x7f000001.example", "403"}));
 
 struct Nonsense {
   const char* name;

@@ -5,6 +5,8 @@
 #include <cstdlib>
 #include <filesystem>
 
+#include "ext/web/certificate.h"
+#include "tests/elements/web/many_files.h"
 #include "tests/elements/web/web_peer.h"
 
 namespace lidar::test {
@@ -28,6 +30,19 @@ class Tls : public ::testing::Test {
         " && openssl req -x509 -newkey ec -pkeyopt ec_paramgen_curve:prime256v1 -nodes "
         "-keyout new-key.pem -out new.pem -subj /CN=" +
         name + " -days " + days + " 2>/dev/null && mv new-key.pem key.pem && mv new.pem cert.pem";
+    return std::system(make.c_str()) == 0;
+  }
+  /// The same, that was valid in January 2020.
+  bool MakeOld() {
+    const std::string make =
+        "cd " + folder_.string() +
+        " && touch index && echo 01 > serial && printf "
+        "'[ca]\\ndefault_ca=d\\n[d]\\ndatabase=index\\n"
+        "serial=serial\\nnew_certs_dir=.\\npolicy=p\\ndefault_md=sha256\\n[p]\\n"
+        "commonName=supplied\\n' > ca.cnf && openssl req -new -newkey ec -pkeyopt "
+        "ec_paramgen_curve:prime256v1 -nodes -keyout key.pem -out request.pem -subj /CN=old "
+        "2>/dev/null && openssl ca -batch -notext -selfsign -config ca.cnf -keyfile key.pem -in "
+        "request.pem -out cert.pem -startdate 20200101000000Z -enddate 20200131120000Z 2>/dev/null";
     return std::system(make.c_str()) == 0;
   }
   std::string Properties() {
@@ -89,6 +104,69 @@ TEST_F(Tls, KeepsACertificateWhoseRenewalIsDamaged) {
   EXPECT_EQ(HttpGet(sink.Url("https")).status, 200U);
   gst_element_set_bus(sink.element(), nullptr);
   gst_object_unref(bus);
+}
+
+TEST_F(Tls, NamesTheDateOnWhichItsCertificateRanOut) {
+  ASSERT_TRUE(MakeOld());
+  const gst::ElementPtr element(
+      gst_parse_launch(("foxglovesink port=0 " + Properties()).c_str(), nullptr));
+  GstBus* bus = gst_bus_new();
+  gst_element_set_bus(element.get(), bus);
+  EXPECT_EQ(gst_element_set_state(element.get(), GST_STATE_READY), GST_STATE_CHANGE_SUCCESS);
+  const gst::MessagePtr warning(gst_bus_pop_filtered(bus, GST_MESSAGE_WARNING));
+  ASSERT_TRUE(warning);
+  GError* error = nullptr;
+  gst_message_parse_warning(warning.get(), &error, nullptr);
+  EXPECT_NE(std::string(error->message).find("ran out on 2020-01-31 12:00 UTC"), std::string::npos)
+      << error->message;
+  g_error_free(error);
+  gst_element_set_state(element.get(), GST_STATE_NULL);
+  gst_element_set_bus(element.get(), nullptr);
+  gst_object_unref(bus);
+}
+
+TEST_F(Tls, SaysOnceThatACertificateRunsOutMeanwhile) {
+  web::Certificate certificate((folder_ / "cert.pem").string(), (folder_ / "key.pem").string());
+  std::string why;
+  ASSERT_TRUE(certificate.Load(&why)) << why;
+  const gint64 now_s = g_get_real_time() / G_USEC_PER_SEC;
+  EXPECT_EQ(certificate.NoticeOfEnd(now_s), "");
+  EXPECT_NE(certificate.NoticeOfEnd(now_s + 3 * 86'400), "");
+  EXPECT_EQ(certificate.NoticeOfEnd(now_s + 4 * 86'400), "");
+  ASSERT_TRUE(Make("renewed"));
+  ASSERT_TRUE(certificate.Renew(&why)) << why;
+  EXPECT_EQ(certificate.NoticeOfEnd(now_s), "");
+  EXPECT_NE(certificate.NoticeOfEnd(now_s + 3 * 86'400), "");
+}
+
+/// Connected from any address of this machine, as 127.0.0.7.
+GSocketConnection* ConnectFrom(const std::string& address, guint port) {
+  GSocketClient* client = g_socket_client_new();
+  GSocketAddress* local = g_inet_socket_address_new_from_string(address.c_str(), 0);
+  g_socket_client_set_local_address(client, local);
+  GSocketConnection* connection = g_socket_client_connect_to_host(
+      client, "127.0.0.1", static_cast<guint16>(port), nullptr, nullptr);
+  g_object_unref(local);
+  g_object_unref(client);
+  return connection;
+}
+
+TEST_F(Tls, LetsAThousandHalfHandshakesHoldUpTheirOwn) {
+  const ManyFiles files(4096);
+  const int count = files.granted() >= 4096 ? 1000 : 200;
+  Sink sink(Properties());
+  std::vector<GSocketConnection*> silent;
+  for (int i = 0; i < count; ++i) {
+    auto* connection =
+        ConnectFrom("127.0.0." + std::to_string(2 + i % 20), static_cast<guint>(sink.Stat("port")));
+    ASSERT_NE(connection, nullptr);
+    g_output_stream_write(g_io_stream_get_output_stream(G_IO_STREAM(connection)), "\x16", 1,
+                          nullptr, nullptr);
+    silent.push_back(connection);
+  }
+  EXPECT_EQ(HttpGet(sink.Url("https")).status, 200U);
+  EXPECT_GE(sink.Stat("connections-evicted"), static_cast<guint64>(count - 20 * 32) / 2);
+  for (GSocketConnection* connection : silent) g_object_unref(connection);
 }
 
 TEST_F(Tls, LetsSilentConnectionsHoldUpNobody) {
