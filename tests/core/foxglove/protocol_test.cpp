@@ -42,6 +42,16 @@ TEST(Advertise, TellsWhatAStreamOfSlicesIs) {
               "framerate":[10,1],"sensorModel":"AQID","frameId":"os1","clouds":"/points"})"));
 }
 
+TEST(Advertise, SurvivesTextsThatAreNone) {
+  SliceStreamInfo stream;
+  stream.fields = "x\xff\xfe\"}]";
+  stream.frame_id = std::string("\0\n", 2);
+  Channel channel{3, "/\xff\"<script>", Schema::kSlice, DescribeSlices(stream)};
+  const auto text = json::parse(Advertise({channel}))["channels"][0];
+  EXPECT_NE(text["topic"].get<std::string>().find("\"<script>"), std::string::npos);
+  EXPECT_EQ(json::parse(text["schema"].get<std::string>())["frameId"], stream.frame_id);
+}
+
 TEST(SliceHead, HasTheLayoutOfThePage) {
   const SliceHead head = HeadOfSlice({{0x01020304, 5}, 16, 1023, true}, 0x0807060504030201);
   const SliceHead expected = {1,    1, 5, 0, 16, 0, 0, 0, 4, 3, 2, 1,
