@@ -1,5 +1,10 @@
+#!/usr/bin/env python3
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""A robot, and the edge that its viewers look at, each a process of GStreamer's."""
+"""A robot, and the edge that its viewers look at, each a process.
+
+As a program it is the edge: it runs the pipeline of its arguments, and for each line of its input prints how
+old [ms] slices were behind foxglovesink, p95 since the line before.
+"""
 import os
 import pathlib
 import socket
@@ -7,23 +12,31 @@ import subprocess
 import sys
 import time
 
-sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "support"))
-from ports import free_port  # noqa: E402
+
+def free_port(kind=socket.SOCK_STREAM):
+    with socket.socket(socket.AF_INET, kind) as s:
+        s.bind(("127.0.0.1", 0))
+        return s.getsockname()[1]
 
 
 class Edge:
     """Serves a synthetic sensor over SCReAM to viewers at `port`."""
 
     def __init__(self, model="os1-64", coder="", mbit=2, sink=""):
-        self.port, media = free_port("tcp"), free_port()
-        self.edge = self.launch(f"screamsrc port={media} ! rtplidardepay ! foxglovesink port={self.port} {sink}")
-        self.robot = self.launch(
-            f"lidartestsrc is-live=true model={model} mode=1024x10 ! lidarenc {coder} ! rtplidarpay "
-            f"! screamsink host=127.0.0.1 port={media} max-bitrate={int(mbit * 1e6)}"
+        self.port, media = free_port(), free_port(socket.SOCK_DGRAM)
+        # A tee serves its branches in turn: what foxglovesink holds up comes late to the second.
+        pipeline = (
+            f"screamsrc port={media} ! rtplidardepay ! tee name=t t. ! identity ! foxglovesink port={self.port} {sink} "
+            "t. ! fakesink name=behind sync=false async=false signal-handoffs=true"
         )
-
-    def launch(self, pipeline):
-        return subprocess.Popen(["gst-launch-1.0", "-q", *pipeline.split()])
+        self.edge = subprocess.Popen(
+            ["/usr/bin/python3", pathlib.Path(__file__), pipeline], stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True
+        )
+        self.robot = subprocess.Popen(
+            "gst-launch-1.0 -q lidartestsrc is-live=true "
+            f"model={model} mode=1024x10 ! lidarenc {coder} ! rtplidarpay "
+            f"! screamsink host=127.0.0.1 port={media} max-bitrate={int(mbit * 1e6)}".split()
+        )
 
     def __enter__(self):
         until = time.monotonic() + 60
@@ -44,3 +57,33 @@ class Edge:
         """Of the edge, so far."""
         fields = open(f"/proc/{self.edge.pid}/stat").read().rsplit(")", 1)[1].split()
         return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
+
+    def delay_ms(self):
+        """Of the pipeline, since the last call: from capture to the other side of foxglovesink, p95."""
+        self.edge.stdin.write("\n")
+        self.edge.stdin.flush()
+        return float(self.edge.stdout.readline())
+
+
+def run(text):
+    import gi
+
+    gi.require_version("Gst", "1.0")
+    from gi.repository import Gst
+
+    Gst.init(None)
+    pipeline, ages = Gst.parse_launch(text), []
+    captured = Gst.Caps.from_string("timestamp/x-unix")
+
+    def note(_, buffer, __):
+        ages.append(time.time() - buffer.get_reference_timestamp_meta(captured).timestamp / 1e9)
+
+    pipeline.get_by_name("behind").connect("handoff", note)
+    pipeline.set_state(Gst.State.PLAYING)
+    for _ in sys.stdin:
+        passed, ages[:] = sorted(ages), []
+        print(1e3 * passed[len(passed) * 95 // 100] if passed else "nan", flush=True)
+
+
+if __name__ == "__main__":
+    run(sys.argv[1])
