@@ -180,6 +180,18 @@ bool Scheduler::Overdue(Time now, const Entry& entry) const {
   return true;
 }
 
+/// Where a packet that waits is to wait as well: on the best link out of a gap, else on each that
+/// may be the first out of its gap.
+LinkSet Scheduler::OthersFor(Time now, const Entry& entry) const {
+  LinkSet others, alive;
+  for (std::size_t i = 0; i < links_.size(); ++i) {
+    if (entry.assigned[i] || !links_[i].usable) continue;
+    others.set(i);
+    if (!InGap(now, i)) alive.set(i);
+  }
+  return alive.any() ? LinkSet().set(Best(now, entry.size, alive)) : others;
+}
+
 std::vector<Scheduler::Copy> Scheduler::TakeCopies(Time now) {
   std::vector<Copy> copies;
   Forget(now);
@@ -188,16 +200,17 @@ std::vector<Scheduler::Copy> Scheduler::TakeCopies(Time now) {
     Entry& entry = packets_[id->key()];
     if (now - entry.made > kMaxAge) break;
     if (entry.arrived || !Overdue(now, entry)) continue;
-    LinkSet others;
-    for (std::size_t i = 0; i < links_.size(); ++i)
-      if (!entry.assigned[i] && !InGap(now, i)) others.set(i);
-    if (others.none()) continue;
-    const std::size_t link = Best(now, entry.size, others);
-    copies.push_back({*id, link});
-    Assign(link, &entry);
-    ++links_[link].counters.copies;
+    const LinkSet to = OthersFor(now, entry);
+    if (to.none()) continue;
+    for (std::size_t i = 0; i < links_.size(); ++i) {
+      if (!to[i]) continue;
+      copies.push_back({*id, i});
+      Assign(i, &entry);
+      ++links_[i].counters.copies;
+    }
+    const std::size_t best = Best(now, entry.size, to);
     entry.missing = false;
-    entry.expected = now + WholeIn(link, now, entry.size) + Rtt(links_[link]) / 2 + kReportMargin;
+    entry.expected = now + WholeIn(best, now, entry.size) + Rtt(links_[best]) / 2 + kReportMargin;
   }
   std::reverse(copies.begin(), copies.end());  // the oldest first
   return copies;
@@ -206,8 +219,8 @@ std::vector<Scheduler::Copy> Scheduler::TakeCopies(Time now) {
 bool Scheduler::Wants(Time now, std::size_t link, PacketId id) const {
   const Entry* entry = Find(id);
   if (entry == nullptr) return true;
-  const bool copy = entry->first != link;
-  return !entry->arrived && !(copy && now - entry->made > kMaxAge);
+  const bool is_only_one = entry->assigned == LinkSet().set(link);
+  return !entry->arrived && (is_only_one || now - entry->made <= kMaxAge);
 }
 
 std::uint16_t Scheduler::OnSent(Time now, std::size_t link, PacketId id) {

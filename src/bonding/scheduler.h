@@ -50,15 +50,16 @@ struct LinkCounters {
 ///
 ///  - A slice goes where it will be whole first: queue and size over rate, and half a round trip.
 ///  - A link is in a gap where reports of what left are overdue. What was assigned to it and has
-///    not arrived is copied to the best other link at once; so is what was lost, and what takes
-///    longer than was foreseen.
+///    not arrived is copied to the best other link at once, or to all others where each is in a
+///    gap; so is what was lost, and what takes longer than was foreseen.
 ///  - While a link is not settled (it started, or was in a gap, within kUnsettled), every slice is
 ///    copied to each link that has room. Otherwise one slice in kProbeEvery is, so that all links
 ///    stay known.
 ///  - A link proves itself while it has not reported since it was first used, or became usable: the
 ///    receiver learns of a link by copies only. For kProving it gets a copy of everything, and no
 ///    packet is its own where another link has reported.
-///  - What arrived on one link is not sent on another any more, nor is a copy older than kMaxAge.
+///  - What arrived on one link is not sent on another any more, nor is what several have once it is
+///    older than kMaxAge: the newest slices are the first behind a gap.
 class Scheduler {
  public:
   static constexpr Duration kMaxAge = std::chrono::milliseconds(200);
@@ -137,6 +138,7 @@ class Scheduler {
   void Assign(std::size_t link, Entry* entry);
   void LookAtGaps(Time now);
   bool Overdue(Time now, const Entry& entry) const;
+  LinkSet OthersFor(Time now, const Entry& entry) const;
   Duration WholeIn(std::size_t link, Time now, DataSize size) const;
   std::size_t Best(Time now, DataSize size, LinkSet among) const;
   LinkSet CopiesOf(Time now, DataSize slice) const;

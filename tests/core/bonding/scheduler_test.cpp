@@ -172,11 +172,35 @@ TEST_F(TwoLinks, SendsNothingThatArrivedOnTheOtherLink) {
   EXPECT_EQ(scheduler_.counters(1).saved, 1U);
 }
 
-TEST_F(TwoLinks, DropsCopiesThatAreLateButNotTheFirst) {
+TEST_F(TwoLinks, CopiesToEachLinkWhatWaitsWhileAllAreInGaps) {
+  Settle();
+  now_ += 1ms;
+  SetPaths({Mbps(8), 40ms}, {Mbps(8), 20ms});
+  ASSERT_EQ(Packet(), SetOf({1}));
+  SetPaths({Mbps(8), 20ms}, {Mbps(8), 40ms});
+  ASSERT_EQ(Packet(), SetOf({0}));
+  now_ += 61ms;
+  ASSERT_TRUE(scheduler_.InGap(now_, 0) && scheduler_.InGap(now_, 1));
+  const auto copies = scheduler_.TakeCopies(now_);
+  ASSERT_EQ(copies.size(), 2U);
+  EXPECT_EQ(copies[0].link, 0U);
+  EXPECT_EQ(copies[1].link, 1U);
+}
+
+TEST_F(TwoLinks, DropsWhatIsLateOnEachLinkThatHasIt) {
   const PacketId id{kMedia, 1};
-  scheduler_.OnPacket(now_, {id, kSize, 1});
+  ASSERT_EQ(scheduler_.OnPacket(now_, {id, kSize, 1}).count(), 2U);
+  for (const std::size_t link : {0U, 1U}) {
+    EXPECT_TRUE(scheduler_.Wants(now_ + 200ms, link, id));
+    EXPECT_FALSE(scheduler_.Wants(now_ + 201ms, link, id));
+  }
+}
+
+TEST_F(TwoLinks, LeavesLatePacketsOfOneLinkToItsCongestionControl) {
+  Settle();
+  const PacketId id{kMedia, ++seq_};
+  ASSERT_EQ(scheduler_.OnPacket(now_, {id, kSize, seq_}), SetOf({0}));
   EXPECT_TRUE(scheduler_.Wants(now_ + 201ms, 0, id));
-  EXPECT_FALSE(scheduler_.Wants(now_ + 201ms, 1, id));
 }
 
 TEST_F(TwoLinks, AsksForWhatTheBetterOneCarriesUntilThatIsDead) {
