@@ -244,10 +244,43 @@ TEST(DemoOptions, ADriveHasItsMeanAndGaps) {
   RunOptions o;
   o.drive = true;
   o.duration_s = 200;
-  EXPECT_NEAR(CapacityOf(o).Between({}, std::chrono::seconds(200)).bits() / 200e6, 4, 1);
+  EXPECT_NEAR(CapacitiesOf(o).front().Between({}, std::chrono::seconds(200)).bits() / 200e6, 4, 1);
   o.rate_mbps = 10;
-  EXPECT_NEAR(CapacityOf(o).Between({}, std::chrono::seconds(200)).bits() / 200e6, 10, 2);
+  EXPECT_NEAR(CapacitiesOf(o).front().Between({}, std::chrono::seconds(200)).bits() / 200e6, 10, 2);
   EXPECT_TRUE(ChangesOf(o).empty());
+}
+
+TEST(DemoOptions, EachLinkHasADriveOfItsOwn) {
+  RunOptions o;
+  o.drive = true;
+  o.links = 2;
+  const auto links = CapacitiesOf(o);
+  ASSERT_EQ(links.size(), 2U);
+  EXPECT_NE(DriveTraceOf(o, 0), DriveTraceOf(o, 1));
+  EXPECT_EQ(LinkFile(o, "packets.csv", 0), "demo-output/packets.csv");
+  EXPECT_EQ(LinkFile(o, "packets.csv", 1), "demo-output/packets2.csv");
+  const std::string sender = SenderPipeline(o, {{5004, 5005}, 5006});
+  EXPECT_NE(sender.find("bonding-addresses=127.0.0.1:5004@127.0.0.1,127.0.0.1:5005@127.0.0.2"),
+            std::string::npos);
+}
+
+TEST(DemoSummary, TellsWhatEachLinkCarriedAndLeavesOutFiguresOfOne) {
+  auto m = TwoSteps();
+  m.options.links = 2;
+  m.ran_s = 10;
+  for (int i = 0; i < 100; ++i)
+    m.packets.push_back({i * 0.1, 1000, true, false, 1, static_cast<std::size_t>(i % 4 == 0)});
+  m.sender_stats = {{"sender",
+                     {{"links",
+                       {{{"packets-sent", 75}, {"packets-first", 75}},
+                        {{"packets-sent", 25}, {"packets-first", 0}, {"packets-saved", 3}}}}}}};
+  const auto s = Summarise(m);
+  ASSERT_EQ(s["links"].size(), 2U);
+  EXPECT_NEAR(s["links"][0]["mean_rate_bps"].get<double>(), 60e3, 1);
+  EXPECT_NEAR(s["links"][1]["mean_rate_bps"].get<double>(), 20e3, 1);
+  EXPECT_EQ(s["links"][1]["packets_saved"], 3);
+  EXPECT_TRUE(s["utilisation"].is_null());
+  EXPECT_EQ(s["gaps"]["count"], 0);
 }
 
 TEST(DemoOptions, FixedBitsDivideACubeOf200Metres) {

@@ -3,10 +3,12 @@
 
 #include <sys/stat.h>
 
+#include <algorithm>
 #include <cinttypes>
 #include <csignal>
 #include <cstdio>
 #include <fstream>
+#include <functional>
 #include <memory>
 #include <random>
 #include <stdexcept>
@@ -55,10 +57,13 @@ class Coordinator {
 
   std::unique_ptr<ChildProcess> Start(const std::vector<std::string>& command, const char* name,
                                       bool clouds);
-  void Watch(ChildProcess* child, void (Coordinator::*handler)(const nlohmann::json&));
+  void Watch(ChildProcess* child, std::function<void(const nlohmann::json&)> handler);
+  void StartLinks();
+  bool LinksEnded() const;
   void OnSender(const nlohmann::json& record);
   void OnReceiver(const nlohmann::json& record);
-  void OnLink(const nlohmann::json& record);
+  void OnLink(std::size_t index, const nlohmann::json& record);
+  nlohmann::json Together() const;
   void PrintLive(const nlohmann::json& link);
   void Tick();
   void Enter(Phase phase);
@@ -71,7 +76,12 @@ class Coordinator {
   tools::EventLoop loop_;
   Ports ports_;
   std::unique_ptr<ChildProcess> receiver_;
-  std::unique_ptr<ChildProcess> link_;
+  struct Link {
+    std::unique_ptr<ChildProcess> process;
+    bool listens = false;
+    nlohmann::json latest;
+  };
+  std::vector<Link> links_;
   std::unique_ptr<ChildProcess> sender_;
   std::unique_ptr<StreamComparer> comparer_;
   Phase phase_ = Phase::kReceiver;
@@ -119,8 +129,10 @@ Coordinator::Coordinator(const RunOptions& options) {
     throw std::runtime_error("cannot make the folder " + options.output);
   RemoveReport(options.output);
   if (!options.scans.empty()) LinkScans(options.scans, options.output);
-  if (options.drive) tools::WriteFile(options.output + "/trace.txt", DriveTraceOf(options));
-  ports_ = {FreePort(), FreePort()};
+  for (std::size_t i = 0; options.drive && i < options.links; ++i)
+    tools::WriteFile(LinkFile(options, "trace.txt", i), DriveTraceOf(options, i));
+  ports_.receiver = FreePort();
+  for (std::size_t i = 0; i < options.links; ++i) ports_.links.push_back(FreePort());
 }
 
 std::unique_ptr<ChildProcess> Coordinator::Start(const std::vector<std::string>& command,
@@ -129,11 +141,11 @@ std::unique_ptr<ChildProcess> Coordinator::Start(const std::vector<std::string>&
   return std::make_unique<ChildProcess>(ChildProcess::Config{command, log, clouds});
 }
 
-void Coordinator::Watch(ChildProcess* child, void (Coordinator::*handler)(const nlohmann::json&)) {
-  loop_.Watch(child->output_fd(), [this, child, handler] {
+void Coordinator::Watch(ChildProcess* child, std::function<void(const nlohmann::json&)> handler) {
+  loop_.Watch(child->output_fd(), [this, child, handler = std::move(handler)] {
     const bool open = child->ReadLines([&](const std::string& line) {
       const auto record = nlohmann::json::parse(line, nullptr, false);
-      if (record.is_object()) (this->*handler)(record);
+      if (record.is_object()) handler(record);
     });
     if (!open) loop_.Unwatch(child->output_fd());
   });
@@ -158,12 +170,48 @@ void Coordinator::OnSender(const nlohmann::json& record) {
   m_.samples.push_back(last_);
 }
 
-void Coordinator::OnLink(const nlohmann::json& record) {
-  if (record.contains("listening") && phase_ == Phase::kLink) Enter(Phase::kSender);
+void Coordinator::StartLinks() {
+  links_.resize(m_.options.links);
+  for (std::size_t i = 0; i < links_.size(); ++i) {
+    auto command = LinkArguments(m_.options, ports_, i);
+    command.insert(command.begin(), tools::OwnFolder() + "/lidar-link");
+    links_[i].process = std::make_unique<ChildProcess>(
+        ChildProcess::Config{command, LinkFile(m_.options, "link.log", i), false});
+    Watch(links_[i].process.get(), [this, i](const nlohmann::json& r) { OnLink(i, r); });
+  }
+}
+
+bool Coordinator::LinksEnded() const {
+  return std::all_of(links_.begin(), links_.end(),
+                     [](const Link& link) { return link.process->Ended(); });
+}
+
+void Coordinator::OnLink(std::size_t index, const nlohmann::json& record) {
+  links_[index].listens = links_[index].listens || record.contains("listening");
+  if (phase_ == Phase::kLink && std::all_of(links_.begin(), links_.end(), [](const Link& link) {
+        return link.listens;
+      }))
+    Enter(Phase::kSender);
   if (!record.contains("origin_unix_ns")) return;
-  m_.origin_unix_ns = record.value("origin_unix_ns", std::int64_t{0});
-  if (phase_ == Phase::kSender) Enter(Phase::kStreaming);
-  if (record.contains("time_s")) PrintLive(record);
+  if (index == 0) m_.origin_unix_ns = record.value("origin_unix_ns", std::int64_t{0});
+  if (index == 0 && phase_ == Phase::kSender) Enter(Phase::kStreaming);
+  if (!record.contains("time_s")) return;
+  links_[index].latest = record;
+  if (index + 1 == links_.size()) PrintLive(Together());
+}
+
+/// What all links carried in the last second; the longest of their queues.
+nlohmann::json Coordinator::Together() const {
+  nlohmann::json all = links_.front().latest;
+  if (!all.is_object()) return links_.back().latest;
+  for (std::size_t i = 1; i < links_.size(); ++i) {
+    const nlohmann::json& link = links_[i].latest;
+    for (const char* key : {"capacity_bps", "delivered_bps", "marked", "dropped"})
+      all[key] = all.value(key, 0.0) + link.value(key, 0.0);
+    all["sojourn_ms"]["p95"] =
+        std::max(all["sojourn_ms"].value("p95", 0.0), link["sojourn_ms"].value("p95", 0.0));
+  }
+  return all;
 }
 
 void PrintHeader() {
@@ -209,18 +257,14 @@ void Coordinator::Enter(Phase phase) {
     case Phase::kReceiver:
       receiver_ =
           Start({folder + "/lidar-demo", "receive", ReceiverPipeline(o, ports_)}, "receiver", true);
-      Watch(receiver_.get(), &Coordinator::OnReceiver);
+      Watch(receiver_.get(), [this](const nlohmann::json& r) { OnReceiver(r); });
       break;
-    case Phase::kLink: {
-      auto command = LinkArguments(o, ports_);
-      command.insert(command.begin(), folder + "/lidar-link");
-      link_ = Start(command, "link", false);
-      Watch(link_.get(), &Coordinator::OnLink);
+    case Phase::kLink:
+      StartLinks();
       break;
-    }
     case Phase::kSender:
       sender_ = Start({folder + "/lidar-demo", "send", SenderPipeline(o, ports_)}, "sender", true);
-      Watch(sender_.get(), &Coordinator::OnSender);
+      Watch(sender_.get(), [this](const nlohmann::json& r) { OnSender(r); });
       // Two returns of one place may both lie at the bound's edge.
       comparer_ = std::make_unique<StreamComparer>(sender_->clouds_fd(), receiver_->clouds_fd(),
                                                    2 * ErrorBoundOf(o) + 0.01);
@@ -239,7 +283,7 @@ void Coordinator::Enter(Phase phase) {
       receiver_->Signal(SIGINT);
       break;
     case Phase::kLinkStops:
-      link_->Signal(SIGINT);
+      for (const Link& link : links_) link.process->Signal(SIGINT);
       break;
   }
 }
@@ -262,13 +306,14 @@ bool Coordinator::AllArrived() const {
 
 void Coordinator::Tick() {
   const bool streaming = phase_ == Phase::kStreaming;
-  struct {
+  struct Child {
     ChildProcess* child;
     const char* name;
     Phase may_end;  // from this phase on
-  } const children[] = {{receiver_.get(), "receiver", Phase::kDraining},
-                        {link_.get(), "link", Phase::kLinkStops},
-                        {sender_.get(), "sender", Phase::kDraining}};
+  };
+  std::vector<Child> children = {{receiver_.get(), "receiver", Phase::kDraining},
+                                 {sender_.get(), "sender", Phase::kDraining}};
+  for (const Link& link : links_) children.push_back({link.process.get(), "link", Phase::kLinkStops});
   for (const auto& c : children)
     if (c.child != nullptr && phase_ < c.may_end && c.child->Ended())
       failure_ = std::string("the ") + c.name + " ended early, code " +
@@ -276,7 +321,7 @@ void Coordinator::Tick() {
                  Tail(m_.options.output + "/" + c.name + ".log");
   TakeComparisons();
   CheckLimit();
-  if (!failure_.empty() || (phase_ == Phase::kLinkStops && link_->Ended())) {
+  if (!failure_.empty() || (phase_ == Phase::kLinkStops && LinksEnded())) {
     loop_.Stop();
   } else if (streaming && Now() - streaming_since_ >= FromSeconds(m_.options.duration_s)) {
     Enter(Phase::kDraining);
@@ -324,7 +369,7 @@ int Coordinator::Report() {
   const std::string& folder = m_.options.output;
   comparer_->Finish();
   TakeComparisons();
-  m_.packets = ReadLinkLog(folder + "/packets.csv");
+  m_.packets = ReadLinkLogs(m_.options);
   WriteTables(m_, folder);
   auto summary = Summarise(m_);
   const auto guarantees = CheckGuarantees(m_);

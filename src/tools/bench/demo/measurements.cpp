@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include "src/tools/bench/demo/measurements.h"
 
+#include <algorithm>
 #include <cstdio>
 #include <cstring>
 #include <fstream>
@@ -35,7 +36,13 @@ SenderSample ReadSample(const nlohmann::json& record) {
   s.ref_wnd_bytes = Pick(sender, {"ref-wnd"});
   s.bytes_in_flight = Pick(sender, {"bytes-in-flight"});
   s.sender_queue_ms = Pick(sender, {"sender-queue-delay", "media-qdelay"}) / 1e6;
-  s.packets_dropped = static_cast<std::uint64_t>(Pick(sender, {"packets-dropped"}));
+  if (sender.is_object() && sender.contains("links")) {
+    s.target_bps = Pick(encoder, {"target-bitrate"});
+    for (const auto& link : sender["links"])
+      s.packets_dropped += static_cast<std::uint64_t>(Pick(link, {"packets-dropped"}));
+  } else {
+    s.packets_dropped = static_cast<std::uint64_t>(Pick(sender, {"packets-dropped"}));
+  }
   s.step_m = Pick(encoder, {"quantization-step", "step"});
   return s;
 }
@@ -57,6 +64,20 @@ std::vector<LinkPacket> ReadLinkLog(const std::string& file) {
     p.marked = ecn_in != ecn_out;
     packets.push_back(p);
   }
+  return packets;
+}
+
+std::vector<LinkPacket> ReadLinkLogs(const RunOptions& options) {
+  std::vector<LinkPacket> packets;
+  for (std::size_t i = 0; i < options.links; ++i) {
+    for (LinkPacket p : ReadLinkLog(LinkFile(options, "packets.csv", i))) {
+      p.link = i;
+      packets.push_back(p);
+    }
+  }
+  std::stable_sort(packets.begin(), packets.end(), [](const LinkPacket& a, const LinkPacket& b) {
+    return a.time_s < b.time_s;
+  });
   return packets;
 }
 
@@ -85,6 +106,11 @@ bool Measurements::IsSteady(double time_s) const {
   for (const Duration change : ChangesOf(options))
     if (time_s >= Seconds(change) && time_s < Seconds(change) + kAfterChange_s) return false;
   return true;
+}
+
+nlohmann::json LinkStats(const Measurements& m) {
+  const nlohmann::json sender = m.sender_stats.is_object() && m.sender_stats.contains("sender") ? m.sender_stats["sender"] : nlohmann::json();
+  return sender.is_object() ? sender.value("links", nlohmann::json::array()) : nlohmann::json::array();
 }
 
 }  // namespace lidar::demo

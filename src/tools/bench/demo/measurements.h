@@ -11,13 +11,14 @@
 
 namespace lidar::demo {
 
-/// A line of the link's log.
+/// A line of a link's log.
 struct LinkPacket {
   double time_s = 0;  // arrival at the link
   std::int64_t size = 0;
   bool delivered = false;
   bool marked = false;
   double sojourn_ms = 0;
+  std::size_t link = 0;
 };
 
 /// What sender and encoder said about themselves at one time.
@@ -37,12 +38,14 @@ struct SenderSample {
 /// Reads a `stats` record of the sender. Fields that an element does not have stay 0.
 SenderSample ReadSample(const nlohmann::json& record);
 
-/// Reads the link's log. Lines that are cut off or malformed are left out.
+/// Reads a link's log. Lines that are cut off or malformed are left out.
 std::vector<LinkPacket> ReadLinkLog(const std::string& file);
+/// Those of all links, in the order of their arrival.
+std::vector<LinkPacket> ReadLinkLogs(const RunOptions& options);
 
 struct Measurements {
   RunOptions options;
-  std::int64_t origin_unix_ns = 0;  // the link's first packet: time 0 of every plot
+  std::int64_t origin_unix_ns = 0;  // the first packet: time 0 of every plot
   double ran_s = 0;
   Ledger ledger;
   std::vector<LinkPacket> packets;
@@ -69,5 +72,8 @@ struct Measurements {
   /// Not in the first 3 s, nor in the second after a step of the capacity.
   bool IsSteady(double time_s) const;
 };
+
+/// The sender's statistics of each of several links; empty with one.
+nlohmann::json LinkStats(const Measurements& m);
 
 }  // namespace lidar::demo

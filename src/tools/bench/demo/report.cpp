@@ -8,6 +8,7 @@
 #include <iostream>
 #include <vector>
 
+#include "src/bonding/packet_id.h"
 #include "src/tools/common/output_file.h"
 
 namespace lidar::demo {
@@ -16,7 +17,7 @@ namespace {
 constexpr double kBin_s = 0.1;
 
 struct Bin {
-  double sent_bits = 0;
+  std::vector<double> sent_bits;  // by link
   double encoded_bits = 0;
   double queue_ms = 0;  // the longest sojourn
   double max_error_m = 0;
@@ -31,10 +32,11 @@ Bin* BinAt(std::vector<Bin>* bins, double time_s) {
 
 std::vector<Bin> CollectBins(const Measurements& m) {
   std::vector<Bin> bins(static_cast<std::size_t>(std::ceil(m.ran_s / kBin_s)));
+  for (Bin& bin : bins) bin.sent_bits.resize(m.options.links);
   for (const LinkPacket& p : m.packets) {
     Bin* bin = BinAt(&bins, p.time_s);
     if (bin == nullptr || !p.delivered) continue;
-    bin->sent_bits += static_cast<double>(p.size) * 8;
+    bin->sent_bits[p.link] += static_cast<double>(p.size) * 8;
     bin->queue_ms = std::max(bin->queue_ms, p.sojourn_ms);
   }
   for (const auto& [id, scan] : m.ledger.scans()) {
@@ -54,22 +56,33 @@ void WriteTimeline(const Measurements& m, const std::string& file) {
   tools::OutputFile output(file);
   std::ostream& out = output.stream();
   out << "time_s,capacity_mbps,target_mbps,encoded_mbps,sent_mbps,queue_ms,rtt_ms,ref_wnd_bytes,"
-         "bytes_in_flight,sender_queue_ms,step_m,max_error_m,estimated_capacity_mbps\n";
-  const auto capacity = CapacityOf(m.options);
+         "bytes_in_flight,sender_queue_ms,step_m,max_error_m,estimated_capacity_mbps";
+  const auto capacities = CapacitiesOf(m.options);
+  for (std::size_t i = 1; i < capacities.size(); ++i)
+    out << ",capacity" << i + 1 << "_mbps,sent" << i + 1 << "_mbps";
+  out << '\n';
   const auto bins = CollectBins(m);
   for (std::size_t i = 0; i < bins.size(); ++i) {
     const double start = static_cast<double>(i) * kBin_s;
-    const double mbps =
-        capacity.Between(FromSeconds(start), FromSeconds(start + kBin_s)).bits() / kBin_s / 1e6;
+    const auto mbps = [&](const link::Capacity& c) {
+      return c.Between(FromSeconds(start), FromSeconds(start + kBin_s)).bits() / kBin_s / 1e6;
+    };
     const Bin& b = bins[i];
     char line[320];
     std::snprintf(line, sizeof line,
-                  "%.1f,%.4f,%.4f,%.4f,%.4f,%.3f,%.3f,%.0f,%.0f,%.3f,%.5f,%.5f,%.4f\n", start, mbps,
+                  "%.1f,%.4f,%.4f,%.4f,%.4f,%.3f,%.3f,%.0f,%.0f,%.3f,%.5f,%.5f,%.4f", start,
+                  mbps(capacities.front()),
                   b.sender.target_bps / 1e6, b.encoded_bits / kBin_s / 1e6,
-                  b.sent_bits / kBin_s / 1e6, b.queue_ms, b.sender.rtt_ms, b.sender.ref_wnd_bytes,
+                  b.sent_bits.front() / kBin_s / 1e6, b.queue_ms, b.sender.rtt_ms, b.sender.ref_wnd_bytes,
                   b.sender.bytes_in_flight, b.sender.sender_queue_ms, b.sender.step_m,
                   b.max_error_m, b.sender.estimated_capacity_bps / 1e6);
     out << line;
+    for (std::size_t k = 1; k < capacities.size(); ++k) {
+      std::snprintf(line, sizeof line, ",%.4f,%.4f", mbps(capacities[k]),
+                    b.sent_bits[k] / kBin_s / 1e6);
+      out << line;
+    }
+    out << '\n';
   }
   output.Close();
 }
@@ -107,16 +120,24 @@ set yrange [0:*]
 
 set output "rate.png"
 set ylabel "Mbit/s"
+if (links > 1) set yrange [*:*]
 plot "timeline.csv" skip 1 using 1:2 with steps lw 2 lc rgb "#999999" title "capacity", \
      "" skip 1 using 1:($13 > 0 ? $13 : NaN) with lines dt 2 lc rgb "#666666" \
        title "capacity, estimated", \
      "" skip 1 using 1:3 with lines lw 2 lc rgb "#d95f02" title "target", \
      "" skip 1 using 1:4 with lines lc rgb "#7570b3" title "encoded", \
-     "" skip 1 using 1:5 with lines lc rgb "#1b9e77" title "sent"
+     "" skip 1 using 1:5 with lines lc rgb "#1b9e77" title "sent", \
+     for [i = 2:links] "" skip 1 using 1:(-column(10 + 2 * i)) with steps lw 2 lc rgb "#999999" \
+       title sprintf("capacity of link %d, below", i), \
+     for [i = 2:links] "" skip 1 using 1:(-column(11 + 2 * i)) with lines lc i \
+       title sprintf("sent by link %d, below", i)
+set yrange [0:*]
 
 set output "delay.png"
 set ylabel "ms"
 plot "packets.csv" skip 1 using 1:11 with points pt 7 ps 0.15 lc rgb "#d95f02" title "queue, each packet", \
+     for [i = 2:links] sprintf("packets%d.csv", i) skip 1 using 1:11 with points pt 7 ps 0.15 lc i \
+       title sprintf("queue of link %d", i), \
      "timeline.csv" skip 1 using 1:7 with lines lw 2 lc rgb "#7570b3" title "RTT, smoothed", \
      "slices.csv" skip 1 using 3:($7 > 0 ? ($7 - $3) * 1000 : NaN) with points pt 7 ps 0.2 lc rgb "#1b9e77" \
        title "capture to cloud, each slice"
@@ -157,6 +178,16 @@ void PrintLine(const char* label, const std::string& value) {
   std::printf("  %-34s %s\n", label, value.c_str());
 }
 
+void PrintLinks(const nlohmann::ordered_json& summary) {
+  if (!summary.contains("links")) return;
+  int n = 0;
+  for (const auto& link : summary["links"])
+    PrintLine(("link " + std::to_string(++n)).c_str(),
+              Field(link["mean_rate_bps"], "%.2f Mbit/s", 1e-6) + ", packets first / copies / saved " +
+                  Field(link["packets_first"], "%.0f / ") + Field(link["packets_copies"], "%.0f / ") +
+                  Field(link["packets_saved"], "%.0f"));
+}
+
 }  // namespace
 
 void WriteTables(const Measurements& m, const std::string& folder) {
@@ -171,11 +202,18 @@ void RemoveReport(const std::string& folder) {
         "error.png",    "plots.gp",   "plots.log",  "sender.log",   "receiver.log",
         "link.log",     "truth.tum",  "edge.tum",   "poses.csv",    "map.png"})
     std::remove((folder + '/' + file).c_str());
+  RunOptions options;
+  options.output = folder;
+  for (std::size_t i = 1; i < bonding::kMaxLinks; ++i)
+    for (const char* file : {"packets.csv", "link.json", "link.log", "trace.txt"})
+      std::remove(LinkFile(options, file, i).c_str());
 }
 
 bool DrawPlots(const Measurements& m, const std::string& folder) {
   tools::OutputFile script(folder + "/plots.gp");
-  script.stream() << "bound_cm = " << ErrorBoundOf(m.options) * 100 << '\n' << kPlots;
+  script.stream() << "bound_cm = " << ErrorBoundOf(m.options) * 100 << "\nlinks = "
+                  << m.options.links << '\n'
+                  << kPlots;
   script.Close();
   std::string quoted = "'";
   for (const char c : folder) quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);
@@ -197,6 +235,7 @@ void PrintTable(const nlohmann::ordered_json& s) {
   PrintLine("utilisation, steady", Field(s["utilisation_of_usable"], "%.1f %%", 100) +
                                        " of what the source can use (" +
                                        Field(s["utilisation"], "%.1f %%", 100) + " of the link)");
+  PrintLinks(s);
   PrintDelays(s, "queue, whole run", "queue_delay_ms");
   PrintDelays(s, "queue, steady", "queue_delay_steady_ms");
   PrintDelays(s, "capture to cloud, whole run", "capture_to_cloud_ms");

@@ -7,6 +7,7 @@
 #include <sstream>
 #include <stdexcept>
 
+#include "src/bonding/packet_id.h"
 #include "src/link/trace_maker.h"
 #include "src/tools/bench/demo/scan_folder.h"
 
@@ -123,6 +124,9 @@ void AddCodecOptions(CLI::App* app, RunOptions* o) {
 }
 
 void AddPathOptions(CLI::App* app, RunOptions* o) {
+  app->add_option("--links", o->links, "Links that one stream goes over")
+      ->check(CLI::Range(std::size_t{1}, bonding::kMaxLinks))
+      ->capture_default_str();
   auto* steps =
       app->add_option("--steps", o->steps_mbps, "Capacities in equal parts of the run [Mbit/s]")
           ->delimiter(',')
@@ -133,12 +137,15 @@ void AddPathOptions(CLI::App* app, RunOptions* o) {
           ->check(CLI::Range(0.01, link::Capacity::kMaxMbps))
           ->excludes(steps);
   auto* trace =
-      app->add_option("--trace", o->trace, "Capacity from a file of 'time_s rate_mbps' lines")
+      app->add_option("--trace", o->traces,
+                      "Capacity from a file of 'time_s rate_mbps' lines; once for each link")
           ->check(CLI::ExistingFile)
+          ->allow_extra_args(false)
           ->excludes(steps)
           ->excludes(rate);
   app->add_flag("--drive", o->drive,
-                "Capacity of a generated drive through a 5G network, with handover gaps (--seed)")
+                "Capacity of a generated drive through a 5G network, with handover gaps (--seed); "
+                "of another one for each link")
       ->excludes(steps)
       ->excludes(trace);
   app->add_option("--rtt", o->rtt_ms, "Propagation there and back [ms]")
@@ -147,6 +154,39 @@ void AddPathOptions(CLI::App* app, RunOptions* o) {
   app->add_option("--loss", o->loss_percent, "Random loss [%]")->check(CLI::Range(0.0, 100.0));
   app->add_flag("--no-l4s", o->no_l4s, "A queue of 100 ms that marks nothing, and no ECN");
   app->add_flag("--secure", o->secure, "SRTP, with a key of this run");
+}
+
+link::Capacity ParsedTrace(const std::string& text, const std::string& name) {
+  std::string error;
+  const auto capacity = link::Capacity::ParseTrace(text, true, &error);
+  if (!capacity) throw std::runtime_error(name + ": " + error);
+  return *capacity;
+}
+
+link::Capacity CapacityOf(const RunOptions& o, std::size_t index) {
+  const auto mbps = [](double m) { return DataRate::BitsPerSecond(m * 1e6); };
+  if (o.drive) return ParsedTrace(DriveTraceOf(o, index), "--drive");
+  if (index < o.traces.size()) {
+    const std::string& file = o.traces[index];
+    std::stringstream text;
+    text << std::ifstream(file).rdbuf();
+    return ParsedTrace(text.str(), "--trace " + file);
+  }
+  if (o.rate_mbps > 0) return link::Capacity::Constant(mbps(o.rate_mbps));
+  std::vector<DataRate> rates;
+  for (const double m : o.steps_mbps) rates.push_back(mbps(m));
+  return link::Capacity::Steps(rates, FromSeconds(StepTime(o)));
+}
+
+/// The host and port that the sender's packets go to, or several links to one receiver.
+std::string TargetOf(const Ports& ports) {
+  if (ports.links.size() == 1)
+    return "host=127.0.0.1 port=" + std::to_string(ports.links.front());
+  std::string links;
+  for (std::size_t i = 0; i < ports.links.size(); ++i)
+    links += (i == 0 ? "" : ",") + ("127.0.0.1:" + std::to_string(ports.links[i])) +
+             "@127.0.0." + std::to_string(i + 1);
+  return "bonding-addresses=" + links;
 }
 
 }  // namespace
@@ -169,10 +209,12 @@ void AddRunOptions(CLI::App* app, RunOptions* o) {
 
 void CheckRunOptions(const RunOptions& o) {
   try {
-    CapacityOf(o);
+    CapacitiesOf(o);
   } catch (const std::runtime_error& e) {
     throw CLI::ValidationError(e.what());
   }
+  if (!o.traces.empty() && o.traces.size() != o.links)
+    throw CLI::ValidationError("--trace stands once for each of the --links");
   if (o.steps_mbps.empty()) throw CLI::ValidationError("--steps needs at least one rate");
   if (o.start_bitrate_mbps > o.max_bitrate_mbps)
     throw CLI::ValidationError("--start-bitrate must not be above --max-bitrate");
@@ -197,30 +239,21 @@ double ErrorBoundOf(const RunOptions& o) {
   return o.max_error_m;
 }
 
-link::Capacity CapacityOf(const RunOptions& o) {
-  const auto mbps = [](double m) { return DataRate::BitsPerSecond(m * 1e6); };
-  if (o.drive) {
-    std::string error;
-    return link::Capacity::ParseTrace(DriveTraceOf(o), true, &error)
-        .value_or(link::Capacity::Constant(mbps(kDriveMbps)));
-  }
-  if (!o.trace.empty()) {
-    std::stringstream text;
-    text << std::ifstream(o.trace).rdbuf();
-    std::string error;
-    auto capacity = link::Capacity::ParseTrace(text.str(), true, &error);
-    if (!capacity) throw std::runtime_error("--trace " + o.trace + ": " + error);
-    return *capacity;
-  }
-  if (o.rate_mbps > 0) return link::Capacity::Constant(mbps(o.rate_mbps));
-  std::vector<DataRate> rates;
-  for (const double m : o.steps_mbps) rates.push_back(mbps(m));
-  return link::Capacity::Steps(rates, FromSeconds(StepTime(o)));
+std::vector<link::Capacity> CapacitiesOf(const RunOptions& o) {
+  std::vector<link::Capacity> capacities;
+  for (std::size_t i = 0; i < o.links; ++i) capacities.push_back(CapacityOf(o, i));
+  return capacities;
 }
 
-std::string DriveTraceOf(const RunOptions& o) {
+std::string LinkFile(const RunOptions& o, const std::string& name, std::size_t index) {
+  const auto dot = name.rfind('.');
+  const std::string number = index == 0 ? "" : std::to_string(index + 1);
+  return o.output + '/' + name.substr(0, dot) + number + name.substr(dot);
+}
+
+std::string DriveTraceOf(const RunOptions& o, std::size_t index) {
   link::DriveTraceConfig config;
-  config.seed = o.seed;
+  config.seed = o.seed + static_cast<std::uint32_t>(index);
   config.duration = FromSeconds(o.duration_s + kDriveTail_s);
   const bool recorded = !o.pcap.empty() || !o.scans.empty();
   const double mean = recorded ? kDriveOfCaptureMbps : kDriveMbps;
@@ -230,21 +263,21 @@ std::string DriveTraceOf(const RunOptions& o) {
 
 std::vector<Duration> ChangesOf(const RunOptions& o) {
   std::vector<Duration> changes;
-  if (o.drive || !o.trace.empty() || o.rate_mbps > 0) return changes;
+  if (o.links > 1 || o.drive || !o.traces.empty() || o.rate_mbps > 0) return changes;
   for (std::size_t i = 1; i < o.steps_mbps.size(); ++i)
     changes.push_back(FromSeconds(StepTime(o)) * static_cast<std::int64_t>(i));
   return changes;
 }
 
-std::string SenderPipeline(const RunOptions& o, Ports ports) {
+std::string SenderPipeline(const RunOptions& o, const Ports& ports) {
   const double step = FixedStepOf(o);
   // The queue lets the source keep its time while a slice is encoded.
   std::string text = SourceOf(o) + " ! queue ! " + EncoderOf(o) + " name=encoder max-error=" +
                      Number(step > 0 ? std::max(step, 0.001) : o.max_error_m);
   if (EncoderOf(o) == "dracoenc") text += " geometry=" + o.geometry;
   if (step > 0) text += " quantization-step=" + Number(step);
-  text += " ! rtplidarpay name=payloader ! screamsink name=sender host=127.0.0.1 port=" +
-          std::to_string(ports.link) + " max-bitrate=" + Bps(o.max_bitrate_mbps) +
+  text += " ! rtplidarpay name=payloader ! screamsink name=sender " +
+          TargetOf(ports) + " max-bitrate=" + Bps(o.max_bitrate_mbps) +
           " start-bitrate=" + Bps(o.start_bitrate_mbps) +
           " ecn-mode=" + (o.no_l4s ? "off" : "ect1") + KeyOf(o);
   // A sink without a pad serves the statistics alone.
@@ -281,7 +314,7 @@ std::string PageOf(const RunOptions& o) {
          "/?also=127.0.0.1:" + std::to_string(kSenderPage);
 }
 
-std::string ReceiverPipeline(const RunOptions& o, Ports ports) {
+std::string ReceiverPipeline(const RunOptions& o, const Ports& ports) {
   const std::string decoder = EncoderOf(o) == "dracoenc" ? "dracodec" : "lidardec";
   return "screamsrc name=receiver address=127.0.0.1 port=" + std::to_string(ports.receiver) +
          KeyOf(o) + " ! rtplidardepay name=depayloader ! " + ViewOf(o) + decoder +
@@ -290,22 +323,23 @@ std::string ReceiverPipeline(const RunOptions& o, Ports ports) {
          (o.view && o.slam ? " odometry.odometry ! queue ! page." : "");
 }
 
-std::vector<std::string> LinkArguments(const RunOptions& o, Ports ports) {
-  std::vector<std::string> arguments{"--listen",    "127.0.0.1:" + std::to_string(ports.link),
+std::vector<std::string> LinkArguments(const RunOptions& o, const Ports& ports,
+                                       std::size_t index) {
+  std::vector<std::string> arguments{"--listen",    "127.0.0.1:" + std::to_string(ports.links[index]),
                                      "--forward",   "127.0.0.1:" + std::to_string(ports.receiver),
                                      "--rtt",       Number(o.rtt_ms),
                                      "--loss",      Number(o.loss_percent),
-                                     "--seed",      std::to_string(o.seed),
-                                     "--log",       o.output + "/packets.csv",
-                                     "--summary",   o.output + "/link.json",
+                                     "--seed",      std::to_string(o.seed + index),
+                                     "--log",       LinkFile(o, "packets.csv", index),
+                                     "--summary",   LinkFile(o, "link.json", index),
                                      "--json-lines"};
   const auto add = [&](std::initializer_list<std::string> more) {
     arguments.insert(arguments.end(), more);
   };
   if (o.drive) {
-    add({"--trace", o.output + "/trace.txt"});
-  } else if (!o.trace.empty()) {
-    add({"--trace", o.trace});
+    add({"--trace", LinkFile(o, "trace.txt", index)});
+  } else if (!o.traces.empty()) {
+    add({"--trace", o.traces[index]});
   } else if (o.rate_mbps > 0) {
     add({"--rate", Number(o.rate_mbps)});
   } else {

@@ -38,10 +38,11 @@ struct RunOptions {
   int fixed_bits = 0;
   double max_bitrate_mbps = 100;
   double start_bitrate_mbps = 4;
-  // Link
+  // Links
+  std::size_t links = 1;
   std::vector<double> steps_mbps{4, 2.2, 3, 1.8, 4.4, 2.6};
   double rate_mbps = 0;
-  std::string trace;
+  std::vector<std::string> traces;  // none, or one a link
   bool drive = false;
   double rtt_ms = 40;
   double loss_percent = 0;
@@ -62,21 +63,26 @@ std::string EncoderOf(const RunOptions& options);
 double FixedStepOf(const RunOptions& options);
 /// The largest distance between a point that was sent and the one that arrived.
 double ErrorBoundOf(const RunOptions& options);
-link::Capacity CapacityOf(const RunOptions& options);
-/// When the capacity changes in steps, within the run; empty for a trace.
+/// Of each link.
+std::vector<link::Capacity> CapacitiesOf(const RunOptions& options);
+/// When the capacity of an only link changes in steps, within the run; empty for a trace.
 std::vector<Duration> ChangesOf(const RunOptions& options);
 
 /// The text of the capacity trace of --drive.
-std::string DriveTraceOf(const RunOptions& options);
+std::string DriveTraceOf(const RunOptions& options, std::size_t index);
+/// NAME in the folder of the report, of the second link with a 2 in front of its extension.
+std::string LinkFile(const RunOptions& options, const std::string& name,
+                     std::size_t index);
 
 struct Ports {
-  int link = 0;
+  std::vector<int> links;
   int receiver = 0;
 };
 /// Address of the page of --view; empty without it.
 std::string PageOf(const RunOptions& options);
-std::string SenderPipeline(const RunOptions& options, Ports ports);
-std::string ReceiverPipeline(const RunOptions& options, Ports ports);
-std::vector<std::string> LinkArguments(const RunOptions& options, Ports ports);
+std::string SenderPipeline(const RunOptions& options, const Ports& ports);
+std::string ReceiverPipeline(const RunOptions& options, const Ports& ports);
+std::vector<std::string> LinkArguments(const RunOptions& options, const Ports& ports,
+                                       std::size_t index);
 
 }  // namespace lidar::demo

@@ -86,6 +86,7 @@ Delays QueueDelays(const Measurements& m) {
 
 /// Delivered bits over those that the link carries and the source can use, in steady time.
 nlohmann::ordered_json Utilisation(const Measurements& m, double source_max_bps) {
+  if (m.options.links > 1) return nullptr;  // copies fill what is left of them
   constexpr double kSpan_s = 0.1;
   const auto bins = static_cast<std::size_t>(m.ran_s / kSpan_s);
   std::vector<double> sent(bins);
@@ -93,7 +94,7 @@ nlohmann::ordered_json Utilisation(const Measurements& m, double source_max_bps)
     const auto bin = static_cast<std::size_t>(std::max(p.time_s, 0.0) / kSpan_s);
     if (p.delivered && bin < bins) sent[bin] += static_cast<double>(p.size) * 8;
   }
-  const auto capacity = CapacityOf(m.options);
+  const auto capacity = CapacitiesOf(m.options).front();
   double used = 0;
   double offered = 0;
   for (std::size_t i = 0; i < bins; ++i) {
@@ -150,10 +151,11 @@ void AddGaps(const Measurements& m, nlohmann::ordered_json* s) {
   for (const LinkPacket& p : m.packets)
     sent.push_back({FromSeconds(p.time_s), DataSize::Bytes(p.size)});
   Distribution back;
-  for (const double t :
-       RecoveryAfterGaps(CapacityOf(m.options), sent,
-                         {FromSeconds(m.ran_s), DataRate::BitsPerSecond(SourceMax(m))}))
-    back.Add(t);
+  if (m.options.links == 1)
+    for (const double t :
+         RecoveryAfterGaps(CapacitiesOf(m.options).front(), sent,
+                           {FromSeconds(m.ran_s), DataRate::BitsPerSecond(SourceMax(m))}))
+      back.Add(t);
   (*s)["gaps"] = {{"count", back.count()}, {"back_after_s", Percentiles(back)}};
 }
 
@@ -170,6 +172,22 @@ void AddOracle(const Measurements& m, nlohmann::ordered_json* s) {
       {"scans_complete", AskOracle(m, m.encoder_min_bps).complete},
       {"capture_to_cloud_ms",
        {{"p50", mean.Latency(50)}, {"p95", mean.Latency(95)}, {"p99", mean.Latency(99)}}}};
+}
+
+/// What each of several links carried.
+void AddLinks(const Measurements& m, nlohmann::ordered_json* s) {
+  const nlohmann::json links = LinkStats(m);
+  if (links.empty()) return;
+  (*s)["links"] = nlohmann::ordered_json::array();
+  for (std::size_t i = 0; i < links.size(); ++i) {
+    double bits = 0;
+    for (const LinkPacket& p : m.packets)
+      if (p.delivered && p.link == i) bits += static_cast<double>(p.size) * 8;
+    (*s)["links"].push_back({{"mean_rate_bps", m.ran_s > 0 ? bits / m.ran_s : 0},
+                             {"packets_first", links[i].value("packets-first", 0)},
+                             {"packets_copies", links[i].value("packets-copies", 0)},
+                             {"packets_saved", links[i].value("packets-saved", 0)}});
+  }
 }
 
 void AddTransients(const Measurements& m, nlohmann::ordered_json* s) {
@@ -192,7 +210,7 @@ std::string Text(const char* format, double a, double b) {
 
 std::vector<Transient> FindTransients(const Measurements& m) {
   std::vector<Transient> transients;
-  const auto capacity = CapacityOf(m.options);
+  const auto capacity = CapacitiesOf(m.options).front();
   const auto changes = ChangesOf(m.options);
   for (std::size_t i = 0; i < changes.size(); ++i) {
     Transient t;
@@ -265,6 +283,7 @@ nlohmann::ordered_json Summarise(const Measurements& m) {
                     {"decode", Percentiles(f.decode)}};
   AddTransients(m, &s);
   AddGaps(m, &s);
+  AddLinks(m, &s);
   AddOracle(m, &s);
   AddErrors(m, &s);
   s["encode_ms_p50"] = f.encode_scan.Percentile(50);

@@ -19,14 +19,19 @@ std::string Text(const char* format, Args... args) {
   return text;
 }
 
-/// The share of the run in which the link carried more than the source can use.
+/// The share of the run in which a link carried more than the source can use.
 double ShareAbove(const Measurements& m, double source_max_bps) {
   constexpr Duration kStep = std::chrono::milliseconds(100);
-  const auto capacity = CapacityOf(m.options);
+  const auto links = CapacitiesOf(m.options);
+  const auto carries = [&](Duration t) {
+    return std::any_of(links.begin(), links.end(), [&](const link::Capacity& c) {
+      return c.RateAt(t).bits_per_second() > source_max_bps;
+    });
+  };
   const Duration end = FromSeconds(m.ran_s);
   std::int64_t above = 0;
   for (Duration t{0}; t < end; t += kStep)
-    above += capacity.RateAt(t).bits_per_second() > source_max_bps;
+    above += carries(t);
   return static_cast<double>(above) / std::max(1.0, m.ran_s / Seconds(kStep));
 }
 
@@ -36,7 +41,7 @@ std::vector<std::string> Hints(const Measurements& m, const ScanCounts& n) {
   const double above = ShareAbove(m, source_max);
   if (m.encoder_max_bps > 0 && above > kMostly)
     hints.push_back(
-        Text("for %.0f %% of the time the link carried more than the source can use: "
+        Text("for %.0f %% of the time a link carried more than the source can use: "
              "at its finest step it needs %.1f Mbit/s",
              100 * above, source_max / 1e6));
   if (n.skipped > n.captured / 10)
@@ -55,11 +60,16 @@ std::vector<std::string> Hints(const Measurements& m, const ScanCounts& n) {
 }  // namespace
 
 double WireShare(const Measurements& m) {
-  double wire = 0, media = 0;
+  double wire = 0, media = 0, packets = 0, first = 0;
   for (const LinkPacket& p : m.packets) wire += static_cast<double>(p.size);
   for (const auto& [id, scan] : m.ledger.scans())
     for (const SliceLife& s : scan)
       if (s.received > 0) media += static_cast<double>(s.bytes);
+  for (const nlohmann::json& link : LinkStats(m)) {
+    packets += link.value("packets-sent", 0.0);
+    first += link.value("packets-first", 0.0);
+  }
+  if (packets > 0) wire *= first / packets;
   return media > 0 ? std::clamp(wire / media, 1.0, 1.5) : 1;
 }
 
@@ -75,7 +85,9 @@ link::OracleResult AskOracle(const Measurements& m, double media_bps) {
         std::max<std::size_t>(1, m.ledger.scans().begin()->second.size()));
   config.scans_per_second =
       m.ran_s > 0 ? std::max(1.0, std::round(static_cast<double>(n.captured) / m.ran_s)) : 0;
-  return link::AskOracle(CapacityOf(m.options), config);
+  const auto links = CapacitiesOf(m.options);
+  return links.size() == 1 ? link::AskOracle(links.front(), config)
+                           : link::AskOracleOfLinks(links, config);
 }
 
 Verdict Judge(const Measurements& m) {
@@ -93,8 +105,9 @@ Verdict Judge(const Measurements& m) {
                                   : Verdict::Level::kPoor;
   static constexpr const char* kWords[] = {"useful", "reduced", "of little use"};
   v.text =
-      Text("%s: %.0f of %.0f scans arrived whole; a sender that knew the link: %.0f",
-           kWords[static_cast<int>(v.level)], static_cast<double>(n.complete), captured, possible);
+      Text("%s: %.0f of %.0f scans arrived whole; a sender that knew the link%s: %.0f",
+           kWords[static_cast<int>(v.level)], static_cast<double>(n.complete), captured,
+           m.options.links > 1 ? "s" : "", possible);
   v.hints = Hints(m, n);
   return v;
 }
