@@ -5,11 +5,11 @@
 
 namespace lidar::bonding {
 
-std::uint16_t LinkLedger::OnSent(Time now, PacketId id) {
+std::uint16_t LinkLedger::OnSent(Time now, PacketId id, bool ends_slice) {
   if (sources_.count(id.ssrc) == 0 && sources_.size() >= kMaxSources) ForgetSilentSource();
   Source& source = sources_[id.ssrc];
   const std::int64_t number = source.end();
-  source.packets.push_back({id.seq, now});
+  source.packets.push_back({id.seq, now, ends_slice});
   source.numbers[id.seq] = number;
   Trim(&source);
   return static_cast<std::uint16_t>(number);
@@ -91,12 +91,19 @@ std::optional<LinkLedger::Report> LinkLedger::OnFeedback(
   return report;
 }
 
+Time LinkLedger::Source::ReportOf(std::size_t packet) const {
+  const Time latest = packets[packet].sent + kReportEvery;
+  for (std::size_t i = packet; i < packets.size() && packets[i].sent < latest; ++i)
+    if (packets[i].ends_slice) return packets[i].sent;
+  return latest;
+}
+
 std::optional<Time> LinkLedger::waiting_since() const {
   std::optional<Time> since;
   for (const auto& [ssrc, source] : sources_) {
     if (source.waiting >= source.end()) continue;
-    const Time sent = source.packets[static_cast<std::size_t>(source.waiting - source.first)].sent;
-    since = std::min(since.value_or(sent), sent);
+    const Time report = source.ReportOf(static_cast<std::size_t>(source.waiting - source.first));
+    since = std::min(since.value_or(report), report);
   }
   return since;
 }

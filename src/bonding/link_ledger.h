@@ -30,17 +30,20 @@ class LinkLedger {
     std::vector<PacketId> missing;        // overtaken by what arrived: once for each
   };
 
-  /// The packet's number on this link.
-  std::uint16_t OnSent(Time now, PacketId id);
+  /// The packet's number on this link. The receiver reports at once what `ends_slice`.
+  std::uint16_t OnSent(Time now, PacketId id, bool ends_slice = true);
   /// Returns nothing where a packet arrived that never left over this link.
   std::optional<Report> OnFeedback(const scream::CongestionFeedback& feedback);
-  /// When the packet left of which nothing was heard for longest, neither of it nor of a later one.
+  /// Since when a report is on its way of the packet of which nothing was heard for longest, neither
+  /// of it nor of a later one. The receiver makes one at a slice's end, but within kReportEvery.
   std::optional<Time> waiting_since() const;
+  static constexpr Duration kReportEvery = std::chrono::milliseconds(40);
 
  private:
   struct Packet {
     std::uint16_t seq = 0;
     Time sent{};
+    bool ends_slice = false;
     bool settled = false;  // arrived, or missing
   };
   struct Source {
@@ -50,6 +53,7 @@ class LinkLedger {
     std::unordered_map<std::uint16_t, std::int64_t> numbers;  // by RTP sequence number
 
     std::int64_t end() const { return first + static_cast<std::int64_t>(packets.size()); }
+    Time ReportOf(std::size_t packet) const;
     Packet& At(std::int64_t number) { return packets[static_cast<std::size_t>(number - first)]; }
   };
 

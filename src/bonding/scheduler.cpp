@@ -10,8 +10,7 @@ using namespace std::chrono_literals;
 
 /// A round trip before one was measured.
 constexpr Duration kUnknownRtt = 100ms;
-/// A report that is later than the round trip by so much met a gap: receivers report at each
-/// slice's end, and a machine is a little late.
+/// A report that is later than the round trip by so much met a gap: a machine is a little late.
 constexpr Duration kReportMargin = 20ms;
 /// A link is left for another that is better by so much, so that slices do not swap for nothing.
 constexpr Duration kWorthLeaving = 5ms;
@@ -135,6 +134,7 @@ LinkSet Scheduler::OnPacket(Time now, const Packet& packet) {
   if (packets_.count(packet.id.key()) > 0) return slice_links_;  // sent again by the payloader
   Entry entry;
   entry.size = packet.size;
+  entry.ends_slice = packet.ends_slice;
   entry.made = now;
   entry.first = slice_first_;
   entry.expected = now + WholeIn(slice_first_, now, last_slice_size_) +
@@ -225,11 +225,12 @@ bool Scheduler::Wants(Time now, std::size_t link, PacketId id) const {
 
 std::uint16_t Scheduler::OnSent(Time now, std::size_t link, PacketId id) {
   Link& l = links_[link];
-  if (Entry* entry = Find(id); entry != nullptr && entry->waits[link]) {
+  Entry* entry = Find(id);
+  if (entry != nullptr && entry->waits[link]) {
     entry->waits.reset(link);
     l.queued -= entry->size;
   }
-  return l.ledger.OnSent(now, id);
+  return l.ledger.OnSent(now, id, entry == nullptr || entry->ends_slice);
 }
 
 void Scheduler::OnDropped(Time, std::size_t link, PacketId id) {

@@ -74,6 +74,7 @@ class Scheduler {
     PacketId id;
     DataSize size;
     std::uint32_t slice = 0;  // packets of one access unit share it, as their RTP timestamp
+    bool ends_slice = true;   // the last of them
   };
   /// Where a new packet goes. The best link is always one.
   LinkSet OnPacket(Time now, const Packet& packet);
@@ -128,6 +129,7 @@ class Scheduler {
     Time expected{};  // to be known as arrived
     std::size_t first = 0;
     LinkSet assigned, waits;  // waits: in the FIFO
+    bool ends_slice = true;
     bool arrived = false;
     bool missing = false;
   };

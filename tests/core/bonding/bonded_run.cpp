@@ -9,7 +9,9 @@
 #include "src/scream/controller.h"
 #include "src/scream/feedback/feedback_generator.h"
 #include "src/scream/target_notifier.h"
+#include "src/sim/network.h"
 #include "src/sim/simulated_time.h"
+#include "src/sim/tcp_flow.h"
 
 namespace lidar::bonding::test {
 namespace {
@@ -21,13 +23,8 @@ constexpr std::int64_t kMaxPacket = 1240;
 constexpr std::uint32_t kStreamSsrc = 7;
 constexpr Duration kInTime = 200ms;
 
-struct WirePacket {
-  std::uint16_t seq = 0;
-  std::size_t slice = 0;
-  DataSize size;
-  bool marker = false;
-  std::uint32_t scan = 0;
-};
+using scream::test::Network;
+using scream::test::WirePacket;
 
 struct SliceLog {
   Time made{};
@@ -39,8 +36,8 @@ struct SliceLog {
 /// One link: FIFO, congestion control, path and receiver.
 class SimLink {
  public:
-  SimLink(const LinkConfig& config, std::size_t index, std::uint64_t seed)
-      : config_(config), index_(index), bottleneck_(PathOf(config, seed)) {
+  SimLink(const LinkConfig& config, std::size_t index, std::size_t bottleneck)
+      : config_(config), index_(index), route_{bottleneck} {
     scream::StreamConfig stream;
     stream.start_bitrate = DataRate::BitsPerSecond(4e6);
     stream.max_bitrate = DataRate::BitsPerSecond(100e6);
@@ -60,21 +57,16 @@ class SimLink {
     fifo_.push_back(packet);
     controller_.OnQueued(now, stream_,
                          {kStreamSsrc, packet.size, packet.marker,
-                          static_cast<std::uint32_t>(packet.slice), packet.scan});
+                          static_cast<std::uint32_t>(packet.frame),
+                          static_cast<std::uint32_t>(packet.source)});
   }
 
-  /// Packets that arrive by `now`, each once a copy.
-  template <class Arrive>
-  void Step(Time now, Scheduler* scheduler, Arrive arrive) {
-    for (link::Outcome& o : bottleneck_.Deliver(now))
-      if (o.delivered()) behind_.emplace(o.arrival, o);
-    for (; !behind_.empty() && behind_.begin()->first <= now; behind_.erase(behind_.begin())) {
-      const link::Outcome& o = behind_.begin()->second;
-      const WirePacket& p = wire_[o.packet.id];
-      generator_.OnPacket(o.arrival, {kStreamSsrc, p.seq, static_cast<scream::Ecn>(o.packet.ecn),
-                                      p.marker, p.size});
-      arrive(p, o.arrival);
-    }
+  void OnArrival(const WirePacket& p, const link::Outcome& o) {
+    generator_.OnPacket(
+        o.arrival, {kStreamSsrc, p.seq, static_cast<scream::Ecn>(o.packet.ecn), p.marker, p.size});
+  }
+
+  void Step(Time now, Scheduler* scheduler) {
     while (auto report = generator_.Take(now)) reports_.emplace(now + config_.rtt / 2, *report);
     for (; !reports_.empty() && reports_.begin()->first <= now; reports_.erase(reports_.begin()))
       if (const auto own = scheduler->OnFeedback(now, index_, reports_.begin()->second))
@@ -84,20 +76,20 @@ class SimLink {
     scheduler->OnPath(index_, {s.s_rtt > Duration{0} ? s.ref_wnd / s.s_rtt : DataRate{}, s.s_rtt});
   }
 
-  void Send(Time now, Scheduler* scheduler) {
+  void Send(Time now, Scheduler* scheduler, Network* network) {
     Drop(now, controller_.LatePackets(now, stream_), scheduler);
     for (;;) {
       while (!fifo_.empty() && !scheduler->Wants(now, index_, {kStreamSsrc, fifo_.front().seq}))
         Drop(now, 1, scheduler);
       const auto d = controller_.NextSend(now);
       if (!d || d->time > now) return;
-      const WirePacket p = fifo_.front();
+      WirePacket p = fifo_.front();
       fifo_.pop_front();
       const std::uint16_t number = scheduler->OnSent(now, index_, {kStreamSsrc, p.seq});
       controller_.OnSent(now, stream_, {kStreamSsrc, number, p.size, d->ecn});
       bytes_ += p.size.bytes();
-      bottleneck_.Enqueue(now, {p.size, static_cast<link::Ecn>(d->ecn), wire_.size()});
-      wire_.push_back(p);
+      p.flow = static_cast<int>(index_);
+      network->Send(now, static_cast<link::Ecn>(d->ecn), route_, p);
     }
   }
 
@@ -105,16 +97,6 @@ class SimLink {
   std::int64_t bytes() const { return bytes_; }
 
  private:
-  static link::BottleneckConfig PathOf(const LinkConfig& c, std::uint64_t seed) {
-    link::BottleneckConfig path;
-    path.origin = kStart;
-    path.capacity = c.capacity;
-    path.delay = c.rtt / 2;
-    path.loss = c.loss;
-    path.seed = seed;
-    return path;
-  }
-
   void Drop(Time now, std::size_t packets, Scheduler* scheduler) {
     if (packets == 0) return;
     for (std::size_t i = 0; i < packets; ++i) {
@@ -126,26 +108,49 @@ class SimLink {
 
   LinkConfig config_;
   std::size_t index_;
-  link::Bottleneck bottleneck_;
+  scream::test::Route route_;
   scream::Controller controller_{scream::Parameters{}};
   scream::StreamConfig config_of_stream_;
   scream::StreamId stream_ = 0;
   scream::FeedbackGenerator generator_;
   std::deque<WirePacket> fifo_;
-  std::vector<WirePacket> wire_;
-  std::multimap<Time, link::Outcome> behind_;
   std::multimap<Time, scream::CongestionFeedback> reports_;
   std::int64_t bytes_ = 0;
 };
+
+scream::test::SimulationConfig PathsOf(const RunConfig& config) {
+  scream::test::SimulationConfig paths;
+  std::uint64_t seed = 10;
+  for (const LinkConfig& c : config.links) {
+    link::BottleneckConfig path;
+    path.origin = kStart;
+    path.capacity = c.capacity;
+    path.delay = c.rtt / 2;
+    path.loss = c.loss;
+    path.aqm = c.aqm;
+    path.limit = c.limit;
+    path.seed = seed++;
+    if (seed == 11)
+      paths.forward = path;
+    else
+      paths.more_links.push_back(path);
+  }
+  return paths;
+}
 
 class BondedRun {
  public:
   explicit BondedRun(const RunConfig& config)
       : config_(config),
+        network_(PathsOf(config)),
         scheduler_(config.links.size(), config.method, config.rule),
         source_(config.source) {
     for (std::size_t i = 0; i < config.links.size(); ++i)
-      links_.push_back(std::make_unique<SimLink>(config.links[i], i, 10 + i));
+      links_.push_back(
+          std::make_unique<SimLink>(config.links[i], i, config.one_bottleneck ? 0 : i));
+    for (const scream::test::TcpConfig& other : config.others)
+      others_.push_back(std::make_unique<scream::test::TcpFlow>(
+          other, static_cast<int>(links_.size() + others_.size()), kStart));
     told_ = Target(kStart);
   }
 
@@ -154,6 +159,8 @@ class BondedRun {
         FromSeconds(1 / (config_.source.scans_per_second * config_.source.slices));
     Time next = kStart;
     for (Time now = kStart; now < kStart + config_.duration + 1s; now += kStep) {
+      Deliver(now);
+      for (auto& other : others_) other->Step(now, &network_);
       for (std::size_t i = 0; i < links_.size(); ++i) StepLink(now, i);
       TellEncoder(now);
       if (now >= next && now < kStart + config_.duration) {
@@ -162,7 +169,7 @@ class BondedRun {
       }
       for (const Scheduler::Copy& copy : scheduler_.TakeCopies(now))
         links_[copy.link]->Queue(now, packets_[copy.id.seq]);
-      for (auto& link : links_) link->Send(now, &scheduler_);
+      for (auto& link : links_) link->Send(now, &scheduler_, &network_);
     }
     return Finish();
   }
@@ -172,13 +179,31 @@ class BondedRun {
     const LinkConfig& c = config_.links[i];
     const Duration t = now - kStart;
     scheduler_.SetUsable(now, i, t < c.unusable_from || t >= c.unusable_until);
-    links_[i]->Step(now, &scheduler_, [this](const WirePacket& p, Time at) { Arrive(p, at); });
+    links_[i]->Step(now, &scheduler_);
+  }
+
+  void Deliver(Time now) {
+    for (const link::Outcome& o : network_.Deliver(now)) behind_.emplace(o.arrival, o);
+    for (; !behind_.empty() && behind_.begin()->first <= now; behind_.erase(behind_.begin())) {
+      const link::Outcome& o = behind_.begin()->second;
+      const WirePacket& p = network_.packet(o.packet.id);
+      const auto flow = static_cast<std::size_t>(p.flow);
+      if (flow >= links_.size())
+        others_[flow - links_.size()]->OnArrival(p, o, config_.links[0].rtt / 2);
+      else if (o.delivered())
+        OnArrival(flow, p, o);
+    }
+  }
+
+  void OnArrival(std::size_t link, const WirePacket& p, const link::Outcome& o) {
+    links_[link]->OnArrival(p, o);
+    Arrive(p, o.arrival);
   }
 
   void Arrive(const WirePacket& p, Time at) {
-    if (seen_[p.slice * 65536 + p.seq]) return;
-    seen_[p.slice * 65536 + p.seq] = true;
-    SliceLog& slice = slices_[p.slice];
+    if (seen_[p.frame * 65536 + p.seq]) return;
+    seen_[p.frame * 65536 + p.seq] = true;
+    SliceLog& slice = slices_[p.frame];
     if (++slice.arrived == slice.packets) slice.whole = at;
   }
 
@@ -205,14 +230,14 @@ class BondedRun {
     for (std::int64_t left = frame.size.bytes(); left > 0; left -= kMaxPacket) {
       WirePacket p;
       p.seq = seq_++;
-      p.slice = slices_.size();
+      p.frame = slices_.size();
       p.size = DataSize::Bytes(std::clamp<std::int64_t>(left, 60, kMaxPacket));
       p.marker = left <= kMaxPacket;
-      p.scan = frame.group.value_or(0);
+      p.source = static_cast<int>(frame.group.value_or(0));
       packets_[p.seq] = p;
       ++log.packets;
       const LinkSet links = scheduler_.OnPacket(
-          now, {{kStreamSsrc, p.seq}, p.size, static_cast<std::uint32_t>(p.slice)});
+          now, {{kStreamSsrc, p.seq}, p.size, static_cast<std::uint32_t>(p.frame), p.marker});
       for (std::size_t i = 0; i < links_.size(); ++i)
         if (links[i]) links_[i]->Queue(now, p);
     }
@@ -236,6 +261,8 @@ class BondedRun {
       result_.in_time += in_time;
       result_.scan_age_ms.push_back(age);
     }
+    for (auto& other : others_)
+      result_.other_bytes += other->Finish(kStart + config_.duration).delivered_bytes;
     std::sort(result_.latency_ms.begin(), result_.latency_ms.end());
     for (std::size_t i = 0; i < links_.size(); ++i) {
       result_.link_bytes.push_back(links_[i]->bytes());
@@ -245,9 +272,12 @@ class BondedRun {
   }
 
   RunConfig config_;
+  Network network_;
   Scheduler scheduler_;
   loop::LoopSource source_;
   std::vector<std::unique_ptr<SimLink>> links_;
+  std::vector<std::unique_ptr<scream::test::TcpFlow>> others_;
+  std::multimap<Time, link::Outcome> behind_;
   std::vector<SliceLog> slices_;
   std::map<std::uint16_t, WirePacket> packets_;
   std::map<std::size_t, bool> seen_;

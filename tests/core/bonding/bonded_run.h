@@ -14,12 +14,18 @@ struct LinkConfig {
   link::Capacity capacity = link::Capacity::Constant(DataRate::BitsPerSecond(8e6));
   Duration rtt = std::chrono::milliseconds(40);
   double loss = 0;
+  link::AqmConfig aqm{};
+  link::QueueLimit limit{};
   /// The scheduler is told that packets cannot leave, within this time of the run.
   Duration unusable_from = Duration::max(), unusable_until = Duration::max();
 };
 
 struct RunConfig {
   std::vector<LinkConfig> links;
+  /// All pass the first one's queue; the others have a round trip of their own only.
+  bool one_bottleneck = false;
+  /// Flows of somebody else on the first link.
+  std::vector<scream::test::TcpConfig> others;
   Duration duration = std::chrono::seconds(60);
   Method method = Method::kAdaptive;
   TargetRule rule = TargetRule::kBetter;
@@ -33,6 +39,7 @@ struct RunResult {
   std::vector<double> scan_age_ms;       // of each scan's last slice to be whole; 1e9: never
   std::int64_t media_bytes = 0;          // that the encoder put out, headers included
   std::vector<std::int64_t> link_bytes;  // that left by each link
+  std::int64_t other_bytes = 0;          // of flows of somebody else, that arrived
   struct Target {
     Duration time;
     DataRate rate;

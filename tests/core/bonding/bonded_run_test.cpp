@@ -4,6 +4,8 @@
 
 #include <gtest/gtest.h>
 
+#include <numeric>
+
 #include "src/link/oracle.h"
 #include "src/link/trace_maker.h"
 #include "src/sim/simulated_time.h"
@@ -36,11 +38,12 @@ RunConfig Adaptive(std::vector<LinkConfig> links) {
   return config;
 }
 
-double Sent(const RunResult& r) {
-  std::int64_t bytes = 0;
-  for (const std::int64_t b : r.link_bytes) bytes += b;
-  return static_cast<double>(bytes) / static_cast<double>(r.media_bytes);
+double Bytes(const RunResult& r) {
+  return static_cast<double>(
+      std::accumulate(r.link_bytes.begin(), r.link_bytes.end(), std::int64_t{0}));
 }
+
+double Sent(const RunResult& r) { return Bytes(r) / static_cast<double>(r.media_bytes); }
 
 TEST(TwoLinkRun, ReachesTheBoundOverGeneratedDrives) {
   double sum = 0;
@@ -140,6 +143,22 @@ TEST(TwoLinkRun, GoesOnWhereALinkHasNoRoute) {
   const RunResult run = Simulate(AtNeed({none, {Constant(8)}}));
   EXPECT_EQ(run.in_time, run.scans);
 }
+
+class OneBottleneck : public testing::TestWithParam<double> {};
+
+TEST_P(OneBottleneck, GivesTwoLinksLittleMoreThanOneBesidePrague) {
+  LinkConfig link{Constant(GetParam())};
+  link.aqm.kind = link::AqmConfig::Kind::kRamp;
+  RunConfig config = Adaptive({link, link});
+  config.one_bottleneck = true;
+  config.others.emplace_back().kind = scream::test::TcpKind::kPrague;
+  const RunResult two = Simulate(config);
+  config.links.pop_back();
+  const RunResult one = Simulate(config);
+  EXPECT_LE(Bytes(two), 1.2 * Bytes(one));
+}
+
+INSTANTIATE_TEST_SUITE_P(Mbps, OneBottleneck, testing::Values(4, 8, 12, 20));
 
 TEST(TwoLinkRun, SumsWhatLinksCarryWhereItIsAskedFor) {
   RunConfig config = Adaptive({{Constant(4)}, {Constant(4)}});

@@ -92,6 +92,14 @@ TEST(LinkLedger, WaitsForWhatLeftFirst) {
   EXPECT_EQ(ledger.waiting_since(), kStart + 10ms);
 }
 
+TEST(LinkLedger, ExpectsAReportAtTheEndOfASliceAndWithinFortyMilliseconds) {
+  LinkLedger ledger;
+  ledger.OnSent(kStart, {kSsrc, 1}, false);
+  EXPECT_EQ(ledger.waiting_since(), kStart + 40ms);
+  ledger.OnSent(kStart + 10ms, {kSsrc, 2}, true);
+  EXPECT_EQ(ledger.waiting_since(), kStart + 10ms);
+}
+
 TEST(LinkLedger, ForgetsTheOldestOfManyAndGoesRoundTheNumbers) {
   LinkLedger ledger;
   std::uint16_t seq = 0;
