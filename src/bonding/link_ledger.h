@@ -34,8 +34,9 @@ class LinkLedger {
   std::uint16_t OnSent(Time now, PacketId id, bool ends_slice = true);
   /// Returns nothing where a packet arrived that never left over this link.
   std::optional<Report> OnFeedback(const scream::CongestionFeedback& feedback);
-  /// Since when a report is on its way of the packet of which nothing was heard for longest, neither
-  /// of it nor of a later one. The receiver makes one at a slice's end, but within kReportEvery.
+  /// Since when a report is on its way of the packet of which nothing was heard for longest,
+  /// neither of it nor of a later one. The receiver makes one at a slice's end, but within
+  /// kReportEvery.
   std::optional<Time> waiting_since() const;
   static constexpr Duration kReportEvery = std::chrono::milliseconds(40);
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Tables of docs/results/two-links.md. Each row is three runs in real time: an idle machine, as root."""
+"""Tables of docs/results/two-links.md. A row of drives is three runs in real time: an idle machine, as root."""
 import common
 
 
@@ -10,4 +10,12 @@ def drives():
     )
 
 
-TABLES = {"drives": drives}
+def simulated(what):
+    return common.as_printed(common.run(common.program("bonding-matrix"), what))
+
+
+TABLES = {
+    "drives": drives,
+    "pairs": lambda: simulated("drives"),
+    "one-bottleneck": lambda: simulated("one-bottleneck"),
+}

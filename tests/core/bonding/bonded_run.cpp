@@ -55,10 +55,10 @@ class SimLink {
 
   void Queue(Time now, const WirePacket& packet) {
     fifo_.push_back(packet);
-    controller_.OnQueued(now, stream_,
-                         {kStreamSsrc, packet.size, packet.marker,
-                          static_cast<std::uint32_t>(packet.frame),
-                          static_cast<std::uint32_t>(packet.source)});
+    controller_.OnQueued(
+        now, stream_,
+        {kStreamSsrc, packet.size, packet.marker, static_cast<std::uint32_t>(packet.frame),
+         static_cast<std::uint32_t>(packet.source)});
   }
 
   void OnArrival(const WirePacket& p, const link::Outcome& o) {

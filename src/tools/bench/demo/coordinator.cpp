@@ -188,9 +188,8 @@ bool Coordinator::LinksEnded() const {
 
 void Coordinator::OnLink(std::size_t index, const nlohmann::json& record) {
   links_[index].listens = links_[index].listens || record.contains("listening");
-  if (phase_ == Phase::kLink && std::all_of(links_.begin(), links_.end(), [](const Link& link) {
-        return link.listens;
-      }))
+  if (phase_ == Phase::kLink &&
+      std::all_of(links_.begin(), links_.end(), [](const Link& link) { return link.listens; }))
     Enter(Phase::kSender);
   if (!record.contains("origin_unix_ns")) return;
   if (index == 0) m_.origin_unix_ns = record.value("origin_unix_ns", std::int64_t{0});
@@ -313,7 +312,8 @@ void Coordinator::Tick() {
   };
   std::vector<Child> children = {{receiver_.get(), "receiver", Phase::kDraining},
                                  {sender_.get(), "sender", Phase::kDraining}};
-  for (const Link& link : links_) children.push_back({link.process.get(), "link", Phase::kLinkStops});
+  for (const Link& link : links_)
+    children.push_back({link.process.get(), "link", Phase::kLinkStops});
   for (const auto& c : children)
     if (c.child != nullptr && phase_ < c.may_end && c.child->Ended())
       failure_ = std::string("the ") + c.name + " ended early, code " +

@@ -75,9 +75,8 @@ std::vector<LinkPacket> ReadLinkLogs(const RunOptions& options) {
       packets.push_back(p);
     }
   }
-  std::stable_sort(packets.begin(), packets.end(), [](const LinkPacket& a, const LinkPacket& b) {
-    return a.time_s < b.time_s;
-  });
+  std::stable_sort(packets.begin(), packets.end(),
+                   [](const LinkPacket& a, const LinkPacket& b) { return a.time_s < b.time_s; });
   return packets;
 }
 
@@ -109,8 +108,11 @@ bool Measurements::IsSteady(double time_s) const {
 }
 
 nlohmann::json LinkStats(const Measurements& m) {
-  const nlohmann::json sender = m.sender_stats.is_object() && m.sender_stats.contains("sender") ? m.sender_stats["sender"] : nlohmann::json();
-  return sender.is_object() ? sender.value("links", nlohmann::json::array()) : nlohmann::json::array();
+  const nlohmann::json sender = m.sender_stats.is_object() && m.sender_stats.contains("sender")
+                                    ? m.sender_stats["sender"]
+                                    : nlohmann::json();
+  return sender.is_object() ? sender.value("links", nlohmann::json::array())
+                            : nlohmann::json::array();
 }
 
 }  // namespace lidar::demo

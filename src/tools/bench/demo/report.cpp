@@ -69,13 +69,12 @@ void WriteTimeline(const Measurements& m, const std::string& file) {
     };
     const Bin& b = bins[i];
     char line[320];
-    std::snprintf(line, sizeof line,
-                  "%.1f,%.4f,%.4f,%.4f,%.4f,%.3f,%.3f,%.0f,%.0f,%.3f,%.5f,%.5f,%.4f", start,
-                  mbps(capacities.front()),
-                  b.sender.target_bps / 1e6, b.encoded_bits / kBin_s / 1e6,
-                  b.sent_bits.front() / kBin_s / 1e6, b.queue_ms, b.sender.rtt_ms, b.sender.ref_wnd_bytes,
-                  b.sender.bytes_in_flight, b.sender.sender_queue_ms, b.sender.step_m,
-                  b.max_error_m, b.sender.estimated_capacity_bps / 1e6);
+    std::snprintf(
+        line, sizeof line, "%.1f,%.4f,%.4f,%.4f,%.4f,%.3f,%.3f,%.0f,%.0f,%.3f,%.5f,%.5f,%.4f",
+        start, mbps(capacities.front()), b.sender.target_bps / 1e6, b.encoded_bits / kBin_s / 1e6,
+        b.sent_bits.front() / kBin_s / 1e6, b.queue_ms, b.sender.rtt_ms, b.sender.ref_wnd_bytes,
+        b.sender.bytes_in_flight, b.sender.sender_queue_ms, b.sender.step_m, b.max_error_m,
+        b.sender.estimated_capacity_bps / 1e6);
     out << line;
     for (std::size_t k = 1; k < capacities.size(); ++k) {
       std::snprintf(line, sizeof line, ",%.4f,%.4f", mbps(capacities[k]),
@@ -183,9 +182,9 @@ void PrintLinks(const nlohmann::ordered_json& summary) {
   int n = 0;
   for (const auto& link : summary["links"])
     PrintLine(("link " + std::to_string(++n)).c_str(),
-              Field(link["mean_rate_bps"], "%.2f Mbit/s", 1e-6) + ", packets first / copies / saved " +
-                  Field(link["packets_first"], "%.0f / ") + Field(link["packets_copies"], "%.0f / ") +
-                  Field(link["packets_saved"], "%.0f"));
+              Field(link["mean_rate_bps"], "%.2f Mbit/s", 1e-6) +
+                  ", packets first / copies / saved " + Field(link["packets_first"], "%.0f / ") +
+                  Field(link["packets_copies"], "%.0f / ") + Field(link["packets_saved"], "%.0f"));
 }
 
 }  // namespace
@@ -211,8 +210,8 @@ void RemoveReport(const std::string& folder) {
 
 bool DrawPlots(const Measurements& m, const std::string& folder) {
   tools::OutputFile script(folder + "/plots.gp");
-  script.stream() << "bound_cm = " << ErrorBoundOf(m.options) * 100 << "\nlinks = "
-                  << m.options.links << '\n'
+  script.stream() << "bound_cm = " << ErrorBoundOf(m.options) * 100
+                  << "\nlinks = " << m.options.links << '\n'
                   << kPlots;
   script.Close();
   std::string quoted = "'";

@@ -180,12 +180,11 @@ link::Capacity CapacityOf(const RunOptions& o, std::size_t index) {
 
 /// The host and port that the sender's packets go to, or several links to one receiver.
 std::string TargetOf(const Ports& ports) {
-  if (ports.links.size() == 1)
-    return "host=127.0.0.1 port=" + std::to_string(ports.links.front());
+  if (ports.links.size() == 1) return "host=127.0.0.1 port=" + std::to_string(ports.links.front());
   std::string links;
   for (std::size_t i = 0; i < ports.links.size(); ++i)
-    links += (i == 0 ? "" : ",") + ("127.0.0.1:" + std::to_string(ports.links[i])) +
-             "@127.0.0." + std::to_string(i + 1);
+    links += (i == 0 ? "" : ",") + ("127.0.0.1:" + std::to_string(ports.links[i])) + "@127.0.0." +
+             std::to_string(i + 1);
   return "bonding-addresses=" + links;
 }
 
@@ -276,8 +275,8 @@ std::string SenderPipeline(const RunOptions& o, const Ports& ports) {
                      Number(step > 0 ? std::max(step, 0.001) : o.max_error_m);
   if (EncoderOf(o) == "dracoenc") text += " geometry=" + o.geometry;
   if (step > 0) text += " quantization-step=" + Number(step);
-  text += " ! rtplidarpay name=payloader ! screamsink name=sender " +
-          TargetOf(ports) + " max-bitrate=" + Bps(o.max_bitrate_mbps) +
+  text += " ! rtplidarpay name=payloader ! screamsink name=sender " + TargetOf(ports) +
+          " max-bitrate=" + Bps(o.max_bitrate_mbps) +
           " start-bitrate=" + Bps(o.start_bitrate_mbps) +
           " ecn-mode=" + (o.no_l4s ? "off" : "ect1") + KeyOf(o);
   // A sink without a pad serves the statistics alone.
@@ -323,16 +322,16 @@ std::string ReceiverPipeline(const RunOptions& o, const Ports& ports) {
          (o.view && o.slam ? " odometry.odometry ! queue ! page." : "");
 }
 
-std::vector<std::string> LinkArguments(const RunOptions& o, const Ports& ports,
-                                       std::size_t index) {
-  std::vector<std::string> arguments{"--listen",    "127.0.0.1:" + std::to_string(ports.links[index]),
-                                     "--forward",   "127.0.0.1:" + std::to_string(ports.receiver),
-                                     "--rtt",       Number(o.rtt_ms),
-                                     "--loss",      Number(o.loss_percent),
-                                     "--seed",      std::to_string(o.seed + index),
-                                     "--log",       LinkFile(o, "packets.csv", index),
-                                     "--summary",   LinkFile(o, "link.json", index),
-                                     "--json-lines"};
+std::vector<std::string> LinkArguments(const RunOptions& o, const Ports& ports, std::size_t index) {
+  std::vector<std::string> arguments{
+      "--listen",    "127.0.0.1:" + std::to_string(ports.links[index]),
+      "--forward",   "127.0.0.1:" + std::to_string(ports.receiver),
+      "--rtt",       Number(o.rtt_ms),
+      "--loss",      Number(o.loss_percent),
+      "--seed",      std::to_string(o.seed + index),
+      "--log",       LinkFile(o, "packets.csv", index),
+      "--summary",   LinkFile(o, "link.json", index),
+      "--json-lines"};
   const auto add = [&](std::initializer_list<std::string> more) {
     arguments.insert(arguments.end(), more);
   };

@@ -71,8 +71,7 @@ std::vector<Duration> ChangesOf(const RunOptions& options);
 /// The text of the capacity trace of --drive.
 std::string DriveTraceOf(const RunOptions& options, std::size_t index);
 /// NAME in the folder of the report, of the second link with a 2 in front of its extension.
-std::string LinkFile(const RunOptions& options, const std::string& name,
-                     std::size_t index);
+std::string LinkFile(const RunOptions& options, const std::string& name, std::size_t index);
 
 struct Ports {
   std::vector<int> links;

@@ -30,8 +30,7 @@ double ShareAbove(const Measurements& m, double source_max_bps) {
   };
   const Duration end = FromSeconds(m.ran_s);
   std::int64_t above = 0;
-  for (Duration t{0}; t < end; t += kStep)
-    above += carries(t);
+  for (Duration t{0}; t < end; t += kStep) above += carries(t);
   return static_cast<double>(above) / std::max(1.0, m.ran_s / Seconds(kStep));
 }
 
@@ -104,10 +103,9 @@ Verdict Judge(const Measurements& m) {
             : share >= kOfSomeUse ? Verdict::Level::kReduced
                                   : Verdict::Level::kPoor;
   static constexpr const char* kWords[] = {"useful", "reduced", "of little use"};
-  v.text =
-      Text("%s: %.0f of %.0f scans arrived whole; a sender that knew the link%s: %.0f",
-           kWords[static_cast<int>(v.level)], static_cast<double>(n.complete), captured,
-           m.options.links > 1 ? "s" : "", possible);
+  v.text = Text("%s: %.0f of %.0f scans arrived whole; a sender that knew the link%s: %.0f",
+                kWords[static_cast<int>(v.level)], static_cast<double>(n.complete), captured,
+                m.options.links > 1 ? "s" : "", possible);
   v.hints = Hints(m, n);
   return v;
 }
