@@ -152,7 +152,8 @@ static lidar::bonding::LinkSet Schedule(BondShared& shared, GstBuffer* buffer, B
   const std::lock_guard lock(shared.mutex);
   Keep(shared, now, id, buffer, stream);
   const std::uint32_t slice = header->timestamp ^ header->ssrc;
-  return shared.scheduler.OnPacket(now, {id, DataSize::Bytes(size) + kHeaders, slice, header->marker});
+  return shared.scheduler.OnPacket(now,
+                                   {id, DataSize::Bytes(size) + kHeaders, slice, header->marker});
 }
 
 /// A link that fails stops the stream where no other takes the packet.
