@@ -63,11 +63,13 @@ class SimLink {
 
   void OnArrival(const WirePacket& p, const link::Outcome& o) {
     generator_.OnPacket(
-        o.arrival, {kStreamSsrc, p.seq, static_cast<scream::Ecn>(o.packet.ecn), p.marker, p.size});
+        o.arrival + config_.receiver_clock,
+        {kStreamSsrc, p.seq, static_cast<scream::Ecn>(o.packet.ecn), p.marker, p.size});
   }
 
   void Step(Time now, Scheduler* scheduler) {
-    while (auto report = generator_.Take(now)) reports_.emplace(now + config_.rtt / 2, *report);
+    while (auto report = generator_.Take(now + config_.receiver_clock))
+      reports_.emplace(now + config_.rtt / 2, *report);
     for (; !reports_.empty() && reports_.begin()->first <= now; reports_.erase(reports_.begin()))
       if (const auto own = scheduler->OnFeedback(now, index_, reports_.begin()->second))
         controller_.OnFeedback(now, *own);
@@ -129,6 +131,7 @@ scream::test::SimulationConfig PathsOf(const RunConfig& config) {
     path.loss = c.loss;
     path.aqm = c.aqm;
     path.limit = c.limit;
+    path.path = c.path;
     path.seed = seed++;
     if (seed == 11)
       paths.forward = path;

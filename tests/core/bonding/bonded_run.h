@@ -16,6 +16,8 @@ struct LinkConfig {
   double loss = 0;
   link::AqmConfig aqm{};
   link::QueueLimit limit{};
+  link::PathConfig path{};
+  Duration receiver_clock{0};  // ahead of the sender's
   /// The scheduler is told that packets cannot leave, within this time of the run.
   Duration unusable_from = Duration::max(), unusable_until = Duration::max();
 };

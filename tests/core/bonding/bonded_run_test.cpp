@@ -160,6 +160,25 @@ TEST_P(OneBottleneck, GivesTwoLinksLittleMoreThanOneBesidePrague) {
 
 INSTANTIATE_TEST_SUITE_P(Mbps, OneBottleneck, testing::Values(4, 8, 12, 20));
 
+TEST(TwoLinkRun, BearsALinkThatDuplicatesAndReordersBy300Milliseconds) {
+  LinkConfig odd{Constant(10)};
+  odd.path.reorder = 0.1;
+  odd.path.reorder_delay = 300ms;
+  odd.path.duplicate = 0.1;
+  for (const auto& links : {std::vector<LinkConfig>{odd, {Constant(10)}}, {{Constant(10)}, odd}}) {
+    const RunResult run = Simulate(AtNeed(links));
+    EXPECT_EQ(run.in_time, run.scans);
+  }
+}
+
+TEST(TwoLinkRun, BearsReceiversWhoseClocksDiffer) {
+  LinkConfig ahead{Constant(10)};
+  ahead.receiver_clock = 1h;
+  const RunResult run = Simulate(Adaptive({{Constant(10)}, ahead}));
+  EXPECT_EQ(run.in_time, run.scans);
+  EXPECT_EQ(run.latency_ms, Simulate(Adaptive({{Constant(10)}, {Constant(10)}})).latency_ms);
+}
+
 TEST(TwoLinkRun, SumsWhatLinksCarryWhereItIsAskedFor) {
   RunConfig config = Adaptive({{Constant(4)}, {Constant(4)}});
   const RunResult better = Simulate(config);

@@ -16,6 +16,17 @@ inline const std::string kBondedAudio =
     "audiotestsrc name=src num-buffers=150 samplesperbuffer=441 is-live=true ! "
     "audio/x-raw,rate=44100,channels=1,format=S16BE ! rtpL16pay ! ";
 
+/// Of the screamsrc `in`.
+inline std::string BoundPort(Pipeline& pipeline) {
+  GSocket* socket = nullptr;
+  g_object_get(pipeline.Get("in").get(), "used-socket", &socket, nullptr);
+  GSocketAddress* address = g_socket_get_local_address(socket, nullptr);
+  const auto port = g_inet_socket_address_get_port(G_INET_SOCKET_ADDRESS(address));
+  g_object_unref(address);
+  g_object_unref(socket);
+  return std::to_string(port);
+}
+
 /// A screamsrc of raw audio on a free port, and what comes out of it.
 struct BondReceiver {
   explicit BondReceiver(const std::string& options = "")
@@ -29,12 +40,7 @@ struct BondReceiver {
         G_CALLBACK(+[](GstElement*, GstBuffer*, GstPad*, std::atomic<guint>* n) { ++*n; }),
         &passed);
     pipeline.Play();
-    GSocket* socket = nullptr;
-    g_object_get(pipeline.Get("in").get(), "used-socket", &socket, nullptr);
-    GSocketAddress* address = g_socket_get_local_address(socket, nullptr);
-    port = std::to_string(g_inet_socket_address_get_port(G_INET_SOCKET_ADDRESS(address)));
-    g_object_unref(address);
-    g_object_unref(socket);
+    port = BoundPort(pipeline);
   }
   std::atomic<guint> passed{0};
   Pipeline pipeline;

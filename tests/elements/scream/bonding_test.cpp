@@ -83,6 +83,27 @@ TEST(Bonding, GoesOnWithoutALinkWhoseInterfaceIsMissingAndSaysSo) {
   EXPECT_EQ(sent[1], 150U);
 }
 
+TEST(Bonding, GivesAVideoEncoderItsBitrate) {
+  Pipeline receiver(
+      "screamsrc name=in port=0 caps=\"application/x-rtp,media=video,encoding-name=H264,"
+      "clock-rate=90000,payload=96\" ! fakesink sync=false");
+  receiver.Play();
+  const std::string to = "127.0.0.1:" + BoundPort(receiver);
+  Pipeline sender(
+      "videotestsrc is-live=true num-buffers=60 ! video/x-raw,width=320,height=240,framerate=60/1 "
+      "! openh264enc name=encoder bitrate=128000 rate-control=bitrate ! bitrateadapter "
+      "min=300000 max=1000000 ! h264parse ! rtph264pay ! screamsink name=out "
+      "start-bitrate=2000000 bonding-addresses=\"" +
+      to + "@127.0.0.1," + to + "@127.0.0.2\"");
+  sender.Play();
+  EXPECT_TRUE(sender.Ends());
+  EXPECT_TRUE(receiver.Ends());
+  guint bitrate = 0;
+  g_object_get(sender.Get("encoder").get(), "bitrate", &bitrate, nullptr);
+  EXPECT_GE(bitrate, 300000U);
+  EXPECT_EQ(OfLinks(sender.Get("out").get(), "packets-sent").size(), 2U);
+}
+
 TEST(Bonding, FailsWhereNoLinkCanBeUsed) {
   Pipeline sender(Bonded("127.0.0.1:5004@none0,127.0.0.1:5004@none1"));
   sender.Play();
