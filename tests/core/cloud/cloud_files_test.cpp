@@ -299,6 +299,17 @@ TEST(Las, PointsOnAMapKeepTheirMillimetres) {
   EXPECT_EQ(FloatAt(*cloud, 8), 0.75F);
 }
 
+TEST(Las, EachAxisHasAScaleOfItsOwn) {
+  std::string file = Las().File();
+  constexpr std::size_t kScaleOfZ = 131 + 16;
+  const double scale = 0.01;
+  std::memcpy(&file[kScaleOfZ], &scale, sizeof scale);
+  const auto cloud = ReadLasFile(file);
+  ASSERT_TRUE(cloud);
+  EXPECT_EQ(FloatAt(*cloud, 0), 1.5F);
+  EXPECT_EQ(FloatAt(*cloud, 8), -2.5F);
+}
+
 TEST(Las, SaysWhyItCannotBeRead) {
   const auto with = [](auto change) {
     Las las;

@@ -69,6 +69,14 @@ TEST(Confidence, OfATurnFallsLessWhereAGyroscopeMeasuresIt) {
   EXPECT_LT(turn(true), turn(false) / 2);
 }
 
+TEST(Confidence, FallsLessWhereTheVelocityIsKnown) {
+  Confidence unknown;
+  Confidence known;
+  known.SetVelocityKnown();
+  for (Confidence* confidence : {&unknown, &known}) confidence->Predict({}, kPeriod);
+  EXPECT_LT(Variance(known, 0), Variance(unknown, 0) / 10);
+}
+
 TEST(Confidence, FallsWithoutScans) {
   Confidence confidence;
   confidence.Predict({}, kPeriod);

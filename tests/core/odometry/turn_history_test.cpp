@@ -38,6 +38,15 @@ TEST(TurnHistory, AddsUpATurn) {
   EXPECT_NEAR(YawOf(*turn), 0.252, 1e-9);
 }
 
+TEST(TurnHistory, FollowsARateThatRises) {
+  TurnHistory turns;
+  for (int i = 0; i <= 100; ++i) turns.Add(Time{} + i * kStep, {0, 0, 0.01 * i});
+  // The integral of the time from 0.203 s to 0.208 s, between two samples.
+  const auto turn = turns.Between(Time{} + milliseconds(203), Time{} + milliseconds(208));
+  ASSERT_TRUE(turn);
+  EXPECT_NEAR(YawOf(*turn), (0.208 * 0.208 - 0.203 * 0.203) / 2, 1e-9);
+}
+
 TEST(TurnHistory, KnowsNothingBeforeOrAfterItsSamplesOrOverAGap) {
   TurnHistory turns;
   EXPECT_FALSE(turns.Between(Time{}, Time{} + kScan));

@@ -61,6 +61,22 @@ TEST(Backlog, SaysWhenItIsFullAndStaysBounded) {
   EXPECT_EQ(backlog.Pop()->id.scan, 1001 - kept);
 }
 
+TEST(Backlog, KnowsTwoBlocksOfOneNameApartByTheirPlaces) {
+  Backlog backlog(1U << 20);
+  const auto alike = [](std::uint32_t scan, std::uint32_t index, std::optional<std::uint32_t> of) {
+    auto slice = std::make_shared<Slice>();
+    slice->id = {scan, index};
+    slice->blocks = {{7, of}};
+    return slice;
+  };
+  backlog.Push(alike(1, 0, std::nullopt));
+  backlog.Push(alike(1, 1, std::nullopt));
+  backlog.Push(alike(2, 0, std::nullopt));
+  backlog.Push(alike(2, 1, std::nullopt));
+  backlog.Push(alike(3, 0, 7));
+  EXPECT_EQ(PopAll(&backlog), "1.1 2.0 2.1 3.0 ") << "the key of place 0 makes what was before go";
+}
+
 TEST(Backlog, MakesRoomForALargeSliceByAsManySmallOnesAsItTakes) {
   Backlog backlog(10'000);
   for (std::uint32_t scan = 1; scan <= 7; ++scan) backlog.Push(Make(scan, 0, scan == 1 ? 0 : 1));

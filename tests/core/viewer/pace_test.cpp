@@ -216,6 +216,20 @@ TEST(Pace, KeepsMaxBitrate) {
   EXPECT_NEAR(viewer.Sent(), 1e6, 0.03e6);
 }
 
+TEST(Pace, TakesADelayOfAFrameMoreForTheSame) {
+  Pace pace{DataRate()};
+  Time now{milliseconds(0)};
+  for (std::uint32_t scan = 1; scan <= 400; ++scan) {
+    now += milliseconds(100);
+    ASSERT_TRUE(pace.MayBegin(now)) << scan;
+    pace.OnSent(now, {scan, 0}, DataSize::Bytes(1000));
+    pace.OnDrawn(now + milliseconds(scan == 1 ? 10 : 25), {scan, 0});
+    // Another one is on the way when it begins, so that none is alone.
+    pace.OnSent(now + milliseconds(26), {scan, 1}, DataSize::Bytes(10));
+  }
+  EXPECT_EQ(pace.shortest_delay(), milliseconds(10));
+}
+
 TEST(Pace, WaitsForAViewerThatOwesALittleForLong) {
   Pace pace{DataRate()};
   pace.OnSent(Time{milliseconds(10)}, {1, 0}, DataSize::Bytes(100'000));

@@ -47,6 +47,18 @@ TEST(Recoder, MakesSlicesThatStandAlone) {
   EXPECT_EQ(recoder->coarseness(), 1);
 }
 
+TEST(Recoder, KeepsAsManyBitsOfIntensityAsTheRobot) {
+  Sector sector;
+  sector.decoded.coded_size = 100'000;
+  sector.decoded.quality.intensity_bits = 5;
+  auto recoder = Recoder::Create(sector.format);
+  std::vector<std::uint8_t> bytes;
+  ASSERT_TRUE(recoder->Encode(sector.decoded, &bytes));
+  codec::SliceDecoder decoder(sector.format, 1U << 20);
+  ASSERT_TRUE(decoder.Decode({bytes.data(), bytes.size()}));
+  EXPECT_EQ(decoder.quality().intensity_bits, 5U);
+}
+
 TEST(Recoder, GetsCoarserUntilItsSlicesAreAsSmallAsTheRobots) {
   Sector sector;
   auto recoder = Recoder::Create(sector.format);

@@ -104,6 +104,15 @@ INSTANTIATE_TEST_SUITE_P(
         WrongConfig{R"({"nats":{"prefix":"a.>"},"robots":[{"name":"a","port":1}]})",
                     "nats.prefix is no word of letters, digits, - and _"}));
 
+TEST(EdgeConfig, NamesHave64LettersAtMost) {
+  const auto with = [](std::size_t letters) {
+    return ParseEdgeConfig(R"({"robots":[{"port":1,"name":")" + std::string(letters, 'a') +
+                           R"("}]})");
+  };
+  EXPECT_EQ(with(64).robots.size(), 1U);
+  EXPECT_THROW(with(65), std::runtime_error);
+}
+
 TEST_P(EdgeConfigWrong, IsNamed) {
   try {
     ParseEdgeConfig(GetParam().text);
