@@ -58,6 +58,11 @@ constexpr double kLeastBalance = 0.02;
 /// map's cubes, and [rad].
 constexpr double kMapStep = 1;
 constexpr double kMapTurn = 0.09;
+/// Where the ground is far off, beams meet it so far apart that its surface is not what a nearer
+/// look shows, and a map of it tilts the sensor. Such points enter the map only where a scan has
+/// few others.
+constexpr double kMapReach = 40;  // cubes
+constexpr double kLeastNear = 0.25;
 /// Closer than this part of a cube to where a scan entered, its beams draw the same lines again.
 constexpr double kSameLines = 0.5;
 
@@ -195,9 +200,17 @@ Odometry::Surface Odometry::SelectPoints(const TimedPoints& scan, Time middle,
 }
 
 void Odometry::AddToMap(const Surface& fine) {
+  const double square = std::pow(kMapReach * settings_.voxel_size_m, 2);
+  const auto is_near = [square](const Eigen::Vector3d& p) { return p.squaredNorm() <= square; };
+  const auto near = std::count_if(fine.points.begin(), fine.points.end(), is_near);
+  const bool take_all =
+      static_cast<double>(near) < kLeastNear * static_cast<double>(fine.points.size());
   Surface placed;
-  for (const Eigen::Vector3d& point : fine.points) placed.points.push_back(pose_ * point);
-  for (const Eigen::Vector3d& n : fine.normals) placed.normals.push_back(pose_.rotation * n);
+  for (std::size_t i = 0; i < fine.points.size(); ++i) {
+    if (!take_all && !is_near(fine.points[i])) continue;
+    placed.points.push_back(pose_ * fine.points[i]);
+    if (i < fine.normals.size()) placed.normals.push_back(pose_.rotation * fine.normals[i]);
+  }
   map_.Add(placed.points, placed.normals);
   entered_ = pose_;
   confidence_.EnterMap();
