@@ -27,6 +27,11 @@ constexpr double kLeastKernel = 0.08;
 constexpr std::size_t kMostAligned = 4000;
 /// A scan of which fewer points have a neighbour does not fit.
 constexpr double kLeastInliers = 0.3;
+/// Nor does one of which so much less of what stands on the ground fits than usual: it is another
+/// place. A sensor that moved by kNewView cubes sees nothing that it has seen.
+constexpr double kLeastOfUsual = 0.65;
+constexpr double kNewView = 30;
+constexpr int kUsualScans = 10;  // that say what is usual
 /// How often the motion between the first two scans is computed anew.
 constexpr int kFirstRounds = 4;
 /// Times within a sweep at which the motion is computed.
@@ -306,10 +311,18 @@ Alignment Odometry::AlignFrom(const Pose& guess, Duration gap, const TimedPoints
   return align(kWidestSigma);
 }
 
+bool Odometry::ShowsThePlace(const Alignment& found, const Pose& guess) const {
+  if (fitting_scans_ < kUsualScans) return true;
+  const double moved = (guess.position - entered_.position).norm();
+  const double known_view = 1 - moved / (kNewView * settings_.voxel_size_m);
+  return found.standing_share >= kLeastOfUsual * known_view * usual_standing_share_;
+}
+
 /// A scan fits if its points do, and if a vehicle can have moved like that.
 bool Odometry::Fits(const Alignment& found, const Pose& guess, Duration gap) const {
   if (found.inlier_share < kLeastInliers) return false;
   if (fitting_scans_ == 0) return true;  // the first motion may be anything
+  if (!ShowsThePlace(found, guess)) return false;
   const Pose correction = guess.Inverse() * found.pose;
   const double square = std::pow(Seconds(gap + lost_for_), 2);
   return correction.position.norm() <=
@@ -344,6 +357,8 @@ void Odometry::Follow(const Alignment& found, const Pose& guess, Time middle, co
   lost_scans_ = 0;
   lost_for_ = Duration{0};
   ++fitting_scans_;
+  usual_standing_share_ += (found.standing_share - usual_standing_share_) /
+                           static_cast<double>(std::min(fitting_scans_, kUsualScans));
   const Duration gap = middle - *last_time_;
   turns_.Teach(*last_time_, middle, (pose_.Inverse() * found.pose).rotation,
                Exp(velocity_ * Seconds(gap)).rotation);

@@ -105,6 +105,7 @@ class Odometry {
   Estimate Match(Time middle, const TimedPoints& scan, const Surface& fine);
   Alignment AlignFrom(const Pose& guess, Duration gap, const TimedPoints& scan,
                       const Surface& fine);
+  bool ShowsThePlace(const Alignment& found, const Pose& guess) const;
   bool Fits(const Alignment& found, const Pose& guess, Duration gap) const;
   void Follow(const Alignment& found, const Pose& guess, Time middle, const Surface& fine);
   void Lose(const TimedPoints& scan, const Surface& fine, Estimate* estimate);
@@ -122,6 +123,7 @@ class Odometry {
   int lost_scans_ = 0;
   Duration lost_for_{};    // a vehicle may change its velocity meanwhile
   int fitting_scans_ = 0;  // of this map, the first one left out
+  double usual_standing_share_ = 0;
   Points last_scan_;
   /// The scan that began the map, until the velocity is known that straightens it.
   std::optional<TimedPoints> first_scan_;

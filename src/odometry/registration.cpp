@@ -46,6 +46,10 @@ struct Neighbours {
   NormalEquations surfaces;
   NormalEquations points;
   std::size_t fitting = 0;
+  std::size_t fitting_points = 0;  // of these
+  /// Sums of n n' over the normals of the surfaces, and of those that fit.
+  Eigen::Matrix3d facing = Eigen::Matrix3d::Zero();
+  Eigen::Matrix3d fitting_facing = Eigen::Matrix3d::Zero();
 };
 
 Neighbours Linearise(const Points& points, LocalMap* map, const Pose& pose, double reach_m,
@@ -69,11 +73,17 @@ Neighbours Linearise(const Points& points, LocalMap* map, const Pose& pose, doub
     if (nearest->has_normal) {
       const Eigen::Vector3d normal = rotation.transpose() * nearest->normal;
       const Eigen::Matrix<double, 1, 1> distance(normal.dot(residual));
-      if (distance.norm() <= settings.fit_m) ++sums.fitting;
+      const bool fits = distance.norm() <= settings.fit_m;
+      const Eigen::Matrix3d faces = normal * normal.transpose();
+      sums.facing += faces;
+      if (fits) sums.fitting_facing += faces;
+      sums.fitting += fits ? 1 : 0;
       sums.surfaces.Add(weight_of(distance.squaredNorm()), normal.transpose() * jacobian, distance);
     } else {
       jacobian.rightCols<3>() *= settings.point_turn;
-      if (residual.norm() <= settings.fit_m) ++sums.fitting;
+      const bool fits = residual.norm() <= settings.fit_m;
+      sums.fitting_points += fits ? 1 : 0;
+      sums.fitting += fits ? 1 : 0;
       sums.points.Add(weight_of(residual.squaredNorm()), jacobian, residual);
     }
   }
@@ -102,6 +112,17 @@ double WeighPoints(const NormalEquations& surfaces, const RegistrationSettings& 
   return held ? settings.spare_point_weight : settings.point_weight;
 }
 
+/// Of `count` points: those that no surface of the best held direction explains.
+double StandingShare(const Neighbours& found, std::size_t count) {
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(found.facing);
+  const Eigen::Vector3d best = solver.eigenvectors().col(2);
+  const auto lying = [&best](const Eigen::Matrix3d& sum) { return best.dot(sum * best); };
+  const double all = static_cast<double>(count) - lying(found.facing);
+  const double fitting = found.fitting_facing.trace() - lying(found.fitting_facing) +
+                         static_cast<double>(found.fitting_points);
+  return all > 0 ? fitting / all : 0;
+}
+
 /// Of the residuals.
 double VarianceOf(const NormalEquations& sums) {
   return std::max(sums.squares / sums.weights, kLeastSpread * kLeastSpread);
@@ -122,7 +143,8 @@ Alignment Align(const Points& points, LocalMap* map, const Prediction& predictio
     NormalEquations sums = found.surfaces;
     sums.Add(point_weight, found.points);
     result.inlier_share = static_cast<double>(found.fitting) / static_cast<double>(points.size());
-    if (sums.pairs < kLeastPairs) return {guess, result.inlier_share, result.iterations};
+    result.standing_share = StandingShare(found, points.size());
+    if (sums.pairs < kLeastPairs) return {guess, result.inlier_share, 0, result.iterations};
     if (result.iterations == 1) {
       result.unobserved = FindUnobserved(sums, settings);
       result.degenerate = !result.unobserved.isZero();
@@ -134,7 +156,7 @@ Alignment Align(const Points& points, LocalMap* map, const Prediction& predictio
     sums.rhs -= hold * Log(guess.Inverse() * result.pose);
     sums.lhs.topLeftCorner<3, 3>() += kHold * sums.weights * result.unobserved;
     const Twist step = sums.lhs.ldlt().solve(sums.rhs);
-    if (!step.allFinite()) return {guess, 0, result.iterations};
+    if (!step.allFinite()) return {guess, 0, 0, result.iterations};
     result.pose = result.pose * Exp(step);
     if (step.norm() < settings.converged) break;
   }

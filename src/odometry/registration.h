@@ -39,6 +39,9 @@ struct Prediction {
 struct Alignment {
   Pose pose;
   double inlier_share = 0;  // part of the points that fit
+  /// The same of what tells places apart: all but the surfaces that face the direction which is
+  /// held most, as ground does. Ground fits everywhere.
+  double standing_share = 0;
   int iterations = 0;
   /// The scene does not show the motion along some direction; the guess is kept there.
   bool degenerate = false;

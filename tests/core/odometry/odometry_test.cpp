@@ -361,6 +361,36 @@ TEST(Odometry, KnowsWhenAScanDoesNotFit) {
   EXPECT_EQ(found.tracking, Tracking::kTracking);
 }
 
+/// To another place that looks alike.
+struct Jump {
+  synth::SceneKind scene;
+  const char* sensor;
+};
+class OdometryJumps : public testing::TestWithParam<Jump> {};
+
+TEST_P(OdometryJumps, AreSeenWithinASecond) {
+  Drive before(Drive::Config(GetParam().scene, 10, 7, GetParam().sensor));
+  Drive after(Drive::Config(GetParam().scene, 10, 9, GetParam().sensor));
+  Odometry odometry({});
+  bool seen = false;
+  for (std::uint64_t i = 0; i < 40; ++i) {
+    Drive& drive = i < 30 ? before : after;
+    const Estimate e = odometry.OnScan(before.StartOf(i), kPeriod, drive.Scan(i));
+    if (i < 30)
+      EXPECT_NE(e.tracking, Tracking::kLost) << i;
+    else
+      seen |= e.tracking == Tracking::kLost;
+  }
+  EXPECT_TRUE(seen);
+}
+
+INSTANTIATE_TEST_SUITE_P(Scenes, OdometryJumps,
+                         testing::Values(Jump{synth::SceneKind::kStreet, "os0-32"},
+                                         Jump{synth::SceneKind::kTown, "os0-32"},
+                                         Jump{synth::SceneKind::kStreet, "os1-64"},
+                                         Jump{synth::SceneKind::kTown, "os1-64"},
+                                         Jump{synth::SceneKind::kField, "os1-64"}));
+
 TEST(Odometry, FindsItsWayAfterTwoScansOfTheSameTime) {
   Drive street(synth::SceneKind::kStreet, 10);
   Odometry odometry({});
