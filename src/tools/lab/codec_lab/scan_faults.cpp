@@ -36,6 +36,7 @@ class FaultyScans final : public ScanStream {
   std::optional<TimedScan> Next() override {
     while (auto timed = scans_->Next()) {
       if (!first_) first_ = timed->start;
+      if (number_++ % faults_.every_scan != 0) continue;
       if (IsLost(timed->start - *first_)) continue;
       if (faults_.every_beam > 1) KeepBeams(faults_.every_beam, &timed->scan);
       return timed;
@@ -60,6 +61,7 @@ class FaultyScans final : public ScanStream {
   std::unique_ptr<ScanStream> scans_;
   ScanFaults faults_;
   std::optional<Time> first_;
+  std::size_t number_ = 0;
   int left_of_burst_ = 0;
   std::minstd_rand random_{1};
 };

@@ -32,6 +32,8 @@ void AddScanOptions(CLI::App* command, ScanArguments* a) {
       ->check(CLI::Range(0.0, 3600.0));
   command->add_option("--every-beam", a->faults.every_beam, "Keep each n-th beam; 2: half of them")
       ->check(CLI::Range(1U, 64U));
+  command->add_option("--every-scan", a->faults.every_scan, "Keep each n-th scan; 5: two a second")
+      ->check(CLI::Range(1U, 64U));
 }
 
 std::unique_ptr<ScanStream> OpenScans(const ScanArguments& a) {

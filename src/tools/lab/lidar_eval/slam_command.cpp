@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // lidar-eval slam and ate: the way of the sensor from its scans, and how wrong it is.
+#include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <fstream>
 #include <iostream>
@@ -26,6 +28,7 @@ struct SlamArguments {
   SlamOptions slam;
   std::string out;
   std::string truth;
+  std::string errors;
   bool kitti = false;
   bool json = false;
 };
@@ -82,8 +85,7 @@ void Print(const TrajectoryError& e) {
 }
 
 std::size_t CountOf(const SlamResult& result, Tracking tracking) {
-  const auto found = result.tracking.find(tracking);
-  return found == result.tracking.end() ? 0 : found->second;
+  return static_cast<std::size_t>(std::count(result.states.begin(), result.states.end(), tracking));
 }
 
 void PrintRun(const SlamResult& r) {
@@ -105,16 +107,37 @@ Trajectory FindTruth(const SlamArguments& a, const SlamResult& r, double scans_p
 }
 
 nlohmann::ordered_json ToJson(const Calibration& c) {
-  return {{"mean_m", c.mean_m},
+  return {{"mean", c.mean},
           {"within_1_sigma", c.within_1_sigma},
           {"within_3_sigma", c.within_3_sigma},
           {"width", c.width}};
 }
 
-void Print(const Calibration& c) {
+void Print(const Calibration& c, const char* unit) {
   std::printf(
-      "  deviation %.3f m in the mean; error within one of it %.0f %%, within three %.1f %%\n",
-      c.mean_m, 100 * c.within_1_sigma, 100 * c.within_3_sigma);
+      "  deviation %.4f %s in the mean; error within one of it %.0f %%, within three %.1f %%\n",
+      c.mean, unit, 100 * c.within_1_sigma, 100 * c.within_3_sigma);
+}
+
+/// What the deviations of positions and of turns are worth.
+struct Calibrations {
+  std::optional<Calibration> position;
+  std::optional<Calibration> orientation;
+};
+
+/// A row a scan.
+void SaveErrors(const std::string& path, const SlamResult& r,
+                const std::vector<odometry::Twist>& errors) {
+  tools::OutputFile output(path);
+  std::ostream& file = output.stream();
+  file << "time,tracking,x,y,z,rx,ry,rz,sx,sy,sz,srx,sry,srz\n";
+  for (std::size_t i = 0; i < errors.size(); ++i) {
+    file << Seconds(r.estimate[i].time.time_since_epoch()) << ',' << ToString(r.states[i]);
+    for (const double e : errors[i]) file << ',' << e;
+    for (const double v : r.covariance[i].diagonal()) file << ',' << std::sqrt(v);
+    file << '\n';
+  }
+  output.Close();
 }
 
 void RunSlamCommand(const SlamArguments& a) {
@@ -133,6 +156,10 @@ void RunSlamCommand(const SlamArguments& a) {
   const Trajectory truth = FindTruth(a, r, scans->scans_per_second());
   const auto error = Compare(truth, r.estimate);
   const auto closed = Compare(truth, r.closed);
+  const auto errors = ErrorsOf(r, truth);
+  const Calibrations calibration{Calibrate(errors, r.covariance, 0),
+                                 Calibrate(errors, r.covariance, 3)};
+  if (!a.errors.empty()) SaveErrors(a.errors, r, errors);
   if (a.json) {
     nlohmann::ordered_json j = {{"source", source},
                                 {"scans", r.estimate.size()},
@@ -146,7 +173,8 @@ void RunSlamCommand(const SlamArguments& a) {
                                 {"mean_point_error_m", r.mean_point_error_m},
                                 {"max_point_error_m", r.max_point_error_m}};
     if (error) j["error"] = ToJson(*error);
-    if (const auto c = Calibrate(r, truth)) j["deviation"] = ToJson(*c);
+    if (calibration.position) j["deviation"] = ToJson(*calibration.position);
+    if (calibration.orientation) j["turn_deviation"] = ToJson(*calibration.orientation);
     if (options.close_loops)
       j["loop_closure"] = {{"local_maps", r.local_maps}, {"closures", r.closures}};
     if (closed) j["loop_closure"]["error"] = ToJson(*closed);
@@ -156,7 +184,8 @@ void RunSlamCommand(const SlamArguments& a) {
   std::printf("%s\n", source.c_str());
   PrintRun(r);
   if (error) Print(*error);
-  if (const auto c = Calibrate(r, truth)) Print(*c);
+  if (calibration.position) Print(*calibration.position, "m");
+  if (calibration.orientation) Print(*calibration.orientation, "rad");
   if (!options.close_loops) return;
   std::printf("With %zu loops closed between %zu local maps\n", r.closures, r.local_maps);
   if (closed) Print(*closed);
@@ -185,6 +214,8 @@ void AddSlamCommand(CLI::App* app) {
   command->add_flag("--kitti", a->kitti, "Write it in KITTI's format");
   command->add_option("--truth", a->truth,
                       "Compare with this trajectory (TUM or KITTI); synthetic drives bring theirs");
+  command->add_option("--errors", a->errors,
+                      "Write error and deviation of each pose to this file, as CSV [m, rad]");
   command->add_option("--voxel-size", a->slam.odometry.voxel_size_m, "Of the map [m]")
       ->check(CLI::Range(0.05, 20.0));
   command->add_option("--max-range", a->slam.odometry.max_range_m, "Of points, and of the map [m]")

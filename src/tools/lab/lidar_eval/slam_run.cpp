@@ -97,31 +97,47 @@ odometry::Pose TrueMiddle(const TimedScan& scan) {
   return {Eigen::Quaterniond(w, x, y, z), {pose.x, pose.y, pose.z}};
 }
 
-std::optional<Calibration> Calibrate(const SlamResult& r, const odometry::Trajectory& truth) {
+std::vector<odometry::Twist> ErrorsOf(const SlamResult& r, const odometry::Trajectory& truth) {
   if (truth.empty() || truth.front().time > r.estimate.front().time ||
-      truth.back().time < r.estimate.back().time || r.estimate.size() < 2)
-    return std::nullopt;
-  Calibration c;
-  double errors = 0;
-  double deviations = 0;
+      truth.back().time < r.estimate.back().time)
+    return {};
+  std::vector<odometry::Twist> errors;
   const odometry::Pose first = InterpolateAt(truth, r.estimate.front().time);
   const odometry::Pose first_found = r.estimate.front().pose;
-  for (std::size_t i = 1; i < r.estimate.size(); ++i) {
-    const odometry::Pose way = first.Inverse() * InterpolateAt(truth, r.estimate[i].time);
-    const odometry::Pose found = first_found.Inverse() * r.estimate[i].pose;
-    const double error = (way.position - found.position).norm();
-    const double deviation = r.deviation_m[i];
-    c.mean_m += deviation;
+  for (const odometry::StampedPose& estimate : r.estimate) {
+    const odometry::Pose way = first.Inverse() * InterpolateAt(truth, estimate.time);
+    const odometry::Pose found = first_found.Inverse() * estimate.pose;
+    const Eigen::Quaterniond turn = found.rotation * way.rotation.conjugate();
+    odometry::Twist error;
+    error << found.position - way.position,
+        odometry::Log({turn, Eigen::Vector3d::Zero()}).tail<3>();
+    errors.push_back(error);
+  }
+  return errors;
+}
+
+std::optional<Calibration> Calibrate(const std::vector<odometry::Twist>& errors,
+                                     const std::vector<odometry::Matrix6>& covariance,
+                                     Eigen::Index first) {
+  if (errors.size() < 2) return std::nullopt;
+  Calibration c;
+  double error_squares = 0;
+  double variances = 0;
+  for (std::size_t i = 1; i < errors.size(); ++i) {
+    const double error = errors[i].segment<3>(first).norm();
+    const double variance = covariance[i].diagonal().segment<3>(first).sum();
+    const double deviation = std::sqrt(variance);
+    c.mean += deviation;
     c.within_1_sigma += error <= deviation ? 1 : 0;
     c.within_3_sigma += error <= 3 * deviation ? 1 : 0;
-    errors += error * error;
-    deviations += deviation * deviation;
+    error_squares += error * error;
+    variances += variance;
   }
-  const auto count = static_cast<double>(r.estimate.size() - 1);
-  c.mean_m /= count;
+  const auto count = static_cast<double>(errors.size() - 1);
+  c.mean /= count;
   c.within_1_sigma /= count;
   c.within_3_sigma /= count;
-  c.width = errors > 0 ? std::sqrt(deviations / errors) : 0;
+  c.width = error_squares > 0 ? std::sqrt(variances / error_squares) : 0;
   return c;
 }
 
@@ -157,8 +173,8 @@ SlamResult RunSlam(ScanStream* scans, const SlamOptions& options,
     result.cpu_ms.push_back(1e3 * static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC);
     result.estimate.push_back({e.time, e.pose});
     if (closer) closer->AddScan(result.estimate.back(), odometry.last_scan());
-    result.deviation_m.push_back(std::sqrt(e.covariance.topLeftCorner<3, 3>().trace()));
-    ++result.tracking[e.tracking];
+    result.covariance.push_back(e.covariance);
+    result.states.push_back(e.tracking);
     if (done < kStart && e.tracking == odometry::Tracking::kLost) ++result.lost_at_start;
     if (e.map_restarted || e.tracking == odometry::Tracking::kStarted) ++result.maps;
     if (timed->truth) result.truth.push_back({e.time, TrueMiddle(*timed)});

@@ -2,7 +2,6 @@
 // An odometry over all scans of a source, with what a codec does to their points.
 #pragma once
 #include <functional>
-#include <map>
 
 #include "src/odometry/odometry.h"
 #include "src/odometry/trajectory.h"
@@ -25,9 +24,9 @@ struct SlamOptions {
 
 struct SlamResult {
   odometry::Trajectory estimate;
-  odometry::Trajectory truth;       // empty where the source knows none
-  std::vector<double> deviation_m;  // of each estimate, as the odometry has it
-  std::map<odometry::Tracking, std::size_t> tracking;
+  odometry::Trajectory truth;                 // empty where the source knows none
+  std::vector<odometry::Matrix6> covariance;  // of each estimate, as the odometry has it
+  std::vector<odometry::Tracking> states;
   std::size_t lost_at_start = 0;  // of the first twenty scans
   std::vector<double> cpu_ms;     // of each scan, ascending
   std::size_t map_voxels = 0;     // at the end
@@ -45,15 +44,21 @@ struct SlamResult {
 SlamResult RunSlam(ScanStream* scans, const SlamOptions& options,
                    const std::function<void(std::size_t)>& progress);
 
-/// How the errors of the positions compare with the deviations that the odometry has.
+/// How far each pose is off since the first one, seen along the axes of the first: x, y, z [m], and
+/// turns [rad]. Empty where `truth` does not cover the estimate.
+std::vector<odometry::Twist> ErrorsOf(const SlamResult& result, const odometry::Trajectory& truth);
+
+/// How errors compare with the deviations that the odometry has.
 struct Calibration {
-  double mean_m = 0;  // of the deviations
+  double mean = 0;  // of the deviations [m or rad]
   double within_1_sigma = 0;
   double within_3_sigma = 0;
   double width = 0;  // the deviations as a multiple of the errors, both root mean squares
 };
-/// None where `truth` does not cover the estimate.
-std::optional<Calibration> Calibrate(const SlamResult& result, const odometry::Trajectory& truth);
+/// `first`: 0 for positions, 3 for turns. None without errors.
+std::optional<Calibration> Calibrate(const std::vector<odometry::Twist>& errors,
+                                     const std::vector<odometry::Matrix6>& covariance,
+                                     Eigen::Index first);
 
 /// Where the sensor was in the middle of a scan of which that is known.
 odometry::Pose TrueMiddle(const TimedScan& scan);
