@@ -16,15 +16,72 @@ DRIVES = [
 ]
 
 
+# Sensor, scene, columns, speed [m/s], seed, scans, what is left out of them.
+CALIBRATED = [
+    ("os0-32", "street", 512, 10, 50, 120, []),
+    ("os0-32", "town", 512, 10, 50, 120, []),
+    ("os0-32", "field", 512, 10, 50, 120, []),
+    ("os0-32", "field", 1024, 7, 136, 80, []),
+    ("os0-32", "field", 1024, 14, 12, 120, ["--every-beam", 2]),
+    ("os0-32", "field", 512, 10, 51, 120, ["--gap", 1]),
+    ("os0-32", "town", 512, 10, 51, 120, ["--lost-scans", 0.1]),
+    ("os0-32", "tunnel", 512, 8, 1, 60, []),
+    ("os0-64", "street", 512, 8, 1, 40, ["--every-scan", 5]),
+    ("os0-64", "town", 512, 8, 1, 40, ["--every-scan", 5]),
+    ("os0-64", "field", 512, 8, 1, 40, ["--every-scan", 5]),
+    ("os1-64", "street", 512, 10, 50, 120, []),
+    ("os1-64", "town", 512, 10, 50, 120, []),
+    ("os1-64", "field", 512, 10, 50, 120, []),
+]
+FAULTS = {"--every-beam": "half the beams", "--gap": "1 s gap", "--lost-scans": "10 % lost", "--every-scan": "2 Hz"}
+STARTS = range(100, 140)  # seeds
+
+
+def slam(model, scene, columns, speed, seed, scans, *options):
+    # A synthetic drive has ten scans a second, of which `--every-scan` keeps some.
+    return json.loads(
+        common.lidar_eval(
+            "slam", f"synth:{model}:{scene}:{columns}", "--json",
+            "--speed", speed, "--seed", seed, "--scans", scans, *options,
+        )
+    )
+
+
+def confidence():
+    """Each scan counts alike in the last row."""
+    body = []
+    kinds = ("deviation", "turn_deviation")
+    sums = {(kind, part): 0 for kind in kinds for part in ("within_1_sigma", "within_3_sigma")}
+    scans_of_all = 0
+    for model, scene, columns, speed, seed, scans, fault in CALIBRATED:
+        found = slam(model, scene, columns, speed, seed, scans, *fault)
+        scans_of_all += found["scans"]
+        name = ", ".join([model, scene, *(FAULTS[option] for option in fault[:1])])
+        row = [name, f"{speed} m/s", f"{found['error']['end_error_m']:.2f} m", f"{found['deviation']['mean']:.2f} m"]
+        for kind in kinds:
+            for part in ("within_1_sigma", "within_3_sigma"):
+                sums[kind, part] += found["scans"] * found[kind][part]
+                row.append(f"{100 * found[kind][part]:.0f} %")
+        body.append(row)
+    body.append(["all", "", "", "", *(f"{100 * total / scans_of_all:.1f} %" for total in sums.values())])
+    head = ["sensor, scene", "speed", "end", "deviation, mean", "position within 1 σ", "3 σ", "turn within 1 σ", "3 σ"]
+    return common.table(head, body)
+
+
+def starts():
+    body = []
+    for speed in (7, 10):
+        runs = [slam("os0-32", "field", 1024, speed, seed, 40) for seed in STARTS]
+        lost = sum(run["lost_at_start"] > 0 or run["maps"] > 1 for run in runs)
+        worst = max(run["error"]["end_error_m"] / run["error"]["length_m"] for run in runs)
+        body.append([f"{speed} m/s", len(runs), lost, f"{100 * worst:.1f} %"])
+    return common.table(["speed", "drives", "starts lost", "end after 40 scans, worst"], body)
+
+
 def drives():
     body = []
     for model, scene, columns, speed, seed, scans in DRIVES:
-        found = json.loads(
-            common.lidar_eval(
-                "slam", f"synth:{model}:{scene}:{columns}", "--json",
-                "--speed", speed, "--seed", seed, "--scans", scans,
-            )
-        )
+        found = slam(model, scene, columns, speed, seed, scans)
         error = found["error"]
         body.append([
             f"{model}, {scene}, {columns}", f"{speed} m/s", seed, scans, f"{error['length_m']:.0f} m",
@@ -35,4 +92,4 @@ def drives():
     return common.table(head, body)
 
 
-TABLES = {"drives": drives}
+TABLES = {"drives": drives, "starts": starts, "confidence": confidence}
