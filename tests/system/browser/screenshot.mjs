@@ -1,40 +1,39 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Makes the pictures of the documentation: node tests/system/browser/screenshot.mjs FOLDER
-// The page looks at a whole way: robot, a link that changes, edge.
+// Makes the picture of README and of foxglovesink's page: node tests/system/browser/screenshot.mjs FOLDER
+// The page looks at the demo. SHOTS=3 adds the light theme and a phone.
 import { spawn } from 'node:child_process';
+import { mkdtempSync, rmSync } from 'node:fs';
+import os from 'node:os';
 import path from 'node:path';
-import { freePort, openBrowser, openPage, Pipeline, sleep, until } from './support.mjs';
+import { openBrowser, openPage, sleep, until } from './support.mjs';
 
-const folder = process.argv[2] ?? '.';
-const seconds = Number(process.env.WAIT_S ?? 30);
-const [port, rtp, link] = [await freePort(), await freePort(), await freePort()];
-const relay = spawn(
-  process.env.LIDAR_LINK ?? 'build/src/tools/lidar-link',
-  ['--listen', `127.0.0.1:${link}`, '--forward', `127.0.0.1:${rtp}`, '--rtt', '40']
-    .concat(['--steps', '4,2.2,3,1.8,4.4,2.6', '--step-time', '6'])
-    .concat(['--aqm', 'ramp', '--aqm-low', '2', '--aqm-high', '10']),
-  { stdio: 'ignore' },
-);
-const way =
-  `lidartestsrc is-live=true model=os1-64 speed=8 ! queue ! lidarenc max-error=0.05 ! rtplidarpay ` +
-  `! screamsink host=127.0.0.1 port=${link} start-bitrate=3000000 ` +
-  `screamsrc port=${rtp} ! rtplidardepay ! tee name=coded ! queue ! foxglovesink name=web port=${port} ` +
-  `coded. ! queue ! lidardec ! lidarodometry name=poses ! fakesink poses.odometry ! queue ! web.`;
-const pipeline = await Pipeline.start(way, port);
-const browser = await openBrowser();
+const folder = process.argv[2] ?? 'docs/images';
+const seconds = Number(process.env.WAIT_S ?? 35);
 const shots = [
-  ['page', { viewport: { width: 1280, height: 800 }, colorScheme: 'dark' }],
-  ['page-light', { viewport: { width: 1280, height: 800 }, colorScheme: 'light' }],
-  ['page-phone', { viewport: { width: 390, height: 780 }, colorScheme: 'dark' }],
-];
-for (const [name, options] of shots.slice(0, Number(process.env.SHOTS ?? 1))) {
-  const { page, context, complaints } = await openPage(browser, `http://127.0.0.1:${port}/`, options);
-  await until('clouds', () => page.evaluate(() => window.lidarPage.scene.frames > 5));
-  await sleep(seconds * 1000);
-  await page.screenshot({ path: path.join(folder, `${name}.png`), timeout: 120_000 });
-  if (complaints.length) console.error(complaints.join('\n'));
-  await context.close();
+  ['foxglovesink', { viewport: { width: 1280, height: 800 }, colorScheme: 'dark' }],
+  ['foxglovesink-light', { viewport: { width: 1280, height: 800 }, colorScheme: 'light' }],
+  ['foxglovesink-phone', { viewport: { width: 390, height: 780 }, colorScheme: 'dark' }],
+].slice(0, Number(process.env.SHOTS ?? 1));
+
+const root = new URL('../../..', import.meta.url).pathname;
+const output = mkdtempSync(path.join(os.tmpdir(), 'lidar-demo-'));
+const options = ['--view', '--slam', '--no-plots', '--duration', shots.length * (seconds + 30), '--output', output];
+const demo = spawn(`${root}/pipelines/demo.sh`, ['--no-install', '--no-build', ...options], { stdio: ['ignore', 'inherit', 'inherit'] });
+const ended = new Promise((done) => demo.on('exit', done));
+const browser = await openBrowser();
+try {
+  for (const [name, options] of shots) {
+    const page = await until('a page', () =>
+      openPage(browser, 'http://127.0.0.1:8765/?also=127.0.0.1:8766', options).catch(() => null));
+    await until('clouds', () => page.page.evaluate(() => window.lidarPage.scene.frames > 5));
+    await sleep(seconds * 1000);
+    await page.page.screenshot({ path: path.join(folder, `${name}.png`), timeout: 120_000 });
+    if (page.complaints.length) console.error(page.complaints.join('\n'));
+    await page.context.close();
+  }
+} finally {
+  await browser.close();
+  demo.kill('SIGINT');
+  await ended;
+  rmSync(output, { recursive: true });
 }
-await browser.close();
-await pipeline.stop();
-relay.kill();

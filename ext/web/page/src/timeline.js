@@ -75,7 +75,7 @@ export class Timeline {
     this.slider.min = (from - to).toFixed(1);
     this.slider.value = -ago;
     const text = this.isPast ? `${number(ago, ago < 10 ? 1 : 0)} s ${t('ago')}` : t('live');
-    this.output.textContent = text;
+    this.output.textContent = this.isPast ? text : '';
     this.slider.setAttribute('aria-valuetext', text);
   }
 }
