@@ -96,8 +96,6 @@ bool BeamKeeper::PlaceByOld(const std::vector<Sighting>& points, std::vector<Pla
 
 const BeamTable* BeamKeeper::Place(const std::vector<Sighting>& points,
                                    std::vector<PlacedPoint>* placed) {
-  // An image has no more pixels, and a search would take seconds.
-  constexpr std::size_t kMostPoints = 1U << 20;
   if (points.size() > kMostPoints) return nullptr;
   if (table_ && PlaceByOld(points, placed)) {
     fails_ = 0;

@@ -22,6 +22,9 @@ struct PlacedPoint {
 
 class BeamKeeper {
  public:
+  /// An image has no more pixels, and a search would take seconds.
+  static constexpr std::size_t kMostPoints = 1U << 20;
+
   /// Places the points of a cloud in the beams of the clouds before if they fit, else in those that
   /// it finds. Returns null where it finds none. It looks for others less and less often while none
   /// fit.

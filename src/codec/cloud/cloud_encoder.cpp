@@ -226,8 +226,11 @@ CloudEncoder::Candidate CloudEncoder::EncodeSmallest(const CloudHeader& header, 
   best.header = header;
   bool found = false;
   sightings_.clear();
-  for (const Point& point : near_) sightings_.emplace_back(point);
-  const BeamTable* table = keeper_.Place(sightings_, &placed_);
+  const BeamTable* table = nullptr;
+  if (near_.size() <= BeamKeeper::kMostPoints) {
+    for (const Point& point : near_) sightings_.emplace_back(point);
+    table = keeper_.Place(sightings_, &placed_);
+  }
   if (table != nullptr) {
     const PixelErrors errors = CheapestErrors({&sightings_, &placed_, table}, error_m);
     found = effort_ < EffortControl::kHighest

@@ -463,6 +463,22 @@ TEST(CloudCodec, TakesCloudsThatCostNextToNothing) {
   EXPECT_EQ(RoundTrip(cube, {0.0174, 0, 0}, 0).cloud.size(), cube.size());
 }
 
+TEST(CloudCodec, TakesTenMillionPoints) {
+  std::mt19937 random(6);
+  PlainPoints points(10'000'000);
+  for (auto& p : points)
+    for (unsigned k = 0; k < 3; ++k) p[k] = static_cast<float>(random() % 8'000) * 0.001F;
+  auto encoder = CloudEncoder::Create(PlainLayout());
+  encoder->Load(BytesOf(points), false);
+  EncodedSlice slice;
+  ASSERT_EQ(encoder->Encode({0.5, 0, 0}, &slice), SliceResult::kEncoded);
+  CloudDecoder few(kMaxPoints);
+  EXPECT_FALSE(few.Decode({slice.bytes.data(), slice.bytes.size()}));
+  CloudDecoder decoder(1U << 24);
+  ASSERT_TRUE(decoder.Decode({slice.bytes.data(), slice.bytes.size()}));
+  EXPECT_EQ(decoder.cloud().size(), points.size());
+}
+
 class DamagedClouds : public ::testing::TestWithParam<bool> {};
 TEST_P(DamagedClouds, GiveACloudWithinTheLimitsOrNone) {
   PlainPoints points = GetParam() ? SpinningScan(0.1) : ScanOf("at128");
