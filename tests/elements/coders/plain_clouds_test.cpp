@@ -60,5 +60,52 @@ INSTANTIATE_TEST_SUITE_P(
       return std::string(std::get<0>(c.param).name) + "_" + std::get<1>(c.param).name;
     });
 
+class DriverFields : public ::testing::TestWithParam<CoderCase> {};
+
+// Rings past 65,535 that jump, and times that go back.
+TEST_P(DriverFields, AreNeitherNeededNorBelieved) {
+  const Harness h = Codec(GetParam(), "max-error=0.02");
+  const std::vector<float> xyz = RandomPoints(500, 40);
+  const std::size_t points = xyz.size() / 3;
+  CloudInfo info = XyzInfo(static_cast<guint>(points));
+  info.point_step = 32;
+  info.fields =
+      *PointFields::Parse("x:F32:0,y:F32:4,z:F32:8,intensity:F32:12,ring:U32:16,timestamp:F64:24");
+  SetCaps(h.get(), info);
+  std::vector<std::uint8_t> raw(32 * points);
+  for (std::size_t i = 0; i < points; ++i) {
+    const auto ring = static_cast<std::uint32_t>(i * 2'654'435'761U);
+    const double time = -1e9 * static_cast<double>(i);
+    std::memcpy(&raw[32 * i], &xyz[3 * i], 12);
+    std::memcpy(&raw[32 * i + 16], &ring, sizeof ring);
+    std::memcpy(&raw[32 * i + 24], &time, sizeof time);
+  }
+  GstBuffer* buffer = gst_buffer_new_memdup(raw.data(), raw.size());
+  GST_BUFFER_PTS(buffer) = 0;
+  ASSERT_EQ(gst_harness_push(h.get(), buffer), GST_FLOW_OK);
+  const BufferPtr output(gst_harness_try_pull(h.get()));
+  ASSERT_TRUE(output);
+  const auto after = PointsOf(output.get(), 16);
+  EXPECT_EQ(after.size(), xyz.size());
+  EXPECT_LE(LargestGap(xyz, after), 0.02);
+}
+
+// The other sensor has other fields and another number of points.
+TEST_P(DriverFields, MayChangeWhileTheStreamRuns) {
+  const Harness h = Codec(GetParam(), "max-error=0.02");
+  for (const std::size_t points : {500U, 80U, 500U}) {
+    const std::vector<float> xyz = RandomPoints(points, 40);
+    CloudInfo info = XyzInfo(static_cast<guint>(points));
+    if (points == 80) info.fields = *PointFields::Parse("x:F32:0,y:F32:4,z:F32:8");
+    SetCaps(h.get(), info);
+    ASSERT_EQ(gst_harness_push(h.get(), PlainBuffer(xyz)), GST_FLOW_OK);
+    const BufferPtr output(gst_harness_try_pull(h.get()));
+    ASSERT_TRUE(output);
+    EXPECT_LE(LargestGap(xyz, PointsOf(output.get(), points == 80 ? 12 : 16)), 0.02);
+  }
+}
+INSTANTIATE_TEST_SUITE_P(All, DriverFields, ::testing::ValuesIn(XyzCoders()),
+                         [](const auto& c) { return std::string(c.param.name); });
+
 }  // namespace
 }  // namespace lidar::gst
