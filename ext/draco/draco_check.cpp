@@ -18,7 +18,7 @@ constexpr std::uint8_t kMaxDataType = 11;
 constexpr std::uint8_t kMaxKdLevel = 6;
 constexpr std::uint32_t kMaxBitLength = 32;
 
-/// Numbers of metadata are variable-length; those that are plausible have one byte.
+/// Metadata numbers have variable length; plausible ones have one byte.
 std::optional<std::uint8_t> Short(ByteReader* reader) {
   const std::uint8_t number = reader->U8();
   if (number >= 0x80) return std::nullopt;

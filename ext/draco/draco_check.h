@@ -19,8 +19,8 @@ struct DracoLimits {
   bool metadata = false;  // of the cloud: a few entries, none within another
 };
 
-/// What the stream says of itself, where it is a point cloud that libdraco decodes in bounded time
-/// and memory; none otherwise. Passing does not mean that the stream is undamaged.
+/// Returns the summary of a point cloud that libdraco decodes in bounded time and memory, else
+/// nothing. The stream may still be damaged.
 std::optional<DracoSummary> CheckDraco(ByteView stream, const DracoLimits& limits);
 
 }  // namespace lidar::draco

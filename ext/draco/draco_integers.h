@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Lists of integers as a Draco point cloud: one attribute a list.
+// Codes lists of integers as a Draco point cloud, an attribute a list.
 #pragma once
 #include "src/codec/integer_coder.h"
 
@@ -11,7 +11,7 @@ class DracoIntegers : public codec::IntegerCoder {
               std::vector<std::uint8_t>* out) const override;
   bool Decode(ByteView stream, std::uint32_t count, bool has_levels,
               codec::IntegerLists* lists) const override;
-  /// It has no state, so one is enough.
+  /// Stateless, so a shared object is enough.
   static const DracoIntegers* Shared();
 };
 

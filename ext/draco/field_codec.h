@@ -25,12 +25,12 @@ struct FieldLayout {
   static constexpr std::size_t kMaxFields = 64;
 };
 
-/// Rounds nothing and keeps the order of points. False where there is no point to code, or a field
-/// ends past the point.
+/// Rounds nothing and keeps the order of points. Returns false if there is no point to code, or a
+/// field ends past the point.
 bool EncodeFields(ByteView points, const FieldLayout& layout, std::vector<std::uint8_t>* out);
 
-/// Whole points of the layout, zero between the fields. False where the stream is damaged, has more
-/// than `max_points`, or attributes that are not the layout's fields.
+/// Whole points of the layout, zero between the fields. Returns false if the stream is damaged, has
+/// more than `max_points`, or attributes that are not the layout's fields.
 bool DecodeFields(ByteView stream, const FieldLayout& layout, std::uint32_t max_points,
                   std::vector<std::uint8_t>* points);
 

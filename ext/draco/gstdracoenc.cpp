@@ -38,7 +38,7 @@ struct DracoSettings {
   RangeCoder range_coder = RangeCoder::kResidual;
   guint level = 7;
 
-  /// None: range where the cloud has ranges.
+  /// Returns nothing for auto, which is range if the cloud has ranges.
   std::optional<Geometry> wanted_geometry() const {
     if (geometry == GeometryChoice::kAuto) return std::nullopt;
     return geometry == GeometryChoice::kRange ? Geometry::kRange : Geometry::kXyz;

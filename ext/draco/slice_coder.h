@@ -40,8 +40,8 @@ class XyzSliceEncoder {
 /// codec::SliceEncoder with another geometry and other coders. For one thread at a time.
 class SliceEncoder {
  public:
-  /// Returns nothing where `format` cannot be coded in that geometry; no geometry takes kRange
-  /// where it can be.
+  /// Returns nothing if `format` cannot be coded in that geometry; no geometry takes kRange where
+  /// it can be.
   static std::optional<SliceEncoder> Create(const codec::CloudFormat& format,
                                             std::optional<Geometry> geometry,
                                             codec::RangeCoder coder = codec::RangeCoder::kAdaptive);
@@ -51,11 +51,11 @@ class SliceEncoder {
   /// Takes the points out of `raw`, which holds whole points (range: whole beams) of the format,
   /// and keeps them for Encode().
   void Load(ByteView raw, std::uint32_t first_column, bool with_intensity);
-  /// What is loaded has so many.
+  /// The number of loaded returns.
   std::size_t returns() const { return range_ ? range_->returns() : xyz_.cloud().size(); }
   /// Longest range, or longest side of the points' box [m].
   double extent_m() const { return range_ ? range_->extent_m() : LongestSide(xyz_.cloud()); }
-  /// Resolution of the loaded ranges [mm]; 1 where there are none.
+  /// Resolution of the loaded ranges [mm]; 1 if there are none.
   std::uint32_t range_unit_mm() const { return range_ ? range_->range_unit_mm() : 1; }
   bool has_intensity() const { return range_ ? range_->has_intensity() : xyz_.has_intensity(); }
   /// Names the coder that Encode() will take, for statistics and predictors: "xyz-kd6".
@@ -63,7 +63,7 @@ class SliceEncoder {
 
   /// Forgets all but `kept` of the loaded beams (range) or points (xyz).
   void Thin(const std::vector<bool>& kept);
-  /// How many beams or points Thin() chooses from.
+  /// The number of beams or points that Thin() chooses from.
   std::size_t rows() const { return range_ ? range_->rows() : xyz_.cloud().size(); }
 
   /// As in codec::SliceEncoder, and without effect in xyz geometry.
@@ -89,10 +89,10 @@ class SliceDecoder {
   /// kRange needs a sensor model.
   SliceDecoder(const codec::CloudFormat& format, Geometry geometry, std::uint32_t max_points);
 
-  /// Decodes a slice and keeps it for Write(). None for a stream that is damaged, of another
-  /// sensor, or larger than max_points.
+  /// Decodes a slice and keeps it for Write(). Returns nothing for a stream that is damaged, of
+  /// another sensor, or larger than max_points.
   std::optional<Shape> Decode(ByteView stream);
-  /// The quality of the slice decoded last. An xyz slice is a plain Draco file and tells nothing.
+  /// The quality of the slice decoded last; unknown for xyz, which is a plain Draco file.
   Quality quality() const { return range_ ? range_->quality() : Quality{}; }
   /// Writes width * height points of the format.
   void Write(std::uint8_t* raw) const;

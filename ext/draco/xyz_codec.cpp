@@ -59,11 +59,11 @@ struct Grid {
   int bits;
 };
 
-/// Draco computes in floats: the offset from the corner, its quotient by the step, and both the
-/// way back are rounded. In metres, each way.
+/// Draco computes in floats: it rounds the offset from the corner, its quotient by the step, and
+/// both on the way back. The sum is in metres.
 double RoundingOf(const Box& box) { return kRounding * (8 * box.extent + 2 * box.farthest); }
 
-/// The grid that keeps to the settings; none where there is none.
+/// Returns the grid that keeps to the settings, or nothing.
 std::optional<Grid> GridOf(const Box& box, const XyzSettings& settings) {
   const double rounding = RoundingOf(box);
   double step = settings.max_error_m / kXyzErrorPerStep - 2 * rounding;
@@ -112,7 +112,7 @@ void LeaveQuantized(::draco::Decoder* decoder) {
   decoder->SetSkipAttributeTransform(GeometryAttribute::GENERIC);
 }
 
-/// `bytes` hold `values` as integers of the attribute's grid. In floats, as Draco does it itself.
+/// `bytes` hold `values` as integers of the attribute's grid, rounded in floats as Draco does.
 template <std::size_t kComponents>
 bool FromGrid(const ::draco::PointAttribute& attribute, const std::uint8_t* bytes,
               std::vector<float>* values) {

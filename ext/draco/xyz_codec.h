@@ -29,9 +29,9 @@ struct XyzResult {
   double error_m = 0;  // bound that holds with this step, float rounding included
 };
 
-/// Appends a Draco file to `out`. The points must be finite. False where there are none, or where
-/// no grid that Draco can write meets the bound: its grids have 2^30 cells at most, and a float at
-/// 10 km has steps of a millimetre itself.
+/// Appends a Draco file to `out`. The points must be finite. Returns false if there are none, or
+/// where no grid that Draco can write meets the bound: its grids have 2^30 cells at most, and a
+/// float at 10 km has steps of a millimetre itself.
 bool EncodeXyz(const XyzCloud& cloud, const XyzSettings& settings, std::vector<std::uint8_t>* out,
                XyzResult* result);
 

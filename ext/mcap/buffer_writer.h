@@ -21,14 +21,15 @@ struct NewMessage {
 
 class BufferWriter {
  public:
-  /// For buffers of `caps`. NULL where those cannot be recorded; `why` then says so in words for a
+  /// For buffers of `caps`. NULL if those cannot be recorded; `why` then says so in words for a
   /// user.
   static std::unique_ptr<BufferWriter> Make(const GstCaps* caps, const std::string& frame_id,
                                             std::string* why);
   virtual ~BufferWriter() = default;
 
   MessageType type() const { return type_; }
-  /// Appends what `buffer`, logged at `log_time`, becomes. False where it contradicts its caps.
+  /// Appends what `buffer`, logged at `log_time`, becomes. Returns false if it contradicts its
+  /// caps.
   virtual bool Write(GstBuffer* buffer, GstClockTime log_time, std::vector<NewMessage>* out) = 0;
 
  protected:

@@ -10,8 +10,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// The digits of a conversion like %d or %05d at the begin of `text`, and its length; none for any
-/// other.
+/// The digits and the length of a conversion like %d or %05d at the begin of `text`; no digits for
+/// any other.
 struct Conversion {
   std::size_t digits = 0;
   std::size_t length = 0;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The names of a recording's files: one, or numbered pieces.
+// The names of a recording's files: a single name, or numbered ones.
 #pragma once
 #include <cstdint>
 #include <optional>
@@ -12,16 +12,16 @@ namespace lidar::gst {
 
 class FileNames {
  public:
-  /// `location` is a path, or one whose file name has a number: `rec-%05d.mcap`. None where there
-  /// is another conversion, or a second one; `why` then says so in words for a user.
+  /// `location` is a path; its file name may have a number: `rec-%05d.mcap`. Returns nothing for
+  /// another conversion, or a second one; `why` then says so for a user.
   static std::optional<FileNames> Parse(const std::string& location, std::string* why);
 
   bool is_numbered() const { return is_numbered_; }
   std::string Name(std::uint32_t number) const;
   /// The folder that the files are in.
   std::string Folder() const;
-  /// The files that are there, by their numbers. Without a number, the one of that name. `failed`
-  /// says where they cannot be known.
+  /// The existing files by their numbers, or the file of that name. `failed`: the folder cannot be
+  /// read.
   std::vector<std::pair<std::uint32_t, std::string>> Existing(std::error_code* failed) const;
 
  private:

@@ -136,7 +136,7 @@ static void PostFault(GstLidarMcapSink* self, const RecorderFault& fault) {
                       ("What was recorded before is complete."));
 }
 
-/// Tells the application of each file that is complete.
+/// Posts a message for each complete file.
 static void PostFinished(GstLidarMcapSink* self, const std::vector<RecordedFile>& files) {
   for (const auto& file : files) {
     const auto& s = file.statistics;
@@ -153,7 +153,7 @@ static void PostFinished(GstLidarMcapSink* self, const std::vector<RecordedFile>
   }
 }
 
-/// Lets `stats` see what was counted; for whoever holds `recording`.
+/// Copies the counters for `stats`. The caller holds `recording`.
 static void TellCounters(State* state) {
   if (state->recorder) state->counted.chunks = state->recorder->chunks();
   std::lock_guard lock(state->mutex);
@@ -161,7 +161,7 @@ static void TellCounters(State* state) {
 }
 
 /// Runs `work` on the recorder under its lock. Posts what comes of it when the lock is free again.
-/// False where the recording is over.
+/// False if the recording is over.
 template <class Work>
 static bool WithRecorder(GstLidarMcapSink* self, Work work) {
   State& state = *self->state;
@@ -268,7 +268,7 @@ static void ReleasePad(GstElement* element, GstPad* pad) {
   gst_object_unref(stream);
 }
 
-/// What needs a channel of its own. The message of a cloud says its width itself.
+/// The part of the caps that needs a channel of its own. A cloud's message has its width.
 static std::string KindOf(lidar::ScalarCaps caps, MessageType type) {
   auto& fields = caps.fields;
   if (type == MessageType::kCloud)
@@ -278,7 +278,7 @@ static std::string KindOf(lidar::ScalarCaps caps, MessageType type) {
   return caps.ToText().value_or("");
 }
 
-/// True where every stream has ended.
+/// Returns true if every stream has ended.
 static bool HaveAllEnded(GstLidarMcapSink* self) {
   bool all = true;
   GST_OBJECT_LOCK(self);

@@ -17,7 +17,7 @@ G_END_DECLS
 
 namespace lidar::gst {
 
-/// What a stream of the sink has to say about its next buffers.
+/// The properties of a stream's next buffers.
 struct RecordedStream {
   std::uint16_t channel_id = 0;
   std::uint32_t sequence = 0;

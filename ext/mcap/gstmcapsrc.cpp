@@ -131,7 +131,7 @@ static GstPad* NewPad(const std::string& name) {
   return pad;
 }
 
-/// True where there is something to play, as far as known before it is read.
+/// Returns true if there is something to play, as far as known before it is read.
 static bool HasTopic(const Playback& playback, const Settings& settings) {
   return std::any_of(playback.topics().begin(), playback.topics().end(), [&](const auto& topic) {
     return IsWanted(settings, topic.channel.topic) &&
@@ -193,7 +193,7 @@ static void TellOfDamage(GstLidarMcapSrc* self) {
   Counters counters;
   {
     std::lock_guard lock(state.mutex);
-    // A last chunk that is damaged is followed by no message that could tell.
+    // No message follows a damaged last chunk, so it is counted here.
     state.counters.chunks_damaged = state.run.playback->damaged_chunks();
     counters = state.counters;
   }
@@ -217,7 +217,7 @@ static void Finish(GstLidarMcapSrc* self) {
 /// Posts what is an error, and stops the task.
 static void Stop(GstLidarMcapSrc* self, GstFlowReturn flow) {
   GST_DEBUG_OBJECT(self, "stops: %s", gst_flow_get_name(flow));
-  // The task pauses before the end is told: a seek may answer it, and starts the task again.
+  // The task pauses before EOS is posted: a seek may answer it and starts the task again.
   self->state->task.Pause();
   if (flow == GST_FLOW_EOS) return Finish(self);
   if (flow != GST_FLOW_NOT_LINKED && flow > GST_FLOW_EOS) return;

@@ -84,7 +84,7 @@ static gboolean Event(GstBaseSink* base, GstEvent* event) {
     state.ended = false;
     McapSinkFlushed(state.sink);
   } else if (GST_EVENT_TYPE(event) == GST_EVENT_EOS) {
-    // Called before the base class tells the application.
+    // This runs before the base class posts EOS.
     state.ended = true;
     McapSinkStreamEnded(state.sink);
   }
@@ -120,7 +120,7 @@ static void gst_lidar_mcap_stream_class_init(GstLidarMcapStreamClass* klass) {
 }
 
 GstElement* gst_lidar_mcap_stream_new(GstLidarMcapSink* sink, const gchar* name) {
-  // A sparse stream must not hold up the start of the others, and disks know no time.
+  // A sparse stream must not hold up the start of the others, and disks have no clock.
   auto* stream = static_cast<GstElement*>(g_object_new(GST_TYPE_LIDAR_MCAP_STREAM, "name", name,
                                                        "async", FALSE, "sync", FALSE, nullptr));
   StateOf(stream).sink = sink;

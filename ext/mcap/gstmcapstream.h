@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// One stream of an mcapsink, inside of it.
+// A stream of mcapsink, inside of it.
 #pragma once
 #include <gst/base/gstbasesink.h>
 

@@ -59,7 +59,7 @@ class CloudReader : public MessageReader {
 
   BufferPtr Read(ByteView message) override {
     const auto cloud = cdr::ReadPointCloud2(message);
-    // What it claims has to be there, before anything is allocated or remembered.
+    // Checks the claimed size before anything is allocated or stored.
     if (!cloud || cloud->layout.width == 0 || cloud->layout.height == 0 ||
         !cdr::RowStride(*cloud) || !Follow(*cloud))
       return nullptr;
@@ -79,7 +79,7 @@ class CloudReader : public MessageReader {
   bool Follow(const cdr::PointCloud2& cloud) {
     if (converter_ && converter_->layout() == cloud.layout && info_->is_dense == cloud.is_dense)
       return true;
-    // What was recorded from our caps comes back as it was, gaps between fields included.
+    // Caps of our own recording give the points back as they were, gaps between fields included.
     std::optional<cdr::PointLayout> wanted;
     if (info_) wanted = cdr::PointLayout{info_->fields, info_->point_step};
     converter_ = cdr::PointConverter::Make(cloud.layout, wanted);

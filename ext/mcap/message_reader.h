@@ -12,12 +12,12 @@ namespace lidar::gst {
 
 class MessageReader {
  public:
-  /// NULL where messages of that channel are none that we know.
+  /// Returns NULL if the messages of that channel are of an unknown type.
   static std::unique_ptr<MessageReader> Make(const mcap::Schema& schema,
                                              const mcap::Channel& channel);
   virtual ~MessageReader() = default;
 
-  /// Buffers from the last Read() on have these caps; NULL where only a message can tell.
+  /// Buffers from the last Read() on have these caps; NULL if only a message has them.
   GstCaps* caps() const { return caps_.get(); }
   /// Null for what is damaged. Any bytes may come. The buffer has no PTS.
   virtual BufferPtr Read(ByteView message) = 0;

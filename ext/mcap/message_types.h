@@ -18,15 +18,15 @@ enum class MessageType { kCloud, kImu, kOdometry, kSlice };
 mcap::Schema SchemaOf(MessageType type);
 /// Returns nothing for a schema that is none of ours.
 std::optional<MessageType> TypeOf(const mcap::Schema& schema);
-/// What buffers of `caps` become; none where they cannot be recorded.
+/// The message for buffers of `caps`; nothing if they cannot be recorded.
 std::optional<MessageType> TypeOf(const GstCaps* caps);
 /// Whether samples of an IMU are of the layout that can be recorded.
 bool IsOurImu(const GstCaps* caps);
 /// Topic of messages of that type unless another is given.
 std::string_view TopicOf(MessageType type);
 
-/// Caps from the metadata of a channel, which anybody may have written. Null where `text` is not
-/// the caps of `type`.
+/// Caps from the metadata of a channel, which are untrusted. Returns null if `text` is not the caps
+/// of `type`.
 CapsPtr CapsOfType(const std::string& text, MessageType type);
 
 /// The entries of a channel's metadata.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// A file that holds whole pieces only, and is not there before its first.
+// A file of whole pieces, which is made with the first piece.
 #pragma once
 #include <cstdint>
 #include <string>
@@ -11,7 +11,7 @@ namespace lidar::gst {
 
 class OutputFile {
  public:
-  /// What is there already is replaced where the user has named it, and stays where we have.
+  /// A file that the user has named is replaced; a numbered one stays.
   enum class Existing { kReplace, kKeep };
   /// The disk is untouched yet. `sync`: each piece is on the disk before Append() returns.
   OutputFile(std::string path, bool sync, Existing existing)
@@ -20,10 +20,10 @@ class OutputFile {
   OutputFile(const OutputFile&) = delete;
   OutputFile& operator=(const OutputFile&) = delete;
 
-  /// Writes all of `bytes` behind what is there. After a failure the file is as before, and error()
-  /// says why; a file that got nothing is taken away.
+  /// Appends all of `bytes`. After a failure the file is as before, and error() says why; an empty
+  /// file is removed.
   bool Append(ByteView bytes);
-  /// False where what was written did not reach the disk.
+  /// Returns false if what was written did not reach the disk.
   bool Close();
 
   const std::string& path() const { return path_; }

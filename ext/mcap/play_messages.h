@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// What mcapsrc says of recordings that it cannot play, or not whole.
+// Messages of mcapsrc about recordings that it cannot play, or not whole.
 #pragma once
 #include <gst/gst.h>
 

@@ -7,8 +7,8 @@
 
 namespace lidar::gst {
 
-/// A change of state starts and stops it; in between it may be paused, and go on. It stands still
-/// while it is paused and somebody holds lock(). All may be called from any thread.
+/// A change of state starts and stops it; in between it may pause and resume. It stands still while
+/// it is paused and a thread holds lock(). All functions may be called from any thread.
 class PlayTask {
  public:
   PlayTask(GstTaskFunction loop, gpointer data) : task_(gst_task_new(loop, data, nullptr)) {
@@ -22,7 +22,7 @@ class PlayTask {
   PlayTask(const PlayTask&) = delete;
   PlayTask& operator=(const PlayTask&) = delete;
 
-  /// False where there is no thread to be had.
+  /// Returns false if there is no thread to be had.
   bool Start() { return Set(true, GST_TASK_STARTED); }
   void Stop() { Set(false, GST_TASK_STOPPED); }
   void Join() { gst_task_join(task_); }

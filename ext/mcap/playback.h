@@ -26,18 +26,18 @@ class Playback {
     mcap::Message message;
   };
 
-  /// Opens the files that `location` names, which may have a number. None where nothing can be
-  /// read; `why` then says so in words for a user. Nothing more is read once `cancelled`, which
-  /// outlives the playback, is true.
+  /// Opens the files that `location` names, which may have a number. Returns nothing if no file can
+  /// be read; `why` then says so for a user. Reading ends once `cancelled`, which outlives the
+  /// playback, is true.
   static std::unique_ptr<Playback> Open(const std::string& location,
                                         const std::atomic<bool>* cancelled, std::string* why);
 
   /// Log times [ns].
   std::uint64_t start_time() const { return start_time_; }
   std::uint64_t end_time() const { return end_time_; }
-  /// What is known of the topics before any message is read: the first channel of each.
+  /// The first channel of each topic, known before any message is read.
   const std::vector<Topic>& topics() const { return topics_; }
-  /// Files that nobody closed, and those that cannot be read.
+  /// Counts of files without an index, and of unreadable files.
   std::uint64_t unclosed_files() const { return unclosed_files_; }
   std::uint64_t unreadable_files() const { return unreadable_files_; }
   /// Chunks that were left out so far.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// One pad of an mcapsrc: the messages of one topic.
+// A pad of mcapsrc: the messages of a topic.
 #pragma once
 #include <gst/gst.h>
 
@@ -11,7 +11,7 @@
 
 namespace lidar::gst {
 
-/// What all pads of a source have in common.
+/// The common state of a source's pads.
 struct PlaybackGroup {
   guint group_id = 0;
   GstSegment segment{};
@@ -29,11 +29,12 @@ class PlayedStream {
   const std::string& topic() const { return topic_; }
   bool is_added() const { return added_; }
 
-  /// Reads from now on messages of that channel. False where nobody can.
+  /// Reads messages of that channel from now on. Returns false if their type is unknown.
   bool Follow(const mcap::Schema& schema, const mcap::Channel& channel);
-  /// Pushes caps and segment where they are due, and shows the pad. False where caps are not known.
+  /// Pushes caps and segment where they are due, and shows the pad. Returns false if caps are not
+  /// known.
   bool Prepare(const PlaybackGroup& group);
-  /// Null where the message is damaged.
+  /// Null if the message is damaged.
   BufferPtr Read(ByteView message, GstClockTime pts);
   GstFlowReturn Push(BufferPtr buffer);
   /// Says that nothing comes before `time`, where the stream is far behind it.

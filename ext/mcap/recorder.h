@@ -40,12 +40,12 @@ class Recorder {
  public:
   Recorder(const RecorderSettings& settings, FileNames names);
 
-  /// What is in the way of the first file, without making it.
+  /// Returns what prevents the first file, without making it.
   std::optional<RecorderFault> Check() const;
 
   mcap::Catalogue& catalogue() { return catalogue_; }
-  /// `begins_scan`: a file may begin here. After a fault the recording is over, and what was
-  /// complete before is in order.
+  /// `begins_scan`: a file may begin here. After a fault the recording ends, and all before it is
+  /// in order.
   std::optional<RecorderFault> Add(const mcap::MessageHeader& header, ByteView data,
                                    bool begins_scan);
   /// Completes the file. The next message begins another one.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// What a source that can be sought does with its segment, which is of time.
+// The segment of a source with seeks by time.
 #pragma once
 #include <gst/gst.h>
 
@@ -9,7 +9,7 @@
 
 namespace lidar::gst {
 
-/// What a seek event asks for.
+/// The request of a seek event.
 class Seek {
  public:
   explicit Seek(GstEvent* event);
@@ -30,7 +30,7 @@ class Seek {
   GstSeekType start_type_ = GST_SEEK_TYPE_NONE;
 };
 
-/// Duration, position, seeking and segment. False where another one has to answer.
+/// Duration, position, seeking and segment. Returns false if another one has to answer.
 bool AnswerBySegment(const GstSegment& segment, GstQuery* query);
 
 }  // namespace lidar::gst

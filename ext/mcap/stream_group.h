@@ -17,7 +17,7 @@ namespace lidar::gst {
 /// Used by the streaming thread, or while it stands still. Takes its pads away at the end.
 class StreamGroup {
  public:
-  /// Gives new pads that are inactive and belong to nobody.
+  /// Returns a new, inactive pad without a parent.
   using NewPad = std::function<GstPad*(const std::string& name)>;
   StreamGroup(GstElement* element, NewPad new_pad, const GstSegment& segment);
   ~StreamGroup();
@@ -29,8 +29,8 @@ class StreamGroup {
   bool empty() const { return streams_.empty(); }
   bool has_pads() const;
 
-  /// Shows the pads whose caps the channels tell, so that they are there from the start: those of
-  /// `topic`, or of all where it is empty.
+  /// Adds the pads whose caps the channels have before the first buffer: those of `topic`, or all
+  /// if it is empty.
   void ShowKnown(const Playback& playback, const std::string& topic);
   /// Says once that there come no more.
   void EndPads();

@@ -11,7 +11,7 @@
 
 namespace lidar::nats {
 
-/// Each message names one of them, which ends with a word of the sender's.
+/// A message names one of these subjects, whose last word is the sender's.
 class AnswerSubjects {
  public:
   /// Returns nothing if memory is short.

@@ -31,7 +31,7 @@ struct ConnectionState {
   unsigned disconnections = 0;
   std::uint64_t errors = 0;  // reports of the server
   std::string last_error;    // the latest report, or empty
-  // How often JetStream's consumers fell silent: the server may have lost them.
+  // Counts silences of JetStream's consumers: the server may have lost them.
   unsigned missed_heartbeats = 0;
 };
 
@@ -51,8 +51,7 @@ class Connection {
   natsConnection* get() const { return nc_; }
   /// Never waits for the network.
   ConnectionState state() const;
-  /// Counts how often the connection was made anew, before anything can be sent on the new one. One
-  /// thread calls it.
+  /// Counts reconnects; the count changes before the new connection can send. For one thread.
   std::uint64_t reconnects() const;
 
   static constexpr std::int64_t kConnectTimeoutMs = 1'000;

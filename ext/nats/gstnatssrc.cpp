@@ -246,7 +246,7 @@ static void SetStored(State& state, const Delivery& delivery, GstBuffer* buffer)
 }
 
 /// Returns false after it dropped and counted a message whose caps the next element does not take,
-/// with a warning the first time. That is no error: anyone may publish another coder's stream.
+/// with a warning the first time. That is no error: others may publish another coder's stream.
 static bool SetFormat(GstLidarNatsSrc* self, const StreamFormat::Ptr& format) {
   State& state = StateOf(self);
   GstPad* pad = GST_BASE_SRC_PAD(self);

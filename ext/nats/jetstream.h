@@ -27,7 +27,7 @@ JetStreamPtr OpenJetStream(natsConnection* connection);
 bool EnsureStream(jsCtx* js, const StreamSettings& settings,
                   const std::vector<std::string>& subjects, std::string* why);
 
-/// True if `pattern` covers `subject`; both may have wildcards.
+/// Returns true if `pattern` covers `subject`; both may have wildcards.
 bool Covers(const std::string& pattern, const std::string& subject);
 
 /// The fault of a name of a stream, a consumer or a queue group; empty if there is none.

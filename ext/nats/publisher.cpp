@@ -10,9 +10,8 @@ namespace lidar::nats {
 namespace {
 
 constexpr std::chrono::milliseconds kConfigInterval{1'000};
-constexpr std::chrono::milliseconds kAskedInterval{
-    20};                                                // whoever asks often gets no more than this
-constexpr std::chrono::milliseconds kStreamRetry{500};  // the longest
+constexpr std::chrono::milliseconds kAskedInterval{20};  // between answers to requests
+constexpr std::chrono::milliseconds kStreamRetry{500};   // the longest
 constexpr gint kMinStreamRetryMs = 50;
 constexpr std::chrono::milliseconds kAckTimeout{5'000};
 constexpr std::chrono::milliseconds kPatrol{500};  // between looks for unanswered messages
@@ -101,8 +100,8 @@ bool Publisher::Subscribe(const std::string& subject, void (Publisher::*call)(na
     *why = ErrorText(s);
     return false;
   }
-  // The callback may still run when the subscription is gone, and this one comes after it. Where
-  // the server has closed the connection already, this one does not come at all.
+  // The callback may still run when the subscription is gone; this one follows it. If the server
+  // has closed the connection, this one does not come.
   const natsStatus told = natsSubscription_SetOnCompleteCB(
       raw, [](void* closure) { delete static_cast<Target*>(closure); }, target.get());
   if (told != NATS_OK) untold_.push_back(std::move(target));
@@ -281,7 +280,7 @@ void Publisher::RetryUnanswered(Clock::time_point now) {
   const auto oldest = outbox_.OldestInFlight();
   const bool message = oldest && now - *oldest > kAckTimeout;
   const bool config = config_unanswered_ && now - config_at_ > kAckTimeout;
-  if (message || config) SendAllAgain();  // nobody may keep the subject any more
+  if (message || config) SendAllAgain();  // the server may have deleted the stream
 }
 
 std::vector<std::string> Publisher::KeptSubjects() const {

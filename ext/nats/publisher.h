@@ -54,7 +54,7 @@ struct PublisherEvents {
 
 class Publisher : public std::enable_shared_from_this<Publisher> {
  public:
-  /// Returns null, and `why`, if the settings are wrong. With `keep_trying` it does not wait for
+  /// Returns null and sets `why` if the settings are wrong. With `keep_trying` it does not wait for
   /// the network.
   static std::shared_ptr<Publisher> Start(const PublisherSettings& settings, PublisherEvents events,
                                           std::string* why);
@@ -78,7 +78,7 @@ class Publisher : public std::enable_shared_from_this<Publisher> {
   bool Open(std::string* why);
   bool StartThread(std::string* why);
   void Close();
-  /// What a subscription calls.
+  /// The target of a subscription's callbacks.
   struct Target {
     std::weak_ptr<Publisher> publisher;
     void (Publisher::*call)(natsMsg*);

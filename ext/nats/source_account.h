@@ -25,7 +25,7 @@ struct SourceCounters {
   bool connected = false;
 };
 
-/// One thread notes; any thread reads.
+/// A single thread writes; any thread reads.
 class SourceAccount {
  public:
   SourceCounters counters() const;

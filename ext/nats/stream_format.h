@@ -26,7 +26,7 @@ class StreamFormat {
   const std::string& id() const { return id_; }
   /// Estimated memory [bytes]: the caps hold the content of the text again.
   std::size_t memory() const { return 2 * text_.size(); }
-  /// True where a buffer of these caps may have `size` bytes.
+  /// Returns true if a buffer of these caps may have `size` bytes.
   bool Fits(std::size_t size) const;
 
  private:

@@ -148,7 +148,7 @@ natsStatus Subscriber::SubscribeDurable(jsErrCode* code) {
   s = js_SubscribeSync(&raw, js_.get(), settings_.subject.c_str(), nullptr, &options, code);
   messages_.reset(raw);
   if (s != NATS_OK) return s;
-  // Messages beyond the limit come again, unacknowledged. One message must fit.
+  // Messages beyond the limit come again, unacknowledged. A single message must fit.
   const std::int64_t largest = natsConnection_GetMaxPayload(connection_->get());
   const auto bytes = std::max<std::int64_t>(settings_.max_pending, 2 * largest);
   return natsSubscription_SetPendingLimits(

@@ -181,7 +181,7 @@ static void WarnIfLost(GstLidarOdometry* self, const Estimate& estimate) {
   stream.posted_lost = lost;
 }
 
-/// How far a vector of that covariance is off as a rule.
+/// The typical length of a vector with that covariance.
 static gdouble Deviation(const Eigen::Matrix3d& covariance) {
   return std::sqrt(covariance.trace());
 }
@@ -216,8 +216,8 @@ static void WriteTrajectory(GstLidarOdometry* self, const Estimate& estimate) {
                       (nullptr));
 }
 
-/// One buffer for each scan: 7 doubles, the tracking, and the covariance in 36 doubles,
-/// little-endian. Nobody has to link the pad.
+/// Pushes a buffer for each scan: 7 doubles, the tracking, and the covariance in 36 doubles,
+/// little-endian. The pad may be unlinked.
 static void PushPose(GstLidarOdometry* self, const Estimate& estimate, GstClockTime pts) {
   if (!gst_pad_is_linked(self->poses)) return;
   const GstLidarPose pose = ToMeta(estimate.pose, estimate.tracking);
@@ -259,7 +259,7 @@ static void FinishScan(GstLidarOdometry* self, GstClockTime pts) {
   PushPose(self, estimate, pts);
 }
 
-/// True where the buffer could be added to a scan.
+/// Returns true if the buffer could be added to a scan.
 static bool AddBuffer(GstLidarOdometry* self, GstBuffer* buffer, const GstLidarSlice& slice,
                       Time at) {
   Stream& stream = self->state->stream;

@@ -20,12 +20,12 @@ struct TurnSample {
 /// Safe for the threads of both streams.
 class ImuInput {
  public:
-  /// The layout of the samples that follow, and how the IMU stands in the sensor. False where they
-  /// are not laid out as ouster_src has them.
+  /// The layout of the samples that follow, and how the IMU stands in the sensor. Returns false if
+  /// they are not laid out as ouster_src has them.
   bool SetCaps(const GstCaps* caps);
-  /// False where the bytes are no whole samples, or nobody has said what they are.
+  /// Returns false if the bytes are no whole samples, or there are no caps yet.
   bool Add(ByteView samples);
-  /// What came since the last call.
+  /// The samples since the last call.
   std::vector<TurnSample> Take();
   void Clear();
 

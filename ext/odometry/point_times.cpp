@@ -39,7 +39,7 @@ std::vector<float> SecondsOf(const PointField& field, const PointsInMemory& poin
   for (std::size_t i = 0; i < points.count; ++i) {
     const std::uint8_t* point = points.bytes + i * points.step;
     times[i] = ReadNumber(point + field.offset, field.type, false);
-    // What is no return often has no time, either.
+    // A missing return often has no time, either.
     if (!IsReturn(PositionAt(point + points.xyz_offset))) continue;
     first = std::min(first, times[i]);
     last = std::max(last, times[i]);

@@ -8,7 +8,8 @@
 
 namespace lidar::gst {
 
-/// The field that holds it: `t`, `time`, `timestamp`, `time_stamp` or `offset_time`. Null: none.
+/// The field with the time of a point: `t`, `time`, `timestamp`, `time_stamp` or `offset_time`;
+/// null without it.
 const PointField* TimeFieldOf(const PointFields& fields);
 
 struct PointsInMemory {
@@ -20,7 +21,7 @@ struct PointsInMemory {
 
 /// Seconds since the first sample, for each point. Drivers count from the cloud, 1970 or power-on
 /// in seconds, milliseconds, microseconds or nanoseconds: the unit is the one in which the samples
-/// last about as long as `sweep_s`. Empty where they do in no unit.
+/// last about as long as `sweep_s`. Empty if they do in no unit.
 std::vector<float> SecondsOf(const PointField& field, const PointsInMemory& points, double sweep_s);
 
 }  // namespace lidar::gst

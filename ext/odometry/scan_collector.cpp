@@ -69,7 +69,7 @@ void ScanCollector::Add(const GstLidarSlice& slice, Time time, const guint8* poi
 }
 
 /// The phases of all points in the scan. A time field says more than the column, and that more than
-/// the slice; empty where there is none of them.
+/// the slice; empty if there is none of them.
 std::vector<float> ScanCollector::PhasesOf(const GstLidarSlice& slice,
                                            const PointsInMemory& points) const {
   const auto slices = static_cast<float>(slice.slice_count);

@@ -21,17 +21,18 @@ struct CollectedScan {
 /// For one thread at a time.
 class ScanCollector {
  public:
-  /// The layout of the buffers that follow. False where it has no x, y and z as packed F32.
+  /// The layout of the buffers that follow. Returns false if it has no x, y and z as packed F32.
   bool SetInfo(const CloudInfo& info);
 
-  /// True where a scan is open that `slice` is no further part of, or that has too many points.
+  /// Returns true if a scan is open that `slice` is no further part of, or that has too many
+  /// points.
   bool BeginsNewScan(const GstLidarSlice& slice) const;
   /// Adds a slice, whose first column was sampled at `time`, to the open scan or to a new one.
   /// `size` bytes at `points` are whole points, and whole columns where the cloud is organised.
   void Add(const GstLidarSlice& slice, Time time, const guint8* points, gsize size);
-  /// True where the last slice of the open scan is there.
+  /// Returns true if the last slice of the open scan is there.
   bool complete() const { return open_ && next_index_ >= count_; }
-  /// The scan that is open, if there is one; none is open then.
+  /// Takes the open scan, if there is one.
   std::optional<CollectedScan> Take();
 
  private:

@@ -20,14 +20,15 @@ class CaptureTimeline {
   CaptureTimeline(std::string path, Duration packet_interval)
       : path_(std::move(path)), packet_interval_(packet_interval) {}
 
-  /// Returns nothing where the file cannot be read, or Cancel() came first.
+  /// Returns nothing if the file cannot be read, or Cancel() came first.
   std::optional<GstClockTime> duration();
 
   struct Place {
     Time first{};                        // capture time of the file's first packet
-    std::optional<std::int64_t> offset;  // none: the front
+    std::optional<std::int64_t> offset;  // empty: the front
   };
-  /// Place from which a reader sees what was captured at `time` and later; none as above.
+  /// The place from which a reader finds all that was captured at `time` and later; nothing as
+  /// above.
   std::optional<Place> Find(Duration time);
 
   /// Ends a question under way, and every later one, until Allow().

@@ -96,7 +96,7 @@ static gboolean UnlockStop(GstBaseSrc* base) {
   return TRUE;
 }
 
-/// How long a capture is that can be sought; -1 else.
+/// The duration of a seekable capture; -1 else.
 static gint64 DurationOf(GstBaseSrc* base) {
   const auto session = SessionOf(base);
   const auto duration = session ? session->duration() : std::nullopt;
@@ -139,7 +139,7 @@ static gboolean DoSeek(GstBaseSrc* base, GstSegment* segment) {
   return TRUE;
 }
 
-/// The base class knows nothing of the pad imu, which is flushed with src.
+/// The base class does not flush the pad imu.
 static gboolean SeekAll(GstBaseSrc* base, GstEvent* event, Session* session) {
   gdouble rate = 1;
   GstFormat format = GST_FORMAT_UNDEFINED;

@@ -21,7 +21,7 @@ struct Headers {
   ~Headers() { curl_slist_free_all(list); }
 };
 
-/// What came of an answer.
+/// The result of an answer.
 struct Answer {
   std::string body;
   std::size_t header_bytes = 0;

@@ -46,7 +46,7 @@ GstPadProbeReturn EndWithClouds(GstPad*, GstPadProbeInfo* info, gpointer imu) {
   return GST_PAD_PROBE_OK;
 }
 
-/// Packets leave as they come. Where in the recording they are, the clouds know.
+/// Packets leave as they come. The pad src answers for the position in the recording.
 gboolean Query(GstPad* pad, GstObject* parent, GstQuery* query) {
   switch (GST_QUERY_TYPE(query)) {
     case GST_QUERY_LATENCY:
@@ -132,7 +132,7 @@ void ImuPad::SetSegment(const GstSegment& segment) {
   last_pts_ = 0;
 }
 
-/// A reference to the pad, or null where there is none yet.
+/// A reference to the pad, or null if there is none yet.
 GstPad* ImuPad::StartOrStopFlush(bool flushing) {
   const std::lock_guard lock(mutex_);
   flushing_ = flushing;

@@ -23,7 +23,7 @@ class ImuPad {
   /// Adds the pad with the first packet. An unlinked or flushing pad is no error.
   void Push(ByteView packet, const ouster::SensorStream& stream);
 
-  /// The packets to come are of `segment`. While Push() does not run.
+  /// Sets the segment of the next packets. Not while Push() runs.
   void SetSegment(const GstSegment& segment);
   /// Around a flushing seek of the clouds; any thread may call them.
   void StartFlush(guint32 seqnum);

@@ -27,7 +27,7 @@ constexpr gint64 kQuestionIntervalUs = 1'000'000;
 constexpr gint64 kWaitForMetadataUs = 2'000'000;  // of a sensor with a new init id
 constexpr guint kWrongSizesForQuestion = 4;
 
-/// What a server says, fit for a message: short, and UTF-8 as GStreamer asks of strings.
+/// A server's text, fit for a message: short, and UTF-8 as GStreamer asks of strings.
 std::string Readable(const std::string& text) {
   constexpr gssize kLongest = 1000;  // bytes
   const auto size = std::min(static_cast<gssize>(text.size()), kLongest);
@@ -150,7 +150,7 @@ void LiveSession::UnlockStop() {
   udp_.ClearWake();
 }
 
-/// What waits in the sockets came before the pipeline played again.
+/// Datagrams that wait in the sockets came during the pause.
 void LiveSession::LeavePauseBehind() {
   constexpr int kMostBatches = 4096;
   last_packet_us_ = g_get_monotonic_time();
@@ -289,7 +289,7 @@ void LiveSession::HandlePacket(const ReceivedDatagram& d, Time now, Time utc_now
   if (stream() == nullptr) return;
   const Time utc = GST_CLOCK_TIME_IS_VALID(d.arrival) ? ToTime(d.arrival) : utc_now;
   const ouster::Arrival arrival{now + (utc - utc_now), utc, SenderOf(*d.from)};
-  // What came before the pipeline ran has no time in it.
+  // An earlier arrival has no running time.
   if (arrival.local < Time{}) return;
   const ByteView payload{d.data, d.size};
   switch (Push(payload, arrival)) {

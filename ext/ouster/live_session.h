@@ -52,7 +52,7 @@ class LiveSession : public Session {
   guint reconnects_ = 0;
   std::string destination_;    // of the sensor's packets, as it says
   gint64 last_packet_us_ = 0;  // g_get_monotonic_time()
-  gint64 new_init_id_us_ = 0;  // when the first packet came that the metadata does not know
+  gint64 new_init_id_us_ = 0;  // arrival of the first packet of an unknown init id
   gint64 last_question_us_ = 0;
   guint wrong_sizes_in_a_row_ = 0;
   bool size_reported_ = false;

@@ -28,11 +28,11 @@ class PcapFeed {
   /// Returns nothing at the end, or where the file is damaged: error() then says so.
   std::optional<Packet> Next();
   /// Next() goes on at `offset` of the file, or at its front, with times that count from `first`.
-  /// False where the file is gone. Not while looping.
+  /// Returns false if the file is gone. Not while looping.
   bool Reposition(Time first, std::optional<std::int64_t> offset);
   const std::string& error() const { return error_; }
   bool found_lidar_packets() const { return found_; }
-  /// What the file holds instead of packets of this sensor, in words for a user.
+  /// Describes the file's packets, of other sensors or none, for a user.
   std::string DescribeContents() const;
 
  private:

@@ -13,7 +13,7 @@ using nlohmann::json;
 constexpr long kNotFound = 404;
 constexpr const char* kAuto = "@auto";
 
-/// Empty where the text is no object.
+/// Empty if the text is no object.
 json ParseObject(const std::string& text) {
   json root = ouster::ParseJsonObject(text);
   if (root.is_discarded()) return json::object();
@@ -34,7 +34,7 @@ std::optional<json> ParseWindow(const std::string& text) {
   return std::make_optional<json>(window);  // by name: nlohmann_json 3.12 makes json of an optional
 }
 
-/// The parameters that the user wants, by the names of the API.
+/// The parameters that the settings ask for, by the names of the API.
 std::optional<json> Wanted(const OusterSettings& s, ApiError* error) {
   json wanted = json::object();
   if (!s.udp_dest.empty()) wanted["udp_dest"] = s.udp_dest;

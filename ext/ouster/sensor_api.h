@@ -11,7 +11,7 @@
 
 namespace lidar::gst {
 
-/// What a request came to. `permanent`: asking again will not help.
+/// The result of a failed request. `permanent`: asking again will not help.
 struct ApiError {
   std::string text;
   bool permanent = false;
@@ -25,10 +25,10 @@ class SensorApi {
   std::optional<ouster::Metadata> FetchMetadata(ApiError* error);
 
   /// Sets what differs from what `settings` ask for, has the sensor take it and checks that it did.
-  /// True where nothing (more) has to change. `sleep` waits about a second; false: stop.
+  /// Returns true if nothing (more) has to change. `sleep` waits about a second; false: stop.
   bool Configure(const OusterSettings& settings, const std::function<bool()>& sleep,
                  ApiError* error);
-  /// Destination of the sensor's packets, "192.0.2.1:7502"; empty where it does not say.
+  /// Destination of the sensor's packets, "192.0.2.1:7502"; empty if it does not say.
   std::string Destination();
 
  private:

@@ -16,22 +16,22 @@ namespace lidar::gst {
 class SensorLink {
  public:
   struct Result {
-    std::optional<ouster::Metadata> metadata;  // none: the request failed
+    std::optional<ouster::Metadata> metadata;  // empty: the request failed
     ApiError error;
     std::string destination;  // where the sensor sends its packets, where it says so
   };
 
-  /// Null and `error` for a hostname that is none, or where there can be no thread. `notify` is
-  /// called from the thread when there is a result to take.
+  /// Returns null and sets `error` for a malformed hostname, or if no thread can be made. The
+  /// thread calls `notify` when there is a result to take.
   static std::unique_ptr<SensorLink> Create(const OusterSettings& settings,
                                             std::function<void()> notify, std::string* error);
   ~SensorLink();
   SensorLink(const SensorLink&) = delete;
   SensorLink& operator=(const SensorLink&) = delete;
 
-  /// Configures the sensor as the settings ask and fetches its metadata. One request is under way
-  /// at a time; another one is not heeded. Without success it tries again, ever more slowly (every
-  /// failure is a result), unless the settings forbid it.
+  /// Configures the sensor as the settings ask and fetches its metadata. A request during another
+  /// one is ignored. After a failure, which is a result, it tries again ever more slowly, unless
+  /// the settings forbid it.
   void Request();
   bool busy() const;
   std::optional<Result> Take();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// What ouster_src does between start and stop: packets in from somewhere, buffers out.
+// The state of ouster_src between start and stop: packets in from a sensor or a file, buffers out.
 #pragma once
 #include <gst/base/gstbasesrc.h>
 
@@ -15,7 +15,7 @@
 
 namespace lidar::gst {
 
-/// What ouster_src counts, and its property `stats`.
+/// The counters of ouster_src, and its property `stats`.
 struct Counters {
   ouster::BatcherStats batcher;
   ouster::StreamStats stream;
@@ -51,7 +51,7 @@ class Session {
     ended_ = false;
     imu_.SetSegment(segment);
   }
-  /// How long all of it is; none where nobody knows. Any thread may call this; it may read a file.
+  /// The duration, if it is known. Any thread may call this; it may read a file.
   virtual std::optional<GstClockTime> duration() { return std::nullopt; }
 
   /// Any thread may call these.

@@ -64,7 +64,7 @@ StructurePtr OusterStats(GObject* source);
 
 extern const std::array<Property<OusterSettings>, 31> kOusterProperties;
 
-/// Returns nothing and sets `error`, in words for a user, where a property makes no sense.
+/// Returns nothing and sets `error`, in words for a user, if a property makes no sense.
 std::optional<ouster::StreamOptions> ToStreamOptions(const OusterSettings& settings,
                                                      std::string* error);
 

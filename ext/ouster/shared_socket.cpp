@@ -21,7 +21,7 @@ void OnlyJoinedGroups(GSocket* socket) {
   const bool v6 = g_socket_get_family(socket) == G_SOCKET_FAMILY_IPV6;
   const int failed = v6 ? setsockopt(fd, IPPROTO_IPV6, IPV6_MULTICAST_ALL, &off, sizeof off)
                         : setsockopt(fd, IPPROTO_IP, IP_MULTICAST_ALL, &off, sizeof off);
-  // An old kernel; packets of other sensors are told by their serial number.
+  // An old kernel has no such option; serial numbers still separate the sensors.
   if (failed != 0) return;
 }
 

@@ -19,7 +19,7 @@ namespace lidar::gst {
 struct SocketPlace {
   std::string address;  // local; empty: any
   guint port = 0;
-  std::string group;      // multicast; empty: none
+  std::string group;      // multicast; may be empty
   std::string interface;  // of the group; empty: the kernel's choice
 
   bool operator<(const SocketPlace& o) const {
@@ -30,10 +30,9 @@ struct SocketPlace {
 
 class SharedSocket;
 
-/// A reader of a socket; every reader gets every datagram, in the order of their arrival. The
-/// reader that calls Receive() first takes the datagrams off the socket and leaves copies for the
-/// others. So no thread is needed in between, and a socket with one reader copies nothing. One
-/// thread uses a reader.
+/// A reader of a socket; every reader gets every datagram in the order of arrival. The reader that
+/// calls Receive() first reads the socket and leaves copies for the others, so no extra thread is
+/// needed and a lone reader copies nothing. For one thread.
 class SocketReader {
  public:
   /// `queue_bytes` bounds what waits here while another reader empties the socket, and is asked of

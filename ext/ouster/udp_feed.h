@@ -44,7 +44,7 @@ class UdpFeed {
   void Wake() { wake_.Wake(); }
   void ClearWake() { wake_.Clear(); }
 
-  /// Datagrams that the lidar's socket and those before it lost.
+  /// Datagrams that the lidar's socket and its predecessors lost.
   guint64 drops() const { return drops_before_ + (lidar_ ? lidar_->drops() : 0); }
 
  private:

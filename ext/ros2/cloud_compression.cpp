@@ -37,7 +37,7 @@ std::optional<Bounds> BoundsOf(const cdr::RosLayout& layout) {
   return Bounds{row * height, std::min<std::uint64_t>(most, kMostBytes)};
 }
 
-/// Sets `out` to what `data` may hold; false where that is less than the points.
+/// Sets `out` to what `data` may hold; false if that is less than the points.
 bool MakeRoom(ByteView data, const Bounds& bounds, std::size_t most_per_byte, Bytes* out) {
   const std::size_t most = (data.size + 1) * most_per_byte;
   if (bounds.least > most) return false;
@@ -96,7 +96,7 @@ bool PackZstd(ByteView points, Bytes* out) {
 #ifdef WITH_DRACO
 constexpr bool kHasDraco = true;
 
-/// Draco has its numbers in the order of this machine; none for a layout that it cannot hold.
+/// Draco has its numbers in the order of this machine; nothing for a layout that it cannot hold.
 std::optional<draco::FieldLayout> DracoLayoutOf(const cdr::RosLayout& layout) {
   if (layout.is_bigendian) return std::nullopt;
   draco::FieldLayout fields;

@@ -11,15 +11,15 @@ namespace lidar::gst {
 
 enum class CloudCompression { kDraco, kZlib, kZstd };
 
-/// How messages call it.
+/// The compression's name in messages.
 const char* NameOf(CloudCompression compression);
 
-/// Returns nothing where the format is not known here or the data are damaged; `why` then says so.
-/// No more memory is taken than the layout's points need, at most 256 MiB.
+/// Returns nothing if the format is not known here or the data are damaged; `why` then says so. No
+/// more memory is taken than the layout's points need, at most 256 MiB.
 std::optional<cdr::MadeCloud> Decompress(const cdr::CompressedCloud& compressed, std::string* why);
 
-/// Packs the points without loss. Returns nothing where the compression is not built in, or takes
-/// no such cloud. The result's data are `packed`.
+/// Packs the points without loss. Returns nothing if the compression is not built in, or takes no
+/// such cloud. The result's data are `packed`.
 std::optional<cdr::CompressedCloud> Compress(CloudCompression compression,
                                              const cdr::PointCloud2& cloud,
                                              std::vector<std::uint8_t>* packed);

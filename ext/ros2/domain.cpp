@@ -13,11 +13,11 @@ namespace lidar::dds {
 namespace {
 
 struct Shared {
-  dds_entity_t entity = 0;  // 0: somebody else in this process has made it
+  dds_entity_t entity = 0;  // 0: other code of this process made it
   unsigned users = 0;
 };
 
-/// Held while a domain begins or ends, so that nobody joins one that is about to go.
+/// Held while a domain begins or ends, so that no participant joins a dying domain.
 std::mutex& Mutex() {
   static std::mutex mutex;
   return mutex;

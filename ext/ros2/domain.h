@@ -10,8 +10,8 @@ namespace lidar::dds {
 /// Each owner of entities in it holds it.
 class Domain {
  public:
-  /// Null where Cyclone refuses its configuration; `why` then says so. It may be the user's: ours
-  /// has only what large messages need, and the environment variable CYCLONEDDS_URI comes after it.
+  /// Null if Cyclone refuses its configuration; `why` then says so. It may be the user's: ours has
+  /// only what large messages need, and the environment variable CYCLONEDDS_URI comes after it.
   static std::unique_ptr<Domain> Join(std::uint32_t id, std::string* why);
   ~Domain();
   Domain(const Domain&) = delete;
@@ -21,7 +21,7 @@ class Domain {
 
   static constexpr std::uint32_t kReceiveBuffer = 4u << 20;  // bytes
   static constexpr std::uint32_t kMaxMessage = 256u << 20;   // bytes
-  /// What of kReceiveBuffer the kernel grants [bytes].
+  /// The part of kReceiveBuffer that the kernel grants [bytes].
   static std::uint32_t GrantedReceiveBuffer();
 
  private:

@@ -8,7 +8,7 @@
 namespace lidar::dds {
 namespace {
 
-// What made a waitset return.
+// Tags of a waitset's results.
 constexpr dds_attach_t kWake = 1;
 constexpr dds_attach_t kMessages = 2;
 constexpr dds_attach_t kStatus = 3;
@@ -19,7 +19,7 @@ struct DeleteQos {
 };
 using QosPtr = std::unique_ptr<dds_qos_t, DeleteQos>;
 
-/// False, and `why`, where `result` is an error.
+/// Returns false and sets `why` if `result` is an error.
 bool Check(dds_return_t result, const char* what, std::string* why) {
   if (result >= 0) return true;
   *why = std::string(what) + ": " + dds_strretcode(-result);
@@ -98,7 +98,7 @@ bool Node::Open(const EndpointOptions& options, std::string* why) {
 bool Node::Announce(const EndpointOptions& options, bool writes, std::string* why) {
   const ddsi_sertype* type = nullptr;
   const dds_entity_t topic =
-      NewTopic(participant_, {cdr::kGraphTopic, cdr::kGraphDdsName}, 0, &type);  // nobody reads it
+      NewTopic(participant_, {cdr::kGraphTopic, cdr::kGraphDdsName}, 0, &type);  // no reader
   if (!Check(topic, "no topic of the graph", why)) return false;
   const QosPtr qos = MakeQos(true, true, 1);
   const dds_entity_t writer = dds_create_writer(participant_, topic, qos.get(), nullptr);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// One publisher or subscription of a ROS 2 node, over Cyclone DDS.
+// A publisher or subscription of a ROS 2 node, over Cyclone DDS.
 #pragma once
 #include <cstdint>
 #include <memory>
@@ -25,7 +25,7 @@ struct EndpointOptions {
   bool tells_type_hash = true;
 };
 
-/// A participant with one node that has one endpoint, and tells ROS 2 of it.
+/// A participant with a node that has one endpoint, announced to ROS 2.
 class Node {
  public:
   ~Node();
@@ -34,7 +34,7 @@ class Node {
 
  protected:
   Node() = default;
-  /// False, and `why`, where DDS refuses.
+  /// Returns false and sets `why` if DDS refuses.
   bool Open(const EndpointOptions& options, std::string* why);
   bool Announce(const EndpointOptions& options, bool writes, std::string* why);
 
@@ -61,10 +61,10 @@ class Reader : public Node {
   /// Callable from any thread: Wait() returns at once until Wake(false).
   void Wake(bool on);
 
-  /// Set after kMessage; null where somebody's node went, which is a message, too.
+  /// Valid after kMessage; null for a node that left, which is a message, too.
   MessagePtr Take();
   const std::string& other_type() const { return other_type_; }
-  /// Messages that DDS knows to be missing, and publishers that are there.
+  /// Counts of messages that DDS missed, and of present publishers.
   std::uint64_t lost() const;
   unsigned publishers() const;
 

@@ -58,7 +58,7 @@ GType CompressionType() {
   return type;
 }
 
-/// Tools of ROS 2 subscribe reliably where nobody tells them otherwise.
+/// ROS 2's tools subscribe reliably by default.
 RosSettings SinkDefaults() {
   RosSettings settings;
   settings.qos = RosQos::kReliable;
@@ -182,7 +182,7 @@ static bool OpenWriter(GstLidarRos2Sink* self, const RosSettings& settings, RosT
   return true;
 }
 
-/// What is wrong with the settings shows at once; the type may have to wait for the caps.
+/// Wrong settings fail at once; the type may have to wait for the caps.
 static gboolean Start(GstBaseSink* base) {
   auto* self = GST_LIDAR_ROS2_SINK(base);
   State& state = StateOf(self);
@@ -200,7 +200,7 @@ static gboolean Start(GstBaseSink* base) {
 static gboolean Stop(GstBaseSink* base) {
   State& state = StateOf(base);
   std::unique_lock lock(state.mutex);
-  // It goes without the lock: DDS waits for its threads.
+  // The writer ends without the lock: DDS waits for its threads.
   const std::shared_ptr<Writer> writer = std::move(state.writer);
   lock.unlock();
   state.messages.reset();
@@ -270,7 +270,7 @@ static GstFlowReturn Render(GstBaseSink* base, GstBuffer* buffer) {
   const Time now = Time{} + Duration{g_get_real_time() * 1000};
   auto last = Writer::Result::kSent;
   const auto publish = [&](const auto& pieces) {
-    // A single wait a buffer: one for each of many samples would keep the element from stopping.
+    // Waits once a buffer: a wait for each of many samples would keep the element from stopping.
     if (last == Writer::Result::kTimeout)
       NoteResult(self, last, 0);
     else

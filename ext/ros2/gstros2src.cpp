@@ -57,7 +57,7 @@ struct Ros2SrcSettings {
 /// Each publisher of static transforms sends them once; tf2 keeps as many.
 constexpr guint kStaticDepth = 100;
 
-/// True where the topic holds what does not change: by its name, as ROS has it.
+/// Returns true if the topic holds what does not change: by its name, as ROS has it.
 bool IsForGood(const Ros2SrcSettings& settings) {
   const std::string name = settings.ros.topic.substr(settings.ros.topic.rfind('/') + 1);
   return settings.type == RosType::kTransforms && name == "tf_static";
@@ -93,7 +93,7 @@ struct State {
   bool warned_damaged = false;
   bool warned_type = false;
   bool warned_incompatible = false;
-  const char* incompatible = "";  // what a publisher does that is not taken
+  const char* incompatible = "";  // the publisher's QoS that does not fit
 };
 
 }  // namespace
@@ -195,7 +195,7 @@ static gboolean Stop(GstBaseSrc* base) {
   State& state = StateOf(base);
   CountersNow(G_OBJECT(base));
   std::unique_lock lock(state.mutex);
-  // It goes without the lock: DDS waits for its threads.
+  // The reader ends without the lock: DDS waits for its threads.
   const std::shared_ptr<Reader> reader = std::move(state.reader);
   state.counters.publishers = 0;
   lock.unlock();
@@ -209,11 +209,11 @@ static void Count(GstLidarRos2Src* self, guint64 Counters::*counter, guint64 amo
   state.counters.*counter += amount;
 }
 
-/// A single warning: anyone in the network can add publishers.
+/// Warns once: any peer in the network can add publishers.
 static void NoteOtherType(GstLidarRos2Src* self, const Reader& reader) {
   Count(self, &Counters::other_types);
   if (std::exchange(StateOf(self).warned_type, true)) return;
-  // It comes from the network, and messages on the bus are valid UTF-8.
+  // The name comes from the network, and messages on the bus are valid UTF-8.
   const StringPtr type(g_utf8_make_valid(reader.other_type().c_str(), -1));
   GST_ELEMENT_WARNING(self, STREAM, WRONG_TYPE,
                       ("A publisher of the topic has the type %s, which is not taken.", type.get()),

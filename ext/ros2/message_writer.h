@@ -16,14 +16,14 @@
 
 namespace lidar::gst {
 
-/// A message gives the pose of the child frame in the other. An empty name means what the caps say,
-/// or the usual one.
+/// The frame, and the child frame whose pose in it a message gives. An empty name stands for the
+/// caps' or the default one.
 struct Frames {
   std::string frame_id;
   std::string child_frame_id;
 };
 
-/// What messages say that buffers do not.
+/// Fields of messages that buffers do not have.
 struct MessageSettings {
   Frames frames;
   CloudCompression compression = CloudCompression::kZstd;  // of CompressedPointCloud2
@@ -37,14 +37,14 @@ class MessageWriter {
  public:
   explicit MessageWriter(cdr::RosType type) : type_(type) {}
 
-  /// The type that buffers of `caps` become where nobody says otherwise.
+  /// The default type for buffers of `caps`.
   static std::optional<cdr::RosType> UsualType(const GstCaps* caps);
 
-  /// False, and why(), where buffers of `caps` cannot be messages of the type.
+  /// Returns false and sets why() if buffers of `caps` cannot be messages of the type.
   bool SetCaps(const GstCaps* caps);
 
   /// Gives each message of `buffer` in pieces, which live until it returns. `now` is the time of
-  /// buffers that have no capture time. False where the buffer is not as its caps say.
+  /// buffers that have no capture time. Returns false if the buffer is not as its caps say.
   using Publish = std::function<void(const std::vector<ByteView>& pieces)>;
   bool Write(GstBuffer* buffer, const MessageSettings& settings, Time now, const Publish& publish);
 

@@ -29,7 +29,7 @@ struct RawData : ddsi_serdata {
 
 const RawData& Raw(const ddsi_serdata* data) { return *static_cast<const RawData*>(data); }
 
-/// Null where there is no memory for it.
+/// Null if there is no memory for it.
 RawData* NewRaw(const ddsi_sertype* type, ddsi_serdata_kind kind, std::size_t size) {
   std::unique_ptr<RawData> data(new (std::nothrow) RawData);
   if (!data) return nullptr;
@@ -75,7 +75,7 @@ ddsi_serdata* FromPieces(const ddsi_sertype* type, ddsi_serdata_kind kind, ddsrt
   return data;
 }
 
-/// What stands for all messages of a topic without keys.
+/// The data that stand for all messages of a topic without keys.
 ddsi_serdata* Untyped(const ddsi_serdata* data) {
   RawData* key = NewRaw(data->type, SDK_KEY, 0);
   if (key != nullptr) key->type = nullptr;
@@ -131,7 +131,7 @@ ddsi_sertype_ops TypeOps() {
   ops.zero_samples = [](const ddsi_sertype*, void*, std::size_t) {};
   ops.realloc_samples = [](void**, const ddsi_sertype*, void*, std::size_t, std::size_t) {};
   ops.free_samples = [](const ddsi_sertype*, void**, std::size_t, dds_free_op_t) {};
-  // Cyclone compares the names of types itself, and we know no more about them.
+  // Cyclone compares the names of types itself, and there is nothing else to compare.
   ops.equal = [](const ddsi_sertype*, const ddsi_sertype*) { return true; };
   ops.hash = [](const ddsi_sertype*) { return std::uint32_t{0}; };
   return ops;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Messages as Cyclone DDS carries them: bytes that nobody has looked into yet. So what is damaged
-// comes to us, who count it, and what we may allocate for it is ours to bound.
+// Messages as Cyclone DDS carries them: unchecked bytes. So this plugin counts damaged messages and
+// bounds what is allocated for them.
 #pragma once
 #include <memory>
 #include <vector>

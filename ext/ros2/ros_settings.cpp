@@ -11,7 +11,7 @@ namespace {
 
 constexpr gint kMaxDomain = 232;  // the last whose ports exist
 
-/// The environment's, or 0; none where it is no number of a domain.
+/// The environment's, or 0; nothing if it is no number of a domain.
 std::optional<gint> DomainOfEnvironment() {
   const char* text = std::getenv("ROS_DOMAIN_ID");
   if (text == nullptr || *text == '\0') return 0;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// What the elements of ROS 2 have in common: their properties, and how they open their endpoint.
+// The common part of ROS 2's elements: their properties, and how they open their endpoint.
 #pragma once
 #include <gst/gst.h>
 

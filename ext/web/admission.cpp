@@ -25,7 +25,7 @@ std::string_view TokenOf(SoupServerMessage* request, GHashTable* query) {
   return text.substr(0, kBearer.size()) == kBearer ? text.substr(kBearer.size()) : "";
 }
 
-/// The peer, or whom a proxy on this machine speaks for.
+/// The peer, or the address that a proxy on this machine forwards for.
 std::string AddressOf(SoupServerMessage* request) {
   auto* peer = soup_server_message_get_remote_address(request);
   if (peer == nullptr || !G_IS_INET_SOCKET_ADDRESS(peer)) return "";
@@ -69,8 +69,8 @@ bool IsNoName(std::string_view host) {
   return host.empty() || host == "localhost" || g_hostname_is_ip_address(std::string(host).c_str());
 }
 
-/// Whether the page that asks is this server's own, or one of `allowed`. What is no browser has no
-/// origin.
+/// True if the asking page is this server's own, or one of `allowed`. Clients that are no browsers
+/// send no origin.
 bool IsOwnPage(SoupServerMessage* request, const std::string& allowed) {
   const std::string_view origin = HeaderOf(request, "Origin");
   if (!origin.empty() && Lists(allowed, origin)) return true;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Who may connect: by token, by where the page that asks is from, and how often it may be wrong.
+// Admits clients by their token and the origin of their page, and bounds wrong tokens.
 #pragma once
 #include <libsoup/soup.h>
 
@@ -22,7 +22,7 @@ class Admission {
     guint status = SOUP_STATUS_UNAUTHORIZED;
     const char* text = "";
   };
-  /// What the request may have, or the refusal that it is answered by.
+  /// The grant of the request, or the refusal that answers it.
   std::optional<Grant> Check(SoupServerMessage* request, GHashTable* query, Refusal* refusal);
 
   /// Wrong tokens that an address may name at once, and the time in which it wins one back.

@@ -17,10 +17,10 @@ class Certificate {
       : file_(std::move(file)), key_file_(std::move(key_file)) {}
 
   bool is_wanted() const { return !file_.empty(); }
-  /// False, and why, where the files are no certificate and its key.
+  /// Returns false and sets why if the files are no certificate and its key.
   bool Load(std::string* why);
-  /// Now and then. Where the files have changed, reads them; where they are bad, keeps what it has
-  /// and returns false, and why, once.
+  /// Reads the files if they have changed. If they are bad it keeps the old ones, returns false and
+  /// sets `why`, once.
   bool Renew(std::string* why);
   GTlsCertificate* get() const { return certificate_.get(); }
   /// What a user should know of a certificate that has run out, once; else empty.

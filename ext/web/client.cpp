@@ -136,7 +136,7 @@ void Client::Forget(std::uint32_t channel) {
 
 void Client::Close(CloseCode code) {
   if (closed_) return;
-  // The peer can be told between two frames; it could not read it within one.
+  // An error frame may stand between two frames, not within one.
   if (!current_ || current_->sent == 0) WriteSome({foxglove::CloseFrame(code), nullptr, 0});
   End();
 }

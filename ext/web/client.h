@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// One WebSocket connection: reads requests, writes what its outbox holds, as fast as the peer takes
-// it and no faster.
+// A WebSocket connection: reads requests, and writes its outbox as fast as the peer takes it.
 #pragma once
 #include <deque>
 #include <functional>
@@ -50,7 +49,7 @@ class Client {
   /// Once a second: asks for a sign of life, and closes where none came or nothing was taken.
   void Tick(gint64 now_us);
 
-  /// What its token allows; kept by the owner.
+  /// The grant of its token; kept by the owner.
   Grant grant;
   /// Subscription ids by channel; kept by the owner.
   std::map<std::uint32_t, std::uint32_t> subscriptions;
@@ -80,7 +79,7 @@ class Client {
   bool TakeMessage();
   void Begin(const foxglove::MessageHead& head, ByteView more,
              std::shared_ptr<const std::vector<std::uint8_t>> body);
-  /// Bytes written; 0 where the peer takes no more, or after an error, which closes.
+  /// Bytes written; 0 if the peer takes no more, or after an error, which closes.
   std::size_t WriteSome(const Outgoing& out);
   void WaitForRoom();
   void End();

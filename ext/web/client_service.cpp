@@ -185,7 +185,7 @@ void ClientService::Advertise(Client* client, std::vector<foxglove::Channel> cha
   if (!channels.empty()) client->SendText(foxglove::Advertise(channels));
 }
 
-/// It may be one of its own calls that ended the client, so it is deleted after them.
+/// A call of the client itself may have ended it, so it is deleted after that call.
 void ClientService::ForgetClient(Client* client) {
   for (const auto& [channel, subscription] : client->subscriptions) {
     const auto topic = topics_.find(channel);

@@ -31,7 +31,7 @@ class ClientService {
 
   /// The port, or 0 and why not.
   std::uint16_t Listen(std::string* error);
-  /// Tells clients of what came and went.
+  /// Announces new and removed topics to clients.
   void SetTopics(const std::vector<SharedTopic>& topics);
   void Deliver(std::uint32_t channel, const SharedMessage& message);
   void DeliverSlice(std::uint32_t channel, const SharedSliceMessage& slice);
@@ -41,7 +41,7 @@ class ClientService {
   static void OnRequest(SoupServer*, SoupServerMessage*, const char* path, GHashTable* query,
                         gpointer self);
   static void OnUpgraded(SoupServerMessage*, gpointer self);
-  /// What the request may have; none where the answer is made.
+  /// The grant of the request; nothing if it is answered already.
   std::optional<Grant> Admit(SoupServerMessage* request, GHashTable* query);
   void Upgrade(SoupServerMessage* request);
   void AddClient(SoupServerMessage* request);

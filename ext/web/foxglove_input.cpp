@@ -99,7 +99,7 @@ std::string TopicName(const InputSettings& settings, const char* usual) {
   return settings.number == 0 ? usual : usual + ("_" + std::to_string(settings.number));
 }
 
-/// False, with an element error, where another pad publishes something else there.
+/// Returns false, with an element error, if another pad publishes other data there.
 bool OpenTopic(GstBaseSink* sink, const std::string& name, Schema schema, SharedTopic* topic) {
   State& state = StateOf(sink);
   *topic = state.used->server->Open(name, schema);
@@ -119,7 +119,7 @@ bool OpenPoses(GstBaseSink* sink, const std::string& name) {
   return true;
 }
 
-/// What the caps say, or none and why.
+/// The kind of the caps, or kNone and why.
 Kind KindOf(GstCaps* caps, std::optional<CloudInfo>* info, std::string* why) {
   const GstStructure* s = gst_caps_get_structure(caps, 0);
   if (gst_structure_has_name(s, GST_LIDAR_DRACO_MEDIA_TYPE)) return Kind::kDraco;
@@ -322,7 +322,8 @@ bool RenderOdometry(State* state, const Header& header, const BufferMap& map) {
   return true;
 }
 
-/// How many messages are one scan: a slow client may miss whole scans, a fast one no slice.
+/// Learns the number of messages in a scan: a slow client may miss whole scans, a fast one no
+/// slice.
 void LearnDepth(State* state, GstBuffer* buffer) {
   GstLidarSlice slice;
   gst_lidar_buffer_get_slice(buffer, &slice);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The sink behind each pad of foxglovesink: buffers to messages, and nothing that waits.
+// The sink behind each pad of foxglovesink: turns buffers into messages, without waiting.
 #pragma once
 #include <gst/base/gstbasesink.h>
 
@@ -16,12 +16,12 @@ G_END_DECLS
 
 namespace lidar::web {
 
-/// What the inputs of an element share while it is above NULL.
+/// The shared state of an element's inputs while it is above NULL.
 struct Hub {
   std::unique_ptr<Server> server;
   guint max_points = 0;
   std::atomic<guint64> clouds{0};
-  std::atomic<guint64> points{0};  // that were sent to somebody
+  std::atomic<guint64> points{0};  // points sent to clients
   std::atomic<guint64> malformed{0};
   std::atomic<guint64> scan_duration{0};  // of the newest caps; 0: they do not say
 };

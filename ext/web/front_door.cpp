@@ -12,7 +12,7 @@ namespace {
 /// Long enough for the page over a poor link.
 constexpr gint64 kLongest_us = 60 * gint64{G_USEC_PER_SEC};
 constexpr int kBacklog = 128;
-/// What the kernel may hold unsent: data that waits there gets old, and cannot give way.
+/// The largest amount that the kernel may hold unsent: data there get old, and cannot give way.
 constexpr gint kUnsentBytes = 128 * 1024;
 
 std::string AddressOf(GSocketAddress* peer) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Accepts connections for a SoupServer, with TLS where there is a certificate, and keeps few of
-// those that say nothing.
+// Accepts connections for a SoupServer, with TLS if there is a certificate, and bounds the number
+// of silent ones.
 #pragma once
 #include <libsoup/soup.h>
 
@@ -16,7 +16,7 @@ namespace lidar::web {
 /// Lives in the server's thread.
 class FrontDoor {
  public:
-  /// Of connections that are no WebSocket, so many stay open; the oldest give way.
+  /// Limits of connections that are no WebSocket; the oldest give way.
   struct Limits {
     std::size_t all = 1000;
     std::size_t of_an_address = 32;  // a browser has six at a time

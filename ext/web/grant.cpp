@@ -37,7 +37,7 @@ std::string HmacSha256(std::string_view secret, std::string_view text) {
   return {digest.begin(), digest.begin() + size};
 }
 
-/// RFC 7515: a header that names an extension as critical is for those who know it.
+/// RFC 7515: a header that names a critical extension is for those that implement it.
 bool IsHs256(const json& header) {
   const auto alg = header.is_object() ? header.find("alg") : header.end();
   return header.is_object() && alg != header.end() && *alg == "HS256" && !header.contains("crit");
@@ -49,7 +49,7 @@ std::optional<double> NumberOf(const json& claims, const char* name) {
   return found->get<double>();
 }
 
-/// Nothing where the claim is something else than a list of texts.
+/// Returns nothing if the claim is no list of texts.
 std::optional<std::vector<std::string>> TextsOf(const json& list) {
   std::vector<std::string> texts;
   if (!list.is_array()) return std::nullopt;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// What a token allows, and tokens that say it themselves.
+// The rights of a token, and tokens that carry them.
 #pragma once
 #include <cstdint>
 #include <optional>
@@ -9,7 +9,7 @@
 
 namespace lidar::web {
 
-/// Takes as long whatever the texts are, so that time does not tell how much of one was right.
+/// Takes as long for any texts, so that time does not leak a matching prefix.
 bool SameSecret(std::string_view a, std::string_view b);
 
 struct Grant {
@@ -21,8 +21,8 @@ struct Grant {
 };
 
 /// Reads a JSON Web Token (RFC 7519) signed by HS256 with `secret`. It needs the claim `exp`, and
-/// may have `nbf` and `topics`, an array of texts. None for one that is damaged, signed otherwise,
-/// over, or not yet valid.
+/// may have `nbf` and `topics`, an array of texts. Returns nothing for a token that is damaged,
+/// signed otherwise, expired, or not yet valid.
 std::optional<Grant> ReadSignedToken(std::string_view token, std::string_view secret,
                                      std::int64_t now_s);
 

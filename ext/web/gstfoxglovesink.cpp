@@ -175,7 +175,7 @@ static StructurePtr ReadStats(GObject* object) {
   State& state = *GST_LIDAR_FOXGLOVE_SINK(object)->state;
   Counters counters;
   {
-    // The server's thread asks, too. With a reference of its own it could be the one to end itself.
+    // The server's thread asks, too, and must not hold the last reference to itself.
     const std::lock_guard lock(state.mutex);
     if (state.hub) counters = CountersOf(*state.hub);
   }
@@ -285,7 +285,7 @@ static bool Open(GstElement* element) {
   return true;
 }
 
-/// Gives each input what `state` has; nothing where that is null.
+/// Gives each input the server and stream of `state`; null takes them away.
 static void GiveHub(GstElement* element) {
   const auto hub = HubOf(G_OBJECT(element));
   GstIterator* inputs = gst_bin_iterate_elements(GST_BIN(element));

@@ -26,7 +26,7 @@ std::string AddressOf(GSocketConnection* connection) {
 
 }  // namespace
 
-/// What still runs ends without its owner.
+/// A handshake that still runs ends without its owner.
 Handshakes::~Handshakes() {
   for (const EntryPtr& entry : entries_) {
     entry->owner = nullptr;

@@ -45,7 +45,7 @@ class Handshakes {
   static gboolean OnReadable(GSocket*, GIOCondition, gpointer entry);
   static void OnShaken(GObject* stream, GAsyncResult* result, gpointer entry);
   void StartMore();
-  /// The entry whose turn it is; null where nobody waits.
+  /// The entry whose turn it is; null if the queue is empty.
   EntryPtr Next() const;
   void Start(const EntryPtr& entry);
   void Finish(const EntryPtr& entry, bool is_secure);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// What waits for one client: of each channel the newest messages, never more.
+// The queue of a client: of each channel the newest messages, never more.
 #pragma once
 #include <algorithm>
 #include <deque>

@@ -64,7 +64,7 @@ void Server::Run(std::function<void(std::string)> listens) {
   listens(error);  // the other thread may read port_ from here on
   if (good) g_main_loop_run(loop_.get());
   service_.reset();
-  // What was cancelled comes to its end.
+  // Lets cancelled operations end.
   while (g_main_context_iteration(context_.get(), FALSE)) continue;
   g_main_context_pop_thread_default(context_.get());
 }

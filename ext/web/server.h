@@ -21,7 +21,7 @@ class ClientService;
 /// The public functions may be called from any thread, and wait for no client.
 class Server {
  public:
-  /// Returns nothing where the server cannot listen; `error` then says why, in words for a user.
+  /// Returns nothing if the server cannot listen; `error` then says why, in words for a user.
   static std::unique_ptr<Server> Start(ServerConfig config, std::string* error);
   /// Ends all connections.
   ~Server();
@@ -31,12 +31,12 @@ class Server {
   std::uint16_t port() const { return port_; }
   const ServerCounters& counters() const { return counters_; }
 
-  /// The channel `topic`, which several may share, but for one of slices: `stream` describes those.
-  /// None where it has another schema.
+  /// Opens the channel `topic`, which several inputs may share, but for slices: `stream` describes
+  /// those. Returns nothing if it has another schema.
   SharedTopic Open(const std::string& topic, foxglove::Schema schema, std::string stream = {});
   /// The last pad that opened the channel closes it.
   void Close(const SharedTopic& topic);
-  /// The message waits for the server's thread. Where too many wait, the oldest go.
+  /// Queues the message for the server's thread. If too many wait, the oldest are dropped.
   void Publish(const SharedTopic& topic, Message message);
   void PublishSlice(const SharedTopic& topic, SharedSliceMessage slice);
 

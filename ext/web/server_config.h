@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// What a server is told, and what it counts.
+// Settings and counters of a server.
 #pragma once
 #include <atomic>
 #include <cstdint>
@@ -15,14 +15,14 @@ inline constexpr const char* kStatisticsTopic = "/statistics";
 
 struct ServerConfig {
   std::string address = "127.0.0.1";
-  std::uint16_t port = 0;    // 0: one that is free
-  std::string token;         // with the next one empty, too, everybody may come
+  std::uint16_t port = 0;    // 0: any free port
+  std::string token;         // empty, with `secret` empty, too: every client may come
   std::string token_secret;  // of signed tokens; empty: there are none
   std::string
       allowed_origins;      // of pages that need no token, beside the own: "https://a,https://b"
   std::string certificate;  // PEM file of it and its chain; empty: no TLS
   std::string private_key;  // PEM file
-  std::function<void(std::string)> warn;  // what a user should know; from the server's thread
+  std::function<void(std::string)> warn;  // warnings for a user; called in the server's thread
   unsigned max_clients = 8;
   DataRate max_bitrate;                     // of the slices of a viewer; 0: no limit
   std::string name;                         // as clients show it
@@ -39,7 +39,7 @@ struct ServerCounters {
   Count messages_dropped{0};  // a slow client gets a newer one instead
   Count bytes_sent{0};
   Count scans_skipped{0};        // a slow viewer of slices gets a newer one instead
-  Count malformed{0};            // requests and messages that nobody of this protocol sends
+  Count malformed{0};            // requests and messages outside of the protocol
   Count connections_evicted{0};  // were silent for long, or too many
 };
 

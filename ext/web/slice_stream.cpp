@@ -60,7 +60,7 @@ class SliceStream::Decoding {
   }
   bool lacks_reference() const { return slices_ && slices_->lacks_reference(); }
 
-  /// Of the slice decoded last.
+  /// Encodes the slice decoded last.
   foxglove::EncodedCloud Cloud(const foxglove::Header& header, guint max_points) const {
     return foxglove::EncodePointCloud(header,
                                       {format_.layout.fields,
@@ -170,7 +170,7 @@ bool SliceStream::Push(SliceMessage slice) {
 }
 
 void SliceStream::Wake() {
-  // With the lock, so that the thread is not between its question and its sleep.
+  // The lock is held so that the thread is not between its question and its sleep.
   const std::lock_guard lock(mutex_);
   change_.notify_one();
 }
@@ -205,7 +205,7 @@ void SliceStream::Run() {
   }
 }
 
-/// The slice decoded last, in the forms that somebody wants.
+/// Publishes the decoded slice in the forms that clients subscribed to.
 void SliceStream::Publish(const SliceMessage& slice, bool recodes) {
   if (clouds_->wanted()) {
     auto cloud = decoding_->Cloud({slice.unix_ns, settings_.frame_id}, settings_.max_points);

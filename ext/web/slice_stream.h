@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// A stream of coded slices: offered as it is, and decoded in a thread of its own where somebody
-// needs that.
+// A stream of coded slices: offered as it is, and decoded in a thread of its own if a client needs
+// that.
 #pragma once
 #include <condition_variable>
 #include <memory>
@@ -22,11 +22,11 @@ class SliceStream {
     guint max_points = 0;  // of a decoded message; 0: no limit
   };
   struct Counters {
-    std::atomic<guint64>& points;     // of decoded clouds that were sent to somebody
+    std::atomic<guint64>& points;     // decoded points sent to clients
     std::atomic<guint64>& malformed;  // slices that cannot be decoded
   };
-  /// Offers both channels. None, and why, where the caps are not those of slices to decode, or
-  /// another stream has a topic. `server` and what `counters` name outlive the stream.
+  /// Opens both channels. Returns nothing and sets `why` if the caps are not those of slices to
+  /// decode, or another stream has a topic. `server` and the `counters` outlive the stream.
   static std::unique_ptr<SliceStream> Open(Server* server, const GstCaps* caps, Settings settings,
                                            Counters counters, std::string* why);
   /// Takes back the channels.
@@ -34,7 +34,7 @@ class SliceStream {
   SliceStream(const SliceStream&) = delete;
   SliceStream& operator=(const SliceStream&) = delete;
 
-  /// From the streaming thread. False for a slice that no decoder takes.
+  /// Called in the streaming thread. Returns false for a slice that no decoder takes.
   bool Push(SliceMessage slice);
 
   static constexpr const char* kSlicesEnding = "/slices";
@@ -47,7 +47,7 @@ class SliceStream {
   void Wake();
   void Run();
   void Publish(const SliceMessage& slice, bool recodes);
-  /// Whether slices are to be decoded now. With the lock.
+  /// Returns true if a client wants decoded slices. The lock is held.
   bool IsWanted();
 
   Server* const server_;
@@ -62,7 +62,7 @@ class SliceStream {
   std::condition_variable change_;
   viewer::Backlog backlog_;
   gint64 recoded_wanted_us_ = 0;  // last time
-  bool recodes_ = false;          // that is not long ago
+  bool recodes_ = false;          // the last recoding is not long ago
   bool stopping_ = false;
   std::thread thread_;
 };

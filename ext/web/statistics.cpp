@@ -60,7 +60,7 @@ struct Summary {
   double scale = 1;
 };
 constexpr double kMs = 1e-6;  // of ns
-// Where the sender is another pipeline, its reports tell; what stands further down goes before.
+// If the sender is another pipeline, its reports count; later rows win.
 constexpr std::array<Summary, 19> kSummaries = {{
     {"target_bitrate", "sender_target_bitrate", "sender_reports"},
     {"sent_bitrate", "sender_sent_bitrate", "sender_reports"},
@@ -93,7 +93,7 @@ void AddSummaries(const json& elements, json* message) {
       const auto value = element.find(summary.from);
       const auto beside = element.find(summary.beside);
       if (beside == element.end() || value == element.end() || !value->is_number()) continue;
-      if (IsSenders(summary) && *beside == 0) continue;  // none came yet
+      if (IsSenders(summary) && *beside == 0) continue;  // no report yet
       if (summary.scale < 1)
         (*message)[summary.name] = value->get<double>() * summary.scale;
       else

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// What the elements of a pipeline tell of themselves, as JSON.
+// Statistics of the elements of a pipeline, as JSON.
 #pragma once
 #include <gst/gst.h>
 
@@ -8,8 +8,8 @@
 namespace lidar::web {
 
 /// A message of the schema lidar.Statistics: the property `stats` of each element of the pipeline
-/// that `element` is in. A bin that has one speaks for its children. Takes the locks of those
-/// elements for a moment.
+/// that `element` is in. The `stats` of a bin replace those of its children. Takes the locks of
+/// those elements for a moment.
 std::string StatisticsOf(GstElement* element);
 
 }  // namespace lidar::web

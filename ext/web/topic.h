@@ -34,22 +34,21 @@ class Topic {
  public:
   explicit Topic(foxglove::Channel channel) : channel_(std::move(channel)) {}
   const foxglove::Channel& channel() const { return channel_; }
-  /// How many messages may wait for a slow client; the oldest give way.
+  /// The number of messages that may wait for a slow client; the oldest give way.
   std::size_t depth() const { return depth_; }
   void set_depth(std::size_t depth) { depth_ = depth > 0 ? depth : 1; }
-  /// Whether anybody listens: else a message need not be made.
+  /// Returns true if the topic has subscribers: else a message need not be made.
   bool wanted() const { return subscribers_ > 0; }
   void AddSubscribers(int n) {
     subscribers_ += n;
     if (n > 0) TellOfWish();
   }
-  /// Of slices: whether a viewer needs some that stand alone.
+  /// Returns true if a viewer needs slices that stand alone.
   bool wants_recoded() const { return wants_recoded_; }
   void set_wants_recoded(bool wanted) {
     if (wants_recoded_.exchange(wanted) != wanted && wanted) TellOfWish();
   }
-  /// The server's thread calls `tell` when somebody begins to want something. Null: nobody does any
-  /// more.
+  /// The server's thread calls `tell` when the first subscriber comes. Null removes it.
   void set_on_wish(std::function<void()> tell) {
     const std::lock_guard lock(mutex_);
     on_wish_ = std::move(tell);

@@ -62,7 +62,7 @@ bool IsEncoder(GstElement* element) {
   return klass != nullptr && std::string_view(klass).find("Encoder") != std::string_view::npos;
 }
 
-/// The pad that really feeds `pad`, past the borders of bins; transfer full, null where unlinked.
+/// The pad that really feeds `pad`, past the borders of bins; transfer full, null if unlinked.
 PadPtr RealPeer(GstPad* pad) {
   PadPtr peer(gst_pad_get_peer(pad));
   while (peer && GST_IS_PROXY_PAD(peer.get())) {
@@ -85,7 +85,7 @@ PadPtr OnlySinkPad(GstElement* element) {
   return pad;
 }
 
-/// The range of a numeric property; none for another type.
+/// The range of a numeric property; nothing for another type.
 std::optional<std::pair<gdouble, gdouble>> RangeOf(const GParamSpec* spec) {
   if (G_IS_PARAM_SPEC_UINT(spec))
     return {{G_PARAM_SPEC_UINT(spec)->minimum, G_PARAM_SPEC_UINT(spec)->maximum}};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// How encoders want to be told their bitrate: the property and its unit, by factory.
+// The bitrate property of encoders and its unit, by factory.
 #pragma once
 #include <gst/gst.h>
 
@@ -12,19 +12,19 @@ namespace lidar::gst {
 
 struct BitrateControl {
   std::string property;
-  gdouble bps_per_unit = 1;  // 1000 where the property is in kbit/s
+  gdouble bps_per_unit = 1;  // 1000 if the property is in kbit/s
   std::string control;       // the field within a GstStructure property, as V4L2's extra-controls
 };
 
-/// What is known of the encoders made by `factory`; none for an unknown one.
+/// The control of encoders made by `factory`; nothing for an unknown one.
 std::optional<BitrateControl> FindBitrateControl(const std::string& factory);
 
-/// The first element upstream of `pad` whose klass has "Encoder" in it; null where there is none.
-/// The way there leads through elements and bins with one input.
+/// The first element upstream of `pad` whose klass has "Encoder" in it; null if there is none. The
+/// way there leads through elements and bins with one input.
 ElementPtr FindEncoderUpstream(GstPad* pad);
 
-/// Sets what `control` names to `bps`, clamped to the property's range. The bitrate that was set
-/// [bit/s]; none where the encoder has no such property or it is of a type that holds no number.
+/// Sets what `control` names to `bps`, clamped to the property's range. Returns the bitrate that
+/// was set [bit/s], or nothing if the encoder has no such numeric property.
 std::optional<guint> SetEncoderBitrate(GstElement* encoder, const BitrateControl& control,
                                        guint bps);
 

@@ -92,7 +92,7 @@ static ElementPtr FindEncoder(GstBaseTransform* base, const Settings& settings) 
       gst_bin_get_by_name_recurse_up(GST_BIN(parent.get()), settings.encoder.c_str()));
 }
 
-/// What the user said, over what is known of the encoder.
+/// The user's settings, over the defaults of the encoder.
 static std::optional<BitrateControl> ControlOf(GstElement* encoder, const Settings& settings) {
   GstElementFactory* factory = gst_element_get_factory(encoder);
   auto control = factory == nullptr ? std::nullopt : FindBitrateControl(GST_OBJECT_NAME(factory));
@@ -114,7 +114,7 @@ static void WarnOnce(GstLidarBitrateAdapter* self, const char* text, const char*
   GST_ELEMENT_WARNING(self, STREAM, ENCODE, ("%s", text), ("%s", what));
 }
 
-/// False where there is nobody to tell, so that the event goes on upstream.
+/// Returns false if there is no encoder, so that the event goes on upstream.
 static bool Apply(GstLidarBitrateAdapter* self, guint target_bps) {
   State& state = *self->state;
   const Settings settings = Snapshot(state);

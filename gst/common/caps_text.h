@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Caps as text, and back from text that anybody may have written. GStreamer's own parser never gets
-// such text: each level of nesting doubles its time.
+// Caps as text, and back from untrusted text. GStreamer's own parser never gets such text: each
+// level of nesting doubles its time.
 #pragma once
 #include <gst/gst.h>
 
@@ -67,8 +67,8 @@ inline void SetScalar(GstStructure* s, const gchar* name, const ScalarCaps::Valu
 
 }  // namespace caps_text
 
-/// Returns nothing where `caps` are not those of one stream in the system's memory with scalar
-/// fields: `why` then says so in words for a user.
+/// Returns nothing if `caps` are not those of one stream in the system's memory with scalar fields:
+/// `why` then says so in words for a user.
 inline std::optional<ScalarCaps> ToScalarCaps(const GstCaps* caps, std::string* why = nullptr) {
   std::string ignored;
   std::string& reason = why != nullptr ? *why : ignored;
@@ -100,13 +100,13 @@ inline CapsPtr FromScalarCaps(const ScalarCaps& scalar) {
   return caps;
 }
 
-/// Returns nothing where CapsFromText() would not take it: `why` then says so in words for a user.
+/// Returns nothing if CapsFromText() would not take it: `why` then says so in words for a user.
 inline std::optional<std::string> CapsToText(const GstCaps* caps, std::string* why = nullptr) {
   const auto scalar = ToScalarCaps(caps, why);
   return scalar ? scalar->ToText() : std::nullopt;
 }
 
-/// Null where `text` is not caps of scalar fields. They are fixed.
+/// Null if `text` is not caps of scalar fields. They are fixed.
 inline CapsPtr CapsFromText(std::string_view text) {
   const auto scalar = ScalarCaps::Parse(text);
   return scalar ? FromScalarCaps(*scalar) : nullptr;

@@ -13,7 +13,7 @@
 
 namespace lidar::gst {
 
-// Frames where nobody names them: the cloud is in the frame whose pose odometry tells.
+// Default frames: the cloud is in the frame whose pose odometry gives.
 inline constexpr const char* kCloudFrame = "lidar";
 inline constexpr const char* kImuFrame = "imu";
 inline constexpr const char* kOdometryFrame = "odom";

@@ -27,7 +27,7 @@ struct SpecArgs {
 template <class T, class = void>
 struct Kind;
 
-/// Numbers, whose value is `Wire` outside of us.
+/// Numbers, which GObject has as `Wire`.
 template <class Wire, GType type, auto new_spec, auto get_value, auto set_value>
 struct NumberKind {
   static GType Type() { return type; }
@@ -142,7 +142,7 @@ struct Kind<const char*> {
   static void Get(const char* value, GValue* v) { g_value_set_static_string(v, value); }
 };
 
-/// The GType of a boxed type or of an object; one line for each type that rows hold.
+/// The GType of a boxed type or of an object, specialised for each type that rows hold.
 template <class T>
 GType GTypeOf();
 template <>
@@ -231,7 +231,7 @@ class Field {
         ops_(row->field.read_only() ? &kChildRead<Row> : &kChild<Row>) {}
 
   bool read_only() const { return ops_->set == nullptr; }
-  /// Get() and Set() turn to the object, not to the struct.
+  /// Get() and Set() use the object, not the struct.
   bool of_object() const { return of_object_; }
 
   /// The GType of values in statistics.
@@ -309,7 +309,7 @@ class Field {
         Kind<T>::Get(Way::Read(f, s, object), v);
       },
       nullptr};
-  // What is declared later is known in functions only, not in the lambdas of a constant.
+  // A function sees what is declared later; the lambda of a constant does not.
   static GType EnumType(const Field& f) { return f.type_(); }
   template <class E>
   static constexpr Ops kEnum = {EnumType,

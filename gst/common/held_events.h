@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Sticky events of a pad whose caps come with the first buffer, as only the data tell them.
+// Sticky events of a pad whose caps come from the data of the first buffer.
 #pragma once
 #include <algorithm>
 #include <utility>
@@ -12,8 +12,8 @@ namespace lidar::gst {
 /// They go out behind the caps, in the order they came; a later one replaces one of its kind.
 class HeldEvents {
  public:
-  /// For events before the caps. True where `event` is taken: it waits for the caps, or it is a
-  /// gap, and nobody downstream knows yet what the gap is in.
+  /// Takes events before the caps: `event` waits for the caps, or it is a gap, which has no meaning
+  /// without caps. Returns false for other events.
   bool Take(GstEvent* event) {
     const GstEventType type = GST_EVENT_TYPE(event);
     const bool waits = GST_EVENT_IS_SERIALIZED(event) && GST_EVENT_IS_STICKY(event) &&
@@ -31,8 +31,8 @@ class HeldEvents {
     return waits || type == GST_EVENT_GAP;
   }
 
-  /// Once the caps are sent, or with an EOS without any. What is pushed may flush the pad, and come
-  /// back here.
+  /// Pushes the events once the caps are sent, or before an EOS without caps. A push may flush the
+  /// pad and call this object again.
   void PushTo(GstPad* pad) {
     for (EventPtr& event : std::exchange(held_, {})) gst_pad_push_event(pad, event.release());
   }

@@ -19,7 +19,7 @@ inline Latency ReadLatency(GstQuery* query) {
   return latency;
 }
 
-/// Adds to an answer of upstream what an element holds data back, `own`, in ns.
+/// Adds the element's own latency [ns] to upstream's answer.
 inline void AddLatency(GstQuery* query, GstClockTime own) {
   const Latency upstream = ReadLatency(query);
   gst_query_set_latency(

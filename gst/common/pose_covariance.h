@@ -11,7 +11,7 @@ namespace lidar::gst {
 
 using Covariance = std::array<double, 36>;  // of x, y, z and the turns about them
 
-/// Variances so large that nobody who weighs poses believes them [m^2, rad^2].
+/// Variances so large that a weighted pose has no weight [m^2, rad^2].
 inline constexpr double kDegenerateVariance = 1e3;
 inline constexpr double kUnknownVariance = 1e6;
 
@@ -19,8 +19,8 @@ inline void SetVariances(double position, double orientation, Covariance* covari
   for (std::size_t i = 0; i < 6; ++i) (*covariance)[i * 7] = i < 3 ? position : orientation;
 }
 
-/// ROS has no word for the tracking, which is a GstLidarTracking. Zeros say that a covariance is
-/// not known. `measured` is that of a tracked pose.
+/// The covariance also carries the GstLidarTracking, for which ROS has no field. Zeros mean an
+/// unknown covariance. `measured` is that of a tracked pose.
 inline Covariance CovarianceOf(std::uint64_t tracking, const Covariance& measured = {}) {
   Covariance covariance{};
   if (tracking <= GST_LIDAR_TRACKING_OK) return measured;

@@ -63,7 +63,7 @@ auto Within(const std::array<Property<Part>, N>& table, std::string_view name) {
   return WithinOf<part>(part, table, name);
 }
 
-/// The row `name` of the table of a child, as a row of its bin: `child` finds it, NULL for nobody.
+/// The row `name` of the table of a child, as a row of its bin. `child` finds the child, or NULL.
 /// Its default is that of `defaults`, which live for ever.
 template <class Settings, class ChildSettings, std::size_t N>
 Property<Settings> Proxy(const std::array<Property<ChildSettings>, N>& table, std::string_view name,
@@ -110,7 +110,7 @@ void GetProperty(const Settings& s, const Property<Settings>& p, GValue* v,
   p.field.Get(&s, object, v);
 }
 
-/// What ServeProperties() does after a change where nothing is to be done.
+/// The default of ServeProperties(): does nothing after a change.
 inline void NothingMore(GObject*, GParamSpec*) {}
 
 /// A table that others share may be a function that returns it.
@@ -123,7 +123,7 @@ const auto& RowsOf(const Table& table) {
   }
 }
 
-/// Holds a mutex, where it is to.
+/// Locks a mutex if `wanted`.
 template <class Mutex>
 class LockIf {
  public:

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// GStreamer offers caps that were refused again with each buffer: one error is enough.
+// GStreamer offers refused caps again with each buffer; this posts one error.
 #pragma once
 #include <gst/gst.h>
 
@@ -10,7 +10,7 @@ namespace lidar::gst {
 /// Used by the streaming thread.
 class RefusedCaps {
  public:
-  /// True where `caps` are not those that were refused last; they are from now on.
+  /// Returns true if `caps` are not those that were refused last; they are from now on.
   bool Note(GstCaps* caps) {
     if (last_ && gst_caps_is_equal(last_.get(), caps)) return false;
     last_.reset(gst_caps_ref(caps));

@@ -29,8 +29,8 @@ inline GstClockTime FromBeginning(GstSeekType* type, gint64 time, const GstSegme
   return static_cast<GstClockTime>(std::max<gint64>(end + std::min<gint64>(time, 0), 0));
 }
 
-/// Moves `segment`, which is of time, to where the seek `event` wants it. False, and nothing is
-/// changed, where that is no range: GStreamer takes such for a mistake of the caller.
+/// Moves `segment`, which is of time, as the seek `event` asks. Returns false and changes nothing
+/// if that is no range: GStreamer takes such for a mistake of the caller.
 inline bool ApplySeek(GstEvent* event, GstSegment* segment) {
   gdouble rate = 1;
   GstSeekFlags flags = GST_SEEK_FLAG_NONE;

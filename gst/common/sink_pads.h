@@ -5,7 +5,8 @@
 
 namespace lidar::gst {
 
-/// The one pad that queries and events of another go on to. The caller owns the iterator.
+/// Iterates over the single pad that queries and events of another go on to. The caller owns the
+/// iterator.
 inline GstIterator* LinkTo(GstPad* pad) {
   GValue value = G_VALUE_INIT;
   g_value_init(&value, GST_TYPE_PAD);

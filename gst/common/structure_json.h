@@ -13,7 +13,7 @@ namespace lidar::gst {
 
 enum class FieldNames {
   kAsTheyAre,
-  kWithoutDashes,  // the paths of Foxglove's plots take none
+  kWithoutDashes,  // for the paths of Foxglove's plots
 };
 
 inline nlohmann::json ToJson(const GstStructure* structure, FieldNames names);
@@ -43,8 +43,8 @@ inline nlohmann::json ToJson(const GValue* value, FieldNames names) {
   return text ? text.get() : "";
 }
 
-/// Numbers, booleans, strings, enumerations (by nick), arrays and structures in structures; what
-/// else there is comes as GStreamer prints it. No structure is an empty object.
+/// Converts numbers, booleans, strings, enumerations (by nick), arrays and structures; other types
+/// become GStreamer's text. NULL becomes an empty object.
 inline nlohmann::json ToJson(const GstStructure* structure, FieldNames names) {
   auto object = nlohmann::json::object();
   if (structure == nullptr) return object;
@@ -57,7 +57,7 @@ inline nlohmann::json ToJson(const GstStructure* structure, FieldNames names) {
   return object;
 }
 
-/// The property `stats` of an element as JSON; null where it has none.
+/// The property `stats` of an element as JSON; null if it has none.
 inline nlohmann::json StatsAsJson(GstElement* element, FieldNames names) {
   if (element == nullptr) return nullptr;
   GParamSpec* spec = g_object_class_find_property(G_OBJECT_GET_CLASS(element), "stats");

@@ -87,12 +87,12 @@ struct State {
   int warned_errno = 0;
 };
 
-/// What one call of render needs of the settings.
+/// The settings for a call of render.
 struct Marking {
   guint8 dscp_bits;
   guint8 ecn;
   bool reply;
-  std::optional<unsigned> interface;  // 0: as the routes say; none: it is not there
+  std::optional<unsigned> interface;  // 0: as the routes say; empty: it is not there
 };
 
 }  // namespace
@@ -211,7 +211,7 @@ static gboolean Stop(GstBaseSink* base) {
   return TRUE;
 }
 
-/// The destination follows the buffers of whoever validated the peer (screamrx).
+/// The destination follows the buffers of the element that validated the peer (screamrx).
 static void FollowPeer(State& state, GstBuffer* buffer) {
   const GstNetAddressMeta* meta = gst_buffer_get_net_address_meta(buffer);
   if (meta == nullptr || meta->addr == state.peer.get()) return;
@@ -227,7 +227,7 @@ static Marking CurrentMarking(State& state) {
       s.options.dscp < 0 ? state.socket_tos : static_cast<guint8>(s.options.dscp << 2);
   Marking marking{dscp, static_cast<guint8>(s.ecn), s.reply, 0};
   if (s.interface.empty()) return marking;
-  // It has another index each time it comes.
+  // The socket's index changes with each start.
   const int fd = g_socket_get_fd(state.used.socket.get());
   if (const unsigned index = lidar::net::InterfaceIndex(fd, s.interface))
     marking.interface = index;

@@ -34,7 +34,7 @@ namespace {
 
 using namespace lidar::gst;
 
-// What 1 s of 16 Mbit/s needs; asked for silently where the user gave no size.
+// Enough for 1 s of 16 Mbit/s; asked for silently without a size by the user.
 constexpr guint kDefaultBuffer = 2u << 20;
 constexpr gint kDefaultPayload = 96;
 
@@ -192,7 +192,7 @@ static GstFlowReturn ReceiveBatch(GstLidarEcnUdpSrc* self) {
   const int fd = g_socket_get_fd(state.used.socket.get());
   for (;;) {
     const int n = state.batch.Receive(fd, [&](const ReceivedDatagram& d) {
-      // An empty datagram has nothing for anybody.
+      // An empty datagram carries no data.
       if (d.size > 0) state.received.emplace_back(ToBuffer(self, d));
     });
     if (!state.received.empty()) {

@@ -23,9 +23,9 @@ struct CloudInfo {
   gint framerate_d = 1;
   std::optional<SensorModel> sensor_model;
 
-  /// Returns nothing where the caps are of another type, big-endian, or contradict themselves:
-  /// fields past point-step, a sensor model that does not parse or has another height, too large a
-  /// frame. `why` then says which, in words for a user.
+  /// Returns nothing if the caps are of another type, big-endian, or contradict themselves: fields
+  /// past point-step, a sensor model that does not parse or has another height, too large a frame.
+  /// `why` then says which, in words for a user.
   GST_LIDAR_API static std::optional<CloudInfo> FromCaps(const GstCaps* caps,
                                                          std::string* why = nullptr);
   /// FromCaps() for caps that fix the width as well.

@@ -136,7 +136,7 @@ gboolean gst_lidar_event_parse_target_bitrate(GstEvent* event, GstLidarTargetBit
       !gst_structure_get_uint(s, "bitrate", &target->bitrate)) {
     return FALSE;
   }
-  // Foreign senders may know only the bitrate.
+  // Foreign senders may set only the bitrate.
   gst_structure_get_uint(s, "ssrc", &target->ssrc);
   gst_structure_get_uint(s, "min-bitrate", &target->min_bitrate);
   gst_structure_get_uint(s, "max-bitrate", &target->max_bitrate);

@@ -40,7 +40,7 @@ void LidarEncCoder::Load(const GstLidarRawSlice& raw, std::optional<unsigned> ef
            : cloud_->Load(points, with_intensity_);
 }
 
-/// What the last slice left is known from now on; which of several encodings was sent is known only
+/// The state after the last slice is known now; which of several encodings was sent is known only
 /// when the next slice comes.
 void LidarEncCoder::KeepBlocks() {
   keeper_.OnEncoded(std::move(slice_.blocks));

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The coder of lidarenc: one slice at a time, as hard as there is time for, and what it may refer
-// to.
+// The coder of lidarenc: codes a slice at a time, as hard as there is time for, and keeps what it
+// may refer to.
 #pragma once
 #include <optional>
 #include <string>
@@ -20,14 +20,14 @@ namespace lidar::gst {
 /// For one thread at a time.
 class LidarEncCoder {
  public:
-  /// False where it has neither ranges of a sensor nor points. What was learnt of the machine
-  /// stays.
+  /// Returns false if it has neither ranges of a sensor nor points. The measured speed of the
+  /// machine stays.
   bool SetFormat(const CloudInfo& info, bool with_intensity);
   /// Takes the slice; without `effort` it has the one that there is time for.
   void Load(const GstLidarRawSlice& raw, std::optional<unsigned> effort);
   /// Lets what is loaded refer to what the receiver has, where it `remembers`.
   void Link(const GstLidarRawSlice& raw, bool remembers, Duration key_interval);
-  /// What is loaded; good until the next slice.
+  /// Describes the loaded slice; good until the next one.
   void Describe(GstLidarLoadedSlice* loaded);
   /// Whether slices are ranges of a sensor; else they are points in any order.
   bool codes_ranges() const { return encoder_.has_value(); }

@@ -60,7 +60,7 @@ DatagramInfo ReadInfo(msghdr* received) {
   DatagramInfo info;
   for (cmsghdr* c = CMSG_FIRSTHDR(received); c != nullptr; c = CMSG_NXTHDR(received, c)) {
     if (c->cmsg_level == IPPROTO_IP && c->cmsg_type == IP_TOS) {
-      info.tos = Payload<std::uint8_t>(c);  // one byte, unlike its IPv6 sister
+      info.tos = Payload<std::uint8_t>(c);  // IP_TOS has one byte, unlike IPV6_TCLASS
     } else if (c->cmsg_level == IPPROTO_IPV6 && c->cmsg_type == IPV6_TCLASS) {
       info.tos = static_cast<std::uint8_t>(Payload<int>(c));
     } else if (c->cmsg_level == SOL_SOCKET && c->cmsg_type == SCM_TIMESTAMPNS) {

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// What every UDP socket here asks of the kernel: ECN bits and the time of arrival with each
-// datagram.
+// The kernel's additions to datagrams of all UDP sockets: ECN bits and the time of arrival.
 #pragma once
 #include <netinet/in.h>
 #include <sys/socket.h>
@@ -27,7 +26,7 @@ struct NativeAddress {
   bool operator!=(const NativeAddress& o) const { return !(*this == o); }
 };
 
-/// What the kernel adds to a datagram.
+/// The kernel's additions to a datagram.
 struct DatagramInfo {
   std::uint8_t tos = 0;             // DSCP and ECN
   std::optional<Duration> arrival;  // since the Unix epoch
@@ -48,14 +47,14 @@ struct SendControl {
 void SetControl(std::uint8_t tos, const NativeAddress& to, unsigned interface, SendControl* control,
                 msghdr* message);
 
-/// Index of the interface of that name in the socket's network; 0 where it is not there.
+/// Index of the interface of that name in the socket's network; 0 if it is not there.
 unsigned InterfaceIndex(int fd, const std::string& name);
 
 /// Multicast leaves by the interface of that name. False with errno set where that cannot be.
 bool SendMulticastFrom(int fd, const std::string& interface);
 
 /// The largest receive buffer up to `bytes` that the kernel grants (0: what it is); its size, or 0
-/// where it fails.
+/// if it fails.
 unsigned SetReceiveBuffer(int fd, unsigned bytes);
 
 }  // namespace lidar::net

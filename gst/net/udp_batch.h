@@ -33,7 +33,7 @@ class UdpBatchSender {
 
   bool full() const { return count_ == kCapacity; }
   /// `tos`: the DSCP and ECN bits of the IP header; `interface`: index of that to leave by, or 0.
-  /// False where the buffer cannot be mapped.
+  /// Returns false if the buffer cannot be mapped.
   bool Add(GstBuffer* buffer, guint8 tos, const NativeAddress& to, unsigned interface = 0);
   /// Sends all, waiting for the socket where it must, and forgets them.
   Result Flush(int fd, const WakeFd& wake);
@@ -57,7 +57,7 @@ class UdpBatchSender {
   std::size_t count_ = 0;
 };
 
-/// What came with a datagram.
+/// A datagram's additions.
 struct ReceivedDatagram {
   const guint8* data = nullptr;  // valid during the call
   gsize size = 0;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// What elements with a UDP socket share: where they listen or send, their errors and their rows.
+// The common part of elements with a UDP socket: addresses, errors and properties.
 #pragma once
 #include <gst/gst.h>
 
@@ -46,11 +46,11 @@ struct SocketInUse {
   SharedSocket socket;
   bool given = false;
 
-  /// Closes it and forgets it; one that was given only where it is to be closed.
+  /// Closes and forgets it; a given socket is closed only with `close_given`.
   void Close(bool close_given);
 };
 
-/// What the bins leave to the elements.
+/// The options that bins leave to the elements.
 struct UdpOptions {
   gint dscp = -1;         // of a sink
   guint buffer_size = 0;  // bytes; the rest of a source
@@ -63,12 +63,12 @@ const std::array<Property<UdpListen>, 4>& UdpListenRows();
 const std::array<Property<UdpTarget>, 4>& UdpTargetRows();
 const std::array<Property<UdpOptions>, 4>& UdpOptionRows();
 
-// Each posts an element error and returns NULL where it fails.
+// Each posts an element error and returns NULL if it fails.
 SharedSocket OpenListening(GstElement* element, const UdpListen& listen);
 SharedSocketAddress ResolveTarget(GstElement* element, const UdpTarget& target);
 SharedSocket OpenSending(GstElement* element, const UdpTarget& target, GSocketFamily family);
 
-/// The socket that is given, else that which `open` opens; NULL where it fails.
+/// The socket that is given, else that which `open` opens; NULL if it fails.
 template <class Open>
 SocketInUse TakeSocket(const GivenSocket& given, Open open) {
   if (given.socket) return {given.socket, true};

@@ -22,7 +22,7 @@ std::string WithoutBrackets(const std::string& host) {
   return host;
 }
 
-/// Whether the machine knows a way there. Nothing is sent.
+/// Returns true if the machine has a route there. Nothing is sent.
 bool HasRouteTo(GInetAddress* address) {
   const SocketPtr socket(g_socket_new(g_inet_address_get_family(address), G_SOCKET_TYPE_DATAGRAM,
                                       G_SOCKET_PROTOCOL_UDP, nullptr));
@@ -80,7 +80,7 @@ NativeAddress ToNative(GSocketAddress* address, GSocketFamily family) {
 }
 
 GSocketAddress* FromNative(const NativeAddress& address) {
-  // GLib wants a pointer to non-const and only reads.
+  // GLib takes a pointer to non-const, and only reads.
   sockaddr_storage copy = address.storage;
   return g_socket_address_new_from_native(&copy, address.length);
 }

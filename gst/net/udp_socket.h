@@ -27,7 +27,7 @@ inline SocketAddressPtr RefAddress(GSocketAddress* address) {
 /// For a socket of `family`: an IPv4 address becomes a mapped one on an IPv6 socket. Invalid where
 /// the address does not fit the family.
 NativeAddress ToNative(GSocketAddress* address, GSocketFamily family);
-/// Transfer full; a mapped address comes out as IPv4. NULL where it is of no known family.
+/// Transfer full; a mapped address comes out as IPv4. NULL if it is of no known family.
 GSocketAddress* FromNative(const NativeAddress& address);
 
 /// Equal as the network sees them: a mapped IPv4 address is that address. NULL equals NULL only.

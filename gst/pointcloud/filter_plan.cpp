@@ -12,7 +12,7 @@
 namespace lidar::gst {
 namespace {
 
-/// CloudInfo knows little-endian clouds only.
+/// CloudInfo holds little-endian clouds only.
 std::optional<CloudInfo> ParseCaps(const GstCaps* caps, bool* big_endian, std::string* why) {
   const CapsPtr copy(gst_caps_copy(caps));
   gboolean flag = FALSE;
@@ -36,7 +36,7 @@ std::optional<cdr::PointLayout> ParseWanted(const std::string& text, const Point
       *why = "there is no field " + name + " among " + given.ToString();
       return std::nullopt;
     }
-    // What our elements want of coordinates, unless another type is asked for.
+    // All elements take coordinates as F32, unless another type is asked for.
     const bool is_axis = name == "x" || name == "y" || name == "z";
     FieldType type = is_axis ? FieldType::kF32 : field->type;
     if (colon != std::string::npos) {
@@ -92,14 +92,14 @@ std::optional<Transform> PoseOf(GstBuffer* buffer) {
   return FromPose({p[0], p[1], p[2]}, {q[0], q[1], q[2], q[3]});
 }
 
-/// The frame of the clouds, where anybody says.
+/// The frame of the clouds, by the settings or the caps.
 std::string FrameOf(const FilterSettings& settings, const GstCaps* caps) {
   if (!settings.frame_id.empty()) return settings.frame_id;
   const gchar* text = gst_structure_get_string(gst_caps_get_structure(caps, 0), GST_LIDAR_FRAME_ID);
   return text != nullptr ? text : "";
 }
 
-/// The points are where the pose puts them: whoever comes next must not move them again.
+/// The points are moved: the next element must not move them again.
 void DropPose(GstBuffer* buffer) {
   GstCustomMeta* meta = gst_buffer_get_custom_meta(buffer, GST_LIDAR_POSE_META_NAME);
   if (meta != nullptr) gst_buffer_remove_meta(buffer, &meta->meta);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// What pointcloudfilter does with clouds of certain caps.
+// The work of pointcloudfilter on clouds of certain caps.
 #pragma once
 #include <gst/gst.h>
 
@@ -35,12 +35,12 @@ struct FilterSettings {
 
 class FilterPlan {
  public:
-  /// Returns nothing where the settings are wrong, or not to be done with clouds of `caps`; `why`
-  /// then says so in words for a user.
+  /// Returns nothing if the settings are wrong, or not to be done with clouds of `caps`; `why` then
+  /// says so in words for a user.
   static std::unique_ptr<FilterPlan> Make(const FilterSettings& settings, const GstCaps* caps,
                                           std::string* why);
 
-  /// The filtered cloud, without metas; null where `buffer` contradicts the caps. A cloud of which
+  /// The filtered cloud, without metas; null if `buffer` contradicts the caps. A cloud of which
   /// nothing is left has no bytes. `placed` takes it to the target frame, where there is one.
   BufferPtr Apply(GstBuffer* buffer, const Transform& placed = kIdentity);
   /// The caps of the cloud that Apply() gave last.
@@ -48,7 +48,7 @@ class FilterPlan {
   /// The fields of that cloud, with their types and places.
   std::string fields() const { return out_.fields.ToString(); }
   std::uint64_t removed() const { return filter_->removed(); }
-  /// Clouds that had no pose where one was wanted: nothing is left of them.
+  /// Clouds without the pose that they need: they are dropped.
   std::uint64_t without_pose() const { return without_pose_; }
   /// The frame that clouds come in.
   const std::string& frame() const { return frame_; }

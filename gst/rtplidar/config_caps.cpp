@@ -34,7 +34,7 @@ bool ReadModel(const GstStructure* s, rtp::StreamConfig* config) {
   return true;
 }
 
-/// Returns nothing where a field is missing or does not fit into its place.
+/// Returns nothing if a field is missing or does not fit into its place.
 std::optional<rtp::StreamConfig> NumberedConfig(rtp::Coder coder, const GstStructure* s) {
   const gchar* fields = gst_structure_get_string(s, "fields");
   const gchar* geometry = gst_structure_get_string(s, "geometry");
@@ -74,7 +74,7 @@ std::optional<rtp::StreamConfig> StreamConfigFromCaps(const GstCaps* caps, std::
   *why = "need packed fields with x, y and z as F32, and a sensor-model with geometry=range";
   const auto config = numbered ? NumberedConfig(known->coder, s) : NamedConfig(caps, why);
   if (!config) return std::nullopt;
-  // What goes out must be what a receiver takes.
+  // The config must be one that a receiver takes.
   const auto bytes = config->Serialise();
   return rtp::StreamConfig::Parse({bytes.data(), bytes.size()});
 }

@@ -10,8 +10,7 @@
 
 namespace lidar::gst {
 
-/// Returns nothing where a receiver would not take the config: `why` then says so in words for a
-/// user.
+/// Returns nothing if a receiver would not take the config: `why` then says so in words for a user.
 std::optional<rtp::StreamConfig> StreamConfigFromCaps(const GstCaps* caps, std::string* why);
 /// transfer full
 GstCaps* StreamConfigToCaps(const rtp::StreamConfig& config);

@@ -45,7 +45,7 @@ struct Settings {
   guint64 max_reorder_time = 100 * GST_MSECOND;
 };
 
-/// What `stats` shows.
+/// The values of `stats`.
 struct Shown {
   ReceiverAccounts all;
   guint64 invalid = 0;
@@ -176,7 +176,7 @@ static bool IsOurs(GstLidarRtpDepay* self, GstBuffer* buffer) {
   return false;
 }
 
-/// Two senders with one payload type, whose streams nobody told apart: said once.
+/// Warns once of a second sender with the same payload type.
 static void WarnOfRival(GstLidarRtpDepay* self, guint32 ssrc, guint32 rival) {
   if (std::exchange(self->state->warned_of_rival, true)) return;
   GST_ELEMENT_WARNING(self, STREAM, WRONG_TYPE,
@@ -186,7 +186,7 @@ static void WarnOfRival(GstLidarRtpDepay* self, guint32 ssrc, guint32 rival) {
                        ssrc));
 }
 
-/// True once where many packets came and none of them could be read. For whoever holds the lock.
+/// True once if many packets came and no packet could be read. The caller holds the lock.
 static bool IsUnreadable(State& state) {
   if (state.readable) return false;
   const ReceiverAccounts all = state.receiver.accounts();
@@ -265,7 +265,7 @@ static gboolean HandleEvent(GstRTPBaseDepayload* base, GstEvent* event) {
   return GST_RTP_BASE_DEPAYLOAD_CLASS(gst_lidar_rtp_depay_parent_class)->handle_event(base, event);
 }
 
-/// A jitterbuffer tells of lost packets; what is lost for us are slices, and those we know.
+/// A jitterbuffer reports lost packets; this element counts lost slices itself.
 static gboolean PacketLost(GstRTPBaseDepayload*, GstEvent*) { return TRUE; }
 
 static GstStateChangeReturn ChangeState(GstElement* element, GstStateChange transition) {

@@ -191,7 +191,7 @@ static gboolean SrcEvent(GstRTPBasePayload* base, GstEvent* event) {
   return GST_RTP_BASE_PAYLOAD_CLASS(gst_lidar_rtp_pay_parent_class)->src_event(base, event);
 }
 
-/// How long an aggregate may be held back; 0 where none is.
+/// The longest time that an aggregate may be held back; 0 without one.
 static GstClockTime HoldTime(GstRTPBasePayload* base) {
   State& state = *GST_LIDAR_RTP_PAY(base)->state;
   const CapsPtr caps(gst_pad_get_current_caps(GST_RTP_BASE_PAYLOAD_SINKPAD(base)));

@@ -14,7 +14,7 @@ namespace lidar::gst {
 namespace {
 
 constexpr guint kClockRate = 90'000;
-// Each slice multiplies the sum of bytes by this, so the sum tells of about the last second.
+// Each slice multiplies the sum of bytes by this, so the sum covers about the last second.
 constexpr gdouble kShareMemory = 0.98;
 
 /// An RTP buffer of `packet`, whose body is a part of `slice_buffer` that is not copied.
@@ -80,7 +80,7 @@ GstFlowReturn PushList(GstRTPBasePayload* base, BufferListPtr list) {
   return gst_rtp_base_payload_push_list(base, list.release());
 }
 
-/// None, and an error posted, where the buffer's meta cannot be sent.
+/// Returns nothing and posts an error if the buffer's meta cannot be sent.
 std::optional<PaySlice> DescribeSlice(GstRTPBasePayload* base, PayState& state, GstBuffer* buffer) {
   PaySlice slice;
   if (!gst_lidar_buffer_get_slice(buffer, &slice.meta)) slice.meta.scan_id = state.unnamed_scans++;
@@ -117,7 +117,7 @@ void CountSlice(PayState& state, const PaySlice& slice, gsize size) {
   state.recent_payload_bytes *= kShareMemory;
 }
 
-/// Takes the slice into the packet that is being collected; false where it must go out alone.
+/// Takes the slice into the packet that is being collected; false if it must go out alone.
 bool Aggregate(GstRTPBasePayload* base, PayState& state, const PaySlice& slice, ByteView bytes,
                GstFlowReturn* flow) {
   const auto ticks = GST_CLOCK_TIME_IS_VALID(slice.pts)

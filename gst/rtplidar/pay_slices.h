@@ -28,7 +28,7 @@ struct PayCounters {
   guint64 empty = 0;          // buffers without a byte, not sent
 };
 
-/// What one buffer brings: its unit and what GStreamer knows of it.
+/// The content of a buffer: its unit, times and flags.
 struct PaySlice {
   rtp::Unit unit;
   GstLidarSlice meta{};

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Tells an encoder which of its slices a receiver has, where the sender behind rtplidarpay says
-// which packets it has.
+// Turns events about packets that a receiver has into events about slices, for the encoder.
 #pragma once
 #include <gst/gst.h>
 
@@ -14,7 +13,8 @@ class Receipts {
  public:
   /// Watches the packets that leave by `src`; for as long as the pad lives.
   void Watch(GstPad* src);
-  /// What the encoder is to hear, in place of `event`; null: nothing. False for other events.
+  /// Gives the event for the encoder in place of `event`, or null for no event. Returns false for
+  /// other events.
   bool OnEvent(GstEvent* event, GstEvent** upstream);
 
  private:

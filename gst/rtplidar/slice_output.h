@@ -39,7 +39,7 @@ class SliceOutput {
 
   GstRTPBaseDepayload* element_;
   Config config_;  // of the caps on the src pad
-  Config asked_;   // what the next element last answered to
+  Config asked_;   // the caps that the next element answered to last
   Allowance changes_{kFormatChanges, kFormatChangePeriod};
   bool warned_of_coder_ = false;
   bool warned_of_changes_ = false;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Where the sender's feedback comes from; a new place means a new path.
+// The address of the sender's feedback; a new address means a new path.
 #pragma once
 #include <gio/gio.h>
 
@@ -15,7 +15,8 @@ class FeedbackPeer {
   /// Silence of the old address after which another one is the peer's.
   static constexpr Duration kSilence = std::chrono::milliseconds(500);
 
-  /// Takes the source of feedback that was accepted; it may be NULL. True where the peer has moved.
+  /// Takes the source of feedback that was accepted; it may be NULL. Returns true if the peer has
+  /// moved.
   bool OnFeedback(Time now, GSocketAddress* from) {
     if (from == nullptr) return false;
     if (peer_ && SameAddress(from, peer_.get())) {

@@ -10,7 +10,7 @@
 namespace lidar::gst {
 
 std::vector<std::uint8_t> BuildKeyRequest(std::uint32_t sender_ssrc, std::uint32_t media_ssrc);
-/// The SSRC of the media that one RTCP packet asks for; none for other packets.
+/// The SSRC of the media that an RTCP packet asks for; nothing for other packets.
 std::optional<std::uint32_t> ParseKeyRequest(ByteView rtcp_packet);
 
 }  // namespace lidar::gst

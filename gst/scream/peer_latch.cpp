@@ -66,8 +66,7 @@ Time PeerLatch::LastHeard() const {
   return last;
 }
 
-/// Where the first link is silent, the one that sends takes its place: strangers find no silent
-/// peer.
+/// If the first link is silent, the sending one takes its place: strangers find no silent peer.
 PeerLatch::Verdict PeerLatch::OnLinkPacket(Time now, const Packet& packet, Link* link) {
   link->at = now;
   if (now - peer_.at >= kSilence) {
@@ -127,7 +126,7 @@ void PeerLatch::Restart() {
   *this = std::move(next);
 }
 
-/// Whether the packet goes on with an SSRC of a peer that is silent. While the believed peer sends,
+/// Returns true if the packet continues an SSRC of a silent peer. While the accepted peer sends,
 /// its SSRCs are its own.
 bool PeerLatch::IsKnown(Time now, const Packet& packet) const {
   const auto goes_on = [&](const Sources& sources) {
@@ -146,7 +145,7 @@ bool PeerLatch::Wins(const Peer& candidate, Time now) const {
   return shown >= (needs_slices ? Standing::kSlices : Standing::kStream);
 }
 
-/// What fell silent stays known; what was outweighed while it sent is forgotten.
+/// A silent peer stays known; a peer that was outweighed while it sent is forgotten.
 void PeerLatch::Promote(Time now, Peer candidate) {
   if (IsSilent(now)) Remember(peer_);
   for (auto it = known_.begin(); it != known_.end();) {

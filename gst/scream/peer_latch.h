@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Whose packets the receiver believes.
+// The peer whose packets the receiver accepts.
 #pragma once
 #include <gio/gio.h>
 
@@ -35,21 +35,20 @@ class Digests {
   std::size_t next_ = 0;
 };
 
-/// A single peer is accepted at a time: the first that sends. Another takes its place when it has
-/// more to show for itself (see Standing), or as much while the first is silent. All that others
-/// send counts towards their standing and is dropped. A packet without an address (from an element
-/// that does not tell) belongs to any peer.
+/// Accepts a single peer at a time: the first that sends. Another takes its place with a higher
+/// standing (see Standing), or with an equal one while the first is silent. Packets of others count
+/// towards their standing and are dropped. A packet without an address belongs to any peer.
 ///
 /// A peer may send over several links. An address joins it by copies: kCopies packets that are
-/// equal, byte for byte, to packets that the peer sent. Only who sees the packets can send those.
-/// The peer goes on over the other links where one falls silent.
+/// equal, byte for byte, to packets of the peer, which only an observer of the packets can send. If
+/// a link falls silent, the peer goes on over the others.
 class PeerLatch {
  public:
   /// A stream is this many packets after the first, each further on in its SSRC...
   static constexpr int kProbation = 4;
   /// ...within this time.
   static constexpr Duration kStreamTime = 1s;
-  /// A believed peer without packets for so long is silent.
+  /// An accepted peer without packets for this long is silent.
   static constexpr Duration kSilence = 500ms;
   /// Silence after which a stream is enough to follow a peer that had shown slices.
   static constexpr Duration kLongSilence = 5s;
@@ -60,12 +59,12 @@ class PeerLatch {
   static constexpr int kCopies = 4;
   static constexpr std::size_t kMaxLinks = 4;
 
-  /// What a peer has shown, in the order of its weight.
+  /// The evidence for a peer, in the order of its weight.
   enum class Standing {
     kNothing,
     kStream,  ///< sends a stream now
     kSlices,  ///< of its LiDAR packets a slice came out whole
-    kKnown,   ///< goes on with an SSRC whose slices did, where the peer that had it fell silent
+    kKnown,   ///< continues an SSRC of a silent peer's slices
   };
   enum class Verdict {
     kAccepted,
@@ -73,7 +72,7 @@ class PeerLatch {
     kForeign,  ///< not from the peer
   };
   struct Packet {
-    GSocketAddress* from = nullptr;  // NULL: not told
+    GSocketAddress* from = nullptr;  // NULL: unknown
     std::uint32_t ssrc = 0;
     std::uint16_t seq = 0;
     ByteView lidar{};          // the payload, where it is a LiDAR payload
@@ -81,11 +80,11 @@ class PeerLatch {
   };
 
   Verdict OnPacket(Time now, const Packet& packet);
-  /// True where a datagram that is no media may be believed.
+  /// Returns true if a datagram that is no media may be accepted.
   bool IsPeer(GSocketAddress* from) const;
-  /// True where OnPacket() has no use for the payload of what comes from there.
+  /// Returns true if OnPacket() has no use for the payload of what comes from there.
   bool HasShownSlices(GSocketAddress* from) const { return peer_.has_slices && IsPeer(from); }
-  /// True where copies may come to light: somebody else sends too.
+  /// Returns true if copies are possible: another address sends too.
   bool WantsDigest(GSocketAddress* from) const {
     return !candidates_.empty() || !links_.empty() || !IsPeer(from);
   }
@@ -101,7 +100,7 @@ class PeerLatch {
   void Restart();
 
  private:
-  /// How far an SSRC has come.
+  /// The state of an SSRC.
   struct Source {
     std::uint16_t next_seq = 0;
     Time at{};

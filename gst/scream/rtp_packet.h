@@ -21,7 +21,7 @@ struct RtpHeader {
   gsize header_size = 12;  // CSRCs and extension included
 };
 
-/// Returns nothing where `buffer` is too short or of another version.
+/// Returns nothing if `buffer` is too short or of another version.
 std::optional<RtpHeader> ReadRtpHeader(GstBuffer* buffer);
 
 /// True for a datagram on an RTP port that is RTCP (RFC 5761: packet types 192 to 223).

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Clouds as the ROS driver of a sensor publishes them: one row, in the order of firing.
+// Clouds as the ROS driver of a sensor publishes them: a row in the order of firing.
 #pragma once
 #include <optional>
 #include <vector>
@@ -26,7 +26,7 @@ class DriverCloud {
   /// The points of what returned.
   const std::vector<std::uint8_t>& Write(const synth::Returns& returns, const synth::Rays& rays,
                                          const Sweep& sweep);
-  /// Caps of what was written last; width 0: nothing returned.
+  /// Caps of the last written cloud; width 0: no returns.
   const CloudInfo& info() const { return info_; }
 
  private:

@@ -128,7 +128,7 @@ class TrajectoryLog {
     file_.stream() << std::fixed << "# timestamp tx ty tz qx qy qz qw\n" << std::flush;
   }
   bool ok() const { return file_.ok(); }
-  /// False where the row did not fit.
+  /// Returns false if the row did not fit.
   bool Write(GstClockTime unix_time, const lidar::synth::Pose& pose) {
     const auto [x, y, z, w] = pose.ToQuaternion();
     // A double does not hold the nanoseconds of a Unix time.
@@ -286,7 +286,7 @@ static bool SkipWhatIsLate(GstElement* element, State* state) {
   return true;
 }
 
-/// Rows that were written stay. The first row that does not fit is told, and no more are written.
+/// Reports the first row that does not fit; written rows stay, and no more follow.
 static void LogPose(GstLidarTestSrc* self, GstClockTime capture, const lidar::synth::Pose& pose) {
   State& state = *self->state;
   if (!state.log || state.log->Write(capture, pose)) return;

@@ -22,7 +22,7 @@ class LivePacer {
   bool started() const { return started_; }
   /// Waits until stream time `t`, through pauses of the pipeline; FLUSHING when it stops.
   GstFlowReturn WaitUntil(Duration t);
-  /// Present stream time; none without a clock.
+  /// Present stream time; nothing without a clock.
   std::optional<Duration> Now() const;
   GstClockTime ToRunningTime(Duration t) const;
   GstClockTime ToUnixTime(Duration t) const;

@@ -16,7 +16,7 @@ namespace lidar::gst {
 /// Fields of a point beyond x, y, z, intensity and range.
 enum class Channel { kReflectivity, kSignal, kRing, kTime };
 
-/// "reflectivity,ring": none where a name is not known, which `unknown` then is.
+/// Parses "reflectivity,ring". Returns nothing for an unknown name, and sets `unknown`.
 std::optional<std::vector<Channel>> ParseChannels(std::string_view text, std::string* unknown);
 
 struct SliceOptions {
@@ -29,8 +29,8 @@ class SliceMaker {
  public:
   SliceMaker(const synth::ScannerConfig& config, const SliceOptions& options);
 
-  /// Caps of the slices of such a source. One with a firing table does not fix the width: each
-  /// slice has its own.
+  /// Caps of the slices of such a source. A firing table leaves the width open: each slice has its
+  /// own.
   static CloudInfo InfoFor(const synth::ScannerConfig& config, const SliceOptions& options);
 
   /// When the first column of the next slice is sampled.
@@ -43,7 +43,7 @@ class SliceMaker {
   /// Casts the next slice into a buffer with PTS, duration and slice meta. `begin` is NextTime()
   /// since 1970.
   BufferPtr Make(GstClockTime begin);
-  /// Caps of the slice that was made last, where each has its own; width 0: nothing returned.
+  /// Caps of the last slice, if each has its own; width 0: no returns.
   const CloudInfo* OwnInfo() const { return driver_ ? &driver_->info() : nullptr; }
   /// Goes on with the first slice of the scan that is being swept at `time`.
   void SkipTo(Duration time);

@@ -116,7 +116,7 @@ struct State {
   RefusedCaps refused;
   GstVideoInfo video;
   std::optional<TrailMap> map;
-  gint map_colors = 0;  // the map keeps what its colours tell
+  gint map_colors = 0;  // the map keeps the values of its colours
   std::unique_ptr<Renderer> renderer;
   bool warned_no_pose = false;
   bool drawing = false;  // a picture is begun
@@ -242,7 +242,7 @@ static void Paint(const Canvas& canvas, GstVideoFrame* frame) {
   }
 }
 
-/// Moves the map to where `in` was taken. False where its points shall not enter the map.
+/// Moves the map to where `in` was taken. Returns false if its points shall not enter the map.
 static bool FollowPose(GstBaseTransform* base, GstBuffer* in) {
   State& state = StateOf(base);
   if (!state.map) return false;
@@ -262,7 +262,7 @@ static bool FollowPose(GstBaseTransform* base, GstBuffer* in) {
   return pose.tracking != GST_LIDAR_TRACKING_LOST;
 }
 
-/// The map lives as long as it is asked for and its colours tell the same.
+/// The map lives as long as it is asked for with the same colours.
 static TrailMap* UpdateMap(State* state) {
   const Settings& settings = state->settings;
   const bool stale = state->map_colors != settings.color_by;
@@ -324,8 +324,7 @@ static GstFlowReturn Transform(GstBaseTransform* base, GstBuffer* in, GstBuffer*
   const bool into_map = FollowPose(base, in);
   if (begins) BeginPicture(&state, slice, in);
   state.renderer->Draw(*state.info, slice, bytes.data(), into_map);
-  // Each buffer gives at most one picture. After a loss, a scan of one slice waits for the next
-  // scan.
+  // A buffer gives at most one picture. After a loss, a scan of one slice waits for the next scan.
   if (slice.slice_index + 1 < slice.slice_count || done) return flow;
   return FinishPicture(base, out);
 }

@@ -12,8 +12,8 @@ namespace {
 constexpr Color kBackground{20, 23, 32};
 constexpr Color kWay{255, 176, 46};
 constexpr Color kSensor{255, 255, 255};
-/// How much of its colour the map keeps, how far away it is drawn in perspective, and how many
-/// scans must have met a place before it is drawn. Fewer scans meet what moves.
+/// The share of its colour that the map keeps, its distance in perspective, and the number of scans
+/// that must have met a place before it is drawn, which leaves out much of what moves.
 constexpr float kMapShare = 0.7F;
 constexpr float kReach = 300;
 constexpr int kMetOften = 3;
@@ -57,7 +57,7 @@ Renderer::Vec Renderer::ToPicture(const std::array<float, 3>& at) const {
 
 void Renderer::DrawOverMap(const CloudInfo& info, const GstLidarSlice& slice,
                            const std::uint8_t* points, bool into_map) {
-  // Only an organised cloud tells when a column was sampled.
+  // Only an organised cloud has the times of its columns.
   const GstClockTime period = info.height > 1 ? info.ScanDuration() : GST_CLOCK_TIME_NONE;
   const double sweep_s = GST_CLOCK_TIME_IS_VALID(period)
                              ? static_cast<double>(period) / GST_SECOND /

@@ -18,7 +18,7 @@ struct Scale {
   float low, high;
 };
 
-/// What the colours span where the user does not say.
+/// The default span of the colours.
 Scale DefaultScale(ColorBy by, guint beams) {
   switch (by) {
     case ColorBy::kHeight:
@@ -94,7 +94,7 @@ std::optional<std::array<float, 3>> Renderer::Place(Vec p) const {
   const float x = static_cast<float>(canvas_.width()) / 2 + pixels_per_m_ * p.x;
   const float y = static_cast<float>(canvas_.height()) / 2 - pixels_per_m_ * p.y;
   if (!(std::abs(x) < 1e5F && std::abs(y) < 1e5F)) return std::nullopt;
-  // What is high hides what is low.
+  // Higher points hide lower ones.
   return std::array<float, 3>{x, y, std::max(1.0F, kAbove - p.z)};
 }
 

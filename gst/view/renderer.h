@@ -52,7 +52,7 @@ class Renderer {
   struct Point {
     Vec p;
     float range;
-    float value;  // what the colour tells, as read
+    float value;  // value of the colour, as read
     guint beam;
     guint column;
   };
@@ -84,7 +84,7 @@ class Renderer {
   bool scale_known_ = false;
   float pixels_per_m_;  // from above
   TrailMap* map_;
-  // What the picture shows of the map: the point in its middle, and how it is turned.
+  // The view of the map: the point in its middle, and its turn.
   std::array<float, 3> middle_{};
   float cos_turn_ = 1;
   float sin_turn_ = 0;

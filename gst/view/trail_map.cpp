@@ -7,10 +7,10 @@
 namespace lidar::gst {
 namespace {
 
-constexpr double kLongestStep_s = 1;  // a velocity over a longer time tells nothing of now
+constexpr double kLongestStep_s = 1;  // beyond this a velocity does not predict the present
 constexpr float kGrowth = 1.5F;
 constexpr float kNews = 0.3F;      // how much a scan counts: what was seen from afar may be wrong
-constexpr float kFarthest = 1e7F;  // [m]: beyond it floats do not tell cubes apart
+constexpr float kFarthest = 1e7F;  // [m]: beyond it floats cannot separate cubes
 
 using Cube = std::array<std::int32_t, 3>;
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// What a moving sensor has seen so far, as points in one frame, and the way it took.
+// The points that a moving sensor has seen, in one frame, and its way.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -29,7 +29,7 @@ class TrailMap {
  public:
   struct Point {
     std::array<float, 3> at;
-    float value;  // what its colour tells
+    float value;  // value of its colour
     std::uint16_t last_scan = 0;
     std::uint16_t scans = 0;  // that met it
   };

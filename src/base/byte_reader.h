@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Reads integers out of bytes that nobody has checked yet.
+// Reads integers out of unchecked bytes.
 #pragma once
 #include <cstddef>
 #include <cstdint>
@@ -24,7 +24,7 @@ struct ByteView {
 };
 
 /// Reads in order. A read past the end gives zero and makes ok() false for good, so that a parser
-/// may read a whole header and ask once.
+/// may read a whole header and check ok() at its end.
 class ByteReader {
  public:
   explicit ByteReader(ByteView bytes) : bytes_(bytes) {}
@@ -56,7 +56,7 @@ class ByteReader {
     std::memcpy(&d, &bits, sizeof d);
     return d;
   }
-  /// `n` bytes, or none and ok() false.
+  /// Returns `n` bytes, or no bytes with ok() false.
   ByteView Bytes(std::size_t n) {
     if (!Has(n)) return {};
     const ByteView v{bytes_.data + position_, n};

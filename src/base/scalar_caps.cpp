@@ -85,7 +85,7 @@ std::optional<bool> ParseBool(std::string_view text) {
   return std::nullopt;
 }
 
-/// GStreamer has no others.
+/// True for a fraction that GStreamer can hold.
 bool IsFraction(const Fraction& value) {
   return value.denominator > 0 && value.numerator > std::numeric_limits<std::int32_t>::min();
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Caps of one stream whose fields are scalars, and their text: a bounded part of GStreamer's syntax
-// (docs/wire-format.md), which takes linear time whatever the text is.
+// Caps of a stream whose fields are scalars, and their text: a bounded part of GStreamer's syntax
+// (docs/wire-format.md), parsed in linear time.
 #pragma once
 #include <cstddef>
 #include <cstdint>
@@ -38,8 +38,8 @@ struct ScalarCaps {
 
   /// Returns nothing for text outside of the grammar.
   static std::optional<ScalarCaps> Parse(std::string_view text);
-  /// The text, as GStreamer would write it. None where Parse() would not take it: `why` then says
-  /// what is wrong, for a user.
+  /// The text, as GStreamer would write it. Returns nothing if Parse() would refuse it: `why` then
+  /// says so for a user.
   std::optional<std::string> ToText(std::string* why = nullptr) const;
 
   /// Returns null if there is no such field.

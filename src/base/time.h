@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Points and spans of time that nobody can read from a clock.
+// Time types without now(): callers pass the time in.
 #pragma once
 #include <chrono>
 #include <cstdint>

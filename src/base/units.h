@@ -83,7 +83,7 @@ constexpr DataSize operator*(DataRate rate, Duration time) {
   return DataSize::Bytes(static_cast<std::int64_t>(rate.bits_per_second() * Seconds(time) / 8.0));
 }
 constexpr DataSize operator*(Duration time, DataRate rate) { return rate * time; }
-/// Time to send `size` at `rate`; a rate of zero would be for ever: the largest Duration.
+/// Time to send `size` at `rate`; the largest Duration if the rate is zero.
 constexpr Duration operator/(DataSize size, DataRate rate) {
   const double s = size.bits() / rate.bits_per_second();
   return s < 9e9 ? FromSeconds(s) : Duration::max();

@@ -31,7 +31,7 @@ void LinkLedger::Trim(Source* source) {
   source->waiting = std::max(source->waiting, source->first);
 }
 
-/// False where it tells of what was never sent here.
+/// Returns false if the report names packets that were never sent here.
 bool LinkLedger::Translate(const Source& source, const scream::SsrcReport& block,
                            scream::SsrcReport* own) {
   std::vector<std::pair<std::int64_t, const scream::PacketMetric*>> arrived;

@@ -16,18 +16,18 @@ namespace lidar::bonding {
 
 /// A link carries some of the packets, and copies of old ones behind newer ones. A controller that
 /// counted by RTP sequence numbers would see losses and repetitions, so each SSRC gets numbers of
-/// the link's own, without gaps, in the order in which the packets leave. Reports come in RTP
-/// sequence numbers and are given in those of the link.
+/// its own on each link, without gaps, in the order in which the packets leave. Reports are
+/// converted from RTP sequence numbers to those of the link.
 class LinkLedger {
  public:
-  /// Older packets are forgotten; a report that still tells of them is implausible.
+  /// A report about packets before these is implausible.
   static constexpr std::size_t kMaxPackets = 8192;
   static constexpr std::size_t kMaxSources = 64;
 
   struct Report {
     scream::CongestionFeedback feedback;  // in the link's numbers
     std::vector<PacketId> arrived;        // for the first time
-    std::vector<PacketId> missing;        // overtaken by what arrived: once for each
+    std::vector<PacketId> missing;        // packets that arrived ones overtook; each is listed once
   };
 
   /// The packet's number on this link. The receiver reports at once what `ends_slice`.

@@ -12,7 +12,7 @@ using namespace std::chrono_literals;
 constexpr Duration kUnknownRtt = 100ms;
 /// A report that is later than the round trip by so much met a gap: a machine is a little late.
 constexpr Duration kReportMargin = 20ms;
-/// A link is left for another that is better by so much, so that slices do not swap for nothing.
+/// A slice changes to another link only if that is better by this, to avoid needless swaps.
 constexpr Duration kWorthLeaving = 5ms;
 /// A link has room for copies while its FIFO is gone in this time.
 constexpr Duration kRoom = 25ms;
@@ -44,7 +44,7 @@ Duration Scheduler::Rtt(const Link& link) {
   return link.path.rtt > Duration{0} ? link.path.rtt : kUnknownRtt;
 }
 
-/// How long a link has been in a gap is how much longer it is expected to be.
+/// A gap is expected to last as long again as it has lasted.
 Duration Scheduler::WholeIn(std::size_t link, Time now, DataSize size) const {
   const Link& l = links_[link];
   if (!l.usable) return Duration::max() / 2;
@@ -172,7 +172,7 @@ void Scheduler::LookAtGaps(Time now) {
   }
 }
 
-/// Every link that has it leaves it waiting.
+/// Returns true if the packet is overdue on every link that has it.
 bool Scheduler::Overdue(Time now, const Entry& entry) const {
   if (entry.missing || now > entry.expected) return true;
   for (std::size_t i = 0; i < links_.size(); ++i)

@@ -16,23 +16,23 @@
 namespace lidar::bonding {
 
 enum class Method {
-  /// Copies of what waits, and while links are not settled of all that has room. Where targets are
-  /// summed up there is none to spare, so that only what waits is copied.
+  /// Copies what waits, and while links are not settled all that has room; with summed targets only
+  /// what waits.
   kAdaptive,
   kBroadcast,  ///< a copy on every link
   kBackup,     ///< copies of what waits only
 };
 /// What the encoder is asked for.
 enum class TargetRule {
-  /// What the better of the links that work carries; one whose packets take much longer than those
-  /// of the nearest is none of them.
+  /// The rate of the better working link, without links whose packets take much longer than the
+  /// nearest one's.
   kBetter,
   kSum,
 };
 
-/// What a link's congestion control knows of it.
+/// The path as a link's congestion control measures it.
 struct PathView {
-  DataRate rate;   // that it lets out now
+  DataRate rate;   // of the packets that it lets out
   Duration rtt{};  // smoothed; 0: not known yet
 };
 
@@ -44,22 +44,23 @@ struct LinkCounters {
   std::uint64_t gaps = 0;
 };
 
-/// Above one congestion control a link. Each link has a FIFO of its own at the caller. Packets stay
-/// there in the order in which OnPacket() and TakeCopies() assign them; before one leaves, Wants()
-/// is asked. Events with their time in, decisions out: no clock, no lock.
+/// Distributes the packets of a stream over links, each with a congestion control and a FIFO at the
+/// caller. Packets stay there in the order in which OnPacket() and TakeCopies() assign them; before
+/// a packet leaves, the caller asks Wants(). Events with their time in, decisions out: no clock, no
+/// lock.
 ///
 ///  - A slice goes where it will be whole first: queue and size over rate, and half a round trip.
-///  - A link is in a gap where reports of what left are overdue. What was assigned to it and has
-///    not arrived is copied to the best other link at once, or to all others where each is in a
-///    gap; so is what was lost, and what takes longer than was foreseen.
+///  - A link is in a gap if reports of what left are overdue. What was assigned to it and has not
+///    arrived is copied to the best other link at once, or to all others if each is in a gap; so
+///    are lost packets, and packets that take longer than was foreseen.
 ///  - While a link is not settled (it started, or was in a gap, within kUnsettled), every slice is
 ///    copied to each link that has room. Otherwise one slice in kProbeEvery is, so that all links
-///    stay known.
-///  - A link proves itself while it has not reported since it was first used, or became usable: the
-///    receiver learns of a link by copies only. For kProving it gets a copy of everything, and no
-///    packet is its own where another link has reported.
-///  - What arrived on one link is not sent on another any more, nor is what several have once it is
-///    older than kMaxAge: the newest slices are the first behind a gap.
+///    stay measured.
+///  - A link is unproven until its first report after it was first used, or became usable: the
+///    receiver finds a link by its copies only. For kProving it gets a copy of every packet, and no
+///    packet of its own if another link has reported.
+///  - A packet that arrived on one link is not sent on another, nor is a copy older than kMaxAge:
+///    the newest slices are the first behind a gap.
 class Scheduler {
  public:
   static constexpr Duration kMaxAge = std::chrono::milliseconds(200);
@@ -76,25 +77,26 @@ class Scheduler {
     std::uint32_t slice = 0;  // packets of one access unit share it, as their RTP timestamp
     bool ends_slice = true;   // the last of them
   };
-  /// Where a new packet goes. The best link is always one.
+  /// Chooses the links of a new packet; the best link is always one of them.
   LinkSet OnPacket(Time now, const Packet& packet);
   struct Copy {
     PacketId id;
     std::size_t link;
   };
-  /// What is to be queued once more; call it at least each kTick while anything is on the way.
+  /// Returns what is to be queued once more; call it at least each kTick while packets are under
+  /// way.
   std::vector<Copy> TakeCopies(Time now);
   static constexpr Duration kTick = std::chrono::milliseconds(10);
 
-  // Of the FIFO of a link.
-  /// Whether the packet at its head is still of use there.
+  // Returns true if the packet at the head of the link's FIFO is still of use there.
   bool Wants(Time now, std::size_t link, PacketId id) const;
-  /// The packet leaves; under this number the link's congestion control is to know it.
+  /// Notes that the packet leaves; returns its number for the link's congestion control.
   std::uint16_t OnSent(Time now, std::size_t link, PacketId id);
-  /// It was thrown away: it is late, or Wants() said no.
+  /// Notes that the caller dropped the packet: it is late, or Wants() was false.
   void OnDropped(Time now, std::size_t link, PacketId id);
 
-  /// A report of the link's receiver, given in the link's numbers; none where it cannot be.
+  /// Converts a report of the link's receiver into the link's numbers; nothing if that is
+  /// impossible.
   std::optional<scream::CongestionFeedback> OnFeedback(Time now, std::size_t link,
                                                        const scream::CongestionFeedback& feedback);
   void OnPath(std::size_t link, const PathView& path) { links_[link].path = path; }
@@ -102,9 +104,9 @@ class Scheduler {
   void SetUsable(Time now, std::size_t link, bool usable);
 
   bool InGap(Time now, std::size_t link) const;
-  /// Whether a packet may still arrive that has not.
+  /// Returns true if a packet that has not arrived still may.
   bool AwaitsArrivals(Time now) const;
-  /// Of what links may send each, what the encoder may.
+  /// The bitrate for the encoder, from what each link may send.
   DataRate Target(Time now, const std::vector<DataRate>& targets) const;
   std::size_t links() const { return links_.size(); }
   bool usable(std::size_t link) const { return links_[link].usable; }
@@ -126,7 +128,7 @@ class Scheduler {
   struct Entry {
     DataSize size;
     Time made{};
-    Time expected{};  // to be known as arrived
+    Time expected{};  // when its acknowledgement is due
     std::size_t first = 0;
     LinkSet assigned, waits;  // waits: in the FIFO
     bool ends_slice = true;

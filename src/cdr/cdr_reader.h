@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Reads a CDR message, the form of data in DDS and so in ROS 2, that nobody has checked yet.
+// Reads an unchecked CDR message, the form of data in DDS and so in ROS 2.
 #pragma once
 #include <algorithm>
 #include <cstdint>
@@ -63,8 +63,8 @@ class CdrReader {
   }
   /// sequence<octet>, not copied.
   ByteView Octets() { return Bytes(U32()); }
-  /// The length of a sequence whose elements have at least `least_size` bytes each: 0 and not ok
-  /// where the rest of the message cannot hold as many.
+  /// The length of a sequence of elements with at least `least_size` bytes each: 0 and not ok if
+  /// the rest of the message cannot hold as many.
   std::uint32_t Count(std::size_t least_size) {
     const std::uint32_t count = U32();
     if (ok_ && count <= remaining() / least_size) return count;

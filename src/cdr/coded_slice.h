@@ -17,7 +17,7 @@ struct CodedSlice {
   std::optional<Duration> duration;  // of the slice's sweep
   std::uint32_t scan_id = 0;
   std::uint32_t slice_index = 0;
-  std::uint32_t slice_count = 0;  // 0: nothing is known about scan and slice
+  std::uint32_t slice_count = 0;  // 0: scan and slice are unknown
   std::uint32_t first_column = 0;
   bool discontinuity = false;  // slices before it are missing
   ByteView data;               // not owned: a part of the message it was read from

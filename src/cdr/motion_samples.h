@@ -15,15 +15,15 @@ inline constexpr const char* kImuFields =
 inline constexpr std::size_t kImuSampleSize = 32;
 
 std::vector<std::uint8_t> WriteImuSample(const Imu& imu);
-/// As many messages as `bytes` have samples, with no orientation and no frame; none where a sample
-/// is cut.
+/// A message for each sample in `bytes`, without orientation and frame; no messages if a sample is
+/// cut.
 std::vector<Imu> ReadImuSamples(ByteView bytes);
 
 /// Position [m], orientation x, y, z, w, how sure the pose is, which messages do not say, and the
 /// covariance of the pose unless it is zero.
 std::vector<std::uint8_t> WritePose(const Odometry& odometry, std::uint64_t tracking);
-/// The pose, with neither time nor frames, and its covariance, or zeros where it is not known; none
-/// where `bytes` are of another size.
+/// The pose, without time and frames, and its covariance, zeros if unknown; nothing if `bytes` are
+/// of another size.
 std::optional<Odometry> ReadPose(ByteView bytes, std::uint64_t* tracking);
 
 }  // namespace lidar::cdr

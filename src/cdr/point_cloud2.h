@@ -22,7 +22,7 @@ struct RosField {
 };
 bool operator==(const RosField& a, const RosField& b);
 
-/// What messages of one source have in common.
+/// The common properties of a source's messages.
 struct RosLayout {
   std::uint32_t height = 1;
   std::uint32_t width = 0;
@@ -40,7 +40,7 @@ struct PointCloud2 {
   bool is_dense = false;
 };
 
-/// Returns nothing where `message` is no such message; `why` then says so in words for a user.
+/// Returns nothing if `message` is no such message; `why` then says so in words for a user.
 std::optional<PointCloud2> ReadPointCloud2(ByteView message, std::string* why = nullptr);
 std::vector<std::uint8_t> WritePointCloud2(const PointCloud2& cloud);
 
@@ -61,9 +61,9 @@ struct CompressedCloud {
 std::optional<CompressedCloud> ReadCompressedCloud(ByteView message, std::string* why = nullptr);
 std::vector<std::uint8_t> WriteCompressedCloud(const CompressedCloud& compressed);
 
-/// Bytes from one row of its data to the next; none where the length of the data contradicts width,
-/// height and steps. Many drivers leave row_step at 0 or at the size of all. So packed rows are
-/// known by their size alone.
+/// Bytes from one row of the data to the next; nothing if the length of the data contradicts width,
+/// height and steps. Many drivers leave row_step at 0 or at the size of all, so packed rows are
+/// recognised by the size alone.
 std::optional<std::size_t> RowStride(const PointCloud2& cloud);
 
 /// A message in pieces, for writers that gather: the points stand between `head` and `tail`.
@@ -74,7 +74,7 @@ struct PointCloud2Frame {
 /// `cloud.data` says how long the points are; they are not read.
 PointCloud2Frame FramePointCloud2(const PointCloud2& cloud);
 
-/// How points stand in our clouds.
+/// The layout of points in our clouds.
 struct PointLayout {
   PointFields fields;
   std::uint32_t point_step = 0;  // bytes
@@ -87,12 +87,11 @@ RosLayout ToRosLayout(const PointLayout& points, std::uint32_t width, std::uint3
 /// Turns the points of messages of one layout into little-endian points in packed rows.
 class PointConverter {
  public:
-  /// `wanted` gives the points just those fields, converted where a field's type is another.
-  /// Without it they keep their fields; only x, y and z become F32 side by side, as all our
-  /// elements want them. A field of n elements becomes n fields a[0], a[1], ... A field is padding
-  /// where it has no usable name, a name that came before, a type unknown to us or more than
-  /// kMaxFields elements. None where the layout contradicts itself, is too large, or lacks a wanted
-  /// field; `why` then says which.
+  /// `wanted` selects fields, converted if a field's type is another. Without it all fields stay;
+  /// only x, y and z become F32 side by side, as all elements take them. A field of n elements
+  /// becomes n fields a[0], a[1], ... A field is padding if it has no usable name, an earlier
+  /// field's name, an unknown type or more than kMaxFields elements. Returns nothing if the layout
+  /// contradicts itself, is too large, or lacks a wanted field; `why` then says so.
   static std::optional<PointConverter> Make(const RosLayout& layout,
                                             const std::optional<PointLayout>& wanted = {},
                                             std::string* why = nullptr);
@@ -101,10 +100,10 @@ class PointConverter {
   const PointLayout& points() const { return to_; }
   /// Bytes of one cloud of ours.
   std::size_t size() const { return std::size_t{from_.width} * from_.height * to_.point_step; }
-  /// True where points are copied as they are.
+  /// Returns true if points are copied as they are.
   bool copies() const { return steps_.empty(); }
 
-  /// `cloud` has layout(). False where it has no RowStride(). `out` has size() bytes.
+  /// `cloud` has layout(). Returns false if it has no RowStride(). `out` has size() bytes.
   bool Convert(const PointCloud2& cloud, std::uint8_t* out) const;
 
   static constexpr std::size_t kMaxSize = std::size_t{1} << 30;  // as caps of clouds have it

@@ -21,8 +21,8 @@ bool IsUsable(const RosField& f) {
          !f.name.empty() && std::none_of(f.name.begin(), f.name.end(), bad);
 }
 
-/// The fields that we keep, each element of an array a field of its own. False where one ends past
-/// the point.
+/// The fields that we keep, each element of an array a field of its own. Returns false if one ends
+/// past the point.
 bool Expand(const RosLayout& layout, std::vector<PointField>* out, std::string* why) {
   for (const RosField& f : layout.fields) {
     if (!IsUsable(f)) continue;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// How ROS 2 finds its nodes and names things in DDS.
+// ROS 2's discovery of nodes and names of topics in DDS.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -10,7 +10,7 @@
 
 namespace lidar::cdr {
 
-/// The topic that every participant tells its nodes on: reliable, transient-local.
+/// The topic on which every participant lists its nodes: reliable, transient-local.
 inline constexpr const char* kGraphTopic = "ros_discovery_info";
 inline constexpr const char* kGraphDdsName = "rmw_dds_common::msg::dds_::ParticipantEntitiesInfo_";
 
@@ -20,11 +20,12 @@ struct NodeName {
   std::string name_space = "/";
   std::string name;
 };
-/// "lidar", "/robot/lidar" or "robot/lidar"; none where ROS would not take it.
+/// Parses "lidar", "/robot/lidar" or "robot/lidar"; nothing if ROS would refuse it.
 std::optional<NodeName> ParseNodeName(std::string_view text);
 /// Any text as the last part of a node's name.
 std::string ToNodeName(std::string_view text);
-/// "/ouster/points" or "points" as its topic in DDS, rt/...; none where ROS would not take it.
+/// Converts "/ouster/points" or "points" to the topic in DDS, rt/...; nothing if ROS would refuse
+/// it.
 std::optional<std::string> ToDdsTopic(std::string_view ros_topic);
 
 /// rmw_dds_common/msg/ParticipantEntitiesInfo of a participant with one node. A Gid has

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The ROS 2 message types that we speak, by all the names that they have.
+// The supported ROS 2 message types, with all their names.
 #pragma once
 #include <array>
 #include <string_view>

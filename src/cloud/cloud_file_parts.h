@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// What readers of PCD and PLY share: lines, fields, numbers as text.
+// The common part of readers of PCD and PLY: lines, fields, numbers as text.
 #pragma once
 #include <cstdint>
 #include <optional>
@@ -18,7 +18,7 @@ constexpr std::size_t kMaxCloud = std::size_t{1} << 30;  // bytes
 class Lines {
  public:
   explicit Lines(ByteView file) : file_(file) {}
-  /// The next line without its end, in words; none at the end of the header's room.
+  /// The words of the next line; nothing at the end of the header.
   std::optional<std::vector<std::string_view>> Next();
   /// What follows the last line.
   ByteView Rest() const { return file_.Sub(position_); }
@@ -43,13 +43,13 @@ struct FileField {
   std::uint32_t count = 1;  // numbers
 };
 
-/// Sets fields and point_step of `cloud`. False where there are too many.
+/// Sets fields and point_step of `cloud`. Returns false if there are too many.
 bool Lay(const std::vector<FileField>& fields, FileCloud* cloud, std::string* why);
-/// Bytes of all points; none where that is beyond kMaxCloud.
+/// Bytes of all points; nothing if that is beyond kMaxCloud.
 std::optional<std::size_t> SizeOfPoints(const FileCloud& cloud, std::string* why);
 
-/// Reads points * numbers numbers of text into little-endian points. False where some are missing
-/// or none.
+/// Reads points * numbers numbers of text into little-endian points. Returns false if some are
+/// missing or malformed.
 bool ReadText(ByteView text, const std::vector<FileField>& fields, FileCloud* cloud,
               std::string* why);
 

@@ -28,8 +28,8 @@ struct FileCloud {
   std::vector<std::uint8_t> points;
 };
 
-/// Returns nothing where the file is damaged or of a kind that we do not read; `why` then says so
-/// in words for a user. What it claims is believed only as far as its bytes go.
+/// Returns nothing if the file is damaged or of an unsupported kind; `why` then says so for a user.
+/// Its claimed sizes are checked against its bytes.
 std::optional<FileCloud> ReadPcd(ByteView file, std::string* why);
 std::optional<FileCloud> ReadPly(ByteView file, std::string* why);
 /// LAS 1.0 to 1.4, point formats 0 to 10, uncompressed. x, y and z are as the file has them, or,

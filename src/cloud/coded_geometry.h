@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// What a slice is coded as, and the numbers that say so in a stream.
+// The geometries of coded slices, and their numbers in a stream.
 #pragma once
 #include <cstdint>
 

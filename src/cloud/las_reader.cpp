@@ -16,7 +16,7 @@ using Vector = std::array<double, 3>;
 
 constexpr std::size_t kHeader10 = 227;  // bytes of versions 1.0 to 1.2
 constexpr std::size_t kHeader14 = 375;
-constexpr double kFineReach = 16'384;  // F32 tells millimetres apart up to here [m]
+constexpr double kFineReach = 16'384;  // F32 distinguishes millimetres up to here [m]
 
 /// Offsets in a record; 0: the format has no such field.
 struct PointFormat {
@@ -103,7 +103,7 @@ Vector Position(const std::uint8_t* record, const LasHeader& h) {
   return p;
 }
 
-/// What is taken off all positions.
+/// The offset that is taken off all positions.
 Vector OriginOf(ByteView records, const LasHeader& h) {
   Vector least;
   least.fill(std::numeric_limits<double>::infinity());

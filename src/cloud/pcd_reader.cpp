@@ -38,7 +38,7 @@ struct PcdHeader {
   std::optional<std::uint64_t> capture_time;
 };
 
-/// Returns nothing where there is no line DATA.
+/// Returns nothing if there is no line DATA.
 std::optional<PcdHeader> ReadPcdHeader(cloud_file::Lines* lines) {
   PcdHeader header;
   while (const auto words = lines->Next()) {
@@ -106,7 +106,7 @@ bool SetSize(const PcdHeader& h, FileCloud* cloud, std::string* why) {
 /// A back reference of three bytes gives 264: no data can give more than that.
 constexpr std::size_t kMostPerByte = 88;
 
-/// Exactly `size` bytes; none where the data are damaged or give another size.
+/// Decompresses to exactly `size` bytes; nothing if the data are damaged or give another size.
 std::optional<std::vector<std::uint8_t>> DecompressLzf(ByteView data, std::size_t size) {
   // The library reads a first byte without a look whether there is one.
   if (data.size == 0 || size / kMostPerByte > data.size) return std::nullopt;

@@ -27,19 +27,19 @@ class PointFields {
   /// Appends a field behind the last one.
   PointFields& Add(std::string name, FieldType type);
 
-  /// Parses the caps field `fields`: "x:F32:0,y:F32:4,z:F32:8". None for an unknown type, an empty
-  /// or doubled name, more than kMaxFields, or an offset past kMaxPointStep; `why` then says which,
-  /// in words for a user.
+  /// Parses the caps field `fields`: "x:F32:0,y:F32:4,z:F32:8". Returns nothing for an unknown
+  /// type, an empty or doubled name, more than kMaxFields, or an offset past kMaxPointStep; `why`
+  /// then says which, for a user.
   static std::optional<PointFields> Parse(std::string_view text, std::string* why = nullptr);
   std::string ToString() const;
 
-  /// Null where there is no such field.
+  /// Null if there is no such field.
   const PointField* Find(std::string_view name) const;
   bool Has(std::string_view name, FieldType type) const;
-  /// True where x, y and z are F32 and stand side by side, as all our elements want them.
+  /// Returns true if x, y and z are F32 and stand side by side, as all elements take them.
   bool HasPackedXyz() const;
-  /// True where the fields, in any order, fill the point from 0 on without overlap or room between
-  /// them. Decoders give them so.
+  /// Returns true if the fields, in any order, fill the point from 0 on without overlap or room
+  /// between them. Decoders give them so.
   bool ArePacked() const;
   /// Bytes up to the end of the last field.
   std::uint32_t MinimumStep() const;

@@ -13,7 +13,7 @@
 
 namespace lidar {
 
-/// What becomes of points without a return, and of those that are taken out.
+/// The treatment of points without a return, and of removed points.
 enum class InvalidPoints {
   kKeep,    // the first stay as they are, the others become zero
   kZero,    // all fields zero
@@ -30,7 +30,7 @@ struct PointFilterSettings {
   bool has_pose = false;                          // clouds come with one, which moves them
   std::optional<Transform> transform;             // of the points, behind the pose
   std::optional<std::array<double, 6>> crop_box;  // least and largest x, y, z, as transformed [m]
-  bool crop_inside = false;                       // what is in the box goes, not what is outside
+  bool crop_inside = false;                       // removes the inside of the box
   double voxel_size_m = 0;                        // one point in each cube stays; 0: all
   InvalidPoints invalid = InvalidPoints::kKeep;
 
@@ -40,7 +40,7 @@ struct PointFilterSettings {
   }
 };
 
-/// Numbers with spaces or commas between them; none where there is anything else.
+/// Parses numbers with spaces or commas between them; nothing for other text.
 std::optional<std::vector<double>> ParseNumbers(const std::string& text);
 /// Sixteen numbers, row by row, or x, y, z [m], roll, pitch, yaw [degrees]: turned about x, then y,
 /// then z, then moved.
@@ -66,8 +66,7 @@ struct FilteredCloud {
 
 class PointFilter {
  public:
-  /// Returns nothing where the settings need x, y and z as F32 side by side, and `fields` lack
-  /// them.
+  /// Returns nothing if the settings need x, y and z as F32 side by side, and `fields` lack them.
   static std::optional<PointFilter> Make(const PointFilterSettings& settings,
                                          const PointFields& fields, std::uint32_t point_step);
 

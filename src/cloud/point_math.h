@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// What several judges of points ask of their bytes.
+// The common part of judges of points.
 #pragma once
 #include <array>
 #include <cmath>

@@ -14,7 +14,7 @@ namespace lidar {
 /// If ranges alone are coded, points that were moved after the sensor come back unmoved.
 class RangeCheck {
  public:
-  /// Returns nothing where there is nothing to compare: no x, y and z beside the range.
+  /// Returns nothing if there is nothing to compare: no x, y and z beside the range.
   static std::optional<RangeCheck> Create(const PointFields& fields, std::uint32_t point_step,
                                           const SensorModel& model);
 

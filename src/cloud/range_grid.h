@@ -68,12 +68,12 @@ class RangeGrid {
   std::uint32_t RangeOf(std::uint32_t bin) const {
     return static_cast<std::uint32_t>(Middle<std::uint64_t>(bin));
   }
-  /// True where `bin` comes back as a return, within `error_mm` of `range_mm`.
+  /// Returns true if `bin` comes back as a return, within `error_mm` of `range_mm`.
   bool ComesBackWithin(std::uint32_t error_mm, std::uint32_t bin, std::uint32_t range_mm) const {
     const std::uint32_t back = RangeOf(bin);
     return back > 0 && (back > range_mm ? back - range_mm : range_mm - back) <= error_mm;
   }
-  /// RangeOf() for all of a list of bins; false where a range is above kMaxRangeMm.
+  /// RangeOf() for all of a list of bins; false if a range is above kMaxRangeMm.
   bool ToRanges(std::vector<std::int32_t>* bins) const {
     std::uint32_t last = 0;
     for (const std::int32_t bin : *bins) last |= static_cast<std::uint32_t>(bin);

@@ -32,8 +32,8 @@ constexpr std::uint32_t AutomaticSlices(const ScanShape& scan) {
                         wanted < scan.columns ? static_cast<std::uint32_t>(wanted) : scan.columns);
 }
 
-/// What the property `slices-per-scan` of the sources means: 0 is automatic, and a count that does
-/// not divide the columns is rounded down to one that does.
+/// The property `slices-per-scan` of the sources: 0 is automatic, and a count that does not divide
+/// the columns is rounded down to one that does.
 constexpr std::uint32_t SlicesPerScan(std::uint32_t requested, const ScanShape& scan) {
   if (requested == 0) return AutomaticSlices(scan);
   return SlicesDividing(scan.columns, requested < scan.columns ? requested : scan.columns);

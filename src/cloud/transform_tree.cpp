@@ -14,7 +14,7 @@ namespace {
 using Quaternion = std::array<double, 4>;
 using Position = std::array<double, 3>;
 
-/// What tf2 takes for a unit quaternion.
+/// tf2's tolerance for a unit quaternion.
 constexpr double kUnitTolerance = 0.01;
 /// No robot is farther away than the moon; sums stay finite [m].
 constexpr double kFarthest = 1e9;
@@ -38,7 +38,7 @@ Quaternion Normalised(Quaternion q) {
   return q;
 }
 
-/// First b, then a.
+/// The rotation b, followed by a.
 Quaternion Times(const Quaternion& a, const Quaternion& b) {
   const auto& [ax, ay, az, aw] = a;
   const auto& [bx, by, bz, bw] = b;
@@ -53,7 +53,7 @@ Position Turned(const Quaternion& q, const Position& p) {
   return {turned[0], turned[1], turned[2]};
 }
 
-/// First b, then a.
+/// The rotation b, followed by a.
 FramePose Times(const FramePose& a, const FramePose& b) {
   FramePose out;
   out.orientation = Normalised(Times(a.orientation, b.orientation));

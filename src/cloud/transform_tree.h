@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// How frames stand to each other over time, as ROS's tf2 keeps it.
+// The transforms between frames over time, as ROS's tf2 keeps them.
 #pragma once
 #include <array>
 #include <cstddef>
@@ -28,10 +28,10 @@ class TransformTree {
   static constexpr Duration kHistory = std::chrono::seconds(10);
   static constexpr std::size_t kRestart = 10;  // poses
 
-  /// Says where `child` is in `parent`, at a time or for good. False where this is no pose, where
-  /// frames are not named or the same, and where there are too many of them. A pose older than
-  /// kHistory is refused, too, as tf2 does. kRestart such old poses of a frame in a row mean that
-  /// the clock went back: as many as one history can hold then replace what was known.
+  /// Says where `child` is in `parent`, at a time or for good. Returns false if this is no pose,
+  /// where frames are not named or the same, and where there are too many of them. A pose older
+  /// than kHistory is refused, too, as tf2 does. kRestart such old poses of a frame in a row mean
+  /// that the clock went back: as many as one history can hold then replace what was known.
   bool Set(std::string parent, std::string child, Time at, const FramePose& pose, bool for_good);
 
   struct Answer {
@@ -40,7 +40,7 @@ class TransformTree {
     bool may_come = false;               // a later pose can make one
     Time newest{};                       // of the frame that the later pose is missing of
   };
-  /// Poses are interpolated between two times. Without a time the newest of each count.
+  /// Poses are interpolated between two times. Without a time the newest poses count.
   Answer Find(const std::string& target, const std::string& source, std::optional<Time> at) const;
 
   std::size_t frames() const { return links_.size(); }

@@ -36,10 +36,10 @@ struct EncodedCloud {
   std::uint32_t points = 0;
 };
 
-/// Makes a foxglove.PointCloud of the points that are returns: not all zero, and finite. Where they
-/// are more than `max_points` (0: no limit), it takes every n-th. Points of an organised cloud get
-/// a field `ring` with the number of their beam, unless they have one: their place no longer tells
-/// it. `points` has x, y and z as F32 side by side, and as many bytes as it says.
+/// Makes a foxglove.PointCloud of the points that are returns: not all zero, and finite. Of more
+/// than `max_points` (0: no limit) it takes every n-th. Points of an organised cloud get a field
+/// `ring` with the number of their beam, unless they have one: their place no longer gives it.
+/// `points` has x, y and z as F32 side by side, and as many bytes as it says.
 EncodedCloud EncodePointCloud(const Header& header, const PointsView& points,
                               std::uint32_t max_points);
 /// foxglove.CompressedPointCloud of a Draco file.

@@ -24,7 +24,7 @@ std::optional<std::uint32_t> Id(const json& object, const char* name) {
   return found != object.end() ? Id(*found) : std::nullopt;
 }
 
-/// The array `name` of a request; NULL where there is none.
+/// The array `name` of a request; NULL if there is none.
 const json* ArrayOf(const json& request, const char* name) {
   const auto found = request.find(name);
   return found != request.end() && found->is_array() ? &*found : nullptr;

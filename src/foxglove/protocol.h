@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The texts of Foxglove's WebSocket protocol: what a server tells its clients, and what they ask.
+// The texts of Foxglove's WebSocket protocol, of servers and of clients.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -20,10 +20,10 @@ struct Channel {
   std::uint32_t id = 0;
   std::string topic;
   Schema schema = Schema::kPointCloud;
-  std::string stream = {};  // of kSlice: what a decoder has to know, DescribeSlices()
+  std::string stream = {};  // of kSlice: what a decoder needs, DescribeSlices()
 };
 
-/// What a viewer has to know of a stream before its first slice.
+/// What a viewer needs of a stream before its first slice.
 struct SliceStreamInfo {
   bool has_ranges = false;  // else points without order
   std::string fields;       // of the decoded points, packed
@@ -38,7 +38,7 @@ std::string DescribeSlices(const SliceStreamInfo& stream);
 std::string ServerInfo(const std::string& name, const std::string& session_id);
 std::string Advertise(const std::vector<Channel>& channels);
 std::string Unadvertise(const std::vector<std::uint32_t>& channel_ids);
-/// What was wrong with a message of the client.
+/// Describes the fault of a client's message.
 std::string ErrorStatus(const std::string& text);
 
 struct Subscription {
@@ -52,11 +52,11 @@ struct SliceName {
   std::uint32_t index = 0;
 };
 
-/// What a client asks for.
+/// A client's request.
 struct Request {
   enum class Kind {
     kMalformed,    // `error` says why
-    kUnsupported,  // an operation that we offer nobody
+    kUnsupported,  // an operation that the server does not offer
     kSubscribe,
     kUnsubscribe,
     kDrawn,           // the viewer has drawn `slice`, and all that came before it

@@ -95,7 +95,7 @@ const std::vector<Message> kMessages = {
       {"rotation", 5, Type::kMessage, kQuaternion}}},
 };
 
-// Below, the numbers of fields are those of google/protobuf/descriptor.proto.
+// The numbers of fields are those of google/protobuf/descriptor.proto.
 
 void WriteField(ProtoWriter& out, const Field& field) {
   constexpr std::uint64_t kOptional = 1;
@@ -127,7 +127,7 @@ void WriteMessage(ProtoWriter& out, const Message& message) {
 struct File {
   const char* name;
   const char* package;
-  const char* dependency;  // NULL: none
+  const char* dependency;  // may be NULL
   const std::vector<Message>& messages;
 };
 

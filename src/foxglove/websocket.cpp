@@ -60,7 +60,7 @@ void MessageReader::Append(ByteView bytes) {
   pending_.insert(pending_.end(), bytes.begin(), bytes.end());
 }
 
-/// The header of the next frame, checked; none where bytes are missing or after an error.
+/// The checked header of the next frame; nothing if bytes are missing or after an error.
 std::optional<MessageReader::FrameHead> MessageReader::ReadHead() {
   ByteReader in(pending_.data() + read_, pending_.size() - read_);
   const std::uint8_t first = in.U8();
@@ -70,7 +70,7 @@ std::optional<MessageReader::FrameHead> MessageReader::ReadHead() {
   frame.final = (first & kFinal) != 0;
   frame.opcode = static_cast<Opcode>(first & 0x0F);
   std::uint64_t size = second & 0x7F;
-  // A client masks all it sends (section 5.1), and nobody agreed on the reserved bits with it.
+  // A client masks all it sends (section 5.1); reserved bits need a negotiated extension.
   const bool control = IsControl(frame.opcode);
   if ((first & kReserved) != 0 || (second & kMasked) == 0 || !IsKnown(frame.opcode) ||
       (control && (!frame.final || size > kMostOfControl))) {

@@ -49,7 +49,7 @@ class MessageReader {
 
   /// Keeps what no message was made of yet: take all messages before you append more.
   void Append(ByteView bytes);
-  /// Returns nothing where more bytes are needed, and for ever after an error.
+  /// Returns nothing if more bytes are needed, and for ever after an error.
   std::optional<ClientMessage> Next();
   /// Why the connection has to be closed.
   std::optional<CloseCode> error() const { return error_; }

@@ -53,7 +53,7 @@ struct BottleneckStats {
   DataSize delivered_size;  // duplicates not counted
 };
 
-/// The times that calls are given must not decrease.
+/// Times passed to calls must not decrease.
 class Bottleneck {
  public:
   explicit Bottleneck(const BottleneckConfig& config);

@@ -13,18 +13,18 @@
 namespace lidar::link {
 
 /// A rate that is constant between changes. It starts with the link, at 0, and either repeats or
-/// keeps its last rate for ever. A rate of zero is a gap: nothing moves until it ends.
+/// keeps its last rate for ever. A rate of zero is a gap: no packet moves until it ends.
 class Capacity {
  public:
   static Capacity Constant(DataRate rate);
   /// Each rate for `each`; afterwards the last one stays, or all of them come again.
   static Capacity Steps(const std::vector<DataRate>& rates, Duration each, bool repeat = false);
-  /// Text of one `time_s rate_mbps` a line, times rising, `#` starts a comment. The first rate
-  /// holds from 0. Where it repeats, the last rate lasts as long as the one before it. None for
-  /// text that is anything else; `error` then says where and why.
+  /// Parses a `time_s rate_mbps` a line, times rising, `#` starts a comment. The first rate holds
+  /// from 0. If it repeats, the last rate lasts as long as the one before it. Returns nothing for
+  /// other text; `error` then says where and why.
   static std::optional<Capacity> ParseTrace(std::string_view text, bool repeat, std::string* error);
 
-  /// The same link, from `start` on. Where it repeats, what comes before `start` comes at the end.
+  /// The same link from `start` on. If it repeats, the part before `start` comes at the end.
   Capacity StartingAt(Duration start) const;
 
   /// A link that is down from `from` to `until`, whatever the rate said; absolute, not repeated.

@@ -25,9 +25,9 @@ struct RecoveryConfig {
   double share = 0.8;
 };
 
-/// How long after each gap the sender was back [s]: for a tenth of a second it then puts `share` of
-/// what the link can carry and the source can use on the link. At most 5 s, or until the next gap.
-/// Gaps that come closer than 0.2 s are left out.
+/// Time from each gap's end until the sender is back [s]: until, for a tenth of a second, it uses
+/// `share` of what the link can carry and the source can use. At most 5 s, or until the next gap.
+/// Gaps closer than 0.2 s are left out.
 std::vector<double> RecoveryAfterGaps(const Capacity& capacity,
                                       const std::vector<SentPacket>& packets,
                                       const RecoveryConfig& config);

@@ -60,7 +60,7 @@ class Sender {
     bool dropped = false;
   };
 
-  /// Decided as a scan's first bit would leave; what has begun to leave is finished.
+  /// The decision falls when a scan's first bit would leave; a scan that has begun is finished.
   bool IsWanted(const Slice& slice, double now) {
     Scan& scan = scans_[slice.scan];
     const bool begins = slice.first && slice.bits_left >= bits_;
@@ -92,7 +92,7 @@ class FreeLinks {
   explicit FreeLinks(const std::vector<Capacity>& links)
       : links_(links), free_(links.size(), Duration{0}), ends_(links.size()) {}
 
-  /// When the slice made at `now` is whole, where a link makes it until `deadline`.
+  /// Arrival of the slice made at `now`, if a link delivers it by `deadline`.
   std::optional<Duration> Send(Duration now, Duration deadline, DataSize size, Bonding bonding) {
     for (std::size_t i = 0; i < links_.size(); ++i)
       ends_[i] = links_[i].Finish(std::max(now, free_[i]), size);

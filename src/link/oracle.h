@@ -32,14 +32,14 @@ struct OracleResult {
 
 OracleResult AskOracle(const Capacity& capacity, const OracleConfig& config);
 
-/// The links that carry a slice, of several that the sender knows.
+/// The links that carry a slice, if the sender knows several in advance.
 enum class Bonding {
   kWhereWholeFirst,
-  kOnEach,  // that makes it in time
+  kOnEach,  // on each link that delivers it in time
 };
-/// The same over several links at once: slices that no link makes within `max_age` are dropped, and
-/// a scan counts where all its slices arrive. The results of one link differ from AskOracle(),
-/// which finishes what has begun to leave.
+/// The same over several links at once: slices that no link delivers within `max_age` are dropped,
+/// and a scan counts if all its slices arrive. The results of a single link differ from
+/// AskOracle(), which finishes a scan that has begun.
 OracleResult AskOracleOfLinks(const std::vector<Capacity>& links, const OracleConfig& config,
                               Bonding bonding = Bonding::kWhereWholeFirst);
 

@@ -38,8 +38,8 @@ class PiController {
   bool started_ = false;
 };
 
-/// A single queue. Classic packets are marked (ECT(0)) or dropped with p'^2. ECT(1) is marked
-/// with k p', or with p'^2 where the queue does not know L4S.
+/// A single queue. Classic packets are marked (ECT(0)) or dropped with p'^2. ECT(1) is marked with
+/// k p', or with p'^2 without L4S.
 std::unique_ptr<Aqm> Pi2Aqm(const Pi2Config& config, Random random);
 
 /// Two queues: L4S (ECT(1), CE) with its own ramp and the coupled signal, and classic. The one

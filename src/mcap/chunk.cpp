@@ -44,7 +44,7 @@ std::optional<ChunkHeader> ReadChunkHeader(Input* input, const RecordPlace& reco
 bool ReadChunk(Input* input, const ChunkPlace& chunk, Bytes* records) {
   if (chunk.is_run) return ReadRun(input, chunk, records);
   const auto record = RecordAt(input, chunk.offset);
-  // What an index says of its size must be true, as chunks are told apart by it.
+  // Chunks are identified by the size in the index, so that must be true.
   const bool fits = record && record->end() - chunk.offset <= chunk.size;
   const auto header = fits ? ReadHeader(input, *record) : std::nullopt;
   if (!header || header->chunk.records_size > 2 * kMaxChunk) return false;

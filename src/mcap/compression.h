@@ -12,12 +12,12 @@ enum class Compression { kNone, kLz4, kZstd };
 /// As a chunk names it.
 std::string_view NameOf(Compression compression);
 
-/// Replaces `out` by `bytes` compressed. False where this saves less than a twentieth: then they
-/// are better left as they are.
+/// Replaces `out` by `bytes` compressed. Returns false if this saves less than a twentieth: then
+/// they are better left as they are.
 bool Compress(Compression compression, ByteView bytes, Bytes* out);
 
-/// Replaces `out` by exactly `size` bytes; false where the data are damaged, give more or less, or
-/// are of an unknown compression. The caller has bounded `size`.
+/// Replaces `out` by exactly `size` bytes; false if the data are damaged, give more or less, or are
+/// of an unknown compression. The caller has bounded `size`.
 bool Decompress(std::string_view compression, ByteView bytes, std::size_t size, Bytes* out);
 
 }  // namespace lidar::mcap

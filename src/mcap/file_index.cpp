@@ -34,7 +34,7 @@ std::optional<SummaryPlace> FindSummary(Input* input) {
   return SummaryPlace{footer->summary_start, footer_at, footer->summary_crc};
 }
 
-/// The summary's records; none where its checksum does not fit.
+/// The summary's records; nothing if its checksum does not fit.
 std::optional<Bytes> ReadSummary(Input* input, const SummaryPlace& place) {
   // The checksum covers the footer, too, up to itself.
   constexpr std::uint64_t kCovered = kFooterRecord - 4;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// What a file holds and where: from its summary, or by looking through a file that has none.
+// The index of a file: from its summary, or by a scan of a file without one.
 #pragma once
 #include <cstdint>
 #include <map>
@@ -28,8 +28,8 @@ struct FileIndex {
   bool empty() const { return chunks.empty(); }
   std::uint64_t start_time() const;
   std::uint64_t end_time() const;
-  /// Takes a schema or a channel; false for other records and for damaged ones. What is known
-  /// already stays, and so does the memory within kMaxCatalogue.
+  /// Takes a schema or a channel; false for other records and for damaged ones. Known ones stay,
+  /// and so does the memory within kMaxCatalogue.
   bool Learn(const Record& record);
 };
 

@@ -31,7 +31,7 @@ class Scanner {
   }
 
  private:
-  /// False where the data section ends.
+  /// Returns false if the data section ends.
   bool Take(const RecordPlace& record, std::uint64_t offset) {
     switch (record.op) {
       case Op::kChunk:

@@ -9,7 +9,7 @@
 namespace lidar::mcap {
 namespace {
 
-/// What overlapping chunks may take [bytes]. Past it their messages come chunk by chunk.
+/// The memory of overlapping chunks [bytes]. Past it their messages come chunk by chunk.
 constexpr std::size_t kMaxOpen = std::size_t{128} << 20;
 constexpr std::size_t kMaxOpenChunks = 64;
 

@@ -20,7 +20,7 @@ struct Message {
 
 class Reader {
  public:
-  /// Returns nothing where `input` is no MCAP file; `why` then says so in words for a user.
+  /// Returns nothing if `input` is no MCAP file; `why` then says so in words for a user.
   static std::unique_ptr<Reader> Open(std::unique_ptr<Input> input, std::string* why);
 
   /// Schemas and channels of a file that broke off may grow with each message.

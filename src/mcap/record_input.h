@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Records of a file that nobody has checked yet.
+// Unchecked records of a file.
 #pragma once
 #include <cstdint>
 #include <optional>
@@ -17,7 +17,7 @@ class Input {
   virtual bool Read(std::uint64_t offset, std::size_t n, std::uint8_t* to) = 0;
 };
 
-/// What a file may ask for.
+/// The limits of a file's claims.
 constexpr std::uint64_t kMaxChunk = std::uint64_t{128} << 20;    // bytes, uncompressed
 constexpr std::uint64_t kMaxSummary = std::uint64_t{64} << 20;   // bytes
 constexpr std::uint64_t kMaxCatalogue = std::uint64_t{8} << 20;  // bytes of schemas and channels
@@ -31,11 +31,11 @@ struct RecordPlace {
   std::uint64_t end() const { return content + size; }
 };
 
-/// The record at `offset`; none where it does not fit into the file.
+/// The record at `offset`; nothing if it does not fit into the file.
 std::optional<RecordPlace> RecordAt(Input* input, std::uint64_t offset);
-/// Reads the content, or its first `most` bytes. False where that failed.
+/// Reads the content, or its first `most` bytes. Returns false if that failed.
 bool ReadContent(Input* input, const RecordPlace& record, std::uint64_t most, Bytes* out);
-/// True where the magic stands at `offset`.
+/// Returns true if the magic stands at `offset`.
 bool HasMagic(Input* input, std::uint64_t offset);
 
 }  // namespace lidar::mcap

@@ -123,8 +123,8 @@ void Append(const SummaryOffset& offset, Bytes* out);
 /// `crc` is that of the data section; 0: not known.
 void AppendDataEnd(std::uint32_t crc, Bytes* out);
 
-/// Each reads the content of a record, which may be followed by fields of later versions. None
-/// where it is cut off.
+/// Each parses the content of a record, which may be followed by fields of later versions. Returns
+/// nothing if it is cut off.
 std::optional<Footer> ParseFooter(ByteView content);
 std::optional<Schema> ParseSchema(ByteView content);
 std::optional<Channel> ParseChannel(ByteView content);
@@ -141,7 +141,7 @@ struct Record {
   ByteView content;
   std::size_t offset;  // of its opcode in the run
 };
-/// Takes the next record of `bytes` from `*offset` on; none at the end and where it is cut off.
+/// Takes the next record of `bytes` from `*offset` on; nothing at the end or if it is cut off.
 std::optional<Record> NextRecord(ByteView bytes, std::size_t* offset);
 
 }  // namespace lidar::mcap

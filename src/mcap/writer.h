@@ -26,7 +26,7 @@ class Catalogue {
 
   /// The id of the schema of that name, which is added where it is missing.
   std::uint16_t AddSchema(const Schema& schema);
-  /// The id of the new channel; 0 where there are 65,535 of them, or a reader would refuse more.
+  /// The id of the new channel; 0 if there are 65,535 of them, or a reader would refuse more.
   std::uint16_t AddChannel(Channel channel);
 
  private:
@@ -36,17 +36,17 @@ class Catalogue {
 /// A file. Each chunk holds the schemas and channels that it uses, so it can be read alone.
 class Writer {
  public:
-  /// Appends to the file, all or nothing. False where that failed.
+  /// Appends to the file, all or nothing. Returns false if that failed.
   using Write = std::function<bool(ByteView)>;
 
   /// `catalogue` outlives this object, and may grow.
   Writer(const WriterSettings& settings, const Catalogue* catalogue, Write write);
 
-  /// Takes a message, and writes a chunk where one is full. After false, Finish() may still work.
+  /// Takes a message, and writes a chunk if one is full. After false, Finish() may still work.
   bool Add(const MessageHeader& header, ByteView data);
   /// Writes what is there as a chunk.
   bool Flush();
-  /// Writes what is there, index and footer. Nothing where no chunk was ever written.
+  /// Writes the rest, index and footer; an empty recording writes no byte.
   bool Finish();
 
   /// Bytes of the file so far, those of the open chunk among them.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// What time is where in a capture file: its duration, and where to read from after a seek.
+// The times of a capture file: its duration, and where to read from after a seek.
 #pragma once
 #include <functional>
 #include <memory>
@@ -17,15 +17,15 @@ class CaptureIndex {
   explicit CaptureIndex(std::unique_ptr<PcapReader> reader) : reader_(std::move(reader)) {}
 
   /// Reads on until a datagram of `time` or later, or to the end. Asks `go_on` now and then; false
-  /// where that is false.
+  /// if that is false.
   bool ReadUntil(Duration time, const std::function<bool()>& go_on);
 
-  /// When the first datagram was captured; none before it was read.
+  /// The first datagram's capture time; nothing before it was read.
   std::optional<Time> first() const { return first_; }
   /// Time from the first datagram that was read to the last.
   Duration duration() const { return first_ ? last_ - *first_ : Duration{0}; }
-  /// The place from which a reader sees every datagram of `time` and later of what was read; none
-  /// where it has to start at the front.
+  /// The place from which a reader finds every read datagram of `time` and later; nothing if it has
+  /// to start at the front.
   std::optional<std::int64_t> OffsetBefore(Duration time) const;
 
  private:

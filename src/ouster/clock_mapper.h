@@ -17,9 +17,9 @@ constexpr Duration SinceSensorEpoch(std::uint64_t sensor_ns) {
   return Duration(static_cast<std::int64_t>(sensor_ns < latest ? sensor_ns : latest));
 }
 
-/// The packet that travelled fastest tells the offset between the two clocks best, so the offset
-/// follows the minimum of (arrival - sampling) over the last seconds: jitter stays out, drift is
-/// followed. A jump of either clock starts over.
+/// The fastest packet shows the offset between the two clocks best, so the offset follows the
+/// minimum of (arrival - sampling) over the last seconds: jitter stays out, drift is followed. A
+/// jump of either clock starts over.
 class ClockMapper {
  public:
   enum class Mode {
@@ -30,7 +30,7 @@ class ClockMapper {
 
   /// A packet whose last column was sampled at `sensor_ns` arrived at `arrival`.
   void Observe(std::uint64_t sensor_ns, Time arrival);
-  /// True where Observe() would find that a clock jumped. Map what was sampled before the jump
+  /// Returns true if Observe() would find that a clock jumped. Map what was sampled before the jump
   /// before that call.
   bool WouldJump(std::uint64_t sensor_ns, Time arrival) const;
   /// The next packet sets the offset anew.

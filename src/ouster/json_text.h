@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// JSON from a sensor, or from whoever answers in its place: bounded in size, depth and time.
+// JSON from a sensor or an impostor: bounded in size, depth and time.
 #pragma once
 #include <cstddef>
 #include <nlohmann/json_fwd.hpp>

@@ -68,8 +68,8 @@ class LidarPacket {
   PacketHeader header_;
 };
 
-/// The header of a packet of any size, such as that of a sensor in another mode. None for LEGACY
-/// packets, which have no header, and for bytes too short to hold one.
+/// The header of a packet of any size, such as that of a sensor in another mode. Returns nothing
+/// for LEGACY packets, which have no header, and for bytes too short to hold one.
 std::optional<PacketHeader> PeekHeader(ByteView bytes, const PacketFormat& format);
 
 /// Firmware before 2.4 and FUSA packets carry a constant where newer ones have a CRC-64, so a

@@ -42,7 +42,7 @@ std::optional<PixelMask> ParseMaskImage(ByteView pgm, const Metadata& metadata,
     *error = "the mask is no binary PGM of 8 bit";
     return std::nullopt;
   }
-  rest = rest.Sub(1);  // one white space ends the header
+  rest = rest.Sub(1);  // a single white space ends the header
   if (*width != columns || *height != beams || rest.size < pixels) {
     *error = "the mask is not " + std::to_string(columns) + " x " + std::to_string(beams) +
              " pixels, as the sensor's scans are";

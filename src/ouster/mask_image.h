@@ -15,8 +15,8 @@ namespace lidar::ouster {
 /// them.
 using PixelMask = std::vector<std::uint8_t>;
 
-/// Reads a binary PGM (P5, 8 bit) of one pixel a beam and column, as pictures of a scan show them:
-/// destaggered. None and `error` for anything else.
+/// Reads a binary PGM (P5, 8 bit) of one pixel a beam and column, destaggered as pictures of a scan
+/// are. Returns nothing and sets `error` for anything else.
 std::optional<PixelMask> ParseMaskImage(ByteView pgm, const Metadata& metadata, std::string* error);
 
 }  // namespace lidar::ouster

@@ -33,7 +33,7 @@ class Document {
     const json* v = Find(section, key);
     return v != nullptr && v->is_string() ? v->get<std::string>() : std::string();
   }
-  /// Returns nothing where the key is missing or no number within [0, max].
+  /// Returns nothing if the key is missing or no number within [0, max].
   std::optional<double> Number(const char* section, const char* key, double max) const {
     const json* v = Find(section, key);
     if (v == nullptr || !v->is_number()) return std::nullopt;
@@ -148,7 +148,7 @@ class Builder {
     return true;
   }
 
-  /// `missing` where the key is missing, 0 where it is wrong.
+  /// `missing` where the key is missing, 0 if it is wrong.
   std::uint32_t CountOr(const char* key, std::size_t missing, std::uint32_t max) const {
     if (document_.Find(kFormat, key) != nullptr)
       return document_.Count(kFormat, key, max).value_or(0);
@@ -182,7 +182,7 @@ class Builder {
     return true;
   }
 
-  /// A sensor told to send its lidar packets nowhere.
+  /// Returns true if the sensor is set to send no lidar packets.
   bool GoesNowhere() const {
     const json* destination = document_.Find(kConfig, "udp_dest");
     const json* port = document_.Find(kConfig, "udp_port_lidar");

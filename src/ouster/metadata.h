@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// What a sensor says about itself: its metadata JSON, as old and new firmware write it.
+// A sensor's metadata JSON, as old and new firmware write it.
 #pragma once
 #include <cstdint>
 #include <optional>
@@ -57,12 +57,11 @@ struct Metadata {
   static constexpr std::size_t kMaxJsonSize = 8U << 20;  // bytes; per-pixel angles take megabytes
 };
 
-/// Reads both layouts: sections (`lidar_data_format`, firmware 2.0 and later) and the flat one
-/// that older clients wrote. None where a cloud could not be built; `error` then says why, in words
-/// for a user.
+/// Reads both layouts: sections (`lidar_data_format`, firmware 2.0 and later) and the flat one of
+/// older clients. Returns nothing if a cloud could not be built; `error` then says why, for a user.
 std::optional<Metadata> ParseMetadata(std::string_view json, std::string* error);
 
-/// True where packets and clouds of both look alike, so that a stream may go on.
+/// Returns true if packets and clouds of both look alike, so that a stream may go on.
 bool SameGeometry(const Metadata& a, const Metadata& b);
 
 }  // namespace lidar::ouster

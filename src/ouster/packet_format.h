@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Where everything stands in a lidar packet: one table of all profiles, for parser and writer.
+// The places of all parts of a lidar packet: a table of all profiles, for parser and writer.
 #pragma once
 #include <array>
 #include <cstddef>
@@ -31,7 +31,7 @@ constexpr std::size_t kProfileCount = 14;
 /// `header_type`; LEGACY packets have neither.
 enum class HeaderType { kStandard, kFusa };
 
-/// What a pixel carries. R, G and B are half floats; the others are integers.
+/// The channels of a pixel. R, G and B are half floats; the others are integers.
 enum class Channel {
   kRange,
   kReflectivity,
@@ -66,12 +66,12 @@ struct PixelLayout {
 
   const ChannelBits* begin() const { return first; }
   const ChannelBits* end() const { return first + count; }
-  /// Null where the profile has no such channel.
+  /// Null if the profile has no such channel.
   const ChannelBits* Find(Channel channel) const;
 };
 
 std::string_view ToString(Profile profile);
-/// Returns nothing for a profile that this table does not know.
+/// Returns nothing for a profile outside of this table.
 std::optional<Profile> ProfileFromString(std::string_view name);
 std::string_view ToString(Channel channel);
 PixelLayout LayoutOf(Profile profile);

@@ -78,7 +78,7 @@ void PacketWriter::SetPixel(Pixel at, Channel channel, std::uint32_t value) {
 }
 
 const std::vector<std::uint8_t>& PacketWriter::Finish() {
-  // FUSA packets have zeros where the others have the CRC.
+  // FUSA packets have zeros if the others have the CRC.
   if (format_.is_legacy() || format_.is_fusa() || bytes_.size() <= kCrcSize) return bytes_;
   const std::size_t body = bytes_.size() - kCrcSize;
   PutLittle(&bytes_[body], Crc64({bytes_.data(), body}), kCrcSize);

@@ -27,7 +27,7 @@ class PacketWriter {
   };
   /// `column` counts within the packet.
   void SetColumn(std::uint32_t column, const ColumnHeader& header);
-  /// Keeps the bits that the channel has room for. Does nothing where the profile lacks it.
+  /// Keeps the bits that the channel has room for. Does nothing if the profile lacks it.
   struct Pixel {
     std::uint32_t column = 0;
     std::uint32_t beam = 0;

@@ -26,13 +26,13 @@ class PcapReader {
   std::optional<Captured> Next();
   /// Empty unless the file ended in the middle of a packet or is damaged.
   const std::string& error() const { return error_; }
-  /// Back to the first packet; false where the file is gone.
+  /// Back to the first packet; false if the file is gone.
   bool Rewind();
 
-  /// Place of the next frame in the file, for GoTo() of any reader of this file; none in
-  /// pcapng, whose frames mean nothing without the blocks before them.
+  /// Place of the next frame in the file, for GoTo() of any reader of this file; nothing in pcapng,
+  /// whose frames mean nothing without the blocks before them.
   std::optional<std::int64_t> Offset() const;
-  /// False where that fails; the place is then not known.
+  /// Returns false if that fails; the place is then not known.
   bool GoTo(std::int64_t offset);
 
  private:

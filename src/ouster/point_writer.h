@@ -38,8 +38,8 @@ struct PointOptions {
   bool destagger = false;  // only for slices of a whole scan
 };
 
-/// Reads "reflectivity, ring": None and `error` for a name that is no channel. Doubled names count
-/// once.
+/// Parses "reflectivity, ring". Returns nothing and sets `error` for an unknown channel. Doubled
+/// names count once.
 std::optional<std::vector<std::string>> ParseChannels(std::string_view text, std::string* error);
 
 /// Reads "0-90,270-360" [degrees].
@@ -51,7 +51,7 @@ std::optional<std::vector<Sector>> ParseSectors(std::string_view text);
 /// return).
 class PointWriter {
  public:
-  /// Returns nothing and sets `error` where the profile lacks something that the options ask for.
+  /// Returns nothing and sets `error` if the profile lacks something that the options ask for.
   static std::optional<PointWriter> Create(const Metadata& metadata, const PointOptions& options,
                                            std::string* error);
 
@@ -66,7 +66,7 @@ class PointWriter {
   };
   /// Writes one valid column that lies in the slice.
   void WriteColumn(const PacketColumn& column, const Target& target) const;
-  /// What a pixel looks like before anything was written to it.
+  /// Fills points with missing returns.
   void FillMissing(std::vector<std::uint8_t>* points) const;
 
  private:
@@ -101,7 +101,7 @@ class PointWriter {
   std::uint32_t min_range_mm_ = 0;
   std::uint32_t max_range_mm_ = 0;
   PixelMask mask_;                     // sectors included; empty: keep all
-  std::vector<std::uint32_t> shifts_;  // columns to the right, a beam; empty: none
+  std::vector<std::uint32_t> shifts_;  // columns to the right, a beam; may be empty
   Invalid invalid_ = Invalid::kZero;
 };
 

@@ -9,7 +9,7 @@
 namespace lidar::ouster {
 namespace {
 
-// A packet further ahead than this, or from the past, is believed only when others follow it: one
+// A packet further ahead than this, or from the past, counts only when others follow it: a single
 // damaged frame id must not throw away a scan.
 constexpr std::int64_t kMaxScansAhead = 8;
 constexpr std::uint32_t kStraysForRestart = 4;

@@ -12,7 +12,7 @@ constexpr Duration kMaxSyncError = std::chrono::seconds(1);
 // A sensor whose packets carry no serial number may have another address after such a silence.
 constexpr Duration kSenderKept = std::chrono::seconds(1);
 
-/// What to add to the sensor's time to have UTC; none where its clock is its own.
+/// The difference from the sensor's time to UTC; nothing if its clock is its own.
 std::optional<Duration> SensorToUtc(const Metadata& metadata, const StreamOptions& options) {
   if (metadata.timestamp_mode == "TIME_FROM_PTP_1588") return options.ptp_utc_offset;
   // The NMEA messages that come with the pulse give UTC.

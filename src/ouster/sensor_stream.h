@@ -34,7 +34,7 @@ struct StreamOptions {
   std::uint32_t slices_per_scan = 0;  // 0: automatic
   TimeSource times = TimeSource::kSensor;
   ClockMapper::Mode clock = ClockMapper::Mode::kFollow;
-  Duration ptp_utc_offset = std::chrono::seconds(-37);  // what turns the sensor's PTP time into UTC
+  Duration ptp_utc_offset = std::chrono::seconds(-37);  // from the sensor's PTP time to UTC
 };
 
 struct TimedSlice {
@@ -69,8 +69,8 @@ class SensorStream {
   /// Only kNewInitId asks for something: the packet was left out. Refresh the metadata, or call
   /// AcceptNewInitId() and push the packet again.
   PacketVerdict Push(ByteView payload, const Arrival& arrival);
-  /// Call this after kNewInitId. From now on packets with that init id are taken: the sensor
-  /// restarted.
+  /// Call this after kNewInitId: the sensor restarted, and packets with that init id are taken from
+  /// now on.
   void AcceptNewInitId() { metadata_.init_id = refused_init_id_; }
   std::optional<TimedSlice> Pop();
   /// Makes the slices that are not complete ready. The next packet may be of any scan.
@@ -89,7 +89,8 @@ class SensorStream {
   /// True once there are clocks to map by.
   bool knows_time() const { return batcher_.stats().packets > 0; }
   Time LocalOf(std::uint64_t sensor_ns) const;
-  /// When a lidar packet's first column was sampled, without taking the packet; none for others.
+  /// The sampling time of a lidar packet's first column, without taking the packet; nothing for
+  /// other packets.
   std::optional<Time> SampledAt(ByteView payload) const;
   Time UtcOf(std::uint64_t sensor_ns) const;
   const StreamOptions& options() const { return options_; }
@@ -99,7 +100,7 @@ class SensorStream {
   const ScanBatcher& batcher() const { return batcher_; }
   const StreamStats& stats() const { return stats_; }
   Duration slice_duration() const;
-  /// True where capture times come from the sensor's own synchronised clock.
+  /// Returns true if capture times come from the sensor's own synchronised clock.
   bool has_synchronised_clock() const { return synchronised_; }
 
  private:

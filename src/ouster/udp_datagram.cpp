@@ -15,7 +15,7 @@ constexpr std::uint8_t kUdp = 17;
 constexpr std::uint16_t kEtherIpv4 = 0x0800;
 constexpr std::uint16_t kEtherIpv6 = 0x86dd;
 
-/// What follows an Ethernet header, past VLAN tags; empty for anything but IP.
+/// The IP packet behind an Ethernet header and VLAN tags; empty for anything but IP.
 ByteView AfterEthernet(ByteView frame) {
   constexpr int kMaxTags = 4;
   ByteReader r(frame);

@@ -22,7 +22,7 @@ struct ModeCoefficients {
 
   double GeometryLog2(double x, double n) const;
   double IntensityLog2(double bits, double n) const;
-  /// True where the size falls with the step all over the range, as Choose() needs it.
+  /// Returns true if the size falls with the step all over the range, as Choose() needs it.
   bool Falls() const;
 };
 
@@ -47,17 +47,17 @@ class AdaptiveModel : public SizeModel {
   struct Learned {
     SliceTracker geometry;
     SliceTracker intensity;
-    /// How much steeper than the fit the sizes of this scene are.
+    /// The steepness of this scene's sizes against the fit's.
     double slope = 1;
     double thinning = 0.8;                    // log size against log keep_fraction
-    std::optional<std::uint64_t> last_slice;  // scan and sector, to know a re-encoding
+    std::optional<std::uint64_t> last_slice;  // scan and sector, to recognise a re-encoding
   };
   const ModeCoefficients& Mode(const std::string& mode) const;
-  /// What was learned of a mode; null where nothing was. Where the mode has just changed within a
-  /// geometry, what was learned of the last one: the scene is the same.
+  /// What was learned of a mode, or null. If the mode has just changed within a geometry, what was
+  /// learned of the last mode: the scene is the same.
   const Learned* LearnedOf(const std::string& mode) const;
   double GeometryLog2(const SliceFeatures& slice, double step_m) const;
-  /// Part of the bytes of a slice whose codec does not tell it.
+  /// Intensity's part of the bytes of a slice if the codec does not report it.
   double IntensityShare(const SliceFeatures& slice, double step_m, unsigned bits,
                         const PredictedSize& predicted) const;
   /// `again`: the slice was encoded and learned from before.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// What each slice of the current turn needs at least and can use at most.
+// The least need and the largest use of each slice of the current turn.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -29,8 +29,8 @@ class DemandTable {
   /// mean of the others.
   Demand Sum(std::uint32_t first = 0) const;
   /// Divides `surplus` bytes among the slices from `first` to the end of the scan: each gets the
-  /// same, but no more than lies between its coarsest and its finest step. One not seen yet takes
-  /// anything.
+  /// same, but no more than lies between its coarsest and its finest step. A slice without an
+  /// observation takes any amount.
   double EvenShare(std::uint32_t first, double surplus) const;
 
  private:

@@ -23,7 +23,7 @@ class ErrorBound {
   double CoarsestStep(double error_m) const;
   /// A finer step than this [m] only codes digits that the sensor does not have.
   double FinestStep() const;
-  /// Steps are FinestStep() and any number of these [m]; 0 for xyz: any step. Those of ranges are
+  /// Steps are FinestStep() and any number of these [m]; 0 for xyz: any step. Steps of ranges are
   /// so small that sizes are as good as continuous.
   double step_unit() const;
   Geometry geometry() const { return geometry_; }

@@ -22,7 +22,7 @@ Eigen::VectorXd LeastSquares(const Eigen::MatrixXd& a, const Eigen::VectorXd& b)
   return a.colPivHouseholderQr().solve(b);
 }
 
-/// Fits the exponent of the returns too, where their number varies enough to tell it.
+/// Fits the exponent of the returns too, if their number varies enough.
 double ReturnsSpread(const Samples& samples) {
   const auto [low, high] = std::minmax_element(
       samples.begin(), samples.end(),

@@ -18,10 +18,10 @@ struct Sample {
   unsigned source = 0;  // which capture or scene: cross-validation leaves out whole sources
 };
 
-/// A cubic for each mode. None where a mode has fewer than kMinSamples or its sizes do not fall
-/// with the step.
+/// Fits a cubic for each mode. Returns nothing if a mode has fewer than kMinSamples or its sizes do
+/// not fall with the step.
 std::optional<AdaptiveCoefficients> FitAdaptive(const std::vector<Sample>& samples);
-/// The paper's regression. None with fewer than kMinSamples.
+/// The paper's regression. Returns nothing with fewer than kMinSamples.
 std::optional<PaperCoefficients> FitPaper(const std::vector<Sample>& samples);
 
 struct FitError {

@@ -101,9 +101,9 @@ double RateController::SliceBudget() const {
   if (!parameters_.closed_loop) return share;
   const std::uint32_t left = slice_.slice_count - slice_.slice_index;
   const double rest = repay_ + ledger_ + share * (left - 1);
-  // Every slice gets what its error bound needs, and all get the same share of what is left. So
-  // near the minimum the quality is even, and far from it the times on the wire are. Slices outside
-  // of the sensor's window have few returns or none. They leave to the others what they cannot use.
+  // Every slice gets what its error bound needs, and all get the same share of the rest. So near
+  // the minimum the quality is even, and far from it the times on the wire are. Slices outside of
+  // the sensor's window have few returns or none, and leave the others what they cannot use.
   const Demand needed = demand_.Sum(slice_.slice_index);
   const unsigned bits = plan_.intensity_bits;
   const double own = model_->Predict(slice_, {parameters_.limits.coarsest_step_m, bits, 0}).total();

@@ -22,12 +22,12 @@ struct ControllerParameters {
   bool closed_loop = true;
 };
 
-/// What to do with a slice.
+/// The decision for a slice.
 struct Decision {
   bool skip = false;  // put out nothing but a gap
   Settings settings;
   double keep_fraction = 1;        // below 1: code only what ThinningPattern() keeps
-  std::optional<DataSize> budget;  // none: constant quality
+  std::optional<DataSize> budget;  // empty: constant quality
 };
 
 /// Bitrates of media, for the event `bitrate-bounds`.
@@ -52,10 +52,10 @@ class RateController {
  public:
   RateController(ControllerParameters parameters, std::unique_ptr<SizeModel> model);
 
-  /// Bitrate for the encoded slices alone, transport overhead already taken off. None: constant
-  /// quality at the coarsest step.
+  /// Bitrate for the encoded slices alone, without transport overhead. Empty: constant quality at
+  /// the coarsest step.
   void SetTarget(std::optional<DataRate> target);
-  /// They hold from the next slice on.
+  /// Sets parameters for the next slice on.
   void SetParameters(const ControllerParameters& parameters) { parameters_ = parameters; }
 
   Decision NextSlice(const SliceFeatures& slice);

@@ -33,7 +33,7 @@ struct LoopResult {
   CodedSlice slice;  // where it was encoded
   unsigned intensity_bits = 0;
   double keep_fraction = 1;
-  double max_error_m = 0;  // that was to be kept
+  double max_error_m = 0;  // error bound to be kept
 
   bool encoded() const { return !skipped && result == CodingResult::kEncoded; }
 };

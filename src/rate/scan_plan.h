@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// What gives when the target is below what the error bound needs: intensity, then scans or points.
+// The degradation below what the error bound needs: intensity first, then scans or points.
 #pragma once
 #include <vector>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// What a codec tells the rate controller about a slice, and how a predictor turns it into bytes.
+// What a codec reports of a slice, and how a predictor turns it into bytes.
 #pragma once
 #include <cstdint>
 #include <string>
@@ -8,7 +8,7 @@
 
 namespace lidar::rate {
 
-/// All that the predictors look at. Nothing in it belongs to one codec.
+/// The input of the predictors, for any codec.
 struct SliceFeatures {
   std::uint32_t scan_id = 0;  // a change starts a scan
   std::uint32_t slice_index = 0;
@@ -16,8 +16,8 @@ struct SliceFeatures {
   double scans_per_second = 10;
   std::uint32_t returns = 0;  // points that would be coded if none were thinned
   double extent_m = 0;        // longest side of the slice's box (xyz), or its longest range
-  /// How the codec will code the slice: "xyz" or "range", a dash, and the codec's own name for its
-  /// coder ("range-adaptive", "xyz-kd6"). Each has its own coefficients and its own corrections.
+  /// The coding mode of the slice: "xyz" or "range", a dash, and the codec's name for its coder
+  /// ("range-adaptive", "xyz-kd6"). Each has its own coefficients and corrections.
   std::string mode;
 };
 
@@ -27,7 +27,7 @@ struct Settings {
   unsigned level = 0;           // compression level; only the paper's model chooses it
 };
 
-/// What the predictor may choose from.
+/// The predictor's choices.
 struct SettingLimits {
   double finest_step_m = 0.001;
   double coarsest_step_m = 0.04;
@@ -42,7 +42,7 @@ struct PredictedSize {
   double total() const { return geometry_bytes + intensity_bytes; }
 };
 
-/// What came out of the codec.
+/// The result of the codec.
 struct EncodedSize {
   DataSize size;
   double step_m = 0;         // really used

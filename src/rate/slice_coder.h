@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// What the rate loop asks of a coder: one loaded slice, coded at one step, as often as wanted.
+// A coder for the rate loop: a loaded slice, coded at a step, any number of times.
 #pragma once
 #include <cstddef>
 #include <string>
@@ -9,7 +9,7 @@
 
 namespace lidar::rate {
 
-/// What a coder has loaded.
+/// The loaded slice of a coder.
 struct LoadedSlice {
   std::size_t returns = 0;     // points that would be coded if none were thinned
   double extent_m = 0;         // longest side of the points' box, or the longest range
@@ -21,7 +21,7 @@ struct LoadedSlice {
 
 /// The grids that keep to an error.
 struct StepRange {
-  double finest_step_m = 0.001;   // a finer one codes digits that nobody has
+  double finest_step_m = 0.001;   // a finer step codes meaningless digits
   double coarsest_step_m = 0.04;  // no point moves farther than the error that was asked for
   double step_unit_m = 0;         // steps are finest_step_m and any number of these; 0: any step
 };
@@ -39,7 +39,7 @@ enum class CodingResult {
   kOutOfReach,  // no grid of this coder keeps to the error
 };
 
-/// A stream. The coder keeps the bytes; the loop wants to know only how many they are.
+/// A stream. The coder keeps the bytes; the loop takes only their number.
 class SliceCoder {
  public:
   virtual ~SliceCoder() = default;

@@ -17,7 +17,7 @@ struct Anchor {
 /// since then had in common: a turn of the vehicle, a wrong slope.
 class SliceTracker {
  public:
-  /// The observation to start from for a slice; none before the first one.
+  /// The observation to start from for a slice; nothing before the first one.
   std::optional<Anchor> Predict(std::uint32_t slice_index, std::uint32_t slice_count) const;
   /// `error`: observed minus what Predict() led to expect.
   void Observe(std::uint32_t slice_index, std::uint32_t slice_count, Anchor anchor, double error);

@@ -19,7 +19,7 @@ struct Packet {
 };
 
 /// Packets of at most `max_payload` (kMinPayload at least) bytes for `unit`, whose type, length,
-/// CRC and body are set here. None for an empty unit or one past kMaxUnitBytes.
+/// CRC and body are set here. Returns no packets for an empty unit or one past kMaxUnitBytes.
 std::vector<Packet> Packetize(Unit unit, ByteView bytes, std::size_t max_payload);
 
 /// Collects small slices into one aggregation packet.
@@ -28,8 +28,8 @@ class Aggregator {
   /// False, and nothing is done, where the unit does not fit beside those already in. Nor may it be
   /// further from the first than 16 bits of `rtp_ticks`, the running time in 90 kHz.
   bool Add(Unit unit, ByteView bytes, std::size_t max_payload, std::uint64_t rtp_ticks);
-  /// The packet so far, whose RTP timestamp is the first unit's; a single unit packet if only one
-  /// is in. None when empty.
+  /// The packet so far, whose RTP timestamp is the first unit's; a single unit packet if it has one
+  /// unit. Nothing when empty.
   std::optional<Packet> Take();
   bool empty() const { return units_ == 0; }
 

@@ -9,7 +9,7 @@
 
 namespace lidar::rtp {
 
-/// What a packet holds, with the numbers of draft-engelbart-avtcore-rtp-gpcc.
+/// The content of a packet, with the numbers of draft-engelbart-avtcore-rtp-gpcc.
 enum class PacketType : std::uint8_t {
   kSingle = 0,
   kAggregation = 1,
@@ -21,7 +21,7 @@ enum class PacketType : std::uint8_t {
 enum class UnitType : std::uint8_t {
   kStreamConfig = 0,
   kSlice = 2,
-  kSliceAfterSkip = 3,  // a slice that tells of others that the sender left out
+  kSliceAfterSkip = 3,  // a slice that counts skipped slices before it
 };
 
 constexpr bool IsSlice(UnitType t) {

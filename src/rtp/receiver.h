@@ -20,9 +20,9 @@ struct ReceiverAccounts {
 };
 
 /// The stream moves to another SSRC, or to other scan numbers, once several packets in sequence
-/// came from there and the old one fell silent. Nothing is lost by that wait. In silence, a slice
-/// of the same stream further on that is whole and undamaged moves it at once: a sender in need may
-/// put out nothing but such slices, far apart.
+/// came from there and the old one fell silent, without loss. In silence, a whole and undamaged
+/// slice of the same stream further on moves it at once: a throttled sender may put out only such
+/// slices, far apart.
 class Receiver {
  public:
   explicit Receiver(Duration max_reorder_time) : max_reorder_time_(max_reorder_time) {}

@@ -11,7 +11,7 @@ namespace {
 
 // Bounds memory and time; the reassembler takes no jump as long as this (kMaxScanJump).
 constexpr std::int64_t kMaxOpenScans = 64;
-// A slice tells of as many slices before it, which may be scans of one slice.
+// A slice may announce as many skipped slices before it, which may be scans of one slice.
 constexpr std::int64_t kKeptScans = 64;
 constexpr int kToldSlices = 64;
 
@@ -224,7 +224,7 @@ void SliceLedger::CloseBefore(SlicePosition limit) {
 void SliceLedger::Finish() {
   if (!started()) return;
   CloseBefore({frontier_->scan, frontier_->index + 1});
-  // What was not sent of the last scan is not lost, but the scan did end here.
+  // Unsent slices of the last scan are not lost, but the scan did end here.
   Scan* scan = Find(frontier_->scan);
   if (scan != nullptr && scan->open > 0) {
     BookScan(scan);

@@ -64,10 +64,10 @@ class SliceLedger {
   void Settle(SlicePosition p, SliceOutcome outcome);
   /// The source never sent this slice. The word of it may come after the slice was booked as lost.
   void Skip(SlicePosition p);
-  /// A slice of `scan` says the source's number of it, `id`. Between two scans that were sent,
-  /// these numbers have gaps where scans were left out.
+  /// Notes the source's number `id` of `scan`. Between two sent scans these numbers have gaps for
+  /// scans that were left out.
   void BookScanId(std::int64_t scan, std::uint32_t id);
-  /// The slice before `p`; none where that is before the scans that the ledger still has. Scans
+  /// The slice before `p`; nothing if that is before the scans that the ledger still has. Scans
   /// before the first one count as having as many slices.
   std::optional<SlicePosition> Before(SlicePosition p) const;
 
@@ -128,8 +128,8 @@ class SliceLedger {
   SlicePosition origin_;         // the first slice
   std::uint32_t origin_count_ = 1;
   std::set<SlicePosition> skipped_before_origin_;
-  // This stream may go on with an earlier one. What follows the end of that is lost, and so are
-  // those named here.
+  // This stream may go on with an earlier one. Slices behind the end of that are lost, and so are
+  // the ones named here.
   std::optional<SlicePosition> previous_end_;
   std::set<SlicePosition> lost_before_end_;  // the last ones
   std::optional<SlicePosition> frontier_;

@@ -21,7 +21,7 @@ constexpr std::uint32_t kMaxFraction = 0x7FFF'FFFF;
 
 constexpr std::uint8_t kNamedCoder = 0xFF;  // in place of coder and geometry
 
-/// What the elements of this set put out: coders with a number, then streams that are no slices.
+/// The media types of this set: coders with a number, then streams that are no slices.
 constexpr std::string_view kOwnTypes[] = {"application/x-draco",       "application/x-lidar-slice",
                                           "application/x-pointcloud2", "application/x-imu",
                                           "application/x-odometry",    "application/x-tf"};

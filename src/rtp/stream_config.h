@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// What a receiver must know before it can decode a slice: the stream-config unit.
+// What a receiver needs before it can decode a slice: the stream-config unit.
 #pragma once
 #include <cstdint>
 #include <optional>
@@ -23,12 +23,12 @@ struct StreamConfig {
   std::uint32_t framerate_n = 0;  // scans/s; 0/1: not known
   std::uint32_t framerate_d = 1;
   std::string fields;                      // as in the caps, checked
-  std::vector<std::uint8_t> sensor_model;  // serialised and checked; empty: none
+  std::vector<std::uint8_t> sensor_model;  // serialised and checked; may be empty
 
   std::vector<std::uint8_t> Serialise() const;
   /// Returns nothing for another version or coder, a wrong length, or a sensor model that does not
-  /// parse; and for fields that no decoder gives. Decoders give x, y and z as F32 side by side, all
-  /// packed. None for caps that are not slices of a coder without a number.
+  /// parse; for fields that no decoder gives (decoders give x, y and z as F32 side by side, all
+  /// packed); and for caps that are not slices of a coder without a number.
   static std::optional<StreamConfig> Parse(ByteView bytes);
   bool operator==(const StreamConfig& o) const;
   bool operator!=(const StreamConfig& o) const { return !(*this == o); }

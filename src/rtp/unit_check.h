@@ -10,13 +10,13 @@
 namespace lidar::rtp {
 
 /// Follows one unit at a time, in order; a gap ends it, and the next unit has its chance. For
-/// packets of one SSRC whose sender is not believed yet.
+/// packets of an SSRC whose sender is not accepted yet.
 class UnitCheck {
  public:
   /// Longer units are not followed.
   static constexpr std::size_t kMaxBytes = std::size_t{1} << 18;
 
-  /// True where the packet completes a slice whose length and CRC-32 are right.
+  /// Returns true if the packet completes a slice whose length and CRC-32 are right.
   bool Push(std::uint16_t sequence, ByteView payload);
 
  private:

@@ -29,7 +29,7 @@ constexpr FigureKind kDropped{"frames dropped [%]", false, 0.2, 0.2};
 constexpr FigureKind kDroppedFrames{"frames dropped", false, 3, 0.2};
 constexpr FigureKind kStreams{"two streams' ratio", true, 0.1, 0.05};
 
-/// Where `scenarios` hold the same limits. A limit below 0 is none.
+/// Limits of the `scenarios`. A limit below 0 does not count.
 struct MatrixGoal {
   std::vector<const char*> scenarios;
   double utilisation = -1;
@@ -106,7 +106,7 @@ std::optional<double> Limit(const MatrixGoal* goal, double MatrixGoal::*limit) {
   return goal != nullptr && goal->*limit >= 0 ? std::optional(goal->*limit) : std::nullopt;
 }
 
-/// Those of a drop of the capacity, and of the start.
+/// Adds the figures of a drop of the capacity, and of the start.
 void AddEvents(const Scenario& s, const ScenarioMetrics& m, std::vector<Figure>* figures) {
   if (s.drop_at) {
     figures->push_back({&kDropPeak, m.drop.peak_queue_ms, 150.0});

@@ -13,7 +13,7 @@ namespace lidar::scream::test {
 struct FigureKind {
   const char* name;
   bool more_is_better = false;
-  /// A difference up to `absolute` and `relative` of the value together is none.
+  /// Differences up to `absolute` plus `relative` of the value do not count.
   double absolute = 0, relative = 0;
 };
 
@@ -23,7 +23,7 @@ struct Figure {
   std::optional<double> goal{};
 
   bool reached() const { return !goal || (kind->more_is_better ? value >= *goal : value <= *goal); }
-  /// How many such differences it is better than `base`; negative for worse.
+  /// The number of such differences by which it is better than `base`; negative for worse.
   double BetterThan(const Figure& base) const;
 };
 

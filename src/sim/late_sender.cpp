@@ -14,7 +14,7 @@ namespace {
 
 constexpr Duration kTick = std::chrono::microseconds{500};
 constexpr double kPacketBits = 9600;
-/// What waits leaves a little faster than the link is known to carry it.
+/// The queue leaves a little faster than the link is known to carry it.
 constexpr double kPacing = 1.25;
 
 /// Times are in seconds, sizes in bits.

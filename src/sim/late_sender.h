@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// What a sender could do that knows all of a link, but one round trip late: a yardstick for those
-// that adapt.
+// The yardstick for adaptive senders: a sender that knows all of a link, one round trip late.
 #pragma once
 #include <cstdint>
 
@@ -10,7 +9,7 @@
 
 namespace lidar::loop {
 
-/// Slices as large as a share of the capacity that the sender knows, within what the source can do.
+/// Slices as large as a share of the known capacity, within the source's limits.
 struct LateSenderConfig {
   double share = 0.8;  ///< 0: never adapts, each slice has the lowest rate
   DataRate min;        // of the source
@@ -32,8 +31,8 @@ struct LateSenderReport {
   double queue_p95_ms = 0;  // in the network
 };
 
-/// Its window is the product of the known rate and the round trip, so a gap meets no more on the
-/// way than what fills the link.
+/// Its window is the product of the known rate and the round trip, so at a gap no more is under way
+/// than fills the link.
 LateSenderReport SendLate(const link::Capacity& capacity, const LateSenderConfig& config);
 
 }  // namespace lidar::loop

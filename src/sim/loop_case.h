@@ -19,9 +19,9 @@ struct LoopCase {
   std::string name;
   link::Capacity capacity = link::Capacity::Constant(DataRate::BitsPerSecond(8e6));
   SourceOptions source;
-  /// Instead: frames that obey the target exactly and can use any rate, 50 a second.
+  /// Sends frames instead, which obey the target exactly and can use any rate, 50 a second.
   bool frames = false;
-  /// Beside the LiDAR, at half of its priority: frames that obey the target exactly.
+  /// Adds frames that obey the target exactly, at half of the priority of the LiDAR.
   bool camera = false;
   Duration duration = std::chrono::seconds(60);
   Duration rtt = std::chrono::milliseconds(40);
@@ -47,7 +47,7 @@ struct LoopReport {
   // The network
   scream::test::Percentiles queue_ms;
   double own_loss = 0;
-  /// After each gap: until the sender first fills 80 % of what is usable for 100 ms [s].
+  /// Time from a gap's end until the sender first fills 80 % of what is usable for 100 ms [s].
   scream::test::Percentiles recovery_s;
   std::size_t gaps = 0;
 
@@ -65,7 +65,7 @@ struct LoopRun {
 LoopRun RunLoop(const LoopCase& loop_case);
 
 /// The same case from another place of its trace on, `n` times 7.33 s later, and of another scene.
-/// Runs over drives are chaotic: only the mean of several says something.
+/// Runs over drives are chaotic: only the mean of several is meaningful.
 LoopCase Later(LoopCase loop_case, int n);
 
 struct NamedTrace {
@@ -74,7 +74,7 @@ struct NamedTrace {
 };
 /// Regular gaps, and drives that are generated.
 std::vector<NamedTrace> BuiltInTraces();
-/// Reads a file of `time_s rate_mbps`; none and why in `error` where it is anything else.
+/// Reads a file of `time_s rate_mbps`. Returns nothing and sets `error` if it is anything else.
 std::optional<NamedTrace> ReadTrace(const std::string& path, std::string* error);
 
 }  // namespace lidar::loop

@@ -17,7 +17,7 @@ constexpr FigureKind kInTime{"in time, of a fixed step's [%]", true, 1.5, 0};
 constexpr FigureKind kSpread{"spread of the starts [points]", false, 1, 0.2};
 constexpr FigureKind kLoopUtilisation{"utilisation [%]", true, 4, 0};
 constexpr FigureKind kLatency{"p95 over the oracle's [ms]", false, 10, 0.2};
-constexpr FigureKind kBack{"back after a gap [s]", false, 0.1, 0.2};
+constexpr FigureKind kBackAfterGap{"back after a gap [s]", false, 0.1, 0.2};
 
 }  // namespace
 
@@ -48,7 +48,7 @@ std::vector<Figure> LoopFigures(const LoopCase& loop_case, int starts) {
       {&kSpread, highest - lowest},
       {&kLoopUtilisation, utilisation, goals.utilisation},
       {&kLatency, latency, goals.latency_over_oracle_ms},
-      {&kBack, back, goals.back_s},
+      {&kBackAfterGap, back, goals.back_s},
   };
   return figures;
 }

@@ -26,7 +26,7 @@ struct LoopGoals {
 };
 LoopGoals GoalsOf(const LoopCase& loop_case);
 
-/// The goals of this kind of run; those of a trace with gaps where it has any.
+/// The goals of this kind of run; with gaps, those of a trace with gaps.
 std::vector<GoalResult> CheckGoals(const LoopCase& loop_case, const LoopReport& report);
 
 /// Adapting is never worse than the coarsest step of the same bound.

@@ -17,11 +17,10 @@ constexpr const char* kParameterUsage =
 
 /// The extensions and the optional parts of the draft.
 std::vector<std::string> SwitchNames();
-/// False where nothing is called so.
+/// Returns false for an unknown name.
 bool Switch(const std::string& name, bool on, Parameters* parameters);
 
-/// How many arguments from argv[i] on it took: 0 where they are no such option, -1 where they are
-/// wrong.
+/// How many arguments from argv[i] on it took: 0 if they are no such option, -1 if they are wrong.
 int TakeParameterOption(int argc, char** argv, int i, Parameters* parameters);
 
 }  // namespace lidar::scream::test

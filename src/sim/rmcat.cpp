@@ -40,7 +40,7 @@ bool Contains(const std::vector<int>& flows, int flow) {
   return std::find(flows.begin(), flows.end(), flow) != flows.end();
 }
 
-/// `flow` is one of somebody else, on link 0.
+/// Returns true if `flow` is background traffic on link 0.
 bool OthersOnLink0(const RmcatCase& c, int flow) {
   const auto ours = static_cast<int>(c.config.flows.size());
   return flow >= ours && c.config.others[static_cast<std::size_t>(flow - ours)].route.front() == 0;

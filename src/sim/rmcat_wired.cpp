@@ -137,7 +137,7 @@ RmcatCase ShortTcp(const Parameters& p) {
   return c;
 }
 
-/// All three that the RFC has run at last.
+/// The three flows of RFC 8867, 5.8, measured once the first has resumed.
 RmcatCase PauseAndResume(const Parameters& p) {
   RmcatCase c =
       ThreeFlows("5.8", "pause_resume", "three flows, the first pauses from 40 to 60 s", p);

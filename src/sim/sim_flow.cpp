@@ -72,7 +72,7 @@ Time Flow::NextEvent(Time now) {
   return std::max(next, stalled_until_);
 }
 
-/// What the configuration lets happen in the course of a run.
+/// Applies the configured events that are due.
 void Flow::Happen(Time now) {
   const Duration t = now - config_.start;
   if (Due(t, &config_.receiver_restart)) {
@@ -210,7 +210,7 @@ void Flow::MakeFrame(Time now, std::size_t index) {
   result_.frames.push_back(frame);
 }
 
-/// What the next frame of a source has on the wire; 0: it is left out.
+/// Size of the next frame of a source on the wire; 0: left out.
 EncodedFrame Flow::Encode(Time now, std::size_t index) {
   SourceConfig& config = config_.sources[index];
   SourceState& source = sources_[index];
@@ -248,7 +248,7 @@ void Flow::Packetize(Time now, SourceState* source, const EncodedFrame& encoded,
   }
 }
 
-/// Encoders hear of a target as often as the element tells them.
+/// Sends the target to encoders as often as the element does.
 void Flow::TellEncoders(Time now) {
   for (SourceState& source : sources_) {
     const DataRate target = controller_->target_bitrate(source.stream);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// One sender with its sources, and its receiver, in simulated time.
+// A sender with its sources, and its receiver, in simulated time.
 #pragma once
 #include <deque>
 #include <map>
@@ -35,7 +35,7 @@ class Flow {
     std::deque<WirePacket> queue;
     std::deque<Time> queued;  // when each packet of `queue` came
     TargetNotifier notifier;
-    DataRate told;  // the target that the encoder knows
+    DataRate told;  // the target that the encoder has
   };
 
   void StartSender();

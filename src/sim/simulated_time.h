@@ -5,7 +5,7 @@
 
 namespace lidar {
 
-/// Not zero, which a time that nobody set would be.
+/// Nonzero, so that it differs from an unset time.
 constexpr Time kStart{std::chrono::seconds(100)};
 
 constexpr DataRate Mbps(double megabits) { return DataRate::BitsPerSecond(megabits * 1e6); }

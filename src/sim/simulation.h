@@ -38,7 +38,7 @@ struct SourceConfig {
   double frame_jitter = 0;  ///< frame sizes vary evenly by up to this fraction
   /// Scales what the encoder puts out against its target, over time since the flow's start.
   std::function<double(Duration)> obedience;
-  /// In place of both: makes the next frame for the target that it was told last.
+  /// Replaces both: makes the next frame for the target that it has.
   std::function<EncodedFrame(DataRate)> encoder;
 };
 
@@ -51,7 +51,7 @@ struct FlowConfig {
   Route route{0};
   /// Links that the reports pass; without any they need `return_delay`.
   Route return_route;
-  /// In addition to that of the links, each way.
+  /// Delay in addition to that of the links, each way.
   Duration access_delay{0};
   std::vector<SourceConfig> sources{1};
   FeedbackConfig feedback;
@@ -69,7 +69,7 @@ struct FlowConfig {
   std::uint16_t jump_back = 0;
   /// Reports hold no arrival times (RFC 8888 allows it).
   bool arrival_times = true;
-  /// The sender is told that the route is another one.
+  /// Time at which the sender gets route-changed.
   Duration route_change = kNever;
   /// Clocks are set by so much.
   Duration clock_jump = kNever;
@@ -87,7 +87,7 @@ struct FileConfig {
   Duration mean_pause{0};      ///< exponentially distributed
 };
 
-/// A greedy flow of somebody else, from `start` of the run on.
+/// A greedy background flow, from `start` of the run on.
 struct TcpConfig {
   TcpKind kind = TcpKind::kCubic;
   Duration start{0};
@@ -105,7 +105,7 @@ struct SimulationConfig {
   double return_loss = 0;
   /// Two of three packets sent within this time of the run are lost.
   Duration loss_from = kNever, loss_until = kNever;
-  /// Nothing comes back within this time of the run.
+  /// The way back carries no packet within this time of the run.
   Duration return_outage_from = kNever, return_outage_until = kNever;
   /// A change of route: the way there is longer from then on.
   Duration longer_by{0};

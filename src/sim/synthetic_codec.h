@@ -51,7 +51,7 @@ class SyntheticCodec {
         20 + returns * std::exp2(log2) * sector * std::exp(log_complexity_) * slice_noise_ / 8;
     // Four bits a return for 8-bit intensities, 1.2 for 5-bit ones, as on real captures.
     const double intensity = returns * 4 * std::pow(s.intensity_bits / 8.0, 2.5) / 8;
-    // Features that are no numbers have a slice of nothing.
+    // Features that are NaN give an empty slice.
     const auto bytes = [](double b) {
       return DataSize::Bytes(
           static_cast<std::int64_t>(std::isfinite(b) ? std::clamp(b, 0., 1e12) : 0));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// A greedy flow of somebody else beside ours, in simulated time.
+// A greedy background flow beside ours, in simulated time.
 #pragma once
 #include <cstddef>
 #include <cstdint>

@@ -28,7 +28,7 @@ class TcpSender {
 
   double window() const { return control_->window; }
   std::size_t outstanding() const { return outstanding_; }
-  /// When nothing more comes back for what was sent.
+  /// Time at which the acknowledgements are overdue.
   Time Timeout() const;
 
  private:

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// How the congestion windows of others move: Reno, Cubic and Prague.
+// Congestion windows of background flows: Reno, Cubic and Prague.
 #pragma once
 #include <memory>
 
@@ -21,7 +21,7 @@ class TcpWindow {
   virtual void OnAck(Time now, Duration rtt, bool ce) = 0;
   /// Packets were lost; once a round trip.
   virtual void OnLoss() = 0;
-  /// Nothing came back for long.
+  /// No acknowledgement came for long.
   virtual void OnTimeout() = 0;
   /// A packet was marked in slow start, which ends.
   virtual void OnFirstMark() { OnLoss(); }

@@ -29,7 +29,7 @@ constexpr double kMapVoxel_m = 1;
 constexpr double kAlignedGrid_m = 1.2;
 constexpr std::size_t kThinAt = 400'000;  // points of the open map
 
-/// What a point of one map has near it in the other.
+/// The surroundings of a point of one map in the other.
 struct Shares {
   double overlap = 0;
   double fit = 0;
@@ -96,7 +96,8 @@ void LoopCloser::EndMap() {
   map_begin_ = way_.size();
 }
 
-/// True if the odometry's drift may hide a loop here, and the map is none of those just before.
+/// Returns true if the odometry's drift may hide a loop here, and the map is none of those just
+/// before.
 bool LoopCloser::MayBeTheSame(const LocalMap& a, const LocalMap& b) const {
   const double between = b.way_m - a.way_m;
   if (between < 3 * settings_.local_map_m) return false;

@@ -42,8 +42,8 @@ struct PlaceMatch {
   double distinct = 0;
 };
 
-/// Lays the map of `b` over that of `a` where it fits best, turned by `yaw` give or take
-/// `yaw_range` [rad]. Then tilts it so that their ground meets. None where they share no ground.
+/// Lays the map of `b` over that of `a` at the best place, turned by `yaw` give or take `yaw_range`
+/// [rad]. Then tilts it so that their ground meets. Returns nothing if they share no ground.
 std::optional<PlaceMatch> Match(const Place& a, const Place& b, double yaw, double yaw_range);
 
 }  // namespace lidar::slam

@@ -6,8 +6,7 @@
 
 namespace lidar::synth {
 
-/// How the maker's ROS driver lays a point out, in one row and the order of firing, without what
-/// did not return.
+/// The layout of the maker's ROS driver: one row of returns, in the order of firing.
 struct DriverLayout {
   std::string_view fields;  // as in caps of clouds
   double timestamp_unit_s;  // of the field `timestamp`
@@ -27,7 +26,7 @@ struct Firing {
   double first_azimuth, view;  // a sweep begins there, and spans that
   double sweeps;               // of a scan; where it is no whole number, scans do not repeat
   double swing, swings;        // elevations swing by +- so much, so often in a scan
-  double azimuth_unit;         // of what the sensor reports; 0: none
+  double azimuth_unit;         // of the reported azimuths; 0: exact
   std::uint32_t range_unit_mm;
   double min_range_m, max_range_m, range_of_10_percent_m;
   DriverLayout layout;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Where the beams of a sensor begin and look, column by column.
+// Origins and directions of a sensor's beams, column by column.
 #pragma once
 #include <cstdint>
 
@@ -17,7 +17,7 @@ class Rays {
   std::uint32_t columns() const { return projection_.columns(); }
   /// Unit vector in the sensor frame, in scan number `scan`.
   Vec3 Direction(std::uint64_t scan, std::uint32_t beam, std::uint32_t column) const;
-  /// Of a column's beams, in the sensor frame.
+  /// Origin of a column's beams, in the sensor frame.
   Vec3 Origin(std::uint32_t column) const;
   /// Ranges count from so much behind the origin of a beam.
   float origin_m() const { return origin_m_; }

@@ -164,8 +164,8 @@ Scanner::Pixel Scanner::Measure(const Hit& hit, Random* noise) const {
           static_cast<std::uint16_t>(std::min(65535.0F, kPhotons * signal * speckle + 0.5F))};
 }
 
-/// A beam has a width: at an edge, or in leaves, a part of it goes on to something farther away.
-/// Two things a sensor tells apart only where their echoes do not overlap.
+/// A beam has a width: at an edge, or in leaves, a part of it goes on to something farther away. A
+/// sensor separates two surfaces only if their echoes do not overlap.
 Scanner::Echoes Scanner::MeasureBoth(const Column& column, Vec3 direction, const Hit& center,
                                      Random* noise) const {
   constexpr float kSeparation = 0.5F;  // [m]
@@ -186,7 +186,8 @@ Scanner::Echoes Scanner::MeasureBoth(const Column& column, Vec3 direction, const
   return a_leads ? Echoes{a, b} : Echoes{b, a};
 }
 
-/// What the beams of a column meet. It draws from the noise of the column as its own cast does.
+/// The hits of a column's beams. It draws from the noise of the column as the column's own cast
+/// does.
 std::vector<Hit> Scanner::TraceColumn(std::uint64_t scan, std::uint32_t index) {
   BeginChunk(scan, index / chunk_columns_);
   const Column column = MakeColumn(scan, index);
@@ -201,7 +202,7 @@ std::vector<Hit> Scanner::TraceColumn(std::uint64_t scan, std::uint32_t index) {
 
 /// If an edge lies within the beam, its two echoes run into one: the range lies between.
 Hit Scanner::MixWith(const Hit& beside, Hit hit, Random* noise) const {
-  constexpr float kPulse = 1.0F;  // echoes farther apart than that are told apart [m]
+  constexpr float kPulse = 1.0F;  // distance of separate echoes [m]
   constexpr float kSurface = 0.15F;
   const float apart = std::abs(beside.distance - hit.distance);
   if (!(apart > kSurface && apart < kPulse)) return hit;

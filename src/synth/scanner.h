@@ -24,7 +24,7 @@ struct ScannerConfig {
   bool mixed_pixels = false;    // ranges between two surfaces, where a beam meets an edge
 };
 
-/// What the sensor measured, beam by beam: [beam * columns + column]. Range 0: no return.
+/// The measured returns, beam by beam: [beam * columns + column]. Range 0: no return.
 struct Returns {
   std::vector<std::uint32_t> range_mm;
   std::vector<std::uint8_t> reflectivity;  // Ouster's scale: percent, retroreflectors above 100

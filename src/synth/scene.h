@@ -30,7 +30,7 @@ class Scene {
 
   /// The lane of the sensor's car.
   virtual TrajectorySettings Lane(double speed_mps) const = 0;
-  /// Tells which view the calls of IntersectGround are about.
+  /// Sets the view of the next calls of IntersectGround.
   virtual void MoveTo(const View&) {}
   /// Appends what stands still.
   virtual void AddStatic(const View& view, std::vector<Shape>* shapes) const = 0;
@@ -45,7 +45,7 @@ class Scene {
                          std::vector<Shape>* shapes) const = 0;
   /// If the ground is dear, rays that rather meet something else ask for it last.
   virtual bool GroundFirst(const Ray&) const { return true; }
-  /// Ground and whatever else never ends; true where it is met nearer than hit->distance.
+  /// Ground and whatever else never ends; true if it is met nearer than hit->distance.
   virtual bool IntersectGround(const View& view, const Ray& ray, Random* noise, Hit* hit) const = 0;
 
  protected:

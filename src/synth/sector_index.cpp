@@ -12,7 +12,7 @@ struct Footprint {
   float nearest = 0;
   float farthest = 0;
   float angle = 0;  // pseudo-angle where it begins
-  float width = 4;  // and its extent; 4 where the sensor stands on it
+  float width = 4;  // and its extent; 4 if the sensor stands on it
 
   Footprint(const Shape& s, Vec3 origin, float margin) {
     const float hx = s.half.x + margin;

@@ -20,8 +20,8 @@ struct Sensor {
       0;  // where a target of 10 % reflectivity returns nine times in ten
 };
 
-/// "os0-32" ... "os2-128", with 512, 1024, 2048 or 4096 columns; none for any other. Every unit of
-/// a model has the same small errors of its beams.
+/// "os0-32" ... "os2-128", with 512, 1024, 2048 or 4096 columns; nothing for other names. Every
+/// unit of a model has the same small errors of its beams.
 std::optional<Sensor> MakeSensor(std::string_view name, std::uint32_t columns);
 Sensor MakeSensor(const Firing& firing);
 

@@ -6,7 +6,7 @@
 namespace lidar::synth {
 namespace {
 
-constexpr float kNearest = 0.05F;  // what is nearer sits inside the housing
+constexpr float kNearest = 0.05F;  // nearer points are inside the housing
 
 /// The stretch of a ray inside a convex body, and the face it enters by.
 struct Span {
@@ -134,7 +134,7 @@ void TextureFacade(const Shape& s, const Ray& local, Random* noise, const Span& 
   if (u < 0.25F || u > 0.75F || v < 0.28F || v > 0.78F) return;
   hit->distance +=
       std::min(kRecess * std::abs(long_side ? local.inverse.y : local.inverse.x), 2.0F);
-  // The paint tells the houses apart, wherever the anchor is.
+  // The paint differs from house to house, wherever the anchor is.
   const auto house = static_cast<std::uint64_t>(s.reflectivity * 1e6F);
   const auto window = static_cast<std::uint64_t>(storey) * 64 + static_cast<std::uint64_t>(bay);
   const bool curtain = Random(house * 4096 + window).Chance(0.55F);

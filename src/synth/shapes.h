@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// What stands in the synthetic world, and where a ray meets it.
+// The objects of the synthetic world, and where a ray meets them.
 #pragma once
 #include <cstdint>
 
@@ -37,8 +37,8 @@ struct Hit {
   float cosine = 1;        // of the angle of incidence
 };
 
-/// True where the ray meets the shape nearer than hit->distance, which it then updates. `noise`
-/// belongs to this ray: a leaf is met or missed by it.
+/// Returns true if the ray meets the shape nearer than hit->distance, which it then updates.
+/// `noise` belongs to this ray: a leaf is met or missed by it.
 bool Intersect(const Shape& shape, const Ray& ray, Random* noise, Hit* hit);
 
 }  // namespace lidar::synth

@@ -145,7 +145,7 @@ void Street::AddWalkers(const View& view, const Instant& now, std::vector<Shape>
   for (const double pace : {1.3, -1.1}) {
     View pavement = view;
     pavement.anchor_x = view.anchor_x - pace * now.time_s;
-    pavement.radius = std::min(view.radius, 60.0F);  // nobody is seen beyond
+    pavement.radius = std::min(view.radius, 60.0F);  // no people beyond
     ForEachCell(pavement, 9, kWalker + (pace > 0 ? 64 : 0),
                 [&](Random random, std::int64_t, float x) {
                   if (random.Chance(0.55F)) return;

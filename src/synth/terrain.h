@@ -5,7 +5,7 @@
 
 namespace lidar::synth {
 
-/// What is left of a phase after whole periods; quicker than floor().
+/// The rest of a phase after whole periods; quicker than floor().
 template <class T>
 T Fraction(T phase) {
   const T rest = phase - static_cast<T>(static_cast<std::int32_t>(phase));

@@ -15,7 +15,7 @@ constexpr double kInSight = 75;
 constexpr float kCornerFree = 10.5F;  // around the middle of a crossing nothing stands [m]
 constexpr float kCornerHouse = 27;    // the houses of the other street reach that far
 constexpr float kCellar = 1;          // of houses, below the ground beside a hillside [m]
-constexpr float kTrafficReach = 90;   // nobody is seen beyond [m]
+constexpr float kTrafficReach = 90;   // no people and cars beyond [m]
 constexpr float kSteep = -0.15F;      // rays that fall faster meet the road soon
 constexpr float kTooNear = 9;         // of traffic to the sensor: it takes another way [m]
 
@@ -109,12 +109,12 @@ void BendInto(const View& view, const Line& line, double straight_anchor, std::s
   }
 }
 
-/// How far `along` is from the middle of the nearest crossing.
+/// The distance of `along` from the middle of the nearest crossing.
 float FromCrossing(double along) {
   return static_cast<float>(std::abs(std::remainder(along - kFirstCrossing, kCrossingSpacing)));
 }
 
-/// Takes away what stands in the other street, or is where the other one has its houses.
+/// Removes shapes that stand in the other street or in its houses.
 void ClearCrossings(const Line& line, double straight_anchor, std::size_t first,
                     std::vector<Shape>* shapes) {
   const auto in_the_way = [&](const Shape& s) {
@@ -202,7 +202,7 @@ void Town::AddMoving(const View& view, const Instant& now, std::vector<Shape>* s
       shapes->end());
 }
 
-/// The distance at which the ray meets the hills, `above` them; none where it does not.
+/// The distance at which the ray meets the hills, `above` them; nothing if it does not.
 float MeetHills(const Terrain::Local& land, const Ray& ray, float above, float reach) {
   constexpr int kMostSteps = 20;
   constexpr float kClose = 0.001F;

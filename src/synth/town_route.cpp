@@ -29,7 +29,7 @@ double Plan(int block) { return kFirstCrossing + kCrossingSpacing * block; }
 struct Leg {
   double u0, v0, du, dv;  // where it begins, and its direction
   double straight;
-  double turn;  // +1: left, -1: right, 0: none
+  double turn;  // +1: left, -1: right, 0: straight on
 };
 
 int Sign(int v) { return (v > 0) - (v < 0); }

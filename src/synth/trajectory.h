@@ -21,7 +21,7 @@ class Route {
     double bank = 0;      // rise to the left
     double distance = 0;  // driven since the start [m]
   };
-  /// Place of a car that wants to drive at `speed_mps` and slows down for corners.
+  /// Place of a car with the wanted speed `speed_mps`, slower in corners.
   virtual Place At(double seconds) const = 0;
 };
 
@@ -31,7 +31,7 @@ struct TrajectorySettings {
   double sensor_height_m = 1.9;        // above the road
   double sway_m = 0.25;                // how far the driver wanders off the centre
   double bounce = 1;                   // body motion, 1 on asphalt
-  std::shared_ptr<const Route> route;  // of the lane's centre; none: along x at constant speed
+  std::shared_ptr<const Route> route;  // of the lane's centre; empty: along x at constant speed
 };
 
 /// Sway and bounce are functions of the distance driven, so a sensor that stands still does not

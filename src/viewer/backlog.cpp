@@ -35,7 +35,7 @@ void Backlog::Push(SharedSlice slice) {
   }
   bytes_ += CostOf(*slice);
   slices_.push_back(std::move(slice));
-  // What nothing refers to was only to be shown.
+  // A slice without references to it was only for display.
   for (auto it = slices_.begin(); it != slices_.end();)
     it = (*it)->blocks.empty() && !IsRecent(**it) ? Erase(it) : std::next(it);
   while (bytes_ > most_bytes_) Erase(slices_.begin());
@@ -53,7 +53,7 @@ Backlog::Iterator Backlog::Erase(Iterator slice) {
   return slices_.erase(slice);
 }
 
-/// What waits of the key's place, up to it.
+/// Erases the slices of the key's place, up to the key.
 void Backlog::EraseBefore(const Slice& key) {
   for (auto it = slices_.begin(); it->get() != &key;)
     it = (*it)->id.index == key.id.index ? Erase(it) : std::next(it);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Slices that nobody has decoded yet: what a decoder that begins late needs to follow the stream.
+// Undecoded slices: what a decoder that begins late needs to follow the stream.
 #pragma once
 #include <cstddef>
 #include <list>
@@ -8,20 +8,20 @@
 
 namespace lidar::viewer {
 
-/// An encoder refers to ever newer slices of a place: where it refers to one that stands alone, all
-/// of that place before it are needed no more.
+/// An encoder refers to ever newer slices of a place: if it refers to one that stands alone, all
+/// earlier ones of that place are no longer needed.
 class Backlog {
  public:
   explicit Backlog(std::size_t most_bytes) : most_bytes_(most_bytes) {}
 
   /// Forgets what is needed no more, and the oldest above the bound.
   void Push(SharedSlice slice);
-  /// The oldest; null where there is none.
+  /// The oldest; null if it is empty.
   SharedSlice Pop();
 
   bool empty() const { return slices_.empty(); }
   std::size_t size() const { return slices_.size(); }
-  /// It soon has to forget what is needed: a decoder should read it.
+  /// True if it soon has to forget needed slices: a decoder should read it.
   bool is_full() const { return bytes_ > most_bytes_ / 2; }
   /// The slice is of one of the two newest scans, and still worth showing.
   bool IsRecent(const Slice& slice) const {

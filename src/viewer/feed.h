@@ -14,7 +14,7 @@
 
 namespace lidar::viewer {
 
-/// A message to viewers. What it holds beside that is the caller's.
+/// A message to viewers; the caller may derive from it.
 struct Slice {
   virtual ~Slice() = default;
   SliceId id;
@@ -36,7 +36,7 @@ class RecentScans {
     std::uint32_t number = 0;
     std::map<std::uint32_t, Forms> slices;  // by their place
   };
-  /// Forgets scans that are older than the two newest. A slice of those comes too late.
+  /// Forgets scans that are older than the two newest; their slices come too late.
   void Add(SharedSlice slice);
   /// The oldest first.
   const std::deque<Scan>& scans() const { return scans_; }
@@ -49,8 +49,8 @@ class Feed {
  public:
   explicit Feed(DataRate max_bitrate) : pace_(max_bitrate) {}
 
-  /// What is to be sent now, in this order; it counts as sent. To be asked when a slice has come,
-  /// when the viewer has drawn one, and now and then.
+  /// Returns what is to be sent now, in this order; it counts as sent. Call it when a slice has
+  /// come, when the viewer has drawn one, and now and then.
   std::vector<SharedSlice> Take(Time now, const RecentScans& recent);
   void OnDrawn(Time now, SliceId slice) { pace_.OnDrawn(now, slice); }
   /// The viewer's decoder lacks something: it gets slices that stand alone.

@@ -8,7 +8,7 @@ namespace {
 
 /// A delay that near to the shortest one confirms it: a page draws once a frame.
 constexpr Duration kSameDelay = std::chrono::milliseconds(20);
-/// What max-bitrate may be exceeded by for a moment: a scan comes at once.
+/// A scan comes at once, so this much may exceed max-bitrate for a moment.
 constexpr Duration kCredit = std::chrono::milliseconds(100);
 
 }  // namespace
@@ -56,7 +56,7 @@ void Pace::OnDrawn(Time now, SliceId slice) {
     LearnRate(now, (acknowledged_ - newest.acknowledged_before) / since);
 }
 
-/// Where nothing else was on the way the delay is that of the path, whatever it was before.
+/// The delay without other traffic is that of the path, whatever it was before.
 void Pace::LearnDelay(Time now, Duration delay, bool alone) {
   const bool is_old = now - shortest_at_ > kDelayMemory && alone;
   if (shortest_ && !is_old && delay > *shortest_ + kSameDelay) return;

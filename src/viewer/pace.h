@@ -35,12 +35,12 @@ class Pace {
   DataRate rate() const { return rate_.empty() ? DataRate() : rate_.front().rate; }
   std::optional<Duration> shortest_delay() const { return shortest_; }
 
-  /// What a viewer may have before its first acknowledgement.
+  /// The number of scans that a viewer may have before its first acknowledgement.
   static constexpr unsigned kFirstScans = 2;
   static constexpr Duration kSlack = std::chrono::milliseconds(100);
   /// Rates older than that count no more.
   static constexpr Duration kRateMemory = std::chrono::seconds(2);
-  /// The shortest delay is measured anew so often, with nothing else on the way.
+  /// The shortest delay is measured anew this often, without other traffic.
   static constexpr Duration kDelayMemory = std::chrono::seconds(30);
   /// A viewer that owes an acknowledgement for so long is hidden, or gone.
   static constexpr Duration kPatience = std::chrono::seconds(2);
@@ -52,7 +52,7 @@ class Pace {
     Time at;
     DataSize acknowledged_before;  // acknowledged in all when it was sent,
     Time acknowledged_at;          // and since when
-    bool alone = false;            // nothing else was on the way
+    bool alone = false;            // no other traffic was under way
   };
   struct Rate {
     DataRate rate;
@@ -70,7 +70,7 @@ class Pace {
   DataSize unacknowledged_;
   DataSize acknowledged_;
   Time acknowledged_at_{};
-  std::deque<Rate> rate_;  // the largest first, each of those after it newer
+  std::deque<Rate> rate_;  // the largest first, each later one newer
   std::optional<Duration> shortest_;
   Time shortest_at_{};
   unsigned begun_ = 0;

@@ -13,19 +13,19 @@ namespace lidar::viewer {
 /// the stream is about as large as the robot's. For one thread at a time.
 class Recoder {
  public:
-  /// None where `format` has no ranges.
+  /// Returns nothing if `format` has no ranges.
   static std::optional<Recoder> Create(const codec::CloudFormat& format);
 
-  /// What a decoder gave: its points, as they lie in memory, and what they were.
+  /// A decoder's output: points as they lie in memory, and their properties.
   struct Decoded {
     ByteView points;
     codec::SliceDecoder::Shape shape;
     codec::SliceDecoder::Quality quality;
     std::size_t coded_size = 0;  // bytes
   };
-  /// False where it cannot be coded.
+  /// Returns false if it cannot be coded.
   bool Encode(const Decoded& slice, std::vector<std::uint8_t>* out);
-  /// The width of the grid, in those of the robot's.
+  /// The width of the grid in grids of the robot.
   double coarseness() const { return coarseness_; }
 
  private:

@@ -8,4 +8,5 @@ failed=0
 for rule in dependencies.py packaging.py pages.py paths.py reference.py versions.py links.sh widths.sh; do
   "$here/$rule" "$root" || failed=1
 done
+"$here/words.py" || failed=1
 exit $failed

@@ -319,6 +319,7 @@ PLANTED = [
     ("words", "src/base/a.h", "// None where it is empty.", 'a comment begins with "None"'),
     ("words", "gst/alpha/a.h", "int a = 1;  // In the order of b.", 'a comment begins with "In"'),
     ("words", "src/base/a.h", "constexpr int kLong = 1;", "kLong says nothing by itself"),
+    ("words", "src/base/a.h", "// A list that nobody reads.", '"nobody" is a person'),
     ("widths", "docs/a.md", "word " * 21, "docs/a.md:1: wider"),
     ("widths", "tests/data/a.md", "word " * 21, "tests/data/a.md:1: wider"),
 ]

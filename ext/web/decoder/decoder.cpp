@@ -22,7 +22,7 @@ constexpr std::uint32_t kMostSliceBytes = 16U << 20;
 constexpr std::uint32_t kMostPoints = 1U << 20;
 constexpr float kMetresPerMm = 1e-3F;
 
-/// What a slice gives; decoder.js reads it word by word.
+/// A decoded slice; decoder.js reads it word by word.
 struct Slice {
   std::uint32_t count = 0;       // of points
   const void* points = nullptr;  // Point
@@ -159,7 +159,7 @@ EXPORT(allocate) void* Allocate(std::uint32_t size) {
   return size <= kMostSliceBytes ? ::operator new(size) : nullptr;
 }
 EXPORT(release) void Release(void* memory) { ::operator delete(memory); }
-/// Null for a sensor model that does not parse; none of `size` 0 is of points.
+/// Returns null for a sensor model that does not parse; `size` 0 has none and is for points.
 EXPORT(open)
 Decoder* Open(const std::uint8_t* model, std::uint32_t size, std::uint32_t max_points) {
   std::optional<SensorModel> sensor;

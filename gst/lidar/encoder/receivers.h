@@ -10,8 +10,8 @@
 
 namespace lidar::gst {
 
-/// True if data of `src` reach one place at most: no element downstream has two outputs for them. A
-/// second place would not report what it lacks.
+/// Returns true if data of `src` reach one place at most: no element downstream has two outputs for
+/// them. A second place would not report what it lacks.
 bool HasOneWay(GstPad* src);
 
 /// Events come in any thread; the streaming thread calls Take().

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// What scanassembler remembers.
+// The state of scanassembler.
 #pragma once
 #include <gst/gst.h>
 
@@ -37,7 +37,7 @@ struct AssemblerState {
   bool caps_sent = false;
   EventPtr early_segment;           // waits for the caps
   std::optional<Latency> upstream;  // once it was asked
-  GstClockTime scan_latency = 0;    // what the latency query adds for a scan, without max-wait
+  GstClockTime scan_latency = 0;    // latency of a scan in the latency query, without max-wait
   GstSegment segment;
   DeadlineTimer timer;
 

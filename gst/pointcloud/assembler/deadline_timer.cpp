@@ -8,7 +8,7 @@ bool DeadlineTimer::Wait(std::unique_lock<std::mutex>* lock, GstElement* element
   changed_.wait(*lock, [&] { return flushing_ || GST_CLOCK_TIME_IS_VALID(next()); });
   if (flushing_) return false;
   GstClock* clock = gst_element_get_clock(element);
-  if (clock == nullptr) {  // Not playing yet; nothing is late before.
+  if (clock == nullptr) {  // No scan is late before PLAYING.
     changed_.wait(*lock);
     return false;
   }

@@ -12,9 +12,9 @@ namespace lidar::gst {
 /// Every call is made with the same mutex held, which guards the deadlines too.
 class DeadlineTimer {
  public:
-  /// Waits, with the mutex let go, until the earliest deadline, given by `next` in the element's
-  /// running time (NONE: there is none). True when it has passed; false where something else woke
-  /// the thread, which then looks at flushing() and waits anew.
+  /// Waits without the mutex until the earliest deadline, given by `next` in the element's running
+  /// time (NONE: no deadline). Returns true when it has passed; false if the thread was woken,
+  /// which then looks at flushing() and waits anew.
   bool Wait(std::unique_lock<std::mutex>* lock, GstElement* element,
             const std::function<GstClockTime()>& next);
   /// The deadlines have changed, or the element has a clock now; `next` is the earliest.

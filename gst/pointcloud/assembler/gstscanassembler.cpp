@@ -54,7 +54,7 @@ static const std::array<Property<Settings>, 2> kProperties = {{
     {"stats", "Counters: scans, incomplete, late-slices, duplicate-slices, invalid-slices", Stats},
 }};
 
-/// Caps of a scan: those of its slices but for the width.
+/// Caps of a scan: those of its slices with the width of the scan.
 static void PushCaps(GstLidarScanAssembler* self, guint width) {
   State& state = *self->state;
   CapsPtr caps;
@@ -281,7 +281,7 @@ static gboolean SinkEvent(GstPad* pad, GstObject* parent, GstEvent* event) {
       PushAll(self);
       break;
     case GST_EVENT_GAP: {
-      // While a scan is open its own flag tells of the gap.
+      // The flag of an open scan marks the gap.
       std::unique_lock lock(state.mutex);
       if (state.queue.empty()) break;
       lock.unlock();

@@ -11,7 +11,7 @@ namespace {
 constexpr guint kMaxSlices = 4096;
 constexpr gsize kMaxScanSize = gsize{1} << 29;
 
-/// Columns of a full turn, as far as the caps tell.
+/// Columns of a full turn, if the caps have them.
 guint ColumnsPerTurn(const CloudInfo& info, guint slices) {
   return info.sensor_model ? info.sensor_model->columns_per_scan : info.width * slices;
 }
@@ -79,7 +79,7 @@ void ScanBuilder::TakeTimes(const SliceView& slice) {
   GstClockTime sweep = GST_BUFFER_DURATION(slice.buffer);
   if (!GST_CLOCK_TIME_IS_VALID(sweep)) sweep = GST_CLOCK_TIME_IS_VALID(scan) ? scan / slices : 0;
   const GstClockTime before = sweep * slice.meta.slice_index;
-  // The first slice knows best; until it comes, count back from another.
+  // The first slice has the exact time; until it comes, count back from another.
   if (slice.meta.slice_index == 0 || !GST_CLOCK_TIME_IS_VALID(pts_))
     pts_ = Back(GST_BUFFER_PTS(slice.buffer), before);
   if (slice.meta.slice_index == 0 || !GST_CLOCK_TIME_IS_VALID(capture_))

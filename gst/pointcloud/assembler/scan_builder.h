@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// One scan in the making: slices go in, in any order, a whole cloud comes out.
+// An unfinished scan: takes slices in any order, and gives a whole cloud.
 #pragma once
 #include <vector>
 
@@ -35,12 +35,12 @@ class ScanBuilder {
   explicit ScanBuilder(const SliceView& slice);
 
   guint scan_id() const { return scan_id_; }
-  /// True where the slice is of this scan and cut as the others were.
+  /// Returns true if the slice is of this scan and cut as the others were.
   bool Fits(const SliceView& slice) const;
   /// False for a duplicate, or where memory cannot be mapped.
   bool Add(const SliceView& slice);
   bool complete() const { return present_count_ == present_.size(); }
-  /// PTS of the scan's first column, known or counted back; NONE where no slice had one.
+  /// PTS of the scan's first column, known or counted back; NONE if no slice had one.
   GstClockTime pts() const { return pts_; }
   GstClockTime duration() const { return duration_; }
   /// Missing columns are zero. The builder is spent.

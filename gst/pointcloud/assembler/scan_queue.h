@@ -18,7 +18,7 @@ struct ScanCounters {
 };
 
 /// At most two scans are open: the one that is swept, and the one before, whose last slices may
-/// still be under way. Scans leave in order. Knows no clock: times are the caller's running time.
+/// still be under way. Scans leave in order. It has no clock: times are the caller's running time.
 class ScanQueue {
  public:
   using Finished = std::vector<FinishedScan>;
@@ -32,7 +32,7 @@ class ScanQueue {
   /// Forgets everything, as after a flush.
   void Clear();
 
-  /// Earliest deadline, NONE where there is none.
+  /// Earliest deadline, NONE if there is none.
   GstClockTime NextDeadline() const;
   bool empty() const { return open_.empty(); }
   const ScanCounters& counters() const { return counters_; }

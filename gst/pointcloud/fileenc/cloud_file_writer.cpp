@@ -91,7 +91,7 @@ class PointWriter {
     for (gsize i = 0; i < cloud_.info->Points(); ++i) count += HasReturn(At(i)) ? 1U : 0U;
     return count;
   }
-  /// Appends the points; those without a return as NaN, or not at all.
+  /// Appends the points; missing returns become NaN, or are left out.
   void AppendAll(bool keep_missing, std::string* out) const {
     for (gsize i = 0; i < cloud_.info->Points(); ++i) {
       const bool missing = !HasReturn(At(i));

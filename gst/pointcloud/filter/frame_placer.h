@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Where clouds are to go, by the transforms of an inbox, and those for which there are none.
+// Places clouds into a frame by the transforms of an inbox, and counts clouds without a transform.
 #pragma once
 #include <gst/gst.h>
 
@@ -22,9 +22,9 @@ class FramePlacer {
 
   /// Clouds go to the frame `target`, or stay in theirs where it is empty.
   void SetTarget(std::string target, std::chrono::nanoseconds patience);
-  /// Finds the transform that takes a cloud of `frame` to the target. None where there is no such
-  /// transform: this is counted, and reported for `element` once until there is one. FLUSHING where
-  /// a flush or the end of the stream cut the wait short.
+  /// Finds the transform that takes a cloud of `frame` to the target. Without it returns nothing,
+  /// counts that, and warns for `element` once until there is one. Returns FLUSHING if a flush or
+  /// the end of the stream cut the wait short.
   GstFlowReturn Place(GstElement* element, GstBuffer* cloud, const std::string& frame,
                       std::optional<Transform>* transform);
   void Clear();

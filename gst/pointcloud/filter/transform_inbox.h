@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// What the pads for transforms of an element have brought, and the pads themselves.
+// The pads for transforms of an element, and the transforms that they have brought.
 #pragma once
 #include <gst/gst.h>
 
@@ -14,7 +14,7 @@
 
 namespace lidar::gst {
 
-/// Returns nothing where the buffer has none. Differences of these times do not overflow.
+/// Returns nothing if the buffer has none. Differences of these times do not overflow.
 std::optional<Time> CaptureTimeOf(GstBuffer* buffer);
 
 /// For any number of threads.
@@ -25,8 +25,8 @@ class TransformInbox {
   GstPad* AddPad(GstElement* element, GstPadTemplate* pad_template, const gchar* name);
   void ReleasePad(GstElement* element, GstPad* pad);
 
-  /// What takes points of `source` to `target`. Waits for a transform that is missing, but not for
-  /// one that has already been waited for in vain.
+  /// Finds the transform of points from `source` to `target`. Waits for a missing transform, but
+  /// not again for one that it has waited for in vain.
   TransformTree::Answer Find(const std::string& target, const std::string& source,
                              std::optional<Time> at, std::chrono::nanoseconds timeout);
   /// Find() waits no longer, until Interrupt(false).

@@ -69,7 +69,7 @@ struct Head {
   GstClockTime duration = 0;
 };
 
-/// What goes out next.
+/// The next output.
 struct Merged {
   std::vector<std::uint8_t> points;
   std::string fields;  // of the first pad that gave a cloud
@@ -99,8 +99,8 @@ static void MergePadSetCaps(GstLidarPointCloudMergePad* pad, GstCaps* caps) {
   pad->state->plan.reset();
 }
 
-/// The returns in `buffer` with `fields`, in the common frame; null where that cannot be: `why`
-/// then says so in words for a user. No fields: those of the cloud.
+/// Returns the returns of `buffer` with `fields`, or without fields those of the cloud, in the
+/// common frame; null if that cannot be: `why` then says so for a user.
 static BufferPtr MergePadRead(GstLidarPointCloudMergePad* pad, GstBuffer* buffer,
                               const std::string& fields, std::string* why) {
   MergePadState& state = *pad->state;
@@ -123,7 +123,7 @@ static BufferPtr MergePadRead(GstLidarPointCloudMergePad* pad, GstBuffer* buffer
   return state.plan->Apply(buffer);
 }
 
-/// Fields of what MergePadRead() gives, as caps have them; none before.
+/// Fields of the result of MergePadRead(), as caps have them; nothing before.
 static std::optional<std::string> MergePadFields(GstLidarPointCloudMergePad* pad) {
   if (!pad->state->plan) return std::nullopt;
   return pad->state->plan->fields();
@@ -166,7 +166,7 @@ static GstClockTime RunningTime(GstAggregatorPad* pad, GstBuffer* buffer) {
   return GST_CLOCK_TIME_IS_VALID(time) ? time : 0;
 }
 
-/// What waits on each pad.
+/// The first buffer on each pad.
 static std::vector<Head> Heads(const std::vector<PadPtr>& pads) {
   std::vector<Head> heads;
   for (const auto& owner : pads) {
@@ -182,7 +182,7 @@ static std::vector<Head> Heads(const std::vector<PadPtr>& pads) {
   return heads;
 }
 
-/// Drops scans of earlier turns than the newest; true where there were any.
+/// Drops scans of earlier turns than the newest; true if there were any.
 static bool DropOld(GstLidarPointCloudMerge* self, const std::vector<Head>& heads) {
   GstClockTime newest = 0;
   for (const Head& head : heads) newest = std::max(newest, head.time);
@@ -209,7 +209,7 @@ static void ReportSlices(GstLidarPointCloudMerge* self, GstBuffer* buffer) {
 static bool AddCloud(GstLidarPointCloudMerge* self, const Head& head, Merged* merged) {
   const BufferPtr buffer(gst_aggregator_pad_pop_buffer(GST_AGGREGATOR_PAD(head.pad)));
   if (!buffer) return true;
-  // What the base class makes of a GAP event.
+  // The base class makes an empty buffer of a GAP event.
   if (gst_buffer_get_size(buffer.get()) == 0 &&
       GST_BUFFER_FLAG_IS_SET(buffer.get(), GST_BUFFER_FLAG_GAP))
     return true;

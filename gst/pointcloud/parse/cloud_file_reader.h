@@ -12,7 +12,7 @@
 
 namespace lidar::gst {
 
-/// What caps say a file is; none for caps of raw clouds.
+/// The file type of caps; nothing for caps of raw clouds.
 std::optional<CloudFileType> CloudFileTypeOf(const GstCaps* caps);
 const char* NameOf(CloudFileType type);
 
@@ -20,11 +20,11 @@ struct FileBuffer {
   CloudInfo info;  // of the cloud; width 0: it is empty
   BufferPtr buffer;
 };
-/// Returns nothing where `file` cannot be read; `why` then says so in words for a user. x, y and z
+/// Returns nothing if `file` cannot be read; `why` then says so in words for a user. x, y and z
 /// become F32 side by side, numbers little-endian.
 std::optional<FileBuffer> ReadCloudFile(CloudFileType type, ByteView file, std::string* why);
 
-/// Lets typefind know those that have a header.
+/// Registers the types that have a header with typefind.
 gboolean RegisterCloudFileTypes(GstPlugin* plugin);
 
 }  // namespace lidar::gst

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Times of clouds that come from files: those that upstream gives, else by their number.
+// Times of clouds that come from files: upstream's times, else by number.
 #pragma once
 #include <gst/gst.h>
 
@@ -49,12 +49,12 @@ class CloudStamper {
   /// Clouds are all of one size, in bytes; 0: they are not. Seeks and queries are ours where they
   /// are, and come as bytes.
   void SetCloudSize(gsize bytes);
-  /// A cloud without a capture time gets one, as if its sensor had begun when the first cloud came.
-  /// One that is no slice becomes a scan with its number.
+  /// Gives a cloud without a capture time one, as if its sensor had begun when the first cloud
+  /// came. A cloud that is no slice becomes a scan with its number.
   void Stamp(GstBuffer* cloud);
   /// A cloud that is left out keeps its place in time.
   void LeaveOut() { ++place_.next; }
-  /// Whether the next cloud went before a seek that goes on from where it was.
+  /// True if the next cloud went out before a seek that resumes at the old place.
   bool HasGone() const { return place_.next < place_.shown; }
   void Flush(bool restarts_time);
   void Reset();

@@ -31,22 +31,22 @@ class CloudTimeline {
 
   /// Clouds by their numbers.
   struct Place {
-    guint64 next = 0;   // the one that the next bytes are
-    guint64 shown = 0;  // those before have gone, though their bytes may come again
+    guint64 next = 0;   // number of the next cloud
+    guint64 shown = 0;  // earlier clouds have gone, though their bytes may come again
   };
   /// Turns a segment in bytes into one in time, which goes on where the last cloud ended. Sets
   /// `place` to where it begins, as far as that is known.
   EventPtr ToTime(GstEvent* segment, Place* place);
-  /// SEGMENT_DONE as those behind the parser want it; takes the event.
+  /// SEGMENT_DONE in the time of downstream; takes the event.
   EventPtr EndInTime(GstEvent* done) const;
   /// A cloud has gone that ends then, or with the segment.
   void NotePosition(GstClockTime end);
   /// The running time begins anew.
   void RestartTime();
 
-  /// True where the query has its answer. `sinkpad` is where the bytes come in.
+  /// Returns true if the query has its answer. `sinkpad` is where the bytes come in.
   bool Answer(GstPad* sinkpad, GstQuery* query) const;
-  /// Returns nothing where the seek is not for us; else whether upstream has done it.
+  /// Returns nothing if the seek is not for us; else whether upstream has done it.
   std::optional<bool> Seek(GstPad* sinkpad, GstEvent* event);
 
  private:

@@ -55,7 +55,7 @@ struct State {
   CloudStamper stamper;  // its timeline has a lock of its own
   // Only the streaming thread uses these, and the rest of the stamper.
   std::optional<CloudInfo> info;             // of the file; width 0: not known
-  std::optional<lidar::CloudFileType> type;  // none: raw points
+  std::optional<lidar::CloudFileType> type;  // empty: raw points
   CapsPtr caps;
   guint out_width = 0;
   std::optional<gsize> file_size;  // of a file that comes in pieces; 0: pieces are clouds
@@ -82,12 +82,12 @@ GST_ELEMENT_REGISTER_DEFINE(pointcloudparse, "pointcloudparse", GST_RANK_NONE,
 
 static State& StateOf(gpointer self) { return *GST_LIDAR_POINT_CLOUD_PARSE(self)->state; }
 
-/// Bytes of one cloud in a stream that is cut anywhere; 0 where every buffer is a cloud.
+/// Bytes of one cloud in a stream that is cut anywhere; 0 if every buffer is a cloud.
 static gsize CloudSize(GstLidarPointCloudParse* self) {
   State& state = *self->state;
   if (!state.type && state.info->width > 0) return state.info->FrameSize();
   if (!state.file_size) {
-    // filesrc knows the size of its file and reads it in blocks; multifilesrc gives whole files.
+    // filesrc has the size of its file and reads it in blocks; multifilesrc gives whole files.
     gint64 size = 0;
     const bool known = gst_pad_peer_query_duration(self->sinkpad, GST_FORMAT_BYTES, &size);
     state.file_size = known && size > 0 ? static_cast<gsize>(size) : 0;

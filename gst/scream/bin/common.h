@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// What screamsink and screamsrc share: children by name, the socket that two of them use, and SRTP.
+// The common part of screamsink and screamsrc: children by name, their shared socket, and SRTP.
 #pragma once
 #include <gio/gio.h>
 #include <gst/gst.h>
@@ -23,13 +23,13 @@ struct BinState {
   std::string srtp_key;  // the property as it was when the key was taken
 };
 
-/// Makes a child called like its factory and adds it; NULL where the plugin is missing.
+/// Makes a child called like its factory and adds it; NULL if the plugin is missing.
 GstElement* AddChild(GstElement* bin, const char* factory);
 struct Child {
   GstElement* element;
   const char* factory;
 };
-/// False, and an error on the bus, where one of `children` is missing.
+/// Returns false, with an error on the bus, if one of `children` is missing.
 bool HasChildren(GstElement* bin, std::initializer_list<Child> children);
 /// Gives `socket` to a child that does not own it.
 void GiveSocket(GstElement* child, GSocket* socket);
@@ -52,7 +52,7 @@ GObject* ChildOf(GObject* bin) {
   return element == nullptr ? nullptr : G_OBJECT(element);
 }
 
-/// Gives a bin that runs its new key, once srtp-key was set. One that is refused changes nothing.
+/// Gives a running bin the new srtp-key. A refused key changes nothing.
 template <class Self>
 void ChangeSrtpKey(GObject* bin, GParamSpec* spec) {
   if (g_strcmp0(spec->name, "srtp-key") != 0) return;

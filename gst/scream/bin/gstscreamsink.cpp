@@ -117,7 +117,7 @@ static guint Estimate(GObject* object) {
   return bps;
 }
 
-/// The receiver ends with the sender, and knows how it does, where nobody says otherwise.
+/// The default is a receiver that ends with the sender and gets its reports.
 static const TxSettings& TxDefaults() {
   static const TxSettings defaults = [] {
     TxSettings s;
@@ -289,7 +289,7 @@ static bool Open(GstLidarScreamSink* self) {
   if (links.size() > 1) Bond(self, links, s.bond);
   std::shared_ptr<SrtpLayer> srtp;
   if (!StartSrtp(s.srtp, {GST_ELEMENT(self), true, SrtpPlacesOf(self)}, &srtp)) return false;
-  // Over several links packets are protected before they come to screamtx.
+  // Several links share packets that are protected before screamtx.
   const bool adds = srtp && links.size() < 2;
   const guint overhead = OverheadOf(peer.get()) + (adds ? srtp->overhead() : 0);
   g_object_set(self->tx, "packet-overhead", overhead, nullptr);

@@ -18,8 +18,8 @@ struct BondAddress {
 };
 
 /// HOST:PORT or HOST:PORT@INTERFACE or HOST:PORT@LOCAL-ADDRESS, with commas between; an IPv6 host
-/// in brackets. None, and what is wrong, for anything else, for more than kMaxLinks, or for one
-/// twice.
+/// in brackets. Returns nothing and sets the error for other text, more than kMaxLinks, or a
+/// repeated link.
 std::optional<std::vector<BondAddress>> ParseBondAddresses(const std::string& text,
                                                            std::string* error);
 

@@ -31,7 +31,7 @@ constexpr Duration kWatchEvery = std::chrono::milliseconds(100);
 struct BondStream {
   GstPad* sink = nullptr;
   std::vector<GstPad*> srcs;                   // by link
-  std::vector<GstLidarTargetBitrate> targets;  // that the links told
+  std::vector<GstLidarTargetBitrate> targets;  // as the links report them
   std::vector<std::string> reasons;            // of these
   guint told = 0;                              // to the encoder [bit/s]
   std::optional<Time> key_unit_at;             // when the encoder was asked for one
@@ -187,7 +187,7 @@ static gboolean BondSinkEvent(GstPad* pad, GstObject* parent, GstEvent* event) {
   return taken;
 }
 
-/// The combined target of a stream, where the encoder has not heard of it. With the lock held.
+/// The combined target of a stream, if the encoder does not have it yet. The lock is held.
 static EventPtr DueTarget(BondShared& shared, BondStream& stream) {
   std::vector<DataRate> rates;
   for (const GstLidarTargetBitrate& t : stream.targets)
@@ -208,7 +208,7 @@ static EventPtr DueTarget(BondShared& shared, BondStream& stream) {
   return EventPtr(gst_lidar_event_new_target_bitrate(&target));
 }
 
-/// Receivers ask for a key unit over each link; the encoder hears of it once.
+/// Receivers ask for a key unit over each link; the encoder gets one request.
 static bool IsRepeatedRequest(BondShared& shared, BondStream& stream, GstEvent* event) {
   if (!gst_video_event_is_force_key_unit(event)) return false;
   const Time now = shared.Now();
@@ -253,7 +253,7 @@ struct BondWork {
   std::vector<std::pair<PadPtr, EventPtr>> targets;
 };
 
-/// With the lock held.
+/// The lock is held.
 static BondWork TakeWork(BondState& state) {
   BondShared& shared = *state.shared;
   BondWork work;

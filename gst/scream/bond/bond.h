@@ -5,8 +5,8 @@
 //                        └───▶ src_1 ── screamtx ── ecnudpsink
 //
 // Threads: streaming threads push packets where the scheduler says; a thread of its own pushes
-// copies, and tells encoders the target. One mutex guards the scheduler and what is kept for
-// copies; nobody holds it while pushing. The screamtx call in with their own lock held.
+// copies, and sends encoders the target. One mutex guards the scheduler and what is kept for
+// copies; no thread holds it while pushing. The screamtx call in with their own lock held.
 #pragma once
 #include <gst/gst.h>
 
@@ -31,9 +31,9 @@ namespace lidar::gst {
 /// BondRelease().
 GstLidarScreamBond* NewBond(const std::vector<GstLidarScreamTx*>& links, bonding::Method method,
                             bonding::TargetRule rule);
-/// RTP is protected before it goes to a link, so that all send the same bytes. Below READY.
+/// Protects RTP before it goes to a link, so that all links send the same bytes. Below READY.
 void BondProtect(GstLidarScreamBond* bond, std::shared_ptr<SrtpLayer> layer);
-/// The links are on their own again. Below READY.
+/// Separates the links again. Below READY.
 void BondRelease(GstLidarScreamBond* bond);
 /// A sink pad, linked to a pad of each link: `tx_pads` in the order of the links.
 GstPad* BondAddStream(GstLidarScreamBond* bond, const std::vector<GstPad*>& tx_pads);
@@ -44,7 +44,7 @@ std::vector<PadPtr> BondedPads(GstPad* sink);
 
 /// Packets cannot leave by a link at all, or can again.
 void BondSetUsable(GstLidarScreamBond* bond, std::size_t link, bool usable);
-/// What the bond's thread calls each 0.1 s while it runs, without a lock. Below READY.
+/// Sets what the bond's thread calls each 0.1 s while it runs, without a lock. Below READY.
 void BondSetWatch(GstLidarScreamBond* bond, std::function<void()> watch);
 
 struct BondLinkStats {

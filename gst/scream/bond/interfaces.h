@@ -14,7 +14,7 @@ namespace lidar::gst {
 class Interfaces {
  public:
   static Interfaces Now();
-  /// Why no packet can leave by the link for a peer of that family; empty where one can.
+  /// Why no packet can leave by the link for a peer of that family; empty if one can.
   std::string Lacks(const BondAddress& link, GSocketFamily family) const;
 
   struct Interface {

@@ -36,7 +36,7 @@ GType BondTargetType() {
 // A link whose packets failed is tried again after so long.
 constexpr gint64 kRetryUs = 1 * G_USEC_PER_SEC;
 
-/// Without a socket, and with the reason, where the name is not found or none opens.
+/// Returns no socket, and the reason, if the name is not found or no socket opens.
 OpenLink Open(const BondAddress& address, std::string* why) {
   OpenLink link{address, nullptr, nullptr, true};
   GError* error = nullptr;

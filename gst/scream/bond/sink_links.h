@@ -33,7 +33,7 @@ struct OpenLink {
 /// cannot carry packets now. Empty after an element error, where none can or the text is wrong.
 std::vector<OpenLink> OpenLinks(GstElement* bin, const std::string& addresses);
 
-/// What stands between the pads of a bin and the network: the bond, and the elements of each link.
+/// The elements between the pads of a bin and the network: the bond, and the elements of each link.
 class SinkLinks {
  public:
   struct Chain {
@@ -48,14 +48,14 @@ class SinkLinks {
   SinkLinks(const SinkLinks&) = delete;
   SinkLinks& operator=(const SinkLinks&) = delete;
 
-  /// The pad that packets for `tx_pad`, one of the first link's, go to.
+  /// Adds a stream; returns its pad for the packets of `tx_pad`, a pad of the first link.
   GstPad* Add(GstPad* tx_pad);
   /// Takes it away; the first link's pad remains, and is returned.
   PadPtr Remove(GstPad* sink);
-  /// By link.
+  /// The chains by link.
   const std::vector<Chain>& chains() const { return chains_; }
-  /// Whether a warning of that element tells nothing: scream-link-changed tells of what cannot be
-  /// sent, and a silent link is none of the user's business where another one works.
+  /// True for a warning that adds nothing: scream-link-changed reports what cannot be sent, and a
+  /// silent link does not matter if another one works.
   bool IsNoNews(GstObject* warns) const;
   /// Packets are protected before they come to the links.
   void Protect(std::shared_ptr<SrtpLayer> layer) { BondProtect(bond_, std::move(layer)); }
@@ -63,7 +63,7 @@ class SinkLinks {
   void AddStats(GstStructure* stats) const;
 
  private:
-  /// What a link's socket has sent, and not sent.
+  /// Counts of packets that a link's socket sent and failed to send.
   struct Health {
     guint64 sent = 0;
     guint64 errors = 0;

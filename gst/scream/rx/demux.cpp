@@ -31,7 +31,7 @@ CapsPtr CapsOfValue(const GValue* value) {
 /// Payload types that read as RTCP with the marker bit (RFC 5761, section 4).
 constexpr bool CollidesWithRtcp(unsigned type) { return type >= 64 && type <= 95; }
 
-/// What is wrong with one field of pt-map, in words; NULL where nothing is.
+/// Describes the fault of one field of pt-map; NULL without a fault.
 const char* FaultOf(std::string_view name, const GValue* value) {
   unsigned type = 0;
   const auto end = std::from_chars(name.data(), name.data() + name.size(), type).ptr;
@@ -42,7 +42,7 @@ const char* FaultOf(std::string_view name, const GValue* value) {
   return nullptr;
 }
 
-/// The caps of a payload type with the SSRC put in; NULL where pt-map has none.
+/// The caps of a payload type with the SSRC put in; NULL if pt-map has none.
 GstCaps* CapsOf(GstLidarScreamRx* self, const RtpHeader& header) {
   RxState& state = *self->state;
   if (CollidesWithRtcp(header.payload_type)) return nullptr;
@@ -91,7 +91,7 @@ void StartSrc(GstLidarScreamRx* self, const CapsPtr& caps) {
   self->state->src_started = true;
 }
 
-/// Whether somebody takes what `pad` gives; a ghost pad that nobody linked does not.
+/// Returns true if `pad` leads to an element; an unlinked ghost pad does not.
 bool LeadsToSomebody(GstPad* pad) {
   const PadPtr peer(gst_pad_get_peer(pad));
   if (!peer || !GST_IS_PROXY_PAD(peer.get())) return peer != nullptr;
@@ -175,7 +175,8 @@ static GstFlowReturn Refuse(GstLidarScreamRx* self, GstBuffer* buffer) {
   return GST_FLOW_OK;
 }
 
-/// A stream that nobody takes is dropped, as GStreamer does with pads that nobody links; said once.
+/// Warns once of a stream that no pad takes, and that is dropped as GStreamer drops data of
+/// unlinked pads.
 static void WarnOfUntaken(GstLidarScreamRx* self, const RtpHeader& header, GstPad* pad) {
   if (std::exchange(self->state->warned_of_untaken, true)) return;
   GST_ELEMENT_WARNING(self, STREAM, DEMUX,

@@ -89,7 +89,7 @@ void Run(gpointer data) {
   const bool first = !std::exchange(state.rtcp_started, true);
   lock.unlock();
   if (first) StartStream(self);
-  // Feedback that nobody takes does not stop the media.
+  // An unlinked feedback pad does not stop the media.
   const GstFlowReturn flow = gst_pad_push(self->rtcp_src, buffer);
   if (flow == GST_FLOW_FLUSHING || flow == GST_FLOW_EOS) gst_pad_pause_task(self->rtcp_src);
 }
@@ -109,8 +109,8 @@ gboolean RxSrcEvent(GstPad* pad, GstObject* parent, GstEvent* event) {
   const EventPtr owner(event);
   RxState& state = *GST_LIDAR_SCREAM_RX(parent)->state;
   const RxLock lock(state.mutex);
-  // Only the streaming thread knows the pad of an SSRC; asking for all does no harm.
-  // A link in a gap would lose it.
+  // Only the streaming thread has the pad of an SSRC, so it asks for all. A link in a gap would
+  // lose the request.
   for (const auto& [ssrc, last] : state.ssrcs)
     for (std::size_t i = 0; i < std::max<std::size_t>(state.latch.links(), 1); ++i)
       state.key_requests.emplace(ssrc, i);

@@ -37,7 +37,7 @@ GType NumReportsType() {
   return type;
 }
 
-/// What `stats` shows.
+/// The values of `stats`.
 struct Shown {
   scream::FeedbackGenerator::Stats feedback;
   RxCounters own;
@@ -47,7 +47,7 @@ constexpr auto F = At<&Shown::feedback, field>;
 template <auto field>
 constexpr auto O = At<&Shown::own, field>;
 
-/// What came by each link of the peer.
+/// Adds the packets that came by each link of the peer.
 static void AddLinkStats(const LinkReports& reports, GstStructure* stats) {
   using S = LinkReports::LinkStats;
   using G = scream::FeedbackGenerator::Stats;

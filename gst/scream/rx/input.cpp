@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// What enters screamrx: media, which is counted and passed on, and goodbyes.
+// The input of screamrx: media, which is counted and passed on, and goodbyes.
 #include <algorithm>
 
 #include "gst/common/buffer_map.h"
@@ -15,7 +15,7 @@ namespace {
 constexpr std::size_t kMaxSsrcs = 64;
 // A stream without packets for so long does not keep the others from ending.
 constexpr Duration kAlive = std::chrono::seconds(5);
-// A kernel time older than this, or in the future, means that somebody set the system clock.
+// An older kernel time, or a future one, means that the system clock was set.
 constexpr Duration kMaxAge = std::chrono::seconds(1);
 constexpr Duration kMaxApart = std::chrono::milliseconds(1);
 
@@ -36,7 +36,7 @@ Clocks ReadClocks(const RxState& state) {
   return clocks;
 }
 
-/// The kernel's arrival time on the reports' clock, which nobody sets.
+/// The kernel's arrival time on the monotonic clock of the reports.
 Time ArrivalTime(const Clocks& clocks, GstClockTime arrival) {
   if (!GST_CLOCK_TIME_IS_VALID(arrival)) return clocks.now;
   const auto age = Duration{static_cast<std::int64_t>(clocks.unix_now - arrival)};
@@ -60,7 +60,7 @@ PeerLatch::Verdict Judge(RxState& state, Time now, GstBuffer* buffer, const RtpH
   return state.latch.OnPacket(now, packet);
 }
 
-/// Whether a slice that begins here was captured too long ago; none where no slice says.
+/// Returns true if a slice that begins here was captured too long ago; nothing if no slice begins.
 std::optional<bool> BeginsOld(const RxState& state, GstClockTime unix_now, ByteView payload) {
   std::optional<bool> old;
   for (const rtp::Unit& unit : rtp::ParsePayload(payload)) {
@@ -73,8 +73,8 @@ std::optional<bool> BeginsOld(const RxState& state, GstClockTime unix_now, ByteV
   return old;
 }
 
-/// Whether the packet is of a recording, sent again. Only the first packet of a slice says when it
-/// was captured; those behind it share its fate.
+/// Returns true if the packet is of a recording, sent again. Only the first packet of a slice has
+/// its capture time; the following ones share its fate.
 bool IsOld(RxState& state, GstClockTime unix_now, GstBuffer* buffer, const RtpHeader& header) {
   if (state.settings.max_age == Duration{0} || !state.lidar_types[header.payload_type])
     return false;
@@ -88,7 +88,7 @@ bool IsOld(RxState& state, GstClockTime unix_now, GstBuffer* buffer, const RtpHe
   return *begins_old;
 }
 
-/// Counts one packet of media; false where it is to be dropped. With the lock held.
+/// Counts a packet of media; returns false if it is to be dropped. The lock is held.
 bool Account(GstLidarScreamRx* self, const Clocks& clocks, GstBuffer* buffer,
              const RtpHeader& header) {
   RxState& state = *self->state;

@@ -16,15 +16,15 @@
 
 namespace lidar::gst {
 
-/// A link's reports tell of what came by it. The first link may have no address.
+/// A link's reports cover the packets that came by it. The first link may have no address.
 class LinkReports {
  public:
-  /// Of links that are silent, the oldest gives its place to a new one.
+  /// The oldest silent link gives its place to a new one.
   static constexpr std::size_t kMaxLinks = 4;
 
   struct Report {
     scream::CongestionFeedback feedback;
-    GSocketAddress* to;  // not owned; NULL where it is not known
+    GSocketAddress* to;  // not owned; NULL if it is not known
   };
 
   /// Forgets everything.
@@ -39,7 +39,7 @@ class LinkReports {
     scream::FeedbackGenerator::Stats feedback;
   };
   std::vector<LinkStats> stats() const;
-  /// Of all links.
+  /// The sum over all links.
   scream::FeedbackGenerator::Stats Sum() const;
 
  private:
@@ -54,7 +54,7 @@ class LinkReports {
   std::vector<Link> links_;
 };
 
-/// Which packets came already, over whatever link. What is so old that it cannot be told, passes.
+/// Packets that came already, over any link. A packet too old to be remembered passes.
 class SeenPackets {
  public:
   static constexpr int kWindow = 4096;

@@ -2,7 +2,7 @@
 // The inside of screamrx: its state, and the functions its files share.
 //
 // Threads: the sink pad's streaming thread looks at packets and passes them; the task on rtcp_src
-// sends reports when they are due. One mutex guards the state; nobody holds it while pushing
+// sends reports when they are due. One mutex guards the state; no thread holds it while pushing
 // or waiting.
 #pragma once
 #include <gst/base/gstflowcombiner.h>
@@ -75,7 +75,7 @@ struct RxState {
   GstClockID timer = nullptr;  // not owned
   Time waits_until{};
   bool rtcp_started = false;
-  // SSRCs of which somebody downstream needs a key unit, and the links that have not asked yet.
+  // SSRCs that need a key unit, and the links that have not asked yet.
   std::set<std::pair<guint32, std::size_t>> key_requests;
 
   // Only the streaming thread uses what follows

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// What the sender said last of itself and the path.
+// The sender's last report of itself and the path.
 #pragma once
 #include <gst/gst.h>
 

@@ -13,20 +13,21 @@
 
 namespace lidar::gst {
 
-/// A sender protects a packet once and sends the same bytes over its links. SRTP refuses all but
-/// the first as replays, but the receiver must hear of each to judge the links. Bytes that passed
-/// need no second look: they pass again, once for each address.
+/// A sender protects a packet once and sends the same bytes over its links. SRTP refuses copies as
+/// replays, but the receiver needs each to judge the links. Bytes that passed pass again, once for
+/// each address.
 class SrtpCopies {
  public:
   static constexpr std::size_t kMaxDatagrams = 1'024;
   static constexpr std::size_t kMaxBytes = 2 << 20;
   static constexpr std::size_t kMaxAddresses = 4;  // of a datagram
 
-  /// An RTP datagram came. Until another address sends too, nothing is kept.
+  /// Notes an RTP datagram. Keeps nothing until another address sends, too.
   void OnArrival(GstBuffer* datagram);
   /// `datagram` passed as `decoded`.
   void OnPassed(GstBuffer* datagram, GstBuffer* decoded);
-  /// What a refused datagram is a copy of, with its own address, marks and times; else NULL.
+  /// Returns the packet that a refused datagram is a copy of, with the copy's address, marks and
+  /// times; else NULL.
   BufferPtr Take(GstBuffer* datagram);
   void Clear();
 
@@ -37,7 +38,7 @@ class SrtpCopies {
     std::vector<SocketAddressPtr> addresses;
   };
 
-  SocketAddressPtr last_;  // that sent
+  SocketAddressPtr last_;  // sender of the last datagram
   bool several_ = false;
   std::unordered_map<std::uint64_t, Passed> passed_;  // by SSRC and sequence number
   std::deque<std::uint64_t> order_;

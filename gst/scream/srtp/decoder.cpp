@@ -69,7 +69,7 @@ void SrtpDecoder::Start() {
 
 BufferPtr SrtpDecoder::Decode(GstBuffer* datagram) {
   if (!gst_pad_has_current_caps(sink_.get())) Start();
-  // It decodes in place, and frees a buffer that others hold too.
+  // The decoder works in place, and frees a buffer that others hold too.
   gst_pad_chain(sink_.get(), gst_buffer_copy_deep(datagram));
   return std::move(out_);
 }

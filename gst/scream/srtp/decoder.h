@@ -17,7 +17,7 @@ namespace lidar::gst {
 /// it datagrams.
 class SrtpDecoder {
  public:
-  /// Null where the srtp plugin is missing.
+  /// Null if the srtp plugin is missing.
   static std::unique_ptr<SrtpDecoder> Create(GstElement* bin, const SrtpPolicy& policy,
                                              SrtpKey key);
   ~SrtpDecoder();

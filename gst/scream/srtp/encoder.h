@@ -15,7 +15,7 @@ namespace lidar::gst {
 /// Any thread may call.
 class SrtpEncoder {
  public:
-  /// Null where the srtp plugin is missing.
+  /// Null if the srtp plugin is missing.
   static std::unique_ptr<SrtpEncoder> Create(GstElement* bin, const SrtpPolicy& policy,
                                              const SrtpKey& key);
   ~SrtpEncoder();
@@ -23,12 +23,12 @@ class SrtpEncoder {
   SrtpEncoder& operator=(const SrtpEncoder&) = delete;
 
   void SetKey(const SrtpKey& key);
-  /// RTP or RTCP, protected, with its metas; NULL where srtpenc refuses it. Takes the buffer.
+  /// RTP or RTCP, protected, with its metas; NULL if srtpenc refuses it. Takes the buffer.
   BufferPtr Protect(GstBuffer* packet);
 
  private:
   SrtpEncoder(GstElement* bin, GstElement* element);
-  /// One way through the element: "rtp" or "rtcp".
+  /// A direction through the element: "rtp" or "rtcp".
   struct Way {
     PadPtr sink;
     PadPtr relay;  // takes what comes out

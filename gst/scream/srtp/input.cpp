@@ -156,8 +156,8 @@ BufferPtr SrtpInput::DecodeKnown(GstBuffer* datagram, const Head& head) {
   return nullptr;
 }
 
-/// RTP does not carry its rollover counter, so it is tried: where nobody else asks, many values for
-/// a packet, as a sender without feedback sends few.
+/// RTP does not carry its rollover counter, so many values are tried for a packet if no other
+/// stranger asks: a sender without feedback sends few.
 BufferPtr SrtpInput::TryStranger(GstBuffer* datagram, const Head& head) {
   if (!allowance_.Take(g_get_monotonic_time())) return nullptr;
   BufferPtr decoded = TryRollover(datagram, head, 0);

@@ -27,11 +27,11 @@ struct SrtpCounts {
 };
 
 /// Takes the place of the link between `socket` and `target`: events and queries pass, datagrams
-/// pass decoded or not at all. A new key is valid beside the old one; once a packet fits it the
-/// old one is kept for stragglers and then forgotten. A stream that nobody knows is first tried
-/// apart, only so often in a second, so that a flood of strangers costs neither time nor memory.
-/// The RTCP of an SSRC is a stream of its own: it carries its index, and so tells nothing of the
-/// rollover counter of the media.
+/// pass decoded or not at all. A new key is valid beside the old one; once a packet fits it the old
+/// one is kept for stragglers and then forgotten. An unknown stream is first tried apart, at a
+/// bounded rate, so that a flood of strangers costs neither time nor memory. The RTCP of an SSRC is
+/// a stream of its own: it carries its index, and says nothing of the rollover counter of the
+/// media.
 class SrtpInput {
  public:
   using OnNewKey = std::function<void(const SrtpKey&)>;
@@ -42,10 +42,10 @@ class SrtpInput {
   SrtpInput(const SrtpInput&) = delete;
   SrtpInput& operator=(const SrtpInput&) = delete;
 
-  /// Takes the two pads, that are not linked. False where they do not fit.
+  /// Takes the two pads, that are not linked. Returns false if they do not fit.
   bool Link(GstPad* socket, GstPad* target);
-  /// Callable from any thread. False where the srtp plugin is missing. Of four keys the oldest
-  /// goes.
+  /// Callable from any thread. Returns false without the srtp plugin. A fifth key replaces the
+  /// oldest.
   bool AddKey(const SrtpKey& key);
   /// Keys that no packet has fitted yet, newer than the one in use.
   std::size_t waiting_keys() const { return waiting_; }
@@ -53,16 +53,16 @@ class SrtpInput {
 
  private:
   using StreamId = std::pair<bool, std::uint32_t>;  // whether it is RTCP, and its SSRC
-  /// What a datagram says of itself.
+  /// The header fields of a datagram.
   struct Head {
     StreamId stream() const { return {rtcp, ssrc}; }
     bool rtcp = false;
     std::uint16_t sequence = 0;  // of RTP
     std::uint32_t ssrc = 0;
   };
-  /// Numbers from 1 on, to be tried. They come in rounds of growing length, after the longest in
-  /// short ones again, so small ones come again and again. Each round begins anywhere: an attacker
-  /// who uses up some numbers cannot keep one of them from coming up.
+  /// Numbers from 1 on, to be tried. Rounds grow in length and begin again with short ones, so
+  /// small numbers come up again and again. Each round begins at a random number: an attacker who
+  /// uses up some numbers cannot keep one of them from coming up.
   class Search {
    public:
     std::uint32_t Next();
@@ -90,7 +90,7 @@ class SrtpInput {
     std::unique_ptr<SrtpDecoder> trial;
     SrtpDecoder& DecoderOf(const Head& head) const { return head.rtcp ? *rtcp : *media; }
   };
-  /// What may be tried on strangers now.
+  /// The budget for tries on strangers.
   class Allowance {
    public:
     bool Take(gint64 now_us);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// What the user says of SRTP, and the master key and ciphers that it stands for.
+// The user's SRTP settings, and their master key and ciphers.
 #pragma once
 #include <cstdint>
 #include <optional>
@@ -26,10 +26,10 @@ struct SrtpPolicy {
   unsigned overhead;     // bytes that each RTP packet grows by
 };
 
-/// None, and what is wrong in `error`, where there are no such algorithms.
+/// Returns nothing and sets `error` if there are no such algorithms.
 std::optional<SrtpPolicy> SrtpPolicyOf(const SrtpSettings& settings, std::string* error);
-/// Reads `source` as SrtpSettings::key says; none, and what to do in `error`. Neither the error nor
-/// anything else shows the key.
+/// Reads `source` as SrtpSettings::key says; returns nothing and sets `error` otherwise. No error
+/// shows the key.
 std::optional<SrtpKey> ReadSrtpKey(const std::string& source, const SrtpPolicy& policy,
                                    std::string* error);
 

@@ -31,9 +31,9 @@ struct SrtpPlaces {
   std::vector<SrtpPlace> links;
 };
 
-/// Lives from READY to NULL of its bin. Every SSRC has the one key. What leaves by `out` is
-/// protected there, but for RTP where there are several links: that was protected once for all of
-/// them, by Protect(). Each link's input has replay windows of its own.
+/// Lives from READY to NULL of its bin. Every SSRC has the one key. Packets that leave by `out` are
+/// protected there, but RTP over several links is protected once for all of them, by Protect().
+/// Each link's input has replay windows of its own.
 class SrtpLayer {
  public:
   /// Null and `error` where the key, the cipher or the srtp plugin is not usable.
@@ -43,7 +43,7 @@ class SrtpLayer {
   SrtpLayer(const SrtpLayer&) = delete;
   SrtpLayer& operator=(const SrtpLayer&) = delete;
 
-  /// Of all inputs.
+  /// The sum over all inputs.
   SrtpCounts counts() const;
   /// Bytes that it adds to each RTP packet.
   unsigned overhead() const { return policy_.overhead; }
@@ -75,9 +75,9 @@ const std::array<Property<SrtpSettings>, 3>& SrtpRows();
 /// Makes the layer where `settings` ask for one; false, and an error on the bus, where it cannot.
 bool StartSrtp(const SrtpSettings& settings, const SrtpPlaces& places,
                std::shared_ptr<SrtpLayer>* layer);
-/// Gives a layer that runs its new key; a warning on the bus and false where it cannot.
+/// Gives a layer that runs its new key; a warning on the bus and false if it cannot.
 bool TakeSrtpKey(GstElement* bin, SrtpLayer* layer, const std::string& key);
-/// srtp-received, srtp-refused and srtp-key-changes; nothing where there is no layer.
+/// Adds srtp-received, srtp-refused and srtp-key-changes; nothing without a layer.
 void AddSrtpStats(const SrtpLayer* layer, GstStructure* stats);
 
 }  // namespace lidar::gst

@@ -21,7 +21,7 @@ const gchar* UriOf(const GValue* field) {
   return G_VALUE_HOLDS_STRING(uri) ? g_value_get_string(uri) : nullptr;
 }
 
-/// What rtpsession says of one packet; nothing where fields are missing.
+/// The fields of a packet in rtpsession's event; empty if some are missing.
 struct Reported {
   guint number = 0;
   std::optional<Duration> arrival;
@@ -82,7 +82,7 @@ void SessionNumbers::OnPacket(GstBuffer* buffer) {
   gst_rtp_buffer_unmap(&rtp);
 }
 
-/// The session tells the size of each packet that it sent: another one is another packet.
+/// The session gives the size of each packet that it sent: another size means another packet.
 bool SessionNumbers::IsOurs(const GstStructure* packet) const {
   guint number = 0;
   guint size = 0;

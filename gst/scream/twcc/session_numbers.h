@@ -25,7 +25,7 @@ class SessionNumbers {
   void OnCaps(const GstCaps* caps);
   /// A packet goes into the session.
   void OnPacket(GstBuffer* buffer);
-  /// The report in an event of rtpsession; nothing for other events, or where none of it is ours.
+  /// The report in an event of rtpsession; nothing for other events, or if no packet is ours.
   std::optional<scream::CongestionFeedback> OnEvent(GstEvent* event);
   const Stats& stats() const { return stats_; }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// What may enter the queues of screamtx, and when.
+// The gate of screamtx's queues.
 #pragma once
 #include <gst/gst.h>
 
@@ -33,7 +33,7 @@ class EntryGate {
   /// The thread of `stream` shall go, if it waits here.
   void Release(TxStream& stream);
 
-  /// What the chain function of `stream` is to return before it may queue.
+  /// The result of the chain function of `stream` before it may queue.
   GstFlowReturn Check(const TxStream& stream) const;
   /// Returns once `first` may enter; the queue of `stream` is full while its head is older than
   /// `max_age`.

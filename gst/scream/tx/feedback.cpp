@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// What enters screamtx on rtcp_sink: feedback for the controller, and RTCP that goes on.
+// The input of screamtx on rtcp_sink: feedback for the controller, and RTCP that goes on.
 #include "gst/scream/tx/feedback.h"
 
 #include "gst/common/buffer_map.h"
@@ -25,7 +25,7 @@ const char* ToString(scream::FeedbackResult result) {
   return "?";
 }
 
-/// Lets payloaders know what has arrived. With the lock held.
+/// Keeps the arrived packets for payloaders. The lock is held.
 void KeepReceipts(TxState& state, const scream::CongestionFeedback& report) {
   for (const scream::SsrcReport& block : report.blocks) {
     const auto id = state.controller->FindStream(block.ssrc);
@@ -35,8 +35,8 @@ void KeepReceipts(TxState& state, const scream::CongestionFeedback& report) {
   }
 }
 
-/// A receiver asks for a key unit of one of our streams. Where RTCP goes on to somebody else, it is
-/// for them to ask upstream.
+/// Takes a receiver's request for a key unit of our streams. If RTCP goes on to another element,
+/// that element asks upstream.
 void TakeKeyRequest(GstLidarScreamTx* self, ByteView packet) {
   const auto ssrc = ParseKeyRequest(packet);
   if (!ssrc || gst_pad_is_linked(self->rtcp_src)) return;
@@ -62,7 +62,7 @@ scream::FeedbackResult GiveToController(TxState& state, Time now,
   return result;
 }
 
-/// False where the report is not about us. With the lock held.
+/// Returns false if the report is not about our packets. The lock is held.
 bool Take(GstLidarScreamTx* self, const scream::CongestionFeedback& report, GSocketAddress* from) {
   TxState& state = *self->state;
   const Time now = TxNow(state);
@@ -83,7 +83,7 @@ bool Take(GstLidarScreamTx* self, const scream::CongestionFeedback& report, GSoc
   return true;
 }
 
-/// Hands one CCFB packet to the controller; false where it is not for us.
+/// Hands one CCFB packet to the controller; false if it is not for us.
 bool Feed(GstLidarScreamTx* self, ByteView packet, GSocketAddress* from) {
   TxState& state = *self->state;
   TxLock lock(state.mutex);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Whether anybody answers what screamtx sends.
+// Detects that screamtx gets no answer.
 #pragma once
 #include <optional>
 
@@ -9,7 +9,7 @@ namespace lidar::gst {
 
 class FeedbackWatch {
  public:
-  /// Packets that nobody answers for so long mean that nobody listens.
+  /// Packets without an answer for this long mean that there is no receiver.
   static constexpr Duration kPatience = std::chrono::seconds(2);
 
   void OnSent(Time now) {

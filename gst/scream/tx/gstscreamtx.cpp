@@ -88,7 +88,7 @@ static bool HasPad(const TxState& state, const std::string& name) {
                      [&](const auto& s) { return name == GST_PAD_NAME(s->pad); });
 }
 
-/// The name to give to a pad that was requested as `wanted`; empty where another has it.
+/// The name to give to a pad that was requested as `wanted`; empty if another has it.
 static std::string NewPadName(TxState& state, const gchar* wanted) {
   guint index = 0;
   if (wanted == nullptr || sscanf(wanted, "sink_%u", &index) != 1) index = state.next_pad;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// What enters screamtx on its sink pads: RTP and events.
+// The input of screamtx on its sink pads: RTP and events.
 #include "gst/scream/tx/private.h"
 
 #define GST_CAT_DEFAULT gst_lidar_scream_tx_debug
@@ -128,7 +128,7 @@ void OnFlushStop(GstLidarScreamTx* self, TxStream& stream, GstEvent* event) {
   state.gate.set_flow(GST_FLOW_OK);
 }
 
-/// A flush of the only stream goes on downstream; one of several stays with its own.
+/// A flush of the only stream goes on downstream; a flush of one of several does not.
 gboolean HandleFlush(GstLidarScreamTx* self, TxStream& stream, GstEvent* event) {
   TxState& state = *self->state;
   const EventPtr owner(event);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// What stands above a screamtx that is one of several links of a stream.
+// The owner of a screamtx that is one of several links of a stream.
 #pragma once
 #include <gst/gst.h>
 
@@ -22,16 +22,16 @@ class TxLink {
   virtual guint16 OnSent(Time now, guint32 ssrc, guint16 seq) = 0;
   /// A packet was thrown away.
   virtual void OnDropped(Time now, guint32 ssrc, guint16 seq) = 0;
-  /// A report in these numbers; none where it tells of what this link never sent.
+  /// Converts a report into these numbers; nothing if it names packets that this link never sent.
   virtual std::optional<scream::CongestionFeedback> OnFeedback(
       Time now, const scream::CongestionFeedback& report) = 0;
   /// Bytes at the end of each packet that are no media.
   virtual gsize trailer() const = 0;
-  /// What the controller made of the last report.
+  /// Gets the controller's view of the last report.
   virtual void OnPath(const scream::Statistics& statistics) = 0;
 };
 
-/// Below READY. Null: the only link.
+/// Call below READY. Null: the only link.
 void TxSetLink(GstLidarScreamTx* tx, std::shared_ptr<TxLink> link);
 
 }  // namespace lidar::gst

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// What screamtx reports to the application: the estimate, changes of ECN and feedback, warnings.
+// Reports of screamtx to the application: the estimate, changes of ECN and feedback, warnings.
 #pragma once
 #include <gst/gst.h>
 
@@ -16,7 +16,7 @@ namespace lidar::gst {
 /// Called with the element's lock, but for Post().
 class Notices {
  public:
-  /// What to post, without the lock.
+  /// Messages to post, without the lock.
   struct Batch {
     std::vector<MessagePtr> messages;
     bool estimate = false;

@@ -138,7 +138,7 @@ void PacingTask::DropLate(TxStream& stream, Time now) {
   if (stream.is_video) stream.key_unit_due = true;
 }
 
-/// What another link has brought meanwhile.
+/// Drops packets that another link has brought meanwhile.
 void PacingTask::DropUnwanted(TxStream& stream, Time now) {
   TxState& s = state();
   while (!stream.queue.empty() && stream.queue.front().buffer) {

@@ -42,7 +42,7 @@ class PacingTask {
   void ForgetEnd();
 
  private:
-  /// What one round sends: packets, or one event.
+  /// The output of a round: packets, or one event.
   struct Batch {
     std::vector<BufferPtr> packets;
     std::vector<std::uint8_t> report;  // RTCP that goes with the packets

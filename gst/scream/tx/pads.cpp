@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// What the pads of screamtx answer: queries, links, events on their way upstream.
+// The answers of screamtx's pads: queries, links, events on their way upstream.
 #include "gst/common/latency.h"
 #include "gst/common/sink_pads.h"
 #include "gst/scream/tx/private.h"

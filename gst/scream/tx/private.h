@@ -8,8 +8,8 @@
 // Threads: the sink pads' streaming threads queue packets; the pacing task on the src pad takes
 // them out when the controller says; the RTCP pad's thread hands feedback in and finds out what
 // that changes; the reporter's thread sends it, so that a slow encoder delays neither of the
-// others. One mutex guards all that is shared; nobody holds it while pushing, posting, notifying or
-// waiting.
+// others. One mutex guards all that is shared; no thread holds it while pushing, posting, notifying
+// or waiting.
 #pragma once
 #include <gst/gst.h>
 
@@ -80,7 +80,7 @@ void Configure(TxState& state, TxStream& stream);
 void ClearQueue(TxState& state, TxStream& stream, Time now);
 StructurePtr StatsOf(TxState& state);
 
-/// Takes settings of the element and the pads over, soon. Without the lock.
+/// Has settings of the element and the pads taken over soon. Call without the lock.
 void SettingsChanged(GstLidarScreamTx* self);
 
 // input.cpp: sink pads

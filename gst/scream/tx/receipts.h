@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// What feedback says about the packets of one stream, until its payloader is told.
+// Received packets of a stream, until its payloader gets them.
 #pragma once
 #include <vector>
 
@@ -18,7 +18,7 @@ class PacketReceipts {
   std::vector<EventPtr> Take();
 
  private:
-  // A payloader that is told of less than there was takes slices for lost, and no harm is done.
+  // A payloader that misses some takes slices for lost, which is harmless.
   static constexpr std::size_t kMost = 16;
   std::vector<GstLidarPacketsReceived> receipts_;
 };

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// When screamtx tells the receiver how it sees the path, and what.
+// The reports of screamtx to the receiver, and their times.
 #pragma once
 #include <gst/gst.h>
 

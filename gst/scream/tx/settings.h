@@ -30,8 +30,8 @@ struct TxSettings {
   guint max_bps = 50'000'000;
   guint max_total_bps = 0;  // 0: no limit of its own
   gint ecn_mode = kEcnEct1;
-  Duration stats_interval{};   // 0: none
-  Duration report_interval{};  // to the receiver; 0: none
+  Duration stats_interval{};   // 0: no messages
+  Duration report_interval{};  // to the receiver; 0: no reports
   DataSize packet_overhead = DataSize::Bytes(28);
   bool send_bye = false;
   bool key_unit_on_loss = false;
@@ -46,7 +46,7 @@ const TxProperties& TxPropertyTable();
 /// Sets what `tuning` names, which may be NULL. Returns what is wrong with it; empty if nothing is.
 std::string ReadTuning(const GstStructure* tuning, scream::Parameters* parameters);
 
-/// What the controller works with: `pure_draft` undoes `tuning`.
+/// The parameters of the controller: `pure_draft` undoes `tuning`.
 scream::Parameters ToParameters(const TxSettings& settings);
 
 }  // namespace lidar::gst

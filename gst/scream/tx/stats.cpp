@@ -7,7 +7,7 @@
 namespace lidar::gst {
 namespace {
 
-/// What one stream shows: what the controller knows of it, and what screamtx does.
+/// The statistics of a stream: the controller's and screamtx's.
 struct ShownStream {
   scream::StreamStatistics core;
   scream::StreamConfig config;

@@ -41,8 +41,8 @@ scream::StreamConfig MakeConfig(const TxStream& stream, const TxPadSettings& pad
   config.min_bitrate = Bps(min);
   config.start_bitrate = Bps(std::clamp(start, needed, max));
   config.max_bitrate = Bps(max);
-  // This is no minimum. Where the path cannot carry what the error bound needs, the encoder must
-  // know: it can leave out whole scans, while a queue here would only grow old.
+  // This is no minimum. If the path cannot carry what the error bound needs, the encoder gets the
+  // lower target: it can leave out whole scans, while a queue here would only grow old.
   config.needed_bitrate = Bps(needed);
   return config;
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// What screamtx keeps for one sink pad: its queue and what it has learnt about the stream.
+// The state of a sink pad of screamtx: its queue and the measurements of its stream.
 #pragma once
 #include <gst/gst.h>
 
@@ -27,8 +27,8 @@ struct TxItem {
   Time queued{};
 };
 
-/// Measures which share of the bytes on the wire is payload of the media itself. The encoder knows
-/// nothing of the rest: RTP, UDP and IP headers, retransmission and FEC.
+/// Measures the share of the media's payload in the bytes on the wire, which also carry RTP, UDP
+/// and IP headers, retransmission and FEC.
 class OverheadMeter {
  public:
   void Add(gsize payload, DataSize wire) {
@@ -93,13 +93,13 @@ struct TxStream {
 
 using TxStreams = std::vector<std::unique_ptr<TxStream>>;
 
-/// What the controller calls time, on the system's clock.
+/// The present on the system's clock, as the controller takes it.
 Time TimeOf(GstClock* clock);
-/// What the controller gets for a stream: the pad's settings, else the element's, within the
+/// The controller's configuration of a stream: the pad's settings, else the element's, within the
 /// encoder's bounds, which are without overhead.
 scream::StreamConfig MakeConfig(const TxStream& stream, const TxPadSettings& pad,
                                 const TxSettings& element);
-/// What the encoder may put out [bit/s], of `wire`.
+/// The encoder's part of `wire` [bit/s].
 guint ToEncoder(const TxStream& stream, DataRate wire);
 
 }  // namespace lidar::gst

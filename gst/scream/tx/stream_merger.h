@@ -10,8 +10,8 @@
 
 namespace lidar::gst {
 
-/// A stream that is alone keeps its events. Of several, the src pad has events of its own, which
-/// suit all. The pacing task alone uses it, with the element's lock.
+/// A single stream keeps its events. With several, the src pad has events of its own, which suit
+/// all. Only the pacing task uses it, with the element's lock.
 class StreamMerger {
  public:
   using Streams = std::vector<std::unique_ptr<TxStream>>;

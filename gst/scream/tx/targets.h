@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// What screamtx sends to the encoder of a stream: bitrates, key units, and receipts of packets.
+// Events of screamtx to the encoder of a stream: bitrates, key units, and receipts of packets.
 #pragma once
 #include <gst/gst.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Programs that end whatever servers, disks and clients do.
+// Bounds the end of a program, if a server, disk or client hangs.
 #pragma once
 #include <errno.h>
 #include <unistd.h>
@@ -9,9 +9,9 @@
 
 namespace lidar::tools {
 
-/// While it lives the end of the program has begun: after `seconds` the process ends with a message
-/// and with 0. Once all has ended, the exit of the process is not bounded: a sanitizer looks for
-/// leaks there, which takes long on a busy machine.
+/// The end of the program begins with this object: after `seconds` the process ends with a message
+/// and with 0. The exit of the process itself is not bounded: a sanitizer looks for leaks there,
+/// which takes long on a busy machine.
 class BoundedEnd {
  public:
   explicit BoundedEnd(unsigned seconds) {

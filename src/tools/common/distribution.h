@@ -15,7 +15,7 @@ class Distribution {
   void Clear() { values_.clear(); }
   std::size_t count() const { return values_.size(); }
 
-  /// The nearest-rank percentile, `p` in 0..100; 0 where there is no value.
+  /// The nearest-rank percentile, `p` in 0..100; 0 if there is no value.
   double Percentile(double p) const {
     if (values_.empty()) return 0;
     std::vector<float> copy = values_;

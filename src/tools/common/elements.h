@@ -18,7 +18,7 @@
 namespace lidar::tools {
 
 /// Makes an element of `factory` in `bin`; without a name it gets one of its own. Throws
-/// std::runtime_error where it is not installed.
+/// std::runtime_error if it is not installed.
 inline GstElement* AddElement(GstElement* bin, const std::string& factory,
                               const char* name = nullptr) {
   GstElement* element = gst_element_factory_make(factory.c_str(), name);
@@ -29,8 +29,8 @@ inline GstElement* AddElement(GstElement* bin, const std::string& factory,
   return element;
 }
 
-/// The pipeline that the words of a command line describe. None, and a line on stderr, where they
-/// describe none.
+/// The pipeline of a command line's words. Returns null, with a line on stderr, if they are no
+/// pipeline.
 inline gst::ElementPtr ParsePipeline(const std::vector<std::string>& words) {
   std::vector<const gchar*> argv;
   for (const std::string& word : words) argv.push_back(word.c_str());
@@ -58,7 +58,7 @@ inline void SetText(GstElement* element, const char* property, const std::string
   if (!value.empty()) g_object_set(element, property, value.c_str(), nullptr);
 }
 
-/// The `stats` of an element in `bin`; null where it has none, or is not there.
+/// The `stats` of an element in `bin`; null if it has none, or is not there.
 inline gst::StructurePtr StatsOf(GstElement* bin, const std::string& element) {
   const gst::ElementPtr found(gst_bin_get_by_name(GST_BIN(bin), element.c_str()));
   GstStructure* raw = nullptr;
@@ -79,7 +79,7 @@ inline void PrintStats(GstElement* bin, const std::string& names, const std::str
   std::fflush(stdout);
 }
 
-/// What an error or a warning says, after who says it.
+/// The text of an error or a warning, behind the name of its source.
 inline std::string MessageText(GstMessage* message) {
   GError* raw = nullptr;
   if (GST_MESSAGE_TYPE(message) == GST_MESSAGE_ERROR)

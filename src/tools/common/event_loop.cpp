@@ -106,7 +106,7 @@ void EventLoop::Run(const std::function<void()>& before_wait) {
 
 bool RequestRealtimePriority() {
   const int policy = sched_getscheduler(0) & ~SCHED_RESET_ON_FORK;
-  if (policy == SCHED_FIFO || policy == SCHED_RR) return true;  // whoever started it chose
+  if (policy == SCHED_FIFO || policy == SCHED_RR) return true;  // the user chose the scheduling
   sched_param parameters{};
   parameters.sched_priority = 1;
   return sched_setscheduler(0, SCHED_FIFO | SCHED_RESET_ON_FORK, &parameters) == 0;

@@ -11,7 +11,7 @@ namespace lidar::tools {
 
 /// CLOCK_MONOTONIC as a Time.
 Time Now();
-/// What to add to a Time from Now() to get the time since the Unix epoch, as of this call.
+/// The difference from a Time of Now() to the time since the Unix epoch, as of this call.
 Duration UnixOffset();
 
 class EventLoop {
@@ -36,7 +36,8 @@ class EventLoop {
   bool running_ = false;
 };
 
-/// Asks for a scheduler that lets this thread run at once. False where the system does not let us.
+/// Asks for a scheduler that lets this thread run at once. Returns false if the system does not let
+/// us.
 bool RequestRealtimePriority();
 
 }  // namespace lidar::tools

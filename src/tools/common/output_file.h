@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Files that programs read and write, and what is left of them on a full disk.
+// Files that programs read and write, and their rest on a full disk.
 #pragma once
 #include <fstream>
 #include <string>
@@ -9,8 +9,8 @@ namespace lidar::tools {
 /// Throws std::runtime_error, with the path and the reason, where the file cannot be written.
 class OutputFile {
  public:
-  /// What stays of a file that cannot be written whole, or is not closed. Nothing that is empty
-  /// stays, and nothing but a regular file is ever taken away.
+  /// Rest of a file that cannot be written whole, or is not closed. An empty file never stays; only
+  /// regular files are removed.
   enum class Rest { kRemove, kKeepRows };
 
   /// An empty path writes nothing.
@@ -32,17 +32,17 @@ class OutputFile {
   std::ofstream file_;
 };
 
-/// All of the file. Throws std::runtime_error where it cannot be opened.
+/// All of the file. Throws std::runtime_error if it cannot be opened.
 std::string ReadFile(const std::string& path);
 
-/// Writes all of the file, or leaves none.
+/// Writes all of the file, or no file.
 void WriteFile(const std::string& path, const std::string& text);
 
-/// Throws where something that was printed could not be written. Errors of a full disk stay with
-/// the stream, so it is enough to ask once, at the end.
+/// Throws if something that was printed could not be written. Errors of a full disk stay with the
+/// stream, so it is enough to ask once, at the end.
 void FinishStandardOutput();
 
-/// Takes a file away that is not whole, if it is a regular one.
+/// Removes an incomplete file, if it is a regular one.
 void RemoveFile(const std::string& path);
 
 }  // namespace lidar::tools

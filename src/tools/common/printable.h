@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Text that others wrote, as it may go to a terminal or a log.
+// Untrusted text for a terminal or a log.
 #pragma once
 #include <glib.h>
 
@@ -8,8 +8,8 @@
 
 namespace lidar::tools {
 
-/// What is no printable character of UTF-8 becomes \xNN, byte by byte: a line stays one line, and
-/// a terminal gets no orders.
+/// Bytes outside of printable UTF-8 become \xNN: a line stays one line, and a terminal gets no
+/// control sequences.
 inline std::string Printable(const std::string& text) {
   std::string out;
   for (std::size_t at = 0; at < text.size();) {

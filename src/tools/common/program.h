@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// What is alike in every program: --version, 2 as the exit code of wrong options, and 1 as that of
-// what is thrown.
+// The common part of programs: --version, 2 as the exit code of wrong options, and 1 as that of an
+// exception.
 #pragma once
 #include <CLI/CLI.hpp>
 #include <cstdio>
@@ -20,7 +20,7 @@ inline void AddHelpAllFlag(CLI::App* app) {
 }
 
 /// Parses the command line, and has `check` throw CLI::ParseError for options that contradict each
-/// other. Ends the program where it is not to run.
+/// other. Ends the program for --help and wrong options.
 template <class Check>
 void Parse(CLI::App* app, int argc, char** argv, Check check) {
   try {
@@ -34,7 +34,7 @@ inline void Parse(CLI::App* app, int argc, char** argv) {
   Parse(app, argc, argv, [] {});
 }
 
-/// The exit code of `run`; what it throws becomes a message.
+/// The exit code of `run`; an exception becomes a message.
 template <class Run>
 int Guard(const char* program, Run run) {
   try {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// UDP sockets that read and write the ECN bits and know when the kernel got a packet.
+// UDP sockets that read and write the ECN bits and give the kernel's arrival times.
 #pragma once
 #include <cstdint>
 #include <functional>
@@ -32,14 +32,14 @@ class UdpSocket {
   static UdpSocket Bind(const Address& local);
   static UdpSocket Connect(const Address& remote);
 
-  /// Multicast leaves by the interface of that name; throws std::runtime_error where there is none.
+  /// Multicast leaves by the interface of that name; throws std::runtime_error if there is none.
   void SendMulticastFrom(const std::string& interface);
 
   int fd() const { return fd_.get(); }
   int LocalPort() const;
   /// Hands every waiting datagram to `handler`.
   void ReceiveAll(const std::function<void(const Datagram&)>& handler);
-  /// `to` is null on a connected socket. False where the kernel refused.
+  /// `to` is null on a connected socket. Returns false if the kernel refused.
   bool Send(ByteView payload, std::uint8_t tos, const Address* to);
 
  private:

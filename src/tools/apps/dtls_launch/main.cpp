@@ -50,7 +50,7 @@ struct Session {
 };
 
 constexpr GstClockTime kPoll = 100 * GST_MSECOND;
-// Between handshakes: whoever sends what is none makes us begin anew as often, and no more.
+// Pause between handshakes, so that packets that are no handshake restart it no more often.
 constexpr gulong kPauseUs = 200'000;
 
 /// What is between the lines that begin and end the first certificate, without white space.
@@ -81,7 +81,8 @@ bool ReadPem(const std::string& path, const char* must_have, std::string* pem) {
   return false;
 }
 
-/// Comes in the handshake, before there are keys. Nothing gets past the flag from then on.
+/// The certificate comes in the handshake, before there are keys. No packet passes the flag from
+/// then on.
 void OnPeerCertificate(GObject* dtls, GParamSpec*, Session* session) {
   gchar* pem = nullptr;
   g_object_get(dtls, "peer-pem", &pem, nullptr);
@@ -101,7 +102,7 @@ void DropOnceRefused(GstElement* decoder, Session* session) {
   gst_object_unref(pad);
 }
 
-/// srtpenc would encrypt with a random key that nobody knows, until the handshake gives it one.
+/// srtpenc would encrypt with a random key until the handshake gives it the real one.
 void HoldUntilThereIsAKey(GstElement* encoder, Session* session) {
   g_object_set_data(G_OBJECT(encoder), "session", session);
   GstIterator* pads = gst_element_iterate_sink_pads(encoder);
@@ -168,8 +169,8 @@ bool IsOfDtls(GstObject* source) {
 
 enum class End { kOver, kFailed, kNoHandshake };
 
-/// Until EOS, an error, or `*run` is false. EOS does not get past dtlssrtpenc, whose handshake has
-/// no end.
+/// Plays until EOS, an error, or `*run` is false. EOS does not get past dtlssrtpenc, whose
+/// handshake has no end.
 End Play(Session* session, const bool* run, std::string* why) {
   GstBus* bus = GST_ELEMENT_BUS(session->pipeline.get());
   gst_element_set_state(session->pipeline.get(), GST_STATE_PLAYING);
@@ -187,7 +188,7 @@ End Play(Session* session, const bool* run, std::string* why) {
   return session->refused ? End::kNoHandshake : End::kOver;
 }
 
-/// Sessions one after the other: what strangers send costs a handshake, and never the program.
+/// Sessions one after the other: packets of strangers cost a handshake, not the program.
 class Sessions {
  public:
   Sessions(const Options& options, const Certificates& certificates)
@@ -216,7 +217,7 @@ class Sessions {
   }
 
  private:
-  /// Each reason once, until it goes well: strangers must not fill a log.
+  /// Prints each reason once until a success: strangers must not fill a log.
   void Tell(const Session& session, const std::string& why) {
     if (session.has_keys) told_.clear();
     if (std::exchange(told_, why) == why) return;

@@ -13,7 +13,7 @@ namespace {
 
 using nlohmann::json;
 
-/// An object whose keys are all known: a word that is misspelt is no setting that is left out.
+/// An object with a fixed set of keys: a misspelt key is an error.
 class Section {
  public:
   Section(const json& object, std::string where) : object_(object), where_(std::move(where)) {
@@ -100,7 +100,7 @@ NatsConfig ReadNats(const json& object) {
   return nats;
 }
 
-/// A number, decimal or 0x and hexadecimal; none where there is more.
+/// A number, decimal or 0x and hexadecimal; nothing for other text.
 std::optional<std::uint32_t> ReadSsrc(std::string_view text) {
   const bool hex = text.substr(0, 2) == "0x";
   if (hex) text.remove_prefix(2);
@@ -189,7 +189,7 @@ void CheckSharedPort(const EdgeConfig& config) {
                                " share an ssrc");
 }
 
-/// The stream of JetStream drops its oldest messages, whoever sent them. So it must hold what all
+/// The stream of JetStream drops its oldest messages, of any sender. So it must hold what all
 /// robots may send in the time that it is for.
 void CheckShares(const EdgeConfig& config) {
   const NatsConfig& nats = config.nats;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// What lidar-edge is told: which robots come on which ports, and where their streams go.
+// Settings of lidar-edge: which robots come on which ports, and where their streams go.
 #pragma once
 #include <cstdint>
 #include <optional>
@@ -11,9 +11,9 @@
 namespace lidar::edge {
 
 struct NatsConfig {
-  std::optional<nats::ConnectionSettings> connection;  // none: no NATS
+  std::optional<nats::ConnectionSettings> connection;  // empty: no NATS
   std::string prefix = "fleet";                        // of all subjects
-  std::string jetstream;                               // empty: nothing is kept
+  std::string jetstream;                               // empty: not kept
   int replicas = 1;                                    // of the stream, where it is made
   std::uint64_t max_age_s = 3600;
   std::uint64_t max_bytes = 0;          // 0: no limit
@@ -30,9 +30,9 @@ struct RobotConfig {
   std::string sensor = "lidar";
   std::uint16_t port = 0;         // of its own; 0: the one for all
   std::optional<SsrcRange> ssrc;  // on the port for all
-  std::string srtp_key;           // file:PATH or env:NAME; empty: none
+  std::string srtp_key;           // file:PATH or env:NAME; empty: no SRTP
   std::string srtp_cipher = "aes-128-icm";
-  std::string record;                      // pattern of file names; empty: none
+  std::string record;                      // pattern of file names; empty: no recording
   std::uint64_t record_max_file_size = 0;  // bytes
   std::uint64_t record_max_files = 0;
   double max_mbps = 0;  // 0: no limit
@@ -43,7 +43,7 @@ struct EdgeConfig {
   std::uint16_t port = 0;  // of all robots that have none of their own
   NatsConfig nats;
   std::string http_address = "127.0.0.1";
-  int http_port = -1;  // -1: none; 0: any
+  int http_port = -1;  // -1: no server; 0: any port
   double interval_s = 5;
   std::vector<RobotConfig> robots;
 };

@@ -25,7 +25,7 @@ namespace lidar::edge {
 namespace {
 
 constexpr std::chrono::milliseconds kPoll{50};
-constexpr unsigned kEndSeconds = 6;  // whatever servers, disks and clients do
+constexpr unsigned kEndSeconds = 6;  // for the end, if a server, disk or client hangs
 
 std::atomic<bool> stopping{false};
 

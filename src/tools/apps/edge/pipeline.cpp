@@ -30,7 +30,7 @@ void Link(GstElement* from, GstElement* to) {
   if (!gst_element_link(from, to)) throw std::runtime_error("elements cannot be linked");
 }
 
-/// All robots' sinks want the same stream, so whoever comes first makes it for all.
+/// All robots' sinks have the same stream; the first of them makes it for all.
 void AddNats(GstElement* pipeline, GstElement* from, const NatsConfig& nats,
              const RobotConfig& robot) {
   GstElement* sink = Add(pipeline, "natssink");
@@ -48,7 +48,7 @@ ElementPtr RecorderOf(GstElement* pipeline) {
   return ElementPtr(gst_bin_get_by_name(GST_BIN(pipeline), kRecorder));
 }
 
-/// The pad that others push to tells them that all is well.
+/// Makes the pad report success to the element that pushes to it, whatever happens behind it.
 void Shield(GstPad* pad) {
   gst_pad_set_chain_function(pad, [](GstPad* self, GstObject* parent, GstBuffer* buffer) {
     gst_proxy_pad_chain_default(self, parent, buffer);

@@ -12,11 +12,11 @@
 namespace lidar::edge {
 
 /// Receives, and hands on to NATS; `socket` is the robot's on the port for all, or NULL. Throws
-/// std::runtime_error where an element is missing.
+/// std::runtime_error if an element is missing.
 gst::ElementPtr MakePipeline(const EdgeConfig& config, const RobotConfig& robot, GSocket* socket);
 
-/// Makes a recorder and lets it run with the pipeline. What fails in it stays in it, and is told on
-/// the bus. Throws std::runtime_error where an element is missing.
+/// Makes a recorder that runs with the pipeline. Its failures stay in it, and go to the bus. Throws
+/// std::runtime_error if an element is missing.
 void AddRecorder(GstElement* pipeline, const RobotConfig& robot);
 /// Does nothing if there is none.
 void RemoveRecorder(GstElement* pipeline);

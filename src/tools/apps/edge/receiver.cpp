@@ -23,8 +23,8 @@ using tools::StatsOf;
 constexpr std::chrono::milliseconds kPoll{100};
 constexpr seconds kFirstPause{2};  // after a failure
 constexpr seconds kLongestPause{64};
-constexpr seconds kHealthy{10};  // a session of that age is none that fails at once
-constexpr seconds kSilence{10};  // a robot that is silent for as long is gone
+constexpr seconds kHealthy{10};  // a session of this age has not failed at once
+constexpr seconds kSilence{10};  // silence after which a robot is gone
 constexpr double kCredit = 3;    // seconds at its limit that a robot may be ahead of it
 constexpr GstClockTime kFinish = 3 * GST_SECOND;
 
@@ -37,7 +37,7 @@ Receiver::Receiver(const EdgeConfig& config, const RobotConfig& robot, GSocket* 
       pipeline_(MakePipeline(config, robot, socket)),
       failures_(kFirstPause, kLongestPause),
       record_failures_(kFirstPause, kLongestPause) {
-  if (!robot.record.empty()) {  // throws here where it cannot be
+  if (!robot.record.empty()) {  // throws if that is impossible
     AddRecorder(pipeline_.get(), robot);
     RemoveRecorder(pipeline_.get());
   }
@@ -101,7 +101,7 @@ void Receiver::End() {
   recording_ = false;
 }
 
-/// What has come is written and sent, where disk and server take it.
+/// Writes and sends what has come, if disk and server take it.
 void Receiver::Finish() {
   if (state_ != State::kResting && BytesReceived() > 0)
     Drain(pipeline_.get(), kFinish,
@@ -141,7 +141,7 @@ void Receiver::NoteRecordFailure(Clock::time_point now, const std::string& why) 
   Say(why);
 }
 
-/// False where the session is over.
+/// Returns false if the session is over.
 bool Receiver::NoteError(Clock::time_point now, GstMessage* message) {
   const std::string text = tools::MessageText(message);
   if (IsFromRecorder(message)) {
@@ -157,7 +157,7 @@ bool Receiver::NoteError(Clock::time_point now, GstMessage* message) {
   return false;
 }
 
-/// False where the session is over.
+/// Returns false if the session is over.
 bool Receiver::ReadBus(Clock::time_point now) {
   GstBus* bus = GST_ELEMENT_BUS(pipeline_.get());
   while (const MessagePtr message{gst_bus_pop(bus)}) {
@@ -188,8 +188,8 @@ guint64 Receiver::BytesReceived() const {
   return bytes;
 }
 
-/// A robot that is too far ahead of `max-mbps` is shut out until it is not ahead any more: what it
-/// sends in a long time stays below the limit, whatever it does.
+/// Shuts out a robot that is too far ahead of `max-mbps` until it is not ahead any more, so that in
+/// the long run it stays below the limit.
 void Receiver::Charge(Clock::time_point now, double bytes) {
   const double limit = robot_.max_mbps * 125'000;  // bytes a second
   const auto passed = std::chrono::duration<double>(now - std::exchange(charged_at_, now));

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// One robot's receiver: a pipeline and a thread of its own, so that what happens to it harms no
-// other.
+// A robot's receiver: a pipeline and a thread of its own, so that its failures harm no other.
 #pragma once
 #include <gio/gio.h>
 #include <gst/gst.h>
@@ -22,8 +21,8 @@ namespace lidar::edge {
 
 class Receiver {
  public:
-  /// `socket` is the robot's on the port for all, or NULL. Throws std::runtime_error where an
-  /// element is missing or a setting is wrong.
+  /// `socket` is the robot's on the port for all, or NULL. Throws std::runtime_error if an element
+  /// is missing or a setting is wrong.
   Receiver(const EdgeConfig& config, const RobotConfig& robot, GSocket* socket);
   /// Ends the session, and waits for it.
   ~Receiver();
@@ -34,14 +33,14 @@ class Receiver {
   void AskToEnd();
 
   const RobotConfig& robot() const { return robot_; }
-  /// Adds its figures to `exposition`, and gives them as a report. From any thread; waits for no
+  /// Adds its figures to `exposition`, and returns them as a report. From any thread; waits for no
   /// server and no disk.
   nlohmann::json Tell(fleet::Exposition* exposition) const;
 
  private:
   using Clock = std::chrono::steady_clock;
   enum class State { kWaiting, kReceiving, kResting };
-  /// What is told of the robot.
+  /// The figures of the robot.
   struct Account {
     State state = State::kWaiting;
     std::uint64_t sessions = 0;

@@ -25,7 +25,7 @@ sock_filter Step(unsigned code, std::uint32_t k, std::uint8_t yes = 0, std::uint
   return {static_cast<std::uint16_t>(code), yes, no, k};
 }
 
-/// Gives the number of the socket: 0 for what is of no range, and for what is too short.
+/// Returns the number of the socket; 0 for an SSRC outside of the ranges and for a short datagram.
 Program ChooseBySsrc(const std::vector<SsrcRange>& ranges) {
   // RTCP has the packet types 192 to 223 (RFC 5761), and its SSRC further in front.
   Program p = {Step(BPF_LD | BPF_B | BPF_ABS, 1),
@@ -73,7 +73,8 @@ Address Resolve(const std::string& name, std::uint16_t port) {
   return address;
 }
 
-/// A socket that is bound there, `shared` with others of this user. Of IPv6, it takes IPv4 as well.
+/// Opens a socket that is bound there, `shared` with others of this user. With IPv6, it takes IPv4
+/// as well.
 tools::FileDescriptor OpenSocket(const Address& address, bool shared) {
   tools::FileDescriptor fd(
       socket(address.storage.ss_family, SOCK_DGRAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0));
@@ -96,7 +97,7 @@ const Program kNothing = {Step(BPF_RET | BPF_K, 0)};
 SharedPort::SharedPort(const std::string& address, std::uint16_t port,
                        const std::vector<SsrcRange>& ranges) {
   const Address local = Resolve(address, port);
-  // The port must be nobody's: with another process of ours the kernel would mix the sockets.
+  // The port must be free: with another process of ours the kernel would mix the sockets.
   OpenSocket(local, false).Reset();
   for (std::size_t i = 0; i <= ranges.size(); ++i) {
     tools::FileDescriptor owner = OpenSocket(local, true);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// One UDP port for many robots: each has a socket of its own there, and the kernel puts a datagram
-// into that of its SSRC. So a robot that floods fills its own socket only.
+// A UDP port for many robots: each has a socket of its own there, and the kernel puts a datagram
+// into the socket of its SSRC. So a robot that floods fills its own socket only.
 #pragma once
 #include <gio/gio.h>
 
@@ -26,12 +26,12 @@ class SharedPort {
   struct Unref {
     void operator()(GSocket* socket) const { g_object_unref(socket); }
   };
-  // Sockets in the order in which they were bound, by which the kernel knows them. The first is for
-  // strays.
+  // Sockets in the order in which they were bound, which is their number in the kernel. The first
+  // is for strays.
   std::vector<std::unique_ptr<GSocket, Unref>> sockets_;
 };
 
-/// Shut, the kernel drops what comes in, and what has come is gone.
+/// A shut socket drops what comes in, and its queue.
 void ShutSocket(GSocket* socket, bool shut);
 
 }  // namespace lidar::edge

@@ -10,16 +10,16 @@
 
 namespace lidar::fleet {
 
-/// As Prometheus has them. Neither name has anything that would need quotes.
+/// Labels as Prometheus writes them. The names have no characters that need quotes.
 std::string RobotLabels(const std::string& robot, const std::string& sensor);
 
-/// Numbers, flags, text and structures; what else there is is left out.
+/// Converts numbers, flags, text and structures; other types are left out.
 nlohmann::json ToJson(const GstStructure* structure);
 
-/// Collects values and writes them by their names, as the text format wants them.
+/// Collects values and writes them by their names, as the text format requires.
 class Exposition {
  public:
-  /// `labels` have their braces; empty: none.
+  /// `labels` have their braces, or are empty.
   void Add(const std::string& name, const std::string& labels, double value);
   /// All numbers and flags of `structure`, called lidar_`element`_their name.
   void Add(const std::string& element, const std::string& labels, const GstStructure* structure);
@@ -29,7 +29,7 @@ class Exposition {
   std::map<std::string, std::vector<std::string>> lines_;
 };
 
-/// Tells of those of `elements` that are in `bin`: to Prometheus under `labels`, and in `report` by
+/// Adds the statistics of `elements` in `bin`: to Prometheus under `labels`, and to `report` by
 /// their names.
 void AddStats(GstElement* bin, const std::vector<std::string>& elements, const std::string& labels,
               Exposition* exposition, nlohmann::json* report);

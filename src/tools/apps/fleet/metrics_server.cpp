@@ -18,7 +18,7 @@ namespace {
 constexpr std::chrono::seconds kPatience{2};
 constexpr std::size_t kMaxRequest = 8 << 10;
 constexpr int kBacklog = 16;
-/// How late a silent connection may be cut off, or tried that there was no descriptor for.
+/// Interval at which silent connections are cut off and failed accepts repeated.
 constexpr std::chrono::milliseconds kPatrol{200};
 
 struct FreeAddress {

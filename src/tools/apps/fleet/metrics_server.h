@@ -21,7 +21,7 @@ class MetricsServer {
  public:
   static constexpr std::size_t kMaxConnections = 32;
 
-  /// Port 0: any. Throws std::runtime_error where the port is taken.
+  /// Port 0: any. Throws std::runtime_error if the port is taken.
   MetricsServer(const std::string& address, int port);
   ~MetricsServer();
   MetricsServer(const MetricsServer&) = delete;

@@ -8,7 +8,7 @@
 namespace lidar::fleet {
 namespace {
 
-constexpr std::chrono::milliseconds kPoll{100};  // how late a connection may be seen
+constexpr std::chrono::milliseconds kPoll{100};  // interval of looks at the connection
 
 }  // namespace
 
@@ -42,7 +42,7 @@ void Reporter::Open(Clock::time_point now) {
   std::fprintf(stderr, "NATS gets no statistics: %s\n", tools::Printable(why).c_str());
 }
 
-/// A connection that the server refused is no more, so there is another one after a while.
+/// libnats closes a refused connection, so a new one is made after a while.
 bool Reporter::Connected(Clock::time_point now) {
   if ((!connection_ || connection_->state().closed) && now >= open_at_) Open(now);
   const bool connected = connection_ && connection_->state().connected();

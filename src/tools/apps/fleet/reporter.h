@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Publishes what is told of robots on NATS, in a thread of its own and over a connection of its
-// own.
+// Publishes reports of robots on NATS, in a thread of its own and over a connection of its own.
 #pragma once
 #include <chrono>
 #include <condition_variable>
@@ -27,7 +26,7 @@ class Reporter {
   Reporter(const Reporter&) = delete;
   Reporter& operator=(const Reporter&) = delete;
 
-  /// Goes out as soon as there is a connection, in place of what still waits for one. Never waits.
+  /// Queues reports for the connection; they replace older ones that wait. Never waits.
   void Publish(Reports reports);
 
  private:

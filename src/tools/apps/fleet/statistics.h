@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Tells of a program and its robots at intervals: as JSON on NATS, and to Prometheus.
+// Reports a program and its robots at intervals: as JSON on NATS, and to Prometheus.
 #pragma once
 #include <functional>
 #include <optional>
@@ -15,7 +15,7 @@ namespace lidar::fleet {
 
 struct StatisticsSettings {
   std::string http_address = "127.0.0.1";
-  int http_port = -1;  // -1: none; 0: any
+  int http_port = -1;  // -1: no server; 0: any port
   double interval_s = 5;
 };
 
@@ -23,11 +23,11 @@ struct StatisticsSettings {
 class Statistics {
  public:
   /// If `connection` is missing, NATS gets nothing. Prints where Prometheus finds it. Throws
-  /// std::runtime_error where the port is taken.
+  /// std::runtime_error if the port is taken.
   Statistics(const StatisticsSettings& settings,
              const std::optional<nats::ConnectionSettings>& connection);
 
-  /// Has `collect` say what there is, once an interval. Waits for no server and no client.
+  /// Calls `collect` once an interval. Waits for no server and no client.
   using Collect = std::function<void(Exposition*, Reporter::Reports*)>;
   void Poll(const Collect& collect);
 

@@ -49,7 +49,7 @@ std::string Join(const std::vector<std::string>& words) {
   return text + " )";
 }
 
-/// Wrong pipelines are told of now, not to the first viewer.
+/// Wrong pipelines fail now, not with the first viewer.
 void Check(const std::string& pipeline) {
   GError* error = nullptr;
   GstElement* bin = gst_parse_launch(pipeline.c_str(), &error);
@@ -85,7 +85,7 @@ void Serve(const Options& options) {
   if (gst_rtsp_server_attach(server.get(), nullptr) == 0)
     throw std::runtime_error("cannot listen on " + options.address + ":" +
                              std::to_string(options.port));
-  // Viewers that went without a word.
+  // Removes viewers that left without TEARDOWN.
   g_timeout_add_seconds(
       kCleanupSeconds,
       [](gpointer data) -> gboolean {
@@ -134,7 +134,7 @@ int main(int argc, char** argv) {
     const Options options = ReadOptions(argc, argv);
     gst_init(nullptr, nullptr);
     Serve(options);
-    gst_deinit();  // tracers tell what was left
+    gst_deinit();  // tracers report leaks
     return 0;
   });
 }

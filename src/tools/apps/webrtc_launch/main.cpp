@@ -25,7 +25,7 @@ struct Options {
   std::string stats;
   std::string address = "127.0.0.1";
   guint port = 0;   // of the callee; 0: any
-  guint relay = 0;  // port that the caller gets to know in its place; 0: none
+  guint relay = 0;  // port given to the caller in its place; 0: no relay
   double duration_s = 0;
   double interval_s = 1;
   std::vector<std::string> pipeline;
@@ -93,7 +93,7 @@ void OnNegotiationNeeded(GstElement* caller, Call* call) {
   g_signal_emit_by_name(caller, "create-offer", nullptr, Then(call, OnOffer));
 }
 
-/// Tells the caller where the callee is: at the relay, if there is one.
+/// Gives the caller the callee's address, or that of the relay.
 void OnCandidateOfCallee(GstElement*, guint line, gchar* text, Call* call) {
   std::string candidate = text;
   if (call->options.relay != 0) {
@@ -106,7 +106,7 @@ void OnCandidateOfCallee(GstElement*, guint line, gchar* text, Call* call) {
   g_signal_emit_by_name(call->caller.get(), "add-ice-candidate", line, candidate.c_str());
 }
 
-/// The callee behind a relay learns the caller's address from what comes through it.
+/// The callee behind a relay finds the caller's address by the packets through it.
 void OnCandidateOfCaller(GstElement*, guint line, gchar* text, Call* call) {
   if (call->options.relay == 0)
     g_signal_emit_by_name(call->callee.get(), "add-ice-candidate", line, text);
@@ -170,7 +170,7 @@ void PrintStats(const Call& call, gint64 start) {
   lidar::tools::PrintStats(call.pipeline.get(), call.options.stats, time.data());
 }
 
-/// True where the pipeline goes on.
+/// Returns true if the pipeline goes on.
 bool Handle(GstMessage* message, int* result) {
   if (message == nullptr) return true;
   if (GST_MESSAGE_TYPE(message) == GST_MESSAGE_EOS) return false;

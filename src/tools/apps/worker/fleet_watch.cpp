@@ -107,7 +107,7 @@ natsStatus FleetWatch::MakeBucket() {
   return s;
 }
 
-/// Consumers that are made with a connection go with their server, so this happens again and again.
+/// A consumer dies with its server, so this runs again after a reconnect.
 natsStatus FleetWatch::Subscribe() {
   entries_.reset();
   last_number_ = 0;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Follows the leases in the key-value store, and which robots there are, in a thread of its own:
-// questions to a server that is not there take their time.
+// Follows the leases in the key-value store and the list of robots, in a thread of its own:
+// requests to an absent server block.
 #pragma once
 #include <atomic>
 #include <cstdint>
@@ -40,7 +40,7 @@ class FleetWatch {
     std::uint64_t first = 0;                      // number of its oldest message
     std::uint64_t last = 0;                       // number of its newest message
     Time asked_at{};                              // it had them then, or later
-    std::string trouble;                          // empty: none, or told already
+    std::string trouble;                          // empty: no trouble, or reported already
   };
 
   FleetWatch(nats::Connection* connection, const FleetSettings& settings);
@@ -66,7 +66,7 @@ class FleetWatch {
   const FleetSettings settings_;
   nats::JetStreamPtr js_;
   nats::SubscriptionPtr entries_;
-  unsigned connections_ = 0;  // as the subscription knows them
+  unsigned connections_ = 0;  // as the subscription counts them
   unsigned missed_heartbeats_ = 0;
   std::uint64_t last_number_ = 0;  // of the consumer
   bool stale_ = true;              // the subscription missed something, or there is none
@@ -83,12 +83,12 @@ class FleetWatch {
 
 /// Whether `name` is a "robot.sensor" that fits a pattern.
 bool IsWanted(const FleetSettings& settings, const std::string& name);
-/// Whoever publishes for a robot can make up sensors, so a robot has no more than these.
+/// A publisher can make up sensors of its robot, so a robot has no more than these.
 constexpr std::size_t kMostSensors = 16;
 constexpr std::size_t kMostRobots = 4'096;
 /// Leaves the first robots, and the first sensors of each, in the order of their names.
 std::set<std::string> WithinBounds(const std::set<std::string>& all);
-/// "robot.sensor" of the subject of a stream; empty where it is none.
+/// "robot.sensor" of the subject of a stream; empty if it is none.
 std::string RobotOf(const FleetSettings& settings, const std::string& subject);
 
 }  // namespace lidar::worker

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// What the key-value store says of a robot: who works for it, and how far that is.
+// A robot's entry in the key-value store: its worker, and the worker's progress.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -11,7 +11,7 @@
 
 namespace lidar::worker {
 
-/// How far the work on a robot's stream is.
+/// Progress of the work on a robot's stream.
 struct Progress {
   std::array<double, 7> pose{};  // x y z qx qy qz qw
   /// vx vy vz wx wy wz in the sensor's frame [m/s, rad/s], where it is known.
@@ -19,24 +19,24 @@ struct Progress {
   std::uint64_t time = 0;    // of the pose, by the robot's clock [ns]
   std::uint64_t stream = 0;  // when it was made [ns since 1970]: numbers are its own
   std::uint64_t scan = 0;    // number in the stream of the first message of the pose's scan
-  std::uint64_t from = 0;    // of a message before it, from which on a decoder knows enough
+  std::uint64_t from = 0;    // an earlier message from which a decoder can start
 };
 
 struct LeaseRecord {
-  std::string worker;  // empty: nobody
+  std::string worker;  // empty: no worker
   Duration lease{};    // how long it holds from when it was written
   std::optional<Progress> progress;
 };
 
-/// False for what ParseLeaseRecord() would call damaged.
+/// Returns false if ParseLeaseRecord() would refuse it.
 bool ReadsBack(const Progress& progress);
 
-/// Velocity by the poses and times of two scans in a row; none where they are no such.
+/// Velocity by the poses and times of two scans in a row; nothing if they are not in a row.
 std::optional<std::array<double, 6>> VelocityBetween(const Progress& before, const Progress& after);
 
 std::string ToJson(const LeaseRecord& record);
-/// Returns nothing for what is damaged. Anything may come. An empty text is a record that says
-/// nothing, as is that of a deleted key.
+/// Parses untrusted text; returns nothing if it is damaged. An empty text, as of a deleted key, is
+/// an empty record.
 std::optional<LeaseRecord> ParseLeaseRecord(std::string_view text);
 
 }  // namespace lidar::worker

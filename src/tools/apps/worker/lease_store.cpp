@@ -38,7 +38,7 @@ void LeaseStore::Write(std::uint64_t ticket, const std::string& key, std::uint64
                      text.data(), static_cast<int>(text.size())) != NATS_OK)
     return;
   const MessagePtr message(raw);
-  // The header keeps it from replacing anything else.
+  // The header restricts the write to that revision.
   if (natsMsgHeader_Set(raw, kReplaces, std::to_string(replaces).c_str()) != NATS_OK) return;
   natsConnection_PublishMsg(connection_, raw);
 }

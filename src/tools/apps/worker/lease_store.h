@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Writes to a bucket of NATS's key-value store that nobody waits for: the answers come by
-// themselves, and a server that says nothing holds up nothing.
+// Writes to a bucket of NATS's key-value store without waiting: answers come later, and a silent
+// server holds up no thread.
 #pragma once
 #include <chrono>
 #include <cstdint>
@@ -17,8 +17,8 @@ class LeaseStore {
  public:
   struct Answer {
     std::uint64_t ticket = 0;
-    std::optional<std::uint64_t> revision;  // of what was written; none: it was refused
-    std::optional<std::uint64_t> newest;    // the revision that was in the way, where it is told
+    std::optional<std::uint64_t> revision;  // of what was written; empty: refused
+    std::optional<std::uint64_t> newest;    // the revision that was in the way, if known
   };
 
   /// The bucket may be made later. Throws std::runtime_error.
@@ -39,7 +39,7 @@ class LeaseStore {
   lidar::nats::SubscriptionPtr answers_;
 };
 
-/// What an answer of JetStream says, but for the ticket; none for anything else.
+/// The content of an answer of JetStream, without the ticket; nothing for other messages.
 std::optional<LeaseStore::Answer> ParseAnswer(const std::string& text);
 
 }  // namespace lidar::worker

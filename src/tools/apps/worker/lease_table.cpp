@@ -39,12 +39,12 @@ void LeaseTable::SetRobots(const std::set<std::string>& robots, Time now) {
   for (const std::string& name : robots) {
     const auto [at, is_new] = robots_.try_emplace(name);
     at->second.wanted = true;
-    // Others' leases are told of first, where there are any.
+    // Other workers' leases come first, if there are any.
     if (is_new) at->second.not_before = now + settings_.lease / kRenewals;
   }
 }
 
-/// Time from which others may have a robot whose entry was just seen.
+/// Sets the time from which others may take a robot whose entry was just seen.
 void LeaseTable::NoteFree(Robot* robot, bool damaged, Time now) const {
   const LeaseRecord& record = robot->record;
   const bool nobody = !damaged && (record.worker.empty() || record.worker == settings_.worker);
@@ -61,7 +61,7 @@ void LeaseTable::OnEntry(const std::string& name, std::uint64_t revision,
   robot.revision = revision;
   const auto progress = robot.record.progress;
   robot.record = record.value_or(LeaseRecord());
-  // Ours, and its answer is still to come or was lost. What we know of our progress is newer.
+  // Ours; its answer is still to come or was lost. Our own progress is newer.
   const bool ours = record && record->worker == settings_.worker;
   if (ours && robot.held) robot.record.progress = progress;
   if (!ours) robot.held = false;
@@ -89,12 +89,12 @@ void LeaseTable::OnRefused(std::uint64_t ticket, std::optional<std::uint64_t> ne
   Robot* robot = FindPending(ticket);
   if (robot == nullptr) return;
   robot->pending.reset();
-  // The entry comes by itself, and says who was faster: an earlier write of ours, maybe.
+  // The entry follows, with the faster writer, which may be an earlier write of ours.
   robot->not_before = robot->renew_at = now + settings_.lease / kRenewals;
   if (!robot->doubted_since) robot->doubted_since = now;
   if (newest != 0U) return;
   robot->revision = 0;
-  // The bucket is another one. What its owner wrote last into the old one, nobody will tell us of.
+  // The bucket is another one: the last write of the owner into the old one stays unknown.
   const Duration lease = std::max(robot->record.lease, settings_.lease);
   robot->free_at = IsHeld(*robot, now) ? now : now + lease + lease / kMargin;
 }
@@ -141,8 +141,8 @@ LeaseTable::Robots::iterator LeaseTable::Choose(const std::map<std::string, std:
       FromSeconds(kHesitation * Seconds(settings_.lease) * static_cast<double>(held) /
                   static_cast<double>(settings_.most));
   auto best = robots_.end();
-  // The fewest places of its robot, then what was tried the least. Each worker has an order of its
-  // own for the rest, so that two seldom want the same one.
+  // Robots with the fewest places first, then those tried the least. Each worker has an order of
+  // its own for the rest, so that two seldom choose the same.
   std::tuple<std::size_t, std::uint64_t, std::size_t> best_rank;
   for (auto at = robots_.begin(); at != robots_.end(); ++at) {
     const Robot& robot = at->second;
@@ -174,7 +174,7 @@ bool LeaseTable::MakeRoom(const std::map<std::string, std::size_t>& places,
       worst = at;
   }
   if (worst == robots_.end()) return false;
-  // A place less must leave it as many as the other then has, or both would change for ever.
+  // A robot keeps as many places as the other then has, or places would change for ever.
   const bool unfair = places_of(worst->first) >= places_of(waiting) + 2;
   const auto idle = std::find_if(robots_.begin(), robots_.end(), [&](const auto& item) {
     return item.second.held && now - item.second.moved_at > kIdle;

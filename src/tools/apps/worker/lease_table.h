@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Which robots are ours: entries of the key-value store and answers in, writes out.
+// Decides which robots are ours: entries of the key-value store and answers in, writes out.
 #pragma once
 #include <cstdint>
 #include <map>
@@ -19,16 +19,16 @@ struct LeaseSettings {
   std::size_t most = 8;  // robots at a time
 };
 
-/// Leases by revisions alone. A write names the revision that it replaces, and the store refuses
-/// it where that is not the newest. An owner has a robot for `lease` from when it *sent* the write
-/// that was stored last. Another worker that wants it waits for longer than that, from when it
-/// *saw* that write, and then replaces exactly that one. So no two have a robot at once, and the
-/// clocks of machines and servers need not agree: each span of time is measured by one steady
-/// clock. Deterministic; for one thread.
+/// Leases by revisions alone. A write names the revision that it replaces, and the store refuses it
+/// if that is not the newest. An owner has a robot for `lease` from when it *sent* the write that
+/// was stored last. Another worker waits for longer than that, from when it *saw* that write, and
+/// then replaces exactly that one. So no two have a robot at once, and the clocks of machines and
+/// servers need not agree: each span of time is measured by one steady clock. Deterministic; for
+/// one thread.
 ///
-/// An entry is a sensor, "r7" or "r7.front", and whoever publishes for a robot can make up any
-/// number of sensors. So robots share the places of a worker evenly, whatever their sensors are; a
-/// sensor that makes no progress leaves its place to one that waits.
+/// An entry is a sensor, "r7" or "r7.front", and a publisher can make up any number of sensors of
+/// its robot. So robots share the places of a worker evenly, whatever their sensors are; a sensor
+/// that makes no progress leaves its place to one that waits.
 class LeaseTable {
  public:
   struct Write {
@@ -39,22 +39,22 @@ class LeaseTable {
   };
   struct Held {
     Time until{};             // the lease is over then, if it is not renewed
-    std::string last_worker;  // who had it before; empty: nobody
+    std::string last_worker;  // the last owner; may be empty
     std::optional<Progress> progress;
   };
 
   explicit LeaseTable(const LeaseSettings& settings) : settings_(settings) {}
 
-  /// The robots there are to care for.
+  /// Sets the robots of the fleet.
   void SetRobots(const std::set<std::string>& robots, Time now);
-  /// The store has that of a robot; no record: it is damaged.
+  /// Notes the store's entry of a robot; without a record it is damaged.
   void OnEntry(const std::string& robot, std::uint64_t revision,
                const std::optional<LeaseRecord>& record, Time now);
   void OnStored(std::uint64_t ticket, std::uint64_t revision, Time now);
   /// `newest` is the revision that the store has instead, where it says so.
   void OnRefused(std::uint64_t ticket, std::optional<std::uint64_t> newest, Time now);
 
-  /// What is written with the next renewal.
+  /// Sets the progress for the next renewal.
   void SetProgress(const std::string& robot, const Progress& progress);
   /// Gives up a robot; it is not taken again for `pause`.
   void Drop(const std::string& robot, Duration pause, Time now);
@@ -63,12 +63,12 @@ class LeaseTable {
   void LeaveToOthers(const std::string& robot, Duration least, Time now);
   /// Ends leases that are over, and gives what to write now.
   std::vector<Write> Poll(Time now);
-  /// Gives up all robots at once, and tells those that wait for them. Takes no robot any more.
+  /// Gives up all robots at once, in favour of the waiting workers. Takes no robot any more.
   std::vector<Write> HandOver(Time now);
 
   /// What is ours at `now`, whether or not it is renewed in time.
   std::map<std::string, Held> HeldAt(Time now) const;
-  /// True where entries that others must have written do not come: all of them are wanted again.
+  /// Returns true if expected entries of others do not come, so that all are to be read again.
   bool MissesEntries(Time now);
   /// Writes that have no answer yet.
   std::size_t unanswered() const;
@@ -81,11 +81,11 @@ class LeaseTable {
   struct Robot {
     bool wanted = false;
     bool held = false;
-    std::uint64_t revision = 0;  // of the newest entry that is known; 0: none
+    std::uint64_t revision = 0;  // of the newest known entry; 0: unknown
     // Since a write was refused: the store may have another entry, with a lower revision even.
     std::optional<Time> doubted_since;
     LeaseRecord record;  // in that entry
-    Time free_at{};      // whoever has it has lost it then
+    Time free_at{};      // its owner has lost it then
     Time not_before{};   // it is not tried
     Time until{};        // while it is held
     Time renew_at{};

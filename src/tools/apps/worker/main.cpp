@@ -21,7 +21,7 @@ constexpr unsigned kEndSeconds = 6;  // whatever servers do
 
 std::atomic<bool> stopping{false};
 
-/// No process before or after this one is called so.
+/// A name that no other process has had or will have.
 std::string NameOfThisProcess() {
   char host[65] = "";
   gethostname(host, sizeof host - 1);

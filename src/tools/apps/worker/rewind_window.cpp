@@ -5,16 +5,16 @@ namespace lidar::worker {
 namespace {
 
 constexpr std::size_t kMostMessages = 65'536;
-/// A server pauses no longer. Capture times that tell of more are those of a clock that stands.
+/// A server pauses no longer. Capture times that differ by more are from a stopped clock.
 constexpr std::uint64_t kLongestPauseNs = 60'000'000'000;
 
-/// `to` - `from`; 0 where a clock went back.
+/// `to` - `from`; 0 if a clock went back.
 std::uint64_t Between(std::uint64_t from, std::uint64_t to) { return to < from ? 0 : to - from; }
 
 }  // namespace
 
-/// Whether it is farther back than `rewind`. After a pause of the server, much is stored in an
-/// instant that was captured in seconds, so both times count. A robot's clock may jump.
+/// Returns true if it is farther back than `rewind`. After a pause of the server, what was captured
+/// in seconds is stored in an instant, so both times count. A robot's clock may jump.
 bool RewindWindow::IsOld(const Message& message) const {
   const Message& now = messages_.back();
   const std::uint64_t age_ns = Between(message.stored_ns, now.stored_ns);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// From which message of a stream a decoder has to read, so that it knows enough.
+// The message of a stream from which a decoder has to start.
 #pragma once
 #include <cstdint>
 #include <deque>

@@ -127,7 +127,7 @@ GstPadProbeReturn RobotPipeline::OnMessage(GstBuffer* buffer) {
   return GST_PAD_PROBE_OK;
 }
 
-/// Lets through what odometry has to see, and knows scans as it does.
+/// Passes the clouds for odometry, and counts scans as odometry does.
 GstPadProbeReturn RobotPipeline::OnCloud(GstBuffer* buffer) {
   if (number_ < begin_scan_) return GST_PAD_PROBE_DROP;  // the decoder had to see it
   GstLidarSlice slice{};

@@ -36,8 +36,8 @@ struct PipelineSettings {
 
 class RobotPipeline {
  public:
-  /// `robot` is "robot.sensor", and `stream` where it is kept, as in Progress. Where that of
-  /// `begin` is another, only its pose counts. Throws std::runtime_error where an element is
+  /// `robot` is "robot.sensor", and `stream` the name of its JetStream stream, as in Progress. If
+  /// that of `begin` is another, only its pose counts. Throws std::runtime_error if an element is
   /// missing or refuses a setting.
   RobotPipeline(const PipelineSettings& settings, const std::string& robot, std::uint64_t stream,
                 const std::optional<Progress>& begin);
@@ -48,13 +48,13 @@ class RobotPipeline {
 
   /// Starts it in a thread of its own: elements wait for servers, and others must not.
   void Play();
-  /// Poses go out before this time alone, whatever becomes of the thread that would stop them.
+  /// Poses go out only before this time, even if the thread that stops them hangs.
   void SetEnd(Time end) { end_ = end.time_since_epoch().count(); }
   std::uint64_t stream() const { return stream_; }
   /// Place at which it was to begin.
   const std::optional<Progress>& begin() const { return begin_; }
-  /// True where it waits for a scan behind `last`, the newest message that the stream had when it
-  /// was asked at `asked_at`: a record that says so is wrong.
+  /// Returns true if it waits for a scan behind `last`, the newest message of the stream at
+  /// `asked_at`: then the record is wrong.
   bool IsAheadOf(std::uint64_t last, Time asked_at) const {
     return begin_scan_ > last && asked_at > made_at_;
   }
@@ -62,10 +62,10 @@ class RobotPipeline {
   bool has_dropped() const { return dropped_; }
   /// Returns nothing before the first pose.
   std::optional<Progress> progress() const;
-  /// Tells of its elements, as fleet::AddStats(). Waits for nobody.
+  /// Adds the statistics of its elements, as fleet::AddStats(). Does not wait.
   void AddStats(const std::string& labels, fleet::Exposition* exposition,
                 nlohmann::json* report) const;
-  /// An error that has ended it; empty: none. Prints warnings.
+  /// Returns the error that has ended it, or nothing. Prints warnings.
   std::string Poll();
 
  private:

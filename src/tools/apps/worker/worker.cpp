@@ -49,7 +49,7 @@ Worker::Worker(const WorkerSettings& settings)
       store_(connection_->get(), settings.fleet.bucket),
       table_(settings.lease),
       watch_(connection_.get(), settings.fleet) {
-  // Loads the plugins, and says at once what is missing.
+  // Loads the plugins, and fails at once if one is missing.
   const RobotPipeline try_it(settings_.pipeline, "robot.sensor", 0, std::nullopt);
 }
 
@@ -90,8 +90,8 @@ void Worker::NoteStream(std::uint64_t stream) {
   for (const auto& [robot, pipeline] : pipelines_) table_.Drop(robot, Duration{0}, Now());
 }
 
-/// A scan that the stream does not have yet is none that somebody has seen. Waiting for it, a robot
-/// would have no poses for as long. The next renewal mends the record.
+/// A record may ask for a scan that the stream does not have yet. Waiting for it would leave a
+/// robot without poses; the next renewal mends the record.
 void Worker::CheckPlaces(const FleetWatch::News& news) {
   for (auto at = pipelines_.begin(); at != pipelines_.end();) {
     const RobotPipeline& pipeline = *at->second;

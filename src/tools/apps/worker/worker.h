@@ -26,16 +26,16 @@ struct WorkerSettings {
 /// For one thread.
 class Worker {
  public:
-  /// Throws std::runtime_error where settings are wrong or elements missing.
+  /// Throws std::runtime_error if settings are wrong or elements missing.
   explicit Worker(const WorkerSettings& settings);
 
   /// Some milliseconds of work.
   void Step();
-  /// Stops all pipelines, and leaves the robots to other workers at once; at most two seconds. What
-  /// has not stopped by then says nothing any more, but the destructor waits for it.
+  /// Stops all pipelines, and leaves the robots to other workers at once; at most two seconds. A
+  /// pipeline that runs longer publishes nothing more; the destructor waits for it.
   void HandOver();
 
-  /// Tells of the worker and of each robot that it has. Waits for nobody.
+  /// Adds the figures of the worker and of each robot that it has. Does not wait.
   void Tell(fleet::Exposition* exposition, fleet::Reporter::Reports* reports) const;
 
  private:
@@ -55,7 +55,7 @@ class Worker {
   void Begin(const std::string& robot, const LeaseTable::Held& held);
   void WaitForEnds();
   void NoteGivenUp(const std::string& robot);
-  /// Ends a pipeline while we go on, and says so.
+  /// Ends a pipeline in the background, and prints that.
   Pipelines::iterator GiveUp(Pipelines::iterator at);
   Pipelines::iterator End(Pipelines::iterator at);
   void Send(const std::vector<LeaseTable::Write>& writes);

@@ -10,7 +10,7 @@ namespace lidar::demo {
 struct Comparison {
   std::uint64_t points = 0;   // returns compared
   std::uint64_t missing = 0;  // returns that did not arrive
-  std::uint64_t added = 0;    // points where none was
+  std::uint64_t added = 0;    // points at places without a return
   double max_error_m = 0;
   double sum_error_m = 0;
 

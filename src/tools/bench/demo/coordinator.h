@@ -5,7 +5,7 @@
 
 namespace lidar::demo {
 
-/// The program's exit code: 0, 1 where something failed or a guarantee broke. Throws
+/// The program's exit code: 0, 1 if something failed or a guarantee broke. Throws
 /// std::runtime_error with a text for the user.
 int RunDemo(const RunOptions& options);
 

@@ -50,8 +50,8 @@ struct Measurements {
   Ledger ledger;
   std::vector<LinkPacket> packets;
   std::vector<SenderSample> samples;
-  // The encoder's bitrate-bounds, means over time; 0: not known. One told in a gap, of coarse
-  // slices, is a guess.
+  // The encoder's bitrate-bounds, means over time; 0: unknown. Bounds from a gap, of coarse slices,
+  // are a guess.
   double encoder_min_bps = 0;
   double encoder_max_bps = 0;
   /// The latest bitrate bounds, and since when they hold.
@@ -63,7 +63,7 @@ struct Measurements {
   nlohmann::json sender_stats;  // the last of each
   nlohmann::json receiver_stats;
 
-  /// They hold until others are told, or until the stream ends.
+  /// These bounds hold until the next call, or until the stream ends.
   void AddBounds(std::int64_t unix_ns, double min_bps, double max_bps);
   void EndBounds(std::int64_t unix_ns);
   double Since(std::int64_t unix_ns) const {

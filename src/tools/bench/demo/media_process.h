@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// One end of the demo: a pipeline that measures itself and writes JSON lines.
+// An end of the demo: a pipeline that measures itself and writes JSON lines.
 #pragma once
 #include <gst/gst.h>
 
@@ -26,7 +26,7 @@ class MediaProcess {
   MediaProcess(const MediaProcess&) = delete;
   MediaProcess& operator=(const MediaProcess&) = delete;
 
-  /// Null where the pipeline has no element of that name.
+  /// Null if the pipeline has no element of that name.
   gst::ElementPtr Find(const char* name) const;
   /// Calls `handler` for each buffer (or downstream event) that passes the pad, in the streaming
   /// thread.
@@ -64,7 +64,7 @@ class MediaProcess {
   bool asked_to_stop_ = false;
 };
 
-/// The organised cloud of a buffer with caps as of `pad`; none where they are no cloud's.
+/// The organised cloud of a buffer with caps as of `pad`; nothing if they are no cloud's.
 std::optional<Cloud> ReadCloud(GstPad* pad, GstBuffer* buffer);
 
 }  // namespace lidar::demo

@@ -20,7 +20,7 @@ constexpr double kFixedBitsExtentM = 200;
 /// Mean of --drive: between what the source needs at least and what it can use.
 constexpr double kDriveMbps = 4;
 constexpr double kDriveOfCaptureMbps = 8;
-constexpr double kDriveTail_s = 60;  // a stream that starts late must not see the trace begin again
+constexpr double kDriveTail_s = 60;  // for a stream that starts late
 
 constexpr int kReceiverPage = 8765;
 constexpr int kSenderPage = 8766;
@@ -299,7 +299,7 @@ std::string SlamOf(const RunOptions& o) {
          Quoted(o.output + "/map.png") + " posed. ! queue ! ";
 }
 
-/// A branch for the page, which decodes by itself, may lose slices and holds up nobody.
+/// A branch for the page, which decodes by itself; it may lose slices and holds up no other branch.
 std::string ViewOf(const RunOptions& o) {
   if (!o.view) return "";
   return "tee name=viewed ! queue leaky=downstream max-size-buffers=64 ! foxglovesink name=page "

@@ -54,12 +54,12 @@ struct RunOptions {
 inline constexpr const char* kKeyVariable = "LIDAR_DEMO_SRTP_KEY";
 
 void AddRunOptions(CLI::App* app, RunOptions* options);
-/// Throws std::runtime_error with a text for the user where options contradict each other.
+/// Throws std::runtime_error with a text for the user if options contradict each other.
 void CheckRunOptions(const RunOptions& options);
 
 /// lidarenc, or dracoenc.
 std::string EncoderOf(const RunOptions& options);
-/// Zero where the encoder adapts.
+/// Zero if the encoder adapts.
 double FixedStepOf(const RunOptions& options);
 /// The largest distance between a point that was sent and the one that arrived.
 double ErrorBoundOf(const RunOptions& options);

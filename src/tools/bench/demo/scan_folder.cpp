@@ -33,7 +33,7 @@ std::vector<fs::path> ScansIn(const std::string& folder) {
   return scans;
 }
 
-/// Those of an earlier run; what else the user keeps there stays.
+/// Removes the links of an earlier run; other files stay.
 void RemoveLinks(const fs::path& folder) {
   for (const auto& entry : fs::directory_iterator(folder))
     if (entry.is_symlink()) fs::remove(entry.path());

@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// A folder of scans under any names, as multifilesrc wants them: numbered.
+// A folder of scans under any names, numbered for multifilesrc.
 #pragma once
 #include <string>
 
 namespace lidar::demo {
 
-/// Where LinkScans() puts its links, as multifilesrc names them.
+/// The pattern of LinkScans()'s links for multifilesrc.
 std::string ScansPattern(const std::string& output);
 /// Links the files of `folder`, in the order of their names, under numbers into the folder
 /// `output`: those with the extension (pcd, ply, las or bin) of the first. Throws
-/// std::runtime_error with a text for the user where there is none.
+/// std::runtime_error with a text for the user if there is no file.
 void LinkScans(const std::string& folder, const std::string& output);
 
 }  // namespace lidar::demo

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// How well, and how soon, the edge knew where the sensor was.
+// Errors and delays of the poses that the edge found.
 #pragma once
 #include <nlohmann/json.hpp>
 
@@ -7,7 +7,7 @@
 
 namespace lidar::demo {
 
-/// False where the programs were built without the odometry.
+/// Returns false if the programs were built without the odometry.
 bool CanFollow();
 /// Reads the trajectories of the run and adds "slam" to the summary; writes poses.csv.
 void AddSlam(const Measurements& m, const std::string& folder, nlohmann::ordered_json* summary);

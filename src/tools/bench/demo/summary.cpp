@@ -223,7 +223,7 @@ std::vector<Transient> FindTransients(const Measurements& m) {
       const double left = p.time_s + p.sojourn_ms / 1e3;
       if (!p.delivered || left < t.at_s || left >= end) continue;
       const bool settled = left - t.at_s - t.settled_after_s > kSettled_s;
-      if (settled) break;  // what comes later is no matter of this step
+      if (settled) break;  // later packets do not belong to this step
       t.peak_ms = std::max(t.peak_ms, p.sojourn_ms);
       if (p.sojourn_ms >= kShortQueue_ms)
         t.settled_after_s = std::max(t.settled_after_s, left - t.at_s);

@@ -23,7 +23,7 @@ struct Guarantee {
   std::string text;
   bool holds = false;
 };
-/// What must hold on every path; the exit code tells.
+/// The guarantees on every path, which decide the exit code.
 std::vector<Guarantee> CheckGuarantees(const Measurements& m);
 
 nlohmann::ordered_json Summarise(const Measurements& m);

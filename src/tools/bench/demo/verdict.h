@@ -9,7 +9,7 @@
 
 namespace lidar::demo {
 
-/// Bits on the wire for each bit that the encoder put out; 1 where nothing was.
+/// Bits on the wire for each bit that the encoder put out; 1 without output.
 double WireShare(const Measurements& m);
 /// What a sender that knew the link could deliver of scans at this bitrate of media.
 link::OracleResult AskOracle(const Measurements& m, double media_bps);

@@ -25,9 +25,9 @@ struct PacketRecord {
 
 class Recorder {
  public:
-  /// `log`: file name or empty. Throws std::runtime_error where it cannot be written.
+  /// `log`: file name or empty. Throws std::runtime_error if it cannot be written.
   explicit Recorder(const std::string& log);
-  /// Ends the log; throws std::runtime_error where it could not be written whole.
+  /// Ends the log; throws std::runtime_error if it could not be written whole.
   void Close() { log_.Close(); }
 
   void Start(Time origin, Duration unix_offset);

@@ -15,7 +15,8 @@ namespace lidar::tools {
 
 class Relay {
  public:
-  /// All must outlive this object. Throws std::runtime_error where a socket cannot be had.
+  /// The arguments must outlive this object. Throws std::runtime_error if a socket cannot be
+  /// opened.
   Relay(const LinkOptions& options, EventLoop* loop, Recorder* recorder);
 
   /// Sends what is due. Returns when to come back at the latest.

@@ -17,7 +17,7 @@ struct Faults {
   double reorder = 0;
   double duplicate = 0;
   double corrupt = 0;
-  bool silent = false;      // nothing is sent
+  bool silent = false;      // no packets are sent
   bool wrong_size = false;  // packets are cut
   int http_status = 0;      // every request is answered with this; 0: properly
   int http_delay_ms = 0;

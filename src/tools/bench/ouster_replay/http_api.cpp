@@ -27,7 +27,7 @@ bool Flag(const HttpRequest& request, const char* name) {
   return value == "true" || value == "True" || value == "1";
 }
 
-/// Paths of our own work whatever faults the sensor has.
+/// Returns false for the paths that set faults, which work whatever faults the sensor has.
 bool IsSensorPath(const HttpRequest& request) { return request.path.rfind("/replay/", 0) != 0; }
 
 /// "key value", the value being JSON or a bare word.

@@ -29,7 +29,7 @@ class HttpServer {
   /// How long a request waits before it is handled [ms]; others go on meanwhile.
   using Delay = std::function<unsigned(const HttpRequest&)>;
 
-  /// Port 0: any that is free. Throws std::runtime_error where the port cannot be had.
+  /// Port 0: any free one. Throws std::runtime_error if the port is taken.
   HttpServer(const std::string& address, int port, Handler handler, Delay delay = nullptr);
   ~HttpServer();
   HttpServer(const HttpServer&) = delete;

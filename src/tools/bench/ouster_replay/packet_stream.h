@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The packets of a sensor that is not there.
+// The packets of a simulated sensor.
 #pragma once
 #include <cstdint>
 #include <optional>
@@ -26,7 +26,7 @@ class PacketStream {
   };
   /// Starts from the first packet again, as after a boot.
   virtual void Restart(const Start& start) = 0;
-  /// Packets in order of `due`; none at the end.
+  /// Packets in order of `due`; nothing at the end.
   virtual std::optional<OutPacket> Next() = 0;
 };
 

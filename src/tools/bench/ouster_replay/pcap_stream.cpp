@@ -13,7 +13,7 @@
 namespace lidar::tools {
 namespace {
 
-/// What a recorded packet says from now on about its sensor and its time.
+/// The changes to a recorded packet's sensor and time.
 struct PacketPatch {
   std::uint32_t init_id = 0;  // 0: as it is
   std::uint64_t serial = 0;   // 0: as it is

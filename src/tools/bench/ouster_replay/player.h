@@ -23,7 +23,7 @@ class Player {
   Player(const ReplayOptions& options, const ouster::Metadata& metadata, Sensor* sensor,
          MakeStream make_stream);
 
-  /// Sends what is due; when to call again, or none at the end.
+  /// Sends what is due; returns the time of the next call, or nothing at the end.
   std::optional<Time> Pump(Time now);
   /// Any thread may call this.
   FaultCounts counts() const;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// What a sensor knows about itself: configuration, metadata and state. Any thread may ask.
+// A sensor's configuration, metadata and state. Any thread may ask.
 #pragma once
 #include <functional>
 #include <mutex>
@@ -14,8 +14,8 @@ namespace lidar::tools {
 
 class Sensor {
  public:
-  /// What the sensor is after its configuration changed; throws std::runtime_error for one that it
-  /// refuses.
+  /// The sensor's metadata after a change of its configuration; throws std::runtime_error for a
+  /// refused configuration.
   using Rebuild = std::function<ouster::Metadata(const nlohmann::json& config)>;
 
   Sensor(const ouster::Metadata& metadata, const std::string& destination, Rebuild rebuild);
@@ -26,7 +26,7 @@ class Sensor {
     bool staging = false;  // into what the next restart makes active
     bool restart = false;
   };
-  /// The error, or "". `@auto` becomes `peer`.
+  /// Returns the error, or "". `@auto` becomes `peer`.
   std::string SetConfig(const nlohmann::json& config, const Change& change,
                         const std::string& peer);
   void Restart();
@@ -44,7 +44,7 @@ class Sensor {
   };
   Destination destination() const;
 
-  /// For the thread that sends. After a restart was asked for, gives the new metadata once.
+  /// For the thread that sends: after a requested restart, returns the new metadata once.
   std::optional<ouster::Metadata> TakeRestart();
   void SetRunning(bool running);
 

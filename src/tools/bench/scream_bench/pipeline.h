@@ -12,7 +12,7 @@
 
 namespace lidar::tools {
 
-/// Throws std::runtime_error where the pads don't fit.
+/// Throws std::runtime_error if the pads don't fit.
 void LinkPads(GstElement* from, const char* from_pad, GstElement* to, const char* to_pad);
 
 /// 0, or 1 after an error, which is printed with `program` before it.

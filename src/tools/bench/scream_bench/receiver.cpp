@@ -53,7 +53,7 @@ class FrameMeter {
   /// Packets between the oldest and the newest that never came.
   std::uint64_t lost() const;
   std::uint64_t frames() const { return ages_ms_.count(); }
-  /// True where the sender's clock is another, so that ages count from the youngest frame's.
+  /// Returns true if the sender's clock is another, so that ages count from the youngest frame's.
   bool is_relative() const { return offset_ != Duration{0}; }
   const Distribution& ages_ms() const { return ages_ms_; }
 

@@ -19,7 +19,7 @@
 namespace lidar::tools {
 namespace {
 
-/// A number of `stats`, whatever its type; 0 where it is missing.
+/// A number of `stats`, whatever its type; 0 if it is missing.
 double Number(const GstStructure* stats, const char* name) {
   const GValue* value = gst_structure_get_value(stats, name);
   if (value == nullptr || !g_value_type_transformable(G_VALUE_TYPE(value), G_TYPE_DOUBLE)) return 0;

@@ -15,7 +15,7 @@
 namespace lidar::tools {
 namespace {
 
-/// How long a scan takes, where stamps tell no better.
+/// Duration of a scan without usable stamps.
 constexpr Duration kUsualPeriod = std::chrono::milliseconds(100);
 constexpr Duration kLongestPeriod = std::chrono::seconds(1);
 constexpr std::uint32_t kMostRings = 1024;
@@ -121,7 +121,7 @@ class Recording final : public ScanStream {
   }
 
   bool TakePoints(const cdr::PointCloud2& cloud, Scan* scan) {
-    // What it claims has to be there, before anything is allocated.
+    // The claimed size is checked before anything is allocated.
     if (!cdr::RowStride(cloud)) {
       why_ = "a cloud's data are not as long as its width and height say";
       return false;

@@ -21,7 +21,7 @@ std::unique_ptr<ScanStream> OpenKittiSequence(const std::string& folder);
 std::vector<Time> ReadKittiTimes(const std::string& folder);
 
 /// The beam of each point of a cloud that lists one beam after the other, each from straight ahead
-/// once around. Empty where the points have no such order.
+/// once around. Empty if the points have no such order.
 std::vector<std::uint16_t> FindRings(const std::vector<float>& xyz);
 
 /// Points as a sequence keeps them.

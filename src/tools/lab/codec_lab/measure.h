@@ -23,7 +23,7 @@ struct MeasuredSetting {
   std::uint32_t slices = 1;
 };
 
-/// Returns nothing where the codec refuses the setting.
+/// Returns nothing if the codec refuses the setting.
 std::optional<Measurement> Measure(const ScanSet& set, const CodingMode& mode,
                                    const MeasuredSetting& setting);
 

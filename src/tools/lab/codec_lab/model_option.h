@@ -7,9 +7,9 @@
 
 namespace lidar::tools {
 
-/// The built-in file where `path` is empty. Throws std::runtime_error.
+/// The built-in file if `path` is empty. Throws std::runtime_error.
 rate::ModelFile LoadModelFile(const std::string& path);
-/// Throws where the file has no such model.
+/// Throws if the file has no such model.
 std::unique_ptr<rate::SizeModel> MakeModelOrThrow(const rate::ModelFile& file,
                                                   rate::RateModel kind);
 

@@ -7,7 +7,7 @@
 
 namespace lidar::tools {
 
-/// Throws std::runtime_error where the file cannot be written.
+/// Throws std::runtime_error if the file cannot be written.
 class CsvFile {
  public:
   /// An empty path writes nothing.
@@ -21,7 +21,7 @@ class CsvFile {
   OutputFile file_;
 };
 
-/// Runs `commands` after the settings for a PNG at `png`. Throws where gnuplot is missing or fails.
+/// Runs `commands` after the settings for a PNG at `png`. Throws if gnuplot is missing or fails.
 void Plot(const std::string& png, const std::string& commands);
 
 /// printf into a string.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// A line on standard error that shows how far long work is.
+// A line on standard error with the progress of long work.
 #pragma once
 #include <unistd.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// One scan in memory, whatever it came from, and its slices.
+// A scan of any source in memory, and its slices.
 #pragma once
 #include <cstdint>
 #include <memory>

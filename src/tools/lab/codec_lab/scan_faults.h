@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// What a network or a poorer sensor takes of the scans of a source.
+// Faults of a network or a poorer sensor in the scans of a source.
 #pragma once
 #include <memory>
 
@@ -15,7 +15,7 @@ struct ScanFaults {
   bool any() const { return lost_share > 0 || gap_s > 0 || every_beam > 1 || every_scan > 1; }
 };
 
-/// The scans of `scans` that are left. Deterministic.
+/// The remaining scans of `scans`. Deterministic.
 std::unique_ptr<ScanStream> WithFaults(std::unique_ptr<ScanStream> scans, const ScanFaults& faults);
 
 }  // namespace lidar::tools

@@ -25,7 +25,7 @@ struct TimedScan {
   Scan scan;
   Time start{};  // of the first column
   Duration duration{};
-  std::optional<synth::Pose> truth;  // in the middle, where the source knows it
+  std::optional<synth::Pose> truth;  // in the middle, if the source has it
 };
 
 /// Scans one after the other, read or computed as they are asked for: a drive may be of any length.

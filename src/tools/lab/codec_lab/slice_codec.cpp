@@ -13,7 +13,7 @@
 namespace lidar::tools {
 namespace {
 
-// The step is what counts; the bound leaves room for the rounding of floats far out.
+// The step decides; the bound leaves room for the rounding of floats far out.
 constexpr double kRoomForRounding = 1e-3;
 
 double Distance(const float* a, const float* b) { return std::sqrt(SquaredDistance(a, b)); }

@@ -15,7 +15,7 @@
 
 namespace lidar::tools {
 
-/// A way of coding, by the name that the rate models know.
+/// A way of coding, under its name in the rate models.
 struct CodingMode {
   std::string name;
   Geometry geometry = Geometry::kRange;
@@ -24,7 +24,7 @@ struct CodingMode {
   unsigned effort = 0;                                     // kMixing\'s
 };
 const std::vector<CodingMode>& AllModes();
-/// Throws std::runtime_error for a name that is none.
+/// Throws std::runtime_error for an unknown name.
 const CodingMode& ModeNamed(const std::string& name);
 /// What Draco makes of xyz geometry at a compression level.
 const CodingMode& XyzModeOfLevel(unsigned level);
@@ -44,16 +44,16 @@ class SliceCodec {
   const codec::CloudFormat& format() const { return format_; }
   ByteView raw() const { return {raw_.data(), raw_.size()}; }
   std::uint32_t first_column() const { return first_column_; }
-  /// Only the parts that the slice itself knows: returns, extent, mode.
+  /// The slice's own part: returns, extent, mode.
   rate::SliceFeatures Features(const CodingMode& mode);
   rate::ErrorBound Bound(const CodingMode& mode);
 
-  /// Returns nothing where the slice is empty or the codec refuses the step. `keep_fraction` thins
+  /// Returns nothing if the slice is empty or the codec refuses the step. `keep_fraction` thins
   /// beams, or points of a cloud without order.
   std::optional<rate::EncodedSize> Encode(const CodingMode& mode, const rate::Settings& settings,
                                           double keep_fraction = 1);
-  /// Distances between the points and their decoded points. None where Encode() would be, and for
-  /// xyz steps so fine that no coder keeps the order of the points.
+  /// Distances between the points and their decoded points. Returns nothing if Encode() would, and
+  /// for xyz steps so fine that no coder keeps the order of the points.
   std::optional<Distortion> Errors(const CodingMode& mode, const rate::Settings& settings);
 
  private:

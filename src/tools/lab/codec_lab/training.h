@@ -28,8 +28,8 @@ using Progress = std::function<void(double)>;
 std::vector<rate::Sample> TakeSamples(const std::vector<ScanSet>& sets,
                                       const SamplingOptions& options, const Progress& progress);
 /// The paper's way: random quantisation bits 8..24 and compression levels 0..9 of xyz geometry, and
-/// such bits of the longest range for range geometry, where it is among `modes`. Slices let the
-/// number of points vary, without which its terms mean nothing elsewhere.
+/// as many bits of the longest range for range geometry, if `modes` has it. Slices vary the number
+/// of points, which the terms of the model need.
 std::vector<rate::Sample> TakePaperSamples(const std::vector<ScanSet>& sets,
                                            const SamplingOptions& options,
                                            const Progress& progress);

@@ -25,7 +25,7 @@ constexpr const char* kCaptures[] = {
 constexpr std::uint32_t kSlices = 8;
 constexpr double kErrors[] = {0.002, 0.005, 0.01, 0.02, 0.05, 0.1};
 constexpr unsigned kIntensityBits[] = {5, 8};
-constexpr std::uint64_t kFewest = 100;  // symbols that tell anything of a context
+constexpr std::uint64_t kFewest = 100;  // fewest symbols that characterise a context
 
 struct Counts {
   SymbolCounts values;
@@ -55,7 +55,7 @@ void CountSlice(const Scan& scan, SliceOf slice, const RangeGrid& grid, unsigned
                                &counts->levels);
 }
 
-/// As if every context had been seen as often in each of the counts that are added.
+/// Adds `counts` as if every context had been seen equally often in each of them.
 void AddEvenly(const SymbolCounts& counts, SymbolCounts* sum) {
   const auto add = [](const auto& from, auto* to) {
     constexpr std::uint64_t kShare = 1'000'000'000;

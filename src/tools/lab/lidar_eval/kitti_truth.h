@@ -7,8 +7,9 @@
 
 namespace lidar::tools {
 
-/// Of poses.txt, which are those of a camera, with `Tr` of calib.txt from the sensor to it; without
-/// calib.txt they are the sensor's. Empty where there is no poses.txt. Throws std::runtime_error.
+/// Reads the poses of poses.txt, which are those of a camera, and turns them into the sensor's with
+/// `Tr` of calib.txt; without calib.txt they are the sensor's. Empty without poses.txt. Throws
+/// std::runtime_error.
 odometry::Trajectory ReadKittiTruth(const std::string& folder);
 
 }  // namespace lidar::tools

@@ -100,7 +100,7 @@ void PrintRun(const SlamResult& r) {
               at(0.95), r.map_voxels);
 }
 
-/// What the user names, or else what the source knows.
+/// The truth that the user names, or else the source's.
 Trajectory FindTruth(const SlamArguments& a, const SlamResult& r, double scans_per_second) {
   if (!a.truth.empty()) return Load(a.truth, scans_per_second);
   return KittiFolderOf(a.scans.source) ? Load(a.scans.source, scans_per_second) : r.truth;

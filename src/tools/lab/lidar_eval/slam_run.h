@@ -9,7 +9,7 @@
 
 namespace lidar::tools {
 
-/// What is done to the points before they are aligned; nothing by default.
+/// What is done to the points before they are aligned; by default they stay as they are.
 struct CodingLoss {
   double range_step_m = 0;  // lidarenc: ranges on a grid of this step
   unsigned xyz_bits = 0;    // Draco as in the paper: so many bits over the cube of the scan
@@ -24,7 +24,7 @@ struct SlamOptions {
 
 struct SlamResult {
   odometry::Trajectory estimate;
-  odometry::Trajectory truth;                 // empty where the source knows none
+  odometry::Trajectory truth;                 // empty if the source has no truth
   std::vector<odometry::Matrix6> covariance;  // of each estimate, as the odometry has it
   std::vector<odometry::Tracking> states;
   std::size_t lost_at_start = 0;  // of the first twenty scans
@@ -60,7 +60,7 @@ std::optional<Calibration> Calibrate(const std::vector<odometry::Twist>& errors,
                                      const std::vector<odometry::Matrix6>& covariance,
                                      Eigen::Index first);
 
-/// Where the sensor was in the middle of a scan of which that is known.
+/// The pose of the sensor in the middle of a scan, for scans with a known truth.
 odometry::Pose TrueMiddle(const TimedScan& scan);
 
 /// The returns of a scan after `loss`, with their phase in the sweep where it is known.

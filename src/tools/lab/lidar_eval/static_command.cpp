@@ -38,7 +38,7 @@ struct Sizes {
   }
 };
 
-/// An encoder whose receiver tells late, and nothing is lost.
+/// An encoder whose receiver acknowledges late, without loss.
 class Link {
  public:
   Link(const StaticOptions& options, unsigned effort, double error, double scans_per_second)

@@ -51,7 +51,7 @@ void RunPcap(const PcapOptions& o) {
   try {
     WriteFile(MetadataPath(o), ouster::WriteMetadata(metadata));
   } catch (const std::runtime_error&) {
-    RemoveFile(o.output);  // nobody could read it
+    RemoveFile(o.output);  // the file would be unreadable
     throw;
   }
   std::printf("%s: %zu scans of %zu beams x %u columns, %zu returns", o.output.c_str(),

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// mixing-train: makes the table of start states of the mixing coder, and tells what it is worth.
+// mixing-train: makes the table of start states of the mixing coder, and measures its worth.
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <iostream>

@@ -20,7 +20,7 @@ constexpr std::uint32_t kSlices = 8;
 constexpr std::array<double, 6> kErrors = {0.001, 0.004, 0.01, 0.02, 0.05, 0.1};
 constexpr std::array<unsigned, mixing::kLevelClasses> kLevelBits = {5, 8};
 constexpr double kLevelError = 0.02;
-// A slice has to be able to change what others have taught.
+// A slice has to be able to change what other slices have taught.
 constexpr std::uint16_t kLeastRate = mixing::RateAfter(24);
 constexpr std::uint16_t kLeastJumpRate = mixing::RateAfter(48);
 // Version, flags, lengths and the first byte of the payload.
@@ -60,8 +60,8 @@ void Hasten(std::uint16_t least_rate, std::array<mixing::Counter, kSize>* counte
   for (mixing::Counter& counter : *counters) counter.rate = std::max(counter.rate, least_rate);
 }
 
-/// Means of what numbers were behind each slice that changed them. So no slice weighs more than
-/// another, and none more for being the last.
+/// Means of the numbers behind each slice that changed them, so that all slices weigh the same, the
+/// last one, too.
 class Means {
  public:
   void Add(std::size_t place, std::int64_t number) {
@@ -219,7 +219,7 @@ class Trainer {
     Keep(model_->level_weights, &states.level_weights[effort - 1][level_class],
          &level_weight_means_[effort - 1][level_class]);
   }
-  /// The last effort has all counters that the others have.
+  /// The last effort has all counters of the other efforts.
   mixing::StartStates& all() { return *states_.back(); }
 
   using States = std::unique_ptr<mixing::StartStates>;
@@ -232,7 +232,7 @@ class Trainer {
   std::array<std::array<Means, mixing::kLevelClasses>, mixing::kEfforts> level_weight_means_;
   std::unique_ptr<mixing::Model> model_ = std::make_unique<mixing::Model>();
   SliceBins bins_;
-  std::vector<std::uint8_t> written_;  // of no use: the model learns from what is coded
+  std::vector<std::uint8_t> written_;  // unused: the model learns from what is coded
 };
 
 }  // namespace

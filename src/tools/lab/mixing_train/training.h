@@ -23,7 +23,7 @@ struct MixingCase {
 std::unique_ptr<codec::mixing::StartStates> TrainMixing(const std::vector<const ScanSet*>& sets);
 
 /// Bits a return of real payloads, all that a block has included. Each is decoded again: throws
-/// std::runtime_error where one does not come back as it was.
+/// std::runtime_error if one does not come back as it was.
 double BitsPerReturn(const ScanSet& set, const MixingCase& setting,
                      const codec::mixing::StartStates& states);
 
