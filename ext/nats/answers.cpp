@@ -36,9 +36,9 @@ std::string ErrorOfAck(natsMsg* answer) {
   const std::string_view text(natsMsg_GetData(answer),
                               static_cast<std::size_t>(natsMsg_GetDataLength(answer)));
   if (text.find("\"error\"") == text.npos && text.find("\"stream\"") != text.npos) return "";
-  constexpr std::size_t kShown = 200;
+  constexpr std::size_t kShownLetters = 200;
   const gst::StringPtr shown(
-      g_utf8_make_valid(text.data(), static_cast<gssize>(std::min(text.size(), kShown))));
+      g_utf8_make_valid(text.data(), static_cast<gssize>(std::min(text.size(), kShownLetters))));
   return std::string("JetStream refuses a message: ") + shown.get();
 }
 

@@ -44,8 +44,8 @@ bool ImuInput::Add(ByteView bytes) {
     const auto& g = imu.angular_velocity;
     samples_.push_back({imu.header.stamp, to_sensor_ * Eigen::Vector3d(g[0], g[1], g[2])});
   }
-  if (samples_.size() > kMost)
-    samples_.erase(samples_.begin(), samples_.end() - static_cast<std::ptrdiff_t>(kMost));
+  if (samples_.size() > kMostSamples)
+    samples_.erase(samples_.begin(), samples_.end() - static_cast<std::ptrdiff_t>(kMostSamples));
   return true;
 }
 

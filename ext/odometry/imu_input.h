@@ -29,7 +29,7 @@ class ImuInput {
   std::vector<TurnSample> Take();
   void Clear();
 
-  static constexpr std::size_t kMost = 8192;  // samples that wait; older ones are dropped
+  static constexpr std::size_t kMostSamples = 8192;  // samples that wait; older ones are dropped
 
  private:
   std::mutex mutex_;

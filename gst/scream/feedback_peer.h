@@ -13,7 +13,7 @@ namespace lidar::gst {
 class FeedbackPeer {
  public:
   /// Silence of the old address after which another one is the peer's.
-  static constexpr Duration kSilence = std::chrono::milliseconds(500);
+  static constexpr Duration kOldPeerSilence = std::chrono::milliseconds(500);
 
   /// Takes the source of feedback that was accepted; it may be NULL. Returns true if the peer has
   /// moved.
@@ -25,7 +25,7 @@ class FeedbackPeer {
     }
     const bool known = peer_ != nullptr;
     const Duration silence = now - last_;  // negative where the clock was set back
-    if (known && silence >= Duration{0} && silence < kSilence) return false;
+    if (known && silence >= Duration{0} && silence < kOldPeerSilence) return false;
     peer_.reset(G_SOCKET_ADDRESS(g_object_ref(from)));
     last_ = now;
     return known;

@@ -69,7 +69,7 @@ Time PeerLatch::LastHeard() const {
 /// If the first link is silent, the sending one takes its place: strangers find no silent peer.
 PeerLatch::Verdict PeerLatch::OnLinkPacket(Time now, const Packet& packet, Link* link) {
   link->at = now;
-  if (now - peer_.at >= kSilence) {
+  if (now - peer_.at >= kPeerSilence) {
     std::swap(link->address, peer_.address);
     link->at = peer_.at;
     peer_.Add(now, packet);
@@ -91,7 +91,7 @@ bool PeerLatch::Join(Time now, Peer* candidate) {
   if (links_.size() + 1 >= kMaxLinks) {
     const auto oldest = std::min_element(links_.begin(), links_.end(),
                                          [](const Link& a, const Link& b) { return a.at < b.at; });
-    if (now - oldest->at < kSilence) return false;
+    if (now - oldest->at < kPeerSilence) return false;
     links_.erase(oldest);
   }
   links_.push_back({std::move(candidate->address), now});
@@ -131,7 +131,7 @@ void PeerLatch::Restart() {
 bool PeerLatch::IsKnown(Time now, const Packet& packet) const {
   const auto goes_on = [&](const Sources& sources) {
     const auto found = sources.find(packet.ssrc);
-    return found != sources.end() && now - found->second.at <= kMemory &&
+    return found != sources.end() && now - found->second.at <= kStandingMemory &&
            GoesOn(packet.seq, found->second.next_seq, kMaxKnownGap);
   };
   return goes_on(known_) || (peer_.has_slices && IsSilent(now) && goes_on(peer_.sources));
@@ -149,7 +149,8 @@ bool PeerLatch::Wins(const Peer& candidate, Time now) const {
 void PeerLatch::Promote(Time now, Peer candidate) {
   if (IsSilent(now)) Remember(peer_);
   for (auto it = known_.begin(); it != known_.end();) {
-    const bool old = now - it->second.at > kMemory || candidate.sources.count(it->first) > 0;
+    const bool old =
+        now - it->second.at > kStandingMemory || candidate.sources.count(it->first) > 0;
     it = old ? known_.erase(it) : std::next(it);
   }
   while (known_.size() > kMostSources) known_.erase(known_.begin());

@@ -49,11 +49,11 @@ class PeerLatch {
   /// ...within this time.
   static constexpr Duration kStreamTime = 1s;
   /// An accepted peer without packets for this long is silent.
-  static constexpr Duration kSilence = 500ms;
+  static constexpr Duration kPeerSilence = 500ms;
   /// Silence after which a stream is enough to follow a peer that had shown slices.
   static constexpr Duration kLongSilence = 5s;
   /// SSRCs of a peer that fell silent are known for so long.
-  static constexpr Duration kMemory = 10min;
+  static constexpr Duration kStandingMemory = 10min;
   static constexpr std::size_t kMaxCandidates = 64;
   /// So many copies make an address a link of the peer.
   static constexpr int kCopies = 4;
@@ -135,7 +135,7 @@ class PeerLatch {
   Peer& CandidateOf(Time now, GSocketAddress* from);
   /// When a packet came last, by any link.
   Time LastHeard() const;
-  bool IsSilent(Time now) const { return now - LastHeard() >= kSilence; }
+  bool IsSilent(Time now) const { return now - LastHeard() >= kPeerSilence; }
   void Remember(const Peer& peer);
   bool IsKnown(Time now, const Packet& packet) const;
   bool Wins(const Peer& candidate, Time now) const;

@@ -11,14 +11,14 @@ namespace lidar {
 class LoadBudget {
  public:
   /// Unused time is kept for this period.
-  static constexpr Duration kKept = std::chrono::seconds(1);
+  static constexpr Duration kUnusedTimeKept = std::chrono::seconds(1);
 
   /// Returns false while more was spent than `load`, processor time over time, allows up to `now`.
   /// Times must not go back.
   bool Allows(double load, Time now) {
     if (last_) saved_ += FromSeconds(load * Seconds(now - *last_));
     last_ = now;
-    saved_ = std::min(saved_, FromSeconds(load * Seconds(kKept)));
+    saved_ = std::min(saved_, FromSeconds(load * Seconds(kUnusedTimeKept)));
     return saved_ >= Duration{};
   }
   void Spend(Duration processor_time) { saved_ -= processor_time; }

@@ -15,15 +15,15 @@ constexpr Duration kReportMargin = 20ms;
 /// A slice changes to another link only if that is better by this, to avoid needless swaps.
 constexpr Duration kWorthLeaving = 5ms;
 /// A link has room for copies while its FIFO is gone in this time.
-constexpr Duration kRoom = 25ms;
+constexpr Duration kRoomForCopies = 25ms;
 /// The encoder's target leaves a link that has been in a gap for so long.
-constexpr Duration kDead = 100ms;
+constexpr Duration kLongestGap = 100ms;
 /// Round trips that differ by so much are alike.
-constexpr Duration kNear = 50ms;
+constexpr Duration kSimilarRtts = 50ms;
 /// The share before a rate is known.
 constexpr DataRate kUnknownRate = DataRate::BitsPerSecond(1e6);
 /// Entries are kept for receipts that come late.
-constexpr Duration kMemory = 2s;
+constexpr Duration kReceiptMemory = 2s;
 
 }  // namespace
 
@@ -104,7 +104,7 @@ LinkSet Scheduler::CopiesOf(Time now, DataSize slice) const {
     const Link& l = links_[i];
     if (!l.usable) continue;
     const DataRate rate = l.path.rate > DataRate{} ? l.path.rate : kUnknownRate;
-    const bool room = (l.queued + slice) / rate < kRoom && !InGap(now, i);
+    const bool room = (l.queued + slice) / rate < kRoomForCopies && !InGap(now, i);
     if (method_ == Method::kBroadcast || probe || Proves(now, l) || (all && room)) links.set(i);
   }
   return links;
@@ -154,7 +154,7 @@ LinkSet Scheduler::OnPacket(Time now, const Packet& packet) {
 void Scheduler::Forget(Time now) {
   while (!order_.empty()) {
     const auto found = packets_.find(order_.front().key());
-    if (order_.size() < kMaxPackets && now - found->second.made < kMemory) return;
+    if (order_.size() < kMaxPackets && now - found->second.made < kReceiptMemory) return;
     for (std::size_t i = 0; i < links_.size(); ++i)
       if (found->second.waits[i]) links_[i].queued -= found->second.size;
     packets_.erase(found);
@@ -268,7 +268,7 @@ void Scheduler::SetUsable(Time now, std::size_t link, bool usable) {
 
 bool Scheduler::IsDead(Time now, const Link& link) {
   const auto since = link.ledger.waiting_since();
-  return !link.usable || (since && now - *since > Rtt(link) + kDead);
+  return !link.usable || (since && now - *since > Rtt(link) + kLongestGap);
 }
 
 DataRate Scheduler::Target(Time now, const std::vector<DataRate>& targets) const {
@@ -281,7 +281,7 @@ DataRate Scheduler::Target(Time now, const std::vector<DataRate>& targets) const
   for (std::size_t i = 0; i < links_.size(); ++i) {
     if (any_works && IsDead(now, links_[i])) continue;
     sum = sum + targets[i];
-    if (Rtt(links_[i]) - nearest <= kNear) best = std::max(best, targets[i]);
+    if (Rtt(links_[i]) - nearest <= kSimilarRtts) best = std::max(best, targets[i]);
   }
   return rule_ == TargetRule::kSum && any_works ? sum : best;
 }

@@ -21,7 +21,7 @@ constexpr double kFarthest = 1e9;
 /// Frames above each other; more are a circle.
 constexpr std::size_t kMaxDepth = 64;
 /// Orientations above this cosine are so near that a straight line between them will do.
-constexpr double kNear = 0.9995;
+constexpr double kNearlyParallel = 0.9995;
 
 /// ROS 1 wrote frames with a slash.
 void DropSlash(std::string* frame) {
@@ -77,7 +77,7 @@ FramePose Between(const FramePose& a, const FramePose& b, double part) {
     out.position[i] = a.position[i] + part * (b.position[i] - a.position[i]);
   const double cosine = Dot(a.orientation, b.orientation);
   const double angle = std::acos(std::min(std::abs(cosine), 1.0));
-  const bool near = std::abs(cosine) > kNear;
+  const bool near = std::abs(cosine) > kNearlyParallel;
   const double from = near ? 1 - part : std::sin((1 - part) * angle) / std::sin(angle);
   const double to = near ? part : std::sin(part * angle) / std::sin(angle);
   for (std::size_t i = 0; i < 4; ++i)

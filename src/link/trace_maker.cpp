@@ -19,7 +19,7 @@ constexpr double kEdgeGapsPerSecond = 1.2;
 constexpr double kEdgeShare = 0.35;  // of the rate, at the edge of a cell
 constexpr double kShortestEdge_s = 2;
 constexpr double kLongestEdge_s = 6;
-constexpr double kMemory = 0.87;  // of the rate's logarithm, from step to step
+constexpr double kRateCorrelation = 0.87;  // of the rate's logarithm, from step to step
 constexpr double kDeviation = 0.5;
 
 struct GapLength {
@@ -35,7 +35,8 @@ class Drive {
 
   /// Relative rate of the next step; 0 in a gap.
   double Next() {
-    fading_ = kMemory * fading_ + std::sqrt(1 - kMemory * kMemory) * kDeviation * Normal();
+    fading_ = kRateCorrelation * fading_ +
+              std::sqrt(1 - kRateCorrelation * kRateCorrelation) * kDeviation * Normal();
     if (edge_left_ > 0) --edge_left_;
     if (edge_left_ == 0 && random_.Chance(kEdgesPerSecond * Seconds(kStep)))
       edge_left_ = Steps(kShortestEdge_s + (kLongestEdge_s - kShortestEdge_s) * random_.Uniform());

@@ -88,7 +88,7 @@ void Receiver::PushToCandidate(const RtpPacket& packet, const std::vector<Unit>&
 
 bool Receiver::CandidateHasWon(Time now) const {
   const bool same = candidate_->ssrc == active_->ssrc;
-  const bool silent = now - active_arrival_ >= kSilence;
+  const bool silent = now - active_arrival_ >= kSilentStream;
   if (silent && candidate_->reassembler.has_whole_slice() && CandidateGoesOn(now)) return true;
   if (candidate_->streak < kProbation || !candidate_->reassembler.started()) return false;
   return same || silent || candidate_->streak >= kProbationNoClock;

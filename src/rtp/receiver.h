@@ -38,7 +38,7 @@ class Receiver {
 
   static constexpr unsigned kProbation = 3;          // packets
   static constexpr unsigned kProbationNoClock = 64;  // packets, where arrival times stand still
-  static constexpr Duration kSilence = std::chrono::milliseconds(100);
+  static constexpr Duration kSilentStream = std::chrono::milliseconds(100);
   static constexpr unsigned kRivalPackets = 100;
   static constexpr std::size_t kMaxRivals = 16;
 

@@ -13,7 +13,7 @@
 namespace lidar::gst {
 namespace {
 
-constexpr Duration kIdle = std::chrono::seconds(1);
+constexpr Duration kIdleReports = std::chrono::seconds(1);
 
 void StartStream(GstLidarScreamRx* self) {
   gchar* id = gst_pad_create_stream_id(self->rtcp_src, GST_ELEMENT(self), "feedback");
@@ -27,7 +27,7 @@ void StartStream(GstLidarScreamRx* self) {
 }
 
 void Wait(RxState& state, RxLock& lock, Time now) {
-  const Time until = std::min(state.reports.NextDue(), now + kIdle);
+  const Time until = std::min(state.reports.NextDue(), now + kIdleReports);
   if (until <= now) return;
   GstClockID id = gst_clock_new_single_shot_id(
       state.clock, static_cast<GstClockTime>(until.time_since_epoch().count()));

@@ -14,7 +14,7 @@ namespace {
 
 constexpr std::size_t kMaxSsrcs = 64;
 // A stream without packets for so long does not keep the others from ending.
-constexpr Duration kAlive = std::chrono::seconds(5);
+constexpr Duration kSsrcTimeout = std::chrono::seconds(5);
 // An older kernel time, or a future one, means that the system clock was set.
 constexpr Duration kMaxAge = std::chrono::seconds(1);
 constexpr Duration kMaxApart = std::chrono::milliseconds(1);
@@ -133,7 +133,7 @@ enum class Fate { kPass, kDrop, kEnd };
 /// Whether a stream goes on. A sender that restarted said no goodbye for the SSRC it had before.
 bool AnyAlive(const RxState& state, Time now) {
   return std::any_of(state.ssrcs.begin(), state.ssrcs.end(),
-                     [now](const auto& s) { return now - s.second < kAlive; });
+                     [now](const auto& s) { return now - s.second < kSsrcTimeout; });
 }
 
 /// A goodbye on the media's port ends streams, and a sender's report is kept for `stats`; other

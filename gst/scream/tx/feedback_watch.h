@@ -10,7 +10,7 @@ namespace lidar::gst {
 class FeedbackWatch {
  public:
   /// Packets without an answer for this long mean that there is no receiver.
-  static constexpr Duration kPatience = std::chrono::seconds(2);
+  static constexpr Duration kFeedbackTimeout = std::chrono::seconds(2);
 
   void OnSent(Time now) {
     if (!unanswered_since_) unanswered_since_ = now;
@@ -18,7 +18,7 @@ class FeedbackWatch {
   }
   /// There is more to send: without that, silence means nothing.
   void OnInput(Time now) {
-    if (unanswered_since_ && now - *unanswered_since_ >= kPatience) silent_ = true;
+    if (unanswered_since_ && now - *unanswered_since_ >= kFeedbackTimeout) silent_ = true;
   }
   void OnFeedback() {
     unanswered_since_.reset();

@@ -11,8 +11,8 @@ namespace lidar::gst {
 namespace {
 
 constexpr std::size_t kMaxBatch = 64;
-constexpr Duration kSilence = std::chrono::seconds(1);  // of a receiver that is gone
-constexpr int kByeCopies = 3;                           // the network may lose one
+constexpr Duration kReceiverTimeout = std::chrono::seconds(1);  // of a receiver that is gone
+constexpr int kByeCopies = 3;                                   // the network may lose one
 
 bool AllEnded(const TxState& state) {
   return !state.streams.empty() && std::all_of(state.streams.begin(), state.streams.end(),
@@ -183,7 +183,7 @@ void PacingTask::CollectPackets(Time now, Batch* batch) {
 void PacingTask::OnAccepted(Time now) {
   const auto waits = [](const auto& stream) { return !stream->live.value_or(true); };
   if (end_deadline_ && std::any_of(state().streams.begin(), state().streams.end(), waits))
-    end_deadline_ = now + std::max(kSilence, 2 * state().settings.max_queue_delay);
+    end_deadline_ = now + std::max(kReceiverTimeout, 2 * state().settings.max_queue_delay);
 }
 
 /// True once everything has left, or after as long as a frame that has begun to leave may take.

@@ -4,7 +4,7 @@
 namespace lidar::gst {
 
 void PacketReceipts::Add(guint receiver, const scream::SsrcReport& report) {
-  if (receipts_.size() >= kMost) return;
+  if (receipts_.size() >= kMostReceipts) return;
   GstLidarPacketsReceived receipt{report.ssrc, receiver, 0, {}};
   bool in_range = false;
   for (std::size_t i = 0; i < report.metrics.size(); ++i) {

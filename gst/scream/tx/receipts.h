@@ -19,7 +19,7 @@ class PacketReceipts {
 
  private:
   // A payloader that misses some takes slices for lost, which is harmless.
-  static constexpr std::size_t kMost = 16;
+  static constexpr std::size_t kMostReceipts = 16;
   std::vector<GstLidarPacketsReceived> receipts_;
 };
 

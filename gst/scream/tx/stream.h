@@ -32,13 +32,13 @@ struct TxItem {
 class OverheadMeter {
  public:
   void Add(gsize payload, DataSize wire) {
-    payload_ = payload_ * kMemory + static_cast<double>(payload);
-    wire_ = wire_ * kMemory + static_cast<double>(wire.bytes());
+    payload_ = payload_ * kShareMemoryPerPacket + static_cast<double>(payload);
+    wire_ = wire_ * kShareMemoryPerPacket + static_cast<double>(wire.bytes());
   }
   double payload_share() const { return payload_ / wire_; }
 
  private:
-  static constexpr double kMemory = 1 - 1.0 / 128;  // packets
+  static constexpr double kShareMemoryPerPacket = 1 - 1.0 / 128;  // packets
   // Starts as packets of 1200 bytes are.
   double payload_ = 1188;
   double wire_ = 1228;

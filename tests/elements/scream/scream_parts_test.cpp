@@ -233,7 +233,7 @@ TEST_F(Latch, AnSsrcIsKnownForMinutesAndNotForEver) {
   Stream(robot, 1, 0, 100, true);
   now += 6s;
   EXPECT_TRUE(Stream(thief, 9, 0, 20, true));
-  now += PeerLatch::kMemory;
+  now += PeerLatch::kStandingMemory;
   Stream(thief, 9, 20, 20, true);
   EXPECT_FALSE(Stream(robot, 1, 150, 20));
 }

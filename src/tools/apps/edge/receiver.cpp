@@ -23,9 +23,9 @@ using tools::StatsOf;
 constexpr std::chrono::milliseconds kPoll{100};
 constexpr seconds kFirstPause{2};  // after a failure
 constexpr seconds kLongestPause{64};
-constexpr seconds kHealthy{10};  // a session of this age has not failed at once
-constexpr seconds kSilence{10};  // silence after which a robot is gone
-constexpr double kCredit = 3;    // seconds at its limit that a robot may be ahead of it
+constexpr seconds kHealthySession{10};  // a session of this age has not failed at once
+constexpr seconds kRobotTimeout{10};    // silence after which a robot is gone
+constexpr double kCredit = 3;           // seconds at its limit that a robot may be ahead of it
 constexpr GstClockTime kFinish = 3 * GST_SECOND;
 
 }  // namespace
@@ -132,7 +132,7 @@ void Receiver::Record(Clock::time_point now) {
 void Receiver::NoteRecordFailure(Clock::time_point now, const std::string& why) {
   RemoveRecorder(pipeline_.get());
   recording_ = false;
-  if (now - record_at_ > kHealthy) record_failures_.Reset();
+  if (now - record_at_ > kHealthySession) record_failures_.Reset();
   record_at_ = now + record_failures_.Next();
   Update([&](Account* a) {
     ++a->record_failures;
@@ -148,7 +148,7 @@ bool Receiver::NoteError(Clock::time_point now, GstMessage* message) {
     if (recording_) NoteRecordFailure(now, text);  // the first of its errors
     return true;
   }
-  if (now - began_at_ > kHealthy) failures_.Reset();
+  if (now - began_at_ > kHealthySession) failures_.Reset();
   Update([&](Account* a) {
     ++a->failures;
     a->last_error = text;
@@ -215,7 +215,7 @@ void Receiver::Watch(Clock::time_point now) {
     state_ = State::kReceiving;
     Update([](Account*) {});
     heard_at_ = now;
-  } else if (state_ == State::kReceiving && now - heard_at_ > kSilence) {
+  } else if (state_ == State::kReceiving && now - heard_at_ > kRobotTimeout) {
     return Rest(now, seconds(0), "the robot is gone");
   }
   if (robot_.max_mbps > 0) Charge(now, static_cast<double>(more));

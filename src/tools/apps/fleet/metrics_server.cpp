@@ -15,7 +15,7 @@
 namespace lidar::fleet {
 namespace {
 
-constexpr std::chrono::seconds kPatience{2};
+constexpr std::chrono::seconds kClientTimeout{2};
 constexpr std::size_t kMaxRequest = 8 << 10;
 constexpr int kBacklog = 16;
 /// Interval at which silent connections are cut off and failed accepts repeated.
@@ -118,7 +118,7 @@ void MetricsServer::Accept() {
     connections_.pop_front();
     ++cut_;
   }
-  connections_.push_back({std::move(socket), Clock::now() + kPatience, "", "", 0});
+  connections_.push_back({std::move(socket), Clock::now() + kClientTimeout, "", "", 0});
 }
 
 /// False once the connection is over.

@@ -15,7 +15,7 @@ constexpr int kMargin = 20;
 /// A worker that has all it can take hesitates for this part of a lease, so that others go first.
 constexpr double kHesitation = 0.3;
 /// A sensor without progress for as long leaves its place to one that waits.
-constexpr Duration kIdle = std::chrono::seconds(30);
+constexpr Duration kIdleSensor = std::chrono::seconds(30);
 
 /// The robot of an entry, which is a robot or one of its sensors.
 std::string NameOf(const std::string& entry) { return entry.substr(0, entry.find('.')); }
@@ -177,7 +177,7 @@ bool LeaseTable::MakeRoom(const std::map<std::string, std::size_t>& places,
   // A robot keeps as many places as the other then has, or places would change for ever.
   const bool unfair = places_of(worst->first) >= places_of(waiting) + 2;
   const auto idle = std::find_if(robots_.begin(), robots_.end(), [&](const auto& item) {
-    return item.second.held && now - item.second.moved_at > kIdle;
+    return item.second.held && now - item.second.moved_at > kIdleSensor;
   });
   if (!unfair && idle == robots_.end()) return false;
   LeaveToOthers(unfair ? worst->first : idle->first, Duration{}, now);

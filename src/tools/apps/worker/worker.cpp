@@ -21,7 +21,7 @@ constexpr milliseconds kStep{10};
 constexpr std::chrono::seconds kAfterFailure{5};
 constexpr std::chrono::seconds kStopTimeout{1};
 constexpr std::chrono::seconds kAnswerTimeout{1};
-constexpr std::size_t kShown = 300;  // letters of a record that is damaged
+constexpr std::size_t kShownLetters = 300;  // letters of a record that is damaged
 
 std::unique_ptr<nats::Connection> Connect(const WorkerSettings& settings) {
   nats::ConnectionSettings connection = settings.pipeline.connection;
@@ -79,7 +79,7 @@ void Worker::TakeNews() {
     const auto record = ParseLeaseRecord(entry.text);
     if (!record)
       Warn(entry.robot, "its record is damaged; its last pose is not known: " +
-                            tools::Printable(entry.text.substr(0, kShown)));
+                            tools::Printable(entry.text.substr(0, kShownLetters)));
     table_.OnEntry(entry.robot, entry.revision, record, Now());
   }
 }

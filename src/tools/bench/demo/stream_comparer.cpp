@@ -7,7 +7,7 @@ namespace lidar::demo {
 namespace {
 
 /// A decoded slice may overtake the original, which waits in another process for its writer.
-constexpr auto kPatience = std::chrono::seconds{2};
+constexpr auto kOriginalTimeout = std::chrono::seconds{2};
 
 }  // namespace
 
@@ -45,7 +45,7 @@ void StreamComparer::ReadSent() {
 
 bool StreamComparer::TakeSent(SliceKey key, Cloud* cloud) {
   std::unique_lock<std::mutex> lock(mutex_);
-  arrived_.wait_for(lock, kPatience, [&] { return pending_.count(key) > 0 || sent_ended_; });
+  arrived_.wait_for(lock, kOriginalTimeout, [&] { return pending_.count(key) > 0 || sent_ended_; });
   const auto found = pending_.find(key);
   if (found == pending_.end()) return false;
   *cloud = std::move(found->second);

@@ -10,7 +10,7 @@ namespace lidar::tools {
 namespace {
 
 constexpr Duration kTaiMinusUtc = std::chrono::seconds(37);
-constexpr Duration kIdle = std::chrono::milliseconds(5);  // to look for requests
+constexpr Duration kRequestPoll = std::chrono::milliseconds(5);  // to look for requests
 
 /// What the sensor's clock shows when it starts to scan.
 std::uint64_t ClockAtStart(const std::string& timestamp_mode, Time now) {
@@ -78,7 +78,7 @@ std::optional<Time> Player::Pump(Time now) {
     boots_until_ = now + FromSeconds(options_.boot_s);
     Start(*metadata, boots_until_);
   }
-  if (now < boots_until_) return std::min(boots_until_, now + kIdle);
+  if (now < boots_until_) return std::min(boots_until_, now + kRequestPoll);
   sensor_.SetRunning(true);
   const Faults faults = sensor_.faults();
   while (next_ && origin_ + next_->due <= now) {
@@ -90,7 +90,7 @@ std::optional<Time> Player::Pump(Time now) {
     counts_ = injector_.counts();
   }
   if (!next_) return std::nullopt;
-  return std::min(origin_ + next_->due, now + kIdle);
+  return std::min(origin_ + next_->due, now + kRequestPoll);
 }
 
 FaultCounts Player::counts() const {

@@ -25,7 +25,7 @@ constexpr const char* kCaptures[] = {
 constexpr std::uint32_t kSlices = 8;
 constexpr double kErrors[] = {0.002, 0.005, 0.01, 0.02, 0.05, 0.1};
 constexpr unsigned kIntensityBits[] = {5, 8};
-constexpr std::uint64_t kFewest = 100;  // fewest symbols that characterise a context
+constexpr std::uint64_t kFewestSymbols = 100;  // fewest symbols that characterise a context
 
 struct Counts {
   SymbolCounts values;
@@ -60,7 +60,7 @@ void AddEvenly(const SymbolCounts& counts, SymbolCounts* sum) {
   const auto add = [](const auto& from, auto* to) {
     constexpr std::uint64_t kShare = 1'000'000'000;
     const auto all = std::accumulate(from.begin(), from.end(), std::uint64_t{0});
-    if (all < kFewest) return;
+    if (all < kFewestSymbols) return;
     for (std::size_t i = 0; i < from.size(); ++i) (*to)[i] += from[i] * kShare / all;
   };
   for (std::size_t i = 0; i < counts.residuals.size(); ++i)

@@ -66,9 +66,9 @@ void RunTrack(TrackArguments o) {
   o.track.mode = o.mode.empty() ? &DefaultMode(set) : &ModeNamed(o.mode);
   const rate::RateBounds bounds = MeasureBounds(set, o.track);
   // Room on both sides, because the bounds move with the scene.
-  constexpr double kRoom = 1.15;
-  if (o.profile.min_bps <= 0) o.profile.min_bps = kRoom * bounds.nominal.bits_per_second();
-  if (o.profile.max_bps <= 0) o.profile.max_bps = bounds.max.bits_per_second() / kRoom;
+  constexpr double kBoundsMargin = 1.15;
+  if (o.profile.min_bps <= 0) o.profile.min_bps = kBoundsMargin * bounds.nominal.bits_per_second();
+  if (o.profile.max_bps <= 0) o.profile.max_bps = bounds.max.bits_per_second() / kBoundsMargin;
   if (o.profile.steady_bps <= 0)
     o.profile.steady_bps = std::sqrt(o.profile.min_bps * o.profile.max_bps);
   std::printf(
