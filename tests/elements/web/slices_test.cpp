@@ -106,10 +106,13 @@ class Viewer {
     if (slice.flags == 1) ++recoded;
     if (acknowledge) Acknowledge(slice.scan, slice.index);
   }
+  /// Returns when the server has taken it: else the next scan would come while this one is on its
+  /// way, and a slow machine's viewer would be left out of it.
   void Acknowledge(std::uint32_t scan, std::uint32_t index) {
     peer.SendText(
         nlohmann::json{{"op", "drawn"}, {"subscriptionId", 9}, {"scan", scan}, {"slice", index}}
             .dump());
+    peer.Sync();
   }
 
   Peer peer;
