@@ -34,8 +34,8 @@ class LinkLedger {
   std::uint16_t OnSent(Time now, PacketId id, bool ends_slice = true);
   /// Returns nothing where a packet arrived that never left over this link.
   std::optional<Report> OnFeedback(const scream::CongestionFeedback& feedback);
-  /// Since when a report is on its way of the packet of which nothing was heard for longest,
-  /// neither of it nor of a later one. The receiver makes one at a slice's end, but within
+  /// When the report of the oldest packet was due to leave the receiver, among packets for which no
+  /// report of them or a later one came. The receiver reports at a slice's end, but within
   /// kReportEvery.
   std::optional<Time> waiting_since() const;
   static constexpr Duration kReportEvery = std::chrono::milliseconds(40);

@@ -180,7 +180,7 @@ bool Scheduler::Overdue(Time now, const Entry& entry) const {
   return true;
 }
 
-/// Where a packet that waits is to wait as well: on the best link out of a gap, else on each that
+/// The further links that a waiting packet joins: the best link out of a gap, else each link that
 /// may be the first out of its gap.
 LinkSet Scheduler::OthersFor(Time now, const Entry& entry) const {
   LinkSet others, alive;

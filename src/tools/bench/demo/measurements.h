@@ -40,7 +40,7 @@ SenderSample ReadSample(const nlohmann::json& record);
 
 /// Reads a link's log. Lines that are cut off or malformed are left out.
 std::vector<LinkPacket> ReadLinkLog(const std::string& file);
-/// Those of all links, in the order of their arrival.
+/// Packets of all links, in the order of their arrival.
 std::vector<LinkPacket> ReadLinkLogs(const RunOptions& options);
 
 struct Measurements {

@@ -63,7 +63,7 @@ std::string EncoderOf(const RunOptions& options);
 double FixedStepOf(const RunOptions& options);
 /// The largest distance between a point that was sent and the one that arrived.
 double ErrorBoundOf(const RunOptions& options);
-/// Of each link.
+/// The capacity of each link.
 std::vector<link::Capacity> CapacitiesOf(const RunOptions& options);
 /// When the capacity of an only link changes in steps, within the run; empty for a trace.
 std::vector<Duration> ChangesOf(const RunOptions& options);
