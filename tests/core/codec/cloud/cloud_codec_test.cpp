@@ -463,7 +463,7 @@ TEST(CloudCodec, TakesCloudsThatCostNextToNothing) {
   EXPECT_EQ(RoundTrip(cube, {0.0174, 0, 0}, 0).cloud.size(), cube.size());
 }
 
-TEST(CloudCodec, TakesTenMillionPoints) {
+TEST(LargeClouds, TakeTenMillionPoints) {
   std::mt19937 random(6);
   PlainPoints points(10'000'000);
   for (auto& p : points)
@@ -482,7 +482,7 @@ TEST(CloudCodec, TakesTenMillionPoints) {
 class DamagedClouds : public ::testing::TestWithParam<bool> {};
 TEST_P(DamagedClouds, GiveACloudWithinTheLimitsOrNone) {
   PlainPoints points = GetParam() ? SpinningScan(0.1) : ScanOf("at128");
-  if (!GetParam()) points.resize(4'000);
+  points.resize(4'000);
   points.push_back({1e30F, 1, 2, 3});
   const auto bytes = RoundTrip(points, {0.02, 0, 4}, 1).slice.bytes;
   const auto most = static_cast<std::uint32_t>(points.size());
