@@ -1,8 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Tables of docs/results/rmcat.md: the test cases of RFC 8867 and RFC 8869 in simulated time."""
-import re
-
 import common
+import controller
 
 COLUMNS = {
     "utilisation [%]": ("util %", 0),
@@ -17,28 +16,15 @@ COLUMNS = {
 }
 
 
-def figures(*options):
-    """Case to its figures, and those of them that miss a goal."""
-    found = {}
-    text = common.run(f"{common.build}/tests/benchmarks/controller-goals", "--figures", "--group", "rfc", *options)
-    for case, figure, value, goal in re.findall(r"^(rfc\S+) +(.+?) +(-?[\d.]+)( +[<>].*)?$", text, re.M):
-        found.setdefault(case, {})[figure] = (float(value), goal.endswith("MISSED"))
-    return found
-
-
 def rmcat():
     """Ours beside the draft alone; a goal of ours that is missed is bold."""
     body = []
-    ours, draft = figures(), figures("--draft")
+    ours, draft = (controller.figures("--group", "rfc", *more) for more in ([], ["--draft"]))
     for case in ours:
         for name, of in ((f"`{case}`", ours[case]), ("the draft alone", draft[case])):
             row = [name]
             for figure, (_, digits) in COLUMNS.items():
-                if figure not in of:
-                    row.append("–")
-                    continue
-                value, missed = of[figure]
-                row.append(f"**{value:.{digits}f}**" if missed and of is ours[case] else f"{value:.{digits}f}")
+                row.append(controller.cell(of, [figure], digits, of is ours[case]))
             body.append(row)
     return common.table(["case", *(head for head, _ in COLUMNS.values())], body)
 
