@@ -241,20 +241,34 @@ void Controller::UpdateTarget(Time now) {
   streams_.Allocate(now, AskedTarget(now, allowed));
   if (p_.extensions.capacity && started_) streams_.LeaveRoomForBacklogs(now);
   window_target_ = std::clamp(allowed, streams_.min_bitrate(), streams_.max_bitrate());
-  pacer_.Update(window_target_, streams_.max_bitrate(),
-                PacingHeadroom(p_, streams_.frame_period(), PacingReserve(p_, path_, now)),
-                RelaxedPace(p_, path_));
+  UpdatePacer(now);
+}
+
+void Controller::UpdatePacer(Time now) {
+  const Duration period = streams_.frame_period();
+  const double headroom = PacingHeadroom(p_, period, PacingReserve(p_, path_, now));
+  pacer_.Update(window_target_, streams_.max_bitrate(), headroom, RelaxedPace(p_, path_));
   pacer_.set_ripple(PacingRipple(p_, path_));
-  if (p_.extensions.capacity && streams_.media_qdelay(now) > streams_.frame_period())
+  if (!p_.extensions.capacity) return;
+  if (started_ && path_.L4sWorks(now))
+    pacer_.LimitQueue(
+        std::max(p_.rate_pace_min, WindowRate(now, 0) * BesideOthers(p_, path_, now).pace),
+        FromSeconds(Seconds(period) * (1 - 1 / headroom)));
+  else
+    pacer_.LimitQueue(DataRate::Infinite(), Duration{0});
+  if (streams_.media_qdelay(now) > period)
     pacer_.RaiseTo(DrainRate(p_, now, window_.ref_wnd(), history_.bytes_in_flight(), path_));
+}
+
+DataRate Controller::WindowRate(Time now, double queue_compensation) const {
+  // Through an outage the round trip is as long as nothing has come back.
+  const Duration s_rtt = std::max(path_.rtt().smoothed(), outage_.Silence(now));
+  return TargetBitrate(p_, {window_.ref_wnd(), window_.ref_wnd_ratio(), s_rtt, queue_compensation});
 }
 
 DataRate Controller::WindowTarget(Time now) const {
   if (!started_) return streams_.start_bitrate();
-  // Through an outage the round trip is as long as nothing has come back.
-  const Duration s_rtt = std::max(path_.rtt().smoothed(), outage_.Silence(now));
-  const DataRate target = TargetBitrate(
-      p_, {window_.ref_wnd(), window_.ref_wnd_ratio(), s_rtt, streams_.queue_compensation()});
+  const DataRate target = WindowRate(now, streams_.queue_compensation());
   return now < path_.half_rate_until() ? target * kDriftRateScale : target;
 }
 

@@ -127,6 +127,8 @@ class Controller {
   }
   void UpdateTarget(Time now);
   void TakeGapRestart(Time now);
+  void UpdatePacer(Time now);
+  DataRate WindowRate(Time now, double queue_compensation) const;
   DataRate WindowTarget(Time now) const;
   bool CongestedLately() const;
   DataRate QueueRate(const Stream& stream) const;

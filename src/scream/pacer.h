@@ -3,6 +3,7 @@
 #pragma once
 #include <algorithm>
 #include <cstdint>
+#include <utility>
 
 #include "src/scream/parameters.h"
 
@@ -18,7 +19,16 @@ class Pacer {
               DataRate relaxed_max = DataRate::Infinite());
   /// Gaps between packets are longer and shorter by up to so much, which shows what others send.
   void set_ripple(Duration ripple) { ripple_ = ripple; }
-  void RaiseTo(DataRate rate) { pace_bitrate_ = std::max(pace_bitrate_, rate); }
+  /// Packets leave so that a link of rate `link` would queue them for `longest` at most: a large
+  /// frame waits here, until a small one has left room for it.
+  void LimitQueue(DataRate link, Duration longest) {
+    link_ = link;
+    longest_queue_ = longest;
+  }
+  void RaiseTo(DataRate rate) {
+    pace_bitrate_ = std::max(pace_bitrate_, rate);
+    link_ = std::max(link_, rate);
+  }
   /// A packet comes into an empty queue: the time before it gives no credit.
   void OnIdleEnd(Time now) { next_ = std::max(next_, now); }
   /// A gap is over: the next packet waits no longer at the gap's rate.
@@ -41,6 +51,10 @@ class Pacer {
   DataRate pace_bitrate_ = DataRate::BitsPerSecond(1e6);
   Duration ripple_{0};
   std::uint32_t gaps_ = 0;
+  DataRate link_ = DataRate::Infinite();
+  Duration longest_queue_{0};
+  DataSize queue_;  // that a link of rate link_ would have
+  Time last_sent_{};
   Time next_{};
 };
 
@@ -54,8 +68,13 @@ inline void Pacer::Update(DataRate target, DataRate max, double headroom, DataRa
 
 inline void Pacer::OnSent(Time now, DataSize size) {
   const Duration gap = size / pace_bitrate_;
+  next_ = std::max(next_, now - p_.pacing_catch_up) + gap;
+  if (link_ < DataRate::Infinite()) {
+    queue_ = std::max(DataSize(), queue_ - link_ * (now - std::exchange(last_sent_, now))) + size;
+    next_ = std::max(next_, now + queue_ / link_ - longest_queue_);
+  }
   const Duration ripple = std::min(ripple_, gap / 2);
-  next_ = std::max(next_, now - p_.pacing_catch_up) + gap + (LongerGap() ? ripple : -ripple);
+  next_ += LongerGap() ? ripple : -ripple;
 }
 
 }  // namespace lidar::scream

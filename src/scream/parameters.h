@@ -119,7 +119,7 @@ struct Parameters {
   /// fractions of it. As much queue comes and goes with each frame where the link is full.
   Duration pacing_reserve = 4ms;
   /// Where marks work, this part of the queue at which marking begins, if that is less...
-  double onset_reserve = 0.9;
+  double onset_reserve = 0.8;
   Duration shortest_pacing_reserve = 700us;
   /// ...and less still for frames more often than this.
   Duration long_frame_period = 50ms;

@@ -13,6 +13,9 @@ namespace lidar::scream {
 struct Boldness {
   double growth = 0.25;
   double backoff = 0.25;
+  /// Rate at which packets leave for long, over the window's. Alone a little more: a frame that is
+  /// as large as was asked for does not wait.
+  double pace = 1.005;
 };
 
 /// What the detectors found in one report.

@@ -33,9 +33,10 @@ inline Duration PacingRipple(const Parameters& p, const PathModel& path) {
 
 /// From -1, clearly less than half of the link, to 1, clearly more.
 inline double AboveHalf(DataRate own, DataRate link) {
-  // Less than one half, so that two of ours with half each lean to gentle: their queue stays short.
-  constexpr double kHalf = 0.49;
-  constexpr double kClearly = 0.05;
+  // Less than one half: two of ours with half each lean to gentle, and a flow that leaves in bursts
+  // makes the link look faster than it is.
+  constexpr double kHalf = 0.46;
+  constexpr double kClearly = 0.03;
   return std::clamp((own / link - kHalf) / kClearly, -1.0, 1.0);
 }
 
@@ -58,6 +59,8 @@ inline Boldness BesideOthers(const Parameters& p, const PathModel& path, Time no
   const auto link = others.link_rate();
   const double above = link ? AboveHalf(path.long_acked_rate(now), *link) : -1;
   const double below = (1 - above) / 2;  // 1: clearly less than half
+  // A queue that others fill is no reason to hold packets back.
+  b.pace = 1 + (p.target_rate_divisor - 1) * below;
   b.backoff = kGentlest * std::pow(p.prague_backoff / kGentlest, below);
   if (l4s)
     b.growth *= std::pow(above < 0 ? kGrowthOfLess : kGrowthOfMore, std::abs(above));

@@ -172,7 +172,7 @@ TEST_P(ClosedLoop, OnAConstantLinkStandsStill) {
   Print("target, encoder that obeys exactly", exact);
   Print("target, rate controller", target);
   Print("sent, rate controller", sent);
-  EXPECT_LE(target.deviation, 0.0105);
+  EXPECT_LE(target.deviation, 0.01);
   EXPECT_LE(target.peak_to_peak, 0.05);
   EXPECT_LE(target.tone, 0.005);
   EXPECT_LE(sent.deviation, 0.02);

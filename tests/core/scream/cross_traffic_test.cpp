@@ -181,8 +181,8 @@ TEST(SharedLink, ABolderWindowIsForEarlyMarksOfAnL4sQueueOnly) {
 
 TEST(SharedLink, HalfOfTheLinkIsEnoughBesideOthers) {
   EXPECT_EQ(AboveHalf(Mbps(4), Mbps(20)), -1);
-  EXPECT_NEAR(AboveHalf(Mbps(9.8), Mbps(20)), 0, 1e-9);
-  EXPECT_NEAR(AboveHalf(Mbps(10.3), Mbps(20)), 0.5, 1e-9);
+  EXPECT_NEAR(AboveHalf(Mbps(9.2), Mbps(20)), 0, 1e-9);
+  EXPECT_NEAR(AboveHalf(Mbps(9.5), Mbps(20)), 0.5, 1e-9);
   EXPECT_EQ(AboveHalf(Mbps(16), Mbps(20)), 1);
 }
 

@@ -56,6 +56,33 @@ TEST(Pacer, WaitsNoLongerForWhatLeftAtTheRateOfAGap) {
   EXPECT_EQ(pacer.next(), kStart + 20ms);
 }
 
+TEST(Pacer, HoldsALargeFrameBackUntilTheLinkHasRoomForIt) {
+  const Parameters p;
+  Pacer pacer(p);
+  pacer.Update(Mbps(10), Mbps(100), 1.25);
+  pacer.LimitQueue(Mbps(8), 2ms);
+  Time at = kStart;
+  for (int i = 0; i < 20; ++i) {
+    pacer.OnSent(at, DataSize::Bytes(1000));
+    at = pacer.next();
+  }
+  EXPECT_EQ(at, kStart + 18ms) << "each packet takes the link 1 ms, and it may queue two";
+  pacer.RaiseTo(Mbps(16));
+  pacer.OnSent(at, DataSize::Bytes(1000));
+  EXPECT_LT(pacer.next() - at, 1ms) << "a backlog drains faster";
+}
+
+TEST(Pacer, ASmallFrameLeavesRoomForALargerOne) {
+  const Parameters p;
+  Pacer pacer(p);
+  pacer.Update(Mbps(10), Mbps(100), 1.25);
+  pacer.LimitQueue(Mbps(8), 2ms);
+  pacer.OnSent(kStart, DataSize::Bytes(1000));
+  pacer.OnIdleEnd(kStart + 20ms);
+  pacer.OnSent(kStart + 20ms, DataSize::Bytes(1000));
+  EXPECT_EQ(pacer.next(), kStart + 20ms + 640us);
+}
+
 /// In pairs of a longer and a shorter one, but in no order that another flow's packets could have.
 TEST(Pacer, GapsAreUnevenByTheRippleAndEvenOnAverage) {
   const Parameters p;

@@ -206,7 +206,7 @@ TEST(PacingReserve, IsWhatGoesUnmarkedWithinLimits) {
   path.Arrive(200, 1ms, 0ms, Ecn::kCe);
   EXPECT_EQ(PacingReserve(p, path.model, path.now), p.shortest_pacing_reserve);
   path.Arrive(5000, 1ms, 2ms, Ecn::kCe);
-  EXPECT_NEAR(Milliseconds(PacingReserve(p, path.model, path.now)), 1.8, 0.1);
+  EXPECT_NEAR(Milliseconds(PacingReserve(p, path.model, path.now)), 1.6, 0.1);
 }
 
 TEST(TolerateLoss, IsTheDraftsUntilEcnIsSeenToWork) {
