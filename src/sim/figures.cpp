@@ -20,6 +20,9 @@ constexpr FigureKind kDropPeak{"drop: peak [ms]", false, 5, 0.1};
 constexpr FigureKind kDropRecovered{"drop: below 10 ms [s]", false, 0.05, 0.1};
 constexpr FigureKind kDropRate{"drop: rate below [s]", false, 0.03, 0.1};
 constexpr FigureKind kRatio{"larger over smaller share", false, 0.1, 0.1};
+constexpr FigureKind kOurs{"ours [Mbit/s]", true, 0.2, 0.05};
+constexpr FigureKind kTheirs{"theirs [Mbit/s]", true, 0.2, 0.05};
+constexpr FigureKind kTheirLoss{"their loss [%]", false, 0.1, 0.2};
 constexpr FigureKind kRate{"media [Mbit/s]", true, 0.02, 0.03};
 constexpr FigureKind kVariation{"variation of the rate", false, 0.03, 0.2};
 constexpr FigureKind kOthers{"others [Mbit/s]", true, 0.02, 0.1};
@@ -140,7 +143,12 @@ std::vector<Figure> Figures(const Scenario& s, const ScenarioMetrics& m) {
       {&kJain, m.jain, Limit(goal, &MatrixGoal::jain)},
       {&kDroppedFrames, m.frames_dropped},
   };
-  if (m.beside) figures.push_back({&kRatio, m.beside->ratio(), Limit(goal, &MatrixGoal::ratio)});
+  if (m.beside) {
+    figures.push_back({&kRatio, m.beside->ratio(), Limit(goal, &MatrixGoal::ratio)});
+    figures.push_back({&kOurs, m.beside->ours_mbps});
+    figures.push_back({&kTheirs, m.beside->theirs_mbps});
+    figures.push_back({&kTheirLoss, 100 * m.beside->their_loss});
+  }
   AddEvents(s, m, &figures);
   return figures;
 }
