@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "src/odometry/registration.h"
 #include "src/slam/pose_graph.h"
@@ -28,6 +29,11 @@ constexpr double kOverlap_m = 2;
 constexpr double kMapVoxel_m = 1;
 constexpr double kAlignedGrid_m = 1.2;
 constexpr std::size_t kThinAt = 400'000;  // points of the open map
+/// Where the sensor moved less, a scan shows nothing new.
+constexpr double kLeastStep_m = 0.5;
+/// Loops are searched in so many maps, the nearest ones.
+constexpr std::size_t kMostCandidates = 8;
+constexpr std::size_t kFewestMaps = 3;  // the first, the last, and one to forget
 
 /// The surroundings of a point of one map in the other.
 struct Shares {
@@ -52,6 +58,8 @@ Shares CountShares(const Points& points, odometry::LocalMap* map, const Pose& po
   return {share(near, points.size()), share(same, near)};
 }
 
+double DistanceOf(const Pose& a, const Pose& b) { return (a.position - b.position).norm(); }
+
 }  // namespace
 
 std::size_t FindWorst(const std::vector<Closure>& closures, const std::vector<Pose>& poses) {
@@ -70,48 +78,76 @@ std::size_t FindWorst(const std::vector<Closure>& closures, const std::vector<Po
 }
 
 void LoopCloser::AddScan(const odometry::StampedPose& pose, const Points& points) {
-  const double step = way_.empty() ? 0 : (pose.pose.position - way_.back().pose.position).norm();
-  driven_m_.push_back(way_.empty() ? 0 : driven_m_.back() + step);
-  way_.push_back(pose);
-  for (const Eigen::Vector3d& point : points) open_.push_back(pose.pose * point);
-  if (open_.size() > kThinAt) open_ = odometry::Downsample(open_, settings_.voxel_size_m);
-  if (driven_m_.back() - driven_m_[map_begin_] >= settings_.local_map_m) EndMap();
+  Step step{pose, 0};
+  if (last_) {
+    const double moved = (pose.pose.position - last_->pose.pose.position).norm();
+    if (moved < kLeastStep_m) return;
+    step.driven_m = last_->driven_m + moved;
+  }
+  last_ = step;
+  open_.push_back(step);
+  for (const Eigen::Vector3d& point : points) open_points_.push_back(pose.pose * point);
+  if (open_points_.size() > kThinAt)
+    open_points_ = odometry::Downsample(open_points_, settings_.voxel_size_m);
+  if (step.driven_m - open_.front().driven_m >= settings_.local_map_m) Finish();
 }
 
-void LoopCloser::EndMap() {
-  if (map_begin_ >= way_.size()) return;
-  LocalMap map;
+void LoopCloser::Finish() {
+  if (open_.empty()) return;
   // The scan at half the way is near both ends of the map.
-  const double half = (driven_m_[map_begin_] + driven_m_.back()) / 2;
-  const auto middle = std::lower_bound(driven_m_.begin() + static_cast<std::ptrdiff_t>(map_begin_),
-                                       driven_m_.end(), half);
-  map.key = static_cast<std::size_t>(middle - driven_m_.begin());
-  map.way_m = *middle;
-  const Pose to_key = way_[map.key].pose.Inverse();
-  for (const Eigen::Vector3d& p : odometry::Downsample(open_, settings_.voxel_size_m))
+  const double half = (open_.front().driven_m + open_.back().driven_m) / 2;
+  const auto middle = std::lower_bound(open_.begin(), open_.end(), half,
+                                       [](const Step& s, double at) { return s.driven_m < at; });
+  LocalMap map;
+  map.key = middle->pose;
+  map.solved = MapFromOdometry() * map.key.pose;
+  map.driven_m = middle->driven_m;
+  map.scans = scans_after_key_ + static_cast<std::size_t>(middle - open_.begin()) + 1;
+  const Pose to_key = map.key.pose.Inverse();
+  for (const Eigen::Vector3d& p : odometry::Downsample(open_points_, settings_.voxel_size_m))
     map.points.push_back(to_key * p);
   map.place = std::make_unique<Place>(map.points);
+  scans_after_key_ = static_cast<std::size_t>(open_.end() - middle) - 1;
   maps_.push_back(std::move(map));
+  open_points_.clear();
   open_.clear();
-  map_begin_ = way_.size();
+  const std::size_t newest = maps_.size() - 1;
+  bool closed = false;
+  for (const std::size_t candidate : CandidatesFor(maps_.back()))
+    closed = TryToClose(candidate, newest) || closed;
+  if (closed) Solve();
+  while (maps_.size() > std::max(settings_.most_maps, kFewestMaps)) Forget(FindNearestToAnother());
 }
 
 /// Returns true if the odometry's drift may hide a loop here, and the map is none of those just
 /// before.
 bool LoopCloser::MayBeTheSame(const LocalMap& a, const LocalMap& b) const {
-  const double between = b.way_m - a.way_m;
+  const double between = b.driven_m - a.driven_m;
   if (between < 3 * settings_.local_map_m) return false;
-  const double apart = (way_[a.key].pose.position - way_[b.key].pose.position).norm();
-  return apart < settings_.local_map_m + settings_.drift_m + settings_.drift_share * between;
+  return DistanceOf(a.solved, b.solved) <
+         settings_.local_map_m + settings_.drift_m + settings_.drift_share * between;
 }
 
-void LoopCloser::TryToClose(const LocalMap& a, const LocalMap& b) {
-  const Pose guess = way_[a.key].pose.Inverse() * way_[b.key].pose;
+std::vector<std::size_t> LoopCloser::CandidatesFor(const LocalMap& b) const {
+  std::vector<std::size_t> found;
+  for (std::size_t a = 0; a < maps_.size(); ++a)
+    if (MayBeTheSame(maps_[a], b)) found.push_back(a);
+  std::stable_sort(found.begin(), found.end(), [&](std::size_t x, std::size_t y) {
+    return DistanceOf(maps_[x].solved, b.solved) < DistanceOf(maps_[y].solved, b.solved);
+  });
+  if (found.size() > kMostCandidates) found.resize(kMostCandidates);
+  return found;
+}
+
+bool LoopCloser::TryToClose(std::size_t from, std::size_t to) {
+  const LocalMap& a = maps_[from];
+  const LocalMap& b = maps_[to];
+  const Pose guess = a.solved.Inverse() * b.solved;
   const Eigen::Vector3d ahead = guess.rotation * Eigen::Vector3d::UnitX();
   const double yaw = std::atan2(ahead.y(), ahead.x());
   const auto match = Match(*a.place, *b.place, yaw, settings_.heading_range_rad);
   if (!match || match->score < settings_.least_score || match->distinct < settings_.least_distinct)
-    return;
+    return false;
   odometry::LocalMap target({kMapVoxel_m, 1e6});
   target.Add(a.points);
   const Points source = odometry::Downsample(b.points, kAlignedGrid_m);
@@ -121,35 +157,82 @@ void LoopCloser::TryToClose(const LocalMap& a, const LocalMap& b) {
   const Shares shares = CountShares(source, &target, found.pose);
   if (found.degenerate || shares.overlap < settings_.least_overlap ||
       shares.fit < settings_.least_fit)
-    return;
-  closures_.push_back({a.key, b.key, found.pose, match->score, shares.overlap, shares.fit});
+    return false;
+  closures_.push_back({from, to, found.pose});
+  return true;
 }
 
-odometry::Trajectory LoopCloser::Close() {
-  EndMap();
-  closures_.clear();
-  for (std::size_t j = 0; j < maps_.size(); ++j)
-    for (std::size_t i = 0; i < j; ++i)
-      if (MayBeTheSame(maps_[i], maps_[j])) TryToClose(maps_[i], maps_[j]);
+/// Solves for all local maps, until no closure is left that the others contradict.
+void LoopCloser::Solve() {
   std::vector<Pose> poses;
   for (;;) {
-    if (closures_.empty()) return way_;
     poses.clear();
-    for (const odometry::StampedPose& stamped : way_) poses.push_back(stamped.pose);
     std::vector<Edge> edges;
-    for (std::size_t i = 1; i < poses.size(); ++i)
-      edges.push_back({i - 1, i, poses[i - 1].Inverse() * poses[i], kStep_m, kStep_rad});
+    for (const LocalMap& map : maps_) poses.push_back(map.solved);
+    for (std::size_t i = 1; i < maps_.size(); ++i) {
+      const double steps = std::sqrt(static_cast<double>(maps_[i].scans));
+      edges.push_back({i - 1, i, maps_[i - 1].key.pose.Inverse() * maps_[i].key.pose,
+                       kStep_m * steps, kStep_rad * steps});
+    }
     for (const Closure& c : closures_)
       edges.push_back({c.from, c.to, c.pose, kClosure_m, kClosure_rad});
-    if (!Optimise(edges, &poses)) return way_;
-    // A closure that the others contradict is wrong.
+    if (!Optimise(edges, &poses)) return;
     const std::size_t worst = FindWorst(closures_, poses);
     if (worst == closures_.size()) break;
     closures_.erase(closures_.begin() + static_cast<std::ptrdiff_t>(worst));
   }
-  odometry::Trajectory closed = way_;
-  for (std::size_t i = 0; i < closed.size(); ++i) closed[i].pose = poses[i];
-  return closed;
+  for (std::size_t i = 0; i < maps_.size(); ++i) maps_[i].solved = poses[i];
+  ++solved_;
+}
+
+/// The later one of the pair that lies nearest. The first map is where the way begins, and the
+/// last one is where it goes on.
+std::size_t LoopCloser::FindNearestToAnother() const {
+  double least = std::numeric_limits<double>::max();
+  std::size_t found = 1;
+  for (std::size_t i = 1; i + 1 < maps_.size(); ++i)
+    for (std::size_t j = 0; j < maps_.size(); ++j) {
+      const double apart = DistanceOf(maps_[i].solved, maps_[j].solved);
+      if (j == i || apart > least) continue;
+      least = apart;
+      found = i;
+    }
+  return found;
+}
+
+/// What closures say of the map goes over to the one before it.
+void LoopCloser::Forget(std::size_t forgotten) {
+  const Pose to_previous = maps_[forgotten].solved.Inverse() * maps_[forgotten - 1].solved;
+  maps_[forgotten + 1].scans += maps_[forgotten].scans;
+  for (Closure& c : closures_) {
+    if (c.to == forgotten) c.pose = c.pose * to_previous;
+    if (c.from == forgotten) c.pose = to_previous.Inverse() * c.pose;
+    if (c.to >= forgotten) --c.to;
+    if (c.from >= forgotten) --c.from;
+  }
+  // The last one between two maps stays.
+  std::vector<Closure> kept;
+  for (auto c = closures_.rbegin(); c != closures_.rend(); ++c) {
+    const bool is_new = std::none_of(kept.begin(), kept.end(), [&](const Closure& k) {
+      return k.from == c->from && k.to == c->to;
+    });
+    if (c->from != c->to && is_new) kept.push_back(*c);
+  }
+  closures_.assign(kept.rbegin(), kept.rend());
+  maps_.erase(maps_.begin() + static_cast<std::ptrdiff_t>(forgotten));
+}
+
+Pose LoopCloser::MapFromOdometry() const {
+  return maps_.empty() ? Pose{} : maps_.back().Correction();
+}
+
+odometry::Trajectory LoopCloser::Correct(const odometry::Trajectory& way) const {
+  odometry::Trajectory corrections;
+  for (const LocalMap& map : maps_) corrections.push_back({map.key.time, map.Correction()});
+  odometry::Trajectory corrected = way;
+  if (corrections.empty()) return corrected;
+  for (odometry::StampedPose& p : corrected) p.pose = InterpolateAt(corrections, p.time) * p.pose;
+  return corrected;
 }
 
 }  // namespace lidar::slam

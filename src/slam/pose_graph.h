@@ -16,8 +16,8 @@ struct Edge {
   double sigma_rad = 0.005;
 };
 
-/// Changes all poses but the first, by Ceres. Returns false, and leaves the poses, if it finds no
-/// solution.
+/// Changes all poses but the first, by Levenberg and Marquardt's method. Edges must join all poses.
+/// Returns false if they do not.
 bool Optimise(const std::vector<Edge>& edges, std::vector<odometry::Pose>* poses);
 
 }  // namespace lidar::slam

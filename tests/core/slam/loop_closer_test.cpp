@@ -1,83 +1,17 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// A drive around a block whose odometry drifts.
 #include "src/slam/loop_closer.h"
 
 #include <gtest/gtest.h>
 
-#include <cmath>
-#include <random>
-
 #include "src/slam/pose_graph.h"
+#include "tests/support/block_drive.h"
 
 namespace lidar::slam {
 namespace {
 
 using odometry::Points;
 using odometry::Pose;
-
-constexpr double kTurn = 6.283185307179586;
-constexpr double kRadius = 60;  // of the round trip [m]
-constexpr int kScansOfALap = 190;
-
-Pose TrueAt(int scan) {
-  const double angle = kTurn * scan / kScansOfALap;
-  Pose pose;
-  pose.position = {kRadius * std::sin(angle), kRadius * (1 - std::cos(angle)), 0};
-  pose.rotation = Eigen::AngleAxisd(angle, Eigen::Vector3d::UnitZ());
-  return pose;
-}
-
-/// Ground, and pillars of many sizes that stand anywhere.
-Points MakeWorld() {
-  std::mt19937 random(4);
-  std::uniform_real_distribution<double> anywhere(-130, 130);
-  std::uniform_real_distribution<double> size(0.5, 4);
-  Points world;
-  for (double x = -110; x < 110; x += 2.5)
-    for (double y = -50; y < 170; y += 2.5) world.emplace_back(x, y, -1.9);
-  for (int i = 0; i < 150; ++i) {
-    const Eigen::Vector3d corner(anywhere(random), kRadius + anywhere(random), -1.9);
-    const double wide = size(random);
-    const double high = 2 * size(random);
-    for (double along = 0; along < wide; along += 0.5)
-      for (double z = 0; z < high; z += 0.5) {
-        world.push_back(corner + Eigen::Vector3d(along, 0, z));
-        world.push_back(corner + Eigen::Vector3d(0, along, z));
-      }
-  }
-  return world;
-}
-
-Points SeenFrom(const Pose& pose, const Points& world, int scan) {
-  const Pose back = pose.Inverse();
-  Points points;
-  // Together the scans of a local map see every point.
-  for (std::size_t i = static_cast<std::size_t>(scan % 16); i < world.size(); i += 16)
-    if ((world[i] - pose.position).squaredNorm() < 3600) points.push_back(back * world[i]);
-  return points;
-}
-
-/// What an odometry makes of the lap: each step is a little too long and turns a little too far.
-odometry::Trajectory Drive(int scans) {
-  odometry::Trajectory way;
-  for (int i = 0; i < scans; ++i) {
-    odometry::StampedPose stamped;
-    stamped.time = Time{} + std::chrono::milliseconds(100) * i;
-    if (i > 0) {
-      Pose step = TrueAt(i - 1).Inverse() * TrueAt(i);
-      step.position *= 1.01;
-      step.position.z() += 0.01;
-      step.rotation = step.rotation * Eigen::AngleAxisd(0.0004, Eigen::Vector3d::UnitZ());
-      stamped.pose = way.back().pose * step;
-    }
-    way.push_back(stamped);
-  }
-  return way;
-}
-
-double EndError(const odometry::Trajectory& way) {
-  return (way.back().pose.position - TrueAt(static_cast<int>(way.size()) - 1).position).norm();
-}
+using namespace test::block;
 
 TEST(LoopCloser, TakesTheDriftOutOfADriveThatReturns) {
   const Points world = MakeWorld();
@@ -87,7 +21,8 @@ TEST(LoopCloser, TakesTheDriftOutOfADriveThatReturns) {
     const int scan = static_cast<int>(i);
     closer.AddScan(drifted[i], SeenFrom(TrueAt(scan), world, scan));
   }
-  const odometry::Trajectory closed = closer.Close();
+  closer.Finish();
+  const odometry::Trajectory closed = closer.Correct(drifted);
   ASSERT_EQ(closed.size(), drifted.size());
   EXPECT_GE(closer.closures().size(), 1U);
   EXPECT_GT(EndError(drifted), 3);
@@ -103,18 +38,64 @@ TEST(LoopCloser, LeavesADriveAloneThatDoesNotReturn) {
     const int scan = static_cast<int>(i);
     closer.AddScan(drifted[i], SeenFrom(TrueAt(scan), world, scan));
   }
-  const odometry::Trajectory closed = closer.Close();
+  closer.Finish();
+  const odometry::Trajectory closed = closer.Correct(drifted);
   EXPECT_TRUE(closer.closures().empty());
-  EXPECT_EQ(closed.back().pose.position, drifted.back().pose.position);
+  EXPECT_TRUE(closed.back().pose.position.isApprox(drifted.back().pose.position));
 }
 
 TEST(LoopCloser, TakesADriveWithoutPoints) {
   LoopCloser closer({});
-  EXPECT_TRUE(closer.Close().empty());
+  closer.Finish();
+  EXPECT_TRUE(closer.Correct({}).empty());
   LoopCloser blind({});
-  for (const odometry::StampedPose& pose : Drive(kScansOfALap + 12)) blind.AddScan(pose, {});
-  EXPECT_EQ(blind.Close().size(), std::size_t{kScansOfALap + 12});
+  const odometry::Trajectory way = Drive(kScansOfALap + 12);
+  for (const odometry::StampedPose& pose : way) blind.AddScan(pose, {});
+  blind.Finish();
+  EXPECT_TRUE(blind.Correct(way).back().pose.position.isApprox(way.back().pose.position));
   EXPECT_TRUE(blind.closures().empty());
+}
+
+TEST(LoopCloser, MovesTheMapAndNotTheOdometry) {
+  const Points world = MakeWorld();
+  const odometry::Trajectory drifted = Drive(kScansOfALap + 30);
+  LoopCloser closer({});
+  for (std::size_t i = 0; i < drifted.size(); ++i) {
+    const int scan = static_cast<int>(i);
+    closer.AddScan(drifted[i], SeenFrom(TrueAt(scan), world, scan));
+  }
+  closer.Finish();
+  odometry::Trajectory now = drifted;
+  now.back().pose = closer.MapFromOdometry() * drifted.back().pose;
+  EXPECT_LT(EndError(now), EndError(drifted) / 5);
+}
+
+/// Laps of the block with room for a few maps only.
+TEST(LoopCloser, BoundsItsMapsByForgettingThoseThatLieOverOthers) {
+  const Points world = MakeWorld();
+  const odometry::Trajectory drifted = Drive(3 * kScansOfALap);
+  LoopSettings settings;
+  settings.most_maps = 11;  // a lap has 9
+  LoopCloser closer(settings);
+  for (std::size_t i = 0; i < drifted.size(); ++i) {
+    const int scan = static_cast<int>(i);
+    closer.AddScan(drifted[i], SeenFrom(TrueAt(scan), world, scan));
+    ASSERT_LE(closer.local_maps(), settings.most_maps);
+  }
+  closer.Finish();
+  EXPECT_LT(EndError(closer.Correct(drifted)), EndError(drifted) / 5);
+}
+
+/// A sensor that stands sees nothing new, and its noise is no way.
+TEST(LoopCloser, MakesNoMapsWhereTheSensorStands) {
+  LoopCloser closer({});
+  odometry::StampedPose pose;
+  for (int i = 0; i < 10'000; ++i) {
+    pose.time += std::chrono::milliseconds(100);
+    pose.pose.position.x() = 0.1 * (i % 2);
+    closer.AddScan(pose, {{1, 2, 3}});
+  }
+  EXPECT_EQ(closer.local_maps(), 0U);
 }
 
 TEST(LoopCloser, DoubtsTheClosureThatIsMostContradicted) {

@@ -222,6 +222,10 @@ void AddSlamCommand(CLI::App* app) {
       ->check(CLI::Range(1.0, 1000.0));
   command->add_flag("--loop-closure", a->slam.close_loops,
                     "Find places that were seen before, and take out the drift between");
+  command
+      ->add_option("--local-maps", a->slam.most_local_maps,
+                   "Kept for --loop-closure, two megabytes each")
+      ->check(CLI::Range(3, 10000));
   command->add_flag("--json", a->json, "Print JSON");
   command->callback([a] { RunSlamCommand(*a); });
 }

@@ -4,12 +4,9 @@
 #include <algorithm>
 #include <cmath>
 #include <ctime>
-#include <stdexcept>
 
 #include "src/cloud/range_grid.h"
-#ifdef HAVE_LOOP_CLOSURE
 #include "src/slam/loop_closer.h"
-#endif
 
 namespace lidar::tools {
 namespace {
@@ -53,24 +50,6 @@ odometry::TimedPoints OrganisedPoints(const Scan& scan, double range_step_m) {
   }
   return timed;
 }
-
-#ifdef HAVE_LOOP_CLOSURE
-using slam::LoopCloser;
-using slam::LoopSettings;
-#else
-struct LoopSettings {};
-/// Stands in where the program was built without Ceres.
-class LoopCloser {
- public:
-  explicit LoopCloser(const LoopSettings&) {
-    throw std::runtime_error("built without loop closure, which needs libceres-dev");
-  }
-  void AddScan(const odometry::StampedPose&, const odometry::Points&) {}
-  odometry::Trajectory Close() { return {}; }
-  std::vector<int> closures() const { return {}; }
-  std::size_t local_maps() const { return 0; }
-};
-#endif
 
 /// Adds to the sums how far `coded` lies from what the scan holds.
 struct PointErrors {
@@ -159,8 +138,9 @@ SlamResult RunSlam(ScanStream* scans, const SlamOptions& options,
                    const std::function<void(std::size_t)>& progress) {
   SlamResult result;
   odometry::Odometry odometry(options.odometry);
-  std::unique_ptr<LoopCloser> closer;
-  if (options.close_loops) closer = std::make_unique<LoopCloser>(LoopSettings{});
+  slam::LoopSettings loop_settings;
+  loop_settings.most_maps = options.most_local_maps;
+  slam::LoopCloser closer(loop_settings);
   PointErrors errors;
   const bool lossy = options.loss.range_step_m > 0 || options.loss.xyz_bits > 0;
   for (std::size_t done = 0; options.max_scans == 0 || done < options.max_scans; ++done) {
@@ -172,7 +152,8 @@ SlamResult RunSlam(ScanStream* scans, const SlamOptions& options,
     const odometry::Estimate e = odometry.OnScan(timed->start, timed->duration, points);
     result.cpu_ms.push_back(1e3 * static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC);
     result.estimate.push_back({e.time, e.pose});
-    if (closer) closer->AddScan(result.estimate.back(), odometry.last_scan());
+    if (options.close_loops && e.tracking != odometry::Tracking::kLost)
+      closer.AddScan(result.estimate.back(), odometry.last_scan());
     result.covariance.push_back(e.covariance);
     result.states.push_back(e.tracking);
     if (done < kStart && e.tracking == odometry::Tracking::kLost) ++result.lost_at_start;
@@ -184,10 +165,11 @@ SlamResult RunSlam(ScanStream* scans, const SlamOptions& options,
   result.max_point_error_m = errors.max_m;
   std::sort(result.cpu_ms.begin(), result.cpu_ms.end());
   result.map_voxels = odometry.map().voxels();
-  if (closer) {
-    result.closed = closer->Close();
-    result.closures = closer->closures().size();
-    result.local_maps = closer->local_maps();
+  if (options.close_loops) {
+    closer.Finish();
+    result.closed = closer.Correct(result.estimate);
+    result.closures = closer.closures().size();
+    result.local_maps = closer.local_maps();
   }
   return result;
 }

@@ -20,6 +20,7 @@ struct SlamOptions {
   CodingLoss loss;
   std::size_t max_scans = 0;  // 0: all
   bool close_loops = false;
+  std::size_t most_local_maps = 1000;  // with close_loops
 };
 
 struct SlamResult {
