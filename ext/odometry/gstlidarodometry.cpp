@@ -11,12 +11,13 @@
  */
 #include <gst/base/gstbasetransform.h>
 
-#include <cmath>
 #include <memory>
 #include <mutex>
 #include <optional>
 
 #include "ext/odometry/imu_input.h"
+#include "ext/odometry/loop_thread.h"
+#include "ext/odometry/pose_output.h"
 #include "ext/odometry/scan_collector.h"
 #include "gst/common/buffer_map.h"
 #include "gst/common/element_class.h"
@@ -45,6 +46,7 @@ struct Settings {
   std::string initial_pose;
   std::string initial_velocity;
   std::string trajectory;
+  guint local_maps = 0;
   bool post_messages = true;
 };
 
@@ -54,18 +56,24 @@ struct Counters {
   guint64 scans_degenerate = 0;
   guint64 scans_with_imu = 0;
   guint64 maps = 0;
+  guint64 loops = 0;
+  guint64 local_maps = 0;
+  guint64 scans_not_in_local_maps = 0;
   guint64 scan_time = 0;  // of the last scan
   guint64 longest_scan_time = 0;
   guint map_voxels = 0;
   gdouble inlier_share = 0;
 };
 
-const std::array<Stat<Counters>, 9> kStats = {{
+const std::array<Stat<Counters>, 12> kStats = {{
     {"scans", &Counters::scans},
     {"scans-lost", &Counters::scans_lost},
     {"scans-degenerate", &Counters::scans_degenerate},
     {"scans-with-imu", &Counters::scans_with_imu},
     {"maps", &Counters::maps},
+    {"loops", &Counters::loops},
+    {"local-maps", &Counters::local_maps},
+    {"scans-not-in-local-maps", &Counters::scans_not_in_local_maps},
     {"scan-time", &Counters::scan_time},
     {"longest-scan-time", &Counters::longest_scan_time},
     {"map-voxels", &Counters::map_voxels},
@@ -77,6 +85,10 @@ struct Stream {
   std::optional<CloudInfo> info;
   ScanCollector collector;
   std::unique_ptr<Odometry> odometry;
+  std::unique_ptr<LoopThread> loops;  // none: loops are not closed
+  std::size_t loops_taken = 0;
+  Pose map_from_odometry;
+  Estimate last;
   lidar::RowFile trajectory;
   Tracking tracking = Tracking::kStarted;  // of the last scan
   bool posted_lost = false;
@@ -110,7 +122,7 @@ static StructurePtr ReadStats(GObject* object) {
   return ToStructure("application/x-lidar-odometry-stats", kStats, state.counters);
 }
 
-static const std::array<Property<Settings>, 9> kProperties = {{
+static const std::array<Property<Settings>, 10> kProperties = {{
     {"max-range", "Points farther away are left out; also the radius of the map [m]",
      At<&Settings::odometry, &OdometrySettings::max_range_m>, 1, 1000},
     {"min-range", "Points nearer than that are left out: the vehicle itself [m]",
@@ -129,21 +141,16 @@ static const std::array<Property<Settings>, 9> kProperties = {{
      &Settings::initial_velocity},
     {"trajectory", "File to write the poses to, in TUM's format; NULL: none",
      &Settings::trajectory},
+    {"local-maps",
+     "Local maps, each of 40 m of the way, in which loops are searched; 0: loops are not closed",
+     &Settings::local_maps, 0, 10000},
     {"post-messages", "Post an element message \"odometry\" for each scan",
      &Settings::post_messages, 0, 0, GST_PARAM_MUTABLE_PLAYING},
     {"stats",
-     "scans, scans-lost, scans-degenerate, scans-with-imu, maps, scan-time [ns], longest-scan-time "
-     "[ns], "
-     "map-voxels, inlier-share",
+     "scans, scans-lost, scans-degenerate, scans-with-imu, maps, loops, local-maps, "
+     "scans-not-in-local-maps, scan-time [ns], longest-scan-time [ns], map-voxels, inlier-share",
      ReadStats},
 }};
-
-static GstLidarPose ToMeta(const Pose& pose, Tracking tracking) {
-  const auto& p = pose.position;
-  const auto& q = pose.rotation;
-  return {
-      {p.x(), p.y(), p.z()}, {q.x(), q.y(), q.z(), q.w()}, static_cast<GstLidarTracking>(tracking)};
-}
 
 /// When the first column of `buffer` was sampled: its capture time, or else its timestamp.
 static std::optional<Time> SampledAt(GstBuffer* buffer) {
@@ -181,28 +188,8 @@ static void WarnIfLost(GstLidarOdometry* self, const Estimate& estimate) {
   stream.posted_lost = lost;
 }
 
-/// The typical length of a vector with that covariance.
-static gdouble Deviation(const Eigen::Matrix3d& covariance) {
-  return std::sqrt(covariance.trace());
-}
-
-static void PostMessage(GstLidarOdometry* self, const Estimate& e) {
-  const GstLidarPose pose = ToMeta(e.pose, e.tracking);
-  const gdouble* p = pose.position;
-  const gdouble* q = pose.orientation;
-  gst_element_post_message(
-      GST_ELEMENT(self),
-      gst_message_new_element(
-          GST_OBJECT(self),
-          gst_structure_new(
-              "odometry", "timestamp", G_TYPE_UINT64,
-              static_cast<guint64>(e.time.time_since_epoch().count()), "x", G_TYPE_DOUBLE, p[0],
-              "y", G_TYPE_DOUBLE, p[1], "z", G_TYPE_DOUBLE, p[2], "qx", G_TYPE_DOUBLE, q[0], "qy",
-              G_TYPE_DOUBLE, q[1], "qz", G_TYPE_DOUBLE, q[2], "qw", G_TYPE_DOUBLE, q[3], "tracking",
-              G_TYPE_STRING, ToString(e.tracking), "inlier-share", G_TYPE_DOUBLE, e.inlier_share,
-              "position-deviation", G_TYPE_DOUBLE, Deviation(e.covariance.topLeftCorner<3, 3>()),
-              "orientation-deviation", G_TYPE_DOUBLE,
-              Deviation(e.covariance.bottomRightCorner<3, 3>()), nullptr)));
+static void Post(GstLidarOdometry* self, GstStructure* told) {
+  gst_element_post_message(GST_ELEMENT(self), gst_message_new_element(GST_OBJECT(self), told));
 }
 
 static void WriteTrajectory(GstLidarOdometry* self, const Estimate& estimate) {
@@ -216,25 +203,39 @@ static void WriteTrajectory(GstLidarOdometry* self, const Estimate& estimate) {
                       (nullptr));
 }
 
-/// Pushes a buffer for each scan: 7 doubles, the tracking, and the covariance in 36 doubles,
-/// little-endian. The pad may be unlinked.
-static void PushPose(GstLidarOdometry* self, const Estimate& estimate, GstClockTime pts) {
-  if (!gst_pad_is_linked(self->poses)) return;
-  const GstLidarPose pose = ToMeta(estimate.pose, estimate.tracking);
-  std::array<guint64, 44> words{};
-  const auto put = [&words](std::size_t i, gdouble value) {
-    std::memcpy(&words[i], &value, sizeof value);
-    words[i] = GUINT64_TO_LE(words[i]);
-  };
-  for (std::size_t i = 0; i < 7; ++i) put(i, i < 3 ? pose.position[i] : pose.orientation[i - 3]);
-  words[7] = GUINT64_TO_LE(static_cast<guint64>(pose.tracking));
-  for (Eigen::Index i = 0; i < 36; ++i)
-    put(8 + static_cast<std::size_t>(i), estimate.covariance(i / 6, i % 6));
-  GstBuffer* buffer = gst_buffer_new_memdup(words.data(), sizeof words);
-  GST_BUFFER_PTS(buffer) = pts;
-  gst_lidar_buffer_set_capture_time(
-      buffer, static_cast<GstClockTime>(estimate.time.time_since_epoch().count()));
-  gst_pad_push(self->poses, buffer);
+/// The pads of poses may be unlinked, and that of the map may not be there.
+static void PushPoses(GstLidarOdometry* self, const Estimate& estimate, GstClockTime pts) {
+  if (gst_pad_is_linked(self->poses)) gst_pad_push(self->poses, PoseBuffer(estimate, pts));
+}
+static void PushMap(GstLidarOdometry* self, const Estimate& estimate, GstClockTime pts) {
+  const PadPtr map(gst_element_get_static_pad(GST_ELEMENT(self), "map"));
+  if (map && gst_pad_is_linked(map.get()))
+    gst_pad_push(map.get(), MapBuffer(self->state->stream.map_from_odometry, estimate.time, pts));
+}
+
+/// Takes what the loops say of the drift by now.
+static void TakeLoops(GstLidarOdometry* self) {
+  State& state = *self->state;
+  const LoopThread::Progress progress = state.stream.loops->progress();
+  bool post = false;
+  {
+    const std::lock_guard lock(state.mutex);
+    post = state.settings.post_messages && progress.solved > state.stream.loops_taken;
+    state.counters.loops = progress.loops;
+    state.counters.local_maps = progress.local_maps;
+    state.counters.scans_not_in_local_maps = progress.scans_dropped;
+  }
+  state.stream.loops_taken = progress.solved;
+  state.stream.map_from_odometry = progress.map_from_odometry;
+  if (post) Post(self, LoopMessage(progress.map_from_odometry, progress.loops));
+}
+
+static void SearchLoops(GstLidarOdometry* self, const Estimate& estimate) {
+  Stream& stream = self->state->stream;
+  if (!stream.loops) return;
+  if (estimate.tracking != Tracking::kLost)
+    stream.loops->AddScan({estimate.time, estimate.pose}, stream.odometry->last_scan());
+  TakeLoops(self);
 }
 
 /// Aligns the scan that is open, if there is one. `pts` is that of its last buffer.
@@ -255,8 +256,32 @@ static void FinishScan(GstLidarOdometry* self, GstClockTime pts) {
                  GST_TIME_ARGS(time));
   WriteTrajectory(self, estimate);
   WarnIfLost(self, estimate);
-  if (Snapshot(state).post_messages) PostMessage(self, estimate);
-  PushPose(self, estimate, pts);
+  if (Snapshot(state).post_messages) Post(self, OdometryMessage(estimate));
+  PushPoses(self, estimate, pts);
+  SearchLoops(self, estimate);
+  PushMap(self, estimate, pts);
+  stream.last = estimate;
+}
+
+/// Waits for the loops of the scans until now, and pushes what they make of the last one.
+static void FinishLoops(GstLidarOdometry* self) {
+  Stream& stream = self->state->stream;
+  if (!stream.loops) return;
+  stream.loops->Finish();
+  TakeLoops(self);
+  PushMap(self, stream.last, GST_CLOCK_TIME_NONE);
+}
+
+/// Pushes an event to the pads of poses that are there; a stream begins with their own caps.
+static void PushToPoses(GstLidarOdometry* self, GstEvent* event) {
+  const auto push = [event](GstPad* pad, const CapsPtr& caps) {
+    gst_pad_push_event(pad, gst_event_ref(event));
+    if (GST_EVENT_TYPE(event) == GST_EVENT_STREAM_START)
+      gst_pad_push_event(pad, gst_event_new_caps(caps.get()));
+  };
+  push(self->poses, CapsPtr(gst_caps_new_empty_simple(GST_LIDAR_ODOMETRY_MEDIA_TYPE)));
+  const PadPtr map(gst_element_get_static_pad(GST_ELEMENT(self), "map"));
+  if (map) push(map.get(), MapCaps());
 }
 
 /// Returns true if the buffer could be added to a scan.
@@ -314,20 +339,15 @@ static gboolean SinkEvent(GstBaseTransform* base, GstEvent* event) {
       break;  // the pad of the poses has its own
     case GST_EVENT_EOS:
       FinishScan(self, GST_CLOCK_TIME_NONE);
-      gst_pad_push_event(self->poses, gst_event_ref(event));
+      FinishLoops(self);
+      PushToPoses(self, event);
       break;
     case GST_EVENT_FLUSH_STOP:
       stream.collector.Take();
-      gst_pad_push_event(self->poses, gst_event_ref(event));
+      PushToPoses(self, event);
       break;
-    case GST_EVENT_STREAM_START: {
-      gst_pad_push_event(self->poses, gst_event_ref(event));
-      const CapsPtr caps(gst_caps_new_empty_simple(GST_LIDAR_ODOMETRY_MEDIA_TYPE));
-      gst_pad_push_event(self->poses, gst_event_new_caps(caps.get()));
-      break;
-    }
     default:
-      gst_pad_push_event(self->poses, gst_event_ref(event));
+      PushToPoses(self, event);
   }
   return GST_BASE_TRANSFORM_CLASS(gst_lidar_odometry_parent_class)->sink_event(base, event);
 }
@@ -364,6 +384,11 @@ static gboolean Start(GstBaseTransform* base) {
   state.stream = {};
   state.imu.Clear();
   state.stream.odometry = std::make_unique<Odometry>(settings.odometry);
+  if (settings.local_maps > 0) {
+    lidar::slam::LoopSettings loops;
+    loops.most_maps = settings.local_maps;
+    state.stream.loops = std::make_unique<LoopThread>(loops);
+  }
   if (settings.trajectory.empty()) return TRUE;
   state.stream.trajectory = lidar::RowFile(settings.trajectory);
   if (state.stream.trajectory.ok()) return TRUE;
@@ -400,13 +425,28 @@ static gboolean ImuEvent(GstPad*, GstObject* parent, GstEvent* event) {
   return FALSE;
 }
 
+/// Gives the pad of the map, which may come late, what the pad of the odometry had so far.
+static gboolean CopyToMap(GstPad*, GstEvent** event, gpointer map) {
+  const bool caps = GST_EVENT_TYPE(*event) == GST_EVENT_CAPS;
+  const EventPtr copy(caps ? gst_event_new_caps(MapCaps().get()) : gst_event_ref(*event));
+  gst_pad_store_sticky_event(GST_PAD(map), copy.get());
+  return TRUE;
+}
+
 static GstPad* RequestPad(GstElement* element, GstPadTemplate* pad_template, const gchar*,
                           const GstCaps*) {
-  const PadPtr there(gst_element_get_static_pad(element, "imu"));
+  const gchar* name = GST_PAD_TEMPLATE_NAME_TEMPLATE(pad_template);
+  const PadPtr there(gst_element_get_static_pad(element, name));
   if (there) return nullptr;
-  GstPad* pad = gst_pad_new_from_template(pad_template, "imu");
-  gst_pad_set_chain_function(pad, ImuChain);
-  gst_pad_set_event_function(pad, ImuEvent);
+  GstPad* pad = gst_pad_new_from_template(pad_template, name);
+  if (GST_PAD_IS_SINK(pad)) {
+    gst_pad_set_chain_function(pad, ImuChain);
+    gst_pad_set_event_function(pad, ImuEvent);
+  } else {
+    gst_pad_use_fixed_caps(pad);
+    gst_pad_set_active(pad, TRUE);
+    gst_pad_sticky_events_foreach(GST_LIDAR_ODOMETRY(element)->poses, CopyToMap, pad);
+  }
   gst_element_add_pad(element, pad);
   return pad;
 }
@@ -433,6 +473,7 @@ static void gst_lidar_odometry_class_init(GstLidarOdometryClass* klass) {
            {{"sink", GST_PAD_SINK, GST_LIDAR_CLOUD_MEDIA_TYPE},
             {"src", GST_PAD_SRC, GST_LIDAR_CLOUD_MEDIA_TYPE},
             {"odometry", GST_PAD_SRC, GST_LIDAR_ODOMETRY_MEDIA_TYPE},
+            {"map", GST_PAD_SRC, GST_LIDAR_ODOMETRY_MEDIA_TYPE, GST_PAD_REQUEST},
             {"imu", GST_PAD_SINK, GST_LIDAR_IMU_MEDIA_TYPE, GST_PAD_REQUEST}});
   GST_ELEMENT_CLASS(klass)->request_new_pad = RequestPad;
   GST_ELEMENT_CLASS(klass)->release_pad = ReleasePad;

@@ -17,5 +17,6 @@ namespace lidar::gst {
 inline constexpr const char* kCloudFrame = "lidar";
 inline constexpr const char* kImuFrame = "imu";
 inline constexpr const char* kOdometryFrame = "odom";
+inline constexpr const char* kMapFrame = "map";
 
 }  // namespace lidar::gst

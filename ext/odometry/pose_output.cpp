@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "ext/odometry/pose_output.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "gst/common/coordinate_frames.h"
+#include "src/base/pose_bytes.h"
+#include "src/cdr/motion_samples.h"
+
+namespace lidar::gst {
+namespace {
+
+using odometry::Estimate;
+using odometry::Pose;
+using odometry::Tracking;
+
+/// The typical length of a vector with that covariance.
+gdouble Deviation(const Eigen::Matrix3d& covariance) { return std::sqrt(covariance.trace()); }
+
+GstStructure* PoseMessage(const char* name, const Pose& pose) {
+  const auto& p = pose.position;
+  const auto& q = pose.rotation;
+  return gst_structure_new(name, "x", G_TYPE_DOUBLE, p.x(), "y", G_TYPE_DOUBLE, p.y(), "z",
+                           G_TYPE_DOUBLE, p.z(), "qx", G_TYPE_DOUBLE, q.x(), "qy", G_TYPE_DOUBLE,
+                           q.y(), "qz", G_TYPE_DOUBLE, q.z(), "qw", G_TYPE_DOUBLE, q.w(), nullptr);
+}
+
+cdr::Odometry ToOdometry(const Pose& pose) {
+  const GstLidarPose meta = ToMeta(pose, Tracking::kTracking);
+  cdr::Odometry told;
+  std::copy_n(meta.position, 3, told.position.begin());
+  std::copy_n(meta.orientation, 4, told.orientation.begin());
+  return told;
+}
+
+GstBuffer* ToBuffer(const std::vector<std::uint8_t>& bytes, Time time, GstClockTime pts) {
+  GstBuffer* buffer = gst_buffer_new_memdup(bytes.data(), bytes.size());
+  GST_BUFFER_PTS(buffer) = pts;
+  gst_lidar_buffer_set_capture_time(buffer,
+                                    static_cast<GstClockTime>(time.time_since_epoch().count()));
+  return buffer;
+}
+
+}  // namespace
+
+GstLidarPose ToMeta(const Pose& pose, Tracking tracking) {
+  const auto& p = pose.position;
+  const auto& q = pose.rotation;
+  return {
+      {p.x(), p.y(), p.z()}, {q.x(), q.y(), q.z(), q.w()}, static_cast<GstLidarTracking>(tracking)};
+}
+
+GstStructure* OdometryMessage(const Estimate& e) {
+  GstStructure* told = PoseMessage("odometry", e.pose);
+  gst_structure_set(told, "timestamp", G_TYPE_UINT64,
+                    static_cast<guint64>(e.time.time_since_epoch().count()), "tracking",
+                    G_TYPE_STRING, ToString(e.tracking), "inlier-share", G_TYPE_DOUBLE,
+                    e.inlier_share, "position-deviation", G_TYPE_DOUBLE,
+                    Deviation(e.covariance.topLeftCorner<3, 3>()), "orientation-deviation",
+                    G_TYPE_DOUBLE, Deviation(e.covariance.bottomRightCorner<3, 3>()), nullptr);
+  return told;
+}
+
+GstStructure* LoopMessage(const Pose& map_from_odometry, std::size_t loops) {
+  GstStructure* told = PoseMessage("loop-closed", map_from_odometry);
+  gst_structure_set(told, "loops", G_TYPE_UINT64, static_cast<guint64>(loops), nullptr);
+  return told;
+}
+
+GstBuffer* PoseBuffer(const Estimate& e, GstClockTime pts) {
+  cdr::Odometry told = ToOdometry(e.pose);
+  for (Eigen::Index i = 0; i < 36; ++i)
+    told.pose_covariance[static_cast<std::size_t>(i)] = e.covariance(i / 6, i % 6);
+  auto bytes = cdr::WritePose(told, static_cast<std::uint64_t>(e.tracking));
+  bytes.resize(kPoseSizeWithCovariance);  // that of the first scan is 0
+  return ToBuffer(bytes, e.time, pts);
+}
+
+GstBuffer* MapBuffer(const Pose& map_from_odometry, Time time, GstClockTime pts) {
+  return ToBuffer(cdr::WritePose(ToOdometry(map_from_odometry), GST_LIDAR_TRACKING_OK), time, pts);
+}
+
+CapsPtr MapCaps() {
+  return CapsPtr(gst_caps_new_simple(GST_LIDAR_ODOMETRY_MEDIA_TYPE, GST_LIDAR_FRAME_ID,
+                                     G_TYPE_STRING, kMapFrame, GST_LIDAR_CHILD_FRAME_ID,
+                                     G_TYPE_STRING, kOdometryFrame, nullptr));
+}
+
+}  // namespace lidar::gst
