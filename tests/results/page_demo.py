@@ -44,17 +44,17 @@ def steps():
         s = summary_of(options)
         steady, whole = s["capture_to_cloud_steady_ms"], s["capture_to_cloud_ms"]
         body.append([
-            name, f"{s['scans_captured']} / {s['scans_skipped']} / {s['scans_complete']}", s["slices_lost"],
+            name, f"{s['scans_captured']}/{s['scans_skipped']}/{s['scans_complete']}", s["slices_lost"],
             f"{s['mean_rate_bps'] / 1e6:.1f}", f"{100 * s['utilisation_of_usable']:.1f}",
-            f"{s['queue_delay_steady_ms']['p95']:.1f} / {s['queue_delay_ms']['p95']:.1f}",
-            f"{steady['p50']:.1f} / {steady['p95']:.1f} / {steady['p99']:.1f}",
-            f"{whole['p95']:.1f} / {whole['max']:.1f}",
-            f"{100 * s['max_error_m']:.1f} / {100 * s['mean_error_m']:.2f}", f"{s['bits_per_return']:.1f}",
+            f"{s['queue_delay_steady_ms']['p95']:.1f}/{s['queue_delay_ms']['p95']:.1f}",
+            f"{steady['p50']:.1f}/{steady['p95']:.1f}/{steady['p99']:.1f}",
+            f"{whole['p95']:.1f}/{whole['max']:.1f}",
+            f"{100 * s['max_error_m']:.1f}/{100 * s['mean_error_m']:.2f}", f"{s['bits_per_return']:.1f}",
         ])
     head = [
-        "run", "scans captured / skipped / complete", "slices lost", "Mbit/s", "utilisation of usable [%]",
-        "queue p95, steady / whole [ms]", "capture_to_cloud p50 / p95 / p99, steady [ms]",
-        "p95 / max, whole run [ms]", "error max / mean [cm]", "bits a return",
+        "run", "scans captured/skipped/complete", "slices lost", "Mbit/s", "utilisation of usable [%]",
+        "queue p95, steady/whole [ms]", "capture_to_cloud p50/p95/p99, steady [ms]",
+        "p95/max, whole run [ms]", "error max/mean [cm]", "bits a return",
     ]
     return common.table(head, body)
 

@@ -17,15 +17,15 @@ COLUMNS = {
 
 
 def rmcat():
-    """Ours beside the draft alone; a goal of ours that is missed is bold."""
+    """Ours / the draft alone; a goal of ours that is missed is bold."""
     body = []
     ours, draft = (controller.figures("--group", "rfc", *more) for more in ([], ["--draft"]))
-    for case in ours:
-        for name, of in ((f"`{case}`", ours[case]), ("the draft alone", draft[case])):
-            row = [name]
-            for figure, (_, digits) in COLUMNS.items():
-                row.append(controller.cell(of, [figure], digits, of is ours[case]))
-            body.append(row)
+    for case, own in ours.items():
+        row = [f"`{case}`"]
+        for figure, (_, digits) in COLUMNS.items():
+            cells = [controller.cell(own, [figure], digits), controller.cell(draft[case], [figure], digits, False)]
+            row.append("–" if figure not in own else "/".join(cells))
+        body.append(row)
     return common.table(["case", *(head for head, _ in COLUMNS.values())], body)
 
 

@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Tables of docs/results/two-links.md. A row of drives is three runs in real time: an idle machine, as root."""
+import statistics
+
 import common
 
 
@@ -14,8 +16,34 @@ def simulated(what):
     return common.as_printed(common.run(common.program("bonding-matrix"), what))
 
 
+def cells_of(text):
+    """Rows of the printed table, without its head."""
+    lines = [line for line in text.splitlines() if line.startswith("|")]
+    return [[cell.strip() for cell in line.strip("|").split("|")] for line in lines[2:]]
+
+
+def pairs_of(text):
+    """Mean and worst of the pairs of drives, a row for each encoder."""
+    rows = cells_of(text)
+    body = []
+    for encoder in dict.fromkeys(row[1] for row in rows):
+        own = [row for row in rows if row[1] == encoder]
+        percent = [[float(row[i]) for row in own] for i in (3, 4)]
+        delays = [list(zip(*(map(int, row[i].split(",")) for row in own))) for i in (5, 6)]
+        body.append([
+            encoder, f"{statistics.mean(float(row[2]) for row in own):.2f}",
+            *(f"{statistics.mean(of):.1f}, {min(of):.1f}" for of in percent),
+            *(f"{statistics.mean(of):.0f}, {max(of)}" for both in delays for of in both),
+            f"{statistics.mean(float(row[7]) for row in own):.0f}",
+        ])
+    head = [
+        "encoder", "Mbit/s", "in time [%]", "bound [%]", "p95 [ms]", "bound's", "p99 [ms]", "bound's", "sent twice [%]",
+    ]
+    return common.table(head, body)
+
+
 TABLES = {
     "drives": drives,
-    "pairs": lambda: simulated("drives"),
+    "pairs": lambda: pairs_of(simulated("drives")),
     "one-bottleneck": lambda: simulated("one-bottleneck"),
 }
