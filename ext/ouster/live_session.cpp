@@ -150,7 +150,7 @@ void LiveSession::UnlockStop() {
   udp_.ClearWake();
 }
 
-/// Datagrams that wait in the sockets came during the pause.
+/// Drops the datagrams that came into the sockets during the pause.
 void LiveSession::LeavePauseBehind() {
   constexpr int kMostBatches = 4096;
   last_packet_us_ = g_get_monotonic_time();
@@ -219,7 +219,7 @@ bool LiveSession::HandleAnswer(SensorLink::Result result) {
   return true;
 }
 
-/// False, after an error was posted, where nothing ever came: then it is a setting to be mended.
+/// Returns false after an error was posted: no packet ever came, so a setting is wrong.
 bool LiveSession::WaitWhileSwitchedOff() {
   constexpr const char* kOff = "the sensor's lidar stream is switched off";
   if (heard_ && settings().reconnect) {
@@ -313,7 +313,7 @@ void LiveSession::HandlePacket(const ReceivedDatagram& d, Time now, Time utc_now
   }
 }
 
-/// False after an error was posted.
+/// Returns false after an error was posted.
 bool LiveSession::CheckSilence() {
   if (stream() == nullptr) return true;
   const bool never = stream()->batcher().stats().packets == 0 && !lost_once_;

@@ -63,7 +63,7 @@ class PeerLatch {
   enum class Standing {
     kNothing,
     kStream,  ///< sends a stream now
-    kSlices,  ///< of its LiDAR packets a slice came out whole
+    kSlices,  ///< a slice of its LiDAR packets came out whole
     kKnown,   ///< continues an SSRC of a silent peer's slices
   };
   enum class Verdict {
@@ -82,7 +82,7 @@ class PeerLatch {
   Verdict OnPacket(Time now, const Packet& packet);
   /// Returns true if a datagram that is no media may be accepted.
   bool IsPeer(GSocketAddress* from) const;
-  /// Returns true if OnPacket() has no use for the payload of what comes from there.
+  /// Returns true if OnPacket() does not need the payload of packets from there.
   bool HasShownSlices(GSocketAddress* from) const { return peer_.has_slices && IsPeer(from); }
   /// Returns true if copies are possible: another address sends too.
   bool WantsDigest(GSocketAddress* from) const {
@@ -94,7 +94,7 @@ class PeerLatch {
   GSocketAddress* link(std::size_t n) const {
     return n == 0 ? peer() : links_[n - 1].address.get();
   }
-  /// NULL before the first packet, or where no packet had an address; not owned by the caller.
+  /// NULL before the first packet with an address; not owned by the caller.
   GSocketAddress* peer() const { return peer_.address.get(); }
   /// Begins a session. The SSRCs whose slices came out whole stay known from the one before.
   void Restart();

@@ -44,7 +44,7 @@ struct PointCloud2 {
 std::optional<PointCloud2> ReadPointCloud2(ByteView message, std::string* why = nullptr);
 std::vector<std::uint8_t> WritePointCloud2(const PointCloud2& cloud);
 
-/// A cloud whose points stand in no message.
+/// A cloud with points of its own, outside of a message.
 struct MadeCloud {
   PointCloud2 cloud;  // whose data are `points`
   std::vector<std::uint8_t> points;
@@ -71,7 +71,7 @@ struct PointCloud2Frame {
   std::vector<std::uint8_t> head;
   std::vector<std::uint8_t> tail;
 };
-/// `cloud.data` says how long the points are; they are not read.
+/// Uses the size of `cloud.data`, not the points.
 PointCloud2Frame FramePointCloud2(const PointCloud2& cloud);
 
 /// The layout of points in our clouds.

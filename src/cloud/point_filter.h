@@ -71,7 +71,7 @@ class PointFilter {
                                          const PointFields& fields, std::uint32_t point_step);
 
   FilteredCloud Apply(const CloudRows& cloud);
-  /// Points that were returns, and are gone.
+  /// Returns that the filter removed.
   std::uint64_t removed() const { return removed_; }
 
  private:

@@ -47,7 +47,7 @@ constexpr unsigned kFineIntensityBits = IntensityScale::kMaxBits;
 /// and there, intensity and range.
 PointFields KeptFields(const PointFields& input, bool with_intensity, bool with_range);
 
-/// True where there is an intensity that the codecs take: F32.
+/// Returns true if there is an intensity that the codecs take: F32.
 bool HasIntensity(const PointFields& fields);
 
 /// Fills `image`, whose beams, columns and first_column are set, from `raw` of as many points.
@@ -55,13 +55,13 @@ bool HasIntensity(const PointFields& fields);
 /// is what they are levels of.
 FullScale ReadRangeImage(ByteView raw, const CloudLayout& layout, bool with_intensity,
                          RangeImage* image);
-/// The common divisor of all ranges [mm], which may be coarser than the sensor's unit, and finer
-/// where a cloud was filtered. Where it is above RangeGrid::kMaxUnitMm or nothing was returned, as
-/// much of the sensor's unit as divides all.
+/// The common divisor of all ranges [mm]: coarser than the sensor's unit, or finer if the cloud was
+/// filtered. Above RangeGrid::kMaxUnitMm, or without returns, it is the largest divisor of the
+/// sensor's unit that divides all.
 std::uint32_t CommonUnit(const std::vector<std::uint32_t>& ranges, std::uint32_t sensor_unit_mm);
 
-/// Fills `cloud` with the points of `raw` that are finite and not all zero. What is no intensity
-/// (negative, not finite) becomes 0.
+/// Fills `cloud` with the points of `raw` that are finite and not all zero. Intensities that are
+/// negative or not finite become 0.
 void ReadXyz(ByteView raw, const CloudLayout& layout, bool with_intensity, XyzCloud* cloud);
 
 /// Writes `image` as points, missing ones as zeros; `raw` has image.size() * point_step bytes.

@@ -93,7 +93,7 @@ bool RangeEncoder::Encode(const RangeImage& image, const RangeSettings& settings
   return true;
 }
 
-/// Gives the coder that was taken; none where it failed.
+/// Returns the coder that was used; nothing on failure.
 std::optional<RangeCoder> RangeEncoder::EncodePayload(const RangeImage& image,
                                                       const RangeSettings& settings,
                                                       BlockLink* link) {
@@ -149,8 +149,8 @@ double RangeEncoder::AdaptiveBits(const RangeImage& image, const RangeGrid& grid
   return 8.0 * static_cast<double>(bytes);
 }
 
-/// False where nothing can refer to the block, and so it need not be linked. Where bins may be
-/// chosen it is coded a second time, on a finer grid, and the smaller one is taken.
+/// Returns false if no later block can refer to this one: then it need not be linked. If bins may
+/// be chosen, codes it a second time on a finer grid and takes the smaller one.
 bool RangeEncoder::EncodeLinked(const RangeImage& image, const RangeSettings& settings,
                                 BlockLink* link) {
   const BlockMemory* reference = link->reference.get();

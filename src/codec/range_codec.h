@@ -33,8 +33,8 @@ class RangeEncoder {
   explicit RangeEncoder(const SensorModel& model, const IntegerCoder* integers = nullptr)
       : alignment_(model), integers_(integers), mixing_(model) {}
 
-  /// Appends one block to `out` and returns true; false where the image does not fit the sensor or
-  /// the coder is not there.
+  /// Appends one block to `out`. Returns false if the image does not fit the sensor or the coder is
+  /// missing.
   /// Ranges are multiples of the grid's unit. The image's levels are of 8 bits and become those of
   /// settings.intensity. An image without any return gives a block that decodes to such an image.
   /// With `link`, blocks of kMixing become kTemporal where they can: others may refer to them.
@@ -78,12 +78,12 @@ class RangeDecoder {
 
   std::uint32_t columns_per_scan() const { return alignment_.columns_per_scan(); }
 
-  /// The next block of `reader`; `scale` says what the levels stand for. False, with `image`
+  /// Decodes the next block of `reader`; `scale` is that of the levels. Returns false, with `image`
   /// undefined, for a block that is damaged, of another sensor, or of more than `max_points`.
   /// Blocks that others may refer to go into `store`, and references come from there.
   bool Decode(ByteReader* reader, std::size_t max_points, RangeImage* image, IntensityScale* scale,
               BlockStore* store = nullptr);
-  /// The last Decode() failed for want of the block that its block refers to.
+  /// Returns true if the last Decode() failed because a block that it refers to is missing.
   bool lacks_reference() const { return lacks_reference_; }
   /// The header of the block decoded last.
   const RangeHeader& header() const { return header_; }

@@ -24,7 +24,7 @@ struct EncodedSlice {
   std::size_t returns = 0;
   double step_m = 0;
   double error_m = 0;                  // bound that holds with this step
-  std::vector<BlockMemoryPtr> blocks;  // what it left for later ones; empty: nothing
+  std::vector<BlockMemoryPtr> blocks;  // memories for later slices; may be empty
 };
 
 enum class SliceResult {
@@ -33,7 +33,7 @@ enum class SliceResult {
   kOutOfReach,  // no grid meets max_error_m
 };
 
-/// A stream, and so a format. For one thread at a time.
+/// Encodes a stream of one format. For one thread at a time.
 class SliceEncoder {
  public:
   /// Returns nothing where `format` has no ranges. `integers` is needed for coders that are not our
@@ -45,7 +45,7 @@ class SliceEncoder {
   /// Takes the ranges out of `raw`, which holds whole beams of the format, and keeps them for
   /// Encode().
   void Load(ByteView raw, std::uint32_t first_column, bool with_intensity);
-  /// What is loaded has so many.
+  /// Number of returns that are loaded.
   std::size_t returns() const { return returns_; }
   /// Longest range [m].
   double extent_m() const { return extent_m_; }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// All that one sensor sends, from UDP payloads to slices with times: what a driver is without
-// sockets and clocks.
+// Turns the UDP payloads of one sensor into slices with times: a driver without sockets and
+// clocks.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -22,7 +22,7 @@ using Sender = std::array<std::uint8_t, 16>;
 
 /// When a packet came, and from where.
 struct Arrival {
-  Time local{};  // of the clock that the slices' times are wanted in
+  Time local{};  // by the clock of the slices' times
   Time utc{};    // since the Unix epoch
   Sender sender{};
 };
@@ -41,7 +41,7 @@ struct TimedSlice {
   Slice slice;
   Time local{};  // of the first column; never before that of the slice before
   Time utc{};
-  Time completed{};  // when the packet came that made it ready, in UTC
+  Time completed{};  // arrival of the packet that made it ready, in UTC
 };
 
 enum class PacketVerdict {
@@ -62,11 +62,11 @@ struct StreamStats {
 
 class SensorStream {
  public:
-  /// Null and `error` where the options do not fit the sensor.
+  /// Returns null and sets `error` if the options do not fit the sensor.
   static std::unique_ptr<SensorStream> Create(Metadata metadata, const StreamOptions& options,
                                               std::string* error);
 
-  /// Only kNewInitId asks for something: the packet was left out. Refresh the metadata, or call
+  /// Takes a packet. After kNewInitId, which leaves it out, refresh the metadata, or call
   /// AcceptNewInitId() and push the packet again.
   PacketVerdict Push(ByteView payload, const Arrival& arrival);
   /// Call this after kNewInitId: the sensor restarted, and packets with that init id are taken from
@@ -77,16 +77,15 @@ class SensorStream {
   void Flush();
   /// Flush(), and the next packet may be of any time.
   void Restart();
-  /// Throws away what is not complete or not taken: the next packet is from elsewhere in a
-  /// recording. The clocks stay as they are, so that a slice keeps its time whichever way it is
-  /// come to.
+  /// Throws away slices that are not complete or not taken: the next packet is from another place
+  /// of a recording. The clocks stay, so a slice has the same time after any seek.
   void Reposition();
   /// Goes on where the stream before a reconfiguration ended.
   void Continue(const SensorStream& before) {
     first_scan_id_ = before.next_scan_id_;
     last_local_ = before.last_local_;
   }
-  /// True once there are clocks to map by.
+  /// Returns true once a packet has set the clocks.
   bool knows_time() const { return batcher_.stats().packets > 0; }
   Time LocalOf(std::uint64_t sensor_ns) const;
   /// The sampling time of a lidar packet's first column, without taking the packet; nothing for

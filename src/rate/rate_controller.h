@@ -59,7 +59,7 @@ class RateController {
   void SetParameters(const ControllerParameters& parameters) { parameters_ = parameters; }
 
   Decision NextSlice(const SliceFeatures& slice);
-  /// Settings to encode the slice again with, or none: put it out as it is.
+  /// Returns settings to encode the slice again with; nothing: the slice goes out as it is.
   std::optional<Settings> OnEncoded(const EncodedSize& encoded);
 
   /// Zero before the first slice.

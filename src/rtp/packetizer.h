@@ -9,7 +9,7 @@
 
 namespace lidar::rtp {
 
-/// A RTP payload: `header`, then `body_size` bytes of the unit from `body_offset`, so that the
+/// An RTP payload: `header`, then `body_size` bytes of the unit from `body_offset`, so that the
 /// caller need not copy the unit.
 struct Packet {
   std::vector<std::uint8_t> header;
@@ -25,8 +25,8 @@ std::vector<Packet> Packetize(Unit unit, ByteView bytes, std::size_t max_payload
 /// Collects small slices into one aggregation packet.
 class Aggregator {
  public:
-  /// False, and nothing is done, where the unit does not fit beside those already in. Nor may it be
-  /// further from the first than 16 bits of `rtp_ticks`, the running time in 90 kHz.
+  /// Returns false and adds nothing if the unit does not fit beside those already in, or is further
+  /// from the first than 16 bits of `rtp_ticks`, the running time in 90 kHz.
   bool Add(Unit unit, ByteView bytes, std::size_t max_payload, std::uint64_t rtp_ticks);
   /// The packet so far, whose RTP timestamp is the first unit's; a single unit packet if it has one
   /// unit. Nothing when empty.
@@ -44,8 +44,8 @@ class Aggregator {
 class ScanCounter {
  public:
   explicit ScanCounter(std::uint32_t first) : number_(first) {}
-  /// Sets what `unit`, the next slice to be sent, says of its place: unit type, scan number and
-  /// skipped slices. The rest of its slice id and its scan id are set already.
+  /// Sets unit type, scan number and skipped slices of `unit`, the next slice to be sent. The rest
+  /// of its slice id and its scan id are set already.
   void Place(Unit* unit);
 
  private:

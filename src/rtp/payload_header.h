@@ -48,8 +48,8 @@ struct SliceInfo {
   std::uint16_t first_column = 0;
   std::uint32_t duration_ns = kUnknownDuration;
   std::uint64_t capture_ntp = 0;  // 0: not known
-  // The sender left out slice n + 1 before this one where bit n is set; kSliceAfterSkip only. Slice
-  // 0 comes after the last one of the scan before.
+  // Bit n: the sender left out the slice n + 1 places before this one, across scans. For
+  // kSliceAfterSkip only.
   std::uint64_t skipped = 0;
 
   static constexpr std::uint32_t kUnknownDuration = 0xFFFF'FFFF;

@@ -57,7 +57,7 @@ class Reassembler {
   /// of their completion: no slice waits for another.
   void Push(const RtpPacket& packet, const std::vector<Unit>& units,
             std::vector<ReceivedSlice>* out);
-  /// Has a slice begun here, behind all that `previous` saw, but by `max_scans` at most?
+  /// Has a slice begun here, behind all that `previous` saw, and by `max_scans` at most?
   bool IsAfter(const Reassembler& previous, std::int64_t max_scans) const;
   /// Did a slice come here whole and undamaged, whether or not its config is known?
   bool has_whole_slice() const { return has_whole_slice_; }

@@ -62,13 +62,13 @@ class SliceLedger {
   Admission Admit(SlicePosition p, std::uint32_t count, Time now);
   /// The slice, which must be open, has come to its end.
   void Settle(SlicePosition p, SliceOutcome outcome);
-  /// The source never sent this slice. The word of it may come after the slice was booked as lost.
+  /// The source never sent this slice. A slice that is booked as lost already moves to the skipped.
   void Skip(SlicePosition p);
   /// Notes the source's number `id` of `scan`. Between two sent scans these numbers have gaps for
   /// scans that were left out.
   void BookScanId(std::int64_t scan, std::uint32_t id);
-  /// The slice before `p`; nothing if that is before the scans that the ledger still has. Scans
-  /// before the first one count as having as many slices.
+  /// The slice before `p`; nothing if the ledger no longer has its scan. Scans before the first one
+  /// count as having as many slices.
   std::optional<SlicePosition> Before(SlicePosition p) const;
 
   /// Slices before this position are late at `now`; CloseBefore books them.

@@ -60,7 +60,7 @@ struct MergePadState {
   std::string plan_fields;
 };
 
-/// Scans that are farther apart are of different turns, where clouds do not say how long one takes.
+/// Scans without a duration that are farther apart are of different turns.
 constexpr GstClockTime kUsualScan = 100 * GST_MSECOND;
 
 struct Head {
@@ -99,8 +99,8 @@ static void MergePadSetCaps(GstLidarPointCloudMergePad* pad, GstCaps* caps) {
   pad->state->plan.reset();
 }
 
-/// Returns the returns of `buffer` with `fields`, or without fields those of the cloud, in the
-/// common frame; null if that cannot be: `why` then says so for a user.
+/// Gives the points of `buffer` that are returns, in the common frame, with `fields` or else those
+/// of the cloud. Null on failure, with the reason for a user in `why`.
 static BufferPtr MergePadRead(GstLidarPointCloudMergePad* pad, GstBuffer* buffer,
                               const std::string& fields, std::string* why) {
   MergePadState& state = *pad->state;
@@ -195,7 +195,7 @@ static bool DropOld(GstLidarPointCloudMerge* self, const std::vector<Head>& head
   return dropped;
 }
 
-/// Slices would be merged one by one, of any two parts of the turn.
+/// Warns of slices, which would be merged one by one, from any two parts of the turn.
 static void ReportSlices(GstLidarPointCloudMerge* self, GstBuffer* buffer) {
   GstLidarSlice slice{};
   if (self->state->slices_reported || !gst_lidar_buffer_get_slice(buffer, &slice) ||

@@ -25,7 +25,7 @@ struct Clocks {
   GstClockTime unix_now = 0;
 };
 
-/// Again where the thread was stopped between the two: all arrivals would seem so much earlier.
+/// Reads both clocks, again if the thread was stopped in between: all arrivals would seem earlier.
 Clocks ReadClocks(const RxState& state) {
   Clocks clocks;
   for (int tries = 0; tries < 3; ++tries) {
@@ -136,8 +136,8 @@ bool AnyAlive(const RxState& state, Time now) {
                      [now](const auto& s) { return now - s.second < kSsrcTimeout; });
 }
 
-/// A goodbye on the media's port ends streams, and a sender's report is kept for `stats`; other
-/// RTCP there goes on unread. Lock held.
+/// Handles RTCP on the media's port: a goodbye ends streams, a sender's report is kept for `stats`,
+/// other RTCP passes unread. Lock held.
 Fate LookAtRtcp(RxState& state, Time now, GstBuffer* buffer, const BufferMap& map) {
   const auto goodbyes = ParseBye(map.view());
   if (goodbyes.empty() && !scream::HasSenderReport(map.view())) return Fate::kPass;

@@ -113,16 +113,16 @@ GstFlowReturn RxChainList(GstPad* pad, GstObject* parent, GstBufferList* list);
 gboolean RxActivateRtcp(GstPad* pad, GstObject* parent, GstPadMode mode, gboolean active);
 /// Events that come from downstream.
 gboolean RxSrcEvent(GstPad* pad, GstObject* parent, GstEvent* event);
-/// Makes the task look again where the next report is due sooner; with the lock held.
+/// Wakes the task if the next report is due sooner; with the lock held.
 void WakeFeedback(RxState& state);
 
 // demux.cpp: streams by SSRC, with pt-map
 bool HasPtMap(GstLidarScreamRx* self);
-/// Warns of what is wrong with it.
+/// Warns of fields of the pt-map that cannot work.
 void CheckPtMap(GstLidarScreamRx* self);
-/// Finds out which payload types are LiDAR: of pt-map, with the lock held...
+/// Notes the payload types of pt-map that are LiDAR, with the lock held.
 void NoteLidarTypes(RxState& state);
-/// ...and of the caps where there is none.
+/// Notes those of the caps, if there is no pt-map.
 void NoteCaps(RxState& state, const GstCaps* caps);
 /// Pushes on the pad of the packet's stream, which may be new. Takes the buffer.
 GstFlowReturn Demux(GstLidarScreamRx* self, const RtpHeader& header, GstBuffer* buffer);

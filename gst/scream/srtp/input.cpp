@@ -8,7 +8,7 @@
 namespace lidar::gst {
 namespace {
 
-// The one in use, the one before and the one to come.
+// The key in use, the one before and the one to come.
 constexpr std::size_t kMaxKeys = 3;
 constexpr gint64 kStragglersUs = 10 * G_USEC_PER_SEC;
 constexpr std::size_t kMaxStreams = 2'048;
@@ -179,7 +179,7 @@ BufferPtr SrtpInput::TryRollover(GstBuffer* datagram, const Head& head, std::uin
     if (stream.known && keys_[n].serial < stream.key) continue;
     const std::uint32_t rollover = (behind ? stream.rollover + 1 : 0) + ahead;
     if (!Fits(keys_[n], datagram, head.ssrc, rollover)) continue;
-    // Decoded again where its streams are, so that it is no replay once and never again.
+    // The decoder of the key's streams takes it, too, so that its replay is refused.
     SrtpDecoder& decoder = keys_[n].DecoderOf(head);
     decoder.Restart(head.ssrc, rollover);
     BufferPtr decoded = decoder.Decode(datagram);
@@ -258,8 +258,8 @@ void SrtpInput::OnPassed(const Head& head, std::size_t key, std::uint32_t rollov
   on_new_key_(keys_[key].media->key());
 }
 
-/// A stream of which no packet passed for so long that it may have rolled over. Not one that still
-/// passes, whatever a forger adds.
+/// A stream is lost if no packet has passed for so long that it may have rolled over. A forger
+/// cannot make a stream lost whose packets pass.
 bool SrtpInput::IsLost(const Stream& stream) {
   return stream.failures >= kFailuresUntilLost &&
          g_get_monotonic_time() - stream.passed_at >= kSilenceUntilLostUs;

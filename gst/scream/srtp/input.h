@@ -42,7 +42,7 @@ class SrtpInput {
   SrtpInput(const SrtpInput&) = delete;
   SrtpInput& operator=(const SrtpInput&) = delete;
 
-  /// Takes the two pads, that are not linked. Returns false if they do not fit.
+  /// Links two pads that have no link. Returns false if they do not fit.
   bool Link(GstPad* socket, GstPad* target);
   /// Callable from any thread. Returns false without the srtp plugin. A fifth key replaces the
   /// oldest.

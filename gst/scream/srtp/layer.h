@@ -36,7 +36,7 @@ struct SrtpPlaces {
 /// Each link's input has replay windows of its own.
 class SrtpLayer {
  public:
-  /// Null and `error` where the key, the cipher or the srtp plugin is not usable.
+  /// Returns null and sets `error` if the key, the cipher or the srtp plugin is not usable.
   static std::unique_ptr<SrtpLayer> Create(const SrtpSettings& settings, const SrtpPlaces& places,
                                            std::string* error);
   ~SrtpLayer();
@@ -49,8 +49,8 @@ class SrtpLayer {
   unsigned overhead() const { return policy_.overhead; }
   BufferPtr Protect(GstBuffer* packet) { return encoder_->Protect(packet); }
   /// Takes the key that `source` names beside the one in use. The end that sends media uses it at
-  /// once; the end that answers does once the media does. False and `error` where it is no key or
-  /// was used before.
+  /// once; the end that answers does once the media does. Returns false and sets `error` if it is
+  /// no key or was used before.
   bool ChangeKey(const std::string& source, std::string* error);
 
  private:
@@ -72,7 +72,7 @@ class SrtpLayer {
 
 /// srtp-key (write-only), srtp-cipher and srtp-auth.
 const std::array<Property<SrtpSettings>, 3>& SrtpRows();
-/// Makes the layer where `settings` ask for one; false, and an error on the bus, where it cannot.
+/// Makes the layer if `settings` ask for it; false, and an error on the bus, if that fails.
 bool StartSrtp(const SrtpSettings& settings, const SrtpPlaces& places,
                std::shared_ptr<SrtpLayer>* layer);
 /// Gives a layer that runs its new key; a warning on the bus and false if it cannot.

@@ -28,9 +28,9 @@ struct Sighting {
   std::int32_t azimuth;  // counter-clockwise, below kTurn
 };
 
-/// A beam sees points of a line in the plane of `rho` and z, and of a column each turn: at the
-/// azimuth of the column, which the beam passes at a distance. Where beams bend, the elevation is
-/// that of the line only nearly.
+/// The points of a beam lie on a line in the plane of `rho` and z, one for each column of a turn,
+/// at the azimuth of the column, less what a beam that passes the origin adds. Points of beams that
+/// bend lie near the line only.
 struct BeamTable {
   static constexpr std::uint32_t kMostPeriod = 4;
   struct Beam {
@@ -49,12 +49,12 @@ struct BeamTable {
   static constexpr std::uint32_t kMostGrains = 1U << 18;
   /// Swings are multiples of it: 0.0014 degrees.
   static constexpr std::int32_t kSwingUnit = 16;
-  /// Units of the elevations and offsets of beams that bend: each point says the rest.
+  /// Units of the elevations and offsets of beams that bend: residuals of the points add the rest.
   static constexpr std::int32_t kBentElevation = 128;
   static constexpr std::int32_t kBentOffset = 32;
 
   std::uint32_t turn = 0;             // columns of a turn, in 1/kParts
-  std::uint32_t period = 1;           // of the swings, which are 0 where it is 1
+  std::uint32_t period = 1;           // of the swings; 1: there are none
   std::vector<Beam> beams;            // top to bottom
   std::uint32_t grains = 0;           // of a turn; 0: the columns are even
   std::vector<std::uint32_t> places;  // of the columns, in grains, rising
@@ -64,12 +64,12 @@ struct BeamTable {
   std::uint32_t rows() const { return static_cast<std::uint32_t>(beams.size()); }
   bool has_offsets() const;
   bool has_reaches() const;
-  /// Which of the places a beam has in a column.
+  /// Index of the place that a beam has in a column.
   std::uint32_t FiringOf(std::uint32_t beam, std::uint32_t column) const {
     column += beams[beam].delay;
     return column >= columns() ? column - columns() : column;
   }
-  /// Azimuths are not wrapped.
+  /// The azimuth, which is not wrapped.
   std::int32_t AzimuthOf(std::uint32_t beam, std::uint32_t column) const {
     column = FiringOf(beam, column);
     const std::uint64_t angle = places.empty() ? std::uint64_t{column} * kParts * kTurn / turn
@@ -88,7 +88,7 @@ struct BeamTable {
   Point At(std::uint32_t beam, std::int32_t azimuth, const Slope& slope,
            std::uint32_t range_mm) const;
 
-  /// Without the places.
+  /// Writes all but the places.
   void Write(ByteWriter* writer) const;
   /// Returns nothing for numbers that no encoder writes. Where there are grains, places are all 0.
   static std::optional<BeamTable> Read(ByteReader* reader);
@@ -113,7 +113,7 @@ class ColumnFinder {
   std::vector<std::uint16_t> buckets_;  // the first place at or behind each
 };
 
-/// From -kTurn / 2 to kTurn / 2.
+/// The angle, wrapped to -kTurn / 2 to kTurn / 2.
 inline std::int32_t Wrapped(std::int32_t angle) {
   return ((angle + kTurn / 2) & (kTurn - 1)) - kTurn / 2;
 }

@@ -204,7 +204,7 @@ void CellTree::FillLevels(const CellList& cells) {
   }
 }
 
-/// Fills the cells of neighbours that are coded already; of the others only that they are there.
+/// Fills in the cells of neighbours that are coded already, and the presence of the others.
 void CellTree::Look(const Place& place, Surroundings* around) const {
   constexpr std::uint64_t kOneEach = NodeMap::kStepX + NodeMap::kStepY + NodeMap::kStepZ;
   const std::uint64_t corner = NodeMap::KeyOf(place.position) - kOneEach;

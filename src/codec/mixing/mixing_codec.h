@@ -32,8 +32,8 @@ constexpr std::size_t MostMixedPixels(std::size_t payload_bytes) {
   return kFree + kPixelsPerByte * payload_bytes;
 }
 
-/// Reads the start states, some 50 ms of work, where nobody has yet in this process. Without it the
-/// first slice has to wait for that.
+/// Reads the start states, once a process: some 50 ms of work that the first slice waits for
+/// otherwise.
 void PrepareMixing();
 
 /// Keeps its buffers between slices; not for several threads at once.
@@ -69,8 +69,8 @@ class MixingDecoder {
   /// undefined, for a payload that is damaged or of another version.
   bool Decode(ByteView payload, const RangeGrid& grid, unsigned intensity_bits, RangeImage* image,
               const mixing::Memory& memory = {});
-  /// The largest error of the image decoded last where its encoder chose between bins; else 0, and
-  /// it is the grid's.
+  /// The largest error of the image decoded last, if its encoder chose between bins; else 0, and
+  /// the error is the grid's.
   std::uint32_t error_mm() const;
 
  private:

@@ -26,12 +26,12 @@ struct Surroundings {
   std::uint32_t range_class = 0;
 };
 
-/// Effort says how many contexts, centres and candidates are asked, and whether there are weights
-/// by events beside those by unevenness.
+/// `Effort` has the numbers of contexts, centres and candidates, and whether there are weights by
+/// events beside those by unevenness.
 template <class Effort, class Coder>
 class RangePart {
  public:
-  /// What the returns so far in a row have left.
+  /// State of a row after the returns so far.
   struct Row {
     std::array<std::int32_t, 3> west{};  // the last ones, newest first
     std::int32_t residual_west = 0;
@@ -80,12 +80,12 @@ class RangePart {
     Keep(CentreOf(bin), difference, azimuth);
     return bin;
   }
-  /// What is known around pixel `i`, for another coder...
+  /// What is known around pixel `i`, for another coder.
   Surroundings SurroundingsOf(std::uint32_t i) {
     Look(i);
     return {w_, n_, median_, uneven_, range_class_};
   }
-  /// ...that found `bin` there.
+  /// Learns `bin`, which that coder found.
   void See(std::int32_t bin, Azimuth* azimuth) {
     Keep(CentreOf(bin), mirror_ * (bin - (median_ >> 4)), azimuth);
   }
@@ -102,7 +102,7 @@ class RangePart {
     asked_ = 0;
   }
   std::int32_t Predicted() const { return median_ >> 4; }
-  /// Stops past `most`: the answer is then too low, but still above `most`.
+  /// Cost of `bin`. It stops past `most`: the answer is then above `most`, but too low.
   std::int32_t CostOf(std::int32_t bin, std::int64_t most) {
     const std::int32_t difference = mirror_ * (bin - Predicted());
     CodeNode(difference != 0, 0);
@@ -227,7 +227,7 @@ class RangePart {
       return mixer.Code(bit, WeightsOf(node), EventWeightsOf(node), &coder_);
     }
   }
-  /// Serves all bins that are tried out: each node is asked once, on each side in their order.
+  /// Chance of a node, found once for all bins that are tried out; nodes of a side come in order.
   std::int32_t ChanceOf(unsigned node) {
     if ((asked_ >> node & 1) != 0) return chances_[node];
     asked_ |= 1U << node;

@@ -22,7 +22,7 @@ constexpr unsigned kContexts = 15;
 
 namespace detail {
 
-/// Contexts by sums of absolute differences: half-octaves, and from the last one on alike.
+/// Contexts by sums of absolute differences: a context each half octave, the last one open.
 struct ContextTable {
   static constexpr unsigned kMost = 128;
   constexpr ContextTable() {
@@ -70,8 +70,8 @@ class RowPredictor {
  public:
   void Reset(const AzimuthAlignment& alignment, std::uint32_t columns);
 
-  /// Calls code(lane, index, prediction) for all returns of a row in the order of coding. False
-  /// where a value is not below `limit`, a power of two; there is nothing to go on with then.
+  /// Calls code(lane, index, prediction) for all returns of a row in the order of coding. Returns
+  /// false if a value is not below `limit`, a power of two; then the predictor is of no more use.
   template <class Code>
   [[gnu::always_inline]] bool CodeRow(std::uint32_t beam, const RowReturns& row,
                                       std::uint32_t limit, Code&& code) {
@@ -87,7 +87,7 @@ class RowPredictor {
 
  private:
   static constexpr std::int32_t kUnknown = -1;
-  /// Neighbours above the row; false where it has none at all.
+  /// Finds the neighbours above the row; returns false if there are none at all.
   bool Prepare(std::uint32_t beam, const RowReturns& row);
   bool Keep(std::uint32_t beam, const RowReturns& row, std::uint32_t limit);
 

@@ -81,7 +81,7 @@ class RansDecoder {
   /// overran() at least once in so many calls.
   RansDecoder(ByteView bytes, std::size_t ahead, std::vector<std::uint8_t>* padded);
 
-  /// More was read than there is: the stream is damaged, and not to be read any further.
+  /// Returns true if more was read than there is: the stream is damaged, and its reading ends.
   bool overran() const { return position_ > end_; }
 
   /// The next call must be GetBits() of the same lane, with a count of 0 if no bits follow.
@@ -97,12 +97,12 @@ class RansDecoder {
   std::uint32_t GetBits(unsigned lane, unsigned count) {
     return GetBits(lane, count, (1U << count) - 1);
   }
-  /// `mask`: that many ones.
+  /// `mask` has `count` ones.
   std::uint32_t GetBits(unsigned lane, unsigned count, std::uint32_t mask) {
     std::uint64_t x = states_[lane];
     const auto bits = static_cast<std::uint32_t>(x) & mask;
     x >>= count;
-    // Every tenth time or so, so a jump would be mispredicted: states are below 2^63.
+    // One state in ten needs a refill, so a jump would be mispredicted. States are below 2^63.
     const std::uint64_t refill = (x - kRansLow) >> 63;
     states_[lane] = x << (kRansWordBits * refill) | (LoadWord() & (0 - refill));
     position_ += sizeof(std::uint32_t) * refill;

@@ -61,7 +61,7 @@ void LeaseTable::OnEntry(const std::string& name, std::uint64_t revision,
   robot.revision = revision;
   const auto progress = robot.record.progress;
   robot.record = record.value_or(LeaseRecord());
-  // Ours; its answer is still to come or was lost. Our own progress is newer.
+  // A write of this worker, whose answer is still to come or was lost. Our progress is newer.
   const bool ours = record && record->worker == settings_.worker;
   if (ours && robot.held) robot.record.progress = progress;
   if (!ours) robot.held = false;
@@ -89,12 +89,12 @@ void LeaseTable::OnRefused(std::uint64_t ticket, std::optional<std::uint64_t> ne
   Robot* robot = FindPending(ticket);
   if (robot == nullptr) return;
   robot->pending.reset();
-  // The entry follows, with the faster writer, which may be an earlier write of ours.
+  // The entry of the faster writer follows; it may be an earlier write of ours.
   robot->not_before = robot->renew_at = now + settings_.lease / kRenewals;
   if (!robot->doubted_since) robot->doubted_since = now;
   if (newest != 0U) return;
   robot->revision = 0;
-  // The bucket is another one: the last write of the owner into the old one stays unknown.
+  // In a new bucket the owner's last write into the old one is unknown.
   const Duration lease = std::max(robot->record.lease, settings_.lease);
   robot->free_at = IsHeld(*robot, now) ? now : now + lease + lease / kMargin;
 }
@@ -174,7 +174,7 @@ bool LeaseTable::MakeRoom(const std::map<std::string, std::size_t>& places,
       worst = at;
   }
   if (worst == robots_.end()) return false;
-  // A robot keeps as many places as the other then has, or places would change for ever.
+  // A robot must keep as many places as the other then has: else places would change for ever.
   const bool unfair = places_of(worst->first) >= places_of(waiting) + 2;
   const auto idle = std::find_if(robots_.begin(), robots_.end(), [&](const auto& item) {
     return item.second.held && now - item.second.moved_at > kIdleSensor;

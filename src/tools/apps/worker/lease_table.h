@@ -47,11 +47,11 @@ class LeaseTable {
 
   /// Sets the robots of the fleet.
   void SetRobots(const std::set<std::string>& robots, Time now);
-  /// Notes the store's entry of a robot; without a record it is damaged.
+  /// Notes the store's entry of a robot; without a record the entry is damaged.
   void OnEntry(const std::string& robot, std::uint64_t revision,
                const std::optional<LeaseRecord>& record, Time now);
   void OnStored(std::uint64_t ticket, std::uint64_t revision, Time now);
-  /// `newest` is the revision that the store has instead, where it says so.
+  /// The store refused a write; `newest` is the revision that it has instead, if it said so.
   void OnRefused(std::uint64_t ticket, std::optional<std::uint64_t> newest, Time now);
 
   /// Sets the progress for the next renewal.
@@ -66,7 +66,7 @@ class LeaseTable {
   /// Gives up all robots at once, in favour of the waiting workers. Takes no robot any more.
   std::vector<Write> HandOver(Time now);
 
-  /// What is ours at `now`, whether or not it is renewed in time.
+  /// The robots of this worker at `now`, whether or not a renewal is in time.
   std::map<std::string, Held> HeldAt(Time now) const;
   /// Returns true if expected entries of others do not come, so that all are to be read again.
   bool MissesEntries(Time now);
@@ -82,11 +82,11 @@ class LeaseTable {
     bool wanted = false;
     bool held = false;
     std::uint64_t revision = 0;  // of the newest known entry; 0: unknown
-    // Since a write was refused: the store may have another entry, with a lower revision even.
+    // When a write was refused: the store may have another entry, even of a lower revision.
     std::optional<Time> doubted_since;
     LeaseRecord record;  // in that entry
-    Time free_at{};      // its owner has lost it then
-    Time not_before{};   // it is not tried
+    Time free_at{};      // the lease of its owner ends
+    Time not_before{};   // no try is made
     Time until{};        // while it is held
     Time renew_at{};
     std::string last_worker;

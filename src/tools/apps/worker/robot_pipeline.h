@@ -51,14 +51,14 @@ class RobotPipeline {
   /// Poses go out only before this time, even if the thread that stops them hangs.
   void SetEnd(Time end) { end_ = end.time_since_epoch().count(); }
   std::uint64_t stream() const { return stream_; }
-  /// Place at which it was to begin.
+  /// The place at which it had to begin.
   const std::optional<Progress>& begin() const { return begin_; }
   /// Returns true if it waits for a scan behind `last`, the newest message of the stream at
   /// `asked_at`: then the record is wrong.
   bool IsAheadOf(std::uint64_t last, Time asked_at) const {
     return begin_scan_ > last && asked_at > made_at_;
   }
-  /// True once a pose came after the end.
+  /// Returns true once a pose came after the end.
   bool has_dropped() const { return dropped_; }
   /// Returns nothing before the first pose.
   std::optional<Progress> progress() const;
