@@ -10,6 +10,7 @@ import json
 import pathlib
 import re
 import sys
+import textwrap
 
 PAGE = "docs/reference/elements.md"
 HEAD = """# Elements, programs, scripts
@@ -27,7 +28,13 @@ KINDS = {
 }
 
 
-def element_tables(root):
+def item(name, purpose):
+    return textwrap.fill(
+        f"- {name}: {purpose}", 100, subsequent_indent="  ", break_long_words=False, break_on_hyphens=False
+    )
+
+
+def element_lists(root):
     cache = json.loads((root / "docs/plugins_cache.json").read_text())
     elements = {
         name: element
@@ -36,13 +43,12 @@ def element_tables(root):
     }
     for heading, pattern in KINDS.items():
         rows = [
-            f"| [`{name}`](../elements/{name}.md) | {element['description']} |"
+            item(f"[`{name}`](../elements/{name}.md)", element["description"])
             for name, element in sorted(elements.items())
             if re.match(pattern, element["klass"])
         ]
         if rows:
-            head = "| element | what it does |\n|---|---|"
-            yield "\n".join([f"### {heading}\n", head, *rows])
+            yield "\n".join([f"### {heading}\n", *rows])
 
 
 def page_of(root, name):
@@ -59,24 +65,22 @@ def page_of(root, name):
     return code
 
 
-def program_table(root):
-    yield "| program | what it does |\n|---|---|"
+def program_list(root):
     for build in sorted((root / "src").rglob("meson.build")):
         purposes = re.search(r"^purposes = \{(.*?)\n\}", build.read_text(), re.S | re.M)
         for name, purpose in re.findall(r"'([\w-]+)': '([^']+)'", purposes[1]) if purposes else []:
-            yield f"| {page_of(root, name)} | {purpose} |"
+            yield item(page_of(root, name), purpose)
 
 
-def script_table(root):
-    yield "| script | what it does |\n|---|---|"
+def script_list(root):
     for script in sorted((root / "pipelines").glob("*.sh")):
         lines = script.read_text().splitlines()
         if lines[0].startswith("#!"):
-            yield f"| {page_of(root, script.name)} | {lines[2].lstrip('# ').rstrip('.')} |"
+            yield item(page_of(root, script.name), lines[2].lstrip("# ").rstrip("."))
 
 
 def page(root):
-    elements = "\n\n".join(element_tables(root))
+    elements = "\n\n".join(element_lists(root))
     return f"""{HEAD}
 ## Elements
 
@@ -88,13 +92,13 @@ def page(root):
 
 `--help` lists the options of each, `--version` its release.
 
-{chr(10).join(program_table(root))}
+{chr(10).join(program_list(root))}
 
 ## Scripts
 
 They run from the source tree, as `pipelines/<name>.sh`; `--help` lists the options of each.
 
-{chr(10).join(script_table(root))}
+{chr(10).join(script_list(root))}
 """
 
 

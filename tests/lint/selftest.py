@@ -63,25 +63,19 @@ See `src/base/units.h`, `units.h`, `gst/*`, `gst<name>.cpp`, `lidar-eval --help`
 
 ### Clouds and poses
 
-| element | what it does |
-|---|---|
-| [`alpha`](../elements/alpha.md) | Turns clouds |
+- [`alpha`](../elements/alpha.md): Turns clouds
 
 ## Programs
 
 `--help` lists the options of each, `--version` its release.
 
-| program | what it does |
-|---|---|
-| `lidar-eval` | measures |
+- `lidar-eval`: measures
 
 ## Scripts
 
 They run from the source tree, as `pipelines/<name>.sh`; `--help` lists the options of each.
 
-| script | what it does |
-|---|---|
-| `turn.sh` | Turns a cloud |""",
+- `turn.sh`: Turns a cloud""",
     "pipelines/turn.sh": "#!/usr/bin/env bash\n# SPDX\n# Turns a cloud.",
     "tests/lint/reference.py": "",
     "pipelines/parts.sh": "# Sourced.",
