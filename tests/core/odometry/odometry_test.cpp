@@ -9,68 +9,12 @@
 #include <random>
 
 #include "src/odometry/trajectory_error.h"
-#include "src/synth/scanner.h"
+#include "tests/core/odometry/true_drive.h"
 
 namespace lidar::odometry {
 namespace {
 
 using std::chrono::milliseconds;
-
-constexpr Duration kPeriod = milliseconds(100);
-
-/// A car with a sensor, of 32 beams if nothing else is said.
-class Drive {
- public:
-  Drive(synth::SceneKind scene, double speed_mps, std::uint64_t seed = 0)
-      : Drive(Config(scene, speed_mps, seed)) {}
-  explicit Drive(const synth::ScannerConfig& config)
-      : columns_(config.sensor.model.columns_per_scan),
-        scanner_(config),
-        projection_(config.sensor.model) {}
-
-  TimedPoints Scan(std::uint64_t number) {
-    synth::Returns returns;
-    scanner_.Cast(number, {0, columns_}, &returns);
-    const auto& ranges = returns.range_mm;
-    std::vector<float> xyz(3 * ranges.size());
-    projection_.Project(ranges.data(), {0, columns_}, reinterpret_cast<std::uint8_t*>(xyz.data()),
-                        3 * sizeof(float));
-    TimedPoints timed;
-    for (std::size_t i = 0; i < ranges.size(); ++i) {
-      if (ranges[i] == 0) continue;
-      timed.points.push_back(
-          Eigen::Vector3f(xyz[3 * i], xyz[3 * i + 1], xyz[3 * i + 2]).cast<double>());
-      timed.phases.push_back(static_cast<float>(i % columns_) / static_cast<float>(columns_));
-      timed.rings.push_back(static_cast<std::uint16_t>(i / columns_));
-    }
-    return timed;
-  }
-  Time StartOf(std::uint64_t number) const { return Time{} + scanner_.ColumnTime(number, 0); }
-  Pose TruthAt(Time t) const {
-    const synth::Pose pose = scanner_.trajectory().At(t.time_since_epoch());
-    const auto [x, y, z, w] = pose.ToQuaternion();
-    return {Eigen::Quaterniond(w, x, y, z), {pose.x, pose.y, pose.z}};
-  }
-  /// From the middle of the first scan to that of another.
-  Pose WayTo(std::uint64_t number) const {
-    return TruthAt(StartOf(0) + kPeriod / 2).Inverse() * TruthAt(StartOf(number) + kPeriod / 2);
-  }
-
-  static synth::ScannerConfig Config(synth::SceneKind scene, double speed_mps, std::uint64_t seed,
-                                     const char* sensor = "os0-32", std::uint32_t columns = 512) {
-    synth::ScannerConfig config;
-    config.sensor = *synth::MakeSensor(sensor, columns);
-    config.scene = scene;
-    config.speed_mps = speed_mps;
-    config.seed = seed;
-    return config;
-  }
-
- private:
-  std::uint32_t columns_;
-  synth::Scanner scanner_;
-  RangeProjection projection_;
-};
 
 /// Poses of `scans` scans, of which those in `missing` do not come.
 struct Followed {
@@ -149,20 +93,6 @@ TEST(Odometry, DoesNotTiltOnGroundThatItSawFromAfar) {
   const auto error = Compare(run.truth, run.estimate);
   ASSERT_TRUE(error);
   EXPECT_LT(error->end_error_m, 0.3);
-}
-
-/// A gyroscope as data sheets have them, or one whose axes are turned about the vertical.
-void AddTurns(const Drive& drive, Time from, Time to, double axes_rad, Odometry* odometry) {
-  constexpr Duration kStep = milliseconds(10);
-  const Eigen::Vector3d bias(0.01, -0.01, 0.005);
-  std::minstd_rand random(7);
-  std::normal_distribution<double> noise(0, 0.005);
-  for (Time t = from; t < to; t += kStep) {
-    const Pose turn = drive.TruthAt(t - kStep / 2).Inverse() * drive.TruthAt(t + kStep / 2);
-    Eigen::Vector3d rate = Log(turn).tail<3>() / Seconds(kStep) + bias;
-    for (double& r : rate) r += noise(random);
-    odometry->OnTurn(t, Eigen::AngleAxisd(axes_rad, Eigen::Vector3d::UnitZ()) * rate);
-  }
 }
 
 /// Through the corners of a town, or over the bumps of a field.
